@@ -1,0 +1,59 @@
+/* dataset.h - posed images in time, whatever layout they came in.
+ * Used by the trainer and ted4eval. Loaders: one file a layout (load_*.c).
+ * SPDX-License-Identifier: BSD-2-Clause */
+#ifndef TED4_DATASET_H
+#define TED4_DATASET_H
+
+#include <stddef.h>
+#include <stdint.h>
+
+/* Pinhole after undistortion and downscaling; camera axes right, down, forward; x_cam = R x_world + t. Pixel centres at + 0.5. */
+typedef struct {
+    int    width, height;
+    double fx, fy, cx, cy;
+    double R[9], t[3];
+} ted4_camera;
+
+typedef struct {
+    ted4_camera camera;
+    uint32_t    frame;          /* index of its time, 0 .. n_frames - 1; t = frame / (n_frames - 1) */
+    uint32_t    camera_id;      /* same physical camera, same number */
+    uint8_t     is_test;
+    char       *path;           /* image file; owned by the dataset */
+} ted4_picture;
+
+typedef struct ted4_dataset {
+    char         *layout;       /* "colmap", "blender", "nerfstudio", ...; owned */
+    ted4_picture *pictures;     /* [n_pictures] sorted: test flag apart, by file order of the layout */
+    size_t        n_pictures;
+    uint32_t      n_frames, n_cameras;
+    float        *points;       /* [n_points][3] world; may be random, see random_points */
+    uint8_t      *point_rgb;    /* [n_points][3] */
+    size_t        n_points;
+    int           random_points;
+    double        rate;         /* frames a second, 0: unknown */
+    uint8_t       background[3];
+    struct ted4_image_cache *cache;
+} ted4_dataset;
+
+typedef struct {
+    int         downscale;      /* integer factor, area average; 1 = none */
+    int         white;          /* background of RGBA images: 1 white (default), 0 black */
+    uint32_t    seed;           /* for random points */
+    size_t      cache_bytes;    /* bound of decoded pixels kept in memory */
+} ted4_dataset_options;
+
+/* One clear message, "file:line-or-field: what was found, what was expected". */
+typedef struct { char text[1024]; } ted4_message;
+
+/* 0, or -1 with *m filled and *d empty. Every picture is opened once to read its size; pixels are decoded on demand. */
+int  ted4_dataset_load(ted4_dataset *d, const char *folder,
+                       const ted4_dataset_options *o, ted4_message *m);
+void ted4_dataset_free(ted4_dataset *d);
+
+/* Interleaved RGB bytes [height][width][3] of picture i, composited, undistorted, downscaled. The pointer stays valid until
+ * ted4_dataset_release(d, i). Safe from several threads. NULL with *m filled when the file cannot be decoded any more. */
+const uint8_t *ted4_dataset_pixels(ted4_dataset *d, size_t i, ted4_message *m);
+void           ted4_dataset_release(ted4_dataset *d, size_t i);
+
+#endif
