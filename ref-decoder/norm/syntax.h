@@ -6,6 +6,7 @@
 
 #include <stddef.h>
 #include <stdint.h>
+#include "ted4.h"
 
 enum { TED4_MAX_OFFSETS = 16, TED4_MAX_FEATURE = 128, TED4_MAX_SLICES = 16,
        TED4_MAX_PHI = 32, TED4_MAX_LAYERS = 10, TED4_MAX_WIDTH = 512,
@@ -82,7 +83,7 @@ typedef struct {
 } ted4_blob;
 
 /* Everything Tier E decodes. Arrays of the scene belong to its allocator (see scene.h). */
-typedef struct {
+struct ted4_scene {
     ted4_header head;
     ted4_shape  shape;
     uint8_t    *shift;                  /* [n_units] spec 7.3 */
@@ -92,6 +93,6 @@ typedef struct {
     uint16_t   *offset_bits;            /* [N] bit k: offset k is kept */
     uint8_t    *step_index[TED4_TYPES]; /* [N] each; NULL: type absent */
     int16_t    *symbol[TED4_TYPES];     /* [dim][N]; 0 where not coded */
-} ted4_scene;
+};
 
 #endif

@@ -1,0 +1,31 @@
+/* status.h - spec 14: every verdict a decoder can give, made from status.def.
+ * SPDX-License-Identifier: BSD-2-Clause */
+#ifndef TED4_STATUS_H
+#define TED4_STATUS_H
+
+#include <stddef.h>
+
+typedef enum {
+    TED4_OK,
+#define TED4_STATUS(name, id, section, text) TED4_##name,
+#include "base/status.def"
+#undef TED4_STATUS
+    TED4_N_STATUS
+} ted4_status;
+
+typedef enum { TED4_VALID, TED4_INVALID, TED4_LIMIT, TED4_UNSUPPORTED, TED4_IO } ted4_verdict;
+
+/* The first failure sticks: code, and byte offset in the file. */
+typedef struct {
+    ted4_status code;
+    size_t      offset;
+} ted4_error;
+
+/* Sets *e unless it already holds a failure. Set a breakpoint here to stop at the first rejected byte. */
+void         ted4_fail(ted4_error *e, ted4_status code, size_t offset);
+const char  *ted4_status_id(ted4_status s);       /* "con.chunk-hash"; "ok" */
+const char  *ted4_status_section(ted4_status s);  /* "5.2" */
+const char  *ted4_status_text(ted4_status s);
+ted4_verdict ted4_status_verdict(ted4_status s);  /* from the id's first word */
+
+#endif
