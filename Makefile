@@ -1,4 +1,6 @@
 # TED4: `make deps demo` runs the main job, `make deps test` passes the tests. `make help` lists the rest.
+all:
+
 OPT   ?= -O3
 ARCH  ?= -march=native
 B     ?= build
@@ -51,12 +53,58 @@ $B/ted4scene: $(patsubst %.c,$B/%.o,$(wildcard tests/scenes/*.c)) $B/libted4enc.
 $B/tests/%: $B/tests/%.o $B/libted4enc.a $B/libted4dec.a
 	$(CC) -fopenmp $(LDFLAGS) $^ -o $@ -lcmocka $(LIBS)
 
+# Prints each test program it runs and a closing line of totals.
 test: $(TESTS) $(PROGS)
-	@B=$B TED4_DATA=$(TED4_DATA) tests/run.sh $(TESTS)
+	@TED4_BUILD=$(abspath $B) TED4_DATA=$(abspath $(TED4_DATA)) sh tests/run.sh $(TESTS)
+
+# Scene, training, file, decoder in a fresh process, held-out views, picture sheet: in out/demo.
+demo: $(PROGS)
+	@TED4_BUILD=$(abspath $B) sh tests/demo.sh out/demo
+
+lint:
+	@for l in tests/lint/*.sh; do sh $$l || exit 1; done
+
+# Both compilers, warnings as errors, lints, tests.
+check: lint
+	$(MAKE) B=build-gcc CC=gcc WERROR=-Werror all
+	$(MAKE) B=build-clang CC=clang-14 WERROR=-Werror all
+	$(MAKE) B=build-gcc CC=gcc WERROR=-Werror test
+
+asan:
+	$(MAKE) test B=build-asan OPT='-O1' CFLAGS='-fsanitize=address,undefined -fno-sanitize-recover=all' \
+	    LDFLAGS='-fsanitize=address,undefined'
+
+-include bench/bench.mk fuzz/fuzz.mk
+
+DEPS     = gcc libc6-dev libcmocka-dev libjansson-dev libjpeg62-turbo-dev libpng-dev libxxhash-dev zlib1g-dev
+DEPS_DEV = clang-14 libclang-rt-14-dev libomp-14-dev ffmpeg gnuplot-nox pandoc lcov valgrind \
+           gcc-aarch64-linux-gnu gcc-s390x-linux-gnu libc6-dev-arm64-cross libc6-dev-s390x-cross qemu-user-static
+SUDO     = $(shell [ "$$(id -u)" = 0 ] || echo sudo)
+INSTALL_DEBIAN = missing=$$(for p in $(1); do \
+	dpkg-query -W -f='$${Status}' $$p 2>/dev/null | grep -q 'ok installed' || echo $$p; done); \
+	if [ -n "$$missing" ]; then $(SUDO) apt-get update -q && \
+	DEBIAN_FRONTEND=noninteractive $(SUDO) apt-get install -y -q --no-install-recommends $$missing; fi
+deps:
+	@$(call INSTALL_DEBIAN,$(DEPS))
+deps-dev: deps
+	@$(call INSTALL_DEBIAN,$(DEPS_DEV))
+
+PREFIX  ?= /usr/local
+install: all
+	install -d $(DESTDIR)$(PREFIX)/bin $(DESTDIR)$(PREFIX)/lib $(DESTDIR)$(PREFIX)/include/ted4/base
+	install $(addprefix $B/,$(DEC_PROG) $(ENC_PROG)) $(DESTDIR)$(PREFIX)/bin
+	install -m 644 $B/libted4dec.a $B/libted4enc.a $(DESTDIR)$(PREFIX)/lib
+	install -m 644 ref-decoder/ted4.h $(DESTDIR)$(PREFIX)/include/ted4
+	install -m 644 ref-decoder/base/parallel.h ref-decoder/base/status.h ref-decoder/base/status.def \
+	    $(DESTDIR)$(PREFIX)/include/ted4/base
+
+help:
+	@echo 'all demo test check lint asan deps deps-dev install clean; variables OPT ARCH CC B TED4_DATA PREFIX DESTDIR'
+	@echo 'bench/bench.mk and fuzz/fuzz.mk add their own targets'
 
 clean:
-	rm -rf build build-*
+	rm -rf build build-* out
 
-.PHONY: all test clean
+.PHONY: all test demo lint check asan deps deps-dev install help clean
 .SECONDARY:
 -include $(shell find $B -name '*.d' 2>/dev/null)

@@ -55,7 +55,8 @@ typedef struct {
     float    camera[3];
 } ted4_query;
 
-/* Records of a query as structure of arrays; id = anchor * K + offset is stable over time. Owned by the ted4_recon. */
+/* Records of a query as structure of arrays; id = anchor * K + offset is stable over time. Owned by the ted4_recon, and to be read only:
+ * the next query computes again only what has changed. */
 typedef struct {
     size_t    n;
     float    *mean[3], *scale[3], *rot[4], *opacity, *colour[3];
@@ -73,5 +74,12 @@ void        ted4_recon_free(ted4_recon *r);
  * or TED4_E_REC_NONFINITE. */
 ted4_status ted4_recon_query(ted4_recon *r, const ted4_query *q,
                              const ted4_parallel *p, ted4_gaussians *g);
+
+/* 1: this build, on this machine and in its floating-point state of now, can claim class X. 0: queries still work, but their last
+ * bits may differ (-ffast-math, x87, flush to zero, another rounding mode). */
+int ted4_recon_class_x(void);
+
+/* spec 15.3. hash: in canonical form. */
+void ted4_gaussians_hash(const ted4_gaussians *g, uint8_t hash[16]);
 
 #endif

@@ -7,6 +7,7 @@
 #include <stddef.h>
 #include <stdint.h>
 #include "ted4.h"
+#include "base/arena.h"
 
 enum { TED4_MAX_OFFSETS = 16, TED4_MAX_FEATURE = 128, TED4_MAX_SLICES = 16,
        TED4_MAX_PHI = 32, TED4_MAX_LAYERS = 10, TED4_MAX_WIDTH = 512,
@@ -73,7 +74,10 @@ typedef struct {
 /* Fills *s from a header whose values are in range. Never fails. shape.c */
 void ted4_shape_make(ted4_shape *s, const ted4_header *h);
 
-/* spec 7.2. values: n binary32 numbers, owned by the scene. deflated: the opaque zlib bytes when mode is 1. */
+enum { TED4_BLOB_RAW, TED4_BLOB_DEFLATED, TED4_BLOB_AUTO = 255 };
+
+/* spec 7.2. values: n binary32 numbers, owned by the scene. deflated: the opaque zlib bytes when mode is 1.
+ * mode AUTO: no file has said; the writer takes the smaller one. */
 typedef struct {
     float   *values;
     size_t   n;
@@ -82,8 +86,12 @@ typedef struct {
     size_t   deflated_size;
 } ted4_blob;
 
-/* Everything Tier E decodes. Arrays of the scene belong to its allocator (see scene.h). */
+enum { TED4_PROBS = 7 };                /* dynamic_prob, offset_prob[6] */
+
+/* Everything Tier E decodes. Arrays of the scene belong to its arena (see scene.h). */
 struct ted4_scene {
+    ted4_arena  arena;
+    uint8_t     level;                  /* 0: not from a file */
     ted4_header head;
     ted4_shape  shape;
     uint8_t    *shift;                  /* [n_units] spec 7.3 */
@@ -93,6 +101,8 @@ struct ted4_scene {
     uint16_t   *offset_bits;            /* [N] bit k: offset k is kept */
     uint8_t    *step_index[TED4_TYPES]; /* [N] each; NULL: type absent */
     int16_t    *symbol[TED4_TYPES];     /* [dim][N]; 0 where not coded */
+    uint16_t   *prob;                   /* [n_tiles][TED4_PROBS]; 0: no file has said, the writer counts */
+    uint8_t     hash[16];               /* ENDS, spec 15.2 */
 };
 
 #endif

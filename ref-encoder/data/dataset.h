@@ -6,6 +6,7 @@
 
 #include <stddef.h>
 #include <stdint.h>
+#include <stdio.h>
 
 /* Pinhole after undistortion and downscaling; camera axes right, down, forward; x_cam = R x_world + t. Pixel centres at + 0.5. */
 typedef struct {
@@ -33,7 +34,8 @@ typedef struct ted4_dataset {
     int           random_points;
     double        rate;         /* frames a second, 0: unknown */
     uint8_t       background[3];
-    struct ted4_image_cache *cache;
+    struct ted4_source      *sources;   /* [n_pictures] how files become pixels; owned, opaque */
+    struct ted4_image_cache *cache;     /* owned, opaque */
 } ted4_dataset;
 
 typedef struct {
@@ -55,5 +57,11 @@ void ted4_dataset_free(ted4_dataset *d);
  * ted4_dataset_release(d, i). Safe from several threads. NULL with *m filled when the file cannot be decoded any more. */
 const uint8_t *ted4_dataset_pixels(ted4_dataset *d, size_t i, ted4_message *m);
 void           ted4_dataset_release(ted4_dataset *d, size_t i);
+
+/* Decodes every picture once. 0, or -1 with *m naming the first that cannot be decoded. */
+int ted4_dataset_verify(ted4_dataset *d, ted4_message *m);
+
+/* What was found, for a reader: layout, pictures, cameras, frames, sizes, focal lengths, camera centres, points, background, rate. */
+void ted4_dataset_print(const ted4_dataset *d, FILE *out);
 
 #endif

@@ -1,0 +1,96 @@
+/* arena.c - see arena.h. A block is a header, padding up to 64 bytes, and the storage.
+ * SPDX-License-Identifier: BSD-2-Clause */
+#include "base/arena.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+enum { ALIGN = 64 };
+
+typedef struct ted4_arena_block block;
+struct ted4_arena_block {
+    block *next, *prev;
+    void  *storage;             /* as the allocator returned it */
+    size_t size;                /* asked from the allocator */
+};
+
+static void *malloc_alloc(void *user, size_t size)
+{
+    (void)user;
+    return malloc(size);
+}
+
+static void malloc_free(void *user, void *p)
+{
+    (void)user;
+    free(p);
+}
+
+void ted4_arena_init(ted4_arena *a, const ted4_options *o)
+{
+    static const ted4_allocator standard = { malloc_alloc, malloc_free, NULL };
+
+    memset(a, 0, sizeof *a);
+    a->allocator = o != NULL && o->allocator.alloc != NULL ? o->allocator
+                                                           : standard;
+    a->max = o != NULL && o->max_bytes != 0 ? o->max_bytes
+                                            : TED4_ARENA_DEFAULT;
+}
+
+/* The header lies right before the aligned storage. */
+static block *header_of(void *p)
+{
+    return (block *)p - 1;
+}
+
+void *ted4_arena_alloc(ted4_arena *a, size_t n, size_t size)
+{
+    const size_t extra = sizeof(block) + ALIGN;
+    block  *b;
+    size_t  total;
+    char   *storage;
+
+    if (size != 0 && n > (SIZE_MAX - extra) / size)
+        return NULL;
+    total = n * size + extra;
+    if (total > a->max - a->used)
+        return NULL;
+    storage = a->allocator.alloc(a->allocator.user, total);
+    if (storage == NULL)
+        return NULL;
+    b = (block *)(void *)(storage + extra
+                          - ((uintptr_t)storage + extra) % ALIGN) - 1;
+    b->storage = storage;
+    b->size = total;
+    b->prev = NULL;
+    b->next = a->blocks;
+    if (b->next != NULL)
+        b->next->prev = b;
+    a->blocks = b;
+    a->used += total;
+    memset(b + 1, 0, n * size);
+    return b + 1;
+}
+
+void ted4_arena_release(ted4_arena *a, void *p)
+{
+    block *b;
+
+    if (p == NULL)
+        return;
+    b = header_of(p);
+    if (b->prev != NULL)
+        b->prev->next = b->next;
+    else
+        a->blocks = b->next;
+    if (b->next != NULL)
+        b->next->prev = b->prev;
+    a->used -= b->size;
+    a->allocator.free(a->allocator.user, b->storage);
+}
+
+void ted4_arena_finish(ted4_arena *a)
+{
+    while (a->blocks != NULL)
+        ted4_arena_release(a, a->blocks + 1);
+}

@@ -1,0 +1,60 @@
+/* bytes.h - spec 4.2: little-endian numbers in byte strings, on any machine.
+ * Used by everything that touches file bytes.
+ * SPDX-License-Identifier: BSD-2-Clause */
+#ifndef TED4_BYTES_H
+#define TED4_BYTES_H
+
+#include <stdint.h>
+#include <string.h>
+
+static inline uint16_t ted4_load16(const uint8_t *p)
+{
+    return (uint16_t)(p[0] | p[1] << 8);
+}
+
+static inline uint32_t ted4_load32(const uint8_t *p)
+{
+    return (uint32_t)ted4_load16(p) | (uint32_t)ted4_load16(p + 2) << 16;
+}
+
+static inline uint64_t ted4_load64(const uint8_t *p)
+{
+    return (uint64_t)ted4_load32(p) | (uint64_t)ted4_load32(p + 4) << 32;
+}
+
+static inline void ted4_store16(uint8_t *p, uint16_t v)
+{
+    p[0] = (uint8_t)v;
+    p[1] = (uint8_t)(v >> 8);
+}
+
+static inline void ted4_store32(uint8_t *p, uint32_t v)
+{
+    ted4_store16(p, (uint16_t)v);
+    ted4_store16(p + 2, (uint16_t)(v >> 16));
+}
+
+static inline void ted4_store64(uint8_t *p, uint64_t v)
+{
+    ted4_store32(p, (uint32_t)v);
+    ted4_store32(p + 4, (uint32_t)(v >> 32));
+}
+
+/* The pattern of a binary32, and back. */
+static inline uint32_t ted4_float_bits(float x)
+{
+    uint32_t u;
+
+    memcpy(&u, &x, sizeof u);
+    return u;
+}
+
+static inline float ted4_bits_float(uint32_t u)
+{
+    float x;
+
+    memcpy(&x, &u, sizeof x);
+    return x;
+}
+
+#endif

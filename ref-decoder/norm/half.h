@@ -1,0 +1,87 @@
+/* half.h - spec 8: binary16 patterns as exact integers and as sort keys; conversions by bit operations.
+ * Used by walk_positions.c, prior.c, and the encoder.
+ * SPDX-License-Identifier: BSD-2-Clause */
+#ifndef TED4_HALF_H
+#define TED4_HALF_H
+
+#include <stdint.h>
+#include "base/bytes.h"
+
+/* X of spec 8: the value times 2^24, exact. |value| <= 1, so the exponent field is at most 15. */
+static inline int32_t ted4_half_q24(uint16_t h)
+{
+    const unsigned e = h >> 10 & 15;
+    const int32_t  m = h & 0x3ff;
+    const int32_t  x = e > 0 ? (m | 0x400) << (e - 1) : m;
+
+    return h >> 15 ? -x : x;
+}
+
+/* Exact. */
+static inline float ted4_half_to_float(uint16_t h)
+{
+    const uint32_t sign = (uint32_t)(h >> 15) << 31;
+    uint32_t e = h >> 10 & 31, m = h & 0x3ff;
+
+    if (e == 31)
+        return ted4_bits_float(sign | 0x7f800000 | m << 13);
+    if (e == 0) {
+        if (m == 0)
+            return ted4_bits_float(sign);
+        for (e = 1; m < 0x400; e--)         /* wraps below 0, as 112 is added */
+            m <<= 1;
+        m &= 0x3ff;
+    }
+    return ted4_bits_float(sign | (e + 112) << 23 | m << 13);
+}
+
+/* To nearest, ties to even; beyond the largest binary16: infinity. */
+static inline uint16_t ted4_float_to_half(float x)
+{
+    const uint32_t bits = ted4_float_bits(x);
+    const uint32_t sign = bits >> 16 & 0x8000, u = bits & 0x7fffffff;
+    const uint32_t e = u >> 23;
+    uint32_t shift, m, v, rest, half;
+
+    if (u > 0x7f800000)
+        return (uint16_t)(sign | 0x7e00);
+    if (e >= 143)
+        return (uint16_t)(sign | 0x7c00);
+    if (e < 102)
+        return (uint16_t)sign;
+    m = (u & 0x7fffff) | 0x800000;
+    shift = e >= 113 ? 13 : 126 - e;
+    half = (uint32_t)1 << (shift - 1);
+    rest = m & (2 * half - 1);
+    v = m >> shift;
+    if (e >= 113)
+        v += (e - 113) << 10;               /* v holds 1 << 10 already */
+    v += rest > half || (rest == half && (v & 1) != 0);
+    return (uint16_t)(sign | v);
+}
+
+/* spec 8: order-preserving image of a pattern. */
+static inline uint32_t ted4_half_order(uint16_t h)
+{
+    return h < 0x8000 ? h + 0x8000u : 0xffffu - h;
+}
+
+/* Bit i of x goes to bit 3 i. x < 2^16. */
+static inline uint64_t ted4_spread3(uint64_t x)
+{
+    x = (x | x << 16) & 0x0000ff0000ff;
+    x = (x | x << 8) & 0x00f00f00f00f;
+    x = (x | x << 4) & 0x0c30c30c30c3;
+    x = (x | x << 2) & 0x249249249249;
+    return x;
+}
+
+/* spec 8: the 48-bit Morton code of an anchor's three patterns. */
+static inline uint64_t ted4_morton(const uint16_t *p)
+{
+    return ted4_spread3(ted4_half_order(p[0])) << 2
+         | ted4_spread3(ted4_half_order(p[1])) << 1
+         | ted4_spread3(ted4_half_order(p[2]));
+}
+
+#endif

@@ -1,0 +1,58 @@
+/* limits.c - spec 13: levels, and what they count.
+ * SPDX-License-Identifier: BSD-2-Clause */
+#include "norm/limits.h"
+
+static const ted4_limits table[] = {
+    { 1, 1 << 14, 10, 64, 1 << 18, 1 << 16, 1 << 22, 256 },
+    { 2, 1 << 16, 10, 600, 1 << 20, 1 << 16, 1 << 24, 256 },
+    { 3, 1 << 18, 16, 3600, 1 << 22, 1 << 17, 1 << 26, 512 },
+    { 4, 1 << 20, 16, 36000, 1 << 24, 1 << 18, 1 << 28, 512 },
+    { TED4_LEVEL_UNBOUNDED, UINT32_MAX, UINT32_MAX, UINT32_MAX, UINT64_MAX,
+      UINT64_MAX, UINT64_MAX, UINT64_MAX },
+};
+
+const ted4_limits *ted4_limits_of(unsigned level)
+{
+    for (unsigned i = 0; i < sizeof table / sizeof *table; i++)
+        if (table[i].level == level)
+            return &table[i];
+    return NULL;
+}
+
+uint64_t ted4_count_symbols(const ted4_header *h, const ted4_shape *s)
+{
+    uint64_t per_anchor = 0;
+
+    for (int t = 0; t < TED4_TYPES; t++)
+        per_anchor += s->dim[t];
+    return h->n_anchors * per_anchor;
+}
+
+static uint64_t products(const ted4_net_shape *n)
+{
+    uint64_t sum = 0;
+
+    for (unsigned i = 0; i < n->n_layers; i++)
+        sum += (uint64_t)n->dim[i] * n->dim[i + 1];
+    return sum;
+}
+
+uint64_t ted4_count_products(const ted4_header *h, const ted4_shape *s)
+{
+    uint64_t sum = products(&s->hyper);
+
+    for (unsigned m = 1; m < h->n_slices; m++)
+        sum += products(&s->slice[m]);
+    return sum;
+}
+
+int ted4_limits_hold(const ted4_limits *l, const ted4_header *h,
+                     const ted4_shape *s, uint64_t file_bytes)
+{
+    const uint64_t symbols = ted4_count_symbols(h, s);
+
+    return (uint64_t)s->n_nete + s->n_netr + s->n_bank <= l->values
+        && ted4_count_products(h, s) <= l->products
+        && file_bytes <= l->file_bytes
+        && (symbols + file_bytes - 1) / file_bytes <= l->symbols_per_byte;
+}

@@ -1,0 +1,32 @@
+/* limits.h - spec 13: levels. Used by walk_header.c, read/container.c and the writer.
+ * SPDX-License-Identifier: BSD-2-Clause */
+#ifndef TED4_LIMITS_H
+#define TED4_LIMITS_H
+
+#include <stdint.h>
+#include "norm/syntax.h"
+
+enum { TED4_LEVEL_UNBOUNDED = 31 };
+
+/* Largest values a level allows. */
+typedef struct {
+    uint8_t  level;
+    uint32_t n_anchors, n_offsets, frames;
+    uint64_t values;            /* f32 values of all blobs */
+    uint64_t products;          /* per anchor, Tier E */
+    uint64_t file_bytes;
+    uint64_t symbols_per_byte;
+} ted4_limits;
+
+/* NULL: no such level. */
+const ted4_limits *ted4_limits_of(unsigned level);
+
+/* spec 13: N (F + 6 + 3K + d + 4), absent types left out, masks as if all kept. */
+uint64_t ted4_count_symbols(const ted4_header *h, const ted4_shape *s);
+/* Sum of inputs x outputs over the layers of Tier E. */
+uint64_t ted4_count_products(const ted4_header *h, const ted4_shape *s);
+/* The bounds that no single element breaks: 1 when a file of that size keeps them, else 0. */
+int ted4_limits_hold(const ted4_limits *l, const ted4_header *h,
+                     const ted4_shape *s, uint64_t file_bytes);
+
+#endif

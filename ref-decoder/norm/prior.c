@@ -1,0 +1,224 @@
+/* prior.c - spec 7.3, 10.1: integerise and evaluate the networks of Tier E.
+ * SPDX-License-Identifier: BSD-2-Clause */
+#include "norm/prior.h"
+
+#include <string.h>
+#include "base/bytes.h"
+#include "norm/half.h"
+
+static int layer_init(ted4_int_layer *l, unsigned in, unsigned out,
+                      ted4_arena *arena)
+{
+    l->in = in;
+    l->in_pad = in + in % 2;
+    l->out = out;
+    l->w = ted4_arena_alloc(arena, (size_t)out * l->in_pad, sizeof *l->w);
+    l->b = ted4_arena_alloc(arena, out, sizeof *l->b);
+    l->r = ted4_arena_alloc(arena, out, sizeof *l->r);
+    return l->w != NULL && l->b != NULL && l->r != NULL;
+}
+
+static int net_init(ted4_int_layer *l, const ted4_net_shape *n,
+                    ted4_arena *arena)
+{
+    for (unsigned i = 0; i < n->n_layers; i++)
+        if (!layer_init(&l[i], n->dim[i], n->dim[i + 1], arena))
+            return 0;
+    return 1;
+}
+
+ted4_status ted4_prior_init(ted4_prior *p, const ted4_header *h,
+                            const ted4_shape *s, ted4_arena *arena)
+{
+    memset(p, 0, sizeof *p);
+    p->dense = &ted4_int_dense_plain;
+    p->pe_octaves = h->pe_octaves;
+    p->context_bits = h->context_bits;
+    p->n_inputs = s->hyper.dim[0];
+    p->n_outputs = s->n_outputs;
+    p->n_slices = h->n_slices;
+    memcpy(p->slice_dim, h->slice, sizeof p->slice_dim);
+    p->n_hyper = s->hyper.n_layers;
+    p->hyper_shape = s->hyper;
+    memcpy(p->slice_shape, s->slice, sizeof p->slice_shape);
+    if (!net_init(p->hyper, &s->hyper, arena))
+        return TED4_E_LIMIT_MEMORY;
+    for (unsigned m = 1; m < p->n_slices; m++)
+        if (!net_init(p->slice[m], &s->slice[m], arena))
+            return TED4_E_LIMIT_MEMORY;
+    return TED4_OK;
+}
+
+ted4_unit_rule ted4_prior_rule(const ted4_net_shape *n, unsigned i, int hyper,
+                               unsigned context_bits)
+{
+    ted4_unit_rule u;
+
+    u.f = i > 0 ? TED4_HIDDEN_BITS : hyper ? TED4_INPUT_BITS
+                                           : (int)context_bits;
+    u.g = i + 1u < n->n_layers ? TED4_HIDDEN_BITS : TED4_OUTPUT_BITS;
+    u.amplitude = i == 0 && hyper ? 1 << TED4_INPUT_BITS : 32767;
+    return u;
+}
+
+/* R-NET-002 */
+static int legal_value(uint32_t bits)
+{
+    const uint32_t e = bits >> 23 & 255;
+
+    return bits == 0 || (e > 0 && e < 255);
+}
+
+/* One layer whose f32 values begin at nete[at]: all W, then all b (spec 7.1). */
+static void layer_load(ted4_int_layer *l, const ted4_unit_rule *u,
+                       const float *nete, size_t at, const uint8_t *shift,
+                       ted4_error *e)
+{
+    for (unsigned o = 0; o < l->out; o++)
+        for (unsigned i = 0; i < l->in; i++, at++) {
+            const uint32_t bits = ted4_float_bits(nete[at]);
+            const int64_t  w = ted4_rne_scaled(bits, shift[o]);
+
+            if (!legal_value(bits))
+                ted4_fail(e, TED4_E_NET_VALUE, at);
+            if (w < -32767 || w > 32767)
+                ted4_fail(e, TED4_E_NET_WEIGHT_RANGE, at);
+            if (e->code != TED4_OK)
+                return;
+            l->w[(size_t)o * l->in_pad + i] = (int16_t)w;
+        }
+    for (unsigned o = 0; o < l->out; o++, at++) {
+        const uint32_t bits = ted4_float_bits(nete[at]);
+        const int64_t  b = ted4_rne_scaled(bits, shift[o] + u->f);
+        int64_t        sum = 0;
+
+        for (unsigned i = 0; i < l->in; i++) {
+            const int32_t w = l->w[(size_t)o * l->in_pad + i];
+
+            sum += w < 0 ? -w : w;
+        }
+        if (!legal_value(bits))
+            ted4_fail(e, TED4_E_NET_VALUE, at);
+        if (!ted4_accumulator_legal(u, shift[o], sum, b))
+            ted4_fail(e, TED4_E_NET_ACCUMULATOR, at);
+        if (e->code != TED4_OK)
+            return;
+        l->b[o] = (int32_t)b;
+        l->r[o] = (uint8_t)(shift[o] + u->f - u->g);
+    }
+}
+
+/* shifts: only those are judged (they precede the values in a file); else the values are loaded. */
+static void net_load(ted4_prior *p, ted4_int_layer *l, const ted4_net_shape *n,
+                     int hyper, const float *nete, const uint8_t *shift,
+                     ted4_error *e)
+{
+    size_t at = n->first, unit = n->first_unit;
+
+    for (unsigned i = 0; i < n->n_layers && e->code == TED4_OK; i++) {
+        const ted4_unit_rule u = ted4_prior_rule(n, i, hyper,
+                                                 p->context_bits);
+
+        if (nete != NULL)
+            layer_load(&l[i], &u, nete, at, shift + unit, e);
+        else
+            for (unsigned o = 0; o < l[i].out; o++)
+                if (!ted4_shift_legal(&u, shift[unit + o]))
+                    ted4_fail(e, TED4_E_NET_SHIFT, unit + o);
+        at += ((size_t)l[i].in + 1) * l[i].out;
+        unit += l[i].out;
+    }
+}
+
+static void load_all(ted4_prior *p, const float *nete, const uint8_t *shift,
+                     ted4_error *e)
+{
+    net_load(p, p->hyper, &p->hyper_shape, 1, nete, shift, e);
+    for (unsigned m = 1; m < p->n_slices; m++)
+        net_load(p, p->slice[m], &p->slice_shape[m], 0, nete, shift, e);
+}
+
+ted4_status ted4_prior_load(ted4_prior *p, const float *nete,
+                            const uint8_t *shift, ted4_error *e)
+{
+    ted4_error own = { TED4_OK, 0 };
+
+    load_all(p, NULL, shift, &own);
+    if (own.code == TED4_OK)
+        load_all(p, nete, shift, &own);
+    if (e != NULL && own.code != TED4_OK)
+        ted4_fail(e, own.code, own.offset);
+    return own.code;
+}
+
+/* spec 10.1, u in turns of 2^32. */
+static int16_t sine(uint32_t u)
+{
+    const uint32_t i = u >> 22;
+    const int32_t  b = (int32_t)(u >> 10 & 4095);
+
+    return (int16_t)(ted4_sin[i]
+                     + ted4_round_shift((ted4_sin[i + 1] - ted4_sin[i]) * b,
+                                        12));
+}
+
+/* Inputs of one anchor into column x of [n_inputs][64]. */
+static void hyper_inputs(const ted4_prior *p, const uint16_t *position,
+                         int16_t *x)
+{
+    uint32_t phase[3];
+
+    for (int j = 0; j < 3; j++) {
+        const int32_t q24 = ted4_half_q24(position[j]);
+
+        phase[j] = (uint32_t)q24 << 7;
+        *x = (int16_t)ted4_floor_shift(q24, 12);
+        x += TED4_PRIOR_BLOCK;
+    }
+    for (unsigned l = 0; l < p->pe_octaves; l++)
+        for (int j = 0; j < 3; j++) {
+            const uint32_t u = phase[j] << l;
+
+            x[0] = sine(u);
+            x[TED4_PRIOR_BLOCK] = sine(u + ((uint32_t)1 << 30));
+            x += 2 * TED4_PRIOR_BLOCK;
+        }
+}
+
+/* Dense layers take whole groups of 32 columns. */
+static size_t group_up(size_t n)
+{
+    return (n + 31) / 32 * 32;
+}
+
+static void chain(const ted4_prior *p, const ted4_int_layer *l, unsigned n_layers,
+                  const int16_t *x, size_t n, int32_t *out)
+{
+    _Alignas(64) int16_t hidden[2][TED4_MAX_WIDTH * TED4_PRIOR_BLOCK];
+
+    for (unsigned i = 0; i + 1 < n_layers; i++) {
+        p->dense->hidden(&l[i], x, n, hidden[i % 2]);
+        x = hidden[i % 2];
+    }
+    p->dense->last(&l[n_layers - 1], x, n, out);
+}
+
+/* spec 10.1 */
+void ted4_prior_hyper(const ted4_prior *p, const uint16_t *position, size_t n,
+                      int32_t *out)
+{
+    _Alignas(64) int16_t x[TED4_PRIOR_INPUTS * TED4_PRIOR_BLOCK];
+    const size_t padded = group_up(n);
+
+    if (p->n_inputs > 0)
+        for (size_t i = 0; i < padded; i++)
+            hyper_inputs(p, position + 3 * (i < n ? i : n - 1), x + i);
+    chain(p, p->hyper, p->n_hyper, x, padded, out);
+}
+
+/* spec 10.3 */
+void ted4_prior_slice(const ted4_prior *p, unsigned m, const int16_t *ctx,
+                      size_t n, int32_t *out)
+{
+    chain(p, p->slice[m], TED4_SLICE_LAYERS, ctx, group_up(n), out);
+}

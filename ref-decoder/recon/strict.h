@@ -1,0 +1,68 @@
+/* strict.h - spec 12.2: the arithmetic of class X: pow2, sigmoid, square root, and the shape of a dense layer.
+ * Every operation is one binary32 operation, so files that include this are compiled without contraction.
+ * Anchors are worked on in blocks of 32: a row is one value of each, a block [channel][32]. Loops run over lanes, never across a sum,
+ * so that vectors give the bits of the scalar definition. Used by recon and the strict kernels.
+ * SPDX-License-Identifier: BSD-2-Clause */
+#ifndef TED4_STRICT_H
+#define TED4_STRICT_H
+
+#include <math.h>
+#include <stdint.h>
+#include "base/bytes.h"
+
+enum { TED4_ROW = 32 };                 /* lanes of a row */
+
+#define TED4_LOG2E 0x1.715476p+0f
+
+/* spec 12.2 max: b where a > b is false, so a NaN in b goes through. */
+static inline float ted4_max(float a, float b)
+{
+    return a > b ? a : b;
+}
+
+/* spec 12.2 pow2. floor() is a conversion and a correction, as conversions are vectors on every machine and floorf() is not. */
+static inline float ted4_pow2(float x)
+{
+    const float low = x > -126.0f ? x : -126.0f;       /* a NaN too, for the conversion's sake */
+    const float y = low < 126.0f ? low : 126.0f;
+    const float v = y + 0.5f;
+    const int32_t cut = (int32_t)v;
+    const int32_t n = cut - ((float)cut > v);
+    const float f = y - (float)n;
+    float p = 0x1.ffcbfcp-17f;
+
+    p = p * f + 0x1.430912p-13f;
+    p = p * f + 0x1.5d87fep-10f;
+    p = p * f + 0x1.3b2ab6p-7f;
+    p = p * f + 0x1.c6b08ep-5f;
+    p = p * f + 0x1.ebfbep-3f;
+    p = p * f + 0x1.62e43p-1f;
+    p = p * f + 1.0f;
+    p = p * ted4_bits_float((uint32_t)(n + 127) << 23);
+    return x == x ? p : x;
+}
+
+/* spec 11.5 */
+static inline float ted4_sigmoid(float x)
+{
+    return 1.0f / (1.0f + ted4_pow2(-x * TED4_LOG2E));
+}
+
+/* spec 7.1: one dense layer. w: [out][in], b: [out], borrowed. relu: y = max(0, y). */
+typedef struct {
+    unsigned     in, out;
+    const float *w, *b;
+    int          relu;
+} ted4_strict_layer;
+
+/* y[out][32] = W x[in][32] + b in the order of spec 12.2. x and y are 64-byte aligned and do not overlap. All variants give the
+ * same bits. */
+typedef void (*ted4_strict_dense_fn)(const ted4_strict_layer *l, const float *x,
+                                     float *y);
+
+void ted4_strict_dense_plain(const ted4_strict_layer *l, const float *x, float *y);
+
+/* probe.c: does this process round as spec 12.2 asks, now? */
+int ted4_strict_ok(void);
+
+#endif

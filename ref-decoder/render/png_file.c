@@ -1,0 +1,57 @@
+/* png_file.c - see png_file.h.
+ * SPDX-License-Identifier: BSD-2-Clause */
+#include "render/png_file.h"
+
+#include <errno.h>
+#include <png.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <unistd.h>
+
+/* Into an open file through libpng's simplified interface, which needs no setjmp. */
+static int write_png(FILE *f, int width, int height, const uint8_t *rgb, char *why, size_t why_size)
+{
+    png_image p;
+
+    memset(&p, 0, sizeof p);
+    p.version = PNG_IMAGE_VERSION;
+    p.width = (png_uint_32)width;
+    p.height = (png_uint_32)height;
+    p.format = PNG_FORMAT_RGB;
+    if (png_image_write_to_stdio(&p, f, 0, rgb, 0, NULL))
+        return 0;
+    snprintf(why, why_size, "PNG: %s", p.message);
+    return -1;
+}
+
+int ted4_png_write(const char *path, int width, int height, const uint8_t *rgb, char *why, size_t why_size)
+{
+    const size_t room = strlen(path) + 32;
+    char *temporary = malloc(room);
+
+    if (temporary == NULL) {
+        snprintf(why, why_size, "out of memory");
+        return -1;
+    }
+    snprintf(temporary, room, "%s.%ld.tmp", path, (long)getpid());
+    FILE *f = fopen(temporary, "wb");
+    int result = -1;
+    if (f == NULL) {
+        snprintf(why, why_size, "%s: %s", temporary, strerror(errno));
+    } else {
+        result = write_png(f, width, height, rgb, why, why_size);
+        if (fclose(f) != 0 && result == 0) {
+            snprintf(why, why_size, "%s: %s", temporary, strerror(errno));
+            result = -1;
+        }
+        if (result == 0 && rename(temporary, path) != 0) {
+            snprintf(why, why_size, "%s: %s", path, strerror(errno));
+            result = -1;
+        }
+        if (result != 0)
+            remove(temporary);
+    }
+    free(temporary);
+    return result;
+}

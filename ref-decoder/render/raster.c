@@ -1,0 +1,58 @@
+/* raster.c - see raster.h. Forward: project (project.c), sort by depth and list per tile (bin.c), blend (blend.c).
+ * SPDX-License-Identifier: BSD-2-Clause */
+#include "render/raster_state.h"
+
+#include <stdlib.h>
+
+int ted4_buffer_grow(ted4_buffer *b, size_t n, size_t element_size)
+{
+    const size_t align = 64;
+
+    if (n > (SIZE_MAX / 2 - align) / element_size)
+        return -1;
+    if (n * element_size <= b->size)
+        return 0;
+
+    size_t size = n * element_size;
+    size = (size + size / 2 + align) / align * align;
+    free(b->data);
+    b->data = aligned_alloc(align, size);
+    b->size = b->data != NULL ? size : 0;
+    return b->data != NULL ? 0 : -1;
+}
+
+void ted4_buffer_free(ted4_buffer *b)
+{
+    free(b->data);
+    b->data = NULL;
+    b->size = 0;
+}
+
+ted4_raster *ted4_raster_new(void)
+{
+    return calloc(1, sizeof(ted4_raster));
+}
+
+void ted4_raster_free(ted4_raster *r)
+{
+    if (r == NULL)
+        return;
+
+    ted4_buffer *const all[] = { &r->splat2d, &r->box, &r->first_slot, &r->key[0], &r->key[1], &r->chunk, &r->hist,
+                                 &r->tile_first, &r->owner, &r->slot, &r->mask, &r->sums, &r->sum0 };
+    for (size_t i = 0; i < sizeof all / sizeof all[0]; i++)
+        ted4_buffer_free(all[i]);
+    for (int i = 0; i < TED4_BWD_JOBS; i++)
+        ted4_buffer_free(&r->scratch[i]);
+    free(r);
+}
+
+int ted4_raster_forward(ted4_raster *r, const ted4_splats *s, const ted4_view *v, const ted4_parallel *p, int keep_state,
+                        float *image)
+{
+    r->tiles_x = ((uint32_t)v->width + TED4_TILE - 1) / TED4_TILE;
+    r->tiles_y = ((uint32_t)v->height + TED4_TILE - 1) / TED4_TILE;
+    if (ted4_raster_project(r, s, v, p) != 0 || ted4_raster_bin(r, s, p) != 0)
+        return -1;
+    return ted4_raster_blend(r, v, p, keep_state, image);
+}

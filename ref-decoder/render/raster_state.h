@@ -1,0 +1,88 @@
+/* raster_state.h - inside the workspace of raster.h: what its stages hand to each other and to the adjoint. Depends on image_model.h.
+ * Used by render/ and train/raster_bwd.c, train/blend_bwd.c, train/project_bwd.c only.
+ *
+ * Terms: an instance is a (Gaussian, tile) pair. Instances have two orders: by tile and depth ("position"), in which they are
+ * blended, and by Gaussian and tile ("slot"), in which their gradients are added up.
+ * SPDX-License-Identifier: BSD-2-Clause */
+#ifndef TED4_RASTER_STATE_H
+#define TED4_RASTER_STATE_H
+
+#include "render/image_model.h"
+
+enum {
+    TED4_TILE        = 16,      /* pixels */
+    TED4_BLOCK       = 4,       /* pixels; a block is one vector */
+    TED4_TILE_BLOCKS = 16,
+    TED4_CHUNK       = 1024,    /* Gaussians of one projection job; a multiple of TED4_VEC */
+    TED4_SORT_PARTS  = 8,       /* jobs of one sorting pass; any number gives the same order */
+    TED4_RADIX_BITS  = 11,
+    TED4_GRAD_SUMS   = 8,       /* sums of an instance that travel as a vector; one more travels alone */
+    TED4_BWD_JOBS    = 32       /* jobs that share the tiles in the adjoint: the most threads it can use */
+};
+
+/* Memory that is kept from call to call. */
+typedef struct {
+    void  *data;                /* owned, 64-byte aligned */
+    size_t size;
+} ted4_buffer;
+
+/* Makes b at least that large; what it held is lost if it must grow. 0, or -1: no memory (b is then empty). */
+int  ted4_buffer_grow(ted4_buffer *b, size_t n, size_t element_size);
+void ted4_buffer_free(ted4_buffer *b);
+
+/* Tiles [x0, x1) x [y0, y1); empty when the Gaussian is not visible. */
+typedef struct {
+    uint16_t x0, y0, x1, y1;
+} ted4_tile_box;
+
+TED4_INLINE uint32_t ted4_tile_box_area(ted4_tile_box b)
+{
+    return (uint32_t)(b.x1 - b.x0) * (uint32_t)(b.y1 - b.y0);
+}
+
+struct ted4_raster {
+    /* per Gaussian */
+    ted4_buffer splat2d;        /* ted4_splat2d; only visible ones are set */
+    ted4_buffer box;            /* ted4_tile_box */
+    ted4_buffer first_slot;     /* uint32_t [n + 1] */
+    /* per visible Gaussian: depth bits << 32 | index; sorted ends up in key[0] */
+    ted4_buffer key[2];
+    /* per projection job */
+    ted4_buffer chunk;          /* ted4_chunk */
+    /* sorting */
+    ted4_buffer hist;           /* uint32_t [TED4_SORT_PARTS][n_tiles or 1 << TED4_RADIX_BITS] */
+    ted4_buffer tile_first;     /* uint32_t [n_tiles + 1]: first position of each tile */
+    /* per instance, by position */
+    ted4_buffer owner;          /* uint32_t: Gaussian */
+    ted4_buffer slot;           /* uint32_t */
+    ted4_buffer mask;           /* uint16_t: bit b: blended in block b of the tile (kept for the adjoint) */
+    /* per instance, by slot; made by the adjoint */
+    ted4_buffer sums;           /* float [TED4_GRAD_SUMS] */
+    ted4_buffer sum0;           /* float */
+    ted4_buffer scratch[TED4_BWD_JOBS];
+
+    size_t   n_visible, n_instances;
+    uint32_t tiles_x, tiles_y;
+};
+
+/* What projection counts in one job, and then the totals of the jobs before it. */
+typedef struct {
+    uint32_t n_visible, n_instances;
+} ted4_chunk;
+
+/* The stages of ted4_raster_forward. Each: 0, or -1: no memory. */
+int ted4_raster_project(struct ted4_raster *r, const ted4_splats *s, const ted4_view *v, const ted4_parallel *p);
+int ted4_raster_bin(struct ted4_raster *r, const ted4_splats *s, const ted4_parallel *p);
+int ted4_raster_blend(struct ted4_raster *r, const ted4_view *v, const ted4_parallel *p, int keep_state, float *image);
+
+/* Pixel centres of block b of tile (tx, ty): columns and rows. */
+TED4_INLINE void ted4_block_pixels(uint32_t tx, uint32_t ty, int b, ted4_vf *px, ted4_vf *py)
+{
+    const ted4_vf col = { 0, 1, 2, 3, 0, 1, 2, 3, 0, 1, 2, 3, 0, 1, 2, 3 };
+    const ted4_vf row = { 0, 0, 0, 0, 1, 1, 1, 1, 2, 2, 2, 2, 3, 3, 3, 3 };
+
+    *px = col + ((float)(tx * TED4_TILE + (uint32_t)(b % TED4_BLOCK) * TED4_BLOCK) + 0.5f);
+    *py = row + ((float)(ty * TED4_TILE + (uint32_t)(b / TED4_BLOCK) * TED4_BLOCK) + 0.5f);
+}
+
+#endif

@@ -1,0 +1,101 @@
+/* output.c - see output.h.
+ * SPDX-License-Identifier: BSD-2-Clause */
+#include "output.h"
+
+#include <errno.h>
+#include <inttypes.h>
+#include <string.h>
+#include <unistd.h>
+
+int ted4_output_temporary(char out[TED4_PATH_SIZE], const char *path)
+{
+    const int n = snprintf(out, TED4_PATH_SIZE, "%s.%ld.part", path, (long)getpid());
+
+    if (n > 0 && n < TED4_PATH_SIZE)
+        return 0;
+    errno = ENAMETOOLONG;
+    return -1;
+}
+
+int ted4_output_open(ted4_output *o, const char *path)
+{
+    if (ted4_output_temporary(o->temporary, path) != 0)
+        return -1;
+    memcpy(o->path, path, strlen(path) + 1);
+    o->file = fopen(o->temporary, "wb");
+    return o->file == NULL ? -1 : 0;
+}
+
+void ted4_output_cancel(ted4_output *o)
+{
+    const int why = errno;
+
+    fclose(o->file);
+    remove(o->temporary);
+    errno = why;
+}
+
+int ted4_output_close(ted4_output *o)
+{
+    if (fflush(o->file) != 0 || ferror(o->file)) {
+        if (errno == 0)
+            errno = EIO;
+        ted4_output_cancel(o);
+        return -1;
+    }
+    if (fclose(o->file) == 0 && rename(o->temporary, o->path) == 0)
+        return 0;
+    const int why = errno;
+
+    remove(o->temporary);
+    errno = why;
+    return -1;
+}
+
+/* Finds the conversion. Returns the number of percent signs that begin a good one, -1 if any is bad. */
+static int find_conversion(const char *pattern, size_t *at, size_t *length, int *zero, int *width)
+{
+    int found = 0;
+
+    for (size_t i = 0; pattern[i] != '\0'; i++) {
+        size_t k = i + 1;
+
+        if (pattern[i] != '%')
+            continue;
+        *at    = i;
+        *zero  = pattern[k] == '0';
+        *width = 0;
+        k += (size_t)*zero;
+        if (pattern[k] >= '1' && pattern[k] <= '9')
+            *width = pattern[k++] - '0';
+        if (pattern[k] != 'd' || (*zero && *width == 0) || ++found > 1)
+            return -1;
+        *length = k + 1 - i;
+        i = k;
+    }
+    return found;
+}
+
+int ted4_pattern_count(const char *pattern)
+{
+    size_t at, length;
+    int zero, width;
+
+    return find_conversion(pattern, &at, &length, &zero, &width);
+}
+
+int ted4_pattern_make(char out[TED4_PATH_SIZE], const char *pattern, uint32_t number)
+{
+    size_t at = 0, length = 0;
+    int zero = 0, width = 0, n;
+
+    if (find_conversion(pattern, &at, &length, &zero, &width) == 1) {
+        char digits[16];
+
+        snprintf(digits, sizeof digits, zero ? "%0*" PRIu32 : "%*" PRIu32, width, number);
+        n = snprintf(out, TED4_PATH_SIZE, "%.*s%s%s", (int)at, pattern, digits, pattern + at + length);
+    } else {
+        n = snprintf(out, TED4_PATH_SIZE, "%s", pattern);
+    }
+    return n >= 0 && n < TED4_PATH_SIZE ? 0 : -1;
+}

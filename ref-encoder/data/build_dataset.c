@@ -1,0 +1,211 @@
+/* build_dataset.c - from the shots of any layout to a dataset: sizes and lenses agreed, frames, physical cameras, training pictures
+ * before test pictures, initial points. See raw_scene.h.
+ * SPDX-License-Identifier: BSD-2-Clause */
+#include "data/raw_scene.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include "data/data_util.h"
+#include "data/source.h"
+
+/* Makes the lens refer to the file's size. A file may be the integer fraction 1/n of what the lens says, rounded either way (the
+ * images_2 folders of static sets); the whole extent then maps to the whole extent. */
+static int fit_lens(ted4_shot *s, ted4_message *m)
+{
+    ted4_lens *l = &s->lens;
+    const int n = (l->width + s->width / 2) / s->width;
+    const double ax = (double)s->width / l->width, ay = (double)s->height / l->height;
+
+    if (!(isfinite(l->fx) && isfinite(l->fy) && l->fx > 0 && l->fy > 0))
+        return ted4_say(m, "%s: focal lengths %g, %g, expected positive numbers", s->path, l->fx, l->fy);
+    if (!(isfinite(l->cx) && isfinite(l->cy)))
+        return ted4_say(m, "%s: principal point %g, %g is not finite", s->path, l->cx, l->cy);
+    if (!(isfinite(l->k1) && isfinite(l->k2) && isfinite(l->p1) && isfinite(l->p2)))
+        return ted4_say(m, "%s: a distortion coefficient is not finite", s->path);
+    if (n < 1 || fabs((double)l->width / n - s->width) >= 1 || fabs((double)l->height / n - s->height) >= 1)
+        return ted4_say(m, "%s: the file is %dx%d, its camera says %dx%d, expected the same or an integer fraction of it",
+                        s->path, s->width, s->height, l->width, l->height);
+    l->fx *= ax;
+    l->cx *= ax;
+    l->fy *= ay;
+    l->cy *= ay;
+    l->width = s->width;
+    l->height = s->height;
+    return 0;
+}
+
+static int make_picture(ted4_picture *p, ted4_source *source, ted4_shot *s,
+                        const ted4_dataset_options *o, ted4_message *m)
+{
+    ted4_camera *c = &p->camera;
+    const int n = o->downscale;
+
+    if (fit_lens(s, m) != 0)
+        return -1;
+    if (n < 1 || s->width / n < 1 || s->height / n < 1)
+        return ted4_say(m, "%s: a picture of %dx%d cannot be reduced by %d", s->path, s->width, s->height, n);
+    c->width = s->width / n;
+    c->height = s->height / n;
+    c->fx = s->lens.fx / n;
+    c->fy = s->lens.fy / n;
+    c->cx = s->lens.cx / n;
+    c->cy = s->lens.cy / n;
+    memcpy(c->R, s->R, sizeof c->R);
+    memcpy(c->t, s->t, sizeof c->t);
+    p->is_test = s->is_test != 0;
+    p->path = s->path;
+    s->path = NULL;
+    source->path = p->path;
+    source->lens = s->lens;
+    source->downscale = n;
+    source->background = o->white ? 255 : 0;
+    return 0;
+}
+
+/* Shots are the same camera when their labels are equal or, without labels, their poses to six decimals; then the label is the pose. */
+static char *pose_label(const ted4_shot *s)
+{
+    char text[12 * 26], *at = text;
+    double centre[3];
+
+    ted4_pose_centre(s->R, s->t, centre);
+    for (int i = 0; i < 12; i++) {
+        const double v = i < 9 ? s->R[i] : centre[i - 9];
+        at += snprintf(at, 26, "%.6g ", round(v * 1e6) + 0.0);
+    }
+    return ted4_text_copy(text);
+}
+
+typedef struct { const char *label; uint32_t picture; } labelled;
+
+static int by_label(const void *a, const void *b)
+{
+    const labelled *x = a, *y = b;
+    const int order = strcmp(x->label, y->label);
+
+    return order != 0 ? order : (x->picture > y->picture) - (x->picture < y->picture);
+}
+
+/* Numbers cameras by their first picture. shots[i] belongs to d->pictures[i]. */
+static int number_cameras(ted4_dataset *d, ted4_shot *shots, ted4_message *m)
+{
+    const size_t n = d->n_pictures;
+    labelled *list = malloc(n * sizeof *list);
+    int result = list == NULL ? -1 : 0;
+
+    for (size_t i = 0; i < n && result == 0; i++) {
+        if (shots[i].camera == NULL)
+            shots[i].camera = pose_label(&shots[i]);
+        result = shots[i].camera == NULL ? -1 : 0;
+        list[i].label = shots[i].camera;
+        list[i].picture = (uint32_t)i;
+    }
+    if (result == 0) {
+        qsort(list, n, sizeof *list, by_label);
+        /* First the index of the camera's first picture, then that picture's rank among such. */
+        for (size_t i = 0; i < n; i++) {
+            const int same = i > 0 && strcmp(list[i].label, list[i - 1].label) == 0;
+            d->pictures[list[i].picture].camera_id =
+                same ? d->pictures[list[i - 1].picture].camera_id : list[i].picture;
+        }
+        for (size_t i = 0; i < n; i++) {
+            const uint32_t first = d->pictures[i].camera_id;
+            d->pictures[i].camera_id = first == i ? d->n_cameras++ : d->pictures[first].camera_id;
+        }
+    }
+    free(list);
+    return result != 0 ? ted4_say_no_memory(m) : 0;
+}
+
+static int number_frames(ted4_dataset *d, const ted4_shot *shots, ted4_message *m)
+{
+    const size_t n = d->n_pictures;
+    double *time = malloc(n * sizeof *time);
+    uint32_t *frame = malloc(n * sizeof *frame);
+    int result = -1;
+
+    if (time == NULL || frame == NULL) {
+        ted4_say_no_memory(m);
+    } else {
+        for (size_t i = 0; i < n; i++)
+            time[i] = shots[i].time;
+        result = ted4_frame_times(time, n, frame, &d->n_frames, m);
+        for (size_t i = 0; i < n && result == 0; i++)
+            d->pictures[i].frame = frame[i];
+    }
+    free(time);
+    free(frame);
+    return result;
+}
+
+/* Moves test shots behind the others; order is kept within both. */
+static int split(ted4_raw_scene *s, ted4_message *m)
+{
+    ted4_shot *sorted = malloc(s->n_shots * sizeof *sorted);
+    size_t k = 0;
+
+    if (sorted == NULL)
+        return ted4_say_no_memory(m);
+    for (int test = 0; test < 2; test++)
+        for (size_t i = 0; i < s->n_shots; i++)
+            if ((s->shots[i].is_test != 0) == test)
+                sorted[k++] = s->shots[i];
+    free(s->shots);
+    s->shots = sorted;
+    s->capacity = s->n_shots;
+    return sorted[0].is_test ? ted4_say(m, "all %zu pictures are held out, none is left to train on", s->n_shots) : 0;
+}
+
+static int take_points(ted4_dataset *d, ted4_raw_scene *s, const ted4_dataset_options *o, ted4_message *m)
+{
+    double centre[3] = { 0, 0, 0 }, half = TED4_BLENDER_HALF_CUBE;
+
+    if (s->cloud.n == 0) {
+        ted4_point_cloud_free(&s->cloud);
+        if (!s->unit_cube && ted4_view_box(d, centre, &half) != 0)
+            return ted4_say_no_memory(m);
+        if (ted4_point_cloud_random(&s->cloud, centre, half, o->seed) != 0)
+            return ted4_say_no_memory(m);
+        d->random_points = 1;
+    }
+    d->points = s->cloud.xyz;
+    d->point_rgb = s->cloud.rgb;
+    d->n_points = s->cloud.n;
+    memset(&s->cloud, 0, sizeof s->cloud);
+    return 0;
+}
+
+/* Pictures with transparency were composited over the background the caller chose; without any, what no Gaussian covers is black. */
+static void choose_background(ted4_dataset *d, const ted4_raw_scene *s, const ted4_dataset_options *o)
+{
+    int alpha = 0;
+
+    for (size_t i = 0; i < s->n_shots; i++)
+        alpha |= s->shots[i].has_alpha;
+    memset(d->background, alpha && o->white ? 255 : 0, sizeof d->background);
+}
+
+int ted4_build_dataset(ted4_dataset *d, ted4_raw_scene *s, const ted4_dataset_options *o, ted4_message *m)
+{
+    if (s->n_shots == 0)
+        return ted4_say(m, "the scene (layout %s) has no pictures", s->layout);
+    if (split(s, m) != 0)
+        return -1;
+    d->layout = ted4_text_copy(s->layout);
+    d->pictures = calloc(s->n_shots, sizeof *d->pictures);
+    d->sources = calloc(s->n_shots, sizeof *d->sources);
+    if (d->layout == NULL || d->pictures == NULL || d->sources == NULL)
+        return ted4_say_no_memory(m);
+    for (; d->n_pictures < s->n_shots; d->n_pictures++)
+        if (make_picture(&d->pictures[d->n_pictures], &d->sources[d->n_pictures],
+                         &s->shots[d->n_pictures], o, m) != 0)
+            return -1;
+    d->rate = s->rate;
+    choose_background(d, s, o);
+    if (number_frames(d, s->shots, m) != 0 || number_cameras(d, s->shots, m) != 0 || take_points(d, s, o, m) != 0)
+        return -1;
+    d->cache = ted4_image_cache_new(d->n_pictures, o->cache_bytes, ted4_source_decode, d->sources);
+    return d->cache == NULL ? ted4_say_no_memory(m) : 0;
+}

@@ -1,0 +1,110 @@
+/* frame_times.c - from the times of pictures, in any unit, to frame indices on a uniform grid (spec: frame j of F is t = j / (F - 1)).
+ * SPDX-License-Identifier: BSD-2-Clause */
+#include "data/raw_scene.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include "data/data_util.h"
+
+/* All on the scale where the first time is 0 and the last 1. */
+#define SAME_TIME    2e-6   /* two roundings to six digits of one time differ by 1e-6 */
+#define UNIFORM      1e-3   /* distance from j / (n - 1) that still counts as uniform */
+#define ON_GRID      0.02   /* distance from a position of a finer grid, in steps */
+#define GRID_EFFORT  4      /* finest grid tried: its step is this part of the smallest gap */
+
+static int by_value(const void *a, const void *b)
+{
+    const double x = *(const double *)a, y = *(const double *)b;
+
+    return (x > y) - (x < y);
+}
+
+/* Sorts t[n] into distinct times mapped to [0, 1]; returns how many. */
+static size_t distinct(double *t, size_t n, double *origin, double *range)
+{
+    size_t k = 0;
+
+    qsort(t, n, sizeof *t, by_value);
+    *origin = t[0];
+    *range = t[n - 1] - t[0];
+    for (size_t i = 0; i < n; i++) {
+        const double u = *range > 0 ? (t[i] - *origin) / *range : 0;
+        if (k == 0 || u - t[k - 1] > SAME_TIME)
+            t[k++] = u;
+    }
+    return k;
+}
+
+/* Does every time lie near its own position of the grid with the given number of steps? */
+static int fits(const double *u, size_t n, double steps, double tolerance)
+{
+    double before = -1;
+
+    for (size_t j = 0; j < n; j++) {
+        const double at = u[j] * steps, near = floor(at + 0.5);
+        if (fabs(at - near) > tolerance || near <= before)
+            return 0;
+        before = near;
+    }
+    return 1;
+}
+
+/* Number of steps of the coarsest grid that holds all times; 0: more than the format has. */
+static uint32_t find_steps(const double *u, size_t n)
+{
+    double gap = 1;
+    int uniform = 1;
+
+    for (size_t j = 0; j < n; j++) {
+        uniform = uniform && fabs(u[j] - (double)j / (double)(n - 1)) <= UNIFORM;
+        gap = j > 0 ? fmin(gap, u[j] - u[j - 1]) : gap;
+    }
+    if (uniform && n <= TED4_MAX_FRAMES)
+        return (uint32_t)(n - 1);
+    const double most = fmin(ceil(GRID_EFFORT / gap), TED4_MAX_FRAMES - 1);
+    for (double steps = (double)(n - 1); steps <= most; steps++)
+        if (fits(u, n, steps, ON_GRID))
+            return (uint32_t)steps;
+    /* Times of no common measure: the smallest gap is the step, everything moves to the nearest position. */
+    const double steps = ceil(1 / gap - ON_GRID);
+    return steps < TED4_MAX_FRAMES && fits(u, n, steps, 0.5) ? (uint32_t)steps : 0;
+}
+
+/* Index of the distinct time nearest to v. */
+static size_t nearest(const double *u, size_t n, double v)
+{
+    size_t low = 0, high = n - 1;
+
+    while (high - low > 1) {
+        const size_t middle = low + (high - low) / 2;
+        if (u[middle] <= v)
+            low = middle;
+        else
+            high = middle;
+    }
+    return v - u[low] <= u[high] - v ? low : high;
+}
+
+int ted4_frame_times(const double *time, size_t n, uint32_t *frame, uint32_t *n_frames, ted4_message *m)
+{
+    double *u = malloc(n * sizeof *u), origin, range;
+
+    if (u == NULL)
+        return ted4_say_no_memory(m);
+    for (size_t i = 0; i < n; i++)
+        u[i] = time[i];
+    const size_t k = distinct(u, n, &origin, &range);
+    const uint32_t steps = k > 1 ? find_steps(u, k) : 0;
+    const int is_uniform = steps + 1 == k;
+    for (size_t i = 0; i < n; i++) {
+        const double v = range > 0 ? (time[i] - origin) / range : 0;
+        const size_t j = nearest(u, k, v);
+        frame[i] = is_uniform ? (uint32_t)j : (uint32_t)(u[j] * steps + 0.5);
+    }
+    free(u);
+    *n_frames = steps + 1;
+    if (k > 1 && steps == 0)
+        return ted4_say(m, "%zu distinct times from %g to %g need more than %d uniformly spaced frames",
+                        k, origin, origin + range, TED4_MAX_FRAMES);
+    return 0;
+}

@@ -1,0 +1,35 @@
+/* image_file.h - one picture file, PNG or JPEG by its signature, to bytes.
+ * Depends on data/dataset.h for ted4_message. Used by the dataset's image cache and by ted4eval.
+ * SPDX-License-Identifier: BSD-2-Clause */
+#ifndef TED4_IMAGE_FILE_H
+#define TED4_IMAGE_FILE_H
+
+#include <stdint.h>
+#include "data/dataset.h"
+
+/* Largest side that is accepted; guards sizes against overflow. */
+#define TED4_IMAGE_MAX_SIDE 32768
+
+/* Interleaved bytes [height][width][channels], display-referred sRGB; alpha not premultiplied. */
+typedef struct {
+    int      width, height;
+    int      channels;      /* 3, or 4 when the file carries transparency */
+    uint8_t *bytes;         /* owned; free() it */
+} ted4_image;
+
+typedef struct {
+    int width, height;
+    int has_alpha;
+} ted4_image_header;
+
+/* Grey and palette are expanded, 16 bits rounded to 8. 0, or -1 with *m filled and image->bytes NULL. */
+int ted4_image_read(const char *path, ted4_image *image, ted4_message *m);
+
+/* The header only: no pixel is decoded, so a file cut short later on is not noticed. 0, or -1 with *m filled. */
+int ted4_image_probe(const char *path, ted4_image_header *header, ted4_message *m);
+int ted4_image_size(const char *path, int *width, int *height, ted4_message *m);
+
+/* image_jpeg.c: the JPEG half of ted4_image_read. */
+int ted4_jpeg_decode(const char *path, const uint8_t *bytes, size_t size, ted4_image *image, ted4_message *m);
+
+#endif

@@ -1,0 +1,81 @@
+/* json_field.c - see json_field.h.
+ * SPDX-License-Identifier: BSD-2-Clause */
+#include "data/json_field.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include "data/data_util.h"
+
+json_t *ted4_json_read(const char *path, ted4_message *m)
+{
+    json_error_t e;
+    uint8_t *text;
+    size_t size;
+
+    if (ted4_read_whole(path, &text, &size, m) != 0)
+        return NULL;
+    json_t *root = json_loadb((const char *)text, size, JSON_REJECT_DUPLICATES, &e);
+    free(text);
+    if (root == NULL)
+        ted4_say(m, "%s:%d: not valid JSON: %s", path, e.line, e.text);
+    return root;
+}
+
+int ted4_json_number(const json_t *object, const char *where, const char *name, double *v, ted4_message *m)
+{
+    const json_t *field = json_object_get(object, name);
+
+    if (field == NULL)
+        return 0;
+    if (!json_is_number(field) || !isfinite(json_number_value(field)))
+        return ted4_say(m, "%s.%s: expected a number", where, name);
+    *v = json_number_value(field);
+    return 1;
+}
+
+int ted4_json_text(const json_t *object, const char *where, const char *name, const char **v, ted4_message *m)
+{
+    const json_t *field = json_object_get(object, name);
+
+    if (field == NULL)
+        return 0;
+    if (!json_is_string(field))
+        return ted4_say(m, "%s.%s: expected a string", where, name);
+    *v = json_string_value(field);
+    return 1;
+}
+
+/* Row i of the matrix into v[4]; 0, or -1: not four finite numbers. */
+static int read_row(const json_t *matrix, size_t i, double v[4])
+{
+    const json_t *row = json_array_get(matrix, i);
+
+    if (json_array_size(row) != 4)
+        return -1;
+    for (size_t j = 0; j < 4; j++) {
+        const json_t *number = json_array_get(row, j);
+        v[j] = json_number_value(number);
+        if (!json_is_number(number) || !isfinite(v[j]))
+            return -1;
+    }
+    return 0;
+}
+
+int ted4_json_affine(const json_t *object, const char *where, const char *name, double v[12], ted4_message *m)
+{
+    const json_t *matrix = json_object_get(object, name);
+    const size_t rows = json_array_size(matrix);
+    double last[4] = { 0, 0, 0, 1 };
+
+    if (matrix == NULL)
+        return 0;
+    int bad = rows != 3 && rows != 4;
+    for (size_t i = 0; i < 3 && !bad; i++)
+        bad = read_row(matrix, i, v + 4 * i) != 0;
+    if (bad || (rows == 4 && read_row(matrix, 3, last) != 0))
+        return ted4_say(m, "%s.%s: expected 4x4 numbers", where, name);
+    if (fabs(last[0]) + fabs(last[1]) + fabs(last[2]) + fabs(last[3] - 1) > 1e-6)
+        return ted4_say(m, "%s.%s: last row %g %g %g %g, expected 0 0 0 1", where, name,
+                        last[0], last[1], last[2], last[3]);
+    return 1;
+}

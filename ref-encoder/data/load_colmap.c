@@ -1,0 +1,175 @@
+/* load_colmap.c - layout "colmap": images/ and a sparse model in sparse/0 or sparse.
+ * Time: the last number in a file's name orders it; each distinct number is one frame. Split: raw_scene.h.
+ * Physical camera: COLMAP's camera and the folder below images/ (one folder a camera is COLMAP's own custom).
+ * SPDX-License-Identifier: BSD-2-Clause */
+#include "data/raw_scene.h"
+
+#include <ctype.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include "data/colmap_file.h"
+#include "data/data_util.h"
+
+/* folder/sparse/0 or folder/sparse, whichever holds cameras.*; NULL: neither. Owned by the caller. */
+static char *find_model(const char *folder)
+{
+    static const char *const places[] = { "sparse/0", "sparse" };
+    static const char *const files[] = { "cameras.bin", "cameras.txt" };
+
+    for (size_t i = 0; i < 4; i++) {
+        char *place = ted4_path_join(folder, places[i / 2]);
+        char *file = place == NULL ? NULL : ted4_path_join(place, files[i % 2]);
+        const int found = file != NULL && ted4_is_file(file);
+        free(file);
+        if (found)
+            return place;
+        free(place);
+    }
+    return NULL;
+}
+
+int ted4_is_colmap(const char *folder)
+{
+    char *sparse = ted4_path_join(folder, "sparse");
+    const int found = sparse != NULL && ted4_is_folder(sparse);
+
+    free(sparse);
+    return found;
+}
+
+static const char *base_name(const char *name)
+{
+    const char *slash = strrchr(name, '/');
+
+    return slash == NULL ? name : slash + 1;
+}
+
+/* Last run of digits in the base name without its extension. -1: none, -2: too long. */
+static double name_number(const char *name)
+{
+    const char *base = base_name(name), *dot = strrchr(base, '.');
+    const char *end = dot == NULL ? base + strlen(base) : dot, *begin;
+    double v = 0;
+
+    while (end > base && !isdigit((unsigned char)end[-1]))
+        end--;
+    for (begin = end; begin > base && isdigit((unsigned char)begin[-1]); begin--)
+        ;
+    if (begin == end)
+        return -1;
+    if (end - begin > 15)                   /* a double holds 15 digits */
+        return -2;
+    for (; begin < end; begin++)
+        v = 10 * v + (*begin - '0');
+    return v;
+}
+
+static char *camera_label(const ted4_colmap_image *image)
+{
+    const size_t n = (size_t)(base_name(image->name) - image->name);
+    char *label = malloc(n + 16);
+
+    if (label != NULL)
+        snprintf(label, n + 16, "%u/%.*s", (unsigned)image->camera, (int)n, image->name);
+    return label;
+}
+
+static const ted4_colmap_camera *find_camera(const ted4_colmap *c, uint32_t id)
+{
+    for (size_t i = 0; i < c->n_cameras; i++)
+        if (c->cameras[i].id == id)
+            return &c->cameras[i];
+    return NULL;
+}
+
+static int add_image(ted4_raw_scene *s, const ted4_colmap *c, const ted4_colmap_image *image,
+                     const char *images, ted4_message *m)
+{
+    const ted4_colmap_camera *camera = find_camera(c, image->camera);
+    char where[300];
+
+    snprintf(where, sizeof where, "COLMAP image \"%.250s\"", image->name);
+    if (camera == NULL)
+        return ted4_say(m, "%s: its camera %u is not in the cameras file", where, (unsigned)image->camera);
+    ted4_shot *shot = ted4_raw_scene_add(s, ted4_path_join(images, image->name), where, m);
+    if (shot == NULL)
+        return -1;
+    shot->lens = camera->lens;
+    memcpy(shot->R, image->R, sizeof shot->R);
+    memcpy(shot->t, image->t, sizeof shot->t);
+    shot->time = name_number(image->name);
+    if (shot->time == -2)
+        return ted4_say(m, "%s: the number in the name has more than 15 digits", where);
+    shot->camera = camera_label(image);
+    return shot->camera == NULL ? ted4_say_no_memory(m) : 0;
+}
+
+static int by_number(const void *a, const void *b)
+{
+    const double x = *(const double *)a, y = *(const double *)b;
+
+    return (x > y) - (x < y);
+}
+
+/* Numbers in names only order the frames: replaces each by its rank. Names without any: frame 0 when no name has one. */
+static int rank_numbers(ted4_raw_scene *s, ted4_message *m)
+{
+    double *v = malloc((s->n_shots + 1) * sizeof *v);
+    size_t k = 0;
+
+    if (v == NULL)
+        return ted4_say_no_memory(m);
+    for (size_t i = 0; i < s->n_shots; i++)
+        v[i] = s->shots[i].time;
+    qsort(v, s->n_shots, sizeof *v, by_number);
+    for (size_t i = 0; i < s->n_shots; i++)
+        if (k == 0 || v[i] != v[k - 1])
+            v[k++] = v[i];
+    for (size_t i = 0; i < s->n_shots; i++) {
+        const double *at = bsearch(&s->shots[i].time, v, k, sizeof *v, by_number);
+        s->shots[i].time = (double)(at - v);
+    }
+    const int mixed = k > 1 && v[0] == -1;
+    free(v);
+    return mixed ? ted4_say(m, "COLMAP images: some names hold a number, some none: their order in time is unknown") : 0;
+}
+
+static int add_images(ted4_raw_scene *s, ted4_colmap *c, const char *images, ted4_message *m)
+{
+    if (!ted4_is_folder(images))
+        return ted4_say(m, "%s: no such folder, expected the %zu pictures of the sparse model", images, c->n_images);
+    for (size_t i = 0; i < c->n_images; i++)
+        if (add_image(s, c, &c->images[i], images, m) != 0)
+            return -1;
+    ted4_raw_scene_hold_out(s);
+    return rank_numbers(s, m);
+}
+
+int ted4_load_colmap(ted4_raw_scene *s, const char *folder, ted4_message *m)
+{
+    ted4_colmap c;
+    char *model = find_model(folder), *images = ted4_path_join(folder, "images");
+    int result;
+
+    s->layout = "colmap";
+    memset(&c, 0, sizeof c);
+    if (model == NULL)
+        result = ted4_say(m, "%s/sparse: neither cameras.bin nor cameras.txt here or in sparse/0", folder);
+    else if (images == NULL)
+        result = ted4_say_no_memory(m);
+    else
+        result = ted4_colmap_read(&c, model, m);
+    if (result == 0)
+        result = add_images(s, &c, images, m);
+    if (result == 0 && c.cloud.n > 0) {
+        s->cloud = c.cloud;
+        memset(&c.cloud, 0, sizeof c.cloud);
+    } else if (result == 0) {
+        result = ted4_ply_find(&s->cloud, folder, m);
+    }
+    ted4_colmap_free(&c);
+    free(model);
+    free(images);
+    return result;
+}

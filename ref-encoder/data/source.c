@@ -1,0 +1,62 @@
+/* source.c - see source.h.
+ * SPDX-License-Identifier: BSD-2-Clause */
+#include "data/source.h"
+
+#include <stdlib.h>
+#include <string.h>
+#include "data/data_util.h"
+#include "data/image_file.h"
+
+/* RGBA to RGB in place, over a grey level, rounded. */
+static void composite(ted4_image *image, int background)
+{
+    const size_t n = (size_t)image->width * (size_t)image->height;
+    uint8_t *out = image->bytes;
+
+    for (size_t i = 0; i < n; i++) {
+        const uint8_t *p = image->bytes + 4 * i;
+        const int alpha = p[3];
+        for (int c = 0; c < 3; c++)
+            *out++ = (uint8_t)((p[c] * alpha + background * (255 - alpha) + 127) / 255);
+    }
+    image->channels = 3;
+}
+
+static int undistort(ted4_image *image, const ted4_lens *l, ted4_message *m)
+{
+    uint8_t *out = malloc((size_t)image->width * (size_t)image->height * 3);
+
+    if (out == NULL)
+        return ted4_say_no_memory(m);
+    ted4_undistort(l, image->bytes, out);
+    free(image->bytes);
+    image->bytes = out;
+    return 0;
+}
+
+uint8_t *ted4_source_decode(const void *sources, size_t i, size_t *size, ted4_message *m)
+{
+    const ted4_source *s = (const ted4_source *)sources + i;
+    ted4_image image;
+
+    if (ted4_image_read(s->path, &image, m) != 0)
+        return NULL;
+    if (image.width != s->lens.width || image.height != s->lens.height) {
+        ted4_say(m, "%s: now %dx%d, was %dx%d when the scene was loaded", s->path,
+                 image.width, image.height, s->lens.width, s->lens.height);
+        free(image.bytes);
+        return NULL;
+    }
+    if (image.channels == 4)
+        composite(&image, s->background);
+    if (!ted4_lens_is_pinhole(&s->lens) && undistort(&image, &s->lens, m) != 0) {
+        free(image.bytes);
+        return NULL;
+    }
+    if (s->downscale > 1)
+        ted4_downscale(image.bytes, image.width, image.height, s->downscale, image.bytes);
+    *size = (size_t)(image.width / s->downscale) * (size_t)(image.height / s->downscale) * 3;
+    /* What composite and downscale left unused at the end goes back; a failure to shrink keeps the block. */
+    uint8_t *exact = realloc(image.bytes, *size);
+    return exact != NULL ? exact : image.bytes;
+}

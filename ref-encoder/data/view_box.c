@@ -1,0 +1,112 @@
+/* view_box.c - where the cameras of a scene look; see source.h.
+ * SPDX-License-Identifier: BSD-2-Clause */
+#include "data/source.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include "data/data_util.h"
+
+#define HALF_SIDE    0.6        /* of the median camera distance */
+#define PARALLEL     1e-4       /* relative spread of axes, squared radians, below which their crossing means nothing */
+
+typedef struct { double centre[3], forward[3], spread; } mean_camera;
+
+static mean_camera average(const ted4_dataset *d)
+{
+    mean_camera a = { { 0, 0, 0 }, { 0, 0, 0 }, 0 };
+    const double n = (double)d->n_pictures;
+    double c[3], length = 0;
+
+    for (size_t i = 0; i < d->n_pictures; i++) {
+        const ted4_camera *k = &d->pictures[i].camera;
+        ted4_pose_centre(k->R, k->t, c);
+        for (int j = 0; j < 3; j++) {
+            a.centre[j] += c[j] / n;
+            a.forward[j] += k->R[6 + j] / n;
+        }
+    }
+    for (size_t i = 0; i < d->n_pictures; i++) {
+        const ted4_camera *k = &d->pictures[i].camera;
+        ted4_pose_centre(k->R, k->t, c);
+        for (int j = 0; j < 3; j++)
+            a.spread += (c[j] - a.centre[j]) * (c[j] - a.centre[j]) / n;
+    }
+    a.spread = sqrt(a.spread);
+    for (int j = 0; j < 3; j++)
+        length += a.forward[j] * a.forward[j];
+    length = sqrt(length);
+    for (int j = 0; j < 3 && length > 0; j++)
+        a.forward[j] /= length;
+    return a;
+}
+
+/* Least squares: sum of (I - f f^T) x = sum of (I - f f^T) c over axes c + s f. -1: the axes do not determine x. */
+static int crossing(const ted4_dataset *d, double x[3])
+{
+    double A[9] = { 0 }, b[3] = { 0, 0, 0 }, c[3], trace = 0;
+
+    for (size_t i = 0; i < d->n_pictures; i++) {
+        const ted4_camera *k = &d->pictures[i].camera;
+        const double *f = k->R + 6;
+        ted4_pose_centre(k->R, k->t, c);
+        for (int r = 0; r < 3; r++)
+            for (int s = 0; s < 3; s++) {
+                const double v = ((r == s) - f[r] * f[s]) / (double)d->n_pictures;
+                A[3 * r + s] += v;
+                b[r] += v * c[s];
+            }
+    }
+    /* det A = product of three eigenvalues whose sum is 2; the smallest is the mean squared sine of the axes to their mean. */
+    const double det = A[0] * (A[4] * A[8] - A[5] * A[7]) - A[1] * (A[3] * A[8] - A[5] * A[6]) +
+                       A[2] * (A[3] * A[7] - A[4] * A[6]);
+    trace = A[0] + A[4] + A[8];
+    if (det < PARALLEL * trace * trace / 4)
+        return -1;
+    return ted4_solve3(A, b, x);
+}
+
+static double distance(const double a[3], const double b[3])
+{
+    const double x = a[0] - b[0], y = a[1] - b[1], z = a[2] - b[2];
+
+    return sqrt(x * x + y * y + z * z);
+}
+
+static int by_value(const void *a, const void *b)
+{
+    const double x = *(const double *)a, y = *(const double *)b;
+
+    return (x > y) - (x < y);
+}
+
+static int is_ahead(const ted4_dataset *d, const double x[3])
+{
+    size_t ahead = 0;
+
+    for (size_t i = 0; i < d->n_pictures; i++) {
+        const ted4_camera *k = &d->pictures[i].camera;
+        ahead += k->R[6] * x[0] + k->R[7] * x[1] + k->R[8] * x[2] + k->t[2] > 0;
+    }
+    return 2 * ahead > d->n_pictures;
+}
+
+int ted4_view_box(const ted4_dataset *d, double centre[3], double *half)
+{
+    const mean_camera mean = average(d);
+    double *distances = malloc(d->n_pictures * sizeof *distances), c[3];
+
+    if (distances == NULL)
+        return -1;
+    if (crossing(d, centre) != 0 || !is_ahead(d, centre))
+        for (int j = 0; j < 3; j++)
+            centre[j] = mean.centre[j] + fmax(mean.spread, 1) * mean.forward[j];
+    for (size_t i = 0; i < d->n_pictures; i++) {
+        const ted4_camera *k = &d->pictures[i].camera;
+        ted4_pose_centre(k->R, k->t, c);
+        distances[i] = distance(c, centre);
+    }
+    qsort(distances, d->n_pictures, sizeof *distances, by_value);
+    *half = HALF_SIDE * distances[d->n_pictures / 2];
+    free(distances);
+    return 0;
+}

@@ -1,0 +1,26 @@
+/* adam.h - the Adam step over rows of 32 lanes and over flat arrays.
+ * Source: algorithm facts 1.4 (beta 0.9, 0.999, epsilon 1e-15).
+ * SPDX-License-Identifier: BSD-2-Clause */
+#ifndef TED4_ADAM_H
+#define TED4_ADAM_H
+
+#include <stddef.h>
+#include <stdint.h>
+
+#define TED4_ADAM_BETA1 0.9f
+#define TED4_ADAM_BETA2 0.999f
+#define TED4_ADAM_EPS   1e-15f
+
+/* Corrections 1 / (1 - beta^step) of step >= 1. */
+typedef struct { float m, v; } ted4_adam_bias;
+
+ted4_adam_bias ted4_adam_bias_make(uint64_t step);
+
+/* x -= rate m' / (sqrt(v') + eps) for n values that share a learning rate. */
+void ted4_adam(float *x, float *m, float *v, const float *gradient, size_t n,
+               float rate, ted4_adam_bias bias);
+
+/* lr0 -> lr0 last along a geometric path, progress in [0, 1]. */
+double ted4_decay(double lr0, double last, double progress);
+
+#endif

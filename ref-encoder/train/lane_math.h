@@ -1,0 +1,46 @@
+/* lane_math.h - the functions of spec 11 and 12.2 in fast binary32, written so that `#pragma omp simd` loops over lanes vectorise them.
+ * Not strict: may be contracted. Used by train/.
+ * SPDX-License-Identifier: BSD-2-Clause */
+#ifndef TED4_LANE_MATH_H
+#define TED4_LANE_MATH_H
+
+#include <stdint.h>
+#include <string.h>
+
+#include "model.h"
+
+#define TED4_LOG2E 0x1.715476p+0f
+#define TED4_LN2   0x1.62e43p-1f
+
+/* 2^x, x clamped to [-126, 126], to about 1e-7. x + 126.5 is positive, so that truncation rounds x to the nearest integer. */
+static inline float ted4_lane_pow2(float x)
+{
+    const float c = x < -126.0f ? -126.0f : x > 126.0f ? 126.0f : x;
+    const int32_t n = (int32_t)(c + 126.5f);
+    const float f = c - (float)(n - 126);
+    const uint32_t bits = (uint32_t)(n + 1) << 23;
+    float p = 0x1.ffcbfcp-17f, scale;
+
+    p = p * f + 0x1.430912p-13f;
+    p = p * f + 0x1.5d87fep-10f;
+    p = p * f + 0x1.3b2ab6p-7f;
+    p = p * f + 0x1.c6b08ep-5f;
+    p = p * f + 0x1.ebfbep-3f;
+    p = p * f + 0x1.62e43p-1f;
+    p = p * f + 1.0f;
+    memcpy(&scale, &bits, sizeof scale);
+    return p * scale;
+}
+
+static inline float ted4_lane_sigmoid(float x)
+{
+    return 1.0f / (1.0f + ted4_lane_pow2(-x * TED4_LOG2E));
+}
+
+/* Whether a mask with this logit is on (model.h). */
+static inline int ted4_mask_on(float logit)
+{
+    return ted4_lane_sigmoid(logit) > TED4_MASK_THRESHOLD;
+}
+
+#endif

@@ -1,0 +1,28 @@
+/* options.h - what can be chosen about training, from options.def.
+ * SPDX-License-Identifier: BSD-2-Clause */
+#ifndef TED4_OPTIONS_H
+#define TED4_OPTIONS_H
+
+#include <stdint.h>
+#include <stdio.h>
+
+#define TED4_KIND_I int
+#define TED4_KIND_F double
+
+typedef struct {
+    uint32_t seed;
+#define TED4_OPTION(kind, name, lo, hi, a, b, c, d, e, help) TED4_KIND_##kind name;
+#include "options.def"
+#undef TED4_OPTION
+} ted4_train_options;
+
+/* "draft" .. "paper" and seed 0; -1: no such preset. */
+int  ted4_options_preset(ted4_train_options *o, const char *preset);
+/* "name=value" as --set takes it. 0, or -1 with why filled. */
+int  ted4_options_set(ted4_train_options *o, const char *text, char *why, size_t why_size);
+/* The table of names, presets and help. */
+void ted4_options_help(FILE *out);
+/* A hash of all values: a checkpoint belongs to them. */
+uint64_t ted4_options_hash(const ted4_train_options *o);
+
+#endif

@@ -1,0 +1,36 @@
+/* random.h - counter-based random numbers for the trainer: a function of (key, counter), so that nothing depends on the order of calls.
+ * Used by anchors, densify, trainer.
+ * SPDX-License-Identifier: BSD-2-Clause */
+#ifndef TED4_RANDOM_H
+#define TED4_RANDOM_H
+
+#include <stdint.h>
+
+/* A bijective mix of 64 bits (two xor-shift-multiply rounds, odd constants from the golden ratio and pi). */
+static inline uint64_t ted4_mix(uint64_t x)
+{
+    x += 0x9e3779b97f4a7c15u;
+    x = (x ^ (x >> 31)) * 0x243f6a8885a308d3u;
+    x = (x ^ (x >> 29)) * 0x13198a2e03707345u;
+    return x ^ (x >> 32);
+}
+
+/* Uniform 64 bits of a stream. */
+static inline uint64_t ted4_random(uint64_t key, uint64_t counter)
+{
+    return ted4_mix(ted4_mix(key) ^ (counter * 0xd1342543de82ef95u));
+}
+
+/* Uniform in [0, 1), 24 bits. */
+static inline float ted4_uniform(uint64_t key, uint64_t counter)
+{
+    return (float)(ted4_random(key, counter) >> 40) * 0x1p-24f;
+}
+
+/* Uniform integer in [0, n), n > 0; the bias of the product method is below n / 2^32. */
+static inline uint32_t ted4_below(uint64_t key, uint64_t counter, uint32_t n)
+{
+    return (uint32_t)(((ted4_random(key, counter) >> 32) * n) >> 32);
+}
+
+#endif

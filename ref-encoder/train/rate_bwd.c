@@ -1,0 +1,207 @@
+/* rate_bwd.c - adjoint of rate.c, one slot at a time; weights once a chunk. spec 7.3, 9.4, 10; algorithm facts 3.3.
+ * Forward was, for a value x of a type with q = Q0 2^v:
+ *     k = x / q + n,  bits(k - mu, s),  context = (x + q n) / Q0,  rendered value = x + q n
+ * with the residual n held constant. So dk/dx = 1/q, dk/dv = -(x/q) ln 2, d(context)/dx = 1/Q0, d(x + q n)/dv = q n ln 2; and what reaches x from the rendered
+ * value is the trainer's business.
+ * Used by rate.c.
+ * SPDX-License-Identifier: BSD-2-Clause */
+#include "rate_parts.h"
+
+#include <string.h>
+
+#include "rate_math.h"
+
+/* Forward was y = max(0, x). */
+static void relu_backward(const float *y, size_t n, float *d)
+{
+#pragma omp simd
+    for (size_t j = 0; j < n; j++)
+        d[j] = y[j] > 0.0f ? d[j] : 0.0f;
+}
+
+/* The slice networks share the gradients of mu and s with the hyperprior, to whose outputs they were added. */
+static void slices_backward(const ted4_rate *r, ted4_rate_room *room, size_t i)
+{
+    const ted4_layout *l = &r->layout;
+    const size_t f = l->shape.dim[TED4_FEATURE];
+    const float *d_out = room->hyper.d[r->hyper.n]
+                       + i * ted4_row(l->shape.n_outputs)
+                       + ted4_row(l->shape.first_output[TED4_FEATURE]);
+
+    memset(room->slot.d_context, 0, ted4_row(f) * sizeof(float));
+    for (size_t m = 1, known = 0; m < l->head.n_slices; m++) {
+        const ted4_rate_net *n = &r->slice[m];
+        const size_t width = ted4_row((size_t)n->dim[1]);
+        const size_t half = ted4_row(l->head.slice[m]);
+        float *d_hidden = room->slice[m].d[1] + i * width;
+        float *d_y = room->slice[m].d[2] + i * ted4_row((size_t)n->dim[2]);
+
+        known += l->head.slice[m - 1];
+        memcpy(d_y, d_out + ted4_row(known), half * sizeof *d_y);
+        memcpy(d_y + half, d_out + ted4_row(known + f), half * sizeof *d_y);
+        ted4_dense_backward_x(&n->layer[1], d_y, d_hidden, 0);
+        relu_backward(room->slice[m].x[1] + i * width, width, d_hidden);
+        ted4_dense_backward_x(&n->layer[0], d_hidden, room->slot.d_context, 1);
+    }
+}
+
+/* dL/dx of one component, added to d_x, and dL/d(v ln 2), added to d_v. d_context and d_value may be NULL. */
+static void value_backward(const ted4_rate_job *job, const ted4_rate_slot *s,
+                           int t, size_t channel, const float *q,
+                           const float *d_context, const float *d_value,
+                           uint32_t lanes, float *d_x, float *d_v)
+{
+    const size_t at = ted4_row(channel);
+    const float unit = 1.0f / job->in->layout->head.step[t];
+    const float distortion = job->in->distortion_weight;
+    const float *x = s->value + at, *n = s->residual + at;
+    const float *d_k = s->d_symbol + at;
+
+#pragma omp simd
+    for (int j = 0; j < TED4_LANES; j++) {
+        d_x[j] += d_k[j] / q[j];
+        d_v[j] -= d_k[j] * (x[j] / q[j]);
+    }
+    if (d_context != NULL)
+        for (int j = 0; j < TED4_LANES; j++) {
+            d_x[j] += d_context[j] * unit;
+            d_v[j] += d_context[j] * unit * q[j] * n[j];
+        }
+    if (d_value != NULL)
+        for (int j = 0; j < TED4_LANES; j++)
+            if (lanes >> j & 1)
+                d_v[j] += distortion * d_value[at + (size_t)j] * q[j] * n[j];
+}
+
+static void type_backward(const ted4_rate_job *job, ted4_rate_room *room,
+                          size_t slot, int t, const float *v, float *d_v)
+{
+    const ted4_layout *l = job->in->layout;
+    const float *q = job->steps[slot] + ted4_row((size_t)t);
+    const float *d_value = job->d_value != NULL ? job->d_value[slot] : NULL;
+    const float *d_context = t == TED4_FEATURE ? room->slot.d_context : NULL;
+
+    for (size_t c = 0; c < l->shape.dim[t]; c++) {
+        const size_t channel = (size_t)l->first[t] + c;
+
+        value_backward(job, &room->slot, t, channel, q, d_context, d_value,
+                       job->in->lanes[slot],
+                       job->d_attr[slot] + ted4_row(channel), d_v);
+        d_context = d_context != NULL ? d_context + TED4_LANES : NULL;
+    }
+    for (int j = 0; j < TED4_LANES; j++)
+        d_v[j] = ted4_inward(v[j], TED4_V_MIN, TED4_V_MAX, d_v[j] * TED4_LN2);
+}
+
+/* Straight-through: bits count times the sigmoid of the logit. */
+static void mask_backward(float weight, const float *bits, const float *lane_on,
+                          const float *logit, float *d_logit)
+{
+    for (int j = 0; j < TED4_LANES; j++)
+        if (lane_on[j] > 0.0f) {
+            const float m = ted4_lane_sigmoid(logit[j]);
+
+            d_logit[j] += weight * bits[j] * m * (1.0f - m);
+        }
+}
+
+static void logits_backward(const ted4_rate_job *job, const ted4_rate_slot *s,
+                            size_t slot)
+{
+    const ted4_layout *l = job->in->layout;
+    const float weight = job->in->bit_weight;
+    const float *attr = job->in->attr[slot];
+    float *d = job->d_attr[slot], in_use[TED4_LANES];
+    const size_t moves = ted4_row((size_t)l->temporal_logit);
+
+    for (int j = 0; j < TED4_LANES; j++)
+        in_use[j] = job->in->lanes[slot] >> j & 1 ? 1.0f : 0.0f;
+    for (size_t k = 0; l->head.offset_mask && k < l->head.n_offsets; k++) {
+        const size_t at = ted4_row((size_t)l->offset_logit + k);
+
+        mask_backward(weight, s->kept_bits + ted4_row(k), in_use, attr + at,
+                      d + at);
+    }
+    if (l->head.temporal_mask)
+        mask_backward(weight, s->phi_bits, s->used, attr + moves, d + moves);
+}
+
+static void hyper_backward(const ted4_rate *r, ted4_rate_room *room, size_t i)
+{
+    const ted4_rate_net *h = &r->hyper;
+    const ted4_rate_acts *a = &room->hyper;
+    const float *d_v = a->d[h->n] + i * ted4_row((size_t)h->dim[h->n])
+                     + ted4_row(r->layout.shape.first_step_output);
+
+    for (int k = h->n - 1; k > 0; k--) {
+        const size_t width = ted4_row((size_t)h->dim[k]);
+        float *d = a->d[k] + i * width;
+
+        ted4_dense_backward_x(&h->layer[k],
+                              a->d[k + 1] + i * ted4_row((size_t)h->dim[k + 1]),
+                              d, 0);
+        if (k == h->n - 1)
+            ted4_dense_backward_x(&r->step, d_v, d, 1);
+        relu_backward(a->x[k] + i * width, width, d);
+    }
+}
+
+void ted4_rate_slot_backward(const ted4_rate_job *job, ted4_rate_room *room,
+                             size_t i, size_t slot)
+{
+    const ted4_rate *r = job->rate;
+    const ted4_shape *shape = &r->layout.shape;
+    const size_t out = i * ted4_row(shape->n_outputs);
+    const size_t steps = out + ted4_row(shape->first_step_output);
+    const float *v = room->hyper.x[r->hyper.n] + steps;
+    float *d_out = room->hyper.d[r->hyper.n];
+    float *d_v = d_out + steps;
+
+    memset(d_v, 0, ted4_row(shape->n_types) * sizeof *d_v);
+    slices_backward(r, room, i);
+    for (int t = 0; t < TED4_TYPES; t++) {
+        if (shape->dim[t] == 0)
+            continue;
+        if (ted4_rate_coded(job, t))
+            type_backward(job, room, slot, t, v, d_v);
+        else
+            memset(d_out + out + ted4_row(shape->first_output[t]), 0,
+                   ted4_row(2 * (size_t)shape->dim[t]) * sizeof *d_out);
+        v += TED4_LANES;
+        d_v += TED4_LANES;
+    }
+    logits_backward(job, &room->slot, slot);
+    hyper_backward(r, room, i);
+}
+
+/* Layer k of a network over all slots. x: its inputs. */
+static void layer_weights(const ted4_rate_net *n, int k, const float *x,
+                          size_t x_stride, const float *d, size_t n_slots,
+                          float *d_net)
+{
+    ted4_dense_backward_w(n->dim[k], n->dim[k + 1], x, x_stride, d,
+                          ted4_row((size_t)n->dim[k + 1]), n_slots,
+                          d_net + n->w[k], d_net + n->b[k]);
+}
+
+void ted4_rate_weights_backward(const ted4_rate *r, ted4_rate_room *room,
+                                size_t n_slots)
+{
+    const ted4_layout *l = &r->layout;
+    const size_t context = ted4_row(l->shape.dim[TED4_FEATURE]);
+    float *d_net = room->d_net;
+
+    memset(d_net, 0, l->shape.n_nete * sizeof *d_net);
+    for (int k = 0; k < r->hyper.n; k++)
+        layer_weights(&r->hyper, k, room->hyper.x[k],
+                      ted4_row((size_t)r->hyper.dim[k]), room->hyper.d[k + 1],
+                      n_slots, d_net);
+    for (int m = 1; m < l->head.n_slices; m++) {
+        const ted4_rate_net *n = &r->slice[m];
+        const ted4_rate_acts *a = &room->slice[m];
+
+        layer_weights(n, 0, room->context, context, a->d[1], n_slots, d_net);
+        layer_weights(n, 1, a->x[1], ted4_row((size_t)n->dim[1]), a->d[2],
+                      n_slots, d_net);
+    }
+}

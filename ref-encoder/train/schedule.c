@@ -1,0 +1,138 @@
+/* schedule.c - learning rates over time, and what happens at which step. Source: algorithm facts 1.4, 5.4, 5.7.
+ * SPDX-License-Identifier: BSD-2-Clause */
+#include <math.h>
+
+#include "adam.h"
+#include "trainer.h"
+
+/* Factors between the first and the last step of a stage. */
+#define LAST_OFFSET 0.01
+#define LAST_MASK   0.01
+#define LAST_TAU    0.1
+#define LAST_HEADS  0.02
+#define LAST_MOTION 0.1
+#define LAST_PRIOR  0.02
+#define LAST_VALUES 0.1         /* stage 2: features, scalings, phi */
+/* Stage 2 restarts attributes at a third of their first rate. */
+#define RESTART     (1.0 / 3.0)
+/* log2 b moves five times as fast as the times a. */
+#define TAU_WIDTH   5.0
+
+static double stage_progress(const ted4_trainer *t)
+{
+    const double done = (double)(t->iteration - (t->stage2 ? t->stage2_start : 0));
+
+    return done / fmax(1.0, t->stage2 ? t->opt.stage2 : t->opt.stage1);
+}
+
+int ted4_activation_on(const ted4_trainer *t)
+{
+    return t->layout.first[TED4_TAU] >= 0 &&
+           (t->stage2 || (double)t->iteration >=
+                             t->opt.activation_start * (double)t->opt.stage1);
+}
+
+static void fill(float *rate, int first, int n, double value)
+{
+    for (int c = 0; first >= 0 && c < n; c++)
+        rate[first + c] = (float)value;
+}
+
+void ted4_schedule_rates(const ted4_trainer *t, float *rate)
+{
+    const ted4_train_options *o = &t->opt;
+    const ted4_layout        *l = &t->layout;
+    const double p = stage_progress(t);
+    const double restart = t->stage2 ? RESTART : 1.0;
+    const double values = t->stage2 ? ted4_decay(restart, LAST_VALUES, p) : 1.0;
+    const double tau = ted4_decay(o->lr_tau * restart, LAST_TAU, p);
+
+    fill(rate, l->first[TED4_FEATURE], l->head.feature_dim, o->lr_feature * values);
+    fill(rate, l->first[TED4_SCALING], 6, o->lr_scaling * values);
+    fill(rate, l->first[TED4_OFFSET], 3 * l->head.n_offsets,
+         t->stage2 ? ted4_decay(o->lr_offset * 0.1, 0.1, p)
+                   : ted4_decay(o->lr_offset, LAST_OFFSET, p));
+    fill(rate, l->first[TED4_PHI], l->head.phi_dim, o->lr_phi * values);
+    if (l->first[TED4_TAU] >= 0) {
+        const int on = ted4_activation_on(t);
+
+        for (int c = 0; c < 4; c++)
+            rate[l->first[TED4_TAU] + c] =
+                (float)(on ? tau * (c % 2 == 1 ? TAU_WIDTH : 1.0) : 0.0);
+    }
+    fill(rate, l->offset_logit, l->head.n_offsets,
+         t->stage2 ? ted4_decay(o->lr_mask, LAST_MASK, p) : 0.0);
+    fill(rate, l->temporal_logit, 1,
+         ted4_decay(o->lr_mask * restart, LAST_MASK, p));
+}
+
+typedef struct {
+    ted4_trainer  *t;
+    ted4_adam_bias bias;
+} net_job;
+
+static void update_range(const net_job *j, size_t first, size_t n, double rate)
+{
+    ted4_trainer *t = j->t;
+
+    if (n > 0 && rate > 0)
+        ted4_adam(t->net + first, t->net_m + first, t->net_v + first,
+                  t->net_gradient + first, n, (float)rate, j->bias);
+}
+
+static void update_network(const net_job *j, size_t base, const ted4_net_shape *s,
+                           double rate)
+{
+    size_t n = 0;
+
+    for (int i = 0; i < s->n_layers; i++)
+        n += ((size_t)s->dim[i] + 1) * s->dim[i + 1];
+    update_range(j, base + s->first, n, rate);
+}
+
+void ted4_schedule_network_step(ted4_trainer *t)
+{
+    const ted4_train_options *o = &t->opt;
+    const ted4_layout        *l = &t->layout;
+    const double   p = stage_progress(t);
+    const double   restart = t->stage2 ? RESTART : 1.0;
+    const uint64_t count = t->iteration - (t->stage2 ? t->stage2_start : 0) + 1;
+    const net_job  j = { t, ted4_adam_bias_make(count) };
+    const double   heads = ted4_decay(o->lr_heads * restart, LAST_HEADS, p);
+    const double   motion = ted4_decay(o->lr_motion * restart, LAST_MOTION, p);
+
+    for (int i = 0; i < TED4_NETS_R; i++) {
+        const int is_motion = i == TED4_NET_PROJECT || i == TED4_NET_DEFORM;
+
+        update_network(&j, l->netr, &l->shape.netr[i], is_motion ? motion : heads);
+    }
+    update_range(&j, l->bank, l->shape.n_bank, motion);
+    if (t->stage2 && !t->integer)
+        update_range(&j, l->nete, l->shape.n_nete,
+                     ted4_decay(o->lr_prior, LAST_PRIOR, p));
+}
+
+/* Growth begins after a twentieth of stage 1; statistics as soon as the last adjustment is done. */
+#define GROW_FROM 0.05
+
+int ted4_schedule_event(ted4_trainer *t)
+{
+    const ted4_train_options *o = &t->opt;
+    const uint64_t i = t->iteration, stage1 = (uint64_t)o->stage1;
+
+    if (t->layout.first[TED4_TAU] >= 0 && !t->stage2 &&
+        i == (uint64_t)ceil(o->activation_start * (double)stage1) &&
+        ted4_activation_begin(t) != 0)
+        return -1;
+    if (!t->stage2 && i > (uint64_t)(GROW_FROM * (double)stage1) &&
+        i <= (uint64_t)(o->grow_until * (double)stage1) &&
+        i % (uint64_t)o->grow_every == 0 && ted4_densify_adjust(t) != 0)
+        return -1;
+    if (i == stage1 && !t->stage2 && o->stage2 > 0 && ted4_stage2_begin(t) != 0)
+        return -1;
+    if (t->stage2 && !t->integer &&
+        i >= stage1 + (uint64_t)((1.0 - o->integer_share) * (double)o->stage2) &&
+        ted4_integer_begin(t) != 0)
+        return -1;
+    return 0;
+}

@@ -1,0 +1,85 @@
+/* space.c - see space.h.
+ * SPDX-License-Identifier: BSD-2-Clause */
+#include "space.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+static int compare_floats(const void *x, const void *y)
+{
+    const float a = *(const float *)x, b = *(const float *)y;
+
+    return a < b ? -1 : a > b;
+}
+
+void ted4_space_make(ted4_header *h, const ted4_dataset *d)
+{
+    const size_t n = d->n_points;
+    float       *sorted = malloc((n + 1) * sizeof *sorted);
+
+    h->exponent = 0;
+    memset(h->origin, 0, sizeof h->origin);
+    if (sorted == NULL || n == 0) {
+        free(sorted);
+        return;
+    }
+    for (int j = 0; j < 3; j++) {
+        for (size_t i = 0; i < n; i++)
+            sorted[i] = d->points[3 * i + (size_t)j];
+        qsort(sorted, n, sizeof *sorted, compare_floats);
+        h->origin[j] = sorted[n / 2];
+        if (fabsf(h->origin[j]) < 1e-6f)
+            h->origin[j] = 0.0f;        /* no subnormal, no -0 (R-CNV-001) */
+    }
+    for (size_t i = 0; i < n; i++) {
+        float far = 0;
+
+        for (int j = 0; j < 3; j++)
+            far = fmaxf(far, fabsf(d->points[3 * i + (size_t)j] - h->origin[j]));
+        sorted[i] = far;
+    }
+    qsort(sorted, n, sizeof *sorted, compare_floats);
+
+    const double reach = 1.25 * (double)sorted[(size_t)(0.995 * (double)(n - 1))];
+    const double e = reach > 0 ? ceil(log2(reach)) : 0;
+
+    h->exponent = (int8_t)(e < -30 ? -30 : e > 30 ? 30 : e);
+    free(sorted);
+}
+
+void ted4_space_view(const ted4_header *h, const ted4_camera *c, ted4_view *v,
+                     float centre[3])
+{
+    const double unit = ldexp(1.0, -h->exponent);
+
+    v->width = c->width;
+    v->height = c->height;
+    v->fx = (float)c->fx;
+    v->fy = (float)c->fy;
+    v->cx = (float)c->cx;
+    v->cy = (float)c->cy;
+    v->near_z = TED4_NEAR;
+    for (int j = 0; j < 3; j++)
+        v->background[j] = (float)h->background[j] / 255.0f;
+
+    double t[3];
+
+    for (int i = 0; i < 3; i++) {
+        t[i] = c->t[i];
+        for (int j = 0; j < 3; j++) {
+            v->R[3 * i + j] = (float)c->R[3 * i + j];
+            t[i] += c->R[3 * i + j] * (double)h->origin[j];
+        }
+        t[i] *= unit;
+        v->t[i] = (float)t[i];
+    }
+    for (int j = 0; j < 3; j++)
+        centre[j] = (float)-(c->R[j] * t[0] + c->R[3 + j] * t[1] + c->R[6 + j] * t[2]);
+}
+
+void ted4_space_point(const ted4_header *h, const float world[3], float p[3])
+{
+    for (int j = 0; j < 3; j++)
+        p[j] = ldexpf(world[j] - h->origin[j], -h->exponent);
+}

@@ -1,0 +1,315 @@
+/* stages.c - the steps between phases: activation starts, compression starts, the integer model takes over.
+ * Source: paper ("Progressive 3D-to-4D Anchor Transformation", "Training Objectives"), algorithm facts 5.4, 5.7 to 5.9; decisions 3.
+ * SPDX-License-Identifier: BSD-2-Clause */
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "norm/half.h"
+#include "seed.h"
+#include "space.h"
+#include "trainer.h"
+#include "write/snap.h"
+
+/* spec 11: time of frame j. */
+static float frame_time(const ted4_trainer *t, uint32_t j)
+{
+    return t->data->n_frames > 1 ? (float)j / (float)(t->data->n_frames - 1) : 0.0f;
+}
+
+/* Each anchor's activation starts as the span between the first and the last time at which a training view sees it, less half a frame at each end: with the
+ * first frame of the sequence exactly at a_s no time would ever lie before it, and its gradient would be zero for good (algorithm facts 5.8.1). */
+int ted4_activation_begin(ted4_trainer *t)
+{
+    ted4_anchors *a = &t->anchors;
+    const int     first = t->layout.first[TED4_TAU];
+    const float   half = t->data->n_frames > 1 ? 0.5f / (float)(t->data->n_frames - 1) : 0.0f;
+    float        *span = malloc((a->n_blocks + 1) * 2 * TED4_LANES * sizeof *span);
+
+    if (span == NULL)
+        return ted4_trainer_fail(t, "no memory to start activation");
+    for (size_t i = 0; i < a->n_blocks * TED4_LANES; i++) {
+        span[2 * i] = 2.0f;
+        span[2 * i + 1] = -1.0f;
+    }
+    for (size_t i = 0; i < t->data->n_pictures; i++) {
+        const ted4_picture *pic = &t->data->pictures[i];
+        const float         now = frame_time(t, pic->frame);
+        ted4_view           v;
+        float               centre[3];
+
+        if (pic->is_test)
+            continue;
+        ted4_space_view(&t->layout.head, &pic->camera, &v, centre);
+        for (size_t b = 0; b < a->n_blocks; b++) {
+            const uint32_t seen = ted4_block_visible(t, b, &v);
+
+            for (size_t j = 0; j < TED4_LANES; j++) {
+                float *s = span + 2 * (b * TED4_LANES + j);
+
+                if (seen >> j & 1) {
+                    s[0] = fminf(s[0], now);
+                    s[1] = fmaxf(s[1], now);
+                }
+            }
+        }
+    }
+    for (size_t i = 0; i < a->n; i++) {
+        const int never = span[2 * i] > span[2 * i + 1];
+        float     from = never ? 0.0f : span[2 * i] + half;
+        float     to = never ? 1.0f : span[2 * i + 1] - half;
+
+        if (from > to)
+            from = to = 0.5f * (from + to);
+        *ted4_cell(a, TED4_ROW_VALUE, i, first) = from;
+        *ted4_cell(a, TED4_ROW_VALUE, i, first + 2) = to;
+    }
+    free(span);
+    return 0;
+}
+
+/* Largest activation of anchor i over the frames of the sequence. */
+static float peak_activation(const ted4_trainer *t, size_t i)
+{
+    const int first = t->layout.first[TED4_TAU];
+    float     x[4], peak = 0;
+
+    if (first < 0)
+        return 1.0f;
+    for (int c = 0; c < 4; c++)
+        x[c] = *ted4_cell(&t->anchors, TED4_ROW_VALUE, i, first + c);
+    for (uint32_t j = 0; j < t->data->n_frames; j++) {
+        const float now = frame_time(t, j);
+        const float off = now < x[0] ? (now - x[0]) / exp2f(x[1])
+                        : now > x[2] ? (now - x[2]) / exp2f(x[3]) : 0.0f;
+
+        peak = fmaxf(peak, expf(-off * off));
+    }
+    return peak;
+}
+
+/* Summed opacity of each anchor without activation, seen from the first training camera; [n_blocks][32]. */
+static int summed_opacity(ted4_trainer *t, float *sum)
+{
+    ted4_view           v;
+    ted4_splats         s;
+    ted4_generate_input in = { &t->layout, t->net, 0, NULL, NULL, NULL, 0, 1, { 0 }, 0 };
+    const int           K = t->layout.head.n_offsets;
+
+    if (ted4_slots_fill(t, NULL) != 0)
+        return -1;
+    ted4_space_view(&t->layout.head, &t->data->pictures[t->order.item[0]].camera, &v, in.camera);
+    in.n_slots = t->slots.n;
+    in.attr = t->slots.raw;
+    in.position = t->slots.position;
+    in.lanes = t->slots.lanes;
+    ted4_generator_pack(t->generator, t->net);
+    if (ted4_generate(t->generator, &in, t->parallel, &s) != 0)
+        return ted4_trainer_fail(t, "no memory to weigh anchors");
+    for (size_t i = 0; i < t->slots.n; i++)
+        for (size_t j = 0; j < TED4_LANES; j++) {
+            float total = 0;
+
+            for (int k = 0; k < K; k++)
+                total += s.opacity[(i * (size_t)K + (size_t)k) * TED4_LANES + j];
+            sum[i * TED4_LANES + j] = total;
+        }
+    return 0;
+}
+
+/* Positions become what the file will hold; of anchors that then coincide the first stays; anchors that never rise are dropped
+ * (algorithm facts 5.8.8, 5.9). */
+static int settle_positions(ted4_trainer *t)
+{
+    ted4_anchors *a = &t->anchors;
+    uint32_t     *order = malloc((a->n + 1) * sizeof *order);
+    float        *sum = malloc((a->n_blocks + 1) * TED4_LANES * sizeof *sum);
+    uint64_t      last = 0;
+    size_t        n = 0;
+    int           bad = order == NULL || sum == NULL;
+
+    for (size_t i = 0; !bad && i < a->n; i++)
+        for (int j = 0; j < 3; j++) {
+            float *p = ted4_cell(a, TED4_ROW_POSITION, i, j);
+
+            *p = ted4_half_to_float(ted4_float_to_half(*p)) + 0.0f;
+        }
+    bad = bad || ted4_anchors_sort(a) != 0 || summed_opacity(t, sum) != 0;
+    for (size_t i = 0; !bad && i < a->n; i++) {
+        uint16_t p[3];
+
+        for (int j = 0; j < 3; j++)
+            p[j] = ted4_float_to_half(*ted4_cell(a, TED4_ROW_POSITION, i, j));
+        const uint64_t code = ted4_morton(p);
+
+        if (i > 0 && code == last)
+            continue;
+        last = code;
+        if ((double)(sum[i] * peak_activation(t, i)) >= t->opt.prune_opacity)
+            order[n++] = (uint32_t)i;
+    }
+    bad = bad || n == 0 || ted4_anchors_select(a, order, n) != 0;
+    free(order);
+    free(sum);
+    return bad ? ted4_trainer_fail(t, "nothing is left to encode") : 0;
+}
+
+/* Copies the channels of a row kind from the old layout to the new one. */
+static void remap_row(const ted4_layout *from, const ted4_layout *to, const ted4_anchors *old,
+                      ted4_anchors *new, ted4_row row)
+{
+    for (size_t i = 0; i < old->n; i++) {
+        for (int y = 0; y < TED4_TYPES; y++)
+            for (unsigned c = 0; c < to->shape.dim[y]; c++)
+                *ted4_cell(new, row, i, to->first[y] + (int)c) =
+                    *ted4_cell(old, row, i, from->first[y] + (int)c);
+        for (int k = 0; k < to->head.n_offsets; k++)
+            *ted4_cell(new, row, i, to->offset_logit + k) =
+                *ted4_cell(old, row, i, from->offset_logit + k);
+        *ted4_cell(new, row, i, to->temporal_logit) =
+            *ted4_cell(old, row, i, from->temporal_logit);
+    }
+}
+
+/* The model without a part that the scene does not need: same heads, fewer types. */
+static int relayout(ted4_trainer *t, const ted4_header *h)
+{
+    const ted4_layout from = t->layout;
+    ted4_anchors      old = t->anchors;
+    float            *net = t->net;
+
+    ted4_layout_make(&t->layout, h);
+    t->net = NULL;
+    if (ted4_anchors_init(&t->anchors, &t->layout) != 0 ||
+        ted4_anchors_resize(&t->anchors, old.n) != 0 || ted4_trainer_rebuild(t) != 0) {
+        ted4_anchors_finish(&old);
+        free(net);
+        return ted4_trainer_fail(t, "no memory to simplify the model");
+    }
+    remap_row(&from, &t->layout, &old, &t->anchors, TED4_ROW_VALUE);
+    for (size_t i = 0; i < old.n; i++)
+        for (int j = 0; j < 3; j++)
+            *ted4_cell(&t->anchors, TED4_ROW_POSITION, i, j) =
+                *ted4_cell(&old, TED4_ROW_POSITION, i, j);
+    for (int i = 0; i < TED4_NETS_R; i++) {
+        const ted4_net_shape *s = &t->layout.shape.netr[i];
+        size_t                n = 0;
+
+        for (int k = 0; k < s->n_layers; k++)
+            n += ((size_t)s->dim[k] + 1) * s->dim[k + 1];
+        memcpy(t->net + t->layout.netr + s->first,
+               net + from.netr + from.shape.netr[i].first, n * sizeof *net);
+    }
+    memcpy(t->net + t->layout.bank, net + from.bank, t->layout.shape.n_bank * sizeof *net);
+    ted4_anchors_finish(&old);
+    free(net);
+    return 0;
+}
+
+/* A part is dropped when it does nothing anywhere: no anchor moves, or every anchor is there at every time. */
+#define MOVING_SHARE 0.002
+#define ALWAYS_THERE 0.98f
+
+static float least_activation(const ted4_trainer *t, size_t i)
+{
+    const int   first = t->layout.first[TED4_TAU];
+    const float a = *ted4_cell(&t->anchors, TED4_ROW_VALUE, i, first);
+    const float f = *ted4_cell(&t->anchors, TED4_ROW_VALUE, i, first + 2);
+    const float u = a > 0 ? a / exp2f(*ted4_cell(&t->anchors, TED4_ROW_VALUE, i, first + 1)) : 0;
+    const float w = f < 1 ? (1 - f) / exp2f(*ted4_cell(&t->anchors, TED4_ROW_VALUE, i, first + 3)) : 0;
+
+    return expf(-fmaxf(u * u, w * w));
+}
+
+static int simplify(ted4_trainer *t)
+{
+    ted4_header h = t->layout.head;
+    size_t      moving = 0, absent = 0;
+
+    for (size_t i = 0; i < t->anchors.n; i++) {
+        const float logit = *ted4_cell(&t->anchors, TED4_ROW_VALUE, i, t->layout.temporal_logit);
+
+        moving += 1.0f / (1.0f + expf(-logit)) > TED4_MASK_THRESHOLD;
+        absent += h.activation && least_activation(t, i) < ALWAYS_THERE;
+    }
+    if (h.motion != TED4_MOTION_NONE && h.temporal_mask &&
+        (double)moving <= MOVING_SHARE * (double)t->anchors.n) {
+        h.motion = TED4_MOTION_NONE;
+        h.temporal_mask = h.phi_dim = h.deform_layers = 0;
+        h.bank_rows = 0;
+        h.bank_dim = h.deform_width = 0;
+    }
+    if (h.activation && (double)absent <= MOVING_SHARE * (double)t->anchors.n)
+        h.activation = 0;
+    if (h.motion == t->layout.head.motion && h.activation == t->layout.head.activation)
+        return 0;
+    return relayout(t, &h);
+}
+
+static void clear_moments(ted4_trainer *t)
+{
+    for (int r = TED4_ROW_M; r <= TED4_ROW_V; r++)
+        memset(t->anchors.data[r], 0, t->anchors.n_blocks * (size_t)t->layout.n_channels *
+                                          TED4_LANES * sizeof(float));
+    memset(t->net_m, 0, t->layout.n_net * sizeof *t->net_m);
+    memset(t->net_v, 0, t->layout.n_net * sizeof *t->net_v);
+}
+
+int ted4_stage2_begin(ted4_trainer *t)
+{
+    if (settle_positions(t) != 0 || simplify(t) != 0)
+        return -1;
+    ted4_seed_prior(t->net, &t->layout, &t->anchors, t->opt.seed);
+    clear_moments(t);
+    for (size_t i = 0; i < t->anchors.n; i++)
+        for (int y = 0; y < TED4_TYPES; y++)
+            *ted4_cell(&t->anchors, TED4_ROW_STEP, i, y) = t->layout.head.step[y];
+    t->stage2 = 1;
+    t->stage2_start = t->iteration;
+    return 0;
+}
+
+/* Fraction bits of the contexts: as many as leave a factor of two before 16 bits saturate. */
+static uint8_t context_bits(const ted4_trainer *t)
+{
+    const int first = t->layout.first[TED4_FEATURE];
+    float     largest = 1.0f;
+    int       bits = 10;
+
+    for (size_t i = 0; i < t->anchors.n; i++)
+        for (int c = 0; c < t->layout.head.feature_dim; c++)
+            largest = fmaxf(largest, fabsf(*ted4_cell(&t->anchors, TED4_ROW_VALUE, i, first + c)) /
+                                         t->layout.head.step[TED4_FEATURE]);
+    while (bits > 0 && ldexpf(largest, bits) > 16383.0f)
+        bits--;
+    return (uint8_t)bits;
+}
+
+/* From here on the prior is the one of the file: weights on the integer grid and fixed, steps fixed with them. */
+int ted4_integer_begin(ted4_trainer *t)
+{
+    double bits[TED4_TYPES];
+
+    t->layout.head.context_bits = context_bits(t);
+    ted4_rate_free(t->rate);
+    t->rate = ted4_rate_new(&t->layout);
+    t->shift = malloc(t->layout.shape.n_units + 1);
+    if (t->shift == NULL || t->rate == NULL || ted4_slots_fill(t, NULL) != 0)
+        return ted4_trainer_fail(t, "no memory for the integer model");
+    ted4_snap(&t->layout.head, &t->layout.shape, t->net + t->layout.nete, t->shift);
+    t->integer = 1;
+    ted4_rate_pack(t->rate, t->net);
+    memset(t->slots.gradients, 0, t->slots.n * (size_t)t->layout.n_channels * TED4_LANES *
+                                      sizeof(float));
+
+    const ted4_rate_input in = {
+        &t->layout, t->net, t->shift, t->slots.n, t->slots.raw, t->slots.position,
+        t->slots.lanes, t->slots.block, 0, TED4_QUANT_INTEGER, 0.0f, 0.0f,
+        t->layout.head.activation
+    };
+
+    if (ted4_rate_evaluate(t->rate, &in, t->parallel, NULL, t->slots.gradient, t->net_gradient,
+                           t->slots.steps, bits) != 0)
+        return ted4_trainer_fail(t, "no memory for the integer model");
+    return 0;
+}

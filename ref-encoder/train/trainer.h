@@ -1,0 +1,107 @@
+/* trainer.h - training of one scene: state, one step, stages. Source: algorithm facts 1.4, 1.5, 3.2, 5.
+ * Depends on everything in train/. Used by tool/ted4enc.c.
+ * SPDX-License-Identifier: BSD-2-Clause */
+#ifndef TED4_TRAINER_H
+#define TED4_TRAINER_H
+
+#include "anchors.h"
+#include "base/parallel.h"
+#include "data/dataset.h"
+#include "loss.h"
+#include "options.h"
+
+/* Pictures in random order without replacement, then reshuffled. */
+typedef struct {
+    uint32_t *item;             /* owned: picture numbers */
+    uint32_t  n, next;
+    uint64_t  key, round;
+} ted4_order;
+
+/* What one step measured; running means over about 100 steps. */
+typedef struct {
+    double loss, l1, ssim;
+    double bits[TED4_TYPES];    /* per anchor, over the anchors whose rate was evaluated */
+    double splats;              /* Gaussians that reached the screen */
+} ted4_progress;
+
+/* Buffers of one step, by slot (visible block). */
+typedef struct {
+    size_t        n, capacity;
+    uint32_t     *block;        /* [n] */
+    uint32_t     *lanes;        /* [n] */
+    const float **position;     /* [n] */
+    const float **raw, **used;  /* [n] values as stored, as rendered (quantised in stage 2) */
+    float       **gradient;     /* [n] blocks of n_channels */
+    float       **steps;        /* [n] */
+    float        *quantised, *gradients;    /* storage behind used and gradient */
+} ted4_slots;
+
+typedef struct {
+    ted4_train_options  opt;
+    ted4_dataset       *data;           /* borrowed */
+    const ted4_parallel *parallel;      /* borrowed */
+    ted4_layout         layout;
+    ted4_anchors        anchors;
+    float              *net, *net_m, *net_v, *net_gradient;   /* owned, [n_net] */
+    uint8_t            *shift;          /* owned, [n_units]; set when the integer stage starts, else NULL */
+    double              cell;           /* voxel of growth, normalised space */
+    uint64_t            iteration;      /* steps done */
+    int                 stage2, integer;
+    uint64_t            stage2_start;   /* Adam's count restarts there */
+    ted4_order          order;
+    ted4_progress       progress;
+
+    ted4_generator     *generator;
+    ted4_rate          *rate;
+    ted4_raster        *raster;
+    ted4_loss_workspace *loss;
+    ted4_slots          slots;
+    float              *image, *d_image;        /* planar, of the largest picture */
+    float              *splat_storage;          /* gradients of splats */
+    uint8_t            *splat_visible;
+    size_t              splat_capacity;
+    ted4_splat_grads    splat_gradient;
+    ted4_message        message;        /* why the last call failed */
+} ted4_trainer;
+
+/* Start from the initial points. 0, or -1 with t->message. d and p are borrowed until ted4_trainer_finish. */
+int  ted4_trainer_init(ted4_trainer *t, const ted4_train_options *o,
+                       ted4_dataset *d, const ted4_parallel *p);
+void ted4_trainer_finish(ted4_trainer *t);
+
+/* Total steps of both stages. */
+uint64_t ted4_trainer_total(const ted4_trainer *t);
+/* One step, with whatever the schedule wants done around it (growth, activation, change of stage, integer networks). 0, or -1 with t->message. */
+int  ted4_trainer_step(ted4_trainer *t);
+/* Mean PSNR of the current model on up to n held-out pictures (training pictures when there are none), from its own floats: for the progress line
+ * only. Negative: failure, with t->message. */
+double ted4_trainer_preview(ted4_trainer *t, int n);
+
+/* ---- between the trainer's files ---- */
+
+/* Learning-rate rows and schedule: schedule.c */
+void ted4_schedule_rates(const ted4_trainer *t, float *channel_rate);
+void ted4_schedule_network_step(ted4_trainer *t);
+int  ted4_schedule_event(ted4_trainer *t);
+int  ted4_activation_on(const ted4_trainer *t);
+
+/* Visible blocks of a view: slots.c */
+int  ted4_slots_fill(ted4_trainer *t, const ted4_view *v);
+void ted4_slots_finish(ted4_slots *s);
+/* Bit j: anchor j of the block can be seen. */
+uint32_t ted4_block_visible(const ted4_trainer *t, size_t block, const ted4_view *v);
+
+/* Densification: densify.c. gather adds the statistics of a step; adjust grows and prunes. */
+void ted4_densify_gather(ted4_trainer *t, const ted4_splats *s);
+int  ted4_densify_adjust(ted4_trainer *t);
+
+/* Stage changes: stages.c */
+int  ted4_activation_begin(ted4_trainer *t);
+int  ted4_stage2_begin(ted4_trainer *t);
+int  ted4_integer_begin(ted4_trainer *t);
+/* Fresh workspaces and network arrays after t->layout changed. */
+int  ted4_trainer_rebuild(ted4_trainer *t);
+
+int  ted4_trainer_fail(ted4_trainer *t, const char *format, ...);
+
+#endif

@@ -1,0 +1,59 @@
+/* gen_tables.c - prints ref-decoder/norm/tables.c, or with an argument the text of annex A.
+ *     cc tests/gen/gen_tables.c -lm -o /tmp/gen_tables
+ *     /tmp/gen_tables > ref-decoder/norm/tables.c;  /tmp/gen_tables md > spec/annex-a-tables.md
+ * SPDX-License-Identifier: BSD-2-Clause */
+#include <inttypes.h>
+#include <stdio.h>
+#include "table_math.h"
+
+static void print_entries(const struct table *t, const char *indent,
+                          int hex, const char *last)
+{
+    for (int i = 0; i < t->n; i++) {
+        printf(i % 8 == 0 ? "%s" : " ", indent);
+        printf(hex ? "0x%08" PRIx64 : "%" PRId64, t->entry(i));
+        printf("%s", i + 1 < t->n ? "," : last);
+        if (i % 8 == 7 || i + 1 == t->n)
+            printf("\n");
+    }
+}
+
+static void print_c(void)
+{
+    printf("/* tables.c - annex A. Made by tests/gen/gen_tables.c, checked by "
+           "tests/test_tables.c; do not edit.\n"
+           " * SPDX-License-Identifier: BSD-2-Clause */\n"
+           "#include \"norm/tables.h\"\n");
+    for (int i = 0; i < 6; i++) {
+        const struct table *t = &table_list[i];
+
+        printf("\n/* spec A.%d %s: %s */\nconst %s %s[%s] = {\n", i + 1,
+               t->name, t->text, t->type, t->c_name, t->size);
+        print_entries(t, "    ", t->entry == table_step, ",");
+        printf("};\n");
+    }
+}
+
+static void print_markdown(void)
+{
+    printf("# Annex A (normative): tables\n\nIn row order; i counts from 0. "
+           "sigma = 2^((g - 64) / 16).\n");
+    for (int i = 0; i < 6; i++) {
+        const struct table *t = &table_list[i];
+
+        printf("\n## A.%d %s\n\n`%s[i]` = %s; %d entries.\n\n```\n", i + 1,
+               t->name, t->name, t->text, t->n);
+        print_entries(t, "", t->entry == table_step, "");
+        printf("```\n");
+    }
+}
+
+int main(int argc, char **argv)
+{
+    (void)argv;
+    if (argc > 1)
+        print_markdown();
+    else
+        print_c();
+    return 0;
+}

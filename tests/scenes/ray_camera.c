@@ -1,0 +1,71 @@
+/* ray_camera.c - cameras on an arc about the middle of the scene, on two heights.
+ * SPDX-License-Identifier: BSD-2-Clause */
+#include "ray_camera.h"
+
+#include "ray_math.h"
+
+/* The rig: target, distance from it, and the ranges of azimuth (either side) and elevation, in turns. */
+static const double target[3] = { 0.0, 0.15, 0.78 };
+static const double radius = 3.7, azimuth = 38.0 / 360, low = 9.0 / 360, high = 27.0 / 360;
+
+/* Its tangent of the half, 0.5, is exact. */
+const double ted4_ray_angle_x = 0.92729521800161223;
+static const double half_width = 0.5;
+
+static double dot(const double a[3], const double b[3])
+{
+    return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
+}
+
+/* u from 0 (left) to 1 (right), v from 0 (low) to 1 (high). */
+static void place(ted4_ray_camera *c, double u, double v, int width, int height)
+{
+    const double a = azimuth * (2 * u - 1), e = low + v * (high - low);
+    const double back[3] = { ted4_ray_sin(a) * ted4_ray_cos(e), -ted4_ray_cos(a) * ted4_ray_cos(e),
+                             ted4_ray_sin(e) };
+    const double right[3] = { ted4_ray_cos(a), ted4_ray_sin(a), 0 };
+    const double up[3] = { -ted4_ray_sin(a) * ted4_ray_sin(e), ted4_ray_cos(a) * ted4_ray_sin(e),
+                           ted4_ray_cos(e) };
+
+    c->width = width;
+    c->height = height;
+    c->focal = 0.5 * width / half_width;
+    for (int i = 0; i < 3; i++) {
+        c->matrix[i][0] = right[i];
+        c->matrix[i][1] = up[i];
+        c->matrix[i][2] = back[i];
+        c->matrix[i][3] = target[i] + radius * back[i];
+        c->matrix[3][i] = 0;
+    }
+    c->matrix[3][3] = 1;
+}
+
+void ted4_ray_camera_train(ted4_ray_camera *c, int i, int n_train, int width, int height)
+{
+    place(c, n_train > 1 ? (double)i / (n_train - 1) : 0.5, i % 2, width, height);
+}
+
+void ted4_ray_camera_test(ted4_ray_camera *c, int i, int n_test, int n_train, int width, int height)
+{
+    const int gaps = n_train - 1;
+    double u = (i + 0.5) / n_test;
+
+    if (gaps >= n_test)
+        u = ((2 * i + 1) * gaps / (2 * n_test) + 0.5) / gaps;
+    place(c, u, 0.5, width, height);
+}
+
+double ted4_ray_project(const ted4_ray_camera *c, const double world[3], double pixel[2])
+{
+    double at[3], axis[3][3];
+
+    for (int k = 0; k < 3; k++) {
+        at[k] = world[k] - c->matrix[k][3];
+        for (int i = 0; i < 3; i++)
+            axis[i][k] = c->matrix[k][i];
+    }
+    const double depth = -dot(at, axis[2]);
+    pixel[0] = 0.5 * c->width + c->focal * dot(at, axis[0]) / depth;
+    pixel[1] = 0.5 * c->height - c->focal * dot(at, axis[1]) / depth;
+    return depth;
+}

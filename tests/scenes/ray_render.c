@@ -1,0 +1,244 @@
+/* ray_render.c - one ray a sample, an area light, ambient light; stratified 3 x 3 samples, no randomness.
+ * Solids are culled by their bounding spheres: in the picture once an image, against the light's cone once a sample.
+ * SPDX-License-Identifier: BSD-2-Clause */
+#include "ray_render.h"
+
+#include <stddef.h>
+
+#include "ray_texture.h"
+
+/* Samples a pixel side; lamp cells a side. Sample (i, j) uses lamp cells (i + 3 a, j + 3 b): four of 36, all of them over a pixel. */
+enum { SIDE = 3, LAMP = 6 };
+static const float near_plane = 0.05f, lift = 0.003f;
+
+/* Half-open pixel rectangle in which an object can show. */
+typedef struct { int x0, x1, y0, y1; } window;
+
+typedef struct {
+    const ted4_ray_world *w;
+    const ted4_ray_camera *c;
+    vec3   eye;
+    float  axis[9];                         /* columns right, up, backwards, as rows x y z */
+    float  light_reach;                     /* radius of a sphere about the lamp */
+    window shows[TED4_RAY_MAX_OBJECTS];
+} view;
+
+/* Objects a ray may meet. */
+typedef struct { int n, id[TED4_RAY_MAX_OBJECTS]; } crowd;
+
+/* Range of pixels that a sphere covers along one axis: tangents of the two lines of sight that touch it in that plane. */
+static void sphere_range(double x, double z, double r, const double scale_middle[2], int limit, int range[2])
+{
+    const double q = z * z - r * r, root = r * sqrt(x * x + z * z - r * r + 1e-12);
+    double a, b;
+
+    range[0] = 0;
+    range[1] = limit;
+    if (z <= r + 0.01)
+        return;
+    a = scale_middle[1] + scale_middle[0] * (x * z - root) / q - 1;
+    b = scale_middle[1] + scale_middle[0] * (x * z + root) / q + 2;
+    range[0] = a <= 0 ? 0 : a >= limit ? limit : (int)a;
+    range[1] = b <= 0 ? 0 : b >= limit ? limit : (int)b;
+}
+
+static window window_of(const view *v, const ted4_ray_object *o)
+{
+    const vec3 p = ray_unrotate(v->axis, v3_sub(o->centre, v->eye));
+    const double x[2] = { v->c->focal, 0.5 * v->c->width }, y[2] = { v->c->focal, 0.5 * v->c->height };
+    int across[2], down[2];
+
+    sphere_range((double)p.x, (double)-p.z, (double)o->reach, x, v->c->width, across);
+    sphere_range((double)-p.y, (double)-p.z, (double)o->reach, y, v->c->height, down);
+    return (window){ across[0], across[1], down[0], down[1] };
+}
+
+static view view_of(const ted4_ray_world *w, const ted4_ray_camera *c)
+{
+    view v = { .w = w, .c = c };
+
+    v.eye = v3((float)c->matrix[0][3], (float)c->matrix[1][3], (float)c->matrix[2][3]);
+    for (int i = 0; i < 9; i++)
+        v.axis[i] = (float)c->matrix[i / 3][i % 3];
+    v.light_reach = v3_length(w->lamp_x) + v3_length(w->lamp_y);
+    for (int i = 0; i < w->n; i++)
+        v.shows[i] = window_of(&v, &w->object[i]);
+    return v;
+}
+
+static crowd showing(const view *v, int x, int y)
+{
+    crowd c = { 0 };
+
+    for (int i = 0; i < v->w->n; i++) {
+        const window s = v->shows[i];
+        if (x >= s.x0 && x < s.x1 && y >= s.y0 && y < s.y1)
+            c.id[c.n++] = i;
+    }
+    return c;
+}
+
+/* Objects that can hide a part of the lamp from p: bounding sphere against the cone from p to the lamp's bounding sphere. */
+static crowd shading(const view *v, vec3 p, vec3 normal)
+{
+    const vec3 to = v3_sub(v->w->lamp, p);
+    const float span = v3_dot(to, to);
+    crowd c = { 0 };
+
+    for (int i = 0; i < v->w->n; i++) {
+        const ted4_ray_object *const o = &v->w->object[i];
+        const vec3 at = v3_sub(o->centre, p);
+        const float t = ray_clamp(v3_dot(at, to) / span, 0, 1);
+        const float r = o->reach + t * v->light_reach;
+        const vec3 off = v3_along(at, to, -t);
+        if (v3_dot(off, off) < r * r && v3_dot(at, normal) > -o->reach)
+            c.id[c.n++] = i;
+    }
+    return c;
+}
+
+static int meets_any(const ted4_ray_world *w, const crowd *c, vec3 from, vec3 d, float far)
+{
+    for (int i = 0; i < c->n; i++) {
+        if (ted4_ray_meet(&w->object[c->id[i]], from, d, 0, far) < far)
+            return 1;
+    }
+    return 0;
+}
+
+/* Share of the lamp seen from p by sample (i, j) of a pixel. */
+static float lamp_share(const view *v, vec3 p, vec3 normal, int i, int j)
+{
+    const crowd c = shading(v, p, normal);
+    const int per_side = LAMP / SIDE;
+    int seen = per_side * per_side;
+
+    for (int k = 0; k < per_side * per_side && c.n > 0; k++) {
+        const int a = i + SIDE * (k % per_side), b = j + SIDE * (k / per_side);
+        const float s = (2 * (float)a + 1) / LAMP - 1, t = (2 * (float)b + 1) / LAMP - 1;
+        const vec3 lamp = v3_along(v3_along(v->w->lamp, v->w->lamp_x, s), v->w->lamp_y, t);
+        const vec3 to = v3_sub(lamp, p);
+        const float far = v3_length(to);
+        seen -= meets_any(v->w, &c, p, v3_scale(to, 1 / far), far);
+    }
+    return (float)seen / (float)(per_side * per_side);
+}
+
+/* Ambient light from above, a weak shadowless light from the cameras' side, the lamp, and a broad highlight of it. */
+static vec3 lit(const view *v, vec3 p, vec3 d, ted4_ray_surface s, vec3 albedo, float gloss, int i, int j)
+{
+    static const float lamp_power = 10.5f;
+    const vec3 fill = v3(0.39f, -0.86f, 0.33f), warm = v3(1.0f, 0.96f, 0.90f), sky = v3(0.94f, 0.97f, 1.0f);
+    const vec3 to = v3_sub(v->w->lamp, p);
+    const float d2 = v3_dot(to, to), cosine = v3_dot(s.normal, to) / sqrtf(d2);
+    const float ambient = 0.17f + 0.06f * s.normal.z + 0.16f * ray_max(0, v3_dot(s.normal, fill));
+    float direct = 0, shine = 0;
+
+    if (cosine > 0) {
+        const float share = lamp_share(v, v3_along(p, s.normal, lift), s.normal, i, j);
+        const vec3 half = v3_unit(v3_sub(v3_scale(to, 1 / sqrtf(d2)), d));
+        float h = ray_max(0, v3_dot(half, s.normal));
+        for (int k = 0; k < 5; k++)
+            h *= h;
+        direct = share * cosine * lamp_power / (d2 + 3);
+        shine = share * gloss * h;
+    }
+    return v3_add(v3_mul(albedo, v3_add(v3_scale(warm, direct), v3_scale(sky, ambient))),
+                  v3(shine, shine, shine));
+}
+
+/* The room is convex and the eye inside it: the nearest of the three planes ahead. */
+static float room_meet(const ted4_ray_world *w, vec3 from, vec3 d, ted4_ray_side *side, vec3 *normal)
+{
+    const float tx = ((d.x > 0 ? w->room_high.x : w->room_low.x) - from.x) / d.x;
+    const float ty = ((d.y > 0 ? w->room_high.y : w->room_low.y) - from.y) / d.y;
+    const float tz = ((d.z > 0 ? w->room_high.z : w->room_low.z) - from.z) / d.z;
+    float t = INFINITY;
+
+    if (d.x != 0) {
+        t = tx;
+        *side = d.x > 0 ? RAY_RIGHT : RAY_LEFT;
+        *normal = v3(d.x > 0 ? -1.0f : 1.0f, 0, 0);
+    }
+    if (d.y != 0 && ty < t) {
+        t = ty;
+        *side = d.y > 0 ? RAY_BACK : RAY_FRONT;
+        *normal = v3(0, d.y > 0 ? -1.0f : 1.0f, 0);
+    }
+    if (d.z != 0 && tz < t) {
+        t = tz;
+        *side = d.z > 0 ? RAY_CEILING : RAY_FLOOR;
+        *normal = v3(0, 0, d.z > 0 ? -1.0f : 1.0f);
+    }
+    return t;
+}
+
+/* Sight along d of the nearest of the objects in c, or of the room; (i, j) chooses the part of the lamp. */
+static ted4_ray_sight sight(const view *v, const crowd *c, vec3 d, int i, int j)
+{
+    ted4_ray_side side = RAY_FLOOR;
+    ted4_ray_surface s = { 0 };
+    ted4_ray_sight r = { .object = -1 };
+    float t = room_meet(v->w, v->eye, d, &side, &s.normal), gloss = 0;
+    vec3 albedo;
+
+    for (int k = 0; k < c->n; k++) {
+        const float far = t;
+        t = ted4_ray_meet(&v->w->object[c->id[k]], v->eye, d, near_plane, far);
+        if (t < far)
+            r.object = c->id[k];
+    }
+    r.depth = t;
+    r.point = v3_along(v->eye, d, t);
+    if (r.object >= 0) {
+        const ted4_ray_object *const o = &v->w->object[r.object];
+        s = ted4_ray_surface_at(o, r.point);
+        albedo = ted4_ray_texture(o, s.material, v->w->seed + 31u * (uint32_t)o->texture);
+        gloss = o->gloss;
+    } else {
+        albedo = ted4_ray_room_texture(side, r.point, v->w->seed);
+    }
+    r.colour = lit(v, r.point, d, s, albedo, gloss, i, j);
+    return r;
+}
+
+static vec3 direction(const view *v, double px, double py)
+{
+    const vec3 d = v3((float)((px - 0.5 * v->c->width) / v->c->focal),
+                      (float)((0.5 * v->c->height - py) / v->c->focal), -1);
+
+    return ray_rotate(v->axis, v3_unit(d));
+}
+
+static vec3 pixel(const view *v, int x, int y)
+{
+    const crowd c = showing(v, x, y);
+    vec3 sum = v3(0, 0, 0);
+
+    for (int k = 0; k < SIDE * SIDE; k++) {
+        const int i = k % SIDE, j = k / SIDE;
+        const vec3 d = direction(v, x + (i + 0.5) / SIDE, y + (j + 0.5) / SIDE);
+        const vec3 s = sight(v, &c, d, i, j).colour;
+        sum = v3_add(sum, v3(ray_min(s.x, 1), ray_min(s.y, 1), ray_min(s.z, 1)));
+    }
+    return v3_scale(sum, 1.0f / (SIDE * SIDE));
+}
+
+void ted4_ray_render(const ted4_ray_world *w, const ted4_ray_camera *c, uint8_t *rgb)
+{
+    const view v = view_of(w, c);
+
+    for (int y = 0; y < c->height; y++) {
+        for (int x = 0; x < c->width; x++)
+            ted4_ray_bytes(pixel(&v, x, y), rgb + 3 * ((size_t)y * (size_t)c->width + (size_t)x));
+    }
+}
+
+ted4_ray_sight ted4_ray_look(const ted4_ray_world *w, const ted4_ray_camera *c, double px, double py)
+{
+    const view v = view_of(w, c);
+    const vec3 d = direction(&v, px, py);
+    const crowd near = showing(&v, ray_floor((float)px), ray_floor((float)py));
+
+    return sight(&v, &near, d, SIDE / 2, SIDE / 2);
+}

@@ -1,0 +1,23 @@
+/* ray_render.h - pictures of a world, and points on its surfaces.
+ * Depends on ray_world.h, ray_camera.h. Used by ray_set and the test.
+ * SPDX-License-Identifier: BSD-2-Clause */
+#ifndef RAY_RENDER_H
+#define RAY_RENDER_H
+
+#include "ray_camera.h"
+#include "ray_world.h"
+
+/* rgb [height][width][3] sRGB bytes; 3 x 3 samples a pixel. */
+void ted4_ray_render(const ted4_ray_world *w, const ted4_ray_camera *c, uint8_t *rgb);
+
+/* What a camera sees through pixel coordinates (px, py). */
+typedef struct {
+    vec3  point;
+    float depth;        /* along the ray */
+    int   object;       /* index in the world, -1: the room */
+    vec3  colour;       /* linear, lit */
+} ted4_ray_sight;
+
+ted4_ray_sight ted4_ray_look(const ted4_ray_world *w, const ted4_ray_camera *c, double px, double py);
+
+#endif

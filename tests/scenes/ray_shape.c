@@ -1,0 +1,302 @@
+/* ray_shape.c - ray intersections: sphere, box and cylinder in closed form, the bent bar by stepping along its distance function.
+ * SPDX-License-Identifier: BSD-2-Clause */
+#include "ray_shape.h"
+
+/* Edge radius of the bar; and the surface is met within this distance of it. */
+#define BAR_ROUND    0.02f
+#define BAR_NEAR     0.0004f
+/* Bending and twisting stretch space by less than 1 / 0.62 for |bend| size.x < 0.2 and |twist| size.x < 0.05 (test_scene checks). */
+#define BAR_STRIDE   0.62f
+#define BAR_STEPS    160
+#define BEND_LEAST   1e-5f
+
+static float sphere_meet(float r, vec3 o, vec3 d, float near, float far)
+{
+    const float b = v3_dot(o, d), c = v3_dot(o, o) - r * r, q = b * b - c;
+    float root, t;
+
+    if (q <= 0)
+        return far;
+    root = sqrtf(q);
+    t = -b - root;
+    if (t <= near)
+        t = -b + root;
+    return t > near && t < far ? t : far;
+}
+
+static void swap_if(float *a, float *b)
+{
+    if (*a > *b) {
+        const float t = *a;
+        *a = *b;
+        *b = t;
+    }
+}
+
+/* Interval [*in, *out] of t in which the ray is between two parallel planes, intersected with what is there already.
+ * A ray inside the slab and parallel to it gives infinities, which is right. */
+static void slab(float low, float high, float o, float d, float *in, float *out)
+{
+    float a, b;
+
+    if (d == 0) {
+        if (o < low || o > high)
+            *in = INFINITY;
+        return;
+    }
+    a = (low - o) / d;
+    b = (high - o) / d;
+    swap_if(&a, &b);
+    *in = ray_max(*in, a);
+    *out = ray_min(*out, b);
+}
+
+static void box_span(vec3 low, vec3 high, vec3 o, vec3 d, float *in, float *out)
+{
+    slab(low.x, high.x, o.x, d.x, in, out);
+    slab(low.y, high.y, o.y, d.y, in, out);
+    slab(low.z, high.z, o.z, d.z, in, out);
+}
+
+/* Boundary of the interval [in, out] in which a ray is inside a convex solid. */
+static float entry(float in, float out, float near, float far)
+{
+    float t = far;
+
+    if (in <= out && in > near)
+        t = in;
+    else if (in <= out && out > near)
+        t = out;
+    return t < far ? t : far;
+}
+
+static float box_meet(vec3 h, vec3 o, vec3 d, float near, float far)
+{
+    float in = -INFINITY, out = INFINITY;
+
+    box_span(v3_scale(h, -1), h, o, d, &in, &out);
+    return entry(in, out, near, far);
+}
+
+static float cylinder_meet(vec3 size, vec3 o, vec3 d, float near, float far)
+{
+    const float a = d.x * d.x + d.y * d.y, b = o.x * d.x + o.y * d.y;
+    const float c = o.x * o.x + o.y * o.y - size.x * size.x, q = b * b - a * c;
+    float in = -INFINITY, out = INFINITY;
+
+    if (a == 0 ? c > 0 : q <= 0)
+        return far;
+    if (a > 0) {
+        const float root = sqrtf(q);
+        in = (-b - root) / a;
+        out = (-b + root) / a;
+    }
+    slab(-size.z, size.z, o.z, d.z, &in, &out);
+    return entry(in, out, near, far);
+}
+
+static float bend_of(const ted4_ray_object *o)
+{
+    if (fabsf(o->bend) < BEND_LEAST)
+        return BEND_LEAST;
+    return o->bend;
+}
+
+/* With k the curvature, the axis is the circle about (1/k, 0) in the xz plane. A point at relative radius h = |(1 - k x, k z)| has
+ * arc length atan2(k z, 1 - k x) / k and distance (1 - h) / k from the axis, written without cancellation below. */
+static vec3 unbend(const ted4_ray_object *o, vec3 p)
+{
+    const float k = bend_of(o), a = 1 - k * p.x, b = k * p.z;
+    const float h = sqrtf(a * a + b * b);
+
+    return v3((2 * p.x - k * (p.x * p.x + p.z * p.z)) / (1 + h), p.y, ted4_ray_atan2(b, a) / k);
+}
+
+/* Sine and cosine of the twist at arc length s, below a quarter turn either way: a series to x^11, whose first omitted term is 6e-8. */
+static void twist_at(const ted4_ray_object *o, float s, float sine_cosine[2])
+{
+    const float x = (float)(2 * RAY_PI) * o->twist * ray_clamp(s, 0, o->size.z), y = x * x;
+    const float sine = x * (1 - y * (1.0f / 6) * (1 - y * (1.0f / 20) * (1 - y * (1.0f / 42) *
+                       (1 - y * (1.0f / 72) * (1 - y * (1.0f / 110))))));
+
+    sine_cosine[0] = sine;
+    sine_cosine[1] = sqrtf(ray_max(0, 1 - sine * sine));
+}
+
+vec3 ted4_ray_unbend(const ted4_ray_object *o, vec3 local)
+{
+    const vec3 q = unbend(o, local);
+    float t[2];
+
+    twist_at(o, q.z, t);
+    return v3(t[1] * q.x + t[0] * q.y, t[1] * q.y - t[0] * q.x, q.z);
+}
+
+vec3 ted4_ray_rebend(const ted4_ray_object *o, vec3 q)
+{
+    const double k = (double)bend_of(o), arc = k * (double)q.z / (2 * RAY_PI);
+    float t[2];
+
+    twist_at(o, q.z, t);
+    const double h = 1 - k * (double)(t[1] * q.x - t[0] * q.y);
+    return v3((float)((1 - h * ted4_ray_cos(arc)) / k), t[0] * q.x + t[1] * q.y,
+              (float)(h * ted4_ray_sin(arc) / k));
+}
+
+/* Distance to a rounded box in the straight coordinates. */
+static float bar_distance(const ted4_ray_object *o, vec3 p)
+{
+    const vec3 q = ted4_ray_unbend(o, p);
+    const float x = fabsf(q.x) - o->size.x + BAR_ROUND, y = fabsf(q.y) - o->size.y + BAR_ROUND;
+    const float z = fabsf(q.z - o->size.z / 2) - o->size.z / 2 + BAR_ROUND;
+    const vec3 out = v3(ray_max(x, 0), ray_max(y, 0), ray_max(z, 0));
+
+    return v3_length(out) + ray_min(ray_max(x, ray_max(y, z)), 0) - BAR_ROUND;
+}
+
+/* Distance to the ring that the bar's round hull lies on: exact, and cheap as it needs neither arc length nor twist. */
+static float ring_distance(const ted4_ray_object *o, vec3 p, float hull)
+{
+    const float k = bend_of(o), a = 1 - k * p.x, b = k * p.z;
+    const float u = (2 * p.x - k * (p.x * p.x + p.z * p.z)) / (1 + sqrtf(a * a + b * b));
+
+    return sqrtf(u * u + p.y * p.y) - hull;
+}
+
+static float hull_radius(const ted4_ray_object *o)
+{
+    return sqrtf(o->size.x * o->size.x + o->size.y * o->size.y);
+}
+
+static float bar_meet(const ted4_ray_object *o, vec3 p, vec3 d, float near, float far)
+{
+    const float hull = hull_radius(o);
+    float in = near, out = far;
+
+    box_span(o->low, o->high, p, d, &in, &out);
+    for (int i = 0; i < BAR_STEPS && in < out; i++) {
+        const vec3 at = v3_along(p, d, in);
+        float r = ring_distance(o, at, hull);
+        if (r < BAR_ROUND) {
+            r = bar_distance(o, at);
+            if (r < BAR_NEAR)
+                return in > near ? in : far;
+            r *= BAR_STRIDE;
+        }
+        in += r;
+    }
+    return far;
+}
+
+/* The axis lies in the xz plane; the margin covers the section turned any way, and what the axis does between samples. */
+static void bar_bound(ted4_ray_object *o)
+{
+    const float r = hull_radius(o);
+    const int steps = 16;
+
+    o->low = o->high = v3(0, 0, 0);
+    for (int i = 1; i <= steps; i++) {
+        const vec3 p = ted4_ray_rebend(o, v3(0, 0, o->size.z * (float)i / (float)steps));
+        o->low = v3(ray_min(o->low.x, p.x), 0, ray_min(o->low.z, p.z));
+        o->high = v3(ray_max(o->high.x, p.x), 0, ray_max(o->high.z, p.z));
+    }
+    o->low = v3_sub(o->low, v3(r, r, r));
+    o->high = v3_add(o->high, v3(r, r, r));
+}
+
+void ted4_ray_bound(ted4_ray_object *o)
+{
+    vec3 middle = v3(0, 0, 0);
+
+    switch (o->kind) {
+    case RAY_SPHERE:
+        o->reach = o->size.x;
+        break;
+    case RAY_BOX:
+        o->reach = v3_length(o->size);
+        break;
+    case RAY_CYLINDER:
+        o->reach = v3_length(v3(o->size.x, 0, o->size.z));
+        break;
+    case RAY_BAR:
+        bar_bound(o);
+        middle = v3_scale(v3_add(o->low, o->high), 0.5f);
+        o->reach = v3_length(v3_sub(o->high, middle));
+        break;
+    }
+    o->centre = v3_add(ray_rotate(o->rot, middle), o->pos);
+}
+
+float ted4_ray_meet(const ted4_ray_object *o, vec3 from, vec3 d, float near, float far)
+{
+    const vec3 p = ray_unrotate(o->rot, v3_sub(from, o->pos)), e = ray_unrotate(o->rot, d);
+
+    switch (o->kind) {
+    case RAY_SPHERE:
+        return sphere_meet(o->size.x, p, e, near, far);
+    case RAY_BOX:
+        return box_meet(o->size, p, e, near, far);
+    case RAY_CYLINDER:
+        return cylinder_meet(o->size, p, e, near, far);
+    case RAY_BAR:
+        return bar_meet(o, p, e, near, far);
+    }
+    return far;
+}
+
+static float sign_of(float x) { return x < 0 ? -1.0f : 1.0f; }
+
+static vec3 box_normal(vec3 h, vec3 p)
+{
+    const vec3 q = v3(fabsf(p.x) / h.x, fabsf(p.y) / h.y, fabsf(p.z) / h.z);
+
+    if (q.x > q.y && q.x > q.z)
+        return v3(sign_of(p.x), 0, 0);
+    return q.y > q.z ? v3(0, sign_of(p.y), 0) : v3(0, 0, sign_of(p.z));
+}
+
+static vec3 cylinder_normal(vec3 size, vec3 p)
+{
+    const float r = sqrtf(p.x * p.x + p.y * p.y);
+
+    if (r == 0 || fabsf(p.z) / size.z > r / size.x)
+        return v3(0, 0, sign_of(p.z));
+    return v3(p.x / r, p.y / r, 0);
+}
+
+/* Gradient of the distance by central differences. */
+static vec3 bar_normal(const ted4_ray_object *o, vec3 p)
+{
+    const float e = 0.002f;
+    const vec3 g = v3(
+        bar_distance(o, v3(p.x + e, p.y, p.z)) - bar_distance(o, v3(p.x - e, p.y, p.z)),
+        bar_distance(o, v3(p.x, p.y + e, p.z)) - bar_distance(o, v3(p.x, p.y - e, p.z)),
+        bar_distance(o, v3(p.x, p.y, p.z + e)) - bar_distance(o, v3(p.x, p.y, p.z - e)));
+    const float length = v3_length(g);
+
+    return length > 0 ? v3_scale(g, 1 / length) : v3(0, 0, 1);
+}
+
+ted4_ray_surface ted4_ray_surface_at(const ted4_ray_object *o, vec3 point)
+{
+    const vec3 p = ray_unrotate(o->rot, v3_sub(point, o->pos));
+    ted4_ray_surface s = { v3(0, 0, 1), p };
+
+    switch (o->kind) {
+    case RAY_SPHERE:
+        s.normal = v3_unit(p);
+        break;
+    case RAY_BOX:
+        s.normal = box_normal(o->size, p);
+        break;
+    case RAY_CYLINDER:
+        s.normal = cylinder_normal(o->size, p);
+        break;
+    case RAY_BAR:
+        s.normal = bar_normal(o, p);
+        s.material = ted4_ray_unbend(o, p);
+        break;
+    }
+    s.normal = ray_rotate(o->rot, s.normal);
+    return s;
+}

@@ -1,0 +1,234 @@
+/* test_loss.c - train/loss.h against an independent double implementation: values, central differences, threads, sizes.
+ * SPDX-License-Identifier: BSD-2-Clause */
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <stdlib.h>
+#include <string.h>
+#include <math.h>
+#include <cmocka.h>
+
+#include "train/loss.h"
+
+enum { RADIUS = 5 };
+
+typedef struct {
+    int      width, height;
+    float   *image, *gradient;
+    uint8_t *truth;
+} picture;
+
+static uint32_t seed = 1;
+
+static uint32_t draw(void)
+{
+    seed = seed * 1664525u + 1013904223u;
+    return seed >> 8;
+}
+
+/* The rendered image is near the truth in its left half, far from it in the right one, and may leave [0, 1]. */
+static picture make(int width, int height)
+{
+    const size_t n = (size_t)width * (size_t)height * 3;
+    picture p = { width, height, malloc(n * sizeof(float)), malloc(n * sizeof(float)), malloc(n) };
+
+    assert_true(p.image != NULL && p.gradient != NULL && p.truth != NULL);
+    for (size_t i = 0; i < n; i++)
+        p.truth[i] = (uint8_t)((i / 40 * 16 + draw() % 64) & 255);
+    for (int c = 0; c < 3; c++) {
+        for (int y = 0; y < height; y++) {
+            for (int x = 0; x < width; x++) {
+                const float amount = x < width / 2 ? 0.05f : 1.2f;
+                const float noise = (float)(draw() % 1000) / 1000.0f - 0.5f;
+
+                p.image[((size_t)c * (size_t)height + (size_t)y) * (size_t)width + (size_t)x]
+                    = (float)p.truth[((size_t)y * (size_t)width + (size_t)x) * 3 + (size_t)c] / 255.0f
+                      + amount * noise + 0.003f;
+            }
+        }
+    }
+    return p;
+}
+
+static void drop(picture *p)
+{
+    free(p->image);
+    free(p->gradient);
+    free(p->truth);
+}
+
+static size_t index_of(const picture *p, int c, int y, int x)
+{
+    return ((size_t)c * (size_t)p->height + (size_t)y) * (size_t)p->width + (size_t)x;
+}
+
+static double truth_at(const picture *p, int c, int y, int x)
+{
+    return p->truth[((size_t)y * (size_t)p->width + (size_t)x) * 3 + (size_t)c] / 255.0;
+}
+
+/* SSIM at one pixel by the definition; delta is added to the image at (cy, cx). */
+static double ssim_at(const picture *p, int c, int y, int x, int cy, int cx, double delta)
+{
+    double weight = 0.0, mx = 0.0, my = 0.0, xx = 0.0, yy = 0.0, xy = 0.0;
+
+    for (int i = -RADIUS; i <= RADIUS; i++) {
+        for (int k = -RADIUS; k <= RADIUS; k++) {
+            const double g = exp(-(i * i + k * k) / (2.0 * 1.5 * 1.5));
+            const int r = y + i, s = x + k;
+
+            weight += g;
+            if (r < 0 || s < 0 || r >= p->height || s >= p->width)
+                continue;
+            const double a = (double)p->image[index_of(p, c, r, s)] + (r == cy && s == cx ? delta : 0.0);
+            const double b = truth_at(p, c, r, s);
+
+            mx += g * a;
+            my += g * b;
+            xx += g * a * a;
+            yy += g * b * b;
+            xy += g * a * b;
+        }
+    }
+    mx /= weight;
+    my /= weight;
+    const double vx = xx / weight - mx * mx, vy = yy / weight - my * my, cov = xy / weight - mx * my;
+
+    return (2.0 * mx * my + 1e-4) * (2.0 * cov + 9e-4) / ((mx * mx + my * my + 1e-4) * (vx + vy + 9e-4));
+}
+
+/* The part of L that depends on the image at (c, y, x), times the number of values. */
+static double local_loss(const picture *p, double w, int c, int y, int x, double delta)
+{
+    double loss = (1.0 - w) * fabs((double)p->image[index_of(p, c, y, x)] + delta - truth_at(p, c, y, x));
+
+    for (int r = y - RADIUS; r <= y + RADIUS; r++)
+        for (int s = x - RADIUS; s <= x + RADIUS; s++)
+            if (r >= 0 && s >= 0 && r < p->height && s < p->width)
+                loss -= w * ssim_at(p, c, r, s, y, x, delta);
+    return loss;
+}
+
+static void check_gradient(const picture *p, double w, int c, int y, int x)
+{
+    const double h = 1e-4, count = 3.0 * p->width * p->height;
+    const double want = (local_loss(p, w, c, y, x, h) - local_loss(p, w, c, y, x, -h)) / (2.0 * h);
+    const double got = (double)p->gradient[index_of(p, c, y, x)] * count;
+
+    if (fabs((double)p->image[index_of(p, c, y, x)] - truth_at(p, c, y, x)) < 2.0 * h)
+        return;                         /* at the corner of |.| */
+    assert_true(fabs(got - want) < 2e-3 * (1.0 + fabs(want)));
+}
+
+static void check_values(const picture *p, double w, double loss, double l1, double ssim)
+{
+    double want_l1 = 0.0, want_ssim = 0.0;
+
+    for (int c = 0; c < 3; c++) {
+        for (int y = 0; y < p->height; y++) {
+            for (int x = 0; x < p->width; x++) {
+                want_l1 += fabs((double)p->image[index_of(p, c, y, x)] - truth_at(p, c, y, x));
+                want_ssim += ssim_at(p, c, y, x, -1, -1, 0.0);
+            }
+        }
+    }
+    want_l1 /= 3.0 * p->width * p->height;
+    want_ssim /= 3.0 * p->width * p->height;
+    assert_true(fabs(l1 - want_l1) < 1e-6);
+    assert_true(fabs(ssim - want_ssim) < 1e-5);
+    assert_true(fabs(loss - ((1.0 - w) * want_l1 + w * (1.0 - want_ssim))) < 1e-5);
+}
+
+/* Sizes: smaller than the window, odd, across tiles (128 columns) and bands (64 rows). One workspace for all. */
+static void test_reference(void **state)
+{
+    static const int size[][2] = { { 1, 1 }, { 7, 4 }, { 33, 21 }, { 150, 70 }, { 128, 64 } };
+    ted4_loss_workspace *w = ted4_loss_workspace_new();
+
+    (void)state;
+    for (size_t i = 0; i < sizeof size / sizeof *size; i++) {
+        const float weight = i == 0 ? 1.0f : 0.2f;
+        picture p = make(size[i][0], size[i][1]);
+        double l1, ssim;
+        const double loss = ted4_loss(w, p.image, p.truth, p.width, p.height, weight, NULL, p.gradient, &l1, &ssim);
+
+        check_values(&p, (double)weight, loss, l1, ssim);
+        for (int k = 0; k < 120; k++)
+            check_gradient(&p, (double)weight, k % 3, (int)draw() % p.height, (int)draw() % p.width);
+        for (int y = 60; y < 68 && y < p.height; y++)
+            for (int x = 122; x < 134 && x < p.width; x += 3)
+                check_gradient(&p, (double)weight, 1, y, x);
+        check_gradient(&p, (double)weight, 0, 0, 0);
+        check_gradient(&p, (double)weight, 2, p.height - 1, p.width - 1);
+        drop(&p);
+    }
+    ted4_loss_workspace_free(w);
+}
+
+static void test_equal(void **state)
+{
+    ted4_loss_workspace *w = ted4_loss_workspace_new();
+    picture p = make(40, 30);
+    double l1, ssim;
+
+    (void)state;
+    for (int c = 0; c < 3; c++)
+        for (int i = 0; i < 40 * 30; i++)
+            p.image[c * 40 * 30 + i] = (float)p.truth[3 * i + c] * (1.0f / 255.0f);
+    assert_true(ted4_loss(w, p.image, p.truth, 40, 30, 0.2f, NULL, p.gradient, &l1, &ssim) < 1e-6);
+    assert_true(l1 < 1e-7 && ssim > 1.0 - 1e-6);
+    assert_true(ted4_loss(w, p.image, p.truth, 40, 30, 1.0f, NULL, p.gradient, &l1, &ssim) < 1e-6);
+    for (int i = 0; i < 3 * 40 * 30; i++)   /* SSIM is at its maximum */
+        assert_true(fabsf(p.gradient[i]) * 3 * 40 * 30 < 1e-2f);
+    drop(&p);
+    ted4_loss_workspace_free(w);
+}
+
+static void run_backwards(void *user, size_t n, void (*body)(void *arg, size_t i), void *arg)
+{
+    (void)user;
+    while (n-- > 0)
+        body(arg, n);
+}
+
+static void run_threads(void *user, size_t n, void (*body)(void *arg, size_t i), void *arg)
+{
+    (void)user;
+#pragma omp parallel for schedule(dynamic, 1) num_threads(3)
+    for (size_t i = 0; i < n; i++)
+        body(arg, i);
+}
+
+static void test_threads(void **state)
+{
+    const ted4_parallel how[2] = { { run_backwards, NULL }, { run_threads, NULL } };
+    ted4_loss_workspace *w = ted4_loss_workspace_new();
+    picture p = make(200, 150);
+    const size_t size = 3 * 200 * 150 * sizeof(float);
+    float *first = malloc(size);
+    double l1, ssim;
+    const double loss = ted4_loss(w, p.image, p.truth, 200, 150, 0.2f, NULL, first, &l1, &ssim);
+
+    (void)state;
+    for (int i = 0; i < 2; i++) {
+        double l1_again, ssim_again;
+
+        assert_true(ted4_loss(w, p.image, p.truth, 200, 150, 0.2f, &how[i], p.gradient, &l1_again, &ssim_again) == loss);
+        assert_true(l1 == l1_again && ssim == ssim_again);
+        assert_memory_equal(first, p.gradient, size);
+    }
+    free(first);
+    drop(&p);
+    ted4_loss_workspace_free(w);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(test_reference),
+        cmocka_unit_test(test_equal),
+        cmocka_unit_test(test_threads),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
