@@ -57,4 +57,12 @@ static inline float ted4_bits_float(uint32_t u)
     return x;
 }
 
+/* R-CNV-001 for a binary32: finite, not subnormal, not negative zero. */
+static inline int ted4_float_legal(uint32_t bits)
+{
+    const uint32_t e = bits >> 23 & 255;
+
+    return bits == 0 || (e > 0 && e < 255);
+}
+
 #endif

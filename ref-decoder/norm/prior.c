@@ -61,14 +61,6 @@ ted4_unit_rule ted4_prior_rule(const ted4_net_shape *n, unsigned i, int hyper,
     return u;
 }
 
-/* R-NET-002 */
-static int legal_value(uint32_t bits)
-{
-    const uint32_t e = bits >> 23 & 255;
-
-    return bits == 0 || (e > 0 && e < 255);
-}
-
 /* One layer whose f32 values begin at nete[at]: all W, then all b (spec 7.1). */
 static void layer_load(ted4_int_layer *l, const ted4_unit_rule *u,
                        const float *nete, size_t at, const uint8_t *shift,
@@ -79,7 +71,7 @@ static void layer_load(ted4_int_layer *l, const ted4_unit_rule *u,
             const uint32_t bits = ted4_float_bits(nete[at]);
             const int64_t  w = ted4_rne_scaled(bits, shift[o]);
 
-            if (!legal_value(bits))
+            if (!ted4_float_legal(bits))
                 ted4_fail(e, TED4_E_NET_VALUE, at);
             if (w < -32767 || w > 32767)
                 ted4_fail(e, TED4_E_NET_WEIGHT_RANGE, at);
@@ -97,7 +89,7 @@ static void layer_load(ted4_int_layer *l, const ted4_unit_rule *u,
 
             sum += w < 0 ? -w : w;
         }
-        if (!legal_value(bits))
+        if (!ted4_float_legal(bits))
             ted4_fail(e, TED4_E_NET_VALUE, at);
         if (!ted4_accumulator_legal(u, shift[o], sum, b))
             ted4_fail(e, TED4_E_NET_ACCUMULATOR, at);

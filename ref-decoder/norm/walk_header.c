@@ -129,14 +129,6 @@ static void walk_prior(ted4_coder *c, ted4_header *h)
     u8(c, "context_bits", &h->context_bits, between(0, 12));
 }
 
-/* R-CNV-001 for the pattern of a binary32. */
-static int legal_float(uint32_t bits)
-{
-    const uint32_t e = bits >> 23 & 255;
-
-    return bits == 0 || (e > 0 && e < 255);
-}
-
 static void walk_world(ted4_coder *c, ted4_header *h, const ted4_limits *l)
 {
     /* Patterns of positive binary32 are ordered as their values: 2^-20 and 2^10. */
@@ -155,7 +147,7 @@ static void walk_world(ted4_coder *c, ted4_header *h, const ted4_limits *l)
         at = c->pos;
         h->origin[i] = ted4_bits_float(ted4_code(c, "origin", i, 4,
                                            ted4_float_bits(h->origin[i])));
-        ted4_require(c, legal_float(ted4_float_bits(h->origin[i])),
+        ted4_require(c, ted4_float_legal(ted4_float_bits(h->origin[i])),
                      TED4_E_HDR_RANGE, at);
     }
     at = c->pos;

@@ -40,11 +40,8 @@ void ted4_walk_blob(ted4_coder *c, const char *element, ted4_blob *b)
     const value_offsets v = walk_bytes(c, element, b);
 
     for (size_t i = 0; c->error.code == TED4_OK && i < b->n; i++) {
-        const uint32_t bits = ted4_float_bits(b->values[i]);
-        const uint32_t e = bits >> 23 & 255;
-
-        ted4_require(c, bits == 0 || (e > 0 && e < 255), TED4_E_NET_VALUE,
-                     v.at + v.step * i);
+        ted4_require(c, ted4_float_legal(ted4_float_bits(b->values[i])),
+                     TED4_E_NET_VALUE, v.at + v.step * i);
     }
 }
 

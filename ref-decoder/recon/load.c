@@ -1,7 +1,6 @@
 /* load.c - spec 10.4, 11.1: from a scene's integers to blocks of binary32 rows, once for all queries.
  * SPDX-License-Identifier: BSD-2-Clause */
 #include "norm/half.h"
-#include "norm/posenc.h"
 #include "norm/tables.h"
 #include "recon/recon.h"
 
@@ -44,7 +43,8 @@ static void load_type(const load_job *l, size_t block, ted4_type type, unsigned 
 
     for (size_t j = 0; j < TED4_ROW; j++) {
         const size_t i = anchor[j];
-        const float q = s->head.step[type] * ted4_bits_float(ted4_step[s->step_index[type][i]]);
+        const float q = s->head.step[type] *
+                        ted4_bits_float(ted4_step[s->step_index[type][i]]);
 
         for (size_t c = 0; c < n; c++)
             row[c * TED4_ROW + j] =
@@ -83,13 +83,14 @@ static void load_motion(const load_job *l, size_t block)
     }
     for (size_t j = 0; j < TED4_ROW; j++) {
         const uint16_t *p = l->s->position + 3 * (size_t)r->anchor[block * TED4_ROW + j];
-        int32_t x[3], code[TED4_POINT_INPUTS];
+        float code[TED4_POINT_INPUTS];
+        int32_t x[3];
 
         for (int c = 0; c < 3; c++)
             x[c] = ted4_half_q24(p[c]);
-        ted4_posenc(x, 3, 10, code);
+        ted4_recon_encode(x, 3, code);
         for (size_t c = 0; c < TED4_POINT_INPUTS; c++)
-            row[c * TED4_ROW + j] = (float)code[c] / 4096.0f;
+            row[c * TED4_ROW + j] = code[c];
     }
 }
 

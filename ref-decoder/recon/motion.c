@@ -1,6 +1,5 @@
 /* motion.c - spec 11.2, 11.3: where a moving anchor is at a time, and its feature then.
  * SPDX-License-Identifier: BSD-2-Clause */
-#include "norm/posenc.h"
 #include "recon/recon.h"
 
 static void interpolate_bank(ted4_recon *r, uint32_t num, uint32_t den)
@@ -24,11 +23,8 @@ void ted4_recon_set_time(ted4_recon *r, uint32_t num, uint32_t den)
 {
     if (r->head.motion == TED4_MOTION_INR) {
         const int32_t x = (int32_t)(((uint64_t)num << 24) / den);
-        int32_t code[TED4_TIME_INPUTS];
 
-        ted4_posenc(&x, 1, 10, code);
-        for (int i = 0; i < TED4_TIME_INPUTS; i++)
-            r->time_in[i] = (float)code[i] / 4096.0f;
+        ted4_recon_encode(&x, 1, r->time_in);
     } else if (r->head.motion != TED4_MOTION_NONE)
         interpolate_bank(r, num, den);
 }

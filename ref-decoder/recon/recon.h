@@ -92,6 +92,9 @@ int  ted4_recon_moves(const struct ted4_scene *s, size_t i);
 void ted4_recon_network(const ted4_recon *r, int net, const float *x,
                         ted4_recon_scratch *w, float *y);
 
+/* encode.c: n coordinates X (spec 8) to n (1 + 2 * 10) values. */
+void ted4_recon_encode(const int32_t *x, unsigned n, float *code);
+
 /* motion.c: time_in for a time; p' and f' of a moving block into w->point and w->moved. */
 void ted4_recon_set_time(ted4_recon *r, uint32_t num, uint32_t den);
 void ted4_recon_move(const ted4_recon *r, size_t block, ted4_recon_scratch *w);

@@ -90,8 +90,11 @@ static uint32_t blend_block(block_state *state, const ted4_splat2d *splat, const
     return i;
 }
 
-static void init_blocks(block_state *state, uint32_t tx, uint32_t ty, const ted4_view *v)
+/* Returns which blocks have pixels in the image. */
+static uint32_t init_blocks(block_state *state, uint32_t tx, uint32_t ty, const ted4_view *v)
 {
+    uint32_t live = 0;
+
     for (int b = 0; b < TED4_TILE_BLOCKS; b++) {
         block_state *s = &state[b];
 
@@ -99,7 +102,9 @@ static void init_blocks(block_state *state, uint32_t tx, uint32_t ty, const ted4
         ted4_block_pixels(tx, ty, b, &s->px, &s->py);
         s->t     = ted4_vf_keep((s->px < (float)v->width) & (s->py < (float)v->height), ted4_vf_all(1.0f));
         s->t_out = s->t;
+        live |= (uint32_t)(ted4_vi_bits(s->t > 0.0f) != 0) << b;
     }
+    return live;
 }
 
 static void store_block(const blend_job *job, const block_state *s, size_t x, size_t y)
@@ -144,9 +149,9 @@ static void blend_tile(void *arg, size_t tile)
     const uint32_t   tx = (uint32_t)tile % job->r->tiles_x, ty = (uint32_t)tile / job->r->tiles_x;
     uint16_t        *mask = job->keep_state ? job->r->mask.data : NULL;
     block_state      state[TED4_TILE_BLOCKS];
-    uint32_t         live = (1u << TED4_TILE_BLOCKS) - 1, at = tile_first[tile], end = tile_first[tile + 1];
+    uint32_t         live = init_blocks(state, tx, ty, job->v), at = tile_first[tile];
+    const uint32_t   end = tile_first[tile + 1];
 
-    init_blocks(state, tx, ty, job->v);
     while (at < end && live != 0) {
         const uint32_t n = end - at < BATCH ? end - at : BATCH;
 

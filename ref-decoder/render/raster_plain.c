@@ -42,7 +42,7 @@ static double clamp_slope(double slope, int size, double focal, double principal
 }
 
 /* a^T M b. */
-static double form3(const double a[3], const double M[3][3], const double b[3])
+static double form3(const double a[3], double M[3][3], const double b[3])
 {
     double sum = 0;
 

@@ -9,9 +9,9 @@
 #include "data/dataset.h"
 
 #if defined(__GNUC__)
-#define TED4_PRINTF(format, first) __attribute__((format(printf, format, first)))
+#define TED4_PRINTF(text, first) __attribute__((format(printf, text, first)))
 #else
-#define TED4_PRINTF(format, first)
+#define TED4_PRINTF(text, first)
 #endif
 
 #define TED4_PI 3.14159265358979323846

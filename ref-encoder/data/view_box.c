@@ -7,7 +7,7 @@
 #include "data/data_util.h"
 
 #define HALF_SIDE    0.6        /* of the median camera distance */
-#define PARALLEL     1e-4       /* relative spread of axes, squared radians, below which their crossing means nothing */
+#define PARALLEL     1e-4       /* mean squared sine between axes below which their crossing means nothing */
 
 typedef struct { double centre[3], forward[3], spread; } mean_camera;
 
@@ -43,7 +43,7 @@ static mean_camera average(const ted4_dataset *d)
 /* Least squares: sum of (I - f f^T) x = sum of (I - f f^T) c over axes c + s f. -1: the axes do not determine x. */
 static int crossing(const ted4_dataset *d, double x[3])
 {
-    double A[9] = { 0 }, b[3] = { 0, 0, 0 }, c[3], trace = 0;
+    double A[9] = { 0 }, b[3] = { 0, 0, 0 }, c[3];
 
     for (size_t i = 0; i < d->n_pictures; i++) {
         const ted4_camera *k = &d->pictures[i].camera;
@@ -59,8 +59,7 @@ static int crossing(const ted4_dataset *d, double x[3])
     /* det A = product of three eigenvalues whose sum is 2; the smallest is the mean squared sine of the axes to their mean. */
     const double det = A[0] * (A[4] * A[8] - A[5] * A[7]) - A[1] * (A[3] * A[8] - A[5] * A[6]) +
                        A[2] * (A[3] * A[7] - A[4] * A[6]);
-    trace = A[0] + A[4] + A[8];
-    if (det < PARALLEL * trace * trace / 4)
+    if (det < PARALLEL)
         return -1;
     return ted4_solve3(A, b, x);
 }

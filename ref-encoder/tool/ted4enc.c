@@ -13,7 +13,7 @@
 #include "run_log.h"
 #include "ted4.h"
 #include "train/checkpoint.h"
-#include "train/export.h"
+#include "train/make_scene.h"
 #include "verify.h"
 #include "write/encode.h"
 
@@ -217,7 +217,7 @@ static int write_scene(const request *r, ted4_trainer *t, double seconds)
     char        why[1024];
     ted4_error  e = { TED4_OK, 0 };
 
-    if (ted4_export(t, &scene) != 0)
+    if (ted4_make_scene(t, &scene) != 0)
         return complain(t->message.text);
     if (ted4_encode(scene, 0, t->parallel, &bytes, &size, &e) != 0) {
         snprintf(why, sizeof why, "encoder refused its own scene: %s", ted4_status_id(e.code));

@@ -241,9 +241,9 @@ static void emit(const ted4_generator *g, float *planes, const float *position, 
     emit_rotation(covariance + 3 * TED4_LANES, out + TED4_GEN_ROT);
 #pragma omp simd
     for (int j = 0; j < TED4_LANES; j++) {
-        const int kept = on[j] & -(!masked | ted4_mask_on(logit[j]));
+        const int kept = !masked || ted4_mask_on(logit[j]);
 
-        opacity[j] = kept && o[j] > 0.0f ? o[j] * active[j] : 0.0f;
+        opacity[j] = on[j] && kept && o[j] > 0.0f ? o[j] * active[j] : 0.0f;
     }
 }
 

@@ -103,6 +103,11 @@ static inline size_t ted4_gen_stride(const ted4_generator *g)
     return (size_t)g->plane.n * TED4_LANES;
 }
 
+static inline float *ted4_gen_slot(const ted4_generator *g, size_t slot)
+{
+    return g->saved + slot * ted4_gen_stride(g);
+}
+
 static inline float *ted4_gen_plane(float *planes, int plane)
 {
     return planes + (size_t)plane * TED4_LANES;
@@ -143,10 +148,11 @@ typedef struct {
 
 static inline ted4_gen_edge ted4_gen_find_edge(float t, const float *tau)
 {
-    const float start = tau[0], end = tau[2 * TED4_LANES];
+    const float start = tau[0], start_width = tau[TED4_LANES];
+    const float end = tau[2 * TED4_LANES], end_width = tau[3 * TED4_LANES];
     const int side = t < start ? -1 : t > end;
     const float at = side < 0 ? start : end;
-    const float b = ted4_lane_pow2(tau[side < 0 ? TED4_LANES : 3 * TED4_LANES]);
+    const float b = ted4_lane_pow2(side < 0 ? start_width : end_width);
     const float width = b > TED4_EDGE_MIN ? b : TED4_EDGE_MIN;
     const ted4_gen_edge e = { side, width, side != 0 ? (t - at) / width : 0.0f };
 

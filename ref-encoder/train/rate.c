@@ -5,7 +5,6 @@
  * SPDX-License-Identifier: BSD-2-Clause */
 #include "rate_parts.h"
 
-#include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -47,8 +46,6 @@ ted4_rate *ted4_rate_new(const ted4_layout *l)
     if (r == NULL)
         return NULL;
     r->layout = *l;
-    for (int i = 0; i <= 1024; i++)             /* spec 10.1 SIN */
-        r->sine[i] = (float)rint(4096.0 * sin(i * (6.283185307179586 / 1024)));
     int failed = net_init(&r->hyper, &shape->hyper, n_steps);
 
     if (!failed)
@@ -131,6 +128,7 @@ static void take_room(arena *a, const ted4_rate *r, ted4_rate_room *room)
 
     take_acts(a, &r->hyper, 1, &room->hyper);
     room->context = take(a, context * TED4_RATE_CHUNK);
+    room->integer = (int32_t *)take(a, l->shape.n_outputs * TED4_PRIOR_BLOCK);
     for (int m = 1; m < l->head.n_slices; m++)
         take_acts(a, &r->slice[m], 0, &room->slice[m]);
     s->value = take(a, channels);
@@ -163,13 +161,12 @@ static int rooms(ted4_rate *r, size_t n)
 
 /* ---- forward ---- */
 
-static void sine_row(const float *sine, const uint32_t *phase, uint32_t turn,
-                     int shift, float *row)
+static void sine_row(const uint32_t *phase, uint32_t turn, int shift, float *row)
 {
 #pragma omp simd
     for (int j = 0; j < TED4_LANES; j++) {
         const uint32_t u = (phase[j] << shift) + turn;
-        const float at = sine[u >> 22], next = sine[(u >> 22) + 1];
+        const float at = ted4_sin[u >> 22], next = ted4_sin[(u >> 22) + 1];
         const float part = (float)(int32_t)(u >> 10 & 4095);
         const float step = __builtin_floorf((next - at) * part * 0x1p-12f
                                             + 0.5f);
@@ -179,13 +176,12 @@ static void sine_row(const float *sine, const uint32_t *phase, uint32_t turn,
 }
 
 /* spec 10.1: inputs of the hyperprior, the integers of the text divided by 4096. */
-static void encode_positions(const ted4_rate *r, const float *position,
+static void encode_positions(const ted4_header *h, const float *position,
                              uint32_t lanes, float *x)
 {
-    const int octaves = r->layout.head.pe_octaves;
     uint32_t phase[3][TED4_LANES];
 
-    if (r->hyper.dim[0] == 0)
+    if (h->prior == TED4_PRIOR_FACTORISED)
         return;
     for (int a = 0; a < 3; a++) {
         const float *p = position + ted4_row((size_t)a);
@@ -197,43 +193,51 @@ static void encode_positions(const ted4_rate *r, const float *position,
             *x++ = __builtin_floorf(known * 0x1p12f) * 0x1p-12f;
         }
     }
-    for (int l = 0; l < octaves; l++)
+    for (int l = 0; l < h->pe_octaves; l++)
         for (int a = 0; a < 3; a++, x += 2 * TED4_LANES) {
-            sine_row(r->sine, phase[a], 0, l, x);
-            sine_row(r->sine, phase[a], 0x40000000u, l, x + TED4_LANES);
+            sine_row(phase[a], 0, l, x);
+            sine_row(phase[a], 0x40000000u, l, x + TED4_LANES);
         }
 }
 
-/* The hyperprior up to its last hidden layer, and its rows v; the other outputs come with hyper_forward. */
+/* q = Q0 2^v, and 1 for absent types. v: rows of the present types. */
+static void step_sizes(const ted4_layout *l, const float *v, float *q)
+{
+    for (int t = 0; t < TED4_TYPES; t++, q += TED4_LANES) {
+        const int present = l->shape.dim[t] > 0;
+
+        for (int j = 0; j < TED4_LANES; j++)
+            q[j] = !present ? 1.0f : l->head.step[t]
+                 * ted4_lane_pow2(ted4_lane_limit(v[j], TED4_V_MIN,
+                                                  TED4_V_MAX));
+        v += present ? TED4_LANES : 0;
+    }
+}
+
+/* The hyperprior up to its rows v, and the steps q. The other outputs come in slot_forward. */
 static void steps_forward(const ted4_rate_job *job, ted4_rate_room *room,
                           size_t i, size_t slot)
 {
     const ted4_rate *r = job->rate;
     const ted4_rate_net *h = &r->hyper;
-    const ted4_shape *shape = &r->layout.shape;
+    const ted4_layout *l = job->in->layout;
     float *x = room->hyper.x[0] + i * ted4_row((size_t)h->dim[0]);
-    float *q = job->steps[slot];
 
-    encode_positions(r, job->in->position[slot], job->in->lanes[slot], x);
+    encode_positions(&l->head, job->in->position[slot], job->in->lanes[slot],
+                     x);
     for (int k = 0; k < h->n - 1; k++) {
         float *y = room->hyper.x[k + 1] + i * ted4_row((size_t)h->dim[k + 1]);
 
         ted4_dense_forward(&h->layer[k], x, y, 1);
         x = y;
     }
-    float *v = room->hyper.x[h->n] + i * ted4_row(shape->n_outputs)
-             + ted4_row(shape->first_step_output);
+    float *v = room->hyper.x[h->n] + i * ted4_row(l->shape.n_outputs)
+             + ted4_row(l->shape.first_step_output);
 
     ted4_dense_forward(&r->step, x, v, 0);
-    for (int t = 0; t < TED4_TYPES; t++, q += TED4_LANES) {
-        const float q0 = r->layout.head.step[t];
-
-        for (int j = 0; j < TED4_LANES; j++)
-            q[j] = shape->dim[t] == 0 ? 1.0f
-                 : q0 * ted4_lane_pow2(ted4_lane_limit(v[j], TED4_V_MIN,
-                                                       TED4_V_MAX));
-        v += shape->dim[t] > 0 ? TED4_LANES : 0;
-    }
+    step_sizes(l, v, job->steps[slot]);
+    if (job->integer != NULL)
+        ted4_rate_integer_steps(job, room, slot, v, job->steps[slot]);
 }
 
 /* Values and masks of the lanes in use. */
@@ -271,7 +275,7 @@ static void slices_forward(const ted4_rate_job *job, ted4_rate_room *room,
                            size_t i, size_t slot)
 {
     const ted4_rate *r = job->rate;
-    const ted4_layout *l = &r->layout;
+    const ted4_layout *l = job->in->layout;
     const size_t f = l->shape.dim[TED4_FEATURE];
     const size_t first = ted4_row((size_t)l->first[TED4_FEATURE]);
     const float *value = room->slot.value + first;
@@ -385,19 +389,20 @@ static void slot_forward(const ted4_rate_job *job, ted4_rate_room *room,
     const ted4_rate *r = job->rate;
     const ted4_rate_input *in = job->in;
     const ted4_rate_net *h = &r->hyper;
-    const size_t last = (size_t)h->n - 1;
+    const int last = h->n - 1;
+    const float *hidden = room->hyper.x[last] + i * ted4_row((size_t)h->dim[last]);
+    float *out = room->hyper.x[h->n] + i * ted4_row((size_t)h->dim[h->n]);
     ted4_rate_slot *s = &room->slot;
 
     load_slot(job, s, slot);
-    ted4_dense_forward(&h->layer[last],
-                       room->hyper.x[last] + i * ted4_row((size_t)h->dim[last]),
-                       room->hyper.x[last + 1]
-                       + i * ted4_row((size_t)h->dim[last + 1]), 0);
-    ted4_residuals(&r->layout, in->quant, s->value, job->steps[slot],
+    ted4_dense_forward(&h->layer[last], hidden, out, 0);
+    ted4_residuals(in->layout, in->quant, s->value, job->steps[slot],
                    in->block[slot], in->key, s->residual);
     slices_forward(job, room, i, slot);
+    if (job->integer != NULL)
+        ted4_rate_integer_outputs(job, room, job->steps[slot], out);
     memset(s->kept_bits, 0,
-           ted4_row(r->layout.head.n_offsets) * sizeof *s->kept_bits);
+           ted4_row(in->layout->head.n_offsets) * sizeof *s->kept_bits);
     memset(s->phi_bits, 0, TED4_LANES * sizeof *s->phi_bits);
     for (int t = 0; t < TED4_TYPES; t++)
         if (ted4_rate_coded(job, t))
@@ -449,6 +454,27 @@ static void reduce_piece(void *arg, size_t piece)
     }
 }
 
+/* Chunks from job->first on, and what they add to the sums. */
+static void run_wave(ted4_rate_job *job, size_t n, const ted4_parallel *p,
+                     float *d_net, double *bits)
+{
+    const ted4_layout *l = job->in->layout;
+    const size_t n_pieces = (l->shape.n_nete + REDUCE_PIECE - 1)
+                          / REDUCE_PIECE;
+
+    ted4_parallel_for(p, n, run_chunk, job);
+    if (job->steps_only)
+        return;
+    for (size_t k = 0; k < n; k++)
+        for (int t = 0; t < TED4_TYPES; t++)
+            bits[t] += job->rate->room[k].bits[t];
+    if (job->d_attr != NULL) {
+        reduction sum = { job->rate, n, d_net + l->nete };
+
+        ted4_parallel_for(p, n_pieces, reduce_piece, &sum);
+    }
+}
+
 int ted4_rate_evaluate(ted4_rate *r, const ted4_rate_input *in,
                        const ted4_parallel *p, const float *const *d_value,
                        float *const *d_attr, float *d_net, float *const *steps,
@@ -456,28 +482,27 @@ int ted4_rate_evaluate(ted4_rate *r, const ted4_rate_input *in,
 {
     const size_t n_chunks = (in->n_slots + TED4_RATE_CHUNK - 1)
                           / TED4_RATE_CHUNK;
-    const size_t n_pieces = (r->layout.shape.n_nete + REDUCE_PIECE - 1)
-                          / REDUCE_PIECE;
-    ted4_rate_job job = { r, in, d_value, d_attr, steps, 0, bits == NULL };
+    ted4_rate_integer integer;
+    ted4_rate_job job = { r, in, d_value, d_attr, steps, 0, bits == NULL,
+                          NULL };
 
     for (int t = 0; t < TED4_TYPES && bits != NULL; t++)
         bits[t] = 0.0;
     if (rooms(r, n_chunks < TED4_RATE_WAVE ? n_chunks : TED4_RATE_WAVE) != 0)
         return -1;
+    if (in->quant == TED4_QUANT_INTEGER) {
+        if (ted4_rate_integer_begin(&integer, in) != 0)
+            return -1;
+        job.integer = &integer;
+    }
     for (size_t c = 0; c < n_chunks; c += TED4_RATE_WAVE) {
-        const size_t n = n_chunks - c < TED4_RATE_WAVE ? n_chunks - c
-                                                       : TED4_RATE_WAVE;
-        reduction sum = { r, n, NULL };
+        const size_t left = n_chunks - c;
 
         job.first = c * TED4_RATE_CHUNK;
-        ted4_parallel_for(p, n, run_chunk, &job);
-        for (size_t k = 0; k < n && bits != NULL; k++)
-            for (int t = 0; t < TED4_TYPES; t++)
-                bits[t] += r->room[k].bits[t];
-        if (d_attr == NULL || bits == NULL)
-            continue;
-        sum.d_nete = d_net + r->layout.nete;
-        ted4_parallel_for(p, n_pieces, reduce_piece, &sum);
+        run_wave(&job, left < TED4_RATE_WAVE ? left : TED4_RATE_WAVE, p, d_net,
+                 bits);
     }
+    if (job.integer != NULL)
+        ted4_rate_integer_end(&integer);
     return 0;
 }

@@ -2,9 +2,9 @@
 # Who may include whom (a folder may always include itself). System headers are not looked at.
 allow='
 ref-decoder                 base
-ref-decoder/base            base
+ref-decoder/base            base ted4.h
 ref-decoder/norm            base norm ted4.h
-ref-decoder/kernel          base norm recon ted4.h
+ref-decoder/kernel          base norm recon kernel ted4.h
 ref-decoder/recon           base norm recon kernel ted4.h
 ref-decoder/read            base norm read kernel ted4.h
 ref-decoder/render          base render ted4.h

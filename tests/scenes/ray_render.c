@@ -7,8 +7,8 @@
 
 #include "ray_texture.h"
 
-/* Samples a pixel side; lamp cells a side. Sample (i, j) uses lamp cells (i + 3 a, j + 3 b): four of 36, all of them over a pixel. */
-enum { SIDE = 3, LAMP = 6 };
+/* Samples a pixel side, lamp cells across and along. Sample (i, j) uses cells (i, j) and (i + 3, 2 - j): all 18 over a pixel. */
+enum { SIDE = 3, LAMP_X = 6, LAMP_Y = 3, LAMP_RAYS = 2 };
 static const float near_plane = 0.05f, lift = 0.003f;
 
 /* Half-open pixel rectangle in which an object can show. */
@@ -110,18 +110,17 @@ static int meets_any(const ted4_ray_world *w, const crowd *c, vec3 from, vec3 d,
 static float lamp_share(const view *v, vec3 p, vec3 normal, int i, int j)
 {
     const crowd c = shading(v, p, normal);
-    const int per_side = LAMP / SIDE;
-    int seen = per_side * per_side;
+    int seen = LAMP_RAYS;
 
-    for (int k = 0; k < per_side * per_side && c.n > 0; k++) {
-        const int a = i + SIDE * (k % per_side), b = j + SIDE * (k / per_side);
-        const float s = (2 * (float)a + 1) / LAMP - 1, t = (2 * (float)b + 1) / LAMP - 1;
+    for (int k = 0; k < LAMP_RAYS && c.n > 0; k++) {
+        const int a = i + SIDE * k, b = k == 0 ? j : SIDE - 1 - j;
+        const float s = (2 * (float)a + 1) / LAMP_X - 1, t = (2 * (float)b + 1) / LAMP_Y - 1;
         const vec3 lamp = v3_along(v3_along(v->w->lamp, v->w->lamp_x, s), v->w->lamp_y, t);
         const vec3 to = v3_sub(lamp, p);
         const float far = v3_length(to);
         seen -= meets_any(v->w, &c, p, v3_scale(to, 1 / far), far);
     }
-    return (float)seen / (float)(per_side * per_side);
+    return (float)seen / LAMP_RAYS;
 }
 
 /* Ambient light from above, a weak shadowless light from the cameras' side, the lamp, and a broad highlight of it. */

@@ -7,6 +7,7 @@
 #define BAR_NEAR     0.0004f
 /* Bending and twisting stretch space by less than 1 / 0.62 for |bend| size.x < 0.2 and |twist| size.x < 0.05 (test_scene checks). */
 #define BAR_STRIDE   0.62f
+#define BAR_LEAVE    1.5f
 #define BAR_STEPS    160
 #define BEND_LEAST   1e-5f
 
@@ -168,22 +169,38 @@ static float hull_radius(const ted4_ray_object *o)
     return sqrtf(o->size.x * o->size.x + o->size.y * o->size.y);
 }
 
+/* Length of the next step at distance r, after a step of length last from distance before (0: unknown).
+ * The distance along a ray is nearly convex inside the hull, as it is for an unbent bar. So when it falls, the line through the last two
+ * values meets zero before the surface does; and when it rises, the surface is being left, and the stride may be longer. */
+static float bar_step(float r, float before, float last, float hull)
+{
+    if (before > r)
+        return ray_max(BAR_STRIDE * r, ray_min(r * last / (before - r), hull / 2));
+    return r * (before > 0 ? BAR_LEAVE : BAR_STRIDE);
+}
+
 static float bar_meet(const ted4_ray_object *o, vec3 p, vec3 d, float near, float far)
 {
     const float hull = hull_radius(o);
-    float in = near, out = far;
+    float in = near, out = far, before = 0, step = 0;
 
     box_span(o->low, o->high, p, d, &in, &out);
     for (int i = 0; i < BAR_STEPS && in < out; i++) {
         const vec3 at = v3_along(p, d, in);
         float r = ring_distance(o, at, hull);
-        if (r < BAR_ROUND) {
+        if (r >= BAR_ROUND) {
+            before = 0;
+            step = r;
+        } else {
             r = bar_distance(o, at);
+            if (r < BAR_NEAR && before > r)
+                in += r * step / (before - r);
             if (r < BAR_NEAR)
-                return in > near ? in : far;
-            r *= BAR_STRIDE;
+                return in > near && in < far ? in : far;
+            step = bar_step(r, before, step, hull);
+            before = r;
         }
-        in += r;
+        in += step;
     }
     return far;
 }

@@ -1,13 +1,13 @@
-/* export.h - from a trained model to a scene of the file format (spec 6 to 10).
+/* make_scene.h - from a trained model to a scene of the file format (spec 6 to 10).
  * Depends on trainer.h, norm/. Used by tool/ted4enc.c.
  * SPDX-License-Identifier: BSD-2-Clause */
-#ifndef TED4_EXPORT_H
-#define TED4_EXPORT_H
+#ifndef TED4_MAKE_SCENE_H
+#define TED4_MAKE_SCENE_H
 
 #include "trainer.h"
 
 /* Anchors without a kept offset, and those that no time shows, are left out; symbols are rounded with the steps that the decoder will derive. Ends stage 2
  * first if training stopped before it. *scene belongs to the caller (ted4_scene_free). 0, or -1 with t->message. */
-int ted4_export(ted4_trainer *t, ted4_scene **scene);
+int ted4_make_scene(ted4_trainer *t, ted4_scene **scene);
 
 #endif

@@ -1,6 +1,6 @@
-/* export.c - see export.h.
+/* make_scene.c - see make_scene.h.
  * SPDX-License-Identifier: BSD-2-Clause */
-#include "export.h"
+#include "make_scene.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -114,7 +114,7 @@ static int settle(ted4_trainer *t)
     return !t->integer ? ted4_integer_begin(t) : 0;
 }
 
-int ted4_export(ted4_trainer *t, ted4_scene **scene)
+int ted4_make_scene(ted4_trainer *t, ted4_scene **scene)
 {
     ted4_header h;
     ted4_error  e = { TED4_OK, 0 };

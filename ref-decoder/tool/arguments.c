@@ -1,0 +1,96 @@
+/* arguments.c - see arguments.h.
+ * SPDX-License-Identifier: BSD-2-Clause */
+#include "arguments.h"
+
+#include <errno.h>
+#include <getopt.h>
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+/* Long options without a letter are reported by getopt as this plus their place. */
+enum { FIRST_LONG = 256 };
+
+static void make_getopt(const ted4_command *c, struct option *longs, char *letters)
+{
+    char *p = letters;
+
+    for (int i = 0; i < c->n; i++) {
+        const ted4_argument *const a = &c->table[i];
+
+        longs[i] = (struct option){ a->name, a->value != NULL ? required_argument : no_argument, NULL, FIRST_LONG + i };
+        if (a->letter != 0) {
+            *p++ = (char)a->letter;
+            if (a->value != NULL)
+                *p++ = ':';
+        }
+    }
+    longs[c->n] = (struct option){ NULL, 0, NULL, 0 };
+    *p = '\0';
+}
+
+int ted4_arguments_next(const ted4_command *c, int argc, char **argv, const char **value)
+{
+    struct option longs[TED4_MAX_ARGUMENTS + 1];
+    char letters[2 * TED4_MAX_ARGUMENTS + 1];
+
+    make_getopt(c, longs, letters);
+    const int found = getopt_long(argc, argv, letters, longs, NULL);
+
+    *value = optarg;
+    if (found == -1)
+        return TED4_ARGUMENTS_END;
+    if (found >= FIRST_LONG)
+        return found - FIRST_LONG;
+    for (int i = 0; i < c->n; i++)
+        if (c->table[i].letter == found)
+            return i;
+    return TED4_ARGUMENTS_BAD;
+}
+
+void ted4_arguments_help(const ted4_command *c, FILE *f)
+{
+    int widest = 0;
+
+    for (int i = 0; i < c->n; i++) {
+        const ted4_argument *const a = &c->table[i];
+        const int width = (int)(strlen(a->name) + (a->value != NULL ? strlen(a->value) + 1 : 0));
+
+        widest = width > widest ? width : widest;
+    }
+    fprintf(f, "Usage: %s %s\n%s\n\n", c->program, c->usage, c->text);
+    for (int i = 0; i < c->n; i++) {
+        const ted4_argument *const a = &c->table[i];
+        const char *const gap = a->value != NULL ? " " : "", *const value = a->value != NULL ? a->value : "";
+        const int width = (int)(strlen(a->name) + strlen(gap) + strlen(value));
+
+        if (a->letter != 0)
+            fprintf(f, "  -%c, ", a->letter);
+        else
+            fputs("      ", f);
+        fprintf(f, "--%s%s%s%*s  %s\n", a->name, gap, value, widest - width, "", a->text);
+    }
+    fprintf(f, "\n%s", c->end);
+}
+
+int ted4_arguments_number(const char *text, long low, long high, long *out)
+{
+    char *end;
+
+    errno = 0;
+    *out = strtol(text, &end, 10);
+    return errno == 0 && end != text && *end == '\0' && *out >= low && *out <= high ? 0 : -1;
+}
+
+int ted4_arguments_floats(const char *text, int n, float *out)
+{
+    for (int i = 0; i < n; i++) {
+        char *end;
+
+        out[i] = strtof(text, &end);
+        if (end == text || !isfinite(out[i]) || *end != (i + 1 < n ? ',' : '\0'))
+            return -1;
+        text = end + 1;
+    }
+    return 0;
+}
