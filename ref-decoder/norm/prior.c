@@ -5,6 +5,7 @@
 #include <string.h>
 #include "base/bytes.h"
 #include "norm/half.h"
+#include "norm/sine.h"
 
 static int layer_init(ted4_int_layer *l, unsigned in, unsigned out,
                       ted4_arena *arena)
@@ -143,17 +144,6 @@ ted4_status ted4_prior_load(ted4_prior *p, const float *nete,
     return own.code;
 }
 
-/* spec 10.1, u in turns of 2^32. */
-static int16_t sine(uint32_t u)
-{
-    const uint32_t i = u >> 22;
-    const int32_t  b = (int32_t)(u >> 10 & 4095);
-
-    return (int16_t)(ted4_sin[i]
-                     + ted4_round_shift((ted4_sin[i + 1] - ted4_sin[i]) * b,
-                                        12));
-}
-
 /* Inputs of one anchor into column x of [n_inputs][64]. */
 static void hyper_inputs(const ted4_prior *p, const uint16_t *position,
                          int16_t *x)
@@ -171,8 +161,8 @@ static void hyper_inputs(const ted4_prior *p, const uint16_t *position,
         for (int j = 0; j < 3; j++) {
             const uint32_t u = phase[j] << l;
 
-            x[0] = sine(u);
-            x[TED4_PRIOR_BLOCK] = sine(u + ((uint32_t)1 << 30));
+            x[0] = ted4_sine(u);
+            x[TED4_PRIOR_BLOCK] = ted4_sine(u + ((uint32_t)1 << 30));
             x += 2 * TED4_PRIOR_BLOCK;
         }
 }

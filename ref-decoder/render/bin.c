@@ -111,9 +111,11 @@ static void count_tiles(void *arg, size_t part)
     uint32_t            *hist = (uint32_t *)job->r->hist.data + part * n_tiles;
 
     memset(hist, 0, n_tiles * sizeof *hist);
-    for (size_t i = part_begin(job, part); i < part_begin(job, part + 1); i++) {
+    for (size_t i = part_begin(job, part), end = part_begin(job, part + 1); i < end; i++) {
         const ted4_tile_box b = box[(uint32_t)job->from[i]];
 
+        if (i + TED4_AHEAD < end)
+            __builtin_prefetch(&box[(uint32_t)job->from[i + TED4_AHEAD]]);
         for (uint32_t y = b.y0; y < b.y1; y++)
             for (uint32_t x = b.x0; x < b.x1; x++)
                 hist[y * job->r->tiles_x + x]++;
@@ -128,11 +130,15 @@ static void place_instances(void *arg, size_t part)
     uint32_t *place = (uint32_t *)job->r->hist.data + part * ((size_t)job->r->tiles_x * job->r->tiles_y);
     uint32_t *owner = job->r->owner.data, *slot = job->r->slot.data;
 
-    for (size_t i = part_begin(job, part); i < part_begin(job, part + 1); i++) {
+    for (size_t i = part_begin(job, part), end = part_begin(job, part + 1); i < end; i++) {
         const uint32_t      g = (uint32_t)job->from[i];
         const ted4_tile_box b = box[g];
         uint32_t            s = first_slot[g];
 
+        if (i + TED4_AHEAD < end) {
+            __builtin_prefetch(&box[(uint32_t)job->from[i + TED4_AHEAD]]);
+            __builtin_prefetch(&first_slot[(uint32_t)job->from[i + TED4_AHEAD]]);
+        }
         for (uint32_t y = b.y0; y < b.y1; y++)
             for (uint32_t x = b.x0; x < b.x1; x++) {
                 const uint32_t at = place[y * job->r->tiles_x + x]++;
@@ -152,10 +158,11 @@ int ted4_raster_bin(struct ted4_raster *r, const ted4_splats *s, const ted4_para
     if (add_up_chunks(r, n_chunks) != 0
         || ted4_buffer_grow(&r->hist, TED4_SORT_PARTS * n_buckets, sizeof(uint32_t)) != 0
         || ted4_buffer_grow(&r->tile_first, n_tiles + 1, sizeof(uint32_t)) != 0
-        || ted4_buffer_grow(&r->owner, r->n_instances, sizeof(uint32_t)) != 0
+        || ted4_buffer_grow(&r->owner, r->n_instances + TED4_AHEAD, sizeof(uint32_t)) != 0
         || ted4_buffer_grow(&r->slot, r->n_instances, sizeof(uint32_t)) != 0)
         return -1;
     ((uint32_t *)r->first_slot.data)[s->n] = (uint32_t)r->n_instances;
+    memset((uint32_t *)r->owner.data + r->n_instances, 0, TED4_AHEAD * sizeof(uint32_t));
 
     ted4_parallel_for(p, n_chunks, gather_chunk, &job);
     job.from = r->key[0].data;

@@ -158,10 +158,10 @@ TED4_INLINE ted4_vf ted4_splat_log2_alpha(const ted4_splat2d *g, ted4_vf px, ted
     return g->level - *n1 * *n1 - *n2 * *n2;
 }
 
-/* One step of front-to-back blending. t: transmittance before the Gaussian, 0 once a pixel is finished; updated.
- * alpha: opacity used; w = alpha t: weight; both 0 where the Gaussian is too faint or the pixel finishes. The result says
- * where the pixel went on. */
-TED4_INLINE ted4_vi ted4_blend_step(const ted4_splat2d *g, ted4_vf px, ted4_vf py, ted4_vf *t, ted4_vf *alpha, ted4_vf *w)
+/* One step of front-to-back blending. t: transmittance before the Gaussian; updated. alpha: opacity used, w = alpha t: weight; both 0 where
+ * the Gaussian is too faint or the pixel is finished. Nothing marks a finished pixel but its t, below TED4_RASTER_T_MIN ever after: so the
+ * only thing that one step waits for in the one before is a multiplication and a subtraction. */
+TED4_INLINE void ted4_blend_step(const ted4_splat2d *g, ted4_vf px, ted4_vf py, ted4_vf *t, ted4_vf *alpha, ted4_vf *w)
 {
     ted4_vf n1, n2;
     const ted4_vf e = ted4_splat_log2_alpha(g, px, py, &n1, &n2);
@@ -172,8 +172,7 @@ TED4_INLINE ted4_vi ted4_blend_step(const ted4_splat2d *g, ted4_vf px, ted4_vf p
 
     *alpha = ted4_vf_keep(on, al);
     *w     = ted4_vf_keep(on, al * *t);
-    *t     = ted4_vf_keep(on, next);
-    return on;
+    *t     = next;
 }
 
 #endif

@@ -39,7 +39,7 @@ void ted4_raster_free(ted4_raster *r)
         return;
 
     ted4_buffer *const all[] = { &r->splat2d, &r->box, &r->first_slot, &r->key[0], &r->key[1], &r->chunk, &r->hist,
-                                 &r->tile_first, &r->owner, &r->slot, &r->mask, &r->sums, &r->sum0 };
+                                 &r->tile_first, &r->owner, &r->slot, &r->reach, &r->sums, &r->sum0 };
     for (size_t i = 0; i < sizeof all / sizeof all[0]; i++)
         ted4_buffer_free(all[i]);
     for (int i = 0; i < TED4_BWD_JOBS; i++)

@@ -13,6 +13,8 @@ enum {
     TED4_TILE        = 16,      /* pixels */
     TED4_BLOCK       = 4,       /* pixels; a block is one vector */
     TED4_TILE_BLOCKS = 16,
+    TED4_GROUP       = 64,      /* instances whose blocks are noted together */
+    TED4_AHEAD       = 32,      /* items fetched before they are needed, where they lie anywhere in memory */
     TED4_CHUNK       = 1024,    /* Gaussians of one projection job; a multiple of TED4_VEC */
     TED4_SORT_PARTS  = 8,       /* jobs of one sorting pass; any number gives the same order */
     TED4_RADIX_BITS  = 11,
@@ -40,6 +42,17 @@ TED4_INLINE uint32_t ted4_tile_box_area(ted4_tile_box b)
     return (uint32_t)(b.x1 - b.x0) * (uint32_t)(b.y1 - b.y0);
 }
 
+/* Which of TED4_GROUP successive instances of a tile each of its blocks has to blend: bit i for instance i. */
+typedef struct {
+    uint64_t block[TED4_TILE_BLOCKS];
+} ted4_reach;
+
+/* Number of the first group of a tile whose first position this is: groups of different tiles never meet. */
+TED4_INLINE size_t ted4_group_first(size_t tile, uint32_t position)
+{
+    return tile + position / TED4_GROUP;
+}
+
 struct ted4_raster {
     /* per Gaussian */
     ted4_buffer splat2d;        /* ted4_splat2d; only visible ones are set */
@@ -53,9 +66,10 @@ struct ted4_raster {
     ted4_buffer hist;           /* uint32_t [TED4_SORT_PARTS][n_tiles or 1 << TED4_RADIX_BITS] */
     ted4_buffer tile_first;     /* uint32_t [n_tiles + 1]: first position of each tile */
     /* per instance, by position */
-    ted4_buffer owner;          /* uint32_t: Gaussian */
+    ted4_buffer owner;          /* uint32_t: Gaussian; TED4_AHEAD more at the end, of Gaussian 0 */
     ted4_buffer slot;           /* uint32_t */
-    ted4_buffer mask;           /* uint16_t: bit b: blended in block b of the tile (kept for the adjoint) */
+    /* per ted4_group_first group of instances */
+    ted4_buffer reach;          /* ted4_reach (kept for the adjoint) */
     /* per instance, by slot; made by the adjoint */
     ted4_buffer sums;           /* float [TED4_GRAD_SUMS] */
     ted4_buffer sum0;           /* float */

@@ -6,24 +6,24 @@
 
 #include "output.h"
 
-const ted4_writer *const ted4_writers[] = {
-    &ted4_writer_ply, &ted4_writer_splat, &ted4_writer_glb, &ted4_writer_raw, NULL
+const ted4_format *const ted4_formats[] = {
+    &ted4_format_ply, &ted4_format_splat, &ted4_format_glb, &ted4_format_raw, NULL
 };
 
-const ted4_writer *ted4_writer_find(const char *path)
+const ted4_format *ted4_format_find(const char *path)
 {
     const size_t n = strlen(path);
 
-    for (size_t i = 0; ted4_writers[i] != NULL; i++) {
-        const size_t m = strlen(ted4_writers[i]->suffix);
+    for (size_t i = 0; ted4_formats[i] != NULL; i++) {
+        const size_t m = strlen(ted4_formats[i]->suffix);
 
-        if (n > m && strcmp(path + n - m, ted4_writers[i]->suffix) == 0)
-            return ted4_writers[i];
+        if (n > m && strcmp(path + n - m, ted4_formats[i]->suffix) == 0)
+            return ted4_formats[i];
     }
     return NULL;
 }
 
-int ted4_export(const ted4_writer *w, const ted4_frame *x, const char *path)
+int ted4_export(const ted4_format *w, const ted4_frame *x, const char *path)
 {
     ted4_output o;
 

@@ -24,17 +24,17 @@ typedef struct {
     int         max_sh_degree;          /* -1: the format takes the decoded colour; no spherical harmonics needed */
     /* 0, or -1 with errno set; an error the stream remembers (ferror) need not be reported. */
     int       (*write)(FILE *f, const ted4_frame *x);
-} ted4_writer;
+} ted4_format;
 
-extern const ted4_writer ted4_writer_ply, ted4_writer_splat, ted4_writer_glb, ted4_writer_raw;
+extern const ted4_format ted4_format_ply, ted4_format_splat, ted4_format_glb, ted4_format_raw;
 
 /* All writers, ended by NULL. */
-extern const ted4_writer *const ted4_writers[];
+extern const ted4_format *const ted4_formats[];
 
 /* By suffix of path; NULL: none fits. */
-const ted4_writer *ted4_writer_find(const char *path);
+const ted4_format *ted4_format_find(const char *path);
 
 /* Writes path through a temporary file (output.h). 0, or -1 with errno set. */
-int ted4_export(const ted4_writer *w, const ted4_frame *x, const char *path);
+int ted4_export(const ted4_format *w, const ted4_frame *x, const char *path);
 
 #endif

@@ -221,6 +221,6 @@ static int write_glb(FILE *f, const ted4_frame *x)
     return write_chunk_head(f, size, "BIN") != 0 ? -1 : write_values(f, x, a, n);
 }
 
-const ted4_writer ted4_writer_glb = {
+const ted4_format ted4_format_glb = {
     ".glb", "binary glTF with KHR_gaussian_splatting, spherical harmonics of --sh-degree; +Y up", TED4_SH_MAX_DEGREE, write_glb
 };

@@ -81,6 +81,6 @@ static int write_ply(FILE *f, const ted4_frame *x)
     return 0;
 }
 
-const ted4_writer ted4_writer_ply = {
+const ted4_format ted4_format_ply = {
     ".ply", "3D Gaussian splatting PLY, spherical harmonics of --sh-degree", TED4_SH_MAX_DEGREE, write_ply
 };

@@ -19,6 +19,6 @@ static int write_raw(FILE *f, const ted4_frame *x)
     return 0;
 }
 
-const ted4_writer ted4_writer_raw = {
+const ted4_format ted4_format_raw = {
     ".raw", "14 little-endian binary32 a Gaussian: position, scale, rotation w x y z, opacity, r g b", -1, write_raw
 };

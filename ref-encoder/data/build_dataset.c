@@ -1,5 +1,5 @@
-/* build_dataset.c - from the shots of any layout to a dataset: sizes and lenses agreed, frames, physical cameras, training pictures
- * before test pictures, initial points. See raw_scene.h.
+/* build_dataset.c - from the shots of any layout to a dataset: sizes and lenses agreed, frames,
+ * physical cameras, training pictures before test pictures, initial points. See raw_scene.h.
  * SPDX-License-Identifier: BSD-2-Clause */
 #include "data/raw_scene.h"
 
@@ -10,8 +10,9 @@
 #include "data/data_util.h"
 #include "data/source.h"
 
-/* Makes the lens refer to the file's size. A file may be the integer fraction 1/n of what the lens says, rounded either way (the
- * images_2 folders of static sets); the whole extent then maps to the whole extent. */
+/* Makes the lens refer to the file's size. A file may be the integer fraction 1/n of what the
+ * lens says, rounded either way (the images_2 folders of static sets); the whole extent then
+ * maps to the whole extent. */
 static int fit_lens(ted4_shot *s, ted4_message *m)
 {
     ted4_lens *l = &s->lens;
@@ -64,7 +65,8 @@ static int make_picture(ted4_picture *p, ted4_source *source, ted4_shot *s,
     return 0;
 }
 
-/* Shots are the same camera when their labels are equal or, without labels, their poses to six decimals; then the label is the pose. */
+/* Shots are the same camera when their labels are equal or, without labels, their poses to six
+ * decimals; then the label is the pose. */
 static char *pose_label(const ted4_shot *s)
 {
     char text[12 * 26], *at = text;
@@ -177,7 +179,8 @@ static int take_points(ted4_dataset *d, ted4_raw_scene *s, const ted4_dataset_op
     return 0;
 }
 
-/* Pictures with transparency were composited over the background the caller chose; without any, what no Gaussian covers is black. */
+/* Pictures with transparency were composited over the background the caller chose; without any,
+ * what no Gaussian covers is black. */
 static void choose_background(ted4_dataset *d, const ted4_raw_scene *s, const ted4_dataset_options *o)
 {
     int alpha = 0;

@@ -1,4 +1,5 @@
-/* colmap_file.c - what COLMAP's binary and text models share: camera models, poses, the choice of encoding. See colmap_file.h.
+/* colmap_file.c - what COLMAP's binary and text models share: camera models, poses, the choice
+ * of encoding. See colmap_file.h.
  * SPDX-License-Identifier: BSD-2-Clause */
 #include "data/colmap_file.h"
 

@@ -28,15 +28,16 @@ typedef struct {
     ted4_point_cloud    cloud;      /* empty when the model has no points3D file */
 } ted4_colmap;
 
-/* Reads the model in folder (that holds cameras.bin or cameras.txt). Each file may be binary or text on its own, binary first.
- * Counts are checked against the file's size before anything is allocated. 0, or -1 with *m filled; free in both cases. */
+/* Reads the model in folder (that holds cameras.bin or cameras.txt). Each file may be binary or
+ * text on its own, binary first. Counts are checked against the file's size before anything is
+ * allocated. 0, or -1 with *m filled; free in both cases. */
 int  ted4_colmap_read(ted4_colmap *c, const char *folder, ted4_message *m);
 void ted4_colmap_free(ted4_colmap *c);
 
 /* Shared by the two encodings, colmap_bin.c and colmap_txt.c. */
 
-/* Camera model by COLMAP's number or name; -1 when unknown or with a lens that cannot be undistorted here (*m is filled). where names the camera.
- * n_parameters may be NULL. */
+/* Camera model by COLMAP's number or name; -1 when unknown or with a lens that cannot be
+ * undistorted here (*m is filled). where names the camera. n_parameters may be NULL. */
 int ted4_colmap_model_by_id(int64_t id, const char *where, size_t *n_parameters, ted4_message *m);
 int ted4_colmap_model_by_name(const char *name, const char *where, size_t *n_parameters, ted4_message *m);
 

@@ -128,7 +128,8 @@ const char *ted4_rotation_clean(double R[9])
         }
     if (det3(R) < 0)
         return "is a mirror image, expected a rotation";
-    /* Newton's iteration to the nearest rotation, R <- (R + R^-T) / 2, squares the error: 1e-3, 1e-6, 1e-12, rounding. */
+    /* Newton's iteration to the nearest rotation, R <- (R + R^-T) / 2, squares the error: 1e-3,
+     * 1e-6, 1e-12, rounding. */
     for (int k = 0; k < 4; k++) {
         const double d = det3(R);
         cofactors(R, C);

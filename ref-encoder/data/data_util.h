@@ -16,7 +16,8 @@
 
 #define TED4_PI 3.14159265358979323846
 
-/* Fills *m and returns -1, so that a loader can say "return ted4_say(...)". Too long a text is cut. */
+/* Fills *m and returns -1, so that a loader can say "return ted4_say(...)". Too long a text is
+ * cut. */
 int ted4_say(ted4_message *m, const char *format, ...) TED4_PRINTF(2, 3);
 int ted4_say_no_memory(ted4_message *m);
 
@@ -26,13 +27,15 @@ char *ted4_text_copy(const char *text);     /* NULL: no memory */
 int   ted4_is_file(const char *path);
 int   ted4_is_folder(const char *path);
 
-/* The whole file and a zero byte that *size does not count; *bytes owned by the caller. 0, or -1 with *m filled. */
+/* The whole file and a zero byte that *size does not count; *bytes owned by the caller. 0, or -1
+ * with *m filled. */
 int ted4_read_whole(const char *path, uint8_t **bytes, size_t *size, ted4_message *m);
 
 /* How far a given rotation may be from orthonormal; files print 6 digits or more. */
 #define TED4_ROTATION_TOLERANCE 1e-3
 
-/* Checks that R (row-major) is a rotation and makes it one to rounding. NULL, or what is wrong with it. */
+/* Checks that R (row-major) is a rotation and makes it one to rounding. NULL, or what is wrong
+ * with it. */
 const char *ted4_rotation_clean(double R[9]);
 
 /* x = A^-1 b for a row-major 3x3 matrix; -1 when A is singular to working precision. */

@@ -1,4 +1,5 @@
-/* dataset.c - the public face of the loaders: recognises the layout, hands out pixels, prints what was found. See dataset.h.
+/* dataset.c - the public face of the loaders: recognises the layout, hands out pixels, prints
+ * what was found. See dataset.h.
  * SPDX-License-Identifier: BSD-2-Clause */
 #include "data/dataset.h"
 

@@ -1,4 +1,5 @@
-/* frame_times.c - from the times of pictures, in any unit, to frame indices on a uniform grid (spec: frame j of F is t = j / (F - 1)).
+/* frame_times.c - from the times of pictures, in any unit, to frame indices on a uniform grid
+ * (spec: frame j of F is t = j / (F - 1)).
  * SPDX-License-Identifier: BSD-2-Clause */
 #include "data/raw_scene.h"
 
@@ -65,7 +66,8 @@ static uint32_t find_steps(const double *u, size_t n)
     for (double steps = (double)(n - 1); steps <= most; steps++)
         if (fits(u, n, steps, ON_GRID))
             return (uint32_t)steps;
-    /* Times of no common measure: the smallest gap is the step, everything moves to the nearest position. */
+    /* Times of no common measure: the smallest gap is the step, everything moves to the nearest
+     * position. */
     const double steps = ceil(1 / gap - ON_GRID);
     return steps < TED4_MAX_FRAMES && fits(u, n, steps, 0.5) ? (uint32_t)steps : 0;
 }

@@ -1,6 +1,6 @@
 /* image_cache.c - see image_cache.h.
- * An entry is empty, loading (a thread decodes it, others wait) or full. Full entries without pins form a list, oldest first; only
- * they can be evicted.
+ * An entry is empty, loading (a thread decodes it, others wait) or full. Full entries without
+ * pins form a list, oldest first; only they can be evicted.
  * SPDX-License-Identifier: BSD-2-Clause */
 #include "data/image_cache.h"
 
@@ -21,11 +21,11 @@ struct ted4_image_cache {
     pthread_cond_t  loaded;
     entry          *entries;    /* owned, [n + 1]; the last is the head of the idle list: after = oldest, before = newest */
     size_t          n, bound, held;
-    ted4_decode    *decode;
+    ted4_image_decoder    *decode;
     const void     *user;       /* borrowed */
 };
 
-ted4_image_cache *ted4_image_cache_new(size_t n, size_t bound, ted4_decode *decode, const void *user)
+ted4_image_cache *ted4_image_cache_new(size_t n, size_t bound, ted4_image_decoder *decode, const void *user)
 {
     ted4_image_cache *c = calloc(1, sizeof *c);
     entry *entries = calloc(n + 1, sizeof *entries);
@@ -80,7 +80,8 @@ static void join_idle(ted4_image_cache *c, size_t i)
     e[c->n].before = i;
 }
 
-/* With the lock held: drops idle pictures, oldest first, until extra more bytes fit or none is left. */
+/* With the lock held: drops idle pictures, oldest first, until extra more bytes fit or none is
+ * left. */
 static void make_room(ted4_image_cache *c, size_t extra)
 {
     for (;;) {

@@ -8,17 +8,19 @@
 #include <stdint.h>
 #include "data/dataset.h"
 
-/* Makes the bytes of picture i: malloc'ed, *size of them. Called without any lock, for one i by one thread at a time. NULL with *m filled. */
-typedef uint8_t *ted4_decode(const void *user, size_t i, size_t *size, ted4_message *m);
+/* Makes the bytes of picture i: malloc'ed, *size of them. Called without any lock, for one i by
+ * one thread at a time. NULL with *m filled. */
+typedef uint8_t *ted4_image_decoder(const void *user, size_t i, size_t *size, ted4_message *m);
 
 typedef struct ted4_image_cache ted4_image_cache;
 
 /* n pictures, at most bound bytes kept; user is borrowed. NULL: no memory. */
-ted4_image_cache *ted4_image_cache_new(size_t n, size_t bound, ted4_decode *decode, const void *user);
+ted4_image_cache *ted4_image_cache_new(size_t n, size_t bound, ted4_image_decoder *decode, const void *user);
 void              ted4_image_cache_free(ted4_image_cache *c);   /* NULL is fine; no picture may be in use */
 
-/* Safe from several threads. The bytes stay until as many unpins as pins; pinned pictures may exceed the bound. Two threads that want the
- * same picture wait for one decoding. NULL with *m filled. */
+/* Safe from several threads. The bytes stay until as many unpins as pins; pinned pictures may
+ * exceed the bound. Two threads that want the same picture wait for one decoding. NULL with *m
+ * filled. */
 const uint8_t *ted4_image_cache_pin(ted4_image_cache *c, size_t i, ted4_message *m);
 void           ted4_image_cache_unpin(ted4_image_cache *c, size_t i);
 

@@ -1,5 +1,6 @@
-/* image_file.c - see image_file.h. PNG goes through libpng's simplified interface, which needs no setjmp here;
- * headers are read by hand because neither library can give a size without a decoder's set-up.
+/* image_file.c - see image_file.h. PNG goes through libpng's simplified interface, which needs
+ * no setjmp here; headers are read by hand because neither library can give a size without a
+ * decoder's set-up.
  * SPDX-License-Identifier: BSD-2-Clause */
 #include "data/image_file.h"
 
@@ -30,7 +31,8 @@ static int check_size(const char *path, uint32_t width, uint32_t height, ted4_me
     return 0;
 }
 
-/* PNG: IHDR is the first chunk; transparency is in its colour type (bit 2) or in a tRNS chunk before the data. */
+/* PNG: IHDR is the first chunk; transparency is in its colour type (bit 2) or in a tRNS chunk
+ * before the data. */
 static int probe_png(FILE *f, const char *path, ted4_image_header *h, ted4_message *m)
 {
     uint8_t c[8 + 13 + 4];
@@ -55,7 +57,8 @@ static int is_frame_header(int marker)
     return marker >= 0xc0 && marker <= 0xcf && marker != 0xc4 && marker != 0xc8 && marker != 0xcc;
 }
 
-/* JPEG: segments "ff marker length16 ..." up to the frame header, which holds precision, height, width. */
+/* JPEG: segments "ff marker length16 ..." up to the frame header, which holds precision, height,
+ * width. */
 static int probe_jpeg(FILE *f, const char *path, ted4_image_header *h, ted4_message *m)
 {
     uint8_t s[7];

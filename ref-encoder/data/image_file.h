@@ -22,10 +22,12 @@ typedef struct {
     int has_alpha;
 } ted4_image_header;
 
-/* Grey and palette are expanded, 16 bits rounded to 8. 0, or -1 with *m filled and image->bytes NULL. */
+/* Grey and palette are expanded, 16 bits rounded to 8. 0, or -1 with *m filled and image->bytes
+ * NULL. */
 int ted4_image_read(const char *path, ted4_image *image, ted4_message *m);
 
-/* The header only: no pixel is decoded, so a file cut short later on is not noticed. 0, or -1 with *m filled. */
+/* The header only: no pixel is decoded, so a file cut short later on is not noticed. 0, or -1
+ * with *m filled. */
 int ted4_image_probe(const char *path, ted4_image_header *header, ted4_message *m);
 int ted4_image_size(const char *path, int *width, int *height, ted4_message *m);
 

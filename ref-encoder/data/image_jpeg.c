@@ -1,6 +1,7 @@
 /* image_jpeg.c - JPEG to RGB bytes through libjpeg-turbo.
- * The only file with setjmp: libjpeg's error_exit must not return, and this library offers no other way out.
- * Everything that lives across the jump belongs to the caller of the function that sets it.
+ * The only file with setjmp: libjpeg's error_exit must not return, and this library offers no
+ * other way out. Everything that lives across the jump belongs to the caller of the function
+ * that sets it.
  * SPDX-License-Identifier: BSD-2-Clause */
 #include <setjmp.h>
 #include <stdio.h>
@@ -28,7 +29,8 @@ static void leave(j_common_ptr c)
     longjmp(job->out, 1);
 }
 
-/* Missing data would be filled with grey: a refusal is better. Other oddities (stray bytes) do not change pixels. */
+/* Missing data would be filled with grey: a refusal is better. Other oddities (stray bytes) do
+ * not change pixels. */
 static void warn(j_common_ptr c, int level)
 {
     const int code = c->err->msg_code;

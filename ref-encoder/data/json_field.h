@@ -8,17 +8,20 @@
 #include <stddef.h>
 #include "data/dataset.h"
 
-/* Parses a file; duplicate keys are refused. NULL with *m "file:line: what". json_decref() the result. */
+/* Parses a file; duplicate keys are refused. NULL with *m "file:line: what". json_decref() the
+ * result. */
 json_t *ted4_json_read(const char *path, ted4_message *m);
 
-/* where, in all of these: "file: frames[12]" or "file", what messages begin with. *v is left alone when the field is absent.
- * 1: read, 0: absent, -1 with *m filled: of another type or not finite. */
+/* where, in all of these: "file: frames[12]" or "file", what messages begin with. *v is left
+ * alone when the field is absent. 1: read, 0: absent, -1 with *m filled: of another type or not
+ * finite. */
 int ted4_json_number(const json_t *object, const char *where, const char *name, double *v, ted4_message *m);
 
 /* Borrowed text of a string. */
 int ted4_json_text(const json_t *object, const char *where, const char *name, const char **v, ted4_message *m);
 
-/* A matrix given as 4 rows (or, when the last is left out, 3) of 4 numbers; the last must be 0 0 0 1. v: its upper 3x4, row-major. */
+/* A matrix given as 4 rows (or, when the last is left out, 3) of 4 numbers; the last must be 0 0
+ * 0 1. v: its upper 3x4, row-major. */
 int ted4_json_affine(const json_t *object, const char *where, const char *name, double v[12], ted4_message *m);
 
 #endif

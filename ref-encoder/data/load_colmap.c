@@ -1,6 +1,7 @@
-/* load_colmap.c - layout "colmap": images/ and a sparse model in sparse/0 or sparse.
- * Time: the last number in a file's name orders it; each distinct number is one frame. Split: raw_scene.h.
- * Physical camera: COLMAP's camera and the folder below images/ (one folder a camera is COLMAP's own custom).
+/* load_colmap.c - layout "colmap": images/ and a sparse model in sparse/0 or sparse. Time: the
+ * last number in a file's name orders it; each distinct number is one frame. Split: raw_scene.h.
+ * Physical camera: COLMAP's camera and the folder below images/ (one folder a camera is COLMAP's
+ * own custom).
  * SPDX-License-Identifier: BSD-2-Clause */
 #include "data/raw_scene.h"
 
@@ -112,7 +113,8 @@ static int by_number(const void *a, const void *b)
     return (x > y) - (x < y);
 }
 
-/* Numbers in names only order the frames: replaces each by its rank. Names without any: frame 0 when no name has one. */
+/* Numbers in names only order the frames: replaces each by its rank. Names without any: frame 0
+ * when no name has one. */
 static int rank_numbers(ted4_raw_scene *s, ted4_message *m)
 {
     double *v = malloc((s->n_shots + 1) * sizeof *v);

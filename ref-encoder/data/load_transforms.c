@@ -1,7 +1,9 @@
-/* load_transforms.c - layouts "blender" (D-NeRF: transforms_train.json and transforms_test.json with camera_angle_x) and "nerfstudio"
- * (the same pair, or one transforms.json, with fl_x and more).
- * transform_matrix is camera-to-world with axes right, up, backward; the world stays as it is, except that applied_transform, which
- * nerfstudio has put before poses and point cloud alike, is taken off both again.
+/* load_transforms.c - layouts "blender" (D-NeRF: transforms_train.json and transforms_test.json
+ * with camera_angle_x) and "nerfstudio" (the same pair, or one transforms.json, with fl_x and
+ * more).
+ * transform_matrix is camera-to-world with axes right, up, backward; the world stays as it is,
+ * except that applied_transform, which nerfstudio has put before poses and point cloud alike, is
+ * taken off both again.
  * SPDX-License-Identifier: BSD-2-Clause */
 #include "data/raw_scene.h"
 
@@ -130,7 +132,8 @@ static void undo_applied(const transforms *t, const double y[3], double x[3])
         x[j] = (A[j] * d[0] + A[4 + j] * d[1] + A[8 + j] * d[2]) / s2;
 }
 
-/* M = camera-to-world, columns right, up, backward, centre. World to camera: R = rows right, down, forward; t = -R c. */
+/* M = camera-to-world, columns right, up, backward, centre. World to camera: R = rows right,
+ * down, forward; t = -R c. */
 static int read_pose(transforms *t, ted4_shot *shot)
 {
     static const double sign[3] = { 1, -1, -1 };
@@ -156,7 +159,8 @@ static int read_pose(transforms *t, ted4_shot *shot)
     return 0;
 }
 
-/* The file as named, or with the extension that D-NeRF leaves out. Owned by the caller; NULL with *m filled. */
+/* The file as named, or with the extension that D-NeRF leaves out. Owned by the caller; NULL
+ * with *m filled. */
 static char *find_picture(transforms *t)
 {
     static const char *const extensions[] = { "", ".png", ".jpg", ".jpeg", ".PNG", ".JPG" };

@@ -1,6 +1,7 @@
 /* ply_file.c - reads the vertices of a PLY point cloud; see ted4_ply_read in point_cloud.h.
- * Format notes: a text header of lines "format F 1.0", "element NAME COUNT", "property TYPE NAME", closed by "end_header"; then the
- * elements in that order, one vertex a line (ascii) or packed without padding (binary).
+ * Format notes: a text header of lines "format F 1.0", "element NAME COUNT", "property TYPE
+ * NAME", closed by "end_header"; then the elements in that order, one vertex a line (ascii) or
+ * packed without padding (binary).
  * SPDX-License-Identifier: BSD-2-Clause */
 #include "data/point_cloud.h"
 
@@ -156,7 +157,8 @@ static double binary_value(const uint8_t *b, ply_type type)
     }
 }
 
-/* The wanted properties of the next vertex; absent ones keep what they hold. -1: the file ended or is not a number. */
+/* The wanted properties of the next vertex; absent ones keep what they hold. -1: the file ended
+ * or is not a number. */
 static int read_vertex(ply *p, double value[N_WANTED])
 {
     double all[MAX_PROPERTIES];
@@ -188,7 +190,8 @@ static uint8_t colour_byte(double v)
     return (uint8_t)(v > 0 ? (v < 255 ? v + 0.5 : 255) : 0);
 }
 
-/* Factor to 0..255. Float colours have no stated range: 0..1 unless one exceeds 1. Reads ahead and comes back. */
+/* Factor to 0..255. Float colours have no stated range: 0..1 unless one exceeds 1. Reads ahead
+ * and comes back. */
 static double colour_scale(ply *p)
 {
     const size_t start = p->at;

@@ -41,7 +41,8 @@ int ted4_ply_find(ted4_point_cloud *c, const char *folder, ted4_message *m)
     return 0;
 }
 
-/* SplitMix64: a counter through a mixing function, so any seed is as good as another. Uniform in [0, 1). */
+/* SplitMix64: a counter through a mixing function, so any seed is as good as another. Uniform in
+ * [0, 1). */
 static double uniform(uint64_t *state)
 {
     uint64_t z = *state += UINT64_C(0x9e3779b97f4a7c15);

@@ -20,11 +20,13 @@ typedef struct {
 int  ted4_point_cloud_alloc(ted4_point_cloud *c, size_t n);
 void ted4_point_cloud_free(ted4_point_cloud *c);
 
-/* Ascii or binary little-endian PLY whose first element is "vertex" with x y z of any type; red green blue of an integer type are
- * 0..255, of a float type 0..1 or, when any exceeds 1, 0..255; absent: grey. Other properties are skipped. */
+/* Ascii or binary little-endian PLY whose first element is "vertex" with x y z of any type; red
+ * green blue of an integer type are 0..255, of a float type 0..1 or, when any exceeds 1, 0..255;
+ * absent: grey. Other properties are skipped. */
 int ted4_ply_read(ted4_point_cloud *c, const char *path, ted4_message *m);
 
-/* The first of the usual names (points3d.ply points3D.ply fused.ply sparse.ply) that exists in folder. 0 with c->n == 0: none does. */
+/* The first of the usual names (points3d.ply points3D.ply fused.ply sparse.ply) that exists in
+ * folder. 0 with c->n == 0: none does. */
 int ted4_ply_find(ted4_point_cloud *c, const char *folder, ted4_message *m);
 
 #define TED4_RANDOM_POINTS 20000

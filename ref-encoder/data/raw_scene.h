@@ -1,6 +1,7 @@
-/* raw_scene.h - what every layout is read into before it becomes a ted4_dataset: a list of shots and a point cloud.
- * A loader (load_*.c) fills a ted4_raw_scene; build_dataset.c turns it into frames, cameras, split and cache, the same for all layouts.
- * A new layout needs one load_*.c and one line in the table of dataset.c.
+/* raw_scene.h - what every layout is read into before it becomes a ted4_dataset: a list of shots
+ * and a point cloud. A loader (load_*.c) fills a ted4_raw_scene; build_dataset.c turns it into
+ * frames, cameras, split and cache, the same for all layouts. A new layout needs one load_*.c
+ * and one line in the table of dataset.c.
  * SPDX-License-Identifier: BSD-2-Clause */
 #ifndef TED4_RAW_SCENE_H
 #define TED4_RAW_SCENE_H
@@ -10,7 +11,8 @@
 #include "data/point_cloud.h"
 #include "data/undistort.h"
 
-/* Where no list says which pictures are held out: those whose index in the list sorted by name is PHASE modulo EVERY. */
+/* Where no list says which pictures are held out: those whose index in the list sorted by name
+ * is PHASE modulo EVERY. */
 #define TED4_HOLD_OUT_EVERY 8
 #define TED4_HOLD_OUT_PHASE 4
 
@@ -37,8 +39,9 @@ typedef struct {
 
 void ted4_raw_scene_free(ted4_raw_scene *s);
 
-/* Appends a shot for a picture file, which it opens to read the size; takes path over, in failure too. where names the entry for
- * the message. The lens is a pinhole of the file's size without focal length; pose and time are zero. NULL with *m filled. */
+/* Appends a shot for a picture file, which it opens to read the size; takes path over, in
+ * failure too. where names the entry for the message. The lens is a pinhole of the file's size
+ * without focal length; pose and time are zero. NULL with *m filled. */
 ted4_shot *ted4_raw_scene_add(ted4_raw_scene *s, char *path, const char *where, ted4_message *m);
 
 /* Marks shots as test by TED4_HOLD_OUT_*; they must be sorted by name. */
@@ -56,7 +59,8 @@ int ted4_is_transforms(const char *folder);
 /* Takes shots and cloud out of *s. 0, or -1 with *m filled and *d to be freed by the caller. */
 int ted4_build_dataset(ted4_dataset *d, ted4_raw_scene *s, const ted4_dataset_options *o, ted4_message *m);
 
-/* frame_times.c: frame[i] of each of n times, *n_frames, at most TED4_MAX_FRAMES. 0, or -1 with *m filled. */
+/* frame_times.c: frame[i] of each of n times, *n_frames, at most TED4_MAX_FRAMES. 0, or -1 with
+ * *m filled. */
 #define TED4_MAX_FRAMES 36000
 int ted4_frame_times(const double *time, size_t n, uint32_t *frame, uint32_t *n_frames, ted4_message *m);
 

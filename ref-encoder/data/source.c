@@ -56,7 +56,8 @@ uint8_t *ted4_source_decode(const void *sources, size_t i, size_t *size, ted4_me
     if (s->downscale > 1)
         ted4_downscale(image.bytes, image.width, image.height, s->downscale, image.bytes);
     *size = (size_t)(image.width / s->downscale) * (size_t)(image.height / s->downscale) * 3;
-    /* What composite and downscale left unused at the end goes back; a failure to shrink keeps the block. */
+    /* What composite and downscale left unused at the end goes back; a failure to shrink keeps
+     * the block. */
     uint8_t *exact = realloc(image.bytes, *size);
     return exact != NULL ? exact : image.bytes;
 }

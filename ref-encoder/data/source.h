@@ -15,15 +15,17 @@ typedef struct ted4_source {
     uint8_t     background;     /* grey level under transparent pixels */
 } ted4_source;
 
-/* ted4_decode of an array of sources: RGB composited, undistorted, downscaled, in this order. */
+/* ted4_image_decoder of an array of sources: RGB composited, undistorted, downscaled, in this order. */
 uint8_t *ted4_source_decode(const void *sources, size_t i, size_t *size, ted4_message *m);
 
 /* Cube of the random points of a Blender scene: the synthetic objects are made to fit it. */
 #define TED4_BLENDER_HALF_CUBE 1.3
 
-/* Cube that the cameras look at: centre is the point nearest to all optical axes in the least-squares sense, half the side is 0.6 of the
- * median distance of the cameras from it. Where the axes have no common point before the cameras (one camera, parallel or diverging axes)
- * centre lies ahead of the mean camera at the distance that the cameras are spread, at least 1. 0, or -1: no memory. */
+/* Cube that the cameras look at: centre is the point nearest to all optical axes in the
+ * least-squares sense, half the side is 0.6 of the median distance of the cameras from it. Where
+ * the axes have no common point before the cameras (one camera, parallel or diverging axes)
+ * centre lies ahead of the mean camera at the distance that the cameras are spread, at least 1.
+ * 0, or -1: no memory. */
 int ted4_view_box(const ted4_dataset *d, double centre[3], double *half);
 
 #endif

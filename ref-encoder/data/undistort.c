@@ -10,14 +10,16 @@ int ted4_lens_is_pinhole(const ted4_lens *l)
     return l->k1 == 0 && l->k2 == 0 && l->p1 == 0 && l->p2 == 0;
 }
 
-/* Squared radius where d/dr (r + k1 r^3 + k2 r^5) = 1 + 3 k1 s + 5 k2 s^2, s = r^2, first reaches zero; infinite if never. */
+/* Squared radius where d/dr (r + k1 r^3 + k2 r^5) = 1 + 3 k1 s + 5 k2 s^2, s = r^2, first
+ * reaches zero; infinite if never. */
 static double fold_radius2(const ted4_lens *l)
 {
     const double a = 5 * l->k2, b = 3 * l->k1, disc = b * b - 4 * a;
 
     if (disc < 0)
         return INFINITY;
-    /* Roots as 2 / (-b +- sqrt(disc)): valid for a = 0 too. The larger denominator gives the smaller positive root. */
+    /* Roots as 2 / (-b +- sqrt(disc)): valid for a = 0 too. The larger denominator gives the
+     * smaller positive root. */
     const double q = -b + sqrt(disc);
     return q > 0 ? 2 / q : INFINITY;
 }

@@ -1,13 +1,14 @@
-/* undistort.h - lens model of the input pictures, and the way from a decoded file to the pixels a pinhole would have seen.
- * Used by the loaders (lens), by dataset.c (pixels).
+/* undistort.h - lens model of the input pictures, and the way from a decoded file to the pixels
+ * a pinhole would have seen. Used by the loaders (lens), by dataset.c (pixels).
  * SPDX-License-Identifier: BSD-2-Clause */
 #ifndef TED4_UNDISTORT_H
 #define TED4_UNDISTORT_H
 
 #include <stdint.h>
 
-/* Intrinsics of a picture of width x height pixels, centres at + 0.5, and the radial (k1 k2) and tangential (p1 p2) terms
- * common to COLMAP's SIMPLE_RADIAL, RADIAL, OPENCV and to OpenCV. All four zero: a pinhole. */
+/* Intrinsics of a picture of width x height pixels, centres at + 0.5, and the radial (k1 k2) and
+ * tangential (p1 p2) terms common to COLMAP's SIMPLE_RADIAL, RADIAL, OPENCV and to OpenCV. All
+ * four zero: a pinhole. */
 typedef struct {
     int    width, height;
     double fx, fy, cx, cy;
@@ -16,11 +17,13 @@ typedef struct {
 
 int ted4_lens_is_pinhole(const ted4_lens *l);
 
-/* Position in the distorted picture, in pixels, of the ray that a pinhole of the same fx fy cx cy sees at (x, y). Beyond the radius
- * where the radial polynomial stops growing (where it would fold back) the position on that radius is returned. */
+/* Position in the distorted picture, in pixels, of the ray that a pinhole of the same fx fy cx
+ * cy sees at (x, y). Beyond the radius where the radial polynomial stops growing (where it would
+ * fold back) the position on that radius is returned. */
 void ted4_lens_distort(const ted4_lens *l, double x, double y, double *dx, double *dy);
 
-/* in, out: RGB [height][width][3] of the lens's size, not overlapping. Bilinear; beyond the border the nearest border pixel. */
+/* in, out: RGB [height][width][3] of the lens's size, not overlapping. Bilinear; beyond the
+ * border the nearest border pixel. */
 void ted4_undistort(const ted4_lens *l, const uint8_t *in, uint8_t *out);
 
 /* Area average over n x n blocks, rounded; rows and columns that do not fill a block are dropped.

@@ -40,7 +40,8 @@ static mean_camera average(const ted4_dataset *d)
     return a;
 }
 
-/* Least squares: sum of (I - f f^T) x = sum of (I - f f^T) c over axes c + s f. -1: the axes do not determine x. */
+/* Least squares: sum of (I - f f^T) x = sum of (I - f f^T) c over axes c + s f. -1: the axes do
+ * not determine x. */
 static int crossing(const ted4_dataset *d, double x[3])
 {
     double A[9] = { 0 }, b[3] = { 0, 0, 0 }, c[3];
@@ -56,7 +57,8 @@ static int crossing(const ted4_dataset *d, double x[3])
                 b[r] += v * c[s];
             }
     }
-    /* det A = product of three eigenvalues whose sum is 2; the smallest is the mean squared sine of the axes to their mean. */
+    /* det A = product of three eigenvalues whose sum is 2; the smallest is the mean squared sine
+     * of the axes to their mean. */
     const double det = A[0] * (A[4] * A[8] - A[5] * A[7]) - A[1] * (A[3] * A[8] - A[5] * A[6]) +
                        A[2] * (A[3] * A[7] - A[4] * A[6]);
     if (det < PARALLEL)

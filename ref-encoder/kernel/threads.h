@@ -1,4 +1,4 @@
-/* threads.h - the OpenMP team that programs of the encoder side lend to the libraries through base/parallel.h.
+/* threads.h - the team of threads that programs of the encoder side lend to the libraries through base/parallel.h.
  * Used by ted4enc, ted4eval, tests and benchmarks; library code only ever sees a const ted4_parallel *.
  * SPDX-License-Identifier: BSD-2-Clause */
 #ifndef TED4_THREADS_H
@@ -6,9 +6,11 @@
 
 #include "base/parallel.h"
 
-/* Fills *p with a parallel-for over n_threads OpenMP threads; n_threads <= 0: one for each core this process may use. Indices are
- * handed out one at a time, so bodies may be uneven. *p needs no clean-up and may be copied. */
+/* Fills *p with a parallel-for over n_threads threads, the caller's included; n_threads <= 0: one for each core this process may use. Indices are
+ * handed out one at a time, so bodies may be uneven. Only one thread may use *p at a time. Where threads cannot be had there are fewer. */
 void ted4_threads_init(ted4_parallel *p, int n_threads);
+/* Ends the threads. */
+void ted4_threads_finish(ted4_parallel *p);
 
 /* How many threads p runs on. p: NULL (one) or filled by ted4_threads_init. */
 int ted4_threads_count(const ted4_parallel *p);

@@ -6,7 +6,7 @@
  * so each anchor pays for one narrow layer only. Used by generate.c and generate_bwd.c.
  * SPDX-License-Identifier: BSD-2-Clause */
 #include "generate_state.h"
-#include "norm/posenc.h"
+#include "norm/sine.h"
 
 #include <stdlib.h>
 #include <string.h>
@@ -62,28 +62,42 @@ static float dot(size_t n, const float *x, const float *y)
     return sum;
 }
 
+static inline float from_q12(int32_t x)
+{
+    return (float)x * 0x1p-12f;
+}
+
+/* spec 10.1 with 10 octaves: n coordinates in Q24 to 21 n values, stride apart. */
+static void encode(int n, const int32_t *x, size_t stride, float *to)
+{
+    for (int c = 0; c < n; c++, to += stride)
+        *to = from_q12(ted4_floor_shift(x[c], 12));
+    for (int octave = 0; octave < TED4_INR_OCTAVES; octave++)
+        for (int c = 0; c < n; c++, to += 2 * stride) {
+            const uint32_t u = (uint32_t)x[c] << (7 + octave);
+
+            to[0] = from_q12(ted4_sine(u));
+            to[stride] = from_q12(ted4_sine(u + ((uint32_t)1 << 30)));
+        }
+}
+
 /* E(p) of spec 11.3. Positions of an unfinished scene need not be binary16: what is below 2^-24 is cut off. */
 void ted4_gen_encode_points(const float *position, float *to)
 {
     for (int j = 0; j < TED4_LANES; j++) {
-        int32_t x[3], code[TED4_INR_POINT];
+        int32_t x[3];
 
         for (int c = 0; c < 3; c++)
             x[c] = (int32_t)(position[c * TED4_LANES + j] * 0x1p24f);
-        ted4_posenc(x, 3, TED4_INR_OCTAVES, code);
-        for (int c = 0; c < TED4_INR_POINT; c++)
-            to[c * TED4_LANES + j] = (float)code[c] * 0x1p-12f;
+        encode(3, x, TED4_LANES, to + j);
     }
 }
 
 static void encode_time(ted4_gen_motion *m, uint32_t num, uint32_t den)
 {
     const int32_t x = (int32_t)(((uint64_t)num << 24) / den);
-    int32_t code[TED4_INR_TIME];
 
-    ted4_posenc(&x, 1, TED4_INR_OCTAVES, code);
-    for (int c = 0; c < TED4_INR_TIME; c++)
-        m->time[c] = (float)code[c] * 0x1p-12f;
+    encode(1, &x, 1, m->time);
 }
 
 /* spec 11.2. At the last row mix is 0 and the row after it is not touched. */

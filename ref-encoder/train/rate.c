@@ -8,6 +8,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "norm/sine.h"
 #include "rate_math.h"
 
 enum { ALIGN = 16, REDUCE_PIECE = 4096 };       /* floats */
@@ -46,6 +47,8 @@ ted4_rate *ted4_rate_new(const ted4_layout *l)
     if (r == NULL)
         return NULL;
     r->layout = *l;
+    for (int i = 0; i < TED4_RATE_WAVE; i++)
+        atomic_flag_clear(&r->busy[i]);
     int failed = net_init(&r->hyper, &shape->hyper, n_steps);
 
     if (!failed)
@@ -64,8 +67,10 @@ void ted4_rate_free(ted4_rate *r)
 {
     if (r == NULL)
         return;
-    for (size_t i = 0; i < r->n_rooms; i++)
+    for (size_t i = 0; i < TED4_RATE_WAVE; i++) {
         free(r->room[i].storage);
+        free(r->sums[i].d_net);
+    }
     net_finish(&r->hyper);
     ted4_dense_finish(&r->step);
     for (int m = 0; m < TED4_MAX_SLICES; m++)
@@ -140,18 +145,21 @@ static void take_room(arena *a, const ted4_rate *r, ted4_rate_room *room)
     s->kept = take(a, offsets);
     s->kept_bits = take(a, offsets);
     s->d_context = take(a, context);
-    room->d_net = take(a, l->shape.n_nete);
 }
 
 static int rooms(ted4_rate *r, size_t n)
 {
     for (; r->n_rooms < n; r->n_rooms++) {
         ted4_rate_room *room = &r->room[r->n_rooms];
+        ted4_rate_sums *sums = &r->sums[r->n_rooms];
         arena a = { NULL, 0 };
 
         take_room(&a, r, room);
-        room->storage = aligned_alloc(64, a.n * sizeof(float));
         if (room->storage == NULL)
+            room->storage = aligned_alloc(64, a.n * sizeof(float));
+        if (sums->d_net == NULL)
+            sums->d_net = malloc(r->layout.shape.n_nete * sizeof(float));
+        if (room->storage == NULL || sums->d_net == NULL)
             return -1;
         a = (arena){ room->storage, 0 };
         take_room(&a, r, room);
@@ -159,20 +167,27 @@ static int rooms(ted4_rate *r, size_t n)
     return 0;
 }
 
+/* The first free room: few are ever touched, so they stay in the caches. */
+static size_t room_enter(ted4_rate *r)
+{
+    for (size_t i = 0;; i = (i + 1) % r->n_rooms)
+        if (!atomic_flag_test_and_set_explicit(&r->busy[i],
+                                               memory_order_acquire))
+            return i;
+}
+
+static void room_leave(ted4_rate *r, size_t i)
+{
+    atomic_flag_clear_explicit(&r->busy[i], memory_order_release);
+}
+
 /* ---- forward ---- */
 
 static void sine_row(const uint32_t *phase, uint32_t turn, int shift, float *row)
 {
 #pragma omp simd
-    for (int j = 0; j < TED4_LANES; j++) {
-        const uint32_t u = (phase[j] << shift) + turn;
-        const float at = ted4_sin[u >> 22], next = ted4_sin[(u >> 22) + 1];
-        const float part = (float)(int32_t)(u >> 10 & 4095);
-        const float step = __builtin_floorf((next - at) * part * 0x1p-12f
-                                            + 0.5f);
-
-        row[j] = (at + step) * 0x1p-12f;
-    }
+    for (int j = 0; j < TED4_LANES; j++)
+        row[j] = (float)ted4_sine((phase[j] << shift) + turn) * 0x1p-12f;
 }
 
 /* spec 10.1: inputs of the hyperprior, the integers of the text divided by 4096. */
@@ -376,10 +391,10 @@ static void type_bits(const ted4_rate_job *job, ted4_rate_room *room, size_t i,
     }
     if (t == TED4_OFFSET)
         for (size_t k = 0; k < dim / 3; k++)
-            room->bits[t] += masked_sum(s->kept_bits + ted4_row(k),
+            room->sums->bits[t] += masked_sum(s->kept_bits + ted4_row(k),
                                         s->kept + ted4_row(k));
     else
-        room->bits[t] += t == TED4_PHI ? masked_sum(s->phi_bits, s->dynamic)
+        room->sums->bits[t] += t == TED4_PHI ? masked_sum(s->phi_bits, s->dynamic)
                                        : masked_sum(total, s->used);
 }
 
@@ -414,12 +429,14 @@ static void slot_forward(const ted4_rate_job *job, ted4_rate_room *room,
 static void run_chunk(void *arg, size_t chunk)
 {
     const ted4_rate_job *job = arg;
-    ted4_rate_room *room = &job->rate->room[chunk];
+    const size_t entered = room_enter(job->rate);
+    ted4_rate_room *room = &job->rate->room[entered];
     const size_t first = job->first + chunk * TED4_RATE_CHUNK;
     const size_t left = job->in->n_slots - first;
     const size_t n = left < TED4_RATE_CHUNK ? left : TED4_RATE_CHUNK;
 
-    memset(room->bits, 0, sizeof room->bits);
+    room->sums = &job->rate->sums[chunk];
+    memset(room->sums->bits, 0, sizeof room->sums->bits);
     for (size_t i = 0; i < n; i++) {
         steps_forward(job, room, i, first + i);
         if (job->steps_only)
@@ -430,6 +447,7 @@ static void run_chunk(void *arg, size_t chunk)
     }
     if (job->d_attr != NULL && !job->steps_only)
         ted4_rate_weights_backward(job->rate, room, n);
+    room_leave(job->rate, entered);
 }
 
 typedef struct {
@@ -447,7 +465,7 @@ static void reduce_piece(void *arg, size_t piece)
     const size_t end = n - first < REDUCE_PIECE ? n : first + REDUCE_PIECE;
 
     for (size_t k = 0; k < r->n_rooms; k++) {
-        const float *from = r->rate->room[k].d_net;
+        const float *from = r->rate->sums[k].d_net;
 
         for (size_t i = first; i < end; i++)
             r->d_nete[i] += from[i];
@@ -467,7 +485,7 @@ static void run_wave(ted4_rate_job *job, size_t n, const ted4_parallel *p,
         return;
     for (size_t k = 0; k < n; k++)
         for (int t = 0; t < TED4_TYPES; t++)
-            bits[t] += job->rate->room[k].bits[t];
+            bits[t] += job->rate->sums[k].bits[t];
     if (job->d_attr != NULL) {
         reduction sum = { job->rate, n, d_net + l->nete };
 

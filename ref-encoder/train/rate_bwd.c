@@ -189,7 +189,7 @@ void ted4_rate_weights_backward(const ted4_rate *r, ted4_rate_room *room,
 {
     const ted4_layout *l = &r->layout;
     const size_t context = ted4_row(l->shape.dim[TED4_FEATURE]);
-    float *d_net = room->d_net;
+    float *d_net = room->sums->d_net;
 
     memset(d_net, 0, l->shape.n_nete * sizeof *d_net);
     for (int k = 0; k < r->hyper.n; k++)

@@ -5,6 +5,7 @@
 #include "rate_parts.h"
 
 #include "base/bytes.h"
+#include "kernel/int_kernel.h"
 #include "norm/half.h"
 
 int ted4_rate_integer_begin(ted4_rate_integer *x, const ted4_rate_input *in)
@@ -14,8 +15,10 @@ int ted4_rate_integer_begin(ted4_rate_integer *x, const ted4_rate_input *in)
     ted4_arena_init(&x->arena, NULL);
     if (ted4_prior_init(&x->prior, &l->head, &l->shape, &x->arena) == TED4_OK
         && ted4_prior_load(&x->prior, in->net + l->nete, in->shift, NULL)
-           == TED4_OK)
+           == TED4_OK) {
+        x->prior.dense = ted4_select_int_dense();
         return 0;
+    }
     ted4_arena_finish(&x->arena);
     return -1;
 }

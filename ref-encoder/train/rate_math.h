@@ -47,10 +47,9 @@ static inline float ted4_lane_normal(float t)
     return 0.398942280f * ted4_lane_pow2(e < -120.0f ? -120.0f : e);
 }
 
-/* (1 - Phi(t)) / phi(t) for t >= 0, relative error 1e-7: polynomial in y = 1 / (1 + t/4), fitted for least relative error over t in [0, 196]. */
-static inline float ted4_lane_mills(float t)
+/* (1 - Phi(t)) / phi(t) for t >= 0, relative error 1e-7, given y = 1 / (1 + t/4): a polynomial fitted for least relative error over t in [0, 196]. */
+static inline float ted4_lane_mills(float y)
 {
-    const float y = 1.0f / (1.0f + 0.25f * t);
     float p = 0.0510913221f;
 
     p = p * y - 0.209401367f;

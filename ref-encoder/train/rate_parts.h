@@ -4,6 +4,8 @@
 #ifndef TED4_RATE_PARTS_H
 #define TED4_RATE_PARTS_H
 
+#include <stdatomic.h>
+
 #include "base/arena.h"
 #include "model.h"
 #include "norm/prior.h"
@@ -43,22 +45,30 @@ typedef struct {
     float *d_context;           /* [F][32] */
 } ted4_rate_slot;
 
+/* What a chunk adds to the results. */
+typedef struct {
+    float *d_net;               /* owned: [n_nete] */
+    double bits[TED4_TYPES];
+} ted4_rate_sums;
+
+/* Workspace of one running chunk; whichever is free is taken. */
 typedef struct {
     float         *storage;     /* owned: everything below */
     ted4_rate_acts hyper, slice[TED4_MAX_SLICES];
     float         *context;     /* [CHUNK][F][32]: inputs of all slice networks */
     int32_t       *integer;     /* [P][64] outputs of the integer hyperprior */
     ted4_rate_slot slot;
-    float         *d_net;       /* [n_nete] */
-    double         bits[TED4_TYPES];
+    ted4_rate_sums *sums;       /* of the chunk that is being worked on */
 } ted4_rate_room;
 
 struct ted4_rate {
     ted4_layout    layout;
     ted4_rate_net  hyper, slice[TED4_MAX_SLICES];
     ted4_dense     step;        /* the rows v of the hyperprior's last layer; hyper.layer[n - 1] has the others */
-    size_t         n_rooms;
+    size_t         n_rooms;     /* of all three arrays */
     ted4_rate_room room[TED4_RATE_WAVE];
+    atomic_flag    busy[TED4_RATE_WAVE];
+    ted4_rate_sums sums[TED4_RATE_WAVE];
 };
 
 typedef struct ted4_rate_integer {

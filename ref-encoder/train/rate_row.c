@@ -15,6 +15,7 @@
 
 #define SLOT            0x1p-16f        /* eps */
 #define MAX_HALF_WINDOW 4095.0f
+#define NARROW          0.0625f         /* bins narrower than this many sigmas: both formulas are right to 1e-5 */
 #define MAX_DISTANCE    1e9f            /* keeps squares finite; the slope stays right */
 
 /* Probability p of the bin [a - 1/2, a + 1/2] / sigma and its derivatives; no differences of nearly equal numbers anywhere. */
@@ -31,20 +32,33 @@ static inline bin bin_make(float a, float inv_sigma)
     const float C = 0.5f * (f_low + f_high);
     const float S = mh < 0.3f ? C * ted4_lane_tanh_small(mh)
                               : 0.5f * (f_low - f_high);
-    const float q_low = f_low * ted4_lane_mills(low < 0.0f ? -low : low);
-    const float q_high = f_high * ted4_lane_mills(high);
+    const float y_low = 1.0f + 0.25f * (low < 0.0f ? -low : low);
+    const float y_high = 1.0f + 0.25f * high, y = 1.0f / (y_low * y_high);
+    const float q_low = f_low * ted4_lane_mills(y * y_high);
+    const float q_high = f_high * ted4_lane_mills(y * y_low);
     const float tails = low < 0.0f ? 1.0f - (q_low + q_high) : q_low - q_high;
-    /* Euler-Maclaurin for narrow bins: trapezium, first and third derivative. */
+    /* Narrow bins, Euler-Maclaurin: the trapezium and the first derivative. */
     const float d1 = width * C - 2.0f * m * S;
-    const float d3 = (6.0f * m * m * h + 2.0f * h * h * h - 6.0f * h) * C
-                   - (2.0f * m * m * m + 6.0f * m * h * h - 6.0f * m) * S;
-    const float ww = width * width;
-    const float narrow = width * C + ww * (1.0f / 12.0f) * d1
-                       - ww * ww * (1.0f / 720.0f) * d3;
-    const float p = inv_sigma < 0.25f ? narrow : tails;
+    const float narrow = width * C + width * width * (1.0f / 12.0f) * d1;
+    const float p = inv_sigma < NARROW ? narrow : tails;
     const bin b = { p > 0.0f ? p : 0.0f, -2.0f * S * inv_sigma, -d1 };
 
     return b;
+}
+
+/* The bins of a row. Its own loop, so that both vectors of it are under way at the same time: a row is bound by latency. */
+static void bins(const float *restrict a, const float *restrict sigma,
+                 float *restrict p, float *restrict d_a,
+                 float *restrict d_ln_sigma)
+{
+#pragma omp simd
+    for (int j = 0; j < TED4_LANES; j++) {
+        const bin b = bin_make(a[j], 1.0f / sigma[j]);
+
+        p[j] = b.p;
+        d_a[j] = b.d_a;
+        d_ln_sigma[j] = b.d_ln_sigma;
+    }
 }
 
 /* spec 9.4; see the head of this file. u = k - mu. d_u and d_s are derivatives of bits. */
@@ -52,28 +66,37 @@ void ted4_rate_row(const float *restrict u, const float *restrict s,
                    float *restrict bits, float *restrict d_u,
                    float *restrict d_s)
 {
+    float a[TED4_LANES], sigma[TED4_LANES], p[TED4_LANES], dp_da[TED4_LANES],
+          dp_ds[TED4_LANES];
+
 #pragma omp simd
     for (int j = 0; j < TED4_LANES; j++) {
-        const float log_sigma = ted4_lane_limit(s[j], TED4_S_MIN, TED4_S_MAX);
-        const float sigma = ted4_lane_pow2(log_sigma);
         const float abs_u = u[j] < 0.0f ? -u[j] : u[j];
-        const float a = abs_u < MAX_DISTANCE ? abs_u : MAX_DISTANCE;
-        const bin b = bin_make(a, 1.0f / sigma);
-        const float six = 6.0f * sigma;
+
+        a[j] = abs_u < MAX_DISTANCE ? abs_u : MAX_DISTANCE;
+        sigma[j] = ted4_lane_pow2(ted4_lane_limit(s[j], TED4_S_MIN,
+                                                  TED4_S_MAX));
+    }
+    bins(a, sigma, p, dp_da, dp_ds);
+#pragma omp simd
+    for (int j = 0; j < TED4_LANES; j++) {
+        const float six = 6.0f * sigma[j];
         const float w = (six < MAX_HALF_WINDOW ? six : MAX_HALF_WINDOW) + 2.0f;
         const float dw = six < MAX_HALF_WINDOW ? six : 0.0f; /* by ln sigma */
-        const float e = a > w ? 1.0f + (a - w) : 1.0f;
-        const float h = 1.0f / ((a < w ? 1.0f + a / w : 2.0f) * e * e);
-        const float dh_da = a < w ? -h * h / w : -2.0f * h / e;
-        const float dh_dw = a < w ? h * h * a / (w * w) : 2.0f * h / e;
+        const float e = a[j] > w ? 1.0f + (a[j] - w) : 1.0f;
+        const float y = a[j] < w ? w + a[j] : 2.0f * w; /* h = w / (y e^2) */
+        const float r = 1.0f / (y * e);
+        const float h = w * r * r * y;
+        const float dh_da = a[j] < w ? -w * r * r : -2.0f * h * r * y;
+        const float dh_dw = a[j] < w ? a[j] * r * r : 2.0f * h * r * y;
         const float scale = 1.0f - 2.0f * w * SLOT;
-        const float P = scale * b.p + SLOT * h;
+        const float P = scale * p[j] + SLOT * h;
         const float g = -1.0f / (P * TED4_LN2);
-        const float d_a = g * (scale * b.d_a + SLOT * dh_da);
+        const float d_a = g * (scale * dp_da[j] + SLOT * dh_da);
 
         bits[j] = -ted4_lane_log2(P);
         d_u[j] = u[j] < 0.0f ? -d_a : d_a;
-        d_s[j] = g * TED4_LN2 * (scale * b.d_ln_sigma
-               + SLOT * dw * (dh_dw - 2.0f * b.p));
+        d_s[j] = g * TED4_LN2 * (scale * dp_ds[j]
+               + SLOT * dw * (dh_dw - 2.0f * p[j]));
     }
 }

@@ -1,4 +1,4 @@
-/* ray_math.c - sine, arc tangent, sRGB curve and value noise of the project's scenes (see ray_math.h for why not libm).
+/* ray_math.c - sine, angle, sRGB curve and value noise of the project's scenes (see ray_math.h for why not libm).
  * SPDX-License-Identifier: BSD-2-Clause */
 #include "ray_math.h"
 
@@ -31,28 +31,15 @@ double ted4_ray_cos(double turns)
     return ted4_ray_sin(turns + 0.25);
 }
 
-/* Series on |q| <= tan(pi/8), after atan q = pi/4 + atan((q - 1) / (q + 1)); first omitted term 2e-8. */
-static float atan_unit(float q)
-{
-    static const float factor[8] = { 1.0f / 15, 1.0f / 13, 1.0f / 11, 1.0f / 9, 1.0f / 7, 1.0f / 5, 1.0f / 3, 1 };
-    const float high = q > 0.41421356f ? 1.0f : 0.0f;
-    const float r = high > 0 ? (q - 1) / (q + 1) : q, y = r * r;
-    float s = 0;
-
-    for (int k = 0; k < 8; k++)
-        s = factor[k] - s * y;
-    return r * s + high * (float)(RAY_PI / 4);
-}
-
 float ted4_ray_atan2(float y, float x)
 {
     const float ax = fabsf(x), ay = fabsf(y);
     float a = 0;
 
     if (ay > ax)
-        a = (float)(RAY_PI / 2) - atan_unit(ax / ay);
+        a = (float)(RAY_PI / 2) - ray_atan(ax / ay);
     else if (ax > 0)
-        a = atan_unit(ay / ax);
+        a = ray_atan(ay / ax);
     if (x < 0)
         a = (float)RAY_PI - a;
     return y < 0 ? -a : a;

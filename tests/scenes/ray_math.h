@@ -66,6 +66,20 @@ double ted4_ray_cos(double turns);
 /* Angle of (x, y) in radians, (-pi, pi], to about 2e-7. */
 float  ted4_ray_atan2(float y, float x);
 
+/* Arc tangent for 0 <= q < 2.4: a series on |r| <= tan(pi/8), after atan q = pi/4 + atan((q - 1) / (q + 1)) where q exceeds that.
+ * First omitted term 2e-8. */
+static inline float ray_atan(float q)
+{
+    static const float factor[8] = { 1.0f / 15, 1.0f / 13, 1.0f / 11, 1.0f / 9, 1.0f / 7, 1.0f / 5, 1.0f / 3, 1 };
+    const float high = q > 0.41421356f ? 1.0f : 0.0f;
+    const float r = high > 0 ? (q - 1) / (q + 1) : q, y = r * r;
+    float s = 0;
+
+    for (int k = 0; k < 8; k++)
+        s = factor[k] - s * y;
+    return r * s + high * (float)(RAY_PI / 4);
+}
+
 /* A linear colour channel as an sRGB byte, and the bytes of a colour. */
 uint8_t ted4_ray_srgb(float linear);
 void    ted4_ray_bytes(vec3 linear, uint8_t rgb[3]);

@@ -1,5 +1,5 @@
 /* ray_render.c - one ray a sample, an area light, ambient light; stratified 3 x 3 samples, no randomness.
- * Solids are culled by their bounding spheres: in the picture once an image, against the light's cone once a sample.
+ * Solids are culled by their bounding spheres: in the picture once an image, against the cone to the lamp once a small patch of surface.
  * SPDX-License-Identifier: BSD-2-Clause */
 #include "ray_render.h"
 
@@ -7,12 +7,16 @@
 
 #include "ray_texture.h"
 
-/* Samples a pixel side, lamp cells across and along. Sample (i, j) uses cells (i, j) and (i + 3, 2 - j): all 18 over a pixel. */
-enum { SIDE = 3, LAMP_X = 6, LAMP_Y = 3, LAMP_RAYS = 2 };
-static const float near_plane = 0.05f, lift = 0.003f;
+/* Samples a pixel side, and cells a lamp side: each sample of a pixel looks at another cell of the lamp. */
+enum { SIDE = 3 };
+static const float near_plane = 0.05f, lift = 0.003f, patch = 0.1f;
+enum { NOTHING = -2, ROOM = -1 };
 
 /* Half-open pixel rectangle in which an object can show. */
 typedef struct { int x0, x1, y0, y1; } window;
+
+/* Objects a ray may meet. */
+typedef struct { int n, id[TED4_RAY_MAX_OBJECTS]; } crowd;
 
 typedef struct {
     const ted4_ray_world *w;
@@ -21,10 +25,23 @@ typedef struct {
     float  axis[9];                         /* columns right, up, backwards, as rows x y z */
     float  light_reach;                     /* radius of a sphere about the lamp */
     window shows[TED4_RAY_MAX_OBJECTS];
+    crowd  shade;                           /* what can hide the lamp within patch of shade_at on shade_of */
+    vec3   shade_at;
+    int    shade_of;
 } view;
 
-/* Objects a ray may meet. */
-typedef struct { int n, id[TED4_RAY_MAX_OBJECTS]; } crowd;
+/* One of the samples of a pixel: its direction, and its place (i, j) among them. */
+typedef struct {
+    vec3 d;
+    int  i, j;
+} sample;
+
+/* What a ray has met. */
+typedef struct {
+    ted4_ray_surface surface;
+    vec3  albedo;
+    float gloss;
+} matter;
 
 /* Range of pixels that a sphere covers along one axis: tangents of the two lines of sight that touch it in that plane. */
 static void sphere_range(double x, double z, double r, const double scale_middle[2], int limit, int range[2])
@@ -55,7 +72,7 @@ static window window_of(const view *v, const ted4_ray_object *o)
 
 static view view_of(const ted4_ray_world *w, const ted4_ray_camera *c)
 {
-    view v = { .w = w, .c = c };
+    view v = { .w = w, .c = c, .shade_of = NOTHING };
 
     v.eye = v3((float)c->matrix[0][3], (float)c->matrix[1][3], (float)c->matrix[2][3]);
     for (int i = 0; i < 9; i++)
@@ -78,23 +95,25 @@ static crowd showing(const view *v, int x, int y)
     return c;
 }
 
-/* Objects that can hide a part of the lamp from p: bounding sphere against the cone from p to the lamp's bounding sphere. */
-static crowd shading(const view *v, vec3 p, vec3 normal)
+/* Fills v->shade for the surroundings of p on an object: bounding spheres against the cone from there to the lamp's bounding sphere.
+ * No lit point of a convex object is hidden by the object itself. */
+static void find_shade(view *v, vec3 p, int object)
 {
     const vec3 to = v3_sub(v->w->lamp, p);
     const float span = v3_dot(to, to);
-    crowd c = { 0 };
 
+    v->shade_at = p;
+    v->shade_of = object;
+    v->shade.n = 0;
     for (int i = 0; i < v->w->n; i++) {
         const ted4_ray_object *const o = &v->w->object[i];
         const vec3 at = v3_sub(o->centre, p);
         const float t = ray_clamp(v3_dot(at, to) / span, 0, 1);
-        const float r = o->reach + t * v->light_reach;
+        const float r = o->reach + patch + t * v->light_reach;
         const vec3 off = v3_along(at, to, -t);
-        if (v3_dot(off, off) < r * r && v3_dot(at, normal) > -o->reach)
-            c.id[c.n++] = i;
+        if (v3_dot(off, off) < r * r && (i != object || o->kind == RAY_BAR))
+            v->shade.id[v->shade.n++] = i;
     }
-    return c;
 }
 
 static int meets_any(const ted4_ray_world *w, const crowd *c, vec3 from, vec3 d, float far)
@@ -106,43 +125,40 @@ static int meets_any(const ted4_ray_world *w, const crowd *c, vec3 from, vec3 d,
     return 0;
 }
 
-/* Share of the lamp seen from p by sample (i, j) of a pixel. */
-static float lamp_share(const view *v, vec3 p, vec3 normal, int i, int j)
+/* Whether a sample sees its cell of the lamp from p on an object. Cells (i + j, i + 2 j) modulo 3 are a permutation that leaves no
+ * direction in common between the place in the pixel and the place on the lamp. */
+static int sees_lamp(view *v, const sample *k, vec3 p, int object)
 {
-    const crowd c = shading(v, p, normal);
-    int seen = LAMP_RAYS;
+    const int a = (k->i + k->j) % SIDE, b = (k->i + 2 * k->j) % SIDE;
+    const float s = (2 * (float)a + 1) / SIDE - 1, t = (2 * (float)b + 1) / SIDE - 1;
+    const vec3 lamp = v3_along(v3_along(v->w->lamp, v->w->lamp_x, s), v->w->lamp_y, t);
+    const vec3 to = v3_sub(lamp, p), moved = v3_sub(p, v->shade_at);
+    const float far = v3_length(to);
 
-    for (int k = 0; k < LAMP_RAYS && c.n > 0; k++) {
-        const int a = i + SIDE * k, b = k == 0 ? j : SIDE - 1 - j;
-        const float s = (2 * (float)a + 1) / LAMP_X - 1, t = (2 * (float)b + 1) / LAMP_Y - 1;
-        const vec3 lamp = v3_along(v3_along(v->w->lamp, v->w->lamp_x, s), v->w->lamp_y, t);
-        const vec3 to = v3_sub(lamp, p);
-        const float far = v3_length(to);
-        seen -= meets_any(v->w, &c, p, v3_scale(to, 1 / far), far);
-    }
-    return (float)seen / LAMP_RAYS;
+    if (object != v->shade_of || v3_dot(moved, moved) > patch * patch)
+        find_shade(v, p, object);
+    return !meets_any(v->w, &v->shade, p, v3_scale(to, 1 / far), far);
 }
 
 /* Ambient light from above, a weak shadowless light from the cameras' side, the lamp, and a broad highlight of it. */
-static vec3 lit(const view *v, vec3 p, vec3 d, ted4_ray_surface s, vec3 albedo, float gloss, int i, int j)
+static vec3 lit(view *v, const sample *k, const ted4_ray_sight *r, const matter *m)
 {
-    static const float lamp_power = 10.5f;
+    static const float lamp_power = 12.0f;
     const vec3 fill = v3(0.39f, -0.86f, 0.33f), warm = v3(1.0f, 0.96f, 0.90f), sky = v3(0.94f, 0.97f, 1.0f);
-    const vec3 to = v3_sub(v->w->lamp, p);
-    const float d2 = v3_dot(to, to), cosine = v3_dot(s.normal, to) / sqrtf(d2);
-    const float ambient = 0.17f + 0.06f * s.normal.z + 0.16f * ray_max(0, v3_dot(s.normal, fill));
+    const vec3 to = v3_sub(v->w->lamp, r->point), normal = m->surface.normal;
+    const float d2 = v3_dot(to, to), cosine = v3_dot(normal, to) / sqrtf(d2);
+    const float ambient = 0.12f + 0.05f * normal.z + 0.13f * ray_max(0, v3_dot(normal, fill));
     float direct = 0, shine = 0;
 
-    if (cosine > 0) {
-        const float share = lamp_share(v, v3_along(p, s.normal, lift), s.normal, i, j);
-        const vec3 half = v3_unit(v3_sub(v3_scale(to, 1 / sqrtf(d2)), d));
-        float h = ray_max(0, v3_dot(half, s.normal));
-        for (int k = 0; k < 5; k++)
+    if (cosine > 0 && sees_lamp(v, k, v3_along(r->point, normal, lift), r->object)) {
+        const vec3 half = v3_unit(v3_sub(v3_scale(to, 1 / sqrtf(d2)), k->d));
+        float h = ray_max(0, v3_dot(half, normal));
+        for (int i = 0; i < 5; i++)
             h *= h;
-        direct = share * cosine * lamp_power / (d2 + 3);
-        shine = share * gloss * h;
+        direct = cosine * lamp_power / (d2 + 3);
+        shine = m->gloss * h;
     }
-    return v3_add(v3_mul(albedo, v3_add(v3_scale(warm, direct), v3_scale(sky, ambient))),
+    return v3_add(v3_mul(m->albedo, v3_add(v3_scale(warm, direct), v3_scale(sky, ambient))),
                   v3(shine, shine, shine));
 }
 
@@ -172,32 +188,31 @@ static float room_meet(const ted4_ray_world *w, vec3 from, vec3 d, ted4_ray_side
     return t;
 }
 
-/* Sight along d of the nearest of the objects in c, or of the room; (i, j) chooses the part of the lamp. */
-static ted4_ray_sight sight(const view *v, const crowd *c, vec3 d, int i, int j)
+/* Sight of a sample: the nearest of the objects in c, or the room. */
+static ted4_ray_sight sight(view *v, const crowd *c, const sample *k)
 {
     ted4_ray_side side = RAY_FLOOR;
-    ted4_ray_surface s = { 0 };
-    ted4_ray_sight r = { .object = -1 };
-    float t = room_meet(v->w, v->eye, d, &side, &s.normal), gloss = 0;
-    vec3 albedo;
+    ted4_ray_sight r = { .object = ROOM };
+    matter m = { 0 };
+    float t = room_meet(v->w, v->eye, k->d, &side, &m.surface.normal);
 
-    for (int k = 0; k < c->n; k++) {
+    for (int i = 0; i < c->n; i++) {
         const float far = t;
-        t = ted4_ray_meet(&v->w->object[c->id[k]], v->eye, d, near_plane, far);
+        t = ted4_ray_meet(&v->w->object[c->id[i]], v->eye, k->d, near_plane, far);
         if (t < far)
-            r.object = c->id[k];
+            r.object = c->id[i];
     }
     r.depth = t;
-    r.point = v3_along(v->eye, d, t);
-    if (r.object >= 0) {
+    r.point = v3_along(v->eye, k->d, t);
+    if (r.object != ROOM) {
         const ted4_ray_object *const o = &v->w->object[r.object];
-        s = ted4_ray_surface_at(o, r.point);
-        albedo = ted4_ray_texture(o, s.material, v->w->seed + 31u * (uint32_t)o->texture);
-        gloss = o->gloss;
+        m.surface = ted4_ray_surface_at(o, r.point);
+        m.albedo = ted4_ray_texture(o, m.surface.material, v->w->seed + 31u * (uint32_t)o->texture);
+        m.gloss = o->gloss;
     } else {
-        albedo = ted4_ray_room_texture(side, r.point, v->w->seed);
+        m.albedo = ted4_ray_room_texture(side, r.point, v->w->seed);
     }
-    r.colour = lit(v, r.point, d, s, albedo, gloss, i, j);
+    r.colour = lit(v, k, &r, &m);
     return r;
 }
 
@@ -209,15 +224,15 @@ static vec3 direction(const view *v, double px, double py)
     return ray_rotate(v->axis, v3_unit(d));
 }
 
-static vec3 pixel(const view *v, int x, int y)
+static vec3 pixel(view *v, int x, int y)
 {
     const crowd c = showing(v, x, y);
     vec3 sum = v3(0, 0, 0);
 
-    for (int k = 0; k < SIDE * SIDE; k++) {
-        const int i = k % SIDE, j = k / SIDE;
-        const vec3 d = direction(v, x + (i + 0.5) / SIDE, y + (j + 0.5) / SIDE);
-        const vec3 s = sight(v, &c, d, i, j).colour;
+    for (int n = 0; n < SIDE * SIDE; n++) {
+        const int i = n % SIDE, j = n / SIDE;
+        const sample k = { direction(v, x + (i + 0.5) / SIDE, y + (j + 0.5) / SIDE), i, j };
+        const vec3 s = sight(v, &c, &k).colour;
         sum = v3_add(sum, v3(ray_min(s.x, 1), ray_min(s.y, 1), ray_min(s.z, 1)));
     }
     return v3_scale(sum, 1.0f / (SIDE * SIDE));
@@ -225,7 +240,7 @@ static vec3 pixel(const view *v, int x, int y)
 
 void ted4_ray_render(const ted4_ray_world *w, const ted4_ray_camera *c, uint8_t *rgb)
 {
-    const view v = view_of(w, c);
+    view v = view_of(w, c);
 
     for (int y = 0; y < c->height; y++) {
         for (int x = 0; x < c->width; x++)
@@ -235,9 +250,18 @@ void ted4_ray_render(const ted4_ray_world *w, const ted4_ray_camera *c, uint8_t 
 
 ted4_ray_sight ted4_ray_look(const ted4_ray_world *w, const ted4_ray_camera *c, double px, double py)
 {
-    const view v = view_of(w, c);
-    const vec3 d = direction(&v, px, py);
-    const crowd near = showing(&v, ray_floor((float)px), ray_floor((float)py));
+    view v = view_of(w, c);
+    const crowd around = showing(&v, ray_floor((float)px), ray_floor((float)py));
+    sample k = { direction(&v, px, py), 0, 0 };
+    ted4_ray_sight r = { 0 };
+    vec3 sum = v3(0, 0, 0);
 
-    return sight(&v, &near, d, SIDE / 2, SIDE / 2);
+    for (k.i = 0; k.i < SIDE; k.i++) {
+        for (k.j = 0; k.j < SIDE; k.j++) {
+            r = sight(&v, &around, &k);
+            sum = v3_add(sum, r.colour);
+        }
+    }
+    r.colour = v3_scale(sum, 1.0f / (SIDE * SIDE));
+    return r;
 }

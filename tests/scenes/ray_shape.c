@@ -4,10 +4,10 @@
 
 /* Edge radius of the bar; and the surface is met within this distance of it. */
 #define BAR_ROUND    0.02f
-#define BAR_NEAR     0.0004f
+#define BAR_NEAR     0.0006f
 /* Bending and twisting stretch space by less than 1 / 0.62 for |bend| size.x < 0.2 and |twist| size.x < 0.05 (test_scene checks). */
 #define BAR_STRIDE   0.62f
-#define BAR_LEAVE    1.5f
+#define BAR_LEAVE    2.5f
 #define BAR_STEPS    160
 #define BEND_LEAST   1e-5f
 
@@ -35,18 +35,17 @@ static void swap_if(float *a, float *b)
 }
 
 /* Interval [*in, *out] of t in which the ray is between two parallel planes, intersected with what is there already.
- * A ray inside the slab and parallel to it gives infinities, which is right. */
+ * A ray inside the slab and parallel to it changes nothing. */
 static void slab(float low, float high, float o, float d, float *in, float *out)
 {
-    float a, b;
+    const float inverse = 1 / d;
+    float a = (low - o) * inverse, b = (high - o) * inverse;
 
     if (d == 0) {
         if (o < low || o > high)
             *in = INFINITY;
         return;
     }
-    a = (low - o) / d;
-    b = (high - o) / d;
     swap_if(&a, &b);
     *in = ray_max(*in, a);
     *out = ray_min(*out, b);
@@ -103,14 +102,28 @@ static float bend_of(const ted4_ray_object *o)
     return o->bend;
 }
 
-/* With k the curvature, the axis is the circle about (1/k, 0) in the xz plane. A point at relative radius h = |(1 - k x, k z)| has
- * arc length atan2(k z, 1 - k x) / k and distance (1 - h) / k from the axis, written without cancellation below. */
-static vec3 unbend(const ted4_ray_object *o, vec3 p)
-{
-    const float k = bend_of(o), a = 1 - k * p.x, b = k * p.z;
-    const float h = sqrtf(a * a + b * b);
+/* Where a point lies about the axis of a bar. With k the curvature, the axis is the circle about (1/k, 0) in the xz plane;
+ * a = 1 - k x and b = k z are coordinates from there in radii, h their length; u = (1 - h) / k, written without cancellation, is the
+ * distance inwards from the axis within the plane. */
+typedef struct { float k, a, b, h, u; } arc;
 
-    return v3((2 * p.x - k * (p.x * p.x + p.z * p.z)) / (1 + h), p.y, ted4_ray_atan2(b, a) / k);
+static arc arc_at(const ted4_ray_object *o, vec3 p)
+{
+    arc r = { .k = bend_of(o) };
+
+    r.a = 1 - r.k * p.x;
+    r.b = r.k * p.z;
+    r.h = sqrtf(r.a * r.a + r.b * r.b);
+    r.u = (2 * p.x - r.k * (p.x * p.x + p.z * p.z)) / (1 + r.h);
+    return r;
+}
+
+/* The angle of (a, b) over k, the angle being 2 atan(b / (a + h)); good up to 130 degrees, and the bar ends before. */
+static float arc_length(const arc *r)
+{
+    const float half = ray_atan(ray_min(fabsf(r->b) / (r->a + r->h), 2));
+
+    return 2 * (r->b < 0 ? -half : half) / r->k;
 }
 
 /* Sine and cosine of the twist at arc length s, below a quarter turn either way: a series to x^11, whose first omitted term is 6e-8. */
@@ -124,44 +137,42 @@ static void twist_at(const ted4_ray_object *o, float s, float sine_cosine[2])
     sine_cosine[1] = sqrtf(ray_max(0, 1 - sine * sine));
 }
 
-vec3 ted4_ray_unbend(const ted4_ray_object *o, vec3 local)
+static vec3 straight(const ted4_ray_object *o, const arc *r, float y)
 {
-    const vec3 q = unbend(o, local);
+    const float s = arc_length(r);
     float t[2];
 
-    twist_at(o, q.z, t);
-    return v3(t[1] * q.x + t[0] * q.y, t[1] * q.y - t[0] * q.x, q.z);
+    twist_at(o, s, t);
+    return v3(t[1] * r->u + t[0] * y, t[1] * y - t[0] * r->u, s);
+}
+
+vec3 ted4_ray_unbend(const ted4_ray_object *o, vec3 local)
+{
+    const arc r = arc_at(o, local);
+
+    return straight(o, &r, local.y);
 }
 
 vec3 ted4_ray_rebend(const ted4_ray_object *o, vec3 q)
 {
-    const double k = (double)bend_of(o), arc = k * (double)q.z / (2 * RAY_PI);
+    const double k = (double)bend_of(o), turns = k * (double)q.z / (2 * RAY_PI);
     float t[2];
 
     twist_at(o, q.z, t);
     const double h = 1 - k * (double)(t[1] * q.x - t[0] * q.y);
-    return v3((float)((1 - h * ted4_ray_cos(arc)) / k), t[0] * q.x + t[1] * q.y,
-              (float)(h * ted4_ray_sin(arc) / k));
+    return v3((float)((1 - h * ted4_ray_cos(turns)) / k), t[0] * q.x + t[1] * q.y,
+              (float)(h * ted4_ray_sin(turns) / k));
 }
 
-/* Distance to a rounded box in the straight coordinates. */
-static float bar_distance(const ted4_ray_object *o, vec3 p)
+/* Distance to a rounded box in the straight coordinates of a point with second coordinate y. */
+static float bar_distance(const ted4_ray_object *o, const arc *r, float y0)
 {
-    const vec3 q = ted4_ray_unbend(o, p);
+    const vec3 q = straight(o, r, y0);
     const float x = fabsf(q.x) - o->size.x + BAR_ROUND, y = fabsf(q.y) - o->size.y + BAR_ROUND;
     const float z = fabsf(q.z - o->size.z / 2) - o->size.z / 2 + BAR_ROUND;
     const vec3 out = v3(ray_max(x, 0), ray_max(y, 0), ray_max(z, 0));
 
     return v3_length(out) + ray_min(ray_max(x, ray_max(y, z)), 0) - BAR_ROUND;
-}
-
-/* Distance to the ring that the bar's round hull lies on: exact, and cheap as it needs neither arc length nor twist. */
-static float ring_distance(const ted4_ray_object *o, vec3 p, float hull)
-{
-    const float k = bend_of(o), a = 1 - k * p.x, b = k * p.z;
-    const float u = (2 * p.x - k * (p.x * p.x + p.z * p.z)) / (1 + sqrtf(a * a + b * b));
-
-    return sqrtf(u * u + p.y * p.y) - hull;
 }
 
 static float hull_radius(const ted4_ray_object *o)
@@ -179,6 +190,8 @@ static float bar_step(float r, float before, float last, float hull)
     return r * (before > 0 ? BAR_LEAVE : BAR_STRIDE);
 }
 
+/* Outside its round hull, the distance to the ring that the hull is a part of is exact and cheap, as it needs neither arc length nor
+ * twist; inside, the distance of the bar itself is used. */
 static float bar_meet(const ted4_ray_object *o, vec3 p, vec3 d, float near, float far)
 {
     const float hull = hull_radius(o);
@@ -187,12 +200,13 @@ static float bar_meet(const ted4_ray_object *o, vec3 p, vec3 d, float near, floa
     box_span(o->low, o->high, p, d, &in, &out);
     for (int i = 0; i < BAR_STEPS && in < out; i++) {
         const vec3 at = v3_along(p, d, in);
-        float r = ring_distance(o, at, hull);
+        const arc a = arc_at(o, at);
+        float r = sqrtf(a.u * a.u + at.y * at.y) - hull;
         if (r >= BAR_ROUND) {
             before = 0;
             step = r;
         } else {
-            r = bar_distance(o, at);
+            r = bar_distance(o, &a, at.y);
             if (r < BAR_NEAR && before > r)
                 in += r * step / (before - r);
             if (r < BAR_NEAR)
@@ -205,20 +219,22 @@ static float bar_meet(const ted4_ray_object *o, vec3 p, vec3 d, float near, floa
     return far;
 }
 
-/* The axis lies in the xz plane; the margin covers the section turned any way, and what the axis does between samples. */
+/* Box about two curves on the hull, left and right of the axis in its plane; sideways the hull's radius is enough.
+ * The margin exceeds what a curve leaves the chord between two of its points by. */
 static void bar_bound(ted4_ray_object *o)
 {
-    const float r = hull_radius(o);
+    const float r = hull_radius(o), margin = 0.01f;
     const int steps = 16;
 
-    o->low = o->high = v3(0, 0, 0);
-    for (int i = 1; i <= steps; i++) {
-        const vec3 p = ted4_ray_rebend(o, v3(0, 0, o->size.z * (float)i / (float)steps));
-        o->low = v3(ray_min(o->low.x, p.x), 0, ray_min(o->low.z, p.z));
-        o->high = v3(ray_max(o->high.x, p.x), 0, ray_max(o->high.z, p.z));
+    o->low = v3(INFINITY, -r, INFINITY);
+    o->high = v3(-INFINITY, r, -INFINITY);
+    for (int i = 0; i <= 2 * steps + 1; i++) {
+        ted4_ray_object plain = *o;
+        plain.twist = 0;
+        const vec3 p = ted4_ray_rebend(&plain, v3(i % 2 ? r : -r, 0, o->size.z * (float)(i / 2) / (float)steps));
+        o->low = v3(ray_min(o->low.x, p.x - margin), -r, ray_min(o->low.z, p.z - margin));
+        o->high = v3(ray_max(o->high.x, p.x + margin), r, ray_max(o->high.z, p.z + margin));
     }
-    o->low = v3_sub(o->low, v3(r, r, r));
-    o->high = v3_add(o->high, v3(r, r, r));
 }
 
 void ted4_ray_bound(ted4_ray_object *o)
@@ -281,17 +297,19 @@ static vec3 cylinder_normal(vec3 size, vec3 p)
     return v3(p.x / r, p.y / r, 0);
 }
 
-/* Gradient of the distance by central differences. */
+/* Gradient of the distance from its values at the corners of a small tetrahedron. */
 static vec3 bar_normal(const ted4_ray_object *o, vec3 p)
 {
-    const float e = 0.002f;
-    const vec3 g = v3(
-        bar_distance(o, v3(p.x + e, p.y, p.z)) - bar_distance(o, v3(p.x - e, p.y, p.z)),
-        bar_distance(o, v3(p.x, p.y + e, p.z)) - bar_distance(o, v3(p.x, p.y - e, p.z)),
-        bar_distance(o, v3(p.x, p.y, p.z + e)) - bar_distance(o, v3(p.x, p.y, p.z - e)));
-    const float length = v3_length(g);
+    static const float corner[4][3] = { { 1, 1, 1 }, { 1, -1, -1 }, { -1, 1, -1 }, { -1, -1, 1 } };
+    vec3 g = v3(0, 0, 0);
 
-    return length > 0 ? v3_scale(g, 1 / length) : v3(0, 0, 1);
+    for (int i = 0; i < 4; i++) {
+        const vec3 e = v3(corner[i][0], corner[i][1], corner[i][2]);
+        const vec3 at = v3_along(p, e, 0.001f);
+        const arc a = arc_at(o, at);
+        g = v3_along(g, e, bar_distance(o, &a, at.y));
+    }
+    return v3_unit(g);
 }
 
 ted4_ray_surface ted4_ray_surface_at(const ted4_ray_object *o, vec3 point)

@@ -218,9 +218,9 @@ static vec3 planks(float x, float y, uint32_t seed)
     const float joint = courses(x, y, size, seed, &tone);
     const float fibre = 0.6f * ted4_ray_noise2(x * 3, y * 22 + 40 * tone, seed + 1) +
                         0.4f * ted4_ray_noise2(x * 8 + 9 * tone, y * 44, seed + 2);
-    const vec3 c = v3_mix(ray_paint(.58f, .44f, .33f), ray_paint(.84f, .70f, .52f), tone);
+    const vec3 c = v3_mix(ray_paint(.66f, .52f, .40f), ray_paint(.84f, .70f, .53f), tone);
 
-    return v3_mix(v3_scale(c, 0.66f + 0.6f * fibre), ray_paint(.22f, .15f, .11f), joint);
+    return v3_mix(v3_scale(c, 0.74f + 0.45f * fibre), ray_paint(.22f, .15f, .11f), joint);
 }
 
 /* Vertical stripes with a lattice of diamonds. */

@@ -22,9 +22,9 @@ void ted4_ray_world_empty(ted4_ray_world *w, uint32_t seed)
 {
     w->room_low = v3(-2.7f, -4.2f, 0);
     w->room_high = v3(2.7f, 2.1f, 3.2f);
-    w->lamp = v3(-2.2f, -1.9f, 2.55f);
-    w->lamp_x = v3(0.55f, 0, 0);
-    w->lamp_y = v3(0, 0.55f, 0);
+    w->lamp = v3(-2.3f, -1.7f, 2.7f);
+    w->lamp_x = v3(0.24f, 0, 0);
+    w->lamp_y = v3(0, 0.24f, 0);
     w->n = 0;
     w->seed = seed;
 }

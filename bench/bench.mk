@@ -1,0 +1,20 @@
+# Benchmarks; included by the Makefile. The plain build answers what vectors bring: the same sources for any x86-64, with the
+# compiler's vectoriser off (vector types become SSE2 operations).
+RASTER_BENCH = ref-decoder/render/raster.c ref-decoder/render/project.c ref-decoder/render/bin.c ref-decoder/render/blend.c \
+        ref-encoder/train/raster_bwd.c ref-encoder/train/blend_bwd.c ref-encoder/train/project_bwd.c \
+        ref-encoder/kernel/threads.c bench/bench_raster.c
+
+$B/bench/bench_raster.o: FPFLAGS = $(FREE)
+$B/bench/bench_raster: $(RASTER_BENCH:%.c=$B/%.o)
+	$(CC) -fopenmp $(LDFLAGS) $^ -o $@ -lm
+
+$B/plain/%.o: %.c
+	@mkdir -p $(@D)
+	$(CC) $(CFLAGS_ALL) $(FREE) -O2 -fno-tree-vectorize -march=x86-64 -mtune=generic -Wno-psabi -c $< -o $@
+$B/plain/bench_raster: $(RASTER_BENCH:%.c=$B/plain/%.o)
+	$(CC) -fopenmp $(LDFLAGS) $^ -o $@ -lm
+
+bench-raster: $B/bench/bench_raster $B/plain/bench_raster
+	$B/bench/bench_raster $B/plain/bench_raster
+
+.PHONY: bench-raster

@@ -1,0 +1,208 @@
+/* bench_raster.c - how long forward and backward of the rasteriser take on random scenes at 480x270 with about 30 blended Gaussians a pixel.
+ * Usage: bench_raster [OTHER]. OTHER: the same program from a plain scalar build; its times are taken in turn with ours and the ratio
+ * is printed. bench_raster -t N: one line "forward_ms backward_ms" for N Gaussians and one thread, for that purpose.
+ * SPDX-License-Identifier: BSD-2-Clause */
+#include <stdio.h>
+#include <string.h>
+#include <time.h>
+
+#include "kernel/threads.h"
+#include "raster_scene.h"
+#include "render/raster_state.h"
+#include "train/raster_bwd.h"
+
+enum { WIDTH = 480, HEIGHT = 270, N_PIXELS = WIDTH * HEIGHT, ROUNDS = 20, OTHER_ROUNDS = 3 };
+
+/* Standard deviation in pixels that gives about 30 blended Gaussians a pixel. */
+#define SIGMA(n) (0.52 * sqrt(1e5 / (double)(n)))
+
+typedef struct {
+    double forward, backward;   /* ms */
+} times;
+
+typedef struct {
+    scene            s;
+    ted4_splats      g;
+    ted4_view        v;
+    ted4_raster     *r;
+    ted4_splat_grads grads;
+    scene            d;
+    float           *image, *d_image;
+} bench;
+
+static double now_ms(void)
+{
+    struct timespec t;
+
+    clock_gettime(CLOCK_MONOTONIC, &t);
+    return (double)t.tv_sec * 1e3 + (double)t.tv_nsec * 1e-6;
+}
+
+static void *must(void *p)
+{
+    if (p == NULL) {
+        fputs("bench_raster: no memory\n", stderr);
+        exit(3);
+    }
+    return p;
+}
+
+static void bench_init(bench *b, size_t n)
+{
+    uint64_t seed = 1;
+
+    b->v = scene_view(WIDTH, HEIGHT);
+    b->s = scene_random(n, &b->v, SIGMA(n), 1);
+    must(b->s.value);
+    for (size_t i = 0; i < n; i++)
+        scene_place(&b->s, &b->v, i, scene_range(&seed, 0, WIDTH), scene_range(&seed, 0, HEIGHT), scene_range(&seed, 1, 8));
+    b->g = scene_splats(&b->s);
+    b->d = (scene){ n, must(malloc(n * SCENE_PARAMS * sizeof(float))) };
+
+    b->grads = (ted4_splat_grads){ .opacity = scene_param(&b->d, SCENE_OPACITY, 0), .mean2d = must(malloc(n * sizeof(float))),
+                                   .visible = must(malloc(n)) };
+    for (int k = 0; k < 3; k++) {
+        b->grads.mean[k]   = scene_param(&b->d, SCENE_MEAN + k, 0);
+        b->grads.scale[k]  = scene_param(&b->d, SCENE_SCALE + k, 0);
+        b->grads.colour[k] = scene_param(&b->d, SCENE_COLOUR + k, 0);
+    }
+    for (int k = 0; k < 4; k++)
+        b->grads.rot[k] = scene_param(&b->d, SCENE_ROT + k, 0);
+    b->r = must(ted4_raster_new());
+    b->image   = must(malloc(3 * N_PIXELS * sizeof(float)));
+    b->d_image = must(malloc(3 * N_PIXELS * sizeof(float)));
+    for (size_t i = 0; i < 3 * N_PIXELS; i++)
+        b->d_image[i] = (float)scene_range(&seed, -1, 1);
+}
+
+static void bench_free(bench *b)
+{
+    ted4_raster_free(b->r);
+    scene_free(&b->s);
+    scene_free(&b->d);
+    free(b->grads.mean2d);
+    free(b->grads.visible);
+    free(b->image);
+    free(b->d_image);
+}
+
+static times once(bench *b, const ted4_parallel *p)
+{
+    const double t0 = now_ms();
+    int bad = ted4_raster_forward(b->r, &b->g, &b->v, p, 1, b->image);
+    const double t1 = now_ms();
+
+    bad |= ted4_raster_backward(b->r, &b->g, &b->v, p, b->d_image, &b->grads);
+    if (bad)
+        must(NULL);
+    return (times){ t1 - t0, now_ms() - t1 };
+}
+
+/* The least of each: whatever else the machine does can only add. */
+static times best(const times *t, size_t n)
+{
+    times b = t[0];
+
+    for (size_t i = 1; i < n; i++) {
+        b.forward  = fmin(b.forward, t[i].forward);
+        b.backward = fmin(b.backward, t[i].backward);
+    }
+    return b;
+}
+
+/* Pairs of pixel and Gaussian: count[0] that contribute, count[1] that are computed, from what the forward pass left. */
+static void count_pairs(const bench *b, size_t count[2])
+{
+    const uint32_t     *first = b->r->tile_first.data, *owner = b->r->owner.data;
+    const ted4_reach   *reach = b->r->reach.data;
+    const ted4_splat2d *splat = b->r->splat2d.data;
+
+    count[0] = count[1] = 0;
+    for (uint32_t tile = 0; tile < b->r->tiles_x * b->r->tiles_y; tile++)
+        for (int k = 0; k < TED4_TILE_BLOCKS; k++) {
+            ted4_vf px, py, alpha, w;
+
+            ted4_block_pixels(tile % b->r->tiles_x, tile / b->r->tiles_x, k, &px, &py);
+            ted4_vf t = ted4_vf_keep((px < (float)WIDTH) & (py < (float)HEIGHT), ted4_vf_all(1.0f));
+            for (uint32_t i = 0; i < first[tile + 1] - first[tile]; i++)
+                if (reach[ted4_group_first(tile, first[tile]) + i / TED4_GROUP].block[k] >> i % TED4_GROUP & 1) {
+                    ted4_blend_step(&splat[owner[first[tile] + i]], px, py, &t, &alpha, &w);
+                    count[0] += (size_t)__builtin_popcount(ted4_vi_bits(w > 0.0f));
+                    count[1] += TED4_VEC;
+                }
+        }
+}
+
+/* The other build's times for n Gaussians. */
+static times ask_other(const char *program, size_t n)
+{
+    char  command[4096];
+    times t;
+
+    snprintf(command, sizeof command, "'%s' -t %zu", program, n);
+    FILE *f = must(popen(command, "r"));
+    if (fscanf(f, "%lf %lf", &t.forward, &t.backward) != 2) {
+        fprintf(stderr, "bench_raster: %s gave no times\n", program);
+        exit(3);
+    }
+    pclose(f);
+    return t;
+}
+
+static void print_times(const char *what, times t, size_t pairs)
+{
+    printf("  %-22s forward %7.2f ms (%5.2f ns a pair)  backward %7.2f ms (%5.2f)  both %7.2f ms\n", what, t.forward,
+           t.forward * 1e6 / (double)pairs, t.backward, t.backward * 1e6 / (double)pairs, t.forward + t.backward);
+}
+
+static void report(size_t n, const char *other)
+{
+    ted4_parallel two;
+    times one_t[ROUNDS], two_t[ROUNDS], other_t[OTHER_ROUNDS];
+    bench b;
+
+    ted4_threads_init(&two, 2);
+    bench_init(&b, n);
+    once(&b, NULL);
+    size_t count[2];
+    count_pairs(&b, count);
+    const size_t pairs = count[0];
+    printf("%zu Gaussians, %dx%d: %.1f blended a pixel, %zu visible, %zu instances, %.0f %% of lanes blended\n", n, WIDTH, HEIGHT,
+           (double)pairs / N_PIXELS, b.r->n_visible, b.r->n_instances, 100.0 * (double)pairs / (double)count[1]);
+    for (int i = 0; i < ROUNDS; i++) {
+        one_t[i] = once(&b, NULL);
+        two_t[i] = once(&b, &two);
+        if (other != NULL && i < OTHER_ROUNDS)
+            other_t[i] = ask_other(other, n);
+    }
+    const times t1 = best(one_t, ROUNDS), t2 = best(two_t, ROUNDS);
+    print_times("1 thread", t1, pairs);
+    print_times("2 threads", t2, pairs);
+    printf("  speed-up by 2 threads  %.2f\n", (t1.forward + t1.backward) / (t2.forward + t2.backward));
+    if (other != NULL) {
+        const times t = best(other_t, OTHER_ROUNDS);
+
+        print_times("plain build, 1 thread", t, pairs);
+        printf("  ratio, 1 thread        forward %.1f  backward %.1f\n", t.forward / t1.forward, t.backward / t1.backward);
+    }
+    bench_free(&b);
+}
+
+int main(int argc, char **argv)
+{
+    if (argc == 3 && strcmp(argv[1], "-t") == 0) {
+        times t[OTHER_ROUNDS];
+        bench b;
+
+        bench_init(&b, (size_t)strtoul(argv[2], NULL, 10));
+        for (int i = 0; i < OTHER_ROUNDS; i++)
+            t[i] = once(&b, NULL);
+        const times m = best(t, OTHER_ROUNDS);
+        printf("%.6f %.6f\n", m.forward, m.backward);
+        bench_free(&b);
+        return 0;
+    }
+    report(10000, argc > 1 ? argv[1] : NULL);
+    report(100000, argc > 1 ? argv[1] : NULL);
+    return 0;
+}

@@ -1,0 +1,104 @@
+/* container.c - spec 5: chunk frames, hashes, order.
+ * SPDX-License-Identifier: BSD-2-Clause */
+#include "read/container.h"
+
+#include <string.h>
+#include <xxhash.h>
+#include "norm/limits.h"
+
+static int chunk_of(const uint8_t *type)
+{
+    int i = 0;
+
+    while (i < TED4_CHUNKS && memcmp(type, ted4_chunk_type[i], 4) != 0)
+        i++;
+    return i;
+}
+
+static int legal_type(const uint8_t *type)
+{
+    for (int i = 0; i < 4; i++)
+        if (!((type[i] >= '0' && type[i] <= '9')
+              || (type[i] >= 'A' && type[i] <= 'Z')
+              || (type[i] >= 'a' && type[i] <= 'z')))
+            return 0;
+    return 1;
+}
+
+/* R-CON-003: may a known chunk follow the one before (-1: none)? BANK and the number of TILE are judged in pass 2. */
+static int may_follow(int before, int type)
+{
+    switch (type) {
+    case TED4_POSN: return before == TED4_NETR || before == TED4_BANK;
+    case TED4_TILE: return before == TED4_POSN || before == TED4_TILE;
+    default:        return before == type - 1;
+    }
+}
+
+/* R-CON-002 to R-CON-004, for a chunk that fits. *before: the last known chunk. */
+static void judge(ted4_reader *r, size_t at, const ted4_frame *f, int *before)
+{
+    ted4_coder  *c = &r->base;
+    const size_t hashed = TED4_FRAME_HEAD_SIZE + f->size;
+    const int    type = chunk_of(f->type), known = type < TED4_CHUNKS;
+
+    ted4_require(c, XXH3_64bits(r->data + at, hashed)
+                    == ted4_load64(r->data + at + hashed),
+                 TED4_E_CON_CHUNK_HASH, at);
+    ted4_require(c, legal_type(f->type), TED4_E_CON_RESERVED, at);
+    ted4_require(c, known ? may_follow(*before, type) : *before >= 0,
+                 TED4_E_CON_CHUNK_ORDER, at);
+    ted4_require(c, known ? f->flags == TED4_FLAG_CRITICAL
+                          : f->flags <= (TED4_FLAG_CRITICAL | TED4_FLAG_COPY),
+                 TED4_E_CON_RESERVED, at + 4);
+    ted4_require(c, known || (f->flags & TED4_FLAG_CRITICAL) == 0,
+                 TED4_E_CON_UNKNOWN_CRITICAL, at);
+    if (known)
+        *before = type;
+}
+
+/* spec 5.3 */
+void ted4_container_check(ted4_reader *r)
+{
+    ted4_coder *c = &r->base;
+    ted4_frame  f;
+    uint8_t     level = 0;
+    int         before = -1;
+    size_t      at;
+
+    ted4_walk_file_header(c, &level);
+    if (c->error.code != TED4_OK)
+        return;
+    ted4_require(c, r->end <= ted4_limits_of(level)->file_bytes,
+                 TED4_E_LVL_EXCEEDED, c->pos - 1);
+    while (c->error.code == TED4_OK && before != TED4_ENDS) {
+        at = c->pos;
+        memset(&f, 0, sizeof f);
+        ted4_walk_frame(c, &f);
+        if (c->error.code != TED4_OK)
+            return;
+        if (r->end - c->pos < (uint64_t)f.size + TED4_FRAME_HASH_SIZE) {
+            ted4_fail(&c->error, TED4_E_CON_TRUNCATED, r->end);
+            return;
+        }
+        judge(r, at, &f, &before);
+        c->pos += f.size + (size_t)TED4_FRAME_HASH_SIZE;
+    }
+    ted4_require(c, c->pos == r->end, TED4_E_CON_TRAILING, c->pos);
+}
+
+ted4_chunk_place ted4_container_next(ted4_reader *r)
+{
+    ted4_coder      *c = &r->base;
+    ted4_chunk_place p;
+    ted4_frame       f;
+
+    memset(&f, 0, sizeof f);
+    p.at = c->pos;
+    ted4_walk_frame(c, &f);
+    p.type = chunk_of(f.type);
+    p.payload = c->pos;
+    p.end = c->pos + f.size;
+    c->pos = p.end + TED4_FRAME_HASH_SIZE;
+    return p;
+}

@@ -1,0 +1,266 @@
+/* decode.c - ted4_decode(): pass 1, then pass 2 chunk by chunk, tiles in batches (spec 5.3).
+ * SPDX-License-Identifier: BSD-2-Clause */
+#include <string.h>
+#include "kernel/int_kernel.h"
+#include "norm/scene.h"
+#include "read/container.h"
+#include "read/inflate.h"
+
+enum { BATCH = 16 };
+
+/* A tile on its way. Each has its own coder and work memory. */
+typedef struct {
+    ted4_reader reader;
+    unsigned    number;
+    void       *work;
+} job;
+
+typedef struct {
+    const ted4_options *o;      /* never NULL */
+    ted4_scene  *s;
+    ted4_reader  file;          /* stands between chunks; its error is the verdict */
+    ted4_prior   prior;
+    job         *jobs;
+    unsigned     n_room, n_queued, n_tiles;   /* n_tiles: seen so far */
+} decoder;
+
+/* Memory has run out while the byte at offset at was due. */
+static void no_memory(decoder *d, size_t at)
+{
+    ted4_fail(&d->file.base.error, TED4_E_LIMIT_MEMORY, at);
+}
+
+static ted4_reader payload_reader(decoder *d, const ted4_chunk_place *p)
+{
+    ted4_reader r;
+
+    ted4_reader_init(&r, d->file.data, p->payload, p->end, 0);
+    r.arena = &d->s->arena;
+    r.base.trace = d->o->trace;
+    r.base.trace_user = d->o->trace_user;
+    return r;
+}
+
+/* Takes over the verdict on a payload, which has to be used up. */
+static void finish_payload(decoder *d, ted4_reader *r)
+{
+    ted4_require(&r->base, r->base.pos == r->end, TED4_E_CON_PAYLOAD_SIZE,
+                 r->base.pos);
+    if (r->base.error.code != TED4_OK)
+        ted4_fail(&d->file.base.error, r->base.error.code,
+                  r->base.error.offset);
+}
+
+static void read_head(decoder *d, const ted4_chunk_place *p)
+{
+    ted4_reader r = payload_reader(d, p);
+
+    ted4_walk_header(&r.base, &d->s->head, &d->s->shape, d->s->level,
+                     d->file.end);
+    finish_payload(d, &r);
+}
+
+/* Values get memory only when the payload, of which bytes are left for mode and values, can hold them. */
+static void prepare_blob(decoder *d, ted4_blob *b, size_t n, size_t bytes,
+                         size_t at)
+{
+    const size_t left = bytes > 0 ? bytes - 1 : 0;
+
+    b->n = n;
+    if (left / 4 >= n || !ted4_inflate_impossible(left, n))
+        if (!ted4_blob_alloc(d->s, b, n))
+            no_memory(d, at);
+}
+
+static void read_nete(decoder *d, const ted4_chunk_place *p)
+{
+    const ted4_shape *shape = &d->s->shape;
+    const size_t      bytes = p->end - p->payload;
+    ted4_reader       r = payload_reader(d, p);
+
+    prepare_blob(d, &d->s->nete, shape->n_nete,
+                 bytes > shape->n_units ? bytes - shape->n_units : 0,
+                 p->payload);
+    if (!ted4_scene_alloc_shifts(d->s)
+        || ted4_prior_init(&d->prior, &d->s->head, shape, &d->s->arena)
+           != TED4_OK)
+        no_memory(d, p->payload);
+    d->prior.dense = ted4_select_int_dense();
+    if (d->file.base.error.code != TED4_OK)
+        return;
+    ted4_walk_nete(&r.base, d->s, &d->prior);
+    finish_payload(d, &r);
+}
+
+static void read_blob(decoder *d, const ted4_chunk_place *p,
+                      const char *element, ted4_blob *b, size_t n)
+{
+    ted4_reader r = payload_reader(d, p);
+
+    prepare_blob(d, b, n, p->end - p->payload, p->payload);
+    if (d->file.base.error.code != TED4_OK)
+        return;
+    ted4_walk_blob(&r.base, element, b);
+    finish_payload(d, &r);
+}
+
+/* As many work areas as tiles can run at once; fewer when memory is short. */
+static void prepare_jobs(decoder *d, size_t at)
+{
+    ted4_arena  *a = &d->s->arena;
+    const size_t size = ted4_tile_work_size(d->s);
+    unsigned     want = d->s->shape.n_tiles < BATCH ? d->s->shape.n_tiles
+                                                    : BATCH;
+
+    if (d->o->parallel == NULL || d->o->trace != NULL)
+        want = 1;
+    d->jobs = ted4_arena_alloc(a, want, sizeof *d->jobs);
+    if (d->jobs == NULL) {
+        no_memory(d, at);
+        return;
+    }
+    for (; d->n_room < want; d->n_room++) {
+        d->jobs[d->n_room].work = ted4_arena_alloc(a, 1, size);
+        if (d->jobs[d->n_room].work == NULL)
+            break;
+    }
+    if (d->n_room == 0)
+        no_memory(d, at);
+}
+
+static void read_positions(decoder *d, const ted4_chunk_place *p)
+{
+    ted4_reader r = payload_reader(d, p);
+
+    if ((p->end - p->payload) / 6 >= d->s->head.n_anchors) {
+        if (!ted4_scene_alloc_anchors(d->s))
+            no_memory(d, p->payload);
+        else
+            prepare_jobs(d, p->payload);
+        if (d->file.base.error.code != TED4_OK)
+            return;
+    }
+    ted4_walk_positions(&r.base, d->s);
+    finish_payload(d, &r);
+}
+
+static void run_job(void *arg, size_t i)
+{
+    decoder *d = arg;
+    job     *j = &d->jobs[i];
+
+    ted4_walk_tile(&j->reader.base, d->s, &d->prior, j->number, j->work);
+}
+
+/* Decodes the queued tiles. The first one in the file that fails has the lowest offset. */
+static void run_batch(decoder *d)
+{
+    ted4_parallel_for(d->o->parallel, d->n_queued, run_job, d);
+    for (unsigned i = 0; i < d->n_queued; i++)
+        finish_payload(d, &d->jobs[i].reader);
+    d->n_queued = 0;
+}
+
+static void read_tile(decoder *d, const ted4_chunk_place *p)
+{
+    job *j;
+
+    if (d->n_tiles == d->s->shape.n_tiles) {
+        run_batch(d);
+        ted4_fail(&d->file.base.error, TED4_E_CON_CHUNK_ORDER, p->at);
+        return;
+    }
+    j = &d->jobs[d->n_queued++];
+    j->reader = payload_reader(d, p);
+    j->number = d->n_tiles++;
+    if (d->n_queued == d->n_room)
+        run_batch(d);
+}
+
+static void read_ends(decoder *d, const ted4_chunk_place *p)
+{
+    ted4_reader r = payload_reader(d, p);
+
+    run_batch(d);
+    if (d->n_tiles < d->s->shape.n_tiles)
+        ted4_fail(&d->file.base.error, TED4_E_CON_CHUNK_ORDER, p->at);
+    if (d->file.base.error.code != TED4_OK)
+        return;
+    ted4_scene_hash(d->s, d->s->hash);
+    ted4_walk_ends(&r.base, d->s->hash);
+    finish_payload(d, &r);
+}
+
+static void read_chunk(decoder *d, const ted4_chunk_place *p)
+{
+    ted4_scene *s = d->s;
+
+    if (p->type == TED4_BANK ? s->shape.n_bank == 0
+        : p->type == TED4_POSN && s->shape.n_bank > 0 && s->bank.n == 0) {
+        ted4_fail(&d->file.base.error, TED4_E_CON_CHUNK_ORDER, p->at);
+        return;
+    }
+    switch (p->type) {
+    case TED4_HEAD: read_head(d, p); break;
+    case TED4_NETE: read_nete(d, p); break;
+    case TED4_NETR: read_blob(d, p, "netr", &s->netr, s->shape.n_netr); break;
+    case TED4_BANK: read_blob(d, p, "bank", &s->bank, s->shape.n_bank); break;
+    case TED4_POSN: read_positions(d, p); break;
+    case TED4_TILE: read_tile(d, p); break;
+    case TED4_ENDS: read_ends(d, p); break;
+    default:
+        if (p->end > p->payload)
+            ted4_trace(&d->file.base, p->payload, "ancillary", 0,
+                       (int64_t)(p->end - p->payload));
+    }
+}
+
+/* spec 5.3, pass 2 */
+static void read_payloads(decoder *d)
+{
+    ted4_coder *c = &d->file.base;
+
+    c->pos = 0;
+    c->trace = d->o->trace;
+    c->trace_user = d->o->trace_user;
+    ted4_walk_file_header(c, &d->s->level);
+    while (c->error.code == TED4_OK && c->pos < d->file.end) {
+        const ted4_chunk_place p = ted4_container_next(&d->file);
+
+        read_chunk(d, &p);
+        for (int i = 0; i < TED4_FRAME_HASH_SIZE; i++)
+            ted4_trace(c, p.end + (size_t)i, "chunk_hash", i,
+                       d->file.data[p.end + (size_t)i]);
+    }
+    for (unsigned i = 0; i < d->n_room; i++)
+        ted4_arena_release(&d->s->arena, d->jobs[i].work);
+    ted4_arena_release(&d->s->arena, d->jobs);
+}
+
+ted4_status ted4_decode(const void *data, size_t size, const ted4_options *o,
+                        ted4_scene **scene, ted4_error *e)
+{
+    static const ted4_options standard = { { NULL, NULL, NULL }, NULL, 0,
+                                           NULL, NULL };
+    decoder d;
+
+    memset(&d, 0, sizeof d);
+    *scene = NULL;
+    d.o = o != NULL ? o : &standard;
+    ted4_reader_init(&d.file, data, 0, size, 1);
+    ted4_container_check(&d.file);
+    if (d.file.base.error.code == TED4_OK) {
+        d.s = ted4_scene_empty(o);
+        if (d.s == NULL)
+            no_memory(&d, 0);
+        else
+            read_payloads(&d);
+    }
+    if (d.file.base.error.code == TED4_OK)
+        *scene = d.s;
+    else
+        ted4_scene_free(d.s);
+    if (e != NULL)
+        *e = d.file.base.error;
+    return d.file.base.error.code;
+}

@@ -1,0 +1,143 @@
+/* camera_list.c - see camera_list.h.
+ * SPDX-License-Identifier: BSD-2-Clause */
+#include "camera_list.h"
+
+#include <jansson.h>
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+
+enum { MAX_SIDE = 16384, TIME_DENOMINATOR = 10000000 };
+
+/* Rotations may carry the rounding of a text file. */
+static const double ROTATION_TOLERANCE = 1e-3;
+
+static int get_number(const json_t *o, const char *key, float *out)
+{
+    const json_t *const v = json_object_get(o, key);
+
+    *out = (float)json_number_value(v);
+    return json_is_number(v) && isfinite(*out);
+}
+
+static int get_numbers(const json_t *o, const char *key, size_t n, float *out)
+{
+    const json_t *const list = json_object_get(o, key);
+
+    if (!json_is_array(list) || json_array_size(list) != n)
+        return 0;
+    for (size_t i = 0; i < n; i++) {
+        const json_t *const v = json_array_get(list, i);
+
+        out[i] = (float)json_number_value(v);
+        if (!json_is_number(v) || !isfinite(out[i]))
+            return 0;
+    }
+    return 1;
+}
+
+static int get_side(const json_t *o, const char *key, int *out)
+{
+    const json_t *const v = json_object_get(o, key);
+    const json_int_t n = json_integer_value(v);
+
+    if (!json_is_integer(v) || n < 1 || n > MAX_SIDE)
+        return 0;
+    *out = (int)n;
+    return 1;
+}
+
+static int is_rotation(const float R[9])
+{
+    for (int i = 0; i < 3; i++) {
+        for (int j = 0; j < 3; j++) {
+            double dot = 0.0;
+
+            for (int k = 0; k < 3; k++)
+                dot += (double)R[3 * i + k] * (double)R[3 * j + k];
+            if (fabs(dot - (i == j)) > ROTATION_TOLERANCE)
+                return 0;
+        }
+    }
+    return 1;
+}
+
+static int get_time(const json_t *o, ted4_listed_camera *c)
+{
+    const json_t *const frame = json_object_get(o, "frame"), *const time = json_object_get(o, "time");
+
+    if ((frame != NULL) == (time != NULL))
+        return 0;
+    if (frame != NULL) {
+        const json_int_t n = json_integer_value(frame);
+
+        c->has_frame = 1;
+        c->frame = (uint32_t)n;
+        return json_is_integer(frame) && n >= 0 && n < UINT32_MAX;
+    }
+    if (json_is_string(time))
+        return ted4_time_parse(json_string_value(time), &c->time) == 0;
+    const double t = json_number_value(time);
+
+    if (!json_is_number(time) || !(t >= 0.0 && t <= 1.0))
+        return 0;
+    c->time = (ted4_time){ (uint32_t)(t * TIME_DENOMINATOR + 0.5), TIME_DENOMINATOR };
+    return 1;
+}
+
+/* What is wrong with the object, or NULL. */
+static const char *get_camera(const json_t *o, ted4_listed_camera *c)
+{
+    ted4_view *const v = &c->view;
+
+    if (!json_is_object(o))
+        return "is not an object";
+    if (!get_side(o, "width", &v->width) || !get_side(o, "height", &v->height))
+        return "needs width and height, whole numbers from 1 to 16384";
+    if (!get_number(o, "fx", &v->fx) || !get_number(o, "fy", &v->fy) || !(v->fx > 0.0f && v->fy > 0.0f))
+        return "needs fx and fy above 0";
+    if (!get_number(o, "cx", &v->cx) || !get_number(o, "cy", &v->cy))
+        return "needs cx and cy";
+    if (!get_numbers(o, "R", 9, v->R) || !is_rotation(v->R))
+        return "needs R, a rotation of 9 numbers";
+    if (!get_numbers(o, "t", 3, v->t))
+        return "needs t, 3 numbers";
+    return get_time(o, c) ? NULL : "needs either frame, a whole number, or time, from 0 to 1";
+}
+
+int ted4_camera_list_load(ted4_camera_list *l, const char *path, char *why, size_t why_size)
+{
+    json_error_t e;
+    json_t *const list = json_load_file(path, JSON_REJECT_DUPLICATES, &e);
+    const char *wrong = NULL;
+
+    *l = (ted4_camera_list){ NULL, 0 };
+    if (list == NULL) {
+        snprintf(why, why_size, "line %d: %s", e.line, e.text);
+        return -1;
+    }
+    if (!json_is_array(list) || json_array_size(list) == 0)
+        wrong = "the file is not a list of cameras";
+    else
+        l->camera = calloc(json_array_size(list), sizeof *l->camera);
+    if (wrong == NULL && l->camera == NULL)
+        wrong = "out of memory";
+    if (wrong != NULL)
+        snprintf(why, why_size, "%s", wrong);
+    for (; wrong == NULL && l->n < json_array_size(list); l->n++) {
+        wrong = get_camera(json_array_get(list, l->n), &l->camera[l->n]);
+        if (wrong != NULL)
+            snprintf(why, why_size, "camera %zu %s", l->n, wrong);
+    }
+    json_decref(list);
+    if (wrong == NULL)
+        return 0;
+    ted4_camera_list_free(l);
+    return -1;
+}
+
+void ted4_camera_list_free(ted4_camera_list *l)
+{
+    free(l->camera);
+    *l = (ted4_camera_list){ NULL, 0 };
+}

@@ -1,0 +1,30 @@
+/* camera_list.h - cameras.json: the views ted4dec is asked to draw.
+ * A list of objects with width, height, fx, fy, cx, cy (pixels; centres of pixels at + 0.5), R (9 numbers, row by row) and t (3 numbers) with x_cam = R x + t,
+ * axes right, down, forward; and frame (a number) or time (a number in [0, 1], or a string as --time takes it).
+ * Used by ted4dec.
+ * SPDX-License-Identifier: BSD-2-Clause */
+#ifndef TED4_CAMERA_LIST_H
+#define TED4_CAMERA_LIST_H
+
+#include <stddef.h>
+
+#include "render/raster.h"
+#include "times.h"
+
+typedef struct {
+    ted4_view  view;                    /* near_z and background are not set */
+    int        has_frame;               /* frame counts, otherwise time */
+    uint32_t   frame;
+    ted4_time  time;
+} ted4_listed_camera;
+
+typedef struct {
+    ted4_listed_camera *camera;         /* owned */
+    size_t              n;
+} ted4_camera_list;
+
+/* 0, or -1 with why filled and the list empty. */
+int  ted4_camera_list_load(ted4_camera_list *l, const char *path, char *why, size_t why_size);
+void ted4_camera_list_free(ted4_camera_list *l);
+
+#endif

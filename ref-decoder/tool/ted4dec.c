@@ -1,0 +1,251 @@
+/* ted4dec.c - decodes a .ted4 file: checks it, writes its Gaussians for viewers, draws it.
+ * SPDX-License-Identifier: BSD-2-Clause */
+#include <errno.h>
+#include <getopt.h>
+#include <inttypes.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <time.h>
+
+#include "actions.h"
+#include "arguments.h"
+#include "cli.h"
+#include "output.h"
+#include "sh.h"
+
+enum { OPT_OUTPUT, OPT_FRAMES, OPT_TIME, OPT_CENTRE, OPT_SH_DEGREE, OPT_KEEP_ALL, OPT_RENDER, OPT_CAMERA, OPT_HASH, OPT_TEST, OPT_TRACE,
+       OPT_THREADS, OPT_FORCE, OPT_JSON, OPT_QUIET, OPT_VERBOSE, OPT_HELP, OPT_VERSION, N_OPTIONS };
+
+enum { MAX_THREADS = 1024 };
+
+static const ted4_argument OPTIONS[N_OPTIONS] = {
+    [OPT_OUTPUT]    = { 'o', "output", "FILE", "write Gaussians, one file a frame; the name ends in a format below and may hold one %d" },
+    [OPT_FRAMES]    = { 0, "frames", "A:B:STEP", "frames A to B - 1 by STEP; parts may be missing; A alone: that frame. Default: all" },
+    [OPT_TIME]      = { 0, "time", "T", "one time from 0 to 1 instead, as 0.25 or 7/30" },
+    [OPT_CENTRE]    = { 0, "camera-centre", "X,Y,Z", "where --hash and -o look from, in world coordinates. Default 0,0,0" },
+    [OPT_SH_DEGREE] = { 0, "sh-degree", "N", "spherical harmonics that stand for view-dependent colours, 0 to 3. Default 0" },
+    [OPT_KEEP_ALL]  = { 0, "keep-all", NULL, "also write Gaussians whose opacity is below 1/255" },
+    [OPT_RENDER]    = { 0, "render", "FILE.png", "draw the cameras of --camera; the name may hold one %d" },
+    [OPT_CAMERA]    = { 0, "camera", "FILE.json", "list of {width, height, fx, fy, cx, cy, R[9], t[3], frame or time}" },
+    [OPT_HASH]      = { 0, "hash", NULL, "print the hash of the decoded integers and, for --frames or --time, of these queries" },
+    [OPT_TEST]      = { 0, "test", NULL, "only decode, checking everything (also what happens when nothing else is asked for)" },
+    [OPT_TRACE]     = { 0, "trace", NULL, "print every syntax element: byte offset, name, index, value" },
+    [OPT_THREADS]   = { 'j', "threads", "N", "threads; 0: all cores. Default 0" },
+    [OPT_FORCE]     = { 'f', "force", NULL, "overwrite files" },
+    [OPT_JSON]      = { 0, "json", NULL, "results as one JSON object" },
+    [OPT_QUIET]     = { 'q', "quiet", NULL, "errors and warnings only" },
+    [OPT_VERBOSE]   = { 'v', "verbose", NULL, "say more" },
+    [OPT_HELP]      = { 'h', "help", NULL, "this text" },
+    [OPT_VERSION]   = { 'V', "version", NULL, "print the version" },
+};
+
+static const ted4_command COMMAND = {
+    "ted4dec", "FILE.ted4 [options]        (- reads standard input)",
+    "Decodes a TED4 file: Gaussians of any time as files for viewers, pictures, hashes.",
+    OPTIONS, N_OPTIONS,
+    "Exit codes: 0 fine, 1 file refused, 2 fine with warnings, 3 usage, input, output or resources.\n"
+};
+
+static int usage_error(const char *text, const char *value)
+{
+    fprintf(stderr, "ted4dec: %s: %s (see --help)\n", text, value);
+    return TED4_EXIT_TOOL;
+}
+
+/* 0: fine, else an exit code. */
+static int set_number(const char *name, const char *value, long high, int *out)
+{
+    long n;
+
+    if (ted4_arguments_number(value, 0, high, &n) != 0)
+        return usage_error(name, value);
+    *out = (int)n;
+    return 0;
+}
+
+static int set_option(ted4_settings *s, int option, const char *value)
+{
+    switch (option) {
+    case OPT_OUTPUT:
+        s->output = value;
+        s->writer = ted4_format_find(value);
+        return s->writer == NULL ? usage_error("no such format", value) : ted4_pattern_count(value) < 0 ? usage_error("bad file name", value) : 0;
+    case OPT_FRAMES:
+        s->has_range = 1;
+        return ted4_range_parse(value, &s->range) != 0 ? usage_error("--frames", value) : 0;
+    case OPT_TIME:
+        s->has_time = 1;
+        return ted4_time_parse(value, &s->time) != 0 ? usage_error("--time", value) : 0;
+    case OPT_CENTRE:
+        return ted4_arguments_floats(value, 3, s->centre) != 0 ? usage_error("--camera-centre", value) : 0;
+    case OPT_SH_DEGREE:
+        return set_number("--sh-degree", value, TED4_SH_MAX_DEGREE, &s->sh_degree);
+    case OPT_RENDER:
+        s->render = value;
+        return ted4_pattern_count(value) < 0 ? usage_error("bad file name", value) : 0;
+    case OPT_CAMERA:
+        s->cameras = value;
+        return 0;
+    case OPT_THREADS:
+        return set_number("--threads", value, MAX_THREADS, &s->threads);
+    default:
+        break;
+    }
+    int *const flag[N_OPTIONS] = {
+        [OPT_KEEP_ALL] = &s->keep_all, [OPT_HASH] = &s->hash, [OPT_TEST] = &s->test, [OPT_TRACE] = &s->trace, [OPT_FORCE] = &s->force,
+        [OPT_JSON] = &s->json, [OPT_QUIET] = &s->quiet, [OPT_VERBOSE] = &s->verbose
+    };
+
+    *flag[option] = 1;
+    return 0;
+}
+
+static int check_settings(const ted4_settings *s)
+{
+    if (s->has_range && s->has_time)
+        return usage_error("--frames and --time", "only one of them");
+    if ((s->render != NULL) != (s->cameras != NULL))
+        return usage_error("--render and --camera", "both or none");
+    if (s->test && (s->output != NULL || s->render != NULL))
+        return usage_error("--test", "writes no file");
+    return 0;
+}
+
+static void print_help(void)
+{
+    ted4_arguments_help(&COMMAND, stdout);
+    fputs("\nFormats of -o:\n", stdout);
+    for (size_t i = 0; ted4_formats[i] != NULL; i++)
+        printf("  %-8s %s\n", ted4_formats[i]->suffix, ted4_formats[i]->text);
+}
+
+/* -1: go on; else an exit code. */
+static int parse(ted4_settings *s, int argc, char **argv)
+{
+    const char *value;
+
+    *s = (ted4_settings){ .range = { 0, UINT32_MAX, 1 } };
+    for (int i; (i = ted4_arguments_next(&COMMAND, argc, argv, &value)) != TED4_ARGUMENTS_END;) {
+        if (i == TED4_ARGUMENTS_BAD)
+            return TED4_EXIT_TOOL;
+        if (i == OPT_HELP) {
+            print_help();
+            return TED4_EXIT_FINE;
+        }
+        if (i == OPT_VERSION) {
+            puts("ted4dec " TED4_VERSION " (specification " TED4_SPEC_VERSION ")");
+            return TED4_EXIT_FINE;
+        }
+        const int code = set_option(s, i, value);
+
+        if (code != 0)
+            return code;
+    }
+    if (optind + 1 != argc)
+        return usage_error("arguments", "exactly one file");
+    s->input = argv[optind];
+    const int code = check_settings(s);
+
+    return code != 0 ? code : -1;
+}
+
+static void print_element(void *user, size_t offset, const char *element, int64_t index, int64_t value)
+{
+    (void)user;
+    printf("%zu %s[%" PRId64 "] = %" PRId64 "\n", offset, element, index, value);
+}
+
+static double seconds(void)
+{
+    struct timespec t;
+
+    clock_gettime(CLOCK_MONOTONIC, &t);
+    return (double)t.tv_sec + 1e-9 * (double)t.tv_nsec;
+}
+
+/* Decodes the input; the scene is needed no longer once there is a recon. */
+static int open_scene(ted4_session *s)
+{
+    const ted4_settings *const set = s->set;
+    const ted4_options options = { .parallel = &s->parallel, .trace = set->trace ? print_element : NULL };
+    ted4_error e = { TED4_OK, 0 };
+    ted4_scene *scene;
+    size_t size;
+    uint8_t *const data = ted4_read_file(set->input, &size);
+    const double start = seconds();
+    int code = TED4_EXIT_FINE;
+
+    if (data == NULL) {
+        fprintf(stderr, "ted4dec: %s: %s\n", set->input, strerror(errno));
+        return TED4_EXIT_TOOL;
+    }
+    if (ted4_decode(data, size, &options, &scene, &e) != TED4_OK) {
+        code = ted4_report("ted4dec", set->input, &e, set->json);
+    } else {
+        ted4_scene_info(scene, &s->info);
+        if (set->verbose)
+            fprintf(stderr, "ted4dec: %s: %zu bytes, %" PRIu32 " anchors, %zu Gaussians, %" PRIu32 " frames, decoded in %.1f ms\n", set->input, size,
+                    s->info.n_anchors, s->info.n_gaussians, s->info.frames, 1e3 * (seconds() - start));
+        e.code = ted4_recon_new(&s->recon, scene, &options);
+        if (e.code != TED4_OK)
+            code = ted4_report("ted4dec", set->input, &e, set->json);
+        ted4_scene_free(scene);
+    }
+    free(data);
+    return code;
+}
+
+static int run(ted4_session *s)
+{
+    const ted4_settings *const set = s->set;
+    int code = open_scene(s);
+
+    if (code == TED4_EXIT_FINE)
+        code = ted4_action_check(s);
+    if (code == TED4_EXIT_FINE && set->hash)
+        code = ted4_action_hash(s);
+    if (code == TED4_EXIT_FINE && set->output != NULL)
+        code = ted4_action_export(s);
+    if (code == TED4_EXIT_FINE && set->render != NULL)
+        code = ted4_action_render(s);
+    if (code != TED4_EXIT_FINE || !set->json)
+        return code;
+
+    json_t *const name = json_string(set->input);       /* NULL: not UTF-8 */
+
+    json_object_set_new(s->report, "file", name != NULL ? name : json_null());
+    json_object_set_new(s->report, "verdict", json_string("valid"));
+    json_object_set_new(s->report, "frames", json_integer(s->info.frames));
+    json_object_set_new(s->report, "gaussians", json_integer((json_int_t)s->info.n_gaussians));
+    json_dumpf(s->report, stdout, JSON_COMPACT | JSON_REAL_PRECISION(9));
+    putchar('\n');
+    return code;
+}
+
+int main(int argc, char **argv)
+{
+    ted4_settings set;
+    ted4_session s = { .set = &set };
+    char why[256];
+    int code = parse(&set, argc, argv);
+
+    if (code >= 0)
+        return code;
+    ted4_cli_parallel(&s.parallel, set.threads);
+    s.report = json_object();
+    if (set.cameras != NULL && ted4_camera_list_load(&s.cameras, set.cameras, why, sizeof why) != 0) {
+        fprintf(stderr, "ted4dec: %s: %s\n", set.cameras, why);
+        code = TED4_EXIT_TOOL;
+    } else {
+        code = run(&s);
+    }
+    ted4_camera_list_free(&s.cameras);
+    ted4_recon_free(s.recon);
+    json_decref(s.report);
+    if (fflush(stdout) != 0 || ferror(stdout)) {
+        fprintf(stderr, "ted4dec: standard output: %s\n", strerror(errno));
+        return TED4_EXIT_TOOL;
+    }
+    return code == TED4_EXIT_FINE && s.warned ? TED4_EXIT_WARNED : code;
+}

@@ -1,0 +1,425 @@
+/* ted4eval.c - quality, size and speed of a .ted4 file against the pictures it was trained for, measured on the decoded file.
+ * SPDX-License-Identifier: BSD-2-Clause */
+#include <errno.h>
+#include <getopt.h>
+#include <inttypes.h>
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/stat.h>
+#include <time.h>
+#include <unistd.h>
+
+#include <jansson.h>
+
+#include "data/dataset.h"
+#include "eval/metrics.h"
+#include "render/png_file.h"
+#include "render/view.h"
+#include "sheet.h"
+#include "ted4.h"
+#include "tool/arguments.h"
+#include "tool/cli.h"
+
+enum { OPT_SPLIT, OPT_DOWNSCALE, OPT_IMAGES, OPT_SHEET, OPT_THREADS, OPT_FORCE, OPT_JSON, OPT_QUIET, OPT_VERBOSE, OPT_HELP, OPT_VERSION, N_OPTIONS };
+
+enum { MAX_THREADS = 1024, MAX_DOWNSCALE = 64, SHEET_ROWS = 3, PATH_SIZE = 4096 };
+
+static const ted4_argument OPTIONS[N_OPTIONS] = {
+    [OPT_SPLIT]     = { 0, "split", "NAME", "test (default) or train pictures" },
+    [OPT_DOWNSCALE] = { 0, "downscale", "N", "compare pictures shrunk N times, as ted4enc --downscale" },
+    [OPT_IMAGES]    = { 0, "images", "DIR", "write DIR/truth, DIR/ours, DIR/error (5 times the difference) as NNNNN.png" },
+    [OPT_SHEET]     = { 0, "sheet", "FILE.png", "one picture: truth, ours, error at three times of the first camera" },
+    [OPT_THREADS]   = { 'j', "threads", "N", "threads; 0: all cores. Default 0" },
+    [OPT_FORCE]     = { 'f', "force", NULL, "overwrite pictures" },
+    [OPT_JSON]      = { 0, "json", NULL, "result as one JSON object" },
+    [OPT_QUIET]     = { 'q', "quiet", NULL, "errors only" },
+    [OPT_VERBOSE]   = { 'v', "verbose", NULL, "metrics of every picture on standard error" },
+    [OPT_HELP]      = { 'h', "help", NULL, "this text" },
+    [OPT_VERSION]   = { 'V', "version", NULL, "print the version" },
+};
+
+static const ted4_command COMMAND = {
+    "ted4eval", "FILE.ted4 SCENE [options]",
+    "Decodes FILE, draws every picture of a split of SCENE, and prints PSNR, SSIM (11 x 11 Gaussian), SSIM_2 (scikit-image,\n"
+    "range 2), MS-SSIM, bytes of the file, milliseconds to decode it, and pictures drawn a second.",
+    OPTIONS, N_OPTIONS,
+    "Exit codes: 0 fine, 1 file refused, 3 usage, input, output or resources.\n"
+};
+
+typedef struct {
+    const char *input, *scene, *images, *sheet;
+    int         want_test, downscale, threads, force, json, quiet, verbose;
+} settings;
+
+/* Sums over pictures, later divided by views. */
+typedef struct {
+    double psnr, ssim, ssim2, ms_ssim, render_s, decode_ms;
+    size_t views, bytes;
+} totals;
+
+typedef struct {
+    const settings *set;
+    ted4_parallel   parallel;
+    ted4_info       info;
+    ted4_recon     *recon;              /* owned, as all below */
+    ted4_viewer    *viewer;
+    ted4_dataset    data;
+    size_t          row[SHEET_ROWS];    /* picture in each row of the sheet */
+    ted4_sheet      sheet;
+    totals          sum;
+} session;
+
+static double seconds(void)
+{
+    struct timespec t;
+
+    clock_gettime(CLOCK_MONOTONIC, &t);
+    return (double)t.tv_sec + 1e-9 * (double)t.tv_nsec;
+}
+
+static int failed(const char *what, const char *why)
+{
+    fprintf(stderr, "ted4eval: %s: %s\n", what, why);
+    return TED4_EXIT_TOOL;
+}
+
+/* ---- command line ---- */
+
+static int set_number(const char *name, const char *value, long low, long high, int *out)
+{
+    long n;
+
+    if (ted4_arguments_number(value, low, high, &n) != 0)
+        return failed(name, value);
+    *out = (int)n;
+    return 0;
+}
+
+static int set_option(settings *s, int option, const char *value)
+{
+    switch (option) {
+    case OPT_SPLIT:
+        s->want_test = strcmp(value, "test") == 0;
+        return s->want_test || strcmp(value, "train") == 0 ? 0 : failed("--split", "test or train expected");
+    case OPT_DOWNSCALE:
+        return set_number("--downscale", value, 1, MAX_DOWNSCALE, &s->downscale);
+    case OPT_IMAGES:
+        s->images = value;
+        return 0;
+    case OPT_SHEET:
+        s->sheet = value;
+        return 0;
+    case OPT_THREADS:
+        return set_number("--threads", value, 0, MAX_THREADS, &s->threads);
+    default:
+        break;
+    }
+    int *const flag[N_OPTIONS] = { [OPT_FORCE] = &s->force, [OPT_JSON] = &s->json, [OPT_QUIET] = &s->quiet, [OPT_VERBOSE] = &s->verbose };
+
+    *flag[option] = 1;
+    return 0;
+}
+
+/* -1: go on; else an exit code. */
+static int parse(settings *s, int argc, char **argv)
+{
+    const char *value;
+
+    *s = (settings){ .want_test = 1, .downscale = 1 };
+    for (int i; (i = ted4_arguments_next(&COMMAND, argc, argv, &value)) != TED4_ARGUMENTS_END;) {
+        if (i == TED4_ARGUMENTS_BAD)
+            return TED4_EXIT_TOOL;
+        if (i == OPT_HELP) {
+            ted4_arguments_help(&COMMAND, stdout);
+            return TED4_EXIT_FINE;
+        }
+        if (i == OPT_VERSION) {
+            puts("ted4eval " TED4_VERSION " (specification " TED4_SPEC_VERSION ")");
+            return TED4_EXIT_FINE;
+        }
+        const int code = set_option(s, i, value);
+
+        if (code != 0)
+            return code;
+    }
+    if (optind + 2 != argc)
+        return failed("arguments", "a file and a scene folder expected (see --help)");
+    s->input = argv[optind];
+    s->scene = argv[optind + 1];
+    if (s->sheet != NULL && !s->force && access(s->sheet, F_OK) == 0)
+        return failed(s->sheet, "exists; -f overwrites");
+    return -1;
+}
+
+/* ---- opening ---- */
+
+static int open_file(session *s)
+{
+    const ted4_options options = { .parallel = &s->parallel };
+    ted4_error e = { TED4_OK, 0 };
+    ted4_scene *scene;
+    uint8_t *const bytes = ted4_read_file(s->set->input, &s->sum.bytes);
+    const double start = seconds();
+
+    if (bytes == NULL)
+        return failed(s->set->input, strerror(errno));
+    if (ted4_decode(bytes, s->sum.bytes, &options, &scene, &e) == TED4_OK) {
+        ted4_scene_info(scene, &s->info);
+        e.code = ted4_recon_new(&s->recon, scene, &options);
+        ted4_scene_free(scene);
+    }
+    s->sum.decode_ms = 1e3 * (seconds() - start);
+    free(bytes);
+    return e.code == TED4_OK ? TED4_EXIT_FINE : ted4_report("ted4eval", s->set->input, &e, s->set->json);
+}
+
+static int open_scene(session *s)
+{
+    /* Pictures with transparency are compared on the background the file carries. */
+    const ted4_dataset_options options = { .downscale = s->set->downscale, .white = s->info.background[0] > 127, .cache_bytes = 64 << 20 };
+    ted4_message m;
+
+    if (ted4_dataset_load(&s->data, s->set->scene, &options, &m) != 0)
+        return failed(s->set->scene, m.text);
+    s->viewer = ted4_viewer_new();
+    return s->viewer == NULL ? failed(s->set->scene, "out of memory") : TED4_EXIT_FINE;
+}
+
+static int in_split(const session *s, size_t i)
+{
+    return s->data.pictures[i].is_test == s->set->want_test;
+}
+
+/* ---- sheet: first, middle and last time of one camera, or of all when the first has only one picture ---- */
+
+/* Can picture i stand on the sheet beside picture first? */
+static int on_sheet(const session *s, size_t first, size_t i, int any_camera)
+{
+    const ted4_picture *const a = &s->data.pictures[first], *const b = &s->data.pictures[i];
+
+    return in_split(s, i) && (any_camera || a->camera_id == b->camera_id)
+        && a->camera.width == b->camera.width && a->camera.height == b->camera.height;
+}
+
+/* Of the n pictures that fit, the one of rank r by time (then by place). */
+static size_t by_time(const session *s, size_t first, int any_camera, size_t r)
+{
+    const ted4_picture *const all = s->data.pictures;
+
+    for (size_t i = 0; i < s->data.n_pictures; i++) {
+        size_t before = 0;
+
+        if (!on_sheet(s, first, i, any_camera))
+            continue;
+        for (size_t k = 0; k < s->data.n_pictures; k++)
+            before += on_sheet(s, first, k, any_camera) && (all[k].frame < all[i].frame || (all[k].frame == all[i].frame && k < i));
+        if (before == r)
+            return i;
+    }
+    return first;
+}
+
+static int choose_rows(session *s)
+{
+    size_t first = 0, n = 0;
+    int any_camera = 0;
+
+    while (!in_split(s, first))
+        first++;
+    for (;;) {
+        n = 0;
+        for (size_t i = 0; i < s->data.n_pictures; i++)
+            n += (size_t)on_sheet(s, first, i, any_camera);
+        if (n > 1 || any_camera)
+            break;
+        any_camera = 1;
+    }
+    const int rows = n < SHEET_ROWS ? (int)n : SHEET_ROWS;
+    const ted4_camera *const c = &s->data.pictures[first].camera;
+
+    for (int r = 0; r < rows; r++)
+        s->row[r] = by_time(s, first, any_camera, rows == 1 ? 0 : (size_t)r * (n - 1) / (size_t)(rows - 1));
+    return ted4_sheet_init(&s->sheet, c->width, c->height, rows) == 0 ? TED4_EXIT_FINE : failed(s->set->sheet, "out of memory");
+}
+
+/* ---- one picture ---- */
+
+static ted4_view view_of(const ted4_camera *c)
+{
+    ted4_view v = { .width = c->width, .height = c->height, .fx = (float)c->fx, .fy = (float)c->fy, .cx = (float)c->cx, .cy = (float)c->cy };
+
+    for (int i = 0; i < 9; i++)
+        v.R[i] = (float)c->R[i];
+    for (int i = 0; i < 3; i++)
+        v.t[i] = (float)c->t[i];
+    return v;
+}
+
+static int write_image(const session *s, const char *kind, const ted4_camera *c, const uint8_t *rgb)
+{
+    char path[PATH_SIZE], why[256];
+    int n = snprintf(path, sizeof path, "%s/%s", s->set->images, kind);
+
+    if (n > 0 && n < PATH_SIZE && mkdir(path, 0777) != 0 && errno != EEXIST)
+        return failed(path, strerror(errno));
+    n = snprintf(path, sizeof path, "%s/%s/%05zu.png", s->set->images, kind, s->sum.views);
+    if (n < 0 || n >= PATH_SIZE)
+        return failed(s->set->images, "name too long");
+    if (!s->set->force && access(path, F_OK) == 0)
+        return failed(path, "exists; -f overwrites");
+    return ted4_png_write(path, c->width, c->height, rgb, why, sizeof why) == 0 ? TED4_EXIT_FINE : failed(path, why);
+}
+
+static int write_images(const session *s, const ted4_camera *c, const uint8_t *truth, const uint8_t *ours)
+{
+    const size_t size = (size_t)c->width * (size_t)c->height * 3;
+    uint8_t *const error = malloc(size);
+    int code;
+
+    if (error == NULL)
+        return failed(s->set->images, "out of memory");
+    ted4_sheet_error(truth, ours, size, error);
+    code = write_image(s, "truth", c, truth);
+    if (code == TED4_EXIT_FINE)
+        code = write_image(s, "ours", c, ours);
+    if (code == TED4_EXIT_FINE)
+        code = write_image(s, "error", c, error);
+    free(error);
+    return code;
+}
+
+/* Compares a drawn picture and puts it where it was asked for. */
+static int take_picture(session *s, size_t i, const uint8_t *truth, const uint8_t *ours)
+{
+    const ted4_picture *const p = &s->data.pictures[i];
+    ted4_metrics m;
+    int code = TED4_EXIT_FINE;
+
+    if (ted4_metrics_compare(truth, ours, p->camera.width, p->camera.height, &s->parallel, &m) != 0)
+        return failed(p->path, "out of memory");
+    if (s->set->verbose)
+        fprintf(stderr, "%s frame %" PRIu32 ": psnr %.4f ssim %.5f ssim2 %.5f ms_ssim %.5f\n", p->path, p->frame, m.psnr, m.ssim, m.ssim2, m.ms_ssim);
+    if (s->set->images != NULL)
+        code = write_images(s, &p->camera, truth, ours);
+    for (int r = 0; s->set->sheet != NULL && r < s->sheet.rows; r++)
+        if (s->row[r] == i)
+            ted4_sheet_put(&s->sheet, r, truth, ours);
+    s->sum.psnr += m.psnr;
+    s->sum.ssim += m.ssim;
+    s->sum.ssim2 += m.ssim2;
+    s->sum.ms_ssim += m.ms_ssim;
+    s->sum.views++;
+    return code;
+}
+
+static int evaluate_picture(session *s, size_t i)
+{
+    const ted4_picture *const p = &s->data.pictures[i];
+    const ted4_view view = view_of(&p->camera);
+    const uint32_t last = s->data.n_frames > 1 ? s->data.n_frames - 1 : 1;
+    uint8_t *const ours = malloc((size_t)view.width * (size_t)view.height * 3);
+    ted4_message m;
+    const uint8_t *truth;
+    double start;
+    ted4_error e = { TED4_E_LIMIT_MEMORY, 0 };
+    int code;
+
+    start = seconds();
+    if (ours != NULL)
+        e.code = ted4_render_query(s->viewer, s->recon, &s->info, p->frame, last, &view, &s->parallel, ours);
+    s->sum.render_s += seconds() - start;
+    if (e.code != TED4_OK) {
+        code = ted4_report("ted4eval", s->set->input, &e, s->set->json);
+    } else if ((truth = ted4_dataset_pixels(&s->data, i, &m)) == NULL) {
+        code = failed(p->path, m.text);
+    } else {
+        code = take_picture(s, i, truth, ours);
+        ted4_dataset_release(&s->data, i);
+    }
+    free(ours);
+    return code;
+}
+
+/* ---- the whole ---- */
+
+/* A metric that does not exist (window larger than the picture) or is infinite is null. */
+static json_t *number(double v)
+{
+    return isfinite(v) ? json_real(v) : json_null();
+}
+
+static void print_result(const session *s)
+{
+    const totals *const t = &s->sum;
+    const double n = (double)t->views;
+
+    if (!s->set->json) {
+        printf("psnr       %.4f dB\nssim       %.5f\nssim2      %.5f\nms_ssim    %.5f\nbytes      %zu\ndecode     %.2f ms\nrender     %.2f fps\nviews      %zu\n",
+               t->psnr / n, t->ssim / n, t->ssim2 / n, t->ms_ssim / n, t->bytes, t->decode_ms, n / t->render_s, t->views);
+        return;
+    }
+    json_t *const o = json_pack("{s:o, s:o, s:o, s:o, s:I, s:o, s:o, s:I, s:s, s:I, s:I, s:I}", "psnr", number(t->psnr / n), "ssim", number(t->ssim / n),
+                                "ssim2", number(t->ssim2 / n), "ms_ssim", number(t->ms_ssim / n), "bytes", (json_int_t)t->bytes,
+                                "decode_ms", number(t->decode_ms), "render_fps", number(n / t->render_s), "views", (json_int_t)t->views,
+                                "split", s->set->want_test ? "test" : "train", "frames", (json_int_t)s->info.frames,
+                                "anchors", (json_int_t)s->info.n_anchors, "gaussians", (json_int_t)s->info.n_gaussians);
+
+    json_dumpf(o, stdout, JSON_COMPACT | JSON_REAL_PRECISION(6));
+    putchar('\n');
+    json_decref(o);
+}
+
+static int evaluate(session *s)
+{
+    const settings *const set = s->set;
+    size_t n = 0;
+    char why[256];
+    int code = TED4_EXIT_FINE;
+
+    for (size_t i = 0; i < s->data.n_pictures; i++)
+        n += (size_t)in_split(s, i);
+    if (n == 0)
+        return failed(set->scene, set->want_test ? "no test pictures" : "no training pictures");
+    if (set->images != NULL && mkdir(set->images, 0777) != 0 && errno != EEXIST)
+        return failed(set->images, strerror(errno));
+    if (set->sheet != NULL)
+        code = choose_rows(s);
+    for (size_t i = 0; i < s->data.n_pictures && code == TED4_EXIT_FINE; i++) {
+        if (!in_split(s, i))
+            continue;
+        code = evaluate_picture(s, i);
+        if (!set->quiet && isatty(STDERR_FILENO))
+            fprintf(stderr, "\r%zu/%zu%s", s->sum.views, n, s->sum.views == n ? "\n" : "");
+    }
+    if (code == TED4_EXIT_FINE && set->sheet != NULL
+        && ted4_png_write(set->sheet, s->sheet.width * TED4_SHEET_COLUMNS, s->sheet.height * s->sheet.rows, s->sheet.rgb, why, sizeof why) != 0)
+        code = failed(set->sheet, why);
+    if (code == TED4_EXIT_FINE)
+        print_result(s);
+    return code;
+}
+
+int main(int argc, char **argv)
+{
+    settings set;
+    session s = { .set = &set };
+    int code = parse(&set, argc, argv);
+
+    if (code >= 0)
+        return code;
+    ted4_cli_parallel(&s.parallel, set.threads);
+    code = open_file(&s);
+    if (code == TED4_EXIT_FINE)
+        code = open_scene(&s);
+    if (code == TED4_EXIT_FINE)
+        code = evaluate(&s);
+    ted4_sheet_finish(&s.sheet);
+    ted4_viewer_free(s.viewer);
+    ted4_dataset_free(&s.data);
+    ted4_recon_free(s.recon);
+    if (fflush(stdout) != 0 || ferror(stdout))
+        return failed("standard output", strerror(errno));
+    return code;
+}

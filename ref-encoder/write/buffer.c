@@ -1,0 +1,36 @@
+/* buffer.c - see buffer.h.
+ * SPDX-License-Identifier: BSD-2-Clause */
+#include "write/buffer.h"
+
+#include <stdlib.h>
+
+uint8_t *ted4_buffer_add(ted4_buffer *b, size_t size)
+{
+    uint8_t *p;
+
+    if (b->failed || size > SIZE_MAX / 4 - b->size) {
+        b->failed = 1;
+        return NULL;
+    }
+    if (b->size + size > b->room) {
+        const size_t room = 2 * b->size + size + 256;
+
+        p = realloc(b->data, room);
+        if (p == NULL) {
+            b->failed = 1;
+            return NULL;
+        }
+        b->data = p;
+        b->room = room;
+    }
+    p = b->data + b->size;
+    b->size += size;
+    return p;
+}
+
+void ted4_buffer_free(ted4_buffer *b)
+{
+    free(b->data);
+    b->data = NULL;
+    b->size = b->room = 0;
+}

@@ -1,0 +1,287 @@
+/* encode.c - ted4_encode(): the chunks of a file in order (spec 5), by the walks of norm/.
+ * SPDX-License-Identifier: BSD-2-Clause */
+#include "write/encode.h"
+
+#include <stdlib.h>
+#include <string.h>
+#include <xxhash.h>
+#include <zlib.h>
+#include "base/bytes.h"
+#include "kernel/int_kernel.h"
+#include "norm/limits.h"
+#include "write/coder_write.h"
+#include "write/tiles.h"
+
+enum { LEVEL_BYTE = 11 };
+
+/* Type, flags, and a size that close_chunk corrects. Gives where the chunk begins. */
+static size_t open_chunk(ted4_writer *w, ted4_chunk type)
+{
+    const size_t at = w->base.pos;
+    ted4_frame   f;
+
+    memcpy(f.type, ted4_chunk_type[type], sizeof f.type);
+    f.flags = TED4_FLAG_CRITICAL;
+    f.size = 0;
+    ted4_walk_frame(&w->base, &f);
+    return at;
+}
+
+static void close_chunk(ted4_writer *w, size_t at)
+{
+    ted4_coder  *c = &w->base;
+    const size_t size = c->pos - at - TED4_FRAME_HEAD_SIZE;
+    uint64_t     hash;
+
+    if (!ted4_require(c, size <= UINT32_MAX, TED4_E_LVL_EXCEEDED, at))
+        return;
+    ted4_store32(w->out.data + at + 8, (uint32_t)size);
+    hash = XXH3_64bits(w->out.data + at, c->pos - at);
+    c->ops->number(c, 4, (uint32_t)hash);
+    c->ops->number(c, 4, (uint32_t)(hash >> 32));
+}
+
+/* Byte 0 of all values, then byte 1 of all, and so on (spec 7.2). */
+static void shuffle(uint8_t *bytes, const float *values, size_t n)
+{
+    for (size_t i = 0; i < n; i++) {
+        const uint32_t u = ted4_float_bits(values[i]);
+
+        for (unsigned j = 0; j < 4; j++)
+            bytes[j * n + i] = (uint8_t)(u >> 8 * j);
+    }
+}
+
+/* Chooses the mode of a blob that has none: deflated only where that is smaller. */
+static void choose_mode(ted4_blob *b, ted4_arena *arena, ted4_error *e)
+{
+    const size_t raw = 4 * b->n;
+    uLongf       size = compressBound((uLong)raw);
+    uint8_t     *bytes, *packed;
+
+    if (b->mode != TED4_BLOB_AUTO || b->n == 0)
+        return;
+    b->mode = TED4_BLOB_RAW;
+    bytes = ted4_arena_alloc(arena, raw, 1);
+    packed = ted4_arena_alloc(arena, size, 1);
+    if (bytes == NULL || packed == NULL) {
+        ted4_fail(e, TED4_E_LIMIT_MEMORY, 0);
+        return;
+    }
+    shuffle(bytes, b->values, b->n);
+    if (compress2(packed, &size, bytes, (uLong)raw, 9) == Z_OK && size < raw) {
+        b->mode = TED4_BLOB_DEFLATED;
+        b->deflated = packed;
+        b->deflated_size = size;
+    }
+}
+
+static void write_blob(ted4_writer *w, ted4_chunk type, ted4_blob *b)
+{
+    const size_t at = open_chunk(w, type);
+
+    ted4_walk_blob(&w->base, "value", b);
+    close_chunk(w, at);
+}
+
+/* Everything before the tiles. */
+static void write_front(ted4_writer *w, ted4_draft *d)
+{
+    ted4_coder *c = &w->base;
+    size_t      at;
+
+    choose_mode(&d->s.nete, &d->arena, &c->error);
+    choose_mode(&d->s.netr, &d->arena, &c->error);
+    choose_mode(&d->s.bank, &d->arena, &c->error);
+    at = open_chunk(w, TED4_NETE);
+    ted4_walk_nete(c, &d->s, &d->prior);
+    close_chunk(w, at);
+    write_blob(w, TED4_NETR, &d->s.netr);
+    if (d->s.shape.n_bank > 0)
+        write_blob(w, TED4_BANK, &d->s.bank);
+    at = open_chunk(w, TED4_POSN);
+    ted4_walk_positions(c, &d->s);
+    close_chunk(w, at);
+}
+
+static void append_tile(ted4_writer *w, const ted4_writer *tile)
+{
+    const size_t at = open_chunk(w, TED4_TILE);
+
+    w->base.ops->array(&w->base, 1, tile->out.data, tile->out.size);
+    close_chunk(w, at);
+}
+
+static void write_tiles(ted4_writer *w, ted4_draft *d, const ted4_parallel *p)
+{
+    const size_t n_tiles = d->s.shape.n_tiles;
+    ted4_writer *tiles;
+    ted4_error   e;
+
+    if (w->base.error.code != TED4_OK)
+        return;
+    tiles = ted4_arena_alloc(&d->arena, n_tiles, sizeof *tiles);
+    if (!ted4_require(&w->base, tiles != NULL, TED4_E_LIMIT_MEMORY, 0))
+        return;
+    for (size_t i = 0; i < n_tiles; i++)
+        ted4_writer_init(&tiles[i]);
+    e = ted4_draft_tiles(d, tiles, sizeof *tiles, p);
+    if (e.code != TED4_OK)
+        ted4_fail(&w->base.error, e.code, e.offset);
+    for (size_t i = 0; i < n_tiles; i++) {
+        if (w->base.error.code == TED4_OK)
+            append_tile(w, &tiles[i]);
+        ted4_writer_finish(&tiles[i]);
+    }
+}
+
+static void write_ends(ted4_writer *w, ted4_draft *d)
+{
+    const size_t at = open_chunk(w, TED4_ENDS);
+
+    ted4_scene_hash(&d->s, d->s.hash);
+    ted4_walk_ends(&w->base, d->s.hash);
+    close_chunk(w, at);
+}
+
+int ted4_level_lowest(const ted4_scene *s, size_t size)
+{
+    const ted4_header *h = &s->head;
+
+    for (int level = 1; level < TED4_LEVEL_UNBOUNDED; level++) {
+        const ted4_limits *l = ted4_limits_of((unsigned)level);
+
+        if (l != NULL && h->n_anchors <= l->n_anchors
+            && h->n_offsets <= l->n_offsets && h->frames <= l->frames
+            && h->bank_rows <= l->frames
+            && ted4_limits_hold(l, h, &s->shape, size))
+            return level;
+    }
+    return TED4_LEVEL_UNBOUNDED;
+}
+
+/* The level of a finished file. */
+static void set_level(ted4_writer *w, const ted4_scene *s, int level)
+{
+    if (w->base.error.code != TED4_OK)
+        return;
+    if (level == 0)
+        level = ted4_level_lowest(s, w->out.size);
+    else
+        ted4_require(&w->base,
+                     ted4_limits_hold(ted4_limits_of((unsigned)level),
+                                      &s->head, &s->shape, w->out.size),
+                     TED4_E_LVL_EXCEEDED, LEVEL_BYTE);
+    w->out.data[LEVEL_BYTE] = (uint8_t)level;
+}
+
+static void write_file(ted4_writer *w, const ted4_scene *s, int level,
+                       const ted4_parallel *p)
+{
+    ted4_coder  *c = &w->base;
+    uint8_t      declared = (uint8_t)(level == 0 ? TED4_LEVEL_UNBOUNDED
+                                                 : level);
+    ted4_header  head = s->head;
+    ted4_shape   shape;
+    ted4_draft   d;
+    size_t       at;
+
+    ted4_walk_file_header(c, &declared);
+    at = open_chunk(w, TED4_HEAD);
+    if (c->error.code == TED4_OK)
+        ted4_walk_header(c, &head, &shape, declared, UINT64_MAX);
+    close_chunk(w, at);
+    if (c->error.code != TED4_OK)
+        return;
+    ted4_fail(&c->error, ted4_draft_init(&d, s), c->pos);
+    if (c->error.code == TED4_OK) {
+        write_front(w, &d);
+        write_tiles(w, &d, p);
+        write_ends(w, &d);
+    }
+    ted4_draft_finish(&d);
+    set_level(w, s, level);
+}
+
+ted4_status ted4_encode(const ted4_scene *s, int level, const ted4_parallel *p,
+                        uint8_t **out, size_t *size, ted4_error *e)
+{
+    ted4_writer w;
+    ted4_status verdict;
+
+    ted4_writer_init(&w);
+    write_file(&w, s, level, p);
+    verdict = w.base.error.code;
+    if (e != NULL)
+        *e = w.base.error;
+    *out = NULL;
+    *size = 0;
+    if (verdict == TED4_OK) {
+        *out = w.out.data;
+        *size = w.out.size;
+        w.out.data = NULL;
+    }
+    ted4_writer_finish(&w);
+    return verdict;
+}
+
+typedef struct {
+    ted4_scene       *s;
+    const ted4_prior *prior;
+    int32_t          *out;      /* [STEP_BLOCKS][P][64] */
+    size_t            first;    /* anchor of block 0 */
+} steps_batch;
+
+enum { STEP_BLOCKS = 64 };
+
+static void steps_block(void *arg, size_t i)
+{
+    const steps_batch *b = arg;
+    ted4_scene  *s = b->s;
+    const size_t a = b->first + i * TED4_PRIOR_BLOCK;
+    const size_t left = s->head.n_anchors - a;
+    const size_t n = left < TED4_PRIOR_BLOCK ? left : TED4_PRIOR_BLOCK;
+    int32_t *out = b->out + i * s->shape.n_outputs * TED4_PRIOR_BLOCK;
+    const int32_t *v = out + (size_t)s->shape.first_step_output
+                             * TED4_PRIOR_BLOCK;
+
+    ted4_prior_hyper(b->prior, s->position + 3 * a, n, out);
+    for (int t = 0; t < TED4_TYPES; t++) {
+        if (s->shape.dim[t] == 0)
+            continue;
+        for (size_t j = 0; j < n; j++)
+            s->step_index[t][a + j] = ted4_step_index(v[j]);
+        v += TED4_PRIOR_BLOCK;
+    }
+}
+
+ted4_status ted4_scene_steps(ted4_scene *s, const ted4_parallel *p,
+                             ted4_error *e)
+{
+    const size_t n_blocks = (s->head.n_anchors + (size_t)TED4_PRIOR_BLOCK - 1)
+                            / TED4_PRIOR_BLOCK;
+    ted4_error   own = { TED4_OK, 0 };
+    ted4_arena   arena;
+    ted4_prior   prior;
+    steps_batch  b = { .s = s, .prior = &prior };
+
+    ted4_arena_init(&arena, NULL);
+    ted4_fail(&own, ted4_prior_init(&prior, &s->head, &s->shape, &arena), 0);
+    prior.dense = ted4_select_int_dense();
+    b.out = ted4_arena_alloc(&arena, STEP_BLOCKS * (size_t)s->shape.n_outputs,
+                             TED4_PRIOR_BLOCK * sizeof *b.out);
+    if (b.out == NULL)
+        ted4_fail(&own, TED4_E_LIMIT_MEMORY, 0);
+    if (own.code == TED4_OK)
+        (void)ted4_prior_load(&prior, s->nete.values, s->shift, &own);
+    for (size_t i = 0; own.code == TED4_OK && i < n_blocks; i += STEP_BLOCKS) {
+        b.first = i * TED4_PRIOR_BLOCK;
+        ted4_parallel_for(p, n_blocks - i < STEP_BLOCKS ? n_blocks - i
+                                                        : STEP_BLOCKS,
+                          steps_block, &b);
+    }
+    ted4_arena_finish(&arena);
+    if (e != NULL)
+        *e = own;
+    return own.code;
+}

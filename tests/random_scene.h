@@ -1,0 +1,326 @@
+/* random_scene.h - valid scenes made of random numbers, for tests: header, networks on the integer grid, sorted positions, masks,
+ * step indices, symbols drawn from the scene's own model. Header only; link libted4enc and libted4dec.
+ * SPDX-License-Identifier: BSD-2-Clause */
+#ifndef TED4_RANDOM_SCENE_H
+#define TED4_RANDOM_SCENE_H
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+#include "norm/half.h"
+#include "norm/prior.h"
+#include "norm/scene.h"
+#include "write/encode.h"
+#include "write/snap.h"
+
+/* xorshift64*; the state is never 0. */
+typedef struct {
+    uint64_t state;
+} random_source;
+
+static inline random_source random_seed(uint64_t seed)
+{
+    return (random_source){ (seed + 1) * 0x9e3779b97f4a7c15u };
+}
+
+static inline uint32_t random_u32(random_source *r)
+{
+    r->state ^= r->state >> 12;
+    r->state ^= r->state << 25;
+    r->state ^= r->state >> 27;
+    return (uint32_t)(r->state * 0x2545f4914f6cdd1du >> 32);
+}
+
+/* low .. high, both included. */
+static inline uint32_t random_in(random_source *r, uint32_t low, uint32_t high)
+{
+    return low + random_u32(r) % (high - low + 1);
+}
+
+/* 0 <= x < 1 */
+static inline double random_unit(random_source *r)
+{
+    return random_u32(r) / 4294967296.0;
+}
+
+static inline double random_normal(random_source *r)
+{
+    return sqrt(-2 * log(1 - random_unit(r)))
+         * cos(6.283185307179586 * random_unit(r));
+}
+
+/* The shape of the method of the paper: F = 50 in slices 5, 10, 15, 20, K = 10, hyperprior 63-100-100. */
+static inline ted4_header random_paper_header(uint32_t n_anchors)
+{
+    ted4_header h;
+
+    memset(&h, 0, sizeof h);
+    h.n_anchors = n_anchors;
+    h.tile_size = 4096;
+    h.n_offsets = 10;
+    h.feature_dim = 50;
+    h.motion = TED4_MOTION_BANK;
+    h.phi_dim = 8;
+    h.bank_rows = 75;
+    h.bank_dim = 128;
+    h.deform_layers = 2;
+    h.deform_width = 128;
+    h.temporal_mask = h.offset_mask = h.activation = 1;
+    h.view = TED4_VIEW_COLOUR;
+    h.head_layers = 1;
+    h.head_width = 50;
+    h.pe_octaves = 10;
+    h.hyper_layers = 2;
+    h.hyper_width = 100;
+    h.n_slices = 4;
+    memcpy(h.slice, "\5\12\17\24", 4);
+    h.ar_width = 100;
+    h.context_bits = 8;
+    for (int t = 0; t < TED4_TYPES; t++)
+        h.step[t] = t == TED4_SCALING ? 0.01f : t == TED4_FEATURE ? 1.0f : 0.2f;
+    h.frames = 150;
+    h.rate_num = 30;
+    h.rate_den = 1;
+    h.exponent = 3;
+    return h;
+}
+
+/* Any header whose values are in range; small enough for thousands of them. */
+static inline ted4_header random_header(random_source *r)
+{
+    ted4_header h;
+    unsigned    left, i;
+
+    memset(&h, 0, sizeof h);
+    h.n_anchors = random_in(r, 1, 300);
+    h.tile_size = random_in(r, 64, 200);
+    h.n_offsets = (uint8_t)random_in(r, 1, 10);
+    h.feature_dim = (uint8_t)random_in(r, 1, 24);
+    h.motion = (uint8_t)random_in(r, 0, 3);
+    if (h.motion == TED4_MOTION_BANK || h.motion == TED4_MOTION_CONCAT) {
+        h.phi_dim = (uint8_t)random_in(r, 1, 8);
+        h.bank_rows = random_in(r, 1, 9);
+        h.bank_dim = (uint16_t)random_in(r, 1, 16);
+    }
+    if (h.motion != TED4_MOTION_NONE) {
+        h.deform_layers = (uint8_t)random_in(r, 1, 3);
+        h.deform_width = (uint16_t)random_in(r, 1, 20);
+        h.temporal_mask = (uint8_t)random_in(r, 0, 1);
+    }
+    h.offset_mask = (uint8_t)random_in(r, 0, 1);
+    h.activation = (uint8_t)random_in(r, 0, 1);
+    h.view = (uint8_t)random_in(r, 0, 2);
+    h.head_layers = (uint8_t)random_in(r, 0, 2);
+    h.head_width = (uint16_t)(h.head_layers ? random_in(r, 1, 16) : 0);
+    h.scale_domain = (uint8_t)random_in(r, 0, 1);
+    h.prior = (uint8_t)random_in(r, 0, 1);
+    if (h.prior == TED4_PRIOR_INR) {
+        h.pe_octaves = (uint8_t)random_in(r, 0, 12);
+        h.hyper_layers = (uint8_t)random_in(r, 0, 3);
+        h.hyper_width = (uint16_t)(h.hyper_layers ? random_in(r, 1, 30) : 0);
+    }
+    for (i = 0, left = h.feature_dim; left > 0; i++, left -= h.slice[i - 1])
+        h.slice[i] = (uint8_t)(i == 3 ? left : random_in(r, 1, left));
+    h.n_slices = (uint8_t)i;
+    h.ar_width = (uint16_t)(i > 1 ? random_in(r, 1, 30) : 0);
+    h.context_bits = (uint8_t)random_in(r, 0, 12);
+    for (int t = 0; t < TED4_TYPES; t++)
+        h.step[t] = ldexpf((float)(0.5 + random_unit(r) / 2),
+                           (int)random_in(r, 0, 25) - 18);
+    h.frames = random_in(r, 1, 60);
+    h.rate_num = random_in(r, 1, 60000);
+    h.rate_den = random_in(r, 1, 1001);
+    for (int j = 0; j < 3; j++)
+        h.origin[j] = (float)random_normal(r);
+    h.exponent = (int8_t)((int)random_in(r, 0, 60) - 30);
+    for (int j = 0; j < 3; j++)
+        h.background[j] = (uint8_t)random_u32(r);
+    return h;
+}
+
+static inline void random_layer(random_source *r, float *v, unsigned in,
+                                unsigned out, double gain, double bias)
+{
+    for (size_t i = 0; i < (size_t)in * out; i++)
+        v[i] = (float)(random_normal(r) * gain / sqrt(in));
+    for (unsigned o = 0; o < out; o++)
+        v[(size_t)in * out + o] = (float)(random_normal(r) * bias);
+}
+
+static inline void random_net(random_source *r, float *values,
+                              const ted4_net_shape *n, double bias)
+{
+    size_t at = n->first;
+
+    for (unsigned i = 0; i < n->n_layers; i++) {
+        random_layer(r, values + at, n->dim[i], n->dim[i + 1],
+                     i + 1u < n->n_layers ? 1.4 : 0.7, bias);
+        at += (n->dim[i] + (size_t)1) * n->dim[i + 1];
+    }
+}
+
+static inline void random_positions(random_source *r, ted4_scene *s)
+{
+    const size_t n = s->head.n_anchors, tries = n + n / 8 + 16;
+    uint16_t *p = malloc(3 * tries * sizeof *p);
+    uint32_t *order = malloc(tries * sizeof *order);
+    size_t    kept;
+
+    for (size_t i = 0; i < 3 * tries; i++) {
+        double x = random_normal(r) / 3;
+
+        if (random_in(r, 0, 63) == 0)
+            x *= 1e-5;
+        p[i] = ted4_float_to_half((float)(x < -1 ? -1 : x > 1 ? 1 : x));
+        if (p[i] == 0x8000)
+            p[i] = 0;
+    }
+    kept = ted4_positions_sort(p, tries, order);
+    /* The kept ones are in order; leave out single ones until n remain. */
+    for (size_t i = 0; i < n; i++)
+        memcpy(s->position + 3 * i, p + 3 * order[i * kept / n], 6);
+    free(p);
+    free(order);
+}
+
+static inline void random_masks(random_source *r, ted4_scene *s)
+{
+    const uint16_t all = (uint16_t)((1u << s->head.n_offsets) - 1);
+
+    for (size_t i = 0; i < s->head.n_anchors; i++) {
+        s->dynamic[i] = s->head.motion != TED4_MOTION_NONE;
+        if (s->head.temporal_mask)
+            s->dynamic[i] = random_in(r, 0, 4) == 0;
+        s->offset_bits[i] = all;
+        if (s->head.offset_mask)
+            s->offset_bits[i] = (uint16_t)(all & (random_u32(r)
+                                                  | random_u32(r)));
+    }
+}
+
+/* Symbols of one component, from mu and s of a block of anchors. wild: some far away, so that escapes are met. */
+static inline void random_symbols(random_source *r, const int32_t *mu,
+                                  const int32_t *s, size_t n, int wild,
+                                  int16_t *k)
+{
+    for (size_t i = 0; i < n; i++) {
+        const double sigma = exp2((ted4_sigma_index(s[i]) - 64) / 16.0);
+        double x = mu[i] / 256.0 + sigma * random_normal(r);
+
+        if (wild && random_in(r, 0, 30) == 0)
+            x = random_normal(r) * exp2(random_in(r, 0, 15));
+        k[i] = (int16_t)(x < -32767 ? -32767 : x > 32767 ? 32767 : rint(x));
+    }
+}
+
+/* All symbols of a block of n <= 64 anchors from anchor a on. */
+static inline void random_block(random_source *r, ted4_scene *s,
+                                const ted4_prior *p, size_t a, size_t n,
+                                int wild)
+{
+    const ted4_shape *sh = &s->shape;
+    const size_t N = s->head.n_anchors;
+    int32_t *out = malloc(sizeof *out * 64 * sh->n_outputs);
+    int32_t *add = malloc(sizeof *add * 64 * 2 * TED4_MAX_FEATURE);
+    int16_t *ctx = calloc(64 * TED4_MAX_FEATURE, sizeof *ctx);
+    unsigned comp = 0;
+
+    ted4_prior_hyper(p, s->position + 3 * a, n, out);
+    for (unsigned m = 0; m < s->head.n_slices; m++) {
+        const unsigned dim = s->head.slice[m];
+
+        if (m > 0)
+            ted4_prior_slice(p, m, ctx, n, add);
+        for (unsigned c = 0; c < dim; c++, comp++) {
+            int32_t *mu = out + 64 * (size_t)comp;
+            int32_t *sg = mu + 64 * (size_t)s->head.feature_dim;
+            int16_t *k = s->symbol[TED4_FEATURE] + comp * N + a;
+
+            for (size_t i = 0; m > 0 && i < n; i++) {
+                mu[i] += add[64 * c + i];
+                sg[i] += add[64 * (dim + c) + i];
+            }
+            random_symbols(r, mu, sg, n, wild, k);
+            for (size_t i = 0; i < n; i++)
+                ctx[64 * comp + i] = ted4_context(k[i],
+                    s->step_index[TED4_FEATURE][a + i], p->context_bits);
+        }
+    }
+    for (int t = TED4_SCALING; t < TED4_TYPES; t++)
+        for (unsigned c = 0; c < sh->dim[t]; c++)
+            random_symbols(r, out + 64 * (size_t)(sh->first_output[t] + c),
+                           out + 64 * (size_t)(sh->first_output[t] + sh->dim[t]
+                                               + c),
+                           n, wild, s->symbol[t] + c * N + a);
+    free(out);
+    free(add);
+    free(ctx);
+}
+
+/* Symbols that no mask hides stay; the others become 0, as a decoder leaves them. a_s <= a_f is made true. */
+static inline void random_tidy(ted4_scene *s)
+{
+    const size_t n = s->head.n_anchors;
+
+    for (size_t i = 0; i < n; i++) {
+        for (unsigned c = 0; c < s->shape.dim[TED4_OFFSET]; c++)
+            if (!(s->offset_bits[i] >> c / 3 & 1))
+                s->symbol[TED4_OFFSET][c * n + i] = 0;
+        for (unsigned c = 0; c < s->shape.dim[TED4_PHI]; c++)
+            if (!s->dynamic[i])
+                s->symbol[TED4_PHI][c * n + i] = 0;
+        if (s->shape.dim[TED4_TAU] > 0) {
+            int16_t *start = s->symbol[TED4_TAU] + i;
+
+            if (start[0] > start[2 * n])
+                start[2 * n] = start[0];
+        }
+    }
+}
+
+/* A scene of that header that ted4_encode accepts. wild: with escapes. NULL: no memory. Free with ted4_scene_free. */
+static inline ted4_scene *random_scene_of(random_source *r,
+                                          const ted4_header *h, int wild)
+{
+    ted4_scene *s = ted4_scene_new(h, NULL);
+    ted4_arena  arena;
+    ted4_prior  p;
+
+    if (s == NULL)
+        return NULL;
+    random_net(r, s->nete.values, &s->shape.hyper, wild ? 1.5 : 0.3);
+    for (unsigned m = 1; m < h->n_slices; m++)
+        random_net(r, s->nete.values, &s->shape.slice[m], 0.1);
+    ted4_snap(h, &s->shape, s->nete.values, s->shift);
+    for (int i = 0; i < TED4_NETS_R; i++)
+        random_net(r, s->netr.values, &s->shape.netr[i], 0.2);
+    for (size_t i = 0; i < s->bank.n; i++)
+        s->bank.values[i] = random_in(r, 0, 3) ? (float)random_normal(r) : 0;
+    random_positions(r, s);
+    random_masks(r, s);
+    ted4_arena_init(&arena, NULL);
+    if (ted4_prior_init(&p, h, &s->shape, &arena) != TED4_OK
+        || ted4_prior_load(&p, s->nete.values, s->shift, NULL) != TED4_OK
+        || ted4_scene_steps(s, NULL, NULL) != TED4_OK) {
+        ted4_arena_finish(&arena);
+        ted4_scene_free(s);
+        return NULL;
+    }
+    for (size_t a = 0; a < h->n_anchors; a += 64)
+        random_block(r, s, &p, a,
+                     h->n_anchors - a < 64 ? h->n_anchors - a : 64, wild);
+    random_tidy(s);
+    ted4_arena_finish(&arena);
+    return s;
+}
+
+/* A small scene of any header. */
+static inline ted4_scene *random_scene(uint64_t seed)
+{
+    random_source     r = random_seed(seed);
+    const ted4_header h = random_header(&r);
+
+    return random_scene_of(&r, &h, seed % 2 == 1);
+}
+
+#endif

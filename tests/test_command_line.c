@@ -1,0 +1,149 @@
+/* test_command_line.c - what the programs take from their command lines: file name patterns, times, numbers, options from a table.
+ * The programs' helpers are in no library, so their sources are part of this file.
+ * SPDX-License-Identifier: BSD-2-Clause */
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <stdlib.h>
+#include <string.h>
+#include <math.h>
+#include <cmocka.h>
+
+#include "tool/arguments.c"
+#include "tool/output.c"
+#include "tool/times.c"
+
+static void expect_path(const char *pattern, uint32_t number, const char *want)
+{
+    char path[TED4_PATH_SIZE];
+
+    assert_int_equal(ted4_pattern_make(path, pattern, number), 0);
+    assert_string_equal(path, want);
+}
+
+static void test_patterns(void **state)
+{
+    static const char *const bad[] = { "%", "a%s.ply", "%d%d", "a%%d", "%0d", "%-3d", "%10d", "%1$d", "%ld", "%n", "%5", "%d %" };
+
+    (void)state;
+    for (size_t i = 0; i < sizeof bad / sizeof *bad; i++)
+        assert_int_equal(ted4_pattern_count(bad[i]), -1);
+    assert_int_equal(ted4_pattern_count("plain.ply"), 0);
+    assert_int_equal(ted4_pattern_count("d/frame_%05d.ply"), 1);
+    expect_path("d/frame_%05d.ply", 42, "d/frame_00042.ply");
+    expect_path("%d", 1234567, "1234567");
+    expect_path("%3d_", 7, "  7_");
+    expect_path("plain.ply", 7, "plain.ply");
+}
+
+static void expect_range(const char *text, uint32_t first, uint32_t end, uint32_t step)
+{
+    ted4_range r;
+
+    assert_int_equal(ted4_range_parse(text, &r), 0);
+    assert_true(r.first == first && r.end == end && r.step == step);
+}
+
+static void expect_time(const char *text, uint32_t num, uint32_t den)
+{
+    ted4_time t;
+
+    assert_int_equal(ted4_time_parse(text, &t), 0);
+    assert_true(t.num == num && t.den == den);
+}
+
+static void test_times(void **state)
+{
+    static const char *const bad_range[] = { "", "x", "1:2:3:4", "5:5", "5:3", "1:9:0", "-1", "1: 2", "4294967295", ":x" };
+    static const char *const bad_time[] = { "", "1.5", "2", "-0.1", "3/2", "1/0", "1/16777216", "0.", ".", "0.12345678", "1/2x", "nan", "1e-1", "1.0000001" };
+    ted4_range r;
+    ted4_time t;
+
+    (void)state;
+    expect_range(":", 0, UINT32_MAX, 1);
+    expect_range("7", 7, 8, 1);
+    expect_range("3:", 3, UINT32_MAX, 1);
+    expect_range(":9", 0, 9, 1);
+    expect_range("::4", 0, UINT32_MAX, 4);
+    expect_range("2:20:3", 2, 20, 3);
+    expect_time("0", 0, 1);
+    expect_time("1", 1, 1);
+    expect_time("1.0", 10, 10);
+    expect_time(".5", 5, 10);
+    expect_time("0.0333333", 333333, 10000000);
+    expect_time("7/30", 7, 30);
+    for (size_t i = 0; i < sizeof bad_range / sizeof *bad_range; i++)
+        assert_int_equal(ted4_range_parse(bad_range[i], &r), -1);
+    for (size_t i = 0; i < sizeof bad_time / sizeof *bad_time; i++)
+        assert_int_equal(ted4_time_parse(bad_time[i], &t), -1);
+    t = ted4_time_of_frame(3, 10);
+    assert_true(t.num == 3 && t.den == 9);
+    t = ted4_time_of_frame(0, 1);
+    assert_true(t.num == 0 && t.den == 1);
+}
+
+static void test_numbers(void **state)
+{
+    static const char *const bad[] = { "", "x", "1x", "11", "-1", "99999999999999999999", "1.5" };
+    float v[3];
+    long n;
+
+    (void)state;
+    assert_int_equal(ted4_arguments_number("10", 0, 10, &n), 0);
+    assert_int_equal(n, 10);
+    for (size_t i = 0; i < sizeof bad / sizeof *bad; i++)
+        assert_int_equal(ted4_arguments_number(bad[i], 0, 10, &n), -1);
+    assert_int_equal(ted4_arguments_floats("1,-2.5,3e2", 3, v), 0);
+    assert_true(v[0] == 1.0f && v[1] == -2.5f && v[2] == 300.0f);
+    assert_int_equal(ted4_arguments_floats("1,2", 3, v), -1);
+    assert_int_equal(ted4_arguments_floats("1,2,3,4", 3, v), -1);
+    assert_int_equal(ted4_arguments_floats("1,,3", 3, v), -1);
+    assert_int_equal(ted4_arguments_floats("1,2,inf", 3, v), -1);
+}
+
+static void test_table(void **state)
+{
+    static const ted4_argument table[] = {
+        { 'o', "output", "FILE", "where to" }, { 0, "long-only", NULL, "a flag" }, { 'j', "threads", "N", "how many" },
+    };
+    const ted4_command c = { "prog", "FILE", "Does things.", table, 3, "The end.\n" };
+    char words[][16] = { "prog", "-j", "3", "file", "--long-only", "--output=x", "-oy" };
+    char *argv[] = { words[0], words[1], words[2], words[3], words[4], words[5], words[6], NULL };
+    char help[1024];
+    const char *value;
+
+    (void)state;
+    optind = 1;
+    assert_int_equal(ted4_arguments_next(&c, 7, argv, &value), 2);
+    assert_string_equal(value, "3");
+    assert_int_equal(ted4_arguments_next(&c, 7, argv, &value), 1);
+    assert_null(value);
+    assert_int_equal(ted4_arguments_next(&c, 7, argv, &value), 0);
+    assert_string_equal(value, "x");
+    assert_int_equal(ted4_arguments_next(&c, 7, argv, &value), 0);
+    assert_string_equal(value, "y");
+    assert_int_equal(ted4_arguments_next(&c, 7, argv, &value), TED4_ARGUMENTS_END);
+    assert_true(optind == 6 && strcmp(argv[optind], "file") == 0);
+
+    FILE *const f = tmpfile();
+    assert_non_null(f);
+    ted4_arguments_help(&c, f);
+    rewind(f);
+    help[fread(help, 1, sizeof help - 1, f)] = '\0';
+    fclose(f);
+    assert_non_null(strstr(help, "  -o, --output FILE  where to\n"));
+    assert_non_null(strstr(help, "      --long-only    a flag\n"));
+    assert_non_null(strstr(help, "\nThe end.\n"));
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(test_patterns),
+        cmocka_unit_test(test_times),
+        cmocka_unit_test(test_numbers),
+        cmocka_unit_test(test_table),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}

@@ -1,0 +1,369 @@
+/* test_image_file.c - picture files to bytes, the writer of render/png_file.c, lens undistortion against an analytic pattern, and the cache.
+ * SPDX-License-Identifier: BSD-2-Clause */
+#include <math.h>
+#include <pthread.h>
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdio.h>
+#include <cmocka.h>
+#include <jpeglib.h>
+
+#include "data/image_cache.h"
+#include "data/image_file.h"
+#include "data/undistort.h"
+#include "render/png_file.h"
+#include "tiny_scene.h"
+
+/* A PNG of any colour type (plus 8: with the first palette entry transparent) and depth; rows are packed as in the file. */
+static void write_png(const char *path, int w, int h, int depth, int type, const uint8_t *rows, size_t stride)
+{
+    const png_color palette[3] = { { 1, 2, 3 }, { 40, 50, 60 }, { 255, 0, 9 } };
+    const png_byte transparent[1] = { 0 };
+    FILE *f = fopen(path, "wb");
+    png_structp p = png_create_write_struct(PNG_LIBPNG_VER_STRING, NULL, NULL, NULL);
+    png_infop info = png_create_info_struct(p);
+
+    assert_non_null(f);
+    png_init_io(p, f);
+    png_set_IHDR(p, info, (png_uint_32)w, (png_uint_32)h, depth, type & 7, PNG_INTERLACE_NONE,
+                 PNG_COMPRESSION_TYPE_DEFAULT, PNG_FILTER_TYPE_DEFAULT);
+    if ((type & 7) == PNG_COLOR_TYPE_PALETTE)
+        png_set_PLTE(p, info, palette, 3);
+    if ((type & 8) != 0)
+        png_set_tRNS(p, info, transparent, 1, NULL);
+    png_write_info(p, info);
+    for (int y = 0; y < h; y++)
+        png_write_row(p, rows + (size_t)y * stride);
+    png_write_end(p, info);
+    png_destroy_write_struct(&p, &info);
+    fclose(f);
+}
+
+static void expect_image(const char *path, int w, int h, int channels, const uint8_t *bytes)
+{
+    ted4_image image;
+    ted4_image_header header;
+    ted4_message m;
+
+    if (ted4_image_read(path, &image, &m) != 0 || ted4_image_probe(path, &header, &m) != 0)
+        fail_msg("%s", m.text);
+    assert_int_equal(image.width, w);
+    assert_int_equal(image.height, h);
+    assert_int_equal(image.channels, channels);
+    assert_int_equal(header.width, w);
+    assert_int_equal(header.height, h);
+    assert_int_equal(header.has_alpha, channels == 4);
+    assert_memory_equal(image.bytes, bytes, (size_t)w * (size_t)h * (size_t)channels);
+    free(image.bytes);
+}
+
+static void test_png(void **state)
+{
+    (void)state;
+    tiny_folder f = tiny_new();
+    const char *path = tiny_path(&f, "a.png");
+    const uint8_t grey[3] = { 0, 77, 255 }, grey_rgb[9] = { 0, 0, 0, 77, 77, 77, 255, 255, 255 };
+    const uint8_t grey16[6] = { 0, 100, 77, 77, 255, 255 };         /* 100 / 257 rounds to 0 */
+    const uint8_t rgb16[6] = { 9, 138, 200, 200, 128, 255 }, rgb16_8[3] = { 10, 200, 128 };     /* 9.502, 200, 128.49 */
+    const uint8_t rgba[8] = { 1, 2, 3, 0, 250, 128, 7, 99 };
+    const uint8_t grey_alpha[2] = { 9, 200 }, grey_alpha_rgba[4] = { 9, 9, 9, 200 };
+    const uint8_t index[1] = { 0x18 }, indexed[9] = { 1, 2, 3, 40, 50, 60, 255, 0, 9 };
+    const uint8_t masked[12] = { 1, 2, 3, 0, 40, 50, 60, 255, 255, 0, 9, 255 };
+
+    write_png(path, 3, 1, 8, PNG_COLOR_TYPE_GRAY, grey, 3);
+    expect_image(path, 3, 1, 3, grey_rgb);
+    write_png(path, 3, 1, 16, PNG_COLOR_TYPE_GRAY, grey16, 6);
+    expect_image(path, 3, 1, 3, grey_rgb);
+    write_png(path, 1, 1, 16, PNG_COLOR_TYPE_RGB, rgb16, 6);
+    expect_image(path, 1, 1, 3, rgb16_8);
+    write_png(path, 1, 2, 8, PNG_COLOR_TYPE_RGB_ALPHA, rgba, 4);
+    expect_image(path, 1, 2, 4, rgba);
+    write_png(path, 1, 1, 8, PNG_COLOR_TYPE_GRAY_ALPHA, grey_alpha, 2);
+    expect_image(path, 1, 1, 4, grey_alpha_rgba);
+    write_png(path, 3, 1, 2, PNG_COLOR_TYPE_PALETTE, index, 1);
+    expect_image(path, 3, 1, 3, indexed);
+    write_png(path, 3, 1, 2, PNG_COLOR_TYPE_PALETTE | 8, index, 1);
+    expect_image(path, 3, 1, 4, masked);
+    tiny_free(&f);
+}
+
+static void test_png_write(void **state)
+{
+    (void)state;
+    tiny_folder f = tiny_new();
+    char why[200] = "";
+    uint8_t px[5 * 4 * 3];
+
+    for (size_t i = 0; i < sizeof px; i++)
+        px[i] = (uint8_t)(i * 37);
+    assert_int_equal(ted4_png_write(tiny_path(&f, "out.png"), 5, 4, px, why, sizeof why), 0);
+    expect_image(tiny_path(&f, "out.png"), 5, 4, 3, px);
+    assert_int_equal(ted4_png_write("/nonexistent/out.png", 5, 4, px, why, sizeof why), -1);
+    assert_non_null(strstr(why, "/nonexistent/out.png"));
+    /* The target is a folder: the rename fails and no temporary file stays. */
+    tiny_text(&f, "folder/x", "");
+    assert_int_equal(ted4_png_write(tiny_path(&f, "folder"), 5, 4, px, why, sizeof why), -1);
+    remove(tiny_path(&f, "folder/x"));
+    remove(tiny_path(&f, "folder"));
+    remove(tiny_path(&f, "out.png"));
+    assert_int_equal(rmdir(f.path), 0);
+}
+
+static void write_jpeg(const char *path, int w, int h, int components)
+{
+    struct jpeg_compress_struct c;
+    struct jpeg_error_mgr e;
+    uint8_t row[3 * 64];
+    JSAMPROW rows[1] = { row };
+    FILE *f = fopen(path, "wb");
+
+    assert_non_null(f);
+    c.err = jpeg_std_error(&e);
+    jpeg_create_compress(&c);
+    jpeg_stdio_dest(&c, f);
+    c.image_width = (JDIMENSION)w;
+    c.image_height = (JDIMENSION)h;
+    c.input_components = components;
+    c.in_color_space = components == 1 ? JCS_GRAYSCALE : JCS_RGB;
+    jpeg_set_defaults(&c);
+    jpeg_set_quality(&c, 98, TRUE);
+    jpeg_start_compress(&c, TRUE);
+    for (int y = 0; y < h; y++) {
+        for (int i = 0; i < w * components; i++)
+            row[i] = (uint8_t)(4 * (i / components) + 60 * (i % components));
+        jpeg_write_scanlines(&c, rows, 1);
+    }
+    jpeg_finish_compress(&c);
+    jpeg_destroy_compress(&c);
+    fclose(f);
+}
+
+static void test_jpeg(void **state)
+{
+    (void)state;
+    tiny_folder f = tiny_new();
+    const char *path = tiny_path(&f, "a.jpg");
+    ted4_image image;
+    ted4_message m;
+    uint8_t bytes[8192];
+    int w, h;
+
+    for (int components = 1; components <= 3; components += 2) {
+        write_jpeg(path, 33, 17, components);
+        assert_int_equal(ted4_image_size(path, &w, &h, &m), 0);
+        assert_int_equal(w, 33);
+        assert_int_equal(h, 17);
+        assert_int_equal(ted4_image_read(path, &image, &m), 0);
+        assert_int_equal(image.channels, 3);
+        for (int i = 0; i < 33 * 17 * 3; i++)
+            assert_true(abs(image.bytes[i] - (4 * (i / 3 % 33) + (components == 3 ? 60 * (i % 3) : 0))) <= 8);
+        free(image.bytes);
+    }
+    const size_t n = tiny_size(&f, "a.jpg");
+    FILE *in = fopen(path, "rb");
+    assert_non_null(in);
+    assert_true(n < sizeof bytes && fread(bytes, 1, n, in) == n);
+    fclose(in);
+    for (size_t k = 0; k < n - 2; k += 7) {
+        tiny_bytes(&f, "a.jpg", bytes, k);
+        assert_int_equal(ted4_image_read(path, &image, &m), -1);
+        assert_null(image.bytes);
+        assert_non_null(strstr(m.text, "a.jpg: "));
+    }
+    tiny_free(&f);
+}
+
+/* Lens */
+
+/* Smooth pattern over the picture plane of a pinhole, in normalised coordinates. */
+static double pattern(double u, double v, int c)
+{
+    return 128 + 60 * sin(9 * u + c) * cos(7 * v - c) + 50 * sin(5 * v + 2 * u * c);
+}
+
+/* The pinhole position (u, v) whose distorted position is (a, b), by fixed-point iteration of the lens equations. */
+static void invert(const ted4_lens *l, double a, double b, double *u, double *v)
+{
+    *u = a;
+    *v = b;
+    for (int k = 0; k < 60; k++) {
+        const double s = *u * *u + *v * *v, radial = 1 + l->k1 * s + l->k2 * s * s;
+        const double tu = 2 * l->p1 * *u * *v + l->p2 * (s + 2 * *u * *u);
+        const double tv = l->p1 * (s + 2 * *v * *v) + 2 * l->p2 * *u * *v;
+        *u = (a - tu) / radial;
+        *v = (b - tv) / radial;
+    }
+}
+
+static void test_undistort(void **state)
+{
+    (void)state;
+    static const ted4_lens lenses[] = {
+        { 320, 240, 260, 250, 155, 124, -0.08, 0, 0, 0 },       { 320, 240, 260, 250, 155, 124, 0.06, -0.02, 0, 0 },
+        { 320, 240, 260, 250, 155, 124, -0.09, 0.02, 0.004, -0.006 },
+    };
+    uint8_t *in = malloc(320 * 240 * 3), *out = malloc(320 * 240 * 3);
+
+    assert_true(in != NULL && out != NULL);
+    for (size_t k = 0; k < sizeof lenses / sizeof lenses[0]; k++) {
+        const ted4_lens *l = &lenses[k];
+        for (int i = 0; i < 320 * 240; i++) {
+            double u, v;
+            invert(l, (i % 320 + 0.5 - l->cx) / l->fx, (i / 320 + 0.5 - l->cy) / l->fy, &u, &v);
+            for (int c = 0; c < 3; c++)
+                in[3 * i + c] = (uint8_t)(pattern(u, v, c) + 0.5);
+        }
+        ted4_undistort(l, in, out);
+        int seen = 0;
+        for (int i = 0; i < 320 * 240; i++) {
+            double dx, dy;
+            ted4_lens_distort(l, i % 320 + 0.5, i / 320 + 0.5, &dx, &dy);
+            if (dx < 1 || dy < 1 || dx > 319 || dy > 239)
+                continue;
+            seen++;
+            for (int c = 0; c < 3; c++) {
+                const double want = pattern((i % 320 + 0.5 - l->cx) / l->fx, (i / 320 + 0.5 - l->cy) / l->fy, c);
+                if (fabs(out[3 * i + c] - want) > 1.5)
+                    fail_msg("lens %zu pixel %d: %d, expected %.1f", k, i, out[3 * i + c], want);
+            }
+        }
+        assert_true(seen > 320 * 240 * 8 / 10);
+    }
+    free(in);
+    free(out);
+}
+
+/* Outside the source the border is repeated; where the polynomial would fold back, the position stays on the fold. */
+static void test_undistort_border(void **state)
+{
+    (void)state;
+    const ted4_lens wide = { 8, 8, 4, 4, 4, 4, 0.9, 0, 0, 0 }, fold = { 100, 100, 20, 20, 50, 50, -0.2, 0, 0, 0 };
+    uint8_t in[8 * 8 * 3], out[8 * 8 * 3];
+    double x = 0, y = 0, before = 0;
+
+    for (int i = 0; i < 8 * 8 * 3; i++)
+        in[i] = (uint8_t)(i / 3 == 0 ? 200 : i / 3 == 63 ? 90 : 10);
+    ted4_undistort(&wide, in, out);
+    assert_int_equal(out[0], 200);
+    assert_int_equal(out[8 * 8 * 3 - 1], 90);
+    for (int i = 50; i < 100; i++) {
+        ted4_lens_distort(&fold, i, 50, &x, &y);
+        assert_true(x >= before && fabs(y - 50) < 1e-9);
+        before = x;
+    }
+    /* r (1 - 0.2 r^2) is largest at r = sqrt(5 / 3): 0.8607 */
+    assert_true(fabs(x - (50 + 20 * 0.86066)) < 1e-3);
+}
+
+/* Cache */
+
+enum { ITEMS = 12, ITEM_BYTES = 100 };
+
+static uint8_t *make_item(const void *user, size_t i, size_t *size, ted4_message *m)
+{
+    uint8_t *p = malloc(ITEM_BYTES);
+
+    if (i == 11 || p == NULL) {
+        snprintf(m->text, sizeof m->text, "item 11 is broken");
+        free(p);
+        return NULL;
+    }
+    memset(p, (int)i, ITEM_BYTES);
+    ((size_t *)(uintptr_t)user)[i]++;       /* each cell by one thread at a time, as promised */
+    *size = ITEM_BYTES;
+    return p;
+}
+
+static void test_cache(void **state)
+{
+    (void)state;
+    size_t made[ITEMS] = { 0 };
+    ted4_message m;
+    ted4_image_cache *c = ted4_image_cache_new(ITEMS, 3 * ITEM_BYTES, make_item, made);
+
+    assert_non_null(c);
+    for (size_t i = 0; i < 3; i++) {
+        assert_int_equal(ted4_image_cache_pin(c, i, &m)[7], i);
+        ted4_image_cache_unpin(c, i);
+    }
+    ted4_image_cache_pin(c, 0, &m);         /* now 1 is the oldest idle one */
+    ted4_image_cache_unpin(c, 0);
+    ted4_image_cache_pin(c, 3, &m);
+    ted4_image_cache_unpin(c, 3);
+    assert_int_equal(ted4_image_cache_held(c), 3 * ITEM_BYTES);
+    for (size_t i = 0; i < 4; i++) {
+        if (i == 1)
+            continue;
+        ted4_image_cache_pin(c, i, &m);
+        ted4_image_cache_unpin(c, i);
+        assert_int_equal(made[i], 1);
+    }
+    /* Pins may exceed the bound, and survive. */
+    const uint8_t *held[5];
+    for (size_t i = 4; i < 9; i++)
+        held[i - 4] = ted4_image_cache_pin(c, i, &m);
+    assert_int_equal(ted4_image_cache_held(c), 5 * ITEM_BYTES);
+    for (size_t i = 4; i < 9; i++)
+        assert_int_equal(held[i - 4][ITEM_BYTES - 1], i);
+    ted4_image_cache_pin(c, 4, &m);
+    for (size_t i = 4; i < 9; i++)
+        ted4_image_cache_unpin(c, i);
+    assert_int_equal(ted4_image_cache_held(c), 3 * ITEM_BYTES);
+    assert_int_equal(held[0][0], 4);        /* pinned twice, unpinned once */
+    ted4_image_cache_unpin(c, 4);
+    assert_null(ted4_image_cache_pin(c, 11, &m));
+    assert_string_equal(m.text, "item 11 is broken");
+    assert_null(ted4_image_cache_pin(c, ITEMS, &m));
+    ted4_image_cache_free(c);
+}
+
+static void *hammer(void *arg)
+{
+    ted4_image_cache *c = arg;
+    ted4_message m;
+    uintptr_t wrong = 0;
+    uint32_t x = (uint32_t)(uintptr_t)&m | 1;
+
+    for (int k = 0; k < 20000; k++) {
+        x = x * 1664525u + 1013904223u;
+        const size_t i = (x >> 16) % ITEMS;
+        const uint8_t *p = ted4_image_cache_pin(c, i, &m);
+        wrong += (p == NULL) != (i == 11);
+        if (p != NULL) {
+            wrong += p[0] != i || p[ITEM_BYTES - 1] != i;
+            ted4_image_cache_unpin(c, i);
+        }
+    }
+    return (void *)wrong;
+}
+
+static void test_cache_threads(void **state)
+{
+    (void)state;
+    size_t made[ITEMS] = { 0 };
+    pthread_t threads[4];
+    ted4_image_cache *c = ted4_image_cache_new(ITEMS, 4 * ITEM_BYTES, make_item, made);
+
+    assert_non_null(c);
+    for (int i = 0; i < 4; i++)
+        assert_int_equal(pthread_create(&threads[i], NULL, hammer, c), 0);
+    for (int i = 0; i < 4; i++) {
+        void *wrong;
+        assert_int_equal(pthread_join(threads[i], &wrong), 0);
+        assert_null(wrong);
+    }
+    assert_true(ted4_image_cache_held(c) <= 4 * ITEM_BYTES);
+    ted4_image_cache_free(c);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(test_png),              cmocka_unit_test(test_png_write), cmocka_unit_test(test_jpeg),
+        cmocka_unit_test(test_undistort),        cmocka_unit_test(test_undistort_border),
+        cmocka_unit_test(test_cache),            cmocka_unit_test(test_cache_threads),
+    };
+
+    return cmocka_run_group_tests_name("image file", tests, NULL, NULL);
+}

@@ -1,0 +1,163 @@
+/* test_kernel_strict.c - kernel/strict_dense.h: each twin this machine can run gives the bits of the plain layer, for odd and even
+ * shapes, ordinary and special numbers. NaNs are equal whatever their payload: R-REC-001 refuses them all.
+ * SPDX-License-Identifier: BSD-2-Clause */
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <stdlib.h>
+#include <cmocka.h>
+
+#include "kernel/strict_dense.h"
+
+enum { MAX = 131 };
+
+static _Alignas(64) float x[MAX * TED4_ROW], want[MAX * TED4_ROW], got[(MAX + 1) * TED4_ROW];
+static float w[MAX * MAX], b[MAX];
+static uint64_t seed = 7;
+
+static uint32_t bits32(void)
+{
+    seed = seed * 6364136223846793005u + 1442695040888963407u;
+    return (uint32_t)(seed >> 32);
+}
+
+static float ordinary(void)
+{
+    return (float)(int32_t)bits32() * 0x1p-31f;
+}
+
+/* Zeros of both signs, subnormals, huge and non-finite numbers among ordinary ones. */
+static float special(void)
+{
+    static const uint32_t list[] = { 0, 0x80000000, 1, 0x80000001, 0x007fffff, 0x00800000,
+                                     0x7f7fffff, 0xff7fffff, 0x7f800000, 0xff800000,
+                                     0x7fc00000, 0x3f800001, 0x33800000 };
+    const uint32_t pick = bits32() >> 8;
+
+    if (pick % 4 != 0)
+        return ordinary();
+    return ted4_bits_float(list[pick / 4 % (sizeof list / sizeof list[0])]);
+}
+
+/* Numbers of very different sizes, without NaN: sums depend on order and on fusing. */
+static float wide(void)
+{
+    return ldexpf(ordinary(), (int)(bits32() >> 8) % 40 - 20);
+}
+
+static void fill(float *v, size_t n, float (*number)(void))
+{
+    for (size_t i = 0; i < n; i++)
+        v[i] = number();
+}
+
+static int same(float a, float c)
+{
+    return ted4_float_bits(a) == ted4_float_bits(c) || (a != a && c != c);
+}
+
+static void compare(ted4_strict_dense_fn twin, unsigned in, unsigned out, int relu)
+{
+    const ted4_strict_layer l = { in, out, w, b, relu };
+    const size_t n = (size_t)out * TED4_ROW;
+
+    ted4_strict_dense_plain(&l, x, want);
+    for (size_t i = 0; i < n + TED4_ROW; i++)
+        got[i] = 1234.0f;
+    twin(&l, x, got);
+    for (size_t i = 0; i < n; i++)
+        assert_true(same(got[i], want[i]));
+    for (size_t i = n; i < n + TED4_ROW; i++)
+        assert_true(got[i] == 1234.0f);
+}
+
+static void twin_is_plain(ted4_strict_dense_fn twin)
+{
+    float (*const kinds[])(void) = { ordinary, special, wide };
+
+    for (int kind = 0; kind < 3; kind++)
+        for (unsigned out = 1; out < 36; out++) {
+            const unsigned in = bits32() % 70;
+
+            fill(w, (size_t)in * out, kinds[kind]);
+            fill(b, out, kinds[kind]);
+            fill(x, (size_t)in * TED4_ROW, kinds[kind]);
+            compare(twin, in, out, 0);
+            compare(twin, in, out, 1);
+        }
+    fill(w, (size_t)MAX * MAX, wide);
+    compare(twin, MAX, MAX, 1);
+}
+
+static void avx2_is_plain(void **state)
+{
+    (void)state;
+#if defined(__x86_64__)
+    if (__builtin_cpu_supports("avx2")) {
+        twin_is_plain(ted4_strict_dense_avx2);
+        return;
+    }
+#endif
+    skip();
+}
+
+static void avx512_is_plain(void **state)
+{
+    (void)state;
+#if defined(__x86_64__)
+    if (__builtin_cpu_supports("avx512f") && __builtin_cpu_supports("avx512bw") &&
+        __builtin_cpu_supports("avx512vl")) {
+        twin_is_plain(ted4_strict_dense_avx512);
+        return;
+    }
+#endif
+    skip();
+}
+
+/* One lane, one input at a time, nothing else: the definition. */
+static void plain_is_the_text(void **state)
+{
+    const ted4_strict_layer l = { 67, 9, w, b, 1 };
+
+    (void)state;
+    fill(w, 67 * 9, wide);
+    fill(b, 9, wide);
+    fill(x, 67 * TED4_ROW, wide);
+    ted4_strict_dense_plain(&l, x, got);
+    for (unsigned o = 0; o < 9; o++)
+        for (unsigned j = 0; j < TED4_ROW; j++) {
+            volatile float acc = b[o];
+
+            for (unsigned i = 0; i < 67; i++) {
+                volatile float product = w[o * 67 + i] * x[i * TED4_ROW + j];
+
+                acc = acc + product;
+            }
+            assert_true(same(got[o * TED4_ROW + j], acc < 0 ? 0 : acc));
+        }
+}
+
+static void environment_switches_twins_off(void **state)
+{
+    (void)state;
+    assert_int_equal(setenv("TED4_KERNEL", "plain", 1), 0);
+    assert_true(ted4_select_strict_dense() == ted4_strict_dense_plain);
+    assert_int_equal(unsetenv("TED4_KERNEL"), 0);
+#if defined(__x86_64__)
+    if (__builtin_cpu_supports("avx2"))
+        assert_true(ted4_select_strict_dense() != ted4_strict_dense_plain);
+#endif
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(plain_is_the_text),
+        cmocka_unit_test(avx2_is_plain),
+        cmocka_unit_test(avx512_is_plain),
+        cmocka_unit_test(environment_switches_twins_off),
+    };
+
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}

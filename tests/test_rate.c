@@ -1,0 +1,576 @@
+/* test_rate.c - train/rate*.c: bits of the float rate model against double arithmetic and against the coder's own tables, the noise,
+ * the quantiser, threads, lanes that are not there, and the three traps of algorithm facts 5.8 (items 3, 4, 5).
+ * SPDX-License-Identifier: BSD-2-Clause */
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <cmocka.h>
+
+#include "kernel/threads.h"
+#include "norm/gaussian.h"
+#include "norm/prior.h"
+#include "rate_ref.h"
+#include "train/rate_parts.h"
+
+typedef struct {
+    float u[TED4_LANES], s[TED4_LANES];
+    float bits[TED4_LANES], d_u[TED4_LANES], d_s[TED4_LANES];
+} row;
+
+static void run_row(row *r)
+{
+    ted4_rate_row(r->u, r->s, r->bits, r->d_u, r->d_s);
+}
+
+static int close_to(double got, double want, double relative, double absolute)
+{
+    return fabs(got - want) <= absolute + relative * fabs(want);
+}
+
+/* Bits to 2e-5 wherever sigma and distance lie; derivatives to 1e-4 of their size. */
+static void test_row_values(void **state)
+{
+    (void)state;
+    for (int i = 0; i <= 160; i++) {
+        row r;
+
+        for (int j = 0; j < TED4_LANES; j++) {
+            const double s = -4.0 + 15.0 * i / 160.0;
+            const double span = j < 16 ? 1.0 + exp2(s) : 12.0 * exp2(s) + 30.0;
+
+            r.s[j] = (float)fmin(s, REF_S_MAX);
+            r.u[j] = (float)(span * ref_uniform());
+        }
+        run_row(&r);
+        for (int j = 0; j < TED4_LANES; j++) {
+            const double u = (double)r.u[j], s = (double)r.s[j];
+            const double hu = 1e-5 * exp2(s), hs = 1e-5;
+            const double du = (ref_bits(u + hu, s) - ref_bits(u - hu, s)) / (2 * hu);
+            const double ds = (ref_bits(u, s + hs) - ref_bits(u, s - hs)) / (2 * hs);
+
+            assert_true(close_to((double)r.bits[j], ref_bits(u, s), 2e-6, 2e-5));
+            if (fabs(fabs(u) - fmin(6.0 * exp2(s), 4095.0) - 2.0) < 1e-2
+                || fabs(s - log2(4095.0 / 6.0)) < 1e-3)
+                continue;                       /* kinks of h and w */
+            assert_true(close_to((double)r.d_u[j], du, 2e-4, 2e-5 / exp2(s)));
+            assert_true(close_to((double)r.d_s[j], ds, 2e-4, 5e-5));
+        }
+    }
+}
+
+/* Item 4: far out and farther, bits are finite and grow, and the gradient leads back; in the plateau at 16 bits too. */
+static void test_outliers_have_gradient(void **state)
+{
+    static const float distance[] = { 1.4f, 5.5f, 40.0f, 1e3f, 1e5f, 1e8f, 1e20f, 3e38f };
+
+    (void)state;
+    for (size_t i = 0; i < sizeof distance / sizeof *distance; i++) {
+        row r;
+
+        for (int j = 0; j < TED4_LANES; j++) {
+            r.s[j] = -4.0f + 0.1f * (float)(j / 2);
+            r.u[j] = (j % 2 ? -1.0f : 1.0f) * distance[i];
+            if (distance[i] < 1e5f && i > 0)
+                r.u[j] *= exp2f(r.s[j]) + 0.5f / distance[i];   /* sigmas beyond the bin of 0 */
+        }
+        run_row(&r);
+        for (int j = 0; j < TED4_LANES; j++) {
+            assert_true(isfinite(r.bits[j]) && r.bits[j] > 0.0f);
+            assert_true(isfinite(r.d_u[j]) && isfinite(r.d_s[j]));
+            assert_true(j % 2 ? r.d_u[j] < 0.0f : r.d_u[j] > 0.0f);
+            if (distance[i] < 1e5f)
+                assert_true(r.d_s[j] < 0.0f);   /* a wider sigma is cheaper */
+            if (distance[i] == 1e8f)
+                assert_true(close_to((double)r.bits[j], 17.0 + 2.0 * log2(1e8), 0.0, 1e-3));
+        }
+    }
+}
+
+/* What the coder of spec 9.4 spends on k. */
+static double coder_bits(int32_t mu, unsigned g, int32_t k)
+{
+    const ted4_gauss_symbol s = ted4_gauss_of(mu, g, k);
+    double bits = 16.0 - log2((double)s.slots.freq);
+
+    if (s.escape >= 0)
+        bits += 2.0 * floor(log2((double)s.escape + 1.0)) + 1.0;
+    return bits;
+}
+
+static double model_bits(int32_t mu, unsigned g, int32_t k)
+{
+    row r;
+
+    for (int j = 0; j < TED4_LANES; j++) {
+        r.u[j] = (float)k - (float)mu / 256.0f;
+        r.s[j] = (float)((int)g - 64) / 16.0f;
+    }
+    run_row(&r);
+    return (double)r.bits[0];
+}
+
+/* Where symbols are likely, the model is the coder; at the floor it is at most a bit and a half off, in escapes two bits. */
+static void test_row_is_the_coder(void **state)
+{
+    (void)state;
+    for (unsigned g = 0; g < TED4_N_SIGMA; g += 3) {
+        const double sigma = exp2(((double)g - 64.0) / 16.0);
+        const int32_t mu = (int32_t)(2000.0 * ref_uniform());
+        double coded = 0.0, modelled = 0.0;
+
+        for (int32_t k = -200; k <= 200; k++) {
+            const double spread = fmax(1.0, 6.5 * sigma / 200.0);
+            const int32_t at = (int32_t)(mu / 256.0 + k * spread);
+            const double z = (at - mu / 256.0) / sigma, a = coder_bits(mu, g, at);
+            const double b = model_bits(mu, g, at);
+
+            assert_true(fabs(a - b) < (sigma > 600.0 && fabs(z) > 2.0 ? 12.0 : 2.5));
+            coded += exp(-0.5 * z * z) * a;
+            modelled += exp(-0.5 * z * z) * b;
+        }
+        assert_true(close_to(modelled, coded, sigma < 16.0 ? 2e-4 : sigma < 1e3 ? 2e-3 : 1e-2, 1e-4));
+    }
+}
+
+static void fill_noise(ref_world *w, float *noise[REF_SLOTS])
+{
+    for (int i = 0; i < REF_SLOTS; i++) {
+        noise[i] = ref_floats((size_t)w->layout.n_channels * TED4_LANES);
+        ref_noise(w, i, noise[i]);
+    }
+}
+
+/* Bits of every type, and steps, against the double model, whichever lanes are in use. */
+static void check_world(ref_world *w)
+{
+    double bits[TED4_TYPES], want[TED4_TYPES] = {0}, total = 0.0;
+    float *noise[REF_SLOTS];
+
+    w->lanes[1] = 0x80f00f05u;
+    fill_noise(w, noise);
+    assert_int_equal(ref_run(w, NULL, bits), 0);
+    const ref_model m = ref_model_make(w);
+
+    for (int i = 0; i < REF_SLOTS; i++)
+        for (int j = 0; j < TED4_LANES; j++) {
+            ref_anchor a;
+            ref_result r;
+
+            if (!(w->lanes[i] >> j & 1))
+                continue;
+            ref_anchor_make(w, &m, i, j, noise[i], &a);
+            ref_evaluate(&m, &a, NULL, &r);
+            for (int t = 0; t < TED4_TYPES; t++) {
+                want[t] += r.bits[t];
+                total += r.bits[t];
+                assert_true(close_to((double)w->steps[i][t * TED4_LANES + j], r.steps[t],
+                                     1e-5, 0.0));
+            }
+        }
+    assert_true(total > 100.0);
+    for (int t = 0; t < TED4_TYPES; t++)
+        assert_true(close_to(bits[t], want[t], 1e-5, 1e-3));
+    for (int i = 0; i < REF_SLOTS; i++)
+        free(noise[i]);
+}
+
+static void variant(ted4_header *h, int which)
+{
+    *h = ref_header();
+    if (which == 1)
+        h->prior = TED4_PRIOR_FACTORISED, h->pe_octaves = h->hyper_layers = 0,
+        h->hyper_width = 0;
+    if (which == 2)
+        h->n_slices = 1, h->slice[0] = h->feature_dim, h->ar_width = 0;
+    if (which == 3)
+        h->motion = TED4_MOTION_NONE, h->phi_dim = 0, h->bank_rows = 0, h->bank_dim = 0,
+        h->deform_layers = 0, h->deform_width = 0, h->temporal_mask = h->activation = 0;
+    if (which == 4)
+        h->offset_mask = h->temporal_mask = 0, h->hyper_layers = 0, h->hyper_width = 0;
+}
+
+enum { VARIANTS = 6 };                          /* the last: static phase */
+
+static void test_values(void **state)
+{
+    (void)state;
+    for (int which = 0; which < VARIANTS; which++)
+        for (int quant = TED4_QUANT_NOISE; quant <= TED4_QUANT_ROUND; quant++) {
+            static ref_world w;
+            ted4_header h;
+
+            variant(&h, which);
+            ref_world_make(&w, &h);
+            w.in.quant = (ted4_quant)quant;
+            w.in.activation = which != VARIANTS - 1;
+            check_world(&w);
+            ref_world_finish(&w);
+        }
+}
+
+/* Garbage in unused lanes touches nothing: neither sums, nor gradients, nor steps of the others. */
+static void test_unused_lanes(void **state)
+{
+    static ref_world w;
+    const ted4_header h = ref_header();
+    double bits[TED4_TYPES], again[TED4_TYPES];
+
+    (void)state;
+    ref_world_make(&w, &h);
+    const size_t block = (size_t)w.layout.n_channels * TED4_LANES;
+    float *d_net = ref_floats(w.layout.n_net), *d_attr = ref_floats(block);
+
+    w.lanes[2] = 0x00ff0ff0u;
+    assert_int_equal(ref_run(&w, NULL, bits), 0);
+    memcpy(d_net, w.d_net, w.layout.n_net * sizeof *d_net);
+    memcpy(d_attr, w.d_attr[2], block * sizeof *d_attr);
+    for (size_t i = 0; i < block; i++)
+        if (!(w.lanes[2] >> i % TED4_LANES & 1)) {
+            assert_true(w.d_attr[2][i] == 0.0f);
+            w.attr[2][i] = w.d_value[2][i] = NAN;
+            w.position[2][i % (3 * TED4_LANES)] = NAN;
+        }
+    assert_int_equal(ref_run(&w, NULL, again), 0);
+    assert_memory_equal(bits, again, sizeof bits);
+    assert_memory_equal(d_net, w.d_net, w.layout.n_net * sizeof *d_net);
+    assert_memory_equal(d_attr, w.d_attr[2], block * sizeof *d_attr);
+    free(d_net);
+    free(d_attr);
+    ref_world_finish(&w);
+}
+
+/* Mean 0, variance 1/12, flat, and no correlation between channels, lanes, blocks or keys: n = 2^16 a pair, so 5 standard deviations are 0.02. */
+static void test_noise(void **state)
+{
+    static ref_world w;
+    const ted4_header h = ref_header();
+    enum { BLOCKS = 2048 };
+    double sum = 0.0, square = 0.0, bins[16] = {0}, n = 0.0;
+    double channels = 0.0, lanes = 0.0, blocks = 0.0, keys = 0.0, pairs = 0.0;
+
+    (void)state;
+    ref_world_make(&w, &h);
+    const size_t size = (size_t)w.layout.n_channels * TED4_LANES;
+    const int count = w.layout.offset_logit;
+    float *now = ref_floats(size), *before = ref_floats(size), *other = ref_floats(size);
+
+    for (uint32_t b = 0; b < BLOCKS; b++) {
+        w.block[0] = b;
+        w.in.key = 5;
+        ref_noise(&w, 0, now);
+        w.in.key = 6;
+        ref_noise(&w, 0, other);
+        for (int c = 0; c < count; c++)
+            for (int j = 0; j < TED4_LANES; j++) {
+                const double u = (double)now[c * TED4_LANES + j];
+
+                assert_true(u > -0.5 && u < 0.5);
+                sum += u;
+                square += u * u;
+                bins[(int)((u + 0.5) * 16.0)] += 1.0;
+                n += 1.0;
+                lanes += u * (double)now[c * TED4_LANES + (j + 1) % TED4_LANES];
+                channels += u * (double)now[(c + 1) % count * TED4_LANES + j];
+                blocks += u * (double)before[c * TED4_LANES + j];
+                keys += u * (double)other[c * TED4_LANES + j];
+                pairs += 1.0;
+            }
+        memcpy(before, now, size * sizeof *now);
+    }
+    const double five = 5.0 / sqrt(n);          /* standard deviations of a mean of n */
+
+    assert_true(fabs(sum / n) < five * sqrt(1.0 / 12.0));
+    assert_true(fabs(square / n - 1.0 / 12.0) < five * sqrt(1.0 / 180.0));
+    for (int i = 0; i < 16; i++)
+        assert_true(fabs(bins[i] / n - 1.0 / 16.0) < five * 0.25);
+    assert_true(fabs(lanes / pairs) < five / 12.0);
+    assert_true(fabs(channels / pairs) < five / 12.0);
+    assert_true(fabs(blocks / pairs) < five / 12.0);
+    assert_true(fabs(keys / pairs) < five / 12.0);
+    free(now);
+    free(before);
+    free(other);
+    ref_world_finish(&w);
+}
+
+/* k q with the nearest k within the range of symbols; logits untouched; a_f never before a_s, in either mode. */
+static void test_quantise(void **state)
+{
+    static ref_world w;
+    const ted4_header h = ref_header();
+
+    (void)state;
+    ref_world_make(&w, &h);
+    const ted4_layout *l = &w.layout;
+    const size_t size = (size_t)l->n_channels * TED4_LANES;
+    const int tau = l->first[TED4_TAU];
+    float *out = ref_floats(size), *steps = w.steps[0];
+
+    for (int i = 0; i < TED4_TYPES * TED4_LANES; i++)
+        steps[i] = (float)(0.02 + 0.01 * ref_uniform());
+    w.attr[0][3] = 1e9f;
+    w.attr[0][4] = -1e9f;
+    for (int quant = TED4_QUANT_NOISE; quant <= TED4_QUANT_ROUND; quant++) {
+        int raised = 0;
+
+        ted4_quantise(l, (ted4_quant)quant, w.attr[0], steps, 3, 9, out);
+        for (int t = 0; t < TED4_TYPES; t++)
+            for (size_t i = 0; i < l->shape.dim[t] * (size_t)TED4_LANES; i++) {
+                const size_t at = (size_t)l->first[t] * TED4_LANES + i;
+                const float q = steps[(size_t)t * TED4_LANES + i % TED4_LANES];
+                const float k = rintf(w.attr[0][at] / q);
+
+                if (t == TED4_TAU && i / TED4_LANES == 2)
+                    continue;
+                if (quant == TED4_QUANT_ROUND)
+                    assert_true(out[at] == fminf(fmaxf(k, -32767.0f), 32767.0f) * q);
+                else
+                    assert_true(fabsf(out[at] - w.attr[0][at])
+                                <= q * 0.5f + 1e-6f * fabsf(w.attr[0][at]));
+            }
+        for (int j = 0; j < TED4_LANES; j++) {
+            const float start = out[tau * TED4_LANES + j];
+            const float end = out[(tau + 2) * TED4_LANES + j];
+
+            assert_true(start <= end);
+            raised += start == end;
+        }
+        assert_true(raised > 4);
+        assert_memory_equal(out + l->offset_logit * TED4_LANES,
+                            w.attr[0] + l->offset_logit * TED4_LANES,
+                            (size_t)(l->n_channels - l->offset_logit) * TED4_LANES
+                            * sizeof *out);
+    }
+    free(out);
+    ref_world_finish(&w);
+}
+
+/* Many slots, so that several waves run; bits of every result the same for 1 and 3 threads. */
+static void test_threads(void **state)
+{
+    enum { SLOTS = TED4_RATE_CHUNK * TED4_RATE_WAVE + 21 };
+    static ref_world w;
+    static const float *attr[SLOTS], *position[SLOTS];
+    static float *d_attr[SLOTS], *steps[SLOTS];
+    static uint32_t lanes[SLOTS], block[SLOTS];
+    const ted4_header h = ref_header();
+    double bits[2][TED4_TYPES];
+    float *d_net[2];
+    uint64_t sum[2] = {0, 0};
+
+    (void)state;
+    ref_world_make(&w, &h);
+    const size_t size = (size_t)w.layout.n_channels * TED4_LANES;
+
+    for (uint32_t i = 0; i < SLOTS; i++) {
+        attr[i] = w.attr[i % REF_SLOTS];
+        position[i] = w.position[i % REF_SLOTS];
+        d_attr[i] = ref_floats(size);
+        steps[i] = ref_floats(TED4_TYPES * TED4_LANES);
+        lanes[i] = ~i;
+        block[i] = i;
+    }
+    w.in.n_slots = SLOTS;
+    w.in.attr = attr;
+    w.in.position = position;
+    w.in.lanes = lanes;
+    w.in.block = block;
+    ted4_rate_pack(w.rate, w.net);
+    for (int run = 0; run < 2; run++) {
+        ted4_parallel p;
+
+        ted4_threads_init(&p, 1 + 2 * run);
+        d_net[run] = ref_floats(w.layout.n_net);
+        for (int i = 0; i < SLOTS; i++)
+            memset(d_attr[i], 0, size * sizeof(float));
+        assert_int_equal(ted4_rate_evaluate(w.rate, &w.in, &p, NULL, d_attr, d_net[run],
+                                            steps, bits[run]), 0);
+        for (int i = 0; i < SLOTS; i++)
+            for (size_t j = 0; j < size; j++)
+                sum[run] = sum[run] * 0x9e3779b97f4a7c15u + ted4_float_bits(d_attr[i][j]);
+    }
+    assert_memory_equal(bits[0], bits[1], sizeof bits[0]);
+    assert_memory_equal(d_net[0], d_net[1], w.layout.n_net * sizeof(float));
+    assert_true(sum[0] == sum[1]);
+    for (int i = 0; i < SLOTS; i++) {
+        free(d_attr[i]);
+        free(steps[i]);
+    }
+    free(d_net[0]);
+    free(d_net[1]);
+    ref_world_finish(&w);
+}
+
+/* Without gradients, and with nothing but steps, the numbers are the same. */
+static void test_partial(void **state)
+{
+    static ref_world w;
+    const ted4_header h = ref_header();
+    double bits[TED4_TYPES], again[TED4_TYPES];
+    float steps[REF_SLOTS][TED4_TYPES * TED4_LANES];
+
+    (void)state;
+    ref_world_make(&w, &h);
+    assert_int_equal(ref_run(&w, NULL, bits), 0);
+    for (int i = 0; i < REF_SLOTS; i++) {
+        memcpy(steps[i], w.steps[i], sizeof steps[i]);
+        memset(w.steps[i], 0, sizeof steps[i]);
+    }
+    assert_int_equal(ted4_rate_evaluate(w.rate, &w.in, NULL, NULL, NULL, NULL, w.steps, NULL),
+                     0);
+    for (int i = 0; i < REF_SLOTS; i++)
+        assert_memory_equal(steps[i], w.steps[i], sizeof steps[i]);
+    assert_int_equal(ted4_rate_evaluate(w.rate, &w.in, NULL, NULL, NULL, NULL, w.steps, again),
+                     0);
+    assert_memory_equal(bits, again, sizeof bits);
+    ref_world_finish(&w);
+}
+
+/* Items 3 and 5: sigma and steps driven far out of range by their biases. Steps stay within 2^-4 .. 2^(127/32) of Q0, and descent brings both back. */
+static void test_clamped_outputs_recover(void **state)
+{
+    static ref_world w;
+    const ted4_header h = ref_header();
+    double bits[TED4_TYPES];
+
+    (void)state;
+    for (int high = 0; high < 2; high++) {
+        ref_world_make(&w, &h);
+        const ted4_shape *s = &w.layout.shape;
+        const unsigned v = s->first_step_output, sigma = s->first_output[TED4_SCALING] + 6;
+
+        for (unsigned t = 0; t < TED4_TYPES; t++)
+            *ref_bias(&w, v + t) = high ? 40.0f : -40.0f;
+        for (unsigned c = 0; c < 6; c++)
+            *ref_bias(&w, sigma + c) = high ? 40.0f : -40.0f;
+        assert_int_equal(ref_run(&w, NULL, bits), 0);
+        for (int t = 0; t < TED4_TYPES; t++)
+            for (int j = 0; j < TED4_LANES; j++)
+                assert_true(close_to((double)w.steps[0][t * TED4_LANES + j],
+                                     (double)h.step[t] * exp2(high ? REF_V_MAX : REF_V_MIN),
+                                     1e-6, 0.0));
+        const float *d = w.d_net + (ref_bias(&w, 0) - w.net);
+
+        for (unsigned c = 0; c < 6; c++)        /* down is forbidden when low, up when high */
+            assert_true(high ? d[sigma + c] > 0.0f : d[sigma + c] < 0.0f);
+        if (!high)
+            assert_true(d[v + TED4_FEATURE] < 0.0f);
+        ref_world_finish(&w);
+    }
+}
+
+/* TED4_QUANT_INTEGER is the decoder: bits from mu, sigma index, step index of norm/prior.h, k an integer. */
+static double integer_bits(const ref_world *w, const ted4_prior *p, int slot, double *bits)
+{
+    const ted4_layout *l = &w->layout;
+    const ted4_shape *s = &l->shape;
+    static int32_t out[REF_MAX_OUTPUTS * TED4_PRIOR_BLOCK], add[REF_MAX_OUTPUTS * TED4_PRIOR_BLOCK];
+    static int16_t context[REF_MAX_CHANNELS * TED4_PRIOR_BLOCK];
+    uint16_t position[TED4_LANES][3];
+    double total = 0.0;
+
+    for (int j = 0; j < TED4_LANES; j++)
+        for (int a = 0; a < 3; a++)
+            position[j][a] = ted4_float_to_half(w->position[slot][a * TED4_LANES + j]);
+    ted4_prior_hyper(p, position[0], TED4_LANES, out);
+    for (unsigned t = 0; t < TED4_TYPES; t++)
+        for (unsigned c = 0; c < s->dim[t]; c++) {
+            if (t == TED4_FEATURE && c == l->head.slice[0]) {
+                ted4_prior_slice(p, 1, context, TED4_LANES, add);
+                for (unsigned i = 0; i < 2u * l->head.slice[1]; i++)
+                    for (int j = 0; j < TED4_LANES; j++)
+                        out[(c + i + (i >= l->head.slice[1] ? s->dim[0] - l->head.slice[1]
+                                                                : 0u)) * 64 + (unsigned)j]
+                            += add[i * 64 + (unsigned)j];
+            }
+            for (int j = 0; j < TED4_LANES; j++) {
+                const uint8_t i = ted4_step_index(out[(s->first_step_output + t) * 64 + (unsigned)j]);
+                const float q = l->head.step[t] * ted4_bits_float(ted4_step[i]);
+                const float x = w->attr[slot][((unsigned)l->first[t] + c) * 32 + (unsigned)j];
+                const int16_t k = (int16_t)rintf(x / q);
+                const unsigned at = s->first_output[t] + c;
+                const uint8_t g = ted4_sigma_index(out[(at + s->dim[t]) * 64 + (unsigned)j]);
+                const double b = ref_bits(k - out[at * 64 + (unsigned)j] / 256.0, (g - 64) / 16.0);
+
+                assert_true(w->steps[slot][t * TED4_LANES + (unsigned)j] == q);
+                if (t == TED4_FEATURE)
+                    context[c * 64 + (unsigned)j] = ted4_context(k, i, l->head.context_bits);
+                if (t == TED4_TAU && c == 2)
+                    continue;                   /* set apart by the test: a_f > a_s */
+                bits[t] += b;
+                total += b;
+            }
+        }
+    return total;
+}
+
+static void test_integer(void **state)
+{
+    static ref_world w;
+    ted4_header h = ref_header();
+    double bits[TED4_TYPES], want[TED4_TYPES] = {0}, rounded[TED4_TYPES];
+    ted4_arena arena;
+    ted4_prior prior;
+
+    (void)state;
+    h.n_slices = 2, h.slice[0] = 3, h.slice[1] = 4;
+    h.offset_mask = h.temporal_mask = h.activation = 0;
+    ref_world_make(&w, &h);
+    uint8_t *shift = calloc(w.layout.shape.n_units, 1);
+
+    for (size_t i = 0; i < w.layout.shape.n_units; i++)
+        shift[i] = 11;
+    for (size_t i = w.layout.nete; i < w.layout.n_net; i++)
+        w.net[i] = rintf(w.net[i] * 2048.0f) / 2048.0f + 0.0f;  /* no -0 */
+    w.in.quant = TED4_QUANT_ROUND;
+    assert_int_equal(ref_run(&w, NULL, rounded), 0);
+    float *gradient = ref_floats(w.layout.n_net);
+
+    memcpy(gradient, w.d_net, w.layout.n_net * sizeof *gradient);
+    w.in.quant = TED4_QUANT_INTEGER;
+    w.in.shift = shift;
+    assert_int_equal(ref_run(&w, NULL, bits), 0);
+    ted4_arena_init(&arena, NULL);
+    assert_int_equal(ted4_prior_init(&prior, &h, &w.layout.shape, &arena), TED4_OK);
+    assert_int_equal(ted4_prior_load(&prior, w.net + w.layout.nete, shift, NULL), TED4_OK);
+    for (int i = 0; i < REF_SLOTS; i++)
+        integer_bits(&w, &prior, i, want);
+    double inner = 0.0, a = 0.0, b = 0.0;
+
+    for (size_t i = w.layout.nete; i < w.layout.n_net; i++) {
+        inner += (double)gradient[i] * (double)w.d_net[i];
+        a += (double)gradient[i] * (double)gradient[i];
+        b += (double)w.d_net[i] * (double)w.d_net[i];
+    }
+    for (int t = 0; t < TED4_TAU; t++) {
+        assert_true(close_to(bits[t], want[t], 1e-5, 1e-3));
+        assert_true(close_to(bits[t], rounded[t], 0.02, 0.0));
+    }
+    assert_true(inner > 0.99 * sqrt(a * b) && close_to(a, b, 0.1, 0.0));
+    shift[0] = 21;                              /* R-NET-003 */
+    assert_int_equal(ref_run(&w, NULL, bits), -1);
+    ted4_arena_finish(&arena);
+    free(gradient);
+    free(shift);
+    ref_world_finish(&w);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(test_row_values),
+        cmocka_unit_test(test_outliers_have_gradient),
+        cmocka_unit_test(test_row_is_the_coder),
+        cmocka_unit_test(test_values),
+        cmocka_unit_test(test_unused_lanes),
+        cmocka_unit_test(test_noise),
+        cmocka_unit_test(test_quantise),
+        cmocka_unit_test(test_threads),
+        cmocka_unit_test(test_partial),
+        cmocka_unit_test(test_clamped_outputs_recover),
+        cmocka_unit_test(test_integer),
+    };
+
+    return cmocka_run_group_tests_name("rate", tests, NULL, NULL);
+}
