@@ -1,9 +1,11 @@
-/* bench_generate.c - speed of ted4_generate and ted4_generate_backward for 200 blocks of 32 anchors.
- * Build (from the project root, after make):
+/* bench_generate.c - speed of ted4_generate and ted4_generate_backward for 200 blocks of 32
+ * anchors. Build (from the project root, after make):
  *     gcc -std=c11 -O3 -march=native -D_POSIX_C_SOURCE=200809L -fopenmp -Iref-decoder -Iref-encoder bench/bench_generate.c \
  *         build/libted4enc.a build/libted4dec.a -o /tmp/bench_generate -lm
- * Use: bench_generate [THREADS [SLOTS]]. One line per model: the best and median of 20 runs in milliseconds, GFLOP/s of the best. Counted are the dense layers as
- * the specification has them, a multiply-add as 2: the generator does less for the first layers of motion, so its figure there can pass the machine's peak.
+ * Use: bench_generate [THREADS [SLOTS]]. One line per model: the best and median of 20 runs in
+ * milliseconds, GFLOP/s of the best. Counted are the dense layers as the specification has them, a
+ * multiply-add as 2: the generator does less for the first layers of motion, so its figure there
+ * can pass the machine's peak.
  * SPDX-License-Identifier: BSD-2-Clause */
 #include <omp.h>
 #include <stdio.h>

@@ -1,5 +1,6 @@
-/* generate_ref.h - spec 11.1 to 11.5 in double precision, one anchor at a time, as the text reads: what test_generate.c and test_generate_grad.c
- * compare with. Masks are written so that central differences see their straight-through gradient. Shares no code with train/.
+/* generate_ref.h - spec 11.1 to 11.5 in double precision, one anchor at a time, as the text reads:
+ * what test_generate.c and test_generate_grad.c compare with. Masks are written so that central
+ * differences see their straight-through gradient. Shares no code with train/.
  * SPDX-License-Identifier: BSD-2-Clause */
 #ifndef TED4_GENERATE_REF_H
 #define TED4_GENERATE_REF_H
@@ -46,7 +47,8 @@ static inline double ref_sigmoid(double x)
     return 1.0 / (1.0 + exp(-x));
 }
 
-/* Hard at the base logit, plus the sigmoid's change from there: equal to the hard mask in value, to the sigmoid in slope. */
+/* Hard at the base logit, plus the sigmoid's change from there: equal to the hard mask in value, to
+ * the sigmoid in slope. */
 static inline double ref_mask(double logit, double base)
 {
     return (ref_sigmoid(base) > 0.01 ? 1.0 : 0.0) + ref_sigmoid(logit) - ref_sigmoid(base);
@@ -178,7 +180,8 @@ static inline void ref_rotation(const double *y, double *to)
         to[c] = n < 0x1p-20 ? (c == 0) : y[c] / n;
 }
 
-/* out: [K] of mean 3, scale 3, rotation 4, opacity, colour 3. base: the channels at which masks are hard. */
+/* out: [K] of mean 3, scale 3, rotation 4, opacity, colour 3. base: the channels at which masks are
+ * hard. */
 static inline void ref_generate(const ref_query *q, const double *channel, const double *base, const double *p, double (*out)[REF_OUT])
 {
     const ted4_header *h = &q->head;

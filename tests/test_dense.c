@@ -1,4 +1,5 @@
-/* test_dense.c - kernel/dense.h against plain double loops: odd and even shapes, strides, several blocks.
+/* test_dense.c - kernel/dense.h against plain double loops: odd and even shapes, strides, several
+ * blocks.
  * SPDX-License-Identifier: BSD-2-Clause */
 #include <setjmp.h>
 #include <stdarg.h>

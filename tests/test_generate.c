@@ -1,4 +1,5 @@
-/* test_generate.c - train/generate.c against the double-precision text of spec 11 (generate_ref.h), for every variant of the header.
+/* test_generate.c - train/generate.c against the double-precision text of spec 11 (generate_ref.h),
+ * for every variant of the header.
  * SPDX-License-Identifier: BSD-2-Clause */
 #include <setjmp.h>
 #include <stdarg.h>
@@ -95,7 +96,8 @@ static void test_depths(void **state)
 
 static void test_times(void **state)
 {
-    /* First and last time, on a row and between rows of a bank of 5, one frame, and the largest den. */
+    /* First and last time, on a row and between rows of a bank of 5, one frame, and the largest
+     * den. */
     static const uint32_t time[][2] = { {0, 8}, {8, 8}, {2, 8}, {3, 8}, {0, 1}, {1, 1}, {7, 8},
                                         {16777214, 16777215}, {1, 16777215} };
 

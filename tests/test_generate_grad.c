@@ -1,5 +1,5 @@
-/* test_generate_grad.c - train/generate_bwd.c against central differences of the double-precision reference: every channel of anchors, every
- * value of the networks and the bank.
+/* test_generate_grad.c - train/generate_bwd.c against central differences of the double-precision
+ * reference: every channel of anchors, every value of the networks and the bank.
  * SPDX-License-Identifier: BSD-2-Clause */
 #include <setjmp.h>
 #include <stdarg.h>
@@ -12,7 +12,8 @@
 
 #include "generate_case.h"
 
-/* Step of the differences: small, because networks of ReLUs have kinks everywhere; double loses about 1e-9 to it. */
+/* Step of the differences: small, because networks of ReLUs have kinks everywhere; double loses
+ * about 1e-9 to it. */
 #define STEP 1e-7
 /* Of the gradient, relative to the size of the terms it sums. */
 #define TOLERANCE 2e-5
@@ -23,19 +24,20 @@ static _Alignas(64) float d_attr[CASE_SLOTS][CASE_CHANNELS * TED4_LANES];
 static float d_net[CASE_NET], first_net[CASE_NET];
 static double channels[CASE_SLOTS][TED4_LANES][CASE_CHANNELS], positions[CASE_SLOTS][TED4_LANES][3];
 
-static ted4_splat_grads splat_gradients(void)
+/* from: REF_OUT arrays of n. */
+static ted4_splat_grads splat_gradients(float *from, size_t n)
 {
     ted4_splat_grads gr;
 
     memset(&gr, 0, sizeof gr);
-    for (int c = 0; c < 3; c++) {
-        gr.mean[c] = gradient[c];
-        gr.scale[c] = gradient[3 + c];
-        gr.colour[c] = gradient[11 + c];
+    for (size_t c = 0; c < 3; c++) {
+        gr.mean[c] = from + c * n;
+        gr.scale[c] = from + (3 + c) * n;
+        gr.colour[c] = from + (11 + c) * n;
     }
-    for (int c = 0; c < 4; c++)
-        gr.rot[c] = gradient[6 + c];
-    gr.opacity = gradient[10];
+    for (size_t c = 0; c < 4; c++)
+        gr.rot[c] = from + (6 + c) * n;
+    gr.opacity = from + 10 * n;
     return gr;
 }
 
@@ -43,7 +45,7 @@ static ted4_splat_grads splat_gradients(void)
 static void run(ted4_generator *g, const ted4_parallel *p)
 {
     float *list[CASE_SLOTS];
-    const ted4_splat_grads gr = splat_gradients();
+    const ted4_splat_grads gr = splat_gradients(gradient[0], CASE_SPLATS);
     ted4_splats s;
 
     for (int i = 0; i < CASE_SLOTS; i++)
@@ -249,6 +251,51 @@ static void test_dead(void **state)
     ted4_generator_free(g);
 }
 
+/* The same slots many times, so that chunks have several groups: gradients of the networks are that
+ * many times as large. */
+static void test_many_slots(void **state)
+{
+    enum { TIMES = 9, SLOTS = TIMES * CASE_SLOTS };
+    static float many[REF_OUT][TIMES * CASE_SPLATS];
+    static _Alignas(64) float many_attr[SLOTS][CASE_CHANNELS * TED4_LANES];
+    static const float *attr[SLOTS], *position[SLOTS];
+    static float *d_list[SLOTS];
+    static uint32_t lanes[SLOTS];
+    const ted4_header h = case_header(TED4_MOTION_BANK, TED4_VIEW_COLOUR);
+    ted4_generator *g = make(&h, 3, 16);
+    const size_t used = (size_t)scene.layout.n_channels * TED4_LANES * sizeof **many_attr;
+    ted4_splat_grads gr;
+    ted4_splats s;
+
+    (void)state;
+    run(g, NULL);
+    memcpy(first_net, d_net, sizeof d_net);
+    for (int i = 0; i < SLOTS; i++) {
+        attr[i] = scene.attr[i % CASE_SLOTS];
+        position[i] = scene.position[i % CASE_SLOTS];
+        lanes[i] = scene.lanes[i % CASE_SLOTS];
+        d_list[i] = many_attr[i];
+    }
+    for (int c = 0; c < REF_OUT; c++)
+        for (int i = 0; i < TIMES * CASE_SPLATS; i++)
+            many[c][i] = gradient[c][i % CASE_SPLATS];
+    gr = splat_gradients(many[0], TIMES * CASE_SPLATS);
+    scene.in.attr = attr;
+    scene.in.position = position;
+    scene.in.lanes = lanes;
+    scene.in.n_slots = SLOTS;
+    assert_int_equal(ted4_generate(g, &scene.in, NULL, &s), 0);
+    assert_int_equal(ted4_generate_backward(g, &scene.in, &gr, NULL, d_list, d_net), 0);
+    for (int i = 0; i < SLOTS; i++)
+        assert_memory_equal(many_attr[i], d_attr[i % CASE_SLOTS], used);
+    for (size_t i = 0; i < scene.layout.nete; i++) {
+        const float once = first_net[i] - 1.0f, all = d_net[i] - first_net[i];
+
+        assert_true(fabsf(all - TIMES * once) <= 1e-3f + 1e-4f * fabsf(all));
+    }
+    ted4_generator_free(g);
+}
+
 static void test_threads(void **state)
 {
     static const ted4_parallel runs[] = { { case_run_backwards, NULL }, { case_run_threads, NULL } };
@@ -280,6 +327,7 @@ int main(void)
         cmocka_unit_test(test_times),
         cmocka_unit_test(test_activation_off),
         cmocka_unit_test(test_dead),
+        cmocka_unit_test(test_many_slots),
         cmocka_unit_test(test_threads),
     };
 

@@ -25,13 +25,41 @@ ted4_gauss_symbol ted4_gauss_of(int32_t mu, unsigned g, int32_t k)
     return s;
 }
 
-/* cum is strictly increasing, so bisection finds the only j with cum(j) <= slot < cum(j + 1). */
+/* A symbol near the one that holds slot: the Gaussian inverted by table, in Q8 of a step as d of spec 9.4.
+ * sigma = STEPI[128 + 2 (g mod 16)] 2^(g / 16 - 16); where is Q14. */
+static uint32_t guess(unsigned g, int32_t fr, uint32_t slot)
+{
+    const int32_t d = ted4_floor_shift(ted4_where[slot / 256]
+                                       * ted4_stepi[128 + 2 * (g % 16)],
+                                       22 - g / 16);
+
+    return (uint32_t)ted4_clamp(ted4_floor_shift(d + 128 + fr, 8) + 1
+                                + ted4_half[g], 0,
+                                (int32_t)ted4_gauss_size(g) - 1);
+}
+
+/* cum is strictly increasing, so there is one j with cum(j) <= slot < cum(j + 1). The guess is nearly always right; otherwise steps
+ * that double reach beyond it, and bisection finds it between them. */
 uint32_t ted4_gauss_find(unsigned g, int32_t fr, uint32_t slot,
                          ted4_slots *slots)
 {
-    uint32_t low = 0, high = ted4_gauss_size(g);
-    uint32_t from = 0, to = 1u << TED4_SLOT_BITS;
+    const uint32_t size = ted4_gauss_size(g);
+    uint32_t low = guess(g, fr, slot), high = low + 1;
+    uint32_t from = ted4_gauss_cum(g, fr, low);
+    uint32_t to = ted4_gauss_cum(g, fr, high);
 
+    for (uint32_t step = 1; slot < from; step *= 2) {
+        high = low;
+        to = from;
+        low = low > step ? low - step : 0;
+        from = ted4_gauss_cum(g, fr, low);
+    }
+    for (uint32_t step = 1; slot >= to; step *= 2) {
+        low = high;
+        from = to;
+        high = size - high > step ? high + step : size;
+        to = ted4_gauss_cum(g, fr, high);
+    }
     while (high - low > 1) {
         const uint32_t j = (low + high) / 2;
         const uint32_t c = ted4_gauss_inner(g, fr, j);

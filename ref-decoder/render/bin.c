@@ -156,10 +156,10 @@ int ted4_raster_bin(struct ted4_raster *r, const ted4_splats *s, const ted4_para
     bin_job      job = { .r = r, .n_splats = s->n, .from = r->key[1].data, .to = r->key[0].data };
 
     if (add_up_chunks(r, n_chunks) != 0
-        || ted4_buffer_grow(&r->hist, TED4_SORT_PARTS * n_buckets, sizeof(uint32_t)) != 0
-        || ted4_buffer_grow(&r->tile_first, n_tiles + 1, sizeof(uint32_t)) != 0
-        || ted4_buffer_grow(&r->owner, r->n_instances + TED4_AHEAD, sizeof(uint32_t)) != 0
-        || ted4_buffer_grow(&r->slot, r->n_instances, sizeof(uint32_t)) != 0)
+        || ted4_growing_grow(&r->hist, TED4_SORT_PARTS * n_buckets, sizeof(uint32_t)) != 0
+        || ted4_growing_grow(&r->tile_first, n_tiles + 1, sizeof(uint32_t)) != 0
+        || ted4_growing_grow(&r->owner, r->n_instances + TED4_AHEAD, sizeof(uint32_t)) != 0
+        || ted4_growing_grow(&r->slot, r->n_instances, sizeof(uint32_t)) != 0)
         return -1;
     ((uint32_t *)r->first_slot.data)[s->n] = (uint32_t)r->n_instances;
     memset((uint32_t *)r->owner.data + r->n_instances, 0, TED4_AHEAD * sizeof(uint32_t));

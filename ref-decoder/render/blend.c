@@ -185,7 +185,7 @@ int ted4_raster_blend(struct ted4_raster *r, const ted4_view *v, const ted4_para
 
     const size_t n_tiles = (size_t)r->tiles_x * r->tiles_y;
 
-    if (keep_state && ted4_buffer_grow(&r->reach, n_tiles + r->n_instances / TED4_GROUP + 1, sizeof(ted4_reach)) != 0)
+    if (keep_state && ted4_growing_grow(&r->reach, n_tiles + r->n_instances / TED4_GROUP + 1, sizeof(ted4_reach)) != 0)
         return -1;
     ted4_parallel_for(p, n_tiles, blend_tile, &job);
     return 0;

@@ -102,12 +102,12 @@ int ted4_raster_project(struct ted4_raster *r, const ted4_splats *s, const ted4_
     project_job  job = { r, s, v, ted4_guard_make(v) };
 
     if (s->n > UINT32_MAX - TED4_CHUNK
-        || ted4_buffer_grow(&r->splat2d, s->n, sizeof(ted4_splat2d)) != 0
-        || ted4_buffer_grow(&r->box, s->n, sizeof(ted4_tile_box)) != 0
-        || ted4_buffer_grow(&r->first_slot, s->n + 1, sizeof(uint32_t)) != 0
-        || ted4_buffer_grow(&r->key[0], s->n, sizeof(uint64_t)) != 0
-        || ted4_buffer_grow(&r->key[1], s->n, sizeof(uint64_t)) != 0
-        || ted4_buffer_grow(&r->chunk, n_chunks + 1, sizeof(ted4_chunk)) != 0)
+        || ted4_growing_grow(&r->splat2d, s->n, sizeof(ted4_splat2d)) != 0
+        || ted4_growing_grow(&r->box, s->n, sizeof(ted4_tile_box)) != 0
+        || ted4_growing_grow(&r->first_slot, s->n + 1, sizeof(uint32_t)) != 0
+        || ted4_growing_grow(&r->key[0], s->n, sizeof(uint64_t)) != 0
+        || ted4_growing_grow(&r->key[1], s->n, sizeof(uint64_t)) != 0
+        || ted4_growing_grow(&r->chunk, n_chunks + 1, sizeof(ted4_chunk)) != 0)
         return -1;
     ted4_parallel_for(p, n_chunks, project_chunk, &job);
     return 0;

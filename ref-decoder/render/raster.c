@@ -4,7 +4,7 @@
 
 #include <stdlib.h>
 
-int ted4_buffer_grow(ted4_buffer *b, size_t n, size_t element_size)
+int ted4_growing_grow(ted4_growing *b, size_t n, size_t element_size)
 {
     const size_t align = 64;
 
@@ -21,7 +21,7 @@ int ted4_buffer_grow(ted4_buffer *b, size_t n, size_t element_size)
     return b->data != NULL ? 0 : -1;
 }
 
-void ted4_buffer_free(ted4_buffer *b)
+void ted4_growing_free(ted4_growing *b)
 {
     free(b->data);
     b->data = NULL;
@@ -38,12 +38,12 @@ void ted4_raster_free(ted4_raster *r)
     if (r == NULL)
         return;
 
-    ted4_buffer *const all[] = { &r->splat2d, &r->box, &r->first_slot, &r->key[0], &r->key[1], &r->chunk, &r->hist,
+    ted4_growing *const all[] = { &r->splat2d, &r->box, &r->first_slot, &r->key[0], &r->key[1], &r->chunk, &r->hist,
                                  &r->tile_first, &r->owner, &r->slot, &r->reach, &r->sums, &r->sum0 };
     for (size_t i = 0; i < sizeof all / sizeof all[0]; i++)
-        ted4_buffer_free(all[i]);
+        ted4_growing_free(all[i]);
     for (int i = 0; i < TED4_BWD_JOBS; i++)
-        ted4_buffer_free(&r->scratch[i]);
+        ted4_growing_free(&r->scratch[i]);
     free(r);
 }
 

@@ -26,11 +26,11 @@ enum {
 typedef struct {
     void  *data;                /* owned, 64-byte aligned */
     size_t size;
-} ted4_buffer;
+} ted4_growing;
 
 /* Makes b at least that large; what it held is lost if it must grow. 0, or -1: no memory (b is then empty). */
-int  ted4_buffer_grow(ted4_buffer *b, size_t n, size_t element_size);
-void ted4_buffer_free(ted4_buffer *b);
+int  ted4_growing_grow(ted4_growing *b, size_t n, size_t element_size);
+void ted4_growing_free(ted4_growing *b);
 
 /* Tiles [x0, x1) x [y0, y1); empty when the Gaussian is not visible. */
 typedef struct {
@@ -55,25 +55,25 @@ TED4_INLINE size_t ted4_group_first(size_t tile, uint32_t position)
 
 struct ted4_raster {
     /* per Gaussian */
-    ted4_buffer splat2d;        /* ted4_splat2d; only visible ones are set */
-    ted4_buffer box;            /* ted4_tile_box */
-    ted4_buffer first_slot;     /* uint32_t [n + 1] */
+    ted4_growing splat2d;        /* ted4_splat2d; only visible ones are set */
+    ted4_growing box;            /* ted4_tile_box */
+    ted4_growing first_slot;     /* uint32_t [n + 1] */
     /* per visible Gaussian: depth bits << 32 | index; sorted ends up in key[0] */
-    ted4_buffer key[2];
+    ted4_growing key[2];
     /* per projection job */
-    ted4_buffer chunk;          /* ted4_chunk */
+    ted4_growing chunk;          /* ted4_chunk */
     /* sorting */
-    ted4_buffer hist;           /* uint32_t [TED4_SORT_PARTS][n_tiles or 1 << TED4_RADIX_BITS] */
-    ted4_buffer tile_first;     /* uint32_t [n_tiles + 1]: first position of each tile */
+    ted4_growing hist;           /* uint32_t [TED4_SORT_PARTS][n_tiles or 1 << TED4_RADIX_BITS] */
+    ted4_growing tile_first;     /* uint32_t [n_tiles + 1]: first position of each tile */
     /* per instance, by position */
-    ted4_buffer owner;          /* uint32_t: Gaussian; TED4_AHEAD more at the end, of Gaussian 0 */
-    ted4_buffer slot;           /* uint32_t */
+    ted4_growing owner;          /* uint32_t: Gaussian; TED4_AHEAD more at the end, of Gaussian 0 */
+    ted4_growing slot;           /* uint32_t */
     /* per ted4_group_first group of instances */
-    ted4_buffer reach;          /* ted4_reach (kept for the adjoint) */
+    ted4_growing reach;          /* ted4_reach (kept for the adjoint) */
     /* per instance, by slot; made by the adjoint */
-    ted4_buffer sums;           /* float [TED4_GRAD_SUMS] */
-    ted4_buffer sum0;           /* float */
-    ted4_buffer scratch[TED4_BWD_JOBS];
+    ted4_growing sums;           /* float [TED4_GRAD_SUMS] */
+    ted4_growing sum0;           /* float */
+    ted4_growing scratch[TED4_BWD_JOBS];
 
     size_t   n_visible, n_instances;
     uint32_t tiles_x, tiles_y;

@@ -187,7 +187,8 @@ static void announce_export(ted4_session *s, const ted4_sampler *how)
     }
 }
 
-static int export_time(ted4_session *s, const ted4_sampler *how, ted4_time t, uint32_t number)
+/* *worst_rms is raised to the error of this fit. */
+static int export_time(ted4_session *s, const ted4_sampler *how, ted4_time t, uint32_t number, double *worst_rms)
 {
     char path[TED4_PATH_SIZE], comment[256];
     ted4_sample sample;
@@ -201,15 +202,15 @@ static int export_time(ted4_session *s, const ted4_sampler *how, ted4_time t, ui
     if (s->info.view != VIEW_NONE && how->sh_degree >= 0)
         snprintf(comment + n, sizeof comment - (size_t)n, "colours fitted to a view-dependent head, rms error %.4f\n", sample.sh_rms);
     sample.frame.comment = comment;
-    if (ted4_pattern_make(path, s->set->output, number) != 0 || ted4_export(s->set->writer, &sample.frame, path) != 0)
+    if (ted4_pattern_make(path, s->set->output, number) != 0 || ted4_export(s->set->format, &sample.frame, path) != 0)
         code = failed_file(s->set->output, strerror(errno));
     else if (s->set->json)
         append(s->report, "exports", json_pack("{s:s, s:I, s:I, s:I, s:f}", "path", path, "num", (json_int_t)t.num, "den", (json_int_t)t.den,
                                                "gaussians", (json_int_t)sample.frame.n, "sh_rms", sample.sh_rms));
-    if (code == TED4_EXIT_FINE && !s->set->quiet && s->info.view != VIEW_NONE && how->sh_degree >= 0)
-        fprintf(stderr, "%s: %s: rms error of colours fitted with spherical harmonics of degree %d: %.4f\n", PROGRAM, path, how->sh_degree, sample.sh_rms);
     if (code == TED4_EXIT_FINE && s->set->verbose)
-        fprintf(stderr, "%s: %s: %zu of %zu Gaussians\n", PROGRAM, path, sample.frame.n, s->info.n_gaussians);
+        fprintf(stderr, "%s: %s: %zu of %zu Gaussians, rms error of colours %.4f\n", PROGRAM, path, sample.frame.n, s->info.n_gaussians, sample.sh_rms);
+    if (sample.sh_rms > *worst_rms)
+        *worst_rms = sample.sh_rms;
     ted4_sample_finish(&sample);
     return code;
 }
@@ -219,18 +220,21 @@ int ted4_action_export(ted4_session *s)
     const ted4_settings *const set = s->set;
     const size_t n = count_times(s);
     ted4_sampler how = { s->recon, &s->info, &s->parallel, { set->centre[0], set->centre[1], set->centre[2] }, set->sh_degree, set->keep_all };
+    double worst_rms = 0.0;
     int code = TED4_EXIT_FINE;
 
-    if (how.sh_degree > set->writer->max_sh_degree)
-        how.sh_degree = set->writer->max_sh_degree;
+    if (how.sh_degree > set->format->max_sh_degree)
+        how.sh_degree = set->format->max_sh_degree;
     announce_export(s, &how);
     for (size_t i = 0; i < n && code == TED4_EXIT_FINE; i++) {
         uint32_t number;
         const ted4_time t = time_at(s, i, &number);
 
-        code = export_time(s, &how, t, number);
+        code = export_time(s, &how, t, number, &worst_rms);
         progress(s, "written", i + 1, n);
     }
+    if (code == TED4_EXIT_FINE && !set->quiet && s->info.view != VIEW_NONE && how.sh_degree >= 0)
+        fprintf(stderr, "%s: note: spherical harmonics of degree %d stand for view-dependent colours; rms error at most %.4f\n", PROGRAM, how.sh_degree, worst_rms);
     return code;
 }
 

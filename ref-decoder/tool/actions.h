@@ -14,7 +14,7 @@
 typedef struct {
     const char *input;
     const char *output, *render, *cameras;      /* patterns and file name; NULL: not asked for */
-    const ted4_format *writer;          /* of output */
+    const ted4_format *format;          /* of output */
     ted4_range  range;
     ted4_time   time;
     int         has_range, has_time;

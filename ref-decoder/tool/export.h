@@ -1,5 +1,5 @@
-/* export.h - Gaussians of one time as files that viewers read: what a writer gets, and the list of writers.
- * Depends on nothing of the codec. One writer a file: out_ply.c, out_splat.c, out_glb.c, out_raw.c. Used by ted4dec.
+/* export.h - Gaussians of one time as files that viewers read: what a format gets, and the list of formats.
+ * Depends on nothing of the codec. One format a file: out_ply.c, out_splat.c, out_glb.c, out_raw.c. Used by ted4dec.
  * SPDX-License-Identifier: BSD-2-Clause */
 #ifndef TED4_EXPORT_H
 #define TED4_EXPORT_H
@@ -28,7 +28,7 @@ typedef struct {
 
 extern const ted4_format ted4_format_ply, ted4_format_splat, ted4_format_glb, ted4_format_raw;
 
-/* All writers, ended by NULL. */
+/* All formats, ended by NULL. */
 extern const ted4_format *const ted4_formats[];
 
 /* By suffix of path; NULL: none fits. */

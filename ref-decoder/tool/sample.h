@@ -1,4 +1,4 @@
-/* sample.h - the Gaussians of one time, ready for a writer: those worth keeping, with spherical harmonics that stand for
+/* sample.h - the Gaussians of one time, ready for a format: those worth keeping, with spherical harmonics that stand for
  * view-dependent heads (spec 11.5).
  * Depends on ted4.h, export.h. Used by ted4dec.
  * SPDX-License-Identifier: BSD-2-Clause */

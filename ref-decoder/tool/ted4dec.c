@@ -69,8 +69,8 @@ static int set_option(ted4_settings *s, int option, const char *value)
     switch (option) {
     case OPT_OUTPUT:
         s->output = value;
-        s->writer = ted4_format_find(value);
-        return s->writer == NULL ? usage_error("no such format", value) : ted4_pattern_count(value) < 0 ? usage_error("bad file name", value) : 0;
+        s->format = ted4_format_find(value);
+        return s->format == NULL ? usage_error("no such format", value) : ted4_pattern_count(value) < 0 ? usage_error("bad file name", value) : 0;
     case OPT_FRAMES:
         s->has_range = 1;
         return ted4_range_parse(value, &s->range) != 0 ? usage_error("--frames", value) : 0;

@@ -1,7 +1,8 @@
-/* dense.c - the three products of a dense layer, register-blocked for 32 vector registers of 16 floats.
- * Forward and its transpose share one kernel: a panel of up to 12 outputs times 32 lanes lives in registers while the inputs stream by, one
- * broadcast weight for two FMAs. The weight gradient is a dot product over lanes: tiles of 4 x 4, folded by a shuffle tree. spec 7.1.
- * Used by train/generate.c and train/rate.c.
+/* dense.c - the three products of a dense layer, register-blocked for 32 vector registers of 16
+ * floats. Forward and its transpose share one kernel: a panel of up to 12 outputs times 32 lanes
+ * lives in registers while the inputs stream by, one broadcast weight for two FMAs. The weight
+ * gradient is a dot product over lanes: tiles of 4 x 4, folded by a shuffle tree. spec 7.1. Used by
+ * train/generate.c and train/rate.c.
  * SPDX-License-Identifier: BSD-2-Clause */
 #include "kernel/dense.h"
 
@@ -56,8 +57,8 @@ void ted4_dense_finish(ted4_dense *d)
     d->bwd = NULL;
 }
 
-/* Panel by panel: the biases of its outputs, then for each input the weights of its outputs. step_out and step_in say how w lies;
- * b is NULL for zeros. */
+/* Panel by panel: the biases of its outputs, then for each input the weights of its outputs.
+ * step_out and step_in say how w lies; b is NULL for zeros. */
 static void pack(int in, int out, const float *w, size_t step_out,
                  size_t step_in, const float *b, float *to)
 {
@@ -159,7 +160,8 @@ void ted4_dense_backward_x(const ted4_dense *d, const float *dy, float *dx,
     product(d->out, d->in, d->bwd, dy, dx, add ? ADD : SET);
 }
 
-/* Sums neighbouring pairs of a and b: the first 8 elements of the result come from a, the others from b. */
+/* Sums neighbouring pairs of a and b: the first 8 elements of the result come from a, the others
+ * from b. */
 INLINE void fold(vec *to, const vec *a, const vec *b)
 {
     *to = __builtin_shufflevector(*a, *b, 0, 2, 4, 6, 8, 10, 12, 14,

@@ -92,7 +92,7 @@ static void load_block(const bwd_job *job, block_state *s, size_t x, size_t y)
 }
 
 /* Gives each block its share of the pairs. 0, or -1: no memory. */
-static int share_pairs(tile_state *tile, ted4_buffer *scratch)
+static int share_pairs(tile_state *tile, ted4_growing *scratch)
 {
     size_t total = 0;
 
@@ -105,7 +105,7 @@ static int share_pairs(tile_state *tile, ted4_buffer *scratch)
         tile->state[b].end = total;
     }
     /* n masks fit in n * sizeof(blended) */
-    if (ted4_buffer_grow(scratch, total + tile->n, sizeof(blended)) != 0)
+    if (ted4_growing_grow(scratch, total + tile->n, sizeof(blended)) != 0)
         return -1;
     tile->pair = scratch->data;
     tile->mask = (uint16_t *)(tile->pair + total);
@@ -178,7 +178,7 @@ static void sum_tile(tile_state *tile, const struct ted4_raster *r)
 }
 
 /* 0, or -1: no memory. */
-static int tile_bwd(bwd_job *job, size_t number, ted4_buffer *scratch)
+static int tile_bwd(bwd_job *job, size_t number, ted4_growing *scratch)
 {
     const struct ted4_raster *r = job->r;
     const uint32_t begin = ((const uint32_t *)r->tile_first.data)[number];
@@ -221,8 +221,8 @@ int ted4_raster_blend_bwd(struct ted4_raster *r, const ted4_view *v, const ted4_
 {
     bwd_job job = { .r = r, .v = v, .d_image = d_image };
 
-    if (ted4_buffer_grow(&r->sums, r->n_instances, TED4_GRAD_SUMS * sizeof(float)) != 0
-        || ted4_buffer_grow(&r->sum0, r->n_instances, sizeof(float)) != 0)
+    if (ted4_growing_grow(&r->sums, r->n_instances, TED4_GRAD_SUMS * sizeof(float)) != 0
+        || ted4_growing_grow(&r->sum0, r->n_instances, sizeof(float)) != 0)
         return -1;
     atomic_init(&job.next_tile, 0);
     atomic_init(&job.failed, 0);

@@ -1,5 +1,6 @@
-/* generate.c - anchors to Gaussians at a time and camera centre (spec 11.1 to 11.5, in normalised space), with the masks of training.
- * The adjoint is generate_bwd.c. Used by the trainer and by densification.
+/* generate.c - anchors to Gaussians at a time and camera centre (spec 11.1 to 11.5, in normalised
+ * space), with the masks of training. The adjoint is generate_bwd.c. Used by the trainer and by
+ * densification.
  * SPDX-License-Identifier: BSD-2-Clause */
 #include "generate_state.h"
 
@@ -55,9 +56,9 @@ static int reserve(ted4_generator *g, size_t n)
     const size_t row = (size_t)g->layout.head.n_offsets * TED4_LANES;
     size_t room;
 
-    if (n <= g->capacity)
+    if (n <= g->capacity && g->capacity > 0)
         return 0;
-    room = n + n / 4;
+    room = n + n / 4 + 1;
     free(g->saved);
     free(g->splats);
     g->saved = ted4_gen_alloc(room * ted4_gen_stride(g));
@@ -175,7 +176,8 @@ static void activation(const ted4_generator *g, const ted4_generate_input *in, f
     }
 }
 
-/* spec 11.5, what the heads' outputs mean: in place, 2 sigmoid(2 y) - 1 and sigmoids, except for quaternions. */
+/* spec 11.5, what the heads' outputs mean: in place, 2 sigmoid(2 y) - 1 and sigmoids, except for
+ * quaternions. */
 static void squash(const ted4_generator *g, float *planes)
 {
     const int k = g->layout.head.n_offsets;

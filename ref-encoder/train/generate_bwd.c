@@ -1,6 +1,6 @@
-/* generate_bwd.c - adjoint of generate.c: gradients of Gaussians to those of anchors, networks and bank.
- * Masks are straight-through: their gradient is that of sigmoid(logit) in the place of the hard 0 or 1 (algorithm facts 3.4). Positions get none.
- * Used by the trainer.
+/* generate_bwd.c - adjoint of generate.c: gradients of Gaussians to those of anchors, networks and
+ * bank. Masks are straight-through: their gradient is that of sigmoid(logit) in the place of the
+ * hard 0 or 1 (algorithm facts 3.4). Positions get none. Used by the trainer.
  * SPDX-License-Identifier: BSD-2-Clause */
 #include "generate_state.h"
 
@@ -227,7 +227,8 @@ static void sizes_backward(slot_state *s)
     }
 }
 
-/* Forward was u = (t - a) / b, b = max(2^tau, TED4_EDGE_MIN), A = exp(-u u): dA/da = 2 u A / b, dA/db = 2 u u A / b. */
+/* Forward was u = (t - a) / b, b = max(2^tau, TED4_EDGE_MIN), A = exp(-u u): dA/da = 2 u A / b,
+ * dA/db = 2 u u A / b. */
 static void activation_backward(slot_state *s, const ted4_generate_input *in)
 {
     const ted4_generator *g = s->g;

@@ -1,5 +1,6 @@
-/* generate_motion.c - what depends on the time only: bank interpolation, encoded time, and the first layer of F_deform with all of it multiplied in.
- * spec 11.2 and 11.3. With z the bank at a time, P and p weights and bias of F_project, W and b those of the first layer of F_deform:
+/* generate_motion.c - what depends on the time only: bank interpolation, encoded time, and the
+ * first layer of F_deform with all of it multiplied in. spec 11.2 and 11.3. With z the bank at a
+ * time, P and p weights and bias of F_project, W and b those of the first layer of F_deform:
  *     bank    W (z * (P phi + p)) + b = (W diag(z) P) phi + (W diag(z) p + b)
  *     concat  W [phi, z] + b          = W_left phi + (W_right z + b)
  *     inr     the same with E(p), E(t) for phi, z
@@ -81,7 +82,8 @@ static void encode(int n, const int32_t *x, size_t stride, float *to)
         }
 }
 
-/* E(p) of spec 11.3. Positions of an unfinished scene need not be binary16: what is below 2^-24 is cut off. */
+/* E(p) of spec 11.3. Positions of an unfinished scene need not be binary16: what is below 2^-24 is
+ * cut off. */
 void ted4_gen_encode_points(const float *position, float *to)
 {
     for (int j = 0; j < TED4_LANES; j++) {
@@ -100,15 +102,14 @@ static void encode_time(ted4_gen_motion *m, uint32_t num, uint32_t den)
     encode(1, &x, 1, m->time);
 }
 
-/* spec 11.2. At the last row mix is 0 and the row after it is not touched. */
+/* spec 11.2. At the last row (num = den) mix is 0, and the row after it is not touched. */
 static void interpolate(ted4_gen_motion *m, const ted4_layout *l, const float *bank, uint32_t num, uint32_t den)
 {
-    const uint64_t last = l->head.bank_rows - 1, g = num * last, i = g / den;
-    const float *z;
+    const uint64_t g = num * (uint64_t)(l->head.bank_rows - 1), i = g / den;
+    const float *z = bank + i * (size_t)m->n_time;
 
-    m->row = (size_t)(i < last ? i : last);
-    m->mix = i < last ? (float)(g % den) / (float)den : 0.0f;
-    z = bank + m->row * (size_t)m->n_time;
+    m->row = (size_t)i;
+    m->mix = (float)(g % den) / (float)den;
     for (int c = 0; c < m->n_time; c++)
         m->time[c] = m->mix > 0.0f ? z[c] + m->mix * (z[m->n_time + c] - z[c]) : z[c];
 }

@@ -1,5 +1,6 @@
-/* generate_state.h - what ted4_generate keeps for ted4_generate_backward: the plan of planes, packed weights, saved activations.
- * A plane is one channel of 32 lanes. Private to generate.c, generate_net.c, generate_motion.c and generate_bwd.c.
+/* generate_state.h - what ted4_generate keeps for ted4_generate_backward: the plan of planes,
+ * packed weights, saved activations. A plane is one channel of 32 lanes. Private to generate.c,
+ * generate_net.c, generate_motion.c and generate_bwd.c.
  * SPDX-License-Identifier: BSD-2-Clause */
 #ifndef TED4_GENERATE_STATE_H
 #define TED4_GENERATE_STATE_H
@@ -12,8 +13,9 @@
 /* Least width of an activation edge, spec 11.4. */
 #define TED4_EDGE_MIN 0x1p-12f
 
-/* Work is cut into this many chunks of slots whatever the number of threads, so that sums over slots have one order. Within a chunk, weight
- * gradients are taken over groups of slots, few enough to stay in the second-level cache. */
+/* Work is cut into this many chunks of slots whatever the number of threads, so that sums over
+ * slots have one order. Within a chunk, weight gradients are taken over groups of slots, few enough
+ * to stay in the second-level cache. */
 enum { TED4_GEN_CHUNKS = 16, TED4_GEN_GROUP = 8 };
 
 /* Motion inr, spec 11.3: inputs made of the position and of the time. */
@@ -22,7 +24,8 @@ enum { TED4_INR_OCTAVES = 10, TED4_INR_POINT = 3 + 6 * TED4_INR_OCTAVES, TED4_IN
 /* Arrays of ted4_splats, in the order of its members. */
 enum { TED4_GEN_MEAN, TED4_GEN_SCALE = 3, TED4_GEN_ROT = 6, TED4_GEN_OPACITY = 10, TED4_GEN_COLOUR = 11, TED4_GEN_ARRAYS = 14 };
 
-/* One dense layer: input and output planes of a slot, where W and then b lie in NETR, where their gradients lie in a chunk's gradient array. */
+/* One dense layer: input and output planes of a slot, where W and then b lie in NETR, where their
+ * gradients lie in a chunk's gradient array. */
 typedef struct {
     ted4_dense dense;
     int        x, y;
@@ -34,7 +37,8 @@ typedef struct {
     ted4_gen_layer layer[TED4_MAX_LAYERS];
 } ted4_gen_chain;
 
-/* Planes of a slot, in this order. Members are first planes; -1: absent. The attribute block is copied with unused lanes set to 0. */
+/* Planes of a slot, in this order. Members are first planes; -1: absent. The attribute block is
+ * copied with unused lanes set to 0. */
 typedef struct {
     int feature, view;          /* F, then 3: the input of heads that see f (and the direction) */
     int rest;                   /* channels F .. of the block */
@@ -48,8 +52,8 @@ typedef struct {
     int n;
 } ted4_gen_planes;
 
-/* The first layer of F_deform is replaced by one that maps the lane's own inputs: everything that is the same for all anchors at one time is multiplied
- * into it (generate_motion.c). */
+/* The first layer of F_deform is replaced by one that maps the lane's own inputs: everything that
+ * is the same for all anchors at one time is multiplied into it (generate_motion.c). */
 typedef struct {
     int    in, width;           /* effective layer: d or 63 inputs */
     int    n_time;              /* length of z or E(t) */
@@ -80,10 +84,12 @@ struct ted4_generator {
 /* n floats, 64-byte aligned; NULL: no memory. */
 float *ted4_gen_alloc(size_t n);
 
-/* generate_net.c: makes the plan, the layers and everything whose size does not depend on the number of slots. 0 or -1. */
+/* generate_net.c: makes the plan, the layers and everything whose size does not depend on the
+ * number of slots. 0 or -1. */
 int  ted4_gen_plan(ted4_generator *g);
 void ted4_gen_chain_forward(const ted4_gen_chain *c, float *planes);
-/* dy of the last layer is set in d (planes of layer outputs); fills those of the others, and dx ([in][32], NULL: not wanted). */
+/* dy of the last layer is set in d (planes of layer outputs); fills those of the others, and dx
+ * ([in][32], NULL: not wanted). */
 void ted4_gen_chain_backward(const ted4_generator *g, const ted4_gen_chain *c, float *planes, float *d, float *dx, int add);
 /* Adds the weight gradients of n slots to grad. */
 void ted4_gen_chain_weights(const ted4_generator *g, const ted4_gen_chain *c, float *planes, float *d, size_t n, float *grad);
@@ -140,7 +146,8 @@ static inline int ted4_gen_activated(const ted4_generator *g, const ted4_generat
     return in->activation && g->layout.first[TED4_TAU] >= 0;
 }
 
-/* spec 11.4 for one lane: the edge that t lies beyond (side -1: before the start, 1: after the end, 0: neither), and u. */
+/* spec 11.4 for one lane: the edge that t lies beyond (side -1: before the start, 1: after the end,
+ * 0: neither), and u. */
 typedef struct {
     int   side;
     float width, u;

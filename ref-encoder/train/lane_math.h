@@ -1,5 +1,5 @@
-/* lane_math.h - the functions of spec 11 and 12.2 in fast binary32, written so that `#pragma omp simd` loops over lanes vectorise them.
- * Not strict: may be contracted. Used by train/.
+/* lane_math.h - the functions of spec 11 and 12.2 in fast binary32, written so that `#pragma omp
+ * simd` loops over lanes vectorise them. Not strict: may be contracted. Used by train/.
  * SPDX-License-Identifier: BSD-2-Clause */
 #ifndef TED4_LANE_MATH_H
 #define TED4_LANE_MATH_H
@@ -12,7 +12,8 @@
 #define TED4_LOG2E 0x1.715476p+0f
 #define TED4_LN2   0x1.62e43p-1f
 
-/* 2^x, x clamped to [-126, 126], to about 1e-7. x + 126.5 is positive, so that truncation rounds x to the nearest integer. */
+/* 2^x, x clamped to [-126, 126], to about 1e-7. x + 126.5 is positive, so that truncation rounds x
+ * to the nearest integer. */
 static inline float ted4_lane_pow2(float x)
 {
     const float c = x < -126.0f ? -126.0f : x > 126.0f ? 126.0f : x;

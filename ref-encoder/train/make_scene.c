@@ -6,6 +6,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "base/bytes.h"
 #include "norm/half.h"
 #include "norm/scene.h"
 #include "norm/tables.h"
@@ -46,7 +47,7 @@ static int16_t round_symbol(float value, float q)
 
 static float step_of(const ted4_scene *s, int type, size_t i)
 {
-    return s->head.step[type] * ted4_step(s->step_index[type][i]);
+    return s->head.step[type] * ted4_bits_float(ted4_step[s->step_index[type][i]]);
 }
 
 /* Is component c of a type coded for this anchor (spec 10.2)? */

@@ -84,8 +84,9 @@ ted4_rate *ted4_rate_new(const ted4_layout *l);
 void       ted4_rate_free(ted4_rate *r);
 void       ted4_rate_pack(ted4_rate *r, const float *net);
 /* Bits of the chosen anchors per type (masked values excluded) into bits[TED4_TYPES]. steps: [n_slots] of [TED4_TYPES][32] step sizes q, out (1 for absent types).
- * d_value: [n_slots] blocks, dL/d(quantised value) from the rendering, or NULL. d_attr: [n_slots] blocks, added to: the rate's gradient on values and mask logits (bits of an
- * offset count times its mask, phi times the temporal mask, straight-through). d_net: NETE part added to. 0, or -1: no memory. */
+ * d_value: [n_slots] blocks, dL/d(quantised value) from the rendering, or NULL; may be d_attr. d_attr: [n_slots] blocks, added to: the rate's gradient on values and mask logits (bits of an
+ * offset count times its mask, phi times the temporal mask, straight-through); NULL, with d_net: no gradients. d_net: NETE part added to. bits NULL: steps only.
+ * 0, or -1: no memory, or (INTEGER) weights that spec 7.3 refuses. */
 int ted4_rate_evaluate(ted4_rate *r, const ted4_rate_input *in,
                        const ted4_parallel *p, const float *const *d_value,
                        float *const *d_attr, float *d_net, float *const *steps,

@@ -45,7 +45,8 @@ static void slices_backward(const ted4_rate *r, ted4_rate_room *room, size_t i)
     }
 }
 
-/* dL/dx of one component, added to d_x, and dL/d(v ln 2), added to d_v. d_context and d_value may be NULL. */
+/* dL/dx of one component, added to d_x, and dL/d(v ln 2), added to d_v. d_context and d_value may be NULL; d_value is read before d_x, which may be the
+ * same row, is written. */
 static void value_backward(const ted4_rate_job *job, const ted4_rate_slot *s,
                            int t, size_t channel, const float *q,
                            const float *d_context, const float *d_value,
@@ -57,6 +58,10 @@ static void value_backward(const ted4_rate_job *job, const ted4_rate_slot *s,
     const float *x = s->value + at, *n = s->residual + at;
     const float *d_k = s->d_symbol + at;
 
+    if (d_value != NULL)
+        for (int j = 0; j < TED4_LANES; j++)
+            if (lanes >> j & 1)
+                d_v[j] += distortion * d_value[at + (size_t)j] * q[j] * n[j];
 #pragma omp simd
     for (int j = 0; j < TED4_LANES; j++) {
         d_x[j] += d_k[j] / q[j];
@@ -67,10 +72,6 @@ static void value_backward(const ted4_rate_job *job, const ted4_rate_slot *s,
             d_x[j] += d_context[j] * unit;
             d_v[j] += d_context[j] * unit * q[j] * n[j];
         }
-    if (d_value != NULL)
-        for (int j = 0; j < TED4_LANES; j++)
-            if (lanes >> j & 1)
-                d_v[j] += distortion * d_value[at + (size_t)j] * q[j] * n[j];
 }
 
 static void type_backward(const ted4_rate_job *job, ted4_rate_room *room,

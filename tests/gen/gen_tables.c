@@ -24,11 +24,14 @@ static void print_c(void)
            "tests/test_tables.c; do not edit.\n"
            " * SPDX-License-Identifier: BSD-2-Clause */\n"
            "#include \"norm/tables.h\"\n");
-    for (int i = 0; i < 6; i++) {
+    for (int i = 0; i < N_TABLES; i++) {
         const struct table *t = &table_list[i];
 
-        printf("\n/* spec A.%d %s: %s */\nconst %s %s[%s] = {\n", i + 1,
-               t->name, t->text, t->type, t->c_name, t->size);
+        printf("\n/* ");
+        if (i < N_ANNEX)
+            printf("spec A.%d ", i + 1);
+        printf("%s: %s */\nconst %s %s[%s] = {\n", t->name, t->text, t->type,
+               t->c_name, t->size);
         print_entries(t, "    ", t->entry == table_step, ",");
         printf("};\n");
     }
@@ -38,7 +41,7 @@ static void print_markdown(void)
 {
     printf("# Annex A (normative): tables\n\nIn row order; i counts from 0. "
            "sigma = 2^((g - 64) / 16).\n");
-    for (int i = 0; i < 6; i++) {
+    for (int i = 0; i < N_ANNEX; i++) {
         const struct table *t = &table_list[i];
 
         printf("\n## A.%d %s\n\n`%s[i]` = %s; %d entries.\n\n```\n", i + 1,

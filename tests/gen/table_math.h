@@ -50,11 +50,30 @@ static int64_t table_stepi(int i)
     return (int64_t)rintl(4096 * (long double)(float)exp2l((i - 128) / 32.0L));
 }
 
+/* Phi is inverted by bisection. */
+static int64_t table_where(int i)
+{
+    long double low = -8, high = 8;
+
+    for (int step = 0; step < 80; step++) {
+        const long double z = (low + high) / 2;
+
+        if (erfcl(-z / sqrtl(2)) / 2 < (i + 0.5L) / 256)
+            low = z;
+        else
+            high = z;
+    }
+    return (int64_t)rintl(16384 * low);
+}
+
+/* The first six are those of annex A. */
+enum { N_TABLES = 7, N_ANNEX = 6 };
+
 static const struct table {
     const char *name, *type, *c_name, *size, *text;
     int         n;
     int64_t   (*entry)(int i);
-} table_list[6] = {
+} table_list[N_TABLES] = {
     { "HALF", "uint16_t", "ted4_half", "TED4_N_SIGMA",
       "clamp(ceil(6 sigma), 2, 4095)", 240, table_half },
     { "INV", "int32_t", "ted4_inv", "TED4_N_SIGMA",
@@ -68,6 +87,9 @@ static const struct table {
       "2^((i - 128) / 32), binary32 patterns", 256, table_step },
     { "STEPI", "int32_t", "ted4_stepi", "TED4_N_STEP",
       "rne(4096 STEP[i])", 256, table_stepi },
+    { "WHERE", "int32_t", "ted4_where", "TED4_N_WHERE",
+      "rne(2^14 Phi^-1((i + 1/2) / 256)), no part of the specification", 256,
+      table_where },
 };
 
 #endif

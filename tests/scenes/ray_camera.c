@@ -4,7 +4,8 @@
 
 #include "ray_math.h"
 
-/* The rig: target, distance from it, and the ranges of azimuth (either side) and elevation, in turns. */
+/* The rig: target, distance from it, and the ranges of azimuth (either side) and elevation, in
+ * turns. */
 static const double target[3] = { 0.0, 0.15, 0.78 };
 static const double radius = 3.7, azimuth = 38.0 / 360, low = 9.0 / 360, high = 27.0 / 360;
 

@@ -4,7 +4,8 @@
 #ifndef RAY_CAMERA_H
 #define RAY_CAMERA_H
 
-/* Pinhole, square pixels, principal point in the middle of the picture. OpenGL axes: right, up, backwards. */
+/* Pinhole, square pixels, principal point in the middle of the picture. OpenGL axes: right, up,
+ * backwards. */
 typedef struct {
     int    width, height;
     double focal;               /* in pixels */
@@ -14,11 +15,14 @@ typedef struct {
 /* Horizontal field of view in radians. */
 extern const double ted4_ray_angle_x;
 
-/* Camera i of n on the arc. Training cameras go up and down in turn; test cameras stand between two of them where n_train > n_test. */
+/* Camera i of n on the arc. Training cameras go up and down in turn; test cameras stand between
+ * two of them where n_train > n_test. */
 void ted4_ray_camera_train(ted4_ray_camera *c, int i, int n_train, int width, int height);
-void ted4_ray_camera_test(ted4_ray_camera *c, int i, int n_test, int n_train, int width, int height);
+void ted4_ray_camera_test(ted4_ray_camera *c, int i, int n_test, int n_train, int width,
+                          int height);
 
-/* World point to pixel coordinates (centres at + 0.5); returns the depth, not positive when it lies behind. */
+/* World point to pixel coordinates (centres at + 0.5); returns the depth, not positive when it
+ * lies behind. */
 double ted4_ray_project(const ted4_ray_camera *c, const double world[3], double pixel[2]);
 
 #endif

@@ -1,5 +1,6 @@
-/* ray_math.h - small vector arithmetic, own sine and hash noise of the project's scenes.
- * Nothing here calls libm but sqrt and fabs, so that images have the same bytes on every machine. Used by tests/scenes only.
+/* ray_math.h - small vector arithmetic, own sine and hash noise of the project's scenes. Nothing
+ * here calls libm but sqrt and fabs, so that images have the same bytes on every machine. Used by
+ * tests/scenes only.
  * SPDX-License-Identifier: BSD-2-Clause */
 #ifndef RAY_MATH_H
 #define RAY_MATH_H
@@ -60,17 +61,18 @@ static inline vec3 ray_unrotate(const float m[9], vec3 v)
               m[2] * v.x + m[5] * v.y + m[8] * v.z);
 }
 
-/* Sine and cosine of an angle in turns (1 is a full circle), |turns| < 2^30, to about 1e-11. */
+/* Sine and cosine of an angle in turns (1 is a full circle), |turns| < 2^30, to about 1e-15. */
 double ted4_ray_sin(double turns);
 double ted4_ray_cos(double turns);
 /* Angle of (x, y) in radians, (-pi, pi], to about 2e-7. */
 float  ted4_ray_atan2(float y, float x);
 
-/* Arc tangent for 0 <= q < 2.4: a series on |r| <= tan(pi/8), after atan q = pi/4 + atan((q - 1) / (q + 1)) where q exceeds that.
- * First omitted term 2e-8. */
+/* Arc tangent for 0 <= q < 2.4: a series on |r| <= tan(pi/8), after atan q = pi/4 + atan((q - 1)
+ * / (q + 1)) where q exceeds that. First omitted term 2e-8. */
 static inline float ray_atan(float q)
 {
-    static const float factor[8] = { 1.0f / 15, 1.0f / 13, 1.0f / 11, 1.0f / 9, 1.0f / 7, 1.0f / 5, 1.0f / 3, 1 };
+    static const float factor[8] = { 1.0f / 15, 1.0f / 13, 1.0f / 11, 1.0f / 9,
+                                     1.0f / 7,  1.0f / 5,  1.0f / 3,  1 };
     const float high = q > 0.41421356f ? 1.0f : 0.0f;
     const float r = high > 0 ? (q - 1) / (q + 1) : q, y = r * r;
     float s = 0;

@@ -1,5 +1,6 @@
-/* ray_render.c - one ray a sample, an area light, ambient light; stratified 3 x 3 samples, no randomness.
- * Solids are culled by their bounding spheres: in the picture once an image, against the cone to the lamp once a small patch of surface.
+/* ray_render.c - one ray a sample, an area light, ambient light; stratified 3 x 3 samples, no
+ * randomness. Solids are culled by their bounding spheres: in the picture once an image, against
+ * the cone to the lamp once a small patch of surface.
  * SPDX-License-Identifier: BSD-2-Clause */
 #include "ray_render.h"
 
@@ -7,7 +8,8 @@
 
 #include "ray_texture.h"
 
-/* Samples a pixel side, and cells a lamp side: each sample of a pixel looks at another cell of the lamp. */
+/* Samples a pixel side, and cells a lamp side: each sample of a pixel looks at another cell of
+ * the lamp. */
 enum { SIDE = 3 };
 static const float near_plane = 0.05f, lift = 0.003f, patch = 0.1f;
 enum { NOTHING = -2, ROOM = -1 };
@@ -25,7 +27,7 @@ typedef struct {
     float  axis[9];                         /* columns right, up, backwards, as rows x y z */
     float  light_reach;                     /* radius of a sphere about the lamp */
     window shows[TED4_RAY_MAX_OBJECTS];
-    crowd  shade;                           /* what can hide the lamp within patch of shade_at on shade_of */
+    crowd shade; /* what can hide the lamp within patch of shade_at on shade_of */
     vec3   shade_at;
     int    shade_of;
 } view;
@@ -43,8 +45,10 @@ typedef struct {
     float gloss;
 } matter;
 
-/* Range of pixels that a sphere covers along one axis: tangents of the two lines of sight that touch it in that plane. */
-static void sphere_range(double x, double z, double r, const double scale_middle[2], int limit, int range[2])
+/* Range of pixels that a sphere covers along one axis: tangents of the two lines of sight that
+ * touch it in that plane. */
+static void sphere_range(double x, double z, double r, const double scale_middle[2], int limit,
+                         int range[2])
 {
     const double q = z * z - r * r, root = r * sqrt(x * x + z * z - r * r + 1e-12);
     double a, b;
@@ -62,7 +66,8 @@ static void sphere_range(double x, double z, double r, const double scale_middle
 static window window_of(const view *v, const ted4_ray_object *o)
 {
     const vec3 p = ray_unrotate(v->axis, v3_sub(o->centre, v->eye));
-    const double x[2] = { v->c->focal, 0.5 * v->c->width }, y[2] = { v->c->focal, 0.5 * v->c->height };
+    const double x[2] = { v->c->focal, 0.5 * v->c->width },
+                 y[2] = { v->c->focal, 0.5 * v->c->height };
     int across[2], down[2];
 
     sphere_range((double)p.x, (double)-p.z, (double)o->reach, x, v->c->width, across);
@@ -95,8 +100,9 @@ static crowd showing(const view *v, int x, int y)
     return c;
 }
 
-/* Fills v->shade for the surroundings of p on an object: bounding spheres against the cone from there to the lamp's bounding sphere.
- * No lit point of a convex object is hidden by the object itself. */
+/* Fills v->shade for the surroundings of p on an object: bounding spheres against the cone from
+ * there to the lamp's bounding sphere. No lit point of a convex object is hidden by the object
+ * itself. */
 static void find_shade(view *v, vec3 p, int object)
 {
     const vec3 to = v3_sub(v->w->lamp, p);
@@ -125,8 +131,9 @@ static int meets_any(const ted4_ray_world *w, const crowd *c, vec3 from, vec3 d,
     return 0;
 }
 
-/* Whether a sample sees its cell of the lamp from p on an object. Cells (i + j, i + 2 j) modulo 3 are a permutation that leaves no
- * direction in common between the place in the pixel and the place on the lamp. */
+/* Whether a sample sees its cell of the lamp from p on an object. Cells (i + j, i + 2 j) modulo
+ * 3 are a permutation that leaves no direction in common between the place in the pixel and the
+ * place on the lamp. */
 static int sees_lamp(view *v, const sample *k, vec3 p, int object)
 {
     const int a = (k->i + k->j) % SIDE, b = (k->i + 2 * k->j) % SIDE;
@@ -140,11 +147,13 @@ static int sees_lamp(view *v, const sample *k, vec3 p, int object)
     return !meets_any(v->w, &v->shade, p, v3_scale(to, 1 / far), far);
 }
 
-/* Ambient light from above, a weak shadowless light from the cameras' side, the lamp, and a broad highlight of it. */
+/* Ambient light from above, a weak shadowless light from the cameras' side, the lamp, and a
+ * broad highlight of it. */
 static vec3 lit(view *v, const sample *k, const ted4_ray_sight *r, const matter *m)
 {
     static const float lamp_power = 12.0f;
-    const vec3 fill = v3(0.39f, -0.86f, 0.33f), warm = v3(1.0f, 0.96f, 0.90f), sky = v3(0.94f, 0.97f, 1.0f);
+    const vec3 fill = v3(0.39f, -0.86f, 0.33f), warm = v3(1.0f, 0.96f, 0.90f),
+               sky = v3(0.94f, 0.97f, 1.0f);
     const vec3 to = v3_sub(v->w->lamp, r->point), normal = m->surface.normal;
     const float d2 = v3_dot(to, to), cosine = v3_dot(normal, to) / sqrtf(d2);
     const float ambient = 0.12f + 0.05f * normal.z + 0.13f * ray_max(0, v3_dot(normal, fill));
@@ -163,7 +172,8 @@ static vec3 lit(view *v, const sample *k, const ted4_ray_sight *r, const matter 
 }
 
 /* The room is convex and the eye inside it: the nearest of the three planes ahead. */
-static float room_meet(const ted4_ray_world *w, vec3 from, vec3 d, ted4_ray_side *side, vec3 *normal)
+static float room_meet(const ted4_ray_world *w, vec3 from, vec3 d, ted4_ray_side *side,
+                       vec3 *normal)
 {
     const float tx = ((d.x > 0 ? w->room_high.x : w->room_low.x) - from.x) / d.x;
     const float ty = ((d.y > 0 ? w->room_high.y : w->room_low.y) - from.y) / d.y;
@@ -248,7 +258,8 @@ void ted4_ray_render(const ted4_ray_world *w, const ted4_ray_camera *c, uint8_t 
     }
 }
 
-ted4_ray_sight ted4_ray_look(const ted4_ray_world *w, const ted4_ray_camera *c, double px, double py)
+ted4_ray_sight ted4_ray_look(const ted4_ray_world *w, const ted4_ray_camera *c, double px,
+                             double py)
 {
     view v = view_of(w, c);
     const crowd around = showing(&v, ray_floor((float)px), ray_floor((float)py));

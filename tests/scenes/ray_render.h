@@ -18,6 +18,7 @@ typedef struct {
     vec3  colour;       /* linear, lit */
 } ted4_ray_sight;
 
-ted4_ray_sight ted4_ray_look(const ted4_ray_world *w, const ted4_ray_camera *c, double px, double py);
+ted4_ray_sight ted4_ray_look(const ted4_ray_world *w, const ted4_ray_camera *c, double px,
+                             double py);
 
 #endif

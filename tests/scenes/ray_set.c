@@ -8,9 +8,11 @@
 #include <stdlib.h>
 #include <string.h>
 #include <sys/stat.h>
+#include <unistd.h>
 
 enum { MAX_PATH = 1024 };
-/* Half width of the noise added to the points, in units; two thirds of a default pixel at the middle. */
+/* Half width of the noise added to the points, in units; two thirds of a default pixel at the
+ * middle. */
 static const float point_noise = 0.015f;
 
 /* One of the two splits of a set. */
@@ -35,7 +37,8 @@ static void camera_of(const ted4_ray_options *o, const split *s, int i, ted4_ray
 }
 
 /* "train/r_003_07", wide enough that names sort as numbers. */
-static void picture_name(const ted4_ray_options *o, const split *s, const int camera_frame[2], char name[64])
+static void picture_name(const ted4_ray_options *o, const split *s, const int camera_frame[2],
+                         char name[64])
 {
     const char *const format = o->n_frames > 100 ? "%s/r_%03d_%03d" : "%s/r_%03d_%02d";
 
@@ -62,7 +65,8 @@ static int make_folders(const char *path, ted4_ray_message *m)
     const size_t size = strlen(path);
 
     if (size == 0 || size >= MAX_PATH)
-        return complain(m, path, size == 0 ? "the folder has no name" : "the path is too long");
+        return complain(m, size == 0 ? "folder" : path,
+                        size == 0 ? "has no name" : "the path is too long");
     for (size_t i = 1; i <= size; i++) {
         if (path[i] != '/' && path[i] != '\0')
             continue;
@@ -74,15 +78,16 @@ static int make_folders(const char *path, ted4_ray_message *m)
     return 0;
 }
 
-/* ---- pictures: one job each, frame by frame, so that a job finds its place from its index alone ---- */
+/* ---- pictures: one job each, which finds its place from its index alone ---- */
 
 typedef struct {
     const ted4_ray_options *o;
     const char *folder;
-    ted4_ray_message *failure;          /* [n_train + n_test][n_frames] one a job, empty when fine */
+    ted4_ray_message *failure; /* [n_train + n_test][n_frames] one a job, empty when fine */
 } pictures;
 
-static int write_png(const char *path, const ted4_ray_camera *c, const uint8_t *rgb, ted4_ray_message *m)
+static int write_png(const char *path, const ted4_ray_camera *c, const uint8_t *rgb,
+                     ted4_ray_message *m)
 {
     png_image png = { .version = PNG_IMAGE_VERSION, .format = PNG_FORMAT_RGB,
                       .width = (png_uint_32)c->width, .height = (png_uint_32)c->height };
@@ -117,7 +122,8 @@ static void picture_job(void *arg, size_t i)
     free(rgb);
 }
 
-static int write_pictures(const ted4_ray_options *o, const char *folder, const ted4_parallel *p, ted4_ray_message *m)
+static int write_pictures(const ted4_ray_options *o, const char *folder, const ted4_parallel *p,
+                          ted4_ray_message *m)
 {
     const size_t n = (size_t)(o->n_train + o->n_test) * (size_t)o->n_frames;
     pictures job = { o, folder, calloc(n, sizeof *job.failure) };
@@ -191,8 +197,10 @@ ted4_ray_point ted4_ray_point_at(const ted4_ray_options *o, int i)
     s = ted4_ray_look(&w, &c, (double)ray_random(i, 1, 0, seed) * o->width,
                       (double)ray_random(i, 2, 0, seed) * o->height);
     ted4_ray_bytes(s.colour, p.rgb);
-    p.point = v3_along(s.point, v3(ray_random(i, 3, 0, seed) - 0.5f, ray_random(i, 4, 0, seed) - 0.5f,
-                                   ray_random(i, 5, 0, seed) - 0.5f), 2 * point_noise);
+    p.point = v3_along(s.point,
+                       v3(ray_random(i, 3, 0, seed) - 0.5f, ray_random(i, 4, 0, seed) - 0.5f,
+                          ray_random(i, 5, 0, seed) - 0.5f),
+                       2 * point_noise);
     return p;
 }
 
@@ -207,10 +215,12 @@ static void put_float(FILE *f, float x)
 
 static void put_points(FILE *f, const ted4_ray_options *o)
 {
-    fprintf(f, "ply\nformat binary_little_endian 1.0\nelement vertex %d\n"
+    fprintf(f,
+            "ply\nformat binary_little_endian 1.0\nelement vertex %d\n"
             "property float x\nproperty float y\nproperty float z\n"
             "property float nx\nproperty float ny\nproperty float nz\n"
-            "property uchar red\nproperty uchar green\nproperty uchar blue\nend_header\n", TED4_RAY_POINTS);
+            "property uchar red\nproperty uchar green\nproperty uchar blue\nend_header\n",
+            TED4_RAY_POINTS);
     for (int i = 0; i < TED4_RAY_POINTS; i++) {
         const ted4_ray_point p = ted4_ray_point_at(o, i);
         const float row[6] = { p.point.x, p.point.y, p.point.z, 0, 0, 0 };
@@ -233,7 +243,8 @@ static const text_file files[3] = { { "points3d.ply", put_points },
                                     { "transforms_test.json", put_test },
                                     { "transforms_train.json", put_train } };
 
-static int write_file(const ted4_ray_options *o, const char *folder, const text_file *file, ted4_ray_message *m)
+static int write_file(const ted4_ray_options *o, const char *folder, const text_file *file,
+                      ted4_ray_message *m)
 {
     char path[MAX_PATH];
     FILE *f;
@@ -257,16 +268,19 @@ static int remove_file(const char *folder, const char *name, ted4_ray_message *m
 
     if (join(path, folder, name, m) != 0)
         return -1;
-    if (remove(path) != 0 && errno != ENOENT)
+    if (unlink(path) != 0 && errno != ENOENT)
         return complain(m, path, strerror(errno));
     return 0;
 }
 
-int ted4_ray_write(const ted4_ray_options *o, const char *folder, const ted4_parallel *p, ted4_ray_message *m)
+int ted4_ray_write(const ted4_ray_options *o, const char *folder, const ted4_parallel *p,
+                   ted4_ray_message *m)
 {
     char path[MAX_PATH];
 
     m->text[0] = '\0';
+    if (make_folders(folder, m) != 0)
+        return -1;
     for (int is_test = 0; is_test < 2; is_test++) {
         if (join(path, folder, split_of(o, is_test).name, m) != 0 || make_folders(path, m) != 0)
             return -1;

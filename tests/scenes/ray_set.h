@@ -28,8 +28,10 @@ typedef struct {
 /* Point i of the initial cloud; o and i decide it. */
 ted4_ray_point ted4_ray_point_at(const ted4_ray_options *o, int i);
 
-/* Writes folder/{train,test}/r_CCC_FF.png, points3d.ply and, last, transforms_{train,test}.json; makes folders as needed, and replaces
- * files of the same names. 0, or -1 with *m filled. The bytes do not depend on p. */
-int ted4_ray_write(const ted4_ray_options *o, const char *folder, const ted4_parallel *p, ted4_ray_message *m);
+/* Writes folder/{train,test}/r_CCC_FF.png, points3d.ply and, last, transforms_{train,test}.json;
+ * makes folders as needed, and replaces files of the same names. 0, or -1 with *m filled. The
+ * bytes do not depend on p. */
+int ted4_ray_write(const ted4_ray_options *o, const char *folder, const ted4_parallel *p,
+                   ted4_ray_message *m);
 
 #endif

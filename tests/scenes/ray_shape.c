@@ -1,11 +1,13 @@
-/* ray_shape.c - ray intersections: sphere, box and cylinder in closed form, the bent bar by stepping along its distance function.
+/* ray_shape.c - ray intersections: sphere, box and cylinder in closed form, the bent bar by
+ * stepping along its distance function.
  * SPDX-License-Identifier: BSD-2-Clause */
 #include "ray_shape.h"
 
 /* Edge radius of the bar; and the surface is met within this distance of it. */
 #define BAR_ROUND    0.02f
 #define BAR_NEAR     0.0006f
-/* Bending and twisting stretch space by less than 1 / 0.62 for |bend| size.x < 0.2 and |twist| size.x < 0.05 (test_scene checks). */
+/* Bending and twisting stretch space by less than 1 / 0.62 for |bend| size.x < 0.2 and |twist|
+ * size.x < 0.05 (test_scene checks). */
 #define BAR_STRIDE   0.62f
 #define BAR_LEAVE    2.5f
 #define BAR_STEPS    160
@@ -34,8 +36,8 @@ static void swap_if(float *a, float *b)
     }
 }
 
-/* Interval [*in, *out] of t in which the ray is between two parallel planes, intersected with what is there already.
- * A ray inside the slab and parallel to it changes nothing. */
+/* Interval [*in, *out] of t in which the ray is between two parallel planes, intersected with
+ * what is there already. A ray inside the slab and parallel to it changes nothing. */
 static void slab(float low, float high, float o, float d, float *in, float *out)
 {
     const float inverse = 1 / d;
@@ -102,9 +104,10 @@ static float bend_of(const ted4_ray_object *o)
     return o->bend;
 }
 
-/* Where a point lies about the axis of a bar. With k the curvature, the axis is the circle about (1/k, 0) in the xz plane;
- * a = 1 - k x and b = k z are coordinates from there in radii, h their length; u = (1 - h) / k, written without cancellation, is the
- * distance inwards from the axis within the plane. */
+/* Where a point lies about the axis of a bar. With k the curvature, the axis is the circle about
+ * (1/k, 0) in the xz plane; a = 1 - k x and b = k z are coordinates from there in radii, h their
+ * length; u = (1 - h) / k, written without cancellation, is the distance inwards from the axis
+ * within the plane. */
 typedef struct { float k, a, b, h, u; } arc;
 
 static arc arc_at(const ted4_ray_object *o, vec3 p)
@@ -118,7 +121,8 @@ static arc arc_at(const ted4_ray_object *o, vec3 p)
     return r;
 }
 
-/* The angle of (a, b) over k, the angle being 2 atan(b / (a + h)); good up to 130 degrees, and the bar ends before. */
+/* The angle of (a, b) over k, the angle being 2 atan(b / (a + h)); good up to 130 degrees, and
+ * the bar ends before. */
 static float arc_length(const arc *r)
 {
     const float half = ray_atan(ray_min(fabsf(r->b) / (r->a + r->h), 2));
@@ -126,7 +130,8 @@ static float arc_length(const arc *r)
     return 2 * (r->b < 0 ? -half : half) / r->k;
 }
 
-/* Sine and cosine of the twist at arc length s, below a quarter turn either way: a series to x^11, whose first omitted term is 6e-8. */
+/* Sine and cosine of the twist at arc length s, below a quarter turn either way: a series to
+ * x^11, whose first omitted term is 6e-8. */
 static void twist_at(const ted4_ray_object *o, float s, float sine_cosine[2])
 {
     const float x = (float)(2 * RAY_PI) * o->twist * ray_clamp(s, 0, o->size.z), y = x * x;
@@ -180,9 +185,10 @@ static float hull_radius(const ted4_ray_object *o)
     return sqrtf(o->size.x * o->size.x + o->size.y * o->size.y);
 }
 
-/* Length of the next step at distance r, after a step of length last from distance before (0: unknown).
- * The distance along a ray is nearly convex inside the hull, as it is for an unbent bar. So when it falls, the line through the last two
- * values meets zero before the surface does; and when it rises, the surface is being left, and the stride may be longer. */
+/* Length of the next step at distance r, after a step of length last from distance before (0:
+ * unknown). The distance along a ray is nearly convex inside the hull, as it is for an unbent
+ * bar. So when it falls, the line through the last two values meets zero before the surface
+ * does; and when it rises, the surface is being left, and the stride may be longer. */
 static float bar_step(float r, float before, float last, float hull)
 {
     if (before > r)
@@ -190,8 +196,9 @@ static float bar_step(float r, float before, float last, float hull)
     return r * (before > 0 ? BAR_LEAVE : BAR_STRIDE);
 }
 
-/* Outside its round hull, the distance to the ring that the hull is a part of is exact and cheap, as it needs neither arc length nor
- * twist; inside, the distance of the bar itself is used. */
+/* Outside its round hull, the distance to the ring that the hull is a part of is exact and
+ * cheap, as it needs neither arc length nor twist; inside, the distance of the bar itself is
+ * used. */
 static float bar_meet(const ted4_ray_object *o, vec3 p, vec3 d, float near, float far)
 {
     const float hull = hull_radius(o);
@@ -219,8 +226,9 @@ static float bar_meet(const ted4_ray_object *o, vec3 p, vec3 d, float near, floa
     return far;
 }
 
-/* Box about two curves on the hull, left and right of the axis in its plane; sideways the hull's radius is enough.
- * The margin exceeds what a curve leaves the chord between two of its points by. */
+/* Box about two curves on the hull, left and right of the axis in its plane; sideways the hull's
+ * radius is enough. The margin exceeds what a curve leaves the chord between two of its points
+ * by. */
 static void bar_bound(ted4_ray_object *o)
 {
     const float r = hull_radius(o), margin = 0.01f;
@@ -231,7 +239,8 @@ static void bar_bound(ted4_ray_object *o)
     for (int i = 0; i <= 2 * steps + 1; i++) {
         ted4_ray_object plain = *o;
         plain.twist = 0;
-        const vec3 p = ted4_ray_rebend(&plain, v3(i % 2 ? r : -r, 0, o->size.z * (float)(i / 2) / (float)steps));
+        const vec3 p = ted4_ray_rebend(
+            &plain, v3(i % 2 ? r : -r, 0, o->size.z * (float)(i / 2) / (float)steps));
         o->low = v3(ray_min(o->low.x, p.x - margin), -r, ray_min(o->low.z, p.z - margin));
         o->high = v3(ray_max(o->high.x, p.x + margin), r, ray_max(o->high.z, p.z + margin));
     }

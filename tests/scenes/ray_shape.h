@@ -10,8 +10,9 @@
  *   sphere    radius size.x
  *   box       half edges size
  *   cylinder  radius size.x, half height size.z, axis z, capped
- *   bar       half section size.x by size.y, from z = 0 to size.z before it is twisted about z (twist turns a unit length, in all
- *             below a quarter) and then bent in the xz plane to an arc (bend radians a unit length, towards +x) */
+ *   bar       half section size.x by size.y, from z = 0 to size.z, before it is first twisted about
+ *             z (twist turns a unit length, in all below a quarter) and then bent in the xz plane
+ *             to an arc (bend radians a unit length, towards +x) */
 typedef enum { RAY_SPHERE, RAY_BOX, RAY_CYLINDER, RAY_BAR } ted4_ray_kind;
 
 typedef enum { RAY_FLAT, RAY_WOOD, RAY_MARBLE, RAY_CHECKER, RAY_SPIRAL, RAY_DOTS, RAY_FACES,
@@ -39,7 +40,8 @@ typedef struct {
 /* Fills the bounds of o; call after the last change of its other members. */
 void ted4_ray_bound(ted4_ray_object *o);
 
-/* Smallest t in (near, far) with from + t d on the surface, or far when there is none. d has unit length. */
+/* Smallest t in (near, far) with from + t d on the surface, or far when there is none. d has
+ * unit length. */
 float ted4_ray_meet(const ted4_ray_object *o, vec3 from, vec3 d, float near, float far);
 
 /* The surface at a point of it, in world coordinates. */

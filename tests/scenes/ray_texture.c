@@ -1,5 +1,6 @@
-/* ray_texture.c - wood, marble, checkers, stripes, dots, bricks, planks: functions of position, with soft edges and hash noise.
- * The finest period is about 0.05 units, two and a half pixels of the default picture at the distance of the middle.
+/* ray_texture.c - wood, marble, checkers, stripes, dots, bricks, planks: functions of position,
+ * with soft edges and hash noise. The finest period is about 0.05 units, two and a half pixels of
+ * the default picture at the distance of the middle.
  * SPDX-License-Identifier: BSD-2-Clause */
 #include "ray_texture.h"
 
@@ -82,7 +83,8 @@ static vec3 dots(const ted4_ray_object *o, vec3 p, uint32_t seed)
     return v3_scale(v3_mix(o->colour[0], ink, inside((d - 0.39f) * cell)), grain(p, seed));
 }
 
-/* Pattern number n (0..5) of a box face with face coordinates u, v: how much of the second colour. */
+/* Pattern number n (0..5) of a box face with face coordinates u, v: how much of the second
+ * colour. */
 static float face_pattern(int n, float u, float v)
 {
     const float r = length2(u, v);
@@ -107,8 +109,9 @@ static float face_pattern(int n, float u, float v)
 /* Six faces with six hues and six patterns. */
 static vec3 faces(const ted4_ray_object *o, vec3 p, uint32_t seed)
 {
-    static const float hue[6][3] = { { .92f, .36f, .26f }, { .22f, .62f, .84f }, { .96f, .80f, .24f },
-                                     { .36f, .74f, .40f }, { .90f, .56f, .18f }, { .66f, .42f, .80f } };
+    static const float hue[6][3] = { { .92f, .36f, .26f }, { .22f, .62f, .84f },
+                                     { .96f, .80f, .24f }, { .36f, .74f, .40f },
+                                     { .90f, .56f, .18f }, { .66f, .42f, .80f } };
     const vec3 q = v3(fabsf(p.x) / o->size.x, fabsf(p.y) / o->size.y, fabsf(p.z) / o->size.z);
     float u = p.x, v = p.z, side = p.y;
     int n = 2;
@@ -150,7 +153,8 @@ static vec3 ribbon(const ted4_ray_object *o, vec3 p, uint32_t seed)
     return v3_scale(v3_mix(ground, o->colour[2], 0.85f * c), grain(p, seed));
 }
 
-/* Bricks (or planks) of width w and height h with joints of width gap: *tone random per brick; returns 1 in the joint. */
+/* Bricks (or planks) of width w and height h with joints of width gap: *tone random per brick;
+ * returns 1 in the joint. */
 static float courses(float u, float v, const float size[3], uint32_t seed, float *tone)
 {
     const float w = size[0], h = size[1], gap = size[2];
@@ -233,7 +237,8 @@ static vec3 wallpaper(float u, float v, vec3 a, vec3 b, vec3 c)
     return v3_mix(ground, c, inside(fabsf(x) * 0.8f + fabsf(y) * 0.6f - 0.055f));
 }
 
-/* Framed picture with centre (cx, cz) and half size (hx, hz) on the wall: pattern n inside a dark frame. */
+/* Framed picture with centre (cx, cz) and half size (hx, hz) on the wall: pattern n inside a
+ * dark frame. */
 static vec3 picture(vec3 wall, const float place[4], float u, float v, int n)
 {
     static const float ink[2][2][3] = { { { .12f, .30f, .52f }, { .96f, .88f, .62f } },
@@ -254,7 +259,8 @@ static vec3 picture(vec3 wall, const float place[4], float u, float v, int n)
 
 static vec3 back_wall(float u, float v, uint32_t seed)
 {
-    static const float left[4] = { -0.62f, 1.72f, 0.48f, 0.38f }, right[4] = { 0.85f, 1.82f, 0.42f, 0.5f };
+    static const float left[4] = { -0.62f, 1.72f, 0.48f, 0.38f },
+                       right[4] = { 0.85f, 1.82f, 0.42f, 0.5f };
     const vec3 colour[3] = { ray_paint(.62f, .34f, .27f), ray_paint(.80f, .55f, .42f),
                              ray_paint(.82f, .79f, .72f) };
     const vec3 wall = brick_wall(u, v, colour, seed);
@@ -272,11 +278,13 @@ vec3 ted4_ray_room_texture(ted4_ray_side side, vec3 p, uint32_t seed)
     case RAY_BACK:
         return back_wall(p.x, p.z, seed + 20);
     case RAY_LEFT:
-        return v3_scale(wallpaper(p.y, p.z, ray_paint(.52f, .66f, .58f), ray_paint(.64f, .76f, .66f),
-                                  ray_paint(.92f, .86f, .60f)), mottle);
+        return v3_scale(wallpaper(p.y, p.z, ray_paint(.52f, .66f, .58f),
+                                  ray_paint(.64f, .76f, .66f), ray_paint(.92f, .86f, .60f)),
+                        mottle);
     case RAY_RIGHT:
-        return v3_scale(wallpaper(p.y, p.z, ray_paint(.50f, .58f, .74f), ray_paint(.66f, .72f, .84f),
-                                  ray_paint(.90f, .60f, .50f)), mottle);
+        return v3_scale(wallpaper(p.y, p.z, ray_paint(.50f, .58f, .74f),
+                                  ray_paint(.66f, .72f, .84f), ray_paint(.90f, .60f, .50f)),
+                        mottle);
     case RAY_CEILING:
     case RAY_FRONT:
         break;

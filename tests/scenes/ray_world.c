@@ -75,7 +75,8 @@ static void furniture(ted4_ray_world *w)
     const vec3 cream = ray_paint(.95f, .90f, .80f), ink = ray_paint(.16f, .18f, .24f);
     ted4_ray_object o = solid(RAY_CYLINDER, v3(.26f, .26f, .85f), v3(-1.55f, 1.3f, .85f), 0);
 
-    dress(&o, RAY_SPIRAL, ray_paint(.90f, .86f, .78f), ray_paint(.22f, .46f, .50f), ray_paint(.80f, .50f, .20f));
+    dress(&o, RAY_SPIRAL, ray_paint(.90f, .86f, .78f), ray_paint(.22f, .46f, .50f),
+          ray_paint(.80f, .50f, .20f));
     ted4_ray_add(w, &o);
 
     o = solid(RAY_BOX, v3(.42f, .42f, .36f), v3(1.55f, 1.15f, .36f), 0.06);
@@ -106,7 +107,8 @@ static void carousel(ted4_ray_world *w, double turns)
 {
     const vec3 cream = ray_paint(.95f, .91f, .82f), ink = ray_paint(.15f, .16f, .22f);
     const vec3 at = v3(0, .1f, 0);
-    ted4_ray_object o = solid(RAY_CYLINDER, v3(.74f, .74f, .09f), v3_add(at, v3(0, 0, .09f)), turns);
+    ted4_ray_object o =
+        solid(RAY_CYLINDER, v3(.74f, .74f, .09f), v3_add(at, v3(0, 0, .09f)), turns);
 
     dress(&o, RAY_WOOD, ray_paint(.70f, .62f, .56f), ray_paint(.36f, .30f, .30f), ink);
     ted4_ray_add(w, &o);
@@ -122,7 +124,8 @@ static void carousel(ted4_ray_world *w, double turns)
 
     o = solid(RAY_SPHERE, v3(.23f, .23f, .23f), v3(0, 0, 0), turns);
     o.pos = v3_add(v3_add(at, v3(0, 0, 1.52f)), ray_rotate(o.rot, v3(.24f, .14f, 0)));
-    dress(&o, RAY_BEACH, ray_paint(.95f, .78f, .22f), ray_paint(.20f, .42f, .70f), ray_paint(.85f, .25f, .25f));
+    dress(&o, RAY_BEACH, ray_paint(.95f, .78f, .22f), ray_paint(.20f, .42f, .70f),
+          ray_paint(.85f, .25f, .25f));
     o.gloss = 0.2f;
     ted4_ray_add(w, &o);
 }
@@ -133,24 +136,28 @@ static void occluder(ted4_ray_world *w, double t)
     const float r = 0.36f, x = -1.28f * (float)ted4_ray_cos(0.94 * t);
     ted4_ray_object o = solid(RAY_BOX, v3(.52f, .09f, .56f), v3(0, -.35f, .56f), 0.01);
 
-    dress(&o, RAY_BRICK, ray_paint(.44f, .52f, .60f), ray_paint(.68f, .72f, .76f), ray_paint(.90f, .88f, .82f));
+    dress(&o, RAY_BRICK, ray_paint(.44f, .52f, .60f), ray_paint(.68f, .72f, .76f),
+          ray_paint(.90f, .88f, .82f));
     ted4_ray_add(w, &o);
 
     o = solid(RAY_SPHERE, v3(r, r, r), v3(x, .45f, r), 0);
     rotation(o.rot, 1, (double)(x / r) / (2 * RAY_PI));
-    dress(&o, RAY_BEACH, ray_paint(.96f, .93f, .86f), ray_paint(.88f, .28f, .22f), ray_paint(.18f, .36f, .68f));
+    dress(&o, RAY_BEACH, ray_paint(.96f, .93f, .86f), ray_paint(.88f, .28f, .22f),
+          ray_paint(.18f, .36f, .68f));
     o.gloss = 0.2f;
     ted4_ray_add(w, &o);
 }
 
-/* A ball is there from 5/16 to 11/16 of the sequence only; a box until one half; a column from one quarter on. */
+/* A ball is there from 5/16 to 11/16 of the sequence only; a box until one half; a column from
+ * one quarter on. */
 static void pop(ted4_ray_world *w, int frame, int n_frames)
 {
     const vec3 cream = ray_paint(.95f, .91f, .82f), ink = ray_paint(.15f, .16f, .22f);
     const int part = 16 * frame / n_frames;
     ted4_ray_object o = solid(RAY_SPHERE, v3(.42f, .42f, .42f), v3(.05f, -.3f, .42f), 0.1);
 
-    dress(&o, RAY_DOTS, ray_paint(.96f, .76f, .22f), ray_paint(.14f, .40f, .36f), ray_paint(.80f, .22f, .30f));
+    dress(&o, RAY_DOTS, ray_paint(.96f, .76f, .22f), ray_paint(.14f, .40f, .36f),
+          ray_paint(.80f, .22f, .30f));
     o.gloss = 0.2f;
     if (part >= 5 && part < 11)
         ted4_ray_add(w, &o);

@@ -1,4 +1,5 @@
-/* ted4scene.c - command line: makes one of the project's own scenes (see ray_world.h) as a folder of pictures with poses.
+/* ted4scene.c - command line: makes one of the project's own scenes (see ray_world.h) as a folder
+ * of pictures with poses.
  * SPDX-License-Identifier: BSD-2-Clause */
 #include <dirent.h>
 #include <errno.h>
@@ -137,12 +138,14 @@ static int option(command *c, int letter, const char *text)
 /* EXIT_FINE, EXIT_TROUBLE, or -1 when -h or -V has done the work. */
 static int parse(int argc, char **argv, command *c)
 {
-    static const struct option longs[] = {
-        { "size", required_argument, NULL, 's' },         { "cameras", required_argument, NULL, 'c' },
-        { "test-cameras", required_argument, NULL, 't' }, { "frames", required_argument, NULL, 'n' },
-        { "seed", required_argument, NULL, 'r' },         { "help", no_argument, NULL, 'h' },
-        { "version", no_argument, NULL, 'V' },            { NULL, 0, NULL, 0 }
-    };
+    static const struct option longs[] = { { "size", required_argument, NULL, 's' },
+                                           { "cameras", required_argument, NULL, 'c' },
+                                           { "test-cameras", required_argument, NULL, 't' },
+                                           { "frames", required_argument, NULL, 'n' },
+                                           { "seed", required_argument, NULL, 'r' },
+                                           { "help", no_argument, NULL, 'h' },
+                                           { "version", no_argument, NULL, 'V' },
+                                           { NULL, 0, NULL, 0 } };
     int letter;
 
     while ((letter = getopt_long(argc, argv, "o:j:fhV", longs, NULL)) != -1) {
@@ -176,7 +179,12 @@ static int is_occupied(const char *folder)
 
 int main(int argc, char **argv)
 {
-    command c = { .set = { .width = 160, .height = 120, .n_train = 12, .n_test = 2, .n_frames = 16, .seed = 1 },
+    command c = { .set = { .width = 160,
+                           .height = 120,
+                           .n_train = 12,
+                           .n_test = 2,
+                           .n_frames = 16,
+                           .seed = 1 },
                   .threads = omp_get_max_threads() };
     const ted4_parallel threads = { run_openmp, &c.threads };
     ted4_ray_message m;

@@ -1,4 +1,4 @@
-/* encode.c - ted4_encode(): the chunks of a file in order (spec 5), by the walks of norm/.
+/* write_file.c - ted4_encode(): the chunks of a file in order (spec 5), by the walks of norm/.
  * SPDX-License-Identifier: BSD-2-Clause */
 #include "write/encode.h"
 
@@ -7,7 +7,6 @@
 #include <xxhash.h>
 #include <zlib.h>
 #include "base/bytes.h"
-#include "kernel/int_kernel.h"
 #include "norm/limits.h"
 #include "write/coder_write.h"
 #include "write/tiles.h"
@@ -223,65 +222,4 @@ ted4_status ted4_encode(const ted4_scene *s, int level, const ted4_parallel *p,
     }
     ted4_writer_finish(&w);
     return verdict;
-}
-
-typedef struct {
-    ted4_scene       *s;
-    const ted4_prior *prior;
-    int32_t          *out;      /* [STEP_BLOCKS][P][64] */
-    size_t            first;    /* anchor of block 0 */
-} steps_batch;
-
-enum { STEP_BLOCKS = 64 };
-
-static void steps_block(void *arg, size_t i)
-{
-    const steps_batch *b = arg;
-    ted4_scene  *s = b->s;
-    const size_t a = b->first + i * TED4_PRIOR_BLOCK;
-    const size_t left = s->head.n_anchors - a;
-    const size_t n = left < TED4_PRIOR_BLOCK ? left : TED4_PRIOR_BLOCK;
-    int32_t *out = b->out + i * s->shape.n_outputs * TED4_PRIOR_BLOCK;
-    const int32_t *v = out + (size_t)s->shape.first_step_output
-                             * TED4_PRIOR_BLOCK;
-
-    ted4_prior_hyper(b->prior, s->position + 3 * a, n, out);
-    for (int t = 0; t < TED4_TYPES; t++) {
-        if (s->shape.dim[t] == 0)
-            continue;
-        for (size_t j = 0; j < n; j++)
-            s->step_index[t][a + j] = ted4_step_index(v[j]);
-        v += TED4_PRIOR_BLOCK;
-    }
-}
-
-ted4_status ted4_scene_steps(ted4_scene *s, const ted4_parallel *p,
-                             ted4_error *e)
-{
-    const size_t n_blocks = (s->head.n_anchors + (size_t)TED4_PRIOR_BLOCK - 1)
-                            / TED4_PRIOR_BLOCK;
-    ted4_error   own = { TED4_OK, 0 };
-    ted4_arena   arena;
-    ted4_prior   prior;
-    steps_batch  b = { .s = s, .prior = &prior };
-
-    ted4_arena_init(&arena, NULL);
-    ted4_fail(&own, ted4_prior_init(&prior, &s->head, &s->shape, &arena), 0);
-    prior.dense = ted4_select_int_dense();
-    b.out = ted4_arena_alloc(&arena, STEP_BLOCKS * (size_t)s->shape.n_outputs,
-                             TED4_PRIOR_BLOCK * sizeof *b.out);
-    if (b.out == NULL)
-        ted4_fail(&own, TED4_E_LIMIT_MEMORY, 0);
-    if (own.code == TED4_OK)
-        (void)ted4_prior_load(&prior, s->nete.values, s->shift, &own);
-    for (size_t i = 0; own.code == TED4_OK && i < n_blocks; i += STEP_BLOCKS) {
-        b.first = i * TED4_PRIOR_BLOCK;
-        ted4_parallel_for(p, n_blocks - i < STEP_BLOCKS ? n_blocks - i
-                                                        : STEP_BLOCKS,
-                          steps_block, &b);
-    }
-    ted4_arena_finish(&arena);
-    if (e != NULL)
-        *e = own;
-    return own.code;
 }
