@@ -1,6 +1,6 @@
 /* bench_generate.c - speed of ted4_generate and ted4_generate_backward for 200 blocks of 32
  * anchors. Build (from the project root, after make):
- *     gcc -std=c11 -O3 -march=native -D_POSIX_C_SOURCE=200809L -fopenmp -Iref-decoder -Iref-encoder bench/bench_generate.c \
+ *     gcc -std=c11 -O3 -march=native -fopenmp -Iref-decoder -Iref-encoder bench/bench_generate.c \
  *         build/libted4enc.a build/libted4dec.a -o /tmp/bench_generate -lm
  * Use: bench_generate [THREADS [SLOTS]]. One line per model: the best and median of 20 runs in
  * milliseconds, GFLOP/s of the best. Counted are the dense layers as the specification has them, a
@@ -114,7 +114,8 @@ static void bench(const model *m, const ted4_parallel *p, size_t n)
     float **d_attrs = malloc(n * sizeof *d_attrs);
     uint32_t *lanes = malloc(n * sizeof *lanes);
     ted4_splat_grads gr = { { gradient, gradient, gradient }, { gradient, gradient, gradient },
-        { gradient, gradient, gradient, gradient }, gradient, { gradient, gradient, gradient }, NULL, NULL };
+        { gradient, gradient, gradient, gradient }, gradient,
+        { gradient, gradient, gradient }, NULL, NULL };
 
     for (size_t i = 0; i < n; i++) {
         attrs[i] = attr + i * block;
@@ -140,7 +141,8 @@ static void bench(const model *m, const ted4_parallel *p, size_t n)
     qsort(forward, RUNS, sizeof *forward, by_value);
     qsort(backward, RUNS, sizeof *backward, by_value);
     flop = 2e-9 * work(&l.shape) * TED4_LANES * (double)n;
-    printf("%-24s forward %6.2f (%6.2f) ms %5.0f GFLOP/s   backward %6.2f (%6.2f) ms %5.0f GFLOP/s\n", m->name,
+    printf("%-24s forward %6.2f (%6.2f) ms %5.0f GFLOP/s   "
+           "backward %6.2f (%6.2f) ms %5.0f GFLOP/s\n", m->name,
            1e3 * forward[0], 1e3 * forward[RUNS / 2], flop / forward[0],
            1e3 * backward[0], 1e3 * backward[RUNS / 2], 2.0 * flop / backward[0]);
     ted4_generator_free(g);

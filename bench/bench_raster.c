@@ -186,6 +186,7 @@ static void report(size_t n, const char *other)
         printf("  ratio, 1 thread        forward %.1f  backward %.1f\n", t.forward / t1.forward, t.backward / t1.backward);
     }
     bench_free(&b);
+    ted4_threads_finish(&two);
 }
 
 int main(int argc, char **argv)

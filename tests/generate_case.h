@@ -121,7 +121,8 @@ static inline void case_anchor(test_case *t, int slot, int lane)
 }
 
 /* Fills *t: time num / den, anchors and networks from the seed. */
-static inline void case_make(test_case *t, const ted4_header *h, uint32_t num, uint32_t den, uint32_t seed)
+static inline void case_make(test_case *t, const ted4_header *h, uint32_t num, uint32_t den,
+                             uint32_t seed)
 {
     size_t n_used;
 
@@ -136,7 +137,7 @@ static inline void case_make(test_case *t, const ted4_header *h, uint32_t num, u
     for (int i = 0; i < CASE_SLOTS; i++) {
         t->attr_list[i] = t->attr[i];
         t->position_list[i] = t->position[i];
-        t->lanes[i] = i == 0 ? 0xffffffffu : i == 5 ? 0 : (uint32_t)0x9e3779b9u * (uint32_t)i >> (i & 3);
+        t->lanes[i] = i == 0 ? 0xffffffffu : i == 5 ? 0 : 0x9e3779b9u * (uint32_t)i >> (i & 3);
         for (int lane = 0; lane < TED4_LANES; lane++)
             case_anchor(t, i, lane);
     }
@@ -157,7 +158,8 @@ static inline void case_make(test_case *t, const ted4_header *h, uint32_t num, u
         t->query.camera[c] = t->in.camera[c];
 }
 
-static inline void case_channels(const test_case *t, int slot, int lane, double *channel, double *position)
+static inline void case_channels(const test_case *t, int slot, int lane, double *channel,
+                                 double *position)
 {
     for (int c = 0; c < t->layout.n_channels; c++)
         channel[c] = t->attr[slot][c * TED4_LANES + lane];
@@ -173,7 +175,8 @@ static inline const float *case_member(const ted4_splats *s, int c)
 }
 
 /* A parallel-for that does everything backwards. */
-static inline void case_run_backwards(void *user, size_t n, void (*body)(void *arg, size_t i), void *arg)
+static inline void case_run_backwards(void *user, size_t n, void (*body)(void *arg, size_t i),
+                                      void *arg)
 {
     (void)user;
     while (n-- > 0)
@@ -181,7 +184,8 @@ static inline void case_run_backwards(void *user, size_t n, void (*body)(void *a
 }
 
 /* And one with threads. */
-static inline void case_run_threads(void *user, size_t n, void (*body)(void *arg, size_t i), void *arg)
+static inline void case_run_threads(void *user, size_t n, void (*body)(void *arg, size_t i),
+                                    void *arg)
 {
     (void)user;
 #pragma omp parallel for num_threads(3) schedule(dynamic)

@@ -114,7 +114,8 @@ static inline void ref_bank(const ref_query *q, double *z)
 }
 
 /* spec 11.3: y of F_deform; *w moves behind the networks of motion. */
-static inline void ref_motion(const ref_query *q, const double **w, const double *phi, const double *p, double *y)
+static inline void ref_motion(const ref_query *q, const double **w, const double *phi,
+                              const double *p, double *y)
 {
     const ted4_header *h = &q->head;
     const int d = h->phi_dim, dim = h->bank_dim;
@@ -182,11 +183,12 @@ static inline void ref_rotation(const double *y, double *to)
 
 /* out: [K] of mean 3, scale 3, rotation 4, opacity, colour 3. base: the channels at which masks are
  * hard. */
-static inline void ref_generate(const ref_query *q, const double *channel, const double *base, const double *p, double (*out)[REF_OUT])
+static inline void ref_generate(const ref_query *q, const double *channel, const double *base,
+                                const double *p, double (*out)[REF_OUT])
 {
     const ted4_header *h = &q->head;
     const ref_channels at = ref_channels_of(h);
-    const int f = h->feature_dim, k = h->n_offsets;
+    const int f = h->feature_dim, k = h->n_offsets, n_full = f + (h->view == 2 ? 3 : 0);
     const double *w = q->net;
     double y[REF_WIDEST] = {0}, seen[REF_WIDEST], moved[REF_WIDEST], size[6];
     double opacity[REF_WIDEST], covariance[REF_WIDEST], colour[REF_WIDEST];
@@ -202,8 +204,8 @@ static inline void ref_generate(const ref_query *q, const double *channel, const
     }
     ref_direction(q, p, seen + f);
     memcpy(moved + f, seen + f, 3 * sizeof *moved);
-    ref_network(&w, f + (h->view == 2 ? 3 : 0), h->head_layers, h->head_width, k, seen, opacity);
-    ref_network(&w, f + (h->view == 2 ? 3 : 0), h->head_layers, h->head_width, 7 * k, moved, covariance);
+    ref_network(&w, n_full, h->head_layers, h->head_width, k, seen, opacity);
+    ref_network(&w, n_full, h->head_layers, h->head_width, 7 * k, moved, covariance);
     ref_network(&w, f + (h->view > 0 ? 3 : 0), h->head_layers, h->head_width, 3 * k, seen, colour);
     if (h->activation && q->activation)
         active = ref_activation(q, channel + at.tau);
@@ -213,8 +215,10 @@ static inline void ref_generate(const ref_query *q, const double *channel, const
         size[c] = h->scale_domain == TED4_SCALE_LOG2 ? exp2(l) : fmax(l, 0x1p-20);
     }
     for (int i = 0; i < k; i++) {
-        const double *offset = channel + at.offset + 3 * i, o = 2.0 * ref_sigmoid(2.0 * opacity[i]) - 1.0;
+        const double *offset = channel + at.offset + 3 * i;
+        const double o = 2.0 * ref_sigmoid(2.0 * opacity[i]) - 1.0;
         const int logit = at.offset_logit + i;
+        const double kept = h->offset_mask ? ref_mask(channel[logit], base[logit]) : 1.0;
 
         for (int c = 0; c < 3; c++) {
             out[i][c] = p[c] + moves * y[c] + offset[c] * size[c];
@@ -222,7 +226,7 @@ static inline void ref_generate(const ref_query *q, const double *channel, const
             out[i][11 + c] = ref_sigmoid(colour[3 * i + c]);
         }
         ref_rotation(covariance + 7 * i + 3, out[i] + 6);
-        out[i][10] = fmax(o, 0.0) * active * (h->offset_mask ? ref_mask(channel[logit], base[logit]) : 1.0);
+        out[i][10] = fmax(o, 0.0) * active * kept;
     }
 }
 

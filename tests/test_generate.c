@@ -44,7 +44,8 @@ static void check_anchor(const ted4_splats *s, int slot, int lane)
             if (!used)
                 assert_true(isfinite(got));
             else if (fabs(got - want[k][c]) > TOLERANCE * (1.0 + fabs(want[k][c])))
-                fail_msg("slot %d lane %d offset %d member %d: %g, not %g", slot, lane, k, c, got, want[k][c]);
+                fail_msg("slot %d lane %d offset %d member %d: %g, not %g", slot, lane, k, c, got,
+                         want[k][c]);
         }
         if (!used || want[k][10] == 0.0)
             assert_true(s->opacity[i] == 0.0f);
@@ -138,7 +139,8 @@ static void check_same(const ted4_splats *s, const float *copy)
 
 static void test_threads(void **state)
 {
-    static const ted4_parallel runs[] = { { case_run_backwards, NULL }, { case_run_threads, NULL } };
+    static const ted4_parallel runs[] = { { case_run_backwards, NULL },
+                                          { case_run_threads, NULL } };
     static float copy[REF_OUT * CASE_SPLATS];
     ted4_header h = case_header(TED4_MOTION_BANK, TED4_VIEW_FULL);
     ted4_generator *g;

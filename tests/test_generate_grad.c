@@ -298,7 +298,8 @@ static void test_many_slots(void **state)
 
 static void test_threads(void **state)
 {
-    static const ted4_parallel runs[] = { { case_run_backwards, NULL }, { case_run_threads, NULL } };
+    static const ted4_parallel runs[] = { { case_run_backwards, NULL },
+                                          { case_run_threads, NULL } };
     static float first_attr[CASE_SLOTS][CASE_CHANNELS * TED4_LANES];
 
     (void)state;

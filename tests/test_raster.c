@@ -195,6 +195,8 @@ static void test_threads(void **state)
         assert_int_equal(ted4_raster_forward(r, &g, &v, &p[i], i & 1, many), 0);
         assert_memory_equal(one, many, sizeof one);
     }
+    for (int i = 1; i < 4; i++)
+        ted4_threads_finish(&p[i]);
     ted4_raster_free(r);
     scene_free(&s);
 }

@@ -287,6 +287,7 @@ static void test_threads(void **state)
 
         ted4_threads_init(&par, threads);
         gradients(&p, &par, &many, many2d, many_visible);
+        ted4_threads_finish(&par);
         assert_memory_equal(one.value, many.value, N * SCENE_PARAMS * sizeof(float));
         assert_memory_equal(one2d, many2d, sizeof one2d);
         assert_memory_equal(one_visible, many_visible, sizeof one_visible);

@@ -1,5 +1,5 @@
-/* test_rate.c - train/rate*.c: bits of the float rate model against double arithmetic and against the coder's own tables, the noise,
- * the quantiser, threads, lanes that are not there, and the three traps of algorithm facts 5.8 (items 3, 4, 5).
+/* test_rate.c - train/rate*.c and quantise.c: bits against the double model, the noise, the quantiser, threads, lanes that are not there, the integer mode,
+ * and clamped outputs (algorithm facts 5.8, items 3 and 5).
  * SPDX-License-Identifier: BSD-2-Clause */
 #include <setjmp.h>
 #include <stdarg.h>
@@ -8,130 +8,13 @@
 #include <cmocka.h>
 
 #include "kernel/threads.h"
-#include "norm/gaussian.h"
 #include "norm/prior.h"
 #include "rate_ref.h"
 #include "train/rate_parts.h"
 
-typedef struct {
-    float u[TED4_LANES], s[TED4_LANES];
-    float bits[TED4_LANES], d_u[TED4_LANES], d_s[TED4_LANES];
-} row;
-
-static void run_row(row *r)
-{
-    ted4_rate_row(r->u, r->s, r->bits, r->d_u, r->d_s);
-}
-
 static int close_to(double got, double want, double relative, double absolute)
 {
     return fabs(got - want) <= absolute + relative * fabs(want);
-}
-
-/* Bits to 2e-5 wherever sigma and distance lie; derivatives to 1e-4 of their size. */
-static void test_row_values(void **state)
-{
-    (void)state;
-    for (int i = 0; i <= 160; i++) {
-        row r;
-
-        for (int j = 0; j < TED4_LANES; j++) {
-            const double s = -4.0 + 15.0 * i / 160.0;
-            const double span = j < 16 ? 1.0 + exp2(s) : 12.0 * exp2(s) + 30.0;
-
-            r.s[j] = (float)fmin(s, REF_S_MAX);
-            r.u[j] = (float)(span * ref_uniform());
-        }
-        run_row(&r);
-        for (int j = 0; j < TED4_LANES; j++) {
-            const double u = (double)r.u[j], s = (double)r.s[j];
-            const double hu = 1e-5 * exp2(s), hs = 1e-5;
-            const double du = (ref_bits(u + hu, s) - ref_bits(u - hu, s)) / (2 * hu);
-            const double ds = (ref_bits(u, s + hs) - ref_bits(u, s - hs)) / (2 * hs);
-
-            assert_true(close_to((double)r.bits[j], ref_bits(u, s), 2e-6, 2e-5));
-            if (fabs(fabs(u) - fmin(6.0 * exp2(s), 4095.0) - 2.0) < 1e-2
-                || fabs(s - log2(4095.0 / 6.0)) < 1e-3)
-                continue;                       /* kinks of h and w */
-            assert_true(close_to((double)r.d_u[j], du, 2e-4, 2e-5 / exp2(s)));
-            assert_true(close_to((double)r.d_s[j], ds, 2e-4, 5e-5));
-        }
-    }
-}
-
-/* Item 4: far out and farther, bits are finite and grow, and the gradient leads back; in the plateau at 16 bits too. */
-static void test_outliers_have_gradient(void **state)
-{
-    static const float distance[] = { 1.4f, 5.5f, 40.0f, 1e3f, 1e5f, 1e8f, 1e20f, 3e38f };
-
-    (void)state;
-    for (size_t i = 0; i < sizeof distance / sizeof *distance; i++) {
-        row r;
-
-        for (int j = 0; j < TED4_LANES; j++) {
-            r.s[j] = -4.0f + 0.1f * (float)(j / 2);
-            r.u[j] = (j % 2 ? -1.0f : 1.0f) * distance[i];
-            if (distance[i] < 1e5f && i > 0)
-                r.u[j] *= exp2f(r.s[j]) + 0.5f / distance[i];   /* sigmas beyond the bin of 0 */
-        }
-        run_row(&r);
-        for (int j = 0; j < TED4_LANES; j++) {
-            assert_true(isfinite(r.bits[j]) && r.bits[j] > 0.0f);
-            assert_true(isfinite(r.d_u[j]) && isfinite(r.d_s[j]));
-            assert_true(j % 2 ? r.d_u[j] < 0.0f : r.d_u[j] > 0.0f);
-            if (distance[i] < 1e5f)
-                assert_true(r.d_s[j] < 0.0f);   /* a wider sigma is cheaper */
-            if (distance[i] == 1e8f)
-                assert_true(close_to((double)r.bits[j], 17.0 + 2.0 * log2(1e8), 0.0, 1e-3));
-        }
-    }
-}
-
-/* What the coder of spec 9.4 spends on k. */
-static double coder_bits(int32_t mu, unsigned g, int32_t k)
-{
-    const ted4_gauss_symbol s = ted4_gauss_of(mu, g, k);
-    double bits = 16.0 - log2((double)s.slots.freq);
-
-    if (s.escape >= 0)
-        bits += 2.0 * floor(log2((double)s.escape + 1.0)) + 1.0;
-    return bits;
-}
-
-static double model_bits(int32_t mu, unsigned g, int32_t k)
-{
-    row r;
-
-    for (int j = 0; j < TED4_LANES; j++) {
-        r.u[j] = (float)k - (float)mu / 256.0f;
-        r.s[j] = (float)((int)g - 64) / 16.0f;
-    }
-    run_row(&r);
-    return (double)r.bits[0];
-}
-
-/* Where symbols are likely, the model is the coder; at the floor and in escapes it is within 2.5 bits;
- * beyond sigma 600 the window is narrower than the distribution, and escapes of its tails are taken to be rarer than they are. */
-static void test_row_is_the_coder(void **state)
-{
-    (void)state;
-    for (unsigned g = 0; g < TED4_N_SIGMA; g += 3) {
-        const double sigma = exp2(((double)g - 64.0) / 16.0);
-        const int32_t mu = (int32_t)(2000.0 * ref_uniform());
-        double coded = 0.0, modelled = 0.0;
-
-        for (int32_t k = -200; k <= 200; k++) {
-            const double spread = fmax(1.0, 6.5 * sigma / 200.0);
-            const int32_t at = (int32_t)(mu / 256.0 + k * spread);
-            const double z = (at - mu / 256.0) / sigma, a = coder_bits(mu, g, at);
-            const double b = model_bits(mu, g, at);
-
-            assert_true(fabs(a - b) < (sigma > 600.0 && fabs(z) > 2.0 ? 12.0 : 2.5));
-            coded += exp(-0.5 * z * z) * a;
-            modelled += exp(-0.5 * z * z) * b;
-        }
-        assert_true(close_to(modelled, coded, sigma < 16.0 ? 2e-4 : sigma < 1e3 ? 2e-3 : 1e-2, 1e-4));
-    }
 }
 
 static void fill_noise(ref_world *w, float *noise[REF_SLOTS])
@@ -347,60 +230,132 @@ static void test_quantise(void **state)
     ref_world_finish(&w);
 }
 
-/* Many slots, so that several waves run; bits of every result the same for 1 and 3 threads. */
+/* More slots than a wave takes. */
+enum { MANY = TED4_RATE_CHUNK * TED4_RATE_WAVE + 21 };
+
+typedef struct {
+    ref_world       w;
+    const float    *attr[MANY], *position[MANY];
+    float          *d_attr[MANY], *steps[MANY], *d_net;
+    uint32_t        lanes[MANY], block[MANY];
+    ted4_rate_input in;
+    double          bits[TED4_TYPES];
+} crowd;
+
+static void crowd_make(crowd *c)
+{
+    const ted4_header h = ref_header();
+
+    ref_world_make(&c->w, &h);
+    for (uint32_t i = 0; i < MANY; i++) {
+        c->attr[i] = c->w.attr[i % REF_SLOTS];
+        c->position[i] = c->w.position[i % REF_SLOTS];
+        c->d_attr[i] = ref_floats((size_t)c->w.layout.n_channels * TED4_LANES);
+        c->steps[i] = ref_floats(TED4_TYPES * TED4_LANES);
+        c->lanes[i] = ~i;
+        c->block[i] = i;
+    }
+    c->d_net = ref_floats(c->w.layout.n_net);
+    c->in = c->w.in;
+    c->in.attr = c->attr;
+    c->in.position = c->position;
+    c->in.lanes = c->lanes;
+    c->in.block = c->block;
+    ted4_rate_pack(c->w.rate, c->w.net);
+}
+
+static void crowd_finish(crowd *c)
+{
+    for (int i = 0; i < MANY; i++) {
+        free(c->d_attr[i]);
+        free(c->steps[i]);
+    }
+    free(c->d_net);
+    ref_world_finish(&c->w);
+}
+
+/* n slots from first on, gradients from zero; a hash of those of the values. */
+static uint64_t crowd_run(crowd *c, const ted4_parallel *p, size_t first, size_t n)
+{
+    const size_t size = (size_t)c->w.layout.n_channels * TED4_LANES;
+    uint64_t sum = 0;
+
+    c->in.n_slots = n;
+    c->in.attr = c->attr + first;
+    c->in.position = c->position + first;
+    c->in.lanes = c->lanes + first;
+    c->in.block = c->block + first;
+    for (size_t i = first; i < first + n; i++)
+        memset(c->d_attr[i], 0, size * sizeof(float));
+    memset(c->d_net, 0, c->w.layout.n_net * sizeof(float));
+    assert_int_equal(ted4_rate_evaluate(c->w.rate, &c->in, p, NULL, c->d_attr + first, c->d_net,
+                                        c->steps + first, c->bits), 0);
+    for (size_t i = first; i < first + n; i++)
+        for (size_t j = 0; j < size; j++)
+            sum = sum * 0x9e3779b97f4a7c15u + ted4_float_bits(c->d_attr[i][j]);
+    return sum;
+}
+
+static void run_backwards(void *user, size_t n, void (*body)(void *arg, size_t i), void *arg)
+{
+    (void)user;
+    while (n-- > 0)
+        body(arg, n);
+}
+
+/* The same bits of every result in any order and for any number of threads. */
 static void test_threads(void **state)
 {
-    enum { SLOTS = TED4_RATE_CHUNK * TED4_RATE_WAVE + 21 };
-    static ref_world w;
-    static const float *attr[SLOTS], *position[SLOTS];
-    static float *d_attr[SLOTS], *steps[SLOTS];
-    static uint32_t lanes[SLOTS], block[SLOTS];
-    const ted4_header h = ref_header();
-    double bits[2][TED4_TYPES];
-    float *d_net[2];
-    uint64_t sum[2] = {0, 0};
+    static crowd c;
+    ted4_parallel runs[2] = { { run_backwards, NULL } };
+    double bits[TED4_TYPES];
 
     (void)state;
-    ref_world_make(&w, &h);
-    const size_t size = (size_t)w.layout.n_channels * TED4_LANES;
+    crowd_make(&c);
+    ted4_threads_init(&runs[1], 3);
+    const size_t net = c.w.layout.n_net * sizeof(float);
+    float *d_net = ref_floats(c.w.layout.n_net);
+    const uint64_t sum = crowd_run(&c, NULL, 0, MANY);
 
-    for (uint32_t i = 0; i < SLOTS; i++) {
-        attr[i] = w.attr[i % REF_SLOTS];
-        position[i] = w.position[i % REF_SLOTS];
-        d_attr[i] = ref_floats(size);
-        steps[i] = ref_floats(TED4_TYPES * TED4_LANES);
-        lanes[i] = ~i;
-        block[i] = i;
+    memcpy(bits, c.bits, sizeof bits);
+    memcpy(d_net, c.d_net, net);
+    for (int i = 0; i < 2; i++) {
+        assert_true(crowd_run(&c, &runs[i], 0, MANY) == sum);
+        assert_memory_equal(bits, c.bits, sizeof bits);
+        assert_memory_equal(d_net, c.d_net, net);
     }
-    w.in.n_slots = SLOTS;
-    w.in.attr = attr;
-    w.in.position = position;
-    w.in.lanes = lanes;
-    w.in.block = block;
-    ted4_rate_pack(w.rate, w.net);
-    for (int run = 0; run < 2; run++) {
-        ted4_parallel p;
+    free(d_net);
+    crowd_finish(&c);
+}
 
-        ted4_threads_init(&p, 1 + 2 * run);
-        d_net[run] = ref_floats(w.layout.n_net);
-        for (int i = 0; i < SLOTS; i++)
-            memset(d_attr[i], 0, size * sizeof(float));
-        assert_int_equal(ted4_rate_evaluate(w.rate, &w.in, &p, NULL, d_attr, d_net[run],
-                                            steps, bits[run]), 0);
-        for (int i = 0; i < SLOTS; i++)
-            for (size_t j = 0; j < size; j++)
-                sum[run] = sum[run] * 0x9e3779b97f4a7c15u + ted4_float_bits(d_attr[i][j]);
+/* Chunks and waves lose nothing: all slots at once are the sum of slots one by one. */
+static void test_sums(void **state)
+{
+    static crowd c;
+    double bits[TED4_TYPES] = {0};
+
+    (void)state;
+    crowd_make(&c);
+    const size_t n = c.w.layout.n_net;
+    double *d_net = calloc(n, sizeof *d_net), scale = 0.0;
+
+    for (size_t i = 0; i < MANY; i++) {
+        crowd_run(&c, NULL, i, 1);
+        for (int t = 0; t < TED4_TYPES; t++)
+            bits[t] += c.bits[t];
+        for (size_t j = 0; j < n; j++)
+            d_net[j] += (double)c.d_net[j];
     }
-    assert_memory_equal(bits[0], bits[1], sizeof bits[0]);
-    assert_memory_equal(d_net[0], d_net[1], w.layout.n_net * sizeof(float));
-    assert_true(sum[0] == sum[1]);
-    for (int i = 0; i < SLOTS; i++) {
-        free(d_attr[i]);
-        free(steps[i]);
-    }
-    free(d_net[0]);
-    free(d_net[1]);
-    ref_world_finish(&w);
+    crowd_run(&c, NULL, 0, MANY);
+    for (int t = 0; t < TED4_TYPES; t++)
+        assert_true(close_to(c.bits[t], bits[t], 1e-12, 0.0));
+    for (size_t j = 0; j < n; j++)
+        scale = fmax(scale, fabs(d_net[j]));
+    assert_true(scale > 1.0);
+    for (size_t j = 0; j < n; j++)
+        assert_true(close_to((double)c.d_net[j], d_net[j], 1e-5, 1e-5 * scale));
+    free(d_net);
+    crowd_finish(&c);
 }
 
 /* Without gradients, and with nothing but steps, the numbers are the same. */
@@ -579,14 +534,12 @@ static void test_integer(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_row_values),
-        cmocka_unit_test(test_outliers_have_gradient),
-        cmocka_unit_test(test_row_is_the_coder),
         cmocka_unit_test(test_values),
         cmocka_unit_test(test_unused_lanes),
         cmocka_unit_test(test_noise),
         cmocka_unit_test(test_quantise),
         cmocka_unit_test(test_threads),
+        cmocka_unit_test(test_sums),
         cmocka_unit_test(test_partial),
         cmocka_unit_test(test_shared_gradients),
         cmocka_unit_test(test_clamped_outputs_recover),

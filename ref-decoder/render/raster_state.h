@@ -58,7 +58,7 @@ struct ted4_raster {
     ted4_growing splat2d;        /* ted4_splat2d; only visible ones are set */
     ted4_growing box;            /* ted4_tile_box */
     ted4_growing first_slot;     /* uint32_t [n + 1] */
-    /* per visible Gaussian: depth bits << 32 | index; sorted ends up in key[0] */
+    /* per visible Gaussian: depth bits << 32 | index; sorting goes to and fro between the two */
     ted4_growing key[2];
     /* per projection job */
     ted4_growing chunk;          /* ted4_chunk */

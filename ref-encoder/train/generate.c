@@ -95,7 +95,8 @@ static void view_directions(const float *camera, const float *position, float *t
     }
 }
 
-static void load_slot(ted4_generator *g, const ted4_generate_input *in, size_t slot, const float *position, const int32_t *on)
+static void load_slot(ted4_generator *g, const ted4_generate_input *in, size_t slot,
+                      const float *position, const int32_t *on)
 {
     const int f = g->layout.head.feature_dim;
     const float *attr = in->attr[slot];
@@ -205,7 +206,8 @@ static void emit_rotation(const float *q, float *const *out)
 
 #pragma omp simd
     for (int j = 0; j < TED4_LANES; j++) {
-        const float a = q[j], b = q[TED4_LANES + j], c = q[2 * TED4_LANES + j], d = q[3 * TED4_LANES + j];
+        const float a = q[j], b = q[TED4_LANES + j];
+        const float c = q[2 * TED4_LANES + j], d = q[3 * TED4_LANES + j];
         const float n = sqrtf(a * a + b * b + c * c + d * d);
         const float scale = n >= TED4_SHORT ? 1.0f / n : 0.0f;
 
@@ -217,7 +219,8 @@ static void emit_rotation(const float *q, float *const *out)
 }
 
 /* The Gaussians of offset k of a slot. position: of the moved anchors. */
-static void emit(const ted4_generator *g, float *planes, const float *position, const int32_t *on, int k, float *const *out)
+static void emit(const ted4_generator *g, float *planes, const float *position,
+                 const int32_t *on, int k, float *const *out)
 {
     const float *size = ted4_gen_plane(planes, g->plane.size);
     const float *offset = ted4_gen_channel(g, planes, g->layout.first[TED4_OFFSET] + 3 * k);

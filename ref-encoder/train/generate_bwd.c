@@ -18,10 +18,10 @@ typedef struct {
 /* One slot on its way back. */
 typedef struct {
     const ted4_generator *g;
-    float *planes;                              /* saved by forward */
-    float *d;                                   /* planes of layer outputs */
-    float *d_attr;                              /* the slot's block */
-    float *d_feature, *d_moved;                 /* F + 3 planes each: gradients of the inputs of heads that see f, f' */
+    float *planes;                      /* saved by forward */
+    float *d;                           /* gradients of layer outputs, planes */
+    float *d_attr;                      /* the slot's block */
+    float *d_feature, *d_moved;         /* F + 3 planes each: of the inputs of heads of f, f' */
     int32_t on[TED4_LANES];
     float d_size[6 * TED4_LANES], d_position[3 * TED4_LANES], d_active[TED4_LANES];
 } slot_state;
@@ -81,7 +81,8 @@ static void rotation_backward(slot_state *s, int k, const float *const *gr)
 
 #pragma omp simd
     for (int j = 0; j < TED4_LANES; j++) {
-        const float a = q[j], b = q[TED4_LANES + j], c = q[2 * TED4_LANES + j], d = q[3 * TED4_LANES + j];
+        const float a = q[j], b = q[TED4_LANES + j];
+        const float c = q[2 * TED4_LANES + j], d = q[3 * TED4_LANES + j];
         const float n = sqrtf(a * a + b * b + c * c + d * d);
         const int live = s->on[j] && n >= TED4_SHORT;
         const float scale = live ? 1.0f / n : 0.0f;

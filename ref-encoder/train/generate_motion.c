@@ -103,7 +103,8 @@ static void encode_time(ted4_gen_motion *m, uint32_t num, uint32_t den)
 }
 
 /* spec 11.2. At the last row (num = den) mix is 0, and the row after it is not touched. */
-static void interpolate(ted4_gen_motion *m, const ted4_layout *l, const float *bank, uint32_t num, uint32_t den)
+static void interpolate(ted4_gen_motion *m, const ted4_layout *l, const float *bank,
+                        uint32_t num, uint32_t den)
 {
     const uint64_t g = num * (uint64_t)(l->head.bank_rows - 1), i = g / den;
     const float *z = bank + i * (size_t)m->n_time;
@@ -168,7 +169,8 @@ void ted4_gen_motion_make(ted4_generator *g, const ted4_generate_input *in)
 /* Adjoint of make_from_bank: with E the effective weights, e the bias,
  *     r_oc = sum_i dE_oi P_ci + de_o p_c,  dW_oc = z_c r_oc,  dz_c = sum_o W_oc r_oc,
  *     dP_ci = z_c sum_o W_oc dE_oi,  dp_c = z_c sum_o W_oc de_o. */
-static void bank_backward(ted4_gen_motion *m, const float *w, const float *p, float *d_w, float *d_p)
+static void bank_backward(ted4_gen_motion *m, const float *w, const float *p,
+                          float *d_w, float *d_p)
 {
     const size_t in = (size_t)m->in, n_time = (size_t)m->n_time;
     const float *b_project = p + n_time * in, *d_b = m->d_w + (size_t)m->width * in;

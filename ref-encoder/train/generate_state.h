@@ -19,10 +19,12 @@
 enum { TED4_GEN_CHUNKS = 16, TED4_GEN_GROUP = 8 };
 
 /* Motion inr, spec 11.3: inputs made of the position and of the time. */
-enum { TED4_INR_OCTAVES = 10, TED4_INR_POINT = 3 + 6 * TED4_INR_OCTAVES, TED4_INR_TIME = 1 + 2 * TED4_INR_OCTAVES };
+enum { TED4_INR_OCTAVES = 10, TED4_INR_POINT = 3 + 6 * TED4_INR_OCTAVES,
+       TED4_INR_TIME = 1 + 2 * TED4_INR_OCTAVES };
 
 /* Arrays of ted4_splats, in the order of its members. */
-enum { TED4_GEN_MEAN, TED4_GEN_SCALE = 3, TED4_GEN_ROT = 6, TED4_GEN_OPACITY = 10, TED4_GEN_COLOUR = 11, TED4_GEN_ARRAYS = 14 };
+enum { TED4_GEN_MEAN, TED4_GEN_SCALE = 3, TED4_GEN_ROT = 6, TED4_GEN_OPACITY = 10,
+       TED4_GEN_COLOUR = 11, TED4_GEN_ARRAYS = 14 };
 
 /* One dense layer: input and output planes of a slot, where W and then b lie in NETR, where their
  * gradients lie in a chunk's gradient array. */
@@ -43,12 +45,14 @@ typedef struct {
     int feature, view;          /* F, then 3: the input of heads that see f (and the direction) */
     int rest;                   /* channels F .. of the block */
     int point;                  /* inr: 63 encoded coordinates */
-    int moved, moved_view;      /* f' (F), then 3: the input of the covariance head; feature when nothing moves */
+    int moved;                  /* f' (F), then 3 when view is full: the input of the covariance
+                                 * head; = feature when nothing moves */
     int size;                   /* S: 6 */
     int active;                 /* A: 1 */
     int moving;                 /* 1.0 where the anchor moves: 1 */
     int outputs;                /* the outputs of all layers, chain by chain */
-    int motion, opacity, covariance, colour;    /* those of last layers, in place: y; 2 sigmoid - 1; sigmoids and raw quaternion; sigmoids */
+    int motion, opacity, covariance, colour;    /* those of last layers, in place: y; 2 sigmoid
+                                 * - 1; sigmoids and raw quaternions; sigmoids */
     int n;
 } ted4_gen_planes;
 
@@ -70,11 +74,14 @@ struct ted4_generator {
     ted4_gen_planes plane;
     ted4_gen_chain  chain[TED4_NETS_R];         /* that of F_project is never used */
     ted4_gen_motion motion;
-    size_t  n_effective, net_tail;      /* floats of the effective layer; NETR offset of the layer after it */
-    size_t  n_grad;                     /* floats of a chunk's gradient array: effective layer, then NETR from net_tail on */
+    size_t  n_effective;                /* floats of the effective layer */
+    size_t  net_tail;                   /* NETR offset of the layer after it */
+    size_t  n_grad;                     /* floats of a chunk's gradients: effective layer, then
+                                         * NETR from net_tail on */
     float  *grad;                       /* [TED4_GEN_CHUNKS][n_grad] owned */
     size_t  d_slot;                     /* floats of the gradients of one slot's layer outputs */
-    size_t  d_chunk;                    /* floats of one chunk's scratch: TED4_GEN_GROUP of those, then d_feature, d_moved (F + 3 planes each) */
+    size_t  d_chunk;                    /* floats of one chunk's scratch: TED4_GEN_GROUP of those,
+                                         * then d_feature, d_moved (F + 3 planes each) */
     float  *d_planes;                   /* [TED4_GEN_CHUNKS][d_chunk] owned */
     size_t  capacity;                   /* slots there is room for */
     float  *saved;                      /* [capacity][plane.n][32] owned */
@@ -90,9 +97,11 @@ int  ted4_gen_plan(ted4_generator *g);
 void ted4_gen_chain_forward(const ted4_gen_chain *c, float *planes);
 /* dy of the last layer is set in d (planes of layer outputs); fills those of the others, and dx
  * ([in][32], NULL: not wanted). */
-void ted4_gen_chain_backward(const ted4_generator *g, const ted4_gen_chain *c, float *planes, float *d, float *dx, int add);
+void ted4_gen_chain_backward(const ted4_generator *g, const ted4_gen_chain *c, float *planes,
+                             float *d, float *dx, int add);
 /* Adds the weight gradients of n slots to grad. */
-void ted4_gen_chain_weights(const ted4_generator *g, const ted4_gen_chain *c, float *planes, float *d, size_t n, float *grad);
+void ted4_gen_chain_weights(const ted4_generator *g, const ted4_gen_chain *c, float *planes,
+                            float *d, size_t n, float *grad);
 
 /* generate_motion.c. 0, or -1: no memory. */
 int  ted4_gen_motion_init(ted4_gen_motion *m, const ted4_layout *l);
