@@ -53,9 +53,9 @@ $B/ted4scene: $(patsubst %.c,$B/%.o,$(wildcard tests/scenes/*.c)) $B/libted4enc.
 $B/tests/%: $B/tests/%.o $B/libted4enc.a $B/libted4dec.a
 	$(CC) -fopenmp $(LDFLAGS) $^ -o $@ -lcmocka $(LIBS)
 
-# Prints each test program it runs and a closing line of totals.
 $B/tests/test_scene: $(patsubst %.c,$B/%.o,$(wildcard tests/scenes/ray_*.c))
 
+# Prints each test program it runs and a closing line of totals.
 test: $(TESTS) $(PROGS)
 	@TED4_BUILD=$(abspath $B) TED4_DATA=$(abspath $(TED4_DATA)) sh tests/run.sh $(TESTS)
 

@@ -39,8 +39,8 @@ typedef struct {
     ted4_gen_layer layer[TED4_MAX_LAYERS];
 } ted4_gen_chain;
 
-/* Planes of a slot, in this order. Members are first planes; -1: absent. The attribute block is
- * copied with unused lanes set to 0. */
+/* Planes of a slot. Members are first planes; -1: absent. The attribute block is copied, feature
+ * apart, with 0 in unused lanes. */
 typedef struct {
     int feature, view;          /* F, then 3: the input of heads that see f (and the direction) */
     int rest;                   /* channels F .. of the block */
@@ -51,8 +51,10 @@ typedef struct {
     int active;                 /* A: 1 */
     int moving;                 /* 1.0 where the anchor moves: 1 */
     int outputs;                /* the outputs of all layers, chain by chain */
-    int motion, opacity, covariance, colour;    /* those of last layers, in place: y; 2 sigmoid
-                                 * - 1; sigmoids and raw quaternions; sigmoids */
+    int motion;                 /* last layer of F_deform: y */
+    int opacity;                /* of the opacity head: 2 sigmoid(2 y) - 1 */
+    int covariance;             /* of the covariance head: 3 sigmoids, 4 y, K times */
+    int colour;                 /* of the colour head: sigmoids */
     int n;
 } ted4_gen_planes;
 
