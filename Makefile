@@ -11,7 +11,7 @@ WARN  = -Wall -Wextra -Wpedantic -Wshadow -Wstrict-prototypes -Wmissing-prototyp
 # The two FP flags are part of the format (spec 12.2): Tier R is strict binary32.
 STRICT = -ffp-contract=off -fno-fast-math
 # Informative arithmetic (rendering, training) may contract and use every vector unit of this machine.
-FREE   = $(ARCH) -ffp-contract=fast -fno-math-errno -fno-trapping-math
+FREE   = $(ARCH) -Wno-psabi -ffp-contract=fast -fno-math-errno -fno-trapping-math
 CFLAGS_ALL = -std=c11 -D_POSIX_C_SOURCE=200809L $(OPT) -g $(WARN) -Iref-decoder -Iref-encoder -Itests \
         -fopenmp -MMD -MP $(CFLAGS)
 LIBS  = -lpng -ljpeg -ljansson -lxxhash -lz -lm

@@ -59,7 +59,7 @@ typedef struct {
     int                activation;
 } ref_model;
 
-static inline double ref_sine(uint32_t u)
+static inline double ref_octave_sine(uint32_t u)
 {
     const double turn = 6.283185307179586476925, i = u >> 22, b = u >> 10 & 4095;
     const double at = rint(4096.0 * sin(turn * i / 1024.0));
@@ -79,8 +79,8 @@ static inline void ref_inputs(const ted4_header *h, const double *p, double *x)
         for (int a = 0; a < 3; a++) {
             const uint32_t u = (uint32_t)(int32_t)(p[a] * 16777216.0) << (7 + l);
 
-            *x++ = ref_sine(u) / 4096.0;
-            *x++ = ref_sine(u + ((uint32_t)1 << 30)) / 4096.0;
+            *x++ = ref_octave_sine(u) / 4096.0;
+            *x++ = ref_octave_sine(u + ((uint32_t)1 << 30)) / 4096.0;
         }
 }
 

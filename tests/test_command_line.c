@@ -1,4 +1,5 @@
-/* test_command_line.c - what the programs take from their command lines: file name patterns, times, numbers, options from a table.
+/* test_command_line.c - what the programs take from their command lines: file name patterns, times,
+ * numbers, options from a table.
  * The programs' helpers are in no library, so their sources are part of this file.
  * SPDX-License-Identifier: BSD-2-Clause */
 #include <setjmp.h>
@@ -24,7 +25,8 @@ static void expect_path(const char *pattern, uint32_t number, const char *want)
 
 static void test_patterns(void **state)
 {
-    static const char *const bad[] = { "%", "a%s.ply", "%d%d", "a%%d", "%0d", "%-3d", "%10d", "%1$d", "%ld", "%n", "%5", "%d %" };
+    static const char *const bad[] = { "%",    "a%s.ply", "%d%d", "a%%d", "%0d", "%-3d",
+                                       "%10d", "%1$d",    "%ld",  "%n",   "%5",  "%d %" };
 
     (void)state;
     for (size_t i = 0; i < sizeof bad / sizeof *bad; i++)
@@ -55,8 +57,11 @@ static void expect_time(const char *text, uint32_t num, uint32_t den)
 
 static void test_times(void **state)
 {
-    static const char *const bad_range[] = { "", "x", "1:2:3:4", "5:5", "5:3", "1:9:0", "-1", "1: 2", "4294967295", ":x" };
-    static const char *const bad_time[] = { "", "1.5", "2", "-0.1", "3/2", "1/0", "1/16777216", "0.", ".", "0.12345678", "1/2x", "nan", "1e-1", "1.0000001" };
+    static const char *const bad_range[] = { "",      "x",  "1:2:3:4", "5:5",        "5:3",
+                                             "1:9:0", "-1", "1: 2",    "4294967295", ":x" };
+    static const char *const bad_time[] = { "",     "1.5",        "2",    "-0.1",     "3/2",
+                                            "1/0",  "1/16777216", "0.",   ".",        "0.12345678",
+                                            "1/2x", "nan",        "1e-1", "1.0000001" };
     ted4_range r;
     ted4_time t;
 
@@ -105,7 +110,9 @@ static void test_numbers(void **state)
 static void test_table(void **state)
 {
     static const ted4_argument table[] = {
-        { 'o', "output", "FILE", "where to" }, { 0, "long-only", NULL, "a flag" }, { 'j', "threads", "N", "how many" },
+        { 'o', "output", "FILE", "where to" },
+        { 0, "long-only", NULL, "a flag" },
+        { 'j', "threads", "N", "how many" },
     };
     const ted4_command c = { "prog", "FILE", "Does things.", table, 3, "The end.\n" };
     char words[][16] = { "prog", "-j", "3", "file", "--long-only", "--output=x", "-oy" };

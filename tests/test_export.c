@@ -40,12 +40,16 @@ typedef struct {
 
 static void make(set *s, size_t n, int degree)
 {
-    *s = (set){ .frame = { .n = n, .opacity = s->column[10], .sh_degree = degree, .sh = s->sh, .comment = "one line\nanother: %d\n" } };
+    *s = (set){ .frame = { .n = n, .opacity = s->column[10], .sh_degree = degree, .sh = s->sh } };
+    s->frame.comment = "one line\nanother: %d\n";
     for (size_t i = 0; i < n; i++) {
         double length = 0.0;
 
         for (int k = 0; k < 14; k++)
-            s->column[k][i] = (float)(k < 3 ? uniform(-9.0, 9.0) : k < 6 ? exp(uniform(-6.0, 0.0)) : k < 10 ? uniform(-1.0, 1.0) : uniform(0.0, 1.0));
+            s->column[k][i] = (float)(k < 3    ? uniform(-9.0, 9.0)
+                                      : k < 6  ? exp(uniform(-6.0, 0.0))
+                                      : k < 10 ? uniform(-1.0, 1.0)
+                                               : uniform(0.0, 1.0));
         for (int k = 6; k < 10; k++)
             length += pow((double)s->column[k][i], 2.0);
         for (int k = 6; k < 10; k++)
@@ -99,8 +103,10 @@ static void expect_line(const uint8_t **p, const char *line)
 
 static const uint8_t *expect_ply_header(const uint8_t *p, size_t n, int n_rest)
 {
-    static const char *const before[] = { "x", "y", "z", "nx", "ny", "nz", "f_dc_0", "f_dc_1", "f_dc_2" };
-    static const char *const after[] = { "opacity", "scale_0", "scale_1", "scale_2", "rot_0", "rot_1", "rot_2", "rot_3" };
+    static const char *const before[] = { "x",  "y",      "z",      "nx",    "ny",
+                                          "nz", "f_dc_0", "f_dc_1", "f_dc_2" };
+    static const char *const after[] = { "opacity", "scale_0", "scale_1", "scale_2",
+                                         "rot_0",   "rot_1",   "rot_2",   "rot_3" };
     char line[64];
 
     expect_line(&p, "ply");
@@ -210,14 +216,16 @@ static void test_splat(void **state)
         while (i < N && float_at(p) != s.column[0][i])
             i++;
         assert_true(i < N && seen[i]++ == 0);
-        const double weight = (double)s.column[3][i] * (double)s.column[4][i] * (double)s.column[5][i] * (double)s.column[10][i];
+        const double weight = (double)s.column[3][i] * (double)s.column[4][i]
+                              * (double)s.column[5][i] * (double)s.column[10][i];
 
         assert_true(weight <= last);
         last = weight;
         for (size_t c = 0; c < 3; c++) {
             assert_true(float_at(p + 4 * c) == s.column[c][i]);
             assert_true(float_at(p + 12 + 4 * c) == s.column[3 + c][i]);
-            assert_true(near_byte(p[24 + c], 255.0 * (0.5 + 0.28209479177387814 * (double)s.sh[(i * 3 + c) * 4])));
+            assert_true(near_byte(
+                p[24 + c], 255.0 * (0.5 + 0.28209479177387814 * (double)s.sh[(i * 3 + c) * 4])));
         }
         assert_true(near_byte(p[27], 255.0 * (double)s.column[10][i]));
         for (size_t c = 0; c < 4; c++)
@@ -233,9 +241,12 @@ static void rotate(const double q[4], const double v[3], double out[3])
 {
     const double w = q[0], x = q[1], y = q[2], z = q[3];
 
-    out[0] = (1 - 2 * (y * y + z * z)) * v[0] + 2 * (x * y - w * z) * v[1] + 2 * (x * z + w * y) * v[2];
-    out[1] = 2 * (x * y + w * z) * v[0] + (1 - 2 * (x * x + z * z)) * v[1] + 2 * (y * z - w * x) * v[2];
-    out[2] = 2 * (x * z - w * y) * v[0] + 2 * (y * z + w * x) * v[1] + (1 - 2 * (x * x + y * y)) * v[2];
+    out[0] =
+        (1 - 2 * (y * y + z * z)) * v[0] + 2 * (x * y - w * z) * v[1] + 2 * (x * z + w * y) * v[2];
+    out[1] =
+        2 * (x * y + w * z) * v[0] + (1 - 2 * (x * x + z * z)) * v[1] + 2 * (y * z - w * x) * v[2];
+    out[2] =
+        2 * (x * z - w * y) * v[0] + 2 * (y * z + w * x) * v[1] + (1 - 2 * (x * x + y * y)) * v[2];
 }
 
 typedef struct {
@@ -264,18 +275,22 @@ static glb open_glb(const uint8_t *data, size_t size)
 }
 
 /* The accessor of an attribute, with its bytes. */
-static const uint8_t *attribute(const glb *g, const char *name, const char *type, int component, const json_t **accessor)
+static const uint8_t *attribute(const glb *g, const char *name, const char *type, int component,
+                                const json_t **accessor)
 {
-    const json_t *const primitive = json_array_get(json_object_get(json_array_get(json_object_get(g->json, "meshes"), 0), "primitives"), 0);
+    const json_t *const primitive = json_array_get(
+        json_object_get(json_array_get(json_object_get(g->json, "meshes"), 0), "primitives"), 0);
     const json_t *const place = json_object_get(json_object_get(primitive, "attributes"), name);
 
     assert_true(json_is_integer(place));
-    *accessor = json_array_get(json_object_get(g->json, "accessors"), (size_t)json_integer_value(place));
+    *accessor =
+        json_array_get(json_object_get(g->json, "accessors"), (size_t)json_integer_value(place));
     assert_string_equal(json_string_value(json_object_get(*accessor, "type")), type);
     assert_int_equal(json_integer_value(json_object_get(*accessor, "componentType")), component);
     assert_int_equal(json_integer_value(json_object_get(*accessor, "count")), N);
-    const json_t *const view = json_array_get(json_object_get(g->json, "bufferViews"),
-                                              (size_t)json_integer_value(json_object_get(*accessor, "bufferView")));
+    const json_t *const view =
+        json_array_get(json_object_get(g->json, "bufferViews"),
+                       (size_t)json_integer_value(json_object_get(*accessor, "bufferView")));
 
     return g->data + json_integer_value(json_object_get(view, "byteOffset"));
 }
@@ -293,14 +308,18 @@ static void check_glb_shape(const glb *g, const set *s)
     const json_t *a;
     const uint8_t *const position = attribute(g, "POSITION", "VEC3", 5126, &a);
     const json_t *const low = json_object_get(a, "min"), *const high = json_object_get(a, "max");
-    const uint8_t *const rotation = attribute(g, "KHR_gaussian_splatting:ROTATION", "VEC4", 5126, &a);
+    const uint8_t *const rotation =
+        attribute(g, "KHR_gaussian_splatting:ROTATION", "VEC4", 5126, &a);
     const uint8_t *const scale = attribute(g, "KHR_gaussian_splatting:SCALE", "VEC3", 5126, &a);
-    const uint8_t *const opacity = attribute(g, "KHR_gaussian_splatting:OPACITY", "SCALAR", 5126, &a);
+    const uint8_t *const opacity =
+        attribute(g, "KHR_gaussian_splatting:OPACITY", "SCALAR", 5126, &a);
     const uint8_t *const colour = attribute(g, "COLOR_0", "VEC4", 5121, &a);
 
     assert_true(json_is_true(json_object_get(a, "normalized")));
     for (size_t i = 0; i < N; i++) {
-        const double v[3] = { 0.3, -0.7, 1.9 }, q[4] = { (double)s->column[6][i], (double)s->column[7][i], (double)s->column[8][i], (double)s->column[9][i] };
+        const double v[3] = { 0.3, -0.7, 1.9 },
+                     q[4] = { (double)s->column[6][i], (double)s->column[7][i],
+                              (double)s->column[8][i], (double)s->column[9][i] };
         double r[4], want[3], world[3], got[3];
 
         for (size_t c = 0; c < 4; c++)
@@ -313,10 +332,12 @@ static void check_glb_shape(const glb *g, const set *s)
 
             assert_true(fabs(got[c] - want[c]) < 1e-5);
             assert_true(p == (c == 0 ? s->column[c][i] : -s->column[c][i]));
-            assert_true(p >= (float)json_number_value(json_array_get(low, c)) && p <= (float)json_number_value(json_array_get(high, c)));
+            assert_true(p >= (float)json_number_value(json_array_get(low, c))
+                        && p <= (float)json_number_value(json_array_get(high, c)));
             assert_true(float_at(scale + i * 12 + c * 4) == s->column[3 + c][i]);
         }
-        assert_true(float_at(opacity + i * 4) == s->column[10][i] && near_byte(colour[i * 4 + 3], 255.0 * (double)s->column[10][i]));
+        assert_true(float_at(opacity + i * 4) == s->column[10][i]
+                    && near_byte(colour[i * 4 + 3], 255.0 * (double)s->column[10][i]));
     }
 }
 
@@ -344,7 +365,8 @@ static void check_glb_colour(const glb *g, const set *s, int degree)
             double want = 0.0, got = 0.0;
 
             for (int k = 0; k < ted4_sh_count(degree); k++) {
-                want += before[k] * (double)s->sh[(i * 3 + c) * (size_t)ted4_sh_count(degree) + (size_t)k];
+                want += before[k]
+                        * (double)s->sh[(i * 3 + c) * (size_t)ted4_sh_count(degree) + (size_t)k];
                 got += after[k] * (double)float_at(coef[k] + i * 12 + c * 4);
             }
             assert_true(fabs(got - want) < 1e-6);
@@ -363,8 +385,11 @@ static void test_glb(void **state)
         uint8_t *const data = written(&s.frame, "a.glb", &size);
         const glb g = open_glb(data, size);
 
-        assert_string_equal(json_string_value(json_array_get(json_object_get(g.json, "extensionsUsed"), 0)), "KHR_gaussian_splatting");
-        assert_int_equal(json_integer_value(json_object_get(json_array_get(json_object_get(g.json, "buffers"), 0), "byteLength")),
+        assert_string_equal(
+            json_string_value(json_array_get(json_object_get(g.json, "extensionsUsed"), 0)),
+            "KHR_gaussian_splatting");
+        assert_int_equal(json_integer_value(json_object_get(
+                             json_array_get(json_object_get(g.json, "buffers"), 0), "byteLength")),
                          data + size - g.data);
         check_glb_shape(&g, &s);
         check_glb_colour(&g, &s, degree);

@@ -1,4 +1,5 @@
-/* test_loss.c - train/loss.h against an independent double implementation: values, central differences, threads, sizes.
+/* test_loss.c - train/loss.h against an independent double implementation: values, central
+ * differences, threads, sizes.
  * SPDX-License-Identifier: BSD-2-Clause */
 #include <setjmp.h>
 #include <stdarg.h>
@@ -9,14 +10,16 @@
 #include <math.h>
 #include <cmocka.h>
 
+#include "loss_ref.h"
 #include "train/loss.h"
 
-enum { RADIUS = 5 };
-
+/* exact: the image in double, as the reference reads it. */
 typedef struct {
-    int      width, height;
-    float   *image, *gradient;
-    uint8_t *truth;
+    int         width, height;
+    float      *image, *gradient;
+    double     *exact;
+    uint8_t    *truth;
+    ref_picture reference;
 } picture;
 
 static uint32_t seed = 1;
@@ -27,13 +30,15 @@ static uint32_t draw(void)
     return seed >> 8;
 }
 
-/* The rendered image is near the truth in its left half, far from it in the right one, and may leave [0, 1]. */
+/* The rendered image is near the truth in its left half, far from it in the right one, and may
+ * leave [0, 1]. */
 static picture make(int width, int height)
 {
     const size_t n = (size_t)width * (size_t)height * 3;
-    picture p = { width, height, malloc(n * sizeof(float)), malloc(n * sizeof(float)), malloc(n) };
+    picture p = { .width = width, .height = height, .image = malloc(n * sizeof(float)),
+                  .gradient = malloc(n * sizeof(float)), .exact = malloc(n * sizeof(double)), .truth = malloc(n) };
 
-    assert_true(p.image != NULL && p.gradient != NULL && p.truth != NULL);
+    assert_true(p.image != NULL && p.gradient != NULL && p.exact != NULL && p.truth != NULL);
     for (size_t i = 0; i < n; i++)
         p.truth[i] = (uint8_t)((i / 40 * 16 + draw() % 64) & 255);
     for (int c = 0; c < 3; c++) {
@@ -42,12 +47,15 @@ static picture make(int width, int height)
                 const float amount = x < width / 2 ? 0.05f : 1.2f;
                 const float noise = (float)(draw() % 1000) / 1000.0f - 0.5f;
 
-                p.image[((size_t)c * (size_t)height + (size_t)y) * (size_t)width + (size_t)x]
-                    = (float)p.truth[((size_t)y * (size_t)width + (size_t)x) * 3 + (size_t)c] / 255.0f
-                      + amount * noise + 0.003f;
+                p.image[((size_t)c * (size_t)height + (size_t)y) * (size_t)width + (size_t)x] =
+                    (float)p.truth[((size_t)y * (size_t)width + (size_t)x) * 3 + (size_t)c] / 255.0f
+                    + amount * noise + 0.003f;
             }
         }
     }
+    for (size_t i = 0; i < n; i++)
+        p.exact[i] = (double)p.image[i];
+    p.reference = (ref_picture){ width, height, p.exact, p.truth };
     return p;
 }
 
@@ -55,92 +63,46 @@ static void drop(picture *p)
 {
     free(p->image);
     free(p->gradient);
+    free(p->exact);
     free(p->truth);
 }
 
-static size_t index_of(const picture *p, int c, int y, int x)
-{
-    return ((size_t)c * (size_t)p->height + (size_t)y) * (size_t)p->width + (size_t)x;
-}
-
-static double truth_at(const picture *p, int c, int y, int x)
-{
-    return p->truth[((size_t)y * (size_t)p->width + (size_t)x) * 3 + (size_t)c] / 255.0;
-}
-
-/* SSIM at one pixel by the definition; delta is added to the image at (cy, cx). */
-static double ssim_at(const picture *p, int c, int y, int x, int cy, int cx, double delta)
-{
-    double weight = 0.0, mx = 0.0, my = 0.0, xx = 0.0, yy = 0.0, xy = 0.0;
-
-    for (int i = -RADIUS; i <= RADIUS; i++) {
-        for (int k = -RADIUS; k <= RADIUS; k++) {
-            const double g = exp(-(i * i + k * k) / (2.0 * 1.5 * 1.5));
-            const int r = y + i, s = x + k;
-
-            weight += g;
-            if (r < 0 || s < 0 || r >= p->height || s >= p->width)
-                continue;
-            const double a = (double)p->image[index_of(p, c, r, s)] + (r == cy && s == cx ? delta : 0.0);
-            const double b = truth_at(p, c, r, s);
-
-            mx += g * a;
-            my += g * b;
-            xx += g * a * a;
-            yy += g * b * b;
-            xy += g * a * b;
-        }
-    }
-    mx /= weight;
-    my /= weight;
-    const double vx = xx / weight - mx * mx, vy = yy / weight - my * my, cov = xy / weight - mx * my;
-
-    return (2.0 * mx * my + 1e-4) * (2.0 * cov + 9e-4) / ((mx * mx + my * my + 1e-4) * (vx + vy + 9e-4));
-}
-
 /* The part of L that depends on the image at (c, y, x), times the number of values. */
-static double local_loss(const picture *p, double w, int c, int y, int x, double delta)
+static double local_loss(const ref_picture *p, double w, int c, int y, int x, double delta)
 {
-    double loss = (1.0 - w) * fabs((double)p->image[index_of(p, c, y, x)] + delta - truth_at(p, c, y, x));
+    double loss = (1.0 - w) * ref_absolute(p, c, y, x, delta);
 
-    for (int r = y - RADIUS; r <= y + RADIUS; r++)
-        for (int s = x - RADIUS; s <= x + RADIUS; s++)
+    for (int r = y - REF_RADIUS; r <= y + REF_RADIUS; r++)
+        for (int s = x - REF_RADIUS; s <= x + REF_RADIUS; s++)
             if (r >= 0 && s >= 0 && r < p->height && s < p->width)
-                loss -= w * ssim_at(p, c, r, s, y, x, delta);
+                loss -= w * ref_ssim(p, c, r, s, y, x, delta);
     return loss;
 }
 
 static void check_gradient(const picture *p, double w, int c, int y, int x)
 {
+    const ref_picture *ref = &p->reference;
     const double h = 1e-4, count = 3.0 * p->width * p->height;
-    const double want = (local_loss(p, w, c, y, x, h) - local_loss(p, w, c, y, x, -h)) / (2.0 * h);
-    const double got = (double)p->gradient[index_of(p, c, y, x)] * count;
+    const double want = (local_loss(ref, w, c, y, x, h) - local_loss(ref, w, c, y, x, -h)) / (2.0 * h);
+    const double got = (double)p->gradient[ref_pixel(ref, c, y, x)] * count;
 
-    if (fabs((double)p->image[index_of(p, c, y, x)] - truth_at(p, c, y, x)) < 2.0 * h)
+    if (ref_absolute(ref, c, y, x, 0.0) < 2.0 * h)
         return;                         /* at the corner of |.| */
     assert_true(fabs(got - want) < 2e-3 * (1.0 + fabs(want)));
 }
 
 static void check_values(const picture *p, double w, double loss, double l1, double ssim)
 {
-    double want_l1 = 0.0, want_ssim = 0.0;
+    double want_l1, want_ssim;
+    const double want = ref_distortion(&p->reference, w, &want_l1, &want_ssim);
 
-    for (int c = 0; c < 3; c++) {
-        for (int y = 0; y < p->height; y++) {
-            for (int x = 0; x < p->width; x++) {
-                want_l1 += fabs((double)p->image[index_of(p, c, y, x)] - truth_at(p, c, y, x));
-                want_ssim += ssim_at(p, c, y, x, -1, -1, 0.0);
-            }
-        }
-    }
-    want_l1 /= 3.0 * p->width * p->height;
-    want_ssim /= 3.0 * p->width * p->height;
     assert_true(fabs(l1 - want_l1) < 1e-6);
     assert_true(fabs(ssim - want_ssim) < 1e-5);
-    assert_true(fabs(loss - ((1.0 - w) * want_l1 + w * (1.0 - want_ssim))) < 1e-5);
+    assert_true(fabs(loss - want) < 1e-5);
 }
 
-/* Sizes: smaller than the window, odd, across tiles (128 columns) and bands (64 rows). One workspace for all. */
+/* Sizes: smaller than the window, odd, across tiles (128 columns) and bands (64 rows). One
+ * workspace for all. */
 static void test_reference(void **state)
 {
     static const int size[][2] = { { 1, 1 }, { 7, 4 }, { 33, 21 }, { 150, 70 }, { 128, 64 } };
@@ -151,11 +113,13 @@ static void test_reference(void **state)
         const float weight = i == 0 ? 1.0f : 0.2f;
         picture p = make(size[i][0], size[i][1]);
         double l1, ssim;
-        const double loss = ted4_loss(w, p.image, p.truth, p.width, p.height, weight, NULL, p.gradient, &l1, &ssim);
+        const double loss =
+            ted4_loss(w, p.image, p.truth, p.width, p.height, weight, NULL, p.gradient, &l1, &ssim);
 
         check_values(&p, (double)weight, loss, l1, ssim);
         for (int k = 0; k < 120; k++)
-            check_gradient(&p, (double)weight, k % 3, (int)draw() % p.height, (int)draw() % p.width);
+            check_gradient(&p, (double)weight, k % 3, (int)draw() % p.height,
+                           (int)draw() % p.width);
         for (int y = 60; y < 68 && y < p.height; y++)
             for (int x = 122; x < 134 && x < p.width; x += 3)
                 check_gradient(&p, (double)weight, 1, y, x);
@@ -214,7 +178,9 @@ static void test_threads(void **state)
     for (int i = 0; i < 2; i++) {
         double l1_again, ssim_again;
 
-        assert_true(ted4_loss(w, p.image, p.truth, 200, 150, 0.2f, &how[i], p.gradient, &l1_again, &ssim_again) == loss);
+        assert_true(ted4_loss(w, p.image, p.truth, 200, 150, 0.2f, &how[i], p.gradient, &l1_again,
+                              &ssim_again)
+                    == loss);
         assert_true(l1 == l1_again && ssim == ssim_again);
         assert_memory_equal(first, p.gradient, size);
     }

@@ -1,4 +1,5 @@
-/* test_metrics.c - eval/metrics.h: cases that can be worked out by hand, and slow implementations straight from the definitions.
+/* test_metrics.c - eval/metrics.h: cases that can be worked out by hand, and slow implementations
+ * straight from the definitions.
  * SPDX-License-Identifier: BSD-2-Clause */
 #include <setjmp.h>
 #include <stdarg.h>
@@ -36,7 +37,9 @@ static uint8_t *pattern(int width, int height, uint32_t noise)
     for (int y = 0; y < height; y++)
         for (int x = 0; x < width; x++)
             for (int c = 0; c < 3; c++)
-                v[(y * width + x) * 3 + c] = (uint8_t)(90.0 + 60.0 * sin(0.1 * x * (c + 1)) * cos(0.07 * y) + draw() % noise);
+                v[(y * width + x) * 3 + c] =
+                    (uint8_t)(90.0 + 60.0 * sin(0.1 * x * (c + 1)) * cos(0.07 * y)
+                              + draw() % noise);
     return v;
 }
 
@@ -59,7 +62,8 @@ static void test_psnr(void **state)
     free(b);
 }
 
-/* Between two constants covariances vanish away from the border, and what is left is the luminance term. */
+/* Between two constants covariances vanish away from the border, and what is left is the luminance
+ * term. */
 static void test_constants(void **state)
 {
     const double x = 100.0 / 255.0, y = 160.0 / 255.0;
@@ -70,7 +74,8 @@ static void test_constants(void **state)
     assert_int_equal(ted4_metrics_compare(a, b, 200, 190, NULL, &m), 0);
     assert_true(fabs(m.ssim2 - (2.0 * x * y + 4e-4) / (x * x + y * y + 4e-4)) < 1e-12);
     assert_int_equal(m.scales, 5);
-    /* 200 x 190 halves to 100 x 95 -> 50 x 48: the odd 95 brings in a row of half values, so only the first scales are flat. */
+    /* 200 x 190 halves to 100 x 95 -> 50 x 48: the odd 95 brings in a row of half values, so only
+     * the first scales are flat. */
     assert_true(m.ms_ssim < 1.0 && m.ms_ssim > 0.5);
     free(a);
     free(b);
@@ -78,7 +83,9 @@ static void test_constants(void **state)
     a = constant(176, 176, 100);
     b = constant(176, 176, 160);
     assert_int_equal(ted4_metrics_compare(a, b, 176, 176, NULL, &m), 0);
-    assert_true(fabs(m.ms_ssim - pow((2.0 * x * y + 1e-4) / (x * x + y * y + 1e-4), 0.1333 / 1.0001)) < 1e-9);
+    assert_true(
+        fabs(m.ms_ssim - pow((2.0 * x * y + 1e-4) / (x * x + y * y + 1e-4), 0.1333 / 1.0001))
+        < 1e-9);
     free(a);
     free(b);
 }
@@ -88,9 +95,11 @@ static void test_constants(void **state)
 typedef struct { double ssim, contrast; } similarity;
 
 /* Window of 2 half + 1 pixels; sigma 0: uniform. Pixels outside count as zero. */
-static similarity window_at(const double *a, const double *b, int w, int h, int x, int y, int half, double sigma, double range)
+static similarity window_at(const double *a, const double *b, int w, int h, int x, int y, int half,
+                            double sigma, double range)
 {
-    const double n = (2.0 * half + 1.0) * (2.0 * half + 1.0), fix = sigma > 0.0 ? 1.0 : n / (n - 1.0);
+    const double n = (2.0 * half + 1.0) * (2.0 * half + 1.0),
+                 fix = sigma > 0.0 ? 1.0 : n / (n - 1.0);
     const double c1 = pow(0.01 * range, 2.0), c2 = pow(0.03 * range, 2.0);
     double total = 0.0, ma = 0.0, mb = 0.0, aa = 0.0, bb = 0.0, ab = 0.0;
 
@@ -98,7 +107,8 @@ static similarity window_at(const double *a, const double *b, int w, int h, int 
         for (int k = -half; k <= half; k++) {
             const double g = sigma > 0.0 ? exp(-(i * i + k * k) / (2.0 * sigma * sigma)) : 1.0;
             const int in = y + i >= 0 && x + k >= 0 && y + i < h && x + k < w;
-            const double p = in ? a[(y + i) * w + x + k] : 0.0, q = in ? b[(y + i) * w + x + k] : 0.0;
+            const double p = in ? a[(y + i) * w + x + k] : 0.0,
+                         q = in ? b[(y + i) * w + x + k] : 0.0;
 
             total += g;
             ma += g * p;
@@ -118,7 +128,8 @@ static similarity window_at(const double *a, const double *b, int w, int h, int 
     return (similarity){ cs * (2.0 * ma * mb + c1) / (ma * ma + mb * mb + c1), cs };
 }
 
-static similarity mean_over(const double *a, const double *b, int w, int h, int margin, int half, double sigma, double range)
+static similarity mean_over(const double *a, const double *b, int w, int h, int margin, int half,
+                            double sigma, double range)
 {
     similarity sum = { 0.0, 0.0 };
 
@@ -244,8 +255,10 @@ static void test_threads(void **state)
     assert_int_equal(ted4_metrics_compare(a, b, 90, 77, NULL, &one), 0);
     assert_int_equal(ted4_metrics_compare(a, b, 90, 77, &p, &three), 0);
     assert_int_equal(ted4_metrics_compare(b, a, 90, 77, &p, &swapped), 0);
-    assert_true(one.psnr == three.psnr && one.ssim == three.ssim && one.ssim2 == three.ssim2 && one.ms_ssim == three.ms_ssim);
-    assert_true(one.psnr == swapped.psnr && fabs(one.ssim - swapped.ssim) < 1e-12 && fabs(one.ms_ssim - swapped.ms_ssim) < 1e-12);
+    assert_true(one.psnr == three.psnr && one.ssim == three.ssim && one.ssim2 == three.ssim2
+                && one.ms_ssim == three.ms_ssim);
+    assert_true(one.psnr == swapped.psnr && fabs(one.ssim - swapped.ssim) < 1e-12
+                && fabs(one.ms_ssim - swapped.ms_ssim) < 1e-12);
     free(a);
     free(b);
 }

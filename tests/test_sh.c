@@ -1,4 +1,5 @@
-/* test_sh.c - tool/sh.h: the basis against Legendre functions, fits of colours with known coefficients.
+/* test_sh.c - tool/sh.h: the basis against Legendre functions, fits of colours with known
+ * coefficients.
  * The programs' helpers are in no library, so the source is part of this file.
  * SPDX-License-Identifier: BSD-2-Clause */
 #include <setjmp.h>
@@ -97,7 +98,9 @@ static double harmonic(int l, int m, const double d[3])
 {
     const double pi = 3.14159265358979323846, phi = atan2(d[1], d[0]);
     const int a = abs(m);
-    const double scale = sqrt((2.0 * l + 1.0) / (4.0 * pi) * tgamma(l - a + 1.0) / tgamma(l + a + 1.0)) * legendre(l, a, d[2]);
+    const double scale =
+        sqrt((2.0 * l + 1.0) / (4.0 * pi) * tgamma(l - a + 1.0) / tgamma(l + a + 1.0))
+        * legendre(l, a, d[2]);
 
     return m == 0 ? scale : sqrt(2.0) * scale * (m < 0 ? sin(a * phi) : cos(a * phi));
 }

@@ -1,4 +1,5 @@
-/* test_tools.c - ted4dec and ted4eval as programs: verdicts and exit codes, hashes, exports, pictures, quality of a scene that is known.
+/* test_tools.c - ted4dec and ted4eval as programs: verdicts and exit codes, hashes, exports,
+ * pictures, quality of a scene that is known.
  * Looks for them in $TED4_BUILD (set by tests/run.sh); skips when that is not set.
  * SPDX-License-Identifier: BSD-2-Clause */
 #include <setjmp.h>
@@ -41,7 +42,8 @@ static int run(const char *format, ...)
 {
     char command[8192];
     va_list ap;
-    int n = snprintf(command, sizeof command, "cd %s && PATH=%s:$PATH && exec 2>err && ", folder, build);
+    int n = snprintf(command, sizeof command, "cd %s && PATH=%s:$PATH && exec 2>err && ", folder,
+                     build);
 
     va_start(ap, format);
     n += vsnprintf(command + n, sizeof command - (size_t)n, format, ap);
@@ -92,7 +94,8 @@ static int exists(const char *name)
     return access(path, F_OK) == 0;
 }
 
-/* The first random scene with that view input and a few frames, as vN.ted4, and opened by the library. */
+/* The first random scene with that view input and a few frames, as vN.ted4, and opened by the
+ * library. */
 static void make_file(int view)
 {
     for (uint64_t seed = 0; seed < 1000; seed++) {
@@ -102,7 +105,8 @@ static void make_file(int view)
         char name[16];
 
         assert_non_null(s);
-        if (s->head.view != view || s->head.n_anchors < 50 || s->head.frames < 3 || s->head.frames > 60 || abs(s->head.exponent) > 12) {
+        if (s->head.view != view || s->head.n_anchors < 50 || s->head.frames < 3
+            || s->head.frames > 60 || abs(s->head.exponent) > 12) {
             ted4_scene_free(s);
             continue;
         }
@@ -184,12 +188,23 @@ static void test_verdicts(void **state)
 
 static void test_usage(void **state)
 {
-    static const char *const wrong[] = {
-        "", "v1.ted4 v0.ted4", "v1.ted4 --nothing", "v1.ted4 -o", "v1.ted4 -o a.doc", "v1.ted4 -o a%%s.ply", "v1.ted4 -o a.ply", "v1.ted4 --frames 0:999",
-        "v1.ted4 --frames 1 --time 0", "v1.ted4 --time 1.5", "v1.ted4 --render a.png", "v1.ted4 --sh-degree 4", "v1.ted4 -j x",
-        "v1.ted4 --test -o a.ply --time 0", "v1.ted4 --camera-centre 1,2", "v1.ted4 -o missing/a.ply --time 0",
-        "v1.ted4 --render a.png --camera v1.ted4"
-    };
+    static const char *const wrong[] = { "",
+                                         "v1.ted4 v0.ted4",
+                                         "v1.ted4 --nothing",
+                                         "v1.ted4 -o",
+                                         "v1.ted4 -o a.doc",
+                                         "v1.ted4 -o a%%s.ply",
+                                         "v1.ted4 -o a.ply",
+                                         "v1.ted4 --frames 0:999",
+                                         "v1.ted4 --frames 1 --time 0",
+                                         "v1.ted4 --time 1.5",
+                                         "v1.ted4 --render a.png",
+                                         "v1.ted4 --sh-degree 4",
+                                         "v1.ted4 -j x",
+                                         "v1.ted4 --test -o a.ply --time 0",
+                                         "v1.ted4 --camera-centre 1,2",
+                                         "v1.ted4 -o missing/a.ply --time 0",
+                                         "v1.ted4 --render a.png --camera v1.ted4" };
 
     (void)state;
     need_programs();
@@ -206,7 +221,10 @@ static void test_hash(void **state)
         char want[128], hash[33];
         size_t size;
 
-        assert_int_equal(run("ted4dec v%d.ted4 -o all%d.raw --keep-all --time 1/3 --camera-centre 1,-2,0.5", view, view), view == 2 ? 2 : 0);
+        assert_int_equal(
+            run("ted4dec v%d.ted4 -o all%d.raw --keep-all --time 1/3 --camera-centre 1,-2,0.5",
+                view, view),
+            view == 2 ? 2 : 0);
         snprintf(want, sizeof want, "all%d.raw", view);
         uint8_t *const data = contents(want, &size);
 
@@ -217,7 +235,8 @@ static void test_hash(void **state)
         for (int i = 0; i < 16; i++)
             snprintf(hash + 2 * i, 3, "%02x", c.digest[i]);
         snprintf(want, sizeof want, "query 1/3 1,-2,0.5 %s\n", hash);
-        assert_int_equal(run("ted4dec v%d.ted4 --hash --time 1/3 --camera-centre 1,-2,0.5", view), 0);
+        assert_int_equal(run("ted4dec v%d.ted4 --hash --time 1/3 --camera-centre 1,-2,0.5", view),
+                         0);
         assert_non_null(strstr(out, want));
         for (int i = 0; i < 16; i++)
             snprintf(hash + 2 * i, 3, "%02x", file[view].info.hash[i]);
@@ -232,7 +251,7 @@ static void test_frames(void **state)
     need_programs();
     assert_int_equal(run("ted4dec v1.ted4 -o f_%%03d.splat --frames 0:3:2"), 0);
     assert_true(exists("f_000.splat") && exists("f_002.splat") && !exists("f_001.splat"));
-    assert_int_equal(run("ted4dec v1.ted4 -o f_%%03d.splat --frames 1:3"), 3);     /* frame 2 is there */
+    assert_int_equal(run("ted4dec v1.ted4 -o f_%%03d.splat --frames 1:3"), 3); /* 2 is there */
     assert_false(exists("f_001.splat"));
     assert_int_equal(run("ted4dec v1.ted4 -o f_%%03d.splat --frames 1:3 -f"), 0);
     assert_true(exists("f_001.splat"));
@@ -248,7 +267,8 @@ static float float_at(const uint8_t *p)
     return v;
 }
 
-/* Fitted spherical harmonics, in some direction, against colours decoded for a camera far away in that direction. */
+/* Fitted spherical harmonics, in some direction, against colours decoded for a camera far away in
+ * that direction. */
 static void test_fitted_colours(void **state)
 {
     const ted4_info *const info = &file[1].info;
@@ -261,7 +281,10 @@ static void test_fitted_colours(void **state)
     for (int c = 0; c < 3; c++)
         far[c] = (double)info->origin[c] - ldexp(d[c], 18 + info->exponent);
     assert_int_equal(run("ted4dec v1.ted4 -o fit.ply --sh-degree 3 --keep-all --time 0"), 0);
-    assert_int_equal(run("ted4dec v1.ted4 -o far.raw --keep-all --time 0 --camera-centre %.9g,%.9g,%.9g", far[0], far[1], far[2]), 0);
+    assert_int_equal(
+        run("ted4dec v1.ted4 -o far.raw --keep-all --time 0 --camera-centre %.9g,%.9g,%.9g", far[0],
+            far[1], far[2]),
+        0);
     uint8_t *const ply = contents("fit.ply", &size);
     const uint8_t *const values = (const uint8_t *)strstr((const char *)ply, "end_header\n") + 11;
 
@@ -293,15 +316,18 @@ static void test_fitted_colours(void **state)
 static void camera_make(const ted4_info *info, int i, ted4_view *v, double centre[3])
 {
     static const float R[VIEWS][9] = {
-        { 1, 0, 0, 0, 1, 0, 0, 0, 1 }, { 0, 0, 1, 0, 1, 0, -1, 0, 0 }, { -1, 0, 0, 0, 1, 0, 0, 0, -1 }
+        { 1, 0, 0, 0, 1, 0, 0, 0, 1 },
+        { 0, 0, 1, 0, 1, 0, -1, 0, 0 },
+        { -1, 0, 0, 0, 1, 0, 0, 0, -1 },
     };
     double t[3] = { 0.0, 0.0, 0.0 };
 
-    *v = (ted4_view){ .width = WIDTH, .height = HEIGHT, .fx = 80.0f, .fy = 80.0f, .cx = 48.0f, .cy = 32.0f };
+    *v = (ted4_view){ .width = WIDTH, .height = HEIGHT, .fx = 80, .fy = 80, .cx = 48, .cy = 32 };
     memcpy(v->R, R[i], sizeof v->R);
     for (int k = 0; k < 3; k++) {
         /* As a float, so that text files carry it exactly. */
-        centre[k] = (double)(float)((double)info->origin[k] - ldexp(2.5 * (double)R[i][6 + k], info->exponent));
+        centre[k] = (double)(float)((double)info->origin[k]
+                                    - ldexp(2.5 * (double)R[i][6 + k], info->exponent));
         for (int r = 0; r < 3; r++)
             t[r] -= (double)R[i][3 * r + k] * centre[k];
     }
@@ -336,7 +362,9 @@ static uint8_t *drawn(int i)
 
     assert_true(rgb != NULL && viewer != NULL);
     camera_make(&file[1].info, i, &v, centre);
-    assert_int_equal(ted4_render_query(viewer, file[1].recon, &file[1].info, (uint32_t)i, VIEWS - 1, &v, NULL, rgb), TED4_OK);
+    assert_int_equal(ted4_render_query(viewer, file[1].recon, &file[1].info, (uint32_t)i, VIEWS - 1,
+                                       &v, NULL, rgb),
+                     TED4_OK);
     ted4_viewer_free(viewer);
     return rgb;
 }
@@ -355,9 +383,11 @@ static void test_render(void **state)
 
         camera_make(&file[1].info, i, &v, centre);
         snprintf(time, sizeof time, "%d/%d", i, VIEWS - 1);
-        json_array_append_new(list, json_pack("{s:i, s:i, s:f, s:f, s:f, s:f, s:o, s:o, s:s}", "width", v.width, "height", v.height,
-                                              "fx", (double)v.fx, "fy", (double)v.fy, "cx", (double)v.cx, "cy", (double)v.cy,
-                                              "R", numbers(v.R, 9), "t", numbers(v.t, 3), "time", time));
+        json_array_append_new(list,
+                              json_pack("{s:i, s:i, s:f, s:f, s:f, s:f, s:o, s:o, s:s}", "width",
+                                        v.width, "height", v.height, "fx", (double)v.fx, "fy",
+                                        (double)v.fy, "cx", (double)v.cx, "cy", (double)v.cy, "R",
+                                        numbers(v.R, 9), "t", numbers(v.t, 3), "time", time));
     }
     save(list, "cameras.json");
     assert_int_equal(run("ted4dec v1.ted4 --render view_%%d.png --camera cameras.json"), 0);
@@ -395,12 +425,16 @@ static void write_scene_file(const char *name)
 
         camera_make(&file[1].info, i, &v, centre);
         for (int r = 0; r < 3; r++)     /* columns right, up, backward, centre */
-            json_array_append_new(rows, json_pack("[f,f,f,f]", (double)v.R[r], -(double)v.R[3 + r], -(double)v.R[6 + r], centre[r]));
+            json_array_append_new(rows, json_pack("[f,f,f,f]", (double)v.R[r], -(double)v.R[3 + r],
+                                                  -(double)v.R[6 + r], centre[r]));
         json_array_append_new(rows, json_pack("[f,f,f,f]", 0.0, 0.0, 0.0, 1.0));
         snprintf(picture, sizeof picture, "p%d.png", i);
-        json_array_append_new(frames, json_pack("{s:s, s:f, s:o}", "file_path", picture, "time", i / (VIEWS - 1.0), "transform_matrix", rows));
+        json_array_append_new(frames, json_pack("{s:s, s:f, s:o}", "file_path", picture, "time",
+                                                i / (VIEWS - 1.0), "transform_matrix", rows));
     }
-    save(json_pack("{s:f, s:f, s:f, s:f, s:i, s:i, s:o}", "fl_x", 80.0, "fl_y", 80.0, "cx", 48.0, "cy", 32.0, "w", WIDTH, "h", HEIGHT, "frames", frames), name);
+    save(json_pack("{s:f, s:f, s:f, s:f, s:i, s:i, s:o}", "fl_x", 80.0, "fl_y", 80.0, "cx", 48.0,
+                   "cy", 32.0, "w", WIDTH, "h", HEIGHT, "frames", frames),
+         name);
 }
 
 static double result(const char *key)
@@ -450,8 +484,10 @@ static void test_eval(void **state)
     path_of(path, "sheet.png");
     assert_int_equal(ted4_image_size(path, &w, &h, &m), 0);
     assert_true(w == 3 * WIDTH && h == 3 * HEIGHT);
-    assert_true(exists("pictures/truth/00002.png") && exists("pictures/ours/00002.png") && exists("pictures/error/00002.png"));
-    assert_int_equal(run("ted4eval v1.ted4 scene --split train --sheet sheet.png"), 3);        /* the sheet is there */
+    assert_true(exists("pictures/truth/00002.png") && exists("pictures/ours/00002.png")
+                && exists("pictures/error/00002.png"));
+    /* The sheet is there by now. */
+    assert_int_equal(run("ted4eval v1.ted4 scene --split train --sheet sheet.png"), 3);
     assert_int_equal(run("ted4eval v1.ted4 scene --split train --sheet sheet.png -f"), 0);
     assert_non_null(strstr(out, "psnr"));
     assert_int_equal(run("ted4eval bad.ted4 scene"), 1);

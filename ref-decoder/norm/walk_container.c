@@ -4,6 +4,7 @@
 #include "norm/coder.h"
 
 #include <string.h>
+#include "base/bytes.h"
 #include "norm/limits.h"
 
 const char ted4_chunk_type[TED4_CHUNKS][5] = {
@@ -41,8 +42,7 @@ void ted4_walk_frame(ted4_coder *c, ted4_frame *f)
     const size_t at = c->pos;
 
     c->ops->array(c, 1, f->type, sizeof f->type);
-    for (int i = 0; i < 4; i++)
-        ted4_trace(c, at + (size_t)i, "chunk_type", i, f->type[i]);
+    ted4_trace(c, at, "chunk_type", 0, ted4_load32(f->type));
     f->flags = ted4_code(c, "chunk_flags", 0, 4, f->flags);
     f->size = ted4_code(c, "chunk_size", 0, 4, f->size);
 }

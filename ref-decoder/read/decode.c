@@ -228,9 +228,8 @@ static void read_payloads(decoder *d)
         const ted4_chunk_place p = ted4_container_next(&d->file);
 
         read_chunk(d, &p);
-        for (int i = 0; i < TED4_FRAME_HASH_SIZE; i++)
-            ted4_trace(c, p.end + (size_t)i, "chunk_hash", i,
-                       d->file.data[p.end + (size_t)i]);
+        ted4_trace(c, p.end, "chunk_hash", 0,
+                   (int64_t)ted4_load64(d->file.data + p.end));
     }
     for (unsigned i = 0; i < d->n_room; i++)
         ted4_arena_release(&d->s->arena, d->jobs[i].work);

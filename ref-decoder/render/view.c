@@ -77,8 +77,9 @@ static void round_row(void *arg, size_t row)
     }
 }
 
-ted4_status ted4_render_query(ted4_viewer *v, ted4_recon *r, const ted4_info *info, uint32_t num, uint32_t den, const ted4_view *camera,
-                              const ted4_parallel *p, uint8_t *rgb)
+ted4_status ted4_render_query(ted4_viewer *v, ted4_recon *r, const ted4_info *info, uint32_t num,
+                              uint32_t den, const ted4_view *camera, const ted4_parallel *p,
+                              uint8_t *rgb)
 {
     const size_t plane = (size_t)camera->width * (size_t)camera->height;
     ted4_view view = *camera;
@@ -98,7 +99,8 @@ ted4_status ted4_render_query(ted4_viewer *v, ted4_recon *r, const ted4_info *in
 
     const ted4_splats s = {
         g.n, { g.mean[0], g.mean[1], g.mean[2] }, { g.scale[0], g.scale[1], g.scale[2] },
-        { g.rot[0], g.rot[1], g.rot[2], g.rot[3] }, g.opacity, { g.colour[0], g.colour[1], g.colour[2] }
+        { g.rot[0], g.rot[1], g.rot[2], g.rot[3] }, g.opacity,
+        { g.colour[0], g.colour[1], g.colour[2] }
     };
 
     if (ted4_raster_forward(v->raster, &s, &view, p, 0, v->image) != 0)

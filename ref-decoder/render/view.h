@@ -16,7 +16,8 @@ typedef struct ted4_viewer ted4_viewer;
 ted4_viewer *ted4_viewer_new(void);             /* NULL: no memory */
 void         ted4_viewer_free(ted4_viewer *v);  /* NULL is fine */
 
-/* Time num / den through camera; its near_z and background are not looked at: they follow from info. rgb: [height][width][3], colours
+/* Time num / den through camera; its near_z and background are not looked at: they follow from
+ * info. rgb: [height][width][3], colours
  * clamped to [0, 1] and rounded. TED4_OK, what ted4_recon_query says, or TED4_E_LIMIT_MEMORY. */
 ted4_status ted4_render_query(ted4_viewer *v, ted4_recon *r,
                               const ted4_info *info, uint32_t num, uint32_t den,

@@ -34,7 +34,8 @@ typedef struct {
     int                  warned;
 } ted4_session;
 
-/* Are the frames asked for in the file, and is every output free? To be called before anything is written. */
+/* Are the frames asked for in the file, and is every output free? To be called before anything is
+ * written. */
 int ted4_action_check(const ted4_session *s);
 
 int ted4_action_hash(ted4_session *s);

@@ -18,7 +18,8 @@ static void make_getopt(const ted4_command *c, struct option *longs, char *lette
     for (int i = 0; i < c->n; i++) {
         const ted4_argument *const a = &c->table[i];
 
-        longs[i] = (struct option){ a->name, a->value != NULL ? required_argument : no_argument, NULL, FIRST_LONG + i };
+        longs[i] = (struct option){ a->name, a->value != NULL ? required_argument : no_argument,
+                                    NULL, FIRST_LONG + i };
         if (a->letter != 0) {
             *p++ = (char)a->letter;
             if (a->value != NULL)
@@ -61,7 +62,8 @@ void ted4_arguments_help(const ted4_command *c, FILE *f)
     fprintf(f, "Usage: %s %s\n%s\n\n", c->program, c->usage, c->text);
     for (int i = 0; i < c->n; i++) {
         const ted4_argument *const a = &c->table[i];
-        const char *const gap = a->value != NULL ? " " : "", *const value = a->value != NULL ? a->value : "";
+        const char *const gap = a->value != NULL ? " " : "";
+        const char *const value = a->value != NULL ? a->value : "";
         const int width = (int)(strlen(a->name) + strlen(gap) + strlen(value));
 
         if (a->letter != 0)

@@ -1,4 +1,5 @@
-/* arguments.h - command lines from one table: parsing (getopt_long) and the help text are made from the same lines.
+/* arguments.h - command lines from one table: parsing (getopt_long) and the help text are made from
+ * the same lines.
  * Used by the programs.
  * SPDX-License-Identifier: BSD-2-Clause */
 #ifndef TED4_ARGUMENTS_H
@@ -27,8 +28,10 @@ typedef struct {
 
 enum { TED4_ARGUMENTS_END = -1, TED4_ARGUMENTS_BAD = -2 };
 
-/* Next option of the command line: its place in the table, with *value set (NULL if it takes none); TED4_ARGUMENTS_END: only operands are left,
- * from argv[optind] on; TED4_ARGUMENTS_BAD: unknown option or missing value, already said on stderr. */
+/* Next option of the command line: its place in the table, with *value set (NULL if it takes none);
+ * TED4_ARGUMENTS_END: only operands are left,
+ * from argv[optind] on; TED4_ARGUMENTS_BAD: unknown option or missing value, already said on
+ * stderr. */
 int  ted4_arguments_next(const ted4_command *c, int argc, char **argv, const char **value);
 void ted4_arguments_help(const ted4_command *c, FILE *f);
 

@@ -64,7 +64,8 @@ static int is_rotation(const float R[9])
 
 static int get_time(const json_t *o, ted4_listed_camera *c)
 {
-    const json_t *const frame = json_object_get(o, "frame"), *const time = json_object_get(o, "time");
+    const json_t *const frame = json_object_get(o, "frame");
+    const json_t *const time = json_object_get(o, "time");
 
     if ((frame != NULL) == (time != NULL))
         return 0;
@@ -94,7 +95,8 @@ static const char *get_camera(const json_t *o, ted4_listed_camera *c)
         return "is not an object";
     if (!get_side(o, "width", &v->width) || !get_side(o, "height", &v->height))
         return "needs width and height, whole numbers from 1 to 16384";
-    if (!get_number(o, "fx", &v->fx) || !get_number(o, "fy", &v->fy) || !(v->fx > 0.0f && v->fy > 0.0f))
+    if (!get_number(o, "fx", &v->fx) || !get_number(o, "fy", &v->fy)
+        || !(v->fx > 0.0f && v->fy > 0.0f))
         return "needs fx and fy above 0";
     if (!get_number(o, "cx", &v->cx) || !get_number(o, "cy", &v->cy))
         return "needs cx and cy";

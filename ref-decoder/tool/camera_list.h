@@ -1,6 +1,8 @@
 /* camera_list.h - cameras.json: the views ted4dec is asked to draw.
- * A list of objects with width, height, fx, fy, cx, cy (pixels; centres of pixels at + 0.5), R (9 numbers, row by row) and t (3 numbers) with x_cam = R x + t,
- * axes right, down, forward; and frame (a number) or time (a number in [0, 1], or a string as --time takes it).
+ * A list of objects with width, height, fx, fy, cx, cy (pixels; centres of pixels at + 0.5), R (9
+ * numbers, row by row) and t (3 numbers) with x_cam = R x + t,
+ * axes right, down, forward; and frame (a number) or time (a number in [0, 1], or a string as
+ * --time takes it).
  * Used by ted4dec.
  * SPDX-License-Identifier: BSD-2-Clause */
 #ifndef TED4_CAMERA_LIST_H

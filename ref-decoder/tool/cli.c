@@ -64,16 +64,19 @@ int ted4_report(const char *program, const char *path, const ted4_error *e, int 
 
     if (json) {
         json_t *const name = json_string(path);         /* NULL: not UTF-8 */
-        json_t *const o = json_pack("{s:o, s:s, s:s, s:I, s:s}", "file", name != NULL ? name : json_null(), "verdict", verdict_name(verdict),
-                                    "error", ted4_status_id(e->code), "offset", (json_int_t)e->offset, "text", ted4_status_text(e->code));
+        json_t *const o =
+            json_pack("{s:o, s:s, s:s, s:I, s:s}", "file", name != NULL ? name : json_null(),
+                      "verdict", verdict_name(verdict), "error", ted4_status_id(e->code), "offset",
+                      (json_int_t)e->offset, "text", ted4_status_text(e->code));
 
         json_dumpf(o, stdout, JSON_COMPACT);
         putchar('\n');
         json_decref(o);
     }
-    fprintf(stderr, "%s: %s: byte %zu: %s [%s] (specification %s)\n", program, path, e->offset, ted4_status_text(e->code),
-            ted4_status_id(e->code), ted4_status_section(e->code));
-    return verdict == TED4_INVALID || verdict == TED4_UNSUPPORTED ? TED4_EXIT_REFUSED : TED4_EXIT_TOOL;
+    fprintf(stderr, "%s: %s: byte %zu: %s [%s] (specification %s)\n", program, path, e->offset,
+            ted4_status_text(e->code), ted4_status_id(e->code), ted4_status_section(e->code));
+    return verdict == TED4_INVALID || verdict == TED4_UNSUPPORTED ? TED4_EXIT_REFUSED
+                                                                  : TED4_EXIT_TOOL;
 }
 
 static void run_threads(void *user, size_t n, void (*body)(void *arg, size_t i), void *arg)

@@ -15,11 +15,13 @@ enum { TED4_EXIT_FINE = 0, TED4_EXIT_REFUSED = 1, TED4_EXIT_WARNED = 2, TED4_EXI
 /* A whole file, or standard input when path is "-". malloc'd, to be freed; NULL with errno set. */
 uint8_t *ted4_read_file(const char *path, size_t *size);
 
-/* Says on stderr why path was not decoded: "ted4dec: a.ted4: byte 1234: text [id] (specification 5.1)"; with json also an object on stdout. Returns the
+/* Says on stderr why path was not decoded: "ted4dec: a.ted4: byte 1234: text [id] (specification
+ * 5.1)"; with json also an object on stdout. Returns the
  * exit code of the verdict. */
 int ted4_report(const char *program, const char *path, const ted4_error *e, int json);
 
-/* Fills *p with a parallel-for over OpenMP threads; threads <= 0: one for each core this process may use. */
+/* Fills *p with a parallel-for over OpenMP threads; threads <= 0: one for each core this process
+ * may use. */
 void ted4_cli_parallel(ted4_parallel *p, int threads);
 
 #endif

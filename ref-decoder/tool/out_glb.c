@@ -1,5 +1,7 @@
-/* out_glb.c - binary glTF 2.0 with KHR_gaussian_splatting: one mesh of points, one buffer view an attribute, floats.
- * glTF has +Y up and looks along -Z, our world has Y down and Z forward: positions, rotations and spherical harmonics are turned by 180 degrees
+/* out_glb.c - binary glTF 2.0 with KHR_gaussian_splatting: one mesh of points, one buffer view an
+ * attribute, floats.
+ * glTF has +Y up and looks along -Z, our world has Y down and Z forward: positions, rotations and
+ * spherical harmonics are turned by 180 degrees
  * about X. COLOR_0 is the fallback of viewers that know no splats.
  * SPDX-License-Identifier: BSD-2-Clause */
 #include "export.h"
@@ -73,8 +75,11 @@ static void glb_colour(uint8_t *out, const ted4_frame *x, size_t i, const glb_at
     out[3] = glb_byte((double)x->opacity[i]);
 }
 
-/* Turning by 180 degrees about X changes the signs of y and z, hence of the basis functions odd in them together. */
-static const float SH_SIGN[TED4_SH_MAX_COEFS] = { 1, -1, -1, 1, -1, 1, 1, -1, 1, -1, 1, -1, -1, 1, -1, 1 };
+/* Turning by 180 degrees about X changes the signs of y and z, hence of the basis functions odd in
+ * them together. */
+static const float SH_SIGN[TED4_SH_MAX_COEFS] = {
+    1, -1, -1, 1, -1, 1, 1, -1, 1, -1, 1, -1, -1, 1, -1, 1
+};
 
 static void glb_sh(uint8_t *out, const ted4_frame *x, size_t i, const glb_attribute *a)
 {
@@ -101,7 +106,8 @@ static int list_attributes(glb_attribute *a, int sh_degree)
     for (int l = 0; l <= sh_degree; l++) {
         for (int m = 0; m <= 2 * l; m++, n++) {
             a[n] = (glb_attribute){ "", "VEC3", GLTF_FLOAT, l * l + m, 12, glb_sh };
-            snprintf(a[n].name, sizeof a[n].name, "KHR_gaussian_splatting:SH_DEGREE_%d_COEF_%d", l, m);
+            snprintf(a[n].name, sizeof a[n].name, "KHR_gaussian_splatting:SH_DEGREE_%d_COEF_%d", l,
+                     m);
         }
     }
     return n;
@@ -137,29 +143,33 @@ static void say_bounds(glb_json *j, const ted4_frame *x)
             high[c] = fmaxf(high[c], v);
         }
     }
-    say(j, ",\"min\":[%.9g,%.9g,%.9g],\"max\":[%.9g,%.9g,%.9g]", (double)low[0], (double)low[1], (double)low[2],
-        (double)high[0], (double)high[1], (double)high[2]);
+    say(j, ",\"min\":[%.9g,%.9g,%.9g],\"max\":[%.9g,%.9g,%.9g]", (double)low[0], (double)low[1],
+        (double)low[2], (double)high[0], (double)high[1], (double)high[2]);
 }
 
 static void say_mesh(glb_json *j, const ted4_frame *x, const glb_attribute *a, int n, size_t size)
 {
     size_t at = 0;
 
-    say(j, ",\"extensionsUsed\":[\"KHR_gaussian_splatting\"],\"scenes\":[{\"nodes\":[0]}],\"nodes\":[{\"mesh\":0}]"
+    say(j, ",\"extensionsUsed\":[\"KHR_gaussian_splatting\"]"
+           ",\"scenes\":[{\"nodes\":[0]}],\"nodes\":[{\"mesh\":0}]"
            ",\"meshes\":[{\"primitives\":[{\"mode\":0,\"attributes\":{");
     for (int i = 0; i < n; i++)
         say(j, "%s\"%s\":%d", i == 0 ? "" : ",", a[i].name, i);
-    say(j, "},\"extensions\":{\"KHR_gaussian_splatting\":{\"kernel\":\"ellipse\",\"colorSpace\":\"srgb_rec709_display\","
-           "\"projection\":\"perspective\",\"sortingMethod\":\"cameraDistance\"}}}]}],\"accessors\":[");
+    say(j, "},\"extensions\":{\"KHR_gaussian_splatting\":{\"kernel\":\"ellipse\""
+           ",\"colorSpace\":\"srgb_rec709_display\",\"projection\":\"perspective\""
+           ",\"sortingMethod\":\"cameraDistance\"}}}]}],\"accessors\":[");
     for (int i = 0; i < n; i++) {
-        say(j, "%s{\"bufferView\":%d,\"componentType\":%d,\"count\":%zu,\"type\":\"%s\"", i == 0 ? "" : ",", i, a[i].component, x->n, a[i].type);
+        say(j, "%s{\"bufferView\":%d,\"componentType\":%d,\"count\":%zu,\"type\":\"%s\"",
+            i == 0 ? "" : ",", i, a[i].component, x->n, a[i].type);
         if (i == 0)
             say_bounds(j, x);
         say(j, "%s}", a[i].component == GLTF_BYTE ? ",\"normalized\":true" : "");
     }
     say(j, "],\"bufferViews\":[");
     for (int i = 0; i < n; i++, at += a[i - 1].size * x->n)
-        say(j, "%s{\"buffer\":0,\"byteOffset\":%zu,\"byteLength\":%zu,\"target\":34962}", i == 0 ? "" : ",", at, a[i].size * x->n);
+        say(j, "%s{\"buffer\":0,\"byteOffset\":%zu,\"byteLength\":%zu,\"target\":34962}",
+            i == 0 ? "" : ",", at, a[i].size * x->n);
     say(j, "],\"buffers\":[{\"byteLength\":%zu}]", size);
 }
 
@@ -197,7 +207,8 @@ static int write_glb(FILE *f, const ted4_frame *x)
 
     for (int i = 0; i < n; i++)
         size += a[i].size * x->n;
-    say(&j, "{\"asset\":{\"version\":\"2.0\",\"generator\":\"ted4dec %s\"},\"scene\":0", TED4_VERSION);
+    say(&j, "{\"asset\":{\"version\":\"2.0\",\"generator\":\"ted4dec %s\"},\"scene\":0",
+        TED4_VERSION);
     if (x->n > 0)
         say_mesh(&j, x, a, n, size);
     else
@@ -222,5 +233,6 @@ static int write_glb(FILE *f, const ted4_frame *x)
 }
 
 const ted4_format ted4_format_glb = {
-    ".glb", "binary glTF with KHR_gaussian_splatting, spherical harmonics of --sh-degree; +Y up", TED4_SH_MAX_DEGREE, write_glb
+    ".glb", "binary glTF with KHR_gaussian_splatting, spherical harmonics of --sh-degree; +Y up",
+    TED4_SH_MAX_DEGREE, write_glb
 };

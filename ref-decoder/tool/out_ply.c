@@ -1,5 +1,7 @@
-/* out_ply.c - 3D Gaussian splatting PLY, binary little-endian, with the property order every reader knows. Comments come after the properties: one
- * widespread reader takes line 3 for the vertex count. Normals are zero, and there because that reader wants them.
+/* out_ply.c - 3D Gaussian splatting PLY, binary little-endian, with the property order every reader
+ * knows. Comments come after the properties: one
+ * widespread reader takes line 3 for the vertex count. Normals are zero, and there because that
+ * reader wants them.
  * SPDX-License-Identifier: BSD-2-Clause */
 #include "export.h"
 
@@ -24,7 +26,8 @@ static int write_header(FILE *f, const ted4_frame *x, int n_rest)
         fprintf(f, "property float f_rest_%d\n", i);
     fputs("property float opacity\n"
           "property float scale_0\nproperty float scale_1\nproperty float scale_2\n"
-          "property float rot_0\nproperty float rot_1\nproperty float rot_2\nproperty float rot_3\n", f);
+          "property float rot_0\nproperty float rot_1\n"
+          "property float rot_2\nproperty float rot_3\n", f);
     for (const char *c = x->comment; *c != '\0'; c++) {
         if (c == x->comment || c[-1] == '\n')
             fputs("comment ", f);
@@ -82,5 +85,6 @@ static int write_ply(FILE *f, const ted4_frame *x)
 }
 
 const ted4_format ted4_format_ply = {
-    ".ply", "3D Gaussian splatting PLY, spherical harmonics of --sh-degree", TED4_SH_MAX_DEGREE, write_ply
+    ".ply", "3D Gaussian splatting PLY, spherical harmonics of --sh-degree", TED4_SH_MAX_DEGREE,
+    write_ply
 };

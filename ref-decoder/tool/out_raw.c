@@ -1,4 +1,5 @@
-/* out_raw.c - the records of spec 11.6 as they are: 14 little-endian binary32 each, in order of the file. With every Gaussian kept these are
+/* out_raw.c - the records of spec 11.6 as they are: 14 little-endian binary32 each, in order of the
+ * file. With every Gaussian kept these are
  * the bytes that the hash of a query covers (spec 15.3).
  * SPDX-License-Identifier: BSD-2-Clause */
 #include "export.h"
@@ -20,5 +21,7 @@ static int write_raw(FILE *f, const ted4_frame *x)
 }
 
 const ted4_format ted4_format_raw = {
-    ".raw", "14 little-endian binary32 a Gaussian: position, scale, rotation w x y z, opacity, r g b", -1, write_raw
+    ".raw",
+    "14 little-endian binary32 a Gaussian: position, scale, rotation w x y z, opacity, r g b", -1,
+    write_raw
 };

@@ -1,4 +1,5 @@
-/* out_splat.c - ".splat": 32 bytes a Gaussian, the largest and most opaque first, so that a partial download shows something.
+/* out_splat.c - ".splat": 32 bytes a Gaussian, the largest and most opaque first, so that a partial
+ * download shows something.
  * Position and linear scale as binary32, then r g b a and rotation w x y z (128 + 128 q) as bytes.
  * SPDX-License-Identifier: BSD-2-Clause */
 #include "export.h"
@@ -34,7 +35,8 @@ static void fill_splat(uint8_t out[SPLAT_SIZE], const ted4_frame *x, size_t i)
     for (int c = 0; c < 3; c++) {
         ted4_store32(out + 4 * c, ted4_float_bits(x->mean[c][i]));
         ted4_store32(out + 12 + 4 * c, ted4_float_bits(x->scale[c][i]));
-        out[24 + c] = splat_byte(255.0 * (0.5 + TED4_SH_C0 * (double)x->sh[(i * 3 + (size_t)c) * n_coefs]));
+        out[24 + c] =
+            splat_byte(255.0 * (0.5 + TED4_SH_C0 * (double)x->sh[(i * 3 + (size_t)c) * n_coefs]));
     }
     out[27] = splat_byte(255.0 * (double)x->opacity[i]);
     for (int c = 0; c < 4; c++)
@@ -49,7 +51,9 @@ static int write_splat(FILE *f, const ted4_frame *x)
     if (order == NULL)
         return -1;
     for (size_t i = 0; i < x->n; i++)
-        order[i] = (splat_order){ (double)x->scale[0][i] * x->scale[1][i] * x->scale[2][i] * x->opacity[i], i };
+        order[i] = (splat_order){
+            (double)x->scale[0][i] * x->scale[1][i] * x->scale[2][i] * x->opacity[i], i
+        };
     qsort(order, x->n, sizeof *order, by_weight);
     for (size_t i = 0; i < x->n && r == 0; i++) {
         uint8_t bytes[SPLAT_SIZE];

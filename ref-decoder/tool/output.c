@@ -52,7 +52,8 @@ int ted4_output_close(ted4_output *o)
     return -1;
 }
 
-/* Finds the conversion. Returns the number of percent signs that begin a good one, -1 if any is bad. */
+/* Finds the conversion. Returns the number of percent signs that begin a good one, -1 if any is
+ * bad. */
 static int find_conversion(const char *pattern, size_t *at, size_t *length, int *zero, int *width)
 {
     int found = 0;
@@ -93,7 +94,8 @@ int ted4_pattern_make(char out[TED4_PATH_SIZE], const char *pattern, uint32_t nu
         char digits[16];
 
         snprintf(digits, sizeof digits, zero ? "%0*" PRIu32 : "%*" PRIu32, width, number);
-        n = snprintf(out, TED4_PATH_SIZE, "%.*s%s%s", (int)at, pattern, digits, pattern + at + length);
+        n = snprintf(out, TED4_PATH_SIZE, "%.*s%s%s", (int)at, pattern, digits,
+                     pattern + at + length);
     } else {
         n = snprintf(out, TED4_PATH_SIZE, "%s", pattern);
     }

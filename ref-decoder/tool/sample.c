@@ -1,4 +1,5 @@
-/* sample.c - see sample.h. Colours see the direction from the camera to the anchor. Every anchor sees the same direction from a camera infinitely far away, so a query
+/* sample.c - see sample.h. Colours see the direction from the camera to the anchor. Every anchor
+ * sees the same direction from a camera infinitely far away, so a query
  * with a far camera samples the colour heads of all Gaussians at one direction.
  * SPDX-License-Identifier: BSD-2-Clause */
 #include "sample.h"
@@ -9,7 +10,8 @@
 #include "record.h"
 #include "sh.h"
 
-/* The far camera, in units of normalised space, where anchors lie in [-1, 1]: directions are right to 2^-20. */
+/* The far camera, in units of normalised space, where anchors lie in [-1, 1]: directions are right
+ * to 2^-20. */
 #define FAR_AWAY 0x1p20
 
 enum { VIEW_NONE = 0 };         /* ted4_info.view: spec 6.1 */
@@ -31,7 +33,8 @@ static int sample_direction(void *user, const double direction[3], float *const 
     ted4_gaussians g;
 
     for (int c = 0; c < 3; c++)
-        j->query.camera[c] = (float)((double)info->origin[c] - ldexp(FAR_AWAY * direction[c], info->exponent));
+        j->query.camera[c] =
+            (float)((double)info->origin[c] - ldexp(FAR_AWAY * direction[c], info->exponent));
     j->status = ted4_recon_query(j->sampler->recon, &j->query, j->sampler->parallel, &g);
     if (j->status != TED4_OK)
         return 1;
@@ -41,7 +44,8 @@ static int sample_direction(void *user, const double direction[3], float *const 
     return 0;
 }
 
-static ted4_status fit_colours(const ted4_sampler *s, const ted4_query *q, ted4_sample *out, float *sh)
+static ted4_status fit_colours(const ted4_sampler *s, const ted4_query *q, ted4_sample *out,
+                               float *sh)
 {
     const ted4_frame *const x = &out->frame;
     direction_job j = { s, *q, out->kept, x->n, TED4_OK };
@@ -65,9 +69,10 @@ static void copy_kept(ted4_sample *out, const ted4_gaussians *g)
 {
     const float *const from[TED4_RECORD_FLOATS] = TED4_RECORD_COLUMNS(g);
     const float **const to[TED4_RECORD_FLOATS] = {
-        &out->frame.mean[0], &out->frame.mean[1], &out->frame.mean[2], &out->frame.scale[0], &out->frame.scale[1], &out->frame.scale[2],
-        &out->frame.rot[0], &out->frame.rot[1], &out->frame.rot[2], &out->frame.rot[3], &out->frame.opacity,
-        &out->frame.colour[0], &out->frame.colour[1], &out->frame.colour[2]
+        &out->frame.mean[0],   &out->frame.mean[1],  &out->frame.mean[2], &out->frame.scale[0],
+        &out->frame.scale[1],  &out->frame.scale[2], &out->frame.rot[0],  &out->frame.rot[1],
+        &out->frame.rot[2],    &out->frame.rot[3],   &out->frame.opacity, &out->frame.colour[0],
+        &out->frame.colour[1], &out->frame.colour[2]
     };
     const size_t n = out->frame.n;
 
@@ -80,7 +85,8 @@ static void copy_kept(ted4_sample *out, const ted4_gaussians *g)
     }
 }
 
-static ted4_status sample_kept(const ted4_sampler *s, const ted4_query *q, const ted4_gaussians *g, ted4_sample *out)
+static ted4_status sample_kept(const ted4_sampler *s, const ted4_query *q, const ted4_gaussians *g,
+                               ted4_sample *out)
 {
     const size_t sh_floats = s->sh_degree < 0 ? 0 : 3 * (size_t)ted4_sh_count(s->sh_degree);
     size_t n = 0;

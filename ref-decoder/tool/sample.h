@@ -1,4 +1,5 @@
-/* sample.h - the Gaussians of one time, ready for a format: those worth keeping, with spherical harmonics that stand for
+/* sample.h - the Gaussians of one time, ready for a format: those worth keeping, with spherical
+ * harmonics that stand for
  * view-dependent heads (spec 11.5).
  * Depends on ted4.h, export.h. Used by ted4dec.
  * SPDX-License-Identifier: BSD-2-Clause */
@@ -12,7 +13,7 @@ typedef struct {
     ted4_recon          *recon;
     const ted4_info     *info;
     const ted4_parallel *parallel;
-    float                camera[3];     /* centre at which everything but fitted colours is decoded */
+    float                camera[3];     /* centre for everything but fitted colours */
     int                  sh_degree;     /* -1: no spherical harmonics */
     int                  keep_all;      /* 0: Gaussians under an opacity of 1/255 are left out */
 } ted4_sampler;

@@ -1,4 +1,5 @@
-/* sh.c - see sh.h. The directions are the same for all Gaussians, so the fit is one matrix (the pseudo-inverse of the basis), applied to the
+/* sh.c - see sh.h. The directions are the same for all Gaussians, so the fit is one matrix (the
+ * pseudo-inverse of the basis), applied to the
  * colours direction by direction as they arrive.
  * SPDX-License-Identifier: BSD-2-Clause */
 #include "sh.h"
@@ -9,7 +10,7 @@
 
 enum { N_FIT = 64, N_CHECK = 16 };
 
-/* Normalisation of the basis: for m = 0 sqrt((2 l + 1) / (4 pi)) times what the polynomials leave. */
+/* Orthonormal over the sphere. */
 void ted4_sh_basis(const double d[3], int degree, double *out)
 {
     const double x = d[0], y = d[1], z = d[2], xx = x * x, yy = y * y, zz = z * z;
@@ -33,14 +34,16 @@ void ted4_sh_basis(const double d[3], int degree, double *out)
 static void spiral_direction(int i, int n, double turn, double d[3])
 {
     const double golden = 3.0 - sqrt(5.0), pi = 3.14159265358979323846;
-    const double z = 1.0 - (2.0 * i + 1.0) / n, r = sqrt(1.0 - z * z), angle = pi * (golden * i + turn);
+    const double z = 1.0 - (2.0 * i + 1.0) / n, r = sqrt(1.0 - z * z),
+                 angle = pi * (golden * i + turn);
 
     d[0] = r * cos(angle);
     d[1] = r * sin(angle);
     d[2] = z;
 }
 
-/* Solves a x = b in place for symmetric positive definite a [n][n] (Cholesky); b becomes x, [n][columns]. */
+/* Solves a x = b in place for symmetric positive definite a [n][n] (Cholesky); b becomes x,
+ * [n][columns]. */
 static void solve_positive(int n, double a[][TED4_SH_MAX_COEFS], int columns, double b[][N_FIT])
 {
     for (int i = 0; i < n; i++) {
@@ -86,7 +89,8 @@ static void fit_matrix(int degree, double weight[TED4_SH_MAX_COEFS][N_FIT])
     solve_positive(n, normal, N_FIT, weight);
 }
 
-static void add_direction(int n_coefs, size_t n, double weight[][N_FIT], int i, float *const colour[3], float *sh)
+static void add_direction(int n_coefs, size_t n, double weight[][N_FIT], int i,
+                          float *const colour[3], float *sh)
 {
     float w[TED4_SH_MAX_COEFS];
 
@@ -98,7 +102,8 @@ static void add_direction(int n_coefs, size_t n, double weight[][N_FIT], int i, 
                 sh[k] += w[k] * (colour[c][g] - 0.5f);
 }
 
-static double square_error(int degree, size_t n, const double d[3], float *const colour[3], const float *sh)
+static double square_error(int degree, size_t n, const double d[3], float *const colour[3],
+                           const float *sh)
 {
     const int n_coefs = ted4_sh_count(degree);
     double basis[TED4_SH_MAX_COEFS], sum = 0.0;

@@ -14,8 +14,27 @@
 #include "output.h"
 #include "sh.h"
 
-enum { OPT_OUTPUT, OPT_FRAMES, OPT_TIME, OPT_CENTRE, OPT_SH_DEGREE, OPT_KEEP_ALL, OPT_RENDER, OPT_CAMERA, OPT_HASH, OPT_TEST, OPT_TRACE,
-       OPT_THREADS, OPT_FORCE, OPT_JSON, OPT_QUIET, OPT_VERBOSE, OPT_HELP, OPT_VERSION, N_OPTIONS };
+enum {
+    OPT_OUTPUT,
+    OPT_FRAMES,
+    OPT_TIME,
+    OPT_CENTRE,
+    OPT_SH_DEGREE,
+    OPT_KEEP_ALL,
+    OPT_RENDER,
+    OPT_CAMERA,
+    OPT_HASH,
+    OPT_TEST,
+    OPT_TRACE,
+    OPT_THREADS,
+    OPT_FORCE,
+    OPT_JSON,
+    OPT_QUIET,
+    OPT_VERBOSE,
+    OPT_HELP,
+    OPT_VERSION,
+    N_OPTIONS
+};
 
 enum { MAX_THREADS = 1024 };
 
@@ -41,10 +60,13 @@ static const ted4_argument OPTIONS[N_OPTIONS] = {
 };
 
 static const ted4_command COMMAND = {
-    "ted4dec", "FILE.ted4 [options]        (- reads standard input)",
+    "ted4dec",
+    "FILE.ted4 [options]        (- reads standard input)",
     "Decodes a TED4 file: Gaussians of any time as files for viewers, pictures, hashes.",
-    OPTIONS, N_OPTIONS,
-    "Exit codes: 0 fine, 1 file refused, 2 fine with warnings, 3 usage, input, output or resources.\n"
+    OPTIONS,
+    N_OPTIONS,
+    "Exit codes: 0 fine, 1 file refused, 2 fine with warnings, 3 usage, input, output or "
+    "resources.\n"
 };
 
 static int usage_error(const char *text, const char *value)
@@ -70,7 +92,9 @@ static int set_option(ted4_settings *s, int option, const char *value)
     case OPT_OUTPUT:
         s->output = value;
         s->format = ted4_format_find(value);
-        return s->format == NULL ? usage_error("no such format", value) : ted4_pattern_count(value) < 0 ? usage_error("bad file name", value) : 0;
+        return s->format == NULL               ? usage_error("no such format", value)
+               : ted4_pattern_count(value) < 0 ? usage_error("bad file name", value)
+                                               : 0;
     case OPT_FRAMES:
         s->has_range = 1;
         return ted4_range_parse(value, &s->range) != 0 ? usage_error("--frames", value) : 0;
@@ -78,7 +102,9 @@ static int set_option(ted4_settings *s, int option, const char *value)
         s->has_time = 1;
         return ted4_time_parse(value, &s->time) != 0 ? usage_error("--time", value) : 0;
     case OPT_CENTRE:
-        return ted4_arguments_floats(value, 3, s->centre) != 0 ? usage_error("--camera-centre", value) : 0;
+        return ted4_arguments_floats(value, 3, s->centre) != 0
+                   ? usage_error("--camera-centre", value)
+                   : 0;
     case OPT_SH_DEGREE:
         return set_number("--sh-degree", value, TED4_SH_MAX_DEGREE, &s->sh_degree);
     case OPT_RENDER:
@@ -93,8 +119,9 @@ static int set_option(ted4_settings *s, int option, const char *value)
         break;
     }
     int *const flag[N_OPTIONS] = {
-        [OPT_KEEP_ALL] = &s->keep_all, [OPT_HASH] = &s->hash, [OPT_TEST] = &s->test, [OPT_TRACE] = &s->trace, [OPT_FORCE] = &s->force,
-        [OPT_JSON] = &s->json, [OPT_QUIET] = &s->quiet, [OPT_VERBOSE] = &s->verbose
+        [OPT_KEEP_ALL] = &s->keep_all, [OPT_HASH] = &s->hash,      [OPT_TEST] = &s->test,
+        [OPT_TRACE] = &s->trace,       [OPT_FORCE] = &s->force,    [OPT_JSON] = &s->json,
+        [OPT_QUIET] = &s->quiet,       [OPT_VERBOSE] = &s->verbose
     };
 
     *flag[option] = 1;
@@ -150,7 +177,8 @@ static int parse(ted4_settings *s, int argc, char **argv)
     return code != 0 ? code : -1;
 }
 
-static void print_element(void *user, size_t offset, const char *element, int64_t index, int64_t value)
+static void print_element(void *user, size_t offset, const char *element, int64_t index,
+                          int64_t value)
 {
     (void)user;
     printf("%zu %s[%" PRId64 "] = %" PRId64 "\n", offset, element, index, value);
@@ -168,7 +196,8 @@ static double seconds(void)
 static int open_scene(ted4_session *s)
 {
     const ted4_settings *const set = s->set;
-    const ted4_options options = { .parallel = &s->parallel, .trace = set->trace ? print_element : NULL };
+    const ted4_options options = { .parallel = &s->parallel,
+                                   .trace = set->trace ? print_element : NULL };
     ted4_error e = { TED4_OK, 0 };
     ted4_scene *scene;
     size_t size;
@@ -185,8 +214,11 @@ static int open_scene(ted4_session *s)
     } else {
         ted4_scene_info(scene, &s->info);
         if (set->verbose)
-            fprintf(stderr, "ted4dec: %s: %zu bytes, %" PRIu32 " anchors, %zu Gaussians, %" PRIu32 " frames, decoded in %.1f ms\n", set->input, size,
-                    s->info.n_anchors, s->info.n_gaussians, s->info.frames, 1e3 * (seconds() - start));
+            fprintf(stderr,
+                    "ted4dec: %s: %zu bytes, %" PRIu32 " anchors, %zu Gaussians, %" PRIu32
+                    " frames, decoded in %.1f ms\n",
+                    set->input, size, s->info.n_anchors, s->info.n_gaussians, s->info.frames,
+                    1e3 * (seconds() - start));
         e.code = ted4_recon_new(&s->recon, scene, &options);
         if (e.code != TED4_OK)
             code = ted4_report("ted4dec", set->input, &e, set->json);
@@ -234,7 +266,8 @@ int main(int argc, char **argv)
         return code;
     ted4_cli_parallel(&s.parallel, set.threads);
     s.report = json_object();
-    if (set.cameras != NULL && ted4_camera_list_load(&s.cameras, set.cameras, why, sizeof why) != 0) {
+    if (set.cameras != NULL
+        && ted4_camera_list_load(&s.cameras, set.cameras, why, sizeof why) != 0) {
         fprintf(stderr, "ted4dec: %s: %s\n", set.cameras, why);
         code = TED4_EXIT_TOOL;
     } else {

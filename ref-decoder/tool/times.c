@@ -6,7 +6,8 @@
 
 enum { MAX_DECIMALS = 7, DENOMINATORS = 1 << 24 };
 
-/* Reads decimal digits; returns the place behind them, or NULL when there is none or the number is too large. */
+/* Reads decimal digits; returns the place behind them, or NULL when there is none or the number is
+ * too large. */
 static const char *read_digits(const char *p, uint32_t *out)
 {
     uint64_t v = 0;
@@ -77,7 +78,8 @@ int ted4_time_parse(const char *text, ted4_time *t)
     if (*p != '/')
         return t->num <= 1 ? parse_decimals(p, t) : -1;
     p = read_digits(p + 1, &t->den);
-    return p != NULL && *p == '\0' && t->den >= 1 && t->den < DENOMINATORS && t->num <= t->den ? 0 : -1;
+    return p != NULL && *p == '\0' && t->den >= 1 && t->den < DENOMINATORS && t->num <= t->den ? 0
+                                                                                               : -1;
 }
 
 ted4_time ted4_time_of_frame(uint32_t frame, uint32_t n_frames)

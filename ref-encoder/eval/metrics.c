@@ -1,4 +1,5 @@
-/* metrics.c - see metrics.h. Each channel and each kind of similarity is one task of the parallel-for.
+/* metrics.c - see metrics.h. Each channel and each kind of similarity is one task of the
+ * parallel-for.
  * SPDX-License-Identifier: BSD-2-Clause */
 #include "eval/metrics.h"
 
@@ -36,10 +37,12 @@ static void window_make(double g[TED4_SSIM_WINDOW])
         g[k] /= sum;
 }
 
-/* Row y of a, b, a^2 + b^2, ab filtered down; out[i]: HALF zeros, width values, HALF zeros. Rows outside are zero. */
+/* Row y of a, b, a^2 + b^2, ab filtered down; out[i]: HALF zeros, width values, HALF zeros. Rows
+ * outside are zero. */
 static void filter_down(const pair *p, const double *g, int y, double *const out[4])
 {
-    double *const oa = out[0] + HALF, *const ob = out[1] + HALF, *const os = out[2] + HALF, *const op = out[3] + HALF;
+    double *const oa = out[0] + HALF, *const ob = out[1] + HALF, *const os = out[2] + HALF,
+                  *const op = out[3] + HALF;
 
     for (int i = 0; i < 4; i++)
         memset(out[i], 0, ((size_t)p->width + 2 * HALF) * sizeof(double));
@@ -130,7 +133,8 @@ static int side_halved(int side)
 /* In place: the result is read from later positions than it is written to. */
 static void plane_halve(double *v, int width, int height)
 {
-    const int pad_x = width % 2, pad_y = height % 2, w = side_halved(width), h = side_halved(height);
+    const int pad_x = width % 2, pad_y = height % 2, w = side_halved(width),
+              h = side_halved(height);
 
     for (int y = 0; y < h; y++) {
         for (int x = 0; x < w; x++) {
@@ -179,7 +183,8 @@ static int multi_scale(pair *p, int scales, double *value)
     return 0;
 }
 
-/* From exact integer sums over the window; m aa - a a is m (m - 1) times the sample variance, in units of 1 / 255^2. */
+/* From exact integer sums over the window; m aa - a a is m (m - 1) times the sample variance, in
+ * units of 1 / 255^2. */
 static double box_pixel(int64_t a, int64_t b, int64_t aa, int64_t bb, int64_t ab)
 {
     const double n = TED4_SSIM2_WINDOW * TED4_SSIM2_WINDOW, range = 2.0;
@@ -202,7 +207,8 @@ static void box_down(const job *j, int channel, int y, int32_t *const out[5])
         const size_t row = (size_t)r * (size_t)j->width * CHANNELS + (size_t)channel;
 
         for (int x = 0; x < j->width; x++) {
-            const int32_t a = j->a[row + (size_t)x * CHANNELS], b = j->b[row + (size_t)x * CHANNELS];
+            const int32_t a = j->a[row + (size_t)x * CHANNELS],
+                          b = j->b[row + (size_t)x * CHANNELS];
 
             out[0][x] += a;
             out[1][x] += b;
@@ -218,7 +224,8 @@ static int box_similarity(const job *j, int channel, double *value)
     const int w = j->width - 2 * BOX_HALF, h = j->height - 2 * BOX_HALF;
     const size_t width = (size_t)j->width;
     int32_t *const block = malloc(5 * width * sizeof *block);
-    int32_t *const column[5] = { block, block + width, block + 2 * width, block + 3 * width, block + 4 * width };
+    int32_t *const column[5] = { block, block + width, block + 2 * width, block + 3 * width,
+                                 block + 4 * width };
     double sum = 0.0;
 
     if (block == NULL)
@@ -285,9 +292,12 @@ static double psnr(const uint8_t *a, const uint8_t *b, size_t n)
     return sum == 0 ? (double)INFINITY : 10.0 * log10(255.0 * 255.0 * (double)n / (double)sum);
 }
 
-int ted4_metrics_compare(const uint8_t *a, const uint8_t *b, int width, int height, const ted4_parallel *p, ted4_metrics *m)
+int ted4_metrics_compare(const uint8_t *a, const uint8_t *b, int width, int height,
+                         const ted4_parallel *p, ted4_metrics *m)
 {
-    job j = { .a = a, .b = b, .width = width, .height = height, .scales = scale_count(width, height) };
+    job j = {
+        .a = a, .b = b, .width = width, .height = height, .scales = scale_count(width, height)
+    };
     double mean[KINDS] = { 0.0 };
 
     ted4_parallel_for(p, KINDS * CHANNELS, compare_task, &j);
@@ -298,6 +308,7 @@ int ted4_metrics_compare(const uint8_t *a, const uint8_t *b, int width, int heig
             mean[k] += j.value[k][c] / CHANNELS;
         }
     }
-    *m = (ted4_metrics){ psnr(a, b, (size_t)width * (size_t)height * CHANNELS), mean[KIND_GAUSS], mean[KIND_BOX], mean[KIND_SCALES], j.scales };
+    *m = (ted4_metrics){ psnr(a, b, (size_t)width * (size_t)height * CHANNELS), mean[KIND_GAUSS],
+                         mean[KIND_BOX], mean[KIND_SCALES], j.scales };
     return 0;
 }

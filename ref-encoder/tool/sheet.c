@@ -32,7 +32,8 @@ void ted4_sheet_put(ted4_sheet *s, int row, const uint8_t *truth, const uint8_t 
     const size_t line = (size_t)s->width * 3;
 
     for (size_t y = 0; y < (size_t)s->height; y++) {
-        uint8_t *const to = s->rgb + ((size_t)row * (size_t)s->height + y) * line * TED4_SHEET_COLUMNS;
+        uint8_t *const to =
+            s->rgb + ((size_t)row * (size_t)s->height + y) * line * TED4_SHEET_COLUMNS;
 
         memcpy(to, truth + y * line, line);
         memcpy(to + line, ours + y * line, line);

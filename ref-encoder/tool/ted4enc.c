@@ -209,36 +209,46 @@ static int train(const request *r, ted4_trainer *t)
     return bad ? complain(t->message.text) : EXIT_FINE;
 }
 
-static int write_scene(const request *r, ted4_trainer *t, double seconds)
+static void report(const request *r, const ted4_trainer *t, const ted4_verified *v, size_t size,
+                   double seconds)
 {
-    ted4_scene *scene;
-    uint8_t    *bytes = NULL;
-    size_t      size = 0;
-    char        why[1024];
-    ted4_error  e = { TED4_OK, 0 };
-
-    if (ted4_make_scene(t, &scene) != 0)
-        return complain(t->message.text);
-    if (ted4_encode(scene, 0, t->parallel, &bytes, &size, &e) != 0) {
-        snprintf(why, sizeof why, "encoder refused its own scene: %s", ted4_status_id(e.code));
-        ted4_scene_free(scene);
-        return complain(why);
-    }
-
-    ted4_verified v;
-    int           status = EXIT_FINE;
-
-    if (ted4_verify(scene, bytes, size, t->parallel, &v, why, sizeof why) != 0 ||
-        ted4_file_write(r->out, bytes, size, why, sizeof why) != 0)
-        status = complain(why);
-    else if (r->json)
-        printf("{\"bytes\":%zu,\"train_s\":%.2f,\"steps\":%llu,\"anchors\":%u,\"gaussians\":%zu,"
+    if (r->json)
+        printf("{\"bytes\":%zu,\"train_s\":%.2f,\"steps\":%llu,\"ms_per_step\":%.3f,\"anchors\":%u,\"gaussians\":%zu,"
                "\"dynamic\":%u,\"estimated_bits\":%.0f,\"coded_bits\":%.0f,\"hash\":\"%s\"}\n",
-               size, seconds, (unsigned long long)t->iteration, v.anchors, v.gaussians,
-               v.dynamic, v.estimated_bits, v.coded_bits, v.hash);
+               size, seconds, (unsigned long long)t->iteration,
+               1e3 * seconds / (double)(t->iteration > 0 ? t->iteration : 1), v->anchors,
+               v->gaussians, v->dynamic, v->estimated_bits, v->coded_bits, v->hash);
     else if (!r->quiet)
         fprintf(stderr, "%s: %zu bytes, %u anchors (%u move), %zu Gaussians, trained in %.1f s, hash %s\n",
-                r->out, size, v.anchors, v.dynamic, v.gaussians, seconds, v.hash);
+                r->out, size, v->anchors, v->dynamic, v->gaussians, seconds, v->hash);
+}
+
+static int write_scene(const request *r, ted4_trainer *t, double seconds)
+{
+    ted4_scene   *scene;
+    uint8_t      *bytes = NULL;
+    size_t        size = 0;
+    char          why[1024];
+    double        bits[TED4_TYPES];
+    ted4_verified v = { 0 };
+    ted4_error    e = { TED4_OK, 0 };
+    int           status = EXIT_FINE;
+
+    if (ted4_make_scene(t, &scene) != 0 || ted4_integer_rate(t, bits) != 0) {
+        ted4_scene_free(scene);
+        return complain(t->message.text);
+    }
+    for (int y = 0; y < TED4_TYPES; y++)
+        v.estimated_bits += bits[y];
+    if (ted4_encode(scene, 0, t->parallel, &bytes, &size, &e) != TED4_OK) {
+        snprintf(why, sizeof why, "encoder refused its own scene: %s", ted4_status_id(e.code));
+        status = complain(why);
+    } else if (ted4_verify(scene, bytes, size, t->parallel, &v, why, sizeof why) != 0 ||
+               ted4_file_write(r->out, bytes, size, why, sizeof why) != 0) {
+        status = complain(why);
+    } else {
+        report(r, t, &v, size, seconds);
+    }
     free(bytes);
     ted4_scene_free(scene);
     return status;
@@ -262,6 +272,7 @@ static int encode(const request *r, const ted4_train_options *o, ted4_dataset *d
             status = write_scene(r, &t, ted4_seconds() - start);
     }
     ted4_trainer_finish(&t);
+    ted4_threads_finish(&p);
     return status;
 }
 

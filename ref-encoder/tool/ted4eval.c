@@ -1,4 +1,5 @@
-/* ted4eval.c - quality, size and speed of a .ted4 file against the pictures it was trained for, measured on the decoded file.
+/* ted4eval.c - quality, size and speed of a .ted4 file against the pictures it was trained for,
+ * measured on the decoded file.
  * SPDX-License-Identifier: BSD-2-Clause */
 #include <errno.h>
 #include <getopt.h>
@@ -22,7 +23,20 @@
 #include "tool/arguments.h"
 #include "tool/cli.h"
 
-enum { OPT_SPLIT, OPT_DOWNSCALE, OPT_IMAGES, OPT_SHEET, OPT_THREADS, OPT_FORCE, OPT_JSON, OPT_QUIET, OPT_VERBOSE, OPT_HELP, OPT_VERSION, N_OPTIONS };
+enum {
+    OPT_SPLIT,
+    OPT_DOWNSCALE,
+    OPT_IMAGES,
+    OPT_SHEET,
+    OPT_THREADS,
+    OPT_FORCE,
+    OPT_JSON,
+    OPT_QUIET,
+    OPT_VERBOSE,
+    OPT_HELP,
+    OPT_VERSION,
+    N_OPTIONS
+};
 
 enum { MAX_THREADS = 1024, MAX_DOWNSCALE = 64, SHEET_ROWS = 3, PATH_SIZE = 4096 };
 
@@ -41,10 +55,13 @@ static const ted4_argument OPTIONS[N_OPTIONS] = {
 };
 
 static const ted4_command COMMAND = {
-    "ted4eval", "FILE.ted4 SCENE [options]",
-    "Decodes FILE, draws every picture of a split of SCENE, and prints PSNR, SSIM (11 x 11 Gaussian), SSIM_2 (scikit-image,\n"
+    "ted4eval",
+    "FILE.ted4 SCENE [options]",
+    "Decodes FILE, draws every picture of a split of SCENE, and prints PSNR, SSIM (11 x 11 "
+    "Gaussian), SSIM_2 (scikit-image,\n"
     "range 2), MS-SSIM, bytes of the file, milliseconds to decode it, and pictures drawn a second.",
-    OPTIONS, N_OPTIONS,
+    OPTIONS,
+    N_OPTIONS,
     "Exit codes: 0 fine, 1 file refused, 3 usage, input, output or resources.\n"
 };
 
@@ -102,7 +119,9 @@ static int set_option(settings *s, int option, const char *value)
     switch (option) {
     case OPT_SPLIT:
         s->want_test = strcmp(value, "test") == 0;
-        return s->want_test || strcmp(value, "train") == 0 ? 0 : failed("--split", "test or train expected");
+        return s->want_test || strcmp(value, "train") == 0
+                   ? 0
+                   : failed("--split", "test or train expected");
     case OPT_DOWNSCALE:
         return set_number("--downscale", value, 1, MAX_DOWNSCALE, &s->downscale);
     case OPT_IMAGES:
@@ -116,7 +135,10 @@ static int set_option(settings *s, int option, const char *value)
     default:
         break;
     }
-    int *const flag[N_OPTIONS] = { [OPT_FORCE] = &s->force, [OPT_JSON] = &s->json, [OPT_QUIET] = &s->quiet, [OPT_VERBOSE] = &s->verbose };
+    int *const flag[N_OPTIONS] = { [OPT_FORCE] = &s->force,
+                                   [OPT_JSON] = &s->json,
+                                   [OPT_QUIET] = &s->quiet,
+                                   [OPT_VERBOSE] = &s->verbose };
 
     *flag[option] = 1;
     return 0;
@@ -172,13 +194,16 @@ static int open_file(session *s)
     }
     s->sum.decode_ms = 1e3 * (seconds() - start);
     free(bytes);
-    return e.code == TED4_OK ? TED4_EXIT_FINE : ted4_report("ted4eval", s->set->input, &e, s->set->json);
+    return e.code == TED4_OK ? TED4_EXIT_FINE
+                             : ted4_report("ted4eval", s->set->input, &e, s->set->json);
 }
 
 static int open_scene(session *s)
 {
     /* Pictures with transparency are compared on the background the file carries. */
-    const ted4_dataset_options options = { .downscale = s->set->downscale, .white = s->info.background[0] > 127, .cache_bytes = 64 << 20 };
+    const ted4_dataset_options options = { .downscale = s->set->downscale,
+                                           .white = s->info.background[0] > 127,
+                                           .cache_bytes = 64 << 20 };
     ted4_message m;
 
     if (ted4_dataset_load(&s->data, s->set->scene, &options, &m) != 0)
@@ -192,7 +217,8 @@ static int in_split(const session *s, size_t i)
     return s->data.pictures[i].is_test == s->set->want_test;
 }
 
-/* ---- sheet: first, middle and last time of one camera, or of all when the first has only one picture ---- */
+/* ---- sheet: first, middle and last time of one camera, or of all when the first has only one
+ * picture ---- */
 
 /* Can picture i stand on the sheet beside picture first? */
 static int on_sheet(const session *s, size_t first, size_t i, int any_camera)
@@ -214,7 +240,8 @@ static size_t by_time(const session *s, size_t first, int any_camera, size_t r)
         if (!on_sheet(s, first, i, any_camera))
             continue;
         for (size_t k = 0; k < s->data.n_pictures; k++)
-            before += on_sheet(s, first, k, any_camera) && (all[k].frame < all[i].frame || (all[k].frame == all[i].frame && k < i));
+            before += on_sheet(s, first, k, any_camera)
+                      && (all[k].frame < all[i].frame || (all[k].frame == all[i].frame && k < i));
         if (before == r)
             return i;
     }
@@ -240,15 +267,23 @@ static int choose_rows(session *s)
     const ted4_camera *const c = &s->data.pictures[first].camera;
 
     for (int r = 0; r < rows; r++)
-        s->row[r] = by_time(s, first, any_camera, rows == 1 ? 0 : (size_t)r * (n - 1) / (size_t)(rows - 1));
-    return ted4_sheet_init(&s->sheet, c->width, c->height, rows) == 0 ? TED4_EXIT_FINE : failed(s->set->sheet, "out of memory");
+        s->row[r] =
+            by_time(s, first, any_camera, rows == 1 ? 0 : (size_t)r * (n - 1) / (size_t)(rows - 1));
+    return ted4_sheet_init(&s->sheet, c->width, c->height, rows) == 0
+               ? TED4_EXIT_FINE
+               : failed(s->set->sheet, "out of memory");
 }
 
 /* ---- one picture ---- */
 
 static ted4_view view_of(const ted4_camera *c)
 {
-    ted4_view v = { .width = c->width, .height = c->height, .fx = (float)c->fx, .fy = (float)c->fy, .cx = (float)c->cx, .cy = (float)c->cy };
+    ted4_view v = { .width = c->width,
+                    .height = c->height,
+                    .fx = (float)c->fx,
+                    .fy = (float)c->fy,
+                    .cx = (float)c->cx,
+                    .cy = (float)c->cy };
 
     for (int i = 0; i < 9; i++)
         v.R[i] = (float)c->R[i];
@@ -269,10 +304,12 @@ static int write_image(const session *s, const char *kind, const ted4_camera *c,
         return failed(s->set->images, "name too long");
     if (!s->set->force && access(path, F_OK) == 0)
         return failed(path, "exists; -f overwrites");
-    return ted4_png_write(path, c->width, c->height, rgb, why, sizeof why) == 0 ? TED4_EXIT_FINE : failed(path, why);
+    return ted4_png_write(path, c->width, c->height, rgb, why, sizeof why) == 0 ? TED4_EXIT_FINE
+                                                                                : failed(path, why);
 }
 
-static int write_images(const session *s, const ted4_camera *c, const uint8_t *truth, const uint8_t *ours)
+static int write_images(const session *s, const ted4_camera *c, const uint8_t *truth,
+                        const uint8_t *ours)
 {
     const size_t size = (size_t)c->width * (size_t)c->height * 3;
     uint8_t *const error = malloc(size);
@@ -300,7 +337,8 @@ static int take_picture(session *s, size_t i, const uint8_t *truth, const uint8_
     if (ted4_metrics_compare(truth, ours, p->camera.width, p->camera.height, &s->parallel, &m) != 0)
         return failed(p->path, "out of memory");
     if (s->set->verbose)
-        fprintf(stderr, "%s frame %" PRIu32 ": psnr %.4f ssim %.5f ssim2 %.5f ms_ssim %.5f\n", p->path, p->frame, m.psnr, m.ssim, m.ssim2, m.ms_ssim);
+        fprintf(stderr, "%s frame %" PRIu32 ": psnr %.4f ssim %.5f ssim2 %.5f ms_ssim %.5f\n",
+                p->path, p->frame, m.psnr, m.ssim, m.ssim2, m.ms_ssim);
     if (s->set->images != NULL)
         code = write_images(s, &p->camera, truth, ours);
     for (int r = 0; s->set->sheet != NULL && r < s->sheet.rows; r++)
@@ -328,7 +366,8 @@ static int evaluate_picture(session *s, size_t i)
 
     start = seconds();
     if (ours != NULL)
-        e.code = ted4_render_query(s->viewer, s->recon, &s->info, p->frame, last, &view, &s->parallel, ours);
+        e.code = ted4_render_query(s->viewer, s->recon, &s->info, p->frame, last, &view,
+                                   &s->parallel, ours);
     s->sum.render_s += seconds() - start;
     if (e.code != TED4_OK) {
         code = ted4_report("ted4eval", s->set->input, &e, s->set->json);
@@ -356,15 +395,19 @@ static void print_result(const session *s)
     const double n = (double)t->views;
 
     if (!s->set->json) {
-        printf("psnr       %.4f dB\nssim       %.5f\nssim2      %.5f\nms_ssim    %.5f\nbytes      %zu\ndecode     %.2f ms\nrender     %.2f fps\nviews      %zu\n",
-               t->psnr / n, t->ssim / n, t->ssim2 / n, t->ms_ssim / n, t->bytes, t->decode_ms, n / t->render_s, t->views);
+        printf("psnr       %.4f dB\nssim       %.5f\nssim2      %.5f\nms_ssim    %.5f\nbytes      "
+               "%zu\ndecode     %.2f ms\nrender     %.2f fps\nviews      %zu\n",
+               t->psnr / n, t->ssim / n, t->ssim2 / n, t->ms_ssim / n, t->bytes, t->decode_ms,
+               n / t->render_s, t->views);
         return;
     }
-    json_t *const o = json_pack("{s:o, s:o, s:o, s:o, s:I, s:o, s:o, s:I, s:s, s:I, s:I, s:I}", "psnr", number(t->psnr / n), "ssim", number(t->ssim / n),
-                                "ssim2", number(t->ssim2 / n), "ms_ssim", number(t->ms_ssim / n), "bytes", (json_int_t)t->bytes,
-                                "decode_ms", number(t->decode_ms), "render_fps", number(n / t->render_s), "views", (json_int_t)t->views,
-                                "split", s->set->want_test ? "test" : "train", "frames", (json_int_t)s->info.frames,
-                                "anchors", (json_int_t)s->info.n_anchors, "gaussians", (json_int_t)s->info.n_gaussians);
+    json_t *const o = json_pack(
+        "{s:o, s:o, s:o, s:o, s:I, s:o, s:o, s:I, s:s, s:I, s:I, s:I}", "psnr", number(t->psnr / n),
+        "ssim", number(t->ssim / n), "ssim2", number(t->ssim2 / n), "ms_ssim",
+        number(t->ms_ssim / n), "bytes", (json_int_t)t->bytes, "decode_ms", number(t->decode_ms),
+        "render_fps", number(n / t->render_s), "views", (json_int_t)t->views, "split",
+        s->set->want_test ? "test" : "train", "frames", (json_int_t)s->info.frames, "anchors",
+        (json_int_t)s->info.n_anchors, "gaussians", (json_int_t)s->info.n_gaussians);
 
     json_dumpf(o, stdout, JSON_COMPACT | JSON_REAL_PRECISION(6));
     putchar('\n');
@@ -394,7 +437,9 @@ static int evaluate(session *s)
             fprintf(stderr, "\r%zu/%zu%s", s->sum.views, n, s->sum.views == n ? "\n" : "");
     }
     if (code == TED4_EXIT_FINE && set->sheet != NULL
-        && ted4_png_write(set->sheet, s->sheet.width * TED4_SHEET_COLUMNS, s->sheet.height * s->sheet.rows, s->sheet.rgb, why, sizeof why) != 0)
+        && ted4_png_write(set->sheet, s->sheet.width * TED4_SHEET_COLUMNS,
+                          s->sheet.height * s->sheet.rows, s->sheet.rgb, why, sizeof why)
+               != 0)
         code = failed(set->sheet, why);
     if (code == TED4_EXIT_FINE)
         print_result(s);

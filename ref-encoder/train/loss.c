@@ -1,8 +1,11 @@
-/* loss.c - see loss.h. Algorithm facts 2.5, turned by 45 degrees: with u = x + y and v = x - y the four filtered planes u, v, u^2, v^2 give all
+/* loss.c - see loss.h. Algorithm facts 2.5, turned by 45 degrees: with u = x + y and v = x - y the
+ * four filtered planes u, v, u^2, v^2 give all
  * that SSIM needs (instead of five), and v is the L1 residual as well.
  *
- * Three passes, each parallel over fixed chunks of rows: (1) u, v and L1; (2) the four filters, SSIM and its derivatives by the filtered
- * planes; (3) the same filter, which is its own adjoint, over the three derivative planes. A filter runs along rows into a ring of 11 rows of a
+ * Three passes, each parallel over fixed chunks of rows: (1) u, v and L1; (2) the four filters,
+ * SSIM and its derivatives by the filtered
+ * planes; (3) the same filter, which is its own adjoint, over the three derivative planes. A filter
+ * runs along rows into a ring of 11 rows of a
  * tile that stays in the first-level cache, then down the ring.
  * SPDX-License-Identifier: BSD-2-Clause */
 #include "train/loss.h"
@@ -22,7 +25,8 @@ static const float GAUSS[TAPS] = {
     0.213005538f, 0.10936069f, 0.0360007721f, 0.00759875814f, 0.00102838008f
 };
 
-/* Planes have LANES zero columns on the left, and zeros from the width to the end of the row, so that a filter may read over the sides. */
+/* Planes have LANES zero columns on the left, and zeros from the width to the end of the row, so
+ * that a filter may read over the sides. */
 struct ted4_loss_workspace {
     float  *block;              /* owned: u, v, then three derivatives, each [3][height][stride] */
     size_t  capacity;           /* floats in block */
@@ -128,7 +132,8 @@ static void filter_squares(const float *u, const float *v, int n, float out[4][T
     }
 }
 
-/* SSIM = (A1 A2) / (B1 B2) from the local means mu, mv and second moments uu, vv. With a = mu^2, b = mv^2, p = uu - a, q = vv - b:
+/* SSIM = (A1 A2) / (B1 B2) from the local means mu, mv and second moments uu, vv. With a = mu^2,
+ * b = mv^2, p = uu - a, q = vv - b:
  *     A1 = a - b + 2 C1,  B1 = a + b + 2 C1,  A2 = p - q + 2 C2,  B2 = p + q + 2 C2
  * d: derivatives by what x is filtered into: mu + mv together (du/dx = dv/dx = 1), uu, vv. */
 static inline lanes similarity(lanes mu, lanes mv, lanes uu, lanes vv, lanes d[3])
@@ -232,7 +237,8 @@ static void filter_derivatives(const float *const d[3], int n, float out[3][TILE
     }
 }
 
-static void gradient_row(const job *j, ring3 ring, int oldest, const float *u, const float *v, int valid, float *out)
+static void gradient_row(const job *j, ring3 ring, int oldest, const float *u, const float *v,
+                         int valid, float *out)
 {
     for (int x = 0; x < valid; x += LANES) {
         const lanes a = load(u + x), b = load(v + x);
@@ -273,7 +279,8 @@ static void gradient_tile(const job *j, size_t channel, int first, int last, int
         if (r >= first + HALF) {
             const int row = r - HALF;
             const size_t from = plane + (size_t)row * j->stride + LANES + (size_t)x0;
-            const size_t to = (channel * (size_t)j->height + (size_t)row) * (size_t)j->width + (size_t)x0;
+            const size_t to =
+                (channel * (size_t)j->height + (size_t)row) * (size_t)j->width + (size_t)x0;
 
             gradient_row(j, ring, slot, j->u + from, j->v + from, valid, j->d_image + to);
         }
@@ -329,11 +336,14 @@ static double sum_of(const double *x, size_t n)
     return sum;
 }
 
-double ted4_loss(ted4_loss_workspace *w, const float *image, const uint8_t *truth, int width, int height, float ssim_weight, const ted4_parallel *p,
-                 float *d_image, double *l1, double *ssim)
+double ted4_loss(ted4_loss_workspace *w, const float *image, const uint8_t *truth, int width,
+                 int height, float ssim_weight, const ted4_parallel *p, float *d_image, double *l1,
+                 double *ssim)
 {
     const double count = (double)CHANNELS * width * height;
-    job j = { .image = image, .truth = truth, .d_image = d_image, .width = width, .height = height };
+    job j = {
+        .image = image, .truth = truth, .d_image = d_image, .width = width, .height = height
+    };
     size_t volume;
 
     j.n_bands = (height + BAND - 1) / BAND;

@@ -1,5 +1,7 @@
-/* loss.h - the distortion of one view: (1 - w) L1 + w (1 - SSIM), with its gradient on the rendered image.
- * Depends on base/parallel.h. Used by the trainer; metrics on decoded pictures are in eval/metrics.h.
+/* loss.h - the distortion of one view: (1 - w) L1 + w (1 - SSIM), with its gradient on the rendered
+ * image.
+ * Depends on base/parallel.h. Used by the trainer; metrics on decoded pictures are in
+ * eval/metrics.h.
  * SPDX-License-Identifier: BSD-2-Clause */
 #ifndef TED4_LOSS_H
 #define TED4_LOSS_H
@@ -7,7 +9,7 @@
 #include <stdint.h>
 #include "base/parallel.h"
 
-/* Window of the structural similarity: 11 x 11 Gaussian of sigma 1.5, zero padding; data range 1. */
+/* Window of SSIM: 11 x 11 Gaussian of sigma 1.5, zero padding; data range 1. */
 #define TED4_SSIM_C1 (0.01f * 0.01f)
 #define TED4_SSIM_C2 (0.03f * 0.03f)
 
@@ -17,8 +19,11 @@ typedef struct ted4_loss_workspace ted4_loss_workspace;
 ted4_loss_workspace *ted4_loss_workspace_new(void);     /* NULL: no memory */
 void                 ted4_loss_workspace_free(ted4_loss_workspace *w);  /* NULL is fine */
 
-/* L, over all pixels and channels. image: planar [3][height][width], not clamped; truth: interleaved bytes [height][width][3].
- * d_image: planar, overwritten with dL/d(image). *l1: mean absolute difference, *ssim: mean structural similarity. Same bits for any number of threads. Returns -1, nothing written, when memory ran out
+/* L, over all pixels and channels. image: planar [3][height][width], not clamped; truth:
+ * interleaved bytes [height][width][3].
+ * d_image: planar, overwritten with dL/d(image). *l1: mean absolute difference, *ssim: mean
+ * structural similarity. Same bits for any number of threads. Returns -1, nothing written, when
+ * memory ran out
  * (L itself is never negative for ssim_weight in [0, 1]). */
 double ted4_loss(ted4_loss_workspace *w, const float *image,
                  const uint8_t *truth, int width, int height,

@@ -288,8 +288,6 @@ static uint8_t context_bits(const ted4_trainer *t)
 /* From here on the prior is the one of the file: weights on the integer grid and fixed, steps fixed with them. */
 int ted4_integer_begin(ted4_trainer *t)
 {
-    double bits[TED4_TYPES];
-
     t->layout.head.context_bits = context_bits(t);
     ted4_rate_free(t->rate);
     t->rate = ted4_rate_new(&t->layout);
@@ -299,8 +297,13 @@ int ted4_integer_begin(ted4_trainer *t)
     ted4_snap(&t->layout.head, &t->layout.shape, t->net + t->layout.nete, t->shift);
     t->integer = 1;
     ted4_rate_pack(t->rate, t->net);
-    memset(t->slots.gradients, 0, t->slots.n * (size_t)t->layout.n_channels * TED4_LANES *
-                                      sizeof(float));
+    return ted4_integer_rate(t, NULL);
+}
+
+int ted4_integer_rate(ted4_trainer *t, double *bits)
+{
+    if (ted4_slots_fill(t, NULL) != 0)
+        return -1;
 
     const ted4_rate_input in = {
         &t->layout, t->net, t->shift, t->slots.n, t->slots.raw, t->slots.position,
@@ -308,8 +311,7 @@ int ted4_integer_begin(ted4_trainer *t)
         t->layout.head.activation
     };
 
-    if (ted4_rate_evaluate(t->rate, &in, t->parallel, NULL, t->slots.gradient, t->net_gradient,
-                           t->slots.steps, bits) != 0)
-        return ted4_trainer_fail(t, "no memory for the integer model");
-    return 0;
+    return ted4_rate_evaluate(t->rate, &in, t->parallel, NULL, NULL, NULL, t->slots.steps,
+                              bits) != 0
+               ? ted4_trainer_fail(t, "no memory for the integer model, or weights beyond it") : 0;
 }

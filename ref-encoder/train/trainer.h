@@ -99,6 +99,8 @@ int  ted4_densify_adjust(ted4_trainer *t);
 int  ted4_activation_begin(ted4_trainer *t);
 int  ted4_stage2_begin(ted4_trainer *t);
 int  ted4_integer_begin(ted4_trainer *t);
+/* Once the integer stage has begun: steps of all anchors, and their bits [TED4_TYPES] by the float formula on rounded symbols (NULL: steps only). */
+int  ted4_integer_rate(ted4_trainer *t, double *bits);
 /* Fresh workspaces and network arrays after t->layout changed. */
 int  ted4_trainer_rebuild(ted4_trainer *t);
 

@@ -57,10 +57,11 @@ static void pull_in(unit *u, const ted4_unit_rule *rule, int shift)
         u->W[i] = (int32_t)(u->W[i] * room / u->sum);
 }
 
-static void snap_unit(unit *u, const ted4_unit_rule *rule, uint8_t *shift)
+static void snap_unit(unit *u, const ted4_unit_rule *rule, int finest,
+                      uint8_t *shift)
 {
     const int least = rule->g > rule->f ? rule->g - rule->f : 0;
-    int       s = TED4_MAX_SHIFT;
+    int       s = finest > least ? finest : least;
 
     for (unsigned i = 0; i < u->in; i++)
         u->w[i] = tame(u->w[i]);
@@ -76,7 +77,7 @@ static void snap_unit(unit *u, const ted4_unit_rule *rule, uint8_t *shift)
 }
 
 static void snap_net(const ted4_net_shape *n, int hyper, unsigned context_bits,
-                     float *nete, uint8_t *shift)
+                     int finest, float *nete, uint8_t *shift)
 {
     size_t at = n->first, first_unit = n->first_unit;
     unit   u;
@@ -89,19 +90,25 @@ static void snap_net(const ted4_net_shape *n, int hyper, unsigned context_bits,
         for (unsigned o = 0; o < out; o++) {
             u.w = nete + at + (size_t)o * u.in;
             u.b = nete + at + (size_t)out * u.in + o;
-            snap_unit(&u, &rule, shift + first_unit + o);
+            snap_unit(&u, &rule, finest, shift + first_unit + o);
         }
         at += ((size_t)u.in + 1) * out;
         first_unit += out;
     }
 }
 
+void ted4_snap_coarse(const ted4_header *h, const ted4_shape *s, int finest,
+                      float *nete, uint8_t *shift)
+{
+    snap_net(&s->hyper, 1, h->context_bits, finest, nete, shift);
+    for (unsigned m = 1; m < h->n_slices; m++)
+        snap_net(&s->slice[m], 0, h->context_bits, finest, nete, shift);
+}
+
 void ted4_snap(const ted4_header *h, const ted4_shape *s, float *nete,
                uint8_t *shift)
 {
-    snap_net(&s->hyper, 1, h->context_bits, nete, shift);
-    for (unsigned m = 1; m < h->n_slices; m++)
-        snap_net(&s->slice[m], 0, h->context_bits, nete, shift);
+    ted4_snap_coarse(h, s, TED4_MAX_SHIFT, nete, shift);
 }
 
 typedef struct {

@@ -11,6 +11,9 @@
  * is not finite becomes 0. ted4_prior_load accepts the result. nete: [n_nete], shift: [n_units]. */
 void ted4_snap(const ted4_header *h, const ted4_shape *s, float *nete,
                uint8_t *shift);
+/* The same with no shift above finest (0 .. 20), as far as the rules allow: coarser weights, which deflate better. */
+void ted4_snap_coarse(const ted4_header *h, const ted4_shape *s, int finest,
+                      float *nete, uint8_t *shift);
 
 /* order[i]: which of n anchors comes i-th in a file. position: [n][3] binary16 patterns. Of equal anchors all but the first are
  * left out. Gives how many remain, or SIZE_MAX: no memory. */

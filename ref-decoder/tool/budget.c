@@ -1,0 +1,90 @@
+/* budget.c - see budget.h. An element owns the bytes from its offset to that of the next element.
+ * SPDX-License-Identifier: BSD-2-Clause */
+#include "budget.h"
+
+#include <stdio.h>
+#include <string.h>
+
+/* Symbols of substreams are traced at the substream's first byte, which belongs to the substream. */
+static int is_symbol(const char *element)
+{
+    static const char *const name[] = { "dynamic", "offset_bit", "feature", "scaling", "offset", "phi", "tau" };
+
+    for (size_t i = 0; i < sizeof name / sizeof *name; i++)
+        if (strcmp(element, name[i]) == 0)
+            return 1;
+    return 0;
+}
+
+static int ends_in(const char *text, const char *end)
+{
+    const size_t n = strlen(text), m = strlen(end);
+
+    return n >= m && strcmp(text + n - m, end) == 0;
+}
+
+static int row_of(ted4_budget *b, const char *element, int64_t index)
+{
+    char name[TED4_BUDGET_NAME];
+    int  i = 0;
+
+    if (strcmp(element, "feature_substream") == 0)
+        snprintf(name, sizeof name, "%s %d", element, (int)index);
+    else
+        snprintf(name, sizeof name, "%s", element);
+    while (i < b->n_rows && (strcmp(b->row[i].element, name) != 0 || strcmp(b->row[i].chunk, b->chunk) != 0))
+        i++;
+    if (i == TED4_BUDGET_ROWS) {
+        b->disordered = 1;
+        return 0;
+    }
+    if (i == b->n_rows) {
+        b->n_rows++;
+        memcpy(b->row[i].chunk, b->chunk, sizeof b->chunk);
+        memcpy(b->row[i].element, name, sizeof name);
+    }
+    return i;
+}
+
+static void keep_header(ted4_budget *b, const char *element, int64_t index, int64_t value)
+{
+    if (b->n_header < TED4_HEADER_VALUES)
+        b->header[b->n_header++] = (ted4_header_value){ element, index, value };
+    else
+        b->disordered = 1;
+}
+
+void ted4_budget_trace(void *user, size_t offset, const char *element, int64_t index, int64_t value)
+{
+    ted4_budget *const b = user;
+    const int frame = strncmp(element, "chunk_", 6) == 0;
+
+    if (is_symbol(element))
+        return;
+    if (strcmp(element, "chunk_type") == 0)
+        for (int i = 0; i < 4; i++)
+            b->chunk[i] = (char)(value >> 8 * i & 0x7f);
+    else if (b->n_rows == 0)
+        strcpy(b->chunk, "file");
+    b->disordered |= offset < b->offset || (b->n_rows == 0 && offset != 0);
+    if (b->n_rows > 0)
+        b->row[b->owner].bytes += offset - b->offset;
+    b->offset = offset;
+    b->owner = row_of(b, frame ? "frame" : element, index);
+    if (ends_in(element, "_substream"))
+        b->row[b->owner].symbols += (uint64_t)value;
+    if (strcmp(b->chunk, "HEAD") == 0 && !frame)
+        keep_header(b, element, index, value);
+}
+
+int ted4_budget_finish(ted4_budget *b, size_t size)
+{
+    uint64_t sum = 0;
+
+    b->disordered |= size < b->offset;
+    b->row[b->owner].bytes += size - b->offset;
+    b->offset = size;
+    for (int i = 0; i < b->n_rows; i++)
+        sum += b->row[i].bytes;
+    return !b->disordered && sum == size;
+}

@@ -1,0 +1,247 @@
+/* ted4info.c - what a .ted4 file holds, and which syntax element each of its bytes belongs to.
+ * SPDX-License-Identifier: BSD-2-Clause */
+#include <errno.h>
+#include <getopt.h>
+#include <inttypes.h>
+#include <jansson.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "arguments.h"
+#include "base/bytes.h"
+#include "budget.h"
+#include "cli.h"
+#include "ted4.h"
+
+enum { OPT_BUDGET, OPT_THREADS, OPT_JSON, OPT_QUIET, OPT_VERBOSE, OPT_HELP, OPT_VERSION, N_OPTIONS };
+
+static const ted4_argument OPTIONS[N_OPTIONS] = {
+    [OPT_BUDGET]  = { 0, "budget", NULL, "attribute every byte of the file to a syntax element" },
+    [OPT_THREADS] = { 'j', "threads", "N", "accepted; elements are listed in order, by one thread" },
+    [OPT_JSON]    = { 0, "json", NULL, "everything as one JSON object" },
+    [OPT_QUIET]   = { 'q', "quiet", NULL, "errors only: is the file valid?" },
+    [OPT_VERBOSE] = { 'v', "verbose", NULL, "also every element of the header" },
+    [OPT_HELP]    = { 'h', "help", NULL, "this text" },
+    [OPT_VERSION] = { 'V', "version", NULL, "print the version" },
+};
+
+static const ted4_command COMMAND = {
+    "ted4info", "FILE.ted4 [options]        (- reads standard input)",
+    "Says what a TED4 file holds.",
+    OPTIONS, N_OPTIONS,
+    "Exit codes: 0 fine, 1 file refused, 3 usage, input, output or resources.\n"
+};
+
+typedef struct {
+    const char *input;
+    int         on[N_OPTIONS];          /* flags given */
+} settings;
+
+static int usage_error(const char *text)
+{
+    fprintf(stderr, "ted4info: %s (see --help)\n", text);
+    return TED4_EXIT_TOOL;
+}
+
+/* -1: go on; else an exit code. */
+static int parse(settings *s, int argc, char **argv)
+{
+    const char *value;
+    long        threads;
+
+    memset(s, 0, sizeof *s);
+    for (int i; (i = ted4_arguments_next(&COMMAND, argc, argv, &value)) != TED4_ARGUMENTS_END;) {
+        if (i == TED4_ARGUMENTS_BAD)
+            return TED4_EXIT_TOOL;
+        if (i == OPT_HELP) {
+            ted4_arguments_help(&COMMAND, stdout);
+            return TED4_EXIT_FINE;
+        }
+        if (i == OPT_VERSION) {
+            puts("ted4info " TED4_VERSION " (specification " TED4_SPEC_VERSION ")");
+            return TED4_EXIT_FINE;
+        }
+        if (i == OPT_THREADS && ted4_arguments_number(value, 0, 1024, &threads) != 0)
+            return usage_error("bad number of threads");
+        s->on[i] = 1;
+    }
+    if (optind + 1 != argc)
+        return usage_error("exactly one file");
+    s->input = argv[optind];
+    return -1;
+}
+
+static int is_float(const char *element)
+{
+    return strcmp(element, "step") == 0 || strcmp(element, "origin") == 0;
+}
+
+static int64_t integer_value(const ted4_header_value *v)
+{
+    return strcmp(v->name, "exponent") == 0 ? (int8_t)v->value : v->value;
+}
+
+static void hash_text(const ted4_info *info, char text[33])
+{
+    for (int i = 0; i < 16; i++)
+        snprintf(text + 2 * i, 3, "%02x", info->hash[i]);
+}
+
+static void print_summary(const settings *s, const ted4_info *info, size_t size)
+{
+    static const char *const motion[] = { "none", "bank", "concat", "inr" };
+    static const char *const view[] = { "none", "colour", "full" };
+    char hash[33];
+
+    hash_text(info, hash);
+    printf("%s: TED4, Main profile, level %d, %zu bytes\n", s->input, info->level, size);
+    printf("anchors     %" PRIu32 ", moving %" PRIu32 "\n", info->n_anchors, info->n_dynamic);
+    printf("Gaussians   %zu, at most %" PRIu32 " an anchor\n", info->n_gaussians, info->n_offsets);
+    printf("frames      %" PRIu32 " at %" PRIu32 "/%" PRIu32 " a second\n", info->frames, info->rate_num, info->rate_den);
+    printf("motion      %s; activation %s; view %s\n", motion[info->motion], info->activation ? "yes" : "no", view[info->view]);
+    printf("space       origin %.9g %.9g %.9g, unit 2^%d\n", (double)info->origin[0], (double)info->origin[1], (double)info->origin[2], info->exponent);
+    printf("background  #%02x%02x%02x\n", info->background[0], info->background[1], info->background[2]);
+    printf("hash        %s\n", hash);
+}
+
+static void print_header(const ted4_budget *b)
+{
+    const char *before = "";
+
+    for (int i = 0; i < b->n_header; i++) {
+        const ted4_header_value *const v = &b->header[i];
+
+        if (strcmp(v->name, before) != 0)
+            printf("%s  %-16s", i > 0 ? "\n" : "header\n", v->name);
+        before = v->name;
+        if (is_float(v->name))
+            printf(" %.9g", (double)ted4_bits_float((uint32_t)v->value));
+        else
+            printf(" %" PRId64, integer_value(v));
+    }
+    printf("\n");
+}
+
+static void print_budget(const ted4_budget *b, size_t size)
+{
+    printf("%-6s %-20s %12s %8s %12s %12s\n", "chunk", "element", "bytes", "%", "symbols", "bits/symbol");
+    for (int i = 0; i < b->n_rows; i++) {
+        const ted4_budget_row *const r = &b->row[i];
+
+        printf("%-6s %-20s %12" PRIu64 " %8.3f", r->chunk, r->element, r->bytes, 100.0 * (double)r->bytes / (double)size);
+        if (r->symbols > 0)
+            printf(" %12" PRIu64 " %12.4f", r->symbols, 8.0 * (double)r->bytes / (double)r->symbols);
+        printf("\n");
+    }
+    printf("%-6s %-20s %12zu\n", "all", "", size);
+}
+
+static json_t *header_json(const ted4_budget *b)
+{
+    json_t *const o = json_object();
+
+    for (int i = 0; i < b->n_header; i++) {
+        const ted4_header_value *const v = &b->header[i];
+        json_t *const value = is_float(v->name) ? json_real((double)ted4_bits_float((uint32_t)v->value)) : json_integer(integer_value(v));
+        json_t *list = json_object_get(o, v->name);
+        const int is_list = is_float(v->name) || strcmp(v->name, "slice") == 0 || strcmp(v->name, "background") == 0;
+
+        if (list == NULL && is_list) {
+            list = json_array();
+            json_object_set_new(o, v->name, list);
+        }
+        if (is_list)
+            json_array_append_new(list, value);
+        else
+            json_object_set_new(o, v->name, value);
+    }
+    return o;
+}
+
+static json_t *budget_json(const ted4_budget *b)
+{
+    json_t *const list = json_array();
+
+    for (int i = 0; i < b->n_rows; i++) {
+        const ted4_budget_row *const r = &b->row[i];
+        json_t *const o = json_pack("{s:s, s:s, s:I}", "chunk", r->chunk, "element", r->element, "bytes", (json_int_t)r->bytes);
+
+        if (r->symbols > 0)
+            json_object_set_new(o, "symbols", json_integer((json_int_t)r->symbols));
+        json_array_append_new(list, o);
+    }
+    return list;
+}
+
+static void print_json(const settings *s, const ted4_info *info, const ted4_budget *b, size_t size)
+{
+    json_t *const name = json_string(s->input);         /* NULL: not UTF-8 */
+    char    hash[33];
+    json_t *o;
+
+    hash_text(info, hash);
+    o = json_pack("{s:o, s:s, s:I, s:i, s:s, s:I, s:I, s:I, s:o}", "file", name != NULL ? name : json_null(), "verdict", "valid",
+                  "bytes", (json_int_t)size, "level", info->level, "hash", hash, "anchors", (json_int_t)info->n_anchors,
+                  "moving", (json_int_t)info->n_dynamic, "gaussians", (json_int_t)info->n_gaussians, "header", header_json(b));
+    if (s->on[OPT_BUDGET])
+        json_object_set_new(o, "budget", budget_json(b));
+    json_dumpf(o, stdout, JSON_COMPACT | JSON_REAL_PRECISION(9));
+    putchar('\n');
+    json_decref(o);
+}
+
+static int show(const settings *s, const ted4_info *info, const ted4_budget *b, size_t size)
+{
+    if (s->on[OPT_JSON]) {
+        print_json(s, info, b, size);
+    } else if (!s->on[OPT_QUIET]) {
+        print_summary(s, info, size);
+        if (s->on[OPT_VERBOSE])
+            print_header(b);
+        if (s->on[OPT_BUDGET])
+            print_budget(b, size);
+    }
+    if (fflush(stdout) != 0 || ferror(stdout)) {
+        fprintf(stderr, "ted4info: standard output: %s\n", strerror(errno));
+        return TED4_EXIT_TOOL;
+    }
+    return TED4_EXIT_FINE;
+}
+
+static int run(const settings *s, ted4_budget *budget)
+{
+    const ted4_options options = { .trace = ted4_budget_trace, .trace_user = budget };
+    ted4_error  e = { TED4_OK, 0 };
+    ted4_scene *scene = NULL;
+    ted4_info   info;
+    size_t      size;
+    uint8_t *const data = ted4_read_file(s->input, &size);
+    int         code;
+
+    if (data == NULL) {
+        fprintf(stderr, "ted4info: %s: %s\n", s->input, strerror(errno));
+        return TED4_EXIT_TOOL;
+    }
+    if (ted4_decode(data, size, &options, &scene, &e) != TED4_OK) {
+        code = ted4_report("ted4info", s->input, &e, s->on[OPT_JSON]);
+    } else if (!ted4_budget_finish(budget, size)) {
+        fprintf(stderr, "ted4info: %s: bytes without an owner: this is a bug\n", s->input);
+        code = TED4_EXIT_TOOL;
+    } else {
+        ted4_scene_info(scene, &info);
+        code = show(s, &info, budget, size);
+    }
+    ted4_scene_free(scene);
+    free(data);
+    return code;
+}
+
+int main(int argc, char **argv)
+{
+    static ted4_budget budget;
+    settings  s;
+    const int code = parse(&s, argc, argv);
+
+    return code >= 0 ? code : run(&s, &budget);
+}

@@ -1,0 +1,222 @@
+/* test_rans.c - substreams: write/coder_write.c into read/reader.c (spec 9.2 to 9.4), and damaged ones.
+ * SPDX-License-Identifier: BSD-2-Clause */
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <cmocka.h>
+#include <stdlib.h>
+#include "random_scene.h"
+#include "read/reader.h"
+#include "write/coder_write.h"
+
+/* n symbols with their models. */
+typedef struct {
+    size_t   n;
+    int32_t *mu;
+    uint8_t *sigma;
+    int16_t *k;
+} symbols;
+
+static symbols make(uint64_t seed, size_t n, int far)
+{
+    random_source r = random_seed(seed);
+    symbols s = { n, malloc(n * sizeof *s.mu), malloc(n),
+                  malloc(n * sizeof *s.k) };
+
+    for (size_t i = 0; i < n; i++) {
+        const double x = random_normal(&r) * 40;
+
+        s.sigma[i] = (uint8_t)random_in(&r, 0, TED4_N_SIGMA - 1);
+        s.mu[i] = (int32_t)(256 * x);
+        if (far)        /* the largest sums that two networks can give */
+            s.mu[i] = random_in(&r, 0, 1) ? 2 * TED4_OUTPUT_MAX
+                                          : -2 * TED4_OUTPUT_MAX;
+        s.k[i] = (int16_t)rint(x + random_normal(&r)
+                                   * exp2((s.sigma[i] - 64) / 16.0));
+        if (far)
+            s.k[i] = random_in(&r, 0, 1) ? 32767 : -32767;
+    }
+    return s;
+}
+
+static void drop(symbols *s)
+{
+    free(s->mu);
+    free(s->sigma);
+    free(s->k);
+}
+
+/* One substream behind its size. The caller frees w. */
+static void write_symbols(ted4_writer *w, const symbols *s)
+{
+    uint32_t size;
+
+    ted4_writer_init(w);
+    w->base.ops->sizes(&w->base, &size, 1);
+    w->base.ops->open(&w->base, s->n);
+    w->base.ops->gauss(&w->base, s->n, s->mu, s->sigma, s->k);
+    w->base.ops->close(&w->base);
+    assert_int_equal(w->base.error.code, TED4_OK);
+}
+
+static const char *read_symbols(const uint8_t *data, size_t size,
+                                const symbols *s, int16_t *k)
+{
+    ted4_reader r;
+    uint32_t    length;
+
+    ted4_reader_init(&r, data, 0, size, 0);
+    r.base.ops->sizes(&r.base, &length, 1);
+    r.base.ops->open(&r.base, s->n);
+    r.base.ops->gauss(&r.base, s->n, s->mu, s->sigma, k);
+    r.base.ops->close(&r.base);
+    return ted4_status_id(r.base.error.code);
+}
+
+static void round_trip(void **state)
+{
+    static const size_t count[] = { 1, 2, 1000, 4095, 8191, 8192, 16384,
+                                    200000, 600000 };
+
+    (void)state;
+    for (size_t i = 0; i < 2 * sizeof count / sizeof *count; i++) {
+        symbols     s = make(i, count[i / 2], i % 2);
+        int16_t    *k = malloc(s.n * sizeof *k);
+        ted4_writer w;
+
+        write_symbols(&w, &s);
+        assert_string_equal(read_symbols(w.out.data, w.out.size, &s, k), "ok");
+        assert_memory_equal(k, s.k, s.n * sizeof *k);
+        ted4_writer_finish(&w);
+        free(k);
+        drop(&s);
+    }
+}
+
+static void lanes(void **state)
+{
+    (void)state;
+    assert_int_equal(ted4_rans_lanes(1), 1);
+    assert_int_equal(ted4_rans_lanes(8191), 1);
+    assert_int_equal(ted4_rans_lanes(8192), 2);
+    assert_int_equal(ted4_rans_lanes(4096 * 64 - 1), 32);
+    assert_int_equal(ted4_rans_lanes(4096 * 64), 64);
+    assert_int_equal(ted4_rans_lanes((size_t)1 << 30), 64);
+}
+
+static void bits(void **state)
+{
+    enum { N = 100000 };
+    random_source r = random_seed(3);
+    static uint32_t prob[N];
+    static uint8_t  bit[N];
+    ted4_writer w;
+    ted4_reader d;
+    uint32_t    size;
+
+    (void)state;
+    ted4_writer_init(&w);
+    w.base.ops->sizes(&w.base, &size, 1);
+    w.base.ops->open(&w.base, N);
+    for (size_t i = 0; i < N; i++) {
+        prob[i] = i % 3 ? random_in(&r, 1, 65535) : i % 2 ? 1 : 65535;
+        bit[i] = random_u32(&r) % 65536 < prob[i];
+        (void)w.base.ops->bit(&w.base, prob[i], bit[i]);
+    }
+    w.base.ops->close(&w.base);
+    ted4_reader_init(&d, w.out.data, 0, w.out.size, 0);
+    d.base.ops->sizes(&d.base, &size, 1);
+    d.base.ops->open(&d.base, N);
+    for (size_t i = 0; i < N; i++)
+        if (d.base.ops->bit(&d.base, prob[i], 0) != bit[i])
+            fail();
+    d.base.ops->close(&d.base);
+    assert_int_equal(d.base.error.code, TED4_OK);
+    ted4_writer_finish(&w);
+}
+
+/* What a damaged substream is refused with. change: bytes added at the end, or taken away. */
+static void damaged(void **state)
+{
+    symbols     s = make(9, 500, 0);
+    int16_t     k[500];
+    ted4_writer w;
+    uint8_t    *d;
+    size_t      n;
+
+    (void)state;
+    write_symbols(&w, &s);
+    d = malloc(w.out.size + 2);
+    n = w.out.size;
+    memcpy(d, w.out.data, n);
+    memset(d + n, 0, 2);
+    ted4_store32(d, (uint32_t)(n - 4 + 2));
+    assert_string_equal(read_symbols(d, n + 2, &s, k), "ent.final");
+    ted4_store32(d, (uint32_t)(n - 4 - 2));
+    assert_string_equal(read_symbols(d, n - 2, &s, k), "ent.underrun");
+    ted4_store32(d, (uint32_t)(n - 4 - 1));
+    assert_string_equal(read_symbols(d, n - 1, &s, k), "ent.size");
+    ted4_store32(d, 2);
+    assert_string_equal(read_symbols(d, 6, &s, k), "ent.size");
+    ted4_store32(d, (uint32_t)(n - 4));
+    assert_string_equal(read_symbols(d, n - 1, &s, k), "con.payload-size");
+    assert_string_equal(read_symbols(d, n, &s, k), "ok");
+    d[6] = d[7] = 0;
+    assert_string_equal(read_symbols(d, n, &s, k), "ent.state");
+    free(d);
+    ted4_writer_finish(&w);
+    drop(&s);
+}
+
+/* Escapes that no writer makes. The state spells them: every slot from 2^15 on is a bit 1. */
+static void long_escape(void **state)
+{
+    uint8_t  d[64];
+    const int32_t mu = 0;
+    const uint8_t sigma = 0;
+    const symbols s = { 1, NULL, NULL, NULL };
+    symbols  one = s;
+    int16_t  k;
+
+    (void)state;
+    one.mu = malloc(sizeof *one.mu);
+    one.sigma = malloc(1);
+    *one.mu = mu;
+    *one.sigma = sigma;
+    memset(d, 0xff, sizeof d);
+    ted4_store32(d, sizeof d - 4);
+    assert_string_equal(read_symbols(d, sizeof d, &one, &k), "ent.escape");
+    free(one.mu);
+    free(one.sigma);
+}
+
+static void refused_by_the_writer(void **state)
+{
+    const int32_t mu = 0;
+    const uint8_t sigma = 64;
+    int16_t       k = -32768;
+    ted4_writer   w;
+    uint32_t      size;
+
+    (void)state;
+    ted4_writer_init(&w);
+    w.base.ops->sizes(&w.base, &size, 1);
+    w.base.ops->open(&w.base, 1);
+    w.base.ops->gauss(&w.base, 1, &mu, &sigma, &k);
+    assert_int_equal(w.base.error.code, TED4_E_ENT_SYMBOL_RANGE);
+    ted4_writer_finish(&w);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(round_trip),
+        cmocka_unit_test(lanes),
+        cmocka_unit_test(bits),
+        cmocka_unit_test(damaged),
+        cmocka_unit_test(long_escape),
+        cmocka_unit_test(refused_by_the_writer),
+    };
+
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
