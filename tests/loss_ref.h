@@ -1,5 +1,5 @@
-/* loss_ref.h - the distortion of train/loss.h by its definition, in double, a pixel at a time: what test_loss.c and test_step_grad.c compare with.
- * Shares no code with train/.
+/* loss_ref.h - the distortion of train/loss.h by its definition, in double, a pixel at a time: what
+ * test_loss.c and test_step_grad.c compare with. Shares no code with train/.
  * SPDX-License-Identifier: BSD-2-Clause */
 #ifndef TED4_LOSS_REF_H
 #define TED4_LOSS_REF_H
@@ -44,7 +44,8 @@ static inline const double *ref_window(void)
 }
 
 /* SSIM at one pixel by the definition; delta is added to the image at (cy, cx). */
-static inline double ref_ssim(const ref_picture *p, int c, int y, int x, int cy, int cx, double delta)
+static inline double ref_ssim(const ref_picture *p, int c, int y, int x, int cy, int cx,
+                              double delta)
 {
     const double *window = ref_window();
     double weight = 0.0, mx = 0.0, my = 0.0, xx = 0.0, yy = 0.0, xy = 0.0;
@@ -69,9 +70,11 @@ static inline double ref_ssim(const ref_picture *p, int c, int y, int x, int cy,
     }
     mx /= weight;
     my /= weight;
-    const double vx = xx / weight - mx * mx, vy = yy / weight - my * my, cov = xy / weight - mx * my;
+    const double vx = xx / weight - mx * mx, vy = yy / weight - my * my;
+    const double cov = xy / weight - mx * my;
 
-    return (2.0 * mx * my + 1e-4) * (2.0 * cov + 9e-4) / ((mx * mx + my * my + 1e-4) * (vx + vy + 9e-4));
+    return (2.0 * mx * my + 1e-4) * (2.0 * cov + 9e-4) /
+           ((mx * mx + my * my + 1e-4) * (vx + vy + 9e-4));
 }
 
 /* Means over pixels and channels; returns (1 - w) L1 + w (1 - SSIM). */

@@ -43,7 +43,7 @@ static void increasing(void **state)
 }
 
 /* Against the distribution whose sigma is that of INV, which is rounded: all steps of the integer path together are off by less than
- * three slots. */
+ * four slots (z alone: 1.6). */
 static void accurate(void **state)
 {
     (void)state;
@@ -59,7 +59,7 @@ static void accurate(void **state)
                 const double p = erfc(-x / sigma / sqrt(2)) / 2;
                 const double c = p * (65536 - size) + j;
 
-                check(fabs(ted4_gauss_cum(g, fr, j) - c) < 3);
+                check(fabs(ted4_gauss_cum(g, fr, j) - c) < 4);
             }
     }
 }

@@ -36,7 +36,8 @@ static picture make(int width, int height)
 {
     const size_t n = (size_t)width * (size_t)height * 3;
     picture p = { .width = width, .height = height, .image = malloc(n * sizeof(float)),
-                  .gradient = malloc(n * sizeof(float)), .exact = malloc(n * sizeof(double)), .truth = malloc(n) };
+                  .gradient = malloc(n * sizeof(float)), .exact = malloc(n * sizeof(double)),
+                  .truth = malloc(n) };
 
     assert_true(p.image != NULL && p.gradient != NULL && p.exact != NULL && p.truth != NULL);
     for (size_t i = 0; i < n; i++)
@@ -83,7 +84,8 @@ static void check_gradient(const picture *p, double w, int c, int y, int x)
 {
     const ref_picture *ref = &p->reference;
     const double h = 1e-4, count = 3.0 * p->width * p->height;
-    const double want = (local_loss(ref, w, c, y, x, h) - local_loss(ref, w, c, y, x, -h)) / (2.0 * h);
+    const double up = local_loss(ref, w, c, y, x, h), down = local_loss(ref, w, c, y, x, -h);
+    const double want = (up - down) / (2.0 * h);
     const double got = (double)p->gradient[ref_pixel(ref, c, y, x)] * count;
 
     if (ref_absolute(ref, c, y, x, 0.0) < 2.0 * h)

@@ -168,26 +168,48 @@ static void damaged(void **state)
     drop(&s);
 }
 
-/* Escapes that no writer makes. The state spells them: every slot from 2^15 on is a bit 1. */
-static void long_escape(void **state)
+/* A substream of one symbol, mu 0 and sigma 1, which is a high escape followed by the bits of E. */
+static const char *read_escape(uint32_t E, int16_t *k)
 {
-    uint8_t  d[64];
-    const int32_t mu = 0;
-    const uint8_t sigma = 0;
-    const symbols s = { 1, NULL, NULL, NULL };
-    symbols  one = s;
-    int16_t  k;
+    int32_t  mu = 0;
+    uint8_t  sigma = 64;
+    const symbols     s = { 1, &mu, &sigma, NULL };
+    const unsigned    n = ted4_log2_floor(E);
+    const ted4_slots  half[2] = { { 0, 32768 }, { 32768, 32768 } };
+    ted4_rans_enc     e = { 0 };
+    ted4_buffer       out = { 0 };
+    const char       *verdict;
+
+    memset(ted4_buffer_add(&out, 4), 0, 4);
+    ted4_rans_enc_init(&e, 1);
+    ted4_rans_enc_put(&e, ted4_gauss_of(mu, sigma, 1000).slots);
+    for (unsigned i = 0; i < n; i++)
+        ted4_rans_enc_put(&e, half[1]);
+    ted4_rans_enc_put(&e, half[0]);
+    for (unsigned i = n; i > 0; i--)
+        ted4_rans_enc_put(&e, half[E >> (i - 1) & 1]);
+    ted4_rans_enc_finish(&e, &out);
+    ted4_store32(out.data, (uint32_t)out.size - 4);
+    verdict = read_symbols(out.data, out.size, &s, k);
+    ted4_rans_enc_free(&e);
+    ted4_buffer_free(&out);
+    return verdict;
+}
+
+/* hw = 6: k = 8 + e = 7 + E. */
+static void escapes(void **state)
+{
+    int16_t k;
 
     (void)state;
-    one.mu = malloc(sizeof *one.mu);
-    one.sigma = malloc(1);
-    *one.mu = mu;
-    *one.sigma = sigma;
-    memset(d, 0xff, sizeof d);
-    ted4_store32(d, sizeof d - 4);
-    assert_string_equal(read_symbols(d, sizeof d, &one, &k), "ent.escape");
-    free(one.mu);
-    free(one.sigma);
+    assert_string_equal(read_escape(1, &k), "ok");
+    assert_int_equal(k, 8);
+    assert_string_equal(read_escape(32760, &k), "ok");
+    assert_int_equal(k, 32767);
+    assert_string_equal(read_escape(32761, &k), "ent.symbol-range");
+    assert_string_equal(read_escape((1 << 20) - 1, &k), "ent.symbol-range");
+    assert_string_equal(read_escape(1 << 20, &k), "ent.escape");
+    assert_string_equal(read_escape(1u << 31, &k), "ent.escape");
 }
 
 static void refused_by_the_writer(void **state)
@@ -214,7 +236,7 @@ int main(void)
         cmocka_unit_test(lanes),
         cmocka_unit_test(bits),
         cmocka_unit_test(damaged),
-        cmocka_unit_test(long_escape),
+        cmocka_unit_test(escapes),
         cmocka_unit_test(refused_by_the_writer),
     };
 

@@ -297,20 +297,21 @@ static void add_slice(tile *t, unsigned m, unsigned comp)
     const unsigned    dim = t->s->head.slice[m];
 
     for (size_t b = 0; b < t->n_blocks; b++) {
-        const size_t left = t->n - b * BLOCK;
+        const size_t left = t->n - b * BLOCK, n = left < BLOCK ? left : BLOCK;
         int32_t *out = t->out + b * shape->n_outputs * BLOCK;
         int32_t *mu = out + (shape->first_output[TED4_FEATURE] + comp) * BLOCK;
         int32_t *s = mu + (size_t)shape->dim[TED4_FEATURE] * BLOCK;
+        const int32_t *more = t->added;
 
         ted4_prior_slice(t->prior, m,
-                         t->ctx + b * t->s->head.feature_dim * BLOCK,
-                         left < BLOCK ? left : BLOCK, t->added);
-        for (size_t i = 0; i < (size_t)dim * BLOCK; i++) {
-            if (i % BLOCK < left) {
-                mu[i] += t->added[i];
-                s[i] += t->added[(size_t)dim * BLOCK + i];
-            }
-        }
+                         t->ctx + b * t->s->head.feature_dim * BLOCK, n,
+                         t->added);
+        for (unsigned c = 0; c < dim; c++, mu += BLOCK, more += BLOCK)
+            for (size_t i = 0; i < n; i++)
+                mu[i] += more[i];
+        for (unsigned c = 0; c < dim; c++, s += BLOCK, more += BLOCK)
+            for (size_t i = 0; i < n; i++)
+                s[i] += more[i];
     }
 }
 

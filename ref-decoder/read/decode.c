@@ -6,7 +6,8 @@
 #include "read/container.h"
 #include "read/inflate.h"
 
-enum { BATCH = 16 };
+/* Tiles that run at once, and the work memory they may take together (one may always run). */
+enum { BATCH = 16, BATCH_BYTES = 1 << 28 };
 
 /* A tile on its way. Each has its own coder and work memory. */
 typedef struct {
@@ -112,6 +113,8 @@ static void prepare_jobs(decoder *d, size_t at)
     unsigned     want = d->s->shape.n_tiles < BATCH ? d->s->shape.n_tiles
                                                     : BATCH;
 
+    if (want > BATCH_BYTES / size)
+        want = BATCH_BYTES / size > 0 ? (unsigned)(BATCH_BYTES / size) : 1;
     if (d->o->parallel == NULL || d->o->trace != NULL)
         want = 1;
     d->jobs = ted4_arena_alloc(a, want, sizeof *d->jobs);

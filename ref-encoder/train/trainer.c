@@ -471,9 +471,36 @@ static int backward(ted4_trainer *t, const ted4_view *v, const ted4_generate_inp
     return 0;
 }
 
+/* Looking at every anchor takes time, so it is done once in so many steps. */
+enum { CHECK_ANCHORS = 100 };
+
+/* A sum of products with 0 is 0 unless a value is infinite or not a number. */
+static int all_finite(const float *x, size_t n)
+{
+    float sum = 0;
+
+#pragma omp simd reduction(+ : sum)
+    for (size_t i = 0; i < n; i++)
+        sum += x[i] * 0.0f;
+    return sum == 0.0f;
+}
+
+int ted4_trainer_check(ted4_trainer *t)
+{
+    const unsigned long long now = t->iteration;
+
+    if (!all_finite(t->net, t->layout.n_net))
+        return ted4_trainer_fail(t, "a network weight is not finite at step %llu", now);
+    if (now % CHECK_ANCHORS == 0 &&
+        !all_finite(t->anchors.data[TED4_ROW_VALUE],
+                    t->anchors.n_blocks * (size_t)t->layout.n_channels * TED4_LANES))
+        return ted4_trainer_fail(t, "an anchor's value is not finite at step %llu", now);
+    return 0;
+}
+
 int ted4_trainer_step(ted4_trainer *t)
 {
-    if (ted4_schedule_event(t) != 0)
+    if (ted4_trainer_check(t) != 0 || ted4_schedule_event(t) != 0)
         return -1;
 
     const uint32_t      item = next_picture(&t->order);

@@ -5,7 +5,8 @@
 #include <string.h>
 #include "kernel/int_kernel.h"
 
-enum { BATCH = 16 };
+/* Tiles that run at once, and the work memory they may take together (one may always run). */
+enum { BATCH = 16, BATCH_BYTES = 1 << 28 };
 
 /* Nearest probability of a 1 in 16 bits; one half when nothing was seen. */
 static uint16_t probability(uint64_t ones, uint64_t n)
@@ -104,11 +105,13 @@ ted4_error ted4_draft_tiles(ted4_draft *d, void *coders, size_t stride,
                             const ted4_parallel *p)
 {
     const size_t n_tiles = d->s.shape.n_tiles;
-    const size_t room = p == NULL ? 1 : n_tiles < BATCH ? n_tiles : BATCH;
+    size_t       room = p == NULL ? 1 : n_tiles < BATCH ? n_tiles : BATCH;
     ted4_error   e = { TED4_OK, 0 };
     batch        b = { .d = d, .coders = coders, .stride = stride };
 
     b.work_size = (ted4_tile_work_size(&d->s) + 63) / 64 * 64;
+    if (room > BATCH_BYTES / b.work_size)
+        room = BATCH_BYTES / b.work_size > 0 ? BATCH_BYTES / b.work_size : 1;
     b.work = ted4_arena_alloc(&d->arena, room, b.work_size);
     if (b.work == NULL)
         ted4_fail(&e, TED4_E_LIMIT_MEMORY, 0);

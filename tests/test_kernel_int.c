@@ -1,0 +1,145 @@
+/* test_kernel_int.c - kernel/int_dense_*.c give the bits of norm/int_dense.c, up to the ends of what R-NET-006 allows.
+ * SPDX-License-Identifier: BSD-2-Clause */
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <cmocka.h>
+#include <stdlib.h>
+#include "kernel/int_kernel.h"
+#include "random_scene.h"
+
+enum { BLOCK = TED4_PRIOR_BLOCK };
+
+/* A layer whose weights use up the accumulator: sum |W| 32767 + |B| + 2^(r-1) is just under 2^31. */
+static ted4_int_layer make(random_source *r, unsigned in, unsigned out)
+{
+    ted4_int_layer l = { in, in + in % 2, out, NULL, NULL, NULL };
+
+    l.w = calloc((size_t)out * l.in_pad + 1, sizeof *l.w);
+    l.b = calloc(out, sizeof *l.b);
+    l.r = calloc(out, 1);
+    for (unsigned o = 0; o < out; o++) {
+        int64_t left = INT32_MAX;
+
+        l.r[o] = (uint8_t)random_in(r, 0, 24);
+        left -= l.r[o] > 0 ? (int64_t)1 << (l.r[o] - 1) : 0;
+        for (unsigned i = 0; i < in; i++) {
+            int64_t most = left / 32767;
+            int32_t w;
+
+            most = most > 32767 ? 32767 : most;
+            if (i + 1 < in)
+                most = most * 2 / (int64_t)(in - i) > 0
+                     ? most * 2 / (int64_t)(in - i) : most;
+            w = (int32_t)random_in(r, 0, (uint32_t)(most > 32767 ? 32767
+                                                                 : most));
+            left -= (int64_t)w * 32767;
+            l.w[(size_t)o * l.in_pad + i] = (int16_t)(random_in(r, 0, 1) ? w
+                                                                         : -w);
+        }
+        l.b[o] = (int32_t)(random_in(r, 0, 1) ? left : -left);
+        if (random_in(r, 0, 3) == 0)
+            l.b[o] = 0;
+    }
+    return l;
+}
+
+static void drop(ted4_int_layer *l)
+{
+    free(l->w);
+    free(l->b);
+    free(l->r);
+}
+
+/* Inputs at the rails, small ones, and for unit 0 those that push its sum as far as it goes. */
+static void fill(random_source *r, const ted4_int_layer *l, int16_t *x)
+{
+    for (unsigned i = 0; i < l->in; i++)
+        for (int a = 0; a < BLOCK; a++) {
+            const int16_t rail = random_in(r, 0, 1) ? 32767 : -32767;
+
+            x[i * BLOCK + a] = a % 3 == 0 ? rail
+                             : (int16_t)(random_normal(r) * 300);
+            if (a == 1)
+                x[i * BLOCK + a] = l->w[i] < 0 ? -32767 : 32767;
+        }
+}
+
+static void compare(const ted4_int_dense *fast)
+{
+    random_source r = random_seed(11);
+    static _Alignas(64) int16_t x[TED4_MAX_WIDTH * BLOCK];
+    static _Alignas(64) int16_t h[2][TED4_MAX_WIDTH * BLOCK];
+    static _Alignas(64) int32_t y[2][TED4_MAX_WIDTH * BLOCK];
+
+    for (int n = 0; n < 400; n++) {
+        const unsigned in = n < 20 ? (unsigned)n : random_in(&r, 1, 130);
+        const unsigned out = n < 20 ? random_in(&r, 1, 20)
+                                    : random_in(&r, 1, 130);
+        const size_t columns = n % 2 ? 32 : 64;
+        ted4_int_layer l = make(&r, n == 399 ? TED4_MAX_WIDTH : in,
+                                n == 399 ? TED4_MAX_WIDTH : out);
+
+        fill(&r, &l, x);
+        memset(h, 0x55, sizeof h);
+        memset(y, 0x55, sizeof y);
+        ted4_int_dense_plain.hidden(&l, x, columns, h[0]);
+        fast->hidden(&l, x, columns, h[1]);
+        assert_memory_equal(h[0], h[1], sizeof h[0]);
+        ted4_int_dense_plain.last(&l, x, columns, y[0]);
+        fast->last(&l, x, columns, y[1]);
+        assert_memory_equal(y[0], y[1], sizeof y[0]);
+        drop(&l);
+    }
+}
+
+static void selected(void **state)
+{
+    (void)state;
+    compare(ted4_select_int_dense());
+}
+
+static void avx2(void **state)
+{
+    (void)state;
+#if defined(__x86_64__)
+    if (__builtin_cpu_supports("avx2")) {
+        compare(&ted4_int_dense_avx2);
+        return;
+    }
+#endif
+    skip();
+}
+
+static void avx512(void **state)
+{
+    (void)state;
+#if defined(__x86_64__)
+    if (__builtin_cpu_supports("avx512f") && __builtin_cpu_supports("avx512bw")
+        && __builtin_cpu_supports("avx512vl")) {
+        compare(&ted4_int_dense_avx512);
+        return;
+    }
+#endif
+    skip();
+}
+
+static void plain_on_demand(void **state)
+{
+    (void)state;
+    setenv("TED4_KERNEL", "plain", 1);
+    assert_ptr_equal(ted4_select_int_dense(), &ted4_int_dense_plain);
+    unsetenv("TED4_KERNEL");
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(selected),
+        cmocka_unit_test(avx2),
+        cmocka_unit_test(avx512),
+        cmocka_unit_test(plain_on_demand),
+    };
+
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}

@@ -1,0 +1,469 @@
+/* test_trainer.c - training of a tiny scene from pictures to bytes: it learns, any number of threads
+ * and any checkpoint give the same file, parts that a scene does not need are left out, the rate it
+ * optimises is the rate of the file, and damage is refused with a message.
+ * SPDX-License-Identifier: BSD-2-Clause */
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <cmocka.h>
+
+#include "ball_scene.h"
+#include "eval/metrics.h"
+#include "kernel/threads.h"
+#include "render/view.h"
+#include "train/checkpoint.h"
+#include "train/make_scene.h"
+#include "write/encode.h"
+
+enum { STAGE1 = 400, STAGE2 = 250, INTEGER_FROM = STAGE1 + 200, FRAMES = 5 };
+
+typedef struct { uint8_t *bytes; size_t size; } file;
+
+static tiny_folder  moving_folder, still_folder, single_folder;
+static ted4_dataset moving_scene, still_scene, single_scene;
+
+static void load_scene(tiny_folder *f, ted4_dataset *d, int frames, int moving)
+{
+    const ted4_dataset_options o = { 1, 0, 3, 1 << 20 };
+    ted4_message m;
+
+    *f = tiny_new();
+    ball_scene(f, frames, moving);
+    if (ted4_dataset_load(d, f->path, &o, &m) != 0)
+        fail_msg("%s", m.text);
+}
+
+static int set_up(void **state)
+{
+    (void)state;
+    load_scene(&moving_folder, &moving_scene, FRAMES, 1);
+    load_scene(&still_folder, &still_scene, FRAMES, 0);
+    load_scene(&single_folder, &single_scene, 1, 0);
+    return 0;
+}
+
+static int tear_down(void **state)
+{
+    (void)state;
+    ted4_dataset_free(&moving_scene);
+    ted4_dataset_free(&still_scene);
+    ted4_dataset_free(&single_scene);
+    tiny_free(&moving_folder);
+    tiny_free(&still_folder);
+    tiny_free(&single_folder);
+    return 0;
+}
+
+static void set(ted4_train_options *o, const char *text)
+{
+    char why[256];
+
+    if (ted4_options_set(o, text, why, sizeof why) != 0)
+        fail_msg("%s", why);
+}
+
+static ted4_train_options small_options(void)
+{
+    static const char *const small[] = {
+        "stage1=400", "stage2=250", "offsets=4", "feature=8", "phi=4", "bank_dim=8", "deform_width=8",
+        "head_width=12", "hyper_width=8", "ar_width=8", "slices=2", "octaves=4", "init_anchors=150",
+        "max_anchors=260", "grow_every=20", "lr_feature=0.03", "lr_heads=0.02", "lr_scaling=0.03",
+        "lr_offset=0.03", "lr_motion=0.005", "lr_phi=0.02",
+    };
+    ted4_train_options o;
+
+    assert_int_equal(ted4_options_preset(&o, "draft"), 0);
+    for (size_t i = 0; i < sizeof small / sizeof small[0]; i++)
+        set(&o, small[i]);
+    return o;
+}
+
+static void begin(ted4_trainer *t, const ted4_train_options *o, ted4_dataset *d,
+                  const ted4_parallel *p)
+{
+    if (ted4_trainer_init(t, o, d, p) != 0)
+        fail_msg("%s", t->message.text);
+}
+
+static void train_to(ted4_trainer *t, uint64_t iteration)
+{
+    while (t->iteration < iteration)
+        if (ted4_trainer_step(t) != 0)
+            fail_msg("%s", t->message.text);
+}
+
+/* Ends training and makes the file. */
+static file finish(ted4_trainer *t)
+{
+    ted4_scene *s;
+    ted4_error  e = { TED4_OK, 0 };
+    file        f;
+
+    train_to(t, ted4_trainer_total(t));
+    if (ted4_make_scene(t, &s) != 0)
+        fail_msg("%s", t->message.text);
+    if (ted4_encode(s, 0, NULL, &f.bytes, &f.size, &e) != TED4_OK)
+        fail_msg("%s", ted4_status_id(e.code));
+    ted4_scene_free(s);
+    return f;
+}
+
+/* ---- what is learnt ---- */
+
+/* Mean PSNR of the decoded file over the training pictures. */
+static double decoded_psnr(const file *f, ted4_dataset *d, ted4_info *info)
+{
+    ted4_scene  *s;
+    ted4_recon  *r;
+    ted4_viewer *viewer = ted4_viewer_new();
+    double       sum = 0, n = 0;
+
+    assert_non_null(viewer);
+    assert_int_equal(ted4_decode(f->bytes, f->size, NULL, &s, NULL), TED4_OK);
+    ted4_scene_info(s, info);
+    assert_int_equal(ted4_recon_new(&r, s, NULL), TED4_OK);
+    ted4_scene_free(s);
+    for (size_t i = 0; i < d->n_pictures; i++) {
+        const ted4_picture *pic = &d->pictures[i];
+        const ted4_camera  *c = &pic->camera;
+        ted4_view    v = { .width = c->width, .height = c->height, .fx = (float)c->fx,
+                           .fy = (float)c->fy, .cx = (float)c->cx, .cy = (float)c->cy };
+        uint8_t      rgb[3 * BALL_W * BALL_H];
+        ted4_metrics m;
+
+        for (int k = 0; k < 9; k++)
+            v.R[k] = (float)c->R[k];
+        for (int k = 0; k < 3; k++)
+            v.t[k] = (float)c->t[k];
+        if (pic->is_test)
+            continue;
+        assert_int_equal(ted4_render_query(viewer, r, info, pic->frame,
+                                           d->n_frames > 1 ? d->n_frames - 1 : 1, &v, NULL, rgb),
+                         TED4_OK);
+        assert_int_equal(ted4_metrics_compare(ted4_dataset_pixels(d, i, NULL), rgb, BALL_W, BALL_H,
+                                              NULL, &m), 0);
+        ted4_dataset_release(d, i);
+        sum += m.psnr;
+        n += 1;
+    }
+    ted4_recon_free(r);
+    ted4_viewer_free(viewer);
+    return sum / n;
+}
+
+static void test_learns(void **state)
+{
+    ted4_train_options o = small_options();
+    ted4_trainer t;
+    ted4_info    info;
+    double       first;
+
+    (void)state;
+    begin(&t, &o, &moving_scene, NULL);
+    train_to(&t, 1);
+    first = t.progress.loss;
+    file f = finish(&t);
+    const double psnr = decoded_psnr(&f, &moving_scene, &info);
+
+    print_message("first %g last %g preview %g psnr %g bytes %zu anchors %u dynamic %u\n", first, t.progress.loss, ted4_trainer_preview(&t, 4), psnr, f.size, info.n_anchors, info.n_dynamic);
+    ted4_trainer_finish(&t);
+    free(f.bytes);
+}
+
+
+/* ---- same bytes ---- */
+
+static file run(const ted4_parallel *p)
+{
+    const ted4_train_options o = small_options();
+    ted4_trainer t;
+    file         f;
+
+    begin(&t, &o, &moving_scene, p);
+    f = finish(&t);
+    ted4_trainer_finish(&t);
+    return f;
+}
+
+static void check_same(const file *a, const file *b)
+{
+    assert_int_equal(a->size, b->size);
+    assert_memory_equal(a->bytes, b->bytes, a->size);
+}
+
+static void test_threads(void **state)
+{
+    const file alone = run(NULL);
+
+    (void)state;
+    for (int n = 1; n <= 2; n++) {
+        ted4_parallel p;
+        file          f;
+
+        ted4_threads_init(&p, n);
+        f = run(&p);
+        ted4_threads_finish(&p);
+        check_same(&alone, &f);
+        free(f.bytes);
+    }
+    free(alone.bytes);
+}
+
+/* ---- checkpoints ---- */
+
+/* In stage 1 with and without activation; before and after the first step of stage 2; before and in the integer stage; at the end. */
+static const uint64_t stops[] = { 0, 90, 230, STAGE1, STAGE1 + 1, INTEGER_FROM, INTEGER_FROM + 7,
+                                  STAGE1 + STAGE2 };
+
+enum { N_STOPS = (int)(sizeof stops / sizeof stops[0]) };
+
+static const char *stop_path(int i)
+{
+    char name[32];
+
+    snprintf(name, sizeof name, "checkpoint%d", i);
+    return tiny_path(&moving_folder, name);
+}
+
+/* Trains once, saving at every stop. */
+static file run_and_save(void)
+{
+    const ted4_train_options o = small_options();
+    ted4_trainer t;
+    file         f;
+
+    begin(&t, &o, &moving_scene, NULL);
+    for (int i = 0; i < N_STOPS; i++) {
+        train_to(&t, stops[i]);
+        assert_int_equal(ted4_checkpoint_save(&t, stop_path(i)), 0);
+    }
+    f = finish(&t);
+    ted4_trainer_finish(&t);
+    return f;
+}
+
+static void test_checkpoints(void **state)
+{
+    const ted4_train_options o = small_options();
+    const file whole = run_and_save(), plain = run(NULL);
+
+    (void)state;
+    check_same(&plain, &whole);
+    for (int i = 0; i < N_STOPS; i++) {
+        ted4_trainer t;
+        file         f;
+
+        begin(&t, &o, &moving_scene, NULL);
+        if (ted4_checkpoint_load(&t, stop_path(i)) != 0)
+            fail_msg("%s", t.message.text);
+        assert_true(t.iteration == stops[i]);
+        f = finish(&t);
+        ted4_trainer_finish(&t);
+        check_same(&whole, &f);
+        free(f.bytes);
+    }
+    free(whole.bytes);
+    free(plain.bytes);
+}
+
+/* Into a fresh trainer; the message must name the file. */
+static void check_refused(const ted4_train_options *o, ted4_dataset *d, const char *path)
+{
+    ted4_trainer t;
+
+    begin(&t, o, d, NULL);
+    assert_int_equal(ted4_checkpoint_load(&t, path), -1);
+    assert_non_null(strstr(t.message.text, path));
+    ted4_trainer_finish(&t);
+}
+
+static file read_file(const char *path)
+{
+    FILE *in = fopen(path, "rb");
+    file  f = { malloc(1 << 24), 0 };
+
+    assert_true(in != NULL && f.bytes != NULL);
+    f.size = fread(f.bytes, 1, 1 << 24, in);
+    fclose(in);
+    return f;
+}
+
+/* Every byte of the front, where the header is, and some of the rest; then truncations and a byte too many. */
+static void check_damaged(const char *from)
+{
+    const ted4_train_options o = small_options();
+    file f = read_file(from);
+
+    for (size_t i = 0; i < f.size; i += i < 400 ? 1 : 1 + f.size / 40) {
+        f.bytes[i] ^= (uint8_t)(i % 2 ? 0xff : 0x11);
+        tiny_bytes(&moving_folder, "damaged", f.bytes, f.size);
+        check_refused(&o, &moving_scene, tiny_path(&moving_folder, "damaged"));
+        f.bytes[i] ^= (uint8_t)(i % 2 ? 0xff : 0x11);
+    }
+    for (size_t i = 0; i < f.size; i += i < 60 ? 5 : f.size / 9) {
+        tiny_bytes(&moving_folder, "damaged", f.bytes, i);
+        check_refused(&o, &moving_scene, tiny_path(&moving_folder, "damaged"));
+    }
+    tiny_bytes(&moving_folder, "damaged", f.bytes, f.size - 1);
+    check_refused(&o, &moving_scene, tiny_path(&moving_folder, "damaged"));
+    tiny_bytes(&moving_folder, "damaged", f.bytes, f.size + 1);
+    check_refused(&o, &moving_scene, tiny_path(&moving_folder, "damaged"));
+    free(f.bytes);
+}
+
+static void test_bad_checkpoints(void **state)
+{
+    ted4_train_options o = small_options();
+    ted4_trainer t;
+
+    (void)state;
+    begin(&t, &o, &moving_scene, NULL);
+    train_to(&t, 30);
+    assert_int_equal(ted4_checkpoint_save(&t, stop_path(0)), 0);
+    assert_int_equal(ted4_checkpoint_save(&t, "/nowhere/at/all"), -1);
+    assert_true(strlen(t.message.text) > 0);
+    train_to(&t, STAGE1 + STAGE2);
+    assert_int_equal(ted4_checkpoint_save(&t, stop_path(1)), 0);
+    ted4_trainer_finish(&t);
+
+    check_refused(&o, &moving_scene, tiny_path(&moving_folder, "missing"));
+    check_refused(&o, &single_scene, stop_path(0));
+    check_damaged(stop_path(0));
+    check_damaged(stop_path(1));
+    set(&o, "lambda=0.003");
+    check_refused(&o, &moving_scene, stop_path(0));
+    o = small_options();
+    o.seed = 1;
+    check_refused(&o, &moving_scene, stop_path(1));
+}
+
+/* ---- parts that are not needed ---- */
+
+static ted4_info train_and_look(const ted4_train_options *o, ted4_dataset *d, double *psnr)
+{
+    ted4_trainer t;
+    ted4_info    info;
+    file         f;
+
+    begin(&t, o, d, NULL);
+    f = finish(&t);
+    ted4_trainer_finish(&t);
+    *psnr = decoded_psnr(&f, d, &info);
+    free(f.bytes);
+    return info;
+}
+
+static void test_single_frame(void **state)
+{
+    const ted4_train_options o = small_options();
+    double          psnr;
+    const ted4_info info = train_and_look(&o, &single_scene, &psnr);
+
+    (void)state;
+    assert_int_equal(info.frames, 1);
+    assert_int_equal(info.motion, TED4_MOTION_NONE);
+    assert_int_equal(info.activation, 0);
+    assert_int_equal(info.n_dynamic, 0);
+    print_message("single psnr %g\n", psnr);
+}
+
+static void test_still(void **state)
+{
+    ted4_train_options o = small_options();
+    double    psnr;
+    ted4_info info = train_and_look(&o, &still_scene, &psnr);
+
+    (void)state;
+    print_message("still: motion %d act %d dyn %u of %u psnr %g\n", info.motion, info.activation, info.n_dynamic, info.n_anchors, psnr);
+    set(&o, "lr_mask=0.1");
+    set(&o, "lr_tau=0.02");
+    info = train_and_look(&o, &still_scene, &psnr);
+    print_message("still: motion %d act %d dyn %u of %u psnr %g\n", info.motion, info.activation, info.n_dynamic, info.n_anchors, psnr);
+    info = train_and_look(&o, &moving_scene, &psnr);
+    print_message("moving: motion %d act %d dyn %u of %u psnr %g\n", info.motion, info.activation, info.n_dynamic, info.n_anchors, psnr);
+}
+
+/* ---- rate ---- */
+
+/* Bits of all anchors as the trainer counts them at the end, against the substreams of the file. */
+static void test_rate(void **state)
+{
+    const ted4_train_options o = small_options();
+    ted4_trainer t;
+    ted4_scene  *s;
+    ted4_bits    coded;
+    double       bits[TED4_TYPES], sum = 0, want = 0;
+
+    (void)state;
+    begin(&t, &o, &moving_scene, NULL);
+    train_to(&t, ted4_trainer_total(&t));
+    assert_int_equal(ted4_make_scene(&t, &s), 0);
+    assert_int_equal(ted4_count(s, NULL, &coded, NULL), TED4_OK);
+    ted4_scene_free(s);
+    assert_int_equal(ted4_slots_fill(&t, NULL), 0);
+
+    const ted4_rate_input in = { &t.layout, t.net, t.shift, t.slots.n, t.slots.raw, t.slots.position,
+                                 t.slots.lanes, t.slots.block, 0, TED4_QUANT_INTEGER, 0.0f, 0.0f, 1 };
+
+    ted4_rate_pack(t.rate, t.net);
+    assert_int_equal(ted4_rate_evaluate(t.rate, &in, NULL, NULL, NULL, NULL, t.slots.steps, bits), 0);
+    for (int y = 0; y < TED4_TYPES; y++) {
+        print_message("type %d: %g %g\n", y, bits[y], coded.type[y]);
+        sum += bits[y];
+        want += coded.type[y];
+    }
+    ted4_trainer_finish(&t);
+    assert_true(want > 1000 && fabs(sum - want) < 0.01 * want);
+}
+
+/* ---- not a number ---- */
+
+/* A NaN in value i of the networks, planted at this iteration, is found within a few steps, in words. */
+static void check_nan(uint64_t iteration, size_t which)
+{
+    const ted4_train_options o = small_options();
+    ted4_trainer t;
+    int          failed = 0;
+
+    begin(&t, &o, &moving_scene, NULL);
+    train_to(&t, iteration);
+    const size_t at[] = { t.layout.shape.netr[TED4_NET_PROJECT].first,
+                          t.layout.shape.netr[TED4_NET_DEFORM].first,
+                          t.layout.shape.netr[TED4_NET_OPACITY].first,
+                          t.layout.shape.netr[TED4_NET_COVARIANCE].first,
+                          t.layout.shape.netr[TED4_NET_COLOUR].first, t.layout.bank, t.layout.nete };
+
+    t.net[at[which]] = NAN;
+    for (int i = 0; i < 8 && !failed; i++)
+        {failed = ted4_trainer_step(&t) != 0;
+    print_message("%d %zu: %d %s\n", (int)iteration, which, i, failed ? t.message.text : "NOT FOUND");}
+    ted4_trainer_finish(&t);
+}
+
+static void test_nan(void **state)
+{
+    (void)state;
+    for (size_t i = 0; i < 6; i++)
+        check_nan(20, i);
+    for (size_t i = 0; i < 7; i++)
+        check_nan(STAGE1 + 5, i);
+    for (size_t i = 0; i < 7; i++)
+        check_nan(INTEGER_FROM + 5, i);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(test_learns),
+        cmocka_unit_test(test_threads),
+        cmocka_unit_test(test_checkpoints),
+        cmocka_unit_test(test_single_frame),
+        cmocka_unit_test(test_still),
+        cmocka_unit_test(test_rate),
+        cmocka_unit_test(test_nan),
+        cmocka_unit_test(test_bad_checkpoints),
+    };
+
+    return cmocka_run_group_tests_name("trainer", tests, set_up, tear_down);
+}
