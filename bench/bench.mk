@@ -18,3 +18,12 @@ bench-raster: $B/bench/bench_raster $B/plain/bench_raster
 	$B/bench/bench_raster $B/plain/bench_raster
 
 .PHONY: bench-raster
+
+# What the integer entropy model and the range coder cost: make rate-check FILE=x.ted4
+$B/bench/rate_check: $B/bench/rate_check.o $B/libted4enc.a $B/libted4dec.a
+	$(CC) -fopenmp $(LDFLAGS) $^ -o $@ $(LIBS)
+
+rate-check: $B/bench/rate_check
+	$B/bench/rate_check $(FILE)
+
+.PHONY: rate-check

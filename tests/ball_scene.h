@@ -120,8 +120,8 @@ static inline void ball_scene(const tiny_folder *f, int frames, int moving)
     static tiny_string s;
 
     s.n = 0;
-    tiny_add(&s, "{\"fl_x\": %g, \"w\": %d, \"h\": %d, \"fps\": 5, \"ply_file_path\": \"points.ply\", "
-                 "\"frames\": [", BALL_FOCAL, BALL_W, BALL_H);
+    tiny_add(&s, "{\"fl_x\": %g, \"w\": %d, \"h\": %d, \"fps\": 5, "
+                 "\"ply_file_path\": \"points.ply\", \"frames\": [", BALL_FOCAL, BALL_W, BALL_H);
     for (int i = 0; i < frames * BALL_CAMERAS; i++) {
         const int    camera = i % BALL_CAMERAS, frame = i / BALL_CAMERAS;
         const double time = frames > 1 ? (double)frame / (frames - 1) : 0;

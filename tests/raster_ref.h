@@ -1,5 +1,6 @@
-/* raster_ref.h - the image model of render/raster.h with Gaussians in double precision: raster_plain.h rounds them to float, too
- * coarse for differences through a whole training step. Used by test_step_grad.c, which also holds it against raster_plain.h.
+/* raster_ref.h - the image model of render/raster.h with Gaussians in double precision:
+ * raster_plain.h takes them in float, too coarse for differences through a whole training step.
+ * Used by test_step_grad.c, which also holds it against raster_plain.h.
  * SPDX-License-Identifier: BSD-2-Clause */
 #ifndef TED4_RASTER_REF_H
 #define TED4_RASTER_REF_H
@@ -38,7 +39,8 @@ static inline double ref_guarded(double slope, double size, double focal, double
     return fmin(fmax(slope, middle - reach), middle + reach);
 }
 
-/* The covariance on screen is the sum over the Gaussian's axes of (s J R a)(s J R a)^T. 0: culled. */
+/* The covariance on screen is the sum over the Gaussian's axes a of (s J R a)(s J R a)^T. 0:
+ * culled. */
 static inline int ref_footprint_of(const ted4_view *v, const double *splat, ref_footprint *f)
 {
     double t[3], axis[3][3], xx = (double)TED4_RASTER_BLUR, xy = 0, yy = (double)TED4_RASTER_BLUR;
@@ -69,7 +71,8 @@ static inline int ref_footprint_of(const ted4_view *v, const double *splat, ref_
     }
     const double det = xx * yy - xy * xy;
 
-    *f = (ref_footprint){ t[2], { fx * t[0] / t[2] + (double)v->cx, fy * t[1] / t[2] + (double)v->cy },
+    *f = (ref_footprint){ t[2],
+                          { fx * t[0] / t[2] + (double)v->cx, fy * t[1] / t[2] + (double)v->cy },
                           { yy / det, -xy / det, xx / det }, splat[10],
                           { splat[11], splat[12], splat[13] } };
     return 1;
@@ -93,7 +96,8 @@ static inline void ref_blend(const ref_footprint *f, size_t n, const ted4_view *
         const double dx = x - f[i].centre[0], dy = y - f[i].centre[1];
         const double e = 0.5 * (f[i].conic[0] * dx * dx + f[i].conic[2] * dy * dy) +
                          f[i].conic[1] * dx * dy;
-        const double alpha = e > 6 ? 0 : fmin((double)TED4_RASTER_ALPHA_MAX, f[i].opacity * exp(-e));
+        const double alpha = e > 6 ? 0 : fmin((double)TED4_RASTER_ALPHA_MAX,
+                                              f[i].opacity * exp(-e));
 
         if (alpha < (double)TED4_RASTER_ALPHA_MIN)
             continue;

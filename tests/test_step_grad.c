@@ -1,6 +1,8 @@
-/* test_step_grad.c - the gradient of a whole training step, chained as train/trainer.c does it: distortion of rasteriser of generation
- * and, in stage 2, of the quantiser, plus the rate. Its products with random directions, in each part of the model and in all at once,
- * against central differences of double-precision references. Quantisation residuals are held fixed, masks are straight-through.
+/* test_step_grad.c - the gradient of a whole training step, chained as train/trainer.c does it:
+ * distortion of rasteriser of generation and, in stage 2, of the quantiser, plus the rate. Its
+ * products with random directions, in each part of the model and in all at once, against central
+ * differences of double-precision references. Quantisation residuals are held fixed, masks are
+ * straight-through.
  * SPDX-License-Identifier: BSD-2-Clause */
 #include <setjmp.h>
 #include <stdarg.h>
@@ -20,13 +22,13 @@ enum { WIDTH = 32, HEIGHT = 24, PIXELS = WIDTH * HEIGHT, SLOTS = 2, OFFSETS = 3,
        SPLATS = SLOTS * OFFSETS * TED4_LANES, MAX_THETA = 12000 };
 
 #define SSIM_WEIGHT 0.3f
-/* One step of the difference, and how far its two halves may disagree: a jump shows as jump / STEP. */
+/* Step of the difference, and how far its two halves may disagree: a jump shows as jump / STEP. */
 #define STEP       1e-7
 #define JUMP_SHARE 1e-3
 /* Float gradients against double differences, relative to the size of the terms of the product. */
 #define TOLERANCE  1e-4
 
-/* All parameters are one array: the networks, then blocks of channels as train/model.h lays them out. */
+/* All parameters are one array: the networks, then blocks of channels as train/model.h has them. */
 typedef struct {
     ted4_layout layout;
     ted4_view   view;
@@ -146,8 +148,8 @@ static void make(uint32_t seed, uint32_t num, int activation, int stage2)
         for (int j = 0; j < TED4_LANES; j++)
             make_anchor(i, j);
     for (size_t i = 0; i < 3 * PIXELS; i++)
-        pr.truth[i] = (uint8_t)(128.0 + 60.0 * sin((double)(i / 3 % WIDTH) * 0.5 + (double)(i % 3)) +
-                                40.0 * ref_uniform());
+        pr.truth[i] = (uint8_t)(128.0 + 40.0 * ref_uniform() +
+                                60.0 * sin((double)(i / 3 % WIDTH) * 0.5 + (double)(i % 3)));
     make_view();
     for (size_t i = 0; i < pr.n_theta; i++)
         pr.theta[i] = (double)(i < pr.layout.n_net ? pr.net[i] : pr.attr[i - pr.layout.n_net]);
@@ -229,8 +231,8 @@ static double analytic(void)
     ted4_rate       *rate = ted4_rate_new(&pr.layout);
     ted4_raster     *raster = ted4_raster_new();
     ted4_loss_workspace *w = ted4_loss_workspace_new();
-    const ted4_generate_input in = { &pr.layout, pr.net, SLOTS, l.used, l.position, pr.lanes, pr.num,
-                                     pr.den, { pr.camera[0], pr.camera[1], pr.camera[2] },
+    const ted4_generate_input in = { &pr.layout, pr.net, SLOTS, l.used, l.position, pr.lanes,
+                                     pr.num, pr.den, { pr.camera[0], pr.camera[1], pr.camera[2] },
                                      pr.activation };
     ted4_splats s;
     double      bits[TED4_TYPES], l1, ssim, loss;
@@ -241,19 +243,21 @@ static double analytic(void)
     ted4_generator_pack(g, pr.net);
     assert_int_equal(ted4_generate(g, &in, NULL, &s), 0);
     assert_int_equal(ted4_raster_forward(raster, &s, &pr.view, NULL, 1, pr.image), 0);
-    loss = ted4_loss(w, pr.image, pr.truth, WIDTH, HEIGHT, SSIM_WEIGHT, NULL, pr.d_image, &l1, &ssim);
+    loss = ted4_loss(w, pr.image, pr.truth, WIDTH, HEIGHT, SSIM_WEIGHT, NULL, pr.d_image, &l1,
+                     &ssim);
     memset(pr.d_net, 0, sizeof pr.d_net);
     distortion_backward(raster, g, &in, &s, l.d_attr);
     if (pr.stage2) {
         const ted4_rate_input r = rate_input(&l);
 
-        assert_int_equal(ted4_rate_evaluate(rate, &r, NULL, (const float *const *)l.d_attr, l.d_attr,
-                                            pr.d_net, l.steps, bits), 0);
+        assert_int_equal(ted4_rate_evaluate(rate, &r, NULL, (const float *const *)l.d_attr,
+                                            l.d_attr, pr.d_net, l.steps, bits), 0);
         for (int t = 0; t < TED4_TYPES; t++)
             loss += (double)pr.bit_weight * bits[t];
     }
     for (size_t i = 0; i < pr.n_theta; i++)
-        pr.gradient[i] = (double)(i < pr.layout.n_net ? pr.d_net[i] : pr.d_attr[i - pr.layout.n_net]);
+        pr.gradient[i] = (double)(i < pr.layout.n_net ? pr.d_net[i]
+                                                      : pr.d_attr[i - pr.layout.n_net]);
     ted4_generator_free(g);
     ted4_rate_free(rate);
     ted4_raster_free(raster);
@@ -342,14 +346,15 @@ static double reference(const double *theta)
 
 /* ---- directions ---- */
 
-/* A part of the model: network values [first, first + n), or channels when first >= n_net. */
+/* A part of the model: network values, or channels, [first, first + n). */
 typedef struct { const char *name; size_t first, n; int is_channels; } part;
 
 enum { MAX_PARTS = 16 };
 
 static size_t list_parts(part *p)
 {
-    static const char *const nets[TED4_NETS_R] = { "project", "deform", "opacity", "covariance", "colour" };
+    static const char *const nets[TED4_NETS_R] = { "project", "deform", "opacity", "covariance",
+                                                   "colour" };
     static const char *const types[TED4_TYPES] = { "feature", "scaling", "offset", "phi", "tau" };
     const ted4_layout *l = &pr.layout;
     size_t n = 0;
@@ -370,8 +375,9 @@ static size_t list_parts(part *p)
     return n;
 }
 
-/* A random direction within a part, of the length that makes its terms of the product 1 in size. 0: the
- * part has no gradient (tau, where all anchors are on their plateau); the direction is then so long that any would show. */
+/* A random direction within a part, of the length that makes its terms of the product 1 in size.
+ * 0: the part has no gradient (tau, where all anchors are on their plateau); the direction is then
+ * so long that any would show. */
 static int make_direction(const part *p, uint64_t key, double *own)
 {
     double size = 0;
@@ -458,7 +464,10 @@ static void test_renderer(void **state)
     (void)reference(pr.theta);
     for (size_t i = 0; i < s.n; i++)
         for (int c = 0; c < REF_SPLAT; c++)
-            pr.splat[i][c] = (double)(rounded[c][i] = (float)pr.splat[i][c]);
+            rounded[c][i] = (float)pr.splat[i][c];
+    for (size_t i = 0; i < s.n; i++)
+        for (int c = 0; c < REF_SPLAT; c++)
+            pr.splat[i][c] = (double)rounded[c][i];
     for (int c = 0; c < 3; c++) {
         s.mean[c] = rounded[c];
         s.scale[c] = rounded[3 + c];

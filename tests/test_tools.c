@@ -166,6 +166,11 @@ static void test_verdicts(void **state)
     for (int view = 0; view < 3; view++)
         assert_int_equal(run("ted4dec --test v%d.ted4", view), 0);
     assert_string_equal(out, "");
+    assert_int_equal(run("ted4dec --test --json -q v1.ted4"), 0);
+    json_t *const cost = json_loads(out, 0, NULL);
+    assert_true(json_real_value(json_object_get(cost, "decode_ms")) > 0);
+    assert_true(json_real_value(json_object_get(cost, "peak_mib")) > 1);
+    json_decref(cost);
     uint8_t *const data = contents("v1.ted4", &size);
 
     data[size / 2] ^= 16;

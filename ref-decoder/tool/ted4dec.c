@@ -6,6 +6,7 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <sys/resource.h>
 #include <time.h>
 
 #include "actions.h"
@@ -48,7 +49,7 @@ static const ted4_argument OPTIONS[N_OPTIONS] = {
     [OPT_RENDER]    = { 0, "render", "FILE.png", "draw the cameras of --camera; the name may hold one %d" },
     [OPT_CAMERA]    = { 0, "camera", "FILE.json", "list of {width, height, fx, fy, cx, cy, R[9], t[3], frame or time}" },
     [OPT_HASH]      = { 0, "hash", NULL, "print the hash of the decoded integers and, for --frames or --time, of these queries" },
-    [OPT_TEST]      = { 0, "test", NULL, "only decode, checking everything (also what happens when nothing else is asked for)" },
+    [OPT_TEST]      = { 0, "test", NULL, "only decode, checking everything, and tell time and peak memory (also what happens when nothing else is asked for)" },
     [OPT_TRACE]     = { 0, "trace", NULL, "print every syntax element: byte offset, name, index, value" },
     [OPT_THREADS]   = { 'j', "threads", "N", "threads; 0: all cores. Default 0" },
     [OPT_FORCE]     = { 'f', "force", NULL, "overwrite files" },
@@ -192,6 +193,31 @@ static double seconds(void)
     return (double)t.tv_sec + 1e-9 * (double)t.tv_nsec;
 }
 
+/* Is checking the file all that is asked for? */
+static int only_checks(const ted4_settings *s)
+{
+    return s->test || (s->output == NULL && s->render == NULL && !s->hash && !s->trace);
+}
+
+/* What is in the file, and what decoding it to attributes took. ru_maxrss: of this process, its copy of the file included; in KiB
+ * on Linux. */
+static void tell_cost(const ted4_session *s, size_t size, double ms)
+{
+    const ted4_settings *const set = s->set;
+    struct rusage usage;
+    const double mib = getrusage(RUSAGE_SELF, &usage) == 0 ? (double)usage.ru_maxrss / 1024 : 0.0;
+
+    if (set->verbose || (only_checks(set) && !set->quiet))
+        fprintf(stderr,
+                "ted4dec: %s: valid, %zu bytes, %" PRIu32 " anchors, %zu Gaussians, %" PRIu32
+                " frames; decoded to attributes in %.1f ms, peak memory %.1f MiB\n",
+                set->input, size, s->info.n_anchors, s->info.n_gaussians, s->info.frames, ms, mib);
+    if (only_checks(set)) {
+        json_object_set_new(s->report, "decode_ms", json_real(ms));
+        json_object_set_new(s->report, "peak_mib", json_real(mib));
+    }
+}
+
 /* Decodes the input; the scene is needed no longer once there is a recon. */
 static int open_scene(ted4_session *s)
 {
@@ -209,21 +235,15 @@ static int open_scene(ted4_session *s)
         fprintf(stderr, "ted4dec: %s: %s\n", set->input, strerror(errno));
         return TED4_EXIT_TOOL;
     }
-    if (ted4_decode(data, size, &options, &scene, &e) != TED4_OK) {
-        code = ted4_report("ted4dec", set->input, &e, set->json);
-    } else {
+    if (ted4_decode(data, size, &options, &scene, &e) == TED4_OK) {
         ted4_scene_info(scene, &s->info);
-        if (set->verbose)
-            fprintf(stderr,
-                    "ted4dec: %s: %zu bytes, %" PRIu32 " anchors, %zu Gaussians, %" PRIu32
-                    " frames, decoded in %.1f ms\n",
-                    set->input, size, s->info.n_anchors, s->info.n_gaussians, s->info.frames,
-                    1e3 * (seconds() - start));
         e.code = ted4_recon_new(&s->recon, scene, &options);
-        if (e.code != TED4_OK)
-            code = ted4_report("ted4dec", set->input, &e, set->json);
         ted4_scene_free(scene);
     }
+    if (e.code == TED4_OK)
+        tell_cost(s, size, 1e3 * (seconds() - start));
+    else
+        code = ted4_report("ted4dec", set->input, &e, set->json);
     free(data);
     return code;
 }

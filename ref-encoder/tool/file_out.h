@@ -5,7 +5,7 @@
 
 #include <stddef.h>
 
-/* Can path be written: folder exists and is writable, and nothing is there unless force. 0, or -1 with why filled. */
+/* Can path be written: a file can be made beside it, and nothing is there unless force. Leaves nothing behind. 0, or -1 with why filled. */
 int ted4_file_writable(const char *path, int force, char *why, size_t why_size);
 /* 0, or -1 with why filled. */
 int ted4_file_write(const char *path, const void *data, size_t size, char *why,

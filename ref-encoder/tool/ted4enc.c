@@ -119,9 +119,11 @@ static int take_option(request *r, int c, const char *value)
 
 static int parse(request *r, int argc, char **argv)
 {
+    static char   name[] = "ted4enc";   /* what getopt's messages begin with, however we were called */
     struct option list[N_OPTIONS + 1];
     int           c;
 
+    argv[0] = name;
     memset(list, 0, sizeof list);
     for (int i = 0; i < N_OPTIONS; i++)
         list[i] = table[i].o;
@@ -129,8 +131,9 @@ static int parse(request *r, int argc, char **argv)
     while ((c = getopt_long(argc, argv, "o:j:fqvhV", list, NULL)) != -1) {
         const int what = take_option(r, c, optarg);
 
-        if (what < 0 && c != '?')
-            fprintf(stderr, "ted4enc: bad value %s\n", optarg != NULL ? optarg : "");
+        for (int i = 0; what < 0 && i < N_OPTIONS; i++)
+            if (list[i].val == c)
+                fprintf(stderr, "ted4enc: --%s: bad value %s\n", list[i].name, optarg != NULL ? optarg : "");
         if (what != 0)
             return what;
     }
@@ -289,7 +292,9 @@ int main(int argc, char **argv)
         return parsed > 0 ? EXIT_FINE : EXIT_TOOL;
     if (set_options(&r, &o) != EXIT_FINE)
         return EXIT_TOOL;
-    if (!r.check && ted4_file_writable(r.out, r.force, why, sizeof why) != 0)
+    if (!r.check && (ted4_file_writable(r.out, r.force, why, sizeof why) != 0 ||
+                     (r.checkpoint != NULL &&
+                      ted4_file_writable(r.checkpoint, 1, why, sizeof why) != 0)))
         return complain(why);
 
     const ted4_dataset_options wanted = { r.downscale, !r.black, r.seed, (size_t)2 << 30 };

@@ -106,8 +106,8 @@ static void walk(stream *s, ted4_trainer *t)
         put(s, t->shift, t->layout.shape.n_units);
 }
 
-/* Before anything in a file is believed, for sizes in it decide about memory: the last eight bytes are the hash of all others. The file
- * is at its start again afterwards. */
+/* The last eight bytes are the hash of all others. Looked at before anything in the file is
+ * believed, for sizes in it decide about memory. The file is at its start again afterwards. */
 static int intact(FILE *file, XXH3_state_t *hash)
 {
     uint8_t  bytes[1 << 14];

@@ -122,7 +122,7 @@ int ted4_make_scene(ted4_trainer *t, ted4_scene **scene)
     uint32_t   *keep;
 
     *scene = NULL;
-    if (ted4_trainer_check(t) != 0 || settle(t) != 0)
+    if (ted4_trainer_check(t, 1) != 0 || settle(t) != 0)
         return -1;
     keep = malloc((t->anchors.n + 1) * sizeof *keep);
     if (keep == NULL)

@@ -88,6 +88,31 @@ typedef struct {
     size_t             n;
 } fill_job;
 
+/* Temporal features start as waves over space, so that neighbours are moved together and the decoder can tell places apart from the first step: with equal
+ * features all anchors could only move as one. Wavelengths from the whole scene to a sixteenth of it. */
+#define PHI_AMPLITUDE 0.5f
+
+static void fill_phi(fill_job *f, size_t i)
+{
+    const ted4_layout *l = f->l;
+
+    for (int c = 0; c < l->head.phi_dim; c++) {
+        const uint64_t key = ted4_mix(0x706869u + (uint64_t)c);
+        const float    turns = exp2f(4.0f * ted4_uniform(key, 0));
+        float          phase = ted4_uniform(key, 1), w[3], norm = 1e-6f;
+
+        for (uint64_t j = 0; j < 3; j++) {
+            w[j] = 2.0f * ted4_uniform(key, 2 + j) - 1.0f;
+            norm += w[j] * w[j];
+        }
+        for (int j = 0; j < 3; j++)
+            phase += 0.5f * turns * w[j] / sqrtf(norm) *
+                     *ted4_cell(f->a, TED4_ROW_POSITION, i, j);
+        *ted4_cell(f->a, TED4_ROW_VALUE, i, l->first[TED4_PHI] + c) =
+            PHI_AMPLITUDE * sinf(6.2831853f * phase);
+    }
+}
+
 static void fill_anchor(fill_job *f, size_t i)
 {
     const ted4_layout *l = f->l;
@@ -98,6 +123,7 @@ static void fill_anchor(fill_job *f, size_t i)
     for (int j = 0; j < 6; j++)
         *ted4_cell(f->a, TED4_ROW_VALUE, i, l->first[TED4_SCALING] + j) =
             l->head.scale_domain == TED4_SCALE_LOG2 ? log2f(d) : d;
+    fill_phi(f, i);
     if (l->first[TED4_TAU] >= 0) {
         const float tau[4] = { 0.0f, -3.3f, 1.0f, -3.3f };   /* b = 0.1 */
 

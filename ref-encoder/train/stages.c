@@ -9,6 +9,7 @@
 #include "seed.h"
 #include "space.h"
 #include "trainer.h"
+#include "transient.h"
 #include "write/snap.h"
 
 /* spec 11: time of frame j. */
@@ -17,7 +18,7 @@ static float frame_time(const ted4_trainer *t, uint32_t j)
     return t->data->n_frames > 1 ? (float)j / (float)(t->data->n_frames - 1) : 0.0f;
 }
 
-/* Each anchor's activation starts as the span between the first and the last time at which a training view sees it, less half a frame at each end: with the
+/* Each anchor's activation, transients aside, starts as the span between the first and the last time at which a training view sees it, less half a frame at each end: with the
  * first frame of the sequence exactly at a_s no time would ever lie before it, and its gradient would be zero for good (algorithm facts 5.8.1). */
 int ted4_activation_begin(ted4_trainer *t)
 {
@@ -61,6 +62,8 @@ int ted4_activation_begin(ted4_trainer *t)
 
         if (from > to)
             from = to = 0.5f * (from + to);
+        if (ted4_is_transient(t, i))
+            continue;
         *ted4_cell(a, TED4_ROW_VALUE, i, first) = from;
         *ted4_cell(a, TED4_ROW_VALUE, i, first + 2) = to;
     }

@@ -11,6 +11,7 @@
 #include "random.h"
 #include "seed.h"
 #include "space.h"
+#include "transient.h"
 
 int ted4_trainer_fail(ted4_trainer *t, const char *format, ...)
 {
@@ -167,7 +168,7 @@ int ted4_trainer_init(ted4_trainer *t, const ted4_train_options *o, ted4_dataset
     if (t->anchors.n == 0)
         return ted4_trainer_fail(t, "no initial point lies inside the scene's bounds");
     ted4_seed_networks(t->net, &t->layout, o->seed);
-    return 0;
+    return ted4_seed_transients(t);
 }
 
 void ted4_trainer_finish(ted4_trainer *t)
@@ -440,7 +441,7 @@ static int render(ted4_trainer *t, const ted4_picture *pic, int training, ted4_v
     in->lanes = t->slots.lanes;
     in->num = t->data->n_frames > 1 ? pic->frame : 0;
     in->den = t->data->n_frames > 1 ? t->data->n_frames - 1 : 1;
-    in->activation = ted4_activation_on(t);
+    in->activation = t->layout.head.activation;
     if (t->stage2) {
         slot_job j = { .t = t, .key = ted4_random(t->opt.seed, t->iteration),
                        .quant = training && !t->integer ? TED4_QUANT_NOISE
@@ -485,13 +486,13 @@ static int all_finite(const float *x, size_t n)
     return sum == 0.0f;
 }
 
-int ted4_trainer_check(ted4_trainer *t)
+int ted4_trainer_check(ted4_trainer *t, int anchors)
 {
     const unsigned long long now = t->iteration;
 
     if (!all_finite(t->net, t->layout.n_net))
         return ted4_trainer_fail(t, "a network weight is not finite at step %llu", now);
-    if (now % CHECK_ANCHORS == 0 &&
+    if (anchors &&
         !all_finite(t->anchors.data[TED4_ROW_VALUE],
                     t->anchors.n_blocks * (size_t)t->layout.n_channels * TED4_LANES))
         return ted4_trainer_fail(t, "an anchor's value is not finite at step %llu", now);
@@ -500,7 +501,8 @@ int ted4_trainer_check(ted4_trainer *t)
 
 int ted4_trainer_step(ted4_trainer *t)
 {
-    if (ted4_trainer_check(t) != 0 || ted4_schedule_event(t) != 0)
+    if (ted4_trainer_check(t, t->iteration % CHECK_ANCHORS == 0) != 0 ||
+        ted4_schedule_event(t) != 0)
         return -1;
 
     const uint32_t      item = next_picture(&t->order);

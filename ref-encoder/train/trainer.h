@@ -104,8 +104,9 @@ int  ted4_integer_rate(ted4_trainer *t, double *bits);
 /* Fresh workspaces and network arrays after t->layout changed. */
 int  ted4_trainer_rebuild(ted4_trainer *t);
 
-/* Have all values stayed finite? The rasteriser passes over Gaussians that are not, so the loss alone does not tell. 0, or -1 with t->message. trainer.c */
-int  ted4_trainer_check(ted4_trainer *t);
+/* Are all network weights, and if wanted all values of anchors, finite? The rasteriser passes over
+ * Gaussians that are not, so the loss alone does not tell. 0, or -1 with t->message. trainer.c */
+int  ted4_trainer_check(ted4_trainer *t, int anchors);
 
 int  ted4_trainer_fail(ted4_trainer *t, const char *format, ...);
 

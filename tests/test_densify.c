@@ -1,0 +1,519 @@
+/* test_densify.c - voxel sets (train/cells.h), blocks of anchors (train/anchors.h), and growth and
+ * pruning (train/densify.c) from planted statistics.
+ * SPDX-License-Identifier: BSD-2-Clause */
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <stdlib.h>
+#include <cmocka.h>
+
+#include "cloud_case.h"
+#include "norm/half.h"
+#include "train/cells.h"
+
+static cloud_case cloud;
+
+/* ---- cells ---- */
+
+static void test_cells(void **state)
+{
+    enum { N = 5000 };
+    ted4_cells c;
+
+    (void)state;
+    assert_int_equal(ted4_cells_init(&c, N), 0);
+    for (int round = 0; round < 2; round++) {
+        for (uint64_t i = 0; i < N; i++)
+            assert_int_equal(ted4_cells_add(&c, i * i + 1), 1);
+        for (uint64_t i = 0; i < N; i++)
+            assert_int_equal(ted4_cells_add(&c, i * i + 1), 0);
+        assert_int_equal(c.n, N);
+        ted4_cells_clear(&c);
+        assert_int_equal(c.n, 0);
+    }
+    ted4_cells_finish(&c);
+    assert_int_equal(ted4_cells_init(&c, 0), 0);
+    ted4_cells_finish(&c);
+}
+
+/* Points of one voxel share a key, neighbours never do, at the finest grid too. */
+static void test_cell_key(void **state)
+{
+    static const double sizes[] = { 2, 0.3, 0.01, 0x1p-19 };
+
+    (void)state;
+    for (size_t s = 0; s < sizeof sizes / sizeof sizes[0]; s++)
+        for (uint64_t i = 0; i < 500; i++) {
+            const double cell = sizes[s], most = floor(1 / cell) - 2;
+            double       at[3];
+            float        p[3], q[3];
+            uint64_t     key;
+
+            for (uint64_t j = 0; j < 3; j++) {
+                at[j] = rint((2 * (double)ted4_uniform(i, j) - 1) * fmax(most, 0));
+                p[j] = (float)(at[j] * cell);
+                const double off = s < 3 ? 0.9 * ((double)ted4_uniform(i, 3 + j) - 0.5) : 0;
+
+                q[j] = (float)((at[j] + off) * cell);
+            }
+            key = ted4_cell_key(p, cell);
+            assert_true(key != 0 && key == ted4_cell_key(q, cell));
+            for (int j = 0; j < 6; j++) {
+                memcpy(q, p, sizeof q);
+                q[j / 2] = (float)((at[j / 2] + (j % 2 ? 1 : -1)) * cell);
+                assert_true(ted4_cell_key(q, cell) != key);
+            }
+        }
+}
+
+/* ---- blocks of anchors ---- */
+
+static void begin(ted4_trainer *t)
+{
+    if (ted4_trainer_init(t, &cloud.options, &cloud.data, NULL) != 0)
+        fail_msg("%s", t->message.text);
+}
+
+/* A number that tells which anchor, row kind and row it is. */
+static float mark(size_t i, int kind, int row)
+{
+    return (float)(1 + i) + 0.001f * (float)row + 10000.0f * (float)kind;
+}
+
+static void mark_all(ted4_anchors *a)
+{
+    for (int k = 0; k < TED4_ROWS; k++)
+        for (size_t i = 0; i < a->n; i++)
+            for (int r = 0; r < a->rows[k]; r++)
+                *ted4_cell(a, (ted4_row)k, i, r) = mark(i, k, r);
+}
+
+/* Anchor i holds the marks of anchor was. */
+static void check_marks(const ted4_anchors *a, size_t i, size_t was)
+{
+    for (int k = 0; k < TED4_ROWS; k++)
+        for (int r = 0; r < a->rows[k]; r++)
+            if (k != TED4_ROW_POSITION)
+                assert_true(*ted4_cell(a, (ted4_row)k, i, r) == mark(was, k, r));
+}
+
+/* Sizes agree, rows are aligned, unused lanes are zero. */
+static void check_blocks(const ted4_anchors *a)
+{
+    assert_int_equal(a->n_blocks, (a->n + TED4_LANES - 1) / TED4_LANES);
+    assert_true(a->n_blocks <= a->capacity);
+    for (int k = 0; k < TED4_ROWS; k++) {
+        assert_true((uintptr_t)a->data[k] % 64 == 0);
+        for (size_t i = a->n; i < a->n_blocks * TED4_LANES; i++)
+            for (int r = 0; r < a->rows[k]; r++)
+                assert_true(*ted4_cell(a, (ted4_row)k, i, r) == 0.0f);
+    }
+    for (size_t b = 0; b < a->n_blocks; b++) {
+        uint32_t want = 0;
+
+        for (size_t j = 0; j < TED4_LANES; j++)
+            want |= (uint32_t)(b * TED4_LANES + j < a->n) << j;
+        assert_true(ted4_block_lanes(a, b) == want);
+    }
+}
+
+static void test_resize(void **state)
+{
+    static const size_t sizes[] = { 1, 31, 32, 33, 64, 40, 400, 399, 65, 2, 0, 5, 1000 };
+    ted4_trainer t;
+    ted4_anchors a;
+
+    (void)state;
+    cloud_make(&cloud, 5);
+    begin(&t);
+    assert_int_equal(ted4_anchors_init(&a, &t.layout), 0);
+    check_blocks(&a);
+    for (size_t s = 0; s < sizeof sizes / sizeof sizes[0]; s++) {
+        const size_t before = a.n, kept = before < sizes[s] ? before : sizes[s];
+
+        mark_all(&a);
+        assert_int_equal(ted4_anchors_resize(&a, sizes[s]), 0);
+        assert_int_equal(a.n, sizes[s]);
+        check_blocks(&a);
+        for (size_t i = 0; i < kept; i++)
+            check_marks(&a, i, i);
+        for (size_t i = kept; i < a.n; i++)
+            for (int k = 0; k < TED4_ROWS; k++)
+                for (int r = 0; r < a.rows[k]; r++)
+                    assert_true(*ted4_cell(&a, (ted4_row)k, i, r) == 0.0f);
+    }
+    ted4_anchors_finish(&a);
+    ted4_trainer_finish(&t);
+}
+
+static void test_select(void **state)
+{
+    enum { N = 75, KEPT = 41 };
+    ted4_trainer t;
+    uint32_t     order[N];
+
+    (void)state;
+    cloud_make(&cloud, 5);
+    begin(&t);
+    assert_int_equal(ted4_anchors_resize(&t.anchors, N), 0);
+    mark_all(&t.anchors);
+    for (uint32_t i = 0; i < N; i++)
+        order[i] = i * 7 % N;           /* 7 and 75 have no common factor */
+    assert_int_equal(ted4_anchors_select(&t.anchors, order, KEPT), 0);
+    assert_int_equal(t.anchors.n, KEPT);
+    check_blocks(&t.anchors);
+    for (size_t i = 0; i < KEPT; i++)
+        check_marks(&t.anchors, i, order[i]);
+    assert_int_equal(ted4_anchors_select(&t.anchors, order, 0), 0);
+    check_blocks(&t.anchors);
+    ted4_trainer_finish(&t);
+}
+
+static uint64_t code_of(const ted4_anchors *a, size_t i)
+{
+    uint16_t p[3];
+
+    for (int j = 0; j < 3; j++)
+        p[j] = ted4_float_to_half(*ted4_cell(a, TED4_ROW_POSITION, i, j));
+    return ted4_morton(p);
+}
+
+/* Morton order of binary16 positions; anchors that coincide keep their order. */
+static void test_sort(void **state)
+{
+    enum { N = 200 };
+    ted4_trainer t;
+    ted4_anchors *a = &t.anchors;
+    int          ties = 0;
+
+    (void)state;
+    cloud_make(&cloud, 5);
+    begin(&t);
+    assert_int_equal(ted4_anchors_resize(a, N), 0);
+    mark_all(a);
+    for (size_t i = 0; i < N; i++)
+        for (int j = 0; j < 3; j++)     /* the last 50 repeat the first, a hair off */
+            *ted4_cell(a, TED4_ROW_POSITION, i, j) =
+                (2.0f * ted4_uniform((uint64_t)j, i % 150) - 1.0f) *
+                (i < 150 ? 1.0f : 1.0f + 0x1p-23f);
+    assert_int_equal(ted4_anchors_sort(a), 0);
+    check_blocks(a);
+    for (size_t i = 0; i < N; i++) {
+        const float was = *ted4_cell(a, TED4_ROW_VALUE, i, 0) - 1.0f;
+
+        check_marks(a, i, (size_t)was);
+        if (i == 0)
+            continue;
+        assert_true(code_of(a, i - 1) <= code_of(a, i));
+        if (code_of(a, i - 1) == code_of(a, i)) {
+            ties++;
+            assert_true(*ted4_cell(a, TED4_ROW_VALUE, i - 1, 0) < was + 1.0f);
+        }
+    }
+    assert_true(ties >= 45);
+    ted4_trainer_finish(&t);
+}
+
+/* ---- growth ---- */
+
+enum { K = 3, SEEN = 5 };       /* an offset counts from more than 0.4 grow_every = 4 views on */
+
+#define THRESHOLD 2e-4f
+
+static void plant(ted4_trainer *t, size_t i, int k, float gradient, float views)
+{
+    *ted4_cell(&t->anchors, TED4_ROW_GRADIENT, i, k) = gradient * views;
+    *ted4_cell(&t->anchors, TED4_ROW_GRADIENT, i, K + k) = views;
+}
+
+/* Anchor i's offset k points half-way between lattice points, at a place of its own. */
+static void aim(ted4_trainer *t, size_t i, int k, float place[3])
+{
+    const ted4_layout *l = &t->layout;
+
+    for (int j = 0; j < 3; j++) {
+        const float o = 0.5f + 0.1f * (float)(k - 1), s =
+            exp2f(*ted4_cell(&t->anchors, TED4_ROW_VALUE, i, l->first[TED4_SCALING] + j));
+
+        *ted4_cell(&t->anchors, TED4_ROW_VALUE, i, l->first[TED4_OFFSET] + 3 * k + j) = o;
+        place[j] = *ted4_cell(&t->anchors, TED4_ROW_POSITION, i, j) + o * s;
+    }
+}
+
+/* Writes into the first channel of each anchor, and so of its children, which one it is. */
+static void name_anchors(ted4_trainer *t)
+{
+    for (size_t i = 0; i < t->anchors.n; i++)
+        *ted4_cell(&t->anchors, TED4_ROW_VALUE, i, 0) = (float)(i + 1);
+}
+
+/* New anchors have fresh moments and zero offsets; old ones have moments here. */
+static void give_moments(ted4_trainer *t)
+{
+    for (size_t i = 0; i < t->anchors.n; i++)
+        for (int c = 0; c < t->layout.n_channels; c++)
+            *ted4_cell(&t->anchors, TED4_ROW_V, i, c) = 1.0f;
+}
+
+static int is_new(const ted4_trainer *t, size_t i)
+{
+    return *ted4_cell(&t->anchors, TED4_ROW_V, i, 0) == 0.0f;
+}
+
+/* A new anchor: on the grid of one of three depths, half a voxel at most from the place; its
+ * parent's values but for offsets and scalings. */
+static void check_child(const ted4_trainer *t, size_t i, const float place[3])
+{
+    const ted4_layout *l = &t->layout;
+    const int    scaling = l->first[TED4_SCALING];
+    const double s = exp2((double)*ted4_cell(&t->anchors, TED4_ROW_VALUE, i, scaling));
+    int          depth = 0;
+
+    while (depth < 3 && fabs(s - t->cell * pow(0.25, depth)) > 1e-5 * s)
+        depth++;
+    assert_true(depth < 3);
+    for (int j = 0; j < 3; j++) {
+        const double x = (double)*ted4_cell(&t->anchors, TED4_ROW_POSITION, i, j);
+
+        assert_true(fabs(x - (double)place[j]) <= 0.5 * s + 1e-6);
+        assert_true(fabs(x / s - rint(x / s)) < 1e-4);
+    }
+    for (int c = 0; c < l->n_channels; c++) {
+        const float x = *ted4_cell(&t->anchors, TED4_ROW_VALUE, i, c);
+
+        if (c >= l->first[TED4_OFFSET] && c < l->first[TED4_OFFSET] + 3 * K)
+            assert_true(x == 0.0f);
+        if (c >= scaling && c < scaling + 6)
+            assert_true(fabs((double)x - log2(s)) < 1e-5);
+        if (c >= l->offset_logit)
+            assert_true(x == 1.0f);
+        assert_true(*ted4_cell(&t->anchors, TED4_ROW_V, i, c) == 0.0f);
+    }
+    for (int r = 0; r < 2 * K; r++)
+        assert_true(*ted4_cell(&t->anchors, TED4_ROW_GRADIENT, i, r) == 0.0f);
+}
+
+/* Every fourth anchor gets a strong gradient on one offset; others a weak one, or too few views. */
+static void test_growth(void **state)
+{
+    static float place[CLOUD_POINTS][3];
+    ted4_trainer t;
+    size_t       children[CLOUD_POINTS] = { 0 }, n_parents = 0, n_planted = 0, old = 0;
+
+    (void)state;
+    cloud_make(&cloud, 5);
+    begin(&t);
+    name_anchors(&t);
+    give_moments(&t);
+    for (size_t i = 0; i < CLOUD_POINTS; i++) {
+        const int k = (int)(i % K);
+
+        aim(&t, i, k, place[i]);
+        plant(&t, i, k, (i % 4 == 1 ? 0.9f : 20.0f) * THRESHOLD, i % 4 < 2 ? SEEN : SEEN - 1);
+        n_planted += i % 4 == 0;
+    }
+    assert_int_equal(ted4_densify_adjust(&t), 0);
+    check_blocks(&t.anchors);
+    for (size_t i = 0; i < t.anchors.n; i++) {
+        const size_t id = (size_t)*ted4_cell(&t.anchors, TED4_ROW_VALUE, i, 0) - 1;
+
+        assert_true(i == 0 || code_of(&t.anchors, i - 1) <= code_of(&t.anchors, i));
+        for (int j = 0; j < 3; j++)
+            assert_true(fabsf(*ted4_cell(&t.anchors, TED4_ROW_POSITION, i, j)) <= 1.0f);
+        if (!is_new(&t, i)) {
+            old++;
+            continue;
+        }
+        assert_true(id % 4 == 0);
+        check_child(&t, i, place[id]);
+        n_parents += children[id]++ == 0;
+        assert_true(children[id] <= 3);
+    }
+    assert_int_equal(old, CLOUD_POINTS);
+    /* One in 64 has bad luck at all three depths. */
+    assert_true(n_parents >= n_planted * 9 / 10);
+    ted4_trainer_finish(&t);
+}
+
+/* No two anchors of one adjustment and depth in a voxel; a place outside the cube grows nothing;
+ * statistics that were used start afresh, the others go on. */
+static void test_growth_limits(void **state)
+{
+    ted4_trainer t;
+    float        place[3];
+
+    (void)state;
+    cloud_make(&cloud, 5);
+    begin(&t);
+    give_moments(&t);
+    aim(&t, 50, 0, place);
+    for (int k = 0; k < K; k++)         /* offsets 1 and 2 are zero: there is an anchor already */
+        plant(&t, 50, k, 1.0f, SEEN);
+    plant(&t, 51, 0, 1.0f, SEEN - 1);
+    *ted4_cell(&t.anchors, TED4_ROW_VALUE, 52, t.layout.first[TED4_OFFSET]) = 30.0f;
+    plant(&t, 52, 0, 1.0f, SEEN);
+    *ted4_cell(&t.anchors, TED4_ROW_OPACITY, 51, 0) = 0.75f;
+    *ted4_cell(&t.anchors, TED4_ROW_OPACITY, 51, 1) = 3.0f;
+    name_anchors(&t);
+    assert_int_equal(ted4_densify_adjust(&t), 0);
+    assert_true(t.anchors.n <= CLOUD_POINTS + 3);
+    for (size_t i = 0; i < t.anchors.n; i++) {
+        const float id = *ted4_cell(&t.anchors, TED4_ROW_VALUE, i, 0) - 1.0f;
+
+        if (is_new(&t, i)) {
+            assert_true(id == 50.0f);
+            check_child(&t, i, place);
+        } else if (id == 51.0f) {
+            assert_true(*ted4_cell(&t.anchors, TED4_ROW_GRADIENT, i, K) == SEEN - 1);
+            assert_true(*ted4_cell(&t.anchors, TED4_ROW_OPACITY, i, 0) == 0.75f);
+        } else {
+            for (int r = 0; r < 2 * K; r++)
+                assert_true(*ted4_cell(&t.anchors, TED4_ROW_GRADIENT, i, r) == 0.0f);
+        }
+    }
+    ted4_trainer_finish(&t);
+}
+
+/* With room for some only, those with the largest gradients come. */
+static void test_max_anchors(void **state)
+{
+    enum { ROOM = 7 };
+
+    (void)state;
+    for (int full = 0; full < 2; full++) {
+        ted4_trainer t;
+        float        place[3], least = 1e9f;
+        size_t       n = 0;
+
+        cloud_make(&cloud, 5);
+        cloud.options.max_anchors = CLOUD_POINTS + (full ? -20 : ROOM);
+        begin(&t);
+        give_moments(&t);
+        for (size_t i = 0; i < CLOUD_POINTS; i++) {
+            aim(&t, i, 0, place);
+            plant(&t, i, 0, (1.0f + (float)i) * THRESHOLD, SEEN);
+        }
+        name_anchors(&t);
+        assert_int_equal(ted4_densify_adjust(&t), 0);
+        assert_int_equal(t.anchors.n, CLOUD_POINTS + (full ? 0 : ROOM));
+        for (size_t i = 0; i < t.anchors.n; i++)
+            if (is_new(&t, i)) {
+                least = fminf(least, *ted4_cell(&t.anchors, TED4_ROW_VALUE, i, 0));
+                n++;
+            }
+        assert_int_equal(n, full ? 0 : ROOM);
+        /* Chance and the cube's faces drop some of the strongest; the weakest never come. */
+        assert_true(full || least > CLOUD_POINTS - 60);
+        ted4_trainer_finish(&t);
+    }
+}
+
+/* ---- pruning ---- */
+
+enum { VISITS = 9 };            /* more than 0.8 grow_every */
+
+static void fade(ted4_trainer *t, size_t i, double mean, float visits)
+{
+    *ted4_cell(&t->anchors, TED4_ROW_OPACITY, i, 0) = (float)mean * visits;
+    *ted4_cell(&t->anchors, TED4_ROW_OPACITY, i, 1) = visits;
+}
+
+/* Anchor 4 i: faded; 4 i + 1: just not; 4 i + 2: faded but not seen enough; 4 i + 3: never seen. */
+static void test_pruning(void **state)
+{
+    ted4_trainer t;
+
+    (void)state;
+    cloud_make(&cloud, 5);
+    begin(&t);
+    name_anchors(&t);
+    for (size_t i = 0; i < CLOUD_POINTS; i++)
+        if (i % 4 < 3)
+            fade(&t, i, t.opt.prune_opacity * (i % 4 == 1 ? 1.01 : 0.99), i % 4 == 2 ? 8 : VISITS);
+    assert_int_equal(ted4_densify_adjust(&t), 0);
+    check_blocks(&t.anchors);
+    assert_int_equal(t.anchors.n, CLOUD_POINTS * 3 / 4);
+    for (size_t i = 0; i < t.anchors.n; i++) {
+        const int id = (int)*ted4_cell(&t.anchors, TED4_ROW_VALUE, i, 0) - 1;
+
+        assert_true(id % 4 != 0);
+        assert_true(*ted4_cell(&t.anchors, TED4_ROW_OPACITY, i, 1) == (id % 4 == 2 ? 8.0f : 0.0f));
+    }
+    ted4_trainer_finish(&t);
+}
+
+static void test_all_faded(void **state)
+{
+    ted4_trainer t;
+
+    (void)state;
+    cloud_make(&cloud, 5);
+    begin(&t);
+    for (size_t i = 0; i < CLOUD_POINTS; i++)
+        fade(&t, i, 0, VISITS);
+    assert_int_equal(ted4_densify_adjust(&t), -1);
+    assert_non_null(strstr(t.message.text, "faded"));
+    ted4_trainer_finish(&t);
+}
+
+/* ---- statistics of a step ---- */
+
+static void test_gather(void **state)
+{
+    enum { SPLATS = 2 * K * TED4_LANES };
+    static float   opacity[SPLATS], moved[SPLATS];
+    static uint8_t visible[SPLATS];
+    const ted4_splats s = { .n = SPLATS, .opacity = opacity };
+    ted4_trainer   t;
+
+    (void)state;
+    cloud_make(&cloud, 5);
+    begin(&t);
+    for (size_t i = 0; i < SPLATS; i++) {
+        opacity[i] = 0.25f * (float)(i % 3);
+        moved[i] = (float)i;
+        visible[i] = i % 2;
+    }
+    assert_int_equal(ted4_slots_fill(&t, NULL), 0);
+    t.slots.n = 2;                      /* the second block is seen, and half of the fourth */
+    t.slots.block[0] = 1;
+    t.slots.block[1] = 3;
+    t.slots.lanes[1] = 0xffffu;
+    t.splat_gradient.mean2d = moved;
+    t.splat_gradient.visible = visible;
+    ted4_densify_gather(&t, &s);
+    ted4_densify_gather(&t, &s);
+    for (size_t i = 0; i < t.anchors.n; i++) {
+        const size_t slot = i / TED4_LANES == 1 ? 0 : 1, j = i % TED4_LANES;
+        const int    seen = i / TED4_LANES == 1 || i / TED4_LANES == 3;
+        float        sum = 0;
+
+        for (int k = 0; k < K; k++) {
+            const size_t at = (slot * K + (size_t)k) * TED4_LANES + j;
+            const float  on = seen && at % 2 ? 2.0f : 0.0f;
+
+            sum += seen ? 2 * opacity[at] : 0;
+            assert_true(*ted4_cell(&t.anchors, TED4_ROW_GRADIENT, i, k) == on * moved[at]);
+            assert_true(*ted4_cell(&t.anchors, TED4_ROW_GRADIENT, i, K + k) == on);
+        }
+        assert_true(*ted4_cell(&t.anchors, TED4_ROW_OPACITY, i, 0) == sum);
+        assert_true(*ted4_cell(&t.anchors, TED4_ROW_OPACITY, i, 1) ==
+                    (seen && (slot == 0 || j < 16) ? 2.0f : 0.0f));
+    }
+    ted4_trainer_finish(&t);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(test_cells), cmocka_unit_test(test_cell_key),
+        cmocka_unit_test(test_resize), cmocka_unit_test(test_select),
+        cmocka_unit_test(test_sort), cmocka_unit_test(test_growth),
+        cmocka_unit_test(test_growth_limits), cmocka_unit_test(test_max_anchors),
+        cmocka_unit_test(test_pruning), cmocka_unit_test(test_all_faded),
+        cmocka_unit_test(test_gather),
+    };
+
+    return cmocka_run_group_tests_name("densify", tests, NULL, NULL);
+}

@@ -1,0 +1,286 @@
+/* test_seed.c - where training starts: normalised space and views in it (train/space.h), anchors
+ * from points (train/seed.h).
+ * SPDX-License-Identifier: BSD-2-Clause */
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <cmocka.h>
+
+#include "cloud_case.h"
+#include "train/seed.h"
+#include "train/space.h"
+
+static cloud_case cloud;
+
+/* ---- space ---- */
+
+static void test_space_make(void **state)
+{
+    static float many[1000][3];
+    ted4_header  h;
+
+    (void)state;
+    memset(&h, 0, sizeof h);
+    cloud_make(&cloud, 1);
+    ted4_space_make(&h, &cloud.data);
+    /* The lattice reaches 1.5 to either side; with a quarter of room that is between 1 and 2. */
+    assert_true(h.origin[0] == 10.0f && h.origin[1] == -4.0f && h.origin[2] == 2.0f);
+    assert_int_equal(h.exponent, 1);
+
+    /* Three of a thousand points far away are not let in. */
+    for (size_t i = 0; i < 1000; i++)
+        for (size_t j = 0; j < 3; j++)
+            many[i][j] = i % 400 == 7 ? 1e5f : 80.0f * ted4_uniform(3, 3 * i + j);
+    cloud.data.points = many[0];
+    cloud.data.n_points = 1000;
+    ted4_space_make(&h, &cloud.data);
+    assert_int_equal(h.exponent, 6);
+    for (int j = 0; j < 3; j++)
+        assert_true(fabsf(h.origin[j] - 40.0f) < 4.0f);
+
+    /* Degenerate clouds. */
+    cloud.data.n_points = 1;
+    ted4_space_make(&h, &cloud.data);
+    assert_int_equal(h.exponent, 0);
+    assert_true(h.origin[0] == many[0][0]);
+    cloud.data.n_points = 0;
+    ted4_space_make(&h, &cloud.data);
+    assert_true(h.exponent == 0 && h.origin[0] == 0.0f);
+}
+
+/* A random rotation and place. */
+static ted4_camera random_camera(uint64_t key)
+{
+    ted4_camera c = { 640, 480, 500, 520, 300, 250, { 0 }, { 0 } };
+    double      q[4], n = 0;
+
+    for (uint64_t k = 0; k < 4; k++) {
+        q[k] = (double)ted4_uniform(key, k) - 0.5;
+        n += q[k] * q[k];
+    }
+    for (int k = 0; k < 4; k++)
+        q[k] /= sqrt(n);
+    const double w = q[0], x = q[1], y = q[2], z = q[3];
+    const double R[9] = { 1 - 2 * (y * y + z * z), 2 * (x * y - w * z), 2 * (x * z + w * y),
+                          2 * (x * y + w * z), 1 - 2 * (x * x + z * z), 2 * (y * z - w * x),
+                          2 * (x * z - w * y), 2 * (y * z + w * x), 1 - 2 * (x * x + y * y) };
+
+    memcpy(c.R, R, sizeof R);
+    for (uint64_t k = 0; k < 3; k++)
+        c.t[k] = 20.0 * ((double)ted4_uniform(key, 10 + k) - 0.5);
+    return c;
+}
+
+/* A point is at one pixel through both cameras; the centre is where the camera is. */
+static void check_point(const ted4_header *h, const ted4_camera *c, const float world[3])
+{
+    const double unit = ldexp(1.0, h->exponent);
+    ted4_view    v;
+    float        centre[3], p[3];
+    double       far[3], near[3];
+
+    ted4_space_view(h, c, &v, centre);
+    ted4_space_point(h, world, p);
+    for (int i = 0; i < 3; i++) {
+        far[i] = c->t[i];
+        near[i] = (double)v.t[i];
+        for (int j = 0; j < 3; j++) {
+            far[i] += c->R[3 * i + j] * (double)world[j];
+            near[i] += (double)v.R[3 * i + j] * (double)p[j];
+        }
+        assert_true(fabs(far[i] - unit * near[i]) < 1e-5 * (30.0 + unit));
+    }
+    for (int i = 0; i < 3; i++) {
+        double back = (double)v.t[i];
+
+        for (int j = 0; j < 3; j++)
+            back += (double)v.R[3 * i + j] * (double)centre[j];
+        assert_true(fabs(back) < 1e-5 * (1.0 + 30.0 / unit));
+    }
+    if (fabs(far[2]) < 1)
+        return;
+    assert_true(fabs(c->fx * far[0] / far[2] + c->cx -
+                     ((double)v.fx * near[0] / near[2] + (double)v.cx)) < 0.02);
+    assert_true(fabs(c->fy * far[1] / far[2] + c->cy -
+                     ((double)v.fy * near[1] / near[2] + (double)v.cy)) < 0.02);
+}
+
+static void test_space_view(void **state)
+{
+    (void)state;
+    for (uint64_t i = 0; i < 60; i++) {
+        const ted4_camera c = random_camera(i);
+        ted4_header       h;
+        ted4_view         v;
+        float             centre[3], world[3];
+
+        memset(&h, 0, sizeof h);
+        h.exponent = (int8_t)(i % 7 - 2);
+        h.background[1] = 255;
+        for (uint64_t j = 0; j < 3; j++) {
+            h.origin[j] = 10.0f * ted4_uniform(i, 20 + j) - 5.0f;
+            world[j] = 10.0f * ted4_uniform(i, 30 + j) - 5.0f;
+        }
+        check_point(&h, &c, world);
+        ted4_space_view(&h, &c, &v, centre);
+        assert_true(v.width == 640 && v.height == 480 && v.near_z == TED4_NEAR);
+        assert_true(v.background[0] == 0.0f && v.background[1] == 1.0f);
+    }
+}
+
+/* ---- anchors ---- */
+
+static void begin(ted4_trainer *t)
+{
+    if (ted4_trainer_init(t, &cloud.options, &cloud.data, NULL) != 0)
+        fail_msg("%s", t->message.text);
+}
+
+static void check_values(const ted4_trainer *t, size_t i, float scale)
+{
+    const ted4_layout *l = &t->layout;
+    const float tau[4] = { 0.0f, -3.3f, 1.0f, -3.3f };
+
+    for (int c = 0; c < l->n_channels; c++) {
+        const float x = *ted4_cell(&t->anchors, TED4_ROW_VALUE, i, c);
+        const int   s = c - l->first[TED4_SCALING], a = c - l->first[TED4_TAU];
+
+        if (s >= 0 && s < 6)
+            assert_true(fabsf(x - scale) < 1e-5f);
+        else if (l->first[TED4_TAU] >= 0 && a >= 0 && a < 4)
+            assert_true(x == tau[a]);
+        else if (c >= l->first[TED4_PHI] && c < l->first[TED4_PHI] + l->head.phi_dim)
+            assert_true(fabsf(x) <= 0.5f);
+        else
+            assert_true(x == (c >= l->offset_logit ? 1.0f : 0.0f));
+    }
+}
+
+/* The voxel is the lattice's own: one anchor a point, each where its point is. */
+static void test_lattice(void **state)
+{
+    (void)state;
+    for (int linear = 0; linear < 2; linear++) {
+        ted4_trainer t;
+        uint8_t      seen[CLOUD_POINTS] = { 0 };
+
+        cloud_make(&cloud, linear ? 1 : 5);
+        cloud.options.linear_scale = linear;
+        begin(&t);
+        assert_int_equal(t.anchors.n, CLOUD_POINTS);
+        assert_true(fabs(t.cell - 0.25) < 1e-6);
+        assert_true((t.layout.first[TED4_TAU] >= 0) == !linear);
+        for (size_t i = 0; i < t.anchors.n; i++) {
+            size_t found = 0;
+
+            for (size_t k = 0; k < CLOUD_POINTS; k++) {
+                float p[3], far = 0;
+
+                ted4_space_point(&t.layout.head, cloud.point[k], p);
+                for (int j = 0; j < 3; j++)
+                    far = fmaxf(far, fabsf(p[j] - *ted4_cell(&t.anchors, TED4_ROW_POSITION, i, j)));
+                found += far < 1e-6f && !seen[k]++;
+            }
+            assert_int_equal(found, 1);
+            check_values(&t, i, linear ? 0.25f : -2.0f);
+        }
+        ted4_trainer_finish(&t);
+    }
+}
+
+/* Several points of a voxel become one anchor, at the voxel's middle; points outside the cube
+ * none. */
+static void test_voxels(void **state)
+{
+    ted4_trainer t;
+
+    (void)state;
+    cloud_make(&cloud, 1);
+    cloud.options.cell = 1.0;           /* scene units: half a unit of normalised space */
+    cloud.point[0][0] = 100;
+    begin(&t);
+    assert_true(fabs(t.cell - 0.5) < 1e-9);
+    assert_true(t.anchors.n <= 4 * 4 * 4 && t.anchors.n >= 3 * 3 * 3);
+    for (size_t i = 0; i < t.anchors.n; i++)
+        for (int j = 0; j < 3; j++) {
+            const float x = *ted4_cell(&t.anchors, TED4_ROW_POSITION, i, j);
+
+            assert_true(x == rintf(2 * x) / 2 && fabsf(x) <= 1);
+        }
+    ted4_trainer_finish(&t);
+}
+
+static void test_bound(void **state)
+{
+    (void)state;
+    for (int most = 1; most <= 100; most += 33) {
+        ted4_trainer t;
+
+        cloud_make(&cloud, 1);
+        cloud.options.init_anchors = most;
+        begin(&t);
+        assert_true(t.anchors.n >= 1 && t.anchors.n <= (size_t)most);
+        assert_true(t.cell > 0.25);
+        ted4_trainer_finish(&t);
+    }
+}
+
+/* One point, and none: the second is refused in words. */
+static void test_few_points(void **state)
+{
+    ted4_trainer t;
+
+    (void)state;
+    cloud_make(&cloud, 1);
+    cloud.data.n_points = 1;
+    begin(&t);
+    assert_int_equal(t.anchors.n, 1);
+    ted4_trainer_finish(&t);
+    cloud.data.n_points = 0;
+    assert_int_equal(ted4_trainer_init(&t, &cloud.options, &cloud.data, NULL), -1);
+    assert_non_null(strstr(t.message.text, "no initial point"));
+    ted4_trainer_finish(&t);
+}
+
+/* Networks: the same for the same seed, another for another; the last layer of F_deform is zero,
+ * so that nothing moves at first. */
+static void test_networks(void **state)
+{
+    ted4_trainer t, other;
+    size_t       same = 0;
+
+    (void)state;
+    cloud_make(&cloud, 5);
+    begin(&t);
+    begin(&other);
+    assert_memory_equal(t.net, other.net, t.layout.n_net * sizeof *t.net);
+    ted4_trainer_finish(&other);
+    cloud.options.seed = 1;
+    begin(&other);
+    for (size_t i = 0; i < t.layout.nete; i++)
+        same += t.net[i] == other.net[i];
+
+    const ted4_net_shape *deform = &t.layout.shape.netr[TED4_NET_DEFORM];
+    const int    last = deform->n_layers - 1;
+    const size_t n = ((size_t)deform->dim[last] + 1) * deform->dim[last + 1];
+    const size_t end = t.layout.shape.netr[TED4_NET_OPACITY].first;
+
+    for (size_t i = end - n; i < end; i++)
+        assert_true(t.net[i] == 0.0f);
+    assert_true(t.net[end - n - deform->dim[last] - 1] != 0.0f);
+    assert_true(same < n + 10);
+    ted4_trainer_finish(&t);
+    ted4_trainer_finish(&other);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(test_space_make), cmocka_unit_test(test_space_view),
+        cmocka_unit_test(test_lattice), cmocka_unit_test(test_voxels), cmocka_unit_test(test_bound),
+        cmocka_unit_test(test_few_points), cmocka_unit_test(test_networks),
+    };
+
+    return cmocka_run_group_tests_name("seed", tests, NULL, NULL);
+}
