@@ -18,13 +18,17 @@ static float frame_time(const ted4_trainer *t, uint32_t j)
     return t->data->n_frames > 1 ? (float)j / (float)(t->data->n_frames - 1) : 0.0f;
 }
 
-/* Each anchor's activation, transients aside, starts as the span between the first and the last time at which a training view sees it, less half a frame at each end: with the
- * first frame of the sequence exactly at a_s no time would ever lie before it, and its gradient would be zero for good (algorithm facts 5.8.1). */
+/* How far a first span stays inside the times seen: half a frame at most, and at most a tenth of b, so that it fades by 1 % only. */
+#define SPAN_INSIDE 0.01f
+
+/* Each anchor's activation, transients aside, starts as the span between the first and the last time at which a training view sees it, less a little at each
+ * end: with the first frame of the sequence exactly at a_s no time would ever lie before it, and its gradient would be zero for good (algorithm facts
+ * 5.8.1). */
 int ted4_activation_begin(ted4_trainer *t)
 {
     ted4_anchors *a = &t->anchors;
     const int     first = t->layout.first[TED4_TAU];
-    const float   half = t->data->n_frames > 1 ? 0.5f / (float)(t->data->n_frames - 1) : 0.0f;
+    const float   inside = fminf(SPAN_INSIDE, 0.5f / fmaxf((float)t->data->n_frames - 1.0f, 1.0f));
     float        *span = malloc((a->n_blocks + 1) * 2 * TED4_LANES * sizeof *span);
 
     if (span == NULL)
@@ -57,8 +61,8 @@ int ted4_activation_begin(ted4_trainer *t)
     }
     for (size_t i = 0; i < a->n; i++) {
         const int never = span[2 * i] > span[2 * i + 1];
-        float     from = never ? 0.0f : span[2 * i] + half;
-        float     to = never ? 1.0f : span[2 * i + 1] - half;
+        float     from = never ? 0.0f : span[2 * i] + inside;
+        float     to = never ? 1.0f : span[2 * i + 1] - inside;
 
         if (from > to)
             from = to = 0.5f * (from + to);

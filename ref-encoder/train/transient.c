@@ -49,7 +49,8 @@ static void match(const match_job *j, uint32_t frame)
         const int      far = abs(p[0] - c[0]) + abs(p[1] - c[1]) + abs(p[2] - c[2]);
 
         j->seen[frame * a->n + i]++;
-        j->hits[frame * a->n + i] += (float)far < 3.0f * COLOUR_NEAR;
+        if ((float)far < 3.0f * COLOUR_NEAR)
+            j->hits[frame * a->n + i]++;
     }
 }
 
