@@ -11,6 +11,8 @@ $B/fuzz/replay_%: $B/fuzz/fz_%.o $B/fuzz/main.o $(FUZZ_OBJ)
 	$(CC) $(LDFLAGS) $^ -o $@ $(FUZZ_LIBS)
 $B/fuzz/make_corpus: $B/fuzz/make_corpus.o $(FUZZ_OBJ)
 	$(CC) $(LDFLAGS) $^ -o $@ $(FUZZ_LIBS)
+$B/bench/robust: $B/bench/robust.o $(FUZZ_OBJ)
+	$(CC) $(LDFLAGS) $^ -o $@ $(FUZZ_LIBS)
 $B/tests/test_fuzz: $B/fuzz/mend.o
 
 fuzz-corpus: $B/fuzz/make_corpus

@@ -2,34 +2,16 @@
  * they are the same bytes (decisions 3.9; ancillary chunks and the minor version are not parsed, so they are left out), and a query works.
  * SPDX-License-Identifier: BSD-2-Clause */
 #include <string.h>
-#include "base/bytes.h"
 #include "harness.h"
-#include "norm/coder.h"
+#include "mend.h"
 #include "write/encode.h"
 
 int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size);
 
-/* The critical chunks of a valid file, minor version 0. */
-static size_t strip(uint8_t *to, const uint8_t *from, size_t size)
-{
-    size_t n = TED4_FILE_HEADER_SIZE;
-
-    memcpy(to, from, n);
-    to[9] = 0;
-    for (size_t at = n, whole; at < size; at += whole) {
-        whole = TED4_FRAME_HEAD_SIZE + (size_t)ted4_load32(from + at + 8) + TED4_FRAME_HASH_SIZE;
-        if (!(ted4_load32(from + at + 4) & TED4_FLAG_CRITICAL))
-            continue;
-        memcpy(to + n, from + at, whole);
-        n += whole;
-    }
-    return n;
-}
-
 static void rewrite(const ted4_scene *s, const uint8_t *data, size_t size)
 {
     uint8_t     *const plain = malloc(size), *out;
-    const size_t n = plain != NULL ? strip(plain, data, size) : 0;
+    const size_t n = plain != NULL ? ted4_plain_file(plain, data, size) : 0;
     size_t       n_out;
     const ted4_status verdict = ted4_encode(s, s->level, NULL, &out, &n_out, NULL);
 

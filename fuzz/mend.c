@@ -51,6 +51,22 @@ void ted4_mend_ends(uint8_t *data, size_t size)
     ted4_scene_free(d.s);
 }
 
+size_t ted4_plain_file(uint8_t *to, const uint8_t *from, size_t size)
+{
+    size_t n = TED4_FILE_HEADER_SIZE;
+
+    memcpy(to, from, n);
+    to[9] = 0;
+    for (size_t at = n, whole; at < size; at += whole) {
+        whole = chunk_size(from, size, at);
+        if (!(ted4_load32(from + at + 4) & TED4_FLAG_CRITICAL))
+            continue;
+        memcpy(to + n, from + at, whole);
+        n += whole;
+    }
+    return n;
+}
+
 size_t ted4_chunk_holding(const uint8_t *data, size_t size, size_t at)
 {
     for (size_t i = TED4_FILE_HEADER_SIZE, whole; i < size && i <= at; i += whole) {

@@ -22,6 +22,7 @@ typedef struct {
     double loss, l1, ssim;
     double bits[TED4_TYPES];    /* per anchor, over the anchors whose rate was evaluated */
     double splats;              /* Gaussians that reached the screen */
+    double splat_pixels;        /* times the pixels of the picture */
 } ted4_progress;
 
 /* Buffers of one step, by slot (visible block). */
@@ -84,6 +85,14 @@ void ted4_schedule_rates(const ted4_trainer *t, float *channel_rate);
 void ted4_schedule_network_step(ted4_trainer *t);
 int  ted4_schedule_event(ted4_trainer *t);
 int  ted4_activation_on(const ted4_trainer *t);
+
+/* After the picture's gradients: update.c.
+ * Volume: weight times the mean of the product of scales over the Gaussians on screen; returns how many there are. Bank: mean squared second difference of its rows. Rate
+ * of a random share of the visible blocks: gradients of bits on values, masks and NETE, and of the distortion on step sizes. Parameters: mask losses and Adam. */
+size_t ted4_update_volume(ted4_trainer *t, const ted4_splats *s);
+void   ted4_update_bank(ted4_trainer *t);
+int    ted4_update_rate(ted4_trainer *t, uint64_t key);
+void   ted4_update_parameters(ted4_trainer *t);
 
 /* Visible blocks of a view: slots.c */
 int  ted4_slots_fill(ted4_trainer *t, const ted4_view *v);

@@ -1,0 +1,226 @@
+/* step.c - one training step: a picture, its Gaussians forward and back, and the update. See trainer.h.
+ * SPDX-License-Identifier: BSD-2-Clause */
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "random.h"
+#include "space.h"
+#include "trainer.h"
+
+static uint32_t next_picture(ted4_order *o)
+{
+    if (o->next >= o->n) {
+        for (uint32_t i = o->n; i > 1; i--) {
+            const uint32_t j = ted4_below(o->key, o->round << 32 | i, i);
+            const uint32_t x = o->item[i - 1];
+
+            o->item[i - 1] = o->item[j];
+            o->item[j] = x;
+        }
+        o->round++;
+        o->next = 0;
+    }
+    return o->item[o->next++];
+}
+
+/* Room for the gradients of n splats. */
+static int reserve_splats(ted4_trainer *t, size_t n)
+{
+    ted4_splat_grads *g = &t->splat_gradient;
+    float            *at;
+
+    if (n > t->splat_capacity) {
+        const size_t size = n + n / 2;
+
+        free(t->splat_storage);
+        free(t->splat_visible);
+        t->splat_storage = aligned_alloc(64, (size * 15 * sizeof(float) + 63) / 64 * 64);
+        t->splat_visible = malloc(size);
+        t->splat_capacity = size;
+        if (t->splat_storage == NULL || t->splat_visible == NULL) {
+            t->splat_capacity = 0;
+            return ted4_trainer_fail(t, "no memory for %zu Gaussians", n);
+        }
+    }
+    at = t->splat_storage;
+    for (int j = 0; j < 3; j++, at += t->splat_capacity)
+        g->mean[j] = at;
+    for (int j = 0; j < 3; j++, at += t->splat_capacity)
+        g->scale[j] = at;
+    for (int j = 0; j < 4; j++, at += t->splat_capacity)
+        g->rot[j] = at;
+    for (int j = 0; j < 3; j++, at += t->splat_capacity)
+        g->colour[j] = at;
+    g->opacity = at;
+    g->mean2d = at + t->splat_capacity;
+    g->visible = t->splat_visible;
+    return 0;
+}
+
+static void follow(ted4_progress *p, double loss, double l1, double ssim, double splats,
+                   double pixels, int first)
+{
+    const double w = first ? 1.0 : 0.01;
+
+    p->loss += w * (loss - p->loss);
+    p->l1 += w * (l1 - p->l1);
+    p->ssim += w * (ssim - p->ssim);
+    p->splats += w * (splats - p->splats);
+    p->splat_pixels += w * (splats * pixels - p->splat_pixels);
+}
+
+typedef struct {
+    const ted4_trainer *t;
+    uint64_t            key;
+    ted4_quant          quant;
+} quantise_job;
+
+static void quantise_slot(void *arg, size_t i)
+{
+    const quantise_job *j = arg;
+    const ted4_slots   *s = &j->t->slots;
+    const size_t        floats = (size_t)j->t->layout.n_channels * TED4_LANES;
+
+    ted4_quantise(&j->t->layout, j->quant, s->raw[i], s->steps[i], s->block[i], j->key,
+                  s->quantised + i * floats);
+}
+
+/* Forward pass of one picture over t->slots; the image is in t->image. */
+static int render(ted4_trainer *t, const ted4_picture *pic, int training, ted4_view *v,
+                  ted4_generate_input *in, ted4_splats *s)
+{
+    memset(in, 0, sizeof *in);
+    ted4_space_view(&t->layout.head, &pic->camera, v, in->camera);
+    if (ted4_slots_fill(t, v) != 0)
+        return -1;
+    in->layout = &t->layout;
+    in->net = t->net;
+    in->n_slots = t->slots.n;
+    in->attr = t->slots.used;
+    in->position = t->slots.position;
+    in->lanes = t->slots.lanes;
+    in->num = t->data->n_frames > 1 ? pic->frame : 0;
+    in->den = t->data->n_frames > 1 ? t->data->n_frames - 1 : 1;
+    in->activation = t->layout.head.activation;
+    if (t->stage2) {
+        quantise_job j = { .t = t, .key = ted4_random(t->opt.seed, t->iteration),
+                       .quant = training && !t->integer ? TED4_QUANT_NOISE
+                                                        : TED4_QUANT_ROUND };
+
+        ted4_parallel_for(t->parallel, t->slots.n, quantise_slot, &j);
+    }
+    ted4_generator_pack(t->generator, t->net);
+    if (ted4_generate(t->generator, in, t->parallel, s) != 0 ||
+        ted4_raster_forward(t->raster, s, v, t->parallel, training, t->image) != 0)
+        return ted4_trainer_fail(t, "no memory to render");
+    return 0;
+}
+
+static int backward(ted4_trainer *t, const ted4_view *v, const ted4_generate_input *in,
+                    const ted4_splats *s, size_t *on_screen)
+{
+    if (reserve_splats(t, s->n) != 0)
+        return -1;
+    if (ted4_raster_backward(t->raster, s, v, t->parallel, t->d_image, &t->splat_gradient) != 0)
+        return ted4_trainer_fail(t, "no memory for gradients");
+    *on_screen = ted4_update_volume(t, s);
+    memset(t->net_gradient, 0, t->layout.n_net * sizeof *t->net_gradient);
+    if (ted4_generate_backward(t->generator, in, &t->splat_gradient, t->parallel,
+                               t->slots.gradient, t->net_gradient) != 0)
+        return ted4_trainer_fail(t, "no memory for gradients");
+    ted4_update_bank(t);
+    return 0;
+}
+
+/* Looking at every anchor takes time, so it is done once in so many steps. */
+enum { CHECK_ANCHORS = 100 };
+
+int ted4_trainer_step(ted4_trainer *t)
+{
+    if (ted4_trainer_check(t, t->iteration % CHECK_ANCHORS == 0) != 0 ||
+        ted4_schedule_event(t) != 0)
+        return -1;
+
+    const uint32_t      item = next_picture(&t->order);
+    const ted4_picture *pic = &t->data->pictures[item];
+    const uint64_t      key = ted4_random(t->opt.seed, t->iteration);
+    ted4_view           v;
+    ted4_generate_input in;
+    ted4_splats         s;
+    double              l1, ssim;
+    size_t              on_screen = 0;
+
+    const uint8_t *truth = ted4_dataset_pixels(t->data, item, &t->message);
+
+    if (truth == NULL)
+        return -1;
+    if (render(t, pic, 1, &v, &in, &s) != 0) {
+        ted4_dataset_release(t->data, item);
+        return -1;
+    }
+    const double loss = ted4_loss(t->loss, t->image, truth, v.width, v.height,
+                                  (float)t->opt.ssim, t->parallel, t->d_image, &l1, &ssim);
+
+    ted4_dataset_release(t->data, item);
+    if (!isfinite(loss))
+        return ted4_trainer_fail(t, "the loss is not finite at step %llu",
+                                 (unsigned long long)t->iteration);
+    if (loss < 0)
+        return ted4_trainer_fail(t, "no memory for the loss");
+    if (backward(t, &v, &in, &s, &on_screen) != 0)
+        return -1;
+    if (!t->stage2)
+        ted4_densify_gather(t, &s);
+    if (t->stage2 && ted4_update_rate(t, key) != 0)
+        return -1;
+    ted4_update_parameters(t);
+    follow(&t->progress, loss, l1, ssim, (double)on_screen,
+           (double)v.width * (double)v.height, t->iteration == 0);
+    t->iteration++;
+    return 0;
+}
+
+double ted4_trainer_preview(ted4_trainer *t, int n)
+{
+    size_t tests = 0;
+    double sum = 0;
+    int    done = 0;
+
+    for (size_t i = 0; i < t->data->n_pictures; i++)
+        tests += t->data->pictures[i].is_test;
+
+    const size_t from = tests > 0 ? tests : t->data->n_pictures;
+    size_t       seen = 0;
+
+    for (size_t i = 0; i < t->data->n_pictures && done < n; i++) {
+        const ted4_picture *pic = &t->data->pictures[i];
+        ted4_view           v;
+        ted4_generate_input in;
+        ted4_splats         s;
+
+        if (tests > 0 && !pic->is_test)
+            continue;
+        if (seen++ != (size_t)done * from / (size_t)n)
+            continue;
+        const uint8_t *truth = ted4_dataset_pixels(t->data, i, &t->message);
+
+        if (truth == NULL || render(t, pic, 0, &v, &in, &s) != 0)
+            return -1;
+        const size_t pixels = (size_t)v.width * (size_t)v.height;
+        double       square = 0;
+
+        for (int c = 0; c < 3; c++)
+            for (size_t k = 0; k < pixels; k++) {
+                const float x = t->image[(size_t)c * pixels + k];
+                const float e = (x < 0 ? 0 : x > 1 ? 1 : x) -
+                                (float)truth[3 * k + (size_t)c] / 255.0f;
+
+                square += (double)(e * e);
+            }
+        ted4_dataset_release(t->data, i);
+        sum += -10.0 * log10(fmax(square / (3.0 * (double)pixels), 1e-10));
+        done++;
+    }
+    return done > 0 ? sum / done : 0;
+}
