@@ -157,7 +157,8 @@ int ted4_seed_transients(ted4_trainer *t)
     match_job    j = { .t = t };
     int          bad;
 
-    if (t->layout.first[TED4_TAU] < 0 || frames < 2 || t->data->random_points)
+    if (t->layout.first[TED4_TAU] < 0 || frames < 2 || t->data->random_points ||
+        t->data->point_rgb == NULL)
         return 0;
     float   *points = malloc((t->data->n_points + 1) * 3 * sizeof *points);
     uint8_t *colour = malloc(3 * n + 1);
