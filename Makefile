@@ -46,11 +46,11 @@ $B/lib%.a:
 # Link order says the architecture: a decoder tool sees the decoder library only.
 $(addprefix $B/,$(DEC_PROG)): $B/%: $B/ref-decoder/tool/%.o $(DEC_TOOL:%.c=$B/%.o) $B/libted4dec.a
 	$(CC) -fopenmp $(LDFLAGS) $^ -o $@ $(LIBS)
-$(addprefix $B/,$(ENC_PROG)): $B/%: $B/ref-encoder/tool/%.o $(ENC_TOOL:%.c=$B/%.o) $B/libted4enc.a $B/libted4dec.a
+$(addprefix $B/,$(ENC_PROG)): $B/%: $B/ref-encoder/tool/%.o $(ENC_TOOL:%.c=$B/%.o) $(DEC_TOOL:%.c=$B/%.o) $B/libted4enc.a $B/libted4dec.a
 	$(CC) -fopenmp $(LDFLAGS) $^ -o $@ $(LIBS)
 $B/ted4scene: $(patsubst %.c,$B/%.o,$(wildcard tests/scenes/*.c)) $B/libted4enc.a $B/libted4dec.a
 	$(CC) -fopenmp $(LDFLAGS) $^ -o $@ $(LIBS)
-$B/tests/%: $B/tests/%.o $B/libted4enc.a $B/libted4dec.a
+$B/tests/%: $B/tests/%.o $(DEC_TOOL:%.c=$B/%.o) $B/libted4enc.a $B/libted4dec.a
 	$(CC) -fopenmp $(LDFLAGS) $^ -o $@ -lcmocka $(LIBS)
 
 $B/tests/test_scene: $(patsubst %.c,$B/%.o,$(wildcard tests/scenes/ray_*.c))

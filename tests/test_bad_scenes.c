@@ -258,7 +258,7 @@ static void test_options(void **state)
         refuse(text, wrong[i][1]);
     }
     refuse("", "one scene folder");
-    refuse("good", "-o out.ted4 expected");
+    refuse("good", "-o FILE.ted4 expected");
 }
 
 int main(void)

@@ -6,7 +6,7 @@
 #include <cmocka.h>
 #include <stdlib.h>
 #include "random_scene.h"
-#include "tool/budget.c"                /* tools are in no library */
+#include "tool/budget.h"
 
 static void every_byte(void **state)
 {

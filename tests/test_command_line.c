@@ -11,9 +11,11 @@
 #include <math.h>
 #include <cmocka.h>
 
-#include "tool/arguments.c"
-#include "tool/output.c"
-#include "tool/times.c"
+#include <getopt.h>
+
+#include "tool/arguments.h"
+#include "tool/output.h"
+#include "tool/times.h"
 
 static void expect_path(const char *pattern, uint32_t number, const char *want)
 {

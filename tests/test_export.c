@@ -13,13 +13,10 @@
 #include <cmocka.h>
 #include <jansson.h>
 
-#include "tool/export.c"
-#include "tool/out_glb.c"
-#include "tool/out_ply.c"
-#include "tool/out_raw.c"
-#include "tool/out_splat.c"
-#include "tool/output.c"
-#include "tool/sh.c"
+#include "base/bytes.h"
+#include "tool/export.h"
+#include "tool/output.h"
+#include "tool/sh.h"
 
 enum { N = 37 };
 

@@ -11,7 +11,7 @@
 #include <math.h>
 #include <cmocka.h>
 
-#include "tool/sh.c"
+#include "tool/sh.h"
 
 enum { N = 37 };
 
@@ -111,7 +111,11 @@ static void test_basis(void **state)
 
     (void)state;
     for (int i = 0; i < 50; i++) {
-        spiral_direction(i, 50, 0.1, d);
+        const double z = 0.98 - 0.039 * i, r = sqrt(1.0 - z * z);
+
+        d[0] = r * cos(2.4 * i + 0.1);
+        d[1] = r * sin(2.4 * i + 0.1);
+        d[2] = z;
         ted4_sh_basis(d, 3, b);
         for (int l = 0, n = 0; l <= 3; l++)
             for (int m = -l; m <= l; m++, n++)

@@ -22,7 +22,7 @@
 #include "random_scene.h"
 #include "render/png_file.h"
 #include "render/view.h"
-#include "tool/sh.c"
+#include "tool/sh.h"
 
 enum { WIDTH = 96, HEIGHT = 64, VIEWS = 3, MAX_TEXT = 1 << 16 };
 

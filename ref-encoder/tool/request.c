@@ -1,0 +1,183 @@
+/* request.c - see request.h. Training options come from their own table (train/options.def).
+ * SPDX-License-Identifier: BSD-2-Clause */
+#include "request.h"
+
+#include <getopt.h>
+#include <stdio.h>
+#include <string.h>
+
+#include "ted4.h"
+#include "tool/arguments.h"
+
+enum {
+    OPT_OUTPUT, OPT_PRESET, OPT_LAMBDA, OPT_ITERATIONS, OPT_SET, OPT_DOWNSCALE, OPT_BLACK,
+    OPT_SEED, OPT_THREADS, OPT_CHECKPOINT, OPT_RESUME, OPT_LOG, OPT_CHECK, OPT_JSON, OPT_FORCE,
+    OPT_QUIET, OPT_VERBOSE, OPT_HELP, OPT_VERSION, N_OPTIONS
+};
+
+enum { MAX_SETS = 64, MAX_THREADS = 1024, MAX_DOWNSCALE = 64 };
+
+static const ted4_argument OPTIONS[N_OPTIONS] = {
+    [OPT_OUTPUT]     = { 'o', "output", "FILE", "the .ted4 file to write" },
+    [OPT_PRESET]     = { 0, "preset", "NAME", "draft, fast, medium (default), slow, paper" },
+    [OPT_LAMBDA]     = { 0, "lambda", "X", "weight of the rate, as --set lambda=X" },
+    [OPT_ITERATIONS] = { 0, "iterations", "A,B", "steps of both stages, as --set stage1=A stage2=B" },
+    [OPT_SET]        = { 0, "set", "NAME=VALUE", "any training option of the table below" },
+    [OPT_DOWNSCALE]  = { 0, "downscale", "N", "integer area averaging of the pictures" },
+    [OPT_BLACK]      = { 0, "black", NULL, "pictures with alpha lie on black, not white" },
+    [OPT_SEED]       = { 0, "seed", "S", "same scene, options and seed: same bytes" },
+    [OPT_THREADS]    = { 'j', "threads", "N", "threads; 0: all cores. Default 0" },
+    [OPT_CHECKPOINT] = { 0, "checkpoint", "FILE", "saved every minute and at the end" },
+    [OPT_RESUME]     = { 0, "resume", NULL, "go on from the checkpoint if it is there" },
+    [OPT_LOG]        = { 0, "log", "FILE", "JSON lines of progress" },
+    [OPT_CHECK]      = { 0, "check", NULL, "say what the scene holds, or the one thing that is wrong, and stop" },
+    [OPT_JSON]       = { 0, "json", NULL, "result as one JSON object" },
+    [OPT_FORCE]      = { 'f', "force", NULL, "overwrite" },
+    [OPT_QUIET]      = { 'q', "quiet", NULL, "errors only" },
+    [OPT_VERBOSE]    = { 'v', "verbose", NULL, "progress lines, terminal or not" },
+    [OPT_HELP]       = { 'h', "help", NULL, "this text" },
+    [OPT_VERSION]    = { 'V', "version", NULL, "print the version" },
+};
+
+static const ted4_command COMMAND = {
+    "ted4enc",
+    "SCENE -o FILE.ted4 [options]",
+    "Trains a scene from posed pictures and writes it as a TED4 file. SCENE is a folder: COLMAP,\n"
+    "D-NeRF/Blender or nerfstudio layout.",
+    OPTIONS, N_OPTIONS,
+    "Exit codes: 0 fine, 3 usage, input, output or resources.\n\n"
+    "Training options (--set) and their values in each preset:\n",
+};
+
+/* What cannot be applied before the preset is known. */
+typedef struct {
+    const char *preset, *lambda, *iterations, *set[MAX_SETS];
+    int         n_sets;
+} pending;
+
+static int complain(const char *text)
+{
+    fprintf(stderr, "ted4enc: %s\n", text);
+    return TED4_REQUEST_BAD;
+}
+
+static int bad_value(int option, const char *value)
+{
+    fprintf(stderr, "ted4enc: --%s: bad value %s\n", OPTIONS[option].name, value);
+    return TED4_REQUEST_BAD;
+}
+
+static int take_number(int option, const char *value, long low, long high, int *to)
+{
+    long n;
+
+    if (ted4_arguments_number(value, low, high, &n) != 0)
+        return bad_value(option, value);
+    *to = (int)n;
+    return TED4_REQUEST_GO;
+}
+
+static int take(ted4_request *r, pending *p, int option, const char *value)
+{
+    switch (option) {
+    case OPT_OUTPUT:     r->out = value; break;
+    case OPT_PRESET:     p->preset = value; break;
+    case OPT_LAMBDA:     p->lambda = value; break;
+    case OPT_ITERATIONS: p->iterations = value; break;
+    case OPT_CHECKPOINT: r->checkpoint = value; break;
+    case OPT_LOG:        r->log = value; break;
+    case OPT_BLACK:      r->black = 1; break;
+    case OPT_RESUME:     r->resume = 1; break;
+    case OPT_CHECK:      r->check = 1; break;
+    case OPT_JSON:       r->json = 1; break;
+    case OPT_FORCE:      r->force = 1; break;
+    case OPT_QUIET:      r->quiet = 1; break;
+    case OPT_VERBOSE:    r->verbose = 1; break;
+    case OPT_DOWNSCALE:  return take_number(option, value, 1, MAX_DOWNSCALE, &r->downscale);
+    case OPT_THREADS:    return take_number(option, value, 0, MAX_THREADS, &r->threads);
+    case OPT_SEED: {
+        int       seed = 0;
+        const int status = take_number(option, value, 0, 0x7fffffff, &seed);
+
+        r->options.seed = (uint32_t)seed;
+        return status;
+    }
+    case OPT_SET:
+        if (p->n_sets == MAX_SETS)
+            return complain("too many --set");
+        p->set[p->n_sets++] = value;
+        break;
+    case OPT_HELP:
+        ted4_arguments_help(&COMMAND, stdout);
+        ted4_options_help(stdout);
+        return TED4_REQUEST_DONE;
+    default:
+        printf("ted4enc " TED4_VERSION " (specification " TED4_SPEC_VERSION ")\n");
+        return TED4_REQUEST_DONE;
+    }
+    return TED4_REQUEST_GO;
+}
+
+static int set(ted4_request *r, const char *text)
+{
+    char why[256];
+
+    return ted4_options_set(&r->options, text, why, sizeof why) != 0 ? complain(why)
+                                                                     : TED4_REQUEST_GO;
+}
+
+/* Preset first, then the short forms, then --set in order. */
+static int apply(ted4_request *r, const pending *p)
+{
+    const uint32_t seed = r->options.seed;
+    char           text[256], rest;
+    int            a, b, status = TED4_REQUEST_GO;
+
+    if (ted4_options_preset(&r->options, p->preset) != 0) {
+        snprintf(text, sizeof text, "--preset %s: expected draft, fast, medium, slow or paper",
+                 p->preset);
+        return complain(text);
+    }
+    r->options.seed = seed;
+    if (p->iterations != NULL) {
+        if (sscanf(p->iterations, "%d,%d%c", &a, &b, &rest) != 2 || a < 1 || b < 0)
+            return complain("--iterations: expected A,B");
+        r->options.stage1 = a;
+        r->options.stage2 = b;
+    }
+    if (p->lambda != NULL) {
+        snprintf(text, sizeof text, "lambda=%s", p->lambda);
+        status = set(r, text);
+    }
+    for (int i = 0; i < p->n_sets && status == TED4_REQUEST_GO; i++)
+        status = set(r, p->set[i]);
+    return status;
+}
+
+int ted4_request_parse(ted4_request *r, int argc, char **argv)
+{
+    static char name[] = "ted4enc";     /* what getopt's messages begin with, however we were called */
+    pending     p = { .preset = "medium" };
+    const char *value;
+    int         option;
+
+    argv[0] = name;
+    memset(r, 0, sizeof *r);
+    r->downscale = 1;
+    while ((option = ted4_arguments_next(&COMMAND, argc, argv, &value)) >= 0) {
+        const int status = take(r, &p, option, value);
+
+        if (status != TED4_REQUEST_GO)
+            return status;
+    }
+    if (option == TED4_ARGUMENTS_BAD)
+        return TED4_REQUEST_BAD;
+    if (optind + 1 != argc)
+        return complain("one scene folder expected; --help lists the options");
+    r->scene = argv[optind];
+    if (r->out == NULL && !r->check)
+        return complain("-o FILE.ted4 expected");
+    if (r->resume && r->checkpoint == NULL)
+        return complain("--resume needs --checkpoint FILE");
+    return apply(r, &p);
+}

@@ -1,0 +1,19 @@
+/* request.h - what a command line of ted4enc asks for (decisions 5).
+ * SPDX-License-Identifier: BSD-2-Clause */
+#ifndef TED4_REQUEST_H
+#define TED4_REQUEST_H
+
+#include "train/options.h"
+
+typedef struct {
+    const char        *scene, *out, *checkpoint, *log;  /* borrowed from argv; NULL: not asked for */
+    int                downscale, threads, resume, check, json, force, quiet, verbose, black;
+    ted4_train_options options;
+} ted4_request;
+
+enum { TED4_REQUEST_GO, TED4_REQUEST_DONE, TED4_REQUEST_BAD };
+
+/* GO: *r says what to do. DONE: help or version was printed. BAD: one line on stderr said why. */
+int ted4_request_parse(ted4_request *r, int argc, char **argv);
+
+#endif
