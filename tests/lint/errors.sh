@@ -1,0 +1,12 @@
+#!/bin/sh
+# The table of identifiers in chapter 14 is status.def, line for line. `sh tests/lint/errors.sh print` prints the table to paste.
+table() {
+    sed -n 's/^TED4_STATUS(E_[A-Z_]*, *"\([^"]*\)", *"\([^"]*\)", *"\([^"]*\)")/| `\1` | \2 | \3 |/p' ref-decoder/base/status.def
+}
+if [ "$1" = print ]; then table; exit 0; fi
+for t in "$(table)"; do
+    echo "$t" | while IFS= read -r line; do
+        grep -qF "$line" spec/14-errors.md || { echo "spec/14-errors.md lacks: $line"; exit 1; }
+    done || exit 1
+done
+[ "$(grep -c '^| `[a-z]*\.[a-z-]*` | [0-9]' spec/14-errors.md)" = "$(table | wc -l)" ] || { echo "spec/14-errors.md lists other identifiers than status.def"; exit 1; }
