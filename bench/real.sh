@@ -40,3 +40,16 @@ run kitchen        kitchen --downscale 2 --preset fast
 run kitchen-static kitchen --downscale 2 --preset fast --lambda 0.001 --set motion=0 --set activation=0
 run dog            dog     --downscale 2 --preset fast
 run dog-static     dog     --downscale 2 --preset fast --set motion=0 --set activation=0
+
+# The table that people read.
+{
+    echo "# Real scenes"
+    echo
+    echo "Made by \`bench/real.sh\` (\`make real\`), one training at a time on two cores; scenes in \`\$TED4_DATA\`. Every number is measured on the decoded file,"
+    echo "on pictures that training never saw. \`bench/real.csv\` holds all columns; \`bench/sheets/\` truth, ours, error (5 times) at three times."
+    echo
+    echo "| run | command | PSNR | SSIM | MS-SSIM | bytes | training s | anchors | moving | decode ms |"
+    echo "|---|---|---|---|---|---|---|---|---|---|"
+    awk -F, 'NR > 1 { printf "| [%s](sheets/%s.png) | `ted4enc $TED4_DATA/%s %s --seed 1` | %.2f | %.4f | %.4f | %d | %.0f | %d | %d | %.0f |\n", $1, $1, $3, $4, $5, $6, $8, $9, $10, $12, $14, $15 }' $csv
+    [ -f bench/real-notes.md ] && { echo; cat bench/real-notes.md; }
+} >bench/real.md
