@@ -185,10 +185,11 @@ static double pattern(double u, double v, int c)
 /* The pinhole position (u, v) whose distorted position is (a, b), by fixed-point iteration of the lens equations. */
 static void invert(const ted4_lens *l, double a, double b, double *u, double *v)
 {
+    a -= l->skew * b / l->fx;
     *u = a;
     *v = b;
     for (int k = 0; k < 60; k++) {
-        const double s = *u * *u + *v * *v, radial = 1 + l->k1 * s + l->k2 * s * s;
+        const double s = *u * *u + *v * *v, radial = 1 + l->k1 * s + l->k2 * s * s + l->k3 * s * s * s;
         const double tu = 2 * l->p1 * *u * *v + l->p2 * (s + 2 * *u * *u);
         const double tv = l->p1 * (s + 2 * *v * *v) + 2 * l->p2 * *u * *v;
         *u = (a - tu) / radial;
@@ -200,8 +201,9 @@ static void test_undistort(void **state)
 {
     (void)state;
     static const ted4_lens lenses[] = {
-        { 320, 240, 260, 250, 155, 124, -0.08, 0, 0, 0 },       { 320, 240, 260, 250, 155, 124, 0.06, -0.02, 0, 0 },
-        { 320, 240, 260, 250, 155, 124, -0.09, 0.02, 0.004, -0.006 },
+        { 320, 240, 260, 250, 155, 124, -0.08, 0, 0, 0, 0, 0 }, { 320, 240, 260, 250, 155, 124, 0.06, -0.02, 0, 0, 0, 0 },
+        { 320, 240, 260, 250, 155, 124, -0.09, 0.02, 0.004, -0.006, 0, 0 },
+        { 320, 240, 260, 250, 155, 124, -0.09, 0.05, 0.002, -0.001, -0.03, 4 },
     };
     uint8_t *in = malloc(320 * 240 * 3), *out = malloc(320 * 240 * 3);
 
@@ -238,7 +240,7 @@ static void test_undistort(void **state)
 static void test_undistort_border(void **state)
 {
     (void)state;
-    const ted4_lens wide = { 8, 8, 4, 4, 4, 4, 0.9, 0, 0, 0 }, fold = { 100, 100, 20, 20, 50, 50, -0.2, 0, 0, 0 };
+    const ted4_lens wide = { 8, 8, 4, 4, 4, 4, 0.9, 0, 0, 0, 0, 0 }, fold = { 100, 100, 20, 20, 50, 50, -0.2, 0, 0, 0, 0, 0 };
     uint8_t in[8 * 8 * 3], out[8 * 8 * 3];
     double x = 0, y = 0, before = 0;
 
@@ -254,6 +256,12 @@ static void test_undistort_border(void **state)
     }
     /* r (1 - 0.2 r^2) is largest at r = sqrt(5 / 3): 0.8607 */
     assert_true(fabs(x - (50 + 20 * 0.86066)) < 1e-3);
+    /* r (1 - 0.1 r^6) at r^6 = 1 / 0.7: 0.90960; r (1 + r^2 - r^4 + r^6) never folds. */
+    const ted4_lens sixth = { 100, 100, 20, 20, 50, 50, 0, 0, 0, 0, -0.1, 0 }, grows = { 100, 100, 20, 20, 50, 50, 1, -1, 0, 0, 1, 0 };
+    ted4_lens_distort(&sixth, 99, 50, &x, &y);
+    assert_true(fabs(x - (50 + 20 * 0.90960)) < 1e-3);
+    ted4_lens_distort(&grows, 90, 50, &x, &y);
+    assert_true(fabs(x - (50 + 20 * 2.0 * (1 + 4 - 16 + 64))) < 1e-6);
 }
 
 /* Cache */

@@ -25,7 +25,7 @@ static ted4_dataset moving_scene, still_scene, single_scene;
 
 static void load_scene(tiny_folder *f, ted4_dataset *d, int frames, int moving)
 {
-    const ted4_dataset_options o = { 1, 0, 3, 1 << 20 };
+    const ted4_dataset_options o = { 1, 0, 3, 1 << 20, 0 };
     ted4_message m;
 
     *f = tiny_new();

@@ -23,13 +23,15 @@ static int fit_lens(ted4_shot *s, ted4_message *m)
         return ted4_say(m, "%s: focal lengths %g, %g, expected positive numbers", s->path, l->fx, l->fy);
     if (!(isfinite(l->cx) && isfinite(l->cy)))
         return ted4_say(m, "%s: principal point %g, %g is not finite", s->path, l->cx, l->cy);
-    if (!(isfinite(l->k1) && isfinite(l->k2) && isfinite(l->p1) && isfinite(l->p2)))
+    if (!(isfinite(l->k1) && isfinite(l->k2) && isfinite(l->p1) && isfinite(l->p2) && isfinite(l->k3) &&
+          isfinite(l->skew)))
         return ted4_say(m, "%s: a distortion coefficient is not finite", s->path);
     if (n < 1 || fabs((double)l->width / n - s->width) >= 1 || fabs((double)l->height / n - s->height) >= 1)
         return ted4_say(m, "%s: the file is %dx%d, its camera says %dx%d, expected the same or an integer fraction of it",
                         s->path, s->width, s->height, l->width, l->height);
     l->fx *= ax;
     l->cx *= ax;
+    l->skew *= ax;
     l->fy *= ay;
     l->cy *= ay;
     l->width = s->width;
@@ -37,11 +39,23 @@ static int fit_lens(ted4_shot *s, ted4_message *m)
     return 0;
 }
 
-static int make_picture(ted4_picture *p, ted4_source *source, ted4_shot *s,
+/* What is left of the wanted reduction for files that are reduced already; finer than they are
+ * is not to be had. */
+static int left_to_reduce(const ted4_raw_scene *s, int downscale, int *n, ted4_message *m)
+{
+    const int done = s->reduced > 1 ? s->reduced : 1;
+
+    *n = done > 1 && downscale < done ? 1 : downscale / done;
+    if (downscale > done && downscale % done != 0)
+        return ted4_say(m, "%s: the finest pictures are reduced by %d, a reduction by %d cannot be made of them",
+                        s->shots[0].path, done, downscale);
+    return 0;
+}
+
+static int make_picture(ted4_picture *p, ted4_source *source, ted4_shot *s, int n,
                         const ted4_dataset_options *o, ted4_message *m)
 {
     ted4_camera *c = &p->camera;
-    const int n = o->downscale;
 
     if (fit_lens(s, m) != 0)
         return -1;
@@ -192,9 +206,11 @@ static void choose_background(ted4_dataset *d, const ted4_raw_scene *s, const te
 
 int ted4_build_dataset(ted4_dataset *d, ted4_raw_scene *s, const ted4_dataset_options *o, ted4_message *m)
 {
+    int reduction;
+
     if (s->n_shots == 0)
         return ted4_say(m, "the scene (layout %s) has no pictures", s->layout);
-    if (split(s, m) != 0)
+    if (left_to_reduce(s, o->downscale, &reduction, m) != 0 || split(s, m) != 0)
         return -1;
     d->layout = ted4_text_copy(s->layout);
     d->pictures = calloc(s->n_shots, sizeof *d->pictures);
@@ -203,7 +219,7 @@ int ted4_build_dataset(ted4_dataset *d, ted4_raw_scene *s, const ted4_dataset_op
         return ted4_say_no_memory(m);
     for (; d->n_pictures < s->n_shots; d->n_pictures++)
         if (make_picture(&d->pictures[d->n_pictures], &d->sources[d->n_pictures],
-                         &s->shots[d->n_pictures], o, m) != 0)
+                         &s->shots[d->n_pictures], reduction, o, m) != 0)
             return -1;
     d->rate = s->rate;
     choose_background(d, s, o);

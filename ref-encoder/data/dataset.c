@@ -17,10 +17,12 @@ static const struct {
     ted4_loader *load;
 } layouts[] = {
     { ted4_is_transforms, ted4_load_transforms },
+    { ted4_is_hypernerf, ted4_load_hypernerf },
     { ted4_is_colmap, ted4_load_colmap },
 };
 
-#define LAYOUTS "transforms_train.json, transforms.json (D-NeRF, nerfstudio) or sparse/ (COLMAP)"
+#define LAYOUTS "transforms_train.json, transforms.json (D-NeRF, nerfstudio), dataset.json and camera/ " \
+                "(HyperNeRF) or sparse/ (COLMAP)"
 
 static int load_raw(ted4_raw_scene *s, const char *folder, ted4_message *m)
 {
@@ -38,6 +40,7 @@ int ted4_dataset_load(ted4_dataset *d, const char *folder, const ted4_dataset_op
 
     memset(d, 0, sizeof *d);
     memset(&raw, 0, sizeof raw);
+    raw.wanted = o;
     m->text[0] = 0;
     int result = load_raw(&raw, folder, m);
     if (result == 0)

@@ -39,10 +39,11 @@ typedef struct ted4_dataset {
 } ted4_dataset;
 
 typedef struct {
-    int         downscale;      /* integer factor, area average; 1 = none */
+    int         downscale;      /* integer factor, area average; 1 = none. A layout may hold reduced copies, which are used */
     int         white;          /* background of RGBA images: 1 white (default), 0 black */
     uint32_t    seed;           /* for random points */
     size_t      cache_bytes;    /* bound of decoded pixels kept in memory */
+    uint32_t    max_frames;     /* most times read of each camera's frames or video; 0: 300 of Neu3D, else all */
 } ted4_dataset_options;
 
 /* One clear message, "file:line-or-field: what was found, what was expected". */

@@ -45,6 +45,36 @@ int ted4_json_text(const json_t *object, const char *where, const char *name, co
     return 1;
 }
 
+/* Appends the numbers of a list to v[high]; 0, or -1: something else in it, or too many. */
+static int gather(const json_t *list, double *v, size_t *n, size_t high)
+{
+    for (size_t i = 0; i < json_array_size(list); i++) {
+        const json_t *item = json_array_get(list, i);
+        const int nested = json_is_array(item);
+        if (nested && gather(item, v, n, high) != 0)
+            return -1;
+        if (nested)
+            continue;
+        if (!json_is_number(item) || !isfinite(json_number_value(item)) || *n >= high)
+            return -1;
+        v[(*n)++] = json_number_value(item);
+    }
+    return 0;
+}
+
+int ted4_json_numbers(const json_t *object, const char *where, const char *name, double *v, size_t low, size_t high, ted4_message *m)
+{
+    const json_t *field = json_object_get(object, name);
+    size_t n = 0;
+
+    if (field == NULL)
+        return 0;
+    if (!json_is_array(field) || gather(field, v, &n, high) != 0 || n < low)
+        return low == high ? ted4_say(m, "%s.%s: expected %zu numbers", where, name, low)
+                           : ted4_say(m, "%s.%s: expected %zu to %zu numbers", where, name, low, high);
+    return (int)n;
+}
+
 /* Row i of the matrix into v[4]; 0, or -1: not four finite numbers. */
 static int read_row(const json_t *matrix, size_t i, double v[4])
 {

@@ -1,5 +1,5 @@
 /* json_field.h - fields of a JSON document with messages that name file and field.
- * Used by load_transforms.c. A later layout described in JSON can use it as well.
+ * Used by the loaders of layouts that JSON describes.
  * SPDX-License-Identifier: BSD-2-Clause */
 #ifndef TED4_JSON_FIELD_H
 #define TED4_JSON_FIELD_H
@@ -19,6 +19,10 @@ int ted4_json_number(const json_t *object, const char *where, const char *name, 
 
 /* Borrowed text of a string. */
 int ted4_json_text(const json_t *object, const char *where, const char *name, const char **v, ted4_message *m);
+
+/* low to high numbers in a list; lists in the list are read in order (a matrix by rows). Gives
+ * how many. */
+int ted4_json_numbers(const json_t *object, const char *where, const char *name, double *v, size_t low, size_t high, ted4_message *m);
 
 /* A matrix given as 4 rows (or, when the last is left out, 3) of 4 numbers; the last must be 0 0
  * 0 1. v: its upper 3x4, row-major. */

@@ -25,7 +25,7 @@ void ted4_point_cloud_free(ted4_point_cloud *c);
  * absent: grey. Other properties are skipped. */
 int ted4_ply_read(ted4_point_cloud *c, const char *path, ted4_message *m);
 
-/* The first of the usual names (points3d.ply points3D.ply fused.ply sparse.ply) that exists in
+/* The first of the usual names (see point_cloud.c) that exists in
  * folder. 0 with c->n == 0: none does. */
 int ted4_ply_find(ted4_point_cloud *c, const char *folder, ted4_message *m);
 

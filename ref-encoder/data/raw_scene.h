@@ -28,10 +28,12 @@ typedef struct {
 } ted4_shot;
 
 typedef struct {
+    const ted4_dataset_options *wanted; /* borrowed; for layouts that can read less than everything */
     const char       *layout;       /* static text */
     ted4_shot        *shots;        /* owned, in the layout's order */
     size_t            n_shots, capacity;
     ted4_point_cloud  cloud;        /* empty: none came with the scene */
+    int               reduced;      /* downscale counts from pictures this many times finer than the files; 0 or 1: from these */
     int               unit_cube;    /* random points fill the cube of Blender's synthetic scenes */
     int               timed;        /* times came with the pictures */
     double            rate;         /* frames a second, 0: unknown */
@@ -49,12 +51,13 @@ void ted4_raw_scene_hold_out(ted4_raw_scene *s);
 
 typedef int ted4_loader(ted4_raw_scene *s, const char *folder, ted4_message *m);
 
-/* 0, or -1 with *m filled; *s must be zero before and is to be freed by the caller either way. */
-ted4_loader ted4_load_colmap, ted4_load_transforms;
+/* 0, or -1 with *m filled; *s must be zero but for wanted before and is to be freed by the caller either way. */
+ted4_loader ted4_load_colmap, ted4_load_transforms, ted4_load_hypernerf;
 
 /* Does the folder look like the layout? */
 int ted4_is_colmap(const char *folder);
 int ted4_is_transforms(const char *folder);
+int ted4_is_hypernerf(const char *folder);
 
 /* Takes shots and cloud out of *s. 0, or -1 with *m filled and *d to be freed by the caller. */
 int ted4_build_dataset(ted4_dataset *d, ted4_raw_scene *s, const ted4_dataset_options *o, ted4_message *m);

@@ -7,13 +7,47 @@
 
 int ted4_lens_is_pinhole(const ted4_lens *l)
 {
-    return l->k1 == 0 && l->k2 == 0 && l->p1 == 0 && l->p2 == 0;
+    return l->k1 == 0 && l->k2 == 0 && l->p1 == 0 && l->p2 == 0 && l->k3 == 0 && l->skew == 0;
 }
 
-/* Squared radius where d/dr (r + k1 r^3 + k2 r^5) = 1 + 3 k1 s + 5 k2 s^2, s = r^2, first
- * reaches zero; infinite if never. */
+/* d/dr (r + k1 r^3 + k2 r^5 + k3 r^7) at s = r^2. */
+static double slope(const ted4_lens *l, double s)
+{
+    return 1 + s * (3 * l->k1 + s * (5 * l->k2 + s * 7 * l->k3));
+}
+
+/* First zero of the slope when k3 is not 0: between 0, its extrema (roots of 3 k1 + 10 k2 s +
+ * 21 k3 s^2) and FAR it is monotone, so the first such piece that ends below zero holds it. */
+static double cubic_fold(const ted4_lens *l)
+{
+    const double FAR = 1e6, disc = 25 * l->k2 * l->k2 - 63 * l->k1 * l->k3;
+    const double half = disc > 0 ? sqrt(disc) / fabs(21 * l->k3) : 0, middle = -5 * l->k2 / (21 * l->k3);
+    const double ends[3] = { middle - half, middle + half, FAR };
+    double low = 0;
+
+    for (int i = 0; i < 3; i++) {
+        double high = ends[i];
+        if (!(high > low && high <= FAR))
+            continue;
+        if (slope(l, high) > 0) {
+            low = high;
+            continue;
+        }
+        for (int k = 0; k < 100; k++) {
+            const double s = 0.5 * (low + high);
+            *(slope(l, s) > 0 ? &low : &high) = s;
+        }
+        return low;
+    }
+    return INFINITY;
+}
+
+/* Squared radius where the slope first reaches zero; infinite if never. */
 static double fold_radius2(const ted4_lens *l)
 {
+    if (l->k3 != 0)
+        return cubic_fold(l);
+    /* 1 + 3 k1 s + 5 k2 s^2 = 0. */
     const double a = 5 * l->k2, b = 3 * l->k1, disc = b * b - 4 * a;
 
     if (disc < 0)
@@ -35,10 +69,10 @@ static void distort(const ted4_lens *l, double fold2, double x, double y, double
         v *= shrink;
         s = fold2;
     }
-    const double radial = 1 + s * (l->k1 + s * l->k2);
+    const double radial = 1 + s * (l->k1 + s * (l->k2 + s * l->k3));
     const double ud = u * radial + 2 * l->p1 * u * v + l->p2 * (s + 2 * u * u);
     const double vd = v * radial + 2 * l->p2 * u * v + l->p1 * (s + 2 * v * v);
-    *dx = l->fx * ud + l->cx;
+    *dx = l->fx * ud + l->skew * vd + l->cx;
     *dy = l->fy * vd + l->cy;
 }
 

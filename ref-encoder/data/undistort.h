@@ -6,19 +6,21 @@
 
 #include <stdint.h>
 
-/* Intrinsics of a picture of width x height pixels, centres at + 0.5, and the radial (k1 k2) and
- * tangential (p1 p2) terms common to COLMAP's SIMPLE_RADIAL, RADIAL, OPENCV and to OpenCV. All
- * four zero: a pinhole. */
+/* Intrinsics of a picture of width x height pixels, centres at + 0.5, and the radial (k1 k2 k3) and
+ * tangential (p1 p2) terms common to COLMAP's SIMPLE_RADIAL, RADIAL, OPENCV, to OpenCV and to
+ * Nerfies. skew: pixels to the right for each unit down of the image plane at depth 1. These six
+ * zero: a pinhole. */
 typedef struct {
     int    width, height;
     double fx, fy, cx, cy;
-    double k1, k2, p1, p2;
+    double k1, k2, p1, p2, k3;
+    double skew;
 } ted4_lens;
 
 int ted4_lens_is_pinhole(const ted4_lens *l);
 
 /* Position in the distorted picture, in pixels, of the ray that a pinhole of the same fx fy cx
- * cy sees at (x, y). Beyond the radius where the radial polynomial stops growing (where it would
+ * cy without skew sees at (x, y). Beyond the radius where the radial polynomial stops growing (where it would
  * fold back) the position on that radius is returned. */
 void ted4_lens_distort(const ted4_lens *l, double x, double y, double *dx, double *dy);
 

@@ -139,7 +139,7 @@ int main(int argc, char **argv)
                       ted4_file_writable(r.checkpoint, 1, why, sizeof why) != 0)))
         return complain(why);
 
-    const ted4_dataset_options wanted = { r.downscale, !r.black, r.options.seed, CACHE_BYTES };
+    const ted4_dataset_options wanted = { r.downscale, !r.black, r.options.seed, CACHE_BYTES, 0 };
 
     if (ted4_dataset_load(&d, r.scene, &wanted, &m) != 0)
         return complain(m.text);
