@@ -53,7 +53,7 @@ $B/ted4scene: $(patsubst %.c,$B/%.o,$(wildcard tests/scenes/*.c)) $B/libted4enc.
 $B/tests/%: $B/tests/%.o $(DEC_TOOL:%.c=$B/%.o) $B/libted4enc.a $B/libted4dec.a
 	$(CC) -fopenmp $(LDFLAGS) $^ -o $@ -lcmocka $(LIBS)
 
-$B/tests/test_scene: $(patsubst %.c,$B/%.o,$(wildcard tests/scenes/ray_*.c))
+$B/tests/test_scene $B/tests/test_layouts: $(patsubst %.c,$B/%.o,$(wildcard tests/scenes/ray_*.c))
 
 # Prints each test program it runs and a closing line of totals.
 test: $(TESTS) $(PROGS)

@@ -37,6 +37,7 @@ wanted="$*"
 run chair          chair   --downscale 2 --preset medium
 run still          still   --downscale 2 --preset fast
 run kitchen        kitchen --downscale 2 --preset fast
+run kitchen-small  kitchen --downscale 2 --preset fast --lambda 0.004
 run kitchen-static kitchen --downscale 2 --preset fast --lambda 0.001 --set motion=0 --set activation=0
 run dog            dog     --downscale 2 --preset fast
 run dog-static     dog     --downscale 2 --preset fast --set motion=0 --set activation=0

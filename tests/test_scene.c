@@ -380,7 +380,7 @@ static void test_occlusion(void **state)
 /* A point is where its own camera sees a surface, and has the colour of it. */
 static void test_points_on_surfaces(void **state)
 {
-    ted4_ray_options o = { RAY_STILL, W, H, 3, 1, 5, 1 };
+    ted4_ray_options o = { RAY_STILL, W, H, 3, 1, 5, 1, RAY_BLENDER, 0 };
 
     (void)state;
     for (int s = 0; s < RAY_SCENES; s++) {
@@ -411,7 +411,7 @@ static void test_points_on_surfaces(void **state)
 static void test_points_colours(void **state)
 {
     static uint8_t rgb[SIZE * 9];
-    const ted4_ray_options o = { RAY_STILL, W, H, 3, 1, 5, 1 };
+    const ted4_ray_options o = { RAY_STILL, W, H, 3, 1, 5, 1, RAY_BLENDER, 0 };
     ted4_ray_camera c;
     ted4_ray_world w;
     int shown = 0, alike = 0;
@@ -541,7 +541,7 @@ static void check_ply(const char *folder, const ted4_ray_options *o)
 static void test_files(void **state)
 {
     char a[] = "/tmp/ted4_scene_a_XXXXXX", b[] = "/tmp/ted4_scene_b_XXXXXX";
-    const ted4_ray_options o = { RAY_TURN, W, H, 2, 1, 3, 5 };
+    const ted4_ray_options o = { RAY_TURN, W, H, 2, 1, 3, 5, RAY_BLENDER, 0 };
     int threads = 2;
     const ted4_parallel two = { run_openmp, &threads };
     ted4_ray_message m;
@@ -564,7 +564,7 @@ static void test_files(void **state)
 static void test_refusal(void **state)
 {
     char file[] = "/tmp/ted4_scene_f_XXXXXX", folder[64];
-    const ted4_ray_options o = { RAY_STILL, W, H, 1, 0, 1, 1 };
+    const ted4_ray_options o = { RAY_STILL, W, H, 1, 0, 1, 1, RAY_BLENDER, 0 };
     const int handle = mkstemp(file);
     ted4_ray_message m = { "" };
 

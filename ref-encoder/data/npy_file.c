@@ -48,10 +48,11 @@ static int read_header(table *t, const char *path, const uint8_t *p, size_t size
         return ted4_say(m, "%s: numbers of type %.8s, expected '<f4' or '<f8'", path, type);
     if (strncmp(after(t->text, "'fortran_order'"), "False", 5) != 0)
         return ted4_say(m, "%s: Fortran order, expected C order", path);
-    char end = 0;
+    char end = 0, last = 0;
     const char *shape = after(t->text, "'shape'");
-    if (sscanf(shape, "(%9lu , %9lu %c", &rows, &columns, &end) != 3 || (end != ')' && end != ','))
-        return ted4_say(m, "%s: shape %.*s, expected two dimensions", path, (int)strcspn(shape, "}\n"), shape);
+    const int found = sscanf(shape, "(%9lu , %9lu %c %c", &rows, &columns, &end, &last);
+    if (found < 3 || (end != ')' && !(end == ',' && last == ')')))
+        return ted4_say(m, "%s: shape %.*s), expected two dimensions", path, (int)strcspn(shape, ")}\n"), shape);
     t->rows = rows;
     t->columns = columns;
     t->data = p + start + length;

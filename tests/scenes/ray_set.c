@@ -1,6 +1,7 @@
-/* ray_set.c - pictures, transforms and points of a scene, in files.
+/* ray_set.c - pictures and points of a scene, and the folder. What the other files of a layout say:
+ * ray_layout.c.
  * SPDX-License-Identifier: BSD-2-Clause */
-#include "ray_set.h"
+#include "ray_layout.h"
 
 #include <errno.h>
 #include <png.h>
@@ -8,42 +9,13 @@
 #include <stdlib.h>
 #include <string.h>
 #include <sys/stat.h>
+#include <sys/wait.h>
 #include <unistd.h>
 
 enum { MAX_PATH = 1024 };
 /* Half width of the noise added to the points, in units; two thirds of a default pixel at the
  * middle. */
 static const float point_noise = 0.015f;
-
-/* One of the two splits of a set. */
-typedef struct {
-    const char *name;
-    int cameras, is_test;
-} split;
-
-static split split_of(const ted4_ray_options *o, int is_test)
-{
-    if (is_test)
-        return (split){ "test", o->n_test, 1 };
-    return (split){ "train", o->n_train, 0 };
-}
-
-static void camera_of(const ted4_ray_options *o, const split *s, int i, ted4_ray_camera *c)
-{
-    if (s->is_test)
-        ted4_ray_camera_test(c, i, o->n_test, o->n_train, o->width, o->height);
-    else
-        ted4_ray_camera_train(c, i, o->n_train, o->width, o->height);
-}
-
-/* "train/r_003_07", wide enough that names sort as numbers. */
-static void picture_name(const ted4_ray_options *o, const split *s, const int camera_frame[2],
-                         char name[64])
-{
-    const char *const format = o->n_frames > 100 ? "%s/r_%03d_%03d" : "%s/r_%03d_%02d";
-
-    snprintf(name, 64, format, s->name, camera_frame[0], camera_frame[1]);
-}
 
 static int complain(ted4_ray_message *m, const char *path, const char *why)
 {
@@ -102,16 +74,13 @@ static void picture_job(void *arg, size_t i)
     const pictures *const job = arg;
     const ted4_ray_options *const o = job->o;
     const int number = (int)(i / (size_t)o->n_frames), frame = (int)(i % (size_t)o->n_frames);
-    const split s = split_of(o, number >= o->n_train);
-    const int place[2] = { s.is_test ? number - o->n_train : number, frame };
     uint8_t *const rgb = malloc((size_t)o->width * (size_t)o->height * 3);
     ted4_ray_camera camera;
     ted4_ray_world world;
-    char name[64], file[72], path[MAX_PATH];
+    char file[TED4_RAY_NAME], path[MAX_PATH];
 
-    picture_name(o, &s, place, name);
-    snprintf(file, sizeof file, "%s.png", name);
-    camera_of(o, &s, place[0], &camera);
+    ted4_ray_picture_name(o, number, frame, file);
+    ted4_ray_camera_of(o, number, &camera);
     ted4_ray_world_at(&world, o->scene, o->seed, frame, o->n_frames);
     if (rgb == NULL) {
         complain(&job->failure[i], file, "out of memory");
@@ -142,45 +111,6 @@ static int write_pictures(const ted4_ray_options *o, const char *folder, const t
     return status;
 }
 
-/* ---- transforms ---- */
-
-static void put_transforms(FILE *f, const ted4_ray_options *o, const split *s)
-{
-    const int n = s->cameras * o->n_frames;
-
-    fprintf(f, "{\n  \"camera_angle_x\": %.17g,\n  \"frames\": [", ted4_ray_angle_x);
-    for (int i = 0; i < n; i++) {
-        const int place[2] = { i / o->n_frames, i % o->n_frames };
-        ted4_ray_camera c;
-        char name[64];
-
-        camera_of(o, s, place[0], &c);
-        picture_name(o, s, place, name);
-        fprintf(f, "%s\n    {\n      \"file_path\": \"./%s\",\n      \"time\": %.17g,\n"
-                "      \"transform_matrix\": [", i > 0 ? "," : "", name,
-                ted4_ray_time(place[1], o->n_frames));
-        for (int r = 0; r < 4; r++)
-            fprintf(f, "%s\n        [%.17g, %.17g, %.17g, %.17g]", r > 0 ? "," : "",
-                    c.matrix[r][0], c.matrix[r][1], c.matrix[r][2], c.matrix[r][3]);
-        fprintf(f, "\n      ]\n    }");
-    }
-    fprintf(f, "\n  ]\n}\n");
-}
-
-static void put_train(FILE *f, const ted4_ray_options *o)
-{
-    const split s = split_of(o, 0);
-
-    put_transforms(f, o, &s);
-}
-
-static void put_test(FILE *f, const ted4_ray_options *o)
-{
-    const split s = split_of(o, 1);
-
-    put_transforms(f, o, &s);
-}
-
 /* ---- points ---- */
 
 ted4_ray_point ted4_ray_point_at(const ted4_ray_options *o, int i)
@@ -204,58 +134,29 @@ ted4_ray_point ted4_ray_point_at(const ted4_ray_options *o, int i)
     return p;
 }
 
-static void put_float(FILE *f, float x)
-{
-    uint32_t bits;
-
-    memcpy(&bits, &x, sizeof bits);
-    for (int i = 0; i < 4; i++)
-        putc((int)(bits >> 8 * i & 255), f);
-}
-
-static void put_points(FILE *f, const ted4_ray_options *o)
-{
-    fprintf(f,
-            "ply\nformat binary_little_endian 1.0\nelement vertex %d\n"
-            "property float x\nproperty float y\nproperty float z\n"
-            "property float nx\nproperty float ny\nproperty float nz\n"
-            "property uchar red\nproperty uchar green\nproperty uchar blue\nend_header\n",
-            TED4_RAY_POINTS);
-    for (int i = 0; i < TED4_RAY_POINTS; i++) {
-        const ted4_ray_point p = ted4_ray_point_at(o, i);
-        const float row[6] = { p.point.x, p.point.y, p.point.z, 0, 0, 0 };
-
-        for (int k = 0; k < 6; k++)
-            put_float(f, row[k]);
-        fwrite(p.rgb, 1, 3, f);
-    }
-}
-
 /* ---- the folder ---- */
 
-typedef struct {
-    const char *name;
-    void (*put)(FILE *f, const ted4_ray_options *o);
-} text_file;
+static int make_parent(const char *path, ted4_ray_message *m)
+{
+    char parent[MAX_PATH];
 
-/* The transforms come last: without them a folder is not taken for a scene. */
-static const text_file files[3] = { { "points3d.ply", put_points },
-                                    { "transforms_test.json", put_test },
-                                    { "transforms_train.json", put_train } };
+    snprintf(parent, sizeof parent, "%.*s", (int)(strrchr(path, '/') - path), path);
+    return make_folders(parent, m);
+}
 
-static int write_file(const ted4_ray_options *o, const char *folder, const text_file *file,
+static int write_file(const ted4_ray_options *o, const char *folder, const ted4_ray_file *file,
                       ted4_ray_message *m)
 {
     char path[MAX_PATH];
     FILE *f;
     int broken;
 
-    if (join(path, folder, file->name, m) != 0)
+    if (join(path, folder, file->name, m) != 0 || make_parent(path, m) != 0)
         return -1;
     f = fopen(path, "wb");
     if (f == NULL)
         return complain(m, path, strerror(errno));
-    file->put(f, o);
+    file->put(f, o, file->number, file->frame);
     broken = ferror(f);
     if (fclose(f) != 0 || broken)
         return complain(m, path, "cannot write all of it (disk full?)");
@@ -273,25 +174,98 @@ static int remove_file(const char *folder, const char *name, ted4_ray_message *m
     return 0;
 }
 
+/* Every folder that pictures go to; the D-NeRF layout has both even without test cameras. */
+static int make_picture_folders(const ted4_ray_options *o, const char *folder, ted4_ray_message *m)
+{
+    char name[TED4_RAY_NAME], path[MAX_PATH];
+
+    for (int number = 0; number < o->n_train + (o->n_test > 0 ? o->n_test : 1); number++) {
+        ted4_ray_picture_name(o, number, 0, name);
+        if (number >= o->n_train + o->n_test && o->layout != RAY_BLENDER)
+            break;
+        if (join(path, folder, name, m) != 0 || make_parent(path, m) != 0)
+            return -1;
+    }
+    return 0;
+}
+
+/* ---- videos: lossless, in place of the folders of frames ---- */
+
+static int encode(const char *folder, const char *camera, ted4_ray_message *m)
+{
+    char input[MAX_PATH], output[MAX_PATH];
+    int status = -1;
+
+    if (snprintf(input, sizeof input, "%s/%s/images/%%04d.png", folder, camera) >= MAX_PATH ||
+        snprintf(output, sizeof output, "%s/%s.mp4", folder, camera) >= MAX_PATH)
+        return complain(m, folder, "the path is too long");
+    const pid_t child = fork();
+    if (child == 0) {
+        execlp("ffmpeg", "ffmpeg", "-nostdin", "-v", "error", "-y", "-framerate", "30", "-i", input, "-c:v",
+               "png", output, (char *)NULL);
+        _exit(127);
+    }
+    if (child < 0 || waitpid(child, &status, 0) < 0 || !WIFEXITED(status) || WEXITSTATUS(status) != 0)
+        return complain(m, output, "the program ffmpeg cannot make it (is it installed?)");
+    return 0;
+}
+
+static int make_videos(const ted4_ray_options *o, const char *folder, ted4_ray_message *m)
+{
+    char name[TED4_RAY_NAME], path[MAX_PATH];
+
+    for (int number = 0; number < o->n_train + o->n_test; number++) {
+        ted4_ray_camera_name(o, number, name);
+        if (encode(folder, name, m) != 0)
+            return -1;
+        for (int frame = 0; frame < o->n_frames; frame++) {
+            ted4_ray_picture_name(o, number, frame, name);
+            if (remove_file(folder, name, m) != 0 || join(path, folder, name, m) != 0)
+                return -1;
+        }
+        for (int up = 0; up < 2; up++) {
+            *strrchr(path, '/') = '\0';
+            rmdir(path);
+        }
+    }
+    return 0;
+}
+
+/* ---- all of it ---- */
+
+static int write_cameras(const ted4_ray_options *o, const char *folder, ted4_ray_message *m)
+{
+    for (int number = 0; number < o->n_train + o->n_test; number++)
+        for (int frame = 0; frame < o->n_frames; frame++) {
+            char name[TED4_RAY_NAME];
+            const ted4_ray_file file = { name, ted4_ray_put_hypernerf_camera, number, frame };
+
+            ted4_ray_hypernerf_camera_name(o, number, frame, name);
+            if (write_file(o, folder, &file, m) != 0)
+                return -1;
+        }
+    return 0;
+}
+
 int ted4_ray_write(const ted4_ray_options *o, const char *folder, const ted4_parallel *p,
                    ted4_ray_message *m)
 {
-    char path[MAX_PATH];
+    const ted4_ray_file *const files = ted4_ray_layout_files(o->layout);
 
     m->text[0] = '\0';
-    if (make_folders(folder, m) != 0)
+    if (make_folders(folder, m) != 0 || make_picture_folders(o, folder, m) != 0)
         return -1;
-    for (int is_test = 0; is_test < 2; is_test++) {
-        if (join(path, folder, split_of(o, is_test).name, m) != 0 || make_folders(path, m) != 0)
-            return -1;
-    }
-    for (int i = 0; i < 3; i++) {
+    for (int i = 0; files[i].name != NULL; i++) {
         if (remove_file(folder, files[i].name, m) != 0)
             return -1;
     }
     if (write_pictures(o, folder, p, m) != 0)
         return -1;
-    for (int i = 0; i < 3; i++) {
+    if (o->layout == RAY_HYPERNERF && write_cameras(o, folder, m) != 0)
+        return -1;
+    if (o->video && make_videos(o, folder, m) != 0)
+        return -1;
+    for (int i = 0; files[i].name != NULL; i++) {
         if (write_file(o, folder, &files[i], m) != 0)
             return -1;
     }

@@ -15,13 +15,16 @@ enum { EXIT_FINE = 0, EXIT_TROUBLE = 3 };
 
 static const char usage[] =
     "usage: ted4scene NAME -o FOLDER [options]\n"
-    "Makes a small synthetic dynamic scene in the D-NeRF layout.\n"
+    "Makes a small synthetic dynamic scene.\n"
     "NAME: still, turn, occluder, pop or bend\n"
     "  -o FOLDER           where to; made if missing, must be empty without -f\n"
     "  --size WxH          picture size, 8 to 4096 (160x120)\n"
     "  --cameras N         training cameras, 1 to 1000 (12)\n"
     "  --test-cameras N    test cameras, 0 to 1000 (2)\n"
     "  --frames N          times, 1 to 1000 (16)\n"
+    "  --layout L          blender, nerfstudio, colmap, colmap-text, hypernerf, neu3d or\n"
+    "                      calibration (blender)\n"
+    "  --video             neu3d and calibration: lossless videos by ffmpeg, not frames\n"
     "  --seed S            of textures and points, 32 bits (1)\n"
     "  -j N                threads (all)\n"
     "  -f                  write into a folder that is not empty\n"
@@ -97,6 +100,17 @@ static int scene_of(const char *name, ted4_ray_options *o)
     return complain(name, "not one of still, turn, occluder, pop, bend");
 }
 
+static int layout_of(const char *name, ted4_ray_options *o)
+{
+    for (int l = 0; l < RAY_LAYOUTS; l++) {
+        if (strcmp(name, ted4_ray_layout_name((ted4_ray_layout)l)) == 0) {
+            o->layout = (ted4_ray_layout)l;
+            return EXIT_FINE;
+        }
+    }
+    return complain(name, "not a layout (see -h)");
+}
+
 static int option(command *c, int letter, const char *text)
 {
     long long seed = 0;
@@ -124,6 +138,12 @@ static int option(command *c, int letter, const char *text)
     case 'n':
         status = integer(text, 1, TED4_RAY_MAX_COUNT, &c->set.n_frames);
         break;
+    case 'l':
+        status = layout_of(text, &c->set);
+        break;
+    case 'v':
+        c->set.video = 1;
+        break;
     case 'r':
         status = number(text, 0, UINT32_MAX, &seed);
         c->set.seed = (uint32_t)seed;
@@ -142,6 +162,8 @@ static int parse(int argc, char **argv, command *c)
                                            { "cameras", required_argument, NULL, 'c' },
                                            { "test-cameras", required_argument, NULL, 't' },
                                            { "frames", required_argument, NULL, 'n' },
+                                           { "layout", required_argument, NULL, 'l' },
+                                           { "video", no_argument, NULL, 'v' },
                                            { "seed", required_argument, NULL, 'r' },
                                            { "help", no_argument, NULL, 'h' },
                                            { "version", no_argument, NULL, 'V' },
@@ -158,6 +180,8 @@ static int parse(int argc, char **argv, command *c)
     }
     if (optind + 1 != argc)
         return complain(argc > optind ? argv[optind + 1] : "NAME", "give one scene name (see -h)");
+    if (c->set.video && c->set.layout != RAY_NEU3D && c->set.layout != RAY_CALIBRATION)
+        return complain("--video", "goes with the layouts neu3d and calibration");
     if (c->folder == NULL)
         return complain("-o", "give the folder to write (see -h)");
     return scene_of(argv[optind], &c->set);

@@ -1,0 +1,192 @@
+/* clip.c - see clip.h.
+ * SPDX-License-Identifier: BSD-2-Clause */
+#include "data/clip.h"
+
+#include <dirent.h>
+#include <stdlib.h>
+#include <string.h>
+#include "data/data_util.h"
+#include "data/video.h"
+
+void ted4_name_list_free(ted4_name_list *l)
+{
+    for (size_t i = 0; i < l->n; i++)
+        free(l->names[i]);
+    free(l->names);
+    memset(l, 0, sizeof *l);
+}
+
+static int append(ted4_name_list *l, char *name)
+{
+    char **names = name == NULL ? NULL : realloc(l->names, (l->n + 1) * sizeof *names);
+
+    if (names == NULL) {
+        free(name);
+        return -1;
+    }
+    l->names = names;
+    l->names[l->n++] = name;
+    return 0;
+}
+
+static int has_end(const char *name, const char *end)
+{
+    const size_t n = strlen(name), k = strlen(end);
+
+    return n > k && strcmp(name + n - k, end) == 0;
+}
+
+static int is_picture(const char *name)
+{
+    static const char *const ends[] = { ".png", ".jpg", ".jpeg", ".PNG", ".JPG" };
+
+    for (size_t i = 0; i < sizeof ends / sizeof ends[0]; i++)
+        if (has_end(name, ends[i]))
+            return name[0] != '.';
+    return 0;
+}
+
+static int by_name(const void *a, const void *b)
+{
+    return strcmp(*(char *const *)a, *(char *const *)b);
+}
+
+static int by_length(const void *a, const void *b)
+{
+    const size_t x = strlen(*(char *const *)a), y = strlen(*(char *const *)b);
+
+    return x != y ? (x > y) - (x < y) : by_name(a, b);
+}
+
+/* One of the forms in which a clip can lie in a folder. */
+typedef struct {
+    const char *parent;         /* of the entries to look at, in the scene's folder */
+    const char *inner;          /* folder that an entry must hold, NULL: the entry itself is the folder */
+    const char *end;            /* of a file's name, NULL: the entry is a folder */
+} form;
+
+static const form forms[] = { { "images", NULL, NULL }, { ".", "images", NULL }, { ".", NULL, ".mp4" } };
+
+static int fits(const form *f, const char *parent, const char *entry)
+{
+    if (strncmp(entry, "cam", 3) != 0)
+        return 0;
+    char *path = ted4_path_join(parent, entry);
+    char *inner = path != NULL && f->inner != NULL ? ted4_path_join(path, f->inner) : NULL;
+    const int found = f->end != NULL ? has_end(entry, f->end) && path != NULL && ted4_is_file(path)
+                                     : (f->inner == NULL ? path : inner) != NULL &&
+                                       ted4_is_folder(f->inner == NULL ? path : inner);
+    free(path);
+    free(inner);
+    return found;
+}
+
+static int add_fitting(ted4_name_list *l, const form *f, const char *parent)
+{
+    DIR *d = opendir(parent);
+    int result = 0;
+
+    for (struct dirent *e = d == NULL ? NULL : readdir(d); e != NULL && result == 0; e = readdir(d)) {
+        if (!fits(f, parent, e->d_name))
+            continue;
+        char *name = ted4_text_copy(e->d_name);
+        if (name != NULL && f->end != NULL)
+            name[strlen(name) - strlen(f->end)] = 0;
+        result = append(l, name);
+    }
+    if (d != NULL)
+        closedir(d);
+    return result;
+}
+
+int ted4_clip_names(ted4_name_list *l, const char *folder)
+{
+    int result = 0;
+
+    memset(l, 0, sizeof *l);
+    for (size_t i = 0; i < sizeof forms / sizeof forms[0] && l->n == 0 && result == 0; i++) {
+        char *parent = ted4_path_join(folder, forms[i].parent);
+        result = parent == NULL ? -1 : add_fitting(l, &forms[i], parent);
+        free(parent);
+    }
+    if (result != 0)
+        ted4_name_list_free(l);
+    else if (l->n > 0)
+        qsort(l->names, l->n, sizeof *l->names, by_name);
+    return result;
+}
+
+static int list_pictures(ted4_name_list *l, const char *folder)
+{
+    DIR *d = opendir(folder);
+    int result = 0;
+
+    for (struct dirent *e = d == NULL ? NULL : readdir(d); e != NULL && result == 0; e = readdir(d))
+        if (is_picture(e->d_name))
+            result = append(l, ted4_path_join(folder, e->d_name));
+    if (d != NULL)
+        closedir(d);
+    if (l->n > 0)
+        qsort(l->names, l->n, sizeof *l->names, by_length);
+    return result;
+}
+
+/* folder/first/second if it is a folder; owned by the caller. */
+static char *inner_folder(const char *folder, const char *first, const char *second)
+{
+    char *outer = ted4_path_join(folder, first), *path = outer == NULL ? NULL : ted4_path_join(outer, second);
+
+    free(outer);
+    if (path != NULL && ted4_is_folder(path))
+        return path;
+    free(path);
+    return NULL;
+}
+
+static void keep(ted4_name_list *l, size_t most)
+{
+    while (most > 0 && l->n > most)
+        free(l->names[--l->n]);
+}
+
+int ted4_clip_pictures(ted4_name_list *pictures, const char *folder, const char *name, const char *video,
+                       size_t most, ted4_message *m)
+{
+    memset(pictures, 0, sizeof *pictures);
+    char *place = inner_folder(folder, "images", name);
+    if (place == NULL)
+        place = inner_folder(folder, name, "images");
+    if (place == NULL && !ted4_is_file(video))
+        return ted4_say(m, "%s: no such video, nor a folder images/%s or %s/images of its pictures", video, name, name);
+    if (place == NULL)
+        place = ted4_video_unpack(video, most, m);
+    if (place == NULL)
+        return -1;
+    int result = list_pictures(pictures, place) != 0 ? ted4_say_no_memory(m) : 0;
+    keep(pictures, most);
+    if (result == 0 && pictures->n == 0)
+        result = ted4_say(m, "%s: no pictures here", place);
+    if (result != 0)
+        ted4_name_list_free(pictures);
+    free(place);
+    return result;
+}
+
+int ted4_clip_add(ted4_raw_scene *s, const ted4_name_list *pictures, const char *name, const ted4_shot *model,
+                  ted4_message *m)
+{
+    for (size_t i = 0; i < pictures->n; i++) {
+        ted4_shot *shot = ted4_raw_scene_add(s, ted4_text_copy(pictures->names[i]), name, m);
+        if (shot == NULL)
+            return -1;
+        shot->lens = model->lens;
+        memcpy(shot->R, model->R, sizeof shot->R);
+        memcpy(shot->t, model->t, sizeof shot->t);
+        shot->is_test = model->is_test;
+        shot->time = (double)i;
+        shot->camera = ted4_text_copy(name);
+        if (shot->camera == NULL)
+            return ted4_say_no_memory(m);
+    }
+    return 0;
+}

@@ -1,0 +1,32 @@
+/* clip.h - what a fixed camera saw over time, for layouts with one camera a clip: a folder of
+ * pictures, or a video. Depends on data/raw_scene.h. Used by load_neu3d.c, load_calibration.c.
+ * SPDX-License-Identifier: BSD-2-Clause */
+#ifndef TED4_CLIP_H
+#define TED4_CLIP_H
+
+#include <stddef.h>
+#include "data/raw_scene.h"
+
+/* Sorted names; owned, with the list. */
+typedef struct {
+    char **names;
+    size_t n;
+} ted4_name_list;
+
+void ted4_name_list_free(ted4_name_list *l);
+
+/* The clips of a folder that begin with "cam": NAME of images/NAME/ where there is any, else of
+ * NAME/images/, else of NAME.mp4. 0 with l->n == 0: none. -1: no memory. */
+int ted4_clip_names(ted4_name_list *l, const char *folder);
+
+/* Pictures, in the order of names (shorter ones first, so that 9999 is before 10000), of
+ * images/NAME/ or NAME/images/, else of the video, unpacked (see video.h). At most most of them,
+ * 0: all. 0, or -1 with *m filled and *pictures empty. */
+int ted4_clip_pictures(ted4_name_list *pictures, const char *folder, const char *name, const char *video,
+                       size_t most, ted4_message *m);
+
+/* Appends a shot for every picture: lens, pose and is_test of *model, time = index, label = name. */
+int ted4_clip_add(ted4_raw_scene *s, const ted4_name_list *pictures, const char *name, const ted4_shot *model,
+                  ted4_message *m);
+
+#endif

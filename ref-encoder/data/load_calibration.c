@@ -1,0 +1,183 @@
+/* load_calibration.c - layout "calibration": cams.json with fixed cameras after OpenCV's model, and
+ * one clip each (clip.h). A camera: name, video (default NAME.mp4), w, h, K (3x3), dist (k1 k2 p1 p2,
+ * k3 if it is there), w2c (world to camera 4x4; right, down, forward). At the top: frames (how many
+ * each clip must have at least, and how many are read), fps. Held out: times by TED4_HOLD_OUT_*, of
+ * all cameras.
+ * SPDX-License-Identifier: BSD-2-Clause */
+#include "data/raw_scene.h"
+
+#include <jansson.h>
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include "data/clip.h"
+#include "data/data_util.h"
+#include "data/json_field.h"
+
+/* OpenCV has the centre of the first pixel at 0, this program at 0.5. */
+static const double CENTRE_SHIFT = 0.5;
+
+typedef struct {
+    ted4_raw_scene *scene;
+    const char     *folder;
+    char           *path;           /* of cams.json; owned */
+    json_t         *root;           /* owned */
+    size_t          stated, n_frames;   /* 0: not stated, not known yet */
+    ted4_message   *m;
+} calibration;
+
+int ted4_is_calibration(const char *folder)
+{
+    char *path = ted4_path_join(folder, "cams.json");
+    const int found = path != NULL && ted4_is_file(path);
+
+    free(path);
+    return found;
+}
+
+static int missing(const calibration *c, const char *where, const char *what, int found)
+{
+    return found < 0 ? -1 : ted4_say(c->m, "%s: no %s", where, what);
+}
+
+static int read_lens(const calibration *c, const json_t *o, const char *where, ted4_lens *l)
+{
+    double w = 0, h = 0, K[9], dist[5] = { 0, 0, 0, 0, 0 };
+    int found = ted4_json_number(o, where, "w", &w, c->m);
+
+    if (found > 0)
+        found = ted4_json_number(o, where, "h", &h, c->m);
+    if (found <= 0)
+        return missing(c, where, "w, h", found);
+    if (!(w >= 1 && h >= 1 && w <= 1e6 && h <= 1e6))
+        return ted4_say(c->m, "%s: w, h are %g, %g, expected numbers of pixels", where, w, h);
+    found = ted4_json_numbers(o, where, "K", K, 9, 9, c->m);
+    if (found <= 0)
+        return missing(c, where, "K", found);
+    if (K[3] != 0 || K[6] != 0 || K[7] != 0 || K[8] != 1)
+        return ted4_say(c->m, "%s.K: expected fx s cx, 0 fy cy, 0 0 1", where);
+    if (ted4_json_numbers(o, where, "dist", dist, 4, 5, c->m) < 0)
+        return -1;
+    *l = (ted4_lens){ .width = (int)w, .height = (int)h, .fx = K[0], .fy = K[4], .skew = K[1],
+                      .cx = K[2] + CENTRE_SHIFT, .cy = K[5] + CENTRE_SHIFT,
+                      .k1 = dist[0], .k2 = dist[1], .p1 = dist[2], .p2 = dist[3], .k3 = dist[4] };
+    return 0;
+}
+
+static int read_pose(const calibration *c, const json_t *o, const char *where, ted4_shot *shot)
+{
+    double M[12];
+    const int found = ted4_json_affine(o, where, "w2c", M, c->m);
+
+    if (found <= 0)
+        return missing(c, where, "w2c", found);
+    for (int i = 0; i < 3; i++) {
+        memcpy(shot->R + 3 * i, M + 4 * i, 3 * sizeof *M);
+        shot->t[i] = M[4 * i + 3];
+    }
+    const char *wrong = ted4_rotation_clean(shot->R);
+    return wrong == NULL ? 0 : ted4_say(c->m, "%s.w2c: its 3x3 part %s", where, wrong);
+}
+
+/* All clips have as many frames as stated, else as the first one has. */
+static int check_count(calibration *c, const char *where, size_t n)
+{
+    if (c->n_frames == 0)
+        c->n_frames = c->stated > 0 ? c->stated : n;
+    return n == c->n_frames ? 0 : ted4_say(c->m, "%s: %zu frames, expected %zu %s", where, n, c->n_frames,
+                                           c->stated > 0 ? "by the file's frames" : "like the first camera");
+}
+
+static int add_clip(calibration *c, const char *where, const char *name, const char *file, const ted4_shot *model)
+{
+    ted4_name_list pictures;
+    char *video = ted4_path_join(c->folder, file);
+
+    if (video == NULL)
+        return ted4_say_no_memory(c->m);
+    int result = ted4_clip_pictures(&pictures, c->folder, name, video,
+                                    c->stated > 0 ? c->stated : c->scene->wanted->max_frames, c->m);
+    free(video);
+    if (result != 0)
+        return -1;
+    result = check_count(c, where, pictures.n);
+    if (result == 0)
+        result = ted4_clip_add(c->scene, &pictures, name, model, c->m);
+    ted4_name_list_free(&pictures);
+    return result;
+}
+
+static int read_camera(calibration *c, size_t i)
+{
+    const json_t *o = json_array_get(json_object_get(c->root, "cameras"), i);
+    const char *name = NULL, *video = NULL;
+    char where[700], file[300];
+    ted4_shot model;
+
+    memset(&model, 0, sizeof model);
+    snprintf(where, sizeof where, "%.600s: cameras[%zu]", c->path, i);
+    const int found = ted4_json_text(o, where, "name", &name, c->m);
+    if (found <= 0)
+        return missing(c, where, "name", found);
+    snprintf(file, sizeof file, "%.250s.mp4", name);
+    const int named = ted4_json_text(o, where, "video", &video, c->m);
+    if (named < 0 || read_lens(c, o, where, &model.lens) != 0 || read_pose(c, o, where, &model) != 0)
+        return -1;
+    return add_clip(c, where, name, named > 0 ? video : file, &model);
+}
+
+static int read_frames(calibration *c)
+{
+    const uint32_t most = c->scene->wanted->max_frames;
+    double frames = 0;
+
+    if (ted4_json_number(c->root, c->path, "frames", &frames, c->m) < 0 ||
+        ted4_json_number(c->root, c->path, "fps", &c->scene->rate, c->m) < 0)
+        return -1;
+    if (!(frames >= 0 && frames <= TED4_MAX_FRAMES) || frames != floor(frames))
+        return ted4_say(c->m, "%s.frames: %g, expected a whole number up to %d", c->path, frames, TED4_MAX_FRAMES);
+    if (!(c->scene->rate >= 0))
+        return ted4_say(c->m, "%s.fps: %g, expected a positive number", c->path, c->scene->rate);
+    c->stated = (size_t)frames;
+    if (most > 0 && c->stated > most)
+        c->stated = most;
+    return 0;
+}
+
+static int read_all(calibration *c)
+{
+    ted4_raw_scene *s = c->scene;
+
+    c->root = c->path == NULL ? NULL : ted4_json_read(c->path, c->m);
+    if (c->root == NULL)
+        return c->path == NULL ? ted4_say_no_memory(c->m) : -1;
+    const size_t n = json_array_size(json_object_get(c->root, "cameras"));
+    if (n == 0)
+        return ted4_say(c->m, "%s: cameras: expected a list with at least one camera", c->path);
+    if (read_frames(c) != 0)
+        return -1;
+    for (size_t i = 0; i < n; i++)
+        if (read_camera(c, i) != 0)
+            return -1;
+    for (size_t i = 0; i < s->n_shots; i++)
+        s->shots[i].is_test = (size_t)s->shots[i].time % TED4_HOLD_OUT_EVERY == TED4_HOLD_OUT_PHASE;
+    return ted4_ply_find(&s->cloud, c->folder, c->m);
+}
+
+int ted4_load_calibration(ted4_raw_scene *s, const char *folder, ted4_message *m)
+{
+    calibration c;
+
+    memset(&c, 0, sizeof c);
+    s->layout = "calibration";
+    s->timed = 1;
+    c.scene = s;
+    c.folder = folder;
+    c.m = m;
+    c.path = ted4_path_join(folder, "cams.json");
+    const int result = read_all(&c);
+    json_decref(c.root);
+    free(c.path);
+    return result;
+}

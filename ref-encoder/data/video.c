@@ -1,0 +1,248 @@
+/* video.c - see video.h. Frames are unpacked into a folder with a name of its own, which gets its
+ * final name when it is complete: whoever finds the final name finds every frame, and programs that
+ * unpack one video at a time do not disturb one another.
+ * SPDX-License-Identifier: BSD-2-Clause */
+#include "data/video.h"
+
+#include <dirent.h>
+#include <errno.h>
+#include <fcntl.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/stat.h>
+#include <sys/wait.h>
+#include <unistd.h>
+#include <xxhash.h>
+#include "data/data_util.h"
+#include "data/raw_scene.h"
+
+#define LOG     "ffmpeg.log"    /* what ffmpeg says, in the folder while it is made */
+#define COUNT   "count"         /* number of frames, in the folder when it is complete */
+#define NO_EXEC 127             /* exit status of a child that could not start ffmpeg */
+
+/* Even time stamps, so that no frame is doubled or dropped; then RGB with a conversion that is the
+ * same on every machine; without the colour tags that make a PNG reader convert once more. */
+#define FILTERS "settb=AVTB,setpts=N*40000,scale=flags=bitexact+accurate_rnd+full_chroma_int+full_chroma_inp," \
+                "format=rgb24,setparams=color_primaries=unknown:color_trc=unknown"
+#define RATE    "25"            /* 1 / 40000 us */
+
+/* Removes a folder of files. */
+static void remove_folder(const char *folder)
+{
+    DIR *d = opendir(folder);
+
+    for (struct dirent *e = d == NULL ? NULL : readdir(d); e != NULL; e = readdir(d)) {
+        char *path = ted4_path_join(folder, e->d_name);
+        if (path != NULL && ted4_is_file(path))
+            unlink(path);
+        free(path);
+    }
+    if (d != NULL)
+        closedir(d);
+    rmdir(folder);
+}
+
+/* The folder of all unpacked videos, made if need be. Another user's is refused: what lies in it
+ * becomes pictures. */
+static char *cache_folder(ted4_message *m)
+{
+    const char *cache = getenv("XDG_CACHE_HOME"), *temporary = getenv("TMPDIR");
+    const int has_cache = cache != NULL && *cache != 0;
+    char name[40] = "ted4";
+    struct stat s;
+
+    if (!has_cache) {
+        snprintf(name, sizeof name, "ted4-%lu", (unsigned long)getuid());
+        cache = temporary != NULL && *temporary != 0 ? temporary : "/tmp";
+    }
+    char *folder = ted4_path_join(cache, name);
+    if (folder == NULL) {
+        ted4_say_no_memory(m);
+        return NULL;
+    }
+    if (has_cache)
+        mkdir(cache, 0700);
+    if (mkdir(folder, 0700) != 0 && errno != EEXIST)
+        ted4_say(m, "%s: cannot be made, for the frames of videos (XDG_CACHE_HOME, TMPDIR choose): %s", folder, strerror(errno));
+    else if (lstat(folder, &s) != 0 || !S_ISDIR(s.st_mode) || s.st_uid != getuid())
+        ted4_say(m, "%s: not a folder of this user, needed for the frames of videos (XDG_CACHE_HOME, TMPDIR choose)", folder);
+    else
+        return folder;
+    free(folder);
+    return NULL;
+}
+
+/* cache/NAME-KEY; path: the video's, absolute. */
+static char *final_folder(const char *cache, const char *path, const struct stat *s, size_t most)
+{
+    const char *base = strrchr(path, '/');
+    char identity[320], name[120];
+
+    snprintf(identity, sizeof identity, "%lld %lld.%09ld %zu " FILTERS, (long long)s->st_size,
+             (long long)s->st_mtim.tv_sec, (long)s->st_mtim.tv_nsec, most);
+    const XXH64_hash_t key = XXH64(path, strlen(path), XXH64(identity, strlen(identity), 0));
+    snprintf(name, sizeof name, "%.80s-%016llx", base == NULL ? path : base + 1, (unsigned long long)key);
+    return ted4_path_join(cache, name);
+}
+
+/* Pictures in a folder, from 1 on without a gap. */
+static size_t count_frames(const char *folder)
+{
+    char name[32];
+    size_t n = 0;
+    int found = 1;
+
+    while (found) {
+        snprintf(name, sizeof name, "%06zu.png", n + 1);
+        char *path = ted4_path_join(folder, name);
+        found = path != NULL && ted4_is_file(path);
+        n += found != 0;
+        free(path);
+    }
+    return n;
+}
+
+/* Is it there with every frame it was made with? Cleaners of old files may have been at it. */
+static int is_complete(const char *folder)
+{
+    char *path = ted4_path_join(folder, COUNT);
+    FILE *f = path == NULL ? NULL : fopen(path, "r");
+    unsigned long n = 0;
+    const int told = f != NULL && fscanf(f, "%lu", &n) == 1;
+
+    if (f != NULL)
+        fclose(f);
+    free(path);
+    return told && n == count_frames(folder);
+}
+
+static int write_count(const char *folder, size_t n)
+{
+    char *path = ted4_path_join(folder, COUNT);
+    FILE *f = path == NULL ? NULL : fopen(path, "w");
+    int fine = f != NULL && fprintf(f, "%zu\n", n) > 0;
+
+    if (f != NULL)
+        fine = fclose(f) == 0 && fine;
+    free(path);
+    return fine ? 0 : -1;
+}
+
+/* Runs ffmpeg in the folder; gives its exit status, or -1. */
+static int run_ffmpeg(const char *video, size_t most, const char *folder)
+{
+    char input[4200], limit[24];
+    int status;
+
+    if (snprintf(input, sizeof input, "file:%s", video) >= (int)sizeof input)
+        return -1;
+    snprintf(limit, sizeof limit, "%zu", most);
+    const pid_t child = fork();
+    if (child == 0) {
+        const int none = chdir(folder) == 0 ? open("/dev/null", O_RDWR) : -1;
+        const int messages = open(LOG, O_WRONLY | O_CREAT | O_TRUNC, 0600);
+        if (none >= 0 && messages >= 0 && dup2(none, 0) >= 0 && dup2(none, 1) >= 0 && dup2(messages, 2) >= 0)
+            execlp("ffmpeg", "ffmpeg", "-nostdin", "-hide_banner", "-v", "error", "-i", input, "-map", "0:v:0",
+                   "-vf", FILTERS, "-r", RATE, "-frames:v", limit, "-flags", "+bitexact", "-fflags", "+bitexact",
+                   "-compression_level", "1", "-f", "image2", "%06d.png", (char *)NULL);
+        _exit(NO_EXEC);
+    }
+    while (child > 0 && waitpid(child, &status, 0) < 0)
+        if (errno != EINTR)
+            return -1;
+    return child > 0 && WIFEXITED(status) ? WEXITSTATUS(status) : -1;
+}
+
+/* Last line that ffmpeg said, or nothing. */
+static void last_words(const char *folder, char text[200])
+{
+    ted4_message ignored;
+    uint8_t *bytes = NULL;
+    size_t n = 0;
+    char *path = ted4_path_join(folder, LOG);
+
+    text[0] = 0;
+    if (path != NULL && ted4_read_whole(path, &bytes, &n, &ignored) == 0) {
+        while (n > 0 && bytes[n - 1] <= ' ')
+            n--;
+        size_t start = n;
+        while (start > 0 && bytes[start - 1] >= ' ')
+            start--;
+        snprintf(text, 200, ": %.*s", (int)(n - start), (char *)bytes + start);
+    }
+    free(bytes);
+    free(path);
+}
+
+static int fill(const char *video, size_t most, const char *folder, ted4_message *m)
+{
+    char words[200];
+    const int status = run_ffmpeg(video, most, folder);
+    const size_t n = count_frames(folder);
+
+    if (status == NO_EXEC)
+        return ted4_say(m, "%s: the program ffmpeg is needed to read it and cannot be started (is it installed?)", video);
+    last_words(folder, words);
+    if (status != 0 || n == 0)
+        return ted4_say(m, "%s: ffmpeg, unpacking into %s, failed after %zu frames%s", video, folder, n, words);
+    char *log = ted4_path_join(folder, LOG);
+    if (log != NULL)
+        unlink(log);
+    free(log);
+    return write_count(folder, n) == 0 ? 0 : ted4_say(m, "%s: %s", folder, strerror(errno));
+}
+
+/* Unpacks into a new folder beside the final one and renames it. */
+static int unpack(const char *video, size_t most, const char *final, ted4_message *m)
+{
+    const size_t size = strlen(final) + 8;
+    char *folder = malloc(size);
+
+    if (folder == NULL)
+        return ted4_say_no_memory(m);
+    snprintf(folder, size, "%s.XXXXXX", final);
+    if (mkdtemp(folder) == NULL) {
+        ted4_say(m, "%s: %s", folder, strerror(errno));
+        free(folder);
+        return -1;
+    }
+    int result = fill(video, most, folder, m);
+    if (result == 0 && rename(folder, final) != 0 && !is_complete(final))
+        result = ted4_say(m, "%s: %s", final, strerror(errno));
+    /* Gone when renamed; left when this failed or another program was first. */
+    remove_folder(folder);
+    free(folder);
+    return result;
+}
+
+/* Independent of the folder that the program, or ffmpeg, works in. Owned by the caller. */
+static char *absolute(const char *path)
+{
+    char here[4096];
+
+    return getcwd(here, sizeof here) == NULL ? NULL : ted4_path_join(here, path);
+}
+
+char *ted4_video_unpack(const char *video, size_t most, ted4_message *m)
+{
+    struct stat s;
+    const size_t limit = most > 0 && most < TED4_MAX_FRAMES ? most : TED4_MAX_FRAMES;
+    char *cache = cache_folder(m), *path = cache == NULL ? NULL : absolute(video);
+    char *final = NULL;
+
+    if (cache != NULL && (path == NULL || stat(path, &s) != 0))
+        ted4_say(m, "%s: %s", video, strerror(errno));
+    else if (cache != NULL && (final = final_folder(cache, path, &s, limit)) == NULL)
+        ted4_say_no_memory(m);
+    if (final != NULL && !is_complete(final)) {
+        remove_folder(final);
+        if (unpack(path, limit, final, m) != 0) {
+            free(final);
+            final = NULL;
+        }
+    }
+    free(cache);
+    free(path);
+    return final;
+}

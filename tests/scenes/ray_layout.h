@@ -1,0 +1,36 @@
+/* ray_layout.h - names and contents of the files of each layout, pictures aside.
+ * Depends on ray_set.h. Used by ray_set.c.
+ * SPDX-License-Identifier: BSD-2-Clause */
+#ifndef RAY_LAYOUT_H
+#define RAY_LAYOUT_H
+
+#include <stdio.h>
+#include "ray_set.h"
+
+enum { TED4_RAY_NAME = 80 };
+
+/* Cameras have a number: training cameras from 0, then test cameras. */
+void ted4_ray_camera_of(const ted4_ray_options *o, int number, ted4_ray_camera *c);
+
+/* "cam07", test cameras first. */
+void ted4_ray_camera_name(const ted4_ray_options *o, int number, char name[TED4_RAY_NAME]);
+
+/* File of a picture in the scene's folder. */
+void ted4_ray_picture_name(const ted4_ray_options *o, int number, int frame, char name[TED4_RAY_NAME]);
+
+typedef void ted4_ray_put(FILE *f, const ted4_ray_options *o, int number, int frame);
+
+typedef struct {
+    const char   *name;
+    ted4_ray_put *put;
+    int           number, frame;        /* for put; unused by files of the whole scene */
+} ted4_ray_file;
+
+/* In the order to write; ends with a name of NULL. */
+const ted4_ray_file *ted4_ray_layout_files(ted4_ray_layout l);
+
+/* The camera file of one picture, which hypernerf has in addition. */
+void ted4_ray_hypernerf_camera_name(const ted4_ray_options *o, int number, int frame, char name[TED4_RAY_NAME]);
+ted4_ray_put ted4_ray_put_hypernerf_camera;
+
+#endif
