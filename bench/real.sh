@@ -46,7 +46,7 @@ run dog-static     dog     --downscale 2 --preset fast --set motion=0 --set acti
 {
     echo "# Real scenes"
     echo
-    echo "Made by \`bench/real.sh\` (\`make real\`), one training at a time on two cores; scenes in \`\$TED4_DATA\`. Every number is measured on the decoded file,"
+    echo "Made by \`bench/real.sh\` (\`make real\`), on two cores, one training at a time unless noted; scenes in \`\$TED4_DATA\`. Every number is measured on the decoded file,"
     echo "on pictures that training never saw. \`bench/real.csv\` holds all columns; \`bench/sheets/\` truth, ours, error (5 times) at three times."
     echo
     echo "| run | command | PSNR | SSIM | MS-SSIM | bytes | training s | anchors | moving | decode ms |"
