@@ -2,7 +2,7 @@
 # compiler's vectoriser off (vector types become SSE2 operations).
 RASTER_BENCH = ref-decoder/render/raster.c ref-decoder/render/project.c ref-decoder/render/bin.c ref-decoder/render/blend.c \
         ref-encoder/train/raster_bwd.c ref-encoder/train/blend_bwd.c ref-encoder/train/project_bwd.c \
-        ref-encoder/kernel/threads.c bench/bench_raster.c
+        ref-decoder/tool/threads.c bench/bench_raster.c
 
 $B/bench/bench_raster.o: FPFLAGS = $(FREE)
 $B/bench/bench_raster: $(RASTER_BENCH:%.c=$B/%.o)

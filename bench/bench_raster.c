@@ -6,7 +6,7 @@
 #include <string.h>
 #include <time.h>
 
-#include "kernel/threads.h"
+#include "tool/threads.h"
 #include "raster_scene.h"
 #include "render/raster_state.h"
 #include "train/raster_bwd.h"

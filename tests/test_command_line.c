@@ -116,7 +116,7 @@ static void test_table(void **state)
         { 0, "long-only", NULL, "a flag" },
         { 'j', "threads", "N", "how many" },
     };
-    const ted4_command c = { "prog", "FILE", "Does things.", table, 3, "The end.\n" };
+    const ted4_command c = { "prog", "FILE", "Does things.", table, 3, "The end.\n", NULL };
     char words[][16] = { "prog", "-j", "3", "file", "--long-only", "--output=x", "-oy" };
     char *argv[] = { words[0], words[1], words[2], words[3], words[4], words[5], words[6], NULL };
     char help[1024];

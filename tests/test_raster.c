@@ -7,7 +7,7 @@
 
 #include <cmocka.h>
 
-#include "kernel/threads.h"
+#include "tool/threads.h"
 #include "raster_scene.h"
 #include "render/raster_plain.h"
 

@@ -7,7 +7,7 @@
 #include <stdint.h>
 #include <cmocka.h>
 
-#include "kernel/threads.h"
+#include "tool/threads.h"
 #include "norm/prior.h"
 #include "rate_ref.h"
 #include "train/rate_parts.h"

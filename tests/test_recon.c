@@ -10,7 +10,7 @@
 #include <cmocka.h>
 
 #include <xxhash.h>
-#include "kernel/threads.h"
+#include "tool/threads.h"
 #include "recon_ref.h"
 #include "recon_scene.h"
 

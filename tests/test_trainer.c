@@ -10,7 +10,7 @@
 
 #include "ball_scene.h"
 #include "eval/metrics.h"
-#include "kernel/threads.h"
+#include "tool/threads.h"
 #include "render/view.h"
 #include "train/checkpoint.h"
 #include "train/make_scene.h"

@@ -8,6 +8,8 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "ted4.h"
+
 /* Long options without a letter are reported by getopt as this plus their place. */
 enum { FIRST_LONG = 256 };
 
@@ -30,6 +32,19 @@ static void make_getopt(const ted4_command *c, struct option *longs, char *lette
     *p = '\0';
 }
 
+static int answer(const ted4_command *c, int i)
+{
+    if (c->table[i].letter == 'h') {
+        ted4_arguments_help(c, stdout);
+        return TED4_ARGUMENTS_DONE;
+    }
+    if (c->table[i].letter == 'V') {
+        printf("%s " TED4_VERSION " (specification " TED4_SPEC_VERSION ")\n", c->program);
+        return TED4_ARGUMENTS_DONE;
+    }
+    return i;
+}
+
 int ted4_arguments_next(const ted4_command *c, int argc, char **argv, const char **value)
 {
     struct option longs[TED4_MAX_ARGUMENTS + 1];
@@ -42,10 +57,10 @@ int ted4_arguments_next(const ted4_command *c, int argc, char **argv, const char
     if (found == -1)
         return TED4_ARGUMENTS_END;
     if (found >= FIRST_LONG)
-        return found - FIRST_LONG;
+        return answer(c, found - FIRST_LONG);
     for (int i = 0; i < c->n; i++)
         if (c->table[i].letter == found)
-            return i;
+            return answer(c, i);
     return TED4_ARGUMENTS_BAD;
 }
 
@@ -73,6 +88,8 @@ void ted4_arguments_help(const ted4_command *c, FILE *f)
         fprintf(f, "--%s%s%s%*s  %s\n", a->name, gap, value, widest - width, "", a->text);
     }
     fprintf(f, "\n%s", c->end);
+    if (c->more != NULL)
+        c->more(f);
 }
 
 int ted4_arguments_number(const char *text, long low, long high, long *out)

@@ -24,14 +24,19 @@ typedef struct {
     const ted4_argument *table;
     int                  n;             /* at most TED4_MAX_ARGUMENTS */
     const char          *end;           /* printed after the options: exit codes, examples */
+    void               (*more)(FILE *f);        /* prints what follows that; NULL: nothing */
 } ted4_command;
 
-enum { TED4_ARGUMENTS_END = -1, TED4_ARGUMENTS_BAD = -2 };
+/* Every table has these two, -h and -V: ted4_arguments_next answers them itself. */
+#define TED4_ARGUMENT_HELP    { 'h', "help", NULL, "this text" }
+#define TED4_ARGUMENT_VERSION { 'V', "version", NULL, "print the version" }
+
+enum { TED4_ARGUMENTS_END = -1, TED4_ARGUMENTS_BAD = -2, TED4_ARGUMENTS_DONE = -3 };
 
 /* Next option of the command line: its place in the table, with *value set (NULL if it takes none);
  * TED4_ARGUMENTS_END: only operands are left,
  * from argv[optind] on; TED4_ARGUMENTS_BAD: unknown option or missing value, already said on
- * stderr. */
+ * stderr; TED4_ARGUMENTS_DONE: help or version was printed. */
 int  ted4_arguments_next(const ted4_command *c, int argc, char **argv, const char **value);
 void ted4_arguments_help(const ted4_command *c, FILE *f);
 

@@ -4,7 +4,6 @@
 
 #include <errno.h>
 #include <jansson.h>
-#include <omp.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -77,19 +76,4 @@ int ted4_report(const char *program, const char *path, const ted4_error *e, int 
             ted4_status_text(e->code), ted4_status_id(e->code), ted4_status_section(e->code));
     return verdict == TED4_INVALID || verdict == TED4_UNSUPPORTED ? TED4_EXIT_REFUSED
                                                                   : TED4_EXIT_TOOL;
-}
-
-static void run_threads(void *user, size_t n, void (*body)(void *arg, size_t i), void *arg)
-{
-    const int threads = (int)(intptr_t)user;
-
-#pragma omp parallel for schedule(dynamic, 1) num_threads(threads)
-    for (size_t i = 0; i < n; i++)
-        body(arg, i);
-}
-
-void ted4_cli_parallel(ted4_parallel *p, int threads)
-{
-    p->run  = run_threads;
-    p->user = (void *)(intptr_t)(threads > 0 ? threads : omp_get_num_procs());
 }

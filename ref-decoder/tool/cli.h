@@ -1,4 +1,4 @@
-/* cli.h - what every decoder program does: read a file, say why a stream was refused, lend threads.
+/* cli.h - what every program does: read a file, say why a stream was refused.
  * Exit codes: 0 fine, 1 stream refused, 2 fine with warnings, 3 usage, input, output or resources.
  * SPDX-License-Identifier: BSD-2-Clause */
 #ifndef TED4_CLI_H
@@ -7,7 +7,6 @@
 #include <stddef.h>
 #include <stdint.h>
 
-#include "base/parallel.h"
 #include "base/status.h"
 
 enum { TED4_EXIT_FINE = 0, TED4_EXIT_REFUSED = 1, TED4_EXIT_WARNED = 2, TED4_EXIT_TOOL = 3 };
@@ -19,9 +18,5 @@ uint8_t *ted4_read_file(const char *path, size_t *size);
  * 5.1)"; with json also an object on stdout. Returns the
  * exit code of the verdict. */
 int ted4_report(const char *program, const char *path, const ted4_error *e, int json);
-
-/* Fills *p with a parallel-for over OpenMP threads; threads <= 0: one for each core this process
- * may use. */
-void ted4_cli_parallel(ted4_parallel *p, int threads);
 
 #endif

@@ -12,6 +12,7 @@
 #include "actions.h"
 #include "arguments.h"
 #include "cli.h"
+#include "threads.h"
 #include "output.h"
 #include "sh.h"
 
@@ -56,9 +57,16 @@ static const ted4_argument OPTIONS[N_OPTIONS] = {
     [OPT_JSON]      = { 0, "json", NULL, "results as one JSON object" },
     [OPT_QUIET]     = { 'q', "quiet", NULL, "errors and warnings only" },
     [OPT_VERBOSE]   = { 'v', "verbose", NULL, "say more" },
-    [OPT_HELP]      = { 'h', "help", NULL, "this text" },
-    [OPT_VERSION]   = { 'V', "version", NULL, "print the version" },
+    [OPT_HELP]      = TED4_ARGUMENT_HELP,
+    [OPT_VERSION]   = TED4_ARGUMENT_VERSION,
 };
+
+static void print_formats(FILE *f)
+{
+    fputs("\nFormats of -o:\n", f);
+    for (size_t i = 0; ted4_formats[i] != NULL; i++)
+        fprintf(f, "  %-8s %s\n", ted4_formats[i]->suffix, ted4_formats[i]->text);
+}
 
 static const ted4_command COMMAND = {
     "ted4dec",
@@ -67,7 +75,8 @@ static const ted4_command COMMAND = {
     OPTIONS,
     N_OPTIONS,
     "Exit codes: 0 fine, 1 file refused, 2 fine with warnings, 3 usage, input, output or "
-    "resources.\n"
+    "resources.\n",
+    print_formats,
 };
 
 static int usage_error(const char *text, const char *value)
@@ -140,14 +149,6 @@ static int check_settings(const ted4_settings *s)
     return 0;
 }
 
-static void print_help(void)
-{
-    ted4_arguments_help(&COMMAND, stdout);
-    fputs("\nFormats of -o:\n", stdout);
-    for (size_t i = 0; ted4_formats[i] != NULL; i++)
-        printf("  %-8s %s\n", ted4_formats[i]->suffix, ted4_formats[i]->text);
-}
-
 /* -1: go on; else an exit code. */
 static int parse(ted4_settings *s, int argc, char **argv)
 {
@@ -157,14 +158,8 @@ static int parse(ted4_settings *s, int argc, char **argv)
     for (int i; (i = ted4_arguments_next(&COMMAND, argc, argv, &value)) != TED4_ARGUMENTS_END;) {
         if (i == TED4_ARGUMENTS_BAD)
             return TED4_EXIT_TOOL;
-        if (i == OPT_HELP) {
-            print_help();
+        if (i == TED4_ARGUMENTS_DONE)
             return TED4_EXIT_FINE;
-        }
-        if (i == OPT_VERSION) {
-            puts("ted4dec " TED4_VERSION " (specification " TED4_SPEC_VERSION ")");
-            return TED4_EXIT_FINE;
-        }
         const int code = set_option(s, i, value);
 
         if (code != 0)
@@ -284,7 +279,7 @@ int main(int argc, char **argv)
 
     if (code >= 0)
         return code;
-    ted4_cli_parallel(&s.parallel, set.threads);
+    ted4_threads_init(&s.parallel, set.threads);
     s.report = json_object();
     if (set.cameras != NULL
         && ted4_camera_list_load(&s.cameras, set.cameras, why, sizeof why) != 0) {
@@ -296,6 +291,7 @@ int main(int argc, char **argv)
     ted4_camera_list_free(&s.cameras);
     ted4_recon_free(s.recon);
     json_decref(s.report);
+    ted4_threads_finish(&s.parallel);
     if (fflush(stdout) != 0 || ferror(stdout)) {
         fprintf(stderr, "ted4dec: standard output: %s\n", strerror(errno));
         return TED4_EXIT_TOOL;

@@ -22,15 +22,16 @@ static const ted4_argument OPTIONS[N_OPTIONS] = {
     [OPT_JSON]    = { 0, "json", NULL, "everything as one JSON object" },
     [OPT_QUIET]   = { 'q', "quiet", NULL, "errors only: is the file valid?" },
     [OPT_VERBOSE] = { 'v', "verbose", NULL, "also every element of the header" },
-    [OPT_HELP]    = { 'h', "help", NULL, "this text" },
-    [OPT_VERSION] = { 'V', "version", NULL, "print the version" },
+    [OPT_HELP]    = TED4_ARGUMENT_HELP,
+    [OPT_VERSION] = TED4_ARGUMENT_VERSION,
 };
 
 static const ted4_command COMMAND = {
     "ted4info", "FILE.ted4 [options]        (- reads standard input)",
     "Says what a TED4 file holds.",
     OPTIONS, N_OPTIONS,
-    "Exit codes: 0 fine, 1 file refused, 3 usage, input, output or resources.\n"
+    "Exit codes: 0 fine, 1 file refused, 3 usage, input, output or resources.\n",
+    NULL,
 };
 
 typedef struct {
@@ -54,14 +55,8 @@ static int parse(settings *s, int argc, char **argv)
     for (int i; (i = ted4_arguments_next(&COMMAND, argc, argv, &value)) != TED4_ARGUMENTS_END;) {
         if (i == TED4_ARGUMENTS_BAD)
             return TED4_EXIT_TOOL;
-        if (i == OPT_HELP) {
-            ted4_arguments_help(&COMMAND, stdout);
+        if (i == TED4_ARGUMENTS_DONE)
             return TED4_EXIT_FINE;
-        }
-        if (i == OPT_VERSION) {
-            puts("ted4info " TED4_VERSION " (specification " TED4_SPEC_VERSION ")");
-            return TED4_EXIT_FINE;
-        }
         if (i == OPT_THREADS && ted4_arguments_number(value, 0, 1024, &threads) != 0)
             return usage_error("bad number of threads");
         s->on[i] = 1;

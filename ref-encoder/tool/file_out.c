@@ -6,32 +6,19 @@
 #include <stdio.h>
 #include <string.h>
 #include <sys/stat.h>
-#include <unistd.h>
 
-enum { NAME_SIZE = 4096 };
+#include "tool/output.h"
 
-static int temporary_name(char name[NAME_SIZE], const char *path, char *why, size_t why_size)
-{
-    if (snprintf(name, NAME_SIZE, "%s.part", path) < NAME_SIZE)
-        return 0;
-    snprintf(why, why_size, "%.60s...: name too long", path);
-    return -1;
-}
-
-/* Permissions do not tell all (root, /proc, full file systems), so the temporary file is made and removed again. One that is there
- * already is of a run that was killed: nobody needs it. */
+/* Permissions do not tell all (root, /proc, full file systems), so the temporary file is made and removed again. */
 int ted4_file_writable(const char *path, int force, char *why, size_t why_size)
 {
-    char        name[NAME_SIZE];
+    ted4_output o;
     struct stat there;
-    FILE       *f;
 
     if (path[0] == '\0') {
         snprintf(why, why_size, "the output's name is empty");
         return -1;
     }
-    if (temporary_name(name, path, why, why_size) != 0)
-        return -1;
     if (stat(path, &there) == 0) {
         if (S_ISDIR(there.st_mode)) {
             snprintf(why, why_size, "%s: is a folder, expected a file name", path);
@@ -42,36 +29,25 @@ int ted4_file_writable(const char *path, int force, char *why, size_t why_size)
             return -1;
         }
     }
-    f = fopen(name, "wb");
-    if (f == NULL) {
-        snprintf(why, why_size, "%s: cannot be written: %s", path, strerror(errno));
+    if (ted4_output_open(&o, path) != 0) {
+        snprintf(why, why_size, "%.200s: cannot be written: %s", path, strerror(errno));
         return -1;
     }
-    fclose(f);
-    remove(name);
+    ted4_output_cancel(&o);
     return 0;
 }
 
 int ted4_file_write(const char *path, const void *data, size_t size, char *why,
                     size_t why_size)
 {
-    char  name[NAME_SIZE];
-    FILE *f;
+    ted4_output o;
+    int         bad = ted4_output_open(&o, path) != 0;
 
-    if (temporary_name(name, path, why, why_size) != 0)
-        return -1;
-    f = fopen(name, "wb");
-    if (f == NULL) {
-        snprintf(why, why_size, "%s: %s", name, strerror(errno));
-        return -1;
+    if (!bad) {
+        fwrite(data, 1, size, o.file);
+        bad = ted4_output_close(&o) != 0;
     }
-    int bad = fwrite(data, 1, size, f) != size || fflush(f) != 0 || fsync(fileno(f)) != 0;
-
-    bad |= fclose(f) != 0;
-    if (bad || rename(name, path) != 0) {
+    if (bad)
         snprintf(why, why_size, "%s: %s", path, strerror(errno));
-        remove(name);
-        return -1;
-    }
-    return 0;
+    return bad ? -1 : 0;
 }

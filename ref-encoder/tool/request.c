@@ -35,8 +35,8 @@ static const ted4_argument OPTIONS[N_OPTIONS] = {
     [OPT_FORCE]      = { 'f', "force", NULL, "overwrite" },
     [OPT_QUIET]      = { 'q', "quiet", NULL, "errors only" },
     [OPT_VERBOSE]    = { 'v', "verbose", NULL, "progress lines, terminal or not" },
-    [OPT_HELP]       = { 'h', "help", NULL, "this text" },
-    [OPT_VERSION]    = { 'V', "version", NULL, "print the version" },
+    [OPT_HELP]       = TED4_ARGUMENT_HELP,
+    [OPT_VERSION]    = TED4_ARGUMENT_VERSION,
 };
 
 static const ted4_command COMMAND = {
@@ -49,6 +49,7 @@ static const ted4_command COMMAND = {
     OPTIONS, N_OPTIONS,
     "Exit codes: 0 fine, 3 usage, input, output or resources.\n\n"
     "Training options (--set) and their values in each preset:\n",
+    ted4_options_help,
 };
 
 /* What cannot be applied before the preset is known. */
@@ -109,13 +110,6 @@ static int take(ted4_request *r, pending *p, int option, const char *value)
             return complain("too many --set");
         p->set[p->n_sets++] = value;
         break;
-    case OPT_HELP:
-        ted4_arguments_help(&COMMAND, stdout);
-        ted4_options_help(stdout);
-        return TED4_REQUEST_DONE;
-    default:
-        printf("ted4enc " TED4_VERSION " (specification " TED4_SPEC_VERSION ")\n");
-        return TED4_REQUEST_DONE;
     }
     return TED4_REQUEST_GO;
 }
@@ -172,8 +166,8 @@ int ted4_request_parse(ted4_request *r, int argc, char **argv)
         if (status != TED4_REQUEST_GO)
             return status;
     }
-    if (option == TED4_ARGUMENTS_BAD)
-        return TED4_REQUEST_BAD;
+    if (option != TED4_ARGUMENTS_END)
+        return option == TED4_ARGUMENTS_DONE ? TED4_REQUEST_DONE : TED4_REQUEST_BAD;
     if (optind + 1 != argc)
         return complain("one scene folder expected; --help lists the options");
     r->scene = argv[optind];

@@ -12,7 +12,7 @@ typedef struct {
     int    terminal;            /* progress line wanted */
     int    verbose;             /* plain progress lines wanted */
     double start, last_time;    /* seconds; step at that time below */
-    uint64_t start_step, last_step;
+    uint64_t last_step;
     double psnr;                /* held-out preview */
 } ted4_run_log;
 

@@ -6,7 +6,7 @@
 
 #include "data/dataset.h"
 #include "file_out.h"
-#include "kernel/threads.h"
+#include "tool/threads.h"
 #include "request.h"
 #include "run_log.h"
 #include "ted4.h"
@@ -38,7 +38,7 @@ static int train(const ted4_request *r, ted4_trainer *t)
 
     if (ted4_run_log_open(&log, r->log, r->resume, r->quiet, r->verbose, why, sizeof why) != 0)
         return complain(why);
-    log.start_step = log.last_step = t->iteration;
+    log.last_step = t->iteration;
     while (!bad && t->iteration < total) {
         bad = ted4_trainer_step(t) != 0;
         if (!bad && (t->iteration % REPORT_EVERY == 0 || t->iteration == total)) {

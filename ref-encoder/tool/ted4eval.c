@@ -22,6 +22,7 @@
 #include "ted4.h"
 #include "tool/arguments.h"
 #include "tool/cli.h"
+#include "tool/threads.h"
 
 enum {
     OPT_SPLIT,
@@ -50,8 +51,8 @@ static const ted4_argument OPTIONS[N_OPTIONS] = {
     [OPT_JSON]      = { 0, "json", NULL, "result as one JSON object" },
     [OPT_QUIET]     = { 'q', "quiet", NULL, "errors only" },
     [OPT_VERBOSE]   = { 'v', "verbose", NULL, "metrics of every picture on standard error" },
-    [OPT_HELP]      = { 'h', "help", NULL, "this text" },
-    [OPT_VERSION]   = { 'V', "version", NULL, "print the version" },
+    [OPT_HELP]      = TED4_ARGUMENT_HELP,
+    [OPT_VERSION]   = TED4_ARGUMENT_VERSION,
 };
 
 static const ted4_command COMMAND = {
@@ -62,7 +63,8 @@ static const ted4_command COMMAND = {
     "range 2), MS-SSIM, bytes of the file, milliseconds to decode it, and pictures drawn a second.",
     OPTIONS,
     N_OPTIONS,
-    "Exit codes: 0 fine, 1 file refused, 3 usage, input, output or resources.\n"
+    "Exit codes: 0 fine, 1 file refused, 3 usage, input, output or resources.\n",
+    NULL,
 };
 
 typedef struct {
@@ -153,14 +155,8 @@ static int parse(settings *s, int argc, char **argv)
     for (int i; (i = ted4_arguments_next(&COMMAND, argc, argv, &value)) != TED4_ARGUMENTS_END;) {
         if (i == TED4_ARGUMENTS_BAD)
             return TED4_EXIT_TOOL;
-        if (i == OPT_HELP) {
-            ted4_arguments_help(&COMMAND, stdout);
+        if (i == TED4_ARGUMENTS_DONE)
             return TED4_EXIT_FINE;
-        }
-        if (i == OPT_VERSION) {
-            puts("ted4eval " TED4_VERSION " (specification " TED4_SPEC_VERSION ")");
-            return TED4_EXIT_FINE;
-        }
         const int code = set_option(s, i, value);
 
         if (code != 0)
@@ -454,7 +450,7 @@ int main(int argc, char **argv)
 
     if (code >= 0)
         return code;
-    ted4_cli_parallel(&s.parallel, set.threads);
+    ted4_threads_init(&s.parallel, set.threads);
     code = open_file(&s);
     if (code == TED4_EXIT_FINE)
         code = open_scene(&s);
@@ -464,6 +460,7 @@ int main(int argc, char **argv)
     ted4_viewer_free(s.viewer);
     ted4_dataset_free(&s.data);
     ted4_recon_free(s.recon);
+    ted4_threads_finish(&s.parallel);
     if (fflush(stdout) != 0 || ferror(stdout))
         return failed("standard output", strerror(errno));
     return code;

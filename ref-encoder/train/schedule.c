@@ -25,7 +25,8 @@ static double stage_progress(const ted4_trainer *t)
     return done / fmax(1.0, t->stage2 ? t->opt.stage2 : t->opt.stage1);
 }
 
-int ted4_activation_on(const ted4_trainer *t)
+/* Are activation spans learnt yet? Before, they stay as they were seeded. */
+static int activation_learnt(const ted4_trainer *t)
 {
     return t->layout.first[TED4_TAU] >= 0 &&
            (t->stage2 || (double)t->iteration >=
@@ -54,7 +55,7 @@ void ted4_schedule_rates(const ted4_trainer *t, float *rate)
                    : ted4_decay(o->lr_offset, LAST_OFFSET, p));
     fill(rate, l->first[TED4_PHI], l->head.phi_dim, o->lr_phi * values);
     if (l->first[TED4_TAU] >= 0) {
-        const int on = ted4_activation_on(t);
+        const int on = activation_learnt(t);
 
         for (int c = 0; c < 4; c++)
             rate[l->first[TED4_TAU] + c] =

@@ -84,7 +84,6 @@ double ted4_trainer_preview(ted4_trainer *t, int n);
 void ted4_schedule_rates(const ted4_trainer *t, float *channel_rate);
 void ted4_schedule_network_step(ted4_trainer *t);
 int  ted4_schedule_event(ted4_trainer *t);
-int  ted4_activation_on(const ted4_trainer *t);
 
 /* After the picture's gradients: update.c.
  * Volume: weight times the mean of the product of scales over the Gaussians on screen; returns how many there are. Bank: mean squared second difference of its rows. Rate

@@ -1,5 +1,5 @@
-/* threads.h - the team of threads that programs of the encoder side lend to the libraries through base/parallel.h.
- * Used by ted4enc, ted4eval, tests and benchmarks; library code only ever sees a const ted4_parallel *.
+/* threads.h - the team of threads that programs lend to the libraries through base/parallel.h.
+ * Used by all programs, tests and benchmarks; library code only ever sees a const ted4_parallel *.
  * SPDX-License-Identifier: BSD-2-Clause */
 #ifndef TED4_THREADS_H
 #define TED4_THREADS_H
@@ -11,8 +11,5 @@
 void ted4_threads_init(ted4_parallel *p, int n_threads);
 /* Ends the threads. */
 void ted4_threads_finish(ted4_parallel *p);
-
-/* How many threads p runs on. p: NULL (one) or filled by ted4_threads_init. */
-int ted4_threads_count(const ted4_parallel *p);
 
 #endif

@@ -1,7 +1,7 @@
 /* threads.c - see threads.h. A training step has some thirty parallel regions of a fraction of a millisecond, so idle threads wait a moment without sleeping,
  * but not for long: an OpenMP team that spins through its barriers made a step five times as long on a machine that had other work.
  * SPDX-License-Identifier: BSD-2-Clause */
-#include "kernel/threads.h"
+#include "tool/threads.h"
 
 #include <pthread.h>
 #include <stdatomic.h>
@@ -150,9 +150,4 @@ void ted4_threads_finish(ted4_parallel *p)
     free(t);
     p->run = run_alone;
     p->user = NULL;
-}
-
-int ted4_threads_count(const ted4_parallel *p)
-{
-    return p == NULL || p->user == NULL ? 1 : ((const team *)p->user)->n_workers + 1;
 }
