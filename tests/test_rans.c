@@ -229,6 +229,40 @@ static void refused_by_the_writer(void **state)
     ted4_writer_finish(&w);
 }
 
+/* One symbol with slots [0, 2^15) in each lane, from states set by hand, with some words left over. */
+static ted4_status end_of(size_t n, const uint32_t *state, size_t n_lanes, size_t words)
+{
+    uint8_t          data[32] = { 0 };
+    const ted4_slots half = { 0, 1 << 15 };
+    ted4_rans_dec    d;
+
+    for (size_t i = 0; i < n_lanes; i++)
+        ted4_store32(data + 4 * i, state[i]);
+    assert_int_equal(ted4_rans_dec_init(&d, data, 4 * n_lanes + 2 * words, n), TED4_OK);
+    assert_int_equal(d.n_lanes, n_lanes);
+    for (size_t i = 0; i < n_lanes; i++) {
+        ted4_rans_dec_take(&d, half);
+        ted4_rans_dec_next(&d);
+    }
+    return ted4_rans_dec_finish(&d);
+}
+
+/* R-ENT-005, each half of it alone: 2^15 (x / 2^16) + slot is 2^16 for x = 2 2^16, and more for a slot or a quotient above. */
+static void final_state(void **state)
+{
+    const uint32_t good[2] = { 2u << 16, 2u << 16 }, slot[2] = { 2u << 16, (2u << 16) + 1 },
+                   high[2] = { 3u << 16, 2u << 16 };
+
+    (void)state;
+    assert_int_equal(end_of(1, good, 1, 0), TED4_OK);
+    assert_int_equal(end_of(1, good, 1, 1), TED4_E_ENT_FINAL);
+    assert_int_equal(end_of(1, high, 1, 0), TED4_E_ENT_FINAL);
+    assert_int_equal(end_of(8192, good, 2, 0), TED4_OK);
+    assert_int_equal(end_of(8192, slot, 2, 0), TED4_E_ENT_FINAL);
+    assert_int_equal(end_of(8192, high, 2, 0), TED4_E_ENT_FINAL);
+    assert_int_equal(end_of(8192, good, 2, 3), TED4_E_ENT_FINAL);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -237,6 +271,7 @@ int main(void)
         cmocka_unit_test(bits),
         cmocka_unit_test(damaged),
         cmocka_unit_test(escapes),
+        cmocka_unit_test(final_state),
         cmocka_unit_test(refused_by_the_writer),
     };
 
