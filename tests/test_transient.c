@@ -1,0 +1,120 @@
+/* test_transient.c - train/transient.c: which initial points are found to exist only for a while, and when.
+ * SPDX-License-Identifier: BSD-2-Clause */
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <stdlib.h>
+#include <string.h>
+#include <cmocka.h>
+
+#include "ball_scene.h"
+#include "train/transient.h"
+
+enum { FRAMES = 5 };
+
+typedef struct { tiny_folder folder; ted4_dataset data; ted4_trainer trainer; } scene;
+
+static void open_scene(scene *s, int moving, int activation)
+{
+    const ted4_dataset_options o = { 1, 0, 3, 1 << 20, 0 };
+    ted4_train_options         train;
+    ted4_message               m;
+
+    s->folder = tiny_new();
+    ball_scene(&s->folder, FRAMES, moving);
+    if (ted4_dataset_load(&s->data, s->folder.path, &o, &m) != 0)
+        fail_msg("%s", m.text);
+    assert_int_equal(ted4_options_preset(&train, "draft"), 0);
+    train.activation = activation;
+    if (ted4_trainer_init(&s->trainer, &train, &s->data, NULL) != 0)
+        fail_msg("%s", s->trainer.message.text);
+}
+
+static void close_scene(scene *s)
+{
+    ted4_trainer_finish(&s->trainer);
+    ted4_dataset_free(&s->data);
+    tiny_free(&s->folder);
+}
+
+/* Distance of anchor i from the middle of a ball at a time, in radii. */
+static double radii(const ted4_trainer *t, size_t i, int which, double time)
+{
+    const ted4_header *h = &t->layout.head;
+    const ball         b = ball_at(which, time);
+    double square = 0;
+
+    for (int k = 0; k < 3; k++) {
+        const double x = (double)h->origin[k] +
+                         ldexp((double)*ted4_cell(&t->anchors, TED4_ROW_POSITION, i, k), h->exponent);
+
+        square += (x - b.centre[k]) * (x - b.centre[k]);
+    }
+    return sqrt(square) / b.radius;
+}
+
+static float tau(const ted4_trainer *t, size_t i, int c)
+{
+    return *ted4_cell(&t->anchors, TED4_ROW_VALUE, i, t->layout.first[TED4_TAU] + c);
+}
+
+/* The blue ball's points get spans around the time at which it was there; the green ball, far from its way, gets none. */
+static void test_moving(void **state)
+{
+    scene  s;
+    size_t found = 0, blue = 0;
+
+    (void)state;
+    open_scene(&s, 1, 1);
+    for (size_t i = 0; i < s.trainer.anchors.n; i++) {
+        if (!ted4_is_transient(&s.trainer, i)) {
+            assert_true(tau(&s.trainer, i, 0) == 0.0f && tau(&s.trainer, i, 2) == 1.0f);
+            continue;
+        }
+        const double from = (double)tau(&s.trainer, i, 0), to = (double)tau(&s.trainer, i, 2);
+
+        found++;
+        assert_true(0 <= from && from <= to && to <= 1 && to - from < 1);
+        assert_true(fabs((double)tau(&s.trainer, i, 1) - log2(2.0 / (FRAMES - 1))) < 1e-6);
+        assert_true(radii(&s.trainer, i, 1, 0) > 1.3);
+        blue += radii(&s.trainer, i, 2, 0.5 * (from + to)) < 1.5;
+    }
+    assert_true(found >= 10);
+    if (blue * 10 < found * 9)
+        fail_msg("%zu of %zu spans are where the ball is", blue, found);
+    close_scene(&s);
+}
+
+static void expect_none(int moving, int activation)
+{
+    scene s;
+
+    open_scene(&s, moving, activation);
+    for (size_t i = 0; i < s.trainer.anchors.n; i++)
+        assert_false(ted4_is_transient(&s.trainer, i));
+    close_scene(&s);
+}
+
+static void test_still(void **state)
+{
+    (void)state;
+    expect_none(0, 1);
+}
+
+static void test_no_activation(void **state)
+{
+    (void)state;
+    expect_none(1, 0);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(test_moving),
+        cmocka_unit_test(test_still),
+        cmocka_unit_test(test_no_activation),
+    };
+
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
