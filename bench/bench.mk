@@ -14,22 +14,70 @@ $B/plain/%.o: %.c
 $B/plain/bench_raster: $(RASTER_BENCH:%.c=$B/plain/%.o)
 	$(CC) -fopenmp $(LDFLAGS) $^ -o $@ -lm
 
+KEEP = MAKE_TARGET=$@ CC='$(CC)' sh bench/keep.sh
+
+# These three print their tables and keep them in bench/raster.md, bench/render.md and bench/train.md.
 bench-raster: $B/bench/bench_raster $B/plain/bench_raster
-	$B/bench/bench_raster $B/plain/bench_raster
+	$(KEEP) bench/raster.md $B/bench/bench_raster $B/plain/bench_raster
 
-.PHONY: bench-raster
-
-# What the integer entropy model and the range coder cost: make rate-check FILE=x.ted4
-$B/bench/rate_check: $B/bench/rate_check.o $B/libted4enc.a $B/libted4dec.a
+$B/bench/bench_render.o: FPFLAGS = $(FREE)
+$B/bench/bench_render: $B/bench/bench_render.o $B/ref-decoder/tool/threads.o $B/libted4dec.a
 	$(CC) -fopenmp $(LDFLAGS) $^ -o $@ $(LIBS)
 
+bench-render: $B/bench/bench_render
+	$(KEEP) bench/render.md $B/bench/bench_render
+
+# Parts of a step are told apart by functions that bench_train.c puts in between.
+TRAIN_PARTS = ted4_dataset_pixels ted4_trainer_check ted4_schedule_event ted4_slots_fill ted4_generator_pack ted4_generate \
+        ted4_raster_project ted4_raster_bin ted4_raster_blend ted4_loss ted4_raster_blend_bwd ted4_raster_project_bwd \
+        ted4_generate_backward ted4_update_volume ted4_update_bank ted4_densify_gather ted4_update_rate ted4_update_parameters
+BETWEEN = $(TRAIN_PARTS:%=-Wl,--wrap=%)
+
+# Files named for an instruction set need it; the plain program is told not to take them.
+NAMED_SET   = $(filter %_avx2.c %_avx512.c,$(DEC_SRC))
+PLAIN_TRAIN = $(filter-out $(NAMED_SET),$(ENC_SRC) $(DEC_SRC)) ref-decoder/tool/threads.c bench/bench_train.c
+
+$B/bench/bench_train.o: FPFLAGS = $(FREE)
+$B/bench/bench_train: $B/bench/bench_train.o $B/ref-decoder/tool/threads.o $B/libted4enc.a $B/libted4dec.a
+	$(CC) -fopenmp $(LDFLAGS) $(BETWEEN) $^ -o $@ $(LIBS)
+$B/plain/bench_train: $(PLAIN_TRAIN:%.c=$B/plain/%.o) $(NAMED_SET:%.c=$B/%.o)
+	$(CC) -fopenmp $(LDFLAGS) $(BETWEEN) $^ -o $@ $(LIBS)
+
+# On kitchen where it is, else on a small scene made for the purpose.
+KITCHEN = $(wildcard $(TED4_DATA)/kitchen)
+TRAIN_SCENE = $(if $(KITCHEN),$(KITCHEN) 2,$B/bench/occluder 1)
+$B/bench/occluder: | $B/ted4scene
+	$B/ted4scene occluder -o $@ -f --size 320x180
+
+bench-train: $B/bench/bench_train $B/plain/bench_train $(if $(KITCHEN),,$B/bench/occluder)
+	$(KEEP) bench/train.md $B/bench/bench_train $(TRAIN_SCENE) $B/plain/bench_train
+
+.PHONY: bench-raster bench-render bench-train
+
+# Programs on the decoded file: what the integer entropy model and the range coder cost; how long anchors live. rate_check is compiled as freely as it may be, for it
+# measures the speed of floating-point networks beside the integer kernels.
+BENCH_FILE = rate_check spans
+$B/bench/rate_check.o: FPFLAGS = $(FREE)
+$(BENCH_FILE:%=$B/bench/%): $B/bench/%: $B/bench/%.o $(DEC_TOOL:%.c=$B/%.o) $B/libted4enc.a $B/libted4dec.a
+	$(CC) -fopenmp $(LDFLAGS) $^ -o $@ $(LIBS)
+
+# make rate-check FILE=x.ted4
 rate-check: $B/bench/rate_check
 	$B/bench/rate_check $(FILE)
 
 .PHONY: rate-check
 
-# Evidence on real scenes; resumable, about an hour on two cores.
-real: all
-	TED4_BUILD=$B TED4_DATA=$(TED4_DATA) bench/real.sh
+# The evidence: all runs of bench/sweep.txt whose row in bench/sweep.csv is missing or stale (days; resumable: bench/sweep.sh does parts of it), and
+# bench/report.md, bench/real.md with their charts from the rows that are there.
+sweep: all $(BENCH_FILE:%=$B/bench/%)
+	TED4_BUILD=$B TED4_DATA=$(TED4_DATA) bench/sweep.sh
 
-.PHONY: real
+# Only the runs that show real scenes.
+real: all $(BENCH_FILE:%=$B/bench/%)
+	TED4_BUILD=$B TED4_DATA=$(TED4_DATA) bench/sweep.sh real
+	bench/report.sh
+
+report:
+	bench/report.sh
+
+.PHONY: sweep real report

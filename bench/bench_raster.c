@@ -2,13 +2,9 @@
  * Usage: bench_raster [OTHER]. OTHER: the same program from a plain scalar build; its times are taken in turn with ours and the ratio
  * is printed. bench_raster -t N: one line "forward_ms backward_ms" for N Gaussians and one thread, for that purpose.
  * SPDX-License-Identifier: BSD-2-Clause */
-#include <stdio.h>
-#include <string.h>
-#include <time.h>
-
-#include "tool/threads.h"
+#include "measure.h"
 #include "raster_scene.h"
-#include "render/raster_state.h"
+#include "tool/threads.h"
 #include "train/raster_bwd.h"
 
 enum { WIDTH = 480, HEIGHT = 270, N_PIXELS = WIDTH * HEIGHT, ROUNDS = 20, OTHER_ROUNDS = 3 };
@@ -29,23 +25,6 @@ typedef struct {
     scene            d;
     float           *image, *d_image;
 } bench;
-
-static double now_ms(void)
-{
-    struct timespec t;
-
-    clock_gettime(CLOCK_MONOTONIC, &t);
-    return (double)t.tv_sec * 1e3 + (double)t.tv_nsec * 1e-6;
-}
-
-static void *must(void *p)
-{
-    if (p == NULL) {
-        fputs("bench_raster: no memory\n", stderr);
-        exit(3);
-    }
-    return p;
-}
 
 static void bench_init(bench *b, size_t n)
 {
@@ -110,29 +89,6 @@ static times best(const times *t, size_t n)
     return b;
 }
 
-/* Pairs of pixel and Gaussian: count[0] that contribute, count[1] that are computed, from what the forward pass left. */
-static void count_pairs(const bench *b, size_t count[2])
-{
-    const uint32_t     *first = b->r->tile_first.data, *owner = b->r->owner.data;
-    const ted4_reach   *reach = b->r->reach.data;
-    const ted4_splat2d *splat = b->r->splat2d.data;
-
-    count[0] = count[1] = 0;
-    for (uint32_t tile = 0; tile < b->r->tiles_x * b->r->tiles_y; tile++)
-        for (int k = 0; k < TED4_TILE_BLOCKS; k++) {
-            ted4_vf px, py, alpha, w;
-
-            ted4_block_pixels(tile % b->r->tiles_x, tile / b->r->tiles_x, k, &px, &py);
-            ted4_vf t = ted4_vf_keep((px < (float)WIDTH) & (py < (float)HEIGHT), ted4_vf_all(1.0f));
-            for (uint32_t i = 0; i < first[tile + 1] - first[tile]; i++)
-                if (reach[ted4_group_first(tile, first[tile]) + i / TED4_GROUP].block[k] >> i % TED4_GROUP & 1) {
-                    ted4_blend_step(&splat[owner[first[tile] + i]], px, py, &t, &alpha, &w);
-                    count[0] += (size_t)__builtin_popcount(ted4_vi_bits(w > 0.0f));
-                    count[1] += TED4_VEC;
-                }
-        }
-}
-
 /* The other build's times for n Gaussians. */
 static times ask_other(const char *program, size_t n)
 {
@@ -164,11 +120,10 @@ static void report(size_t n, const char *other)
     ted4_threads_init(&two, 2);
     bench_init(&b, n);
     once(&b, NULL);
-    size_t count[2];
-    count_pairs(&b, count);
-    const size_t pairs = count[0];
+    const pair_count count = count_pairs(b.r, &b.v);
+    const size_t     pairs = count.blended;
     printf("%zu Gaussians, %dx%d: %.1f blended a pixel, %zu visible, %zu instances, %.0f %% of lanes blended\n", n, WIDTH, HEIGHT,
-           (double)pairs / N_PIXELS, b.r->n_visible, b.r->n_instances, 100.0 * (double)pairs / (double)count[1]);
+           (double)pairs / N_PIXELS, b.r->n_visible, b.r->n_instances, 100.0 * (double)pairs / (double)count.computed);
     for (int i = 0; i < ROUNDS; i++) {
         one_t[i] = once(&b, NULL);
         two_t[i] = once(&b, &two);

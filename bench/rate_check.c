@@ -1,23 +1,25 @@
 /* rate_check.c - what the integers of Tier E cost: the attribute symbols of a file coded by rANS, by -log2 of the coded integer
- * frequencies, and by a float64 evaluation of the same networks and the same Gaussian model (spec 7.1, 9.4, 10). Used by `make rate-check`.
+ * frequencies, and by float64 and float32 evaluations of the same networks and the same Gaussian model (spec 7.1, 9.4, 10); and how long the networks take
+ * in each precision, on one thread, with the vectors of this machine. Used by `make rate-check` and bench/sweep.sh.
  *     rate_check FILE.ted4            one JSON line on stdout
  *     rate_check FILE.ted4 -s ANCHOR  also mu, sigma and k of that anchor's symbols under both, on stderr
- * float64: weights as the file stores them, sine and cosine of the exact position, contexts k STEP[Qi], no rounding and no saturation in
- * hidden layers, mu and sigma real numbers, the step index as decoded, Phi differences over the unit bin without cancellation. Sigma keeps
+ * float64: networks as rate_real.h has them, mu and sigma real numbers, the step index as decoded, Phi differences over the unit bin without cancellation. Sigma keeps
  * to the range of the table of spec 9.4, which belongs to the model. A symbol coded by an escape counts at what it costs in the integer
  * coder in every column. A bare Gaussian pays more than 16 bits for a symbol beyond 4 sigma, the coder never does, as every symbol of its
  * alphabet owns a slot: so "float64" can come out above the integers. "float64_floored" gives its symbols that slot too,
- * P (1 - R / 2^16) + 2^-16, and so shows the rounding alone.
+ * P (1 - R / 2^16) + 2^-16, and so shows the rounding alone; "float32_floored" is the same with mu and sigma from float32 networks.
  * SPDX-License-Identifier: BSD-2-Clause */
 #include <inttypes.h>
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <time.h>
 #include "kernel/int_kernel.h"
 #include "norm/gaussian.h"
 #include "norm/half.h"
 #include "norm/scene.h"
+#include "tool/cli.h"
 #include "write/encode.h"
 #include "write/gauss_put.h"
 
@@ -27,10 +29,28 @@ enum { BLOCK = TED4_PRIOR_BLOCK, SUBSTREAMS = 24 };
 #define LOG2_E    1.44269504088896340736
 #define PI        3.14159265358979323846
 
+#define REAL    double
+#define NAME(x) double_##x
+#define SIN     sin
+#define COS     cos
+#include "rate_real.h"
+#define REAL    float
+#define NAME(x) float_##x
+#define SIN     sinf
+#define COS     cosf
+#include "rate_real.h"
+
 typedef struct {
     uint64_t coded_bytes, symbols, escapes;
-    double   integer, real, floored, escaped;       /* bits; escaped: the part of escapes */
+    double   integer, real, floored, floored32, escaped;    /* bits; escaped: the part of escapes */
 } cost;
+
+/* The model of one symbol in each precision: mu in steps, log2 sigma. */
+typedef struct {
+    int32_t  mu;                /* integers of spec 10 */
+    unsigned sigma;
+    double   real_mu, real_sigma, float_mu, float_sigma;
+} models;
 
 typedef struct {
     ted4_scene *s;
@@ -40,74 +60,12 @@ typedef struct {
     cost        cost[TED4_TYPES];
     int32_t    *out, *added;                /* [P][64], [2 max slice][64] integer outputs */
     int16_t    *ctx;                        /* [F][64] */
-    double     *y, *hidden[2], *x;          /* outputs [P], layers, inputs of one anchor in float64 */
+    double     *y, *hidden[2], *x;          /* [P][64], layers, inputs in float64 */
+    float      *y32, *hidden32[2], *x32;    /* the same in float32 */
+    double      ms[3];                      /* of the networks: integer, float32, float64 */
 } check;
 
-/* ---- float64 ---- */
-
-/* spec 7.1 in doubles; all layers but the last are followed by ReLU. */
-static void real_net(const check *c, const ted4_net_shape *n, const double *x, double *y)
-{
-    const float *v = c->s->nete.values + n->first;
-
-    for (unsigned i = 0; i < n->n_layers; i++) {
-        const unsigned in = n->dim[i], out = n->dim[i + 1];
-        const int      last = i + 1u == n->n_layers;
-        double        *to = last ? y : c->hidden[i % 2];
-
-        for (unsigned o = 0; o < out; o++) {
-            double sum = v[(size_t)in * out + o];
-
-            for (unsigned j = 0; j < in; j++)
-                sum += (double)v[(size_t)o * in + j] * x[j];
-            to[o] = last || sum > 0 ? sum : 0;
-        }
-        v += ((size_t)in + 1) * out;
-        x = to;
-    }
-}
-
-/* spec 10.1: the phase of octave l is p 2^(l - 1) turns, exact in a double. */
-static void real_inputs(const check *c, size_t a, double *x)
-{
-    double p[3];
-
-    for (int j = 0; j < 3; j++)
-        *x++ = p[j] = ldexp(ted4_half_q24(c->s->position[3 * a + (size_t)j]), -24);
-    for (int l = 0; l < c->s->head.pe_octaves; l++)
-        for (int j = 0; j < 3; j++) {
-            const double turns = ldexp(p[j], l - 1);
-            const double angle = 2 * PI * (turns - rint(turns));
-
-            *x++ = sin(angle);
-            *x++ = cos(angle);
-        }
-}
-
-/* All mu and log2 sigma of an anchor into c->y, in steps, the slice networks added. */
-static void real_model(const check *c, size_t a)
-{
-    const ted4_scene *s = c->s;
-    const size_t n = s->head.n_anchors;
-    unsigned     comp = s->head.slice[0];
-
-    if (s->head.prior == TED4_PRIOR_INR)
-        real_inputs(c, a, c->x);
-    real_net(c, &s->shape.hyper, c->x, c->y);
-    for (unsigned i = 0; i < s->head.feature_dim; i++)
-        c->x[i] = s->symbol[TED4_FEATURE][i * n + a]
-                * (double)ted4_bits_float(ted4_step[s->step_index[TED4_FEATURE][a]]);
-    for (unsigned m = 1; m < s->head.n_slices; comp += s->head.slice[m++]) {
-        const unsigned dim = s->head.slice[m];
-        double         add[2 * TED4_MAX_FEATURE];
-
-        real_net(c, &s->shape.slice[m], c->x, add);
-        for (unsigned i = 0; i < dim; i++) {
-            c->y[comp + i] += add[i];
-            c->y[s->head.feature_dim + comp + i] += add[dim + i];
-        }
-    }
-}
+/* ---- floating point ---- */
 
 /* -log2 of slot + (1 - slots_all) mass, the mass being that of a Gaussian on [d - 1/2, d + 1/2], d = k - mu. By symmetry d >= 0, so
  * both ends lie in the upper tail, or the mass is 1 less two tails. */
@@ -127,34 +85,40 @@ static void add_slots(void *bits, ted4_slots s)
     *(double *)bits += TED4_SLOT_BITS - log2(s.freq);
 }
 
-/* One symbol, whose integer model is mu, g and whose float64 one is y, log_sigma. */
-static void add_symbol(check *c, int type, unsigned comp, size_t a, int32_t mu, unsigned g,
-                       double y, double log_sigma)
+/* 2^x kept to the range of the table of spec 9.4. */
+static double sigma_in_range(double x)
+{
+    return exp2(fmin(fmax(x, -4), (TED4_N_SIGMA - 1 - 64) / 16.0));
+}
+
+static void add_symbol(check *c, int type, unsigned comp, size_t a, const models *m)
 {
     cost        *t = &c->cost[type];
     const int    k = c->s->symbol[type][(size_t)comp * c->s->head.n_anchors + a];
-    const double low = -4, high = (TED4_N_SIGMA - 1 - 64) / 16.0;
-    const double slot = 0x1p-16;
-    double       bits = 0, real, floored;
+    const double slot = 0x1p-16, slots = slot * ted4_gauss_size(m->sigma);
+    double       bits = 0, real, floored, floored32;
 
-    (void)ted4_gauss_put(mu, g, k, add_slots, &bits);
+    (void)ted4_gauss_put(m->mu, m->sigma, k, add_slots, &bits);
     t->symbols++;
     t->integer += bits;
-    if (ted4_gauss_of(mu, g, k).escape >= 0) {
+    if (ted4_gauss_of(m->mu, m->sigma, k).escape >= 0) {
         t->escapes++;
         t->escaped += bits;
-        real = floored = bits;
+        real = floored = floored32 = bits;
     } else {
-        const double sigma = exp2(fmin(fmax(log_sigma, low), high));
+        const double sigma = sigma_in_range(m->real_sigma);
 
-        real = real_bits(k - y, sigma, 0, 0);
-        floored = real_bits(k - y, sigma, slot, slot * ted4_gauss_size(g));
+        real = real_bits(k - m->real_mu, sigma, 0, 0);
+        floored = real_bits(k - m->real_mu, sigma, slot, slots);
+        floored32 = real_bits(k - m->float_mu, sigma_in_range(m->float_sigma), slot, slots);
     }
     t->real += real;
     t->floored += floored;
+    t->floored32 += floored32;
     if ((int64_t)a == c->shown)
         fprintf(stderr, "type %d component %u k %d: integer mu %.9g log2 sigma %.4f bits %.6f; float64 mu %.9g "
-                "log2 sigma %.9g bits %.6f\n", type, comp, k, mu / 256.0, (g - 64.0) / 16, bits, y, log_sigma, real);
+                "log2 sigma %.9g bits %.6f\n", type, comp, k, m->mu / 256.0, (m->sigma - 64.0) / 16, bits,
+                m->real_mu, m->real_sigma, real);
 }
 
 static int coded(const ted4_scene *s, int type, unsigned comp, size_t a)
@@ -189,22 +153,47 @@ static void integer_model(check *c, size_t first, size_t n)
     }
 }
 
+static double milliseconds(void)
+{
+    struct timespec t;
+
+    clock_gettime(CLOCK_MONOTONIC, &t);
+    return 1e3 * (double)t.tv_sec + 1e-6 * (double)t.tv_nsec;
+}
+
+/* All three models of n <= 64 anchors, timed. */
+static void evaluate(check *c, size_t first, size_t n)
+{
+    const double t0 = milliseconds();
+
+    integer_model(c, first, n);
+    const double t1 = milliseconds();
+
+    float_model(c->s, c->hidden32, first, n, c->x32, c->y32);
+    const double t2 = milliseconds();
+
+    double_model(c->s, c->hidden, first, n, c->x, c->y);
+    c->ms[0] += t1 - t0;
+    c->ms[1] += t2 - t1;
+    c->ms[2] += milliseconds() - t2;
+}
+
 static void add_block(check *c, size_t first, size_t n)
 {
     const ted4_shape *shape = &c->s->shape;
 
-    integer_model(c, first, n);
-    for (size_t a = 0; a < n; a++) {
-        real_model(c, first + a);
+    evaluate(c, first, n);
+    for (size_t a = 0; a < n; a++)
         for (int t = 0; t < TED4_TYPES; t++)
             for (unsigned i = 0; i < shape->dim[t]; i++) {
-                const size_t at = shape->first_output[t] + i, sigma = at + shape->dim[t];
+                const size_t at = (size_t)(shape->first_output[t] + i) * BLOCK + a;
+                const size_t sigma = at + (size_t)shape->dim[t] * BLOCK;
+                const models m = { c->out[at], ted4_sigma_index(c->out[sigma]), c->y[at], c->y[sigma],
+                                   (double)c->y32[at], (double)c->y32[sigma] };
 
                 if (coded(c->s, t, i, first + a))
-                    add_symbol(c, t, i, first + a, c->out[at * BLOCK + a],
-                               ted4_sigma_index(c->out[sigma * BLOCK + a]), c->y[at], c->y[sigma]);
+                    add_symbol(c, t, i, first + a, &m);
             }
-    }
 }
 
 /* ---- the file ---- */
@@ -229,26 +218,6 @@ static void sort_sizes(check *c)
     for (int t = TED4_SCALING; t < TED4_TYPES; t++)
         if (c->s->shape.dim[t] > 0)
             c->cost[t].coded_bytes += c->substream[at++];
-}
-
-static uint8_t *read_all(const char *path, size_t *size)
-{
-    FILE    *f = fopen(path, "rb");
-    uint8_t *data = NULL;
-    long     n;
-
-    if (f == NULL)
-        return NULL;
-    if (fseek(f, 0, SEEK_END) == 0 && (n = ftell(f)) >= 0 && fseek(f, 0, SEEK_SET) == 0) {
-        *size = (size_t)n;
-        data = malloc(*size + 1);
-        if (data != NULL && fread(data, 1, *size, f) != *size) {
-            free(data);
-            data = NULL;
-        }
-    }
-    fclose(f);
-    return data;
 }
 
 static void *need(ted4_arena *a, size_t n, size_t size)
@@ -276,10 +245,14 @@ static void prepare(check *c, ted4_arena *a)
     c->out = need(a, (size_t)shape->n_outputs * BLOCK, sizeof *c->out);
     c->added = need(a, 2 * TED4_MAX_FEATURE * BLOCK, sizeof *c->added);
     c->ctx = need(a, TED4_MAX_FEATURE * BLOCK, sizeof *c->ctx);
-    c->y = need(a, shape->n_outputs, sizeof *c->y);
-    c->x = need(a, TED4_PRIOR_INPUTS + TED4_MAX_FEATURE, sizeof *c->x);
-    for (int i = 0; i < 2; i++)
-        c->hidden[i] = need(a, TED4_MAX_WIDTH, sizeof *c->hidden[i]);
+    c->y = need(a, (size_t)shape->n_outputs * BLOCK, sizeof *c->y);
+    c->y32 = need(a, (size_t)shape->n_outputs * BLOCK, sizeof *c->y32);
+    c->x = need(a, (TED4_PRIOR_INPUTS + TED4_MAX_FEATURE) * BLOCK, sizeof *c->x);
+    c->x32 = need(a, (TED4_PRIOR_INPUTS + TED4_MAX_FEATURE) * BLOCK, sizeof *c->x32);
+    for (int i = 0; i < 2; i++) {
+        c->hidden[i] = need(a, TED4_MAX_WIDTH * BLOCK, sizeof *c->hidden[i]);
+        c->hidden32[i] = need(a, TED4_MAX_WIDTH * BLOCK, sizeof *c->hidden32[i]);
+    }
 }
 
 /* How much a is above b. */
@@ -293,9 +266,9 @@ static void print_cost(const char *name, const cost *c)
     const double coded_bits = 8.0 * (double)c->coded_bytes;
 
     printf("\"%s\":{\"symbols\":%" PRIu64 ",\"escapes\":%" PRIu64 ",\"escape_bits\":%.1f,\"coded_bits\":%.0f,"
-           "\"integer_bits\":%.1f,\"float64_bits\":%.1f,\"float64_floored_bits\":%.1f,"
+           "\"integer_bits\":%.1f,\"float64_bits\":%.1f,\"float64_floored_bits\":%.1f,\"float32_floored_bits\":%.1f,"
            "\"integer_over_float64_percent\":%.4f,\"integer_over_floored_percent\":%.4f,\"rans_over_integer_percent\":%.4f}",
-           name, c->symbols, c->escapes, c->escaped, coded_bits, c->integer, c->real, c->floored,
+           name, c->symbols, c->escapes, c->escaped, coded_bits, c->integer, c->real, c->floored, c->floored32,
            percent(c->integer, c->real), percent(c->integer, c->floored), percent(coded_bits, c->integer));
 }
 
@@ -303,10 +276,11 @@ static void print_cost(const char *name, const cost *c)
 static int print_result(const check *c, const char *path, const ted4_bits *counted)
 {
     static const char *const name[TED4_TYPES] = { "feature", "scaling", "offset", "phi", "tau" };
-    cost total = { 0, 0, 0, 0, 0, 0, 0 };
+    cost total = { 0 };
     int  bad = 0;
 
-    printf("{\"file\":\"%s\",\"anchors\":%" PRIu32 ",", path, c->s->head.n_anchors);
+    printf("{\"file\":\"%s\",\"anchors\":%" PRIu32 ",\"integer_ms\":%.3f,\"float32_ms\":%.3f,\"float64_ms\":%.3f,",
+           path, c->s->head.n_anchors, c->ms[0], c->ms[1], c->ms[2]);
     for (int t = 0; t < TED4_TYPES; t++) {
         const cost *x = &c->cost[t];
 
@@ -318,6 +292,7 @@ static int print_result(const check *c, const char *path, const ted4_bits *count
         total.integer += x->integer;
         total.real += x->real;
         total.floored += x->floored;
+        total.floored32 += x->floored32;
         if (c->s->shape.dim[t] > 0) {
             print_cost(name[t], x);
             putchar(',');
@@ -338,7 +313,7 @@ int main(int argc, char **argv)
     ted4_arena    arena;
     ted4_bits     counted;
     size_t        size = 0;
-    uint8_t      *data = argc > 1 ? read_all(argv[1], &size) : NULL;
+    uint8_t      *data = argc > 1 ? ted4_read_file(argv[1], &size) : NULL;
 
     if (data == NULL || (argc != 2 && (argc != 4 || strcmp(argv[2], "-s") != 0))) {
         fprintf(stderr, "rate_check: usage: rate_check FILE.ted4 [-s ANCHOR]\n");

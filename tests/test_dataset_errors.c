@@ -242,11 +242,11 @@ static void test_damaged_pictures(void **state)
     assert_true(n < sizeof bytes && fread(bytes, 1, n, in) == n);
     fclose(in);
     assert_string_equal(tiny_load(&d, &f, &tiny_options), "");
-    assert_int_equal(ted4_dataset_verify(&d, &m), 0);
+    assert_int_equal(ted4_dataset_verify(&d, NULL, &m), 0);
     ted4_dataset_free(&d);
     tiny_bytes(&f, "p.png", bytes, n - 30);
     assert_string_equal(tiny_load(&d, &f, &tiny_options), "");
-    assert_int_equal(ted4_dataset_verify(&d, &m), -1);
+    assert_int_equal(ted4_dataset_verify(&d, NULL, &m), -1);
     assert_non_null(strstr(m.text, "p.png: PNG"));
     assert_null(ted4_dataset_pixels(&d, 0, &m));
     assert_null(ted4_dataset_pixels(&d, 2, &m));

@@ -6,6 +6,7 @@
 #include <stdarg.h>
 #include <stddef.h>
 #include <stdio.h>
+#include <time.h>
 #include <cmocka.h>
 #include <jpeglib.h>
 
@@ -268,7 +269,7 @@ static void test_undistort_border(void **state)
 
 enum { ITEMS = 12, ITEM_BYTES = 100 };
 
-static uint8_t *make_item(const void *user, size_t i, size_t *size, ted4_message *m)
+static uint8_t *make_item(void *user, size_t i, size_t *size, ted4_message *m)
 {
     uint8_t *p = malloc(ITEM_BYTES);
 
@@ -278,7 +279,7 @@ static uint8_t *make_item(const void *user, size_t i, size_t *size, ted4_message
         return NULL;
     }
     memset(p, (int)i, ITEM_BYTES);
-    ((size_t *)(uintptr_t)user)[i]++;       /* each cell by one thread at a time, as promised */
+    ((size_t *)user)[i]++;                  /* each cell by one thread at a time, as promised */
     *size = ITEM_BYTES;
     return p;
 }
@@ -326,6 +327,64 @@ static void test_cache(void **state)
     ted4_image_cache_free(c);
 }
 
+/* Waits until so many bytes are in memory, five seconds at most. */
+static int comes_to_hold(ted4_image_cache *c, size_t bytes)
+{
+    const struct timespec pause = { 0, 1000000 };
+
+    for (int k = 0; k < 5000 && ted4_image_cache_held(c) != bytes; k++)
+        nanosleep(&pause, NULL);
+    return ted4_image_cache_held(c) == bytes;
+}
+
+/* Pictures that were announced are decoded before anyone asks, and once. */
+static void test_cache_ahead(void **state)
+{
+    (void)state;
+    size_t made[ITEMS] = { 0 };
+    ted4_message m;
+    ted4_image_cache *c = ted4_image_cache_new(ITEMS, ITEMS * ITEM_BYTES, make_item, made);
+
+    assert_non_null(c);
+    for (int round = 0; round < 2; round++)
+        for (size_t i = 0; i < 3; i++)
+            ted4_image_cache_ahead(c, i, 2);
+    assert_true(comes_to_hold(c, 3 * ITEM_BYTES));
+    for (size_t i = 0; i < 3; i++) {
+        assert_int_equal(ted4_image_cache_pin(c, i, &m)[7], i);
+        ted4_image_cache_unpin(c, i);
+        assert_int_equal(made[i], 1);
+    }
+    ted4_image_cache_ahead(c, ITEMS, 2);
+    ted4_image_cache_ahead(c, 11, 2);
+    assert_null(ted4_image_cache_pin(c, 11, &m));
+    assert_string_equal(m.text, "item 11 is broken");
+    for (size_t i = 3; i < 10; i++)         /* more than the queue takes; the end comes before they are done */
+        ted4_image_cache_ahead(c, i, 1);
+    ted4_image_cache_free(c);
+}
+
+/* Without threads, or room, nothing happens until the picture is asked for. */
+static void test_cache_not_ahead(void **state)
+{
+    (void)state;
+    const struct timespec pause = { 0, 20000000 };
+    ted4_message m;
+
+    for (int room = 0; room < 2; room++) {
+        size_t made[ITEMS] = { 0 };
+        ted4_image_cache *c = ted4_image_cache_new(ITEMS, room ? ITEMS * ITEM_BYTES : 3 * ITEM_BYTES, make_item, made);
+        assert_non_null(c);
+        assert_non_null(ted4_image_cache_pin(c, 0, &m));
+        ted4_image_cache_unpin(c, 0);
+        ted4_image_cache_ahead(c, 1, room ? 0 : 2);
+        nanosleep(&pause, NULL);
+        assert_int_equal(ted4_image_cache_held(c), ITEM_BYTES);
+        ted4_image_cache_free(c);
+        assert_int_equal(made[1], 0);
+    }
+}
+
 static void *hammer(void *arg)
 {
     ted4_image_cache *c = arg;
@@ -336,6 +395,7 @@ static void *hammer(void *arg)
     for (int k = 0; k < 20000; k++) {
         x = x * 1664525u + 1013904223u;
         const size_t i = (x >> 16) % ITEMS;
+        ted4_image_cache_ahead(c, (i + 5) % ITEMS, 3);
         const uint8_t *p = ted4_image_cache_pin(c, i, &m);
         wrong += (p == NULL) != (i == 11);
         if (p != NULL) {
@@ -346,12 +406,12 @@ static void *hammer(void *arg)
     return (void *)wrong;
 }
 
-static void test_cache_threads(void **state)
+/* With room for four nothing is decoded ahead, with room for ten of twelve it is. */
+static void hammer_cache(size_t bound)
 {
-    (void)state;
     size_t made[ITEMS] = { 0 };
     pthread_t threads[4];
-    ted4_image_cache *c = ted4_image_cache_new(ITEMS, 4 * ITEM_BYTES, make_item, made);
+    ted4_image_cache *c = ted4_image_cache_new(ITEMS, bound, make_item, made);
 
     assert_non_null(c);
     for (int i = 0; i < 4; i++)
@@ -361,8 +421,15 @@ static void test_cache_threads(void **state)
         assert_int_equal(pthread_join(threads[i], &wrong), 0);
         assert_null(wrong);
     }
-    assert_true(ted4_image_cache_held(c) <= 4 * ITEM_BYTES);
+    assert_true(ted4_image_cache_held(c) <= bound);
     ted4_image_cache_free(c);
+}
+
+static void test_cache_threads(void **state)
+{
+    (void)state;
+    hammer_cache(4 * ITEM_BYTES);
+    hammer_cache(10 * ITEM_BYTES);
 }
 
 int main(void)
@@ -370,7 +437,8 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_png),              cmocka_unit_test(test_png_write), cmocka_unit_test(test_jpeg),
         cmocka_unit_test(test_undistort),        cmocka_unit_test(test_undistort_border),
-        cmocka_unit_test(test_cache),            cmocka_unit_test(test_cache_threads),
+        cmocka_unit_test(test_cache),            cmocka_unit_test(test_cache_ahead),
+        cmocka_unit_test(test_cache_not_ahead),  cmocka_unit_test(test_cache_threads),
     };
 
     return cmocka_run_group_tests_name("image file", tests, NULL, NULL);

@@ -12,10 +12,10 @@
 
 #include "train/options.h"
 
-typedef struct { const char *name; char kind; double lo, hi; } option;
+typedef struct { const char *name; char kind; int stage; double lo, hi; } option;
 
 static const option table[] = {
-#define TED4_OPTION(kind, name, lo, hi, a, b, c, d, e, help) { #name, #kind[0], lo, hi },
+#define TED4_OPTION(kind, stage, name, lo, hi, a, b, c, d, e, help) { #name, #kind[0], stage, lo, hi },
 #include "train/options.def"
 #undef TED4_OPTION
 };
@@ -44,7 +44,7 @@ static void test_presets(void **state)
         memset(&o, 0xff, sizeof o);
         assert_int_equal(ted4_options_preset(&o, presets[p]), 0);
         assert_int_equal(o.seed, 0);
-#define TED4_OPTION(kind, name, lo, hi, a, b, c, d, e, help) \
+#define TED4_OPTION(kind, stage, name, lo, hi, a, b, c, d, e, help) \
         assert_true((double)o.name >= (lo) && (double)o.name <= (hi)); \
         assert_true((double)o.name == ((const double[]){ a, b, c, d, e })[p]);
 #include "train/options.def"
@@ -101,7 +101,7 @@ static void test_bad_text(void **state)
     assert_memory_equal(&o, &before, sizeof o);
 }
 
-/* Every option, moved by itself, gives a hash of its own. */
+/* Every option, moved by itself, gives a hash of its own; one of stage 2 leaves the hash of stage 1. */
 static void test_hash(void **state)
 {
     static uint64_t    hash[N_OPTIONS + 2];
@@ -109,17 +109,19 @@ static void test_hash(void **state)
 
     (void)state;
     assert_int_equal(ted4_options_preset(&base, "draft"), 0);
-    hash[N_OPTIONS] = ted4_options_hash(&base);
+    hash[N_OPTIONS] = ted4_options_hash(&base, 2);
     o = base;
     o.seed = 1;
-    hash[N_OPTIONS + 1] = ted4_options_hash(&o);
+    hash[N_OPTIONS + 1] = ted4_options_hash(&o, 2);
     for (int i = 0; i < N_OPTIONS; i++) {
         o = base;
         assert_int_equal(set_to(&o, &table[i], table[i].lo), 0);
-        if (ted4_options_hash(&o) == hash[N_OPTIONS])
+        if (ted4_options_hash(&o, 2) == hash[N_OPTIONS])
             assert_int_equal(set_to(&o, &table[i], table[i].hi), 0);
-        hash[i] = ted4_options_hash(&o);
-        assert_true(ted4_options_hash(&o) == hash[i]);
+        hash[i] = ted4_options_hash(&o, 2);
+        assert_true(ted4_options_hash(&o, 2) == hash[i]);
+        assert_true((ted4_options_hash(&o, 1) == ted4_options_hash(&base, 1)) ==
+                    (table[i].stage == 2));
     }
     for (int i = 0; i < N_OPTIONS + 2; i++)
         for (int k = 0; k < i; k++)

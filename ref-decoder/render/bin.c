@@ -4,14 +4,20 @@
  * SPDX-License-Identifier: BSD-2-Clause */
 #include "render/raster_state.h"
 
-enum { BUCKETS = 1 << TED4_RADIX_BITS };
+/* Tiles after the last that are counted in vain: see tile_four. */
+enum { SPARE_TILES = 3 };
+
+/* Instances after the last: what blend.c fetches ahead, then what each part writes in vain. */
+enum { ROOM = TED4_AHEAD + TED4_SPARE * (TED4_SORT_PARTS + 1) };
 
 typedef struct {
     struct ted4_raster *r;
     size_t              n_splats;
     const uint64_t     *from;
     uint64_t           *to;
-    int                 shift;          /* of the digit that this pass sorts by */
+    uint32_t            nearest;        /* depth bits that all keys begin from */
+    int                 depth_bits;     /* of keys, from there on */
+    int                 shift, digit;   /* the bits that this pass sorts by: first, number */
 } bin_job;
 
 static size_t part_begin(const bin_job *job, size_t part)
@@ -19,8 +25,8 @@ static size_t part_begin(const bin_job *job, size_t part)
     return job->r->n_visible * part / TED4_SORT_PARTS;
 }
 
-/* Counts to first places: item order is bucket, then part. total: where the last bucket ends. */
-static uint32_t counts_to_places(uint32_t *hist, size_t n_buckets, uint32_t *bucket_first)
+/* Counts to first places: item order is bucket, then part. bucket_first: NULL: not wanted. */
+static void counts_to_places(uint32_t *hist, size_t n_buckets, uint32_t *bucket_first)
 {
     uint32_t total = 0;
 
@@ -33,10 +39,9 @@ static uint32_t counts_to_places(uint32_t *hist, size_t n_buckets, uint32_t *buc
             total += count;
         }
     }
-    return total;
 }
 
-/* Moves a chunk's keys to their common array and makes its slots count from the beginning of the scene. */
+/* Moves a chunk's keys to their common array, depths from the nearest on, and makes its slots count from the beginning of the scene. */
 static void gather_chunk(void *arg, size_t c)
 {
     const bin_job   *job = arg;
@@ -45,56 +50,74 @@ static void gather_chunk(void *arg, size_t c)
     const size_t     begin = c * TED4_CHUNK, end = begin + TED4_CHUNK < job->n_splats ? begin + TED4_CHUNK : job->n_splats;
     uint32_t        *first_slot = job->r->first_slot.data;
 
-    memcpy(job->to + before.n_visible, job->from + begin, (n_after - before.n_visible) * sizeof *job->to);
+    for (size_t i = 0; i < n_after - before.n_visible; i++)
+        job->to[before.n_visible + i] = job->from[begin + i] - ((uint64_t)job->nearest << 32);
     for (size_t i = begin; i < end; i++)
         first_slot[i] += before.n_instances;
 }
 
 /* The chunks' counts become the totals before them, with one entry more for all. -1: more instances than 32 bits count. */
-static int add_up_chunks(struct ted4_raster *r, size_t n_chunks)
+static int add_up_chunks(bin_job *job, size_t n_chunks)
 {
-    ted4_chunk *chunk = r->chunk.data;
+    ted4_chunk *chunk = job->r->chunk.data;
     size_t      n_visible = 0, n_instances = 0;
+    uint32_t    nearest = UINT32_MAX, farthest = 0;
 
     for (size_t c = 0; c <= n_chunks; c++) {
-        const ted4_chunk count = c < n_chunks ? chunk[c] : (ted4_chunk){0, 0};
+        const ted4_chunk count = c < n_chunks ? chunk[c] : (ted4_chunk){ .nearest = UINT32_MAX };
 
-        if (n_instances > UINT32_MAX)
+        if (n_instances > UINT32_MAX - ROOM)
             return -1;
-        chunk[c] = (ted4_chunk){ (uint32_t)n_visible, (uint32_t)n_instances };
+        chunk[c] = (ted4_chunk){ .n_visible = (uint32_t)n_visible, .n_instances = (uint32_t)n_instances };
         n_visible   += count.n_visible;
         n_instances += count.n_instances;
+        nearest  = count.nearest < nearest ? count.nearest : nearest;
+        farthest = count.farthest > farthest ? count.farthest : farthest;
     }
-    r->n_visible   = n_visible;
-    r->n_instances = n_instances;
+    job->r->n_visible   = n_visible;
+    job->r->n_instances = n_instances;
+    job->nearest = nearest;
+    for (job->depth_bits = 0; n_visible > 0 && (farthest - nearest) >> job->depth_bits > 0;)
+        job->depth_bits++;
     return 0;
+}
+
+static size_t digit_of(const bin_job *job, size_t i)
+{
+    return job->from[i] >> job->shift & (((uint64_t)1 << job->digit) - 1);
 }
 
 static void count_digits(void *arg, size_t part)
 {
     const bin_job *job = arg;
-    uint32_t      *hist = (uint32_t *)job->r->hist.data + part * BUCKETS;
+    uint32_t      *hist = (uint32_t *)job->r->hist.data + (part << job->digit);
 
-    memset(hist, 0, BUCKETS * sizeof *hist);
+    memset(hist, 0, sizeof *hist << job->digit);
     for (size_t i = part_begin(job, part); i < part_begin(job, part + 1); i++)
-        hist[job->from[i] >> job->shift & (BUCKETS - 1)]++;
+        hist[digit_of(job, i)]++;
 }
 
 static void place_keys(void *arg, size_t part)
 {
     const bin_job *job = arg;
-    uint32_t      *place = (uint32_t *)job->r->hist.data + part * BUCKETS;
+    uint32_t      *place = (uint32_t *)job->r->hist.data + (part << job->digit);
 
     for (size_t i = part_begin(job, part); i < part_begin(job, part + 1); i++)
-        job->to[place[job->from[i] >> job->shift & (BUCKETS - 1)]++] = job->from[i];
+        job->to[place[digit_of(job, i)]++] = job->from[i];
 }
 
-/* Sorts by the upper 32 bits. Depths are positive, so their bits are in their order. */
+/* Sorts by the upper 32 bits, of which only depth_bits differ, in passes of nearly equal digits. Depths are positive, so their bits are in
+ * their order. */
 static void sort_by_depth(bin_job *job, const ted4_parallel *p)
 {
-    for (job->shift = 32; job->shift < 64; job->shift += TED4_RADIX_BITS) {
+    int left = job->depth_bits;
+
+    for (job->shift = 32; left > 0; job->shift += job->digit, left -= job->digit) {
+        const int passes = (left + TED4_RADIX_BITS - 1) / TED4_RADIX_BITS;
+
+        job->digit = (left + passes - 1) / passes;
         ted4_parallel_for(p, TED4_SORT_PARTS, count_digits, job);
-        counts_to_places(job->r->hist.data, BUCKETS, NULL);
+        counts_to_places(job->r->hist.data, (size_t)1 << job->digit, NULL);
         ted4_parallel_for(p, TED4_SORT_PARTS, place_keys, job);
 
         uint64_t *const sorted = job->to;
@@ -103,33 +126,72 @@ static void sort_by_depth(bin_job *job, const ted4_parallel *p)
     }
 }
 
+/* The tiles of a small box and whether there is each: a box that is one tile wide, or high, has spare tiles in the place of others, so that
+ * no branch waits for the box. */
+typedef struct {
+    uint32_t tile[4], there[4];
+} tile_four;
+
+TED4_INLINE int is_small(ted4_tile_box b)
+{
+    return b.x1 - b.x0 <= 2 && b.y1 - b.y0 <= 2;
+}
+
+/* there ? tile : spare, without a branch. */
+TED4_INLINE uint32_t choose(uint32_t there, uint32_t tile, uint32_t spare)
+{
+    return spare ^ ((spare ^ tile) & -there);
+}
+
+TED4_INLINE tile_four small_box(ted4_tile_box b, uint32_t tiles_x, uint32_t n_tiles)
+{
+    const uint32_t first = b.y0 * tiles_x + b.x0, right = b.x1 - b.x0 - 1u, low = b.y1 - b.y0 - 1u;
+
+    return (tile_four){
+        { first, choose(right, first + 1, n_tiles), choose(low, first + tiles_x, n_tiles + 1),
+          choose(right & low, first + tiles_x + 1, n_tiles + 2) },
+        { 1, right, low, right & low }
+    };
+}
+
 static void count_tiles(void *arg, size_t part)
 {
     const bin_job       *job = arg;
     const ted4_tile_box *box = job->r->box.data;
-    const size_t         n_tiles = (size_t)job->r->tiles_x * job->r->tiles_y;
-    uint32_t            *hist = (uint32_t *)job->r->hist.data + part * n_tiles;
+    const uint32_t       tiles_x = job->r->tiles_x, n_tiles = tiles_x * job->r->tiles_y;
+    uint32_t            *hist = (uint32_t *)job->r->hist.data + part * (n_tiles + SPARE_TILES);
 
-    memset(hist, 0, n_tiles * sizeof *hist);
+    memset(hist, 0, (n_tiles + SPARE_TILES) * sizeof *hist);
     for (size_t i = part_begin(job, part), end = part_begin(job, part + 1); i < end; i++) {
         const ted4_tile_box b = box[(uint32_t)job->from[i]];
 
         if (i + TED4_AHEAD < end)
             __builtin_prefetch(&box[(uint32_t)job->from[i + TED4_AHEAD]]);
+        if (is_small(b)) {
+            const tile_four f = small_box(b, tiles_x, n_tiles);
+
+            for (int k = 0; k < 4; k++)
+                hist[f.tile[k]] += f.there[k];
+            continue;
+        }
         for (uint32_t y = b.y0; y < b.y1; y++)
             for (uint32_t x = b.x0; x < b.x1; x++)
-                hist[y * job->r->tiles_x + x]++;
+                hist[y * tiles_x + x]++;
     }
 }
 
+/* Puts the instances of a part in their places; those of spare tiles where no one looks. */
 static void place_instances(void *arg, size_t part)
 {
     const bin_job       *job = arg;
     const ted4_tile_box *box = job->r->box.data;
     const uint32_t      *first_slot = job->r->first_slot.data;
-    uint32_t *place = (uint32_t *)job->r->hist.data + part * ((size_t)job->r->tiles_x * job->r->tiles_y);
+    const uint32_t       tiles_x = job->r->tiles_x, n_tiles = tiles_x * job->r->tiles_y;
+    uint32_t *place = (uint32_t *)job->r->hist.data + part * (n_tiles + SPARE_TILES);
     uint32_t *owner = job->r->owner.data, *slot = job->r->slot.data;
 
+    for (int k = 0; k < SPARE_TILES; k++)
+        place[n_tiles + k] = (uint32_t)(job->r->n_instances + TED4_AHEAD + TED4_SPARE * (part + 1));
     for (size_t i = part_begin(job, part), end = part_begin(job, part + 1); i < end; i++) {
         const uint32_t      g = (uint32_t)job->from[i];
         const ted4_tile_box b = box[g];
@@ -139,9 +201,21 @@ static void place_instances(void *arg, size_t part)
             __builtin_prefetch(&box[(uint32_t)job->from[i + TED4_AHEAD]]);
             __builtin_prefetch(&first_slot[(uint32_t)job->from[i + TED4_AHEAD]]);
         }
+        if (is_small(b)) {
+            const tile_four f = small_box(b, tiles_x, n_tiles);
+
+            for (int k = 0; k < 4; s += f.there[k], k++) {
+                const uint32_t at = place[f.tile[k]];
+
+                owner[at] = g;
+                slot[at]  = s;
+                place[f.tile[k]] = at + f.there[k];
+            }
+            continue;
+        }
         for (uint32_t y = b.y0; y < b.y1; y++)
             for (uint32_t x = b.x0; x < b.x1; x++) {
-                const uint32_t at = place[y * job->r->tiles_x + x]++;
+                const uint32_t at = place[y * tiles_x + x]++;
 
                 owner[at] = g;
                 slot[at]  = s++;
@@ -152,14 +226,14 @@ static void place_instances(void *arg, size_t part)
 int ted4_raster_bin(struct ted4_raster *r, const ted4_splats *s, const ted4_parallel *p)
 {
     const size_t n_chunks = (s->n + TED4_CHUNK - 1) / TED4_CHUNK, n_tiles = (size_t)r->tiles_x * r->tiles_y;
-    const size_t n_buckets = n_tiles > BUCKETS ? n_tiles : BUCKETS;
+    const size_t n_counted = n_tiles + SPARE_TILES, n_digits = (size_t)1 << TED4_RADIX_BITS;
     bin_job      job = { .r = r, .n_splats = s->n, .from = r->key[1].data, .to = r->key[0].data };
 
-    if (add_up_chunks(r, n_chunks) != 0
-        || ted4_growing_grow(&r->hist, TED4_SORT_PARTS * n_buckets, sizeof(uint32_t)) != 0
-        || ted4_growing_grow(&r->tile_first, n_tiles + 1, sizeof(uint32_t)) != 0
-        || ted4_growing_grow(&r->owner, r->n_instances + TED4_AHEAD, sizeof(uint32_t)) != 0
-        || ted4_growing_grow(&r->slot, r->n_instances, sizeof(uint32_t)) != 0)
+    if (add_up_chunks(&job, n_chunks) != 0
+        || ted4_growing_grow(&r->hist, TED4_SORT_PARTS * (n_counted > n_digits ? n_counted : n_digits), sizeof(uint32_t)) != 0
+        || ted4_growing_grow(&r->tile_first, n_counted, sizeof(uint32_t)) != 0
+        || ted4_growing_grow(&r->owner, r->n_instances + ROOM, sizeof(uint32_t)) != 0
+        || ted4_growing_grow(&r->slot, r->n_instances + ROOM, sizeof(uint32_t)) != 0)
         return -1;
     ((uint32_t *)r->first_slot.data)[s->n] = (uint32_t)r->n_instances;
     memset((uint32_t *)r->owner.data + r->n_instances, 0, TED4_AHEAD * sizeof(uint32_t));
@@ -171,7 +245,7 @@ int ted4_raster_bin(struct ted4_raster *r, const ted4_splats *s, const ted4_para
 
     uint32_t *tile_first = r->tile_first.data;
     ted4_parallel_for(p, TED4_SORT_PARTS, count_tiles, &job);
-    tile_first[n_tiles] = counts_to_places(r->hist.data, n_tiles, tile_first);
+    counts_to_places(r->hist.data, n_counted, tile_first);
     ted4_parallel_for(p, TED4_SORT_PARTS, place_instances, &job);
     return 0;
 }

@@ -1,5 +1,6 @@
-/* blend.c - third stage of raster.c: one job a tile, one vector a block of 4x4 pixels. The tile's list is taken in batches; for each batch
- * an exact test of ellipse against block first says which Gaussians each block needs; then it is blended block by block. Used by raster.c.
+/* blend.c - third stage of raster.c: one job a tile, one vector a block of 4x4 pixels. The tile's list is taken in batches; each batch is
+ * copied together (its Gaussians lie on as many pages as they are), and an exact test of ellipse against block says which of them each block
+ * needs; then it is blended block by block. Used by raster.c.
  * SPDX-License-Identifier: BSD-2-Clause */
 #include "render/raster_state.h"
 
@@ -43,14 +44,15 @@ TED4_INLINE ted4_vi reached_blocks(const ted4_splat2d *g, float x, float y)
     return (n1 * n1 + n2 * n2 <= reach) | (m1 * m1 + m2 * m2 <= reach);
 }
 
-/* Half a group, n <= HALF_GROUP: bit i of lane b for instance i and block b. */
-static ted4_vu reach_half(const ted4_splat2d *splat, const uint32_t *owner, uint32_t n, float x, float y)
+/* Half a group, n <= HALF_GROUP: bit i of lane b for instance i and block b. near: copies of the instances' Gaussians. */
+static ted4_vu reach_half(const ted4_splat2d *splat, const uint32_t *owner, uint32_t n, float x, float y, ted4_splat2d *near)
 {
     ted4_vu all = {0}, bit = all + 1u;
 
     for (uint32_t i = 0; i < n; i++) {
         __builtin_prefetch(&splat[owner[i + TED4_AHEAD]]);
-        all |= (ted4_vu)reached_blocks(&splat[owner[i]], x, y) & bit;
+        near[i] = splat[owner[i]];
+        all |= (ted4_vu)reached_blocks(&near[i], x, y) & bit;
         bit += bit;
     }
     return all;
@@ -58,10 +60,11 @@ static ted4_vu reach_half(const ted4_splat2d *splat, const uint32_t *owner, uint
 
 /* A group, n <= TED4_GROUP. live: all bits set for unfinished blocks, none for others. */
 static void reach_group(const ted4_splat2d *splat, const uint32_t *owner, uint32_t n, float x, float y, const uint64_t *live,
-                        ted4_reach *out)
+                        ted4_splat2d *near, ted4_reach *out)
 {
     const uint32_t half = n < HALF_GROUP ? n : HALF_GROUP;
-    const ted4_vu  low = reach_half(splat, owner, half, x, y), high = reach_half(splat, owner + half, n - half, x, y);
+    const ted4_vu  low = reach_half(splat, owner, half, x, y, near);
+    const ted4_vu  high = reach_half(splat, owner + half, n - half, x, y, near + half);
 
     for (int b = 0; b < TED4_TILE_BLOCKS; b++)
         out->block[b] = ((uint64_t)high[b] << HALF_GROUP | low[b]) & live[b];
@@ -69,8 +72,7 @@ static void reach_group(const ted4_splat2d *splat, const uint32_t *owner, uint32
 
 /* Blends the Gaussians that reach says into block b. When every pixel is finished, takes those not needed out of reach; the result is
  * then 0, else 1. */
-static int blend_block(block_state *state, int b, const ted4_splat2d *splat, const uint32_t *owner, ted4_reach *reach,
-                       uint32_t n_groups)
+static int blend_block(block_state *state, int b, const ted4_splat2d *near, ted4_reach *reach, uint32_t n_groups)
 {
     block_state s = *state;
     uint32_t    group = 0;
@@ -78,7 +80,7 @@ static int blend_block(block_state *state, int b, const ted4_splat2d *splat, con
 
     for (; group < n_groups && live; group++) {
         for (uint64_t rest = reach[group].block[b]; rest != 0; rest &= rest - 1) {
-            const ted4_splat2d *g = &splat[owner[group * TED4_GROUP + (uint32_t)__builtin_ctzll(rest)]];
+            const ted4_splat2d *g = &near[group * TED4_GROUP + (uint32_t)__builtin_ctzll(rest)];
             ted4_vf alpha, w;
 
             ted4_blend_step(g, s.px, s.py, &s.t, &alpha, &w);
@@ -131,6 +133,7 @@ static int blend_batch(const blend_job *job, const uint32_t *owner, uint32_t n, 
     const ted4_splat2d *splat = job->r->splat2d.data;
     const uint32_t      n_groups = (n + TED4_GROUP - 1) / TED4_GROUP;
     const float         x = (float)(tx * TED4_TILE) + 0.5f, y = (float)(ty * TED4_TILE) + 0.5f;
+    ted4_splat2d        near[BATCH];
     int                 n_live = 0;
 
     for (uint32_t i = 0; i < TED4_AHEAD; i++)
@@ -138,11 +141,11 @@ static int blend_batch(const blend_job *job, const uint32_t *owner, uint32_t n, 
     for (uint32_t group = 0; group < n_groups; group++) {
         const uint32_t begin = group * TED4_GROUP, rest = n - begin;
 
-        reach_group(splat, owner + begin, rest < TED4_GROUP ? rest : TED4_GROUP, x, y, live, &reach[group]);
+        reach_group(splat, owner + begin, rest < TED4_GROUP ? rest : TED4_GROUP, x, y, live, near + begin, &reach[group]);
     }
     for (int b = 0; b < TED4_TILE_BLOCKS; b++)
         if (live[b] != 0) {
-            if (blend_block(&state[b], b, splat, owner, reach, n_groups))
+            if (blend_block(&state[b], b, near, reach, n_groups))
                 n_live++;
             else
                 live[b] = 0;

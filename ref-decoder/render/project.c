@@ -71,7 +71,7 @@ static void project_chunk(void *arg, size_t c)
     ted4_tile_box *box = job->r->box.data;
     uint32_t      *first_slot = job->r->first_slot.data;
     uint64_t      *key = (uint64_t *)job->r->key[1].data + begin;
-    ted4_chunk     count = {0, 0};
+    ted4_chunk     count = { .nearest = UINT32_MAX };
 
     for (size_t i = begin; i < end; i += TED4_VEC) {
         const size_t n = end - i < TED4_VEC ? end - i : TED4_VEC;
@@ -92,6 +92,12 @@ static void project_chunk(void *arg, size_t c)
             key[count.n_visible] = (uint64_t)(uint32_t)depth[k] << 32 | (uint32_t)(i + k);
             count.n_visible += visible >> k & 1;
         }
+    }
+    for (size_t k = 0; k < count.n_visible; k++) {
+        const uint32_t depth = (uint32_t)(key[k] >> 32);
+
+        count.nearest  = depth < count.nearest ? depth : count.nearest;
+        count.farthest = depth > count.farthest ? depth : count.farthest;
     }
     ((ted4_chunk *)job->r->chunk.data)[c] = count;
 }

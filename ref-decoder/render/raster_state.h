@@ -17,7 +17,8 @@ enum {
     TED4_AHEAD       = 32,      /* items fetched before they are needed, where they lie anywhere in memory */
     TED4_CHUNK       = 1024,    /* Gaussians of one projection job; a multiple of TED4_VEC */
     TED4_SORT_PARTS  = 8,       /* jobs of one sorting pass; any number gives the same order */
-    TED4_RADIX_BITS  = 11,
+    TED4_RADIX_BITS  = 11,      /* of a sorting pass, at most */
+    TED4_SPARE       = 16,      /* instances that a sorting part may write in vain: a cache line, which no other part writes */
     TED4_GRAD_SUMS   = 8,       /* sums of an instance that travel as a vector; one more travels alone */
     TED4_BWD_JOBS    = 32       /* jobs that share the tiles in the adjoint: the most threads it can use */
 };
@@ -63,11 +64,11 @@ struct ted4_raster {
     /* per projection job */
     ted4_growing chunk;          /* ted4_chunk */
     /* sorting */
-    ted4_growing hist;           /* uint32_t [TED4_SORT_PARTS][n_tiles or 1 << TED4_RADIX_BITS] */
+    ted4_growing hist;           /* uint32_t [TED4_SORT_PARTS][n_tiles + 3 or 1 << TED4_RADIX_BITS] */
     ted4_growing tile_first;     /* uint32_t [n_tiles + 1]: first position of each tile */
     /* per instance, by position */
-    ted4_growing owner;          /* uint32_t: Gaussian; TED4_AHEAD more at the end, of Gaussian 0 */
-    ted4_growing slot;           /* uint32_t */
+    ted4_growing owner;          /* uint32_t: Gaussian; TED4_AHEAD more at the end, of Gaussian 0; then bin.c's spare ones */
+    ted4_growing slot;           /* uint32_t; as many */
     /* per ted4_group_first group of instances */
     ted4_growing reach;          /* ted4_reach (kept for the adjoint) */
     /* per instance, by slot; made by the adjoint */
@@ -79,9 +80,11 @@ struct ted4_raster {
     uint32_t tiles_x, tiles_y;
 };
 
-/* What projection counts in one job, and then the totals of the jobs before it. */
+/* What projection counts in one job, and then the totals of the jobs before it; and the depth bits of the nearest and the farthest
+ * Gaussian that is visible: UINT32_MAX and 0 where none is. */
 typedef struct {
     uint32_t n_visible, n_instances;
+    uint32_t nearest, farthest;
 } ted4_chunk;
 
 /* The stages of ted4_raster_forward. Each: 0, or -1: no memory. */

@@ -77,30 +77,22 @@ static void round_row(void *arg, size_t row)
     }
 }
 
-ted4_status ted4_render_query(ted4_viewer *v, ted4_recon *r, const ted4_info *info, uint32_t num,
-                              uint32_t den, const ted4_view *camera, const ted4_parallel *p,
-                              uint8_t *rgb)
+ted4_status ted4_render_gaussians(ted4_viewer *v, const ted4_gaussians *g, const ted4_info *info,
+                                  const ted4_view *camera, const ted4_parallel *p, uint8_t *rgb)
 {
     const size_t plane = (size_t)camera->width * (size_t)camera->height;
     ted4_view view = *camera;
-    ted4_query q = { num, den, { 0.0f, 0.0f, 0.0f } };
-    ted4_gaussians g;
-    ted4_status status;
 
     if (reserve_image(v, plane * 3) != 0)
         return TED4_E_LIMIT_MEMORY;
-    camera_centre(camera, q.camera);
-    status = ted4_recon_query(r, &q, p, &g);
-    if (status != TED4_OK)
-        return status;
     view.near_z = (float)ldexp(TED4_VIEW_NEAR, info->exponent);
     for (int c = 0; c < 3; c++)
         view.background[c] = (float)info->background[c] / 255.0f;
 
     const ted4_splats s = {
-        g.n, { g.mean[0], g.mean[1], g.mean[2] }, { g.scale[0], g.scale[1], g.scale[2] },
-        { g.rot[0], g.rot[1], g.rot[2], g.rot[3] }, g.opacity,
-        { g.colour[0], g.colour[1], g.colour[2] }
+        g->n, { g->mean[0], g->mean[1], g->mean[2] }, { g->scale[0], g->scale[1], g->scale[2] },
+        { g->rot[0], g->rot[1], g->rot[2], g->rot[3] }, g->opacity,
+        { g->colour[0], g->colour[1], g->colour[2] }
     };
 
     if (ted4_raster_forward(v->raster, &s, &view, p, 0, v->image) != 0)
@@ -109,4 +101,23 @@ ted4_status ted4_render_query(ted4_viewer *v, ted4_recon *r, const ted4_info *in
 
     ted4_parallel_for(p, (size_t)camera->height, round_row, &j);
     return TED4_OK;
+}
+
+ted4_status ted4_query_for_view(ted4_recon *r, uint32_t num, uint32_t den, const ted4_view *camera,
+                                const ted4_parallel *p, ted4_gaussians *g)
+{
+    ted4_query q = { num, den, { 0.0f, 0.0f, 0.0f } };
+
+    camera_centre(camera, q.camera);
+    return ted4_recon_query(r, &q, p, g);
+}
+
+ted4_status ted4_render_query(ted4_viewer *v, ted4_recon *r, const ted4_info *info, uint32_t num,
+                              uint32_t den, const ted4_view *camera, const ted4_parallel *p,
+                              uint8_t *rgb)
+{
+    ted4_gaussians g;
+    const ted4_status status = ted4_query_for_view(r, num, den, camera, p, &g);
+
+    return status != TED4_OK ? status : ted4_render_gaussians(v, &g, info, camera, p, rgb);
 }

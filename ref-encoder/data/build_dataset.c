@@ -10,13 +10,19 @@
 #include "data/data_util.h"
 #include "data/source.h"
 
-/* Makes the lens refer to the file's size. A file may be the integer fraction 1/n of what the
- * lens says, rounded either way (the images_2 folders of static sets); the whole extent then
- * maps to the whole extent. */
+/* Is the file the integer fraction 1 / *n of what the lens says, rounded either way, when it is of this size? */
+static int is_fraction(const ted4_lens *l, int width, int height, int *n)
+{
+    *n = (l->width + width / 2) / width;
+    return *n >= 1 && fabs((double)l->width / *n - width) < 1 && fabs((double)l->height / *n - height) < 1;
+}
+
+/* Makes the lens refer to the file's size. A file may be an integer fraction of what the lens says (the
+ * images_2 folders of static sets); the whole extent then maps to the whole extent. */
 static int fit_lens(ted4_shot *s, ted4_message *m)
 {
     ted4_lens *l = &s->lens;
-    const int n = (l->width + s->width / 2) / s->width;
+    int n;
     const double ax = (double)s->width / l->width, ay = (double)s->height / l->height;
 
     if (!(isfinite(l->fx) && isfinite(l->fy) && l->fx > 0 && l->fy > 0))
@@ -26,9 +32,11 @@ static int fit_lens(ted4_shot *s, ted4_message *m)
     if (!(isfinite(l->k1) && isfinite(l->k2) && isfinite(l->p1) && isfinite(l->p2) && isfinite(l->k3) &&
           isfinite(l->skew)))
         return ted4_say(m, "%s: a distortion coefficient is not finite", s->path);
-    if (n < 1 || fabs((double)l->width / n - s->width) >= 1 || fabs((double)l->height / n - s->height) >= 1)
-        return ted4_say(m, "%s: the file is %dx%d, its camera says %dx%d, expected the same or an integer fraction of it",
-                        s->path, s->width, s->height, l->width, l->height);
+    if (!is_fraction(l, s->width, s->height, &n))
+        return ted4_say(m, "%s: the file is %dx%d%s, its camera says %dx%d, expected the same or an integer fraction of it",
+                        s->path, s->width, s->height,
+                        s->orientation >= 5 && is_fraction(l, s->height, s->width, &n) ?
+                        " (EXIF turns it by a quarter when shown; turn the pixels themselves)" : "", l->width, l->height);
     l->fx *= ax;
     l->cx *= ax;
     l->skew *= ax;
@@ -156,6 +164,31 @@ static int number_frames(ted4_dataset *d, const ted4_shot *shots, ted4_message *
     return result;
 }
 
+/* Keeps the shots of the first most times, in their order. */
+static int keep_first_times(ted4_raw_scene *s, uint32_t most, ted4_message *m)
+{
+    double *sorted = malloc(s->n_shots * sizeof *sorted);
+    size_t n = 0, kept = 0;
+
+    if (sorted == NULL)
+        return ted4_say_no_memory(m);
+    for (size_t i = 0; i < s->n_shots; i++)
+        sorted[i] = s->shots[i].time;
+    n = ted4_distinct_times(sorted, s->n_shots);
+    const double last = n > most ? sorted[most - 1] : sorted[n - 1];
+    for (size_t i = 0; i < s->n_shots; i++) {
+        if (s->shots[i].time > last) {
+            free(s->shots[i].path);
+            free(s->shots[i].camera);
+        } else {
+            s->shots[kept++] = s->shots[i];
+        }
+    }
+    s->n_shots = kept;
+    free(sorted);
+    return 0;
+}
+
 /* Moves test shots behind the others; order is kept within both. */
 static int split(ted4_raw_scene *s, ted4_message *m)
 {
@@ -210,7 +243,8 @@ int ted4_build_dataset(ted4_dataset *d, ted4_raw_scene *s, const ted4_dataset_op
 
     if (s->n_shots == 0)
         return ted4_say(m, "the scene (layout %s) has no pictures", s->layout);
-    if (left_to_reduce(s, o->downscale, &reduction, m) != 0 || split(s, m) != 0)
+    if ((o->max_frames > 0 && keep_first_times(s, o->max_frames, m) != 0) ||
+        left_to_reduce(s, o->downscale, &reduction, m) != 0 || split(s, m) != 0)
         return -1;
     d->layout = ted4_text_copy(s->layout);
     d->pictures = calloc(s->n_shots, sizeof *d->pictures);

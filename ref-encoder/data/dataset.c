@@ -4,8 +4,10 @@
 #include "data/dataset.h"
 
 #include <math.h>
+#include <pthread.h>
 #include <stdlib.h>
 #include <string.h>
+#include <xxhash.h>
 #include "data/data_util.h"
 #include "data/image_cache.h"
 #include "data/raw_scene.h"
@@ -76,14 +78,78 @@ void ted4_dataset_release(ted4_dataset *d, size_t i)
     ted4_image_cache_unpin(d->cache, i);
 }
 
-int ted4_dataset_verify(ted4_dataset *d, ted4_message *m)
+void ted4_dataset_ahead(ted4_dataset *d, size_t i)
 {
-    for (size_t i = 0; i < d->n_pictures; i++) {
-        if (ted4_dataset_pixels(d, i, m) == NULL)
-            return -1;
-        ted4_dataset_release(d, i);
+    ted4_image_cache_ahead(d->cache, i, d->ahead);
+}
+
+typedef struct {
+    ted4_dataset   *d;
+    pthread_mutex_t lock;
+    size_t          bad;        /* first picture known to be bad, else n_pictures */
+    ted4_message   *m;          /* why */
+} verification;
+
+/* Pictures after a bad one need no look; those before it do, so that every number of threads names the same one. */
+static void verify_picture(void *arg, size_t i)
+{
+    verification *v = arg;
+    ted4_message m;
+
+    pthread_mutex_lock(&v->lock);
+    const int needed = i < v->bad;
+    pthread_mutex_unlock(&v->lock);
+    if (!needed)
+        return;
+    if (ted4_dataset_pixels(v->d, i, &m) != NULL) {
+        ted4_dataset_release(v->d, i);
+        return;
     }
+    pthread_mutex_lock(&v->lock);
+    if (i < v->bad) {
+        v->bad = i;
+        *v->m = m;
+    }
+    pthread_mutex_unlock(&v->lock);
+}
+
+int ted4_dataset_verify(ted4_dataset *d, const ted4_parallel *p, ted4_message *m)
+{
+    verification v = { .d = d, .bad = d->n_pictures, .m = m };
+
+    pthread_mutex_init(&v.lock, NULL);
+    ted4_parallel_for(p, d->n_pictures, verify_picture, &v);
+    pthread_mutex_destroy(&v.lock);
+    if (v.bad < d->n_pictures)
+        return -1;
+    d->content = 0;
+    for (size_t i = 0; i < d->n_pictures; i++)
+        d->content = XXH3_64bits_withSeed(&d->sources[i].digest, sizeof d->sources[i].digest, d->content);
     return 0;
+}
+
+static uint64_t add(uint64_t digest, const void *p, size_t size)
+{
+    return size > 0 ? XXH3_64bits_withSeed(p, size, digest) : digest;
+}
+
+uint64_t ted4_dataset_digest(const ted4_dataset *d)
+{
+    uint64_t x = d->content;
+
+    for (size_t i = 0; i < d->n_pictures; i++) {
+        const ted4_picture *p = &d->pictures[i];
+        const ted4_camera *c = &p->camera;
+        const uint32_t whole[5] = { (uint32_t)c->width, (uint32_t)c->height, p->frame, p->camera_id, p->is_test };
+        const double lens[4] = { c->fx, c->fy, c->cx, c->cy };
+        x = add(x, whole, sizeof whole);
+        x = add(x, lens, sizeof lens);
+        x = add(x, c->R, sizeof c->R);
+        x = add(x, c->t, sizeof c->t);
+    }
+    x = add(x, d->points, 3 * d->n_points * sizeof *d->points);
+    x = add(x, d->point_rgb, 3 * d->n_points);
+    return add(x, d->background, sizeof d->background);
 }
 
 typedef struct { double low, high; } range;

@@ -8,6 +8,8 @@
 #include <stdint.h>
 #include <stdio.h>
 
+#include "base/parallel.h"
+
 /* Pinhole after undistortion and downscaling; camera axes right, down, forward; x_cam = R x_world + t. Pixel centres at + 0.5. */
 typedef struct {
     int    width, height;
@@ -34,6 +36,8 @@ typedef struct ted4_dataset {
     int           random_points;
     double        rate;         /* frames a second, 0: unknown */
     uint8_t       background[3];
+    uint64_t      content;      /* digest of all picture files; 0 until ted4_dataset_verify */
+    int           ahead;        /* threads for ted4_dataset_ahead; 0 after loading, the caller may change it: no pixel depends on it */
     struct ted4_source      *sources;   /* [n_pictures] how files become pixels; owned, opaque */
     struct ted4_image_cache *cache;     /* owned, opaque */
 } ted4_dataset;
@@ -43,7 +47,7 @@ typedef struct {
     int         white;          /* background of RGBA images: 1 white (default), 0 black */
     uint32_t    seed;           /* for random points */
     size_t      cache_bytes;    /* bound of decoded pixels kept in memory */
-    uint32_t    max_frames;     /* most times read of each camera's frames or video; 0: 300 of Neu3D, else all */
+    uint32_t    max_frames;     /* only so many times, the first ones; 0: 300 of Neu3D, else all */
 } ted4_dataset_options;
 
 /* One clear message, "file:line-or-field: what was found, what was expected". */
@@ -55,12 +59,21 @@ int  ted4_dataset_load(ted4_dataset *d, const char *folder,
 void ted4_dataset_free(ted4_dataset *d);
 
 /* Interleaved RGB bytes [height][width][3] of picture i, composited, undistorted, downscaled. The pointer stays valid until
- * ted4_dataset_release(d, i). Safe from several threads. NULL with *m filled when the file cannot be decoded any more. */
+ * ted4_dataset_release(d, i). Safe from several threads. NULL with *m filled when the file cannot be decoded any more, or is not the
+ * one that was decoded before. */
 const uint8_t *ted4_dataset_pixels(ted4_dataset *d, size_t i, ted4_message *m);
 void           ted4_dataset_release(ted4_dataset *d, size_t i);
 
-/* Decodes every picture once. 0, or -1 with *m naming the first that cannot be decoded. */
-int ted4_dataset_verify(ted4_dataset *d, ted4_message *m);
+/* Says that the pixels of picture i will be asked for soon: d->ahead threads decode them meanwhile where that is of use. */
+void ted4_dataset_ahead(ted4_dataset *d, size_t i);
+enum { TED4_DATASET_AHEAD = 4 };        /* more pictures than this need not be announced at a time */
+
+/* Decodes every picture once, on the threads of p (NULL: here), and sets d->content. 0, or -1 with *m naming the first that cannot
+ * be decoded. */
+int ted4_dataset_verify(ted4_dataset *d, const ted4_parallel *p, ted4_message *m);
+
+/* What a training sees of the scene in one number: cameras, times, split, points, background, d->content; not where its files lie. */
+uint64_t ted4_dataset_digest(const ted4_dataset *d);
 
 /* What was found, for a reader: layout, pictures, cameras, frames, sizes, focal lengths, camera centres, points, background, rate. */
 void ted4_dataset_print(const ted4_dataset *d, FILE *out);

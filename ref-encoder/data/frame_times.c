@@ -20,6 +20,24 @@ static int by_value(const void *a, const void *b)
     return (x > y) - (x < y);
 }
 
+/* The largest of a group, so that no time of the group is beyond it. */
+size_t ted4_distinct_times(double *t, size_t n)
+{
+    size_t k = 0;
+
+    qsort(t, n, sizeof *t, by_value);
+    const double same = SAME_TIME * (t[n - 1] - t[0]);
+    double first = t[0];                /* of the group */
+    for (size_t i = 0; i < n; i++) {
+        if (t[i] - first > same) {
+            first = t[i];
+            k++;
+        }
+        t[k] = t[i];
+    }
+    return k + 1;
+}
+
 /* Sorts t[n] into distinct times mapped to [0, 1]; returns how many. */
 static size_t distinct(double *t, size_t n, double *origin, double *range)
 {

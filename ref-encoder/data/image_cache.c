@@ -1,11 +1,13 @@
 /* image_cache.c - see image_cache.h.
  * An entry is empty, loading (a thread decodes it, others wait) or full. Full entries without
- * pins form a list, oldest first; only they can be evicted.
+ * pins form a list, oldest first; only they can be evicted. Threads that decode ahead are started
+ * when first asked for and end with the cache.
  * SPDX-License-Identifier: BSD-2-Clause */
 #include "data/image_cache.h"
 
 #include <pthread.h>
 #include <stdlib.h>
+#include <string.h>
 #include "data/data_util.h"
 
 typedef struct {
@@ -16,31 +18,41 @@ typedef struct {
     size_t   before, after;     /* neighbours in the idle list, when full and not pinned */
 } entry;
 
+/* The bound must hold this many of the largest picture before any is decoded ahead: those that wait,
+ * and as many in use, would push one another out. */
+enum { ROOM_FOR_AHEAD = 2 * TED4_DATASET_AHEAD };
+
+/* Pictures wanted soon, in the order they were asked for, and who decodes them. */
+typedef struct {
+    pthread_t threads[TED4_DATASET_AHEAD];
+    size_t    queue[TED4_DATASET_AHEAD];
+    int       n_threads, n_waiting, n_queued, stop;
+} ahead;
+
 struct ted4_image_cache {
     pthread_mutex_t lock;
-    pthread_cond_t  loaded;
+    pthread_cond_t  loaded, wanted;
+    ahead           ahead;
     entry          *entries;    /* owned, [n + 1]; the last is the head of the idle list: after = oldest, before = newest */
     size_t          n, bound, held;
-    ted4_image_decoder    *decode;
-    const void     *user;       /* borrowed */
+    size_t          largest;    /* size of a picture seen so far */
+    ted4_image_decoder *decode;
+    void           *user;       /* borrowed */
 };
 
-ted4_image_cache *ted4_image_cache_new(size_t n, size_t bound, ted4_image_decoder *decode, const void *user)
+ted4_image_cache *ted4_image_cache_new(size_t n, size_t bound, ted4_image_decoder *decode, void *user)
 {
     ted4_image_cache *c = calloc(1, sizeof *c);
     entry *entries = calloc(n + 1, sizeof *entries);
 
-    if (c == NULL || entries == NULL || pthread_mutex_init(&c->lock, NULL) != 0) {
+    if (c == NULL || entries == NULL) {
         free(c);
         free(entries);
         return NULL;
     }
-    if (pthread_cond_init(&c->loaded, NULL) != 0) {
-        pthread_mutex_destroy(&c->lock);
-        free(c);
-        free(entries);
-        return NULL;
-    }
+    pthread_mutex_init(&c->lock, NULL);
+    pthread_cond_init(&c->loaded, NULL);
+    pthread_cond_init(&c->wanted, NULL);
     entries[n].before = entries[n].after = n;
     c->entries = entries;
     c->n = n;
@@ -54,9 +66,16 @@ void ted4_image_cache_free(ted4_image_cache *c)
 {
     if (c == NULL)
         return;
+    pthread_mutex_lock(&c->lock);
+    c->ahead.stop = 1;
+    pthread_cond_broadcast(&c->wanted);
+    pthread_mutex_unlock(&c->lock);
+    for (int i = 0; i < c->ahead.n_threads; i++)
+        pthread_join(c->ahead.threads[i], NULL);
     for (size_t i = 0; i < c->n; i++)
         free(c->entries[i].bytes);
     free(c->entries);
+    pthread_cond_destroy(&c->wanted);
     pthread_cond_destroy(&c->loaded);
     pthread_mutex_destroy(&c->lock);
     free(c);
@@ -111,6 +130,7 @@ static void load(ted4_image_cache *c, size_t i, ted4_message *m)
         e->bytes = bytes;
         e->size = size;
         c->held += size;
+        c->largest = size > c->largest ? size : c->largest;
         join_idle(c, i);
     }
     pthread_cond_broadcast(&c->loaded);
@@ -141,6 +161,55 @@ void ted4_image_cache_unpin(ted4_image_cache *c, size_t i)
     if (--c->entries[i].pins == 0) {
         join_idle(c, i);
         make_room(c, 0);
+    }
+    pthread_mutex_unlock(&c->lock);
+}
+
+static void *decode_ahead(void *cache)
+{
+    ted4_image_cache *c = cache;
+    ahead *a = &c->ahead;
+    ted4_message ignored;
+
+    pthread_mutex_lock(&c->lock);
+    while (!a->stop) {
+        if (a->n_queued == 0) {
+            a->n_waiting++;
+            pthread_cond_wait(&c->wanted, &c->lock);
+            a->n_waiting--;
+            continue;
+        }
+        const size_t i = a->queue[0];
+        a->n_queued--;
+        memmove(a->queue, a->queue + 1, (size_t)a->n_queued * sizeof *a->queue);
+        if (!c->entries[i].loading && c->entries[i].bytes == NULL)
+            load(c, i, &ignored);
+    }
+    pthread_mutex_unlock(&c->lock);
+    return NULL;
+}
+
+static int is_queued(const ahead *a, size_t i)
+{
+    for (int k = 0; k < a->n_queued; k++)
+        if (a->queue[k] == i)
+            return 1;
+    return 0;
+}
+
+void ted4_image_cache_ahead(ted4_image_cache *c, size_t i, int n_threads)
+{
+    ahead *a = &c->ahead;
+    const int most = n_threads < TED4_DATASET_AHEAD ? n_threads : TED4_DATASET_AHEAD;
+
+    pthread_mutex_lock(&c->lock);
+    if (most > 0 && i < c->n && c->entries[i].bytes == NULL && !c->entries[i].loading && !is_queued(a, i) &&
+        a->n_queued < TED4_DATASET_AHEAD && c->largest <= c->bound / ROOM_FOR_AHEAD) {
+        a->queue[a->n_queued++] = i;
+        if (a->n_queued > a->n_waiting && a->n_threads < most &&
+            pthread_create(&a->threads[a->n_threads], NULL, decode_ahead, c) == 0)
+            a->n_threads++;
+        pthread_cond_signal(&c->wanted);
     }
     pthread_mutex_unlock(&c->lock);
 }

@@ -9,6 +9,7 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <xxhash.h>
 #include "data/data_util.h"
 
 static const uint8_t png_signature[8] = { 0x89, 'P', 'N', 'G', 13, 10, 26, 10 };
@@ -57,14 +58,27 @@ static int is_frame_header(int marker)
     return marker >= 0xc0 && marker <= 0xcf && marker != 0xc4 && marker != 0xc8 && marker != 0xcc;
 }
 
+enum { APP1 = 0xe1 };
+
+/* Reads the payload of an APP1 segment, of which a file may have several. 0, or -1: cut short. */
+static int read_exif(FILE *f, int size, ted4_image_header *h)
+{
+    uint8_t *payload = malloc((size_t)size + 1);
+    const int whole = payload != NULL && fread(payload, 1, (size_t)size, f) == (size_t)size;
+
+    if (whole && h->orientation == 1)
+        h->orientation = ted4_exif_orientation(payload, (size_t)size);
+    free(payload);
+    return whole ? 0 : -1;
+}
+
 /* JPEG: segments "ff marker length16 ..." up to the frame header, which holds precision, height,
  * width. */
 static int probe_jpeg(FILE *f, const char *path, ted4_image_header *h, ted4_message *m)
 {
-    uint8_t s[7];
+    uint8_t s[8];
     int c = 0;
 
-    h->has_alpha = 0;
     if (fseek(f, 2, SEEK_SET) != 0)
         return ted4_say(m, "%s: %s", path, strerror(errno));
     for (;;) {
@@ -76,13 +90,15 @@ static int probe_jpeg(FILE *f, const char *path, ted4_image_header *h, ted4_mess
             break;
         const int length = s[0] << 8 | s[1];
         if (is_frame_header(c)) {
-            if (length < 7 || fread(s, 1, 5, f) != 5)
+            if (length < 8 || fread(s, 1, 6, f) != 6)
                 break;
+            if (s[5] != 1 && s[5] != 3)
+                return ted4_say(m, "%s: JPEG of %d colours (CMYK?), expected grey or RGB", path, s[5]);
             h->height = s[1] << 8 | s[2];
             h->width = s[3] << 8 | s[4];
             return check_size(path, (uint32_t)h->width, (uint32_t)h->height, m);
         }
-        if (length < 2 || fseek(f, length - 2, SEEK_CUR) != 0)
+        if (length < 2 || (c == APP1 ? read_exif(f, length - 2, h) : fseek(f, length - 2, SEEK_CUR)) != 0)
             break;
     }
     return ted4_say(m, "%s: JPEG without a frame header (cut short?)", path);
@@ -95,6 +111,7 @@ int ted4_image_probe(const char *path, ted4_image_header *header, ted4_message *
     FILE *f = ted4_is_folder(path) ? NULL : fopen(path, "rb");
 
     memset(header, 0, sizeof *header);
+    header->orientation = 1;
     if (f == NULL)
         return ted4_say(m, "%s: %s", path,
                         ted4_is_folder(path) ? "a folder, expected a picture" : strerror(errno));
@@ -166,6 +183,7 @@ int ted4_image_read(const char *path, ted4_image *image, ted4_message *m)
         result = ted4_jpeg_decode(path, bytes, size, image, m);
     else
         result = ted4_say(m, "%s: neither PNG nor JPEG", path);
+    image->digest = XXH3_64bits(bytes, size);
     free(bytes);
     return result;
 }

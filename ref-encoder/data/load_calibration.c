@@ -85,7 +85,8 @@ static int check_count(calibration *c, const char *where, size_t n)
 {
     if (c->n_frames == 0)
         c->n_frames = c->stated > 0 ? c->stated : n;
-    return n == c->n_frames ? 0 : ted4_say(c->m, "%s: %zu frames, expected %zu %s", where, n, c->n_frames,
+    return n == c->n_frames ? 0 : ted4_say(c->m, "%s: %zu frames, expected %zu %s (--max-frames reads the first ones)",
+                                           where, n, c->n_frames,
                                            c->stated > 0 ? "by the file's frames" : "like the first camera");
 }
 

@@ -90,8 +90,8 @@ static int add_clip(neu3d *n, size_t i)
     if (i == 0)
         n->n_frames = pictures.n;
     result = pictures.n == n->n_frames ? ted4_clip_add(n->scene, &pictures, name, &model, n->m) :
-             ted4_say(n->m, "%s/%s: %zu frames, expected %zu like %s", n->folder, name, pictures.n, n->n_frames,
-                      n->clips.names[0]);
+             ted4_say(n->m, "%s/%s: %zu frames, expected %zu like %s (--max-frames reads the first ones)", n->folder, name,
+                      pictures.n, n->n_frames, n->clips.names[0]);
     ted4_name_list_free(&pictures);
     return result;
 }

@@ -1,6 +1,6 @@
 /* load_transforms.c - layouts "blender" (D-NeRF: transforms_train.json and transforms_test.json
  * with camera_angle_x) and "nerfstudio" (the same pair, or one transforms.json, with fl_x and
- * more).
+ * more; its lists train_filenames and test_filenames, or val_filenames, split it, else TED4_HOLD_OUT_*).
  * transform_matrix is camera-to-world with axes right, up, backward; the world stays as it is,
  * except that applied_transform, which nerfstudio has put before poses and point cloud alike, is
  * taken off both again.
@@ -315,6 +315,103 @@ static int read_frames(transforms *t)
     return read_times(t, first);
 }
 
+/* nerfstudio's lists of file_paths for training, and to hold out: the first of these that is there. */
+static const char list_train[] = "train_filenames";
+static const char *const lists_test[] = { "test_filenames", "val_filenames" };
+
+static const char *plain_name(const char *name)
+{
+    while (name[0] == '.' && name[1] == '/')
+        name += 2;
+    return name;
+}
+
+/* Index of the frame of that file_path, n when there is none; looks from start on, for lists are mostly in the order of
+ * the frames. */
+static size_t find_frame(const json_t *frames, size_t start, const char *name)
+{
+    const size_t n = json_array_size(frames);
+
+    for (size_t k = 0; k < n; k++) {
+        const size_t i = (start + k) % n;
+        const char *path = json_string_value(json_object_get(json_array_get(frames, i), "file_path"));
+        if (strcmp(plain_name(path), plain_name(name)) == 0)
+            return i;
+    }
+    return n;
+}
+
+enum { UNNAMED, TRAIN, TEST };
+
+/* use[i] = what for the frames that a list names. */
+static int read_list(transforms *t, const char *name, int what, uint8_t *use)
+{
+    const json_t *list = json_object_get(t->root, name), *frames = json_object_get(t->root, "frames");
+    size_t at = 0;
+
+    if (!json_is_array(list))
+        return ted4_say(t->m, "%s.%s: %s, expected a list of file_paths", t->path, name, list == NULL ? "missing" : "not a list");
+    for (size_t i = 0; i < json_array_size(list); i++) {
+        const char *text = json_string_value(json_array_get(list, i));
+        if (text == NULL)
+            return ted4_say(t->m, "%s.%s[%zu]: expected a file_path", t->path, name, i);
+        at = find_frame(frames, at, text);
+        if (at == json_array_size(frames))
+            return ted4_say(t->m, "%s.%s[%zu]: no frame has the file_path %.300s", t->path, name, i, text);
+        if (use[at] != UNNAMED)
+            return ted4_say(t->m, "%s.%s[%zu]: %.300s is listed twice", t->path, name, i, text);
+        use[at] = (uint8_t)what;
+    }
+    return 0;
+}
+
+/* Frames that neither list names are left out. */
+static int split_by_lists(transforms *t, const char *test)
+{
+    ted4_raw_scene *s = t->scene;
+    uint8_t *use = calloc(s->n_shots, 1);
+    size_t kept = 0;
+
+    if (use == NULL)
+        return ted4_say_no_memory(t->m);
+    int result = read_list(t, list_train, TRAIN, use);
+    if (result == 0 && test != NULL)
+        result = read_list(t, test, TEST, use);
+    for (size_t i = 0; i < s->n_shots && result == 0; i++) {
+        s->shots[i].is_test = use[i] == TEST;
+        if (use[i] == UNNAMED) {
+            free(s->shots[i].path);
+            free(s->shots[i].camera);
+        } else {
+            s->shots[kept++] = s->shots[i];
+        }
+    }
+    if (result == 0)
+        s->n_shots = kept;
+    free(use);
+    return result;
+}
+
+static int by_path(const void *a, const void *b)
+{
+    return strcmp(((const ted4_shot *)a)->path, ((const ted4_shot *)b)->path);
+}
+
+/* The split of a file that holds all frames. */
+static int split(transforms *t)
+{
+    const char *test = NULL;
+
+    for (size_t i = 0; i < sizeof lists_test / sizeof lists_test[0] && test == NULL; i++)
+        if (json_object_get(t->root, lists_test[i]) != NULL)
+            test = lists_test[i];
+    if (test != NULL || json_object_get(t->root, list_train) != NULL)
+        return split_by_lists(t, test);
+    qsort(t->scene->shots, t->scene->n_shots, sizeof *t->scene->shots, by_path);
+    ted4_raw_scene_hold_out(t->scene);
+    return 0;
+}
+
 static int has_focal(const json_t *root)
 {
     const json_t *frame = json_array_get(json_object_get(root, "frames"), 0);
@@ -322,15 +419,17 @@ static int has_focal(const json_t *root)
     return json_object_get(root, "fl_x") != NULL || json_object_get(frame, "fl_x") != NULL;
 }
 
-/* Reads one file; is_test: all of its frames are held out. */
-static int read_file(ted4_raw_scene *s, const char *folder, const char *name, int is_test, ted4_message *m)
+/* Reads one file, of which all frames are for training or all are held out, or which has both. */
+enum { ALL_TRAIN, ALL_TEST, BOTH };
+
+static int read_file(ted4_raw_scene *s, const char *folder, const char *name, int holds, ted4_message *m)
 {
     transforms t;
 
     memset(&t, 0, sizeof t);
     t.scene = s;
     t.folder = folder;
-    t.is_test = is_test;
+    t.is_test = holds == ALL_TEST;
     t.m = m;
     t.path = ted4_path_join(folder, name);
     if (t.path == NULL)
@@ -343,6 +442,8 @@ static int read_file(ted4_raw_scene *s, const char *folder, const char *name, in
         result = read_applied(&t);
     if (result == 0)
         result = read_frames(&t);
+    if (result == 0 && holds == BOTH)
+        result = split(&t);
     if (result == 0)
         result = read_cloud(&t);
     if (result == 0) {
@@ -355,11 +456,6 @@ static int read_file(ted4_raw_scene *s, const char *folder, const char *name, in
     return result;
 }
 
-static int by_path(const void *a, const void *b)
-{
-    return strcmp(((const ted4_shot *)a)->path, ((const ted4_shot *)b)->path);
-}
-
 int ted4_load_transforms(ted4_raw_scene *s, const char *folder, ted4_message *m)
 {
     char *train = file_in(folder, "transforms_train.json");
@@ -367,11 +463,7 @@ int ted4_load_transforms(ted4_raw_scene *s, const char *folder, ted4_message *m)
 
     free(train);
     if (pair)
-        return read_file(s, folder, "transforms_train.json", 0, m) == 0 &&
-               read_file(s, folder, "transforms_test.json", 1, m) == 0 ? 0 : -1;
-    if (read_file(s, folder, "transforms.json", 0, m) != 0)
-        return -1;
-    qsort(s->shots, s->n_shots, sizeof *s->shots, by_path);
-    ted4_raw_scene_hold_out(s);
-    return 0;
+        return read_file(s, folder, "transforms_train.json", ALL_TRAIN, m) == 0 &&
+               read_file(s, folder, "transforms_test.json", ALL_TEST, m) == 0 ? 0 : -1;
+    return read_file(s, folder, "transforms.json", BOTH, m);
 }

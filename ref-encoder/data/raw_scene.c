@@ -52,6 +52,7 @@ ted4_shot *ted4_raw_scene_add(ted4_raw_scene *s, char *path, const char *where, 
     shot->width = shot->lens.width = header.width;
     shot->height = shot->lens.height = header.height;
     shot->has_alpha = header.has_alpha;
+    shot->orientation = header.orientation;
     return shot;
 }
 

@@ -21,6 +21,7 @@ typedef struct {
     char     *camera;           /* owned; label of the physical camera. NULL: cameras are told apart by pose */
     int       width, height;    /* of the file */
     int       has_alpha;
+    int       orientation;      /* as ted4_exif_orientation; pixels stay as stored, whatever it is */
     ted4_lens lens;             /* may state another size than the file's */
     double    R[9], t[3];       /* world to camera, right-down-forward; R a clean rotation */
     double    time;             /* any unit and origin; equal times are one frame */
@@ -67,6 +68,8 @@ int ted4_build_dataset(ted4_dataset *d, ted4_raw_scene *s, const ted4_dataset_op
 /* frame_times.c: frame[i] of each of n times, *n_frames, at most TED4_MAX_FRAMES. 0, or -1 with
  * *m filled. */
 #define TED4_MAX_FRAMES 36000
+/* Sorts t[n], n > 0, and keeps one of each group of equal times, the last; returns how many. */
+size_t ted4_distinct_times(double *t, size_t n);
 int ted4_frame_times(const double *time, size_t n, uint32_t *frame, uint32_t *n_frames, ted4_message *m);
 
 #endif

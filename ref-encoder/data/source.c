@@ -34,16 +34,28 @@ static int undistort(ted4_image *image, const ted4_lens *l, ted4_message *m)
     return 0;
 }
 
-uint8_t *ted4_source_decode(const void *sources, size_t i, size_t *size, ted4_message *m)
+/* Is it the file that was probed, and decoded before? A picture that changes while a scene is trained
+ * would make the result one of chance. */
+static int check_same(ted4_source *s, const ted4_image *image, ted4_message *m)
 {
-    const ted4_source *s = (const ted4_source *)sources + i;
+    if (image->width != s->lens.width || image->height != s->lens.height)
+        return ted4_say(m, "%s: now %dx%d, was %dx%d when the scene was loaded", s->path,
+                        image->width, image->height, s->lens.width, s->lens.height);
+    if (s->is_known && image->digest != s->digest)
+        return ted4_say(m, "%s: the file has changed since it was read first", s->path);
+    s->is_known = 1;
+    s->digest = image->digest;
+    return 0;
+}
+
+uint8_t *ted4_source_decode(void *sources, size_t i, size_t *size, ted4_message *m)
+{
+    ted4_source *s = (ted4_source *)sources + i;
     ted4_image image;
 
     if (ted4_image_read(s->path, &image, m) != 0)
         return NULL;
-    if (image.width != s->lens.width || image.height != s->lens.height) {
-        ted4_say(m, "%s: now %dx%d, was %dx%d when the scene was loaded", s->path,
-                 image.width, image.height, s->lens.width, s->lens.height);
+    if (check_same(s, &image, m) != 0) {
         free(image.bytes);
         return NULL;
     }

@@ -13,10 +13,12 @@ typedef struct ted4_source {
     ted4_lens   lens;           /* of the file's size */
     int         downscale;
     uint8_t     background;     /* grey level under transparent pixels */
+    int         is_known;       /* decoded before: a file with another digest is refused */
+    uint64_t    digest;
 } ted4_source;
 
-/* ted4_image_decoder of an array of sources: RGB composited, undistorted, downscaled, in this order. */
-uint8_t *ted4_source_decode(const void *sources, size_t i, size_t *size, ted4_message *m);
+/* ted4_image_decoder of an array of sources, which it tells apart from files that replace them later: RGB composited, undistorted, downscaled, in this order. */
+uint8_t *ted4_source_decode(void *sources, size_t i, size_t *size, ted4_message *m);
 
 /* Cube of the random points of a Blender scene: the synthetic objects are made to fit it. */
 #define TED4_BLENDER_HALF_CUBE 1.3

@@ -17,9 +17,9 @@
 #include "data/data_util.h"
 #include "data/raw_scene.h"
 
-#define LOG     "ffmpeg.log"    /* what ffmpeg says, in the folder while it is made */
 #define COUNT   "count"         /* number of frames, in the folder when it is complete */
 #define NO_EXEC 127             /* exit status of a child that could not start ffmpeg */
+#define TAIL    2000            /* bytes kept of what ffmpeg says */
 
 /* Even time stamps, so that no frame is doubled or dropped; then RGB with a conversion that is the
  * same on every machine; without the colour tags that make a PNG reader convert once more. */
@@ -129,67 +129,90 @@ static int write_count(const char *folder, size_t n)
     return fine ? 0 : -1;
 }
 
-/* Runs ffmpeg in the folder; gives its exit status, or -1. */
-static int run_ffmpeg(const char *video, size_t most, const char *folder)
+/* The child's side: works in the folder, says errors to messages, and never returns. */
+static void become_ffmpeg(const char *input, const char *limit, const char *folder, int messages)
+{
+    const int none = chdir(folder) == 0 ? open("/dev/null", O_RDWR) : -1;
+
+    if (none >= 0 && dup2(none, 0) >= 0 && dup2(none, 1) >= 0 && dup2(messages, 2) >= 0)
+        execlp("ffmpeg", "ffmpeg", "-nostdin", "-hide_banner", "-v", "repeat+error", "-i", input, "-map", "0:v:0",
+               "-vf", FILTERS, "-r", RATE, "-frames:v", limit, "-flags", "+bitexact", "-fflags", "+bitexact",
+               "-compression_level", "1", "-f", "image2", "%06d.png", (char *)NULL);
+    _exit(NO_EXEC);
+}
+
+/* Reads to the end; keeps what came last, as text. */
+static void listen(int from, char tail[TAIL])
+{
+    size_t n = 0;
+
+    for (;;) {
+        if (n == TAIL - 1) {
+            memmove(tail, tail + TAIL / 2, n - TAIL / 2);
+            n -= TAIL / 2;
+        }
+        const ssize_t got = read(from, tail + n, TAIL - 1 - n);
+        if (got == 0 || (got < 0 && errno != EINTR))
+            break;
+        n += got > 0 ? (size_t)got : 0;
+    }
+    tail[n] = 0;
+}
+
+/* Runs ffmpeg in the folder; gives its exit status, or -1, and what it said at the end. Its messages come
+ * through a pipe, for a full disk would swallow a file. */
+static int run_ffmpeg(const char *video, size_t most, const char *folder, char tail[TAIL])
 {
     char input[4200], limit[24];
-    int status;
+    int status, ends[2];
 
-    if (snprintf(input, sizeof input, "file:%s", video) >= (int)sizeof input)
-        return -1;
+    tail[0] = 0;
     snprintf(limit, sizeof limit, "%zu", most);
+    if (snprintf(input, sizeof input, "file:%s", video) >= (int)sizeof input || pipe(ends) != 0)
+        return -1;
     const pid_t child = fork();
-    if (child == 0) {
-        const int none = chdir(folder) == 0 ? open("/dev/null", O_RDWR) : -1;
-        const int messages = open(LOG, O_WRONLY | O_CREAT | O_TRUNC, 0600);
-        if (none >= 0 && messages >= 0 && dup2(none, 0) >= 0 && dup2(none, 1) >= 0 && dup2(messages, 2) >= 0)
-            execlp("ffmpeg", "ffmpeg", "-nostdin", "-hide_banner", "-v", "error", "-i", input, "-map", "0:v:0",
-                   "-vf", FILTERS, "-r", RATE, "-frames:v", limit, "-flags", "+bitexact", "-fflags", "+bitexact",
-                   "-compression_level", "1", "-f", "image2", "%06d.png", (char *)NULL);
-        _exit(NO_EXEC);
-    }
+    if (child == 0)
+        become_ffmpeg(input, limit, folder, ends[1]);
+    close(ends[1]);
+    if (child > 0)
+        listen(ends[0], tail);
+    close(ends[0]);
     while (child > 0 && waitpid(child, &status, 0) < 0)
         if (errno != EINTR)
             return -1;
     return child > 0 && WIFEXITED(status) ? WEXITSTATUS(status) : -1;
 }
 
-/* Last line that ffmpeg said, or nothing. */
-static void last_words(const char *folder, char text[200])
+/* Last line of what was said, with ": " before it, or nothing. Other bytes than text are left out. */
+static void last_words(char tail[TAIL], char words[200])
 {
-    ted4_message ignored;
-    uint8_t *bytes = NULL;
-    size_t n = 0;
-    char *path = ted4_path_join(folder, LOG);
+    size_t end = strlen(tail), start, n = 0;
 
-    text[0] = 0;
-    if (path != NULL && ted4_read_whole(path, &bytes, &n, &ignored) == 0) {
-        while (n > 0 && bytes[n - 1] <= ' ')
-            n--;
-        size_t start = n;
-        while (start > 0 && bytes[start - 1] >= ' ')
-            start--;
-        snprintf(text, 200, ": %.*s", (int)(n - start), (char *)bytes + start);
-    }
-    free(bytes);
-    free(path);
+    while (end > 0 && (uint8_t)tail[end - 1] <= ' ')
+        end--;
+    start = end;
+    while (start > 0 && tail[start - 1] != '\n')
+        start--;
+    words[0] = 0;
+    if (end > start)
+        n = (size_t)snprintf(words, 200, ": ");
+    for (; start < end && n < 199; start++)
+        if ((uint8_t)tail[start] >= ' ' && tail[start] != 127)
+            words[n++] = tail[start];
+    words[n] = 0;
 }
 
 static int fill(const char *video, size_t most, const char *folder, ted4_message *m)
 {
-    char words[200];
-    const int status = run_ffmpeg(video, most, folder);
+    char tail[TAIL], words[200];
+    const int status = run_ffmpeg(video, most, folder, tail);
     const size_t n = count_frames(folder);
 
     if (status == NO_EXEC)
         return ted4_say(m, "%s: the program ffmpeg is needed to read it and cannot be started (is it installed?)", video);
-    last_words(folder, words);
+    last_words(tail, words);
     if (status != 0 || n == 0)
         return ted4_say(m, "%s: ffmpeg, unpacking into %s, failed after %zu frames%s", video, folder, n, words);
-    char *log = ted4_path_join(folder, LOG);
-    if (log != NULL)
-        unlink(log);
-    free(log);
     return write_count(folder, n) == 0 ? 0 : ted4_say(m, "%s: %s", folder, strerror(errno));
 }
 

@@ -10,26 +10,32 @@
 #include "tool/arguments.h"
 
 enum {
-    OPT_OUTPUT, OPT_PRESET, OPT_LAMBDA, OPT_ITERATIONS, OPT_SET, OPT_DOWNSCALE, OPT_BLACK,
-    OPT_SEED, OPT_THREADS, OPT_CHECKPOINT, OPT_RESUME, OPT_LOG, OPT_CHECK, OPT_JSON, OPT_FORCE,
+    OPT_OUTPUT, OPT_PRESET, OPT_LAMBDA, OPT_ITERATIONS, OPT_SET, OPT_DOWNSCALE, OPT_MAX_FRAMES, OPT_BLACK,
+    OPT_SEED, OPT_THREADS, OPT_CACHE, OPT_TARGET, OPT_CHECKPOINT, OPT_EVERY, OPT_RESUME, OPT_STAGE1, OPT_LOG, OPT_CHECK, OPT_JSON, OPT_FORCE,
     OPT_QUIET, OPT_VERBOSE, OPT_HELP, OPT_VERSION, N_OPTIONS
 };
 
-enum { MAX_SETS = 64, MAX_THREADS = 1024, MAX_DOWNSCALE = 64 };
+enum { MAX_SETS = 64, MAX_THREADS = 1024, MAX_DOWNSCALE = 64, MAX_MAX_FRAMES = 36000,
+       DEFAULT_CACHE = 2048, MAX_CACHE = 1 << 24, DEFAULT_EVERY = 60, MAX_EVERY = 86400, MAX_TARGET = 0x7fffffff };
 
 static const ted4_argument OPTIONS[N_OPTIONS] = {
     [OPT_OUTPUT]     = { 'o', "output", "FILE", "the .ted4 file to write" },
     [OPT_PRESET]     = { 0, "preset", "NAME", "draft, fast, medium (default), slow, paper" },
     [OPT_LAMBDA]     = { 0, "lambda", "X", "weight of the rate, as --set lambda=X" },
+    [OPT_TARGET]     = { 0, "target-size", "BYTES", "repeat stage 2 in search of the lambda for this size" },
     [OPT_ITERATIONS] = { 0, "iterations", "A,B", "steps of both stages, as --set stage1=A stage2=B" },
     [OPT_SET]        = { 0, "set", "NAME=VALUE", "any training option of the table below" },
     [OPT_DOWNSCALE]  = { 0, "downscale", "N", "integer area averaging of the pictures" },
+    [OPT_MAX_FRAMES] = { 0, "max-frames", "N", "only so many times, the first ones (default: all, 300 of Neu3D)" },
     [OPT_BLACK]      = { 0, "black", NULL, "pictures with alpha lie on black, not white" },
     [OPT_SEED]       = { 0, "seed", "S", "same scene, options and seed: same bytes" },
     [OPT_THREADS]    = { 'j', "threads", "N", "threads; 0: all cores. Default 0" },
-    [OPT_CHECKPOINT] = { 0, "checkpoint", "FILE", "saved every minute and at the end" },
+    [OPT_CACHE]      = { 0, "cache", "MIB", "memory for decoded pictures; more of them are read again. Default 2048" },
+    [OPT_CHECKPOINT] = { 0, "checkpoint", "FILE", "saved now and then and at the end" },
+    [OPT_EVERY]      = { 0, "checkpoint-every", "S", "seconds between checkpoints; 0: every step. Default 60" },
     [OPT_RESUME]     = { 0, "resume", NULL, "go on from the checkpoint if it is there" },
-    [OPT_LOG]        = { 0, "log", "FILE", "JSON lines of progress" },
+    [OPT_STAGE1]     = { 0, "stage1", "FILE", "begin with this end of stage 1, or make the file" },
+    [OPT_LOG]        = { 0, "log", "FILE", "JSON lines of progress; with --resume it goes on" },
     [OPT_CHECK]      = { 0, "check", NULL, "say what the scene holds, or the one thing that is wrong, and stop" },
     [OPT_JSON]       = { 0, "json", NULL, "result as one JSON object" },
     [OPT_FORCE]      = { 'f', "force", NULL, "overwrite" },
@@ -47,7 +53,7 @@ static const ted4_command COMMAND = {
     "Videos need the program ffmpeg; their frames are kept in $XDG_CACHE_HOME/ted4, or in\n"
     "ted4-UID in $TMPDIR or /tmp.",
     OPTIONS, N_OPTIONS,
-    "Exit codes: 0 fine, 3 usage, input, output or resources.\n\n"
+    "Exit codes: 0 fine, 2 fine but larger than --target-size, 3 usage, input, output or resources.\n\n"
     "Training options (--set) and their values in each preset:\n",
     ted4_options_help,
 };
@@ -88,6 +94,7 @@ static int take(ted4_request *r, pending *p, int option, const char *value)
     case OPT_LAMBDA:     p->lambda = value; break;
     case OPT_ITERATIONS: p->iterations = value; break;
     case OPT_CHECKPOINT: r->checkpoint = value; break;
+    case OPT_STAGE1:     r->stage1 = value; break;
     case OPT_LOG:        r->log = value; break;
     case OPT_BLACK:      r->black = 1; break;
     case OPT_RESUME:     r->resume = 1; break;
@@ -97,6 +104,9 @@ static int take(ted4_request *r, pending *p, int option, const char *value)
     case OPT_QUIET:      r->quiet = 1; break;
     case OPT_VERBOSE:    r->verbose = 1; break;
     case OPT_DOWNSCALE:  return take_number(option, value, 1, MAX_DOWNSCALE, &r->downscale);
+    case OPT_MAX_FRAMES: return take_number(option, value, 1, MAX_MAX_FRAMES, &r->max_frames);
+    case OPT_CACHE:      return take_number(option, value, 0, MAX_CACHE, &r->cache_mib);
+    case OPT_EVERY:      return take_number(option, value, 0, MAX_EVERY, &r->checkpoint_every);
     case OPT_THREADS:    return take_number(option, value, 0, MAX_THREADS, &r->threads);
     case OPT_SEED: {
         int       seed = 0;
@@ -104,6 +114,14 @@ static int take(ted4_request *r, pending *p, int option, const char *value)
 
         r->options.seed = (uint32_t)seed;
         return status;
+    }
+    case OPT_TARGET: {
+        long      bytes = 0;
+
+        if (ted4_arguments_number(value, 1, MAX_TARGET, &bytes) != 0)
+            return bad_value(option, value);
+        r->target_size = (size_t)bytes;
+        break;
     }
     case OPT_SET:
         if (p->n_sets == MAX_SETS)
@@ -160,6 +178,8 @@ int ted4_request_parse(ted4_request *r, int argc, char **argv)
     argv[0] = name;
     memset(r, 0, sizeof *r);
     r->downscale = 1;
+    r->cache_mib = DEFAULT_CACHE;
+    r->checkpoint_every = DEFAULT_EVERY;
     while ((option = ted4_arguments_next(&COMMAND, argc, argv, &value)) >= 0) {
         const int status = take(r, &p, option, value);
 

@@ -3,11 +3,14 @@
 #ifndef TED4_REQUEST_H
 #define TED4_REQUEST_H
 
+#include <stddef.h>
+
 #include "train/options.h"
 
 typedef struct {
-    const char        *scene, *out, *checkpoint, *log;  /* borrowed from argv; NULL: not asked for */
-    int                downscale, threads, resume, check, json, force, quiet, verbose, black;
+    const char        *scene, *out, *checkpoint, *stage1, *log;  /* borrowed from argv; NULL: not asked for */
+    int                downscale, max_frames, cache_mib, checkpoint_every, threads, resume, check, json, force, quiet, verbose, black;
+    size_t             target_size;     /* bytes; 0: not asked for */
     ted4_train_options options;
 } ted4_request;
 

@@ -1,86 +1,222 @@
-/* run_log.c - see run_log.h.
+/* run_log.c - see run_log.h. A line goes out in one write, so that a log is whole but for a line cut by a crash, which resuming takes off.
  * SPDX-License-Identifier: BSD-2-Clause */
 #include "run_log.h"
 
 #include <errno.h>
+#include <fcntl.h>
+#include <stdio.h>
+#include <stdlib.h>
 #include <string.h>
+#include <sys/stat.h>
 #include <time.h>
 #include <unistd.h>
 
-double ted4_seconds(void)
+#include "train/make_scene.h"
+
+static double seconds_of(clockid_t clock)
 {
     struct timespec t;
 
-    clock_gettime(CLOCK_MONOTONIC, &t);
+    clock_gettime(clock, &t);
     return (double)t.tv_sec + 1e-9 * (double)t.tv_nsec;
 }
 
-int ted4_run_log_open(ted4_run_log *l, const char *path, int append, int quiet, int verbose,
-                      char *why, size_t why_size)
+double ted4_seconds(void)
+{
+    return seconds_of(CLOCK_MONOTONIC);
+}
+
+static int say(const char *path, const char *what, char *why, size_t why_size)
+{
+    snprintf(why, why_size, "%s: %s", path, what);
+    return -1;
+}
+
+static int is_regular(int file)
+{
+    struct stat s;
+
+    return fstat(file, &s) == 0 && S_ISREG(s.st_mode);
+}
+
+/* Bytes of the lines up to a step; a line without an end is none. -1: a line that ted4enc never wrote. */
+static off_t find_end(FILE *f, uint64_t step)
+{
+    char              *line = NULL;
+    size_t             room = 0;
+    ssize_t            n;
+    off_t              end = 0;
+    unsigned long long at;
+
+    while (end >= 0 && (n = getline(&line, &room, f)) > 0 && line[n - 1] == '\n') {
+        if (sscanf(line, "{\"step\":%llu,", &at) != 1)
+            end = -1;
+        else if (at > step)
+            break;
+        else
+            end += n;
+    }
+    free(line);
+    return end;
+}
+
+/* Takes off what lies beyond the step. */
+static int cut(const char *path, int file, uint64_t step, char *why, size_t why_size)
+{
+    FILE *f = fopen(path, "r");
+
+    if (f == NULL)
+        return say(path, strerror(errno), why, why_size);
+
+    const off_t end = find_end(f, step);
+
+    fclose(f);
+    if (end < 0)
+        return say(path, "there, but not a log of ted4enc to go on with", why, why_size);
+    return ftruncate(file, end) == 0 ? 0 : say(path, strerror(errno), why, why_size);
+}
+
+int ted4_run_log_open(ted4_run_log *l, const char *path, const ted4_trainer *t, int keep, int quiet, int verbose, char *why, size_t why_size)
 {
     memset(l, 0, sizeof *l);
+    l->path = path;
+    l->file = -1;
     l->terminal = !quiet && isatty(STDERR_FILENO);
     l->verbose = verbose;
-    l->start = l->last_time = ted4_seconds();
+    ted4_run_log_skip(l);
+    ted4_run_log_move(l, t);
     if (path == NULL)
         return 0;
-    l->json = fopen(path, append ? "a" : "w");
-    if (l->json == NULL) {
-        snprintf(why, why_size, "%s: %s", path, strerror(errno));
+    l->file = open(path, O_WRONLY | O_CREAT | O_APPEND | (keep ? 0 : O_TRUNC), 0666);
+    if (l->file < 0)
+        return say(path, strerror(errno), why, why_size);
+    if (keep && is_regular(l->file) && cut(path, l->file, t->iteration, why, why_size) != 0) {
+        close(l->file);
+        l->file = -1;
         return -1;
     }
     return 0;
 }
 
-double ted4_estimated_bytes(const ted4_trainer *t)
+void ted4_run_log_skip(ted4_run_log *l)
+{
+    l->wall = ted4_seconds();
+    l->cpu = seconds_of(CLOCK_PROCESS_CPUTIME_ID);
+}
+
+void ted4_run_log_tick(ted4_run_log *l, ted4_trainer *t)
+{
+    const double wall = l->wall, cpu = l->cpu;
+
+    ted4_run_log_skip(l);
+    t->seconds += l->wall - wall;
+    l->cpu_seconds += l->cpu - cpu;
+}
+
+void ted4_run_log_move(ted4_run_log *l, const ted4_trainer *t)
+{
+    l->last_step = t->iteration;
+    l->last_seconds = t->seconds;
+    l->last_cpu = l->cpu_seconds;
+}
+
+/* Estimated bytes of the file; all zero before stage 2. */
+typedef struct { double positions, masks, type[TED4_TYPES], networks, sum; } estimate;
+
+static estimate estimate_bytes(const ted4_trainer *t)
 {
     const ted4_shape *s = &t->layout.shape;
-    double            bits = 48.0 + t->layout.head.n_offsets;
+    const double      n = (double)t->anchors.n;
+    estimate          e = { 0 };
 
     if (!t->stage2)
-        return 0;
-    for (int y = 0; y < TED4_TYPES; y++)
-        bits += t->progress.bits[y];
-    return (double)t->anchors.n * bits / 8.0 +
-           4.0 * (double)(s->n_netr + s->n_bank) + 2.0 * (double)s->n_nete;
-}
-
-void ted4_run_log_step(ted4_run_log *l, const ted4_trainer *t)
-{
-    const double now = ted4_seconds();
-    const double steps = (double)(t->iteration - l->last_step);
-    const double ms = steps > 0 ? 1e3 * (now - l->last_time) / steps : 0;
-    const double left = 1e-3 * ms * (double)(ted4_trainer_total(t) - t->iteration);
-    const double rate = ms > 0 ? 1e3 * t->progress.splat_pixels / ms : 0;
-    const char  *stage = !t->stage2 ? "1" : t->integer ? "2i" : "2";
-
-    if (l->json != NULL) {
-        fprintf(l->json,
-                "{\"step\":%llu,\"stage\":\"%s\",\"loss\":%.6f,\"l1\":%.6f,\"ssim\":%.6f,"
-                "\"psnr\":%.4f,\"anchors\":%zu,\"splats\":%.0f,\"bytes\":%.0f,\"bits\":[%.2f,%.2f,%.2f,%.2f,%.2f],"
-                "\"ms\":%.3f,\"gaussian_pixels_per_s\":%.4g,\"seconds\":%.2f}\n",
-                (unsigned long long)t->iteration, stage, t->progress.loss, t->progress.l1,
-                t->progress.ssim, l->psnr, t->anchors.n, t->progress.splats,
-                ted4_estimated_bytes(t), t->progress.bits[0], t->progress.bits[1],
-                t->progress.bits[2], t->progress.bits[3], t->progress.bits[4], ms, rate,
-                now - l->start);
-        fflush(l->json);
+        return e;
+    e.positions = 6.0 * n;
+    e.masks = n * t->layout.head.n_offsets / 8.0;
+    e.networks = 4.0 * (double)(s->n_netr + s->n_bank) + 2.0 * (double)s->n_nete;
+    e.sum = e.positions + e.masks + e.networks;
+    for (int y = 0; y < TED4_TYPES; y++) {
+        e.type[y] = n * t->progress.bits[y] / 8.0;
+        e.sum += e.type[y];
     }
-    if (l->terminal || l->verbose)
-        fprintf(stderr,
-                "%s%llu/%llu stage %s loss %.5f psnr %.2f anchors %zu bytes %.0f  %.1f ms/step (%.1f G Gaussian-pixels/s)  %.0f s left%s",
-                l->terminal ? "\r\033[K" : "", (unsigned long long)t->iteration,
-                (unsigned long long)ted4_trainer_total(t), stage, t->progress.loss, l->psnr,
-                t->anchors.n, ted4_estimated_bytes(t), ms, 1e-9 * rate, left, l->terminal ? "" : "\n");
-    l->last_time = now;
-    l->last_step = t->iteration;
+    return e;
 }
 
-void ted4_run_log_close(ted4_run_log *l)
+static size_t count_moving(const ted4_trainer *t)
 {
+    size_t n = 0;
+
+    for (size_t i = 0; i < t->anchors.n; i++)
+        n += ted4_is_dynamic(t, i) != 0;
+    return n;
+}
+
+/* What a line tells beyond the trainer's own numbers. */
+typedef struct {
+    const char *stage;
+    double      ms, cpu_ms, rate;       /* a step; Gaussian-pixels a second */
+    estimate    bytes;
+} line_facts;
+
+static int print_line(char *line, size_t size, const ted4_run_log *l, const ted4_trainer *t, const line_facts *f)
+{
+    const ted4_progress *p = &t->progress;
+    const double        *b = p->bits, *y = f->bytes.type;
+
+    return snprintf(line, size,
+                    "{\"step\":%llu,\"stage\":\"%s\",\"lambda\":%.7g,\"loss\":%.6f,\"l1\":%.6f,\"ssim\":%.6f,\"psnr\":%.4f,"
+                    "\"anchors\":%zu,\"moving\":%zu,\"splats\":%.0f,\"bytes\":%.0f,"
+                    "\"bytes_by_type\":{\"positions\":%.0f,\"masks\":%.0f,\"feature\":%.0f,\"scaling\":%.0f,\"offset\":%.0f,"
+                    "\"phi\":%.0f,\"tau\":%.0f,\"networks\":%.0f},\"bits\":[%.2f,%.2f,%.2f,%.2f,%.2f],"
+                    "\"ms\":%.3f,\"cpu_ms\":%.3f,\"gaussian_pixels_per_s\":%.4g,\"seconds\":%.2f}\n",
+                    (unsigned long long)t->iteration, f->stage, t->opt.lambda, p->loss, p->l1, p->ssim, l->psnr, t->anchors.n,
+                    count_moving(t), p->splats, f->bytes.sum, f->bytes.positions, f->bytes.masks, y[TED4_FEATURE], y[TED4_SCALING],
+                    y[TED4_OFFSET], y[TED4_PHI], y[TED4_TAU], f->bytes.networks, b[TED4_FEATURE], b[TED4_SCALING], b[TED4_OFFSET],
+                    b[TED4_PHI], b[TED4_TAU], f->ms, f->cpu_ms, f->rate, t->seconds);
+}
+
+/* The whole line or, on a full disk, nothing of it. */
+static int put_line(const ted4_run_log *l, const char *line, size_t size, char *why, size_t why_size)
+{
+    const off_t   before = lseek(l->file, 0, SEEK_END);
+    const ssize_t done = write(l->file, line, size);
+
+    if (done == (ssize_t)size)
+        return 0;
+    say(l->path, done < 0 ? strerror(errno) : "cannot write all of a line (disk full?)", why, why_size);
+    if (done > 0 && is_regular(l->file) && ftruncate(l->file, before) != 0)
+        say(l->path, "ends with half a line, which cannot be taken off", why, why_size);
+    return -1;
+}
+
+int ted4_run_log_step(ted4_run_log *l, const ted4_trainer *t, char *why, size_t why_size)
+{
+    const double steps = (double)(t->iteration - l->last_step);
+    char         line[1200];
+    line_facts   f = { .stage = !t->stage2 ? "1" : t->integer ? "2i" : "2", .bytes = estimate_bytes(t) };
+
+    if (steps > 0) {
+        f.ms = 1e3 * (t->seconds - l->last_seconds) / steps;
+        f.cpu_ms = 1e3 * (l->cpu_seconds - l->last_cpu) / steps;
+    }
+    f.rate = f.ms > 0 ? 1e3 * t->progress.splat_pixels / f.ms : 0;
+    if (l->terminal || l->verbose)
+        fprintf(stderr, "%s%llu/%llu stage %s loss %.5f psnr %.2f anchors %zu bytes %.0f  %.1f ms/step (%.1f G Gaussian-pixels/s)  %.0f s left%s",
+                l->terminal ? "\r\033[K" : "", (unsigned long long)t->iteration, (unsigned long long)ted4_trainer_total(t), f.stage,
+                t->progress.loss, l->psnr, t->anchors.n, f.bytes.sum, f.ms, 1e-9 * f.rate,
+                1e-3 * f.ms * (double)(ted4_trainer_total(t) - t->iteration), l->terminal ? "" : "\n");
+    ted4_run_log_move(l, t);
+    if (l->file < 0)
+        return 0;
+    return put_line(l, line, (size_t)print_line(line, sizeof line, l, t, &f), why, why_size);
+}
+
+int ted4_run_log_close(ted4_run_log *l, char *why, size_t why_size)
+{
+    const int file = l->file;
+
     if (l->terminal)
         fprintf(stderr, "\n");
-    if (l->json != NULL)
-        fclose(l->json);
-    l->json = NULL;
+    l->file = -1;
+    return file < 0 || close(file) == 0 ? 0 : say(l->path, strerror(errno), why, why_size);
 }

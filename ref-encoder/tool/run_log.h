@@ -1,30 +1,48 @@
-/* run_log.h - what a training run says while it runs: a progress line on a terminal, JSON lines in a file.
+/* run_log.h - what a training run says while it runs: a progress line on a terminal, JSON lines in a file. Keeps the time that training took, too.
  * SPDX-License-Identifier: BSD-2-Clause */
 #ifndef TED4_RUN_LOG_H
 #define TED4_RUN_LOG_H
 
-#include <stdio.h>
-
 #include "train/trainer.h"
 
 typedef struct {
-    FILE  *json;                /* owned; NULL: no log file */
+    const char *path;           /* borrowed; NULL: no log file */
+    int    file;                /* descriptor, -1: no log file */
     int    terminal;            /* progress line wanted */
     int    verbose;             /* plain progress lines wanted */
-    double start, last_time;    /* seconds; step at that time below */
-    uint64_t last_step;
+    double wall, cpu;           /* clocks at the last tick, seconds */
+    double cpu_seconds;         /* that all threads worked between ticks */
+    uint64_t last_step;         /* the last line's step, trainer->seconds and cpu_seconds: the next one's ms count from there */
+    double last_seconds, last_cpu;
     double psnr;                /* held-out preview */
 } ted4_run_log;
 
 double ted4_seconds(void);
-/* path NULL: no log file. Appends when resuming. 0, or -1 with why filled. */
-int  ted4_run_log_open(ted4_run_log *l, const char *path, int append, int quiet, int verbose,
-                       char *why, size_t why_size);
-/* After a step that is worth reporting. */
-void ted4_run_log_step(ted4_run_log *l, const ted4_trainer *t);
-void ted4_run_log_close(ted4_run_log *l);
 
-/* Bytes that the file would have now, from the rate of the anchors seen lately. */
-double ted4_estimated_bytes(const ted4_trainer *t);
+/* path NULL: no log file. keep: a log that is there is cut after the lines of steps up to t->iteration, and goes on; else it begins anew. 0, or -1 with why
+ * filled: also when keep is asked for and the file is no log. */
+int  ted4_run_log_open(ted4_run_log *l, const char *path, const ted4_trainer *t, int keep, int quiet, int verbose, char *why, size_t why_size);
+
+/* Time since the last tick was training: adds it to t->seconds. Or was not. */
+void ted4_run_log_tick(ted4_run_log *l, ted4_trainer *t);
+void ted4_run_log_skip(ted4_run_log *l);
+/* The trainer has been moved to another step: milliseconds count from there. */
+void ted4_run_log_move(ted4_run_log *l, const ted4_trainer *t);
+
+/* One line, right after a tick:
+ *   step stage             steps done; "1", "2", "2i" (integer model)
+ *   lambda                 of this run, or this trial of --target-size
+ *   loss l1 ssim           running means over about 100 steps
+ *   psnr                   of the held-out preview, dB
+ *   anchors moving splats  how many; those the file would call dynamic; Gaussians on screen
+ *   bytes bytes_by_type    estimate of the file in stage 2, else 0; positions, masks, the five attributes, networks
+ *   bits                   of the five attributes, an anchor
+ *   ms cpu_ms              a step, since the line before
+ *   gaussian_pixels_per_s  speed
+ *   seconds                of training since step 0, whatever runs it took
+ * 0, or -1 with why filled; the file then ends with the line before. */
+int  ted4_run_log_step(ted4_run_log *l, const ted4_trainer *t, char *why, size_t why_size);
+/* 0, or -1 with why filled. */
+int  ted4_run_log_close(ted4_run_log *l, char *why, size_t why_size);
 
 #endif

@@ -2,24 +2,17 @@
  * SPDX-License-Identifier: BSD-2-Clause */
 #include <stdio.h>
 #include <stdlib.h>
+#include <sys/resource.h>
+#include <sys/stat.h>
 #include <unistd.h>
 
 #include "data/dataset.h"
 #include "file_out.h"
 #include "tool/threads.h"
 #include "request.h"
-#include "run_log.h"
 #include "ted4.h"
 #include "tool/cli.h"
-#include "train/checkpoint.h"
-#include "train/make_scene.h"
-#include "verify.h"
-#include "write/encode.h"
-
-/* Decoded pictures kept in memory. */
-#define CACHE_BYTES ((size_t)2 << 30)
-/* Steps between reports, pictures of the preview, seconds between checkpoints. */
-enum { REPORT_EVERY = 1000, PREVIEW_PICTURES = 4, CHECKPOINT_EVERY = 60 };
+#include "training.h"
 
 static int complain(const char *text)
 {
@@ -27,131 +20,130 @@ static int complain(const char *text)
     return TED4_EXIT_TOOL;
 }
 
-/* Steps to the end, reporting and saving on the way. */
-static int train(const ted4_request *r, ted4_trainer *t)
+/* Most memory that this process has had at a time. */
+static double peak_mib(void)
 {
-    const uint64_t total = ted4_trainer_total(t);
-    ted4_run_log   log;
-    char           why[1024];
-    double         saved = ted4_seconds();
-    int            bad = 0;
+    struct rusage u;
 
-    if (ted4_run_log_open(&log, r->log, r->resume, r->quiet, r->verbose, why, sizeof why) != 0)
-        return complain(why);
-    log.last_step = t->iteration;
-    while (!bad && t->iteration < total) {
-        bad = ted4_trainer_step(t) != 0;
-        if (!bad && (t->iteration % REPORT_EVERY == 0 || t->iteration == total)) {
-            log.psnr = ted4_trainer_preview(t, PREVIEW_PICTURES);
-            bad = log.psnr < 0;
-            ted4_run_log_step(&log, t);
-        }
-        if (!bad && r->checkpoint != NULL && ted4_seconds() - saved > CHECKPOINT_EVERY) {
-            bad = ted4_checkpoint_save(t, r->checkpoint) != 0;
-            saved = ted4_seconds();
-        }
-    }
-    if (!bad && r->checkpoint != NULL)
-        bad = ted4_checkpoint_save(t, r->checkpoint) != 0;
-    ted4_run_log_close(&log);
-    return bad ? complain(t->message.text) : TED4_EXIT_FINE;
+    return getrusage(RUSAGE_SELF, &u) == 0 ? (double)u.ru_maxrss / 1024.0 : 0.0;
 }
 
-static void report(const ted4_request *r, const ted4_trainer *t, const ted4_verified *v, size_t size,
-                   double seconds)
+/* Seconds of loading the scene and starting, and of training, coding and checking; those of the runs before this one, too. */
+typedef struct { double setup, train; } times;
+
+static void report(const ted4_request *r, const ted4_trainer *t, const ted4_coded *c, times s)
 {
+    const ted4_verified *v = &c->verified;
+
     if (r->json)
-        printf("{\"bytes\":%zu,\"train_s\":%.2f,\"steps\":%llu,\"ms_per_step\":%.3f,\"anchors\":%u,\"gaussians\":%zu,"
-               "\"dynamic\":%u,\"estimated_bits\":%.0f,\"coded_bits\":%.0f,\"hash\":\"%s\"}\n",
-               size, seconds, (unsigned long long)t->iteration,
-               1e3 * seconds / (double)(t->iteration > 0 ? t->iteration : 1), v->anchors,
-               v->gaussians, v->dynamic, v->estimated_bits, v->coded_bits, v->hash);
+        printf("{\"bytes\":%zu,\"lambda\":%.7g,\"setup_s\":%.2f,\"train_s\":%.2f,\"steps\":%llu,\"ms_per_step\":%.3f,\"anchors\":%u,"
+               "\"gaussians\":%zu,\"dynamic\":%u,\"estimated_bits\":%.0f,\"coded_bits\":%.0f,"
+               "\"probe_with_time\":%.6f,\"probe_without\":%.6f,\"peak_mib\":%.0f,\"hash\":\"%s\"}\n",
+               c->size, c->lambda, s.setup, s.train, (unsigned long long)t->iteration,
+               1e3 * s.train / (double)(t->iteration > 0 ? t->iteration : 1), v->anchors,
+               v->gaussians, v->dynamic, v->estimated_bits, v->coded_bits, t->probe_loss[0],
+               t->probe_loss[1], peak_mib(), v->hash);
     else if (!r->quiet)
         fprintf(stderr, "%s: %zu bytes, %u anchors (%u move), %zu Gaussians, trained in %.1f s, hash %s\n",
-                r->out, size, v->anchors, v->dynamic, v->gaussians, seconds, v->hash);
+                r->out, c->size, v->anchors, v->dynamic, v->gaussians, s.train, v->hash);
 }
 
-static int write_scene(const ted4_request *r, ted4_trainer *t, double seconds)
+/* Trains, codes and writes. */
+static int run(const ted4_request *r, ted4_trainer *t, double begin)
 {
-    ted4_scene   *scene;
-    uint8_t      *bytes = NULL;
-    size_t        size = 0;
-    char          why[1024];
-    double        bits[TED4_TYPES];
-    ted4_verified v = { 0 };
-    ted4_error    e = { TED4_OK, 0 };
-    int           status = TED4_EXIT_FINE;
-
-    if (ted4_make_scene(t, &scene) != 0 || ted4_integer_rate(t, bits) != 0) {
-        ted4_scene_free(scene);
-        return complain(t->message.text);
-    }
-    for (int y = 0; y < TED4_TYPES; y++)
-        v.estimated_bits += bits[y];
-    if (ted4_encode(scene, 0, t->parallel, &bytes, &size, &e) != TED4_OK) {
-        snprintf(why, sizeof why, "encoder refused its own scene: %s", ted4_status_id(e.code));
-        status = complain(why);
-    } else if (ted4_verify(scene, bytes, size, t->parallel, &v, why, sizeof why) != 0 ||
-               ted4_file_write(r->out, bytes, size, why, sizeof why) != 0) {
-        status = complain(why);
-    } else {
-        report(r, t, &v, size, seconds);
-    }
-    free(bytes);
-    ted4_scene_free(scene);
-    return status;
-}
-
-static int encode(const ted4_request *r, ted4_dataset *d)
-{
-    ted4_parallel p;
-    ted4_trainer  t;
-    int           status;
     const double  start = ted4_seconds();
+    ted4_training training;
+    ted4_coded    coded = { 0 };
+    int           bad = ted4_training_begin(&training, r, t) != 0;
+    const double  before = t->seconds;
 
-    ted4_threads_init(&p, r->threads);
-    if (ted4_trainer_init(&t, &r->options, d, &p) != 0 ||
-        (r->resume && access(r->checkpoint, F_OK) == 0 &&
-         ted4_checkpoint_load(&t, r->checkpoint) != 0)) {
-        status = complain(t.message.text);
-    } else {
-        status = train(r, &t);
-        if (status == TED4_EXIT_FINE)
-            status = write_scene(r, &t, ted4_seconds() - start);
-    }
+    if (!bad && r->target_size > 0)
+        bad = ted4_training_target(&training, &coded) != 0;
+    else if (!bad)
+        bad = ted4_training_go(&training, ted4_trainer_total(t)) != 0 ||
+              ted4_training_code(&training, &coded) != 0;
+    bad = ted4_training_end(&training, bad) != 0;
+    bad = bad || ted4_file_write(r->out, coded.bytes, coded.size, training.why,
+                                 sizeof training.why) != 0;
+    if (!bad)
+        report(r, t, &coded, (times){ start - begin, before + ted4_seconds() - start });
+
+    const int over = r->target_size > 0 && coded.size > r->target_size;
+
+    ted4_coded_free(&coded);
+    if (bad)
+        return complain(training.why);
+    if (over)
+        fprintf(stderr, "ted4enc: warning: no lambda gave %zu bytes or less; this is the smallest file\n",
+                r->target_size);
+    return over ? TED4_EXIT_WARNED : TED4_EXIT_FINE;
+}
+
+static int encode(const ted4_request *r, ted4_dataset *d, const ted4_parallel *p, double begin)
+{
+    ted4_trainer t;
+    const int    status = ted4_trainer_init(&t, &r->options, d, p) != 0 ? complain(t.message.text)
+                                                                        : run(r, &t, begin);
+
     ted4_trainer_finish(&t);
-    ted4_threads_finish(&p);
     return status;
+}
+
+static int is_device(const char *path)
+{
+    struct stat s;
+
+    return stat(path, &s) == 0 && !S_ISREG(s.st_mode) && !S_ISDIR(s.st_mode);
+}
+
+/* Can all the files that were asked for be written? Looked at before hours of training. */
+static int check_outputs(const ted4_request *r)
+{
+    char why[1024];
+
+    if (r->check)
+        return 0;
+    if (ted4_file_writable(r->out, r->force, why, sizeof why) != 0 ||
+        (r->checkpoint != NULL && ted4_file_writable(r->checkpoint, 1, why, sizeof why) != 0) ||
+        (r->stage1 != NULL && ted4_file_writable(r->stage1, 1, why, sizeof why) != 0) ||
+        (r->log != NULL && !is_device(r->log) && ted4_file_writable(r->log, 1, why, sizeof why) != 0))
+        return complain(why);
+    return 0;
 }
 
 int main(int argc, char **argv)
 {
-    ted4_request r;
-    ted4_dataset d;
-    ted4_message m;
-    char         why[1024];
-    const int    parsed = ted4_request_parse(&r, argc, argv);
+    ted4_request  r;
+    ted4_dataset  d;
+    ted4_message  m;
+    ted4_parallel p;
+    const double  begin = ted4_seconds();
+    const int     parsed = ted4_request_parse(&r, argc, argv);
 
     if (parsed != TED4_REQUEST_GO)
         return parsed == TED4_REQUEST_DONE ? TED4_EXIT_FINE : TED4_EXIT_TOOL;
-    if (!r.check && (ted4_file_writable(r.out, r.force, why, sizeof why) != 0 ||
-                     (r.checkpoint != NULL &&
-                      ted4_file_writable(r.checkpoint, 1, why, sizeof why) != 0)))
-        return complain(why);
+    if (check_outputs(&r) != 0)
+        return TED4_EXIT_TOOL;
 
-    const ted4_dataset_options wanted = { r.downscale, !r.black, r.options.seed, CACHE_BYTES, 0 };
+    const ted4_dataset_options wanted = { r.downscale, !r.black, r.options.seed, (size_t)r.cache_mib << 20,
+                                          (uint32_t)r.max_frames };
 
     if (ted4_dataset_load(&d, r.scene, &wanted, &m) != 0)
         return complain(m.text);
 
     int status = TED4_EXIT_FINE;
 
+    ted4_threads_init(&p, r.threads);
+    d.ahead = p.user == NULL ? 0 : TED4_DATASET_AHEAD;      /* one thread was asked for, or is all there is */
     if (r.check)
         ted4_dataset_print(&d, stdout);
-    if (ted4_dataset_verify(&d, &m) != 0)
+    if (ted4_dataset_verify(&d, &p, &m) != 0)
         status = complain(m.text);
     else if (!r.check)
-        status = encode(&r, &d);
+        status = encode(&r, &d, &p, begin);
+    if (fflush(stdout) != 0 || ferror(stdout))
+        status = complain("standard output cannot be written");
+    ted4_threads_finish(&p);
     ted4_dataset_free(&d);
     return status;
 }

@@ -27,6 +27,7 @@
 enum {
     OPT_SPLIT,
     OPT_DOWNSCALE,
+    OPT_MAX_FRAMES,
     OPT_IMAGES,
     OPT_SHEET,
     OPT_THREADS,
@@ -39,11 +40,12 @@ enum {
     N_OPTIONS
 };
 
-enum { MAX_THREADS = 1024, MAX_DOWNSCALE = 64, SHEET_ROWS = 3, PATH_SIZE = 4096 };
+enum { MAX_THREADS = 1024, MAX_DOWNSCALE = 64, MAX_MAX_FRAMES = 36000, SHEET_ROWS = 3, PATH_SIZE = 4096 };
 
 static const ted4_argument OPTIONS[N_OPTIONS] = {
     [OPT_SPLIT]     = { 0, "split", "NAME", "test (default) or train pictures" },
     [OPT_DOWNSCALE] = { 0, "downscale", "N", "compare pictures shrunk N times, as ted4enc --downscale" },
+    [OPT_MAX_FRAMES] = { 0, "max-frames", "N", "only the first N times of SCENE, as ted4enc --max-frames" },
     [OPT_IMAGES]    = { 0, "images", "DIR", "write DIR/truth, DIR/ours, DIR/error (5 times the difference) as NNNNN.png" },
     [OPT_SHEET]     = { 0, "sheet", "FILE.png", "one picture: truth, ours, error at three times of the first camera" },
     [OPT_THREADS]   = { 'j', "threads", "N", "threads; 0: all cores. Default 0" },
@@ -69,7 +71,7 @@ static const ted4_command COMMAND = {
 
 typedef struct {
     const char *input, *scene, *images, *sheet;
-    int         want_test, downscale, threads, force, json, quiet, verbose;
+    int         want_test, downscale, max_frames, threads, force, json, quiet, verbose;
 } settings;
 
 /* Sums over pictures, later divided by views. */
@@ -126,6 +128,8 @@ static int set_option(settings *s, int option, const char *value)
                    : failed("--split", "test or train expected");
     case OPT_DOWNSCALE:
         return set_number("--downscale", value, 1, MAX_DOWNSCALE, &s->downscale);
+    case OPT_MAX_FRAMES:
+        return set_number("--max-frames", value, 1, MAX_MAX_FRAMES, &s->max_frames);
     case OPT_IMAGES:
         s->images = value;
         return 0;
@@ -199,7 +203,8 @@ static int open_scene(session *s)
     /* Pictures with transparency are compared on the background the file carries. */
     const ted4_dataset_options options = { .downscale = s->set->downscale,
                                            .white = s->info.background[0] > 127,
-                                           .cache_bytes = 64 << 20 };
+                                           .cache_bytes = 64 << 20,
+                                           .max_frames = (uint32_t)s->set->max_frames };
     ted4_message m;
 
     if (ted4_dataset_load(&s->data, s->set->scene, &options, &m) != 0)

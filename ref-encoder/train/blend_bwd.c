@@ -36,8 +36,8 @@ typedef struct {
 
 /* A tile at work. */
 typedef struct {
-    const ted4_splat2d *splat;
-    const uint32_t     *owner, *slot;   /* [n] */
+    ted4_splat2d       *splat;          /* [n] copies, back to back: the originals lie on as many pages as they are */
+    const uint32_t     *slot;           /* [n] */
     const ted4_reach   *reach;          /* [n_groups] */
     uint32_t            n, n_groups;
     blended            *pair;           /* all pairs, block after block */
@@ -91,25 +91,28 @@ static void load_block(const bwd_job *job, block_state *s, size_t x, size_t y)
     }
 }
 
-/* Gives each block its share of the pairs. 0, or -1: no memory. */
-static int share_pairs(tile_state *tile, ted4_growing *scratch)
+/* Gives each block its share of the pairs, and copies the tile's Gaussians together. 0, or -1: no memory. */
+static int share_pairs(tile_state *tile, const ted4_splat2d *splat, const uint32_t *owner, ted4_growing *scratch)
 {
     size_t total = 0;
 
-    for (uint32_t i = 0; i < tile->n; i++)
-        __builtin_prefetch(&tile->splat[tile->owner[i]]);
     for (int b = 0; b < TED4_TILE_BLOCKS; b++) {
         tile->state[b].first = total;
         for (uint32_t group = 0; group < tile->n_groups; group++)
             total += (size_t)__builtin_popcountll(tile->reach[group].block[b]);
         tile->state[b].end = total;
     }
-    /* n masks fit in n * sizeof(blended) */
-    if (ted4_growing_grow(scratch, total + tile->n, sizeof(blended)) != 0)
+    /* a Gaussian and its mask fit in two pairs' room */
+    if (ted4_growing_grow(scratch, total + 2 * (size_t)tile->n, sizeof(blended)) != 0)
         return -1;
-    tile->pair = scratch->data;
-    tile->mask = (uint16_t *)(tile->pair + total);
+    tile->pair  = scratch->data;
+    tile->splat = (ted4_splat2d *)(tile->pair + total);
+    tile->mask  = (uint16_t *)(tile->splat + tile->n);
     memset(tile->mask, 0, tile->n * sizeof *tile->mask);
+    for (uint32_t i = 0; i < tile->n; i++) {
+        __builtin_prefetch(&splat[owner[i + TED4_AHEAD]]);
+        tile->splat[i] = splat[owner[i]];
+    }
     return 0;
 }
 
@@ -125,7 +128,7 @@ static void walk_block(tile_state *tile, int b, const ted4_view *v)
         for (uint64_t rest = tile->reach[group].block[b]; rest != 0; rest &= rest - 1, pair++) {
             const uint32_t i = group * TED4_GROUP + (uint32_t)__builtin_ctzll(rest);
 
-            ted4_blend_step(&tile->splat[tile->owner[i]], px, py, &t, &pair->alpha, &pair->w);
+            ted4_blend_step(&tile->splat[i], px, py, &t, &pair->alpha, &pair->w);
             tile->mask[i] |= (uint16_t)(1u << b);
         }
 }
@@ -169,7 +172,7 @@ static void sum_tile(tile_state *tile, const struct ted4_raster *r)
             __builtin_prefetch((float *)r->sum0.data + tile->slot[i - AHEAD], 1);
         }
         if (tile->mask[i] != 0) {
-            sum_splat(&tile->splat[tile->owner[i]], tile->mask[i], tile->state, tile->pair, sums, sum0);
+            sum_splat(&tile->splat[i], tile->mask[i], tile->state, tile->pair, sums, sum0);
         } else {
             memset(sums, 0, TED4_GRAD_SUMS * sizeof *sums);
             *sum0 = 0;
@@ -186,15 +189,13 @@ static int tile_bwd(bwd_job *job, size_t number, ted4_growing *scratch)
     const uint32_t tx = (uint32_t)number % r->tiles_x, ty = (uint32_t)number / r->tiles_x;
     tile_state     tile;
 
-    tile.splat    = r->splat2d.data;
-    tile.owner    = (const uint32_t *)r->owner.data + begin;
     tile.slot     = (const uint32_t *)r->slot.data + begin;
     tile.reach    = (const ted4_reach *)r->reach.data + ted4_group_first(number, begin);
     tile.n        = n;
     tile.n_groups = (n + TED4_GROUP - 1) / TED4_GROUP;
     if (n == 0)
         return 0;
-    if (share_pairs(&tile, scratch) != 0)
+    if (share_pairs(&tile, r->splat2d.data, (const uint32_t *)r->owner.data + begin, scratch) != 0)
         return -1;
     for (int b = 0; b < TED4_TILE_BLOCKS; b++) {
         ted4_block_pixels(tx, ty, b, &tile.state[b].px, &tile.state[b].py);

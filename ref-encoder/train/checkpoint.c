@@ -10,7 +10,7 @@
 #include <xxhash.h>
 
 #define MAGIC 0x34444554u       /* "TED4" */
-enum { FORMAT = 1 };
+enum { FORMAT = 3 };
 
 /* One walk for both directions: put() writes or reads the bytes at p. */
 typedef struct {
@@ -57,7 +57,8 @@ static void walk_anchors(stream *s, ted4_trainer *t)
                                        TED4_LANES * sizeof(float));
 }
 
-/* The header tells the layout, which may have lost parts at the start of stage 2. */
+/* The header tells the layout, which may have lost parts since the trainer was made. Within stage 1 what stage 2 alone looks at
+ * is not taken from the file. */
 static void walk_layout(stream *s, ted4_trainer *t)
 {
     ted4_header h = t->layout.head;
@@ -65,45 +66,70 @@ static void walk_layout(stream *s, ted4_trainer *t)
     put(s, &h, sizeof h);
     if (s->writing || s->failed)
         return;
+    if (!t->stage2)
+        ted4_header_stage2(&h, &t->opt);
     ted4_layout_make(&t->layout, &h);
     ted4_anchors_finish(&t->anchors);
     if (ted4_anchors_init(&t->anchors, &t->layout) != 0 || ted4_trainer_rebuild(t) != 0)
         s->failed = 1;
 }
 
+/* Prior networks begin with stage 2, and their sizes are options of stage 2. */
+static void walk_networks(stream *s, ted4_trainer *t)
+{
+    const size_t n = t->stage2 ? t->layout.n_net : t->layout.nete;
+    uint8_t      has_shift = t->shift != NULL;
+
+    put(s, t->net, n * sizeof *t->net);
+    put(s, t->net_m, n * sizeof *t->net_m);
+    put(s, t->net_v, n * sizeof *t->net_v);
+    put(s, &has_shift, 1);
+    if (!s->writing) {
+        free(t->shift);
+        t->shift = has_shift && !s->failed ? malloc(t->layout.shape.n_units + 1) : NULL;
+        s->failed |= has_shift && t->shift == NULL;
+    }
+    if (has_shift && !s->failed)
+        put(s, t->shift, t->layout.shape.n_units);
+}
+
+static void walk_colour(stream *s, ted4_trainer *t)
+{
+    ted4_colour *c = &t->colour;
+
+    expect(s, c->n_cameras);
+    put(s, c->steps, c->n_cameras * sizeof *c->steps);
+    put(s, c->value, c->n_cameras * sizeof *c->value);
+    put(s, c->m, c->n_cameras * sizeof *c->m);
+    put(s, c->v, c->n_cameras * sizeof *c->v);
+}
+
 static void walk(stream *s, ted4_trainer *t)
 {
-    uint8_t has_shift = t->shift != NULL;
-
     expect(s, MAGIC);
     expect(s, FORMAT);
-    expect(s, ted4_options_hash(&t->opt));
     expect(s, t->data->n_pictures);
     expect(s, t->data->n_frames);
+    expect(s, ted4_dataset_digest(t->data));
+    put(s, &t->stage2, sizeof t->stage2);
+    expect(s, ted4_options_hash(&t->opt, t->stage2 ? 2 : 1));
     walk_layout(s, t);
     put(s, &t->cell, sizeof t->cell);
     put(s, &t->iteration, sizeof t->iteration);
-    put(s, &t->stage2, sizeof t->stage2);
+    put(s, &t->seconds, sizeof t->seconds);
     put(s, &t->integer, sizeof t->integer);
     put(s, &t->stage2_start, sizeof t->stage2_start);
+    put(s, &t->probed, sizeof t->probed);
+    put(s, t->probe_loss, sizeof t->probe_loss);
     put(s, &t->progress, sizeof t->progress);
     expect(s, t->order.n);
     put(s, t->order.item, t->order.n * sizeof *t->order.item);
     put(s, &t->order.next, sizeof t->order.next);
     put(s, &t->order.round, sizeof t->order.round);
+    walk_colour(s, t);
     walk_anchors(s, t);
-    if (s->failed)
-        return;
-    put(s, t->net, t->layout.n_net * sizeof *t->net);
-    put(s, t->net_m, t->layout.n_net * sizeof *t->net_m);
-    put(s, t->net_v, t->layout.n_net * sizeof *t->net_v);
-    put(s, &has_shift, 1);
-    if (has_shift && t->shift == NULL && (t->shift = malloc(t->layout.shape.n_units + 1)) == NULL) {
-        s->failed = 1;
-        return;
-    }
-    if (has_shift)
-        put(s, t->shift, t->layout.shape.n_units);
+    if (!s->failed)
+        walk_networks(s, t);
 }
 
 /* The last eight bytes are the hash of all others. Looked at before anything in the file is
@@ -155,21 +181,34 @@ int ted4_checkpoint_save(ted4_trainer *t, const char *path)
     char  name[4096];
     FILE *f;
 
+    if (ted4_trainer_check(t, 1) != 0)
+        return -1;
     if (snprintf(name, sizeof name, "%s.part", path) >= (int)sizeof name)
         return ted4_trainer_fail(t, "%s: name too long", path);
     f = fopen(name, "wb");
     if (f == NULL)
         return ted4_trainer_fail(t, "%s: %s", name, strerror(errno));
 
-    int bad = run(t, f, 1);
+    /* errno is the first failure's: closing what could not be written fails again, with another reason. */
+    const int bad = run(t, f, 1) != 0 || fflush(f) != 0 || fsync(fileno(f)) != 0;
+    int       why = bad ? errno : 0;
 
-    bad |= fflush(f) != 0 || fsync(fileno(f)) != 0;
-    bad |= fclose(f) != 0;
-    if (bad || rename(name, path) != 0) {
-        ted4_trainer_fail(t, "%s: %s", path, strerror(errno));
-        remove(name);
-        return -1;
-    }
+    if (fclose(f) != 0 && !bad)
+        why = errno;
+    if (why == 0 && rename(name, path) != 0)
+        why = errno;
+    if (why == 0)
+        return 0;
+    remove(name);
+    return ted4_trainer_fail(t, "%s: %s", path, strerror(why));
+}
+
+static int load(ted4_trainer *t, FILE *f, const char *name)
+{
+    if (run(t, f, 0) != 0)
+        return ted4_trainer_fail(t, "%s: not a checkpoint of this scene with these options", name);
+    if (t->integer)
+        ted4_rate_pack(t->rate, t->net);
     return 0;
 }
 
@@ -180,13 +219,44 @@ int ted4_checkpoint_load(ted4_trainer *t, const char *path)
     if (f == NULL)
         return ted4_trainer_fail(t, "%s: %s", path, strerror(errno));
 
-    const int bad = run(t, f, 0);
+    const int bad = load(t, f, path);
 
     fclose(f);
+    return bad;
+}
+
+int ted4_snapshot_take(ted4_trainer *t, ted4_snapshot *s)
+{
+    FILE *f;
+    int   bad;
+
+    ted4_snapshot_free(s);
+    f = open_memstream(&s->bytes, &s->size);
+    if (f == NULL)
+        return ted4_trainer_fail(t, "no memory for a snapshot");
+    bad = run(t, f, 1);
+    bad |= fclose(f) != 0;
     if (bad)
-        return ted4_trainer_fail(t, "%s: not a checkpoint of this scene with these options", path);
-    if (t->integer) {
-        ted4_rate_pack(t->rate, t->net);
-    }
-    return 0;
+        ted4_snapshot_free(s);
+    return bad ? ted4_trainer_fail(t, "no memory for a snapshot") : 0;
+}
+
+int ted4_snapshot_restore(ted4_trainer *t, const ted4_snapshot *s)
+{
+    FILE *f = fmemopen(s->bytes, s->size, "rb");
+
+    if (f == NULL)
+        return ted4_trainer_fail(t, "no memory for a snapshot");
+
+    const int bad = load(t, f, "snapshot");
+
+    fclose(f);
+    return bad;
+}
+
+void ted4_snapshot_free(ted4_snapshot *s)
+{
+    free(s->bytes);
+    s->bytes = NULL;
+    s->size = 0;
 }

@@ -62,11 +62,6 @@ static int compare_candidates(const void *x, const void *y)
     return a->parent < b->parent ? -1 : a->parent > b->parent;
 }
 
-static float scale_of(const ted4_layout *l, float stored)
-{
-    return l->head.scale_domain == TED4_SCALE_LOG2 ? exp2f(stored) : stored;
-}
-
 /* Canonical place of offset k of anchor i. */
 static void place(const ted4_trainer *t, size_t i, int k, float p[3])
 {
@@ -75,8 +70,7 @@ static void place(const ted4_trainer *t, size_t i, int k, float p[3])
     for (int j = 0; j < 3; j++)
         p[j] = *ted4_cell(&t->anchors, TED4_ROW_POSITION, i, j) +
                *ted4_cell(&t->anchors, TED4_ROW_VALUE, i, l->first[TED4_OFFSET] + 3 * k + j) *
-               scale_of(l, *ted4_cell(&t->anchors, TED4_ROW_VALUE, i,
-                                      l->first[TED4_SCALING] + j));
+               exp2f(*ted4_cell(&t->anchors, TED4_ROW_VALUE, i, l->first[TED4_SCALING] + j));
 }
 
 /* Mean screen gradient of offset k, negative where it was not seen enough. */
@@ -145,8 +139,7 @@ static int add_anchor(ted4_trainer *t, const candidate *c)
     for (int j = 0; j < 3 * l->head.n_offsets; j++)
         *ted4_cell(a, TED4_ROW_VALUE, i, l->first[TED4_OFFSET] + j) = 0.0f;
     for (int j = 0; j < 6; j++)
-        *ted4_cell(a, TED4_ROW_VALUE, i, l->first[TED4_SCALING] + j) =
-            l->head.scale_domain == TED4_SCALE_LOG2 ? log2f(c->cell) : c->cell;
+        *ted4_cell(a, TED4_ROW_VALUE, i, l->first[TED4_SCALING] + j) = log2f(c->cell);
     return 0;
 }
 

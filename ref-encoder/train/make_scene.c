@@ -29,7 +29,7 @@ static uint16_t offset_bits(const ted4_trainer *t, size_t i)
     return (uint16_t)bits;
 }
 
-static int is_dynamic(const ted4_trainer *t, size_t i)
+int ted4_is_dynamic(const ted4_trainer *t, size_t i)
 {
     const ted4_header *h = &t->layout.head;
 
@@ -85,7 +85,7 @@ static void fill_masks(const ted4_trainer *t, const uint32_t *keep, ted4_scene *
         for (int j = 0; j < 3; j++)
             s->position[3 * i + (size_t)j] =
                 ted4_float_to_half(*ted4_cell(&t->anchors, TED4_ROW_POSITION, keep[i], j));
-        s->dynamic[i] = (uint8_t)is_dynamic(t, keep[i]);
+        s->dynamic[i] = (uint8_t)ted4_is_dynamic(t, keep[i]);
         s->offset_bits[i] = offset_bits(t, keep[i]);
     }
 }

@@ -10,4 +10,7 @@
  * first if training stopped before it. *scene belongs to the caller (ted4_scene_free). 0, or -1 with t->message. */
 int ted4_make_scene(ted4_trainer *t, ted4_scene **scene);
 
+/* Would the file say that anchor i moves? */
+int ted4_is_dynamic(const ted4_trainer *t, size_t i);
+
 #endif

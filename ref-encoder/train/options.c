@@ -17,6 +17,7 @@ static const char *const preset_names[N_PRESETS] = {
 
 typedef struct {
     char        kind;
+    int         stage;
     const char *name;
     size_t      offset;
     double      lo, hi, preset[N_PRESETS];
@@ -24,8 +25,8 @@ typedef struct {
 } option;
 
 static const option table[] = {
-#define TED4_OPTION(kind, name, lo, hi, a, b, c, d, e, help) \
-    { #kind[0], #name, offsetof(ted4_train_options, name), lo, hi, { a, b, c, d, e }, help },
+#define TED4_OPTION(kind, stage, name, lo, hi, a, b, c, d, e, help) \
+    { #kind[0], stage, #name, offsetof(ted4_train_options, name), lo, hi, { a, b, c, d, e }, help },
 #include "options.def"
 #undef TED4_OPTION
 };
@@ -117,7 +118,7 @@ void ted4_options_help(FILE *out)
     }
 }
 
-uint64_t ted4_options_hash(const ted4_train_options *o)
+uint64_t ted4_options_hash(const ted4_train_options *o, int stage)
 {
     uint64_t h = ted4_mix(o->seed);
 
@@ -125,6 +126,8 @@ uint64_t ted4_options_hash(const ted4_train_options *o)
         const double value = fetch(o, &table[i]);
         uint64_t     bits;
 
+        if (table[i].stage > stage)
+            continue;
         memcpy(&bits, &value, sizeof bits);
         h = ted4_mix(h ^ bits);
     }

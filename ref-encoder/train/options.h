@@ -11,7 +11,7 @@
 
 typedef struct {
     uint32_t seed;
-#define TED4_OPTION(kind, name, lo, hi, a, b, c, d, e, help) TED4_KIND_##kind name;
+#define TED4_OPTION(kind, stage, name, lo, hi, a, b, c, d, e, help) TED4_KIND_##kind name;
 #include "options.def"
 #undef TED4_OPTION
 } ted4_train_options;
@@ -22,7 +22,7 @@ int  ted4_options_preset(ted4_train_options *o, const char *preset);
 int  ted4_options_set(ted4_train_options *o, const char *text, char *why, size_t why_size);
 /* The table of names, presets and help. */
 void ted4_options_help(FILE *out);
-/* A hash of all values: a checkpoint belongs to them. */
-uint64_t ted4_options_hash(const ted4_train_options *o);
+/* A hash of the values that decide the state at the end of stage 1 or 2: a checkpoint belongs to them. */
+uint64_t ted4_options_hash(const ted4_train_options *o, int stage);
 
 #endif

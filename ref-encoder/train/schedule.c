@@ -15,6 +15,8 @@
 #define LAST_VALUES 0.1         /* stage 2: features, scalings, phi */
 /* Stage 2 restarts attributes at a third of their first rate. */
 #define RESTART     (1.0 / 3.0)
+/* Linear scalings move by this share of their quantisation step. */
+#define LINEAR_SCALING 0.2
 /* log2 b moves five times as fast as the times a. */
 #define TAU_WIDTH   5.0
 
@@ -25,12 +27,17 @@ static double stage_progress(const ted4_trainer *t)
     return done / fmax(1.0, t->stage2 ? t->opt.stage2 : t->opt.stage1);
 }
 
+/* The step from which activation is learnt: the end of the static phase, if there is one. */
+static uint64_t activation_start(const ted4_train_options *o)
+{
+    return o->progressive ? (uint64_t)ceil(o->activation_start * (double)o->stage1) : 0;
+}
+
 /* Are activation spans learnt yet? Before, they stay as they were seeded. */
 static int activation_learnt(const ted4_trainer *t)
 {
     return t->layout.first[TED4_TAU] >= 0 &&
-           (t->stage2 || (double)t->iteration >=
-                             t->opt.activation_start * (double)t->opt.stage1);
+           (t->stage2 || t->iteration >= activation_start(&t->opt));
 }
 
 static void fill(float *rate, int first, int n, double value)
@@ -49,7 +56,8 @@ void ted4_schedule_rates(const ted4_trainer *t, float *rate)
     const double tau = ted4_decay(o->lr_tau * restart, LAST_TAU, p);
 
     fill(rate, l->first[TED4_FEATURE], l->head.feature_dim, o->lr_feature * values);
-    fill(rate, l->first[TED4_SCALING], 6, o->lr_scaling * values);
+    fill(rate, l->first[TED4_SCALING], 6,
+         (l->head.scale_domain == TED4_SCALE_LOG2 ? o->lr_scaling : LINEAR_SCALING * o->step_scaling) * values);
     fill(rate, l->first[TED4_OFFSET], 3 * l->head.n_offsets,
          t->stage2 ? ted4_decay(o->lr_offset * 0.1, 0.1, p)
                    : ted4_decay(o->lr_offset, LAST_OFFSET, p));
@@ -121,8 +129,7 @@ int ted4_schedule_event(ted4_trainer *t)
     const ted4_train_options *o = &t->opt;
     const uint64_t i = t->iteration, stage1 = (uint64_t)o->stage1;
 
-    if (t->layout.first[TED4_TAU] >= 0 && !t->stage2 &&
-        i == (uint64_t)ceil(o->activation_start * (double)stage1) &&
+    if (t->layout.first[TED4_TAU] >= 0 && !t->stage2 && i == activation_start(o) &&
         ted4_activation_begin(t) != 0)
         return -1;
     if (!t->stage2 && i > (uint64_t)(GROW_FROM * (double)stage1) &&

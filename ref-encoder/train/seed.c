@@ -121,8 +121,7 @@ static void fill_anchor(fill_job *f, size_t i)
     for (int j = 0; j < 3; j++)
         *ted4_cell(f->a, TED4_ROW_POSITION, i, j) = f->p[3 * i + (size_t)j];
     for (int j = 0; j < 6; j++)
-        *ted4_cell(f->a, TED4_ROW_VALUE, i, l->first[TED4_SCALING] + j) =
-            l->head.scale_domain == TED4_SCALE_LOG2 ? log2f(d) : d;
+        *ted4_cell(f->a, TED4_ROW_VALUE, i, l->first[TED4_SCALING] + j) = log2f(d);
     fill_phi(f, i);
     if (l->first[TED4_TAU] >= 0) {
         const float tau[4] = { 0.0f, -3.3f, 1.0f, -3.3f };   /* b = 0.1 */

@@ -21,22 +21,11 @@ static float frame_time(const ted4_trainer *t, uint32_t j)
 /* How far a first span stays inside the times seen: half a frame at most, and at most a tenth of b, so that it fades by 1 % only. */
 #define SPAN_INSIDE 0.01f
 
-/* Each anchor's activation, transients aside, starts as the span between the first and the last time at which a training view sees it, less a little at each
- * end: with the first frame of the sequence exactly at a_s no time would ever lie before it, and its gradient would be zero for good (algorithm facts
- * 5.8.1). */
-int ted4_activation_begin(ted4_trainer *t)
+/* First and last time at which a training view sees each anchor: span[2 i], span[2 i + 1]; left alone where none does. */
+static void widen_spans(const ted4_trainer *t, float *span)
 {
-    ted4_anchors *a = &t->anchors;
-    const int     first = t->layout.first[TED4_TAU];
-    const float   inside = fminf(SPAN_INSIDE, 0.5f / fmaxf((float)t->data->n_frames - 1.0f, 1.0f));
-    float        *span = malloc((a->n_blocks + 1) * 2 * TED4_LANES * sizeof *span);
+    const ted4_anchors *a = &t->anchors;
 
-    if (span == NULL)
-        return ted4_trainer_fail(t, "no memory to start activation");
-    for (size_t i = 0; i < a->n_blocks * TED4_LANES; i++) {
-        span[2 * i] = 2.0f;
-        span[2 * i + 1] = -1.0f;
-    }
     for (size_t i = 0; i < t->data->n_pictures; i++) {
         const ted4_picture *pic = &t->data->pictures[i];
         const float         now = frame_time(t, pic->frame);
@@ -59,10 +48,30 @@ int ted4_activation_begin(ted4_trainer *t)
             }
         }
     }
+}
+
+/* Each anchor's activation, transients aside, starts as the span between the first and the last time at which a training view sees it (without
+ * the static phase: all times), less a little at each end: with the first frame of the sequence exactly at a_s no time would ever lie before it, and its
+ * gradient would be zero for good (algorithm facts 5.8.1). */
+int ted4_activation_begin(ted4_trainer *t)
+{
+    ted4_anchors *a = &t->anchors;
+    const int     first = t->layout.first[TED4_TAU];
+    const float   inside = fminf(SPAN_INSIDE, 0.5f / fmaxf((float)t->data->n_frames - 1.0f, 1.0f));
+    float        *span = malloc((a->n_blocks + 1) * 2 * TED4_LANES * sizeof *span);
+
+    if (span == NULL)
+        return ted4_trainer_fail(t, "no memory to start activation");
+    for (size_t i = 0; i < a->n_blocks * TED4_LANES; i++) {
+        span[2 * i] = 2.0f;
+        span[2 * i + 1] = -1.0f;
+    }
+    if (t->opt.progressive)
+        widen_spans(t, span);
     for (size_t i = 0; i < a->n; i++) {
         const int never = span[2 * i] > span[2 * i + 1];
-        float     from = never ? 0.0f : span[2 * i] + inside;
-        float     to = never ? 1.0f : span[2 * i + 1] - inside;
+        float     from = (never ? 0.0f : span[2 * i]) + inside;
+        float     to = (never ? 1.0f : span[2 * i + 1]) - inside;
 
         if (from > to)
             from = to = 0.5f * (from + to);
@@ -178,39 +187,52 @@ static void remap_row(const ted4_layout *from, const ted4_layout *to, const ted4
     }
 }
 
-/* The model without a part that the scene does not need: same heads, fewer types. */
-static int relayout(ted4_trainer *t, const ted4_header *h)
+/* Row kinds that do not depend on the layout. */
+static void copy_row(const ted4_anchors *old, ted4_anchors *new, ted4_row row)
 {
-    const ted4_layout from = t->layout;
-    ted4_anchors      old = t->anchors;
-    float            *net = t->net;
+    memcpy(new->data[row], old->data[row],
+           old->n_blocks * (size_t)old->rows[row] * TED4_LANES * sizeof(float));
+}
 
-    ted4_layout_make(&t->layout, h);
-    t->net = NULL;
-    if (ted4_anchors_init(&t->anchors, &t->layout) != 0 ||
-        ted4_anchors_resize(&t->anchors, old.n) != 0 || ted4_trainer_rebuild(t) != 0) {
-        ted4_anchors_finish(&old);
-        free(net);
-        return ted4_trainer_fail(t, "no memory to simplify the model");
-    }
-    remap_row(&from, &t->layout, &old, &t->anchors, TED4_ROW_VALUE);
-    for (size_t i = 0; i < old.n; i++)
-        for (int j = 0; j < 3; j++)
-            *ted4_cell(&t->anchors, TED4_ROW_POSITION, i, j) =
-                *ted4_cell(&old, TED4_ROW_POSITION, i, j);
+/* One of the arrays of network parameters, NETE left zero. */
+static void remap_networks(const ted4_layout *from, const ted4_layout *to, const float *old, float *new)
+{
     for (int i = 0; i < TED4_NETS_R; i++) {
-        const ted4_net_shape *s = &t->layout.shape.netr[i];
+        const ted4_net_shape *s = &to->shape.netr[i];
         size_t                n = 0;
 
         for (int k = 0; k < s->n_layers; k++)
             n += ((size_t)s->dim[k] + 1) * s->dim[k + 1];
-        memcpy(t->net + t->layout.netr + s->first,
-               net + from.netr + from.shape.netr[i].first, n * sizeof *net);
+        memcpy(new + to->netr + s->first, old + from->netr + from->shape.netr[i].first,
+               n * sizeof *new);
     }
-    memcpy(t->net + t->layout.bank, net + from.bank, t->layout.shape.n_bank * sizeof *net);
+    memcpy(new + to->bank, old + from->bank, to->shape.n_bank * sizeof *new);
+}
+
+int ted4_stage_relayout(ted4_trainer *t, const ted4_header *h)
+{
+    const ted4_layout from = t->layout;
+    ted4_anchors      old = t->anchors;
+    float            *net[3] = { t->net, t->net_m, t->net_v };
+    int               bad;
+
+    ted4_layout_make(&t->layout, h);
+    t->net = t->net_m = t->net_v = NULL;
+    bad = ted4_anchors_init(&t->anchors, &t->layout) != 0 ||
+          ted4_anchors_resize(&t->anchors, old.n) != 0 || ted4_trainer_rebuild(t) != 0;
+    if (!bad) {
+        for (ted4_row r = TED4_ROW_VALUE; r <= TED4_ROW_V; r++)
+            remap_row(&from, &t->layout, &old, &t->anchors, r);
+        for (ted4_row r = TED4_ROW_POSITION; r <= TED4_ROW_GRADIENT; r++)
+            copy_row(&old, &t->anchors, r);
+        remap_networks(&from, &t->layout, net[0], t->net);
+        remap_networks(&from, &t->layout, net[1], t->net_m);
+        remap_networks(&from, &t->layout, net[2], t->net_v);
+    }
     ted4_anchors_finish(&old);
-    free(net);
-    return 0;
+    for (int i = 0; i < 3; i++)
+        free(net[i]);
+    return bad ? ted4_trainer_fail(t, "no memory to change the model") : 0;
 }
 
 /* A part is dropped when it does nothing anywhere: no anchor moves, or every anchor is there at every time. */
@@ -228,29 +250,41 @@ static float least_activation(const ted4_trainer *t, size_t i)
     return expf(-fmaxf(u * u, w * w));
 }
 
-static int simplify(ted4_trainer *t)
+/* The header without what does nothing. */
+static void simplify(const ted4_trainer *t, ted4_header *h)
 {
-    ted4_header h = t->layout.head;
-    size_t      moving = 0, absent = 0;
+    const double few = MOVING_SHARE * (double)t->anchors.n;
+    size_t       moving = 0, absent = 0;
 
     for (size_t i = 0; i < t->anchors.n; i++) {
         const float logit = *ted4_cell(&t->anchors, TED4_ROW_VALUE, i, t->layout.temporal_logit);
 
         moving += 1.0f / (1.0f + expf(-logit)) > TED4_MASK_THRESHOLD;
-        absent += h.activation && least_activation(t, i) < ALWAYS_THERE;
+        absent += h->activation && least_activation(t, i) < ALWAYS_THERE;
     }
-    if (h.motion != TED4_MOTION_NONE && h.temporal_mask &&
-        (double)moving <= MOVING_SHARE * (double)t->anchors.n) {
-        h.motion = TED4_MOTION_NONE;
-        h.temporal_mask = h.phi_dim = h.deform_layers = 0;
-        h.bank_rows = 0;
-        h.bank_dim = h.deform_width = 0;
-    }
-    if (h.activation && (double)absent <= MOVING_SHARE * (double)t->anchors.n)
-        h.activation = 0;
-    if (h.motion == t->layout.head.motion && h.activation == t->layout.head.activation)
-        return 0;
-    return relayout(t, &h);
+    if (h->motion != TED4_MOTION_NONE && h->temporal_mask && (double)moving <= few)
+        ted4_header_without_motion(h);
+    if (h->activation && (double)absent <= few)
+        h->activation = 0;
+}
+
+/* The model as stage 2 trains it. */
+static int reshape(ted4_trainer *t)
+{
+    ted4_header h = t->layout.head;
+    const int   linear = t->opt.linear_scale;
+
+    simplify(t, &h);
+    h.scale_domain = linear ? TED4_SCALE_LINEAR : TED4_SCALE_LOG2;
+    if (ted4_stage_relayout(t, &h) != 0)
+        return -1;
+    for (size_t i = 0; linear && i < t->anchors.n; i++)
+        for (int c = 0; c < 6; c++) {
+            float *x = ted4_cell(&t->anchors, TED4_ROW_VALUE, i, t->layout.first[TED4_SCALING] + c);
+
+            *x = exp2f(*x);
+        }
+    return 0;
 }
 
 static void clear_moments(ted4_trainer *t)
@@ -264,7 +298,7 @@ static void clear_moments(ted4_trainer *t)
 
 int ted4_stage2_begin(ted4_trainer *t)
 {
-    if (settle_positions(t) != 0 || simplify(t) != 0)
+    if (settle_positions(t) != 0 || reshape(t) != 0)
         return -1;
     ted4_seed_prior(t->net, &t->layout, &t->anchors, t->opt.seed);
     clear_moments(t);

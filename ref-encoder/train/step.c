@@ -24,6 +24,15 @@ static uint32_t next_picture(ted4_order *o)
     return o->item[o->next++];
 }
 
+/* The pictures after this one may be decoded meanwhile; what comes after the next shuffle is not known yet. */
+static void announce(const ted4_trainer *t)
+{
+    const ted4_order *o = &t->order;
+
+    for (uint32_t i = o->next; i < o->n && i < o->next + TED4_DATASET_AHEAD; i++)
+        ted4_dataset_ahead(t->data, o->item[i]);
+}
+
 /* Room for the gradients of n splats. */
 static int reserve_splats(ted4_trainer *t, size_t n)
 {
@@ -63,6 +72,7 @@ static void follow(ted4_progress *p, double loss, double l1, double ssim, double
 {
     const double w = first ? 1.0 : 0.01;
 
+    p->last_loss = loss;
     p->loss += w * (loss - p->loss);
     p->l1 += w * (l1 - p->l1);
     p->ssim += w * (ssim - p->ssim);
@@ -100,9 +110,9 @@ static int render(ted4_trainer *t, const ted4_picture *pic, int training, ted4_v
     in->attr = t->slots.used;
     in->position = t->slots.position;
     in->lanes = t->slots.lanes;
-    in->num = t->data->n_frames > 1 ? pic->frame : 0;
+    in->num = t->data->n_frames > 1 && !t->clock_stopped ? pic->frame : 0;
     in->den = t->data->n_frames > 1 ? t->data->n_frames - 1 : 1;
-    in->activation = t->layout.head.activation;
+    in->activation = t->layout.head.activation && !t->clock_stopped;
     if (t->stage2) {
         quantise_job j = { .t = t, .key = ted4_random(t->opt.seed, t->iteration),
                        .quant = training && !t->integer ? TED4_QUANT_NOISE
@@ -133,11 +143,50 @@ static int backward(ted4_trainer *t, const ted4_view *v, const ted4_generate_inp
     return 0;
 }
 
+/* Are colours of this picture's camera corrected by now? Before, the scene learns what most cameras agree about. */
+static int is_corrected(const ted4_trainer *t, const ted4_picture *pic)
+{
+    return ted4_colour_has(&t->colour, pic->camera_id) &&
+           (t->stage2 || (double)t->iteration >= t->opt.colour_start * (double)t->opt.stage1);
+}
+
+/* Distortion of t->image against truth; its gradient is in t->d_image, and the camera's colours have made their step. As ted4_loss. */
+static double distortion(ted4_trainer *t, const ted4_picture *pic, const ted4_view *v,
+                         const uint8_t *truth, double *l1, double *ssim)
+{
+    const size_t    pixels = (size_t)v->width * (size_t)v->height;
+    const int       corrected = is_corrected(t, pic);
+    const float    *image = corrected ? ted4_colour_apply(&t->colour, pic->camera_id, t->image,
+                                                          pixels, t->parallel)
+                                      : t->image;
+    ted4_colour_map gradient;
+    const double    loss = ted4_loss(t->loss, image, truth, v->width, v->height,
+                                     (float)t->opt.ssim, t->parallel, t->d_image, l1, ssim);
+
+    if (!corrected || !(loss >= 0))
+        return loss;
+    ted4_colour_backward(&t->colour, pic->camera_id, t->image, pixels, t->parallel, t->d_image,
+                         gradient);
+    ted4_colour_update(&t->colour, pic->camera_id, gradient, t->opt.lr_colour,
+                       t->opt.colour_weight);
+    return loss;
+}
+
 /* Looking at every anchor takes time, so it is done once in so many steps. */
 enum { CHECK_ANCHORS = 100 };
 
+/* The probe begins when the first anchors stand. */
+#define PROBE_FROM 0.25
+
+static int probe_due(const ted4_trainer *t)
+{
+    return !t->probed && t->iteration == (uint64_t)(PROBE_FROM * (double)t->opt.stage1);
+}
+
 int ted4_trainer_step(ted4_trainer *t)
 {
+    if (probe_due(t) && ted4_probe_time(t) != 0)
+        return -1;
     if (ted4_trainer_check(t, t->iteration % CHECK_ANCHORS == 0) != 0 ||
         ted4_schedule_event(t) != 0)
         return -1;
@@ -155,12 +204,12 @@ int ted4_trainer_step(ted4_trainer *t)
 
     if (truth == NULL)
         return -1;
+    announce(t);
     if (render(t, pic, 1, &v, &in, &s) != 0) {
         ted4_dataset_release(t->data, item);
         return -1;
     }
-    const double loss = ted4_loss(t->loss, t->image, truth, v.width, v.height,
-                                  (float)t->opt.ssim, t->parallel, t->d_image, &l1, &ssim);
+    const double loss = distortion(t, pic, &v, truth, &l1, &ssim);
 
     ted4_dataset_release(t->data, item);
     if (!isfinite(loss))

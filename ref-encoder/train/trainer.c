@@ -7,7 +7,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "adam.h"
+#include "header.h"
 #include "random.h"
 #include "seed.h"
 #include "space.h"
@@ -21,75 +21,6 @@ int ted4_trainer_fail(ted4_trainer *t, const char *format, ...)
     vsnprintf(t->message.text, sizeof t->message.text, format, arguments);
     va_end(arguments);
     return -1;
-}
-
-/* The feature is cut in slices that grow like 1, 2, 3, ... (algorithm facts 3.3: 5, 10, 15, 20 of 50). */
-static void make_slices(ted4_header *h, int n)
-{
-    const int whole = n * (n + 1) / 2;
-    int       done = 0;
-
-    h->n_slices = 0;
-    for (int i = 1; i <= n; i++) {
-        const int upto = (h->feature_dim * i * (i + 1) / 2 + whole / 2) / whole;
-
-        if (upto > done)
-            h->slice[h->n_slices++] = (uint8_t)(upto - done);
-        done = upto;
-    }
-}
-
-static void make_header_time(ted4_header *h, const ted4_train_options *o,
-                             const ted4_dataset *d)
-{
-    const int still = d->n_frames <= 1;
-
-    h->frames = d->n_frames;
-    h->rate_num = d->rate > 0 ? (uint32_t)lrint(d->rate * 1000.0) : 30;
-    h->rate_den = d->rate > 0 ? 1000 : 1;
-    h->activation = (uint8_t)(still ? 0 : o->activation);
-    h->motion = (uint8_t)(still ? TED4_MOTION_NONE : o->motion);
-    if (h->motion == TED4_MOTION_NONE)
-        return;
-    h->temporal_mask = (uint8_t)o->temporal_mask;
-    h->deform_layers = (uint8_t)o->deform_layers;
-    h->deform_width = (uint16_t)o->deform_width;
-    if (h->motion == TED4_MOTION_INR)
-        return;
-    h->phi_dim = (uint8_t)o->phi;
-    h->bank_rows = o->bank_rows > 0 ? (uint32_t)o->bank_rows : (d->n_frames + 1) / 2;
-    h->bank_dim = (uint16_t)o->bank_dim;
-}
-
-static void make_header(ted4_header *h, const ted4_train_options *o, const ted4_dataset *d)
-{
-    memset(h, 0, sizeof *h);
-    h->tile_size = 4096;
-    h->n_offsets = (uint8_t)o->offsets;
-    h->feature_dim = (uint8_t)o->feature;
-    make_header_time(h, o, d);
-    h->offset_mask = (uint8_t)o->offset_mask;
-    h->view = (uint8_t)o->view;
-    h->head_layers = (uint8_t)o->head_layers;
-    h->head_width = (uint16_t)(o->head_layers > 0 ? o->head_width : 0);
-    h->scale_domain = o->linear_scale ? TED4_SCALE_LINEAR : TED4_SCALE_LOG2;
-    h->prior = o->factorised ? TED4_PRIOR_FACTORISED : TED4_PRIOR_INR;
-    if (!o->factorised) {
-        h->pe_octaves = (uint8_t)o->octaves;
-        h->hyper_layers = (uint8_t)o->hyper_layers;
-        h->hyper_width = (uint16_t)(o->hyper_layers > 0 ? o->hyper_width : 0);
-    }
-    make_slices(h, o->slices);
-    h->ar_width = (uint16_t)(h->n_slices > 1 ? o->ar_width : 0);
-    h->context_bits = 8;
-
-    const double step[TED4_TYPES] = { o->step_feature, o->step_scaling, o->step_offset,
-                                      o->step_phi, o->step_tau };
-
-    for (int y = 0; y < TED4_TYPES; y++)
-        h->step[y] = (float)step[y];
-    memcpy(h->background, d->background, sizeof h->background);
-    ted4_space_make(h, d);
 }
 
 int ted4_trainer_rebuild(ted4_trainer *t)
@@ -146,6 +77,8 @@ static int make_images(ted4_trainer *t)
     t->loss = ted4_loss_workspace_new();
     if (t->image == NULL || t->d_image == NULL || t->raster == NULL || t->loss == NULL)
         return ted4_trainer_fail(t, "no memory for images of %zu pixels", pixels);
+    if (t->opt.colour && ted4_colour_init(&t->colour, t->data) != 0)
+        return ted4_trainer_fail(t, "no memory for colour correction");
     return 0;
 }
 
@@ -158,7 +91,7 @@ int ted4_trainer_init(ted4_trainer *t, const ted4_train_options *o, ted4_dataset
     t->opt = *o;
     t->data = d;
     t->parallel = p;
-    make_header(&h, o, d);
+    ted4_header_make(&h, o, d);
     ted4_layout_make(&t->layout, &h);
     if (ted4_trainer_rebuild(t) != 0 || make_order(t) != 0 || make_images(t) != 0)
         return -1;
@@ -185,6 +118,7 @@ void ted4_trainer_finish(ted4_trainer *t)
     ted4_rate_free(t->rate);
     ted4_raster_free(t->raster);
     ted4_loss_workspace_free(t->loss);
+    ted4_colour_finish(&t->colour);
     free(t->image);
     free(t->d_image);
     free(t->splat_storage);

@@ -6,7 +6,9 @@
 
 #include "anchors.h"
 #include "base/parallel.h"
+#include "colour.h"
 #include "data/dataset.h"
+#include "header.h"
 #include "loss.h"
 #include "options.h"
 
@@ -20,6 +22,7 @@ typedef struct {
 /* What one step measured; running means over about 100 steps. */
 typedef struct {
     double loss, l1, ssim;
+    double last_loss;           /* of the last step alone */
     double bits[TED4_TYPES];    /* per anchor, over the anchors whose rate was evaluated */
     double splats;              /* Gaussians that reached the screen */
     double splat_pixels;        /* times the pixels of the picture */
@@ -47,7 +50,11 @@ typedef struct {
     uint8_t            *shift;          /* owned, [n_units]; set when the integer stage starts, else NULL */
     double              cell;           /* voxel of growth, normalised space */
     uint64_t            iteration;      /* steps done */
+    double              seconds;        /* that they took, over all runs that shared checkpoints: kept for the program, decides nothing */
     int                 stage2, integer;
+    int                 probed;         /* it is settled whether the scene needs time at all (time_probe.c) */
+    double              probe_loss[2];  /* mean losses that settled it: with time, without; 0: nothing was tried */
+    int                 clock_stopped;  /* draw everything at time 0 and without activation */
     uint64_t            stage2_start;   /* Adam's count restarts there */
     ted4_order          order;
     ted4_progress       progress;
@@ -56,6 +63,7 @@ typedef struct {
     ted4_rate          *rate;
     ted4_raster        *raster;
     ted4_loss_workspace *loss;
+    ted4_colour         colour;         /* no cameras when switched off */
     ted4_slots          slots;
     float              *image, *d_image;        /* planar, of the largest picture */
     float              *splat_storage;          /* gradients of splats */
@@ -109,6 +117,11 @@ int  ted4_stage2_begin(ted4_trainer *t);
 int  ted4_integer_begin(ted4_trainer *t);
 /* Once the integer stage has begun: steps of all anchors, and their bits [TED4_TYPES] by the float formula on rounded symbols (NULL: steps only). */
 int  ted4_integer_rate(ted4_trainer *t, double *bits);
+/* The model in the layout of h, which has the same heads and the same or fewer types of values; optimiser and statistics go along. Prior
+ * networks are zero afterwards. */
+int  ted4_stage_relayout(ted4_trainer *t, const ted4_header *h);
+/* Does the scene need time? Trains a while with and without, and goes on with what was worth it: time_probe.c */
+int  ted4_probe_time(ted4_trainer *t);
 /* Fresh workspaces and network arrays after t->layout changed. */
 int  ted4_trainer_rebuild(ted4_trainer *t);
 

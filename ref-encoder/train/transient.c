@@ -64,6 +64,9 @@ static int match_pictures(match_job *j)
 
         if (pic->is_test)
             continue;
+        for (size_t k = i + 1; k < t->data->n_pictures && k <= i + TED4_DATASET_AHEAD; k++)
+            if (!t->data->pictures[k].is_test)
+                ted4_dataset_ahead(t->data, k);
         j->pixels = ted4_dataset_pixels(t->data, i, &t->message);
         if (j->pixels == NULL)
             return -1;

@@ -8,7 +8,8 @@
 
 const char *ted4_ray_scene_name(ted4_ray_scene s)
 {
-    static const char *const name[RAY_SCENES] = { "still", "turn", "occluder", "pop", "bend" };
+    static const char *const name[RAY_SCENES] = { "still", "turn", "occluder", "pop", "bend",
+                                                "fair" };
 
     return name[s];
 }
@@ -189,6 +190,27 @@ static void bend(ted4_ray_world *w, double t)
     ted4_ray_add(w, &o);
 }
 
+/* The carousel turns; a ball is there for three sixteenths of the sequence, a box in its first
+ * half. */
+static void fair(ted4_ray_world *w, int frame, int n_frames)
+{
+    const vec3 cream = ray_paint(.95f, .91f, .82f);
+    const int part = 16 * frame / n_frames;
+    ted4_ray_object o = solid(RAY_SPHERE, v3(.3f, .3f, .3f), v3(-.8f, -.2f, 1.2f), 0.1);
+
+    carousel(w, 0.04 + 0.33 * ted4_ray_time(frame, n_frames));
+    dress(&o, RAY_DOTS, ray_paint(.96f, .76f, .22f), ray_paint(.14f, .40f, .36f),
+          ray_paint(.80f, .22f, .30f));
+    o.gloss = 0.2f;
+    if (part >= 6 && part < 9)
+        ted4_ray_add(w, &o);
+
+    o = solid(RAY_BOX, v3(.25f, .25f, .25f), v3(.42f, -1, .25f), 0.07);
+    dress(&o, RAY_FACES, cream, cream, cream);
+    if (part < 8)
+        ted4_ray_add(w, &o);
+}
+
 void ted4_ray_world_at(ted4_ray_world *w, ted4_ray_scene s, uint32_t seed, int frame, int n_frames)
 {
     const double t = ted4_ray_time(frame, n_frames);
@@ -207,6 +229,9 @@ void ted4_ray_world_at(ted4_ray_world *w, ted4_ray_scene s, uint32_t seed, int f
         break;
     case RAY_BEND:
         bend(w, t);
+        break;
+    case RAY_FAIR:
+        fair(w, frame, n_frames);
         break;
     case RAY_STILL:
     case RAY_SCENES:

@@ -1,4 +1,4 @@
-/* ray_world.h - the five scenes: which solids are where at a time.
+/* ray_world.h - the scenes: which solids are where at a time.
  * Depends on ray_shape.h. Used by ray_render, ray_set and the test.
  * SPDX-License-Identifier: BSD-2-Clause */
 #ifndef RAY_WORLD_H
@@ -8,7 +8,7 @@
 
 enum { TED4_RAY_MAX_OBJECTS = 16 };
 
-typedef enum { RAY_STILL, RAY_TURN, RAY_OCCLUDER, RAY_POP, RAY_BEND, RAY_SCENES } ted4_ray_scene;
+typedef enum { RAY_STILL, RAY_TURN, RAY_OCCLUDER, RAY_POP, RAY_BEND, RAY_FAIR, RAY_SCENES } ted4_ray_scene;
 
 /* World axes: x right, y away from the cameras, z up. The room is a box seen from inside. */
 typedef struct {

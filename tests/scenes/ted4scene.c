@@ -16,7 +16,7 @@ enum { EXIT_FINE = 0, EXIT_TROUBLE = 3 };
 static const char usage[] =
     "usage: ted4scene NAME -o FOLDER [options]\n"
     "Makes a small synthetic dynamic scene.\n"
-    "NAME: still, turn, occluder, pop or bend\n"
+    "NAME: still, turn, occluder, pop, bend or fair\n"
     "  -o FOLDER           where to; made if missing, must be empty without -f\n"
     "  --size WxH          picture size, 8 to 4096 (160x120)\n"
     "  --cameras N         training cameras, 1 to 1000 (12)\n"
@@ -97,7 +97,7 @@ static int scene_of(const char *name, ted4_ray_options *o)
             return EXIT_FINE;
         }
     }
-    return complain(name, "not one of still, turn, occluder, pop, bend");
+    return complain(name, "not one of still, turn, occluder, pop, bend, fair");
 }
 
 static int layout_of(const char *name, ted4_ray_options *o)

@@ -1,0 +1,116 @@
+/* target.c - the lambda that a size asks for: see training.h. Stage 1 knows no lambda, so each trial repeats stage 2 only.
+ * SPDX-License-Identifier: BSD-2-Clause */
+#include <math.h>
+#include <stdio.h>
+
+#include "train/checkpoint.h"
+#include "training.h"
+
+/* Near enough: a file that leaves less than this share of the target unused. */
+#define NEAR 0.02
+enum { MOST_TRIALS = 8 };
+/* Bytes fall about as lambda^(-1/4) at most, and less where networks and positions are the most of a small file: until the target lies between two trials, each
+ * guess reaches twice as far (in the logarithm) as the one before. */
+#define GUESS_POWER 4.0
+#define NEAREST     2.0
+#define FARTHEST    1000.0
+#define LEAST_LAMBDA 1e-7
+#define MOST_LAMBDA  10.0
+
+/* Trials on both sides of the target, in logarithms; have: bit 0 a larger file, bit 1 one that fits. */
+typedef struct {
+    double lambda[2], size[2];
+    int    have, trials;
+} bracket;
+
+static double next_lambda(const bracket *b, double target, double lambda, double size)
+{
+    if (b->have == 3) {
+        const double slope = (b->size[1] - b->size[0]) / (b->lambda[1] - b->lambda[0]);
+        const double at = (log(target * (1.0 - 0.5 * NEAR)) - b->size[0]) / slope;
+        const double span = b->lambda[1] - b->lambda[0];
+
+        return exp(b->lambda[0] + fmin(fmax(at, 0.1 * span), 0.9 * span));
+    }
+    const double reach = ldexp(GUESS_POWER, b->trials - 1);
+    const double away = fabs(log(size / (target * (1.0 - 0.5 * NEAR)))) * reach;
+    const double factor = fmin(fmax(exp(fmin(away, 50.0)), NEAREST), FARTHEST);
+
+    return b->have == 1 ? lambda * factor : lambda / factor;
+}
+
+static int one_trial(ted4_training *t, const ted4_snapshot *start, double lambda, ted4_coded *c)
+{
+    t->trainer->opt.lambda = lambda;
+    if (ted4_snapshot_restore(t->trainer, start) != 0) {
+        snprintf(t->why, sizeof t->why, "%s", t->trainer->message.text);
+        return -1;
+    }
+    ted4_run_log_move(&t->log, t->trainer);
+    if (ted4_training_go(t, ted4_trainer_total(t->trainer)) != 0 || ted4_training_code(t, c) != 0)
+        return -1;
+    if (!t->request->quiet)
+        fprintf(stderr, "lambda %.5g: %zu bytes\n", lambda, c->size);
+    return 0;
+}
+
+/* A file that fits beats one that does not; of two that fit the larger, of two that do not the smaller. */
+static int is_better(const ted4_coded *a, const ted4_coded *b, size_t target)
+{
+    if (b->bytes == NULL || (a->size <= target) != (b->size <= target))
+        return b->bytes == NULL || a->size <= target;
+    return a->size <= target ? a->size > b->size : a->size < b->size;
+}
+
+static int search(ted4_training *t, const ted4_snapshot *start, ted4_coded *best)
+{
+    const size_t target = t->request->target_size;
+    double       lambda = t->trainer->opt.lambda;
+    bracket      b = { 0 };
+
+    for (int i = 0; i < MOST_TRIALS; i++) {
+        ted4_coded c;
+
+        lambda = fmin(fmax(lambda, LEAST_LAMBDA), MOST_LAMBDA);
+        if (one_trial(t, start, lambda, &c) != 0)
+            return -1;
+
+        const int    fits = c.size <= target;
+        const double size = (double)c.size;
+
+        b.lambda[fits] = log(lambda);
+        b.size[fits] = log(size);
+        b.have |= 1 << fits;
+        b.trials++;
+        if (is_better(&c, best, target)) {
+            ted4_coded_free(best);
+            *best = c;
+        } else {
+            ted4_coded_free(&c);
+        }
+        if ((fits && size >= (1.0 - NEAR) * (double)target) ||
+            (fits && lambda <= LEAST_LAMBDA) || (!fits && lambda >= MOST_LAMBDA))
+            break;
+        lambda = next_lambda(&b, (double)target, lambda, size);
+    }
+    return 0;
+}
+
+int ted4_training_target(ted4_training *t, ted4_coded *c)
+{
+    ted4_snapshot start = { 0 };
+    int           bad;
+
+    c->bytes = NULL;
+    if (ted4_training_go(t, (uint64_t)t->trainer->opt.stage1) != 0)
+        return -1;
+    t->checkpoint = NULL;       /* a trial is not resumed: the search would not know where it was */
+    bad = ted4_snapshot_take(t->trainer, &start) != 0;
+    if (bad)
+        snprintf(t->why, sizeof t->why, "%s", t->trainer->message.text);
+    bad = bad || search(t, &start, c) != 0;
+    ted4_snapshot_free(&start);
+    if (bad)
+        ted4_coded_free(c);
+    return bad ? -1 : 0;
+}

@@ -1,0 +1,152 @@
+/* training.c - see training.h.
+ * SPDX-License-Identifier: BSD-2-Clause */
+#include "training.h"
+
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <unistd.h>
+
+#include "train/checkpoint.h"
+#include "train/make_scene.h"
+#include "write/encode.h"
+
+/* Steps between reports, pictures of the preview. */
+enum { REPORT_EVERY = 250, PREVIEW_PICTURES = 16 };
+
+/* The trainer's own words. */
+static int fail(ted4_training *t)
+{
+    snprintf(t->why, sizeof t->why, "%s", t->trainer->message.text);
+    return -1;
+}
+
+static int exists(const char *path)
+{
+    return path != NULL && access(path, F_OK) == 0;
+}
+
+int ted4_training_begin(ted4_training *t, const ted4_request *r, ted4_trainer *trainer)
+{
+    memset(t, 0, sizeof *t);
+    t->request = r;
+    t->trainer = trainer;
+    t->log.file = -1;
+    t->checkpoint = r->checkpoint;
+    if (r->resume && exists(r->checkpoint)) {
+        if (ted4_checkpoint_load(trainer, r->checkpoint) != 0)
+            return fail(t);
+    } else if (exists(r->stage1)) {
+        if (ted4_checkpoint_load(trainer, r->stage1) != 0)
+            return fail(t);
+        if (trainer->stage2 || trainer->iteration != (uint64_t)trainer->opt.stage1) {
+            snprintf(t->why, sizeof t->why, "%s: not the end of stage 1", r->stage1);
+            return -1;
+        }
+    }
+    return ted4_run_log_open(&t->log, r->log, trainer, r->resume, r->quiet, r->verbose, t->why, sizeof t->why);
+}
+
+int ted4_training_end(ted4_training *t, int bad)
+{
+    char       why[sizeof t->why];
+    const int  closed = ted4_run_log_close(&t->log, why, sizeof why) == 0;
+
+    if (!bad && !closed)
+        memcpy(t->why, why, sizeof why);
+    return bad || !closed;
+}
+
+/* Previews and a line; what they take is not training. */
+static int log_step(ted4_training *t)
+{
+    ted4_trainer *tr = t->trainer;
+
+    ted4_run_log_tick(&t->log, tr);
+    t->log.psnr = ted4_trainer_preview(tr, PREVIEW_PICTURES);
+    if (t->log.psnr < 0)
+        return fail(t);
+    ted4_run_log_skip(&t->log);
+    return ted4_run_log_step(&t->log, tr, t->why, sizeof t->why);
+}
+
+static int save(ted4_training *t)
+{
+    if (t->checkpoint == NULL)
+        return 0;
+    ted4_run_log_tick(&t->log, t->trainer);
+    return ted4_checkpoint_save(t->trainer, t->checkpoint) != 0 ? fail(t) : 0;
+}
+
+/* The end of stage 1 is written once, for later runs to begin there. */
+static int keep_stage1(ted4_training *t)
+{
+    ted4_trainer *tr = t->trainer;
+    const char   *path = t->request->stage1;
+
+    if (path == NULL || tr->stage2 || tr->iteration != (uint64_t)tr->opt.stage1 || exists(path))
+        return 0;
+    ted4_run_log_tick(&t->log, tr);
+    return ted4_checkpoint_save(tr, path) != 0 ? fail(t) : 0;
+}
+
+int ted4_training_go(ted4_training *t, uint64_t steps)
+{
+    ted4_trainer *tr = t->trainer;
+    double        saved = ted4_seconds();
+
+    ted4_run_log_skip(&t->log);
+    while (tr->iteration < steps) {
+        const uint64_t before = tr->iteration;
+
+        if (keep_stage1(t) != 0)
+            return -1;
+        if (ted4_trainer_step(tr) != 0)
+            return fail(t);
+        /* A step may be many: what a probe has done counts. */
+        if ((tr->iteration / REPORT_EVERY > before / REPORT_EVERY || tr->iteration == steps) && log_step(t) != 0)
+            return -1;
+        if (ted4_seconds() - saved >= t->request->checkpoint_every) {
+            if (save(t) != 0)
+                return -1;
+            saved = ted4_seconds();
+        }
+    }
+    ted4_run_log_tick(&t->log, tr);
+    return keep_stage1(t) != 0 ? -1 : save(t);
+}
+
+int ted4_training_code(ted4_training *t, ted4_coded *c)
+{
+    ted4_trainer *tr = t->trainer;
+    ted4_scene   *scene;
+    double        bits[TED4_TYPES];
+    ted4_error    e = { TED4_OK, 0 };
+    int           bad;
+
+    memset(c, 0, sizeof *c);
+    c->lambda = tr->opt.lambda;
+    if (ted4_make_scene(tr, &scene) != 0 || ted4_integer_rate(tr, bits) != 0) {
+        ted4_scene_free(scene);
+        return fail(t);
+    }
+    for (int y = 0; y < TED4_TYPES; y++)
+        c->verified.estimated_bits += bits[y];
+    bad = ted4_encode(scene, 0, tr->parallel, &c->bytes, &c->size, &e) != TED4_OK;
+    if (bad)
+        snprintf(t->why, sizeof t->why, "encoder refused its own scene: %s", ted4_status_id(e.code));
+    else
+        bad = ted4_verify(scene, c->bytes, c->size, tr->parallel, &c->verified, t->why,
+                          sizeof t->why) != 0;
+    ted4_scene_free(scene);
+    if (bad)
+        ted4_coded_free(c);
+    return bad ? -1 : 0;
+}
+
+void ted4_coded_free(ted4_coded *c)
+{
+    free(c->bytes);
+    c->bytes = NULL;
+    c->size = 0;
+}

@@ -1,0 +1,227 @@
+/* colour.c - see colour.h.
+ * SPDX-License-Identifier: BSD-2-Clause */
+#include "colour.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+#include "adam.h"
+
+/* Pixels whose products are summed in single precision, and pixels of one job. */
+enum { RUN = 1024, BAND = 16 * RUN };
+
+enum { N = TED4_COLOUR_VALUES, ROW_V = 9 };     /* ROW_V: where v begins in a map */
+
+static size_t n_bands(size_t pixels)
+{
+    return (pixels + BAND - 1) / BAND;
+}
+
+static size_t least(size_t a, size_t b)
+{
+    return a < b ? a : b;
+}
+
+/* Marks the cameras that took at least two training pictures; how many. */
+static size_t choose(uint8_t *corrected, const ted4_dataset *d)
+{
+    size_t n = 0;
+
+    for (size_t i = 0; i < d->n_pictures; i++) {
+        uint8_t *seen = &corrected[d->pictures[i].camera_id];
+
+        if (!d->pictures[i].is_test && *seen < 2)
+            ++*seen;
+    }
+    for (size_t k = 0; k < d->n_cameras; k++) {
+        corrected[k] = corrected[k] == 2;
+        n += corrected[k];
+    }
+    return n;
+}
+
+static size_t largest_picture(const ted4_dataset *d)
+{
+    size_t largest = 0;
+
+    for (size_t i = 0; i < d->n_pictures; i++) {
+        const ted4_camera *c = &d->pictures[i].camera;
+        const size_t       n = (size_t)c->width * (size_t)c->height;
+
+        largest = n > largest ? n : largest;
+    }
+    return largest;
+}
+
+static int reserve(ted4_colour *c, size_t pixels)
+{
+    const size_t n = c->n_cameras;
+
+    c->steps = calloc(n, sizeof *c->steps);
+    c->value = calloc(n, sizeof *c->value);
+    c->m = calloc(n, sizeof *c->m);
+    c->v = calloc(n, sizeof *c->v);
+    c->image = malloc(3 * pixels * sizeof *c->image);
+    c->sums = malloc(n_bands(pixels) * N * sizeof *c->sums);
+    return c->steps != NULL && c->value != NULL && c->m != NULL && c->v != NULL &&
+           c->image != NULL && c->sums != NULL ? 0 : -1;
+}
+
+int ted4_colour_init(ted4_colour *c, const ted4_dataset *d)
+{
+    memset(c, 0, sizeof *c);
+    if (d->n_cameras < 2)
+        return 0;
+    c->corrected = calloc(d->n_cameras, 1);
+    if (c->corrected == NULL)
+        return -1;
+    c->n_cameras = d->n_cameras;
+    c->n_corrected = choose(c->corrected, d);
+    if (c->n_corrected < 2) {
+        ted4_colour_finish(c);
+        return 0;
+    }
+    return reserve(c, largest_picture(d));
+}
+
+void ted4_colour_finish(ted4_colour *c)
+{
+    free(c->corrected);
+    free(c->steps);
+    free(c->value);
+    free(c->m);
+    free(c->v);
+    free(c->image);
+    free(c->sums);
+    memset(c, 0, sizeof *c);
+}
+
+int ted4_colour_has(const ted4_colour *c, uint32_t camera)
+{
+    return camera < c->n_cameras && c->corrected[camera];
+}
+
+typedef struct {
+    const float *image, *map;
+    float       *to;            /* apply: the corrected picture; backward: the gradient, in place */
+    double      *sums;
+    size_t       pixels;
+} job;
+
+static void apply_band(void *arg, size_t band)
+{
+    const job   *j = arg;
+    const size_t first = band * BAND, n = least(BAND, j->pixels - first);
+    const float *r = j->image + first, *g = r + j->pixels, *b = g + j->pixels;
+
+    for (int k = 0; k < 3; k++) {
+        const float *a = j->map + k;
+        const float  of_r = a[0] + (k == 0), of_g = a[3] + (k == 1), of_b = a[6] + (k == 2);
+        const float  v = a[ROW_V];
+        float       *to = j->to + (size_t)k * j->pixels + first;
+
+#pragma omp simd
+        for (size_t i = 0; i < n; i++)
+            to[i] = of_r * r[i] + of_g * g[i] + of_b * b[i] + v;
+    }
+}
+
+const float *ted4_colour_apply(ted4_colour *c, uint32_t camera, const float *image, size_t pixels,
+                               const ted4_parallel *p)
+{
+    job j = { .image = image, .map = c->value[camera], .to = c->image, .pixels = pixels };
+
+    ted4_parallel_for(p, n_bands(pixels), apply_band, &j);
+    return c->image;
+}
+
+/* Sums of d times 1 and each colour, over at most RUN pixels, into column k of a map. */
+static void add_products(const float *image, const float *d, size_t plane, size_t n, double *column)
+{
+    const float *r = image, *g = r + plane, *b = g + plane;
+    float        of_r = 0, of_g = 0, of_b = 0, v = 0;
+
+#pragma omp simd reduction(+ : of_r, of_g, of_b, v)
+    for (size_t i = 0; i < n; i++) {
+        of_r += r[i] * d[i];
+        of_g += g[i] * d[i];
+        of_b += b[i] * d[i];
+        v += d[i];
+    }
+    column[0] += (double)of_r;
+    column[3] += (double)of_g;
+    column[6] += (double)of_b;
+    column[ROW_V] += (double)v;
+}
+
+/* d <- (I + A) d for every pixel. */
+static void turn_gradient(const float *a, float *d, size_t plane, size_t n)
+{
+    const float r0 = a[0] + 1.0f, r1 = a[1], r2 = a[2];
+    const float g0 = a[3], g1 = a[4] + 1.0f, g2 = a[5];
+    const float b0 = a[6], b1 = a[7], b2 = a[8] + 1.0f;
+    float      *r = d, *g = r + plane, *b = g + plane;
+
+#pragma omp simd
+    for (size_t i = 0; i < n; i++) {
+        const float x = r[i], y = g[i], z = b[i];
+
+        r[i] = r0 * x + r1 * y + r2 * z;
+        g[i] = g0 * x + g1 * y + g2 * z;
+        b[i] = b0 * x + b1 * y + b2 * z;
+    }
+}
+
+static void backward_band(void *arg, size_t band)
+{
+    const job   *j = arg;
+    const size_t end = least((band + 1) * BAND, j->pixels);
+    double      *sum = j->sums + band * N;
+
+    for (int k = 0; k < N; k++)
+        sum[k] = 0;
+    for (size_t at = band * BAND; at < end; at += RUN) {
+        const size_t n = least(RUN, end - at);
+
+        for (size_t k = 0; k < 3; k++)
+            add_products(j->image + at, j->to + k * j->pixels + at, j->pixels, n, sum + k);
+        turn_gradient(j->map, j->to + at, j->pixels, n);
+    }
+}
+
+void ted4_colour_backward(ted4_colour *c, uint32_t camera, const float *image, size_t pixels,
+                          const ted4_parallel *p, float *d_image, ted4_colour_map gradient)
+{
+    job j = { image, c->value[camera], d_image, c->sums, pixels };
+
+    ted4_parallel_for(p, n_bands(pixels), backward_band, &j);
+    for (int k = 0; k < N; k++) {
+        double sum = 0;
+
+        for (size_t band = 0; band < n_bands(pixels); band++)
+            sum += c->sums[band * N + (size_t)k];
+        gradient[k] = (float)sum;
+    }
+}
+
+void ted4_colour_update(ted4_colour *c, uint32_t camera, const ted4_colour_map gradient,
+                        double rate, double penalty)
+{
+    float *x = c->value[camera];
+    float  g[N];
+
+    for (int k = 0; k < N; k++)
+        g[k] = gradient[k] + (float)(2.0 * penalty) * x[k];
+    ted4_adam(x, c->m[camera], c->v[camera], g, N, (float)rate,
+              ted4_adam_bias_make(++c->steps[camera]));
+    for (int k = 0; k < N; k++) {
+        double mean = 0;
+
+        for (size_t i = 0; i < c->n_cameras; i++)
+            mean += (double)c->value[i][k];
+        mean /= (double)c->n_corrected;
+        for (size_t i = 0; i < c->n_cameras; i++)
+            if (c->corrected[i])
+                c->value[i][k] -= (float)mean;
+    }
+}

@@ -1,0 +1,85 @@
+/* ball_trainer.h - small trainings on the scene of balls, from pictures to bytes: for test_trainer.c, test_time_probe.c and test_stage1.c.
+ * SPDX-License-Identifier: BSD-2-Clause */
+#ifndef TED4_BALL_TRAINER_H
+#define TED4_BALL_TRAINER_H
+
+#include "ball_scene.h"
+#include "train/make_scene.h"
+#include "train/trainer.h"
+#include "write/encode.h"
+
+typedef struct { uint8_t *bytes; size_t size; } ball_file;
+
+static inline void ball_load(tiny_folder *f, ted4_dataset *d, int frames, int moving)
+{
+    const ted4_dataset_options o = { 1, 0, 3, 1 << 20, 0 };
+    ted4_message m;
+
+    *f = tiny_new();
+    ball_scene(f, frames, moving);
+    if (ted4_dataset_load(d, f->path, &o, &m) != 0)
+        fail_msg("%s", m.text);
+}
+
+static inline void ball_set(ted4_train_options *o, const char *text)
+{
+    char why[256];
+
+    if (ted4_options_set(o, text, why, sizeof why) != 0)
+        fail_msg("%s", why);
+}
+
+static inline ted4_train_options ball_options(void)
+{
+    static const char *const small[] = {
+        "stage1=400", "stage2=250", "offsets=4", "feature=8", "phi=4", "bank_dim=8",
+        "deform_width=8", "head_width=12", "hyper_width=8", "ar_width=8", "slices=2",
+        "octaves=4", "init_anchors=150", "max_anchors=260", "grow_every=20",
+        "lr_feature=0.03", "lr_heads=0.02", "lr_scaling=0.03", "lr_offset=0.03",
+        "lr_motion=0.005", "lr_phi=0.02",
+    };
+    ted4_train_options o;
+
+    assert_int_equal(ted4_options_preset(&o, "draft"), 0);
+    for (size_t i = 0; i < sizeof small / sizeof small[0]; i++)
+        ball_set(&o, small[i]);
+    return o;
+}
+
+static inline void ball_begin(ted4_trainer *t, const ted4_train_options *o, ted4_dataset *d,
+                  const ted4_parallel *p)
+{
+    if (ted4_trainer_init(t, o, d, p) != 0)
+        fail_msg("%s", t->message.text);
+}
+
+static inline void ball_train(ted4_trainer *t, uint64_t iteration)
+{
+    while (t->iteration < iteration)
+        if (ted4_trainer_step(t) != 0)
+            fail_msg("%s", t->message.text);
+}
+
+/* Ends training and makes the file. */
+static inline ball_file ball_finish(ted4_trainer *t)
+{
+    ted4_scene *s;
+    ted4_error  e = { TED4_OK, 0 };
+    ball_file   f;
+
+    ball_train(t, ted4_trainer_total(t));
+    if (ted4_make_scene(t, &s) != 0)
+        fail_msg("%s", t->message.text);
+    if (ted4_encode(s, 0, NULL, &f.bytes, &f.size, &e) != TED4_OK)
+        fail_msg("%s", ted4_status_id(e.code));
+    ted4_scene_free(s);
+    return f;
+}
+
+static inline void ball_check_same(const ball_file *a, const ball_file *b)
+{
+    assert_int_equal(a->size, b->size);
+    assert_memory_equal(a->bytes, b->bytes, a->size);
+}
+
+#endif

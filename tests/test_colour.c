@@ -1,0 +1,481 @@
+/* test_colour.c - train/colour.h: which cameras are corrected, the map and its gradients against central differences in double
+ * precision, the step with its gauge; and in training: tints are found, and a view from elsewhere never gets a correction.
+ * That the state survives in checkpoints is tested in test_trainer.c, whose cameras are all corrected.
+ * SPDX-License-Identifier: BSD-2-Clause */
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <cmocka.h>
+
+#include "ball_scene.h"
+#include "train/random.h"
+#include "train/trainer.h"
+
+enum { N = TED4_COLOUR_VALUES, MOST = 40000, CAMERAS = 4 };
+
+/* ---- who is corrected ---- */
+
+/* Pictures by camera; a capital letter marks a held-out picture. want: what each camera shall be. */
+static void check_choice(const char *pictures, const char *want)
+{
+    ted4_picture       pic[32];
+    const ted4_dataset d = { .pictures = pic, .n_pictures = strlen(pictures),
+                             .n_cameras = (uint32_t)strlen(want) };
+    ted4_colour c;
+    size_t      n = 0;
+
+    memset(pic, 0, sizeof pic);
+    for (size_t i = 0; i < d.n_pictures; i++) {
+        pic[i].is_test = pictures[i] < 'a';
+        pic[i].camera_id = (uint32_t)((pictures[i] | 32) - 'a');
+        pic[i].camera.width = 4;
+        pic[i].camera.height = 3;
+    }
+    assert_int_equal(ted4_colour_init(&c, &d), 0);
+    for (uint32_t k = 0; k < d.n_cameras; k++) {
+        assert_int_equal(ted4_colour_has(&c, k), want[k] == '1');
+        n += want[k] == '1';
+    }
+    assert_int_equal(ted4_colour_has(&c, d.n_cameras), 0);
+    assert_int_equal(c.n_corrected, n);
+    assert_int_equal(c.n_cameras, n > 0 ? d.n_cameras : 0);
+    assert_true((c.image == NULL) == (n == 0));
+    ted4_colour_finish(&c);
+}
+
+static void test_choice(void **state)
+{
+    (void)state;
+    check_choice("", "");
+    check_choice("aaaa", "0");                  /* one camera */
+    check_choice("abcdef", "000000");           /* a picture each: views of something still */
+    check_choice("aabb", "11");
+    check_choice("abcabdab", "1100");
+    check_choice("aab", "00");                  /* the only one with two pictures */
+    check_choice("aaBBcc", "101");              /* held-out camera */
+    check_choice("aAbBBb", "00");               /* held-out pictures do not count */
+    check_choice("aaAbbBBB", "11");
+}
+
+/* ---- the map and its gradients ---- */
+
+/* Two cameras and pictures of so many pixels; camera 1 has a map of its own. */
+static void open_colour(ted4_colour *c, size_t pixels)
+{
+    ted4_picture       pic[4];
+    const ted4_dataset d = { .pictures = pic, .n_pictures = 4, .n_cameras = 2 };
+
+    memset(pic, 0, sizeof pic);
+    for (int i = 0; i < 4; i++) {
+        pic[i].camera_id = (uint32_t)i / 2;
+        pic[i].camera.width = (int)pixels;
+        pic[i].camera.height = 1;
+    }
+    assert_int_equal(ted4_colour_init(c, &d), 0);
+    for (uint64_t k = 0; k < N; k++)
+        c->value[1][k] = 0.6f * ted4_uniform(4, k) - 0.3f;
+}
+
+static void random_plane(float *x, size_t n, uint64_t key)
+{
+    for (size_t i = 0; i < n; i++)
+        x[i] = 1.4f * ted4_uniform(key, i) - 0.2f;
+}
+
+static double corrected(const double *map, const double *rgb, int k)
+{
+    double sum = rgb[k] + map[9 + k];
+
+    for (int i = 0; i < 3; i++)
+        sum += rgb[i] * map[3 * i + k];
+    return sum;
+}
+
+/* L = sum of w c'^2 / 2: dL/dc' = w c'. */
+static double loss_of(const double *map, const float *image, const float *weight, size_t pixels)
+{
+    double sum = 0;
+
+    for (size_t i = 0; i < pixels; i++) {
+        const double rgb[3] = { (double)image[i], (double)image[pixels + i],
+                                (double)image[2 * pixels + i] };
+
+        for (int k = 0; k < 3; k++) {
+            const double c = corrected(map, rgb, k);
+
+            sum += 0.5 * (double)weight[(size_t)k * pixels + i] * c * c;
+        }
+    }
+    return sum;
+}
+
+static void expect_near(double got, double want, double scale, const char *what, size_t i)
+{
+    if (!(fabs(got - want) <= 2e-5 * scale))
+        fail_msg("%s %zu: %.9g, central difference %.9g", what, i, got, want);
+}
+
+static void check_map_gradient(const ted4_colour *c, const float *image, const float *weight,
+                               size_t pixels, const float *gradient)
+{
+    double map[N], scale = 0;
+
+    for (int k = 0; k < N; k++) {
+        map[k] = (double)c->value[1][k];
+        scale = fmax(scale, fabs((double)gradient[k]));
+    }
+    for (size_t k = 0; k < N; k++) {
+        const double h = 1e-4, at = map[k];
+
+        map[k] = at + h;
+        const double up = loss_of(map, image, weight, pixels);
+
+        map[k] = at - h;
+        const double down = loss_of(map, image, weight, pixels);
+
+        map[k] = at;
+        expect_near((double)gradient[k], (up - down) / (2 * h), scale, "map", k);
+    }
+}
+
+static void check_image_gradient(const ted4_colour *c, const float *image, const float *weight,
+                                 size_t pixels, const float *d_image)
+{
+    double map[N];
+
+    for (int k = 0; k < N; k++)
+        map[k] = (double)c->value[1][k];
+    for (size_t i = 0; i < 3 * pixels; i += 1 + pixels / 50) {
+        const double h = 1e-4;
+        const size_t p = i % pixels;
+        float        one[3], w[3];
+        double       sum[2];
+
+        for (size_t k = 0; k < 3; k++)
+            w[k] = weight[k * pixels + p];
+        for (int side = 0; side < 2; side++) {
+            double rgb[3], loss = 0;
+
+            for (size_t k = 0; k < 3; k++)
+                rgb[k] = (double)image[k * pixels + p];
+            rgb[i / pixels] += side ? h : -h;
+            for (int k = 0; k < 3; k++)
+                loss += 0.5 * (double)w[k] * pow(corrected(map, rgb, k), 2);
+            sum[side] = loss;
+        }
+        for (size_t k = 0; k < 3; k++)
+            one[k] = d_image[k * pixels + p];
+        expect_near((double)one[i / pixels], (sum[1] - sum[0]) / (2 * h), 1, "picture", i);
+    }
+}
+
+static void test_gradients(void **state)
+{
+    static const size_t sizes[] = { 1, 37, 1024, 16 * 1024, 16 * 1024 + 1, MOST };
+    static float        image[3 * MOST], weight[3 * MOST], d_image[3 * MOST];
+
+    (void)state;
+    for (size_t s = 0; s < sizeof sizes / sizeof sizes[0]; s++) {
+        const size_t    n = sizes[s];
+        ted4_colour     c;
+        ted4_colour_map gradient;
+
+        open_colour(&c, n);
+        random_plane(image, 3 * n, 1);
+        random_plane(weight, 3 * n, 2);
+        const float *out = ted4_colour_apply(&c, 1, image, n, NULL);
+
+        for (size_t i = 0; i < 3 * n; i++)
+            d_image[i] = weight[i] * out[i];
+        ted4_colour_backward(&c, 1, image, n, NULL, d_image, gradient);
+        check_map_gradient(&c, image, weight, n, gradient);
+        check_image_gradient(&c, image, weight, n, d_image);
+        ted4_colour_finish(&c);
+    }
+}
+
+/* Camera 0 has the identity still: no bit of the picture or of its gradient may change. */
+static void test_identity(void **state)
+{
+    static float    image[3 * MOST], d_image[3 * MOST];
+    ted4_colour     c;
+    ted4_colour_map gradient;
+
+    (void)state;
+    open_colour(&c, MOST);
+    random_plane(image, 3 * MOST, 1);
+    random_plane(d_image, 3 * MOST, 2);
+    assert_memory_equal(ted4_colour_apply(&c, 0, image, MOST, NULL), image, sizeof image);
+    ted4_colour_backward(&c, 0, image, MOST, NULL, d_image, gradient);
+    random_plane(image, 3 * MOST, 2);
+    assert_memory_equal(d_image, image, sizeof image);
+    ted4_colour_finish(&c);
+}
+
+static void run_backwards(void *user, size_t n, void (*body)(void *arg, size_t i), void *arg)
+{
+    (void)user;
+    while (n-- > 0)
+        body(arg, n);
+}
+
+static void run_threads(void *user, size_t n, void (*body)(void *arg, size_t i), void *arg)
+{
+    (void)user;
+#pragma omp parallel for schedule(dynamic, 1) num_threads(3)
+    for (size_t i = 0; i < n; i++)
+        body(arg, i);
+}
+
+static void test_threads(void **state)
+{
+    const ted4_parallel  how[2] = { { run_backwards, NULL }, { run_threads, NULL } };
+    const ted4_parallel *which[3] = { NULL, &how[0], &how[1] };
+    static float         image[3 * MOST], out[3][3 * MOST], d[3][3 * MOST];
+    ted4_colour          c;
+    ted4_colour_map      gradient[3];
+
+    (void)state;
+    open_colour(&c, MOST);
+    random_plane(image, 3 * MOST, 1);
+    for (int i = 0; i < 3; i++) {
+        memcpy(out[i], ted4_colour_apply(&c, 1, image, MOST, which[i]), sizeof out[i]);
+        memcpy(d[i], out[0], sizeof d[i]);
+        ted4_colour_backward(&c, 1, image, MOST, which[i], d[i], gradient[i]);
+        assert_memory_equal(out[i], out[0], sizeof out[0]);
+        assert_memory_equal(d[i], d[0], sizeof d[0]);
+        assert_memory_equal(gradient[i], gradient[0], sizeof gradient[0]);
+    }
+    ted4_colour_finish(&c);
+}
+
+/* ---- the step ---- */
+
+/* The first step of Adam moves each value by the rate, whatever the size of its gradient; then half of it goes to either camera,
+ * for the mean stays the identity. Camera 2 has one picture. */
+static void test_update(void **state)
+{
+    ted4_picture       pic[5];
+    const ted4_dataset d = { .pictures = pic, .n_pictures = 5, .n_cameras = 3 };
+    ted4_colour        c;
+    ted4_colour_map    gradient;
+
+    (void)state;
+    memset(pic, 0, sizeof pic);
+    for (int i = 0; i < 5; i++)
+        pic[i].camera_id = (uint32_t)i / 2;
+    assert_int_equal(ted4_colour_init(&c, &d), 0);
+    for (int k = 0; k < N; k++)
+        gradient[k] = k % 2 ? 3.0f : -0.02f;
+    ted4_colour_update(&c, 0, gradient, 0.01, 0);
+    for (int k = 0; k < N; k++) {
+        assert_true(fabsf(c.value[0][k] - (k % 2 ? -0.005f : 0.005f)) < 1e-6f);
+        assert_true(fabsf(c.value[1][k] + c.value[0][k]) < 1e-8f);
+        assert_true(c.value[2][k] == 0.0f);
+    }
+    /* Each camera counts its own steps: this is the first of camera 1, and brings both back. */
+    ted4_colour_update(&c, 1, gradient, 0.01, 0);
+    for (int k = 0; k < N; k++)
+        assert_true(fabsf(c.value[0][k]) < 1e-6f && fabsf(c.value[1][k]) < 1e-6f);
+    for (uint64_t step = 0; step < 300; step++) {
+        for (uint64_t k = 0; k < N; k++)
+            gradient[k] = ted4_uniform(step, k) - 0.45f;
+        ted4_colour_update(&c, (uint32_t)(step * 5 / 3 % 2), gradient, 0.01, 1e-3);
+    }
+    for (int k = 0; k < N; k++) {
+        assert_true(fabsf(c.value[0][k] + c.value[1][k]) < 1e-6f && c.value[2][k] == 0.0f);
+        assert_true(fabsf(c.value[0][k]) > 1e-4f);
+    }
+    ted4_colour_finish(&c);
+}
+
+/* The penalty's gradient is 2 w x: a gradient a little smaller gives way to it, a little larger does not. */
+static void test_penalty(void **state)
+{
+    (void)state;
+    for (int side = 0; side < 2; side++) {
+        ted4_colour     c;
+        ted4_colour_map gradient, before;
+
+        open_colour(&c, 1);
+        for (int k = 0; k < N; k++) {
+            c.value[0][k] = -c.value[1][k];
+            before[k] = c.value[1][k];
+            gradient[k] = (side ? -2.001f : -1.999f) * 0.3f * before[k];
+        }
+        ted4_colour_update(&c, 1, gradient, 1e-3, 0.3);
+        for (int k = 0; k < N; k++)
+            assert_true((fabsf(c.value[1][k]) > fabsf(before[k])) == side);
+        ted4_colour_finish(&c);
+    }
+}
+
+/* ---- in training ---- */
+
+/* What camera k did to the picture's colours, in mean the identity: gain of red and blue, offset of green. */
+static const float tint[CAMERAS][3] = { { 0.12f, -0.08f, 0.04f }, { -0.12f, 0.03f, -0.02f },
+                                        { 0.06f, 0.10f, -0.05f }, { -0.06f, -0.05f, 0.03f } };
+
+static float tinted(const float *x, const float *rgb, int k)
+{
+    return k == 1 ? rgb[1] + x[2] : rgb[k] * (1.0f + x[k / 2]);
+}
+
+static uint8_t to_byte(float x)
+{
+    return (uint8_t)(255.0f * fminf(fmaxf(x, 0.0f), 1.0f) + 0.5f);
+}
+
+/* The same pictures as their cameras would have taken them, less bright first, so that none is clipped. */
+static void tint_pictures(const tiny_folder *f, ted4_dataset *d)
+{
+    for (size_t i = 0; i < d->n_pictures; i++) {
+        const ted4_picture *pic = &d->pictures[i];
+        const uint8_t      *px = ted4_dataset_pixels(d, i, NULL);
+        uint8_t             out[3 * BALL_W * BALL_H];
+
+        assert_non_null(px);
+        for (int q = 0; q < BALL_W * BALL_H; q++) {
+            float rgb[3];
+
+            for (int k = 0; k < 3; k++)
+                rgb[k] = 0.1f + 0.7f * (float)px[3 * q + k] / 255.0f;
+            for (int k = 0; k < 3; k++)
+                out[3 * q + k] = to_byte(tinted(tint[pic->camera_id], rgb, k));
+        }
+        ted4_dataset_release(d, i);
+        tiny_png(f, pic->path + strlen(f->path) + 1, BALL_W, BALL_H, PNG_FORMAT_RGB, out);
+    }
+}
+
+typedef struct { tiny_folder folder; ted4_dataset data; } scene;
+
+static void open_scene(scene *s)
+{
+    const ted4_dataset_options o = { 1, 0, 3, 1 << 20, 0 };
+    ted4_message m;
+
+    s->folder = tiny_new();
+    ball_scene(&s->folder, 5, 0);
+    for (int tints = 0; tints < 2; tints++) {
+        if (ted4_dataset_load(&s->data, s->folder.path, &o, &m) != 0)
+            fail_msg("%s", m.text);
+        assert_int_equal(s->data.n_cameras, CAMERAS);
+        if (tints == 0) {
+            tint_pictures(&s->folder, &s->data);
+            ted4_dataset_free(&s->data);
+        }
+    }
+}
+
+static void close_scene(scene *s)
+{
+    ted4_dataset_free(&s->data);
+    tiny_free(&s->folder);
+}
+
+/* Few Gaussians, so that they cannot show each camera a face of its own. */
+static void train(ted4_trainer *t, ted4_dataset *d, int colour, int steps)
+{
+    static const char *const small[] = {
+        "stage1=1000", "stage2=0", "colour_start=0.1", "lr_colour=0.004", "offsets=2", "feature=8",
+        "motion=0", "activation=0", "head_width=12", "init_anchors=60", "max_anchors=60",
+        "lr_feature=0.03", "lr_heads=0.02", "lr_scaling=0.03", "lr_offset=0.03", "view=0",
+    };
+    ted4_train_options o;
+    char why[256];
+
+    assert_int_equal(ted4_options_preset(&o, "draft"), 0);
+    for (size_t i = 0; i < sizeof small / sizeof small[0]; i++)
+        if (ted4_options_set(&o, small[i], why, sizeof why) != 0)
+            fail_msg("%s", why);
+    o.colour = colour;
+    if (ted4_trainer_init(t, &o, d, NULL) != 0)
+        fail_msg("%s", t->message.text);
+    for (int i = 0; i < steps; i++)
+        if (ted4_trainer_step(t) != 0)
+            fail_msg("%s", t->message.text);
+}
+
+/* Mean squared difference that is left, and that there was, between what the cameras did to the scene's colours and the maps. */
+static double tint_left(ted4_colour *colour, double *there)
+{
+    static const float seen[4][3] = { { 0.7f, 0.26f, 0.21f }, { 0.24f, 0.65f, 0.32f },
+                                      { 0.26f, 0.35f, 0.73f }, { 0.1f, 0.1f, 0.1f } };
+    double left = 0;
+
+    *there = 0;
+    for (uint32_t c = 0; c < CAMERAS; c++)
+        for (int i = 0; i < 4; i++) {
+            const float *out = ted4_colour_apply(colour, c, seen[i], 1, NULL);
+
+            for (int k = 0; k < 3; k++) {
+                const float want = tinted(tint[c], seen[i], k);
+
+                left += pow((double)(out[k] - want), 2);
+                *there += pow((double)(seen[i][k] - want), 2);
+            }
+        }
+    return left;
+}
+
+static void test_finds_tints(void **state)
+{
+    ted4_trainer plain, with;
+    scene        s;
+    double       left, there;
+
+    (void)state;
+    open_scene(&s);
+    train(&plain, &s.data, 0, 1000);
+    train(&with, &s.data, 1, 1000);
+    assert_int_equal(plain.colour.n_cameras, 0);
+    assert_int_equal(with.colour.n_corrected, CAMERAS);
+    assert_true(with.progress.l1 < 0.5 * plain.progress.l1);
+    left = tint_left(&with.colour, &there);
+    if (!(left < 0.25 * there))
+        fail_msg("%.3g of %.3g is left", left, there);
+    ted4_trainer_finish(&plain);
+    ted4_trainer_finish(&with);
+    close_scene(&s);
+}
+
+/* Not before its time; and never in a preview, which is how held-out pictures are compared. */
+static void test_where(void **state)
+{
+    ted4_trainer t;
+    scene        s;
+    double       before;
+
+    (void)state;
+    open_scene(&s);
+    train(&t, &s.data, 1, 100);
+    for (uint32_t c = 0; c < CAMERAS; c++)
+        for (int k = 0; k < N; k++)
+            assert_true(t.colour.value[c][k] == 0.0f);
+    assert_int_equal(ted4_trainer_step(&t), 0);
+    assert_int_equal(t.colour.steps[0] + t.colour.steps[1] + t.colour.steps[2] + t.colour.steps[3], 1);
+    before = ted4_trainer_preview(&t, 4);
+    for (uint32_t c = 0; c < CAMERAS; c++)
+        t.colour.value[c][9] = 0.5f;
+    assert_true(before > 0 && ted4_trainer_preview(&t, 4) == before);
+    ted4_trainer_finish(&t);
+    close_scene(&s);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(test_choice),
+        cmocka_unit_test(test_gradients),
+        cmocka_unit_test(test_identity),
+        cmocka_unit_test(test_threads),
+        cmocka_unit_test(test_update),
+        cmocka_unit_test(test_penalty),
+        cmocka_unit_test(test_finds_tints),
+        cmocka_unit_test(test_where),
+    };
+
+    return cmocka_run_group_tests_name("colour", tests, NULL, NULL);
+}

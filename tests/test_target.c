@@ -1,0 +1,130 @@
+/* test_target.c - the program ted4enc with --target-size and --stage1: the size asked for is met from below, a second run begins where stage 1 ended.
+ * Looks for the program in $TED4_BUILD (set by tests/run.sh); skips when that is not set.
+ * SPDX-License-Identifier: BSD-2-Clause */
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <sys/wait.h>
+#include <unistd.h>
+#include <cmocka.h>
+
+#include "ball_scene.h"
+
+static tiny_folder folder;
+static const char *build;
+
+/* Runs ted4enc on the scene with small networks; its exit code, standard error in FOLDER/err. */
+static int encode(const char *arguments)
+{
+    char command[4096];
+
+    if (build == NULL) {
+        print_message("skipped: TED4_BUILD is not set\n");
+        skip();
+    }
+
+    snprintf(command, sizeof command,
+             "cd %s && %s/ted4enc . -f -j1 --preset draft --iterations 150,250 --set offsets=4 --set feature=8 --set phi=4"
+             " --set bank_dim=8 --set deform_width=8 --set head_width=12 --set hyper_width=8 --set ar_width=8 --set slices=2"
+             " --set octaves=4 --set init_anchors=150 --set max_anchors=260 %s 2>err", folder.path, build, arguments);
+
+    const int status = system(command);
+
+    assert_true(WIFEXITED(status));
+    return WEXITSTATUS(status);
+}
+
+static long size_of(const char *name)
+{
+    FILE *f = fopen(tiny_path(&folder, name), "rb");
+
+    assert_non_null(f);
+    fseek(f, 0, SEEK_END);
+
+    const long size = ftell(f);
+
+    fclose(f);
+    return size;
+}
+
+static int contains(const char *name, const char *text)
+{
+    static char all[1 << 16];
+    FILE *f = fopen(tiny_path(&folder, name), "rb");
+
+    assert_non_null(f);
+    all[fread(all, 1, sizeof all - 1, f)] = '\0';
+    fclose(f);
+    return strstr(all, text) != NULL;
+}
+
+static int same(const char *a, const char *b)
+{
+    char command[1024];
+
+    snprintf(command, sizeof command, "cd %s && cmp -s %s %s", folder.path, a, b);
+    return system(command) == 0;
+}
+
+/* A size between those of two lambdas far apart, from either side. */
+static void test_met(void **state)
+{
+    static const char *const lambdas[] = { "1e-5", "1" };
+    char arguments[128];
+    long size[2], target;
+
+    (void)state;
+    for (int i = 0; i < 2; i++) {
+        snprintf(arguments, sizeof arguments, "-o end%d.ted4 --lambda %s --stage1 s1", i, lambdas[i]);
+        assert_int_equal(encode(arguments), 0);
+        size[i] = size_of(i ? "end1.ted4" : "end0.ted4");
+    }
+    assert_true(size[1] < size[0] * 97 / 100);
+    target = (size[0] + size[1]) / 2;
+    for (int i = 0; i < 2; i++) {
+        snprintf(arguments, sizeof arguments, "-o target.ted4 --lambda %s --target-size %ld --stage1 s1",
+                 lambdas[i], target);
+        if (encode(arguments) != 0)
+            fail_msg("%ld bytes were not met", target);
+        if (size_of("target.ted4") > target || size_of("target.ted4") < target * 98 / 100)
+            fail_msg("%ld bytes asked for, %ld made", target, size_of("target.ted4"));
+    }
+}
+
+static void test_not_met(void **state)
+{
+    (void)state;
+    assert_int_equal(encode("-o small.ted4 --target-size 500"), 2);
+    assert_true(contains("err", "warning"));
+    assert_true(size_of("small.ted4") > 500 && size_of("small.ted4") < size_of("end0.ted4"));
+}
+
+/* The same file from a shared end of stage 1, which the run does not write again; another scene's or other options' is refused. */
+static void test_stage1(void **state)
+{
+    (void)state;
+    assert_int_equal(encode("-o whole.ted4 --lambda 0.01"), 0);
+    assert_int_equal(encode("-o first.ted4 --stage1 s2"), 0);
+    assert_int_equal(encode("-o shared.ted4 --lambda 0.01 --stage1 s2"), 0);
+    assert_true(same("whole.ted4", "shared.ted4") && !same("whole.ted4", "first.ted4"));
+    assert_int_equal(encode("-o other.ted4 --set view=0 --stage1 s2"), 3);
+    assert_true(contains("err", "s2: not a checkpoint"));
+    assert_int_equal(access(tiny_path(&folder, "other.ted4"), F_OK), -1);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(test_met), cmocka_unit_test(test_not_met), cmocka_unit_test(test_stage1),
+    };
+
+    build = getenv("TED4_BUILD");
+    folder = tiny_new();
+    ball_scene(&folder, 5, 1);
+
+    const int failed = cmocka_run_group_tests(tests, NULL, NULL);
+
+    tiny_free(&folder);
+    return failed;
+}

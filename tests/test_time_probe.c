@@ -1,0 +1,109 @@
+/* test_time_probe.c - train/time_probe.c: time is kept where things move and dropped where nothing does, and trying it leaves no trace in the branch that is kept.
+ * SPDX-License-Identifier: BSD-2-Clause */
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <cmocka.h>
+
+#include "ball_trainer.h"
+
+/* A branch of 200 steps, from a quarter of stage 1 on. */
+enum { STAGE1 = 2000, BEGIN = STAGE1 / 4, BRANCH = 200, FRAMES = 5 };
+
+static ted4_train_options options(const char *probe)
+{
+    ted4_train_options o = ball_options();
+
+    ball_set(&o, "stage1=2000");
+    ball_set(&o, probe);
+    return o;
+}
+
+/* A trainer just after the probe. */
+static void train(ted4_trainer *t, ted4_dataset *d, const char *probe)
+{
+    const ted4_train_options o = options(probe);
+
+    ball_begin(t, &o, d, NULL);
+    ball_train(t, BEGIN + BRANCH + 1);
+}
+
+static void test_moving(void **state)
+{
+    tiny_folder  folder;
+    ted4_dataset d;
+    ted4_trainer a, b;
+
+    (void)state;
+    ball_load(&folder, &d, FRAMES, 1);
+    train(&a, &d, "probe=0.1");
+    train(&b, &d, "probe=0");
+    assert_true(a.probed && a.probe_loss[0] > 0 && a.probe_loss[0] < 0.95 * a.probe_loss[1]);
+    assert_true(b.probed && b.probe_loss[0] == 0 && b.probe_loss[1] == 0);
+    assert_int_equal(a.layout.head.motion, TED4_MOTION_BANK);
+    assert_int_equal(a.layout.head.activation, 1);
+
+    /* The branch that was kept is the training that would have been without a probe. */
+    assert_int_equal(a.iteration, b.iteration);
+    assert_int_equal(a.anchors.n, b.anchors.n);
+    for (int k = 0; k < TED4_ROWS; k++)
+        assert_memory_equal(a.anchors.data[k], b.anchors.data[k],
+                            a.anchors.n_blocks * (size_t)a.anchors.rows[k] * TED4_LANES * sizeof(float));
+    assert_memory_equal(a.net, b.net, a.layout.n_net * sizeof *a.net);
+    assert_memory_equal(a.net_v, b.net_v, a.layout.n_net * sizeof *a.net_v);
+    assert_memory_equal(a.order.item, b.order.item, a.order.n * sizeof *a.order.item);
+    assert_int_equal(a.order.next, b.order.next);
+    ted4_trainer_finish(&a);
+    ted4_trainer_finish(&b);
+    ted4_dataset_free(&d);
+    tiny_free(&folder);
+}
+
+static void test_still(void **state)
+{
+    tiny_folder  folder;
+    ted4_dataset d;
+    ted4_trainer t;
+
+    (void)state;
+    ball_load(&folder, &d, FRAMES, 0);
+    train(&t, &d, "probe=0.1");
+    assert_true(t.probed && t.probe_loss[0] > 0.99 * t.probe_loss[1]);
+    assert_int_equal(t.layout.head.motion, TED4_MOTION_NONE);
+    assert_int_equal(t.layout.head.temporal_mask, 0);
+    assert_int_equal(t.layout.head.activation, 0);
+    assert_int_equal(t.layout.shape.n_bank, 0);
+    assert_int_equal(t.clock_stopped, 0);
+    /* Training went back to where the probe began. */
+    assert_int_equal(t.iteration, BEGIN + BRANCH + 1);
+    ted4_trainer_finish(&t);
+    ted4_dataset_free(&d);
+    tiny_free(&folder);
+}
+
+/* Too few steps tell nothing. */
+static void test_short(void **state)
+{
+    tiny_folder  folder;
+    ted4_dataset d;
+    ted4_trainer t;
+
+    (void)state;
+    ball_load(&folder, &d, FRAMES, 0);
+    train(&t, &d, "probe=0.09");
+    assert_true(t.probed && t.probe_loss[0] == 0);
+    assert_int_equal(t.layout.head.motion, TED4_MOTION_BANK);
+    ted4_trainer_finish(&t);
+    ted4_dataset_free(&d);
+    tiny_free(&folder);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(test_moving), cmocka_unit_test(test_still), cmocka_unit_test(test_short),
+    };
+
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
