@@ -75,7 +75,11 @@ function one_run(groups, scene, variant, place, keep, options,    i, all, first,
     seen[tag] = 1
     n_order = 0
     split("", value)
-    take_text(base " " scene_options[scene] " --lambda " lambda[place] " " options)
+    first = base
+    if (options ~ /--preset /)
+        gsub(/--set [^ ]+/, "", first)
+    take_text(first " " scene_options[scene] " --lambda " lambda[place] " " options)
+    first = ""
     for (i = 1; i <= n_order; i++) {
         all = all " " order[i] value[order[i]]
         if (early(order[i]))

@@ -114,7 +114,7 @@ static inline void ball_points(const tiny_folder *f, int moving)
     tiny_text(f, "points.ply", s.text);
 }
 
-/* Every camera sees every frame. */
+/* Every camera sees every frame. moving: how many times its way to time 1 the blue ball goes. */
 static inline void ball_scene(const tiny_folder *f, int frames, int moving)
 {
     static tiny_string s;
@@ -129,7 +129,7 @@ static inline void ball_scene(const tiny_folder *f, int frames, int moving)
         char         name[64];
 
         snprintf(name, sizeof name, "images/c%d_f%d.png", camera, frame);
-        ball_picture(f, name, camera, moving ? time : 0);
+        ball_picture(f, name, camera, moving * time);
         ball_camera(camera, axis, centre);
         tiny_add(&s, "%s{\"file_path\": \"%s\", ", i > 0 ? "," : "", name);
         if (frames > 1)

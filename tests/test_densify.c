@@ -417,6 +417,7 @@ static void fade(ted4_trainer *t, size_t i, double mean, float visits)
 {
     *ted4_cell(&t->anchors, TED4_ROW_OPACITY, i, 0) = (float)mean * visits;
     *ted4_cell(&t->anchors, TED4_ROW_OPACITY, i, 1) = visits;
+    *ted4_cell(&t->anchors, TED4_ROW_OPACITY, i, 2) = visits;
 }
 
 /* Anchor 4 i: faded; 4 i + 1: just not; 4 i + 2: faded but not seen enough; 4 i + 3: never seen. */
@@ -443,6 +444,34 @@ static void test_pruning(void **state)
     ted4_trainer_finish(&t);
 }
 
+/* What lives for a short time is judged by the visits at that time, and not before there were some: nine visits, of which so many while it was there; the mean opacity
+ * over those alone decides. */
+static void test_pruning_short_lives(void **state)
+{
+    static const struct { float there; double mean; int goes; } lives[] = {
+        { 0, 0, 0 }, { 7, 0, 0 }, { 8, 0.99, 1 }, { 8, 1.01, 0 },
+    };
+    ted4_trainer t;
+
+    (void)state;
+    cloud_make(&cloud, 5);
+    begin(&t);
+    name_anchors(&t);
+    for (size_t i = 0; i < CLOUD_POINTS; i++) {
+        fade(&t, i, t.opt.prune_opacity * lives[i % 4].mean, lives[i % 4].there);
+        *ted4_cell(&t.anchors, TED4_ROW_OPACITY, i, 1) = VISITS;
+    }
+    assert_int_equal(ted4_densify_adjust(&t), 0);
+    assert_int_equal(t.anchors.n, CLOUD_POINTS * 3 / 4);
+    for (size_t i = 0; i < t.anchors.n; i++) {
+        const int id = (int)*ted4_cell(&t.anchors, TED4_ROW_VALUE, i, 0) - 1;
+
+        assert_false(lives[id % 4].goes);
+        assert_true(*ted4_cell(&t.anchors, TED4_ROW_OPACITY, i, 1) == (lives[id % 4].there < 8 ? VISITS : 0));
+    }
+    ted4_trainer_finish(&t);
+}
+
 static void test_all_faded(void **state)
 {
     ted4_trainer t;
@@ -465,11 +494,20 @@ static void test_gather(void **state)
     static float   opacity[SPLATS], moved[SPLATS];
     static uint8_t visible[SPLATS];
     const ted4_splats s = { .n = SPLATS, .opacity = opacity };
+    ted4_generate_input in = { 0 };
     ted4_trainer   t;
 
     (void)state;
     cloud_make(&cloud, 5);
     begin(&t);
+    in.layout = &t.layout;
+    in.num = 1;
+    in.den = 4;
+    in.activation = 1;
+    for (size_t i = 0; i < CLOUD_POINTS; i++)       /* odd ones come at 1/4 exactly, even ones at 1/2 */
+        for (int c = 0; c < 4; c++)
+            *ted4_cell(&t.anchors, TED4_ROW_VALUE, i, t.layout.first[TED4_TAU] + c) =
+                c % 2 ? -4.0f : i % 2 ? 0.25f : 0.5f;
     for (size_t i = 0; i < SPLATS; i++) {
         opacity[i] = 0.25f * (float)(i % 3);
         moved[i] = (float)i;
@@ -482,8 +520,11 @@ static void test_gather(void **state)
     t.slots.lanes[1] = 0xffffu;
     t.splat_gradient.mean2d = moved;
     t.splat_gradient.visible = visible;
-    ted4_densify_gather(&t, &s);
-    ted4_densify_gather(&t, &s);
+    in.n_slots = t.slots.n;
+    in.attr = t.slots.raw;
+    in.lanes = t.slots.lanes;
+    ted4_densify_gather(&t, &in, &s);
+    ted4_densify_gather(&t, &in, &s);
     for (size_t i = 0; i < t.anchors.n; i++) {
         const size_t slot = i / TED4_LANES == 1 ? 0 : 1, j = i % TED4_LANES;
         const int    seen = i / TED4_LANES == 1 || i / TED4_LANES == 3;
@@ -500,6 +541,8 @@ static void test_gather(void **state)
         assert_true(*ted4_cell(&t.anchors, TED4_ROW_OPACITY, i, 0) == sum);
         assert_true(*ted4_cell(&t.anchors, TED4_ROW_OPACITY, i, 1) ==
                     (seen && (slot == 0 || j < 16) ? 2.0f : 0.0f));
+        assert_true(*ted4_cell(&t.anchors, TED4_ROW_OPACITY, i, 2) ==
+                    (seen && i % 2 && (slot == 0 || j < 16) ? 2.0f : 0.0f));
     }
     ted4_trainer_finish(&t);
 }
@@ -511,7 +554,8 @@ int main(void)
         cmocka_unit_test(test_resize), cmocka_unit_test(test_select),
         cmocka_unit_test(test_sort), cmocka_unit_test(test_growth),
         cmocka_unit_test(test_growth_limits), cmocka_unit_test(test_max_anchors),
-        cmocka_unit_test(test_pruning), cmocka_unit_test(test_all_faded),
+        cmocka_unit_test(test_pruning), cmocka_unit_test(test_pruning_short_lives),
+        cmocka_unit_test(test_all_faded),
         cmocka_unit_test(test_gather),
     };
 

@@ -76,7 +76,7 @@ static void test_moving(void **state)
 
         found++;
         assert_true(0 <= from && from <= to && to <= 1 && to - from < 1);
-        assert_true(fabs((double)tau(&s.trainer, i, 1) - log2(2.0 / (FRAMES - 1))) < 1e-6);
+        assert_true(fabs((double)tau(&s.trainer, i, 1) - log2(0.5 / (FRAMES - 1))) < 1e-6);
         assert_true(radii(&s.trainer, i, 1, 0) > 1.3);
         blue += radii(&s.trainer, i, 2, 0.5 * (from + to)) < 1.5;
     }

@@ -30,7 +30,7 @@ int ted4_anchors_init(ted4_anchors *a, const ted4_layout *l)
     a->rows[TED4_ROW_V]        = l->n_channels;
     a->rows[TED4_ROW_POSITION] = 3;
     a->rows[TED4_ROW_STEP]     = TED4_TYPES;
-    a->rows[TED4_ROW_OPACITY]  = 2;
+    a->rows[TED4_ROW_OPACITY]  = 3;
     a->rows[TED4_ROW_GRADIENT] = 2 * l->head.n_offsets;
     return ted4_anchors_resize(a, 0);
 }

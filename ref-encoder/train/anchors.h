@@ -15,7 +15,7 @@ typedef enum {
     TED4_ROW_M, TED4_ROW_V,     /* n_channels: Adam's moments */
     TED4_ROW_POSITION,          /* 3, normalised space */
     TED4_ROW_STEP,              /* TED4_TYPES: step sizes last seen (stage 2) */
-    TED4_ROW_OPACITY,           /* 2: summed opacity after activation, visits */
+    TED4_ROW_OPACITY,           /* 3: summed opacity after activation, visits, visits while activation was at least a half */
     TED4_ROW_GRADIENT,          /* 2K: summed screen-space gradient, count, by offset */
     TED4_ROWS
 } ted4_row;

@@ -10,7 +10,7 @@
 #include <xxhash.h>
 
 #define MAGIC 0x34444554u       /* "TED4" */
-enum { FORMAT = 3 };
+enum { FORMAT = 4 };
 
 /* One walk for both directions: put() writes or reads the bytes at p. */
 typedef struct {

@@ -15,9 +15,30 @@ enum { DEPTHS = 3 };
 /* An offset may grow, and an anchor may go, once it was seen in this share of the steps since the last adjustment. */
 #define GROW_SEEN  0.4
 #define PRUNE_SEEN 0.8
+/* No anchor goes before it was seen so often while it was there. What lives for one frame of forty is seen by few of the steps between two adjustments, often by none, and
+ * judged by all of them it would go, however right it is at its time. */
+enum { SEEN_THERE = 8 };
+
+/* Lanes of a slot whose activation is at least a half now. */
+static uint32_t lanes_there(const ted4_generate_input *in, size_t slot)
+{
+    const int    first = in->layout->first[TED4_TAU];
+    const float  now = (float)in->num / (float)in->den;
+    uint32_t     there = in->lanes[slot];
+
+    for (int j = 0; in->activation && j < TED4_LANES; j++) {
+        const float *x = in->attr[slot] + first * TED4_LANES + j;
+        const float  u = now < x[0] ? (x[0] - now) / exp2f(x[TED4_LANES])
+                       : now > x[2 * TED4_LANES] ? (now - x[2 * TED4_LANES]) / exp2f(x[3 * TED4_LANES]) : 0.0f;
+
+        if (!(u * u < 0.6931472f))
+            there &= ~((uint32_t)1 << j);
+    }
+    return there;
+}
 
 /* Adds one row of statistics per splat and per anchor. */
-void ted4_densify_gather(ted4_trainer *t, const ted4_splats *s)
+void ted4_densify_gather(ted4_trainer *t, const ted4_generate_input *in, const ted4_splats *s)
 {
     const int           K = t->layout.head.n_offsets;
     const ted4_slots   *sl = &t->slots;
@@ -25,11 +46,14 @@ void ted4_densify_gather(ted4_trainer *t, const ted4_splats *s)
     const uint8_t      *seen = t->splat_gradient.visible;
 
     for (size_t i = 0; i < sl->n; i++) {
-        float *opacity = ted4_block(&t->anchors, TED4_ROW_OPACITY, sl->block[i]);
-        float *gradient = ted4_block(&t->anchors, TED4_ROW_GRADIENT, sl->block[i]);
+        float         *opacity = ted4_block(&t->anchors, TED4_ROW_OPACITY, sl->block[i]);
+        float         *gradient = ted4_block(&t->anchors, TED4_ROW_GRADIENT, sl->block[i]);
+        const uint32_t there = lanes_there(in, i);
 
-        for (int j = 0; j < TED4_LANES; j++)
+        for (int j = 0; j < TED4_LANES; j++) {
             opacity[TED4_LANES + j] += (float)(sl->lanes[i] >> j & 1);
+            opacity[2 * TED4_LANES + j] += (float)(there >> j & 1);
+        }
         for (int k = 0; k < K; k++) {
             const size_t at = (i * (size_t)K + (size_t)k) * TED4_LANES;
             float       *sum = gradient + k * TED4_LANES;
@@ -146,7 +170,7 @@ static int add_anchor(ted4_trainer *t, const candidate *c)
 static int grow(ted4_trainer *t)
 {
     const size_t n = t->anchors.n, K = t->layout.head.n_offsets;
-    const size_t room = n < (size_t)t->opt.max_anchors ? (size_t)t->opt.max_anchors - n : 0;
+    const size_t room = ted4_schedule_room(t);
     candidate   *c = malloc((DEPTHS * n * K + 1) * sizeof *c);
     ted4_cells   set;
     size_t       found = 0;
@@ -179,7 +203,7 @@ static void reset_statistics(ted4_trainer *t, size_t i, int opacity)
             *ted4_cell(&t->anchors, TED4_ROW_GRADIENT, i, k) = 0.0f;
         }
     }
-    for (int r = 0; opacity && r < 2; r++)
+    for (int r = 0; opacity && r < 3; r++)
         *ted4_cell(&t->anchors, TED4_ROW_OPACITY, i, r) = 0.0f;
 }
 
@@ -193,12 +217,13 @@ static int prune(ted4_trainer *t, size_t n_old)
         return ted4_trainer_fail(t, "no memory to prune anchors");
     for (size_t i = 0; i < a->n; i++) {
         const double visits = (double)*ted4_cell(a, TED4_ROW_OPACITY, i, 1);
+        const double there = (double)*ted4_cell(a, TED4_ROW_OPACITY, i, 2);
         const double opacity = (double)*ted4_cell(a, TED4_ROW_OPACITY, i, 0);
-        const int    ripe = visits > PRUNE_SEEN * (double)t->opt.grow_every;
+        const int    ripe = visits > PRUNE_SEEN * (double)t->opt.grow_every && there >= SEEN_THERE;
 
         if (i < n_old)
             reset_statistics(t, i, ripe);
-        if (i >= n_old || !ripe || opacity >= t->opt.prune_opacity * visits)
+        if (i >= n_old || !ripe || opacity >= t->opt.prune_opacity * there)
             order[n++] = (uint32_t)i;
     }
     const int bad = n == 0 ? ted4_trainer_fail(t, "every anchor has faded away")

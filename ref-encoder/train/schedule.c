@@ -3,6 +3,7 @@
 #include <math.h>
 
 #include "adam.h"
+#include "sprout.h"
 #include "trainer.h"
 
 /* Factors between the first and the last step of a stage. */
@@ -124,6 +125,27 @@ void ted4_schedule_network_step(ted4_trainer *t)
 /* Growth begins after a twentieth of stage 1; statistics as soon as the last adjustment is done. */
 #define GROW_FROM 0.05
 
+/* Sprouts come when what stays is drawn well enough for what does not to stand out, and before activation is learnt. */
+#define SPROUT_AT 0.3
+
+static int sprouts_wanted(const ted4_trainer *t)
+{
+    return t->opt.sprouts > 0 && ted4_sprout_possible(t);
+}
+
+static uint64_t sprout_step(const ted4_trainer *t)
+{
+    return (uint64_t)(SPROUT_AT * (double)t->opt.stage1);
+}
+
+size_t ted4_schedule_room(const ted4_trainer *t)
+{
+    const int    reserved = !t->stage2 && t->iteration < sprout_step(t) && sprouts_wanted(t);
+    const size_t most = (size_t)((reserved ? 1.0 - t->opt.sprouts : 1.0) * (double)t->opt.max_anchors);
+
+    return t->anchors.n < most ? most - t->anchors.n : 0;
+}
+
 int ted4_schedule_event(ted4_trainer *t)
 {
     const ted4_train_options *o = &t->opt;
@@ -131,6 +153,8 @@ int ted4_schedule_event(ted4_trainer *t)
 
     if (t->layout.first[TED4_TAU] >= 0 && !t->stage2 && i == activation_start(o) &&
         ted4_activation_begin(t) != 0)
+        return -1;
+    if (!t->stage2 && i == sprout_step(t) && sprouts_wanted(t) && ted4_sprout(t) != 0)
         return -1;
     if (!t->stage2 && i > (uint64_t)(GROW_FROM * (double)stage1) &&
         i <= (uint64_t)(o->grow_until * (double)stage1) &&

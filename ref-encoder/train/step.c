@@ -143,6 +143,17 @@ static int backward(ted4_trainer *t, const ted4_view *v, const ted4_generate_inp
     return 0;
 }
 
+int ted4_trainer_draw(ted4_trainer *t, const ted4_picture *pic, ted4_view *v, float centre[3])
+{
+    ted4_generate_input in;
+    ted4_splats         s;
+
+    if (render(t, pic, 0, v, &in, &s) != 0)
+        return -1;
+    memcpy(centre, in.camera, sizeof in.camera);
+    return 0;
+}
+
 /* Are colours of this picture's camera corrected by now? Before, the scene learns what most cameras agree about. */
 static int is_corrected(const ted4_trainer *t, const ted4_picture *pic)
 {
@@ -150,20 +161,25 @@ static int is_corrected(const ted4_trainer *t, const ted4_picture *pic)
            (t->stage2 || (double)t->iteration >= t->opt.colour_start * (double)t->opt.stage1);
 }
 
+const float *ted4_trainer_shown(ted4_trainer *t, const ted4_picture *pic)
+{
+    const size_t pixels = (size_t)pic->camera.width * (size_t)pic->camera.height;
+
+    return is_corrected(t, pic) ? ted4_colour_apply(&t->colour, pic->camera_id, t->image, pixels,
+                                                    t->parallel)
+                                : t->image;
+}
+
 /* Distortion of t->image against truth; its gradient is in t->d_image, and the camera's colours have made their step. As ted4_loss. */
 static double distortion(ted4_trainer *t, const ted4_picture *pic, const ted4_view *v,
                          const uint8_t *truth, double *l1, double *ssim)
 {
     const size_t    pixels = (size_t)v->width * (size_t)v->height;
-    const int       corrected = is_corrected(t, pic);
-    const float    *image = corrected ? ted4_colour_apply(&t->colour, pic->camera_id, t->image,
-                                                          pixels, t->parallel)
-                                      : t->image;
     ted4_colour_map gradient;
-    const double    loss = ted4_loss(t->loss, image, truth, v->width, v->height,
+    const double    loss = ted4_loss(t->loss, ted4_trainer_shown(t, pic), truth, v->width, v->height,
                                      (float)t->opt.ssim, t->parallel, t->d_image, l1, ssim);
 
-    if (!corrected || !(loss >= 0))
+    if (!is_corrected(t, pic) || !(loss >= 0))
         return loss;
     ted4_colour_backward(&t->colour, pic->camera_id, t->image, pixels, t->parallel, t->d_image,
                          gradient);
@@ -220,7 +236,7 @@ int ted4_trainer_step(ted4_trainer *t)
     if (backward(t, &v, &in, &s, &on_screen) != 0)
         return -1;
     if (!t->stage2)
-        ted4_densify_gather(t, &s);
+        ted4_densify_gather(t, &in, &s);
     if (t->stage2 && ted4_update_rate(t, key) != 0)
         return -1;
     ted4_update_parameters(t);

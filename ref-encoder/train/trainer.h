@@ -92,6 +92,8 @@ double ted4_trainer_preview(ted4_trainer *t, int n);
 void ted4_schedule_rates(const ted4_trainer *t, float *channel_rate);
 void ted4_schedule_network_step(ted4_trainer *t);
 int  ted4_schedule_event(ted4_trainer *t);
+/* By how many anchors growth may still add. */
+size_t ted4_schedule_room(const ted4_trainer *t);
 
 /* After the picture's gradients: update.c.
  * Volume: weight times the mean of the product of scales over the Gaussians on screen; returns how many there are. Bank: mean squared second difference of its rows. Rate
@@ -101,6 +103,11 @@ void   ted4_update_bank(ted4_trainer *t);
 int    ted4_update_rate(ted4_trainer *t, uint64_t key);
 void   ted4_update_parameters(ted4_trainer *t);
 
+/* Draws the model as it is now into t->image, planar, and tells view and camera centre in normalised space. 0, or -1 with t->message. step.c */
+int  ted4_trainer_draw(ted4_trainer *t, const ted4_picture *pic, ted4_view *v, float centre[3]);
+/* t->image with the colours of the picture's camera; valid until either is drawn again. step.c */
+const float *ted4_trainer_shown(ted4_trainer *t, const ted4_picture *pic);
+
 /* Visible blocks of a view: slots.c */
 int  ted4_slots_fill(ted4_trainer *t, const ted4_view *v);
 void ted4_slots_finish(ted4_slots *s);
@@ -108,7 +115,7 @@ void ted4_slots_finish(ted4_slots *s);
 uint32_t ted4_block_visible(const ted4_trainer *t, size_t block, const ted4_view *v);
 
 /* Densification: densify.c. gather adds the statistics of a step; adjust grows and prunes. */
-void ted4_densify_gather(ted4_trainer *t, const ted4_splats *s);
+void ted4_densify_gather(ted4_trainer *t, const ted4_generate_input *in, const ted4_splats *s);
 int  ted4_densify_adjust(ted4_trainer *t);
 
 /* Stage changes: stages.c */

@@ -1,0 +1,132 @@
+/* sightings.c - see sightings.h.
+ * SPDX-License-Identifier: BSD-2-Clause */
+#include "sightings.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "space.h"
+
+/* Share of the cameras that must agree at the best time, and how far from the best a time may be to count. */
+#define BEST_AGREES   0.5f
+#define NEAR_BEST     0.7f
+/* A span of more than this share of all times is no transient. */
+#define LONGEST_SHARE 0.5f
+
+typedef struct {
+    ted4_sightings *s;
+    const uint8_t  *pixels;
+    ted4_view       view;
+    uint32_t        frame;
+} match_job;
+
+/* Points of one job. */
+enum { RUN = 4096 };
+
+static void match_run(void *arg, size_t run)
+{
+    const match_job *j = arg;
+    ted4_sightings  *s = j->s;
+    const size_t     end = (run + 1) * RUN < s->n ? (run + 1) * RUN : s->n;
+
+    for (size_t i = run * RUN; i < end; i++) {
+        const size_t at = j->frame * s->n + i;
+        size_t       pixel;
+        float        depth;
+
+        if (!ted4_view_pixel(&j->view, s->point + 3 * i, &pixel, &depth))
+            continue;
+        s->seen[at]++;
+        if (ted4_colour_agrees(j->pixels + 3 * pixel, s->colour + 3 * i))
+            s->hits[at]++;
+    }
+}
+
+static int match_pictures(ted4_sightings *s, ted4_trainer *t)
+{
+    match_job j = { .s = s };
+
+    for (size_t i = 0; i < t->data->n_pictures; i++) {
+        const ted4_picture *pic = &t->data->pictures[i];
+        float               centre[3];
+
+        if (pic->is_test)
+            continue;
+        for (size_t k = i + 1; k < t->data->n_pictures && k <= i + TED4_DATASET_AHEAD; k++)
+            if (!t->data->pictures[k].is_test)
+                ted4_dataset_ahead(t->data, k);
+        j.pixels = ted4_dataset_pixels(t->data, i, &t->message);
+        if (j.pixels == NULL)
+            return -1;
+        ted4_space_view(&t->layout.head, &pic->camera, &j.view, centre);
+        j.frame = pic->frame;
+        ted4_parallel_for(t->parallel, (s->n + RUN - 1) / RUN, match_run, &j);
+        ted4_dataset_release(t->data, i);
+    }
+    return 0;
+}
+
+int ted4_sightings_count(ted4_sightings *s, ted4_trainer *t, const float *point, const uint8_t *colour, size_t n)
+{
+    memset(s, 0, sizeof *s);
+    s->point = point;
+    s->colour = colour;
+    s->n = n;
+    s->n_frames = t->data->n_frames;
+    s->hits = calloc(s->n_frames * n + 1, sizeof *s->hits);
+    s->seen = calloc(s->n_frames * n + 1, sizeof *s->seen);
+    if (s->hits == NULL || s->seen == NULL)
+        return ted4_trainer_fail(t, "no memory to look for what comes and goes");
+    return match_pictures(s, t);
+}
+
+void ted4_sightings_free(ted4_sightings *s)
+{
+    free(s->hits);
+    free(s->seen);
+    memset(s, 0, sizeof *s);
+}
+
+static float agreement(const ted4_sightings *s, uint32_t frame, size_t i)
+{
+    const size_t at = frame * s->n + i;
+
+    return s->seen[at] >= TED4_CAMERAS_NEEDED ? (float)s->hits[at] / (float)s->seen[at] : 0.0f;
+}
+
+int ted4_sightings_span(const ted4_sightings *s, size_t i, uint32_t *from, uint32_t *to)
+{
+    uint32_t best = 0, count = 0;
+    float    top = 0;
+
+    for (uint32_t f = 0; f < s->n_frames; f++) {
+        const float a = agreement(s, f, i);
+
+        if (a > top) {
+            top = a;
+            best = f;
+        }
+    }
+    for (uint32_t f = 0; f < s->n_frames; f++)
+        count += agreement(s, f, i) >= NEAR_BEST * top;
+    if (top < BEST_AGREES || (float)count > LONGEST_SHARE * (float)s->n_frames)
+        return 0;
+    *from = *to = best;
+    while (*from > 0 && agreement(s, *from - 1, i) >= NEAR_BEST * top)
+        --*from;
+    while (*to + 1 < s->n_frames && agreement(s, *to + 1, i) >= NEAR_BEST * top)
+        ++*to;
+    return 1;
+}
+
+void ted4_span_set(ted4_trainer *t, size_t i, uint32_t from, uint32_t to)
+{
+    const int   first = t->layout.first[TED4_TAU];
+    const float frame = 1.0f / (float)(t->data->n_frames - 1);
+
+    *ted4_cell(&t->anchors, TED4_ROW_VALUE, i, first) = (float)from * frame;
+    *ted4_cell(&t->anchors, TED4_ROW_VALUE, i, first + 1) = log2f(0.5f * frame);
+    *ted4_cell(&t->anchors, TED4_ROW_VALUE, i, first + 2) = (float)to * frame;
+    *ted4_cell(&t->anchors, TED4_ROW_VALUE, i, first + 3) = log2f(0.5f * frame);
+}

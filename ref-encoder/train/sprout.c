@@ -1,0 +1,225 @@
+/* sprout.c - see sprout.h: which places become anchors, and what the anchors begin with.
+ * SPDX-License-Identifier: BSD-2-Clause */
+#include "sprout.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "cells.h"
+#include "random.h"
+#include "sightings.h"
+#include "space.h"
+
+int ted4_sprout_possible(const ted4_trainer *t)
+{
+    int most = 0;
+
+    if (t->layout.first[TED4_TAU] < 0 || t->data->n_frames < 2)
+        return 0;
+
+    uint16_t *count = calloc(t->data->n_frames, sizeof *count);
+
+    for (size_t i = 0; count != NULL && i < t->data->n_pictures; i++) {
+        const ted4_picture *pic = &t->data->pictures[i];
+
+        if (!pic->is_test && ++count[pic->frame] > most)
+            most = count[pic->frame];
+    }
+    free(count);
+    return most >= TED4_CAMERAS_NEEDED;
+}
+
+/* What anchors look like now: mean colour of the offsets, weighted by opacity, and summed opacity. */
+typedef struct {
+    float *rgb, *opacity;       /* owned: [n][3], [n] */
+} looks;
+
+static void look(const ted4_trainer *t, const ted4_splats *s, looks *l)
+{
+    const size_t K = t->layout.head.n_offsets;
+
+    for (size_t i = 0; i < t->anchors.n; i++) {
+        float sum = 1e-6f, rgb[3] = { 0 };
+
+        for (size_t k = 0; k < K; k++) {
+            const size_t at = (i / TED4_LANES * K + k) * TED4_LANES + i % TED4_LANES;
+            const float  o = fmaxf(s->opacity[at], 0.0f);
+
+            sum += o;
+            for (int c = 0; c < 3; c++)
+                rgb[c] += o * s->colour[c][at];
+        }
+        for (int c = 0; c < 3; c++)
+            l->rgb[3 * i + (size_t)c] = rgb[c] / sum;
+        l->opacity[i] = sum;
+    }
+}
+
+/* 0, or -1 with t->message. */
+static int look_at_anchors(ted4_trainer *t, looks *l)
+{
+    ted4_view           v;
+    ted4_splats         s;
+    ted4_generate_input in = { &t->layout, t->net, 0, NULL, NULL, NULL, 0, 1, { 0 }, 0 };
+
+    l->rgb = malloc(3 * t->anchors.n * sizeof *l->rgb);
+    l->opacity = malloc(t->anchors.n * sizeof *l->opacity);
+    if (l->rgb == NULL || l->opacity == NULL)
+        return ted4_trainer_fail(t, "no memory to look at anchors");
+    if (ted4_slots_fill(t, NULL) != 0)
+        return -1;
+    ted4_space_view(&t->layout.head, &t->data->pictures[t->order.item[0]].camera, &v, in.camera);
+    in.n_slots = t->slots.n;
+    in.attr = t->slots.raw;
+    in.position = t->slots.position;
+    in.lanes = t->slots.lanes;
+    ted4_generator_pack(t->generator, t->net);
+    if (ted4_generate(t->generator, &in, t->parallel, &s) != 0)
+        return ted4_trainer_fail(t, "no memory to look at anchors");
+    look(t, &s, l);
+    return 0;
+}
+
+/* Anchors less opaque than this lend no features. */
+#define OPAQUE 0.5f
+
+/* Among the first n anchors: the one whose colour comes nearest, and the one that lies nearest. */
+static void find_parents(const ted4_trainer *t, const looks *l, size_t n, const ted4_place *p, size_t *alike, size_t *near)
+{
+    float best_colour = INFINITY, best_place = INFINITY;
+
+    *alike = *near = 0;
+    for (size_t i = 0; i < n; i++) {
+        float colour = l->opacity[i] < OPAQUE ? 10.0f : 0.0f, place = 0;
+
+        for (int k = 0; k < 3; k++) {
+            const float c = l->rgb[3 * i + (size_t)k] - (float)p->colour[k] / 255.0f;
+            const float d = *ted4_cell(&t->anchors, TED4_ROW_POSITION, i, k) - p->point[k];
+
+            colour += c * c;
+            place += d * d;
+        }
+        if (colour < best_colour) {
+            best_colour = colour;
+            *alike = i;
+        }
+        if (place < best_place) {
+            best_place = place;
+            *near = i;
+        }
+    }
+}
+
+/* Its features are those of an anchor of its colour, its motion that of what is near. */
+static int add(ted4_trainer *t, const looks *l, size_t n_old, const ted4_place *p, uint32_t from, uint32_t to)
+{
+    const ted4_layout *y = &t->layout;
+    ted4_anchors      *a = &t->anchors;
+    const size_t       i = a->n;
+    size_t             alike, near;
+
+    if (ted4_anchors_resize(a, i + 1) != 0)
+        return ted4_trainer_fail(t, "no memory for %zu anchors", i + 1);
+    find_parents(t, l, n_old, p, &alike, &near);
+    for (int r = 0; r < y->n_channels; r++)
+        *ted4_cell(a, TED4_ROW_VALUE, i, r) = *ted4_cell(a, TED4_ROW_VALUE, near, r);
+    for (int r = 0; r < y->head.feature_dim; r++)
+        *ted4_cell(a, TED4_ROW_VALUE, i, y->first[TED4_FEATURE] + r) =
+            *ted4_cell(a, TED4_ROW_VALUE, alike, y->first[TED4_FEATURE] + r);
+    for (int j = 0; j < 3; j++)
+        *ted4_cell(a, TED4_ROW_POSITION, i, j) = p->point[j];
+    for (int j = 0; j < 3 * y->head.n_offsets; j++)
+        *ted4_cell(a, TED4_ROW_VALUE, i, y->first[TED4_OFFSET] + j) = 0.0f;
+    for (int j = 0; j < 6; j++)
+        *ted4_cell(a, TED4_ROW_VALUE, i, y->first[TED4_SCALING] + j) = log2f(p->size);
+    ted4_span_set(t, i, from, to);
+    return 0;
+}
+
+/* Marks the cell of a place at the frames of its span; 0: it was marked at its own frame already. */
+static int mark(ted4_cells *taken, const ted4_place *p, uint32_t from, uint32_t to)
+{
+    const double   cell = exp2(ceil(log2((double)p->size)));
+    const uint64_t key = ted4_cell_key(p->point, cell);
+
+    if (!ted4_cells_add(taken, ted4_mix(key + p->frame) | 1))
+        return 0;
+    for (uint32_t f = from; f <= to; f++)
+        if (f != p->frame)
+            ted4_cells_add(taken, ted4_mix(key + f) | 1);
+    return 1;
+}
+
+static int compare_places(const void *x, const void *y)
+{
+    const ted4_place *a = x, *b = y;
+
+    if (a->score != b->score)
+        return a->score > b->score ? -1 : 1;
+    if (a->frame != b->frame)
+        return a->frame < b->frame ? -1 : 1;
+    return memcmp(a->point, b->point, sizeof a->point);
+}
+
+static int plant(ted4_trainer *t, const ted4_places *list, const ted4_sightings *s, const looks *l)
+{
+    const size_t n_old = t->anchors.n;
+    ted4_cells   taken;
+    int          bad = 0;
+
+    if (ted4_cells_init(&taken, list->n * t->data->n_frames) != 0)
+        return ted4_trainer_fail(t, "no memory for new anchors");
+    for (size_t i = 0; !bad && i < list->n && t->anchors.n < (size_t)t->opt.max_anchors; i++) {
+        const ted4_place *p = &list->item[i];
+        uint32_t          from, to;
+
+        if (ted4_sightings_span(s, i, &from, &to) && from <= p->frame && p->frame <= to &&
+            mark(&taken, p, from, to))
+            bad = add(t, l, n_old, p, from, to) != 0;
+    }
+    ted4_cells_finish(&taken);
+    return bad ? -1 : 0;
+}
+
+/* The list in the order of score, and its points and colours by themselves. 0, or -1: no memory. */
+static int arrange(ted4_places *list, float **point, uint8_t **colour)
+{
+    if (list->n > 0)
+        qsort(list->item, list->n, sizeof *list->item, compare_places);
+    *point = malloc((list->n + 1) * 3 * sizeof **point);
+    *colour = malloc(list->n * 3 + 1);
+    if (*point == NULL || *colour == NULL)
+        return -1;
+    for (size_t i = 0; i < list->n; i++) {
+        memcpy(*point + 3 * i, list->item[i].point, sizeof list->item[i].point);
+        memcpy(*colour + 3 * i, list->item[i].colour, 3);
+    }
+    return 0;
+}
+
+int ted4_sprout(ted4_trainer *t)
+{
+    ted4_places    list = { 0 };
+    ted4_sightings s = { 0 };
+    looks          l = { 0 };
+    float         *point = NULL;
+    uint8_t       *colour = NULL;
+    int            bad = 0;
+
+    for (uint32_t f = 0; !bad && f < t->data->n_frames; f++)
+        bad = ted4_sprout_search(t, f, &list) != 0;
+    if (!bad && arrange(&list, &point, &colour) != 0)
+        bad = ted4_trainer_fail(t, "no memory for new anchors");
+    bad = bad || ted4_sightings_count(&s, t, point, colour, list.n) != 0 ||
+          look_at_anchors(t, &l) != 0 || plant(t, &list, &s, &l) != 0;
+    if (!bad && ted4_anchors_sort(&t->anchors) != 0)
+        bad = ted4_trainer_fail(t, "no memory to sort anchors");
+    ted4_sightings_free(&s);
+    free(list.item);
+    free(point);
+    free(colour);
+    free(l.rgb);
+    free(l.opacity);
+    return bad ? -1 : 0;
+}

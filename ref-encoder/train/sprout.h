@@ -1,0 +1,36 @@
+/* sprout.h - new anchors where several cameras at one time agree about something that the model does not show.
+ * Growth splits what is there, so something fast that no initial point stands for never gets an anchor: its error pulls at the background, which is right at every other
+ * time. The places are found as in plane sweeping: for pixels with a large error, depths are tried along the ray, and the colour has to be found, with a
+ * large error, where other cameras of that time see the point. Not in the paper; needs three training cameras at a time, and activation.
+ * Depends on trainer.h, sightings.h. Used by schedule.c and densify.c.
+ * SPDX-License-Identifier: BSD-2-Clause */
+#ifndef TED4_SPROUT_H
+#define TED4_SPROUT_H
+
+#include "trainer.h"
+
+/* A place in normalised space where something is missing. */
+typedef struct {
+    float    point[3];
+    uint8_t  colour[3];
+    uint32_t frame;
+    float    size;              /* distance of neighbouring places, normalised space */
+    float    score;             /* agreement of the cameras times the error; larger is surer */
+} ted4_place;
+
+typedef struct {
+    ted4_place *item;           /* owned */
+    size_t      n, capacity;
+} ted4_places;
+
+/* Does the model have activation, and are there times that enough cameras look at? */
+int ted4_sprout_possible(const ted4_trainer *t);
+
+/* Adds places missing at a frame to the list, at most one a cell of the place's size; in a fixed order. 0, or -1 with t->message. */
+int ted4_sprout_search(ted4_trainer *t, uint32_t frame, ted4_places *list);
+
+/* All frames are searched, and anchors added at the surest places until max_anchors is reached, each with the activation of the times at which its colour is seen there, and the
+ * features of the anchor whose colour comes nearest. 0, or -1 with t->message. */
+int ted4_sprout(ted4_trainer *t);
+
+#endif

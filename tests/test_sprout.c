@@ -1,0 +1,167 @@
+/* test_sprout.c - train/sprout.h: a fast ball that no initial point stands for is found where and when it is, and gets anchors. That they
+ * matter is shown on scenes: bench/report.md.
+ * SPDX-License-Identifier: BSD-2-Clause */
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <stdlib.h>
+#include <string.h>
+#include <cmocka.h>
+
+#include "ball_trainer.h"
+#include "train/sprout.h"
+#include "train/transient.h"
+
+enum { FRAMES = 5, BLUE = 2, SPEED = 2, STEPS = 120 };     /* the blue ball moves 0.5 a frame; its radius is 0.3 */
+
+static tiny_folder  folder;
+static ted4_dataset balls;
+
+/* Points of the blue ball taken out: only pictures tell of it. */
+static int set_up(void **state)
+{
+    size_t n = 0;
+
+    (void)state;
+    ball_load(&folder, &balls, FRAMES, SPEED);
+    for (size_t i = 0; i < balls.n_points; i++) {
+        if (balls.point_rgb[3 * i + 2] > 200)
+            continue;
+        memmove(balls.points + 3 * n, balls.points + 3 * i, 3 * sizeof *balls.points);
+        memmove(balls.point_rgb + 3 * n++, balls.point_rgb + 3 * i, 3);
+    }
+    assert_int_equal(n, 2 * BALL_POINTS);
+    balls.n_points = n;
+    return 0;
+}
+
+static int tear_down(void **state)
+{
+    (void)state;
+    ted4_dataset_free(&balls);
+    tiny_free(&folder);
+    return 0;
+}
+
+static ted4_train_options options(double sprouts)
+{
+    ted4_train_options o = ball_options();
+
+    o.sprouts = sprouts;
+    o.max_anchors = 320;
+    return o;
+}
+
+/* Distance of a point from the middle of the blue ball at a frame, in radii. */
+static double radii(const ted4_trainer *t, const float *p, double frame)
+{
+    const ball b = ball_at(BLUE, SPEED * frame / (FRAMES - 1));
+    double     square = 0;
+
+    for (int k = 0; k < 3; k++) {
+        const double x = (double)t->layout.head.origin[k] + ldexp((double)p[k], t->layout.head.exponent);
+
+        square += (x - b.centre[k]) * (x - b.centre[k]);
+    }
+    return sqrt(square) / b.radius;
+}
+
+static void test_search(void **state)
+{
+    const ted4_train_options o = options(0.3);
+    ted4_places  list = { 0 };
+    ted4_trainer t;
+
+    (void)state;
+    ball_begin(&t, &o, &balls, NULL);
+    ball_train(&t, STEPS);
+    for (uint32_t f = 0; f < 3; f++) {          /* then it leaves the pictures */
+        const size_t first = list.n;
+        size_t       near = 0;
+
+        assert_int_equal(ted4_sprout_search(&t, f, &list), 0);
+        for (size_t i = first; i < list.n; i++) {
+            const double r = radii(&t, list.item[i].point, f);
+
+            assert_true(list.item[i].frame == f && list.item[i].score > 0 && list.item[i].size > 0);
+            near += r > 0.5 && r < 1.5;
+        }
+        if (list.n < first + 10 || near * 10 < (list.n - first) * 8)
+            fail_msg("frame %u: %zu places, %zu on the ball", f, list.n - first, near);
+    }
+    free(list.item);
+    ted4_trainer_finish(&t);
+}
+
+/* Growth leaves room, sprouts take it: short lives, at the ball, at its time. */
+static void test_sprout(void **state)
+{
+    const ted4_train_options o = options(0.3);
+    ted4_trainer t;
+    size_t       n = 0, near = 0;
+
+    (void)state;
+    ball_begin(&t, &o, &balls, NULL);
+    for (size_t i = 0; i < t.anchors.n; i++)
+        assert_false(ted4_is_transient(&t, i));
+    ball_train(&t, STEPS - 1);
+    assert_int_equal(t.anchors.n + ted4_schedule_room(&t), 224);    /* 0.7 of 320 */
+    ball_train(&t, STEPS);
+
+    const size_t before = t.anchors.n;
+
+    ball_train(&t, STEPS + 1);
+    assert_int_equal(t.anchors.n + ted4_schedule_room(&t), 320);
+    for (size_t i = 0; i < t.anchors.n; i++) {
+        const int first = t.layout.first[TED4_TAU];
+        float     p[3];
+
+        if (!ted4_is_transient(&t, i))
+            continue;
+        for (int k = 0; k < 3; k++)
+            p[k] = *ted4_cell(&t.anchors, TED4_ROW_POSITION, i, k);
+
+        const float from = *ted4_cell(&t.anchors, TED4_ROW_VALUE, i, first);
+        const float to = *ted4_cell(&t.anchors, TED4_ROW_VALUE, i, first + 2);
+
+        assert_true(from <= to && to - from <= 0.51f);
+        near += radii(&t, p, 0.5 * (double)(from + to) * (FRAMES - 1)) < 1.7;
+        n++;
+    }
+    if (t.anchors.n < before + 20 || n < t.anchors.n - before || near * 10 < n * 8)
+        fail_msg("%zu new anchors, %zu with short lives, %zu on the ball", t.anchors.n - before, n, near);
+    ted4_trainer_finish(&t);
+}
+
+static void test_impossible(void **state)
+{
+    ted4_train_options o = options(0.3);
+    ted4_trainer t;
+
+    (void)state;
+    o.activation = 0;
+    ball_begin(&t, &o, &balls, NULL);
+    assert_false(ted4_sprout_possible(&t));
+    assert_int_equal(t.anchors.n + ted4_schedule_room(&t), 320);
+    ted4_trainer_finish(&t);
+    o.activation = 1;
+    for (size_t i = 0; i < balls.n_pictures; i++)           /* two cameras a time */
+        balls.pictures[i].is_test = balls.pictures[i].camera_id >= 2;
+    ball_begin(&t, &o, &balls, NULL);
+    assert_false(ted4_sprout_possible(&t));
+    ted4_trainer_finish(&t);
+    for (size_t i = 0; i < balls.n_pictures; i++)
+        balls.pictures[i].is_test = 0;
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(test_search),
+        cmocka_unit_test(test_sprout),
+        cmocka_unit_test(test_impossible),
+    };
+
+    return cmocka_run_group_tests_name("sprout", tests, set_up, tear_down);
+}
