@@ -1,0 +1,87 @@
+# lives.awk - how long anchors are active: row 6 of the issue. Used by bench/report.sh; numbers and pictures by bench/spans.
+# SPDX-License-Identifier: BSD-2-Clause
+
+# kitchen stands in for the paper's fixed rigs, on which it finds slow motion; walk for its hand-held pairs, on which it finds fast motion.
+function span_section(    i, t, slow, fast, ok, text) {
+    say("")
+    say("## How long anchors live")
+    say("")
+    say("Share of anchors by span a_f − a_s, by `bench/spans FILE.ted4`, whole method, λ 0.002. In the paper: Flame Steak (slow) 3 / 0 / 97 %,")
+    say("Banana 9 / 6 / 85 %, Broom (fast) 18 / 35 / 47 %.")
+    table("run,up to 0.2,between,0.8 and more,activation in the file")
+    for (i = 1; i <= n_tags; i++)
+        if (keeps(tag[i], "spans"))
+            span_row(tag[i])
+    span_chart()
+    span_pictures()
+    slow = "kitchen-whole-2"
+    fast = "walk-whole-2"
+    if (get(slow, "span_short") != "" && get(fast, "span_short") != "") {
+        ok = get(fast, "span_short") > get(slow, "span_short") && get(fast, "span_long") < get(slow, "span_long")
+        text = "slow (kitchen): " span_text(slow) "; fast (walk): " span_text(fast) mark_of(slow " " fast)
+    }
+    bar(6, "activation spans up to 0.2 / between / 0.8 and more, and heat maps", \
+        "short spans where things come and go; more of them, and fewer long ones, in the fast scene", text, ok, sweep("kitchen-whole-2 walk-whole-2"))
+}
+
+function span_text(t) {
+    return span_share(t, "short") " / " span_share(t, "between") " / " span_share(t, "long") " %"
+}
+
+function span_share(t, kind) { return fixed(100 * get(t, "span_" kind), 1) }
+
+function span_row(t) {
+    if (get(t, "span_short") == "")
+        row_missing(name_of(t))
+    else
+        row(name_of(t) "|" span_share(t, "short") " %|" span_share(t, "between") " %|" span_share(t, "long") " %|" \
+            (get(t, "activation") + 0 ? "yes" : "no: every span is 1"))
+}
+
+# Columns in order of what lives long; the paper's three beside ours.
+function span_chart(    i, t, any) {
+    stacks_parts("0.8 and more|between|up to 0.2")
+    stacks_colour[1] = "#cccccc"; stacks_colour[2] = "#56b4e9"; stacks_colour[3] = "#d55e00"
+    stacks_begin()
+    any = 0
+    for (i = 1; i <= n_tags; i++) {
+        t = tag[i]
+        if (keeps(t, "spans") && get(t, "span_short") != "") {
+            stacks_column(scene[t], 100 * get(t, "span_long") " " 100 * get(t, "span_between") " " 100 * get(t, "span_short"))
+            any++
+        }
+    }
+    stacks_column("", "")
+    stacks_column("Steak", "97 0 3")
+    stacks_column("Banana", "85 6 9")
+    stacks_column("Broom", "47 35 18")
+    if (any) {
+        chart_open("spans", 900, 348, "Share of anchors by activation span")
+        stacks_draw(0, 4, 740, 340, "Share of anchors by activation span", \
+            "ours by scene; right of the gap the paper's: Flame Steak (slow), Banana (medium), Broom (fast)", "share of anchors, %", "", 1)
+        stacks_legend(752, 46)
+        svg_close()
+    }
+    show_chart("spans", "Share of anchors by activation span")
+}
+
+function span_pictures(    i, t, any) {
+    for (i = 1; i <= n_tags; i++) {
+        t = tag[i]
+        if (!keeps(t, "spans") || get(t, "span_short") == "" || !exists(results "/charts/spans-" t ".png"))
+            continue
+        if (any++ == 0) {
+            say("")
+            say("A held-out camera at the first, middle and last time; below, the same Gaussians in the colour of their anchor's span: blue 0,")
+            say("white one half, red 1 (the strip is the scale), darker where the Gaussian is dark.")
+        }
+        say("")
+        say("![Spans, " t "](charts/spans-" t ".png)")
+    }
+}
+
+function exists(file,    unused, found) {
+    found = (getline unused <file) >= 0
+    close(file)
+    return found
+}

@@ -1,0 +1,141 @@
+#!/bin/sh
+# test_report.sh - bench/report.sh on small tables of rows whose answers can be worked out by hand. Speaks as cmocka programs do; run by `make test` from the
+# project's root.
+# SPDX-License-Identifier: BSD-2-Clause
+set -u
+out=$(mktemp -d)
+trap 'rm -rf "$out"' EXIT
+bad=0
+
+ok()   { echo "[       OK ] $1"; }
+fail() { echo "[  FAILED  ] $1: $2"; bad=1; }
+# check NAME FILE PATTERN...: each fixed string stands in the file.
+check() {
+    name=$1 file=$2; shift 2
+    for p in "$@"; do
+        grep -qF -e "$p" "$file" || { fail "$name" "no \"$p\" in:"; grep -F -e "${p%%[|:]*}" "$file" | head -n 5; return; }
+    done
+    ok "$name"
+}
+make_report() { TED4_RESULTS=$out TED4_PAGES=$out/pages TED4_TABLE=$out/table.txt bench/report.sh "$out/states"; }
+
+cat >"$out/table.txt" <<END
+lambdas 0.001 0.002 0.004 0.008
+base    --preset fast --seed 1
+scene kitchen kitchen --downscale 2
+scene walk    walk    --downscale 2
+run rd       whole      kitchen,walk 1,2,3,4 log
+run variant  concat     kitchen,walk 1,3 - --set motion=2
+run variant  inr        kitchen 1,3     - --set motion=3
+run variant  noactive   kitchen 1,2,3,4 - --set activation=0
+run variant  nomotion   kitchen 1,3     - --set motion=0
+run variant  factorised kitchen 1,3     - --set factorised=1
+run seed     seed2      kitchen 2       - --seed 2
+run seed     seed3      kitchen 2       - --seed 3
+END
+
+# On kitchen the whole method doubles its bytes with each dB, so its curve is a straight line of the logarithm. concat costs half as much again
+# everywhere: +50 %. inr costs nothing at 28 dB and twice the bytes at 30 dB: the mean of the logarithm is that of the square root of 2. noactive
+# costs 2^((p - 27)^3 / 27): the mean of the cubic over 27 to 30 dB is a quarter, 2^0.25 = 1.1892; on straight lines it would be 1.2123. nomotion
+# is 2 dB below at equal bytes. factorised lacks a run. On walk concat is the whole method itself, whose curve is bent there: 0 %.
+cat >"$out/rows" <<END
+kitchen-whole-1,k,--own 1,30,800000,600000,4848000
+kitchen-whole-2,k,o,29,400000,300000,2400000
+kitchen-whole-3,k,o,28,200000,100000,800000
+kitchen-whole-4,k,o,27,100000,50000,400000
+kitchen-concat-1,k,o,30,1200000,100000,800000
+kitchen-concat-3,k,o,28,300000,100000,800000
+kitchen-inr-1,k,o,30,1600000,100000,800000
+kitchen-inr-3,k,o,28,200000,100000,800000
+kitchen-noactive-1,k,o,30,1600000,100000,800000
+kitchen-noactive-2,k,o,29,491205,100000,800000
+kitchen-noactive-3,k,o,28,205201,100000,800000
+kitchen-noactive-4,k,o,27,100000,100000,800000
+kitchen-nomotion-1,k,o,28,800000,100000,800000
+kitchen-nomotion-3,k,o,27,400000,100000,800000
+kitchen-factorised-1,k,o,30,1000000,100000,800000
+kitchen-seed2-2,k,o,29.125,404000,100000,800000
+kitchen-seed3-2,k,o,28.875,400000,100000,800000
+walk-whole-1,k,o,30,800000,100000,800000
+walk-whole-2,k,o,29.5,400000,100000,800000
+walk-whole-3,k,o,28.5,200000,100000,800000
+walk-whole-4,k,o,27.5,210000,100000,800000
+walk-concat-1,k,o,30,800000,100000,800000
+walk-concat-3,k,o,28.5,200000,100000,800000
+END
+{ echo tag,key,options,psnr,bytes,b_feature,estimated_bits; cat "$out/rows"; } >"$out/sweep.csv"
+sed 's/\([^,]*\),.*/done \1/; s/^done kitchen-whole-3$/older kitchen-whole-3/' "$out/rows" >"$out/states"
+mkdir "$out/pages"
+cat >"$out/pages/raster.md" <<END
+\$ make bench-raster
+A machine
+100000 Gaussians, 480x270: 33.0 blended a pixel
+  1 thread               forward   10.00 ms ( 1.00 ns a pair)  backward   18.50 ms ( 1.00)  both   28.50 ms
+  2 threads              forward    6.00 ms ( 1.00 ns a pair)  backward    9.00 ms ( 1.00)  both   15.00 ms
+  speed-up by 2 threads  1.90
+10000 Gaussians, 480x270: 33.0 blended a pixel
+  2 threads              forward    1.00 ms ( 0.10 ns a pair)  backward    1.00 ms ( 0.10)  both    2.00 ms
+  speed-up by 2 threads  1.10
+END
+cat >"$out/pages/render.md" <<END
+\$ make bench-render
+A machine
+preset fast: 12625 moving anchors
+  2 threads  deformation, heads   9.16 ms  picture  20.22 ms  best  29.47 ms =  33.9 frames/s  median  49.89 ms =  31.0 frames/s
+preset paper: 10100 moving anchors
+  2 threads  deformation, heads   9.16 ms  picture  20.22 ms  best  29.47 ms =  39.9 frames/s  median  49.89 ms =  29.5 frames/s
+END
+echo "a note by hand" >"$out/pages/report-notes.md"
+
+make_report || { fail run "status $?"; exit 1; }
+page=$out/report.md
+check straight_lines "$page" '| **concat** | | | | | +50.0 % | -0.58 dB |' '| +50.0 % (lines) |' \
+    '| kitchen: bank against concat | bank better | `--set motion=2`: rate at equal PSNR +50.0 %, PSNR at equal bytes -0.58 dB'
+check same_lambda "$page" '| **concat** | | | | | +0.0 % | +0.00 dB | +0.00 dB, +0.0 % | +0.0 % (lines)'
+check not_of_the_paper "$page" '+0.00 dB, +300.0 % | - | | worse |'
+check mean_of_logarithm "$page" '| +41.4 % (lines) |'
+check cubics "$page" '| +18.9 % (cubic) |'
+check equal_bytes "$page" '`--set motion=0`: rate at equal PSNR +300.0 %, PSNR at equal bytes -2.00 dB; nearest +0.00 dB, +300.0 %† | met |'
+check missing "$page" '| kitchen-factorised-3 | `--set factorised=1` | 0.004 | not run yet |' \
+    '| kitchen: inr prior against factorised prior | factorised costs at least 10 % more rate | - | not run yet |' '23 of 24 wanted runs'
+check stale "$page" '| kitchen-whole-3† | 0.004 |' '| kitchen-whole-2 | 0.002 |' 'kitchen: yes, walk: no† | **missed** |' '1 of them older'
+check estimate "$page" '| whole | 8 | +1.00 % | kitchen-whole-1 |'
+check seeds "$page" 'kitchen: 0.250 dB, 1.00 % of bytes | met |'
+check kept "$page" '15.0 ms; 1.90x;' '(`make test`); A machine | met |' \
+    '| preset fast: 31.0 frames/s (best 33.9); preset paper: 29.5 frames/s (best 39.9); A machine | **missed** |' \
+    '| [train.md](train.md) | a training step by its parts, 2 threads | not run yet |'
+check notes "$page" 'a note by hand'
+check commands "$page" '`ted4enc $TED4_DATA/kitchen --own 1`' \
+    '| kitchen-factorised-3 | `ted4enc $TED4_DATA/kitchen --preset fast --seed 1 --downscale 2 --lambda 0.004 --set factorised=1` | not run yet |'
+check no_chart "$page" '*PSNR over training time for every preset' '5 | speed against accuracy'
+
+# Within the panel. One dB apart each: equal steps up the picture. Twice the bytes each: every step to the right is half the one before, as the
+# curve begins at its right end.
+steps=$(sed -n 's/.*<polyline points="\([^"]*\)".*/\1/p' "$out/charts/rate.svg" | head -n 1 | tr ' ,' '\n ' | awk '
+    function near(a, b) { return a - b < 0.03 && b - a < 0.03 }
+    { x[NR] = $1; y[NR] = $2 }
+    END {
+        right = NR == 4 && x[1] > x[2] && y[2] > y[1]
+        for (i = 1; i <= 4; i++)
+            right = right && x[i] > 62 && x[i] < 450 && y[i] > 28 && y[i] < 280
+        for (i = 2; i < 4; i++)
+            right = right && near(y[i + 1] - y[i], y[i] - y[i - 1]) && near(2 * (x[i] - x[i + 1]), x[i - 1] - x[i])
+        print right ? "right" : "wrong"
+    }')
+[ "$steps" = right ] && ok chart_positions || fail chart_positions "$(grep polyline "$out/charts/rate.svg")"
+
+cp "$page" "$out/first.md"
+cp -r "$out/charts" "$out/first-charts"
+make_report && cmp -s "$page" "$out/first.md" && diff -r "$out/charts" "$out/first-charts" >/dev/null && ok same_bytes ||
+    fail same_bytes "the second page differs"
+
+echo kitchen-seed3-2,k >>"$out/sweep.csv"
+if make_report 2>/dev/null || ! cmp -s "$page" "$out/first.md"; then fail malformed "accepted"; else ok malformed; fi
+
+rm "$out/sweep.csv" "$out/pages/raster.md"
+: >"$out/states"
+make_report || fail empty "status $?"
+check empty "$page" '0 of 24 wanted runs' \
+    '| 8 | forward plus backward, 100,000 Gaussians, 480x270, two cores | at most 20 ms (aim 12); 1 to 2 threads at least 1.8x; bits equal | - | not run yet |'
+if grep -q '^| [0-9]* |.*| met |' "$page" || [ -n "$(ls "$out/charts")" ]; then fail nothing_met "something is met or drawn"; else ok nothing_met; fi
+exit $bad
