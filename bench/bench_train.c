@@ -68,10 +68,11 @@ static part enter(part p)
     return before;
 }
 
-/* The functions in between. type __wrap_name is called where the trainer names name; __real_name is what it then gets. */
+/* The functions in between. type __wrap_name is called where the trainer names name; __real_name is what it then gets. The linker compares no types: the
+ * declaration by __typeof__ does. */
 #define BETWEEN(part, type, name, parameters, arguments) \
+    extern __typeof__(name) __wrap_##name; \
     type __real_##name parameters; \
-    type __wrap_##name parameters; \
     type __wrap_##name parameters \
     { \
         const enum_part before = enter(PART_##part); \
@@ -80,8 +81,8 @@ static part enter(part p)
         return result; \
     }
 #define BETWEEN_VOID(part, name, parameters, arguments) \
+    extern __typeof__(name) __wrap_##name; \
     void __real_##name parameters; \
-    void __wrap_##name parameters; \
     void __wrap_##name parameters \
     { \
         const enum_part before = enter(PART_##part); \
@@ -113,7 +114,7 @@ BETWEEN(GENERATE_BWD, int, ted4_generate_backward,
         (g, in, gr, p, d_attr, d_net))
 BETWEEN(REGULARISE, size_t, ted4_update_volume, (ted4_trainer *t, const ted4_splats *s), (t, s))
 BETWEEN_VOID(REGULARISE, ted4_update_bank, (ted4_trainer *t), (t))
-BETWEEN_VOID(REGULARISE, ted4_densify_gather, (ted4_trainer *t, const ted4_splats *s), (t, s))
+BETWEEN_VOID(REGULARISE, ted4_densify_gather, (ted4_trainer *t, const ted4_generate_input *in, const ted4_splats *s), (t, in, s))
 BETWEEN(RATE, int, ted4_update_rate, (ted4_trainer *t, uint64_t key), (t, key))
 BETWEEN_VOID(ADAM, ted4_update_parameters, (ted4_trainer *t), (t))
 
