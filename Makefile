@@ -24,7 +24,8 @@ ENC_TOOL = $(filter-out ref-encoder/tool/ted4%.c,$(wildcard ref-encoder/tool/*.c
 DEC_PROG = $(patsubst ref-decoder/tool/%.c,%,$(wildcard ref-decoder/tool/ted4*.c))
 ENC_PROG = $(patsubst ref-encoder/tool/%.c,%,$(wildcard ref-encoder/tool/ted4*.c))
 PROGS    = $(addprefix $B/,$(DEC_PROG) $(ENC_PROG) ted4scene)
-TESTS    = $(patsubst tests/%.c,$B/tests/%,$(sort $(wildcard tests/test_*.c)))
+TESTS    = $(patsubst tests/%.c,$B/tests/%,$(sort $(wildcard tests/test_*.c))) \
+           $(patsubst tests/%.sh,$B/tests/%,$(sort $(wildcard tests/test_*.sh)))
 
 all: $(PROGS)
 
@@ -52,6 +53,9 @@ $B/ted4scene: $(patsubst %.c,$B/%.o,$(wildcard tests/scenes/*.c)) $B/libted4enc.
 	$(CC) -fopenmp $(LDFLAGS) $^ -o $@ $(LIBS)
 $B/tests/%: $B/tests/%.o $(DEC_TOOL:%.c=$B/%.o) $B/libted4enc.a $B/libted4dec.a
 	$(CC) -fopenmp $(LDFLAGS) $^ -o $@ -lcmocka $(LIBS)
+$B/tests/%: tests/%.sh
+	@mkdir -p $(@D)
+	install -m 755 $< $@
 
 $B/tests/test_scene $B/tests/test_layouts: $(patsubst %.c,$B/%.o,$(wildcard tests/scenes/ray_*.c))
 
@@ -76,10 +80,10 @@ asan:
 	$(MAKE) test B=build-asan OPT='-O1' CFLAGS='-fsanitize=address,undefined -fno-sanitize-recover=all' \
 	    LDFLAGS='-fsanitize=address,undefined'
 
--include bench/bench.mk fuzz/fuzz.mk
+-include tests/spec/spec.mk tests/strict.mk bench/bench.mk fuzz/fuzz.mk conformance/conf.mk conformance/reader/reader.mk
 
-DEPS     = gcc libc6-dev libcmocka-dev libjansson-dev libjpeg62-turbo-dev libpng-dev libxxhash-dev zlib1g-dev
-DEPS_DEV = clang-14 libclang-rt-14-dev libomp-14-dev ffmpeg gnuplot-nox pandoc lcov valgrind \
+DEPS     = gcc libc6-dev libcmocka-dev libjansson-dev libjpeg62-turbo-dev libpng-dev libxxhash-dev python3 zlib1g-dev
+DEPS_DEV = clang-14 llvm-14 libclang-rt-14-dev libomp-14-dev afl++ ffmpeg pandoc lcov valgrind \
            gcc-aarch64-linux-gnu gcc-s390x-linux-gnu libc6-dev-arm64-cross libc6-dev-s390x-cross qemu-user-static
 SUDO     = $(shell [ "$$(id -u)" = 0 ] || echo sudo)
 INSTALL_DEBIAN = missing=$$(for p in $(1); do \

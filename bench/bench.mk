@@ -52,7 +52,11 @@ $B/bench/occluder: | $B/ted4scene
 bench-train: $B/bench/bench_train $B/plain/bench_train $(if $(KITCHEN),,$B/bench/occluder)
 	$(KEEP) bench/train.md $B/bench/bench_train $(TRAIN_SCENE) $B/plain/bench_train
 
-.PHONY: bench-raster bench-render bench-train
+# Peak memory of training a large scene, in bench/memory.md: hours. MEMORY_RUNS names some of its runs.
+bench-memory: $B/ted4enc $B/ted4scene
+	TED4_BUILD=$B bench/memory.sh $(MEMORY_RUNS)
+
+.PHONY: bench-raster bench-render bench-train bench-memory
 
 # Programs on the decoded file: what the integer entropy model and the range coder cost; how long anchors live. rate_check is compiled as freely as it may be, for it
 # measures the speed of floating-point networks beside the integer kernels.
@@ -67,8 +71,8 @@ rate-check: $B/bench/rate_check
 
 .PHONY: rate-check
 
-# The evidence: all runs of bench/sweep.txt whose row in bench/sweep.csv is missing or stale (days; resumable: bench/sweep.sh does parts of it), and
-# bench/report.md, bench/real.md with their charts from the rows that are there.
+# The evidence: all runs of bench/sweep.txt whose row in bench/sweep.csv is missing or stale (days; resumable: bench/sweep.sh does parts of it);
+# `make report` writes bench/report.md with its charts from the rows that are there.
 sweep: all $(BENCH_FILE:%=$B/bench/%)
 	TED4_BUILD=$B TED4_DATA=$(TED4_DATA) bench/sweep.sh
 

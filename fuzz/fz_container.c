@@ -1,9 +1,9 @@
-/* fz_container.c - any bytes to pass 1 (spec 5.3). What it accepts is chunks without a gap from the file header to the last byte.
+/* fz_container.c - any bytes to pass 1 (spec 5.3), which parses nothing and takes no memory.
+ * Claims: a refusal has an offset inside the file; what is accepted is chunks without a gap from the file header to the last byte, HEAD first, ENDS
+ * last.
  * SPDX-License-Identifier: BSD-2-Clause */
 #include "harness.h"
 #include "read/container.h"
-
-int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size);
 
 int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
 {

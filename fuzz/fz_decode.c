@@ -1,59 +1,103 @@
-/* fz_decode.c - any bytes to the strict decoder. Refused: with a reason and an offset inside the file. Valid: written again by the encoder
- * they are the same bytes (decisions 3.9; ancillary chunks and the minor version are not parsed, so they are left out), and a query works.
+/* fz_decode.c - any bytes to the strict decoder, under knobs that up to two bytes behind the chunk ENDS select: order in which tiles run, trace,
+ * place in memory, bound of memory, kernel.
+ * Claims: it returns one verdict; a refusal has an offset inside the file; the same verdict, offset and hash come out whatever the knobs say,
+ * but for limit.memory under a tighter bound; no more memory is held than the bound says, nor than size and level allow (SECURITY.md), and all
+ * of it is given back; the input is left alone.
  * SPDX-License-Identifier: BSD-2-Clause */
 #include <string.h>
+#include "base/bytes.h"
+#include "counting.h"
 #include "harness.h"
 #include "mend.h"
-#include "write/encode.h"
+#include "norm/limits.h"
+#include "order.h"
 
-int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size);
+enum { KNOB_BYTES = 2, TRACE = 4, PLAIN = 1 };
 
-static void rewrite(const ted4_scene *s, const uint8_t *data, size_t size)
+/* What a decoder says of a file. */
+typedef struct {
+    ted4_status code;
+    ted4_error  e;
+    ted4_info   info;
+} outcome;
+
+static void count_element(void *user, size_t offset, const char *element, int64_t index, int64_t value)
 {
-    uint8_t     *const plain = malloc(size), *out;
-    const size_t n = plain != NULL ? ted4_plain_file(plain, data, size) : 0;
-    size_t       n_out;
-    const ted4_status verdict = ted4_encode(s, s->level, NULL, &out, &n_out, NULL);
+    size_t *last = user;
 
-    fuzz_require(plain != NULL, "memory");
-    /* Without its ancillary chunks a file may have too many symbols a byte. */
-    fuzz_require(verdict == TED4_OK || (n < size && verdict == TED4_E_LVL_EXCEEDED), "what is read can be written");
-    fuzz_require(verdict != TED4_OK || (n_out == n && memcmp(out, plain, n) == 0), "the same bytes");
-    free(out);
-    free(plain);
+    (void)index;
+    (void)value;
+    fuzz_require(element != NULL && element[0] != 0, "a name for every element");
+    *last = offset;
 }
 
-static void query(const ted4_scene *s, const ted4_options *o)
+static outcome decode(const uint8_t *data, size_t size, const ted4_options *o)
 {
-    const ted4_query q = { 1, 3, { 0.5f, -1, 2 } };
-    ted4_recon      *r = NULL;
-    ted4_gaussians   g;
-    ted4_info        info;
-    ted4_status      verdict = ted4_recon_new(&r, s, o);
+    outcome     r;
+    ted4_scene *s = NULL;
 
-    ted4_scene_info(s, &info);
-    fuzz_require(verdict == TED4_OK || verdict == TED4_E_LIMIT_MEMORY, "recon");
-    if (verdict == TED4_OK) {
-        verdict = ted4_recon_query(r, &q, NULL, &g);
-        fuzz_require(verdict == TED4_OK || verdict == TED4_E_REC_NONFINITE, "query");
-        fuzz_require(verdict != TED4_OK || g.n == info.n_gaussians, "every kept offset has a record");
-    }
-    ted4_recon_free(r);
+    memset(&r, 0, sizeof r);
+    r.code = ted4_decode(data, size, o, &s, &r.e);
+    fuzz_require(r.code == r.e.code && (s != NULL) == (r.code == TED4_OK), "one verdict");
+    fuzz_require(r.e.offset <= size, "an offset in the file");
+    fuzz_require(r.code != TED4_E_IO && r.code != TED4_E_QUERY && r.code != TED4_E_REC_NONFINITE, "a verdict on a file");
+    if (s != NULL)
+        ted4_scene_info(s, &r.info);
+    ted4_scene_free(s);
+    return r;
+}
+
+/* At least 1 KiB; 0: FUZZ_MAX_BYTES. */
+static uint64_t bound_of(uint8_t knob)
+{
+    return knob >> 4 == 0 ? FUZZ_MAX_BYTES : (uint64_t)1 << (9 + (knob >> 4));
+}
+
+/* The bound of SECURITY.md. data[11] is the level. */
+static uint64_t most_memory(const uint8_t *data, size_t size)
+{
+    const ted4_limits *l = size > 11 ? ted4_limits_of(data[11]) : NULL;
+    const uint64_t     per_byte = 8192 + (l != NULL ? 32 * l->symbols_per_byte : 0);
+
+    if (l != NULL && l->level == TED4_LEVEL_UNBOUNDED)
+        return FUZZ_MAX_BYTES;
+    return ((uint64_t)4 << 20) + per_byte * size;
+}
+
+static void same(const outcome *a, const outcome *b, int tighter)
+{
+    if (tighter && b->code == TED4_E_LIMIT_MEMORY)
+        return;
+    fuzz_require(a->code == b->code && a->e.offset == b->e.offset, "one verdict under all knobs");
+    fuzz_require(memcmp(a->info.hash, b->info.hash, sizeof a->info.hash) == 0, "one hash under all knobs");
 }
 
 int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
 {
-    const ted4_options o = { .max_bytes = FUZZ_MAX_BYTES };
-    ted4_scene        *s = NULL;
-    ted4_error         e = { TED4_OK, 0 };
-    const ted4_status  verdict = ted4_decode(data, size, &o, &s, &e);
+    const size_t   n = ted4_without_tail(data, size, KNOB_BYTES);
+    const uint8_t  knob[KNOB_BYTES] = { size > n ? data[n] : 0, size > n + 1 ? data[n + 1] : 0 };
+    counting_memory default_memory = { 0 }, memory = { 0 };
+    ted4_options   plain = { .max_bytes = FUZZ_MAX_BYTES, .allocator = counting_allocator(&default_memory) };
+    ted4_options   o = { .max_bytes = bound_of(knob[0]), .allocator = counting_allocator(&memory) };
+    ted4_parallel  parallel = order_parallel(knob[0] & 3);
+    uint8_t *const copy = malloc(n + 64);
+    size_t         last = 0;
+    outcome        a, b;
 
-    fuzz_require(verdict == e.code && (s != NULL) == (verdict == TED4_OK), "one verdict");
-    fuzz_require(e.offset <= size, "an offset in the file");
-    if (verdict == TED4_OK) {
-        rewrite(s, data, size);
-        query(s, &o);
-    }
-    ted4_scene_free(s);
+    fuzz_require(copy != NULL, "memory");
+    a = decode(data, n, &plain);
+    fuzz_require(default_memory.held == 0 && default_memory.most <= FUZZ_MAX_BYTES, "memory given back");
+    fuzz_require(default_memory.most <= most_memory(data, n), "memory by the formula");
+    o.parallel = (knob[0] & 3) != 0 ? &parallel : NULL;
+    o.trace = knob[0] & TRACE ? count_element : NULL;
+    o.trace_user = &last;
+    memcpy(copy + knob[1] / 2 % 64, data, n);
+    order_kernel(knob[1] & PLAIN);
+    b = decode(copy + knob[1] / 2 % 64, n, &o);
+    order_kernel(0);
+    fuzz_require(memory.held == 0 && memory.most <= o.max_bytes, "no more memory than allowed");
+    fuzz_require(last <= n && memcmp(copy + knob[1] / 2 % 64, data, n) == 0, "input left alone");
+    same(&a, &b, o.max_bytes < FUZZ_MAX_BYTES);
+    free(copy);
     return 0;
 }

@@ -1,30 +1,23 @@
-/* main.c - replays files through a fuzzing harness, without libFuzzer: fz_x FILE... Used by `make fuzz-replay`.
+/* main.c - replays inputs through one harness, without libFuzzer: replay NAME PATH..., PATH being a file or a folder of files.
+ * Used by `make fuzz-replay`, `make fuzz-coverage`, and to look at a find in a debugger. Ends with 3 when a path cannot be read.
  * SPDX-License-Identifier: BSD-2-Clause */
 #include "harness.h"
-
-enum { MAX_INPUT = 1 << 20 };
-
-int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size);
+#include "inputs.h"
 
 int main(int argc, char **argv)
 {
-    static uint8_t buffer[MAX_INPUT];
+    fuzz_entry *run = argc > 2 ? fuzz_find(argv[1]) : NULL;
+    size_t      n = 0;
 
-    for (int i = 1; i < argc; i++) {
-        FILE        *f = fopen(argv[i], "rb");
-        const size_t n = f != NULL ? fread(buffer, 1, sizeof buffer, f) : 0;
-        uint8_t     *data = malloc(n > 0 ? n : 1);      /* of its own size, so that reading past it is seen */
-
-        if (f == NULL || data == NULL) {
+    if (run == NULL) {
+        fprintf(stderr, "replay: usage: replay NAME PATH..., the name of a harness of fuzz/list.def\n");
+        return 3;
+    }
+    for (int i = 2; i < argc; i++)
+        if (fuzz_replay(run, argv[i], &n) != 0) {
             perror(argv[i]);
             return 3;
         }
-        fclose(f);
-        for (size_t j = 0; j < n; j++)
-            data[j] = buffer[j];
-        LLVMFuzzerTestOneInput(data, n);
-        free(data);
-    }
-    printf("%d files\n", argc - 1);
+    printf("%s: %zu inputs\n", argv[1], n);
     return 0;
 }

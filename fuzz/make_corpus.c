@@ -1,12 +1,18 @@
-/* make_corpus.c - writes fuzz/corpus: tiny valid files, each with other parts of the header in use. `make fuzz-corpus`.
+/* make_corpus.c - writes fuzz/corpus: tiny valid files, each with other parts of the header in use, the same with knobs behind them, files
+ * that are refused, and the seeds of corpus_units.c and corpus_scenes.c. `make fuzz-corpus`.
  *     make_corpus FOLDER
  * SPDX-License-Identifier: BSD-2-Clause */
 #include <stdio.h>
+#include <sys/stat.h>
+#include "corpus.h"
 #include "mend.h"
+#include "mutate.h"
 #include "norm/coder.h"
 #include "random_scene.h"
 
-enum { MAX_FILE = 1 << 14 };
+enum { MAX_FILE = 1 << 14, KNOBS = 2, QUERIES = 32 };
+
+static const char *corpus;
 
 /* Nothing moves, no masks, one slice, no view: the least that a file holds. */
 static ted4_header smallest(void)
@@ -106,15 +112,29 @@ static size_t add_meta(uint8_t *data, size_t size)
     return size + whole;
 }
 
-static int write_file(const char *folder, int i)
+void corpus_write(const char *group, const char *file, const void *data, size_t size)
+{
+    char  path[4096];
+    FILE *f;
+
+    (void)snprintf(path, sizeof path, "%s/%s", corpus, group);
+    (void)mkdir(path, 0777);
+    (void)snprintf(path, sizeof path, "%s/%s/%s", corpus, group, file);
+    f = fopen(path, "wb");
+    if (f == NULL || fwrite(data, 1, size, f) != size || fclose(f) != 0) {
+        perror(path);
+        exit(3);
+    }
+}
+
+static int write_file(int i)
 {
     random_source     r = random_seed((uint64_t)i);
     const ted4_header h = header_of(i);
     ted4_scene       *s = random_scene_of(&r, &h, i == 13);
     uint8_t           data[MAX_FILE], *out = NULL;
     size_t            size = 0;
-    char              path[4096];
-    FILE             *f;
+    char              file[64];
 
     for (size_t j = 0; i == 14 && s != NULL && j < s->netr.n; j++)
         s->netr.values[j] = 0.25f;
@@ -125,19 +145,96 @@ static int write_file(const char *folder, int i)
     ted4_scene_free(s);
     if (i == 15)
         size = add_meta(data, size);
-    (void)snprintf(path, sizeof path, "%s/%s.ted4", folder, name[i]);
-    f = fopen(path, "wb");
-    if (f == NULL || fwrite(data, 1, size, f) != size)
-        return 0;
-    return fclose(f) == 0;
+    (void)snprintf(file, sizeof file, "%s.ted4", name[i]);
+    corpus_write("ted4", file, data, size);
+    for (int j = 0; j < QUERIES; j++)
+        data[size + (size_t)j] = (uint8_t)random_u32(&r);
+    corpus_write("recon", file, data, size + QUERIES);
+    data[size] = (uint8_t)(i % 8 | i / 2 << 4);         /* tile order and trace, then a bound of memory */
+    corpus_write("knobs", file, data, size + KNOBS);
+    return 1;
+}
+
+static size_t flip_bits(uint8_t *data, size_t size, size_t max_size)
+{
+    static random_source r = { 77 };
+
+    (void)max_size;
+    for (int i = 0; i < 2 && size > 0; i++)
+        data[random_u32(&r) % size] ^= (uint8_t)(1u << random_in(&r, 0, 7));
+    return size;
+}
+
+/* Changed files, one for each way in which the decoder refuses them: the first that is met. */
+static void write_refused(void)
+{
+    enum { TRIES = 30000 };
+    int             met[TED4_N_STATUS] = { 1 };
+    static uint8_t  data[2 * MAX_FILE];
+    char            path[4096], file[64];
+    ted4_scene     *s;
+
+    for (uint32_t seed = 0; seed < TRIES; seed++) {
+        FILE  *f;
+        size_t size;
+
+        (void)snprintf(path, sizeof path, "%s/ted4/%s.ted4", corpus, name[seed % N_FILES]);
+        f = fopen(path, "rb");
+        size = f != NULL ? fread(data, 1, MAX_FILE, f) : 0;
+        if (f != NULL)
+            fclose(f);
+        size = ted4_without_tail(data, fuzz_mutate_file(data, size, MAX_FILE, seed, flip_bits), QUERIES);
+
+        const ted4_status verdict = ted4_decode(data, size, NULL, &s, NULL);
+
+        ted4_scene_free(s);
+        if (met[verdict] || size > 2000)
+            continue;
+        met[verdict] = 1;
+        (void)snprintf(file, sizeof file, "refused.%s.ted4", ted4_status_id(verdict));
+        corpus_write("knobs", file, data, size);
+    }
+}
+
+/* Two tiles, both damaged: whichever runs first, the first of them in the file is the one that counts. */
+static void write_both_damaged(void)
+{
+    enum { TWO_TILES = 12, BACKWARDS = 2 };
+    random_source     r = random_seed(TWO_TILES);
+    const ted4_header h = header_of(TWO_TILES);
+    ted4_scene       *s = random_scene_of(&r, &h, 0);
+    uint8_t          *out = NULL, data[MAX_FILE];
+    size_t            size = 0;
+
+    if (s == NULL || ted4_encode(s, 0, NULL, &out, &size, NULL) != TED4_OK || size > MAX_FILE / 2)
+        exit(3);
+    memcpy(data, out, size);
+    for (size_t at = TED4_FILE_HEADER_SIZE; at < size; at += ted4_chunk_size(data, size, at))
+        if (memcmp(data + at, "TILE", 4) == 0)
+            data[at + ted4_chunk_size(data, size, at) - TED4_FRAME_HASH_SIZE - 1] ^= 1;
+    ted4_mend_chunks(data, size);
+    data[size] = BACKWARDS;
+    data[size + 1] = 0;
+    corpus_write("knobs", "both_tiles.ted4", data, size + KNOBS);
+    free(out);
+    ted4_scene_free(s);
 }
 
 int main(int argc, char **argv)
 {
-    for (int i = 0; argc == 2 && i < N_FILES; i++)
-        if (!write_file(argv[1], i)) {
+    if (argc != 2) {
+        fprintf(stderr, "make_corpus: usage: make_corpus FOLDER\n");
+        return 3;
+    }
+    corpus = argv[1];
+    for (int i = 0; i < N_FILES; i++)
+        if (!write_file(i)) {
             fprintf(stderr, "make_corpus: %s failed\n", name[i]);
             return 3;
         }
-    return argc == 2 ? 0 : 3;
+    write_refused();
+    write_both_damaged();
+    corpus_units();
+    corpus_scenes();
+    return 0;
 }

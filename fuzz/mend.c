@@ -1,19 +1,20 @@
-/* mend.c - see mend.h. The decoder gives nothing of a file that it refuses, so its source is part of this one, under another name.
+/* mend.c - see mend.h.
  * SPDX-License-Identifier: BSD-2-Clause */
-#define ted4_decode ted4_mend_decode
-#include "read/decode.c"
-
-#include <xxhash.h>
-#include "base/bytes.h"
-#include "harness.h"
 #include "mend.h"
 
-/* Bytes of the chunk at an offset, its hash included; 0: it does not fit. */
-static size_t chunk_size(const uint8_t *data, size_t size, size_t at)
+#include <stdlib.h>
+#include <string.h>
+#include <xxhash.h>
+#include "base/bytes.h"
+#include "norm/coder.h"
+#include "parse.h"
+#include "write/encode.h"
+
+size_t ted4_chunk_size(const uint8_t *data, size_t size, size_t at)
 {
     uint64_t whole = TED4_FRAME_HEAD_SIZE + TED4_FRAME_HASH_SIZE;
 
-    if (size - at < whole)
+    if (size < at || size - at < whole)
         return 0;
     whole += ted4_load32(data + at + 8);
     return size - at < whole ? 0 : (size_t)whole;
@@ -22,7 +23,7 @@ static size_t chunk_size(const uint8_t *data, size_t size, size_t at)
 void ted4_mend_chunks(uint8_t *data, size_t size)
 {
     for (size_t at = TED4_FILE_HEADER_SIZE, whole; at < size; at += whole) {
-        whole = chunk_size(data, size, at);
+        whole = ted4_chunk_size(data, size, at);
         if (whole == 0)
             return;
 
@@ -34,21 +35,35 @@ void ted4_mend_chunks(uint8_t *data, size_t size)
 
 void ted4_mend_ends(uint8_t *data, size_t size)
 {
-    static const ted4_options o = { .max_bytes = FUZZ_MAX_BYTES };
-    decoder                   d;
+    size_t            ends;
+    ted4_scene *const s = fuzz_parse(data, size, 0, &ends);
 
-    memset(&d, 0, sizeof d);
-    d.o = &o;
-    ted4_reader_init(&d.file, data, 0, size, 1);
-    ted4_container_check(&d.file);
-    if (d.file.base.error.code != TED4_OK || (d.s = ted4_scene_empty(&o)) == NULL)
+    if (s == NULL)
         return;
-    read_payloads(&d);
-    if (d.file.base.error.code == TED4_E_SYN_HASH) {
-        memcpy(data + d.file.base.error.offset, d.s->hash, sizeof d.s->hash);
+    if (ends + sizeof s->hash + TED4_FRAME_HASH_SIZE == size) {
+        memcpy(data + ends, s->hash, sizeof s->hash);
         ted4_mend_chunks(data, size);
     }
-    ted4_scene_free(d.s);
+    ted4_scene_free(s);
+}
+
+size_t ted4_mend_ranges(uint8_t *data, size_t size, size_t max_size)
+{
+    size_t            ends, n = 0;
+    ted4_scene *const s = fuzz_parse(data, size, 1, &ends);
+    uint8_t          *out = NULL;
+
+    if (s == NULL)
+        return size;
+    if (ted4_encode(s, s->level, NULL, &out, &n, NULL) != TED4_OK)
+        (void)ted4_encode(s, 0, NULL, &out, &n, NULL);
+    ted4_scene_free(s);
+    if (out != NULL && n <= max_size) {
+        memcpy(data, out, n);
+        size = n;
+    }
+    free(out);
+    return size;
 }
 
 size_t ted4_plain_file(uint8_t *to, const uint8_t *from, size_t size)
@@ -58,7 +73,7 @@ size_t ted4_plain_file(uint8_t *to, const uint8_t *from, size_t size)
     memcpy(to, from, n);
     to[9] = 0;
     for (size_t at = n, whole; at < size; at += whole) {
-        whole = chunk_size(from, size, at);
+        whole = ted4_chunk_size(from, size, at);
         if (!(ted4_load32(from + at + 4) & TED4_FLAG_CRITICAL))
             continue;
         memcpy(to + n, from + at, whole);
@@ -70,11 +85,19 @@ size_t ted4_plain_file(uint8_t *to, const uint8_t *from, size_t size)
 size_t ted4_chunk_holding(const uint8_t *data, size_t size, size_t at)
 {
     for (size_t i = TED4_FILE_HEADER_SIZE, whole; i < size && i <= at; i += whole) {
-        whole = chunk_size(data, size, i);
+        whole = ted4_chunk_size(data, size, i);
         if (whole == 0)
             break;
         if (at < i + whole)
             return i;
     }
+    return size;
+}
+
+size_t ted4_without_tail(const uint8_t *data, size_t size, size_t most)
+{
+    for (size_t i = TED4_FILE_HEADER_SIZE, whole; (whole = ted4_chunk_size(data, size, i)) > 0; i += whole)
+        if (memcmp(data + i, ted4_chunk_type[TED4_ENDS], 4) == 0)
+            return size - (i + whole) <= most ? i + whole : size;
     return size;
 }

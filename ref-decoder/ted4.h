@@ -36,6 +36,39 @@ ted4_status ted4_decode(const void *data, size_t size, const ted4_options *o,
                         ted4_scene **scene, ted4_error *e);
 void ted4_scene_free(ted4_scene *s);    /* NULL is fine */
 
+/* What a lenient decoder has got out of a file. */
+typedef struct {
+    ted4_error verdict;                 /* of the strict decoder */
+    ted4_error stop;                    /* the first error in the order of the file, where decoding ended; or what memory did not allow */
+    uint32_t   n_tiles;                 /* that the scene holds: the first ones, whole */
+    uint32_t   tiles_declared, anchors_declared;    /* by HEAD; 0 where that is not right */
+} ted4_salvage;
+
+/* Lenient decoding (spec 3.3). Gives the verdict of ted4_decode. TED4_OK: the same scene, and stop is TED4_OK. Invalid: *scene holds the
+ * anchors of the first what->n_tiles tiles, with a hash of its own, or is NULL when there is no such tile. Otherwise it is NULL.
+ * The trace of o sees what the strict decoder reads. */
+ted4_status ted4_decode_lenient(const void *data, size_t size,
+                                const ted4_options *o, ted4_scene **scene,
+                                ted4_salvage *what);
+
+/* A validator's finding (spec 3.6, read/findings.def). Strings are constants of the library. */
+typedef enum { TED4_ERROR, TED4_WARNING, TED4_HINT } ted4_severity;
+typedef struct {
+    ted4_severity severity;
+    const char   *id, *rules, *text;    /* "con.magic" of status.def, or "adv.level"; "R-CON-001", or several, one of which it is */
+    const char   *where;                /* what kind of chunk or symbol: "TILE", "phi"; NULL: nothing more to say */
+    size_t        offset;
+    unsigned      n_values;             /* of the numbers that text names: 0, 1, 2 */
+    int64_t       value[2];
+} ted4_finding;
+typedef void ted4_finding_sink(void *user, const ted4_finding *f);
+
+/* For authors of encoders: gives the verdict of ted4_decode, and every finding to the sink: the error of the strict decoder first, then the
+ * others as far as parsing can go on; of a valid file, advice. There is an error among them exactly when the verdict is not TED4_OK.
+ * o may be NULL; its trace is not called. */
+ted4_status ted4_validate(const void *data, size_t size, const ted4_options *o,
+                          ted4_finding_sink *sink, void *user);
+
 typedef struct {
     uint32_t n_anchors, n_offsets, frames, rate_num, rate_den;
     size_t   n_gaussians;               /* kept offsets: records of a query */
@@ -48,6 +81,16 @@ typedef struct {
 } ted4_info;
 
 void ted4_scene_info(const ted4_scene *s, ted4_info *info);
+
+/* annex J: pieces of a tier's byte string, in order, many small ones. */
+typedef void ted4_sink(void *user, const void *bytes, size_t size);
+
+/* T0 of a file; decodes it, and what was given is to be thrown away unless this is TED4_OK. o may be NULL; its trace is not called. */
+ted4_status ted4_dump_syntax(const void *data, size_t size, const ted4_options *o,
+                             ted4_sink *sink, void *user, ted4_error *e);
+/* T1 to T4 of a decoded scene, tier = 1 .. 4. TED4_OK or TED4_E_LIMIT_MEMORY. o may be NULL. */
+ted4_status ted4_dump_tier(const ted4_scene *s, int tier, const ted4_options *o,
+                           ted4_sink *sink, void *user);
 
 /* spec 11: time num / den in [0, 1], camera centre in world coordinates. */
 typedef struct {

@@ -8,10 +8,8 @@
 #include <stdint.h>
 #include <cmocka.h>
 
-#include "ball_trainer.h"
-#include "eval/metrics.h"
+#include "ball_decoded.h"
 #include "tool/threads.h"
-#include "render/view.h"
 #include "train/checkpoint.h"
 
 enum { STAGE1 = 400, STAGE2 = 250, INTEGER_FROM = STAGE1 + 200, FRAMES = 5 };
@@ -42,47 +40,6 @@ static int tear_down(void **state)
 
 /* ---- what is learnt ---- */
 
-/* Mean PSNR of the decoded file over the training pictures. */
-static double decoded_psnr(const ball_file *f, ted4_dataset *d, ted4_info *info)
-{
-    ted4_scene  *s;
-    ted4_recon  *r;
-    ted4_viewer *viewer = ted4_viewer_new();
-    double       sum = 0, n = 0;
-
-    assert_non_null(viewer);
-    assert_int_equal(ted4_decode(f->bytes, f->size, NULL, &s, NULL), TED4_OK);
-    ted4_scene_info(s, info);
-    assert_int_equal(ted4_recon_new(&r, s, NULL), TED4_OK);
-    ted4_scene_free(s);
-    for (size_t i = 0; i < d->n_pictures; i++) {
-        const ted4_picture *pic = &d->pictures[i];
-        const ted4_camera  *c = &pic->camera;
-        ted4_view    v = { .width = c->width, .height = c->height, .fx = (float)c->fx,
-                           .fy = (float)c->fy, .cx = (float)c->cx, .cy = (float)c->cy };
-        uint8_t      rgb[3 * BALL_W * BALL_H];
-        ted4_metrics m;
-
-        for (int k = 0; k < 9; k++)
-            v.R[k] = (float)c->R[k];
-        for (int k = 0; k < 3; k++)
-            v.t[k] = (float)c->t[k];
-        if (pic->is_test)
-            continue;
-        assert_int_equal(ted4_render_query(viewer, r, info, pic->frame,
-                                           d->n_frames > 1 ? d->n_frames - 1 : 1, &v, NULL, rgb),
-                         TED4_OK);
-        assert_int_equal(ted4_metrics_compare(ted4_dataset_pixels(d, i, NULL), rgb, BALL_W, BALL_H,
-                                              NULL, &m), 0);
-        ted4_dataset_release(d, i);
-        sum += m.psnr;
-        n += 1;
-    }
-    ted4_recon_free(r);
-    ted4_viewer_free(viewer);
-    return sum / n;
-}
-
 static void test_learns(void **state)
 {
     ted4_train_options o = ball_options();
@@ -95,7 +52,7 @@ static void test_learns(void **state)
     ball_train(&t, 1);
     first = t.progress.loss;
     ball_file f = ball_finish(&t);
-    const double psnr = decoded_psnr(&f, &moving_scene, &info);
+    const double psnr = ball_decoded_psnr(&f, &moving_scene, &info);
 
     assert_true(first > 0.15 && t.progress.loss < 0.25 * first);
     assert_true(ted4_trainer_preview(&t, 4) > 18);
@@ -282,7 +239,7 @@ static ted4_info train_and_look(const ted4_train_options *o, ted4_dataset *d, do
     ball_begin(&t, o, d, NULL);
     f = ball_finish(&t);
     ted4_trainer_finish(&t);
-    *psnr = decoded_psnr(&f, d, &info);
+    *psnr = ball_decoded_psnr(&f, d, &info);
     free(f.bytes);
     return info;
 }
@@ -336,7 +293,7 @@ static void test_simplified(void **state)
     ball_file f = ball_finish(&t), again;
 
     ted4_trainer_finish(&t);
-    assert_true(decoded_psnr(&f, &still_scene, &info) > 36);
+    assert_true(ball_decoded_psnr(&f, &still_scene, &info) > 36);
     assert_int_equal(info.motion, TED4_MOTION_NONE);
     ball_begin(&t, &o, &still_scene, NULL);
     assert_int_equal(ted4_checkpoint_load(&t, stop_path(0)), 0);

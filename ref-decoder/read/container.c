@@ -57,48 +57,66 @@ static void judge(ted4_reader *r, size_t at, const ted4_frame *f, int *before)
         *before = type;
 }
 
+uint8_t ted4_container_header(ted4_reader *r)
+{
+    ted4_coder *c = &r->base;
+    uint8_t     level = 0;
+
+    ted4_walk_file_header(c, &level);
+    if (c->error.code == TED4_OK)
+        ted4_require(c, r->end <= ted4_limits_of(level)->file_bytes,
+                     TED4_E_LVL_EXCEEDED, c->pos - 1);
+    return level;
+}
+
+/* The chunk whose frame begins at offset at and was just read; r's position moves behind it. */
+static ted4_chunk_place pass_over(ted4_reader *r, size_t at, const ted4_frame *f)
+{
+    ted4_chunk_place p = { .at = at, .payload = r->base.pos };
+
+    p.type = chunk_of(f->type);
+    p.end = p.payload + f->size;
+    r->base.pos = p.end + TED4_FRAME_HASH_SIZE;
+    return p;
+}
+
+ted4_chunk_place ted4_container_judge(ted4_reader *r, int *before)
+{
+    static const ted4_chunk_place none = { 0, 0, 0, TED4_CHUNKS };
+    ted4_coder  *c = &r->base;
+    const size_t at = c->pos;
+    ted4_frame   f;
+
+    memset(&f, 0, sizeof f);
+    ted4_walk_frame(c, &f);
+    if (c->error.code != TED4_OK)
+        return none;
+    if (r->end - c->pos < (uint64_t)f.size + TED4_FRAME_HASH_SIZE) {
+        ted4_fail(&c->error, TED4_E_CON_TRUNCATED, r->end);
+        return none;
+    }
+    judge(r, at, &f, before);
+    return pass_over(r, at, &f);
+}
+
 /* spec 5.3 */
 void ted4_container_check(ted4_reader *r)
 {
     ted4_coder *c = &r->base;
-    ted4_frame  f;
-    uint8_t     level = 0;
     int         before = -1;
-    size_t      at;
 
-    ted4_walk_file_header(c, &level);
-    if (c->error.code != TED4_OK)
-        return;
-    ted4_require(c, r->end <= ted4_limits_of(level)->file_bytes,
-                 TED4_E_LVL_EXCEEDED, c->pos - 1);
-    while (c->error.code == TED4_OK && before != TED4_ENDS) {
-        at = c->pos;
-        memset(&f, 0, sizeof f);
-        ted4_walk_frame(c, &f);
-        if (c->error.code != TED4_OK)
-            return;
-        if (r->end - c->pos < (uint64_t)f.size + TED4_FRAME_HASH_SIZE) {
-            ted4_fail(&c->error, TED4_E_CON_TRUNCATED, r->end);
-            return;
-        }
-        judge(r, at, &f, &before);
-        c->pos += f.size + (size_t)TED4_FRAME_HASH_SIZE;
-    }
+    (void)ted4_container_header(r);
+    while (c->error.code == TED4_OK && before != TED4_ENDS)
+        (void)ted4_container_judge(r, &before);
     ted4_require(c, c->pos == r->end, TED4_E_CON_TRAILING, c->pos);
 }
 
 ted4_chunk_place ted4_container_next(ted4_reader *r)
 {
-    ted4_coder      *c = &r->base;
-    ted4_chunk_place p;
-    ted4_frame       f;
+    const size_t at = r->base.pos;
+    ted4_frame   f;
 
     memset(&f, 0, sizeof f);
-    p.at = c->pos;
-    ted4_walk_frame(c, &f);
-    p.type = chunk_of(f.type);
-    p.payload = c->pos;
-    p.end = c->pos + f.size;
-    c->pos = p.end + TED4_FRAME_HASH_SIZE;
-    return p;
+    ted4_walk_frame(&r->base, &f);
+    return pass_over(r, at, &f);
 }

@@ -1,29 +1,24 @@
 /* decode.c - ted4_decode(): pass 1, then pass 2 chunk by chunk, tiles in batches (spec 5.3).
  * SPDX-License-Identifier: BSD-2-Clause */
+#include "read/decode.h"
+
 #include <string.h>
 #include "kernel/int_kernel.h"
 #include "norm/scene.h"
-#include "read/container.h"
 #include "read/inflate.h"
 
 /* Tiles that run at once, and the work memory they may take together (one may always run). */
 enum { BATCH = 16, BATCH_BYTES = 1 << 28 };
 
 /* A tile on its way. Each has its own coder and work memory. */
-typedef struct {
+struct ted4_tile_job {
     ted4_reader reader;
     unsigned    number;
     void       *work;
-} job;
+};
 
-typedef struct {
-    const ted4_options *o;      /* never NULL */
-    ted4_scene  *s;
-    ted4_reader  file;          /* stands between chunks; its error is the verdict */
-    ted4_prior   prior;
-    job         *jobs;
-    unsigned     n_room, n_queued, n_tiles;   /* n_tiles: seen so far */
-} decoder;
+typedef ted4_decoder decoder;
+typedef struct ted4_tile_job job;
 
 /* Memory has run out while the byte at offset at was due. */
 static void no_memory(decoder *d, size_t at)
@@ -31,7 +26,7 @@ static void no_memory(decoder *d, size_t at)
     ted4_fail(&d->file.base.error, TED4_E_LIMIT_MEMORY, at);
 }
 
-static ted4_reader payload_reader(decoder *d, const ted4_chunk_place *p)
+ted4_reader ted4_decoder_reader(decoder *d, const ted4_chunk_place *p)
 {
     ted4_reader r;
 
@@ -54,10 +49,10 @@ static void finish_payload(decoder *d, ted4_reader *r)
 
 static void read_head(decoder *d, const ted4_chunk_place *p)
 {
-    ted4_reader r = payload_reader(d, p);
+    ted4_reader r = ted4_decoder_reader(d, p);
 
     ted4_walk_header(&r.base, &d->s->head, &d->s->shape, d->s->level,
-                     d->file.end);
+                     d->file_bytes);
     finish_payload(d, &r);
 }
 
@@ -77,7 +72,7 @@ static void read_nete(decoder *d, const ted4_chunk_place *p)
 {
     const ted4_shape *shape = &d->s->shape;
     const size_t      bytes = p->end - p->payload;
-    ted4_reader       r = payload_reader(d, p);
+    ted4_reader       r = ted4_decoder_reader(d, p);
 
     prepare_blob(d, &d->s->nete, shape->n_nete,
                  bytes > shape->n_units ? bytes - shape->n_units : 0,
@@ -96,7 +91,7 @@ static void read_nete(decoder *d, const ted4_chunk_place *p)
 static void read_blob(decoder *d, const ted4_chunk_place *p,
                       const char *element, ted4_blob *b, size_t n)
 {
-    ted4_reader r = payload_reader(d, p);
+    ted4_reader r = ted4_decoder_reader(d, p);
 
     prepare_blob(d, b, n, p->end - p->payload, p->payload);
     if (d->file.base.error.code != TED4_OK)
@@ -133,7 +128,7 @@ static void prepare_jobs(decoder *d, size_t at)
 
 static void read_positions(decoder *d, const ted4_chunk_place *p)
 {
-    ted4_reader r = payload_reader(d, p);
+    ted4_reader r = ted4_decoder_reader(d, p);
 
     if ((p->end - p->payload) / 6 >= d->s->head.n_anchors) {
         if (!ted4_scene_alloc_anchors(d->s))
@@ -159,8 +154,10 @@ static void run_job(void *arg, size_t i)
 static void run_batch(decoder *d)
 {
     ted4_parallel_for(d->o->parallel, d->n_queued, run_job, d);
-    for (unsigned i = 0; i < d->n_queued; i++)
+    for (unsigned i = 0; i < d->n_queued; i++) {
         finish_payload(d, &d->jobs[i].reader);
+        d->n_good += d->file.base.error.code == TED4_OK;
+    }
     d->n_queued = 0;
 }
 
@@ -174,7 +171,7 @@ static void read_tile(decoder *d, const ted4_chunk_place *p)
         return;
     }
     j = &d->jobs[d->n_queued++];
-    j->reader = payload_reader(d, p);
+    j->reader = ted4_decoder_reader(d, p);
     j->number = d->n_tiles++;
     if (d->n_queued == d->n_room)
         run_batch(d);
@@ -182,7 +179,7 @@ static void read_tile(decoder *d, const ted4_chunk_place *p)
 
 static void read_ends(decoder *d, const ted4_chunk_place *p)
 {
-    ted4_reader r = payload_reader(d, p);
+    ted4_reader r = ted4_decoder_reader(d, p);
 
     run_batch(d);
     if (d->n_tiles < d->s->shape.n_tiles)
@@ -194,7 +191,7 @@ static void read_ends(decoder *d, const ted4_chunk_place *p)
     finish_payload(d, &r);
 }
 
-static void read_chunk(decoder *d, const ted4_chunk_place *p)
+void ted4_decoder_chunk(decoder *d, const ted4_chunk_place *p)
 {
     ted4_scene *s = d->s;
 
@@ -230,39 +227,60 @@ static void read_payloads(decoder *d)
     while (c->error.code == TED4_OK && c->pos < d->file.end) {
         const ted4_chunk_place p = ted4_container_next(&d->file);
 
-        read_chunk(d, &p);
+        ted4_decoder_chunk(d, &p);
         ted4_trace(c, p.end, "chunk_hash", 0,
                    (int64_t)ted4_load64(d->file.data + p.end));
     }
+    ted4_decoder_finish(d);
+}
+
+int ted4_decoder_init(decoder *d, const void *data, size_t size,
+                      const ted4_options *o)
+{
+    static const ted4_options standard = { { NULL, NULL, NULL }, NULL, 0,
+                                           NULL, NULL };
+
+    memset(d, 0, sizeof *d);
+    d->o = o != NULL ? o : &standard;
+    d->file_bytes = size;
+    ted4_reader_init(&d->file, data, 0, size, 1);
+    d->s = ted4_scene_empty(o);
+    if (d->s == NULL)
+        no_memory(d, 0);
+    return d->s != NULL;
+}
+
+void ted4_decoder_finish(decoder *d)
+{
+    run_batch(d);
     for (unsigned i = 0; i < d->n_room; i++)
         ted4_arena_release(&d->s->arena, d->jobs[i].work);
     ted4_arena_release(&d->s->arena, d->jobs);
+    d->jobs = NULL;
+    d->n_room = 0;
 }
 
 ted4_status ted4_decode(const void *data, size_t size, const ted4_options *o,
                         ted4_scene **scene, ted4_error *e)
 {
-    static const ted4_options standard = { { NULL, NULL, NULL }, NULL, 0,
-                                           NULL, NULL };
-    decoder d;
+    ted4_reader whole;
+    decoder     d;
+    ted4_error  verdict;
 
-    memset(&d, 0, sizeof d);
     *scene = NULL;
-    d.o = o != NULL ? o : &standard;
-    ted4_reader_init(&d.file, data, 0, size, 1);
-    ted4_container_check(&d.file);
-    if (d.file.base.error.code == TED4_OK) {
-        d.s = ted4_scene_empty(o);
-        if (d.s == NULL)
-            no_memory(&d, 0);
-        else
+    ted4_reader_init(&whole, data, 0, size, 1);
+    ted4_container_check(&whole);
+    verdict = whole.base.error;
+    if (verdict.code == TED4_OK) {
+        if (ted4_decoder_init(&d, data, size, o))
             read_payloads(&d);
+        verdict = d.file.base.error;
+        if (verdict.code == TED4_OK)
+            *scene = d.s;
+        else
+            ted4_scene_free(d.s);
     }
-    if (d.file.base.error.code == TED4_OK)
-        *scene = d.s;
-    else
-        ted4_scene_free(d.s);
     if (e != NULL)
-        *e = d.file.base.error;
-    return d.file.base.error.code;
+        *e = verdict;
+    return verdict.code;
 }

@@ -20,7 +20,7 @@ typedef struct {
     int         has_range, has_time;
     float       centre[3];
     int         sh_degree, threads;
-    int         keep_all, hash, test, trace, force, json, quiet, verbose;
+    int         keep_all, hash, test, lenient, trace, force, json, quiet, verbose;
 } ted4_settings;
 
 /* One run. Functions below return an exit code (cli.h) and have said what went wrong. */
@@ -33,6 +33,9 @@ typedef struct {
     json_t              *report;        /* owned: what --json prints */
     int                  warned;
 } ted4_session;
+
+/* open_scene.c: decodes the input, as far as it can be when it is damaged and --lenient is given: info, recon. */
+int ted4_action_open(ted4_session *s);
 
 /* Are the frames asked for in the file, and is every output free? To be called before anything is
  * written. */

@@ -6,12 +6,11 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-#include <sys/resource.h>
-#include <time.h>
 
 #include "actions.h"
 #include "arguments.h"
 #include "cli.h"
+#include "contract.h"
 #include "threads.h"
 #include "output.h"
 #include "sh.h"
@@ -27,6 +26,7 @@ enum {
     OPT_CAMERA,
     OPT_HASH,
     OPT_TEST,
+    OPT_LENIENT,
     OPT_TRACE,
     OPT_THREADS,
     OPT_FORCE,
@@ -51,6 +51,7 @@ static const ted4_argument OPTIONS[N_OPTIONS] = {
     [OPT_CAMERA]    = { 0, "camera", "FILE.json", "list of {width, height, fx, fy, cx, cy, R[9], t[3], frame or time}" },
     [OPT_HASH]      = { 0, "hash", NULL, "print the hash of the decoded integers and, for --frames or --time, of these queries" },
     [OPT_TEST]      = { 0, "test", NULL, "only decode, checking everything, and tell time and peak memory (also what happens when nothing else is asked for)" },
+    [OPT_LENIENT]   = { 0, "lenient", NULL, "of a damaged or truncated file take the first whole tiles, and say so" },
     [OPT_TRACE]     = { 0, "trace", NULL, "print every syntax element: byte offset, name, index, value" },
     [OPT_THREADS]   = { 'j', "threads", "N", "threads; 0: all cores. Default 0" },
     [OPT_FORCE]     = { 'f', "force", NULL, "overwrite files" },
@@ -130,7 +131,7 @@ static int set_option(ted4_settings *s, int option, const char *value)
     }
     int *const flag[N_OPTIONS] = {
         [OPT_KEEP_ALL] = &s->keep_all, [OPT_HASH] = &s->hash,      [OPT_TEST] = &s->test,
-        [OPT_TRACE] = &s->trace,       [OPT_FORCE] = &s->force,    [OPT_JSON] = &s->json,
+        [OPT_LENIENT] = &s->lenient, [OPT_TRACE] = &s->trace,       [OPT_FORCE] = &s->force,    [OPT_JSON] = &s->json,
         [OPT_QUIET] = &s->quiet,       [OPT_VERBOSE] = &s->verbose
     };
 
@@ -173,80 +174,10 @@ static int parse(ted4_settings *s, int argc, char **argv)
     return code != 0 ? code : -1;
 }
 
-static void print_element(void *user, size_t offset, const char *element, int64_t index,
-                          int64_t value)
-{
-    (void)user;
-    printf("%zu %s[%" PRId64 "] = %" PRId64 "\n", offset, element, index, value);
-}
-
-static double seconds(void)
-{
-    struct timespec t;
-
-    clock_gettime(CLOCK_MONOTONIC, &t);
-    return (double)t.tv_sec + 1e-9 * (double)t.tv_nsec;
-}
-
-/* Is checking the file all that is asked for? */
-static int only_checks(const ted4_settings *s)
-{
-    return s->test || (s->output == NULL && s->render == NULL && !s->hash && !s->trace);
-}
-
-/* What is in the file, and what decoding it to attributes took. ru_maxrss: of this process, its copy of the file included; in KiB
- * on Linux. */
-static void tell_cost(const ted4_session *s, size_t size, double ms)
-{
-    const ted4_settings *const set = s->set;
-    struct rusage usage;
-    const double mib = getrusage(RUSAGE_SELF, &usage) == 0 ? (double)usage.ru_maxrss / 1024 : 0.0;
-
-    if (set->verbose || (only_checks(set) && !set->quiet))
-        fprintf(stderr,
-                "ted4dec: %s: valid, %zu bytes, %" PRIu32 " anchors, %zu Gaussians, %" PRIu32
-                " frames; decoded to attributes in %.1f ms, peak memory %.1f MiB\n",
-                set->input, size, s->info.n_anchors, s->info.n_gaussians, s->info.frames, ms, mib);
-    if (only_checks(set)) {
-        json_object_set_new(s->report, "decode_ms", json_real(ms));
-        json_object_set_new(s->report, "peak_mib", json_real(mib));
-    }
-}
-
-/* Decodes the input; the scene is needed no longer once there is a recon. */
-static int open_scene(ted4_session *s)
-{
-    const ted4_settings *const set = s->set;
-    const ted4_options options = { .parallel = &s->parallel,
-                                   .trace = set->trace ? print_element : NULL };
-    ted4_error e = { TED4_OK, 0 };
-    ted4_scene *scene;
-    size_t size;
-    uint8_t *const data = ted4_read_file(set->input, &size);
-    const double start = seconds();
-    int code = TED4_EXIT_FINE;
-
-    if (data == NULL) {
-        fprintf(stderr, "ted4dec: %s: %s\n", set->input, strerror(errno));
-        return TED4_EXIT_TOOL;
-    }
-    if (ted4_decode(data, size, &options, &scene, &e) == TED4_OK) {
-        ted4_scene_info(scene, &s->info);
-        e.code = ted4_recon_new(&s->recon, scene, &options);
-        ted4_scene_free(scene);
-    }
-    if (e.code == TED4_OK)
-        tell_cost(s, size, 1e3 * (seconds() - start));
-    else
-        code = ted4_report("ted4dec", set->input, &e, set->json);
-    free(data);
-    return code;
-}
-
 static int run(ted4_session *s)
 {
     const ted4_settings *const set = s->set;
-    int code = open_scene(s);
+    int code = ted4_action_open(s);
 
     if (code == TED4_EXIT_FINE)
         code = ted4_action_check(s);
@@ -262,7 +193,8 @@ static int run(ted4_session *s)
     json_t *const name = json_string(set->input);       /* NULL: not UTF-8 */
 
     json_object_set_new(s->report, "file", name != NULL ? name : json_null());
-    json_object_set_new(s->report, "verdict", json_string("valid"));
+    if (json_object_get(s->report, "verdict") == NULL)
+        json_object_set_new(s->report, "verdict", json_string("valid"));
     json_object_set_new(s->report, "frames", json_integer(s->info.frames));
     json_object_set_new(s->report, "gaussians", json_integer((json_int_t)s->info.n_gaussians));
     json_dumpf(s->report, stdout, JSON_COMPACT | JSON_REAL_PRECISION(9));
@@ -275,6 +207,10 @@ int main(int argc, char **argv)
     ted4_settings set;
     ted4_session s = { .set = &set };
     char why[256];
+
+    if (ted4_contract_asked(argc, argv))
+        return ted4_contract(argc, argv);
+
     int code = parse(&set, argc, argv);
 
     if (code >= 0)

@@ -12,12 +12,14 @@
 #include "base/bytes.h"
 #include "budget.h"
 #include "cli.h"
+#include "findings.h"
 #include "ted4.h"
 
-enum { OPT_BUDGET, OPT_THREADS, OPT_JSON, OPT_QUIET, OPT_VERBOSE, OPT_HELP, OPT_VERSION, N_OPTIONS };
+enum { OPT_BUDGET, OPT_VALIDATE, OPT_THREADS, OPT_JSON, OPT_QUIET, OPT_VERBOSE, OPT_HELP, OPT_VERSION, N_OPTIONS };
 
 static const ted4_argument OPTIONS[N_OPTIONS] = {
     [OPT_BUDGET]  = { 0, "budget", NULL, "attribute every byte of the file to a syntax element" },
+    [OPT_VALIDATE] = { 0, "validate", NULL, "for authors of encoders: every error, and what is legal but doubtful, with byte offset and rule" },
     [OPT_THREADS] = { 'j', "threads", "N", "accepted; elements are listed in order, by one thread" },
     [OPT_JSON]    = { 0, "json", NULL, "everything as one JSON object" },
     [OPT_QUIET]   = { 'q', "quiet", NULL, "errors only: is the file valid?" },
@@ -30,7 +32,7 @@ static const ted4_command COMMAND = {
     "ted4info", "FILE.ted4 [options]        (- reads standard input)",
     "Says what a TED4 file holds.",
     OPTIONS, N_OPTIONS,
-    "Exit codes: 0 fine, 1 file refused, 3 usage, input, output or resources.\n",
+    "Exit codes: 0 fine, 1 file refused, 2 fine with warnings (--validate), 3 usage, input, output or resources.\n",
     NULL,
 };
 
@@ -63,6 +65,8 @@ static int parse(settings *s, int argc, char **argv)
     }
     if (optind + 1 != argc)
         return usage_error("exactly one file");
+    if (s->on[OPT_VALIDATE] && s->on[OPT_BUDGET])
+        return usage_error("--validate or --budget, not both");
     s->input = argv[optind];
     return -1;
 }
@@ -197,10 +201,6 @@ static int show(const settings *s, const ted4_info *info, const ted4_budget *b, 
         if (s->on[OPT_BUDGET])
             print_budget(b, size);
     }
-    if (fflush(stdout) != 0 || ferror(stdout)) {
-        fprintf(stderr, "ted4info: standard output: %s\n", strerror(errno));
-        return TED4_EXIT_TOOL;
-    }
     return TED4_EXIT_FINE;
 }
 
@@ -218,7 +218,9 @@ static int run(const settings *s, ted4_budget *budget)
         fprintf(stderr, "ted4info: %s: %s\n", s->input, strerror(errno));
         return TED4_EXIT_TOOL;
     }
-    if (ted4_decode(data, size, &options, &scene, &e) != TED4_OK) {
+    if (s->on[OPT_VALIDATE]) {
+        code = ted4_findings_print(s->input, data, size, s->on[OPT_JSON], s->on[OPT_QUIET]);
+    } else if (ted4_decode(data, size, &options, &scene, &e) != TED4_OK) {
         code = ted4_report("ted4info", s->input, &e, s->on[OPT_JSON]);
     } else if (!ted4_budget_finish(budget, size)) {
         fprintf(stderr, "ted4info: %s: bytes without an owner: this is a bug\n", s->input);
@@ -229,6 +231,10 @@ static int run(const settings *s, ted4_budget *budget)
     }
     ted4_scene_free(scene);
     free(data);
+    if (fflush(stdout) != 0 || ferror(stdout)) {
+        fprintf(stderr, "ted4info: standard output: %s\n", strerror(errno));
+        return TED4_EXIT_TOOL;
+    }
     return code;
 }
 

@@ -1,6 +1,5 @@
-/* gen_tables.c - prints ref-decoder/norm/tables.c, or with an argument the text of annex A.
- *     cc tests/gen/gen_tables.c -lm -o /tmp/gen_tables
- *     /tmp/gen_tables > ref-decoder/norm/tables.c;  /tmp/gen_tables md > spec/annex-a-tables.md
+/* gen_tables.c - prints ref-decoder/norm/tables.c. The text of annex A: annex_a.h.
+ *     cc tests/gen/gen_tables.c -lm -o /tmp/gen_tables;  /tmp/gen_tables > ref-decoder/norm/tables.c
  * SPDX-License-Identifier: BSD-2-Clause */
 #include <inttypes.h>
 #include <stdio.h>
@@ -37,26 +36,8 @@ static void print_c(void)
     }
 }
 
-static void print_markdown(void)
+int main(void)
 {
-    printf("# Annex A (normative): tables\n\nIn row order; i counts from 0. "
-           "sigma = 2^((g - 64) / 16).\n");
-    for (int i = 0; i < N_ANNEX; i++) {
-        const struct table *t = &table_list[i];
-
-        printf("\n## A.%d %s\n\n`%s[i]` = %s; %d entries.\n\n```\n", i + 1,
-               t->name, t->name, t->text, t->n);
-        print_entries(t, "", t->entry == table_step, "");
-        printf("```\n");
-    }
-}
-
-int main(int argc, char **argv)
-{
-    (void)argv;
-    if (argc > 1)
-        print_markdown();
-    else
-        print_c();
+    print_c();
     return 0;
 }

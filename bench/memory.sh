@@ -1,0 +1,64 @@
+#!/bin/sh
+# Memory of training 300 frames of 20 cameras at 1352x1014, which do not fit in memory at once: bench/memory.md. Usage: bench/memory.sh [RUN...]
+# The pictures are ray traced at three times; the other names are hard links to them, so that making the scene takes minutes and 60 MB, while
+# to the encoder they are 6000 files, each read and decoded by itself. A limit of 8 GB on the address space, which is more than what is resident, is enforced.
+# Growth is forced, so that the model has the most anchors that the preset allows. Runs: see the end; rows of those made earlier stay.
+# Half an hour of one core a run.
+set -e
+cd "$(dirname "$0")/.."
+bin=${TED4_BUILD:-build}
+out=${TED4_OUT:-out/memory}
+page=${TED4_PAGE:-bench/memory.md}
+threads=${TED4_THREADS:-2}
+frames=${FRAMES:-300} cameras=${CAMERAS:-20} width=${WIDTH:-1352} height=${HEIGHT:-1014}
+limit_kib=7812500 distinct=3
+mkdir -p "$out"
+
+if [ ! -e "$out/scene.done" ]; then
+    rm -rf "$out/scene"
+    "$bin/ted4scene" bend -o "$out/scene" --layout neu3d --size "${width}x$height" --cameras $((cameras - 1)) --test-cameras 1 --frames $distinct -j "$threads"
+    for folder in "$out"/scene/cam*/images; do
+        i=$distinct
+        while [ $i -lt "$frames" ]; do
+            ln "$folder/$(printf %04d $((i % distinct))).png" "$folder/$(printf %04d $i).png"
+            i=$((i + 1))
+        done
+    done
+    touch "$out/scene.done"
+fi
+
+value() { sed -n "s/.*\"$1\":\([-0-9.e+]*\).*/\1/p" "$2"; }
+
+run() {    # name iterations options: $out/NAME.row, when NAME or nothing was asked for
+    name=$1 iterations=$2; shift 2
+    case "$asked" in ''|*" $name "*) ;; *) return 0 ;; esac
+    (
+        ulimit -v $limit_kib
+        "$bin/ted4enc" "$out/scene" -o "$out/$name.ted4" -f -q -j "$threads" --iterations "$iterations" --seed 1 --set grow_gradient=0 \
+            --set grow_every=10 --set grow_until=1 --set probe=0 --json --log "$out/$name.jsonl" "$@" >"$out/$name.json"
+    )
+    tail -1 "$out/$name.jsonl" >"$out/line"
+    echo "| $name | \`--iterations $iterations $*\` | $(value anchors "$out/line") | $(value gaussians "$out/$name.json") | $(value peak_mib "$out/$name.json") |" \
+        >"$out/$name.row"
+}
+
+asked=${*:+" $* "}
+run largest 150,60 --preset paper
+run usual 150,60 --preset medium
+run little-cache 150,60 --preset medium --cache 256
+
+{
+    echo "# Memory"
+    echo
+    echo "Made by \`bench/memory.sh\` (\`make bench-memory\`): a scene of $frames frames of $cameras cameras at ${width}x$height, in all" \
+        "$(awk "BEGIN { printf \"%.1f\", $frames * $cameras * $width * $height * 3e-9 }") GB of pixels, trained by"
+    echo "\`ted4enc SCENE -o FILE -j $threads --seed 1 --set grow_gradient=0 --set grow_every=10 --set grow_until=1 --set probe=0\` and the options of the row, with"
+    echo "\`ulimit -v $limit_kib\` (8 GB of address space): more would have failed. Growth is forced to the most anchors that the preset allows, which a training that is no longer does not exceed."
+    echo "Peak: resident memory of the process, from the scene's first picture to the checked file (\`peak_mib\` of \`--json\`, from getrusage)."
+    echo
+    echo "| run | options | anchors | Gaussians in the file | peak MiB |"
+    echo "|---|---|---|---|---|"
+    for name in largest usual little-cache; do
+        if [ -e "$out/$name.row" ]; then cat "$out/$name.row"; fi
+    done
+} >"$page"

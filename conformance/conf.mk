@@ -1,0 +1,38 @@
+# The conformance suite; included by the Makefile. CONF_JOBS: processes at a time.
+CONF_OBJ   = $(patsubst %.c,$B/%.o,$(wildcard conformance/tool/*.c)) $(DEC_TOOL:%.c=$B/%.o)
+CONF_JOBS ?= 2
+
+all: $B/ted4conf
+$B/ted4conf: $(CONF_OBJ) $B/libted4enc.a $B/libted4dec.a
+	$(CC) -fopenmp $(LDFLAGS) $^ -o $@ $(LIBS)
+$B/tests/test_conformance: | $B/ted4conf $B/ted4dec
+
+# Our decoder against all vectors, those made on demand too; verdict page in out/.
+conformance: $B/ted4conf $B/ted4dec
+	@mkdir -p out
+	$B/ted4conf run --demand -j $(CONF_JOBS) -t 120 -d $B/ted4dec --second TED4_KERNEL=plain --json out/conformance.json \
+	    --junit out/conformance.xml --html out/conformance.html
+
+# All vectors again, from their recipes.
+conformance-gen: $B/ted4conf
+	$B/ted4conf gen
+
+# What the vectors reach; page in out/.
+conformance-cover: $B/ted4conf
+	@mkdir -p out
+	$B/ted4conf cover --html out/coverage.html --json out/coverage.json
+
+# Branches of norm/ and read/ that they take.
+conformance-branches: $B/ted4conf
+	$(MAKE) B=build-gcov CC=gcc OPT=-O0 CFLAGS=--coverage LDFLAGS=--coverage build-gcov/ted4dec
+	find build-gcov -name '*.gcda' -delete
+	$B/ted4conf run --demand -j $(CONF_JOBS) -t 600 --memory 0 -d build-gcov/ted4dec --second TED4_KERNEL=plain
+	sh conformance/branches.sh build-gcov
+
+# Seeded faults; what has a result in conformance/mutants.csv is not run again.
+conformance-mutants:
+	$(MAKE) B=build-mutants OPT=-O1 build-mutants/ted4conf
+	build-mutants/ted4conf mutants -j $(CONF_JOBS) -b build-mutants --compile '$(CC) -std=c11 -D_POSIX_C_SOURCE=200809L -O1 $(STRICT) -fopenmp' \
+	    --libraries '$(LIBS)'
+
+.PHONY: conformance conformance-gen conformance-cover conformance-branches conformance-mutants

@@ -1,0 +1,54 @@
+# SPDX-License-Identifier: BSD-2-Clause
+"""Tensor blobs (7.2): the f32 values of networks and bank, raw, or shuffled and deflated. Order of judgement: R-NET-010."""
+
+import struct
+import zlib
+
+from floats import f32_sound
+from verdict import Refusal, require
+
+
+class Blob:
+    """`patterns` of the values in order. offset(i) is where an error of value i is reported (chapter 14)."""
+
+    def __init__(self, payload, name, count):
+        self.start = payload.at + 1
+        self.deflated = payload.number("mode", 1)
+        require(self.deflated <= 1, "net.mode", self.start - 1)
+        if self.deflated:
+            stream = payload.bytes(name + "_deflated", payload.end - payload.at)
+            self.patterns = unshuffle(inflate(stream, 4 * count, self.start))
+        else:
+            self.patterns = payload.numbers(name, 4, count)
+
+    def offset(self, i):
+        return self.start if self.deflated else self.start + 4 * i
+
+    def check_values(self):
+        """R-NET-002 for blobs whose values obey no other rule."""
+        for i, pattern in enumerate(self.patterns):
+            require(f32_sound(pattern), "net.value", self.offset(i))
+
+
+def inflate(stream, size, offset):
+    """R-NET-001. Asking for one byte more than `size` lets zlib reach the stream's end and its check sum, and never make more than that.
+
+    The inflate of zlib answers every point of R-NET-007 as that rule does; test_deflate.py has streams for each.
+    """
+    inflater = zlib.decompressobj()
+    try:
+        out = inflater.decompress(stream, size + 1)
+    except zlib.error:
+        raise Refusal("net.deflate", offset) from None
+    whole = inflater.eof and not inflater.unused_data
+    require(whole and len(out) == size and len(stream) < size, "net.deflate", offset)
+    return out
+
+
+def unshuffle(planes):
+    """First byte 0 of all values, then byte 1 of all, and so on: to the values' patterns."""
+    n = len(planes) // 4
+    values = bytearray(4 * n)
+    for i in range(4):
+        values[i::4] = planes[i * n:(i + 1) * n]
+    return list(struct.unpack("<%dI" % n, values))

@@ -1,0 +1,18 @@
+# SPDX-License-Identifier: BSD-2-Clause
+"""This decoder's own limit (R-LVL-007): memory, estimated from HEAD before anything of pass 2 is allocated (R-ERR-005)."""
+
+from shapes import blob_values
+from verdict import require
+
+DEFAULT = 1 << 32
+PER_VALUE, PER_SYMBOL, PER_BYTE = 100, 200, 20          # bytes of Python objects, on the safe side
+
+
+def check_memory(h, file_bytes, bound):
+    """limit.memory when decoding may need more than `bound` bytes. What a file claims beyond what its bytes could hold is not counted: a deflated
+    value takes at least 1/258 byte (RFC 1951: 258 bytes in two bits, four bytes a value), an anchor 6 bytes of POSN."""
+    values = min(blob_values(h), 258 * file_bytes)
+    anchors = min(h.n_anchors, file_bytes // 6)
+    symbols = anchors * sum(dim for _, dim in h.types)
+    need = PER_VALUE * values + PER_SYMBOL * symbols + PER_BYTE * file_bytes
+    require(need <= (DEFAULT if bound is None else bound), "limit.memory", None)

@@ -1,0 +1,44 @@
+#!/bin/sh
+# Decoders that do not conform, each in its own way: ted4conf run has to see through all of them.
+#     bad_decoder.sh WAY ARGUMENTS OF THE CONTRACT...       TED4DEC: a decoder that does conform
+way=$1
+shift
+good() { "$TED4DEC" "$@"; }
+if [ "$1" = --ted4-capabilities ]; then
+    case $way in
+    no-capabilities) exit 0 ;;
+    old-protocol) good "$@" | sed 's/"protocol":1/"protocol":0/' ;;
+    declines-all) good "$@" | sed 's/"declines":\[\]/"declines":["motion.none","motion.bank","motion.concat","motion.inr"]/' ;;
+    declines-moving) good "$@" | sed 's/"declines":\[\]/"declines":["motion.bank","motion.concat","motion.inr"]/' ;;
+    no-knobs) good "$@" | sed 's/"knobs":\["max_alloc_total"\]/"knobs":[]/' ;;
+    *) good "$@" ;;
+    esac
+    exit
+fi
+case $way in
+good|declines-*|no-knobs) good "$@" ;;
+crash) kill -SEGV $$ ;;
+hang) sleep 600 ;;
+hang-behind) sleep 600 & good "$@"; wait ;;
+silent) exit 0 ;;
+exit-code) good "$@"; exit 1 ;;
+chatter) echo 'reading...'; good "$@" ;;
+chatter-behind) good "$@"; echo done ;;
+two-answers) good "$@"; good "$@" ;;
+no-json) echo valid ;;
+no-utf8) printf '{"result":"valid","x":"\377"}\n' ;;
+flood) head -c 9000000 /dev/zero | tr '\0' ' '; good "$@" ;;
+says-valid) echo '{"result":"valid"}' ;;
+says-invalid) echo '{"result":"invalid","error":"con.magic","offset":0}' ;;
+says-limit) echo '{"result":"limit","error":"limit.memory"}' ;;
+wrong-hash) good "$@" | sed 's/\("T3":{"bytes":[0-9]*,"xxh3":"\)./\1x/; s/\("T3":{[^}]*"sha256":"\)./\1x/' ;;
+half-wrong) good "$@" | sed 's/\("T2":{[^}]*"sha256":"\)./\1x/' ;;
+no-hashes) good "$@" | sed 's/"xxh3":"[0-9a-f]*"/"none":0/g; s/"sha256":"[0-9a-f]*"/"no":0/g' ;;
+no-tier) good "$@" | sed 's/"T4":{[^}]*},//' ;;
+wrong-records) good "$@" | sed 's/\("T5":\[{"bytes":[0-9]*,"xxh3":"\)./\1x/' ;;
+no-records) good "$@" | sed 's/"T5":\[.*\]/"T5":[]/' ;;
+wrong-offset) good "$@" | sed 's/"offset":/"offset":1/' ;;
+wrong-error) good "$@" | sed 's/"error":"[a-z]*\./"error":"xyz./' ;;
+moody) if mkdir "$MOOD" 2>/dev/null; then good "$@"; else rmdir "$MOOD"; echo '{"result":"valid","tiers":{}}'; fi ;;
+spoils-input) good "$@"; chmod u+w "$2"; : > "$2" ;;
+esac

@@ -1,0 +1,27 @@
+/* judge.h - is an answer the right one? And is it an answer at all?
+ * SPDX-License-Identifier: BSD-2-Clause */
+#ifndef CONF_JUDGE_H
+#define CONF_JUDGE_H
+
+#include "process.h"
+#include "suite.h"
+
+/* declined: the decoder has said beforehand that it does not do this; missing: no file, or another one. */
+typedef enum { CONF_PASS, CONF_FAIL, CONF_NO_ANSWER, CONF_DECLINED, CONF_MISSING, CONF_NOT_RUN, CONF_OUTCOMES } conf_outcome;
+extern const char *const conf_outcome_name[CONF_OUTCOMES];
+
+typedef struct {
+    conf_outcome outcome;
+    char         reason[400];
+} conf_verdict;
+
+/* The document that a run has printed, a new reference; NULL: no answer, and *v says why. */
+json_t *conf_judge_document(const conf_process *p, conf_verdict *v);
+/* The object that --ted4-capabilities gives: 1, or 0: it is not what the contract asks for, and *v says why. */
+int     conf_judge_capabilities(const json_t *capabilities, conf_verdict *v);
+/* May the decoder leave this vector out? */
+int     conf_judge_declines(const json_t *capabilities, const json_t *descriptor);
+/* Answer against descriptor. */
+void    conf_judge(const json_t *capabilities, const json_t *descriptor, const json_t *answer, conf_verdict *v);
+
+#endif

@@ -1,0 +1,19 @@
+/* mutants.h - `ted4conf mutants`: faults seeded into the decoder, which the published vectors have to find.
+ * SPDX-License-Identifier: BSD-2-Clause */
+#ifndef CONF_MUTANTS_H
+#define CONF_MUTANTS_H
+
+typedef struct {
+    const char *suite;          /* holds mutants.list, mutants.csv, MUTANTS.md */
+    const char *build;          /* folder of a build of ted4conf */
+    const char *compile;        /* command that compiles: flags, without -c and -o */
+    const char *libraries;      /* behind the objects when linking */
+    const char *only;           /* ids that begin so; NULL: all */
+    int         jobs;
+    double      timeout;        /* seconds for one replay */
+} conf_mutant_options;
+
+/* Runs what has no result yet, keeps results in mutants.csv, writes MUTANTS.md. Exit code: 0 when enough are killed. */
+int conf_mutants(const conf_mutant_options *o);
+
+#endif

@@ -1,0 +1,181 @@
+/* process.c - see process.h. Every run is a process group, so that what it has started ends with it.
+ * SPDX-License-Identifier: BSD-2-Clause */
+#include "process.h"
+
+#include <errno.h>
+#include <fcntl.h>
+#include <poll.h>
+#include <signal.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/resource.h>
+#include <sys/wait.h>
+#include <time.h>
+#include <unistd.h>
+
+enum { MAX_ARGUMENTS = 24, MAX_PROCESSES = 256 };
+
+static double seconds(void)
+{
+    struct timespec t;
+
+    clock_gettime(CLOCK_MONOTONIC, &t);
+    return (double)t.tv_sec + 1e-9 * (double)t.tv_nsec;
+}
+
+static _Noreturn void child(const conf_process_options *o, const char *const *argv, int out, int err)
+{
+    const int     null = open("/dev/null", O_RDONLY);
+    char         *list[MAX_ARGUMENTS] = { NULL };
+    char          shell[] = "sh", flag[] = "-c", name[] = "ted4conf";
+    conf_bytes    command = { NULL, 0, 0 };
+    struct rlimit limit = { (rlim_t)o->memory, (rlim_t)o->memory }, core = { 0, 0 };
+    int           n = 0;
+
+    setpgid(0, 0);
+    dup2(null, 0);
+    dup2(out, 1);
+    dup2(err, 2);
+    setrlimit(RLIMIT_CORE, &core);
+    if (o->memory > 0)
+        setrlimit(RLIMIT_AS, &limit);
+    if (o->environment != NULL && strchr(o->environment, '=') != NULL) {
+        char *const variable = conf_copy(o->environment), *const value = strchr(variable, '=');
+
+        *value = '\0';
+        setenv(variable, value + 1, 1);
+    }
+    conf_print(&command, "%s \"$@\"", o->command);
+    list[n++] = shell;
+    list[n++] = flag;
+    list[n++] = (char *)command.data;
+    list[n++] = name;
+    for (; *argv != NULL && n + 1 < MAX_ARGUMENTS; argv++)
+        list[n++] = conf_copy(*argv);
+    execv("/bin/sh", list);
+    _exit(127);
+}
+
+void conf_process_start(conf_process *p, const conf_process_options *o, const char *const *argv)
+{
+    int out[2], err[2];
+
+    memset(p, 0, sizeof *p);
+    if (pipe(out) != 0 || pipe(err) != 0)
+        conf_die("pipe: %s", strerror(errno));
+    for (int i = 0; i < 2; i++) {
+        fcntl(out[i], F_SETFD, FD_CLOEXEC);
+        fcntl(err[i], F_SETFD, FD_CLOEXEC);
+    }
+    p->options = o;
+    p->started = seconds();
+    p->pid = fork();
+    if (p->pid < 0)
+        conf_die("fork: %s", strerror(errno));
+    if (p->pid == 0)
+        child(o, argv, out[1], err[1]);
+    setpgid(p->pid, p->pid);
+    close(out[1]);
+    close(err[1]);
+    p->out = out[0];
+    p->err = err[0];
+    conf_add(&p->answer, "", 0);
+    conf_add(&p->complaint, "", 0);
+}
+
+/* What a pipe holds now; closed ones become -1. Gives 0 when there is too much of it. */
+static int drain(int *fd, conf_bytes *to, size_t most, int keep_all)
+{
+    uint8_t       piece[1 << 14];
+    const ssize_t n = read(*fd, piece, sizeof piece);
+
+    if (n <= 0) {
+        if (n < 0 && errno == EINTR)
+            return 1;
+        close(*fd);
+        *fd = -1;
+        return 1;
+    }
+    if (to->size + (size_t)n <= most)
+        conf_add(to, piece, (size_t)n);
+    else if (keep_all)
+        return 0;
+    else
+        conf_add(to, piece, most - to->size);
+    return 1;
+}
+
+/* Ends the whole group, whatever is left of it, and takes the exit status. */
+static void finish(conf_process *p, conf_process_end end)
+{
+    int status = 0;
+
+    if (end != CONF_ENDED)
+        kill(-p->pid, SIGKILL);
+    while (waitpid(p->pid, &status, 0) < 0 && errno == EINTR)
+        ;
+    kill(-p->pid, SIGKILL);             /* what it left behind */
+    if (p->out >= 0)
+        close(p->out);
+    if (p->err >= 0)
+        close(p->err);
+    p->ms = 1e3 * (seconds() - p->started);
+    p->end = end == CONF_ENDED && WIFSIGNALED(status) ? CONF_CRASHED : end;
+    p->code = WIFSIGNALED(status) ? WTERMSIG(status) : WEXITSTATUS(status);
+    p->pid = 0;
+}
+
+/* Has its leader ended? Then what others of the group still say does not count. */
+static int leader_ended(const conf_process *p)
+{
+    siginfo_t info;
+
+    info.si_pid = 0;
+    return waitid(P_PID, (id_t)p->pid, &info, WEXITED | WNOHANG | WNOWAIT) == 0 && info.si_pid == p->pid;
+}
+
+static int look(conf_process *p, const struct pollfd *f)
+{
+    if (f[0].revents != 0 && p->out >= 0 && !drain(&p->out, &p->answer, CONF_MAX_OUTPUT, 1)) {
+        finish(p, CONF_TOO_LONG);
+        return 1;
+    }
+    if (f[1].revents != 0 && p->err >= 0)
+        (void)drain(&p->err, &p->complaint, CONF_MAX_STDERR, 0);
+    if ((p->out < 0 && leader_ended(p)) || (f[0].revents == 0 && f[1].revents == 0 && leader_ended(p))) {
+        finish(p, CONF_ENDED);
+        return 1;
+    }
+    if (seconds() - p->started > p->options->timeout) {
+        finish(p, CONF_HUNG);
+        return 1;
+    }
+    return 0;
+}
+
+int conf_process_wait(conf_process *const *p, int n, int ms)
+{
+    struct pollfd f[2 * MAX_PROCESSES];
+    int           waiting = ms;
+
+    if (n > MAX_PROCESSES)
+        conf_die("more than %d processes", MAX_PROCESSES);
+    for (int i = 0; i < n; i++) {
+        f[2 * i] = (struct pollfd){ p[i]->pid > 0 ? p[i]->out : -1, POLLIN, 0 };
+        f[2 * i + 1] = (struct pollfd){ p[i]->pid > 0 ? p[i]->err : -1, POLLIN, 0 };
+        if (p[i]->pid > 0 && p[i]->out < 0 && waiting > 1)
+            waiting = 1;                /* it has closed its stdout and is about to end */
+    }
+    (void)poll(f, (nfds_t)(2 * n), waiting);
+    for (int i = 0; i < n; i++)
+        if (p[i]->pid > 0 && look(p[i], &f[2 * i]))
+            return i;
+    return -1;
+}
+
+void conf_process_free(conf_process *p)
+{
+    conf_free(&p->answer);
+    conf_free(&p->complaint);
+}

@@ -1,0 +1,55 @@
+/* replay.c - see replay.h.
+ * SPDX-License-Identifier: BSD-2-Clause */
+#include "replay.h"
+
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include "answer.h"
+#include "judge.h"
+
+static int by_size(const void *a, const void *b)
+{
+    const json_int_t x = json_integer_value(json_object_get(((const conf_entry *)a)->descriptor, "bytes"));
+    const json_int_t y = json_integer_value(json_object_get(((const conf_entry *)b)->descriptor, "bytes"));
+
+    return x != y ? (x < y ? -1 : 1) : strcmp(((const conf_entry *)a)->id, ((const conf_entry *)b)->id);
+}
+
+int conf_replay(const char *suite, const char *list, int stop)
+{
+    json_t     *capabilities = json_pack("{s:i, s:[s,s,s,s,s,s], s:s, s:[], s:[s]}", "max_level", 31, "tiers", "T0", "T1", "T2", "T3",
+                                         "T4", "T5", "class", "X", "declines", "knobs", "max_alloc_total");
+    char        path[CONF_PATH];
+    conf_entry *e;
+    size_t      n, n_bad = 0, n_run = 0;
+
+    conf_path(path, "%s/vectors", suite);
+    e = conf_suite_load(path, list, &n);
+    if (n > 0)
+        qsort(e, n, sizeof *e, by_size);        /* what is quick first */
+    for (size_t i = 0; i < n && !(stop && n_bad > 0); i++) {
+        conf_verdict v = { CONF_MISSING, "no descriptor" };
+        conf_bytes   file = { NULL, 0, 0 };
+
+        if (e[i].descriptor != NULL && !conf_read(e[i].file, &file))
+            continue;                   /* made on demand */
+        if (e[i].descriptor != NULL) {
+            json_t *const answer = conf_answer(&file, json_object_get(e[i].descriptor, "queries"),
+                (uint64_t)json_integer_value(json_object_get(json_object_get(e[i].descriptor, "knobs"), "max_alloc_total")));
+
+            conf_judge(capabilities, e[i].descriptor, answer, &v);
+            json_decref(answer);
+        }
+        n_run++;
+        if (v.outcome != CONF_PASS) {
+            n_bad++;
+            printf("%s: %s: %s\n", conf_outcome_name[v.outcome], e[i].id, v.reason);
+        }
+        conf_free(&file);
+    }
+    printf("%zu run, %zu failed\n", n_run, n_bad);
+    conf_suite_free(e, n);
+    json_decref(capabilities);
+    return n_bad > 0 || n_run == 0;
+}

@@ -1,0 +1,336 @@
+/* run.c - see run.h. Each vector is copied into a folder of its own, given to the decoder twice, and both answers have to agree.
+ * SPDX-License-Identifier: BSD-2-Clause */
+#include "run.h"
+
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/stat.h>
+#include <unistd.h>
+#include "recipe.h"
+#include "tool/sha256.h"
+#include "vector.h"
+
+/* A vector under way. */
+typedef struct {
+    conf_process process;
+    size_t       entry;
+    int          run;           /* 0, 1: the second one */
+    json_t      *first;         /* answer of the first run; owned */
+    char         folder[CONF_PATH];
+} slot;
+
+typedef struct {
+    conf_run_result      *r;
+    conf_process_options  options[2];
+    char                  folder[CONF_PATH];    /* of all slots; removed at the end */
+    conf_recipes          recipes;              /* for what is made on demand; empty until then */
+} runner;
+
+static json_t *ask_capabilities(runner *w)
+{
+    static const char *const argv[] = { "--ted4-capabilities", NULL };
+    conf_process  p;
+    conf_process *list[1] = { &p };
+    json_t       *o;
+
+    conf_process_start(&p, &w->options[0], argv);
+    while (conf_process_wait(list, 1, 100) < 0)
+        ;
+    o = conf_judge_document(&p, &w->r->handshake);
+    if (o != NULL && !conf_judge_capabilities(o, &w->r->handshake)) {
+        json_decref(o);
+        o = NULL;
+    }
+    conf_process_free(&p);
+    return o;
+}
+
+static int right_hash(const conf_entry *e, const conf_bytes *b)
+{
+    uint8_t     sha[TED4_SHA256_SIZE];
+    char        hex[2 * TED4_SHA256_SIZE + 1];
+    ted4_sha256 h;
+
+    ted4_sha256_init(&h);
+    ted4_sha256_add(&h, b->data, b->size);
+    ted4_sha256_end(&h, sha);
+    conf_hex(hex, sha, sizeof sha);
+    return strcmp(hex, json_string_value(json_object_get(e->descriptor, "sha256"))) == 0;
+}
+
+/* A vector of which only the recipe is kept. */
+static int make_on_demand(runner *w, const conf_entry *e, conf_bytes *b)
+{
+    char path[CONF_PATH];
+
+    if (w->recipes.n == 0) {
+        conf_path(path, "%s/recipes", w->r->options->suite);
+        conf_recipes_load(&w->recipes, path);
+    }
+    for (size_t i = 0; i < w->recipes.n; i++)
+        if (strcmp(w->recipes.recipe[i].id, e->id) == 0) {
+            conf_vector v;
+
+            (void)conf_vector_make(&v, &w->recipes.recipe[i], w->r->options->suite);
+            *b = v.file;
+            json_decref(v.descriptor);
+            return 1;
+        }
+    return 0;
+}
+
+/* The file of an entry; 0: it cannot be run, and the verdict says why. */
+static int fetch(runner *w, size_t i, conf_bytes *b)
+{
+    const conf_entry *e = &w->r->entry[i];
+    conf_verdict     *v = &w->r->verdict[i];
+    const int         demand = json_is_true(json_object_get(e->descriptor, "demand"));
+
+    *v = (conf_verdict){ CONF_MISSING, "" };
+    if (e->descriptor == NULL) {
+        snprintf(v->reason, sizeof v->reason, "listed, but there is no descriptor");
+        return 0;
+    }
+    if (conf_judge_declines(w->r->capabilities, e->descriptor)) {
+        *v = (conf_verdict){ CONF_DECLINED, "the decoder declines a feature or knob of it" };
+        return 0;
+    }
+    if (!conf_read(e->file, b)) {
+        if (demand && !w->r->options->demand) {
+            *v = (conf_verdict){ CONF_NOT_RUN, "made on demand only (--demand)" };
+            return 0;
+        }
+        if (!demand || !make_on_demand(w, e, b)) {
+            snprintf(v->reason, sizeof v->reason, "the file is not there");
+            return 0;
+        }
+    }
+    if (!right_hash(e, b)) {
+        snprintf(v->reason, sizeof v->reason, "the file is another one than its descriptor says");
+        conf_free(b);
+        return 0;
+    }
+    return 1;
+}
+
+static void start(runner *w, slot *s)
+{
+    const conf_entry *e = &w->r->entry[s->entry];
+    char        file[CONF_PATH], queries[CONF_PATH], knob[64];
+    const char *argv[12] = { "--ted4-run", file, "--tiers", "T0,T1,T2,T3,T4,T5" }, *name;
+    json_t     *value, *knobs = json_object_get(e->descriptor, "knobs");
+    int         n = 4;
+
+    conf_path(file, "%s/input.ted4", s->folder);
+    conf_path(queries, "%s/queries.json", s->folder);
+    if (json_array_size(json_object_get(e->descriptor, "queries")) > 0) {
+        argv[n++] = "--queries";
+        argv[n++] = queries;
+    }
+    json_object_foreach(knobs, name, value) {
+        snprintf(knob, sizeof knob, "%s=%lld", name, (long long)json_integer_value(value));
+        argv[n++] = "--knob";
+        argv[n++] = knob;
+    }
+    argv[n] = NULL;
+    conf_process_start(&s->process, &w->options[s->run], argv);
+}
+
+/* Copies file and queries into a fresh folder. */
+static void prepare(runner *w, slot *s, const conf_bytes *b)
+{
+    const json_t *const queries = json_object_get(w->r->entry[s->entry].descriptor, "queries");
+    char                path[CONF_PATH];
+
+    conf_path(s->folder, "%s/%zu", w->folder, s->entry);
+    conf_path(path, "%s/input.ted4", s->folder);
+    conf_write(path, b->data, b->size);
+    chmod(path, 0444);
+    conf_path(path, "%s/queries.json", s->folder);
+    if (json_array_size(queries) > 0 && json_dump_file(queries, path, JSON_COMPACT) != 0)
+        conf_die("%s cannot be written", path);
+}
+
+static void clear(slot *s)
+{
+    char path[CONF_PATH];
+
+    conf_path(path, "%s/input.ted4", s->folder);
+    unlink(path);
+    conf_path(path, "%s/queries.json", s->folder);
+    unlink(path);
+    rmdir(s->folder);
+    json_decref(s->first);
+    s->first = NULL;
+}
+
+static void tell(const runner *w, size_t i)
+{
+    const conf_verdict *v = &w->r->verdict[i];
+
+    if ((v->outcome == CONF_PASS || v->outcome == CONF_DECLINED || v->outcome == CONF_NOT_RUN) || w->r->options->quiet > 1)
+        return;
+    fprintf(stderr, "%s: %s: %s\n", conf_outcome_name[v->outcome], w->r->entry[i].id, v->reason);
+}
+
+/* The run of a slot has ended. 1: the slot goes on with its second run. */
+static int take(runner *w, slot *s)
+{
+    conf_verdict *v = &w->r->verdict[s->entry];
+    json_t       *answer = conf_judge_document(&s->process, v);
+    int           again = 0;
+
+    w->r->ms[s->entry] += s->process.ms;
+    if (answer != NULL && s->run == 0) {
+        conf_judge(w->r->capabilities, w->r->entry[s->entry].descriptor, answer, v);
+        again = v->outcome == CONF_PASS && !w->r->options->once;
+    } else if (answer != NULL && !json_equal(answer, s->first)) {
+        *v = (conf_verdict){ CONF_FAIL, "two runs gave two answers" };
+    }
+    conf_process_free(&s->process);
+    if (again) {
+        s->first = answer;
+        s->run = 1;
+        start(w, s);
+        return 1;
+    }
+    json_decref(answer);
+    clear(s);
+    tell(w, s->entry);
+    return 0;
+}
+
+/* Fills a slot with the next vector that can be run. 0: there is none. */
+static int fill(runner *w, slot *s, size_t *next)
+{
+    while (*next < w->r->n) {
+        conf_bytes b;
+        const size_t i = (*next)++;
+
+        if (!fetch(w, i, &b)) {
+            tell(w, i);
+            continue;
+        }
+        memset(s, 0, sizeof *s);
+        s->entry = i;
+        prepare(w, s, &b);
+        conf_free(&b);
+        start(w, s);
+        return 1;
+    }
+    return 0;
+}
+
+static void run_all(runner *w)
+{
+    const int      jobs = w->r->options->jobs;
+    slot          *s = conf_alloc((size_t)jobs, sizeof *s);
+    conf_process **list = conf_alloc((size_t)jobs, sizeof *list);
+    size_t         next = 0;
+    int            busy = 0;
+
+    for (int i = 0; i < jobs; i++) {
+        list[i] = &s[i].process;
+        busy += fill(w, &s[i], &next);
+    }
+    while (busy > 0) {
+        const int i = conf_process_wait(list, jobs, 100);
+
+        if (i >= 0 && !take(w, &s[i]) && !fill(w, &s[i], &next))
+            busy--;
+    }
+    free(list);
+    free(s);
+}
+
+/* What SUITE.json names has to be there. */
+static void add_missing(conf_run_result *r)
+{
+    char    path[CONF_PATH];
+    json_t *manifest, *list;
+
+    conf_path(path, "%s/SUITE.json", r->options->suite);
+    manifest = json_load_file(path, 0, NULL);
+    if (manifest == NULL)
+        conf_die("%s: no manifest", path);
+    list = json_object_get(manifest, "vector");
+    for (size_t i = 0; i < json_array_size(list); i++) {
+        const char *const id = json_string_value(json_object_get(json_array_get(list, i), "id"));
+        size_t            j = 0;
+
+        while (j < r->n && strcmp(r->entry[j].id, id) != 0)
+            j++;
+        if (j < r->n)
+            continue;
+        r->entry = realloc(r->entry, (r->n + 1) * sizeof *r->entry);
+        if (r->entry == NULL)
+            conf_die("no memory");
+        memset(&r->entry[r->n], 0, sizeof *r->entry);
+        snprintf(r->entry[r->n++].id, sizeof r->entry->id, "%s", id);
+    }
+    json_decref(manifest);
+}
+
+static void sum_up(conf_run_result *r)
+{
+    for (size_t i = 0; i < r->n; i++) {
+        const char *const result = json_string_value(json_object_get(json_object_get(r->entry[i].descriptor, "expect"), "result"));
+
+        r->count[r->verdict[i].outcome]++;
+        r->valid_passed += r->verdict[i].outcome == CONF_PASS && result != NULL && strcmp(result, "valid") == 0;
+    }
+    r->passed = r->capabilities != NULL && r->count[CONF_FAIL] + r->count[CONF_NO_ANSWER] + r->count[CONF_MISSING] == 0
+             && r->valid_passed > 0;
+}
+
+static void write_reports(const conf_run_result *r)
+{
+    if (r->options->json != NULL)
+        conf_run_write_json(r);
+    if (r->options->junit != NULL)
+        conf_run_write_junit(r);
+    if (r->options->html != NULL)
+        conf_run_write_html(r);
+    printf("%s: %zu passed, %zu failed, %zu without answer, %zu missing, %zu declined, %zu not run: %s\n",
+           r->capabilities != NULL ? json_string_value(json_object_get(r->capabilities, "name")) : r->options->decoder,
+           r->count[CONF_PASS], r->count[CONF_FAIL], r->count[CONF_NO_ANSWER], r->count[CONF_MISSING], r->count[CONF_DECLINED],
+           r->count[CONF_NOT_RUN],
+           r->passed ? "conforms" : r->capabilities == NULL ? r->handshake.reason
+           : r->valid_passed == 0 ? "does not conform: no valid stream decoded" : "does not conform");
+}
+
+int conf_run(const conf_run_options *o)
+{
+    conf_run_result r = { .options = o };
+    runner          w = { .r = &r };
+    char            vectors[CONF_PATH];
+    const char     *tmp = getenv("TMPDIR");
+
+    conf_path(vectors, "%s/vectors", o->suite);
+    r.entry = conf_suite_load(vectors, o->list, &r.n);
+    if (o->list == NULL)
+        add_missing(&r);
+    r.verdict = conf_alloc(r.n, sizeof *r.verdict);
+    r.ms = conf_alloc(r.n, sizeof *r.ms);
+    for (int i = 0; i < 2; i++)
+        w.options[i] = (conf_process_options){ o->decoder, i == 1 ? o->second : NULL, o->timeout, o->memory };
+    conf_path(w.folder, "%s/ted4conf-XXXXXX", tmp != NULL ? tmp : "/tmp");
+    if (mkdtemp(w.folder) == NULL)
+        conf_die("%s: cannot be made", w.folder);
+    r.capabilities = ask_capabilities(&w);
+    if (r.capabilities != NULL)
+        run_all(&w);
+    for (size_t i = 0; r.capabilities == NULL && i < r.n; i++)
+        r.verdict[i] = (conf_verdict){ CONF_NO_ANSWER, "no capabilities" };
+    rmdir(w.folder);
+    sum_up(&r);
+    write_reports(&r);
+    json_decref(r.capabilities);
+    conf_suite_free(r.entry, r.n);
+    if (w.recipes.n > 0)
+        conf_recipes_free(&w.recipes);
+    free(r.verdict);
+    free(r.ms);
+    return !r.passed;
+}

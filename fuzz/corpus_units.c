@@ -1,0 +1,137 @@
+/* corpus_units.c - see corpus.h. Most of these harnesses take any numbers; what must be right to get anywhere is made right.
+ * SPDX-License-Identifier: BSD-2-Clause */
+#include <stdio.h>
+#include <zlib.h>
+#include "corpus.h"
+#include "random_scene.h"
+#include "write/coder_write.h"
+
+enum { MOST = 1 << 12 };
+
+/* Random bytes behind n that are given. */
+static void any(const char *group, const char *name, size_t size, const char *first, size_t n)
+{
+    random_source r = random_seed(size + (unsigned char)group[0]);
+    uint8_t       data[MOST];
+
+    for (size_t i = 0; i < size; i++)
+        data[i] = (uint8_t)random_u32(&r);
+    memcpy(data, first, n);
+    corpus_write(group, name, data, size);
+}
+
+#define ANY(group, name, size, first) any(group, name, size, first, sizeof first - 1)
+
+static void positions(void)
+{
+    random_source r = random_seed(3);
+    ted4_header   h = random_header(&r);
+    ted4_scene   *s;
+    uint8_t       data[6 * 40];
+
+    h.n_anchors = 40;
+    s = random_scene_of(&r, &h, 0);
+    for (size_t i = 0; s != NULL && i < 120; i++)
+        ted4_store16(data + 2 * i, s->position[i]);
+    ted4_scene_free(s);
+    corpus_write("positions", "sorted", data, sizeof data);
+    memmove(data + 66, data + 60, 6);
+    corpus_write("positions", "doubled", data, sizeof data);
+    ted4_store16(data + 60, 0x8000);
+    corpus_write("positions", "negative_zero", data, sizeof data);
+    ted4_store16(data + 60, 0x3c01);
+    corpus_write("positions", "above_one", data, sizeof data);
+    ANY("positions", "any", 60, "");
+}
+
+/* Kind 1 of fz_rans.c: models, then the substream that the writer makes of a few symbols. sigma index 64, mu 0. */
+static void substream(void)
+{
+    static const int16_t k[6] = { 0, 1, -2, 40, -300, 3 };
+    static const int32_t mu[6] = { 0 };
+    uint8_t     sigma[6], data[MOST] = { 1, 5 };
+    size_t      n = 2;
+    uint32_t    size;
+    ted4_writer w;
+
+    memset(sigma, 64, sizeof sigma);
+    for (int i = 0; i < 6; i++) {               /* prob - 1 = 65535 mod 65535 = 0, so mu is 1 << 6: of no matter below its fraction */
+        data[n++] = 64;
+        data[n++] = 255;
+        data[n++] = 255;
+        data[n++] = (uint8_t)k[i];
+        data[n++] = (uint8_t)(k[i] >> 8);
+    }
+    ted4_writer_init(&w);
+    w.base.ops->sizes(&w.base, &size, 1);
+    w.base.ops->open(&w.base, 6);
+    for (int i = 0; i < 6; i++) {
+        const int32_t here = mu[i] + 64;
+        int16_t       symbol = k[i];
+
+        w.base.ops->gauss(&w.base, 1, &here, &sigma[i], &symbol);
+    }
+    w.base.ops->close(&w.base);
+    memcpy(data + n, w.out.data + 4, w.out.size - 4);
+    corpus_write("rans", "substream", data, n + w.out.size - 4);
+    ted4_writer_finish(&w);
+}
+
+static void deflated(void)
+{
+    uint8_t  values[400] = { 0 }, data[MOST] = { 0, 100, 0, 0, 0 };
+    uLongf   n = sizeof data - 5;
+
+    for (size_t i = 0; i < sizeof values; i++)
+        values[i] = (uint8_t)(i / 60);
+    if (compress2(data + 5, &n, values, sizeof values, 9) != Z_OK)
+        return;
+    corpus_write("inflate", "stream", data, 5 + n);
+    data[5 + n] = 0;
+    corpus_write("inflate", "trailing", data, 6 + n);
+    data[3] = 8;                                /* a tight bound of memory */
+    corpus_write("inflate", "tight", data, 5 + n);
+    data[3] = 0;
+    data[5 + n / 2] ^= 1;
+    corpus_write("inflate", "damaged", data, 5 + n);
+}
+
+void corpus_units(void)
+{
+    static const uint8_t times[][22] = {
+        { 1, 1, 0, 0, 0, 3, 0, 0, 0, 4 }, { 2, 0, 0, 0, 0, 9, 0, 0, 0, 1 }, { 3, 7, 0, 0, 0, 7, 0, 0, 0, 2 }, { 0, 5, 0, 0, 0, 0, 0, 0, 0 },
+        { 4, 1, 0, 0, 0, 2, 0, 0, 0, 0, 0, 0, 192, 127 }, { 5, 0xff, 0xff, 0xff, 0, 0xff, 0xff, 0xff, 0, 0 }
+    };
+    char name[32];
+
+    ANY("encode", "plain", 60, "\2");
+    ANY("encode", "escapes", 61, "\1");
+    ANY("encode", "level2", 62, "\2aaaaaa\17");
+    ANY("encode", "level4", 63, "\4aaaaaa\37");
+    ANY("rans", "symbols", 300, "\2");
+    ANY("rans", "bits", 301, "\2\xff\xf0\xff");
+    ANY("rans", "any", 200, "\1");
+    substream();
+    ANY("cdf", "narrow", 60, "\5");
+    ANY("cdf", "wide", 61, "\xe0");
+    ANY("net_int", "small", 200, "\3\4");
+    ANY("net_int", "wide", 1200, "\x41\x07");
+    ANY("net_int", "odd", 400, "\5\11");
+    for (size_t i = 0; i < 8; i++) {
+        (void)snprintf(name, sizeof name, "nets%zu", i);
+        any("integerise", name, 500 + i, "", 0);
+    }
+    positions();
+    ANY("masks", "both", 300, "\4\0\1\1");
+    ANY("masks", "offsets", 301, "\4\0\2\1");
+    ANY("masks", "none", 302, "\4\0\2\2");
+    ANY("masks", "dynamic", 303, "\4\0\1\2");
+    ANY("masks", "contradicting", 304, "\4\0\1\1\40\0\3\0");
+    ANY("masks", "beyond", 305, "\4\0\0\1\40\0\3\0");
+    ANY("inflate", "values", 300, "\1");
+    deflated();
+    for (size_t i = 0; i < sizeof times / sizeof *times; i++) {
+        (void)snprintf(name, sizeof name, "time%zu", i);
+        corpus_write("query_time", name, times[i], sizeof times[i]);
+    }
+}

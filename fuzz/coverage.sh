@@ -1,0 +1,27 @@
+#!/bin/sh
+# coverage.sh - how much of what each harness is there for its seeds and regressions reach: fuzz/coverage.sh PROGRAM, PROGRAM being main.c built by
+# clang for source-based coverage. Puts a table between the marks in fuzz/README.md. Ends with 1 when a harness is below 80 % of lines.
+# SPDX-License-Identifier: BSD-2-Clause
+set -eu
+program=$1
+work=$(dirname "$program")/coverage
+mkdir -p "$work"
+table=$work/table.md
+printf '| harness | covers | lines | reached |\n|---|---|---|---|\n' >"$table"
+sed -n 's/^FUZZ(\([a-z_0-9]*\), \([a-z_0-9]*\), "\(.*\)")/\1 \2 \3/p' fuzz/list.def | while read -r name seeds covers; do
+    old=fuzz/regressions/$name
+    [ -d "$old" ] || old=
+    LLVM_PROFILE_FILE=$work/$name.raw "$program" "$name" "fuzz/corpus/$seeds" $old >&2
+    llvm-profdata-14 merge -sparse "$work/$name.raw" -o "$work/$name.data"
+    # shellcheck disable=SC2086 # $covers holds patterns
+    llvm-cov-14 report "$program" -instr-profile="$work/$name.data" $covers >"$work/$name.txt"
+    awk -v name="$name" -v covers="$covers" '$1 == "TOTAL" { sub(/%/, "", $10)
+        printf "| `%s` | %s | %d | %.1f %% |\n", name, covers, $8, $10 }' "$work/$name.txt" >>"$table"
+done
+awk -v table="$table" '
+    /^<!-- coverage -->/ { print; while ((getline line < table) > 0) print line; skip = 1 }
+    /^<!-- end -->/ { skip = 0 }
+    !skip' fuzz/README.md >"$work/README.md"
+cat "$work/README.md" >fuzz/README.md
+cat "$table"
+awk -F'|' 'NR > 2 && $5 + 0 < 80 { print "below 80 %:" $2; bad = 1 } END { exit bad }' "$table" >&2

@@ -1,0 +1,125 @@
+/* fz_positions.c - a POSN payload (spec 8): binary16 patterns, three an anchor.
+ * Claims: the reading walk gives the verdict, and the place, of the rules taken literally (values as long doubles, Morton codes bit by bit); what
+ * it accepts is written as the same bytes; the same anchors sorted by ted4_positions_sort() are accepted when all values are legal; binary16
+ * becomes X and binary32 exactly, and comes back.
+ * SPDX-License-Identifier: BSD-2-Clause */
+#include <math.h>
+#include <string.h>
+#include "harness.h"
+#include "norm/scene.h"
+#include "read/reader.h"
+#include "write/coder_write.h"
+#include "write/snap.h"
+
+enum { MAX_N = 300 };
+
+static long double value(uint16_t h)
+{
+    const int         e = h >> 10 & 31, m = h & 0x3ff;
+    const long double v = e > 0 ? ldexpl(1024 + m, e - 25) : ldexpl(m, -24);
+
+    return h >> 15 ? -v : v;
+}
+
+/* Order of two patterns as numbers of two halves, the negative ones backwards: what the image of spec 8 stands for. */
+static uint64_t code(const uint16_t *p)
+{
+    uint64_t c = 0;
+
+    for (int bit = 15; bit >= 0; bit--)
+        for (int j = 0; j < 3; j++) {
+            const uint32_t image = p[j] >> 15 ? 0xffffu - p[j] : p[j] + 0x8000u;
+
+            c = c << 1 | (image >> bit & 1);
+        }
+    return c;
+}
+
+static ted4_error expected(const uint16_t *p, size_t n)
+{
+    ted4_error e = { TED4_OK, 0 };
+
+    for (size_t i = 0; i < n && e.code == TED4_OK; i++) {
+        for (size_t j = 0; j < 3; j++) {
+            const uint16_t h = p[3 * i + j];
+
+            if ((h >> 10 & 31) == 31 || h == 0x8000)
+                ted4_fail(&e, TED4_E_POS_VALUE, 6 * i + 2 * j);
+            else if (fabsl(value(h)) > 1)
+                ted4_fail(&e, TED4_E_POS_RANGE, 6 * i + 2 * j);
+        }
+        if (i > 0 && code(p + 3 * i) <= code(p + 3 * i - 3))
+            ted4_fail(&e, TED4_E_POS_ORDER, 6 * i);
+    }
+    return e;
+}
+
+static ted4_error walk(const uint8_t *bytes, uint16_t *p, size_t n)
+{
+    ted4_scene  s = { .head = { .n_anchors = (uint32_t)n }, .position = p };
+    ted4_reader r;
+
+    ted4_reader_init(&r, bytes, 0, 6 * n, 0);
+    ted4_walk_positions(&r.base, &s);
+    return r.base.error;
+}
+
+static void write_again(const uint8_t *bytes, uint16_t *p, size_t n)
+{
+    ted4_scene  s = { .head = { .n_anchors = (uint32_t)n }, .position = p };
+    ted4_writer w;
+
+    ted4_writer_init(&w);
+    ted4_walk_positions(&w.base, &s);
+    fuzz_require(w.base.error.code == TED4_OK && w.out.size == 6 * n && memcmp(w.out.data, bytes, 6 * n) == 0, "the same bytes");
+    ted4_writer_finish(&w);
+}
+
+static void sort_them(const uint16_t *p, size_t n)
+{
+    static uint16_t sorted[3 * MAX_N];
+    static uint8_t  bytes[6 * MAX_N];
+    static uint32_t order[MAX_N];
+    const size_t    kept = ted4_positions_sort(p, n, order);
+    int             legal = 1;
+
+    fuzz_require(kept <= n && (kept > 0) == (n > 0), "sorted");
+    for (size_t i = 0; i < 3 * kept; i++) {
+        sorted[i] = p[3 * order[i / 3] + i % 3];
+        legal = legal && expected(sorted + i - i % 3, 1).code == TED4_OK;
+        ted4_store16(bytes + 2 * i, sorted[i]);
+    }
+    if (legal && kept > 0)
+        fuzz_require(walk(bytes, sorted, kept).code == TED4_OK, "sorted anchors are in order");
+}
+
+static void convert(uint16_t h)
+{
+    const float v = ted4_half_to_float(h);
+
+    if ((h >> 10 & 31) == 31)
+        return;
+    fuzz_require((long double)v == value(h) && (signbit(v) != 0) == h >> 15, "binary16 to binary32");
+    fuzz_require(ted4_float_to_half(v) == h, "and back");
+    if (fabsl(value(h)) <= 1)
+        fuzz_require((long double)ted4_half_q24(h) == ldexpl(value(h), 24), "X is exact");
+}
+
+int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
+{
+    static uint16_t p[3 * MAX_N];
+    const size_t    n = size / 6 < MAX_N ? size / 6 : MAX_N;
+    ted4_error      is, want;
+
+    for (size_t i = 0; i < 3 * n; i++) {
+        p[i] = ted4_load16(data + 2 * i);
+        convert(p[i]);
+    }
+    want = expected(p, n);
+    is = walk(data, p, n);
+    fuzz_require(is.code == want.code && is.offset == want.offset, "the verdict of the rules");
+    if (is.code == TED4_OK && n > 0)
+        write_again(data, p, n);
+    sort_them(p, n);
+    return 0;
+}

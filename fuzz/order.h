@@ -1,0 +1,49 @@
+/* order.h - what must not matter to a result: the order in which indices of a parallel-for run, and which kernels do.
+ * SPDX-License-Identifier: BSD-2-Clause */
+#ifndef TED4_FUZZ_ORDER_H
+#define TED4_FUZZ_ORDER_H
+
+#include <stddef.h>
+#include <stdlib.h>
+#include "base/parallel.h"
+
+static inline void order_forward(void *user, size_t n, void (*body)(void *arg, size_t i), void *arg)
+{
+    (void)user;
+    for (size_t i = 0; i < n; i++)
+        body(arg, i);
+}
+
+static inline void order_backward(void *user, size_t n, void (*body)(void *arg, size_t i), void *arg)
+{
+    (void)user;
+    for (size_t i = n; i > 0; i--)
+        body(arg, i - 1);
+}
+
+/* Odd ones first. */
+static inline void order_split(void *user, size_t n, void (*body)(void *arg, size_t i), void *arg)
+{
+    (void)user;
+    for (size_t i = 1; i < n; i += 2)
+        body(arg, i);
+    for (size_t i = 0; i < n; i += 2)
+        body(arg, i);
+}
+
+/* which: 1 in order, 2 backwards, else odd ones first. */
+static inline ted4_parallel order_parallel(int which)
+{
+    return (ted4_parallel){ which == 1 ? order_forward : which == 2 ? order_backward : order_split, NULL };
+}
+
+/* plain: kernels off from now on; else those of the machine. */
+static inline void order_kernel(int plain)
+{
+    if (plain)
+        setenv("TED4_KERNEL", "plain", 1);
+    else
+        unsetenv("TED4_KERNEL");
+}
+
+#endif

@@ -1,0 +1,242 @@
+/* parse.c - see parse.h. Pass 2 (spec 5.3) on one thread, with the walks of norm/ and the coder of read/. The forgiving coder is that one with
+ * its failures inside tiles taken back.
+ * SPDX-License-Identifier: BSD-2-Clause */
+#include "parse.h"
+
+#include <string.h>
+#include "harness.h"
+#include "norm/prior.h"
+#include "read/container.h"
+#include "read/inflate.h"
+
+typedef struct {
+    ted4_scene  *s;
+    ted4_prior   prior;
+    ted4_reader  file;
+    void        *work;              /* of one tile; in the scene's arena */
+    unsigned     n_tiles;
+    int          forgiving;
+} parser;
+
+/* Operations of read/reader.c, of which the forgiving ones make use. All readers have the same. */
+static const ted4_coder_ops *strict_ops(void)
+{
+    ted4_reader r;
+
+    ted4_reader_init(&r, NULL, 0, 0, 0);
+    return r.base.ops;
+}
+
+/* Takes a failure back. 1: there was one. */
+static int forgive(ted4_coder *c)
+{
+    const int failed = c->error.code != TED4_OK;
+
+    c->error.code = TED4_OK;
+    return failed;
+}
+
+/* tile_index is what it has to be, a probability is at least 1. */
+static uint32_t any_number(ted4_coder *c, unsigned width, uint32_t value)
+{
+    const uint32_t read = strict_ops()->number(c, width, value);
+
+    return width == 4 ? value : read > 0 ? read : 1;
+}
+
+/* Sizes that do not fit are cut; the last substream gets what is left. */
+static void any_sizes(ted4_coder *c, uint32_t *size, unsigned n)
+{
+    ted4_reader *r = (ted4_reader *)c;
+    size_t       left;
+    const int    whole = r->end - c->pos >= 4 * (size_t)n;
+
+    strict_ops()->sizes(c, size, n);
+    if (!whole)
+        return;
+    (void)forgive(c);
+    left = r->end - c->pos;
+    for (unsigned i = 0; i < n; i++) {
+        if (size[i] > left || i + 1 == n)
+            size[i] = (uint32_t)left;
+        r->size[i] = size[i];
+        left -= size[i];
+    }
+}
+
+/* A substream that cannot begin is one without words. */
+static void any_open(ted4_coder *c, size_t n)
+{
+    ted4_reader   *r = (ted4_reader *)c;
+    ted4_rans_dec *d = &r->rans;
+
+    strict_ops()->open(c, n);
+    if (!forgive(c))
+        return;
+    memset(d, 0, sizeof *d);
+    d->n_lanes = ted4_rans_lanes(n);
+    d->word = d->end = r->data + r->end;
+    for (unsigned i = 0; i < d->n_lanes; i++)
+        d->state[i] = TED4_RANS_LOW;
+}
+
+static void any_close(ted4_coder *c)
+{
+    (void)c;
+}
+
+static int any_bit(ted4_coder *c, uint32_t prob, int value)
+{
+    const int bit = strict_ops()->bit(c, prob, value);
+
+    ((ted4_reader *)c)->rans.underrun = 0;
+    (void)forgive(c);
+    return bit;
+}
+
+static void any_gauss(ted4_coder *c, size_t n, const int32_t *mu, const uint8_t *sigma, int16_t *k)
+{
+    ted4_rans_dec *d = &((ted4_reader *)c)->rans;
+
+    for (size_t i = 0; i < n; i++) {
+        strict_ops()->gauss(c, 1, mu + i, sigma + i, k + i);
+        d->underrun = 0;
+        if (forgive(c))
+            k[i] = (int16_t)ted4_sat16(ted4_floor_shift(mu[i], TED4_MU_BITS));
+        k[i] = k[i] == INT16_MIN ? -INT16_MAX : k[i];
+    }
+}
+
+/* R-ATT-001 made true in a tile. */
+static void order_tau(ted4_scene *s, unsigned number)
+{
+    const size_t n = s->head.n_anchors, first = (size_t)number * s->head.tile_size;
+    int16_t     *tau = s->symbol[TED4_TAU];
+
+    for (size_t i = first; tau != NULL && i < n && i - first < s->head.tile_size; i++)
+        if (tau[i] > tau[2 * n + i])
+            tau[2 * n + i] = tau[i];
+}
+
+static ted4_reader reader_of(parser *p, const ted4_chunk_place *place)
+{
+    ted4_reader r;
+
+    ted4_reader_init(&r, p->file.data, place->payload, place->end, 0);
+    r.arena = &p->s->arena;
+    return r;
+}
+
+/* left: payload bytes for mode and values, which get memory when they can be there. */
+static int blob(parser *p, ted4_blob *b, size_t n, size_t left)
+{
+    b->n = n;
+    if (left == 0 || ((left - 1) / 4 < n && ted4_inflate_impossible(left - 1, n)))
+        return 0;
+    return ted4_blob_alloc(p->s, b, n);
+}
+
+static void nete(parser *p, ted4_reader *r)
+{
+    ted4_scene  *s = p->s;
+    const size_t bytes = r->end - r->base.pos, n_shifts = s->shape.n_units;
+
+    if (bytes < n_shifts || !ted4_scene_alloc_shifts(s) || !blob(p, &s->nete, s->shape.n_nete, bytes - n_shifts)
+        || ted4_prior_init(&p->prior, &s->head, &s->shape, &s->arena) != TED4_OK)
+        ted4_fail(&r->base.error, TED4_E_LIMIT_MEMORY, r->base.pos);
+    else
+        ted4_walk_nete(&r->base, s, &p->prior);
+}
+
+static void values(parser *p, ted4_reader *r, ted4_blob *b, size_t n)
+{
+    if (!blob(p, b, n, r->end - r->base.pos))
+        ted4_fail(&r->base.error, TED4_E_LIMIT_MEMORY, r->base.pos);
+    else
+        ted4_walk_blob(&r->base, "value", b);
+}
+
+static void positions(parser *p, ted4_reader *r)
+{
+    if (p->s->bank.n != p->s->shape.n_bank || (r->end - r->base.pos) / 6 < p->s->head.n_anchors
+        || !ted4_scene_alloc_anchors(p->s)
+        || (p->work = ted4_arena_alloc(&p->s->arena, 1, ted4_tile_work_size(p->s))) == NULL)
+        ted4_fail(&r->base.error, TED4_E_LIMIT_MEMORY, r->base.pos);
+    else
+        ted4_walk_positions(&r->base, p->s);
+}
+
+static void tile(parser *p, ted4_reader *r)
+{
+    const ted4_coder_ops any = { any_number, r->base.ops->array, r->base.ops->deflated, any_sizes, any_open, any_close, any_bit,
+                                 any_gauss };
+
+    if (p->work == NULL || p->n_tiles == p->s->shape.n_tiles) {
+        ted4_fail(&r->base.error, TED4_E_CON_CHUNK_ORDER, r->base.pos);
+        return;
+    }
+    if (p->forgiving)
+        r->base.ops = &any;
+    ted4_walk_tile(&r->base, p->s, &p->prior, p->n_tiles, p->work);
+    if (p->forgiving && r->base.error.code == TED4_E_ATT_TAU_ORDER)
+        (void)forgive(&r->base);
+    order_tau(p->s, p->n_tiles++);
+}
+
+/* 0: the chunk is not what it has to be. */
+static int chunk(parser *p, const ted4_chunk_place *place)
+{
+    ted4_scene *s = p->s;
+    ted4_reader r = reader_of(p, place);
+
+    switch (place->type) {
+    case TED4_HEAD: ted4_walk_header(&r.base, &s->head, &s->shape, s->level, p->file.end); break;
+    case TED4_NETE: nete(p, &r); break;
+    case TED4_NETR: values(p, &r, &s->netr, s->shape.n_netr); break;
+    case TED4_BANK:
+        values(p, &r, &s->bank, s->shape.n_bank);
+        if (s->bank.n == 0)
+            return 0;
+        break;
+    case TED4_POSN: positions(p, &r); break;
+    case TED4_TILE: tile(p, &r); break;
+    default: return 1;
+    }
+    return r.base.error.code == TED4_OK && r.base.pos == r.end;
+}
+
+static int chunks(parser *p, size_t *ends)
+{
+    ted4_coder *c = &p->file.base;
+
+    c->pos = 0;
+    ted4_walk_file_header(c, &p->s->level);
+    while (c->error.code == TED4_OK && c->pos < p->file.end) {
+        const ted4_chunk_place place = ted4_container_next(&p->file);
+
+        if (!chunk(p, &place))
+            return 0;
+        *ends = place.payload;
+    }
+    return p->s->prob != NULL && p->n_tiles == p->s->shape.n_tiles;
+}
+
+ted4_scene *fuzz_parse(const uint8_t *data, size_t size, int forgiving, size_t *ends)
+{
+    static const ted4_options o = { .max_bytes = FUZZ_MAX_BYTES };
+    parser                    p;
+
+    memset(&p, 0, sizeof p);
+    p.forgiving = forgiving;
+    *ends = 0;
+    ted4_reader_init(&p.file, data, 0, size, 1);
+    ted4_container_check(&p.file);
+    if (p.file.base.error.code != TED4_OK || (p.s = ted4_scene_empty(&o)) == NULL)
+        return NULL;
+    if (chunks(&p, ends)) {
+        ted4_scene_hash(p.s, p.s->hash);
+        return p.s;
+    }
+    ted4_scene_free(p.s);
+    return NULL;
+}

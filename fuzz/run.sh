@@ -1,0 +1,34 @@
+#!/bin/sh
+# run.sh - runs the libFuzzer programs, a slice of time each, and adds a row a slice to fuzz/runs.csv, until every harness has had its seconds with
+# the sources as they are. Killed at any moment, it loses one slice; started again, it goes on. From the project root:
+#     fuzz/run.sh [-t SECONDS] [-s SLICE] [-j JOBS] [-k asan|msan] [NAME...]
+# Inputs found on the way stay in build-fuzz-KIND/corpus/NAME, what breaks a claim in build-fuzz-KIND/found/NAME-*. A harness with a find stops;
+# then this ends with an error. -j harnesses run at a time, each in one process (run_one.sh).
+# SPDX-License-Identifier: BSD-2-Clause
+set -eu
+total=7200 slice=600 jobs=1 kind=asan
+while getopts t:s:j:k: option; do
+    case $option in
+    t) total=$OPTARG ;;
+    s) slice=$OPTARG ;;
+    j) jobs=$OPTARG ;;
+    k) kind=$OPTARG ;;
+    *) exit 3 ;;
+    esac
+done
+shift $((OPTIND - 1))
+csv=${FUZZ_CSV:-fuzz/runs.csv}
+build=build-fuzz-$kind
+make -s fuzz-build FUZZ_KIND="$kind"
+mkdir -p "$build/found"
+[ -s "$csv" ] || echo 'harness,kind,key,seconds,executions,finds,edges,inputs,peak_mb' >"$csv"
+# Rows count for the sources that they were made with.
+key=$(find ref-decoder ref-encoder/write ref-encoder/data ref-encoder/train fuzz tests/random_scene.h tests/recon_ref.h \
+    \( -name '*.[ch]' -o -name '*.def' \) | LC_ALL=C sort | xargs cat | sha256sum | cut -c1-12)
+export csv build kind key total slice
+if [ $# -eq 0 ]; then
+    for program in "$build"/fuzz/fuzz_*; do
+        [ -x "$program" ] && set -- "$@" "${program##*/fuzz_}"
+    done
+fi
+printf '%s\n' "$@" | xargs -P "$jobs" -I{} fuzz/run_one.sh {}

@@ -1,0 +1,40 @@
+#!/bin/sh
+# run_one.sh - one harness for run.sh, which says in the environment how: csv build kind key total slice.
+# SPDX-License-Identifier: BSD-2-Clause
+set -eu
+name=$1
+# shellcheck disable=SC2154 # from the environment
+log=$build/$name.log own=$build/corpus/$name scratch=$build/tmp/$name
+seeds=$(sed -n "s/^FUZZ($name, \([a-z_0-9]*\),.*/\1/p" fuzz/list.def)
+case $seeds in
+knobs | ted4 | recon) dictionary=fuzz/ted4.dict ;;
+*) dictionary=fuzz/scene.dict ;;
+esac
+
+finds() {
+    find "$build/found" -name "$name-*" | wc -l
+}
+
+# Seconds in the rows of this harness and these sources.
+had() {
+    awk -F, -v h="$name" -v k="$kind" -v key="$key" '$1 == h && $2 == k && $3 == key { s += $4 } END { print s + 0 }' "$csv"
+}
+
+mkdir -p "$own"
+while left=$((total - $(had))) && [ "$left" -gt 0 ]; do
+    now=$((left < slice ? left : slice))
+    before=$(finds)
+    mkdir -p "$scratch"
+    TMPDIR=$scratch "$build/fuzz/fuzz_$name" -max_total_time="$now" -max_len=4096 -dict=$dictionary -timeout=30 -rss_limit_mb=2500 \
+        -malloc_limit_mb=2500 -print_final_stats=1 -artifact_prefix="$build/found/$name-" "$own" "fuzz/corpus/$seeds" >"$log" 2>&1 || :
+    rm -rf "$scratch"                   # libFuzzer ends without the handlers that would
+    after=$(finds)
+    grep -q '^stat::' "$log" || { echo "$name: did not run, see $log" >&2; exit 1; }
+    awk -v row="$name,$kind,$key,$now" -v finds=$((after - before)) -v inputs="$(find "$own" -type f | wc -l)" '
+        / cov: / { for (i = 1; i < NF; i++) if ($i == "cov:") edges = $(i + 1) }
+        /^stat::number_of_executed_units/ { n = $2 }
+        /^stat::peak_rss_mb/ { peak = $2 }
+        END { print row "," n + 0 "," finds "," edges + 0 "," inputs "," peak + 0 }' "$log" >>"$csv"
+    tail -n 1 "$csv"
+    [ "$after" -eq "$before" ] || { echo "$name: a find, see $log" >&2; exit 1; }
+done

@@ -1,0 +1,205 @@
+/* advise.c - what is doubtful in a valid file: level, chunks, and parts that the scene does not need (spec 3.4, R-ENC-004). Symbols are looked at in
+ * advise_symbols.c, META in advise_meta.c.
+ * SPDX-License-Identifier: BSD-2-Clause */
+#include <string.h>
+#define ZLIB_CONST
+#include <zlib.h>
+#include "base/bytes.h"
+#include "norm/limits.h"
+#include "norm/scene.h"
+#include "norm/tables.h"
+#include "read/finding.h"
+
+enum { MINOR_AT = 9, LEVEL_AT = 11, HEAD_AT = 12 };
+
+/* Where an element of HEAD is in the file. */
+typedef struct {
+    const char *name;
+    size_t      offset;
+} sought;
+
+static void seek(void *user, size_t offset, const char *element, int64_t index, int64_t value)
+{
+    sought *s = user;
+
+    (void)index;
+    (void)value;
+    if (strcmp(element, s->name) == 0 && s->offset == 0)
+        s->offset = offset;
+}
+
+static size_t offset_of(const ted4_findings *f, const char *element)
+{
+    sought      s = { element, 0 };
+    ted4_header h;
+    ted4_shape  shape;
+    ted4_reader r;
+
+    ted4_reader_init(&r, f->data, HEAD_AT + TED4_FRAME_HEAD_SIZE, f->size, 1);
+    r.base.trace = seek;
+    r.base.trace_user = &s;
+    memset(&h, 0, sizeof h);
+    ted4_walk_header(&r.base, &h, &shape, TED4_LEVEL_UNBOUNDED, UINT64_MAX);
+    return s.offset;
+}
+
+/* R-ENC-002, for a file of that size. */
+static unsigned lowest_level(const ted4_scene *s, size_t size)
+{
+    const ted4_header *h = &s->head;
+    unsigned           level = 1;
+
+    for (; level < TED4_LEVEL_UNBOUNDED; level++) {
+        const ted4_limits *l = ted4_limits_of(level);
+
+        if (l != NULL && h->n_anchors <= l->n_anchors && h->n_offsets <= l->n_offsets && h->frames <= l->frames
+            && h->bank_rows <= l->frames && ted4_limits_hold(l, h, &s->shape, size))
+            break;
+    }
+    return level;
+}
+
+/* Size of the values shuffled and deflated by zlib, or raw when there is no memory to find out. */
+static size_t deflated_size(const ted4_blob *b, ted4_arena *a)
+{
+    const size_t raw = 4 * b->n;
+    uLongf       size = compressBound((uLong)raw);
+    uint8_t     *bytes = ted4_arena_alloc(a, raw, 1), *packed = ted4_arena_alloc(a, size, 1);
+
+    for (size_t i = 0; bytes != NULL && i < b->n; i++)
+        for (unsigned j = 0; j < 4; j++)
+            bytes[j * b->n + i] = (uint8_t)(ted4_float_bits(b->values[i]) >> 8 * j);
+    if (bytes == NULL || packed == NULL || compress2(packed, &size, bytes, (uLong)raw, 9) != Z_OK)
+        size = raw;
+    ted4_arena_release(a, bytes);
+    ted4_arena_release(a, packed);
+    return size;
+}
+
+static void advise_blob(ted4_findings *f, const ted4_blob *b, const ted4_chunk_place *p, ted4_arena *a)
+{
+    size_t size;
+
+    if (b->mode != TED4_BLOB_RAW || b->n == 0)
+        return;
+    size = deflated_size(b, a);
+    if (size < 4 * b->n)
+        ted4_find_advice(f, TED4_ADV_BLOB_RAW, ted4_chunk_type[p->type], p->at, 2, (int64_t)(4 * b->n), (int64_t)size);
+}
+
+static void advise_chunks(ted4_findings *f, const ted4_scene *s, ted4_arena *a)
+{
+    ted4_reader r;
+
+    ted4_reader_init(&r, f->data, TED4_FILE_HEADER_SIZE, f->size, 1);
+    while (r.base.pos < f->size) {
+        const ted4_chunk_place p = ted4_container_next(&r);
+
+        switch (p.type) {
+        case TED4_NETE: advise_blob(f, &s->nete, &p, a); break;
+        case TED4_NETR: advise_blob(f, &s->netr, &p, a); break;
+        case TED4_BANK: advise_blob(f, &s->bank, &p, a); break;
+        case TED4_CHUNKS: ted4_advise_ancillary(f, &p); break;
+        default: break;
+        }
+    }
+}
+
+static void advise_masks(ted4_findings *f, const ted4_scene *s)
+{
+    const ted4_header *h = &s->head;
+    const unsigned     all = (1u << h->n_offsets) - 1;
+    uint32_t           moving = 0, whole = 0, empty = 0;
+
+    for (size_t i = 0; i < h->n_anchors; i++) {
+        moving += s->dynamic[i];
+        whole += s->offset_bits[i] == all;
+        empty += s->offset_bits[i] == 0;
+    }
+    if (h->motion != TED4_MOTION_NONE && moving == 0)
+        ted4_find_advice(f, TED4_ADV_STILL, "HEAD", offset_of(f, "motion"), 1, h->motion, 0);
+    if (h->temporal_mask && moving == h->n_anchors)
+        ted4_find_advice(f, TED4_ADV_TEMPORAL_MASK, "HEAD", offset_of(f, "temporal_mask"), 0, 0, 0);
+    if (h->offset_mask && whole == h->n_anchors)
+        ted4_find_advice(f, TED4_ADV_OFFSET_MASK, "HEAD", offset_of(f, "offset_mask"), 0, 0, 0);
+    if (empty > 0)
+        ted4_find_advice(f, TED4_ADV_EMPTY_ANCHORS, "POSN", offset_of(f, "n_anchors"), 2, empty, h->n_anchors);
+}
+
+/* spec 10.4: value of a component of tau. */
+static float tau(const ted4_scene *s, unsigned comp, size_t i)
+{
+    const float step = ted4_bits_float(ted4_step[s->step_index[TED4_TAU][i]]);
+    const float q = s->head.step[TED4_TAU] * step;
+
+    return (float)s->symbol[TED4_TAU][(size_t)comp * s->head.n_anchors + i] * q;
+}
+
+static void advise_time(ted4_findings *f, const ted4_scene *s)
+{
+    const ted4_header *h = &s->head;
+    size_t             always = 0;
+
+    if (h->frames == 1 && (h->motion != TED4_MOTION_NONE || h->activation))
+        ted4_find_advice(f, TED4_ADV_ONE_FRAME, "HEAD", offset_of(f, "frames"), 2, h->motion, h->activation);
+    if (!h->activation)
+        return;
+    while (always < h->n_anchors && tau(s, 0, always) <= 0 && tau(s, 2, always) >= 1)
+        always++;
+    if (always == h->n_anchors)
+        ted4_find_advice(f, TED4_ADV_ACTIVATION, "HEAD", offset_of(f, "activation"), 0, 0, 0);
+}
+
+/* Rows between which no frame's time lies (spec 11.2). */
+static uint32_t rows_unseen(const ted4_header *h)
+{
+    const uint64_t last = h->bank_rows - 1, end = h->frames > 1 ? h->frames - 1 : 1;
+    uint64_t       next = 0;            /* first row that no frame so far sees */
+    uint32_t       unseen = 0;
+
+    for (uint64_t j = 0; j < h->frames && next <= last; j++) {
+        const uint64_t g = j * last, row = g / end, up_to = row + (g % end != 0);
+
+        if (row > next)
+            unseen += (uint32_t)(row - next);
+        if (up_to >= next)
+            next = up_to + 1;
+    }
+    return unseen + (uint32_t)(next <= last ? last + 1 - next : 0);
+}
+
+static void advise_bank(ted4_findings *f, const ted4_scene *s)
+{
+    const ted4_header *h = &s->head;
+    const size_t       row = h->bank_dim * sizeof(float), at = s->shape.n_bank > 0 ? offset_of(f, "bank_rows") : 0;
+    uint32_t           same = 1, unseen;
+
+    if (s->shape.n_bank == 0)
+        return;
+    while (same < h->bank_rows && memcmp(s->bank.values, s->bank.values + (size_t)same * h->bank_dim, row) == 0)
+        same++;
+    if (same == h->bank_rows && same > 1)
+        ted4_find_advice(f, TED4_ADV_BANK_CONSTANT, "BANK", at, 1, h->bank_rows, 0);
+    unseen = rows_unseen(h);
+    if (unseen > 0)
+        ted4_find_advice(f, TED4_ADV_BANK_ROWS, "BANK", at, 2, unseen, h->bank_rows);
+}
+
+ted4_status ted4_advise(ted4_findings *f, const ted4_scene *s,
+                        const ted4_options *o)
+{
+    const unsigned lowest = lowest_level(s, f->size);
+    ted4_arena     a;
+
+    if (f->data[MINOR_AT] != 0)
+        ted4_find_advice(f, TED4_ADV_MINOR, NULL, MINOR_AT, 1, f->data[MINOR_AT], 0);
+    if (s->level != lowest)
+        ted4_find_advice(f, TED4_ADV_LEVEL, NULL, LEVEL_AT, 2, s->level, lowest);
+    ted4_arena_init(&a, o);
+    advise_chunks(f, s, &a);
+    ted4_arena_finish(&a);
+    advise_masks(f, s);
+    advise_time(f, s);
+    advise_bank(f, s);
+    return ted4_advise_symbols(f, s, o);
+}

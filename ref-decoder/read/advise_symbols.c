@@ -1,0 +1,221 @@
+/* advise_symbols.c - what is doubtful in the coded symbols of a valid file: probabilities, escapes, indices and contexts at the ends of their ranges. The
+ * tiles are walked once more with a coder that only counts.
+ * SPDX-License-Identifier: BSD-2-Clause */
+#include <string.h>
+#include "base/bytes.h"
+#include "kernel/int_kernel.h"
+#include "norm/coder.h"
+#include "norm/gaussian.h"
+#include "norm/prior.h"
+#include "norm/scene.h"
+#include "read/finding.h"
+
+/* Findings begin where more than 1 of these is so; small counts say nothing. */
+enum { ESCAPES_ONE_OF = 256, SIGMA_ONE_OF = 64, FEW = 256, PROB_FAR = 2048 };
+
+typedef struct {
+    uint64_t symbols, escapes, sigma_ends;
+} type_counts;
+
+/* The walk is given probabilities 1 .. 7, so that a bit says which one it was coded with. */
+typedef struct {
+    ted4_coder  base;           /* must be first */
+    int         type;           /* of the open substream */
+    type_counts count[TED4_TYPES];
+    uint64_t    bits[TED4_PROBS], ones[TED4_PROBS];     /* of the tile */
+} census;
+
+static uint32_t number(ted4_coder *c, unsigned width, uint32_t value)
+{
+    (void)c;
+    (void)width;
+    return value;
+}
+
+static void array(ted4_coder *c, unsigned width, void *values, size_t n)
+{
+    (void)c;
+    (void)width;
+    (void)values;
+    (void)n;
+}
+
+static void deflated(ted4_coder *c, ted4_blob *b)
+{
+    (void)c;
+    (void)b;
+}
+
+static void sizes(ted4_coder *c, uint32_t *size, unsigned n)
+{
+    (void)c;
+    memset(size, 0, n * sizeof *size);
+}
+
+static void open_substream(ted4_coder *c, size_t n)
+{
+    (void)c;
+    (void)n;
+}
+
+static void close_substream(ted4_coder *c)
+{
+    (void)c;
+}
+
+static int bit(ted4_coder *c, uint32_t prob, int value)
+{
+    census *n = (census *)c;
+
+    n->bits[prob - 1]++;
+    n->ones[prob - 1] += (unsigned)value;
+    return value;
+}
+
+static void gauss(ted4_coder *c, size_t n, const int32_t *mu, const uint8_t *sigma, int16_t *k)
+{
+    census      *all = (census *)c;
+    type_counts *t = &all->count[all->type];
+
+    t->symbols += n;
+    for (size_t i = 0; i < n; i++) {
+        t->escapes += ted4_gauss_of(mu[i], sigma[i], k[i]).escape >= 0;
+        t->sigma_ends += sigma[i] == 0 || sigma[i] == TED4_N_SIGMA - 1;
+    }
+}
+
+static const char *const type_name[TED4_TYPES] = { "feature", "scaling", "offset", "phi", "tau" };
+
+/* The walk names a substream when it opens it. */
+static void follow(void *user, size_t offset, const char *element, int64_t index, int64_t value)
+{
+    census      *n = user;
+    const size_t end = strlen(element);
+
+    (void)offset;
+    (void)index;
+    (void)value;
+    for (int t = 0; t < TED4_TYPES; t++)
+        if (end > strlen(type_name[t]) && strncmp(element, type_name[t], strlen(type_name[t])) == 0
+            && element[strlen(type_name[t])] == '_')
+            n->type = t;
+}
+
+/* R-ENC-006 for the probabilities of a tile that lies at offset at. */
+static void advise_probs(ted4_findings *f, const census *n, const uint16_t *prob, size_t at)
+{
+    for (int i = 0; i < TED4_PROBS; i++) {
+        const uint64_t ones = n->ones[i], bits = n->bits[i];
+        const int64_t  best = bits > 0 ? (int64_t)((ones * 65536 + bits / 2) / bits) : prob[i];
+        const uint64_t dear = prob[i] == 1 ? ones : prob[i] == 65535 ? bits - ones : 0;
+
+        if (prob[i] - best > PROB_FAR || best - prob[i] > PROB_FAR)
+            ted4_find_advice(f, TED4_ADV_PROB, "TILE", at, 2, prob[i], best);
+        if (dear > 0)
+            ted4_find_advice(f, TED4_ADV_PROB_EXTREME, "TILE", at, 2, prob[i], (int64_t)dear);
+    }
+}
+
+static void advise_counts(ted4_findings *f, const census *n, size_t at)
+{
+    for (int t = 0; t < TED4_TYPES; t++) {
+        const type_counts *c = &n->count[t];
+
+        if (c->symbols >= FEW && c->escapes * ESCAPES_ONE_OF > c->symbols)
+            ted4_find_advice(f, TED4_ADV_ESCAPES, type_name[t], at, 2, (int64_t)c->escapes, (int64_t)c->symbols);
+        if (c->symbols >= FEW && c->sigma_ends * SIGMA_ONE_OF > c->symbols)
+            ted4_find_advice(f, TED4_ADV_SIGMA, type_name[t], at, 2, (int64_t)c->sigma_ends, (int64_t)c->symbols);
+    }
+}
+
+static void advise_steps(ted4_findings *f, const ted4_scene *s, size_t at)
+{
+    for (int t = 0; t < TED4_TYPES; t++) {
+        int64_t ends = 0;
+
+        for (size_t i = 0; s->shape.dim[t] > 0 && i < s->head.n_anchors; i++)
+            ends += s->step_index[t][i] == 0 || s->step_index[t][i] == 255;
+        if (ends > 0)
+            ted4_find_advice(f, TED4_ADV_STEP, type_name[t], at, 2, ends, s->head.n_anchors);
+    }
+}
+
+/* spec 10.3: contexts that slices read, all but those of the last slice. */
+static void advise_contexts(ted4_findings *f, const ted4_scene *s, size_t at)
+{
+    const ted4_header *h = &s->head;
+    const size_t       n = h->n_anchors;
+    const unsigned     seen = h->feature_dim - h->slice[h->n_slices - 1u];
+    int64_t            ends = 0;
+
+    for (size_t c = 0; c < seen; c++)
+        for (size_t i = 0; i < n; i++) {
+            const int16_t x = ted4_context(s->symbol[TED4_FEATURE][c * n + i], s->step_index[TED4_FEATURE][i], h->context_bits);
+
+            ends += x == 32767 || x == -32767;
+        }
+    if (ends > 0)
+        ted4_find_advice(f, TED4_ADV_CONTEXT, "feature", at, 2, ends, (int64_t)(seen * n));
+}
+
+/* All tiles of a file, with probabilities of their own. */
+static ted4_status walk_tiles(ted4_findings *f, const ted4_scene *given, census *n, ted4_prior *prior, ted4_scene *s, void *work, size_t *first_at)
+{
+    ted4_reader r;
+    unsigned    tile = 0;
+
+    ted4_reader_init(&r, f->data, TED4_FILE_HEADER_SIZE, f->size, 1);
+    while (r.base.pos < f->size && n->base.error.code == TED4_OK) {
+        const ted4_chunk_place p = ted4_container_next(&r);
+        const uint16_t *prob = given->prob + (size_t)tile * TED4_PROBS;
+
+        if (p.type != TED4_TILE)
+            continue;
+        if (tile == 0)
+            *first_at = p.at;
+        memset(n->bits, 0, sizeof n->bits);
+        memset(n->ones, 0, sizeof n->ones);
+        ted4_walk_tile(&n->base, s, prior, tile++, work);
+        advise_probs(f, n, prob, p.at);
+    }
+    return n->base.error.code;
+}
+
+ted4_status ted4_advise_symbols(ted4_findings *f, const ted4_scene *given,
+                                const ted4_options *o)
+{
+    static const ted4_coder_ops ops = { number, array, deflated, sizes, open_substream, close_substream, bit, gauss };
+    ted4_scene  s = *given;             /* the walk takes one it may change; only probabilities are others */
+    const size_t n_probs = (size_t)s.shape.n_tiles * TED4_PROBS;
+    ted4_arena  arena;
+    ted4_prior  prior;
+    ted4_status verdict;
+    census      n;
+    size_t      at = 0;
+    void       *work;
+
+    memset(&n, 0, sizeof n);
+    n.base.ops = &ops;
+    n.base.trace = follow;
+    n.base.trace_user = &n;
+    ted4_arena_init(&arena, o);
+    verdict = ted4_prior_init(&prior, &s.head, &s.shape, &arena);
+    work = ted4_arena_alloc(&arena, 1, ted4_tile_work_size(&s));
+    s.prob = ted4_arena_alloc(&arena, n_probs, sizeof *s.prob);
+    if (work == NULL || s.prob == NULL)
+        verdict = TED4_E_LIMIT_MEMORY;
+    for (size_t i = 0; verdict == TED4_OK && i < n_probs; i++)
+        s.prob[i] = (uint16_t)(1 + i % TED4_PROBS);
+    prior.dense = ted4_select_int_dense();
+    if (verdict == TED4_OK)
+        verdict = ted4_prior_load(&prior, s.nete.values, s.shift, NULL);
+    if (verdict == TED4_OK)
+        verdict = walk_tiles(f, given, &n, &prior, &s, work, &at);
+    if (verdict == TED4_OK) {
+        advise_counts(f, &n, at);
+        advise_steps(f, &s, at);
+        advise_contexts(f, &s, at);
+    }
+    ted4_arena_finish(&arena);
+    return verdict;
+}

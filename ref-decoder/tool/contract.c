@@ -1,0 +1,251 @@
+/* contract.c - see contract.h.
+ * SPDX-License-Identifier: BSD-2-Clause */
+#include "contract.h"
+
+#include <stdlib.h>
+#include <string.h>
+#include "cli.h"
+#include "tier_hash.h"
+
+enum { MAX_PATH = 4096, T5 = 5 };
+
+typedef struct {
+    const char *input, *queries, *dump;
+    int         tier[TED4_TIERS];       /* asked for? */
+    uint64_t    max_bytes;
+    int         failed;                 /* of our own accord: no memory, a file that cannot be written */
+} request;
+
+static int usage(const char *text)
+{
+    fprintf(stderr, "ted4dec: %s (see conformance/README.md)\n", text);
+    return TED4_EXIT_TOOL;
+}
+
+int ted4_contract_asked(int argc, char **argv)
+{
+    return argc > 1 && strncmp(argv[1], "--ted4-", 7) == 0;
+}
+
+static int print(json_t *o)
+{
+    const int bad = o == NULL || json_dumpf(o, stdout, JSON_COMPACT) != 0 || putchar('\n') == EOF || fflush(stdout) != 0;
+
+    json_decref(o);
+    return bad ? TED4_EXIT_TOOL : TED4_EXIT_FINE;
+}
+
+static json_t *capabilities(void)
+{
+    return json_pack("{s:i, s:s, s:s, s:s, s:[s], s:i, s:[s,s,s,s,s,s], s:o, s:b, s:[], s:[s]}", "protocol", 1, "name", "ted4dec",
+                     "version", TED4_VERSION, "spec", TED4_SPEC_VERSION, "profiles", "Main", "max_level", 31, "tiers",
+                     "T0", "T1", "T2", "T3", "T4", "T5", "class", ted4_recon_class_x() ? json_string("X") : json_null(),
+                     "strict", 1, "declines", "knobs", "max_alloc_total");
+}
+
+/* "T0,T3": 0, or -1. */
+static int parse_tiers(request *r, const char *text)
+{
+    for (;; text += 3) {
+        if (text[0] != 'T' || text[1] < '0' || text[1] > '5' || (text[2] != ',' && text[2] != '\0'))
+            return -1;
+        r->tier[text[1] - '0'] = 1;
+        if (text[2] == '\0')
+            return 0;
+    }
+}
+
+static int parse_knob(request *r, const char *text)
+{
+    static const char name[] = "max_alloc_total=";
+    char *end;
+
+    if (strncmp(text, name, sizeof name - 1) != 0 || text[sizeof name - 1] < '0' || text[sizeof name - 1] > '9')
+        return -1;
+    r->max_bytes = strtoull(text + sizeof name - 1, &end, 10);
+    return *end == '\0' && r->max_bytes > 0 ? 0 : -1;
+}
+
+static int parse(request *r, int argc, char **argv)
+{
+    memset(r, 0, sizeof *r);
+    if (argc < 3 || argc % 2 == 0 || strcmp(argv[1], "--ted4-run") != 0)
+        return -1;
+    r->input = argv[2];
+    for (int i = 3; i + 1 < argc; i += 2) {
+        int bad = 0;
+
+        if (strcmp(argv[i], "--tiers") == 0)
+            bad = parse_tiers(r, argv[i + 1]);
+        else if (strcmp(argv[i], "--queries") == 0)
+            r->queries = argv[i + 1];
+        else if (strcmp(argv[i], "--knob") == 0)
+            bad = parse_knob(r, argv[i + 1]);
+        else if (strcmp(argv[i], "--dump") == 0)
+            r->dump = argv[i + 1];
+        else
+            bad = -1;
+        if (bad != 0)
+            return -1;
+    }
+    return 0;
+}
+
+/* One tier's file in the folder of --dump; NULL without that, or when it cannot be made. number: of a query, or -1. */
+static FILE *open_dump(request *r, int tier, int number)
+{
+    char  path[MAX_PATH];
+    FILE *f;
+
+    if (r->dump == NULL)
+        return NULL;
+    snprintf(path, sizeof path, number < 0 ? "%s/T%d.bin" : "%s/T%d-%d.bin", r->dump, tier, number);
+    f = fopen(path, "wb");
+    r->failed |= f == NULL;
+    return f;
+}
+
+static void close_dump(request *r, FILE *f)
+{
+    if (f != NULL)
+        r->failed |= ferror(f) | (fclose(f) != 0);
+}
+
+static json_t *tier_e(request *r, const void *data, size_t size, const ted4_scene *s, const ted4_options *o, int tier)
+{
+    FILE *const     keep = open_dump(r, tier, -1);
+    ted4_tier_hash *h = ted4_tier_hash_new(keep);
+    ted4_error      e;
+    json_t         *answer;
+
+    if (h == NULL || (tier == 0 ? ted4_dump_syntax(data, size, o, ted4_tier_hash_add, h, &e)
+                                : ted4_dump_tier(s, tier, o, ted4_tier_hash_add, h)) != TED4_OK)
+        r->failed = 1;
+    answer = ted4_tier_hash_end(h);
+    close_dump(r, keep);
+    return answer;
+}
+
+/* {"t":[num,den],"cam":[x,y,z]}: 0, or -1. */
+static int read_query(const json_t *from, ted4_query *q)
+{
+    const json_t *const t = json_object_get(from, "t"), *const cam = json_object_get(from, "cam");
+
+    if (json_array_size(t) != 2 || json_array_size(cam) != 3)
+        return -1;
+    for (size_t i = 0; i < 2; i++) {
+        const json_t *const v = json_array_get(t, i);
+
+        if (!json_is_integer(v) || json_integer_value(v) < 0 || json_integer_value(v) > UINT32_MAX)
+            return -1;
+        *(i == 0 ? &q->num : &q->den) = (uint32_t)json_integer_value(v);
+    }
+    for (size_t i = 0; i < 3; i++) {
+        if (!json_is_number(json_array_get(cam, i)))
+            return -1;
+        q->camera[i] = (float)json_number_value(json_array_get(cam, i));
+    }
+    return 0;
+}
+
+static json_t *records(request *r, ted4_recon *recon, const ted4_query *q, int number)
+{
+    ted4_gaussians    g;
+    const ted4_status verdict = ted4_recon_query(recon, q, NULL, &g);
+
+    if (verdict != TED4_OK)
+        return json_pack("{s:s}", "error", ted4_status_id(verdict));
+
+    FILE *const     keep = open_dump(r, T5, number);
+    ted4_tier_hash *h = ted4_tier_hash_new(keep);
+    json_t         *answer;
+
+    if (h != NULL)
+        ted4_tier_records(&g, ted4_tier_hash_add, h);
+    answer = ted4_tier_hash_end(h);
+    close_dump(r, keep);
+    return answer;
+}
+
+/* An array, one entry a query; NULL: the queries cannot be read, or no memory, which *verdict says. */
+static json_t *tier_r(request *r, const ted4_scene *s, const ted4_options *o, ted4_status *verdict)
+{
+    json_t     *queries = r->queries != NULL ? json_load_file(r->queries, 0, NULL) : json_array();
+    json_t     *answer = json_array();
+    ted4_recon *recon = NULL;
+
+    r->failed |= !json_is_array(queries);
+    if (json_array_size(queries) > 0)
+        *verdict = ted4_recon_new(&recon, s, o);
+    for (size_t i = 0; *verdict == TED4_OK && i < json_array_size(queries); i++) {
+        ted4_query q;
+
+        if (read_query(json_array_get(queries, i), &q) != 0)
+            r->failed = 1;
+        else
+            json_array_append_new(answer, records(r, recon, &q, (int)i));
+    }
+    ted4_recon_free(recon);
+    json_decref(queries);
+    return answer;
+}
+
+static json_t *refusal(const ted4_error *e)
+{
+    static const char *const name[] = { "valid", "invalid", "limit", "unsupported", "io" };
+    const ted4_verdict v = ted4_status_verdict(e->code);
+    json_t *o = json_pack("{s:s, s:s}", "result", name[v], "error", ted4_status_id(e->code));
+
+    if (v == TED4_INVALID || v == TED4_UNSUPPORTED)
+        json_object_set_new(o, "offset", json_integer((json_int_t)e->offset));
+    return o;
+}
+
+static json_t *answer_valid(request *r, const void *data, size_t size, const ted4_scene *s, const ted4_options *o)
+{
+    json_t    *tiers = json_object();
+    ted4_error e = { TED4_OK, 0 };
+
+    for (int t = 0; t < TED4_TIERS; t++)
+        if (r->tier[t]) {
+            const char name[3] = { 'T', (char)('0' + t), '\0' };
+
+            json_object_set_new(tiers, name, t == T5 ? tier_r(r, s, o, &e.code) : tier_e(r, data, size, s, o, t));
+        }
+    if (e.code == TED4_OK)
+        return json_pack("{s:s, s:o}", "result", "valid", "tiers", tiers);
+    json_decref(tiers);
+    return refusal(&e);
+}
+
+static int answer_run(request *r)
+{
+    ted4_error   e = { TED4_E_IO, 0 };
+    ted4_scene  *s = NULL;
+    ted4_options o;
+    size_t       size;
+    uint8_t     *data = ted4_read_file(r->input, &size);
+    json_t      *answer;
+
+    memset(&o, 0, sizeof o);
+    o.max_bytes = r->max_bytes;
+    if (data != NULL)
+        (void)ted4_decode(data, size, &o, &s, &e);
+    o.max_bytes = 0;                    /* what tiers take is not the scene's */
+    answer = e.code == TED4_OK ? answer_valid(r, data, size, s, &o) : refusal(&e);
+    ted4_scene_free(s);
+    free(data);
+    if (!r->failed)
+        return print(answer);
+    json_decref(answer);
+    return usage("no memory, bad queries, or a dump that cannot be written");
+}
+
+int ted4_contract(int argc, char **argv)
+{
+    request r;
+
+    if (argc == 2 && strcmp(argv[1], "--ted4-capabilities") == 0)
+        return print(capabilities());
+    return parse(&r, argc, argv) == 0 ? answer_run(&r) : usage("bad command line of the driver contract");
+}

@@ -1,0 +1,14 @@
+/* findings.h - ted4info --validate: findings as text or as one JSON object (conformance/schema/validate.schema.json).
+ * Depends on ted4.h. Used by ted4info.
+ * SPDX-License-Identifier: BSD-2-Clause */
+#ifndef TED4_TOOL_FINDINGS_H
+#define TED4_TOOL_FINDINGS_H
+
+#include <stddef.h>
+#include <stdint.h>
+
+/* Validates a file and prints every finding on standard output; quiet: errors only. An exit code: fine, refused, or fine with warnings; a hint is
+ * no warning. */
+int ted4_findings_print(const char *path, const uint8_t *data, size_t size, int json, int quiet);
+
+#endif

@@ -1,0 +1,32 @@
+/* gen_annex.c - prints an annex of the specification that is made by a program: gen_annex a|b|c|b1|b2. b1 and b2: the files of annex B.
+ * Run by `make spec-annexes`; tests/test_spec_annexes.c compares.
+ * SPDX-License-Identifier: BSD-2-Clause */
+#include "gen/annex_b.h"
+#include "gen/annex_a.h"
+#include "gen/annex_c.h"
+
+static int print_file(ted4_scene *s)
+{
+    size_t   size;
+    uint8_t *data = annex_b_encode(s, &size);
+    const int ok = fwrite(data, 1, size, stdout) == size;
+
+    free(data);
+    return ok ? 0 : 3;
+}
+
+int main(int argc, char **argv)
+{
+    const char *which = argc == 2 ? argv[1] : "";
+
+    if (strcmp(which, "b1") == 0)
+        return print_file(annex_b_smallest());
+    if (strcmp(which, "b2") == 0)
+        return print_file(annex_b_dynamic());
+    if (strlen(which) != 1 || which[0] < 'a' || which[0] > 'c') {
+        fprintf(stderr, "usage: gen_annex a|b|c|b1|b2\n");
+        return 3;
+    }
+    (which[0] == 'a' ? annex_a : which[0] == 'b' ? annex_b : annex_c)(stdout);
+    return fflush(stdout) == 0 ? 0 : 3;
+}

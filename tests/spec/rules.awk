@@ -1,0 +1,49 @@
+# rules.awk - annex G: every rule of the chapters and annexes named, in order of appearance. A rule begins a paragraph with its identifier in bold and ends with it.
+# SPDX-License-Identifier: BSD-2-Clause
+BEGIN {
+    split("BIT bitstream DEC decoder LEN lenient-decoder ENC encoder EDT editor VAL validator EXT author DMP test TOL decoder SEC decoder MED player INT decoder ERR decoder ARI decoder REC decoder XXH decoder DEF stream", pair, " ")
+    for (i = 1; i in pair; i += 2)
+        whom[pair[i]] = pair[i + 1]
+    print "# Annex G (informative): index of rules"
+    print ""
+    print "Made from the text by `make spec-annexes`. \"stream\" rules are those that a byte string can break; the others bind whom the column names. The word is the strongest of BCP 14 in the rule."
+    print ""
+    print "| rule | section | binds | word | errors |"
+    print "|---|---|---|---|---|"
+}
+
+function flush_rule(   n, word, errors, rest, id, kind) {
+    if (rule == "")
+        return
+    word = text ~ /MUST/ ? "MUST" : text ~ /SHOULD/ ? "SHOULD" : text ~ /MAY/ ? "MAY" : "none"
+    rest = text
+    while (match(rest, /`[a-z]+\.[a-z]+(-[a-z]+)*`/)) {
+        id = substr(rest, RSTART + 1, RLENGTH - 2)
+        if (id ~ /^(con|hdr|net|pos|ent|att|rec|syn|lvl|limit|unsupported|query|io)\./ && index(errors, "`" id "`") == 0)
+            errors = errors (errors == "" ? "" : " ") "`" id "`"
+        rest = substr(rest, RSTART + RLENGTH)
+    }
+    kind = substr(rule, 3, 3)
+    if (text ~ /\*\* An encoder/)
+        kind = "encoder"
+    else if (kind in whom)
+        kind = whom[kind]
+    else
+        kind = errors ~ /`(con|hdr|net|pos|ent|att|syn|lvl|unsupported)\./ ? "stream" : "decoder"
+    printf "| %s | %s | %s | %s | %s |\n", rule, section, kind, word, errors
+    rule = ""
+}
+
+FNR == 1 { flush_rule(); code = 0 }
+/^```/ { code = !code }
+code { next }
+/^#+ / {
+    flush_rule()
+    section = $2
+    if (section == "Annex")
+        section = $3
+}
+/^\*\*R-[A-Z][A-Z][A-Z]-[0-9][0-9][0-9]\*\*/ { flush_rule(); rule = substr($1, 3, 9); text = $0; next }
+/^$/ { flush_rule() }
+rule != "" { text = text " " $0 }
+END { flush_rule() }

@@ -1,0 +1,190 @@
+/* test_conformance.c - the suite: its recipes give the bytes that are published, these leave nothing out, our decoder passes all of them, and
+ * the runner sees through decoders that do not (conformance/tests/bad_decoder.sh). Programs are run as a user would.
+ * SPDX-License-Identifier: BSD-2-Clause */
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <cmocka.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/wait.h>
+#include "ted4.h"
+
+#ifdef __SANITIZE_ADDRESS__
+#define MEMORY " --memory 0"            /* its shadow takes terabytes of addresses */
+#else
+#define MEMORY ""
+#endif
+
+static const char *build(void)
+{
+    const char *b = getenv("TED4_BUILD");
+
+    return b != NULL ? b : "build";
+}
+
+/* Exit code of ted4conf with those arguments; its last line in last. */
+static int conf(char *last, size_t size, const char *format, ...)
+{
+    char    arguments[1024], command[2048], line[1024];
+    va_list a;
+    FILE   *f;
+    int     status;
+
+    va_start(a, format);
+    vsnprintf(arguments, sizeof arguments, format, a);
+    va_end(a);
+    snprintf(command, sizeof command, "TED4DEC=%s/ted4dec MOOD=%s/mood %s/ted4conf %s 2>&1", build(), build(), build(), arguments);
+    f = popen(command, "r");
+    assert_non_null(f);
+    last[0] = '\0';
+    while (fgets(line, sizeof line, f) != NULL)
+        snprintf(last, size, "%s", line);
+    status = pclose(f);
+    assert_true(WIFEXITED(status));
+    return WEXITSTATUS(status);
+}
+
+static void recipes_give_the_published_bytes(void **state)
+{
+    char last[1024];
+
+    (void)state;
+    if (conf(last, sizeof last, "gen --verify") != 0)
+        fail_msg("%s", last);
+}
+
+/* No rule without a vector, no vector without a rule, every value, pair, table entry and extreme reached. */
+static void nothing_is_left_out(void **state)
+{
+    char last[1024];
+
+    (void)state;
+    if (conf(last, sizeof last, "cover") != 0)
+        fail_msg("ted4conf cover: %s", last);
+}
+
+/* Files that end early at every byte: con.truncated at the end, or what pass 1 finds before it. */
+static void truncation_at_every_byte(void **state)
+{
+    static const char *const file[] = { "worked/WRK-smallest", "worked/WRK-masks", "worked/WRK-dynamic" };
+    uint8_t data[4096];
+
+    (void)state;
+    for (size_t i = 0; i < sizeof file / sizeof *file; i++) {
+        char       path[256];
+        FILE      *f;
+        size_t     size;
+        ted4_scene *s;
+        ted4_error e;
+
+        snprintf(path, sizeof path, "conformance/vectors/%s.ted4", file[i]);
+        f = fopen(path, "rb");
+        assert_non_null(f);
+        size = fread(data, 1, sizeof data, f);
+        fclose(f);
+        assert_true(size > 200 && size < sizeof data);
+        for (size_t n = 0; n < size; n++) {
+            assert_int_equal(ted4_decode(data, n, NULL, &s, &e), TED4_E_CON_TRUNCATED);
+            assert_int_equal(e.offset, n);
+        }
+    }
+}
+
+/* The second run of each vector takes the plain kernels: both have to give the same hashes. */
+static void our_decoder_conforms(void **state)
+{
+    char last[1024];
+
+    (void)state;
+    if (conf(last, sizeof last, "run -j 2 -d %s/ted4dec --second TED4_KERNEL=plain%s", build(), MEMORY) != 0)
+        fail_msg("%s", last);
+    assert_null(strstr(last, " 0 passed"));
+    assert_non_null(strstr(last, " 0 failed, 0 without answer, 0 missing, 0 declined"));
+}
+
+/* Runs a bad decoder over conformance/lists/few.txt; the closing line has to hold what. */
+static void expect(const char *way, int code, const char *what)
+{
+    char last[1024];
+
+    assert_int_equal(conf(last, sizeof last, "run -j %d -t %d --memory 0 -q -l conformance/lists/few.txt "
+                          "-d 'sh conformance/tests/bad_decoder.sh %s'", strcmp(way, "moody") == 0 ? 1 : 4,
+                          strncmp(way, "hang", 4) == 0 ? 1 : 60, way), code);
+    if (strstr(last, what) == NULL)
+        fail_msg("%s: \"%s\" lacks \"%s\"", way, last, what);
+}
+
+/* few.txt: 4 valid vectors, 3 invalid ones, 1 limit. */
+static void no_answers(void **state)
+{
+    static const char *const way[] = { "crash", "silent", "exit-code", "chatter", "chatter-behind", "two-answers", "no-json", "no-utf8",
+                                       "flood", "hang" };
+
+    (void)state;
+    for (size_t i = 0; i < sizeof way / sizeof *way; i++)
+        expect(way[i], 1, " 0 passed, 0 failed, 8 without answer, 0 missing");
+    expect("no-capabilities", 1, "nothing on stdout");
+    expect("old-protocol", 1, "protocol is not 1");
+}
+
+static void lies(void **state)
+{
+    (void)state;
+    expect("good", 0, " 8 passed, 0 failed, 0 without answer, 0 missing, 0 declined, 0 not run: conforms");
+    expect("says-valid", 1, " 0 passed, 8 failed");
+    expect("says-invalid", 1, " 1 passed, 7 failed");   /* one of them is */
+    expect("says-limit", 1, " 1 passed, 7 failed");
+    expect("wrong-hash", 1, " 4 passed, 4 failed");
+    expect("half-wrong", 1, " 4 passed, 4 failed");
+    expect("no-hashes", 1, " 4 passed, 4 failed");
+    expect("no-tier", 1, " 4 passed, 4 failed");
+    expect("wrong-records", 1, " 4 passed, 4 failed");
+    expect("no-records", 1, " 4 passed, 4 failed");
+    expect("wrong-offset", 1, " 5 passed, 3 failed");
+    expect("wrong-error", 1, " 4 passed, 4 failed");
+    expect("moody", 1, " 0 passed, 8 failed");
+    expect("spoils-input", 1, "does not conform");
+}
+
+static void declining(void **state)
+{
+    (void)state;
+    expect("no-knobs", 0, " 7 passed, 0 failed, 0 without answer, 0 missing, 1 declined");
+    expect("declines-moving", 0, " 5 passed, 0 failed, 0 without answer, 0 missing, 3 declined");
+    expect("declines-all", 1, "no valid stream decoded");
+}
+
+/* What a decoder leaves running ends with its time, and does not keep the runner waiting. */
+static void left_behind(void **state)
+{
+    (void)state;
+    expect("hang-behind", 1, " 8 without answer");
+}
+
+static void missing_vectors(void **state)
+{
+    char last[1024];
+
+    (void)state;
+    assert_int_equal(conf(last, sizeof last, "run -q -l conformance/tests/absent.txt -d %s/ted4dec", build()), 1);
+    assert_non_null(strstr(last, " 1 passed, 0 failed, 0 without answer, 1 missing"));
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(recipes_give_the_published_bytes),
+        cmocka_unit_test(nothing_is_left_out),
+        cmocka_unit_test(truncation_at_every_byte),
+        cmocka_unit_test(our_decoder_conforms),
+        cmocka_unit_test(lies),
+        cmocka_unit_test(no_answers),
+        cmocka_unit_test(declining),
+        cmocka_unit_test(left_behind),
+        cmocka_unit_test(missing_vectors),
+    };
+
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}

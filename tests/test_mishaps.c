@@ -1,0 +1,209 @@
+/* test_mishaps.c - ted4enc as a program when it is killed, or the disk is full: one line on standard error says why, exit status 3, nothing half-written
+ * stays, and the last checkpoint leads to the bytes of a run that nothing disturbed. Pictures and values: test_mishaps_scene.c.
+ * SPDX-License-Identifier: BSD-2-Clause */
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <cmocka.h>
+
+#include "mishap.h"
+
+/* ---- kill -9 ---- */
+
+/* A program that is killed while it tries whether it can write, or while it writes its last file, leaves a file that bears its number. */
+static void remove_leftovers(pid_t child)
+{
+    static const char *const outputs[] = { "x", "c", "l" };
+    char name[64];
+
+    for (size_t i = 0; i < sizeof outputs / sizeof outputs[0]; i++) {
+        snprintf(name, sizeof name, "out/%s.%ld.part", outputs[i], (long)child);
+        if (is_there(name))
+            gone(name);
+    }
+}
+
+/* Is the checkpoint another one than *old, which it becomes? */
+static int is_new(ball_file *old)
+{
+    ball_file now = is_there("out/c") ? read_file("out/c") : (ball_file){ calloc(1, 1), 0 };
+    const int same = now.size == old->size && memcmp(now.bytes, old->bytes, now.size) == 0;
+
+    free(old->bytes);
+    *old = now;
+    return !same;
+}
+
+/* Killed again and again, sooner or later each time. The time until then follows the machine: it shrinks when the program was faster,
+ * which then begins anew, and grows when there was no new checkpoint yet. */
+static void test_killed(void **state)
+{
+    static const char shorter[] = "--iterations 130,70", arguments[] = "-o out/x --checkpoint out/c --log out/l --resume --iterations 130,70";
+    enum { ENOUGH = 6, MOST_LIVES = 200 };
+    outcome   want;
+    ball_file last = { calloc(1, 1), 0 };
+    uint32_t  x = (uint32_t)time(NULL);
+    long      longest = 400000;
+    int       killed = 0;
+
+    (void)state;
+    begin_test();
+    print_message("seed %u\n", (unsigned)x);
+    want = make_outcome(shorter);
+    for (int life = 0; killed < ENOUGH && life < MOST_LIVES; life++) {
+        const pid_t child = start(arguments, 0);
+
+        x = x * 1664525u + 1013904223u;
+        pause_us((long)((double)longest * x / 4294967296.0));
+        kill(child, SIGKILL);
+        const int status = finish(child);
+        remove_leftovers(child);
+        if (status == 0) {
+            expect_same("out/x", &want.file);
+            expect_log("out/l", want.log);
+            gone("out/c");
+            (void)is_new(&last);
+            longest /= 2;
+        } else {
+            assert_int_equal(status, 1000 + SIGKILL);
+            if (is_new(&last))
+                killed++;
+            else
+                longest += longest / 2;
+        }
+    }
+    assert_int_equal(killed, ENOUGH);
+    run_calmly("--checkpoint out/c --log out/l --resume --iterations 130,70");
+    expect_same("out/x", &want.file);
+    expect_log("out/l", want.log);
+    gone("out/c");
+    expect_files("");
+    free(last.bytes);
+    free(want.file.bytes);
+}
+
+/* ---- a full disk ---- */
+
+static void test_full_checkpoint(void **state)
+{
+    (void)state;
+    begin_test();
+    make_checkpoint();
+
+    ball_file before = read_file("out/c"), after;
+
+    assert_int_equal(run("-o out/x --checkpoint out/c --resume", 20000), 3);
+    expect_words("out/c: File too large");
+    expect_files("c");
+    after = read_file("out/c");
+    ball_check_same(&before, &after);
+    free(before.bytes);
+    free(after.bytes);
+    resume_to_reference();
+}
+
+static void test_full_output(void **state)
+{
+    (void)state;
+    begin_test();
+    assert_int_equal(run("-o out/x", 1000), 3);
+    expect_words("out/x: File too large");
+    expect_files("");
+    assert_int_equal(run("-o out/x --stage1 out/s", 1000), 3);
+    expect_words("out/s: File too large");
+    expect_files("");
+}
+
+/* The second line of the log does not fit. */
+static void test_full_log(void **state)
+{
+    char        text[MOST_LOG];
+    const char *end = strchr(reference.log, '\n') + 1;
+
+    (void)state;
+    begin_test();
+    assert_int_equal(run("-o out/x --log out/l", (rlim_t)(end - reference.log) + 200), 3);
+    expect_words("out/l: ");
+    expect_files("l");
+    read_text("out/l", text, sizeof text);
+    assert_non_null(strchr(text, '\n'));
+    assert_string_equal(strchr(text, '\n'), "\n");
+    gone("out/l");
+    if (access("/dev/full", W_OK) == 0) {
+        assert_int_equal(run("-o out/x --log /dev/full", 0), 3);
+        expect_words("/dev/full: No space left on device");
+        expect_files("");
+    }
+}
+
+/* A disk that fills while frames of a video are unpacked: what ffmpeg says is passed on, its frames are removed. */
+static void test_full_video_cache(void **state)
+{
+    static const char *const failing[] = { "printf x >000001.png; echo 'No space left on device' >&2; exit 1",
+                                           "echo 'No space left on device' >&2; kill -9 $$" };
+    const ted4_dataset_options o = { 1, 0, 3, 1 << 20, 0 };
+    tiny_folder  f = tiny_new();
+    ted4_dataset d;
+    ted4_message m;
+    tiny_string  script = { "", 0 };
+    char        *path = ted4_text_copy(getenv("PATH"));
+
+    (void)state;
+    must(path != NULL, "PATH");
+    setenv("XDG_CACHE_HOME", tiny_path(&f, "cache"), 1);
+    tiny_text(&f, "one.mp4", "a video");
+    tiny_text(&f, "cams.json", "{\"cameras\": [{\"name\": \"one\", \"w\": 16, \"h\": 12, \"K\": [[9,0,8],[0,9,6],[0,0,1]], \"w2c\": " TINY_POSE "}]}");
+    for (size_t i = 0; i < sizeof failing / sizeof failing[0]; i++) {
+        script.n = 0;
+        tiny_add(&script, "#!/bin/sh\n%s\n", failing[i]);
+        tiny_text(&f, "bin/ffmpeg", script.text);
+        must(chmod(tiny_path(&f, "bin/ffmpeg"), 0700) == 0, "ffmpeg");
+        setenv("PATH", tiny_path(&f, "bin"), 1);
+        assert_int_equal(ted4_dataset_load(&d, f.path, &o, &m), -1);
+        setenv("PATH", path, 1);
+        if (strstr(m.text, "one.mp4: ffmpeg") == NULL || strstr(m.text, "No space left on device") == NULL)
+            fail_msg("%s", m.text);
+        assert_int_equal(rmdir(tiny_path(&f, "cache/ted4")), 0);        /* empty */
+    }
+    unsetenv("XDG_CACHE_HOME");
+    free(path);
+    tiny_free(&f);
+}
+
+static void test_full_stdout(void **state)
+{
+    (void)state;
+    begin_test();
+    if (access("/dev/full", W_OK) != 0) {
+        print_message("skipped: no /dev/full\n");
+        skip();
+    }
+
+    const int out = dup(STDOUT_FILENO), full = open("/dev/full", O_WRONLY);
+
+    fflush(stdout);
+    assert_true(out >= 0 && full >= 0 && dup2(full, STDOUT_FILENO) >= 0);
+    const int status = run("-o out/x --json", 0), checked = run("--check", 0);
+    assert_true(dup2(out, STDOUT_FILENO) >= 0);
+    close(out);
+    close(full);
+    assert_int_equal(status, 3);
+    assert_int_equal(checked, 3);
+    expect_words("standard output cannot be written");
+    gone("out/x");
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(test_killed),
+        cmocka_unit_test(test_full_checkpoint),
+        cmocka_unit_test(test_full_output),
+        cmocka_unit_test(test_full_log),
+        cmocka_unit_test(test_full_video_cache),
+        cmocka_unit_test(test_full_stdout),
+    };
+
+    return cmocka_run_group_tests_name("mishaps", tests, set_up, tear_down);
+}

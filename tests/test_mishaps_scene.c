@@ -1,0 +1,195 @@
+/* test_mishaps_scene.c - ted4enc as a program when a picture goes away or changes while it trains, when a checkpoint is of other pictures, or a value is not
+ * finite: one line on standard error says why, exit status 3, and the last checkpoint leads to the bytes of a run that nothing disturbed.
+ * SPDX-License-Identifier: BSD-2-Clause */
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <cmocka.h>
+
+#include "mishap.h"
+#include "train/checkpoint.h"
+
+/* ---- pictures ---- */
+
+/* Both ends of a pipe with a name: while it is full, a program whose log it is cannot go beyond the 250th step. */
+typedef struct { int read, write; } gate;
+
+static gate close_gate(const char *path)
+{
+    static const char bytes[4096];
+    gate g;
+
+    must(mkfifo(path, 0600) == 0, path);
+    g.read = open(path, O_RDONLY | O_NONBLOCK | O_CLOEXEC);
+    g.write = open(path, O_WRONLY | O_NONBLOCK | O_CLOEXEC);
+    assert_true(g.read >= 0 && g.write >= 0);
+    for (size_t size = sizeof bytes; size > 0; size /= 2)
+        while (write(g.write, bytes, size) > 0)
+            continue;
+    return g;
+}
+
+static void open_gate(const gate *g)
+{
+    char bytes[4096];
+
+    while (read(g->read, bytes, sizeof bytes) > 0)
+        continue;
+}
+
+/* Starts a run that waits at the gate, and waits until it has written a checkpoint. */
+static pid_t start_until_checkpoint(void)
+{
+    const pid_t child = start("-o out/x --checkpoint out/c --log gate", 0);
+    int         status;
+
+    while (!is_there("out/c")) {
+        if (waitpid(child, &status, WNOHANG) != 0)
+            fail_msg("the run was over before it wrote a checkpoint");
+        pause_us(1000);
+    }
+    return child;
+}
+
+/* Does something to a picture while the program runs, which must find out; then undoes it. */
+static void spoil(void (*damage)(const char *path), const char *what)
+{
+    static const char name[] = "scene/images/c1_f2.png";
+    const gate  g = close_gate(tiny_path(&folder, "gate"));
+    const pid_t child = start_until_checkpoint();
+    ball_file   whole = read_file(name);
+
+    damage(tiny_path(&folder, name));
+    open_gate(&g);
+    assert_int_equal(finish(child), 3);
+    close(g.read);
+    close(g.write);
+    gone("gate");
+    expect_words(what);
+    expect_files("c");
+    tiny_bytes(&folder, name, whole.bytes, whole.size);
+    free(whole.bytes);
+    resume_to_reference();
+}
+
+static void take_away(const char *path)
+{
+    must(remove(path) == 0, path);
+}
+
+static void cut_short(const char *path)
+{
+    must(truncate(path, 100) == 0, path);
+}
+
+/* Another picture of the same size; by way of a new file, so that no one sees half of it. */
+static void exchange(const char *path)
+{
+    tiny_picture(&folder, "other.png", BALL_W, BALL_H, 7);
+    must(rename(tiny_path(&folder, "other.png"), path) == 0, path);
+}
+
+static void test_pictures(void **state)
+{
+    (void)state;
+    begin_test();
+    spoil(take_away, "c1_f2.png: No such file");
+    spoil(cut_short, "c1_f2.png: PNG");
+    spoil(exchange, "c1_f2.png: the file has changed");
+}
+
+/* A checkpoint is of the pictures that it was made from. */
+static void test_other_scene(void **state)
+{
+    static const char name[] = "scene/images/c1_f2.png";
+    ball_file whole;
+
+    (void)state;
+    begin_test();
+    make_checkpoint();
+    whole = read_file(name);
+    exchange(tiny_path(&folder, name));
+    assert_int_equal(run("-o out/x --checkpoint out/c --resume", 0), 3);
+    expect_words("out/c: not a checkpoint of this scene");
+    tiny_bytes(&folder, name, whole.bytes, whole.size);
+    free(whole.bytes);
+    assert_int_equal(run("-o out/x --checkpoint out/c --resume --downscale 2", 0), 3);
+    expect_words("out/c: not a checkpoint of this scene");
+    assert_int_equal(run("-o out/x --checkpoint out/c --resume --max-frames 3", 0), 3);
+    expect_words("out/c: not a checkpoint of this scene");
+    resume_to_reference();
+}
+
+/* ---- a value that is not finite ---- */
+
+/* The options of usual[]. */
+static ted4_train_options usual_options(void)
+{
+    ted4_train_options o;
+
+    assert_int_equal(ted4_options_preset(&o, "draft"), 0);
+    o.stage1 = STAGE1;
+    o.stage2 = STEPS - STAGE1;
+    for (size_t i = 0; usual[i] != NULL; i++)
+        if (strcmp(usual[i], "--set") == 0)
+            ball_set(&o, usual[i + 1]);
+    return o;
+}
+
+/* Puts a value that is not finite into the state of a checkpoint, which ted4_checkpoint_save would refuse to write. */
+static void poison(const char *name)
+{
+    const ted4_dataset_options wanted = { 1, 1, 0, 1 << 20, 0 };
+    const ted4_train_options   o = usual_options();
+    ted4_snapshot s = { NULL, 0 };
+    ted4_dataset  d;
+    ted4_trainer  t;
+    ted4_message  m;
+
+    if (ted4_dataset_load(&d, tiny_path(&folder, "scene"), &wanted, &m) != 0 || ted4_dataset_verify(&d, NULL, &m) != 0)
+        fail_msg("%s", m.text);
+    ball_begin(&t, &o, &d, NULL);
+    if (ted4_checkpoint_load(&t, tiny_path(&folder, name)) != 0)
+        fail_msg("%s", t.message.text);
+    *ted4_cell(&t.anchors, TED4_ROW_VALUE, 5, t.layout.first[TED4_FEATURE]) = NAN;
+    assert_int_equal(ted4_snapshot_take(&t, &s), 0);
+    tiny_bytes(&folder, name, s.bytes, s.size);
+    ted4_snapshot_free(&s);
+    ted4_trainer_finish(&t);
+    ted4_dataset_free(&d);
+}
+
+/* The trainer's side of it: test_nan.c. */
+static void test_not_finite(void **state)
+{
+    ball_file good, bad, after;
+
+    (void)state;
+    begin_test();
+    make_checkpoint();
+    good = read_file("out/c");
+    poison("out/c");
+    bad = read_file("out/c");
+    assert_int_equal(run("-o out/x --checkpoint out/c --resume", 0), 3);
+    expect_words("not finite at step 700");
+    expect_files("c");
+    after = read_file("out/c");
+    ball_check_same(&bad, &after);
+    tiny_bytes(&folder, "out/c", good.bytes, good.size);
+    resume_to_reference();
+    free(good.bytes);
+    free(bad.bytes);
+    free(after.bytes);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(test_pictures),
+        cmocka_unit_test(test_other_scene),
+        cmocka_unit_test(test_not_finite),
+    };
+
+    return cmocka_run_group_tests_name("mishaps of a scene", tests, set_up, tear_down);
+}

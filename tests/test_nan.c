@@ -1,0 +1,67 @@
+/* test_nan.c - a value of the model that is not finite: it never reaches a checkpoint, and the last checkpoint still leads where it led.
+ * SPDX-License-Identifier: BSD-2-Clause */
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <cmocka.h>
+
+#include "ball_trainer.h"
+#include "train/checkpoint.h"
+
+/* A value goes bad between two checks: no checkpoint is made of it, the last one is untouched and leads where it led. */
+static void test_nan(void **state)
+{
+    const ted4_train_options o = ball_options();
+    tiny_folder  f;
+    ted4_dataset d;
+    ted4_trainer t;
+    ball_file    whole, again;
+
+    (void)state;
+    ball_load(&f, &d, 5, 1);
+    for (int which = 0; which < 2; which++) {
+        char path[512];
+
+        snprintf(path, sizeof path, "%s", tiny_path(&f, "checkpoint"));
+        ball_begin(&t, &o, &d, NULL);
+        ball_train(&t, 130);
+        assert_int_equal(ted4_checkpoint_save(&t, path), 0);
+        whole = ball_finish(&t);
+        ted4_trainer_finish(&t);
+
+        ball_begin(&t, &o, &d, NULL);
+        assert_int_equal(ted4_checkpoint_load(&t, path), 0);
+        if (which == 0)
+            t.net[t.layout.netr + 1] = NAN;
+        else
+            *ted4_cell(&t.anchors, TED4_ROW_VALUE, 3, 0) = INFINITY;
+        assert_int_equal(ted4_checkpoint_save(&t, path), -1);
+        assert_non_null(strstr(t.message.text, "not finite at step 130"));
+        int steps = 0;
+        while (ted4_trainer_step(&t) == 0)
+            assert_true(++steps < 100);
+        assert_non_null(strstr(t.message.text, "not finite at step"));
+        assert_int_equal(ted4_checkpoint_save(&t, path), -1);
+        ted4_trainer_finish(&t);
+        assert_int_equal(access(tiny_path(&f, "checkpoint.part"), F_OK), -1);
+
+        ball_begin(&t, &o, &d, NULL);
+        assert_int_equal(ted4_checkpoint_load(&t, path), 0);
+        assert_int_equal(t.iteration, 130);
+        again = ball_finish(&t);
+        ted4_trainer_finish(&t);
+        ball_check_same(&whole, &again);
+        free(whole.bytes);
+        free(again.bytes);
+    }
+    ted4_dataset_free(&d);
+    tiny_free(&f);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = { cmocka_unit_test(test_nan) };
+
+    return cmocka_run_group_tests_name("nan", tests, NULL, NULL);
+}

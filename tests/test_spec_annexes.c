@@ -1,0 +1,96 @@
+/* test_spec_annexes.c - annexes A, B and C are what their generators print now, and the lints of the specification hold.
+ * Runs in the top folder, as make does.
+ * SPDX-License-Identifier: BSD-2-Clause */
+#include "gen/annex_b.h"                /* first: fail() is a function there */
+#include "gen/annex_a.h"
+#include "gen/annex_c.h"
+#include <setjmp.h>
+#include <stdarg.h>
+#include <cmocka.h>
+
+/* The whole file; fails the test when it cannot be read. To be freed. */
+static char *contents(const char *path, size_t *size)
+{
+    FILE *f = fopen(path, "rb");
+    char *text;
+
+    if (f == NULL)
+        print_error("%s: cannot be read\n", path);
+    assert_non_null(f);
+    assert_int_equal(fseek(f, 0, SEEK_END), 0);
+    *size = (size_t)ftell(f);
+    rewind(f);
+    text = malloc(*size + 1);
+    assert_int_equal(fread(text, 1, *size, f), *size);
+    fclose(f);
+    return text;
+}
+
+static void current(const char *path, void (*print)(FILE *out))
+{
+    char  *made = NULL, *kept;
+    size_t n_made = 0, n_kept;
+    FILE  *out = open_memstream(&made, &n_made);
+
+    assert_non_null(out);
+    print(out);
+    fclose(out);
+    kept = contents(path, &n_kept);
+    if (n_made != n_kept || memcmp(made, kept, n_made) != 0)
+        print_error("%s is not what its generator prints: make spec-annexes\n", path);
+    assert_int_equal(n_made, n_kept);
+    assert_memory_equal(made, kept, n_made);
+    free(made);
+    free(kept);
+}
+
+static void tables(void **state)
+{
+    (void)state;
+    current("spec/annex-a-tables.md", annex_a);
+}
+
+static void examples(void **state)
+{
+    (void)state;
+    current("spec/annex-b-examples.md", annex_b);
+}
+
+static void levels(void **state)
+{
+    (void)state;
+    current("spec/annex-c-levels.md", annex_c);
+}
+
+/* No valid file is shorter: B.1 says why. */
+static void smallest(void **state)
+{
+    size_t   size;
+    uint8_t *data = annex_b_encode(annex_b_smallest(), &size);
+
+    (void)state;
+    assert_int_equal(size, 12 + 6 * 20 + 88 + (23 + 1 + 11) + (1 + 11) + 6 + (4 + 3 * 4 + 3 * 4) + 16);
+    free(data);
+}
+
+static void lints(void **state)
+{
+    static const char *const lint[] = { "errors", "sections", "spec_rules", "spec_text" };
+
+    (void)state;
+    for (size_t i = 0; i < sizeof lint / sizeof *lint; i++) {
+        char command[64];
+
+        snprintf(command, sizeof command, "sh tests/lint/%s.sh", lint[i]);
+        assert_int_equal(system(command), 0);
+    }
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(tables), cmocka_unit_test(examples), cmocka_unit_test(levels), cmocka_unit_test(smallest), cmocka_unit_test(lints),
+    };
+
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}

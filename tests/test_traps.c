@@ -1,0 +1,344 @@
+/* test_traps.c - the places where the published recipe fails (algorithm facts 5.8, 5.9), each with what we do instead. Those that the test of one module
+ * shows are there:
+ *   3 sigma clamped from below gets no gradient: test_rate.c, clamped outputs recover; test_rate_grad.c, clamped
+ *   4 a floor under likelihoods leaves outliers without gradient: test_rate_row.c, outliers have gradient; test_rate_grad.c, outliers
+ *   5 steps that reach 0: test_rate.c, clamped outputs recover; the symbols that would overflow: test_rate.c, quantise; and here
+ *   7 the cap of opacity and the early stop are steps: test_raster_grad.c, cap and early stop; so pictures are compared with a tolerance, test_raster.c,
+ *     and what has to be equal to the bit ends at the Gaussians, test_recon.c
+ * Here: 1 spans that begin with the sequence, 2 the saddle of the bank's query, 5 symbols of a file, 6 units of the world, 8 anchors that are never there;
+ * and positions in FP16: none beyond 1, no two alike.
+ * SPDX-License-Identifier: BSD-2-Clause */
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <cmocka.h>
+
+#include "ball_trainer.h"
+#include "cloud_case.h"
+#include "norm/half.h"
+#include "norm/scene.h"
+
+enum { FRAMES = 5 };
+
+static tiny_folder  folder;
+static ted4_dataset balls;
+static cloud_case   cloud;
+
+static int set_up(void **state)
+{
+    (void)state;
+    ball_load(&folder, &balls, FRAMES, 1);
+    return 0;
+}
+
+static int tear_down(void **state)
+{
+    (void)state;
+    ted4_dataset_free(&balls);
+    tiny_free(&folder);
+    return 0;
+}
+
+/* ---- 1: a span that begins at the first time of all, or ends at the last ---- */
+
+/* Gradients of the sum of all opacities at a frame, in t->slots.gradient. */
+static void opacity_gradients(ted4_trainer *t, uint32_t frame)
+{
+    ted4_generate_input in = { &t->layout, t->net, 0, NULL, NULL, NULL, frame, FRAMES - 1, { 0 }, 1 };
+    ted4_splats         s;
+    ted4_splat_grads    g;
+
+    in.camera[2] = 4.0f;
+    assert_int_equal(ted4_slots_fill(t, NULL), 0);
+    in.n_slots = t->slots.n;
+    in.attr = t->slots.raw;
+    in.position = t->slots.position;
+    in.lanes = t->slots.lanes;
+    ted4_generator_pack(t->generator, t->net);
+    assert_int_equal(ted4_generate(t->generator, &in, NULL, &s), 0);
+
+    float   *zero = calloc(s.n, sizeof *zero), *one = malloc(s.n * sizeof *one);
+    uint8_t *seen = malloc(s.n);
+
+    assert_true(zero != NULL && one != NULL && seen != NULL);
+    for (size_t i = 0; i < s.n; i++) {
+        one[i] = 1.0f;
+        seen[i] = 1;
+    }
+    for (int j = 0; j < 3; j++)
+        g.mean[j] = g.scale[j] = g.colour[j] = zero;
+    for (int j = 0; j < 4; j++)
+        g.rot[j] = zero;
+    g.opacity = one;
+    g.mean2d = zero;
+    g.visible = seen;
+    assert_int_equal(ted4_generate_backward(t->generator, &in, &g, NULL, t->slots.gradient,
+                                            t->net_gradient), 0);
+    free(zero);
+    free(one);
+    free(seen);
+}
+
+/* How many anchors have a gradient on component c of tau. */
+static size_t pulled(const ted4_trainer *t, int c)
+{
+    size_t n = 0;
+
+    for (size_t i = 0; i < t->slots.n; i++)
+        for (size_t j = 0; j < TED4_LANES; j++) {
+            const size_t channel = (size_t)(t->layout.first[TED4_TAU] + c);
+
+            n += (t->slots.lanes[i] >> j & 1) &&
+                 t->slots.gradient[i][channel * TED4_LANES + j] != 0.0f;
+        }
+    return n;
+}
+
+/* Everything is seen at every time, so all spans reach from the first frame to the last. With a_s at the first frame itself no
+ * frame would lie before it, and it could never move. */
+static void test_spans(void **state)
+{
+    const ted4_train_options o = ball_options();
+    ted4_trainer t;
+
+    (void)state;
+    ball_begin(&t, &o, &balls, NULL);
+    ball_train(&t, 40);                     /* opacities above 0 */
+    assert_int_equal(ted4_activation_begin(&t), 0);
+    for (int end = 0; end < 2; end++) {
+        opacity_gradients(&t, end ? FRAMES - 1 : 0);
+        assert_true(pulled(&t, end ? 2 : 0) > t.anchors.n / 2);
+        assert_true(pulled(&t, end ? 3 : 1) > t.anchors.n / 2);
+        assert_int_equal(pulled(&t, end ? 0 : 2), 0);
+    }
+    ted4_trainer_finish(&t);
+}
+
+/* ---- 2: the query is a product, and a product of zeros has no gradient ---- */
+
+static double magnitude(const float *x, size_t n)
+{
+    double sum = 0;
+
+    for (size_t i = 0; i < n; i++)
+        sum += fabs((double)x[i]);
+    return sum;
+}
+
+/* The last layer of F_deform begins at zero, so that the first step reaches it alone; with the second all that moves anchors must have begun to learn. */
+static void test_saddle(void **state)
+{
+    const ted4_train_options o = ball_options();
+    ted4_trainer  t;
+    const size_t  phi = TED4_LANES * 4;     /* values of phi in a block */
+    double        on_phi = 0;
+
+    (void)state;
+    ball_begin(&t, &o, &balls, NULL);
+    ball_train(&t, 2);
+    assert_int_equal(t.layout.head.phi_dim, 4);
+
+    const ted4_shape   *s = &t.layout.shape;
+    const float        *d = t.net_gradient + t.layout.netr;
+    const size_t        project = s->netr[TED4_NET_PROJECT].first;
+    const size_t        deform = s->netr[TED4_NET_DEFORM].first;
+
+    for (size_t i = 0; i < t.slots.n; i++)
+        on_phi += magnitude(t.slots.gradient[i] + t.layout.first[TED4_PHI] * TED4_LANES, phi);
+    assert_true(on_phi > 0);
+    assert_true(magnitude(d + project, 8) > 0 && magnitude(d + deform, 8) > 0);
+    assert_true(magnitude(t.net_gradient + t.layout.bank, s->n_bank) > 1e-9);
+    ted4_trainer_finish(&t);
+}
+
+/* ---- 5: symbols beyond 16 bits ---- */
+
+/* Runaway values come out as the largest symbols, with their sign, in a file that decodes. */
+static void test_symbols(void **state)
+{
+    ted4_train_options o = ball_options();
+    ted4_trainer t;
+    ted4_scene  *s, *back;
+    uint8_t     *bytes;
+    size_t       size, n, low = 0, high = 0;
+    ted4_error   e = { TED4_OK, 0 };
+
+    (void)state;
+    ball_set(&o, "stage1=30");
+    ball_set(&o, "stage2=0");
+    ball_begin(&t, &o, &balls, NULL);
+    ball_train(&t, 30);
+    for (size_t i = 0; i < t.anchors.n; i++)
+        *ted4_cell(&t.anchors, TED4_ROW_VALUE, i, t.layout.first[TED4_FEATURE]) =
+            i % 2 ? 3e6f : -3e6f;
+    if (ted4_make_scene(&t, &s) != 0)
+        fail_msg("%s", t.message.text);
+    assert_int_equal(ted4_encode(s, 0, NULL, &bytes, &size, &e), TED4_OK);
+    assert_int_equal(ted4_decode(bytes, size, NULL, &back, &e), TED4_OK);
+    n = back->head.n_anchors;
+    for (size_t i = 0; i < n; i++) {
+        low += back->symbol[TED4_FEATURE][i] == -32767;
+        high += back->symbol[TED4_FEATURE][i] == 32767;
+    }
+    assert_true(low + high == n && low > n / 4 && high > n / 4);
+    ted4_scene_free(s);
+    ted4_scene_free(back);
+    free(bytes);
+    ted4_trainer_finish(&t);
+}
+
+/* ---- 6: scalings in the units of the world ---- */
+
+/* The same scene in units 4096 times as large: the same anchors to the bit. */
+static void test_units(void **state)
+{
+    ted4_trainer metre, league;
+    cloud_case   far;
+
+    (void)state;
+    cloud_make(&cloud, 5);
+    cloud_make(&far, 5);
+    for (size_t i = 0; i < CLOUD_POINTS; i++)
+        for (int j = 0; j < 3; j++)
+            far.point[i][j] *= 0x1p-12f;
+    for (int j = 0; j < 3; j++)
+        far.picture.camera.t[j] *= 0x1p-12;
+    assert_int_equal(ted4_trainer_init(&metre, &cloud.options, &cloud.data, NULL), 0);
+    assert_int_equal(ted4_trainer_init(&league, &far.options, &far.data, NULL), 0);
+    assert_int_equal(metre.layout.head.exponent, league.layout.head.exponent + 12);
+    assert_true(metre.cell == league.cell && metre.anchors.n == league.anchors.n);
+    for (int row = 0; row < TED4_ROWS; row++)
+        assert_memory_equal(metre.anchors.data[row], league.anchors.data[row],
+                            metre.anchors.n_blocks * (size_t)metre.anchors.rows[row] *
+                                TED4_LANES * sizeof(float));
+    ted4_trainer_finish(&metre);
+    ted4_trainer_finish(&league);
+}
+
+/* ---- 8: anchors whose activation stays near 0 ---- */
+
+/* Every third anchor is marked by an offset that nothing else has; absent: it also lives between two frames, far too short for either. */
+static void mark(ted4_trainer *t, int absent)
+{
+    const int tau = t->layout.first[TED4_TAU];
+
+    for (size_t i = 0; i < t->anchors.n; i += 3) {
+        *ted4_cell(&t->anchors, TED4_ROW_VALUE, i, t->layout.first[TED4_OFFSET]) = 1000.0f;
+        for (int c = 0; c < 4 && absent; c++)
+            *ted4_cell(&t->anchors, TED4_ROW_VALUE, i, tau + c) =
+                c % 2 ? -10.0f : 0.5f / (FRAMES - 1);
+    }
+}
+
+/* Anchors that go into stage 2. */
+static void count(const ted4_trainer *t, size_t *marked, size_t *others)
+{
+    *marked = 0;
+    for (size_t i = 0; i < t->anchors.n; i++)
+        *marked += *ted4_cell(&t->anchors, TED4_ROW_VALUE, i, t->layout.first[TED4_OFFSET]) == 1000.0f;
+    *others = t->anchors.n - *marked;
+}
+
+static void test_absent(void **state)
+{
+    const ted4_train_options o = ball_options();
+    size_t marked[2], others[2];
+
+    (void)state;
+    for (int absent = 0; absent < 2; absent++) {
+        ted4_trainer t;
+
+        ball_begin(&t, &o, &balls, NULL);
+        ball_train(&t, 60);
+        assert_int_equal(ted4_activation_begin(&t), 0);
+        mark(&t, absent);
+        assert_int_equal(ted4_stage2_begin(&t), 0);
+        count(&t, &marked[absent], &others[absent]);
+        ted4_trainer_finish(&t);
+    }
+    assert_true(marked[0] > 10 && others[0] > 20);
+    assert_int_equal(marked[1], 0);
+    assert_int_equal(others[1], others[0]);
+}
+
+/* ---- positions in FP16 ---- */
+
+/* Far from the origin of the world, FP16 of world coordinates would be coarser than the scene's details; and a stray point must neither spread the range nor
+ * leave it. */
+static void test_far_away(void **state)
+{
+    static const float shift[3] = { 1000, -500, 2000 };
+    ted4_trainer t;
+
+    (void)state;
+    cloud_make(&cloud, 5);
+    for (size_t i = 0; i < CLOUD_POINTS; i++)
+        for (int j = 0; j < 3; j++)
+            cloud.point[i][j] += shift[j];
+    for (int j = 0; j < 3; j++)
+        cloud.picture.camera.t[j] -= (double)shift[j];
+    cloud.point[7][1] = 1e6f;
+    assert_int_equal(ted4_trainer_init(&t, &cloud.options, &cloud.data, NULL), 0);
+    assert_int_equal(t.anchors.n, CLOUD_POINTS - 1);
+    for (size_t i = 0; i < t.anchors.n; i++)
+        for (int j = 0; j < 3; j++) {
+            const float p = *ted4_cell(&t.anchors, TED4_ROW_POSITION, i, j);
+            const float half = ted4_half_to_float(ted4_float_to_half(p));
+
+            assert_true(fabsf(p) <= 1.0f && fabsf(half) <= 1.0f);
+            assert_true(ldexpf(fabsf(half - p), t.layout.head.exponent) < 0.002f * (float)CLOUD_STEP);
+        }
+    ted4_trainer_finish(&t);
+}
+
+/* Places that FP16 cannot tell apart become one anchor, before stage 2 trains on what the file holds. */
+static void test_twins(void **state)
+{
+    const ted4_train_options o = ball_options();
+    size_t n[2];
+
+    (void)state;
+    for (int twins = 0; twins < 2; twins++) {
+        ted4_trainer t;
+
+        ball_begin(&t, &o, &balls, NULL);
+        ball_train(&t, 60);
+        for (size_t i = 0; i + 1 < t.anchors.n && twins; i += 20)
+            for (int j = 0; j < 3; j++)
+                *ted4_cell(&t.anchors, TED4_ROW_POSITION, i + 1, j) =
+                    *ted4_cell(&t.anchors, TED4_ROW_POSITION, i, j) * (1.0f + 0x1p-20f);
+        assert_int_equal(ted4_stage2_begin(&t), 0);
+        n[twins] = t.anchors.n;
+        for (size_t i = 0; i < t.anchors.n; i++) {
+            uint16_t p[2][3];
+
+            for (int j = 0; j < 3; j++) {
+                const float x = *ted4_cell(&t.anchors, TED4_ROW_POSITION, i, j);
+
+                p[1][j] = ted4_float_to_half(x);
+                p[0][j] = ted4_float_to_half(*ted4_cell(&t.anchors, TED4_ROW_POSITION,
+                                                        i > 0 ? i - 1 : 0, j));
+                assert_true(ted4_half_to_float(p[1][j]) == x);
+            }
+            assert_true(i == 0 || ted4_morton(p[0]) < ted4_morton(p[1]));
+        }
+        ted4_trainer_finish(&t);
+    }
+    assert_true(n[1] < n[0]);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(test_spans),
+        cmocka_unit_test(test_saddle),
+        cmocka_unit_test(test_symbols),
+        cmocka_unit_test(test_units),
+        cmocka_unit_test(test_absent),
+        cmocka_unit_test(test_far_away),
+        cmocka_unit_test(test_twins),
+    };
+
+    return cmocka_run_group_tests_name("traps", tests, set_up, tear_down);
+}
