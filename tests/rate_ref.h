@@ -123,7 +123,9 @@ static inline double ref_bits(double u, double s)
     const double h = a < w ? 1.0 / (1.0 + a / w)
                            : 0.5 / ((1.0 + a - w) * (1.0 + a - w));
 
-    return -log2((1.0 - 2.0 * w / 65536.0) * p + h / 65536.0);
+    const double share = a < w ? p : h * ref_tail((w - 1.5) / sigma);
+
+    return -log2((1.0 - 2.0 * w / 65536.0) * share + h / 65536.0);
 }
 
 static inline double ref_limit(const ref_clamps *c, unsigned i, double raw, double low,

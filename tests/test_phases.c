@@ -1,6 +1,6 @@
-/* test_phases.c - what happens when during training (paper, "Progressive 3D-to-4D Anchor Transformation"): activation begins after the static phase, from the first and
- * last time at which training views see an anchor; anchors come and go within the time that growth has; stage 2 only ever loses them, at its begin. Single steps:
- * test_densify.c, test_traps.c.
+/* test_phases.c - what happens when during training (paper, "Progressive 3D-to-4D Anchor Transformation"): activation begins after the static phase, from the
+ * first and last time at which training views see an anchor; anchors come and go within the time that growth has; stage 2 only ever loses them, at its begin.
+ * Single steps: test_densify.c, test_traps.c.
  * SPDX-License-Identifier: BSD-2-Clause */
 #include <setjmp.h>
 #include <stdarg.h>
@@ -42,8 +42,8 @@ static float tau(const ted4_trainer *t, size_t i, int c)
 /* World units between the two halves of the cloud: far more than a picture shows. */
 #define APART 40.0
 
-/* Every other point of a cloud lies far to the right. One camera sees the left half, in frames 1 to 3; the other the right half, in frames 2 to 4 and, held out, in
- * frames 0 and 1. */
+/* Every other point of a cloud lies far to the right. One camera sees the left half, in frames 1 to 3; the other the right half, in frames 2 to 4 and, held
+ * out, in frames 0 and 1. */
 static void make_halves(cloud_case *c, ted4_picture *pictures)
 {
     size_t n = 0;
@@ -123,7 +123,8 @@ static int are_seeds(const ted4_trainer *t, const float *seed, size_t n)
     for (size_t i = 0; i < t->anchors.n; i++) {
         size_t k = 0;
 
-        while (k < n && (tau(t, i, 0) != seed[4 * k] || tau(t, i, 1) != seed[4 * k + 1] || tau(t, i, 2) != seed[4 * k + 2] || tau(t, i, 3) != seed[4 * k + 3]))
+        while (k < n && (tau(t, i, 0) != seed[4 * k] || tau(t, i, 1) != seed[4 * k + 1] ||
+                         tau(t, i, 2) != seed[4 * k + 2] || tau(t, i, 3) != seed[4 * k + 3]))
             k++;
         if (k == n)
             return 0;

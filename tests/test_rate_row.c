@@ -108,8 +108,8 @@ static double model_bits(int32_t mu, unsigned g, int32_t k)
     return (double)r.bits[0];
 }
 
-/* Where symbols are likely, the model is the coder; at the floor and in escapes it is within 2.5 bits;
- * beyond sigma 600 the window is narrower than the distribution, and escapes of its tails are taken to be rarer than they are. */
+/* Where symbols are likely, the model is the coder; at the floor and in escapes it is within 3 bits, also beyond sigma 682, where the window is narrower than
+ * the distribution, but for the few symbols about its edge, 4095.5 on one side and 4096.5 on the other. */
 static void test_row_is_the_coder(void **state)
 {
     (void)state;
@@ -124,11 +124,12 @@ static void test_row_is_the_coder(void **state)
             const double z = (at - mu / 256.0) / sigma, a = coder_bits(mu, g, at);
             const double b = model_bits(mu, g, at);
 
-            assert_true(fabs(a - b) < (sigma > 600.0 && fabs(z) > 2.0 ? 12.0 : 2.5));
+            if (!(fabs(a - b) < (fabs(fabs(z * sigma) - 4096.0) < 2.0 ? 9.0 : 3.0)))
+                fail_msg("sigma %g, z %g, symbol %d: %g bits, model %g", sigma, z, (int)at, a, b);
             coded += exp(-0.5 * z * z) * a;
             modelled += exp(-0.5 * z * z) * b;
         }
-        assert_true(close_to(modelled, coded, sigma < 16.0 ? 2e-4 : sigma < 1e3 ? 2e-3 : 1e-2, 1e-4));
+        assert_true(close_to(modelled, coded, sigma < 16.0 ? 2e-4 : sigma < 1e3 ? 2e-3 : 6e-3, 1e-4));
     }
 }
 

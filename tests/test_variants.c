@@ -1,5 +1,5 @@
-/* test_variants.c - every variant of the method, trained from pictures to a file: the file says which it is and can be written again from what was decoded, what the variant
- * does without is not there, the rate that training optimised is the rate of the file within 1 %, and the pictures are about right.
+/* test_variants.c - every variant of the method, trained from pictures to a file: the file says which it is and can be written again from what was decoded,
+ * what the variant does without is not there, the rate that training optimised is the rate of the file within 1 %, and the pictures are about right.
  * Variants of stage 2 from one stage 1: test_stage1.c. What the gradients of each are worth: test_generate_grad.c, test_rate_grad.c.
  * SPDX-License-Identifier: BSD-2-Clause */
 #include <setjmp.h>

@@ -2,11 +2,12 @@
  *
  * With a = |k - mu| steps, sigma = 2^s steps, eps = 2^-16, and w = min(6 sigma, 4095) + 2 half the width of the window:
  *     bits = -log2 P,  P = (1 - 2 w eps) p + eps h
- *     p    = Phi((a + 1/2) / sigma) - Phi((a - 1/2) / sigma)
- *     h    = 1 / (1 + a / w)                for a < w:  the slot that every symbol has
- *          = 1 / (2 (1 + a - w)^2)          beyond:     an escape, 16 + 1 + 2 log2(1 + excess) bits
- * h stands where a coder has the constant 1. It costs at most one bit, only where the floor rules, and it has a slope everywhere: an outlier is pulled back,
- * and its sigma pushed up, however far out it lies. A constant floor would leave it without gradient (algorithm facts 5.8, item 4).
+ *     for a < w: p = Phi((a + 1/2) / sigma) - Phi((a - 1/2) / sigma)    the symbol's share
+ *                h = 1 / (1 + a / w)                                    the slot that every symbol has
+ *     beyond:    p = h (1 - Phi((w - 3/2) / sigma))                     the tail, which the escape has, where 4095 narrows the window
+ *                h = 1 / (2 (1 + a - w)^2)                              1 + 2 log2(1 + excess) bits after the escape
+ * For a < w, h stands where a coder has the constant 1. It costs at most one bit, only where the floor rules, and it has a slope everywhere: an outlier is pulled
+ * back, and its sigma pushed up, however far out it lies. A constant floor would leave it without gradient (algorithm facts 5.8, item 4).
  * Used by rate.c.
  * SPDX-License-Identifier: BSD-2-Clause */
 #include "rate_parts.h"
@@ -61,6 +62,15 @@ static void bins(const float *restrict a, const float *restrict sigma,
     }
 }
 
+/* Share of one tail beyond a window's half width w, and its derivative by ln sigma: none where w goes with sigma. */
+static inline float tail_make(float w, float sigma, int fixed, float *d_ln_sigma)
+{
+    const float t = (w - 1.5f) / sigma, f = ted4_lane_normal(t);
+
+    *d_ln_sigma = fixed ? f * t : 0.0f;
+    return f * ted4_lane_mills(1.0f / (1.0f + 0.25f * t));
+}
+
 /* spec 9.4; see the head of this file. u = k - mu. d_u and d_s are derivatives of bits. */
 void ted4_rate_row(const float *restrict u, const float *restrict s,
                    float *restrict bits, float *restrict d_u,
@@ -81,22 +91,28 @@ void ted4_rate_row(const float *restrict u, const float *restrict s,
 #pragma omp simd
     for (int j = 0; j < TED4_LANES; j++) {
         const float six = 6.0f * sigma[j];
-        const float w = (six < MAX_HALF_WINDOW ? six : MAX_HALF_WINDOW) + 2.0f;
-        const float dw = six < MAX_HALF_WINDOW ? six : 0.0f; /* by ln sigma */
+        const int   fixed = six >= MAX_HALF_WINDOW;
+        const float w = (fixed ? MAX_HALF_WINDOW : six) + 2.0f;
+        const float dw = fixed ? 0.0f : six;                /* by ln sigma */
         const float e = a[j] > w ? 1.0f + (a[j] - w) : 1.0f;
         const float y = a[j] < w ? w + a[j] : 2.0f * w; /* h = w / (y e^2) */
         const float r = 1.0f / (y * e);
         const float h = w * r * r * y;
         const float dh_da = a[j] < w ? -w * r * r : -2.0f * h * r * y;
         const float dh_dw = a[j] < w ? a[j] * r * r : 2.0f * h * r * y;
+        float       tail_ds;
+        const float tail = tail_make(w, sigma[j], fixed, &tail_ds);
+        const float share = a[j] < w ? p[j] : h * tail;
+        const float share_da = a[j] < w ? dp_da[j] : dh_da * tail;
+        const float share_ds = a[j] < w ? dp_ds[j] : h * tail_ds + dh_dw * dw * tail;
         const float scale = 1.0f - 2.0f * w * SLOT;
-        const float P = scale * p[j] + SLOT * h;
+        const float P = scale * share + SLOT * h;
         const float g = -1.0f / (P * TED4_LN2);
-        const float d_a = g * (scale * dp_da[j] + SLOT * dh_da);
+        const float d_a = g * (scale * share_da + SLOT * dh_da);
 
         bits[j] = -ted4_lane_log2(P);
         d_u[j] = u[j] < 0.0f ? -d_a : d_a;
-        d_s[j] = g * TED4_LN2 * (scale * dp_ds[j]
-               + SLOT * dw * (dh_dw - 2.0f * p[j]));
+        d_s[j] = g * TED4_LN2 * (scale * share_ds
+               + SLOT * dw * (dh_dw - 2.0f * share));
     }
 }

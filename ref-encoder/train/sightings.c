@@ -120,13 +120,18 @@ int ted4_sightings_span(const ted4_sightings *s, size_t i, uint32_t *from, uint3
     return 1;
 }
 
+/* In frames: how far beyond its first and last frame a span goes, so that coding it a little off costs nothing, and how fast it fades then: at the next frame
+ * exp(-4.6) is left. */
+#define SPAN_BEYOND 0.25f
+#define SPAN_FADES  0.35f
+
 void ted4_span_set(ted4_trainer *t, size_t i, uint32_t from, uint32_t to)
 {
     const int   first = t->layout.first[TED4_TAU];
-    const float frame = 1.0f / (float)(t->data->n_frames - 1);
+    const float frame = 1.0f / (float)(t->data->n_frames - 1), fades = log2f(SPAN_FADES * frame);
 
-    *ted4_cell(&t->anchors, TED4_ROW_VALUE, i, first) = (float)from * frame;
-    *ted4_cell(&t->anchors, TED4_ROW_VALUE, i, first + 1) = log2f(0.5f * frame);
-    *ted4_cell(&t->anchors, TED4_ROW_VALUE, i, first + 2) = (float)to * frame;
-    *ted4_cell(&t->anchors, TED4_ROW_VALUE, i, first + 3) = log2f(0.5f * frame);
+    *ted4_cell(&t->anchors, TED4_ROW_VALUE, i, first) = ((float)from - SPAN_BEYOND) * frame;
+    *ted4_cell(&t->anchors, TED4_ROW_VALUE, i, first + 1) = fades;
+    *ted4_cell(&t->anchors, TED4_ROW_VALUE, i, first + 2) = ((float)to + SPAN_BEYOND) * frame;
+    *ted4_cell(&t->anchors, TED4_ROW_VALUE, i, first + 3) = fades;
 }

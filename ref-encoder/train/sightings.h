@@ -56,7 +56,7 @@ void ted4_sightings_free(ted4_sightings *s);
  * cameras, or it is there at more than half of all times, so it does not come and go. */
 int  ted4_sightings_span(const ted4_sightings *s, size_t i, uint32_t *from, uint32_t *to);
 
-/* Activation of anchor i from the first to the last frame of a span, almost gone (exp(-4)) one frame before and after: what moves by its own size in a frame
+/* Activation of anchor i from the first to the last frame of a span, almost gone one frame before and after: what moves by its own size in a frame
  * would else be seen at three places at once. */
 void ted4_span_set(ted4_trainer *t, size_t i, uint32_t from, uint32_t to);
 
