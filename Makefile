@@ -106,7 +106,7 @@ install: all
 
 help:
 	@echo 'all demo test check lint asan deps deps-dev install clean; variables OPT ARCH CC B TED4_DATA PREFIX DESTDIR'
-	@echo 'bench/bench.mk and fuzz/fuzz.mk add their own targets'
+	@echo 'spec (HTML; pandoc) spec-annexes attest; bench/bench.mk and fuzz/fuzz.mk add their own targets'
 
 clean:
 	rm -rf build build-* out

@@ -32,7 +32,8 @@ conformance-branches: $B/ted4conf
 # Seeded faults; what has a result in conformance/mutants.csv is not run again.
 conformance-mutants:
 	$(MAKE) B=build-mutants OPT=-O1 build-mutants/ted4conf
-	build-mutants/ted4conf mutants -j $(CONF_JOBS) -b build-mutants --compile '$(CC) -std=c11 -D_POSIX_C_SOURCE=200809L -O1 $(STRICT) -fopenmp' \
+	build-mutants/ted4conf gen --demand -o build-mutants/suite/vectors
+	build-mutants/ted4conf mutants -j $(CONF_JOBS) -b build-mutants --vectors build-mutants/suite --compile '$(CC) -std=c11 -D_POSIX_C_SOURCE=200809L -O1 $(STRICT) -fopenmp' \
 	    --libraries '$(LIBS)'
 
 .PHONY: conformance conformance-gen conformance-cover conformance-branches conformance-mutants

@@ -10,7 +10,7 @@
 #include "random_scene.h"
 #include "recon/strict.h"
 
-enum { N_VALID = 40, N_DAMAGED = 20, N_DAMAGES = 200, N_HASHED = 3000, MAX_CHUNKS = 32 };
+enum { N_VALID = 40, N_DAMAGED = 20, N_DAMAGES = 200, N_EDGES = 10, N_HASHED = 3000, MAX_CHUNKS = 32 };
 
 static void hashes(void **state)
 {
@@ -310,9 +310,69 @@ static void damaged_streams(void **state)
     assert_true(n_kinds >= 24);
 }
 
+/* An entry of HEAD: its place in the payload, and values at and beyond the ends of its range and of the level's bounds. */
+typedef struct {
+    size_t  at, width;
+    int64_t value[8];
+} head_entry;
+
+enum { MAX_ENTRIES = 96 };
+
+static size_t head_entries(const spec_model *m, head_entry *e)
+{
+    const struct header *h = &m->s.h;
+    size_t n = 0, at = 0;
+
+#define ELEMENT(name, count, bytes, is_signed, low, high, conditional, condition, level)                    \
+    for (int64_t i = 0; i < (count); i++, at += bytes)                                                      \
+        e[n++] = (head_entry){ at, bytes, { 0, (low) - 1, low, (low) + 1, high, (high) + 1,                 \
+                                            (int64_t)m->bound[BOUND_##level], (int64_t)m->bound[BOUND_##level] + 1 } };
+#define REAL(name, count, bounded)                                                                          \
+    for (int64_t i = 0; i < (count); i++, at += 4)                                                          \
+        e[n++] = (head_entry){ at, 4, { 0, 0x80000000, 0x357fffff, 0x35800000, 0x44800000, 0x44800001, 0x7f800000, 1 } };
+#include "spec/head.inc"
+#undef ELEMENT
+#undef REAL
+    return n;
+}
+
+/* Every element of HEAD at both ends of what it may be, under every level. */
+static void edges_of_head(void **state)
+{
+    static const uint8_t level[] = { 1, 2, 3, 4, 31 };
+    unsigned seen[TED4_N_STATUS] = { 0 };
+
+    (void)state;
+    for (uint64_t seed = 0; seed < N_EDGES; seed++) {
+        ted4_scene *s = random_scene(2 * seed);
+        head_entry  e[MAX_ENTRIES];
+        spec_model  m = { .n_blocks = 0 };
+        size_t      size, n;
+        uint8_t    *data = encoded(s, &size), *copy = malloc(size);
+
+        data[11] = level[seed % sizeof level];
+        spec_model_decode(&m, data, size);
+        n = head_entries(&m, e);
+        for (size_t i = 0; i < n; i++)
+            for (int k = 0; k < 8; k++) {
+                memcpy(copy, data, size);
+                for (size_t b = 0; b < e[i].width; b++)
+                    copy[24 + e[i].at + b] = (uint8_t)(e[i].value[k] >> 8 * b);
+                mend_hash(copy + 12);
+                same_verdict(copy, size, seen);
+            }
+        spec_model_free(&m);
+        ted4_scene_free(s);
+        free(copy);
+        free(data);
+    }
+    assert_true(seen[TED4_E_HDR_RANGE] > 100 && seen[TED4_E_HDR_COMBINATION] > 50 && seen[TED4_E_LVL_EXCEEDED] > 5);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
+        cmocka_unit_test(edges_of_head),
         cmocka_unit_test(hashes),
         cmocka_unit_test(functions),
         cmocka_unit_test(valid_streams),

@@ -160,50 +160,85 @@ static void some_code(random_source *r, uint8_t *length, const int symbol[4])
         length[symbol[i]] = c[i];
 }
 
-/* One dynamic block whose codes are what R-NET-007 is about, and bits at random. */
+/* A dynamic block with these codes, and data. */
+static bit_string block_of(const uint8_t *literal, unsigned n_literal, const uint8_t *distance, unsigned n_distance, const uint32_t data[4])
+{
+    bit_string b = { { 0x78, 0x01 }, 16 };
+
+    put_bits(&b, 1 | 2 << 1, 3);
+    put_bits(&b, n_literal - 257, 5);
+    put_bits(&b, n_distance - 1, 5);
+    put_bits(&b, 15, 4);
+    for (int k = 0; k < 19; k++)                /* symbols 0 .. 15 of the code length code have 4 bits */
+        put_bits(&b, k < 3 ? 0 : 4, 3);
+    for (unsigned k = 0; k < n_literal + n_distance; k++)
+        for (int bit = 3; bit >= 0; bit--)
+            put_bits(&b, (k < n_literal ? literal[k] : distance[k - n_literal]) >> bit & 1, 1);
+    for (int k = 0; k < 4; k++)
+        put_bits(&b, data[k], 16);
+    return b;
+}
+
+/* What zlib says of the blocks alone: bytes taken, 0 when they are wrong; output in out. */
+static size_t blocks_end(const bit_string *b, uint8_t out[MOST], size_t *n_out)
+{
+    z_stream z;
+    int      verdict;
+
+    memset(&z, 0, sizeof z);
+    assert_int_equal(inflateInit2(&z, -15), Z_OK);
+    z.next_in = (uint8_t *)(uintptr_t)b->byte + 2;
+    z.avail_in = sizeof b->byte - 2;
+    z.next_out = out;
+    z.avail_out = MOST;
+    verdict = inflate(&z, Z_FINISH);
+    (void)inflateEnd(&z);
+    *n_out = z.total_out;
+    return verdict == Z_STREAM_END ? 2 + z.total_in : 0;
+}
+
+static int same_with_sum(bit_string b, size_t end, const uint8_t *out, size_t n_out)
+{
+    const uLong sum = adler32(adler32(0, NULL, 0), out, (unsigned)n_out);
+
+    b.n = 8 * end;
+    memset(b.byte + end, 0, sizeof b.byte - end);
+    for (int k = 3; k >= 0; k--)
+        put_bits(&b, (unsigned)(sum >> 8 * k & 255), 8);
+    return same(b.byte, b.n / 8, n_out);
+}
+
+/* One dynamic block whose codes are what R-NET-007 is about, and bits at random; and the same with more codes than there may be. */
 static void codes(void **state)
 {
-    static const int literal[4] = { 256, 65, 257, 285 }, distance[4] = { 0, 1, 5, 29 };
+    static const int literals[4] = { 256, 65, 257, 285 }, distances[4] = { 0, 1, 5, 29 };
     static uint8_t   out[MOST];
     random_source    r = random_seed(14);
     unsigned         n_valid = 0;
 
     (void)state;
     for (int i = 0; i < 20 * N_DAMAGES; i++) {
-        const unsigned n_literal = random_in(&r, 0, 9) ? 286 : random_in(&r, 257, 288), n_distance = random_in(&r, 0, 9) ? 30 : random_in(&r, 1, 32);
-        bit_string b = { { 0x78, 0x01 }, 16 };
-        uint8_t    length[320] = { 0 };
-        z_stream   z;
+        uint8_t        literal[288] = { 0 }, distance[32] = { 0 };
+        const uint32_t data[4] = { random_u32(&r), random_u32(&r), random_u32(&r), random_u32(&r) };
+        bit_string     b;
+        size_t         end, n_out;
 
-        some_code(&r, length, literal);
-        some_code(&r, length + n_literal, distance);
-        put_bits(&b, 1 | 2 << 1, 3);
-        put_bits(&b, n_literal - 257, 5);
-        put_bits(&b, n_distance - 1, 5);
-        put_bits(&b, 15, 4);
-        for (int k = 0; k < 19; k++)            /* symbols 0 .. 15 of the code length code have 4 bits */
-            put_bits(&b, k < 3 ? 0 : 4, 3);
-        for (unsigned k = 0; k < n_literal + n_distance; k++)
-            for (int bit = 3; bit >= 0; bit--)
-                put_bits(&b, length[k] >> bit & 1, 1);
-        for (int k = 0; k < 4; k++)
-            put_bits(&b, random_u32(&r), 16);
-        memset(&z, 0, sizeof z);
-        assert_int_equal(inflateInit2(&z, -15), Z_OK);
-        z.next_in = b.byte + 2;
-        z.avail_in = sizeof b.byte - 2;
-        z.next_out = out;
-        z.avail_out = MOST;
-        if (inflate(&z, Z_FINISH) == Z_STREAM_END) {
-            const uLong sum = adler32(adler32(0, NULL, 0), out, (unsigned)z.total_out);
-
-            b.n = 8 * (2 + z.total_in);
-            memset(b.byte + b.n / 8, 0, sizeof b.byte - b.n / 8);
-            for (int k = 3; k >= 0; k--)
-                put_bits(&b, (unsigned)(sum >> 8 * k & 255), 8);
+        some_code(&r, literal, literals);
+        some_code(&r, distance, distances);
+        b = block_of(literal, 286, distance, 30, data);
+        end = blocks_end(&b, out, &n_out);
+        if (end == 0) {
+            assert_false(same(b.byte, b.n / 8, n_out));
+            continue;
         }
-        (void)inflateEnd(&z);
-        n_valid += (unsigned)same(b.byte, b.n / 8, z.total_out);
+        assert_true(same_with_sum(b, end, out, n_out));
+        n_valid++;
+        for (size_t more = 0; more < 2; more++) {       /* 4 or 8 bits more may end in the same byte or in the next */
+            assert_false(same_with_sum(block_of(literal, 287, distance, 30, data), end + more, out, n_out));
+            assert_false(same_with_sum(block_of(literal, 288, distance, 30, data), end + more, out, n_out));
+            assert_false(same_with_sum(block_of(literal, 286, distance, 31, data), end + more, out, n_out));
+            assert_false(same_with_sum(block_of(literal, 286, distance, 32, data), end + more, out, n_out));
+        }
     }
     assert_true(n_valid > 100);
 }

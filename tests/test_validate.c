@@ -15,8 +15,9 @@
 #include "norm/coder.h"
 #include "random_scene.h"
 #include "read/finding.h"
+#include "schema_check.h"
 
-enum { MOST = 400, N_SCENES = 40, N_MUTATIONS = 3000 };
+enum { MOST = 400, N_SCENES = 40, N_MUTATIONS = 600 };
 
 /* What a validator has said. */
 typedef struct {
@@ -494,12 +495,84 @@ static void all_given(void **state)
     }
 }
 
+/* ---- the program ---- */
+
+static char folder[] = "/tmp/ted4-validate-XXXXXX";
+
+/* ted4info --validate --json on bytes: its exit code, and what it prints. */
+static int run(const uint8_t *data, size_t size, json_t **printed)
+{
+    char  command[512], path[64];
+    FILE *f;
+    int   status;
+
+    snprintf(path, sizeof path, "%s/x.ted4", folder);
+    f = fopen(path, "wb");
+    assert_non_null(f);
+    assert_int_equal(fwrite(data, 1, size, f), size);
+    fclose(f);
+    snprintf(command, sizeof command, "%s/ted4info --validate --json %s", getenv("TED4_BUILD"), path);
+    f = popen(command, "r");
+    assert_non_null(f);
+    *printed = json_loadf(f, 0, NULL);
+    status = pclose(f);
+    remove(path);
+    assert_non_null(*printed);
+    assert_true(WIFEXITED(status));
+    return WEXITSTATUS(status);
+}
+
+static void expect_run(json_t *schema, const uint8_t *data, size_t size, int code, const char *verdict)
+{
+    json_t *printed;
+
+    assert_int_equal(run(data, size, &printed), code);
+    assert_true(schema_holds(schema, printed));
+    assert_string_equal(json_string_value(json_object_get(printed, "verdict")), verdict);
+    assert_int_equal(json_array_size(json_object_get(printed, "findings")), validate(data, size)->n);
+    json_object_set_new(printed, "more", json_null());
+    assert_false(schema_holds(schema, printed));
+    json_decref(printed);
+}
+
+static void program(void **state)
+{
+    ted4_header h = small_header();
+    ted4_scene *s = useful(6, &h);
+    json_t     *schema;
+    size_t      size;
+    uint8_t    *data;
+
+    (void)state;
+    if (getenv("TED4_BUILD") == NULL) {
+        print_message("skipped: TED4_BUILD is not set\n");
+        ted4_scene_free(s);
+        skip();
+    }
+    schema = json_load_file("conformance/schema/validate.schema.json", 0, NULL);
+    assert_non_null(schema);
+    assert_non_null(mkdtemp(folder));
+    data = encoded(s, 0, &size);
+    expect_run(schema, data, size, 0, "valid");
+    data[9] = 1;
+    expect_run(schema, data, size, 2, "valid");
+    data[size - 1] ^= 1;
+    expect_run(schema, data, size, 1, "invalid");
+    data[10] = 1;
+    expect_run(schema, data, size, 1, "unsupported");
+    rmdir(folder);
+    json_decref(schema);
+    free(data);
+    ted4_scene_free(s);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(valid_files), cmocka_unit_test(changed_files), cmocka_unit_test(many_errors), cmocka_unit_test(too_many),
         cmocka_unit_test(advice_on_masks), cmocka_unit_test(advice_on_time), cmocka_unit_test(advice_on_files),
         cmocka_unit_test(advice_on_chunks), cmocka_unit_test(advice_on_symbols), cmocka_unit_test(all_given),
+        cmocka_unit_test(program),
     };
 
     return cmocka_run_group_tests(tests, NULL, NULL);

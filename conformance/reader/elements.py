@@ -35,18 +35,21 @@ class Payload:
         self.data, self.at, self.end = data, start, end
         self.spans = []
 
-    def numbers(self, name, width, count=1):
-        """An array of unsigned numbers; one that does not fit is con.payload-size at its start (chapter 14)."""
+    def number(self, name, width):
+        start = self.at
+        self.take(name, width, 1, width)
+        return int.from_bytes(self.data[start:self.at], "little")
+
+    def entries(self, name, width, count):
+        """An array of unsigned numbers, one after the other as (offset, number), so that those before a missing one can be judged first (14.1)."""
+        for _ in range(count):
+            yield self.at, self.number(name, width)
+
+    def numbers(self, name, width, count):
+        """An array of u16 or u32 that 14.1 judges as a whole."""
         start = self.at
         self.take(name, width, count, width * count)
-        if count == 1:
-            return [int.from_bytes(self.data[start:start + width], "little")]
-        if width == 1:
-            return list(self.data[start:self.at])
         return list(struct.unpack_from("<%d%s" % (count, {2: "H", 4: "I"}[width]), self.data, start))
-
-    def number(self, name, width):
-        return self.numbers(name, width)[0]
 
     def bytes(self, name, size):
         """An element that is shown as bytes."""

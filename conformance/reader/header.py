@@ -6,7 +6,7 @@ from types import SimpleNamespace
 from floats import f32_sound, f32_values
 from levels import LEVELS, check_totals
 from shapes import blob_values, products_of_tier_e
-from verdict import Refusal, require
+from verdict import require
 
 NONE, BANK, CONCAT, INR = range(4)              # motion
 U32 = (1 << 32) - 1
@@ -47,32 +47,29 @@ def read_header(payload, level, file_bytes):
     """The elements as attributes of one object, judged in order of offsets; at one element range, combination, level (R-ERR-004)."""
     h = SimpleNamespace(level=level)
     for name, width, count, low, high in ELEMENTS:
-        start = payload.at
-        entries = payload.numbers(name, width, h.n_slices if count is None else count)
-        values = judge_range(name, width, entries, low, high, start)
+        values = []
+        for last, entry in payload.entries(name, width, h.n_slices if count is None else count):
+            values.append(judge_range(name, entry, low, high, last))
         setattr(h, name, values if name in ARRAYS else values[0])
-        last = start + width * (len(entries) - 1)
         require(not CONTRADICTS.get(name, lambda _: False)(h), "hdr.combination", last)
         if name in LEVELLED:
-            require(values[0] <= getattr(LEVELS[level], LEVELLED[name]), "lvl.exceeded", start)
+            require(values[0] <= getattr(LEVELS[level], LEVELLED[name]), "lvl.exceeded", last)
     derive(h)
     symbols = h.n_anchors * sum(dim for _, dim in h.types)
-    check_totals(level, blob_values(h), products_of_tier_e(h), symbols, file_bytes, start)
+    check_totals(level, blob_values(h), products_of_tier_e(h), symbols, file_bytes, last)
     return h
 
 
-def judge_range(name, width, entries, low, high, start):
-    """The entries as values when each is in range (hdr.range at the entry)."""
+def judge_range(name, entry, low, high, offset):
+    """The value of an entry that is in range."""
+    value = entry
     if name == "exponent":
-        entries = [e - 256 if e > 127 else e for e in entries]
-    values = list(entries)
-    for i, entry in enumerate(entries):
-        if name in FLOATS:
-            require(f32_sound(entry), "hdr.range", start + width * i)
-            values[i] = f32_values([entry])[0]
-        if not low <= values[i] <= high:
-            raise Refusal("hdr.range", start + width * i)
-    return values
+        value = entry - 256 if entry > 127 else entry
+    if name in FLOATS:
+        require(f32_sound(entry), "hdr.range", offset)
+        value = f32_values([entry])[0]
+    require(low <= value <= high, "hdr.range", offset)
+    return value
 
 
 def derive(h):

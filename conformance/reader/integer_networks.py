@@ -65,11 +65,11 @@ def read_networks(payload, h):
     """The hyperprior and the list of slice networks 1 .. n_slices - 1 of the NETE chunk."""
     plans = [plan(hyperprior_shape(h), PHASE_BITS, 4096)] + [plan(shape, h.context_bits, 32767) for shape in slice_shapes(h)]
     units = [unit for network in plans for layer in network for unit in [layer] * layer["outputs"]]
-    start = payload.at
-    shifts = payload.numbers("shift", 1, len(units))
-    for i, (unit, s) in enumerate(zip(units, shifts)):
-        require(s <= 20, "net.shift", start + i)                                        # R-NET-003
-        require(s + unit["f"] - unit["g"] >= 0, "net.shift", start + i)                 # R-NET-005
+    shifts = []
+    for (offset, s), unit in zip(payload.entries("shift", 1, len(units)), units):
+        require(s <= 20, "net.shift", offset)                                           # R-NET-003
+        require(s + unit["f"] - unit["g"] >= 0, "net.shift", offset)                    # R-NET-005
+        shifts.append(s)
     reader = LayerReader(shifts, Blob(payload, "nete", sum((p["inputs"] + 1) * p["outputs"] for network in plans for p in network)))
     networks = [Network([reader.layer(p) for p in network]) for network in plans]
     return networks[0], networks[1:]

@@ -77,6 +77,13 @@ class Rules(unittest.TestCase):
             nete([0] * 5 + [9, 0, 0], self.VALUES, header)
         self.assertEqual(("net.shift", 5), (caught.exception.error, caught.exception.offset))
 
+    def test_missing_shifts(self):
+        """14.1: the first entry that does not fit, after those before it."""
+        for payload, expected in ((b"\0\0", ("con.payload-size", 2)), (b"\0\25", ("net.shift", 1))):
+            with self.assertRaises(Refusal) as caught:
+                read_networks(Payload(payload, 0, len(payload)), SimpleNamespace(**HEADER))
+            self.assertEqual(expected, (caught.exception.error, caught.exception.offset))
+
     def test_weights_round_to_even_and_have_16_bits(self):
         self.assertEqual(("net.weight-range", 5), self.refused(5, 32.0))            # 32 * 2^10 = 32768
         self.assertEqual(("net.weight-range", 5), self.refused(5, 32767.5 / 1024))  # a tie, to the even 32768

@@ -52,10 +52,10 @@ class Tile:
         self.waiting = list(zip(names, sizes))
 
     def probabilities(self, name, count):
-        start = self.payload.at
-        entries = self.payload.numbers(name, 2, count)
-        for i, p in enumerate(entries):
-            require(p > 0, "ent.prob", start + 2 * i)
+        entries = []
+        for offset, p in self.payload.entries(name, 2, count):
+            require(p > 0, "ent.prob", offset)
+            entries.append(p)
         return entries
 
     def open_substream(self, n):

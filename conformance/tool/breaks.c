@@ -6,7 +6,7 @@
  *     do drop REF; do repeat REF; do swap REF REF; do retype REF TYPE; do flags REF N; do type-byte REF I HEX
  *     do size REF N                        what the frame says
  *     do hash REF                          one bit of the hash
- *     do grow REF N; do shrink REF N       bytes at the payload's end
+ *     do grow REF N; do shrink REF N       bytes at the payload's end; do keep REF N: the first N bytes of the payload
  *     do payload REF HEX                   another payload
  *     do tail REF HEX                      the payload's last bytes; do set-bias NET LAYER UNIT B; do copy-position FROM TO
  *     do cut N | ELEMENT | chunk REF ...   the file ends there; do append HEX
@@ -197,7 +197,7 @@ static void copy_position(conf_stream *s, const conf_line *l)
 /* What a line does to one chunk. 1: it was such a line. */
 static int chunk_line(conf_stream *s, const conf_line *l, const char *what)
 {
-    static const char *const word[] = { "drop", "repeat", "swap", "retype", "flags", "size", "hash", "grow", "shrink", "payload", "type-byte" };
+    static const char *const word[] = { "drop", "repeat", "swap", "retype", "flags", "size", "hash", "grow", "shrink", "payload", "type-byte", "keep" };
     size_t way = 0;
 
     while (way < sizeof word / sizeof *word && strcmp(word[way], what) != 0)
@@ -226,6 +226,8 @@ static int chunk_line(conf_stream *s, const conf_line *l, const char *what)
         conf_free(&c->payload);
         hex_bytes(l, 3, &c->payload);
         break;
+    case 11: conf_remove(&c->payload, (size_t)conf_line_number(l, 3, 0, (long long)c->payload.size),
+                         c->payload.size - (size_t)conf_line_number(l, 3, 0, (long long)c->payload.size)); break;
     default: c->type[conf_line_number(l, 3, 0, 3)] = (uint8_t)strtoul(l->n > 4 ? l->word[4] : "", NULL, 16);
     }
     return 1;

@@ -1,4 +1,4 @@
-/* build_pack.c - `pack nete|netr|bank raw | fixed | dynamic | mixed`: modes of the blobs. Raw without a line.
+/* build_pack.c - `pack nete|netr|bank raw | fixed | dynamic | mixed | small`: modes of the blobs. Raw without a line.
  * SPDX-License-Identifier: BSD-2-Clause */
 #include <stdlib.h>
 #include <string.h>

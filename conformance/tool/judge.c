@@ -164,7 +164,7 @@ void conf_judge(const json_t *capabilities, const json_t *d, const json_t *answe
         say(v, CONF_PASS, "%s, which the specification allows too", got);
         return;
     }
-    if (strcmp(want, "valid") == 0 && strcmp(got, "limit") == 0
+    if (strcmp(want, "limit") != 0 && strcmp(got, "limit") == 0
         && json_integer_value(json_object_get(d, "level")) > json_integer_value(json_object_get(capabilities, "max_level"))) {
         say(v, CONF_DECLINED, "above the decoder's greatest level");
         return;

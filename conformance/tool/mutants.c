@@ -191,7 +191,7 @@ static void replay(const list *l, mutant *m, const char *folder)
 {
     const conf_process_options o = { "exec", "TED4_KERNEL=plain", l->o->timeout, (uint64_t)4 << 30 };
     char          program[CONF_PATH];
-    const char   *argv[] = { program, "replay", "--stop", "--suite", l->o->suite, NULL };
+    const char   *argv[] = { program, "replay", "--stop", "--suite", l->o->vectors != NULL ? l->o->vectors : l->o->suite, NULL };
     conf_process  p, *one[1] = { &p };
 
     conf_path(program, "%s/ted4conf", folder);

@@ -5,6 +5,7 @@
 
 typedef struct {
     const char *suite;          /* holds mutants.list, mutants.csv, MUTANTS.md */
+    const char *vectors;        /* folder that holds a folder vectors with all files, those made on demand too; NULL: suite */
     const char *build;          /* folder of a build of ted4conf */
     const char *compile;        /* command that compiles: flags, without -c and -o */
     const char *libraries;      /* behind the objects when linking */

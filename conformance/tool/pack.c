@@ -239,9 +239,9 @@ static uint32_t adler(const uint8_t *data, size_t size)
     return b << 16 | a;
 }
 
-static void put_head(conf_bytes *out, conf_pack_fault fault)
+static void put_head(conf_bytes *out, conf_pack_way way, conf_pack_fault fault)
 {
-    uint8_t head[2] = { 0x78, 0 };
+    uint8_t head[2] = { way == CONF_PACK_SMALL ? 0x08 : 0x78, 0 };
 
     if (fault == CONF_PACK_METHOD)
         head[0] = 0x77;
@@ -298,7 +298,7 @@ void conf_pack(conf_bytes *out, const uint8_t *data, size_t size, conf_pack_way 
     conf_add(&other, data, fault == CONF_PACK_SHORT ? size - 4 : size);
     if (fault == CONF_PACK_LONG)
         conf_add(&other, "\0\0\0\0", 4);
-    put_head(out, fault);
+    put_head(out, way, fault);
     put_body(&w, other.data, other.size, way, fault);
     sum = adler(other.data, other.size) ^ (fault == CONF_PACK_ADLER ? 1u : 0u);
     for (int i = 0; i < 4; i++)
@@ -319,9 +319,9 @@ static int index_of(const char *const *name, int n, const char *what)
 
 int conf_pack_way_of(const char *name)
 {
-    static const char *const way[] = { "fixed", "dynamic", "mixed" };
+    static const char *const way[] = { "fixed", "dynamic", "mixed", "small" };
 
-    return index_of(way, 3, name);
+    return index_of(way, 4, name);
 }
 
 int conf_pack_fault_of(const char *name)

@@ -6,7 +6,8 @@
 #include "text.h"
 
 /* How the bytes are packed, and what is wrong with the stream. */
-typedef enum { CONF_PACK_FIXED, CONF_PACK_DYNAMIC, CONF_PACK_MIXED /* a stored block, then fixed */ } conf_pack_way;
+typedef enum { CONF_PACK_FIXED, CONF_PACK_DYNAMIC, CONF_PACK_MIXED /* a stored block, then fixed */,
+               CONF_PACK_SMALL /* fixed, behind a header that speaks of a window of 256 bytes */ } conf_pack_way;
 typedef enum {
     CONF_PACK_GOOD, CONF_PACK_ADLER, CONF_PACK_CHECK /* FCHECK */, CONF_PACK_METHOD, CONF_PACK_WINDOW, CONF_PACK_DICTIONARY,
     CONF_PACK_SHORT /* 4 bytes missing at the end */, CONF_PACK_LONG /* 4 too many */, CONF_PACK_TRAILING,

@@ -216,6 +216,18 @@ static void add_lines(reader *r, conf_recipe *v, const source *s, int first, int
     }
 }
 
+/* Ids are file names: "slice[0]" becomes "slice0". */
+static char *tidy_id(char *id)
+{
+    char *to = id;
+
+    for (const char *from = id; *from != '\0'; from++)
+        if (*from != '[' && *from != ']')
+            *to++ = *from;
+    *to = '\0';
+    return id;
+}
+
 static void add_vector(reader *r, const source *s, int first, int end)
 {
     conf_recipe *v;
@@ -226,7 +238,7 @@ static void add_vector(reader *r, const source *s, int first, int end)
         conf_die("no memory");
     v = &r->out->recipe[r->out->n++];
     memset(v, 0, sizeof *v);
-    v->id = conf_copy(head + 7);
+    v->id = tidy_id(conf_copy(head + 7));
     v->file = s->name;
     free(head);
     for (size_t i = 0; i + 1 < r->out->n; i++)

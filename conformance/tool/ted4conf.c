@@ -172,11 +172,12 @@ static int replay(int argc, char **argv)
     return optind < argc ? usage("replay takes no operand") : conf_replay(suite, list, stop);
 }
 
-enum { MUTANTS_SUITE, MUTANTS_BUILD, MUTANTS_COMPILE, MUTANTS_LIBRARIES, MUTANTS_ONLY, MUTANTS_JOBS, MUTANTS_TIMEOUT, MUTANTS_HELP,
+enum { MUTANTS_SUITE, MUTANTS_VECTORS, MUTANTS_BUILD, MUTANTS_COMPILE, MUTANTS_LIBRARIES, MUTANTS_ONLY, MUTANTS_JOBS, MUTANTS_TIMEOUT, MUTANTS_HELP,
        MUTANTS_VERSION, MUTANTS_OPTIONS };
 
 static const ted4_argument mutants_table[MUTANTS_OPTIONS] = {
     [MUTANTS_SUITE]     = { 's', "suite", "DIR", "folder with mutants.list and vectors/. Default conformance" },
+    [MUTANTS_VECTORS]   = { 0, "vectors", "DIR", "folder whose vectors/ is used, with what is made on demand. Default: the suite" },
     [MUTANTS_BUILD]     = { 'b', "build", "DIR", "a build whose objects are linked with the changed ones. Default build" },
     [MUTANTS_COMPILE]   = { 0, "compile", "CMD", "compiler and flags" },
     [MUTANTS_LIBRARIES] = { 0, "libraries", "LIBS", "behind the objects when linking" },
@@ -192,7 +193,7 @@ static int mutants(int argc, char **argv)
     static const ted4_command command = { "ted4conf mutants", "[options]", "Seeded faults in the decoder, which the vectors have to find (make "
                                           "conformance-mutants).", mutants_table, MUTANTS_OPTIONS,
                                           "Exit codes: 0 enough are killed, 1 not, 3 usage.\n", NULL };
-    conf_mutant_options o = { "conformance", "build", "cc -std=c11 -O1", "-lpng -ljpeg -ljansson -lxxhash -lz -lm", NULL, 1, 300 };
+    conf_mutant_options o = { "conformance", NULL, "build", "cc -std=c11 -O1", "-lpng -ljpeg -ljansson -lxxhash -lz -lm", NULL, 1, 300 };
     const char         *value;
 
     for (int i; (i = ted4_arguments_next(&command, argc, argv, &value)) != TED4_ARGUMENTS_END;)
@@ -200,6 +201,7 @@ static int mutants(int argc, char **argv)
         case TED4_ARGUMENTS_BAD:  return USAGE;
         case TED4_ARGUMENTS_DONE: return 0;
         case MUTANTS_SUITE:     o.suite = value; break;
+        case MUTANTS_VECTORS:   o.vectors = value; break;
         case MUTANTS_BUILD:     o.build = value; break;
         case MUTANTS_COMPILE:   o.compile = value; break;
         case MUTANTS_LIBRARIES: o.libraries = value; break;

@@ -195,6 +195,14 @@ static void check_words(const conf_recipe *r)
         conf_die("%s: %s: category, intent or rules are missing", r->file, r->id);
 }
 
+/* What is invalid has to be refused by everybody, whatever parts of the format a decoder has. */
+static int refused(const conf_recipe *r)
+{
+    const conf_line *const l = conf_line_find(r, "expect");
+
+    return l != NULL && !conf_word_is(l, 1, "valid") && !conf_word_is(l, 1, "limit");
+}
+
 int conf_vector_make(conf_vector *v, const conf_recipe *r, const char *suite)
 {
     const conf_line *const bug = conf_line_find(r, "bug");
@@ -214,7 +222,7 @@ int conf_vector_make(conf_vector *v, const conf_recipe *r, const char *suite)
                                   "file", name, "bytes", (json_int_t)v->file.size, "since", "1.0.0", "status", "active",
                                   "profile", "Main", "level", v->file.size > 11 ? v->file.data[11] : 0);
     hashes(&v->file, d);
-    json_object_set_new(d, "features", conf_features(b.scene));
+    json_object_set_new(d, "features", refused(r) ? json_array() : conf_features(b.scene));
     json_object_set_new(d, "rules", rules_of(r));
     json_object_set_new(d, "intent", json_string(conf_line_find(r, "intent")->rest));
     if (bug != NULL)

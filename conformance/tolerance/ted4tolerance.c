@@ -1,0 +1,190 @@
+/* ted4tolerance.c - class T (spec E): thresholds for the queries of streams, computed by rule, and whether a decoder's records keep them.
+ *     ted4tolerance judge FILE.ted4 QUERIES.json FOLDER   FOLDER/T5-0.bin, T5-1.bin, ...: as CMD --ted4-run FILE --tiers T5 --dump FOLDER leaves them
+ *     ted4tolerance table ID.json...                      thresholds of vectors, by their descriptors, as lines of thresholds.csv
+ * QUERIES.json: a list of queries, or a descriptor. Exit codes: 0 class T can be claimed, or the table is made; 1 it cannot; 3 usage, input, resources.
+ * SPDX-License-Identifier: BSD-2-Clause */
+#include "spec_tolerance.h"             /* first: fail() is a function there */
+#include <jansson.h>
+#include <stdio.h>
+#include "tool/cli.h"
+
+enum { MAX_PATH = 4096 };
+
+static const char *const group_name[TOL_GROUPS + 1] = { "position", "scale", "rotation", "opacity", "colour", "not finite" };
+
+static int complain(const char *what, const char *which)
+{
+    fprintf(stderr, "ted4tolerance: %s: %s\n", what, which);
+    return TED4_EXIT_TOOL;
+}
+
+typedef struct {
+    uint32_t num, den;
+    float    camera[3];
+} query;
+
+/* Element i of a list of queries. 1, or 0: there is none, or it is none. */
+static int get_query(const json_t *list, size_t i, query *q)
+{
+    const json_t *const o = json_array_get(list, i), *const t = json_object_get(o, "t"), *const cam = json_object_get(o, "cam");
+
+    if (json_array_size(t) != 2 || json_array_size(cam) != 3)
+        return 0;
+    q->num = (uint32_t)json_integer_value(json_array_get(t, 0));
+    q->den = (uint32_t)json_integer_value(json_array_get(t, 1));
+    for (size_t j = 0; j < 3; j++)
+        q->camera[j] = (float)json_number_value(json_array_get(cam, j));
+    return 1;
+}
+
+/* The list in a file: itself, or of a descriptor. NULL: there is none. */
+static json_t *load_queries(const char *path)
+{
+    json_t *const all = json_load_file(path, 0, NULL);
+    json_t *const list = json_is_array(all) ? all : json_object_get(all, "queries");
+
+    if (list != NULL && list != all) {
+        json_incref(list);
+        json_decref(all);
+    } else if (list == NULL) {
+        json_decref(all);
+    }
+    return list;
+}
+
+/* A valid stream by the printed code. 1, or 0. */
+static int load_stream(const char *path, spec_model *m)
+{
+    size_t         size;
+    uint8_t *const data = ted4_read_file(path, &size);
+
+    if (data == NULL)
+        return 0;
+    spec_model_decode(m, data, size);
+    free(data);
+    return m->v.id == NULL;
+}
+
+/* 1: class X has an answer to the query. */
+static int answers(const spec_model *m, const query *q, tol_reference *t)
+{
+    memset(t, 0, sizeof *t);
+    return q->den >= 1 && q->den < 1u << 24 && q->num <= q->den && tol_make(t, &m->s, q->num, q->den, q->camera);
+}
+
+/* What is said of a query: "kept", or what is wrong. */
+static const char *judge_query(const spec_model *m, const query *q, const char *path)
+{
+    tol_reference  t;
+    const char    *verdict = "kept";
+    size_t         size = 0;
+    uint8_t       *bytes = NULL;
+    float        (*y)[14] = NULL;
+
+    if (answers(m, q, &t)) {            /* otherwise anything will do (R-TOL-006) */
+        bytes = ted4_read_file(path, &size);
+        y = calloc(t.n + 1, sizeof *y);
+        if (bytes == NULL || size != t.n * sizeof *y)
+            verdict = bytes == NULL ? "missing" : "count";
+        for (size_t i = 0; strcmp(verdict, "kept") == 0 && i < 14 * t.n; i++)
+            (&y[0][0])[i] = from_bits(load32(bytes + 4 * i));
+        if (strcmp(verdict, "kept") == 0 && tol_judge(&t, y) >= 0)
+            verdict = group_name[tol_judge(&t, y)];
+    }
+    free(y);
+    free(bytes);
+    tol_free(&t);
+    return verdict;
+}
+
+static int judge(const char *file, const char *queries, const char *folder)
+{
+    json_t    *const list = load_queries(queries), *const said = json_array();
+    spec_model m = { .n_blocks = 0 };
+    int        good = 1;
+    query      q;
+
+    if (list == NULL || json_array_size(list) == 0)
+        return complain(queries, "no queries");
+    if (!load_stream(file, &m))
+        return complain(file, m.v.id != NULL ? m.v.id : "cannot be read");
+    for (size_t i = 0; i < json_array_size(list); i++) {
+        char        path[MAX_PATH];
+        const char *verdict;
+
+        if (!get_query(list, i, &q))
+            return complain(queries, "not a query");
+        snprintf(path, sizeof path, "%s/T5-%zu.bin", folder, i);
+        verdict = judge_query(&m, &q, path);
+        good &= strcmp(verdict, "kept") == 0;
+        json_array_append_new(said, json_string(verdict));
+    }
+    json_t *const o = json_pack("{s:s?, s:o}", "class", good ? "T" : NULL, "queries", said);
+
+    json_dumpf(o, stdout, JSON_COMPACT);
+    putchar('\n');
+    json_decref(o);
+    json_decref(list);
+    spec_model_free(&m);
+    return good ? 0 : 1;
+}
+
+/* Exponent of a power of two; "-": nothing was judged. */
+static void print_exponent(double x)
+{
+    int e;
+
+    if (x == 0) {
+        printf(",-");
+    } else {
+        (void)frexp(x, &e);
+        printf(",%d", e - 1);
+    }
+}
+
+/* Lines of one vector: id, query, records, and for each group the exponents of peak and rms. Queries without an answer have none. */
+static int print_vector(const char *descriptor)
+{
+    json_t *const list = load_queries(descriptor);
+    const char   *name = strrchr(descriptor, '/');
+    const int     n = (int)strlen(descriptor) - 5;      /* without .json */
+    char          path[MAX_PATH];
+    spec_model    m = { .n_blocks = 0 };
+    query         q;
+
+    name = name == NULL ? descriptor : name + 1;
+    snprintf(path, sizeof path, "%.*s.ted4", n, descriptor);
+    if (n <= 0 || !load_stream(path, &m))
+        return complain(path, m.v.id != NULL ? m.v.id : "cannot be read");
+    for (size_t i = 0; get_query(list, i, &q); i++) {
+        tol_reference t;
+
+        if (answers(&m, &q, &t)) {
+            printf("%.*s,%zu,%zu", (int)strlen(name) - 5, name, i, t.n);
+            for (int g = 0; g < TOL_GROUPS; g++) {
+                print_exponent(t.peak[g]);
+                print_exponent(t.rms[g]);
+            }
+            printf("\n");
+        }
+        tol_free(&t);
+    }
+    json_decref(list);
+    spec_model_free(&m);
+    return 0;
+}
+
+int main(int argc, char **argv)
+{
+    int code = 0;
+
+    if (argc == 5 && strcmp(argv[1], "judge") == 0) {
+        code = judge(argv[2], argv[3], argv[4]);
+    } else if (argc >= 3 && strcmp(argv[1], "table") == 0) {
+        for (int i = 2; code == 0 && i < argc; i++)
+            code = print_vector(argv[i]);
+    } else {
+        return complain("usage", "ted4tolerance judge FILE.ted4 QUERIES.json FOLDER | table ID.json...");
+    }
+    return fflush(stdout) != 0 ? TED4_EXIT_TOOL : code;
+}
