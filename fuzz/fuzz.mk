@@ -22,7 +22,7 @@ FUZZ_SCENE    = $(patsubst %.c,$B/%.o,$(wildcard ref-encoder/data/*.c) ref-decod
                 fuzz/scene_folder.c)
 FUZZ_MUTATE   = $B/fuzz/mutate.o $B/fuzz/fields.o
 # Inputs that are .ted4 files have a mutator that knows them.
-FUZZ_FILES    = decode roundtrip recon alloc_fail dump
+FUZZ_FILES    = decode roundtrip recon alloc_fail dump validate lenient
 FUZZ_SCENES   = colmap transforms calibration hypernerf npy ply image camera_list
 
 # One program for all, each entry under the harness's name.

@@ -196,10 +196,11 @@ static void write_refused(void)
     }
 }
 
-/* Two tiles, both damaged: whichever runs first, the first of them in the file is the one that counts. */
-static void write_both_damaged(void)
+/* Two tiles, of which a lenient decoder can save the first when the file is cut; and both damaged: whichever runs first, the first of them in the
+ * file is the one that counts. */
+static void write_two_tiles(void)
 {
-    enum { TWO_TILES = 12, BACKWARDS = 2 };
+    enum { TWO_TILES = 12, BACKWARDS = 2, CUT = 60 };
     random_source     r = random_seed(TWO_TILES);
     const ted4_header h = header_of(TWO_TILES);
     ted4_scene       *s = random_scene_of(&r, &h, 0);
@@ -209,6 +210,9 @@ static void write_both_damaged(void)
     if (s == NULL || ted4_encode(s, 0, NULL, &out, &size, NULL) != TED4_OK || size > MAX_FILE / 2)
         exit(3);
     memcpy(data, out, size);
+    data[size] = CUT;
+    data[size + 1] = 0;
+    corpus_write("knobs", "cut_tiles.ted4", data, size + KNOBS);
     for (size_t at = TED4_FILE_HEADER_SIZE; at < size; at += ted4_chunk_size(data, size, at))
         if (memcmp(data + at, "TILE", 4) == 0)
             data[at + ted4_chunk_size(data, size, at) - TED4_FRAME_HASH_SIZE - 1] ^= 1;
@@ -233,7 +237,7 @@ int main(int argc, char **argv)
             return 3;
         }
     write_refused();
-    write_both_damaged();
+    write_two_tiles();
     corpus_units();
     corpus_scenes();
     return 0;

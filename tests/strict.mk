@@ -10,8 +10,14 @@ all: $B/ted4tolerance
 $B/ted4tolerance: $(TOLERANCE_OBJ) $(SPEC_EVALS:%=$B/tests/spec/eval_%.o) $(DEC_TOOL:%.c=$B/%.o) $B/libted4dec.a
 	$(CC) -fopenmp $(LDFLAGS) $^ -o $@ $(LIBS)
 
-# thresholds.csv for all valid vectors that have queries; tests/test_tolerance.sh says whether it is current.
+# thresholds.csv for vectors of several kinds; takes a minute. tests/test_tolerance.sh says whether it is current.
 tolerance: $B/ted4tolerance
 	sh conformance/tolerance/table.sh $B/ted4tolerance > conformance/tolerance/thresholds.new
 	mv conformance/tolerance/thresholds.new conformance/tolerance/thresholds.csv
 .PHONY: tolerance
+$B/tests/test_tolerance: | $B/ted4tolerance $B/ted4dec
+
+# Counted by the test: hashing, inflating, networks, searches.
+RESOURCES_COUNTED = XXH3_64bits inflate ted4_prior_hyper ted4_prior_slice ted4_prior_load ted4_gauss_find
+$B/tests/test_resources: $B/tests/test_resources.o $B/libted4enc.a $B/libted4dec.a
+	$(CC) -fopenmp $(LDFLAGS) $(RESOURCES_COUNTED:%=-Wl,--wrap=%) $^ -o $@ -lcmocka $(LIBS)

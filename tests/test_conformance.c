@@ -98,7 +98,7 @@ static void our_decoder_conforms(void **state)
     char last[1024];
 
     (void)state;
-    if (conf(last, sizeof last, "run -j 2 -d %s/ted4dec --second TED4_KERNEL=plain%s", build(), MEMORY) != 0)
+    if (conf(last, sizeof last, "run -j 2 -t 300 -d %s/ted4dec --second TED4_KERNEL=plain%s", build(), MEMORY) != 0)
         fail_msg("%s", last);
     assert_null(strstr(last, " 0 passed"));
     assert_non_null(strstr(last, " 0 failed, 0 without answer, 0 missing, 0 declined"));

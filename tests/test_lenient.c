@@ -4,7 +4,11 @@
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stddef.h>
+#include <stdio.h>
+#include <sys/wait.h>
+#include <unistd.h>
 #include <cmocka.h>
+#include <jansson.h>
 #include "../fuzz/mend.h"
 #include "random_scene.h"
 #include "tool/threads.h"
@@ -183,18 +187,30 @@ static void damage(void **state)
     assert_true(saved > N_MUTATIONS / 16);
 }
 
-/* The reduced scene is one like any other: it can be queried, and its records are the first of the whole one's. */
+/* The reduced scene is one like any other: a file can be made of it, with its hash, and it can be queried, and its records are the first of the
+ * whole one's. */
 static void queries(void **state)
 {
     const truth     *f = &file[5];
     const ted4_query q = { 1, 3, { 0.5f, 0, -2 } };
     ted4_gaussians   part, whole;
+    ted4_info        before, after;
     ted4_recon      *a, *b;
     ted4_salvage     what;
-    ted4_scene      *s;
+    ted4_scene      *s, *again;
+    uint8_t         *data;
+    size_t           size;
 
     (void)state;
     assert_int_equal(ted4_decode_lenient(f->data, f->tile_end[2] + 3, NULL, &s, &what), TED4_E_CON_TRUNCATED);
+    ted4_scene_info(s, &before);
+    assert_int_equal(ted4_encode(s, 0, NULL, &data, &size, NULL), TED4_OK);
+    assert_int_equal(ted4_decode(data, size, NULL, &again, NULL), TED4_OK);
+    ted4_scene_info(again, &after);
+    assert_memory_equal(before.hash, after.hash, sizeof after.hash);
+    assert_beginning(f->scene, again);
+    ted4_scene_free(again);
+    free(data);
     assert_int_equal(ted4_recon_new(&a, s, NULL), TED4_OK);
     assert_int_equal(ted4_recon_new(&b, f->scene, NULL), TED4_OK);
     assert_int_equal(ted4_recon_query(a, &q, NULL, &part), TED4_OK);
@@ -224,11 +240,62 @@ static void memory(void **state)
     assert_null(s);
 }
 
+/* ted4dec --lenient --json on the first bytes of a file: exit code, and what it prints. */
+static int run(const truth *f, size_t size, const char *options, json_t **printed)
+{
+    char  path[] = "/tmp/ted4-lenient-XXXXXX", command[512];
+    const int fd = mkstemp(path);
+    FILE *pipe;
+    int   status;
+
+    assert_true(fd >= 0 && write(fd, f->data, size) == (ssize_t)size);
+    close(fd);
+    snprintf(command, sizeof command, "%s/ted4dec --json -q %s %s 2>/dev/null", getenv("TED4_BUILD"), options, path);
+    pipe = popen(command, "r");
+    assert_non_null(pipe);
+    *printed = json_loadf(pipe, 0, NULL);
+    status = pclose(pipe);
+    remove(path);
+    assert_non_null(*printed);
+    assert_true(WIFEXITED(status));
+    return WEXITSTATUS(status);
+}
+
+/* ted4dec: with warnings when something was saved, refused when nothing was, or when it was not asked to. */
+static void program(void **state)
+{
+    const truth *f = &file[5];
+    json_t      *o, *saved;
+
+    (void)state;
+    if (getenv("TED4_BUILD") == NULL) {
+        print_message("skipped: TED4_BUILD is not set\n");
+        skip();
+    }
+    assert_int_equal(run(f, f->tile_end[2] + 3, "--lenient --test", &o), 2);
+    saved = json_object_get(o, "salvage");
+    assert_string_equal(json_string_value(json_object_get(o, "verdict")), "invalid");
+    assert_string_equal(json_string_value(json_object_get(o, "error")), "con.truncated");
+    assert_int_equal(json_integer_value(json_object_get(saved, "tiles")), 3);
+    assert_int_equal(json_integer_value(json_object_get(saved, "tiles_declared")), f->n_tiles);
+    assert_int_equal(json_integer_value(json_object_get(saved, "anchors")), 3 * 64);
+    assert_int_equal(json_integer_value(json_object_get(saved, "anchors_declared")), f->scene->head.n_anchors);
+    json_decref(o);
+    assert_int_equal(run(f, f->tile_end[2] + 3, "--test", &o), 1);
+    assert_null(json_object_get(o, "salvage"));
+    json_decref(o);
+    assert_int_equal(run(f, f->tile_end[0] - 1, "--lenient --test", &o), 1);
+    json_decref(o);
+    assert_int_equal(run(f, f->size, "--lenient --test", &o), 0);
+    assert_string_equal(json_string_value(json_object_get(o, "verdict")), "valid");
+    json_decref(o);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(truncations), cmocka_unit_test(whole_files), cmocka_unit_test(damage),
-        cmocka_unit_test(queries), cmocka_unit_test(memory),
+        cmocka_unit_test(queries), cmocka_unit_test(memory), cmocka_unit_test(program),
     };
 
     return cmocka_run_group_tests(tests, setup, teardown);

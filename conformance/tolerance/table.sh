@@ -1,10 +1,11 @@
 #!/bin/sh
-# The lines of thresholds.csv: `sh conformance/tolerance/table.sh build/ted4tolerance [ID...]`; without ids, all valid vectors with queries.
+# The lines of thresholds.csv: `sh conformance/tolerance/table.sh build/ted4tolerance [ID...]`; without ids, the vectors of the folders below.
 export LC_ALL=C
-program=$1
+program=$(realpath "$1")
 shift
 echo 'vector,query,records,position_peak,position_rms,scale_peak,scale_rms,rotation_peak,rotation_rms,opacity_peak,opacity_rms,colour_peak,colour_rms'
-find conformance/vectors -name '*.json' | sort | while read -r f; do
+cd conformance/vectors || exit 1
+find content worked valid/time valid/view -name '*.json' | sort | while read -r f; do
     grep -q '"result":"valid"' "$f" && grep -q '"queries":\[{' "$f" || continue
     id=$(basename "$f" .json)
     [ $# -eq 0 ] || case " $* " in *" $id "*) ;; *) continue ;; esac

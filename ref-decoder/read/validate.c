@@ -1,6 +1,7 @@
 /* validate.c - spec 3.6: ted4_validate(): the strict decoder's verdict, then what collect.c or advise.c find.
  * SPDX-License-Identifier: BSD-2-Clause */
 #include <string.h>
+#include "base/bytes.h"
 #include "read/finding.h"
 
 static const char *const rules_of[TED4_N_STATUS] = {
@@ -22,17 +23,20 @@ static const struct {
 #undef TED4_FINDING_ADVICE
 };
 
-/* Type of the known chunk that holds the byte at an offset, or NULL. */
+/* Type of the known chunk that holds the byte at an offset, or NULL. Sizes are not to be trusted. */
 static const char *chunk_at(const ted4_findings *f, size_t offset)
 {
-    ted4_reader r;
+    const size_t frame = TED4_FRAME_HEAD_SIZE + TED4_FRAME_HASH_SIZE;
+    size_t       at = TED4_FILE_HEADER_SIZE;
 
-    ted4_reader_init(&r, f->data, TED4_FILE_HEADER_SIZE, f->size, 1);
-    while (r.base.pos <= offset && r.end - r.base.pos >= TED4_FRAME_HEAD_SIZE) {
-        const ted4_chunk_place p = ted4_container_next(&r);
+    while (f->size - at >= TED4_FRAME_HEAD_SIZE) {
+        const uint32_t size = ted4_load32(f->data + at + 8);
 
-        if (r.base.pos > offset || r.base.pos > r.end)
-            return p.type < TED4_CHUNKS ? ted4_chunk_type[p.type] : NULL;
+        if (f->size - at < frame || f->size - at - frame < size || offset - at < frame + size)
+            for (int i = 0; i <= TED4_CHUNKS; i++)
+                if (i == TED4_CHUNKS || memcmp(f->data + at, ted4_chunk_type[i], 4) == 0)
+                    return i < TED4_CHUNKS ? ted4_chunk_type[i] : NULL;
+        at += frame + size;
     }
     return NULL;
 }
@@ -46,7 +50,7 @@ static void give_error(ted4_findings *f, ted4_error e)
     x.id = ted4_status_id(e.code);
     x.rules = rules_of[e.code];
     x.text = ted4_status_text(e.code);
-    x.where = e.offset >= TED4_FILE_HEADER_SIZE ? chunk_at(f, e.offset) : NULL;
+    x.where = e.offset >= TED4_FILE_HEADER_SIZE && e.offset < f->size ? chunk_at(f, e.offset) : NULL;
     x.offset = e.offset;
     f->sink(f->user, &x);
 }

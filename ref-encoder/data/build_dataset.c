@@ -47,6 +47,20 @@ static int fit_lens(ted4_shot *s, ted4_message *m)
     return 0;
 }
 
+/* Farther away than this nothing that is computed from a pose is sure to be finite. */
+static const double FARTHEST = 1e15;
+
+static int check_pose(const ted4_shot *s, ted4_message *m)
+{
+    for (int i = 0; i < 9; i++)
+        if (!isfinite(s->R[i]))
+            return ted4_say(m, "%s: its camera's rotation holds a value that is not finite", s->path);
+    for (int i = 0; i < 3; i++)
+        if (!(fabs(s->t[i]) <= FARTHEST))
+            return ted4_say(m, "%s: its camera is %g units away, expected at most %g", s->path, fabs(s->t[i]), FARTHEST);
+    return 0;
+}
+
 /* What is left of the wanted reduction for files that are reduced already; finer than they are
  * is not to be had. */
 static int left_to_reduce(const ted4_raw_scene *s, int downscale, int *n, ted4_message *m)
@@ -65,7 +79,7 @@ static int make_picture(ted4_picture *p, ted4_source *source, ted4_shot *s, int 
 {
     ted4_camera *c = &p->camera;
 
-    if (fit_lens(s, m) != 0)
+    if (fit_lens(s, m) != 0 || check_pose(s, m) != 0)
         return -1;
     if (n < 1 || s->width / n < 1 || s->height / n < 1)
         return ted4_say(m, "%s: a picture of %dx%d cannot be reduced by %d", s->path, s->width, s->height, n);
@@ -219,6 +233,9 @@ static int take_points(ted4_dataset *d, ted4_raw_scene *s, const ted4_dataset_op
             return ted4_say_no_memory(m);
         d->random_points = 1;
     }
+    for (size_t i = 0; i < 3 * s->cloud.n; i++)
+        if (!isfinite(s->cloud.xyz[i]))
+            return ted4_say(m, "point %zu of the scene has a coordinate that is not finite", i / 3);
     d->points = s->cloud.xyz;
     d->point_rgb = s->cloud.rgb;
     d->n_points = s->cloud.n;

@@ -82,7 +82,7 @@ static int read_table(table *t, const char *path, size_t columns, double **v, te
 {
     const size_t n = t->rows * columns;
 
-    if (t->columns != columns || t->rows == 0)
+    if (t->columns != columns || t->rows == 0 || t->rows > SIZE_MAX / sizeof **v / columns)
         return ted4_say(m, "%s: shape (%zu, %zu), expected rows of %zu numbers", path, t->rows, t->columns, columns);
     if (t->size != n * t->item)
         return ted4_say(m, "%s: %zu bytes of numbers, its shape (%zu, %zu) needs %zu", path, t->size, t->rows,

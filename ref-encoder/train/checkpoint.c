@@ -8,6 +8,8 @@
 #include <string.h>
 #include <unistd.h>
 #include <xxhash.h>
+#include "norm/limits.h"
+#include "write/coder_count.h"
 
 #define MAGIC 0x34444554u       /* "TED4" */
 enum { FORMAT = 4 };
@@ -57,6 +59,59 @@ static void walk_anchors(stream *s, ted4_trainer *t)
                                        TED4_LANES * sizeof(float));
 }
 
+enum { MAX_ELEMENTS = 96 };
+
+/* The elements of a header in the order of a file. */
+typedef struct {
+    size_t  n;
+    int64_t value[MAX_ELEMENTS];
+} elements;
+
+static void note_element(void *user, size_t offset, const char *element, int64_t index, int64_t value)
+{
+    elements *e = user;
+
+    (void)offset;
+    (void)element;
+    (void)index;
+    if (e->n < MAX_ELEMENTS)
+        e->value[e->n++] = value;
+}
+
+/* One anchor, as a trainer keeps their number elsewhere. 0, or -1: not a header of the format. */
+static int header_elements(const ted4_header *h, elements *e)
+{
+    ted4_header  whole = *h;
+    ted4_shape   shape;
+    ted4_counter c;
+
+    whole.n_anchors = 1;
+    e->n = 0;
+    ted4_counter_init(&c);
+    c.base.trace = note_element;
+    c.base.trace_user = e;
+    ted4_walk_header(&c.base, &whole, &shape, TED4_LEVEL_UNBOUNDED, UINT64_MAX);
+    return c.base.error.code == TED4_OK ? 0 : -1;
+}
+
+/* Is h the header that this run began with, but for what stages change: motion and activation may have gone, scalings may be linear, and the
+ * context bits are chosen? A hash finds damage, not this. */
+static int header_belongs(const ted4_header *began, const ted4_header *h)
+{
+    ted4_header want = *began;
+    elements    a, b;
+
+    if (h->motion == TED4_MOTION_NONE)
+        ted4_header_without_motion(&want);
+    if (h->activation == 0)
+        want.activation = 0;
+    want.scale_domain = h->scale_domain;
+    want.context_bits = h->context_bits;
+
+    return header_elements(&want, &a) == 0 && header_elements(h, &b) == 0 && a.n == b.n
+        && memcmp(a.value, b.value, a.n * sizeof *a.value) == 0;
+}
+
 /* The header tells the layout, which may have lost parts since the trainer was made. Within stage 1 what stage 2 alone looks at
  * is not taken from the file. */
 static void walk_layout(stream *s, ted4_trainer *t)
@@ -68,6 +123,9 @@ static void walk_layout(stream *s, ted4_trainer *t)
         return;
     if (!t->stage2)
         ted4_header_stage2(&h, &t->opt);
+    s->failed = !header_belongs(&t->layout.head, &h);
+    if (s->failed)
+        return;
     ted4_layout_make(&t->layout, &h);
     ted4_anchors_finish(&t->anchors);
     if (ted4_anchors_init(&t->anchors, &t->layout) != 0 || ted4_trainer_rebuild(t) != 0)
@@ -91,6 +149,32 @@ static void walk_networks(stream *s, ted4_trainer *t)
     }
     if (has_shift && !s->failed)
         put(s, t->shift, t->layout.shape.n_units);
+    s->failed |= !s->writing && t->integer && t->shift == NULL;
+}
+
+/* Each training picture once. */
+static int order_is_whole(const ted4_trainer *t)
+{
+    const ted4_order *o = &t->order;
+    uint8_t          *seen = calloc(t->data->n_pictures + 1, 1);
+    int               whole = seen != NULL && o->next <= o->n;
+
+    for (uint32_t i = 0; whole && i < o->n; i++) {
+        const uint32_t p = o->item[i];
+
+        whole = p < t->data->n_pictures && !t->data->pictures[p].is_test && !seen[p];
+        if (whole)
+            seen[p] = 1;
+    }
+    free(seen);
+    return whole;
+}
+
+/* Numbers that steer what happens next. */
+static int numbers_are_possible(const ted4_trainer *t)
+{
+    return (t->stage2 == 0 || t->stage2 == 1) && (t->integer == 0 || t->integer == 1) && t->integer <= t->stage2
+        && t->iteration <= ted4_trainer_total(t) && t->stage2_start <= t->iteration && t->cell > 0 && t->cell <= 1e30;
 }
 
 static void walk_colour(stream *s, ted4_trainer *t)
@@ -126,6 +210,7 @@ static void walk(stream *s, ted4_trainer *t)
     put(s, t->order.item, t->order.n * sizeof *t->order.item);
     put(s, &t->order.next, sizeof t->order.next);
     put(s, &t->order.round, sizeof t->order.round);
+    s->failed |= !s->writing && !s->failed && !(order_is_whole(t) && numbers_are_possible(t));
     walk_colour(s, t);
     walk_anchors(s, t);
     if (!s->failed)

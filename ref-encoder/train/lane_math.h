@@ -13,13 +13,13 @@
 #define TED4_LN2   0x1.62e43p-1f
 
 /* 2^x, x clamped to [-126, 126], to about 1e-7. x + 126.5 is positive, so that truncation rounds x
- * to the nearest integer. */
+ * to the nearest integer. A NaN becomes some integer, whose sums wrap. */
 static inline float ted4_lane_pow2(float x)
 {
     const float c = x < -126.0f ? -126.0f : x > 126.0f ? 126.0f : x;
     const int32_t n = (int32_t)(c + 126.5f);
-    const float f = c - (float)(n - 126);
-    const uint32_t bits = (uint32_t)(n + 1) << 23;
+    const float f = c - (float)(int32_t)((uint32_t)n - 126u);
+    const uint32_t bits = ((uint32_t)n + 1u) << 23;
     float p = 0x1.ffcbfcp-17f, scale;
 
     p = p * f + 0x1.430912p-13f;

@@ -26,7 +26,7 @@ typedef struct {
 /* Does the model have activation, and are there times that enough cameras look at? */
 int ted4_sprout_possible(const ted4_trainer *t);
 
-/* Adds places missing at a frame to the list, at most one a cell of the place's size; in a fixed order. 0, or -1 with t->message. */
+/* Adds places missing at a frame to the list, at most one a cell of the place's size, and of long sequences only the surest; in a fixed order. 0, or -1 with t->message. */
 int ted4_sprout_search(ted4_trainer *t, uint32_t frame, ted4_places *list);
 
 /* All frames are searched, and anchors added at the surest places until max_anchors is reached, each with the activation of the times at which its colour is seen there, and the

@@ -20,6 +20,8 @@ enum { FEWEST_DEPTHS = 16, MOST_DEPTHS = 512 };
 #define NEARER  0.5f
 #define FARTHER 1.2f
 #define OUTLIERS 0.02f
+/* Every place is looked for in all frames: places times frames are at most this many, four bytes each (sightings.h). Only long sequences come near. */
+#define MOST_SIGHTINGS ((size_t)1 << 27)
 
 /* One picture of the frame. */
 typedef struct {
@@ -251,16 +253,18 @@ static int compare_places(const void *x, const void *y)
     return memcmp(a->point, b->point, sizeof a->point);
 }
 
-/* The surest place of each cell from the first on. 0, or -1: no memory. */
-static int thin(ted4_places *l, size_t first)
+/* The surest place of each cell from the first on, and of these the surest, most at most. 0, or -1: no memory. */
+static int thin(ted4_places *l, size_t first, size_t most)
 {
     ted4_cells taken;
     size_t     n = first;
 
+    if (l->n == first)
+        return 0;
     if (ted4_cells_init(&taken, l->n - first) != 0)
         return -1;
     qsort(l->item + first, l->n - first, sizeof *l->item, compare_places);
-    for (size_t i = first; i < l->n; i++) {
+    for (size_t i = first; i < l->n && n < first + most; i++) {
         const double cell = exp2(ceil(log2((double)l->item[i].size)));
 
         if (ted4_cells_add(&taken, ted4_cell_key(l->item[i].point, cell)))
@@ -295,7 +299,7 @@ int ted4_sprout_search(ted4_trainer *t, uint32_t frame, ted4_places *list)
     for (size_t i = 0; !bad && i < n; i++)
         if (search_eye(t, eyes, n, i, frame, list) != 0)
             bad = ted4_trainer_fail(t, "no memory to look for what is missing");
-    if (!bad && thin(list, first) != 0)
+    if (!bad && thin(list, first, MOST_SIGHTINGS / t->data->n_frames / t->data->n_frames) != 0)
         bad = ted4_trainer_fail(t, "no memory to look for what is missing");
     for (size_t i = 0; i < n; i++) {
         free(eyes[i].rgb);
