@@ -1,6 +1,7 @@
 # What tests of the strict decoder need beside the libraries; included by the Makefile.
 $B/tests/test_lenient: $(patsubst %,$B/fuzz/%.o,mend parse)
 $B/tests/test_validate: $(patsubst %,$B/fuzz/%.o,mend parse mutate fields)
+$B/tests/test_advise: $(patsubst %,$B/fuzz/%.o,mend parse)
 
 # Class T (spec E): thresholds by rule, and a judge of records.
 TOLERANCE_OBJ = $B/conformance/tolerance/ted4tolerance.o

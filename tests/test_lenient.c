@@ -155,7 +155,6 @@ static void whole_files(void **state)
 static void damage(void **state)
 {
     random_source r = random_seed(5);
-    uint8_t      *copy;
     unsigned      saved = 0;
 
     (void)state;
@@ -163,16 +162,18 @@ static void damage(void **state)
         const truth *f = &file[random_in(&r, 0, N_FILES - 1)];
         const size_t at = random_in(&r, 0, (uint32_t)f->size - 1);
         ted4_salvage what;
-        ted4_scene  *s;
+        ted4_scene  *s, *strict;
         ted4_error   e;
+        uint8_t *const copy = malloc(f->size);
 
-        copy = malloc(f->size);
+        assert_non_null(copy);
         memcpy(copy, f->data, f->size);
         copy[at] ^= (uint8_t)random_in(&r, 1, 255);
         if (i % 2 == 1)
             ted4_mend_chunks(copy, f->size);
         (void)ted4_decode_lenient(copy, f->size, NULL, &s, &what);
-        (void)ted4_decode(copy, f->size, NULL, &(ted4_scene *){ NULL }, &e);
+        (void)ted4_decode(copy, f->size, NULL, &strict, &e);
+        ted4_scene_free(strict);
         assert_true(what.verdict.code == e.code && what.verdict.offset == e.offset);
         if (e.code != TED4_OK && s != NULL) {
             saved++;

@@ -172,11 +172,11 @@ static int build(const list *l, const mutant *m, const char *folder)
     return good;
 }
 
-/* First line that the replay printed, as a CSV field. */
+/* First line that the replay printed, or what it said on stderr, as a CSV field. */
 static void take_reason(mutant *m, const conf_process *p)
 {
     snprintf(m->by, sizeof m->by, "%s%.120s", p->end == CONF_CRASHED ? "crash " : p->end == CONF_HUNG ? "hang " : "",
-             p->end == CONF_ENDED ? (const char *)p->answer.data : "");
+             (const char *)(p->answer.size > 0 ? p->answer.data : p->complaint.data));
     for (char *c = m->by; *c != '\0'; c++) {
         if (*c == '\n') {
             *c = '\0';
