@@ -115,6 +115,21 @@ static int settle(ted4_trainer *t)
     return !t->integer ? ted4_integer_begin(t) : 0;
 }
 
+/* R-ENC-004: a mask all of whose bits are 1 is not coded. */
+static void drop_idle_masks(ted4_scene *s)
+{
+    const uint16_t all = (uint16_t)((1u << s->head.n_offsets) - 1);
+    int            still = 0, dropped = 0;
+
+    for (size_t i = 0; i < s->head.n_anchors; i++) {
+        still |= !s->dynamic[i];
+        dropped |= s->offset_bits[i] != all;
+    }
+    s->head.temporal_mask &= (uint8_t)still;
+    s->head.offset_mask &= (uint8_t)dropped;
+    ted4_shape_make(&s->shape, &s->head);
+}
+
 int ted4_make_scene(ted4_trainer *t, ted4_scene **scene)
 {
     ted4_header h;
@@ -142,6 +157,7 @@ int ted4_make_scene(ted4_trainer *t, ted4_scene **scene)
     copy_values(&s->bank, t->net + t->layout.bank);
     copy_values(&s->nete, t->net + t->layout.nete);
     fill_masks(t, keep, s);
+    drop_idle_masks(s);
     if (ted4_scene_steps(s, t->parallel, &e) != TED4_OK) {
         ted4_scene_free(s);
         *scene = NULL;

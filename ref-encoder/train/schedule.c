@@ -16,6 +16,13 @@
 #define LAST_VALUES 0.1         /* stage 2: features, scalings, phi */
 /* Stage 2 restarts attributes at a third of their first rate. */
 #define RESTART     (1.0 / 3.0)
+/* A mask that nothing defends has to come from 1 to where it closes, -4.6, while its anchor is seen and the rate still high: stages shorter than
+ * the published 60,000 and 30,000 steps let logits move faster in proportion, but never so fast that single pictures decide. The temporal mask goes at
+ * a third of that: when it closes, all that F_deform had added to place and feature is gone at once. */
+#define MASK_STEPS1  60000.0
+#define MASK_STEPS2  30000.0
+#define MASK_FASTEST 10.0
+#define MASK_CAUTION (1.0 / 3.0)
 /* Linear scalings move by this share of their quantisation step. */
 #define LINEAR_SCALING 0.2
 /* log2 b moves five times as fast as the times a. */
@@ -47,6 +54,13 @@ static void fill(float *rate, int first, int n, double value)
         rate[first + c] = (float)value;
 }
 
+static double mask_rate(const ted4_trainer *t)
+{
+    const double pace = t->stage2 ? MASK_STEPS2 / fmax(1.0, t->opt.stage2) : MASK_STEPS1 / fmax(1.0, t->opt.stage1);
+
+    return ted4_decay(t->opt.lr_mask * fmin(pace, MASK_FASTEST), LAST_MASK, stage_progress(t));
+}
+
 void ted4_schedule_rates(const ted4_trainer *t, float *rate)
 {
     const ted4_train_options *o = &t->opt;
@@ -70,10 +84,8 @@ void ted4_schedule_rates(const ted4_trainer *t, float *rate)
             rate[l->first[TED4_TAU] + c] =
                 (float)(on ? tau * (c % 2 == 1 ? TAU_WIDTH : 1.0) : 0.0);
     }
-    fill(rate, l->offset_logit, l->head.n_offsets,
-         t->stage2 ? ted4_decay(o->lr_mask, LAST_MASK, p) : 0.0);
-    fill(rate, l->temporal_logit, 1,
-         ted4_decay(o->lr_mask * restart, LAST_MASK, p));
+    fill(rate, l->offset_logit, l->head.n_offsets, t->stage2 ? mask_rate(t) : 0.0);
+    fill(rate, l->temporal_logit, 1, MASK_CAUTION * mask_rate(t));
 }
 
 typedef struct {

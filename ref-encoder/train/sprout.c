@@ -30,55 +30,19 @@ int ted4_sprout_possible(const ted4_trainer *t)
     return most >= TED4_CAMERAS_NEEDED;
 }
 
-/* What anchors look like now: mean colour of the offsets, weighted by opacity, and summed opacity. */
+/* What anchors look like now (ted4_trainer_looks). */
 typedef struct {
     float *rgb, *opacity;       /* owned: [n][3], [n] */
 } looks;
 
-static void look(const ted4_trainer *t, const ted4_splats *s, looks *l)
-{
-    const size_t K = t->layout.head.n_offsets;
-
-    for (size_t i = 0; i < t->anchors.n; i++) {
-        float sum = 1e-6f, rgb[3] = { 0 };
-
-        for (size_t k = 0; k < K; k++) {
-            const size_t at = (i / TED4_LANES * K + k) * TED4_LANES + i % TED4_LANES;
-            const float  o = fmaxf(s->opacity[at], 0.0f);
-
-            sum += o;
-            for (int c = 0; c < 3; c++)
-                rgb[c] += o * s->colour[c][at];
-        }
-        for (int c = 0; c < 3; c++)
-            l->rgb[3 * i + (size_t)c] = rgb[c] / sum;
-        l->opacity[i] = sum;
-    }
-}
-
 /* 0, or -1 with t->message. */
 static int look_at_anchors(ted4_trainer *t, looks *l)
 {
-    ted4_view           v;
-    ted4_splats         s;
-    ted4_generate_input in = { &t->layout, t->net, 0, NULL, NULL, NULL, 0, 1, { 0 }, 0 };
-
     l->rgb = malloc(3 * t->anchors.n * sizeof *l->rgb);
     l->opacity = malloc(t->anchors.n * sizeof *l->opacity);
     if (l->rgb == NULL || l->opacity == NULL)
         return ted4_trainer_fail(t, "no memory to look at anchors");
-    if (ted4_slots_fill(t, NULL) != 0)
-        return -1;
-    ted4_space_view(&t->layout.head, &t->data->pictures[t->order.item[0]].camera, &v, in.camera);
-    in.n_slots = t->slots.n;
-    in.attr = t->slots.raw;
-    in.position = t->slots.position;
-    in.lanes = t->slots.lanes;
-    ted4_generator_pack(t->generator, t->net);
-    if (ted4_generate(t->generator, &in, t->parallel, &s) != 0)
-        return ted4_trainer_fail(t, "no memory to look at anchors");
-    look(t, &s, l);
-    return 0;
+    return ted4_trainer_looks(t, l->opacity, l->rgb);
 }
 
 /* Anchors less opaque than this lend no features. */

@@ -104,42 +104,13 @@ static float peak_activation(const ted4_trainer *t, size_t i)
     return peak;
 }
 
-/* Summed opacity of each anchor without activation, seen from the first training camera; [n_blocks][32]. */
-static int summed_opacity(ted4_trainer *t, float *sum)
-{
-    ted4_view           v;
-    ted4_splats         s;
-    ted4_generate_input in = { &t->layout, t->net, 0, NULL, NULL, NULL, 0, 1, { 0 }, 0 };
-    const int           K = t->layout.head.n_offsets;
-
-    if (ted4_slots_fill(t, NULL) != 0)
-        return -1;
-    ted4_space_view(&t->layout.head, &t->data->pictures[t->order.item[0]].camera, &v, in.camera);
-    in.n_slots = t->slots.n;
-    in.attr = t->slots.raw;
-    in.position = t->slots.position;
-    in.lanes = t->slots.lanes;
-    ted4_generator_pack(t->generator, t->net);
-    if (ted4_generate(t->generator, &in, t->parallel, &s) != 0)
-        return ted4_trainer_fail(t, "no memory to weigh anchors");
-    for (size_t i = 0; i < t->slots.n; i++)
-        for (size_t j = 0; j < TED4_LANES; j++) {
-            float total = 0;
-
-            for (int k = 0; k < K; k++)
-                total += s.opacity[(i * (size_t)K + (size_t)k) * TED4_LANES + j];
-            sum[i * TED4_LANES + j] = total;
-        }
-    return 0;
-}
-
 /* Positions become what the file will hold; of anchors that then coincide the first stays; anchors that never rise are dropped
  * (algorithm facts 5.8.8, 5.9). */
 static int settle_positions(ted4_trainer *t)
 {
     ted4_anchors *a = &t->anchors;
     uint32_t     *order = malloc((a->n + 1) * sizeof *order);
-    float        *sum = malloc((a->n_blocks + 1) * TED4_LANES * sizeof *sum);
+    float        *sum = malloc((a->n + 1) * sizeof *sum);
     uint64_t      last = 0;
     size_t        n = 0;
     int           bad = order == NULL || sum == NULL;
@@ -150,7 +121,7 @@ static int settle_positions(ted4_trainer *t)
 
             *p = ted4_half_to_float(ted4_float_to_half(*p)) + 0.0f;
         }
-    bad = bad || ted4_anchors_sort(a) != 0 || summed_opacity(t, sum) != 0;
+    bad = bad || ted4_anchors_sort(a) != 0 || ted4_trainer_looks(t, sum, NULL) != 0;
     for (size_t i = 0; !bad && i < a->n; i++) {
         uint16_t p[3];
 

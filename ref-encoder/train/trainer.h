@@ -114,6 +114,10 @@ void ted4_slots_finish(ted4_slots *s);
 /* Bit j: anchor j of the block can be seen. */
 uint32_t ted4_block_visible(const ted4_trainer *t, size_t block, const ted4_view *v);
 
+/* Of each anchor, at time 0 and without activation, from the first training camera: summed opacity of its offsets [n], and their mean colour by opacity
+ * [n][3] (NULL: not wanted; 0 where nothing is opaque). 0, or -1 with t->message. looks.c */
+int  ted4_trainer_looks(ted4_trainer *t, float *opacity, float *rgb);
+
 /* Densification: densify.c. gather adds the statistics of a step; adjust grows and prunes. */
 void ted4_densify_gather(ted4_trainer *t, const ted4_generate_input *in, const ted4_splats *s);
 int  ted4_densify_adjust(ted4_trainer *t);
