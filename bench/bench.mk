@@ -63,7 +63,8 @@ bench-memory: $B/ted4enc $B/ted4scene
 BENCH_FILE = rate_check spans
 $B/bench/rate_check.o: FPFLAGS = $(FREE)
 $(BENCH_FILE:%=$B/bench/%): $B/bench/%: $B/bench/%.o $(DEC_TOOL:%.c=$B/%.o) $B/libted4enc.a $B/libted4dec.a
-	$(CC) -fopenmp $(LDFLAGS) $^ -o $@ $(LIBS)
+	$(CC) -fopenmp $(LDFLAGS) $(filter %.o,$^) $(filter %.a,$^) -o $@ $(LIBS)
+$B/bench/spans: $B/bench/spans_view.o $B/bench/spans_where.o
 
 # make rate-check FILE=x.ted4
 rate-check: $B/bench/rate_check

@@ -25,7 +25,7 @@ csv=$results/sweep.csv
 columns=tag,key,scene,groups,options,lambda,psnr,ssim,ssim2,ms_ssim,bytes
 columns=$columns,b_header,b_nete,b_netr,b_bank,b_positions,b_masks,b_feature,b_scaling,b_offset,b_phi,b_tau,b_frame,motion,activation,temporal_mask
 columns=$columns,train_s,stage1_s,cpu_s,stage1_cpu_s,anchors,gaussians,dynamic,decode_ms,render_fps,estimated_bits,coded_bits
-columns=$columns,integer_bits,float32_bits,float64_bits,integer_ms,float32_ms,float64_ms,span_short,span_between,span_long,jobs,threads,hash
+columns=$columns,integer_bits,float32_bits,float64_bits,integer_ms,float32_ms,float64_ms,span_short,span_between,span_long,changed,short_changed,short_same,jobs,threads,hash
 only= list= missing= jobs=1 threads=0 patterns= child=
 
 die() { echo "sweep.sh: $*" >&2; exit 3; }
@@ -144,7 +144,7 @@ measure() {
     row=$row,$decode_ms,$(value render_fps "$out.eval.json")
     for f in estimated_bits coded_bits; do row=$row,$(value $f "$out.json"); done
     for f in integer_bits float32_floored_bits float64_floored_bits integer_ms float32_ms float64_ms; do row=$row,$(value $f "$out.rate.json"); done
-    for f in span_short span_between span_long; do row=$row,$(value $f "$out.spans.json"); done
+    for f in span_short span_between span_long changed short_changed short_same; do row=$row,$(value $f "$out.spans.json"); done
     row=$row,$jobs,$cores,$(value hash "$out.json")
     [ "$(echo "$row" | awk -F, '{ print NF }')" = "$(echo "$columns" | awk -F, '{ print NF }')" ] || { echo "$tag: malformed row: $row"; return 1; }
 }
