@@ -9,6 +9,7 @@
 #include <cmocka.h>
 
 #include "ball_scene.h"
+#include "odd_threads.h"
 #include "train/random.h"
 #include "train/trainer.h"
 
@@ -213,24 +214,9 @@ static void test_identity(void **state)
     ted4_colour_finish(&c);
 }
 
-static void run_backwards(void *user, size_t n, void (*body)(void *arg, size_t i), void *arg)
-{
-    (void)user;
-    while (n-- > 0)
-        body(arg, n);
-}
-
-static void run_threads(void *user, size_t n, void (*body)(void *arg, size_t i), void *arg)
-{
-    (void)user;
-#pragma omp parallel for schedule(dynamic, 1) num_threads(3)
-    for (size_t i = 0; i < n; i++)
-        body(arg, i);
-}
-
 static void test_threads(void **state)
 {
-    const ted4_parallel  how[2] = { { run_backwards, NULL }, { run_threads, NULL } };
+    const ted4_parallel  how[2] = { { odd_backwards, NULL }, { odd_threads, NULL } };
     const ted4_parallel *which[3] = { NULL, &how[0], &how[1] };
     static float         image[3 * MOST], out[3][3 * MOST], d[3][3 * MOST];
     ted4_colour          c;
@@ -252,8 +238,13 @@ static void test_threads(void **state)
 
 /* ---- the step ---- */
 
+static uint8_t to_byte(float x)
+{
+    return (uint8_t)(255.0f * fminf(fmaxf(x, 0.0f), 1.0f) + 0.5f);
+}
+
 /* The first step of Adam moves each value by the rate, whatever the size of its gradient; then half of it goes to either camera,
- * for the mean stays the identity. Camera 2 has one picture. */
+ * for the middle of two is their mean, and stays the identity. Camera 2 has one picture. */
 static void test_update(void **state)
 {
     ted4_picture       pic[5];
@@ -290,6 +281,64 @@ static void test_update(void **state)
     ted4_colour_finish(&c);
 }
 
+/* A camera far off the others does not pull the scene along: the others stay where they are. */
+static void test_outlier(void **state)
+{
+    enum { CAMS = 8 };
+    ted4_picture       pic[2 * CAMS];
+    const ted4_dataset d = { .pictures = pic, .n_pictures = 2 * CAMS, .n_cameras = CAMS };
+    ted4_colour        c;
+    ted4_colour_map    gradient = { 0 };
+
+    (void)state;
+    memset(pic, 0, sizeof pic);
+    for (int i = 0; i < 2 * CAMS; i++)
+        pic[i].camera_id = (uint32_t)i / 2;
+    assert_int_equal(ted4_colour_init(&c, &d), 0);
+    for (int k = 0; k < N; k++)
+        for (int i = 0; i < CAMS; i++)
+            c.value[i][k] = i == 5 ? 0.5f : 0.01f * (float)(i < 5 ? i - 2 : i - 5);
+    ted4_colour_update(&c, 0, gradient, 0.01, 0);
+    /* Between the outer quarters lie 0, 0.01, 0.01, 0.02; their mean is 0.01. That of all would be 0.066. */
+    for (int k = 0; k < N; k++) {
+        assert_true(fabsf(c.value[2][k] + 0.01f) < 1e-6f);
+        assert_true(fabsf(c.value[5][k] - 0.49f) < 1e-6f);
+    }
+    ted4_colour_finish(&c);
+}
+
+/* What apply does to the scene's colours undo takes back, for any number of threads; a map without an inverse leaves the picture alone. */
+static void test_undo(void **state)
+{
+    static const ted4_colour_map map = { 0.2f, -0.1f, 0.05f, 0.02f, -0.3f, 0.1f, -0.05f, 0.08f, 0.15f, 0.02f, -0.01f, 0.03f };
+    static float   scene[3 * MOST];
+    static uint8_t picture[3 * MOST];
+    const ted4_parallel backwards = { odd_backwards, NULL };
+    ted4_colour    c;
+
+    (void)state;
+    open_colour(&c, MOST);
+    random_plane(scene, 3 * MOST, 2);
+    for (size_t i = 0; i < 3 * MOST; i++)
+        scene[i] = 0.5f + 0.2f * scene[i];
+    memcpy(c.value[1], map, sizeof map);
+
+    const float *out = ted4_colour_apply(&c, 1, scene, MOST, NULL);
+
+    for (size_t i = 0; i < MOST; i++)
+        for (size_t k = 0; k < 3; k++)
+            picture[3 * i + k] = to_byte(out[k * MOST + i]);
+    const uint8_t *seen = ted4_colour_undo(&c, 1, picture, MOST, &backwards);
+
+    for (size_t i = 0; i < MOST; i++)
+        for (size_t k = 0; k < 3; k++)
+            assert_true(abs(seen[3 * i + k] - to_byte(scene[k * MOST + i])) <= 2);
+    for (int k = 0; k < 9; k++)
+        c.value[1][k] = k % 4 == 0 ? -0.9f : 0.0f;
+    assert_ptr_equal(ted4_colour_undo(&c, 1, picture, MOST, NULL), picture);
+    ted4_colour_finish(&c);
+}
+
 /* The penalty's gradient is 2 w x: a gradient a little smaller gives way to it, a little larger does not. */
 static void test_penalty(void **state)
 {
@@ -320,11 +369,6 @@ static const float tint[CAMERAS][3] = { { 0.12f, -0.08f, 0.04f }, { -0.12f, 0.03
 static float tinted(const float *x, const float *rgb, int k)
 {
     return k == 1 ? rgb[1] + x[2] : rgb[k] * (1.0f + x[k / 2]);
-}
-
-static uint8_t to_byte(float x)
-{
-    return (uint8_t)(255.0f * fminf(fmaxf(x, 0.0f), 1.0f) + 0.5f);
 }
 
 /* The same pictures as their cameras would have taken them, less bright first, so that none is clipped. */
@@ -472,7 +516,7 @@ int main(void)
         cmocka_unit_test(test_identity),
         cmocka_unit_test(test_threads),
         cmocka_unit_test(test_update),
-        cmocka_unit_test(test_penalty),
+        cmocka_unit_test(test_outlier), cmocka_unit_test(test_undo), cmocka_unit_test(test_penalty),
         cmocka_unit_test(test_finds_tints),
         cmocka_unit_test(test_where),
     };

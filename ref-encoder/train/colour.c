@@ -2,6 +2,7 @@
  * SPDX-License-Identifier: BSD-2-Clause */
 #include "colour.h"
 
+#include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -62,9 +63,11 @@ static int reserve(ted4_colour *c, size_t pixels)
     c->m = calloc(n, sizeof *c->m);
     c->v = calloc(n, sizeof *c->v);
     c->image = malloc(3 * pixels * sizeof *c->image);
+    c->seen = malloc(3 * pixels);
     c->sums = malloc(n_bands(pixels) * N * sizeof *c->sums);
+    c->sorted = malloc(n * sizeof *c->sorted);
     return c->steps != NULL && c->value != NULL && c->m != NULL && c->v != NULL &&
-           c->image != NULL && c->sums != NULL ? 0 : -1;
+           c->image != NULL && c->seen != NULL && c->sums != NULL && c->sorted != NULL ? 0 : -1;
 }
 
 int ted4_colour_init(ted4_colour *c, const ted4_dataset *d)
@@ -92,7 +95,9 @@ void ted4_colour_finish(ted4_colour *c)
     free(c->m);
     free(c->v);
     free(c->image);
+    free(c->seen);
     free(c->sums);
+    free(c->sorted);
     memset(c, 0, sizeof *c);
 }
 
@@ -133,6 +138,64 @@ const float *ted4_colour_apply(ted4_colour *c, uint32_t camera, const float *ima
 
     ted4_parallel_for(p, n_bands(pixels), apply_band, &j);
     return c->image;
+}
+
+/* The inverse of I + A by rows, from cofactors. -1: determinant so small that noise would take over. */
+#define LEAST_DETERMINANT 0.1
+
+static int invert(const float *a, double inverse[9])
+{
+    double m[9], det = 0;
+
+    for (int k = 0; k < 9; k++)
+        m[k] = (double)a[k] + (k % 4 == 0);
+    for (int r = 0; r < 3; r++)
+        for (int k = 0; k < 3; k++) {
+            const int r1 = (r + 1) % 3, r2 = (r + 2) % 3, k1 = (k + 1) % 3, k2 = (k + 2) % 3;
+
+            inverse[3 * k + r] = m[3 * r1 + k1] * m[3 * r2 + k2] - m[3 * r1 + k2] * m[3 * r2 + k1];
+        }
+    for (int k = 0; k < 3; k++)
+        det += m[k] * inverse[3 * k];
+    for (int k = 0; k < 9; k++)
+        inverse[k] /= det;
+    return fabs(det) >= LEAST_DETERMINANT ? 0 : -1;
+}
+
+typedef struct {
+    const uint8_t *picture;
+    uint8_t       *to;
+    size_t         pixels;
+    double         inverse[9], v[3];
+} undo_job;
+
+static void undo_band(void *arg, size_t band)
+{
+    const undo_job *j = arg;
+    const double   *m = j->inverse;
+
+    for (size_t i = band * BAND; i < least((band + 1) * BAND, j->pixels); i++) {
+        double c[3];
+
+        for (int k = 0; k < 3; k++)
+            c[k] = (double)j->picture[3 * i + (size_t)k] - 255.0 * j->v[k];
+        for (int k = 0; k < 3; k++)
+            j->to[3 * i + (size_t)k] =
+                (uint8_t)fmin(fmax(c[0] * m[k] + c[1] * m[3 + k] + c[2] * m[6 + k] + 0.5, 0.0), 255.0);
+    }
+}
+
+const uint8_t *ted4_colour_undo(ted4_colour *c, uint32_t camera, const uint8_t *picture,
+                                size_t pixels, const ted4_parallel *p)
+{
+    const float *map = c->value[camera];
+    undo_job     j = { .picture = picture, .to = c->seen, .pixels = pixels,
+                       .v = { (double)map[ROW_V], (double)map[ROW_V + 1], (double)map[ROW_V + 2] } };
+
+    if (invert(map, j.inverse) != 0)
+        return picture;
+    ted4_parallel_for(p, n_bands(pixels), undo_band, &j);
+    return c->seen;
 }
 
 /* Sums of d times 1 and each colour, over at most RUN pixels, into column k of a map. */
@@ -204,6 +267,29 @@ void ted4_colour_backward(ted4_colour *c, uint32_t camera, const float *image, s
     }
 }
 
+static int compare(const void *x, const void *y)
+{
+    const float a = *(const float *)x, b = *(const float *)y;
+
+    return a < b ? -1 : a > b;
+}
+
+/* Mean of value k over the cameras between the outer quarters. */
+static double middle(ted4_colour *c, int k)
+{
+    const size_t out = c->n_corrected / 4;
+    size_t       n = 0;
+    double       sum = 0;
+
+    for (size_t i = 0; i < c->n_cameras; i++)
+        if (c->corrected[i])
+            c->sorted[n++] = c->value[i][k];
+    qsort(c->sorted, n, sizeof *c->sorted, compare);
+    for (size_t i = out; i < n - out; i++)
+        sum += (double)c->sorted[i];
+    return sum / (double)(n - 2 * out);
+}
+
 void ted4_colour_update(ted4_colour *c, uint32_t camera, const ted4_colour_map gradient,
                         double rate, double penalty)
 {
@@ -215,13 +301,10 @@ void ted4_colour_update(ted4_colour *c, uint32_t camera, const ted4_colour_map g
     ted4_adam(x, c->m[camera], c->v[camera], g, N, (float)rate,
               ted4_adam_bias_make(++c->steps[camera]));
     for (int k = 0; k < N; k++) {
-        double mean = 0;
+        const float off = (float)middle(c, k);
 
         for (size_t i = 0; i < c->n_cameras; i++)
-            mean += (double)c->value[i][k];
-        mean /= (double)c->n_corrected;
-        for (size_t i = 0; i < c->n_cameras; i++)
             if (c->corrected[i])
-                c->value[i][k] -= (float)mean;
+                c->value[i][k] -= off;
     }
 }

@@ -18,7 +18,8 @@ enum { TED4_COLOUR_VALUES = 12 };
 typedef float ted4_colour_map[TED4_COLOUR_VALUES];
 
 /* A scene's colours and all cameras' maps could change together without changing any picture; a view from elsewhere gets no correction. So the maps of the
- * corrected cameras always have the identity as their mean. */
+ * corrected cameras always have the identity as their middle: of each value the mean of that half of the cameras that lies between the outer quarters, so
+ * that a camera far off the others does not pull the scene along. */
 typedef struct {
     size_t           n_cameras;     /* of the dataset; 0: nothing is corrected, and no memory held */
     size_t           n_corrected;   /* cameras with a correction: 0, or at least 2 */
@@ -26,7 +27,9 @@ typedef struct {
     uint64_t        *steps;         /* owned, [n_cameras] steps of Adam */
     ted4_colour_map *value, *m, *v; /* owned, [n_cameras]; m, v: Adam's moments */
     float           *image;         /* owned: the corrected picture, planar, of the largest picture */
+    uint8_t         *seen;          /* owned: a picture in the scene's colours, interleaved */
     double          *sums;          /* owned: gradients by bands of pixels */
+    float           *sorted;        /* owned, [n_cameras] */
 } ted4_colour;
 
 /* All maps the identity. A camera is corrected when it took at least two training pictures and another did, too: a single picture says nothing about a
@@ -40,11 +43,15 @@ int  ted4_colour_has(const ted4_colour *c, uint32_t camera);
 /* The corrected picture, planar [3][pixels] as image; valid until the next call. */
 const float *ted4_colour_apply(ted4_colour *c, uint32_t camera, const float *image, size_t pixels, const ted4_parallel *p);
 
+/* A true picture, interleaved bytes [pixels][3], in the scene's colours: (c - v) (I + A)^-1, limited to 0..255 and rounded; as it is where the map can hardly
+ * be turned round. Valid until the next call. */
+const uint8_t *ted4_colour_undo(ted4_colour *c, uint32_t camera, const uint8_t *picture, size_t pixels, const ted4_parallel *p);
+
 /* image: as given to ted4_colour_apply. d_image: planar, in: dL/d(corrected picture), out: dL/d(image). gradient: dL/d(map), overwritten. Same bits for any
  * number of threads. */
 void ted4_colour_backward(ted4_colour *c, uint32_t camera, const float *image, size_t pixels, const ted4_parallel *p, float *d_image, ted4_colour_map gradient);
 
-/* One step of Adam for this camera on L + penalty (sum of A^2 and v^2), then the mean of all maps back to the identity. */
+/* One step of Adam for this camera on L + penalty (sum of A^2 and v^2), then the middle of all maps back to the identity. */
 void ted4_colour_update(ted4_colour *c, uint32_t camera, const ted4_colour_map gradient, double rate, double penalty);
 
 #endif

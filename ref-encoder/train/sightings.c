@@ -56,7 +56,7 @@ static int match_pictures(ted4_sightings *s, ted4_trainer *t)
         for (size_t k = i + 1; k < t->data->n_pictures && k <= i + TED4_DATASET_AHEAD; k++)
             if (!t->data->pictures[k].is_test)
                 ted4_dataset_ahead(t->data, k);
-        j.pixels = ted4_dataset_pixels(t->data, i, &t->message);
+        j.pixels = ted4_trainer_seen(t, i);
         if (j.pixels == NULL)
             return -1;
         ted4_space_view(&t->layout.head, &pic->camera, &j.view, centre);

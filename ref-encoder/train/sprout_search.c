@@ -174,11 +174,11 @@ static int depth_range(const ted4_trainer *t, eye *e)
     return 0;
 }
 
-/* What the picture shows and what the model draws instead. */
+/* What the picture shows and what the model draws instead, both in the scene's colours. */
 static int open_eye(ted4_trainer *t, size_t item, eye *e)
 {
     const ted4_picture *pic = &t->data->pictures[item];
-    const uint8_t      *truth = ted4_dataset_pixels(t->data, item, &t->message);
+    const uint8_t      *truth = ted4_trainer_seen(t, item);
 
     if (truth == NULL)
         return -1;
@@ -187,7 +187,6 @@ static int open_eye(ted4_trainer *t, size_t item, eye *e)
         return -1;
     }
     const size_t n = (size_t)e->view.width * (size_t)e->view.height;
-    const float *image = ted4_trainer_shown(t, pic);
 
     e->rgb = malloc(3 * n);
     e->error = malloc(n);
@@ -195,7 +194,7 @@ static int open_eye(ted4_trainer *t, size_t item, eye *e)
         float sum = 0;
 
         for (size_t k = 0; k < 3; k++) {
-            const float x = fminf(fmaxf(image[k * n + i], 0.0f), 1.0f);
+            const float x = fminf(fmaxf(t->image[k * n + i], 0.0f), 1.0f);
 
             sum += fabsf(255.0f * x - (float)truth[3 * i + k]);
         }

@@ -161,7 +161,8 @@ static int is_corrected(const ted4_trainer *t, const ted4_picture *pic)
            (t->stage2 || (double)t->iteration >= t->opt.colour_start * (double)t->opt.stage1);
 }
 
-const float *ted4_trainer_shown(ted4_trainer *t, const ted4_picture *pic)
+/* t->image with the colours of the picture's camera. */
+static const float *shown(ted4_trainer *t, const ted4_picture *pic)
 {
     const size_t pixels = (size_t)pic->camera.width * (size_t)pic->camera.height;
 
@@ -170,13 +171,23 @@ const float *ted4_trainer_shown(ted4_trainer *t, const ted4_picture *pic)
                                 : t->image;
 }
 
+const uint8_t *ted4_trainer_seen(ted4_trainer *t, size_t item)
+{
+    const ted4_picture *pic = &t->data->pictures[item];
+    const size_t        pixels = (size_t)pic->camera.width * (size_t)pic->camera.height;
+    const uint8_t      *truth = ted4_dataset_pixels(t->data, item, &t->message);
+
+    return truth != NULL && is_corrected(t, pic)
+               ? ted4_colour_undo(&t->colour, pic->camera_id, truth, pixels, t->parallel) : truth;
+}
+
 /* Distortion of t->image against truth; its gradient is in t->d_image, and the camera's colours have made their step. As ted4_loss. */
 static double distortion(ted4_trainer *t, const ted4_picture *pic, const ted4_view *v,
                          const uint8_t *truth, double *l1, double *ssim)
 {
     const size_t    pixels = (size_t)v->width * (size_t)v->height;
     ted4_colour_map gradient;
-    const double    loss = ted4_loss(t->loss, ted4_trainer_shown(t, pic), truth, v->width, v->height,
+    const double    loss = ted4_loss(t->loss, shown(t, pic), truth, v->width, v->height,
                                      (float)t->opt.ssim, t->parallel, t->d_image, l1, ssim);
 
     if (!is_corrected(t, pic) || !(loss >= 0))

@@ -105,8 +105,9 @@ void   ted4_update_parameters(ted4_trainer *t);
 
 /* Draws the model as it is now into t->image, planar, and tells view and camera centre in normalised space. 0, or -1 with t->message. step.c */
 int  ted4_trainer_draw(ted4_trainer *t, const ted4_picture *pic, ted4_view *v, float centre[3]);
-/* t->image with the colours of the picture's camera; valid until either is drawn again. step.c */
-const float *ted4_trainer_shown(ted4_trainer *t, const ted4_picture *pic);
+
+/* The true picture number item, interleaved bytes, in the scene's colours; valid until ted4_dataset_release of it, or the next call. NULL, with t->message. step.c */
+const uint8_t *ted4_trainer_seen(ted4_trainer *t, size_t item);
 
 /* Visible blocks of a view: slots.c */
 int  ted4_slots_fill(ted4_trainer *t, const ted4_view *v);
