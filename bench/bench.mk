@@ -62,7 +62,7 @@ bench-memory: $B/ted4enc $B/ted4scene
 # measures the speed of floating-point networks beside the integer kernels.
 BENCH_FILE = rate_check spans
 $B/bench/rate_check.o: FPFLAGS = $(FREE)
-$(BENCH_FILE:%=$B/bench/%): $B/bench/%: $B/bench/%.o $(DEC_TOOL:%.c=$B/%.o) $B/libted4enc.a $B/libted4dec.a
+$(BENCH_FILE:%=$B/bench/%) $B/bench/bench_decode: $B/bench/%: $B/bench/%.o $(DEC_TOOL:%.c=$B/%.o) $B/libted4enc.a $B/libted4dec.a
 	$(CC) -fopenmp $(LDFLAGS) $(filter %.o,$^) $(filter %.a,$^) -o $@ $(LIBS)
 $B/bench/spans: $B/bench/spans_view.o $B/bench/spans_where.o
 
@@ -70,7 +70,11 @@ $B/bench/spans: $B/bench/spans_view.o $B/bench/spans_where.o
 rate-check: $B/bench/rate_check
 	$B/bench/rate_check $(FILE)
 
-.PHONY: rate-check
+# How fast decoding is, in bench/decode.md: make bench-decode FILE="x.ted4 ..."
+bench-decode: $B/bench/bench_decode
+	$(KEEP) bench/decode.md $B/bench/bench_decode $(FILE)
+
+.PHONY: rate-check bench-decode
 
 # The evidence: all runs of bench/sweep.txt whose row in bench/sweep.csv is missing or stale (days; resumable: bench/sweep.sh does parts of it);
 # `make report` writes bench/report.md with its charts from the rows that are there.
