@@ -20,7 +20,24 @@ static void any(const char *group, const char *name, size_t size, const char *fi
     corpus_write(group, name, data, size);
 }
 
-#define ANY(group, name, size, first) any(group, name, size, first, sizeof first - 1)
+/* Seeds of that kind. */
+static const struct { const char *group, *name; size_t size; const char *first; size_t n; } anything[] = {
+#define SEED(group, name, size, first) { group, name, size, first, sizeof first - 1 }
+    SEED("encode", "plain", 60, "\2"), SEED("encode", "escapes", 61, "\1"), SEED("encode", "level2", 62, "\2aaaaaa\17"),
+    SEED("encode", "level4", 63, "\4aaaaaa\37"),
+    SEED("rans", "symbols", 300, "\2"), SEED("rans", "bits", 301, "\2\xff\xf0\xff"), SEED("rans", "any", 200, "\1"),
+    SEED("cdf", "narrow", 60, "\5"), SEED("cdf", "wide", 61, "\xe0"),
+    SEED("net_int", "small", 200, "\3\4"), SEED("net_int", "wide", 1200, "\x41\x07"), SEED("net_int", "odd", 400, "\5\11"),
+    SEED("integerise", "nets0", 500, ""), SEED("integerise", "nets1", 501, ""), SEED("integerise", "nets2", 502, ""),
+    SEED("integerise", "nets3", 503, ""), SEED("integerise", "nets4", 504, ""), SEED("integerise", "nets5", 505, ""),
+    SEED("integerise", "nets6", 506, ""), SEED("integerise", "nets7", 507, ""),
+    SEED("positions", "any", 60, ""),
+    SEED("masks", "both", 300, "\4\0\1\1"), SEED("masks", "offsets", 301, "\4\0\2\1"), SEED("masks", "none", 302, "\4\0\2\2"),
+    SEED("masks", "dynamic", 303, "\4\0\1\2"), SEED("masks", "contradicting", 304, "\4\0\1\1\40\0\3\0"),
+    SEED("masks", "beyond", 305, "\4\0\0\1\40\0\3\0"),
+    SEED("inflate", "values", 300, "\1"),
+#undef SEED
+};
 
 static void positions(void)
 {
@@ -41,7 +58,6 @@ static void positions(void)
     corpus_write("positions", "negative_zero", data, sizeof data);
     ted4_store16(data + 60, 0x3c01);
     corpus_write("positions", "above_one", data, sizeof data);
-    ANY("positions", "any", 60, "");
 }
 
 /* Kind 1 of fz_rans.c: models, then the substream that the writer makes of a few symbols. sigma index 64, mu 0. */
@@ -104,31 +120,10 @@ void corpus_units(void)
     };
     char name[32];
 
-    ANY("encode", "plain", 60, "\2");
-    ANY("encode", "escapes", 61, "\1");
-    ANY("encode", "level2", 62, "\2aaaaaa\17");
-    ANY("encode", "level4", 63, "\4aaaaaa\37");
-    ANY("rans", "symbols", 300, "\2");
-    ANY("rans", "bits", 301, "\2\xff\xf0\xff");
-    ANY("rans", "any", 200, "\1");
+    for (size_t i = 0; i < sizeof anything / sizeof *anything; i++)
+        any(anything[i].group, anything[i].name, anything[i].size, anything[i].first, anything[i].n);
     substream();
-    ANY("cdf", "narrow", 60, "\5");
-    ANY("cdf", "wide", 61, "\xe0");
-    ANY("net_int", "small", 200, "\3\4");
-    ANY("net_int", "wide", 1200, "\x41\x07");
-    ANY("net_int", "odd", 400, "\5\11");
-    for (size_t i = 0; i < 8; i++) {
-        (void)snprintf(name, sizeof name, "nets%zu", i);
-        any("integerise", name, 500 + i, "", 0);
-    }
     positions();
-    ANY("masks", "both", 300, "\4\0\1\1");
-    ANY("masks", "offsets", 301, "\4\0\2\1");
-    ANY("masks", "none", 302, "\4\0\2\2");
-    ANY("masks", "dynamic", 303, "\4\0\1\2");
-    ANY("masks", "contradicting", 304, "\4\0\1\1\40\0\3\0");
-    ANY("masks", "beyond", 305, "\4\0\0\1\40\0\3\0");
-    ANY("inflate", "values", 300, "\1");
     deflated();
     for (size_t i = 0; i < sizeof times / sizeof *times; i++) {
         (void)snprintf(name, sizeof name, "time%zu", i);

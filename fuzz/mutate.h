@@ -1,6 +1,5 @@
 /* mutate.h - changes of a .ted4 file that reach what lies behind its frames: one part of it is changed, and what depends on that is made right
- * again, most of the time. Used by mutator.c, mutator_frames.c, afl_mutator.c,
- * mutate_tool.c, make_corpus.c, tests/test_fuzz.c.
+ * again, most of the time. Used by mutator.c, mutator_frames.c, afl_mutator.c, mutate_tool.c, make_corpus.c, tests/test_fuzz.c, tests/test_validate.c.
  * SPDX-License-Identifier: BSD-2-Clause */
 #ifndef TED4_FUZZ_MUTATE_H
 #define TED4_FUZZ_MUTATE_H
@@ -10,6 +9,15 @@
 
 /* Changes size bytes, which may become up to max_size; gives how many they are. */
 typedef size_t fuzz_bytes_fn(uint8_t *data, size_t size, size_t max_size);
+
+/* One of those: the lowest bit of the middle byte. */
+static inline size_t fuzz_flip_middle(uint8_t *data, size_t size, size_t max_size)
+{
+    (void)max_size;
+    if (size > 0)
+        data[size / 2] ^= 1;
+    return size;
+}
 
 /* One change: a field to a value at or near a bound, a symbol or weight of the parsed scene (written again by the encoder), bytes of one payload,
  * a chunk dropped, doubled, moved or put in, another scene altogether, or the knobs behind ENDS. Then hashes, the hash of ENDS and, where a TILE was

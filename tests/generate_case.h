@@ -174,23 +174,4 @@ static inline const float *case_member(const ted4_splats *s, int c)
          : c == 10 ? s->opacity : s->colour[c - 11];
 }
 
-/* A parallel-for that does everything backwards. */
-static inline void case_run_backwards(void *user, size_t n, void (*body)(void *arg, size_t i),
-                                      void *arg)
-{
-    (void)user;
-    while (n-- > 0)
-        body(arg, n);
-}
-
-/* And one with threads. */
-static inline void case_run_threads(void *user, size_t n, void (*body)(void *arg, size_t i),
-                                    void *arg)
-{
-    (void)user;
-#pragma omp parallel for num_threads(3) schedule(dynamic)
-    for (size_t i = 0; i < n; i++)
-        body(arg, i);
-}
-
 #endif

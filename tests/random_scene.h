@@ -85,6 +85,24 @@ static inline ted4_header random_paper_header(uint32_t n_anchors)
     return h;
 }
 
+/* The same method in small: n_anchors in tiles of 64, two slices. */
+static inline ted4_header random_small_header(uint32_t n_anchors)
+{
+    ted4_header h = random_paper_header(n_anchors);
+
+    h.tile_size = 64;
+    h.feature_dim = 8;
+    h.n_slices = 2;
+    h.slice[0] = 3;
+    h.slice[1] = 5;
+    h.n_offsets = 4;
+    h.bank_rows = 5;
+    h.bank_dim = 4;
+    h.deform_width = h.head_width = h.hyper_width = h.ar_width = 8;
+    h.frames = 20;
+    return h;
+}
+
 /* Any header whose values are in range; small enough for thousands of them. */
 static inline ted4_header random_header(random_source *r)
 {

@@ -10,14 +10,8 @@
 #include <stdint.h>
 #include <stdlib.h>
 #include <string.h>
-#include "norm/tables.h"
+#include "spec/names.h"
 
-#define HALF  ted4_half
-#define INV   ted4_inv
-#define PHI   ted4_phi
-#define SIN   ted4_sin
-#define STEP  ted4_step
-#define STEPI ted4_stepi
 #pragma GCC diagnostic push
 #pragma GCC diagnostic ignored "-Wunused-function"
 #include "spec/code.h"

@@ -40,7 +40,7 @@ static void expect_scene(const ted4_scene *s, int level, ted4_advice what, int t
 
 static void advice_on_masks(void **state)
 {
-    ted4_header   h = small_header();
+    ted4_header   h = random_small_header(200);
     ted4_scene   *s = useful(1, &h);
     const size_t  n = h.n_anchors;
 
@@ -64,7 +64,7 @@ static void advice_on_masks(void **state)
 
 static void advice_on_time(void **state)
 {
-    ted4_header  h = small_header();
+    ted4_header  h = random_small_header(200);
     const size_t n = h.n_anchors;
     ted4_scene  *s = useful(2, &h);
 
@@ -97,7 +97,7 @@ static void advice_on_time(void **state)
 
 static void advice_on_files(void **state)
 {
-    ted4_header h = small_header();
+    ted4_header h = random_small_header(200);
     ted4_scene *s = useful(3, &h);
     size_t      size;
     uint8_t    *data;
@@ -142,7 +142,7 @@ static void advice_on_chunks(void **state)
     static const char *const wrong[] = { "a=b", "=b\n", "ab\n", "a=\xff\n", "a=\xc0\x80\n", "a=\xed\xa0\x80\n", "a=b\n\n", "a=\x01\n",
                                          "a=\xf5\x80\x80\x80\n", "a=\xe2\x82\n" };
     static const char *const right[] = { "", "a=b\n", "a=\nb=\xc3\xa9=\xe2\x82\xac\xf0\x9f\x98\x80\n", "aa=1\na=1\n" };
-    ted4_header h = small_header();
+    ted4_header h = random_small_header(200);
     ted4_scene *s = useful(4, &h);
     size_t      size;
     uint8_t    *data = encoded(s, 0, &size);
@@ -188,7 +188,7 @@ static void snap(ted4_scene *s)
 
 static void advice_on_symbols(void **state)
 {
-    ted4_header h = small_header();
+    ted4_header h = random_small_header(200);
     ted4_scene *s;
     unsigned    scaling;
 

@@ -11,6 +11,7 @@
 #include <cmocka.h>
 
 #include "generate_case.h"
+#include "odd_threads.h"
 
 /* Binary32 through about six layers of sums of a few terms of size 1. */
 #define TOLERANCE 1e-5
@@ -139,8 +140,7 @@ static void check_same(const ted4_splats *s, const float *copy)
 
 static void test_threads(void **state)
 {
-    static const ted4_parallel runs[] = { { case_run_backwards, NULL },
-                                          { case_run_threads, NULL } };
+    static const ted4_parallel runs[] = { { odd_backwards, NULL }, { odd_threads, NULL } };
     static float copy[REF_OUT * CASE_SPLATS];
     ted4_header h = case_header(TED4_MOTION_BANK, TED4_VIEW_FULL);
     ted4_generator *g;

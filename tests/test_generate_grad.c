@@ -11,6 +11,7 @@
 #include <cmocka.h>
 
 #include "generate_case.h"
+#include "odd_threads.h"
 
 /* Step of the differences: small, because networks of ReLUs have kinks everywhere; double loses
  * about 1e-9 to it. */
@@ -298,8 +299,7 @@ static void test_many_slots(void **state)
 
 static void test_threads(void **state)
 {
-    static const ted4_parallel runs[] = { { case_run_backwards, NULL },
-                                          { case_run_threads, NULL } };
+    static const ted4_parallel runs[] = { { odd_backwards, NULL }, { odd_threads, NULL } };
     static float first_attr[CASE_SLOTS][CASE_CHANNELS * TED4_LANES];
 
     (void)state;

@@ -4,13 +4,10 @@
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stddef.h>
-#include <stdio.h>
-#include <sys/wait.h>
-#include <unistd.h>
 #include <cmocka.h>
-#include <jansson.h>
 #include "../fuzz/mend.h"
 #include "random_scene.h"
+#include "run_json.h"
 #include "tool/threads.h"
 
 enum { N_FILES = 6, MAX_CHUNKS = 32, N_MUTATIONS = 2000 };
@@ -241,27 +238,6 @@ static void memory(void **state)
     assert_null(s);
 }
 
-/* ted4dec --lenient --json on the first bytes of a file: exit code, and what it prints. */
-static int run(const truth *f, size_t size, const char *options, json_t **printed)
-{
-    char  path[] = "/tmp/ted4-lenient-XXXXXX", command[512];
-    const int fd = mkstemp(path);
-    FILE *pipe;
-    int   status;
-
-    assert_true(fd >= 0 && write(fd, f->data, size) == (ssize_t)size);
-    close(fd);
-    snprintf(command, sizeof command, "%s/ted4dec --json -q %s %s 2>/dev/null", getenv("TED4_BUILD"), options, path);
-    pipe = popen(command, "r");
-    assert_non_null(pipe);
-    *printed = json_loadf(pipe, 0, NULL);
-    status = pclose(pipe);
-    remove(path);
-    assert_non_null(*printed);
-    assert_true(WIFEXITED(status));
-    return WEXITSTATUS(status);
-}
-
 /* ted4dec: with warnings when something was saved, refused when nothing was, or when it was not asked to. */
 static void program(void **state)
 {
@@ -273,7 +249,7 @@ static void program(void **state)
         print_message("skipped: TED4_BUILD is not set\n");
         skip();
     }
-    assert_int_equal(run(f, f->tile_end[2] + 3, "--lenient --test", &o), 2);
+    assert_int_equal(run_json("ted4dec --json -q --lenient --test", f->data, f->tile_end[2] + 3, &o), 2);
     saved = json_object_get(o, "salvage");
     assert_string_equal(json_string_value(json_object_get(o, "verdict")), "invalid");
     assert_string_equal(json_string_value(json_object_get(o, "error")), "con.truncated");
@@ -282,12 +258,12 @@ static void program(void **state)
     assert_int_equal(json_integer_value(json_object_get(saved, "anchors")), 3 * 64);
     assert_int_equal(json_integer_value(json_object_get(saved, "anchors_declared")), f->scene->head.n_anchors);
     json_decref(o);
-    assert_int_equal(run(f, f->tile_end[2] + 3, "--test", &o), 1);
+    assert_int_equal(run_json("ted4dec --json -q --test", f->data, f->tile_end[2] + 3, &o), 1);
     assert_null(json_object_get(o, "salvage"));
     json_decref(o);
-    assert_int_equal(run(f, f->tile_end[0] - 1, "--lenient --test", &o), 1);
+    assert_int_equal(run_json("ted4dec --json -q --lenient --test", f->data, f->tile_end[0] - 1, &o), 1);
     json_decref(o);
-    assert_int_equal(run(f, f->size, "--lenient --test", &o), 0);
+    assert_int_equal(run_json("ted4dec --json -q --lenient --test", f->data, f->size, &o), 0);
     assert_string_equal(json_string_value(json_object_get(o, "verdict")), "valid");
     json_decref(o);
 }

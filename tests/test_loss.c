@@ -11,6 +11,7 @@
 #include <cmocka.h>
 
 #include "loss_ref.h"
+#include "odd_threads.h"
 #include "train/loss.h"
 
 /* exact: the image in double, as the reference reads it. */
@@ -151,24 +152,9 @@ static void test_equal(void **state)
     ted4_loss_workspace_free(w);
 }
 
-static void run_backwards(void *user, size_t n, void (*body)(void *arg, size_t i), void *arg)
-{
-    (void)user;
-    while (n-- > 0)
-        body(arg, n);
-}
-
-static void run_threads(void *user, size_t n, void (*body)(void *arg, size_t i), void *arg)
-{
-    (void)user;
-#pragma omp parallel for schedule(dynamic, 1) num_threads(3)
-    for (size_t i = 0; i < n; i++)
-        body(arg, i);
-}
-
 static void test_threads(void **state)
 {
-    const ted4_parallel how[2] = { { run_backwards, NULL }, { run_threads, NULL } };
+    const ted4_parallel how[2] = { { odd_backwards, NULL }, { odd_threads, NULL } };
     ted4_loss_workspace *w = ted4_loss_workspace_new();
     picture p = make(200, 150);
     const size_t size = 3 * 200 * 150 * sizeof(float);

@@ -11,6 +11,7 @@
 #include <cmocka.h>
 
 #include "eval/metrics.h"
+#include "odd_threads.h"
 
 static uint32_t seed = 7;
 
@@ -237,17 +238,9 @@ static void test_definitions(void **state)
     check(176, 161, 100, 5);
 }
 
-static void run_threads(void *user, size_t n, void (*body)(void *arg, size_t i), void *arg)
-{
-    (void)user;
-#pragma omp parallel for schedule(dynamic, 1) num_threads(3)
-    for (size_t i = 0; i < n; i++)
-        body(arg, i);
-}
-
 static void test_threads(void **state)
 {
-    const ted4_parallel p = { run_threads, NULL };
+    const ted4_parallel p = { odd_threads, NULL };
     uint8_t *a = pattern(90, 77, 30), *b = pattern(90, 77, 50);
     ted4_metrics one, three, swapped;
 

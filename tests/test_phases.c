@@ -8,29 +8,11 @@
 #include <stdint.h>
 #include <cmocka.h>
 
-#include "ball_trainer.h"
+#include "ball_group.h"
 #include "cloud_case.h"
 #include "train/transient.h"
 
-enum { FRAMES = 5, STAGE1 = 400, ACTIVATION = 134, SPROUTS = 120, GROWTH_ENDS = 240, GROW_EVERY = 20 };
-
-static tiny_folder  folder;
-static ted4_dataset balls;
-
-static int set_up(void **state)
-{
-    (void)state;
-    ball_load(&folder, &balls, FRAMES, 1);
-    return 0;
-}
-
-static int tear_down(void **state)
-{
-    (void)state;
-    ted4_dataset_free(&balls);
-    tiny_free(&folder);
-    return 0;
-}
+enum { STAGE1 = 400, ACTIVATION = 134, SPROUTS = 120, GROWTH_ENDS = 240, GROW_EVERY = 20 };
 
 static float tau(const ted4_trainer *t, size_t i, int c)
 {

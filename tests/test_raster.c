@@ -8,6 +8,7 @@
 #include <cmocka.h>
 
 #include "tool/threads.h"
+#include "odd_threads.h"
 #include "raster_scene.h"
 #include "render/raster_plain.h"
 
@@ -167,14 +168,6 @@ static void test_ties(void **state)
     scene_free(&s);
 }
 
-/* Runs bodies last to first. */
-static void run_backwards(void *user, size_t n, void (*body)(void *arg, size_t i), void *arg)
-{
-    (void)user;
-    while (n-- > 0)
-        body(arg, n);
-}
-
 static void test_threads(void **state)
 {
     enum { W = 90, H = 61, N = 3 * W * H };
@@ -183,7 +176,7 @@ static void test_threads(void **state)
     scene s = scene_random(5000, &v, 2, 8);
     const ted4_splats g = scene_splats(&s);
     ted4_raster *r = ted4_raster_new();
-    ted4_parallel p[4] = { { run_backwards, NULL } };
+    ted4_parallel p[4] = { { odd_backwards, NULL } };
 
     (void)state;
     assert_non_null(r);

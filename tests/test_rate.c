@@ -9,6 +9,7 @@
 
 #include "tool/threads.h"
 #include "norm/prior.h"
+#include "odd_threads.h"
 #include "rate_ref.h"
 #include "train/rate_parts.h"
 
@@ -295,18 +296,11 @@ static uint64_t crowd_run(crowd *c, const ted4_parallel *p, size_t first, size_t
     return sum;
 }
 
-static void run_backwards(void *user, size_t n, void (*body)(void *arg, size_t i), void *arg)
-{
-    (void)user;
-    while (n-- > 0)
-        body(arg, n);
-}
-
 /* The same bits of every result in any order and for any number of threads. */
 static void test_threads(void **state)
 {
     static crowd c;
-    ted4_parallel runs[2] = { { run_backwards, NULL } };
+    ted4_parallel runs[2] = { { odd_backwards, NULL } };
     double bits[TED4_TYPES];
 
     (void)state;

@@ -11,6 +11,7 @@
 
 #include <xxhash.h>
 #include "tool/threads.h"
+#include "odd_threads.h"
 #include "recon_ref.h"
 #include "recon_scene.h"
 
@@ -196,18 +197,10 @@ static void large_networks_give_the_bits_of_the_text(void **state)
     scene_finish(&s);
 }
 
-/* A lender whose order of work is backwards. */
-static void run_backwards(void *user, size_t n, void (*body)(void *arg, size_t i), void *arg)
-{
-    (void)user;
-    while (n-- > 0)
-        body(arg, n);
-}
-
 static void threads_and_order_change_nothing(void **state)
 {
     ted4_header h = large_header();
-    ted4_parallel lenders[4] = { { run_backwards, NULL } };
+    ted4_parallel lenders[4] = { { odd_backwards, NULL } };
     uint8_t want[N_QUERIES][16], got[16];
     struct ted4_scene s;
 

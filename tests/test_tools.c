@@ -186,6 +186,8 @@ static void test_verdicts(void **state)
     assert_int_equal(run("ted4dec bad.ted4 -o x.ply --time 0"), 1);
     assert_false(exists("x.ply"));
     assert_int_equal(run("ted4dec missing.ted4"), 3);
+    assert_int_equal(run("ted4dec --ted4-run missing.ted4 --tiers T0"), 0);
+    assert_non_null(strstr(out, "\"io.read\""));
     assert_int_equal(run("cat v1.ted4 | ted4dec - --hash"), 0);
     assert_int_equal(run("ted4dec -h"), 0);
     assert_non_null(strstr(out, "--sh-degree N"));

@@ -14,31 +14,12 @@
 #include <stdint.h>
 #include <cmocka.h>
 
-#include "ball_trainer.h"
+#include "ball_group.h"
 #include "cloud_case.h"
 #include "norm/half.h"
 #include "norm/scene.h"
 
-enum { FRAMES = 5 };
-
-static tiny_folder  folder;
-static ted4_dataset balls;
-static cloud_case   cloud;
-
-static int set_up(void **state)
-{
-    (void)state;
-    ball_load(&folder, &balls, FRAMES, 1);
-    return 0;
-}
-
-static int tear_down(void **state)
-{
-    (void)state;
-    ted4_dataset_free(&balls);
-    tiny_free(&folder);
-    return 0;
-}
+static cloud_case cloud;
 
 /* ---- 1: a span that begins at the first time of all, or ends at the last ---- */
 

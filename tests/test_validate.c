@@ -4,11 +4,9 @@
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stddef.h>
-#include <stdio.h>
-#include <sys/wait.h>
-#include <unistd.h>
 #include <cmocka.h>
 #include "../fuzz/mutate.h"
+#include "run_json.h"
 #include "schema_check.h"
 #include "validate_case.h"
 
@@ -28,14 +26,6 @@ static void valid_files(void **state)
     }
 }
 
-static size_t flip(uint8_t *data, size_t size, size_t max_size)
-{
-    (void)max_size;
-    if (size > 0)
-        data[size / 2] ^= 1;
-    return size;
-}
-
 /* Files changed by the fuzzer's mutator, which keeps most of what depends on the change right. */
 static void changed_files(void **state)
 {
@@ -53,7 +43,7 @@ static void changed_files(void **state)
         copy = malloc(max_size);
         memcpy(copy, data, size);
         for (unsigned n = random_in(&r, 1, 3); n > 0; n--)
-            size = fuzz_mutate_file(copy, size, max_size, random_u32(&r), flip);
+            size = fuzz_mutate_file(copy, size, max_size, random_u32(&r), fuzz_flip_middle);
         all = validate(copy, size);
         refused += all->errors > 0;
         several += all->errors > 1;
@@ -69,7 +59,7 @@ static void many_errors(void **state)
 {
     enum { HEAD_VIEW = 24, HEAD_RATE = 40 };
     random_source r = random_seed(3);
-    ted4_header   h = small_header();
+    ted4_header   h = random_small_header(200);
     ted4_scene   *s = random_scene_of(&r, &h, 0);
     size_t        size, nete, netr, bank, posn, tile, ends;
     uint8_t      *data;
@@ -125,7 +115,7 @@ static void many_errors(void **state)
 static void too_many(void **state)
 {
     random_source r = random_seed(4);
-    ted4_header   h = small_header();
+    ted4_header   h = random_small_header(200);
     ted4_scene   *s = random_scene_of(&r, &h, 0);
     size_t        size, posn;
     uint8_t      *data = encoded(s, 0, &size);
@@ -172,7 +162,7 @@ static void starve(const uint8_t *data, size_t size)
 static void no_memory(void **state)
 {
     random_source r = random_seed(8);
-    ted4_header   h = small_header();
+    ted4_header   h = random_small_header(200);
     ted4_scene   *s = random_scene_of(&r, &h, 0);
     size_t        size;
     uint8_t      *data = encoded(s, 0, &size);
@@ -189,36 +179,11 @@ static void no_memory(void **state)
 
 /* ---- the program ---- */
 
-static char folder[] = "/tmp/ted4-validate-XXXXXX";
-
-/* ted4info --validate --json on bytes: its exit code, and what it prints. */
-static int run(const uint8_t *data, size_t size, json_t **printed)
-{
-    char  command[512], path[64];
-    FILE *f;
-    int   status;
-
-    snprintf(path, sizeof path, "%s/x.ted4", folder);
-    f = fopen(path, "wb");
-    assert_non_null(f);
-    assert_int_equal(fwrite(data, 1, size, f), size);
-    fclose(f);
-    snprintf(command, sizeof command, "%s/ted4info --validate --json %s", getenv("TED4_BUILD"), path);
-    f = popen(command, "r");
-    assert_non_null(f);
-    *printed = json_loadf(f, 0, NULL);
-    status = pclose(f);
-    remove(path);
-    assert_non_null(*printed);
-    assert_true(WIFEXITED(status));
-    return WEXITSTATUS(status);
-}
-
 static void expect_run(json_t *schema, const uint8_t *data, size_t size, int code, const char *verdict)
 {
     json_t *printed;
 
-    assert_int_equal(run(data, size, &printed), code);
+    assert_int_equal(run_json("ted4info --validate --json", data, size, &printed), code);
     assert_true(schema_holds(schema, printed));
     assert_string_equal(json_string_value(json_object_get(printed, "verdict")), verdict);
     assert_int_equal(json_array_size(json_object_get(printed, "findings")), validate(data, size)->n);
@@ -229,7 +194,7 @@ static void expect_run(json_t *schema, const uint8_t *data, size_t size, int cod
 
 static void program(void **state)
 {
-    ted4_header h = small_header();
+    ted4_header h = random_small_header(200);
     ted4_scene *s = useful(6, &h);
     json_t     *schema;
     size_t      size;
@@ -243,7 +208,6 @@ static void program(void **state)
     }
     schema = json_load_file("conformance/schema/validate.schema.json", 0, NULL);
     assert_non_null(schema);
-    assert_non_null(mkdtemp(folder));
     data = encoded(s, 0, &size);
     expect_run(schema, data, size, 0, "valid");
     data[9] = 1;
@@ -252,7 +216,6 @@ static void program(void **state)
     expect_run(schema, data, size, 1, "invalid");
     data[10] = 1;
     expect_run(schema, data, size, 1, "unsupported");
-    rmdir(folder);
     json_decref(schema);
     free(data);
     ted4_scene_free(s);

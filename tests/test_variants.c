@@ -9,27 +9,10 @@
 #include <cmocka.h>
 
 #include "ball_decoded.h"
+#include "ball_group.h"
 #include "norm/scene.h"
 
-enum { FRAMES = 5, MOST_OPTIONS = 2 };
-
-static tiny_folder  folder;
-static ted4_dataset balls;
-
-static int set_up(void **state)
-{
-    (void)state;
-    ball_load(&folder, &balls, FRAMES, 1);
-    return 0;
-}
-
-static int tear_down(void **state)
-{
-    (void)state;
-    ted4_dataset_free(&balls);
-    tiny_free(&folder);
-    return 0;
-}
+enum { MOST_OPTIONS = 2 };
 
 /* What a file says of itself. */
 typedef struct { int motion, bank, activation, temporal_mask, offset_mask, view, linear, factorised, slices; } traits;

@@ -96,23 +96,6 @@ static inline size_t chunk_at(const uint8_t *data, size_t size, const char *type
     return 0;
 }
 
-static inline ted4_header small_header(void)
-{
-    ted4_header h = random_paper_header(200);
-
-    h.tile_size = 64;
-    h.feature_dim = 8;
-    h.n_slices = 2;
-    h.slice[0] = 3;
-    h.slice[1] = 5;
-    h.n_offsets = 4;
-    h.bank_rows = 5;
-    h.bank_dim = 4;
-    h.deform_width = h.head_width = h.hyper_width = h.ar_width = 8;
-    h.frames = 20;
-    return h;
-}
-
 /* A scene that deserves nothing that R-ENC-004 speaks of. */
 static inline ted4_scene *useful(uint64_t seed, const ted4_header *h)
 {

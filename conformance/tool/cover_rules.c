@@ -60,7 +60,7 @@ static void read_index(rules *r, const char *spec)
     conf_free(&text);
 }
 
-/* Lines "R-XXX-000 reason": rules that no file can show. */
+/* Lines "R-ABC-nnn reason": rules that no file can show. */
 static void read_elsewhere(conf_cover *c, rules *r, const char *suite)
 {
     char       path[CONF_PATH];

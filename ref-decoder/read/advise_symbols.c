@@ -2,13 +2,10 @@
  * tiles are walked once more with a coder that only counts.
  * SPDX-License-Identifier: BSD-2-Clause */
 #include <string.h>
-#include "base/bytes.h"
-#include "kernel/int_kernel.h"
-#include "norm/coder.h"
 #include "norm/gaussian.h"
-#include "norm/prior.h"
 #include "norm/scene.h"
 #include "read/finding.h"
+#include "read/listen.h"
 
 /* Findings begin where more than 1 of these is so; small counts say nothing. */
 enum { ESCAPES_ONE_OF = 256, SIGMA_ONE_OF = 64, FEW = 256, PROB_FAR = 2048 };
@@ -24,44 +21,6 @@ typedef struct {
     type_counts count[TED4_TYPES];
     uint64_t    bits[TED4_PROBS], ones[TED4_PROBS];     /* of the tile */
 } census;
-
-static uint32_t number(ted4_coder *c, unsigned width, uint32_t value)
-{
-    (void)c;
-    (void)width;
-    return value;
-}
-
-static void array(ted4_coder *c, unsigned width, void *values, size_t n)
-{
-    (void)c;
-    (void)width;
-    (void)values;
-    (void)n;
-}
-
-static void deflated(ted4_coder *c, ted4_blob *b)
-{
-    (void)c;
-    (void)b;
-}
-
-static void sizes(ted4_coder *c, uint32_t *size, unsigned n)
-{
-    (void)c;
-    memset(size, 0, n * sizeof *size);
-}
-
-static void open_substream(ted4_coder *c, size_t n)
-{
-    (void)c;
-    (void)n;
-}
-
-static void close_substream(ted4_coder *c)
-{
-    (void)c;
-}
 
 static int bit(ted4_coder *c, uint32_t prob, int value)
 {
@@ -159,7 +118,7 @@ static void advise_contexts(ted4_findings *f, const ted4_scene *s, size_t at)
 }
 
 /* All tiles of a file, with probabilities of their own. */
-static ted4_status walk_tiles(ted4_findings *f, const ted4_scene *given, census *n, ted4_prior *prior, ted4_scene *s, void *work, size_t *first_at)
+static ted4_status walk_tiles(ted4_findings *f, const ted4_scene *given, census *n, ted4_listening *it, size_t *first_at)
 {
     ted4_reader r;
     unsigned    tile = 0;
@@ -175,47 +134,49 @@ static ted4_status walk_tiles(ted4_findings *f, const ted4_scene *given, census 
             *first_at = p.at;
         memset(n->bits, 0, sizeof n->bits);
         memset(n->ones, 0, sizeof n->ones);
-        ted4_walk_tile(&n->base, s, prior, tile++, work);
+        ted4_walk_tile(&n->base, &it->scene, &it->prior, tile++, it->work);
         advise_probs(f, n, prob, p.at);
     }
     return n->base.error.code;
 }
 
+/* Gives the scene probabilities that say which one a bit was coded with; see census. */
+static ted4_status number_probs(ted4_listening *it)
+{
+    const size_t n = (size_t)it->scene.shape.n_tiles * TED4_PROBS;
+
+    it->scene.prob = ted4_arena_alloc(&it->arena, n, sizeof *it->scene.prob);
+    if (it->scene.prob == NULL)
+        return TED4_E_LIMIT_MEMORY;
+    for (size_t i = 0; i < n; i++)
+        it->scene.prob[i] = (uint16_t)(1 + i % TED4_PROBS);
+    return TED4_OK;
+}
+
 ted4_status ted4_advise_symbols(ted4_findings *f, const ted4_scene *given,
                                 const ted4_options *o)
 {
-    static const ted4_coder_ops ops = { number, array, deflated, sizes, open_substream, close_substream, bit, gauss };
-    ted4_scene  s = *given;             /* the walk takes one it may change; only probabilities are others */
-    const size_t n_probs = (size_t)s.shape.n_tiles * TED4_PROBS;
-    ted4_arena  arena;
-    ted4_prior  prior;
-    ted4_status verdict;
-    census      n;
-    size_t      at = 0;
-    void       *work;
+    ted4_coder_ops ops = ted4_listen_ops;
+    ted4_listening it;
+    ted4_status    verdict = ted4_listen_init(&it, given, o);
+    census         n;
+    size_t         at = 0;
 
     memset(&n, 0, sizeof n);
+    ops.bit = bit;
+    ops.gauss = gauss;
     n.base.ops = &ops;
     n.base.trace = follow;
     n.base.trace_user = &n;
-    ted4_arena_init(&arena, o);
-    verdict = ted4_prior_init(&prior, &s.head, &s.shape, &arena);
-    work = ted4_arena_alloc(&arena, 1, ted4_tile_work_size(&s));
-    s.prob = ted4_arena_alloc(&arena, n_probs, sizeof *s.prob);
-    if (work == NULL || s.prob == NULL)
-        verdict = TED4_E_LIMIT_MEMORY;
-    for (size_t i = 0; verdict == TED4_OK && i < n_probs; i++)
-        s.prob[i] = (uint16_t)(1 + i % TED4_PROBS);
-    prior.dense = ted4_select_int_dense();
     if (verdict == TED4_OK)
-        verdict = ted4_prior_load(&prior, s.nete.values, s.shift, NULL);
+        verdict = number_probs(&it);
     if (verdict == TED4_OK)
-        verdict = walk_tiles(f, given, &n, &prior, &s, work, &at);
+        verdict = walk_tiles(f, given, &n, &it, &at);
     if (verdict == TED4_OK) {
         advise_counts(f, &n, at);
-        advise_steps(f, &s, at);
-        advise_contexts(f, &s, at);
+        advise_steps(f, given, at);
+        advise_contexts(f, given, at);
     }
-    ted4_arena_finish(&arena);
+    ted4_listen_finish(&it);
     return verdict;
 }

@@ -2,12 +2,11 @@
  * SPDX-License-Identifier: BSD-2-Clause */
 #include <string.h>
 #include "base/bytes.h"
-#include "kernel/int_kernel.h"
-#include "norm/coder.h"
 #include "norm/half.h"
 #include "norm/rans.h"
 #include "norm/scene.h"
 #include "norm/tables.h"
+#include "read/listen.h"
 
 typedef struct {
     ted4_coder base;            /* must be first */
@@ -41,33 +40,6 @@ static void put32(listener *l, uint32_t v)
 static listener *listener_of(ted4_coder *c)
 {
     return (listener *)c;
-}
-
-static uint32_t number(ted4_coder *c, unsigned width, uint32_t value)
-{
-    (void)c;
-    (void)width;
-    return value;
-}
-
-static void array(ted4_coder *c, unsigned width, void *values, size_t n)
-{
-    (void)c;
-    (void)width;
-    (void)values;
-    (void)n;
-}
-
-static void deflated(ted4_coder *c, ted4_blob *b)
-{
-    (void)c;
-    (void)b;
-}
-
-static void sizes(ted4_coder *c, uint32_t *size, unsigned n)
-{
-    (void)c;
-    memset(size, 0, n * sizeof *size);
 }
 
 static void open_substream(ted4_coder *c, size_t n)
@@ -145,7 +117,7 @@ static int has(const ted4_scene *s, int type, unsigned comp, size_t a)
     return type == TED4_PHI ? s->dynamic[a] : type == TED4_OFFSET ? s->offset_bits[a] >> comp / 3 & 1 : 1;
 }
 
-/* J.6; spec 10.4 */
+/* J.6; spec 10.4. T4 is exact whatever the build's class (R-TOL-007): q is volatile, so that no compiler multiplies in another order or keeps it wider. */
 static void dump_values(listener *l, const ted4_scene *s, int type, unsigned comp, size_t first)
 {
     const int16_t *k = s->symbol[type] + (size_t)comp * s->head.n_anchors;
@@ -155,7 +127,7 @@ static void dump_values(listener *l, const ted4_scene *s, int type, unsigned com
             continue;
 
         const float step = ted4_bits_float(ted4_step[s->step_index[type][a]]);
-        const float q = s->head.step[type] * step;
+        const volatile float q = s->head.step[type] * step;
 
         put16(l, (uint16_t)k[a]);
         put32(l, ted4_float_bits((float)k[a] * q));
@@ -165,30 +137,22 @@ static void dump_values(listener *l, const ted4_scene *s, int type, unsigned com
 /* J.4, J.5 */
 static ted4_status dump_walk(listener *l, const ted4_scene *given, const ted4_options *o)
 {
-    static const ted4_coder_ops ops = { number, array, deflated, sizes, open_substream, close_substream, bit, gauss };
-    ted4_scene  s = *given;             /* the walk takes one it may change, but this coder changes nothing */
-    ted4_arena  arena;
-    ted4_prior  prior;
-    ted4_status verdict;
-    void       *work;
+    ted4_coder_ops ops = ted4_listen_ops;
+    ted4_listening it;
+    ted4_status    verdict = ted4_listen_init(&it, given, o);
 
-    ted4_arena_init(&arena, o);
-    verdict = ted4_prior_init(&prior, &s.head, &s.shape, &arena);
-    work = ted4_arena_alloc(&arena, 1, ted4_tile_work_size(&s));
-    if (work == NULL)
-        verdict = TED4_E_LIMIT_MEMORY;
-    if (verdict == TED4_OK) {
-        prior.dense = ted4_select_int_dense();
-        verdict = ted4_prior_load(&prior, s.nete.values, s.shift, NULL);
-    }
+    ops.open = open_substream;
+    ops.close = close_substream;
+    ops.bit = bit;
+    ops.gauss = gauss;
     l->base.ops = &ops;
-    for (unsigned t = 0; verdict == TED4_OK && t < s.shape.n_tiles; t++) {
+    for (unsigned t = 0; verdict == TED4_OK && t < it.scene.shape.n_tiles; t++) {
         if (l->tier == 2)
-            dump_steps(l, &s, (size_t)t * s.head.tile_size);
-        ted4_walk_tile(&l->base, &s, &prior, t, work);
+            dump_steps(l, given, (size_t)t * given->head.tile_size);
+        ted4_walk_tile(&l->base, &it.scene, &it.prior, t, it.work);
         verdict = l->base.error.code;
     }
-    ted4_arena_finish(&arena);
+    ted4_listen_finish(&it);
     return verdict;
 }
 

@@ -1,6 +1,6 @@
 -- anchors.lua - pandoc filter for the specification: an anchor for each rule where it is defined, a link from every other mention, anchors
 -- s5.1 for numbered sections, links between files as HTML, tables as wide as their content.
--- The environment variable SPEC_RULES names a file of lines "R-XXX-NNN page.html".
+-- The environment variable SPEC_RULES names a file of lines "R-ABC-nnn page.html".
 -- SPDX-License-Identifier: BSD-2-Clause
 local page = {}
 for line in io.lines(os.getenv("SPEC_RULES")) do

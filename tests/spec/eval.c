@@ -5,14 +5,8 @@
 #include <stddef.h>
 #include <stdint.h>
 #include <string.h>
-#include "norm/tables.h"
+#include "names.h"
 
-#define HALF  ted4_half
-#define INV   ted4_inv
-#define PHI   ted4_phi
-#define SIN   ted4_sin
-#define STEP  ted4_step
-#define STEPI ted4_stepi
 #pragma GCC diagnostic ignored "-Wunused-function"
 #include VARIANT
 

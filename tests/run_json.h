@@ -1,0 +1,34 @@
+/* run_json.h - a program of this project run on bytes as a user would, for what it prints: for test_lenient.c and test_validate.c.
+ * SPDX-License-Identifier: BSD-2-Clause */
+#ifndef TED4_RUN_JSON_H
+#define TED4_RUN_JSON_H
+
+#include <jansson.h>
+#include <stdint.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+/* program: one of the folder $TED4_BUILD, with options; the file's path is put behind. Gives the exit code; *printed: the JSON on stdout, the caller's. */
+static inline int run_json(const char *program, const uint8_t *data, size_t size, json_t **printed)
+{
+    char      path[] = "/tmp/ted4-run-XXXXXX", command[512];
+    const int fd = mkstemp(path);
+    FILE     *pipe;
+    int       status;
+
+    assert_true(fd >= 0 && write(fd, data, size) == (ssize_t)size);
+    close(fd);
+    snprintf(command, sizeof command, "%s/%s %s 2>/dev/null", getenv("TED4_BUILD"), program, path);
+    pipe = popen(command, "r");
+    assert_non_null(pipe);
+    *printed = json_loadf(pipe, 0, NULL);
+    status = pclose(pipe);
+    remove(path);
+    assert_non_null(*printed);
+    assert_true(WIFEXITED(status));
+    return WEXITSTATUS(status);
+}
+
+#endif
