@@ -80,7 +80,7 @@ asan:
 	$(MAKE) test B=build-asan OPT='-O1' CFLAGS='-fsanitize=address,undefined -fno-sanitize-recover=all' \
 	    LDFLAGS='-fsanitize=address,undefined'
 
--include tests/spec/spec.mk tests/strict.mk bench/bench.mk fuzz/fuzz.mk conformance/conf.mk conformance/reader/reader.mk
+-include tests/spec/spec.mk tests/strict.mk bench/bench.mk fuzz/fuzz.mk conformance/conf.mk conformance/reader/reader.mk conformance/cross/cross.mk
 
 DEPS     = gcc libc6-dev libcmocka-dev libjansson-dev libjpeg62-turbo-dev libpng-dev libxxhash-dev python3 zlib1g-dev
 DEPS_DEV = clang-14 llvm-14 libclang-rt-14-dev libomp-14-dev afl++ ffmpeg pandoc lcov valgrind \
@@ -106,7 +106,7 @@ install: all
 
 help:
 	@echo 'all demo test check lint asan deps deps-dev install clean; variables OPT ARCH CC B TED4_DATA PREFIX DESTDIR'
-	@echo 'spec (HTML; pandoc) spec-annexes attest; bench/bench.mk and fuzz/fuzz.mk add their own targets'
+	@echo 'spec (HTML; pandoc) spec-annexes attest; bench/bench.mk, fuzz/fuzz.mk and conformance/conf.mk add their own targets'
 
 clean:
 	rm -rf build build-* out

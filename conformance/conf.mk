@@ -3,7 +3,7 @@ CONF_OBJ   = $(patsubst %.c,$B/%.o,$(wildcard conformance/tool/*.c)) $(DEC_TOOL:
 CONF_JOBS ?= 2
 
 all: $B/ted4conf
-$B/ted4conf: $(CONF_OBJ) $B/libted4enc.a $B/libted4dec.a
+$B/ted4conf: $(CONF_OBJ) $(CLASS_T_OBJ) $B/libted4enc.a $B/libted4dec.a
 	$(CC) -fopenmp $(LDFLAGS) $^ -o $@ $(LIBS)
 $B/tests/test_conformance: | $B/ted4conf $B/ted4dec
 
@@ -22,11 +22,13 @@ conformance-cover: $B/ted4conf
 	@mkdir -p out
 	$B/ted4conf cover --html out/coverage.html --json out/coverage.json
 
-# Branches of norm/ and read/ that they take.
+# Branches of norm/ and read/ that they take, in one process. Files made on demand come from another build: what makes them takes branches too.
 conformance-branches: $B/ted4conf
-	$(MAKE) B=build-gcov CC=gcc OPT=-O0 CFLAGS=--coverage LDFLAGS=--coverage build-gcov/ted4dec
+	$(MAKE) B=build-gcov CC=gcc OPT=-O0 CFLAGS=--coverage LDFLAGS=--coverage build-gcov/ted4conf
+	$B/ted4conf gen --demand -o build-gcov/suite/vectors
 	find build-gcov -name '*.gcda' -delete
-	$B/ted4conf run --demand -j $(CONF_JOBS) -t 600 --memory 0 -d build-gcov/ted4dec --second TED4_KERNEL=plain
+	build-gcov/ted4conf replay --suite build-gcov/suite
+	TED4_KERNEL=plain build-gcov/ted4conf replay --suite build-gcov/suite
 	sh conformance/branches.sh build-gcov
 
 # Seeded faults; what has a result in conformance/mutants.csv is not run again.

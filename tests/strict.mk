@@ -4,11 +4,11 @@ $B/tests/test_validate: $(patsubst %,$B/fuzz/%.o,mend parse mutate fields)
 $B/tests/test_advise: $(patsubst %,$B/fuzz/%.o,mend parse)
 
 # Class T (spec E): thresholds by rule, and a judge of records.
-TOLERANCE_OBJ = $B/conformance/tolerance/ted4tolerance.o
-$(TOLERANCE_OBJ): $(SPEC_INC)
-$(TOLERANCE_OBJ): FPFLAGS = $(STRICT) -I$B/inc
+CLASS_T_OBJ = $B/conformance/tolerance/class_t.o $(SPEC_EVALS:%=$B/tests/spec/eval_%.o)
+$B/conformance/tolerance/class_t.o: $(SPEC_INC)
+$B/conformance/tolerance/class_t.o: FPFLAGS = $(STRICT) -I$B/inc
 all: $B/ted4tolerance
-$B/ted4tolerance: $(TOLERANCE_OBJ) $(SPEC_EVALS:%=$B/tests/spec/eval_%.o) $(DEC_TOOL:%.c=$B/%.o) $B/libted4dec.a
+$B/ted4tolerance: $B/conformance/tolerance/ted4tolerance.o $(CLASS_T_OBJ) $(DEC_TOOL:%.c=$B/%.o) $B/libted4dec.a
 	$(CC) -fopenmp $(LDFLAGS) $^ -o $@ $(LIBS)
 
 # thresholds.csv for vectors of several kinds; takes a minute. tests/test_tolerance.sh says whether it is current.

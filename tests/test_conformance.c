@@ -104,16 +104,21 @@ static void our_decoder_conforms(void **state)
     assert_non_null(strstr(last, " 0 failed, 0 without answer, 0 missing, 0 declined"));
 }
 
-/* Runs a bad decoder over conformance/lists/few.txt; the closing line has to hold what. */
-static void expect(const char *way, int code, const char *what)
+/* Runs a bad decoder over a list of vectors; the closing line has to hold what. */
+static void expect_of(const char *list, const char *way, int code, const char *what)
 {
     char last[1024];
 
-    assert_int_equal(conf(last, sizeof last, "run -j %d -t %d --memory 0 -q -l conformance/lists/few.txt "
+    assert_int_equal(conf(last, sizeof last, "run -j %d -t %d --memory 0 -q -l conformance/%s "
                           "-d 'sh conformance/tests/bad_decoder.sh %s'", strcmp(way, "moody") == 0 ? 1 : 4,
-                          strncmp(way, "hang", 4) == 0 ? 1 : 60, way), code);
+                          strncmp(way, "hang", 4) == 0 ? 1 : 60, list, way), code);
     if (strstr(last, what) == NULL)
         fail_msg("%s: \"%s\" lacks \"%s\"", way, last, what);
+}
+
+static void expect(const char *way, int code, const char *what)
+{
+    expect_of("lists/few.txt", way, code, what);
 }
 
 /* few.txt: 4 valid vectors, 3 invalid ones, 1 limit. */
@@ -163,6 +168,46 @@ static void left_behind(void **state)
     expect("hang-behind", 1, " 8 without answer");
 }
 
+/* class-t.txt: a valid vector; one of whose four queries three are out of range; one with queries that have no
+ * result in class X; an invalid one. */
+static void class_t(void **state)
+{
+    static const char *const kept[] = { "exact", "inside", "more" };
+    static const char *const broken[] = { "beyond-scale", "beyond-rotation", "beyond-opacity", "beyond-colour", "nan", "short" };
+    static const char list[] = "tests/class-t.txt";
+    char way[40];
+
+    (void)state;
+    for (size_t i = 0; i < sizeof kept / sizeof *kept; i++) {
+        snprintf(way, sizeof way, "class-t-%s", kept[i]);
+        expect_of(list, way, 0, " 4 passed, 0 failed, 0 without answer, 0 missing, 0 declined, 0 not run: conforms");
+    }
+    for (size_t i = 0; i < sizeof broken / sizeof *broken; i++) {
+        snprintf(way, sizeof way, "class-t-%s", broken[i]);
+        expect_of(list, way, 1, " 2 passed, 2 failed, 0 without answer");
+    }
+    expect_of(list, "class-t-rms-opacity", 1, " 3 passed, 1 failed, 0 without answer");
+    expect_of(list, "class-t-less", 1, " 1 passed, 3 failed, 0 without answer");
+    expect_of(list, "class-t-no-dump", 1, " 1 passed, 3 failed, 0 without answer");
+    expect_of(list, "class-t-other-dump", 1, " 1 passed, 3 failed, 0 without answer");
+}
+
+/* lenient.txt: of six vectors two of which nothing, three of which something can be salvaged, and a valid one. */
+static void lenient_mode(void **state)
+{
+    static const char list[] = "tests/lenient.txt";
+
+    (void)state;
+    expect_of(list, "good", 0, " 6 passed, 0 failed, 0 without answer");
+    expect_of(list, "not-lenient", 0, " 6 passed, 0 failed, 0 without answer");
+    expect_of(list, "salvages-nothing", 1, " 3 passed, 3 failed");
+    expect_of(list, "salvages-less", 1, " 5 passed, 1 failed");
+    expect_of(list, "salvages-wrongly", 1, " 3 passed, 3 failed");
+    expect_of(list, "salvages-to-the-end", 1, " 3 passed, 3 failed");
+    expect_of(list, "salvages-always", 1, " 3 passed, 3 failed");
+    expect_of(list, "salvages-and-forgives", 1, " 0 passed, 6 failed");
+}
+
 static void missing_vectors(void **state)
 {
     char last[1024];
@@ -180,6 +225,8 @@ int main(void)
         cmocka_unit_test(truncation_at_every_byte),
         cmocka_unit_test(our_decoder_conforms),
         cmocka_unit_test(lies),
+        cmocka_unit_test(class_t),
+        cmocka_unit_test(lenient_mode),
         cmocka_unit_test(no_answers),
         cmocka_unit_test(declining),
         cmocka_unit_test(left_behind),

@@ -8,6 +8,7 @@
 #include <setjmp.h>
 #include <stdarg.h>
 #include <cmocka.h>
+#include <jansson.h>
 
 /* The whole file; fails the test when it cannot be read. To be freed. */
 static char *contents(const char *path, size_t *size)
@@ -84,6 +85,19 @@ static void functions(void **state)
     free(text);
 }
 
+/* The index of rules and the table of errors for programs are JSON. */
+static void indices(void **state)
+{
+    json_t *const rules = json_load_file("spec/rules.json", JSON_REJECT_DUPLICATES, NULL);
+    json_t *const errors = json_load_file("spec/errors.json", JSON_REJECT_DUPLICATES, NULL);
+
+    (void)state;
+    assert_int_equal(json_array_size(json_object_get(errors, "errors")), TED4_N_STATUS - 1);
+    assert_true(json_array_size(json_object_get(rules, "rules")) > 100);
+    json_decref(rules);
+    json_decref(errors);
+}
+
 /* No valid file is shorter: B.1 says why. */
 static void smallest(void **state)
 {
@@ -97,7 +111,7 @@ static void smallest(void **state)
 
 static void lints(void **state)
 {
-    static const char *const lint[] = { "errors", "sections", "spec_rules", "spec_text" };
+    static const char *const lint[] = { "errors", "sections", "spec_rules", "spec_text", "spec_json" };
 
     (void)state;
     for (size_t i = 0; i < sizeof lint / sizeof *lint; i++) {
@@ -112,6 +126,7 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(tables), cmocka_unit_test(examples), cmocka_unit_test(levels), cmocka_unit_test(functions),
+        cmocka_unit_test(indices),
         cmocka_unit_test(smallest), cmocka_unit_test(lints),
     };
 

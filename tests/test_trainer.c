@@ -281,7 +281,7 @@ static void test_simplified(void **state)
 
     (void)state;
     ball_set(&o, "temporal_weight=1");
-    ball_set(&o, "lr_mask=0.1");
+    ball_set(&o, "lr_mask=0.02");
     ball_set(&o, "stage1=1500");
     ball_begin(&t, &o, &still_scene, NULL);
     ball_train(&t, 1500);

@@ -4,19 +4,23 @@
 way=$1
 shift
 good() { "$TED4DEC" "$@"; }
+case $way in
+class-t-*) exec python3 "$(dirname "$0")/class_t.py" "${way#class-t-}" "$@" ;;
+esac
 if [ "$1" = --ted4-capabilities ]; then
     case $way in
     no-capabilities) exit 0 ;;
     old-protocol) good "$@" | sed 's/"protocol":1/"protocol":0/' ;;
     declines-all) good "$@" | sed 's/"declines":\[\]/"declines":["motion.none","motion.bank","motion.concat","motion.inr"]/' ;;
     declines-moving) good "$@" | sed 's/"declines":\[\]/"declines":["motion.bank","motion.concat","motion.inr"]/' ;;
+    not-lenient) good "$@" | sed 's/"lenient":true/"lenient":false/' ;;
     no-knobs) good "$@" | sed 's/"knobs":\["max_alloc_total"\]/"knobs":[]/' ;;
     *) good "$@" ;;
     esac
     exit
 fi
 case $way in
-good|declines-*|no-knobs) good "$@" ;;
+good|declines-*|no-knobs|not-lenient) good "$@" ;;
 crash) kill -SEGV $$ ;;
 hang) sleep 600 ;;
 hang-behind) sleep 600 & good "$@"; wait ;;
@@ -39,6 +43,15 @@ wrong-records) good "$@" | sed 's/\("T5":\[{"bytes":[0-9]*,"xxh3":"\)./\1x/' ;;
 no-records) good "$@" | sed 's/"T5":\[.*\]/"T5":[]/' ;;
 wrong-offset) good "$@" | sed 's/"offset":/"offset":1/' ;;
 wrong-error) good "$@" | sed 's/"error":"[a-z]*\./"error":"xyz./' ;;
+salvages-nothing) good "$@" | sed 's/,"salvage":.*$/}/' ;;
+salvages-less) good "$@" | sed 's/"tiles":2/"tiles":1/' ;;
+salvages-wrongly) good "$@" | sed 's/\("salvage":.*"T3":{[^}]*"sha256":"\)./\1x/' ;;
+salvages-to-the-end) good "$@" | sed 's/\("salvage":.*"offset":\)/\11/' ;;
+salvages-always) case "$*" in
+    *lenient*) good "$@" | sed '/salvage/!s/}$/,"salvage":{"tiles":1}}/' ;;
+    *) good "$@" ;;
+    esac ;;
+salvages-and-forgives) case "$*" in *lenient*) echo '{"result":"valid","tiers":{}}' ;; *) good "$@" ;; esac ;;
 moody) if mkdir "$MOOD" 2>/dev/null; then good "$@"; else rmdir "$MOOD"; echo '{"result":"valid","tiers":{}}'; fi ;;
 spoils-input) good "$@"; chmod u+w "$2"; : > "$2" ;;
 esac

@@ -3,14 +3,15 @@
  *     ted4tolerance table ID.json...                      thresholds of vectors, by their descriptors, as lines of thresholds.csv
  * QUERIES.json: a list of queries, or a descriptor. Exit codes: 0 class T can be claimed, or the table is made; 1 it cannot; 3 usage, input, resources.
  * SPDX-License-Identifier: BSD-2-Clause */
-#include "spec_tolerance.h"             /* first: fail() is a function there */
 #include <jansson.h>
+#include <math.h>
 #include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include "class_t.h"
 #include "tool/cli.h"
 
 enum { MAX_PATH = 4096 };
-
-static const char *const group_name[TOL_GROUPS + 1] = { "position", "scale", "rotation", "opacity", "colour", "not finite" };
 
 static int complain(const char *what, const char *which)
 {
@@ -18,13 +19,8 @@ static int complain(const char *what, const char *which)
     return TED4_EXIT_TOOL;
 }
 
-typedef struct {
-    uint32_t num, den;
-    float    camera[3];
-} query;
-
 /* Element i of a list of queries. 1, or 0: there is none, or it is none. */
-static int get_query(const json_t *list, size_t i, query *q)
+static int get_query(const json_t *list, size_t i, class_t_query *q)
 {
     const json_t *const o = json_array_get(list, i), *const t = json_object_get(o, "t"), *const cam = json_object_get(o, "cam");
 
@@ -52,72 +48,46 @@ static json_t *load_queries(const char *path)
     return list;
 }
 
-/* A valid stream by the printed code. 1, or 0. */
-static int load_stream(const char *path, spec_model *m)
+/* The stream of a file; NULL, and it has been said why. */
+static class_t *open_stream(const char *path)
 {
     size_t         size;
+    const char    *why = "cannot be read";
     uint8_t *const data = ted4_read_file(path, &size);
+    class_t *const c = data != NULL ? class_t_open(data, size, &why) : NULL;
 
-    if (data == NULL)
-        return 0;
-    spec_model_decode(m, data, size);
     free(data);
-    return m->v.id == NULL;
-}
-
-/* 1: class X has an answer to the query. */
-static int answers(const spec_model *m, const query *q, tol_reference *t)
-{
-    memset(t, 0, sizeof *t);
-    return q->den >= 1 && q->den < 1u << 24 && q->num <= q->den && tol_make(t, &m->s, q->num, q->den, q->camera);
-}
-
-/* What is said of a query: "kept", or what is wrong. */
-static const char *judge_query(const spec_model *m, const query *q, const char *path)
-{
-    tol_reference  t;
-    const char    *verdict = "kept";
-    size_t         size = 0;
-    uint8_t       *bytes = NULL;
-    float        (*y)[14] = NULL;
-
-    if (answers(m, q, &t)) {            /* otherwise anything will do (R-TOL-006) */
-        bytes = ted4_read_file(path, &size);
-        y = calloc(t.n + 1, sizeof *y);
-        if (bytes == NULL || size != t.n * sizeof *y)
-            verdict = bytes == NULL ? "missing" : "count";
-        for (size_t i = 0; strcmp(verdict, "kept") == 0 && i < 14 * t.n; i++)
-            (&y[0][0])[i] = from_bits(load32(bytes + 4 * i));
-        if (strcmp(verdict, "kept") == 0 && tol_judge(&t, y) >= 0)
-            verdict = group_name[tol_judge(&t, y)];
-    }
-    free(y);
-    free(bytes);
-    tol_free(&t);
-    return verdict;
+    if (c == NULL)
+        complain(path, why);
+    return c;
 }
 
 static int judge(const char *file, const char *queries, const char *folder)
 {
     json_t    *const list = load_queries(queries), *const said = json_array();
-    spec_model m = { .n_blocks = 0 };
+    class_t   *c;
     int        good = 1;
-    query      q;
 
     if (list == NULL || json_array_size(list) == 0)
         return complain(queries, "no queries");
-    if (!load_stream(file, &m))
-        return complain(file, m.v.id != NULL ? m.v.id : "cannot be read");
+    c = open_stream(file);
+    if (c == NULL)
+        return TED4_EXIT_TOOL;
     for (size_t i = 0; i < json_array_size(list); i++) {
-        char        path[MAX_PATH];
-        const char *verdict;
+        char          path[MAX_PATH];
+        class_t_query q;
+        const char   *verdict;
+        uint8_t      *records;
+        size_t        size = 0;
 
         if (!get_query(list, i, &q))
             return complain(queries, "not a query");
         snprintf(path, sizeof path, "%s/T5-%zu.bin", folder, i);
-        verdict = judge_query(&m, &q, path);
+        records = ted4_read_file(path, &size);
+        verdict = class_t_judge(c, &q, records, size);
         good &= strcmp(verdict, "kept") == 0;
         json_array_append_new(said, json_string(verdict));
+        free(records);
     }
     json_t *const o = json_pack("{s:s?, s:o}", "class", good ? "T" : NULL, "queries", said);
 
@@ -125,7 +95,7 @@ static int judge(const char *file, const char *queries, const char *folder)
     putchar('\n');
     json_decref(o);
     json_decref(list);
-    spec_model_free(&m);
+    class_t_close(c);
     return good ? 0 : 1;
 }
 
@@ -149,28 +119,28 @@ static int print_vector(const char *descriptor)
     const char   *name = strrchr(descriptor, '/');
     const int     n = (int)strlen(descriptor) - 5;      /* without .json */
     char          path[MAX_PATH];
-    spec_model    m = { .n_blocks = 0 };
-    query         q;
+    class_t      *c;
+    class_t_query q;
 
     name = name == NULL ? descriptor : name + 1;
-    snprintf(path, sizeof path, "%.*s.ted4", n, descriptor);
-    if (n <= 0 || !load_stream(path, &m))
-        return complain(path, m.v.id != NULL ? m.v.id : "cannot be read");
+    snprintf(path, sizeof path, "%.*s.ted4", n > 0 ? n : 0, descriptor);
+    c = open_stream(path);
+    if (c == NULL)
+        return TED4_EXIT_TOOL;
     for (size_t i = 0; get_query(list, i, &q); i++) {
-        tol_reference t;
+        class_t_thresholds t;
 
-        if (answers(&m, &q, &t)) {
-            printf("%.*s,%zu,%zu", (int)strlen(name) - 5, name, i, t.n);
-            for (int g = 0; g < TOL_GROUPS; g++) {
-                print_exponent(t.peak[g]);
-                print_exponent(t.rms[g]);
-            }
-            printf("\n");
+        if (!class_t_bounds(c, &q, &t))
+            continue;
+        printf("%.*s,%zu,%zu", (int)strlen(name) - 5, name, i, t.n);
+        for (int g = 0; g < CLASS_T_GROUPS; g++) {
+            print_exponent(t.peak[g]);
+            print_exponent(t.rms[g]);
         }
-        tol_free(&t);
+        printf("\n");
     }
     json_decref(list);
-    spec_model_free(&m);
+    class_t_close(c);
     return 0;
 }
 

@@ -39,12 +39,12 @@ static json_t *records(const ted4_scene *s, const json_t *queries)
     return answer;
 }
 
-static json_t *tiers(const conf_bytes *file, const ted4_scene *s, const json_t *queries)
+json_t *conf_tiers(const conf_bytes *file, const ted4_scene *s, const json_t *queries)
 {
     json_t    *o = json_object();
     ted4_error e;
 
-    for (int t = 0; t < 5; t++) {
+    for (int t = file == NULL; t < 5; t++) {
         ted4_tier_hash *const h = ted4_tier_hash_new(NULL);
         const char            name[3] = { 'T', (char)('0' + t), '\0' };
 
@@ -57,26 +57,54 @@ static json_t *tiers(const conf_bytes *file, const ted4_scene *s, const json_t *
     return o;
 }
 
-json_t *conf_answer(const conf_bytes *file, const json_t *queries, uint64_t max_bytes)
+json_t *conf_salvaged(const ted4_scene *s, const ted4_salvage *what, const json_t *queries)
+{
+    ted4_info info;
+    char      hash[2 * sizeof info.hash + 1];
+
+    ted4_scene_info(s, &info);
+    conf_hex(hash, info.hash, sizeof info.hash);
+    return json_pack("{s:I, s:I, s:I, s:I, s:s, s:I, s:s, s:o}", "tiles", (json_int_t)what->n_tiles, "tiles_declared",
+                     (json_int_t)what->tiles_declared, "anchors", (json_int_t)info.n_anchors, "anchors_declared",
+                     (json_int_t)what->anchors_declared, "error", ted4_status_id(what->stop.code), "offset",
+                     (json_int_t)what->stop.offset, "hash", hash, "tiers", conf_tiers(NULL, s, queries));
+}
+
+/* s: what there is of the file; NULL: nothing. It is freed. */
+static json_t *answer_of(const conf_bytes *file, ted4_scene *s, const ted4_salvage *what, const json_t *queries)
 {
     static const char *const name[] = { "valid", "invalid", "limit", "unsupported", "io" };
-    ted4_options o;
-    ted4_error   e = { TED4_OK, 0 };
-    ted4_scene  *s;
-    ted4_verdict verdict;
-    json_t      *answer;
+    const ted4_verdict verdict = ted4_status_verdict(what->verdict.code);
+    json_t      *const answer = json_pack("{s:s}", "result", name[verdict]);
 
-    memset(&o, 0, sizeof o);
-    o.max_bytes = max_bytes;
-    (void)ted4_decode(file->data, file->size, &o, &s, &e);
-    verdict = ted4_status_verdict(e.code);
-    answer = json_pack("{s:s}", "result", name[verdict]);
-    if (e.code == TED4_OK)
-        json_object_set_new(answer, "tiers", tiers(file, s, queries));
+    if (what->verdict.code == TED4_OK)
+        json_object_set_new(answer, "tiers", conf_tiers(file, s, queries));
     else
-        json_object_set_new(answer, "error", json_string(ted4_status_id(e.code)));
+        json_object_set_new(answer, "error", json_string(ted4_status_id(what->verdict.code)));
     if (verdict == TED4_INVALID || verdict == TED4_UNSUPPORTED)
-        json_object_set_new(answer, "offset", json_integer((json_int_t)e.offset));
+        json_object_set_new(answer, "offset", json_integer((json_int_t)what->verdict.offset));
+    if (what->verdict.code != TED4_OK && s != NULL)
+        json_object_set_new(answer, "salvage", conf_salvaged(s, what, queries));
     ted4_scene_free(s);
     return answer;
+}
+
+json_t *conf_answer(const conf_bytes *file, const json_t *queries, uint64_t max_bytes)
+{
+    const ted4_options o = { .max_bytes = max_bytes };
+    ted4_salvage what = { .verdict = { TED4_OK, 0 } };
+    ted4_scene  *s;
+
+    (void)ted4_decode(file->data, file->size, &o, &s, &what.verdict);
+    return answer_of(file, s, &what, queries);
+}
+
+json_t *conf_answer_lenient(const conf_bytes *file, const json_t *queries, uint64_t max_bytes)
+{
+    const ted4_options o = { .max_bytes = max_bytes };
+    ted4_salvage what;
+    ted4_scene  *s;
+
+    (void)ted4_decode_lenient(file->data, file->size, &o, &s, &what);
+    return answer_of(file, s, &what, queries);
 }

@@ -4,10 +4,18 @@
 #define CONF_ANSWER_H
 
 #include <jansson.h>
+#include "ted4.h"
 #include "text.h"
 
 /* The document that ted4dec would print for all tiers. queries: an array, or NULL. max_bytes: of memory; 0: the decoder's own bound.
  * A new reference. */
 json_t *conf_answer(const conf_bytes *file, const json_t *queries, uint64_t max_bytes);
+/* The same in lenient mode (spec 3.3). */
+json_t *conf_answer_lenient(const conf_bytes *file, const json_t *queries, uint64_t max_bytes);
+
+/* "salvage" of an answer, or of a descriptor: a reduced scene, the tiles it has and what stopped decoding there. */
+json_t *conf_salvaged(const ted4_scene *s, const ted4_salvage *what, const json_t *queries);
+/* Tiers of a decoded scene, from T1 on when file is NULL, which T0 needs. */
+json_t *conf_tiers(const conf_bytes *file, const ted4_scene *s, const json_t *queries);
 
 #endif

@@ -99,8 +99,12 @@ int conf_judge_declines(const json_t *capabilities, const json_t *d)
     return 0;
 }
 
-/* The hashes that the answer gives, at least one of them. 1: right. */
-static int same_hash(const json_t *want, const json_t *got)
+int conf_judge_lenient(const json_t *capabilities)
+{
+    return json_is_true(json_object_get(capabilities, "lenient"));
+}
+
+int conf_same_hash(const json_t *want, const json_t *got)
 {
     static const char *const name[] = { "xxh3", "sha256" };
     int n = 0;
@@ -124,7 +128,7 @@ static int judge_queries(const json_t *want, const json_t *got, conf_verdict *v)
         const json_t *const w = json_array_get(want, i), *const g = json_array_get(got, i);
         const char   *const error = text_of(w, "error");
 
-        if (error[0] != '\0' ? strcmp(error, text_of(g, "error")) != 0 : !same_hash(w, g)) {
+        if (error[0] != '\0' ? strcmp(error, text_of(g, "error")) != 0 : !conf_same_hash(w, g)) {
             say(v, CONF_FAIL, "T5: query %zu: %s", i, error[0] != '\0' ? "should have no result" : "other records");
             return 0;
         }
@@ -132,7 +136,7 @@ static int judge_queries(const json_t *want, const json_t *got, conf_verdict *v)
     return 1;
 }
 
-/* The first tier that differs says where to look. */
+/* The first tier that differs says where to look. What is salvaged has no T0. */
 static void judge_tiers(const json_t *capabilities, const json_t *want, const json_t *got, conf_verdict *v)
 {
     const char *const class = text_of(capabilities, "class");
@@ -141,12 +145,12 @@ static void judge_tiers(const json_t *capabilities, const json_t *want, const js
         const char          name[3] = { 'T', (char)('0' + t), '\0' };
         const json_t *const w = json_object_get(want, name), *const g = json_object_get(got, name);
 
-        if (!holds(json_object_get(capabilities, "tiers"), name) || (t == 5 && strcmp(class, "X") != 0))
+        if (w == NULL || !holds(json_object_get(capabilities, "tiers"), name) || (t == 5 && strcmp(class, "X") != 0))
             continue;
         if (t == 5) {
             if (!judge_queries(w, g, v))
                 return;
-        } else if (!same_hash(w, g)) {
+        } else if (!conf_same_hash(w, g)) {
             say(v, CONF_FAIL, "%s: %s", name, g == NULL ? "missing" : "another hash, or none");
             return;
         }
@@ -188,4 +192,27 @@ void conf_judge(const json_t *capabilities, const json_t *d, const json_t *answe
         return;
     }
     say(v, CONF_PASS, "%s", "");
+}
+
+void conf_judge_salvage(const json_t *capabilities, const json_t *d, const json_t *answer, conf_verdict *v)
+{
+    static const char *const name[] = { "tiles", "tiles_declared", "anchors", "anchors_declared", "error", "offset", "hash" };
+    const json_t *const want = json_object_get(d, "salvage"), *const got = json_object_get(answer, "salvage");
+
+    if (!json_is_object(want)) {
+        if (got != NULL && !json_is_null(got))
+            say(v, CONF_FAIL, "lenient mode: nothing can be salvaged, but something is");
+        return;
+    }
+    for (size_t i = 0; i < sizeof name / sizeof *name; i++)
+        if (!json_equal(json_object_get(want, name[i]), json_object_get(got, name[i]))) {
+            say(v, CONF_FAIL, "lenient mode: %s", json_is_object(got) ? name[i] : "nothing is salvaged");
+            return;
+        }
+    judge_tiers(capabilities, json_object_get(want, "tiers"), json_object_get(got, "tiers"), v);
+    if (v->outcome == CONF_FAIL) {
+        const conf_verdict tier = *v;
+
+        say(v, CONF_FAIL, "lenient mode: %.300s", tier.reason);
+    }
 }

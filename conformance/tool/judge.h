@@ -21,7 +21,13 @@ json_t *conf_judge_document(const conf_process *p, conf_verdict *v);
 int     conf_judge_capabilities(const json_t *capabilities, conf_verdict *v);
 /* May the decoder leave this vector out? */
 int     conf_judge_declines(const json_t *capabilities, const json_t *descriptor);
-/* Answer against descriptor. */
+/* Does the decoder claim lenient mode (spec 3.3)? */
+int     conf_judge_lenient(const json_t *capabilities);
+/* The hashes that got gives, at least one of them: 1: those of want. */
+int     conf_same_hash(const json_t *want, const json_t *got);
+/* Answer against descriptor; T5 of class X only (judge_t.h: class T). */
 void    conf_judge(const json_t *capabilities, const json_t *descriptor, const json_t *answer, conf_verdict *v);
+/* The answer in lenient mode to a vector whose descriptor says what can be salvaged, beyond its verdict, which conf_judge has passed. */
+void    conf_judge_salvage(const json_t *capabilities, const json_t *descriptor, const json_t *answer, conf_verdict *v);
 
 #endif

@@ -164,9 +164,9 @@ static int build(const list *l, const mutant *m, const char *folder)
         conf_print(&c, "%s", m->file);
     conf_print(&c, "; do from=$s; [ -f \"$d/$s\" ] && from=$d/$s; %s -I\"$d/ref-decoder\" -Iref-decoder -Iref-encoder -w -c $from "
                "-o \"$d/$(echo $s | tr / _).o\" 2>>\"$d/log\" || exit 1; done; ", l->o->compile);
-    conf_print(&c, "cc -fopenmp \"$d\"/*.o %s/conformance/tool/*.o $(ls %s/ref-decoder/tool/*.o | grep -v /ted4) %s/libted4enc.a "
-               "%s/libted4dec.a -o \"$d/ted4conf\" %s 2>>\"$d/log\"", l->o->build, l->o->build, l->o->build, l->o->build,
-               l->o->libraries);
+    conf_print(&c, "cc -fopenmp \"$d\"/*.o %s/conformance/tool/*.o %s/conformance/tolerance/class_t.o %s/tests/spec/eval_*.o "
+               "$(ls %s/ref-decoder/tool/*.o | grep -v /ted4) %s/libted4enc.a %s/libted4dec.a -o \"$d/ted4conf\" %s 2>>\"$d/log\"",
+               l->o->build, l->o->build, l->o->build, l->o->build, l->o->build, l->o->build, l->o->libraries);
     good = shell((const char *)c.data);
     conf_free(&c);
     return good;

@@ -174,6 +174,13 @@ int conf_process_wait(conf_process *const *p, int n, int ms)
     return -1;
 }
 
+void conf_process_excuse(conf_process *const *p, int n, double time)
+{
+    for (int i = 0; i < n; i++)
+        if (p[i]->pid > 0)
+            p[i]->started += time;
+}
+
 void conf_process_free(conf_process *p)
 {
     conf_free(&p->answer);

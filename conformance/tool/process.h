@@ -34,6 +34,8 @@ void conf_process_start(conf_process *p, const conf_process_options *o, const ch
 /* Waits up to ms milliseconds for something to happen to n processes (those with pid 0 are left out), reads what they say, ends those whose time is over.
  * Gives the number of one that has ended, with pid 0 now, or -1. */
 int  conf_process_wait(conf_process *const *p, int n, int ms);
+/* The caller has not looked for time seconds: that is not held against those that run. */
+void conf_process_excuse(conf_process *const *p, int n, double time);
 void conf_process_free(conf_process *p);
 
 #endif

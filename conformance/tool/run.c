@@ -1,4 +1,5 @@
-/* run.c - see run.h. Each vector is copied into a folder of its own, given to the decoder twice, and both answers have to agree.
+/* run.c - see run.h. Each vector is copied into a folder of its own, given to the decoder twice, and both answers have to agree. A decoder that claims lenient
+ * mode reads valid vectors the second time in that mode, and those that say what can be salvaged a third time.
  * SPDX-License-Identifier: BSD-2-Clause */
 #include "run.h"
 
@@ -6,23 +7,29 @@
 #include <stdlib.h>
 #include <string.h>
 #include <sys/stat.h>
+#include <time.h>
 #include <unistd.h>
+#include "judge_t.h"
 #include "recipe.h"
 #include "tool/sha256.h"
 #include "vector.h"
+
+typedef enum { RUN_FIRST, RUN_SECOND, RUN_LENIENT } run_kind;
 
 /* A vector under way. */
 typedef struct {
     conf_process process;
     size_t       entry;
-    int          run;           /* 0, 1: the second one */
+    run_kind     run;
     json_t      *first;         /* answer of the first run; owned */
-    char         folder[CONF_PATH];
+    conf_bytes   file;          /* owned */
+    char         folder[CONF_PATH], dump[CONF_PATH];
 } slot;
 
 typedef struct {
     conf_run_result      *r;
-    conf_process_options  options[2];
+    conf_process_options  options[3];           /* of each kind of run */
+    conf_process        **process;              /* [jobs] of the slots */
     char                  folder[CONF_PATH];    /* of all slots; removed at the end */
     conf_recipes          recipes;              /* for what is made on demand; empty until then */
 } runner;
@@ -114,11 +121,39 @@ static int fetch(runner *w, size_t i, conf_bytes *b)
     return 1;
 }
 
+static int expects_valid(const json_t *descriptor)
+{
+    const char *const result = json_string_value(json_object_get(json_object_get(descriptor, "expect"), "result"));
+
+    return result != NULL && strcmp(result, "valid") == 0;
+}
+
+/* Is the run of a slot in lenient mode? */
+static int lenient(const runner *w, const slot *s)
+{
+    return s->run == RUN_LENIENT
+        || (s->run == RUN_SECOND && conf_judge_lenient(w->r->capabilities) && expects_valid(w->r->entry[s->entry].descriptor));
+}
+
+/* Removes what decoders have left in the folder of --dump, as far as it is files. */
+static void empty(const char *folder)
+{
+    char   path[CONF_PATH];
+    size_t n;
+    char **name = conf_list(folder, "", &n);
+
+    for (size_t i = 0; i < n; i++) {
+        conf_path(path, "%s/%s", folder, name[i]);
+        unlink(path);
+    }
+    conf_list_free(name, n);
+}
+
 static void start(runner *w, slot *s)
 {
     const conf_entry *e = &w->r->entry[s->entry];
     char        file[CONF_PATH], queries[CONF_PATH], knob[64];
-    const char *argv[12] = { "--ted4-run", file, "--tiers", "T0,T1,T2,T3,T4,T5" }, *name;
+    const char *argv[16] = { "--ted4-run", file, "--tiers", "T0,T1,T2,T3,T4,T5" }, *name;
     json_t     *value, *knobs = json_object_get(e->descriptor, "knobs");
     int         n = 4;
 
@@ -133,16 +168,26 @@ static void start(runner *w, slot *s)
         argv[n++] = "--knob";
         argv[n++] = knob;
     }
+    if (s->dump[0] != '\0') {
+        empty(s->dump);
+        argv[n++] = "--dump";
+        argv[n++] = s->dump;
+    }
+    if (lenient(w, s)) {
+        argv[n++] = "--mode";
+        argv[n++] = "lenient";
+    }
     argv[n] = NULL;
     conf_process_start(&s->process, &w->options[s->run], argv);
 }
 
-/* Copies file and queries into a fresh folder. */
+/* Copies file, which becomes the slot's, and queries into a fresh folder. */
 static void prepare(runner *w, slot *s, const conf_bytes *b)
 {
-    const json_t *const queries = json_object_get(w->r->entry[s->entry].descriptor, "queries");
+    const json_t *const d = w->r->entry[s->entry].descriptor, *const queries = json_object_get(d, "queries");
     char                path[CONF_PATH];
 
+    s->file = *b;
     conf_path(s->folder, "%s/%zu", w->folder, s->entry);
     conf_path(path, "%s/input.ted4", s->folder);
     conf_write(path, b->data, b->size);
@@ -150,17 +195,26 @@ static void prepare(runner *w, slot *s, const conf_bytes *b)
     conf_path(path, "%s/queries.json", s->folder);
     if (json_array_size(queries) > 0 && json_dump_file(queries, path, JSON_COMPACT) != 0)
         conf_die("%s cannot be written", path);
+    if (conf_class_t_asked(w->r->capabilities, d)) {
+        conf_path(s->dump, "%s/dump", s->folder);
+        conf_make_folder(s->dump);
+    }
 }
 
 static void clear(slot *s)
 {
     char path[CONF_PATH];
 
+    if (s->dump[0] != '\0') {
+        empty(s->dump);
+        rmdir(s->dump);
+    }
     conf_path(path, "%s/input.ted4", s->folder);
     unlink(path);
     conf_path(path, "%s/queries.json", s->folder);
     unlink(path);
     rmdir(s->folder);
+    conf_free(&s->file);
     json_decref(s->first);
     s->first = NULL;
 }
@@ -174,28 +228,83 @@ static void tell(const runner *w, size_t i)
     fprintf(stderr, "%s: %s: %s\n", conf_outcome_name[v->outcome], w->r->entry[i].id, v->reason);
 }
 
-/* The run of a slot has ended. 1: the slot goes on with its second run. */
+/* Equal, but for T5 of a decoder of class T, whose records need not be the same twice. */
+static int same_answer(const runner *w, const slot *s, const json_t *answer)
+{
+    json_t *a, *b;
+    int     same = json_equal(answer, s->first);
+
+    if (same || !conf_class_t_asked(w->r->capabilities, w->r->entry[s->entry].descriptor))
+        return same;
+    a = json_deep_copy(answer);
+    b = json_deep_copy(s->first);
+    json_object_del(json_object_get(a, "tiers"), "T5");
+    json_object_del(json_object_get(b, "tiers"), "T5");
+    same = json_equal(a, b);
+    json_decref(a);
+    json_decref(b);
+    return same;
+}
+
+static double seconds(void)
+{
+    struct timespec t;
+
+    clock_gettime(CLOCK_MONOTONIC, &t);
+    return (double)t.tv_sec + 1e-9 * (double)t.tv_nsec;
+}
+
+/* An answer against what is expected of this run. */
+static void judge(runner *w, const slot *s, const json_t *answer, conf_verdict *v)
+{
+    const json_t *const d = w->r->entry[s->entry].descriptor;
+    const double        now = seconds();
+
+    if (s->run != RUN_SECOND)
+        conf_judge(w->r->capabilities, d, answer, v);
+    else if (!same_answer(w, s, answer))
+        *v = (conf_verdict){ CONF_FAIL, "" };
+    if (v->outcome != CONF_PASS && s->run == RUN_SECOND)
+        snprintf(v->reason, sizeof v->reason, "%s", lenient(w, s) ? "lenient mode gave another answer" : "two runs gave two answers");
+    if (v->outcome == CONF_PASS && s->run == RUN_LENIENT)
+        conf_judge_salvage(w->r->capabilities, d, answer, v);
+    if (v->outcome == CONF_PASS && conf_class_t_asked(w->r->capabilities, d)) {
+        conf_judge_class_t(&s->file, d, answer, s->dump, v);
+        conf_process_excuse(w->process, w->r->options->jobs, seconds() - now);
+    }
+}
+
+/* What a slot that has passed its last run is to do next. 0: nothing more. */
+static int next_run(const runner *w, slot *s)
+{
+    if (s->run == RUN_FIRST && !w->r->options->once)
+        s->run = RUN_SECOND;
+    else if (s->run != RUN_LENIENT && conf_judge_lenient(w->r->capabilities)
+             && json_object_get(w->r->entry[s->entry].descriptor, "salvage") != NULL)
+        s->run = RUN_LENIENT;
+    else
+        return 0;
+    return 1;
+}
+
+/* The run of a slot has ended. 1: the slot goes on with another one. */
 static int take(runner *w, slot *s)
 {
     conf_verdict *v = &w->r->verdict[s->entry];
     json_t       *answer = conf_judge_document(&s->process, v);
-    int           again = 0;
 
     w->r->ms[s->entry] += s->process.ms;
-    if (answer != NULL && s->run == 0) {
-        conf_judge(w->r->capabilities, w->r->entry[s->entry].descriptor, answer, v);
-        again = v->outcome == CONF_PASS && !w->r->options->once;
-    } else if (answer != NULL && !json_equal(answer, s->first)) {
-        *v = (conf_verdict){ CONF_FAIL, "two runs gave two answers" };
-    }
     conf_process_free(&s->process);
-    if (again) {
+    if (answer != NULL)
+        judge(w, s, answer, v);
+    if (s->run == RUN_FIRST)
         s->first = answer;
-        s->run = 1;
+    else
+        json_decref(answer);
+    if (answer != NULL && v->outcome == CONF_PASS && next_run(w, s)) {
         start(w, s);
         return 1;
     }
-    json_decref(answer);
     clear(s);
     tell(w, s->entry);
     return 0;
@@ -215,7 +324,6 @@ static int fill(runner *w, slot *s, size_t *next)
         memset(s, 0, sizeof *s);
         s->entry = i;
         prepare(w, s, &b);
-        conf_free(&b);
         start(w, s);
         return 1;
     }
@@ -226,21 +334,21 @@ static void run_all(runner *w)
 {
     const int      jobs = w->r->options->jobs;
     slot          *s = conf_alloc((size_t)jobs, sizeof *s);
-    conf_process **list = conf_alloc((size_t)jobs, sizeof *list);
     size_t         next = 0;
     int            busy = 0;
 
+    w->process = conf_alloc((size_t)jobs, sizeof *w->process);
     for (int i = 0; i < jobs; i++) {
-        list[i] = &s[i].process;
+        w->process[i] = &s[i].process;
         busy += fill(w, &s[i], &next);
     }
     while (busy > 0) {
-        const int i = conf_process_wait(list, jobs, 100);
+        const int i = conf_process_wait(w->process, jobs, 100);
 
         if (i >= 0 && !take(w, &s[i]) && !fill(w, &s[i], &next))
             busy--;
     }
-    free(list);
+    free(w->process);
     free(s);
 }
 
@@ -275,10 +383,8 @@ static void add_missing(conf_run_result *r)
 static void sum_up(conf_run_result *r)
 {
     for (size_t i = 0; i < r->n; i++) {
-        const char *const result = json_string_value(json_object_get(json_object_get(r->entry[i].descriptor, "expect"), "result"));
-
         r->count[r->verdict[i].outcome]++;
-        r->valid_passed += r->verdict[i].outcome == CONF_PASS && result != NULL && strcmp(result, "valid") == 0;
+        r->valid_passed += r->verdict[i].outcome == CONF_PASS && expects_valid(r->entry[i].descriptor);
     }
     r->passed = r->capabilities != NULL && r->count[CONF_FAIL] + r->count[CONF_NO_ANSWER] + r->count[CONF_MISSING] == 0
              && r->valid_passed > 0;
@@ -313,8 +419,8 @@ int conf_run(const conf_run_options *o)
         add_missing(&r);
     r.verdict = conf_alloc(r.n, sizeof *r.verdict);
     r.ms = conf_alloc(r.n, sizeof *r.ms);
-    for (int i = 0; i < 2; i++)
-        w.options[i] = (conf_process_options){ o->decoder, i == 1 ? o->second : NULL, o->timeout, o->memory };
+    for (int i = RUN_FIRST; i <= RUN_LENIENT; i++)
+        w.options[i] = (conf_process_options){ o->decoder, i == RUN_SECOND ? o->second : NULL, o->timeout, o->memory };
     conf_path(w.folder, "%s/ted4conf-XXXXXX", tmp != NULL ? tmp : "/tmp");
     if (mkdtemp(w.folder) == NULL)
         conf_die("%s: cannot be made", w.folder);

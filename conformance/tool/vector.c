@@ -7,6 +7,8 @@
  *     expect valid | invalid ID at WHERE | unsupported ID at WHERE | limit ID
  *     also limit                           a decoder may refuse with a limit before it comes to that error
  *     expect-query I ID                    query I has no result
+ *     salvage TILES [ID at PLACE]          what a lenient decoder gives: the first tiles, and the first error in the order of the file, when that is
+ *                                          not the expected one. Every vector of the category tolerant has this line
  * SPDX-License-Identifier: BSD-2-Clause */
 #include "vector.h"
 
@@ -16,8 +18,17 @@
 #include <xxhash.h>
 #include "answer.h"
 #include "features.h"
+#include "salvage.h"
 #include "stream.h"
 #include "tool/sha256.h"
+
+/* Does a decoder give records of it? */
+static int has_records(const conf_recipe *r)
+{
+    const conf_line *const expect = conf_line_find(r, "expect"), *const saved = conf_line_find(r, "salvage");
+
+    return expect == NULL || conf_word_is(expect, 1, "valid") || (saved != NULL && !conf_word_is(saved, 1, "0"));
+}
 
 static json_t *queries_of(const conf_recipe *r)
 {
@@ -37,7 +48,7 @@ static json_t *queries_of(const conf_recipe *r)
         json_array_append_new(o, json_pack("{s:[I,I], s:[f,f,f]}", "t", (json_int_t)num, (json_int_t)den, "cam",
                                            (double)c[0], (double)c[1], (double)c[2]));
     }
-    if (json_array_size(o) == 0 && (conf_line_find(r, "expect") == NULL || conf_word_is(conf_line_find(r, "expect"), 1, "valid"))) {
+    if (json_array_size(o) == 0 && has_records(r)) {
         json_array_append_new(o, json_pack("{s:[i,i], s:[f,f,f]}", "t", 0, 1, "cam", 0.0, 0.0, 0.0));
         json_array_append_new(o, json_pack("{s:[i,i], s:[f,f,f]}", "t", 1, 2, "cam", 0.5, -0.25, -2.0));
         json_array_append_new(o, json_pack("{s:[i,i], s:[f,f,f]}", "t", 1, 1, "cam", -3.0, 1.0, 0.125));
@@ -122,17 +133,20 @@ static int queries_agree(const conf_recipe *r, const json_t *tiers)
     return 1;
 }
 
-/* The answer without its tiers has to be what was expected. */
-static int agrees(const conf_recipe *r, const json_t *expect, json_t *answer, json_t *descriptor)
+/* The answer without its tiers, and what is salvaged, have to be what was expected. */
+static int agrees(const conf_recipe *r, json_t *answer, json_t *descriptor)
 {
+    const json_t *const expect = json_object_get(descriptor, "expect"), *const saved = json_object_get(descriptor, "salvage");
     json_t *tiers = json_incref(json_object_get(answer, "tiers")), *strict = json_deep_copy(expect);
     int     good;
 
     json_object_del(answer, "tiers");
     json_object_del(strict, "also_ok");
+    if (json_is_object(saved))
+        json_object_set(strict, "salvage", json_object_get(descriptor, "salvage"));
     good = json_equal(strict, answer) && queries_agree(r, tiers);
     if (!good) {
-        char *const want = json_dumps(expect, JSON_COMPACT), *const got = json_dumps(answer, JSON_COMPACT);
+        char *const want = json_dumps(strict, JSON_COMPACT), *const got = json_dumps(answer, JSON_COMPACT);
         char *const t5 = json_dumps(json_object_get(tiers, "T5"), JSON_COMPACT);
 
         fprintf(stderr, "ted4conf: %s: %s: expected %s, decoder says %s %s\n", r->file, r->id, want, got,
@@ -161,27 +175,24 @@ static void read_kept(conf_build *b, const conf_recipe *r, const char *suite, co
     b->head = b->scene->head;
 }
 
-/* The file, and the stream as it stands at the end. */
-static void make_file(conf_vector *v, conf_build *b, conf_stream *s, const conf_recipe *r, const char *suite)
+/* The file, and the stream as it stands at the end. valid: the file before it was broken, the caller's. */
+static void make_file(conf_vector *v, conf_build *b, conf_stream *s, const conf_recipe *r, const char *suite, conf_bytes *valid)
 {
-    conf_bytes file;
-
     if (conf_line_find(r, "kept") != NULL)
-        read_kept(b, r, suite, &file);
+        read_kept(b, r, suite, valid);
     else
-        conf_build_file(b, r, &file);
-    conf_stream_open(s, &file, b);
+        conf_build_file(b, r, valid);
+    conf_stream_open(s, valid, b);
     for (size_t i = 0; i < r->n; i++)
         if (conf_word_is(&r->line[i], 0, "do"))
             conf_stream_do(s, b, &r->line[i]);
-    conf_free(&file);
     conf_stream_join(s, &v->file);
 }
 
 static void check_words(const conf_recipe *r)
 {
     static const char *const name[] = { "also", "category", "intent", "rules", "bug", "query", "knob", "expect", "expect-query", "do",
-                                        "demand", "kept" };
+                                        "demand", "kept", "salvage" };
 
     for (size_t i = 0; i < r->n; i++) {
         int known = conf_is_scene_line(&r->line[i]);
@@ -193,6 +204,8 @@ static void check_words(const conf_recipe *r)
     }
     if (conf_line_find(r, "intent") == NULL || conf_line_find(r, "category") == NULL || conf_line_find(r, "rules") == NULL)
         conf_die("%s: %s: category, intent or rules are missing", r->file, r->id);
+    if (conf_word_is(conf_line_find(r, "category"), 1, "tolerant") != (conf_line_find(r, "salvage") != NULL))
+        conf_die("%s: %s: salvage belongs to the category tolerant", r->file, r->id);
 }
 
 /* What is invalid has to be refused by everybody, whatever parts of the format a decoder has. */
@@ -205,8 +218,9 @@ static int refused(const conf_recipe *r)
 
 int conf_vector_make(conf_vector *v, const conf_recipe *r, const char *suite)
 {
-    const conf_line *const bug = conf_line_find(r, "bug");
+    const conf_line *const bug = conf_line_find(r, "bug"), *const saved = conf_line_find(r, "salvage");
     const uint64_t knob = knob_of(r);
+    conf_bytes     valid;
     conf_stream    s;
     conf_build     b;
     json_t        *d, *answer;
@@ -215,7 +229,7 @@ int conf_vector_make(conf_vector *v, const conf_recipe *r, const char *suite)
 
     memset(v, 0, sizeof *v);
     check_words(r);
-    make_file(v, &b, &s, r, suite);
+    make_file(v, &b, &s, r, suite, &valid);
     snprintf(v->folder, sizeof v->folder, "%s", conf_line_find(r, "category")->word[1]);
     snprintf(name, sizeof name, "%s.ted4", r->id);
     d = v->descriptor = json_pack("{s:s, s:i, s:s, s:s, s:I, s:s, s:s, s:s, s:i}", "id", r->id, "schema", 1, "category", v->folder,
@@ -231,13 +245,16 @@ int conf_vector_make(conf_vector *v, const conf_recipe *r, const char *suite)
     if (knob > 0)
         json_object_set_new(d, "knobs", json_pack("{s:I}", "max_alloc_total", (json_int_t)knob));
     json_object_set_new(d, "expect", expected(r, &s));
+    if (saved != NULL)
+        json_object_set_new(d, "salvage", conf_salvage(saved, &valid, &s, json_object_get(d, "expect"), json_object_get(d, "queries")));
     if (conf_line_find(r, "demand") != NULL)
         json_object_set_new(d, "demand", json_true());
     json_object_set_new(d, "origin", json_pack("{s:s, s:s}", "generator", "ted4conf gen", "recipe", r->file));
     json_object_set_new(d, "license", json_string("CC0-1.0"));
-    answer = conf_answer(&v->file, json_object_get(d, "queries"), knob);
-    good = agrees(r, json_object_get(d, "expect"), answer, d);
+    answer = (saved != NULL ? conf_answer_lenient : conf_answer)(&v->file, json_object_get(d, "queries"), knob);
+    good = agrees(r, answer, d);
     json_decref(answer);
+    conf_free(&valid);
     conf_stream_close(&s);
     conf_build_end(&b);
     return good;

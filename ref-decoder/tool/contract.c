@@ -13,6 +13,7 @@ typedef struct {
     const char *input, *queries, *dump;
     int         tier[TED4_TIERS];       /* asked for? */
     uint64_t    max_bytes;
+    int         lenient;
     int         failed;                 /* of our own accord: no memory, a file that cannot be written */
 } request;
 
@@ -37,10 +38,10 @@ static int print(json_t *o)
 
 static json_t *capabilities(void)
 {
-    return json_pack("{s:i, s:s, s:s, s:s, s:[s], s:i, s:[s,s,s,s,s,s], s:o, s:b, s:[], s:[s]}", "protocol", 1, "name", "ted4dec",
+    return json_pack("{s:i, s:s, s:s, s:s, s:[s], s:i, s:[s,s,s,s,s,s], s:o, s:b, s:b, s:[], s:[s]}", "protocol", 1, "name", "ted4dec",
                      "version", TED4_VERSION, "spec", TED4_SPEC_VERSION, "profiles", "Main", "max_level", 31, "tiers",
                      "T0", "T1", "T2", "T3", "T4", "T5", "class", ted4_recon_class_x() ? json_string("X") : json_null(),
-                     "strict", 1, "declines", "knobs", "max_alloc_total");
+                     "strict", 1, "lenient", 1, "declines", "knobs", "max_alloc_total");
 }
 
 /* "T0,T3": 0, or -1. */
@@ -66,6 +67,13 @@ static int parse_knob(request *r, const char *text)
     return *end == '\0' && r->max_bytes > 0 ? 0 : -1;
 }
 
+/* "strict", "lenient": 0, or -1. */
+static int parse_mode(request *r, const char *text)
+{
+    r->lenient = strcmp(text, "lenient") == 0;
+    return r->lenient || strcmp(text, "strict") == 0 ? 0 : -1;
+}
+
 static int parse(request *r, int argc, char **argv)
 {
     memset(r, 0, sizeof *r);
@@ -81,6 +89,8 @@ static int parse(request *r, int argc, char **argv)
             r->queries = argv[i + 1];
         else if (strcmp(argv[i], "--knob") == 0)
             bad = parse_knob(r, argv[i + 1]);
+        else if (strcmp(argv[i], "--mode") == 0)
+            bad = parse_mode(r, argv[i + 1]);
         else if (strcmp(argv[i], "--dump") == 0)
             r->dump = argv[i + 1];
         else
@@ -201,26 +211,64 @@ static json_t *refusal(const ted4_error *e)
     return o;
 }
 
+/* The tiers asked for, from T<first> on; *verdict says when memory does not allow it. */
+static json_t *tiers(request *r, int first, const void *data, size_t size, const ted4_scene *s, const ted4_options *o, ted4_status *verdict)
+{
+    json_t *t = json_object();
+
+    for (int i = first; i < TED4_TIERS; i++)
+        if (r->tier[i]) {
+            const char name[3] = { 'T', (char)('0' + i), '\0' };
+
+            json_object_set_new(t, name, i == T5 ? tier_r(r, s, o, verdict) : tier_e(r, data, size, s, o, i));
+        }
+    return t;
+}
+
 static json_t *answer_valid(request *r, const void *data, size_t size, const ted4_scene *s, const ted4_options *o)
 {
-    json_t    *tiers = json_object();
     ted4_error e = { TED4_OK, 0 };
+    json_t    *t = tiers(r, 0, data, size, s, o, &e.code);
 
-    for (int t = 0; t < TED4_TIERS; t++)
-        if (r->tier[t]) {
-            const char name[3] = { 'T', (char)('0' + t), '\0' };
-
-            json_object_set_new(tiers, name, t == T5 ? tier_r(r, s, o, &e.code) : tier_e(r, data, size, s, o, t));
-        }
     if (e.code == TED4_OK)
-        return json_pack("{s:s, s:o}", "result", "valid", "tiers", tiers);
-    json_decref(tiers);
+        return json_pack("{s:s, s:o}", "result", "valid", "tiers", t);
+    json_decref(t);
     return refusal(&e);
+}
+
+/* The strict verdict and beside it what there is in spite of it (spec 3.3). T0 belongs to valid files only. */
+static json_t *answer_salvage(request *r, const ted4_scene *s, const ted4_salvage *what, const ted4_options *o)
+{
+    json_t     *answer = refusal(&what->verdict);
+    ted4_status verdict = TED4_OK;
+    ted4_info   info;
+    char        hash[2 * sizeof info.hash + 1];
+
+    ted4_scene_info(s, &info);
+    for (size_t i = 0; i < sizeof info.hash; i++)
+        snprintf(hash + 2 * i, 3, "%02x", info.hash[i]);
+    json_object_set_new(answer, "salvage", json_pack("{s:I, s:I, s:I, s:I, s:s, s:I, s:s, s:o}", "tiles", (json_int_t)what->n_tiles,
+                                                     "tiles_declared", (json_int_t)what->tiles_declared, "anchors",
+                                                     (json_int_t)info.n_anchors, "anchors_declared", (json_int_t)what->anchors_declared,
+                                                     "error", ted4_status_id(what->stop.code), "offset",
+                                                     (json_int_t)what->stop.offset, "hash", hash, "tiers", tiers(r, 1, NULL, 0, s, o, &verdict)));
+    r->failed |= verdict != TED4_OK;
+    return answer;
+}
+
+static json_t *answer_scene(request *r, const void *data, size_t size, const ted4_scene *s, const ted4_salvage *what)
+{
+    ted4_options o;
+
+    memset(&o, 0, sizeof o);            /* what tiers take is not the scene's */
+    if (s == NULL)
+        return refusal(&what->verdict);
+    return what->verdict.code == TED4_OK ? answer_valid(r, data, size, s, &o) : answer_salvage(r, s, what, &o);
 }
 
 static int answer_run(request *r)
 {
-    ted4_error   e = { TED4_E_IO, 0 };
+    ted4_salvage what = { .verdict = { TED4_E_IO, 0 } };
     ted4_scene  *s = NULL;
     ted4_options o;
     size_t       size;
@@ -229,10 +277,11 @@ static int answer_run(request *r)
 
     memset(&o, 0, sizeof o);
     o.max_bytes = r->max_bytes;
-    if (data != NULL)
-        (void)ted4_decode(data, size, &o, &s, &e);
-    o.max_bytes = 0;                    /* what tiers take is not the scene's */
-    answer = e.code == TED4_OK ? answer_valid(r, data, size, s, &o) : refusal(&e);
+    if (data != NULL && r->lenient)
+        (void)ted4_decode_lenient(data, size, &o, &s, &what);
+    else if (data != NULL)
+        (void)ted4_decode(data, size, &o, &s, &what.verdict);
+    answer = answer_scene(r, data, size, s, &what);
     ted4_scene_free(s);
     free(data);
     if (!r->failed)

@@ -1,9 +1,17 @@
 # rules.awk - annex G: every rule of the chapters and annexes named, in order of appearance. A rule begins a paragraph with its identifier in bold and ends with it.
+# With -v json=1 spec/rules.json: the same, with file and text of each.
 # SPDX-License-Identifier: BSD-2-Clause
 BEGIN {
     split("BIT bitstream DEC decoder LEN lenient-decoder ENC encoder EDT editor VAL validator EXT author DMP test TOL decoder SEC decoder MED player INT decoder ERR decoder ARI decoder REC decoder XXH decoder DEF stream", pair, " ")
     for (i = 1; i in pair; i += 2)
         whom[pair[i]] = pair[i + 1]
+    if (json)
+        print "{\"spec\":\"1.0\",\"license\":\"CC-BY-4.0\",\"rules\":["
+    else
+        heading()
+}
+
+function heading() {
     print "# Annex G (informative): index of rules"
     print ""
     print "Made from the text by `make spec-annexes`. \"stream\" rules are those that a byte string can break; the others bind whom the column names. The word is the strongest of BCP 14 in the rule."
@@ -12,7 +20,22 @@ BEGIN {
     print "|---|---|---|---|---|"
 }
 
-function flush_rule(   n, word, errors, rest, id, kind) {
+# A text between quotes. Backslashes and quotes are all that needs care: there are no control characters in the chapters.
+function quoted(text) {
+    gsub(/\\/, "&&", text)
+    gsub(/"/, "\\\"", text)
+    return "\"" text "\""
+}
+
+function print_json(kind, word, errors) {
+    sub(/^\*\*R-[A-Z]*-[0-9]*\*\* */, "", text)
+    gsub(/`/, "\"", errors)
+    gsub(/ /, ",", errors)
+    printf "%s{\"id\":\"%s\",\"file\":\"%s\",\"section\":\"%s\",\"binds\":\"%s\",\"word\":\"%s\",\"errors\":[%s],\"text\":%s}", next_line, rule, file, section, kind, word, errors, quoted(text)
+    next_line = ",\n"
+}
+
+function flush_rule(   word, errors, rest, id, kind) {
     if (rule == "")
         return
     word = text ~ /MUST/ ? "MUST" : text ~ /SHOULD/ ? "SHOULD" : text ~ /MAY/ ? "MAY" : "none"
@@ -30,11 +53,14 @@ function flush_rule(   n, word, errors, rest, id, kind) {
         kind = whom[kind]
     else
         kind = errors ~ /`(con|hdr|net|pos|ent|att|syn|lvl|unsupported)\./ ? "stream" : "decoder"
-    printf "| %s | %s | %s | %s | %s |\n", rule, section, kind, word, errors
+    if (json)
+        print_json(kind, word, errors)
+    else
+        printf "| %s | %s | %s | %s | %s |\n", rule, section, kind, word, errors
     rule = ""
 }
 
-FNR == 1 { flush_rule(); code = 0 }
+FNR == 1 { flush_rule(); code = 0; file = FILENAME; sub(/.*\//, "", file) }
 /^```/ { code = !code }
 code { next }
 /^#+ / {
@@ -46,4 +72,4 @@ code { next }
 /^\*\*R-[A-Z][A-Z][A-Z]-[0-9][0-9][0-9]\*\*/ { flush_rule(); rule = substr($1, 3, 9); text = $0; next }
 /^$/ { flush_rule() }
 rule != "" { text = text " " $0 }
-END { flush_rule() }
+END { flush_rule(); if (json) print "\n]}" }

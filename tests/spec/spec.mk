@@ -39,6 +39,8 @@ spec-annexes: $B/gen_annex
 	$B/gen_annex b > spec/annex-b-examples.md
 	$B/gen_annex c > spec/annex-c-levels.md
 	sh tests/lint/spec_rules.sh print > spec/annex-g-rules.md
+	sh tests/lint/spec_json.sh print rules > spec/rules.json
+	sh tests/lint/spec_json.sh print errors > spec/errors.json
 .PHONY: spec-annexes
 
 $B/attest: $B/tests/gen/attest.o $B/libted4dec.a

@@ -1,0 +1,370 @@
+#!/bin/sh
+# cross.sh - our decoder, built in every way of builds.txt, against the conformance suite: results.csv and ../CROSS.md. `make cross`.
+# Usage, from anywhere:  conformance/cross/cross.sh [--list | --report] [PATTERN...]
+#     PATTERN...   builds whose name fits one of these shell patterns; all builds without any
+#     --list       says of each build what state it is in, and does nothing
+#     --report     only writes CROSS.md
+# A build is made and run when results.csv has no row of it that passed with these sources, this line of builds.txt and this compiler; comments and spacing of
+# sources do not count. A build whose compiler or runner is missing is skipped, which is said; a row that it has of the same sources stays. May be killed at
+# any moment and called again, and several times at once for different compilers. Exit code: 0, or 1: a build fails, or two of them disagree, or none has
+# passed; 3: wrong usage, no suite, no libraries.
+# Environment: TED4_BUILD (build: where ted4conf is; it works in TED4_BUILD/cross), TED4_RESULTS (conformance: where cross/results.csv and CROSS.md are),
+# TED4_TABLE (conformance/cross/builds.txt).
+# SPDX-License-Identifier: BSD-2-Clause
+set -u
+LC_ALL=C; export LC_ALL
+columns=name,key,compiler,class,vectors,passed,tier_e,class_x,contract_vectors,contract_passed,seconds,verdict
+
+die() { echo "cross.sh: $*" >&2; exit 3; }
+short_hash() { sha256sum | cut -c1-16; }
+
+# enter: settles folders and goes into a copy of what builds are made from, so that a source edited meanwhile does no harm
+enter() {
+    cd "$(dirname "$0")/../.." || exit 3
+    root=$(pwd)
+    mkdir -p "${TED4_BUILD:-build}/cross" "${TED4_RESULTS:-conformance}/cross" || exit 3
+    build=$(cd "${TED4_BUILD:-build}" && pwd)
+    results=$(cd "${TED4_RESULTS:-conformance}" && pwd)
+    csv=$results/cross/results.csv
+    work=$build/cross
+    copy=$work/copy.$$
+    trap 'rm -rf "$copy"' EXIT
+    trap 'exit 3' INT TERM
+    mkdir -p "$copy/conformance" "$copy/bench" && cp -R ref-decoder Makefile "$copy/" && cp bench/sources.awk "$copy/bench/" &&
+        cp -R conformance/tool conformance/cross conformance/lists "$copy/conformance/" &&
+        cp "${TED4_TABLE:-conformance/cross/builds.txt}" "$copy/builds" && cd "$copy" || die "no copy of the sources"
+}
+
+# what_from: the sources, and the flags that the Makefile gives them
+what_from() {
+    strict=$(sed -n 's/^STRICT *= *//p' Makefile)
+    avx512=$(sed -n 's/^.*_avx512\.o: FPFLAGS = \$(STRICT) *//p' Makefile)
+    [ -n "$strict" ] && [ -n "$avx512" ] || die "Makefile: STRICT or the flags of AVX-512 not found"
+    decoder=$(ls ref-decoder/base/*.c ref-decoder/norm/*.c ref-decoder/read/*.c ref-decoder/recon/*.c ref-decoder/kernel/*.c)
+    program="conformance/cross/cross_decoder.c conformance/tool/answer.c conformance/tool/judge.c conformance/tool/text.c
+        ref-decoder/tool/contract.c ref-decoder/tool/tier_hash.c ref-decoder/tool/sha256.c ref-decoder/tool/cli.c"
+    headers=$(for f in answer judge process suite text; do echo "conformance/tool/$f.h"; done
+        for f in contract tier_hash sha256 cli; do echo "ref-decoder/tool/$f.h"; done)
+    # Of zlib what works on bytes in memory.
+    zlib="adler32 compress crc32 deflate inffast inflate inftrees trees zutil"
+    # Wine keeps to itself, says nothing, and asks for nothing.
+    WINEPREFIX=$work/wine WINEDEBUG=-all WINEDLLOVERRIDES='mscoree,mshtml='
+    export WINEPREFIX WINEDEBUG WINEDLLOVERRIDES
+}
+
+# suite_key FOLDER: of the suite's manifest and descriptors; the manifest has hashes of the files
+suite_key() {
+    { cat "$1/SUITE.json"; find "$1/vectors" -name '*.json' | sort | tr '\n' '\0' | xargs -0 cat; } | short_hash
+}
+
+# sources_key: everything that the program is made from, and what it is asked
+sources_key() {
+    {
+        awk -f bench/sources.awk $decoder $program ref-decoder/ted4.h ref-decoder/base/*.[hd]* ref-decoder/norm/*.h ref-decoder/read/*.[hd]* \
+            ref-decoder/recon/*.h ref-decoder/kernel/*.h $headers conformance/cross/windows.h
+        cat conformance/lists/few.txt conformance/cross/wasi.mjs
+        echo "$strict $avx512 $suite"
+    } | short_hash
+}
+
+# split LINE: the fields of builds.txt
+split() {
+    IFS=';' read -r name class compiler flags link runner again contract packages <<END
+$(echo "$1" | sed 's/ *; */;/g')
+END
+    key=$(echo "$name;$class;$compiler;$flags;$link;$runner;$again;$contract;$sources" | short_hash)
+}
+
+# missing: the first command of the build that is not there; nothing: all are
+missing() {
+    for command in "${compiler%% *}" "${runner%% *}"; do
+        [ -z "$command" ] || command -v "$command" >/dev/null || { echo "$command"; return; }
+    done
+}
+
+version() { ${compiler%% *} --version | head -n 1 | tr ',' ' '; }
+
+# state: sets state to passed, kept (tools missing, but a row of these sources is there), skipped, failed, stale or new; row, row_verdict
+state() {
+    row=$(grep "^$name," "$csv" 2>/dev/null | tail -n 1)
+    row_key=$(echo "$row" | cut -d, -f2)
+    row_verdict=$(echo "$row" | cut -d, -f12)
+    if [ -n "$(missing)" ]; then
+        state=skipped
+        [ "$row_key" != "$key" ] || state=kept
+    elif [ -z "$row" ]; then
+        state=new
+    elif [ "$row_key" != "$key" ] || [ "$(echo "$row" | cut -d, -f3)" != "$(version)" ]; then
+        state=stale
+    elif [ "$row_verdict" = passed ]; then
+        state=passed
+    else
+        state=failed
+    fi
+}
+
+# fetch: Debian's sources of zlib, Jansson and xxHash in $work/libraries, without touching this system
+fetch() {
+    [ -e "$work/libraries/ready" ] && return
+    rm -rf "$work/libraries"
+    mkdir -p "$work/libraries/apt/state/lists/partial" "$work/libraries/apt/cache/archives/partial" "$work/libraries/apt/parts" || return 1
+    a=$work/libraries/apt
+    # The system's own Debian sources, asked for source packages.
+    for list in /etc/apt/sources.list.d/debian.sources /etc/apt/sources.list; do
+        [ -s "$list" ] && sed 's/^Types: deb$/Types: deb-src/; s/^deb /deb-src /' "$list" >"$a/parts/$(basename "$list" .list).${list##*.}"
+    done
+    (
+        cd "$work/libraries" || exit 1
+        set -- -o "Dir::State=$a/state" -o "Dir::Cache=$a/cache" -o Dir::Etc::sourcelist=/dev/null -o "Dir::Etc::sourceparts=$a/parts" \
+            -o APT::Sandbox::User=root
+        apt-get -qq "$@" update && apt-get -qq "$@" source zlib jansson xxhash && mv zlib-* zlib && mv jansson-* jansson && mv xxhash-* xxhash
+    ) >"$work/libraries/log" 2>&1 || { cat "$work/libraries/log" >&2; return 1; }
+    (
+        cd "$work/libraries" || exit 1
+        mkdir include
+        cp zlib/zlib.h zlib/zconf.h jansson/src/jansson.h xxhash/xxhash.h include/
+        sed 's/@json_inline@/inline/; s/@json_have_long_long@/1/; s/@json_have_localeconv@/1/; s/@json_have_[a-z]*_builtins@/0/' \
+            jansson/src/jansson_config.h.in >include/jansson_config.h
+        {
+            for header in STDINT UNISTD SYS_TIME SYS_TYPES; do echo "#define HAVE_${header}_H 1"; done
+            for function in STRTOLL SNPRINTF LOCALECONV; do echo "#define HAVE_$function 1"; done
+        } >jansson/src/jansson_private_config.h
+    ) && touch "$work/libraries/ready"
+}
+
+# prepare: the suite with the files that are made on demand, in $suite
+prepare() {
+    [ ! -e "$suite" ] || return 0
+    [ -x "$build/ted4conf" ] || die "$build/ted4conf is missing: make cross"
+    part=$work/part
+    rm -rf "$part"
+    mkdir -p "$part/suite" || return 1
+    cp -R "$root/conformance/vectors" "$root/conformance/SUITE.json" "$part/suite/" || return 1
+    [ "$suite" = "$work/suite-$(suite_key "$part/suite")" ] || die "the suite changes while it is copied"
+    (cd "$root" && "$build/ted4conf" gen --demand -o "$part/made/vectors") >"$part/log" || { cat "$part/log" >&2; return 1; }
+    (cd "$part/made" && find . -name '*.ted4') | while read -r file; do
+        [ -e "$part/suite/$file" ] || cp "$part/made/$file" "$part/suite/$file"
+    done
+    mv "$part/suite" "$suite" && rm -rf "$part"
+}
+
+# objects FOLDER FLAGS SOURCE...: compiled there, one object each
+objects() {
+    mkdir -p "$1" || return 1
+    folder=$1 options=$2
+    shift 2
+    for source in "$@"; do
+        $compiler -std=c11 -D_POSIX_C_SOURCE=200809L $machine -I"$work/libraries/include" $options -c "$source" \
+            -o "$folder/$(basename "$source" .c).o" || return 1
+    done
+}
+
+# make_libraries: once for each compiler, as a distribution would compile them, in $others
+make_libraries() {
+    others=$work/libraries/made-$(echo "$compiler $(version)" | short_hash) from=$work/libraries
+    [ ! -e "$others/ready" ] || return 0
+    objects "$others" "-O2 -w -DHAVE_UNISTD_H" $(for f in $zlib; do echo "$from/zlib/$f.c"; done) &&
+        objects "$others/jansson" "-O2 -w -DHAVE_CONFIG_H -I$from/jansson/src" "$from"/jansson/src/*.c &&
+        objects "$others/xxhash" "-O2 -w" "$from/xxhash/xxhash.c" && touch "$others/ready"
+}
+
+# compile: $here/program
+compile() {
+    here=$work/builds/$name
+    rm -rf "$here"
+    mkdir -p "$here" || return 1
+    machine=
+    case $name in windows-*) machine="-include conformance/cross/windows.h" ;; esac
+    make_libraries || return 1
+    ours="$(echo "$flags" | sed "s/STRICT/$strict/") -Wall -Iref-decoder -iquote conformance/tool"
+    for source in $decoder $program; do
+        case $source in
+        *_avx2.c)   isa=-mavx2 ;;
+        *_avx512.c) isa=$avx512 ;;
+        *)          isa= ;;
+        esac
+        case $name in
+        x86-64-*) ;;
+        windows-*) isa="$isa${isa:+ -Wa,-muse-unaligned-vector-move}" ;;
+        *) isa= ;;
+        esac
+        objects "$here/ours" "$ours $isa" "$source" || return 1
+    done
+    $compiler "$here"/ours/*.o "$others"/*.o "$others"/*/*.o $link -lm -o "$here/program"
+    [ ! -e "$here/program.exe" ] || mv "$here/program.exe" "$here/program"
+}
+
+# judge FILE [NAME=VALUE]: the whole suite in one process; what it prints in FILE
+judge() {
+    env ${2:-NOTHING=} $runner "$here/program" "$suite" 2>"$1.stderr" | tr -d '\r' >"$1"
+    grep -q '^tier-e ' "$1" || { echo "does not come to its end: $(tail -n 1 "$1.stderr")"; return 1; }
+    grep '^fail ' "$1" >"$1.failures" && { echo "$(grep -c . "$1.failures") vectors fail: $(cut -d' ' -f2- "$1.failures" | head -n 3 | tr ',\n' '; ')"; return 1; }
+    return 0
+}
+
+# by_contract: the suite, or few of it, by processes of their own; sets contract_vectors, contract_passed
+by_contract() {
+    list="--list conformance/lists/few.txt"
+    [ "$contract" = few ] || list=
+    memory=; [ -z "$runner" ] || memory="--memory 0"
+    TMPDIR=$here "$build/ted4conf" run --suite "$suite" --once -j 1 --timeout 600 $memory $list --decoder "$runner $here/program" \
+        --json "$here/contract.json" >"$here/contract.log" 2>&1
+    code=$?
+    contract_passed=$(sed -n 's/^.*: \([0-9]*\) passed, .*/\1/p' "$here/contract.log")
+    contract_vectors=$(sed -n 's/^.*: \([0-9]*\) passed, \([0-9]*\) failed, \([0-9]*\) without answer, \([0-9]*\) missing.*/\1 \2 \3 \4/p' "$here/contract.log" |
+        awk '{ print $1 + $2 + $3 + $4 }')
+    [ $code = 0 ] || { echo "by the contract: $(tail -n 1 "$here/contract.log" | tr ',' ';')"; return 1; }
+}
+
+# try: compiles and runs the build; sets verdict and the columns
+try() {
+    claimed= vectors= passed= tier_e= class_x= contract_vectors= contract_passed=
+    if ! compile >"$work/$name.log" 2>&1; then
+        verdict="does not build: $(grep -m 1 -i -E 'error|cannot' "$work/$name.log" | tr ',' ';')"
+        return
+    fi
+    grep -i warning "$work/$name.log" | head -n 5
+    verdict=$(judge "$here/lines")
+    claimed=$(sed -n 's/^class //p' "$here/lines")
+    vectors=$(sed -n 's/^vectors \([0-9]*\) .*/\1/p' "$here/lines")
+    passed=$(sed -n 's/^vectors .* passed \([0-9]*\) .*/\1/p' "$here/lines")
+    tier_e=$(sed -n 's/^tier-e //p' "$here/lines")
+    class_x=$(sed -n 's/^class-x //p' "$here/lines")
+    [ -z "$verdict" ] || return
+    [ "$claimed" = "$class" ] || { verdict="claims class $claimed; should claim $class"; return; }
+    if [ -n "$again" ]; then
+        verdict=$(judge "$here/again" "$again")
+        [ -z "$verdict" ] || { verdict="with $again: $verdict"; return; }
+        cmp -s "$here/lines" "$here/again" || { verdict="not the same with $again"; return; }
+    fi
+    by_contract >"$here/why" || { verdict=$(cat "$here/why"); return; }
+    verdict=passed
+}
+
+# put_row: in place of an earlier one
+put_row() {
+    (
+        flock 9
+        {
+            echo $columns
+            { grep -v -e "^$name," -e "^name," "$csv" 2>/dev/null
+              echo "$name,$key,$(version),$claimed,$vectors,$passed,$tier_e,$class_x,$contract_vectors,$contract_passed,$seconds,$verdict"; } | sort
+        } >"$csv.new" && mv "$csv.new" "$csv"
+    ) 9>"$work/lock"
+}
+
+chosen() {
+    [ -n "$patterns" ] || return 0
+    set -f
+    for pattern in $patterns; do
+        case $name in $pattern) set +f; return 0 ;; esac
+    done
+    set +f
+    return 1
+}
+
+one() {
+    state
+    case $state in
+    passed)  echo "passed   $name (as results.csv says)"; return ;;
+    kept)    echo "kept     $name: no $(missing) here; results.csv has a row of the same sources"; return ;;
+    skipped) echo "skipped  $name: no $(missing) (needs $packages)"; return ;;
+    esac
+    begun=$(date +%s)
+    try
+    seconds=$(($(date +%s) - begun))
+    put_row
+    if [ "$verdict" = passed ]; then
+        echo "passed   $name, $seconds s"
+        rm -rf "$here"
+    else
+        echo "FAILED   $name: $verdict"
+    fi
+}
+
+# result_line: the build's line of CROSS.md; its hashes go into $work/hashes
+result_line() {
+    state
+    case $state in
+    passed)  said=passed ;;
+    kept)    said=$row_verdict ;;
+    failed)  said="**failed**: $row_verdict" ;;
+    stale)   said="not run since sources, build or compiler changed" row= ;;
+    skipped) said="skipped: no $(missing)" row= ;;
+    *)       said="not run" row= ;;
+    esac
+    [ -z "$row" ] || echo "$row" >>"$copy/hashes"
+    echo "$row" | awk -F, -v name="$name" -v said="$said" '{ print "| " name " | " $3 " | " $4 " | " ($5 == "" ? "" : $6 " of " $5) " | " \
+        ($9 == "" ? "" : $10 " of " $9) " | " ($7 == "" ? "" : "`" substr($7, 1, 8) "`") " | " ($8 == "" ? "" : "`" substr($8, 1, 8) "`") " | " $11 " | " said " |" }'
+}
+
+# summary: of all rows in $copy/hashes
+summary() {
+    awk -F, '$12 == "passed" { n++; if ($4 == "X") x++ }
+        $7 != "" && !($7 in e) { e[$7]; n_e++; one_e = $7 }
+        $8 != "" && !($8 in c) { c[$8]; n_c++; one_c = $8 }
+        END { print n + 0 " builds passed, " NR - n " failed."
+              print "Tier E: " (n_e == 1 ? "one hash, `" one_e "`, in every build." : n_e + 0 " different hashes.")
+              print "Class X: " (n_c == 1 ? "one hash, `" one_c "`, in all " x + 0 " passing builds that claim it." : n_c + 0 " different hashes.") }' "$copy/hashes"
+}
+
+# agree: at least one build has passed, none fails, and no two disagree
+agree() {
+    [ "$(cut -d, -f12 "$copy/hashes" | sort -u)" = passed ] && [ "$(cut -d, -f7 "$copy/hashes" | sort -u | grep -c .)" = 1 ] &&
+        [ "$(cut -d, -f8 "$copy/hashes" | grep . | sort -u | grep -c .)" -le 1 ]
+}
+
+report() {
+    : >"$copy/hashes"
+    each | while read -r line; do split "$line"; result_line; done >"$copy/rows"
+    {
+        sed '/^<!-- results -->$/,$d' conformance/cross/intro.md
+        summary
+        echo
+        echo "| build | compiler | class claimed | vectors | by the contract | Tier E | class X | seconds | result |"
+        echo "|---|---|---|---|---|---|---|---|---|"
+        cat "$copy/rows"
+        sed '1,/^<!-- results -->$/d; /^<!-- builds -->$/,$d' conformance/cross/intro.md
+        echo "| build | compiler | flags | linked with | run by | Debian packages beyond \`make deps\` |"
+        echo "|---|---|---|---|---|---|"
+        each | while read -r line; do
+            split "$line"
+            echo "| $name | \`$compiler\` | \`$flags\` | ${link:+\`$link\`} | ${runner:+\`$runner\`} | $packages |"
+        done
+        sed '1,/^<!-- builds -->$/d' conformance/cross/intro.md
+    } >"$results/CROSS.md.$$" && mv "$results/CROSS.md.$$" "$results/CROSS.md"
+}
+
+each() { grep -v -e '^#' -e '^$' builds; }
+
+main() {
+    patterns= do=run
+    for argument; do
+        case $argument in
+        --list)   do=list ;;
+        --report) do=report ;;
+        -*)       die "$argument: no such option" ;;
+        *)        patterns="$patterns $argument" ;;
+        esac
+    done
+    enter
+    what_from
+    suite=suite-$(suite_key "$root/conformance")
+    sources=$(sources_key)
+    suite=$work/$suite
+    [ $do != run ] || (flock 9; fetch && prepare) 9>"$work/lock" || die "no suite, or no sources of zlib, Jansson and xxHash from Debian"
+    each >"$copy/todo"
+    while read -r line <&3; do
+        split "$line"
+        chosen || continue
+        case $do in
+        run)  one ;;
+        list) state; echo "$state $name" ;;
+        esac
+    done 3<"$copy/todo"
+    [ $do = list ] || report
+    [ $do != run ] || { summary; agree; }
+}
+
+main "$@"
+exit

@@ -1,0 +1,90 @@
+#!/bin/sh
+# test_cross.sh - the bookkeeping of conformance/cross/cross.sh, with a compiler that compiles nothing and makes programs of several moods: what passes is not
+# run again, what lacks a tool is skipped and never passed, failures and crashes are named, wrong claims and hashes that differ fail. Speaks as cmocka
+# programs do; run by `make test` from the project's root.
+# SPDX-License-Identifier: BSD-2-Clause
+set -u
+export LC_ALL=C
+if [ ! -x "${TED4_BUILD:-}/ted4conf" ] || [ ! -x "$TED4_BUILD/ted4dec" ]; then
+    echo "skipped: TED4_BUILD has no ted4conf or no ted4dec"
+    echo "[  SKIPPED ] cross"
+    exit 0
+fi
+out=$(mktemp -d)
+trap 'rm -rf "$out"' EXIT
+bad=0
+
+ok()   { echo "[       OK ] $1"; }
+fail() { echo "[  FAILED  ] $1: $2"; bad=1; }
+# cross NAME WANTED-STATUS WANTED-TEXT: runs it on the table as it is
+cross() {
+    PATH=$out/bin:$PATH TED4_BUILD=$out/build TED4_RESULTS=$out TED4_TABLE=$out/table conformance/cross/cross.sh >"$out/said" 2>&1
+    status=$?
+    if [ $status -eq "$2" ] && grep -qF "$3" "$out/said"; then ok "$1"; else fail "$1" "status $status: $(cat "$out/said")"; fi
+}
+# build NAME CLASS COMPILER FLAGS: a line of the table
+build() { echo "$1; $2; $3; $4; ; ; ; few; package-of-$1" >>"$out/table"; }
+
+# The mood of a program is the flag -Dmood=, which it gets with its first object.
+key=$({ cat conformance/SUITE.json; find conformance/vectors -name '*.json' | sort | tr '\n' '\0' | xargs -0 cat; } | sha256sum | cut -c1-16)
+mkdir -p "$out/bin" "$out/build/cross/libraries" "$out/build/cross/suite-$key"
+touch "$out/build/cross/libraries/ready"
+cp -R conformance/vectors conformance/SUITE.json "$out/build/cross/suite-$key/"
+ln -s "$(cd "$TED4_BUILD" && pwd)/ted4conf" "$out/build/ted4conf"
+cat >"$out/bin/fakecc" <<END
+#!/bin/sh
+[ "\$1" != --version ] || { echo "fakecc 1"; exit; }
+mood=good object=
+for a; do
+    case \$a in
+    -Dmood=*) mood=\${a#-Dmood=} ;;
+    *.o) object=\${object:-\$a} ;;
+    esac
+    [ "\${last:-}" != -o ] || target=\$a
+    last=\$a
+done
+case "\$*" in
+*' -c '*) echo "\$mood" >"\$target"; exit ;;
+esac
+{ echo '#!/bin/sh'; echo "mood=\$(cat "\$object")"; cat "$out/program"; } >"\$target"
+chmod +x "\$target"
+END
+cat >"$out/program" <<END
+case \$1 in --ted4-*) exec "$(cd "$TED4_BUILD" && pwd)/ted4dec" "\$@" ;; esac
+echo "at AAA-1" >&2
+echo "class X"
+[ \$mood != wrong ] || echo "fail AAA-1: fail: T3: another hash, or none"
+echo "at AAA-2" >&2
+[ \$mood != crash ] || kill -SEGV \$\$
+if [ \$mood = wrong ]; then echo "vectors 2 passed 1 failed 1"; else echo "vectors 2 passed 2 failed 0"; fi
+if [ \$mood = other ]; then echo "tier-e 22"; else echo "tier-e 11"; fi
+echo "class-x 33"
+END
+chmod +x "$out/bin/fakecc"
+
+build one X fakecc -Dmood=good
+cross passes 0 'passed   one, '
+cross not_again 0 'passed   one (as results.csv says)'
+build two X no-such-cc -O3
+cross skipped 0 'skipped  two: no no-such-cc (needs package-of-two)'
+if grep -q '| two |.*skipped: no no-such-cc' "$out/CROSS.md" && ! grep -q '^two,' "$out/cross/results.csv"; then
+    ok not_passed
+else
+    fail not_passed "$(cat "$out/CROSS.md")"
+fi
+build one-more X fakecc -Dmood=other
+cross differs 1 'Tier E: 2 different hashes.'
+sed -i /one-more/d "$out/table"
+build wrong X fakecc -Dmood=wrong
+cross named 1 'FAILED   wrong: 1 vectors fail: AAA-1: fail: T3'
+sed -i /wrong/d "$out/table"
+build crash X fakecc -Dmood=crash
+cross crash 1 'FAILED   crash: does not come to its end: at AAA-2'
+sed -i /crash/d "$out/table"
+build claim none fakecc -Dmood=good
+cross claim 1 'FAILED   claim: claims class X; should claim none'
+sed -i /claim/d "$out/table"
+sed -i 's/mood=good/mood=good -O2/' "$out/table"
+rm "$out/bin/fakecc"
+cross stale 1 'skipped  one: no fakecc'
+exit $bad
