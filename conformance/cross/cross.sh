@@ -5,9 +5,10 @@
 #     --list       says of each build what state it is in, and does nothing
 #     --report     only writes CROSS.md
 # A build is made and run when results.csv has no row of it that passed with these sources, this line of builds.txt and this compiler; comments and spacing of
-# sources do not count. A build whose compiler or runner is missing is skipped, which is said; a row that it has of the same sources stays. May be killed at
-# any moment and called again, and several times at once for different compilers. Exit code: 0, or 1: a build fails, or two of them disagree, or none has
-# passed; 3: wrong usage, no suite, no libraries.
+# sources do not count. The judge counts only for builds that are asked everything by the contract: two hashes say what a build answers, so that one build
+# judged again speaks for all that have the same. A build whose compiler or runner is missing is skipped, which is said; a row that it has of the same sources
+# stays. May be killed at any moment and called again, and several times at once for different compilers. Exit code: 0, or 1: a build fails, or two of them
+# disagree, or none has passed; 3: wrong usage, no suite, no libraries.
 # Environment: TED4_BUILD (build: where ted4conf is; it works in TED4_BUILD/cross), TED4_RESULTS (conformance: where cross/results.csv and CROSS.md are),
 # TED4_TABLE (conformance/cross/builds.txt).
 # SPDX-License-Identifier: BSD-2-Clause
@@ -41,9 +42,10 @@ what_from() {
     avx512=$(sed -n 's/^.*_avx512\.o: FPFLAGS = \$(STRICT) *//p' Makefile)
     [ -n "$strict" ] && [ -n "$avx512" ] || die "Makefile: STRICT or the flags of AVX-512 not found"
     decoder=$(ls ref-decoder/base/*.c ref-decoder/norm/*.c ref-decoder/read/*.c ref-decoder/recon/*.c ref-decoder/kernel/*.c)
-    program="conformance/cross/cross_decoder.c conformance/tool/answer.c conformance/tool/judge.c conformance/tool/text.c
+    program="conformance/cross/cross_decoder.c conformance/tool/answer.c conformance/tool/text.c
         ref-decoder/tool/contract.c ref-decoder/tool/tier_hash.c ref-decoder/tool/sha256.c ref-decoder/tool/cli.c"
-    headers=$(for f in answer judge process suite text; do echo "conformance/tool/$f.h"; done
+    judge="conformance/tool/judge.c conformance/tool/judge.h conformance/tool/process.h conformance/tool/suite.h"
+    headers=$(for f in answer text; do echo "conformance/tool/$f.h"; done
         for f in contract tier_hash sha256 cli; do echo "ref-decoder/tool/$f.h"; done)
     # Of zlib what works on bytes in memory.
     zlib="adler32 compress crc32 deflate inffast inflate inftrees trees zutil"
@@ -72,7 +74,9 @@ split() {
     IFS=';' read -r name class compiler flags link runner again contract packages <<END
 $(echo "$1" | sed 's/ *; */;/g')
 END
-    key=$(echo "$name;$class;$compiler;$flags;$link;$runner;$again;$contract;$sources" | short_hash)
+    judge_key=
+    [ "$contract" != all ] || judge_key=$(awk -f bench/sources.awk $judge | short_hash)
+    key=$(echo "$name;$class;$compiler;$flags;$link;$runner;$again;$contract;$sources$judge_key" | short_hash)
 }
 
 # missing: the first command of the build that is not there; nothing: all are
@@ -177,7 +181,7 @@ compile() {
     case $name in windows-*) machine="-include conformance/cross/windows.h" ;; esac
     make_libraries || return 1
     ours="$(echo "$flags" | sed "s/STRICT/$strict/") -Wall -Iref-decoder -iquote conformance/tool"
-    for source in $decoder $program; do
+    for source in $decoder $program conformance/tool/judge.c; do
         case $source in
         *_avx2.c)   isa=-mavx2 ;;
         *_avx512.c) isa=$avx512 ;;
@@ -289,11 +293,11 @@ result_line() {
     passed)  said=passed ;;
     kept)    said=$row_verdict ;;
     failed)  said="**failed**: $row_verdict" ;;
-    stale)   said="not run since sources, build or compiler changed" row= ;;
+    stale)   said="stale: $row_verdict with other sources, suite, flags or compiler" ;;
     skipped) said="skipped: no $(missing)" row= ;;
     *)       said="not run" row= ;;
     esac
-    [ -z "$row" ] || echo "$row" >>"$copy/hashes"
+    [ -z "$row" ] || [ $state = stale ] || echo "$row" >>"$copy/hashes"
     echo "$row" | awk -F, -v name="$name" -v said="$said" '{ print "| " name " | " $3 " | " $4 " | " ($5 == "" ? "" : $6 " of " $5) " | " \
         ($9 == "" ? "" : $10 " of " $9) " | " ($7 == "" ? "" : "`" substr($7, 1, 8) "`") " | " ($8 == "" ? "" : "`" substr($8, 1, 8) "`") " | " $11 " | " said " |" }'
 }

@@ -2,7 +2,8 @@
  *     cross_decoder --ted4-...     the driver contract of conformance/README.md, as ted4dec answers it
  *     cross_decoder SUITE          judges every vector of SUITE/SUITE.json, in one process, as ted4conf would; files made on demand have to be there.
  * Prints the class claimed, a line a failure, the counts, and two hashes (XXH3-128): tier-e of all verdicts and of T0 to T4, and, where class X is claimed,
- * class-x of all T5. Two builds agree when these are equal. On stderr: each vector before it is judged, so that a crash has a name. Exit code: 0 all pass, 1 not, 3 no such suite.
+ * class-x of all T5. Two builds agree when these are equal. On stderr: each vector before it is judged, so that a crash has a name.
+ * Exit code: 0 all pass, 1 not, 3 no such suite.
  * SPDX-License-Identifier: BSD-2-Clause */
 #include <stdio.h>
 #include <stdlib.h>

@@ -99,6 +99,11 @@ int conf_judge_declines(const json_t *capabilities, const json_t *d)
     return 0;
 }
 
+int conf_expects(const json_t *d, const char *result)
+{
+    return strcmp(text_of(json_object_get(d, "expect"), "result"), result) == 0;
+}
+
 int conf_judge_lenient(const json_t *capabilities)
 {
     return json_is_true(json_object_get(capabilities, "lenient"));

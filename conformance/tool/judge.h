@@ -21,6 +21,8 @@ json_t *conf_judge_document(const conf_process *p, conf_verdict *v);
 int     conf_judge_capabilities(const json_t *capabilities, conf_verdict *v);
 /* May the decoder leave this vector out? */
 int     conf_judge_declines(const json_t *capabilities, const json_t *descriptor);
+/* Is that the result that a descriptor expects? */
+int     conf_expects(const json_t *descriptor, const char *result);
 /* Does the decoder claim lenient mode (spec 3.3)? */
 int     conf_judge_lenient(const json_t *capabilities);
 /* The hashes that got gives, at least one of them: 1: those of want. */

@@ -24,8 +24,7 @@ static const char *text_of(const json_t *o, const char *key)
 
 int conf_class_t_asked(const json_t *capabilities, const json_t *d)
 {
-    return strcmp(text_of(capabilities, "class"), "T") == 0 && strcmp(text_of(json_object_get(d, "expect"), "result"), "valid") == 0
-        && json_array_size(json_object_get(d, "queries")) > 0;
+    return strcmp(text_of(capabilities, "class"), "T") == 0 && conf_expects(d, "valid") && json_array_size(json_object_get(d, "queries")) > 0;
 }
 
 static class_t_query query_of(const json_t *o)

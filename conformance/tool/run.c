@@ -1,5 +1,5 @@
 /* run.c - see run.h. Each vector is copied into a folder of its own, given to the decoder twice, and both answers have to agree. A decoder that claims lenient
- * mode reads valid vectors the second time in that mode, and those that say what can be salvaged a third time.
+ * mode is asked about vectors that are not invalid the second time in that mode, and those that say what can be salvaged a third time.
  * SPDX-License-Identifier: BSD-2-Clause */
 #include "run.h"
 
@@ -121,18 +121,11 @@ static int fetch(runner *w, size_t i, conf_bytes *b)
     return 1;
 }
 
-static int expects_valid(const json_t *descriptor)
-{
-    const char *const result = json_string_value(json_object_get(json_object_get(descriptor, "expect"), "result"));
-
-    return result != NULL && strcmp(result, "valid") == 0;
-}
-
 /* Is the run of a slot in lenient mode? */
 static int lenient(const runner *w, const slot *s)
 {
     return s->run == RUN_LENIENT
-        || (s->run == RUN_SECOND && conf_judge_lenient(w->r->capabilities) && expects_valid(w->r->entry[s->entry].descriptor));
+        || (s->run == RUN_SECOND && conf_judge_lenient(w->r->capabilities) && !conf_expects(w->r->entry[s->entry].descriptor, "invalid"));
 }
 
 /* Removes what decoders have left in the folder of --dump, as far as it is files. */
@@ -384,7 +377,7 @@ static void sum_up(conf_run_result *r)
 {
     for (size_t i = 0; i < r->n; i++) {
         r->count[r->verdict[i].outcome]++;
-        r->valid_passed += r->verdict[i].outcome == CONF_PASS && expects_valid(r->entry[i].descriptor);
+        r->valid_passed += r->verdict[i].outcome == CONF_PASS && conf_expects(r->entry[i].descriptor, "valid");
     }
     r->passed = r->capabilities != NULL && r->count[CONF_FAIL] + r->count[CONF_NO_ANSWER] + r->count[CONF_MISSING] == 0
              && r->valid_passed > 0;
