@@ -90,12 +90,18 @@ int ted4_run_log_open(ted4_run_log *l, const char *path, const ted4_trainer *t, 
     l->file = open(path, O_WRONLY | O_CREAT | O_APPEND | (keep ? 0 : O_TRUNC), 0666);
     if (l->file < 0)
         return say(path, strerror(errno), why, why_size);
-    if (keep && is_regular(l->file) && cut(path, l->file, t->iteration, why, why_size) != 0) {
+    if (keep && ted4_run_log_cut(l, t, why, why_size) != 0) {
         close(l->file);
         l->file = -1;
         return -1;
     }
     return 0;
+}
+
+int ted4_run_log_cut(ted4_run_log *l, const ted4_trainer *t, char *why, size_t why_size)
+{
+    ted4_run_log_move(l, t);
+    return is_regular(l->file) ? cut(l->path, l->file, t->iteration, why, why_size) : 0;
 }
 
 void ted4_run_log_skip(ted4_run_log *l)

@@ -90,6 +90,13 @@ static int keep_stage1(ted4_training *t)
     return ted4_checkpoint_save(tr, path) != 0 ? fail(t) : 0;
 }
 
+/* The trainer has begun again: its log, too. */
+static int start_over(ted4_training *t)
+{
+    ted4_run_log_tick(&t->log, t->trainer);
+    return ted4_run_log_cut(&t->log, t->trainer, t->why, sizeof t->why);
+}
+
 int ted4_training_go(ted4_training *t, uint64_t steps)
 {
     ted4_trainer *tr = t->trainer;
@@ -103,7 +110,9 @@ int ted4_training_go(ted4_training *t, uint64_t steps)
             return -1;
         if (ted4_trainer_step(tr) != 0)
             return fail(t);
-        /* A step may be many: what a probe has done counts. */
+        /* A step may be many: what a probe has done counts. Or it began again. */
+        if (tr->iteration <= before && start_over(t) != 0)
+            return -1;
         if ((tr->iteration / REPORT_EVERY > before / REPORT_EVERY || tr->iteration == steps) && log_step(t) != 0)
             return -1;
         if (ted4_seconds() - saved >= t->request->checkpoint_every) {

@@ -140,10 +140,11 @@ const float *ted4_colour_apply(ted4_colour *c, uint32_t camera, const float *ima
     return c->image;
 }
 
-/* The inverse of I + A by rows, from cofactors. -1: determinant so small that noise would take over. */
+/* Of I + A. */
 #define LEAST_DETERMINANT 0.1
 
-static int invert(const float *a, double inverse[9])
+/* From cofactors. */
+int ted4_colour_invert(const float *a, double inverse[9])
 {
     double m[9], det = 0;
 
@@ -192,7 +193,7 @@ const uint8_t *ted4_colour_undo(ted4_colour *c, uint32_t camera, const uint8_t *
     undo_job     j = { .picture = picture, .to = c->seen, .pixels = pixels,
                        .v = { (double)map[ROW_V], (double)map[ROW_V + 1], (double)map[ROW_V + 2] } };
 
-    if (invert(map, j.inverse) != 0)
+    if (ted4_colour_invert(map, j.inverse) != 0)
         return picture;
     ted4_parallel_for(p, n_bands(pixels), undo_band, &j);
     return c->seen;
@@ -290,6 +291,17 @@ static double middle(ted4_colour *c, int k)
     return sum / (double)(n - 2 * out);
 }
 
+void ted4_colour_centre(ted4_colour *c)
+{
+    for (int k = 0; k < N; k++) {
+        const float off = (float)middle(c, k);
+
+        for (size_t i = 0; i < c->n_cameras; i++)
+            if (c->corrected[i])
+                c->value[i][k] -= off;
+    }
+}
+
 void ted4_colour_update(ted4_colour *c, uint32_t camera, const ted4_colour_map gradient,
                         double rate, double penalty)
 {
@@ -300,11 +312,5 @@ void ted4_colour_update(ted4_colour *c, uint32_t camera, const ted4_colour_map g
         g[k] = gradient[k] + (float)(2.0 * penalty) * x[k];
     ted4_adam(x, c->m[camera], c->v[camera], g, N, (float)rate,
               ted4_adam_bias_make(++c->steps[camera]));
-    for (int k = 0; k < N; k++) {
-        const float off = (float)middle(c, k);
-
-        for (size_t i = 0; i < c->n_cameras; i++)
-            if (c->corrected[i])
-                c->value[i][k] -= off;
-    }
+    ted4_colour_centre(c);
 }

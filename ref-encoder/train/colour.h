@@ -23,6 +23,7 @@ typedef float ted4_colour_map[TED4_COLOUR_VALUES];
 typedef struct {
     size_t           n_cameras;     /* of the dataset; 0: nothing is corrected, and no memory held */
     size_t           n_corrected;   /* cameras with a correction: 0, or at least 2 */
+    int              matched;       /* cameras differ, and how was known before training (colour_match.h) */
     uint8_t         *corrected;     /* owned, [n_cameras] 0 or 1 */
     uint64_t        *steps;         /* owned, [n_cameras] steps of Adam */
     ted4_colour_map *value, *m, *v; /* owned, [n_cameras]; m, v: Adam's moments */
@@ -36,6 +37,12 @@ typedef struct {
  * camera that the scene could not say as well. 0, or -1: no memory (ted4_colour_finish is still safe). */
 int  ted4_colour_init(ted4_colour *c, const ted4_dataset *d);
 void ted4_colour_finish(ted4_colour *c);
+
+/* Brings the middle of all maps back to the identity. */
+void ted4_colour_centre(ted4_colour *c);
+
+/* (I + A)^-1 of a map, by rows. -1: it can hardly be turned round, and noise would take over. */
+int  ted4_colour_invert(const float *map, double inverse[9]);
 
 /* Is this camera corrected? */
 int  ted4_colour_has(const ted4_colour *c, uint32_t camera);
@@ -51,7 +58,7 @@ const uint8_t *ted4_colour_undo(ted4_colour *c, uint32_t camera, const uint8_t *
  * number of threads. */
 void ted4_colour_backward(ted4_colour *c, uint32_t camera, const float *image, size_t pixels, const ted4_parallel *p, float *d_image, ted4_colour_map gradient);
 
-/* One step of Adam for this camera on L + penalty (sum of A^2 and v^2), then the middle of all maps back to the identity. */
+/* One step of Adam for this camera on L + penalty (sum of A^2 and v^2), then ted4_colour_centre. */
 void ted4_colour_update(ted4_colour *c, uint32_t camera, const ted4_colour_map gradient, double rate, double penalty);
 
 #endif

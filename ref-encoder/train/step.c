@@ -154,11 +154,11 @@ int ted4_trainer_draw(ted4_trainer *t, const ted4_picture *pic, ted4_view *v, fl
     return 0;
 }
 
-/* Are colours of this picture's camera corrected by now? Before, the scene learns what most cameras agree about. */
+/* Are colours of this picture's camera corrected by now? Where nothing is known about them, the scene first learns what most cameras agree about. */
 static int is_corrected(const ted4_trainer *t, const ted4_picture *pic)
 {
     return ted4_colour_has(&t->colour, pic->camera_id) &&
-           (t->stage2 || (double)t->iteration >= t->opt.colour_start * (double)t->opt.stage1);
+           (t->colour.matched || t->stage2 || (double)t->iteration >= t->opt.colour_start * (double)t->opt.stage1);
 }
 
 /* t->image with the colours of the picture's camera. */

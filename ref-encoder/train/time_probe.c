@@ -1,6 +1,7 @@
 /* time_probe.c - does the scene need time at all? Early in stage 1 the trainer goes on for a while as it is, then from the same point and through the same pictures
  * with the clock stopped: all networks keep their room, but every picture is drawn at time 0 and everything is always there. If that is as good, motion and
- * activation would only fit noise, and training goes on without them. See trainer.h.
+ * activation would only fit noise, and training begins again without them, so that the file is the one of an encoder that knows no time: what grew while things
+ * could move is not what a still scene needs. See trainer.h.
  * SPDX-License-Identifier: BSD-2-Clause */
 #include <math.h>
 
@@ -53,7 +54,7 @@ int ted4_probe_time(ted4_trainer *t)
     if (!bad && timed < (1.0 - WORTH) * still)
         bad = ted4_snapshot_restore(t, &with) != 0;
     else if (!bad)
-        bad = ted4_snapshot_restore(t, &start) != 0 || ted4_stage_relayout(t, &h) != 0;
+        bad = ted4_trainer_restart(t, &h) != 0;
     t->probe_loss[0] = timed;
     t->probe_loss[1] = still;
     ted4_snapshot_free(&start);

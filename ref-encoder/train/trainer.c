@@ -7,6 +7,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "colour_match.h"
 #include "header.h"
 #include "random.h"
 #include "seed.h"
@@ -82,6 +83,21 @@ static int make_images(ted4_trainer *t)
     return 0;
 }
 
+/* Everything at its start, in the layout of h. */
+static int begin(ted4_trainer *t, const ted4_header *h)
+{
+    ted4_layout_make(&t->layout, h);
+    if (ted4_trainer_rebuild(t) != 0 || make_order(t) != 0 || make_images(t) != 0)
+        return -1;
+    if (ted4_anchors_init(&t->anchors, &t->layout) != 0 ||
+        ted4_seed_anchors(&t->anchors, &t->layout, t->data, &t->opt, &t->cell) != 0)
+        return ted4_trainer_fail(t, "no memory for the anchors");
+    if (t->anchors.n == 0)
+        return ted4_trainer_fail(t, "no initial point lies inside the scene's bounds");
+    ted4_seed_networks(t->net, &t->layout, t->opt.seed);
+    return ted4_colour_match(t) != 0 ? -1 : ted4_seed_transients(t);
+}
+
 int ted4_trainer_init(ted4_trainer *t, const ted4_train_options *o, ted4_dataset *d,
                       const ted4_parallel *p)
 {
@@ -92,16 +108,23 @@ int ted4_trainer_init(ted4_trainer *t, const ted4_train_options *o, ted4_dataset
     t->data = d;
     t->parallel = p;
     ted4_header_make(&h, o, d);
-    ted4_layout_make(&t->layout, &h);
-    if (ted4_trainer_rebuild(t) != 0 || make_order(t) != 0 || make_images(t) != 0)
-        return -1;
-    if (ted4_anchors_init(&t->anchors, &t->layout) != 0 ||
-        ted4_seed_anchors(&t->anchors, &t->layout, d, o, &t->cell) != 0)
-        return ted4_trainer_fail(t, "no memory for the anchors");
-    if (t->anchors.n == 0)
-        return ted4_trainer_fail(t, "no initial point lies inside the scene's bounds");
-    ted4_seed_networks(t->net, &t->layout, o->seed);
-    return ted4_seed_transients(t);
+    return begin(t, &h);
+}
+
+int ted4_trainer_restart(ted4_trainer *t, const ted4_header *h)
+{
+    const ted4_train_options opt = t->opt;
+    ted4_dataset            *data = t->data;
+    const ted4_parallel     *parallel = t->parallel;
+    const double             seconds = t->seconds;
+
+    ted4_trainer_finish(t);
+    t->opt = opt;
+    t->data = data;
+    t->parallel = parallel;
+    t->seconds = seconds;
+    t->probed = 1;
+    return begin(t, h);
 }
 
 void ted4_trainer_finish(ted4_trainer *t)

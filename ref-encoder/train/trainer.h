@@ -77,6 +77,8 @@ typedef struct {
 int  ted4_trainer_init(ted4_trainer *t, const ted4_train_options *o,
                        ted4_dataset *d, const ted4_parallel *p);
 void ted4_trainer_finish(ted4_trainer *t);
+/* The same from the first step on, in the layout of h, and without a probe; h is none of t's own. 0, or -1 with t->message. */
+int  ted4_trainer_restart(ted4_trainer *t, const ted4_header *h);
 
 /* Total steps of both stages. */
 uint64_t ted4_trainer_total(const ted4_trainer *t);
@@ -132,7 +134,7 @@ int  ted4_integer_rate(ted4_trainer *t, double *bits);
 /* The model in the layout of h, which has the same heads and the same or fewer types of values; optimiser and statistics go along. Prior
  * networks are zero afterwards. */
 int  ted4_stage_relayout(ted4_trainer *t, const ted4_header *h);
-/* Does the scene need time? Trains a while with and without, and goes on with what was worth it: time_probe.c */
+/* Does the scene need time? Trains a while with and without; then it goes on where it was worth it, and else begins again without time, at step 0: time_probe.c */
 int  ted4_probe_time(ted4_trainer *t);
 /* Fresh workspaces and network arrays after t->layout changed. */
 int  ted4_trainer_rebuild(ted4_trainer *t);

@@ -1,0 +1,183 @@
+/* test_colour_match.c - train/colour_match.h: maps of cameras are found from the initial points alone, also where a third of what each camera sees is in the way
+ * of the points; and what is not enough to tell leaves the identity.
+ * SPDX-License-Identifier: BSD-2-Clause */
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <cmocka.h>
+#include <math.h>
+
+#include "tiny_scene.h"
+#include "train/colour_match.h"
+#include "train/random.h"
+#include "train/space.h"
+
+enum { W = 64, H = 48, CAMERAS = 6, FRAMES = 3, N = TED4_COLOUR_VALUES };
+
+#define FOCAL 60.0
+#define DISTANCE 3.0
+
+/* True map of camera k times size: of each value the middle half of the cameras has mean 0. */
+static float truth(int k, int value, float size)
+{
+    static const float of_camera[CAMERAS] = { -0.12f, -0.04f, -0.01f, 0.01f, 0.04f, 0.10f };
+
+    return of_camera[(k + value) % CAMERAS] * (value % 4 == 0 && value < 9 ? 1.0f : 0.3f) * size;
+}
+
+/* Cameras look along -z at the plane z = 0, which shows this colour. */
+static void painted(double x, double y, double rgb[3])
+{
+    for (int c = 0; c < 3; c++)
+        rgb[c] = 0.5 + 0.15 * sin(2.1 * x + 1.3 * c) + 0.15 * cos(2.7 * y - 2.0 * c);
+}
+
+static double camera_x(int k)
+{
+    return 0.15 * (k - 0.5 * (CAMERAS - 1));
+}
+
+/* hidden: share of blocks of 4x4 pixels where something else is seen, at each time and from each camera at other places. */
+static void picture(const tiny_folder *f, const char *name, int k, int frame, double hidden, float tint)
+{
+    uint8_t px[W * H * 3];
+
+    for (int i = 0; i < W * H; i++) {
+        const uint64_t block = (uint64_t)((i / W / 4 * W + i % W / 4) * FRAMES + frame), key = (uint64_t)k + 1;
+        const double   x = camera_x(k) + (i % W + 0.5 - 0.5 * W) * DISTANCE / FOCAL;
+        const double   y = -(i / W + 0.5 - 0.5 * H) * DISTANCE / FOCAL;
+        const int      away = (double)ted4_uniform(key, 8 * block) < hidden;
+        double         rgb[3];
+
+        painted(x, y, rgb);
+        for (uint64_t c = 0; c < 3 && away; c++)
+            rgb[c] = 0.1 + 0.8 * (double)ted4_uniform(key, 8 * block + 1 + c);
+        for (int c = 0; c < 3; c++) {
+            double sum = rgb[c] + (double)truth(k, 9 + c, tint);
+
+            for (int j = 0; j < 3; j++)
+                sum += rgb[j] * (double)truth(k, 3 * j + c, tint);
+            px[3 * i + c] = (uint8_t)(255 * fmin(fmax(sum, 0), 1) + 0.5);
+        }
+    }
+    tiny_png(f, name, W, H, PNG_FORMAT_RGB, px);
+}
+
+static void points(const tiny_folder *f, int n)
+{
+    static tiny_string s;
+
+    s.n = 0;
+    tiny_add(&s, "ply\nformat ascii 1.0\nelement vertex %d\nproperty float x\nproperty float y\nproperty float z\n"
+                 "property uchar red\nproperty uchar green\nproperty uchar blue\nend_header\n", n);
+    for (uint64_t i = 0; i < (uint64_t)n; i++)
+        tiny_add(&s, "%.4f %.4f 0 9 9 9\n", 2.4 * (double)ted4_uniform(7, 2 * i) - 1.2, 1.8 * (double)ted4_uniform(7, 2 * i + 1) - 0.9);
+    tiny_text(f, "points.ply", s.text);
+}
+
+static void write_scene(const tiny_folder *f, int n_points, double hidden, float tint)
+{
+    static tiny_string s;
+
+    s.n = 0;
+    tiny_add(&s, "{\"fl_x\": %g, \"w\": %d, \"h\": %d, \"fps\": 5, \"ply_file_path\": \"points.ply\", \"frames\": [", FOCAL, W, H);
+    for (int i = 0; i < FRAMES * CAMERAS; i++) {
+        const int k = i % CAMERAS, frame = i / CAMERAS;
+        char      name[64];
+
+        snprintf(name, sizeof name, "images/c%d_f%d.png", k, frame);
+        picture(f, name, k, frame, hidden, tint);
+        tiny_add(&s, "%s{\"file_path\": \"%s\", \"time\": %.17g, \"transform_matrix\": [[1,0,0,%.9f],[0,1,0,0],[0,0,1,%.9f],[0,0,0,1]]}",
+                 i > 0 ? "," : "", name, (double)frame / (FRAMES - 1), camera_x(k), DISTANCE);
+    }
+    tiny_add(&s, "]}");
+    tiny_text(f, "transforms.json", s.text);
+    points(f, n_points);
+}
+
+/* Largest difference of a map's value from the true one. */
+static float worst(const ted4_colour *c)
+{
+    float most = 0;
+
+    for (int k = 0; k < CAMERAS; k++)
+        for (int i = 0; i < N; i++)
+            most = fmaxf(most, fabsf(c->value[k][i] - truth(k, i, 1)));
+    return most;
+}
+
+/* The trainer's colours after the match. */
+static void matched(int n_points, double hidden, float tint, ted4_trainer *t, ted4_dataset *d, tiny_folder *f)
+{
+    const ted4_dataset_options o = { 1, 0, 3, 1 << 20, 0 };
+    ted4_message m;
+
+    *f = tiny_new();
+    write_scene(f, n_points, hidden, tint);
+    if (ted4_dataset_load(d, f->path, &o, &m) != 0)
+        fail_msg("%s", m.text);
+    assert_int_equal(d->n_cameras, CAMERAS);
+    memset(t, 0, sizeof *t);
+    t->data = d;
+    ted4_space_make(&t->layout.head, d);
+    assert_int_equal(ted4_colour_init(&t->colour, d), 0);
+    assert_int_equal(ted4_colour_match(t), 0);
+}
+
+static void test_found(void **state)
+{
+    static const double hidden[3] = { 0, 0.15, 0.3 };
+    /* Largest errors measured: 0.0025, 0.0052, 0.0136. */
+    static const float  bound[3] = { 0.005f, 0.01f, 0.025f };
+
+    (void)state;
+    for (int i = 0; i < 3; i++) {
+        ted4_trainer t;
+        ted4_dataset d;
+        tiny_folder  f;
+
+        matched(600, hidden[i], 1, &t, &d, &f);
+        assert_int_equal(t.colour.matched, 1);
+        assert_true(worst(&t.colour) < bound[i]);
+        ted4_colour_finish(&t.colour);
+        ted4_dataset_free(&d);
+        tiny_free(&f);
+    }
+}
+
+static void check_alone(int n_points, float tint)
+{
+    ted4_trainer t;
+    ted4_dataset d;
+    tiny_folder  f;
+
+    matched(n_points, 0, tint, &t, &d, &f);
+    assert_int_equal(t.colour.matched, 0);
+    for (int k = 0; k < CAMERAS; k++)
+        for (int i = 0; i < N; i++)
+            assert_true(t.colour.value[k][i] == 0.0f);
+    ted4_colour_finish(&t.colour);
+    ted4_dataset_free(&d);
+    tiny_free(&f);
+}
+
+static void test_few_points(void **state)
+{
+    (void)state;
+    check_alone(50, 1);
+}
+
+static void test_no_tint(void **state)
+{
+    (void)state;
+    check_alone(600, 0);
+    check_alone(600, 0.05f);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = { cmocka_unit_test(test_found), cmocka_unit_test(test_few_points), cmocka_unit_test(test_no_tint) };
+
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
