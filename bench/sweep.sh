@@ -67,8 +67,10 @@ copy_programs() {
     ) 9>"$work/programs.lock" || die "no programs"
 }
 
-# Where the scene lies, in $folder; own ones are made. 2: another run is making it.
+# Where the scene lies, in $folder; own ones are made. $judge: the scene whose pictures judge, if it is another. 2: another run is making it.
 find_scene() {
+    judge=
+    case $where in *@*) judge=$data/${where#*@} ;; esac
     case $where in
     own:*)  folder=$work/scenes/${where#own:}-$own_version
             [ -d "$folder" ] && return 0
@@ -78,7 +80,7 @@ find_scene() {
             [ -d "$folder" ] && return 0
             rm -rf "$folder.part"
             "$programs/ted4scene" "${where#own:}" -o "$folder.part" && mv "$folder.part" "$folder" ;;
-    *)      folder=$data/$where ;;
+    *)      folder=$data/${where%@*} ;;
     esac
 }
 
@@ -94,7 +96,7 @@ train() {
 
 # The end of stage 1 that this run shares with others. 2: another run is making it.
 make_stage1() {
-    stage1_file=$work/stage1-$sources_now/$(echo "$where $stage1" | short_hash).stage1
+    stage1_file=$work/stage1-$sources_now/$(echo "${where%@*} $stage1" | short_hash).stage1
     [ -s "$stage1_file" ] && return 0
     mkdir -p "${stage1_file%/*}"
     exec 7>"$stage1_file.lock"
@@ -117,9 +119,10 @@ time_decoder() {
 # What the table keeps of a run besides its row.
 keep_pictures() {
     down=$(echo "$options" | sed -n 's/.*--downscale \([0-9]*\).*/\1/p')
+    [ -z "$judge" ] || down=1
     sheet=
     case +$keep+ in *+sheet+*) mkdir -p "$results/sheets"; sheet="--sheet $results/sheets/$tag.png" ;; esac
-    run "$programs/ted4eval" "$out.ted4" "$folder" --downscale "${down:-1}" --json $sheet -f -q -j "$threads" >"$out.eval.json" || return 1
+    run "$programs/ted4eval" "$out.ted4" "${judge:-$folder}" --downscale "${down:-1}" --json $sheet -f -q -j "$threads" >"$out.eval.json" || return 1
     set -- "$out.ted4"
     case +$keep+ in *+spans+*) mkdir -p "$results/charts"; set -- "$@" "$folder" "${down:-1}" "$results/charts/spans-$tag.png" ;; esac
     run "$programs/spans" "$@" >"$out.spans.json" || return 1
@@ -182,7 +185,9 @@ make_row() {
     find_state
     case $state$missing in done*|oldermissing) return 0 ;; esac
     find_scene || return
-    [ -d "$folder" ] || { echo "$tag: skipped, no $folder"; return 0; }
+    for f in "$folder" "${judge:-$folder}"; do
+        [ -d "$f" ] || { echo "$tag: skipped, no $f"; return 0; }
+    done
     make_stage1 || return
     echo "$tag: ted4enc $where $options"
     train "$work/runs/$tag-$key" $options && measure && put_row || { echo "$tag: FAILED"; return 1; }
