@@ -525,13 +525,50 @@ static void test_real(void **state)
     }
 }
 
+/* Four fixed cameras with a video and a distorting lens each: the first five times, of which the last is held out. */
+static void test_real_videos(void **state)
+{
+    (void)state;
+    const char *base = getenv("TED4_DATA");
+    ted4_dataset_options o = tiny_options;
+    ted4_message m;
+    ted4_dataset d;
+    tiny_folder f, cache;
+
+    snprintf(f.path, sizeof f.path, "%s/treadmill", base == NULL ? "" : base);
+    if (base == NULL || !ted4_is_folder(f.path) || system("ffmpeg -version >/dev/null 2>&1") != 0) {
+        print_message("no scene treadmill under TED4_DATA, or no ffmpeg: real videos are not tested\n");
+        skip();
+    }
+    cache = tiny_new();
+    setenv("XDG_CACHE_HOME", cache.path, 1);
+    o.max_frames = 5;
+    load(&d, &f, &o);
+    assert_string_equal(d.layout, "calibration");
+    assert_int_equal(d.n_pictures, 20);
+    assert_int_equal(d.n_cameras, 4);
+    assert_int_equal(d.n_frames, 5);
+    near(d.rate, 60, 0);
+    for (size_t i = 0; i < d.n_pictures; i++) {
+        const ted4_camera *c = &d.pictures[i].camera;
+        assert_int_equal(d.pictures[i].is_test, d.pictures[i].frame == 4);
+        assert_true(c->width == 1088 && c->height == 1920 && fabs(c->fx - 1677) < 6 && fabs(c->fy - 1677) < 6);
+    }
+    near(d.pictures[0].camera.cx, 532.97369384375 + 0.5, 1e-9);
+    assert_non_null(ted4_dataset_pixels(&d, 0, &m));
+    ted4_dataset_release(&d, 0);
+    ted4_dataset_free(&d);
+    unsetenv("XDG_CACHE_HOME");
+    tiny_free(&cache);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_colmap_text),   cmocka_unit_test(test_colmap_binary), cmocka_unit_test(test_colmap_names),
         cmocka_unit_test(test_blender),       cmocka_unit_test(test_nerfstudio),    cmocka_unit_test(test_downscale),
         cmocka_unit_test(test_ply),           cmocka_unit_test(test_random_points), cmocka_unit_test(test_times),
-        cmocka_unit_test(test_print),         cmocka_unit_test(test_real),
+        cmocka_unit_test(test_print),         cmocka_unit_test(test_real),          cmocka_unit_test(test_real_videos),
     };
 
     return cmocka_run_group_tests_name("dataset", tests, NULL, NULL);

@@ -336,6 +336,34 @@ static void test_growth(void **state)
     ted4_trainer_finish(&t);
 }
 
+/* The finer the grid the stronger the gradient that it takes: 2, 4 times the threshold at the second and third depth. */
+static void test_growth_depths(void **state)
+{
+    static float place[CLOUD_POINTS][3];
+
+    (void)state;
+    for (int most = 0; most < 3; most++) {
+        ted4_trainer t;
+        int          n[3] = { 0 };
+
+        cloud_make(&cloud, 5);
+        begin(&t);
+        give_moments(&t);
+        for (size_t i = 0; i < CLOUD_POINTS; i++) {
+            aim(&t, i, K - 1, place[i]);        /* nearer to the next cell than to its own, which is free at the lattice's faces */
+            plant(&t, i, K - 1, 1.5f * (float)(1 << most) * THRESHOLD, SEEN);
+        }
+        assert_int_equal(ted4_densify_adjust(&t), 0);
+        for (size_t i = 0; i < t.anchors.n; i++)
+            if (is_new(&t, i))
+                n[(int)lrint(0.5 * (log2(t.cell) - (double)*ted4_cell(&t.anchors, TED4_ROW_VALUE, i, t.layout.first[TED4_SCALING])))]++;
+        for (int depth = 0; depth < 3; depth++)
+            if ((n[depth] > 10) != (depth <= most) || (n[depth] > 0) != (depth <= most))
+                fail_msg("%d at depth %d, gradients of %g thresholds", n[depth], depth, 1.5 * (1 << most));
+        ted4_trainer_finish(&t);
+    }
+}
+
 /* No two anchors of one adjustment and depth in a voxel; a place outside the cube grows nothing;
  * statistics that were used start afresh, the others go on. */
 static void test_growth_limits(void **state)
@@ -552,7 +580,7 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_cells), cmocka_unit_test(test_cell_key),
         cmocka_unit_test(test_resize), cmocka_unit_test(test_select),
-        cmocka_unit_test(test_sort), cmocka_unit_test(test_growth),
+        cmocka_unit_test(test_sort), cmocka_unit_test(test_growth), cmocka_unit_test(test_growth_depths),
         cmocka_unit_test(test_growth_limits), cmocka_unit_test(test_max_anchors),
         cmocka_unit_test(test_pruning), cmocka_unit_test(test_pruning_short_lives),
         cmocka_unit_test(test_all_faded),

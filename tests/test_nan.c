@@ -1,4 +1,5 @@
-/* test_nan.c - a value of the model that is not finite: it never reaches a checkpoint, and the last checkpoint still leads where it led.
+/* test_nan.c - a value of the model that is not finite: it never reaches a checkpoint, and the last checkpoint still leads where it led. A loss that is not
+ * finite ends the training before it reaches the model.
  * SPDX-License-Identifier: BSD-2-Clause */
 #include <setjmp.h>
 #include <stdarg.h>
@@ -59,9 +60,39 @@ static void test_nan(void **state)
     tiny_free(&f);
 }
 
+/* Through the colours of the cameras the loss itself is not a number; the step says so, and has changed neither networks nor anchors. */
+static void test_loss(void **state)
+{
+    const ted4_train_options o = ball_options();
+    tiny_folder  f;
+    ted4_dataset d;
+    ted4_trainer t;
+    float       *net;
+
+    (void)state;
+    ball_load(&f, &d, 5, 1);
+    ball_begin(&t, &o, &d, NULL);
+    ball_train(&t, 130);
+    assert_true(t.colour.n_corrected > 0);
+    for (uint32_t c = 0; c < t.colour.n_cameras; c++)
+        t.colour.value[c][0] = NAN;
+    net = malloc(t.layout.n_net * sizeof *net);
+    assert_non_null(net);
+    memcpy(net, t.net, t.layout.n_net * sizeof *net);
+    assert_int_equal(ted4_trainer_step(&t), -1);
+    assert_non_null(strstr(t.message.text, "the loss is not finite at step 130"));
+    assert_int_equal(t.iteration, 130);
+    assert_memory_equal(net, t.net, t.layout.n_net * sizeof *net);
+    assert_int_equal(ted4_trainer_check(&t, 1), 0);
+    free(net);
+    ted4_trainer_finish(&t);
+    ted4_dataset_free(&d);
+    tiny_free(&f);
+}
+
 int main(void)
 {
-    const struct CMUnitTest tests[] = { cmocka_unit_test(test_nan) };
+    const struct CMUnitTest tests[] = { cmocka_unit_test(test_nan), cmocka_unit_test(test_loss) };
 
     return cmocka_run_group_tests_name("nan", tests, NULL, NULL);
 }

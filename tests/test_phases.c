@@ -1,5 +1,6 @@
 /* test_phases.c - what happens when during training (paper, "Progressive 3D-to-4D Anchor Transformation"): activation begins after the static phase, from the
- * first and last time at which training views see an anchor; anchors come and go within the time that growth has; stage 2 only ever loses them, at its begin.
+ * first and last time at which training views see an anchor; anchors come and go within the time that growth has; stage 2 only ever loses them, at its begin;
+ * pictures come in rounds, drawn from plain values, then from values with noise, then from those that the file will hold.
  * Single steps: test_densify.c, test_traps.c.
  * SPDX-License-Identifier: BSD-2-Clause */
 #include <setjmp.h>
@@ -12,7 +13,7 @@
 #include "cloud_case.h"
 #include "train/transient.h"
 
-enum { STAGE1 = 400, ACTIVATION = 134, SPROUTS = 120, GROWTH_ENDS = 240, GROW_EVERY = 20 };
+enum { STAGE1 = 400, INTEGER = 600, ACTIVATION = 134, SPROUTS = 120, GROWTH_ENDS = 240, GROW_EVERY = 20 };
 
 static float tau(const ted4_trainer *t, size_t i, int c)
 {
@@ -188,6 +189,95 @@ static void test_growth(void **state)
     ted4_trainer_finish(&t);
 }
 
+/* ---- in which order ---- */
+
+/* Each training picture once a round, no held-out one, and every round in another order. */
+static void test_order(void **state)
+{
+    enum { ROUNDS = 3, MOST = 64 };
+    const ted4_train_options o = ball_options();
+    uint32_t     item[ROUNDS][MOST];
+    ted4_trainer t;
+
+    (void)state;
+    ball_begin(&t, &o, &balls, NULL);
+    assert_true(t.order.n > 10 && t.order.n <= MOST);
+    for (int r = 0; r < ROUNDS; r++) {
+        int seen[MOST] = { 0 };
+
+        for (uint32_t i = 0; i < t.order.n; i++) {
+            ball_train(&t, t.iteration + 1);
+            item[r][i] = t.order.item[t.order.next - 1];
+            assert_true(item[r][i] < balls.n_pictures && item[r][i] < MOST && !balls.pictures[item[r][i]].is_test);
+            assert_int_equal(seen[item[r][i]]++, 0);
+        }
+        for (int k = 0; k < r; k++)
+            assert_memory_not_equal(item[r], item[k], t.order.n * sizeof **item);
+    }
+    ted4_trainer_finish(&t);
+}
+
+/* ---- what is drawn ---- */
+
+/* How far the last step's values were from whole symbols, in mean: a quarter with noise. *most: the largest. */
+static double off_symbols(const ted4_trainer *t, double *most)
+{
+    double sum = 0, n = 0;
+
+    *most = 0;
+    for (size_t i = 0; i < t->slots.n; i++)
+        for (int y = 0; y < TED4_TYPES; y++)
+            for (size_t at = 0; at < (size_t)t->layout.shape.dim[y] * TED4_LANES; at++) {
+                const float  q = t->slots.steps[i][(size_t)y * TED4_LANES + at % TED4_LANES];
+                const double k = (double)(t->slots.used[i][(size_t)t->layout.first[y] * TED4_LANES + at] / q), off = fabs(k - rint(k));
+
+                if (!(t->slots.lanes[i] >> at % TED4_LANES & 1))
+                    continue;
+                sum += off;
+                n++;
+                *most = fmax(*most, off);
+            }
+    assert_true(n > 1000);
+    return sum / n;
+}
+
+/* Are the step sizes of all anchors those of the decoder's table (spec 10.1)? */
+static int steps_are_tabled(const ted4_trainer *t)
+{
+    for (size_t i = 0; i < t->anchors.n; i++)
+        for (int y = 0; y < TED4_TYPES; y++) {
+            const double q = (double)*ted4_cell(&t->anchors, TED4_ROW_STEP, i, y);
+            const double octaves = log2(q / (double)t->layout.head.step[y]);
+
+            if (t->layout.shape.dim[y] > 0 && fabs(32 * octaves - rint(32 * octaves)) > 1e-3)
+                return 0;
+        }
+    return 1;
+}
+
+static void test_drawn(void **state)
+{
+    const ted4_train_options o = ball_options();
+    ted4_trainer t;
+    double       most;
+
+    (void)state;
+    ball_begin(&t, &o, &balls, NULL);
+    ball_train(&t, STAGE1);
+    for (size_t i = 0; i < t.slots.n; i++)
+        assert_ptr_equal(t.slots.used[i], t.slots.raw[i]);
+    for (size_t i = 0; i < t.anchors.n; i++)        /* offset masks wait for the rate */
+        for (int k = 0; k < t.layout.head.n_offsets; k++)
+            assert_true(*ted4_cell(&t.anchors, TED4_ROW_VALUE, i, t.layout.offset_logit + k) == 1.0f);
+    ball_train(&t, INTEGER);
+    assert_true(fabs(off_symbols(&t, &most) - 0.25) < 0.02 && most > 0.49);
+    assert_false(steps_are_tabled(&t));
+    ball_train(&t, INTEGER + 2);
+    assert_true(off_symbols(&t, &most) < 1e-4 && most < 1e-2);
+    assert_true(steps_are_tabled(&t));
+    ted4_trainer_finish(&t);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -195,6 +285,8 @@ int main(void)
         cmocka_unit_test(test_static_phase),
         cmocka_unit_test(test_activation),
         cmocka_unit_test(test_growth),
+        cmocka_unit_test(test_order),
+        cmocka_unit_test(test_drawn),
     };
 
     return cmocka_run_group_tests_name("phases", tests, set_up, tear_down);

@@ -113,10 +113,26 @@ static void test_stage1(void **state)
     assert_int_equal(access(tiny_path(&folder, "other.ted4"), F_OK), -1);
 }
 
+/* A search that was cut off begins again at the end of stage 1, where the checkpoint is, and comes to the same file. */
+static void test_resumed(void **state)
+{
+    char arguments[128];
+    const char stage1[] = "\"stage\":\"1\"";
+
+    (void)state;
+    for (int i = 0; i < 2; i++) {
+        snprintf(arguments, sizeof arguments, "-o searched%d.ted4 --target-size %ld --checkpoint search --resume --log searched%d.jsonl", i,
+                 size_of("end1.ted4") * 102 / 100, i);
+        assert_int_equal(encode(arguments), 0);
+    }
+    assert_true(same("searched0.ted4", "searched1.ted4"));
+    assert_true(contains("searched0.jsonl", stage1) && !contains("searched1.jsonl", stage1));
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_met), cmocka_unit_test(test_not_met), cmocka_unit_test(test_stage1),
+        cmocka_unit_test(test_met), cmocka_unit_test(test_not_met), cmocka_unit_test(test_stage1), cmocka_unit_test(test_resumed),
     };
 
     build = getenv("TED4_BUILD");

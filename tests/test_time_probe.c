@@ -7,6 +7,7 @@
 #include <cmocka.h>
 
 #include "ball_trainer.h"
+#include "train/checkpoint.h"
 
 /* A branch of 200 steps, from a quarter of stage 1 on. */
 enum { STAGE1 = 2000, BEGIN = STAGE1 / 4, BRANCH = 200, FRAMES = 5 };
@@ -66,11 +67,38 @@ static void test_moving(void **state)
     tiny_free(&folder);
 }
 
+/* Either part of time is stopped with the clock: where only one of them is modelled, it is missed. */
+static void test_parts(void **state)
+{
+    static const char *const without[] = { "activation=0", "motion=0" };
+    tiny_folder  folder;
+    ted4_dataset d;
+
+    (void)state;
+    ball_load(&folder, &d, FRAMES, 1);
+    for (int i = 0; i < 2; i++) {
+        ted4_train_options o = options("probe=0.1");
+        ted4_trainer       t;
+
+        ball_set(&o, without[i]);
+        ball_begin(&t, &o, &d, NULL);
+        ball_train(&t, BEGIN + BRANCH + 1);
+        if (!(t.probe_loss[0] > 0 && t.probe_loss[0] < 0.95 * t.probe_loss[1]))
+            fail_msg("%s: %g with time, %g without", without[i], t.probe_loss[0], t.probe_loss[1]);
+        assert_int_equal(t.layout.head.motion, i == 0 ? TED4_MOTION_BANK : TED4_MOTION_NONE);
+        assert_int_equal(t.layout.head.activation, i);
+        ted4_trainer_finish(&t);
+    }
+    ted4_dataset_free(&d);
+    tiny_free(&folder);
+}
+
 static void test_still(void **state)
 {
     tiny_folder        folder;
     ted4_dataset       d;
     ted4_trainer       t, twin;
+    ted4_snapshot      early = { 0 };
     ted4_train_options o = options("probe=0.1");
 
     (void)state;
@@ -85,7 +113,18 @@ static void test_still(void **state)
     assert_int_equal(t.layout.head.activation, 0);
     assert_int_equal(t.layout.shape.n_bank, 0);
     assert_int_equal(t.clock_stopped, 0);
+    assert_int_equal(ted4_snapshot_take(&t, &early), 0);
     ball_train(&t, BEGIN + BRANCH + 1);
+
+    /* A run that was killed after it had begun again goes on without time, and does not ask once more. */
+    ball_begin(&twin, &o, &d, NULL);
+    if (ted4_snapshot_restore(&twin, &early) != 0)
+        fail_msg("%s", twin.message.text);
+    assert_true(twin.iteration == 1 && twin.layout.head.motion == TED4_MOTION_NONE);
+    ball_train(&twin, BEGIN + BRANCH + 1);
+    check_same(&t, &twin);
+    ted4_trainer_finish(&twin);
+    ted4_snapshot_free(&early);
 
     /* What follows is the training of an encoder that knows no time. */
     ball_set(&o, "motion=0");
@@ -119,7 +158,7 @@ static void test_short(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_moving), cmocka_unit_test(test_still), cmocka_unit_test(test_short),
+        cmocka_unit_test(test_moving), cmocka_unit_test(test_parts), cmocka_unit_test(test_still), cmocka_unit_test(test_short),
     };
 
     return cmocka_run_group_tests(tests, NULL, NULL);

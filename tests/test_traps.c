@@ -5,8 +5,8 @@
  *   5 steps that reach 0: test_rate.c, clamped outputs recover; the symbols that would overflow: test_rate.c, quantise; and here
  *   7 the cap of opacity and the early stop are steps: test_raster_grad.c, cap and early stop; so pictures are compared with a tolerance, test_raster.c,
  *     and what has to be equal to the bit ends at the Gaussians, test_recon.c
- * Here: 1 spans that begin with the sequence, 2 the saddle of the bank's query, 5 symbols of a file, 6 units of the world, 8 anchors that are never there;
- * and positions in FP16: none beyond 1, no two alike.
+ * Here: 1 spans that begin with the sequence, 2 the saddle of the bank's query, 5 symbols of a file, 6 units of the world and small scalings, 8 anchors that
+ * are never there; and positions in FP16: none beyond 1, no two alike.
  * SPDX-License-Identifier: BSD-2-Clause */
 #include <setjmp.h>
 #include <stdarg.h>
@@ -15,9 +15,11 @@
 #include <cmocka.h>
 
 #include "ball_group.h"
+#include "base/bytes.h"
 #include "cloud_case.h"
 #include "norm/half.h"
 #include "norm/scene.h"
+#include "norm/tables.h"
 
 static cloud_case cloud;
 
@@ -197,6 +199,59 @@ static void test_units(void **state)
     ted4_trainer_finish(&league);
 }
 
+/* log2 of component c of all scalings: far below the linear step, as scenes in small units have them. */
+static float small_scaling(unsigned c)
+{
+    return -17.0f - 0.37f * (float)c;
+}
+
+/* How many scalings of the file are within half a step of what they were, and that step is less than a seventh of them; in linear units: above 0. */
+static size_t count_right(const ted4_scene *s, int linear)
+{
+    const size_t n = s->head.n_anchors;
+    size_t       right = 0;
+
+    for (size_t i = 0; i < n; i++) {
+        const float q = s->head.step[TED4_SCALING] * ted4_bits_float(ted4_step[s->step_index[TED4_SCALING][i]]);
+
+        for (unsigned c = 0; c < 6; c++) {
+            const float got = q * (float)s->symbol[TED4_SCALING][c * n + i];
+
+            right += linear ? got > 0 : q < 0.2f && fabsf(got - small_scaling(c)) <= 0.5f * q + 1e-4f;
+        }
+    }
+    return right;
+}
+
+/* In log2 the error of a scaling is a share of it, however small it is. In linear units, kept for comparison, such scalings are lost. */
+static void test_scalings(void **state)
+{
+    (void)state;
+    for (int linear = 0; linear < 2; linear++) {
+        ted4_train_options o = ball_options();
+        ted4_trainer t;
+        ted4_scene  *s;
+
+        ball_set(&o, "stage1=30");
+        ball_set(&o, "stage2=0");
+        if (linear) {
+            ball_set(&o, "linear_scale=1");
+            ball_set(&o, "step_scaling=0.001");
+        }
+        ball_begin(&t, &o, &balls, NULL);
+        ball_train(&t, 30);
+        for (size_t i = 0; i < t.anchors.n; i++)
+            for (unsigned c = 0; c < 6; c++)
+                *ted4_cell(&t.anchors, TED4_ROW_VALUE, i, t.layout.first[TED4_SCALING] + (int)c) = small_scaling(c);
+        if (ted4_make_scene(&t, &s) != 0)
+            fail_msg("%s", t.message.text);
+        assert_true(s->head.n_anchors > 10 && s->head.scale_domain == (linear ? TED4_SCALE_LINEAR : TED4_SCALE_LOG2));
+        assert_int_equal(count_right(s, linear), linear ? 0 : 6 * s->head.n_anchors);
+        ted4_scene_free(s);
+        ted4_trainer_finish(&t);
+    }
+}
+
 /* ---- 8: anchors whose activation stays near 0 ---- */
 
 /* Every third anchor is marked by an offset that nothing else has; absent: it also lives between two frames, far too short for either. */
@@ -316,6 +371,7 @@ int main(void)
         cmocka_unit_test(test_saddle),
         cmocka_unit_test(test_symbols),
         cmocka_unit_test(test_units),
+        cmocka_unit_test(test_scalings),
         cmocka_unit_test(test_absent),
         cmocka_unit_test(test_far_away),
         cmocka_unit_test(test_twins),

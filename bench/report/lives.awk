@@ -20,7 +20,8 @@ function span_section(    i, t, slow, fast, ok, text) {
     slow = "dog-whole-2"
     fast = "kitchen-whole-2"
     if (get(fast, "short_changed") != "" && get(slow, "span_short") != "") {
-        ok = get(fast, "span_short") > get(slow, "span_short") && get(fast, "short_changed") >= 10 * get(fast, "short_same")
+        ok = get(fast, "span_short") > get(slow, "span_short") && get(fast, "short_changed") >= 10 * get(fast, "short_same") && \
+             exists(span_picture(fast)) && exists(span_picture(slow))
         text = "fast (kitchen): " span_text(fast) ", light by short lives " percent(fast, "short_changed") " where it changes, " \
                percent(fast, "short_same") " elsewhere; slow (dog): " span_text(slow) mark_of(slow " " fast)
     }
@@ -76,7 +77,7 @@ function span_chart(    i, t, any) {
 function span_pictures(    i, t, any) {
     for (i = 1; i <= n_tags; i++) {
         t = tag[i]
-        if (!keeps(t, "spans") || get(t, "span_short") == "" || !exists(results "/charts/spans-" t ".png"))
+        if (!keeps(t, "spans") || get(t, "span_short") == "" || !exists(span_picture(t)))
             continue
         if (any++ == 0) {
             say("")
@@ -87,6 +88,8 @@ function span_pictures(    i, t, any) {
         say("![Spans, " t "](charts/spans-" t ".png)")
     }
 }
+
+function span_picture(t) { return results "/charts/spans-" t ".png" }
 
 function exists(file,    unused, found) {
     found = (getline unused <file) >= 0

@@ -104,8 +104,9 @@ function command_section(    i, t) {
     say("`make sweep` runs what is missing, `bench/sweep.sh PATTERN...` parts of it, `make report` writes this page. A run by hand: its command")
     say("with `-o FILE.ted4`, then `ted4eval FILE.ted4 SCENE --downscale N`, `ted4info FILE.ted4 --budget`, `bench/spans FILE.ted4`,")
     say("`bench/rate_check FILE.ted4`. Scenes `own:NAME` are made by `ted4scene NAME -o FOLDER`.")
-    say("† marks rows that older sources or other options made, and numbers that depend on one. [sweep.csv](sweep.csv) has all columns." \
-        (strangers ? " It holds " strangers " rows that sweep.txt no longer wants; they are not shown." : ""))
+    say("† marks rows that older sources made, and numbers that depend on one. [sweep.csv](sweep.csv) has all columns." \
+        (strangers ? " It holds " strangers " rows that sweep.txt no longer wants; they are not shown." : "") \
+        (others ? " It holds " others " rows that other options than the wanted ones made; they count as not run." : ""))
     table("run,command,jobs x threads,key")
     for (i = 1; i <= n_tags; i++) {
         t = tag[i]

@@ -18,7 +18,8 @@ function rate_section(    k, s, m, all, text, tags) {
     say("## Rate and distortion")
     say("")
     say("The whole method at four λ, one stage 1 for all of a scene, measured on decoded files, on pictures that training never saw. Times are of")
-    say("one thread; frames a second with the run's threads. *moving*: anchors with a temporal feature.")
+    say("one thread; frames a second with the run's threads; both were taken beside the other jobs of the sweep, and vary with them. *moving*: anchors")
+    say("with a temporal feature.")
     for (k = 1; k <= n_curve_scenes; k++) {
         s = curve_scenes[k]
         rate_rows(s)

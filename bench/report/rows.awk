@@ -1,6 +1,7 @@
 # rows.awk - reads the runs that are wanted and the rows that are there. Used by bench/report.sh, whose other files see them through these functions only.
 # First file: a line a wanted run, STATE|GROUPS|TAG|SCENE|WHERE|VARIANT|PLACE|LAMBDA|KEEP|STAGE1|OPTIONS; STATE as in `sweep.sh --list`, the rest as
-# bench/expand.awk prints it. Second file: sweep.csv, whose first line names the columns; it may be missing (/dev/null) or end early.
+# bench/expand.awk prints it. Second file: sweep.csv, whose first line names the columns; it may be missing (/dev/null) or end early. Of its rows those count
+# that the wanted options made, with these sources or older ones; a row that other options made is none.
 # SPDX-License-Identifier: BSD-2-Clause
 
 BEGIN { FS = "|" }
@@ -34,6 +35,10 @@ FNR == 1 {
         strangers++
         next
     }
+    if (state[field[1]] == "stale") {
+        others++
+        next
+    }
     for (i = 2; i <= n_columns; i++)
         value[field[1], column[i]] = field[i]
     have[field[1]] = 1
@@ -49,7 +54,7 @@ function add_run(s, v, t,    i) {
 function has(t) { return t in have }
 # A cell; "" when it, the row or the column is not there.
 function get(t, name) { return (t, name) in value ? value[t, name] : "" }
-# Other sources or other options than the wanted ones made this row.
+# Other sources than the present ones made this row.
 function is_old(t) { return has(t) && state[t] != "done" }
 function in_group(t, group) { return index(groups[t], "+" group "+") > 0 }
 function keeps(t, what) { return index(keep[t], "+" what "+") > 0 }

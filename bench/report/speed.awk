@@ -12,7 +12,8 @@ function speed_section(    k, j, s, wanted, there, tags) {
     say("## Speed against accuracy")
     say("")
     say("Every preset as it is, at its λ. Core seconds: of all threads together, stage 1 included; they compare whatever ran beside. Seconds: as")
-    say("they passed. A picture: decoding the whole file on one thread, then drawing one picture with the run's threads.")
+    say("they passed. A picture: decoding the whole file on one thread, then drawing one picture with the run's threads, beside the sweep's other jobs:")
+    say("what a quiet machine does is in [render.md](render.md) and [decode.md](decode.md).")
     table("run,preset,core s,of it stage 1,s,jobs x threads,PSNR dB,bytes,decode ms,frames/s,decode + picture ms")
     for (k = 1; k <= n_scenes; k++) {
         s = scenes[k]

@@ -7,7 +7,7 @@ function signed(x, digits, unit) { return x == "" ? "-" : sprintf("%+." digits "
 function size_of(x) { return x < 0 ? -x : x }
 function join(list, separator, item) { return list == "" ? item : list separator item }
 
-# A tag as tables show it: marked when other sources or options made its row.
+# A tag as tables show it: marked when other sources made its row.
 function name_of(t) { return is_old(t) ? t "†" : t }
 # The mark alone, for numbers that come from several rows: as many tags as wanted, divided by spaces.
 function mark_of(tags,    i, n, t) {

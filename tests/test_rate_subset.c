@@ -1,0 +1,218 @@
+/* test_rate_subset.c - train/update.c, the rate terms of a step: evaluated on a random share of the blocks, every block as often as any other, in mean worth
+ * the gradient of all blocks; lambda weighs the mean bits of a parameter; the same bits for any number of threads.
+ * SPDX-License-Identifier: BSD-2-Clause */
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <stdlib.h>
+#include <cmocka.h>
+
+#include "cloud_case.h"
+#include "odd_threads.h"
+#include "tool/threads.h"
+
+/* 216 anchors in 7 blocks, of which a share of 0.15 is 2. */
+enum { BLOCKS = (CLOUD_POINTS + TED4_LANES - 1) / TED4_LANES, CHOSEN = 2, KEYS = 700 };
+#define SHARE 0.15
+
+static cloud_case cloud;
+
+/* At the begin of stage 2, with all anchors. */
+static void begin(ted4_trainer *t, const ted4_parallel *p)
+{
+    cloud_make(&cloud, 5);
+    cloud.options.prune_opacity = 0;
+    cloud.options.lambda = 4;
+    if (ted4_trainer_init(t, &cloud.options, &cloud.data, p) != 0 || ted4_stage2_begin(t) != 0)
+        fail_msg("%s", t->message.text);
+    assert_int_equal(t->anchors.n, CLOUD_POINTS);
+    assert_int_equal(t->anchors.n_blocks, BLOCKS);
+}
+
+/* Gradients of the rate alone, or on top of d_value on every value, which then reach the step sizes too. */
+static void run(ted4_trainer *t, uint64_t key, double share, float d_value)
+{
+    const size_t floats = (size_t)t->layout.n_channels * TED4_LANES;
+
+    t->opt.rate_share = share;
+    memset(t->progress.bits, 0, sizeof t->progress.bits);
+    assert_int_equal(ted4_slots_fill(t, NULL), 0);
+    assert_int_equal(t->slots.n, BLOCKS);
+    for (size_t i = 0; i < t->slots.n * floats; i++)
+        t->slots.gradients[i] = d_value;
+    memset(t->net_gradient, 0, t->layout.n_net * sizeof *t->net_gradient);
+    if (ted4_update_rate(t, key) != 0)
+        fail_msg("%s", t->message.text);
+}
+
+/* Sum of the gradients of a block's offset masks: bits of offsets times the slope of the sigmoid, 0 for blocks that were not chosen. */
+static double of_masks(const ted4_trainer *t, size_t slot)
+{
+    double sum = 0;
+
+    for (int c = t->layout.offset_logit; c < t->layout.temporal_logit; c++)
+        for (int j = 0; j < TED4_LANES; j++)
+            sum += (double)t->slots.gradient[slot][c * TED4_LANES + j];
+    return sum;
+}
+
+/* ---- which blocks ---- */
+
+static void test_choice(void **state)
+{
+    ted4_trainer t;
+    int          often[BLOCKS] = { 0 };
+
+    (void)state;
+    begin(&t, NULL);
+    for (uint64_t key = 0; key < KEYS; key++) {
+        int n = 0, seen[BLOCKS] = { 0 };
+
+        run(&t, ted4_mix(key), SHARE, 0);
+        for (size_t i = 0; i < BLOCKS; i++) {
+            const int chosen = of_masks(&t, i) > 0;
+
+            assert_int_equal(seen[t.slots.block[i]]++, 0);
+            often[t.slots.block[i]] += chosen;
+            n += chosen;
+        }
+        assert_int_equal(n, CHOSEN);
+    }
+    /* 200 times each, and a standard deviation of 12. */
+    for (int b = 0; b < BLOCKS; b++)
+        if (abs(often[b] - KEYS * CHOSEN / BLOCKS) > 60)
+            fail_msg("block %d was chosen %d times of %d", b, often[b], KEYS);
+    ted4_trainer_finish(&t);
+}
+
+/* ---- what it is worth ---- */
+
+/* Rate: lambda times the mean bits of a parameter, absent ones included, over the anchors looked at. All masks are at 1. */
+static void test_weight(void **state)
+{
+    static const double shares[] = { SHARE, 1 };
+    const double slope = 1 / (1 + exp(-1.0)) * (1 - 1 / (1 + exp(-1.0)));
+    ted4_trainer t;
+    double       params = 0;
+
+    (void)state;
+    begin(&t, NULL);
+    for (int y = 0; y < TED4_TYPES; y++)
+        params += t.layout.shape.dim[y];
+    for (int k = 0; k < 2; k++) {
+        double sum = 0, bits;
+
+        run(&t, 5, shares[k], 0);
+        for (size_t i = 0; i < BLOCKS; i++)
+            sum += of_masks(&t, i);
+        bits = t.progress.bits[TED4_OFFSET] / 0.02;      /* an anchor; a running mean's first step */
+        if (!(bits > 5 && fabs(sum - t.opt.lambda * slope * bits / params) < 1e-4 * sum))
+            fail_msg("share %g: %g for %g bits an anchor of %g parameters", shares[k], sum, bits, params);
+    }
+    ted4_trainer_finish(&t);
+}
+
+/* Twice the lambda, twice every gradient, to the bit. */
+static void test_lambda(void **state)
+{
+    ted4_trainer t;
+
+    (void)state;
+    begin(&t, NULL);
+    const size_t n = t.layout.n_net;
+    float       *once = malloc(n * sizeof *once);
+
+    assert_non_null(once);
+    run(&t, 9, SHARE, 0);
+    memcpy(once, t.net_gradient, n * sizeof *once);
+    t.opt.lambda *= 2;
+    run(&t, 9, SHARE, 0);
+    for (size_t i = 0; i < n; i++)
+        assert_true(t.net_gradient[i] == 2 * once[i]);
+    free(once);
+    ted4_trainer_finish(&t);
+}
+
+/* How the sum over keys of a share's gradient compares with that of all blocks: least squares' factor, over the biases that give the step sizes. */
+static double factor(ted4_trainer *t, float d_value)
+{
+    const ted4_shape *s = &t->layout.shape;
+    const int         last = s->hyper.n_layers - 1;
+    size_t            at = t->layout.nete + s->hyper.first;
+    double            product = 0, square = 0;
+    float             all[TED4_TYPES];
+
+    for (int i = 0; i < last; i++)
+        at += ((size_t)s->hyper.dim[i] + 1) * s->hyper.dim[i + 1];
+    at += (size_t)s->hyper.dim[last] * s->n_outputs + s->first_step_output;
+    for (uint64_t key = 0; key < KEYS; key++) {
+        run(t, ted4_mix(key), 1, d_value);
+        memcpy(all, t->net_gradient + at, s->n_types * sizeof *all);
+        run(t, ted4_mix(key), SHARE, d_value);
+        for (size_t y = 0; y < s->n_types; y++) {
+            product += (double)all[y] * (double)t->net_gradient[at + y];
+            square += (double)all[y] * (double)all[y];
+        }
+    }
+    assert_true(square > 0);
+    return product / square;
+}
+
+/* Both what the bits and what the picture say about step sizes. */
+static void test_mean(void **state)
+{
+    ted4_trainer t;
+
+    (void)state;
+    begin(&t, NULL);
+    const double rate = factor(&t, 0);
+
+    t.opt.lambda = 0;
+    const double distortion = factor(&t, 1);
+
+    if (!(fabs(rate - 1) < 0.1 && fabs(distortion - 1) < 0.15))
+        fail_msg("the share is worth %g of the rate, %g of the distortion", rate, distortion);
+    ted4_trainer_finish(&t);
+}
+
+/* ---- threads ---- */
+
+static void test_threads(void **state)
+{
+    ted4_parallel how[3] = { { odd_backwards, NULL }, { odd_threads, NULL } };
+    ted4_trainer  alone, t;
+
+    (void)state;
+    ted4_threads_init(&how[2], 2);
+    begin(&alone, NULL);
+    run(&alone, 3, 0.6, 0.5f);
+    for (int i = 0; i < 3; i++) {
+        const size_t floats = (size_t)alone.layout.n_channels * TED4_LANES;
+
+        begin(&t, &how[i]);
+        run(&t, 3, 0.6, 0.5f);
+        assert_memory_equal(t.net_gradient, alone.net_gradient, t.layout.n_net * sizeof *t.net_gradient);
+        assert_memory_equal(t.slots.gradients, alone.slots.gradients, BLOCKS * floats * sizeof(float));
+        assert_memory_equal(t.slots.block, alone.slots.block, BLOCKS * sizeof *t.slots.block);
+        assert_memory_equal(t.anchors.data[TED4_ROW_STEP], alone.anchors.data[TED4_ROW_STEP],
+                            BLOCKS * TED4_TYPES * TED4_LANES * sizeof(float));
+        assert_memory_equal(&t.progress, &alone.progress, sizeof t.progress);
+        ted4_trainer_finish(&t);
+    }
+    ted4_trainer_finish(&alone);
+    ted4_threads_finish(&how[2]);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(test_choice),
+        cmocka_unit_test(test_weight),
+        cmocka_unit_test(test_lambda),
+        cmocka_unit_test(test_mean),
+        cmocka_unit_test(test_threads),
+    };
+
+    return cmocka_run_group_tests_name("rate subset", tests, NULL, NULL);
+}
