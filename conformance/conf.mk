@@ -6,6 +6,13 @@ all: $B/ted4conf
 $B/ted4conf: $(CONF_OBJ) $(CLASS_T_OBJ) $B/libted4enc.a $B/libted4dec.a
 	$(CC) -fopenmp $(LDFLAGS) $^ -o $@ $(LIBS)
 $B/tests/test_conformance: | $B/ted4conf $B/ted4dec
+$B/tests/test_suite_schema: | $B/ted4conf $B/ted4dec
+$B/tests/test_encoder_program: | $B/ted4conf $B/ted4dec $B/ted4enc $B/ted4scene
+
+# Our library behind the adapter for decoders that are libraries.
+$B/adapter: $(patsubst %.c,$B/%.o,conformance/adapters/adapter.c conformance/adapters/ours.c ref-decoder/tool/sha256.c ref-decoder/tool/tier_hash.c) $B/libted4dec.a
+	$(CC) -fopenmp $(LDFLAGS) $^ -o $@ $(LIBS)
+$B/tests/test_adapters: | $B/adapter $B/ted4conf $B/ted4dec
 
 # Our decoder against all vectors, those made on demand too; verdict page in out/.
 conformance: $B/ted4conf $B/ted4dec

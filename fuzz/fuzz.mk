@@ -22,8 +22,12 @@ FUZZ_SCENE    = $(patsubst %.c,$B/%.o,$(wildcard ref-encoder/data/*.c) ref-decod
                 fuzz/scene_folder.c)
 FUZZ_MUTATE   = $B/fuzz/mutate.o $B/fuzz/fields.o
 # Inputs that are .ted4 files have a mutator that knows them.
-FUZZ_FILES    = decode roundtrip recon alloc_fail dump validate lenient
+FUZZ_FILES    = decode roundtrip recon alloc_fail dump validate lenient two_decoders
 FUZZ_SCENES   = colmap transforms calibration hypernerf npy ply image camera_list
+
+# What the specification prints, extracted (tests/spec/spec.mk).
+$B/fuzz/fz_two_decoders.o $B/fuzz/all/fz_two_decoders.o: $(SPEC_INC)
+$B/fuzz/fz_two_decoders.o $B/fuzz/all/fz_two_decoders.o: STRICT += -I$B/inc
 
 # One program for all, each entry under the harness's name.
 FUZZ_ALL      = $(FUZZERS:%=$B/fuzz/all/fz_%.o) $(patsubst %,$B/fuzz/%.o,inputs scene_folder) $(FUZZ_OBJ) $(DEC_TOOL:%.c=$B/%.o) \

@@ -1,5 +1,6 @@
 # What tests of the strict decoder need beside the libraries; included by the Makefile.
 $B/tests/test_lenient: $(patsubst %,$B/fuzz/%.o,mend parse)
+$B/tests/test_canonical $B/tests/test_hostile: $(patsubst %,$B/fuzz/%.o,mend parse)
 $B/tests/test_validate: $(patsubst %,$B/fuzz/%.o,mend parse mutate fields)
 $B/tests/test_advise: $(patsubst %,$B/fuzz/%.o,mend parse)
 

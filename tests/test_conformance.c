@@ -159,6 +159,8 @@ static void declining(void **state)
     expect("no-knobs", 0, " 7 passed, 0 failed, 0 without answer, 0 missing, 1 declined");
     expect("declines-moving", 0, " 5 passed, 0 failed, 0 without answer, 0 missing, 3 declined");
     expect("declines-all", 1, "no valid stream decoded");
+    expect("fewer-tiers", 1, " 8 passed, 0 failed, 0 without answer, 0 missing, 0 declined, 0 not run: does not conform: T1 is not claimed");
+    expect("class-alone", 1, "a class is claimed, but not T5");
 }
 
 /* What a decoder leaves running ends with its time, and does not keep the runner waiting. */

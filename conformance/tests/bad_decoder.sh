@@ -14,13 +14,15 @@ if [ "$1" = --ted4-capabilities ]; then
     declines-all) good "$@" | sed 's/"declines":\[\]/"declines":["motion.none","motion.bank","motion.concat","motion.inr"]/' ;;
     declines-moving) good "$@" | sed 's/"declines":\[\]/"declines":["motion.bank","motion.concat","motion.inr"]/' ;;
     not-lenient) good "$@" | sed 's/"lenient":true/"lenient":false/' ;;
+    fewer-tiers) good "$@" | sed 's/"tiers":\[[^]]*\],"class":"X"/"tiers":["T0","T3"],"class":null/' ;;
+    class-alone) good "$@" | sed 's/,"T5"//' ;;
     no-knobs) good "$@" | sed 's/"knobs":\["max_alloc_total"\]/"knobs":[]/' ;;
     *) good "$@" ;;
     esac
     exit
 fi
 case $way in
-good|declines-*|no-knobs|not-lenient) good "$@" ;;
+good|declines-*|no-knobs|not-lenient|fewer-tiers|class-alone) good "$@" ;;
 crash) kill -SEGV $$ ;;
 hang) sleep 600 ;;
 hang-behind) sleep 600 & good "$@"; wait ;;

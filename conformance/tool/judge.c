@@ -75,9 +75,21 @@ int conf_judge_capabilities(const json_t *c, conf_verdict *v)
         say(v, CONF_NO_ANSWER, "capabilities: no tiers");
     else if (!json_is_integer(json_object_get(c, "max_level")) || !json_is_array(json_object_get(c, "declines")))
         say(v, CONF_NO_ANSWER, "capabilities: max_level or declines are missing");
+    else if (json_is_string(json_object_get(c, "class")) && !holds(json_object_get(c, "tiers"), "T5"))
+        say(v, CONF_NO_ANSWER, "capabilities: a class is claimed, but not T5, which shows it");
     else
         return 1;
     return 0;
+}
+
+const char *conf_judge_lacks(const json_t *c)
+{
+    static const char *const tier[] = { "T0", "T1", "T2", "T3", "T4" };
+
+    for (size_t i = 0; i < sizeof tier / sizeof *tier; i++)
+        if (!holds(json_object_get(c, "tiers"), tier[i]))
+            return tier[i];
+    return NULL;
 }
 
 /* What is invalid has to be refused by everybody. */

@@ -19,6 +19,8 @@ typedef struct {
 json_t *conf_judge_document(const conf_process *p, conf_verdict *v);
 /* The object that --ted4-capabilities gives: 1, or 0: it is not what the contract asks for, and *v says why. */
 int     conf_judge_capabilities(const json_t *capabilities, conf_verdict *v);
+/* The first of T0 to T4 that a decoder does not say it can give, which a strict one has to (R-DMP-070); NULL: none. */
+const char *conf_judge_lacks(const json_t *capabilities);
 /* May the decoder leave this vector out? */
 int     conf_judge_declines(const json_t *capabilities, const json_t *descriptor);
 /* Is that the result that a descriptor expects? */

@@ -96,7 +96,7 @@ static int fetch(runner *w, size_t i, conf_bytes *b)
 
     *v = (conf_verdict){ CONF_MISSING, "" };
     if (e->descriptor == NULL) {
-        snprintf(v->reason, sizeof v->reason, "listed, but there is no descriptor");
+        snprintf(v->reason, sizeof v->reason, "there is no descriptor, or not the one that SUITE.json knows");
         return 0;
     }
     if (conf_judge_declines(w->r->capabilities, e->descriptor)) {
@@ -345,24 +345,36 @@ static void run_all(runner *w)
     free(s);
 }
 
-/* What SUITE.json names has to be there. */
-static void add_missing(conf_run_result *r)
+static int same_member(const json_t *a, const json_t *b, const char *key)
 {
-    char    path[CONF_PATH];
-    json_t *manifest, *list;
+    return json_equal(json_object_get(a, key), json_object_get(b, key));
+}
 
-    conf_path(path, "%s/SUITE.json", r->options->suite);
-    manifest = json_load_file(path, 0, NULL);
-    if (manifest == NULL)
-        conf_die("%s: no manifest", path);
-    list = json_object_get(manifest, "vector");
+/* Is that the descriptor that the manifest knows? */
+static int as_published(const json_t *listed, const json_t *d)
+{
+    return same_member(listed, d, "sha256") && same_member(listed, d, "bytes")
+        && conf_expects(d, json_string_value(json_object_get(listed, "result")));
+}
+
+/* The manifest's line of a vector, borrowed; NULL: it has none. */
+static const json_t *listed_as(const json_t *list, const char *id)
+{
+    for (size_t i = 0; i < json_array_size(list); i++)
+        if (strcmp(json_string_value(json_object_get(json_array_get(list, i), "id")), id) == 0)
+            return json_array_get(list, i);
+    return NULL;
+}
+
+static void add_missing(conf_run_result *r, const json_t *list, size_t n_found)
+{
     for (size_t i = 0; i < json_array_size(list); i++) {
         const char *const id = json_string_value(json_object_get(json_array_get(list, i), "id"));
         size_t            j = 0;
 
-        while (j < r->n && strcmp(r->entry[j].id, id) != 0)
+        while (j < n_found && strcmp(r->entry[j].id, id) != 0)
             j++;
-        if (j < r->n)
+        if (j < n_found)
             continue;
         r->entry = realloc(r->entry, (r->n + 1) * sizeof *r->entry);
         if (r->entry == NULL)
@@ -370,6 +382,30 @@ static void add_missing(conf_run_result *r)
         memset(&r->entry[r->n], 0, sizeof *r->entry);
         snprintf(r->entry[r->n++].id, sizeof r->entry->id, "%s", id);
     }
+}
+
+/* Descriptors have to be those of SUITE.json, and all that it names have to be there, unless a list says which. */
+static void hold_to_manifest(conf_run_result *r)
+{
+    char          path[CONF_PATH];
+    json_t       *manifest;
+    const json_t *list;
+
+    conf_path(path, "%s/SUITE.json", r->options->suite);
+    manifest = json_load_file(path, 0, NULL);
+    if (manifest == NULL)
+        conf_die("%s: no manifest", path);
+    list = json_object_get(manifest, "vector");
+    for (size_t i = 0; i < r->n; i++) {
+        const json_t *const listed = listed_as(list, r->entry[i].id);
+
+        if (r->entry[i].descriptor != NULL && (listed == NULL || !as_published(listed, r->entry[i].descriptor))) {
+            json_decref(r->entry[i].descriptor);
+            r->entry[i].descriptor = NULL;
+        }
+    }
+    if (r->options->list == NULL)
+        add_missing(r, list, r->n);
     json_decref(manifest);
 }
 
@@ -380,7 +416,22 @@ static void sum_up(conf_run_result *r)
         r->valid_passed += r->verdict[i].outcome == CONF_PASS && conf_expects(r->entry[i].descriptor, "valid");
     }
     r->passed = r->capabilities != NULL && r->count[CONF_FAIL] + r->count[CONF_NO_ANSWER] + r->count[CONF_MISSING] == 0
-             && r->valid_passed > 0;
+             && r->valid_passed > 0 && conf_judge_lacks(r->capabilities) == NULL;
+}
+
+/* Why it does not conform, as far as no vector says so. */
+static const char *reason(const conf_run_result *r)
+{
+    static char text[80];
+
+    if (r->capabilities == NULL)
+        return r->handshake.reason;
+    if (r->valid_passed == 0)
+        return "does not conform: no valid stream decoded";
+    if (conf_judge_lacks(r->capabilities) == NULL)
+        return "does not conform";
+    snprintf(text, sizeof text, "does not conform: %s is not claimed (R-DMP-070)", conf_judge_lacks(r->capabilities));
+    return text;
 }
 
 static void write_reports(const conf_run_result *r)
@@ -395,8 +446,7 @@ static void write_reports(const conf_run_result *r)
            r->capabilities != NULL ? json_string_value(json_object_get(r->capabilities, "name")) : r->options->decoder,
            r->count[CONF_PASS], r->count[CONF_FAIL], r->count[CONF_NO_ANSWER], r->count[CONF_MISSING], r->count[CONF_DECLINED],
            r->count[CONF_NOT_RUN],
-           r->passed ? "conforms" : r->capabilities == NULL ? r->handshake.reason
-           : r->valid_passed == 0 ? "does not conform: no valid stream decoded" : "does not conform");
+           r->passed ? "conforms" : reason(r));
 }
 
 int conf_run(const conf_run_options *o)
@@ -408,8 +458,7 @@ int conf_run(const conf_run_options *o)
 
     conf_path(vectors, "%s/vectors", o->suite);
     r.entry = conf_suite_load(vectors, o->list, &r.n);
-    if (o->list == NULL)
-        add_missing(&r);
+    hold_to_manifest(&r);
     r.verdict = conf_alloc(r.n, sizeof *r.verdict);
     r.ms = conf_alloc(r.n, sizeof *r.ms);
     for (int i = RUN_FIRST; i <= RUN_LENIENT; i++)

@@ -5,6 +5,7 @@
 #include <stdlib.h>
 #include <string.h>
 #include "cover.h"
+#include "encoder.h"
 #include "gen.h"
 #include "mutants.h"
 #include "replay.h"
@@ -110,6 +111,38 @@ static int run(int argc, char **argv)
     if (o.decoder == NULL || optind < argc || o.jobs < 1)
         return usage("run takes --decoder and no operand");
     return conf_run(&o);
+}
+
+enum { ENCODE_ENCODER, ENCODE_PRESET, ENCODE_TIMEOUT, ENCODE_HELP, ENCODE_VERSION, ENCODE_OPTIONS };
+
+static const ted4_argument encode_table[ENCODE_OPTIONS] = {
+    [ENCODE_ENCODER] = { 'e', "encoder", "CMD", "the encoder, as a shell would run it; arguments of the contract come behind it" },
+    [ENCODE_PRESET]  = { 0, "preset", "NAME", "passed on" },
+    [ENCODE_TIMEOUT] = { 't', "timeout", "SECONDS", "then its whole process group is ended. Default 86400" },
+    [ENCODE_HELP]    = TED4_ARGUMENT_HELP,
+    [ENCODE_VERSION] = TED4_ARGUMENT_VERSION,
+};
+
+static int encode(int argc, char **argv)
+{
+    static const ted4_command command = { "ted4conf encode", "--encoder 'CMD' SCENE [options]",
+                                          "Has an encoder make a file, and judges it by the contract of conformance/README.md.", encode_table,
+                                          ENCODE_OPTIONS, "Exit codes: 0 conforms, 1 does not, 3 usage.\n", NULL };
+    conf_encode_options o = { .timeout = 86400 };
+    const char         *value;
+
+    for (int i; (i = ted4_arguments_next(&command, argc, argv, &value)) != TED4_ARGUMENTS_END;)
+        switch (i) {
+        case TED4_ARGUMENTS_BAD:  return USAGE;
+        case TED4_ARGUMENTS_DONE: return 0;
+        case ENCODE_ENCODER: o.encoder = value; break;
+        case ENCODE_PRESET:  o.preset = value; break;
+        default:             o.timeout = (double)number(value, 86400);
+        }
+    if (o.encoder == NULL || optind + 1 != argc)
+        return usage("encode takes --encoder and one scene");
+    o.scene = argv[optind];
+    return conf_encode(&o);
 }
 
 enum { COVER_SUITE, COVER_SPEC, COVER_JSON, COVER_HTML, COVER_VERBOSE, COVER_HELP, COVER_VERSION, COVER_OPTIONS };
@@ -219,6 +252,7 @@ static const struct {
 } commands[] = {
     { "gen", gen, "make all vectors from their recipes" },
     { "run", run, "drive a decoder through the suite" },
+    { "encode", encode, "have an encoder make a file, and judge it" },
     { "cover", cover, "count what the vectors reach" },
     { "replay", replay, "our own decoder against the suite, in this process" },
     { "mutants", mutants, "seed faults into the decoder and see whether the vectors find them" },

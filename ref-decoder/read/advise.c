@@ -9,6 +9,7 @@
 #include "norm/scene.h"
 #include "norm/tables.h"
 #include "read/finding.h"
+#include "read/inflate.h"
 
 enum { MINOR_AT = 9, LEVEL_AT = 11, HEAD_AT = 12 };
 
@@ -59,20 +60,51 @@ static unsigned lowest_level(const ted4_scene *s, size_t size)
     return level;
 }
 
-/* Size of the values shuffled and deflated by zlib, or raw when there is no memory to find out. */
+/* n bytes of the shuffled values (spec 7.2), from byte at on. */
+static void shuffle(const ted4_blob *b, size_t at, uint8_t *bytes, size_t n)
+{
+    size_t i = at % b->n, j = at / b->n;
+
+    for (size_t k = 0; k < n; k++) {
+        bytes[k] = (uint8_t)(ted4_float_bits(b->values[i]) >> 8 * j);
+        if (++i == b->n) {
+            i = 0;
+            j++;
+        }
+    }
+}
+
+/* Size of the values shuffled and deflated by zlib, which is shown them piece by piece; raw size when there is no memory to find out. */
 static size_t deflated_size(const ted4_blob *b, ted4_arena *a)
 {
+    enum { PIECE = 1 << 14 };
     const size_t raw = 4 * b->n;
-    uLongf       size = compressBound((uLong)raw);
-    uint8_t     *bytes = ted4_arena_alloc(a, raw, 1), *packed = ted4_arena_alloc(a, size, 1);
+    uint8_t     *piece = ted4_arena_alloc(a, 2, PIECE);
+    size_t       size = 0, at = 0;
+    z_stream     z;
 
-    for (size_t i = 0; bytes != NULL && i < b->n; i++)
-        for (unsigned j = 0; j < 4; j++)
-            bytes[j * b->n + i] = (uint8_t)(ted4_float_bits(b->values[i]) >> 8 * j);
-    if (bytes == NULL || packed == NULL || compress2(packed, &size, bytes, (uLong)raw, 9) != Z_OK)
-        size = raw;
-    ted4_arena_release(a, bytes);
-    ted4_arena_release(a, packed);
+    memset(&z, 0, sizeof z);
+    z.zalloc = ted4_zlib_alloc;
+    z.zfree = ted4_zlib_free;
+    z.opaque = a;
+    if (piece == NULL || deflateInit(&z, 9) != Z_OK)
+        size = at = raw;
+    while (at < raw) {
+        const size_t n = raw - at < PIECE ? raw - at : PIECE;
+
+        shuffle(b, at, piece, n);
+        at += n;
+        z.next_in = piece;
+        z.avail_in = (unsigned)n;
+        do {
+            z.next_out = piece + PIECE;
+            z.avail_out = PIECE;
+            (void)deflate(&z, at < raw ? Z_NO_FLUSH : Z_FINISH);
+            size += PIECE - z.avail_out;
+        } while (z.avail_out == 0);
+    }
+    (void)deflateEnd(&z);
+    ted4_arena_release(a, piece);
     return size;
 }
 
@@ -87,22 +119,24 @@ static void advise_blob(ted4_findings *f, const ted4_blob *b, const ted4_chunk_p
         ted4_find_advice(f, TED4_ADV_BLOB_RAW, ted4_chunk_type[p->type], p->at, 2, (int64_t)(4 * b->n), (int64_t)size);
 }
 
-static void advise_chunks(ted4_findings *f, const ted4_scene *s, ted4_arena *a)
+static ted4_status advise_chunks(ted4_findings *f, const ted4_scene *s, ted4_arena *a)
 {
+    ted4_status verdict = TED4_OK;
     ted4_reader r;
 
     ted4_reader_init(&r, f->data, TED4_FILE_HEADER_SIZE, f->size, 1);
-    while (r.base.pos < f->size) {
+    while (verdict == TED4_OK && r.base.pos < f->size) {
         const ted4_chunk_place p = ted4_container_next(&r);
 
         switch (p.type) {
         case TED4_NETE: advise_blob(f, &s->nete, &p, a); break;
         case TED4_NETR: advise_blob(f, &s->netr, &p, a); break;
         case TED4_BANK: advise_blob(f, &s->bank, &p, a); break;
-        case TED4_CHUNKS: ted4_advise_ancillary(f, &p); break;
+        case TED4_CHUNKS: verdict = ted4_advise_ancillary(f, &p, a); break;
         default: break;
         }
     }
+    return verdict;
 }
 
 static void advise_masks(ted4_findings *f, const ted4_scene *s)
@@ -157,6 +191,8 @@ static uint32_t rows_unseen(const ted4_header *h)
     uint64_t       next = 0;            /* first row that no frame so far sees */
     uint32_t       unseen = 0;
 
+    if (h->frames > 1 && last <= end)   /* no frame goes on by more than a row */
+        return 0;
     for (uint64_t j = 0; j < h->frames && next <= last; j++) {
         const uint64_t g = j * last, row = g / end, up_to = row + (g % end != 0);
 
@@ -189,6 +225,7 @@ ted4_status ted4_advise(ted4_findings *f, const ted4_scene *s,
                         const ted4_options *o)
 {
     const unsigned lowest = lowest_level(s, f->size);
+    ted4_status    verdict;
     ted4_arena     a;
 
     if (f->data[MINOR_AT] != 0)
@@ -196,8 +233,10 @@ ted4_status ted4_advise(ted4_findings *f, const ted4_scene *s,
     if (s->level != lowest)
         ted4_find_advice(f, TED4_ADV_LEVEL, NULL, LEVEL_AT, 2, s->level, lowest);
     ted4_arena_init(&a, o);
-    advise_chunks(f, s, &a);
+    verdict = advise_chunks(f, s, &a);
     ted4_arena_finish(&a);
+    if (verdict != TED4_OK)
+        return verdict;
     advise_masks(f, s);
     advise_time(f, s);
     advise_bank(f, s);

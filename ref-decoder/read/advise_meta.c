@@ -42,33 +42,103 @@ static size_t line_end(const uint8_t *data, size_t at, size_t end, size_t *key)
     return i < end && *key > 0 ? i : 0;
 }
 
-/* Does a key of the lines from first to before at stand at at? Lines there are right. */
-static int known_key(const uint8_t *data, size_t first, size_t at, size_t key)
+/* Lines of META, all of them right. */
+typedef struct {
+    const uint8_t *data;
+    size_t        *at;          /* [n], offsets */
+    size_t        *order, *spare;   /* [n]: numbers of lines, by key, then as they stand */
+    uint8_t       *again;       /* [n]: the key stands in a line before */
+    size_t         n;
+} lines;
+
+/* Below 0, 0, above 0: order of the keys of two lines. */
+static int compare(const lines *l, size_t a, size_t b)
 {
-    while (first < at) {
-        if (memcmp(data + first, data + at, key + 1) == 0)      /* with its '=' */
-            return 1;
-        first = (size_t)((const uint8_t *)memchr(data + first, '\n', at - first) - data) + 1;
+    const uint8_t *p = l->data + l->at[a], *q = l->data + l->at[b];
+
+    while (*p == *q && *p != '=') {
+        p++;
+        q++;
     }
-    return 0;
+    return (int)*p - (int)*q;
 }
 
-static void advise_text(ted4_findings *f, const ted4_chunk_place *p)
+/* Merges order[first .. middle - 1] and order[middle .. end - 1] into spare. */
+static void merge(const lines *l, size_t first, size_t middle, size_t end)
 {
-    for (size_t at = p->payload, key; at < p->end;) {
-        const size_t end = line_end(f->data, at, p->end, &key);
+    size_t i = first, j = middle;
 
-        if (end == 0) {
-            ted4_find_advice(f, TED4_ADV_META_TEXT, "META", at, 0, 0, 0);
-            return;
-        }
-        if (known_key(f->data, p->payload, at, key))
-            ted4_find_advice(f, TED4_ADV_META_KEY, "META", at, 0, 0, 0);
-        at = end + 1;
-    }
+    for (size_t k = first; k < end; k++)
+        l->spare[k] = j == end || (i < middle && compare(l, l->order[i], l->order[j]) <= 0) ? l->order[i++] : l->order[j++];
 }
 
-void ted4_advise_ancillary(ted4_findings *f, const ted4_chunk_place *p)
+static size_t least(size_t a, size_t b)
+{
+    return a < b ? a : b;
+}
+
+/* By merging, so that no text takes long. */
+static void find_again(lines *l)
+{
+    for (size_t i = 0; i < l->n; i++)
+        l->order[i] = i;
+    for (size_t width = 1; width < l->n; width *= 2) {
+        size_t *const merged = l->spare;
+
+        for (size_t i = 0; i < l->n; i += 2 * width)
+            merge(l, i, least(i + width, l->n), least(i + 2 * width, l->n));
+        l->spare = l->order;
+        l->order = merged;
+    }
+    for (size_t i = 1; i < l->n; i++)
+        l->again[l->order[i]] = compare(l, l->order[i - 1], l->order[i]) == 0;
+}
+
+/* Right lines of a payload, up to the first that is none: how many, and *end: behind them. at: where they begin; NULL: not wanted. */
+static size_t right_lines(const ted4_findings *f, const ted4_chunk_place *p, size_t *at, size_t *end)
+{
+    size_t n = 0, key;
+
+    for (*end = p->payload; *end < p->end; n++) {
+        const size_t lf = line_end(f->data, *end, p->end, &key);
+
+        if (lf == 0)
+            break;
+        if (at != NULL)
+            at[n] = *end;
+        *end = lf + 1;
+    }
+    return n;
+}
+
+static ted4_status advise_text(ted4_findings *f, const ted4_chunk_place *p, ted4_arena *a)
+{
+    lines  l = { .data = f->data };
+    size_t end;
+
+    l.n = right_lines(f, p, NULL, &end);
+    l.at = ted4_arena_alloc(a, l.n, 3 * sizeof *l.at);
+    l.again = ted4_arena_alloc(a, l.n, 1);
+    if (l.at != NULL && l.again != NULL) {
+        (void)right_lines(f, p, l.at, &end);
+        l.order = l.at + l.n;
+        l.spare = l.order + l.n;
+        find_again(&l);
+        for (size_t i = 0; i < l.n; i++)
+            if (l.again[i])
+                ted4_find_advice(f, TED4_ADV_META_KEY, "META", l.at[i], 0, 0, 0);
+        if (end < p->end)
+            ted4_find_advice(f, TED4_ADV_META_TEXT, "META", end, 0, 0, 0);
+    }
+
+    const int bad = l.at == NULL || l.again == NULL;
+
+    ted4_arena_release(a, l.at);
+    ted4_arena_release(a, l.again);
+    return bad ? TED4_E_LIMIT_MEMORY : TED4_OK;
+}
+
+ted4_status ted4_advise_ancillary(ted4_findings *f, const ted4_chunk_place *p, ted4_arena *a)
 {
     const uint8_t *type = f->data + p->at;
     const uint32_t flags = ted4_load32(type + 4);
@@ -76,9 +146,8 @@ void ted4_advise_ancillary(ted4_findings *f, const ted4_chunk_place *p)
     if (memcmp(type, "META", 4) == 0) {
         if (flags != META_FLAGS)
             ted4_find_advice(f, TED4_ADV_META_FLAGS, "META", p->at + 4, 1, flags, 0);
-        advise_text(f, p);
-    } else {
-        ted4_find_advice(f, type[0] == 'x' ? TED4_ADV_PRIVATE : TED4_ADV_CHUNK, NULL, p->at, 2, flags,
-                         (int64_t)(p->end - p->payload));
+        return advise_text(f, p, a);
     }
+    ted4_find_advice(f, type[0] == 'x' ? TED4_ADV_PRIVATE : TED4_ADV_CHUNK, NULL, p->at, 2, flags, (int64_t)(p->end - p->payload));
+    return TED4_OK;
 }

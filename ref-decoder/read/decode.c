@@ -32,6 +32,7 @@ ted4_reader ted4_decoder_reader(decoder *d, const ted4_chunk_place *p)
 
     ted4_reader_init(&r, d->file.data, p->payload, p->end, 0);
     r.arena = &d->s->arena;
+    r.many = d->many;
     r.base.trace = d->o->trace;
     r.base.trace_user = d->o->trace_user;
     return r;
@@ -243,6 +244,7 @@ int ted4_decoder_init(decoder *d, const void *data, size_t size,
     memset(d, 0, sizeof *d);
     d->o = o != NULL ? o : &standard;
     d->file_bytes = size;
+    d->many = ted4_select_gauss_many();
     ted4_reader_init(&d->file, data, 0, size, 1);
     d->s = ted4_scene_empty(o);
     if (d->s == NULL)

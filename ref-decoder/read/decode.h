@@ -15,6 +15,7 @@ typedef struct {
     ted4_reader  file;          /* of the whole file; its error is the verdict on payloads */
     uint64_t     file_bytes;    /* what the bounds of the level are judged by */
     ted4_prior   prior;
+    ted4_gauss_many many;       /* for readers of tiles */
     struct ted4_tile_job *jobs;
     unsigned     n_room, n_queued;      /* tiles that run at once; tiles that wait to run */
     unsigned     n_tiles;       /* seen so far */

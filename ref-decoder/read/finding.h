@@ -3,6 +3,7 @@
 #ifndef TED4_FINDING_H
 #define TED4_FINDING_H
 
+#include "base/arena.h"
 #include "norm/syntax.h"
 #include "read/container.h"
 
@@ -23,6 +24,7 @@ typedef struct {
     void              *user;
     ted4_error         verdict; /* of the strict decoder: given already */
     int                found;   /* collect.c has met the verdict itself */
+    size_t             chunk;   /* offset of the chunk that an error was last found in; 0: none yet */
 } ted4_findings;
 
 /* Unless it is the verdict, which is noted. */
@@ -38,7 +40,7 @@ ted4_status ted4_collect(ted4_findings *f, const ted4_options *o);
 ted4_status ted4_advise(ted4_findings *f, const ted4_scene *s,
                         const ted4_options *o);
 /* Its parts: advise_meta.c, an ancillary chunk; advise_symbols.c, what is coded in tiles. */
-void        ted4_advise_ancillary(ted4_findings *f, const ted4_chunk_place *p);
+ted4_status ted4_advise_ancillary(ted4_findings *f, const ted4_chunk_place *p, ted4_arena *a);
 ted4_status ted4_advise_symbols(ted4_findings *f, const ted4_scene *s,
                                 const ted4_options *o);
 

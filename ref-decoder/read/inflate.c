@@ -10,12 +10,12 @@
 /* DEFLATE codes at most 258 bytes in two bits. */
 enum { MAX_RATIO = 1032 };
 
-static void *zlib_alloc(void *arena, unsigned n, unsigned size)
+void *ted4_zlib_alloc(void *arena, unsigned n, unsigned size)
 {
     return ted4_arena_alloc(arena, n, size);
 }
 
-static void zlib_free(void *arena, void *block)
+void ted4_zlib_free(void *arena, void *block)
 {
     ted4_arena_release(arena, block);
 }
@@ -68,8 +68,8 @@ ted4_status ted4_inflate(ted4_arena *arena, const uint8_t *data, size_t size,
     if (bytes == NULL)
         return TED4_E_LIMIT_MEMORY;
     memset(&z, 0, sizeof z);
-    z.zalloc = zlib_alloc;
-    z.zfree = zlib_free;
+    z.zalloc = ted4_zlib_alloc;
+    z.zfree = ted4_zlib_free;
     z.opaque = arena;
     z.next_in = data;
     z.avail_in = (unsigned)size;

@@ -10,5 +10,8 @@ ted4_status ted4_inflate(ted4_arena *arena, const uint8_t *data, size_t size,
                          float *values, size_t n);
 /* No stream of that size can hold n values: then values need not exist yet. */
 int ted4_inflate_impossible(size_t size, size_t n);
+/* zalloc and zfree of a z_stream whose opaque is a ted4_arena. */
+void *ted4_zlib_alloc(void *arena, unsigned n, unsigned size);
+void  ted4_zlib_free(void *arena, void *block);
 
 #endif

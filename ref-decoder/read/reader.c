@@ -10,6 +10,13 @@ static ted4_reader *reader_of(ted4_coder *c)
     return (ted4_reader *)c;
 }
 
+/* After a failure. Nothing is traced behind an error: no walk needs to go through what is not there. */
+static const uint8_t *nothing(ted4_coder *c)
+{
+    c->trace = NULL;
+    return NULL;
+}
+
 /* The next size bytes, or NULL after a failure. */
 static const uint8_t *take(ted4_coder *c, size_t size)
 {
@@ -17,13 +24,13 @@ static const uint8_t *take(ted4_coder *c, size_t size)
     const uint8_t *p = r->data + c->pos;
 
     if (c->error.code != TED4_OK)
-        return NULL;
+        return nothing(c);
     if (r->end - c->pos < size) {
         if (r->whole_file)
             ted4_fail(&c->error, TED4_E_CON_TRUNCATED, r->end);
         else
             ted4_fail(&c->error, TED4_E_CON_PAYLOAD_SIZE, c->pos);
-        return NULL;
+        return nothing(c);
     }
     c->pos += size;
     return p;
@@ -45,6 +52,7 @@ static void array(ted4_coder *c, unsigned width, void *values, size_t n)
 
     if (n > SIZE_MAX / width) {
         ted4_fail(&c->error, TED4_E_CON_PAYLOAD_SIZE, c->pos);
+        (void)nothing(c);
         return;
     }
     p = take(c, n * width);
@@ -196,11 +204,32 @@ static int32_t gauss_symbol(ted4_coder *c, int32_t mu, unsigned g)
     return k;
 }
 
+/* As many symbols as several lanes at a time can take. */
+static size_t gauss_many(ted4_reader *r, size_t n, const int32_t *mu,
+                         const uint8_t *sigma, int16_t *k)
+{
+    ted4_rans_dec   *d = &r->rans;
+    ted4_gauss_lanes lanes = { d->state, d->n_lanes, d->lane, d->word, d->end };
+    const size_t     done = r->many(&lanes, n, mu, sigma, k);
+
+    d->word = lanes.word;
+    d->lane = (d->lane + (unsigned)done) & (d->n_lanes - 1);
+    return done;
+}
+
+/* What is not for several lanes at a time goes one by one, up to the next group of eight lanes. */
 static void gauss(ted4_coder *c, size_t n, const int32_t *mu,
                   const uint8_t *sigma, int16_t *k)
 {
-    for (size_t i = 0; i < n && c->error.code == TED4_OK; i++)
-        k[i] = (int16_t)gauss_symbol(c, mu[i], sigma[i]);
+    ted4_reader *r = reader_of(c);
+    const int    many = r->many != NULL && r->rans.n_lanes >= TED4_MANY_LANES;
+
+    for (size_t i = 0; i < n && c->error.code == TED4_OK; i++) {
+        if (many && r->rans.lane % 8 == 0)
+            i += gauss_many(r, n - i, mu + i, sigma + i, k + i);
+        if (i < n)
+            k[i] = (int16_t)gauss_symbol(c, mu[i], sigma[i]);
+    }
 }
 
 void ted4_reader_init(ted4_reader *r, const uint8_t *data, size_t pos,

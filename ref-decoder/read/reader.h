@@ -3,6 +3,7 @@
 #ifndef TED4_READER_H
 #define TED4_READER_H
 
+#include "kernel/gauss_kernel.h"
 #include "norm/coder.h"
 #include "read/rans_dec.h"
 
@@ -14,6 +15,7 @@ typedef struct {
     size_t         end;         /* offset where reading has to stop */
     int            whole_file;  /* 1: beyond end the file is truncated; 0: the payload is too short */
     ted4_arena    *arena;       /* for deflated blobs */
+    ted4_gauss_many many;       /* reads symbols faster; NULL: nothing does */
     uint32_t       size[TED4_READER_SUBSTREAMS];
     unsigned       n_opened;
     size_t         n_symbols;   /* of the open substream */

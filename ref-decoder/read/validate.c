@@ -23,15 +23,17 @@ static const struct {
 #undef TED4_FINDING_ADVICE
 };
 
-/* Type of the known chunk that holds the byte at an offset, or NULL. Sizes are not to be trusted. */
-static const char *chunk_at(const ted4_findings *f, size_t offset)
+/* Type of the known chunk that holds the byte at an offset, or NULL. Sizes are not to be trusted. Errors come nearly in order of the file: the search goes on
+ * where the last one has ended. */
+static const char *chunk_at(ted4_findings *f, size_t offset)
 {
     const size_t frame = TED4_FRAME_HEAD_SIZE + TED4_FRAME_HASH_SIZE;
-    size_t       at = TED4_FILE_HEADER_SIZE;
+    size_t       at = f->chunk > 0 && f->chunk <= offset ? f->chunk : TED4_FILE_HEADER_SIZE;
 
     while (f->size - at >= TED4_FRAME_HEAD_SIZE) {
         const uint32_t size = ted4_load32(f->data + at + 8);
 
+        f->chunk = at;
         if (f->size - at < frame || f->size - at - frame < size || offset - at < frame + size)
             for (int i = 0; i <= TED4_CHUNKS; i++)
                 if (i == TED4_CHUNKS || memcmp(f->data + at, ted4_chunk_type[i], 4) == 0)

@@ -11,7 +11,7 @@
 
 enum {
     OPT_OUTPUT, OPT_PRESET, OPT_LAMBDA, OPT_ITERATIONS, OPT_SET, OPT_DOWNSCALE, OPT_MAX_FRAMES, OPT_BLACK,
-    OPT_SEED, OPT_THREADS, OPT_CACHE, OPT_TARGET, OPT_CHECKPOINT, OPT_EVERY, OPT_RESUME, OPT_STAGE1, OPT_LOG, OPT_CHECK, OPT_JSON, OPT_FORCE,
+    OPT_SEED, OPT_THREADS, OPT_CACHE, OPT_TARGET, OPT_CHECKPOINT, OPT_EVERY, OPT_RESUME, OPT_STAGE1, OPT_LOG, OPT_CHECK, OPT_JSON, OPT_CONTRACT, OPT_FORCE,
     OPT_QUIET, OPT_VERBOSE, OPT_HELP, OPT_VERSION, N_OPTIONS
 };
 
@@ -38,6 +38,7 @@ static const ted4_argument OPTIONS[N_OPTIONS] = {
     [OPT_LOG]        = { 0, "log", "FILE", "JSON lines of progress; with --resume it goes on" },
     [OPT_CHECK]      = { 0, "check", NULL, "say what the scene holds, or the one thing that is wrong, and stop" },
     [OPT_JSON]       = { 0, "json", NULL, "result as one JSON object" },
+    [OPT_CONTRACT]   = { 0, "ted4-encode", NULL, "the contract of conformance/README.md: --json --quiet" },
     [OPT_FORCE]      = { 'f', "force", NULL, "overwrite" },
     [OPT_QUIET]      = { 'q', "quiet", NULL, "errors only" },
     [OPT_VERBOSE]    = { 'v', "verbose", NULL, "progress lines, terminal or not" },
@@ -99,6 +100,7 @@ static int take(ted4_request *r, pending *p, int option, const char *value)
     case OPT_BLACK:      r->black = 1; break;
     case OPT_RESUME:     r->resume = 1; break;
     case OPT_CHECK:      r->check = 1; break;
+    case OPT_CONTRACT:   r->json = r->quiet = 1; break;
     case OPT_JSON:       r->json = 1; break;
     case OPT_FORCE:      r->force = 1; break;
     case OPT_QUIET:      r->quiet = 1; break;

@@ -1,0 +1,326 @@
+#!/usr/bin/env python3
+# SPDX-License-Identifier: BSD-2-Clause
+"""What conformance/schema says, held against what is there: manifest, every descriptor, capabilities and answers of our decoders, and the results of
+`ted4conf run` for a decoder that conforms and one that does not, as JSON, JUnit and HTML. Speaks as cmocka programs do; run in the project's root, by
+tests/test_suite_schema.sh. TED4_BUILD: the build folder.
+"""
+
+import csv
+import html.parser
+import json
+import os
+import re
+import shutil
+import subprocess
+import sys
+import tempfile
+import xml.etree.ElementTree
+
+SUITE = "conformance"
+SCHEMAS = os.path.join(SUITE, "schema")
+BUILD = os.environ.get("TED4_BUILD", "build")
+MOST_BYTES = 8000000
+TYPES = {
+    "object": lambda v: isinstance(v, dict), "array": lambda v: isinstance(v, list), "string": lambda v: isinstance(v, str),
+    "integer": lambda v: isinstance(v, int) and not isinstance(v, bool), "boolean": lambda v: isinstance(v, bool), "null": lambda v: v is None,
+    "number": lambda v: isinstance(v, (int, float)) and not isinstance(v, bool),
+}
+
+
+def load(path):
+    with open(path, encoding="utf-8") as file:
+        return json.load(file)
+
+
+class Schema:
+    """The keywords of JSON Schema draft 7 that the files of conformance/schema use; another one is an error."""
+
+    def __init__(self, name):
+        self.name, self.root = name, load(os.path.join(SCHEMAS, name))
+
+    def check(self, value):
+        """Where and why the value is not what the schema says; [] if it is."""
+        return list(self.errors(value, self.root, "$"))
+
+    def errors(self, value, schema, at):
+        for keyword, operand in schema.items():
+            if keyword in ("$schema", "title", "description", "definitions"):
+                continue
+            yield from getattr(self, "on_" + keyword.replace("$", ""))(value, operand, at, schema)
+
+    def on_ref(self, value, operand, at, _):
+        name, _, path = operand.partition("#")
+        target = Schema(name) if name else self
+        found = target.root
+        for part in path.strip("/").split("/") if path else []:
+            found = found[part]
+        yield from target.errors(value, found, at)
+
+    def on_type(self, value, operand, at, _):
+        if not any(TYPES[name](value) for name in (operand if isinstance(operand, list) else [operand])):
+            yield "%s: not %s" % (at, operand)
+
+    def on_enum(self, value, operand, at, _):
+        if value not in operand:
+            yield "%s: %r is none of %r" % (at, value, operand)
+
+    def on_const(self, value, operand, at, _):
+        if value != operand or isinstance(value, bool) != isinstance(operand, bool):
+            yield "%s: %r is not %r" % (at, value, operand)
+
+    def on_required(self, value, operand, at, _):
+        if isinstance(value, dict):
+            yield from ("%s: no %s" % (at, name) for name in operand if name not in value)
+
+    def on_properties(self, value, operand, at, _):
+        for name, schema in operand.items() if isinstance(value, dict) else ():
+            if name in value:
+                yield from self.errors(value[name], schema, "%s.%s" % (at, name))
+
+    def on_additionalProperties(self, value, operand, at, schema):
+        for name in value if isinstance(value, dict) else ():
+            if name in schema.get("properties", {}):
+                continue
+            if operand is False:
+                yield "%s: %s is not known" % (at, name)
+            elif isinstance(operand, dict):
+                yield from self.errors(value[name], operand, "%s.%s" % (at, name))
+
+    def on_items(self, value, operand, at, _):
+        for i, item in enumerate(value if isinstance(value, list) else ()):
+            yield from self.errors(item, operand, "%s[%d]" % (at, i))
+
+    def on_anyOf(self, value, operand, at, _):
+        if all(list(self.errors(value, schema, at)) for schema in operand):
+            yield "%s: is none of what it may be" % at
+
+    def on_minItems(self, value, operand, at, _):
+        if isinstance(value, list) and len(value) < operand:
+            yield "%s: too few" % at
+
+    def on_maxItems(self, value, operand, at, _):
+        if isinstance(value, list) and len(value) > operand:
+            yield "%s: too many" % at
+
+    def on_minLength(self, value, operand, at, _):
+        if isinstance(value, str) and len(value) < operand:
+            yield "%s: too short" % at
+
+    def on_minimum(self, value, operand, at, _):
+        if TYPES["number"](value) and value < operand:
+            yield "%s: below %s" % (at, operand)
+
+    def on_maximum(self, value, operand, at, _):
+        if TYPES["number"](value) and value > operand:
+            yield "%s: above %s" % (at, operand)
+
+    def on_pattern(self, value, operand, at, _):
+        if isinstance(value, str) and not re.search(operand, value):
+            yield "%s: %r does not fit %s" % (at, value, operand)
+
+
+def require(condition, why):
+    if not condition:
+        raise AssertionError(why)
+
+
+def holds(schema, value, what):
+    wrong = schema.check(value)
+    require(not wrong, "%s: %s" % (what, "; ".join(wrong[:3])))
+
+
+def descriptors():
+    for folder, _, names in sorted(os.walk(os.path.join(SUITE, "vectors"))):
+        for name in sorted(names):
+            if name.endswith(".json"):
+                yield os.path.join(folder, name)
+
+
+def manifest():
+    suite, schema = load(os.path.join(SUITE, "SUITE.json")), Schema("manifest.schema.json")
+    holds(schema, suite, "SUITE.json")
+    require(suite["vectors"] == len(suite["vector"]) == len({v["id"] for v in suite["vector"]}), "SUITE.json: number of vectors")
+    for kind, key in (("result", "result"), ("folder", "folder")):
+        counted = {}
+        for v in suite["vector"]:
+            counted[v[key]] = counted.get(v[key], 0) + 1
+        require(counted == suite["counts"][kind], "SUITE.json: counts by %s" % kind)
+    require(schema.check(dict(suite, schema=2)), "a manifest of another schema passes")
+    files = [os.path.join(SUITE, "SUITE.json")] + [os.path.join(folder, name) for part in ("vectors", "recipes", "lists", "schema")
+                                                   for folder, _, names in os.walk(os.path.join(SUITE, part)) for name in names]
+    require(sum(os.path.getsize(path) for path in files) <= MOST_BYTES, "the suite is larger than it may be")
+
+
+def every_descriptor():
+    schema, listed = Schema("descriptor.schema.json"), {v["id"]: v for v in load(os.path.join(SUITE, "SUITE.json"))["vector"]}
+    one = None
+    for path in descriptors():
+        one = load(path)
+        name = os.path.basename(path)[:-len(".json")]
+        holds(schema, one, path)
+        require(one["id"] == name and one["file"] == name + ".ted4" and name in listed, "%s: names" % path)
+        require(one["category"] == listed[name]["folder"] == os.path.relpath(os.path.dirname(path), os.path.join(SUITE, "vectors")),
+                "%s: category" % path)
+        require(one["bytes"] == listed[name]["bytes"] and one["sha256"] == listed[name]["sha256"], "%s: file" % path)
+        require(("tiers" in one) == (one["expect"]["result"] == "valid"), "%s: tiers" % path)
+        require(one["expect"]["result"] != "invalid" or one["expect"]["offset"] <= one["bytes"], "%s: offset" % path)
+        del listed[name]
+    require(not listed, "no descriptor of %s" % list(listed)[:3])
+    for change in ({"more": 1}, {"rules": []}, {"sha256": "x"}, {"level": -1}, {"expect": {"result": "maybe"}}, {"tiers": {"T9": {}}}):
+        require(schema.check(dict(one, **change)), "a descriptor with %r passes" % change)
+
+
+def ask(command, *arguments):
+    run = subprocess.run(command + list(arguments), capture_output=True, timeout=120, check=False)
+    require(run.returncode == 0, "%s: exit status %d" % (command, run.returncode))
+    return json.loads(run.stdout)
+
+
+def answers():
+    ours = [os.path.join(BUILD, "ted4dec")]
+    capabilities, answer = Schema("capabilities.schema.json"), Schema("answer.schema.json")
+    for command in (ours, ["python3", os.path.join(SUITE, "reader", "reader.py")]):
+        said = ask(command, "--ted4-capabilities")
+        holds(capabilities, said, "capabilities of %s" % command[-1])
+        require(capabilities.check(dict(said, protocol=0)) and capabilities.check(dict(said, max_level=32)), "other capabilities pass")
+    wanted = {"worked/WRK-dynamic": "valid", "invalid/container/NEG-magic-0": "invalid", "tolerant/TOL-three-1": "invalid",
+              "limit/LIM-bank-60000": "limit", "invalid/container/NEG-profile-1": "unsupported"}
+    for vector, result in wanted.items():
+        path = os.path.join(SUITE, "vectors", vector)
+        if not os.path.exists(path + ".json"):
+            path = next(p[:-len(".json")] for p in descriptors() if load(p)["expect"]["result"] == result)
+        with tempfile.NamedTemporaryFile("w", suffix=".json", encoding="ascii") as queries:
+            one = load(path + ".json")
+            json.dump(one["queries"], queries)
+            queries.flush()
+            knobs = [x for k, v in one.get("knobs", {}).items() for x in ("--knob", "%s=%d" % (k, v))]
+            said = ask(ours, "--ted4-run", path + ".ted4", "--tiers", "T0,T1,T2,T3,T4,T5", "--mode", "lenient", "--queries", queries.name, *knobs)
+        holds(answer, said, vector)
+        require(said["result"] == result, "%s: %s" % (vector, said["result"]))
+        require(("salvage" in said) == (vector == "tolerant/TOL-three-1"), "%s: salvage" % vector)
+        require(answer.check(dict(said, result="perhaps")) and answer.check(dict(said, offset=-1)), "other answers pass")
+
+
+class Page(html.parser.HTMLParser):
+    """Cells and paragraphs of a page whose elements are closed in order."""
+
+    def __init__(self, text):
+        super().__init__()
+        self.open, self.text = [], []
+        self.feed(text)
+        self.close()
+        require(not self.open, "HTML: %s is not closed" % self.open)
+
+    def handle_starttag(self, tag, attrs):
+        if tag != "meta":
+            self.open.append(tag)
+
+    def handle_endtag(self, tag):
+        require(self.open and self.open.pop() == tag, "HTML: </%s> closes nothing" % tag)
+
+    def handle_data(self, data):
+        if data.strip():
+            self.text.append(data.strip())
+
+
+def one_report(folder, command, conforms, outcomes):
+    out = {kind: os.path.join(folder, "results." + kind) for kind in ("json", "xml", "html")}
+    ids = open(os.path.join(SUITE, "lists", "few.txt"), encoding="ascii").read().split()
+    run = subprocess.run([os.path.join(BUILD, "ted4conf"), "run", "-q", "--memory", "0", "-l", os.path.join(SUITE, "lists", "few.txt"), "-d", command,
+                          "--json", out["json"], "--junit", out["xml"], "--html", out["html"]],
+                         env=dict(os.environ, TED4DEC=os.path.join(BUILD, "ted4dec")), capture_output=True, timeout=300, check=False)
+    require(run.returncode == (0 if conforms else 1), "exit status %d: %s" % (run.returncode, run.stdout))
+    results, schema = load(out["json"]), Schema("results.schema.json")
+    holds(schema, results, "results")
+    require(results["conforms"] is conforms and results["counts"] == dict({n: 0 for n in results["counts"]}, **outcomes), "results: counts")
+    require(sorted(v["id"] for v in results["vectors"]) == sorted(ids), "results: vectors")
+    require(schema.check(dict(results, conforms="yes")), "other results pass")
+    junit = xml.etree.ElementTree.parse(out["xml"]).getroot()
+    require(junit.tag == "testsuite" and sorted(c.get("name") for c in junit) == sorted(ids), "JUnit: cases")
+    require(int(junit.get("tests")) == len(ids) and int(junit.get("failures")) == outcomes.get("fail", 0), "JUnit: counts")
+    require(len(junit.findall("testcase/failure")) == outcomes.get("fail", 0) and int(junit.get("errors")) == 0, "JUnit: failures")
+    page = Page(open(out["html"], encoding="utf-8").read())
+    require(("conforms" in page.text) is conforms and ("does not conform" in page.text) is not conforms, "HTML: verdict")
+    require(all(i in page.text for i in ids) and command in page.text, "HTML: vectors")
+
+
+def reports():
+    bad = "sh conformance/tests/bad_decoder.sh "
+    with tempfile.TemporaryDirectory() as folder:
+        one_report(folder, bad + "good", True, {"pass": 8})
+        one_report(folder, "NAME='<a href=\"x\">&' " + bad + "wrong-hash", False, {"pass": 4, "fail": 4})
+
+
+def one_suite(folder, changed, outcome):
+    """Runs our decoder over a suite of two vectors, of which the second has been changed."""
+    published = {v["id"]: v for v in load(os.path.join(SUITE, "SUITE.json"))["vector"]}
+    place = os.path.join(folder, "vectors", "worked")
+    os.makedirs(place)
+    for name in ("WRK-annex-b1", "WRK-masks"):
+        for suffix in (".json", ".ted4"):
+            shutil.copy(os.path.join(SUITE, "vectors", "worked", name + suffix), place)
+    with open(os.path.join(folder, "SUITE.json"), "w", encoding="ascii") as file:
+        json.dump({"vector": [published["WRK-annex-b1"], published["WRK-masks"]]}, file)
+    changed(place)
+    run = subprocess.run([os.path.join(BUILD, "ted4conf"), "run", "-q", "--memory", "0", "-s", folder, "-d", os.path.join(BUILD, "ted4dec")],
+                         stdout=subprocess.PIPE, timeout=120, check=False)
+    require(outcome in run.stdout.decode(), "%s: %s" % (changed.__name__, run.stdout))
+
+
+def changed_suites():
+    """A vector that is gone, or another one than the manifest says, is missing, whatever its descriptor says."""
+    second = "WRK-masks"
+
+    def as_it_is(_):
+        pass
+
+    def no_file(place):
+        os.remove(os.path.join(place, second + ".ted4"))
+
+    def no_descriptor(place):
+        os.remove(os.path.join(place, second + ".json"))
+
+    def other_file(place):
+        shutil.copy(os.path.join(place, "WRK-annex-b1.ted4"), os.path.join(place, second + ".ted4"))
+
+    def other_vector(place):
+        other_file(place)
+        one = load(os.path.join(place, "WRK-annex-b1.json"))
+        with open(os.path.join(place, second + ".json"), "w", encoding="ascii") as file:
+            json.dump(dict(one, id=second, file=second + ".ted4"), file)
+
+    def one_more(place):
+        for suffix in (".json", ".ted4"):
+            shutil.copy(os.path.join(place, second + suffix), os.path.join(place, "WRK-more" + suffix))
+
+    for changed, outcome in ((as_it_is, " 2 passed, 0 failed, 0 without answer, 0 missing"), (no_file, " 1 passed, 0 failed, 0 without answer, 1 missing"),
+                             (no_descriptor, " 1 passed, 0 failed, 0 without answer, 1 missing"), (other_file, " 1 missing"),
+                             (other_vector, " 1 passed, 0 failed, 0 without answer, 1 missing"), (one_more, " 2 passed, 0 failed, 0 without answer, 1 missing")):
+        with tempfile.TemporaryDirectory() as folder:
+            one_suite(folder, changed, outcome)
+
+
+def thresholds():
+    """Powers of two by their exponents; what the root of the mean square may be is never above what the largest may be (R-TOL-003)."""
+    rows = list(csv.DictReader(open(os.path.join(SUITE, "tolerance", "thresholds.csv"), encoding="ascii")))
+    require(len(rows) > 20, "thresholds.csv: too few rows")
+    for row in rows:
+        for group in ("position", "scale", "rotation", "opacity", "colour"):
+            peak, rms = row[group + "_peak"], row[group + "_rms"]
+            require((peak == "-") == (rms == "-") and (peak == "-" or int(rms) <= int(peak)), "thresholds.csv: %s %s" % (row["vector"], group))
+
+
+def main():
+    bad = 0
+    for test in (manifest, every_descriptor, answers, reports, changed_suites, thresholds):
+        try:
+            test()
+            print("[       OK ] %s" % test.__name__)
+        except (AssertionError, AttributeError, KeyError, ValueError, OSError, subprocess.SubprocessError, StopIteration) as error:
+            print("[  FAILED  ] %s: %s: %s" % (test.__name__, type(error).__name__, error))
+            bad = 1
+    return bad
+
+
+if __name__ == "__main__":
+    sys.exit(main())

@@ -1,0 +1,32 @@
+/* gauss_kernel.h - symbols of a substream several lanes at a time (spec 9.2, 9.4), and whether this machine can.
+ * Used by read/reader.c, and tests/test_kernel_gauss.c.
+ * SPDX-License-Identifier: BSD-2-Clause */
+#ifndef TED4_GAUSS_KERNEL_H
+#define TED4_GAUSS_KERNEL_H
+
+#include <stddef.h>
+#include <stdint.h>
+
+/* A substream under way. */
+typedef struct {
+    uint32_t      *state;           /* borrowed: [n_lanes] */
+    unsigned       n_lanes, lane;   /* lane: of the next symbol */
+    const uint8_t *word, *end;      /* borrowed: the words not read yet */
+} ted4_gauss_lanes;
+
+/* With fewer lanes it is not worth asking. */
+enum { TED4_MANY_LANES = 4 };
+
+/* Reads the next symbols as reader.c would, of at most n; mu, sigma, k as in ted4_coder_ops. Returns how many it took, whole groups of lanes, and leaves d->word
+ * behind their words and d->lane alone. It stops where symbols have to be read one at a time: before a group with an escape or a symbol out of range, near the
+ * last words, and near the last symbol. */
+typedef size_t (*ted4_gauss_many)(ted4_gauss_lanes *d, size_t n, const int32_t *mu, const uint8_t *sigma, int16_t *k);
+
+#if defined(__x86_64__)
+size_t ted4_gauss_many_avx512(ted4_gauss_lanes *d, size_t n, const int32_t *mu, const uint8_t *sigma, int16_t *k);
+#endif
+
+/* NULL: this machine has none, or the environment says TED4_KERNEL=plain. */
+ted4_gauss_many ted4_select_gauss_many(void);
+
+#endif

@@ -1,0 +1,195 @@
+/* test_kernel_gauss.c - kernel/gauss_many_avx512.c reads what read/reader.c reads one symbol at a time: symbols, error, and where the words end; for every number of lanes,
+ * calls of any size, escapes, symbols out of range, and damaged substreams.
+ * SPDX-License-Identifier: BSD-2-Clause */
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <cmocka.h>
+#include <stdlib.h>
+#include "random_scene.h"
+#include "read/reader.h"
+#include "write/coder_write.h"
+
+/* n symbols with their models. */
+typedef struct {
+    size_t   n;
+    int32_t *mu;
+    uint8_t *sigma;
+    int16_t *k;
+} symbols;
+
+/* far: one symbol of so many lies where only an escape reaches; 0: none. widest: sigma index; the wider, the worse are guesses. */
+static symbols make(uint64_t seed, size_t n, unsigned far, unsigned widest)
+{
+    random_source r = random_seed(seed);
+    symbols       s = { n, malloc(n * sizeof *s.mu), malloc(n), malloc(n * sizeof *s.k) };
+
+    for (size_t i = 0; i < n; i++) {
+        const double x = random_normal(&r) * 40;
+
+        s.sigma[i] = (uint8_t)random_in(&r, 0, widest);
+        s.mu[i] = (int32_t)(256 * x);
+        s.k[i] = (int16_t)rint(x + random_normal(&r) * exp2((s.sigma[i] - 64) / 16.0));
+        if (far > 0 && random_in(&r, 0, far - 1) == 0)
+            s.k[i] = (int16_t)((int)random_in(&r, 0, 65534) - 32767);
+    }
+    return s;
+}
+
+static void drop(symbols *s)
+{
+    free(s->mu);
+    free(s->sigma);
+    free(s->k);
+}
+
+/* One substream behind its size. The caller frees w. */
+static void write_symbols(ted4_writer *w, const symbols *s)
+{
+    uint32_t size;
+
+    ted4_writer_init(w);
+    w->base.ops->sizes(&w->base, &size, 1);
+    w->base.ops->open(&w->base, s->n);
+    w->base.ops->gauss(&w->base, s->n, s->mu, s->sigma, s->k);
+    w->base.ops->close(&w->base);
+    assert_int_equal(w->base.error.code, TED4_OK);
+}
+
+typedef struct {
+    ted4_status status;
+    size_t      left;           /* bytes of words not read */
+    int16_t    *k;
+} outcome;
+
+/* In calls of step symbols. */
+static outcome read_symbols(const uint8_t *data, size_t size, const symbols *s, size_t step, ted4_gauss_many many)
+{
+    ted4_reader r;
+    uint32_t    length;
+    outcome     o = { TED4_OK, 0, calloc(s->n, sizeof *o.k) };
+
+    ted4_reader_init(&r, data, 0, size, 0);
+    r.many = many;
+    r.base.ops->sizes(&r.base, &length, 1);
+    r.base.ops->open(&r.base, s->n);
+    for (size_t i = 0; i < s->n; i += step)
+        r.base.ops->gauss(&r.base, s->n - i < step ? s->n - i : step, s->mu + i, s->sigma + i, o.k + i);
+    r.base.ops->close(&r.base);
+    o.status = r.base.error.code;
+    o.left = (size_t)(r.rans.end - r.rans.word);
+    return o;
+}
+
+static void compare(const uint8_t *data, size_t size, const symbols *s, ted4_gauss_many many)
+{
+    static const size_t step[] = { 1 << 20, 4096, 1001, 64, 7 };
+    const outcome       want = read_symbols(data, size, s, s->n, NULL);
+
+    for (size_t i = 0; i < sizeof step / sizeof step[0]; i++) {
+        const outcome got = read_symbols(data, size, s, step[i], many);
+
+        assert_int_equal(got.status, want.status);
+        if (want.status == TED4_OK) {
+            assert_int_equal(got.left, want.left);
+            assert_memory_equal(got.k, want.k, s->n * sizeof *got.k);
+        }
+        free(got.k);
+    }
+    free(want.k);
+}
+
+static ted4_gauss_many fastest(void)
+{
+    const ted4_gauss_many many = ted4_select_gauss_many();
+
+    if (many == NULL) {
+        print_message("this machine has no kernel for several lanes\n");
+        skip();
+    }
+    return many;
+}
+
+/* From 1 to 64 lanes. */
+static void test_same(void **state)
+{
+    static const size_t   count[] = { 1, 8192, 16384, 16385, 20000, 40000, 70001, 140000, 262144 };
+    static const unsigned far[] = { 0, 2000, 9 }, widest[] = { 20, 100, TED4_N_SIGMA - 1 };
+    const ted4_gauss_many many = fastest();
+
+    (void)state;
+    for (size_t i = 0; i < sizeof count / sizeof count[0]; i++)
+        for (unsigned f = 0; f < 3; f++)
+            for (unsigned v = 0; v < 3; v++) {
+                symbols     s = make(3 * i + f, count[i], far[f], widest[v]);
+                ted4_writer w;
+
+                write_symbols(&w, &s);
+                compare(w.out.data, w.out.size, &s, many);
+                ted4_buffer_free(&w.out);
+                drop(&s);
+            }
+}
+
+/* A word changed, and words cut off with the size mended: the same verdict. */
+static void test_damaged(void **state)
+{
+    const ted4_gauss_many many = fastest();
+    symbols               s = make(5, 40000, 3000, 100);
+    random_source         r = random_seed(11);
+    ted4_writer           w;
+
+    (void)state;
+    write_symbols(&w, &s);
+    for (int i = 0; i < 30; i++) {
+        const size_t at = random_in(&r, 4, (uint32_t)w.out.size - 1);
+
+        w.out.data[at] ^= (uint8_t)(1u << random_in(&r, 0, 7));
+        compare(w.out.data, w.out.size, &s, many);
+    }
+    for (size_t cut = 2; cut < 60; cut += 6) {
+        const uint32_t left = (uint32_t)(w.out.size - 4 - cut);
+
+        for (int k = 0; k < 4; k++)
+            w.out.data[k] = (uint8_t)(left >> 8 * k);
+        compare(w.out.data, w.out.size - cut, &s, many);
+    }
+    ted4_buffer_free(&w.out);
+    drop(&s);
+}
+
+/* The kernel does take what it is there for. */
+static void test_takes(void **state)
+{
+    const ted4_gauss_many many = fastest();
+    symbols               s = make(6, 40000, 0, 60);
+    ted4_writer           w;
+    ted4_reader           r;
+    uint32_t              length;
+
+    (void)state;
+    write_symbols(&w, &s);
+    ted4_reader_init(&r, w.out.data, 0, w.out.size, 0);
+    r.base.ops->sizes(&r.base, &length, 1);
+    r.base.ops->open(&r.base, s.n);
+    assert_int_equal(r.rans.n_lanes, 8);
+
+    ted4_gauss_lanes lanes = { r.rans.state, 8, 0, r.rans.word, r.rans.end };
+    int16_t         *k = calloc(s.n, sizeof *k);
+    const size_t     done = many(&lanes, s.n, s.mu, s.sigma, k);
+
+    assert_true(done > 1000 && done % 8 == 0);
+    assert_memory_equal(k, s.k, done * sizeof *k);
+    free(k);
+    ted4_buffer_free(&w.out);
+    drop(&s);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(test_same), cmocka_unit_test(test_damaged), cmocka_unit_test(test_takes),
+    };
+
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
