@@ -57,7 +57,7 @@ $B/tests/%: tests/%.sh
 	@mkdir -p $(@D)
 	install -m 755 $< $@
 
-$B/tests/test_scene $B/tests/test_layouts: $(patsubst %.c,$B/%.o,$(wildcard tests/scenes/ray_*.c))
+$(addprefix $B/tests/test_,scene scene_sets failure_scenes layouts): $(patsubst %.c,$B/%.o,$(wildcard tests/scenes/ray_*.c))
 
 # Prints each test program it runs and a closing line of totals.
 test: $(TESTS) $(PROGS)

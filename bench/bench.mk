@@ -66,6 +66,14 @@ $(BENCH_FILE:%=$B/bench/%) $B/bench/bench_decode: $B/bench/%: $B/bench/%.o $(DEC
 	$(CC) -fopenmp $(LDFLAGS) $(filter %.o,$^) $(filter %.a,$^) -o $@ $(LIBS)
 $B/bench/spans: $B/bench/spans_view.o $B/bench/spans_where.o
 
+# What the stability lab measures on a file.
+LAB_FACTS = lab_facts lab_views lab_tracks lab_anchors lab_symbols lab_log
+$B/bench/lab_facts: $(LAB_FACTS:%=$B/bench/%.o) $B/ref-encoder/tool/sheet.o $(DEC_TOOL:%.c=$B/%.o) $B/libted4enc.a $B/libted4dec.a
+	$(CC) -fopenmp $(LDFLAGS) $(filter %.o,$^) $(filter %.a,$^) -o $@ $(LIBS)
+$B/tests/test_lab_facts: $B/tests/test_lab_facts.o $(patsubst %,$B/bench/%.o,$(filter-out lab_facts,$(LAB_FACTS))) $B/ref-encoder/tool/sheet.o \
+        $(DEC_TOOL:%.c=$B/%.o) $B/libted4enc.a $B/libted4dec.a
+	$(CC) -fopenmp $(LDFLAGS) $^ -o $@ -lcmocka $(LIBS)
+
 # make rate-check FILE=x.ted4
 rate-check: $B/bench/rate_check
 	$B/bench/rate_check $(FILE)
@@ -90,3 +98,11 @@ report:
 	bench/report.sh
 
 .PHONY: sweep real report
+
+# The stability lab: the runs of bench/stability.txt whose row in bench/stability.csv is missing or stale (hours; resumable), then bench/stability.md with its
+# charts.
+stability: all $B/bench/lab_facts
+	TED4_BUILD=$B TED4_DATA=$(TED4_DATA) bench/stability.sh
+	bench/stability_page.sh
+
+.PHONY: stability

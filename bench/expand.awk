@@ -1,6 +1,6 @@
-# expand.awk - the table of runs (bench/sweep.txt), a run a line:
+# expand.awk - a table of runs (bench/sweep.txt, bench/stability.txt), a run a line:
 #     GROUPS|TAG|SCENE|WHERE|VARIANT|PLACE|LAMBDA|KEEP|STAGE1|OPTIONS
-# PLACE: of the lambda in the list, from 1. STAGE1: the options that decide stage 1, with no part that only stage 2 looks at, as
+# PLACE: of the lambda, or of the seed, in its list, from 1. STAGE1: the options that decide stage 1, with no part that only stage 2 looks at, as
 # ref-encoder/train/options.def says. Options come out once each, the last value of a name winning, in the order in which names first come.
 # Usage: awk -f expand.awk ref-encoder/train/options.def bench/sweep.txt. A fault in the table ends it with status 1.
 # SPDX-License-Identifier: BSD-2-Clause
@@ -67,8 +67,8 @@ function early(name) {
 function one_run(groups, scene, variant, place, keep, options,    i, all, first, tag) {
     if (!(scene in where))
         fail("scene " scene ": not in the table above")
-    if (!(place in lambda))
-        fail("lambda " place ": there are " n_lambda)
+    if (!(place in place_value))
+        fail("place " place ": there are " n_places)
     tag = scene "-" variant "-" place
     if (tag in seen)
         fail(tag ": already in the table")
@@ -78,36 +78,44 @@ function one_run(groups, scene, variant, place, keep, options,    i, all, first,
     first = base
     if (options ~ /--preset /)
         gsub(/--set [^ ]+/, "", first)
-    take_text(first " " scene_options[scene] " --lambda " lambda[place] " " options)
+    take_text(first " " scene_options[scene] " " place_option " " place_value[place] " " options)
     first = ""
     for (i = 1; i <= n_order; i++) {
         all = all " " order[i] value[order[i]]
         if (early(order[i]))
             first = first " " order[i] value[order[i]]
     }
-    print groups "|" tag "|" scene "|" where[scene] "|" variant "|" place "|" lambda[place] "|" keep "|" substr(first, 2) "|" substr(all, 2)
+    print groups more_groups[scene] "|" tag "|" scene "|" where[scene] "|" variant "|" place "|" value["--lambda "] "|" keep "|" substr(first, 2) "|" substr(all, 2)
 }
 
 { sub(/#.*/, "") }
 NF == 0 { next }
 !("lambda" in stage) || stage["lambda"] != 2 { fail("options.def was not understood") }
-$1 == "lambdas" {
-    n_lambda = NF - 1
+($1 == "lambdas" || $1 == "seeds") && n_places == 0 {
+    place_option = $1 == "lambdas" ? "--lambda" : "--seed"
+    n_places = NF - 1
     for (i = 2; i <= NF; i++)
-        lambda[i - 1] = $i
+        place_value[i - 1] = $i
     next
 }
 $1 == "base" { sub(/^[ \t]*base[ \t]*/, ""); base = $0; next }
 $1 == "scene" && NF >= 3 {
     name = $2
+    all_scenes = all_scenes (all_scenes == "" ? "" : ",") name
     where[name] = $3
     sub(/^[ \t]*scene[ \t]+[^ \t]+[ \t]+[^ \t]+[ \t]*/, "")
     scene_options[name] = $0
     next
 }
+$1 == "group" && NF == 3 {
+    n_scene = split($3, a_scene, ",")
+    for (s = 1; s <= n_scene; s++)
+        more_groups[a_scene[s]] = more_groups[a_scene[s]] "+" $2
+    next
+}
 $1 == "run" && NF >= 6 {
     groups = $2; variant = $3; keep = $6
-    n_scene = split($4, a_scene, ",")
+    n_scene = split($4 == "all" ? all_scenes : $4, a_scene, ",")
     n_place = split($5, a_place, ",")
     sub(/^[ \t]*run([ \t]+[^ \t]+)([ \t]+[^ \t]+)([ \t]+[^ \t]+)([ \t]+[^ \t]+)([ \t]+[^ \t]+)[ \t]*/, "")
     options = $0
@@ -116,5 +124,5 @@ $1 == "run" && NF >= 6 {
             one_run(groups, a_scene[s], variant, a_place[l], keep, options)
     next
 }
-{ fail("lambdas, base, scene or run expected") }
+{ fail("lambdas or seeds (one of them, once), base, scene, group or run expected") }
 END { exit failed }

@@ -12,6 +12,11 @@ function number(name,    v) {
     return v
 }
 
+# What the watch has found (run_log.h) is no line of a step.
+/^[{]"step":[0-9]+,"event":/ {
+    next
+}
+
 /^[{]"step":[0-9]+,.*[}]$/ {
     s = number("step") + 0
     if (!(s in stage))

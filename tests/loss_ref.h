@@ -1,5 +1,5 @@
 /* loss_ref.h - the distortion of train/loss.h by its definition, in double, a pixel at a time: what
- * test_loss.c and test_step_grad.c compare with. Shares no code with train/.
+ * test_loss.c, test_extremes_loss.c and test_step_grad.c compare with. Shares no code with train/.
  * SPDX-License-Identifier: BSD-2-Clause */
 #ifndef TED4_LOSS_REF_H
 #define TED4_LOSS_REF_H
@@ -75,6 +75,19 @@ static inline double ref_ssim(const ref_picture *p, int c, int y, int x, int cy,
 
     return (2.0 * mx * my + 1e-4) * (2.0 * cov + 9e-4) /
            ((mx * mx + my * my + 1e-4) * (vx + vy + 9e-4));
+}
+
+/* The part of L that depends on the image at (c, y, x), times the number of values. */
+static inline double ref_local_loss(const ref_picture *p, double w, int c, int y, int x,
+                                    double delta)
+{
+    double loss = (1.0 - w) * ref_absolute(p, c, y, x, delta);
+
+    for (int r = y - REF_RADIUS; r <= y + REF_RADIUS; r++)
+        for (int s = x - REF_RADIUS; s <= x + REF_RADIUS; s++)
+            if (r >= 0 && s >= 0 && r < p->height && s < p->width)
+                loss -= w * ref_ssim(p, c, r, s, y, x, delta);
+    return loss;
 }
 
 /* Means over pixels and channels; returns (1 - w) L1 + w (1 - SSIM). */

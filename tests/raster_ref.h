@@ -43,7 +43,8 @@ static inline double ref_guarded(double slope, double size, double focal, double
  * culled. */
 static inline int ref_footprint_of(const ted4_view *v, const double *splat, ref_footprint *f)
 {
-    double t[3], axis[3][3], xx = (double)TED4_RASTER_BLUR, xy = 0, yy = (double)TED4_RASTER_BLUR;
+    const double blur = (double)TED4_RASTER_BLUR;
+    double t[3], axis[3][3], x[3], y[3], xx = blur, xy = 0, yy = blur, det = blur * blur;
 
     for (int i = 0; i < 3; i++) {
         t[i] = (double)v->t[i];
@@ -63,13 +64,18 @@ static inline int ref_footprint_of(const ted4_view *v, const double *splat, ref_
         for (int i = 0; i < 3; i++)
             for (int j = 0; j < 3; j++)
                 c[i] += (double)v->R[3 * i + j] * axis[k][j] * splat[3 + k];
-        const double x = fx / t[2] * (c[0] - u * c[2]), y = fy / t[2] * (c[1] - w * c[2]);
-
-        xx += x * x;
-        xy += x * y;
-        yy += y * y;
+        x[k] = fx / t[2] * (c[0] - u * c[2]);
+        y[k] = fy / t[2] * (c[1] - w * c[2]);
+        xx += x[k] * x[k];
+        xy += x[k] * y[k];
+        yy += y[k] * y[k];
+        det += blur * (x[k] * x[k] + y[k] * y[k]);
     }
-    const double det = xx * yy - xy * xy;
+    for (int k = 0; k < 3; k++) {       /* xx yy - xy xy by Lagrange: long thin Gaussians keep their digits */
+        const double cross = x[k] * y[(k + 1) % 3] - x[(k + 1) % 3] * y[k];
+
+        det += cross * cross;
+    }
 
     *f = (ref_footprint){ t[2],
                           { fx * t[0] / t[2] + (double)v->cx, fy * t[1] / t[2] + (double)v->cy },

@@ -13,7 +13,8 @@
 
 enum { W = 48, H = 36, TRAIN = 2, TEST = 1, CAMERAS = TRAIN + TEST, FRAMES = 3, PICTURES = CAMERAS * FRAMES };
 
-static const ted4_ray_options scene = { RAY_TURN, W, H, TRAIN, TEST, FRAMES, 3, RAY_BLENDER, 0 };
+static const ted4_ray_options scene = { .scene = RAY_TURN, .width = W, .height = H, .n_train = TRAIN, .n_test = TEST, .n_frames = FRAMES,
+                                        .seed = 3 };
 static tiny_folder    reference_folder;
 static ted4_dataset   reference;
 

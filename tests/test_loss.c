@@ -69,23 +69,11 @@ static void drop(picture *p)
     free(p->truth);
 }
 
-/* The part of L that depends on the image at (c, y, x), times the number of values. */
-static double local_loss(const ref_picture *p, double w, int c, int y, int x, double delta)
-{
-    double loss = (1.0 - w) * ref_absolute(p, c, y, x, delta);
-
-    for (int r = y - REF_RADIUS; r <= y + REF_RADIUS; r++)
-        for (int s = x - REF_RADIUS; s <= x + REF_RADIUS; s++)
-            if (r >= 0 && s >= 0 && r < p->height && s < p->width)
-                loss -= w * ref_ssim(p, c, r, s, y, x, delta);
-    return loss;
-}
-
 static void check_gradient(const picture *p, double w, int c, int y, int x)
 {
     const ref_picture *ref = &p->reference;
     const double h = 1e-4, count = 3.0 * p->width * p->height;
-    const double up = local_loss(ref, w, c, y, x, h), down = local_loss(ref, w, c, y, x, -h);
+    const double up = ref_local_loss(ref, w, c, y, x, h), down = ref_local_loss(ref, w, c, y, x, -h);
     const double want = (up - down) / (2.0 * h);
     const double got = (double)p->gradient[ref_pixel(ref, c, y, x)] * count;
 

@@ -8,6 +8,7 @@
 #include <jansson.h>
 
 #include "mishap.h"
+#include "train/checkpoint.h"
 
 static double number(const json_t *line, const char *name)
 {
@@ -25,8 +26,10 @@ typedef struct { double step, seconds, cpu; } log_state;
 static void check_line(const json_t *line, log_state *s, double size)
 {
     static const char *const names[] = { "lambda", "loss", "l1", "ssim", "psnr", "anchors", "moving", "splats", "bytes", "ms", "cpu_ms",
-                                         "gaussian_pixels_per_s", "seconds" };
+                                         "gaussian_pixels_per_s", "seconds", "skipped", "clamped" };
     static const char *const types[] = { "positions", "masks", "feature", "scaling", "offset", "phi", "tau", "networks" };
+    static const char *const learnt[] = { "feature", "scaling", "offset", "phi", "masks", "centres", "heads", "motion", "bank" };
+    const json_t *gradients = json_object_get(line, "gradients"), *peaks = json_object_get(line, "peaks");
     const char  *stage = json_string_value(json_object_get(line, "stage"));
     const double step = number(line, "step"), steps = step - s->step, bytes = number(line, "bytes");
     double       sum = 0;
@@ -35,13 +38,20 @@ static void check_line(const json_t *line, log_state *s, double size)
         assert_true(number(line, names[i]) >= 0);
     for (size_t i = 0; i < sizeof types / sizeof types[0]; i++)
         sum += number(json_object_get(line, "bytes_by_type"), types[i]);
+    for (size_t i = 0; i < sizeof learnt / sizeof learnt[0]; i++) {
+        assert_true(number(gradients, learnt[i]) > 0 && number(gradients, learnt[i]) < 1000);
+        assert_true(number(peaks, learnt[i]) >= (step == 500 ? 1 : 0) && number(peaks, learnt[i]) < 100);
+    }
+    assert_true((number(gradients, "prior") > 0) == (step == 750) && (number(gradients, "steps") > 0) == (step == 750));
+    assert_true(number(gradients, "tau") >= 0 && number(gradients, "colour") >= 0);
+    assert_true(json_object_size(gradients) == TED4_TERMS && json_object_size(peaks) == TED4_TERMS && number(line, "rollbacks") == 0);
     assert_int_equal(json_array_size(json_object_get(line, "bits")), TED4_TYPES);
     assert_true(fabs(sum - bytes) <= 5 && steps > 0);
     assert_non_null(stage);
     assert_string_equal(stage, step <= STAGE1 ? "1" : step < 860 ? "2" : "2i");
     assert_true(step <= STAGE1 ? bytes == 0 : fabs(bytes - size) < (step < STEPS ? 0.3 : 0.1) * size);
     assert_true(number(line, "anchors") > 50 && number(line, "moving") > 0 && number(line, "moving") <= number(line, "anchors"));
-    assert_true(number(line, "psnr") > 10 && number(line, "splats") > 0);
+    assert_true(number(line, "psnr") > 10 && number(line, "splats") > 0 && number(line, "skipped") == 0);
     /* seconds are rounded to hundredths, milliseconds to thousandths. */
     assert_true(fabs(number(line, "seconds") - s->seconds - 1e-3 * steps * number(line, "ms")) < 0.011 + 1e-6 * steps);
     s->step = step;
@@ -82,6 +92,105 @@ static void test_log_goes_on(void **state)
     expect_files("");
 }
 
+/* Lines from after a rollback that the checkpoint knows nothing of are not kept. */
+static void test_log_before_rollback(void **state)
+{
+    char        text[MOST_LOG + 256];
+    const char *second = strchr(strchr(reference.log, '\n') + 1, '\n') + 1;
+
+    (void)state;
+    begin_test();
+    make_checkpoint();
+    snprintf(text, sizeof text, "%.*s{\"step\":500,\"event\":\"rollback\",\"rollbacks\":1,\"failed\":640}\n{\"step\":600,\"stage\":\"1\"}\n",
+             (int)(second - reference.log), reference.log);
+    tiny_text(&folder, "out/l", text);
+    run_calmly("--checkpoint out/c --resume --log out/l");
+    expect_log("out/l", reference.log);
+    expect_same("out/x", &reference.file);
+}
+
+/* A checkpoint of step 300 with a value that is not finite; good: and with the state that the watch keeps, that of step 250. */
+static void poison(int good)
+{
+    const ted4_dataset_options wanted = { 1, 1, 0, 1 << 20, 0 };
+    ted4_train_options o;
+    ted4_snapshot s = { NULL, 0 };
+    ted4_dataset  d;
+    ted4_trainer  t;
+    ted4_message  m;
+
+    assert_int_equal(ted4_options_preset(&o, "draft"), 0);
+    o.stage1 = STAGE1;
+    o.stage2 = STEPS - STAGE1;
+    for (size_t i = 0; usual[i] != NULL; i++)
+        if (strcmp(usual[i], "--set") == 0)
+            ball_set(&o, usual[i + 1]);
+    if (ted4_dataset_load(&d, tiny_path(&folder, "scene"), &wanted, &m) != 0 || ted4_dataset_verify(&d, NULL, &m) != 0)
+        fail_msg("%s", m.text);
+    ball_begin(&t, &o, &d, NULL);
+    ball_train(&t, 300);
+    *ted4_cell(&t.anchors, TED4_ROW_VALUE, 5, t.layout.first[TED4_OFFSET]) = NAN;
+    if (!good)
+        ted4_watch_forget(&t);
+    assert_int_equal(ted4_snapshot_take(&t, &s), 0);
+    tiny_bytes(&folder, "out/c", s.bytes, s.size);
+    ted4_snapshot_free(&s);
+    ted4_trainer_finish(&t);
+    ted4_dataset_free(&d);
+}
+
+/* Kills a run from out/c once its log tells of steps after the rollback. */
+static void kill_after_rollback(void)
+{
+    const pid_t child = start("-o out/x --checkpoint out/c --resume --log out/l", 0);
+    char        text[MOST_LOG] = "";
+
+    for (int i = 0; i < 60000 && strstr(text, "\"step\":500") == NULL; i++) {
+        pause_us(1000);
+        if (is_there("out/l"))
+            read_text("out/l", text, sizeof text);
+    }
+    kill(child, SIGKILL);
+    assert_int_equal(finish(child), 1000 + SIGKILL);
+    assert_non_null(strstr(text, "\"step\":500"));
+}
+
+/* What the watch does is told by the log. */
+static void test_rollback(void **state)
+{
+    char      text[MOST_LOG];
+    ball_file first, second;
+
+    (void)state;
+    begin_test();
+    poison(1);
+    run_calmly("--checkpoint out/c --resume --log out/l");
+    read_text("out/l", text, sizeof text);
+    assert_true(strstr(text, "{\"step\":250,\"event\":\"rollback\",\"rollbacks\":1,\"failed\":300,\"cause\":\"not finite\","
+                                   "\"term\":\"value of offset\",\"anchor\":5,\"factor\":0.5}\n{\"step\":500,\"stage\":\"1\",") == text);
+    assert_non_null(strstr(strchr(text, '\n'), "\"rollbacks\":1,"));
+    first = read_file("out/x");
+    gone("out/x");
+    gone("out/l");
+
+    /* Killed after it: the same file, and a log that still tells of it. */
+    poison(1);
+    kill_after_rollback();
+    run_calmly("--checkpoint out/c --resume --log out/l");
+    second = read_file("out/x");
+    ball_check_same(&first, &second);
+    expect_log("out/l", text);
+    free(first.bytes);
+    free(second.bytes);
+
+    poison(0);
+    assert_int_equal(run("-o out/y --checkpoint out/c --resume --log out/l", 0), 3);
+    expect_words("value of offset of anchor 5 is not finite at step 300; there is no good state before it");
+    read_text("out/l", text, sizeof text);
+    assert_non_null(strstr(text, "\"event\":\"failure\",\"rollbacks\":0,\"failed\":300,"));
+    expect_files("c l x");
+}
+
 /* What is not a log is left alone. */
 static void test_wrong_log(void **state)
 {
@@ -103,6 +212,8 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_log),
         cmocka_unit_test(test_log_goes_on),
+        cmocka_unit_test(test_log_before_rollback),
+        cmocka_unit_test(test_rollback),
         cmocka_unit_test(test_wrong_log),
     };
 

@@ -331,7 +331,7 @@ static void test_motion(void **state)
     static uint8_t a[SIZE], b[SIZE];
 
     (void)state;
-    for (int s = 0; s < RAY_SCENES; s++) {
+    for (int s = 0; s <= RAY_FAIR; s++) {
         picture((ted4_ray_scene)s, 0, 9, a);
         picture((ted4_ray_scene)s, 4, 9, b);
         if (s == RAY_STILL)
@@ -380,10 +380,11 @@ static void test_occlusion(void **state)
 /* A point is where its own camera sees a surface, and has the colour of it. */
 static void test_points_on_surfaces(void **state)
 {
-    ted4_ray_options o = { RAY_STILL, W, H, 3, 1, 5, 1, RAY_BLENDER, 0 };
+    ted4_ray_options o = { .scene = RAY_STILL, .width = W, .height = H, .n_train = 3, .n_test = 1, .n_frames = 5,
+                           .seed = 1 };
 
     (void)state;
-    for (int s = 0; s < RAY_SCENES; s++) {
+    for (int s = 0; s <= RAY_FAIR; s++) {
         int near = 0, moving = 0;
         o.scene = (ted4_ray_scene)s;
         for (int i = 0; i < 400; i++) {
@@ -411,7 +412,8 @@ static void test_points_on_surfaces(void **state)
 static void test_points_colours(void **state)
 {
     static uint8_t rgb[SIZE * 9];
-    const ted4_ray_options o = { RAY_STILL, W, H, 3, 1, 5, 1, RAY_BLENDER, 0 };
+    const ted4_ray_options o = { .scene = RAY_STILL, .width = W, .height = H, .n_train = 3, .n_test = 1, .n_frames = 5,
+                                 .seed = 1 };
     ted4_ray_camera c;
     ted4_ray_world w;
     int shown = 0, alike = 0;
@@ -541,7 +543,8 @@ static void check_ply(const char *folder, const ted4_ray_options *o)
 static void test_files(void **state)
 {
     char a[] = "/tmp/ted4_scene_a_XXXXXX", b[] = "/tmp/ted4_scene_b_XXXXXX";
-    const ted4_ray_options o = { RAY_TURN, W, H, 2, 1, 3, 5, RAY_BLENDER, 0 };
+    const ted4_ray_options o = { .scene = RAY_TURN, .width = W, .height = H, .n_train = 2, .n_test = 1, .n_frames = 3,
+                                 .seed = 5 };
     int threads = 2;
     const ted4_parallel two = { run_openmp, &threads };
     ted4_ray_message m;
@@ -564,7 +567,8 @@ static void test_files(void **state)
 static void test_refusal(void **state)
 {
     char file[] = "/tmp/ted4_scene_f_XXXXXX", folder[64];
-    const ted4_ray_options o = { RAY_STILL, W, H, 1, 0, 1, 1, RAY_BLENDER, 0 };
+    const ted4_ray_options o = { .scene = RAY_STILL, .width = W, .height = H, .n_train = 1, .n_test = 0, .n_frames = 1,
+                                 .seed = 1 };
     const int handle = mkstemp(file);
     ted4_ray_message m = { "" };
 

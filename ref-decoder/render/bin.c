@@ -71,6 +71,7 @@ static int add_up_chunks(bin_job *job, size_t n_chunks)
         chunk[c] = (ted4_chunk){ .n_visible = (uint32_t)n_visible, .n_instances = (uint32_t)n_instances };
         n_visible   += count.n_visible;
         n_instances += count.n_instances;
+        job->r->n_skipped += count.n_skipped;
         nearest  = count.nearest < nearest ? count.nearest : nearest;
         farthest = count.farthest > farthest ? count.farthest : farthest;
     }

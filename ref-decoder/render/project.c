@@ -41,16 +41,18 @@ static void store_splats(const project_job *job, size_t i, const ted4_projection
             };
 }
 
-/* Tile boxes of 16 Gaussians, empty where not visible. All conditions are false for NaN. */
+/* Tile boxes of 16 Gaussians, empty where not visible. All conditions are false for NaN. skipped: 1 less for each Gaussian that would be
+ * drawn, as it is neither behind the camera nor too faint, but is not finite. */
 static uint32_t make_boxes(const project_job *job, const ted4_projection *p, ted4_vf level, ted4_vf opacity, size_t n,
-                           ted4_tile_box *box)
+                           ted4_tile_box *box, ted4_vi *skipped)
 {
     /* log2(alpha) falls by log2(e) / 2 d^T cov^-1 d; the largest dx among d^T cov^-1 d <= k is sqrt(k a). */
     const ted4_vf k = (level - TED4_LOG2_ALPHA_MIN) * (2.0f / TED4_LOG2_E);
     ted4_vi x0, x1, y0, y1;
-    ted4_vi ok = (p->t[2] > job->v->near_z) & (p->t[2] < FLT_MAX) & (p->det < FLT_MAX) & (opacity >= TED4_RASTER_ALPHA_MIN)
-               & (opacity < FLT_MAX);
+    const ted4_vi finite = (p->t[2] < FLT_MAX) & (p->det < FLT_MAX) & (opacity < FLT_MAX);
+    ted4_vi ok = (p->t[2] > job->v->near_z) & (opacity >= TED4_RASTER_ALPHA_MIN) & finite;
 
+    *skipped += ~((p->t[2] <= job->v->near_z) | (opacity < TED4_RASTER_ALPHA_MIN) | finite);
     ok &= pixel_range(p->x, ted4_vf_sqrt(k * p->a), job->v->width, &x0, &x1);
     ok &= pixel_range(p->y, ted4_vf_sqrt(k * p->c), job->v->height, &y0, &y1);
 
@@ -72,6 +74,7 @@ static void project_chunk(void *arg, size_t c)
     uint32_t      *first_slot = job->r->first_slot.data;
     uint64_t      *key = (uint64_t *)job->r->key[1].data + begin;
     ted4_chunk     count = { .nearest = UINT32_MAX };
+    ted4_vi        skipped = {0};
 
     for (size_t i = begin; i < end; i += TED4_VEC) {
         const size_t n = end - i < TED4_VEC ? end - i : TED4_VEC;
@@ -83,7 +86,7 @@ static void project_chunk(void *arg, size_t c)
 
         const ted4_vf  level = ted4_vf_log2(g.opacity);
         const ted4_vi  depth = (ted4_vi)p.t[2];
-        const uint32_t visible = make_boxes(job, &p, level, g.opacity, n, box + i);
+        const uint32_t visible = make_boxes(job, &p, level, g.opacity, n, box + i, &skipped);
 
         store_splats(job, i, &p, level, visible);
         for (size_t k = 0; k < n; k++) {
@@ -93,6 +96,8 @@ static void project_chunk(void *arg, size_t c)
             count.n_visible += visible >> k & 1;
         }
     }
+    for (int k = 0; k < TED4_VEC; k++)
+        count.n_skipped -= (uint32_t)skipped[k];
     for (size_t k = 0; k < count.n_visible; k++) {
         const uint32_t depth = (uint32_t)(key[k] >> 32);
 

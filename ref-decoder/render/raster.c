@@ -47,6 +47,11 @@ void ted4_raster_free(ted4_raster *r)
     free(r);
 }
 
+uint64_t ted4_raster_skipped(const ted4_raster *r)
+{
+    return r->n_skipped;
+}
+
 int ted4_raster_forward(ted4_raster *r, const ted4_splats *s, const ted4_view *v, const ted4_parallel *p, int keep_state,
                         float *image)
 {

@@ -43,4 +43,8 @@ int ted4_raster_forward(ted4_raster *r, const ted4_splats *s,
                         const ted4_view *v, const ted4_parallel *p,
                         int keep_state, float *image);
 
+/* How many Gaussians all forward passes of r left out because binary32 cannot hold them, though they are neither behind the camera nor too
+ * faint: with a mean, size, rotation or opacity that is infinite or NaN, or a footprint of more than some 4e9 pixels in both directions. */
+uint64_t ted4_raster_skipped(const ted4_raster *r);
+
 #endif

@@ -78,12 +78,13 @@ struct ted4_raster {
 
     size_t   n_visible, n_instances;
     uint32_t tiles_x, tiles_y;
+    uint64_t n_skipped;          /* see ted4_raster_skipped */
 };
 
 /* What projection counts in one job, and then the totals of the jobs before it; and the depth bits of the nearest and the farthest
  * Gaussian that is visible: UINT32_MAX and 0 where none is. */
 typedef struct {
-    uint32_t n_visible, n_instances;
+    uint32_t n_visible, n_instances, n_skipped;
     uint32_t nearest, farthest;
 } ted4_chunk;
 

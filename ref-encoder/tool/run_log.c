@@ -11,6 +11,7 @@
 #include <time.h>
 #include <unistd.h>
 
+#include "train/clamped.h"
 #include "train/make_scene.h"
 
 static double seconds_of(clockid_t clock)
@@ -39,19 +40,19 @@ static int is_regular(int file)
     return fstat(file, &s) == 0 && S_ISREG(s.st_mode);
 }
 
-/* Bytes of the lines up to a step; a line without an end is none. -1: a line that ted4enc never wrote. */
-static off_t find_end(FILE *f, uint64_t step)
+/* Bytes of the lines up to a step and a number of rollbacks; a line without an end is none. -1: a line that ted4enc never wrote. */
+static off_t find_end(FILE *f, uint64_t step, uint64_t rollbacks)
 {
     char              *line = NULL;
     size_t             room = 0;
     ssize_t            n;
     off_t              end = 0;
-    unsigned long long at;
+    unsigned long long at, count;
 
     while (end >= 0 && (n = getline(&line, &room, f)) > 0 && line[n - 1] == '\n') {
         if (sscanf(line, "{\"step\":%llu,", &at) != 1)
             end = -1;
-        else if (at > step)
+        else if (at > step || (sscanf(line, "{\"step\":%*u,\"event\":\"%*[a-z]\",\"rollbacks\":%llu,", &count) == 1 && count > rollbacks))
             break;
         else
             end += n;
@@ -60,15 +61,15 @@ static off_t find_end(FILE *f, uint64_t step)
     return end;
 }
 
-/* Takes off what lies beyond the step. */
-static int cut(const char *path, int file, uint64_t step, char *why, size_t why_size)
+/* Takes off what lies beyond the trainer's step and rollbacks. */
+static int cut(const char *path, int file, const ted4_trainer *t, char *why, size_t why_size)
 {
     FILE *f = fopen(path, "r");
 
     if (f == NULL)
         return say(path, strerror(errno), why, why_size);
 
-    const off_t end = find_end(f, step);
+    const off_t end = find_end(f, t->iteration, t->watch.state.rollbacks);
 
     fclose(f);
     if (end < 0)
@@ -101,7 +102,7 @@ int ted4_run_log_open(ted4_run_log *l, const char *path, const ted4_trainer *t, 
 int ted4_run_log_cut(ted4_run_log *l, const ted4_trainer *t, char *why, size_t why_size)
 {
     ted4_run_log_move(l, t);
-    return is_regular(l->file) ? cut(l->path, l->file, t->iteration, why, why_size) : 0;
+    return is_regular(l->file) ? cut(l->path, l->file, t, why, why_size) : 0;
 }
 
 void ted4_run_log_skip(ted4_run_log *l)
@@ -157,6 +158,8 @@ static size_t count_moving(const ted4_trainer *t)
     return n;
 }
 
+enum { TERMS_TEXT = TED4_TERMS * 26, MOST_LINE = 1200 + 2 * TERMS_TEXT };
+
 /* What a line tells beyond the trainer's own numbers. */
 typedef struct {
     const char *stage;
@@ -164,21 +167,40 @@ typedef struct {
     estimate    bytes;
 } line_facts;
 
+/* {"feature":x,...} of all terms: numbers of at most 12 characters. */
+static const char *print_terms(char *text, size_t size, const double *x)
+{
+    size_t at = 0;
+
+    for (int k = 0; k < TED4_TERMS && at < size; k++)
+        at += (size_t)snprintf(text + at, size - at, "%s\"%s\":%.4g", k == 0 ? "" : ",", ted4_term_name(k), x[k]);
+    return text;
+}
+
 static int print_line(char *line, size_t size, const ted4_run_log *l, const ted4_trainer *t, const line_facts *f)
 {
     const ted4_progress *p = &t->progress;
     const double        *b = p->bits, *y = f->bytes.type;
+    double               usual[TED4_TERMS], peak[TED4_TERMS];
+    char                 gradients[TERMS_TEXT], peaks[TERMS_TEXT];
 
+    for (int k = 0; k < TED4_TERMS; k++) {
+        usual[k] = ted4_scale_usual(&t->watch.state.gradient[k]);
+        peak[k] = t->watch.state.gradient[k].peak;
+    }
     return snprintf(line, size,
                     "{\"step\":%llu,\"stage\":\"%s\",\"lambda\":%.7g,\"loss\":%.6f,\"l1\":%.6f,\"ssim\":%.6f,\"psnr\":%.4f,"
                     "\"anchors\":%zu,\"moving\":%zu,\"splats\":%.0f,\"bytes\":%.0f,"
                     "\"bytes_by_type\":{\"positions\":%.0f,\"masks\":%.0f,\"feature\":%.0f,\"scaling\":%.0f,\"offset\":%.0f,"
                     "\"phi\":%.0f,\"tau\":%.0f,\"networks\":%.0f},\"bits\":[%.2f,%.2f,%.2f,%.2f,%.2f],"
+                    "\"skipped\":%llu,\"clamped\":%zu,\"gradients\":{%s},\"peaks\":{%s},\"rollbacks\":%llu,"
                     "\"ms\":%.3f,\"cpu_ms\":%.3f,\"gaussian_pixels_per_s\":%.4g,\"seconds\":%.2f}\n",
                     (unsigned long long)t->iteration, f->stage, t->opt.lambda, p->loss, p->l1, p->ssim, l->psnr, t->anchors.n,
                     count_moving(t), p->splats, f->bytes.sum, f->bytes.positions, f->bytes.masks, y[TED4_FEATURE], y[TED4_SCALING],
                     y[TED4_OFFSET], y[TED4_PHI], y[TED4_TAU], f->bytes.networks, b[TED4_FEATURE], b[TED4_SCALING], b[TED4_OFFSET],
-                    b[TED4_PHI], b[TED4_TAU], f->ms, f->cpu_ms, f->rate, t->seconds);
+                    b[TED4_PHI], b[TED4_TAU], (unsigned long long)ted4_raster_skipped(t->raster), ted4_clamped(t),
+                    print_terms(gradients, sizeof gradients, usual), print_terms(peaks, sizeof peaks, peak),
+                    (unsigned long long)t->watch.state.rollbacks, f->ms, f->cpu_ms, f->rate, t->seconds);
 }
 
 /* The whole line or, on a full disk, nothing of it. */
@@ -198,7 +220,7 @@ static int put_line(const ted4_run_log *l, const char *line, size_t size, char *
 int ted4_run_log_step(ted4_run_log *l, const ted4_trainer *t, char *why, size_t why_size)
 {
     const double steps = (double)(t->iteration - l->last_step);
-    char         line[1200];
+    char         line[MOST_LINE];
     line_facts   f = { .stage = !t->stage2 ? "1" : t->integer ? "2i" : "2", .bytes = estimate_bytes(t) };
 
     if (steps > 0) {
@@ -215,6 +237,26 @@ int ted4_run_log_step(ted4_run_log *l, const ted4_trainer *t, char *why, size_t 
     if (l->file < 0)
         return 0;
     return put_line(l, line, (size_t)print_line(line, sizeof line, l, t, &f), why, why_size);
+}
+
+int ted4_run_log_event(ted4_run_log *l, const ted4_trainer *t, char *why, size_t why_size)
+{
+    const ted4_find *f = &t->watch.find;
+    char             line[400], anchor[24] = "null";
+
+    if (l->file < 0)
+        return 0;
+    if (f->anchor >= 0)
+        snprintf(anchor, sizeof anchor, "%lld", (long long)f->anchor);
+
+    const int n = snprintf(line, sizeof line,
+                           "{\"step\":%llu,\"event\":\"%s\",\"rollbacks\":%llu,\"failed\":%llu,"
+                           "\"cause\":\"%s\",\"term\":\"%s\",\"anchor\":%s,\"factor\":%.7g}\n",
+                           (unsigned long long)t->iteration, t->watch.found ? "failure" : "rollback",
+                           (unsigned long long)t->watch.state.rollbacks, (unsigned long long)f->step, f->cause, f->term, anchor,
+                           t->watch.state.factor);
+
+    return put_line(l, line, (size_t)n, why, why_size);
 }
 
 int ted4_run_log_close(ted4_run_log *l, char *why, size_t why_size)

@@ -19,7 +19,7 @@ typedef struct {
 
 double ted4_seconds(void);
 
-/* path NULL: no log file. keep: a log that is there is cut after the lines of steps up to t->iteration, and goes on; else it begins anew. 0, or -1 with why
+/* path NULL: no log file. keep: a log that is there is cut after the lines of steps and rollbacks up to those of t, and goes on; else it begins anew. 0, or -1 with why
  * filled: also when keep is asked for and the file is no log. */
 int  ted4_run_log_open(ted4_run_log *l, const char *path, const ted4_trainer *t, int keep, int quiet, int verbose, char *why, size_t why_size);
 
@@ -28,7 +28,7 @@ void ted4_run_log_tick(ted4_run_log *l, ted4_trainer *t);
 void ted4_run_log_skip(ted4_run_log *l);
 /* The trainer has been moved to another step: milliseconds count from there. */
 void ted4_run_log_move(ted4_run_log *l, const ted4_trainer *t);
-/* The same, and lines of later steps go from the file. 0, or -1 with why filled: a file that is no log stays as it is. */
+/* The same, and lines of later steps or rollbacks go from the file. 0, or -1 with why filled: a file that is no log stays as it is. */
 int  ted4_run_log_cut(ted4_run_log *l, const ted4_trainer *t, char *why, size_t why_size);
 
 /* One line, right after a tick:
@@ -42,8 +42,23 @@ int  ted4_run_log_cut(ted4_run_log *l, const ted4_trainer *t, char *why, size_t 
  *   ms cpu_ms              a step, since the line before
  *   gaussian_pixels_per_s  speed
  *   seconds                of training since step 0, whatever runs it took
+ *   skipped                Gaussians that this process has left out of pictures so far, as they were not finite (ted4_raster_skipped)
+ *   clamped                values of anchors at an end of their range (clamped.h)
+ *   gradients              usual norm (near the median of about 100 steps) of what each term learns from: values of anchors by attribute, masks, centres of
+ *                          Gaussians (anchors' positions are not learnt), networks (heads, motion, prior), bank, steps (step sizes), colour; 0: not learnt
+ *   peaks                  of each term the largest norm since the line before, as a multiple of its usual one; 0: not known yet
+ *   rollbacks              so far
  * 0, or -1 with why filled; the file then ends with the line before. */
 int  ted4_run_log_step(ted4_run_log *l, const ted4_trainer *t, char *why, size_t why_size);
+/* One line about what the watch has found (watch.h):
+ *   step                   where training goes on, or ended
+ *   event                  "rollback", or "failure": the end
+ *   rollbacks              with this one
+ *   failed                 steps done before the one that failed
+ *   cause term anchor      anchor is null where it is none's
+ *   factor                 of learning rates from here on
+ * The same results. */
+int  ted4_run_log_event(ted4_run_log *l, const ted4_trainer *t, char *why, size_t why_size);
 /* 0, or -1 with why filled. */
 int  ted4_run_log_close(ted4_run_log *l, char *why, size_t why_size);
 

@@ -38,11 +38,11 @@ static void report(const ted4_request *r, const ted4_trainer *t, const ted4_code
     if (r->json)
         printf("{\"bytes\":%zu,\"lambda\":%.7g,\"setup_s\":%.2f,\"train_s\":%.2f,\"steps\":%llu,\"ms_per_step\":%.3f,\"anchors\":%u,"
                "\"gaussians\":%zu,\"dynamic\":%u,\"estimated_bits\":%.0f,\"coded_bits\":%.0f,"
-               "\"probe_with_time\":%.6f,\"probe_without\":%.6f,\"peak_mib\":%.0f,\"hash\":\"%s\"}\n",
+               "\"probe_with_time\":%.6f,\"probe_without\":%.6f,\"rollbacks\":%llu,\"peak_mib\":%.0f,\"hash\":\"%s\"}\n",
                c->size, c->lambda, s.setup, s.train, (unsigned long long)t->iteration,
                1e3 * s.train / (double)(t->iteration > 0 ? t->iteration : 1), v->anchors,
                v->gaussians, v->dynamic, v->estimated_bits, v->coded_bits, t->probe_loss[0],
-               t->probe_loss[1], peak_mib(), v->hash);
+               t->probe_loss[1], (unsigned long long)t->watch.state.rollbacks, peak_mib(), v->hash);
     else if (!r->quiet)
         fprintf(stderr, "%s: %zu bytes, %u anchors (%u move), %zu Gaussians, trained in %.1f s, hash %s\n",
                 r->out, c->size, v->anchors, v->dynamic, v->gaussians, s.train, v->hash);

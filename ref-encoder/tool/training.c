@@ -67,7 +67,11 @@ static int log_step(ted4_training *t)
     if (t->log.psnr < 0)
         return fail(t);
     ted4_run_log_skip(&t->log);
-    return ted4_run_log_step(&t->log, tr, t->why, sizeof t->why);
+
+    const int bad = ted4_run_log_step(&t->log, tr, t->why, sizeof t->why);
+
+    ted4_watch_line(tr);
+    return bad;
 }
 
 static int save(ted4_training *t)
@@ -90,11 +94,44 @@ static int keep_stage1(ted4_training *t)
     return ted4_checkpoint_save(tr, path) != 0 ? fail(t) : 0;
 }
 
-/* The trainer has begun again: its log, too. */
+/* The trainer has begun again, or gone back: its log, too. */
 static int start_over(ted4_training *t)
 {
     ted4_run_log_tick(&t->log, t->trainer);
     return ted4_run_log_cut(&t->log, t->trainer, t->why, sizeof t->why);
+}
+
+/* The watch took the trainer back. */
+static int tell_rollback(ted4_training *t)
+{
+    const ted4_watch *w = &t->trainer->watch;
+
+    if (!t->request->quiet)
+        fprintf(stderr, "ted4enc: warning: %s; back to step %llu with learning rates times %g\n", t->trainer->message.text,
+                (unsigned long long)t->trainer->iteration, w->state.factor);
+    return ted4_run_log_event(&t->log, t->trainer, t->why, sizeof t->why);
+}
+
+/* A failed step; a find is the last line of the log. */
+static int fail_step(ted4_training *t)
+{
+    if (t->trainer->watch.found)
+        (void)ted4_run_log_event(&t->log, t->trainer, t->why, sizeof t->why);
+    return fail(t);
+}
+
+/* One step, and what the log has to say if it was not simply that. */
+static int step(ted4_training *t)
+{
+    ted4_trainer  *tr = t->trainer;
+    const uint64_t before = tr->iteration, rollbacks = tr->watch.state.rollbacks;
+
+    if (ted4_trainer_step(tr) != 0)
+        return fail_step(t);
+    /* A step may be many: what a probe has done counts. Or it began again, or went back. */
+    if (tr->iteration <= before && start_over(t) != 0)
+        return -1;
+    return tr->watch.state.rollbacks > rollbacks ? tell_rollback(t) : 0;
 }
 
 int ted4_training_go(ted4_training *t, uint64_t steps)
@@ -108,14 +145,11 @@ int ted4_training_go(ted4_training *t, uint64_t steps)
 
         if (keep_stage1(t) != 0)
             return -1;
-        if (ted4_trainer_step(tr) != 0)
-            return fail(t);
-        /* A step may be many: what a probe has done counts. Or it began again. */
-        if (tr->iteration <= before && start_over(t) != 0)
+        if (step(t) != 0)
             return -1;
         if ((tr->iteration / REPORT_EVERY > before / REPORT_EVERY || tr->iteration == steps) && log_step(t) != 0)
             return -1;
-        if (ted4_seconds() - saved >= t->request->checkpoint_every) {
+        if (ted4_seconds() - saved >= t->request->checkpoint_every && ted4_watch_calm(tr)) {
             if (save(t) != 0)
                 return -1;
             saved = ted4_seconds();

@@ -2,6 +2,7 @@
  * SPDX-License-Identifier: BSD-2-Clause */
 #include "adam.h"
 
+#include <float.h>
 #include <math.h>
 
 ted4_adam_bias ted4_adam_bias_make(uint64_t step)
@@ -27,7 +28,7 @@ void ted4_adam(float *restrict x, float *restrict m, float *restrict v,
         const float b = TED4_ADAM_BETA2 * v[i] + (1.0f - TED4_ADAM_BETA2) * g * g;
 
         m[i] = a;
-        v[i] = b;
+        v[i] = b > FLT_MAX ? FLT_MAX : b;
         x[i] -= step * a / (sqrtf(b * bias.v) + TED4_ADAM_EPS);
     }
 }

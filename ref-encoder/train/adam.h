@@ -16,7 +16,8 @@ typedef struct { float m, v; } ted4_adam_bias;
 
 ted4_adam_bias ted4_adam_bias_make(uint64_t step);
 
-/* x -= rate m' / (sqrt(v') + eps) for n values that share a learning rate. */
+/* x -= rate m' / (sqrt(v') + eps) for n values that share a learning rate. A gradient whose square is beyond binary32 moves nothing; v then
+ * stays at the largest number that it can hold, from which it decays again. */
 void ted4_adam(float *x, float *m, float *v, const float *gradient, size_t n,
                float rate, ted4_adam_bias bias);
 

@@ -12,12 +12,12 @@
 #include "write/coder_count.h"
 
 #define MAGIC 0x34444554u       /* "TED4" */
-enum { FORMAT = 4 };
+enum { FORMAT = 5 };
 
-/* One walk for both directions: put() writes or reads the bytes at p. */
+/* One walk for both directions: put() writes or reads the bytes at p. whole: with the watch's last good state. */
 typedef struct {
     FILE         *file;
-    int           writing, failed;
+    int           writing, whole, failed;
     XXH3_state_t *hash;
 } stream;
 
@@ -116,14 +116,15 @@ static int header_belongs(const ted4_header *began, const ted4_header *h)
  * is not taken from the file. */
 static void walk_layout(stream *s, ted4_trainer *t)
 {
-    ted4_header h = t->layout.head;
+    ted4_header h = t->layout.head, began;
 
     put(s, &h, sizeof h);
     if (s->writing || s->failed)
         return;
     if (!t->stage2)
         ted4_header_stage2(&h, &t->opt);
-    s->failed = !header_belongs(&t->layout.head, &h);
+    ted4_header_make(&began, &t->opt, t->data);
+    s->failed = !header_belongs(&began, &h);
     if (s->failed)
         return;
     ted4_layout_make(&t->layout, &h);
@@ -174,7 +175,39 @@ static int order_is_whole(const ted4_trainer *t)
 static int numbers_are_possible(const ted4_trainer *t)
 {
     return (t->stage2 == 0 || t->stage2 == 1) && (t->integer == 0 || t->integer == 1) && t->integer <= t->stage2
-        && t->iteration <= ted4_trainer_total(t) && t->stage2_start <= t->iteration && t->cell > 0 && t->cell <= 1e30;
+        && t->iteration <= ted4_trainer_total(t) && t->stage2_start <= t->iteration && t->cell > 0 && t->cell <= 1e30
+        && t->watch.state.factor > 0 && t->watch.state.factor <= 1 && t->watch.state.rollbacks <= TED4_ROLLBACKS;
+}
+
+/* The last good state, itself a file of this kind, looked at when it is needed. None is written where the next step replaces it, or there is none. Room grows
+ * with what is read: the size alone is not believed. */
+static void walk_good(stream *s, ted4_trainer *t)
+{
+    enum { PIECE = 1 << 20 };
+    ted4_watch   *w = &t->watch;
+    const int     none = w->good.bytes == NULL || ted4_watch_due(t);
+    uint64_t      size = s->writing && !none ? w->good.size : 0;
+
+    put(s, &size, sizeof size);
+    put(s, &w->good_at, sizeof w->good_at);
+    if (s->writing) {
+        put(s, w->good.bytes, size);
+        return;
+    }
+    ted4_watch_forget(t);
+    while (!s->failed && w->good.size < size) {
+        const size_t n = size - w->good.size < PIECE ? (size_t)(size - w->good.size) : PIECE;
+        char        *bytes = realloc(w->good.bytes, w->good.size + n);
+
+        s->failed = bytes == NULL;
+        if (s->failed)
+            break;
+        w->good.bytes = bytes;
+        put(s, bytes + w->good.size, n);
+        w->good.size += n;
+    }
+    if (s->failed)
+        ted4_watch_forget(t);
 }
 
 static void walk_colour(stream *s, ted4_trainer *t)
@@ -206,6 +239,7 @@ static void walk(stream *s, ted4_trainer *t)
     put(s, &t->probed, sizeof t->probed);
     put(s, t->probe_loss, sizeof t->probe_loss);
     put(s, &t->progress, sizeof t->progress);
+    put(s, &t->watch.state, sizeof t->watch.state);
     expect(s, t->order.n);
     put(s, t->order.item, t->order.n * sizeof *t->order.item);
     put(s, &t->order.next, sizeof t->order.next);
@@ -215,6 +249,8 @@ static void walk(stream *s, ted4_trainer *t)
     walk_anchors(s, t);
     if (!s->failed)
         walk_networks(s, t);
+    if (s->whole)
+        walk_good(s, t);
 }
 
 /* The last eight bytes are the hash of all others. Looked at before anything in the file is
@@ -246,9 +282,9 @@ static void walk_hash(stream *s)
     expect(s, hash);
 }
 
-static int run(ted4_trainer *t, FILE *file, int writing)
+static int run(ted4_trainer *t, FILE *file, int writing, int whole)
 {
-    stream s = { file, writing, 0, XXH3_createState() };
+    stream s = { file, writing, whole, 0, XXH3_createState() };
 
     if (s.hash == NULL)
         return -1;
@@ -275,7 +311,7 @@ int ted4_checkpoint_save(ted4_trainer *t, const char *path)
         return ted4_trainer_fail(t, "%s: %s", name, strerror(errno));
 
     /* errno is the first failure's: closing what could not be written fails again, with another reason. */
-    const int bad = run(t, f, 1) != 0 || fflush(f) != 0 || fsync(fileno(f)) != 0;
+    const int bad = run(t, f, 1, 1) != 0 || fflush(f) != 0 || fsync(fileno(f)) != 0;
     int       why = bad ? errno : 0;
 
     if (fclose(f) != 0 && !bad)
@@ -288,9 +324,9 @@ int ted4_checkpoint_save(ted4_trainer *t, const char *path)
     return ted4_trainer_fail(t, "%s: %s", path, strerror(why));
 }
 
-static int load(ted4_trainer *t, FILE *f, const char *name)
+static int load(ted4_trainer *t, FILE *f, const char *name, int whole)
 {
-    if (run(t, f, 0) != 0)
+    if (run(t, f, 0, whole) != 0)
         return ted4_trainer_fail(t, "%s: not a checkpoint of this scene with these options", name);
     if (t->integer)
         ted4_rate_pack(t->rate, t->net);
@@ -304,13 +340,13 @@ int ted4_checkpoint_load(ted4_trainer *t, const char *path)
     if (f == NULL)
         return ted4_trainer_fail(t, "%s: %s", path, strerror(errno));
 
-    const int bad = load(t, f, path);
+    const int bad = load(t, f, path, 1);
 
     fclose(f);
     return bad;
 }
 
-int ted4_snapshot_take(ted4_trainer *t, ted4_snapshot *s)
+static int take(ted4_trainer *t, ted4_snapshot *s, int whole)
 {
     FILE *f;
     int   bad;
@@ -319,24 +355,44 @@ int ted4_snapshot_take(ted4_trainer *t, ted4_snapshot *s)
     f = open_memstream(&s->bytes, &s->size);
     if (f == NULL)
         return ted4_trainer_fail(t, "no memory for a snapshot");
-    bad = run(t, f, 1);
+    bad = run(t, f, 1, whole);
     bad |= fclose(f) != 0;
     if (bad)
         ted4_snapshot_free(s);
     return bad ? ted4_trainer_fail(t, "no memory for a snapshot") : 0;
 }
 
-int ted4_snapshot_restore(ted4_trainer *t, const ted4_snapshot *s)
+static int restore(ted4_trainer *t, const ted4_snapshot *s, int whole)
 {
     FILE *f = fmemopen(s->bytes, s->size, "rb");
 
     if (f == NULL)
         return ted4_trainer_fail(t, "no memory for a snapshot");
 
-    const int bad = load(t, f, "snapshot");
+    const int bad = load(t, f, "snapshot", whole);
 
     fclose(f);
     return bad;
+}
+
+int ted4_snapshot_take(ted4_trainer *t, ted4_snapshot *s)
+{
+    return take(t, s, 1);
+}
+
+int ted4_snapshot_restore(ted4_trainer *t, const ted4_snapshot *s)
+{
+    return restore(t, s, 1);
+}
+
+int ted4_state_take(ted4_trainer *t, ted4_snapshot *s)
+{
+    return take(t, s, 0);
+}
+
+int ted4_state_restore(ted4_trainer *t, const ted4_snapshot *s)
+{
+    return restore(t, s, 0);
 }
 
 void ted4_snapshot_free(ted4_snapshot *s)

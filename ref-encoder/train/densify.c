@@ -19,8 +19,7 @@ enum { DEPTHS = 3 };
  * judged by all of them it would go, however right it is at its time. */
 enum { SEEN_THERE = 8 };
 
-/* Lanes of a slot whose activation is at least a half now. */
-static uint32_t lanes_there(const ted4_generate_input *in, size_t slot)
+uint32_t ted4_lanes_there(const ted4_generate_input *in, size_t slot)
 {
     const int    first = in->layout->first[TED4_TAU];
     const float  now = (float)in->num / (float)in->den;
@@ -48,7 +47,7 @@ void ted4_densify_gather(ted4_trainer *t, const ted4_generate_input *in, const t
     for (size_t i = 0; i < sl->n; i++) {
         float         *opacity = ted4_block(&t->anchors, TED4_ROW_OPACITY, sl->block[i]);
         float         *gradient = ted4_block(&t->anchors, TED4_ROW_GRADIENT, sl->block[i]);
-        const uint32_t there = lanes_there(in, i);
+        const uint32_t there = ted4_lanes_there(in, i);
 
         for (int j = 0; j < TED4_LANES; j++) {
             opacity[TED4_LANES + j] += (float)(sl->lanes[i] >> j & 1);
@@ -226,7 +225,7 @@ static int prune(ted4_trainer *t, size_t n_old)
         if (i >= n_old || !ripe || opacity >= t->opt.prune_opacity * there)
             order[n++] = (uint32_t)i;
     }
-    const int bad = n == 0 ? ted4_trainer_fail(t, "every anchor has faded away")
+    const int bad = n == 0 ? ted4_watch_find(t, "collapsed", -1, "opacity", "", "of every anchor has faded away")
                     : ted4_anchors_select(a, order, n) != 0
                         ? ted4_trainer_fail(t, "no memory to prune anchors") : 0;
 

@@ -4,6 +4,7 @@
  * SPDX-License-Identifier: BSD-2-Clause */
 #include "generate_state.h"
 
+#include <float.h>
 #include <math.h>
 #include <string.h>
 
@@ -97,6 +98,24 @@ static void rotation_backward(slot_state *s, int k, const float *const *gr)
     }
 }
 
+/* Where squares of q overflow, forward was r = 0 whatever q: no gradient. */
+static void endless_rotation_backward(slot_state *s, int k)
+{
+    const int first = s->g->plane.covariance + 7 * k + 3;
+    const float *q = ted4_gen_plane(s->planes, first);
+    float *d_q = d_plane(s, first);
+
+#pragma omp simd
+    for (int j = 0; j < TED4_LANES; j++) {
+        const float a = q[j], b = q[TED4_LANES + j];
+        const float c = q[2 * TED4_LANES + j], d = q[3 * TED4_LANES + j];
+        const int endless = a * a + b * b + c * c + d * d > FLT_MAX;
+
+        for (int i = 0; i < 4; i++)
+            d_q[i * TED4_LANES + j] = endless ? 0.0f : d_q[i * TED4_LANES + j];
+    }
+}
+
 static void colour_backward(slot_state *s, int k, const float *const *gr)
 {
     const float *v = ted4_gen_plane(s->planes, s->g->plane.colour + 3 * k);
@@ -152,6 +171,7 @@ static void splats_backward(slot_state *s, const ted4_splat_grads *gr, size_t sl
         d[TED4_GEN_OPACITY] = gr->opacity + at;
         geometry_backward(s, k, d);
         rotation_backward(s, k, d);
+        endless_rotation_backward(s, k);
         colour_backward(s, k, d);
         opacity_backward(s, k, d);
     }

@@ -10,6 +10,7 @@
  * SPDX-License-Identifier: BSD-2-Clause */
 #include "train/loss.h"
 
+#include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -132,14 +133,25 @@ static void filter_squares(const float *u, const float *v, int n, float out[4][T
     }
 }
 
+static inline lanes at_least(lanes x, float least)
+{
+    const lanes   floor = least - (lanes){ 0 };
+    const lanes_i low = x < floor;
+
+    return (lanes)((low & (lanes_i)floor) | (~low & (lanes_i)x));
+}
+
 /* SSIM = (A1 A2) / (B1 B2) from the local means mu, mv and second moments uu, vv. With a = mu^2,
  * b = mv^2, p = uu - a, q = vv - b:
  *     A1 = a - b + 2 C1,  B1 = a + b + 2 C1,  A2 = p - q + 2 C2,  B2 = p + q + 2 C2
+ * p and q are variances, so nothing is divided by less than 2 C2; where the picture is so bright that their rounding is larger than that, they
+ * are held above -C2 / 2.
  * d: derivatives by what x is filtered into: mu + mv together (du/dx = dv/dx = 1), uu, vv. */
 static inline lanes similarity(lanes mu, lanes mv, lanes uu, lanes vv, lanes d[3])
 {
     const float c1 = 2.0f * TED4_SSIM_C1, c2 = 2.0f * TED4_SSIM_C2;
-    const lanes a = mu * mu, b = mv * mv, p = uu - a, q = vv - b;
+    const lanes a = mu * mu, b = mv * mv;
+    const lanes p = at_least(uu - a, -0.25f * c2), q = at_least(vv - b, -0.25f * c2);
     const lanes b1 = a + b + c1, b2 = p + q + c2;
     const lanes r = 1.0f / (b1 * b2);
     const lanes r1 = r * b2, r2 = r * b1;
@@ -363,7 +375,8 @@ double ted4_loss(ted4_loss_workspace *w, const float *image, const uint8_t *trut
     ted4_parallel_for(p, (size_t)j.n_bands, split_band, &j);
     *l1 = sum_of(w->sum, (size_t)j.n_bands) / count;
     ted4_parallel_for(p, (size_t)j.n_bands * CHANNELS, similarity_band, &j);
-    *ssim = sum_of(w->sum, (size_t)j.n_bands * CHANNELS) / count;
+    /* Of equal pictures rounding may find a little more than 1, and a negative loss means a failure. */
+    *ssim = fmin(sum_of(w->sum, (size_t)j.n_bands * CHANNELS) / count, 1.0);
     ted4_parallel_for(p, (size_t)j.n_bands * CHANNELS, gradient_band, &j);
     return (1.0 - (double)ssim_weight) * *l1 + (double)ssim_weight * (1.0 - *ssim);
 }

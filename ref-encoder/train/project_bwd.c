@@ -3,6 +3,8 @@
  * SPDX-License-Identifier: BSD-2-Clause */
 #include "train/raster_adjoint.h"
 
+#include <float.h>
+
 typedef struct {
     const struct ted4_raster *r;
     const ted4_splats        *s;
@@ -101,6 +103,33 @@ static inline void covariance_bwd(const ted4_projection *p, const ted4_vf sum[TE
     }
 }
 
+/* From this a c / det on: a slanting Gaussian is then a thousand times as long as it is wide, and covariance_bwd off by a sixth. */
+#define THIN 1e6f
+
+/* dL/dP again, for the lanes of thin. Above, with U P of size 1, (U^T S U) P is a difference of numbers as large as the Gaussian is long; here
+ * U P is made first. Its first row, a1 p0 + a2 p1 = a1 (p0 - b / c p1), is one too, but c p0 - b p1 = blur p0 + p1 x (p0 x p1). */
+static inline void thin_bwd(const ted4_projection *p, const ted4_vf sum[TED4_GRAD_SUMS], ted4_vi thin, ted4_vf dp0[3],
+                            ted4_vf dp1[3])
+{
+    const float   unscale = 1.0f / (TED4_WHITEN * TED4_WHITEN * TED4_WHITEN * TED4_WHITEN);
+    const ted4_vf ic = 1.0f / p->c;
+    ted4_vf       m[3], p1[3];
+
+    for (int i = 0; i < 3; i++) {
+        m[i]  = p->p0[(i + 1) % 3] * p->p1[(i + 2) % 3] - p->p0[(i + 2) % 3] * p->p1[(i + 1) % 3];
+        p1[i] = p->p1[i] * ic;
+    }
+    for (int i = 0; i < 3; i++) {
+        const ted4_vf turn = p1[(i + 1) % 3] * m[(i + 2) % 3] - p1[(i + 2) % 3] * m[(i + 1) % 3];
+        const ted4_vf w1 = p->a1 * (TED4_RASTER_BLUR * (p->p0[i] * ic) + turn), w2 = p->a3 * p->p1[i];
+        const ted4_vf s1 = unscale * (sum[TED4_SUM_N11] * w1 + sum[TED4_SUM_N12] * w2);
+        const ted4_vf s2 = unscale * (sum[TED4_SUM_N12] * w1 + sum[TED4_SUM_N22] * w2);
+
+        dp0[i] = ted4_vf_select(thin, p->a1 * s1, dp0[i]);
+        dp1[i] = ted4_vf_select(thin, p->a2 * s1 + p->a3 * s2, dp1[i]);
+    }
+}
+
 static void splats_bwd(const bwd_job *job, const ted4_splats16 *g, const ted4_vf sum[TED4_GRAD_SUMS], const ted4_vf *sum0,
                        grads16 *out)
 {
@@ -111,6 +140,10 @@ static void splats_bwd(const bwd_job *job, const ted4_splats16 *g, const ted4_vf
 
     ted4_project16(&p, g, v, &job->guard);
     covariance_bwd(&p, sum, dp0, dp1);
+
+    const ted4_vi thin = p.a * p.c > THIN * p.det;
+    if (ted4_vi_bits(thin) != 0)
+        thin_bwd(&p, sum, thin, dp0, dp1);
     memset(out->scale, 0, sizeof out->scale);
     axis_bwd(&p, g, v->fx, p.u, p.u_free, v->R, v->R + 6, p.j0, p.q0, dp0, out->scale, d_r, &d_u, &d_z);
     axis_bwd(&p, g, v->fy, p.v, p.v_free, v->R + 3, v->R + 6, p.j1, p.q1, dp1, out->scale, d_r, &d_v, &d_z);
@@ -131,7 +164,8 @@ static void splats_bwd(const bwd_job *job, const ted4_splats16 *g, const ted4_vf
     out->opacity = *sum0 / g->opacity;
 
     const ted4_vf mx = dx * (0.5f * (float)v->width), my = dy * (0.5f * (float)v->height);
-    out->mean2d = ted4_vf_sqrt(mx * mx + my * my);
+    const ted4_vf square = mx * mx + my * my;
+    out->mean2d = ted4_vf_sqrt(ted4_vf_select(square > FLT_MAX, ted4_vf_all(FLT_MAX), square));
 }
 
 /* ok: lanes with tiles; the others' numbers may be anything. */

@@ -8,7 +8,7 @@
 /* Gradients, structure of arrays [n]; overwritten (0 for Gaussians that were culled). */
 typedef struct {
     float *mean[3], *scale[3], *rot[4], *opacity, *colour[3];
-    float *mean2d;          /* |dL/d(centre)| in pixels times (width/2, height/2) per axis: the densification signal */
+    float *mean2d;          /* |dL/d(centre)| in pixels times (width/2, height/2) per axis: the densification signal; at most 1.8e19 */
     uint8_t *visible;       /* 1 where the Gaussian reached at least one tile */
 } ted4_splat_grads;
 

@@ -7,6 +7,7 @@
 #include "base/bytes.h"
 #include "kernel/int_kernel.h"
 #include "norm/half.h"
+#include "rate_math.h"
 
 int ted4_rate_integer_begin(ted4_rate_integer *x, const ted4_rate_input *in)
 {
@@ -74,7 +75,9 @@ static void slices(const ted4_rate_job *job, ted4_rate_room *room,
 
     for (size_t c = 0; c < f; c++)
         for (size_t j = 0, at = ted4_row(c); j < TED4_LANES; j++) {
-            const float k = __builtin_rintf(x[at + j] / q[j] + n[at + j]);
+            /* Where x / q has no room for fractions the sum may round to just outside of the range of symbols. */
+            const float k = ted4_lane_limit(
+                __builtin_rintf(x[at + j] / q[j] + n[at + j]), -32767.0f, 32767.0f);
             const int index = (int)(v[j] * 32.0f) + 128;
 
             context[c * TED4_PRIOR_BLOCK + j] =

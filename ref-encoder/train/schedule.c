@@ -86,6 +86,8 @@ void ted4_schedule_rates(const ted4_trainer *t, float *rate)
     }
     fill(rate, l->offset_logit, l->head.n_offsets, t->stage2 ? mask_rate(t) : 0.0);
     fill(rate, l->temporal_logit, 1, MASK_CAUTION * mask_rate(t));
+    for (int c = 0; c < l->n_channels; c++)
+        rate[c] *= (float)t->watch.state.factor;
 }
 
 typedef struct {
@@ -99,7 +101,7 @@ static void update_range(const net_job *j, size_t first, size_t n, double rate)
 
     if (n > 0 && rate > 0)
         ted4_adam(t->net + first, t->net_m + first, t->net_v + first,
-                  t->net_gradient + first, n, (float)rate, j->bias);
+                  t->net_gradient + first, n, (float)(rate * t->watch.state.factor), j->bias);
 }
 
 static void update_network(const net_job *j, size_t base, const ted4_net_shape *s,

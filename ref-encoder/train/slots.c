@@ -52,6 +52,7 @@ static int reserve(ted4_trainer *t, size_t n)
     n += n / 2 + 8;
     s->block = malloc(n * sizeof *s->block);
     s->lanes = malloc(n * sizeof *s->lanes);
+    s->drawn = malloc(n * sizeof *s->drawn);
     s->position = malloc(n * sizeof *s->position);
     s->raw = malloc(n * sizeof *s->raw);
     s->used = malloc(n * sizeof *s->used);
@@ -59,9 +60,10 @@ static int reserve(ted4_trainer *t, size_t n)
     s->steps = malloc(n * sizeof *s->steps);
     s->quantised = aligned_alloc(64, n * floats * sizeof(float));
     s->gradients = aligned_alloc(64, n * floats * sizeof(float));
-    if (s->block == NULL || s->lanes == NULL || s->position == NULL || s->raw == NULL ||
+    s->squares = malloc(n * (TED4_SLOT_TERMS + 1) * sizeof *s->squares);
+    if (s->block == NULL || s->lanes == NULL || s->drawn == NULL || s->position == NULL || s->raw == NULL ||
         s->used == NULL || s->gradient == NULL || s->steps == NULL ||
-        s->quantised == NULL || s->gradients == NULL)
+        s->quantised == NULL || s->gradients == NULL || s->squares == NULL)
         return ted4_trainer_fail(t, "no memory for %zu blocks", n);
     s->capacity = n;
     return 0;
@@ -71,6 +73,7 @@ void ted4_slots_finish(ted4_slots *s)
 {
     free(s->block);
     free(s->lanes);
+    free(s->drawn);
     free(s->position);
     free(s->raw);
     free(s->used);
@@ -78,6 +81,7 @@ void ted4_slots_finish(ted4_slots *s)
     free(s->steps);
     free(s->quantised);
     free(s->gradients);
+    free(s->squares);
     memset(s, 0, sizeof *s);
 }
 
@@ -99,6 +103,7 @@ int ted4_slots_fill(ted4_trainer *t, const ted4_view *v)
             continue;
         s->block[i] = (uint32_t)b;
         s->lanes[i] = lanes;
+        s->drawn[i] = (uint32_t)i;
         s->position[i] = ted4_block(&t->anchors, TED4_ROW_POSITION, b);
         s->raw[i] = ted4_block(&t->anchors, TED4_ROW_VALUE, b);
         s->used[i] = t->stage2 ? s->quantised + i * floats : s->raw[i];

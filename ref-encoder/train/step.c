@@ -4,6 +4,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "gradients.h"
 #include "random.h"
 #include "space.h"
 #include "trainer.h"
@@ -134,6 +135,7 @@ static int backward(ted4_trainer *t, const ted4_view *v, const ted4_generate_inp
         return -1;
     if (ted4_raster_backward(t->raster, s, v, t->parallel, t->d_image, &t->splat_gradient) != 0)
         return ted4_trainer_fail(t, "no memory for gradients");
+    t->watch.norm[TED4_TERM_CENTRE] = ted4_gradients_centres(&t->splat_gradient, s->n);
     *on_screen = ted4_update_volume(t, s);
     memset(t->net_gradient, 0, t->layout.n_net * sizeof *t->net_gradient);
     if (ted4_generate_backward(t->generator, in, &t->splat_gradient, t->parallel,
@@ -190,17 +192,16 @@ static double distortion(ted4_trainer *t, const ted4_picture *pic, const ted4_vi
     const double    loss = ted4_loss(t->loss, shown(t, pic), truth, v->width, v->height,
                                      (float)t->opt.ssim, t->parallel, t->d_image, l1, ssim);
 
+    t->watch.norm[TED4_TERM_COLOUR] = 0;
     if (!is_corrected(t, pic) || !(loss >= 0))
         return loss;
     ted4_colour_backward(&t->colour, pic->camera_id, t->image, pixels, t->parallel, t->d_image,
                          gradient);
-    ted4_colour_update(&t->colour, pic->camera_id, gradient, t->opt.lr_colour,
+    t->watch.norm[TED4_TERM_COLOUR] = ted4_gradients_norm(gradient, TED4_COLOUR_VALUES);
+    ted4_colour_update(&t->colour, pic->camera_id, gradient, t->opt.lr_colour * t->watch.state.factor,
                        t->opt.colour_weight);
     return loss;
 }
-
-/* Looking at every anchor takes time, so it is done once in so many steps. */
-enum { CHECK_ANCHORS = 100 };
 
 /* The probe begins when the first anchors stand. */
 #define PROBE_FROM 0.25
@@ -210,51 +211,73 @@ static int probe_due(const ted4_trainer *t)
     return !t->probed && t->iteration == (uint64_t)(PROBE_FROM * (double)t->opt.stage1);
 }
 
-int ted4_trainer_step(ted4_trainer *t)
+/* What the schedule wants done before the step. */
+static int event(ted4_trainer *t)
 {
-    if (probe_due(t) && ted4_probe_time(t) != 0)
-        return -1;
-    if (ted4_trainer_check(t, t->iteration % CHECK_ANCHORS == 0) != 0 ||
-        ted4_schedule_event(t) != 0)
-        return -1;
+    const size_t before = t->anchors.n;
+    const int    stage2 = t->stage2;
 
-    const uint32_t      item = next_picture(&t->order);
+    if (ted4_watch_begin(t) != 0 || ted4_schedule_event(t) != 0)
+        return -1;
+    /* Compression may drop whatever never shows. */
+    return t->stage2 == stage2 ? ted4_watch_anchors(t, before) : 0;
+}
+
+/* One picture forward: in, s, v and the gradient in t->d_image. Loss, or negative with t->message. */
+static double forward(ted4_trainer *t, uint32_t item, ted4_view *v, ted4_generate_input *in, ted4_splats *s, double *l1, double *ssim)
+{
     const ted4_picture *pic = &t->data->pictures[item];
-    const uint64_t      key = ted4_random(t->opt.seed, t->iteration);
+    const uint8_t      *truth = ted4_dataset_pixels(t->data, item, &t->message);
+    double              loss = -1;
+
+    if (truth == NULL)
+        return -1;
+    announce(t);
+    if (render(t, pic, 1, v, in, s) == 0) {
+        loss = distortion(t, pic, v, truth, l1, ssim);
+        if (ted4_watch_loss(t, loss) != 0)
+            loss = -1;
+        else if (loss < 0)
+            ted4_trainer_fail(t, "no memory for the loss");
+    }
+    ted4_dataset_release(t->data, item);
+    return loss;
+}
+
+static int one_step(ted4_trainer *t)
+{
     ted4_view           v;
     ted4_generate_input in;
     ted4_splats         s;
     double              l1, ssim;
     size_t              on_screen = 0;
 
-    const uint8_t *truth = ted4_dataset_pixels(t->data, item, &t->message);
-
-    if (truth == NULL)
+    if (event(t) != 0)
         return -1;
-    announce(t);
-    if (render(t, pic, 1, &v, &in, &s) != 0) {
-        ted4_dataset_release(t->data, item);
-        return -1;
-    }
-    const double loss = distortion(t, pic, &v, truth, &l1, &ssim);
 
-    ted4_dataset_release(t->data, item);
-    if (!isfinite(loss))
-        return ted4_trainer_fail(t, "the loss is not finite at step %llu",
-                                 (unsigned long long)t->iteration);
-    if (loss < 0)
-        return ted4_trainer_fail(t, "no memory for the loss");
-    if (backward(t, &v, &in, &s, &on_screen) != 0)
+    const uint64_t key = ted4_random(t->opt.seed, t->iteration);
+    const double   loss = forward(t, next_picture(&t->order), &v, &in, &s, &l1, &ssim);
+
+    if (loss < 0 || backward(t, &v, &in, &s, &on_screen) != 0)
         return -1;
     if (!t->stage2)
         ted4_densify_gather(t, &in, &s);
     if (t->stage2 && ted4_update_rate(t, key) != 0)
         return -1;
     ted4_update_parameters(t);
+    if (ted4_watch_look(t, loss, &in, &s) != 0)
+        return -1;
     follow(&t->progress, loss, l1, ssim, (double)on_screen,
            (double)v.width * (double)v.height, t->iteration == 0);
     t->iteration++;
     return 0;
+}
+
+int ted4_trainer_step(ted4_trainer *t)
+{
+    if (probe_due(t) && ted4_probe_time(t) != 0)
+        return -1;
+    return one_step(t) == 0 ? 0 : ted4_watch_recover(t);
 }
 
 double ted4_trainer_preview(ted4_trainer *t, int n)

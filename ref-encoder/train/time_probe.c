@@ -19,17 +19,27 @@ static int has_time(const ted4_trainer *t)
     return t->layout.head.motion != TED4_MOTION_NONE || t->layout.head.activation;
 }
 
-/* n steps; *loss: mean loss of the second half. */
+/* n steps; *loss: mean loss of the second half. A rollback goes back to the beginning of the branch. */
 static int run_branch(ted4_trainer *t, int n, double *loss)
 {
+    const uint64_t begin = t->iteration;
+    int            bad = 0;
+
+    ted4_watch_forget(t);
+    t->watch.pinned = 1;
     *loss = 0;
-    for (int i = 0; i < n; i++) {
-        if (ted4_trainer_step(t) != 0)
-            return -1;
-        if (i >= n / 2)
+    while (!bad && t->iteration < begin + (uint64_t)n) {
+        const uint64_t i = t->iteration - begin, rollbacks = t->watch.state.rollbacks;
+
+        bad = ted4_trainer_step(t) != 0;
+        if (t->watch.state.rollbacks > rollbacks)
+            *loss = 0;
+        else if (i >= (uint64_t)n / 2)
             *loss += t->progress.last_loss / (n - n / 2);
     }
-    return 0;
+    t->watch.pinned = 0;
+    ted4_watch_forget(t);
+    return bad;
 }
 
 int ted4_probe_time(ted4_trainer *t)

@@ -87,6 +87,7 @@ static int make_images(ted4_trainer *t)
 static int begin(ted4_trainer *t, const ted4_header *h)
 {
     ted4_layout_make(&t->layout, h);
+    t->watch.state.factor = 1;
     if (ted4_trainer_rebuild(t) != 0 || make_order(t) != 0 || make_images(t) != 0)
         return -1;
     if (ted4_anchors_init(&t->anchors, &t->layout) != 0 ||
@@ -142,6 +143,7 @@ void ted4_trainer_finish(ted4_trainer *t)
     ted4_raster_free(t->raster);
     ted4_loss_workspace_free(t->loss);
     ted4_colour_finish(&t->colour);
+    ted4_watch_forget(t);
     free(t->image);
     free(t->d_image);
     free(t->splat_storage);
@@ -175,5 +177,7 @@ int ted4_trainer_check(ted4_trainer *t, int anchors)
         !all_finite(t->anchors.data[TED4_ROW_VALUE],
                     t->anchors.n_blocks * (size_t)t->layout.n_channels * TED4_LANES))
         return ted4_trainer_fail(t, "an anchor's value is not finite at step %llu", now);
+    if (anchors && !all_finite(t->anchors.data[TED4_ROW_POSITION], t->anchors.n_blocks * (size_t)3 * TED4_LANES))
+        return ted4_trainer_fail(t, "an anchor's position is not finite at step %llu", now);
     return 0;
 }

@@ -11,6 +11,7 @@
 #include "header.h"
 #include "loss.h"
 #include "options.h"
+#include "watch.h"
 
 /* Pictures in random order without replacement, then reshuffled. */
 typedef struct {
@@ -33,11 +34,13 @@ typedef struct {
     size_t        n, capacity;
     uint32_t     *block;        /* [n] */
     uint32_t     *lanes;        /* [n] */
+    uint32_t     *drawn;        /* [n] place of its Gaussians among those drawn: its own, until ted4_update_rate puts slots in another order */
     const float **position;     /* [n] */
     const float **raw, **used;  /* [n] values as stored, as rendered (quantised in stage 2) */
     float       **gradient;     /* [n] blocks of n_channels */
     float       **steps;        /* [n] */
     float        *quantised, *gradients;    /* storage behind used and gradient */
+    float        *squares;      /* [n][TED4_SLOT_TERMS + 1]: gradients.h */
 } ted4_slots;
 
 typedef struct {
@@ -58,6 +61,7 @@ typedef struct {
     uint64_t            stage2_start;   /* Adam's count restarts there */
     ted4_order          order;
     ted4_progress       progress;
+    ted4_watch          watch;
 
     ted4_generator     *generator;
     ted4_rate          *rate;
@@ -82,7 +86,9 @@ int  ted4_trainer_restart(ted4_trainer *t, const ted4_header *h);
 
 /* Total steps of both stages. */
 uint64_t ted4_trainer_total(const ted4_trainer *t);
-/* One step, with whatever the schedule wants done around it (growth, activation, change of stage, integer networks). 0, or -1 with t->message. */
+/* One step, with whatever the schedule wants done around it (growth, activation, change of stage, integer networks). Or, where the watch finds that training
+ * goes wrong, the way back to the last good state: iteration is then smaller or the same, watch.state.rollbacks larger, and watch.find and message say why.
+ * 0, or -1 with t->message; watch.found then tells whether it is a find that nothing more was done about. */
 int  ted4_trainer_step(ted4_trainer *t);
 /* Mean PSNR of the current model on up to n held-out pictures (training pictures when there are none), from its own floats: for the progress line
  * only. Negative: failure, with t->message. */
@@ -98,7 +104,7 @@ int  ted4_schedule_event(ted4_trainer *t);
 size_t ted4_schedule_room(const ted4_trainer *t);
 
 /* After the picture's gradients: update.c.
- * Volume: weight times the mean of the product of scales over the Gaussians on screen; returns how many there are. Bank: mean squared second difference of its rows. Rate
+ * Volume: weight times the mean of the product of scales over the Gaussians on screen; returns how many there are, and tells the watch. Bank: mean squared second difference of its rows. Rate
  * of a random share of the visible blocks: gradients of bits on values, masks and NETE, and of the distortion on step sizes. Parameters: mask losses and Adam. */
 size_t ted4_update_volume(ted4_trainer *t, const ted4_splats *s);
 void   ted4_update_bank(ted4_trainer *t);
@@ -121,9 +127,11 @@ uint32_t ted4_block_visible(const ted4_trainer *t, size_t block, const ted4_view
  * [n][3] (NULL: not wanted; 0 where nothing is opaque). 0, or -1 with t->message. looks.c */
 int  ted4_trainer_looks(ted4_trainer *t, float *opacity, float *rgb);
 
-/* Densification: densify.c. gather adds the statistics of a step; adjust grows and prunes. */
+/* Densification: densify.c. gather adds the statistics of a step; adjust grows and prunes. lanes_there: lanes of a slot whose activation is at least a half
+ * now. */
 void ted4_densify_gather(ted4_trainer *t, const ted4_generate_input *in, const ted4_splats *s);
 int  ted4_densify_adjust(ted4_trainer *t);
+uint32_t ted4_lanes_there(const ted4_generate_input *in, size_t slot);
 
 /* Stage changes: stages.c */
 int  ted4_activation_begin(ted4_trainer *t);
@@ -139,10 +147,32 @@ int  ted4_probe_time(ted4_trainer *t);
 /* Fresh workspaces and network arrays after t->layout changed. */
 int  ted4_trainer_rebuild(ted4_trainer *t);
 
-/* Are all network weights, and if wanted all values of anchors, finite? The rasteriser passes over
+/* Are all network weights, and if wanted all values and positions of anchors, finite? The rasteriser passes over
  * Gaussians that are not, so the loss alone does not tell. 0, or -1 with t->message. trainer.c */
 int  ted4_trainer_check(ted4_trainer *t, int anchors);
 
 int  ted4_trainer_fail(ted4_trainer *t, const char *format, ...);
+
+/* The watch: watch.c. All that return int return 0, or -1 with t->message, and with watch.found when it is a find.
+ * begin: before a step; looks at what is learnt, from time to time at all anchors, and then keeps the state. anchors: after an event; how many there were
+ * before it.
+ * loss: of the picture. look: after the update; gradients, values, loss, and how much was drawn of in and s. */
+int  ted4_watch_begin(ted4_trainer *t);
+int  ted4_watch_anchors(ted4_trainer *t, size_t before);
+int  ted4_watch_loss(ted4_trainer *t, double loss);
+int  ted4_watch_look(ted4_trainer *t, double loss, const ted4_generate_input *in, const ted4_splats *s);
+/* After a step that failed: back to the last good state with smaller learning rates, if it was a find, there is such a state and this was not done three
+ * times. */
+int  ted4_watch_recover(ted4_trainer *t);
+/* A find: its message is what, term, the anchor and what has happened to it (format). Returns -1. */
+int  ted4_watch_find(ted4_trainer *t, const char *cause, int64_t anchor, const char *what, const char *term, const char *format, ...);
+/* Will the next step begin with keeping the state? Then the last good state matters no more. */
+int  ted4_watch_due(const ted4_trainer *t);
+/* No good state is kept: the next step keeps its own beginning. */
+void ted4_watch_forget(ted4_trainer *t);
+/* Nothing looks suspicious: this state may replace an older one on the disk. */
+int  ted4_watch_calm(const ted4_trainer *t);
+/* A line of the log was written: peaks begin anew. */
+void ted4_watch_line(ted4_trainer *t);
 
 #endif

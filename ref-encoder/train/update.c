@@ -4,6 +4,7 @@
 #include <math.h>
 
 #include "adam.h"
+#include "gradients.h"
 #include "random.h"
 #include "trainer.h"
 
@@ -16,8 +17,9 @@ size_t ted4_update_volume(ted4_trainer *t, const ted4_splats *s)
         n += g->visible[i];
 
     const float w = n > 0 ? (float)(t->opt.volume_weight / (double)n) : 0.0f;
+    float       drawn = 0;
 
-#pragma omp simd
+#pragma omp simd reduction(+ : drawn)
     for (size_t i = 0; i < s->n; i++) {
         const float on = w * (float)g->visible[i];
         const float a = s->scale[0][i], b = s->scale[1][i], c = s->scale[2][i];
@@ -25,7 +27,9 @@ size_t ted4_update_volume(ted4_trainer *t, const ted4_splats *s)
         g->scale[0][i] += on * b * c;
         g->scale[1][i] += on * a * c;
         g->scale[2][i] += on * a * b;
+        drawn += a >= TED4_NO_EXTENT || b >= TED4_NO_EXTENT || c >= TED4_NO_EXTENT ? (float)g->visible[i] : 0.0f;
     }
+    t->watch.drawn = (double)drawn;
     return n;
 }
 
@@ -90,6 +94,7 @@ static void update_slot(void *arg, size_t i)
         add_mask_loss(j, i, l->offset_logit, l->head.n_offsets, j->mask_weight);
     if (j->temporal_weight > 0)
         add_mask_loss(j, i, l->temporal_logit, 1, j->temporal_weight);
+    ted4_gradients_slot(l, j->rate, x, s->gradient[i], s->squares + i * (TED4_SLOT_TERMS + 1));
     for (int c = 0; c < l->n_channels; c++) {
         const size_t at = (size_t)c * TED4_LANES;
 
@@ -118,12 +123,13 @@ void ted4_update_parameters(ted4_trainer *t)
 /* A partial shuffle: after m swaps the first m slots are a uniform choice; the order of the others does not matter. */
 static void swap_slots(ted4_slots *s, size_t i, size_t k)
 {
-    const uint32_t block = s->block[i], lanes = s->lanes[i];
+    const uint32_t block = s->block[i], lanes = s->lanes[i], drawn = s->drawn[i];
     const float   *position = s->position[i], *raw = s->raw[i], *used = s->used[i];
     float         *gradient = s->gradient[i], *steps = s->steps[i];
 
     s->block[i] = s->block[k];
     s->lanes[i] = s->lanes[k];
+    s->drawn[i] = s->drawn[k];
     s->position[i] = s->position[k];
     s->raw[i] = s->raw[k];
     s->used[i] = s->used[k];
@@ -131,6 +137,7 @@ static void swap_slots(ted4_slots *s, size_t i, size_t k)
     s->steps[i] = s->steps[k];
     s->block[k] = block;
     s->lanes[k] = lanes;
+    s->drawn[k] = drawn;
     s->position[k] = position;
     s->raw[k] = raw;
     s->used[k] = used;

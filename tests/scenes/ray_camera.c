@@ -7,7 +7,8 @@
 /* The rig: target, distance from it, and the ranges of azimuth (either side) and elevation, in
  * turns. */
 static const double target[3] = { 0.0, 0.15, 0.78 };
-static const double radius = 3.7, azimuth = 38.0 / 360, low = 9.0 / 360, high = 27.0 / 360;
+const double ted4_ray_radius = 3.7;
+static const double azimuth = 38.0 / 360, low = 9.0 / 360, high = 27.0 / 360;
 
 /* Its tangent of the half, 0.5, is exact. */
 const double ted4_ray_angle_x = 0.92729521800161223;
@@ -35,10 +36,12 @@ static void place(ted4_ray_camera *c, double u, double v, int width, int height)
         c->matrix[i][0] = right[i];
         c->matrix[i][1] = up[i];
         c->matrix[i][2] = back[i];
-        c->matrix[i][3] = target[i] + radius * back[i];
+        c->matrix[i][3] = target[i] + ted4_ray_radius * back[i];
         c->matrix[3][i] = 0;
     }
     c->matrix[3][3] = 1;
+    for (int i = 0; i < 9; i++)
+        c->colour[i] = i % 4 == 0 ? 1 : 0;
 }
 
 void ted4_ray_camera_train(ted4_ray_camera *c, int i, int n_train, int width, int height)

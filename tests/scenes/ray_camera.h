@@ -1,5 +1,5 @@
 /* ray_camera.h - the fixed rig of cameras of the project's scenes.
- * Used by ray_render, ray_set and the test.
+ * Used by ray_rig, ray_render and the tests.
  * SPDX-License-Identifier: BSD-2-Clause */
 #ifndef RAY_CAMERA_H
 #define RAY_CAMERA_H
@@ -10,10 +10,11 @@ typedef struct {
     int    width, height;
     double focal;               /* in pixels */
     double matrix[4][4];        /* camera to world */
+    float  colour[9];           /* row-major: linear light to what the camera takes it for; a unit matrix as placed */
 } ted4_ray_camera;
 
-/* Horizontal field of view in radians. */
-extern const double ted4_ray_angle_x;
+/* Horizontal field of view in radians; distance from the middle of the scene in units. */
+extern const double ted4_ray_angle_x, ted4_ray_radius;
 
 /* Camera i of n on the arc. Training cameras go up and down in turn; test cameras stand between
  * two of them where n_train > n_test. */

@@ -4,6 +4,10 @@
 
 #include <string.h>
 
+/* The range of depths that some layouts state, in units of the room. */
+#define NEAR 0.1
+#define FAR  10.0
+
 const char *ted4_ray_layout_name(ted4_ray_layout l)
 {
     static const char *const names[RAY_LAYOUTS] = { "blender", "nerfstudio", "colmap", "colmap-text",
@@ -20,14 +24,6 @@ static int n_cameras(const ted4_ray_options *o)
 static int is_test(const ted4_ray_options *o, int number)
 {
     return number >= o->n_train;
-}
-
-void ted4_ray_camera_of(const ted4_ray_options *o, int number, ted4_ray_camera *c)
-{
-    if (is_test(o, number))
-        ted4_ray_camera_test(c, number - o->n_train, o->n_test, o->n_train, o->width, o->height);
-    else
-        ted4_ray_camera_train(c, number, o->n_train, o->width, o->height);
 }
 
 /* Number of the camera that is i-th when test cameras come first. */
@@ -84,7 +80,7 @@ static void put_frame(FILE *f, const ted4_ray_options *o, int number, int frame)
     char name[TED4_RAY_NAME];
     ted4_ray_camera c;
 
-    ted4_ray_camera_of(o, number, &c);
+    ted4_ray_camera_stated(o, number, &c);
     ted4_ray_picture_name(o, number, frame, name);
     if (o->layout == RAY_BLENDER)
         *strrchr(name, '.') = '\0';
@@ -103,7 +99,7 @@ static void put_transforms(FILE *f, const ted4_ray_options *o, int first, int ca
 {
     ted4_ray_camera c;
 
-    ted4_ray_camera_of(o, 0, &c);
+    ted4_ray_camera_stated(o, 0, &c);
     fputs("{\n", f);
     if (o->layout == RAY_BLENDER)
         fprintf(f, "  \"camera_angle_x\": %.17g,\n", ted4_ray_angle_x);
@@ -113,8 +109,12 @@ static void put_transforms(FILE *f, const ted4_ray_options *o, int first, int ca
                 c.focal, 0.5 * c.width, 0.5 * c.height);
     fputs("  \"frames\": [", f);
     for (int i = 0; i < cameras * o->n_frames; i++) {
+        const int number = first + i / o->n_frames, frame = i % o->n_frames;
+
+        if (!ted4_ray_is_taken(o, number, frame))
+            continue;
         fputs(i > 0 ? "," : "", f);
-        put_frame(f, o, first + i / o->n_frames, i % o->n_frames);
+        put_frame(f, o, number, frame);
     }
     fprintf(f, "\n  ]\n}\n");
 }
@@ -222,7 +222,7 @@ static void colmap_image(const ted4_ray_options *o, int i, double pose[7], char 
     double R[3][3];
     ted4_ray_camera c;
 
-    ted4_ray_camera_of(o, number, &c);
+    ted4_ray_camera_stated(o, number, &c);
     pose_of(&c, R, pose + 4);
     quaternion_of(R, pose);
     ted4_ray_picture_name(o, number, i % o->n_frames, name);
@@ -234,7 +234,7 @@ static void put_cameras_bin(FILE *f, const ted4_ray_options *o, int number, int 
     ted4_ray_camera c;
 
     (void)number, (void)frame;
-    ted4_ray_camera_of(o, 0, &c);
+    ted4_ray_camera_stated(o, 0, &c);
     put_bytes(f, 1, 8), put_bytes(f, 1, 4), put_bytes(f, PINHOLE, 4);
     put_bytes(f, (uint64_t)c.width, 8), put_bytes(f, (uint64_t)c.height, 8);
     put_double(f, c.focal), put_double(f, c.focal), put_double(f, 0.5 * c.width), put_double(f, 0.5 * c.height);
@@ -279,7 +279,7 @@ static void put_cameras_text(FILE *f, const ted4_ray_options *o, int number, int
     ted4_ray_camera c;
 
     (void)number, (void)frame;
-    ted4_ray_camera_of(o, 0, &c);
+    ted4_ray_camera_stated(o, 0, &c);
     fprintf(f, "1 PINHOLE %d %d %.17g %.17g %.17g %.17g\n", c.width, c.height, c.focal, c.focal, 0.5 * c.width,
             0.5 * c.height);
 }
@@ -315,9 +315,12 @@ static void put_points_text(FILE *f, const ted4_ray_options *o, int number, int 
 static void put_ids(FILE *f, const ted4_ray_options *o, int first, int cameras)
 {
     for (int i = 0; i < cameras * o->n_frames; i++) {
+        const int number = first + i / o->n_frames, frame = i % o->n_frames;
         char id[40];
 
-        flat_name(o, first + i / o->n_frames, i % o->n_frames, "_", id);
+        if (!ted4_ray_is_taken(o, number, frame))
+            continue;
+        flat_name(o, number, frame, "_", id);
         fprintf(f, "%s\"%s\"", i > 0 ? ", " : "", id);
     }
 }
@@ -340,6 +343,8 @@ static void put_metadata(FILE *f, const ted4_ray_options *o, int number, int fra
     for (int i = 0; i < n_cameras(o) * o->n_frames; i++) {
         char id[40];
 
+        if (!ted4_ray_is_taken(o, i / o->n_frames, i % o->n_frames))
+            continue;
         flat_name(o, i / o->n_frames, i % o->n_frames, "_", id);
         fprintf(f, "%s\"%s\": {\"warp_id\": %d, \"appearance_id\": %d, \"camera_id\": %d}", i > 0 ? ",\n" : "{",
                 id, i % o->n_frames, i % o->n_frames, i / o->n_frames);
@@ -349,8 +354,11 @@ static void put_metadata(FILE *f, const ted4_ray_options *o, int number, int fra
 
 static void put_scene(FILE *f, const ted4_ray_options *o, int number, int frame)
 {
-    (void)o, (void)number, (void)frame;
-    fputs("{\"scale\": 1.0, \"center\": [0.0, 0.0, 0.0], \"near\": 0.1, \"far\": 10.0}\n", f);
+    const double scale = ted4_ray_plan_of(o->scene)->scale;
+
+    (void)number, (void)frame;
+    fprintf(f, "{\"scale\": 1.0, \"center\": [0.0, 0.0, 0.0], \"near\": %.1f, \"far\": %.1f}\n", NEAR * scale,
+            FAR * scale);
 }
 
 void ted4_ray_hypernerf_camera_name(const ted4_ray_options *o, int number, int frame, char name[TED4_RAY_NAME])
@@ -367,7 +375,7 @@ void ted4_ray_put_hypernerf_camera(FILE *f, const ted4_ray_options *o, int numbe
     ted4_ray_camera c;
 
     (void)frame;
-    ted4_ray_camera_of(o, number, &c);
+    ted4_ray_camera_stated(o, number, &c);
     pose_of(&c, R, t);
     fputs("{\"orientation\": [", f);
     for (int i = 0; i < 3; i++)
@@ -383,6 +391,7 @@ void ted4_ray_put_hypernerf_camera(FILE *f, const ted4_ray_options *o, int numbe
 static void put_poses(FILE *f, const ted4_ray_options *o, int number, int frame)
 {
     enum { HEADER = 128 };              /* with the 10 bytes before it */
+    const double scale = ted4_ray_plan_of(o->scene)->scale;
     char text[HEADER];
 
     (void)number, (void)frame;
@@ -393,14 +402,14 @@ static void put_poses(FILE *f, const ted4_ray_options *o, int number, int frame)
     for (int i = 0; i < n_cameras(o); i++) {
         ted4_ray_camera c;
 
-        ted4_ray_camera_of(o, test_first(o, i), &c);
+        ted4_ray_camera_stated(o, test_first(o, i), &c);
         const double size[3] = { c.height, c.width, c.focal };
         for (int r = 0; r < 3; r++) {
             const double *const m = c.matrix[r];    /* right, up, back, centre */
             put_double(f, -m[1]), put_double(f, m[0]), put_double(f, m[2]), put_double(f, m[3]);
             put_double(f, size[r]);
         }
-        put_double(f, 0.1), put_double(f, 10);
+        put_double(f, NEAR * scale), put_double(f, FAR * scale);
     }
 }
 
@@ -413,7 +422,7 @@ static void put_calibration(FILE *f, const ted4_ray_options *o, int number, int 
         char name[TED4_RAY_NAME];
         ted4_ray_camera c;
 
-        ted4_ray_camera_of(o, test_first(o, i), &c);
+        ted4_ray_camera_stated(o, test_first(o, i), &c);
         ted4_ray_camera_name(o, test_first(o, i), name);
         pose_of(&c, R, t);
         fprintf(f, "%s\n{\"name\": \"%s\", \"video\": \"%s.mp4\", \"w\": %d, \"h\": %d,\n \"K\": [[%.17g, 0, %.17g], "

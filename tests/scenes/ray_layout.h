@@ -1,16 +1,13 @@
 /* ray_layout.h - names and contents of the files of each layout, pictures aside.
- * Depends on ray_set.h. Used by ray_set.c.
+ * Depends on ray_rig.h. Used by ray_set.c.
  * SPDX-License-Identifier: BSD-2-Clause */
 #ifndef RAY_LAYOUT_H
 #define RAY_LAYOUT_H
 
 #include <stdio.h>
-#include "ray_set.h"
+#include "ray_rig.h"
 
 enum { TED4_RAY_NAME = 80 };
-
-/* Cameras have a number: training cameras from 0, then test cameras. */
-void ted4_ray_camera_of(const ted4_ray_options *o, int number, ted4_ray_camera *c);
 
 /* "cam07", test cameras first. */
 void ted4_ray_camera_name(const ted4_ray_options *o, int number, char name[TED4_RAY_NAME]);

@@ -151,7 +151,6 @@ static int sees_lamp(view *v, const sample *k, vec3 p, int object)
  * broad highlight of it. */
 static vec3 lit(view *v, const sample *k, const ted4_ray_sight *r, const matter *m)
 {
-    static const float lamp_power = 12.0f;
     const vec3 fill = v3(0.39f, -0.86f, 0.33f), warm = v3(1.0f, 0.96f, 0.90f),
                sky = v3(0.94f, 0.97f, 1.0f);
     const vec3 to = v3_sub(v->w->lamp, r->point), normal = m->surface.normal;
@@ -164,7 +163,7 @@ static vec3 lit(view *v, const sample *k, const ted4_ray_sight *r, const matter 
         float h = ray_max(0, v3_dot(half, normal));
         for (int i = 0; i < 5; i++)
             h *= h;
-        direct = cosine * lamp_power / (d2 + 3);
+        direct = cosine * v->w->lamp_power / (d2 + 3);
         shine = m->gloss * h;
     }
     return v3_add(v3_mul(m->albedo, v3_add(v3_scale(warm, direct), v3_scale(sky, ambient))),
@@ -198,14 +197,23 @@ static float room_meet(const ted4_ray_world *w, vec3 from, vec3 d, ted4_ray_side
     return t;
 }
 
+static vec3 room_albedo(const ted4_ray_world *w, ted4_ray_side side, vec3 p)
+{
+    if (w->room == RAY_PLAIN && side != RAY_FLOOR)
+        return ray_paint(.74f, .72f, .68f);
+    return ted4_ray_room_texture(side, p, w->seed);
+}
+
 /* Sight of a sample: the nearest of the objects in c, or the room. */
 static ted4_ray_sight sight(view *v, const crowd *c, const sample *k)
 {
     ted4_ray_side side = RAY_FLOOR;
     ted4_ray_sight r = { .object = ROOM };
     matter m = { 0 };
-    float t = room_meet(v->w, v->eye, k->d, &side, &m.surface.normal);
+    float t = INFINITY;
 
+    if (v->w->room != RAY_DARK)
+        t = room_meet(v->w, v->eye, k->d, &side, &m.surface.normal);
     for (int i = 0; i < c->n; i++) {
         const float far = t;
         t = ted4_ray_meet(&v->w->object[c->id[i]], v->eye, k->d, near_plane, far);
@@ -213,14 +221,19 @@ static ted4_ray_sight sight(view *v, const crowd *c, const sample *k)
             r.object = c->id[i];
     }
     r.depth = t;
+    if (t == INFINITY) {
+        r.object = NOTHING;
+        return r;
+    }
     r.point = v3_along(v->eye, k->d, t);
     if (r.object != ROOM) {
         const ted4_ray_object *const o = &v->w->object[r.object];
         m.surface = ted4_ray_surface_at(o, r.point);
-        m.albedo = ted4_ray_texture(o, m.surface.material, v->w->seed + 31u * (uint32_t)o->texture);
+        m.albedo = ted4_ray_texture(o, v3_add(m.surface.material, o->skin),
+                                    v->w->seed + 31u * (uint32_t)o->texture);
         m.gloss = o->gloss;
     } else {
-        m.albedo = ted4_ray_room_texture(side, r.point, v->w->seed);
+        m.albedo = room_albedo(v->w, side, r.point);
     }
     r.colour = lit(v, k, &r, &m);
     return r;
@@ -242,8 +255,8 @@ static vec3 pixel(view *v, int x, int y)
     for (int n = 0; n < SIDE * SIDE; n++) {
         const int i = n % SIDE, j = n / SIDE;
         const sample k = { direction(v, x + (i + 0.5) / SIDE, y + (j + 0.5) / SIDE), i, j };
-        const vec3 s = sight(v, &c, &k).colour;
-        sum = v3_add(sum, v3(ray_min(s.x, 1), ray_min(s.y, 1), ray_min(s.z, 1)));
+        const vec3 s = ray_rotate(v->c->colour, sight(v, &c, &k).colour);
+        sum = v3_add(sum, v3(ray_clamp(s.x, 0, 1), ray_clamp(s.y, 0, 1), ray_clamp(s.z, 0, 1)));
     }
     return v3_scale(sum, 1.0f / (SIDE * SIDE));
 }

@@ -2,6 +2,7 @@
  * ray_layout.c.
  * SPDX-License-Identifier: BSD-2-Clause */
 #include "ray_layout.h"
+#include "ray_truth.h"
 
 #include <errno.h>
 #include <png.h>
@@ -16,6 +17,17 @@ enum { MAX_PATH = 1024 };
 /* Half width of the noise added to the points, in units; two thirds of a default pixel at the
  * middle. */
 static const float point_noise = 0.015f;
+
+static const char truth_name[] = "truth.json";
+
+ted4_ray_options ted4_ray_defaults(ted4_ray_scene s)
+{
+    const ted4_ray_plan *const p = ted4_ray_plan_of(s);
+
+    return (ted4_ray_options){ .scene = s, .width = p->width, .height = p->height, .n_train = p->n_train,
+                               .n_test = p->n_test, .n_frames = p->n_frames, .seed = 1, .hold = p->hold,
+                               .pose_error = p->pose_error, .tint = p->tint };
+}
 
 static int complain(ted4_ray_message *m, const char *path, const char *why)
 {
@@ -74,11 +86,13 @@ static void picture_job(void *arg, size_t i)
     const pictures *const job = arg;
     const ted4_ray_options *const o = job->o;
     const int number = (int)(i / (size_t)o->n_frames), frame = (int)(i % (size_t)o->n_frames);
-    uint8_t *const rgb = malloc((size_t)o->width * (size_t)o->height * 3);
     ted4_ray_camera camera;
     ted4_ray_world world;
     char file[TED4_RAY_NAME], path[MAX_PATH];
 
+    if (!ted4_ray_is_taken(o, number, frame))
+        return;
+    uint8_t *const rgb = malloc((size_t)o->width * (size_t)o->height * 3);
     ted4_ray_picture_name(o, number, frame, file);
     ted4_ray_camera_of(o, number, &camera);
     ted4_ray_world_at(&world, o->scene, o->seed, frame, o->n_frames);
@@ -113,24 +127,39 @@ static int write_pictures(const ted4_ray_options *o, const char *folder, const t
 
 /* ---- points ---- */
 
+/* What a training camera sees at a random place of a picture; p gets camera and time. */
+static ted4_ray_sight random_sight(const ted4_ray_options *o, int i, int attempt, ted4_ray_point *p)
+{
+    const uint32_t seed = o->seed + 77;
+    ted4_ray_camera c;
+    ted4_ray_world w;
+
+    p->camera = (i + attempt) % o->n_train;
+    p->frame = (int)(ray_hash(i, 0, attempt, seed) % (uint32_t)o->n_frames);
+    p->frame += ted4_ray_is_held(o, p->frame);
+    ted4_ray_camera_of(o, p->camera, &c);
+    ted4_ray_world_at(&w, o->scene, o->seed, p->frame, o->n_frames);
+    return ted4_ray_look(&w, &c, (double)ray_random(i, 1, attempt, seed) * o->width,
+                         (double)ray_random(i, 2, attempt, seed) * o->height);
+}
+
+/* Ends because the first training camera always has things in view. */
 ted4_ray_point ted4_ray_point_at(const ted4_ray_options *o, int i)
 {
     const uint32_t seed = o->seed + 77;
-    ted4_ray_point p = { .camera = i % o->n_train };
-    ted4_ray_camera c;
-    ted4_ray_world w;
+    ted4_ray_point p;
     ted4_ray_sight s;
+    int attempt = 0;
 
-    p.frame = (int)(ray_hash(i, 0, 0, seed) % (uint32_t)o->n_frames);
-    ted4_ray_camera_train(&c, p.camera, o->n_train, o->width, o->height);
-    ted4_ray_world_at(&w, o->scene, o->seed, p.frame, o->n_frames);
-    s = ted4_ray_look(&w, &c, (double)ray_random(i, 1, 0, seed) * o->width,
-                      (double)ray_random(i, 2, 0, seed) * o->height);
+    do {
+        s = random_sight(o, i, attempt++, &p);
+    } while (!isfinite(s.depth));
     ted4_ray_bytes(s.colour, p.rgb);
     p.point = v3_along(s.point,
                        v3(ray_random(i, 3, 0, seed) - 0.5f, ray_random(i, 4, 0, seed) - 0.5f,
                           ray_random(i, 5, 0, seed) - 0.5f),
                        2 * point_noise);
+    p.point = ted4_ray_point_stated(o, p.camera, p.point);
     return p;
 }
 
@@ -240,6 +269,8 @@ static int write_cameras(const ted4_ray_options *o, const char *folder, ted4_ray
             char name[TED4_RAY_NAME];
             const ted4_ray_file file = { name, ted4_ray_put_hypernerf_camera, number, frame };
 
+            if (!ted4_ray_is_taken(o, number, frame))
+                continue;
             ted4_ray_hypernerf_camera_name(o, number, frame, name);
             if (write_file(o, folder, &file, m) != 0)
                 return -1;
@@ -251,9 +282,11 @@ int ted4_ray_write(const ted4_ray_options *o, const char *folder, const ted4_par
                    ted4_ray_message *m)
 {
     const ted4_ray_file *const files = ted4_ray_layout_files(o->layout);
+    const ted4_ray_file truth = { truth_name, ted4_ray_put_truth, 0, 0 };
 
     m->text[0] = '\0';
-    if (make_folders(folder, m) != 0 || make_picture_folders(o, folder, m) != 0)
+    if (make_folders(folder, m) != 0 || make_picture_folders(o, folder, m) != 0 ||
+        remove_file(folder, truth_name, m) != 0)
         return -1;
     for (int i = 0; files[i].name != NULL; i++) {
         if (remove_file(folder, files[i].name, m) != 0)
@@ -264,6 +297,8 @@ int ted4_ray_write(const ted4_ray_options *o, const char *folder, const ted4_par
     if (o->layout == RAY_HYPERNERF && write_cameras(o, folder, m) != 0)
         return -1;
     if (o->video && make_videos(o, folder, m) != 0)
+        return -1;
+    if (ted4_ray_has_truth(o) && write_file(o, folder, &truth, m) != 0)
         return -1;
     for (int i = 0; files[i].name != NULL; i++) {
         if (write_file(o, folder, &files[i], m) != 0)

@@ -1,11 +1,12 @@
 /* ray_set.h - writes a scene as a folder in one of the layouts that the encoder reads.
- * Depends on ray_render.h and base/parallel.h. Used by ted4scene and the test.
+ * Depends on ray_render.h, ray_scene.h and base/parallel.h. Used by ted4scene and the tests.
  * SPDX-License-Identifier: BSD-2-Clause */
 #ifndef RAY_SET_H
 #define RAY_SET_H
 
 #include "base/parallel.h"
 #include "ray_render.h"
+#include "ray_scene.h"
 
 enum { TED4_RAY_POINTS = 4000, TED4_RAY_MAX_SIDE = 4096, TED4_RAY_MAX_COUNT = 1000 };
 
@@ -25,13 +26,22 @@ typedef struct {
     uint32_t seed;
     ted4_ray_layout layout;
     int      video;                     /* clips as lossless videos, made by ffmpeg, not as folders of frames */
+    int      hold;                      /* training cameras lack time hold / 2 of every hold; 0: none */
+    double   pose_error;                /* of training cameras, degrees, 0 to TED4_RAY_MOST_ERROR (ray_rig.h) */
+    double   tint;                      /* how much training cameras disagree in colour, 0 to TED4_RAY_MOST_TINT */
 } ted4_ray_options;
+
+#define TED4_RAY_MOST_ERROR 10.0
+#define TED4_RAY_MOST_TINT  2.0
+
+/* Seed 1, layout blender, the rest as the table of scenes has it. */
+ted4_ray_options ted4_ray_defaults(ted4_ray_scene s);
 
 typedef struct { char text[1200]; } ted4_ray_message;
 
-/* A point on a surface that a training camera sees at a frame. */
+/* A point on a surface that a training camera sees at a frame that is not held out. */
 typedef struct {
-    vec3    point;
+    vec3    point;              /* in the coordinates of the files */
     uint8_t rgb[3];
     int     camera, frame;
 } ted4_ray_point;
@@ -39,7 +49,7 @@ typedef struct {
 /* Point i of the initial cloud; o and i decide it. */
 ted4_ray_point ted4_ray_point_at(const ted4_ray_options *o, int i);
 
-/* Pictures, cameras, points; last the file without which a folder is not taken for a scene. Makes
+/* Pictures, cameras, points; truth.json where there is something to say (ray_truth.h); last the file without which a folder is not taken for a scene. Makes
  * folders as needed, and replaces files of the same names. 0, or -1 with *m filled. The bytes do not
  * depend on p (those of videos are ffmpeg's). */
 int ted4_ray_write(const ted4_ray_options *o, const char *folder, const ted4_parallel *p,

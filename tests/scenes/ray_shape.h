@@ -25,6 +25,7 @@ typedef struct {
     vec3  pos;
     float bend, twist;          /* bar only */
     ted4_ray_texture_kind texture;
+    vec3  skin;                 /* added to material coordinates: pieces of one thing share a pattern */
     vec3  colour[3];            /* linear */
     float gloss;                /* specular weight */
     vec3  low, high;            /* bar only: local bounding box; set by ted4_ray_bound */

@@ -4,15 +4,8 @@
 
 #include <stddef.h>
 
+#include "ray_lab.h"
 #include "ray_texture.h"
-
-const char *ted4_ray_scene_name(ted4_ray_scene s)
-{
-    static const char *const name[RAY_SCENES] = { "still", "turn", "occluder", "pop", "bend",
-                                                "fair" };
-
-    return name[s];
-}
 
 double ted4_ray_time(int frame, int n_frames)
 {
@@ -21,11 +14,13 @@ double ted4_ray_time(int frame, int n_frames)
 
 void ted4_ray_world_empty(ted4_ray_world *w, uint32_t seed)
 {
+    w->room = RAY_PAPERED;
     w->room_low = v3(-2.7f, -4.2f, 0);
     w->room_high = v3(2.7f, 2.1f, 3.2f);
     w->lamp = v3(-2.3f, -1.7f, 2.7f);
     w->lamp_x = v3(0.24f, 0, 0);
     w->lamp_y = v3(0, 0.24f, 0);
+    w->lamp_power = 12.0f;
     w->n = 0;
     w->seed = seed;
 }
@@ -42,7 +37,7 @@ ted4_ray_object *ted4_ray_add(ted4_ray_world *w, const ted4_ray_object *o)
     return mine;
 }
 
-static void rotation(float m[9], int axis, double turns)
+void ted4_ray_turn(float m[9], int axis, double turns)
 {
     const float c = (float)ted4_ray_cos(turns), s = (float)ted4_ray_sin(turns);
     const int a = (axis + 1) % 3, b = (axis + 2) % 3;
@@ -54,15 +49,15 @@ static void rotation(float m[9], int axis, double turns)
     m[b * 3 + a] = s;
 }
 
-static ted4_ray_object solid(ted4_ray_kind kind, vec3 size, vec3 pos, double turns)
+ted4_ray_object ted4_ray_solid(ted4_ray_kind kind, vec3 size, vec3 pos, double turns)
 {
     ted4_ray_object o = { .kind = kind, .size = size, .pos = pos };
 
-    rotation(o.rot, 2, turns);
+    ted4_ray_turn(o.rot, 2, turns);
     return o;
 }
 
-static void dress(ted4_ray_object *o, ted4_ray_texture_kind texture, vec3 a, vec3 b, vec3 c)
+void ted4_ray_dress(ted4_ray_object *o, ted4_ray_texture_kind texture, vec3 a, vec3 b, vec3 c)
 {
     o->texture = texture;
     o->colour[0] = a;
@@ -74,59 +69,59 @@ static void dress(ted4_ray_object *o, ted4_ray_texture_kind texture, vec3 a, vec
 static void furniture(ted4_ray_world *w)
 {
     const vec3 cream = ray_paint(.95f, .90f, .80f), ink = ray_paint(.16f, .18f, .24f);
-    ted4_ray_object o = solid(RAY_CYLINDER, v3(.26f, .26f, .85f), v3(-1.55f, 1.3f, .85f), 0);
+    ted4_ray_object o =
+        ted4_ray_solid(RAY_CYLINDER, v3(.26f, .26f, .85f), v3(-1.55f, 1.3f, .85f), 0);
 
-    dress(&o, RAY_SPIRAL, ray_paint(.90f, .86f, .78f), ray_paint(.22f, .46f, .50f),
-          ray_paint(.80f, .50f, .20f));
+    ted4_ray_dress(&o, RAY_SPIRAL, ray_paint(.90f, .86f, .78f), ray_paint(.22f, .46f, .50f),
+                   ray_paint(.80f, .50f, .20f));
     ted4_ray_add(w, &o);
 
-    o = solid(RAY_BOX, v3(.42f, .42f, .36f), v3(1.55f, 1.15f, .36f), 0.06);
-    dress(&o, RAY_WOOD, ray_paint(.86f, .66f, .42f), ray_paint(.50f, .30f, .18f), ink);
+    o = ted4_ray_solid(RAY_BOX, v3(.42f, .42f, .36f), v3(1.55f, 1.15f, .36f), 0.06);
+    ted4_ray_dress(&o, RAY_WOOD, ray_paint(.86f, .66f, .42f), ray_paint(.50f, .30f, .18f), ink);
     ted4_ray_add(w, &o);
 
-    o = solid(RAY_SPHERE, v3(.32f, .32f, .32f), v3(1.52f, 1.13f, 1.04f), 0);
-    dress(&o, RAY_MARBLE, ray_paint(.30f, .52f, .38f), ray_paint(.90f, .94f, .86f), ink);
+    o = ted4_ray_solid(RAY_SPHERE, v3(.32f, .32f, .32f), v3(1.52f, 1.13f, 1.04f), 0);
+    ted4_ray_dress(&o, RAY_MARBLE, ray_paint(.30f, .52f, .38f), ray_paint(.90f, .94f, .86f), ink);
     o.gloss = 0.25f;
     ted4_ray_add(w, &o);
 
-    o = solid(RAY_SPHERE, v3(.27f, .27f, .27f), v3(-1.35f, -.55f, .27f), 0);
-    dress(&o, RAY_DOTS, cream, ray_paint(.82f, .20f, .22f), ray_paint(.14f, .30f, .62f));
+    o = ted4_ray_solid(RAY_SPHERE, v3(.27f, .27f, .27f), v3(-1.35f, -.55f, .27f), 0);
+    ted4_ray_dress(&o, RAY_DOTS, cream, ray_paint(.82f, .20f, .22f), ray_paint(.14f, .30f, .62f));
     o.gloss = 0.2f;
     ted4_ray_add(w, &o);
 
-    o = solid(RAY_CYLINDER, v3(.31f, .31f, .19f), v3(1.25f, -.62f, .19f), 0.1);
-    dress(&o, RAY_CHECKER, cream, ray_paint(.62f, .16f, .30f), ink);
+    o = ted4_ray_solid(RAY_CYLINDER, v3(.31f, .31f, .19f), v3(1.25f, -.62f, .19f), 0.1);
+    ted4_ray_dress(&o, RAY_CHECKER, cream, ray_paint(.62f, .16f, .30f), ink);
     ted4_ray_add(w, &o);
 
-    o = solid(RAY_BOX, v3(.15f, .15f, .15f), v3(1.22f, -.64f, .53f), 0.09);
-    dress(&o, RAY_FACES, cream, cream, cream);
+    o = ted4_ray_solid(RAY_BOX, v3(.15f, .15f, .15f), v3(1.22f, -.64f, .53f), 0.09);
+    ted4_ray_dress(&o, RAY_FACES, cream, cream, cream);
     ted4_ray_add(w, &o);
 }
 
-/* A painted box with a ball on an arm, all turning together on a drum. */
-static void carousel(ted4_ray_world *w, double turns)
+void ted4_ray_carousel(ted4_ray_world *w, double turns)
 {
     const vec3 cream = ray_paint(.95f, .91f, .82f), ink = ray_paint(.15f, .16f, .22f);
     const vec3 at = v3(0, .1f, 0);
     ted4_ray_object o =
-        solid(RAY_CYLINDER, v3(.74f, .74f, .09f), v3_add(at, v3(0, 0, .09f)), turns);
+        ted4_ray_solid(RAY_CYLINDER, v3(.74f, .74f, .09f), v3_add(at, v3(0, 0, .09f)), turns);
 
-    dress(&o, RAY_WOOD, ray_paint(.70f, .62f, .56f), ray_paint(.36f, .30f, .30f), ink);
+    ted4_ray_dress(&o, RAY_WOOD, ray_paint(.70f, .62f, .56f), ray_paint(.36f, .30f, .30f), ink);
     ted4_ray_add(w, &o);
 
-    o = solid(RAY_BOX, v3(.40f, .34f, .42f), v3_add(at, v3(0, 0, .6f)), turns);
-    dress(&o, RAY_FACES, cream, cream, cream);
+    o = ted4_ray_solid(RAY_BOX, v3(.40f, .34f, .42f), v3_add(at, v3(0, 0, .6f)), turns);
+    ted4_ray_dress(&o, RAY_FACES, cream, cream, cream);
     ted4_ray_add(w, &o);
 
-    o = solid(RAY_CYLINDER, v3(.07f, .07f, .2f), v3_add(at, v3(0, 0, 1.2f)), turns);
+    o = ted4_ray_solid(RAY_CYLINDER, v3(.07f, .07f, .2f), v3_add(at, v3(0, 0, 1.2f)), turns);
     o.pos = v3_add(v3_add(at, v3(0, 0, 1.2f)), ray_rotate(o.rot, v3(.24f, .14f, 0)));
-    dress(&o, RAY_SPIRAL, cream, ink, ink);
+    ted4_ray_dress(&o, RAY_SPIRAL, cream, ink, ink);
     ted4_ray_add(w, &o);
 
-    o = solid(RAY_SPHERE, v3(.23f, .23f, .23f), v3(0, 0, 0), turns);
+    o = ted4_ray_solid(RAY_SPHERE, v3(.23f, .23f, .23f), v3(0, 0, 0), turns);
     o.pos = v3_add(v3_add(at, v3(0, 0, 1.52f)), ray_rotate(o.rot, v3(.24f, .14f, 0)));
-    dress(&o, RAY_BEACH, ray_paint(.95f, .78f, .22f), ray_paint(.20f, .42f, .70f),
-          ray_paint(.85f, .25f, .25f));
+    ted4_ray_dress(&o, RAY_BEACH, ray_paint(.95f, .78f, .22f), ray_paint(.20f, .42f, .70f),
+                   ray_paint(.85f, .25f, .25f));
     o.gloss = 0.2f;
     ted4_ray_add(w, &o);
 }
@@ -135,16 +130,16 @@ static void carousel(ted4_ray_world *w, double turns)
 static void occluder(ted4_ray_world *w, double t)
 {
     const float r = 0.36f, x = -1.28f * (float)ted4_ray_cos(0.94 * t);
-    ted4_ray_object o = solid(RAY_BOX, v3(.52f, .09f, .56f), v3(0, -.35f, .56f), 0.01);
+    ted4_ray_object o = ted4_ray_solid(RAY_BOX, v3(.52f, .09f, .56f), v3(0, -.35f, .56f), 0.01);
 
-    dress(&o, RAY_BRICK, ray_paint(.44f, .52f, .60f), ray_paint(.68f, .72f, .76f),
-          ray_paint(.90f, .88f, .82f));
+    ted4_ray_dress(&o, RAY_BRICK, ray_paint(.44f, .52f, .60f), ray_paint(.68f, .72f, .76f),
+                   ray_paint(.90f, .88f, .82f));
     ted4_ray_add(w, &o);
 
-    o = solid(RAY_SPHERE, v3(r, r, r), v3(x, .45f, r), 0);
-    rotation(o.rot, 1, (double)(x / r) / (2 * RAY_PI));
-    dress(&o, RAY_BEACH, ray_paint(.96f, .93f, .86f), ray_paint(.88f, .28f, .22f),
-          ray_paint(.18f, .36f, .68f));
+    o = ted4_ray_solid(RAY_SPHERE, v3(r, r, r), v3(x, .45f, r), 0);
+    ted4_ray_turn(o.rot, 1, (double)(x / r) / (2 * RAY_PI));
+    ted4_ray_dress(&o, RAY_BEACH, ray_paint(.96f, .93f, .86f), ray_paint(.88f, .28f, .22f),
+                   ray_paint(.18f, .36f, .68f));
     o.gloss = 0.2f;
     ted4_ray_add(w, &o);
 }
@@ -155,21 +150,21 @@ static void pop(ted4_ray_world *w, int frame, int n_frames)
 {
     const vec3 cream = ray_paint(.95f, .91f, .82f), ink = ray_paint(.15f, .16f, .22f);
     const int part = 16 * frame / n_frames;
-    ted4_ray_object o = solid(RAY_SPHERE, v3(.42f, .42f, .42f), v3(.05f, -.3f, .42f), 0.1);
+    ted4_ray_object o = ted4_ray_solid(RAY_SPHERE, v3(.42f, .42f, .42f), v3(.05f, -.3f, .42f), 0.1);
 
-    dress(&o, RAY_DOTS, ray_paint(.96f, .76f, .22f), ray_paint(.14f, .40f, .36f),
-          ray_paint(.80f, .22f, .30f));
+    ted4_ray_dress(&o, RAY_DOTS, ray_paint(.96f, .76f, .22f), ray_paint(.14f, .40f, .36f),
+                   ray_paint(.80f, .22f, .30f));
     o.gloss = 0.2f;
     if (part >= 5 && part < 11)
         ted4_ray_add(w, &o);
 
-    o = solid(RAY_BOX, v3(.34f, .34f, .34f), v3(-.62f, .45f, .34f), 0.07);
-    dress(&o, RAY_FACES, cream, cream, cream);
+    o = ted4_ray_solid(RAY_BOX, v3(.34f, .34f, .34f), v3(-.62f, .45f, .34f), 0.07);
+    ted4_ray_dress(&o, RAY_FACES, cream, cream, cream);
     if (part < 8)
         ted4_ray_add(w, &o);
 
-    o = solid(RAY_CYLINDER, v3(.24f, .24f, .62f), v3(.72f, .42f, .62f), 0);
-    dress(&o, RAY_CHECKER, cream, ray_paint(.30f, .26f, .58f), ink);
+    o = ted4_ray_solid(RAY_CYLINDER, v3(.24f, .24f, .62f), v3(.72f, .42f, .62f), 0);
+    ted4_ray_dress(&o, RAY_CHECKER, cream, ray_paint(.30f, .26f, .58f), ink);
     if (part >= 4)
         ted4_ray_add(w, &o);
 }
@@ -178,15 +173,15 @@ static void pop(ted4_ray_world *w, int frame, int n_frames)
 static void bend(ted4_ray_world *w, double t)
 {
     const vec3 ink = ray_paint(.17f, .18f, .24f);
-    ted4_ray_object o = solid(RAY_CYLINDER, v3(.36f, .36f, .12f), v3(0, .1f, .12f), 0);
+    ted4_ray_object o = ted4_ray_solid(RAY_CYLINDER, v3(.36f, .36f, .12f), v3(0, .1f, .12f), 0);
 
-    dress(&o, RAY_WOOD, ray_paint(.80f, .52f, .36f), ray_paint(.52f, .28f, .20f), ink);
+    ted4_ray_dress(&o, RAY_WOOD, ray_paint(.80f, .52f, .36f), ray_paint(.52f, .28f, .20f), ink);
     ted4_ray_add(w, &o);
 
-    o = solid(RAY_BAR, v3(.2f, .2f, 1.5f), v3(0, .1f, .22f), 0.05);
+    o = ted4_ray_solid(RAY_BAR, v3(.2f, .2f, 1.5f), v3(0, .1f, .22f), 0.05);
     o.bend = 0.82f * (float)ted4_ray_sin(0.9 * t + 0.06);
     o.twist = 0.16f * (float)ted4_ray_sin(0.55 * t);
-    dress(&o, RAY_RIBBON, ray_paint(.24f, .62f, .58f), ray_paint(.90f, .42f, .24f), ink);
+    ted4_ray_dress(&o, RAY_RIBBON, ray_paint(.24f, .62f, .58f), ray_paint(.90f, .42f, .24f), ink);
     ted4_ray_add(w, &o);
 }
 
@@ -196,17 +191,17 @@ static void fair(ted4_ray_world *w, int frame, int n_frames)
 {
     const vec3 cream = ray_paint(.95f, .91f, .82f);
     const int part = 16 * frame / n_frames;
-    ted4_ray_object o = solid(RAY_SPHERE, v3(.3f, .3f, .3f), v3(-.8f, -.2f, 1.2f), 0.1);
+    ted4_ray_object o = ted4_ray_solid(RAY_SPHERE, v3(.3f, .3f, .3f), v3(-.8f, -.2f, 1.2f), 0.1);
 
-    carousel(w, 0.04 + 0.33 * ted4_ray_time(frame, n_frames));
-    dress(&o, RAY_DOTS, ray_paint(.96f, .76f, .22f), ray_paint(.14f, .40f, .36f),
-          ray_paint(.80f, .22f, .30f));
+    ted4_ray_carousel(w, 0.04 + 0.33 * ted4_ray_time(frame, n_frames));
+    ted4_ray_dress(&o, RAY_DOTS, ray_paint(.96f, .76f, .22f), ray_paint(.14f, .40f, .36f),
+                   ray_paint(.80f, .22f, .30f));
     o.gloss = 0.2f;
     if (part >= 6 && part < 9)
         ted4_ray_add(w, &o);
 
-    o = solid(RAY_BOX, v3(.25f, .25f, .25f), v3(.42f, -1, .25f), 0.07);
-    dress(&o, RAY_FACES, cream, cream, cream);
+    o = ted4_ray_solid(RAY_BOX, v3(.25f, .25f, .25f), v3(.42f, -1, .25f), 0.07);
+    ted4_ray_dress(&o, RAY_FACES, cream, cream, cream);
     if (part < 8)
         ted4_ray_add(w, &o);
 }
@@ -219,7 +214,7 @@ void ted4_ray_world_at(ted4_ray_world *w, ted4_ray_scene s, uint32_t seed, int f
     furniture(w);
     switch (s) {
     case RAY_TURN:
-        carousel(w, 0.04 + 0.33 * t);
+        ted4_ray_carousel(w, 0.04 + 0.33 * t);
         break;
     case RAY_OCCLUDER:
         occluder(w, t);
@@ -234,8 +229,9 @@ void ted4_ray_world_at(ted4_ray_world *w, ted4_ray_scene s, uint32_t seed, int f
         fair(w, frame, n_frames);
         break;
     case RAY_STILL:
-    case RAY_SCENES:
-        carousel(w, 0.04);
+        ted4_ray_carousel(w, 0.04);
         break;
+    default:
+        ted4_ray_lab_at(w, s, frame, n_frames);
     }
 }

@@ -1,4 +1,4 @@
-/* ted4scene.c - command line: makes one of the project's own scenes (see ray_world.h) as a folder
+/* ted4scene.c - command line: makes one of the project's own scenes (see ray_scene.c) as a folder
  * of pictures with poses.
  * SPDX-License-Identifier: BSD-2-Clause */
 #include <dirent.h>
@@ -8,28 +8,37 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-#include "ray_set.h"
+#include "ray_rig.h"
 #include "ted4.h"
 
 enum { EXIT_FINE = 0, EXIT_TROUBLE = 3 };
 
 static const char usage[] =
     "usage: ted4scene NAME -o FOLDER [options]\n"
-    "Makes a small synthetic dynamic scene.\n"
-    "NAME: still, turn, occluder, pop, bend or fair\n"
+    "Makes a small synthetic dynamic scene. What is not given, and has no default here, is that of the\n"
+    "NAME in the list below.\n"
     "  -o FOLDER           where to; made if missing, must be empty without -f\n"
-    "  --size WxH          picture size, 8 to 4096 (160x120)\n"
-    "  --cameras N         training cameras, 1 to 1000 (12)\n"
-    "  --test-cameras N    test cameras, 0 to 1000 (2)\n"
-    "  --frames N          times, 1 to 1000 (16)\n"
+    "  --size WxH          picture size, 8 to 4096\n"
+    "  --cameras N         training cameras, 1 to 1000\n"
+    "  --test-cameras N    test cameras, 0 to 1000\n"
+    "  --frames N          times, 1 to 1000\n"
+    "  --hold N            training cameras lack time N/2 of every N, test cameras have it; 2 to\n"
+    "                      1000, 0: none\n"
+    "  --pose-error D      training cameras are stated turned by D degrees, and moved as far; 0 to 10\n"
+    "  --tint S            training cameras disagree in colour and exposure; 0 to 2\n"
+    "                      These three go with the layouts blender, nerfstudio and hypernerf, which\n"
+    "                      list what is held out; in others a NAME's hold is left out\n"
     "  --layout L          blender, nerfstudio, colmap, colmap-text, hypernerf, neu3d or\n"
     "                      calibration (blender)\n"
     "  --video             neu3d and calibration: lossless videos by ffmpeg, not frames\n"
-    "  --seed S            of textures and points, 32 bits (1)\n"
+    "  --seed S            of textures, points, errors and tints, 32 bits (1)\n"
     "  -j N                threads (all)\n"
     "  -f                  write into a folder that is not empty\n"
-    "  -h, -V              this help, the version\n";
+    "  -h, -V              this help, the version\n"
+    "truth.json in the folder says what is held out or disturbed.\n"
+    "NAMEs, with picture size, training + test cameras, times, hold:\n";
 
+/* What was not given is -1. */
 typedef struct {
     ted4_ray_options set;
     const char *folder;
@@ -89,6 +98,63 @@ static int size_of(const char *text, ted4_ray_options *o)
     return integer(x + 1, 8, TED4_RAY_MAX_SIDE, &o->height);
 }
 
+/* A number in [0, high]. */
+static int real(const char *text, double high, double *value)
+{
+    char *end;
+
+    *value = strtod(text, &end);
+    if (end == text || *end != '\0' || !(*value >= 0 && *value <= high))
+        return complain(text, "not a number in the range of its option (see -h)");
+    return EXIT_FINE;
+}
+
+/* "0", or "2" to "1000". */
+static int hold_of(const char *text, int *hold)
+{
+    const int status = integer(text, 0, TED4_RAY_MAX_COUNT, hold);
+
+    if (status == EXIT_FINE && *hold == 1)
+        return complain(text, "would hold out every time");
+    return status;
+}
+
+static void help(void)
+{
+    fputs(usage, stdout);
+    for (int s = 0; s < RAY_SCENES; s++) {
+        const ted4_ray_plan *const p = ted4_ray_plan_of((ted4_ray_scene)s);
+
+        printf("  %-8s  %s (%dx%d, %d + %d, %d, %d)\n", p->name, p->shows, p->width, p->height,
+               p->n_train, p->n_test, p->n_frames, p->hold);
+    }
+}
+
+/* Takes from the table what was not given. */
+static int fill(ted4_ray_options *o)
+{
+    const ted4_ray_options d = ted4_ray_defaults(o->scene);
+
+    const int lists = ted4_ray_has_lists(o->layout);
+
+    if (o->hold > 0 && !lists)
+        return complain("--hold", "goes with the layouts blender, nerfstudio and hypernerf");
+    if (o->width < 0) {
+        o->width = d.width;
+        o->height = d.height;
+    }
+    o->n_train = o->n_train < 0 ? d.n_train : o->n_train;
+    o->n_test = o->n_test < 0 ? d.n_test : o->n_test;
+    o->n_frames = o->n_frames < 0 ? d.n_frames : o->n_frames;
+    o->hold = o->hold < 0 ? d.hold : o->hold;
+    o->pose_error = o->pose_error < 0 ? d.pose_error : o->pose_error;
+    o->tint = o->tint < 0 ? d.tint : o->tint;
+    if ((o->pose_error > 0 || o->tint > 0) && !lists)
+        return complain("errors and tints", "go with the layouts blender, nerfstudio and hypernerf: "
+                        "others hold out pictures of disturbed cameras");
+    return EXIT_FINE;
+}
+
 static int scene_of(const char *name, ted4_ray_options *o)
 {
     for (int s = 0; s < RAY_SCENES; s++) {
@@ -97,7 +163,7 @@ static int scene_of(const char *name, ted4_ray_options *o)
             return EXIT_FINE;
         }
     }
-    return complain(name, "not one of still, turn, occluder, pop, bend, fair");
+    return complain(name, "not the name of a scene (see -h)");
 }
 
 static int layout_of(const char *name, ted4_ray_options *o)
@@ -138,6 +204,15 @@ static int option(command *c, int letter, const char *text)
     case 'n':
         status = integer(text, 1, TED4_RAY_MAX_COUNT, &c->set.n_frames);
         break;
+    case 'H':
+        status = hold_of(text, &c->set.hold);
+        break;
+    case 'p':
+        status = real(text, TED4_RAY_MOST_ERROR, &c->set.pose_error);
+        break;
+    case 'T':
+        status = real(text, TED4_RAY_MOST_TINT, &c->set.tint);
+        break;
     case 'l':
         status = layout_of(text, &c->set);
         break;
@@ -162,6 +237,9 @@ static int parse(int argc, char **argv, command *c)
                                            { "cameras", required_argument, NULL, 'c' },
                                            { "test-cameras", required_argument, NULL, 't' },
                                            { "frames", required_argument, NULL, 'n' },
+                                           { "hold", required_argument, NULL, 'H' },
+                                           { "pose-error", required_argument, NULL, 'p' },
+                                           { "tint", required_argument, NULL, 'T' },
                                            { "layout", required_argument, NULL, 'l' },
                                            { "video", no_argument, NULL, 'v' },
                                            { "seed", required_argument, NULL, 'r' },
@@ -172,7 +250,10 @@ static int parse(int argc, char **argv, command *c)
 
     while ((letter = getopt_long(argc, argv, "o:j:fhV", longs, NULL)) != -1) {
         if (letter == 'h' || letter == 'V') {
-            fputs(letter == 'h' ? usage : "ted4scene " TED4_VERSION "\n", stdout);
+            if (letter == 'h')
+                help();
+            else
+                puts("ted4scene " TED4_VERSION);
             return -1;
         }
         if (option(c, letter, optarg) != EXIT_FINE)
@@ -184,7 +265,9 @@ static int parse(int argc, char **argv, command *c)
         return complain("--video", "goes with the layouts neu3d and calibration");
     if (c->folder == NULL)
         return complain("-o", "give the folder to write (see -h)");
-    return scene_of(argv[optind], &c->set);
+    if (scene_of(argv[optind], &c->set) != EXIT_FINE)
+        return EXIT_TROUBLE;
+    return fill(&c->set);
 }
 
 /* Whether there is anything in folder; a folder that does not exist is empty. */
@@ -203,12 +286,14 @@ static int is_occupied(const char *folder)
 
 int main(int argc, char **argv)
 {
-    command c = { .set = { .width = 160,
-                           .height = 120,
-                           .n_train = 12,
-                           .n_test = 2,
-                           .n_frames = 16,
-                           .seed = 1 },
+    command c = { .set = { .width = -1,
+                           .n_train = -1,
+                           .n_test = -1,
+                           .n_frames = -1,
+                           .seed = 1,
+                           .hold = -1,
+                           .pose_error = -1,
+                           .tint = -1 },
                   .threads = omp_get_max_threads() };
     const ted4_parallel threads = { run_openmp, &c.threads };
     ted4_ray_message m;

@@ -1,0 +1,194 @@
+/* ray_rig.c - see ray_rig.h.
+ * SPDX-License-Identifier: BSD-2-Clause */
+#include "ray_rig.h"
+
+#include <string.h>
+
+/* Of tint 1, before the mean is taken off: exposure up to this share up or down, and at least half of
+ * it; gains of the channels; light that gets into another channel. In linear light. */
+static const double exposure = 0.4, gain = 0.12, leak = 0.03;
+
+/* Seeds of what is drawn for a camera. */
+enum { SEED_TURN = 301, SEED_MOVE = 302, SEED_TINT = 303 };
+
+static double draw(const ted4_ray_options *o, int number, int which, uint32_t seed)
+{
+    return (double)ray_random(number, which, 0, o->seed + seed);
+}
+
+/* ---- times ---- */
+
+int ted4_ray_has_lists(ted4_ray_layout l)
+{
+    return l == RAY_BLENDER || l == RAY_NERFSTUDIO || l == RAY_HYPERNERF;
+}
+
+int ted4_ray_is_held(const ted4_ray_options *o, int frame)
+{
+    return o->hold > 0 && ted4_ray_has_lists(o->layout) && frame % o->hold == o->hold / 2 &&
+           frame < o->n_frames - 1;
+}
+
+int ted4_ray_is_taken(const ted4_ray_options *o, int number, int frame)
+{
+    return number >= o->n_train || !ted4_ray_is_held(o, frame);
+}
+
+/* ---- colours ---- */
+
+/* Signs of the exposures are + - - + in turn, that they do not go with the heights of the cameras. */
+static void raw_tint(const ted4_ray_options *o, int number, double A[9])
+{
+    const double sign = (number + number / 2) % 2 == 0 ? 1 : -1;
+    const double e = 1 + o->tint * exposure * sign * (0.5 + 0.5 * draw(o, number, 9, SEED_TINT));
+
+    for (int i = 0; i < 9; i++) {
+        const double r = 2 * draw(o, number, i, SEED_TINT) - 1;
+        A[i] = e * (i % 4 == 0 ? 1 + o->tint * gain * r : o->tint * leak * r);
+    }
+}
+
+/* Matrices of the training cameras have the mean 1, so that test cameras, which have none, and the
+ * initial points show the scene's colours. */
+static void tint(const ted4_ray_options *o, int number, float colour[9])
+{
+    double A[9], B[9], mean[9] = { 0 };
+
+    if (o->tint == 0 || number >= o->n_train)
+        return;
+    raw_tint(o, number, A);
+    for (int k = 0; k < o->n_train && o->n_train > 1; k++) {
+        raw_tint(o, k, B);
+        for (int i = 0; i < 9; i++)
+            mean[i] += (B[i] - (i % 4 == 0 ? 1 : 0)) / o->n_train;
+    }
+    for (int i = 0; i < 9; i++)
+        colour[i] = (float)(A[i] - mean[i]);
+}
+
+/* ---- poses ---- */
+
+/* Places on the arc; the training cameras take those from first on. */
+static int arc_of(const ted4_ray_options *o, int *first)
+{
+    const int places = ted4_ray_plan_of(o->scene)->places;
+
+    *first = places > o->n_train ? (places - o->n_train) / 2 : 0;
+    return places > o->n_train ? places : o->n_train;
+}
+
+int ted4_ray_is_blind(const ted4_ray_options *o, int number)
+{
+    return ted4_ray_plan_of(o->scene)->turned_away && number == o->n_train - 1 && number > 0;
+}
+
+/* Looks the other way: half a turn about its own up axis. */
+static void turn_away(ted4_ray_camera *c)
+{
+    for (int i = 0; i < 3; i++) {
+        c->matrix[i][0] = -c->matrix[i][0];
+        c->matrix[i][2] = -c->matrix[i][2];
+    }
+}
+
+void ted4_ray_camera_of(const ted4_ray_options *o, int number, ted4_ray_camera *c)
+{
+    int first;
+    const int places = arc_of(o, &first);
+
+    if (number >= o->n_train)
+        ted4_ray_camera_test(c, number - o->n_train, o->n_test, places, o->width, o->height);
+    else
+        ted4_ray_camera_train(c, first + number, places, o->width, o->height);
+    if (ted4_ray_is_blind(o, number))
+        turn_away(c);
+    tint(o, number, c->colour);
+}
+
+/* A vector of length r in a random direction, even over the sphere. */
+static void random_vector(const ted4_ray_options *o, int number, uint32_t seed, double r, double v[3])
+{
+    const double z = 2 * draw(o, number, 0, seed) - 1, side = sqrt(1 - z * z);
+    const double turns = draw(o, number, 1, seed);
+
+    v[0] = r * side * ted4_ray_cos(turns);
+    v[1] = r * side * ted4_ray_sin(turns);
+    v[2] = r * z;
+}
+
+static void centred(const ted4_ray_options *o, int number, uint32_t seed, double r, double v[3])
+{
+    double other[3];
+
+    random_vector(o, number, seed, r, v);
+    for (int k = 0; k < o->n_train && o->n_train > 1; k++) {
+        random_vector(o, k, seed, r, other);
+        for (int i = 0; i < 3; i++)
+            v[i] -= other[i] / o->n_train;
+    }
+}
+
+void ted4_ray_pose_error(const ted4_ray_options *o, int number, double turn[3], double move[3])
+{
+    const double angle = o->pose_error * RAY_PI / 180;
+
+    centred(o, number, SEED_TURN, angle, turn);
+    centred(o, number, SEED_MOVE, angle * ted4_ray_radius, move);
+}
+
+/* v turned by the rotation vector, in world axes (Rodrigues). */
+static void rotate(const double turn[3], double v[3])
+{
+    const double angle = sqrt(turn[0] * turn[0] + turn[1] * turn[1] + turn[2] * turn[2]);
+
+    if (angle == 0)
+        return;
+    const double c = ted4_ray_cos(angle / (2 * RAY_PI)), s = ted4_ray_sin(angle / (2 * RAY_PI));
+    const double k[3] = { turn[0] / angle, turn[1] / angle, turn[2] / angle };
+    const double along = (k[0] * v[0] + k[1] * v[1] + k[2] * v[2]) * (1 - c);
+    const double cross[3] = { k[1] * v[2] - k[2] * v[1], k[2] * v[0] - k[0] * v[2],
+                              k[0] * v[1] - k[1] * v[0] };
+    for (int i = 0; i < 3; i++)
+        v[i] = c * v[i] + s * cross[i] + along * k[i];
+}
+
+void ted4_ray_camera_stated(const ted4_ray_options *o, int number, ted4_ray_camera *c)
+{
+    const ted4_ray_plan *const plan = ted4_ray_plan_of(o->scene);
+    double turn[3] = { 0, 0, 0 }, move[3] = { 0, 0, 0 };
+
+    ted4_ray_camera_of(o, number, c);
+    if (o->pose_error > 0 && number < o->n_train)
+        ted4_ray_pose_error(o, number, turn, move);
+    for (int j = 0; j < 3; j++) {
+        double axis[3] = { c->matrix[0][j], c->matrix[1][j], c->matrix[2][j] };
+        rotate(turn, axis);
+        for (int i = 0; i < 3; i++)
+            c->matrix[i][j] = axis[i];
+    }
+    for (int i = 0; i < 3; i++)
+        c->matrix[i][3] = plan->scale * (c->matrix[i][3] + move[i]) + plan->shift[i];
+}
+
+vec3 ted4_ray_point_stated(const ted4_ray_options *o, int number, vec3 p)
+{
+    const ted4_ray_plan *const plan = ted4_ray_plan_of(o->scene);
+    const double point[3] = { (double)p.x, (double)p.y, (double)p.z };
+    double q[3];
+    ted4_ray_camera is, stated;
+
+    ted4_ray_camera_of(o, number, &is);
+    ted4_ray_camera_stated(o, number, &stated);
+    if (memcmp(is.matrix, stated.matrix, sizeof is.matrix) == 0)
+        return p;
+    for (int i = 0; i < 3; i++)
+        q[i] = stated.matrix[i][3];
+    for (int j = 0; j < 3; j++) {
+        double along = 0;
+        for (int k = 0; k < 3; k++)
+            along += is.matrix[k][j] * (point[k] - is.matrix[k][3]);
+        for (int i = 0; i < 3; i++)
+            q[i] += plan->scale * along * stated.matrix[i][j];
+    }
+    return v3((float)q[0], (float)q[1], (float)q[2]);
+}

@@ -1,0 +1,437 @@
+/* test_watch.c - train/watch.c and train/gradients.c: what goes wrong is found when it happens and named, training goes on from the last good state with
+ * smaller steps, three times; a training that goes well never notices. Files and logs of a program that went back: test_run_log.c.
+ * SPDX-License-Identifier: BSD-2-Clause */
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <cmocka.h>
+
+#include "ball_trainer.h"
+#include "train/checkpoint.h"
+#include "train/gradients.h"
+
+/* States are kept at the beginning, at 250 and at the end of stage 1. */
+enum { STAGE1 = 400, INTEGER_FROM = 600, KEPT = 250, FRAMES = 5 };
+
+static tiny_folder  folder, still_folder;
+static ted4_dataset scene, still;
+
+static int set_up(void **state)
+{
+    (void)state;
+    ball_load(&folder, &scene, FRAMES, 1);
+    ball_load(&still_folder, &still, FRAMES, 0);
+    return 0;
+}
+
+static int tear_down(void **state)
+{
+    (void)state;
+    ted4_dataset_free(&scene);
+    ted4_dataset_free(&still);
+    tiny_free(&folder);
+    tiny_free(&still_folder);
+    return 0;
+}
+
+static void begin_at(ted4_trainer *t, uint64_t iteration)
+{
+    const ted4_train_options o = ball_options();
+
+    ball_begin(t, &o, &scene, NULL);
+    ball_train(t, iteration);
+}
+
+/* ---- the usual size ---- */
+
+static void test_scale(void **state)
+{
+    ted4_scale s = { 0 };
+
+    (void)state;
+    assert_true(ted4_scale_usual(&s) == 0 && ted4_scale_take(&s, 0) == 0 && s.n == 0);
+    for (int i = 0; i < 100; i++)
+        assert_true(ted4_scale_take(&s, i % 2 ? 3.0 : 1.0) == 0);
+    assert_true(s.n == 100 && s.peak == 0 && ted4_scale_usual(&s) > 0.7 && ted4_scale_usual(&s) < 4.3);
+    for (int i = 0; i < 300; i++)
+        (void)ted4_scale_take(&s, i % 20 ? 2.0 : 2e9);
+    assert_true(ted4_scale_usual(&s) > 1.9 && ted4_scale_usual(&s) < 2.1);
+    assert_true(fabs(ted4_scale_take(&s, 2e9) / 1e9 - 1) < 0.1 && s.peak > 9e8);
+    assert_true(ted4_scale_usual(&s) < 2.2);
+}
+
+/* ---- a training that goes well ---- */
+
+/* However often states are kept, the file is the same. */
+static void test_healthy(void **state)
+{
+    ted4_trainer t;
+    ball_file    plain, kept;
+
+    (void)state;
+    begin_at(&t, 0);
+    plain = ball_finish(&t);
+    assert_true(t.watch.state.rollbacks == 0 && t.watch.state.factor == 1 && t.watch.find.cause == NULL);
+    for (int k = 0; k < TED4_TERMS; k++) {
+        assert_true(t.watch.state.gradient[k].peak < 100);
+        assert_true((t.watch.norm[k] > 0) == (k != TED4_TERM_PRIOR && k != TED4_TERM_STEP));
+    }
+    ted4_trainer_finish(&t);
+    begin_at(&t, 0);
+    while (t.iteration < ted4_trainer_total(&t)) {
+        ted4_watch_forget(&t);
+        assert_int_equal(ted4_trainer_step(&t), 0);
+    }
+    kept = ball_finish(&t);
+    ted4_trainer_finish(&t);
+    ball_check_same(&plain, &kept);
+    free(plain.bytes);
+    free(kept.bytes);
+}
+
+/* ---- what is found ---- */
+
+/* The next step goes back to a state, because of that. */
+static void expect_back(ted4_trainer *t, uint64_t to, const char *cause, const char *term, int64_t anchor)
+{
+    const ted4_find *f = &t->watch.find;
+    const uint64_t   at = t->iteration, rollbacks = t->watch.state.rollbacks;
+    const double     factor = t->watch.state.factor;
+    char             words[64];
+
+    if (ted4_trainer_step(t) != 0)
+        fail_msg("%s", t->message.text);
+    if (strcmp(f->cause, cause) != 0 || strcmp(f->term, term) != 0 || f->anchor != anchor || f->step != at)
+        fail_msg("%s, %s, %d, %d: %s", f->cause, f->term, (int)f->anchor, (int)f->step, t->message.text);
+    snprintf(words, sizeof words, "at step %d", (int)at);
+    assert_non_null(strstr(t->message.text, words));
+    assert_non_null(strstr(t->message.text, term));
+    assert_int_equal(t->iteration, to);
+    assert_true(t->watch.state.rollbacks == rollbacks + 1 && t->watch.state.factor == 0.5 * factor && !t->watch.found);
+}
+
+static void finish(ted4_trainer *t)
+{
+    ball_file f = ball_finish(t);
+
+    assert_true(f.size > 500 && t->progress.loss < 0.08);
+    free(f.bytes);
+    ted4_trainer_finish(t);
+}
+
+static void test_values(void **state)
+{
+    static const char *const names[] = { "value of feature", "value of scaling", "value of offset", "value of phi", "value of tau" };
+    ted4_trainer t;
+
+    (void)state;
+    for (int y = 0; y < TED4_TYPES; y++) {
+        begin_at(&t, y == TED4_FEATURE ? INTEGER_FROM + 5 : y == TED4_SCALING ? STAGE1 + 5 : KEPT + 3);
+        *ted4_cell(&t.anchors, TED4_ROW_VALUE, 40 + (size_t)y, t.layout.first[y] + 1) = y % 2 ? NAN : -INFINITY;
+        expect_back(&t, y < TED4_OFFSET ? STAGE1 : KEPT, "not finite", names[y], 40 + y);
+        finish(&t);
+    }
+    begin_at(&t, 90);
+    *ted4_cell(&t.anchors, TED4_ROW_VALUE, 3, t.layout.temporal_logit) = NAN;
+    expect_back(&t, 0, "not finite", "value of masks", 3);
+    ball_train(&t, 299);
+    *ted4_cell(&t.anchors, TED4_ROW_POSITION, 64, 1) = NAN;
+    ball_train(&t, 300);
+    expect_back(&t, KEPT, "not finite", "value of position", 64);
+    assert_true(t.watch.state.factor == 0.25);
+    finish(&t);
+}
+
+/* Changes a gradient after a step, and has the watch look at it again. */
+static int look_again(ted4_trainer *t, size_t slot, int channel, size_t lane, float gradient)
+{
+    float rate[256] = { 0 };
+
+    ted4_schedule_rates(t, rate);
+    t->slots.gradient[slot][(size_t)channel * TED4_LANES + lane] = gradient;
+    ted4_gradients_slot(&t->layout, rate, t->slots.raw[slot], t->slots.gradient[slot], t->slots.squares + slot * (TED4_SLOT_TERMS + 1));
+    return ted4_watch_look(t, t->progress.last_loss, NULL, NULL);
+}
+
+static void expect_found(ted4_trainer *t, const char *cause, const char *term, size_t anchor)
+{
+    assert_true(t->watch.found && t->watch.find.anchor == (int64_t)anchor);
+    assert_string_equal(t->watch.find.cause, cause);
+    assert_string_equal(t->watch.find.term, term);
+}
+
+static void test_gradients(void **state)
+{
+    ted4_trainer t;
+
+    (void)state;
+    for (int stage2 = 0; stage2 < 2; stage2++) {
+        begin_at(&t, stage2 ? STAGE1 + 110 : KEPT + 20);
+
+        const int    offset = t.layout.first[TED4_OFFSET] + 5, phi = t.layout.first[TED4_PHI];
+        const size_t anchor = t.slots.block[2] * (size_t)TED4_LANES + 7, first = t.slots.block[0] * (size_t)TED4_LANES;
+        const float  usual = (float)ted4_scale_usual(&t.watch.state.gradient[TED4_OFFSET]);
+
+        assert_int_equal(look_again(&t, 2, offset, 7, 100 * usual), 0);
+        assert_true(t.watch.state.gradient[TED4_OFFSET].peak > 90 && t.watch.state.gradient[TED4_OFFSET].peak < 120);
+        assert_int_equal(look_again(&t, 2, offset, 7, -2e5f * usual), -1);
+        expect_found(&t, "exploded", "gradient of offset", anchor);
+        assert_int_equal(look_again(&t, 2, offset, 7, 1e30f), -1);
+        expect_found(&t, "exploded", "gradient of offset", anchor);
+        assert_int_equal(look_again(&t, 0, phi, 0, -INFINITY), -1);
+        expect_found(&t, "exploded", "gradient of offset", anchor);
+        assert_int_equal(look_again(&t, 2, offset, 7, 0), -1);
+        expect_found(&t, "not finite", "gradient of phi", first);
+        assert_int_equal(ted4_watch_recover(&t), 0);
+        assert_int_equal(t.iteration, stage2 ? STAGE1 : KEPT);
+        finish(&t);
+    }
+}
+
+/* The gradient of the bank's smoothness follows its values. */
+static void test_networks(void **state)
+{
+    ted4_trainer t;
+
+    (void)state;
+    begin_at(&t, KEPT + 20);
+    t.net[t.layout.bank + 2] = 1e12f;
+    assert_int_equal(ted4_trainer_step(&t), 0);
+    assert_string_equal(t.watch.find.cause, "exploded");
+    assert_int_equal(t.iteration, KEPT);
+    for (int which = 0; which < 2; which++) {
+        ball_train(&t, KEPT + 20);
+        t.net[which ? t.layout.bank + 2 : t.layout.netr + t.layout.shape.netr[TED4_NET_COLOUR].first] = NAN;
+        expect_back(&t, KEPT, "not finite", which ? "weight of bank" : "weight of heads", -1);
+    }
+    finish(&t);
+}
+
+/* ---- collapse and divergence ---- */
+
+/* Biases of a network's last layer. */
+static void set_biases(ted4_trainer *t, int net, size_t n, float value)
+{
+    const ted4_net_shape *s = &t->layout.shape.netr[net];
+    size_t                end = t->layout.netr + s->first;
+
+    for (int i = 0; i < s->n_layers; i++)
+        end += ((size_t)s->dim[i] + 1) * s->dim[i + 1];
+    for (size_t i = 1; i <= n; i++)
+        t->net[end - i] = value;
+}
+
+/* Steps until the watch goes back; how many. */
+static int steps_until_back(ted4_trainer *t)
+{
+    for (int i = 0; i < 60; i++) {
+        if (ted4_trainer_step(t) != 0)
+            fail_msg("%s", t->message.text);
+        if (t->watch.state.rollbacks > 0)
+            return i + 1;
+    }
+    return 0;
+}
+
+/* Everything is hidden by one thing: opacity of all offsets, spans that are over, extents of 2^-60. */
+static void test_collapse(void **state)
+{
+    static const char *const names[] = { "opacity", "activation", "scale" };
+
+    (void)state;
+    for (int which = 0; which < 3; which++) {
+        ted4_trainer t;
+
+        begin_at(&t, KEPT + 35);
+        for (size_t i = 0; which > 0 && i < t.anchors.n; i++)
+            for (int c = 0; c < (which == 1 ? 4 : 6); c++)
+                *ted4_cell(&t.anchors, TED4_ROW_VALUE, i, t.layout.first[which == 1 ? TED4_TAU : TED4_SCALING] + c) =
+                    which == 1 ? -9.0f : -60.0f;
+        if (which == 0)
+            set_biases(&t, TED4_NET_OPACITY, t.layout.head.n_offsets, -1000.0f);
+
+        const int steps = steps_until_back(&t);
+
+        if (steps != 32 || strcmp(t.watch.find.term, names[which]) != 0)
+            fail_msg("%d steps: %s", steps, t.message.text);
+        assert_string_equal(t.watch.find.cause, "collapsed");
+        assert_true(t.watch.find.anchor >= 0 && t.iteration == KEPT);
+        assert_true(ted4_watch_calm(&t));
+        finish(&t);
+    }
+}
+
+/* Everything turns white. */
+static void test_divergence(void **state)
+{
+    ted4_trainer t;
+
+    (void)state;
+    begin_at(&t, STAGE1 - 40);
+    set_biases(&t, TED4_NET_COLOUR, 3u * t.layout.head.n_offsets, 1000.0f);
+    assert_int_equal(ted4_trainer_step(&t), 0);
+    assert_false(ted4_watch_calm(&t));
+    assert_int_equal(steps_until_back(&t), 31);
+    assert_string_equal(t.watch.find.cause, "diverged");
+    assert_string_equal(t.watch.find.term, "loss");
+    assert_int_equal(t.iteration, KEPT);
+    finish(&t);
+}
+
+static void test_few_anchors(void **state)
+{
+    ted4_trainer t;
+
+    (void)state;
+    begin_at(&t, KEPT);
+    assert_int_equal(ted4_watch_anchors(&t, 8 * t.anchors.n), 0);
+    assert_int_equal(ted4_watch_anchors(&t, 8 * t.anchors.n + 1), -1);
+    assert_string_equal(t.watch.find.cause, "collapsed");
+    assert_string_equal(t.watch.find.term, "anchors");
+    ted4_trainer_finish(&t);
+}
+
+/* ---- what is done ---- */
+
+/* All rates are smaller. */
+static void test_smaller(void **state)
+{
+    ted4_trainer t;
+    float        before[256] = { 0 }, after[256] = { 0 };
+
+    (void)state;
+    begin_at(&t, KEPT);
+    ted4_schedule_rates(&t, before);
+    ball_train(&t, KEPT + 1);
+
+    const float weight = t.net[t.layout.netr];
+
+    ted4_trainer_finish(&t);
+    begin_at(&t, KEPT + 30);
+    t.net[t.layout.netr] = NAN;
+    expect_back(&t, KEPT, "not finite", "weight of motion", -1);
+    ted4_schedule_rates(&t, after);
+    for (int c = 0; c < t.layout.n_channels; c++)
+        assert_true(after[c] == 0.5f * before[c]);
+
+    const float start = t.net[t.layout.netr];
+
+    ball_train(&t, KEPT + 1);
+    assert_true(weight != start && fabsf((t.net[t.layout.netr] - start) / (weight - start) - 0.5f) < 0.01f);
+    ted4_trainer_finish(&t);
+}
+
+/* A state from before compression changed the layout. */
+static void test_other_layout(void **state)
+{
+    ted4_train_options o = ball_options();
+    ted4_trainer       t;
+
+    (void)state;
+    ball_set(&o, "linear_scale=1");
+    ball_begin(&t, &o, &still, NULL);
+    ball_train(&t, STAGE1 - 1);
+    for (size_t i = 0; i < t.anchors.n; i++)
+        *ted4_cell(&t.anchors, TED4_ROW_VALUE, i, t.layout.temporal_logit) = -10.0f;
+    ball_train(&t, STAGE1 + 5);
+    assert_int_equal(t.layout.head.motion, TED4_MOTION_NONE);
+    t.net[t.layout.netr] = NAN;
+    expect_back(&t, STAGE1, "not finite", "weight of heads", -1);
+    assert_true(t.layout.head.motion == TED4_MOTION_BANK && !t.stage2);
+    finish(&t);
+}
+
+/* After three times it is over; the checkpoint still leads where it led. */
+static void test_three_times(void **state)
+{
+    const ted4_train_options o = ball_options();
+    ted4_trainer t;
+    ball_file    whole, again;
+    char         path[512];
+
+    (void)state;
+    snprintf(path, sizeof path, "%s", tiny_path(&folder, "checkpoint"));
+    begin_at(&t, KEPT + 10);
+    assert_int_equal(ted4_checkpoint_save(&t, path), 0);
+    whole = ball_finish(&t);
+    ted4_trainer_finish(&t);
+
+    begin_at(&t, KEPT + 10);
+    for (int i = 0; i < TED4_ROLLBACKS; i++) {
+        ball_train(&t, KEPT + 10 + (uint64_t)i);
+        *ted4_cell(&t.anchors, TED4_ROW_VALUE, 9, 0) = NAN;
+        assert_int_equal(ted4_checkpoint_save(&t, path), -1);
+        expect_back(&t, KEPT, "not finite", "value of feature", 9);
+    }
+    ball_train(&t, KEPT + 5);
+    *ted4_cell(&t.anchors, TED4_ROW_VALUE, 9, 0) = NAN;
+    assert_int_equal(ted4_trainer_step(&t), -1);
+    assert_true(t.watch.found && t.iteration == KEPT + 5);
+    assert_non_null(strstr(t.message.text, "value of feature of anchor 9 is not finite at step 255; learning rates were made smaller three times"));
+    ted4_trainer_finish(&t);
+
+    ball_begin(&t, &o, &scene, NULL);
+    assert_int_equal(ted4_checkpoint_load(&t, path), 0);
+    again = ball_finish(&t);
+    ted4_trainer_finish(&t);
+    ball_check_same(&whole, &again);
+    free(whole.bytes);
+    free(again.bytes);
+}
+
+/* From step 320 to the end, with a failure at 340 that goes back beyond 320. */
+static ball_file fail_again(ted4_trainer *t)
+{
+    ball_train(t, 340);
+    t->net[t->layout.bank] = NAN;
+    expect_back(t, KEPT, "not finite", "weight of bank", -1);
+    assert_true(t->watch.state.factor == 0.25);
+    return ball_finish(t);
+}
+
+/* A checkpoint holds what a later failure goes back to. */
+static void test_resumed(void **state)
+{
+    const ted4_train_options o = ball_options();
+    ted4_trainer t;
+    ball_file    whole, again, calm;
+    char         path[512];
+
+    (void)state;
+    snprintf(path, sizeof path, "%s", tiny_path(&folder, "checkpoint"));
+    begin_at(&t, 0);
+    calm = ball_finish(&t);
+    ted4_trainer_finish(&t);
+    begin_at(&t, 300);
+    t.net[t.layout.bank] = NAN;
+    expect_back(&t, KEPT, "not finite", "weight of bank", -1);
+    ball_train(&t, 320);
+    assert_int_equal(ted4_checkpoint_save(&t, path), 0);
+    whole = fail_again(&t);
+    ted4_trainer_finish(&t);
+
+    ball_begin(&t, &o, &scene, NULL);
+    if (ted4_checkpoint_load(&t, path) != 0)
+        fail_msg("%s", t.message.text);
+    assert_true(t.iteration == 320 && t.watch.state.rollbacks == 1 && t.watch.good.bytes != NULL);
+    again = fail_again(&t);
+    ted4_trainer_finish(&t);
+    ball_check_same(&whole, &again);
+    assert_true(calm.size != whole.size || memcmp(calm.bytes, whole.bytes, calm.size) != 0);
+    free(calm.bytes);
+    free(whole.bytes);
+    free(again.bytes);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(test_scale),        cmocka_unit_test(test_healthy),      cmocka_unit_test(test_values),
+        cmocka_unit_test(test_gradients),    cmocka_unit_test(test_networks),     cmocka_unit_test(test_collapse),
+        cmocka_unit_test(test_divergence),   cmocka_unit_test(test_few_anchors),  cmocka_unit_test(test_smaller),
+        cmocka_unit_test(test_other_layout), cmocka_unit_test(test_three_times),  cmocka_unit_test(test_resumed),
+    };
+
+    return cmocka_run_group_tests_name("watch", tests, set_up, tear_down);
+}
