@@ -106,6 +106,15 @@ int ted4_colour_has(const ted4_colour *c, uint32_t camera)
     return camera < c->n_cameras && c->corrected[camera];
 }
 
+int ted4_colour_finite(const ted4_colour *c)
+{
+    for (size_t i = 0; i < c->n_cameras; i++)
+        for (int k = 0; k < N; k++)
+            if (!isfinite(c->value[i][k]))
+                return 0;
+    return 1;
+}
+
 typedef struct {
     const float *image, *map;
     float       *to;            /* apply: the corrected picture; backward: the gradient, in place */

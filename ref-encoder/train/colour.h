@@ -47,6 +47,9 @@ int  ted4_colour_invert(const float *map, double inverse[9]);
 /* Is this camera corrected? */
 int  ted4_colour_has(const ted4_colour *c, uint32_t camera);
 
+/* Are all maps? */
+int ted4_colour_finite(const ted4_colour *c);
+
 /* The corrected picture, planar [3][pixels] as image; valid until the next call. */
 const float *ted4_colour_apply(ted4_colour *c, uint32_t camera, const float *image, size_t pixels, const ted4_parallel *p);
 

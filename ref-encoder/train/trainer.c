@@ -179,5 +179,5 @@ int ted4_trainer_check(ted4_trainer *t, int anchors)
         return ted4_trainer_fail(t, "an anchor's value is not finite at step %llu", now);
     if (anchors && !all_finite(t->anchors.data[TED4_ROW_POSITION], t->anchors.n_blocks * (size_t)3 * TED4_LANES))
         return ted4_trainer_fail(t, "an anchor's position is not finite at step %llu", now);
-    return 0;
+    return ted4_colour_finite(&t->colour) ? 0 : ted4_trainer_fail(t, "a colour map is not finite at step %llu", now);
 }

@@ -137,6 +137,8 @@ int ted4_watch_begin(ted4_trainer *t)
         int           term;
         const int64_t anchor = ted4_gradients_bad_value(t, &term);
 
+        if (!ted4_colour_finite(&t->colour))
+            return ted4_watch_find(t, "not finite", -1, "map of ", "colour", "is not finite");
         return anchor >= 0
                    ? bad_value(t, anchor, term)
                    : ted4_watch_find(t, "not finite", -1, "weight of ",
