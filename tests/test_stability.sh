@@ -3,6 +3,7 @@
 # worked out by hand. Speaks as cmocka programs do; run by `make test` from the project's root.
 # SPDX-License-Identifier: BSD-2-Clause
 set -u
+unset TED4_WORK TED4_DATA TED4_PAGES
 out=$(mktemp -d)
 trap 'rm -rf "$out"' EXIT
 bad=0
