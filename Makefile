@@ -52,12 +52,13 @@ $(addprefix $B/,$(ENC_PROG)): $B/%: $B/ref-encoder/tool/%.o $(ENC_TOOL:%.c=$B/%.
 $B/ted4scene: $(patsubst %.c,$B/%.o,$(wildcard tests/scenes/*.c)) $B/libted4enc.a $B/libted4dec.a
 	$(CC) -fopenmp $(LDFLAGS) $^ -o $@ $(LIBS)
 $B/tests/%: $B/tests/%.o $(DEC_TOOL:%.c=$B/%.o) $B/libted4enc.a $B/libted4dec.a
-	$(CC) -fopenmp $(LDFLAGS) $^ -o $@ -lcmocka $(LIBS)
+	$(CC) -fopenmp $(LDFLAGS) $(filter %.o,$^) $(filter %.a,$^) -o $@ -lcmocka $(LIBS)
 $B/tests/%: tests/%.sh
 	@mkdir -p $(@D)
 	install -m 755 $< $@
 
 $(addprefix $B/tests/test_,scene scene_sets failure_scenes layouts): $(patsubst %.c,$B/%.o,$(wildcard tests/scenes/ray_*.c))
+$B/tests/test_run_log: $B/ref-encoder/tool/run_log.o
 
 # Prints each test program it runs and a closing line of totals.
 test: $(TESTS) $(PROGS)

@@ -167,16 +167,17 @@ static inline void expect_log(const char *name, const char *want)
 {
     char        text[MOST_LOG];
     const char *got = text;
-    double      before = 0;
+    double      before = 0, worked = 0;
 
     read_text(name, text, sizeof text);
     while (*want != 0) {
-        const char *times = strstr(want, "\"ms\":"), *seconds = strstr(got, "\"seconds\":");
+        const char *times = strstr(want, "\"ms\":"), *seconds = strstr(got, "\"seconds\":"), *cpu = strstr(got, "\"cpu_seconds\":");
 
-        assert_true(times != NULL && seconds != NULL);
+        assert_true(times != NULL && seconds != NULL && cpu != NULL);
         assert_int_equal(strncmp(got, want, (size_t)(times - want)), 0);
-        assert_true(strtod(seconds + 10, NULL) >= before);
+        assert_true(strtod(seconds + 10, NULL) >= before && strtod(cpu + 14, NULL) >= worked);
         before = strtod(seconds + 10, NULL);
+        worked = strtod(cpu + 14, NULL);
         want = strchr(want, '\n') + 1;
         got = strchr(got, '\n') + 1;
     }

@@ -8,6 +8,7 @@
 #include <jansson.h>
 
 #include "mishap.h"
+#include "tool/run_log.h"
 #include "train/checkpoint.h"
 
 static double number(const json_t *line, const char *name)
@@ -54,9 +55,10 @@ static void check_line(const json_t *line, log_state *s, double size)
     assert_true(number(line, "psnr") > 10 && number(line, "splats") > 0 && number(line, "skipped") == 0);
     /* seconds are rounded to hundredths, milliseconds to thousandths. */
     assert_true(fabs(number(line, "seconds") - s->seconds - 1e-3 * steps * number(line, "ms")) < 0.011 + 1e-6 * steps);
+    assert_true(fabs(number(line, "cpu_seconds") - s->cpu - 1e-3 * steps * number(line, "cpu_ms")) < 0.011 + 1e-6 * steps);
     s->step = step;
     s->seconds = number(line, "seconds");
-    s->cpu += steps * number(line, "cpu_ms");
+    s->cpu = number(line, "cpu_seconds");
 }
 
 static void test_log(void **state)
@@ -191,6 +193,69 @@ static void test_rollback(void **state)
     expect_files("c l x");
 }
 
+/* Works until the processor's clock says that seconds have gone by; the log's idea of it. */
+static void work(ted4_run_log *l, ted4_trainer *t, double seconds)
+{
+    const double end = l->cpu_seconds + seconds;
+
+    while (l->cpu_seconds < end)
+        ted4_run_log_tick(l, t);
+}
+
+/* A line of a step, and cpu_seconds and ms in the file's last line. */
+static void put(ted4_run_log *l, ted4_trainer *t, uint64_t step, double *cpu, double *ms)
+{
+    char text[MOST_LOG], why[256];
+
+    t->iteration = step;
+    assert_int_equal(ted4_run_log_step(l, t, why, sizeof why), 0);
+    read_text("out/l", text, sizeof text);
+    text[strlen(text) - 1] = 0;
+
+    const char *last = strrchr(text, '\n') == NULL ? text : strrchr(text, '\n');
+
+    *cpu = strtod(strstr(last, "\"cpu_seconds\":") + 14, NULL);
+    *ms = strtod(strstr(last, "\"ms\":") + 5, NULL);
+}
+
+/* What was trained and thrown away is in the log's seconds and in no step's milliseconds; a log that goes on counts from its last line. */
+static void test_thrown_away(void **state)
+{
+    const ted4_train_options o = ball_options();
+    ted4_dataset d;
+    ted4_trainer t;
+    ted4_run_log l;
+    tiny_folder  scene;
+    double       cpu, ms;
+    char         why[256], path[600];
+
+    (void)state;
+    begin_test();
+    snprintf(path, sizeof path, "%s", tiny_path(&folder, "out/l"));
+    ball_load(&scene, &d, 3, 1);
+    ball_begin(&t, &o, &d, NULL);
+    assert_int_equal(ted4_run_log_open(&l, path, &t, 0, 1, 0, why, sizeof why), 0);
+    work(&l, &t, 0.1);
+    put(&l, &t, 100, &cpu, &ms);
+    work(&l, &t, 0.1);
+    t.iteration = 0;
+    assert_int_equal(ted4_run_log_cut(&l, &t, why, sizeof why), 0);
+    work(&l, &t, 0.1);
+    put(&l, &t, 100, &cpu, &ms);
+    assert_true(cpu >= 0.299 && t.seconds >= 0.299 && ms > 0 && ms < 10 * 0.7 * t.seconds);
+    assert_int_equal(ted4_run_log_close(&l, why, sizeof why), 0);
+
+    assert_int_equal(ted4_run_log_open(&l, path, &t, 1, 1, 0, why, sizeof why), 0);
+    work(&l, &t, 0.1);
+    put(&l, &t, 200, &cpu, &ms);
+    assert_true(cpu >= 0.399);
+    assert_int_equal(ted4_run_log_close(&l, why, sizeof why), 0);
+    gone("out/l");
+    ted4_trainer_finish(&t);
+    ted4_dataset_free(&d);
+    tiny_free(&scene);
+}
+
 /* What is not a log is left alone. */
 static void test_wrong_log(void **state)
 {
@@ -214,6 +279,7 @@ int main(void)
         cmocka_unit_test(test_log_goes_on),
         cmocka_unit_test(test_log_before_rollback),
         cmocka_unit_test(test_rollback),
+        cmocka_unit_test(test_thrown_away),
         cmocka_unit_test(test_wrong_log),
     };
 

@@ -59,7 +59,7 @@ case \$seed,\$folder in
 9,*)      ulimit -c 0; kill -SEGV \$\$ ;;
 esac
 echo x >"\$file"
-echo '{"step":250,"stage":"1","loss":0.5,"psnr":20,"anchors":5,"bytes":0,"ms":4,"cpu_ms":2}' >"\$log"
+echo '{"step":250,"stage":"1","loss":0.5,"psnr":20,"anchors":5,"bytes":0,"ms":4,"cpu_ms":2,"seconds":1.25,"cpu_seconds":0.5}' >"\$log"
 echo '{"hash":"abc"}'
 END
 cat >"$out/build/bench/lab_facts" <<END

@@ -129,10 +129,21 @@ static void test_resumed(void **state)
     assert_true(contains("searched0.jsonl", stage1) && !contains("searched1.jsonl", stage1));
 }
 
+/* A checkpoint of stage 2 knows only the lambda that made it: no search can begin there. */
+static void test_too_late(void **state)
+{
+    (void)state;
+    assert_int_equal(encode("-o late.ted4 --checkpoint late --checkpoint-every 0 --lambda 0.01"), 0);
+    assert_int_equal(encode("-o later.ted4 --lambda 0.01 --checkpoint late --resume --target-size 20000"), 3);
+    assert_true(contains("err", "late: inside stage 2; a search for a size begins at the end of stage 1"));
+    assert_int_equal(access(tiny_path(&folder, "later.ted4"), F_OK), -1);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_met), cmocka_unit_test(test_not_met), cmocka_unit_test(test_stage1), cmocka_unit_test(test_resumed),
+        cmocka_unit_test(test_too_late),
     };
 
     build = getenv("TED4_BUILD");

@@ -14,6 +14,9 @@
 #include "train/clamped.h"
 #include "train/make_scene.h"
 
+/* Written and read again. */
+#define CPU_SECONDS "\"cpu_seconds\":"
+
 static double seconds_of(clockid_t clock)
 {
     struct timespec t;
@@ -40,8 +43,9 @@ static int is_regular(int file)
     return fstat(file, &s) == 0 && S_ISREG(s.st_mode);
 }
 
-/* Bytes of the lines up to a step and a number of rollbacks; a line without an end is none. -1: a line that ted4enc never wrote. */
-static off_t find_end(FILE *f, uint64_t step, uint64_t rollbacks)
+/* Bytes of the lines up to a step and a number of rollbacks; a line without an end is none. -1: a line that ted4enc never wrote.
+ * *cpu: cpu_seconds of the last one that has them. */
+static off_t find_end(FILE *f, uint64_t step, uint64_t rollbacks, double *cpu)
 {
     char              *line = NULL;
     size_t             room = 0;
@@ -54,22 +58,27 @@ static off_t find_end(FILE *f, uint64_t step, uint64_t rollbacks)
             end = -1;
         else if (at > step || (sscanf(line, "{\"step\":%*u,\"event\":\"%*[a-z]\",\"rollbacks\":%llu,", &count) == 1 && count > rollbacks))
             break;
-        else
+        else {
+            const char *said = strstr(line, CPU_SECONDS);
+
             end += n;
+            if (said != NULL)
+                *cpu = strtod(said + sizeof CPU_SECONDS - 1, NULL);
+        }
     }
     free(line);
     return end;
 }
 
-/* Takes off what lies beyond the trainer's step and rollbacks. */
-static int cut(const char *path, int file, const ted4_trainer *t, char *why, size_t why_size)
+/* Takes off what lies beyond the trainer's step and rollbacks. *cpu: cpu_seconds of the last line left that has them. */
+static int cut(const char *path, int file, const ted4_trainer *t, double *cpu, char *why, size_t why_size)
 {
     FILE *f = fopen(path, "r");
 
     if (f == NULL)
         return say(path, strerror(errno), why, why_size);
 
-    const off_t end = find_end(f, t->iteration, t->watch.state.rollbacks);
+    const off_t end = find_end(f, t->iteration, t->watch.state.rollbacks, cpu);
 
     fclose(f);
     if (end < 0)
@@ -91,18 +100,21 @@ int ted4_run_log_open(ted4_run_log *l, const char *path, const ted4_trainer *t, 
     l->file = open(path, O_WRONLY | O_CREAT | O_APPEND | (keep ? 0 : O_TRUNC), 0666);
     if (l->file < 0)
         return say(path, strerror(errno), why, why_size);
-    if (keep && ted4_run_log_cut(l, t, why, why_size) != 0) {
+    if (keep && is_regular(l->file) && cut(path, l->file, t, &l->cpu_seconds, why, why_size) != 0) {
         close(l->file);
         l->file = -1;
         return -1;
     }
+    ted4_run_log_move(l, t);
     return 0;
 }
 
 int ted4_run_log_cut(ted4_run_log *l, const ted4_trainer *t, char *why, size_t why_size)
 {
+    double said;        /* before what goes: it was work, and stays counted */
+
     ted4_run_log_move(l, t);
-    return is_regular(l->file) ? cut(l->path, l->file, t, why, why_size) : 0;
+    return is_regular(l->file) ? cut(l->path, l->file, t, &said, why, why_size) : 0;
 }
 
 void ted4_run_log_skip(ted4_run_log *l)
@@ -194,13 +206,13 @@ static int print_line(char *line, size_t size, const ted4_run_log *l, const ted4
                     "\"bytes_by_type\":{\"positions\":%.0f,\"masks\":%.0f,\"feature\":%.0f,\"scaling\":%.0f,\"offset\":%.0f,"
                     "\"phi\":%.0f,\"tau\":%.0f,\"networks\":%.0f},\"bits\":[%.2f,%.2f,%.2f,%.2f,%.2f],"
                     "\"skipped\":%llu,\"clamped\":%zu,\"gradients\":{%s},\"peaks\":{%s},\"rollbacks\":%llu,"
-                    "\"ms\":%.3f,\"cpu_ms\":%.3f,\"gaussian_pixels_per_s\":%.4g,\"seconds\":%.2f}\n",
+                    "\"ms\":%.3f,\"cpu_ms\":%.3f,\"gaussian_pixels_per_s\":%.4g,\"seconds\":%.2f," CPU_SECONDS "%.2f}\n",
                     (unsigned long long)t->iteration, f->stage, t->opt.lambda, p->loss, p->l1, p->ssim, l->psnr, t->anchors.n,
                     count_moving(t), p->splats, f->bytes.sum, f->bytes.positions, f->bytes.masks, y[TED4_FEATURE], y[TED4_SCALING],
                     y[TED4_OFFSET], y[TED4_PHI], y[TED4_TAU], f->bytes.networks, b[TED4_FEATURE], b[TED4_SCALING], b[TED4_OFFSET],
                     b[TED4_PHI], b[TED4_TAU], (unsigned long long)ted4_raster_skipped(t->raster), ted4_clamped(t),
                     print_terms(gradients, sizeof gradients, usual), print_terms(peaks, sizeof peaks, peak),
-                    (unsigned long long)t->watch.state.rollbacks, f->ms, f->cpu_ms, f->rate, t->seconds);
+                    (unsigned long long)t->watch.state.rollbacks, f->ms, f->cpu_ms, f->rate, t->seconds, l->cpu_seconds);
 }
 
 /* The whole line or, on a full disk, nothing of it. */

@@ -11,7 +11,7 @@ typedef struct {
     int    terminal;            /* progress line wanted */
     int    verbose;             /* plain progress lines wanted */
     double wall, cpu;           /* clocks at the last tick, seconds */
-    double cpu_seconds;         /* that all threads worked between ticks */
+    double cpu_seconds;         /* that all threads worked between ticks, since the log began */
     uint64_t last_step;         /* the last line's step, trainer->seconds and cpu_seconds: the next one's ms count from there */
     double last_seconds, last_cpu;
     double psnr;                /* held-out preview */
@@ -41,7 +41,8 @@ int  ted4_run_log_cut(ted4_run_log *l, const ted4_trainer *t, char *why, size_t 
  *   bits                   of the five attributes, an anchor
  *   ms cpu_ms              a step, since the line before
  *   gaussian_pixels_per_s  speed
- *   seconds                of training since step 0, whatever runs it took
+ *   seconds                of training since step 0, whatever runs it took; what was trained and thrown away (a new beginning, a rollback) counts
+ *   cpu_seconds            the same of all threads, since this log began
  *   skipped                Gaussians that this process has left out of pictures so far, as they were not finite (ted4_raster_skipped)
  *   clamped                values of anchors at an end of their range (clamped.h)
  *   gradients              usual norm (near the median of about 100 steps) of what each term learns from: values of anchors by attribute, masks, centres of

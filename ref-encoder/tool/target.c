@@ -102,6 +102,10 @@ int ted4_training_target(ted4_training *t, ted4_coded *c)
     int           bad;
 
     c->bytes = NULL;
+    if (t->trainer->stage2) {
+        snprintf(t->why, sizeof t->why, "%s: inside stage 2; a search for a size begins at the end of stage 1", t->checkpoint);
+        return -1;
+    }
     if (ted4_training_go(t, (uint64_t)t->trainer->opt.stage1) != 0)
         return -1;
     t->checkpoint = NULL;       /* a trial is not resumed: the search would not know where it was */
