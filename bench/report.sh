@@ -8,33 +8,11 @@
 # SPDX-License-Identifier: BSD-2-Clause
 set -eu
 cd "$(dirname "$0")/.."
-LC_ALL=C; export LC_ALL
 results=${TED4_RESULTS:-bench}
 table=${TED4_TABLE:-bench/sweep.txt}
 pages=${TED4_PAGES:-bench}
-scratch=$(mktemp -d)
-trap 'rm -rf "$scratch"' EXIT
-if [ $# -gt 0 ]; then
-    cp "$1" "$scratch/states"
-else
-    TED4_WORK=$scratch/work TED4_TABLE=$table TED4_RESULTS=$results bench/sweep.sh --list >"$scratch/states"
-fi
-awk -f bench/expand.awk ref-encoder/train/options.def "$table" >"$scratch/wanted"
-awk 'FILENAME == ARGV[1] { split($0, word, " "); state[word[2]] = word[1]; next }
-     { split($0, part, "|"); print (part[2] in state ? state[part[2]] : "missing") "|" $0 }' "$scratch/states" "$scratch/wanted" >"$scratch/runs"
-
-csv=$results/sweep.csv
-[ -f "$csv" ] || csv=/dev/null
-set --
-for part in rows words curves compare svg axes plot dots stacks rate variants singles speed bytes lives estimate kept precision seeds logs page; do
-    set -- "$@" -f bench/report/$part.awk
-done
-mkdir "$scratch/charts"
-awk "$@" -v results="$results" -v charts="$scratch/charts" -v pages="$pages" -v notes="$pages/report-notes.md" "$scratch/runs" "$csv" >"$scratch/report.md"
-
-mkdir -p "$results/charts"
-rm -f "$results"/charts/*.svg
-for chart in "$scratch"/charts/*.svg; do
-    [ ! -f "$chart" ] || mv "$chart" "$results/charts"
-done
-mv "$scratch/report.md" "$results/report.md"
+. bench/page.sh
+wanted_runs bench/sweep.sh "$@"
+write_page "$results/report.md" "$results/sweep.csv" "$results/charts" "report/rows report/words report/curves report/compare report/svg report/axes report/plot
+    report/dots report/stacks report/rate report/variants report/singles report/speed report/bytes report/lives report/estimate report/kept report/precision
+    report/seeds report/logs report/page" -v results="$results" -v pages="$pages" -v notes="$pages/report-notes.md"

@@ -3,23 +3,11 @@
 # answer are none. Speaks as cmocka programs do; run by `make test` from the project's root.
 # SPDX-License-Identifier: BSD-2-Clause
 set -u
-if ! command -v python3 >/dev/null || [ ! -x "${TED4_BUILD:-}/ted4conf" ] || [ ! -x "$TED4_BUILD/ted4dec" ] || [ ! -x "$TED4_BUILD/adapter" ]; then
-    echo "skipped: no python3, or TED4_BUILD has no ted4conf, ted4dec or adapter"
-    echo "[  SKIPPED ] adapters"
-    exit 0
-fi
+. tests/speak.sh
+need adapters python3 ted4conf ted4dec adapter
 export PYTHONDONTWRITEBYTECODE=1 TED4DEC="$TED4_BUILD/ted4dec"
-bad=0
 # run NAME WANTED-STATUS WANTED-TEXT LIST DECODER
-run() {
-    said=$("$TED4_BUILD/ted4conf" run -q --memory 0 -t 60 -l "conformance/$4" -d "$5" 2>&1)
-    status=$?
-    case $said in
-    *"$3"*) [ $status -eq "$2" ] && echo "[       OK ] $1" && return ;;
-    esac
-    echo "[  FAILED  ] $1: status $status: $said"
-    bad=1
-}
+run() { expect "$1" "$2" "$3" "$TED4_BUILD/ted4conf" run -q --memory 0 -t 60 -l "conformance/$4" -d "$5"; }
 
 line='python3 conformance/adapters/line.py python3 conformance/tests/line_decoder.py'
 run library 0 ' 8 passed, 0 failed, 0 without answer, 0 missing, 0 declined, 0 not run: conforms' lists/few.txt "$TED4_BUILD/adapter"

@@ -5,22 +5,11 @@
 # SPDX-License-Identifier: BSD-2-Clause
 set -u
 export LC_ALL=C
-if [ ! -x "${TED4_BUILD:-}/ted4conf" ] || [ ! -x "$TED4_BUILD/ted4dec" ]; then
-    echo "skipped: TED4_BUILD has no ted4conf or no ted4dec"
-    echo "[  SKIPPED ] cross"
-    exit 0
-fi
-out=$(mktemp -d)
-trap 'rm -rf "$out"' EXIT
-bad=0
-
-ok()   { echo "[       OK ] $1"; }
-fail() { echo "[  FAILED  ] $1: $2"; bad=1; }
+. tests/speak.sh
+need cross ted4conf ted4dec
 # cross NAME WANTED-STATUS WANTED-TEXT: runs it on the table as it is
 cross() {
-    PATH=$out/bin:$PATH TED4_BUILD=$out/build TED4_RESULTS=$out TED4_TABLE=$out/table conformance/cross/cross.sh >"$out/said" 2>&1
-    status=$?
-    if [ $status -eq "$2" ] && grep -qF "$3" "$out/said"; then ok "$1"; else fail "$1" "status $status: $(cat "$out/said")"; fi
+    expect "$1" "$2" "$3" env PATH="$out/bin:$PATH" TED4_BUILD="$out/build" TED4_RESULTS="$out" TED4_TABLE="$out/table" conformance/cross/cross.sh
 }
 # build NAME CLASS COMPILER FLAGS: a line of the table
 build() { echo "$1; $2; $3; $4; ; ; ; few; package-of-$1" >>"$out/table"; }

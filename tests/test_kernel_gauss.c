@@ -5,56 +5,8 @@
 #include <stdarg.h>
 #include <stddef.h>
 #include <cmocka.h>
-#include <stdlib.h>
-#include "random_scene.h"
 #include "read/reader.h"
-#include "write/coder_write.h"
-
-/* n symbols with their models. */
-typedef struct {
-    size_t   n;
-    int32_t *mu;
-    uint8_t *sigma;
-    int16_t *k;
-} symbols;
-
-/* far: one symbol of so many lies where only an escape reaches; 0: none. widest: sigma index; the wider, the worse are guesses. */
-static symbols make(uint64_t seed, size_t n, unsigned far, unsigned widest)
-{
-    random_source r = random_seed(seed);
-    symbols       s = { n, malloc(n * sizeof *s.mu), malloc(n), malloc(n * sizeof *s.k) };
-
-    for (size_t i = 0; i < n; i++) {
-        const double x = random_normal(&r) * 40;
-
-        s.sigma[i] = (uint8_t)random_in(&r, 0, widest);
-        s.mu[i] = (int32_t)(256 * x);
-        s.k[i] = (int16_t)rint(x + random_normal(&r) * exp2((s.sigma[i] - 64) / 16.0));
-        if (far > 0 && random_in(&r, 0, far - 1) == 0)
-            s.k[i] = (int16_t)((int)random_in(&r, 0, 65534) - 32767);
-    }
-    return s;
-}
-
-static void drop(symbols *s)
-{
-    free(s->mu);
-    free(s->sigma);
-    free(s->k);
-}
-
-/* One substream behind its size. The caller frees w. */
-static void write_symbols(ted4_writer *w, const symbols *s)
-{
-    uint32_t size;
-
-    ted4_writer_init(w);
-    w->base.ops->sizes(&w->base, &size, 1);
-    w->base.ops->open(&w->base, s->n);
-    w->base.ops->gauss(&w->base, s->n, s->mu, s->sigma, s->k);
-    w->base.ops->close(&w->base);
-    assert_int_equal(w->base.error.code, TED4_OK);
-}
+#include "substream_case.h"
 
 typedef struct {
     ted4_status status;
@@ -121,13 +73,13 @@ static void test_same(void **state)
     for (size_t i = 0; i < sizeof count / sizeof count[0]; i++)
         for (unsigned f = 0; f < 3; f++)
             for (unsigned v = 0; v < 3; v++) {
-                symbols     s = make(3 * i + f, count[i], far[f], widest[v]);
+                symbols     s = symbols_make(3 * i + f, count[i], far[f], widest[v]);
                 ted4_writer w;
 
-                write_symbols(&w, &s);
+                symbols_write(&w, &s);
                 compare(w.out.data, w.out.size, &s, many);
                 ted4_buffer_free(&w.out);
-                drop(&s);
+                symbols_free(&s);
             }
 }
 
@@ -135,12 +87,12 @@ static void test_same(void **state)
 static void test_damaged(void **state)
 {
     const ted4_gauss_many many = fastest();
-    symbols               s = make(5, 40000, 3000, 100);
+    symbols               s = symbols_make(5, 40000, 3000, 100);
     random_source         r = random_seed(11);
     ted4_writer           w;
 
     (void)state;
-    write_symbols(&w, &s);
+    symbols_write(&w, &s);
     for (int i = 0; i < 30; i++) {
         const size_t at = random_in(&r, 4, (uint32_t)w.out.size - 1);
 
@@ -155,20 +107,20 @@ static void test_damaged(void **state)
         compare(w.out.data, w.out.size - cut, &s, many);
     }
     ted4_buffer_free(&w.out);
-    drop(&s);
+    symbols_free(&s);
 }
 
 /* The kernel does take what it is there for. */
 static void test_takes(void **state)
 {
     const ted4_gauss_many many = fastest();
-    symbols               s = make(6, 40000, 0, 60);
+    symbols               s = symbols_make(6, 40000, 0, 60);
     ted4_writer           w;
     ted4_reader           r;
     uint32_t              length;
 
     (void)state;
-    write_symbols(&w, &s);
+    symbols_write(&w, &s);
     ted4_reader_init(&r, w.out.data, 0, w.out.size, 0);
     r.base.ops->sizes(&r.base, &length, 1);
     r.base.ops->open(&r.base, s.n);
@@ -182,7 +134,7 @@ static void test_takes(void **state)
     assert_memory_equal(k, s.k, done * sizeof *k);
     free(k);
     ted4_buffer_free(&w.out);
-    drop(&s);
+    symbols_free(&s);
 }
 
 int main(void)

@@ -4,59 +4,18 @@
 #include <stdarg.h>
 #include <stddef.h>
 #include <cmocka.h>
-#include <stdlib.h>
-#include "random_scene.h"
 #include "read/reader.h"
-#include "write/coder_write.h"
+#include "substream_case.h"
 
-/* n symbols with their models. */
-typedef struct {
-    size_t   n;
-    int32_t *mu;
-    uint8_t *sigma;
-    int16_t *k;
-} symbols;
-
-static symbols make(uint64_t seed, size_t n, int far)
+/* The ends: the largest sums that two networks can give, against the largest symbols. */
+static void push_out(symbols *s, uint64_t seed)
 {
     random_source r = random_seed(seed);
-    symbols s = { n, malloc(n * sizeof *s.mu), malloc(n),
-                  malloc(n * sizeof *s.k) };
 
-    for (size_t i = 0; i < n; i++) {
-        const double x = random_normal(&r) * 40;
-
-        s.sigma[i] = (uint8_t)random_in(&r, 0, TED4_N_SIGMA - 1);
-        s.mu[i] = (int32_t)(256 * x);
-        if (far)        /* the largest sums that two networks can give */
-            s.mu[i] = random_in(&r, 0, 1) ? 2 * TED4_OUTPUT_MAX
-                                          : -2 * TED4_OUTPUT_MAX;
-        s.k[i] = (int16_t)rint(x + random_normal(&r)
-                                   * exp2((s.sigma[i] - 64) / 16.0));
-        if (far)
-            s.k[i] = random_in(&r, 0, 1) ? 32767 : -32767;
+    for (size_t i = 0; i < s->n; i++) {
+        s->mu[i] = random_in(&r, 0, 1) ? 2 * TED4_OUTPUT_MAX : -2 * TED4_OUTPUT_MAX;
+        s->k[i] = random_in(&r, 0, 1) ? 32767 : -32767;
     }
-    return s;
-}
-
-static void drop(symbols *s)
-{
-    free(s->mu);
-    free(s->sigma);
-    free(s->k);
-}
-
-/* One substream behind its size. The caller frees w. */
-static void write_symbols(ted4_writer *w, const symbols *s)
-{
-    uint32_t size;
-
-    ted4_writer_init(w);
-    w->base.ops->sizes(&w->base, &size, 1);
-    w->base.ops->open(&w->base, s->n);
-    w->base.ops->gauss(&w->base, s->n, s->mu, s->sigma, s->k);
-    w->base.ops->close(&w->base);
-    assert_int_equal(w->base.error.code, TED4_OK);
 }
 
 static const char *read_symbols(const uint8_t *data, size_t size,
@@ -80,16 +39,18 @@ static void round_trip(void **state)
 
     (void)state;
     for (size_t i = 0; i < 2 * sizeof count / sizeof *count; i++) {
-        symbols     s = make(i, count[i / 2], i % 2);
+        symbols     s = symbols_make(i, count[i / 2], 0, TED4_N_SIGMA - 1);
         int16_t    *k = malloc(s.n * sizeof *k);
         ted4_writer w;
 
-        write_symbols(&w, &s);
+        if (i % 2)
+            push_out(&s, i);
+        symbols_write(&w, &s);
         assert_string_equal(read_symbols(w.out.data, w.out.size, &s, k), "ok");
         assert_memory_equal(k, s.k, s.n * sizeof *k);
         ted4_writer_finish(&w);
         free(k);
-        drop(&s);
+        symbols_free(&s);
     }
 }
 
@@ -138,14 +99,14 @@ static void bits(void **state)
 /* What a damaged substream is refused with. change: bytes added at the end, or taken away. */
 static void damaged(void **state)
 {
-    symbols     s = make(9, 500, 0);
+    symbols     s = symbols_make(9, 500, 0, TED4_N_SIGMA - 1);
     int16_t     k[500];
     ted4_writer w;
     uint8_t    *d;
     size_t      n;
 
     (void)state;
-    write_symbols(&w, &s);
+    symbols_write(&w, &s);
     d = malloc(w.out.size + 2);
     n = w.out.size;
     memcpy(d, w.out.data, n);
@@ -165,7 +126,7 @@ static void damaged(void **state)
     assert_string_equal(read_symbols(d, n, &s, k), "ent.state");
     free(d);
     ted4_writer_finish(&w);
-    drop(&s);
+    symbols_free(&s);
 }
 
 /* A substream of one symbol, mu 0 and sigma 1, which is a high escape followed by the bits of E. */

@@ -3,20 +3,7 @@
 # project's root.
 # SPDX-License-Identifier: BSD-2-Clause
 set -u
-out=$(mktemp -d)
-trap 'rm -rf "$out"' EXIT
-bad=0
-
-ok()   { echo "[       OK ] $1"; }
-fail() { echo "[  FAILED  ] $1: $2"; bad=1; }
-# check NAME FILE PATTERN...: each fixed string stands in the file.
-check() {
-    name=$1 file=$2; shift 2
-    for p in "$@"; do
-        grep -qF -e "$p" "$file" || { fail "$name" "no \"$p\" in:"; grep -F -e "${p%%[|:]*}" "$file" | head -n 5; return; }
-    done
-    ok "$name"
-}
+. tests/speak.sh
 make_report() { TED4_RESULTS=$out TED4_PAGES=$out/pages TED4_TABLE=$out/table.txt bench/report.sh "$out/states"; }
 
 cat >"$out/table.txt" <<END

@@ -4,20 +4,7 @@
 # SPDX-License-Identifier: BSD-2-Clause
 set -u
 unset TED4_WORK TED4_DATA TED4_PAGES
-out=$(mktemp -d)
-trap 'rm -rf "$out"' EXIT
-bad=0
-
-ok()   { echo "[       OK ] $1"; }
-fail() { echo "[  FAILED  ] $1: $2"; bad=1; }
-# check NAME FILE PATTERN...: each fixed string stands in the file.
-check() {
-    name=$1 file=$2; shift 2
-    for p in "$@"; do
-        grep -qF -e "$p" "$file" || { fail "$name" "no \"$p\" in:"; grep -F -e "${p%%[|:]*}" "$file" | head -n 5; return; }
-    done
-    ok "$name"
-}
+. tests/speak.sh
 
 cat >"$out/table.txt" <<END
 seeds 7 8 9

@@ -4,27 +4,15 @@
 # SPDX-License-Identifier: BSD-2-Clause
 set -u
 export LC_ALL=C
-out=$(mktemp -d)
-trap 'rm -rf "$out"' EXIT
-bad=0
+. tests/speak.sh
+need tolerance ted4tolerance ted4dec
 table=conformance/tolerance/thresholds.csv
 stream=conformance/vectors/content/CNT-pop-0.002
 sample='CNT-pop-0.002 WRK-smallest'
 
-ok()   { echo "[       OK ] $1"; }
-fail() { echo "[  FAILED  ] $1: $2"; bad=1; }
 # judge NAME WANTED-STATUS WANTED-TEXT
-judge() {
-    "$TED4_BUILD/ted4tolerance" judge $stream.ted4 $stream.json "$out/dump" >"$out/said" 2>&1
-    status=$?
-    if [ $status -eq "$2" ] && grep -qF "$3" "$out/said"; then ok "$1"; else fail "$1" "status $status: $(cat "$out/said")"; fi
-}
+judge() { expect "$1" "$2" "$3" "$TED4_BUILD/ted4tolerance" judge $stream.ted4 $stream.json "$out/dump"; }
 
-if [ -z "${TED4_BUILD:-}" ] || [ ! -x "$TED4_BUILD/ted4tolerance" ]; then
-    echo "skipped: TED4_BUILD has no ted4tolerance"
-    echo "[  SKIPPED ] tolerance"
-    exit 0
-fi
 # shellcheck disable=SC2086
 sh conformance/tolerance/table.sh "$TED4_BUILD/ted4tolerance" $sample >"$out/now" || fail table "status $?"
 for id in vector $sample; do
