@@ -32,13 +32,22 @@ static void take_gradients(const json_t *line, lab_log *l)
     }
 }
 
+static void take_count(const json_t *line, const char *name, uint64_t *n)
+{
+    const json_t *const v = json_object_get(line, name);
+
+    if (json_is_integer(v))
+        *n = (uint64_t)json_integer_value(v);
+}
+
 static void take_line(const json_t *line, lab_log *l)
 {
     const json_t *const loss = json_object_get(line, "loss");
 
     take_gradients(line, l);
-    if (json_is_integer(json_object_get(line, "rollbacks")))
-        l->rollbacks = (uint64_t)json_integer_value(json_object_get(line, "rollbacks"));
+    take_count(line, "rollbacks", &l->rollbacks);
+    take_count(line, "skipped", &l->skipped);
+    take_count(line, "clamped", &l->clamped);
     if (!json_is_number(loss))
         return;
     l->loss_last = json_number_value(loss);

@@ -25,7 +25,7 @@ table=${TED4_TABLE:-bench/stability.txt}
 csv=$results/stability.csv
 facts="views exact refused_views psnr worst worst_frame worst_camera bytes anchors gaussians dynamic drawn out out_share displacement displacement_99"
 facts="$facts refused_times dead full thin huge symbols escapes escape_share symbol_ends sigma_ends step_ends context_ends width_ends"
-facts="$facts log_bad loss_first loss_last diverged gradient gradient_term peak peak_term rollbacks"
+facts="$facts log_bad loss_first loss_last diverged gradient gradient_term peak peak_term rollbacks skipped clamped"
 columns=tag,key,scene,groups,options,status,$(echo "$facts" | tr ' ' ,),train_s,cpu_s,hash,why
 want="ted4enc ted4scene bench/lab_facts"
 jobs=$(getconf _NPROCESSORS_ONLN) threads=1 share= judges="$(echo bench/lab_*.[ch])"

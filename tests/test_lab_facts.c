@@ -254,11 +254,11 @@ static void test_symbols(void **state)
 static void test_log(void **state)
 {
     static const char lines[] =
-        "{\"step\":250,\"loss\":0.5,\"gradients\":{\"heads\":1.5,\"prior\":0.5},\"peaks\":{\"heads\":1,\"prior\":12},\"rollbacks\":0}\n"
+        "{\"step\":250,\"loss\":0.5,\"gradients\":{\"heads\":1.5,\"prior\":0.5},\"peaks\":{\"heads\":1,\"prior\":12},\"rollbacks\":0,\"skipped\":1,\"clamped\":9}\n"
         "{\"step\":500,\"loss\":nan,\"gradients\":{\"heads\":1},\"peaks\":{\"heads\":nan}}\n"
         "{\"step\":500,\"event\":\"rollback\",\"rollbacks\":2,\"failed\":700,\"cause\":\"exploded\",\"term\":\"loss\",\"anchor\":null,\"factor\":0.25}\n"
         "{\"step\":750,\"loss\":0.25,\"gradients\":{\"heads\":4,\"prior\":0},\"peaks\":{\"heads\":2,\"prior\":0},\"rollbacks\":2}\n"
-        "{\"step\":1000,\"loss\":0.75,\"gradients\":{\"heads\":2,\"prior\":3},\"peaks\":{\"heads\":3,\"prior\":0.5},\"rollbacks\":2}\n";
+        "{\"step\":1000,\"loss\":0.75,\"gradients\":{\"heads\":2,\"prior\":3},\"peaks\":{\"heads\":3,\"prior\":0.5},\"rollbacks\":2,\"skipped\":4,\"clamped\":7}\n";
     tiny_folder f = tiny_new();
     lab_log     l;
 
@@ -266,7 +266,7 @@ static void test_log(void **state)
     tiny_text(&f, "a.jsonl", lines);
     assert_int_equal(lab_read_log(tiny_path(&f, "a.jsonl"), &l), 0);
     assert_true(l.lines == 3 && l.bad == 1 && l.loss_first == 0.5 && l.loss_last == 0.75 && l.rollbacks == 2);
-    assert_true(l.gradient == 8 && l.peak == 12);
+    assert_true(l.gradient == 8 && l.peak == 12 && l.skipped == 4 && l.clamped == 7);
     assert_string_equal(l.gradient_term, "heads");
     assert_string_equal(l.peak_term, "prior");
     tiny_text(&f, "b.jsonl", "{\"step\":250,\"loss\":0.5}\n");

@@ -60,7 +60,7 @@ function breaks(t, rule,    s, of_whole) {
         return get(t, "status") == rule
     if (get(t, "status") != "fine")
         return 0
-    if (rule == "nan")      return get(t, "refused_views") + get(t, "refused_times") + get(t, "log_bad") > 0
+    if (rule == "nan")      return get(t, "refused_views") + get(t, "refused_times") + get(t, "log_bad") + get(t, "skipped") > 0
     if (rule == "diverges") return get(t, "diverged") + 0 > 0
     if (rule == "rollback") return get(t, "rollbacks") + 0 > 0
     if (rule == "out")      return get(t, "out_share") > most_out

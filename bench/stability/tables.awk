@@ -99,8 +99,10 @@ function numbers_section(    k, s) {
     say("")
     say("Means over seeds; gradients and rollbacks: the most of them. *Dead*: share of Gaussians whose opacity is 0 at all times. *Ends*: shares")
     say("of symbols, steps, contexts, sigma indices and activation widths at the ends of their ranges. *Loss*: distortion at the first line of the")
-    say("log and at the last, running means over about 100 steps. *Peak*: largest norm of a gradient as a multiple of its term's usual one.")
-    table("scene,bytes,anchors,moving,dead,escapes,ends: symbols,steps,contexts,sigma,widths,not finite,loss,largest gradient,peak,rollbacks," \
+    say("log and at the last, running means over about 100 steps. *Clamped*: values of anchors at an end of their range when training ended.")
+    say("*Not finite*: pictures and times that the decoder refused, Gaussians that training left out, lines of the log. *Peak*: largest norm of a gradient as a")
+    say("multiple of its term's usual one.")
+    table("scene,bytes,anchors,moving,dead,escapes,ends: symbols,steps,contexts,sigma,widths,clamped,not finite,loss,largest gradient,peak,rollbacks," \
         "training s of CPU")
     for (k = 1; k <= n_scenes; k++) {
         s = scenes[k]
@@ -109,8 +111,8 @@ function numbers_section(    k, s) {
             continue
         }
         row(s any_old(s, "whole") "|" means(s, "bytes anchors dynamic", 0, 0) "|" means(s, "dead", 1, 1) "|" \
-            means(s, "escape_share symbol_ends step_ends context_ends", 3, 1) "|" means(s, "sigma_ends width_ends", 2, 1) \
-            "|" sum_of(s, "whole", "refused_views") + sum_of(s, "whole", "refused_times") + sum_of(s, "whole", "log_bad") \
+            means(s, "escape_share symbol_ends step_ends context_ends", 3, 1) "|" means(s, "sigma_ends width_ends", 2, 1) "|" means(s, "clamped", 0, 0) \
+            "|" sum_of(s, "whole", "refused_views") + sum_of(s, "whole", "refused_times") + sum_of(s, "whole", "log_bad") + sum_of(s, "whole", "skipped") \
             "|" fixed(mean_of(s, "whole", "loss_first"), 4) " to " fixed(mean_of(s, "whole", "loss_last"), 4) \
             "|" term_cell(s, "whole", "gradient") "|" term_cell(s, "whole", "peak") \
             "|" (most_of(s, "whole", "rollbacks") == "" ? "-" : most_of(s, "whole", "rollbacks")) "|" fixed(mean_of(s, "whole", "cpu_s"), 1))
