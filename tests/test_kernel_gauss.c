@@ -9,7 +9,7 @@
 #include "substream_case.h"
 
 typedef struct {
-    ted4_status status;
+    ted4_error  error;
     size_t      left;           /* bytes of words not read */
     int16_t    *k;
 } outcome;
@@ -19,7 +19,7 @@ static outcome read_symbols(const uint8_t *data, size_t size, const symbols *s, 
 {
     ted4_reader r;
     uint32_t    length;
-    outcome     o = { TED4_OK, 0, calloc(s->n, sizeof *o.k) };
+    outcome     o = { { TED4_OK, 0 }, 0, calloc(s->n, sizeof *o.k) };
 
     ted4_reader_init(&r, data, 0, size, 0);
     r.many = many;
@@ -28,12 +28,13 @@ static outcome read_symbols(const uint8_t *data, size_t size, const symbols *s, 
     for (size_t i = 0; i < s->n; i += step)
         r.base.ops->gauss(&r.base, s->n - i < step ? s->n - i : step, s->mu + i, s->sigma + i, o.k + i);
     r.base.ops->close(&r.base);
-    o.status = r.base.error.code;
+    o.error = r.base.error;
     o.left = (size_t)(r.rans.end - r.rans.word);
     return o;
 }
 
-static void compare(const uint8_t *data, size_t size, const symbols *s, ted4_gauss_many many)
+/* Returns what both say. */
+static ted4_status compare(const uint8_t *data, size_t size, const symbols *s, ted4_gauss_many many)
 {
     static const size_t step[] = { 1 << 20, 4096, 1001, 64, 7 };
     const outcome       want = read_symbols(data, size, s, s->n, NULL);
@@ -41,14 +42,16 @@ static void compare(const uint8_t *data, size_t size, const symbols *s, ted4_gau
     for (size_t i = 0; i < sizeof step / sizeof step[0]; i++) {
         const outcome got = read_symbols(data, size, s, step[i], many);
 
-        assert_int_equal(got.status, want.status);
-        if (want.status == TED4_OK) {
+        assert_int_equal(got.error.code, want.error.code);
+        assert_int_equal(got.error.offset, want.error.offset);
+        if (want.error.code == TED4_OK) {
             assert_int_equal(got.left, want.left);
             assert_memory_equal(got.k, want.k, s->n * sizeof *got.k);
         }
         free(got.k);
     }
     free(want.k);
+    return want.error.code;
 }
 
 static ted4_gauss_many fastest(void)
@@ -81,6 +84,30 @@ static void test_same(void **state)
                 ted4_buffer_free(&w.out);
                 symbols_free(&s);
             }
+}
+
+/* Read with means further out than those it was written with, the last symbol leaves 16 bits; without an escape. */
+static void test_outside(void **state)
+{
+    static const size_t   at[] = { 0, 1, 100, 4099, 39999 };
+    const ted4_gauss_many many = fastest();
+
+    (void)state;
+    for (size_t i = 0; i < 2 * sizeof at / sizeof at[0]; i++) {
+        const int    sign = i % 2 ? -1 : 1;
+        symbols      s = symbols_make(7, 40000, 0, 60);
+        const size_t k = at[i / 2];
+        ted4_writer w;
+
+        s.k[k] = (int16_t)(32767 * sign);
+        s.mu[k] = 32767 * 256 * sign;
+        symbols_write(&w, &s);
+        assert_int_equal(compare(w.out.data, w.out.size, &s, many), TED4_OK);
+        s.mu[k] += 256 * sign;
+        assert_int_equal(compare(w.out.data, w.out.size, &s, many), TED4_E_ENT_SYMBOL_RANGE);
+        ted4_buffer_free(&w.out);
+        symbols_free(&s);
+    }
 }
 
 /* A word changed, and words cut off with the size mended: the same verdict. */
@@ -140,7 +167,7 @@ static void test_takes(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_same), cmocka_unit_test(test_damaged), cmocka_unit_test(test_takes),
+        cmocka_unit_test(test_same), cmocka_unit_test(test_outside), cmocka_unit_test(test_damaged), cmocka_unit_test(test_takes),
     };
 
     return cmocka_run_group_tests(tests, NULL, NULL);
