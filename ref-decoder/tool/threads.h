@@ -6,8 +6,8 @@
 
 #include "base/parallel.h"
 
-/* Fills *p with a parallel-for over n_threads threads, the caller's included; n_threads <= 0: one for each core this process may use. Indices are
- * handed out one at a time, so bodies may be uneven. Only one thread may use *p at a time. Where threads cannot be had there are fewer. */
+/* Fills *p with a parallel-for over n_threads threads, the caller's included; n_threads <= 0: one for each core this process may use. Each
+ * thread has a share of the indices and, one at a time, takes what is left of the others', so bodies may be uneven. Only one thread may use *p at a time. Where threads cannot be had there are fewer. */
 void ted4_threads_init(ted4_parallel *p, int n_threads);
 /* Ends the threads. */
 void ted4_threads_finish(ted4_parallel *p);

@@ -1,0 +1,102 @@
+/* test_threads.c - tool/threads.c: every index once, whatever the numbers of threads and indices and however uneven the work.
+ * SPDX-License-Identifier: BSD-2-Clause */
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <cmocka.h>
+#include <stdatomic.h>
+#include <stdlib.h>
+#include <string.h>
+#include <unistd.h>
+
+#include "tool/threads.h"
+
+enum { MOST = 3000, THREADS = 9 };
+
+typedef struct {
+    atomic_uint taken[MOST];
+    size_t      slow;           /* this index takes as long as all others together */
+    atomic_uint others;         /* indices done, slow apart */
+    size_t      n;
+} counts;
+
+static void take(void *arg, size_t i)
+{
+    counts *c = arg;
+
+    atomic_fetch_add(&c->taken[i], 1);
+    if (i != c->slow)
+        atomic_fetch_add(&c->others, 1);
+}
+
+static void check_once(const ted4_parallel *p, counts *c, size_t n)
+{
+    memset(c, 0, sizeof *c);
+    c->n = n;
+    c->slow = n;
+    ted4_parallel_for(p, n, take, c);
+    for (size_t i = 0; i < MOST; i++)
+        assert_int_equal(atomic_load(&c->taken[i]), i < n);
+}
+
+static void test_once(void **state)
+{
+    static const size_t n[] = { 0, 1, 2, 3, 5, 8, 9, 10, 17, 100, 1001, MOST };
+    counts *c = malloc(sizeof *c);
+
+    (void)state;
+    for (int threads = 1; threads <= THREADS; threads++) {
+        ted4_parallel p;
+
+        ted4_threads_init(&p, threads);
+        for (int round = 0; round < 40; round++)
+            for (size_t k = 0; k < sizeof n / sizeof n[0]; k++)
+                check_once(&p, c, n[k]);
+        ted4_threads_finish(&p);
+    }
+    free(c);
+}
+
+/* The first index, of a share of 1,500, waits until all others are done: someone else has to take the rest of its share. */
+static void wait_for_others(void *arg, size_t i)
+{
+    counts *c = arg;
+
+    take(arg, i);
+    while (i == c->slow && atomic_load(&c->others) < c->n - 1)
+        ;
+}
+
+static void test_helped(void **state)
+{
+    counts       *c = calloc(1, sizeof *c);
+    ted4_parallel p;
+
+    (void)state;
+    ted4_threads_init(&p, 2);
+    if (p.user == NULL) {
+        print_message("skipped: no second thread here\n");
+        skip();
+    }
+    alarm(60);          /* without help it would wait for ever */
+    for (int end = 0; end < 2; end++) {
+        memset(c, 0, sizeof *c);
+        c->n = MOST;
+        c->slow = end ? MOST / 2 : 0;
+        ted4_parallel_for(&p, MOST, wait_for_others, c);
+        assert_int_equal(atomic_load(&c->others), MOST - 1);
+    }
+    alarm(0);
+    ted4_threads_finish(&p);
+    free(c);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(test_once), cmocka_unit_test(test_helped),
+    };
+
+    return cmocka_run_group_tests_name("threads", tests, NULL, NULL);
+}
