@@ -124,20 +124,28 @@ static void find_alone(const models *m, const uint8_t *sigma, __m256i slot, __mm
     s->to = _mm256_mask_load_epi32(s->to, lanes, to);
 }
 
+/* A guess that is one off shares one of its two bounds with the next one. */
 static symbols find(const models *m, __m256i g, const uint8_t *sigma, __m256i slot, __mmask8 active)
 {
     symbols  s = { .j = guess(m, g, slot) };
-    __mmask8 below = 0, above = 0;
+    __mmask8 below, above;
 
-    for (int i = 0; i < TRIES; i++) {
-        s.j = _mm256_mask_sub_epi32(s.j, below, s.j, all(1));
-        s.j = _mm256_mask_add_epi32(s.j, above, s.j, all(1));
-        s.from = cum(m, s.j);
-        s.to = cum(m, _mm256_add_epi32(s.j, all(1)));
+    s.from = cum(m, s.j);
+    s.to = cum(m, _mm256_add_epi32(s.j, all(1)));
+    for (int i = 1;; i++) {
         below = _mm256_mask_cmplt_epi32_mask(active, slot, s.from);
         above = _mm256_mask_cmpge_epi32_mask(active, slot, s.to);
         if ((below | above) == 0)
             return s;
+        if (i == TRIES)
+            break;
+
+        const __m256i j = _mm256_mask_add_epi32(_mm256_mask_sub_epi32(s.j, below, s.j, all(1)), above, s.j, all(1));
+        const __m256i bound = cum(m, _mm256_mask_add_epi32(j, above, j, all(1))), from = s.from;
+
+        s.j = j;
+        s.from = _mm256_mask_mov_epi32(_mm256_mask_mov_epi32(from, below, bound), above, s.to);
+        s.to = _mm256_mask_mov_epi32(_mm256_mask_mov_epi32(s.to, below, from), above, bound);
     }
     find_alone(m, sigma, slot, below | above, &s);
     return s;

@@ -50,6 +50,7 @@ void ted4_header_stage2(ted4_header *h, const ted4_train_options *o)
     const double step[TED4_TYPES] = { o->step_feature, o->step_scaling, o->step_offset,
                                       o->step_phi, o->step_tau };
 
+    h->tile_size = (uint32_t)o->tile;
     h->offset_mask = (uint8_t)o->offset_mask;
     h->prior = o->factorised ? TED4_PRIOR_FACTORISED : TED4_PRIOR_INR;
     h->pe_octaves = (uint8_t)(o->factorised ? 0 : o->octaves);
@@ -65,7 +66,6 @@ void ted4_header_stage2(ted4_header *h, const ted4_train_options *o)
 void ted4_header_make(ted4_header *h, const ted4_train_options *o, const ted4_dataset *d)
 {
     memset(h, 0, sizeof *h);
-    h->tile_size = 4096;
     h->n_offsets = (uint8_t)o->offsets;
     h->feature_dim = (uint8_t)o->feature;
     make_header_time(h, o, d);
