@@ -2,6 +2,8 @@
  * SPDX-License-Identifier: BSD-2-Clause */
 #include "norm/coder.h"
 
+#include <string.h>
+
 #include "norm/prior.h"
 
 enum { BLOCK = TED4_PRIOR_BLOCK,
@@ -244,34 +246,49 @@ static void choose_offset(tile *t, unsigned k)
     }
 }
 
+/* Models of the chosen anchors, from outputs of the hyperprior: mu and s of a component, of the tile's first block. */
+static void choose_models(tile *t, const int32_t *mu, const int32_t *s)
+{
+    const size_t per_block = (size_t)t->s->shape.n_outputs * BLOCK;
+
+    if (t->n_index == t->n) {       /* side by side, a block at a time */
+        for (size_t b = 0; b < t->n; b += BLOCK, mu += per_block, s += per_block) {
+            const size_t n = t->n - b < BLOCK ? t->n - b : BLOCK;
+
+            memcpy(t->mu + b, mu, n * sizeof *mu);
+            for (size_t i = 0; i < n; i++)
+                t->sigma[b + i] = ted4_sigma_index(s[i]);
+        }
+        return;
+    }
+    for (size_t i = 0; i < t->n_index; i++) {
+        const size_t a = t->index[i], from = a / BLOCK * per_block + a % BLOCK;
+
+        t->mu[i] = mu[from];
+        t->sigma[i] = ted4_sigma_index(s[from]);
+    }
+}
+
 /* spec 10.2: component number comp of a type, for the chosen anchors. */
 static void walk_component(tile *t, ted4_type type, unsigned comp)
 {
     const ted4_shape *shape = &t->s->shape;
-    const size_t   per_block = (size_t)shape->n_outputs * BLOCK;
     const int32_t *mu = t->out + (shape->first_output[type] + comp) * BLOCK;
-    const int32_t *s = mu + (size_t)shape->dim[type] * BLOCK;
     const size_t   row = (size_t)comp * t->s->head.n_anchors + t->first;
     int16_t       *symbol = t->s->symbol[type] + row;
+    const int      whole = t->n_index == t->n;
+    int16_t       *k = whole ? symbol : t->k;
 
     if (t->c->error.code != TED4_OK)
         return;
-    for (size_t i = 0; i < t->n_index; i++) {
-        const size_t a = t->index[i];
-        const size_t from = a / BLOCK * per_block + a % BLOCK;
-
-        t->mu[i] = mu[from];
-        t->sigma[i] = ted4_sigma_index(s[from]);
-        t->k[i] = symbol[a];
-    }
-    t->c->ops->gauss(t->c, t->n_index, t->mu, t->sigma, t->k);
-    if (!t->c->reads)
-        return;
-    for (size_t i = 0; i < t->n_index; i++) {
-        symbol[t->index[i]] = t->k[i];
-        ted4_trace(t->c, t->opened, type_name[type],
-                   (int64_t)(row + t->index[i]), t->k[i]);
-    }
+    choose_models(t, mu, mu + (size_t)shape->dim[type] * BLOCK);
+    for (size_t i = 0; !whole && !t->c->reads && i < t->n_index; i++)
+        k[i] = symbol[t->index[i]];
+    t->c->ops->gauss(t->c, t->n_index, t->mu, t->sigma, k);
+    for (size_t i = 0; !whole && t->c->reads && i < t->n_index; i++)
+        symbol[t->index[i]] = k[i];
+    for (size_t i = 0; t->c->reads && t->c->trace != NULL && i < t->n_index; i++)
+        ted4_trace(t->c, t->opened, type_name[type], (int64_t)(row + t->index[i]), k[i]);
 }
 
 /* spec 10.3: contexts of one feature component, for the slices that follow. */
