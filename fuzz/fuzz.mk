@@ -82,6 +82,9 @@ fuzz-build-afl:
 	$(MAKE) B=build-fuzz-afl FUZZ_KIND=afl CC=afl-clang-fast OPT=-O2 $(FUZZERS:%=build-fuzz-afl/fuzz/fuzz_%)
 	$(MAKE) B=build-fuzz-pic CFLAGS=-fPIC build-fuzz-pic/fuzz/afl_mutator.so
 
+fuzz-scenes:
+	@echo $(FUZZ_SCENES)
+
 fuzz:
 	fuzz/run.sh -t $(FUZZ_SECONDS) -s $(FUZZ_SECONDS) -j $(FUZZ_JOBS) -k $(FUZZ_KIND)
 
@@ -98,4 +101,4 @@ fuzz-coverage:
 fuzz-corpus: $B/fuzz/make_corpus
 	$B/fuzz/make_corpus fuzz/corpus
 
-.PHONY: fuzz fuzz-build fuzz-build-asan fuzz-build-msan fuzz-build-afl fuzz-corpus fuzz-replay fuzz-coverage
+.PHONY: fuzz fuzz-scenes fuzz-build fuzz-build-asan fuzz-build-msan fuzz-build-afl fuzz-corpus fuzz-replay fuzz-coverage

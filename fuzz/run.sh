@@ -22,10 +22,8 @@ build=build-fuzz-$kind
 make -s fuzz-build FUZZ_KIND="$kind"
 mkdir -p "$build/found"
 [ -s "$csv" ] || echo 'harness,kind,key,seconds,executions,finds,edges,inputs,peak_mb' >"$csv"
-# Rows count for the sources that they were made with.
-key=$(find ref-decoder ref-encoder/write ref-encoder/data ref-encoder/train fuzz tests/random_scene.h tests/recon_ref.h \
-    \( -name '*.[ch]' -o -name '*.def' \) | LC_ALL=C sort | xargs cat | sha256sum | cut -c1-12)
-export csv build kind key total slice
+scenes=" $(make -s fuzz-scenes) "
+export csv build kind scenes total slice
 if [ $# -eq 0 ]; then
     for program in "$build"/fuzz/fuzz_*; do
         [ -x "$program" ] && set -- "$@" "${program##*/fuzz_}"
