@@ -65,9 +65,8 @@ static void keep_records(session *s, const char *id, json_t *tiers)
 
 static void ask(session *s, const char *id, const json_t *d, const conf_bytes *file, conf_verdict *v)
 {
-    const uint64_t memory = (uint64_t)json_integer_value(json_object_get(json_object_get(d, "knobs"), "max_alloc_total"));
     const int      lenient = json_object_get(d, "salvage") != NULL;
-    json_t *const  answer = (lenient ? conf_answer_lenient : conf_answer)(file, json_object_get(d, "queries"), memory);
+    json_t *const  answer = (lenient ? conf_answer_lenient : conf_answer)(file, json_object_get(d, "queries"), conf_knobs_of(d));
 
     conf_judge(s->capabilities, d, answer, v);
     if (lenient && v->outcome == CONF_PASS)
@@ -118,8 +117,8 @@ static int judge_all(const char *suite)
     char      path[CONF_PATH];
     json_t   *manifest, *list;
 
-    s.capabilities = json_pack("{s:i, s:[s,s,s,s,s,s], s:o, s:[], s:[s]}", "max_level", 31, "tiers", "T0", "T1", "T2", "T3", "T4", "T5",
-                               "class", strict ? json_string("X") : json_null(), "declines", "knobs", "max_alloc_total");
+    s.capabilities = json_pack("{s:i, s:[s,s,s,s,s,s], s:o, s:[], s:[s,s]}", "max_level", 31, "tiers", "T0", "T1", "T2", "T3", "T4", "T5",
+                               "class", strict ? json_string("X") : json_null(), "declines", "knobs", "max_alloc_total", "max_work");
     conf_path(path, "%s/SUITE.json", suite);
     manifest = json_load_file(path, 0, NULL);
     list = json_object_get(manifest, "vector");

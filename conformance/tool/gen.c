@@ -156,7 +156,8 @@ static void put_manifest(generator *g)
     json_decref(o);
 }
 
-/* lists/level-N.txt: what a decoder of level N has to get right: valid files up to that level, and all others. */
+/* lists/level-N.txt: what a decoder of level N has to get right: valid files up to that level, and all others. The list of a level begins with that of
+ * the level below. */
 static void put_level_lists(generator *g)
 {
     for (int level = 1; level <= 4; level++) {
@@ -164,11 +165,15 @@ static void put_level_lists(generator *g)
         char       path[CONF_PATH];
         json_t    *list = sorted(g->manifest);
 
+        if (level > 1)
+            conf_print(&b, "@level-%d.txt\n", level - 1);
         for (size_t i = 0; i < json_array_size(list); i++) {
             const json_t *const e = json_array_get(list, i);
 
-            if (strcmp(json_string_value(json_object_get(e, "result")), "valid") != 0
-                || json_integer_value(json_object_get(e, "level")) <= level)
+            const json_int_t    least = strcmp(json_string_value(json_object_get(e, "result")), "valid") == 0
+                                          ? json_integer_value(json_object_get(e, "level")) : 1;
+
+            if (least == level)
                 conf_print(&b, "%s\n", json_string_value(json_object_get(e, "id")));
         }
         conf_path(path, "%s/lists/level-%d.txt", g->o->output != NULL ? g->output : g->o->suite, level);

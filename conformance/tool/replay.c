@@ -19,9 +19,8 @@ static int by_size(const void *a, const void *b)
 /* In lenient mode, as far as that is to give the same. */
 static void judge(const json_t *capabilities, const json_t *d, const conf_bytes *file, conf_verdict *v)
 {
-    const uint64_t memory = (uint64_t)json_integer_value(json_object_get(json_object_get(d, "knobs"), "max_alloc_total"));
     const int      saved = json_object_get(d, "salvage") != NULL, invalid = conf_expects(d, "invalid");
-    json_t *const  answer = (saved || !invalid ? conf_answer_lenient : conf_answer)(file, json_object_get(d, "queries"), memory);
+    json_t *const  answer = (saved || !invalid ? conf_answer_lenient : conf_answer)(file, json_object_get(d, "queries"), conf_knobs_of(d));
 
     conf_judge(capabilities, d, answer, v);
     if (saved && v->outcome == CONF_PASS)
@@ -31,8 +30,8 @@ static void judge(const json_t *capabilities, const json_t *d, const conf_bytes 
 
 int conf_replay(const char *suite, const char *list, int stop)
 {
-    json_t     *capabilities = json_pack("{s:i, s:[s,s,s,s,s,s], s:s, s:[], s:[s]}", "max_level", 31, "tiers", "T0", "T1", "T2", "T3",
-                                         "T4", "T5", "class", "X", "declines", "knobs", "max_alloc_total");
+    json_t     *capabilities = json_pack("{s:i, s:[s,s,s,s,s,s], s:s, s:[], s:[s,s]}", "max_level", 31, "tiers", "T0", "T1", "T2", "T3",
+                                         "T4", "T5", "class", "X", "declines", "knobs", "max_alloc_total", "max_work");
     char        path[CONF_PATH];
     conf_entry *e;
     size_t      n, n_bad = 0, n_run = 0;

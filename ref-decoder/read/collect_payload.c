@@ -79,7 +79,7 @@ static int mend_head(ted4_collector *c, const ted4_chunk_place *p, size_t at)
     return 0;
 }
 
-/* Lists the errors; then HEAD is read as it is, without bounds of a level, if its values are right. */
+/* Lists the errors; then HEAD is read as it is, without bounds of a level, if its values are right. Beyond max_work nothing else is judged. */
 void ted4_collect_head(ted4_collector *c, const ted4_chunk_place *p)
 {
     const size_t size = p->end - p->payload, kept = size < HEAD_BYTES ? size : HEAD_BYTES;
@@ -102,6 +102,10 @@ void ted4_collect_head(ted4_collector *c, const ted4_chunk_place *p)
         return;
     c->d.s->level = TED4_LEVEL_UNBOUNDED;
     ted4_decoder_chunk(&c->d, p);
+    if (c->d.file.base.error.code == TED4_E_LIMIT_WORK) {
+        (void)ted4_collect_error(c);
+        c->head = 0;
+    }
     c->d.file.base.error.code = TED4_OK;
 }
 
