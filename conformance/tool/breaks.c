@@ -123,8 +123,11 @@ static void insert(conf_stream *s, const conf_line *l)
     } else if (conf_word_is(l, 5, "hex")) {
         hex_bytes(l, 6, &c->payload);
     } else {
-        for (long long n = conf_line_number(l, 5, 0, 1 << 24); n > 0; n--)
-            conf_add(&c->payload, "", 1);
+        static const uint8_t zero[1 << 16];
+        long long            n = conf_line_number(l, 5, 0, 1 << 28);
+
+        for (; n > 0; n -= (long long)sizeof zero)
+            conf_add(&c->payload, zero, n < (long long)sizeof zero ? (size_t)n : sizeof zero);
     }
 }
 

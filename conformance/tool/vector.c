@@ -2,7 +2,7 @@
  *     category CATEGORY/AREA               folder of the vector
  *     intent TEXT; rules R-...; bug TYPE EFFECT
  *     query NUM/DEN X Y Z                  repeated; a valid vector without one gets three; knob NAME VALUE
- *     demand                               only the descriptor is kept
+ *     demand [large]                       only the descriptor is kept
  *     kept                                 the file is the one that is there: it came out of a training and cannot be made again everywhere
  *     expect valid | invalid ID at WHERE | unsupported ID at WHERE | limit ID
  *     also limit                           a decoder may refuse with a limit before it comes to that error
@@ -219,7 +219,7 @@ static int refused(const conf_recipe *r)
 
 int conf_vector_make(conf_vector *v, const conf_recipe *r, const char *suite)
 {
-    const conf_line *const bug = conf_line_find(r, "bug"), *const saved = conf_line_find(r, "salvage");
+    const conf_line *const bug = conf_line_find(r, "bug"), *const saved = conf_line_find(r, "salvage"), *const demand = conf_line_find(r, "demand");
     json_t *const  knobs = knob_of(r);
     conf_bytes     valid;
     conf_stream    s;
@@ -248,8 +248,8 @@ int conf_vector_make(conf_vector *v, const conf_recipe *r, const char *suite)
     json_object_set_new(d, "expect", expected(r, &s));
     if (saved != NULL)
         json_object_set_new(d, "salvage", conf_salvage(saved, &valid, &s, json_object_get(d, "expect"), json_object_get(d, "queries")));
-    if (conf_line_find(r, "demand") != NULL)
-        json_object_set_new(d, "demand", json_true());
+    if (demand != NULL)
+        json_object_set_new(d, "demand", conf_word_is(demand, 1, "large") ? json_string("large") : json_true());
     json_object_set_new(d, "origin", json_pack("{s:s, s:s}", "generator", "ted4conf gen", "recipe", r->file));
     json_object_set_new(d, "license", json_string("CC0-1.0"));
     answer = (saved != NULL ? conf_answer_lenient : conf_answer)(&v->file, json_object_get(d, "queries"), conf_knobs_of(d));
