@@ -1,5 +1,6 @@
 /* breaks.c - `do ...`: one change to a file taken apart. Sizes and hashes follow by themselves, unless they are what is broken.
  *     do patch ELEMENT VALUE [WIDTH]       its bytes; WIDTH: bytes, found from the element that follows without it
+ *     do patch-all NAME VALUE              every entry of an array
  *     do flip ELEMENT                      the lowest bit of its first byte
  *     do insert REF|end TYPE FLAGS N | text ... | hex XX...      a chunk before another one: N zeros, or a text, as payload
  *     do insert-many REF TYPE N            N ancillary chunks without payload
@@ -77,6 +78,13 @@ static void patch(conf_stream *s, const conf_line *l)
     const conf_element *const e = conf_stream_element(s, l, l->word[2]);
 
     store(bytes_of(s, e), width_of(l, e), (uint32_t)conf_line_number(l, 3, INT32_MIN, UINT32_MAX));
+}
+
+static void patch_all(conf_stream *s, const conf_line *l)
+{
+    for (size_t i = 0; i < s->n_elements; i++)
+        if (strcmp(s->element[i].name, l->word[2]) == 0)
+            store(bytes_of(s, &s->element[i]), width_of(l, &s->element[i]), (uint32_t)conf_line_number(l, 3, 0, UINT32_MAX));
 }
 
 static void flip(conf_stream *s, const conf_line *l)
@@ -368,7 +376,7 @@ static int plain_line(conf_stream *s, const conf_line *l, const char *what)
         const char *word;
         void      (*run)(conf_stream *s, const conf_line *l);
     } table[] = {
-        { "patch", patch }, { "flip", flip }, { "insert", insert }, { "insert-many", insert_many }, { "cut", cut }, { "append", append },
+        { "patch", patch }, { "patch-all", patch_all }, { "flip", flip }, { "insert", insert }, { "insert-many", insert_many }, { "cut", cut }, { "append", append },
         { "tail", tail }, { "set-bias", set_bias }, { "copy-position", copy_position }, { "pack-zeros", pack_zeros },
     };
 

@@ -181,12 +181,13 @@ static int cover(int argc, char **argv)
     return optind < argc ? usage("cover takes no operand") : conf_cover_run(&o);
 }
 
-enum { REPLAY_SUITE, REPLAY_LIST, REPLAY_STOP, REPLAY_HELP, REPLAY_VERSION, REPLAY_OPTIONS };
+enum { REPLAY_SUITE, REPLAY_LIST, REPLAY_STOP, REPLAY_VALIDATE, REPLAY_HELP, REPLAY_VERSION, REPLAY_OPTIONS };
 
 static const ted4_argument replay_table[REPLAY_OPTIONS] = {
     [REPLAY_SUITE]   = { 's', "suite", "DIR", "folder with vectors/. Default conformance" },
     [REPLAY_LIST]    = { 'l', "list", "FILE", "only the vectors that it names, one a line" },
     [REPLAY_STOP]    = { 0, "stop", NULL, "at the first failure" },
+    [REPLAY_VALIDATE] = { 0, "validate", NULL, "also ask our validator" },
     [REPLAY_HELP]    = TED4_ARGUMENT_HELP,
     [REPLAY_VERSION] = TED4_ARGUMENT_VERSION,
 };
@@ -196,7 +197,7 @@ static int replay(int argc, char **argv)
     static const ted4_command command = { "ted4conf replay", "[options]", "Our own decoder against the suite, in one process.", replay_table,
                                           REPLAY_OPTIONS, "Exit codes: 0 all pass, 1 not, 3 usage.\n", NULL };
     const char *value, *suite = "conformance", *list = NULL;
-    int         stop = 0;
+    int         stop = 0, validate = 0;
 
     for (int i; (i = ted4_arguments_next(&command, argc, argv, &value)) != TED4_ARGUMENTS_END;)
         switch (i) {
@@ -204,9 +205,10 @@ static int replay(int argc, char **argv)
         case TED4_ARGUMENTS_DONE: return 0;
         case REPLAY_SUITE: suite = value; break;
         case REPLAY_LIST:  list = value; break;
-        default:           stop = 1;
+        case REPLAY_STOP:  stop = 1; break;
+        default:           validate = 1;
         }
-    return optind < argc ? usage("replay takes no operand") : conf_replay(suite, list, stop);
+    return optind < argc ? usage("replay takes no operand") : conf_replay(suite, list, stop, validate);
 }
 
 enum { MUTANTS_SUITE, MUTANTS_VECTORS, MUTANTS_BUILD, MUTANTS_COMPILE, MUTANTS_LIBRARIES, MUTANTS_ONLY, MUTANTS_JOBS, MUTANTS_TIMEOUT, MUTANTS_HELP,
