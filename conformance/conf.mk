@@ -34,7 +34,7 @@ conformance-branches: $B/ted4conf
 	$(MAKE) B=build-gcov CC=gcc OPT=-O0 CFLAGS=--coverage LDFLAGS=--coverage build-gcov/ted4conf
 	$B/ted4conf gen --demand -o build-gcov/suite/vectors
 	find build-gcov -name '*.gcda' -delete
-	build-gcov/ted4conf replay --suite build-gcov/suite
+	build-gcov/ted4conf replay --validate --suite build-gcov/suite
 	TED4_KERNEL=plain build-gcov/ted4conf replay --suite build-gcov/suite
 	sh conformance/branches.sh build-gcov
 

@@ -1,8 +1,9 @@
 /* fz_decode.c - any bytes to the strict decoder, under knobs that up to two bytes behind the chunk ENDS select: order in which tiles run, trace,
- * place in memory, bound of memory, kernel.
+ * place in memory, bounds of memory and of work, kernel.
  * Claims: it returns one verdict; a refusal has an offset inside the file; the same verdict, offset and hash come out whatever the knobs say,
- * but for limit.memory under a tighter bound; no more memory is held than the bound says, nor than size and level allow (SECURITY.md), and all
- * of it is given back; the input is left alone.
+ * but for limit.memory under a tighter bound; limit.work is said of a file exactly when pass 1 and HEAD are right and W_E (spec 13.4) is above what is
+ * allowed; no more memory is held than the bound says, nor than size and level allow (SECURITY.md), and all of it is given back; the input is left
+ * alone.
  * SPDX-License-Identifier: BSD-2-Clause */
 #include <string.h>
 #include "base/bytes.h"
@@ -11,8 +12,9 @@
 #include "mend.h"
 #include "norm/limits.h"
 #include "order.h"
+#include "read/container.h"
 
-enum { KNOB_BYTES = 2, TRACE = 4, PLAIN = 1 };
+enum { KNOB_BYTES = 2, TRACE = 4, WORK = 8, PLAIN = 1 };
 
 /* What a decoder says of a file. */
 typedef struct {
@@ -53,6 +55,32 @@ static uint64_t bound_of(uint8_t knob)
     return knob >> 4 == 0 ? FUZZ_MAX_BYTES : (uint64_t)1 << (9 + (knob >> 4));
 }
 
+/* From 2^10 steps on. */
+static uint64_t work_bound_of(const uint8_t *knob)
+{
+    return knob[0] & WORK ? (uint64_t)1 << (10 + (knob[1] >> 4)) : 0;
+}
+
+/* W_E, or 0: pass 1 or HEAD is not right. */
+static uint64_t work_of(const uint8_t *data, size_t size)
+{
+    ted4_reader      whole, head;
+    ted4_chunk_place p;
+    ted4_header      h;
+    ted4_shape       shape;
+
+    memset(&h, 0, sizeof h);
+    ted4_reader_init(&whole, data, 0, size, 1);
+    ted4_container_check(&whole);
+    if (whole.base.error.code != TED4_OK)
+        return 0;
+    ted4_reader_init(&whole, data, TED4_FILE_HEADER_SIZE, size, 1);
+    p = ted4_container_next(&whole);
+    ted4_reader_init(&head, data, p.payload, p.end, 0);
+    ted4_walk_header(&head.base, &h, &shape, data[11], size);
+    return head.base.error.code == TED4_OK ? ted4_count_work(&h, &shape, size) : 0;
+}
+
 /* The bound of SECURITY.md. data[11] is the level. */
 static uint64_t most_memory(const uint8_t *data, size_t size)
 {
@@ -64,9 +92,13 @@ static uint64_t most_memory(const uint8_t *data, size_t size)
     return ((uint64_t)4 << 20) + per_byte * size;
 }
 
-static void same(const outcome *a, const outcome *b, int tighter)
+/* too_much: a limit on work forbids the file. */
+static void same(const outcome *a, const outcome *b, int tighter, int too_much)
 {
     if (tighter && b->code == TED4_E_LIMIT_MEMORY)
+        return;
+    fuzz_require((b->code == TED4_E_LIMIT_WORK) == too_much, "limit.work by the formula");
+    if (too_much)
         return;
     fuzz_require(a->code == b->code && a->e.offset == b->e.offset, "one verdict under all knobs");
     fuzz_require(memcmp(a->info.hash, b->info.hash, sizeof a->info.hash) == 0, "one hash under all knobs");
@@ -91,13 +123,14 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
     o.parallel = (knob[0] & 3) != 0 ? &parallel : NULL;
     o.trace = knob[0] & TRACE ? count_element : NULL;
     o.trace_user = &last;
+    o.max_work = work_bound_of(knob);
     memcpy(copy + knob[1] / 2 % 64, data, n);
     order_kernel(knob[1] & PLAIN);
     b = decode(copy + knob[1] / 2 % 64, n, &o);
     order_kernel(0);
     fuzz_require(memory.held == 0 && memory.most <= o.max_bytes, "no more memory than allowed");
     fuzz_require(last <= n && memcmp(copy + knob[1] / 2 % 64, data, n) == 0, "input left alone");
-    same(&a, &b, o.max_bytes < FUZZ_MAX_BYTES);
+    same(&a, &b, o.max_bytes < FUZZ_MAX_BYTES, o.max_work > 0 && work_of(data, n) > o.max_work);
     free(copy);
     return 0;
 }

@@ -24,6 +24,7 @@ typedef struct {
     ted4_allocator       allocator;
     const ted4_parallel *parallel;      /* borrowed during the call; NULL: one thread */
     uint64_t             max_bytes;     /* of memory the scene may take; 0: 4 GiB. Above: limit.memory */
+    uint64_t             max_work;      /* steps of spec 13.4 that a file, or a query, may ask for; 0: any. Above: limit.work */
     void (*trace)(void *user, size_t offset, const char *element, int64_t index, int64_t value);
     void  *trace_user;                  /* trace: called for every syntax element, in order, on one thread; NULL: off */
 } ted4_options;
@@ -39,7 +40,7 @@ void ted4_scene_free(ted4_scene *s);    /* NULL is fine */
 /* What a lenient decoder has got out of a file. */
 typedef struct {
     ted4_error verdict;                 /* of the strict decoder */
-    ted4_error stop;                    /* the first error in the order of the file, where decoding ended; or what memory did not allow */
+    ted4_error stop;                    /* the first error in the order of the file, where decoding ended; or the limit that was met */
     uint32_t   n_tiles;                 /* that the scene holds: the first ones, whole */
     uint32_t   tiles_declared, anchors_declared;    /* by HEAD; 0 where that is not right */
 } ted4_salvage;
@@ -88,7 +89,7 @@ typedef void ted4_sink(void *user, const void *bytes, size_t size);
 /* T0 of a file; decodes it, and what was given is to be thrown away unless this is TED4_OK. o may be NULL; its trace is not called. */
 ted4_status ted4_dump_syntax(const void *data, size_t size, const ted4_options *o,
                              ted4_sink *sink, void *user, ted4_error *e);
-/* T1 to T4 of a decoded scene, tier = 1 .. 4. TED4_OK or TED4_E_LIMIT_MEMORY. o may be NULL. */
+/* T1 to T4 of a decoded scene, tier = 1 .. 4. TED4_OK or TED4_E_LIMIT_MEMORY. max_work of o does not count; o may be NULL. */
 ted4_status ted4_dump_tier(const ted4_scene *s, int tier, const ted4_options *o,
                            ted4_sink *sink, void *user);
 
@@ -108,7 +109,8 @@ typedef struct {
 
 typedef struct ted4_recon ted4_recon;   /* attributes dequantised and networks laid out for queries */
 
-/* Keeps no reference to s. TED4_OK or TED4_E_LIMIT_MEMORY. allocator and max_bytes of o count; o may be NULL. */
+/* Keeps no reference to s. TED4_OK, TED4_E_LIMIT_MEMORY, or TED4_E_LIMIT_WORK: each query would take more than max_work. allocator, parallel,
+ * max_bytes and max_work of o count; o may be NULL. */
 ted4_status ted4_recon_new(ted4_recon **r, const ted4_scene *s,
                            const ted4_options *o);
 void        ted4_recon_free(ted4_recon *r);

@@ -19,7 +19,7 @@ tolerance: $B/ted4tolerance
 .PHONY: tolerance
 $B/tests/test_tolerance: | $B/ted4tolerance $B/ted4dec
 
-# Counted by the test: hashing, inflating, networks, searches.
-RESOURCES_COUNTED = XXH3_64bits inflate ted4_prior_hyper ted4_prior_slice ted4_prior_load ted4_gauss_find
+# Counted by the test: hashing, inflating, networks, searches; layers of Tier R.
+RESOURCES_COUNTED = XXH3_64bits inflate ted4_prior_hyper ted4_prior_slice ted4_prior_load ted4_gauss_find ted4_select_strict_dense
 $B/tests/test_resources: $B/tests/test_resources.o $B/libted4enc.a $B/libted4dec.a
 	$(CC) -fopenmp $(LDFLAGS) $(RESOURCES_COUNTED:%=-Wl,--wrap=%) $^ -o $@ -lcmocka $(LIBS)

@@ -263,7 +263,7 @@ static void memory_runs_out(void **state)
     ted4_scene *s = random_scene(8), *t;
     const file  f = encode(s, NULL);
     counter     c = { 0, 0, 0 };
-    ted4_options o = { { count_alloc, count_free, &c }, NULL, 0, NULL, NULL };
+    ted4_options o = { .allocator = { count_alloc, count_free, &c } };
     ted4_error  e;
     long        n;
 

@@ -219,6 +219,19 @@ static void missing_vectors(void **state)
     assert_non_null(strstr(last, " 1 passed, 0 failed, 0 without answer, 1 missing"));
 }
 
+/* A list that holds another one, and lists in a circle. */
+static void lists(void **state)
+{
+    static const char folder[] = "conformance/tests";
+    char last[1024];
+
+    (void)state;
+    assert_int_equal(conf(last, sizeof last, "replay -l %s/nested.txt", folder), 0);
+    assert_string_equal(last, "9 run, 0 failed\n");
+    assert_int_equal(conf(last, sizeof last, "replay -l %s/circle.txt", folder), 3);
+    assert_non_null(strstr(last, "circle.txt: cannot be read"));
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -233,6 +246,7 @@ int main(void)
         cmocka_unit_test(declining),
         cmocka_unit_test(left_behind),
         cmocka_unit_test(missing_vectors),
+        cmocka_unit_test(lists),
     };
 
     return cmocka_run_group_tests(tests, NULL, NULL);

@@ -238,6 +238,23 @@ static void memory(void **state)
     assert_null(s);
 }
 
+/* Nor of what a limit on work forbids. */
+static void work(void **state)
+{
+    const truth       *f = &file[5];
+    const ted4_options o = { .max_work = f->size };
+    ted4_salvage       what;
+    ted4_scene        *s;
+
+    (void)state;
+    assert_int_equal(ted4_decode_lenient(f->data, f->tile_end[2] + 3, &o, &s, &what), TED4_E_CON_TRUNCATED);
+    assert_null(s);
+    assert_int_equal(what.stop.code, TED4_E_LIMIT_WORK);
+    assert_int_equal(ted4_decode_lenient(f->data, f->size, &o, &s, &what), TED4_E_LIMIT_WORK);
+    assert_null(s);
+    assert_int_equal(what.stop.code, TED4_E_LIMIT_WORK);
+}
+
 /* ted4dec: with warnings when something was saved, refused when nothing was, or when it was not asked to. */
 static void program(void **state)
 {
@@ -263,6 +280,12 @@ static void program(void **state)
     json_decref(o);
     assert_int_equal(run_json("ted4dec --json -q --lenient --test", f->data, f->tile_end[0] - 1, &o), 1);
     json_decref(o);
+    assert_int_equal(run_json("ted4dec --json -q --max-work 5000 --test", f->data, f->size, &o), 3);
+    assert_string_equal(json_string_value(json_object_get(o, "error")), "limit.work");
+    json_decref(o);
+    assert_int_equal(run_json("ted4dec --json -q --max-memory 5000 --test", f->data, f->size, &o), 3);
+    assert_string_equal(json_string_value(json_object_get(o, "error")), "limit.memory");
+    json_decref(o);
     assert_int_equal(run_json("ted4dec --json -q --lenient --test", f->data, f->size, &o), 0);
     assert_string_equal(json_string_value(json_object_get(o, "verdict")), "valid");
     json_decref(o);
@@ -272,7 +295,7 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(truncations), cmocka_unit_test(whole_files), cmocka_unit_test(damage),
-        cmocka_unit_test(queries), cmocka_unit_test(memory), cmocka_unit_test(program),
+        cmocka_unit_test(queries), cmocka_unit_test(memory), cmocka_unit_test(work), cmocka_unit_test(program),
     };
 
     return cmocka_run_group_tests(tests, setup, teardown);

@@ -1,5 +1,6 @@
 /* test_resources.c - spec 13.3, 13.4: what the decoder takes and does, counted, for every vector of the suite (bombs among them), for random headers, and for
- * scenes of few and of many tiles: memory within M_E and within what the bytes have paid for (R-LVL-005), work within a constant times W_E.
+ * scenes of few and of many tiles: memory within M_E and within what the bytes have paid for (R-LVL-005), work within a constant times W_E, for queries
+ * W_R; and under max_work next to none before a file is refused, exactly when W_E is larger (R-LVL-008).
  * The functions that do the work are wrapped by the linker (strict.mk).
  * SPDX-License-Identifier: BSD-2-Clause */
 #include <setjmp.h>
@@ -11,6 +12,7 @@
 #define ZLIB_CONST
 #include <zlib.h>
 #include "../fuzz/counting.h"
+#include "kernel/strict_dense.h"
 #include "norm/limits.h"
 #include "random_scene.h"
 #include "read/container.h"
@@ -38,6 +40,7 @@ void         __real_ted4_prior_slice(const ted4_prior *p, unsigned m, const int1
 void         __wrap_ted4_prior_slice(const ted4_prior *p, unsigned m, const int16_t *ctx, size_t n, int32_t *out);
 uint32_t     __real_ted4_gauss_find(unsigned g, int32_t fr, uint32_t slot, ted4_slots *slots);
 uint32_t     __wrap_ted4_gauss_find(unsigned g, int32_t fr, uint32_t slot, ted4_slots *slots);
+ted4_strict_dense_fn __wrap_ted4_select_strict_dense(void);
 ted4_status  __real_ted4_prior_load(ted4_prior *p, const float *nete, const uint8_t *shift, ted4_error *e);
 ted4_status  __wrap_ted4_prior_load(ted4_prior *p, const float *nete, const uint8_t *shift, ted4_error *e);
 
@@ -87,6 +90,18 @@ uint32_t __wrap_ted4_gauss_find(unsigned g, int32_t fr, uint32_t slot, ted4_slot
 {
     work++;
     return __real_ted4_gauss_find(g, fr, slot, slots);
+}
+
+/* Products, for all 32 anchors of a row. */
+static void counted_dense(const ted4_strict_layer *l, const float *x, float *y)
+{
+    work += (uint64_t)TED4_ROW * l->in * l->out;
+    ted4_strict_dense_plain(l, x, y);
+}
+
+ted4_strict_dense_fn __wrap_ted4_select_strict_dense(void)
+{
+    return counted_dense;
 }
 
 /* Every value is looked at. */
@@ -141,6 +156,58 @@ static uint64_t work_bound(const ted4_header *h, const ted4_shape *s, uint64_t b
     return b + 4 * values(s) + n * (ted4_count_products(h, s) + s->n_outputs) + symbols;
 }
 
+/* W_R of 13.4 */
+static uint64_t query_bound(const ted4_scene *s)
+{
+    ted4_info info;
+    uint64_t  products = 0;
+
+    ted4_scene_info(s, &info);
+    for (int i = 0; i < TED4_NETS_R; i++)
+        products += products_of(&s->shape.netr[i]);
+    return s->head.n_anchors * products + 20 * (uint64_t)info.n_gaussians;
+}
+
+/* Rows hold 32 anchors, and those that move have rows of their own. Gives the work of a query. */
+static uint64_t hold_query(const ted4_scene *s, const char *name)
+{
+    static const ted4_query q = { 1, 2, { 0, 0, 0 } };
+    ted4_options   o = { .max_work = query_bound(s) };
+    ted4_recon    *r;
+    ted4_gaussians g;
+
+    work = 0;
+    assert_int_equal(ted4_recon_new(&r, s, &o), TED4_OK);
+    (void)ted4_recon_query(r, &q, NULL, &g);
+    ted4_recon_free(r);
+    if (work > 2 * WORK_CONSTANT * o.max_work)
+        fail_msg("%s: %zu steps of a query", name, (size_t)work);
+    o.max_work--;
+    assert_int_equal(ted4_recon_new(&r, s, &o), TED4_E_LIMIT_WORK);
+    assert_null(r);
+    return work;
+}
+
+/* A file that asks for one step more than it may: only pass 1 and HEAD have been looked at. */
+static void hold_refused(const uint8_t *data, size_t size, uint64_t bound, ted4_status verdict, const char *name)
+{
+    counting_memory memory = { 0 };
+    ted4_options    o = { .allocator = counting_allocator(&memory), .max_work = bound };
+    ted4_scene     *s;
+
+    if (verdict == TED4_OK) {
+        assert_int_equal(ted4_decode(data, size, &o, &s, NULL), TED4_OK);
+        ted4_scene_free(s);
+    }
+    o.max_work--;
+    memory = (counting_memory){ 0 };
+    work = 0;
+    if (ted4_decode(data, size, &o, &s, NULL) != TED4_E_LIMIT_WORK && verdict == TED4_OK)
+        fail_msg("%s: not refused", name);
+    if (work > size || memory.most > 1 << 16 || memory.held > 0)
+        fail_msg("%s: %zu steps, %zu bytes of what is refused", name, (size_t)work, (size_t)memory.most);
+}
+
 static void hold(const uint8_t *data, size_t size, const char *name)
 {
     counting_memory memory = { 0 };
@@ -149,15 +216,22 @@ static void hold(const uint8_t *data, size_t size, const char *name)
     ted4_shape      shape;
     ted4_scene     *s;
     const int       known = head_of(data, size, &h, &shape);
+    ted4_status     verdict;
+    uint64_t        did;
 
     work = 0;
-    (void)ted4_decode(data, size, &o, &s, NULL);
+    verdict = ted4_decode(data, size, &o, &s, NULL);
+    did = work;
+    if (verdict == TED4_OK)
+        (void)hold_query(s, name);
     ted4_scene_free(s);
     if (memory.most > free_bytes + paid_by_byte * size || (known && memory.most > memory_bound(&h, &shape, size)))
         fail_msg("%s: %zu bytes of memory", name, (size_t)memory.most);
-    if (known ? work > WORK_CONSTANT * work_bound(&h, &shape, size) : work > size)
-        fail_msg("%s: %zu steps", name, (size_t)work);
+    if (known ? did > WORK_CONSTANT * work_bound(&h, &shape, size) : did > size)
+        fail_msg("%s: %zu steps", name, (size_t)did);
     assert_int_equal(memory.held, 0);
+    if (known)
+        hold_refused(data, size, work_bound(&h, &shape, size), verdict, name);
 }
 
 /* ---- tests ---- */
@@ -234,10 +308,27 @@ static void tight(void **state)
     free(data);
 }
 
+/* The same of a query of a scene all of whose anchors move. */
+static void tight_query(void **state)
+{
+    random_source r = random_seed(22);
+    ted4_header   h = random_paper_header(2048);
+    ted4_scene   *s;
+    uint64_t      did;
+
+    (void)state;
+    h.temporal_mask = 0;
+    s = random_scene_of(&r, &h, 0);
+    did = hold_query(s, "tight");
+    assert_true(did < query_bound(s));
+    assert_true(did > query_bound(s) * 9 / 10);
+    ted4_scene_free(s);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(vectors), cmocka_unit_test(random_headers), cmocka_unit_test(tight),
+        cmocka_unit_test(vectors), cmocka_unit_test(random_headers), cmocka_unit_test(tight), cmocka_unit_test(tight_query),
     };
 
     return cmocka_run_group_tests(tests, NULL, NULL);

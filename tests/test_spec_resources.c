@@ -1,5 +1,5 @@
-/* test_spec_resources.c - the formulas of spec 13.3, as the text prints them, against what decoding and queries take: a budget of M_E and M_R is enough, and
- * the elements of HEAD are traced in the order, width and name of the table of 6.1, all others under names of annex J.
+/* test_spec_resources.c - the formulas of spec 13.3 and 13.4, as the text prints them, against what decoding and queries take: a budget of M_E and M_R is
+ * enough, W_E and W_R are what a limit on work is held against, to the step, and the elements of HEAD are traced in the order, width and name of the table of 6.1, all others under names of annex J.
  * SPDX-License-Identifier: BSD-2-Clause */
 #include "spec_model.h"                 /* first: fail() is a function there */
 #include <setjmp.h>
@@ -61,6 +61,54 @@ static void memory(void **state)
         free(data);
     }
     ted4_threads_finish(&p);
+}
+
+/* A scene decoded and queried under limits on work that follow from its header. */
+static void works(const uint8_t *data, size_t size)
+{
+    spec_model   m = { .n_blocks = 0 };
+    ted4_options o = { .max_work = 0 };
+    uint64_t     a_e = 0, a_r = 0, least;
+    ted4_scene  *s;
+    ted4_recon  *r;
+    ted4_error   e;
+    ted4_info    info;
+
+    spec_model_decode(&m, data, size);
+    for (int i = 0; i < m.s.h.n_slices; i++)
+        a_e += spec_products(&m.net_e[i]);
+    for (int i = 0; i < NETS_R; i++)
+        a_r += spec_products(&m.net_r[i]);
+    least = work_e(&m.s.h, size, m.n_nete + m.n_netr + m.n_bank, a_e);
+    o.max_work = least - 1;
+    assert_int_equal(ted4_decode(data, size, &o, &s, &e), TED4_E_LIMIT_WORK);
+    assert_null(s);
+    o.max_work = least;
+    assert_int_equal(ted4_decode(data, size, &o, &s, &e), TED4_OK);
+    ted4_scene_info(s, &info);
+    least = work_r(&m.s.h, a_r, info.n_gaussians);
+    o.max_work = least - 1;
+    assert_int_equal(ted4_recon_new(&r, s, &o), TED4_E_LIMIT_WORK);
+    assert_null(r);
+    o.max_work = least;
+    assert_int_equal(ted4_recon_new(&r, s, &o), TED4_OK);
+    ted4_recon_free(r);
+    ted4_scene_free(s);
+    spec_model_free(&m);
+}
+
+static void work(void **state)
+{
+    (void)state;
+    for (uint64_t seed = 0; seed < N_SCENES; seed++) {
+        ted4_scene *s = random_scene(seed);
+        size_t      size;
+        uint8_t    *data = encoded(s, &size);
+
+        works(data, size);
+        ted4_scene_free(s);
+        free(data);
+    }
 }
 
 /* Elements of HEAD as 6.1 lists them for one header. */
@@ -159,7 +207,7 @@ static void syntax(void **state)
 
 int main(void)
 {
-    const struct CMUnitTest tests[] = { cmocka_unit_test(memory), cmocka_unit_test(syntax) };
+    const struct CMUnitTest tests[] = { cmocka_unit_test(memory), cmocka_unit_test(work), cmocka_unit_test(syntax) };
 
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -12,7 +12,7 @@ enum { TIERS = 6, MAX_QUERIES = 1 << 16, BAD = 3 };
 typedef struct {
     const char *input, *queries;
     int         tier[TIERS];    /* asked for? */
-    uint64_t    max_bytes;
+    uint64_t    max_bytes, max_work;
 } request;
 
 typedef struct {
@@ -29,9 +29,9 @@ static int usage(const char *why)
 static int capabilities(const ted4_adapter *a)
 {
     printf("{\"protocol\":1,\"name\":\"%s\",\"version\":\"%s\",\"spec\":\"1.0\",\"profiles\":[\"Main\"],\"max_level\":%d,"
-           "\"tiers\":[\"T0\",\"T1\",\"T2\",\"T3\",\"T4\"%s],\"class\":%s,\"strict\":true,\"declines\":[],\"knobs\":[%s]}\n",
+           "\"tiers\":[\"T0\",\"T1\",\"T2\",\"T3\",\"T4\"%s],\"class\":%s,\"strict\":true,\"declines\":[],\"knobs\":[%s%s%s]}\n",
            a->name, a->version, a->max_level, a->class_x ? ",\"T5\"" : "", a->class_x ? "\"X\"" : "null",
-           a->bounded ? "\"max_alloc_total\"" : "");
+           a->bounded ? "\"max_alloc_total\"" : "", a->bounded && a->bounded_work ? "," : "", a->bounded_work ? "\"max_work\"" : "");
     return 0;
 }
 
@@ -64,7 +64,7 @@ static int read_file(file *f, const char *path)
 
 static int parse(request *r, int argc, char **argv)
 {
-    static const char knob[] = "max_alloc_total=";
+    static const char memory[] = "max_alloc_total=", work[] = "max_work=";
 
     memset(r, 0, sizeof *r);
     if (argc < 3 || strcmp(argv[1], "--ted4-run") != 0)
@@ -75,8 +75,10 @@ static int parse(request *r, int argc, char **argv)
 
         if (strcmp(argv[i], "--queries") == 0)
             r->queries = value;
-        else if (strcmp(argv[i], "--knob") == 0 && strncmp(value, knob, sizeof knob - 1) == 0)
-            r->max_bytes = strtoull(value + sizeof knob - 1, NULL, 10);
+        else if (strcmp(argv[i], "--knob") == 0 && strncmp(value, memory, sizeof memory - 1) == 0)
+            r->max_bytes = strtoull(value + sizeof memory - 1, NULL, 10);
+        else if (strcmp(argv[i], "--knob") == 0 && strncmp(value, work, sizeof work - 1) == 0)
+            r->max_work = strtoull(value + sizeof work - 1, NULL, 10);
         else if (strcmp(argv[i], "--tiers") != 0)
             return -1;
         for (const char *t = value; strcmp(argv[i], "--tiers") == 0 && t != NULL; t = strchr(t, ',') != NULL ? strchr(t, ',') + 1 : NULL)
@@ -209,7 +211,7 @@ static int run(const ted4_adapter *a, const request *r)
         printf("{\"result\":\"io\",\"error\":\"io.read\"}\n");
         return 0;
     }
-    scene = a->decode(f.data, f.size, r->max_bytes, &v);
+    scene = a->decode(f.data, f.size, r->max_bytes, r->max_work, &v);
     if (scene != NULL)
         bad = print_valid(a, r, scene);
     else if (strcmp(v.result, "limit") == 0)

@@ -21,9 +21,10 @@ typedef struct {
     const char *name, *version;
     int         max_level;      /* 1 .. 4, 31 */
     int         class_x;        /* 1: class X; 0: no T5 */
-    int         bounded;        /* 1: decode keeps max_bytes; else vectors that need that knob are left out */
-    /* data stays until release. max_bytes: of memory, 0: no bound. Of a valid file a scene that is not NULL, of another one NULL. */
-    void      *(*decode)(const uint8_t *data, size_t size, uint64_t max_bytes, ted4_adapter_verdict *v);
+    int         bounded, bounded_work;  /* 1: decode keeps max_bytes, max_work; else vectors that need that knob are left out */
+    /* data stays until release. max_bytes: of memory; max_work: of steps (spec 13.4); 0: no bound. Of a valid file a scene that is not NULL, of
+     * another one NULL. */
+    void      *(*decode)(const uint8_t *data, size_t size, uint64_t max_bytes, uint64_t max_work, ted4_adapter_verdict *v);
     /* T0 to T4 of annex J. 0, or -1: no memory. */
     int        (*tier)(void *scene, int tier, ted4_adapter_sink *sink, void *user);
     /* T5 of a query: NULL, or the identifier of why it has no result. May be NULL without class X. */

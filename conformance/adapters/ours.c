@@ -22,10 +22,10 @@ static void release(void *scene)
     free(o);
 }
 
-static void *decode(const uint8_t *data, size_t size, uint64_t max_bytes, ted4_adapter_verdict *v)
+static void *decode(const uint8_t *data, size_t size, uint64_t max_bytes, uint64_t max_work, ted4_adapter_verdict *v)
 {
     static const char *const name[] = { "valid", "invalid", "limit", "unsupported", "io" };
-    const ted4_options limit = { .max_bytes = max_bytes };
+    const ted4_options limit = { .max_bytes = max_bytes, .max_work = max_work };
     opened      *o = calloc(1, sizeof *o);
     ted4_error   e = { TED4_E_LIMIT_MEMORY, 0 };
 
@@ -64,7 +64,7 @@ static const char *query(void *scene, uint32_t num, uint32_t den, const float ca
 
 int main(int argc, char **argv)
 {
-    const ted4_adapter ours = { "adapter-of-libted4dec", TED4_VERSION, 31, ted4_recon_class_x(), 1, decode, tier, query, release };
+    const ted4_adapter ours = { "adapter-of-libted4dec", TED4_VERSION, 31, ted4_recon_class_x(), 1, 1, decode, tier, query, release };
 
     return ted4_adapter_main(&ours, argc, argv);
 }

@@ -13,7 +13,7 @@ from elements import Payload
 from floats import f32_values
 from header import read_header
 from integer_networks import read_networks
-from limits import check_memory
+from limits import check_memory, check_work
 from positions import Positions
 from shapes import layers, tier_r_shapes, values_of
 from tile import Tile
@@ -28,12 +28,13 @@ class Model:
     spans: per chunk, what Payload kept for T0.
     """
 
-    def __init__(self, data, max_memory=None):
+    def __init__(self, data, max_memory=None, max_work=None):
         self.data = data
         self.tiles, self.spans, self.bank = [], [], []
         level, self.chunks = pass_one(data)
         head = Payload(data, self.chunks[0].begin, self.chunks[0].end)
         self.header = h = read_header(head, level, len(data))
+        check_work(h, len(data), max_work)
         head.finish()
         self.spans.append(head.spans)
         check_memory(h, len(data), max_memory)

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: BSD-2-Clause
-"""This decoder's own limit (R-LVL-007): memory, estimated from HEAD before anything of pass 2 is allocated (R-ERR-005)."""
+"""Limits that a caller can set (R-LVL-007): memory, estimated from HEAD before anything of pass 2 is allocated (R-ERR-005), and work (R-LVL-008)."""
 
-from shapes import blob_values
+from shapes import blob_values, hyperprior_shape, products_of_tier_e
 from verdict import require
 
 DEFAULT = 1 << 32
@@ -16,3 +16,10 @@ def check_memory(h, file_bytes, bound):
     symbols = anchors * sum(dim for _, dim in h.types)
     need = PER_VALUE * values + PER_SYMBOL * symbols + PER_BYTE * file_bytes
     require(need <= (DEFAULT if bound is None else bound), "limit.memory", None)
+
+
+def check_work(h, file_bytes, bound):
+    """R-LVL-008: limit.work when W_E of 13.4 is above `bound`; None: no bound."""
+    symbols = h.n_anchors * (sum(dim for _, dim in h.types) + h.n_offsets + 1)
+    steps = file_bytes + 4 * blob_values(h) + h.n_anchors * (products_of_tier_e(h) + hyperprior_shape(h)[-1]) + symbols
+    require(bound is None or steps <= bound, "limit.work", None)

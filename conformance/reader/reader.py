@@ -3,7 +3,7 @@
 """A second TED4 decoder, written from the specification alone: command line.
 
     reader.py --ted4-capabilities
-    reader.py --ted4-run FILE [--tiers T0,T1,...] [--queries FILE.json] [--knob max_alloc_total=BYTES] [--dump DIR]
+    reader.py --ted4-run FILE [--tiers T0,T1,...] [--queries FILE.json] [--knob max_alloc_total=BYTES] [--knob max_work=STEPS] [--dump DIR]
 
 One JSON document on standard output; every verdict on the file, also a refusal, is exit status 0.
 """
@@ -22,7 +22,7 @@ from verdict import Refusal
 from xxh3 import xxh3_128
 
 CAPABILITIES = {"protocol": 1, "name": "ted4-reader", "version": "1.0", "spec": "1.0", "profiles": ["Main"], "max_level": 2,
-                "tiers": ["T0", "T1", "T2", "T3", "T4", "T5"], "class": "X", "strict": True, "declines": [], "knobs": ["max_alloc_total"]}
+                "tiers": ["T0", "T1", "T2", "T3", "T4", "T5"], "class": "X", "strict": True, "declines": [], "knobs": ["max_alloc_total", "max_work"]}
 
 
 def main(arguments):
@@ -42,7 +42,7 @@ def parse(arguments):
     what.add_argument("--ted4-run", metavar="FILE", help="decode the file, or - for standard input")
     parser.add_argument("--tiers", type=tier_list, default=[], metavar="T0,T1,..", help="tiers to hash (annex J)")
     parser.add_argument("--queries", metavar="FILE.json", help='queries of T5: [{"t": [num, den], "cam": [x, y, z]}, ...]')
-    parser.add_argument("--knob", action="append", default=[], type=knob, metavar="NAME=VALUE", help="max_alloc_total=BYTES")
+    parser.add_argument("--knob", action="append", default=[], type=knob, metavar="NAME=VALUE", help="max_alloc_total=BYTES, max_work=STEPS")
     parser.add_argument("--dump", metavar="DIR", help="write the byte strings of the tiers into this folder")
     return parser.parse_args(arguments)
 
@@ -57,7 +57,7 @@ def tier_list(text):
 def knob(text):
     name, _, value = text.partition("=")
     if name not in CAPABILITIES["knobs"] or not value.isdigit():
-        raise argparse.ArgumentTypeError("the only knob is max_alloc_total=BYTES")
+        raise argparse.ArgumentTypeError("knobs are max_alloc_total=BYTES and max_work=STEPS")
     return name, int(value)
 
 
@@ -69,7 +69,8 @@ def run(options):
         print("reader.py: %s" % error, file=sys.stderr)
         return {"result": "io", "error": "io.read"}
     try:
-        model = Model(data, dict(options.knob).get("max_alloc_total"))
+        knobs = dict(options.knob)
+        model = Model(data, knobs.get("max_alloc_total"), knobs.get("max_work"))
     except Refusal as refusal:
         return refusal_answer(refusal)
     except MemoryError:

@@ -6,7 +6,7 @@ import unittest
 from elements import Payload
 from header import ARRAYS, ELEMENTS, FLOATS, read_header
 from levels import LEVELS, check_totals
-from limits import check_memory
+from limits import check_memory, check_work
 from sample import f32, head_payload
 from verdict import Refusal
 
@@ -103,6 +103,19 @@ class Memory(unittest.TestCase):
             self.assertEqual("limit.memory", caught.exception.error)
         h.n_anchors = h.bank_rows = 1 << 31
         check_memory(h, 600, 30000000)
+
+
+class Work(unittest.TestCase):
+    def test_bound(self):
+        """W_E of 13.4 by hand: V = 643, A_E = 348, P = 49, C = 22, K = 2, 100 anchors."""
+        payload = head_payload(MOVING)
+        h = read_header(Payload(payload, 0, len(payload)), 31, 1 << 20)
+        steps = 777 + 4 * 643 + 100 * (348 + 49 + 22 + 2 + 1)
+        check_work(h, 777, None)
+        check_work(h, 777, steps)
+        with self.assertRaises(Refusal) as caught:
+            check_work(h, 777, steps - 1)
+        self.assertEqual("limit.work", caught.exception.error)
 
 
 class Level(unittest.TestCase):

@@ -211,6 +211,7 @@ class CommandLine(unittest.TestCase):
             self.assertEqual(45, answer["tiers"]["T1"]["bytes"])
             self.assertEqual(45, os.path.getsize(os.path.join(folder, "T1.bin")))
             self.assertEqual({"result": "limit", "error": "limit.memory"}, self.run_reader("--ted4-run", path, "--knob", "max_alloc_total=1000"))
+            self.assertEqual({"result": "limit", "error": "limit.work"}, self.run_reader("--ted4-run", path, "--knob", "max_work=%d" % len(data)))
             with open(path, "wb") as file:
                 file.write(data[:100])
             self.assertEqual({"result": "invalid", "error": "con.truncated", "offset": 100}, self.run_reader("--ted4-run", path))

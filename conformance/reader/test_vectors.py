@@ -28,7 +28,8 @@ def chosen():
 def answer(vector, data):
     """As reader.run gives it."""
     try:
-        model = Model(data, vector.get("knobs", {}).get("max_alloc_total"))
+        knobs = vector.get("knobs", {})
+        model = Model(data, knobs.get("max_alloc_total"), knobs.get("max_work"))
     except Refusal as refusal:
         return refusal_answer(refusal), {}
     tiers = {name: describe(string(model), name, None) for name, string in TIERS.items()}

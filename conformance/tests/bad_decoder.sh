@@ -16,7 +16,7 @@ if [ "$1" = --ted4-capabilities ]; then
     not-lenient) good "$@" | sed 's/"lenient":true/"lenient":false/' ;;
     fewer-tiers) good "$@" | sed 's/"tiers":\[[^]]*\],"class":"X"/"tiers":["T0","T3"],"class":null/' ;;
     class-alone) good "$@" | sed 's/,"T5"//' ;;
-    no-knobs) good "$@" | sed 's/"knobs":\["max_alloc_total"\]/"knobs":[]/' ;;
+    no-knobs) good "$@" | sed 's/"knobs":\["max_alloc_total","max_work"\]/"knobs":[]/' ;;
     *) good "$@" ;;
     esac
     exit

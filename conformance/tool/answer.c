@@ -89,9 +89,17 @@ static json_t *answer_of(const conf_bytes *file, ted4_scene *s, const ted4_salva
     return answer;
 }
 
-json_t *conf_answer(const conf_bytes *file, const json_t *queries, uint64_t max_bytes)
+conf_knobs conf_knobs_of(const json_t *descriptor)
 {
-    const ted4_options o = { .max_bytes = max_bytes };
+    const json_t *const knobs = json_object_get(descriptor, "knobs");
+
+    return (conf_knobs){ (uint64_t)json_integer_value(json_object_get(knobs, "max_alloc_total")),
+                         (uint64_t)json_integer_value(json_object_get(knobs, "max_work")) };
+}
+
+json_t *conf_answer(const conf_bytes *file, const json_t *queries, conf_knobs knobs)
+{
+    const ted4_options o = { .max_bytes = knobs.memory, .max_work = knobs.work };
     ted4_salvage what = { .verdict = { TED4_OK, 0 } };
     ted4_scene  *s;
 
@@ -99,9 +107,9 @@ json_t *conf_answer(const conf_bytes *file, const json_t *queries, uint64_t max_
     return answer_of(file, s, &what, queries);
 }
 
-json_t *conf_answer_lenient(const conf_bytes *file, const json_t *queries, uint64_t max_bytes)
+json_t *conf_answer_lenient(const conf_bytes *file, const json_t *queries, conf_knobs knobs)
 {
-    const ted4_options o = { .max_bytes = max_bytes };
+    const ted4_options o = { .max_bytes = knobs.memory, .max_work = knobs.work };
     ted4_salvage what;
     ted4_scene  *s;
 

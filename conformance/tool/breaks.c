@@ -1,5 +1,6 @@
 /* breaks.c - `do ...`: one change to a file taken apart. Sizes and hashes follow by themselves, unless they are what is broken.
  *     do patch ELEMENT VALUE [WIDTH]       its bytes; WIDTH: bytes, found from the element that follows without it
+ *     do patch-all NAME VALUE              every entry of an array
  *     do flip ELEMENT                      the lowest bit of its first byte
  *     do insert REF|end TYPE FLAGS N | text ... | hex XX...      a chunk before another one: N zeros, or a text, as payload
  *     do insert-many REF TYPE N            N ancillary chunks without payload
@@ -79,6 +80,13 @@ static void patch(conf_stream *s, const conf_line *l)
     store(bytes_of(s, e), width_of(l, e), (uint32_t)conf_line_number(l, 3, INT32_MIN, UINT32_MAX));
 }
 
+static void patch_all(conf_stream *s, const conf_line *l)
+{
+    for (size_t i = 0; i < s->n_elements; i++)
+        if (strcmp(s->element[i].name, l->word[2]) == 0)
+            store(bytes_of(s, &s->element[i]), width_of(l, &s->element[i]), (uint32_t)conf_line_number(l, 3, 0, UINT32_MAX));
+}
+
 static void flip(conf_stream *s, const conf_line *l)
 {
     *bytes_of(s, conf_stream_element(s, l, l->word[2])) ^= 1;
@@ -123,8 +131,11 @@ static void insert(conf_stream *s, const conf_line *l)
     } else if (conf_word_is(l, 5, "hex")) {
         hex_bytes(l, 6, &c->payload);
     } else {
-        for (long long n = conf_line_number(l, 5, 0, 1 << 24); n > 0; n--)
-            conf_add(&c->payload, "", 1);
+        static const uint8_t zero[1 << 16];
+        long long            n = conf_line_number(l, 5, 0, 1 << 28);
+
+        for (; n > 0; n -= (long long)sizeof zero)
+            conf_add(&c->payload, zero, n < (long long)sizeof zero ? (size_t)n : sizeof zero);
     }
 }
 
@@ -365,7 +376,7 @@ static int plain_line(conf_stream *s, const conf_line *l, const char *what)
         const char *word;
         void      (*run)(conf_stream *s, const conf_line *l);
     } table[] = {
-        { "patch", patch }, { "flip", flip }, { "insert", insert }, { "insert-many", insert_many }, { "cut", cut }, { "append", append },
+        { "patch", patch }, { "patch-all", patch_all }, { "flip", flip }, { "insert", insert }, { "insert-many", insert_many }, { "cut", cut }, { "append", append },
         { "tail", tail }, { "set-bias", set_bias }, { "copy-position", copy_position }, { "pack-zeros", pack_zeros },
     };
 

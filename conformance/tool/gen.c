@@ -1,10 +1,12 @@
 /* gen.c - see gen.h. A vector is its file and its descriptor, side by side; of one that is made on demand only the descriptor is kept.
+ * What is large is made only when asked for.
  * SPDX-License-Identifier: BSD-2-Clause */
 #include "gen.h"
 
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include "build.h"
 #include "suite.h"
 #include "vector.h"
 
@@ -87,40 +89,62 @@ static void count(generator *g, const char *group, const char *what)
     json_object_set_new(o, what, json_integer(json_integer_value(json_object_get(o, what)) + 1));
 }
 
-static void note(generator *g, const conf_vector *v, int demand)
+/* The descriptor beside its file, and a line of the manifest. */
+static void note(generator *g, json_t *d)
 {
-    const char *const result = json_string_value(json_object_get(json_object_get(v->descriptor, "expect"), "result"));
+    const char *const result = json_string_value(json_object_get(json_object_get(d, "expect"), "result"));
+    const char *const folder = json_string_value(json_object_get(d, "category"));
     json_t           *e = json_object();
+    char              path[CONF_PATH];
 
-    json_object_set(e, "id", json_object_get(v->descriptor, "id"));
-    json_object_set_new(e, "folder", json_string(v->folder));
-    json_object_set(e, "bytes", json_object_get(v->descriptor, "bytes"));
-    json_object_set(e, "sha256", json_object_get(v->descriptor, "sha256"));
+    conf_path(path, "%s/%s/%s.json", g->output, folder, json_string_value(json_object_get(d, "id")));
+    put_json(g, path, d);
+    json_object_set(e, "id", json_object_get(d, "id"));
+    json_object_set_new(e, "folder", json_string(folder));
+    json_object_set(e, "bytes", json_object_get(d, "bytes"));
+    json_object_set(e, "sha256", json_object_get(d, "sha256"));
     json_object_set_new(e, "result", json_string(result));
-    json_object_set(e, "level", json_object_get(v->descriptor, "level"));
-    if (demand)
-        json_object_set_new(e, "demand", json_true());
+    json_object_set(e, "level", json_object_get(d, "level"));
+    if (json_object_get(d, "demand") != NULL)
+        json_object_set(e, "demand", json_object_get(d, "demand"));
     json_array_append_new(g->manifest, e);
     count(g, "result", result);
-    count(g, "folder", v->folder);
+    count(g, "folder", folder);
+}
+
+/* What is large stays as the suite has it. */
+static void keep(generator *g, const conf_recipe *r)
+{
+    char         path[CONF_PATH];
+    json_t      *d;
+    json_error_t why;
+
+    conf_path(path, "%s/vectors/%s/%s.json", g->o->suite, conf_line_find(r, "category")->word[1], r->id);
+    d = json_load_file(path, 0, &why);
+    if (d == NULL)
+        conf_die("%s: %s: gen --large makes it", path, why.text);
+    note(g, d);
+    json_decref(d);
 }
 
 static void make(generator *g, const conf_recipe *r)
 {
-    const int   demand = conf_line_find(r, "demand") != NULL;
-    const char *id = r->id;
+    const conf_line *const demand = conf_line_find(r, "demand");
+    const int              large = demand != NULL && conf_word_is(demand, 1, "large");
     conf_vector v;
     char        path[CONF_PATH];
 
+    if (large && !g->o->large) {
+        keep(g, r);
+        return;
+    }
     if (!conf_vector_make(&v, r, g->o->suite))
         g->n_bad++;
     g->n_made++;
-    conf_path(path, "%s/%s/%s.ted4", g->output, v.folder, id);
-    if (!demand || g->o->demand)
+    conf_path(path, "%s/%s/%s.ted4", g->output, v.folder, r->id);
+    if (demand == NULL || g->o->demand)
         put(g, path, v.file.data, v.file.size);
-    conf_path(path, "%s/%s/%s.json", g->output, v.folder, id);
-    put_json(g, path, v.descriptor);
-    note(g, &v, demand);
+    note(g, v.descriptor);
     conf_vector_free(&v);
 }
 
@@ -156,7 +180,8 @@ static void put_manifest(generator *g)
     json_decref(o);
 }
 
-/* lists/level-N.txt: what a decoder of level N has to get right: valid files up to that level, and all others. */
+/* lists/level-N.txt: what a decoder of level N has to get right: valid files up to that level, and all others. The list of a level begins with that of
+ * the level below. */
 static void put_level_lists(generator *g)
 {
     for (int level = 1; level <= 4; level++) {
@@ -164,11 +189,15 @@ static void put_level_lists(generator *g)
         char       path[CONF_PATH];
         json_t    *list = sorted(g->manifest);
 
+        if (level > 1)
+            conf_print(&b, "@level-%d.txt\n", level - 1);
         for (size_t i = 0; i < json_array_size(list); i++) {
             const json_t *const e = json_array_get(list, i);
 
-            if (strcmp(json_string_value(json_object_get(e, "result")), "valid") != 0
-                || json_integer_value(json_object_get(e, "level")) <= level)
+            const json_int_t    least = strcmp(json_string_value(json_object_get(e, "result")), "valid") == 0
+                                          ? json_integer_value(json_object_get(e, "level")) : 1;
+
+            if (least == level)
                 conf_print(&b, "%s\n", json_string_value(json_object_get(e, "id")));
         }
         conf_path(path, "%s/lists/level-%d.txt", g->o->output != NULL ? g->output : g->o->suite, level);

@@ -16,12 +16,43 @@ static int by_size(const void *a, const void *b)
     return x != y ? (x < y ? -1 : 1) : strcmp(((const conf_entry *)a)->id, ((const conf_entry *)b)->id);
 }
 
+/* Of the validator. */
+typedef struct {
+    const char *first;          /* identifier of the first error; NULL: none */
+    size_t      at;
+} first_error;
+
+static void note(void *user, const ted4_finding *f)
+{
+    first_error *e = user;
+
+    if (f->severity == TED4_ERROR && e->first == NULL)
+        *e = (first_error){ f->id, f->offset };
+}
+
+/* R-VAL-001: the error that is expected comes first; a valid file has none. */
+static void judge_validator(const json_t *d, const conf_bytes *file, conf_verdict *v)
+{
+    const conf_knobs    knobs = conf_knobs_of(d);
+    const ted4_options  o = { .max_bytes = knobs.memory, .max_work = knobs.work };
+    const json_t *const expect = json_object_get(d, "expect"), *const offset = json_object_get(expect, "offset");
+    const char *const   id = json_string_value(json_object_get(expect, "error"));
+    first_error         e = { NULL, 0 };
+    int                 good;
+
+    (void)ted4_validate(file->data, file->size, &o, note, &e);
+    good = id == NULL ? e.first == NULL : e.first != NULL && strcmp(id, e.first) == 0;
+    if (!good || (offset != NULL && (json_int_t)e.at != json_integer_value(offset))) {
+        v->outcome = CONF_FAIL;
+        snprintf(v->reason, sizeof v->reason, "the validator finds %s at %zu", e.first != NULL ? e.first : "nothing", e.at);
+    }
+}
+
 /* In lenient mode, as far as that is to give the same. */
 static void judge(const json_t *capabilities, const json_t *d, const conf_bytes *file, conf_verdict *v)
 {
-    const uint64_t memory = (uint64_t)json_integer_value(json_object_get(json_object_get(d, "knobs"), "max_alloc_total"));
     const int      saved = json_object_get(d, "salvage") != NULL, invalid = conf_expects(d, "invalid");
-    json_t *const  answer = (saved || !invalid ? conf_answer_lenient : conf_answer)(file, json_object_get(d, "queries"), memory);
+    json_t *const  answer = (saved || !invalid ? conf_answer_lenient : conf_answer)(file, json_object_get(d, "queries"), conf_knobs_of(d));
 
     conf_judge(capabilities, d, answer, v);
     if (saved && v->outcome == CONF_PASS)
@@ -29,10 +60,10 @@ static void judge(const json_t *capabilities, const json_t *d, const conf_bytes 
     json_decref(answer);
 }
 
-int conf_replay(const char *suite, const char *list, int stop)
+int conf_replay(const char *suite, const char *list, int stop, int validate)
 {
-    json_t     *capabilities = json_pack("{s:i, s:[s,s,s,s,s,s], s:s, s:[], s:[s]}", "max_level", 31, "tiers", "T0", "T1", "T2", "T3",
-                                         "T4", "T5", "class", "X", "declines", "knobs", "max_alloc_total");
+    json_t     *capabilities = json_pack("{s:i, s:[s,s,s,s,s,s], s:s, s:[], s:[s,s]}", "max_level", 31, "tiers", "T0", "T1", "T2", "T3",
+                                         "T4", "T5", "class", "X", "declines", "knobs", "max_alloc_total", "max_work");
     char        path[CONF_PATH];
     conf_entry *e;
     size_t      n, n_bad = 0, n_run = 0;
@@ -49,6 +80,8 @@ int conf_replay(const char *suite, const char *list, int stop)
             continue;                   /* made on demand */
         if (e[i].descriptor != NULL)
             judge(capabilities, e[i].descriptor, &file, &v);
+        if (validate && v.outcome == CONF_PASS)
+            judge_validator(e[i].descriptor, &file, &v);
         n_run++;
         if (v.outcome != CONF_PASS) {
             n_bad++;

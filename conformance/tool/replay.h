@@ -3,7 +3,8 @@
 #ifndef CONF_REPLAY_H
 #define CONF_REPLAY_H
 
-/* stop: at the first failure. Exit code: 0 all pass, 1 not. */
-int conf_replay(const char *suite, const char *list, int stop);
+/* stop: at the first failure. validate: the validator (spec 3.6) too, which has to find the errors that are expected and no others in valid files.
+ * Exit code: 0 all pass, 1 not. */
+int conf_replay(const char *suite, const char *list, int stop, int validate);
 
 #endif

@@ -92,7 +92,7 @@ static int fetch(runner *w, size_t i, conf_bytes *b)
 {
     const conf_entry *e = &w->r->entry[i];
     conf_verdict     *v = &w->r->verdict[i];
-    const int         demand = json_is_true(json_object_get(e->descriptor, "demand"));
+    const json_t     *demand = json_object_get(e->descriptor, "demand");
 
     *v = (conf_verdict){ CONF_MISSING, "" };
     if (e->descriptor == NULL) {
@@ -104,11 +104,12 @@ static int fetch(runner *w, size_t i, conf_bytes *b)
         return 0;
     }
     if (!conf_read(e->file, b)) {
-        if (demand && !w->r->options->demand) {
-            *v = (conf_verdict){ CONF_NOT_RUN, "made on demand only (--demand)" };
+        if (demand != NULL && (json_is_string(demand) ? !w->r->options->large : !w->r->options->demand)) {
+            v->outcome = CONF_NOT_RUN;
+            snprintf(v->reason, sizeof v->reason, "made on demand only (--%s)", json_is_string(demand) ? "large" : "demand");
             return 0;
         }
-        if (!demand || !make_on_demand(w, e, b)) {
+        if (demand == NULL || !make_on_demand(w, e, b)) {
             snprintf(v->reason, sizeof v->reason, "the file is not there");
             return 0;
         }

@@ -11,7 +11,7 @@ typedef struct {
     const char *list;           /* file of ids; NULL: all */
     const char *second;         /* NAME=VALUE for the second run; NULL: as the first */
     const char *json, *junit, *html;    /* files to write; NULL: none */
-    int         jobs, once, demand, quiet;
+    int         jobs, once, demand, large, quiet;
     double      timeout;        /* seconds a run */
     uint64_t    memory;         /* bytes of address space a run; 0: no bound */
 } conf_run_options;

@@ -7,6 +7,9 @@
 #include <stdlib.h>
 #include <string.h>
 
+/* Lists that may lie in each other; more is a circle. */
+enum { CONF_LISTS = 8 };
+
 typedef struct {
     conf_entry *entry;
     size_t      n;
@@ -59,25 +62,46 @@ static int by_id(const void *a, const void *b)
     return strcmp(((const conf_entry *)a)->id, ((const conf_entry *)b)->id);
 }
 
-/* Keeps what the list names, in its order. */
-static void choose(list *l, const char *path)
+static void take(list *chosen, const list *l, const char *id)
 {
-    list       chosen = { NULL, 0 };
-    conf_bytes text;
+    conf_entry *e = add(chosen);
 
-    if (!conf_read(path, &text))
+    snprintf(e->id, sizeof e->id, "%s", id);
+    for (size_t i = 0; i < l->n; i++)
+        if (strcmp(l->entry[i].id, id) == 0) {
+            *e = l->entry[i];
+            json_incref(e->descriptor);
+        }
+}
+
+/* Adds what the list names, in its order. depth: of lists in lists. */
+static void take_all(list *chosen, const list *l, const char *path, int depth)
+{
+    const char *const slash = strrchr(path, '/');
+    conf_bytes  text;
+    char       *rest;
+
+    if (depth == CONF_LISTS || !conf_read(path, &text))
         conf_die("%s: cannot be read", path);
-    for (char *id = strtok((char *)text.data, " \t\r\n"); id != NULL; id = strtok(NULL, " \t\r\n")) {
-        conf_entry *e = add(&chosen);
+    for (char *id = strtok_r((char *)text.data, " \t\r\n", &rest); id != NULL; id = strtok_r(NULL, " \t\r\n", &rest)) {
+        char other[CONF_PATH];
 
-        snprintf(e->id, sizeof e->id, "%s", id);
-        for (size_t i = 0; i < l->n; i++)
-            if (strcmp(l->entry[i].id, id) == 0) {
-                *e = l->entry[i];
-                json_incref(e->descriptor);
-            }
+        if (id[0] == '@') {
+            conf_path(other, "%.*s%s", slash != NULL ? (int)(slash - path + 1) : 0, path, id + 1);
+            take_all(chosen, l, other, depth + 1);
+        } else {
+            take(chosen, l, id);
+        }
     }
     conf_free(&text);
+}
+
+/* Keeps what the list names. */
+static void choose(list *l, const char *path)
+{
+    list chosen = { NULL, 0 };
+
+    take_all(&chosen, l, path, 0);
     conf_suite_free(l->entry, l->n);
     *l = chosen;
 }

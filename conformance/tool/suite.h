@@ -15,8 +15,8 @@ typedef struct {
     json_t *descriptor;         /* owned */
 } conf_entry;
 
-/* Every descriptor below a folder, sorted by id; list: a file with an id a line, NULL: all. An id of the list that is not there gives an entry
- * without a descriptor. An owned array. */
+/* Every descriptor below a folder, sorted by id; list: a file with an id a line (@NAME: all of another list beside it), NULL: all. An id of the list that is
+ * not there gives an entry without a descriptor. An owned array. */
 conf_entry *conf_suite_load(const char *folder, const char *list, size_t *n);
 void        conf_suite_free(conf_entry *e, size_t n);
 

@@ -20,7 +20,7 @@ static int usage(const char *why)
     return USAGE;
 }
 
-enum { GEN_SUITE, GEN_OUTPUT, GEN_ONLY, GEN_VERIFY, GEN_DEMAND, GEN_HELP, GEN_VERSION, GEN_OPTIONS };
+enum { GEN_SUITE, GEN_OUTPUT, GEN_ONLY, GEN_VERIFY, GEN_DEMAND, GEN_LARGE, GEN_HELP, GEN_VERSION, GEN_OPTIONS };
 
 static const ted4_argument gen_table[GEN_OPTIONS] = {
     [GEN_SUITE]   = { 's', "suite", "DIR", "folder with recipes/ and vectors/. Default conformance" },
@@ -28,6 +28,7 @@ static const ted4_argument gen_table[GEN_OPTIONS] = {
     [GEN_ONLY]    = { 0, "only", "ID", "only vectors whose id begins so" },
     [GEN_VERIFY]  = { 0, "verify", NULL, "write nothing; compare with what is there" },
     [GEN_DEMAND]  = { 0, "demand", NULL, "also write the files that are made on demand only" },
+    [GEN_LARGE]   = { 0, "large", NULL, "also make what is large by nature: minutes, gigabytes" },
     [GEN_HELP]    = TED4_ARGUMENT_HELP,
     [GEN_VERSION] = TED4_ARGUMENT_VERSION,
 };
@@ -36,7 +37,7 @@ static int gen(int argc, char **argv)
 {
     static const ted4_command command = { "ted4conf gen", "[options]", "Makes all vectors from their recipes.", gen_table, GEN_OPTIONS,
                                           "Exit codes: 0 fine, 1 a vector is not as expected, 3 usage or output.\n", NULL };
-    conf_gen_options o = { "conformance", NULL, NULL, 0, 0 };
+    conf_gen_options o = { .suite = "conformance" };
     const char      *value;
 
     for (int i; (i = ted4_arguments_next(&command, argc, argv, &value)) != TED4_ARGUMENTS_END;)
@@ -47,12 +48,13 @@ static int gen(int argc, char **argv)
         case GEN_OUTPUT: o.output = value; break;
         case GEN_ONLY:   o.only = value; break;
         case GEN_VERIFY: o.verify = 1; break;
+        case GEN_LARGE:  o.large = 1; break;
         default:         o.demand = 1;
         }
     return optind < argc ? usage("gen takes no operand") : conf_gen(&o);
 }
 
-enum { RUN_SUITE, RUN_DECODER, RUN_LIST, RUN_JOBS, RUN_TIMEOUT, RUN_MEMORY, RUN_ONCE, RUN_SECOND, RUN_DEMAND, RUN_JSON, RUN_JUNIT, RUN_HTML,
+enum { RUN_SUITE, RUN_DECODER, RUN_LIST, RUN_JOBS, RUN_TIMEOUT, RUN_MEMORY, RUN_ONCE, RUN_SECOND, RUN_DEMAND, RUN_LARGE, RUN_JSON, RUN_JUNIT, RUN_HTML,
        RUN_QUIET, RUN_HELP, RUN_VERSION, RUN_OPTIONS };
 
 static const ted4_argument run_table[RUN_OPTIONS] = {
@@ -65,6 +67,7 @@ static const ted4_argument run_table[RUN_OPTIONS] = {
     [RUN_ONCE]    = { 0, "once", NULL, "run each vector once, not twice" },
     [RUN_SECOND]  = { 0, "second", "NAME=VALUE", "environment of the second run: other kernels, other threads" },
     [RUN_DEMAND]  = { 0, "demand", NULL, "also what is made on demand" },
+    [RUN_LARGE]   = { 0, "large", NULL, "also what is made on demand and large by nature: minutes, gigabytes" },
     [RUN_JSON]    = { 0, "json", "FILE", "write results" },
     [RUN_JUNIT]   = { 0, "junit", "FILE", "write results as JUnit XML" },
     [RUN_HTML]    = { 0, "html", "FILE", "write a page with the verdict" },
@@ -103,6 +106,7 @@ static int run(int argc, char **argv)
         case RUN_ONCE:    o.once = 1; break;
         case RUN_SECOND:  o.second = value; break;
         case RUN_DEMAND:  o.demand = 1; break;
+        case RUN_LARGE:   o.demand = o.large = 1; break;
         case RUN_JSON:    o.json = value; break;
         case RUN_JUNIT:   o.junit = value; break;
         case RUN_HTML:    o.html = value; break;
@@ -177,12 +181,13 @@ static int cover(int argc, char **argv)
     return optind < argc ? usage("cover takes no operand") : conf_cover_run(&o);
 }
 
-enum { REPLAY_SUITE, REPLAY_LIST, REPLAY_STOP, REPLAY_HELP, REPLAY_VERSION, REPLAY_OPTIONS };
+enum { REPLAY_SUITE, REPLAY_LIST, REPLAY_STOP, REPLAY_VALIDATE, REPLAY_HELP, REPLAY_VERSION, REPLAY_OPTIONS };
 
 static const ted4_argument replay_table[REPLAY_OPTIONS] = {
     [REPLAY_SUITE]   = { 's', "suite", "DIR", "folder with vectors/. Default conformance" },
     [REPLAY_LIST]    = { 'l', "list", "FILE", "only the vectors that it names, one a line" },
     [REPLAY_STOP]    = { 0, "stop", NULL, "at the first failure" },
+    [REPLAY_VALIDATE] = { 0, "validate", NULL, "also ask our validator" },
     [REPLAY_HELP]    = TED4_ARGUMENT_HELP,
     [REPLAY_VERSION] = TED4_ARGUMENT_VERSION,
 };
@@ -192,7 +197,7 @@ static int replay(int argc, char **argv)
     static const ted4_command command = { "ted4conf replay", "[options]", "Our own decoder against the suite, in one process.", replay_table,
                                           REPLAY_OPTIONS, "Exit codes: 0 all pass, 1 not, 3 usage.\n", NULL };
     const char *value, *suite = "conformance", *list = NULL;
-    int         stop = 0;
+    int         stop = 0, validate = 0;
 
     for (int i; (i = ted4_arguments_next(&command, argc, argv, &value)) != TED4_ARGUMENTS_END;)
         switch (i) {
@@ -200,9 +205,10 @@ static int replay(int argc, char **argv)
         case TED4_ARGUMENTS_DONE: return 0;
         case REPLAY_SUITE: suite = value; break;
         case REPLAY_LIST:  list = value; break;
-        default:           stop = 1;
+        case REPLAY_STOP:  stop = 1; break;
+        default:           validate = 1;
         }
-    return optind < argc ? usage("replay takes no operand") : conf_replay(suite, list, stop);
+    return optind < argc ? usage("replay takes no operand") : conf_replay(suite, list, stop, validate);
 }
 
 enum { MUTANTS_SUITE, MUTANTS_VECTORS, MUTANTS_BUILD, MUTANTS_COMPILE, MUTANTS_LIBRARIES, MUTANTS_ONLY, MUTANTS_JOBS, MUTANTS_TIMEOUT, MUTANTS_HELP,

@@ -2,7 +2,7 @@
  *     category CATEGORY/AREA               folder of the vector
  *     intent TEXT; rules R-...; bug TYPE EFFECT
  *     query NUM/DEN X Y Z                  repeated; a valid vector without one gets three; knob NAME VALUE
- *     demand                               only the descriptor is kept
+ *     demand [large]                       only the descriptor is kept
  *     kept                                 the file is the one that is there: it came out of a training and cannot be made again everywhere
  *     expect valid | invalid ID at WHERE | unsupported ID at WHERE | limit ID
  *     also limit                           a decoder may refuse with a limit before it comes to that error
@@ -66,15 +66,16 @@ static json_t *rules_of(const conf_recipe *r)
     return o;
 }
 
-static uint64_t knob_of(const conf_recipe *r)
+/* "knobs" of the descriptor, or NULL. */
+static json_t *knob_of(const conf_recipe *r)
 {
     const conf_line *const l = conf_line_find(r, "knob");
 
     if (l == NULL)
-        return 0;
-    if (!conf_word_is(l, 1, "max_alloc_total"))
+        return NULL;
+    if (!conf_word_is(l, 1, "max_alloc_total") && !conf_word_is(l, 1, "max_work"))
         conf_line_bad(l, "no such knob");
-    return (uint64_t)conf_line_number(l, 2, 1, 1LL << 40);
+    return json_pack("{s:I}", l->word[1], (json_int_t)conf_line_number(l, 2, 1, 1LL << 40));
 }
 
 static json_t *hashes(const conf_bytes *file, json_t *descriptor)
@@ -218,8 +219,8 @@ static int refused(const conf_recipe *r)
 
 int conf_vector_make(conf_vector *v, const conf_recipe *r, const char *suite)
 {
-    const conf_line *const bug = conf_line_find(r, "bug"), *const saved = conf_line_find(r, "salvage");
-    const uint64_t knob = knob_of(r);
+    const conf_line *const bug = conf_line_find(r, "bug"), *const saved = conf_line_find(r, "salvage"), *const demand = conf_line_find(r, "demand");
+    json_t *const  knobs = knob_of(r);
     conf_bytes     valid;
     conf_stream    s;
     conf_build     b;
@@ -242,16 +243,16 @@ int conf_vector_make(conf_vector *v, const conf_recipe *r, const char *suite)
     if (bug != NULL)
         json_object_set_new(d, "bug", json_pack("{s:s, s:s}", "type", bug->word[1], "effect", bug->n > 2 ? bug->word[2] : ""));
     json_object_set_new(d, "queries", queries_of(r));
-    if (knob > 0)
-        json_object_set_new(d, "knobs", json_pack("{s:I}", "max_alloc_total", (json_int_t)knob));
+    if (knobs != NULL)
+        json_object_set_new(d, "knobs", knobs);
     json_object_set_new(d, "expect", expected(r, &s));
     if (saved != NULL)
         json_object_set_new(d, "salvage", conf_salvage(saved, &valid, &s, json_object_get(d, "expect"), json_object_get(d, "queries")));
-    if (conf_line_find(r, "demand") != NULL)
-        json_object_set_new(d, "demand", json_true());
+    if (demand != NULL)
+        json_object_set_new(d, "demand", conf_word_is(demand, 1, "large") ? json_string("large") : json_true());
     json_object_set_new(d, "origin", json_pack("{s:s, s:s}", "generator", "ted4conf gen", "recipe", r->file));
     json_object_set_new(d, "license", json_string("CC0-1.0"));
-    answer = (saved != NULL ? conf_answer_lenient : conf_answer)(&v->file, json_object_get(d, "queries"), knob);
+    answer = (saved != NULL ? conf_answer_lenient : conf_answer)(&v->file, json_object_get(d, "queries"), conf_knobs_of(d));
     good = agrees(r, answer, d);
     json_decref(answer);
     conf_free(&valid);

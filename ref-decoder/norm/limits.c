@@ -46,6 +46,29 @@ uint64_t ted4_count_products(const ted4_header *h, const ted4_shape *s)
     return sum;
 }
 
+uint64_t ted4_count_work(const ted4_header *h, const ted4_shape *s,
+                         uint64_t file_bytes)
+{
+    /* s->n_bank saturates where size_t has 32 bits. */
+    const uint64_t values = (uint64_t)s->n_nete + s->n_netr
+                          + (uint64_t)h->bank_rows * h->bank_dim;
+    const uint64_t each = ted4_count_products(h, s) + s->n_outputs
+                        + h->n_offsets + 1u;
+
+    return file_bytes + 4 * values + h->n_anchors * each
+         + ted4_count_symbols(h, s);
+}
+
+uint64_t ted4_count_query_work(const ted4_header *h, const ted4_shape *s,
+                               uint64_t n_records)
+{
+    uint64_t each = 0;
+
+    for (int i = 0; i < TED4_NETS_R; i++)
+        each += products(&s->netr[i]);
+    return h->n_anchors * each + 20 * n_records;
+}
+
 int ted4_limits_hold(const ted4_limits *l, const ted4_header *h,
                      const ted4_shape *s, uint64_t file_bytes)
 {

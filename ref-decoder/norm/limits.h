@@ -1,4 +1,4 @@
-/* limits.h - spec 13: levels. Used by walk_header.c, read/container.c and the writer.
+/* limits.h - spec 13: levels, and what they and the limits of a decoder count. Used by walk_header.c, read/, recon/ and the writer.
  * SPDX-License-Identifier: BSD-2-Clause */
 #ifndef TED4_LIMITS_H
 #define TED4_LIMITS_H
@@ -25,6 +25,13 @@ const ted4_limits *ted4_limits_of(unsigned level);
 uint64_t ted4_count_symbols(const ted4_header *h, const ted4_shape *s);
 /* Sum of inputs x outputs over the layers of Tier E. */
 uint64_t ted4_count_products(const ted4_header *h, const ted4_shape *s);
+/* W_E of spec 13.4, which follows from HEAD and the size of the file. */
+uint64_t ted4_count_work(const ted4_header *h, const ted4_shape *s,
+                         uint64_t file_bytes);
+/* Steps of a query, spec 13.4: N A_R + 20 G, of a scene that keeps n_records offsets. */
+uint64_t ted4_count_query_work(const ted4_header *h, const ted4_shape *s,
+                               uint64_t n_records);
+
 /* The bounds that no single element breaks: 1 when a file of that size keeps them, else 0. */
 int ted4_limits_hold(const ted4_limits *l, const ted4_header *h,
                      const ted4_shape *s, uint64_t file_bytes);

@@ -13,7 +13,7 @@
 
 enum { MINOR_AT = 9, LEVEL_AT = 11, HEAD_AT = 12 };
 
-/* Where an element of HEAD is in the file. */
+/* Where an element of HEAD that is no array is in the file. */
 typedef struct {
     const char *name;
     size_t      offset;
@@ -25,7 +25,7 @@ static void seek(void *user, size_t offset, const char *element, int64_t index, 
 
     (void)index;
     (void)value;
-    if (strcmp(element, s->name) == 0 && s->offset == 0)
+    if (strcmp(element, s->name) == 0)
         s->offset = offset;
 }
 
@@ -60,7 +60,7 @@ static unsigned lowest_level(const ted4_scene *s, size_t size)
     return level;
 }
 
-/* n bytes of the shuffled values (spec 7.2), from byte at on. */
+/* n bytes of the shuffled values (spec 7.2), from byte at on. Every blob of a file has a value. */
 static void shuffle(const ted4_blob *b, size_t at, uint8_t *bytes, size_t n)
 {
     size_t i = at % b->n, j = at / b->n;
@@ -112,7 +112,7 @@ static void advise_blob(ted4_findings *f, const ted4_blob *b, const ted4_chunk_p
 {
     size_t size;
 
-    if (b->mode != TED4_BLOB_RAW || b->n == 0)
+    if (b->mode != TED4_BLOB_RAW)
         return;
     size = deflated_size(b, a);
     if (size < 4 * b->n)
@@ -192,14 +192,13 @@ static uint32_t rows_unseen(const ted4_header *h)
     uint32_t       unseen = 0;
 
     if (h->frames > 1 && last <= end)   /* no frame goes on by more than a row */
-        return 0;
-    for (uint64_t j = 0; j < h->frames && next <= last; j++) {
-        const uint64_t g = j * last, row = g / end, up_to = row + (g % end != 0);
+        return 0;                       /* else each does, and there are fewer frames than rows */
+    for (uint64_t j = 0; j < h->frames; j++) {
+        const uint64_t g = j * last, row = g / end;
 
         if (row > next)
             unseen += (uint32_t)(row - next);
-        if (up_to >= next)
-            next = up_to + 1;
+        next = row + (g % end != 0) + 1;
     }
     return unseen + (uint32_t)(next <= last ? last + 1 - next : 0);
 }

@@ -49,14 +49,12 @@ static const char *const type_name[TED4_TYPES] = { "feature", "scaling", "offset
 static void follow(void *user, size_t offset, const char *element, int64_t index, int64_t value)
 {
     census      *n = user;
-    const size_t end = strlen(element);
 
     (void)offset;
     (void)index;
     (void)value;
     for (int t = 0; t < TED4_TYPES; t++)
-        if (end > strlen(type_name[t]) && strncmp(element, type_name[t], strlen(type_name[t])) == 0
-            && element[strlen(type_name[t])] == '_')
+        if (strncmp(element, type_name[t], strlen(type_name[t])) == 0 && strcmp(element + strlen(type_name[t]), "_substream") == 0)
             n->type = t;
 }
 
@@ -117,14 +115,14 @@ static void advise_contexts(ted4_findings *f, const ted4_scene *s, size_t at)
         ted4_find_advice(f, TED4_ADV_CONTEXT, "feature", at, 2, ends, (int64_t)(seen * n));
 }
 
-/* All tiles of a file, with probabilities of their own. */
-static ted4_status walk_tiles(ted4_findings *f, const ted4_scene *given, census *n, ted4_listening *it, size_t *first_at)
+/* All tiles of a valid file, with probabilities of their own. *first_at: offset of the first one. */
+static void walk_tiles(ted4_findings *f, const ted4_scene *given, census *n, ted4_listening *it, size_t *first_at)
 {
     ted4_reader r;
     unsigned    tile = 0;
 
     ted4_reader_init(&r, f->data, TED4_FILE_HEADER_SIZE, f->size, 1);
-    while (r.base.pos < f->size && n->base.error.code == TED4_OK) {
+    while (r.base.pos < f->size) {
         const ted4_chunk_place p = ted4_container_next(&r);
         const uint16_t *prob = given->prob + (size_t)tile * TED4_PROBS;
 
@@ -137,7 +135,6 @@ static ted4_status walk_tiles(ted4_findings *f, const ted4_scene *given, census 
         ted4_walk_tile(&n->base, &it->scene, &it->prior, tile++, it->work);
         advise_probs(f, n, prob, p.at);
     }
-    return n->base.error.code;
 }
 
 /* Gives the scene probabilities that say which one a bit was coded with; see census. */
@@ -170,9 +167,8 @@ ted4_status ted4_advise_symbols(ted4_findings *f, const ted4_scene *given,
     n.base.trace_user = &n;
     if (verdict == TED4_OK)
         verdict = number_probs(&it);
-    if (verdict == TED4_OK)
-        verdict = walk_tiles(f, given, &n, &it, &at);
     if (verdict == TED4_OK) {
+        walk_tiles(f, given, &n, &it, &at);
         advise_counts(f, &n, at);
         advise_steps(f, given, at);
         advise_contexts(f, given, at);

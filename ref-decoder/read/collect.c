@@ -44,19 +44,18 @@ static void store_hash(ted4_collector *c, const ted4_chunk_place *p)
     ted4_store64(c->copy + p->end, XXH3_64bits(c->copy + p->at, p->end - p->at));
 }
 
-/* A chunk before which this one is not out of order. */
+/* A chunk after which this one is not out of order; each type has one. */
 static int order_that_fits(ted4_reader r, size_t at)
 {
-    for (int before = -1; before < TED4_CHUNKS; before++) {
-        int b = before;
+    int before = -2, after;
 
+    do {
+        after = ++before;
         r.base.pos = at;
         r.base.error.code = TED4_OK;
-        (void)ted4_container_judge(&r, &b);
-        if (r.base.error.code != TED4_E_CON_CHUNK_ORDER)
-            return before;
-    }
-    return -1;
+        (void)ted4_container_judge(&r, &after);
+    } while (r.base.error.code == TED4_E_CON_CHUNK_ORDER);
+    return before;
 }
 
 /* Mends an error of a frame, so that the chunk can be judged again after *before. 1, or 0: that is all there is to say about it. */
@@ -133,7 +132,7 @@ static void judge_ends(ted4_collector *c, const ted4_chunk_place *p)
         ted4_fail(&c->d.file.base.error, TED4_E_CON_CHUNK_ORDER, p->at);
         (void)ted4_collect_error(c);
     }
-    if (!c->wrong && !c->disordered && c->nete && c->posn) {
+    if (!c->wrong && !c->disordered) {
         ted4_decoder_chunk(&c->d, p);
         (void)ted4_collect_error(c);
         return;
@@ -155,8 +154,7 @@ static void judge_payload(ted4_collector *c, const ted4_chunk_place *p)
     case TED4_BANK: ted4_collect_blob(c, p, "bank", &s->bank); break;
     case TED4_POSN: ted4_collect_positions(c, p); break;
     case TED4_TILE: ted4_collect_tile(c, p); break;
-    case TED4_ENDS: judge_ends(c, p); break;
-    default: break;
+    default: judge_ends(c, p);
     }
 }
 

@@ -79,7 +79,7 @@ static int mend_head(ted4_collector *c, const ted4_chunk_place *p, size_t at)
     return 0;
 }
 
-/* Lists the errors; then HEAD is read as it is, without bounds of a level, if its values are right. */
+/* Lists the errors; then HEAD is read as it is, without bounds of a level, if its values are right. Beyond max_work nothing else is judged. */
 void ted4_collect_head(ted4_collector *c, const ted4_chunk_place *p)
 {
     const size_t size = p->end - p->payload, kept = size < HEAD_BYTES ? size : HEAD_BYTES;
@@ -102,6 +102,10 @@ void ted4_collect_head(ted4_collector *c, const ted4_chunk_place *p)
         return;
     c->d.s->level = TED4_LEVEL_UNBOUNDED;
     ted4_decoder_chunk(&c->d, p);
+    if (c->d.file.base.error.code == TED4_E_LIMIT_WORK) {
+        (void)ted4_collect_error(c);
+        c->head = 0;
+    }
     c->d.file.base.error.code = TED4_OK;
 }
 
@@ -132,10 +136,10 @@ static ted4_error walk_nete(ted4_collector *c, const ted4_chunk_place *p)
     return verdict(&r);
 }
 
-/* A value of a raw blob whose first value lies at values_at becomes 0. 0: that is no such value. */
-static int mend_value(ted4_collector *c, size_t values_at, size_t n, ted4_error e)
+/* The value with that error becomes 0, if the blob, whose values begin at values_at, is raw. 0: it is not. */
+static int mend_value(ted4_collector *c, size_t values_at, ted4_error e)
 {
-    if (c->copy[values_at - 1] != TED4_BLOB_RAW || e.offset < values_at || e.offset >= values_at + 4 * n)
+    if (c->copy[values_at - 1] != TED4_BLOB_RAW)
         return 0;
     ted4_store32(c->copy + e.offset, 0);
     return 1;
@@ -145,17 +149,15 @@ static int mend_nete(ted4_collector *c, const ted4_chunk_place *p, ted4_error e)
 {
     const size_t values_at = p->payload + c->d.s->shape.n_units + 1;
 
-    for (int shift = 0; e.code == TED4_E_NET_SHIFT && shift <= TED4_MAX_SHIFT; shift++) {
-        ted4_error next;
-
-        c->copy[e.offset] = (uint8_t)shift;
-        next = walk_nete(c, p);
-        if (next.code == TED4_OK || next.offset > e.offset)
-            return 1;
+    if (e.code == TED4_E_NET_SHIFT) {   /* the least that is legal; TED4_MAX_SHIFT is, for every unit */
+        c->copy[e.offset] = 0;
+        while (walk_nete(c, p).offset == e.offset)
+            c->copy[e.offset]++;
+        return 1;
     }
     if (e.code != TED4_E_NET_VALUE && e.code != TED4_E_NET_WEIGHT_RANGE && e.code != TED4_E_NET_ACCUMULATOR)
         return 0;
-    if (!mend_value(c, values_at, c->d.s->shape.n_nete, e))
+    if (!mend_value(c, values_at, e))
         return 0;
     if (e.code == TED4_E_NET_ACCUMULATOR)
         clear_unit(c, values_at, (e.offset - values_at) / 4);
@@ -169,7 +171,7 @@ void ted4_collect_nete(ted4_collector *c, const ted4_chunk_place *p)
     ted4_decoder_chunk(&c->d, p);
     e = ted4_collect_error(c);
     c->nete = e.code == TED4_OK;
-    for (int n = 1; e.code != TED4_OK && e.code != TED4_E_LIMIT_MEMORY && mend_nete(c, p, e) && may_go_on(c, p, n); n++) {
+    for (int n = 1; e.code != TED4_OK && mend_nete(c, p, e) && may_go_on(c, p, n); n++) {
         c->d.file.base.error = walk_nete(c, p);
         e = ted4_collect_error(c);
     }
@@ -181,7 +183,7 @@ void ted4_collect_blob(ted4_collector *c, const ted4_chunk_place *p, const char 
 
     ted4_decoder_chunk(&c->d, p);
     e = ted4_collect_error(c);
-    for (int n = 1; e.code == TED4_E_NET_VALUE && mend_value(c, p->payload + 1, b->n, e) && may_go_on(c, p, n); n++) {
+    for (int n = 1; e.code == TED4_E_NET_VALUE && mend_value(c, p->payload + 1, e) && may_go_on(c, p, n); n++) {
         ted4_reader r = ted4_decoder_reader(&c->d, p);
 
         ted4_walk_blob(&r.base, element, b);

@@ -4,6 +4,7 @@
 
 #include <string.h>
 #include "kernel/int_kernel.h"
+#include "norm/limits.h"
 #include "norm/scene.h"
 #include "read/inflate.h"
 
@@ -54,6 +55,10 @@ static void read_head(decoder *d, const ted4_chunk_place *p)
 
     ted4_walk_header(&r.base, &d->s->head, &d->s->shape, d->s->level,
                      d->file_bytes);
+    if (r.base.error.code == TED4_OK && d->o->max_work > 0
+        && ted4_count_work(&d->s->head, &d->s->shape, d->file.end)
+           > d->o->max_work)
+        ted4_fail(&r.base.error, TED4_E_LIMIT_WORK, p->payload);
     finish_payload(d, &r);
 }
 
@@ -238,8 +243,7 @@ static void read_payloads(decoder *d)
 int ted4_decoder_init(decoder *d, const void *data, size_t size,
                       const ted4_options *o)
 {
-    static const ted4_options standard = { { NULL, NULL, NULL }, NULL, 0,
-                                           NULL, NULL };
+    static const ted4_options standard = { .max_bytes = 0 };
 
     memset(d, 0, sizeof *d);
     d->o = o != NULL ? o : &standard;

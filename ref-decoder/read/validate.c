@@ -23,6 +23,15 @@ static const struct {
 #undef TED4_FINDING_ADVICE
 };
 
+/* The name of a known type, or NULL. */
+static const char *known_type(const uint8_t *type)
+{
+    for (int i = 0; i < TED4_CHUNKS; i++)
+        if (memcmp(type, ted4_chunk_type[i], 4) == 0)
+            return ted4_chunk_type[i];
+    return NULL;
+}
+
 /* Type of the known chunk that holds the byte at an offset, or NULL. Sizes are not to be trusted. Errors come nearly in order of the file: the search goes on
  * where the last one has ended. */
 static const char *chunk_at(ted4_findings *f, size_t offset)
@@ -35,9 +44,7 @@ static const char *chunk_at(ted4_findings *f, size_t offset)
 
         f->chunk = at;
         if (f->size - at < frame || f->size - at - frame < size || offset - at < frame + size)
-            for (int i = 0; i <= TED4_CHUNKS; i++)
-                if (i == TED4_CHUNKS || memcmp(f->data + at, ted4_chunk_type[i], 4) == 0)
-                    return i < TED4_CHUNKS ? ted4_chunk_type[i] : NULL;
+            return known_type(f->data + at);
         at += frame + size;
     }
     return NULL;

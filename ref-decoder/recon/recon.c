@@ -2,6 +2,7 @@
  * A query does again only what its time and camera change: the records of the last one stay in place.
  * SPDX-License-Identifier: BSD-2-Clause */
 #include "kernel/strict_dense.h"
+#include "norm/limits.h"
 #include "recon/recon.h"
 
 enum { MAX_CHUNKS = 64, BLOCKS_PER_CHUNK = 16 };
@@ -131,6 +132,11 @@ ted4_status ted4_recon_new(ted4_recon **out, const ted4_scene *s, const ted4_opt
     r->n_bank = s->bank.n;
     const uint64_t n_records = set_sizes(r, s);
 
+    if (o != NULL && o->max_work > 0
+        && ted4_count_query_work(&s->head, &s->shape, n_records) > o->max_work) {
+        ted4_recon_free(r);
+        return TED4_E_LIMIT_WORK;
+    }
     /* Record numbers and ids are 32 bits. */
     if ((uint64_t)s->head.n_anchors * s->head.n_offsets > UINT32_MAX ||
         !take_all(r, (size_t)n_records)) {

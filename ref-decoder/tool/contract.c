@@ -12,7 +12,7 @@ enum { MAX_PATH = 4096, T5 = 5 };
 typedef struct {
     const char *input, *queries, *dump;
     int         tier[TED4_TIERS];       /* asked for? */
-    uint64_t    max_bytes;
+    uint64_t    max_bytes, max_work;
     int         lenient;
     int         failed;                 /* of our own accord: no memory, a file that cannot be written */
 } request;
@@ -38,10 +38,10 @@ static int print(json_t *o)
 
 static json_t *capabilities(void)
 {
-    return json_pack("{s:i, s:s, s:s, s:s, s:[s], s:i, s:[s,s,s,s,s,s], s:o, s:b, s:b, s:[], s:[s]}", "protocol", 1, "name", "ted4dec",
+    return json_pack("{s:i, s:s, s:s, s:s, s:[s], s:i, s:[s,s,s,s,s,s], s:o, s:b, s:b, s:[], s:[s,s]}", "protocol", 1, "name", "ted4dec",
                      "version", TED4_VERSION, "spec", TED4_SPEC_VERSION, "profiles", "Main", "max_level", 31, "tiers",
                      "T0", "T1", "T2", "T3", "T4", "T5", "class", ted4_recon_class_x() ? json_string("X") : json_null(),
-                     "strict", 1, "lenient", 1, "declines", "knobs", "max_alloc_total");
+                     "strict", 1, "lenient", 1, "declines", "knobs", "max_alloc_total", "max_work");
 }
 
 /* "T0,T3": 0, or -1. */
@@ -58,13 +58,14 @@ static int parse_tiers(request *r, const char *text)
 
 static int parse_knob(request *r, const char *text)
 {
-    static const char name[] = "max_alloc_total=";
-    char *end;
+    const char *const is = strchr(text, '=');
+    uint64_t   *const knob = strncmp(text, "max_alloc_total=", 16) == 0 ? &r->max_bytes : strncmp(text, "max_work=", 9) == 0 ? &r->max_work : NULL;
+    char             *end;
 
-    if (strncmp(text, name, sizeof name - 1) != 0 || text[sizeof name - 1] < '0' || text[sizeof name - 1] > '9')
+    if (knob == NULL || is[1] < '0' || is[1] > '9')
         return -1;
-    r->max_bytes = strtoull(text + sizeof name - 1, &end, 10);
-    return *end == '\0' && r->max_bytes > 0 ? 0 : -1;
+    *knob = strtoull(is + 1, &end, 10);
+    return *end == '\0' && *knob > 0 ? 0 : -1;
 }
 
 /* "strict", "lenient": 0, or -1. */
@@ -277,6 +278,7 @@ static int answer_run(request *r)
 
     memset(&o, 0, sizeof o);
     o.max_bytes = r->max_bytes;
+    o.max_work = r->max_work;
     if (data != NULL && r->lenient)
         (void)ted4_decode_lenient(data, size, &o, &s, &what);
     else if (data != NULL)

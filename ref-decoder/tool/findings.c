@@ -87,10 +87,10 @@ static void print_json(const report *r, ted4_status verdict, size_t size)
     json_decref(o);
 }
 
-int ted4_findings_print(const char *path, const uint8_t *data, size_t size, int json, int quiet)
+int ted4_findings_print(const char *path, const uint8_t *data, size_t size, const ted4_options *o, int json, int quiet)
 {
     report r = { .path = path, .list = json ? json_array() : NULL, .quiet = quiet };
-    const ted4_status verdict = ted4_validate(data, size, NULL, take, &r);
+    const ted4_status verdict = ted4_validate(data, size, o, take, &r);
 
     if (json)
         print_json(&r, verdict, size);

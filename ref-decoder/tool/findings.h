@@ -7,8 +7,10 @@
 #include <stddef.h>
 #include <stdint.h>
 
-/* Validates a file and prints every finding on standard output; quiet: errors only. An exit code: fine, refused, or fine with warnings; a hint is
- * no warning. */
-int ted4_findings_print(const char *path, const uint8_t *data, size_t size, int json, int quiet);
+#include "ted4.h"
+
+/* Validates a file under o and prints every finding on standard output; quiet: errors only. An exit code: fine, refused, or fine with warnings; a
+ * hint is no warning. */
+int ted4_findings_print(const char *path, const uint8_t *data, size_t size, const ted4_options *o, int json, int quiet);
 
 #endif

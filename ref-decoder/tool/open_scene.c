@@ -91,6 +91,8 @@ int ted4_action_open(ted4_session *s)
 {
     const ted4_settings *const set = s->set;
     const ted4_options options = { .parallel = &s->parallel,
+                                   .max_bytes = (uint64_t)set->max_memory,
+                                   .max_work = (uint64_t)set->max_work,
                                    .trace = set->trace ? print_element : NULL };
     ted4_salvage what;
     size_t size;

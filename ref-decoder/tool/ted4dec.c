@@ -3,6 +3,7 @@
 #include <errno.h>
 #include <getopt.h>
 #include <inttypes.h>
+#include <limits.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -28,6 +29,8 @@ enum {
     OPT_TEST,
     OPT_LENIENT,
     OPT_TRACE,
+    OPT_MEMORY,
+    OPT_WORK,
     OPT_THREADS,
     OPT_FORCE,
     OPT_JSON,
@@ -53,6 +56,8 @@ static const ted4_argument OPTIONS[N_OPTIONS] = {
     [OPT_TEST]      = { 0, "test", NULL, "only decode, checking everything, and tell time and peak memory (also what happens when nothing else is asked for)" },
     [OPT_LENIENT]   = { 0, "lenient", NULL, "of a damaged or truncated file take the first whole tiles, and say so" },
     [OPT_TRACE]     = { 0, "trace", NULL, "print every syntax element: byte offset, name, index, value" },
+    [OPT_MEMORY]    = { 0, "max-memory", "BYTES", "refuse a file that takes more, as a scene or for queries. Default 4 GiB each" },
+    [OPT_WORK]      = { 0, "max-work", "STEPS", "refuse a file that asks for more steps, also for one query (specification 13.4). Default: any number" },
     [OPT_THREADS]   = { 'j', "threads", "N", "threads; 0: all cores. Default 0" },
     [OPT_FORCE]     = { 'f', "force", NULL, "overwrite files" },
     [OPT_JSON]      = { 0, "json", NULL, "results as one JSON object" },
@@ -97,6 +102,12 @@ static int set_number(const char *name, const char *value, long high, int *out)
     return 0;
 }
 
+/* The same for a bound, which is at least 1. */
+static int set_bound(const char *name, const char *value, long *out)
+{
+    return ted4_arguments_number(value, 1, LONG_MAX, out) != 0 ? usage_error(name, value) : 0;
+}
+
 static int set_option(ted4_settings *s, int option, const char *value)
 {
     switch (option) {
@@ -124,6 +135,10 @@ static int set_option(ted4_settings *s, int option, const char *value)
     case OPT_CAMERA:
         s->cameras = value;
         return 0;
+    case OPT_MEMORY:
+        return set_bound("--max-memory", value, &s->max_memory);
+    case OPT_WORK:
+        return set_bound("--max-work", value, &s->max_work);
     case OPT_THREADS:
         return set_number("--threads", value, MAX_THREADS, &s->threads);
     default:

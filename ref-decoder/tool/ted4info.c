@@ -4,6 +4,7 @@
 #include <getopt.h>
 #include <inttypes.h>
 #include <jansson.h>
+#include <limits.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -15,11 +16,13 @@
 #include "findings.h"
 #include "ted4.h"
 
-enum { OPT_BUDGET, OPT_VALIDATE, OPT_THREADS, OPT_JSON, OPT_QUIET, OPT_VERBOSE, OPT_HELP, OPT_VERSION, N_OPTIONS };
+enum { OPT_BUDGET, OPT_VALIDATE, OPT_MEMORY, OPT_WORK, OPT_THREADS, OPT_JSON, OPT_QUIET, OPT_VERBOSE, OPT_HELP, OPT_VERSION, N_OPTIONS };
 
 static const ted4_argument OPTIONS[N_OPTIONS] = {
     [OPT_BUDGET]  = { 0, "budget", NULL, "attribute every byte of the file to a syntax element" },
     [OPT_VALIDATE] = { 0, "validate", NULL, "for authors of encoders: every error, and what is legal but doubtful, with byte offset and rule" },
+    [OPT_MEMORY]  = { 0, "max-memory", "BYTES", "refuse a file that takes more. Default 4 GiB" },
+    [OPT_WORK]    = { 0, "max-work", "STEPS", "refuse a file that asks for more steps (specification 13.4). Default: any number" },
     [OPT_THREADS] = { 'j', "threads", "N", "accepted; elements are listed in order, by one thread" },
     [OPT_JSON]    = { 0, "json", NULL, "everything as one JSON object" },
     [OPT_QUIET]   = { 'q', "quiet", NULL, "errors only: is the file valid?" },
@@ -39,6 +42,7 @@ static const ted4_command COMMAND = {
 typedef struct {
     const char *input;
     int         on[N_OPTIONS];          /* flags given */
+    long        max_memory, max_work;   /* 0: not given */
 } settings;
 
 static int usage_error(const char *text)
@@ -61,6 +65,10 @@ static int parse(settings *s, int argc, char **argv)
             return TED4_EXIT_FINE;
         if (i == OPT_THREADS && ted4_arguments_number(value, 0, 1024, &threads) != 0)
             return usage_error("bad number of threads");
+        if (i == OPT_MEMORY && ted4_arguments_number(value, 1, LONG_MAX, &s->max_memory) != 0)
+            return usage_error("bad number of bytes");
+        if (i == OPT_WORK && ted4_arguments_number(value, 1, LONG_MAX, &s->max_work) != 0)
+            return usage_error("bad number of steps");
         s->on[i] = 1;
     }
     if (optind + 1 != argc)
@@ -206,7 +214,8 @@ static int show(const settings *s, const ted4_info *info, const ted4_budget *b, 
 
 static int run(const settings *s, ted4_budget *budget)
 {
-    const ted4_options options = { .trace = ted4_budget_trace, .trace_user = budget };
+    const ted4_options options = { .max_bytes = (uint64_t)s->max_memory, .max_work = (uint64_t)s->max_work,
+                                   .trace = ted4_budget_trace, .trace_user = budget };
     ted4_error  e = { TED4_OK, 0 };
     ted4_scene *scene = NULL;
     ted4_info   info;
@@ -219,7 +228,7 @@ static int run(const settings *s, ted4_budget *budget)
         return TED4_EXIT_TOOL;
     }
     if (s->on[OPT_VALIDATE]) {
-        code = ted4_findings_print(s->input, data, size, s->on[OPT_JSON], s->on[OPT_QUIET]);
+        code = ted4_findings_print(s->input, data, size, &options, s->on[OPT_JSON], s->on[OPT_QUIET]);
     } else if (ted4_decode(data, size, &options, &scene, &e) != TED4_OK) {
         code = ted4_report("ted4info", s->input, &e, s->on[OPT_JSON]);
     } else if (!ted4_budget_finish(budget, size)) {

@@ -58,8 +58,7 @@ static void choose_probabilities(ted4_draft *d, const ted4_scene *s)
 
 ted4_status ted4_draft_init(ted4_draft *d, const ted4_scene *s)
 {
-    const ted4_options unbounded = { { NULL, NULL, NULL }, NULL, UINT64_MAX,
-                                     NULL, NULL };
+    const ted4_options unbounded = { .max_bytes = UINT64_MAX };
     const ted4_header *h = &s->head;
 
     memset(d, 0, sizeof *d);

@@ -45,8 +45,7 @@ static inline uint64_t annex_c_tiles(const annex_c_level *l, const struct header
 static inline void annex_c_row(FILE *out, const annex_c_level *l)
 {
     const struct header h = annex_c_worst(l);
-    const uint64_t n = l->n_anchors, c = components(&h), mib = 1 << 20, y = n * (c + l->n_offsets + 1);
-    const uint64_t work = l->file_bytes + 4 * l->values + n * (l->products + (uint64_t)n_outputs(&h)) + y;
+    const uint64_t n = l->n_anchors, c = components(&h), mib = 1 << 20, work = work_e(&h, l->file_bytes, l->values, l->products);
 
     fprintf(out, "| %d | %" PRIu64 " | %" PRIu64 " | %" PRIu64 " | %.1f | %.1f | %.1f | %.1f | %.1f |\n", l->number, n, n * l->n_offsets, c,
             (double)l->values * 4 / (double)mib, (double)memory_e(&h, l->file_bytes, l->values, 1) / (double)mib,
