@@ -124,12 +124,12 @@ static int report(const conf_cover *c, const conf_cover_options *o)
 
 int conf_cover_run(const conf_cover_options *o)
 {
-    conf_cover  c = { json_object(), json_array() };
+    conf_cover   c = { json_object(), json_array() };
     conf_triples triples;
-    char        path[CONF_PATH];
-    conf_entry *e;
-    size_t      n;
-    int         code;
+    char         path[CONF_PATH];
+    conf_entry  *e;
+    size_t       n;
+    int          code;
 
     conf_path(path, "%s/vectors", o->suite);
     e = conf_suite_load(path, NULL, &n);
