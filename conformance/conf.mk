@@ -38,6 +38,12 @@ conformance-branches: $B/ted4conf
 	TED4_KERNEL=plain build-gcov/ted4conf replay --suite build-gcov/suite
 	sh conformance/branches.sh build-gcov
 
+# Several threads under ThreadSanitizer: trained streams, and files of nine tiles.
+conformance-threads: $B/ted4conf
+	$(MAKE) B=build-tsan CC=clang-14 OPT=-O1 CFLAGS=-fsanitize=thread LDFLAGS=-fsanitize=thread build-tsan/ted4dec
+	$B/ted4conf gen --demand --only LVL-n_anchors-6 -o build-tsan/vectors
+	@for f in conformance/vectors/content/*.ted4 build-tsan/vectors/stress/*.ted4; do build-tsan/ted4dec -j 4 -q --hash $$f >/dev/null || exit 1; done
+
 # Seeded faults; what has a result in conformance/mutants.csv is not run again.
 conformance-mutants:
 	$(MAKE) B=build-mutants OPT=-O1 build-mutants/ted4conf
@@ -45,4 +51,4 @@ conformance-mutants:
 	build-mutants/ted4conf mutants -j $(CONF_JOBS) -b build-mutants --vectors build-mutants/suite --compile '$(CC) -std=c11 -D_POSIX_C_SOURCE=200809L -O1 $(STRICT) -fopenmp' \
 	    --libraries '$(LIBS)'
 
-.PHONY: conformance conformance-gen conformance-cover conformance-branches conformance-mutants
+.PHONY: conformance conformance-gen conformance-cover conformance-branches conformance-threads conformance-mutants

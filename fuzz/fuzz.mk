@@ -22,7 +22,7 @@ FUZZ_SCENE    = $(patsubst %.c,$B/%.o,$(wildcard ref-encoder/data/*.c) ref-decod
                 fuzz/scene_folder.c)
 FUZZ_MUTATE   = $B/fuzz/mutate.o $B/fuzz/fields.o
 # Inputs that are .ted4 files have a mutator that knows them.
-FUZZ_FILES    = decode roundtrip recon alloc_fail dump validate lenient two_decoders
+FUZZ_FILES    = decode decode_chunked editor roundtrip recon alloc_fail dump validate lenient two_decoders
 FUZZ_SCENES   = colmap transforms calibration hypernerf npy ply image camera_list
 
 # What the specification prints, extracted (tests/spec/spec.mk).
@@ -46,6 +46,7 @@ $(FUZZ_FILES:%=$B/fuzz/fuzz_%): $B/fuzz/mutator.o $(FUZZ_MUTATE)
 $B/fuzz/fuzz_container: $B/fuzz/mutator_frames.o $(FUZZ_MUTATE)
 endif
 $(FUZZ_SCENES:%=$B/fuzz/fuzz_%): $(FUZZ_SCENE)
+$B/fuzz/fuzz_decode_chunked: $B/ref-decoder/tool/read_file.o
 $B/fuzz/fuzz_checkpoint: $B/fuzz/scene_folder.o $B/libted4enc.a $B/libted4dec.a
 $B/fuzz/fuzz_alloc_fail: FUZZ_LINK = $(FUZZ_ALLOC)
 $(patsubst %,$B/fuzz/fuzz_%,$(FUZZ_SCENES) checkpoint): FUZZ_LINK = $(FUZZ_NO_VIDEO)

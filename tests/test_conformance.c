@@ -219,6 +219,15 @@ static void missing_vectors(void **state)
     assert_non_null(strstr(last, " 1 passed, 0 failed, 0 without answer, 1 missing"));
 }
 
+/* work.txt: any limit will do for the first vector, limit.work only for the second. */
+static void limits(void **state)
+{
+    static const char list[] = "tests/work.txt";
+
+    (void)state;
+    expect_of(list, "says-limit", 1, " 1 passed, 1 failed");
+}
+
 /* A list that holds another one, and lists in a circle. */
 static void lists(void **state)
 {
@@ -246,6 +255,7 @@ int main(void)
         cmocka_unit_test(declining),
         cmocka_unit_test(left_behind),
         cmocka_unit_test(missing_vectors),
+        cmocka_unit_test(limits),
         cmocka_unit_test(lists),
     };
 

@@ -43,7 +43,7 @@ what_from() {
     [ -n "$strict" ] && [ -n "$avx512" ] || die "Makefile: STRICT or the flags of AVX-512 not found"
     decoder=$(ls ref-decoder/base/*.c ref-decoder/norm/*.c ref-decoder/read/*.c ref-decoder/recon/*.c ref-decoder/kernel/*.c)
     program="conformance/cross/cross_decoder.c conformance/tool/answer.c conformance/tool/text.c
-        ref-decoder/tool/contract.c ref-decoder/tool/tier_hash.c ref-decoder/tool/sha256.c ref-decoder/tool/cli.c"
+        ref-decoder/tool/contract.c ref-decoder/tool/tier_hash.c ref-decoder/tool/sha256.c ref-decoder/tool/cli.c ref-decoder/tool/read_file.c"
     judge="conformance/tool/judge.c conformance/tool/judge.h conformance/tool/process.h conformance/tool/suite.h"
     headers=$(for f in answer text; do echo "conformance/tool/$f.h"; done
         for f in contract tier_hash sha256 cli; do echo "ref-decoder/tool/$f.h"; done)

@@ -124,11 +124,12 @@ static int report(const conf_cover *c, const conf_cover_options *o)
 
 int conf_cover_run(const conf_cover_options *o)
 {
-    conf_cover  c = { json_object(), json_array() };
-    char        path[CONF_PATH];
-    conf_entry *e;
-    size_t      n;
-    int         code;
+    conf_cover   c = { json_object(), json_array() };
+    conf_triples triples;
+    char         path[CONF_PATH];
+    conf_entry  *e;
+    size_t       n;
+    int          code;
 
     conf_path(path, "%s/vectors", o->suite);
     e = conf_suite_load(path, NULL, &n);
@@ -147,6 +148,8 @@ int conf_cover_run(const conf_cover_options *o)
         conf_free(&file);
     }
     code = report(&c, o);
+    triples = conf_cover_triples(e, n);
+    printf("reported only: triples of features          %6zu of %6zu\n", triples.reached, triples.possible);
     conf_suite_free(e, n);
     json_decref(c.groups);
     json_decref(c.orphans);

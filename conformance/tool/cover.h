@@ -32,6 +32,12 @@ void conf_cover_syntax_goals(conf_cover *c);
 void conf_cover_model(conf_cover *c, const conf_entry *e, const conf_bytes *file);
 void conf_cover_model_goals(conf_cover *c);
 
+/* cover_triples.c: triples of features that can stand together, and those that a valid vector has. */
+typedef struct {
+    size_t possible, reached;
+} conf_triples;
+conf_triples conf_cover_triples(const conf_entry *e, size_t n);
+
 /* Exit code: 0: everything is reached; 1: not. */
 int conf_cover_run(const conf_cover_options *o);
 

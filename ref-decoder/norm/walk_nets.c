@@ -27,10 +27,10 @@ static value_offsets walk_bytes(ted4_coder *c, const char *element,
         return v;
     }
     c->ops->array(c, 4, b->values, b->n);
-    for (size_t i = 0; c->trace != NULL && i < b->n; i++)
-        if (c->error.code == TED4_OK)
-            ted4_trace(c, at + 4 * i, element, (int64_t)i,
-                       ted4_float_bits(b->values[i]));
+    for (size_t i = 0; c->error.code == TED4_OK && c->trace != NULL && i < b->n;
+         i++)
+        ted4_trace(c, at + 4 * i, element, (int64_t)i,
+                   ted4_float_bits(b->values[i]));
     return v;
 }
 

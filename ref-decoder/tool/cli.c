@@ -2,53 +2,8 @@
  * SPDX-License-Identifier: BSD-2-Clause */
 #include "cli.h"
 
-#include <errno.h>
 #include <jansson.h>
 #include <stdio.h>
-#include <stdlib.h>
-#include <string.h>
-
-/* Files are read in pieces that double, so that pipes work and no size is believed. */
-static uint8_t *read_all(FILE *f, size_t *size)
-{
-    size_t capacity = 1 << 16, n = 0;
-    uint8_t *data = malloc(capacity);
-
-    while (data != NULL) {
-        n += fread(data + n, 1, capacity - n, f);
-        if (n < capacity)
-            break;
-        uint8_t *const more = capacity > SIZE_MAX / 2 ? NULL : realloc(data, capacity *= 2);
-
-        if (more == NULL)
-            free(data);
-        data = more;
-    }
-    if (data != NULL && ferror(f)) {
-        free(data);
-        data = NULL;
-    }
-    *size = n;
-    return data;
-}
-
-uint8_t *ted4_read_file(const char *path, size_t *size)
-{
-    const int is_stdin = strcmp(path, "-") == 0;
-    FILE *const f = is_stdin ? stdin : fopen(path, "rb");
-    uint8_t *data;
-
-    if (f == NULL)
-        return NULL;
-    data = read_all(f, size);
-    if (!is_stdin) {
-        const int why = errno;
-
-        fclose(f);
-        errno = why;
-    }
-    return data;
-}
 
 static const char *verdict_name(ted4_verdict v)
 {

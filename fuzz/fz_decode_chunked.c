@@ -1,0 +1,124 @@
+/* fz_decode_chunked.c - a file that arrives in pieces, whose sizes up to three bytes behind its chunk ENDS say (R-DEC-004). The decoder begins when all is there
+ * (13.1), so the pieces are gathered first; and what it would say in between is what is left of the file at that point, cut short.
+ * Claims: gathered are the bytes that came, and none when the stream breaks; where a piece or a chunk ends, the verdict is con.truncated there, or one of pass 1 that no
+ * byte behind it changes, or the file was complete and what comes then is con.trailing.
+ * SPDX-License-Identifier: BSD-2-Clause */
+#define _GNU_SOURCE                     /* fopencookie: a stream of our own */
+#include <stdio.h>
+#include <string.h>
+#include "harness.h"
+#include "mend.h"
+#include "read/container.h"
+#include "tool/cli.h"
+
+enum { TAIL = 3, MOST_ENDS = 24, MOST_BYTES = 1 << 20 };
+
+/* A stream: size bytes, piece by piece. */
+typedef struct {
+    const uint8_t *data;
+    size_t         size, at;
+    uint32_t       seed;        /* of the sizes of pieces */
+    unsigned       bits;        /* pieces have up to 2^bits bytes */
+    size_t         breaks_at;   /* an error instead of the bytes from there on; SIZE_MAX: none */
+} pieces;
+
+static size_t next_piece(pieces *p)
+{
+    const size_t left = p->size - p->at;
+
+    p->seed = p->seed * 1664525 + 1013904223;
+
+    const size_t n = 1 + (p->seed >> 8) % (1u << p->bits);
+
+    return n < left ? n : left;
+}
+
+static ssize_t hand_over(void *cookie, char *to, size_t room)
+{
+    pieces *const p = cookie;
+    size_t        n = next_piece(p);
+
+    if (p->at >= p->breaks_at)
+        return -1;
+    n = n < room ? n : room;
+    memcpy(to, p->data + p->at, n);
+    p->at += n;
+    return (ssize_t)n;
+}
+
+static uint8_t *gather(pieces p, size_t *size)
+{
+    FILE *const    f = fopencookie(&p, "rb", (cookie_io_functions_t){ .read = hand_over });
+    uint8_t *const data = f != NULL ? ted4_read_stream(f, size) : NULL;
+
+    fuzz_require(f != NULL, "memory");
+    fclose(f);
+    return data;
+}
+
+/* Of the first n bytes, which lie in memory of just that size. */
+static ted4_error verdict_of(const uint8_t *data, size_t n, int *pass_1)
+{
+    const ted4_options o = { .max_bytes = FUZZ_MAX_BYTES };
+    uint8_t *const     copy = malloc(n > 0 ? n : 1);
+    ted4_error         e = { TED4_OK, 0 };
+    ted4_scene        *s = NULL;
+    ted4_reader        r;
+
+    fuzz_require(copy != NULL, "memory");
+    memcpy(copy, data, n);
+    ted4_reader_init(&r, copy, 0, n, 1);
+    ted4_container_check(&r);
+    *pass_1 = r.base.error.code == TED4_OK;
+    (void)ted4_decode(copy, n, &o, &s, &e);
+    ted4_scene_free(s);
+    free(copy);
+    return e;
+}
+
+static void check_end(const uint8_t *data, size_t n, ted4_error whole)
+{
+    int              pass_1;
+    const ted4_error e = verdict_of(data, n, &pass_1);
+
+    if (e.code == TED4_E_CON_TRUNCATED)
+        fuzz_require(e.offset == n, "truncated where it ends");
+    else if (pass_1)
+        fuzz_require(whole.code == TED4_E_CON_TRAILING && whole.offset == n, "all that comes behind a complete file is too much");
+    else
+        fuzz_require(e.code == whole.code && e.offset == whole.offset, "what pass 1 has found stays");
+}
+
+int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
+{
+    const size_t n = ted4_without_tail(data, size, TAIL);
+    fuzz_source  in = { data + n, data + size };
+    pieces       p = { .data = data, .size = n, .breaks_at = SIZE_MAX };
+    size_t       got = 0;
+    uint8_t     *all;
+    ted4_error   whole;
+    int          pass_1;
+
+    if (n > MOST_BYTES)                 /* a level's bound on file bytes is judged before all that, by the whole file */
+        return 0;
+    p.seed = fuzz_u16(&in);
+    p.bits = fuzz_u8(&in) % 14;
+    all = gather(p, &got);
+    fuzz_require(all != NULL && got == n && memcmp(all, data, n) == 0, "the bytes that came");
+    whole = verdict_of(all, n, &pass_1);
+    free(all);
+    for (int i = 0; i < MOST_ENDS && p.at < n; i++) {
+        p.at += next_piece(&p);
+        if (p.at < n)
+            check_end(data, p.at, whole);
+    }
+    for (size_t at = TED4_FILE_HEADER_SIZE, chunks = 0; ted4_chunk_size(data, n, at) > 0 && chunks < MOST_ENDS; chunks++) {
+        at += ted4_chunk_size(data, n, at);
+        if (at < n)
+            check_end(data, at, whole);
+    }
+    p.breaks_at = n / 2;
+    p.at = 0;
+    fuzz_require(n == 0 || gather(p, &got) == NULL, "nothing of a stream that breaks");
+    return 0;
+}
