@@ -277,6 +277,7 @@ int ted4_stage2_begin(ted4_trainer *t)
         for (int y = 0; y < TED4_TYPES; y++)
             *ted4_cell(&t->anchors, TED4_ROW_STEP, i, y) = t->layout.head.step[y];
     t->stage2 = 1;
+    t->charged = t->layout.head;
     t->stage2_start = t->iteration;
     return 0;
 }
