@@ -260,11 +260,11 @@ int ted4_run_log_event(ted4_run_log *l, const ted4_trainer *t, char *why, size_t
     return put_line(l, line, (size_t)n, why, why_size);
 }
 
-int ted4_run_log_trials(ted4_run_log *l, const ted4_trainer *t, char *why, size_t why_size)
+int ted4_run_log_trials(ted4_run_log *l, const ted4_trainer *t, size_t first, char *why, size_t why_size)
 {
     char line[600];
 
-    for (size_t i = 0; i < t->n_trials; i++) {
+    for (size_t i = first; i < t->n_trials; i++) {
         const struct ted4_trial *x = &t->trial[i];
 
         if (l->verbose)

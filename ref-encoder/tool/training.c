@@ -126,14 +126,14 @@ static int step(ted4_training *t)
 {
     ted4_trainer  *tr = t->trainer;
     const uint64_t before = tr->iteration, rollbacks = tr->watch.state.rollbacks;
-    const int      decided = tr->decided;
+    const size_t   trials = tr->n_trials;
 
     if (ted4_trainer_step(tr) != 0)
         return fail_step(t);
     /* A step may be many: what a probe has done counts. Or it began again, or went back. */
     if (tr->iteration <= before && start_over(t) != 0)
         return -1;
-    if (tr->decided && !decided && ted4_run_log_trials(&t->log, tr, t->why, sizeof t->why) != 0)
+    if (tr->n_trials > trials && ted4_run_log_trials(&t->log, tr, trials, t->why, sizeof t->why) != 0)
         return -1;
     return tr->watch.state.rollbacks > rollbacks ? tell_rollback(t) : 0;
 }

@@ -5,7 +5,6 @@
 
 #include <math.h>
 #include <stdlib.h>
-#include <string.h>
 
 #include "checkpoint.h"
 
@@ -32,7 +31,7 @@ typedef struct {
 /* Steps that a trained trial has; 0: too few to tell anything. */
 static int trial_steps(const ted4_trainer *t)
 {
-    const double budget = t->opt.capacity_share * (double)ted4_trainer_total(t);
+    const double budget = ted4_capacity_budget(t) - ted4_capacity_prune_steps(t);
     const double room = (1.0 - t->opt.integer_share - DECIDE_AT) * (double)t->opt.stage2 - 1.0;
     const double n = fmin(fmax(budget / TRIALS, FEWEST_STEPS), room);
 
@@ -71,13 +70,13 @@ static int measure(search *s, ted4_cost *c)
 }
 
 /* The model at hand, one move smaller: what it costs as it is. 1: there is no such move; -1: failed. */
-static int look(search *s, ted4_move m)
+static int look(search *s, ted4_move m, int bold)
 {
     s->sight[m].to = -1;
     if (ted4_state_restore(s->t, &s->now) != 0)
         return -1;
 
-    const int to = ted4_move_next(s->t, m);
+    const int to = ted4_move_next(s->t, m, bold);
 
     if (to < 0)
         return 1;
@@ -87,31 +86,45 @@ static int look(search *s, ted4_move m)
     return 0;
 }
 
-/* Goes as far with a move as each step lowers the cost at sight. */
+/* What was looked at last is the model at hand from now on if it costs less. 1: taken; 0: not; -1: failed. */
+static int take_if_cheaper(search *s, ted4_move m)
+{
+    const ted4_cost before = s->now_cost, after = s->sight[m].cost;
+    const int       taken = after.cost < before.cost, to = s->sight[m].to;
+    ted4_snapshot   smaller = { 0 };
+    int             bad = taken && ted4_state_take(s->t, &smaller) != 0;
+
+    bad = bad || ted4_state_restore(s->t, &s->now) != 0 ||
+          note(s, m, ted4_move_now(s->t, m), to, taken, 0, &before, &after) != 0;
+    if (!bad && taken) {
+        swap(&s->now, &smaller);
+        s->now_cost = after;
+        s->sight[m].to = -1;
+    }
+    ted4_snapshot_free(&smaller);
+    return bad ? -1 : taken;
+}
+
+/* Goes as far with a move as each step lowers the cost at sight: in bold steps, then in small ones. */
 static int descend(search *s, ted4_move m)
 {
-    int bad = 0, seen = 0;
+    int bold = 1;
 
-    while (!bad && seen == 0 && s->spent < SIGHT_SHARE * s->budget && (seen = look(s, m)) == 0) {
-        const ted4_cost before = s->now_cost, after = s->sight[m].cost;
-        const int       taken = after.cost < before.cost, to = s->sight[m].to;
-        ted4_snapshot   smaller = { 0 };
+    while (s->spent < SIGHT_SHARE * s->budget) {
+        const int bolder = ted4_move_next(s->t, m, 1), next = ted4_move_next(s->t, m, 0);
 
-        if (taken)
-            bad = ted4_state_take(s->t, &smaller) != 0 || ted4_state_restore(s->t, &s->now) != 0;
-        else
-            bad = ted4_state_restore(s->t, &s->now) != 0;
-        bad = bad || note(s, m, ted4_move_now(s->t, m), to, taken, 0, &before, &after) != 0;
-        if (!bad && taken) {
-            swap(&s->now, &smaller);
-            s->now_cost = after;
-            s->sight[m].to = -1;
-        }
-        ted4_snapshot_free(&smaller);
-        if (!taken)
+        bold = bold && bolder != next;
+
+        const int seen = look(s, m, bold);
+        const int taken = seen == 0 ? take_if_cheaper(s, m) : seen;
+
+        if (taken < 0)
+            return -1;
+        if (seen > 0 || (taken == 0 && !bold))
             break;
+        bold = bold && taken;
     }
-    return bad || seen < 0 ? -1 : 0;
+    return 0;
 }
 
 /* Trains from where t stands; a model that the watch gives up is no candidate: *lost. */
@@ -167,7 +180,7 @@ static int try_move(search *s, ted4_move m)
         swap(&s->trained, &end);
         s->now_cost = s->sight[m].cost;
         s->trained_cost = after;
-        bad = look(s, m) < 0;
+        bad = look(s, m, 0) < 0;
     }
     ted4_snapshot_free(&start);
     ted4_snapshot_free(&end);
@@ -181,7 +194,7 @@ static int search_all(search *s)
     for (int m = 0; m < TED4_MOVES; m++)
         s->sight[m].to = -1;
     for (int m = 0; !bad && m < TED4_MOVES; m++)
-        bad = descend(s, (ted4_move)m) != 0;
+        bad = ted4_state_restore(s->t, &s->now) != 0 || descend(s, (ted4_move)m) != 0;
     bad = bad || ted4_state_restore(s->t, &s->now) != 0 || train(s, &s->trained, &s->trained_cost, &lost) != 0;
     if (!bad && lost)
         return ted4_trainer_fail(s->t, "the model that trials chose could not be trained");
@@ -197,15 +210,16 @@ static int search_all(search *s)
 
 int ted4_capacity_decide(ted4_trainer *t)
 {
-    search s = { .t = t, .budget = t->opt.capacity_share * (double)ted4_trainer_total(t), .steps = trial_steps(t) };
+    search s = { .t = t, .budget = ted4_capacity_budget(t) - ted4_capacity_prune_steps(t), .steps = trial_steps(t) };
     int    bad = 0;
 
-    t->decided = 1;             /* in every state that is kept from here on: trials make none of their own */
+    t->decided = TED4_DECIDED_MODEL;    /* in every state that is kept from here on: trials make none of their own */
     if (s.steps > 0)
         bad = search_all(&s) != 0;
     ted4_snapshot_free(&s.now);
     ted4_snapshot_free(&s.trained);
-    t->trial = s.trial;
-    t->n_trials = s.n_trials;
+    for (size_t i = 0; !bad && i < s.n_trials; i++)
+        bad = ted4_capacity_note(t, &s.trial[i]) != 0;
+    free(s.trial);
     return bad ? -1 : 0;
 }

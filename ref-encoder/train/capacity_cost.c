@@ -37,6 +37,22 @@ double ted4_capacity_cost_steps(const ted4_trainer *t)
     return STEPS_A_PICTURE * (double)judges(t);
 }
 
+double ted4_capacity_budget(const ted4_trainer *t)
+{
+    return t->opt.capacity_share * (double)ted4_trainer_total(t);
+}
+
+int ted4_capacity_note(ted4_trainer *t, const struct ted4_trial *x)
+{
+    struct ted4_trial *more = realloc(t->trial, (t->n_trials + 1) * sizeof *more);
+
+    if (more == NULL)
+        return ted4_trainer_fail(t, "no memory to note a trial");
+    t->trial = more;
+    more[t->n_trials++] = *x;
+    return 0;
+}
+
 /* Bytes of the file; the trainer is at the end of stage 2 afterwards. */
 static int count_bytes(ted4_trainer *t, double *bytes)
 {
@@ -58,10 +74,10 @@ static int count_bytes(ted4_trainer *t, double *bytes)
     return 0;
 }
 
-/* lambda times the bits of a byte, in units of all values. */
-static double charge(const ted4_trainer *t)
+/* lambda, in units of all values. */
+double ted4_capacity_charge(const ted4_trainer *t)
 {
-    return 8.0 * t->opt.lambda / (ted4_trainer_charged(t) * (double)(t->anchors.n > 0 ? t->anchors.n : 1));
+    return t->opt.lambda / (ted4_trainer_charged(t) * (double)(t->anchors.n > 0 ? t->anchors.n : 1));
 }
 
 static int measure(ted4_trainer *t, ted4_cost *c)
@@ -78,7 +94,7 @@ static int measure(ted4_trainer *t, ted4_cost *c)
             return -1;
         c->distortion += d / (double)n;
     }
-    c->cost = c->distortion + charge(t) * c->bytes;
+    c->cost = c->distortion + 8.0 * ted4_capacity_charge(t) * c->bytes;
     return 0;
 }
 

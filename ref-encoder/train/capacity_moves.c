@@ -10,9 +10,9 @@
 #include "surgery.h"
 
 static const char *const names[TED4_MOVES] = {
-    "motion", "activation", "width of the hyperprior", "width of the slice networks", "slices of the feature", "octaves of the hyperprior",
-    "Gaussians an anchor", "feature", "view direction", "width of the heads", "width of F_deform", "width of the bank", "rows of the bank",
-    "temporal feature", "scalings in log2", "anchors and Gaussians",
+    "motion", "activation", "Gaussians an anchor", "width of the hyperprior", "width of F_deform", "width of the slice networks",
+    "width of the heads", "width of the bank", "feature", "slices of the feature", "octaves of the hyperprior", "view direction",
+    "rows of the bank", "temporal feature", "scalings in log2", "Gaussians in all",
 };
 
 const char *ted4_move_name(ted4_move m)
@@ -46,10 +46,10 @@ int ted4_move_now(const ted4_trainer *t, ted4_move m)
     return 0;
 }
 
-/* Widths shrink by a quarter, in whole vectors; few units one by one. */
-static int narrower(int now, int multiple, int least)
+/* Widths shrink by a quarter, or by half, in whole vectors. */
+static int narrower(int now, int multiple, int least, int bold)
 {
-    int to = now * 3 / 4;
+    int to = bold ? now / 2 : now * 3 / 4;
 
     if (to > multiple)
         to = to / multiple * multiple;
@@ -58,7 +58,7 @@ static int narrower(int now, int multiple, int least)
     return to >= least && to < now ? to : -1;
 }
 
-int ted4_move_next(const ted4_trainer *t, ted4_move m)
+int ted4_move_next(const ted4_trainer *t, ted4_move m, int bold)
 {
     const int now = ted4_move_now(t, m);
 
@@ -74,9 +74,9 @@ int ted4_move_next(const ted4_trainer *t, ted4_move m)
     case TED4_MOVE_FEATURE:
     case TED4_MOVE_HEADS:
     case TED4_MOVE_DEFORM:
-    case TED4_MOVE_BANK:    return narrower(now, 4, 4);
+    case TED4_MOVE_BANK:    return narrower(now, 4, 4, bold);
     case TED4_MOVE_OFFSETS:
-    case TED4_MOVE_PHI:     return narrower(now, 1, 1);
+    case TED4_MOVE_PHI:     return narrower(now, 1, 1, bold);
     case TED4_MOVE_ROWS:    return now > 3 ? (now + 1) / 2 : -1;
     case TED4_MOVE_ANCHORS:
     case TED4_MOVES:        break;
@@ -228,14 +228,14 @@ static int narrow_octaves(operation *o, int to)
 static int fewer_offsets(operation *o, int to)
 {
     const size_t K = o->s.head.n_offsets, n = o->t->anchors.n;
-    float       *saving = malloc((2 * n * K + 1) * sizeof *saving);
+    float       *of_each = malloc((n * K + 1) * sizeof *of_each);
     double       use[TED4_MAX_OFFSETS] = { 0 };
-    const int    bad = saving == NULL || ted4_capacity_usage(o->t, saving, saving + n * K) != 0;
+    const int    bad = of_each == NULL || ted4_capacity_usage(o->t, of_each) != 0;
     int          kept = 0;
 
     for (size_t i = 0; !bad && i < n * K; i++)
-        use[i % K] += (double)saving[n * K + i];
-    free(saving);
+        use[i % K] += (double)of_each[i];
+    free(of_each);
     for (size_t k = 0; !bad && k < K; k++) {
         int better = 0;
 

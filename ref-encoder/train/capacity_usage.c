@@ -7,8 +7,21 @@
 
 enum { PICTURES = 32 };
 
+/* Forward and most of the way back. */
+#define STEPS_A_PICTURE (2.0 / 3.0)
+
+static size_t pictures(const ted4_trainer *t)
+{
+    return t->order.n < PICTURES ? t->order.n : PICTURES;
+}
+
+double ted4_capacity_usage_steps(const ted4_trainer *t)
+{
+    return STEPS_A_PICTURE * (double)pictures(t);
+}
+
 /* Adds what one picture says. */
-static void gather(const ted4_trainer *t, const ted4_splats *s, float weight, float *saving, float *size)
+static void gather(const ted4_trainer *t, const ted4_splats *s, float weight, float *use)
 {
     const size_t K = t->layout.head.n_offsets;
 
@@ -21,28 +34,21 @@ static void gather(const ted4_trainer *t, const ted4_splats *s, float weight, fl
                 if (!(t->slots.lanes[i] >> j & 1))
                     continue;
 
-                const float x = -weight * s->opacity[at] * t->splat_gradient.opacity[at];
-
-                saving[anchor * K + k] += x;
-                if (size != NULL)
-                    size[anchor * K + k] += fabsf(x);
+                use[anchor * K + k] += weight * fabsf(s->opacity[at] * t->splat_gradient.opacity[at]);
             }
 }
 
-int ted4_capacity_usage(ted4_trainer *t, float *saving, float *size)
+int ted4_capacity_usage(ted4_trainer *t, float *use)
 {
-    const size_t n = t->order.n < PICTURES ? t->order.n : PICTURES;
-    const size_t all = t->anchors.n * t->layout.head.n_offsets;
+    const size_t n = pictures(t);
 
-    memset(saving, 0, all * sizeof *saving);
-    if (size != NULL)
-        memset(size, 0, all * sizeof *size);
+    memset(use, 0, t->anchors.n * t->layout.head.n_offsets * sizeof *use);
     for (size_t i = 0; i < n; i++) {
         ted4_splats s;
 
         if (ted4_trainer_blame(t, ted4_capacity_picture(t, i, n), &s) != 0)
             return -1;
-        gather(t, &s, 1.0f / (float)n, saving, size);
+        gather(t, &s, 1.0f / (float)n, use);
     }
     return 0;
 }

@@ -315,16 +315,19 @@ static int one_step(ted4_trainer *t)
     return 0;
 }
 
-static int capacity_due(const ted4_trainer *t)
+/* Decides what is due now about how much model there is. */
+static int decide(ted4_trainer *t)
 {
-    return !t->decided && t->stage2 && !t->integer && t->iteration == ted4_capacity_step(t);
+    if (t->decided == TED4_DECIDED_NOTHING && t->stage2 && !t->integer && t->iteration == ted4_capacity_step(t))
+        return ted4_capacity_decide(t);
+    return t->decided == TED4_DECIDED_MODEL && t->integer ? ted4_capacity_prune(t) : 0;
 }
 
 int ted4_trainer_step(ted4_trainer *t)
 {
     if (probe_due(t) && ted4_probe_time(t) != 0)
         return -1;
-    if (capacity_due(t) && ted4_capacity_decide(t) != 0)
+    if (decide(t) != 0)
         return -1;
     return one_step(t) == 0 ? 0 : ted4_watch_recover(t);
 }

@@ -43,6 +43,9 @@ typedef struct {
     float        *squares;      /* [n][TED4_SLOT_TERMS + 1]: gradients.h */
 } ted4_slots;
 
+/* Nothing yet; how much model there is; which anchors pay, too. */
+enum { TED4_DECIDED_NOTHING, TED4_DECIDED_MODEL, TED4_DECIDED_ALL };
+
 typedef struct {
     ted4_train_options  opt;
     ted4_dataset       *data;           /* borrowed */
@@ -60,7 +63,7 @@ typedef struct {
     int                 clock_stopped;  /* draw everything at time 0 and without activation */
     uint64_t            stage2_start;   /* Adam's count restarts there */
     ted4_header         charged;        /* stage 2: the header at its start; a bit and a mask go on weighing what they weighed in that model */
-    int                 decided;        /* it is settled how much model the scene needs (capacity.h) */
+    int                 decided;        /* how much of what capacity.h settles has been: TED4_DECIDED_... */
     struct ted4_trial  *trial;          /* owned: what settled it */
     size_t              n_trials;
     ted4_order          order;
