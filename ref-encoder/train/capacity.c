@@ -25,7 +25,7 @@ typedef struct {
     size_t             n_trials;
     double             budget, spent;   /* training steps */
     int                steps;           /* of a trained trial */
-    struct { int to; ted4_cost cost; } sight[TED4_MOVES];       /* the next trial of each move, by its looks; to = -1: there is none */
+    struct { int from, to; ted4_cost cost; } sight[TED4_MOVES]; /* the next trial of each move, by its looks; to = -1: there is none */
 } search;
 
 /* Steps that a trained trial has; 0: too few to tell anything. */
@@ -80,22 +80,22 @@ static int look(search *s, ted4_move m, int bold)
 
     if (to < 0)
         return 1;
+    s->sight[m].from = ted4_move_now(s->t, m);
     if (ted4_move_make(s->t, m, to) != 0 || measure(s, &s->sight[m].cost) != 0)
         return -1;
     s->sight[m].to = to;
     return 0;
 }
 
-/* What was looked at last is the model at hand from now on if it costs less. 1: taken; 0: not; -1: failed. */
+/* What was looked at last is the model at hand from now on if it costs less; the trainer has the model at hand then. 1: taken; 0: not; -1: failed. */
 static int take_if_cheaper(search *s, ted4_move m)
 {
     const ted4_cost before = s->now_cost, after = s->sight[m].cost;
     const int       taken = after.cost < before.cost, to = s->sight[m].to;
     ted4_snapshot   smaller = { 0 };
-    int             bad = taken && ted4_state_take(s->t, &smaller) != 0;
+    int             bad = (taken ? ted4_state_take(s->t, &smaller) : ted4_state_restore(s->t, &s->now)) != 0;
 
-    bad = bad || ted4_state_restore(s->t, &s->now) != 0 ||
-          note(s, m, ted4_move_now(s->t, m), to, taken, 0, &before, &after) != 0;
+    bad = bad || note(s, m, s->sight[m].from, to, taken, 0, &before, &after) != 0;
     if (!bad && taken) {
         swap(&s->now, &smaller);
         s->now_cost = after;
