@@ -24,6 +24,7 @@ static ted4_train_options options(const char *capacity)
 
     ball_set(&o, capacity);
     ball_set(&o, "stage2=400");
+    ball_set(&o, "lambda=0.0005");
     ball_set(&o, "capacity_share=0.25");
     return o;
 }

@@ -10,6 +10,7 @@
 #include "ball_trainer.h"
 #include "train/capacity.h"
 #include "train/checkpoint.h"
+#include "train/rotate.h"
 #include "train/surgery.h"
 
 enum { STAGE1 = 400, STEPS = 440, FRAMES = 5, PIXELS = 3 * BALL_W * BALL_H, SHOTS = 6, F = 8, K = 4 };
@@ -328,6 +329,39 @@ static void test_motion(void **state)
     ted4_trainer_finish(&t);
 }
 
+/* Other axes, the same pictures; the first components vary most. */
+static void test_rotation(void **state)
+{
+    ted4_train_options o = ball_options();
+    ted4_trainer       t;
+    double             spread[F] = { 0 };
+
+    (void)state;
+    ball_begin(&t, &o, &scene, NULL);
+    ball_train(&t, STAGE1);
+    look(&t, 1);
+
+    const float was = *ted4_cell(&t.anchors, TED4_ROW_VALUE, 7, t.layout.first[TED4_FEATURE]);
+
+    assert_int_equal(ted4_rotate_features(&t), 0);
+    assert_true(fabsf(*ted4_cell(&t.anchors, TED4_ROW_VALUE, 7, t.layout.first[TED4_FEATURE]) - was) > 1e-3f);
+    if (look(&t, 0) > 1e-3)
+        fail_msg("a picture changed by %g", look(&t, 0));
+    for (int c = 0; c < F; c++) {
+        double sum = 0, square = 0;
+
+        for (size_t i = 0; i < t.anchors.n; i++) {
+            const double x = (double)*ted4_cell(&t.anchors, TED4_ROW_VALUE, i, t.layout.first[TED4_FEATURE] + c);
+
+            sum += x;
+            square += x * x;
+        }
+        spread[c] = square / (double)t.anchors.n - sum * sum / (double)(t.anchors.n * t.anchors.n);
+    }
+    assert_true(spread[0] > 2 * spread[F / 2] && spread[F / 2] > 2 * spread[F - 1]);
+    ted4_trainer_finish(&t);
+}
+
 /* Moves that cannot be exact cost little when they are small: the cost at sight stays within a share of what it was. */
 static void test_little(void **state)
 {
@@ -361,7 +395,7 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_nothing), cmocka_unit_test(test_offset), cmocka_unit_test(test_feature), cmocka_unit_test(test_heads),
         cmocka_unit_test(test_double), cmocka_unit_test(test_view), cmocka_unit_test(test_rows), cmocka_unit_test(test_activation),
-        cmocka_unit_test(test_motion), cmocka_unit_test(test_little),
+        cmocka_unit_test(test_motion), cmocka_unit_test(test_rotation), cmocka_unit_test(test_little),
     };
 
     return cmocka_run_group_tests(tests, set_up, tear_down);

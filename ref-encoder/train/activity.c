@@ -248,9 +248,10 @@ static void sample_picture(sampling *s, size_t item, float *value)
         s->lane = s->anchor % TED4_LANES;
         if (!(ted4_block_visible(t, block, &v) >> s->lane & 1))
             continue;
-        ted4_quantise(&t->layout, TED4_QUANT_ROUND, ted4_block(&t->anchors, TED4_ROW_VALUE, block),
-                      ted4_block(&t->anchors, TED4_ROW_STEP, block), (uint32_t)block, 0, value);
-        s->value = value;
+        s->value = t->stage2 ? value : ted4_block(&t->anchors, TED4_ROW_VALUE, block);
+        if (t->stage2)
+            ted4_quantise(&t->layout, TED4_QUANT_ROUND, ted4_block(&t->anchors, TED4_ROW_VALUE, block),
+                          ted4_block(&t->anchors, TED4_ROW_STEP, block), (uint32_t)block, 0, value);
         s->dynamic = ted4_is_dynamic(t, s->anchor);
         look_from(s, camera);
         sample(s);

@@ -27,7 +27,7 @@ typedef struct {
 /* Units at a site; 0: the model has no such site. Motion inr has neither PHI, nor BANK, nor HIDDEN of F_deform. */
 int ted4_site_width(const ted4_layout *l, ted4_site site);
 /* moment[width + 1][width + 1]: means of products over a sample of anchors in view of training pictures, the last unit being the constant 1; all zero but
- * the constant where no anchor counts. Values are quantised as the file will have them. 0, or -1 with t->message. */
+ * the constant where no anchor counts. In stage 2 values are quantised as the file will have them. 0, or -1 with t->message. */
 int ted4_site_moment(ted4_trainer *t, ted4_site site, double *moment);
 /* Weights of the layers that read the units: rows[count][width], to be freed; count is the result, or -1: no memory. */
 int ted4_site_readers(const ted4_trainer *t, ted4_site site, float **rows);

@@ -13,9 +13,10 @@
 /* Share of the budget for trials at sight; trained trials that the budget pays for if nothing is spent on those. */
 #define SIGHT_SHARE 0.5
 enum { TRIALS = 16, FEWEST_STEPS = 50 };
-/* A move that cannot lower the cost by this share is not worth training; nor is one that raises the distortion by so much at sight. */
+/* Of the distortion that a move adds at sight, training will take this share back, as far as one may hope; a move that would not lower the cost by that share
+ * even so is not worth training. */
+#define HOPE       0.8
 #define LEAST_GAIN 5e-4
-#define HOPELESS   0.5
 
 typedef struct {
     ted4_trainer      *t;
@@ -141,19 +142,21 @@ static int train(search *s, ted4_snapshot *after, ted4_cost *cost, int *lost)
     return ted4_state_take(s->t, after) != 0 || measure(s, cost) != 0;
 }
 
-/* The move that costs least at sight among those worth training; TED4_MOVES: there is none. */
+/* The move that one may hope most of; TED4_MOVES: there is none worth training. */
 static ted4_move choose(const search *s)
 {
-    ted4_move best = TED4_MOVES;
+    const ted4_cost *now = &s->now_cost;
+    ted4_move        best = TED4_MOVES;
+    double           least = (1.0 - LEAST_GAIN) * now->cost;
 
     for (int m = 0; m < TED4_MOVES; m++) {
-        const ted4_cost *c = &s->sight[m].cost, *now = &s->now_cost;
-        const double     bytes = (now->bytes - c->bytes) / now->bytes * (now->cost - now->distortion);
+        const ted4_cost *c = &s->sight[m].cost;
+        const double     hoped = c->cost - HOPE * fmax(c->distortion - now->distortion, 0.0);
 
-        if (s->sight[m].to < 0 || bytes < LEAST_GAIN * now->cost || c->distortion > (1.0 + HOPELESS) * now->distortion)
-            continue;
-        if (best == TED4_MOVES || c->cost < s->sight[best].cost.cost)
+        if (s->sight[m].to >= 0 && hoped < least) {
+            least = hoped;
             best = (ted4_move)m;
+        }
     }
     return best;
 }

@@ -71,10 +71,10 @@ int ted4_move_next(const ted4_trainer *t, ted4_move m, int bold)
     case TED4_MOVE_OCTAVES: return now > 2 ? now - 2 : now > 0 ? 0 : -1;
     case TED4_MOVE_HYPER:
     case TED4_MOVE_AR:
-    case TED4_MOVE_FEATURE:
     case TED4_MOVE_HEADS:
     case TED4_MOVE_DEFORM:
     case TED4_MOVE_BANK:    return narrower(now, 4, 4, bold);
+    case TED4_MOVE_FEATURE: return narrower(now, 2, 4, bold);
     case TED4_MOVE_OFFSETS:
     case TED4_MOVE_PHI:     return narrower(now, 1, 1, bold);
     case TED4_MOVE_ROWS:    return now > 3 ? (now + 1) / 2 : -1;

@@ -6,6 +6,7 @@
 #include <string.h>
 
 #include "norm/half.h"
+#include "rotate.h"
 #include "seed.h"
 #include "space.h"
 #include "trainer.h"
@@ -270,6 +271,8 @@ static void clear_moments(ted4_trainer *t)
 int ted4_stage2_begin(ted4_trainer *t)
 {
     if (settle_positions(t) != 0 || reshape(t) != 0)
+        return -1;
+    if (t->opt.capacity && ted4_rotate_features(t) != 0)
         return -1;
     ted4_seed_prior(t->net, &t->layout, &t->anchors, t->opt.seed);
     clear_moments(t);
