@@ -199,7 +199,7 @@ static int numbers_are_possible(const ted4_trainer *t)
 {
     return (t->stage2 == 0 || t->stage2 == 1) && (t->integer == 0 || t->integer == 1) && t->integer <= t->stage2
         && t->iteration <= ted4_trainer_total(t) && t->stage2_start <= t->iteration && t->cell > 0 && t->cell <= 1e30
-        && t->watch.state.factor > 0 && t->watch.state.factor <= 1 && t->watch.state.rollbacks <= TED4_ROLLBACKS;
+        && t->decided >= TED4_DECIDED_NOTHING && t->decided <= TED4_DECIDED_ALL && t->watch.state.factor > 0 && t->watch.state.factor <= 1 && t->watch.state.rollbacks <= TED4_ROLLBACKS;
 }
 
 /* The last good state, itself a file of this kind, looked at when it is needed. None is written where the next step replaces it, or there is none. Room grows
@@ -259,6 +259,8 @@ static void walk_capacity(stream *s, ted4_trainer *t)
     }
     if (!s->failed)
         put(s, t->trial, (size_t)n * sizeof *t->trial);
+    for (size_t i = 0; !s->failed && i < n; i++)
+        s->failed = t->trial[i].move < 0 || t->trial[i].move >= TED4_MOVES;
 }
 
 static void walk_colour(stream *s, ted4_trainer *t)
