@@ -12,7 +12,7 @@ function number(name,    v) {
     return v
 }
 
-# What the watch has found (run_log.h) is no line of a step.
+# What the watch has found, and trials of smaller models (run_log.h), are no lines of a step.
 /^[{]"step":[0-9]+,"event":/ {
     next
 }

@@ -8,7 +8,7 @@
 
 #include "checkpoint.h"
 
-/* Share of stage 2 before: values have begun to be cheap, and the prior knows them. */
+/* Share of stage 2 before: values have begun to be cheap, and the prior knows them. Measured on three small scenes, at 0.5 costs differ by 1 % either way. */
 #define DECIDE_AT 0.15
 /* Share of the budget for trials at sight; trained trials that the budget pays for if nothing is spent on those. */
 #define SIGHT_SHARE 0.5

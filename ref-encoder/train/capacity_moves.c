@@ -86,7 +86,7 @@ int ted4_move_next(const ted4_trainer *t, ted4_move m, int bold)
 
 /* ---- making them ---- */
 
-/* Units that may not go, and those that must: those before least of the move, or none. */
+/* *w: a site with to units, those that held says among them (NULL: it says none). 0, or -1 with t->message. */
 static int narrow_site(ted4_trainer *t, ted4_site site, int to, const uint8_t *held, ted4_narrow *w)
 {
     const int    width = ted4_site_width(&t->layout, site);
@@ -108,7 +108,7 @@ static int narrow_site(ted4_trainer *t, ted4_site site, int to, const uint8_t *h
 
 enum { MOST_NARROWS = TED4_NETS_R * TED4_MAX_LAYERS };
 
-/* A surgery under way, with the narrows that it owns. */
+/* A surgery that is being planned, and the narrows that it borrows. */
 typedef struct {
     ted4_trainer *t;
     ted4_surgery  s;
@@ -263,9 +263,10 @@ static void make_linear(operation *o)
     o->s.head.step[TED4_SCALING] = (float)fmax(log(2.0) * exp2(sum / n), 1e-5);
 }
 
+/* What a move changes, into o->s. 0, or not 0 with t->message. */
 static int plan(operation *o, ted4_move m, int to)
 {
-    ted4_header *h = &o->s.head;
+    ted4_header    *h = &o->s.head;
     const ted4_site bank = { TED4_SITE_BANK, 0, 0 }, phi = { TED4_SITE_PHI, 0, 0 };
 
     switch (m) {

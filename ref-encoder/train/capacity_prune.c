@@ -13,9 +13,9 @@
 static const double prices[] = { 0.125, 0.25, 0.5, 1.0, 2.0, 4.0 };
 enum { N_PRICES = (int)(sizeof prices / sizeof prices[0]) };
 
-/* Of the share of all trials' budget that this takes, there is at least so many times as much. */
+/* Nothing is pruned where the budget of all trials is not so many times what this takes. */
 #define ROOM 3.0
-/* Bits of an anchor's place and flags; of an offset's flag that is off rather than on. */
+/* Bits of an anchor's place and of its flag of motion. */
 #define ANCHOR_BITS 49.0
 /* A logit that leaves its offset out for good. */
 #define OUT (-10.0f)
