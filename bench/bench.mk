@@ -106,3 +106,10 @@ stability: all $B/bench/lab_facts
 	bench/stability_page.sh
 
 .PHONY: stability
+
+# How much model is chosen: the runs of bench/capacity.txt whose row in bench/capacity.csv is missing or stale (hours; resumable), then bench/capacity.md.
+capacity: all
+	TED4_BUILD=$B TED4_DATA=$(TED4_DATA) bench/capacity.sh
+	bench/capacity_page.sh
+
+.PHONY: capacity

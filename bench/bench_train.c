@@ -148,7 +148,7 @@ static sample one_step(ted4_trainer *t)
 /* The preset "fast" with as many anchors as it may have from the beginning, and short stages. */
 static void choose_options(ted4_train_options *o, int steps)
 {
-    char why[256], text[6][64];
+    char why[256], text[7][64];
 
     snprintf(text[0], sizeof text[0], "stage1=%d", steps);
     snprintf(text[1], sizeof text[1], "stage2=%d", 2 * steps);
@@ -156,8 +156,9 @@ static void choose_options(ted4_train_options *o, int steps)
     snprintf(text[3], sizeof text[3], "init_anchors=16000");
     snprintf(text[4], sizeof text[4], "activation_start=0");
     snprintf(text[5], sizeof text[5], "probe=0");
+    snprintf(text[6], sizeof text[6], "capacity=0");
     must(ted4_options_preset(o, "fast") == 0 ? o : NULL);
-    for (int i = 0; i < 6; i++)
+    for (int i = 0; i < 7; i++)
         if (ted4_options_set(o, text[i], why, sizeof why) != 0) {
             fprintf(stderr, "bench_train: %s\n", why);
             exit(3);

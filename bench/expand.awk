@@ -30,7 +30,7 @@ function take(i,    name) {
             if (split($(++i), half, "=") != 2)
                 fail("--set " $i ": NAME=VALUE expected")
             keep_value("--set " half[1] "=", half[2])
-        } else if (name ~ /^--(preset|lambda|seed|downscale)$/) {
+        } else if (name ~ /^--(preset|capacity|lambda|seed|downscale)$/) {
             keep_value(name " ", $(++i))
         } else if (name == "--black") {
             keep_value(name, "")
@@ -55,7 +55,7 @@ function take_text(text,    line) {
 
 # Does the option matter before stage 2?
 function early(name) {
-    if (name == "--lambda ")
+    if (name == "--lambda " || name == "--capacity ")
         return 0
     if (name !~ /^--set /)
         return 1

@@ -17,7 +17,7 @@ FNR == 1 {
     before = cpu
 }
 
-# What the watch has found (run_log.h) is no line of a step.
+# What the watch has found, and trials of smaller models (run_log.h), are no lines of a step.
 /^[{]"step":[0-9]+,"event":/ {
     next
 }

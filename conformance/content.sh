@@ -12,7 +12,7 @@ for scene in occluder still pop turn; do
     [ -d "$out/scene-$scene" ] || "$bin/ted4scene" $scene -o "$out/scene-$scene" --size 64x48 --frames 10 --cameras 8 --test-cameras 1 -j 1
     for lambda in 0.0005 0.002 0.008; do
         file=$out/CNT-$scene-$lambda.ted4
-        [ -f "$file" ] || "$bin/ted4enc" "$out/scene-$scene" -o "$file" --preset draft $small --lambda $lambda --seed 1 -j 1 -q --stage1 "$out/$scene.stage1"
+        [ -f "$file" ] || "$bin/ted4enc" "$out/scene-$scene" -o "$file" --preset draft --capacity fixed $small --lambda $lambda --seed 1 -j 1 -q --stage1 "$out/$scene.stage1"
         "$bin/ted4dec" "$file" --test
     done
 done

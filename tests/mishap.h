@@ -32,7 +32,8 @@ static const char *const usual[] = {
     "ted4enc", "scene", "-f", "-j1", "-q", "--preset", "draft", "--iterations", "700,200", "--cache", "0",
     "--checkpoint-every", "0", "--set", "offsets=4", "--set", "feature=8", "--set", "phi=4", "--set", "bank_dim=8",
     "--set", "deform_width=8", "--set", "head_width=12", "--set", "hyper_width=8", "--set", "ar_width=8", "--set", "slices=2",
-    "--set", "octaves=4", "--set", "init_anchors=150", "--set", "max_anchors=260", "--set", "grow_every=20", NULL
+    "--set", "octaves=4", "--set", "init_anchors=150", "--set", "max_anchors=260", "--set", "grow_every=20",
+    "--set", "capacity=0", NULL
 };
 
 /* The child's side: a file may not grow beyond limit bytes (0: any size), and a signal does not say so. */

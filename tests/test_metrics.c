@@ -59,6 +59,7 @@ static void test_psnr(void **state)
     b[300] = 115;                                       /* one value of 600 off by 15 */
     assert_int_equal(ted4_metrics_compare(a, b, 20, 10, NULL, &m), 0);
     assert_true(fabs(m.psnr - 10.0 * log10(255.0 * 255.0 * 600.0 / 225.0)) < 1e-12);
+    assert_true(fabs(m.l1 - 15.0 / (600.0 * 255.0)) < 1e-15);
     free(a);
     free(b);
 }

@@ -486,6 +486,7 @@ static void test_eval(void **state)
     assert_true(fabs(result("psnr") - 20.0 * log10(255.0)) < 1e-3);
     assert_true(result("ssim") > 0.99 && result("ssim") < 1.0);
     assert_true(result("ssim2") > 0.99 && result("ms_ssim") > 0.99);
+    assert_true(fabs(result("l1") - 1.0 / 255.0) < 1e-6);
     assert_true(result("bytes") == (double)size && result("views") == VIEWS);
     assert_true(result("decode_ms") > 0.0 && result("render_fps") > 0.0);
     path_of(path, "sheet.png");

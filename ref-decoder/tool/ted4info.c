@@ -15,11 +15,13 @@
 #include "cli.h"
 #include "findings.h"
 #include "ted4.h"
+#include "told.h"
 
-enum { OPT_BUDGET, OPT_VALIDATE, OPT_MEMORY, OPT_WORK, OPT_THREADS, OPT_JSON, OPT_QUIET, OPT_VERBOSE, OPT_HELP, OPT_VERSION, N_OPTIONS };
+enum { OPT_BUDGET, OPT_WHY, OPT_VALIDATE, OPT_MEMORY, OPT_WORK, OPT_THREADS, OPT_JSON, OPT_QUIET, OPT_VERBOSE, OPT_HELP, OPT_VERSION, N_OPTIONS };
 
 static const ted4_argument OPTIONS[N_OPTIONS] = {
     [OPT_BUDGET]  = { 0, "budget", NULL, "attribute every byte of the file to a syntax element" },
+    [OPT_WHY]     = { 0, "why", NULL, "what the encoder says of its decisions, if it was asked to (ted4enc --why)" },
     [OPT_VALIDATE] = { 0, "validate", NULL, "for authors of encoders: every error, and what is legal but doubtful, with byte offset and rule" },
     [OPT_MEMORY]  = { 0, "max-memory", "BYTES", "refuse a file that takes more. Default 4 GiB" },
     [OPT_WORK]    = { 0, "max-work", "STEPS", "refuse a file that asks for more steps (specification 13.4). Default: any number" },
@@ -181,7 +183,7 @@ static json_t *budget_json(const ted4_budget *b)
     return list;
 }
 
-static void print_json(const settings *s, const ted4_info *info, const ted4_budget *b, size_t size)
+static void print_json(const settings *s, const ted4_info *info, const ted4_budget *b, const uint8_t *data, size_t size)
 {
     json_t *const name = json_string(s->input);         /* NULL: not UTF-8 */
     char    hash[33];
@@ -193,21 +195,25 @@ static void print_json(const settings *s, const ted4_info *info, const ted4_budg
                   "moving", (json_int_t)info->n_dynamic, "gaussians", (json_int_t)info->n_gaussians, "header", header_json(b));
     if (s->on[OPT_BUDGET])
         json_object_set_new(o, "budget", budget_json(b));
+    if (s->on[OPT_WHY])
+        json_object_set_new(o, "why", ted4_told_json(data, size, "capacity"));
     json_dumpf(o, stdout, JSON_COMPACT | JSON_REAL_PRECISION(9));
     putchar('\n');
     json_decref(o);
 }
 
-static int show(const settings *s, const ted4_info *info, const ted4_budget *b, size_t size)
+static int show(const settings *s, const ted4_info *info, const ted4_budget *b, const uint8_t *data, size_t size)
 {
     if (s->on[OPT_JSON]) {
-        print_json(s, info, b, size);
+        print_json(s, info, b, data, size);
     } else if (!s->on[OPT_QUIET]) {
         print_summary(s, info, size);
         if (s->on[OPT_VERBOSE])
             print_header(b);
         if (s->on[OPT_BUDGET])
             print_budget(b, size);
+        if (s->on[OPT_WHY])
+            ted4_told_print(data, size, "capacity");
     }
     return TED4_EXIT_FINE;
 }
@@ -236,7 +242,7 @@ static int run(const settings *s, ted4_budget *budget)
         code = TED4_EXIT_TOOL;
     } else {
         ted4_scene_info(scene, &info);
-        code = show(s, &info, budget, size);
+        code = show(s, &info, budget, data, size);
     }
     ted4_scene_free(scene);
     free(data);

@@ -292,6 +292,15 @@ static double psnr(const uint8_t *a, const uint8_t *b, size_t n)
     return sum == 0 ? (double)INFINITY : 10.0 * log10(255.0 * 255.0 * (double)n / (double)sum);
 }
 
+static double l1(const uint8_t *a, const uint8_t *b, size_t n)
+{
+    uint64_t sum = 0;
+
+    for (size_t i = 0; i < n; i++)
+        sum += (uint64_t)(a[i] > b[i] ? a[i] - b[i] : b[i] - a[i]);
+    return (double)sum / (255.0 * (double)n);
+}
+
 int ted4_metrics_compare(const uint8_t *a, const uint8_t *b, int width, int height,
                          const ted4_parallel *p, ted4_metrics *m)
 {
@@ -309,6 +318,7 @@ int ted4_metrics_compare(const uint8_t *a, const uint8_t *b, int width, int heig
         }
     }
     *m = (ted4_metrics){ psnr(a, b, (size_t)width * (size_t)height * CHANNELS), mean[KIND_GAUSS],
-                         mean[KIND_BOX], mean[KIND_SCALES], j.scales };
+                         mean[KIND_BOX], mean[KIND_SCALES],
+                         l1(a, b, (size_t)width * (size_t)height * CHANNELS), j.scales };
     return 0;
 }

@@ -21,6 +21,7 @@ typedef struct {
     double ms_ssim;     /* 11 x 11 Gaussian without padding, range 1; 2 x 2 average between scales,
                          * where an odd side gets one zero in front; product by channel, then
                          * mean; negative factors count as 0 */
+    double l1;          /* mean absolute difference over all pixels and channels, range 1 */
     int    scales;      /* of ms_ssim: 5, or as many as keep both sides at 11 pixels or more; then
                          * the weights are divided by their sum */
 } ted4_metrics;

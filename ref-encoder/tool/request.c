@@ -10,7 +10,7 @@
 #include "tool/arguments.h"
 
 enum {
-    OPT_OUTPUT, OPT_PRESET, OPT_LAMBDA, OPT_ITERATIONS, OPT_SET, OPT_DOWNSCALE, OPT_MAX_FRAMES, OPT_BLACK,
+    OPT_OUTPUT, OPT_PRESET, OPT_LAMBDA, OPT_ITERATIONS, OPT_CAPACITY, OPT_WHY, OPT_SET, OPT_DOWNSCALE, OPT_MAX_FRAMES, OPT_BLACK,
     OPT_SEED, OPT_THREADS, OPT_CACHE, OPT_TARGET, OPT_CHECKPOINT, OPT_EVERY, OPT_RESUME, OPT_STAGE1, OPT_LOG, OPT_CHECK, OPT_JSON, OPT_CONTRACT, OPT_FORCE,
     OPT_QUIET, OPT_VERBOSE, OPT_HELP, OPT_VERSION, N_OPTIONS
 };
@@ -24,6 +24,8 @@ static const ted4_argument OPTIONS[N_OPTIONS] = {
     [OPT_LAMBDA]     = { 0, "lambda", "X", "weight of the rate, as --set lambda=X" },
     [OPT_TARGET]     = { 0, "target-size", "BYTES", "repeat stage 2 in search of the lambda for this size" },
     [OPT_ITERATIONS] = { 0, "iterations", "A,B", "steps of both stages, as --set stage1=A stage2=B" },
+    [OPT_CAPACITY]   = { 0, "capacity", "HOW", "auto (default): no more model than pays; fixed: as options say" },
+    [OPT_WHY]        = { 0, "why", NULL, "the file says what was decided and why: ted4info --why" },
     [OPT_SET]        = { 0, "set", "NAME=VALUE", "any training option of the table below" },
     [OPT_DOWNSCALE]  = { 0, "downscale", "N", "integer area averaging of the pictures" },
     [OPT_MAX_FRAMES] = { 0, "max-frames", "N", "only so many times, the first ones (default: all, 300 of Neu3D)" },
@@ -61,7 +63,7 @@ static const ted4_command COMMAND = {
 
 /* What cannot be applied before the preset is known. */
 typedef struct {
-    const char *preset, *lambda, *iterations, *set[MAX_SETS];
+    const char *preset, *lambda, *iterations, *capacity, *set[MAX_SETS];
     int         n_sets;
 } pending;
 
@@ -94,6 +96,8 @@ static int take(ted4_request *r, pending *p, int option, const char *value)
     case OPT_PRESET:     p->preset = value; break;
     case OPT_LAMBDA:     p->lambda = value; break;
     case OPT_ITERATIONS: p->iterations = value; break;
+    case OPT_CAPACITY:   p->capacity = value; break;
+    case OPT_WHY:        r->why = 1; break;
     case OPT_CHECKPOINT: r->checkpoint = value; break;
     case OPT_STAGE1:     r->stage1 = value; break;
     case OPT_LOG:        r->log = value; break;
@@ -165,6 +169,10 @@ static int apply(ted4_request *r, const pending *p)
         snprintf(text, sizeof text, "lambda=%s", p->lambda);
         status = set(r, text);
     }
+    if (p->capacity != NULL && strcmp(p->capacity, "auto") != 0 && strcmp(p->capacity, "fixed") != 0)
+        return bad_value(OPT_CAPACITY, p->capacity);
+    if (p->capacity != NULL)
+        r->options.capacity = strcmp(p->capacity, "auto") == 0;
     for (int i = 0; i < p->n_sets && status == TED4_REQUEST_GO; i++)
         status = set(r, p->set[i]);
     return status;

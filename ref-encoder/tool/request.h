@@ -9,7 +9,7 @@
 
 typedef struct {
     const char        *scene, *out, *checkpoint, *stage1, *log;  /* borrowed from argv; NULL: not asked for */
-    int                downscale, max_frames, cache_mib, checkpoint_every, threads, resume, check, json, force, quiet, verbose, black;
+    int                downscale, max_frames, cache_mib, checkpoint_every, threads, resume, check, json, force, quiet, verbose, black, why;
     size_t             target_size;     /* bytes; 0: not asked for */
     ted4_train_options options;
 } ted4_request;

@@ -11,6 +11,7 @@
 #include <time.h>
 #include <unistd.h>
 
+#include "train/capacity.h"
 #include "train/clamped.h"
 #include "train/make_scene.h"
 
@@ -269,6 +270,34 @@ int ted4_run_log_event(ted4_run_log *l, const ted4_trainer *t, char *why, size_t
                            t->watch.state.factor);
 
     return put_line(l, line, (size_t)n, why, why_size);
+}
+
+int ted4_run_log_trials(ted4_run_log *l, const ted4_trainer *t, size_t first, char *why, size_t why_size)
+{
+    char line[600];
+
+    for (size_t i = first; i < t->n_trials; i++) {
+        const struct ted4_trial *x = &t->trial[i];
+
+        if (l->verbose)
+            fprintf(stderr, "capacity: %s %lld to %lld %s: cost %.6f to %.6f (distortion %.6f to %.6f, bytes %.0f to %.0f), after %lld steps each\n",
+                    ted4_move_name((ted4_move)x->move), (long long)x->from, (long long)x->to, x->taken ? "taken" : "left", x->before.cost,
+                    x->after.cost, x->before.distortion, x->after.distortion, x->before.bytes, x->after.bytes, (long long)x->steps);
+        if (l->file < 0)
+            continue;
+
+        const int n = snprintf(line, sizeof line,
+                               "{\"step\":%llu,\"event\":\"capacity\",\"rollbacks\":%llu,\"what\":\"%s\",\"from\":%lld,\"to\":%lld,"
+                               "\"trained\":%lld,\"taken\":%s,\"cost\":[%.8f,%.8f],\"distortion\":[%.8f,%.8f],\"bytes\":[%.0f,%.0f]}\n",
+                               (unsigned long long)t->iteration, (unsigned long long)t->watch.state.rollbacks,
+                               ted4_move_name((ted4_move)x->move), (long long)x->from, (long long)x->to, (long long)x->steps,
+                               x->taken ? "true" : "false", x->before.cost, x->after.cost, x->before.distortion, x->after.distortion,
+                               x->before.bytes, x->after.bytes);
+
+        if (put_line(l, line, (size_t)n, why, why_size) != 0)
+            return -1;
+    }
+    return 0;
 }
 
 int ted4_run_log_close(ted4_run_log *l, char *why, size_t why_size)

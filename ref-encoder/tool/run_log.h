@@ -60,6 +60,16 @@ int  ted4_run_log_step(ted4_run_log *l, const ted4_trainer *t, char *why, size_t
  *   factor                 of learning rates from here on
  * The same results. */
 int  ted4_run_log_event(ted4_run_log *l, const ted4_trainer *t, char *why, size_t why_size);
+/* One line about each trial of a smaller model (train/capacity.h) from number first on, once they are made:
+ *   step                   where training goes on
+ *   event                  "capacity"
+ *   rollbacks              so far
+ *   what from to           what was tried: from so many to so many
+ *   trained                steps of either side before they were compared; 0: at sight
+ *   taken                  does the smaller model stay?
+ *   cost distortion bytes  of the model at hand, of the smaller one; cost is distortion plus what the bytes weigh
+ * The same results. */
+int  ted4_run_log_trials(ted4_run_log *l, const ted4_trainer *t, size_t first, char *why, size_t why_size);
 /* 0, or -1 with why filled. */
 int  ted4_run_log_close(ted4_run_log *l, char *why, size_t why_size);
 

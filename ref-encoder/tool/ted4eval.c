@@ -76,7 +76,7 @@ typedef struct {
 
 /* Sums over pictures, later divided by views. */
 typedef struct {
-    double psnr, ssim, ssim2, ms_ssim, render_s, decode_ms;
+    double psnr, ssim, ssim2, ms_ssim, l1, render_s, decode_ms;
     size_t views, bytes;
 } totals;
 
@@ -349,6 +349,7 @@ static int take_picture(session *s, size_t i, const uint8_t *truth, const uint8_
     s->sum.ssim += m.ssim;
     s->sum.ssim2 += m.ssim2;
     s->sum.ms_ssim += m.ms_ssim;
+    s->sum.l1 += m.l1;
     s->sum.views++;
     return code;
 }
@@ -403,9 +404,9 @@ static void print_result(const session *s)
         return;
     }
     json_t *const o = json_pack(
-        "{s:o, s:o, s:o, s:o, s:I, s:o, s:o, s:I, s:s, s:I, s:I, s:I}", "psnr", number(t->psnr / n),
+        "{s:o, s:o, s:o, s:o, s:o, s:I, s:o, s:o, s:I, s:s, s:I, s:I, s:I}", "psnr", number(t->psnr / n),
         "ssim", number(t->ssim / n), "ssim2", number(t->ssim2 / n), "ms_ssim",
-        number(t->ms_ssim / n), "bytes", (json_int_t)t->bytes, "decode_ms", number(t->decode_ms),
+        number(t->ms_ssim / n), "l1", number(t->l1 / n), "bytes", (json_int_t)t->bytes, "decode_ms", number(t->decode_ms),
         "render_fps", number(n / t->render_s), "views", (json_int_t)t->views, "split",
         s->set->want_test ? "test" : "train", "frames", (json_int_t)s->info.frames, "anchors",
         (json_int_t)s->info.n_anchors, "gaussians", (json_int_t)s->info.n_gaussians);

@@ -9,6 +9,7 @@
 
 #include "train/checkpoint.h"
 #include "train/make_scene.h"
+#include "why.h"
 #include "write/encode.h"
 
 /* Steps between reports, pictures of the preview. */
@@ -125,11 +126,14 @@ static int step(ted4_training *t)
 {
     ted4_trainer  *tr = t->trainer;
     const uint64_t before = tr->iteration, rollbacks = tr->watch.state.rollbacks;
+    const size_t   trials = tr->n_trials;
 
     if (ted4_trainer_step(tr) != 0)
         return fail_step(t);
     /* A step may be many: what a probe has done counts. Or it began again, or went back. */
     if (tr->iteration <= before && start_over(t) != 0)
+        return -1;
+    if (tr->n_trials > trials && ted4_run_log_trials(&t->log, tr, trials, t->why, sizeof t->why) != 0)
         return -1;
     return tr->watch.state.rollbacks > rollbacks ? tell_rollback(t) : 0;
 }
@@ -175,12 +179,17 @@ int ted4_training_code(ted4_training *t, ted4_coded *c)
     }
     for (int y = 0; y < TED4_TYPES; y++)
         c->verified.estimated_bits += bits[y];
-    bad = ted4_encode(scene, 0, tr->parallel, &c->bytes, &c->size, &e) != TED4_OK;
+    char *text = t->request->why ? ted4_why_text(tr) : NULL;
+
+    bad = t->request->why && text == NULL;
     if (bad)
+        snprintf(t->why, sizeof t->why, "no memory to say why");
+    else if ((bad = ted4_encode_told(scene, 0, text, tr->parallel, &c->bytes, &c->size, &e) != TED4_OK))
         snprintf(t->why, sizeof t->why, "encoder refused its own scene: %s", ted4_status_id(e.code));
     else
         bad = ted4_verify(scene, c->bytes, c->size, tr->parallel, &c->verified, t->why,
                           sizeof t->why) != 0;
+    free(text);
     ted4_scene_free(scene);
     if (bad)
         ted4_coded_free(c);

@@ -1,5 +1,6 @@
 /* checkpoint.c - see checkpoint.h. Native byte order: a checkpoint stays on the machine that made it.
  * SPDX-License-Identifier: BSD-2-Clause */
+#include "capacity.h"
 #include "checkpoint.h"
 
 #include <errno.h>
@@ -94,9 +95,30 @@ static int header_elements(const ted4_header *h, elements *e)
     return c.base.error.code == TED4_OK ? 0 : -1;
 }
 
+/* May trials of smaller models have made h of it (capacity.h)? Whatever they change is no more than it was, and valid. */
+static void allow_smaller(ted4_header *want, const ted4_header *h)
+{
+    want->n_offsets = h->n_offsets < want->n_offsets ? h->n_offsets : want->n_offsets;
+    want->bank_rows = h->bank_rows < want->bank_rows ? h->bank_rows : want->bank_rows;
+    want->bank_dim = h->bank_dim < want->bank_dim ? h->bank_dim : want->bank_dim;
+    want->phi_dim = h->phi_dim < want->phi_dim ? h->phi_dim : want->phi_dim;
+    want->deform_width = h->deform_width < want->deform_width ? h->deform_width : want->deform_width;
+    want->view = h->view < want->view ? h->view : want->view;
+    want->head_width = h->head_width < want->head_width ? h->head_width : want->head_width;
+    want->pe_octaves = h->pe_octaves < want->pe_octaves ? h->pe_octaves : want->pe_octaves;
+    want->hyper_width = h->hyper_width < want->hyper_width ? h->hyper_width : want->hyper_width;
+    want->ar_width = h->ar_width < want->ar_width ? h->ar_width : want->ar_width;
+    want->step[TED4_SCALING] = h->step[TED4_SCALING];
+    if (h->feature_dim > want->feature_dim || h->n_slices > want->n_slices)
+        return;
+    want->feature_dim = h->feature_dim;
+    want->n_slices = h->n_slices;
+    memcpy(want->slice, h->slice, sizeof want->slice);
+}
+
 /* Is h the header that this run began with, but for what stages change: motion and activation may have gone, scalings may be linear, and the
  * context bits are chosen? A hash finds damage, not this. */
-static int header_belongs(const ted4_header *began, const ted4_header *h)
+static int header_belongs(const ted4_header *began, const ted4_header *h, int decided)
 {
     ted4_header want = *began;
     elements    a, b;
@@ -107,7 +129,8 @@ static int header_belongs(const ted4_header *began, const ted4_header *h)
         want.activation = 0;
     want.scale_domain = h->scale_domain;
     want.context_bits = h->context_bits;
-
+    if (decided)
+        allow_smaller(&want, h);
     return header_elements(&want, &a) == 0 && header_elements(h, &b) == 0 && a.n == b.n
         && memcmp(a.value, b.value, a.n * sizeof *a.value) == 0;
 }
@@ -124,7 +147,7 @@ static void walk_layout(stream *s, ted4_trainer *t)
     if (!t->stage2)
         ted4_header_stage2(&h, &t->opt);
     ted4_header_make(&began, &t->opt, t->data);
-    s->failed = !header_belongs(&began, &h);
+    s->failed = !header_belongs(&began, &h, t->stage2 && t->opt.capacity);
     if (s->failed)
         return;
     ted4_layout_make(&t->layout, &h);
@@ -176,7 +199,7 @@ static int numbers_are_possible(const ted4_trainer *t)
 {
     return (t->stage2 == 0 || t->stage2 == 1) && (t->integer == 0 || t->integer == 1) && t->integer <= t->stage2
         && t->iteration <= ted4_trainer_total(t) && t->stage2_start <= t->iteration && t->cell > 0 && t->cell <= 1e30
-        && t->watch.state.factor > 0 && t->watch.state.factor <= 1 && t->watch.state.rollbacks <= TED4_ROLLBACKS;
+        && t->decided >= TED4_DECIDED_NOTHING && t->decided <= TED4_DECIDED_ALL && t->watch.state.factor > 0 && t->watch.state.factor <= 1 && t->watch.state.rollbacks <= TED4_ROLLBACKS;
 }
 
 /* The last good state, itself a file of this kind, looked at when it is needed. None is written where the next step replaces it, or there is none. Room grows
@@ -210,6 +233,36 @@ static void walk_good(stream *s, ted4_trainer *t)
         ted4_watch_forget(t);
 }
 
+/* How the model came to be what it is. Before stage 2 there is nothing to tell; without trials the model is the one that stage 2 began with. */
+static void walk_capacity(stream *s, ted4_trainer *t)
+{
+    enum { MOST = 4096 };
+    uint64_t    n = t->n_trials;
+    ted4_header began;
+
+    if (!s->writing)
+        t->decided = 0;
+    if (t->stage2 && t->opt.capacity) {
+        put(s, &t->charged, sizeof t->charged);
+        put(s, &t->decided, sizeof t->decided);
+        put(s, &n, sizeof n);
+    } else {
+        t->charged = t->layout.head;
+        n = 0;
+    }
+    if (!s->writing && !s->failed) {
+        ted4_header_make(&began, &t->opt, t->data);
+        free(t->trial);
+        t->trial = n <= MOST ? malloc((size_t)(n + 1) * sizeof *t->trial) : NULL;
+        t->n_trials = t->trial != NULL ? (size_t)n : 0;
+        s->failed = t->trial == NULL || !header_belongs(&began, &t->charged, 0);
+    }
+    if (!s->failed)
+        put(s, t->trial, (size_t)n * sizeof *t->trial);
+    for (size_t i = 0; !s->failed && i < n; i++)
+        s->failed = t->trial[i].move < 0 || t->trial[i].move >= TED4_MOVES;
+}
+
 static void walk_colour(stream *s, ted4_trainer *t)
 {
     ted4_colour *c = &t->colour;
@@ -231,6 +284,8 @@ static void walk(stream *s, ted4_trainer *t)
     put(s, &t->stage2, sizeof t->stage2);
     expect(s, ted4_options_hash(&t->opt, t->stage2 ? 2 : 1));
     walk_layout(s, t);
+    if (!s->failed)
+        walk_capacity(s, t);
     put(s, &t->cell, sizeof t->cell);
     put(s, &t->iteration, sizeof t->iteration);
     put(s, &t->seconds, sizeof t->seconds);

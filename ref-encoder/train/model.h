@@ -92,6 +92,11 @@ int ted4_rate_evaluate(ted4_rate *r, const ted4_rate_input *in,
                        float *const *d_attr, float *d_net, float *const *steps,
                        double *bits);
 
+/* Bits of each anchor by itself, without gradients: lane_bits[n_slots][1 + K][32], all its values but offsets, then each offset; 0 where masks leave them out.
+ * The same results. */
+int ted4_rate_lanes(ted4_rate *r, const ted4_rate_input *in,
+                    const ted4_parallel *p, float *const *steps, float *lane_bits);
+
 /* The quantiser by itself, for rendering: out = quantised attr with given steps [TED4_TYPES][32]; the same noise as ted4_rate_evaluate for equal block and key.
  * Logits are copied. NOISE or ROUND. After decoding, a_s <= a_f must hold: where rounding breaks it, a_f is raised to a_s. */
 void ted4_quantise(const ted4_layout *l, ted4_quant quant, const float *attr,

@@ -364,6 +364,18 @@ static double masked_sum(const float *bits, const float *mask)
     return sum;
 }
 
+/* Adds the bits of a type to those of the slot's anchors; offsets are apart. total: of a type that is coded for every anchor in use. */
+static void tell_lanes(const ted4_rate_job *job, const ted4_rate_slot *s, size_t slot, int t, const float *total)
+{
+    const size_t K = job->in->layout->head.n_offsets;
+    const float *bits = t == TED4_OFFSET ? s->kept_bits : t == TED4_PHI ? s->phi_bits : total;
+    const float *mask = t == TED4_OFFSET ? s->kept : t == TED4_PHI ? s->dynamic : s->used;
+    float       *to = job->lane_bits + slot * ted4_row(1 + K) + (t == TED4_OFFSET ? TED4_LANES : 0);
+
+    for (size_t j = 0; j < (t == TED4_OFFSET ? ted4_row(K) : TED4_LANES); j++)
+        to[j] += mask[j] > 0.0f ? bits[j] : 0.0f;
+}
+
 static void type_bits(const ted4_rate_job *job, ted4_rate_room *room, size_t i,
                       size_t slot, int t)
 {
@@ -389,6 +401,8 @@ static void type_bits(const ted4_rate_job *job, ted4_rate_room *room, size_t i,
         component_bits(job->in->bit_weight, mask, k_mu, mu + s_rows,
                        s->d_symbol + at, d_mu, d_mu + s_rows, gathered);
     }
+    if (job->lane_bits != NULL)
+        tell_lanes(job, s, slot, t, total);
     if (t == TED4_OFFSET)
         for (size_t k = 0; k < dim / 3; k++)
             room->sums->bits[t] += masked_sum(s->kept_bits + ted4_row(k),
@@ -493,16 +507,15 @@ static void run_wave(ted4_rate_job *job, size_t n, const ted4_parallel *p,
     }
 }
 
-int ted4_rate_evaluate(ted4_rate *r, const ted4_rate_input *in,
-                       const ted4_parallel *p, const float *const *d_value,
-                       float *const *d_attr, float *d_net, float *const *steps,
-                       double *bits)
+/* All but rate, input and where results go is filled in here. */
+static int evaluate(ted4_rate_job job, const ted4_parallel *p, float *d_net,
+                    double *bits)
 {
+    ted4_rate *r = job.rate;
+    const ted4_rate_input *in = job.in;
     const size_t n_chunks = (in->n_slots + TED4_RATE_CHUNK - 1)
                           / TED4_RATE_CHUNK;
     ted4_rate_integer integer;
-    ted4_rate_job job = { r, in, d_value, d_attr, steps, 0, bits == NULL,
-                          NULL };
 
     for (int t = 0; t < TED4_TYPES && bits != NULL; t++)
         bits[t] = 0.0;
@@ -523,4 +536,27 @@ int ted4_rate_evaluate(ted4_rate *r, const ted4_rate_input *in,
     if (job.integer != NULL)
         ted4_rate_integer_end(&integer);
     return 0;
+}
+
+int ted4_rate_evaluate(ted4_rate *r, const ted4_rate_input *in,
+                       const ted4_parallel *p, const float *const *d_value,
+                       float *const *d_attr, float *d_net, float *const *steps,
+                       double *bits)
+{
+    return evaluate((ted4_rate_job){ .rate = r, .in = in, .d_value = d_value,
+                                     .d_attr = d_attr, .steps = steps,
+                                     .steps_only = bits == NULL },
+                    p, d_net, bits);
+}
+
+int ted4_rate_lanes(ted4_rate *r, const ted4_rate_input *in,
+                    const ted4_parallel *p, float *const *steps, float *lane_bits)
+{
+    double bits[TED4_TYPES];
+
+    memset(lane_bits, 0, in->n_slots * ted4_row(1u + in->layout->head.n_offsets)
+                             * sizeof *lane_bits);
+    return evaluate((ted4_rate_job){ .rate = r, .in = in, .steps = steps,
+                                     .lane_bits = lane_bits },
+                    p, NULL, bits);
 }

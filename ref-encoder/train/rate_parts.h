@@ -86,6 +86,7 @@ typedef struct {
     size_t                 first;       /* slot of the wave's first chunk */
     int                    steps_only;
     const ted4_rate_integer *integer;    /* NULL: the float networks alone */
+    float                 *lane_bits;   /* out: [slot][1 + K][32] bits of each anchor, then of each of its offsets; NULL: not wanted */
 } ted4_rate_job;
 
 /* Whether bits of this type count: tau is not there in the static phase. */

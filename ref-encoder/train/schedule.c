@@ -69,10 +69,11 @@ void ted4_schedule_rates(const ted4_trainer *t, float *rate)
     const double restart = t->stage2 ? RESTART : 1.0;
     const double values = t->stage2 ? ted4_decay(restart, LAST_VALUES, p) : 1.0;
     const double tau = ted4_decay(o->lr_tau * restart, LAST_TAU, p);
+    const double scale_step = o->linear_scale ? o->step_scaling : (double)l->head.step[TED4_SCALING];     /* linear by choice of a trial */
 
     fill(rate, l->first[TED4_FEATURE], l->head.feature_dim, o->lr_feature * values);
     fill(rate, l->first[TED4_SCALING], 6,
-         (l->head.scale_domain == TED4_SCALE_LOG2 ? o->lr_scaling : LINEAR_SCALING * o->step_scaling) * values);
+         (l->head.scale_domain == TED4_SCALE_LOG2 ? o->lr_scaling : LINEAR_SCALING * scale_step) * values);
     fill(rate, l->first[TED4_OFFSET], 3 * l->head.n_offsets,
          t->stage2 ? ted4_decay(o->lr_offset * 0.1, 0.1, p)
                    : ted4_decay(o->lr_offset, LAST_OFFSET, p));

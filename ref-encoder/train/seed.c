@@ -225,37 +225,69 @@ static void component_moments(const ted4_anchors *a, int channel, double *mean,
     *spread = sqrt(fmax(square / n - *mean * *mean, 0.0));
 }
 
+/* Biases of the hyperprior's last layer; *weights: what stands before them, [outputs][*in]. */
+static float *last_biases(float *net, const ted4_layout *l, float **weights, unsigned *in)
+{
+    const ted4_net_shape *s = &l->shape.hyper;
+    const int             last = s->n_layers - 1;
+    float                *at = net + l->nete + s->first;
+
+    for (int i = 0; i < last; i++)
+        at += ((size_t)s->dim[i] + 1) * s->dim[i + 1];
+    *weights = at;
+    *in = s->dim[last];
+    return at + (size_t)s->dim[last] * l->shape.n_outputs;
+}
+
+/* Means and spreads of one type. */
+static void seed_biases(float *bias, const ted4_layout *l, const ted4_anchors *a, int t)
+{
+    const ted4_shape *s = &l->shape;
+
+    for (unsigned c = 0; c < s->dim[t]; c++) {
+        const double q = (double)l->head.step[t];
+        double       mean, spread;
+
+        component_moments(a, l->first[t] + (int)c, &mean, &spread);
+        bias[s->first_output[t] + c] = (float)(mean / q);
+        bias[s->first_output[t] + s->dim[t] + c] =
+            (float)fmin(fmax(log2(fmax(spread / q, 1e-3)), -1.0), 9.0);
+    }
+}
+
 void ted4_seed_prior(float *net, const ted4_layout *l, const ted4_anchors *a,
                      uint32_t seed)
 {
     const ted4_shape *s = &l->shape;
     const uint64_t    key = ted4_mix(seed ^ 0x7072696fu);
     uint64_t          counter = 0;
-    float            *nete = net + l->nete;
+    float            *nete = net + l->nete, *weights;
+    unsigned          in;
 
     memset(nete, 0, s->n_nete * sizeof *nete);
     seed_network(nete, &s->hyper, 0.1f, key, &counter);
     for (unsigned m = 1; m < l->head.n_slices; m++)
         seed_network(nete, &s->slice[m], 0.1f, key, &counter);
 
-    const int      last = s->hyper.n_layers - 1;
-    const unsigned in = s->hyper.dim[last];
-    float         *bias = nete + s->hyper.first;
+    float *const bias = last_biases(net, l, &weights, &in);
 
-    for (int i = 0; i < last; i++)
-        bias += ((size_t)s->hyper.dim[i] + 1) * s->hyper.dim[i + 1];
-    bias += (size_t)in * s->n_outputs;
-    for (int t = 0; t < TED4_TYPES; t++) {
-        for (unsigned c = 0; c < s->dim[t]; c++) {
-            const double q = (double)l->head.step[t];
-            double       mean, spread;
-
-            component_moments(a, l->first[t] + (int)c, &mean, &spread);
-            bias[s->first_output[t] + c] = (float)(mean / q);
-            bias[s->first_output[t] + s->dim[t] + c] =
-                (float)fmin(fmax(log2(fmax(spread / q, 1e-3)), -1.0), 9.0);
-        }
-    }
+    for (int t = 0; t < TED4_TYPES; t++)
+        seed_biases(bias, l, a, t);
     for (unsigned t = 0; t < s->n_types; t++)
         bias[s->first_step_output + t] = 0.0f;
+}
+
+void ted4_seed_prior_type(float *net, const ted4_layout *l, const ted4_anchors *a, int type)
+{
+    const ted4_shape *s = &l->shape;
+    float            *weights;
+    unsigned          in, step = s->first_step_output;
+    float *const      bias = last_biases(net, l, &weights, &in);
+
+    for (int t = 0; t < type; t++)
+        step += s->dim[t] > 0;
+    memset(weights + (size_t)s->first_output[type] * in, 0, (size_t)2 * s->dim[type] * in * sizeof *weights);
+    memset(weights + (size_t)step * in, 0, in * sizeof *weights);
+    seed_biases(bias, l, a, type);
+    bias[step] = 0.0f;
 }

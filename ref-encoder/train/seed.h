@@ -19,5 +19,7 @@ void ted4_seed_networks(float *net, const ted4_layout *l, uint32_t seed);
 /* NETE: hidden layers random; the last layer's weights small, its biases the mean and the spread of each component over the anchors. */
 void ted4_seed_prior(float *net, const ted4_layout *l, const ted4_anchors *a,
                      uint32_t seed);
+/* The hyperprior's outputs for one type of values, without weights: mean and spread of each component, and a step of Q0. */
+void ted4_seed_prior_type(float *net, const ted4_layout *l, const ted4_anchors *a, int type);
 
 #endif

@@ -6,6 +6,7 @@
 #include <string.h>
 
 #include "norm/half.h"
+#include "rotate.h"
 #include "seed.h"
 #include "space.h"
 #include "trainer.h"
@@ -271,12 +272,15 @@ int ted4_stage2_begin(ted4_trainer *t)
 {
     if (settle_positions(t) != 0 || reshape(t) != 0)
         return -1;
+    if (t->opt.capacity && ted4_rotate_features(t) != 0)
+        return -1;
     ted4_seed_prior(t->net, &t->layout, &t->anchors, t->opt.seed);
     clear_moments(t);
     for (size_t i = 0; i < t->anchors.n; i++)
         for (int y = 0; y < TED4_TYPES; y++)
             *ted4_cell(&t->anchors, TED4_ROW_STEP, i, y) = t->layout.head.step[y];
     t->stage2 = 1;
+    t->charged = t->layout.head;
     t->stage2_start = t->iteration;
     return 0;
 }

@@ -4,6 +4,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "capacity.h"
 #include "gradients.h"
 #include "random.h"
 #include "space.h"
@@ -203,6 +204,47 @@ static double distortion(ted4_trainer *t, const ted4_picture *pic, const ted4_vi
     return loss;
 }
 
+/* Draws training picture item and leaves its gradient in t->d_image; cameras' colours stay as they are. Loss, or negative with t->message. */
+static double judge(ted4_trainer *t, size_t item, int keep, ted4_view *v, ted4_splats *s)
+{
+    const ted4_picture *pic = &t->data->pictures[item];
+    const size_t        pixels = (size_t)pic->camera.width * (size_t)pic->camera.height;
+    const uint8_t      *truth = ted4_dataset_pixels(t->data, item, &t->message);
+    ted4_generate_input in;
+    ted4_colour_map     gradient;
+    double              loss = -1, l1, ssim;
+
+    if (truth == NULL)
+        return -1;
+    if (render(t, pic, keep, v, &in, s) == 0) {
+        loss = ted4_loss(t->loss, shown(t, pic), truth, v->width, v->height, (float)t->opt.ssim, t->parallel, t->d_image, &l1, &ssim);
+        if (!(loss >= 0))
+            ted4_trainer_fail(t, loss < 0 ? "no memory for the loss" : "the loss is not finite");
+        else if (keep && is_corrected(t, pic))
+            ted4_colour_backward(&t->colour, pic->camera_id, t->image, pixels, t->parallel, t->d_image, gradient);
+    }
+    ted4_dataset_release(t->data, item);
+    return loss >= 0 ? loss : -1;
+}
+
+double ted4_trainer_distortion(ted4_trainer *t, size_t item)
+{
+    ted4_view   v;
+    ted4_splats s;
+
+    return judge(t, item, 0, &v, &s);
+}
+
+int ted4_trainer_blame(ted4_trainer *t, size_t item, ted4_splats *s)
+{
+    ted4_view v;
+
+    if (judge(t, item, 1, &v, s) < 0 || reserve_splats(t, s->n) != 0)
+        return -1;
+    return ted4_raster_backward(t->raster, s, &v, t->parallel, t->d_image, &t->splat_gradient) != 0
+               ? ted4_trainer_fail(t, "no memory for gradients") : 0;
+}
+
 /* The probe begins when the first anchors stand. */
 #define PROBE_FROM 0.25
 
@@ -273,9 +315,19 @@ static int one_step(ted4_trainer *t)
     return 0;
 }
 
+/* Decides what is due now about how much model there is. */
+static int decide(ted4_trainer *t)
+{
+    if (t->decided == TED4_DECIDED_NOTHING && t->stage2 && !t->integer && t->iteration == ted4_capacity_step(t))
+        return ted4_capacity_decide(t);
+    return t->decided == TED4_DECIDED_MODEL && t->integer ? ted4_capacity_prune(t) : 0;
+}
+
 int ted4_trainer_step(ted4_trainer *t)
 {
     if (probe_due(t) && ted4_probe_time(t) != 0)
+        return -1;
+    if (decide(t) != 0)
         return -1;
     return one_step(t) == 0 ? 0 : ted4_watch_recover(t);
 }

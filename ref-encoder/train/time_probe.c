@@ -19,8 +19,7 @@ static int has_time(const ted4_trainer *t)
     return t->layout.head.motion != TED4_MOTION_NONE || t->layout.head.activation;
 }
 
-/* n steps; *loss: mean loss of the second half. A rollback goes back to the beginning of the branch. */
-static int run_branch(ted4_trainer *t, int n, double *loss)
+int ted4_branch_run(ted4_trainer *t, int n, double *loss)
 {
     const uint64_t begin = t->iteration;
     int            bad = 0;
@@ -55,11 +54,11 @@ int ted4_probe_time(ted4_trainer *t)
     ted4_header_without_motion(&h);
     h.activation = 0;
 
-    int bad = ted4_snapshot_take(t, &start) != 0 || run_branch(t, n, &timed) != 0 ||
+    int bad = ted4_snapshot_take(t, &start) != 0 || ted4_branch_run(t, n, &timed) != 0 ||
               ted4_snapshot_take(t, &with) != 0 || ted4_snapshot_restore(t, &start) != 0;
 
     t->clock_stopped = 1;
-    bad = bad || run_branch(t, n, &still) != 0;
+    bad = bad || ted4_branch_run(t, n, &still) != 0;
     t->clock_stopped = 0;
     if (!bad && timed < (1.0 - WORTH) * still)
         bad = ted4_snapshot_restore(t, &with) != 0;

@@ -137,6 +137,7 @@ void ted4_trainer_finish(ted4_trainer *t)
     free(t->net_v);
     free(t->net_gradient);
     free(t->shift);
+    free(t->trial);
     free(t->order.item);
     ted4_generator_free(t->generator);
     ted4_rate_free(t->rate);
@@ -149,6 +150,17 @@ void ted4_trainer_finish(ted4_trainer *t)
     free(t->splat_storage);
     free(t->splat_visible);
     memset(t, 0, sizeof *t);
+}
+
+double ted4_trainer_charged(const ted4_trainer *t)
+{
+    ted4_shape s;
+    double     sum = 0;
+
+    ted4_shape_make(&s, &t->charged);
+    for (int y = 0; y < TED4_TYPES; y++)
+        sum += s.dim[y];
+    return sum;
 }
 
 uint64_t ted4_trainer_total(const ted4_trainer *t)

@@ -43,6 +43,9 @@ typedef struct {
     float        *squares;      /* [n][TED4_SLOT_TERMS + 1]: gradients.h */
 } ted4_slots;
 
+/* Nothing yet; how much model there is; which anchors pay, too. */
+enum { TED4_DECIDED_NOTHING, TED4_DECIDED_MODEL, TED4_DECIDED_ALL };
+
 typedef struct {
     ted4_train_options  opt;
     ted4_dataset       *data;           /* borrowed */
@@ -59,6 +62,10 @@ typedef struct {
     double              probe_loss[2];  /* mean losses that settled it: with time, without; 0: nothing was tried */
     int                 clock_stopped;  /* draw everything at time 0 and without activation */
     uint64_t            stage2_start;   /* Adam's count restarts there */
+    ted4_header         charged;        /* stage 2: the header at its start; a bit and a mask go on weighing what they weighed in that model */
+    int                 decided;        /* how much of what capacity.h settles has been: TED4_DECIDED_... */
+    struct ted4_trial  *trial;          /* owned: what settled it */
+    size_t              n_trials;
     ted4_order          order;
     ted4_progress       progress;
     ted4_watch          watch;
@@ -84,6 +91,8 @@ void ted4_trainer_finish(ted4_trainer *t);
 /* The same from the first step on, in the layout of h, and without a probe; h is none of t's own. 0, or -1 with t->message. */
 int  ted4_trainer_restart(ted4_trainer *t, const ted4_header *h);
 
+/* Values an anchor that a bit's weight is spread over: of the model at the start of stage 2. */
+double ted4_trainer_charged(const ted4_trainer *t);
 /* Total steps of both stages. */
 uint64_t ted4_trainer_total(const ted4_trainer *t);
 /* One step, with whatever the schedule wants done around it (growth, activation, change of stage, integer networks). Or, where the watch finds that training
@@ -113,6 +122,11 @@ void   ted4_update_parameters(ted4_trainer *t);
 
 /* Draws the model as it is now into t->image, planar, and tells view and camera centre in normalised space. 0, or -1 with t->message. step.c */
 int  ted4_trainer_draw(ted4_trainer *t, const ted4_picture *pic, ted4_view *v, float centre[3]);
+
+/* Distortion of training picture item, drawn from the model as it is now; nothing is learnt from it. Negative: failed, with t->message. step.c */
+double ted4_trainer_distortion(ted4_trainer *t, size_t item);
+/* The same picture's gradients of the distortion on Gaussians, in t->splat_gradient; *s and t->slots: which Gaussians. 0, or -1 with t->message. step.c */
+int ted4_trainer_blame(ted4_trainer *t, size_t item, ted4_splats *s);
 
 /* The true picture number item, interleaved bytes, in the scene's colours; valid until ted4_dataset_release of it, or the next call. NULL, with t->message. step.c */
 const uint8_t *ted4_trainer_seen(ted4_trainer *t, size_t item);
@@ -144,6 +158,8 @@ int  ted4_integer_rate(ted4_trainer *t, double *bits);
 int  ted4_stage_relayout(ted4_trainer *t, const ted4_header *h);
 /* Does the scene need time? Trains a while with and without; then it goes on where it was worth it, and else begins again without time, at step 0: time_probe.c */
 int  ted4_probe_time(ted4_trainer *t);
+/* n steps from where t stands, which a rollback goes back to; *loss: mean loss of the second half. 0, or -1 with t->message. time_probe.c */
+int  ted4_branch_run(ted4_trainer *t, int n, double *loss);
 /* Fresh workspaces and network arrays after t->layout changed. */
 int  ted4_trainer_rebuild(ted4_trainer *t);
 

@@ -113,7 +113,7 @@ void ted4_update_parameters(ted4_trainer *t)
 
     ted4_schedule_rates(t, j.rate);
     if (t->stage2 && h->offset_mask)
-        j.mask_weight = (float)(t->opt.lambda * t->opt.mask_weight / (n * h->n_offsets));
+        j.mask_weight = (float)(t->opt.lambda * t->opt.mask_weight / (n * t->charged.n_offsets));
     if (h->motion != TED4_MOTION_NONE && h->temporal_mask)
         j.temporal_weight = (float)(t->opt.temporal_weight / n);
     ted4_parallel_for(t->parallel, t->slots.n, update_slot, &j);
@@ -150,15 +150,14 @@ int ted4_update_rate(ted4_trainer *t, uint64_t key)
     ted4_slots  *s = &t->slots;
     const size_t want = (size_t)ceil(t->opt.rate_share * (double)s->n);
     const size_t m = want < s->n ? want : s->n;
-    double       bits[TED4_TYPES], params = 0, chosen = 0;
+    const double params = ted4_trainer_charged(t);
+    double       bits[TED4_TYPES], chosen = 0;
 
     for (size_t i = 0; i < m; i++)
         swap_slots(s, i, i + ted4_below(key, i, (uint32_t)(s->n - i)));
     for (size_t i = 0; i < m; i++)
         for (uint32_t x = s->lanes[i]; x != 0; x &= x - 1)
             chosen += 1;
-    for (int y = 0; y < TED4_TYPES; y++)
-        params += t->layout.shape.dim[y];
 
     ted4_rate_input in = {
         &t->layout, t->net, t->shift, m, s->raw, s->position, s->lanes, s->block, key,

@@ -22,6 +22,10 @@ ted4_status ted4_scene_steps(ted4_scene *s, const ted4_parallel *p,
 ted4_status ted4_encode(const ted4_scene *s, int level, const ted4_parallel *p,
                         uint8_t **out, size_t *size, ted4_error *e);
 
+/* The same with a chunk META before ENDS (spec 5.2): text, lines key=value for people, each ended by LF; no key twice. NULL: without. */
+ted4_status ted4_encode_told(const ted4_scene *s, int level, char *text, const ted4_parallel *p,
+                             uint8_t **out, size_t *size, ted4_error *e);
+
 /* The lowest level whose bounds hold for a file of that size. */
 int ted4_level_lowest(const ted4_scene *s, size_t size);
 

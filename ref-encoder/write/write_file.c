@@ -11,7 +11,7 @@
 #include "write/coder_write.h"
 #include "write/tiles.h"
 
-enum { LEVEL_BYTE = 11 };
+enum { LEVEL_BYTE = 11, META_FLAGS = 2 };
 
 /* Type, flags, and a size that close_chunk corrects. Gives where the chunk begins. */
 static size_t open_chunk(ted4_writer *w, ted4_chunk type)
@@ -103,6 +103,19 @@ static void write_front(ted4_writer *w, ted4_draft *d)
     close_chunk(w, at);
 }
 
+/* What people may want to know: no decoder needs it. */
+static void write_meta(ted4_writer *w, char *text)
+{
+    const size_t at = w->base.pos;
+    ted4_frame   f = { .type = { 'M', 'E', 'T', 'A' }, .flags = META_FLAGS };
+
+    if (w->base.error.code != TED4_OK || text == NULL)
+        return;
+    ted4_walk_frame(&w->base, &f);
+    w->base.ops->array(&w->base, 1, text, strlen(text));
+    close_chunk(w, at);
+}
+
 static void append_tile(ted4_writer *w, const ted4_writer *tile)
 {
     const size_t at = open_chunk(w, TED4_TILE);
@@ -175,7 +188,7 @@ static void set_level(ted4_writer *w, const ted4_scene *s, int level)
 }
 
 static void write_file(ted4_writer *w, const ted4_scene *s, int level,
-                       const ted4_parallel *p)
+                       char *text, const ted4_parallel *p)
 {
     ted4_coder  *c = &w->base;
     uint8_t      declared = (uint8_t)(level == 0 ? TED4_LEVEL_UNBOUNDED
@@ -196,6 +209,7 @@ static void write_file(ted4_writer *w, const ted4_scene *s, int level,
     if (c->error.code == TED4_OK) {
         write_front(w, &d);
         write_tiles(w, &d, p);
+        write_meta(w, text);
         write_ends(w, &d);
     }
     ted4_draft_finish(&d);
@@ -205,11 +219,17 @@ static void write_file(ted4_writer *w, const ted4_scene *s, int level,
 ted4_status ted4_encode(const ted4_scene *s, int level, const ted4_parallel *p,
                         uint8_t **out, size_t *size, ted4_error *e)
 {
+    return ted4_encode_told(s, level, NULL, p, out, size, e);
+}
+
+ted4_status ted4_encode_told(const ted4_scene *s, int level, char *text, const ted4_parallel *p,
+                             uint8_t **out, size_t *size, ted4_error *e)
+{
     ted4_writer w;
     ted4_status verdict;
 
     ted4_writer_init(&w);
-    write_file(&w, s, level, p);
+    write_file(&w, s, level, text, p);
     verdict = w.base.error.code;
     if (e != NULL)
         *e = w.base.error;

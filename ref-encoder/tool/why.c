@@ -1,0 +1,46 @@
+/* why.c - see why.h.
+ * SPDX-License-Identifier: BSD-2-Clause */
+#include "why.h"
+
+#include <stdio.h>
+#include <stdlib.h>
+
+#include "train/capacity.h"
+
+static void put_time(FILE *f, const ted4_trainer *t)
+{
+    const double *loss = t->probe_loss;
+    const int     timed = t->layout.head.motion != TED4_MOTION_NONE || t->layout.head.activation;
+
+    if (loss[0] > 0)
+        fprintf(f, "capacity.time=%s: loss %.6f with it, %.6f without\n", timed ? "needed" : "not needed", loss[0], loss[1]);
+}
+
+static void put_trial(FILE *f, size_t number, const struct ted4_trial *x)
+{
+    fprintf(f, "capacity.%03zu=%s, %lld to %lld: %s; cost %.6f to %.6f, distortion %.6f to %.6f, %.0f to %.0f bytes; ", number,
+            ted4_move_name((ted4_move)x->move), (long long)x->from, (long long)x->to, x->taken ? "taken" : "left", x->before.cost,
+            x->after.cost, x->before.distortion, x->after.distortion, x->before.bytes, x->after.bytes);
+    if (x->steps > 0)
+        fprintf(f, "after %lld steps each\n", (long long)x->steps);
+    else
+        fprintf(f, "at sight\n");
+}
+
+char *ted4_why_text(const ted4_trainer *t)
+{
+    char  *text = NULL;
+    size_t size;
+    FILE  *f = open_memstream(&text, &size);
+
+    if (f == NULL)
+        return NULL;
+    fprintf(f, "capacity=%s; lambda %.7g\n", t->opt.capacity ? "auto" : "fixed", t->opt.lambda);
+    put_time(f, t);
+    for (size_t i = 0; i < t->n_trials; i++)
+        put_trial(f, i + 1, &t->trial[i]);
+    if (fclose(f) == 0)
+        return text;
+    free(text);
+    return NULL;
+}

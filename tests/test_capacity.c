@@ -1,0 +1,309 @@
+/* test_capacity.c - train/capacity.c and capacity_prune.c in a whole training: what they decide lowers the cost, within their budget, the same for any number
+ * of threads and for a run that was interrupted; switched off they leave no trace.
+ * SPDX-License-Identifier: BSD-2-Clause */
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <cmocka.h>
+
+#include "ball_trainer.h"
+#include "odd_threads.h"
+#include "train/capacity.h"
+#include "train/checkpoint.h"
+
+enum { STAGE1 = 400, STAGE2 = 400, TOTAL = STAGE1 + STAGE2, FRAMES = 5 };
+
+static tiny_folder   folder;
+static ted4_dataset  scene;
+static ted4_snapshot stage1;            /* its end */
+
+static ted4_train_options options(const char *capacity)
+{
+    ted4_train_options o = ball_options();
+
+    ball_set(&o, capacity);
+    ball_set(&o, "stage2=400");
+    ball_set(&o, "lambda=0.0005");
+    ball_set(&o, "capacity_share=0.25");
+    return o;
+}
+
+static int set_up(void **state)
+{
+    const ted4_train_options o = options("capacity=1");
+    ted4_trainer t;
+
+    (void)state;
+    ball_load(&folder, &scene, FRAMES, 1);
+    ball_begin(&t, &o, &scene, NULL);
+    ball_train(&t, STAGE1);
+    assert_int_equal(ted4_snapshot_take(&t, &stage1), 0);
+    ted4_trainer_finish(&t);
+    return 0;
+}
+
+static int tear_down(void **state)
+{
+    (void)state;
+    ted4_snapshot_free(&stage1);
+    ted4_dataset_free(&scene);
+    tiny_free(&folder);
+    return 0;
+}
+
+/* At the end of stage 1. */
+static void begin(ted4_trainer *t, const ted4_train_options *o, const ted4_parallel *p)
+{
+    ball_begin(t, o, &scene, p);
+    if (ted4_snapshot_restore(t, &stage1) != 0)
+        fail_msg("%s", t->message.text);
+}
+
+static ball_file whole(const ted4_train_options *o, const ted4_parallel *p)
+{
+    ted4_trainer t;
+    ball_file    f;
+
+    begin(&t, o, p);
+    f = ball_finish(&t);
+    ted4_trainer_finish(&t);
+    return f;
+}
+
+/* Each trial that was taken lowers the cost, each one that was left does not. Gives how many were trained. */
+static int check_trials(const ted4_trainer *t)
+{
+    int taken = 0, trained = 0;
+
+    for (size_t i = 0; i < t->n_trials; i++) {
+        const struct ted4_trial *x = &t->trial[i];
+
+        assert_in_range(x->move, 0, TED4_MOVES - 1);
+        assert_true(x->to < x->from && x->before.cost > 0);
+        assert_true(x->before.cost > x->before.distortion && x->before.bytes > 100);
+        assert_int_equal(x->taken, x->after.cost < x->before.cost);
+        taken += x->taken != 0;
+        trained += x->steps > 0;
+        assert_true(x->move != TED4_MOVE_ANCHORS || i + 1 == t->n_trials);
+    }
+    assert_true(taken > 3);
+    return trained;
+}
+
+static void test_decides(void **state)
+{
+    const ted4_train_options o = options("capacity=1");
+    ted4_trainer t;
+    ted4_header  undecided;
+
+    (void)state;
+    begin(&t, &o, NULL);
+    ball_train(&t, ted4_capacity_step(&t));
+    assert_true(t.decided == TED4_DECIDED_NOTHING && t.n_trials == 0);
+    undecided = t.layout.head;
+
+    /* What a bit weighs is what it weighed before. */
+    const double charge = ted4_capacity_charge(&t);
+
+    assert_int_equal(ted4_trainer_step(&t), 0);
+    assert_int_equal(t.decided, TED4_DECIDED_MODEL);
+    assert_true(t.n_trials > 3 && ted4_capacity_charge(&t) == charge);
+    ball_train(&t, TOTAL);
+    assert_int_equal(t.decided, TED4_DECIDED_ALL);
+    check_trials(&t);
+    assert_true(t.layout.shape.n_netr + t.layout.shape.n_nete < undecided.hyper_width * 1000u);
+    assert_true(t.layout.head.hyper_width < undecided.hyper_width);
+    ted4_trainer_finish(&t);
+}
+
+/* What training decides depends on the machine's arithmetic; at one of these rates some move is worth it. */
+static void test_trained(void **state)
+{
+    static const char *const rates[] = { "lambda=0.0001", "lambda=0.0003", "lambda=0.0005", "lambda=0.001", "lambda=0.002" };
+    int trained = 0;
+
+    (void)state;
+    for (size_t i = 0; i < sizeof rates / sizeof rates[0]; i++) {
+        ted4_train_options o = options("capacity=1");
+        ted4_trainer       t;
+
+        ball_set(&o, rates[i]);
+        begin(&t, &o, NULL);
+        ball_train(&t, ted4_capacity_step(&t) + 1);
+        trained += check_trials(&t);
+        ted4_trainer_finish(&t);
+    }
+    assert_true(trained > 0);
+}
+
+/* Steps that trials took, looks among them, as capacity.h counts them. */
+static void test_budget(void **state)
+{
+    const ted4_train_options o = options("capacity=1");
+    ted4_trainer t;
+    double       spent;
+    int          taken_trained = 0;
+
+    (void)state;
+    begin(&t, &o, NULL);
+    ball_train(&t, TOTAL);
+    spent = ted4_capacity_prune_steps(&t) + 2 * ted4_capacity_cost_steps(&t);
+    for (size_t i = 0; i < t.n_trials; i++) {
+        const struct ted4_trial *x = &t.trial[i];
+
+        if (x->move == TED4_MOVE_ANCHORS)
+            continue;
+        spent += (double)x->steps + ted4_capacity_cost_steps(&t);
+        taken_trained += x->steps > 0 && x->taken;
+    }
+    spent += taken_trained * ted4_capacity_cost_steps(&t);
+    if (!(spent <= 0.25 * TOTAL + 2 * ted4_capacity_cost_steps(&t)))
+        fail_msg("%g steps, %g allowed", spent, 0.25 * TOTAL);
+    ted4_trainer_finish(&t);
+}
+
+static void test_threads(void **state)
+{
+    const ted4_train_options o = options("capacity=1");
+    const ted4_parallel      odd[] = { { odd_backwards, NULL }, { odd_threads, NULL } };
+    ball_file                one;
+
+    (void)state;
+    one = whole(&o, NULL);
+    for (size_t i = 0; i < 2; i++) {
+        ball_file f = whole(&o, &odd[i]);
+
+        ball_check_same(&one, &f);
+        free(f.bytes);
+    }
+    free(one.bytes);
+}
+
+/* From states before, between and after the decisions. */
+static void test_resumed(void **state)
+{
+    const ted4_train_options o = options("capacity=1");
+    ted4_snapshot kept[4] = { { NULL, 0 } };
+    ted4_trainer  t;
+    ball_file     one;
+    int           n = 0;
+
+    (void)state;
+    begin(&t, &o, NULL);
+    ball_train(&t, ted4_capacity_step(&t));
+    assert_int_equal(ted4_snapshot_take(&t, &kept[n++]), 0);
+    assert_int_equal(ted4_trainer_step(&t), 0);
+    assert_int_equal(ted4_snapshot_take(&t, &kept[n++]), 0);
+    while (!t.integer)
+        assert_int_equal(ted4_trainer_step(&t), 0);
+    assert_int_equal(ted4_snapshot_take(&t, &kept[n++]), 0);
+    assert_int_equal(ted4_trainer_step(&t), 0);
+    assert_int_equal(t.decided, TED4_DECIDED_ALL);
+    assert_int_equal(ted4_snapshot_take(&t, &kept[n++]), 0);
+
+    const size_t trials = t.n_trials;
+
+    one = ball_finish(&t);
+    ted4_trainer_finish(&t);
+    for (int i = 0; i < n; i++) {
+        ball_file f;
+
+        ball_begin(&t, &o, &scene, NULL);
+        if (ted4_snapshot_restore(&t, &kept[i]) != 0)
+            fail_msg("%d: %s", i, t.message.text);
+        f = ball_finish(&t);
+        assert_int_equal(t.n_trials, trials);
+        ball_check_same(&one, &f);
+        free(f.bytes);
+        ted4_trainer_finish(&t);
+        ted4_snapshot_free(&kept[i]);
+    }
+    free(one.bytes);
+}
+
+/* A decided state belongs to no fixed run, nor to another lambda's. */
+static void test_not_mixed(void **state)
+{
+    const ted4_train_options o = options("capacity=1");
+    ted4_train_options       other[2] = { options("capacity=0"), o };
+    ted4_snapshot            kept = { NULL, 0 };
+    ted4_trainer             t;
+
+    (void)state;
+    ball_set(&other[1], "lambda=0.01");
+    begin(&t, &o, NULL);
+    ball_train(&t, ted4_capacity_step(&t) + 1);
+    assert_int_equal(ted4_snapshot_take(&t, &kept), 0);
+    ted4_trainer_finish(&t);
+    for (int i = 0; i < 2; i++) {
+        ball_begin(&t, &other[i], &scene, NULL);
+        assert_int_equal(ted4_snapshot_restore(&t, &kept), -1);
+        ted4_trainer_finish(&t);
+    }
+    ted4_snapshot_free(&kept);
+}
+
+/* Fixed: nothing is tried, and what trials may take does not matter. */
+static void test_fixed(void **state)
+{
+    ted4_train_options o = options("capacity=0"), plain = options("capacity=0");
+    ted4_trainer       t;
+    ball_file          a, b;
+
+    (void)state;
+    begin(&t, &o, NULL);
+    assert_true(ted4_capacity_step(&t) == UINT64_MAX);
+    a = ball_finish(&t);
+    assert_true(t.n_trials == 0 && t.decided == TED4_DECIDED_NOTHING);
+    assert_true(t.layout.head.n_offsets == o.offsets && t.layout.head.feature_dim == o.feature && t.layout.head.hyper_width == o.hyper_width);
+    ted4_trainer_finish(&t);
+    ball_set(&plain, "capacity_share=0");
+    b = whole(&plain, NULL);
+    ball_check_same(&a, &b);
+    free(a.bytes);
+    free(b.bytes);
+}
+
+/* Too few steps tell nothing. */
+static void test_short(void **state)
+{
+    ted4_train_options o = options("capacity=1");
+    ted4_trainer       t;
+    ball_file          f;
+
+    (void)state;
+    ball_set(&o, "stage2=30");
+    begin(&t, &o, NULL);
+    f = ball_finish(&t);
+    assert_true(t.n_trials == 0);
+    assert_int_equal(t.layout.head.n_offsets, o.offsets);
+    free(f.bytes);
+    ted4_trainer_finish(&t);
+}
+
+/* A higher price of bits leaves no more model, and a smaller file. */
+static void test_lambda(void **state)
+{
+    ted4_train_options o = options("capacity=1");
+    ball_file          low, high;
+
+    (void)state;
+    ball_set(&o, "lambda=0.0005");
+    low = whole(&o, NULL);
+    ball_set(&o, "lambda=0.02");
+    high = whole(&o, NULL);
+    assert_true(high.size < low.size * 3 / 4);
+    free(low.bytes);
+    free(high.bytes);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(test_decides), cmocka_unit_test(test_trained), cmocka_unit_test(test_budget), cmocka_unit_test(test_threads), cmocka_unit_test(test_resumed),
+        cmocka_unit_test(test_not_mixed), cmocka_unit_test(test_fixed), cmocka_unit_test(test_short), cmocka_unit_test(test_lambda),
+    };
+
+    return cmocka_run_group_tests(tests, set_up, tear_down);
+}

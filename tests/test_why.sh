@@ -1,0 +1,44 @@
+#!/bin/sh
+# test_why.sh - what ted4enc decides about the size of the model is told: in the log always, in the file on request, once, and by ted4info. Speaks as cmocka
+# programs do; run by `make test` from the project's root.
+# SPDX-License-Identifier: BSD-2-Clause
+set -u
+out=$(mktemp -d)
+trap 'rm -rf "$out"' EXIT
+bad=0
+ok()   { echo "[       OK ] $1"; }
+fail() { echo "[  FAILED  ] $1: $2"; bad=1; }
+expect() { if [ "$2" = "$3" ]; then ok "$1"; else fail "$1" "$2, expected $3"; fi; }
+small="--preset draft --iterations 300,500 --seed 1 -j 1 -q --set init_anchors=150 --set max_anchors=260 --set offsets=4 --set feature=8 --set phi=4
+    --set bank_dim=8 --set deform_width=8 --set head_width=12 --set hyper_width=16 --set ar_width=8 --set slices=2"
+
+"$TED4_BUILD/ted4scene" pop -o "$out/scene" --size 32x24 --frames 4 --cameras 5 --test-cameras 1 -j 1 2>/dev/null
+encode() { name=$1; shift; "$TED4_BUILD/ted4enc" "$out/scene" -o "$out/$name.ted4" $small "$@" 2>"$out/err" || fail "$name" "$(cat "$out/err")"; }
+told() { "$TED4_BUILD/ted4info" "$out/$1.ted4" --why | grep -c '^capacity\.[0-9]'; }
+logged() { grep -c '"event":"capacity"' "$out/$1.jsonl"; }
+hash_of() { "$TED4_BUILD/ted4dec" "$out/$1.ted4" --hash | sed -n 's/^ends //p'; }
+
+encode silent --log "$out/silent.jsonl"
+encode told --why --log "$out/told.jsonl" --checkpoint "$out/told.checkpoint"
+n=$(logged told)
+[ "$n" -gt 5 ] && ok trials || fail trials "$n"
+expect as_many_in_the_file "$(told told)" "$n"
+expect none_unasked "$(told silent)" 0
+expect logged_unasked "$(logged silent)" "$n"
+expect same_scene "$(hash_of told)" "$(hash_of silent)"
+expect valid_meta "$("$TED4_BUILD/ted4info" "$out/told.ted4" --validate | grep -c 'adv.meta')" 0
+taken=$(grep -c '"event":"capacity".*"taken":true' "$out/told.jsonl")
+expect taken "$("$TED4_BUILD/ted4info" "$out/told.ted4" --why | grep -c ': taken; ')" "$taken"
+
+# A run that goes on after its decisions tells them once, too.
+cp "$out/told.ted4" "$out/first.ted4"
+encode told --why --log "$out/told.jsonl" --checkpoint "$out/told.checkpoint" --resume -f
+expect resumed_log "$(logged told)" "$n"
+cmp -s "$out/told.ted4" "$out/first.ted4" && ok resumed_file || fail resumed_file "another file"
+
+encode fixed --why --log "$out/fixed.jsonl" --capacity fixed
+expect fixed_log "$(logged fixed)" 0
+expect fixed_file "$("$TED4_BUILD/ted4info" "$out/fixed.ted4" --why | grep '^capacity')" "capacity=fixed; lambda 0.002"
+"$TED4_BUILD/ted4enc" "$out/scene" -o "$out/x.ted4" --capacity some 2>"$out/err"
+expect refused "$?:$(cat "$out/err")" '3:ted4enc: --capacity: bad value some'
+exit $bad
