@@ -58,10 +58,17 @@ function bar4(s,    t, best, over, sd) {
     return over <= 0.02 || (sd != "" && cost(t) - cost(best) <= sd) ? 1 : 0
 }
 
+# Fixed settings that a scene is to be trained with.
+function count_fixed(s,    i, n) {
+    for (i = 1; i <= n_variants; i++)
+        n += variants[i] != "auto" && n_runs[s, variants[i]] > 0
+    return n
+}
+
 function summary(    i, s, ok, met, missed, unknown, list) {
     for (i = 1; i <= n_scenes; i++) {
         s = scenes[i]
-        if (n_runs[s, "auto"] == 0)
+        if (n_runs[s, "auto"] == 0 || count_fixed(s) < 2)
             continue
         ok = bar4(s)
         if (ok == "")

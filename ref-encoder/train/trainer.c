@@ -87,6 +87,7 @@ static int make_images(ted4_trainer *t)
 static int begin(ted4_trainer *t, const ted4_header *h)
 {
     ted4_layout_make(&t->layout, h);
+    t->charged = t->layout.head;
     t->watch.state.factor = 1;
     if (ted4_trainer_rebuild(t) != 0 || make_order(t) != 0 || make_images(t) != 0)
         return -1;

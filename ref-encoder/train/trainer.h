@@ -62,7 +62,7 @@ typedef struct {
     double              probe_loss[2];  /* mean losses that settled it: with time, without; 0: nothing was tried */
     int                 clock_stopped;  /* draw everything at time 0 and without activation */
     uint64_t            stage2_start;   /* Adam's count restarts there */
-    ted4_header         charged;        /* stage 2: the header at its start; a bit and a mask go on weighing what they weighed in that model */
+    ted4_header         charged;        /* the first header, in stage 2 that at its start: a bit and a mask go on weighing what they weighed in that model */
     int                 decided;        /* how much of what capacity.h settles has been: TED4_DECIDED_... */
     struct ted4_trial  *trial;          /* owned: what settled it */
     size_t              n_trials;
