@@ -7,13 +7,14 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "judges.h"
 #include "make_scene.h"
 #include "norm/sine.h"
 #include "random.h"
 #include "space.h"
 
-/* Training pictures looked at, evenly spaced; anchors drawn for each, of which those in view count. */
-enum { PICTURES = 16, DRAWS = 384, MOST = 640 };
+/* Training pictures looked at; anchors drawn for each, of which those in view count. */
+enum { PICTURES = 32, DRAWS = 192, MOST = 640 };
 
 typedef struct {
     ted4_trainer *t;
@@ -273,21 +274,18 @@ static void mean_of(sampling *s)
 int ted4_site_moment(ted4_trainer *t, ted4_site site, double *moment)
 {
     sampling s = { .t = t, .site = site, .moment = moment, .width = (size_t)ted4_site_width(&t->layout, site) };
-    size_t   train = 0, seen = 0;
-    float   *value = malloc((size_t)t->layout.n_channels * TED4_LANES * sizeof *value);
+    const size_t n = t->order.n < PICTURES ? t->order.n : PICTURES;
+    uint32_t item[PICTURES];
+    float   *value;
 
+    if (ted4_judges_choose(t, t->opt.seed ^ 0x6163746976u, n, item) != 0)
+        return -1;
+    value = malloc((size_t)t->layout.n_channels * TED4_LANES * sizeof *value);
     if (value == NULL)
         return ted4_trainer_fail(t, "no memory to look at networks");
     memset(moment, 0, (s.width + 1) * (s.width + 1) * sizeof *moment);
-    for (size_t i = 0; i < t->data->n_pictures; i++)
-        train += !t->data->pictures[i].is_test;
-    for (size_t i = 0; i < t->data->n_pictures; i++) {
-        if (t->data->pictures[i].is_test)
-            continue;
-        if ((seen + 1) * PICTURES / train > seen * PICTURES / train)
-            sample_picture(&s, i, value);
-        seen++;
-    }
+    for (size_t i = 0; i < n; i++)
+        sample_picture(&s, item[i], value);
     mean_of(&s);
     free(value);
     return 0;

@@ -58,11 +58,9 @@ int ted4_move_next(const ted4_trainer *t, ted4_move m, int bold);
 /* Makes it so. 0, or -1 with t->message. */
 int ted4_move_make(ted4_trainer *t, ted4_move m, int to);
 
-/* What each Gaussian does to some training pictures: mean over them of |dL / d(log opacity)|: use[n][K]. At rest the signed sum is near zero, and says
- * nothing. 0, or -1 with t->message. capacity_usage.c */
+/* What each Gaussian does to training pictures, all of them if there is time: mean over them of |dL / d(log opacity)|: use[n][K]; TED4_UNSEEN where none that was
+ * looked at shows it, but others may. At rest the signed sum is near zero, and says nothing. 0, or -1 with t->message. capacity_usage.c */
+#define TED4_UNSEEN (-1.0f)
 int ted4_capacity_usage(ted4_trainer *t, float *use);
-
-/* Training picture i of n that are looked at, evenly spaced: its number in the data set. i < n <= training pictures. capacity_cost.c */
-size_t ted4_capacity_picture(const ted4_trainer *t, size_t i, size_t n);
 
 #endif

@@ -5,31 +5,20 @@
 #include <stdlib.h>
 
 #include "checkpoint.h"
+#include "judges.h"
 #include "make_scene.h"
 #include "write/encode.h"
 
-/* Training pictures that judge, at most; and what drawing one takes, in training steps. */
-enum { PICTURES = 16 };
+/* Training pictures that judge: one a frame, within these bounds; and what drawing one takes, in training steps. */
+enum { LEAST_PICTURES = 16, MOST_PICTURES = 48 };
 #define STEPS_A_PICTURE (1.0 / 3.0)
-
-static size_t training_pictures(const ted4_trainer *t)
-{
-    return t->order.n;
-}
-
-size_t ted4_capacity_picture(const ted4_trainer *t, size_t i, size_t n)
-{
-    const size_t want = i * training_pictures(t) / n;
-    size_t       seen = 0, at = 0;
-
-    while (at < t->data->n_pictures && (t->data->pictures[at].is_test || seen++ != want))
-        at++;
-    return at;
-}
 
 static size_t judges(const ted4_trainer *t)
 {
-    return training_pictures(t) < PICTURES ? training_pictures(t) : PICTURES;
+    const size_t frames = ted4_judges_frames(t);
+    const size_t n = frames < LEAST_PICTURES ? LEAST_PICTURES : frames > MOST_PICTURES ? MOST_PICTURES : frames;
+
+    return n < t->order.n ? n : t->order.n;
 }
 
 double ted4_capacity_cost_steps(const ted4_trainer *t)
@@ -83,12 +72,13 @@ double ted4_capacity_charge(const ted4_trainer *t)
 static int measure(ted4_trainer *t, ted4_cost *c)
 {
     const size_t n = judges(t);
+    uint32_t     item[MOST_PICTURES];
 
-    if (count_bytes(t, &c->bytes) != 0)
+    if (count_bytes(t, &c->bytes) != 0 || ted4_judges_choose(t, t->opt.seed ^ 0x6a75646765u, n, item) != 0)
         return -1;
     c->distortion = 0;
     for (size_t i = 0; i < n; i++) {
-        const double d = ted4_trainer_distortion(t, ted4_capacity_picture(t, i, n));
+        const double d = ted4_trainer_distortion(t, item[i]);
 
         if (d < 0)
             return -1;

@@ -234,7 +234,7 @@ static int fewer_offsets(operation *o, int to)
     int          kept = 0;
 
     for (size_t i = 0; !bad && i < n * K; i++)
-        use[i % K] += (double)of_each[i];
+        use[i % K] += fmax((double)of_each[i], 0.0);
     free(of_each);
     for (size_t k = 0; !bad && k < K; k++) {
         int better = 0;

@@ -77,10 +77,10 @@ static void prune_anchor(ted4_trainer *t, const worth *w, size_t i, double price
 
         if (!ted4_mask_on(*logit(t, i, k)))
             continue;
-        if (use < paid) {
+        if (use >= 0 && use < paid) {
             *logit(t, i, k) = OUT;
         } else {
-            left += use;
+            left += use >= 0 ? use : INFINITY;      /* what was not looked at stays */
             cost += paid;
         }
     }

@@ -1,0 +1,84 @@
+/* test_judges.c - train/judges.c: pictures that stand for all show every frame before any twice, whatever the numbers of cameras and frames.
+ * SPDX-License-Identifier: BSD-2-Clause */
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <cmocka.h>
+#include <stdlib.h>
+
+#include "train/judges.h"
+
+enum { MOST = 400 };
+
+/* Camera by camera, as folders come; one camera of all is held out, and frame 0 of the others' first, so that frames differ in their number. */
+static void make(ted4_dataset *d, ted4_picture *picture, uint32_t frames, uint32_t cameras)
+{
+    *d = (ted4_dataset){ .pictures = picture, .n_pictures = (size_t)frames * cameras, .n_frames = frames };
+    for (uint32_t c = 0; c < cameras; c++)
+        for (uint32_t f = 0; f < frames; f++)
+            picture[c * frames + f] = (ted4_picture){ .frame = f, .is_test = c == 1 || (c == 0 && f == 0) };
+}
+
+static void check(ted4_trainer *t, uint64_t key, size_t n, size_t frames)
+{
+    uint32_t item[MOST];
+    unsigned times[MOST] = { 0 }, chosen[MOST] = { 0 }, least = MOST, most = 0;
+
+    assert_int_equal(ted4_judges_choose(t, key, n, item), 0);
+    for (size_t i = 0; i < n; i++) {
+        assert_true(item[i] < t->data->n_pictures && !t->data->pictures[item[i]].is_test && chosen[item[i]]++ == 0);
+        times[t->data->pictures[item[i]].frame]++;
+    }
+    for (size_t f = 1; f < frames; f++) {       /* frame 0 has one picture less */
+        least = times[f] < least ? times[f] : least;
+        most = times[f] > most ? times[f] : most;
+    }
+    assert_true(most - least <= 1 && times[0] <= least + 1);
+}
+
+static void test_all_frames(void **state)
+{
+    static ted4_picture picture[MOST];
+    ted4_dataset d;
+    ted4_trainer t = { .data = &d };
+
+    (void)state;
+    for (uint32_t frames = 2; frames <= 40; frames += 2)
+        for (uint32_t cameras = 3; cameras <= 9; cameras += 3) {
+            make(&d, picture, frames, cameras);
+            assert_int_equal(ted4_judges_frames(&t), frames);
+            for (size_t n = 1; n <= (size_t)frames * (cameras - 1) - 1; n += 7)
+                check(&t, n + cameras, n, frames);
+            check(&t, 5, (size_t)frames * (cameras - 1) - 1, frames);
+        }
+}
+
+/* Of many frames a few, and cameras: those of two draws differ. */
+static void test_drawn(void **state)
+{
+    static ted4_picture picture[MOST];
+    ted4_dataset d;
+    ted4_trainer t = { .data = &d };
+    uint32_t     a[16], b[16];
+    int          same = 0, odd = 0;
+
+    (void)state;
+    make(&d, picture, 80, 5);
+    assert_int_equal(ted4_judges_choose(&t, 1, 16, a), 0);
+    assert_int_equal(ted4_judges_choose(&t, 2, 16, b), 0);
+    for (int i = 0; i < 16; i++) {
+        same += a[i] == b[i];
+        odd += picture[a[i]].frame % 2;
+    }
+    assert_true(same < 4 && odd > 2 && odd < 14);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(test_all_frames), cmocka_unit_test(test_drawn),
+    };
+
+    return cmocka_run_group_tests_name("judges", tests, NULL, NULL);
+}
