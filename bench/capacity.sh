@@ -31,15 +31,6 @@ want="ted4enc ted4dec ted4eval ted4info ted4scene"
 jobs=$(getconf _NPROCESSORS_ONLN) threads=1 share= judges=
 . bench/runs.sh
 
-# The best of five decodings on one thread: $decode_ms.
-time_decoder() {
-    decode_ms=
-    for i in 1 2 3 4 5; do
-        "$programs/ted4dec" "$1" --test --json -j 1 -q >"$out.decode.json" || return 1
-        decode_ms=$(echo "$decode_ms $(value decode_ms "$out.decode.json")" | awk '{ print NF < 2 || $2 < $1 ? $NF : $1 }')
-    done
-}
-
 measure() {
     down=$(echo "$options" | sed -n 's/.*--downscale \([0-9]*\).*/\1/p')
     run "$programs/ted4eval" "$out.ted4" "$folder" --downscale "${down:-1}" --json -q -j "$threads" >"$out.eval.json" || return 1

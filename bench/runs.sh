@@ -31,6 +31,15 @@ sources() {
     } | short_hash
 }
 
+# time_decoder FILE: the best of five decodings on one thread, in $decode_ms.
+time_decoder() {
+    decode_ms=
+    for i in 1 2 3 4 5; do
+        "$programs/ted4dec" "$1" --test --json -j 1 -q >"$out.decode.json" || return 1
+        decode_ms=$(echo "$decode_ms $(value decode_ms "$out.decode.json")" | awk '{ print NF < 2 || $2 < $1 ? $NF : $1 }')
+    done
+}
+
 # run COMMAND...: in the background and waited for, so that a signal reaches it at once.
 run() {
     "$@" & child=$!

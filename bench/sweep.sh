@@ -31,15 +31,6 @@ want="ted4enc ted4dec ted4eval ted4info ted4scene bench/rate_check bench/spans"
 jobs=1 threads=0 share=1 judges=
 . bench/runs.sh
 
-# The best of five decodings on one thread: $decode_ms.
-time_decoder() {
-    decode_ms=
-    for i in 1 2 3 4 5; do
-        "$programs/ted4dec" "$1" --test --json -j 1 -q >"$out.decode.json" || return 1
-        decode_ms=$(echo "$decode_ms $(value decode_ms "$out.decode.json")" | awk '{ print NF < 2 || $2 < $1 ? $NF : $1 }')
-    done
-}
-
 # What the table keeps of a run besides its row.
 keep_pictures() {
     down=$(echo "$options" | sed -n 's/.*--downscale \([0-9]*\).*/\1/p')

@@ -268,4 +268,18 @@ static inline void begin_test(void)
     (void)tiny_path(&folder, "out/x");
 }
 
+/* The options of usual[]. */
+static inline ted4_train_options usual_options(void)
+{
+    ted4_train_options o;
+
+    assert_int_equal(ted4_options_preset(&o, "draft"), 0);
+    o.stage1 = STAGE1;
+    o.stage2 = STEPS - STAGE1;
+    for (size_t i = 0; usual[i] != NULL; i++)
+        if (strcmp(usual[i], "--set") == 0)
+            ball_set(&o, usual[i + 1]);
+    return o;
+}
+
 #endif

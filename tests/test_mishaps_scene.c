@@ -123,20 +123,6 @@ static void test_other_scene(void **state)
 
 /* ---- a value that is not finite ---- */
 
-/* The options of usual[]. */
-static ted4_train_options usual_options(void)
-{
-    ted4_train_options o;
-
-    assert_int_equal(ted4_options_preset(&o, "draft"), 0);
-    o.stage1 = STAGE1;
-    o.stage2 = STEPS - STAGE1;
-    for (size_t i = 0; usual[i] != NULL; i++)
-        if (strcmp(usual[i], "--set") == 0)
-            ball_set(&o, usual[i + 1]);
-    return o;
-}
-
 /* Puts a value that is not finite into the state of a checkpoint, which ted4_checkpoint_save would refuse to write. */
 static void poison(const char *name)
 {

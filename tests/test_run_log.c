@@ -115,18 +115,12 @@ static void test_log_before_rollback(void **state)
 static void poison(int good)
 {
     const ted4_dataset_options wanted = { 1, 1, 0, 1 << 20, 0 };
-    ted4_train_options o;
+    const ted4_train_options o = usual_options();
     ted4_snapshot s = { NULL, 0 };
     ted4_dataset  d;
     ted4_trainer  t;
     ted4_message  m;
 
-    assert_int_equal(ted4_options_preset(&o, "draft"), 0);
-    o.stage1 = STAGE1;
-    o.stage2 = STEPS - STAGE1;
-    for (size_t i = 0; usual[i] != NULL; i++)
-        if (strcmp(usual[i], "--set") == 0)
-            ball_set(&o, usual[i + 1]);
     if (ted4_dataset_load(&d, tiny_path(&folder, "scene"), &wanted, &m) != 0 || ted4_dataset_verify(&d, NULL, &m) != 0)
         fail_msg("%s", m.text);
     ball_begin(&t, &o, &d, NULL);

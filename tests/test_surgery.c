@@ -117,6 +117,17 @@ static void expect_same(ted4_trainer *t, const ted4_cost *before, double toleran
     ball_train(t, STEPS + 5);           /* and it is a trainer that works */
 }
 
+/* The same of one move from where the trainer stands. */
+static void expect_free(ted4_trainer *t, ted4_move m, int to, double tolerance)
+{
+    look(t, 1);
+
+    const ted4_cost before = cost(t);
+
+    make(t, m, to);
+    expect_same(t, &before, tolerance);
+}
+
 static void test_nothing(void **state)
 {
     ted4_trainer  t, twin;
@@ -147,12 +158,7 @@ static void test_offset(void **state)
     go_there(&t);
     for (size_t i = 0; i < t.anchors.n; i++)
         *ted4_cell(&t.anchors, TED4_ROW_VALUE, i, t.layout.offset_logit + 1) = -10;
-    look(&t, 1);
-
-    const ted4_cost before = cost(&t);
-
-    make(&t, TED4_MOVE_OFFSETS, K - 1);
-    expect_same(&t, &before, 0.0);
+    expect_free(&t, TED4_MOVE_OFFSETS, K - 1, 0.0);
     ted4_trainer_finish(&t);
 }
 
@@ -229,12 +235,7 @@ static void test_double(void **state)
         for (size_t o = 8; o < 12; o++)
             w[in * out + o] = 2 * w[in * out + o - 8];
     }
-    look(&t, 1);
-
-    const ted4_cost before = cost(&t);
-
-    make(&t, TED4_MOVE_HEADS, 8);
-    expect_same(&t, &before, 1e-3);
+    expect_free(&t, TED4_MOVE_HEADS, 8, 1e-3);
     ted4_trainer_finish(&t);
 }
 
@@ -252,12 +253,7 @@ static void test_view(void **state)
     for (size_t o = 0; o < out; o++)
         for (size_t i = F; i < F + 3; i++)
             w[o * in + i] = 0;
-    look(&t, 1);
-
-    const ted4_cost before = cost(&t);
-
-    make(&t, TED4_MOVE_VIEW, TED4_VIEW_NONE);
-    expect_same(&t, &before, 1e-6);
+    expect_free(&t, TED4_MOVE_VIEW, TED4_VIEW_NONE, 1e-6);
     ted4_trainer_finish(&t);
 }
 
@@ -297,12 +293,7 @@ static void test_activation(void **state)
     for (size_t i = 0; i < t.anchors.n; i++)
         for (int c = 0; c < 4; c++)
             *ted4_cell(&t.anchors, TED4_ROW_VALUE, i, t.layout.first[TED4_TAU] + c) = always[c];
-    look(&t, 1);
-
-    const ted4_cost before = cost(&t);
-
-    make(&t, TED4_MOVE_ACTIVATION, 0);
-    expect_same(&t, &before, 0.0);
+    expect_free(&t, TED4_MOVE_ACTIVATION, 0, 0.0);
     ted4_trainer_finish(&t);
 }
 
