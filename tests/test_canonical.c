@@ -11,9 +11,10 @@
 #include "../fuzz/mend.h"
 #include "base/bytes.h"
 #include "norm/syntax.h"
+#include "vector_files.h"
 #include "write/encode.h"
 
-enum { MAX_FILE = 1 << 20, MAX_T0 = 8 * MAX_FILE, MAX_ID = 256, FEW_FILES = 800, MINOR_AT = 9 };
+enum { MAX_FILE = MAX_VECTOR, MAX_T0 = 8 * MAX_FILE, MAX_ID = 256, FEW_FILES = 800, MINOR_AT = 9 };
 
 /* Bytes of an element that is a number, by annex J.2; 0: it is bytes, or there is no such element. */
 static unsigned width_of[MAX_ID];
@@ -108,38 +109,34 @@ static void write_scene(const ted4_scene *s)
     free(out);
 }
 
+static int n_valid, n_ancillary, n_minor;
+
+static void write_back(const uint8_t *data, size_t size, const char *path)
+{
+    ted4_scene *s;
+
+    (void)path;
+    memcpy(x.file, data, size);
+    x.size = size;
+    if (ted4_decode(x.file, x.size, NULL, &s, NULL) != TED4_OK)
+        return;
+    x.n_t0 = 0;
+    assert_int_equal(ted4_dump_syntax(x.file, x.size, NULL, gather, NULL, NULL), TED4_OK);
+    write_elements();
+    assert_int_equal(x.n_back, x.size);
+    assert_memory_equal(x.back, x.file, x.size);
+    write_scene(s);
+    ted4_scene_free(s);
+    n_valid++;
+    n_minor += x.file[MINOR_AT] != 0;
+    n_ancillary += ted4_plain_file(x.back, x.file, x.size) < x.size;
+}
+
 static void valid_vectors(void **state)
 {
-    FILE *const list = popen("find conformance/vectors -name '*.ted4' ! -path '*/invalid/*' | LC_ALL=C sort", "r");
-    char        path[1024];
-    int         n = 0, ancillary = 0, minor = 0;
-
     (void)state;
-    assert_non_null(list);
-    while (fgets(path, sizeof path, list) != NULL) {
-        ted4_scene *s;
-        FILE       *f;
-
-        path[strcspn(path, "\n")] = '\0';
-        f = fopen(path, "rb");
-        assert_non_null(f);
-        x.size = fread(x.file, 1, sizeof x.file, f);
-        fclose(f);
-        if (ted4_decode(x.file, x.size, NULL, &s, NULL) != TED4_OK)
-            continue;
-        x.n_t0 = 0;
-        assert_int_equal(ted4_dump_syntax(x.file, x.size, NULL, gather, NULL, NULL), TED4_OK);
-        write_elements();
-        assert_int_equal(x.n_back, x.size);
-        assert_memory_equal(x.back, x.file, x.size);
-        write_scene(s);
-        ted4_scene_free(s);
-        n++;
-        minor += x.file[MINOR_AT] != 0;
-        ancillary += ted4_plain_file(x.back, x.file, x.size) < x.size;
-    }
-    pclose(list);
-    assert_true(n > FEW_FILES && ancillary > 10 && minor > 0);
+    each_vector("! -path '*/invalid/*'", write_back);
+    assert_true(n_valid > FEW_FILES && n_ancillary > 10 && n_minor > 0);
 }
 
 int main(void)

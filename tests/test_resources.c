@@ -16,8 +16,9 @@
 #include "norm/limits.h"
 #include "random_scene.h"
 #include "read/container.h"
+#include "vector_files.h"
 
-enum { N_SCENES = 40, MAX_PATH = 1024, FEW_VECTORS = 500 };
+enum { N_SCENES = 40, FEW_VECTORS = 500 };
 
 /* Networks are evaluated for 32 anchors at once, however few there are. */
 enum { WORK_CONSTANT = 32 };
@@ -238,27 +239,8 @@ static void hold(const uint8_t *data, size_t size, const char *name)
 
 static void vectors(void **state)
 {
-    FILE *const list = popen("find conformance/vectors -name '*.ted4' | LC_ALL=C sort", "r");
-    char        path[MAX_PATH];
-    int         n = 0;
-
     (void)state;
-    assert_non_null(list);
-    while (fgets(path, sizeof path, list) != NULL) {
-        static uint8_t data[1 << 20];
-        FILE          *f;
-        size_t         size;
-
-        path[strcspn(path, "\n")] = '\0';
-        f = fopen(path, "rb");
-        assert_non_null(f);
-        size = fread(data, 1, sizeof data, f);
-        fclose(f);
-        hold(data, size, path);
-        n++;
-    }
-    pclose(list);
-    assert_true(n > FEW_VECTORS);
+    assert_true(each_vector("", hold) > FEW_VECTORS);
 }
 
 static void hold_scene(const ted4_scene *s, const char *name)

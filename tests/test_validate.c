@@ -10,6 +10,7 @@
 #include "run_json.h"
 #include "schema_check.h"
 #include "validate_case.h"
+#include "vector_files.h"
 
 enum { N_SCENES = 40, N_MUTATIONS = 600, MANY_VECTORS = 600 };
 
@@ -136,35 +137,24 @@ static void too_many(void **state)
 
 /* Of the suite's vectors that break a rule nearly all break that one only: nothing else is to be found in them. (The others: a level that a file of that
  * size cannot reach honestly, an element that others depend on. Those of precedence, which hold several errors on purpose, are not counted.) */
+static int n_negative, n_alone;
+
+static void count_errors(const uint8_t *data, size_t size, const char *path)
+{
+    const int one = validate(data, size)->errors == 1;
+
+    if (strstr(path, "/precedence/") != NULL)
+        return;
+    n_alone += one;
+    n_negative++;
+}
+
 static void negative_vectors(void **state)
 {
-    static uint8_t data[1 << 17];
-    FILE *const    list = popen("find conformance/vectors/invalid -name '*.ted4' | LC_ALL=C sort", "r");
-    char           path[1024];
-    int            n = 0, alone = 0;
-
     (void)state;
-    assert_non_null(list);
-    while (fgets(path, sizeof path, list) != NULL) {
-        FILE   *f;
-        size_t  size;
-
-        path[strcspn(path, "\n")] = '\0';
-        f = fopen(path, "rb");
-        assert_non_null(f);
-        size = fread(data, 1, sizeof data, f);
-        fclose(f);
-
-        const int one = validate(data, size)->errors == 1;
-
-        if (strstr(path, "/precedence/") == NULL) {
-            alone += one;
-            n++;
-        }
-    }
-    pclose(list);
-    print_message("%d of %d vectors hold one error and no other\n", alone, n);
-    assert_true(alone >= MANY_VECTORS && 10 * alone >= 9 * n);
+    each_vector("-path '*/invalid/*'", count_errors);
+    print_message("%d of %d vectors hold one error and no other\n", n_alone, n_negative);
+    assert_true(n_alone >= MANY_VECTORS && 10 * n_alone >= 9 * n_negative);
 }
 
 /* Every allocation fails once, and all behind it: an end with a verdict, and everything is given back. */
