@@ -12,6 +12,7 @@
 #include <unistd.h>
 
 #include "ball_trainer.h"
+#include "train/checkpoint.h"
 
 enum { MOST_WORDS = 64, MOST_BYTES = 1 << 20, MOST_LOG = 1 << 14, STAGE1 = 700, STEPS = 900 };
 
@@ -280,6 +281,30 @@ static inline ted4_train_options usual_options(void)
         if (strcmp(usual[i], "--set") == 0)
             ball_set(&o, usual[i + 1]);
     return o;
+}
+
+/* A trainer of the usual run at its start, over the scene; end_usual finishes both. */
+static inline void begin_usual(ted4_trainer *t, ted4_dataset *d)
+{
+    const ted4_dataset_options wanted = { 1, 1, 0, 1 << 20, 0 };
+    const ted4_train_options   o = usual_options();
+    ted4_message               m;
+
+    if (ted4_dataset_load(d, tiny_path(&folder, "scene"), &wanted, &m) != 0 || ted4_dataset_verify(d, NULL, &m) != 0)
+        fail_msg("%s", m.text);
+    ball_begin(t, &o, d, NULL);
+}
+
+/* Writes the trainer's state as the checkpoint name, unseen by ted4_checkpoint_save, which refuses values that are not finite. */
+static inline void end_usual(ted4_trainer *t, ted4_dataset *d, const char *name)
+{
+    ted4_snapshot s = { NULL, 0 };
+
+    assert_int_equal(ted4_snapshot_take(t, &s), 0);
+    tiny_bytes(&folder, name, s.bytes, s.size);
+    ted4_snapshot_free(&s);
+    ted4_trainer_finish(t);
+    ted4_dataset_free(d);
 }
 
 #endif

@@ -114,25 +114,15 @@ static void test_log_before_rollback(void **state)
 /* A checkpoint of step 300 with a value that is not finite; good: and with the state that the watch keeps, that of step 250. */
 static void poison(int good)
 {
-    const ted4_dataset_options wanted = { 1, 1, 0, 1 << 20, 0 };
-    const ted4_train_options o = usual_options();
-    ted4_snapshot s = { NULL, 0 };
-    ted4_dataset  d;
-    ted4_trainer  t;
-    ted4_message  m;
+    ted4_dataset d;
+    ted4_trainer t;
 
-    if (ted4_dataset_load(&d, tiny_path(&folder, "scene"), &wanted, &m) != 0 || ted4_dataset_verify(&d, NULL, &m) != 0)
-        fail_msg("%s", m.text);
-    ball_begin(&t, &o, &d, NULL);
+    begin_usual(&t, &d);
     ball_train(&t, 300);
     *ted4_cell(&t.anchors, TED4_ROW_VALUE, 5, t.layout.first[TED4_OFFSET]) = NAN;
     if (!good)
         ted4_watch_forget(&t);
-    assert_int_equal(ted4_snapshot_take(&t, &s), 0);
-    tiny_bytes(&folder, "out/c", s.bytes, s.size);
-    ted4_snapshot_free(&s);
-    ted4_trainer_finish(&t);
-    ted4_dataset_free(&d);
+    end_usual(&t, &d, "out/c");
 }
 
 /* Kills a run from out/c once its log tells of steps after the rollback. */
