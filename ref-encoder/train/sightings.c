@@ -8,8 +8,8 @@
 
 #include "space.h"
 
-/* Share of the cameras that must agree at the best time, and how far from the best a time may be to count. */
-#define BEST_AGREES   0.5f
+/* Share of the cameras that must agree, and how far from the best a time may be to count. */
+#define MUST_AGREE    0.5f
 #define NEAR_BEST     0.7f
 /* A span of more than this share of the times that are known is no transient. */
 #define LONGEST_SHARE 0.5f
@@ -121,31 +121,30 @@ static uint32_t run_end(const ted4_sightings *s, size_t i, uint32_t frame, int s
     return last;
 }
 
-int ted4_sightings_span(const ted4_sightings *s, size_t i, int64_t at, ted4_span *span)
+uint32_t ted4_sightings_best(const ted4_sightings *s, size_t i)
 {
-    uint32_t best = 0, known = 0, count = 0;
-    float    top = 0;
+    uint32_t best = 0;
+
+    for (uint32_t f = 1; f < s->n_frames; f++)
+        if (agreement(s, f, i) > agreement(s, best, i))
+            best = f;
+    return best;
+}
+
+int ted4_sightings_span(const ted4_sightings *s, size_t i, uint32_t frame, ted4_span *span)
+{
+    const float enough = NEAR_BEST * agreement(s, ted4_sightings_best(s, i), i);
+    uint32_t    known = 0, count = 0;
 
     for (uint32_t f = 0; f < s->n_frames; f++) {
-        const float a = agreement(s, f, i);
-
         known += is_known(s, f, i) != 0;
-        if (a > top) {
-            top = a;
-            best = f;
-        }
+        count += agreement(s, f, i) >= enough;
     }
-    for (uint32_t f = 0; f < s->n_frames; f++)
-        count += agreement(s, f, i) >= NEAR_BEST * top;
-    if (top < BEST_AGREES || (float)count > LONGEST_SHARE * (float)known)
+    if (agreement(s, frame, i) < fmaxf(MUST_AGREE, enough) ||
+        (float)count > LONGEST_SHARE * (float)known)
         return 0;
-    if (at >= 0) {
-        best = (uint32_t)at;
-        if (agreement(s, best, i) < fmaxf(BEST_AGREES, NEAR_BEST * top))
-            return 0;
-    }
-    span->from = run_end(s, i, best, -1, NEAR_BEST * top, &span->before);
-    span->to = run_end(s, i, best, 1, NEAR_BEST * top, &span->after);
+    span->from = run_end(s, i, frame, -1, enough, &span->before);
+    span->to = run_end(s, i, frame, 1, enough, &span->after);
     return 1;
 }
 

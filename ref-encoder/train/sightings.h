@@ -57,10 +57,13 @@ typedef struct {
     uint32_t from, to, before, after;
 } ted4_span;
 
-/* The run of times around the best one at which the colour of point i is there. Times at which fewer than TED4_CAMERAS_NEEDED cameras look there, held-out
- * ones for example, neither end a run nor count. 0: the colour is never there for at least half of the cameras, or it is there at more than half of the
- * times, so it does not come and go. */
-int  ted4_sightings_span(const ted4_sightings *s, size_t i, int64_t at, ted4_span *span);
+/* The time at which the largest share of the cameras that look there see the colour of point i. */
+uint32_t ted4_sightings_best(const ted4_sightings *s, size_t i);
+
+/* The run of times around a frame at which the colour of point i is there: what comes back is there in several runs. Times at which fewer than
+ * TED4_CAMERAS_NEEDED cameras look there, held-out ones for example, neither end a run nor count. 0: at that frame fewer than half of the cameras see the
+ * colour, or clearly fewer than at its best; or it is there at more than half of the times, so it does not come and go. */
+int  ted4_sightings_span(const ted4_sightings *s, size_t i, uint32_t frame, ted4_span *span);
 
 /* Activation of anchor i over a span, almost gone at the times next to it: what moves by its own size in a frame would else be seen at three places at
  * once. Over times that nobody knows it fades slowly: half-way what was there before and what comes then are seen together. */

@@ -65,7 +65,7 @@ int ted4_seed_transients(ted4_trainer *t)
     for (size_t i = 0; !bad && i < n; i++) {
         ted4_span span;
 
-        if (ted4_sightings_span(&s, i, -1, &span))
+        if (ted4_sightings_span(&s, i, ted4_sightings_best(&s, i), &span))
             ted4_span_set(t, i, &span);
     }
     free(points);
