@@ -423,7 +423,7 @@ static void close_scene(scene *s)
 static void train(ted4_trainer *t, ted4_dataset *d, int colour, int steps)
 {
     static const char *const small[] = {
-        "stage1=1000", "stage2=0", "colour_start=0.1", "lr_colour=0.004", "offsets=2", "feature=8",
+        "stage1=1000", "stage2=0", "colour_start=0.1", "lr_colour=0.004", "offsets=1", "feature=8",
         "motion=0", "activation=0", "head_width=12", "init_anchors=60", "max_anchors=60",
         "lr_feature=0.03", "lr_heads=0.02", "lr_scaling=0.03", "lr_offset=0.03", "view=0",
     };

@@ -36,7 +36,7 @@ static tiny_folder write_set(const ted4_ray_options *o)
 
 /* Defaults of the lab: what the table must say, told again. */
 static const struct { const char *name; int n_train, n_test, n_frames, held; } sets[] = {
-    { "hide", 6, 2, 16, 2 },    { "blink", 6, 2, 16, 2 },   { "fast", 6, 2, 16, 2 },    { "split", 6, 2, 16, 2 },
+    { "hide", 6, 2, 16, 0 },    { "blink", 6, 2, 16, 2 },   { "fast", 6, 2, 16, 2 },    { "split", 6, 2, 16, 2 },
     { "tints", 6, 2, 16, 2 },   { "flicker", 6, 2, 16, 0 }, { "bare", 6, 2, 16, 2 },    { "far", 6, 2, 16, 2 },
     { "wide", 6, 2, 16, 2 },    { "pair", 2, 1, 16, 2 },    { "long", 3, 1, 600, 75 },  { "wires", 6, 2, 16, 2 },
     { "shaken", 6, 2, 16, 2 },  { "change", 6, 2, 16, 2 },  { "empty", 6, 2, 16, 2 },   { "moment", 8, 2, 1, 0 },

@@ -273,12 +273,54 @@ static void test_networks(void **state)
     ted4_trainer_finish(&other);
 }
 
+/* What a network says of inputs that are all zero: y, in double precision. */
+static void answer(const float *w, const ted4_net_shape *s, double *y)
+{
+    double x[64] = { 0 };
+
+    for (int i = 0; i < s->n_layers; i++) {
+        const unsigned in = s->dim[i], out = s->dim[i + 1];
+
+        assert_true(in <= 64 && out <= 64);
+        for (unsigned k = 0; k < out; k++) {
+            y[k] = (double)w[in * out + k];
+            for (unsigned c = 0; c < in; c++)
+                y[k] += (double)w[k * in + c] * x[c];
+        }
+        for (unsigned k = 0; k < out; k++)
+            x[k] = y[k] > 0 ? y[k] : 0;
+        w += (in + 1) * out;
+    }
+}
+
+/* A Gaussian whose opacity begins below zero would never be drawn, by any seed. */
+static void test_awake(void **state)
+{
+    (void)state;
+    cloud_make(&cloud, 5);
+    for (uint32_t seed = 0; seed < 40; seed++) {
+        ted4_trainer t;
+        double       y[64];
+
+        cloud.options.seed = seed;
+        begin(&t);
+
+        const ted4_net_shape *const s = &t.layout.shape.netr[TED4_NET_OPACITY];
+
+        answer(t.net + t.layout.netr + s->first, s, y);
+        for (int k = 0; k < t.layout.head.n_offsets; k++)
+            if (!(y[k] > 0))
+                fail_msg("seed %u: opacity %d begins at %g", seed, k, y[k]);
+        ted4_trainer_finish(&t);
+    }
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_space_make), cmocka_unit_test(test_space_view),
         cmocka_unit_test(test_lattice), cmocka_unit_test(test_voxels), cmocka_unit_test(test_bound),
-        cmocka_unit_test(test_few_points), cmocka_unit_test(test_networks),
+        cmocka_unit_test(test_few_points), cmocka_unit_test(test_networks), cmocka_unit_test(test_awake),
     };
 
     return cmocka_run_group_tests_name("seed", tests, NULL, NULL);

@@ -188,6 +188,38 @@ static void seed_network(float *blob, const ted4_net_shape *s, float last,
     }
 }
 
+static void negate(float *x, size_t n)
+{
+    for (size_t i = 0; i < n; i++)
+        x[i] = -x[i];
+}
+
+/* Turns those outputs of the opacity head around that are below zero where features begin, at zero: such a Gaussian is not drawn, so it gets no gradient and
+ * stays dead in every anchor. It would be half of them on average, but with one seed more than with another. */
+static void wake(float *blob, const ted4_net_shape *s)
+{
+    float  x[TED4_MAX_WIDTH] = { 0 }, y[TED4_MAX_WIDTH];
+    float *w = blob + s->first;
+
+    for (int i = 0; i < s->n_layers; i++) {
+        const size_t in = s->dim[i], out = s->dim[i + 1];
+        float *const bias = w + in * out;
+
+        for (size_t k = 0; k < out; k++) {
+            y[k] = bias[k];
+            for (size_t c = 0; c < in; c++)
+                y[k] += w[k * in + c] * x[c];
+            if (i + 1 == s->n_layers && y[k] < 0) {
+                negate(w + k * in, in);
+                negate(bias + k, 1);
+            }
+            y[k] = fmaxf(y[k], 0.0f);
+        }
+        memcpy(x, y, out * sizeof *x);
+        w = bias + out;
+    }
+}
+
 void ted4_seed_networks(float *net, const ted4_layout *l, uint32_t seed)
 {
     const uint64_t key = ted4_mix(seed ^ 0x6e657477u);
@@ -197,6 +229,7 @@ void ted4_seed_networks(float *net, const ted4_layout *l, uint32_t seed)
     for (int i = 0; i < TED4_NETS_R; i++)
         seed_network(net + l->netr, &l->shape.netr[i],
                      i == TED4_NET_DEFORM ? 0.0f : 1.0f, key, &counter);
+    wake(net + l->netr, &l->shape.netr[TED4_NET_OPACITY]);
     /* N(0, 0.1) as a sum of four uniforms of variance 1/12 each. */
     for (size_t i = 0; i < l->shape.n_bank; i++) {
         float sum = -2.0f;

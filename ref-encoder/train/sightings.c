@@ -8,10 +8,10 @@
 
 #include "space.h"
 
-/* Share of the cameras that must agree at the best time, and how far from the best a time may be to count. */
-#define BEST_AGREES   0.5f
+/* Share of the cameras that must agree, and how far from the best a time may be to count. */
+#define MUST_AGREE    0.5f
 #define NEAR_BEST     0.7f
-/* A span of more than this share of all times is no transient. */
+/* A span of more than this share of the times that are known is no transient. */
 #define LONGEST_SHARE 0.5f
 
 typedef struct {
@@ -88,50 +88,79 @@ void ted4_sightings_free(ted4_sightings *s)
     memset(s, 0, sizeof *s);
 }
 
+/* Do enough cameras look at point i at that time to tell whether it is there? Not where pictures are held out. */
+static int is_known(const ted4_sightings *s, uint32_t frame, size_t i)
+{
+    return s->seen[frame * s->n + i] >= TED4_CAMERAS_NEEDED;
+}
+
 static float agreement(const ted4_sightings *s, uint32_t frame, size_t i)
 {
     const size_t at = frame * s->n + i;
 
-    return s->seen[at] >= TED4_CAMERAS_NEEDED ? (float)s->hits[at] / (float)s->seen[at] : 0.0f;
+    return is_known(s, frame, i) ? (float)s->hits[at] / (float)s->seen[at] : 0.0f;
 }
 
-int ted4_sightings_span(const ted4_sightings *s, size_t i, uint32_t *from, uint32_t *to)
+/* The last frame of the run that point i is there for, from a frame on in steps of +1 or -1, and in *gone how far behind it the next known time is. A time that
+ * nobody knows belongs to the run when the known times on both sides do, or when there is none on the far side. */
+static uint32_t run_end(const ted4_sightings *s, size_t i, uint32_t frame, int step, float enough, uint32_t *gone)
 {
-    uint32_t best = 0, count = 0;
-    float    top = 0;
+    const uint32_t last = step > 0 ? s->n_frames - 1 : 0;
+
+    for (uint32_t f = frame; f != last; ) {
+        f += (uint32_t)step;
+        if (!is_known(s, f, i))
+            continue;
+        if (agreement(s, f, i) < enough) {
+            *gone = step > 0 ? f - frame : frame - f;
+            return frame;
+        }
+        frame = f;
+    }
+    *gone = 1;
+    return last;
+}
+
+uint32_t ted4_sightings_best(const ted4_sightings *s, size_t i)
+{
+    uint32_t best = 0;
+
+    for (uint32_t f = 1; f < s->n_frames; f++)
+        if (agreement(s, f, i) > agreement(s, best, i))
+            best = f;
+    return best;
+}
+
+int ted4_sightings_span(const ted4_sightings *s, size_t i, uint32_t frame, ted4_span *span)
+{
+    const float enough = NEAR_BEST * agreement(s, ted4_sightings_best(s, i), i);
+    uint32_t    known = 0, count = 0;
 
     for (uint32_t f = 0; f < s->n_frames; f++) {
-        const float a = agreement(s, f, i);
-
-        if (a > top) {
-            top = a;
-            best = f;
-        }
+        known += is_known(s, f, i) != 0;
+        count += agreement(s, f, i) >= enough;
     }
-    for (uint32_t f = 0; f < s->n_frames; f++)
-        count += agreement(s, f, i) >= NEAR_BEST * top;
-    if (top < BEST_AGREES || (float)count > LONGEST_SHARE * (float)s->n_frames)
+    if (agreement(s, frame, i) < fmaxf(MUST_AGREE, enough) ||
+        (float)count > LONGEST_SHARE * (float)known)
         return 0;
-    *from = *to = best;
-    while (*from > 0 && agreement(s, *from - 1, i) >= NEAR_BEST * top)
-        --*from;
-    while (*to + 1 < s->n_frames && agreement(s, *to + 1, i) >= NEAR_BEST * top)
-        ++*to;
+    span->from = run_end(s, i, frame, -1, enough, &span->before);
+    span->to = run_end(s, i, frame, 1, enough, &span->after);
     return 1;
 }
 
-/* In frames: how far beyond its first and last frame a span goes, so that coding it a little off costs nothing, and how fast it fades then: at the next frame
- * exp(-4.6) is left. */
+/* In distances to the next known time: how far beyond its first and last frame a span goes, so that coding it a little off costs nothing, and how fast it
+ * fades then: at that time exp(-4.6) is left. */
 #define SPAN_BEYOND 0.25f
 #define SPAN_FADES  0.35f
 
-void ted4_span_set(ted4_trainer *t, size_t i, uint32_t from, uint32_t to)
+void ted4_span_set(ted4_trainer *t, size_t i, const ted4_span *span)
 {
     const int   first = t->layout.first[TED4_TAU];
-    const float frame = 1.0f / (float)(t->data->n_frames - 1), fades = log2f(SPAN_FADES * frame);
+    const float frame = 1.0f / (float)(t->data->n_frames - 1);
+    const float before = (float)span->before, after = (float)span->after;
 
-    *ted4_cell(&t->anchors, TED4_ROW_VALUE, i, first) = ((float)from - SPAN_BEYOND) * frame;
-    *ted4_cell(&t->anchors, TED4_ROW_VALUE, i, first + 1) = fades;
-    *ted4_cell(&t->anchors, TED4_ROW_VALUE, i, first + 2) = ((float)to + SPAN_BEYOND) * frame;
-    *ted4_cell(&t->anchors, TED4_ROW_VALUE, i, first + 3) = fades;
+    *ted4_cell(&t->anchors, TED4_ROW_VALUE, i, first) = ((float)span->from - SPAN_BEYOND * before) * frame;
+    *ted4_cell(&t->anchors, TED4_ROW_VALUE, i, first + 1) = log2f(SPAN_FADES * before * frame);
+    *ted4_cell(&t->anchors, TED4_ROW_VALUE, i, first + 2) = ((float)span->to + SPAN_BEYOND * after) * frame;
+    *ted4_cell(&t->anchors, TED4_ROW_VALUE, i, first + 3) = log2f(SPAN_FADES * after * frame);
 }

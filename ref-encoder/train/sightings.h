@@ -52,12 +52,21 @@ typedef struct {
 int  ted4_sightings_count(ted4_sightings *s, ted4_trainer *t, const float *point, const uint8_t *colour, size_t n);
 void ted4_sightings_free(ted4_sightings *s);
 
-/* The run of times around the best one at which the colour of point i is there, as first and last frame. 0: it is never there for at least half of the
- * cameras, or it is there at more than half of all times, so it does not come and go. */
-int  ted4_sightings_span(const ted4_sightings *s, size_t i, uint32_t *from, uint32_t *to);
+/* Frames from..to; how many frames before and after them the next time is at which the thing is known to be gone, 1 where there is none. */
+typedef struct {
+    uint32_t from, to, before, after;
+} ted4_span;
 
-/* Activation of anchor i from the first to the last frame of a span, almost gone one frame before and after: what moves by its own size in a frame
- * would else be seen at three places at once. */
-void ted4_span_set(ted4_trainer *t, size_t i, uint32_t from, uint32_t to);
+/* The time at which the largest share of the cameras that look there see the colour of point i. */
+uint32_t ted4_sightings_best(const ted4_sightings *s, size_t i);
+
+/* The run of times around a frame at which the colour of point i is there: what comes back is there in several runs. Times at which fewer than
+ * TED4_CAMERAS_NEEDED cameras look there, held-out ones for example, neither end a run nor count. 0: at that frame fewer than half of the cameras see the
+ * colour, or clearly fewer than at its best; or it is there at more than half of the times, so it does not come and go. */
+int  ted4_sightings_span(const ted4_sightings *s, size_t i, uint32_t frame, ted4_span *span);
+
+/* Activation of anchor i over a span, almost gone at the times next to it: what moves by its own size in a frame would else be seen at three places at
+ * once. Over times that nobody knows it fades slowly: half-way what was there before and what comes then are seen together. */
+void ted4_span_set(ted4_trainer *t, size_t i, const ted4_span *span);
 
 #endif

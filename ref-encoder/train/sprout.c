@@ -76,7 +76,7 @@ static void find_parents(const ted4_trainer *t, const looks *l, size_t n, const 
 }
 
 /* Its features are those of an anchor of its colour, its motion that of what is near. */
-static int add(ted4_trainer *t, const looks *l, size_t n_old, const ted4_place *p, uint32_t from, uint32_t to)
+static int add(ted4_trainer *t, const looks *l, size_t n_old, const ted4_place *p, const ted4_span *span)
 {
     const ted4_layout *y = &t->layout;
     ted4_anchors      *a = &t->anchors;
@@ -97,19 +97,19 @@ static int add(ted4_trainer *t, const looks *l, size_t n_old, const ted4_place *
         *ted4_cell(a, TED4_ROW_VALUE, i, y->first[TED4_OFFSET] + j) = 0.0f;
     for (int j = 0; j < 6; j++)
         *ted4_cell(a, TED4_ROW_VALUE, i, y->first[TED4_SCALING] + j) = log2f(p->size);
-    ted4_span_set(t, i, from, to);
+    ted4_span_set(t, i, span);
     return 0;
 }
 
 /* Marks the cell of a place at the frames of its span; 0: it was marked at its own frame already. */
-static int mark(ted4_cells *taken, const ted4_place *p, uint32_t from, uint32_t to)
+static int mark(ted4_cells *taken, const ted4_place *p, const ted4_span *span)
 {
     const double   cell = exp2(ceil(log2((double)p->size)));
     const uint64_t key = ted4_cell_key(p->point, cell);
 
     if (!ted4_cells_add(taken, ted4_mix(key + p->frame) | 1))
         return 0;
-    for (uint32_t f = from; f <= to; f++)
+    for (uint32_t f = span->from; f <= span->to; f++)
         if (f != p->frame)
             ted4_cells_add(taken, ted4_mix(key + f) | 1);
     return 1;
@@ -137,11 +137,11 @@ static int plant(ted4_trainer *t, const ted4_places *list, const ted4_sightings 
         return ted4_trainer_fail(t, "no memory for new anchors");
     for (size_t i = 0; !bad && i < list->n && t->anchors.n < most; i++) {
         const ted4_place *p = &list->item[i];
-        uint32_t          from, to;
+        ted4_span         span;
 
-        if (ted4_sightings_span(s, i, &from, &to) && from <= p->frame && p->frame <= to &&
-            mark(&taken, p, from, to))
-            bad = add(t, l, n_old, p, from, to) != 0;
+        if (ted4_sightings_span(s, i, p->frame, &span) &&
+            mark(&taken, p, &span))
+            bad = add(t, l, n_old, p, &span) != 0;
     }
     ted4_cells_finish(&taken);
     return bad ? -1 : 0;

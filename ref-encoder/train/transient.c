@@ -63,10 +63,10 @@ int ted4_seed_transients(ted4_trainer *t)
         bad = ted4_sightings_count(&s, t, place, colour, n) != 0;
     }
     for (size_t i = 0; !bad && i < n; i++) {
-        uint32_t from, to;
+        ted4_span span;
 
-        if (ted4_sightings_span(&s, i, &from, &to))
-            ted4_span_set(t, i, from, to);
+        if (ted4_sightings_span(&s, i, ted4_sightings_best(&s, i), &span))
+            ted4_span_set(t, i, &span);
     }
     free(points);
     free(place);

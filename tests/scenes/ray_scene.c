@@ -16,7 +16,8 @@ static const ted4_ray_plan plans[RAY_SCENES] = {
     [RAY_BEND] = { "bend", "a bar bends and twists", FIRST },
     [RAY_FAIR] = { "fair", "a carousel turns, things come and go", FIRST },
 
-    [RAY_HIDE] = { "hide", "a ball is hidden from every camera for a third of the time", LAB, .hold = 8, .scale = 1 },
+    /* What rolls by more than its radius a time is not asked for between two: that is the business of fast. */
+    [RAY_HIDE] = { "hide", "a ball is hidden from every camera for a third of the time", LAB, .scale = 1 },
     [RAY_BLINK] = { "blink", "things pop in and out, one of them three times", LAB, .hold = 8, .scale = 1 },
     [RAY_FAST] = { "fast", "things move by up to twice their size a time", LAB, .hold = 8, .scale = 1 },
     [RAY_SPLIT] = { "split", "a block parts in two, two balls become one", LAB, .hold = 8, .scale = 1 },
