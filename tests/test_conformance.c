@@ -24,6 +24,9 @@ static const char *build(void)
     return b != NULL ? b : "build";
 }
 
+/* The beginning of what ted4conf said last. */
+static char said[4096];
+
 /* Exit code of ted4conf with those arguments; its last line in last. */
 static int conf(char *last, size_t size, const char *format, ...)
 {
@@ -38,9 +41,11 @@ static int conf(char *last, size_t size, const char *format, ...)
     snprintf(command, sizeof command, "TED4DEC=%s/ted4dec MOOD=%s/mood %s/ted4conf %s 2>&1", build(), build(), build(), arguments);
     f = popen(command, "r");
     assert_non_null(f);
-    last[0] = '\0';
-    while (fgets(line, sizeof line, f) != NULL)
+    last[0] = said[0] = '\0';
+    while (fgets(line, sizeof line, f) != NULL) {
         snprintf(last, size, "%s", line);
+        strncat(said, line, sizeof said - 1 - strlen(said));
+    }
     status = pclose(f);
     assert_true(WIFEXITED(status));
     return WEXITSTATUS(status);
@@ -99,7 +104,7 @@ static void our_decoder_conforms(void **state)
 
     (void)state;
     if (conf(last, sizeof last, "run -j 2 -t 300 -d %s/ted4dec --second TED4_KERNEL=plain%s", build(), MEMORY) != 0)
-        fail_msg("%s", last);
+        fail_msg("%s%s", said, last);
     assert_null(strstr(last, " 0 passed"));
     assert_non_null(strstr(last, " 0 failed, 0 without answer, 0 missing, 0 declined"));
 }
