@@ -5,6 +5,8 @@ CONF_JOBS ?= 2
 all: $B/ted4conf
 $B/ted4conf: $(CONF_OBJ) $(CLASS_T_OBJ) $B/libted4enc.a $B/libted4dec.a
 	$(CC) -fopenmp $(LDFLAGS) $^ -o $@ $(LIBS)
+# The runner's processes, tried by themselves.
+$B/tests/test_process: $(addprefix $B/conformance/tool/,process.o text.o)
 $B/tests/test_conformance: | $B/ted4conf $B/ted4dec
 $B/tests/test_suite_schema: | $B/ted4conf $B/ted4dec
 $B/tests/test_encoder_program: | $B/ted4conf $B/ted4dec $B/ted4enc $B/ted4scene

@@ -15,6 +15,8 @@
 #include <unistd.h>
 
 enum { MAX_ARGUMENTS = 24, MAX_PROCESSES = 256 };
+/* A pipe is read in pieces of 16 KiB and holds 64 KiB (pipe(7)). */
+enum { PIECE = 1 << 14, PIECES = 4 };
 
 static double seconds(void)
 {
@@ -87,7 +89,7 @@ void conf_process_start(conf_process *p, const conf_process_options *o, const ch
 /* What a pipe holds now; closed ones become -1. Gives 0 when there is too much of it. */
 static int drain(int *fd, conf_bytes *to, size_t most, int keep_all)
 {
-    uint8_t       piece[1 << 14];
+    uint8_t       piece[PIECE];
     const ssize_t n = read(*fd, piece, sizeof piece);
 
     if (n <= 0) {
@@ -126,7 +128,6 @@ static void finish(conf_process *p, conf_process_end end)
     p->pid = 0;
 }
 
-/* Has its leader ended? Then what others of the group still say does not count. */
 static int leader_ended(const conf_process *p)
 {
     siginfo_t info;
@@ -135,15 +136,38 @@ static int leader_ended(const conf_process *p)
     return waitid(P_PID, (id_t)p->pid, &info, WEXITED | WNOHANG | WNOWAIT) == 0 && info.si_pid == p->pid;
 }
 
+/* What the pipes hold; f says which have something. Gives 0 when there is too much of it on stdout. */
+static int listen(conf_process *p, const struct pollfd *f)
+{
+    if (f[0].revents != 0 && p->out >= 0 && !drain(&p->out, &p->answer, CONF_MAX_OUTPUT, 1))
+        return 0;
+    if (f[1].revents != 0 && p->err >= 0)
+        (void)drain(&p->err, &p->complaint, CONF_MAX_STDERR, 0);
+    return 1;
+}
+
+/* The leader may have spoken between the last look at its pipes and its end: that is in them. What others of the group say after it does not count, and
+ * need not end. */
+static int last_words(conf_process *p)
+{
+    for (int i = 0; i < PIECES; i++) {
+        struct pollfd f[2] = { { p->out, POLLIN, 0 }, { p->err, POLLIN, 0 } };
+
+        if (poll(f, 2, 0) > 0 && !listen(p, f))
+            return 0;
+    }
+    return 1;
+}
+
 static int look(conf_process *p, const struct pollfd *f)
 {
-    if (f[0].revents != 0 && p->out >= 0 && !drain(&p->out, &p->answer, CONF_MAX_OUTPUT, 1)) {
+    const int ended = leader_ended(p);
+
+    if (!listen(p, f) || (ended && !last_words(p))) {
         finish(p, CONF_TOO_LONG);
         return 1;
     }
-    if (f[1].revents != 0 && p->err >= 0)
-        (void)drain(&p->err, &p->complaint, CONF_MAX_STDERR, 0);
-    if ((p->out < 0 && leader_ended(p)) || (f[0].revents == 0 && f[1].revents == 0 && leader_ended(p))) {
+    if (ended) {
         finish(p, CONF_ENDED);
         return 1;
     }
