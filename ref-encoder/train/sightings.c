@@ -11,8 +11,11 @@
 /* Share of the cameras that must agree, and how far from the best a time may be to count. */
 #define MUST_AGREE    0.5f
 #define NEAR_BEST     0.7f
-/* A span of more than this share of the times that are known is no transient. */
+/* What comes and goes is there at no more than half of the times that are known. Or it is clearly gone, for all but a few of the cameras, at a quarter of
+ * them: where other cameras look each time, the share of those that a thing is hidden from varies, too. */
 #define LONGEST_SHARE 0.5f
+#define CLEARLY_GONE  0.25f
+#define GONE_SHARE    0.25f
 
 typedef struct {
     ted4_sightings *s;
@@ -131,17 +134,25 @@ uint32_t ted4_sightings_best(const ted4_sightings *s, size_t i)
     return best;
 }
 
-int ted4_sightings_span(const ted4_sightings *s, size_t i, uint32_t frame, ted4_span *span)
+static int comes_and_goes(const ted4_sightings *s, size_t i, float best)
 {
-    const float enough = NEAR_BEST * agreement(s, ted4_sightings_best(s, i), i);
-    uint32_t    known = 0, count = 0;
+    uint32_t known = 0, there = 0, gone = 0;
 
     for (uint32_t f = 0; f < s->n_frames; f++) {
-        known += is_known(s, f, i) != 0;
-        count += agreement(s, f, i) >= enough;
+        if (!is_known(s, f, i))
+            continue;
+        known++;
+        there += agreement(s, f, i) >= NEAR_BEST * best;
+        gone += agreement(s, f, i) < CLEARLY_GONE * best;
     }
-    if (agreement(s, frame, i) < fmaxf(MUST_AGREE, enough) ||
-        (float)count > LONGEST_SHARE * (float)known)
+    return (float)there <= LONGEST_SHARE * (float)known || (float)gone >= GONE_SHARE * (float)known;
+}
+
+int ted4_sightings_span(const ted4_sightings *s, size_t i, uint32_t frame, ted4_span *span)
+{
+    const float best = agreement(s, ted4_sightings_best(s, i), i), enough = NEAR_BEST * best;
+
+    if (agreement(s, frame, i) < fmaxf(MUST_AGREE, enough) || !comes_and_goes(s, i, best))
         return 0;
     span->from = run_end(s, i, frame, -1, enough, &span->before);
     span->to = run_end(s, i, frame, 1, enough, &span->after);

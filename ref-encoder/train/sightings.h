@@ -62,7 +62,8 @@ uint32_t ted4_sightings_best(const ted4_sightings *s, size_t i);
 
 /* The run of times around a frame at which the colour of point i is there: what comes back is there in several runs. Times at which fewer than
  * TED4_CAMERAS_NEEDED cameras look there, held-out ones for example, neither end a run nor count. 0: at that frame fewer than half of the cameras see the
- * colour, or clearly fewer than at its best; or it is there at more than half of the times, so it does not come and go. */
+ * colour, or clearly fewer than at its best; or it does not come and go: it is there at more than half of the times, and nearly all cameras miss it at less
+ * than a quarter of them. */
 int  ted4_sightings_span(const ted4_sightings *s, size_t i, uint32_t frame, ted4_span *span);
 
 /* Activation of anchor i over a span, almost gone at the times next to it: what moves by its own size in a frame would else be seen at three places at
