@@ -136,6 +136,11 @@ make_page
 check missed "$page" '1 of 1 scenes told, 0 equal in size and hash | **missed** |' 'calm 0.40 dB | **missed** |' '0 scenes, 0 of them unexplained | not run yet |' \
     '0.0 against 0.0 (means over seeds) | cannot be said |'
 
+# calm, the second scene, falls 2.3 dB below the first.
+sed -i 's/^calm-whole-\([0-9]\),k,o,fine,33/calm-whole-\1,k,o,fine,28/' "$out/page/stability.csv"
+make_page
+check weak "$page" "| calm | whole | the whole method's mean PSNR lies more than 2 dB below its own on the first scene (3 of 3) | Why calm is so. |"
+
 rm "$out/page/stability.csv"
 : >"$out/states"
 make_page || fail empty "status $?"

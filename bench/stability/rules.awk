@@ -9,7 +9,8 @@ BEGIN {
     most_escapes = 1 / 256  # share of symbols, as R-ENC-006 advises
     most_ends = 0.001       # share of symbols or contexts at the ends of their ranges: what they stand for is lost
     most_spread = 1         # dB between seeds of the whole method
-    rules = "crash error nan diverges rollback gap floor drop out escapes ends spread"
+    weak_gap = 2            # dB: the whole method on a scene that far below itself on the table's first, which nothing makes hard
+    rules = "crash error nan diverges rollback gap floor drop out escapes ends spread weak"
     letter["crash"] = "C";    meaning["crash"] = "ted4enc crashed"
     letter["error"] = "E";    meaning["error"] = "ted4enc gave up with an error"
     letter["nan"] = "N";      meaning["nan"] = "something is not finite: the decoder refuses a time, or a number of the log is none"
@@ -22,6 +23,7 @@ BEGIN {
     letter["escapes"] = "X";  meaning["escapes"] = "more than one of " 1 / most_escapes " symbols needs an escape"
     letter["ends"] = "R";     meaning["ends"] = "more than " 100 * most_ends " % of symbols or contexts stand at the ends of their ranges"
     letter["spread"] = "S";   meaning["spread"] = "seeds differ by more than " most_spread " dB in mean PSNR"
+    letter["weak"] = "L";     meaning["weak"] = "the whole method's mean PSNR lies more than " weak_gap " dB below its own on the first scene"
     split(rules, rule_order, " ")
 }
 
@@ -51,10 +53,10 @@ function sum_of(s, v, column,    i, sum) {
 # Between seeds, of mean PSNR; "" with fewer than two.
 function spread_of(s, v) { return count_runs(s, v) > 1 && mean_of(s, v, "psnr") != "" ? most_of(s, v, "psnr") - least_of(s, v, "psnr") : "" }
 
-# Does the rule hold of that row? spread is no rule of one row.
+# Does the rule hold of that row? spread and weak are no rules of one row.
 function breaks(t, rule,    s, of_whole) {
     s = scene[t]
-    if (!has(t) || rule == "spread")
+    if (!has(t) || rule == "spread" || rule == "weak")
         return 0
     if (rule == "crash" || rule == "error")
         return get(t, "status") == rule
@@ -74,10 +76,18 @@ function breaks(t, rule,    s, of_whole) {
     return of_whole != "" && of_whole - get(t, "worst") > worst_gap
 }
 
-# How many rows of a variant break it; of spread, all or none.
+function is_weak(s,    here, first) {
+    here = mean_of(s, "whole", "psnr")
+    first = mean_of(scenes[1], "whole", "psnr")
+    return here != "" && first != "" && first - here > weak_gap
+}
+
+# How many rows of a variant break it; of spread and weak, which are the whole method's, all or none.
 function count_breaks(s, v, rule,    i, n) {
     if (rule == "spread")
         return v == "whole" && spread_of(s, v) != "" && spread_of(s, v) > most_spread ? count_runs(s, v) : 0
+    if (rule == "weak")
+        return v == "whole" && is_weak(s) ? count_runs(s, v) : 0
     for (i = 1; i <= n_runs[s, v]; i++)
         n += breaks(runs[s, v, i], rule)
     return n + 0
