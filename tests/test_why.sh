@@ -41,4 +41,13 @@ expect fixed_log "$(logged fixed)" 0
 expect fixed_file "$("$TED4_BUILD/ted4info" "$out/fixed.ted4" --why | grep '^capacity')" "capacity=fixed; lambda 0.002"
 "$TED4_BUILD/ted4enc" "$out/scene" -o "$out/x.ted4" --capacity some 2>"$out/err"
 expect refused "$?:$(cat "$out/err")" '3:ted4enc: --capacity: bad value some'
+
+# Light that flickers gets a row of the bank for every time; other scenes for every second one.
+"$TED4_BUILD/ted4scene" flicker -o "$out/flicker" --size 32x24 --frames 6 --cameras 5 --test-cameras 1 -j 1 2>/dev/null
+rows() { "$TED4_BUILD/ted4info" -v "$out/$1.ted4" | sed -n 's/^ *bank_rows *//p'; }
+"$TED4_BUILD/ted4enc" "$out/flicker" -o "$out/flicker.ted4" $small --capacity fixed --set probe=0 --why 2>"$out/err" || fail flicker "$(cat "$out/err")"
+encode steady --capacity fixed --set probe=0
+expect rows_of_flicker "$(rows flicker)" 6
+expect rows_of_pop "$(rows steady)" 2
+expect flicker_told "$("$TED4_BUILD/ted4info" "$out/flicker.ted4" --why | grep -c '^capacity.light=flickers by .*of 6 rows for 6 times')" 1
 exit $bad

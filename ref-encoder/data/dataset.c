@@ -90,6 +90,16 @@ typedef struct {
     ted4_message   *m;          /* why */
 } verification;
 
+static double mean_level(const uint8_t *pixels, const ted4_camera *c)
+{
+    const size_t n = 3 * (size_t)c->width * (size_t)c->height;
+    uint64_t     sum = 0;
+
+    for (size_t i = 0; i < n; i++)
+        sum += pixels[i];
+    return (double)sum / (double)n;
+}
+
 /* Pictures after a bad one need no look; those before it do, so that every number of threads names the same one. */
 static void verify_picture(void *arg, size_t i)
 {
@@ -101,7 +111,11 @@ static void verify_picture(void *arg, size_t i)
     pthread_mutex_unlock(&v->lock);
     if (!needed)
         return;
-    if (ted4_dataset_pixels(v->d, i, &m) != NULL) {
+
+    const uint8_t *pixels = ted4_dataset_pixels(v->d, i, &m);
+
+    if (pixels != NULL) {
+        v->d->sources[i].level = mean_level(pixels, &v->d->pictures[i].camera);
         ted4_dataset_release(v->d, i);
         return;
     }

@@ -15,6 +15,7 @@ typedef struct ted4_source {
     uint8_t     background;     /* grey level under transparent pixels */
     int         is_known;       /* decoded before: a file with another digest is refused */
     uint64_t    digest;
+    double      level;          /* mean of all its bytes; 0 until ted4_dataset_verify */
 } ted4_source;
 
 /* ted4_image_decoder of an array of sources, which it tells apart from files that replace them later: RGB composited, undistorted, downscaled, in this order. */

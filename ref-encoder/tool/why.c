@@ -5,6 +5,7 @@
 #include <stdio.h>
 #include <stdlib.h>
 
+#include "data/flicker.h"
 #include "train/capacity.h"
 
 static void put_time(FILE *f, const ted4_trainer *t)
@@ -14,6 +15,14 @@ static void put_time(FILE *f, const ted4_trainer *t)
 
     if (loss[0] > 0)
         fprintf(f, "capacity.time=%s: loss %.6f with it, %.6f without\n", timed ? "needed" : "not needed", loss[0], loss[1]);
+}
+
+static void put_light(FILE *f, const ted4_trainer *t)
+{
+    const double flicker = ted4_dataset_flicker(t->data);
+
+    if (flicker >= TED4_FLICKER_SEEN)
+        fprintf(f, "capacity.light=flickers by %.1f levels; trained with a bank of %d rows for %u times\n", flicker, t->opt.bank_rows, t->data->n_frames);
 }
 
 static void put_trial(FILE *f, size_t number, const struct ted4_trial *x)
@@ -37,6 +46,7 @@ char *ted4_why_text(const ted4_trainer *t)
         return NULL;
     fprintf(f, "capacity=%s; lambda %.7g\n", t->opt.capacity ? "auto" : "fixed", t->opt.lambda);
     put_time(f, t);
+    put_light(f, t);
     for (size_t i = 0; i < t->n_trials; i++)
         put_trial(f, i + 1, &t->trial[i]);
     if (fclose(f) == 0)
