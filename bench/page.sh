@@ -1,5 +1,5 @@
-# page.sh - from a table of wanted runs and its rows to a page with SVG charts: what bench/report.sh and bench/stability_page.sh share. Sourced from the project's
-# root with $results (folder of rows and page) and $table (of wanted runs) set.
+# page.sh - from a table of wanted runs and its rows to a page with SVG charts: what bench/report.sh, bench/stability_page.sh and bench/capacity_page.sh
+# share. Sourced from the project's root with $results (folder of rows and page) and $table (of wanted runs) set.
 # SPDX-License-Identifier: BSD-2-Clause
 LC_ALL=C; export LC_ALL
 scratch=$(mktemp -d)

@@ -1,34 +1,10 @@
-# page.awk - writes bench/capacity.md. Used by bench/capacity_page.sh, last.
+# page.awk - puts bench/capacity.md together, on stdout. Used by bench/capacity_page.sh, last, with -v charts: where charts go.
 # SPDX-License-Identifier: BSD-2-Clause
 
 function model(t) {
     return get(t, "n_offsets") "/" get(t, "feature_dim") "/" get(t, "phi_dim") ", " get(t, "bank_rows") "x" get(t, "bank_dim") ", " \
         get(t, "deform_width") "/" get(t, "head_width") ", " get(t, "hyper_layers") "x" get(t, "hyper_width") "/" get(t, "n_slices") "x" get(t, "ar_width") \
         ", " get(t, "view") (get(t, "scale_domain") == 1 ? ", linear" : "")
-}
-
-# The fixed run of a scene that costs least; "" without any.
-function best_fixed(s,    i, v, t, best) {
-    for (i = 1; i <= n_variants; i++) {
-        v = variants[i]
-        t = v != "auto" && n_runs[s, v] > 0 ? runs[s, v, 1] : ""
-        if (t != "" && cost(t) != "" && (best == "" || cost(t) < cost(best)))
-            best = t
-    }
-    return best
-}
-
-# Spread of auto's cost over seeds; "" with fewer than two.
-function spread(s,    i, n, c, sum, square) {
-    for (i = 1; i <= n_runs[s, "auto"]; i++) {
-        c = cost(runs[s, "auto", i])
-        if (c != "") {
-            n++
-            sum += c
-            square += c * c
-        }
-    }
-    return n > 1 && square / n > sum * sum / n / n ? sqrt((square - sum * sum / n) / (n - 1)) : ""
 }
 
 function show_scene(s,    i, v, t, best, b) {
@@ -48,43 +24,36 @@ function show_scene(s,    i, v, t, best, b) {
     }
 }
 
-function bar4(s,    t, best, over, sd) {
-    t = runs[s, "auto", 1]
-    best = best_fixed(s)
-    if (!has(t) || best == "" || cost(t) == "")
-        return ""
-    over = cost(t) / cost(best) - 1
-    sd = spread(s)
-    return over <= 0.02 || (sd != "" && cost(t) - cost(best) <= sd) ? 1 : 0
-}
-
-# Fixed settings that a scene is to be trained with.
-function count_fixed(s,    i, n) {
-    for (i = 1; i <= n_variants; i++)
-        n += variants[i] != "auto" && n_runs[s, variants[i]] > 0
-    return n
-}
-
-function summary(    i, s, ok, met, missed, unknown, list) {
-    for (i = 1; i <= n_scenes; i++) {
-        s = scenes[i]
-        if (n_runs[s, "auto"] == 0 || count_fixed(s) < 2)
-            continue
-        ok = bar4(s)
-        if (ok == "")
-            unknown++
-        else if (ok)
-            met++
-        else {
-            missed++
-            list = join(list, ", ", s)
-        }
+# A curve of the scenes of a list over the numbers of another: bytes of files, or of what is in them for time.
+function content_curve(name, v, colour, marker, dash, list, places, for_time,    n, i, s, x, t) {
+    plot_series(name, colour, marker, dash)
+    n = split(list, s, " ")
+    split(places, x, " ")
+    for (i = 1; i <= n; i++) {
+        t = runs[s[i], v, 1]
+        if (has(t))
+            plot_point(x[i], (for_time ? temporal(t) : get(t, "bytes")) / 1000, "")
     }
-    say("Auto costs at most 2 % more than the best fixed setting, or one standard deviation over its seeds, on " met + 0 " scenes of " \
-        met + missed + unknown "; more on " (missed > 0 ? missed ": " list : "none") (unknown > 0 ? "; not known yet on " unknown : "") ".")
 }
 
-function content(title, list,    n, i, s, t) {
+# Left for which scenes, at which numbers on the axis x.
+function content_chart(name, title, x_label, list, places) {
+    plot_begin()
+    content_curve("auto, file", "auto", "#0072b2", "circle", "", list, places, 0)
+    content_curve("auto, for time", "auto", "#0072b2", "triangle", "7 4", list, places, 1)
+    content_curve("fixed, file", "whole", "#d55e00", "square", "", list, places, 0)
+    content_curve("fixed, for time", "whole", "#d55e00", "diamond", "7 4", list, places, 1)
+    if (plot_is_empty())
+        return
+    svg_open(charts "/" name ".svg", 460, 360, title)
+    plot_ticks = places
+    plot_draw(0, 4, 450, 350, title, x_label, "kB (1000 bytes)", "", 1)
+    svg_close()
+    say("")
+    say("![" title "](capacity/" name ".svg)")
+}
+
+function content(title, list,    n, i, s, t, line) {
     say("")
     say("## " title)
     table("scene,auto: bytes,of them for time,anchors that move,PSNR,whole: bytes,of them for time,PSNR")
@@ -101,24 +70,42 @@ function content(title, list,    n, i, s, t) {
     }
 }
 
-END {
-    if (failed)
-        exit 1
-    say("# Capacity: no more model than a scene needs")
-    say("")
-    say("Written by `make capacity` from bench/capacity.csv; the runs are those of bench/capacity.txt. Cost: 0.8 L1 + 0.2 (1 - SSIM) of held-out pictures, plus lambda")
-    say("times the bits of the file over the values of all anchors of the scene's `whole` run, so that a bit weighs the same in every run of a scene. Bytes for")
-    say("time: bank, temporal features, activations, and the networks' share. CPU: seconds of training, trials included; trials: steps of trained ones. Model: K/F/d,")
-    say("rows x width of the bank, widths of F_deform/heads, hyperprior/slices, view. †: made by other sources.")
-    say("")
-    summary()
+function sections(    i) {
     say("")
     say("## Auto against fixed settings")
+    say("")
+    say("Cost: 0.8 L1 + 0.2 (1 - SSIM) of held-out pictures, plus lambda times the bits of the file over the values of all anchors of the scene's `whole` run, so")
+    say("that a bit weighs the same in every run of a scene. For time: bytes of bank, temporal features, activations, and the networks' share. CPU: seconds of")
+    say("training, trials included; trials: steps of trained ones. Model: K/F/d, rows x width of the bank, widths of F_deform/heads, hyperprior/slices, view.")
     table("scene,setting,bytes,PSNR,cost,against the best fixed,for time,CPU s,trials,decode ms,model")
     for (i = 1; i <= n_scenes; i++)
         show_scene(scenes[i])
     content("How many things move", "things0 things1 things2 things4 things8")
+    content_chart("things", "Size by what moves", "things that move, of eight", "things0 things1 things2 things4 things8", "0 1 2 4 8")
     content("For how long", "things4 long2 long4 rest")
+    content_chart("times", "Size by how long it moves", "times", "things4 long2 long4", "16 32 64")
+}
+
+END {
+    if (failed)
+        exit 1
+    cost_bar()
+    time_bar()
+    still_bar("still")
+    still_bar("chair")
+    still_bar("moment")
+    things_bar()
+    sections()
+    print "# Capacity: no more model than a scene needs"
+    print ""
+    print "Written by `make capacity` from [capacity.csv](capacity.csv); the runs are those of capacity.txt. Numbers of the bars are those of the project's issue"
+    print "\"The lab\". †: made by other sources."
+    print "Bars: " n_verdicts["met"] + 0 " met, " n_verdicts["**missed**"] + 0 " missed, " n_verdicts["not run yet"] + 0 " not run yet."
+    print ""
+    print "| # | what | bar | measured | verdict | command, then `bench/capacity_page.sh` |"
+    print "|---|---|---|---|---|---|"
+    for (i = 1; i <= n_bars; i++)
+        print bars[i]
     for (i = 1; i <= n_body; i++)
         print body[i]
 }
