@@ -117,6 +117,25 @@ static void test_decides(void **state)
     ted4_trainer_finish(&t);
 }
 
+/* A budget that pays for few trials is not spent on the dearest. */
+static void test_cheap_first(void **state)
+{
+    ted4_train_options o = options("capacity=1");
+    ted4_trainer       t;
+    int                narrowed = 0;
+
+    (void)state;
+    ball_set(&o, "capacity_share=0.16");
+    begin(&t, &o, NULL);
+    ball_train(&t, TOTAL);
+    for (size_t i = 0; i < t.n_trials; i++) {
+        assert_true(t.trial[i].move != TED4_MOVE_OFFSETS);
+        narrowed += t.trial[i].move == TED4_MOVE_HYPER && t.trial[i].taken;
+    }
+    assert_true(narrowed > 0);
+    ted4_trainer_finish(&t);
+}
+
 /* What training decides depends on the machine's arithmetic; at one of these rates some move is worth it. */
 static void test_trained(void **state)
 {
@@ -129,6 +148,7 @@ static void test_trained(void **state)
         ted4_trainer       t;
 
         ball_set(&o, rates[i]);
+        ball_set(&o, "stage2=1200");    /* pays for more than looks */
         begin(&t, &o, NULL);
         ball_train(&t, ted4_capacity_step(&t) + 1);
         trained += check_trials(&t);
@@ -301,8 +321,9 @@ static void test_lambda(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_decides), cmocka_unit_test(test_trained), cmocka_unit_test(test_budget), cmocka_unit_test(test_threads), cmocka_unit_test(test_resumed),
-        cmocka_unit_test(test_not_mixed), cmocka_unit_test(test_fixed), cmocka_unit_test(test_short), cmocka_unit_test(test_lambda),
+        cmocka_unit_test(test_decides), cmocka_unit_test(test_cheap_first), cmocka_unit_test(test_trained), cmocka_unit_test(test_budget),
+        cmocka_unit_test(test_threads), cmocka_unit_test(test_resumed), cmocka_unit_test(test_not_mixed), cmocka_unit_test(test_fixed),
+        cmocka_unit_test(test_short), cmocka_unit_test(test_lambda),
     };
 
     return cmocka_run_group_tests(tests, set_up, tear_down);

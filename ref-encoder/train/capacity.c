@@ -11,7 +11,7 @@
 /* Share of stage 2 before: values have begun to be cheap, and the prior knows them. Measured on three small scenes, at 0.5 costs differ by 1 % either way. */
 #define DECIDE_AT 0.15
 /* Share of the budget for trials at sight; trained trials that the budget pays for if nothing is spent on those. */
-#define SIGHT_SHARE 0.5
+#define SIGHT_SHARE 0.7
 enum { TRIALS = 16, FEWEST_STEPS = 50 };
 /* Of the distortion that a move adds at sight, training will take this share back, as far as one may hope; a move that would not lower the cost by that share
  * even so is not worth training. */

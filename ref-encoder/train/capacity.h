@@ -13,10 +13,11 @@ typedef struct {
     double bytes;
 } ted4_cost;
 
-/* What may become less, in the order of trials. */
+/* What may become less, in the order of trials: which Gaussians an anchor has fewer of takes a look at many pictures, so that comes last. */
 typedef enum {
-    TED4_MOVE_MOTION, TED4_MOVE_ACTIVATION, TED4_MOVE_OFFSETS, TED4_MOVE_HYPER, TED4_MOVE_DEFORM, TED4_MOVE_AR, TED4_MOVE_HEADS, TED4_MOVE_BANK,
-    TED4_MOVE_FEATURE, TED4_MOVE_SLICES, TED4_MOVE_OCTAVES, TED4_MOVE_VIEW, TED4_MOVE_ROWS, TED4_MOVE_PHI, TED4_MOVE_SCALE, TED4_MOVE_ANCHORS, TED4_MOVES
+    TED4_MOVE_MOTION, TED4_MOVE_ACTIVATION, TED4_MOVE_HYPER, TED4_MOVE_DEFORM, TED4_MOVE_AR, TED4_MOVE_HEADS, TED4_MOVE_BANK,
+    TED4_MOVE_FEATURE, TED4_MOVE_SLICES, TED4_MOVE_OCTAVES, TED4_MOVE_VIEW, TED4_MOVE_ROWS, TED4_MOVE_PHI, TED4_MOVE_SCALE, TED4_MOVE_OFFSETS,
+    TED4_MOVE_ANCHORS, TED4_MOVES
 } ted4_move;
 
 /* One trial; kept in checkpoints as it stands in memory. */

@@ -10,9 +10,9 @@
 #include "surgery.h"
 
 static const char *const names[TED4_MOVES] = {
-    "motion", "activation", "Gaussians an anchor", "width of the hyperprior", "width of F_deform", "width of the slice networks",
+    "motion", "activation", "width of the hyperprior", "width of F_deform", "width of the slice networks",
     "width of the heads", "width of the bank", "feature", "slices of the feature", "octaves of the hyperprior", "view direction",
-    "rows of the bank", "temporal feature", "scalings in log2", "Gaussians in all",
+    "rows of the bank", "temporal feature", "scalings in log2", "Gaussians an anchor", "Gaussians in all",
 };
 
 const char *ted4_move_name(ted4_move m)
