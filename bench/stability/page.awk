@@ -60,28 +60,23 @@ function run_bars(    k, i, whole_scenes, all, rows, wanted, breaks_whole, n_who
         n_unexplained > 0 ? 0 : whole_scenes >= 16 ? 1 : "", "[notes](stability-notes.md)")
 }
 
-# 2: where things come, go or hide. How many anchors are thrown out is judged over all these scenes: a scene where none is either way says nothing.
-function come_bars(    k, s, gain, ok, all, text, ours, theirs) {
-    all = 1
+# 2: where things come, go or hide. Where no anchor is thrown out either way there is nothing to be fewer than.
+function come_bars(    k, s, gain, ok, how) {
     for (k = 1; k <= n_scenes; k++) {
         s = scenes[k]
         if (!in_group(runs[s, "whole", 1], "come"))
             continue
+        how = lab_command("'" s "-whole-*' '" s "-noactive-*'")
         ok = has_three(s, "whole") && has_three(s, "noactive")
-        all = all && ok
         gain = mean_of(s, "whole", "worst")
         if (gain != "")
             gain = mean_of(s, "noactive", "worst") == "" ? "" : gain - mean_of(s, "noactive", "worst")
         bar(2, s ": worst frame, whole method above no activation", "at least 1 dB", signed(gain, 2, " dB") any_old(s, "whole"), \
-            ok && gain != "" ? gain >= 1 : "", lab_command("'" s "-whole-*' '" s "-noactive-*'"))
-        if (!count_runs(s, "whole") || !count_runs(s, "noactive"))
-            continue
-        ours += mean_of(s, "whole", "out")
-        theirs += mean_of(s, "noactive", "out")
-        text = join(text, "; ", s " " fixed(mean_of(s, "whole", "out"), 1) " against " fixed(mean_of(s, "noactive", "out"), 1))
+            ok && gain != "" ? gain >= 1 : "", how)
+        bar(2, s ": anchors thrown out of view", "fewer than without activation", count_runs(s, "whole") && count_runs(s, "noactive") ? \
+            fixed(mean_of(s, "whole", "out"), 1) " against " fixed(mean_of(s, "noactive", "out"), 1) " (means over seeds)" : "", \
+            !ok ? "" : mean_of(s, "noactive", "out") + mean_of(s, "whole", "out") == 0 ? "?" : mean_of(s, "whole", "out") < mean_of(s, "noactive", "out"), how)
     }
-    bar(2, "anchors thrown out of view where things come, go or hide", "fewer than without activation", text == "" ? "" : text " (means over seeds)", \
-        !all || text == "" ? "" : ours + theirs == 0 ? "?" : ours < theirs, lab_command("come"))
 }
 
 # 3: seeds.

@@ -137,7 +137,7 @@ static int leader_ended(const conf_process *p)
 }
 
 /* What the pipes hold; f says which have something. Gives 0 when there is too much of it on stdout. */
-static int listen(conf_process *p, const struct pollfd *f)
+static int hear(conf_process *p, const struct pollfd *f)
 {
     if (f[0].revents != 0 && p->out >= 0 && !drain(&p->out, &p->answer, CONF_MAX_OUTPUT, 1))
         return 0;
@@ -153,7 +153,7 @@ static int last_words(conf_process *p)
     for (int i = 0; i < PIECES; i++) {
         struct pollfd f[2] = { { p->out, POLLIN, 0 }, { p->err, POLLIN, 0 } };
 
-        if (poll(f, 2, 0) > 0 && !listen(p, f))
+        if (poll(f, 2, 0) > 0 && !hear(p, f))
             return 0;
     }
     return 1;
@@ -163,7 +163,7 @@ static int look(conf_process *p, const struct pollfd *f)
 {
     const int ended = leader_ended(p);
 
-    if (!listen(p, f) || (ended && !last_words(p))) {
+    if (!hear(p, f) || (ended && !last_words(p))) {
         finish(p, CONF_TOO_LONG);
         return 1;
     }

@@ -96,7 +96,7 @@ static int settle_options(ted4_train_options *o, const ted4_dataset *d)
 static int encode(const ted4_request *r, ted4_dataset *d, const ted4_parallel *p, double begin)
 {
     ted4_train_options options = r->options;
-    ted4_trainer       t = { 0 };
+    ted4_trainer       t;
 
     if (settle_options(&options, d) != 0)
         return TED4_EXIT_TOOL;
