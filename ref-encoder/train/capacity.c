@@ -107,10 +107,16 @@ static int take_if_cheaper(search *s, ted4_move m)
     return bad ? -1 : taken;
 }
 
+/* Half of what all Gaussians are made from is never free, and weights are not the better for having few bits where none would cost more than many. */
+static int may_be_bold(ted4_move m)
+{
+    return m != TED4_MOVE_HEADS && m != TED4_MOVE_FEATURE && m != TED4_MOVE_OFFSETS && m != TED4_MOVE_HEAD_BITS && m != TED4_MOVE_MOTION_BITS;
+}
+
 /* Goes as far with a move as each step lowers the cost at sight: in bold steps, then in small ones. */
 static int descend(search *s, ted4_move m)
 {
-    int bold = 1;
+    int bold = may_be_bold(m);
 
     while (s->spent < SIGHT_SHARE * s->budget) {
         const int bolder = ted4_move_next(s->t, m, 1), next = ted4_move_next(s->t, m, 0);

@@ -10,7 +10,8 @@
 #include "surgery.h"
 
 static const char *const names[TED4_MOVES] = {
-    "motion", "activation", "width of the hyperprior", "width of F_deform", "width of the slice networks",
+    "motion", "activation", "bits of the heads' weights", "bits of the motion networks' weights", "bits of the bank", "bits of the prior's weights",
+    "width of the hyperprior", "width of F_deform", "width of the slice networks",
     "width of the heads", "width of the bank", "feature", "slices of the feature", "octaves of the hyperprior", "view direction",
     "rows of the bank", "temporal feature", "scalings in log2", "Gaussians an anchor", "Gaussians in all",
 };
@@ -27,6 +28,10 @@ int ted4_move_now(const ted4_trainer *t, ted4_move m)
     switch (m) {
     case TED4_MOVE_MOTION:     return h->motion != TED4_MOTION_NONE;
     case TED4_MOVE_ACTIVATION: return h->activation;
+    case TED4_MOVE_HEAD_BITS:  return t->bits[TED4_GRID_HEADS];
+    case TED4_MOVE_MOTION_BITS: return h->motion != TED4_MOTION_NONE ? t->bits[TED4_GRID_MOTION] : 0;
+    case TED4_MOVE_BANK_BITS:  return h->bank_dim > 0 ? t->bits[TED4_GRID_BANK] : 0;
+    case TED4_MOVE_PRIOR_BITS: return t->bits[TED4_GRID_PRIOR];
     case TED4_MOVE_HYPER:      return h->hyper_layers > 0 ? h->hyper_width : 0;
     case TED4_MOVE_AR:         return h->ar_width;
     case TED4_MOVE_SLICES:     return h->n_slices;
@@ -58,6 +63,16 @@ static int narrower(int now, int multiple, int least, int bold)
     return to >= least && to < now ? to : -1;
 }
 
+/* Bits of weights: of most of those that training leaves nothing can be seen. */
+static int coarser(int now, int bold)
+{
+    enum { COARSE = 6, FINE = 12 };
+
+    if (now > FINE)
+        return bold ? COARSE : FINE;
+    return now > COARSE ? now - 2 : now > 1 ? now - 1 : -1;
+}
+
 int ted4_move_next(const ted4_trainer *t, ted4_move m, int bold)
 {
     const int now = ted4_move_now(t, m);
@@ -75,6 +90,10 @@ int ted4_move_next(const ted4_trainer *t, ted4_move m, int bold)
     case TED4_MOVE_DEFORM:
     case TED4_MOVE_BANK:    return narrower(now, 4, 4, bold);
     case TED4_MOVE_FEATURE: return narrower(now, 2, 4, bold);
+    case TED4_MOVE_HEAD_BITS:
+    case TED4_MOVE_MOTION_BITS:
+    case TED4_MOVE_BANK_BITS:
+    case TED4_MOVE_PRIOR_BITS: return coarser(now, bold);
     case TED4_MOVE_OFFSETS:
     case TED4_MOVE_PHI:     return narrower(now, 1, 1, bold);
     case TED4_MOVE_ROWS:    return now > 3 ? (now + 1) / 2 : -1;
@@ -285,6 +304,10 @@ static int plan(operation *o, ted4_move m, int to)
     case TED4_MOVE_ROWS:       h->bank_rows = (uint32_t)to; return 0;
     case TED4_MOVE_PHI:        h->phi_dim = (uint8_t)to; return (o->s.phi = narrow(o, phi, to, NULL)) == NULL;
     case TED4_MOVE_SCALE:      make_linear(o); return 0;
+    case TED4_MOVE_HEAD_BITS:
+    case TED4_MOVE_MOTION_BITS:
+    case TED4_MOVE_BANK_BITS:
+    case TED4_MOVE_PRIOR_BITS:
     case TED4_MOVE_ANCHORS:
     case TED4_MOVES:           break;
     }
@@ -296,6 +319,10 @@ int ted4_move_make(ted4_trainer *t, ted4_move m, int to)
     operation o = { .t = t };
     int       bad;
 
+    if (m >= TED4_MOVE_HEAD_BITS && m <= TED4_MOVE_PRIOR_BITS) {
+        t->bits[m - TED4_MOVE_HEAD_BITS + TED4_GRID_HEADS] = to;
+        return 0;
+    }
     ted4_surgery_begin(&o.s, t);
     bad = plan(&o, m, to) != 0 || ted4_surgery_apply(t, &o.s) != 0;
     for (int i = 0; i < o.n; i++)

@@ -13,7 +13,7 @@
 #include "write/coder_count.h"
 
 #define MAGIC 0x34444554u       /* "TED4" */
-enum { FORMAT = 5 };
+enum { FORMAT = 6 };
 
 /* One walk for both directions: put() writes or reads the bytes at p. whole: with the watch's last good state. */
 typedef struct {
@@ -240,11 +240,15 @@ static void walk_capacity(stream *s, ted4_trainer *t)
     uint64_t    n = t->n_trials;
     ted4_header began;
 
-    if (!s->writing)
+    if (!s->writing) {
         t->decided = 0;
+        for (int i = 0; i < TED4_GRIDS; i++)
+            t->bits[i] = TED4_GRID_FULL(i);
+    }
     if (t->stage2 && t->opt.capacity) {
         put(s, &t->charged, sizeof t->charged);
         put(s, &t->decided, sizeof t->decided);
+        put(s, t->bits, sizeof t->bits);
         put(s, &n, sizeof n);
     } else {
         t->charged = t->layout.head;
@@ -259,6 +263,8 @@ static void walk_capacity(stream *s, ted4_trainer *t)
     }
     if (!s->failed)
         put(s, t->trial, (size_t)n * sizeof *t->trial);
+    for (int i = 0; !s->failed && i < TED4_GRIDS; i++)
+        s->failed = t->bits[i] < 1 || t->bits[i] > TED4_GRID_FULL(i);
     for (size_t i = 0; !s->failed && i < n; i++)
         s->failed = t->trial[i].move < 0 || t->trial[i].move >= TED4_MOVES;
 }

@@ -105,6 +105,12 @@ static void update_range(const net_job *j, size_t first, size_t n, double rate)
                   t->net_gradient + first, n, (float)(rate * t->watch.state.factor), j->bias);
 }
 
+/* In the integer stage no weight leaves a coarse grid: it would jump from point to point until the end. */
+static double rate_on_grid(const ted4_trainer *t, ted4_grid grid, double rate)
+{
+    return t->integer && t->bits[grid] < TED4_GRID_FULL(grid) ? 0 : rate;
+}
+
 static void update_network(const net_job *j, size_t base, const ted4_net_shape *s,
                            double rate)
 {
@@ -123,15 +129,15 @@ void ted4_schedule_network_step(ted4_trainer *t)
     const double   restart = t->stage2 ? RESTART : 1.0;
     const uint64_t count = t->iteration - (t->stage2 ? t->stage2_start : 0) + 1;
     const net_job  j = { t, ted4_adam_bias_make(count) };
-    const double   heads = ted4_decay(o->lr_heads * restart, LAST_HEADS, p);
+    const double   heads = rate_on_grid(t, TED4_GRID_HEADS, ted4_decay(o->lr_heads * restart, LAST_HEADS, p));
     const double   motion = ted4_decay(o->lr_motion * restart, LAST_MOTION, p);
 
     for (int i = 0; i < TED4_NETS_R; i++) {
         const int is_motion = i == TED4_NET_PROJECT || i == TED4_NET_DEFORM;
 
-        update_network(&j, l->netr, &l->shape.netr[i], is_motion ? motion : heads);
+        update_network(&j, l->netr, &l->shape.netr[i], is_motion ? rate_on_grid(t, TED4_GRID_MOTION, motion) : heads);
     }
-    update_range(&j, l->bank, l->shape.n_bank, motion);
+    update_range(&j, l->bank, l->shape.n_bank, rate_on_grid(t, TED4_GRID_BANK, motion));
     if (t->stage2 && !t->integer)
         update_range(&j, l->nete, l->shape.n_nete,
                      ted4_decay(o->lr_prior, LAST_PRIOR, p));

@@ -301,7 +301,7 @@ static uint8_t context_bits(const ted4_trainer *t)
     return (uint8_t)bits;
 }
 
-/* From here on the prior is the one of the file: weights on the integer grid and fixed, steps fixed with them. */
+/* From here on the prior is the one of the file: weights on the integer grid and fixed, steps fixed with them. So is what else lies on a coarse grid. */
 int ted4_integer_begin(ted4_trainer *t)
 {
     t->layout.head.context_bits = context_bits(t);
@@ -310,7 +310,8 @@ int ted4_integer_begin(ted4_trainer *t)
     t->shift = malloc(t->layout.shape.n_units + 1);
     if (t->shift == NULL || t->rate == NULL || ted4_slots_fill(t, NULL) != 0)
         return ted4_trainer_fail(t, "no memory for the integer model");
-    ted4_snap(&t->layout.head, &t->layout.shape, t->net + t->layout.nete, t->shift);
+    ted4_snap_coarse(&t->layout.head, &t->layout.shape, t->bits[TED4_GRID_PRIOR], t->net + t->layout.nete, t->shift);
+    ted4_grid_scene(&t->layout.shape, t->bits, t->net + t->layout.netr, t->net + t->layout.bank);
     t->integer = 1;
     ted4_rate_pack(t->rate, t->net);
     return ted4_integer_rate(t, NULL);

@@ -8,6 +8,7 @@
 #include "base/parallel.h"
 #include "colour.h"
 #include "data/dataset.h"
+#include "grid.h"
 #include "header.h"
 #include "loss.h"
 #include "options.h"
@@ -63,6 +64,7 @@ typedef struct {
     int                 clock_stopped;  /* draw everything at time 0 and without activation */
     uint64_t            stage2_start;   /* Adam's count restarts there */
     ted4_header         charged;        /* the first header, in stage 2 that at its start: a bit and a mask go on weighing what they weighed in that model */
+    int                 bits[TED4_GRIDS];   /* of weights in the file: grid.h */
     int                 decided;        /* how much of what capacity.h settles has been: TED4_DECIDED_... */
     struct ted4_trial  *trial;          /* owned: what settled it */
     size_t              n_trials;
