@@ -118,18 +118,19 @@ function still_bar(s,    i, t, u, best, text, ok, all) {
         !has(t) ? "" : !ok ? 0 : all ? 1 : "", capacity_command("'" s "-*'"))
 }
 
-# 6: bytes for time by how many things move.
-function things_bar(    n, i, s, t, text, last, ok, known) {
+# 6: bytes for time by how many things move, mean over seeds.
+function things_bar(    n, i, s, now, text, last, ok, known) {
     n = split("0 1 2 4 8", s, " ")
     ok = 1
     for (i = 1; i <= n; i++) {
-        t = runs["things" s[i], "auto", 1]
-        if (!has(t))
+        now = mean_over_seeds("things" s[i], "auto", "temporal")
+        if (now == "")
             continue
         known++
-        text = join(text, ", ", sprintf("%.0f", temporal(t)))
-        ok = ok && (s[i] == 0 ? temporal(t) == 0 : last == "" || temporal(t) > last)
-        last = temporal(t)
+        text = join(text, ", ", sprintf("%.0f", now))
+        ok = ok && (s[i] == 0 ? now == 0 : last == "" || now > last)
+        last = now
     }
-    bar(6, "bytes for time with 0, 1, 2, 4, 8 moving things", "0 first, then more and more", text, known && !ok ? 0 : known == n ? 1 : "", capacity_command("'things*-auto-1'"))
+    bar(6, "bytes for time with 0, 1, 2, 4, 8 moving things, mean over seeds", "0 first, then more and more", text, known && !ok ? 0 : known == n ? 1 : "", \
+        capacity_command("'things*-auto-*'"))
 }

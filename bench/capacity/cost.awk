@@ -36,3 +36,13 @@ function temporal(t,    m) {
     m = motion_weights(t)
     return get(t, "b_bank") + get(t, "b_phi") + get(t, "b_tau") + get(t, "b_netr") * m / (m + head_weights(t))
 }
+
+# Mean of a column, or of bytes for time, over the seeds of a scene's variant; "" as long as one is missing.
+function mean_over_seeds(s, v, column,    i, sum) {
+    for (i = 1; i <= n_runs[s, v]; i++) {
+        if (!has(runs[s, v, i]))
+            return ""
+        sum += column == "temporal" ? temporal(runs[s, v, i]) : get(runs[s, v, i], column)
+    }
+    return n_runs[s, v] > 0 ? sum / n_runs[s, v] : ""
+}

@@ -24,25 +24,25 @@ function show_scene(s,    i, v, t, best, b) {
     }
 }
 
-# A curve of the scenes of a list over the numbers of another: bytes of files, or of what is in them for time.
-function content_curve(name, v, colour, marker, dash, list, places, for_time,    n, i, s, x, t) {
+# A curve of the scenes of a list over the numbers of another: a column, or bytes for time; mean over seeds.
+function content_curve(name, v, colour, marker, dash, list, places, column,    n, i, s, x, y) {
     plot_series(name, colour, marker, dash)
     n = split(list, s, " ")
     split(places, x, " ")
     for (i = 1; i <= n; i++) {
-        t = runs[s[i], v, 1]
-        if (has(t))
-            plot_point(x[i], (for_time ? temporal(t) : get(t, "bytes")) / 1000, "")
+        y = mean_over_seeds(s[i], v, column)
+        if (y != "")
+            plot_point(x[i], y / 1000, "")
     }
 }
 
 # Left for which scenes, at which numbers on the axis x.
 function content_chart(name, title, x_label, list, places) {
     plot_begin()
-    content_curve("auto, file", "auto", "#0072b2", "circle", "", list, places, 0)
-    content_curve("auto, for time", "auto", "#0072b2", "triangle", "7 4", list, places, 1)
-    content_curve("fixed, file", "whole", "#d55e00", "square", "", list, places, 0)
-    content_curve("fixed, for time", "whole", "#d55e00", "diamond", "7 4", list, places, 1)
+    content_curve("auto, file", "auto", "#0072b2", "circle", "", list, places, "bytes")
+    content_curve("auto, for time", "auto", "#0072b2", "triangle", "7 4", list, places, "temporal")
+    content_curve("fixed, file", "whole", "#d55e00", "square", "", list, places, "bytes")
+    content_curve("fixed, for time", "whole", "#d55e00", "diamond", "7 4", list, places, "temporal")
     if (plot_is_empty())
         return
     svg_open(charts "/" name ".svg", 460, 360, title)
@@ -53,21 +53,21 @@ function content_chart(name, title, x_label, list, places) {
     say("![" title "](capacity/" name ".svg)")
 }
 
-function content(title, list,    n, i, s, t, line) {
+function means(s, v) {
+    return fixed(mean_over_seeds(s, v, "bytes"), 0) "|" fixed(mean_over_seeds(s, v, "temporal"), 0) "|" fixed(mean_over_seeds(s, v, "dynamic"), 0) "|" \
+        fixed(mean_over_seeds(s, v, "psnr"), 2)
+}
+
+function content(title, list,    n, i, s) {
     say("")
     say("## " title)
-    table("scene,auto: bytes,of them for time,anchors that move,PSNR,whole: bytes,of them for time,PSNR")
+    table("scene,seeds,auto: bytes,of them for time,anchors that move,PSNR,whole (seed 1): bytes,of them for time,anchors that move,PSNR")
     n = split(list, s, " ")
-    for (i = 1; i <= n; i++) {
-        t = runs[s[i], "auto", 1]
-        if (!has(t)) {
+    for (i = 1; i <= n; i++)
+        if (mean_over_seeds(s[i], "auto", "bytes") != "")
+            row(s[i] mark_of(runs[s[i], "auto", 1]) "|" n_runs[s[i], "auto"] "|" means(s[i], "auto") "|" means(s[i], "whole"))
+        else
             row_missing(s[i])
-            continue
-        }
-        line = s[i] mark_of(t) "|" get(t, "bytes") "|" sprintf("%.0f", temporal(t)) "|" get(t, "dynamic") "|" fixed(get(t, "psnr"), 2)
-        t = runs[s[i], "whole", 1]
-        row(line (has(t) ? "|" get(t, "bytes") "|" sprintf("%.0f", temporal(t)) "|" fixed(get(t, "psnr"), 2) : "|-|-|-"))
-    }
 }
 
 function sections(    i) {
