@@ -77,6 +77,7 @@ function sections(    i) {
     say("Cost: 0.8 L1 + 0.2 (1 - SSIM) of held-out pictures, plus lambda times the bits of the file over the values of all anchors of the scene's `whole` run, so")
     say("that a bit weighs the same in every run of a scene. For time: bytes of bank, temporal features, activations, and the networks' share. CPU: seconds of")
     say("training, trials included; trials: steps of trained ones. Model: K/F/d, rows x width of the bank, widths of F_deform/heads, hyperprior/slices, view.")
+    say("Fixed settings keep all bits of weights; how many are worth theirs is among what auto decides.")
     table("scene,setting,bytes,PSNR,cost,against the best fixed,for time,CPU s,trials,decode ms,model")
     for (i = 1; i <= n_scenes; i++)
         show_scene(scenes[i])
