@@ -113,20 +113,50 @@ static void test_hide(void **state)
 
 /* ---- 2, 14: what exists ---- */
 
-static void test_blink(void **state)
+static void check_jumps(ted4_ray_scene s, int camera)
 {
-    const ted4_ray_options o = plan(RAY_BLINK);
+    const ted4_ray_options o = plan(s);
 
-    (void)state;
     for (int frame = 0; frame < 15; frame++) {
         const int jumps = frame == 1 || (frame >= 5 && frame <= 10) || frame == 13;
-        const double c = change_of(&o, 2, frame, frame + 1);
+        const double c = change_of(&o, camera, frame, frame + 1);
         if (jumps)
             assert_true(c > 0.02);
         else
             assert_true(c == 0);
     }
-    assert_true(change_of(&o, 2, 0, 14) == 0);
+    assert_true(change_of(&o, camera, 0, 14) == 0);
+}
+
+static void test_blink(void **state)
+{
+    (void)state;
+    check_jumps(RAY_BLINK, 2);
+}
+
+/* Whatever comes and goes is cut by the upper edge, in every picture that shows it. */
+static void test_edge(void **state)
+{
+    const ted4_ray_options o = plan(RAY_EDGE);
+    static uint8_t mask[AREA];
+    const struct { int frame, from_end; } there[] = { { 6, 0 }, { 8, 0 }, { 8, 1 }, { 8, 2 } };
+
+    (void)state;
+    check_jumps(RAY_EDGE, 3);
+    for (size_t i = 0; i < sizeof there / sizeof there[0]; i++) {
+        int seen = 0;
+
+        for (int camera = 0; camera < o.n_train + o.n_test; camera++) {
+            const int n = find(&o, camera, there[i].frame, there[i].from_end, 1, mask);
+            int       top = 0;
+
+            for (int x = 0; x < o.width; x++)
+                top += mask[x];
+            assert_true(n == 0 || top > 0);
+            seen += n > 20;
+        }
+        assert_true(seen >= 3);
+    }
 }
 
 static int same_solid(const ted4_ray_object *a, const ted4_ray_object *b)
@@ -494,6 +524,7 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_hide),  cmocka_unit_test(test_blink),   cmocka_unit_test(test_change),
+        cmocka_unit_test(test_edge),
         cmocka_unit_test(test_held_times), cmocka_unit_test(test_fast), cmocka_unit_test(test_split),
         cmocka_unit_test(test_tints), cmocka_unit_test(test_flicker), cmocka_unit_test(test_bare),
         cmocka_unit_test(test_wires), cmocka_unit_test(test_empty),   cmocka_unit_test(test_things),

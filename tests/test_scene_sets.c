@@ -40,7 +40,7 @@ static const struct { const char *name; int n_train, n_test, n_frames, held; } s
     { "tints", 6, 2, 16, 2 },   { "flicker", 6, 2, 16, 0 }, { "bare", 6, 2, 16, 2 },    { "far", 6, 2, 16, 2 },
     { "wide", 6, 2, 16, 2 },    { "pair", 2, 1, 16, 2 },    { "long", 3, 1, 600, 75 },  { "wires", 6, 2, 16, 2 },
     { "shaken", 6, 2, 16, 2 },  { "change", 6, 2, 16, 2 },  { "empty", 6, 2, 16, 2 },   { "moment", 8, 2, 1, 0 },
-    { "alone", 1, 1, 24, 3 },   { "things0", 6, 2, 16, 2 }, { "things1", 6, 2, 16, 2 }, { "things2", 6, 2, 16, 2 },
+    { "alone", 1, 1, 24, 3 },   { "edge", 6, 2, 16, 2 },    { "things0", 6, 2, 16, 2 }, { "things1", 6, 2, 16, 2 }, { "things2", 6, 2, 16, 2 },
     { "things4", 6, 2, 16, 2 }, { "things8", 6, 2, 16, 2 }, { "rest", 6, 2, 32, 4 },
 };
 

@@ -75,6 +75,19 @@ static void blink(ted4_ray_world *w, int frame, int n_frames)
         add_box(w, .34f, v3(-.62f, .45f, .34f), 0.07);
 }
 
+/* The times of blink, but where a small move takes what is not there out of every picture. */
+static void edge(ted4_ray_world *w, int frame, int n_frames)
+{
+    const int part = 16 * frame / n_frames;
+
+    if (part >= 6 && part < 10)
+        add_ball(w, .42f, v3(-1, -.3f, 2.15f), RAY_DOTS);
+    if (part >= 8 && part < 11)
+        add_box(w, .36f, v3(.1f, -.35f, 2.2f), 0.07);
+    if (part < 2 || part == 7 || part == 8 || part >= 14)
+        add_box(w, .34f, v3(1, -.45f, 2.2f), 0.07);
+}
+
 /* Place on a way there and back of n steps each. */
 static int there_and_back(int frame, int n)
 {
@@ -254,6 +267,9 @@ void ted4_ray_lab_at(ted4_ray_world *w, ted4_ray_scene s, int frame, int n_frame
         break;
     case RAY_BLINK:
         blink(w, frame, n_frames);
+        break;
+    case RAY_EDGE:
+        edge(w, frame, n_frames);
         break;
     case RAY_FAST:
         fast(w, frame);

@@ -40,6 +40,7 @@ static const ted4_ray_plan plans[RAY_SCENES] = {
     [RAY_MOMENT] = { "moment", "turn, one time only", SMALL, .n_train = 8, .n_test = 2, .n_frames = 1, .scale = 1 },
     [RAY_ALONE] = { "alone", "turn, one camera only", SMALL, .n_train = 1, .n_test = 1, .n_frames = 24, .hold = 8,
                     .scale = 1 },
+    [RAY_EDGE] = { "edge", "things pop in and out at the upper edge of all pictures", LAB, .hold = 8, .scale = 1 },
 
     [RAY_THINGS0] = { "things0", "eight things, none moves", LAB, .hold = 8, .scale = 1 },
     [RAY_THINGS1] = { "things1", "eight things, one moves", LAB, .hold = 8, .scale = 1 },
