@@ -19,7 +19,7 @@ static void draw(float *x, size_t n, uint64_t key, float scale)
         x[i] = scale * (2.0f * ted4_uniform(key, i) - 1.0f);
 }
 
-/* The grid of b bits: 2^b steps up to the largest power of two above the largest value. */
+/* The grid of b bits: 2^b steps up to the next power of two. */
 static void test_rounds(void **state)
 {
     (void)state;
@@ -32,7 +32,7 @@ static void test_rounds(void **state)
         for (int i = 0; i < N; i++)
             most = fmaxf(most, fabsf(was[i]));
 
-        const float step = ldexpf(1.0f, ilogbf(most) + 1 - bits);
+        const float step = ldexpf(1.0f, (int)ceilf(log2f(most)) - bits);
 
         for (int i = 0; i < N; i++) {
             const float steps = x[i] / step;
@@ -53,10 +53,14 @@ static void test_stays(void **state)
     memcpy(once, x, sizeof x);
     ted4_grid_round(x, N, TED4_GRID_FULL(TED4_GRID_HEADS));
     assert_memory_equal(x, once, sizeof x);
-    ted4_grid_round(x, N, 6);
-    memcpy(once, x, sizeof x);
-    ted4_grid_round(x, N, 6);
-    assert_memory_equal(x, once, sizeof x);
+    for (int bits = 1; bits < 12; bits++)
+        for (int k = 0; k < 40; k++) {
+            draw(x, N, 7, 0.9f + 0.01f * (float)k);     /* the largest goes up to a power of two, or down to one, or neither */
+            ted4_grid_round(x, N, bits);
+            memcpy(once, x, sizeof x);
+            ted4_grid_round(x, N, bits);
+            assert_memory_equal(x, once, sizeof x);
+        }
     ted4_grid_round(tiny, 2, 4);
     assert_true(tiny[0] == 0x1p-100f && tiny[1] == -0x1p-149f);
     ted4_grid_round(none, 3, 4);

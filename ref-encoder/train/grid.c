@@ -13,7 +13,9 @@ void ted4_grid_round(float *x, size_t n, int bits)
     if (bits >= TED4_GRID_FULL(TED4_GRID_HEADS) || !(most > 0x1p-64f))
         return;
 
-    const float step = ldexpf(1.0f, ilogbf(most) + 1 - bits), inverse = 1.0f / step;
+    int         e;
+    const float fraction = frexpf(most, &e);    /* in [1/2, 1) */
+    const float step = ldexpf(1.0f, (fraction > 0.5f ? e : e - 1) - bits), inverse = 1.0f / step;
 
     for (size_t i = 0; i < n; i++)
         x[i] = rintf(x[i] * inverse) * step;
