@@ -8,7 +8,6 @@
 #include <cmocka.h>
 #include <math.h>
 
-#include "ball_trainer.h"
 #include "tiny_scene.h"
 #include "train/colour_match.h"
 #include "train/random.h"
@@ -147,29 +146,6 @@ static void test_found(void **state)
     }
 }
 
-/* Training does not carry away what was found. */
-static void test_kept(void **state)
-{
-    const ted4_dataset_options d_options = { 1, 0, 3, 1 << 20, 0 };
-    ted4_train_options o = ball_options();
-    ted4_trainer t;
-    ted4_dataset d;
-    ted4_message m;
-    tiny_folder  f = tiny_new();
-
-    (void)state;
-    write_scene(&f, 600, 0.15, 1);
-    if (ted4_dataset_load(&d, f.path, &d_options, &m) != 0)
-        fail_msg("%s", m.text);
-    ball_begin(&t, &o, &d, NULL);
-    assert_int_equal(t.colour.matched, 1);
-    ball_train(&t, 300);
-    assert_true(worst(&t.colour) < 0.01f);          /* 0.0066; 0.020 at the full rate */
-    ted4_trainer_finish(&t);
-    ted4_dataset_free(&d);
-    tiny_free(&f);
-}
-
 static void check_alone(int n_points, float tint)
 {
     ted4_trainer t;
@@ -201,7 +177,7 @@ static void test_no_tint(void **state)
 
 int main(void)
 {
-    const struct CMUnitTest tests[] = { cmocka_unit_test(test_found), cmocka_unit_test(test_kept), cmocka_unit_test(test_few_points), cmocka_unit_test(test_no_tint) };
+    const struct CMUnitTest tests[] = { cmocka_unit_test(test_found), cmocka_unit_test(test_few_points), cmocka_unit_test(test_no_tint) };
 
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -184,10 +184,6 @@ const uint8_t *ted4_trainer_seen(ted4_trainer *t, size_t item)
                ? ted4_colour_undo(&t->colour, pic->camera_id, truth, pixels, t->parallel) : truth;
 }
 
-/* Maps that were known before training have hardly any way to go: at the full rate they would follow single pictures, and the scene them. Measured on tinted
- * cameras: 0.17 dB, the same from 0.02 to 0.1. */
-#define REFINE 0.1
-
 /* Distortion of t->image against truth; its gradient is in t->d_image, and the camera's colours have made their step. As ted4_loss. */
 static double distortion(ted4_trainer *t, const ted4_picture *pic, const ted4_view *v,
                          const uint8_t *truth, double *l1, double *ssim)
@@ -203,7 +199,7 @@ static double distortion(ted4_trainer *t, const ted4_picture *pic, const ted4_vi
     ted4_colour_backward(&t->colour, pic->camera_id, t->image, pixels, t->parallel, t->d_image,
                          gradient);
     t->watch.norm[TED4_TERM_COLOUR] = ted4_gradients_norm(gradient, TED4_COLOUR_VALUES);
-    ted4_colour_update(&t->colour, pic->camera_id, gradient, t->opt.lr_colour * (t->colour.matched ? REFINE : 1.0) * t->watch.state.factor,
+    ted4_colour_update(&t->colour, pic->camera_id, gradient, t->opt.lr_colour * t->watch.state.factor,
                        t->opt.colour_weight);
     return loss;
 }
