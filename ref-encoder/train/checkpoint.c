@@ -13,7 +13,7 @@
 #include "write/coder_count.h"
 
 #define MAGIC 0x34444554u       /* "TED4" */
-enum { FORMAT = 7 };
+enum { FORMAT = 6 };
 
 /* One walk for both directions: put() writes or reads the bytes at p. whole: with the watch's last good state. */
 typedef struct {
@@ -278,7 +278,6 @@ static void walk_colour(stream *s, ted4_trainer *t)
     put(s, c->value, c->n_cameras * sizeof *c->value);
     put(s, c->m, c->n_cameras * sizeof *c->m);
     put(s, c->v, c->n_cameras * sizeof *c->v);
-    put(s, c->middle, sizeof c->middle);
 }
 
 static void walk(stream *s, ted4_trainer *t)

@@ -303,18 +303,12 @@ static double middle(ted4_colour *c, int k)
 void ted4_colour_centre(ted4_colour *c)
 {
     for (int k = 0; k < N; k++) {
-        const float off = (float)middle(c, k) - c->middle[k];
+        const float off = (float)middle(c, k);
 
         for (size_t i = 0; i < c->n_cameras; i++)
             if (c->corrected[i])
                 c->value[i][k] -= off;
     }
-}
-
-void ted4_colour_stay(ted4_colour *c)
-{
-    for (int k = 0; k < N; k++)
-        c->middle[k] = (float)middle(c, k);
 }
 
 void ted4_colour_update(ted4_colour *c, uint32_t camera, const ted4_colour_map gradient,

@@ -23,8 +23,6 @@ enum { ROUNDS = 8 };
 #define FEWEST 100.0
 /* Where cameras differ by less than this, of 255, it may be the noise of the fit (measured: 0.2 to 1 where no camera has a tint), and training is left alone. */
 #define ALIKE 2.0
-/* Correlation, by channel, above which points have the colours that cameras see. */
-#define ALIKE_POINTS 0.6
 /* Pull towards the identity, as a share of the weights: noise of a few of 255, squared. */
 #define RIDGE 1e-4
 
@@ -315,49 +313,6 @@ static int differ(const match *m)
     return n > 0 && sqrt(sum / n) >= ALIKE / 255.0;
 }
 
-/* Of channel c, over the points that two cameras see: mean colour as points have it over mean colour as cameras see it. 0 where the two have little to do with
- * each other. Means, and not a robust fit: where a point lies a little off its surface it has a neighbour's colour, which is wrong for the point, but right on
- * average. */
-static double level(const match *m, size_t c)
-{
-    double n = 0, x = 0, y = 0, xx = 0, yy = 0, xy = 0;
-
-    for (size_t i = 0; i < m->n; i++) {
-        const double seen = (double)m->point[3 * i + c], told = m->t->data->point_rgb[3 * i * m->stride + c] / 255.0;
-
-        if (!m->shared[i])
-            continue;
-        n++;
-        x += seen;
-        y += told;
-        xx += seen * seen;
-        yy += told * told;
-        xy += seen * told;
-    }
-
-    const double both = n * xy - x * y, spread = (n * xx - x * x) * (n * yy - y * y);
-
-    return n >= FEWEST && x > 0 && both > 0 && both * both > ALIKE_POINTS * ALIKE_POINTS * spread ? y / x : 0;
-}
-
-/* The scene's colours c become c' = c g, by channel: c (I + A) = c' (I / g) (I + A). */
-static void take_level(match *m)
-{
-    ted4_colour *colour = &m->t->colour;
-    double       g[3];
-
-    for (size_t c = 0; c < 3; c++)
-        if (!((g[c] = level(m, c)) > 0))
-            return;
-    for (size_t k = 0; k < m->cameras; k++)
-        for (int i = 0; i < 9 && colour->corrected[k]; i++) {
-            const double one = i % 4 == 0 ? 1 : 0;
-
-            colour->value[k][i] = (float)(((double)colour->value[k][i] + one) / g[i / 3] - one);
-        }
-    ted4_colour_stay(colour);
-}
-
 static int work(match *m)
 {
     ted4_colour *colour = &m->t->colour;
@@ -375,9 +330,7 @@ static int work(match *m)
     for (int i = 0; i < ROUNDS && !bad; i++)
         one_round(m, back, WIDEST / 255.0 * pow(NARROWEST / WIDEST, i / (ROUNDS - 1.0)));
     colour->matched = !bad && differ(m);
-    if (colour->matched)
-        take_level(m);
-    else
+    if (!colour->matched)
         memset(colour->value, 0, m->cameras * sizeof *colour->value);
     free(back);
     free(m->seen);
