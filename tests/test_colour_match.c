@@ -1,5 +1,5 @@
 /* test_colour_match.c - train/colour_match.h: maps of cameras are found from the initial points alone, also where a third of what each camera sees is in the way
- * of the points; and what is not enough to tell leaves the identity.
+ * of the points; what all cameras have in common, from the points' own colours, if these agree with the pictures; and what is not enough to tell leaves the identity.
  * SPDX-License-Identifier: BSD-2-Clause */
 #include <setjmp.h>
 #include <stdarg.h>
@@ -64,19 +64,27 @@ static void picture(const tiny_folder *f, const char *name, int k, int frame, do
     tiny_png(f, name, W, H, PNG_FORMAT_RGB, px);
 }
 
-static void points(const tiny_folder *f, int n)
+/* Colours that come with the points: gain times what the plane shows, by channel; NULL: nearly black. */
+static void points(const tiny_folder *f, int n, const double *gain)
 {
     static tiny_string s;
 
     s.n = 0;
     tiny_add(&s, "ply\nformat ascii 1.0\nelement vertex %d\nproperty float x\nproperty float y\nproperty float z\n"
                  "property uchar red\nproperty uchar green\nproperty uchar blue\nend_header\n", n);
-    for (uint64_t i = 0; i < (uint64_t)n; i++)
-        tiny_add(&s, "%.4f %.4f 0 9 9 9\n", 2.4 * (double)ted4_uniform(7, 2 * i) - 1.2, 1.8 * (double)ted4_uniform(7, 2 * i + 1) - 0.9);
+    for (uint64_t i = 0; i < (uint64_t)n; i++) {
+        const double x = 2.4 * (double)ted4_uniform(7, 2 * i) - 1.2, y = 1.8 * (double)ted4_uniform(7, 2 * i + 1) - 0.9;
+        double       rgb[3];
+
+        painted(x, y, rgb);
+        for (int c = 0; c < 3; c++)
+            rgb[c] = gain != NULL ? 255 * gain[c] * rgb[c] : 9;
+        tiny_add(&s, "%.4f %.4f 0 %.0f %.0f %.0f\n", x, y, rgb[0], rgb[1], rgb[2]);
+    }
     tiny_text(f, "points.ply", s.text);
 }
 
-static void write_scene(const tiny_folder *f, int n_points, double hidden, float tint)
+static void write_scene(const tiny_folder *f, int n_points, const double *gain, double hidden, float tint)
 {
     static tiny_string s;
 
@@ -93,28 +101,31 @@ static void write_scene(const tiny_folder *f, int n_points, double hidden, float
     }
     tiny_add(&s, "]}");
     tiny_text(f, "transforms.json", s.text);
-    points(f, n_points);
+    points(f, n_points, gain);
 }
 
-/* Largest difference of a map's value from the true one. */
-static float worst(const ted4_colour *c)
+/* Largest difference of a map's value from the true one, for a scene that shows gain times these colours. */
+static float worst(const ted4_colour *c, const double *gain)
 {
     float most = 0;
 
     for (int k = 0; k < CAMERAS; k++)
-        for (int i = 0; i < N; i++)
-            most = fmaxf(most, fabsf(c->value[k][i] - truth(k, i, 1)));
+        for (int i = 0; i < N; i++) {
+            const float one = i < 9 && i % 4 == 0, of = i < 9 ? (float)gain[i / 3] : 1.0f;
+
+            most = fmaxf(most, fabsf(c->value[k][i] - ((one + truth(k, i, 1)) / of - one)));
+        }
     return most;
 }
 
 /* The trainer's colours after the match. */
-static void matched(int n_points, double hidden, float tint, ted4_trainer *t, ted4_dataset *d, tiny_folder *f)
+static void matched(int n_points, const double *gain, double hidden, float tint, ted4_trainer *t, ted4_dataset *d, tiny_folder *f)
 {
     const ted4_dataset_options o = { 1, 0, 3, 1 << 20, 0 };
     ted4_message m;
 
     *f = tiny_new();
-    write_scene(f, n_points, hidden, tint);
+    write_scene(f, n_points, gain, hidden, tint);
     if (ted4_dataset_load(d, f->path, &o, &m) != 0)
         fail_msg("%s", m.text);
     assert_int_equal(d->n_cameras, CAMERAS);
@@ -124,6 +135,8 @@ static void matched(int n_points, double hidden, float tint, ted4_trainer *t, te
     assert_int_equal(ted4_colour_init(&t->colour, d), 0);
     assert_int_equal(ted4_colour_match(t), 0);
 }
+
+static const double none[3] = { 1, 1, 1 };
 
 static void test_found(void **state)
 {
@@ -137,9 +150,52 @@ static void test_found(void **state)
         ted4_dataset d;
         tiny_folder  f;
 
-        matched(600, hidden[i], 1, &t, &d, &f);
+        matched(600, NULL, hidden[i], 1, &t, &d, &f);
         assert_int_equal(t.colour.matched, 1);
-        assert_true(worst(&t.colour) < bound[i]);
+        assert_true(worst(&t.colour, none) < bound[i]);
+        ted4_colour_finish(&t.colour);
+        ted4_dataset_free(&d);
+        tiny_free(&f);
+    }
+}
+
+/* Points know that the middle of all cameras is too dark in red and too bright in green; training keeps to it. */
+static void test_gauge(void **state)
+{
+    static const double gain[3] = { 1.05, 0.96, 1.0 };
+    ted4_trainer        t;
+    ted4_dataset        d;
+    tiny_folder         f;
+
+    (void)state;
+    matched(600, gain, 0.15, 1, &t, &d, &f);
+    assert_int_equal(t.colour.matched, 1);
+    /* Measured: 0.0050. */
+    assert_true(worst(&t.colour, gain) < 0.01f);
+    for (int k = 0; k < CAMERAS; k++)
+        t.colour.value[k][4] += 0.3f;
+    ted4_colour_centre(&t.colour);
+    assert_true(worst(&t.colour, gain) < 0.01f);
+    ted4_colour_finish(&t.colour);
+    ted4_dataset_free(&d);
+    tiny_free(&f);
+}
+
+/* Points with colours of another kind, and with hardly any that agrees, say nothing. */
+static void test_other_colours(void **state)
+{
+    static const double gain[2][3] = { { 0.72, 0.72, 0.72 }, { 0.4, 1.2, 0.7 } };
+
+    (void)state;
+    for (int i = 0; i < 2; i++) {
+        ted4_trainer t;
+        ted4_dataset d;
+        tiny_folder  f;
+
+        matched(600, gain[i], 0, 1, &t, &d, &f);
+        assert_true(worst(&t.colour, none) < 0.005f);
+        for (int k = 0; k < N; k++)
+            assert_true(t.colour.middle[k] == 0.0f);
         ted4_colour_finish(&t.colour);
         ted4_dataset_free(&d);
         tiny_free(&f);
@@ -152,7 +208,7 @@ static void check_alone(int n_points, float tint)
     ted4_dataset d;
     tiny_folder  f;
 
-    matched(n_points, 0, tint, &t, &d, &f);
+    matched(n_points, NULL, 0, tint, &t, &d, &f);
     assert_int_equal(t.colour.matched, 0);
     for (int k = 0; k < CAMERAS; k++)
         for (int i = 0; i < N; i++)
@@ -177,7 +233,8 @@ static void test_no_tint(void **state)
 
 int main(void)
 {
-    const struct CMUnitTest tests[] = { cmocka_unit_test(test_found), cmocka_unit_test(test_few_points), cmocka_unit_test(test_no_tint) };
+    const struct CMUnitTest tests[] = { cmocka_unit_test(test_found), cmocka_unit_test(test_gauge), cmocka_unit_test(test_other_colours),
+                                        cmocka_unit_test(test_few_points), cmocka_unit_test(test_no_tint) };
 
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -30,6 +30,8 @@ expect valid_meta "$("$TED4_BUILD/ted4info" "$out/told.ted4" --validate | grep -
 taken=$(grep -c '"event":"capacity".*"taken":true' "$out/told.jsonl")
 expect taken "$("$TED4_BUILD/ted4info" "$out/told.ted4" --why | grep -c ': taken; ')" "$taken"
 
+expect moving "$("$TED4_BUILD/ted4info" "$out/told.ted4" --why | grep -c '^capacity.moving=[0-9]* of [0-9]* anchors: ')" 1
+
 # A run that goes on after its decisions tells them once, too.
 cp "$out/told.ted4" "$out/first.ted4"
 encode told --why --log "$out/told.jsonl" --checkpoint "$out/told.checkpoint" --resume -f

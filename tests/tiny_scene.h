@@ -126,7 +126,7 @@ static inline void tiny_picture(const tiny_folder *f, const char *name, int w, i
 }
 
 /* Growing text. */
-typedef struct { char text[16384]; size_t n; } tiny_string;
+typedef struct { char text[32768]; size_t n; } tiny_string;
 
 static inline void tiny_add(tiny_string *s, const char *format, ...)
 {

@@ -162,15 +162,6 @@ static estimate estimate_bytes(const ted4_trainer *t)
     return e;
 }
 
-static size_t count_moving(const ted4_trainer *t)
-{
-    size_t n = 0;
-
-    for (size_t i = 0; i < t->anchors.n; i++)
-        n += ted4_is_dynamic(t, i) != 0;
-    return n;
-}
-
 enum { TERMS_TEXT = TED4_TERMS * 26, MOST_LINE = 1200 + 2 * TERMS_TEXT };
 
 /* What a line tells beyond the trainer's own numbers. */
@@ -209,7 +200,7 @@ static int print_line(char *line, size_t size, const ted4_run_log *l, const ted4
                     "\"skipped\":%llu,\"clamped\":%zu,\"gradients\":{%s},\"peaks\":{%s},\"rollbacks\":%llu,"
                     "\"ms\":%.3f,\"cpu_ms\":%.3f,\"gaussian_pixels_per_s\":%.4g,\"seconds\":%.2f," CPU_SECONDS "%.2f}\n",
                     (unsigned long long)t->iteration, f->stage, t->opt.lambda, p->loss, p->l1, p->ssim, l->psnr, t->anchors.n,
-                    count_moving(t), p->splats, f->bytes.sum, f->bytes.positions, f->bytes.masks, y[TED4_FEATURE], y[TED4_SCALING],
+                    ted4_count_dynamic(t), p->splats, f->bytes.sum, f->bytes.positions, f->bytes.masks, y[TED4_FEATURE], y[TED4_SCALING],
                     y[TED4_OFFSET], y[TED4_PHI], y[TED4_TAU], f->bytes.networks, b[TED4_FEATURE], b[TED4_SCALING], b[TED4_OFFSET],
                     b[TED4_PHI], b[TED4_TAU], (unsigned long long)ted4_raster_skipped(t->raster), ted4_clamped(t),
                     print_terms(gradients, sizeof gradients, usual), print_terms(peaks, sizeof peaks, peak),

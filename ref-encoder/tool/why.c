@@ -7,6 +7,7 @@
 
 #include "data/flicker.h"
 #include "train/capacity.h"
+#include "train/make_scene.h"
 
 static void put_time(FILE *f, const ted4_trainer *t)
 {
@@ -23,6 +24,13 @@ static void put_light(FILE *f, const ted4_trainer *t)
 
     if (flicker >= TED4_FLICKER_SEEN)
         fprintf(f, "capacity.light=flickers by %.1f levels; trained with a bank of %d rows for %u times\n", flicker, t->opt.bank_rows, t->data->n_frames);
+}
+
+/* Which anchors move no trial decides, but training itself, with the same weight of a bit. */
+static void put_moving(FILE *f, const ted4_trainer *t)
+{
+    if (t->opt.capacity && t->layout.head.motion != TED4_MOTION_NONE && t->layout.head.temporal_mask)
+        fprintf(f, "capacity.moving=%zu of %zu anchors: masks learn in every step whether motion is worth its bits\n", ted4_count_dynamic(t), t->anchors.n);
 }
 
 static void put_trial(FILE *f, size_t number, const struct ted4_trial *x)
@@ -47,6 +55,7 @@ char *ted4_why_text(const ted4_trainer *t)
     fprintf(f, "capacity=%s; lambda %.7g\n", t->opt.capacity ? "auto" : "fixed", t->opt.lambda);
     put_time(f, t);
     put_light(f, t);
+    put_moving(f, t);
     for (size_t i = 0; i < t->n_trials; i++)
         put_trial(f, i + 1, &t->trial[i]);
     if (fclose(f) == 0)

@@ -107,7 +107,8 @@ static int take_if_cheaper(search *s, ted4_move m)
     return bad ? -1 : taken;
 }
 
-/* Half of what all Gaussians are made from is never free, and weights are not the better for having few bits where none would cost more than many. */
+/* Half of what all Gaussians are made from is never free; and few bits of a weight may cost less than all of them, but more than some in between, which a bold
+ * step would pass over. */
 static int may_be_bold(ted4_move m)
 {
     return m != TED4_MOVE_HEADS && m != TED4_MOVE_FEATURE && m != TED4_MOVE_OFFSETS && m != TED4_MOVE_HEAD_BITS && m != TED4_MOVE_MOTION_BITS;

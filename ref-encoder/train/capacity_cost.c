@@ -9,8 +9,8 @@
 #include "make_scene.h"
 #include "write/encode.h"
 
-/* Training pictures that judge: one a frame, within these bounds; and what drawing one takes, and making the file, in training steps, as measured on small
- * scenes. */
+/* Training pictures that judge: one a frame, within these bounds; and what drawing one takes, and making the file, in training steps, as measured on
+ * kitchen at a quarter of its size. */
 enum { LEAST_PICTURES = 16, MOST_PICTURES = 24 };
 #define STEPS_A_PICTURE 0.4
 #define STEPS_A_FILE    4.0

@@ -242,8 +242,7 @@ static void walk_capacity(stream *s, ted4_trainer *t)
 
     if (!s->writing) {
         t->decided = 0;
-        for (int i = 0; i < TED4_GRIDS; i++)
-            t->bits[i] = TED4_GRID_FULL(i);
+        ted4_grid_full(t->bits);
     }
     if (t->stage2 && t->opt.capacity) {
         put(s, &t->charged, sizeof t->charged);

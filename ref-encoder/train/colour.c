@@ -285,7 +285,7 @@ static int compare(const void *x, const void *y)
 }
 
 /* Mean of value k over the cameras between the outer quarters. */
-static double middle(ted4_colour *c, int k)
+static double middle_of(ted4_colour *c, int k)
 {
     const size_t out = c->n_corrected / 4;
     size_t       n = 0;
@@ -303,12 +303,25 @@ static double middle(ted4_colour *c, int k)
 void ted4_colour_centre(ted4_colour *c)
 {
     for (int k = 0; k < N; k++) {
-        const float off = (float)middle(c, k);
+        const float off = (float)middle_of(c, k) - c->middle[k];
 
         for (size_t i = 0; i < c->n_cameras; i++)
             if (c->corrected[i])
                 c->value[i][k] -= off;
     }
+}
+
+/* (I + A') = diag(1 / gain) (I + A). */
+void ted4_colour_regauge(ted4_colour *c, const double *gain)
+{
+    for (size_t i = 0; i < c->n_cameras; i++)
+        for (int k = 0; k < ROW_V && c->corrected[i]; k++) {
+            const double one = k % 4 == 0;
+
+            c->value[i][k] = (float)((one + (double)c->value[i][k]) / gain[k / 3] - one);
+        }
+    for (int k = 0; k < N; k++)
+        c->middle[k] = (float)middle_of(c, k);
 }
 
 void ted4_colour_update(ted4_colour *c, uint32_t camera, const ted4_colour_map gradient,

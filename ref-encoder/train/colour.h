@@ -18,8 +18,8 @@ enum { TED4_COLOUR_VALUES = 12 };
 typedef float ted4_colour_map[TED4_COLOUR_VALUES];
 
 /* A scene's colours and all cameras' maps could change together without changing any picture; a view from elsewhere gets no correction. So the maps of the
- * corrected cameras always have the identity as their middle: of each value the mean of that half of the cameras that lies between the outer quarters, so
- * that a camera far off the others does not pull the scene along. */
+ * corrected cameras always have the same middle, which is the identity unless initial points know better (colour_match.h): of each value the mean of that half
+ * of the cameras that lies between the outer quarters, so that a camera far off the others does not pull the scene along. */
 typedef struct {
     size_t           n_cameras;     /* of the dataset; 0: nothing is corrected, and no memory held */
     size_t           n_corrected;   /* cameras with a correction: 0, or at least 2 */
@@ -27,6 +27,7 @@ typedef struct {
     uint8_t         *corrected;     /* owned, [n_cameras] 0 or 1 */
     uint64_t        *steps;         /* owned, [n_cameras] steps of Adam */
     ted4_colour_map *value, *m, *v; /* owned, [n_cameras]; m, v: Adam's moments */
+    ted4_colour_map  middle;        /* of all maps, always */
     float           *image;         /* owned: the corrected picture, planar, of the largest picture */
     uint8_t         *seen;          /* owned: a picture in the scene's colours, interleaved */
     double          *sums;          /* owned: gradients by bands of pixels */
@@ -38,8 +39,11 @@ typedef struct {
 int  ted4_colour_init(ted4_colour *c, const ted4_dataset *d);
 void ted4_colour_finish(ted4_colour *c);
 
-/* Brings the middle of all maps back to the identity. */
+/* Brings the middle of all maps back to c->middle. */
 void ted4_colour_centre(ted4_colour *c);
+
+/* What the scene shows as colour x is gain times x, by channel, from now on; pictures of corrected cameras stay as they are. gain [3]: above 0. */
+void ted4_colour_regauge(ted4_colour *c, const double *gain);
 
 /* (I + A)^-1 of a map, by rows. -1: it can hardly be turned round, and noise would take over. */
 int  ted4_colour_invert(const float *map, double inverse[9]);
@@ -47,7 +51,7 @@ int  ted4_colour_invert(const float *map, double inverse[9]);
 /* Is this camera corrected? */
 int  ted4_colour_has(const ted4_colour *c, uint32_t camera);
 
-/* Are all maps? */
+/* Are all maps, and their middle? */
 int ted4_colour_finite(const ted4_colour *c);
 
 /* The corrected picture, planar [3][pixels] as image; valid until the next call. */

@@ -25,6 +25,8 @@ enum { ROUNDS = 8 };
 #define ALIKE 2.0
 /* Pull towards the identity, as a share of the weights: noise of a few of 255, squared. */
 #define RIDGE 1e-4
+/* Initial points that are brighter or darker than this were not given the colours of pictures, but albedo, say, or linear light. */
+#define MOST_GAIN 1.25
 
 typedef struct {
     ted4_trainer *t;
@@ -276,9 +278,10 @@ static void fit(const match *m, size_t camera, double width)
             map[3 * r + c] = (float)s.right[r][c];
 }
 
-static void one_round(match *m, undo *back, double width)
+/* Colours of points with the maps as they are. */
+static void look_back(match *m, undo *back)
 {
-    ted4_colour *colour = &m->t->colour;
+    const ted4_colour *colour = &m->t->colour;
 
     for (size_t k = 0; k < m->cameras; k++) {
         back[k].usable = ted4_colour_has(colour, (uint32_t)k) &&
@@ -287,10 +290,67 @@ static void one_round(match *m, undo *back, double width)
             back[k].v[c] = (double)colour->value[k][9 + c];
     }
     find_points(m, back);
+}
+
+static void one_round(match *m, undo *back, double width)
+{
+    look_back(m, back);
     for (size_t k = 0; k < m->cameras; k++)
         if (back[k].usable)
             fit(m, k, width);
-    ted4_colour_centre(colour);
+    ted4_colour_centre(&m->t->colour);
+}
+
+/* ---- what all have in common ---- */
+
+/* Sums, over points where both agree but for gain, of the colours that came with the points and of what cameras see there, by channel; and of their weights. */
+typedef struct {
+    double given[3], seen[3], weight;
+} levels;
+
+static levels add_levels(const match *m, const double *gain, double width)
+{
+    levels s = { { 0 }, { 0 }, 0 };
+
+    for (size_t i = 0; i < m->n; i++) {
+        const uint8_t *given = m->t->data->point_rgb + 3 * i * m->stride;
+        double         off = 0;
+
+        if (!m->shared[i])
+            continue;
+        for (size_t c = 0; c < 3; c++) {
+            const double e = gain[c] * (double)m->point[3 * i + c] - given[c] / 255.0;
+
+            off += e * e / 3.0;
+        }
+        const double near = 1.0 - off / (width * width), w = near > 0 ? near * near : 0.0;
+
+        s.weight += w;
+        for (size_t c = 0; c < 3; c++) {
+            s.given[c] += w * given[c] / 255.0;
+            s.seen[c] += w * (double)m->point[3 * i + c];
+        }
+    }
+    return s;
+}
+
+/* Cameras alone cannot tell what the middle of them does to colours; initial points may have been given colours that do. Both sides are noisy, so that
+ * levels are compared, and no line is fitted, which would lie too flat. Nothing changes where hardly a point agrees, or colours mean something else. */
+static void find_gauge(match *m, undo *back)
+{
+    double gain[3] = { 1, 1, 1 };
+
+    look_back(m, back);
+    for (int i = 0; i < 2 * ROUNDS; i++) {
+        const levels s = add_levels(m, gain, WIDEST / 255.0 * pow(NARROWEST / WIDEST, fmin(i / (ROUNDS - 1.0), 1)));
+
+        for (int c = 0; c < 3; c++) {
+            gain[c] = s.given[c] / s.seen[c];
+            if (s.weight < FEWEST || !(gain[c] < MOST_GAIN && gain[c] > 1.0 / MOST_GAIN))
+                return;
+        }
+    }
+    ted4_colour_regauge(&m->t->colour, gain);
 }
 
 /* Do cameras differ more than the fit is wrong? Mean over cameras and points of what their maps change. */
@@ -330,7 +390,9 @@ static int work(match *m)
     for (int i = 0; i < ROUNDS && !bad; i++)
         one_round(m, back, WIDEST / 255.0 * pow(NARROWEST / WIDEST, i / (ROUNDS - 1.0)));
     colour->matched = !bad && differ(m);
-    if (!colour->matched)
+    if (colour->matched)
+        find_gauge(m, back);
+    else
         memset(colour->value, 0, m->cameras * sizeof *colour->value);
     free(back);
     free(m->seen);

@@ -4,6 +4,12 @@
 
 #include <math.h>
 
+void ted4_grid_full(int *bits)
+{
+    for (int i = 0; i < TED4_GRIDS; i++)
+        bits[i] = TED4_GRID_FULL(i);
+}
+
 void ted4_grid_round(float *x, size_t n, int bits)
 {
     float most = 0;

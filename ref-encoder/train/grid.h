@@ -15,6 +15,8 @@ typedef enum { TED4_GRID_HEADS, TED4_GRID_MOTION, TED4_GRID_BANK, TED4_GRID_PRIO
 /* As fine as binary32, and as any shift, is: nothing is changed. */
 #define TED4_GRID_FULL(grid) ((grid) == TED4_GRID_PRIOR ? TED4_MAX_SHIFT : 24)
 
+/* All bits of everything: bits [TED4_GRIDS]. */
+void ted4_grid_full(int *bits);
 /* To multiples of 2^(e - bits), 2^e the smallest power of two that no |x| is above; halves to even. What was rounded stays where it is if it is rounded again. */
 void ted4_grid_round(float *x, size_t n, int bits);
 /* The networks of reconstruction, netr[n_netr], and the bank, bank[n_bank], of this shape: each unit, and the biases of each layer, on a grid of their own.

@@ -38,6 +38,15 @@ int ted4_is_dynamic(const ted4_trainer *t, size_t i)
             mask_on(*ted4_cell(&t->anchors, TED4_ROW_VALUE, i, t->layout.temporal_logit)));
 }
 
+size_t ted4_count_dynamic(const ted4_trainer *t)
+{
+    size_t n = 0;
+
+    for (size_t i = 0; i < t->anchors.n; i++)
+        n += ted4_is_dynamic(t, i) != 0;
+    return n;
+}
+
 static int16_t round_symbol(float value, float q)
 {
     const float k = rintf(value / q);

@@ -12,5 +12,7 @@ int ted4_make_scene(ted4_trainer *t, ted4_scene **scene);
 
 /* Would the file say that anchor i moves? */
 int ted4_is_dynamic(const ted4_trainer *t, size_t i);
+/* Of how many? */
+size_t ted4_count_dynamic(const ted4_trainer *t);
 
 #endif

@@ -88,8 +88,7 @@ static int begin(ted4_trainer *t, const ted4_header *h)
 {
     ted4_layout_make(&t->layout, h);
     t->charged = t->layout.head;
-    for (int i = 0; i < TED4_GRIDS; i++)
-        t->bits[i] = TED4_GRID_FULL(i);
+    ted4_grid_full(t->bits);
     t->watch.state.factor = 1;
     if (ted4_trainer_rebuild(t) != 0 || make_order(t) != 0 || make_images(t) != 0)
         return -1;
