@@ -25,6 +25,7 @@ END {
     kept_section()
     precision_section()
     seed_section()
+    seeded_section()
     log_section()
     sheet_section()
     command_section()

@@ -227,5 +227,5 @@ function variant_bar(s, v, what, limit,    c, rate, ok, how) {
         ok = (c["psnr"] != "" ? c["psnr"] : c["near_psnr"]) <= -1
     bar(1, s ": " what, limit, "`" own_options(runs[s, v, 1]) "`: rate at equal PSNR " signed(rate, 1, " %") ", PSNR at equal bytes " \
         signed(c["psnr"], 2, " dB") "; nearest " near_words(c) mark_of(tags_of(s, v) " " tags_of(s, "whole")) \
-        (within_seeds(s, c) ? "; within seeds" : ""), ok, how)
+        (within_seeds(s, c) ? "; within seeds" : "") seeded_words(s, v), ok, how)
 }
