@@ -3,17 +3,12 @@
 # SPDX-License-Identifier: BSD-2-Clause
 
 function seeded_tag(s, v, j) { return s "-" v (j == 1 ? "" : "_seed" j) "-2" }
-function whole_tag(s, j) { return s "-" seed_variant[j] "-2" }
 
 # PSNR of run t less that of run u, had both as many bytes: along the curve of the whole method. "" where one is missing or the curve does not reach.
-function change_between(t, u,    x, y, n, at_t, at_u) {
-    if (!has(t) || !has(u))
-        return ""
-    n = load_curve(scene[t], "whole", x, y)
-    curve_sort(y, x, n)
-    at_t = curve_at(y, x, n, log(get(t, "bytes")))
-    at_u = curve_at(y, x, n, log(get(u, "bytes")))
-    return at_t == "" || at_u == "" ? "" : get(t, "psnr") - get(u, "psnr") - (at_t - at_u)
+function change_between(t, u,    of_t, of_u) {
+    of_t = has(t) ? psnr_change(t) : ""
+    of_u = has(u) ? psnr_change(u) : ""
+    return of_t == "" || of_u == "" ? "" : of_t - of_u
 }
 
 # change[1..3] by seed, change["mean"], change["text"]; 0 when one is missing.

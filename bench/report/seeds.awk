@@ -3,6 +3,9 @@
 
 BEGIN { n_seeds = split("whole seed2 seed3", seed_variant, " ") }
 
+# The whole method's run with seed j.
+function whole_tag(s, j) { return s "-" seed_variant[j] "-2" }
+
 function seed_section(    k, j, s, t, text, tags, spread) {
     say("")
     say("## Seeds")
@@ -14,7 +17,7 @@ function seed_section(    k, j, s, t, text, tags, spread) {
         if (!wants(s, "seed2", "seed"))
             continue
         for (j = 1; j <= n_seeds; j++) {
-            t = s "-" seed_variant[j] "-2"
+            t = whole_tag(s, j)
             tags = tags " " t
             if (has(t))
                 row(s "|" name_of(t) "|" values(t, "psnr:3 ssim:4 bytes anchors"))
@@ -37,7 +40,7 @@ function seed_spread(s, spread,    j, c, t, n, name, low, high, v) {
     n = split("psnr ssim bytes anchors", name, " ")
     for (c = 1; c <= n; c++) {
         for (j = 1; j <= n_seeds; j++) {
-            t = s "-" seed_variant[j] "-2"
+            t = whole_tag(s, j)
             if (!has(t))
                 return 0
             v = get(t, name[c]) + 0
@@ -66,7 +69,7 @@ function seed_chart(    k, s, n, list, j, t, any) {
             plot_begin()
             plot_series("seeds 2 and 3", "#d55e00", "diamond", "-")
             for (j = 2; j <= n_seeds; j++) {
-                t = s "-" seed_variant[j] "-2"
+                t = whole_tag(s, j)
                 if (has(t))
                     plot_point(get(t, "bytes") / 1000, get(t, "psnr"), "")
             }

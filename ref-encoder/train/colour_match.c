@@ -1,6 +1,6 @@
 /* colour_match.c - see colour_match.h. In turn: each point's colour is, by channel, the median over the cameras of what they see there with their maps undone; each camera's
  * map is the weighted least squares fit from those colours to what it sees. Where something stands between, a camera sees another colour: weights are
- * Tukey's biweight of the difference, whose width narrows from round to round.
+ * Tukey's biweight of the difference, whose width narrows from round to round. In the end the points' own colours say what all cameras have in common.
  * SPDX-License-Identifier: BSD-2-Clause */
 #include "colour_match.h"
 

@@ -8,8 +8,8 @@
 
 #include "trainer.h"
 
-/* Sets t->colour.value and t->colour.matched; both stay as they are where cameras hardly differ, initial points are random, or too few of them are seen by
- * two cameras. 0, or -1 with t->message. */
+/* Sets t->colour.value and t->colour.matched, and t->colour.middle where the points' own colours agree with the pictures; all stay as they are where cameras
+ * hardly differ, initial points are random, or too few of them are seen by two cameras. 0, or -1 with t->message. */
 int ted4_colour_match(ted4_trainer *t);
 
 #endif
