@@ -29,4 +29,7 @@ if [ $# -eq 0 ]; then
         [ -x "$program" ] && set -- "$@" "${program##*/fuzz_}"
     done
 fi
-printf '%s\n' "$@" | xargs -P "$jobs" -I{} fuzz/run_one.sh {}
+bad=0
+printf '%s\n' "$@" | xargs -P "$jobs" -I{} fuzz/run_one.sh {} || bad=1
+[ "$csv" != fuzz/runs.csv ] || fuzz/table.sh
+exit $bad

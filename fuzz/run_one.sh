@@ -7,15 +7,17 @@ name=$1
 log=$build/$name.log own=$build/corpus/$name scratch=$build/tmp/$name
 
 # Rows count for the sources that they were made with: those that the harness links (fuzz.mk), and its own; comments and spacing do not count.
-case $scenes in
-*" $name "*) more='ref-encoder/data ref-decoder/tool' ;;
-*)           more= ;;
+case "$scenes$name" in
+*" $name "*)     more='ref-encoder/data ref-decoder/tool' ;;
+*checkpoint)     more='ref-encoder/data ref-encoder/train ref-encoder/kernel ref-encoder/eval ref-decoder/render' ;;
+*decode_chunked) more=ref-decoder/tool/read_file.c ;;
+*two_decoders)   more="tests/spec_tiers.h tests/spec/names.h $build/inc" ;;
+*)               more= ;;
 esac
-[ "$name" != checkpoint ] || more='ref-encoder/data ref-encoder/train ref-encoder/kernel ref-encoder/eval ref-decoder/render'
 # shellcheck disable=SC2086 # several folders
 key=$({
     find ref-decoder/base ref-decoder/norm ref-decoder/read ref-decoder/kernel ref-decoder/recon ref-encoder/write $more \
-        tests/random_scene.h tests/recon_ref.h tests/spec_model.h -name '*.[ch]' -o -name '*.def'
+        tests/random_scene.h tests/recon_ref.h tests/spec_model.h -name '*.[ch]' -o -name '*.def' -o -name '*.inc'
     find fuzz -name '*.[ch]' ! -name 'fz_*' -o -name "fz_$name.c"
 } | LC_ALL=C sort | xargs awk -f bench/sources.awk | sha256sum | cut -c1-12)
 seeds=$(sed -n "s/^FUZZ($name, \([a-z_0-9]*\),.*/\1/p" fuzz/list.def)
@@ -33,13 +35,18 @@ had() {
     awk -F, -v h="$name" -v k="$kind" -v key="$key" '$1 == h && $2 == k && $3 == key { s += $4 } END { print s + 0 }' "$csv"
 }
 
+# What once was found is tried again, too.
+found=
+[ ! -d "fuzz/regressions/$name" ] || found=fuzz/regressions/$name
+
 mkdir -p "$own"
 while left=$((total - $(had))) && [ "$left" -gt 0 ]; do
     now=$((left < slice ? left : slice))
     before=$(finds)
     mkdir -p "$scratch"
+    # shellcheck disable=SC2086 # none or one
     TMPDIR=$scratch "$build/fuzz/fuzz_$name" -max_total_time="$now" -max_len=4096 -dict=$dictionary -timeout=30 -rss_limit_mb=2500 \
-        -malloc_limit_mb=2500 -print_final_stats=1 -artifact_prefix="$build/found/$name-" "$own" "fuzz/corpus/$seeds" >"$log" 2>&1 || :
+        -malloc_limit_mb=2500 -print_final_stats=1 -artifact_prefix="$build/found/$name-" "$own" "fuzz/corpus/$seeds" $found >"$log" 2>&1 || :
     rm -rf "$scratch"                   # libFuzzer ends without the handlers that would
     after=$(finds)
     grep -q '^stat::' "$log" || { echo "$name: did not run, see $log" >&2; exit 1; }

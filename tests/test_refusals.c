@@ -175,6 +175,18 @@ static void file_header(void **state)
     expect("con.level", 11);
 }
 
+/* Nothing at all, not even an address. */
+static void nothing(void **state)
+{
+    ted4_scene *s;
+    ted4_error  e;
+
+    (void)state;
+    assert_int_equal(ted4_decode(NULL, 0, NULL, &s, &e), TED4_E_CON_TRUNCATED);
+    assert_int_equal(e.offset, 0);
+    assert_null(s);
+}
+
 static void frames(void **state)
 {
     size_t n;
@@ -483,7 +495,7 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(file_header),
-        cmocka_unit_test(frames),
+        cmocka_unit_test(nothing), cmocka_unit_test(frames),
         cmocka_unit_test(order),
         cmocka_unit_test(needless_bank),
         cmocka_unit_test(payload_sizes),

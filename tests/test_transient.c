@@ -15,7 +15,7 @@ enum { FRAMES = 5 };
 
 typedef struct { tiny_folder folder; ted4_dataset data; ted4_trainer trainer; } scene;
 
-static void open_scene(scene *s, int moving, int activation)
+static void open_scene(scene *s, int moving, int activation, int transients)
 {
     const ted4_dataset_options o = { 1, 0, 3, 1 << 20, 0 };
     ted4_train_options         train;
@@ -27,6 +27,7 @@ static void open_scene(scene *s, int moving, int activation)
         fail_msg("%s", m.text);
     assert_int_equal(ted4_options_preset(&train, "draft"), 0);
     train.activation = activation;
+    train.transients = transients;
     if (ted4_trainer_init(&s->trainer, &train, &s->data, NULL) != 0)
         fail_msg("%s", s->trainer.message.text);
 }
@@ -66,7 +67,7 @@ static void test_moving(void **state)
     size_t found = 0, blue = 0;
 
     (void)state;
-    open_scene(&s, 1, 1);
+    open_scene(&s, 1, 1, 1);
     for (size_t i = 0; i < s.trainer.anchors.n; i++) {
         if (!ted4_is_transient(&s.trainer, i)) {
             assert_true(tau(&s.trainer, i, 0) == 0.0f && tau(&s.trainer, i, 2) == 1.0f);
@@ -86,11 +87,11 @@ static void test_moving(void **state)
     close_scene(&s);
 }
 
-static void expect_none(int moving, int activation)
+static void expect_none(int moving, int activation, int transients)
 {
     scene s;
 
-    open_scene(&s, moving, activation);
+    open_scene(&s, moving, activation, transients);
     for (size_t i = 0; i < s.trainer.anchors.n; i++)
         assert_false(ted4_is_transient(&s.trainer, i));
     close_scene(&s);
@@ -99,13 +100,19 @@ static void expect_none(int moving, int activation)
 static void test_still(void **state)
 {
     (void)state;
-    expect_none(0, 1);
+    expect_none(0, 1, 1);
 }
 
 static void test_no_activation(void **state)
 {
     (void)state;
-    expect_none(1, 0);
+    expect_none(1, 0, 1);
+}
+
+static void test_off(void **state)
+{
+    (void)state;
+    expect_none(1, 1, 0);
 }
 
 int main(void)
@@ -114,6 +121,7 @@ int main(void)
         cmocka_unit_test(test_moving),
         cmocka_unit_test(test_still),
         cmocka_unit_test(test_no_activation),
+        cmocka_unit_test(test_off),
     };
 
     return cmocka_run_group_tests(tests, NULL, NULL);

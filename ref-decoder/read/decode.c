@@ -62,30 +62,32 @@ static void read_head(decoder *d, const ted4_chunk_place *p)
     finish_payload(d, &r);
 }
 
-/* Values get memory only when the payload, of which bytes are left for mode and values, can hold them. */
-static void prepare_blob(decoder *d, ted4_blob *b, size_t n, size_t bytes,
-                         size_t at)
+/* Values get memory only when the payload can hold them behind its first skip bytes: as they are, or deflated (R-LVL-005). */
+static void prepare_blob(decoder *d, const ted4_chunk_place *p, size_t skip,
+                         ted4_blob *b, size_t n)
 {
-    const size_t left = bytes > 0 ? bytes - 1 : 0;
+    const size_t   bytes = p->end - p->payload;
+    const size_t   left = bytes > skip ? bytes - skip - 1 : 0;
+    const uint8_t  mode = bytes > skip ? d->file.data[p->payload + skip]
+                                       : TED4_BLOB_RAW;
 
     b->n = n;
-    if (left / 4 >= n || !ted4_inflate_impossible(left, n))
+    if (mode == TED4_BLOB_RAW ? left / 4 >= n
+                              : !ted4_inflate_impossible(left, n))
         if (!ted4_blob_alloc(d->s, b, n))
-            no_memory(d, at);
+            no_memory(d, p->payload);
 }
 
 static void read_nete(decoder *d, const ted4_chunk_place *p)
 {
     const ted4_shape *shape = &d->s->shape;
-    const size_t      bytes = p->end - p->payload;
     ted4_reader       r = ted4_decoder_reader(d, p);
 
-    prepare_blob(d, &d->s->nete, shape->n_nete,
-                 bytes > shape->n_units ? bytes - shape->n_units : 0,
-                 p->payload);
+    prepare_blob(d, p, shape->n_units, &d->s->nete, shape->n_nete);
     if (!ted4_scene_alloc_shifts(d->s)
-        || ted4_prior_init(&d->prior, &d->s->head, shape, &d->s->arena)
-           != TED4_OK)
+        || (d->s->nete.values != NULL
+            && ted4_prior_init(&d->prior, &d->s->head, shape, &d->s->arena)
+               != TED4_OK))
         no_memory(d, p->payload);
     d->prior.dense = ted4_select_int_dense();
     if (d->file.base.error.code != TED4_OK)
@@ -99,7 +101,7 @@ static void read_blob(decoder *d, const ted4_chunk_place *p,
 {
     ted4_reader r = ted4_decoder_reader(d, p);
 
-    prepare_blob(d, b, n, p->end - p->payload, p->payload);
+    prepare_blob(d, p, 0, b, n);
     if (d->file.base.error.code != TED4_OK)
         return;
     ted4_walk_blob(&r.base, element, b);

@@ -21,7 +21,7 @@ static const uint8_t *nothing(ted4_coder *c)
 static const uint8_t *take(ted4_coder *c, size_t size)
 {
     ted4_reader   *r = reader_of(c);
-    const uint8_t *p = r->data + c->pos;
+    const uint8_t *p;
 
     if (c->error.code != TED4_OK)
         return nothing(c);
@@ -32,6 +32,7 @@ static const uint8_t *take(ted4_coder *c, size_t size)
             ted4_fail(&c->error, TED4_E_CON_PAYLOAD_SIZE, c->pos);
         return nothing(c);
     }
+    p = r->data + c->pos;       /* after the checks: data may be NULL when nothing is there */
     c->pos += size;
     return p;
 }

@@ -2,6 +2,7 @@
  * Operands are volatile, so that the compiler cannot answer for the machine.
  * SPDX-License-Identifier: BSD-2-Clause */
 #include <float.h>
+#include <math.h>
 #include "recon/strict.h"
 #include "ted4.h"
 
@@ -75,15 +76,61 @@ static int divides_exactly(void)
     return ted4_float_bits(third) == 0x3eaaaaab && ted4_float_bits(root) == 0x3fb504f3;
 }
 
+/* A compiler that may divide by multiplying with a reciprocal does so where quotients share a divisor: 9 / 11 and 18 / 11 are then one unit off. */
+static void divide_all(const volatile float *a, volatile float *q, float divisor)
+{
+    const float p0 = a[0] / divisor, p1 = a[1] / divisor, p2 = a[2] / divisor, p3 = a[3] / divisor;
+
+    q[0] = p0;
+    q[1] = p1;
+    q[2] = p2;
+    q[3] = p3;
+}
+
+static int no_reciprocal(void)
+{
+    volatile float a[4] = { 9.0f, 13.0f, 17.0f, 18.0f }, q[4], divisor = 11.0f;
+    int            ok = 1;
+
+    divide_all(a, q, divisor);
+    for (int i = 0; i < 4; i++) {
+        volatile float alone = a[i] / divisor, constant = a[i] / 11.0f;
+
+        ok &= ted4_float_bits(alone) == ted4_float_bits(q[i]) && ted4_float_bits(alone) == ted4_float_bits(constant);
+    }
+    return ok;
+}
+
+static int differs_from_itself(float a)
+{
+    return a != a;
+}
+
+static float plus_zero(float a)
+{
+    return a + 0.0f;
+}
+
+/* NaN is told from numbers, and -0 + 0 is +0. */
+static int no_assumptions(void)
+{
+    volatile float infinite = HUGE_VALF, minus_zero = -0.0f;
+    volatile float nan = infinite - infinite;
+    volatile float sum = plus_zero(minus_zero);
+
+    return differs_from_itself(nan) && ted4_float_bits(sum) == 0;
+}
+
 int ted4_strict_ok(void)
 {
     return no_contraction() && no_excess_or_reordering() && no_flush() &&
-           rounds_to_nearest() && divides_exactly();
+           rounds_to_nearest() && divides_exactly() && no_reciprocal() && no_assumptions();
 }
 
+/* FLT_EVAL_METHOD 16 is that of machines with binary16 arithmetic: binary32 is computed as binary32 there, too. */
 int ted4_recon_class_x(void)
 {
-#if defined(__FAST_MATH__) || FLT_EVAL_METHOD != 0
+#if defined(__FAST_MATH__) || (FLT_EVAL_METHOD != 0 && FLT_EVAL_METHOD != 16)
     return 0;
 #else
     return ted4_strict_ok();

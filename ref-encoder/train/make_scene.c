@@ -7,15 +7,11 @@
 #include <string.h>
 
 #include "base/bytes.h"
+#include "lane_math.h"
 #include "norm/half.h"
 #include "norm/scene.h"
 #include "norm/tables.h"
 #include "write/encode.h"
-
-static int mask_on(float logit)
-{
-    return 1.0f / (1.0f + expf(-logit)) > TED4_MASK_THRESHOLD;
-}
 
 static uint16_t offset_bits(const ted4_trainer *t, size_t i)
 {
@@ -24,7 +20,7 @@ static uint16_t offset_bits(const ted4_trainer *t, size_t i)
 
     for (int k = 0; k < l->head.n_offsets; k++)
         if (!l->head.offset_mask ||
-            mask_on(*ted4_cell(&t->anchors, TED4_ROW_VALUE, i, l->offset_logit + k)))
+            ted4_mask_on(*ted4_cell(&t->anchors, TED4_ROW_VALUE, i, l->offset_logit + k)))
             bits |= 1u << k;
     return (uint16_t)bits;
 }
@@ -35,7 +31,7 @@ int ted4_is_dynamic(const ted4_trainer *t, size_t i)
 
     return h->motion != TED4_MOTION_NONE &&
            (!h->temporal_mask ||
-            mask_on(*ted4_cell(&t->anchors, TED4_ROW_VALUE, i, t->layout.temporal_logit)));
+            ted4_mask_on(*ted4_cell(&t->anchors, TED4_ROW_VALUE, i, t->layout.temporal_logit)));
 }
 
 size_t ted4_count_dynamic(const ted4_trainer *t)

@@ -5,6 +5,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "lane_math.h"
 #include "norm/half.h"
 #include "rotate.h"
 #include "seed.h"
@@ -231,7 +232,7 @@ static void simplify(const ted4_trainer *t, ted4_header *h)
     for (size_t i = 0; i < t->anchors.n; i++) {
         const float logit = *ted4_cell(&t->anchors, TED4_ROW_VALUE, i, t->layout.temporal_logit);
 
-        moving += 1.0f / (1.0f + expf(-logit)) > TED4_MASK_THRESHOLD;
+        moving += ted4_mask_on(logit);
         absent += h->activation && least_activation(t, i) < ALWAYS_THERE;
     }
     if (h->motion != TED4_MOTION_NONE && h->temporal_mask && (double)moving <= few)

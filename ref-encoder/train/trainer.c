@@ -98,7 +98,9 @@ static int begin(ted4_trainer *t, const ted4_header *h)
     if (t->anchors.n == 0)
         return ted4_trainer_fail(t, "no initial point lies inside the scene's bounds");
     ted4_seed_networks(t->net, &t->layout, t->opt.seed);
-    return ted4_colour_match(t) != 0 ? -1 : ted4_seed_transients(t);
+    if (ted4_colour_match(t) != 0)
+        return -1;
+    return t->opt.transients ? ted4_seed_transients(t) : 0;
 }
 
 int ted4_trainer_init(ted4_trainer *t, const ted4_train_options *o, ted4_dataset *d,
