@@ -1,4 +1,4 @@
-/* ball_scene.h - a scene of three balls on black, 32x24, for test_trainer.c: pictures, cameras and
+/* ball_scene.h - a scene of three balls on black, 32x24: pictures, cameras and
  * points, written into a temporary folder. The blue ball moves when asked to.
  * SPDX-License-Identifier: BSD-2-Clause */
 #ifndef TED4_BALL_SCENE_H

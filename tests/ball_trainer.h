@@ -1,4 +1,4 @@
-/* ball_trainer.h - small trainings on the scene of balls, from pictures to bytes: for test_trainer.c, test_time_probe.c and test_stage1.c.
+/* ball_trainer.h - small trainings on the scene of balls, from pictures to bytes.
  * SPDX-License-Identifier: BSD-2-Clause */
 #ifndef TED4_BALL_TRAINER_H
 #define TED4_BALL_TRAINER_H

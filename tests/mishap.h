@@ -14,7 +14,7 @@
 #include "ball_trainer.h"
 #include "train/checkpoint.h"
 
-enum { MOST_WORDS = 64, MOST_BYTES = 1 << 20, MOST_LOG = 1 << 14, STAGE1 = 700, STEPS = 900 };
+enum { MOST_WORDS = 64, MOST_BYTES = 1 << 20, MOST_LOG = 1 << 16, STAGE1 = 700, STEPS = 900 };
 
 /* What a run writes. */
 typedef struct {

@@ -35,23 +35,20 @@ static int is_new(ball_file *old)
     return !same;
 }
 
-/* Killed again and again, sooner or later each time. The time until then follows the machine: it shrinks when the program was faster,
- * which then begins anew, and grows when there was no new checkpoint yet. */
-static void test_killed(void **state)
+/* Killed again and again, sooner or later each time, until it has gone on from enough checkpoints. The time until then follows the machine: it shrinks when the
+ * program was faster, which then begins anew, and grows when there was no new checkpoint yet. */
+static void kill_again(const char *options, const outcome *want, int enough)
 {
-    static const char shorter[] = "--iterations 130,70", arguments[] = "-o out/x --checkpoint out/c --log out/l --resume --iterations 130,70";
-    enum { ENOUGH = 6, MOST_LIVES = 200 };
-    outcome   want;
+    enum { MOST_LIVES = 200 };
     ball_file last = { calloc(1, 1), 0 };
     uint32_t  x = (uint32_t)time(NULL);
     long      longest = 400000;
     int       killed = 0;
+    char      arguments[256];
 
-    (void)state;
-    begin_test();
     print_message("seed %u\n", (unsigned)x);
-    want = make_outcome(shorter);
-    for (int life = 0; killed < ENOUGH && life < MOST_LIVES; life++) {
+    snprintf(arguments, sizeof arguments, "-o out/x --checkpoint out/c --log out/l --resume %s", options);
+    for (int life = 0; killed < enough && life < MOST_LIVES; life++) {
         const pid_t child = start(arguments, 0);
 
         x = x * 1664525u + 1013904223u;
@@ -60,8 +57,8 @@ static void test_killed(void **state)
         const int status = finish(child);
         remove_leftovers(child);
         if (status == 0) {
-            expect_same("out/x", &want.file);
-            expect_log("out/l", want.log);
+            expect_same("out/x", &want->file);
+            expect_log("out/l", want->log);
             gone("out/c");
             (void)is_new(&last);
             longest /= 2;
@@ -73,14 +70,45 @@ static void test_killed(void **state)
                 longest += longest / 2;
         }
     }
-    assert_int_equal(killed, ENOUGH);
-    run_calmly("--checkpoint out/c --log out/l --resume --iterations 130,70");
+    free(last.bytes);
+    assert_int_equal(killed, enough);
+}
+
+/* Then it goes on to the end: file and log are those of a run that nothing disturbed. */
+static void expect_survival(const char *options, int kills)
+{
+    char    arguments[256];
+    outcome want;
+
+    begin_test();
+    want = make_outcome(options);
+    kill_again(options, &want, kills);
+    snprintf(arguments, sizeof arguments, "--checkpoint out/c --log out/l --resume %s", options);
+    run_calmly(arguments);
     expect_same("out/x", &want.file);
     expect_log("out/l", want.log);
     gone("out/c");
-    expect_files("");
-    free(last.bytes);
     free(want.file.bytes);
+}
+
+static void test_killed(void **state)
+{
+    (void)state;
+    expect_survival("--iterations 130,70", 6);
+}
+
+/* With what the presets do beside training: the probe, and trials of smaller models. */
+static void test_killed_deciding(void **state)
+{
+    static const char options[] = "--iterations 1000,200 --set probe=0.2 --set capacity=1";
+    outcome           once;
+
+    (void)state;
+    begin_test();
+    once = make_outcome(options);
+    assert_non_null(strstr(once.log, "\"event\":\"capacity\""));
+    free(once.file.bytes);
+    expect_survival(options, 4);
 }
 
 /* ---- a full disk ---- */
@@ -198,6 +226,7 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_killed),
+        cmocka_unit_test(test_killed_deciding),
         cmocka_unit_test(test_full_checkpoint),
         cmocka_unit_test(test_full_output),
         cmocka_unit_test(test_full_log),

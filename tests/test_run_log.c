@@ -31,6 +31,7 @@ static void check_line(const json_t *line, log_state *s, double size)
     static const char *const types[] = { "positions", "masks", "feature", "scaling", "offset", "phi", "tau", "networks" };
     static const char *const learnt[] = { "feature", "scaling", "offset", "phi", "masks", "centres", "heads", "motion", "bank" };
     const json_t *gradients = json_object_get(line, "gradients"), *peaks = json_object_get(line, "peaks");
+    const double frames = 314;          /* header and frames of this file, which the estimate leaves out */
     const char  *stage = json_string_value(json_object_get(line, "stage"));
     const double step = number(line, "step"), steps = step - s->step, bytes = number(line, "bytes");
     double       sum = 0;
@@ -50,7 +51,7 @@ static void check_line(const json_t *line, log_state *s, double size)
     assert_true(fabs(sum - bytes) <= 5 && steps > 0);
     assert_non_null(stage);
     assert_string_equal(stage, step <= STAGE1 ? "1" : step < 860 ? "2" : "2i");
-    assert_true(step <= STAGE1 ? bytes == 0 : fabs(bytes - size) < (step < STEPS ? 0.3 : 0.1) * size);
+    assert_true(step <= STAGE1 ? bytes == 0 : fabs(bytes + frames - size) < (step < STEPS ? 0.05 : 0.01) * size);
     assert_true(number(line, "anchors") > 50 && number(line, "moving") > 0 && number(line, "moving") <= number(line, "anchors"));
     assert_true(number(line, "psnr") > 10 && number(line, "splats") > 0 && number(line, "skipped") == 0);
     /* seconds are rounded to hundredths, milliseconds to thousandths. */

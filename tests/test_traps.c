@@ -112,12 +112,13 @@ static double magnitude(const float *x, size_t n)
 /* The last layer of F_deform begins at zero, so that the first step reaches it alone; with the second all that moves anchors must have begun to learn. */
 static void test_saddle(void **state)
 {
-    const ted4_train_options o = ball_options();
+    ted4_train_options o = ball_options();
     ted4_trainer  t;
     const size_t  phi = TED4_LANES * 4;     /* values of phi in a block */
     double        on_phi = 0;
 
     (void)state;
+    o.tv_weight = 0;                        /* or the bank would have a gradient of its own */
     ball_begin(&t, &o, &balls, NULL);
     ball_train(&t, 2);
     assert_int_equal(t.layout.head.phi_dim, 4);
@@ -131,7 +132,7 @@ static void test_saddle(void **state)
         on_phi += magnitude(t.slots.gradient[i] + t.layout.first[TED4_PHI] * TED4_LANES, phi);
     assert_true(on_phi > 0);
     assert_true(magnitude(d + project, 8) > 0 && magnitude(d + deform, 8) > 0);
-    assert_true(magnitude(t.net_gradient + t.layout.bank, s->n_bank) > 1e-9);
+    assert_true(magnitude(t.net_gradient + t.layout.bank, s->n_bank) > 0);
     ted4_trainer_finish(&t);
 }
 

@@ -4,6 +4,7 @@
 
 #include <errno.h>
 #include <fcntl.h>
+#include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -14,6 +15,7 @@
 #include "train/capacity.h"
 #include "train/clamped.h"
 #include "train/make_scene.h"
+#include "write/pack.h"
 
 /* Written and read again. */
 #define CPU_SECONDS "\"cpu_seconds\":"
@@ -143,20 +145,64 @@ void ted4_run_log_move(ted4_run_log *l, const ted4_trainer *t)
 /* Estimated bytes of the file; all zero before stage 2. */
 typedef struct { double positions, masks, type[TED4_TYPES], networks, sum; } estimate;
 
+/* Bytes of n flags of which some are on, at one probability for all. */
+static double bytes_of_flags(double n, double on)
+{
+    const double p = on / n;
+
+    return on <= 0 || on >= n ? 0 : n * (-p * log2(p) - (1 - p) * log2(1 - p)) / 8;
+}
+
+/* Anchors that the file will have: those with a Gaussian (*kept), and what their masks take. */
+static double mask_bytes(const ted4_trainer *t, double *kept)
+{
+    const int n_offsets = t->layout.head.n_offsets;
+    double    moving = 0, on[TED4_MAX_OFFSETS] = { 0 }, bytes;
+
+    *kept = 0;
+    for (size_t i = 0; i < t->anchors.n; i++) {
+        const unsigned bits = ted4_offset_bits(t, i);
+
+        *kept += bits != 0;
+        moving += bits != 0 && ted4_is_dynamic(t, i);
+        for (int k = 0; k < n_offsets; k++)
+            on[k] += bits >> k & 1;
+    }
+    bytes = bytes_of_flags(*kept, moving);
+    for (int k = 0; k < n_offsets; k++)
+        bytes += bytes_of_flags(*kept, on[k]);
+    return bytes;
+}
+
+/* What n weights take, as the writer deflates them. */
+static double blob_bytes(const float *values, size_t n)
+{
+    const size_t   room = ted4_pack_room(n);
+    uint8_t *const memory = malloc(4 * n + room);
+    size_t         size = 4 * n;
+
+    if (memory != NULL && !ted4_pack(values, n, memory, memory + 4 * n, &size))
+        size = 4 * n;
+    free(memory);
+    return (double)size;
+}
+
 static estimate estimate_bytes(const ted4_trainer *t)
 {
-    const ted4_shape *s = &t->layout.shape;
-    const double      n = (double)t->anchors.n;
-    estimate          e = { 0 };
+    const ted4_layout *l = &t->layout;
+    const ted4_shape  *s = &l->shape;
+    estimate           e = { 0 };
+    double             kept;
 
     if (!t->stage2)
         return e;
-    e.positions = 6.0 * n;
-    e.masks = n * t->layout.head.n_offsets / 8.0;
-    e.networks = 4.0 * (double)(s->n_netr + s->n_bank) + 2.0 * (double)s->n_nete;
+    e.masks = mask_bytes(t, &kept);
+    e.positions = 6.0 * kept;
+    e.networks = blob_bytes(t->net + l->nete, s->n_nete) + blob_bytes(t->net + l->netr, s->n_netr) + blob_bytes(t->net + l->bank, s->n_bank) +
+                 (double)s->n_units;
     e.sum = e.positions + e.masks + e.networks;
     for (int y = 0; y < TED4_TYPES; y++) {
-        e.type[y] = n * t->progress.bits[y] / 8.0;
+        e.type[y] = kept * t->progress.bits[y] / 8.0;
         e.sum += e.type[y];
     }
     return e;

@@ -37,7 +37,7 @@ int  ted4_run_log_cut(ted4_run_log *l, const ted4_trainer *t, char *why, size_t 
  *   loss l1 ssim           running means over about 100 steps
  *   psnr                   of the held-out preview, dB
  *   anchors moving splats  how many; those the file would call dynamic; Gaussians on screen
- *   bytes bytes_by_type    estimate of the file in stage 2, else 0; positions, masks, the five attributes, networks
+ *   bytes bytes_by_type    estimate of the file in stage 2, else 0; positions, masks, the five attributes, networks. Headers and frames, some 300 bytes, are left out
  *   bits                   of the five attributes, an anchor
  *   ms cpu_ms              a step, since the line before
  *   gaussian_pixels_per_s  speed

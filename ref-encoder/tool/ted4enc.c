@@ -64,9 +64,10 @@ static int run(const ted4_request *r, ted4_trainer *t, double begin)
     else if (!bad)
         bad = ted4_training_go(&training, ted4_trainer_total(t)) != 0 ||
               ted4_training_code(&training, &coded) != 0;
-    bad = ted4_training_end(&training, bad) != 0;
+    /* Before the log ends: no finished file is lost to a log that cannot be closed. */
     bad = bad || ted4_file_write(r->out, coded.bytes, coded.size, training.why,
                                  sizeof training.why) != 0;
+    bad = ted4_training_end(&training, bad) != 0;
     if (!bad)
         report(r, t, &coded, (times){ start - begin, before + ted4_seconds() - start });
 

@@ -13,7 +13,7 @@
 #include "norm/tables.h"
 #include "write/encode.h"
 
-static uint16_t offset_bits(const ted4_trainer *t, size_t i)
+uint16_t ted4_offset_bits(const ted4_trainer *t, size_t i)
 {
     const ted4_layout *l = &t->layout;
     unsigned           bits = 0;
@@ -91,7 +91,7 @@ static void fill_masks(const ted4_trainer *t, const uint32_t *keep, ted4_scene *
             s->position[3 * i + (size_t)j] =
                 ted4_float_to_half(*ted4_cell(&t->anchors, TED4_ROW_POSITION, keep[i], j));
         s->dynamic[i] = (uint8_t)ted4_is_dynamic(t, keep[i]);
-        s->offset_bits[i] = offset_bits(t, keep[i]);
+        s->offset_bits[i] = ted4_offset_bits(t, keep[i]);
     }
 }
 
@@ -107,7 +107,7 @@ static size_t keep_anchors(const ted4_trainer *t, uint32_t *keep)
     size_t n = 0;
 
     for (size_t i = 0; i < t->anchors.n; i++)
-        if (offset_bits(t, i) != 0)
+        if (ted4_offset_bits(t, i) != 0)
             keep[n++] = (uint32_t)i;
     return n;
 }

@@ -5,10 +5,10 @@
 #include <stdlib.h>
 #include <string.h>
 #include <xxhash.h>
-#include <zlib.h>
 #include "base/bytes.h"
 #include "norm/limits.h"
 #include "write/coder_write.h"
+#include "write/pack.h"
 #include "write/tiles.h"
 
 enum { LEVEL_BYTE = 11, META_FLAGS = 2 };
@@ -40,35 +40,22 @@ static void close_chunk(ted4_writer *w, size_t at)
     c->ops->number(c, 4, (uint32_t)(hash >> 32));
 }
 
-/* Byte 0 of all values, then byte 1 of all, and so on (spec 7.2). */
-static void shuffle(uint8_t *bytes, const float *values, size_t n)
-{
-    for (size_t i = 0; i < n; i++) {
-        const uint32_t u = ted4_float_bits(values[i]);
-
-        for (unsigned j = 0; j < 4; j++)
-            bytes[j * n + i] = (uint8_t)(u >> 8 * j);
-    }
-}
-
 /* Chooses the mode of a blob that has none: deflated only where that is smaller. */
 static void choose_mode(ted4_blob *b, ted4_arena *arena, ted4_error *e)
 {
-    const size_t raw = 4 * b->n;
-    uLongf       size = compressBound((uLong)raw);
-    uint8_t     *bytes, *packed;
+    uint8_t *bytes, *packed;
+    size_t   size;
 
     if (b->mode != TED4_BLOB_AUTO || b->n == 0)
         return;
     b->mode = TED4_BLOB_RAW;
-    bytes = ted4_arena_alloc(arena, raw, 1);
-    packed = ted4_arena_alloc(arena, size, 1);
+    bytes = ted4_arena_alloc(arena, b->n, 4);
+    packed = ted4_arena_alloc(arena, ted4_pack_room(b->n), 1);
     if (bytes == NULL || packed == NULL) {
         ted4_fail(e, TED4_E_LIMIT_MEMORY, 0);
         return;
     }
-    shuffle(bytes, b->values, b->n);
-    if (compress2(packed, &size, bytes, (uLong)raw, 9) == Z_OK && size < raw) {
+    if (ted4_pack(b->values, b->n, bytes, packed, &size)) {
         b->mode = TED4_BLOB_DEFLATED;
         b->deflated = packed;
         b->deflated_size = size;
