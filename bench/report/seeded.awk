@@ -37,6 +37,13 @@ function seeded_words(s, v,    change) {
     return seeded_changes(s, v, change) ? "; at three seeds " change["text"] " dB" mark_of(seeded_tags(s, v)) : ""
 }
 
+# Of a difference that is within seeds: is the variant worse at every seed (1), better at every seed (0), or is there no saying ("?")?
+function seeded_verdict(s, v,    change) {
+    if (!seeded_changes(s, v, change))
+        return "?"
+    return seeded_word(change) ~ /^worse/ ? 1 : seeded_word(change) ~ /^better/ ? 0 : "?"
+}
+
 # All rows that such a difference comes from.
 function seeded_tags(s, v,    j, tags) {
     tags = tags_of(s, "whole")

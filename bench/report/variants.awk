@@ -3,7 +3,7 @@
 
 BEGIN {
     family_name[1] = "Deformation"; family_of["concat"] = family_of["inr"] = family_of["nomotion"] = family_of["static"] = family_of["plain"] = family_of["inr_paper"] = 1
-    family_name[2] = "Time"; family_of["noactive"] = family_of["noprogress"] = family_of["notempmask"] = family_of["nosprouts"] = 2
+    family_name[2] = "Time"; family_of["noactive"] = family_of["noprogress"] = family_of["notempmask"] = family_of["nosprouts"] = family_of["recipe"] = 2
     family_name[3] = "Rate"; family_of["factorised"] = family_of["factorised_flat"] = family_of["noautoreg"] = family_of["nooffmask"] = family_of["linscale"] = 3
     family_name[4] = "Colour"; family_of["noview"] = family_of["fullview"] = family_of["nocolour"] = 4
     family_name[N_FAMILIES = 5] = "Other"
@@ -27,7 +27,8 @@ function variant_section(    k, s) {
     say("both curves through the same λ, for a straight line between far points lies below a bent curve. Bold lines are means over the variant's")
     say("runs. Positive rates and negative PSNR: the variant is worse. *Paper*: its table of ablations, Neu3D at its highest rate, same λ.")
     say("*Within seeds*: the difference in PSNR at equal bytes is less than the spread of three seeds of the whole method on that scene. *factorised* is")
-    say("one Gaussian a component for all anchors and keeps the autoregression; *inr* has layers as wide as those of the whole method's F_deform.")
+    say("one Gaussian a component for all anchors and keeps the autoregression; *inr* has layers as wide as those of the whole method's F_deform; *recipe* leaves")
+    say("out what the paper does not have: sprouts, seeded transients and the probe (none of these rows has the choice of capacity).")
     for (k = 1; k <= n_scenes; k++) {
         s = scenes[k]
         if (has_variants(s)) {
@@ -209,7 +210,7 @@ function variant_bars(s) {
     variant_bar(s, "noactive", "no activation", "costs rate or quality")
     variant_bar(s, "noprogress", "no progressive training", "costs quality")
     variant_bar(s, "static", "no deformation, nor activation, as in the paper's row", "far worse (here: at least 1 dB)")
-    variant_bar(s, "nomotion", "no deformation, activation and sprouts kept (the paper has no such row)", "worse")
+    variant_bar(s, "nomotion", "no deformation, all else kept (the paper has no such row)", "far worse (here: worse at every seed)")
 }
 
 function variant_bar(s, v, what, limit,    c, rate, ok, how) {
@@ -225,6 +226,8 @@ function variant_bar(s, v, what, limit,    c, rate, ok, how) {
         ok = rate == "" ? (c["near_psnr"] <= 0 ? c["near_rate"] >= 10 : "?") : rate >= 10
     if (v == "static")
         ok = (c["psnr"] != "" ? c["psnr"] : c["near_psnr"]) <= -1
+    if (within_seeds(s, c))
+        ok = seeded_verdict(s, v)
     bar(1, s ": " what, limit, "`" own_options(runs[s, v, 1]) "`: rate at equal PSNR " signed(rate, 1, " %") ", PSNR at equal bytes " \
         signed(c["psnr"], 2, " dB") "; nearest " near_words(c) mark_of(tags_of(s, v) " " tags_of(s, "whole")) \
         (within_seeds(s, c) ? "; within seeds" : "") seeded_words(s, v), ok, how)
