@@ -15,7 +15,7 @@
 #include "train/capacity.h"
 #include "train/clamped.h"
 #include "train/make_scene.h"
-#include "write/pack.h"
+#include "write/deflate.h"
 
 /* Written and read again. */
 #define CPU_SECONDS "\"cpu_seconds\":"
@@ -177,11 +177,11 @@ static double mask_bytes(const ted4_trainer *t, double *kept)
 /* What n weights take, as the writer deflates them. */
 static double blob_bytes(const float *values, size_t n)
 {
-    const size_t   room = ted4_pack_room(n);
+    const size_t   room = ted4_deflate_room(n);
     uint8_t *const memory = malloc(4 * n + room);
     size_t         size = 4 * n;
 
-    if (memory != NULL && !ted4_pack(values, n, memory, memory + 4 * n, &size))
+    if (memory != NULL && !ted4_deflate(values, n, memory, memory + 4 * n, &size))
         size = 4 * n;
     free(memory);
     return (double)size;

@@ -8,7 +8,7 @@
 #include "base/bytes.h"
 #include "norm/limits.h"
 #include "write/coder_write.h"
-#include "write/pack.h"
+#include "write/deflate.h"
 #include "write/tiles.h"
 
 enum { LEVEL_BYTE = 11, META_FLAGS = 2 };
@@ -50,12 +50,12 @@ static void choose_mode(ted4_blob *b, ted4_arena *arena, ted4_error *e)
         return;
     b->mode = TED4_BLOB_RAW;
     bytes = ted4_arena_alloc(arena, b->n, 4);
-    packed = ted4_arena_alloc(arena, ted4_pack_room(b->n), 1);
+    packed = ted4_arena_alloc(arena, ted4_deflate_room(b->n), 1);
     if (bytes == NULL || packed == NULL) {
         ted4_fail(e, TED4_E_LIMIT_MEMORY, 0);
         return;
     }
-    if (ted4_pack(b->values, b->n, bytes, packed, &size)) {
+    if (ted4_deflate(b->values, b->n, bytes, packed, &size)) {
         b->mode = TED4_BLOB_DEFLATED;
         b->deflated = packed;
         b->deflated_size = size;

@@ -1,6 +1,6 @@
-/* pack.c - see pack.h.
+/* deflate.c - see deflate.h.
  * SPDX-License-Identifier: BSD-2-Clause */
-#include "write/pack.h"
+#include "write/deflate.h"
 
 #include <zlib.h>
 #include "base/bytes.h"
@@ -16,12 +16,12 @@ static void shuffle(uint8_t *bytes, const float *values, size_t n)
     }
 }
 
-size_t ted4_pack_room(size_t n)
+size_t ted4_deflate_room(size_t n)
 {
     return compressBound((uLong)(4 * n));
 }
 
-int ted4_pack(const float *values, size_t n, uint8_t *work, uint8_t *packed, size_t *size)
+int ted4_deflate(const float *values, size_t n, uint8_t *work, uint8_t *packed, size_t *size)
 {
     uLongf    length = compressBound((uLong)(4 * n));
     const int best = 9;
