@@ -15,4 +15,4 @@ pages=${TED4_PAGES:-bench}
 wanted_runs bench/sweep.sh "$@"
 write_page "$results/report.md" "$results/sweep.csv" "$results/charts" "report/rows report/words report/curves report/compare report/svg report/axes report/plot
     report/dots report/stacks report/rate report/variants report/singles report/speed report/bytes report/lives report/estimate report/kept report/precision
-    report/seeds report/seeded report/logs report/page" -v results="$results" -v pages="$pages" -v notes="$pages/report-notes.md"
+    report/seeds report/seeded report/recipe report/logs report/page" -v results="$results" -v pages="$pages" -v notes="$pages/report-notes.md"

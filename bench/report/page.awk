@@ -26,6 +26,7 @@ END {
     precision_section()
     seed_section()
     seeded_section()
+    recipe_section()
     log_section()
     sheet_section()
     command_section()
