@@ -3,7 +3,7 @@
 
 BEGIN {
     family_name[1] = "Deformation"; family_of["concat"] = family_of["inr"] = family_of["nomotion"] = family_of["static"] = family_of["plain"] = family_of["inr_paper"] = 1
-    family_name[2] = "Time"; family_of["noactive"] = family_of["noprogress"] = family_of["notempmask"] = family_of["nosprouts"] = family_of["recipe"] = 2
+    family_name[2] = "Time"; family_of["noactive"] = family_of["noprogress"] = family_of["notempmask"] = family_of["nosprouts"] = family_of["recipe"] = family_of["hardmask"] = 2
     family_name[3] = "Rate"; family_of["factorised"] = family_of["factorised_flat"] = family_of["noautoreg"] = family_of["nooffmask"] = family_of["linscale"] = 3
     family_name[4] = "Colour"; family_of["noview"] = family_of["fullview"] = family_of["nocolour"] = 4
     family_name[N_FAMILIES = 5] = "Other"
@@ -27,8 +27,9 @@ function variant_section(    k, s) {
     say("both curves through the same λ, for a straight line between far points lies below a bent curve. Bold lines are means over the variant's")
     say("runs. Positive rates and negative PSNR: the variant is worse. *Paper*: its table of ablations, Neu3D at its highest rate, same λ.")
     say("*Within seeds*: the difference in PSNR at equal bytes is less than the spread of three seeds of the whole method on that scene. *factorised* is")
-    say("one Gaussian a component for all anchors and keeps the autoregression; *inr* has layers as wide as those of the whole method's F_deform, *inr_paper* the paper's; *recipe* leaves")
-    say("out what the paper does not have: sprouts, seeded transients and the probe (none of these rows has the choice of capacity).")
+    say("one Gaussian a component for all anchors and keeps the autoregression; *inr* has layers as wide as those of the whole method's F_deform, *inr_paper*")
+    say("the paper's; *hardmask* pushes the temporal mask ten times as hard; *recipe* leaves out what the paper does not have: sprouts, seeded transients and the")
+    say("probe (none of these rows has the choice of capacity).")
     for (k = 1; k <= n_scenes; k++) {
         s = scenes[k]
         if (has_variants(s)) {
