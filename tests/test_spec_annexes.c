@@ -1,9 +1,10 @@
-/* test_spec_annexes.c - annexes A, B and C, and the hashes of functions in annex J, are what their generators print now, and the lints of the specification hold.
+/* test_spec_annexes.c - annexes A, B, C and H, and the hashes of functions in annex J, are what their generators print now, and the lints of the specification hold.
  * Runs in the top folder, as make does.
  * SPDX-License-Identifier: BSD-2-Clause */
 #include "gen/annex_b.h"                /* first: fail() is a function there */
 #include "gen/annex_a.h"
 #include "gen/annex_c.h"
+#include "gen/annex_h.h"
 #include "gen/attest.h"
 #include <setjmp.h>
 #include <stdarg.h>
@@ -62,6 +63,12 @@ static void levels(void **state)
 {
     (void)state;
     current("spec/annex-c-levels.md", annex_c);
+}
+
+static void limits(void **state)
+{
+    (void)state;
+    current("spec/annex-h-limits.md", annex_h);
 }
 
 /* Each line that attest_short prints stands in annex J.9. */
@@ -125,8 +132,8 @@ static void lints(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(tables), cmocka_unit_test(examples), cmocka_unit_test(levels), cmocka_unit_test(functions),
-        cmocka_unit_test(indices),
+        cmocka_unit_test(tables), cmocka_unit_test(examples), cmocka_unit_test(levels), cmocka_unit_test(limits),
+        cmocka_unit_test(functions), cmocka_unit_test(indices),
         cmocka_unit_test(smallest), cmocka_unit_test(lints),
     };
 

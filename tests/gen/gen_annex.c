@@ -1,9 +1,10 @@
-/* gen_annex.c - prints an annex of the specification that is made by a program: gen_annex a|b|c|b1|b2. b1 and b2: the files of annex B.
+/* gen_annex.c - prints an annex of the specification that is made by a program: gen_annex a|b|c|h|b1|b2. b1 and b2: the files of annex B.
  * Run by `make spec-annexes`; tests/test_spec_annexes.c compares.
  * SPDX-License-Identifier: BSD-2-Clause */
 #include "gen/annex_b.h"
 #include "gen/annex_a.h"
 #include "gen/annex_c.h"
+#include "gen/annex_h.h"
 
 static int print_file(ted4_scene *s)
 {
@@ -17,16 +18,21 @@ static int print_file(ted4_scene *s)
 
 int main(int argc, char **argv)
 {
+    static const struct {
+        const char *name;
+        void      (*print)(FILE *out);
+    } annex[] = { { "a", annex_a }, { "b", annex_b }, { "c", annex_c }, { "h", annex_h } };
     const char *which = argc == 2 ? argv[1] : "";
 
     if (strcmp(which, "b1") == 0)
         return print_file(annex_b_smallest());
     if (strcmp(which, "b2") == 0)
         return print_file(annex_b_dynamic());
-    if (strlen(which) != 1 || which[0] < 'a' || which[0] > 'c') {
-        fprintf(stderr, "usage: gen_annex a|b|c|b1|b2\n");
-        return 3;
-    }
-    (which[0] == 'a' ? annex_a : which[0] == 'b' ? annex_b : annex_c)(stdout);
-    return fflush(stdout) == 0 ? 0 : 3;
+    for (size_t i = 0; i < sizeof annex / sizeof *annex; i++)
+        if (strcmp(which, annex[i].name) == 0) {
+            annex[i].print(stdout);
+            return fflush(stdout) == 0 ? 0 : 3;
+        }
+    fprintf(stderr, "usage: gen_annex a|b|c|h|b1|b2\n");
+    return 3;
 }

@@ -38,6 +38,7 @@ spec-annexes: $B/gen_annex
 	$B/gen_annex a > spec/annex-a-tables.md
 	$B/gen_annex b > spec/annex-b-examples.md
 	$B/gen_annex c > spec/annex-c-levels.md
+	$B/gen_annex h > spec/annex-h-limits.md
 	sh tests/lint/spec_rules.sh print > spec/annex-g-rules.md
 	sh tests/lint/spec_json.sh print rules > spec/rules.json
 	sh tests/lint/spec_json.sh print errors > spec/errors.json
