@@ -1,15 +1,15 @@
 #!/bin/sh
 # test_cross.sh - the bookkeeping of conformance/cross/cross.sh, with a compiler that compiles nothing and makes programs of several moods: what passes is not
-# run again, what lacks a tool is skipped and never passed, failures and crashes are named, wrong claims and hashes that differ fail. Speaks as cmocka
-# programs do; run by `make test` from the project's root.
+# run again, what lacks a tool is skipped and never passed, failures and crashes are named, wrong claims and hashes that differ fail, and so do fewer than 12
+# builds unless some are chosen. Speaks as cmocka programs do; run by `make test` from the project's root.
 # SPDX-License-Identifier: BSD-2-Clause
 set -u
 export LC_ALL=C
 . tests/speak.sh
 need cross ted4conf ted4dec
-# cross NAME WANTED-STATUS WANTED-TEXT: runs it on the table as it is
+# cross NAME WANTED-STATUS WANTED-TEXT ['']: runs it on the table as it is, all builds chosen by a pattern; '': without a pattern
 cross() {
-    expect "$1" "$2" "$3" env PATH="$out/bin:$PATH" TED4_BUILD="$out/build" TED4_RESULTS="$out" TED4_TABLE="$out/table" conformance/cross/cross.sh
+    expect "$1" "$2" "$3" env PATH="$out/bin:$PATH" TED4_BUILD="$out/build" TED4_RESULTS="$out" TED4_TABLE="$out/table" conformance/cross/cross.sh ${4-'*'}
 }
 # build NAME CLASS COMPILER FLAGS: a line of the table
 build() { echo "$1; $2; $3; $4; ; ; ; few; package-of-$1" >>"$out/table"; }
@@ -73,6 +73,14 @@ sed -i /crash/d "$out/table"
 build claim none fakecc -Dmood=good
 cross claim 1 'FAILED   claim: claims class X; should claim none'
 sed -i /claim/d "$out/table"
+cross too_few 1 'cross.sh: 1 builds passed; at least 12 have to' ''
+for n in 02 03 04 05 06 07 08 09 10 11; do build more-$n X fakecc -Dmood=good; done
+cross one_too_few 1 'cross.sh: 11 builds passed; at least 12 have to' ''
+build more-12 X fakecc -Dmood=good
+cross enough 0 '12 builds passed, 0 failed.' ''
+build more-13 X fakecc -Dmood=other
+cross enough_but_one 1 'Tier E: 2 different hashes.' ''
+sed -i /more-/d "$out/table"
 sed -i 's/mood=good/mood=good -O2/' "$out/table"
 rm "$out/bin/fakecc"
 cross stale 1 'skipped  one: no fakecc'
