@@ -27,6 +27,7 @@ expect none_unasked "$(told silent)" 0
 expect logged_unasked "$(logged silent)" "$n"
 expect same_scene "$(hash_of told)" "$(hash_of silent)"
 expect valid_meta "$("$TED4_BUILD/ted4info" "$out/told.ted4" --validate | grep -c 'adv.meta')" 0
+expect no_names "$(grep -acF "$out" "$out/told.ted4")" 0
 taken=$(grep -c '"event":"capacity".*"taken":true' "$out/told.jsonl")
 expect taken "$("$TED4_BUILD/ted4info" "$out/told.ted4" --why | grep -c ': taken; ')" "$taken"
 
