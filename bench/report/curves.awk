@@ -1,6 +1,6 @@
 # curves.awk - how far one rate-distortion curve lies from another. A curve is n points (x[i], y[i]), i from 1; for a rate at equal quality x is the PSNR
 # and y the logarithm of the bytes, for a quality at equal rate the other way round. Functions only; used by bench/report.sh and tests/test_report.sh.
-# Source of the cubic one: G. Bjontegaard, VCEG-M33, 2001.
+# Sources: G. Bjontegaard, VCEG-M33, 2001 (the mean); F. N. Fritsch and J. Butland, SIAM J. Sci. Stat. Comput. 5 (1984), the cubics, as JCT-VC uses them.
 # SPDX-License-Identifier: BSD-2-Clause
 
 # Points in order of x.
@@ -54,69 +54,62 @@ function curve_gap(xa, ya, na, xb, yb, nb,    low, high, n, i, at, gap, before, 
     return sum / (high - low)
 }
 
-# Coefficients c[0..3] of the cubic in u = (x - middle) / half that fits the points best: normal equations, Gaussian elimination with pivots.
-function cubic_fit(x, y, n, middle, half, c,    i, j, k, u, p, m, best, t) {
-    for (i = 0; i < 4; i++)
-        for (j = 0; j <= 4; j++)
-            m[i, j] = 0
-    for (k = 1; k <= n; k++) {
-        u = (x[k] - middle) / half
-        for (i = 0; i < 7; i++)
-            p[i] = i > 0 ? p[i - 1] * u : 1
-        for (i = 0; i < 4; i++) {
-            for (j = 0; j < 4; j++)
-                m[i, j] += p[i + j]
-            m[i, 4] += p[i] * y[k]
-        }
+# Slopes d[i] of the monotone piecewise cubic through sorted points of different x: harmonic means inside, where the lines on both sides rise or both fall, else 0; from
+# three points at the ends. So the curve leaves the range of its neighbouring points nowhere, which one cubic through all points may do by far.
+function slopes(x, y, n, d,    i, h, m, v, w) {
+    for (i = 1; i < n; i++) {
+        h[i] = x[i + 1] - x[i]
+        m[i] = (y[i + 1] - y[i]) / h[i]
     }
-    for (i = 0; i < 4; i++) {
-        best = i
-        for (k = i + 1; k < 4; k++)
-            if (m[k, i] * m[k, i] > m[best, i] * m[best, i])
-                best = k
-        for (j = 0; j <= 4; j++) {
-            t = m[i, j]; m[i, j] = m[best, j]; m[best, j] = t
-        }
-        for (k = i + 1; k < 4; k++)
-            for (j = 4; j >= i; j--)
-                m[k, j] -= m[i, j] * m[k, i] / m[i, i]
+    for (i = 2; i < n; i++) {
+        v = 2 * h[i] + h[i - 1]
+        w = h[i] + 2 * h[i - 1]
+        d[i] = m[i - 1] * m[i] <= 0 ? 0 : (v + w) / (v / m[i - 1] + w / m[i])
     }
-    for (i = 3; i >= 0; i--) {
-        c[i] = m[i, 4]
-        for (j = i + 1; j < 4; j++)
-            c[i] -= m[i, j] * c[j]
-        c[i] /= m[i, i]
+    d[1] = end_slope(h[1], h[2], m[1], m[2])
+    d[n] = end_slope(h[n - 1], h[n - 2], m[n - 1], m[n - 2])
+}
+
+# At an end: next to it a piece of width h and slope m, then one of width h2 and slope m2.
+function end_slope(h, h2, m, m2,    d) {
+    d = ((2 * h + h2) * m - h * m2) / (h + h2)
+    if (d * m <= 0)
+        return 0
+    return m * m2 < 0 && size_of(d) > 3 * size_of(m) ? 3 * m : d
+}
+
+# The integral from x[1] to at.
+function cubic_integral(x, y, n, d, at,    i, h, s, s3, s4, sum) {
+    for (i = 1; i < n && at > x[i]; i++) {
+        h = x[i + 1] - x[i]
+        s = at < x[i + 1] ? (at - x[i]) / h : 1
+        s3 = s * s * s
+        s4 = s3 * s
+        sum += h * (y[i] * (s - s3 + s4 / 2) + y[i + 1] * (s3 - s4 / 2) + h * d[i] * (s * s / 2 - 2 * s3 / 3 + s4 / 4) + h * d[i + 1] * (s4 / 4 - s3 / 3))
     }
+    return sum + 0
 }
 
-function cubic_mean(c, low, high) {
-    return (cubic_integral(c, high) - cubic_integral(c, low)) / (high - low)
+# Whether n sorted points are four or more, all of different x.
+function cubic_exists(x, n,    i) {
+    for (i = 2; i <= n; i++)
+        if (x[i] <= x[i - 1])
+            return 0
+    return n >= 4
 }
 
-function cubic_integral(c, u) {
-    return u * (c[0] + u * (c[1] / 2 + u * (c[2] / 3 + u * c[3] / 4)))
-}
-
-# Whether n sorted points have four or more different x, which a cubic needs.
-function cubic_exists(x, n,    i, different) {
-    for (i = 1; i <= n; i++)
-        different += i == 1 || x[i] > x[i - 1]
-    return different >= 4
-}
-
-# Bjontegaard: mean of curve b less curve a, each a cubic through its points, over the x that both have. "" with fewer than four points, or nothing shared.
-function bjontegaard(xa, ya, na, xb, yb, nb,    low, high, middle, half, ca, cb) {
+# Bjontegaard's mean of curve b less curve a, each a monotone piecewise cubic, over the x that both have. "" with fewer than four points, or nothing shared.
+function bjontegaard(xa, ya, na, xb, yb, nb,    low, high, da, db) {
     if (!cubic_exists(xa, na) || !cubic_exists(xb, nb))
         return ""
     low = xa[1] > xb[1] ? xa[1] : xb[1]
     high = xa[na] < xb[nb] ? xa[na] : xb[nb]
     if (!(low < high))
         return ""
-    middle = (low + high) / 2
-    half = (high - low) / 2
-    cubic_fit(xa, ya, na, middle, half, ca)
-    cubic_fit(xb, yb, nb, middle, half, cb)
-    return cubic_mean(cb, -1, 1) - cubic_mean(ca, -1, 1)
+    slopes(xa, ya, na, da)
+    slopes(xb, yb, nb, db)
+    return (cubic_integral(xb, yb, nb, db, high) - cubic_integral(xb, yb, nb, db, low) - \
+            cubic_integral(xa, ya, na, da, high) + cubic_integral(xa, ya, na, da, low)) / (high - low)
 }
 
 # A gap between logarithms of bytes as percent.

@@ -228,7 +228,8 @@ function variant_bar(s, v, what, limit,    c, rate, ok, how) {
         ok = rate == "" ? (c["near_psnr"] <= 0 ? c["near_rate"] >= 10 : "?") : rate >= 10
     if (v == "static")
         ok = (c["psnr"] != "" ? c["psnr"] : c["near_psnr"]) <= -1
-    if (within_seeds(s, c))
+    # Another prior begins where the whole method's stage 1 ends: seeds do not come between.
+    if (v != "factorised" && within_seeds(s, c))
         ok = seeded_verdict(s, v)
     bar(1, s ": " what, limit, "`" own_options(runs[s, v, 1]) "`: rate at equal PSNR " signed(rate, 1, " %") ", PSNR at equal bytes " \
         signed(c["psnr"], 2, " dB") "; nearest " near_words(c) mark_of(tags_of(s, v) " " tags_of(s, "whole")) \
