@@ -8,6 +8,7 @@ $B/ted4conf: $(CONF_OBJ) $(CLASS_T_OBJ) $B/libted4enc.a $B/libted4dec.a
 # The runner's processes, tried by themselves.
 $B/tests/test_process: $(addprefix $B/conformance/tool/,process.o text.o)
 $B/tests/test_conformance: | $B/ted4conf $B/ted4dec
+$B/tests/test_mutants: | $B/ted4conf
 $B/tests/test_suite_schema: | $B/ted4conf $B/ted4dec
 $B/tests/test_encoder_program: | $B/ted4conf $B/ted4dec $B/ted4enc $B/ted4scene
 
@@ -46,7 +47,7 @@ conformance-threads: $B/ted4conf
 	$B/ted4conf gen --demand --only LVL-n_anchors-6 -o build-tsan/vectors
 	@for f in conformance/vectors/content/*.ted4 build-tsan/vectors/stress/*.ted4; do build-tsan/ted4dec -j 4 -q --hash $$f >/dev/null || exit 1; done
 
-# Seeded faults; what has a result in conformance/mutants.csv is not run again.
+# Seeded faults; what has a result in conformance/mutants.csv that holds is not run again.
 conformance-mutants:
 	$(MAKE) B=build-mutants OPT=-O1 build-mutants/ted4conf
 	build-mutants/ted4conf gen --demand -o build-mutants/suite/vectors

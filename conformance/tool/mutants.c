@@ -1,145 +1,25 @@
-/* mutants.c - see mutants.h. A mutant is one textual change to one source file:
- *     mutant ID FILE
- *     < the line as it is, without its indentation
- *     > the line as it becomes
- * The changed file is compiled from a folder of its own that comes first among the include paths; a changed header takes all of the decoder's
- * sources with it that include it. Then `ted4conf replay --stop`, linked with these objects, goes through the suite: killed means that it
- * fails, crashes, hangs, or does not compile (which counts apart). A row of mutants.csv is kept for as long as the mutant's text is the same.
+/* mutants.c - see mutants.h and mutant_list.h. The changed file is compiled from a folder of its own that comes first among the include paths; a changed
+ * header takes all of the decoder's sources with it that include it. Then `ted4conf replay --stop`, linked with these objects, goes through the suite: killed
+ * means that it fails, crashes, hangs or gives up at a vector, which is written down. What does not compile counts apart. Before that the unchanged program,
+ * built and run in the same way, has to pass: a machine, build or suite that is broken would kill everything.
  * SPDX-License-Identifier: BSD-2-Clause */
 #include "mutants.h"
 
+#include <signal.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 #include <sys/wait.h>
 #include <unistd.h>
+#include "mutant_list.h"
 #include "process.h"
 
-enum { MAX_MUTANTS = 1000, LINE = 400, LEAST_PERCENT = 95, LEAST_MUTANTS = 200 };
-
-typedef struct {
-    char id[64], file[200], from[LINE], to[LINE];
-    char verdict[32];           /* "" : no result yet; "killed", "survived", "no compile" */
-    char by[LINE];              /* what the replay said */
-} mutant;
+enum { LEAST_PERCENT = 95, LEAST_MUTANTS = 200, SLACK = 4 };
 
 typedef struct {
     const conf_mutant_options *o;
-    mutant *m;
-    size_t  n;
-} list;
-
-static void strip(char *line)
-{
-    size_t n = strlen(line);
-
-    while (n > 0 && (line[n - 1] == '\n' || line[n - 1] == '\r' || line[n - 1] == ' '))
-        line[--n] = '\0';
-}
-
-static void read_list(list *l)
-{
-    char  path[CONF_PATH], line[LINE];
-    FILE *f;
-
-    conf_path(path, "%s/mutants.list", l->o->suite);
-    f = fopen(path, "r");
-    if (f == NULL)
-        conf_die("%s: cannot be read", path);
-    l->m = conf_alloc(MAX_MUTANTS, sizeof *l->m);
-    while (fgets(line, sizeof line, f) != NULL) {
-        strip(line);
-        if (strncmp(line, "mutant ", 7) == 0) {
-            if (l->n == MAX_MUTANTS || sscanf(line, "mutant %63s %199s", l->m[l->n].id, l->m[l->n].file) != 2)
-                conf_die("%s: bad line: %s", path, line);
-            l->n++;
-        } else if (l->n > 0 && line[0] == '<' && line[1] == ' ') {
-            memcpy(l->m[l->n - 1].from, line + 2, strlen(line + 2) + 1);
-        } else if (l->n > 0 && line[0] == '>') {
-            memcpy(l->m[l->n - 1].to, line + (line[1] == ' ' ? 2 : 1), strlen(line + (line[1] == ' ' ? 2 : 1)) + 1);
-        } else if (line[0] != '#' && line[0] != '\0') {
-            conf_die("%s: bad line: %s", path, line);
-        }
-    }
-    fclose(f);
-}
-
-/* What a result depends on, besides the suite: the mutant's text. */
-static unsigned long long key_of(const mutant *m)
-{
-    char text[3 * LINE];
-
-    snprintf(text, sizeof text, "%s|%s|%s", m->file, m->from, m->to);
-    return conf_seed(text);
-}
-
-static void csv_path(const list *l, char *path)
-{
-    conf_path(path, "%s/mutants.csv", l->o->suite);
-}
-
-/* ID,KEY,VERDICT,BY: later rows win. */
-static void read_results(list *l)
-{
-    char  path[CONF_PATH], line[2 * LINE], id[64], verdict[32];
-    FILE *f;
-
-    csv_path(l, path);
-    f = fopen(path, "r");
-    while (f != NULL && fgets(line, sizeof line, f) != NULL) {
-        unsigned long long key;
-        int                at = 0;
-
-        strip(line);
-        if (sscanf(line, "%63[^,],%llx,%31[^,],%n", id, &key, verdict, &at) < 3)
-            continue;
-        for (size_t i = 0; i < l->n; i++)
-            if (strcmp(l->m[i].id, id) == 0 && key_of(&l->m[i]) == key) {
-                snprintf(l->m[i].verdict, sizeof l->m[i].verdict, "%s", verdict);
-                snprintf(l->m[i].by, sizeof l->m[i].by, "%s", at > 0 ? line + at : "");
-            }
-    }
-    if (f != NULL)
-        fclose(f);
-}
-
-static void add_result(const list *l, const mutant *m)
-{
-    char  path[CONF_PATH], row[2 * LINE];
-    FILE *f;
-
-    csv_path(l, path);
-    f = fopen(path, "a");
-    snprintf(row, sizeof row, "%s,%016llx,%s,%s\n", m->id, key_of(m), m->verdict, m->by);
-    if (f == NULL || fputs(row, f) == EOF || fclose(f) != 0)
-        conf_die("%s: cannot be written", path);
-}
-
-/* The file with its one line changed, below folder; 0: the line is not there exactly once. */
-static int write_changed(const mutant *m, const char *folder)
-{
-    conf_bytes  in, out = { NULL, 0, 0 };
-    char        path[CONF_PATH];
-    int         n = 0;
-
-    if (!conf_read(m->file, &in))
-        return 0;
-    for (char *line = (char *)in.data, *next; *line != '\0'; line = next) {
-        char *const  end = strchr(line, '\n');
-        const size_t indent = strspn(line, " \t"), length = end != NULL ? (size_t)(end - line) : strlen(line);
-
-        next = line + length + (end != NULL);
-        if (length - indent == strlen(m->from) && memcmp(line + indent, m->from, length - indent) == 0 && ++n == 1)
-            conf_print(&out, "%.*s%s\n", (int)indent, line, m->to);
-        else
-            conf_add(&out, line, (size_t)(next - line));
-    }
-    conf_path(path, "%s/%s", folder, m->file);
-    conf_write(path, out.data, out.size);
-    conf_free(&in);
-    conf_free(&out);
-    return n == 1;
-}
+    conf_mutant_list           list;
+} campaign;
 
 /* A shell command; 1: it went well. */
 static int shell(const char *command)
@@ -149,84 +29,184 @@ static int shell(const char *command)
     return WIFEXITED(status) && WEXITSTATUS(status) == 0;
 }
 
-/* Compiles what the change touches into folder, and links. */
-static int build(const list *l, const mutant *m, const char *folder)
-{
-    const int  header = strcmp(m->file + strlen(m->file) - 2, ".h") == 0;
-    conf_bytes c = { NULL, 0, 0 };
-    int        good;
-
-    conf_print(&c, "cd . && d='%s'; for s in ", folder);
-    if (header)
-        conf_print(&c, "$(cd %s && grep -l '%s' ref-decoder/norm/*.d ref-decoder/read/*.d ref-decoder/recon/*.d | sed 's/\\.d$/.c/')",
-                   l->o->build, m->file);
-    else
-        conf_print(&c, "%s", m->file);
-    conf_print(&c, "; do from=$s; [ -f \"$d/$s\" ] && from=$d/$s; %s -I\"$d/ref-decoder\" -Iref-decoder -Iref-encoder -w -c $from "
-               "-o \"$d/$(echo $s | tr / _).o\" 2>>\"$d/log\" || exit 1; done; ", l->o->compile);
-    conf_print(&c, "cc -fopenmp \"$d\"/*.o %s/conformance/tool/*.o %s/conformance/tolerance/class_t.o %s/tests/spec/eval_*.o "
-               "$(ls %s/ref-decoder/tool/*.o | grep -v /ted4) %s/libted4enc.a %s/libted4dec.a -o \"$d/ted4conf\" %s 2>>\"$d/log\"",
-               l->o->build, l->o->build, l->o->build, l->o->build, l->o->build, l->o->build, l->o->libraries);
-    good = shell((const char *)c.data);
-    conf_free(&c);
-    return good;
-}
-
-/* First line that the replay printed, or what it said on stderr, as a CSV field. */
-static void take_reason(mutant *m, const conf_process *p)
-{
-    snprintf(m->by, sizeof m->by, "%s%.120s", p->end == CONF_CRASHED ? "crash " : p->end == CONF_HUNG ? "hang " : "",
-             (const char *)(p->answer.size > 0 ? p->answer.data : p->complaint.data));
-    for (char *c = m->by; *c != '\0'; c++) {
-        if (*c == '\n') {
-            *c = '\0';
-            break;
-        }
-        if (*c == ',' || *c == '"' || *c == '|')
-            *c = ' ';
-    }
-}
-
-static void replay(const list *l, mutant *m, const char *folder)
-{
-    const conf_process_options o = { "exec", "TED4_KERNEL=plain", l->o->timeout, (uint64_t)4 << 30 };
-    char          program[CONF_PATH];
-    const char   *argv[] = { program, "replay", "--stop", "--suite", l->o->vectors != NULL ? l->o->vectors : l->o->suite, NULL };
-    conf_process  p, *one[1] = { &p };
-
-    conf_path(program, "%s/ted4conf", folder);
-    conf_process_start(&p, &o, argv);
-    while (conf_process_wait(one, 1, 100) < 0)
-        ;
-    snprintf(m->verdict, sizeof m->verdict, "%s", p.end == CONF_ENDED && p.code == 0 ? "survived" : "killed");
-    take_reason(m, &p);
-    conf_process_free(&p);
-}
-
-static void try_one(const list *l, mutant *m)
+/* A folder of its own for a build. */
+static void make_folder(char *folder)
 {
     const char *tmp = getenv("TMPDIR");
-    char        folder[CONF_PATH], command[CONF_PATH + 16];
 
     conf_path(folder, "%s/ted4mutant-XXXXXX", tmp != NULL ? tmp : "/tmp");
     if (mkdtemp(folder) == NULL)
         conf_die("%s: cannot be made", folder);
-    if (!write_changed(m, folder))
-        snprintf(m->verdict, sizeof m->verdict, "stale");
-    else if (!build(l, m, folder))
-        snprintf(m->verdict, sizeof m->verdict, "no compile");
-    else
-        replay(l, m, folder);
-    add_result(l, m);
-    fprintf(stderr, "%s: %s %s\n", m->id, m->verdict, m->by);
+}
+
+static void remove_folder(const char *folder)
+{
+    char command[CONF_PATH + 16];
+
     snprintf(command, sizeof command, "rm -rf '%s'", folder);
     (void)shell(command);
 }
 
-/* Every jobs-th mutant without result, in a process of its own. */
-static void work(const list *l)
+/* The program's log of compiling and linking, for who has to find out why. */
+static void show_log(const char *folder)
 {
-    for (int j = 0; j < l->o->jobs; j++) {
+    char       path[CONF_PATH];
+    conf_bytes log;
+
+    conf_path(path, "%s/log", folder);
+    if (conf_read(path, &log))
+        fputs((const char *)log.data, stderr);
+    conf_free(&log);
+}
+
+/* Words of a shell: the sources that a change of that file touches. */
+static void add_sources(const campaign *c, const char *file, conf_bytes *b)
+{
+    if (strcmp(file + strlen(file) - 2, ".h") == 0)
+        conf_print(b, "(cd %s && grep -l '%s' ref-decoder/norm/*.d ref-decoder/read/*.d ref-decoder/recon/*.d | sed 's/\\.d$/.c/'); ",
+                   c->o->build, file);
+    else
+        conf_print(b, "echo %s; ", file);
+}
+
+/* Compiles what n files that lie in folder touch, and links. */
+static int build(const campaign *c, const conf_mutant *m, size_t n, const char *folder)
+{
+    const char *const b = c->o->build;
+    conf_bytes        command = { NULL, 0, 0 };
+    int               good;
+
+    conf_print(&command, "d='%s'; for s in $({ ", folder);
+    for (size_t i = 0; i < n; i++)
+        if (i == 0 || strcmp(m[i].file, m[i - 1].file) != 0)
+            add_sources(c, m[i].file, &command);
+    conf_print(&command, "} | sort -u); do from=$s; [ -f \"$d/$s\" ] && from=$d/$s; %s -I\"$d/ref-decoder\" -Iref-decoder -Iref-encoder -w -c $from "
+               "-o \"$d/$(echo $s | tr / _).o\" 2>>\"$d/log\" || exit 1; done; ", c->o->compile);
+    conf_print(&command, "cc -fopenmp \"$d\"/*.o %s/conformance/tool/*.o %s/conformance/tolerance/class_t.o %s/tests/spec/eval_*.o "
+               "$(ls %s/ref-decoder/tool/*.o | grep -v /ted4) %s/libted4enc.a %s/libted4dec.a -o \"$d/ted4conf\" %s 2>>\"$d/log\"",
+               b, b, b, b, b, b, c->o->libraries);
+    good = shell((const char *)command.data);
+    conf_free(&command);
+    return good;
+}
+
+/* Sends the program in folder through the suite; p is to be freed. */
+static void replay(const campaign *c, const char *folder, conf_process *p)
+{
+    const conf_process_options o = { "exec", "TED4_KERNEL=plain", c->o->timeout, (uint64_t)4 << 30 };
+    char          program[CONF_PATH];
+    const char   *argv[] = { program, "replay", "--stop", "--names", "--suite", c->o->vectors != NULL ? c->o->vectors : c->o->suite, NULL };
+    conf_process *one[1] = { p };
+
+    conf_path(program, "%s/ted4conf", folder);
+    conf_process_start(p, &o, argv);
+    while (conf_process_wait(one, 1, 100) < 0)
+        ;
+}
+
+/* As a CSV field and in a table. */
+static void take_reason(conf_mutant *m, const char *how, const char *text)
+{
+    snprintf(m->by, sizeof m->by, "%s%.120s", how, text);
+    m->by[strcspn(m->by, "\n")] = '\0';
+    for (char *c = m->by; *c != '\0'; c++)
+        if (*c == ',' || *c == '"' || *c == '|')
+            *c = ' ';
+}
+
+/* Survived when the whole suite passed; killed when something went wrong at a vector. Anything else is no result, and ends the program. */
+static void judge(conf_mutant *m, conf_process *p)
+{
+    char how[32] = "", *said = (char *)p->complaint.data, *rest, *line, *id;
+
+    if (p->end == CONF_ENDED && p->code == 0) {
+        snprintf(m->verdict, sizeof m->verdict, "survived");
+        return;
+    }
+    if (p->end != CONF_ENDED)
+        snprintf(how, sizeof how, "%s ", p->end == CONF_CRASHED ? "crash" : p->end == CONF_HUNG ? "hang" : "endless output");
+    else if (p->code != 1)
+        snprintf(how, sizeof how, "exit %d ", p->code);
+    for (line = strtok_r((char *)p->answer.data, "\n", &rest); line != NULL; line = strtok_r(NULL, "\n", &rest))
+        if (strncmp(line, "at ", 3) == 0)
+            snprintf(m->vector, sizeof m->vector, "%s", line + 3);
+        else if (how[0] == '\0' && (id = strstr(line, m->vector)) != NULL && strncmp(id + strlen(m->vector), ": ", 2) == 0)
+            said = id + strlen(m->vector) + 2;
+    if (m->vector[0] == '\0' || (p->end == CONF_CRASHED && p->code == SIGKILL))
+        conf_die("%s: the runner was ended, or came to no vector: %s%s", m->id, how, said);
+    snprintf(m->verdict, sizeof m->verdict, "killed");
+    take_reason(m, how, said);
+}
+
+static void put_file(const char *folder, const char *file, const conf_bytes *b)
+{
+    char path[CONF_PATH];
+
+    conf_path(path, "%s/%s", folder, file);
+    conf_write(path, b->data, b->size);
+}
+
+/* The unchanged program, made of all files that mutants change. A time limit that is near to what it takes would count slowness as a kill. */
+static void baseline(const campaign *c)
+{
+    char         folder[CONF_PATH];
+    conf_process p;
+
+    make_folder(folder);
+    for (size_t i = 0; i < c->list.n; i++) {
+        conf_bytes b;
+
+        if (conf_read(c->list.m[i].file, &b))
+            put_file(folder, c->list.m[i].file, &b);
+        conf_free(&b);
+    }
+    if (!build(c, c->list.m, c->list.n, folder)) {
+        show_log(folder);
+        conf_die("the unchanged program cannot be built in the way of mutants");
+    }
+    replay(c, folder, &p);
+    if (p.end != CONF_ENDED || p.code != 0)
+        conf_die("the unchanged program does not pass: %s%s", (const char *)p.answer.data, (const char *)p.complaint.data);
+    if (SLACK * p.ms > 1000 * c->o->timeout)
+        conf_die("the unchanged program takes %.0f s: mutants need a time limit of %d times that", p.ms / 1000, SLACK);
+    fprintf(stderr, "unchanged: passes in %.1f s\n", p.ms / 1000);
+    conf_process_free(&p);
+    remove_folder(folder);
+}
+
+static void try_one(const campaign *c, conf_mutant *m)
+{
+    char         folder[CONF_PATH];
+    conf_bytes   changed = { NULL, 0, 0 };
+    conf_process p;
+
+    make_folder(folder);
+    (void)conf_mutant_apply(m, &changed);
+    put_file(folder, m->file, &changed);
+    conf_free(&changed);
+    if (!build(c, m, 1, folder)) {
+        snprintf(m->verdict, sizeof m->verdict, "no compile");
+    } else {
+        replay(c, folder, &p);
+        judge(m, &p);
+        conf_process_free(&p);
+    }
+    remove_folder(folder);
+    conf_mutant_results_add(&c->list, m, c->o->suite);
+    fprintf(stderr, "%s: %s %s %s\n", m->id, m->verdict, m->vector, m->by);
+}
+
+static int is_due(const campaign *c, const conf_mutant *m)
+{
+    return m->verdict[0] == '\0' && (c->o->only == NULL || strncmp(m->id, c->o->only, strlen(c->o->only)) == 0);
+}
+
+/* Every jobs-th mutant without result, in a process of its own. */
+static void work(const campaign *c)
+{
+    int status, bad = 0;
+
+    for (int j = 0; j < c->o->jobs; j++) {
         const pid_t pid = fork();
         int         turn = 0;
 
@@ -234,46 +214,50 @@ static void work(const list *l)
             conf_die("fork");
         if (pid > 0)
             continue;
-        for (size_t i = 0; i < l->n; i++)
-            if (l->m[i].verdict[0] == '\0' && (l->o->only == NULL || strncmp(l->m[i].id, l->o->only, strlen(l->o->only)) == 0)
-                && turn++ % l->o->jobs == j)
-                try_one(l, &l->m[i]);
+        for (size_t i = 0; i < c->list.n; i++)
+            if (is_due(c, &c->list.m[i]) && turn++ % c->o->jobs == j)
+                try_one(c, &c->list.m[i]);
         _exit(0);
     }
-    while (wait(NULL) > 0)
-        ;
+    while (wait(&status) > 0)
+        bad |= !WIFEXITED(status) || WEXITSTATUS(status) != 0;
+    if (bad)
+        conf_die("not all mutants could be run");
 }
 
-static size_t count(const list *l, const char *verdict)
+static void print_mutants(const conf_mutant_list *l, conf_bytes *b)
 {
-    size_t n = 0;
-
+    conf_print(b, "## Survivors\n\n");
     for (size_t i = 0; i < l->n; i++)
-        n += strcmp(l->m[i].verdict, verdict) == 0;
-    return n;
-}
-
-static int write_report(const list *l)
-{
-    const size_t killed = count(l, "killed"), survived = count(l, "survived"), judged = killed + survived;
-    conf_bytes   b = { NULL, 0, 0 };
-    char         path[CONF_PATH];
-    const int    good = judged >= LEAST_MUTANTS && 100 * killed >= LEAST_PERCENT * judged && judged == l->n;
-
-    conf_print(&b, "# Mutants\n\nFaults seeded into the reference decoder, one at a time (`mutants.list`), against the published vectors alone: `make "
-               "conformance-mutants`.\nThe plain kernels are used, so that `norm/` is what is tested. Results are kept in `mutants.csv` and found again as long as "
-               "a mutant's text is the same.\n\n| | |\n|---|---|\n| mutants | %zu |\n| judged | %zu |\n| killed | %zu (%.1f %%) |\n| survived | %zu |\n"
-               "| do not compile, or stale | %zu |\n| not run yet | %zu |\n\n", l->n, judged, killed,
-               judged > 0 ? 100.0 * (double)killed / (double)judged : 0.0, survived, count(l, "no compile") + count(l, "stale"), count(l, ""));
-    conf_print(&b, "## Survivors\n\n");
+        if (strcmp(l->m[i].verdict, "survived") == 0 || strcmp(l->m[i].verdict, "no compile") == 0)
+            conf_print(b, "* %s (%s, %s): `%s` for `%s`%s%s\n", l->m[i].id, l->m[i].file, l->m[i].verdict, l->m[i].to, l->m[i].from,
+                       l->m[i].why[0] != '\0' ? ": " : "", l->m[i].why);
+    conf_print(b, "\n## Not run since what their results stood on has changed\n\n");
     for (size_t i = 0; i < l->n; i++)
-        if (strcmp(l->m[i].verdict, "survived") == 0 || strcmp(l->m[i].verdict, "no compile") == 0 || strcmp(l->m[i].verdict, "stale") == 0)
-            conf_print(&b, "* %s (%s, %s): `%s` for `%s`\n", l->m[i].id, l->m[i].file, l->m[i].verdict, l->m[i].to, l->m[i].from);
-    conf_print(&b, "\n## Killed, and by what first\n\n| mutant | file | by |\n|---|---|---|\n");
+        if (l->m[i].verdict[0] == '\0')
+            conf_print(b, "* %s (%s)\n", l->m[i].id, l->m[i].file);
+    conf_print(b, "\n## Killed, and by what first\n\n| mutant | file | vector | what was wrong |\n|---|---|---|---|\n");
     for (size_t i = 0; i < l->n; i++)
         if (strcmp(l->m[i].verdict, "killed") == 0)
-            conf_print(&b, "| %s | %s | %s |\n", l->m[i].id, l->m[i].file, l->m[i].by);
-    conf_path(path, "%s/MUTANTS.md", l->o->suite);
+            conf_print(b, "| %s | %s | %s | %s |\n", l->m[i].id, l->m[i].file, l->m[i].vector, l->m[i].by);
+}
+
+static int write_report(const campaign *c)
+{
+    const conf_mutant_list *l = &c->list;
+    const size_t killed = conf_mutant_count(l, "killed"), survived = conf_mutant_count(l, "survived"), judged = killed + survived;
+    const int    good = judged >= LEAST_MUTANTS && 100 * killed >= LEAST_PERCENT * judged && judged == l->n;
+    conf_bytes   b = { NULL, 0, 0 };
+    char         path[CONF_PATH];
+
+    conf_print(&b, "# Mutants\n\nFaults seeded into the reference decoder, one at a time (`mutants.list`), against the published vectors alone: `make "
+               "conformance-mutants`, which first sees that\nthe unchanged program, built and run in the same way, passes. The plain kernels are used, so that "
+               "`norm/` is what is tested. Results are kept in `mutants.csv` for as long as what they\nstand on is the same "
+               "([README](README.md#mutants)); `ted4conf mutants --check` says how many still hold.\n\n| | |\n|---|---|\n| mutants | %zu |\n| judged | %zu "
+               "|\n| killed | %zu (%.1f %%) |\n| survived | %zu |\n| do not compile | %zu |\n| not run | %zu |\n\n", l->n, judged, killed,
+               judged > 0 ? 100.0 * (double)killed / (double)judged : 0.0, survived, conf_mutant_count(l, "no compile"), conf_mutant_count(l, ""));
+    print_mutants(l, &b);
+    conf_path(path, "%s/MUTANTS.md", c->o->suite);
     conf_write(path, b.data, b.size);
     conf_free(&b);
     printf("%zu mutants, %zu killed, %zu survived, %zu not judged: %s\n", l->n, killed, survived, l->n - judged,
@@ -281,16 +265,48 @@ static int write_report(const list *l)
     return good;
 }
 
+/* Changes that were tried and are no faults: each says why, and is still one that could be made. */
+static void check_equivalents(const char *suite)
+{
+    conf_mutant_list l = { .m = NULL };
+    char             path[CONF_PATH];
+
+    conf_path(path, "%s/mutants-equivalent.list", suite);
+    conf_mutant_list_read(&l, path);
+    for (size_t i = 0; i < l.n; i++)
+        if (l.m[i].why[0] == '\0')
+            conf_die("%s: %s: why?", path, l.m[i].id);
+    conf_mutant_list_free(&l);
+}
+
+/* What has to be run: the unchanged program first. */
+static void run_due(campaign *c)
+{
+    for (size_t i = 0; i < c->list.n; i++)
+        if (is_due(c, &c->list.m[i])) {
+            baseline(c);
+            work(c);
+            conf_mutant_results_read(&c->list, c->o->suite);
+            return;
+        }
+}
+
 int conf_mutants(const conf_mutant_options *o)
 {
-    list l = { .o = o };
-    int  good;
+    campaign c = { .o = o };
+    char     path[CONF_PATH];
+    int      good = 1;
 
-    read_list(&l);
-    read_results(&l);
-    work(&l);
-    read_results(&l);
-    good = write_report(&l);
-    free(l.m);
+    conf_path(path, "%s/mutants.list", o->suite);
+    conf_mutant_list_read(&c.list, path);
+    check_equivalents(o->suite);
+    conf_mutant_results_read(&c.list, o->suite);
+    if (o->check) {
+        printf("%zu mutants, %zu with a result that holds\n", c.list.n, c.list.n - conf_mutant_count(&c.list, ""));
+    } else {
+        run_due(&c);
+        good = write_report(&c);
+    }
+    conf_mutant_list_free(&c.list);
     return !good;
 }

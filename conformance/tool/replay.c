@@ -60,7 +60,7 @@ static void judge(const json_t *capabilities, const json_t *d, const conf_bytes 
     json_decref(answer);
 }
 
-int conf_replay(const char *suite, const char *list, int stop, int validate)
+int conf_replay(const conf_replay_options *o)
 {
     json_t     *capabilities = json_pack("{s:i, s:[s,s,s,s,s,s], s:s, s:[], s:[s,s]}", "max_level", 31, "tiers", "T0", "T1", "T2", "T3",
                                          "T4", "T5", "class", "X", "declines", "knobs", "max_alloc_total", "max_work");
@@ -68,19 +68,23 @@ int conf_replay(const char *suite, const char *list, int stop, int validate)
     conf_entry *e;
     size_t      n, n_bad = 0, n_run = 0;
 
-    conf_path(path, "%s/vectors", suite);
-    e = conf_suite_load(path, list, &n);
+    conf_path(path, "%s/vectors", o->suite);
+    e = conf_suite_load(path, o->list, &n);
     if (n > 0)
         qsort(e, n, sizeof *e, by_size);        /* what is quick first */
-    for (size_t i = 0; i < n && !(stop && n_bad > 0); i++) {
+    for (size_t i = 0; i < n && !(o->stop && n_bad > 0); i++) {
         conf_verdict v = { CONF_MISSING, "no descriptor" };
         conf_bytes   file = { NULL, 0, 0 };
 
         if (e[i].descriptor != NULL && !conf_read(e[i].file, &file))
             continue;                   /* made on demand */
+        if (o->names) {
+            printf("at %s\n", e[i].id);
+            fflush(stdout);             /* whoever listens wants to know which one it crashes at */
+        }
         if (e[i].descriptor != NULL)
             judge(capabilities, e[i].descriptor, &file, &v);
-        if (validate && v.outcome == CONF_PASS)
+        if (o->validate && v.outcome == CONF_PASS)
             judge_validator(e[i].descriptor, &file, &v);
         n_run++;
         if (v.outcome != CONF_PASS) {

@@ -3,8 +3,14 @@
 #ifndef CONF_REPLAY_H
 #define CONF_REPLAY_H
 
-/* stop: at the first failure. validate: the validator (spec 3.6) too, which has to find the errors that are expected and no others in valid files.
- * Exit code: 0 all pass, 1 not. */
-int conf_replay(const char *suite, const char *list, int stop, int validate);
+typedef struct {
+    const char *suite, *list;   /* list: as conf_suite_load takes it */
+    int         stop;           /* at the first failure */
+    int         validate;       /* the validator (spec 3.6) too, which has to find the errors that are expected and no others in valid files */
+    int         names;          /* a line "at ID" before each vector */
+} conf_replay_options;
+
+/* Exit code: 0 all pass, 1 not. */
+int conf_replay(const conf_replay_options *o);
 
 #endif

@@ -181,12 +181,13 @@ static int cover(int argc, char **argv)
     return optind < argc ? usage("cover takes no operand") : conf_cover_run(&o);
 }
 
-enum { REPLAY_SUITE, REPLAY_LIST, REPLAY_STOP, REPLAY_VALIDATE, REPLAY_HELP, REPLAY_VERSION, REPLAY_OPTIONS };
+enum { REPLAY_SUITE, REPLAY_LIST, REPLAY_STOP, REPLAY_NAMES, REPLAY_VALIDATE, REPLAY_HELP, REPLAY_VERSION, REPLAY_OPTIONS };
 
 static const ted4_argument replay_table[REPLAY_OPTIONS] = {
     [REPLAY_SUITE]   = { 's', "suite", "DIR", "folder with vectors/. Default conformance" },
     [REPLAY_LIST]    = { 'l', "list", "FILE", "only the vectors that it names, one a line" },
     [REPLAY_STOP]    = { 0, "stop", NULL, "at the first failure" },
+    [REPLAY_NAMES]   = { 0, "names", NULL, "say each vector's id before its turn" },
     [REPLAY_VALIDATE] = { 0, "validate", NULL, "also ask our validator" },
     [REPLAY_HELP]    = TED4_ARGUMENT_HELP,
     [REPLAY_VERSION] = TED4_ARGUMENT_VERSION,
@@ -196,23 +197,24 @@ static int replay(int argc, char **argv)
 {
     static const ted4_command command = { "ted4conf replay", "[options]", "Our own decoder against the suite, in one process.", replay_table,
                                           REPLAY_OPTIONS, "Exit codes: 0 all pass, 1 not, 3 usage.\n", NULL };
-    const char *value, *suite = "conformance", *list = NULL;
-    int         stop = 0, validate = 0;
+    conf_replay_options o = { .suite = "conformance" };
+    const char         *value;
 
     for (int i; (i = ted4_arguments_next(&command, argc, argv, &value)) != TED4_ARGUMENTS_END;)
         switch (i) {
         case TED4_ARGUMENTS_BAD:  return USAGE;
         case TED4_ARGUMENTS_DONE: return 0;
-        case REPLAY_SUITE: suite = value; break;
-        case REPLAY_LIST:  list = value; break;
-        case REPLAY_STOP:  stop = 1; break;
-        default:           validate = 1;
+        case REPLAY_SUITE: o.suite = value; break;
+        case REPLAY_LIST:  o.list = value; break;
+        case REPLAY_STOP:  o.stop = 1; break;
+        case REPLAY_NAMES: o.names = 1; break;
+        default:           o.validate = 1;
         }
-    return optind < argc ? usage("replay takes no operand") : conf_replay(suite, list, stop, validate);
+    return optind < argc ? usage("replay takes no operand") : conf_replay(&o);
 }
 
-enum { MUTANTS_SUITE, MUTANTS_VECTORS, MUTANTS_BUILD, MUTANTS_COMPILE, MUTANTS_LIBRARIES, MUTANTS_ONLY, MUTANTS_JOBS, MUTANTS_TIMEOUT, MUTANTS_HELP,
-       MUTANTS_VERSION, MUTANTS_OPTIONS };
+enum { MUTANTS_SUITE, MUTANTS_VECTORS, MUTANTS_BUILD, MUTANTS_COMPILE, MUTANTS_LIBRARIES, MUTANTS_ONLY, MUTANTS_JOBS, MUTANTS_TIMEOUT, MUTANTS_CHECK,
+       MUTANTS_HELP, MUTANTS_VERSION, MUTANTS_OPTIONS };
 
 static const ted4_argument mutants_table[MUTANTS_OPTIONS] = {
     [MUTANTS_SUITE]     = { 's', "suite", "DIR", "folder with mutants.list and vectors/. Default conformance" },
@@ -223,6 +225,7 @@ static const ted4_argument mutants_table[MUTANTS_OPTIONS] = {
     [MUTANTS_ONLY]      = { 0, "only", "ID", "mutants whose id begins so" },
     [MUTANTS_JOBS]      = { 'j', "jobs", "N", "mutants at a time. Default 1" },
     [MUTANTS_TIMEOUT]   = { 't', "timeout", "SECONDS", "for one mutant's replay. Default 300" },
+    [MUTANTS_CHECK]     = { 0, "check", NULL, "run and write nothing; do the lists fit the sources, and how many results hold?" },
     [MUTANTS_HELP]      = TED4_ARGUMENT_HELP,
     [MUTANTS_VERSION]   = TED4_ARGUMENT_VERSION,
 };
@@ -231,8 +234,9 @@ static int mutants(int argc, char **argv)
 {
     static const ted4_command command = { "ted4conf mutants", "[options]", "Seeded faults in the decoder, which the vectors have to find (make "
                                           "conformance-mutants).", mutants_table, MUTANTS_OPTIONS,
-                                          "Exit codes: 0 enough are killed, 1 not, 3 usage.\n", NULL };
-    conf_mutant_options o = { "conformance", NULL, "build", "cc -std=c11 -O1", "-lpng -ljpeg -ljansson -lxxhash -lz -lm", NULL, 1, 300 };
+                                          "Exit codes: 0 enough are killed, 1 not, 3 usage, a list that does not fit the sources, or an unchanged decoder "
+                                          "that does not pass.\n", NULL };
+    conf_mutant_options o = { "conformance", NULL, "build", "cc -std=c11 -O1", "-lpng -ljpeg -ljansson -lxxhash -lz -lm", NULL, 1, 300, 0 };
     const char         *value;
 
     for (int i; (i = ted4_arguments_next(&command, argc, argv, &value)) != TED4_ARGUMENTS_END;)
@@ -246,6 +250,7 @@ static int mutants(int argc, char **argv)
         case MUTANTS_LIBRARIES: o.libraries = value; break;
         case MUTANTS_ONLY:      o.only = value; break;
         case MUTANTS_JOBS:      o.jobs = (int)number(value, 64); break;
+        case MUTANTS_CHECK:     o.check = 1; break;
         default:                o.timeout = (double)number(value, 86400);
         }
     return optind < argc || o.jobs < 1 ? usage("mutants takes no operand") : conf_mutants(&o);
