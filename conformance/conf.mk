@@ -32,14 +32,21 @@ conformance-cover: $B/ted4conf
 	@mkdir -p out
 	$B/ted4conf cover --html out/coverage.html --json out/coverage.json
 
-# Branches of norm/ and read/ that they take, in one process. Files made on demand come from another build: what makes them takes branches too.
+# Branches of norm/ and read/ that they take, in one process, and whether tests take those that only a failing allocation or a caller's mistake can take. Files made
+# on demand come from another build: what makes them takes branches too. Of the large ones one: but for its bytes a lower level would do.
+BRANCH_TEST = build-gcov/tests/test_starved
 conformance-branches: $B/ted4conf
-	$(MAKE) B=build-gcov CC=gcc OPT=-O0 CFLAGS=--coverage LDFLAGS=--coverage build-gcov/ted4conf
+	$(MAKE) B=build-gcov CC=gcc OPT=-O0 CFLAGS=--coverage LDFLAGS=--coverage build-gcov/ted4conf $(BRANCH_TEST)
 	$B/ted4conf gen --demand -o build-gcov/suite/vectors
+	$B/ted4conf gen --demand --large --only LVL-2-file-size -o build-gcov/suite/vectors
 	find build-gcov -name '*.gcda' -delete
-	build-gcov/ted4conf replay --validate --suite build-gcov/suite
+	build-gcov/ted4conf replay --validate --ways --suite build-gcov/suite
 	TED4_KERNEL=plain build-gcov/ted4conf replay --suite build-gcov/suite
-	sh conformance/branches.sh build-gcov
+	sh conformance/branches.sh build-gcov >build-gcov/suite.branches
+	find build-gcov -name '*.gcda' -delete
+	$(BRANCH_TEST)
+	sh conformance/branches.sh build-gcov >build-gcov/tests.branches
+	awk -f conformance/branches.awk conformance/branches-excluded.txt build-gcov/suite.branches build-gcov/tests.branches
 
 # Several threads under ThreadSanitizer: trained streams, and files of nine tiles.
 conformance-threads: $B/ted4conf

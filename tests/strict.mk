@@ -2,7 +2,7 @@
 $B/tests/test_lenient: $(patsubst %,$B/fuzz/%.o,mend parse)
 $B/tests/test_canonical $B/tests/test_hostile: $(patsubst %,$B/fuzz/%.o,mend parse)
 $B/tests/test_validate: $(patsubst %,$B/fuzz/%.o,mend parse mutate fields)
-$B/tests/test_advise: $(patsubst %,$B/fuzz/%.o,mend parse)
+$B/tests/test_advise $B/tests/test_starved: $(patsubst %,$B/fuzz/%.o,mend parse)
 
 # Class T (spec E): thresholds by rule, and a judge of records.
 CLASS_T_OBJ = $B/conformance/tolerance/class_t.o $(SPEC_EVALS:%=$B/tests/spec/eval_%.o)

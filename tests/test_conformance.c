@@ -109,6 +109,16 @@ static void our_decoder_conforms(void **state)
     assert_non_null(strstr(last, " 0 failed, 0 without answer, 0 missing, 0 declined"));
 }
 
+/* With a caller's threads, with a trace, without options, and in a scene as encoders make it. */
+static void ways_agree(void **state)
+{
+    char last[1024];
+
+    (void)state;
+    if (conf(last, sizeof last, "replay --ways") != 0)
+        fail_msg("%s", said);
+}
+
 /* Runs a bad decoder over a list of vectors; the closing line has to hold what. */
 static void expect_of(const char *list, const char *way, int code, const char *what)
 {
@@ -253,6 +263,7 @@ int main(void)
         cmocka_unit_test(nothing_is_left_out),
         cmocka_unit_test(truncation_at_every_byte),
         cmocka_unit_test(our_decoder_conforms),
+        cmocka_unit_test(ways_agree),
         cmocka_unit_test(lies),
         cmocka_unit_test(class_t),
         cmocka_unit_test(lenient_mode),

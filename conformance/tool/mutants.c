@@ -95,7 +95,7 @@ static void replay(const campaign *c, const char *folder, conf_process *p)
 {
     const conf_process_options o = { "exec", "TED4_KERNEL=plain", c->o->timeout, (uint64_t)4 << 30 };
     char          program[CONF_PATH];
-    const char   *argv[] = { program, "replay", "--stop", "--names", "--suite", c->o->vectors != NULL ? c->o->vectors : c->o->suite, NULL };
+    const char   *argv[] = { program, "replay", "--stop", "--names", "--ways", "--suite", c->o->vectors != NULL ? c->o->vectors : c->o->suite, NULL };
     conf_process *one[1] = { p };
 
     conf_path(program, "%s/ted4conf", folder);

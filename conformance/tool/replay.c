@@ -7,6 +7,7 @@
 #include <string.h>
 #include "answer.h"
 #include "judge.h"
+#include "ways.h"
 
 static int by_size(const void *a, const void *b)
 {
@@ -48,6 +49,16 @@ static void judge_validator(const json_t *d, const conf_bytes *file, conf_verdic
     }
 }
 
+static void judge_ways(const json_t *d, const conf_bytes *file, conf_verdict *v)
+{
+    const char *const way = conf_ways_differ(file, conf_knobs_of(d));
+
+    if (way != NULL) {
+        v->outcome = CONF_FAIL;
+        snprintf(v->reason, sizeof v->reason, "something else %s", way);
+    }
+}
+
 /* In lenient mode, as far as that is to give the same. */
 static void judge(const json_t *capabilities, const json_t *d, const conf_bytes *file, conf_verdict *v)
 {
@@ -86,6 +97,8 @@ int conf_replay(const conf_replay_options *o)
             judge(capabilities, e[i].descriptor, &file, &v);
         if (o->validate && v.outcome == CONF_PASS)
             judge_validator(e[i].descriptor, &file, &v);
+        if (o->ways && v.outcome == CONF_PASS)
+            judge_ways(e[i].descriptor, &file, &v);
         n_run++;
         if (v.outcome != CONF_PASS) {
             n_bad++;

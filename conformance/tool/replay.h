@@ -7,6 +7,7 @@ typedef struct {
     const char *suite, *list;   /* list: as conf_suite_load takes it */
     int         stop;           /* at the first failure */
     int         validate;       /* the validator (spec 3.6) too, which has to find the errors that are expected and no others in valid files */
+    int         ways;           /* as other callers may decode (ways.h) */
     int         names;          /* a line "at ID" before each vector */
 } conf_replay_options;
 

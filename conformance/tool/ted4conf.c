@@ -181,13 +181,14 @@ static int cover(int argc, char **argv)
     return optind < argc ? usage("cover takes no operand") : conf_cover_run(&o);
 }
 
-enum { REPLAY_SUITE, REPLAY_LIST, REPLAY_STOP, REPLAY_NAMES, REPLAY_VALIDATE, REPLAY_HELP, REPLAY_VERSION, REPLAY_OPTIONS };
+enum { REPLAY_SUITE, REPLAY_LIST, REPLAY_STOP, REPLAY_NAMES, REPLAY_WAYS, REPLAY_VALIDATE, REPLAY_HELP, REPLAY_VERSION, REPLAY_OPTIONS };
 
 static const ted4_argument replay_table[REPLAY_OPTIONS] = {
     [REPLAY_SUITE]   = { 's', "suite", "DIR", "folder with vectors/. Default conformance" },
     [REPLAY_LIST]    = { 'l', "list", "FILE", "only the vectors that it names, one a line" },
     [REPLAY_STOP]    = { 0, "stop", NULL, "at the first failure" },
     [REPLAY_NAMES]   = { 0, "names", NULL, "say each vector's id before its turn" },
+    [REPLAY_WAYS]    = { 0, "ways", NULL, "also with threads, with a trace, without options: nothing may change" },
     [REPLAY_VALIDATE] = { 0, "validate", NULL, "also ask our validator" },
     [REPLAY_HELP]    = TED4_ARGUMENT_HELP,
     [REPLAY_VERSION] = TED4_ARGUMENT_VERSION,
@@ -208,6 +209,7 @@ static int replay(int argc, char **argv)
         case REPLAY_LIST:  o.list = value; break;
         case REPLAY_STOP:  o.stop = 1; break;
         case REPLAY_NAMES: o.names = 1; break;
+        case REPLAY_WAYS:  o.ways = 1; break;
         default:           o.validate = 1;
         }
     return optind < argc ? usage("replay takes no operand") : conf_replay(&o);

@@ -1,0 +1,136 @@
+/* ways.c - see ways.h.
+ * SPDX-License-Identifier: BSD-2-Clause */
+#include "ways.h"
+
+#include <string.h>
+#include "norm/scene.h"
+
+/* What came of a file. Hashes are 0 where there is nothing to hash. */
+typedef struct {
+    ted4_salvage what;
+    uint8_t      scene[16], copy[16], records[16];
+} outcome;
+
+/* A caller's threads that take the last index first. */
+static void backwards(void *user, size_t n, void (*body)(void *arg, size_t i), void *arg)
+{
+    (void)user;
+    while (n-- > 0)
+        body(arg, n);
+}
+
+static void listen(void *user, size_t offset, const char *element, int64_t index, int64_t value)
+{
+    (void)user, (void)offset, (void)element, (void)index, (void)value;
+}
+
+static void throw_away(void *user, const void *bytes, size_t size)
+{
+    (void)user, (void)bytes, (void)size;
+}
+
+static void overhear(void *user, const ted4_finding *f)
+{
+    (void)user, (void)f;
+}
+
+static void take_records(const ted4_scene *s, const ted4_parallel *threads, outcome *r)
+{
+    const ted4_options o = { .parallel = threads, .max_work = UINT64_MAX };
+    const ted4_query   q = { 0, 1, { 0, 0, 0 } };
+    ted4_recon        *recon;
+    ted4_gaussians     g;
+
+    if (ted4_recon_new(&recon, s, threads != NULL ? &o : NULL) != TED4_OK)
+        conf_die("no memory");
+    if (ted4_recon_query(recon, &q, threads, &g) == TED4_OK)
+        ted4_gaussians_hash(&g, r->records);
+    ted4_recon_free(recon);
+}
+
+/* The hash of the same integers in a scene as encoders fill it (15.2). */
+static void take_copy(const ted4_scene *s, outcome *r)
+{
+    const size_t      n = s->head.n_anchors;
+    ted4_scene *const copy = ted4_scene_new(&s->head, NULL);
+
+    if (copy == NULL)
+        conf_die("no memory");
+    memcpy(copy->position, s->position, 3 * n * sizeof *s->position);
+    memcpy(copy->dynamic, s->dynamic, n);
+    memcpy(copy->offset_bits, s->offset_bits, n * sizeof *s->offset_bits);
+    for (int t = 0; t < TED4_TYPES; t++)
+        if (s->shape.dim[t] > 0) {
+            memcpy(copy->step_index[t], s->step_index[t], n);
+            memcpy(copy->symbol[t], s->symbol[t], n * s->shape.dim[t] * sizeof *s->symbol[t]);
+        }
+    ted4_scene_hash(copy, r->copy);
+    ted4_scene_free(copy);
+}
+
+static outcome decode(const conf_bytes *file, const ted4_options *o)
+{
+    const ted4_parallel *const threads = o != NULL ? o->parallel : NULL;
+    outcome     r = { .scene = { 0 } };
+    ted4_scene *s;
+    ted4_info   info;
+
+    (void)ted4_decode_lenient(file->data, file->size, o, &s, &r.what);
+    if (s == NULL)
+        return r;
+    ted4_scene_info(s, &info);
+    memcpy(r.scene, info.hash, sizeof r.scene);
+    take_copy(s, &r);
+    take_records(s, threads, &r);
+    ted4_scene_free(s);
+    return r;
+}
+
+static int same_error(ted4_error a, ted4_error b)
+{
+    return a.code == b.code && a.offset == b.offset;
+}
+
+static int same(const outcome *a, const outcome *b)
+{
+    return same_error(a->what.verdict, b->what.verdict) && same_error(a->what.stop, b->what.stop) && a->what.n_tiles == b->what.n_tiles
+        && a->what.tiles_declared == b->what.tiles_declared && a->what.anchors_declared == b->what.anchors_declared
+        && memcmp(a->scene, b->scene, sizeof a->scene) == 0 && memcmp(a->records, b->records, sizeof a->records) == 0;
+}
+
+/* Nobody wants to know why, and tiers, advice and salvage come without options, or with them. */
+static int verdict_stays(const conf_bytes *file, const ted4_options *o, ted4_status verdict)
+{
+    ted4_scene *s;
+    ted4_error  e;
+    int         good = ted4_decode(file->data, file->size, o, &s, NULL) == verdict;
+
+    ted4_scene_free(s);
+    return good && ted4_validate(file->data, file->size, o, overhear, NULL) == verdict
+        && ted4_dump_syntax(file->data, file->size, o, throw_away, NULL, &e) == verdict;
+}
+
+const char *conf_ways_differ(const conf_bytes *file, conf_knobs knobs)
+{
+    static const ted4_parallel threads = { backwards, NULL };
+    ted4_options  o = { .max_bytes = knobs.memory, .max_work = knobs.work };
+    const outcome plain = decode(file, &o);
+    outcome       other;
+
+    if (memcmp(plain.scene, plain.copy, sizeof plain.scene) != 0)
+        return "of a copy";
+    o.trace = listen;
+    other = decode(file, &o);
+    if (!same(&plain, &other))
+        return "with a trace";
+    o.trace = NULL;
+    o.parallel = &threads;
+    other = decode(file, &o);
+    if (knobs.memory == 0 && !same(&plain, &other))         /* threads take memory */
+        return "with threads";
+    if (knobs.memory > 0 || knobs.work > 0)
+        return NULL;
+    other = decode(file, NULL);
+    return !same(&plain, &other) ? "without options"
+         : !verdict_stays(file, &o, plain.what.verdict.code) || !verdict_stays(file, NULL, plain.what.verdict.code) ? "by another function" : NULL;
+}
