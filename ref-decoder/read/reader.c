@@ -32,7 +32,8 @@ static const uint8_t *take(ted4_coder *c, size_t size)
             ted4_fail(&c->error, TED4_E_CON_PAYLOAD_SIZE, c->pos);
         return nothing(c);
     }
-    p = r->data + c->pos;       /* after the checks: data may be NULL when nothing is there */
+    /* Not before the checks: data may be NULL when nothing is there. */
+    p = r->data + c->pos;
     c->pos += size;
     return p;
 }
