@@ -100,7 +100,7 @@ for mood in no-build no-suite wrong; do
     rows "no_rows_$mood"
 done
 mood=slow; fresh
-expect unchanged_slow 3 'mutants need a time limit of 4 times that' mutants -t 2
+expect unchanged_slow 3 'mutants need a time limit of 4 times that' mutants -t 3
 mood=no-vector; fresh
 expect came_to_no_vector 3 'gt: the runner was ended, or came to no vector' mutants --only gt
 rows no_rows_no_vector

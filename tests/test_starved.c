@@ -246,7 +246,7 @@ static void wrong_masks(void **state)
         s->dynamic[3] = coded ? 2 : 0;
         expect_refused(s);
         s->dynamic[3] = dynamic;
-        s->offset_bits[3] = coded ? 1 << h.n_offsets : 1;
+        s->offset_bits[3] = (uint16_t)(coded ? 1u << h.n_offsets : 1u);
         expect_refused(s);
         s->offset_bits[3] = bits;
         assert_int_equal(ted4_dump_tier(s, 3, NULL, throw_away, NULL), TED4_OK);
