@@ -21,16 +21,19 @@ function has_lambda(s, v, value,    i) {
     return 0
 }
 
+# What a variant is compared with: the whole method, or, with the choice of capacity, the whole method with that.
+function base_of(v) { return v ~ /_auto$/ ? "whole_auto" : "whole" }
+
 # Bytes at the same PSNR, percent, of run t against the whole method's curve; "" where that does not reach.
 function rate_change(t,    x, y, n, at) {
-    n = load_curve(scene[t], "whole", x, y)
+    n = load_curve(scene[t], base_of(variant[t]), x, y)
     at = curve_at(x, y, n, get(t, "psnr") + 0)
     return at == "" ? "" : percent_of(log(get(t, "bytes")) - at)
 }
 
 # PSNR at the same bytes, dB, likewise.
 function psnr_change(t,    x, y, n, at) {
-    n = load_curve(scene[t], "whole", x, y)
+    n = load_curve(scene[t], base_of(variant[t]), x, y)
     curve_sort(y, x, n)
     at = curve_at(y, x, n, log(get(t, "bytes")))
     return at == "" ? "" : get(t, "psnr") - at
@@ -38,8 +41,8 @@ function psnr_change(t,    x, y, n, at) {
 
 # The point of the whole method that is nearest in quality; "" when there is none.
 function nearest(t,    i, best, d, u, far) {
-    for (i = 1; i <= n_runs[scene[t], "whole"]; i++) {
-        u = runs[scene[t], "whole", i]
+    for (i = 1; i <= n_runs[scene[t], base_of(variant[t])]; i++) {
+        u = runs[scene[t], base_of(variant[t]), i]
         if (!has(u))
             continue
         d = size_of(get(u, "psnr") - get(t, "psnr"))
@@ -75,7 +78,7 @@ function compare(s, v, change,    i, t, u, r, p, n_r, n_p, d_p, d_b, na, nb, xa,
     }
     change["rate"] = n_r ? change["rate"] / n_r : ""
     change["psnr"] = n_p ? change["psnr"] / n_p : ""
-    na = load_curve(s, "whole", xa, ya, v)
+    na = load_curve(s, base_of(v), xa, ya, v)
     nb = load_curve(s, v, xb, yb)
     change["gap"] = percent_of(curve_gap(xa, ya, na, xb, yb, nb))
     change["cubic"] = percent_of(bjontegaard(xa, ya, na, xb, yb, nb))

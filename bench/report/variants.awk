@@ -4,7 +4,7 @@
 BEGIN {
     family_name[1] = "Deformation"; family_of["concat"] = family_of["inr"] = family_of["nomotion"] = family_of["static"] = family_of["plain"] = family_of["inr_paper"] = 1
     family_name[2] = "Time"; family_of["noactive"] = family_of["noprogress"] = family_of["notempmask"] = family_of["nosprouts"] = family_of["recipe"] = family_of["hardmask"] = 2
-    family_name[3] = "Rate"; family_of["factorised"] = family_of["factorised_flat"] = family_of["noautoreg"] = family_of["nooffmask"] = family_of["linscale"] = 3
+    family_name[3] = "Rate"; family_of["factorised"] = family_of["factorised_flat"] = family_of["factorised_auto"] = family_of["noautoreg"] = family_of["nooffmask"] = family_of["linscale"] = 3
     family_name[4] = "Colour"; family_of["noview"] = family_of["fullview"] = family_of["nocolour"] = 4
     family_name[N_FAMILIES = 5] = "Other"
     # The paper's table of ablations: Neu3D, highest rate, at the same lambda; the prior's figure is a BD-rate.
@@ -29,7 +29,7 @@ function variant_section(    k, s) {
     say("*Within seeds*: the difference in PSNR at equal bytes is less than the spread of three seeds of the whole method on that scene. *factorised* is")
     say("one Gaussian a component for all anchors and keeps the autoregression; *inr* has layers as wide as those of the whole method's F_deform, *inr_paper*")
     say("the paper's; *hardmask* pushes the temporal mask ten times as hard; *recipe* leaves out what the paper does not have: sprouts, seeded transients and the")
-    say("probe (none of these rows has the choice of capacity).")
+    say("probe. None of these rows has the choice of capacity but *factorised_auto*, which is compared with the whole method with that choice, *whole_auto*.")
     for (k = 1; k <= n_scenes; k++) {
         s = scenes[k]
         if (has_variants(s)) {
@@ -101,7 +101,7 @@ function own_options(t,    w, n, i, text, base, part) {
     n = split(options[t], w, " ")
     for (i = 1; i <= n; i++) {
         part = w[i]
-        if (w[i] ~ /^--(set|preset|lambda|seed|downscale)$/)
+        if (w[i] ~ /^--(set|preset|lambda|seed|downscale|capacity)$/)
             part = w[i] " " w[++i]
         if (part !~ /^--lambda/ && index(base, " " part " ") == 0)
             text = join(text, " ", part)
@@ -209,6 +209,7 @@ function variant_bars(s) {
     variant_bar(s, "inr_paper", "bank against inr, the paper's network (8 layers of 256)", "bank better")
     variant_bar(s, "inr", "bank against inr, layers as wide as F_deform's (the paper has no such row)", "bank better")
     variant_bar(s, "factorised", "inr prior against factorised prior", "factorised costs at least 10 % more rate")
+    variant_bar(s, "factorised_auto", "inr prior against factorised prior, both with the choice of capacity, as by default", "factorised costs at least 10 % more rate")
     variant_bar(s, "noactive", "no activation", "costs rate or quality")
     variant_bar(s, "noprogress", "no progressive training", "costs quality")
     variant_bar(s, "static", "no deformation, nor activation, as in the paper's row", "far worse (here: at least 1 dB)")
@@ -217,21 +218,21 @@ function variant_bars(s) {
 
 function variant_bar(s, v, what, limit,    c, rate, ok, how) {
     compare(s, v, c)
-    how = sweep("'" s "-" v "-*' '" s "-whole-*'")
-    if (c["runs"] == 0 || c["runs"] < n_runs[s, v] || count_runs(s, "whole") < n_runs[s, "whole"]) {
+    how = sweep("'" s "-" v "-*' '" s "-" base_of(v) "-*'")
+    if (c["runs"] == 0 || c["runs"] < n_runs[s, v] || count_runs(s, base_of(v)) < n_runs[s, base_of(v)]) {
         bar(1, s ": " what, limit, "", "", how)
         return
     }
     rate = one_rate(c)
     ok = c["worse"] == "" ? "?" : c["worse"]
-    if (v == "factorised")
+    if (v ~ /^factorised/)
         ok = rate == "" ? (c["near_psnr"] <= 0 ? c["near_rate"] >= 10 : "?") : rate >= 10
     if (v == "static")
         ok = (c["psnr"] != "" ? c["psnr"] : c["near_psnr"]) <= -1
     # Another prior begins where the whole method's stage 1 ends: seeds do not come between.
-    if (v != "factorised" && within_seeds(s, c))
+    if (v !~ /^factorised/ && within_seeds(s, c))
         ok = seeded_verdict(s, v)
     bar(1, s ": " what, limit, "`" own_options(runs[s, v, 1]) "`: rate at equal PSNR " signed(rate, 1, " %") ", PSNR at equal bytes " \
-        signed(c["psnr"], 2, " dB") "; nearest " near_words(c) mark_of(tags_of(s, v) " " tags_of(s, "whole")) \
+        signed(c["psnr"], 2, " dB") "; nearest " near_words(c) mark_of(tags_of(s, v) " " tags_of(s, base_of(v))) \
         (within_seeds(s, c) ? "; within seeds" : "") seeded_words(s, v), ok, how)
 }
