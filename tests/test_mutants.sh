@@ -33,7 +33,7 @@ echo '2 run, 0 failed'
 END
 chmod +x "$out/bin/cc"
 cp bench/sources.awk "$out/bench"
-export PATH="$out/bin:$PATH"
+export PATH="$out/bin:$PATH" TMPDIR="$out"            # folders of campaigns that end early stay
 
 fresh() {
     rm -rf "$out/ref-decoder" "$out/suite"
