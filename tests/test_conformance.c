@@ -230,7 +230,7 @@ static void missing_vectors(void **state)
     char last[1024];
 
     (void)state;
-    assert_int_equal(conf(last, sizeof last, "run -q -l conformance/tests/absent.txt -d %s/ted4dec", build()), 1);
+    assert_int_equal(conf(last, sizeof last, "run -q" MEMORY " -l conformance/tests/absent.txt -d %s/ted4dec", build()), 1);
     assert_non_null(strstr(last, " 1 passed, 0 failed, 0 without answer, 1 missing"));
 }
 
