@@ -2,20 +2,17 @@
 # not have does its work. Used by bench/report.sh. Runs SCENE-recipe_VARIANT-2, SCENE-recipe_VARIANT_seed2-2, ... of the group "recipe", against SCENE-recipe-2, ...
 # SPDX-License-Identifier: BSD-2-Clause
 
-function recipe_section(    k, j, s, v) {
+function recipe_section(    k, n) {
     say("")
     say("### The paper's recipe alone")
     say("")
     say("The same comparison without what the paper does not have: no sprouts, transients or probe. Each seed against the recipe at the same seed and λ, as in the")
     say("paper's table: PSNR, bytes. *Mean*: of the three.")
     table("scene,changed,seed 1,seed 2,seed 3,mean,paper")
-    for (k = 1; k <= n_scenes; k++)
-        for (j = 1; j <= n_variants; j++) {
-            s = scenes[k]
-            v = variants[j]
-            if (v ~ /^recipe_/ && v !~ /_seed/ && in_group(seeded_tag(s, v, 1), "recipe"))
-                recipe_row(s, v)
-        }
+    n = seeded_runs("recipe")
+    for (k = 1; k <= n; k++)
+        if (seeded_variant[k] != "recipe")
+            recipe_row(seeded_scene[k], seeded_variant[k])
 }
 
 function recipe_row(s, v,    j, t, u, psnr, rate, sums, text, changed, tags) {

@@ -4,6 +4,17 @@
 
 function seeded_tag(s, v, j) { return s "-" v (j == 1 ? "" : "_seed" j) "-2" }
 
+# The runs with a seed 1 of a group: seeded_scene[1..n], seeded_variant[1..n]; n.
+function seeded_runs(group,    k, j, n) {
+    for (k = 1; k <= n_scenes; k++)
+        for (j = 1; j <= n_variants; j++)
+            if (variants[j] !~ /_seed/ && in_group(seeded_tag(scenes[k], variants[j], 1), group)) {
+                seeded_scene[++n] = scenes[k]
+                seeded_variant[n] = variants[j]
+            }
+    return n + 0
+}
+
 # PSNR of run t less that of run u, had both as many bytes: along the curve of the whole method. "" where one is missing or the curve does not reach.
 function change_between(t, u,    of_t, of_u) {
     of_t = has(t) ? psnr_change(t) : ""
@@ -52,23 +63,21 @@ function seeded_tags(s, v,    j, tags) {
     return tags
 }
 
-function seeded_section(    k, j, s, v, change) {
+function seeded_section(    k, n, s, v, change) {
     say("")
     say("### Small differences at three seeds")
     say("")
     say("Variants that differ from the whole method by no more than seeds do, each seed against the whole method at the same seed, λ 0.002: PSNR at equal")
     say("bytes, along the curve of the whole method. Negative: the variant is worse.")
     table("scene,variant,seed 1,seed 2,seed 3,mean dB,verdict")
-    for (k = 1; k <= n_scenes; k++)
-        for (j = 1; j <= n_variants; j++) {
-            s = scenes[k]
-            v = variants[j]
-            if (v ~ /_seed/ || !in_group(seeded_tag(s, v, 1), "seeded"))
-                continue
-            if (seeded_changes(s, v, change))
-                row(s "|" v mark_of(seeded_tags(s, v)) "|" signed(change[1], 2, "") "|" signed(change[2], 2, "") "|" signed(change[3], 2, "") "|" \
-                    signed(change["mean"], 2, "") "|" seeded_word(change))
-            else
-                row_missing(s "|" v)
-        }
+    n = seeded_runs("seeded")
+    for (k = 1; k <= n; k++) {
+        s = seeded_scene[k]
+        v = seeded_variant[k]
+        if (seeded_changes(s, v, change))
+            row(s "|" v mark_of(seeded_tags(s, v)) "|" signed(change[1], 2, "") "|" signed(change[2], 2, "") "|" signed(change[3], 2, "") "|" \
+                signed(change["mean"], 2, "") "|" seeded_word(change))
+        else
+            row_missing(s "|" v)
+    }
 }
