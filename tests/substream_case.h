@@ -40,7 +40,7 @@ static inline void symbols_free(symbols *s)
     free(s->k);
 }
 
-/* One substream behind its size. The caller frees w. */
+/* One substream behind its size. *w is the caller's: ted4_writer_finish. */
 static inline void symbols_write(ted4_writer *w, const symbols *s)
 {
     uint32_t size;

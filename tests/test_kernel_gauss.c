@@ -81,7 +81,7 @@ static void test_same(void **state)
 
                 symbols_write(&w, &s);
                 compare(w.out.data, w.out.size, &s, many);
-                ted4_buffer_free(&w.out);
+                ted4_writer_finish(&w);
                 symbols_free(&s);
             }
 }
@@ -105,7 +105,7 @@ static void test_outside(void **state)
         assert_int_equal(compare(w.out.data, w.out.size, &s, many), TED4_OK);
         s.mu[k] += 256 * sign;
         assert_int_equal(compare(w.out.data, w.out.size, &s, many), TED4_E_ENT_SYMBOL_RANGE);
-        ted4_buffer_free(&w.out);
+        ted4_writer_finish(&w);
         symbols_free(&s);
     }
 }
@@ -133,7 +133,7 @@ static void test_damaged(void **state)
             w.out.data[k] = (uint8_t)(left >> 8 * k);
         compare(w.out.data, w.out.size - cut, &s, many);
     }
-    ted4_buffer_free(&w.out);
+    ted4_writer_finish(&w);
     symbols_free(&s);
 }
 
@@ -160,7 +160,7 @@ static void test_takes(void **state)
     assert_true(done > 1000 && done % 8 == 0);
     assert_memory_equal(k, s.k, done * sizeof *k);
     free(k);
-    ted4_buffer_free(&w.out);
+    ted4_writer_finish(&w);
     symbols_free(&s);
 }
 

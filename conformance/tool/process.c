@@ -40,8 +40,6 @@ static _Noreturn void child(const conf_process_options *o, const char *const *ar
     dup2(out, 1);
     dup2(err, 2);
     setrlimit(RLIMIT_CORE, &core);
-    if (o->memory > 0)
-        setrlimit(RLIMIT_AS, &limit);
     if (o->environment != NULL && strchr(o->environment, '=') != NULL) {
         char *const variable = conf_copy(o->environment), *const value = strchr(variable, '=');
 
@@ -55,6 +53,8 @@ static _Noreturn void child(const conf_process_options *o, const char *const *ar
     list[n++] = name;
     for (; *argv != NULL && n + 1 < MAX_ARGUMENTS; argv++)
         list[n++] = conf_copy(*argv);
+    if (o->memory > 0)          /* of the program: last, for a runner with sanitizers has more already */
+        setrlimit(RLIMIT_AS, &limit);
     execv("/bin/sh", list);
     _exit(127);
 }
