@@ -137,6 +137,13 @@ check seeds "$page" 'kitchen: 0.250 dB, 1.00 % of bytes | met |'
 check seeded "$page" '| kitchen | concat† | -0.58 | -0.58 | -1.00 | -0.72 | worse at every seed |' '| kitchen | noview† | -0.50 | +0.20 | +0.50 | +0.07 | changes sign with the seed |' \
     '| kitchen | nocolour | not run yet |' 'PSNR at equal bytes -0.58 dB; nearest +0.00 dB, +50.0 %†; at three seeds -0.58, -0.58, -1.00 dB'
 check recipe "$page" '| kitchen | inr | -0.50 dB, +10.0 % | +0.25 dB, +0.0 % | -1.00 dB, +2.0 % | -0.42 dB, +4.0 % |' '| kitchen | concat | not run yet |'
+# rows_are NAME HEADING VARIANTS: the second column of the table under that heading.
+rows_are() {
+    there=$(awk -F " *[|] *" -v heading="### $2" '/^#/ { on = $0 == heading } on && $2 == "kitchen" { sub("†", "", $3); printf "%s ", $3 }' "$page")
+    if [ "$there" = "$3 " ]; then ok "$1"; else fail "$1" "rows of $there"; fi
+}
+rows_are seeded_rows 'Small differences at three seeds' 'concat noview nocolour'
+rows_are recipe_rows "The paper's recipe alone" 'inr concat'
 check kept "$page" '15.0 ms; 1.90x;' '(`make test`); A machine | met |' \
     '| preset fast: 31.0 frames/s (best 33.9); preset paper: 29.5 frames/s (best 39.9); A machine | **missed** |' \
     '| [train.md](train.md) | a training step by its parts, 2 threads | not run yet |'
