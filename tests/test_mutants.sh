@@ -84,6 +84,8 @@ ran; sed -i 's/x > 1/x > 2/' "$out/suite/mutants.list"
 holds text 2
 ran; echo '{"id":"V-three"}' >"$out/suite/vectors/V-three.json"
 holds suite_grows 2
+mutants --only none >/dev/null 2>&1
+check no_share_of_some "$out/suite/MUTANTS.md" '| killed | 2 |' '| not run | 1 |'
 ran; echo '{"id":"V-two","rules":["R-CON-001"],"intent":"more"}' >"$out/suite/vectors/V-two.json"
 holds what_is_said_of_vectors 3
 ran; echo '{"id":"V-two","bytes":1}' >"$out/suite/vectors/V-two.json"

@@ -248,14 +248,17 @@ static int write_report(const campaign *c)
     const size_t killed = conf_mutant_count(l, "killed"), survived = conf_mutant_count(l, "survived"), judged = killed + survived;
     const int    good = judged >= LEAST_MUTANTS && 100 * killed >= LEAST_PERCENT * judged && judged == l->n;
     conf_bytes   b = { NULL, 0, 0 };
-    char         path[CONF_PATH];
+    char         path[CONF_PATH], share[16] = "";
 
+    /* Kills outlast survivals, so that a share of some would flatter. */
+    if (judged == l->n && judged > 0)
+        snprintf(share, sizeof share, " (%.1f %%)", 100.0 * (double)killed / (double)judged);
     conf_print(&b, "# Mutants\n\nFaults seeded into the reference decoder, one at a time (`mutants.list`), against the published vectors alone: `make "
                "conformance-mutants`, which first sees that\nthe unchanged program, built and run in the same way, passes. The plain kernels are used, so that "
                "`norm/` is what is tested. Results are kept in `mutants.csv` for as long as what they\nstand on is the same "
                "([README](README.md#mutants)); `ted4conf mutants --check` says how many still hold.\n\n| | |\n|---|---|\n| mutants | %zu |\n| judged | %zu "
-               "|\n| killed | %zu (%.1f %%) |\n| survived | %zu |\n| do not compile | %zu |\n| not run | %zu |\n\n", l->n, judged, killed,
-               judged > 0 ? 100.0 * (double)killed / (double)judged : 0.0, survived, conf_mutant_count(l, "no compile"), conf_mutant_count(l, ""));
+               "|\n| killed | %zu%s |\n| survived | %zu |\n| do not compile | %zu |\n| not run | %zu |\n\n", l->n, judged, killed, share, survived,
+               conf_mutant_count(l, "no compile"), conf_mutant_count(l, ""));
     print_mutants(l, &b);
     conf_path(path, "%s/MUTANTS.md", c->o->suite);
     conf_write(path, b.data, b.size);
