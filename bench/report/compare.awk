@@ -22,7 +22,8 @@ function has_lambda(s, v, value,    i) {
 }
 
 # What a variant is compared with: the whole method; with the choice of capacity (VARIANT_auto), or at the preset's full length (VARIANT_long), that with the same.
-function base_of(v) { return v ~ /_auto$/ ? "whole_auto" : v ~ /_long$/ ? "whole_long" : "whole" }
+# Where the global against names a variant, that one.
+function base_of(v) { return against != "" ? against : v ~ /_auto$/ ? "whole_auto" : v ~ /_long$/ ? "whole_long" : "whole" }
 
 # Bytes at the same PSNR, percent, of run t against the whole method's curve; "" where that does not reach.
 function rate_change(t,    x, y, n, at) {
