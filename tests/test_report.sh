@@ -45,8 +45,8 @@ run recipe   recipe_concat      kitchen 2 - --set sprouts=0 --set motion=2
 END
 
 # On kitchen the whole method doubles its bytes with each dB, so its curve is a straight line of the logarithm. concat costs half as much again
-# everywhere: +50 %. factorised_flat_auto and factorised_long cost 15 and 5 % more
-# than whole_auto and whole_long. inr_paper costs nothing, but four times the bytes of whole_long, and three times its training. inr costs nothing at 28 dB and twice the bytes at 30 dB: the mean of the logarithm is that of the square root of 2. noactive
+# everywhere: +50 %. factorised_flat_auto and factorised_long cost 15 and 5 % more than whole_auto and whole_long. inr_paper costs nothing, but four times the bytes
+# of whole_long, and three times its training. inr costs nothing at 28 dB and twice the bytes at 30 dB: the mean of the logarithm is that of the square root of 2. noactive
 # costs 2^((p - 27)^3 / 27): the mean of the cubic over 27 to 30 dB is a quarter, 2^0.25 = 1.1892; on straight lines it would be 1.2123. fullview
 # ends in two points close to each other, where one cubic through all four would swing far out; piecewise cubics, integrated numerically by another program, give -1.36 %. nomotion
 # is 2 dB below at equal bytes. noautoreg and noprogress cost 2^0.1, a tenth of a dB, less than the seeds' 0.25 dB,
