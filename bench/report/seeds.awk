@@ -1,22 +1,26 @@
 # seeds.awk - the spread that the seed alone makes: row 11 of the issue. Used by bench/report.sh.
 # SPDX-License-Identifier: BSD-2-Clause
 
-BEGIN { n_seeds = split("whole seed2 seed3", seed_variant, " ") }
+# The whole method's run with seed j, and with how many seeds a scene wants it.
+function whole_tag(s, j) { return s "-" (j == 1 ? "whole" : "seed" j) "-2" }
+function seed_count(s,    n) {
+    for (n = 1; wants(s, "seed" (n + 1), "seed"); n++)
+        ;
+    return n
+}
 
-# The whole method's run with seed j.
-function whole_tag(s, j) { return s "-" seed_variant[j] "-2" }
-
-function seed_section(    k, j, s, t, text, tags, spread) {
+function seed_section(    k, j, n, s, t, text, tags, spread) {
     say("")
     say("## Seeds")
     say("")
-    say("The same command with seeds 1, 2 and 3. Spread: greatest less least.")
+    say("The same command with seeds 1, 2, 3 and so on. Spread: greatest less least of the first three.")
     table("scene,run,PSNR dB,SSIM,bytes,anchors")
     for (k = 1; k <= n_scenes; k++) {
         s = scenes[k]
-        if (!wants(s, "seed2", "seed"))
+        n = seed_count(s)
+        if (n == 1)
             continue
-        for (j = 1; j <= n_seeds; j++) {
+        for (j = 1; j <= n; j++) {
             t = whole_tag(s, j)
             tags = tags " " t
             if (has(t))
@@ -35,11 +39,11 @@ function seed_section(    k, j, s, t, text, tags, spread) {
         sweep("seed kitchen-whole-2 fair-whole-2"))
 }
 
-# Greatest less least of the three, by column; share: of the bytes, percent of the least. 0 when one is missing.
+# Greatest less least of seeds 1 to 3, by column, so that scenes with more of them compare; share: of the bytes, percent of the least. 0 when one is missing.
 function seed_spread(s, spread,    j, c, t, n, name, low, high, v) {
     n = split("psnr ssim bytes anchors", name, " ")
     for (c = 1; c <= n; c++) {
-        for (j = 1; j <= n_seeds; j++) {
+        for (j = 1; j <= 3; j++) {
             t = whole_tag(s, j)
             if (!has(t))
                 return 0
@@ -58,17 +62,17 @@ function seed_spread(s, spread,    j, c, t, n, name, low, high, v) {
 function seed_chart(    k, s, n, list, j, t, any) {
     any = 0
     for (k = 1; k <= n_scenes; k++)
-        if (wants(scenes[k], "seed2", "seed")) {
+        if (seed_count(scenes[k]) > 1) {
             list[++n] = scenes[k]
-            any += count_runs(scenes[k], "seed2") + count_runs(scenes[k], "seed3")
+            any += count_runs(scenes[k], "seed2")
         }
     if (any) {
-        chart_open("seeds", 900, int((n + 1) / 2) * 330 + 8, "Three seeds beside the curve of the whole method")
+        chart_open("seeds", 900, int((n + 1) / 2) * 330 + 8, "Seeds beside the curve of the whole method")
         for (k = 1; k <= n; k++) {
             s = list[k]
             plot_begin()
-            plot_series("seeds 2 and 3", "#d55e00", "diamond", "-")
-            for (j = 2; j <= n_seeds; j++) {
+            plot_series("other seeds", "#d55e00", "diamond", "-")
+            for (j = 2; j <= seed_count(s); j++) {
                 t = whole_tag(s, j)
                 if (has(t))
                     plot_point(get(t, "bytes") / 1000, get(t, "psnr"), "")
@@ -78,5 +82,5 @@ function seed_chart(    k, s, n, list, j, t, any) {
         }
         svg_close()
     }
-    show_chart("seeds", "Three seeds at λ 0.002 beside what λ does")
+    show_chart("seeds", "Seeds at λ 0.002 beside what λ does")
 }

@@ -226,7 +226,8 @@ function variant_bars(s) {
     variant_bar(s, "noactive", "no activation", "costs rate or quality")
     variant_bar(s, "noprogress", "no progressive training", "costs quality")
     variant_bar(s, "static", "no deformation, nor activation, as in the paper's row", "far worse (here: at least 1 dB)")
-    variant_bar(s, "nomotion", "no deformation, all else kept (the paper has no such row)", "far worse (here: worse at every seed)")
+    variant_bar(s, "nomotion", "no deformation, all else kept (the paper has no such row)", "worse")
+    recipe_bars(s)
 }
 
 function variant_bar(s, v, what, limit,    c, rate, ok, how) {
@@ -250,11 +251,11 @@ function variant_bar(s, v, what, limit,    c, rate, ok, how) {
         (within_seeds(s, c) ? "; within seeds" : "") seeded_words(s, v), ok, how)
 }
 
-# For a variant whose steps take much longer: against the whole method at the preset's full length, with the minutes of training of the largest files of both.
+# For a variant whose steps take much longer: against the whole method at the preset's full length, with the core minutes of training of the largest files of both.
 function slow_variant_bar(s, v, what, limit,    ours, its) {
-    its = get(runs[s, v, 1], "train_s")
-    ours = get(runs[s, "whole_long", 1], "train_s")
+    its = get(runs[s, v, 1], "cpu_s")
+    ours = get(runs[s, "whole_long", 1], "cpu_s")
     against = "whole_long"
-    variant_bar(s, v, what " (" fixed(ours == "" ? "" : ours / 60, 0) " against " fixed(its == "" ? "" : its / 60, 0) " minutes)", limit)
+    variant_bar(s, v, what " (" fixed(ours == "" ? "" : ours / 60, 0) " against " fixed(its == "" ? "" : its / 60, 0) " core minutes)", limit)
     against = ""
 }
