@@ -1,10 +1,8 @@
-/* strict_dense.h - spec 7.1, 12.2: one dense layer over a block of anchors, faster twins of ted4_strict_dense_plain (recon/strict.h), bit for bit equal, and which one
+/* strict_dense.h - spec 7.1, 12.2: one dense layer over a block of 32 anchors, faster twins of ted4_strict_dense_plain (recon/strict.h), bit for bit equal, and which one
  * this machine takes. Depends on nothing.
  * SPDX-License-Identifier: BSD-2-Clause */
 #ifndef TED4_STRICT_DENSE_H
 #define TED4_STRICT_DENSE_H
-
-enum { TED4_ROW = 32 };                 /* lanes of a row: anchors of a block */
 
 /* w: [out][in], b: [out], borrowed. relu: y = max(0, y). */
 typedef struct {

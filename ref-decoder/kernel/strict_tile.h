@@ -11,7 +11,7 @@
 typedef float   vf __attribute__((vector_size(VECTOR)));
 typedef int32_t vi __attribute__((vector_size(VECTOR)));
 
-enum { VECS = TED4_ROW * sizeof(float) / VECTOR };      /* vectors of a row */
+enum { VECS = 32 * sizeof(float) / VECTOR };    /* vectors of a row: one value of each anchor */
 
 static inline __attribute__((always_inline)) void
 dense_tile(const ted4_strict_layer *l, unsigned first, const int n,

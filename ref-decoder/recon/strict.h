@@ -11,6 +11,8 @@
 #include "base/bytes.h"
 #include "kernel/strict_dense.h"
 
+enum { TED4_ROW = 32 };                 /* lanes of a row */
+
 #define TED4_LOG2E 0x1.715476p+0f
 
 /* spec 12.2 max: b where a > b is false, so a NaN in b goes through. */
