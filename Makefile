@@ -16,9 +16,10 @@ CFLAGS_ALL = -std=c11 -D_POSIX_C_SOURCE=200809L $(OPT) -g $(WARN) -Iref-decoder 
         -fopenmp -MMD -MP $(CFLAGS)
 LIBS  = -lpng -ljpeg -ljansson -lxxhash -lz -lm
 
-DEC_SRC  = $(sort $(wildcard $(addprefix ref-decoder/,base/*.c norm/*.c recon/*.c read/*.c render/*.c kernel/*.c)))
+DEC_SRC  = $(sort $(wildcard $(addprefix ref-decoder/,base/*.c norm/*.c recon/*.c read/*.c kernel/*.c)))
+DRAW_SRC = $(sort $(wildcard ref-decoder/render/*.c))
 ENC_SRC  = $(sort $(wildcard $(addprefix ref-encoder/,write/*.c train/*.c data/*.c eval/*.c kernel/*.c)))
-FREE_OBJ = $(patsubst %.c,$B/%.o,$(wildcard ref-decoder/render/*.c ref-encoder/train/*.c ref-encoder/kernel/*.c ref-encoder/eval/*.c))
+FREE_OBJ = $(patsubst %.c,$B/%.o,$(DRAW_SRC) $(wildcard ref-encoder/train/*.c ref-encoder/kernel/*.c ref-encoder/eval/*.c))
 DEC_TOOL = $(filter-out ref-decoder/tool/ted4%.c,$(wildcard ref-decoder/tool/*.c))
 ENC_TOOL = $(filter-out ref-encoder/tool/ted4%.c,$(wildcard ref-encoder/tool/*.c))
 DEC_PROG = $(patsubst ref-decoder/tool/%.c,%,$(wildcard ref-decoder/tool/ted4*.c))
@@ -39,19 +40,23 @@ $B/ref-decoder/kernel/%_avx2.o: FPFLAGS = $(STRICT) -mavx2
 $B/ref-decoder/kernel/%_avx512.o: FPFLAGS = $(STRICT) -mavx512f -mavx512bw -mavx512vl -mprefer-vector-width=512
 
 $B/libted4dec.a: $(DEC_SRC:%.c=$B/%.o)
+$B/libted4render.a: $(DRAW_SRC:%.c=$B/%.o)
 $B/libted4enc.a: $(ENC_SRC:%.c=$B/%.o)
 $B/lib%.a:
 	@rm -f $@
 	$(AR) rcsD $@ $^
 
-# Link order says the architecture: a decoder tool sees the decoder library only.
-$(addprefix $B/,$(DEC_PROG)): $B/%: $B/ref-decoder/tool/%.o $(DEC_TOOL:%.c=$B/%.o) $B/libted4dec.a
+# Link order says the architecture: a decoder tool sees the decoder library, and the informative one that draws what it gives; only this one may use libpng and
+# malloc. The encoder stands on both.
+DEC_LIB  = $B/libted4render.a $B/libted4dec.a
+ENC_LIB  = $B/libted4enc.a $(DEC_LIB)
+$(addprefix $B/,$(DEC_PROG)): $B/%: $B/ref-decoder/tool/%.o $(DEC_TOOL:%.c=$B/%.o) $(DEC_LIB)
 	$(CC) -fopenmp $(LDFLAGS) $^ -o $@ $(LIBS)
-$(addprefix $B/,$(ENC_PROG)): $B/%: $B/ref-encoder/tool/%.o $(ENC_TOOL:%.c=$B/%.o) $(DEC_TOOL:%.c=$B/%.o) $B/libted4enc.a $B/libted4dec.a
+$(addprefix $B/,$(ENC_PROG)): $B/%: $B/ref-encoder/tool/%.o $(ENC_TOOL:%.c=$B/%.o) $(DEC_TOOL:%.c=$B/%.o) $(ENC_LIB)
 	$(CC) -fopenmp $(LDFLAGS) $^ -o $@ $(LIBS)
-$B/ted4scene: $(patsubst %.c,$B/%.o,$(wildcard tests/scenes/*.c)) $B/libted4enc.a $B/libted4dec.a
+$B/ted4scene: $(patsubst %.c,$B/%.o,$(wildcard tests/scenes/*.c)) $(ENC_LIB)
 	$(CC) -fopenmp $(LDFLAGS) $^ -o $@ $(LIBS)
-$B/tests/%: $B/tests/%.o $(DEC_TOOL:%.c=$B/%.o) $B/libted4enc.a $B/libted4dec.a
+$B/tests/%: $B/tests/%.o $(DEC_TOOL:%.c=$B/%.o) $(ENC_LIB)
 	$(CC) -fopenmp $(LDFLAGS) $(filter %.o,$^) $(filter %.a,$^) -o $@ -lcmocka $(LIBS)
 $B/tests/%: tests/%.sh
 	@mkdir -p $(@D)
@@ -59,9 +64,10 @@ $B/tests/%: tests/%.sh
 
 $(addprefix $B/tests/test_,scene scene_sets failure_scenes layouts): $(patsubst %.c,$B/%.o,$(wildcard tests/scenes/ray_*.c))
 $B/tests/test_run_log: $B/ref-encoder/tool/run_log.o
+$B/tests/test_install: | $(PROGS) $B/ted4conf $B/ted4tolerance
 
-# Prints each test program it runs and a closing line of totals.
-test: $(TESTS) $(PROGS)
+# Lints take seconds. Prints each test program it runs and a closing line of totals.
+test: lint $(TESTS) $(PROGS)
 	@TED4_BUILD=$(abspath $B) TED4_DATA=$(abspath $(TED4_DATA)) sh tests/run.sh $(TESTS)
 
 # Scene, training, file, decoder in a fresh process, held-out views, picture sheet: in out/demo.
@@ -81,7 +87,7 @@ asan:
 	$(MAKE) test B=build-asan OPT='-O1' CFLAGS='-fsanitize=address,undefined -fno-sanitize-recover=all' \
 	    LDFLAGS='-fsanitize=address,undefined'
 
--include tests/spec/spec.mk tests/strict.mk bench/bench.mk fuzz/fuzz.mk conformance/conf.mk conformance/reader/reader.mk conformance/cross/cross.mk
+include tests/spec/spec.mk tests/strict.mk bench/bench.mk fuzz/fuzz.mk conformance/conf.mk conformance/reader/reader.mk conformance/cross/cross.mk
 
 DEPS     = gcc libc6-dev libcmocka-dev libjansson-dev libjpeg62-turbo-dev libpng-dev libxxhash-dev python3 zlib1g-dev
 DEPS_DEV = clang-14 llvm-14 libclang-rt-14-dev libomp-14-dev afl++ ffmpeg pandoc lcov valgrind \
@@ -96,11 +102,12 @@ deps:
 deps-dev: deps
 	@$(call INSTALL_DEBIAN,$(DEPS_DEV))
 
+# The other libraries have no public header.
 PREFIX  ?= /usr/local
 install: all
 	install -d $(DESTDIR)$(PREFIX)/bin $(DESTDIR)$(PREFIX)/lib $(DESTDIR)$(PREFIX)/include/ted4/base
-	install $(addprefix $B/,$(DEC_PROG) $(ENC_PROG)) $(DESTDIR)$(PREFIX)/bin
-	install -m 644 $B/libted4dec.a $B/libted4enc.a $(DESTDIR)$(PREFIX)/lib
+	install $(PROGS) $B/ted4conf $B/ted4tolerance $(DESTDIR)$(PREFIX)/bin
+	install -m 644 $B/libted4dec.a $(DESTDIR)$(PREFIX)/lib
 	install -m 644 ref-decoder/ted4.h $(DESTDIR)$(PREFIX)/include/ted4
 	install -m 644 ref-decoder/base/parallel.h ref-decoder/base/status.h ref-decoder/base/status.def \
 	    $(DESTDIR)$(PREFIX)/include/ted4/base

@@ -21,7 +21,7 @@ bench-raster: $B/bench/bench_raster $B/plain/bench_raster
 	$(KEEP) bench/raster.md $B/bench/bench_raster $B/plain/bench_raster
 
 $B/bench/bench_render.o: FPFLAGS = $(FREE)
-$B/bench/bench_render: $B/bench/bench_render.o $B/ref-decoder/tool/threads.o $B/libted4dec.a
+$B/bench/bench_render: $B/bench/bench_render.o $B/ref-decoder/tool/threads.o $(DEC_LIB)
 	$(CC) -fopenmp $(LDFLAGS) $^ -o $@ $(LIBS)
 
 bench-render: $B/bench/bench_render
@@ -35,10 +35,10 @@ BETWEEN = $(TRAIN_PARTS:%=-Wl,--wrap=%)
 
 # Files named for an instruction set need it; the plain program is told not to take them.
 NAMED_SET   = $(filter %_avx2.c %_avx512.c,$(DEC_SRC))
-PLAIN_TRAIN = $(filter-out $(NAMED_SET),$(ENC_SRC) $(DEC_SRC)) ref-decoder/tool/threads.c bench/bench_train.c
+PLAIN_TRAIN = $(filter-out $(NAMED_SET),$(ENC_SRC) $(DRAW_SRC) $(DEC_SRC)) ref-decoder/tool/threads.c bench/bench_train.c
 
 $B/bench/bench_train.o: FPFLAGS = $(FREE)
-$B/bench/bench_train: $B/bench/bench_train.o $B/ref-decoder/tool/threads.o $B/libted4enc.a $B/libted4dec.a
+$B/bench/bench_train: $B/bench/bench_train.o $B/ref-decoder/tool/threads.o $(ENC_LIB)
 	$(CC) -fopenmp $(LDFLAGS) $(BETWEEN) $^ -o $@ $(LIBS)
 $B/plain/bench_train: $(PLAIN_TRAIN:%.c=$B/plain/%.o) $(NAMED_SET:%.c=$B/%.o)
 	$(CC) -fopenmp $(LDFLAGS) $(BETWEEN) $^ -o $@ $(LIBS)
@@ -62,16 +62,16 @@ bench-memory: $B/ted4enc $B/ted4scene
 # measures the speed of floating-point networks beside the integer kernels.
 BENCH_FILE = rate_check spans
 $B/bench/rate_check.o: FPFLAGS = $(FREE)
-$(BENCH_FILE:%=$B/bench/%) $B/bench/bench_decode: $B/bench/%: $B/bench/%.o $(DEC_TOOL:%.c=$B/%.o) $B/libted4enc.a $B/libted4dec.a
+$(BENCH_FILE:%=$B/bench/%) $B/bench/bench_decode: $B/bench/%: $B/bench/%.o $(DEC_TOOL:%.c=$B/%.o) $(ENC_LIB)
 	$(CC) -fopenmp $(LDFLAGS) $(filter %.o,$^) $(filter %.a,$^) -o $@ $(LIBS)
 $B/bench/spans: $B/bench/spans_view.o $B/bench/spans_where.o
 
 # What the stability lab measures on a file.
 LAB_FACTS = lab_facts lab_views lab_tracks lab_anchors lab_symbols lab_log
-$B/bench/lab_facts: $(LAB_FACTS:%=$B/bench/%.o) $B/ref-encoder/tool/sheet.o $(DEC_TOOL:%.c=$B/%.o) $B/libted4enc.a $B/libted4dec.a
+$B/bench/lab_facts: $(LAB_FACTS:%=$B/bench/%.o) $B/ref-encoder/tool/sheet.o $(DEC_TOOL:%.c=$B/%.o) $(ENC_LIB)
 	$(CC) -fopenmp $(LDFLAGS) $(filter %.o,$^) $(filter %.a,$^) -o $@ $(LIBS)
 $B/tests/test_lab_facts: $B/tests/test_lab_facts.o $(patsubst %,$B/bench/%.o,$(filter-out lab_facts,$(LAB_FACTS))) $B/ref-encoder/tool/sheet.o \
-        $(DEC_TOOL:%.c=$B/%.o) $B/libted4enc.a $B/libted4dec.a
+        $(DEC_TOOL:%.c=$B/%.o) $(ENC_LIB)
 	$(CC) -fopenmp $(LDFLAGS) $^ -o $@ -lcmocka $(LIBS)
 
 # make rate-check FILE=x.ted4

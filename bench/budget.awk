@@ -1,7 +1,6 @@
 # budget.awk - bytes of a file by kind of syntax element, from one line of `ted4info --budget --json`, joined by commas:
 #     header,nete,netr,bank,positions,masks,feature,scaling,offset,phi,tau,frame
 # header: HEAD. masks: temporal and offset masks with their probabilities. frame: everything that frames chunks, tiles and the file. Their sum is the file.
-# Used by bench/sweep.sh.
 # SPDX-License-Identifier: BSD-2-Clause
 
 function kind(chunk, element) {

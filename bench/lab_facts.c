@@ -2,7 +2,7 @@
  * throws out of every picture, how far anchors go, numbers that are not finite or stand at the end of their range, escapes, and what the training's log tells.
  * lab_facts.h defines all.
  *     lab_facts FILE.ted4 SCENE [LOG.jsonl [STRIP.png]]
- * STRIP.png: truth, ours, error of the worst held-out picture. Used by bench/stability.sh.
+ * STRIP.png: truth, ours, error of the worst held-out picture.
  * SPDX-License-Identifier: BSD-2-Clause */
 #include <errno.h>
 #include <math.h>

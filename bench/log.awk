@@ -1,5 +1,5 @@
 # log.awk - what the logs of ted4enc (JSON lines) tell of one training: stage 1's log, then the run's own. Times are those of training, with what the trainer threw
-# away itself (a new beginning, a rollback) and without what a kill lost. Used by bench/sweep.sh and bench/stability.sh.
+# away itself (a new beginning, a rollback) and without what a kill lost.
 #     awk -f log.awk LOG...               wall_s,stage1_wall_s,cpu_s,stage1_cpu_s of the whole training
 #     awk -v most=100 -f log.awk LOG...   at most about that many of its lines, as JSON lines with seconds from its beginning
 # SPDX-License-Identifier: BSD-2-Clause

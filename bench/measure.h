@@ -1,5 +1,4 @@
 /* measure.h - what the benchmarks have in common: a clock, memory or the end, pairs counted, and the machine's name.
- * Used by bench_raster.c, bench_render.c, bench_train.c.
  * SPDX-License-Identifier: BSD-2-Clause */
 #ifndef TED4_BENCH_MEASURE_H
 #define TED4_BENCH_MEASURE_H

@@ -1,6 +1,6 @@
 /* rate_check.c - what the integers of Tier E cost: the attribute symbols of a file coded by rANS, by -log2 of the coded integer
  * frequencies, and by float64 and float32 evaluations of the same networks and the same Gaussian model (spec 7.1, 9.4, 10); and how long the networks take
- * in each precision, on one thread, with the vectors of this machine. Used by `make rate-check` and bench/sweep.sh.
+ * in each precision, on one thread, with the vectors of this machine.
  *     rate_check FILE.ted4            one JSON line on stdout
  *     rate_check FILE.ted4 -s ANCHOR  also mu, sigma and k of that anchor's symbols under both, on stderr
  * float64: networks as rate_real.h has them, mu and sigma real numbers, the step index as decoded, Phi differences over the unit bin without cancellation. Sigma keeps

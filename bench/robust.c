@@ -1,4 +1,4 @@
-/* robust.c - a file cut short and a file with a changed byte: what the decoder says of each. Used by bench/robust.sh.
+/* robust.c - a file cut short and a file with a changed byte: what the decoder says of each.
  *     robust FILE.ted4 [SEED]
  * Every truncation (of a large file many) must be refused. Of 20,000 single byte changes, every other one with the hash of its chunk made
  * right, each must be refused or decode to the same integers (their hash is in ENDS). Where it decodes, the chunk changed is told: in NETR

@@ -5,7 +5,6 @@
  *                                                  the Gaussian is dark. The strip at the foot is the scale, 0 to 1 from left to right. The line then
  *                                                  also tells, if that camera stands still: share of pixels and times that the scene has changed,
  *                                                  share of their light that comes from short lives, and the same where it has not (spans.h).
- * Used by bench/sweep.sh.
  * SPDX-License-Identifier: BSD-2-Clause */
 #include <errno.h>
 #include <stdio.h>

@@ -3,7 +3,7 @@ CONF_OBJ   = $(patsubst %.c,$B/%.o,$(wildcard conformance/tool/*.c)) $(DEC_TOOL:
 CONF_JOBS ?= 2
 
 all: $B/ted4conf
-$B/ted4conf: $(CONF_OBJ) $(CLASS_T_OBJ) $B/libted4enc.a $B/libted4dec.a
+$B/ted4conf: $(CONF_OBJ) $(CLASS_T_OBJ) $(ENC_LIB)
 	$(CC) -fopenmp $(LDFLAGS) $^ -o $@ $(LIBS)
 # The runner's processes, tried by themselves.
 $B/tests/test_process: $(addprefix $B/conformance/tool/,process.o text.o)

@@ -1,4 +1,4 @@
-/* fields.h - the fixed-width fields of a file: where each lies, as the decoder's trace tells. Used by mutate.c.
+/* fields.h - the fixed-width fields of a file: where each lies, as the decoder's trace tells.
  * SPDX-License-Identifier: BSD-2-Clause */
 #ifndef TED4_FUZZ_FIELDS_H
 #define TED4_FUZZ_FIELDS_H

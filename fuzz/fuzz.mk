@@ -17,7 +17,7 @@ FUZZ_SEEN     = -Wl,--wrap=inflate,--wrap=compress2,--wrap=uncompress2
 
 FUZZ_OBJ      = $(patsubst %.c,$B/%.o,fuzz/mend.c fuzz/parse.c)
 # A harness links what it looks at, so that a build for one kind of instrumentation stays small: decoder and writer; readers of scenes too; or all.
-FUZZ_CODEC    = $(patsubst %.c,$B/%.o,$(filter-out ref-decoder/render/%,$(DEC_SRC)) $(wildcard ref-encoder/write/*.c)) $(FUZZ_OBJ)
+FUZZ_CODEC    = $(patsubst %.c,$B/%.o,$(DEC_SRC) $(wildcard ref-encoder/write/*.c)) $(FUZZ_OBJ)
 FUZZ_SCENE    = $(patsubst %.c,$B/%.o,$(wildcard ref-encoder/data/*.c) ref-decoder/tool/camera_list.c ref-decoder/tool/times.c \
                 fuzz/scene_folder.c)
 FUZZ_MUTATE   = $B/fuzz/mutate.o $B/fuzz/fields.o
@@ -31,7 +31,7 @@ $B/fuzz/fz_two_decoders.o $B/fuzz/all/fz_two_decoders.o: STRICT += -I$B/inc
 
 # One program for all, each entry under the harness's name.
 FUZZ_ALL      = $(FUZZERS:%=$B/fuzz/all/fz_%.o) $(patsubst %,$B/fuzz/%.o,inputs scene_folder) $(FUZZ_OBJ) $(DEC_TOOL:%.c=$B/%.o) \
-                $B/libted4enc.a $B/libted4dec.a
+                $(ENC_LIB)
 $B/fuzz/all/fz_%.o: fuzz/fz_%.c
 	@mkdir -p $(@D)
 	$(CC) $(CFLAGS_ALL) $(STRICT) -DLLVMFuzzerTestOneInput=fuzz_$* -c $< -o $@
@@ -47,7 +47,7 @@ $B/fuzz/fuzz_container: $B/fuzz/mutator_frames.o $(FUZZ_MUTATE)
 endif
 $(FUZZ_SCENES:%=$B/fuzz/fuzz_%): $(FUZZ_SCENE)
 $B/fuzz/fuzz_decode_chunked: $B/ref-decoder/tool/read_file.o
-$B/fuzz/fuzz_checkpoint: $B/fuzz/scene_folder.o $B/libted4enc.a $B/libted4dec.a
+$B/fuzz/fuzz_checkpoint: $B/fuzz/scene_folder.o $(ENC_LIB)
 $B/fuzz/fuzz_alloc_fail: FUZZ_LINK = $(FUZZ_ALLOC)
 $(patsubst %,$B/fuzz/fuzz_%,$(FUZZ_SCENES) checkpoint): FUZZ_LINK = $(FUZZ_NO_VIDEO)
 # FUZZ_ENGINE: what brings main; LD_FUZZ: what links it, as an engine may be C++.

@@ -1,5 +1,5 @@
 /* fz_roundtrip.c - any bytes to the strict decoder, and what it accepts to the writer. Up to two bytes behind the chunk ENDS are knobs of others.
- * Claim: write(parse(x)) is x (decisions 3.9). Ancillary chunks and the minor version are not parsed, so they are left out of x; without them a
+ * Claim: write(parse(x)) is x. Ancillary chunks and the minor version are not parsed, so they are left out of x; without them a
  * file may have too many symbols a byte for its level, which the writer then says. Writing twice gives the same, tiles in any order.
  * SPDX-License-Identifier: BSD-2-Clause */
 #include <string.h>

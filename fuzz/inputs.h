@@ -1,5 +1,5 @@
 /* inputs.h - the harnesses by name, and inputs from files. Every harness is compiled once more with its entry named fuzz_NAME, so that one program
- * can hold them all. Used by main.c and tests/test_fuzz.c.
+ * can hold them all.
  * SPDX-License-Identifier: BSD-2-Clause */
 #ifndef TED4_FUZZ_INPUTS_H
 #define TED4_FUZZ_INPUTS_H

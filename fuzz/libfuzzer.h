@@ -1,4 +1,4 @@
-/* libfuzzer.h - libFuzzer's own mutations, as mutate.h takes them. Used by mutator.c and mutator_frames.c.
+/* libfuzzer.h - libFuzzer's own mutations, as mutate.h takes them.
  * SPDX-License-Identifier: BSD-2-Clause */
 #ifndef TED4_FUZZ_LIBFUZZER_H
 #define TED4_FUZZ_LIBFUZZER_H

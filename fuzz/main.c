@@ -1,5 +1,5 @@
 /* main.c - replays inputs through one harness, without libFuzzer: replay NAME PATH..., PATH being a file or a folder of files.
- * Used by `make fuzz-replay`, `make fuzz-coverage`, and to look at a find in a debugger. Ends with 3 when a path cannot be read.
+ * Good for looking at a find in a debugger, too. Ends with 3 when a path cannot be read.
  * SPDX-License-Identifier: BSD-2-Clause */
 #include "harness.h"
 #include "inputs.h"

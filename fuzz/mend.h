@@ -1,5 +1,5 @@
 /* mend.h - what a changed file needs so that the change reaches what lies behind it: hashes, the hash of ENDS, the range coder's ends; and
- * what else needs the frames only. Used by the harnesses, mutate.c, make_corpus.c, bench/robust.c, tests/test_fuzz.c.
+ * what else needs the frames only.
  * SPDX-License-Identifier: BSD-2-Clause */
 #ifndef TED4_MEND_H
 #define TED4_MEND_H

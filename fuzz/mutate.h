@@ -1,5 +1,5 @@
 /* mutate.h - changes of a .ted4 file that reach what lies behind its frames: one part of it is changed, and what depends on that is made right
- * again, most of the time. Used by mutator.c, mutator_frames.c, afl_mutator.c, mutate_tool.c, make_corpus.c, tests/test_fuzz.c, tests/test_validate.c.
+ * again, most of the time.
  * SPDX-License-Identifier: BSD-2-Clause */
 #ifndef TED4_FUZZ_MUTATE_H
 #define TED4_FUZZ_MUTATE_H

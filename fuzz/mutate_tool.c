@@ -1,4 +1,4 @@
-/* mutate_tool.c - one changed file without libFuzzer: mutate SEED FROM TO. Used by two_decoders.py.
+/* mutate_tool.c - one changed file without libFuzzer: mutate SEED FROM TO.
  * SPDX-License-Identifier: BSD-2-Clause */
 #include <stdio.h>
 #include <stdlib.h>

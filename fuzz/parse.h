@@ -1,4 +1,4 @@
-/* parse.h - Tier E of a file as far as it can be read, whatever the hash in ENDS says. Used by mend.c and mutate.c.
+/* parse.h - Tier E of a file as far as it can be read, whatever the hash in ENDS says.
  * SPDX-License-Identifier: BSD-2-Clause */
 #ifndef TED4_FUZZ_PARSE_H
 #define TED4_FUZZ_PARSE_H

@@ -1,5 +1,4 @@
-/* scene_folder.h - a folder of files that scene loaders read: made once a process, below $TMPDIR or /tmp, removed when it ends. Used by the
- * harnesses of scene input.
+/* scene_folder.h - a folder of files that scene loaders read: made once a process, below $TMPDIR or /tmp, removed when it ends.
  * SPDX-License-Identifier: BSD-2-Clause */
 #ifndef TED4_SCENE_FOLDER_H
 #define TED4_SCENE_FOLDER_H

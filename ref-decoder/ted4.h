@@ -9,7 +9,11 @@
 #include "base/parallel.h"
 #include "base/status.h"
 
-#define TED4_VERSION      "0.1.0"
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+#define TED4_VERSION      "0.2.0-dev"
 #define TED4_SPEC_VERSION "1.0"
 
 /* NULL members: malloc and free. alloc(user, size) returns NULL or storage aligned for any type. */
@@ -70,14 +74,23 @@ typedef void ted4_finding_sink(void *user, const ted4_finding *f);
 ted4_status ted4_validate(const void *data, size_t size, const ted4_options *o,
                           ted4_finding_sink *sink, void *user);
 
+/* spec 6.1: how anchors move (11.3), and which heads see the view direction. */
+enum { TED4_MOTION_NONE, TED4_MOTION_BANK, TED4_MOTION_CONCAT,
+       TED4_MOTION_INR };
+enum { TED4_VIEW_NONE, TED4_VIEW_COLOUR, TED4_VIEW_FULL };
+
+/* spec 6.1, where a member bears the name of an element. */
 typedef struct {
-    uint32_t n_anchors, n_offsets, frames, rate_num, rate_den;
+    uint32_t n_anchors, n_offsets;      /* anchors; Gaussians an anchor at most */
+    uint32_t frames, rate_num, rate_den;        /* frame j: time j / (frames - 1), or 0; rate_num / rate_den frames a second */
     size_t   n_gaussians;               /* kept offsets: records of a query */
-    uint32_t n_dynamic;
-    int      level, view, motion, activation;
-    float    origin[3];
-    int      exponent;
-    uint8_t  background[3];
+    uint32_t n_dynamic;                 /* anchors that move */
+    int      level;                     /* spec 13.1: 1 to 4, or 31: without bounds */
+    int      view, motion;              /* TED4_VIEW_..., TED4_MOTION_... */
+    int      activation;                /* 1: anchors come and go (11.4); 0: they are always there */
+    float    origin[3];                 /* in world units: where the normalised position is 0 */
+    int      exponent;                  /* 2^exponent world units are 1 of normalised space, where anchors lie in [-1, 1] */
+    uint8_t  background[3];             /* display-referred sRGB: red, green, blue */
     uint8_t  hash[16];                  /* of the decoded integers, spec 15.2 */
 } ted4_info;
 
@@ -126,5 +139,9 @@ int ted4_recon_class_x(void);
 
 /* spec 15.3. hash: in canonical form. */
 void ted4_gaussians_hash(const ted4_gaussians *g, uint8_t hash[16]);
+
+#ifdef __cplusplus
+}
+#endif
 
 #endif

@@ -70,7 +70,7 @@ static inline void contract_lowest(const ted4_scene *scene, uint8_t *data, size_
     ted4_scene   *s;
     ted4_error    e;
 
-    assert_int_equal(level, ted4_level_lowest(scene, size));
+    assert_int_equal(level, ted4_level_lowest(&scene->head, &scene->shape, size));
     for (unsigned below = 1; below < level; below++) {
         if (ted4_limits_of(below) == NULL)
             continue;

@@ -1,6 +1,5 @@
 /* raster_ref.h - the image model of render/raster.h with Gaussians in double precision:
  * raster_plain.h takes them in float, too coarse for differences through a whole training step.
- * Used by test_step_grad.c, which also holds it against raster_plain.h.
  * SPDX-License-Identifier: BSD-2-Clause */
 #ifndef TED4_RASTER_REF_H
 #define TED4_RASTER_REF_H

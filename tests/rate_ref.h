@@ -1,5 +1,5 @@
 /* rate_ref.h - the rate model again, in double, one anchor at a time, from spec 9.4, 10.1, 10.3 and the head of rate_row.c; and random models to try it on.
- * Shares no arithmetic with train/rate*.c. Used by test_rate.c, test_rate_grad.c.
+ * Shares no arithmetic with train/rate*.c.
  * SPDX-License-Identifier: BSD-2-Clause */
 #ifndef TED4_RATE_REF_H
 #define TED4_RATE_REF_H

@@ -17,7 +17,7 @@ for t in "$@"; do
         echo "FAILED: ran nothing"
         bad=1
     else
-        echo "$ok passed${skip:+, $skip skipped}"
+        if [ "$skip" -eq 0 ]; then echo "$ok passed"; else echo "$ok passed, $skip skipped"; fi
         grep -i '^skip' "$t.log"
     fi
     passed=$((passed + ok)) failed=$((failed + bad)) skipped=$((skipped + skip))

@@ -9,16 +9,17 @@
 #include <stdlib.h>
 #include <sys/wait.h>
 #include <unistd.h>
+#include "temporary.h"
 
 /* program: one of the folder $TED4_BUILD, with options; the file's path is put behind. Gives the exit code; *printed: the JSON on stdout, the caller's. */
 static inline int run_json(const char *program, const uint8_t *data, size_t size, json_t **printed)
 {
-    char      path[] = "/tmp/ted4-run-XXXXXX", command[512];
-    const int fd = mkstemp(path);
+    char      path[TEMPORARY_SIZE], command[512];
+    const int fd = temporary_file(path, "ted4-run");
     FILE     *pipe;
     int       status;
 
-    assert_true(fd >= 0 && write(fd, data, size) == (ssize_t)size);
+    assert_true(write(fd, data, size) == (ssize_t)size);
     close(fd);
     snprintf(command, sizeof command, "%s/%s %s 2>/dev/null", getenv("TED4_BUILD"), program, path);
     pipe = popen(command, "r");

@@ -9,7 +9,7 @@ CLASS_T_OBJ = $B/conformance/tolerance/class_t.o $(SPEC_EVALS:%=$B/tests/spec/ev
 $B/conformance/tolerance/class_t.o: $(SPEC_INC)
 $B/conformance/tolerance/class_t.o: FPFLAGS = $(STRICT) -I$B/inc
 all: $B/ted4tolerance
-$B/ted4tolerance: $B/conformance/tolerance/ted4tolerance.o $(CLASS_T_OBJ) $(DEC_TOOL:%.c=$B/%.o) $B/libted4dec.a
+$B/ted4tolerance: $B/conformance/tolerance/ted4tolerance.o $(CLASS_T_OBJ) $(DEC_TOOL:%.c=$B/%.o) $(DEC_LIB)
 	$(CC) -fopenmp $(LDFLAGS) $^ -o $@ $(LIBS)
 
 # thresholds.csv for vectors of several kinds; takes a minute. tests/test_tolerance.sh says whether it is current.
@@ -21,5 +21,5 @@ $B/tests/test_tolerance: | $B/ted4tolerance $B/ted4dec
 
 # Counted by the test: hashing, inflating, networks, searches; layers of Tier R.
 RESOURCES_COUNTED = XXH3_64bits inflate ted4_prior_hyper ted4_prior_slice ted4_prior_load ted4_gauss_find ted4_select_strict_dense
-$B/tests/test_resources: $B/tests/test_resources.o $B/libted4enc.a $B/libted4dec.a
+$B/tests/test_resources: $B/tests/test_resources.o $(ENC_LIB)
 	$(CC) -fopenmp $(LDFLAGS) $(RESOURCES_COUNTED:%=-Wl,--wrap=%) $^ -o $@ -lcmocka $(LIBS)

@@ -6,6 +6,7 @@
 #include <cmocka.h>
 #include <stdlib.h>
 #include <xxhash.h>
+#include "norm/limits.h"
 #include "random_scene.h"
 
 enum { SCENES = 120, CHANGES = 20000 };
@@ -393,7 +394,7 @@ static void info(void **state)
             kept += s->offset_bits[a] >> k & 1;
     assert_int_equal(i.n_gaussians, kept);
     assert_int_equal(i.n_anchors, s->head.n_anchors);
-    assert_int_equal(i.level, ted4_level_lowest(s, f.size));
+    assert_int_equal(i.level, ted4_level_lowest(&s->head, &s->shape, f.size));
     assert_memory_equal(i.hash, f.data + f.size - 24, 16);
     ted4_scene_free(s);
     ted4_scene_free(t);

@@ -6,19 +6,8 @@
 #include <cmocka.h>
 
 #include "data/point_cloud.h"
+#include "refuse.h"
 #include "tiny_scene.h"
-
-/* The load must fail, with a one-line message that holds both texts, and leave nothing behind. */
-static void refuse(const tiny_folder *f, const char *where, const char *what)
-{
-    ted4_dataset d, zero;
-    const char *text = tiny_load(&d, f, &tiny_options);
-
-    memset(&zero, 0, sizeof zero);
-    if (*text == 0 || strstr(text, where) == NULL || strstr(text, what) == NULL || strchr(text, '\n') != NULL)
-        fail_msg("got \"%s\", expected \"%s\" and \"%s\"", text, where, what);
-    assert_memory_equal(&d, &zero, sizeof d);
-}
 
 /* One transforms.json of one frame, or its parts replaced. */
 static void transforms(const tiny_folder *f, const char *top, const char *frame)

@@ -14,13 +14,14 @@
 #include <jansson.h>
 
 #include "base/bytes.h"
+#include "temporary.h"
 #include "tool/export.h"
 #include "tool/output.h"
 #include "tool/sh.h"
 
 enum { N = 37 };
 
-static char folder[] = "/tmp/ted4-export-XXXXXX";
+static char folder[TEMPORARY_SIZE];
 static uint32_t seed = 3;
 
 static double uniform(double low, double high)
@@ -456,7 +457,8 @@ static void test_no_debris(void **state)
 static int folder_make(void **state)
 {
     (void)state;
-    return mkdtemp(folder) == NULL;
+    temporary_folder(folder, "ted4-export");
+    return 0;
 }
 
 static int folder_remove(void **state)

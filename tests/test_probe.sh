@@ -3,9 +3,7 @@
 # and in the compiler's own dialect (where binary16 arithmetic makes FLT_EVAL_METHOD 16), it does. Speaks as cmocka programs do; run by `make test` from the project's root.
 # SPDX-License-Identifier: BSD-2-Clause
 set -u
-out=$(mktemp -d)
-trap 'rm -rf "$out"' EXIT
-bad=0
+. tests/speak.sh
 strict=$(sed -n 's/^STRICT *= *//p' Makefile)
 cat >"$out/claim.c" <<'C'
 #include "ted4.h"
@@ -21,10 +19,10 @@ claims() {
     shift 2
     # shellcheck disable=SC2086 # several flags
     ${CC:-cc} -O2 $strict "$@" -Iref-decoder "$out/claim.c" ref-decoder/recon/probe.c -lm -o "$out/claim" 2>"$out/err" ||
-        { echo "[  FAILED  ] $name: $(cat "$out/err")"; bad=1; return; }
+        { fail "$name" "$(cat "$out/err")"; return; }
     "$out/claim"
     claim=$?
-    if [ "$claim" -eq "$expected" ]; then echo "[       OK ] $name"; else echo "[  FAILED  ] $name: claim $claim, expected $expected"; bad=1; fi
+    if [ "$claim" -eq "$expected" ]; then ok "$name"; else fail "$name" "claim $claim, expected $expected"; fi
 }
 
 claims 1 as_the_makefile_says -std=c11

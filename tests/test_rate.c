@@ -1,5 +1,5 @@
 /* test_rate.c - train/rate*.c and quantise.c: bits against the double model, the noise, the quantiser, threads, lanes that are not there, the integer mode,
- * and clamped outputs (algorithm facts 5.8, items 3 and 5).
+ * and clamped outputs (annex D.1: sigma clamped from below, steps near 0).
  * SPDX-License-Identifier: BSD-2-Clause */
 #include <setjmp.h>
 #include <stdarg.h>

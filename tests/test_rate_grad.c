@@ -188,7 +188,7 @@ static void test_variants(void **state)
     }
 }
 
-/* Every fourth output pushed out of range, on either side, v too: gradients follow the one-sided rule (algorithm facts 5.8, items 3 and 5). */
+/* Every fourth output pushed out of range, on either side, v too: gradients follow the one-sided rule (annex D.1, traps). */
 static void test_clamped(void **state)
 {
     (void)state;
@@ -212,7 +212,7 @@ static void test_clamped(void **state)
     }
 }
 
-/* Values far out in the tail, some with sigma at its floor: the pull is finite and right (algorithm facts 5.8, item 4). */
+/* Values far out in the tail, some with sigma at its floor: the pull is finite and right (annex D.1, traps). */
 static void test_outliers(void **state)
 {
     static ref_world w;

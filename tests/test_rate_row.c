@@ -1,5 +1,5 @@
 /* test_rate_row.c - train/rate_row.c: bits and derivatives of single symbols against double arithmetic and against the coder's own tables (spec 9.4),
- * and the tails (algorithm facts 5.8, item 4).
+ * and the tails (annex D.1: outliers need a gradient).
  * SPDX-License-Identifier: BSD-2-Clause */
 #include <setjmp.h>
 #include <stdarg.h>

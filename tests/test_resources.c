@@ -13,6 +13,7 @@
 #include <zlib.h>
 #include "../fuzz/counting.h"
 #include "kernel/strict_dense.h"
+#include "recon/strict.h"
 #include "norm/limits.h"
 #include "random_scene.h"
 #include "read/container.h"

@@ -16,6 +16,7 @@
 
 #include "scenes/ray_set.h"
 #include "scenes/ray_texture.h"
+#include "temporary.h"
 
 enum { W = 48, H = 36, SIZE = W * H * 3, ALL_FILES = 3 };
 
@@ -542,7 +543,7 @@ static void check_ply(const char *folder, const ted4_ray_options *o)
 /* Two sets, made by one thread and by two, have the same bytes. */
 static void test_files(void **state)
 {
-    char a[] = "/tmp/ted4_scene_a_XXXXXX", b[] = "/tmp/ted4_scene_b_XXXXXX";
+    char a[TEMPORARY_SIZE], b[TEMPORARY_SIZE];
     const ted4_ray_options o = { .scene = RAY_TURN, .width = W, .height = H, .n_train = 2, .n_test = 1, .n_frames = 3,
                                  .seed = 5 };
     int threads = 2;
@@ -550,8 +551,8 @@ static void test_files(void **state)
     ted4_ray_message m;
 
     (void)state;
-    assert_non_null(mkdtemp(a));
-    assert_non_null(mkdtemp(b));
+    temporary_folder(a, "ted4-scene-a");
+    temporary_folder(b, "ted4-scene-b");
     assert_int_equal(ted4_ray_write(&o, a, NULL, &m), 0);
     assert_int_equal(ted4_ray_write(&o, b, &two, &m), 0);
     check_transforms(a, &o);
@@ -566,15 +567,13 @@ static void test_files(void **state)
 /* A file where a folder should be: an error that names it. */
 static void test_refusal(void **state)
 {
-    char file[] = "/tmp/ted4_scene_f_XXXXXX", folder[64];
+    char file[TEMPORARY_SIZE], folder[TEMPORARY_SIZE + 8];
     const ted4_ray_options o = { .scene = RAY_STILL, .width = W, .height = H, .n_train = 1, .n_test = 0, .n_frames = 1,
                                  .seed = 1 };
-    const int handle = mkstemp(file);
     ted4_ray_message m = { "" };
 
     (void)state;
-    assert_true(handle >= 0);
-    close(handle);
+    close(temporary_file(file, "ted4-scene"));
     snprintf(folder, sizeof folder, "%s/set", file);
     assert_int_equal(ted4_ray_write(&o, folder, NULL, &m), -1);
     assert_non_null(strstr(m.text, file));

@@ -22,11 +22,12 @@
 #include "random_scene.h"
 #include "render/png_file.h"
 #include "render/view.h"
+#include "temporary.h"
 #include "tool/sh.h"
 
-enum { WIDTH = 96, HEIGHT = 64, VIEWS = 3, MAX_TEXT = 1 << 16 };
+enum { WIDTH = 96, HEIGHT = 64, VIEWS = 3, MAX_TEXT = 1 << 16, PATH_SIZE = TEMPORARY_SIZE + 128 };
 
-static char folder[] = "/tmp/ted4-tools-XXXXXX";
+static char folder[TEMPORARY_SIZE];
 static const char *build;
 
 /* a file for each kind of view input, none, colour, full: name, and what it holds. */
@@ -57,15 +58,15 @@ static int run(const char *format, ...)
     return WEXITSTATUS(status);
 }
 
-static void path_of(char path[256], const char *name)
+static void path_of(char path[PATH_SIZE], const char *name)
 {
-    snprintf(path, 256, "%s/%s", folder, name);
+    snprintf(path, PATH_SIZE, "%s/%s", folder, name);
 }
 
 static uint8_t *contents(const char *name, size_t *size)
 {
     uint8_t *const data = malloc(1 << 22);
-    char path[256];
+    char path[PATH_SIZE];
 
     path_of(path, name);
     FILE *const f = fopen(path, "rb");
@@ -77,7 +78,7 @@ static uint8_t *contents(const char *name, size_t *size)
 
 static void write_contents(const char *name, const void *data, size_t size)
 {
-    char path[256];
+    char path[PATH_SIZE];
 
     path_of(path, name);
     FILE *const f = fopen(path, "wb");
@@ -88,7 +89,7 @@ static void write_contents(const char *name, const void *data, size_t size)
 
 static int exists(const char *name)
 {
-    char path[256];
+    char path[PATH_SIZE];
 
     path_of(path, name);
     return access(path, F_OK) == 0;
@@ -130,8 +131,7 @@ static int setup(void **state)
     build = getenv("TED4_BUILD");
     if (build == NULL)
         return 0;
-    if (mkdtemp(folder) == NULL)
-        return -1;
+    temporary_folder(folder, "ted4-tools");
     for (int view = 0; view < 3; view++)
         make_file(view);
     return 0;
@@ -353,7 +353,7 @@ static json_t *numbers(const float *v, int n)
 
 static void save(json_t *o, const char *name)
 {
-    char path[256];
+    char path[PATH_SIZE];
 
     path_of(path, name);
     assert_int_equal(json_dump_file(o, path, JSON_INDENT(1)), 0);
@@ -401,7 +401,7 @@ static void test_render(void **state)
     assert_int_equal(run("ted4dec v1.ted4 --render view_%%d.png --camera cameras.json"), 3);
     for (int i = 0; i < VIEWS; i++) {
         uint8_t *const want = drawn(i);
-        char name[32], path[256];
+        char name[32], path[PATH_SIZE];
         ted4_message m;
         ted4_image image;
 
@@ -459,7 +459,7 @@ static double result(const char *key)
 /* Pictures that differ from what the file shows by one step everywhere. */
 static void test_eval(void **state)
 {
-    char path[256], why[256];
+    char path[PATH_SIZE], why[256];
     ted4_message m;
     size_t size;
     int w, h;

@@ -1,5 +1,5 @@
-/* test_traps.c - the places where the published recipe fails (algorithm facts 5.8, 5.9), each with what we do instead. Those that the test of one module
- * shows are there:
+/* test_traps.c - the places where the published recipe fails (annex D.1, in its order, and two more), each with what we do instead.
+ * Those that the test of one module shows are there:
  *   3 sigma clamped from below gets no gradient: test_rate.c, clamped outputs recover; test_rate_grad.c, clamped
  *   4 a floor under likelihoods leaves outliers without gradient: test_rate_row.c, outliers have gradient; test_rate_grad.c, outliers
  *   5 steps that reach 0: test_rate.c, clamped outputs recover; the symbols that would overflow: test_rate.c, quantise; and here

@@ -3,12 +3,10 @@
 # programs do; run by `make test` from the project's root.
 # SPDX-License-Identifier: BSD-2-Clause
 set -u
-out=$(mktemp -d)
-trap 'rm -rf "$out"' EXIT
-bad=0
-ok()   { echo "[       OK ] $1"; }
-fail() { echo "[  FAILED  ] $1: $2"; bad=1; }
-expect() { if [ "$2" = "$3" ]; then ok "$1"; else fail "$1" "$2, expected $3"; fi; }
+. tests/speak.sh
+need why ted4enc ted4dec ted4info ted4scene
+# equal NAME VALUE WANTED
+equal() { if [ "$2" = "$3" ]; then ok "$1"; else fail "$1" "$2, expected $3"; fi; }
 small="--preset draft --iterations 300,500 --seed 1 -j 1 -q --set init_anchors=150 --set max_anchors=260 --set offsets=4 --set feature=8 --set phi=4
     --set bank_dim=8 --set deform_width=8 --set head_width=12 --set hyper_width=16 --set ar_width=8 --set slices=2"
 
@@ -22,35 +20,35 @@ encode silent --log "$out/silent.jsonl"
 encode told --why --log "$out/told.jsonl" --checkpoint "$out/told.checkpoint"
 n=$(logged told)
 [ "$n" -gt 5 ] && ok trials || fail trials "$n"
-expect as_many_in_the_file "$(told told)" "$n"
-expect none_unasked "$(told silent)" 0
-expect logged_unasked "$(logged silent)" "$n"
-expect same_scene "$(hash_of told)" "$(hash_of silent)"
-expect valid_meta "$("$TED4_BUILD/ted4info" "$out/told.ted4" --validate | grep -c 'adv.meta')" 0
-expect no_names "$(grep -acF "$out" "$out/told.ted4")" 0
+equal as_many_in_the_file "$(told told)" "$n"
+equal none_unasked "$(told silent)" 0
+equal logged_unasked "$(logged silent)" "$n"
+equal same_scene "$(hash_of told)" "$(hash_of silent)"
+equal valid_meta "$("$TED4_BUILD/ted4info" "$out/told.ted4" --validate | grep -c 'adv.meta')" 0
+equal no_names "$(grep -acF "$out" "$out/told.ted4")" 0
 taken=$(grep -c '"event":"capacity".*"taken":true' "$out/told.jsonl")
-expect taken "$("$TED4_BUILD/ted4info" "$out/told.ted4" --why | grep -c ': taken; ')" "$taken"
+equal taken "$("$TED4_BUILD/ted4info" "$out/told.ted4" --why | grep -c ': taken; ')" "$taken"
 
-expect moving "$("$TED4_BUILD/ted4info" "$out/told.ted4" --why | grep -c '^capacity.moving=[0-9]* of [0-9]* anchors: ')" 1
+equal moving "$("$TED4_BUILD/ted4info" "$out/told.ted4" --why | grep -c '^capacity.moving=[0-9]* of [0-9]* anchors: ')" 1
 
 # A run that goes on after its decisions tells them once, too.
 cp "$out/told.ted4" "$out/first.ted4"
 encode told --why --log "$out/told.jsonl" --checkpoint "$out/told.checkpoint" --resume -f
-expect resumed_log "$(logged told)" "$n"
+equal resumed_log "$(logged told)" "$n"
 cmp -s "$out/told.ted4" "$out/first.ted4" && ok resumed_file || fail resumed_file "another file"
 
 encode fixed --why --log "$out/fixed.jsonl" --capacity fixed
-expect fixed_log "$(logged fixed)" 0
-expect fixed_file "$("$TED4_BUILD/ted4info" "$out/fixed.ted4" --why | grep '^capacity')" "capacity=fixed; lambda 0.002"
+equal fixed_log "$(logged fixed)" 0
+equal fixed_file "$("$TED4_BUILD/ted4info" "$out/fixed.ted4" --why | grep '^capacity')" "capacity=fixed; lambda 0.002"
 "$TED4_BUILD/ted4enc" "$out/scene" -o "$out/x.ted4" --capacity some 2>"$out/err"
-expect refused "$?:$(cat "$out/err")" '3:ted4enc: --capacity: bad value some'
+equal refused "$?:$(cat "$out/err")" '3:ted4enc: --capacity: bad value some'
 
 # Light that flickers gets a row of the bank for every time; other scenes for every second one.
 "$TED4_BUILD/ted4scene" flicker -o "$out/flicker" --size 32x24 --frames 6 --cameras 5 --test-cameras 1 -j 1 2>/dev/null
 rows() { "$TED4_BUILD/ted4info" -v "$out/$1.ted4" | sed -n 's/^ *bank_rows *//p'; }
 "$TED4_BUILD/ted4enc" "$out/flicker" -o "$out/flicker.ted4" $small --capacity fixed --set probe=0 --why 2>"$out/err" || fail flicker "$(cat "$out/err")"
 encode steady --capacity fixed --set probe=0
-expect rows_of_flicker "$(rows flicker)" 6
-expect rows_of_pop "$(rows steady)" 2
-expect flicker_told "$("$TED4_BUILD/ted4info" "$out/flicker.ted4" --why | grep -c '^capacity.light=flickers by .*of 6 rows for 6 times')" 1
+equal rows_of_flicker "$(rows flicker)" 6
+equal rows_of_pop "$(rows steady)" 2
+equal flicker_told "$("$TED4_BUILD/ted4info" "$out/flicker.ted4" --why | grep -c '^capacity.light=flickers by .*of 6 rows for 6 times')" 1
 exit $bad

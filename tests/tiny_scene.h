@@ -14,6 +14,7 @@
 #include <sys/stat.h>
 #include <unistd.h>
 #include "data/data_util.h"
+#include "temporary.h"
 
 enum { TINY_W = 16, TINY_H = 12 };
 
@@ -30,10 +31,8 @@ static inline void must(int ok, const char *what)
 static inline tiny_folder tiny_new(void)
 {
     tiny_folder f;
-    const char *base = getenv("TMPDIR");
 
-    snprintf(f.path, sizeof f.path, "%s/ted4testXXXXXX", base != NULL ? base : "/tmp");
-    must(mkdtemp(f.path) != NULL, f.path);
+    temporary_folder(f.path, "ted4-test");
     return f;
 }
 

@@ -1,4 +1,4 @@
-# bars.awk - judges bars 4 to 6 of the project's issue "The lab". Used by bench/capacity_page.sh after capacity/cost.awk.
+# bars.awk - judges bars 4 to 6 of the lab.
 # SPDX-License-Identifier: BSD-2-Clause
 
 BEGIN { equal_psnr = 0.1 }      # dB: a fixed setting that far below auto still counts as equal

@@ -1,4 +1,4 @@
-# cost.awk - what a run costs, and what of its file is there for time's sake. Used by bench/capacity_page.sh after report/rows.awk.
+# cost.awk - what a run costs, and what of its file is there for time's sake.
 # SPDX-License-Identifier: BSD-2-Clause
 
 # Values of the anchors of a run: what lambda's bits are divided by, the same for all runs of a scene: those of its whole model.

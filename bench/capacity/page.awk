@@ -1,4 +1,4 @@
-# page.awk - puts bench/capacity.md together, on stdout. Used by bench/capacity_page.sh, last, with -v charts: where charts go.
+# page.awk - puts bench/capacity.md together, on stdout. Takes -v charts: where charts go.
 # SPDX-License-Identifier: BSD-2-Clause
 
 function model(t) {
@@ -99,8 +99,8 @@ END {
     sections()
     print "# Capacity: no more model than a scene needs"
     print ""
-    print "Written by `make capacity` from [capacity.csv](capacity.csv); the runs are those of capacity.txt. Numbers of the bars are those of the project's issue"
-    print "\"The lab\". †: made by other sources."
+    print "Written by `make capacity` from [capacity.csv](capacity.csv); the runs are those of capacity.txt. The bars are those of the"
+    print "lab, by number. †: made by other sources."
     print "Bars: " n_verdicts["met"] + 0 " met, " n_verdicts["**missed**"] + 0 " missed, " n_verdicts["not run yet"] + 0 " not run yet."
     print ""
     print "| # | what | bar | measured | verdict | command, then `bench/capacity_page.sh` |"

@@ -38,7 +38,7 @@ function page_print(    i, n, line) {
     print ""
     print "Written by `make report` from [sweep.csv](sweep.csv) and the pages below; `make sweep` makes the rows. " count_there() " of " n_tags \
         " wanted runs are there" (count_old() ? ", " count_old() " of them older than the sources (†)" : "") "."
-    print "Numbers of the bars are those of the project's issue \"The method\"; \"not run yet\" stands wherever a run is missing."
+    print "The bars are those of the method, by number; \"not run yet\" stands wherever a run is missing."
     print "Bars: " n_verdicts["met"] + 0 " met, " n_verdicts["**missed**"] + 0 " missed, " n_verdicts["not run yet"] + 0 " not run yet" \
         (n_verdicts["cannot be said"] ? ", " n_verdicts["cannot be said"] " that cannot be said" : "") "."
     print ""

@@ -1,5 +1,4 @@
-# marks.awk - a chart of one column of the table: a row a scene, a marker a variant at its mean over seeds, and a line from the least to the most of them. Used by
-# bench/stability_page.sh.
+# marks.awk - a chart of one column of the table: a row a scene, a marker a variant at its mean over seeds, and a line from the least to the most of them.
 # SPDX-License-Identifier: BSD-2-Clause
 
 # Colours are those of Okabe and Ito, which colour-blind readers can tell apart; markers differ too.

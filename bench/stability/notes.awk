@@ -1,5 +1,5 @@
 # notes.awk - causes and mends, written by hand: bench/stability-notes.md. A heading "## SCENE VARIANT" (VARIANT *: all variants) begins the note of these
-# runs; what stands before the first heading is for its readers alone. Used by bench/stability_page.sh, with -v notes: that file.
+# runs; what stands before the first heading is for its readers alone. Takes -v notes: that file.
 # SPDX-License-Identifier: BSD-2-Clause
 
 function read_notes(    line, word, key) {

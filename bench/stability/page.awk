@@ -1,4 +1,4 @@
-# page.awk - judges bars 1 to 3 of the project's issue "The lab" and puts the page together, bench/stability.md, on stdout. Used by bench/stability_page.sh, with -v
+# page.awk - judges bars 1 to 3 of the lab and puts the page together, bench/stability.md, on stdout. Takes -v
 #     charts: where charts go      notes: page of notes
 # SPDX-License-Identifier: BSD-2-Clause
 
@@ -135,7 +135,7 @@ function page_print(    i, there, old) {
     print ""
     print "Written by `make stability` from [stability.csv](stability.csv): " there + 0 " of " n_tags " wanted runs are there" \
         (old ? ", " old " of them older than the sources (†)" : "") "."
-    print "Numbers of the bars are those of the project's issue \"The lab\"; \"not run yet\" stands wherever a run is missing."
+    print "The bars are those of the lab, by number; \"not run yet\" stands wherever a run is missing."
     print "Bars: " n_verdicts["met"] + 0 " met, " n_verdicts["**missed**"] + 0 " missed, " n_verdicts["not run yet"] + 0 " not run yet" \
         (n_verdicts["cannot be said"] ? ", " n_verdicts["cannot be said"] " that cannot be said" : "") "."
     print ""

@@ -1,4 +1,4 @@
-# rules.awk - when a run counts as failed, and where. The only place of these limits. Used by bench/stability_page.sh.
+# rules.awk - when a run counts as failed, and where. The only place of these limits.
 # SPDX-License-Identifier: BSD-2-Clause
 
 BEGIN {

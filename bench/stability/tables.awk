@@ -1,5 +1,5 @@
 # tables.awk - the page's tables: quality of every scene and variant, anchors thrown out, what the whole method's runs measured, failures with their causes,
-# strips, commands. Used by bench/stability_page.sh.
+# strips, commands.
 # SPDX-License-Identifier: BSD-2-Clause
 
 # Titles of a table with a column for each variant.

@@ -24,13 +24,12 @@ static void release(void *scene)
 
 static void *decode(const uint8_t *data, size_t size, uint64_t max_bytes, uint64_t max_work, ted4_adapter_verdict *v)
 {
-    static const char *const name[] = { "valid", "invalid", "limit", "unsupported", "io" };
     const ted4_options limit = { .max_bytes = max_bytes, .max_work = max_work };
     opened      *o = calloc(1, sizeof *o);
     ted4_error   e = { TED4_E_LIMIT_MEMORY, 0 };
 
     if (o == NULL || ted4_decode(data, size, &limit, &o->scene, &e) != TED4_OK) {
-        *v = (ted4_adapter_verdict){ name[ted4_status_verdict(e.code)], ted4_status_id(e.code), e.offset };
+        *v = (ted4_adapter_verdict){ ted4_verdict_name(ted4_status_verdict(e.code)), ted4_status_id(e.code), e.offset };
         free(o);
         return NULL;
     }

@@ -73,9 +73,8 @@ json_t *conf_salvaged(const ted4_scene *s, const ted4_salvage *what, const json_
 /* s: what there is of the file; NULL: nothing. It is freed. */
 static json_t *answer_of(const conf_bytes *file, ted4_scene *s, const ted4_salvage *what, const json_t *queries)
 {
-    static const char *const name[] = { "valid", "invalid", "limit", "unsupported", "io" };
     const ted4_verdict verdict = ted4_status_verdict(what->verdict.code);
-    json_t      *const answer = json_pack("{s:s}", "result", name[verdict]);
+    json_t      *const answer = json_pack("{s:s}", "result", ted4_verdict_name(verdict));
 
     if (what->verdict.code == TED4_OK)
         json_object_set_new(answer, "tiers", conf_tiers(file, s, queries));

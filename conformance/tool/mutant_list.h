@@ -7,7 +7,7 @@
  * file, comments and spacing aside, and
  *     killed                   the vector that killed it: the hash of its file, and what is expected of it. A suite that grows loses no kill;
  *     survived, no compile     the code of all of the decoder that mutants reach, and all vectors.
- * A kill is taken to outlast changes of other files of the decoder. Used by mutants.c.
+ * A kill is taken to outlast changes of other files of the decoder.
  * SPDX-License-Identifier: BSD-2-Clause */
 #ifndef CONF_MUTANT_LIST_H
 #define CONF_MUTANT_LIST_H

@@ -83,8 +83,8 @@ static int build(const campaign *c, const conf_mutant *m, size_t n, const char *
     conf_print(&command, "} | sort -u); do from=$s; [ -f \"$d/$s\" ] && from=$d/$s; %s -I\"$d/ref-decoder\" -Iref-decoder -Iref-encoder -w -c $from "
                "-o \"$d/$(echo $s | tr / _).o\" 2>>\"$d/log\" || exit 1; done; ", c->o->compile);
     conf_print(&command, "cc -fopenmp \"$d\"/*.o %s/conformance/tool/*.o %s/conformance/tolerance/class_t.o %s/tests/spec/eval_*.o "
-               "$(ls %s/ref-decoder/tool/*.o | grep -v /ted4) %s/libted4enc.a %s/libted4dec.a -o \"$d/ted4conf\" %s 2>>\"$d/log\"",
-               b, b, b, b, b, b, c->o->libraries);
+               "$(ls %s/ref-decoder/tool/*.o | grep -v /ted4) %s/libted4enc.a %s/libted4render.a %s/libted4dec.a -o \"$d/ted4conf\" %s 2>>\"$d/log\"",
+               b, b, b, b, b, b, b, c->o->libraries);
     good = shell((const char *)command.data);
     conf_free(&command);
     return good;

@@ -10,6 +10,7 @@
 #include <string.h>
 #include <sys/stat.h>
 #include <xxhash.h>
+#include "base/bytes.h"
 
 _Noreturn void conf_die(const char *format, ...)
 {
@@ -202,9 +203,7 @@ void conf_path(char *to, const char *format, ...)
 
 void conf_hex(char *to, const uint8_t *bytes, size_t n)
 {
-    for (size_t i = 0; i < n; i++)
-        snprintf(to + 2 * i, 3, "%02x", bytes[i]);
-    to[2 * n] = '\0';
+    ted4_hex(to, bytes, n);
 }
 
 uint64_t conf_seed(const char *text)

@@ -1,9 +1,9 @@
-/* bytes.h - spec 4.2: little-endian numbers in byte strings, on any machine.
- * Used by everything that touches file bytes.
+/* bytes.h - spec 4.2: little-endian numbers in byte strings, on any machine; and bytes as people read them.
  * SPDX-License-Identifier: BSD-2-Clause */
 #ifndef TED4_BYTES_H
 #define TED4_BYTES_H
 
+#include <stddef.h>
 #include <stdint.h>
 #include <string.h>
 
@@ -63,6 +63,18 @@ static inline int ted4_float_legal(uint32_t bits)
     const uint32_t e = bits >> 23 & 255;
 
     return bits == 0 || (e > 0 && e < 255);
+}
+
+/* Lower-case hexadecimal of n bytes and a 0: 2 n + 1 characters. */
+static inline void ted4_hex(char *to, const uint8_t *bytes, size_t n)
+{
+    static const char digit[] = "0123456789abcdef";
+
+    for (size_t i = 0; i < n; i++) {
+        to[2 * i] = digit[bytes[i] >> 4];
+        to[2 * i + 1] = digit[bytes[i] & 15];
+    }
+    to[2 * n] = '\0';
 }
 
 #endif

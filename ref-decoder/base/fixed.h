@@ -1,5 +1,5 @@
 /* fixed.h - spec 4.3: integer operations whose names carry their rounding.
- * No signed overflow, no shift of a negative value. Used by norm/ and read/.
+ * No signed overflow, no shift of a negative value.
  * SPDX-License-Identifier: BSD-2-Clause */
 #ifndef TED4_FIXED_H
 #define TED4_FIXED_H

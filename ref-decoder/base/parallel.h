@@ -1,10 +1,14 @@
-/* parallel.h - how a caller lends its threads to the library (decisions: the library starts none).
- * Results never depend on which thread runs which index. Used by read, recon, render and the trainer.
+/* parallel.h - how a caller lends its threads to the library; the library starts none (SECURITY.md).
+ * Results never depend on which thread runs which index.
  * SPDX-License-Identifier: BSD-2-Clause */
 #ifndef TED4_PARALLEL_H
 #define TED4_PARALLEL_H
 
 #include <stddef.h>
+
+#ifdef __cplusplus
+extern "C" {
+#endif
 
 /* run() calls body(arg, i) once for each i in [0, n), in any order, on any threads, and returns when all are done. */
 typedef struct {
@@ -25,5 +29,9 @@ static inline void ted4_parallel_for(const ted4_parallel *p, size_t n,
     for (size_t i = 0; i < n; i++)
         body(arg, i);
 }
+
+#ifdef __cplusplus
+}
+#endif
 
 #endif

@@ -9,7 +9,7 @@ static const struct {
 } table[TED4_N_STATUS] = {
     { "ok", "14", "valid" },
 #define TED4_STATUS(name, id, section, text) { id, section, text },
-#include "base/status.def"
+#include "status.def"
 #undef TED4_STATUS
 };
 
@@ -49,4 +49,11 @@ ted4_verdict ted4_status_verdict(ted4_status s)
     if (strncmp(id, "io.", 3) == 0)
         return TED4_IO;
     return TED4_INVALID;
+}
+
+const char *ted4_verdict_name(ted4_verdict v)
+{
+    static const char *const name[] = { "valid", "invalid", "limit", "unsupported", "io" };
+
+    return name[v];
 }

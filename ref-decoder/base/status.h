@@ -5,10 +5,14 @@
 
 #include <stddef.h>
 
+#ifdef __cplusplus
+extern "C" {
+#endif
+
 typedef enum {
     TED4_OK,
 #define TED4_STATUS(name, id, section, text) TED4_##name,
-#include "base/status.def"
+#include "status.def"
 #undef TED4_STATUS
     TED4_N_STATUS
 } ted4_status;
@@ -27,5 +31,10 @@ const char  *ted4_status_id(ted4_status s);       /* "con.chunk-hash"; "ok" */
 const char  *ted4_status_section(ted4_status s);  /* "5.2" */
 const char  *ted4_status_text(ted4_status s);
 ted4_verdict ted4_status_verdict(ted4_status s);  /* from the id's first word */
+const char  *ted4_verdict_name(ted4_verdict v);   /* "valid", "invalid", "limit", "unsupported", "io" */
+
+#ifdef __cplusplus
+}
+#endif
 
 #endif

@@ -1,5 +1,4 @@
 /* gauss_kernel.h - symbols of a substream several lanes at a time (spec 9.2, 9.4), and whether this machine can.
- * Used by read/reader.c, and tests/test_kernel_gauss.c.
  * SPDX-License-Identifier: BSD-2-Clause */
 #ifndef TED4_GAUSS_KERNEL_H
 #define TED4_GAUSS_KERNEL_H

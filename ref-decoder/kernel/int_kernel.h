@@ -1,5 +1,4 @@
 /* int_kernel.h - faster twins of norm/int_dense.c, bit for bit equal, and which one this machine takes.
- * Used by read/decode.c, the encoder, and tests/test_kernel_int.c.
  * SPDX-License-Identifier: BSD-2-Clause */
 #ifndef TED4_INT_KERNEL_H
 #define TED4_INT_KERNEL_H

@@ -9,7 +9,7 @@ ted4_strict_dense_fn ted4_select_strict_dense(void)
     const char *want = getenv("TED4_KERNEL");
 
     if (want != NULL && strcmp(want, "plain") == 0)
-        return ted4_strict_dense_plain;
+        return NULL;
 #if defined(__x86_64__)
     if (__builtin_cpu_supports("avx512f") && __builtin_cpu_supports("avx512bw") &&
         __builtin_cpu_supports("avx512vl"))
@@ -17,5 +17,5 @@ ted4_strict_dense_fn ted4_select_strict_dense(void)
     if (__builtin_cpu_supports("avx2"))
         return ted4_strict_dense_avx2;
 #endif
-    return ted4_strict_dense_plain;
+    return NULL;
 }

@@ -1,17 +1,27 @@
-/* strict_dense.h - faster twins of ted4_strict_dense_plain (recon/strict.h), bit for bit equal, and which one this machine takes.
- * Used by recon/recon.c and tests/test_kernel_strict.c.
+/* strict_dense.h - spec 7.1, 12.2: one dense layer over a block of 32 anchors, faster twins of ted4_strict_dense_plain (recon/strict.h), bit for bit equal, and which one
+ * this machine takes. Depends on nothing.
  * SPDX-License-Identifier: BSD-2-Clause */
 #ifndef TED4_STRICT_DENSE_H
 #define TED4_STRICT_DENSE_H
 
-#include "recon/strict.h"
+/* w: [out][in], b: [out], borrowed. relu: y = max(0, y). */
+typedef struct {
+    unsigned     in, out;
+    const float *w, *b;
+    int          relu;
+} ted4_strict_layer;
+
+/* y[out][32] = W x[in][32] + b in the order of spec 12.2. x and y are 64-byte aligned and do not overlap. All variants give the
+ * same bits. */
+typedef void (*ted4_strict_dense_fn)(const ted4_strict_layer *l, const float *x,
+                                     float *y);
 
 #if defined(__x86_64__)
 void ted4_strict_dense_avx2(const ted4_strict_layer *l, const float *x, float *y);
 void ted4_strict_dense_avx512(const ted4_strict_layer *l, const float *x, float *y);
 #endif
 
-/* The fastest for this machine; the plain one when the environment says TED4_KERNEL=plain. */
+/* The fastest for this machine. NULL: it has none, or the environment says TED4_KERNEL=plain. */
 ted4_strict_dense_fn ted4_select_strict_dense(void);
 
 #endif

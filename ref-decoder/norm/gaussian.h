@@ -1,5 +1,4 @@
 /* gaussian.h - spec 9.4: the symbols of a Gaussian model and their slots.
- * Used by read/reader.c and by the coders that write and count.
  * SPDX-License-Identifier: BSD-2-Clause */
 #ifndef TED4_GAUSSIAN_H
 #define TED4_GAUSSIAN_H

@@ -1,5 +1,4 @@
 /* half.h - spec 8: binary16 patterns as exact integers and as sort keys; conversions by bit operations.
- * Used by walk_positions.c, prior.c, and the encoder.
  * SPDX-License-Identifier: BSD-2-Clause */
 #ifndef TED4_HALF_H
 #define TED4_HALF_H

@@ -79,3 +79,16 @@ int ted4_limits_hold(const ted4_limits *l, const ted4_header *h,
         && file_bytes <= l->file_bytes
         && (symbols + file_bytes - 1) / file_bytes <= l->symbols_per_byte;
 }
+
+unsigned ted4_level_lowest(const ted4_header *h, const ted4_shape *s,
+                           uint64_t file_bytes)
+{
+    const ted4_limits *l = table;
+
+    while (l->level != TED4_LEVEL_UNBOUNDED
+           && (h->n_anchors > l->n_anchors || h->n_offsets > l->n_offsets
+               || h->frames > l->frames || h->bank_rows > l->frames
+               || !ted4_limits_hold(l, h, s, file_bytes)))
+        l++;
+    return l->level;
+}

@@ -1,4 +1,4 @@
-/* limits.h - spec 13: levels, and what they and the limits of a decoder count. Used by walk_header.c, read/, recon/ and the writer.
+/* limits.h - spec 13: levels, and what they and the limits of a decoder count.
  * SPDX-License-Identifier: BSD-2-Clause */
 #ifndef TED4_LIMITS_H
 #define TED4_LIMITS_H
@@ -35,5 +35,9 @@ uint64_t ted4_count_query_work(const ted4_header *h, const ted4_shape *s,
 /* The bounds that no single element breaks: 1 when a file of that size keeps them, else 0. */
 int ted4_limits_hold(const ted4_limits *l, const ted4_header *h,
                      const ted4_shape *s, uint64_t file_bytes);
+
+/* R-ENC-002: the lowest level all of whose bounds hold for a file of that size. */
+unsigned ted4_level_lowest(const ted4_header *h, const ted4_shape *s,
+                           uint64_t file_bytes);
 
 #endif

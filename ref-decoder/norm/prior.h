@@ -1,5 +1,5 @@
 /* prior.h - spec 7.3, 10.1, 10.3: the networks of Tier E as integers, and what their outputs mean.
- * Depends on syntax.h. Used by walk_nets.c, walk_tile.c, and by the trainer, which needs no scene for it:
+ * Depends on syntax.h. It needs no scene:
  *     ted4_arena_init(&a, NULL); ted4_prior_init(&p, &head, &shape, &a); ... ted4_prior_load(&p, nete, shift, &error) as often as
  * weights change; ted4_prior_hyper and ted4_prior_slice from any thread; ted4_arena_finish(&a).
  * SPDX-License-Identifier: BSD-2-Clause */

@@ -1,4 +1,4 @@
-/* scene.h - a scene's memory and its hash. Used by read/decode.c and by the encoder, which fills scenes itself.
+/* scene.h - a scene's memory and its hash. The encoder fills scenes itself.
  * SPDX-License-Identifier: BSD-2-Clause */
 #ifndef TED4_SCENE_H
 #define TED4_SCENE_H

@@ -1,5 +1,4 @@
-/* sine.h - spec 10.1: the sine of the positional encodings, from its table.
- * Used by prior.c (Tier E) and recon/encode.c (E(p) and E(t) of spec 11.3).
+/* sine.h - spec 10.1, 11.3 (E(p), E(t)): the sine of the positional encodings, from its table.
  * SPDX-License-Identifier: BSD-2-Clause */
 #ifndef TED4_SINE_H
 #define TED4_SINE_H

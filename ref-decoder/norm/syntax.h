@@ -1,5 +1,4 @@
 /* syntax.h - spec 6 to 10: what a parsed file holds, one member per syntax element.
- * Used by everything that reads, writes, trains or reconstructs a stream.
  * SPDX-License-Identifier: BSD-2-Clause */
 #ifndef TED4_SYNTAX_H
 #define TED4_SYNTAX_H
@@ -17,9 +16,7 @@ enum { TED4_MAX_OFFSETS = 16, TED4_MAX_FEATURE = 128, TED4_MAX_SLICES = 16,
 typedef enum { TED4_FEATURE, TED4_SCALING, TED4_OFFSET, TED4_PHI, TED4_TAU,
                TED4_TYPES } ted4_type;
 
-enum { TED4_MOTION_NONE, TED4_MOTION_BANK, TED4_MOTION_CONCAT,
-       TED4_MOTION_INR };
-enum { TED4_VIEW_NONE, TED4_VIEW_COLOUR, TED4_VIEW_FULL };
+/* spec 6.1; those of motion and view are in ted4.h. */
 enum { TED4_SCALE_LOG2, TED4_SCALE_LINEAR };
 enum { TED4_PRIOR_INR, TED4_PRIOR_FACTORISED };
 

@@ -44,22 +44,6 @@ static size_t offset_of(const ted4_findings *f, const char *element)
     return s.offset;
 }
 
-/* R-ENC-002, for a file of that size. */
-static unsigned lowest_level(const ted4_scene *s, size_t size)
-{
-    const ted4_header *h = &s->head;
-    unsigned           level = 1;
-
-    for (; level < TED4_LEVEL_UNBOUNDED; level++) {
-        const ted4_limits *l = ted4_limits_of(level);
-
-        if (l != NULL && h->n_anchors <= l->n_anchors && h->n_offsets <= l->n_offsets && h->frames <= l->frames
-            && h->bank_rows <= l->frames && ted4_limits_hold(l, h, &s->shape, size))
-            break;
-    }
-    return level;
-}
-
 /* n bytes of the shuffled values (spec 7.2), from byte at on. Every blob of a file has a value. */
 static void shuffle(const ted4_blob *b, size_t at, uint8_t *bytes, size_t n)
 {
@@ -223,7 +207,7 @@ static void advise_bank(ted4_findings *f, const ted4_scene *s)
 ted4_status ted4_advise(ted4_findings *f, const ted4_scene *s,
                         const ted4_options *o)
 {
-    const unsigned lowest = lowest_level(s, f->size);
+    const unsigned lowest = ted4_level_lowest(&s->head, &s->shape, f->size);
     ted4_status    verdict;
     ted4_arena     a;
 

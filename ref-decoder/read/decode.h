@@ -1,5 +1,4 @@
 /* decode.h - pass 2 of spec 5.3, a chunk at a time: what the strict, the lenient decoder and the validator share.
- * Used by decode.c, lenient.c and validate.c.
  * SPDX-License-Identifier: BSD-2-Clause */
 #ifndef TED4_DECODE_H
 #define TED4_DECODE_H

@@ -1,4 +1,4 @@
-/* finding.h - how the parts of the validator say what they find. Used by validate.c, collect.c, advise.c, advise_symbols.c.
+/* finding.h - how the parts of the validator say what they find.
  * SPDX-License-Identifier: BSD-2-Clause */
 #ifndef TED4_FINDING_H
 #define TED4_FINDING_H

@@ -1,5 +1,4 @@
 /* listen.h - the tiles of a decoded scene walked once more, by a coder that codes nothing: it only sees what the walk hands over.
- * Used by dump_tier.c and advise_symbols.c.
  * SPDX-License-Identifier: BSD-2-Clause */
 #ifndef TED4_LISTEN_H
 #define TED4_LISTEN_H

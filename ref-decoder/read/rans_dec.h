@@ -1,4 +1,4 @@
-/* rans_dec.h - spec 9.2: rANS, the direction that reads. Knows no element and no model. Used by reader.c.
+/* rans_dec.h - spec 9.2: rANS, the direction that reads. Knows no element and no model.
  * Mirror image: ref-encoder/write/rans_enc.h.
  * SPDX-License-Identifier: BSD-2-Clause */
 #ifndef TED4_RANS_DEC_H

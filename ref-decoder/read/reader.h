@@ -1,4 +1,4 @@
-/* reader.h - the coder that reads a file in memory (norm/coder.h). Used by container.c and decode.c.
+/* reader.h - the coder that reads a file in memory (norm/coder.h).
  * SPDX-License-Identifier: BSD-2-Clause */
 #ifndef TED4_READER_H
 #define TED4_READER_H

@@ -33,6 +33,8 @@ static uint64_t set_sizes(ted4_recon *r, const struct ted4_scene *s)
     r->head = *h;
     memcpy(r->net, s->shape.netr, sizeof r->net);
     r->dense = ted4_select_strict_dense();
+    if (r->dense == NULL)
+        r->dense = ted4_strict_dense_plain;
     r->n_motion_rows = h->motion == TED4_MOTION_INR ? TED4_POINT_INPUTS : h->phi_dim;
     r->rows = (ted4_recon_rows){ 0, 3, 3 + h->feature_dim, 0, 0, 0 };
     r->rows.size = r->rows.shift + 3 * k;

@@ -1,7 +1,7 @@
-/* strict.h - spec 12.2: the arithmetic of class X: pow2, sigmoid, square root, and the shape of a dense layer.
+/* strict.h - spec 12.2: the arithmetic of class X: pow2, sigmoid, and the dense layer, plain.
  * Every operation is one binary32 operation, so files that include this are compiled without contraction.
  * Anchors are worked on in blocks of 32: a row is one value of each, a block [channel][32]. Loops run over lanes, never across a sum,
- * so that vectors give the bits of the scalar definition. Used by recon and the strict kernels.
+ * so that vectors give the bits of the scalar definition. Depends on base/bytes.h, kernel/strict_dense.h.
  * SPDX-License-Identifier: BSD-2-Clause */
 #ifndef TED4_STRICT_H
 #define TED4_STRICT_H
@@ -9,6 +9,7 @@
 #include <math.h>
 #include <stdint.h>
 #include "base/bytes.h"
+#include "kernel/strict_dense.h"
 
 enum { TED4_ROW = 32 };                 /* lanes of a row */
 
@@ -48,18 +49,7 @@ static inline float ted4_sigmoid(float x)
     return 1.0f / (1.0f + ted4_pow2(-x * TED4_LOG2E));
 }
 
-/* spec 7.1: one dense layer. w: [out][in], b: [out], borrowed. relu: y = max(0, y). */
-typedef struct {
-    unsigned     in, out;
-    const float *w, *b;
-    int          relu;
-} ted4_strict_layer;
-
-/* y[out][32] = W x[in][32] + b in the order of spec 12.2. x and y are 64-byte aligned and do not overlap. All variants give the
- * same bits. */
-typedef void (*ted4_strict_dense_fn)(const ted4_strict_layer *l, const float *x,
-                                     float *y);
-
+/* A ted4_strict_dense_fn for any machine. */
 void ted4_strict_dense_plain(const ted4_strict_layer *l, const float *x, float *y);
 
 /* probe.c: does this process round as spec 12.2 asks, now? */

@@ -1,6 +1,6 @@
 /* bin.c - second stage of raster.c: visible Gaussians in depth order (stable radix sort), then the list of each tile (counting sort).
  * Each pass splits its input into TED4_SORT_PARTS parts that count alone, adds the counts up in order, and lets the parts
- * place their items alone: a stable sort whatever runs the parts. Used by raster.c.
+ * place their items alone: a stable sort whatever runs the parts.
  * SPDX-License-Identifier: BSD-2-Clause */
 #include "render/raster_state.h"
 

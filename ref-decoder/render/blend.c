@@ -1,6 +1,6 @@
 /* blend.c - third stage of raster.c: one job a tile, one vector a block of 4x4 pixels. The tile's list is taken in batches; each batch is
  * copied together (its Gaussians lie on as many pages as they are), and an exact test of ellipse against block says which of them each block
- * needs; then it is blended block by block. Used by raster.c.
+ * needs; then it is blended block by block.
  * SPDX-License-Identifier: BSD-2-Clause */
 #include "render/raster_state.h"
 

@@ -1,5 +1,5 @@
 /* image_model.h - the mathematics of the rasteriser, written once for forward and backward: EWA projection of 16 Gaussians, and the opacity of
- * one Gaussian at the 16 pixels of a block. Depends on vec.h. Used by project.c, blend.c, train/project_bwd.c, train/blend_bwd.c.
+ * one Gaussian at the 16 pixels of a block. Depends on vec.h.
  * raster_plain.c is the same model in plain scalar code.
  *
  * The exponent of a Gaussian is taken in log2 and by the Cholesky factor of the inverse covariance [[a, b], [b, c]]^-1: with

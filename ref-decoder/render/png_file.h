@@ -1,5 +1,5 @@
 /* png_file.h - annex I (informative): writes rendered views as PNG.
- * Needs libpng, so nothing normative includes it. Used by ted4dec --render and the encoder's tools.
+ * Needs libpng, so nothing normative includes it.
  * SPDX-License-Identifier: BSD-2-Clause */
 #ifndef TED4_PNG_FILE_H
 #define TED4_PNG_FILE_H

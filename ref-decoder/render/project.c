@@ -1,5 +1,4 @@
 /* project.c - first stage of raster.c: Gaussians to image plane, 16 at a time, with culling, tile boxes and depth keys.
- * Used by raster.c.
  * SPDX-License-Identifier: BSD-2-Clause */
 #include "render/raster_state.h"
 

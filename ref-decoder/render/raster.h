@@ -1,5 +1,5 @@
 /* raster.h - annex I (informative): tile rasteriser for 3D Gaussians, the forward pass that decoder and trainer share.
- * Depends on base/parallel.h. Used by ted4dec, ted4eval and, with its adjoint in ref-encoder/train/raster_bwd.h, by the trainer.
+ * Depends on base/parallel.h.
  * SPDX-License-Identifier: BSD-2-Clause */
 #ifndef TED4_RASTER_H
 #define TED4_RASTER_H

@@ -1,4 +1,4 @@
-/* raster_plain.c - see raster_plain.h. Source: algorithm facts, section 2.1 and 2.2, with this project's conventions (raster.h).
+/* raster_plain.c - see raster_plain.h. Source: annex I.2, I.3, with the conventions of raster.h.
  * SPDX-License-Identifier: BSD-2-Clause */
 #include "render/raster_plain.h"
 

@@ -1,5 +1,5 @@
 /* raster_state.h - inside the workspace of raster.h: what its stages hand to each other and to the adjoint. Depends on image_model.h.
- * Used by render/ and train/raster_bwd.c, train/blend_bwd.c, train/project_bwd.c only.
+ * For render/ and its adjoint in ref-encoder/train/ only.
  *
  * Terms: an instance is a (Gaussian, tile) pair. Instances have two orders: by tile and depth ("position"), in which they are
  * blended, and by Gaussian and tile ("slot"), in which their gradients are added up.

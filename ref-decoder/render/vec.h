@@ -1,5 +1,5 @@
 /* vec.h - sixteen floats at once, in portable vector C: the lanes are Gaussians in project.c and pixels of a 4x4 block in blend.c.
- * Used by render/ and its adjoint in ref-encoder/train/. Compilers without 512-bit registers split the operations themselves.
+ * Compilers without 512-bit registers split the operations themselves.
  * SPDX-License-Identifier: BSD-2-Clause */
 #ifndef TED4_VEC_H
 #define TED4_VEC_H

@@ -1,5 +1,5 @@
 /* view.h - a picture of a decoded scene: query, rasterise, round to 8 bits. Informative (annex I).
- * Depends on ted4.h, raster.h. Used by ted4dec and ted4eval.
+ * Depends on ted4.h, raster.h.
  * SPDX-License-Identifier: BSD-2-Clause */
 #ifndef TED4_VIEW_H
 #define TED4_VIEW_H

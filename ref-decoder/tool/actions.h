@@ -1,5 +1,5 @@
 /* actions.h - what ted4dec does with a decoded scene: hashes, files of Gaussians, pictures.
- * Depends on ted4.h, render/view.h, sample.h. Used by ted4dec only.
+ * Depends on ted4.h, render/view.h, sample.h.
  * SPDX-License-Identifier: BSD-2-Clause */
 #ifndef TED4_ACTIONS_H
 #define TED4_ACTIONS_H

@@ -1,6 +1,5 @@
 /* arguments.h - command lines from one table: parsing (getopt_long) and the help text are made from
  * the same lines.
- * Used by the programs.
  * SPDX-License-Identifier: BSD-2-Clause */
 #ifndef TED4_ARGUMENTS_H
 #define TED4_ARGUMENTS_H

@@ -1,5 +1,5 @@
 /* budget.h - which syntax element each byte of a file belongs to, gathered from the trace of the decoder.
- * Depends on nothing. Used by ted4info.
+ * Depends on nothing.
  * SPDX-License-Identifier: BSD-2-Clause */
 #ifndef TED4_BUDGET_H
 #define TED4_BUDGET_H

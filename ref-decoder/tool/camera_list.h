@@ -3,7 +3,6 @@
  * numbers, row by row) and t (3 numbers) with x_cam = R x + t,
  * axes right, down, forward; and frame (a number) or time (a number in [0, 1], or a string as
  * --time takes it).
- * Used by ted4dec.
  * SPDX-License-Identifier: BSD-2-Clause */
 #ifndef TED4_CAMERA_LIST_H
 #define TED4_CAMERA_LIST_H

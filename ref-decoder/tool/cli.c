@@ -5,13 +5,6 @@
 #include <jansson.h>
 #include <stdio.h>
 
-static const char *verdict_name(ted4_verdict v)
-{
-    static const char *const name[] = { "valid", "invalid", "limit", "unsupported", "io" };
-
-    return name[v];
-}
-
 int ted4_report(const char *program, const char *path, const ted4_error *e, int json)
 {
     const ted4_verdict verdict = ted4_status_verdict(e->code);
@@ -20,7 +13,7 @@ int ted4_report(const char *program, const char *path, const ted4_error *e, int 
         json_t *const name = json_string(path);         /* NULL: not UTF-8 */
         json_t *const o =
             json_pack("{s:o, s:s, s:s, s:I, s:s}", "file", name != NULL ? name : json_null(),
-                      "verdict", verdict_name(verdict), "error", ted4_status_id(e->code), "offset",
+                      "verdict", ted4_verdict_name(verdict), "error", ted4_status_id(e->code), "offset",
                       (json_int_t)e->offset, "text", ted4_status_text(e->code));
 
         json_dumpf(o, stdout, JSON_COMPACT);

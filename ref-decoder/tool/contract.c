@@ -4,6 +4,7 @@
 
 #include <stdlib.h>
 #include <string.h>
+#include "base/bytes.h"
 #include "cli.h"
 #include "tier_hash.h"
 
@@ -203,9 +204,8 @@ static json_t *tier_r(request *r, const ted4_scene *s, const ted4_options *o, te
 
 static json_t *refusal(const ted4_error *e)
 {
-    static const char *const name[] = { "valid", "invalid", "limit", "unsupported", "io" };
     const ted4_verdict v = ted4_status_verdict(e->code);
-    json_t *o = json_pack("{s:s, s:s}", "result", name[v], "error", ted4_status_id(e->code));
+    json_t *o = json_pack("{s:s, s:s}", "result", ted4_verdict_name(v), "error", ted4_status_id(e->code));
 
     if (v == TED4_INVALID || v == TED4_UNSUPPORTED)
         json_object_set_new(o, "offset", json_integer((json_int_t)e->offset));
@@ -246,8 +246,7 @@ static json_t *answer_salvage(request *r, const ted4_scene *s, const ted4_salvag
     char        hash[2 * sizeof info.hash + 1];
 
     ted4_scene_info(s, &info);
-    for (size_t i = 0; i < sizeof info.hash; i++)
-        snprintf(hash + 2 * i, 3, "%02x", info.hash[i]);
+    ted4_hex(hash, info.hash, sizeof info.hash);
     json_object_set_new(answer, "salvage", json_pack("{s:I, s:I, s:I, s:I, s:s, s:I, s:s, s:o}", "tiles", (json_int_t)what->n_tiles,
                                                      "tiles_declared", (json_int_t)what->tiles_declared, "anchors",
                                                      (json_int_t)info.n_anchors, "anchors_declared", (json_int_t)what->anchors_declared,

@@ -1,7 +1,6 @@
 /* contract.h - the driver contract of the conformance suite (conformance/README.md): what a test runner asks of a decoder.
  *     ted4dec --ted4-capabilities
  *     ted4dec --ted4-run FILE --tiers T0,T5 [--queries FILE] [--knob name=value] [--mode strict|lenient] [--dump DIR]
- * Used by ted4dec only.
  * SPDX-License-Identifier: BSD-2-Clause */
 #ifndef TED4_CONTRACT_H
 #define TED4_CONTRACT_H

@@ -1,7 +1,6 @@
 /* export.h - Gaussians of one time as files that viewers read: what a format gets, and the list of
  * formats.
  * Depends on nothing of the codec. One format a file: out_ply.c, out_splat.c, out_glb.c, out_raw.c.
- * Used by ted4dec.
  * SPDX-License-Identifier: BSD-2-Clause */
 #ifndef TED4_EXPORT_H
 #define TED4_EXPORT_H

@@ -76,10 +76,9 @@ static void take(void *user, const ted4_finding *f)
 
 static void print_json(const report *r, ted4_status verdict, size_t size)
 {
-    static const char *const name[] = { "valid", "invalid", "limit", "unsupported", "io" };
     json_t *const path = json_string(r->path);          /* NULL: not UTF-8 */
     json_t *const o = json_pack("{s:o, s:I, s:s, s:{s:i, s:i, s:i}, s:O}", "file", path != NULL ? path : json_null(), "bytes",
-                                (json_int_t)size, "verdict", name[ted4_status_verdict(verdict)], "counts", severity_name[0],
+                                (json_int_t)size, "verdict", ted4_verdict_name(ted4_status_verdict(verdict)), "counts", severity_name[0],
                                 r->count[0], severity_name[1], r->count[1], severity_name[2], r->count[2], "findings", r->list);
 
     json_dumpf(o, stdout, JSON_COMPACT);

@@ -1,5 +1,5 @@
 /* findings.h - ted4info --validate: findings as text or as one JSON object (conformance/schema/validate.schema.json).
- * Depends on ted4.h. Used by ted4info.
+ * Depends on ted4.h.
  * SPDX-License-Identifier: BSD-2-Clause */
 #ifndef TED4_TOOL_FINDINGS_H
 #define TED4_TOOL_FINDINGS_H

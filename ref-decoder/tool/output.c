@@ -7,7 +7,8 @@
 #include <string.h>
 #include <unistd.h>
 
-int ted4_output_temporary(char out[TED4_PATH_SIZE], const char *path)
+/* The temporary name for path. 0, or -1: too long (errno set). */
+static int name_temporary(char out[TED4_PATH_SIZE], const char *path)
 {
     const int n = snprintf(out, TED4_PATH_SIZE, "%s.%ld.part", path, (long)getpid());
 
@@ -19,7 +20,7 @@ int ted4_output_temporary(char out[TED4_PATH_SIZE], const char *path)
 
 int ted4_output_open(ted4_output *o, const char *path)
 {
-    if (ted4_output_temporary(o->temporary, path) != 0)
+    if (name_temporary(o->temporary, path) != 0)
         return -1;
     memcpy(o->path, path, strlen(path) + 1);
     o->file = fopen(o->temporary, "wb");

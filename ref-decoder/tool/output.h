@@ -1,6 +1,5 @@
 /* output.h - files a program writes: numbered names, and files that appear only when they are
  * complete.
- * Used by export.c, ted4dec and ted4eval.
  * SPDX-License-Identifier: BSD-2-Clause */
 #ifndef TED4_OUTPUT_H
 #define TED4_OUTPUT_H
@@ -23,10 +22,6 @@ int  ted4_output_open(ted4_output *o, const char *path);
 int  ted4_output_close(ted4_output *o);
 /* Closes and removes the temporary file; errno is kept. */
 void ted4_output_cancel(ted4_output *o);
-
-/* The temporary name for path, for code that opens files itself. 0, or -1: name too long (errno
- * set). */
-int ted4_output_temporary(char out[TED4_PATH_SIZE], const char *path);
 
 /* A pattern is a file name with at most one %d, %Nd or %0Nd (N up to 9) and no other percent sign.
  * Number of conversions (0 or 1), or -1 when it is not a pattern. */

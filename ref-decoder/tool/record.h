@@ -1,5 +1,4 @@
 /* record.h - spec 11.6: a record as bytes, from structure of arrays.
- * Used by out_raw.c and sample.c.
  * SPDX-License-Identifier: BSD-2-Clause */
 #ifndef TED4_RECORD_H
 #define TED4_RECORD_H

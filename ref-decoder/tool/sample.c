@@ -14,8 +14,6 @@
  * to 2^-20. */
 #define FAR_AWAY 0x1p20
 
-enum { VIEW_NONE = 0 };         /* ted4_info.view: spec 6.1 */
-
 static const float OPACITY_MIN = 1.0f / 255.0f;
 
 typedef struct {
@@ -50,7 +48,7 @@ static ted4_status fit_colours(const ted4_sampler *s, const ted4_query *q, ted4_
     const ted4_frame *const x = &out->frame;
     direction_job j = { s, *q, out->kept, x->n, TED4_OK };
 
-    if (s->info->view == VIEW_NONE) {
+    if (s->info->view == TED4_VIEW_NONE) {
         ted4_sh_constant(s->sh_degree, x->n, x->colour, sh);
         return TED4_OK;
     }

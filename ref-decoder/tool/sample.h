@@ -1,7 +1,7 @@
 /* sample.h - the Gaussians of one time, ready for a format: those worth keeping, with spherical
  * harmonics that stand for
  * view-dependent heads (spec 11.5).
- * Depends on ted4.h, export.h. Used by ted4dec.
+ * Depends on ted4.h, export.h.
  * SPDX-License-Identifier: BSD-2-Clause */
 #ifndef TED4_SAMPLE_H
 #define TED4_SAMPLE_H

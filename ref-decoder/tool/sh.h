@@ -2,7 +2,6 @@
  * colours that depend on direction.
  * colour(d) = 0.5 + sum_k sh[k] basis_k(d), d the unit vector from the camera to the Gaussian.
  * Signs with the Condon-Shortley phase.
- * Used by the formats and by sample.c.
  * SPDX-License-Identifier: BSD-2-Clause */
 #ifndef TED4_SH_H
 #define TED4_SH_H

@@ -91,19 +91,15 @@ static int64_t integer_value(const ted4_header_value *v)
     return strcmp(v->name, "exponent") == 0 ? (int8_t)v->value : v->value;
 }
 
-static void hash_text(const ted4_info *info, char text[33])
-{
-    for (int i = 0; i < 16; i++)
-        snprintf(text + 2 * i, 3, "%02x", info->hash[i]);
-}
-
 static void print_summary(const settings *s, const ted4_info *info, size_t size)
 {
-    static const char *const motion[] = { "none", "bank", "concat", "inr" };
-    static const char *const view[] = { "none", "colour", "full" };
+    static const char *const motion[] = {
+        [TED4_MOTION_NONE] = "none", [TED4_MOTION_BANK] = "bank", [TED4_MOTION_CONCAT] = "concat", [TED4_MOTION_INR] = "inr"
+    };
+    static const char *const view[] = { [TED4_VIEW_NONE] = "none", [TED4_VIEW_COLOUR] = "colour", [TED4_VIEW_FULL] = "full" };
     char hash[33];
 
-    hash_text(info, hash);
+    ted4_hex(hash, info->hash, sizeof info->hash);
     printf("%s: TED4, Main profile, level %d, %zu bytes\n", s->input, info->level, size);
     printf("anchors     %" PRIu32 ", moving %" PRIu32 "\n", info->n_anchors, info->n_dynamic);
     printf("Gaussians   %zu, at most %" PRIu32 " an anchor\n", info->n_gaussians, info->n_offsets);
@@ -189,7 +185,7 @@ static void print_json(const settings *s, const ted4_info *info, const ted4_budg
     char    hash[33];
     json_t *o;
 
-    hash_text(info, hash);
+    ted4_hex(hash, info->hash, sizeof info->hash);
     o = json_pack("{s:o, s:s, s:I, s:i, s:s, s:I, s:I, s:I, s:o}", "file", name != NULL ? name : json_null(), "verdict", "valid",
                   "bytes", (json_int_t)size, "level", info->level, "hash", hash, "anchors", (json_int_t)info->n_anchors,
                   "moving", (json_int_t)info->n_dynamic, "gaussians", (json_int_t)info->n_gaussians, "header", header_json(b));

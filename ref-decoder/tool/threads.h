@@ -1,5 +1,5 @@
 /* threads.h - the team of threads that programs lend to the libraries through base/parallel.h.
- * Used by all programs, tests and benchmarks; library code only ever sees a const ted4_parallel *.
+ * Library code only ever sees a const ted4_parallel *.
  * SPDX-License-Identifier: BSD-2-Clause */
 #ifndef TED4_THREADS_H
 #define TED4_THREADS_H

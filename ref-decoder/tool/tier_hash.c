@@ -63,12 +63,6 @@ void ted4_tier_hash_add(void *hash, const void *bytes, size_t size)
     }
 }
 
-static void hex(char *to, const uint8_t *bytes, size_t n)
-{
-    for (size_t i = 0; i < n; i++)
-        snprintf(to + 2 * i, 3, "%02x", bytes[i]);
-}
-
 json_t *ted4_tier_hash_end(ted4_tier_hash *h)
 {
     XXH128_canonical_t canonical;
@@ -81,8 +75,8 @@ json_t *ted4_tier_hash_end(ted4_tier_hash *h)
     flush(h);
     XXH128_canonicalFromHash(&canonical, XXH3_128bits_digest(h->xxh3));
     ted4_sha256_end(&h->sha256, sha);
-    hex(xxh3_hex, canonical.digest, sizeof canonical.digest);
-    hex(sha_hex, sha, sizeof sha);
+    ted4_hex(xxh3_hex, canonical.digest, sizeof canonical.digest);
+    ted4_hex(sha_hex, sha, sizeof sha);
     o = json_pack("{s:I, s:s, s:s}", "bytes", (json_int_t)h->size, "xxh3", xxh3_hex, "sha256", sha_hex);
     XXH3_freeState(h->xxh3);
     free(h);

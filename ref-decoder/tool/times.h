@@ -1,5 +1,4 @@
 /* times.h - which times of a scene a command line asks for.
- * Used by ted4dec.
  * SPDX-License-Identifier: BSD-2-Clause */
 #ifndef TED4_TIMES_H
 #define TED4_TIMES_H

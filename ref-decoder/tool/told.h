@@ -1,5 +1,4 @@
 /* told.h - what a file says for people: lines key=value of its chunks META (spec 5.2).
- * Used by ted4info.
  * SPDX-License-Identifier: BSD-2-Clause */
 #ifndef TED4_TOOL_TOLD_H
 #define TED4_TOOL_TOLD_H

@@ -1,5 +1,5 @@
 /* clip.h - what a fixed camera saw over time, for layouts with one camera a clip: a folder of
- * pictures, or a video. Depends on data/raw_scene.h. Used by load_neu3d.c, load_calibration.c.
+ * pictures, or a video. Depends on data/raw_scene.h.
  * SPDX-License-Identifier: BSD-2-Clause */
 #ifndef TED4_CLIP_H
 #define TED4_CLIP_H

@@ -1,5 +1,4 @@
 /* colmap_file.h - COLMAP's sparse model, cameras, images and points3D, binary or text.
- * Used by load_colmap.c.
  * SPDX-License-Identifier: BSD-2-Clause */
 #ifndef TED4_COLMAP_FILE_H
 #define TED4_COLMAP_FILE_H

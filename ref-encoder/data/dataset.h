@@ -1,5 +1,5 @@
 /* dataset.h - posed images in time, whatever layout they came in.
- * Used by the trainer and ted4eval. Loaders: one file a layout (load_*.c).
+ * Loaders: one file a layout (load_*.c).
  * SPDX-License-Identifier: BSD-2-Clause */
 #ifndef TED4_DATASET_H
 #define TED4_DATASET_H

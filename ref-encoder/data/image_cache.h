@@ -1,5 +1,5 @@
 /* image_cache.h - decoded pictures under a bound of memory, least recently used leave first.
- * Depends on data/dataset.h for ted4_message. Used by dataset.c.
+ * Depends on data/dataset.h for ted4_message.
  * SPDX-License-Identifier: BSD-2-Clause */
 #ifndef TED4_IMAGE_CACHE_H
 #define TED4_IMAGE_CACHE_H

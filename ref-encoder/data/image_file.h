@@ -1,5 +1,5 @@
 /* image_file.h - one picture file, PNG or JPEG by its signature, to bytes.
- * Depends on data/dataset.h for ted4_message. Used by the dataset's image cache and by ted4eval.
+ * Depends on data/dataset.h for ted4_message.
  * SPDX-License-Identifier: BSD-2-Clause */
 #ifndef TED4_IMAGE_FILE_H
 #define TED4_IMAGE_FILE_H

@@ -1,5 +1,4 @@
 /* json_field.h - fields of a JSON document with messages that name file and field.
- * Used by the loaders of layouts that JSON describes.
  * SPDX-License-Identifier: BSD-2-Clause */
 #ifndef TED4_JSON_FIELD_H
 #define TED4_JSON_FIELD_H

@@ -1,5 +1,5 @@
 /* npy_file.h - tables of numbers in NumPy's array file (.npy).
- * Depends on data/dataset.h for ted4_message. Used by the loaders of layouts that hold such files.
+ * Depends on data/dataset.h for ted4_message.
  * SPDX-License-Identifier: BSD-2-Clause */
 #ifndef TED4_NPY_FILE_H
 #define TED4_NPY_FILE_H

@@ -1,5 +1,4 @@
 /* point_cloud.h - initial points of a scene: from a PLY file, or random where none came with it.
- * Used by the loaders and build_dataset.c.
  * SPDX-License-Identifier: BSD-2-Clause */
 #ifndef TED4_POINT_CLOUD_H
 #define TED4_POINT_CLOUD_H

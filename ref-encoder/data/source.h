@@ -1,5 +1,4 @@
 /* source.h - how the file of one picture becomes its pixels, and where a scene's cameras look.
- * Used by build_dataset.c, dataset.c.
  * SPDX-License-Identifier: BSD-2-Clause */
 #ifndef TED4_SOURCE_H
 #define TED4_SOURCE_H

@@ -1,5 +1,5 @@
 /* undistort.h - lens model of the input pictures, and the way from a decoded file to the pixels
- * a pinhole would have seen. Used by the loaders (lens), by dataset.c (pixels).
+ * a pinhole would have seen.
  * SPDX-License-Identifier: BSD-2-Clause */
 #ifndef TED4_UNDISTORT_H
 #define TED4_UNDISTORT_H

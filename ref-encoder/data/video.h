@@ -1,5 +1,5 @@
 /* video.h - video files as folders of pictures, taken apart by the program ffmpeg.
- * Depends on data/dataset.h for ted4_message. Used by clip.c.
+ * Depends on data/dataset.h for ted4_message.
  * SPDX-License-Identifier: BSD-2-Clause */
 #ifndef TED4_VIDEO_H
 #define TED4_VIDEO_H

@@ -1,8 +1,7 @@
 /* dense.c - the three products of a dense layer, register-blocked for 32 vector registers of 16
  * floats. Forward and its transpose share one kernel: a panel of up to 12 outputs times 32 lanes
  * lives in registers while the inputs stream by, one broadcast weight for two FMAs. The weight
- * gradient is a dot product over lanes: tiles of 4 x 4, folded by a shuffle tree. spec 7.1. Used by
- * train/generate.c and train/rate.c.
+ * gradient is a dot product over lanes: tiles of 4 x 4, folded by a shuffle tree. spec 7.1.
  * SPDX-License-Identifier: BSD-2-Clause */
 #include "kernel/dense.h"
 

@@ -1,6 +1,6 @@
 /* dense.h - float dense layers over blocks of 32 anchors: the trainer's matrix kernels.
  * A block is [channel][32]: one row of 32 lanes per channel, 64-byte aligned. Not normative: may contract and reorder, but the order is fixed,
- * so results do not depend on threads. Used by train/generate.c and train/rate.c.
+ * so results do not depend on threads.
  * SPDX-License-Identifier: BSD-2-Clause */
 #ifndef TED4_DENSE_H
 #define TED4_DENSE_H

@@ -1,4 +1,4 @@
-/* request.h - what a command line of ted4enc asks for (decisions 5).
+/* request.h - what a command line of ted4enc asks for.
  * SPDX-License-Identifier: BSD-2-Clause */
 #ifndef TED4_REQUEST_H
 #define TED4_REQUEST_H

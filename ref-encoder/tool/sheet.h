@@ -1,5 +1,4 @@
 /* sheet.h - pictures that show quality: truth, ours, and their difference, apart or on one sheet.
- * Used by ted4eval.
  * SPDX-License-Identifier: BSD-2-Clause */
 #ifndef TED4_SHEET_H
 #define TED4_SHEET_H

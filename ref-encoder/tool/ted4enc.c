@@ -1,4 +1,4 @@
-/* ted4enc.c - trains a scene and writes it as a .ted4 file (decisions 5).
+/* ted4enc.c - trains a scene and writes it as a .ted4 file.
  * SPDX-License-Identifier: BSD-2-Clause */
 #include <math.h>
 #include <stdio.h>

@@ -5,6 +5,7 @@
 #include <stdio.h>
 #include <string.h>
 
+#include "base/bytes.h"
 #include "write/encode.h"
 
 static int differs(const ted4_scene *a, const ted4_scene *b)
@@ -51,7 +52,6 @@ int ted4_verify(const ted4_scene *scene, const uint8_t *bytes, size_t size,
     v->dynamic = info.n_dynamic;
     v->gaussians = info.n_gaussians;
     v->coded_bits = bits.total - bits.mask - bits.frame;
-    for (int i = 0; i < 16; i++)
-        snprintf(v->hash + 2 * i, 3, "%02x", info.hash[i]);
+    ted4_hex(v->hash, info.hash, sizeof info.hash);
     return 0;
 }

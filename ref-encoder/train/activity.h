@@ -1,5 +1,5 @@
 /* activity.h - how the units of the model's networks move over anchors and training pictures: means of products, and who reads them. For narrow.h.
- * Depends on trainer.h. Used by capacity_moves.c.
+ * Depends on trainer.h.
  * SPDX-License-Identifier: BSD-2-Clause */
 #ifndef TED4_ACTIVITY_H
 #define TED4_ACTIVITY_H

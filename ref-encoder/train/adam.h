@@ -1,5 +1,5 @@
 /* adam.h - the Adam step over rows of 32 lanes and over flat arrays.
- * Source: algorithm facts 1.4 (beta 0.9, 0.999, epsilon 1e-15).
+ * beta 0.9, 0.999; epsilon 1e-15, so that the smallest gradients count, too.
  * SPDX-License-Identifier: BSD-2-Clause */
 #ifndef TED4_ADAM_H
 #define TED4_ADAM_H

@@ -1,5 +1,5 @@
 /* anchors.h - the trained anchors: values, optimiser moments and densification statistics in blocks of 32.
- * Depends on model.h. Used by all of train/
+ * Depends on model.h.
  * SPDX-License-Identifier: BSD-2-Clause */
 #ifndef TED4_ANCHORS_H
 #define TED4_ANCHORS_H

@@ -1,4 +1,4 @@
-/* blend_bwd.c - adjoint of render/blend.c, a tile at a time. Used by raster_bwd.c.
+/* blend_bwd.c - adjoint of render/blend.c, a tile at a time.
  *
  * With T the transmittance before a Gaussian, C the colour of everything behind it as it would look if it were the first, and D the
  * pixel's gradient,

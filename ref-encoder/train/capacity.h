@@ -1,5 +1,5 @@
 /* capacity.h - how much model a scene needs: trials early in stage 2, each a smaller model against the one at hand, by the cost of the file.
- * Depends on trainer.h. Used by step.c, capacity*.c and tool/.
+ * Depends on trainer.h.
  * SPDX-License-Identifier: BSD-2-Clause */
 #ifndef TED4_CAPACITY_H
 #define TED4_CAPACITY_H

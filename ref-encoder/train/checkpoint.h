@@ -1,7 +1,7 @@
 /* checkpoint.h - the whole state of a trainer in a file or in memory, so that a killed run goes on with the same result, and so that
  * one stage 1 serves many runs of stage 2. A state within stage 1 belongs to every run whose options of stage 1 are the same (options.def
  * tells them apart); a later state to the same options only.
- * Depends on trainer.h. Used by time_probe.c, watch.c, capacity*.c, tool/training.c and target.c.
+ * Depends on trainer.h.
  * SPDX-License-Identifier: BSD-2-Clause */
 #ifndef TED4_CHECKPOINT_H
 #define TED4_CHECKPOINT_H

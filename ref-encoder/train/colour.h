@@ -1,7 +1,7 @@
 /* colour.h - colour correction of training pictures: an affine map of colours for each physical camera, learnt beside the scene and left out of the file.
  * The rendered colour c, a row, becomes c (I + A) + v before it is compared with the picture. Cameras that disagree about colours otherwise teach the scene to
  * change colour with the direction of view, which costs bits and is wrong from everywhere else.
- * Source: paper ("colour correction"), algorithm facts 5.10. Depends on data/dataset.h, base/parallel.h. Used by the trainer.
+ * Source: paper ("colour correction"), which does not say the form. Depends on data/dataset.h, base/parallel.h.
  * SPDX-License-Identifier: BSD-2-Clause */
 #ifndef TED4_COLOUR_H
 #define TED4_COLOUR_H

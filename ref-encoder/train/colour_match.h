@@ -1,7 +1,7 @@
 /* colour_match.h - first colour maps of the cameras, from what each sees at the initial points, before anything is trained.
  * What a camera does to colours is learnt beside the scene (colour.h), but slowly: until then the scene takes tints for its own and begins to change colour with
  * the direction of view, and what looks for things that come and go compares unlike colours. Source: a robust fit of the model of colour.h, ours.
- * Depends on trainer.h. Used by trainer.c.
+ * Depends on trainer.h.
  * SPDX-License-Identifier: BSD-2-Clause */
 #ifndef TED4_COLOUR_MATCH_H
 #define TED4_COLOUR_MATCH_H

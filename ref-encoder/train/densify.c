@@ -1,5 +1,5 @@
-/* densify.c - where anchors are missing and where they are not needed. Source: algorithm facts 1.5, with the opacity taken after activation (paper,
- * "Progressive 3D-to-4D Anchor Transformation"); candidates in canonical space.
+/* densify.c - where anchors are missing and where they are not needed. Source: paper, "Preliminary: ScaffoldGS", with the opacity taken after activation
+ * ("Progressive 3D-to-4D Anchor Transformation"); annex D.1. Candidates in canonical space.
  * SPDX-License-Identifier: BSD-2-Clause */
 #include <math.h>
 #include <stdlib.h>

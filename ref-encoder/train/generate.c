@@ -1,6 +1,5 @@
 /* generate.c - anchors to Gaussians at a time and camera centre (spec 11.1 to 11.5, in normalised
- * space), with the masks of training. The adjoint is generate_bwd.c. Used by the trainer and by
- * densification.
+ * space), with the masks of training. The adjoint is generate_bwd.c.
  * SPDX-License-Identifier: BSD-2-Clause */
 #include "generate_state.h"
 

@@ -1,6 +1,6 @@
 /* generate_bwd.c - adjoint of generate.c: gradients of Gaussians to those of anchors, networks and
  * bank. Masks are straight-through: their gradient is that of sigmoid(logit) in the place of the
- * hard 0 or 1 (algorithm facts 3.4). Positions get none. Used by the trainer.
+ * hard 0 or 1, which has none. Positions get none.
  * SPDX-License-Identifier: BSD-2-Clause */
 #include "generate_state.h"
 

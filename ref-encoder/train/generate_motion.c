@@ -4,7 +4,7 @@
  *     bank    W (z * (P phi + p)) + b = (W diag(z) P) phi + (W diag(z) p + b)
  *     concat  W [phi, z] + b          = W_left phi + (W_right z + b)
  *     inr     the same with E(p), E(t) for phi, z
- * so each anchor pays for one narrow layer only. Used by generate.c and generate_bwd.c.
+ * so each anchor pays for one narrow layer only.
  * SPDX-License-Identifier: BSD-2-Clause */
 #include "generate_state.h"
 #include "norm/sine.h"

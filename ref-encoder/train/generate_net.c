@@ -1,5 +1,5 @@
 /* generate_net.c - the plan of a generator (which plane holds what, where each gradient goes) and
- * chains of dense layers forward and backward. spec 7.4. Used by generate.c and generate_bwd.c.
+ * chains of dense layers forward and backward. spec 7.4.
  * SPDX-License-Identifier: BSD-2-Clause */
 #include "generate_state.h"
 

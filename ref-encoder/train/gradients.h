@@ -1,5 +1,5 @@
 /* gradients.h - the sizes of a step's gradients by term, and whose fault one is.
- * Depends on trainer.h. Used by update.c, step.c, watch.c.
+ * Depends on trainer.h.
  * SPDX-License-Identifier: BSD-2-Clause */
 #ifndef TED4_GRADIENTS_H
 #define TED4_GRADIENTS_H

@@ -1,6 +1,5 @@
 /* grid.h - weights of a file on grids that are as coarse as trials find them good enough (capacity.h). The format keeps binary32; of what is coarse the lower
  * bytes are mostly 0, and deflate leaves them out (spec 7.2).
- * Used by trainer.h, stages.c, schedule.c and capacity_moves.c.
  * SPDX-License-Identifier: BSD-2-Clause */
 #ifndef TED4_GRID_H
 #define TED4_GRID_H

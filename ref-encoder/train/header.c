@@ -7,7 +7,7 @@
 
 #include "space.h"
 
-/* The feature is cut in slices that grow like 1, 2, 3, ... (algorithm facts 3.3: 5, 10, 15, 20 of 50). */
+/* The feature is cut in slices that grow like 1, 2, 3, ... (four of 50: 5, 10, 15, 20): early ones are the context of all others. */
 static void make_slices(ted4_header *h, int n)
 {
     const int whole = n * (n + 1) / 2;

@@ -1,4 +1,4 @@
-/* header.h - the header of the file to be, from the training options (spec 6). Depends on options.h and data/dataset.h. Used by the trainer and its stages.
+/* header.h - the header of the file to be, from the training options (spec 6). Depends on options.h and data/dataset.h.
  * SPDX-License-Identifier: BSD-2-Clause */
 #ifndef TED4_TRAIN_HEADER_H
 #define TED4_TRAIN_HEADER_H

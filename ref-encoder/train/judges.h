@@ -1,6 +1,6 @@
 /* judges.h - training pictures that stand for all of them where a few have to judge a model. Pictures at even distances would not do: where cameras have an even
  * number of frames they would show every other frame only, and what is there in the others alone would seem to be of no use.
- * Depends on trainer.h. Used by capacity*.c and activity.c.
+ * Depends on trainer.h.
  * SPDX-License-Identifier: BSD-2-Clause */
 #ifndef TED4_JUDGES_H
 #define TED4_JUDGES_H

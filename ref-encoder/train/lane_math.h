@@ -1,5 +1,5 @@
 /* lane_math.h - the functions of spec 11 and 12.2 in fast binary32, written so that `#pragma omp
- * simd` loops over lanes vectorise them. Not strict: may be contracted. Used by train/.
+ * simd` loops over lanes vectorise them. Not strict: may be contracted.
  * SPDX-License-Identifier: BSD-2-Clause */
 #ifndef TED4_LANE_MATH_H
 #define TED4_LANE_MATH_H

@@ -1,5 +1,4 @@
 /* layout.c - where each parameter of the trainable model lies (model.h).
- * Used by everything that trains.
  * SPDX-License-Identifier: BSD-2-Clause */
 #include "model.h"
 

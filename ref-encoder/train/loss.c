@@ -1,4 +1,4 @@
-/* loss.c - see loss.h. Algorithm facts 2.5, turned by 45 degrees: with u = x + y and v = x - y the
+/* loss.c - see loss.h. SSIM of an 11 x 11 Gaussian window (sigma 1.5), turned by 45 degrees: with u = x + y and v = x - y the
  * four filtered planes u, v, u^2, v^2 give all
  * that SSIM needs (instead of five), and v is the L1 residual as well.
  *

@@ -1,7 +1,6 @@
 /* loss.h - the distortion of one view: (1 - w) L1 + w (1 - SSIM), with its gradient on the rendered
  * image.
- * Depends on base/parallel.h. Used by the trainer; metrics on decoded pictures are in
- * eval/metrics.h.
+ * Depends on base/parallel.h. Metrics on decoded pictures are in eval/metrics.h.
  * SPDX-License-Identifier: BSD-2-Clause */
 #ifndef TED4_LOSS_H
 #define TED4_LOSS_H

@@ -1,5 +1,5 @@
 /* model.h - the trainable model: where each parameter lies, and the functions that turn anchors into Gaussians and back.
- * Depends on norm/syntax.h, render/raster.h. Used by all of train/.
+ * Depends on norm/syntax.h, render/raster.h.
  * SPDX-License-Identifier: BSD-2-Clause */
 #ifndef TED4_MODEL_H
 #define TED4_MODEL_H

@@ -1,6 +1,5 @@
 /* narrow.h - which units of a layer may go, and how the layers that read them make up for it by what stays. Optimal brain surgeon on linear readers: a unit
  * that goes is replaced by its least-squares estimate from those that stay and a constant.
- * Used by surgery.c and capacity_moves.c.
  * SPDX-License-Identifier: BSD-2-Clause */
 #ifndef TED4_NARROW_H
 #define TED4_NARROW_H

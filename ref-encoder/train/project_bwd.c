@@ -1,5 +1,4 @@
 /* project_bwd.c - adjoint of render/project.c, 16 Gaussians at a time. Comments quote the forward lines of render/image_model.h.
- * Used by raster_bwd.c.
  * SPDX-License-Identifier: BSD-2-Clause */
 #include "train/raster_adjoint.h"
 

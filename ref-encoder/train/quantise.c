@@ -1,6 +1,5 @@
-/* quantise.c - quantisation of attribute blocks for rendering and for the rate: noise or rounding. spec 10.4; algorithm facts 3.1.
+/* quantise.c - quantisation of attribute blocks for rendering and for the rate: noise or rounding. spec 10.4.
  * Every value becomes k q with k = x / q + n; the residual n is all that noise and rounding decide, so both callers take it from here.
- * Used by rate.c and the trainer.
  * SPDX-License-Identifier: BSD-2-Clause */
 #include "rate_parts.h"
 

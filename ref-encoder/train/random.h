@@ -1,5 +1,4 @@
 /* random.h - counter-based random numbers for the trainer: a function of (key, counter), so that nothing depends on the order of calls.
- * Used by anchors, densify, trainer.
  * SPDX-License-Identifier: BSD-2-Clause */
 #ifndef TED4_RANDOM_H
 #define TED4_RANDOM_H

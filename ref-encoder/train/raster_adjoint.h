@@ -1,5 +1,4 @@
 /* raster_adjoint.h - the two stages of raster_bwd.c and what passes between them. Depends on render/raster_state.h.
- * Used by raster_bwd.c, blend_bwd.c, project_bwd.c.
  * SPDX-License-Identifier: BSD-2-Clause */
 #ifndef TED4_RASTER_ADJOINT_H
 #define TED4_RASTER_ADJOINT_H

@@ -1,4 +1,4 @@
-/* raster_bwd.h - adjoint of ref-decoder/render/raster.h. Source: algorithm facts, section 2.3 and 2.4, differentiated anew.
+/* raster_bwd.h - adjoint of ref-decoder/render/raster.h. Source: the formulas of annex I.2 and I.3, differentiated.
  * SPDX-License-Identifier: BSD-2-Clause */
 #ifndef TED4_RASTER_BWD_H
 #define TED4_RASTER_BWD_H

@@ -1,7 +1,6 @@
 /* rate.c - the trainer's float model of Tier E (spec 7.3, 9.4, 10): bits of chosen anchors, and their gradients through rate_bwd.c.
  * Inputs, units and sums are the decoder's: positions in Q12 as spec 10.1 rounds them, mu in steps, s = log2(sigma / step), q = Q0 2^v,
  * contexts k q / Q0. Only roundings inside the networks are missing, and with TED4_QUANT_INTEGER (rate_integer.c) not even those.
- * Used by the trainer.
  * SPDX-License-Identifier: BSD-2-Clause */
 #include "rate_parts.h"
 

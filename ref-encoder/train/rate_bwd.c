@@ -1,9 +1,8 @@
-/* rate_bwd.c - adjoint of rate.c, one slot at a time; weights once a chunk. spec 7.3, 9.4, 10; algorithm facts 3.3.
+/* rate_bwd.c - adjoint of rate.c, one slot at a time; weights once a chunk. spec 7.3, 9.4, 10.
  * Forward was, for a value x of a type with q = Q0 2^v:
  *     k = x / q + n,  bits(k - mu, s),  context = (x + q n) / Q0,  rendered value = x + q n
  * with the residual n held constant. So dk/dx = 1/q, dk/dv = -(x/q) ln 2, d(context)/dx = 1/Q0, d(x + q n)/dv = q n ln 2; and what reaches x from the rendered
  * value is the trainer's business.
- * Used by rate.c.
  * SPDX-License-Identifier: BSD-2-Clause */
 #include "rate_parts.h"
 

@@ -1,6 +1,5 @@
 /* rate_integer.c - TED4_QUANT_INTEGER: mu, sigma and steps exactly as a decoder has them, from norm/prior.h. spec 7.3, 10.1, 10.3.
  * The float networks still run, for their ReLUs decide where gradients go; here their outputs are replaced by what the integers say.
- * Used by rate.c.
  * SPDX-License-Identifier: BSD-2-Clause */
 #include "rate_parts.h"
 

@@ -1,5 +1,5 @@
 /* rate_math.h - elementary functions of the rate model, written so that `#pragma omp simd` loops over lanes vectorise them.
- * spec 9.4 (what is approximated). Used by rate_row.c and rate_bwd.c.
+ * spec 9.4 (what is approximated).
  * SPDX-License-Identifier: BSD-2-Clause */
 #ifndef TED4_RATE_MATH_H
 #define TED4_RATE_MATH_H

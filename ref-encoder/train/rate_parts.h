@@ -1,5 +1,5 @@
 /* rate_parts.h - what the files of the rate model share: packed networks, the workspace of a chunk of slots, and the steps between them.
- * Depends on model.h. Used by rate.c, rate_bwd.c, rate_row.c, quantise.c only.
+ * Depends on model.h. For the rate model only.
  * SPDX-License-Identifier: BSD-2-Clause */
 #ifndef TED4_RATE_PARTS_H
 #define TED4_RATE_PARTS_H

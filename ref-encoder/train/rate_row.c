@@ -7,8 +7,7 @@
  *     beyond:    p = h (1 - Phi((w - 3/2) / sigma))                     the tail, which the escape has, where 4095 narrows the window
  *                h = 1 / (2 (1 + a - w)^2)                              1 + 2 log2(1 + excess) bits after the escape
  * For a < w, h stands where a coder has the constant 1. It costs at most one bit, only where the floor rules, and it has a slope everywhere: an outlier is pulled
- * back, and its sigma pushed up, however far out it lies. A constant floor would leave it without gradient (algorithm facts 5.8, item 4).
- * Used by rate.c.
+ * back, and its sigma pushed up, however far out it lies. A constant floor would leave it without gradient (annex D.1, traps).
  * SPDX-License-Identifier: BSD-2-Clause */
 #include "rate_parts.h"
 

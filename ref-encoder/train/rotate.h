@@ -1,5 +1,5 @@
 /* rotate.h - other axes for the feature: the same Gaussians from values of which the first say most and the last least.
- * Depends on trainer.h. Used by stages.c.
+ * Depends on trainer.h.
  * SPDX-License-Identifier: BSD-2-Clause */
 #ifndef TED4_ROTATE_H
 #define TED4_ROTATE_H

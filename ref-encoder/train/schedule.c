@@ -1,4 +1,4 @@
-/* schedule.c - learning rates over time, and what happens at which step. Source: algorithm facts 1.4, 5.4, 5.7.
+/* schedule.c - learning rates over time, and what happens at which step. Source: paper, "Progressive 3D-to-4D Anchor Transformation"; annex D.1.
  * SPDX-License-Identifier: BSD-2-Clause */
 #include <math.h>
 

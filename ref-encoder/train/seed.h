@@ -8,12 +8,12 @@
 #include "options.h"
 
 /* Anchors on the voxel grid of the points, at most init_anchors of them (the voxel grows until they fit); *cell: that voxel, in
- * normalised space. 0, or -1: no memory. Source: algorithm facts 1.1. */
+ * normalised space. 0, or -1: no memory. Source: paper, "Preliminary: ScaffoldGS". */
 int ted4_seed_anchors(ted4_anchors *a, const ted4_layout *l, const ted4_dataset *d,
                       const ted4_train_options *o, double *cell);
 
 /* Weights uniform in +-1/sqrt(inputs), the last layer of F_deform zero, the bank N(0, 0.1), so that neither of phi and bank is a
- * saddle (algorithm facts 5.8.2). Every Gaussian begins with an opacity above zero where features are zero. NETE is left to ted4_seed_prior. */
+ * saddle (annex D.1, traps). Every Gaussian begins with an opacity above zero where features are zero. NETE is left to ted4_seed_prior. */
 void ted4_seed_networks(float *net, const ted4_layout *l, uint32_t seed);
 
 /* NETE: hidden layers random; the last layer's weights small, its biases the mean and the spread of each component over the anchors. */

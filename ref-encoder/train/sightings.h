@@ -1,5 +1,5 @@
 /* sightings.h - at which times a colour is seen at a place: what tells things that come and go from things that stay.
- * Depends on trainer.h. Used by transient.c (initial points) and sprout.c (places found while training).
+ * Depends on trainer.h.
  * SPDX-License-Identifier: BSD-2-Clause */
 #ifndef TED4_SIGHTINGS_H
 #define TED4_SIGHTINGS_H

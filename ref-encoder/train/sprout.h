@@ -2,7 +2,7 @@
  * Growth splits what is there, so something fast that no initial point stands for never gets an anchor: its error pulls at the background, which is right at every other
  * time. The places are found as in plane sweeping: for pixels with a large error, depths are tried along the ray, and the colour has to be found, with a
  * large error, where other cameras of that time see the point. Not in the paper; needs three training cameras at a time, and activation.
- * Depends on trainer.h, sightings.h. Used by schedule.c and densify.c.
+ * Depends on trainer.h, sightings.h.
  * SPDX-License-Identifier: BSD-2-Clause */
 #ifndef TED4_SPROUT_H
 #define TED4_SPROUT_H

@@ -1,5 +1,5 @@
 /* stages.c - the steps between phases: activation starts, compression starts, the integer model takes over.
- * Source: paper ("Progressive 3D-to-4D Anchor Transformation", "Training Objectives"), algorithm facts 5.4, 5.7 to 5.9; decisions 3.
+ * Source: paper ("Progressive 3D-to-4D Anchor Transformation", "Training Objectives"), annex D.1, D.2.
  * SPDX-License-Identifier: BSD-2-Clause */
 #include <math.h>
 #include <stdlib.h>
@@ -54,7 +54,7 @@ static void widen_spans(const ted4_trainer *t, float *span)
 
 /* Each anchor's activation, transients aside, starts as the span between the first and the last time at which a training view sees it (without
  * the static phase: all times), less a little at each end: with the first frame of the sequence exactly at a_s no time would ever lie before it, and its
- * gradient would be zero for good (algorithm facts 5.8.1). */
+ * gradient would be zero for good (annex D.1, traps). */
 int ted4_activation_begin(ted4_trainer *t)
 {
     ted4_anchors *a = &t->anchors;
@@ -106,8 +106,8 @@ static float peak_activation(const ted4_trainer *t, size_t i)
     return peak;
 }
 
-/* Positions become what the file will hold; of anchors that then coincide the first stays; anchors that never rise are dropped
- * (algorithm facts 5.8.8, 5.9). */
+/* Positions become what the file will hold; of anchors that then coincide the first stays; anchors that never rise, which would still
+ * cost bits, are dropped. */
 static int settle_positions(ted4_trainer *t)
 {
     ted4_anchors *a = &t->anchors;

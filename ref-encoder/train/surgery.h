@@ -1,5 +1,5 @@
 /* surgery.h - a trainer in stage 2 becomes one of another header, with as much of what its networks compute as there is room for.
- * Depends on trainer.h and narrow.h. Used by capacity_moves.c.
+ * Depends on trainer.h and narrow.h.
  * SPDX-License-Identifier: BSD-2-Clause */
 #ifndef TED4_SURGERY_H
 #define TED4_SURGERY_H

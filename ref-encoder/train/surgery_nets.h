@@ -1,4 +1,4 @@
-/* surgery_nets.h - the networks' part of surgery.h. Used by surgery.c.
+/* surgery_nets.h - the networks' part of surgery.h.
  * SPDX-License-Identifier: BSD-2-Clause */
 #ifndef TED4_SURGERY_NETS_H
 #define TED4_SURGERY_NETS_H

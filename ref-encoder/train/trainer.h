@@ -1,5 +1,5 @@
-/* trainer.h - training of one scene: state, one step, stages. Source: algorithm facts 1.4, 1.5, 3.2, 5.
- * Depends on everything in train/. Used by train/ and tool/.
+/* trainer.h - training of one scene: state, one step, stages. Source: paper; annex D.
+ * Depends on everything in train/.
  * SPDX-License-Identifier: BSD-2-Clause */
 #ifndef TED4_TRAINER_H
 #define TED4_TRAINER_H

@@ -1,5 +1,5 @@
 /* update.c - what is added to the gradients of a picture (volume, bank, masks, rate), and the optimiser's step. See trainer.h.
- * Source: paper, "Training Objectives"; algorithm facts 1.4, 3.2, 5.6.
+ * Source: paper, "Training Objectives"; annex D.1.
  * SPDX-License-Identifier: BSD-2-Clause */
 #include <math.h>
 

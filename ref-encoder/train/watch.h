@@ -1,6 +1,6 @@
 /* watch.h - what is kept to notice a training that goes wrong: the usual size of each gradient, of the loss and of what is drawn, the last good state, and what
  * was found. The functions that work with it are declared in trainer.h.
- * Depends on norm/syntax.h. Used by the trainer, checkpoint.c and tool/.
+ * Depends on norm/syntax.h.
  * SPDX-License-Identifier: BSD-2-Clause */
 #ifndef TED4_WATCH_H
 #define TED4_WATCH_H

@@ -1,4 +1,4 @@
-/* buffer.h - a byte string that grows. Used by the coders of this folder.
+/* buffer.h - a byte string that grows.
  * SPDX-License-Identifier: BSD-2-Clause */
 #ifndef TED4_BUFFER_H
 #define TED4_BUFFER_H

@@ -1,4 +1,4 @@
-/* coder_count.h - the coder that adds up -log2 of frequencies (norm/coder.h). Used by count.c.
+/* coder_count.h - the coder that adds up -log2 of frequencies (norm/coder.h).
  * SPDX-License-Identifier: BSD-2-Clause */
 #ifndef TED4_CODER_COUNT_H
 #define TED4_CODER_COUNT_H

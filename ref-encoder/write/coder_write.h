@@ -1,4 +1,4 @@
-/* coder_write.h - the coder that writes (norm/coder.h). Used by write_file.c.
+/* coder_write.h - the coder that writes (norm/coder.h).
  * SPDX-License-Identifier: BSD-2-Clause */
 #ifndef TED4_CODER_WRITE_H
 #define TED4_CODER_WRITE_H

@@ -1,5 +1,4 @@
 /* deflate.h - values as a blob keeps them when that is smaller: a zlib stream of their bytes, byte 0 of all first (spec 7.2).
- * Used by write_file.c and by the log of a training, which estimates the file.
  * SPDX-License-Identifier: BSD-2-Clause */
 #ifndef TED4_DEFLATE_H
 #define TED4_DEFLATE_H

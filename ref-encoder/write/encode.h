@@ -3,7 +3,6 @@
  *     ted4_scene_steps(s, ...);          step indices from the hyperprior
  *     ... masks and symbols ...
  *     ted4_encode(s, 0, ...);
- * Used by ted4enc and the tests.
  * SPDX-License-Identifier: BSD-2-Clause */
 #ifndef TED4_ENCODE_H
 #define TED4_ENCODE_H
@@ -15,7 +14,7 @@
 ted4_status ted4_scene_steps(ted4_scene *s, const ted4_parallel *p,
                              ted4_error *e);
 
-/* Writes a whole file. level 0: the lowest that fits. Blobs of mode TED4_BLOB_AUTO are deflated when that is smaller, and zero
+/* Writes a whole file. level 0: the lowest that fits (ted4_level_lowest). Blobs of mode TED4_BLOB_AUTO are deflated when that is smaller, and zero
  * probabilities are counted; what a file has said before is written again as it was. A scene that no decoder would accept is refused
  * with the decoder's status; step indices that are not those of the prior, and masks that contradict the header, with TED4_E_SYN_HASH.
  * *out is the caller's, to be freed with free(); NULL on failure. e may be NULL. */
@@ -25,9 +24,6 @@ ted4_status ted4_encode(const ted4_scene *s, int level, const ted4_parallel *p,
 /* The same with a chunk META before ENDS (spec 5.2): text, lines key=value for people, each ended by LF; no key twice. NULL: without. */
 ted4_status ted4_encode_told(const ted4_scene *s, int level, char *text, const ted4_parallel *p,
                              uint8_t **out, size_t *size, ted4_error *e);
-
-/* The lowest level whose bounds hold for a file of that size. */
-int ted4_level_lowest(const ted4_scene *s, size_t size);
 
 /* Ideal code lengths, -log2 of the coded frequencies, in bits. */
 typedef struct {

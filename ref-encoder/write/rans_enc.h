@@ -1,4 +1,4 @@
-/* rans_enc.h - spec 9.2: rANS, the direction that writes. Knows no element and no model. Used by coder_write.c.
+/* rans_enc.h - spec 9.2: rANS, the direction that writes. Knows no element and no model.
  * Last in, first out: slots are gathered and coded backwards when the substream ends. Mirror image: ref-decoder/read/rans_dec.h.
  * SPDX-License-Identifier: BSD-2-Clause */
 #ifndef TED4_RANS_ENC_H

@@ -1,4 +1,4 @@
-/* snap.h - float weights of Tier E onto the integer grid; positions into file order. Used by the trainer before it encodes.
+/* snap.h - float weights of Tier E onto the integer grid; positions into file order.
  * SPDX-License-Identifier: BSD-2-Clause */
 #ifndef TED4_SNAP_H
 #define TED4_SNAP_H

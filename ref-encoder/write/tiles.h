@@ -1,5 +1,4 @@
 /* tiles.h - a scene made ready to be written or counted: its prior, its probabilities, and its tiles walked in parallel.
- * Used by write_file.c and count.c.
  * SPDX-License-Identifier: BSD-2-Clause */
 #ifndef TED4_TILES_H
 #define TED4_TILES_H

@@ -143,29 +143,13 @@ static void write_ends(ted4_writer *w, ted4_draft *d)
     close_chunk(w, at);
 }
 
-int ted4_level_lowest(const ted4_scene *s, size_t size)
-{
-    const ted4_header *h = &s->head;
-
-    for (int level = 1; level < TED4_LEVEL_UNBOUNDED; level++) {
-        const ted4_limits *l = ted4_limits_of((unsigned)level);
-
-        if (l != NULL && h->n_anchors <= l->n_anchors
-            && h->n_offsets <= l->n_offsets && h->frames <= l->frames
-            && h->bank_rows <= l->frames
-            && ted4_limits_hold(l, h, &s->shape, size))
-            return level;
-    }
-    return TED4_LEVEL_UNBOUNDED;
-}
-
 /* The level of a finished file. */
 static void set_level(ted4_writer *w, const ted4_scene *s, int level)
 {
     if (w->base.error.code != TED4_OK)
         return;
     if (level == 0)
-        level = ted4_level_lowest(s, w->out.size);
+        level = (int)ted4_level_lowest(&s->head, &s->shape, w->out.size);
     else
         ted4_require(&w->base,
                      ted4_limits_hold(ted4_limits_of((unsigned)level),

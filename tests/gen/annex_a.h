@@ -1,4 +1,4 @@
-/* annex_a.h - the text of annex A: tables from their formulas (table_math.h), each with its hash. Used by gen_annex.c and test_spec_annexes.c.
+/* annex_a.h - the text of annex A: tables from their formulas (table_math.h), each with its hash.
  * SPDX-License-Identifier: BSD-2-Clause */
 #ifndef TED4_ANNEX_A_H
 #define TED4_ANNEX_A_H

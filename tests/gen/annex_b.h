@@ -1,5 +1,5 @@
 /* annex_b.h - the text of annex B: two files byte by byte, with the coder's steps, the values and the records, all worked out by the code that the
- * specification prints (spec_tiers.h). Used by gen_annex.c and test_spec_annexes.c.
+ * specification prints (spec_tiers.h).
  * SPDX-License-Identifier: BSD-2-Clause */
 #ifndef TED4_ANNEX_B_H
 #define TED4_ANNEX_B_H

@@ -1,4 +1,4 @@
-/* annex_b_files.h - the two files of annex B, made from numbers chosen by hand. Used by annex_b.h.
+/* annex_b_files.h - the two files of annex B, made from numbers chosen by hand.
  * SPDX-License-Identifier: BSD-2-Clause */
 #ifndef TED4_ANNEX_B_FILES_H
 #define TED4_ANNEX_B_FILES_H

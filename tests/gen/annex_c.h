@@ -1,5 +1,4 @@
-/* annex_c.h - the text of annex C: what the bounds of 13.1 come to, by the formulas of 13.3 as the text prints them. Used by gen_annex.c and
- * test_spec_annexes.c.
+/* annex_c.h - the text of annex C: what the bounds of 13.1 come to, by the formulas of 13.3 as the text prints them.
  * SPDX-License-Identifier: BSD-2-Clause */
 #ifndef TED4_ANNEX_C_H
 #define TED4_ANNEX_C_H

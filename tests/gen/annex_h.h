@@ -1,5 +1,5 @@
 /* annex_h.h - the text of annex H. Ranges of elements of HEAD are those of the table of 6.1; other numbers are constants of the decoder, or follow from the
- * smallest file and from the largest header. Used by gen_annex.c and test_spec_annexes.c.
+ * smallest file and from the largest header.
  * SPDX-License-Identifier: BSD-2-Clause */
 #ifndef TED4_ANNEX_H_H
 #define TED4_ANNEX_H_H

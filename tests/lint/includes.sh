@@ -4,7 +4,7 @@ allow='
 ref-decoder                 base
 ref-decoder/base            base ted4.h
 ref-decoder/norm            base norm ted4.h
-ref-decoder/kernel          base norm recon kernel ted4.h
+ref-decoder/kernel          base norm kernel ted4.h
 ref-decoder/recon           base norm recon kernel ted4.h
 ref-decoder/read            base norm read kernel ted4.h
 ref-decoder/render          base render ted4.h

@@ -1,8 +1,11 @@
 #!/bin/sh
 # The decoder library takes memory through the caller's allocator only (SECURITY.md): base/arena.c alone calls malloc, and zlib is given the arena. It prints
-# nothing, ends no process, and keeps nothing between calls: no variable of a file or function that can change. render/ is informative and the tools' own.
+# nothing, ends no process, and keeps nothing between calls: no variable of a file or function that can change. Its folders are those of DEC_SRC in the Makefile;
+# render/ draws for programs and is a library of its own.
 bad=0
-for f in ref-decoder/base/*.[ch] ref-decoder/norm/*.[ch] ref-decoder/kernel/*.[ch] ref-decoder/recon/*.[ch] ref-decoder/read/*.[ch]; do
+folders=$(sed -n 's/^DEC_SRC.*addprefix ref-decoder\/,\([^)]*\)).*/\1/p' Makefile | tr ' ,' '\n\n' | sed 's/\/\*\.c$//')
+[ -n "$folders" ] || { echo "Makefile: no folders in DEC_SRC"; bad=1; }
+for f in $(for d in $folders; do ls ref-decoder/$d/*.[ch]; done); do
     text=$(gcc -fpreprocessed -dD -E -P "$f" 2>/dev/null | sed 's/"[^"]*"//g')
     case $f in
     ref-decoder/base/arena.c) ;;

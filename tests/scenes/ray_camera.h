@@ -1,5 +1,4 @@
 /* ray_camera.h - the fixed rig of cameras of the project's scenes.
- * Used by ray_rig, ray_render and the tests.
  * SPDX-License-Identifier: BSD-2-Clause */
 #ifndef RAY_CAMERA_H
 #define RAY_CAMERA_H

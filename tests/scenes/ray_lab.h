@@ -1,5 +1,5 @@
 /* ray_lab.h - what happens in the scenes in which methods fail, and in those for file sizes.
- * Depends on ray_world.h. Used by ray_world.c and the test.
+ * Depends on ray_world.h.
  * SPDX-License-Identifier: BSD-2-Clause */
 #ifndef RAY_LAB_H
 #define RAY_LAB_H

@@ -1,5 +1,5 @@
 /* ray_layout.h - names and contents of the files of each layout, pictures aside.
- * Depends on ray_rig.h. Used by ray_set.c.
+ * Depends on ray_rig.h.
  * SPDX-License-Identifier: BSD-2-Clause */
 #ifndef RAY_LAYOUT_H
 #define RAY_LAYOUT_H

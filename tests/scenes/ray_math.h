@@ -1,6 +1,5 @@
 /* ray_math.h - small vector arithmetic, own sine and hash noise of the project's scenes. Nothing
- * here calls libm but sqrt and fabs, so that images have the same bytes on every machine. Used by
- * tests/scenes only.
+ * here calls libm but sqrt and fabs, so that images have the same bytes on every machine.
  * SPDX-License-Identifier: BSD-2-Clause */
 #ifndef RAY_MATH_H
 #define RAY_MATH_H

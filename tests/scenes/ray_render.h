@@ -1,5 +1,5 @@
 /* ray_render.h - pictures of a world, and points on its surfaces.
- * Depends on ray_world.h, ray_camera.h. Used by ray_set and the test.
+ * Depends on ray_world.h, ray_camera.h.
  * SPDX-License-Identifier: BSD-2-Clause */
 #ifndef RAY_RENDER_H
 #define RAY_RENDER_H

@@ -1,5 +1,5 @@
 /* ray_rig.h - the cameras of a scene: as they are, and as its files state them.
- * Depends on ray_set.h, ray_camera.h. Used by ray_layout, ray_set, ray_truth and the tests.
+ * Depends on ray_set.h, ray_camera.h.
  * SPDX-License-Identifier: BSD-2-Clause */
 #ifndef RAY_RIG_H
 #define RAY_RIG_H

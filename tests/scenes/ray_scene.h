@@ -1,5 +1,5 @@
 /* ray_scene.h - names of the scenes, what each shows, and the defaults that belong to it.
- * Depends on ray_world.h. Used by ray_rig, ray_set, ted4scene and the tests.
+ * Depends on ray_world.h.
  * SPDX-License-Identifier: BSD-2-Clause */
 #ifndef RAY_SCENE_H
 #define RAY_SCENE_H

@@ -1,5 +1,5 @@
 /* ray_set.h - writes a scene as a folder in one of the layouts that the encoder reads.
- * Depends on ray_render.h, ray_scene.h and base/parallel.h. Used by ted4scene and the tests.
+ * Depends on ray_render.h, ray_scene.h and base/parallel.h.
  * SPDX-License-Identifier: BSD-2-Clause */
 #ifndef RAY_SET_H
 #define RAY_SET_H

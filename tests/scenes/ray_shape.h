@@ -1,5 +1,5 @@
 /* ray_shape.h - solids of the project's scenes: where a ray meets them, and their surface there.
- * Depends on ray_math.h. Used by ray_world, ray_texture, ray_render.
+ * Depends on ray_math.h.
  * SPDX-License-Identifier: BSD-2-Clause */
 #ifndef RAY_SHAPE_H
 #define RAY_SHAPE_H

@@ -1,5 +1,5 @@
 /* ray_texture.h - procedural albedo of the project's scenes. Objects carry their texture with them.
- * Depends on ray_shape.h. Used by ray_render.
+ * Depends on ray_shape.h.
  * SPDX-License-Identifier: BSD-2-Clause */
 #ifndef RAY_TEXTURE_H
 #define RAY_TEXTURE_H

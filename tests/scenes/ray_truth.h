@@ -1,6 +1,6 @@
 /* ray_truth.h - truth.json, what is out of the ordinary in a scene: held-out times, errors, tints,
  * lamp.
- * Depends on ray_layout.h. Used by ray_set.c.
+ * Depends on ray_layout.h.
  * SPDX-License-Identifier: BSD-2-Clause */
 #ifndef RAY_TRUTH_H
 #define RAY_TRUTH_H

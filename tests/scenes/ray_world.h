@@ -1,5 +1,5 @@
 /* ray_world.h - the scenes: which solids are where at a time.
- * Depends on ray_shape.h. Used by ray_lab, ray_scene, ray_render, ray_set and the tests.
+ * Depends on ray_shape.h.
  * SPDX-License-Identifier: BSD-2-Clause */
 #ifndef RAY_WORLD_H
 #define RAY_WORLD_H

@@ -30,7 +30,7 @@ $B/tests/spec/eval_%.o: tests/spec/eval.c $B/inc/spec/code_%.h
 	$(CC) $(CFLAGS_ALL) $(STRICT) -I$B/inc -DVARIANT='"spec/code_$*.h"' -DREAL=$(if $(filter wide,$*),double,float) -DRECORDS=tol_$* -c $< -o $@
 $B/tests/test_spec_tolerance: $(SPEC_EVALS:%=$B/tests/spec/eval_%.o)
 
-$B/gen_annex: $B/tests/gen/gen_annex.o $(DEC_TOOL:%.c=$B/%.o) $B/libted4enc.a $B/libted4dec.a
+$B/gen_annex: $B/tests/gen/gen_annex.o $(DEC_TOOL:%.c=$B/%.o) $(ENC_LIB)
 	$(CC) -fopenmp $(LDFLAGS) $^ -o $@ $(LIBS)
 
 # Annexes that programs make. tests/test_spec_annexes.c fails when they are not current.
