@@ -1,4 +1,4 @@
-# bytes.awk - bytes of the whole method's files by syntax element, over λ: row 5 of the issue. Used by bench/report.sh.
+# bytes.awk - bytes of the whole method's files by syntax element, over λ: bar 5. Used by bench/report.sh.
 # SPDX-License-Identifier: BSD-2-Clause
 
 function bytes_section(    k, i, j, n, element, line, t) {

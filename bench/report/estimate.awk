@@ -1,4 +1,4 @@
-# estimate.awk - the rate that training estimates against the bytes of the file: row 7 of the issue. Used by bench/report.sh.
+# estimate.awk - the rate that training estimates against the bytes of the file: bar 7. Used by bench/report.sh.
 # SPDX-License-Identifier: BSD-2-Clause
 
 # Percent by which the estimate differs from the attributes' substreams; "" when not known.

@@ -1,4 +1,4 @@
-# kept.awk - what other pages measured, bench/{raster,render,train,memory}.md: rows 8 and 9 of the issue and the links. Used by bench/report.sh.
+# kept.awk - what other pages measured, bench/{raster,render,train,memory}.md: bars 8 and 9 and the links. Used by bench/report.sh.
 # SPDX-License-Identifier: BSD-2-Clause
 
 # Lines of a page into line[1..n]; n, 0 when it is not there.

@@ -1,4 +1,4 @@
-# lives.awk - how long anchors are active: row 6 of the issue. Used by bench/report.sh; numbers and pictures by bench/spans.
+# lives.awk - how long anchors are active: bar 6. Used by bench/report.sh; numbers and pictures by bench/spans.
 # SPDX-License-Identifier: BSD-2-Clause
 
 # kitchen is the fast scene (a ball crosses it within a few frames), dog the slow one. What the paper's table shows by names of scenes is measured in the pictures

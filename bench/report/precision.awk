@@ -1,4 +1,4 @@
-# precision.awk - quantisation steps and precision of the entropy networks against bytes, PSNR and decode time: row 10 of the issue.
+# precision.awk - quantisation steps and precision of the entropy networks against bytes, PSNR and decode time: bar 10.
 # Used by bench/report.sh.
 # SPDX-License-Identifier: BSD-2-Clause
 

@@ -1,4 +1,4 @@
-# rate.awk - rate and distortion of the whole method: row 1 of the issue, first half. Used by bench/report.sh.
+# rate.awk - rate and distortion of the whole method: bar 1, first half. Used by bench/report.sh.
 # SPDX-License-Identifier: BSD-2-Clause
 
 # 1: bytes and PSNR fall with every step of lambda; "" when a run is missing.

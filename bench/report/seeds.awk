@@ -1,4 +1,4 @@
-# seeds.awk - the spread that the seed alone makes: row 11 of the issue. Used by bench/report.sh.
+# seeds.awk - the spread that the seed alone makes: bar 11. Used by bench/report.sh.
 # SPDX-License-Identifier: BSD-2-Clause
 
 # The whole method's run with seed j, and with how many seeds a scene wants it.

@@ -1,4 +1,4 @@
-# singles.awk - comparisons of a few runs: medium preset, tinted cameras, scenes without motion: rows 2, 3 and 4 of the issue. Used by bench/report.sh.
+# singles.awk - comparisons of a few runs: medium preset, tinted cameras, scenes without motion: bars 2, 3 and 4. Used by bench/report.sh.
 # SPDX-License-Identifier: BSD-2-Clause
 
 function short_table() { table("run,λ,PSNR dB,SSIM,bytes,training s,jobs x threads") }

@@ -1,4 +1,4 @@
-# speed.awk - what time buys: PSNR over training time by preset, over the time to decode and draw: row 5 of the issue. Used by bench/report.sh.
+# speed.awk - what time buys: PSNR over training time by preset, over the time to decode and draw: bar 5. Used by bench/report.sh.
 # SPDX-License-Identifier: BSD-2-Clause
 
 BEGIN {

@@ -1,4 +1,4 @@
-# variants.awk - the whole method with one thing changed: row 1 of the issue, second half. Used by bench/report.sh; arithmetic in compare.awk.
+# variants.awk - the whole method with one thing changed: bar 1, second half. Used by bench/report.sh; arithmetic in compare.awk.
 # SPDX-License-Identifier: BSD-2-Clause
 
 BEGIN {

@@ -57,7 +57,7 @@ function row(cells,    n, unused) {
 }
 function row_missing(cells) { row(cells "|not run yet") }
 
-# One line of the summary. number: of the issue's table. ok: 1 met, 0 missed, "" not run yet, "?" measured but says neither.
+# One line of the summary. number: of the bar. ok: 1 met, 0 missed, "" not run yet, "?" measured but says neither.
 function bar(number, what, limit, measured, ok, how) {
     verdict = ok == "" ? "not run yet" : ok == "?" ? "cannot be said" : ok ? "met" : "**missed**"
     n_verdicts[verdict]++
