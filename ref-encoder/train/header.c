@@ -2,10 +2,13 @@
  * SPDX-License-Identifier: BSD-2-Clause */
 #include "header.h"
 
-#include <math.h>
 #include <string.h>
 
+#include "data/frame_rate.h"
 #include "space.h"
+
+/* Frames a second of a scene that does not say. */
+enum { UNKNOWN_RATE = 30 };
 
 /* The feature is cut in slices that grow like 1, 2, 3, ... (algorithm facts 3.3: 5, 10, 15, 20 of 50). */
 static void make_slices(ted4_header *h, int n)
@@ -29,8 +32,10 @@ static void make_header_time(ted4_header *h, const ted4_train_options *o,
     const int still = d->n_frames <= 1;
 
     h->frames = d->n_frames;
-    h->rate_num = d->rate > 0 ? (uint32_t)lrint(d->rate * 1000.0) : 30;
-    h->rate_den = d->rate > 0 ? 1000 : 1;
+    h->rate_num = UNKNOWN_RATE;
+    h->rate_den = 1;
+    if (d->rate != 0 && ted4_frame_rate(d->rate, &h->rate_num, &h->rate_den) != 0)
+        h->rate_num = h->rate_den = 0;      /* no header: ted4_header_wrong says so */
     h->activation = (uint8_t)(still ? 0 : o->activation);
     h->motion = (uint8_t)(still ? TED4_MOTION_NONE : o->motion);
     if (h->motion == TED4_MOTION_NONE)

@@ -14,4 +14,10 @@ void ted4_header_stage2(ted4_header *h, const ted4_train_options *o);
 /* No motion, and nothing that only motion needs. */
 void ted4_header_without_motion(ted4_header *h);
 
+/* header_walk.c: what a file would hold of headers, by the walk of norm/ at the level without bounds. n_anchors is not looked at: a trainer keeps it elsewhere.
+ * NULL, or the name of the first element that no file may hold so. */
+const char *ted4_header_wrong(const ted4_header *h);
+/* Are both headers of the format, and the same? */
+int         ted4_header_same(const ted4_header *a, const ted4_header *b);
+
 #endif
