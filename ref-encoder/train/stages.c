@@ -115,15 +115,18 @@ static int settle_positions(ted4_trainer *t)
     float        *sum = malloc((a->n + 1) * sizeof *sum);
     uint64_t      last = 0;
     size_t        n = 0;
-    int           bad = order == NULL || sum == NULL;
+    int           short_of = order == NULL || sum == NULL;
 
-    for (size_t i = 0; !bad && i < a->n; i++)
+    for (size_t i = 0; i < a->n; i++)
         for (int j = 0; j < 3; j++) {
             float *p = ted4_cell(a, TED4_ROW_POSITION, i, j);
 
             *p = ted4_half_to_float(ted4_float_to_half(*p)) + 0.0f;
         }
-    bad = bad || ted4_anchors_sort(a) != 0 || ted4_trainer_looks(t, sum, NULL) != 0;
+    short_of = short_of || ted4_anchors_sort(a) != 0;
+
+    int bad = short_of || ted4_trainer_looks(t, sum, NULL) != 0;
+
     for (size_t i = 0; !bad && i < a->n; i++) {
         uint16_t p[3];
 
@@ -137,10 +140,12 @@ static int settle_positions(ted4_trainer *t)
         if ((double)(sum[i] * peak_activation(t, i)) >= t->opt.prune_opacity)
             order[n++] = (uint32_t)i;
     }
-    bad = bad || n == 0 || ted4_anchors_select(a, order, n) != 0;
+    if (!bad && n == 0)
+        bad = ted4_trainer_fail(t, "nothing is left to encode");
+    short_of = short_of || (!bad && ted4_anchors_select(a, order, n) != 0);
     free(order);
     free(sum);
-    return bad ? ted4_trainer_fail(t, "nothing is left to encode") : 0;
+    return short_of ? ted4_trainer_fail(t, "no memory to begin stage 2") : bad;
 }
 
 /* Copies the channels of a row kind from the old layout to the new one. */

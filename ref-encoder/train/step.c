@@ -356,8 +356,12 @@ double ted4_trainer_preview(ted4_trainer *t, int n)
             continue;
         const uint8_t *truth = ted4_dataset_pixels(t->data, i, &t->message);
 
-        if (truth == NULL || render(t, pic, 0, &v, &in, &s) != 0)
+        if (truth == NULL)
             return -1;
+        if (render(t, pic, 0, &v, &in, &s) != 0) {
+            ted4_dataset_release(t->data, i);
+            return -1;
+        }
         const size_t pixels = (size_t)v.width * (size_t)v.height;
         double       square = 0;
 
