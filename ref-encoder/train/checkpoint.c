@@ -331,9 +331,11 @@ int ted4_checkpoint_save(ted4_trainer *t, const char *path)
     if (f == NULL)
         return ted4_trainer_fail(t, "%s: %s", name, strerror(errno));
 
-    /* errno is the first failure's: closing what could not be written fails again, with another reason. */
+    /* errno is the first failure's: closing what could not be written fails again, with another reason. A state that no checkpoint may hold sets none. */
+    errno = 0;
+
     const int bad = run(t, f, 1, 1) != 0 || fflush(f) != 0 || fsync(fileno(f)) != 0;
-    int       why = bad ? errno : 0;
+    int       why = !bad ? 0 : errno != 0 ? errno : EIO;
 
     if (fclose(f) != 0 && !bad)
         why = errno;
