@@ -2,8 +2,10 @@
  * SPDX-License-Identifier: BSD-2-Clause */
 #include "header.h"
 
+#include <math.h>
 #include <string.h>
 
+#include "data/flicker.h"
 #include "data/frame_rate.h"
 #include "space.h"
 
@@ -48,6 +50,17 @@ static void make_header_time(ted4_header *h, const ted4_train_options *o,
     h->phi_dim = (uint8_t)o->phi;
     h->bank_rows = o->bank_rows > 0 ? (uint32_t)o->bank_rows : (d->n_frames + 1) / 2;
     h->bank_dim = (uint16_t)o->bank_dim;
+}
+
+int ted4_header_settle(ted4_train_options *o, const ted4_dataset *d)
+{
+    const double flicker = ted4_dataset_flicker(d);
+
+    if (isnan(flicker))
+        return -1;
+    if (o->bank_rows == 0 && flicker >= TED4_FLICKER_SEEN)
+        o->bank_rows = (int)d->n_frames;
+    return 0;
 }
 
 void ted4_header_stage2(ted4_header *h, const ted4_train_options *o)

@@ -7,6 +7,9 @@
 #include "norm/syntax.h"
 #include "options.h"
 
+/* Sets options that follow from the pictures, where they were left to the program: rows of the bank where the light flickers. After ted4_dataset_verify.
+ * 0, or -1: no memory. */
+int ted4_header_settle(ted4_train_options *o, const ted4_dataset *d);
 /* Everything but n_anchors. Scalings are logarithmic until stage 2 begins, whatever the options want. */
 void ted4_header_make(ted4_header *h, const ted4_train_options *o, const ted4_dataset *d);
 /* The fields that stage 1 does not look at: offset mask, prior, slices, step sizes. */
