@@ -139,8 +139,9 @@ void ted4_slots_finish(ted4_slots *s);
 /* Bit j: anchor j of the block can be seen. */
 uint32_t ted4_block_visible(const ted4_trainer *t, size_t block, const ted4_view *v);
 
-/* Of each anchor, at time 0 and without activation, from the first training camera: summed opacity of its offsets [n], and their mean colour by opacity
- * [n][3] (NULL: not wanted; 0 where nothing is opaque). 0, or -1 with t->message. looks.c */
+/* Of each anchor, at time 0 and without activation, from the camera of the next training picture, or, where opacity depends on the direction, from that of several
+ * at which it is most opaque: summed opacity of its offsets [n], and their mean colour by opacity [n][3] (NULL: not wanted; 0 where nothing is opaque).
+ * 0, or -1 with t->message. looks.c */
 int  ted4_trainer_looks(ted4_trainer *t, float *opacity, float *rgb);
 
 /* Densification: densify.c. gather adds the statistics of a step; adjust grows and prunes. lanes_there: lanes of a slot whose activation is at least a half
