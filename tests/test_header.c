@@ -1,5 +1,5 @@
-/* test_header.c - the header of the file to be, from the options and the scene: the frame rate as a fraction, and that no training begins whose header no file may
- * have.
+/* test_header.c - the header of the file to be, from the options and the scene: the frame rate as a fraction, rows of the bank, and that no training begins
+ * whose header no file may have.
  * SPDX-License-Identifier: BSD-2-Clause */
 #include <setjmp.h>
 #include <stdarg.h>
@@ -87,12 +87,34 @@ static void test_begin(void **state)
     ted4_trainer_finish(&t);
 }
 
+/* ---- rows of the bank ---- */
+
+static void test_rows(void **state)
+{
+    static const uint32_t want[][2] = { { 2, 2 }, { 3, 2 }, { 4, 2 }, { 5, 3 }, { 16, 8 }, { 17, 9 } };
+    static cloud_case c;
+    ted4_header h;
+
+    (void)state;
+    for (int motion = TED4_MOTION_BANK; motion <= TED4_MOTION_CONCAT; motion++)
+        for (size_t i = 0; i < sizeof want / sizeof want[0]; i++) {
+            cloud_make(&c, want[i][0]);
+            c.options.motion = motion;
+            ted4_header_make(&h, &c.options, &c.data);
+            assert_int_equal(h.bank_rows, want[i][1]);
+            c.options.bank_rows = 1;
+            ted4_header_make(&h, &c.options, &c.data);
+            assert_int_equal(h.bank_rows, 1);
+        }
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_rates),
         cmocka_unit_test(test_any_rate),
         cmocka_unit_test(test_begin),
+        cmocka_unit_test(test_rows),
     };
 
     return cmocka_run_group_tests_name("header", tests, NULL, NULL);

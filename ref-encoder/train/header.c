@@ -28,6 +28,14 @@ static void make_slices(ted4_header *h, int n)
     }
 }
 
+/* Of a bank: a row for every second frame. One alone is the same at all times. */
+static uint32_t rows_of(uint32_t frames)
+{
+    const uint32_t half = (frames + 1) / 2;
+
+    return half < 2 ? 2 : half;
+}
+
 static void make_header_time(ted4_header *h, const ted4_train_options *o,
                              const ted4_dataset *d)
 {
@@ -48,7 +56,7 @@ static void make_header_time(ted4_header *h, const ted4_train_options *o,
     if (h->motion == TED4_MOTION_INR)
         return;
     h->phi_dim = (uint8_t)o->phi;
-    h->bank_rows = o->bank_rows > 0 ? (uint32_t)o->bank_rows : (d->n_frames + 1) / 2;
+    h->bank_rows = o->bank_rows > 0 ? (uint32_t)o->bank_rows : rows_of(d->n_frames);
     h->bank_dim = (uint16_t)o->bank_dim;
 }
 
