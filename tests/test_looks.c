@@ -1,4 +1,5 @@
-/* test_looks.c - train/looks.c: how opaque anchors are counts from where they are most opaque, when that depends on the direction.
+/* test_looks.c - train/looks.c: how opaque anchors are counts from where they are most opaque, when that depends on the direction, and as the file will hold
+ * them.
  * SPDX-License-Identifier: BSD-2-Clause */
 #include <setjmp.h>
 #include <stdarg.h>
@@ -99,9 +100,44 @@ static void test_one_direction(void **state)
     ted4_trainer_finish(&t);
 }
 
+/* In stage 2 an anchor looks as the file will hold it: rounding its values first changes nothing. */
+static void test_rounded(void **state)
+{
+    const ted4_train_options o = ball_options();
+    const ted4_layout       *l;
+    ted4_trainer t;
+    looks        before, after;
+    size_t       moved = 0;
+
+    (void)state;
+    ball_begin(&t, &o, &balls, NULL);
+    ball_train(&t, (uint64_t)o.stage1 + 1);
+    l = &t.layout;
+    before = look(&t);
+    for (size_t i = 0; i < t.anchors.n; i++)
+        for (int c = 0; c < l->offset_logit; c++) {
+            float *const x = ted4_cell(&t.anchors, TED4_ROW_VALUE, i, c);
+            const float  q = t.slots.used[i / TED4_LANES][(size_t)c * TED4_LANES + i % TED4_LANES];
+
+            moved += *x != q;
+            *x = q;
+        }
+    after = look(&t);
+    assert_true(moved > before.n);
+    assert_memory_equal(before.opacity, after.opacity, before.n * sizeof(float));
+    assert_memory_equal(before.rgb, after.rgb, 3 * before.n * sizeof(float));
+    forget(&before);
+    forget(&after);
+    ted4_trainer_finish(&t);
+}
+
 int main(void)
 {
-    const struct CMUnitTest tests[] = { cmocka_unit_test(test_all_directions), cmocka_unit_test(test_one_direction) };
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(test_all_directions),
+        cmocka_unit_test(test_one_direction),
+        cmocka_unit_test(test_rounded),
+    };
 
     return cmocka_run_group_tests_name("looks", tests, set_up, tear_down);
 }

@@ -17,8 +17,9 @@ static int generate_all(ted4_trainer *t, uint32_t item, ted4_splats *s)
     if (ted4_slots_fill(t, NULL) != 0)
         return -1;
     ted4_space_view(&t->layout.head, &t->data->pictures[item].camera, &v, in.camera);
+    ted4_slots_quantise(t, TED4_QUANT_ROUND);
     in.n_slots = t->slots.n;
-    in.attr = t->slots.raw;
+    in.attr = t->slots.used;
     in.position = t->slots.position;
     in.lanes = t->slots.lanes;
     ted4_generator_pack(t->generator, t->net);
