@@ -51,6 +51,8 @@ static void test_transforms(void **state)
         { "\"ply_file_path\": \"no.ply\",", GOOD, "no.ply", "No such file" },
         { "\"applied_transform\": [[1,0,0,0],[1,0,0,0],[0,0,1,0]],", GOOD, "applied_transform", "singular" },
         { "\"fps\": -3,", GOOD, "fps", "-3" },
+        { "\"fps\": 5.9e-8,", GOOD, "transforms.json.fps: 5.9e-08", "from 1/16777215" },
+        { "\"fps\": 16777216,", GOOD, "transforms.json.fps", "to 16777215" },
         { "", GOOD ", \"camera\": [1]", "frames[1].camera", "string or an integer" },
         { "oops", GOOD, "transforms.json:1", "not valid JSON" },
     };

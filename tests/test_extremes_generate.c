@@ -193,11 +193,45 @@ static void test_sizes(void **state)
                 everywhere(at.scaling + c, l);
             run();
             check_values();
-            if (fabs((double)l) < 100 && l != 0x1p-20f)
+            if (domain == TED4_SCALE_LOG2 ? fabs((double)l) < 100 : l > 0x1p-20f && l < 100)
                 for (int c = 0; c < 6; c++)
                     check_channel(at.scaling + c, 1e-6 * (fabs((double)l) + 1e-3 * (domain == TED4_SCALE_LOG2)) + 1e-12);
         }
     }
+}
+
+/* Linear sizes at their floor and below have the gradient of one just above it where a step would bring them up, and none where it would take them farther
+ * down: else they would stay there for good. */
+static void test_size_floor(void **state)
+{
+    static const float low[] = { 0x1p-20f, 0, -0.001f, -65504 };
+    static float above[6 * TED4_LANES];
+    ted4_header  h = case_header(TED4_MOTION_BANK, TED4_VIEW_COLOUR);
+    int          up = 0, down = 0;
+
+    (void)state;
+    h.scale_domain = TED4_SCALE_LINEAR;
+    const int first = ref_channels_of(&h).scaling;
+
+    for (int i = -1; i < (int)(sizeof low / sizeof *low); i++) {
+        begin(&h, 1);
+        for (int c = 0; c < 6; c++)
+            everywhere(first + c, i < 0 ? 0x1.000002p-20f : low[i]);
+        run();
+        const float *d = d_attr[0] + first * TED4_LANES;
+
+        if (i < 0)
+            memcpy(above, d, sizeof above);
+        for (int j = 0; i >= 0 && j < 6 * TED4_LANES; j++) {
+            const float want = above[j] > 0 ? 0 : above[j];
+
+            if (fabsf(d[j] - want) > 1e-3f * fabsf(want))
+                fail_msg("size %g, gradient %d: %g, not %g", (double)low[i], j, (double)d[j], (double)want);
+            up += want < 0;
+            down += above[j] > 0;
+        }
+    }
+    assert_true(up > 100 && down > 100);
 }
 
 /* Offsets, features and phi at FP16's ends; products of sizes and offsets stay within binary32. */
@@ -400,7 +434,8 @@ static void test_directions(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_activation), cmocka_unit_test(test_sizes), cmocka_unit_test(test_half_extremes),
+        cmocka_unit_test(test_activation), cmocka_unit_test(test_sizes), cmocka_unit_test(test_size_floor),
+        cmocka_unit_test(test_half_extremes),
         cmocka_unit_test(test_quaternions), cmocka_unit_test(test_longest_quaternions), cmocka_unit_test(test_heads),
         cmocka_unit_test(test_weights), cmocka_unit_test(test_gradient_sizes), cmocka_unit_test(test_directions),
     };

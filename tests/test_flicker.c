@@ -1,4 +1,4 @@
-/* test_flicker.c - data/flicker.c: which changes of light from picture to picture are flicker.
+/* test_flicker.c - data/flicker.c: which changes of light from picture to picture are flicker, and what follows from it.
  * SPDX-License-Identifier: BSD-2-Clause */
 #include <math.h>
 #include <setjmp.h>
@@ -9,6 +9,7 @@
 
 #include "data/flicker.h"
 #include "data/source.h"
+#include "train/header.h"
 
 enum { MOST = 40 };
 
@@ -81,12 +82,32 @@ static void test_unknown(void **state)
     expect(&none, 0);
 }
 
+/* A bank that was left to the program gets a row for every time where the light flickers. */
+static void test_settled(void **state)
+{
+    (void)state;
+    for (int rows = 0; rows < 2; rows++)
+        for (int flickers = 0; flickers < 2; flickers++) {
+            scene              s = { 0 };
+            ted4_train_options o;
+
+            for (uint32_t f = 0; f < 12; f++)
+                add(&s, 0, f, f % 2 ? 90 : 90 + (flickers ? 1.01 : 0.99) * TED4_FLICKER_SEEN, 0);
+            s.data.n_frames = 12;
+            assert_int_equal(ted4_options_preset(&o, "draft"), 0);
+            o.bank_rows = 5 * rows;
+            assert_int_equal(ted4_header_settle(&o, &s.data), 0);
+            assert_int_equal(o.bank_rows, rows ? 5 : flickers ? 12 : 0);
+        }
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_lamp),
         cmocka_unit_test(test_steady),
         cmocka_unit_test(test_unknown),
+        cmocka_unit_test(test_settled),
     };
 
     return cmocka_run_group_tests(tests, NULL, NULL);

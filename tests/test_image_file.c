@@ -148,13 +148,13 @@ static void test_jpeg(void **state)
     ted4_image image;
     ted4_message m;
     uint8_t bytes[8192];
-    int w, h;
+    ted4_image_header header;
 
     for (int components = 1; components <= 3; components += 2) {
         write_jpeg(path, 33, 17, components);
-        assert_int_equal(ted4_image_size(path, &w, &h, &m), 0);
-        assert_int_equal(w, 33);
-        assert_int_equal(h, 17);
+        assert_int_equal(ted4_image_probe(path, &header, &m), 0);
+        assert_int_equal(header.width, 33);
+        assert_int_equal(header.height, 17);
         assert_int_equal(ted4_image_read(path, &image, &m), 0);
         assert_int_equal(image.channels, 3);
         for (int i = 0; i < 33 * 17 * 3; i++)
@@ -198,6 +198,16 @@ static void invert(const ted4_lens *l, double a, double b, double *u, double *v)
     }
 }
 
+/* The lens equations themselves: where in the distorted picture the pinhole position (u, v) lies. */
+static void distort(const ted4_lens *l, double u, double v, double *a, double *b)
+{
+    const double s = u * u + v * v, radial = 1 + l->k1 * s + l->k2 * s * s + l->k3 * s * s * s;
+
+    *b = v * radial + 2 * l->p2 * u * v + l->p1 * (s + 2 * v * v);
+    *a = l->fx * (u * radial + 2 * l->p1 * u * v + l->p2 * (s + 2 * u * u)) + l->skew * *b + l->cx;
+    *b = l->fy * *b + l->cy;
+}
+
 static void test_undistort(void **state)
 {
     (void)state;
@@ -221,7 +231,7 @@ static void test_undistort(void **state)
         int seen = 0;
         for (int i = 0; i < 320 * 240; i++) {
             double dx, dy;
-            ted4_lens_distort(l, i % 320 + 0.5, i / 320 + 0.5, &dx, &dy);
+            distort(l, (i % 320 + 0.5 - l->cx) / l->fx, (i / 320 + 0.5 - l->cy) / l->fy, &dx, &dy);
             if (dx < 1 || dy < 1 || dx > 319 || dy > 239)
                 continue;
             seen++;
@@ -237,32 +247,53 @@ static void test_undistort(void **state)
     free(out);
 }
 
-/* Outside the source the border is repeated; where the polynomial would fold back, the position stays on the fold. */
+/* Outside the source the border is repeated. */
 static void test_undistort_border(void **state)
 {
     (void)state;
-    const ted4_lens wide = { 8, 8, 4, 4, 4, 4, 0.9, 0, 0, 0, 0, 0 }, fold = { 100, 100, 20, 20, 50, 50, -0.2, 0, 0, 0, 0, 0 };
+    const ted4_lens wide = { 8, 8, 4, 4, 4, 4, 0.9, 0, 0, 0, 0, 0 };
     uint8_t in[8 * 8 * 3], out[8 * 8 * 3];
-    double x = 0, y = 0, before = 0;
 
     for (int i = 0; i < 8 * 8 * 3; i++)
         in[i] = (uint8_t)(i / 3 == 0 ? 200 : i / 3 == 63 ? 90 : 10);
     ted4_undistort(&wide, in, out);
     assert_int_equal(out[0], 200);
     assert_int_equal(out[8 * 8 * 3 - 1], 90);
-    for (int i = 50; i < 100; i++) {
-        ted4_lens_distort(&fold, i, 50, &x, &y);
-        assert_true(x >= before && fabs(y - 50) < 1e-9);
-        before = x;
-    }
-    /* r (1 - 0.2 r^2) is largest at r = sqrt(5 / 3): 0.8607 */
-    assert_true(fabs(x - (50 + 20 * 0.86066)) < 1e-3);
-    /* r (1 - 0.1 r^6) at r^6 = 1 / 0.7: 0.90960; r (1 + r^2 - r^4 + r^6) never folds. */
-    const ted4_lens sixth = { 100, 100, 20, 20, 50, 50, 0, 0, 0, 0, -0.1, 0 }, grows = { 100, 100, 20, 20, 50, 50, 1, -1, 0, 0, 1, 0 };
-    ted4_lens_distort(&sixth, 99, 50, &x, &y);
-    assert_true(fabs(x - (50 + 20 * 0.90960)) < 1e-3);
-    ted4_lens_distort(&grows, 90, 50, &x, &y);
-    assert_true(fabs(x - (50 + 20 * 2.0 * (1 + 4 - 16 + 64))) < 1e-6);
+}
+
+enum { SIDE = 100, MIDDLE = 50 };
+
+/* The middle row, undistorted, of a picture that is black up to column edge and white from the next one on. */
+static void undistort_edge(const ted4_lens *l, int edge, uint8_t row[SIDE])
+{
+    static uint8_t in[SIDE * SIDE * 3], out[SIDE * SIDE * 3];
+
+    for (int i = 0; i < SIDE * SIDE * 3; i++)
+        in[i] = i / 3 % SIDE > edge ? 255 : 0;
+    ted4_undistort(l, in, out);
+    for (int i = 0; i < SIDE; i++)
+        row[i] = out[(MIDDLE * SIDE + i) * 3];
+}
+
+/* Where the polynomial would fold back, the position stays on the fold. r (1 - 0.2 r^2) is largest at r = sqrt(5 / 3): 0.86066, 17.213 pixels from the middle;
+ * r (1 - 0.1 r^6) at r^6 = 1 / 0.7: 0.90964, 18.193 pixels; r (1 + r^2 - r^4 + r^6) never folds. */
+static void test_undistort_fold(void **state)
+{
+    (void)state;
+    static const ted4_lens fold = { SIDE, SIDE, 20, 20, MIDDLE, MIDDLE + 0.5, -0.2, 0, 0, 0, 0, 0 };
+    static const ted4_lens sixth = { SIDE, SIDE, 20, 20, MIDDLE, MIDDLE + 0.5, 0, 0, 0, 0, -0.1, 0 };
+    static const ted4_lens grows = { SIDE, SIDE, 20, 20, MIDDLE, MIDDLE + 0.5, 1, -1, 0, 0, 1, 0 };
+    uint8_t row[SIDE];
+
+    undistort_edge(&fold, 66, row);
+    for (int i = 1; i < SIDE; i++)
+        assert_true(row[i] >= row[i - 1]);
+    assert_int_equal(row[80], (int)(255 * (MIDDLE + 17.2132 - 0.5 - 66) + 0.5));
+    assert_int_equal(row[SIDE - 1], row[80]);
+    undistort_edge(&sixth, 67, row);
+    assert_int_equal(row[SIDE - 1], (int)(255 * (MIDDLE + 18.1928 - 0.5 - 67) + 0.5));
+    undistort_edge(&grows, SIDE - 2, row);
+    assert_int_equal(row[90], 255);
 }
 
 /* Cache */
@@ -437,6 +468,7 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_png),              cmocka_unit_test(test_png_write), cmocka_unit_test(test_jpeg),
         cmocka_unit_test(test_undistort),        cmocka_unit_test(test_undistort_border),
+        cmocka_unit_test(test_undistort_fold),
         cmocka_unit_test(test_cache),            cmocka_unit_test(test_cache_ahead),
         cmocka_unit_test(test_cache_not_ahead),  cmocka_unit_test(test_cache_threads),
     };

@@ -169,6 +169,8 @@ static void test_calibration(void **state)
         { "\"frames\": 2.5,", good, "cams.json.frames", "2.5" },
         { "\"frames\": 1e9,", good, "cams.json.frames", "1e+09" },
         { "\"fps\": -1,", good, "cams.json.fps", "-1" },
+        { "\"fps\": 1e-9,", good, "cams.json.fps", "from 1/16777215" },
+        { "\"fps\": 3e7,", good, "cams.json.fps", "to 16777215" },
         { "", SIZE K W2C, "cameras[1]", "no name" },
         { "", "\"name\": \"two\"," K W2C, "cameras[1]", "no w, h" },
         { "", "\"name\": \"two\"," SIZE W2C, "cameras[1]", "no K" },

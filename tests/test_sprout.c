@@ -83,6 +83,29 @@ static void test_search(void **state)
     ted4_trainer_finish(&t);
 }
 
+/* However long the sequence, each frame may have a place, and all of them together are bounded. */
+static void test_long(void **state)
+{
+    const ted4_train_options o = options(0.3);
+    const uint32_t           frames = balls.n_frames;
+    ted4_places  list = { 0 };
+    ted4_trainer t;
+
+    (void)state;
+    for (uint32_t n = 1; n <= 36000; n++)
+        assert_true(ted4_sprout_room(n) > 0 && ted4_sprout_room(n) * n <= (size_t)1 << 27);
+    ball_begin(&t, &o, &balls, NULL);
+    ball_train(&t, STEPS);
+    balls.n_frames = 20000;
+    for (uint32_t f = 0; f < 3; f++) {
+        assert_int_equal(ted4_sprout_search(&t, f, &list), 0);
+        assert_int_equal(list.n, f + 1);
+    }
+    free(list.item);
+    ted4_trainer_finish(&t);
+    balls.n_frames = frames;
+}
+
 /* Growth leaves room, sprouts take it: short lives, at the ball, at its time. */
 static void test_sprout(void **state)
 {
@@ -148,6 +171,7 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_search),
+        cmocka_unit_test(test_long),
         cmocka_unit_test(test_sprout),
         cmocka_unit_test(test_impossible),
     };

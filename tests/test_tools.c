@@ -462,7 +462,7 @@ static void test_eval(void **state)
     char path[PATH_SIZE], why[256];
     ted4_message m;
     size_t size;
-    int w, h;
+    ted4_image_header sheet;
 
     (void)state;
     need_programs();
@@ -490,8 +490,8 @@ static void test_eval(void **state)
     assert_true(result("bytes") == (double)size && result("views") == VIEWS);
     assert_true(result("decode_ms") > 0.0 && result("render_fps") > 0.0);
     path_of(path, "sheet.png");
-    assert_int_equal(ted4_image_size(path, &w, &h, &m), 0);
-    assert_true(w == 3 * WIDTH && h == 3 * HEIGHT);
+    assert_int_equal(ted4_image_probe(path, &sheet, &m), 0);
+    assert_true(sheet.width == 3 * WIDTH && sheet.height == 3 * HEIGHT);
     assert_true(exists("pictures/truth/00002.png") && exists("pictures/ours/00002.png")
                 && exists("pictures/error/00002.png"));
     /* The sheet is there by now. */

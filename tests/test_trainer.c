@@ -7,6 +7,7 @@
 #include <stddef.h>
 #include <stdint.h>
 #include <cmocka.h>
+#include <errno.h>
 
 #include "ball_decoded.h"
 #include "tool/threads.h"
@@ -228,6 +229,28 @@ static void test_bad_checkpoints(void **state)
     check_refused(&o, &moving_scene, stop_path(1));
 }
 
+/* A state that no checkpoint may hold is not written, and the last good checkpoint stays, though no call of the system failed. */
+static void test_impossible_state(void **state)
+{
+    const ted4_train_options o = ball_options();
+    ted4_trainer t;
+    ball_file    before, after;
+
+    (void)state;
+    ball_begin(&t, &o, &moving_scene, NULL);
+    assert_int_equal(ted4_checkpoint_save(&t, stop_path(0)), 0);
+    before = read_file(stop_path(0));
+    t.bits[0] = 0;
+    errno = 0;
+    assert_int_equal(ted4_checkpoint_save(&t, stop_path(0)), -1);
+    assert_non_null(strstr(t.message.text, stop_path(0)));
+    after = read_file(stop_path(0));
+    ball_check_same(&before, &after);
+    ted4_trainer_finish(&t);
+    free(before.bytes);
+    free(after.bytes);
+}
+
 /* ---- parts that are not needed ---- */
 
 static ted4_info train_and_look(const ted4_train_options *o, ted4_dataset *d, double *psnr)
@@ -409,6 +432,7 @@ int main(void)
         cmocka_unit_test(test_nan),
         cmocka_unit_test(test_nan_anchor),
         cmocka_unit_test(test_bad_checkpoints),
+        cmocka_unit_test(test_impossible_state),
     };
 
     return cmocka_run_group_tests_name("trainer", tests, set_up, tear_down);

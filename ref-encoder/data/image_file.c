@@ -126,17 +126,6 @@ int ted4_image_probe(const char *path, ted4_image_header *header, ted4_message *
     return result;
 }
 
-int ted4_image_size(const char *path, int *width, int *height, ted4_message *m)
-{
-    ted4_image_header h;
-
-    if (ted4_image_probe(path, &h, m) != 0)
-        return -1;
-    *width = h.width;
-    *height = h.height;
-    return 0;
-}
-
 /* 16-bit files without a stated gamma count as sRGB like all others, not as linear light. */
 static int decode_png(const char *path, const uint8_t *bytes, size_t size, ted4_image *image, ted4_message *m)
 {

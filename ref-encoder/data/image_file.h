@@ -32,7 +32,6 @@ int ted4_image_read(const char *path, ted4_image *image, ted4_message *m);
 /* The header only: no pixel is decoded, so a file cut short later on is not noticed. A JPEG of other colours
  * than grey or RGB (CMYK) is refused here. 0, or -1 with *m filled. */
 int ted4_image_probe(const char *path, ted4_image_header *header, ted4_message *m);
-int ted4_image_size(const char *path, int *width, int *height, ted4_message *m);
 
 /* exif.c: how the camera was held, from the payload of a JPEG's APP1 segment: 1 upright (also when the
  * segment does not tell, or is damaged), 3 upside down, 6 and 8 turned by a quarter; 2, 4, 5, 7 the same

@@ -5,6 +5,7 @@
 #include <math.h>
 #include <stdlib.h>
 #include "data/data_util.h"
+#include "data/frame_rate.h"
 
 json_t *ted4_json_read(const char *path, ted4_message *m)
 {
@@ -108,4 +109,15 @@ int ted4_json_affine(const json_t *object, const char *where, const char *name, 
         return ted4_say(m, "%s.%s: last row %g %g %g %g, expected 0 0 0 1", where, name,
                         last[0], last[1], last[2], last[3]);
     return 1;
+}
+
+int ted4_json_rate(const json_t *object, const char *where, double *rate, ted4_message *m)
+{
+    uint32_t num, den;
+    const int found = ted4_json_number(object, where, "fps", rate, m);
+
+    if (found <= 0 || *rate == 0 || ted4_frame_rate(*rate, &num, &den) == 0)
+        return found;
+    return ted4_say(m, "%s.fps: %g, expected frames a second from 1/%d to %d, or 0 where they are not known", where, *rate,
+                    TED4_RATE_MOST, TED4_RATE_MOST);
 }

@@ -27,4 +27,7 @@ int ted4_json_numbers(const json_t *object, const char *where, const char *name,
  * 0 1. v: its upper 3x4, row-major. */
 int ted4_json_affine(const json_t *object, const char *where, const char *name, double v[12], ted4_message *m);
 
+/* Frames a second, field "fps", as a header can say them (frame_rate.h); 0: not known. As ted4_json_number. */
+int ted4_json_rate(const json_t *object, const char *where, double *rate, ted4_message *m);
+
 #endif

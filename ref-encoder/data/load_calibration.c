@@ -134,12 +134,10 @@ static int read_frames(calibration *c)
     double frames = 0;
 
     if (ted4_json_number(c->root, c->path, "frames", &frames, c->m) < 0 ||
-        ted4_json_number(c->root, c->path, "fps", &c->scene->rate, c->m) < 0)
+        ted4_json_rate(c->root, c->path, &c->scene->rate, c->m) < 0)
         return -1;
     if (!(frames >= 0 && frames <= TED4_MAX_FRAMES) || frames != floor(frames))
         return ted4_say(c->m, "%s.frames: %g, expected a whole number up to %d", c->path, frames, TED4_MAX_FRAMES);
-    if (!(c->scene->rate >= 0))
-        return ted4_say(c->m, "%s.fps: %g, expected a positive number", c->path, c->scene->rate);
     c->stated = (size_t)frames;
     if (most > 0 && c->stated > most)
         c->stated = most;

@@ -308,9 +308,9 @@ static int read_frames(transforms *t)
             return -1;
     }
     const double rate = t->scene->rate;
-    if (ted4_json_number(t->root, t->path, "fps", &t->scene->rate, t->m) < 0)
+    if (ted4_json_rate(t->root, t->path, &t->scene->rate, t->m) < 0)
         return -1;
-    if (t->scene->rate < 0 || (rate > 0 && rate != t->scene->rate))
+    if (rate > 0 && rate != t->scene->rate)
         return ted4_say(t->m, "%s.fps: %g, expected %g", t->path, t->scene->rate, rate);
     return read_times(t, first);
 }

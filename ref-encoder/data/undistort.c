@@ -58,6 +58,8 @@ static double fold_radius2(const ted4_lens *l)
     return q > 0 ? 2 / q : INFINITY;
 }
 
+/* Position in the distorted picture, in pixels, of the ray that a pinhole of the same fx fy cx cy without skew sees at (x, y). Beyond the radius where the
+ * radial polynomial stops growing (where it would fold back) it is the position on that radius. */
 static void distort(const ted4_lens *l, double fold2, double x, double y, double *dx, double *dy)
 {
     double u = (x - l->cx) / l->fx, v = (y - l->cy) / l->fy;
@@ -74,11 +76,6 @@ static void distort(const ted4_lens *l, double fold2, double x, double y, double
     const double vd = v * radial + 2 * l->p2 * u * v + l->p1 * (s + 2 * v * v);
     *dx = l->fx * ud + l->skew * vd + l->cx;
     *dy = l->fy * vd + l->cy;
-}
-
-void ted4_lens_distort(const ted4_lens *l, double x, double y, double *dx, double *dy)
-{
-    distort(l, fold_radius2(l), x, y, dx, dy);
 }
 
 static double clamp(double x, double high)

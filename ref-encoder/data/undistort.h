@@ -19,11 +19,6 @@ typedef struct {
 
 int ted4_lens_is_pinhole(const ted4_lens *l);
 
-/* Position in the distorted picture, in pixels, of the ray that a pinhole of the same fx fy cx
- * cy without skew sees at (x, y). Beyond the radius where the radial polynomial stops growing (where it would
- * fold back) the position on that radius is returned. */
-void ted4_lens_distort(const ted4_lens *l, double x, double y, double *dx, double *dy);
-
 /* in, out: RGB [height][width][3] of the lens's size, not overlapping. Bilinear; beyond the
  * border the nearest border pixel. */
 void ted4_undistort(const ted4_lens *l, const uint8_t *in, uint8_t *out);

@@ -146,12 +146,28 @@ static int set(ted4_request *r, const char *text)
                                                                      : TED4_REQUEST_GO;
 }
 
+/* "A,B" */
+static int set_iterations(ted4_request *r, const char *text)
+{
+    const char *comma = strchr(text, ',');
+    char        one[256];
+
+    if (comma == NULL || comma - text > 100)
+        return complain("--iterations: expected A,B");
+    snprintf(one, sizeof one, "stage1=%.*s", (int)(comma - text), text);
+
+    const int status = set(r, one);
+
+    snprintf(one, sizeof one, "stage2=%s", comma + 1);
+    return status != TED4_REQUEST_GO ? status : set(r, one);
+}
+
 /* Preset first, then the short forms, then --set in order. */
 static int apply(ted4_request *r, const pending *p)
 {
     const uint32_t seed = r->options.seed;
-    char           text[256], rest;
-    int            a, b, status = TED4_REQUEST_GO;
+    char           text[256];
+    int            status = TED4_REQUEST_GO;
 
     if (ted4_options_preset(&r->options, p->preset) != 0) {
         snprintf(text, sizeof text, "--preset %s: expected draft, fast, medium, slow or paper",
@@ -159,17 +175,13 @@ static int apply(ted4_request *r, const pending *p)
         return complain(text);
     }
     r->options.seed = seed;
-    if (p->iterations != NULL) {
-        if (sscanf(p->iterations, "%d,%d%c", &a, &b, &rest) != 2 || a < 1 || b < 0)
-            return complain("--iterations: expected A,B");
-        r->options.stage1 = a;
-        r->options.stage2 = b;
-    }
-    if (p->lambda != NULL) {
+    if (p->iterations != NULL)
+        status = set_iterations(r, p->iterations);
+    if (p->lambda != NULL && status == TED4_REQUEST_GO) {
         snprintf(text, sizeof text, "lambda=%s", p->lambda);
         status = set(r, text);
     }
-    if (p->capacity != NULL && strcmp(p->capacity, "auto") != 0 && strcmp(p->capacity, "fixed") != 0)
+    if (status == TED4_REQUEST_GO && p->capacity != NULL && strcmp(p->capacity, "auto") != 0 && strcmp(p->capacity, "fixed") != 0)
         return bad_value(OPT_CAPACITY, p->capacity);
     if (p->capacity != NULL)
         r->options.capacity = strcmp(p->capacity, "auto") == 0;

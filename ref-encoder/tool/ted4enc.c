@@ -1,6 +1,5 @@
 /* ted4enc.c - trains a scene and writes it as a .ted4 file.
  * SPDX-License-Identifier: BSD-2-Clause */
-#include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <sys/resource.h>
@@ -8,7 +7,6 @@
 #include <unistd.h>
 
 #include "data/dataset.h"
-#include "data/flicker.h"
 #include "file_out.h"
 #include "tool/threads.h"
 #include "request.h"
@@ -82,25 +80,13 @@ static int run(const ted4_request *r, ted4_trainer *t, double begin)
     return over ? TED4_EXIT_WARNED : TED4_EXIT_FINE;
 }
 
-/* What follows from the pictures and was left to the program. */
-static int settle_options(ted4_train_options *o, const ted4_dataset *d)
-{
-    const double flicker = ted4_dataset_flicker(d);
-
-    if (isnan(flicker))
-        return complain("no memory to look for flicker");
-    if (o->bank_rows == 0 && flicker >= TED4_FLICKER_SEEN)
-        o->bank_rows = (int)d->n_frames;
-    return 0;
-}
-
 static int encode(const ted4_request *r, ted4_dataset *d, const ted4_parallel *p, double begin)
 {
     ted4_train_options options = r->options;
     ted4_trainer       t;
 
-    if (settle_options(&options, d) != 0)
-        return TED4_EXIT_TOOL;
+    if (ted4_header_settle(&options, d) != 0)
+        return complain("no memory to look for flicker");
 
     const int status = ted4_trainer_init(&t, &options, d, p) != 0 ? complain(t.message.text) : run(r, &t, begin);
 

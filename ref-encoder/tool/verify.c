@@ -6,25 +6,35 @@
 #include <string.h>
 
 #include "base/bytes.h"
+#include "train/header.h"
 #include "write/encode.h"
 
+static int blob_differs(const ted4_blob *a, const ted4_blob *b)
+{
+    return a->n != b->n || (a->n > 0 && memcmp(a->values, b->values, a->n * sizeof *a->values) != 0);
+}
+
+static int type_differs(const ted4_scene *a, const ted4_scene *b, int type)
+{
+    const size_t n = a->head.n_anchors, dim = a->shape.dim[type];
+
+    return dim > 0 && (memcmp(a->step_index[type], b->step_index[type], n) != 0 ||
+                       memcmp(a->symbol[type], b->symbol[type], n * dim * sizeof *a->symbol[type]) != 0);
+}
+
+/* The header comes first: with it the shape is the same, and so are the sizes of all arrays. */
 static int differs(const ted4_scene *a, const ted4_scene *b)
 {
     const size_t n = a->head.n_anchors;
-    int          bad = b->head.n_anchors != n ||
+    int          bad = b->head.n_anchors != n || !ted4_header_same(&a->head, &b->head) ||
                        memcmp(a->position, b->position, n * 3 * sizeof *a->position) != 0 ||
                        memcmp(a->dynamic, b->dynamic, n) != 0 ||
-                       memcmp(a->offset_bits, b->offset_bits, n * sizeof *a->offset_bits) != 0;
+                       memcmp(a->offset_bits, b->offset_bits, n * sizeof *a->offset_bits) != 0 ||
+                       memcmp(a->shift, b->shift, a->shape.n_units) != 0;
 
     for (int y = 0; y < TED4_TYPES && !bad; y++)
-        bad = a->shape.dim[y] != b->shape.dim[y] ||
-              (a->shape.dim[y] > 0 &&
-               (memcmp(a->step_index[y], b->step_index[y], n) != 0 ||
-                memcmp(a->symbol[y], b->symbol[y],
-                       n * a->shape.dim[y] * sizeof *a->symbol[y]) != 0));
-    return bad || memcmp(a->netr.values, b->netr.values, a->netr.n * sizeof(float)) != 0 ||
-           (a->bank.n > 0 &&
-            memcmp(a->bank.values, b->bank.values, a->bank.n * sizeof(float)) != 0);
+        bad = type_differs(a, b, y);
+    return bad || blob_differs(&a->nete, &b->nete) || blob_differs(&a->netr, &b->netr) || blob_differs(&a->bank, &b->bank);
 }
 
 int ted4_verify(const ted4_scene *scene, const uint8_t *bytes, size_t size,

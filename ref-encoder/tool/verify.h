@@ -1,4 +1,4 @@
-/* verify.h - the encoder decodes what it wrote and compares; nothing is written otherwise.
+/* verify.h - the encoder decodes what it wrote and compares all of it; nothing is written otherwise.
  * SPDX-License-Identifier: BSD-2-Clause */
 #ifndef TED4_VERIFY_H
 #define TED4_VERIFY_H

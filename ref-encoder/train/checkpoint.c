@@ -9,8 +9,6 @@
 #include <string.h>
 #include <unistd.h>
 #include <xxhash.h>
-#include "norm/limits.h"
-#include "write/coder_count.h"
 
 #define MAGIC 0x34444554u       /* "TED4" */
 enum { FORMAT = 6 };
@@ -60,41 +58,6 @@ static void walk_anchors(stream *s, ted4_trainer *t)
                                        TED4_LANES * sizeof(float));
 }
 
-enum { MAX_ELEMENTS = 96 };
-
-/* The elements of a header in the order of a file. */
-typedef struct {
-    size_t  n;
-    int64_t value[MAX_ELEMENTS];
-} elements;
-
-static void note_element(void *user, size_t offset, const char *element, int64_t index, int64_t value)
-{
-    elements *e = user;
-
-    (void)offset;
-    (void)element;
-    (void)index;
-    if (e->n < MAX_ELEMENTS)
-        e->value[e->n++] = value;
-}
-
-/* One anchor, as a trainer keeps their number elsewhere. 0, or -1: not a header of the format. */
-static int header_elements(const ted4_header *h, elements *e)
-{
-    ted4_header  whole = *h;
-    ted4_shape   shape;
-    ted4_counter c;
-
-    whole.n_anchors = 1;
-    e->n = 0;
-    ted4_counter_init(&c);
-    c.base.trace = note_element;
-    c.base.trace_user = e;
-    ted4_walk_header(&c.base, &whole, &shape, TED4_LEVEL_UNBOUNDED, UINT64_MAX);
-    return c.base.error.code == TED4_OK ? 0 : -1;
-}
-
 /* May trials of smaller models have made h of it (capacity.h)? Whatever they change is no more than it was, and valid. */
 static void allow_smaller(ted4_header *want, const ted4_header *h)
 {
@@ -121,7 +84,6 @@ static void allow_smaller(ted4_header *want, const ted4_header *h)
 static int header_belongs(const ted4_header *began, const ted4_header *h, int decided)
 {
     ted4_header want = *began;
-    elements    a, b;
 
     if (h->motion == TED4_MOTION_NONE)
         ted4_header_without_motion(&want);
@@ -131,8 +93,7 @@ static int header_belongs(const ted4_header *began, const ted4_header *h, int de
     want.context_bits = h->context_bits;
     if (decided)
         allow_smaller(&want, h);
-    return header_elements(&want, &a) == 0 && header_elements(h, &b) == 0 && a.n == b.n
-        && memcmp(a.value, b.value, a.n * sizeof *a.value) == 0;
+    return ted4_header_same(&want, h);
 }
 
 /* The header tells the layout, which may have lost parts since the trainer was made. Within stage 1 what stage 2 alone looks at
@@ -370,9 +331,11 @@ int ted4_checkpoint_save(ted4_trainer *t, const char *path)
     if (f == NULL)
         return ted4_trainer_fail(t, "%s: %s", name, strerror(errno));
 
-    /* errno is the first failure's: closing what could not be written fails again, with another reason. */
+    /* errno is the first failure's: closing what could not be written fails again, with another reason. A state that no checkpoint may hold sets none. */
+    errno = 0;
+
     const int bad = run(t, f, 1, 1) != 0 || fflush(f) != 0 || fsync(fileno(f)) != 0;
-    int       why = bad ? errno : 0;
+    int       why = !bad ? 0 : errno != 0 ? errno : EIO;
 
     if (fclose(f) != 0 && !bad)
         why = errno;

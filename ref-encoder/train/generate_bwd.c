@@ -232,19 +232,20 @@ static void feature_backward(slot_state *s)
         d[j] = s->d_feature[j] + (moves ? s->d_moved[j] : 0.0f);
 }
 
-/* Forward was S = 2^l or max(l, 2^-20). */
+/* Forward was S = 2^l or max(l, 2^-20), where what lies below can come back. */
 static void sizes_backward(slot_state *s)
 {
     const ted4_generator *g = s->g;
     const float *size = ted4_gen_plane(s->planes, g->plane.size);
+    const float *l = ted4_gen_channel(g, s->planes, g->layout.first[TED4_SCALING]);
     const int linear = g->layout.head.scale_domain == TED4_SCALE_LINEAR;
     float *d = ted4_gen_plane(s->d_attr, g->layout.first[TED4_SCALING]);
 
 #pragma omp simd
     for (int j = 0; j < 6 * TED4_LANES; j++) {
-        const float slope = linear ? (size[j] > TED4_SHORT ? 1.0f : 0.0f) : size[j] * TED4_LN2;
+        const float slope = size[j] * TED4_LN2;
 
-        d[j] = s->d_size[j] * slope;
+        d[j] = linear ? ted4_inward(l[j], TED4_SHORT, INFINITY, s->d_size[j]) : s->d_size[j] * slope;
     }
 }
 

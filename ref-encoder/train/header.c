@@ -5,7 +5,12 @@
 #include <math.h>
 #include <string.h>
 
+#include "data/flicker.h"
+#include "data/frame_rate.h"
 #include "space.h"
+
+/* Frames a second of a scene that does not say. */
+enum { UNKNOWN_RATE = 30 };
 
 /* The feature is cut in slices that grow like 1, 2, 3, ... (four of 50: 5, 10, 15, 20): early ones are the context of all others. */
 static void make_slices(ted4_header *h, int n)
@@ -23,14 +28,24 @@ static void make_slices(ted4_header *h, int n)
     }
 }
 
+/* Of a bank: a row for every second frame. One alone is the same at all times. */
+static uint32_t rows_of(uint32_t frames)
+{
+    const uint32_t half = (frames + 1) / 2;
+
+    return half < 2 ? 2 : half;
+}
+
 static void make_header_time(ted4_header *h, const ted4_train_options *o,
                              const ted4_dataset *d)
 {
     const int still = d->n_frames <= 1;
 
     h->frames = d->n_frames;
-    h->rate_num = d->rate > 0 ? (uint32_t)lrint(d->rate * 1000.0) : 30;
-    h->rate_den = d->rate > 0 ? 1000 : 1;
+    h->rate_num = UNKNOWN_RATE;
+    h->rate_den = 1;
+    if (d->rate != 0 && ted4_frame_rate(d->rate, &h->rate_num, &h->rate_den) != 0)
+        h->rate_num = h->rate_den = 0;      /* no header: ted4_header_wrong says so */
     h->activation = (uint8_t)(still ? 0 : o->activation);
     h->motion = (uint8_t)(still ? TED4_MOTION_NONE : o->motion);
     if (h->motion == TED4_MOTION_NONE)
@@ -41,8 +56,19 @@ static void make_header_time(ted4_header *h, const ted4_train_options *o,
     if (h->motion == TED4_MOTION_INR)
         return;
     h->phi_dim = (uint8_t)o->phi;
-    h->bank_rows = o->bank_rows > 0 ? (uint32_t)o->bank_rows : (d->n_frames + 1) / 2;
+    h->bank_rows = o->bank_rows > 0 ? (uint32_t)o->bank_rows : rows_of(d->n_frames);
     h->bank_dim = (uint16_t)o->bank_dim;
+}
+
+int ted4_header_settle(ted4_train_options *o, const ted4_dataset *d)
+{
+    const double flicker = ted4_dataset_flicker(d);
+
+    if (isnan(flicker))
+        return -1;
+    if (o->bank_rows == 0 && flicker >= TED4_FLICKER_SEEN)
+        o->bank_rows = (int)d->n_frames;
+    return 0;
 }
 
 void ted4_header_stage2(ted4_header *h, const ted4_train_options *o)

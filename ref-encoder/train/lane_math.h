@@ -38,6 +38,12 @@ static inline float ted4_lane_sigmoid(float x)
     return 1.0f / (1.0f + ted4_lane_pow2(-x * TED4_LOG2E));
 }
 
+/* Gradient d of a clamped x: outside, only what a descent step would use to come back. */
+static inline float ted4_inward(float x, float low, float high, float d)
+{
+    return (x <= low && d > 0.0f) || (x >= high && d < 0.0f) ? 0.0f : d;
+}
+
 /* Whether a mask with this logit is on (model.h). */
 static inline int ted4_mask_on(float logit)
 {

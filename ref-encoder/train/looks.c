@@ -5,17 +5,21 @@
 #include "space.h"
 #include "trainer.h"
 
-/* All anchors at time 0, without activation, from the first training camera. */
-static int generate_all(ted4_trainer *t, ted4_splats *s)
+/* From so many training pictures anchors are looked at whose opacity depends on the direction. */
+enum { DIRECTIONS = 8 };
+
+/* All anchors at time 0, without activation, from the camera of that picture. */
+static int generate_all(ted4_trainer *t, uint32_t item, ted4_splats *s)
 {
     ted4_view           v;
     ted4_generate_input in = { &t->layout, t->net, 0, NULL, NULL, NULL, 0, 1, { 0 }, 0 };
 
     if (ted4_slots_fill(t, NULL) != 0)
         return -1;
-    ted4_space_view(&t->layout.head, &t->data->pictures[t->order.item[0]].camera, &v, in.camera);
+    ted4_space_view(&t->layout.head, &t->data->pictures[item].camera, &v, in.camera);
+    ted4_slots_quantise(t, TED4_QUANT_ROUND);
     in.n_slots = t->slots.n;
-    in.attr = t->slots.raw;
+    in.attr = t->slots.used;
     in.position = t->slots.position;
     in.lanes = t->slots.lanes;
     ted4_generator_pack(t->generator, t->net);
@@ -23,12 +27,13 @@ static int generate_all(ted4_trainer *t, ted4_splats *s)
                ? ted4_trainer_fail(t, "no memory to look at anchors") : 0;
 }
 
-int ted4_trainer_looks(ted4_trainer *t, float *opacity, float *rgb)
+/* One look, which counts for an anchor that is more opaque in it than in those before; first: there are none before. */
+static int look(ted4_trainer *t, uint32_t item, int first, float *opacity, float *rgb)
 {
     const size_t K = t->layout.head.n_offsets;
     ted4_splats  s;
 
-    if (generate_all(t, &s) != 0)
+    if (generate_all(t, item, &s) != 0)
         return -1;
     for (size_t i = 0; i < t->anchors.n; i++) {
         float sum = 0, colour[3] = { 0 };
@@ -41,9 +46,22 @@ int ted4_trainer_looks(ted4_trainer *t, float *opacity, float *rgb)
             for (int c = 0; c < 3; c++)
                 colour[c] += o * s.colour[c][at];
         }
+        if (!first && !(sum > opacity[i]))
+            continue;
         opacity[i] = sum;
         for (int c = 0; rgb != NULL && c < 3; c++)
             rgb[3 * i + (size_t)c] = sum > 0 ? colour[c] / sum : 0.0f;
     }
+    return 0;
+}
+
+int ted4_trainer_looks(ted4_trainer *t, float *opacity, float *rgb)
+{
+    const size_t most = t->layout.head.view == TED4_VIEW_FULL ? DIRECTIONS : 1;
+    const size_t n = t->order.n < most ? t->order.n : most;
+
+    for (size_t i = 0; i < n; i++)
+        if (look(t, t->order.item[i * t->order.n / n], i == 0, opacity, rgb) != 0)
+            return -1;
     return 0;
 }

@@ -7,6 +7,7 @@
 #include <stdatomic.h>
 
 #include "base/arena.h"
+#include "lane_math.h"
 #include "model.h"
 #include "norm/prior.h"
 
@@ -94,12 +95,6 @@ static inline int ted4_rate_coded(const ted4_rate_job *job, int type)
 {
     return job->in->layout->shape.dim[type] > 0
         && (type != TED4_TAU || job->in->activation);
-}
-
-/* Gradient d of a clamped x: outside, only what a descent step would use to come back. */
-static inline float ted4_inward(float x, float low, float high, float d)
-{
-    return (x <= low && d > 0.0f) || (x >= high && d < 0.0f) ? 0.0f : d;
 }
 
 /* Floats of n rows of lanes. */

@@ -4,6 +4,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "random.h"
 #include "trainer.h"
 
 /* An anchor counts as a ball of three of its offset scales, and as visible when the ball touches the guarded frustum. Where things move the canonical
@@ -112,4 +113,28 @@ int ted4_slots_fill(ted4_trainer *t, const ted4_view *v)
         s->n++;
     }
     return 0;
+}
+
+typedef struct {
+    const ted4_trainer *t;
+    uint64_t            key;
+    ted4_quant          quant;
+} quantise_job;
+
+static void quantise_slot(void *arg, size_t i)
+{
+    const quantise_job *j = arg;
+    const ted4_slots   *s = &j->t->slots;
+    const size_t        floats = (size_t)j->t->layout.n_channels * TED4_LANES;
+
+    ted4_quantise(&j->t->layout, j->quant, s->raw[i], s->steps[i], s->block[i], j->key,
+                  s->quantised + i * floats);
+}
+
+void ted4_slots_quantise(ted4_trainer *t, ted4_quant quant)
+{
+    quantise_job j = { t, ted4_random(t->opt.seed, t->iteration), quant };
+
+    if (t->stage2)
+        ted4_parallel_for(t->parallel, t->slots.n, quantise_slot, &j);
 }

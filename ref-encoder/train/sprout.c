@@ -147,11 +147,12 @@ static int plant(ted4_trainer *t, const ted4_places *list, const ted4_sightings 
     return bad ? -1 : 0;
 }
 
-/* The list in the order of score, and its points and colours by themselves. 0, or -1: no memory. */
-static int arrange(ted4_places *list, float **point, uint8_t **colour)
+/* The list in the order of score, most at most, and its points and colours by themselves. 0, or -1: no memory. */
+static int arrange(ted4_places *list, size_t most, float **point, uint8_t **colour)
 {
     if (list->n > 0)
         qsort(list->item, list->n, sizeof *list->item, compare_places);
+    list->n = list->n < most ? list->n : most;
     *point = malloc((list->n + 1) * 3 * sizeof **point);
     *colour = malloc(list->n * 3 + 1);
     if (*point == NULL || *colour == NULL)
@@ -174,7 +175,7 @@ int ted4_sprout(ted4_trainer *t)
 
     for (uint32_t f = 0; !bad && f < t->data->n_frames; f++)
         bad = ted4_sprout_search(t, f, &list) != 0;
-    if (!bad && arrange(&list, &point, &colour) != 0)
+    if (!bad && arrange(&list, ted4_sprout_room(t->data->n_frames), &point, &colour) != 0)
         bad = ted4_trainer_fail(t, "no memory for new anchors");
     bad = bad || ted4_sightings_count(&s, t, point, colour, list.n) != 0 ||
           look_at_anchors(t, &l) != 0 || plant(t, &list, &s, &l) != 0;

@@ -26,7 +26,15 @@ typedef struct {
 /* Does the model have activation, and are there times that enough cameras look at? */
 int ted4_sprout_possible(const ted4_trainer *t);
 
-/* Adds places missing at a frame to the list, at most one a cell of the place's size, and of long sequences only the surest; in a fixed order. 0, or -1 with t->message. */
+/* So many places a sequence may have: each is looked for in all frames, and places times frames are at most 2^27, four bytes each (sightings.h). Only long sequences
+ * come near. */
+static inline size_t ted4_sprout_room(uint32_t n_frames)
+{
+    return ((size_t)1 << 27) / n_frames;
+}
+
+/* Adds places missing at a frame to the list, at most one a cell of the place's size, and of long sequences only the surest, its share of the room or one; in a fixed
+ * order. 0, or -1 with t->message. */
 int ted4_sprout_search(ted4_trainer *t, uint32_t frame, ted4_places *list);
 
 /* All frames are searched, and anchors added at the surest places until max_anchors is reached, each with the activation of the times at which its colour is seen there, and the

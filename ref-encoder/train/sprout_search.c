@@ -20,9 +20,6 @@ enum { FEWEST_DEPTHS = 16, MOST_DEPTHS = 512 };
 #define NEARER  0.5f
 #define FARTHER 1.2f
 #define OUTLIERS 0.02f
-/* Every place is looked for in all frames: places times frames are at most this many, four bytes each (sightings.h). Only long sequences come near. */
-#define MOST_SIGHTINGS ((size_t)1 << 27)
-
 /* One picture of the frame. */
 typedef struct {
     ted4_view view;
@@ -298,7 +295,10 @@ int ted4_sprout_search(ted4_trainer *t, uint32_t frame, ted4_places *list)
     for (size_t i = 0; !bad && i < n; i++)
         if (search_eye(t, eyes, n, i, frame, list) != 0)
             bad = ted4_trainer_fail(t, "no memory to look for what is missing");
-    if (!bad && thin(list, first, MOST_SIGHTINGS / t->data->n_frames / t->data->n_frames) != 0)
+
+    const size_t share = ted4_sprout_room(t->data->n_frames) / t->data->n_frames;
+
+    if (!bad && thin(list, first, share > 0 ? share : 1) != 0)
         bad = ted4_trainer_fail(t, "no memory to look for what is missing");
     for (size_t i = 0; i < n; i++) {
         free(eyes[i].rgb);

@@ -86,7 +86,7 @@ int ted4_activation_begin(ted4_trainer *t)
     return 0;
 }
 
-/* Largest activation of anchor i over the frames of the sequence. */
+/* Largest activation of anchor i over the frames of the sequence, in stage 2 as the file will hold it: from all slots (ted4_trainer_looks). */
 static float peak_activation(const ted4_trainer *t, size_t i)
 {
     const int first = t->layout.first[TED4_TAU];
@@ -95,7 +95,7 @@ static float peak_activation(const ted4_trainer *t, size_t i)
     if (first < 0)
         return 1.0f;
     for (int c = 0; c < 4; c++)
-        x[c] = *ted4_cell(&t->anchors, TED4_ROW_VALUE, i, first + c);
+        x[c] = t->slots.used[i / TED4_LANES][(size_t)(first + c) * TED4_LANES + i % TED4_LANES];
     for (uint32_t j = 0; j < t->data->n_frames; j++) {
         const float now = frame_time(t, j);
         const float off = now < x[0] ? (now - x[0]) / exp2f(x[1])
@@ -106,24 +106,50 @@ static float peak_activation(const ted4_trainer *t, size_t i)
     return peak;
 }
 
-/* Positions become what the file will hold; of anchors that then coincide the first stays; anchors that never rise, which would still
- * cost bits, are dropped. */
+int ted4_stage_rising(ted4_trainer *t, uint32_t *rising, size_t *n)
+{
+    float *sum = malloc((t->anchors.n + 1) * sizeof *sum);
+    int    bad = sum == NULL ? ted4_trainer_fail(t, "no memory to look for idle anchors") : ted4_trainer_looks(t, sum, NULL);
+
+    *n = 0;
+    for (size_t i = 0; !bad && i < t->anchors.n; i++)
+        if ((double)(sum[i] * peak_activation(t, i)) >= t->opt.prune_opacity)
+            rising[(*n)++] = (uint32_t)i;
+    free(sum);
+    return bad;
+}
+
+int ted4_stage_drop_idle(ted4_trainer *t)
+{
+    uint32_t *order = malloc((t->anchors.n + 1) * sizeof *order);
+    size_t    n = 0;
+    int       bad = order == NULL ? ted4_trainer_fail(t, "no memory to drop idle anchors") : ted4_stage_rising(t, order, &n);
+
+    if (!bad && n == 0)
+        bad = ted4_trainer_fail(t, "nothing is left to encode");
+    if (!bad && n < t->anchors.n && ted4_anchors_select(&t->anchors, order, n) != 0)
+        bad = ted4_trainer_fail(t, "no memory to drop idle anchors");
+    free(order);
+    return bad;
+}
+
+/* Positions become what the file will hold; of anchors that then coincide the first stays. */
 static int settle_positions(ted4_trainer *t)
 {
     ted4_anchors *a = &t->anchors;
     uint32_t     *order = malloc((a->n + 1) * sizeof *order);
-    float        *sum = malloc((a->n + 1) * sizeof *sum);
     uint64_t      last = 0;
     size_t        n = 0;
-    int           bad = order == NULL || sum == NULL;
 
-    for (size_t i = 0; !bad && i < a->n; i++)
+    for (size_t i = 0; i < a->n; i++)
         for (int j = 0; j < 3; j++) {
             float *p = ted4_cell(a, TED4_ROW_POSITION, i, j);
 
             *p = ted4_half_to_float(ted4_float_to_half(*p)) + 0.0f;
         }
-    bad = bad || ted4_anchors_sort(a) != 0 || ted4_trainer_looks(t, sum, NULL) != 0;
+
+    int bad = order == NULL || ted4_anchors_sort(a) != 0;
+
     for (size_t i = 0; !bad && i < a->n; i++) {
         uint16_t p[3];
 
@@ -131,16 +157,13 @@ static int settle_positions(ted4_trainer *t)
             p[j] = ted4_float_to_half(*ted4_cell(a, TED4_ROW_POSITION, i, j));
         const uint64_t code = ted4_morton(p);
 
-        if (i > 0 && code == last)
-            continue;
-        last = code;
-        if ((double)(sum[i] * peak_activation(t, i)) >= t->opt.prune_opacity)
+        if (i == 0 || code != last)
             order[n++] = (uint32_t)i;
+        last = code;
     }
-    bad = bad || n == 0 || ted4_anchors_select(a, order, n) != 0;
+    bad = bad || ted4_anchors_select(a, order, n) != 0;
     free(order);
-    free(sum);
-    return bad ? ted4_trainer_fail(t, "nothing is left to encode") : 0;
+    return bad ? ted4_trainer_fail(t, "no memory to settle positions") : 0;
 }
 
 /* Copies the channels of a row kind from the old layout to the new one. */
@@ -271,7 +294,7 @@ static void clear_moments(ted4_trainer *t)
 
 int ted4_stage2_begin(ted4_trainer *t)
 {
-    if (settle_positions(t) != 0 || reshape(t) != 0)
+    if (settle_positions(t) != 0 || ted4_stage_drop_idle(t) != 0 || reshape(t) != 0)
         return -1;
     if (t->opt.capacity && ted4_rotate_features(t) != 0)
         return -1;

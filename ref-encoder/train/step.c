@@ -82,22 +82,6 @@ static void follow(ted4_progress *p, double loss, double l1, double ssim, double
     p->splat_pixels += w * (splats * pixels - p->splat_pixels);
 }
 
-typedef struct {
-    const ted4_trainer *t;
-    uint64_t            key;
-    ted4_quant          quant;
-} quantise_job;
-
-static void quantise_slot(void *arg, size_t i)
-{
-    const quantise_job *j = arg;
-    const ted4_slots   *s = &j->t->slots;
-    const size_t        floats = (size_t)j->t->layout.n_channels * TED4_LANES;
-
-    ted4_quantise(&j->t->layout, j->quant, s->raw[i], s->steps[i], s->block[i], j->key,
-                  s->quantised + i * floats);
-}
-
 /* Forward pass of one picture over t->slots; the image is in t->image. */
 static int render(ted4_trainer *t, const ted4_picture *pic, int training, ted4_view *v,
                   ted4_generate_input *in, ted4_splats *s)
@@ -115,13 +99,7 @@ static int render(ted4_trainer *t, const ted4_picture *pic, int training, ted4_v
     in->num = t->data->n_frames > 1 && !t->clock_stopped ? pic->frame : 0;
     in->den = t->data->n_frames > 1 ? t->data->n_frames - 1 : 1;
     in->activation = t->layout.head.activation && !t->clock_stopped;
-    if (t->stage2) {
-        quantise_job j = { .t = t, .key = ted4_random(t->opt.seed, t->iteration),
-                       .quant = training && !t->integer ? TED4_QUANT_NOISE
-                                                        : TED4_QUANT_ROUND };
-
-        ted4_parallel_for(t->parallel, t->slots.n, quantise_slot, &j);
-    }
+    ted4_slots_quantise(t, training && !t->integer ? TED4_QUANT_NOISE : TED4_QUANT_ROUND);
     ted4_generator_pack(t->generator, t->net);
     if (ted4_generate(t->generator, in, t->parallel, s) != 0 ||
         ted4_raster_forward(t->raster, s, v, t->parallel, training, t->image) != 0)
@@ -356,8 +334,12 @@ double ted4_trainer_preview(ted4_trainer *t, int n)
             continue;
         const uint8_t *truth = ted4_dataset_pixels(t->data, i, &t->message);
 
-        if (truth == NULL || render(t, pic, 0, &v, &in, &s) != 0)
+        if (truth == NULL)
             return -1;
+        if (render(t, pic, 0, &v, &in, &s) != 0) {
+            ted4_dataset_release(t->data, i);
+            return -1;
+        }
         const size_t pixels = (size_t)v.width * (size_t)v.height;
         double       square = 0;
 

@@ -86,6 +86,10 @@ static int make_images(ted4_trainer *t)
 /* Everything at its start, in the layout of h. */
 static int begin(ted4_trainer *t, const ted4_header *h)
 {
+    const char *wrong = ted4_header_wrong(h);
+
+    if (wrong != NULL)
+        return ted4_trainer_fail(t, "no file can hold this scene with these options: %s is beyond its range in a header", wrong);
     ted4_layout_make(&t->layout, h);
     t->charged = t->layout.head;
     ted4_grid_full(t->bits);

@@ -136,11 +136,14 @@ const uint8_t *ted4_trainer_seen(ted4_trainer *t, size_t item);
 /* Visible blocks of a view: slots.c */
 int  ted4_slots_fill(ted4_trainer *t, const ted4_view *v);
 void ted4_slots_finish(ted4_slots *s);
+/* In stage 2: fills slots.used, from values and steps as they are now. In stage 1 that is raw. */
+void ted4_slots_quantise(ted4_trainer *t, ted4_quant quant);
 /* Bit j: anchor j of the block can be seen. */
 uint32_t ted4_block_visible(const ted4_trainer *t, size_t block, const ted4_view *v);
 
-/* Of each anchor, at time 0 and without activation, from the first training camera: summed opacity of its offsets [n], and their mean colour by opacity
- * [n][3] (NULL: not wanted; 0 where nothing is opaque). 0, or -1 with t->message. looks.c */
+/* Of each anchor, in stage 2 as the file will hold it, at time 0 and without activation, from the camera of the next training picture, or, where opacity depends on the direction, from that of several
+ * at which it is most opaque: summed opacity of its offsets [n], and their mean colour by opacity [n][3] (NULL: not wanted; 0 where nothing is opaque).
+ * 0, or -1 with t->message. looks.c */
 int  ted4_trainer_looks(ted4_trainer *t, float *opacity, float *rgb);
 
 /* Densification: densify.c. gather adds the statistics of a step; adjust grows and prunes. lanes_there: lanes of a slot whose activation is at least a half
@@ -153,6 +156,11 @@ uint32_t ted4_lanes_there(const ted4_generate_input *in, size_t slot);
 int  ted4_activation_begin(ted4_trainer *t);
 int  ted4_stage2_begin(ted4_trainer *t);
 int  ted4_integer_begin(ted4_trainer *t);
+/* Anchors that rise: the numbers of those that are not idle, rising[n], in order. The opacity of an idle one is below prune_opacity even when it is there most, so
+ * that no picture would miss it. And: idle anchors are dropped, before stage 2, which would pay for them; it is an error if all are.
+ * 0, or -1 with t->message. stages.c */
+int  ted4_stage_rising(ted4_trainer *t, uint32_t *rising, size_t *n);
+int  ted4_stage_drop_idle(ted4_trainer *t);
 /* Once the integer stage has begun: steps of all anchors, and their bits [TED4_TYPES] by the float formula on rounded symbols (NULL: steps only). */
 int  ted4_integer_rate(ted4_trainer *t, double *bits);
 /* The model in the layout of h, which has the same heads and the same or fewer types of values; optimiser and statistics go along. Prior

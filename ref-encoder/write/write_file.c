@@ -32,6 +32,9 @@ static void close_chunk(ted4_writer *w, size_t at)
     const size_t size = c->pos - at - TED4_FRAME_HEAD_SIZE;
     uint64_t     hash;
 
+    /* The chunk may not even have begun. */
+    if (c->error.code != TED4_OK)
+        return;
     if (!ted4_require(c, size <= UINT32_MAX, TED4_E_LVL_EXCEEDED, at))
         return;
     ted4_store32(w->out.data + at + 8, (uint32_t)size);

@@ -1,0 +1,143 @@
+/* test_looks.c - train/looks.c: how opaque anchors are counts from where they are most opaque, when that depends on the direction, and as the file will hold
+ * them.
+ * SPDX-License-Identifier: BSD-2-Clause */
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <cmocka.h>
+
+#include "ball_group.h"
+
+enum { STEPS = 60, DIRECTIONS = 8 };
+
+typedef struct {
+    size_t n;
+    float *opacity, *rgb;       /* [n], [n][3] */
+} looks;
+
+static looks look(ted4_trainer *t)
+{
+    looks l = { t->anchors.n, malloc(t->anchors.n * sizeof(float)), malloc(3 * t->anchors.n * sizeof(float)) };
+
+    assert_true(l.opacity != NULL && l.rgb != NULL);
+    if (ted4_trainer_looks(t, l.opacity, l.rgb) != 0)
+        fail_msg("%s", t->message.text);
+    return l;
+}
+
+/* As if item were the only training picture. */
+static looks look_from(ted4_trainer *t, uint32_t item)
+{
+    const ted4_order whole = t->order;
+    looks            l;
+
+    t->order.item = &item;
+    t->order.n = 1;
+    l = look(t);
+    t->order = whole;
+    return l;
+}
+
+static void forget(looks *l)
+{
+    free(l->opacity);
+    free(l->rgb);
+}
+
+static void begin(ted4_trainer *t, int view)
+{
+    ted4_train_options o = ball_options();
+
+    o.view = view;
+    ball_begin(t, &o, &balls, NULL);
+    ball_train(t, STEPS);
+    assert_true(t->order.n > DIRECTIONS);
+}
+
+static void test_all_directions(void **state)
+{
+    ted4_trainer t;
+    looks        got, one[DIRECTIONS];
+    size_t       more = 0;
+
+    (void)state;
+    begin(&t, TED4_VIEW_FULL);
+    got = look(&t);
+    for (uint32_t k = 0; k < DIRECTIONS; k++)
+        one[k] = look_from(&t, t.order.item[k * t.order.n / DIRECTIONS]);
+    for (size_t i = 0; i < got.n; i++) {
+        size_t best = 0;
+
+        for (size_t k = 1; k < DIRECTIONS; k++)
+            if (one[k].opacity[i] > one[best].opacity[i])
+                best = k;
+        assert_true(got.opacity[i] == one[best].opacity[i]);
+        assert_memory_equal(got.rgb + 3 * i, one[best].rgb + 3 * i, 3 * sizeof(float));
+        more += best != 0;
+    }
+    assert_true(more > got.n / 4);
+    for (size_t k = 0; k < DIRECTIONS; k++)
+        forget(&one[k]);
+    forget(&got);
+    ted4_trainer_finish(&t);
+}
+
+/* One look is enough where opacity is the same from everywhere. */
+static void test_one_direction(void **state)
+{
+    ted4_trainer t;
+    looks        got, first;
+
+    (void)state;
+    begin(&t, TED4_VIEW_COLOUR);
+    got = look(&t);
+    first = look_from(&t, t.order.item[0]);
+    assert_memory_equal(got.opacity, first.opacity, got.n * sizeof(float));
+    assert_memory_equal(got.rgb, first.rgb, 3 * got.n * sizeof(float));
+    forget(&got);
+    forget(&first);
+    ted4_trainer_finish(&t);
+}
+
+/* In stage 2 an anchor looks as the file will hold it: rounding its values first changes nothing. */
+static void test_rounded(void **state)
+{
+    const ted4_train_options o = ball_options();
+    const ted4_layout       *l;
+    ted4_trainer t;
+    looks        before, after;
+    size_t       moved = 0;
+
+    (void)state;
+    ball_begin(&t, &o, &balls, NULL);
+    ball_train(&t, (uint64_t)o.stage1 + 1);
+    l = &t.layout;
+    before = look(&t);
+    for (size_t i = 0; i < t.anchors.n; i++)
+        for (int c = 0; c < l->offset_logit; c++) {
+            float *const x = ted4_cell(&t.anchors, TED4_ROW_VALUE, i, c);
+            const float  q = t.slots.used[i / TED4_LANES][(size_t)c * TED4_LANES + i % TED4_LANES];
+
+            moved += *x != q;
+            *x = q;
+        }
+    after = look(&t);
+    assert_true(moved > before.n);
+    assert_memory_equal(before.opacity, after.opacity, before.n * sizeof(float));
+    assert_memory_equal(before.rgb, after.rgb, 3 * before.n * sizeof(float));
+    forget(&before);
+    forget(&after);
+    ted4_trainer_finish(&t);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(test_all_directions),
+        cmocka_unit_test(test_one_direction),
+        cmocka_unit_test(test_rounded),
+    };
+
+    return cmocka_run_group_tests_name("looks", tests, set_up, tear_down);
+}
