@@ -208,6 +208,8 @@ static void test_usage(void **state)
                                          "v1.ted4 --render a.png",
                                          "v1.ted4 --sh-degree 4",
                                          "v1.ted4 -j x",
+                                         "v1.ted4 -j 257",
+                                         "v1.ted4 --test --trace --json",
                                          "v1.ted4 --test -o a.ply --time 0",
                                          "v1.ted4 --camera-centre 1,2",
                                          "v1.ted4 -o missing/a.ply --time 0",
