@@ -10,6 +10,7 @@
 #include <string.h>
 #include <sys/stat.h>
 #include <xxhash.h>
+#include "tool/sha256.h"
 
 _Noreturn void conf_die(const char *format, ...)
 {
@@ -205,6 +206,17 @@ void conf_hex(char *to, const uint8_t *bytes, size_t n)
     for (size_t i = 0; i < n; i++)
         snprintf(to + 2 * i, 3, "%02x", bytes[i]);
     to[2 * n] = '\0';
+}
+
+void conf_hash(char to[CONF_HASH + 1], const void *data, size_t size)
+{
+    uint8_t     sha[TED4_SHA256_SIZE];
+    ted4_sha256 h;
+
+    ted4_sha256_init(&h);
+    ted4_sha256_add(&h, data, size);
+    ted4_sha256_end(&h, sha);
+    conf_hex(to, sha, sizeof sha);
 }
 
 uint64_t conf_seed(const char *text)
