@@ -26,7 +26,7 @@ static void sink(void *user, const ted4_finding *f)
     const int64_t what[4] = { (int64_t)f->offset, f->severity, f->n_values > 0 ? f->value[0] : 0, f->n_values > 1 ? f->value[1] : 0 };
 
     fuzz_require(f->id != NULL && strchr(f->id, '.') != NULL && f->text != NULL && f->text[0] != 0, "a finding says what it is");
-    fuzz_require(f->rules != NULL && f->n_values <= 2, "its rules and values");
+    fuzz_require(f->rule != NULL && f->n_values <= 2, "its rule and values");
     fuzz_require(f->severity == TED4_ERROR || f->severity == TED4_WARNING || f->severity == TED4_HINT, "its severity");
     fuzz_require(f->offset <= g->size, "a place inside the file");
     g->n++;

@@ -128,7 +128,7 @@ static ted4_reader reader_of(parser *p, const ted4_chunk_place *place)
 }
 
 /* left: payload bytes for mode and values, which get memory when they can be there. */
-static int blob(parser *p, ted4_blob *b, size_t n, size_t left)
+static int blob(parser *p, ted4_blob *b, uint64_t n, size_t left)
 {
     b->n = n;
     if (left == 0 || ((left - 1) / 4 < n && ted4_inflate_impossible(left - 1, n)))
@@ -148,7 +148,7 @@ static void nete(parser *p, ted4_reader *r)
         ted4_walk_nete(&r->base, s, &p->prior);
 }
 
-static void values(parser *p, ted4_reader *r, ted4_blob *b, size_t n)
+static void values(parser *p, ted4_reader *r, ted4_blob *b, uint64_t n)
 {
     if (!blob(p, b, n, r->end - r->base.pos))
         ted4_fail(&r->base.error, TED4_E_LIMIT_MEMORY, r->base.pos);

@@ -60,7 +60,7 @@ ted4_status ted4_decode_lenient(const void *data, size_t size,
 typedef enum { TED4_ERROR, TED4_WARNING, TED4_HINT } ted4_severity;
 typedef struct {
     ted4_severity severity;
-    const char   *id, *rules, *text;    /* "con.magic" of status.def, or "adv.level"; "R-CON-001", or several, one of which it is */
+    const char   *id, *rule, *text;     /* "con.magic" of status.def, or "adv.level"; "R-CON-001" */
     const char   *where;                /* what kind of chunk or symbol: "TILE", "phi"; NULL: nothing more to say */
     size_t        offset;
     unsigned      n_values;             /* of the numbers that text names: 0, 1, 2 */
@@ -69,7 +69,8 @@ typedef struct {
 typedef void ted4_finding_sink(void *user, const ted4_finding *f);
 
 /* For authors of encoders: gives the verdict of ted4_decode, and every finding to the sink: the error of the strict decoder first, then the
- * others as far as parsing can go on; of a valid file, advice. There is an error among them exactly when the verdict is not TED4_OK.
+ * others as far as parsing can go on; of a valid file, advice. There is an error among them exactly when the verdict is not TED4_OK. Too little
+ * memory to look further changes no verdict: it is a hint, adv.memory.
  * o may be NULL; its trace is not called. */
 ted4_status ted4_validate(const void *data, size_t size, const ted4_options *o,
                           ted4_finding_sink *sink, void *user);

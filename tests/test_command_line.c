@@ -94,9 +94,11 @@ static void test_numbers(void **state)
 {
     static const char *const bad[] = { "", "x", "1x", "11", "-1", "99999999999999999999", "1.5" };
     float v[3];
-    long n;
+    int64_t n;
 
     (void)state;
+    assert_int_equal(ted4_arguments_number("9223372036854775807", 1, INT64_MAX, &n), 0);
+    assert_true(n == INT64_MAX);
     assert_int_equal(ted4_arguments_number("10", 0, 10, &n), 0);
     assert_int_equal(n, 10);
     for (size_t i = 0; i < sizeof bad / sizeof *bad; i++)

@@ -243,6 +243,25 @@ static void limits(void **state)
     expect_of(list, "says-limit", 1, " 1 passed, 1 failed");
 }
 
+/* above.txt: a valid vector of level 1; of higher levels one that is valid, one with an error of pass 2, and one of pass 1, which is nobody's to decline. */
+static void levels_above(void **state)
+{
+    static const char list[] = "tests/above.txt";
+
+    (void)state;
+    expect_of(list, "good", 0, " 4 passed, 0 failed, 0 without answer, 0 missing, 0 declined");
+    expect_of(list, "limit-above-1", 1, " 1 passed, 1 failed, 0 without answer, 0 missing, 2 declined");
+}
+
+static void version(void **state)
+{
+    char last[1024];
+
+    (void)state;
+    assert_int_equal(conf(last, sizeof last, "--version"), 0);
+    assert_string_equal(last, "ted4conf " TED4_VERSION "\n");
+}
+
 /* A list that holds another one, and lists in a circle. */
 static void lists(void **state)
 {
@@ -272,6 +291,8 @@ int main(void)
         cmocka_unit_test(left_behind),
         cmocka_unit_test(missing_vectors),
         cmocka_unit_test(limits),
+        cmocka_unit_test(levels_above),
+        cmocka_unit_test(version),
         cmocka_unit_test(lists),
     };
 

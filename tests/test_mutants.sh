@@ -67,7 +67,7 @@ fresh
 holds nothing_ran 0
 expect all_run 1 '3 mutants, 2 killed, 1 survived, 0 not judged: not enough' mutants
 check rows "$out/suite/mutants.csv" ',killed,V-two,should be valid' ',killed,V-one,crash' ',survived,,'
-check page "$out/suite/MUTANTS.md" '| killed | 2 (66.7 %) |' '* lives (ref-decoder/read/g.c, survived): `w = 2;` for `w = 1;`: nobody looks'
+check page "$out/suite/MUTANTS.md" '| killed | 2 (66.7 %) |' '| gt | V-two | should be valid |' '* lives (ref-decoder/read/g.c, survived): `w = 2;` for `w = 1;`: nobody looks'
 holds all_hold 3
 cp "$out/suite/mutants.csv" "$out/before"
 mutants >/dev/null 2>&1
@@ -85,7 +85,10 @@ holds text 2
 ran; echo '{"id":"V-three"}' >"$out/suite/vectors/V-three.json"
 holds suite_grows 2
 mutants --only none >/dev/null 2>&1
-check no_share_of_some "$out/suite/MUTANTS.md" '| killed | 2 |' '| not run | 1 |'
+check no_share_of_some "$out/suite/MUTANTS.md" '| killed | 2 |' '| not run | 1 |' '* ref-decoder/read/g.c: lives'
+fresh; mutants --only none >/dev/null 2>&1
+check all_wait "$out/suite/MUTANTS.md" 'none' '* ref-decoder/norm/f.c: gt crash' '* ref-decoder/read/g.c: lives'
+expect no_compiler 3 '--compile is missing' sh -c "cd '$out' && '$conf' mutants -s suite -b ."
 ran; echo '{"id":"V-two","rules":["R-CON-001"],"intent":"more"}' >"$out/suite/vectors/V-two.json"
 holds what_is_said_of_vectors 3
 ran; echo '{"id":"V-two","bytes":1}' >"$out/suite/vectors/V-two.json"

@@ -193,6 +193,23 @@ static void test_verdicts(void **state)
     assert_non_null(strstr(out, "--sh-degree N"));
 }
 
+/* The contract's bound of memory holds for queries too: those of this vector take more than decoding. */
+static void test_contract_bound(void **state)
+{
+    static const char query[] = "[{\"t\":[0,1],\"cam\":[0,0,0]}]";
+    char here[1024];
+
+    (void)state;
+    need_programs();
+    assert_non_null(getcwd(here, sizeof here));
+    write_contents("query.json", (const uint8_t *)query, strlen(query));
+    for (int tier = 1; tier <= 5; tier += 4) {
+        assert_int_equal(run("ted4dec --ted4-run %s/conformance/vectors/valid/header/HDR-head_width-512.ted4 --tiers T%d --queries query.json "
+                             "--knob max_alloc_total=180000", here, tier), 0);
+        assert_non_null(strstr(out, tier == 1 ? "\"result\":\"valid\"" : "\"limit.memory\""));
+    }
+}
+
 static void test_usage(void **state)
 {
     static const char *const wrong[] = { "",
@@ -208,6 +225,8 @@ static void test_usage(void **state)
                                          "v1.ted4 --render a.png",
                                          "v1.ted4 --sh-degree 4",
                                          "v1.ted4 -j x",
+                                         "v1.ted4 -j 257",
+                                         "v1.ted4 --test --trace --json",
                                          "v1.ted4 --test -o a.ply --time 0",
                                          "v1.ted4 --camera-centre 1,2",
                                          "v1.ted4 -o missing/a.ply --time 0",
@@ -507,6 +526,7 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_verdicts),
+        cmocka_unit_test(test_contract_bound),
         cmocka_unit_test(test_usage),
         cmocka_unit_test(test_hash),
         cmocka_unit_test(test_frames),

@@ -151,10 +151,32 @@ static int explained(const char *path)
     return 0;
 }
 
+/* Does the vector's descriptor name that rule? */
+static int is_named(const char *path, const char *rule)
+{
+    char    name[1024];
+    json_t *d, *rules;
+    int     named = 0;
+
+    snprintf(name, sizeof name, "%.*s.json", (int)(strlen(path) - strlen(".ted4")), path);
+    d = json_load_file(name, 0, NULL);
+    assert_non_null(d);
+    rules = json_object_get(d, "rules");
+    for (size_t i = 0; i < json_array_size(rules); i++)
+        named |= strcmp(json_string_value(json_array_get(rules, i)), rule) == 0;
+    json_decref(d);
+    return named;
+}
+
 static void count_errors(const uint8_t *data, size_t size, const char *path)
 {
-    const int n = validate(data, size)->errors;
+    const findings *all = validate(data, size);
+    const int       n = all->errors;
 
+    if (!is_named(path, all->list[0].rule)) {
+        print_error("%s: %s is no rule of it\n", path, all->list[0].rule);
+        n_unexplained++;
+    }
     if (strstr(path, "/precedence/") != NULL)
         return;
     n_alone += n == 1;
@@ -174,12 +196,13 @@ static void negative_vectors(void **state)
     assert_int_equal(n_unexplained, 0);
 }
 
-/* Every allocation fails once, and all behind it: an end with a verdict, and everything is given back. */
+/* Every allocation fails once, and all behind it: the strict decoder's verdict, which what a validator looks for beyond it does not change, and
+ * everything is given back. */
 static void starve(const uint8_t *data, size_t size)
 {
     static findings all;
     ted4_status     verdict;
-    int             calm = 0;
+    int             calm = 0, hints = 0;
 
     for (uint64_t n = 1; !calm; n++) {
         counting_memory memory = { .fail_at = n, .fail_on = 1 };
@@ -187,17 +210,23 @@ static void starve(const uint8_t *data, size_t size)
         ted4_salvage    what;
         ted4_scene     *s;
 
+        verdict = ted4_decode(data, size, &o, &s, NULL);
+        ted4_scene_free(s);
+        memory = (counting_memory){ .fail_at = n, .fail_on = 1 };
         all.n = all.errors = 0;
-        verdict = ted4_validate(data, size, &o, keep, &all);
+        assert_int_equal(ted4_validate(data, size, &o, keep, &all), verdict);
         assert_int_equal(all.errors > 0, verdict != TED4_OK);
         assert_int_equal(memory.held, 0);
         calm = memory.n < n;
+        assert_true(has(&all, "adv.memory", 0) <= !calm && has(&all, "limit.memory", ANYWHERE) <= (verdict == TED4_E_LIMIT_MEMORY));
+        hints += has(&all, "adv.memory", 0);
         memory = (counting_memory){ .fail_at = n, .fail_on = 1 };
         (void)ted4_decode_lenient(data, size, &o, &s, &what);
         ted4_scene_free(s);
         assert_int_equal(memory.held, 0);
         calm &= memory.n < n;
     }
+    assert_true(hints > 0);
 }
 
 static void no_memory(void **state)

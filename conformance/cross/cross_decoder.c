@@ -14,7 +14,6 @@
 #include "judge.h"
 #include "ted4.h"
 #include "tool/contract.h"
-#include "tool/sha256.h"
 
 typedef struct {
     const char *suite;
@@ -33,18 +32,31 @@ static const char *text_of(const json_t *o, const char *key)
 /* The vector's file as the manifest knows it: 1, or 0: missing, or another one. */
 static int read_vector(const session *s, const json_t *entry, conf_bytes *file)
 {
-    char        path[CONF_PATH], hex[2 * TED4_SHA256_SIZE + 1];
-    uint8_t     sha[TED4_SHA256_SIZE];
-    ted4_sha256 h;
+    char path[CONF_PATH], hash[CONF_HASH + 1];
 
     conf_path(path, "%s/vectors/%s/%s.ted4", s->suite, text_of(entry, "folder"), text_of(entry, "id"));
     if (!conf_read(path, file))
         return 0;
-    ted4_sha256_init(&h);
-    ted4_sha256_add(&h, file->data, file->size);
-    ted4_sha256_end(&h, sha);
-    conf_hex(hex, sha, sizeof sha);
-    return strcmp(hex, text_of(entry, "sha256")) == 0;
+    conf_hash(hash, file->data, file->size);
+    return strcmp(hash, text_of(entry, "sha256")) == 0;
+}
+
+/* Its descriptor, owned; NULL: missing, or another one. */
+static json_t *read_descriptor(const session *s, const json_t *entry)
+{
+    char       path[CONF_PATH], hash[CONF_HASH + 1];
+    conf_bytes text;
+    json_t    *d = NULL;
+
+    conf_path(path, "%s/vectors/%s/%s.json", s->suite, text_of(entry, "folder"), text_of(entry, "id"));
+    if (!conf_read(path, &text))
+        return NULL;
+    conf_hash(hash, text.data, text.size);
+    hash[CONF_SHORT_HASH] = '\0';
+    if (strcmp(hash, text_of(entry, "json")) == 0)
+        d = json_loadb((const char *)text.data, text.size, 0, NULL);
+    conf_free(&text);
+    return d;
 }
 
 static void add_line(conf_bytes *b, const char *id, const json_t *o)
@@ -81,15 +93,13 @@ static void ask(session *s, const char *id, const json_t *d, const conf_bytes *f
 static void judge(session *s, const json_t *entry)
 {
     const char  *const id = text_of(entry, "id");
-    char         path[CONF_PATH];
     conf_bytes   file = { NULL, 0, 0 };
     conf_verdict v = { CONF_MISSING, "no such file, or another one than in the manifest" };
     json_t      *d;
 
     fprintf(stderr, "at %s\n", id);
     fflush(stderr);
-    conf_path(path, "%s/vectors/%s/%s.json", s->suite, text_of(entry, "folder"), id);
-    d = json_load_file(path, 0, NULL);
+    d = read_descriptor(s, entry);
     if (d != NULL && read_vector(s, entry, &file))
         ask(s, id, d, &file, &v);
     s->n_run++;

@@ -16,6 +16,7 @@ if [ "$1" = --ted4-capabilities ]; then
     not-lenient) good "$@" | sed 's/"lenient":true/"lenient":false/' ;;
     fewer-tiers) good "$@" | sed 's/"tiers":\[[^]]*\],"class":"X"/"tiers":["T0","T3"],"class":null/' ;;
     class-alone) good "$@" | sed 's/,"T5"//' ;;
+    limit-above-1) good "$@" | sed 's/"max_level":31/"max_level":1/' ;;
     no-knobs) good "$@" | sed 's/"knobs":\["max_alloc_total","max_work"\]/"knobs":[]/' ;;
     *) good "$@" ;;
     esac
@@ -36,6 +37,7 @@ no-utf8) printf '{"result":"valid","x":"\377"}\n' ;;
 flood) head -c 9000000 /dev/zero | tr '\0' ' '; good "$@" ;;
 says-valid) echo '{"result":"valid"}' ;;
 says-invalid) echo '{"result":"invalid","error":"con.magic","offset":0}' ;;
+limit-above-1) if [ "$(od -An -tu1 -j11 -N1 "$2")" -gt 1 ]; then echo '{"result":"limit","error":"limit.memory"}'; else good "$@"; fi ;;
 says-limit) echo '{"result":"limit","error":"limit.memory"}' ;;
 wrong-hash) good "$@" | sed 's/\("T3":{"bytes":[0-9]*,"xxh3":"\)./\1x/; s/\("T3":{[^}]*"sha256":"\)./\1x/' ;;
 half-wrong) good "$@" | sed 's/\("T2":{[^}]*"sha256":"\)./\1x/' ;;

@@ -6,6 +6,7 @@ the project's root, by tests/test_suite_schema.sh. TED4_BUILD: the build folder.
 """
 
 import csv
+import hashlib
 import html.parser
 import json
 import os
@@ -141,11 +142,9 @@ def manifest():
     suite, schema = load(os.path.join(SUITE, "SUITE.json")), Schema("manifest.schema.json")
     holds(schema, suite, "SUITE.json")
     require(suite["vectors"] == len(suite["vector"]) == len({v["id"] for v in suite["vector"]}), "SUITE.json: number of vectors")
-    for kind, key in (("result", "result"), ("folder", "folder")):
-        counted = {}
-        for v in suite["vector"]:
-            counted[v[key]] = counted.get(v[key], 0) + 1
-        require(counted == suite["counts"][kind], "SUITE.json: counts by %s" % kind)
+    results = [load(path)["expect"]["result"] for path in descriptors()]
+    for kind, values in (("result", results), ("folder", [v["folder"] for v in suite["vector"]])):
+        require({v: values.count(v) for v in values} == suite["counts"][kind], "SUITE.json: counts by %s" % kind)
     require(schema.check(dict(suite, schema=2)), "a manifest of another schema passes")
 
 
@@ -166,6 +165,8 @@ def every_descriptor():
         require(one["category"] == listed[name]["folder"] == os.path.relpath(os.path.dirname(path), os.path.join(SUITE, "vectors")),
                 "%s: category" % path)
         require(one["bytes"] == listed[name]["bytes"] and one["sha256"] == listed[name]["sha256"], "%s: file" % path)
+        with open(path, "rb") as file:
+            require(hashlib.sha256(file.read()).hexdigest()[:16] == listed[name]["json"], "%s: another one than in SUITE.json" % path)
         require(("tiers" in one) == (one["expect"]["result"] == "valid"), "%s: tiers" % path)
         require(one["expect"]["result"] != "invalid" or one["expect"]["offset"] <= one["bytes"], "%s: offset" % path)
         del listed[name]
@@ -293,13 +294,20 @@ def changed_suites():
         with open(os.path.join(place, second + ".json"), "w", encoding="ascii") as file:
             json.dump(dict(one, id=second, file=second + ".ted4"), file)
 
+    def other_descriptor(place):
+        one = load(os.path.join(place, second + ".json"))
+        del one["tiers"]["T3"]
+        with open(os.path.join(place, second + ".json"), "w", encoding="ascii") as file:
+            json.dump(one, file)
+
     def one_more(place):
         for suffix in (".json", ".ted4"):
             shutil.copy(os.path.join(place, second + suffix), os.path.join(place, "WRK-more" + suffix))
 
     for changed, outcome in ((as_it_is, " 2 passed, 0 failed, 0 without answer, 0 missing"), (no_file, " 1 passed, 0 failed, 0 without answer, 1 missing"),
                              (no_descriptor, " 1 passed, 0 failed, 0 without answer, 1 missing"), (other_file, " 1 missing"),
-                             (other_vector, " 1 passed, 0 failed, 0 without answer, 1 missing"), (one_more, " 2 passed, 0 failed, 0 without answer, 1 missing")):
+                             (other_vector, " 1 passed, 0 failed, 0 without answer, 1 missing"),
+                             (other_descriptor, " 1 passed, 0 failed, 0 without answer, 1 missing"), (one_more, " 2 passed, 0 failed, 0 without answer, 1 missing")):
         with tempfile.TemporaryDirectory() as folder:
             one_suite(folder, changed, outcome)
 

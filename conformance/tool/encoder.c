@@ -22,7 +22,7 @@ static void finding(void *user, const ted4_finding *f)
 
     if (f->severity == TED4_HINT)
         return;
-    snprintf(text, sizeof text, "byte %zu: %s [%s] (%s)", f->offset, f->text, f->id, f->rules);
+    snprintf(text, sizeof text, "byte %zu: %s [%s] (%s)", f->offset, f->text, f->id, f->rule);
     wrong(user, f->severity == TED4_ERROR ? "not valid" : "a warning of the validator", text);
 }
 

@@ -10,10 +10,13 @@
 #include "suite.h"
 #include "vector.h"
 
+enum { CONF_LEVELS = 4 };       /* that have bounds, numbered from 1 */
+
 typedef struct {
     const conf_gen_options *o;
     char     output[CONF_PATH];
     json_t  *manifest;          /* array of entries */
+    json_t  *least[CONF_LEVELS + 1];    /* arrays of entries: vectors that a decoder of that level has to get right, but none of a lower one */
     json_t  *counts;            /* by category, then result */
     size_t   bytes, n_bad, n_made;
 } generator;
@@ -63,9 +66,11 @@ static void print_member(conf_bytes *b, const char *key, const json_t *value, in
     conf_print(b, last ? "\n" : ",\n");
 }
 
-static void put_json(generator *g, const char *path, json_t *o)
+/* hash: of what is written, as a manifest has it; may be NULL. */
+static void put_json(generator *g, const char *path, json_t *o, char *hash)
 {
     conf_bytes  b = { NULL, 0, 0 };
+    char        whole[CONF_HASH + 1];
     const char *key;
     json_t     *value;
     size_t      left = json_object_size(o);
@@ -75,6 +80,9 @@ static void put_json(generator *g, const char *path, json_t *o)
         print_member(&b, key, value, --left == 0);
     conf_print(&b, "}\n");
     put(g, path, b.data, b.size);
+    conf_hash(whole, b.data, b.size);
+    if (hash != NULL)
+        snprintf(hash, CONF_SHORT_HASH + 1, "%.*s", CONF_SHORT_HASH, whole);
     conf_free(&b);
 }
 
@@ -94,20 +102,22 @@ static void note(generator *g, json_t *d)
 {
     const char *const result = json_string_value(json_object_get(json_object_get(d, "expect"), "result"));
     const char *const folder = json_string_value(json_object_get(d, "category"));
+    const json_int_t  level = strcmp(result, "valid") == 0 ? json_integer_value(json_object_get(d, "level")) : 1;
     json_t           *e = json_object();
-    char              path[CONF_PATH];
+    char              path[CONF_PATH], hash[CONF_SHORT_HASH + 1];
 
     conf_path(path, "%s/%s/%s.json", g->output, folder, json_string_value(json_object_get(d, "id")));
-    put_json(g, path, d);
+    put_json(g, path, d, hash);
     json_object_set(e, "id", json_object_get(d, "id"));
     json_object_set_new(e, "folder", json_string(folder));
     json_object_set(e, "bytes", json_object_get(d, "bytes"));
     json_object_set(e, "sha256", json_object_get(d, "sha256"));
-    json_object_set_new(e, "result", json_string(result));
-    json_object_set(e, "level", json_object_get(d, "level"));
+    json_object_set_new(e, "json", json_string(hash));
     if (json_object_get(d, "demand") != NULL)
         json_object_set(e, "demand", json_object_get(d, "demand"));
     json_array_append_new(g->manifest, e);
+    if (level <= CONF_LEVELS)
+        json_array_append(g->least[level], e);
     count(g, "result", result);
     count(g, "folder", folder);
 }
@@ -176,7 +186,7 @@ static void put_manifest(generator *g)
                           "counts", g->counts, "vector", sorted(g->manifest));
 
     conf_path(path, "%s/SUITE.json", g->o->output != NULL ? g->output : g->o->suite);
-    put_json(g, path, o);
+    put_json(g, path, o, NULL);
     json_decref(o);
 }
 
@@ -184,22 +194,15 @@ static void put_manifest(generator *g)
  * the level below. */
 static void put_level_lists(generator *g)
 {
-    for (int level = 1; level <= 4; level++) {
+    for (int level = 1; level <= CONF_LEVELS; level++) {
         conf_bytes b = { NULL, 0, 0 };
         char       path[CONF_PATH];
-        json_t    *list = sorted(g->manifest);
+        json_t    *list = sorted(g->least[level]);
 
         if (level > 1)
             conf_print(&b, "@level-%d.txt\n", level - 1);
-        for (size_t i = 0; i < json_array_size(list); i++) {
-            const json_t *const e = json_array_get(list, i);
-
-            const json_int_t    least = strcmp(json_string_value(json_object_get(e, "result")), "valid") == 0
-                                          ? json_integer_value(json_object_get(e, "level")) : 1;
-
-            if (least == level)
-                conf_print(&b, "%s\n", json_string_value(json_object_get(e, "id")));
-        }
+        for (size_t i = 0; i < json_array_size(list); i++)
+            conf_print(&b, "%s\n", json_string_value(json_object_get(json_array_get(list, i), "id")));
         conf_path(path, "%s/lists/level-%d.txt", g->o->output != NULL ? g->output : g->o->suite, level);
         put(g, path, b.data, b.size);
         conf_free(&b);
@@ -236,6 +239,8 @@ int conf_gen(const conf_gen_options *o)
     conf_path(path, "%s/recipes", o->suite);
     conf_recipes_load(&r, path);
     g.manifest = json_array();
+    for (int level = 1; level <= CONF_LEVELS; level++)
+        g.least[level] = json_array();
     g.counts = json_object();
     for (size_t i = 0; i < r.n; i++)
         if (o->only == NULL || strncmp(r.recipe[i].id, o->only, strlen(o->only)) == 0)
@@ -248,6 +253,8 @@ int conf_gen(const conf_gen_options *o)
     fprintf(stderr, "ted4conf: %zu vectors %s, %zu bytes with descriptors, %zu bad\n", g.n_made, o->verify ? "compared" : "made",
             g.bytes, g.n_bad);
     json_decref(g.manifest);
+    for (int level = 1; level <= CONF_LEVELS; level++)
+        json_decref(g.least[level]);
     json_decref(g.counts);
     conf_recipes_free(&r);
     return g.n_bad > 0;

@@ -225,21 +225,43 @@ static void work(const campaign *c)
         conf_die("not all mutants could be run");
 }
 
+/* Those that wait: a line a file, where the list comes to its first. */
+static void print_waiting(const conf_mutant_list *l, conf_bytes *b)
+{
+    for (size_t i = 0; i < l->n; i++) {
+        size_t first = 0;
+
+        if (l->m[i].verdict[0] != '\0')
+            continue;
+        while (l->m[first].verdict[0] != '\0' || strcmp(l->m[first].file, l->m[i].file) != 0)
+            first++;
+        if (first < i)
+            continue;
+        conf_print(b, "* %s:", l->m[i].file);
+        for (size_t j = i; j < l->n; j++)
+            if (l->m[j].verdict[0] == '\0' && strcmp(l->m[j].file, l->m[i].file) == 0)
+                conf_print(b, " %s", l->m[j].id);
+        conf_print(b, "\n");
+    }
+    if (conf_mutant_count(l, "") == 0)
+        conf_print(b, "none\n");
+}
+
 static void print_mutants(const conf_mutant_list *l, conf_bytes *b)
 {
     conf_print(b, "## Survivors\n\n");
+    if (conf_mutant_count(l, "survived") + conf_mutant_count(l, "no compile") == 0)
+        conf_print(b, "none\n");
     for (size_t i = 0; i < l->n; i++)
         if (strcmp(l->m[i].verdict, "survived") == 0 || strcmp(l->m[i].verdict, "no compile") == 0)
             conf_print(b, "* %s (%s, %s): `%s` for `%s`%s%s\n", l->m[i].id, l->m[i].file, l->m[i].verdict, l->m[i].to, l->m[i].from,
                        l->m[i].why[0] != '\0' ? ": " : "", l->m[i].why);
     conf_print(b, "\n## Not run since what their results stood on has changed\n\n");
-    for (size_t i = 0; i < l->n; i++)
-        if (l->m[i].verdict[0] == '\0')
-            conf_print(b, "* %s (%s)\n", l->m[i].id, l->m[i].file);
-    conf_print(b, "\n## Killed, and by what first\n\n| mutant | file | vector | what was wrong |\n|---|---|---|---|\n");
+    print_waiting(l, b);
+    conf_print(b, "\n## Killed, and by what first\n\n`mutants.list` says what each changes.\n\n| mutant | vector | what was wrong |\n|---|---|---|\n");
     for (size_t i = 0; i < l->n; i++)
         if (strcmp(l->m[i].verdict, "killed") == 0)
-            conf_print(b, "| %s | %s | %s | %s |\n", l->m[i].id, l->m[i].file, l->m[i].vector, l->m[i].by);
+            conf_print(b, "| %s | %s | %s |\n", l->m[i].id, l->m[i].vector, l->m[i].by);
 }
 
 static int write_report(const campaign *c)
@@ -287,6 +309,8 @@ static void run_due(campaign *c)
 {
     for (size_t i = 0; i < c->list.n; i++)
         if (is_due(c, &c->list.m[i])) {
+            if (c->o->compile == NULL)
+                conf_die("--compile is missing: the decoder's compiler and flags (make conformance-mutants has them)");
             baseline(c);
             work(c);
             conf_mutant_results_read(&c->list, c->o->suite);

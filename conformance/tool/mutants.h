@@ -7,7 +7,7 @@ typedef struct {
     const char *suite;          /* holds mutants.list, mutants-equivalent.list, mutants.csv, MUTANTS.md, vectors */
     const char *vectors;        /* folder that holds a folder vectors with all files, those made on demand too; NULL: suite */
     const char *build;          /* folder of a build of ted4conf */
-    const char *compile;        /* command that compiles: flags, without -c and -o */
+    const char *compile;        /* command that compiles: flags, without -c and -o; NULL: nothing can be run */
     const char *libraries;      /* behind the objects when linking */
     const char *only;           /* ids that begin so; NULL: all */
     int         jobs;

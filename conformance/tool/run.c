@@ -11,7 +11,6 @@
 #include <unistd.h>
 #include "judge_t.h"
 #include "recipe.h"
-#include "tool/sha256.h"
 #include "vector.h"
 
 typedef enum { RUN_FIRST, RUN_SECOND, RUN_LENIENT } run_kind;
@@ -55,15 +54,10 @@ static json_t *ask_capabilities(runner *w)
 
 static int right_hash(const conf_entry *e, const conf_bytes *b)
 {
-    uint8_t     sha[TED4_SHA256_SIZE];
-    char        hex[2 * TED4_SHA256_SIZE + 1];
-    ted4_sha256 h;
+    char hash[CONF_HASH + 1];
 
-    ted4_sha256_init(&h);
-    ted4_sha256_add(&h, b->data, b->size);
-    ted4_sha256_end(&h, sha);
-    conf_hex(hex, sha, sizeof sha);
-    return strcmp(hex, json_string_value(json_object_get(e->descriptor, "sha256"))) == 0;
+    conf_hash(hash, b->data, b->size);
+    return strcmp(hash, json_string_value(json_object_get(e->descriptor, "sha256"))) == 0;
 }
 
 /* A vector of which only the recipe is kept. */
@@ -217,7 +211,7 @@ static void tell(const runner *w, size_t i)
 {
     const conf_verdict *v = &w->r->verdict[i];
 
-    if ((v->outcome == CONF_PASS || v->outcome == CONF_DECLINED || v->outcome == CONF_NOT_RUN) || w->r->options->quiet > 1)
+    if ((v->outcome == CONF_PASS || v->outcome == CONF_DECLINED || v->outcome == CONF_NOT_RUN) || w->r->options->quiet)
         return;
     fprintf(stderr, "%s: %s: %s\n", conf_outcome_name[v->outcome], w->r->entry[i].id, v->reason);
 }
@@ -346,16 +340,29 @@ static void run_all(runner *w)
     free(s);
 }
 
-static int same_member(const json_t *a, const json_t *b, const char *key)
+/* A text of the manifest; "": none. */
+static const char *listed_text(const json_t *listed, const char *key)
 {
-    return json_equal(json_object_get(a, key), json_object_get(b, key));
+    const char *const s = json_string_value(json_object_get(listed, key));
+
+    return s != NULL ? s : "";
 }
 
-/* Is that the descriptor that the manifest knows? */
-static int as_published(const json_t *listed, const json_t *d)
+/* The same member, or neither has it. */
+static int same_member(const json_t *a, const char *key, const json_t *b, const char *other)
 {
-    return same_member(listed, d, "sha256") && same_member(listed, d, "bytes")
-        && conf_expects(d, json_string_value(json_object_get(listed, "result")));
+    const json_t *const x = json_object_get(a, key), *const y = json_object_get(b, other);
+
+    return x == y || json_equal(x, y);
+}
+
+/* Is that the descriptor that the manifest knows? Its hash says so; the members that both have say that the manifest holds together. */
+static int as_published(const json_t *listed, const conf_entry *e)
+{
+    const json_t *const d = e->descriptor;
+
+    return strcmp(listed_text(listed, "json"), e->hash) == 0 && same_member(listed, "folder", d, "category")
+        && same_member(listed, "bytes", d, "bytes") && same_member(listed, "sha256", d, "sha256") && same_member(listed, "demand", d, "demand");
 }
 
 /* The manifest's line of a vector, borrowed; NULL: it has none. */
@@ -400,7 +407,7 @@ static void hold_to_manifest(conf_run_result *r)
     for (size_t i = 0; i < r->n; i++) {
         const json_t *const listed = listed_as(list, r->entry[i].id);
 
-        if (r->entry[i].descriptor != NULL && (listed == NULL || !as_published(listed, r->entry[i].descriptor))) {
+        if (r->entry[i].descriptor != NULL && (listed == NULL || !as_published(listed, &r->entry[i]))) {
             json_decref(r->entry[i].descriptor);
             r->entry[i].descriptor = NULL;
         }

@@ -27,14 +27,21 @@ static conf_entry *add(list *l)
 static void load(list *l, const char *folder, const char *name)
 {
     conf_entry *e = add(l);
+    conf_bytes   text;
     json_error_t why;
+    char         hash[CONF_HASH + 1];
 
     snprintf(e->id, sizeof e->id, "%.*s", (int)(strlen(name) - 5), name);
     conf_path(e->path, "%s/%s", folder, name);
     conf_path(e->file, "%s/%s.ted4", folder, e->id);
-    e->descriptor = json_load_file(e->path, 0, &why);
+    if (!conf_read(e->path, &text))
+        conf_die("%s: cannot be read", e->path);
+    e->descriptor = json_loadb((const char *)text.data, text.size, 0, &why);
     if (e->descriptor == NULL)
         conf_die("%s:%d: %s", e->path, why.line, why.text);
+    conf_hash(hash, text.data, text.size);
+    memcpy(e->hash, hash, CONF_SHORT_HASH);
+    conf_free(&text);
 }
 
 static void walk(list *l, const char *folder)

@@ -13,6 +13,7 @@ typedef struct {
     char    path[CONF_PATH];    /* of the descriptor */
     char    file[CONF_PATH];    /* of the vector; need not exist */
     json_t *descriptor;         /* owned */
+    char    hash[CONF_SHORT_HASH + 1];  /* of the descriptor's file, as the manifest has it */
 } conf_entry;
 
 /* Every descriptor below a folder, sorted by id; list: a file with an id a line (@NAME: all of another list beside it), NULL: all. An id of the list that is

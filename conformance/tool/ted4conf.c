@@ -10,6 +10,7 @@
 #include "mutants.h"
 #include "replay.h"
 #include "run.h"
+#include "ted4.h"
 #include "tool/arguments.h"
 
 enum { USAGE = 3 };
@@ -76,9 +77,9 @@ static const ted4_argument run_table[RUN_OPTIONS] = {
     [RUN_VERSION] = TED4_ARGUMENT_VERSION,
 };
 
-static long number(const char *text, long high)
+static int64_t number(const char *text, int64_t high)
 {
-    long n;
+    int64_t n;
 
     if (ted4_arguments_number(text, 0, high, &n) != 0)
         exit(usage("no number, or out of range"));
@@ -110,7 +111,7 @@ static int run(int argc, char **argv)
         case RUN_JSON:    o.json = value; break;
         case RUN_JUNIT:   o.junit = value; break;
         case RUN_HTML:    o.html = value; break;
-        default:          o.quiet = 2;
+        default:          o.quiet = 1;
         }
     if (o.decoder == NULL || optind < argc || o.jobs < 1)
         return usage("run takes --decoder and no operand");
@@ -222,7 +223,7 @@ static const ted4_argument mutants_table[MUTANTS_OPTIONS] = {
     [MUTANTS_SUITE]     = { 's', "suite", "DIR", "folder with mutants.list and vectors/. Default conformance" },
     [MUTANTS_VECTORS]   = { 0, "vectors", "DIR", "folder whose vectors/ is used, with what is made on demand. Default: the suite" },
     [MUTANTS_BUILD]     = { 'b', "build", "DIR", "a build whose objects are linked with the changed ones. Default build" },
-    [MUTANTS_COMPILE]   = { 0, "compile", "CMD", "compiler and flags" },
+    [MUTANTS_COMPILE]   = { 0, "compile", "CMD", "compiler and flags, those of the decoder; needed when something is to be run" },
     [MUTANTS_LIBRARIES] = { 0, "libraries", "LIBS", "behind the objects when linking" },
     [MUTANTS_ONLY]      = { 0, "only", "ID", "mutants whose id begins so" },
     [MUTANTS_JOBS]      = { 'j', "jobs", "N", "mutants at a time. Default 1" },
@@ -238,7 +239,7 @@ static int mutants(int argc, char **argv)
                                           "conformance-mutants).", mutants_table, MUTANTS_OPTIONS,
                                           "Exit codes: 0 enough are killed, 1 not, 3 usage, a list that does not fit the sources, or an unchanged decoder "
                                           "that does not pass.\n", NULL };
-    conf_mutant_options o = { "conformance", NULL, "build", "cc -std=c11 -O1", "-lpng -ljpeg -ljansson -lxxhash -lz -lm", NULL, 1, 300, 0 };
+    conf_mutant_options o = { "conformance", NULL, "build", NULL, "-lpng -ljpeg -ljansson -lxxhash -lz -lm", NULL, 1, 300, 0 };
     const char         *value;
 
     for (int i; (i = ted4_arguments_next(&command, argc, argv, &value)) != TED4_ARGUMENTS_END;)
@@ -273,7 +274,7 @@ static const struct {
 
 static void help(FILE *f)
 {
-    fputs("usage: ted4conf COMMAND [options]      (COMMAND --help tells more)\n", f);
+    fputs("usage: ted4conf COMMAND [options]      (COMMAND --help tells more; --version)\n", f);
     for (size_t i = 0; i < sizeof commands / sizeof *commands; i++)
         fprintf(f, "  %-8s %s\n", commands[i].name, commands[i].text);
 }
@@ -283,6 +284,10 @@ int main(int argc, char **argv)
     if (argc < 2 || strcmp(argv[1], "--help") == 0 || strcmp(argv[1], "-h") == 0) {
         help(argc < 2 ? stderr : stdout);
         return argc < 2 ? USAGE : 0;
+    }
+    if (strcmp(argv[1], "--version") == 0 || strcmp(argv[1], "-V") == 0) {
+        printf("ted4conf %s\n", TED4_VERSION);
+        return 0;
     }
     for (size_t i = 0; i < sizeof commands / sizeof *commands; i++)
         if (strcmp(argv[1], commands[i].name) == 0)

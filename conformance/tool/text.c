@@ -11,6 +11,7 @@
 #include <sys/stat.h>
 #include <xxhash.h>
 #include "base/bytes.h"
+#include "tool/sha256.h"
 
 _Noreturn void conf_die(const char *format, ...)
 {
@@ -204,6 +205,17 @@ void conf_path(char *to, const char *format, ...)
 void conf_hex(char *to, const uint8_t *bytes, size_t n)
 {
     ted4_hex(to, bytes, n);
+}
+
+void conf_hash(char to[CONF_HASH + 1], const void *data, size_t size)
+{
+    uint8_t     sha[TED4_SHA256_SIZE];
+    ted4_sha256 h;
+
+    ted4_sha256_init(&h);
+    ted4_sha256_add(&h, data, size);
+    ted4_sha256_end(&h, sha);
+    conf_hex(to, sha, sizeof sha);
 }
 
 uint64_t conf_seed(const char *text)

@@ -43,6 +43,9 @@ void conf_path(char *to, const char *format, ...) __attribute__((format(printf, 
 
 /* Lower-case hexadecimal of n bytes; to has room for 2 n + 1. */
 void conf_hex(char *to, const uint8_t *bytes, size_t n);
+/* SHA-256 in hexadecimal; a manifest names a descriptor by the first CONF_SHORT_HASH digits. */
+enum { CONF_HASH = 64, CONF_SHORT_HASH = 16 };
+void conf_hash(char to[CONF_HASH + 1], const void *data, size_t size);
 /* XXH3-64 of a text: seeds of recipes. */
 uint64_t conf_seed(const char *text);
 

@@ -43,7 +43,7 @@ static block *header_of(void *p)
     return (block *)p - 1;
 }
 
-void *ted4_arena_alloc(ted4_arena *a, size_t n, size_t size)
+void *ted4_arena_alloc(ted4_arena *a, uint64_t n, size_t size)
 {
     const size_t extra = sizeof(block) + ALIGN;
     block  *b;
@@ -52,7 +52,7 @@ void *ted4_arena_alloc(ted4_arena *a, size_t n, size_t size)
 
     if (size != 0 && n > (SIZE_MAX - extra) / size)
         return NULL;
-    total = n * size + extra;
+    total = (size_t)n * size + extra;
     if (total > a->max - a->used)
         return NULL;
     storage = a->allocator.alloc(a->allocator.user, total);
@@ -68,7 +68,7 @@ void *ted4_arena_alloc(ted4_arena *a, size_t n, size_t size)
         b->next->prev = b;
     a->blocks = b;
     a->used += total;
-    memset(b + 1, 0, n * size);
+    memset(b + 1, 0, total - extra);
     return b + 1;
 }
 

@@ -14,8 +14,9 @@ typedef struct ted4_coder ted4_coder;
 typedef struct {
     /* An unsigned number of 1, 2 or 4 bytes. */
     uint32_t (*number)(ted4_coder *c, unsigned width, uint32_t value);
-    /* n numbers of width bytes, an array in memory. An array that does not fit is not touched. */
-    void (*array)(ted4_coder *c, unsigned width, void *values, size_t n);
+    /* n numbers of width bytes, an array in memory. One that does not fit is not touched: n may be a file's claim that no size_t
+     * holds, and values NULL. */
+    void (*array)(ted4_coder *c, unsigned width, void *values, uint64_t n);
     /* spec 7.2, mode 1: the opaque bytes up to the end of the chunk. A reader also inflates them into b->values. */
     void (*deflated)(ted4_coder *c, ted4_blob *b);
     /* spec 9.1: size[n]; a writer fills them in later, by close. */

@@ -49,9 +49,7 @@ uint64_t ted4_count_products(const ted4_header *h, const ted4_shape *s)
 uint64_t ted4_count_work(const ted4_header *h, const ted4_shape *s,
                          uint64_t file_bytes)
 {
-    /* s->n_bank saturates where size_t has 32 bits. */
-    const uint64_t values = (uint64_t)s->n_nete + s->n_netr
-                          + (uint64_t)h->bank_rows * h->bank_dim;
+    const uint64_t values = s->n_nete + s->n_netr + s->n_bank;
     const uint64_t each = ted4_count_products(h, s) + s->n_outputs
                         + h->n_offsets + 1u;
 
@@ -74,7 +72,7 @@ int ted4_limits_hold(const ted4_limits *l, const ted4_header *h,
 {
     const uint64_t symbols = ted4_count_symbols(h, s);
 
-    return (uint64_t)s->n_nete + s->n_netr + s->n_bank <= l->values
+    return s->n_nete + s->n_netr + s->n_bank <= l->values
         && ted4_count_products(h, s) <= l->products
         && file_bytes <= l->file_bytes
         && (symbols + file_bytes - 1) / file_bytes <= l->symbols_per_byte;

@@ -26,7 +26,7 @@ void ted4_scene_free(ted4_scene *s)
     ted4_arena_finish(&arena);
 }
 
-int ted4_blob_alloc(ted4_scene *s, ted4_blob *b, size_t n)
+int ted4_blob_alloc(ted4_scene *s, ted4_blob *b, uint64_t n)
 {
     b->values = ted4_arena_alloc(&s->arena, n, sizeof *b->values);
     return b->values != NULL;
@@ -62,7 +62,7 @@ int ted4_scene_alloc_anchors(ted4_scene *s)
     return good;
 }
 
-static int blob_new(ted4_scene *s, ted4_blob *b, size_t n)
+static int blob_new(ted4_scene *s, ted4_blob *b, uint64_t n)
 {
     b->n = n;
     b->mode = TED4_BLOB_AUTO;

@@ -8,7 +8,7 @@
 /* A scene without a header. NULL: no memory. Free it with ted4_scene_free. */
 ted4_scene *ted4_scene_empty(const ted4_options *o);
 /* Storage for one blob of n values: 1, or 0: no memory. */
-int ted4_blob_alloc(ted4_scene *s, ted4_blob *b, size_t n);
+int ted4_blob_alloc(ted4_scene *s, ted4_blob *b, uint64_t n);
 /* Everything that has one entry an anchor, and shift and prob. head and shape are filled. 1, or 0: no memory. */
 int ted4_scene_alloc_anchors(ted4_scene *s);
 int ted4_scene_alloc_shifts(ted4_scene *s);

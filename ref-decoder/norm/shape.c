@@ -65,8 +65,6 @@ static void shape_tier_r(ted4_shape *s, const ted4_header *h)
     const unsigned deform = h->motion == TED4_MOTION_INR ? 84
         : h->motion == TED4_MOTION_CONCAT ? (unsigned)h->phi_dim + h->bank_dim
         : h->bank_dim;
-    const uint64_t bank = h->phi_dim > 0
-                        ? (uint64_t)h->bank_rows * h->bank_dim : 0;
     size_t units = 0;
 
     if (h->motion == TED4_MOTION_BANK)
@@ -81,7 +79,7 @@ static void shape_tier_r(ted4_shape *s, const ted4_header *h)
           7 * k, &s->n_netr, &units);
     chain(&s->netr[TED4_NET_COLOUR], colour, h->head_layers, h->head_width,
           3 * k, &s->n_netr, &units);
-    s->n_bank = bank > SIZE_MAX ? SIZE_MAX : (size_t)bank;
+    s->n_bank = h->phi_dim > 0 ? (uint64_t)h->bank_rows * h->bank_dim : 0;
 }
 
 void ted4_shape_make(ted4_shape *s, const ted4_header *h)

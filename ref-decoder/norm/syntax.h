@@ -65,7 +65,8 @@ typedef struct {
     ted4_net_shape hyper, slice[TED4_MAX_SLICES]; /* slice[0] never exists */
     size_t         n_nete, n_units;     /* f32 values, shifts */
     ted4_net_shape netr[TED4_NETS_R];
-    size_t         n_netr, n_bank;
+    size_t         n_netr;
+    uint64_t       n_bank;              /* up to 2^41 */
 } ted4_shape;
 
 /* Fills *s from a header whose values are in range. Never fails. shape.c */
@@ -73,11 +74,11 @@ void ted4_shape_make(ted4_shape *s, const ted4_header *h);
 
 enum { TED4_BLOB_RAW, TED4_BLOB_DEFLATED, TED4_BLOB_AUTO = 255 };
 
-/* spec 7.2. values: n binary32 numbers, owned by the scene. deflated: the opaque zlib bytes when mode is 1.
+/* spec 7.2. values: n binary32 numbers, owned by the scene; NULL: not there, and n is what the header claims. deflated: the opaque zlib bytes when mode is 1.
  * mode AUTO: no file has said; the writer takes the smaller one. */
 typedef struct {
     float   *values;
-    size_t   n;
+    uint64_t n;
     uint8_t  mode;
     uint8_t *deflated;
     size_t   deflated_size;

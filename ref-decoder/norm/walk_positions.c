@@ -21,7 +21,7 @@ void ted4_walk_positions(ted4_coder *c, ted4_scene *s)
     const size_t at = c->pos, n = s->head.n_anchors;
     uint64_t     before = 0;
 
-    c->ops->array(c, 2, s->position, 3 * n);
+    c->ops->array(c, 2, s->position, 3 * (uint64_t)n);
     for (size_t i = 0; c->error.code == TED4_OK && i < n; i++) {
         const uint16_t *p = s->position + 3 * i;
         const uint64_t  code = ted4_morton(p);

@@ -47,7 +47,7 @@ static size_t offset_of(const ted4_findings *f, const char *element)
 /* n bytes of the shuffled values (spec 7.2), from byte at on. Every blob of a file has a value. */
 static void shuffle(const ted4_blob *b, size_t at, uint8_t *bytes, size_t n)
 {
-    size_t i = at % b->n, j = at / b->n;
+    size_t i = at % (size_t)b->n, j = at / (size_t)b->n;
 
     for (size_t k = 0; k < n; k++) {
         bytes[k] = (uint8_t)(ted4_float_bits(b->values[i]) >> 8 * j);
@@ -59,10 +59,10 @@ static void shuffle(const ted4_blob *b, size_t at, uint8_t *bytes, size_t n)
 }
 
 /* Size of the values shuffled and deflated by zlib, which is shown them piece by piece; raw size when there is no memory to find out. */
-static size_t deflated_size(const ted4_blob *b, ted4_arena *a)
+static size_t deflated_size(ted4_findings *f, const ted4_blob *b, ted4_arena *a)
 {
     enum { PIECE = 1 << 14 };
-    const size_t raw = 4 * b->n;
+    const size_t raw = 4 * (size_t)b->n;
     uint8_t     *piece = ted4_arena_alloc(a, 2, PIECE);
     size_t       size = 0, at = 0;
     z_stream     z;
@@ -71,8 +71,10 @@ static size_t deflated_size(const ted4_blob *b, ted4_arena *a)
     z.zalloc = ted4_zlib_alloc;
     z.zfree = ted4_zlib_free;
     z.opaque = a;
-    if (piece == NULL || deflateInit(&z, 9) != Z_OK)
+    if (piece == NULL || deflateInit(&z, 9) != Z_OK) {
         size = at = raw;
+        f->starved = 1;
+    }
     while (at < raw) {
         const size_t n = raw - at < PIECE ? raw - at : PIECE;
 
@@ -98,29 +100,27 @@ static void advise_blob(ted4_findings *f, const ted4_blob *b, const ted4_chunk_p
 
     if (b->mode != TED4_BLOB_RAW)
         return;
-    size = deflated_size(b, a);
+    size = deflated_size(f, b, a);
     if (size < 4 * b->n)
         ted4_find_advice(f, TED4_ADV_BLOB_RAW, ted4_chunk_type[p->type], p->at, 2, (int64_t)(4 * b->n), (int64_t)size);
 }
 
-static ted4_status advise_chunks(ted4_findings *f, const ted4_scene *s, ted4_arena *a)
+static void advise_chunks(ted4_findings *f, const ted4_scene *s, ted4_arena *a)
 {
-    ted4_status verdict = TED4_OK;
     ted4_reader r;
 
     ted4_reader_init(&r, f->data, TED4_FILE_HEADER_SIZE, f->size, 1);
-    while (verdict == TED4_OK && r.base.pos < f->size) {
+    while (r.base.pos < f->size) {
         const ted4_chunk_place p = ted4_container_next(&r);
 
         switch (p.type) {
         case TED4_NETE: advise_blob(f, &s->nete, &p, a); break;
         case TED4_NETR: advise_blob(f, &s->netr, &p, a); break;
         case TED4_BANK: advise_blob(f, &s->bank, &p, a); break;
-        case TED4_CHUNKS: verdict = ted4_advise_ancillary(f, &p, a); break;
+        case TED4_CHUNKS: ted4_advise_ancillary(f, &p, a); break;
         default: break;
         }
     }
-    return verdict;
 }
 
 static void advise_masks(ted4_findings *f, const ted4_scene *s)
@@ -204,11 +204,9 @@ static void advise_bank(ted4_findings *f, const ted4_scene *s)
         ted4_find_advice(f, TED4_ADV_BANK_ROWS, "BANK", at, 2, unseen, h->bank_rows);
 }
 
-ted4_status ted4_advise(ted4_findings *f, const ted4_scene *s,
-                        const ted4_options *o)
+void ted4_advise(ted4_findings *f, const ted4_scene *s, const ted4_options *o)
 {
     const unsigned lowest = ted4_level_lowest(&s->head, &s->shape, f->size);
-    ted4_status    verdict;
     ted4_arena     a;
 
     if (f->data[MINOR_AT] != 0)
@@ -216,12 +214,10 @@ ted4_status ted4_advise(ted4_findings *f, const ted4_scene *s,
     if (s->level != lowest)
         ted4_find_advice(f, TED4_ADV_LEVEL, NULL, LEVEL_AT, 2, s->level, lowest);
     ted4_arena_init(&a, o);
-    verdict = advise_chunks(f, s, &a);
+    advise_chunks(f, s, &a);
     ted4_arena_finish(&a);
-    if (verdict != TED4_OK)
-        return verdict;
     advise_masks(f, s);
     advise_time(f, s);
     advise_bank(f, s);
-    return ted4_advise_symbols(f, s, o);
+    ted4_advise_symbols(f, s, o);
 }

@@ -111,7 +111,7 @@ static size_t right_lines(const ted4_findings *f, const ted4_chunk_place *p, siz
     return n;
 }
 
-static ted4_status advise_text(ted4_findings *f, const ted4_chunk_place *p, ted4_arena *a)
+static void advise_text(ted4_findings *f, const ted4_chunk_place *p, ted4_arena *a)
 {
     lines  l = { .data = f->data };
     size_t end;
@@ -129,16 +129,14 @@ static ted4_status advise_text(ted4_findings *f, const ted4_chunk_place *p, ted4
                 ted4_find_advice(f, TED4_ADV_META_KEY, "META", l.at[i], 0, 0, 0);
         if (end < p->end)
             ted4_find_advice(f, TED4_ADV_META_TEXT, "META", end, 0, 0, 0);
+    } else {
+        f->starved = 1;
     }
-
-    const int bad = l.at == NULL || l.again == NULL;
-
     ted4_arena_release(a, l.at);
     ted4_arena_release(a, l.again);
-    return bad ? TED4_E_LIMIT_MEMORY : TED4_OK;
 }
 
-ted4_status ted4_advise_ancillary(ted4_findings *f, const ted4_chunk_place *p, ted4_arena *a)
+void ted4_advise_ancillary(ted4_findings *f, const ted4_chunk_place *p, ted4_arena *a)
 {
     const uint8_t *type = f->data + p->at;
     const uint32_t flags = ted4_load32(type + 4);
@@ -146,8 +144,8 @@ ted4_status ted4_advise_ancillary(ted4_findings *f, const ted4_chunk_place *p, t
     if (memcmp(type, "META", 4) == 0) {
         if (flags != META_FLAGS)
             ted4_find_advice(f, TED4_ADV_META_FLAGS, "META", p->at + 4, 1, flags, 0);
-        return advise_text(f, p, a);
+        advise_text(f, p, a);
+        return;
     }
     ted4_find_advice(f, type[0] == 'x' ? TED4_ADV_PRIVATE : TED4_ADV_CHUNK, NULL, p->at, 2, flags, (int64_t)(p->end - p->payload));
-    return TED4_OK;
 }

@@ -150,8 +150,7 @@ static ted4_status number_probs(ted4_listening *it)
     return TED4_OK;
 }
 
-ted4_status ted4_advise_symbols(ted4_findings *f, const ted4_scene *given,
-                                const ted4_options *o)
+void ted4_advise_symbols(ted4_findings *f, const ted4_scene *given, const ted4_options *o)
 {
     ted4_coder_ops ops = ted4_listen_ops;
     ted4_listening it;
@@ -172,7 +171,8 @@ ted4_status ted4_advise_symbols(ted4_findings *f, const ted4_scene *given,
         advise_counts(f, &n, at);
         advise_steps(f, given, at);
         advise_contexts(f, given, at);
+    } else {
+        f->starved = 1;
     }
     ted4_listen_finish(&it);
-    return verdict;
 }

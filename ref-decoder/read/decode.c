@@ -64,7 +64,7 @@ static void read_head(decoder *d, const ted4_chunk_place *p)
 
 /* Values get memory only when the payload can hold them behind its first skip bytes: as they are, or deflated (R-LVL-005). */
 static void prepare_blob(decoder *d, const ted4_chunk_place *p, size_t skip,
-                         ted4_blob *b, size_t n)
+                         ted4_blob *b, uint64_t n)
 {
     const size_t   bytes = p->end - p->payload;
     const size_t   left = bytes > skip ? bytes - skip - 1 : 0;
@@ -97,7 +97,7 @@ static void read_nete(decoder *d, const ted4_chunk_place *p)
 }
 
 static void read_blob(decoder *d, const ted4_chunk_place *p,
-                      const char *element, ted4_blob *b, size_t n)
+                      const char *element, ted4_blob *b, uint64_t n)
 {
     ted4_reader r = ted4_decoder_reader(d, p);
 

@@ -20,9 +20,9 @@ void ted4_zlib_free(void *arena, void *block)
     ted4_arena_release(arena, block);
 }
 
-int ted4_inflate_impossible(size_t size, size_t n)
+int ted4_inflate_impossible(size_t size, uint64_t n)
 {
-    return n > SIZE_MAX / 4 || size >= 4 * n || 4 * n / MAX_RATIO >= size;
+    return size >= 4 * n || 4 * n / MAX_RATIO >= size;
 }
 
 /* Inflates into exactly out_size bytes. zlib counts in 32 bits: output is offered in pieces. */
@@ -56,7 +56,7 @@ static void unshuffle(float *values, const uint8_t *bytes, size_t n)
 }
 
 ted4_status ted4_inflate(ted4_arena *arena, const uint8_t *data, size_t size,
-                         float *values, size_t n)
+                         float *values, uint64_t n)
 {
     uint8_t *bytes;
     z_stream z;
@@ -75,11 +75,11 @@ ted4_status ted4_inflate(ted4_arena *arena, const uint8_t *data, size_t size,
     z.avail_in = (unsigned)size;
     verdict = inflateInit(&z);
     if (verdict == Z_OK) {
-        verdict = inflate_all(&z, bytes, 4 * n);
+        verdict = inflate_all(&z, bytes, 4 * (size_t)n);
         (void)inflateEnd(&z);
     }
     if (verdict == Z_STREAM_END)
-        unshuffle(values, bytes, n);
+        unshuffle(values, bytes, (size_t)n);
     ted4_arena_release(arena, bytes);
     return verdict == Z_STREAM_END ? TED4_OK
          : verdict == Z_MEM_ERROR ? TED4_E_LIMIT_MEMORY : TED4_E_NET_DEFLATE;

@@ -48,7 +48,7 @@ static uint32_t number(ted4_coder *c, unsigned width, uint32_t value)
     return width == 1 ? p[0] : width == 2 ? ted4_load16(p) : ted4_load32(p);
 }
 
-static void array(ted4_coder *c, unsigned width, void *values, size_t n)
+static void array(ted4_coder *c, unsigned width, void *values, uint64_t n)
 {
     const uint8_t *p;
 
@@ -57,11 +57,11 @@ static void array(ted4_coder *c, unsigned width, void *values, size_t n)
         (void)nothing(c);
         return;
     }
-    p = take(c, n * width);
+    p = take(c, (size_t)n * width);
     if (p == NULL)
         return;
     if (width == 1)
-        memcpy(values, p, n);
+        memcpy(values, p, (size_t)n);
     for (size_t i = 0; width == 2 && i < n; i++) {
         const uint16_t v = ted4_load16(p + 2 * i);
 

@@ -2,22 +2,26 @@
  * SPDX-License-Identifier: BSD-2-Clause */
 #include <string.h>
 #include "base/bytes.h"
+#include "norm/coder.h"
+#include "norm/limits.h"
+#include "norm/prior.h"
 #include "read/finding.h"
 
-static const char *const rules_of[TED4_N_STATUS] = {
-#define TED4_FINDING_ERROR(status, rules) [TED4_##status] = rules,
-#define TED4_FINDING_ADVICE(name, id, severity, rules, text)
+/* Of most errors there is one; which_rule() numbers the others. */
+static const char *const rules_of[TED4_N_STATUS][3] = {
+#define TED4_FINDING_ERROR(status, ...) [TED4_##status] = { __VA_ARGS__ },
+#define TED4_FINDING_ADVICE(name, id, severity, rule, text)
 #include "read/findings.def"
 #undef TED4_FINDING_ERROR
 #undef TED4_FINDING_ADVICE
 };
 
 static const struct {
-    const char   *id, *rules, *text;
+    const char   *id, *rule, *text;
     ted4_severity severity;
 } advice[TED4_N_ADVICE] = {
-#define TED4_FINDING_ERROR(status, rules)
-#define TED4_FINDING_ADVICE(name, id, severity, rules, text) { id, rules, text, TED4_##severity },
+#define TED4_FINDING_ERROR(status, ...)
+#define TED4_FINDING_ADVICE(name, id, severity, rule, text) { id, rule, text, TED4_##severity },
 #include "read/findings.def"
 #undef TED4_FINDING_ERROR
 #undef TED4_FINDING_ADVICE
@@ -50,6 +54,43 @@ static const char *chunk_at(ted4_findings *f, size_t offset)
     return NULL;
 }
 
+/* Which rule con.payload-size breaks in the chunk where chunk_at() has found it, of that type: R-CON-011; R-ENT-003, the sizes of substreams, when all of them
+ * are there; R-NET-009, values of a raw blob. With an error there HEAD, the first chunk, is right. */
+static unsigned payload_rule(const ted4_findings *f, size_t offset, const char *type)
+{
+    enum { ELEMENTS, SIZES, VALUES };
+    const size_t payload = f->chunk + TED4_FRAME_HEAD_SIZE, at = offset - payload, left = ted4_load32(f->data + f->chunk + 8) - at;
+    ted4_header  h;
+    ted4_shape   shape;
+    ted4_reader  r;
+
+    if (type != ted4_chunk_type[TED4_NETE] && type != ted4_chunk_type[TED4_NETR] && type != ted4_chunk_type[TED4_BANK]
+        && type != ted4_chunk_type[TED4_TILE])
+        return ELEMENTS;
+    memset(&h, 0, sizeof h);
+    memset(&shape, 0, sizeof shape);
+    ted4_reader_init(&r, f->data, TED4_FILE_HEADER_SIZE + TED4_FRAME_HEAD_SIZE, f->size, 1);
+    ted4_walk_header(&r.base, &h, &shape, TED4_LEVEL_UNBOUNDED, UINT64_MAX);
+    if (type == ted4_chunk_type[TED4_TILE])
+        return at == 4u + 2u * h.temporal_mask + 12u * h.offset_mask && left >= 4 * shape.n_substreams ? SIZES : ELEMENTS;
+    return at > (type == ted4_chunk_type[TED4_NETE] ? shape.n_units : 0) ? VALUES : ELEMENTS;
+}
+
+/* Of the rules whose breach is that error, in a chunk of that type (NULL: of another one). */
+static unsigned which_rule(const ted4_findings *f, ted4_error e, const char *type)
+{
+    switch (e.code) {
+    case TED4_E_CON_RESERVED:           /* of a known chunk only flags can be wrong */
+        return type != NULL;
+    case TED4_E_CON_PAYLOAD_SIZE:
+        return payload_rule(f, e.offset, type);
+    case TED4_E_NET_SHIFT:              /* in range, but not for the unit */
+        return f->data[e.offset] <= TED4_MAX_SHIFT;
+    default:
+        return 0;
+    }
+}
+
 static void give_error(ted4_findings *f, ted4_error e)
 {
     ted4_finding x;
@@ -57,16 +98,18 @@ static void give_error(ted4_findings *f, ted4_error e)
     memset(&x, 0, sizeof x);
     x.severity = TED4_ERROR;
     x.id = ted4_status_id(e.code);
-    x.rules = rules_of[e.code];
     x.text = ted4_status_text(e.code);
     x.where = e.offset >= TED4_FILE_HEADER_SIZE && e.offset < f->size ? chunk_at(f, e.offset) : NULL;
+    x.rule = rules_of[e.code][which_rule(f, e, x.where)];
     x.offset = e.offset;
     f->sink(f->user, &x);
 }
 
 void ted4_find_error(ted4_findings *f, ted4_error e)
 {
-    if (e.code == f->verdict.code && e.offset == f->verdict.offset)
+    if (e.code == TED4_E_LIMIT_MEMORY)
+        f->starved = 1;
+    else if (e.code == f->verdict.code && e.offset == f->verdict.offset)
         f->found = 1;
     else
         give_error(f, e);
@@ -80,7 +123,7 @@ void ted4_find_advice(ted4_findings *f, ted4_advice what, const char *where,
     memset(&x, 0, sizeof x);
     x.severity = advice[what].severity;
     x.id = advice[what].id;
-    x.rules = advice[what].rules;
+    x.rule = advice[what].rule;
     x.text = advice[what].text;
     x.where = where;
     x.offset = offset;
@@ -109,14 +152,14 @@ ted4_status ted4_validate(const void *data, size_t size, const ted4_options *o,
     f.user = user;
     verdict = ted4_decode(data, size, &quiet, &s, &f.verdict);
     if (verdict == TED4_OK)
-        verdict = ted4_advise(&f, s, &quiet);
+        ted4_advise(&f, s, &quiet);
     else
         give_error(&f, f.verdict);
-    if (verdict != f.verdict.code)          /* valid, but there was no memory for advice */
-        give_error(&f, (ted4_error){ verdict, 0 });
-    else if (ted4_status_verdict(verdict) == TED4_INVALID
-             && ted4_collect(&f, &quiet) != TED4_OK)
-        give_error(&f, (ted4_error){ TED4_E_LIMIT_MEMORY, 0 });
+    if (ted4_status_verdict(verdict) == TED4_INVALID
+        && ted4_collect(&f, &quiet) != TED4_OK)
+        f.starved = 1;
+    if (f.starved)
+        ted4_find_advice(&f, TED4_ADV_MEMORY, NULL, 0, 0, 0, 0);
     ted4_scene_free(s);
     return verdict;
 }

@@ -130,8 +130,8 @@ ted4_status ted4_recon_new(ted4_recon **out, const ted4_scene *s, const ted4_opt
     if (r == NULL)
         return TED4_E_LIMIT_MEMORY;
     r->arena = arena;
-    r->n_netr = s->netr.n;
-    r->n_bank = s->bank.n;
+    r->n_netr = (size_t)s->netr.n;
+    r->n_bank = (size_t)s->bank.n;
     const uint64_t n_records = set_sizes(r, s);
 
     if (o != NULL && o->max_work > 0

@@ -114,7 +114,7 @@ static void blend(const plain_splat *g, size_t n, const ted4_view *v, double x, 
 int ted4_raster_plain(const ted4_splats *s, const ted4_view *v, double *image)
 {
     const size_t width = (size_t)v->width, height = (size_t)v->height;
-    plain_splat *g = malloc((s->n + 1) * sizeof *g);
+    plain_splat *g = s->n < SIZE_MAX / sizeof *g ? malloc((s->n + 1) * sizeof *g) : NULL;
     size_t       n = 0;
 
     if (g == NULL)

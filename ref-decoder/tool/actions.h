@@ -20,7 +20,7 @@ typedef struct {
     int         has_range, has_time;
     float       centre[3];
     int         sh_degree, threads;
-    long        max_memory, max_work;   /* of decoding and of a query; 0: not given */
+    int64_t     max_memory, max_work;   /* of decoding and of a query; 0: not given */
     int         keep_all, hash, test, lenient, trace, force, json, quiet, verbose;
 } ted4_settings;
 

@@ -92,12 +92,12 @@ void ted4_arguments_help(const ted4_command *c, FILE *f)
         c->more(f);
 }
 
-int ted4_arguments_number(const char *text, long low, long high, long *out)
+int ted4_arguments_number(const char *text, int64_t low, int64_t high, int64_t *out)
 {
     char *end;
 
     errno = 0;
-    *out = strtol(text, &end, 10);
+    *out = strtoll(text, &end, 10);
     return errno == 0 && end != text && *end == '\0' && *out >= low && *out <= high ? 0 : -1;
 }
 

@@ -4,6 +4,7 @@
 #ifndef TED4_ARGUMENTS_H
 #define TED4_ARGUMENTS_H
 
+#include <stdint.h>
 #include <stdio.h>
 
 enum { TED4_MAX_ARGUMENTS = 40 };
@@ -40,7 +41,7 @@ int  ted4_arguments_next(const ted4_command *c, int argc, char **argv, const cha
 void ted4_arguments_help(const ted4_command *c, FILE *f);
 
 /* Whole text as a number within [low, high]: 0, or -1. */
-int ted4_arguments_number(const char *text, long low, long high, long *out);
+int ted4_arguments_number(const char *text, int64_t low, int64_t high, int64_t *out);
 /* n finite numbers with commas between: 0, or -1. */
 int ted4_arguments_floats(const char *text, int n, float *out);
 

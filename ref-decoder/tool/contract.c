@@ -123,16 +123,17 @@ static void close_dump(request *r, FILE *f)
         r->failed |= ferror(f) | (fclose(f) != 0);
 }
 
-static json_t *tier_e(request *r, const void *data, size_t size, const ted4_scene *s, const ted4_options *o, int tier)
+/* A tier of Tier E; *verdict says when memory does not allow it. */
+static json_t *tier_e(request *r, const void *data, size_t size, const ted4_scene *s, const ted4_options *o, int tier, ted4_status *verdict)
 {
     FILE *const     keep = open_dump(r, tier, -1);
     ted4_tier_hash *h = ted4_tier_hash_new(keep);
     ted4_error      e;
     json_t         *answer;
 
-    if (h == NULL || (tier == 0 ? ted4_dump_syntax(data, size, o, ted4_tier_hash_add, h, &e)
-                                : ted4_dump_tier(s, tier, o, ted4_tier_hash_add, h)) != TED4_OK)
-        r->failed = 1;
+    r->failed |= h == NULL;
+    if (h != NULL)
+        *verdict = tier == 0 ? ted4_dump_syntax(data, size, o, ted4_tier_hash_add, h, &e) : ted4_dump_tier(s, tier, o, ted4_tier_hash_add, h);
     answer = ted4_tier_hash_end(h);
     close_dump(r, keep);
     return answer;
@@ -217,11 +218,11 @@ static json_t *tiers(request *r, int first, const void *data, size_t size, const
 {
     json_t *t = json_object();
 
-    for (int i = first; i < TED4_TIERS; i++)
+    for (int i = first; i < TED4_TIERS && *verdict == TED4_OK; i++)
         if (r->tier[i]) {
             const char name[3] = { 'T', (char)('0' + i), '\0' };
 
-            json_object_set_new(t, name, i == T5 ? tier_r(r, s, o, verdict) : tier_e(r, data, size, s, o, i));
+            json_object_set_new(t, name, i == T5 ? tier_r(r, s, o, verdict) : tier_e(r, data, size, s, o, i, verdict));
         }
     return t;
 }
@@ -260,7 +261,8 @@ static json_t *answer_scene(request *r, const void *data, size_t size, const ted
 {
     ted4_options o;
 
-    memset(&o, 0, sizeof o);            /* what tiers take is not the scene's */
+    memset(&o, 0, sizeof o);
+    o.max_bytes = r->max_bytes;         /* the knob max_work bounds W_E, which decoding has held */
     if (s == NULL)
         return refusal(&what->verdict);
     return what->verdict.code == TED4_OK ? answer_valid(r, data, size, s, &o) : answer_salvage(r, s, what, &o);

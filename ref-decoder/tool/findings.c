@@ -26,29 +26,13 @@ static void print_text(const report *r, const ted4_finding *f)
            f->where != NULL ? f->where : "", f->text);
     for (unsigned i = 0; i < f->n_values; i++)
         printf("%s%" PRId64, i == 0 ? ": " : ", ", f->value[i]);
-    printf(" [%s] (%s)\n", f->id, f->rules);
-}
-
-/* "R-A R-B" as a list. */
-static json_t *rule_list(const char *rules)
-{
-    json_t *const list = json_array();
-
-    while (*rules != '\0') {
-        size_t n = 0;
-
-        while (rules[n] != ' ' && rules[n] != '\0')
-            n++;
-        json_array_append_new(list, json_stringn(rules, n));
-        rules += rules[n] == ' ' ? n + 1 : n;
-    }
-    return list;
+    printf(" [%s] (%s)\n", f->id, f->rule);
 }
 
 static void keep(report *r, const ted4_finding *f)
 {
-    json_t *const o = json_pack("{s:s, s:s, s:I, s:o, s:s}", "severity", severity_name[f->severity], "id", f->id, "offset",
-                                (json_int_t)f->offset, "rules", rule_list(f->rules), "text", f->text);
+    json_t *const o = json_pack("{s:s, s:s, s:I, s:s, s:s}", "severity", severity_name[f->severity], "id", f->id, "offset",
+                                (json_int_t)f->offset, "rule", f->rule, "text", f->text);
 
     if (f->where != NULL)
         json_object_set_new(o, "where", json_string(f->where));

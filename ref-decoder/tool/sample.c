@@ -87,6 +87,7 @@ static ted4_status sample_kept(const ted4_sampler *s, const ted4_query *q, const
                                ted4_sample *out)
 {
     const size_t sh_floats = s->sh_degree < 0 ? 0 : 3 * (size_t)ted4_sh_count(s->sh_degree);
+    const size_t record = (TED4_RECORD_FLOATS + sh_floats) * sizeof *out->block;
     size_t n = 0;
 
     out->kept = malloc((g->n + 1) * sizeof *out->kept);
@@ -96,7 +97,7 @@ static ted4_status sample_kept(const ted4_sampler *s, const ted4_query *q, const
         if (s->keep_all || g->opacity[i] >= OPACITY_MIN)
             out->kept[n++] = i;
     out->frame.n = n;
-    out->block = malloc((n + 1) * (TED4_RECORD_FLOATS + sh_floats) * sizeof *out->block);
+    out->block = n < SIZE_MAX / record ? malloc((n + 1) * record) : NULL;
     if (out->block == NULL)
         return TED4_E_LIMIT_MEMORY;
     copy_kept(out, g);

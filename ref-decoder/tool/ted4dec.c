@@ -3,7 +3,6 @@
 #include <errno.h>
 #include <getopt.h>
 #include <inttypes.h>
-#include <limits.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -40,8 +39,6 @@ enum {
     OPT_VERSION,
     N_OPTIONS
 };
-
-enum { MAX_THREADS = 1024 };
 
 static const ted4_argument OPTIONS[N_OPTIONS] = {
     [OPT_OUTPUT]    = { 'o', "output", "FILE", "write Gaussians, one file a frame; the name ends in a format below and may hold one %d" },
@@ -92,9 +89,9 @@ static int usage_error(const char *text, const char *value)
 }
 
 /* 0: fine, else an exit code. */
-static int set_number(const char *name, const char *value, long high, int *out)
+static int set_number(const char *name, const char *value, int high, int *out)
 {
-    long n;
+    int64_t n;
 
     if (ted4_arguments_number(value, 0, high, &n) != 0)
         return usage_error(name, value);
@@ -103,9 +100,9 @@ static int set_number(const char *name, const char *value, long high, int *out)
 }
 
 /* The same for a bound, which is at least 1. */
-static int set_bound(const char *name, const char *value, long *out)
+static int set_bound(const char *name, const char *value, int64_t *out)
 {
-    return ted4_arguments_number(value, 1, LONG_MAX, out) != 0 ? usage_error(name, value) : 0;
+    return ted4_arguments_number(value, 1, INT64_MAX, out) != 0 ? usage_error(name, value) : 0;
 }
 
 static int set_option(ted4_settings *s, int option, const char *value)
@@ -140,7 +137,7 @@ static int set_option(ted4_settings *s, int option, const char *value)
     case OPT_WORK:
         return set_bound("--max-work", value, &s->max_work);
     case OPT_THREADS:
-        return set_number("--threads", value, MAX_THREADS, &s->threads);
+        return set_number("--threads", value, TED4_MAX_THREADS, &s->threads);
     default:
         break;
     }
@@ -162,6 +159,8 @@ static int check_settings(const ted4_settings *s)
         return usage_error("--render and --camera", "both or none");
     if (s->test && (s->output != NULL || s->render != NULL))
         return usage_error("--test", "writes no file");
+    if (s->trace && s->json)
+        return usage_error("--trace and --json", "only one of them");
     return 0;
 }
 

@@ -4,7 +4,6 @@
 #include <getopt.h>
 #include <inttypes.h>
 #include <jansson.h>
-#include <limits.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -15,6 +14,7 @@
 #include "cli.h"
 #include "findings.h"
 #include "ted4.h"
+#include "threads.h"
 #include "told.h"
 
 enum { OPT_BUDGET, OPT_WHY, OPT_VALIDATE, OPT_MEMORY, OPT_WORK, OPT_THREADS, OPT_JSON, OPT_QUIET, OPT_VERBOSE, OPT_HELP, OPT_VERSION, N_OPTIONS };
@@ -44,7 +44,7 @@ static const ted4_command COMMAND = {
 typedef struct {
     const char *input;
     int         on[N_OPTIONS];          /* flags given */
-    long        max_memory, max_work;   /* 0: not given */
+    int64_t     max_memory, max_work;   /* 0: not given */
 } settings;
 
 static int usage_error(const char *text)
@@ -57,7 +57,7 @@ static int usage_error(const char *text)
 static int parse(settings *s, int argc, char **argv)
 {
     const char *value;
-    long        threads;
+    int64_t     threads;
 
     memset(s, 0, sizeof *s);
     for (int i; (i = ted4_arguments_next(&COMMAND, argc, argv, &value)) != TED4_ARGUMENTS_END;) {
@@ -65,11 +65,11 @@ static int parse(settings *s, int argc, char **argv)
             return TED4_EXIT_TOOL;
         if (i == TED4_ARGUMENTS_DONE)
             return TED4_EXIT_FINE;
-        if (i == OPT_THREADS && ted4_arguments_number(value, 0, 1024, &threads) != 0)
+        if (i == OPT_THREADS && ted4_arguments_number(value, 0, TED4_MAX_THREADS, &threads) != 0)
             return usage_error("bad number of threads");
-        if (i == OPT_MEMORY && ted4_arguments_number(value, 1, LONG_MAX, &s->max_memory) != 0)
+        if (i == OPT_MEMORY && ted4_arguments_number(value, 1, INT64_MAX, &s->max_memory) != 0)
             return usage_error("bad number of bytes");
-        if (i == OPT_WORK && ted4_arguments_number(value, 1, LONG_MAX, &s->max_work) != 0)
+        if (i == OPT_WORK && ted4_arguments_number(value, 1, INT64_MAX, &s->max_work) != 0)
             return usage_error("bad number of steps");
         s->on[i] = 1;
     }

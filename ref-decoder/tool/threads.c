@@ -12,7 +12,7 @@
 #include <unistd.h>
 
 /* Polls before sleeping: about 20 microseconds. */
-enum { SPINS = 1000, MAX_THREADS = 256 };
+enum { SPINS = 1000 };
 
 typedef struct team team;
 
@@ -32,7 +32,7 @@ struct team {
     void          (*body)(void *arg, size_t i);
     void           *arg;
     int             stop, n;            /* n: members */
-    member          member[MAX_THREADS];
+    member          member[TED4_MAX_THREADS];
 };
 
 static void relax(void)
@@ -145,8 +145,8 @@ void ted4_threads_init(ted4_parallel *p, int n_threads)
     p->user = NULL;
     if (n_threads <= 0)
         n_threads = (int)sysconf(_SC_NPROCESSORS_ONLN);
-    if (n_threads > MAX_THREADS)
-        n_threads = MAX_THREADS;
+    if (n_threads > TED4_MAX_THREADS)
+        n_threads = TED4_MAX_THREADS;
     if (n_threads <= 1 || (t = aligned_alloc(64, sizeof *t)) == NULL)
         return;
     memset(t, 0, sizeof *t);

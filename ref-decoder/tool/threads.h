@@ -6,8 +6,12 @@
 
 #include "base/parallel.h"
 
-/* Fills *p with a parallel-for over n_threads threads, the caller's included; n_threads <= 0: one for each core this process may use. Each
- * thread has a share of the indices and, one at a time, takes what is left of the others', so bodies may be uneven. Only one thread may use *p at a time. Where threads cannot be had there are fewer. */
+/* The most that a team has; what programs accept. */
+enum { TED4_MAX_THREADS = 256 };
+
+/* Fills *p with a parallel-for over n_threads threads, the caller's included; n_threads <= 0: one for each processor that is online. Each thread
+ * has a share of the indices and, one at a time, takes what is left of the others', so bodies may be uneven. Only one thread may use *p at a
+ * time. There are never more than TED4_MAX_THREADS, and fewer where threads cannot be had. */
 void ted4_threads_init(ted4_parallel *p, int n_threads);
 /* Ends the threads. */
 void ted4_threads_finish(ted4_parallel *p);

@@ -99,7 +99,7 @@ int ted4_colmap_reserve(void **array, size_t n, size_t record_size)
 {
     if (n != 0 && (n & (n - 1)) != 0)
         return 0;                           /* full only at powers of two */
-    void *p = realloc(*array, (n == 0 ? 1 : 2 * n) * record_size);
+    void *p = n > SIZE_MAX / 2 / record_size ? NULL : realloc(*array, (n == 0 ? 1 : 2 * n) * record_size);
     if (p == NULL)
         return -1;
     *array = p;

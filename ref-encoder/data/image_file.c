@@ -144,7 +144,9 @@ static int decode_png(const char *path, const uint8_t *bytes, size_t size, ted4_
     }
     image->width = (int)p.width;
     image->height = (int)p.height;
-    image->bytes = malloc((size_t)p.width * p.height * (size_t)image->channels);
+    /* Of the largest side that is taken RGBA has 2^32 bytes. */
+    if ((size_t)p.width * p.height <= SIZE_MAX / (size_t)image->channels)
+        image->bytes = malloc((size_t)p.width * p.height * (size_t)image->channels);
     if (image->bytes == NULL) {
         png_image_free(&p);
         return ted4_say_no_memory(m);

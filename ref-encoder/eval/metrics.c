@@ -249,7 +249,7 @@ static int box_similarity(const job *j, int channel, double *value)
 static int gauss_task(const job *j, int channel, int kind, double *value)
 {
     const size_t n = (size_t)j->width * (size_t)j->height;
-    pair p = { j->width, j->height, malloc(n * sizeof(double)), malloc(n * sizeof(double)) };
+    pair p = { j->width, j->height, calloc(n, sizeof(double)), calloc(n, sizeof(double)) };
     similarity s = { 0.0, 0.0 };
     int r = -1;
 

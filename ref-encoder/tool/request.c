@@ -8,6 +8,7 @@
 
 #include "ted4.h"
 #include "tool/arguments.h"
+#include "tool/threads.h"
 
 enum {
     OPT_OUTPUT, OPT_PRESET, OPT_LAMBDA, OPT_ITERATIONS, OPT_CAPACITY, OPT_WHY, OPT_SET, OPT_DOWNSCALE, OPT_MAX_FRAMES, OPT_BLACK,
@@ -15,7 +16,7 @@ enum {
     OPT_QUIET, OPT_VERBOSE, OPT_HELP, OPT_VERSION, N_OPTIONS
 };
 
-enum { MAX_SETS = 64, MAX_THREADS = 1024, MAX_DOWNSCALE = 64, MAX_MAX_FRAMES = 36000,
+enum { MAX_SETS = 64, MAX_DOWNSCALE = 64, MAX_MAX_FRAMES = 36000,
        DEFAULT_CACHE = 2048, MAX_CACHE = 1 << 24, DEFAULT_EVERY = 60, MAX_EVERY = 86400, MAX_TARGET = 0x7fffffff };
 
 static const ted4_argument OPTIONS[N_OPTIONS] = {
@@ -79,9 +80,9 @@ static int bad_value(int option, const char *value)
     return TED4_REQUEST_BAD;
 }
 
-static int take_number(int option, const char *value, long low, long high, int *to)
+static int take_number(int option, const char *value, int low, int high, int *to)
 {
-    long n;
+    int64_t n;
 
     if (ted4_arguments_number(value, low, high, &n) != 0)
         return bad_value(option, value);
@@ -113,7 +114,7 @@ static int take(ted4_request *r, pending *p, int option, const char *value)
     case OPT_MAX_FRAMES: return take_number(option, value, 1, MAX_MAX_FRAMES, &r->max_frames);
     case OPT_CACHE:      return take_number(option, value, 0, MAX_CACHE, &r->cache_mib);
     case OPT_EVERY:      return take_number(option, value, 0, MAX_EVERY, &r->checkpoint_every);
-    case OPT_THREADS:    return take_number(option, value, 0, MAX_THREADS, &r->threads);
+    case OPT_THREADS:    return take_number(option, value, 0, TED4_MAX_THREADS, &r->threads);
     case OPT_SEED: {
         int       seed = 0;
         const int status = take_number(option, value, 0, 0x7fffffff, &seed);
@@ -122,7 +123,7 @@ static int take(ted4_request *r, pending *p, int option, const char *value)
         return status;
     }
     case OPT_TARGET: {
-        long      bytes = 0;
+        int64_t   bytes = 0;
 
         if (ted4_arguments_number(value, 1, MAX_TARGET, &bytes) != 0)
             return bad_value(option, value);

@@ -17,7 +17,7 @@ void ted4_sheet_error(const uint8_t *a, const uint8_t *b, size_t n, uint8_t *out
 int ted4_sheet_init(ted4_sheet *s, int width, int height, int rows)
 {
     *s = (ted4_sheet){ width, height, rows, NULL };
-    s->rgb = calloc((size_t)width * (size_t)height * (size_t)rows, 3 * TED4_SHEET_COLUMNS);
+    s->rgb = calloc((size_t)width * (size_t)height, 3 * TED4_SHEET_COLUMNS * (size_t)rows);
     return s->rgb == NULL ? -1 : 0;
 }
 

@@ -40,7 +40,7 @@ enum {
     N_OPTIONS
 };
 
-enum { MAX_THREADS = 1024, MAX_DOWNSCALE = 64, MAX_MAX_FRAMES = 36000, SHEET_ROWS = 3, PATH_SIZE = 4096 };
+enum { MAX_DOWNSCALE = 64, MAX_MAX_FRAMES = 36000, SHEET_ROWS = 3, PATH_SIZE = 4096 };
 
 static const ted4_argument OPTIONS[N_OPTIONS] = {
     [OPT_SPLIT]     = { 0, "split", "NAME", "test (default) or train pictures" },
@@ -108,9 +108,9 @@ static int failed(const char *what, const char *why)
 
 /* ---- command line ---- */
 
-static int set_number(const char *name, const char *value, long low, long high, int *out)
+static int set_number(const char *name, const char *value, int low, int high, int *out)
 {
-    long n;
+    int64_t n;
 
     if (ted4_arguments_number(value, low, high, &n) != 0)
         return failed(name, value);
@@ -137,7 +137,7 @@ static int set_option(settings *s, int option, const char *value)
         s->sheet = value;
         return 0;
     case OPT_THREADS:
-        return set_number("--threads", value, 0, MAX_THREADS, &s->threads);
+        return set_number("--threads", value, 0, TED4_MAX_THREADS, &s->threads);
     default:
         break;
     }

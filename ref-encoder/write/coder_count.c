@@ -17,7 +17,7 @@ static uint32_t number(ted4_coder *c, unsigned width, uint32_t value)
     return value;
 }
 
-static void array(ted4_coder *c, unsigned width, void *values, size_t n)
+static void array(ted4_coder *c, unsigned width, void *values, uint64_t n)
 {
     (void)values;
     counter_of(c)->frame += 8.0 * width * (double)n;

@@ -44,9 +44,9 @@ static uint32_t number(ted4_coder *c, unsigned width, uint32_t value)
     return value;
 }
 
-static void array(ted4_coder *c, unsigned width, void *values, size_t n)
+static void array(ted4_coder *c, unsigned width, void *values, uint64_t n)
 {
-    uint8_t    *p = add(c, n * width);
+    uint8_t    *p = add(c, (size_t)n * width);
     const char *from = values;
 
     for (size_t i = 0; p != NULL && i < n; i++) {

@@ -4,7 +4,7 @@ export LC_ALL=C
 bad=0
 def=ref-decoder/read/findings.def
 sed -n 's/^TED4_STATUS(\([A-Z_]*\), *"\([^"]*\)".*/\1 \2/p' ref-decoder/base/status.def | while read -r name id; do
-    rules=$(sed -n "s/^TED4_FINDING_ERROR($name, *\"\([^\"]*\)\")/\1/p" $def)
+    rules=$(sed -n "s/^TED4_FINDING_ERROR($name, *\(.*\))$/\1/p" $def | tr -d '",')
     [ -n "$rules" ] || { echo "$def: no line for $name"; exit 1; }
     for r in $rules; do
         grep "^| $r |" spec/annex-g-rules.md | grep -qF "\`$id\`" || { echo "$def: $r does not name $id"; exit 1; }
