@@ -1,5 +1,5 @@
 /* frame_rate.h - frames a second of a scene file, and the fraction that stands for them in a header (spec 6.1: rate_num, rate_den).
- * Used by the loaders, which refuse what no header can say, and by train/header.c.
+ * Loaders refuse what no header can say.
  * SPDX-License-Identifier: BSD-2-Clause */
 #ifndef TED4_FRAME_RATE_H
 #define TED4_FRAME_RATE_H
