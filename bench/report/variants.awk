@@ -35,7 +35,7 @@ function variant_section(    k, s) {
     say("runs. Positive rates and negative PSNR: the variant is worse. *Paper*: its table of ablations, Neu3D at its highest rate, same λ.")
     say("*Within seeds*: the difference in PSNR at equal bytes is less than the spread of three seeds of the whole method on that scene. *factorised_flat* is")
     say("one Gaussian a component for all anchors, *factorised* the same with the autoregression kept; *inr* has layers as wide as those of the whole method's")
-    say("F_deform, *inr_paper* the paper's; *hardmask* pushes the temporal mask ten times as hard, *moremask* the offset mask three times; *recipe* leaves out what")
+    say("F_deform, *inr_paper* as many as the paper's; *hardmask* pushes the temporal mask ten times as hard, *moremask* the offset mask three times; *recipe* leaves out what")
     say("the paper does not have: sprouts, seeded transients and the probe. Only the rows *_auto* have the choice of capacity; they are compared with the whole")
     say("method with that choice, *whole_auto*. *factorised_long* and *whole_long* are trained for all steps of preset fast, 18,000 and 10,000, the other rows for")
     say("a third of them.")
@@ -215,7 +215,7 @@ function variant_dots(v,    k, s, c, any, rates, psnrs) {
 
 function variant_bars(s) {
     variant_bar(s, "concat", "bank against concat", "bank better")
-    variant_bar(s, "inr_paper", "bank against inr, the paper's network (8 layers of 256)", "bank better")
+    variant_bar(s, "inr_paper", "bank against inr, a network as large as the paper's (8 layers of 256)", "bank better")
     slow_variant_bar(s, "inr_paper", "the same, the bank trained as long as preset fast does, which takes less time", "bank better")
     variant_bar(s, "inr", "bank against inr, layers as wide as F_deform's (the paper has no such row)", "bank better")
     variant_bar(s, "factorised_flat", "inr prior against factorised prior, components independent as in the paper's", "factorised costs at least 10 % more rate")
