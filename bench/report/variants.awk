@@ -35,7 +35,7 @@ function variant_section(    k, s) {
     say("runs. Positive rates and negative PSNR: the variant is worse. *Paper*: its table of ablations, Neu3D at its highest rate, same λ.")
     say("*Within seeds*: the difference in PSNR at equal bytes is less than the spread of three seeds of the whole method on that scene. *factorised_flat* is")
     say("one Gaussian a component for all anchors, *factorised* the same with the autoregression kept; *inr* has layers as wide as those of the whole method's")
-    say("F_deform, *inr_paper* as many as the paper's; *hardmask* pushes the temporal mask ten times as hard, *moremask* the offset mask three times; *recipe* leaves out what")
+    say("F_deform, *inr_paper* as many and as wide as the paper's; *hardmask* pushes the temporal mask ten times as hard, *moremask* the offset mask three times; *recipe* leaves out what")
     say("the paper does not have: sprouts, seeded transients and the probe. Only the rows *_auto* have the choice of capacity; they are compared with the whole")
     say("method with that choice, *whole_auto*. *factorised_long* and *whole_long* are trained for all steps of preset fast, 18,000 and 10,000, the other rows for")
     say("a third of them.")
