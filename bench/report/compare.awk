@@ -21,9 +21,10 @@ function has_lambda(s, v, value,    i) {
     return 0
 }
 
-# What a variant is compared with: the whole method; with the choice of capacity (VARIANT_auto), or at the preset's full length (VARIANT_long), that with the same.
+# What a variant is compared with: the whole method; with the choice of capacity (VARIANT_auto), at the preset's full length (VARIANT_long), or with a
+# heavier offset mask (VARIANT_moremask), that with the same.
 # Where the global against names a variant, that one.
-function base_of(v) { return against != "" ? against : v ~ /_auto$/ ? "whole_auto" : v ~ /_long$/ ? "whole_long" : "whole" }
+function base_of(v) { return against != "" ? against : v ~ /_auto$/ ? "whole_auto" : v ~ /_long$/ ? "whole_long" : v ~ /_moremask$/ ? "moremask" : "whole" }
 
 # Bytes at the same PSNR, percent, of run t against the whole method's curve; "" where that does not reach.
 function rate_change(t,    x, y, n, at) {
