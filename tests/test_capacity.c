@@ -1,4 +1,4 @@
-/* test_capacity.c - train/capacity.c and capacity_prune.c in a whole training: what they decide lowers the cost, within their budget, the same for any number
+/* test_capacity.c - train/capacity.c, capacity_refine.c and capacity_prune.c in a whole training: what they decide lowers the cost, within their budget, the same for any number
  * of threads and for a run that was interrupted; switched off they leave no trace.
  * SPDX-License-Identifier: BSD-2-Clause */
 #include <setjmp.h>
@@ -12,7 +12,7 @@
 #include "train/capacity.h"
 #include "train/checkpoint.h"
 
-enum { STAGE1 = 400, STAGE2 = 1200, TOTAL = STAGE1 + STAGE2, FRAMES = 5 };
+enum { STAGE1 = 400, STAGE2 = 1400, TOTAL = STAGE1 + STAGE2, FRAMES = 5 };
 
 static tiny_folder   folder;
 static ted4_dataset  scene;
@@ -23,7 +23,7 @@ static ted4_train_options options(const char *capacity)
     ted4_train_options o = ball_options();
 
     ball_set(&o, capacity);
-    ball_set(&o, "stage2=1200");
+    ball_set(&o, "stage2=1400");
     ball_set(&o, "lambda=0.0005");
     ball_set(&o, "capacity_share=0.25");
     return o;
@@ -71,6 +71,11 @@ static ball_file whole(const ted4_train_options *o, const ted4_parallel *p)
     return f;
 }
 
+static int is_of_bits(const struct ted4_trial *x)
+{
+    return x->move >= TED4_MOVE_HEAD_BITS && x->move <= TED4_MOVE_PRIOR_BITS;
+}
+
 /* Each trial that was taken lowers the cost, each one that was left does not. Gives how many were trained. */
 static int check_trials(const ted4_trainer *t)
 {
@@ -80,7 +85,7 @@ static int check_trials(const ted4_trainer *t)
         const struct ted4_trial *x = &t->trial[i];
 
         assert_in_range(x->move, 0, TED4_MOVES - 1);
-        assert_true(x->to < x->from && x->before.cost > 0);
+        assert_true((x->to < x->from || x->move == TED4_MOVE_PRIOR_BITS) && x->to != x->from && x->before.cost > 0);
         assert_true(x->before.cost > x->before.distortion && x->before.bytes > 100);
         assert_int_equal(x->taken, x->after.cost < x->before.cost);
         taken += x->taken != 0;
@@ -114,6 +119,47 @@ static void test_decides(void **state)
     check_trials(&t);
     assert_true(t.layout.shape.n_netr + t.layout.shape.n_nete < weights);
     assert_true(t.bits[TED4_GRID_PRIOR] < TED4_GRID_FULL(TED4_GRID_PRIOR));
+    ted4_trainer_finish(&t);
+}
+
+/* Refines from so many bits of the prior; each look is noted, and the last that was taken stays. Gives whether any was. */
+static int refined(ted4_trainer *t, int bits)
+{
+    const size_t first = t->n_trials;
+    ted4_cost    before, after;
+
+    t->bits[TED4_GRID_PRIOR] = bits;
+    assert_int_equal(ted4_capacity_cost(t, &before), 0);
+    assert_int_equal(ted4_capacity_refine(t), 0);
+    assert_true(t->decided == TED4_DECIDED_BITS && t->n_trials > first && !t->integer);
+    assert_int_equal(ted4_capacity_cost(t, &after), 0);
+    for (size_t i = first; i < t->n_trials; i++) {
+        const struct ted4_trial *x = &t->trial[i];
+
+        assert_true(x->move == TED4_MOVE_PRIOR_BITS && x->from == bits && x->to > x->from && x->steps == 0);
+        assert_true(x->taken ? x->after.cost < x->before.cost : i + 1 == t->n_trials && x->after.cost >= x->before.cost);
+        bits = (int)(x->taken ? x->to : x->from);
+    }
+    assert_int_equal(t->bits[TED4_GRID_PRIOR], bits);
+    assert_true(bits == t->trial[first].from ? after.cost == before.cost : after.cost < before.cost);
+    return bits > t->trial[first].from;
+}
+
+/* Bits of the prior that are too few when the integer stage begins are given back; how many are is up to what was trained. */
+static void test_refined(void **state)
+{
+    const ted4_train_options o = options("capacity=1");
+    ted4_trainer t;
+    int          raised = 0;
+
+    (void)state;
+    begin(&t, &o, NULL);
+    while (!ted4_integer_due(&t))
+        assert_int_equal(ted4_trainer_step(&t), 0);
+    assert_true(t.decided == TED4_DECIDED_MODEL && ted4_capacity_refine_steps(&t) > 0);
+    for (int bits = 1; bits <= 6; bits++)
+        raised += refined(&t, bits);
+    assert_true(raised > 0);
     ted4_trainer_finish(&t);
 }
 
@@ -168,7 +214,7 @@ static void test_budget(void **state)
     (void)state;
     begin(&t, &o, NULL);
     ball_train(&t, TOTAL);
-    spent = ted4_capacity_prune_steps(&t) + 2 * ted4_capacity_cost_steps(&t);
+    spent = ted4_capacity_prune_steps(&t) + 3 * ted4_capacity_cost_steps(&t);
     for (size_t i = 0; i < t.n_trials; i++) {
         const struct ted4_trial *x = &t.trial[i];
 
@@ -190,17 +236,17 @@ static void test_coarse(void **state)
     ted4_trainer t;
     ted4_scene  *s;
     float       *again;
-    int          taken[TED4_GRIDS] = { 0 };
+    int          coarse[TED4_GRIDS] = { 0 };
 
     (void)state;
     begin(&t, &o, NULL);
     ball_train(&t, TOTAL);
     for (size_t i = 0; i < t.n_trials; i++)
-        if (t.trial[i].move >= TED4_MOVE_HEAD_BITS && t.trial[i].move <= TED4_MOVE_PRIOR_BITS)
-            taken[t.trial[i].move - TED4_MOVE_HEAD_BITS] |= t.trial[i].taken != 0;
+        if (is_of_bits(&t.trial[i]) && t.trial[i].taken)
+            coarse[t.trial[i].move - TED4_MOVE_HEAD_BITS] = (int)t.trial[i].to;
     for (int i = 0; i < TED4_GRIDS; i++)
-        assert_int_equal(taken[i], t.bits[i] < TED4_GRID_FULL(i));
-    assert_true(taken[TED4_GRID_HEADS] && taken[TED4_GRID_PRIOR]);
+        assert_int_equal(coarse[i] > 0 ? coarse[i] : TED4_GRID_FULL(i), t.bits[i]);
+    assert_true(coarse[TED4_GRID_HEADS] > 0 && coarse[TED4_GRID_PRIOR] > 0);
 
     const double drawn = ted4_trainer_distortion(&t, t.order.item[0]);
 
@@ -354,7 +400,7 @@ static void test_lambda(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_decides), cmocka_unit_test(test_cheap_first), cmocka_unit_test(test_trained), cmocka_unit_test(test_budget), cmocka_unit_test(test_coarse),
+        cmocka_unit_test(test_decides), cmocka_unit_test(test_refined), cmocka_unit_test(test_cheap_first), cmocka_unit_test(test_trained), cmocka_unit_test(test_budget), cmocka_unit_test(test_coarse),
         cmocka_unit_test(test_threads), cmocka_unit_test(test_resumed), cmocka_unit_test(test_not_mixed), cmocka_unit_test(test_fixed),
         cmocka_unit_test(test_short), cmocka_unit_test(test_lambda),
     };

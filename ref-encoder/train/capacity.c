@@ -29,10 +29,16 @@ typedef struct {
     struct { int from, to; ted4_cost cost; } sight[TED4_MOVES]; /* the next trial of each move, by its looks; to = -1: there is none */
 } search;
 
+/* Training steps that the search may take: what the end of stage 2 leaves it. */
+static double search_budget(const ted4_trainer *t)
+{
+    return ted4_capacity_budget(t) - ted4_capacity_refine_steps(t) - ted4_capacity_prune_steps(t);
+}
+
 /* Steps that a trained trial has; 0: too few to tell anything. */
 static int trial_steps(const ted4_trainer *t)
 {
-    const double budget = ted4_capacity_budget(t) - ted4_capacity_prune_steps(t);
+    const double budget = search_budget(t);
     const double room = (1.0 - t->opt.integer_share - DECIDE_AT) * (double)t->opt.stage2 - 1.0;
     const double n = fmin(fmax(budget / TRIALS, FEWEST_STEPS), room);
 
@@ -221,7 +227,7 @@ static int search_all(search *s)
 
 int ted4_capacity_decide(ted4_trainer *t)
 {
-    search s = { .t = t, .budget = ted4_capacity_budget(t) - ted4_capacity_prune_steps(t), .steps = trial_steps(t) };
+    search s = { .t = t, .budget = search_budget(t), .steps = trial_steps(t) };
     int    bad = 0;
 
     t->decided = TED4_DECIDED_MODEL;    /* in every state that is kept from here on: trials make none of their own */

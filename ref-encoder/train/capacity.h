@@ -24,7 +24,7 @@ typedef enum {
 
 /* One trial; kept in checkpoints as it stands in memory. */
 struct ted4_trial {
-    int64_t   move, from, to;       /* what was tried: from so many to so many */
+    int64_t   move, from, to;       /* what was tried: from so many to so many; more only of bits of the prior's weights */
     int64_t   steps;                /* training of either side before they were compared; 0: compared at sight */
     int64_t   taken;                /* 1: the smaller model stays */
     ted4_cost before, after;
@@ -33,6 +33,9 @@ struct ted4_trial {
 /* Settles what the model is; t is at the step of ted4_capacity_step. Afterwards it is as many steps further as a trial has, if any was trained. 0, or -1
  * with t->message. */
 int ted4_capacity_decide(ted4_trainer *t);
+/* When the integer stage is about to begin, which is when weights become as coarse as they will be in the file: bits of the prior's that it has come to
+ * need since are given back. The same results. */
+int ted4_capacity_refine(ted4_trainer *t);
 /* Once the integer stage has begun: anchors and Gaussians go whose bits weigh more than what pictures would miss of them. The same results. */
 int ted4_capacity_prune(ted4_trainer *t);
 /* The step at which the first is due; UINT64_MAX: never. */
@@ -47,9 +50,11 @@ const char *ted4_move_name(ted4_move m);
 int ted4_capacity_cost(ted4_trainer *t, ted4_cost *c);
 /* What a bit of the file weighs. */
 double ted4_capacity_charge(const ted4_trainer *t);
-/* In training steps: what one such cost takes, what ted4_capacity_usage takes, and what ted4_capacity_prune does in all; what trials may take altogether. */
+/* In training steps: what one such cost takes, what ted4_capacity_usage takes, and what ted4_capacity_refine and ted4_capacity_prune do at most, 0 where the
+ * budget is too small for them; what trials may take altogether. */
 double ted4_capacity_cost_steps(const ted4_trainer *t);
 double ted4_capacity_usage_steps(const ted4_trainer *t);
+double ted4_capacity_refine_steps(const ted4_trainer *t);
 double ted4_capacity_prune_steps(const ted4_trainer *t);
 double ted4_capacity_budget(const ted4_trainer *t);
 /* Appends to t->trial. 0, or -1 with t->message. */
@@ -58,6 +63,8 @@ int ted4_capacity_note(ted4_trainer *t, const struct ted4_trial *x);
 /* How much of a move's matter there is now, and the next smaller amount to try, or with bold a much smaller one; -1: there is none. capacity_moves.c */
 int ted4_move_now(const ted4_trainer *t, ted4_move m);
 int ted4_move_next(const ted4_trainer *t, ted4_move m, int bold);
+/* The way back: the next larger number of bits of weights; -1: there is none, or the move has no such way. */
+int ted4_move_finer(const ted4_trainer *t, ted4_move m);
 /* Makes it so. 0, or -1 with t->message. */
 int ted4_move_make(ted4_trainer *t, ted4_move m, int to);
 

@@ -64,10 +64,10 @@ static int narrower(int now, int multiple, int least, int bold)
 }
 
 /* Bits of weights: of most of those that training leaves nothing can be seen. */
+enum { COARSE = 6, FINE = 12 };
+
 static int coarser(int now, int bold)
 {
-    enum { COARSE = 6, FINE = 12 };
-
     if (now > FINE)
         return bold ? COARSE : FINE;
     return now > COARSE ? now - 2 : now > 1 ? now - 1 : -1;
@@ -101,6 +101,15 @@ int ted4_move_next(const ted4_trainer *t, ted4_move m, int bold)
     case TED4_MOVES:        break;
     }
     return -1;
+}
+
+int ted4_move_finer(const ted4_trainer *t, ted4_move m)
+{
+    const int now = ted4_move_now(t, m), full = TED4_GRID_FULL(m - TED4_MOVE_HEAD_BITS + TED4_GRID_HEADS);
+
+    if (m < TED4_MOVE_HEAD_BITS || m > TED4_MOVE_PRIOR_BITS || now == 0)
+        return -1;
+    return now < COARSE ? now + 1 : now < FINE ? now + 2 : now < full ? full : -1;
 }
 
 /* ---- making them ---- */

@@ -11,7 +11,7 @@
 #include <xxhash.h>
 
 #define MAGIC 0x34444554u       /* "TED4" */
-enum { FORMAT = 6 };
+enum { FORMAT = 7 };
 
 /* One walk for both directions: put() writes or reads the bytes at p. whole: with the watch's last good state. */
 typedef struct {

@@ -167,6 +167,13 @@ size_t ted4_schedule_room(const ted4_trainer *t)
     return t->anchors.n < most ? most - t->anchors.n : 0;
 }
 
+int ted4_integer_due(const ted4_trainer *t)
+{
+    const double first = (1.0 - t->opt.integer_share) * (double)t->opt.stage2;
+
+    return t->stage2 && !t->integer && t->iteration >= (uint64_t)t->opt.stage1 + (uint64_t)first;
+}
+
 int ted4_schedule_event(ted4_trainer *t)
 {
     const ted4_train_options *o = &t->opt;
@@ -183,9 +190,7 @@ int ted4_schedule_event(ted4_trainer *t)
         return -1;
     if (i == stage1 && !t->stage2 && o->stage2 > 0 && ted4_stage2_begin(t) != 0)
         return -1;
-    if (t->stage2 && !t->integer &&
-        i >= stage1 + (uint64_t)((1.0 - o->integer_share) * (double)o->stage2) &&
-        ted4_integer_begin(t) != 0)
+    if (ted4_integer_due(t) && ted4_integer_begin(t) != 0)
         return -1;
     return 0;
 }

@@ -298,7 +298,9 @@ static int decide(ted4_trainer *t)
 {
     if (t->decided == TED4_DECIDED_NOTHING && t->stage2 && !t->integer && t->iteration == ted4_capacity_step(t))
         return ted4_capacity_decide(t);
-    return t->decided == TED4_DECIDED_MODEL && t->integer ? ted4_capacity_prune(t) : 0;
+    if (t->decided == TED4_DECIDED_MODEL && ted4_integer_due(t))
+        return ted4_capacity_refine(t);
+    return t->decided == TED4_DECIDED_BITS && t->integer ? ted4_capacity_prune(t) : 0;
 }
 
 int ted4_trainer_step(ted4_trainer *t)

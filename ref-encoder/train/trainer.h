@@ -44,8 +44,8 @@ typedef struct {
     float        *squares;      /* [n][TED4_SLOT_TERMS + 1]: gradients.h */
 } ted4_slots;
 
-/* Nothing yet; how much model there is; which anchors pay, too. */
-enum { TED4_DECIDED_NOTHING, TED4_DECIDED_MODEL, TED4_DECIDED_ALL };
+/* Nothing yet; how much model there is; how coarse its weights are in the end; which anchors pay, too. */
+enum { TED4_DECIDED_NOTHING, TED4_DECIDED_MODEL, TED4_DECIDED_BITS, TED4_DECIDED_ALL };
 
 typedef struct {
     ted4_train_options  opt;
@@ -111,6 +111,8 @@ double ted4_trainer_preview(ted4_trainer *t, int n);
 void ted4_schedule_rates(const ted4_trainer *t, float *channel_rate);
 void ted4_schedule_network_step(ted4_trainer *t);
 int  ted4_schedule_event(ted4_trainer *t);
+/* Does the integer stage begin with this step? schedule.c */
+int  ted4_integer_due(const ted4_trainer *t);
 /* By how many anchors growth may still add. */
 size_t ted4_schedule_room(const ted4_trainer *t);
 
