@@ -4,7 +4,8 @@
  * SPDX-License-Identifier: BSD-2-Clause */
 #include "capacity.h"
 
-/* Weights are made finer as long as each look lowers the cost, so many times at most; not at all where the budget of all trials is not ROOM times what this takes. */
+/* The next finer grids are looked at, so many: one may be worse than the one before it, and the one after it better than both. None is where the budget of all trials
+ * is not ROOM times what this takes. */
 enum { MOST_LOOKS = 4 };
 #define ROOM 3.0
 
@@ -18,21 +19,24 @@ double ted4_capacity_refine_steps(const ted4_trainer *t)
 int ted4_capacity_refine(ted4_trainer *t)
 {
     const ted4_move m = TED4_MOVE_PRIOR_BITS;
-    ted4_cost       now;
-    int             bad, on = ted4_capacity_refine_steps(t) > 0 && ted4_move_finer(t, m) > 0;
+    int             best = ted4_move_now(t, m), to = ted4_move_finer(t, m), bad;
+    ted4_cost       least = { 0 };
 
     t->decided = TED4_DECIDED_BITS;
-    bad = on && ted4_capacity_cost(t, &now) != 0;
-    for (int i = 0; !bad && on && i < MOST_LOOKS && ted4_move_finer(t, m) > 0; i++) {
-        struct ted4_trial x = { .move = m, .from = ted4_move_now(t, m), .to = ted4_move_finer(t, m), .before = now };
+    if (to < 0 || !(ted4_capacity_refine_steps(t) > 0))
+        return 0;
+    bad = ted4_capacity_cost(t, &least) != 0;
+    for (int i = 0; !bad && i < MOST_LOOKS && to > 0; i++) {
+        struct ted4_trial x = { .move = m, .from = best, .to = to, .before = least };
 
-        bad = ted4_move_make(t, m, (int)x.to) != 0 || ted4_capacity_cost(t, &x.after) != 0;
-        on = !bad && x.after.cost < now.cost;
-        x.taken = on;
-        now = on ? x.after : now;
-        if (!on)
-            bad = bad || ted4_move_make(t, m, (int)x.from) != 0;
+        bad = ted4_move_make(t, m, to) != 0 || ted4_capacity_cost(t, &x.after) != 0;
+        x.taken = !bad && x.after.cost < least.cost;
+        if (x.taken) {
+            best = to;
+            least = x.after;
+        }
         bad = bad || ted4_capacity_note(t, &x) != 0;
+        to = ted4_move_finer(t, m);
     }
-    return bad ? -1 : 0;
+    return bad || ted4_move_make(t, m, best) != 0 ? -1 : 0;
 }
