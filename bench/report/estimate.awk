@@ -48,7 +48,7 @@ function estimate_chart(any) {
         chart_open("estimate", 900, dots_height() + 96, "Estimated rate against the file")
         dots_legend(130, 16)
         dots_band = 1
-        dots_draw(120, 40, 740, 1, "estimated bits against those in the file, % (green: the bar)", 1)
+        dots_draw(170, 40, 690, 1, "estimated bits against those in the file, % (green: the bar)", 1)
         dots_band = 0
         svg_close()
     }
