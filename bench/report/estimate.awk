@@ -46,9 +46,9 @@ function estimate_section(    k, i, v, n, e, worst, at, all, missing, tags) {
 function estimate_chart(any) {
     if (any) {
         chart_open("estimate", 900, dots_height() + 96, "Estimated rate against the file")
-        dots_legend(130, 16)
+        dots_legend(190, 16)
         dots_band = 1
-        dots_draw(170, 40, 690, 1, "estimated bits against those in the file, % (green: the bar)", 1)
+        dots_draw(190, 40, 670, 1, "estimated bits against those in the file, % (green: the bar)", 1)
         dots_band = 0
         svg_close()
     }
