@@ -14,6 +14,8 @@
 enum { LEAST_PICTURES = 16, MOST_PICTURES = 24 };
 #define STEPS_A_PICTURE 0.4
 #define STEPS_A_FILE    4.0
+/* What the end of stage 2 decides is left undecided where the budget of all trials is not so many times what it takes. */
+#define ROOM 3.0
 
 static size_t judges(const ted4_trainer *t)
 {
@@ -31,6 +33,11 @@ double ted4_capacity_cost_steps(const ted4_trainer *t)
 double ted4_capacity_budget(const ted4_trainer *t)
 {
     return t->opt.capacity_share * (double)ted4_trainer_total(t);
+}
+
+double ted4_capacity_afford(const ted4_trainer *t, double steps)
+{
+    return ROOM * steps <= ted4_capacity_budget(t) ? steps : 0;
 }
 
 int ted4_capacity_note(ted4_trainer *t, const struct ted4_trial *x)

@@ -13,8 +13,6 @@
 static const double prices[] = { 0.125, 0.25, 0.5, 1.0, 2.0, 4.0 };
 enum { N_PRICES = (int)(sizeof prices / sizeof prices[0]) };
 
-/* Nothing is pruned where the budget of all trials is not so many times what this takes. */
-#define ROOM 3.0
 /* Bits of an anchor's place and of its flag of motion. */
 #define ANCHOR_BITS 49.0
 /* A logit that leaves its offset out for good. */
@@ -24,7 +22,7 @@ double ted4_capacity_prune_steps(const ted4_trainer *t)
 {
     const double steps = ted4_capacity_usage_steps(t) + (1 + N_PRICES) * ted4_capacity_cost_steps(t);
 
-    return t->layout.head.offset_mask && ROOM * steps <= ted4_capacity_budget(t) ? steps : 0;
+    return t->layout.head.offset_mask ? ted4_capacity_afford(t, steps) : 0;
 }
 
 /* What is known of every anchor: use [n][K], bits [n_blocks][1 + K][32]. */

@@ -4,16 +4,12 @@
  * SPDX-License-Identifier: BSD-2-Clause */
 #include "capacity.h"
 
-/* The next finer grids are looked at, so many: one may be worse than the one before it, and the one after it better than both. None is where the budget of all trials
- * is not ROOM times what this takes. */
+/* The next finer grids are looked at, so many: one may be worse than the one before it, and the one after it better than both. */
 enum { MOST_LOOKS = 4 };
-#define ROOM 3.0
 
 double ted4_capacity_refine_steps(const ted4_trainer *t)
 {
-    const double steps = (1 + MOST_LOOKS) * ted4_capacity_cost_steps(t);
-
-    return ROOM * steps <= ted4_capacity_budget(t) ? steps : 0;
+    return ted4_capacity_afford(t, (1 + MOST_LOOKS) * ted4_capacity_cost_steps(t));
 }
 
 int ted4_capacity_refine(ted4_trainer *t)
