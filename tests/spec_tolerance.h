@@ -92,6 +92,16 @@ static inline int tol_far(const struct scene *s, size_t anchor, const float *cam
     return s->h.view == 0 || sum >= 0x1p-38;
 }
 
+/* R-TOL-004: numbers that are all finite, in all evaluations */
+static inline int tol_finite(const tol_reference *t, size_t i)
+{
+    for (int e = 0; e < TOL_EVALUATIONS; e++)
+        for (int j = 0; j < 14; j++)
+            if (!isfinite(t->record[e][i][j]))
+                return 0;
+    return 1;
+}
+
 static inline void tol_mark(tol_reference *t, const struct scene *s, const float *camera)
 {
     size_t i = 0;
@@ -102,6 +112,8 @@ static inline void tol_mark(tol_reference *t, const struct scene *s, const float
                 t->judged[i] = tol_far(s, a, camera) ? (1 << TOL_GROUPS) - 1 : 1 << TOL_POSITION;
                 if (!tol_same_fallback(t, i))
                     t->judged[i] &= (uint8_t)~(1u << TOL_ROTATION);
+                if (!tol_finite(t, i))
+                    t->judged[i] = 0;
                 i++;
             }
 }

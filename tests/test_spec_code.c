@@ -9,6 +9,7 @@
 #include <xxhash.h>
 #include "random_scene.h"
 #include "recon/strict.h"
+#include "vector_files.h"
 
 enum { N_VALID = 40, N_DAMAGED = 20, N_DAMAGES = 200, N_EDGES = 10, N_HASHED = 3000, MAX_CHUNKS = 32 };
 
@@ -310,6 +311,22 @@ static void damaged_streams(void **state)
     assert_true(n_kinds >= 24);
 }
 
+static unsigned published[TED4_N_STATUS];
+
+static void visit_vector(const uint8_t *data, size_t size, const char *path)
+{
+    (void)path;
+    same_verdict(data, size, published);
+}
+
+/* The suite, but what asks for much, and what is large: the printed code is slow. */
+static void vectors(void **state)
+{
+    (void)state;
+    assert_true(each_vector("-size -60k ! -path '*/limit/*'", visit_vector) > 1000);
+    assert_true(published[TED4_OK] > 300);
+}
+
 /* An entry of HEAD: its place in the payload, and values at and beyond the ends of its range and of the level's bounds. */
 typedef struct {
     size_t  at, width;
@@ -377,6 +394,7 @@ int main(void)
         cmocka_unit_test(functions),
         cmocka_unit_test(valid_streams),
         cmocka_unit_test(damaged_streams),
+        cmocka_unit_test(vectors),
     };
 
     return cmocka_run_group_tests(tests, NULL, NULL);

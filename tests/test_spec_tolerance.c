@@ -8,11 +8,11 @@
 #include "random_scene.h"
 
 enum { N_SCENES = 24 };
+static const float camera[3] = { 0.5f, -1.0f, 2.0f };
 
 /* Calls check for each random scene and query that class X has a result for. Returns how many. */
 static int for_each(void (*check)(const tol_reference *t, const struct scene *s))
 {
-    static const float camera[3] = { 0.5f, -1.0f, 2.0f };
     int n = 0;
 
     for (uint64_t seed = 0; seed < N_SCENES; seed++) {
@@ -100,6 +100,31 @@ static void errors(void **state)
     assert_true(for_each(check_error) > N_SCENES);
 }
 
+/* A record that one evaluation leaves the numbers with is not judged; the others are as before. */
+static void check_infinite(const tol_reference *t, const struct scene *s)
+{
+    const size_t   i = t->n / 2;
+    tol_reference  u = *t;
+    float   *const number = &u.record[TOL_WIDE + i % 3][i][i % 14], finite = *number;
+    uint8_t *const before = malloc(t->n);
+
+    memcpy(before, t->judged, t->n);
+    *number = i % 2 == 0 ? INFINITY : NAN;
+    tol_mark(&u, s, camera);
+    for (size_t j = 0; j < t->n; j++)
+        assert_int_equal(u.judged[j], j == i ? 0 : before[j]);
+    *number = finite;
+    tol_mark(&u, s, camera);
+    assert_memory_equal(u.judged, before, t->n);
+    free(before);
+}
+
+static void infinite(void **state)
+{
+    (void)state;
+    assert_true(for_each(check_infinite) > N_SCENES);
+}
+
 /* tol_exact is the reference decoder, bit for bit: test_spec_code.c. Rounded up to a power of two means just that. */
 static void rounding(void **state)
 {
@@ -112,7 +137,7 @@ static void rounding(void **state)
 
 int main(void)
 {
-    const struct CMUnitTest tests[] = { cmocka_unit_test(evaluations), cmocka_unit_test(errors), cmocka_unit_test(rounding) };
+    const struct CMUnitTest tests[] = { cmocka_unit_test(evaluations), cmocka_unit_test(errors), cmocka_unit_test(infinite), cmocka_unit_test(rounding) };
 
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -82,7 +82,31 @@ int ted4_time_parse(const char *text, ted4_time *t)
                                                                                                : -1;
 }
 
+/* Greatest common divisor; a >= 1. */
+static uint32_t divisor(uint32_t a, uint32_t b)
+{
+    while (b != 0) {
+        const uint32_t rest = a % b;
+
+        a = b;
+        b = rest;
+    }
+    return a;
+}
+
+/* rne(a / b), which fits. */
+static uint32_t nearest(uint64_t a, uint32_t b)
+{
+    const uint64_t whole = a / b, twice = a % b * 2;
+
+    return (uint32_t)(whole + (twice > b || (twice == b && whole % 2 == 1)));
+}
+
 ted4_time ted4_time_of_frame(uint32_t frame, uint32_t n_frames)
 {
-    return n_frames > 1 ? (ted4_time){ frame, n_frames - 1 } : (ted4_time){ 0, 1 };
+    const uint32_t last = n_frames > 1 ? n_frames - 1 : 1, most = DENOMINATORS - 1;
+    const uint32_t common = last < DENOMINATORS ? 1 : divisor(last, frame);
+    const ted4_time t = { frame / common, last / common };
+
+    return t.den < DENOMINATORS ? t : (ted4_time){ nearest((uint64_t)t.num * most, t.den), most };
 }

@@ -19,7 +19,7 @@ int ted4_range_parse(const char *text, ted4_range *r);
  * D below 2^24. 0, or -1. */
 int ted4_time_parse(const char *text, ted4_time *t);
 
-/* spec 11: frame j of n_frames. */
+/* R-HDR-005: the time of frame < n_frames, n_frames >= 1. */
 ted4_time ted4_time_of_frame(uint32_t frame, uint32_t n_frames);
 
 #endif

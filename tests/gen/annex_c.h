@@ -69,7 +69,8 @@ static inline void annex_c(FILE *out)
             annex_c_row(out, &level[i]);
     fprintf(out, "\nLevel 31 has no bounds; the formulas hold for it too.\n\n"
                  "## C.1 An example\n\nThe shape of the method's paper, with 40000 anchors and 300 frames: F = 50 in slices of 5, 10, 15, 20; K = 10; d = 8; a bank of 150 rows of 128; hyperprior "
-                 "63-100-100; heads with one hidden layer of 50; 4096 anchors a tile; 2 MB of file.\n\n");
+                 "63-100-100; slice networks and two layers of F_deform 100 and 128 wide; heads with one hidden layer of 50, view = 1; all masks, activation; 4096 anchors a tile; "
+                 "2 MB of file.\n\n");
     {
         struct header h = { .n_anchors = 40000, .tile_size = 4096, .n_offsets = 10, .feature_dim = 50, .motion = 1, .phi_dim = 8, .bank_rows = 150,
                             .bank_dim = 128, .deform_layers = 2, .deform_width = 128, .temporal_mask = 1, .offset_mask = 1, .activation = 1,

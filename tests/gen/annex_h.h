@@ -106,7 +106,7 @@ static inline void annex_h_scene(FILE *out)
     ted4_shape  s;
 
     annex_h_largest(&h, &s);
-    annex_h_row(out, "anchors N", "n_anchors");
+    fprintf(out, "| anchors N | %" PRId64 " | %" PRIu32 " (6 N bytes in one payload); level | 6.1, 8 |\n", annex_h_find("n_anchors")->low, UINT32_MAX / 6);
     fprintf(out, "| anchors a tile | 1 | %" PRIu32 " | 6.1 |\n", h.tile_size);
     annex_h_row(out, "offsets K", "n_offsets");
     fprintf(out, "| Gaussians G | 0 | N K | 11 |\n");
