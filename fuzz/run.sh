@@ -22,8 +22,7 @@ build=build-fuzz-$kind
 make -s fuzz-build FUZZ_KIND="$kind"
 mkdir -p "$build/found"
 [ -s "$csv" ] || echo 'harness,kind,key,seconds,executions,finds,edges,inputs,peak_mb' >"$csv"
-scenes=" $(make -s fuzz-scenes) "
-export csv build kind scenes total slice
+export csv build kind total slice
 if [ $# -eq 0 ]; then
     for program in "$build"/fuzz/fuzz_*; do
         [ -x "$program" ] && set -- "$@" "${program##*/fuzz_}"
@@ -31,5 +30,5 @@ if [ $# -eq 0 ]; then
 fi
 bad=0
 printf '%s\n' "$@" | xargs -P "$jobs" -I{} fuzz/run_one.sh {} || bad=1
-[ "$csv" != fuzz/runs.csv ] || fuzz/table.sh
+[ "$csv" != fuzz/runs.csv ] || fuzz/table.sh "$build"
 exit $bad

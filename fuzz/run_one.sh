@@ -1,25 +1,12 @@
 #!/bin/sh
-# run_one.sh - one harness for run.sh, which says in the environment how: csv build kind scenes total slice.
+# run_one.sh - one harness for run.sh, which says in the environment how: csv build kind total slice.
 # SPDX-License-Identifier: BSD-2-Clause
 set -eu
 name=$1
 # shellcheck disable=SC2154 # from the environment
 log=$build/$name.log own=$build/corpus/$name scratch=$build/tmp/$name
 
-# Rows count for the sources that they were made with: those that the harness links (fuzz.mk), and its own; comments and spacing do not count.
-case "$scenes$name" in
-*" $name "*)     more='ref-encoder/data ref-decoder/tool' ;;
-*checkpoint)     more='ref-encoder/data ref-encoder/train ref-encoder/kernel ref-encoder/eval ref-decoder/render' ;;
-*decode_chunked) more=ref-decoder/tool/read_file.c ;;
-*two_decoders)   more="tests/spec_tiers.h tests/spec/names.h $build/inc" ;;
-*)               more= ;;
-esac
-# shellcheck disable=SC2086 # several folders
-key=$({
-    find ref-decoder/base ref-decoder/norm ref-decoder/read ref-decoder/kernel ref-decoder/recon ref-encoder/write $more \
-        tests/random_scene.h tests/recon_ref.h tests/spec_model.h -name '*.[ch]' -o -name '*.def' -o -name '*.inc'
-    find fuzz -name '*.[ch]' ! -name 'fz_*' -o -name "fz_$name.c"
-} | LC_ALL=C sort | xargs awk -f bench/sources.awk | sha256sum | cut -c1-12)
+key=$(fuzz/key.sh "$name" "$build")
 seeds=$(sed -n "s/^FUZZ($name, \([a-z_0-9]*\),.*/\1/p" fuzz/list.def)
 case $seeds in
 knobs | ted4 | recon) dictionary=fuzz/ted4.dict ;;

@@ -1,18 +1,26 @@
 #!/bin/sh
-# table.sh - what the rows of fuzz/runs.csv add up to, between the marks of fuzz/README.md. run.sh calls it at its end. From the project root: fuzz/table.sh
+# table.sh BUILD - what the rows of fuzz/runs.csv add up to, between the marks of fuzz/README.md; BUILD: the folder of a build with the present sources (key.sh).
+# run.sh calls it at its end. From the project root: fuzz/table.sh build-fuzz-asan
 # SPDX-License-Identifier: BSD-2-Clause
 set -eu
 LC_ALL=C; export LC_ALL
+build=$1
 new=fuzz/README.md.$$
-trap 'rm -f "$new"' EXIT
-# A harness's latest key is that of its last row.
+trap 'rm -f "$new" "$new.keys"' EXIT
+# Of each harness its key now, a line each.
+for h in $(sed -n 's/,.*//p' fuzz/runs.csv | sed 1d | sort -u); do
+    echo "$h $(fuzz/key.sh "$h" "$build")"
+done >"$new.keys"
 table() {
-    echo '| harness | build | hours, latest sources | executions | finds | memory at most | hours, all sources | executions | finds |'
+    echo '| harness | build | hours, present sources | executions | finds | memory at most | hours, all sources | executions | finds |'
     echo '|---|---|---|---|---|---|---|---|---|'
-    awk -F, 'NR > 1 {
+    awk -F, -v keys="$new.keys" '
+        BEGIN { while ((getline line < keys) > 0) { split(line, word, " "); key[word[1]] = word[2] } }
+        FNR > 1 {
             h = $1 "` | " $2
-            if (key[h] != $3) { key[h] = $3; now_s[h] = now_n[h] = now_f[h] = peak[h] = 0 }
-            now_s[h] += $4; now_n[h] += $5; now_f[h] += $6; s[h] += $4; n[h] += $5; f[h] += $6
+            s[h] += $4; n[h] += $5; f[h] += $6
+            if ($3 != key[$1]) next
+            now_s[h] += $4; now_n[h] += $5; now_f[h] += $6
             if ($9 > peak[h]) peak[h] = $9
         }
         END {

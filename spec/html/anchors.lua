@@ -48,7 +48,7 @@ return {
       return el
     end,
     Link = function(el)
-      el.target = el.target:gsub("^README%.md", "index.html"):gsub("^([%w%-]+)%.md", "%1.html")
+      el.target = el.target:gsub("^README%.md", "index.html"):gsub("^%.%./CHANGELOG%.md", "CHANGELOG.html"):gsub("^([%w%-]+)%.md", "%1.html")
       return el
     end,
     Table = function(el)

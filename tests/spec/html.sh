@@ -5,7 +5,7 @@ set -e
 export LC_ALL=C
 out=$1
 mkdir -p "$out"
-cp spec/html/style.css "$out/style.css"
+cp spec/html/style.css spec/rules.json spec/errors.json "$out/"
 SPEC_RULES=$out/rules.txt
 export SPEC_RULES
 grep -oE '^\*\*R-[A-Z]{3}-[0-9]{3}\*\*' spec/*.md | sed 's|^spec/\(.*\)\.md:\*\*\(.*\)\*\*$|\2 \1.html|' >"$SPEC_RULES"
@@ -20,6 +20,7 @@ for f in $files; do
         ${before:+-V before="$before.html"} ${after:+-V after="$after.html"} -o "$out/$page.html" "spec/$f.md"
     before=$page
 done
+pandoc -f gfm -t html5 --no-highlight --template=spec/html/page.html --lua-filter=spec/html/anchors.lua -M pagetitle=Changelog -o "$out/CHANGELOG.html" CHANGELOG.md
 # Every link within the pages leads to a page, and to an anchor where it names one.
 bad=0
 for link in $(grep -ohE 'href="[^":]+"' "$out"/*.html | sed 's/href="//; s/"$//' | sort -u); do
