@@ -1,7 +1,7 @@
 /* fz_checkpoint.c - a trainer's checkpoint: u8 which (bit 0: of stage 1 or of the integer stage; bit 1: its hash is left wrong), then changes of a
  * good one: u24 offset, u8 number of bytes, those bytes; 255 bytes cut the file off there.
  * Claims: a good file is accepted, one with a wrong hash is refused; whatever else is in it, it is refused with a message, or a trainer comes out
- * whose header is one that the format allows, whose pictures exist, and which makes a step or says why not.
+ * whose header is one that the format allows, whose anchors lie in the cube, whose pictures exist, and which makes a step or says why not.
  * SPDX-License-Identifier: BSD-2-Clause */
 #include <math.h>
 #include <string.h>
@@ -119,6 +119,13 @@ static void check_header(const ted4_trainer *t)
     fuzz_require(t->order.next <= t->order.n, "a place in their order");
 }
 
+static void check_positions(const ted4_trainer *t)
+{
+    for (size_t i = 0; i < t->anchors.n; i++)
+        for (int j = 0; j < 3; j++)
+            fuzz_require(fabsf(*ted4_cell(&t->anchors, TED4_ROW_POSITION, i, j)) <= 1, "anchors in the cube");
+}
+
 int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
 {
     fuzz_source  in = { data, data + size };
@@ -134,6 +141,7 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
     if (ted4_snapshot_restore(&t, &s) == 0) {
         fuzz_require(!(which >> 1 & 1), "a wrong hash is refused");
         check_header(&t);
+        check_positions(&t);
         if (ted4_trainer_check(&t, 1) == 0 && ted4_trainer_step(&t) != 0)
             fuzz_check_message(&t.message);
     } else {

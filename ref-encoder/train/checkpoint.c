@@ -42,6 +42,17 @@ static void expect(stream *s, uint64_t value)
     s->failed |= x != value;
 }
 
+/* Positions of anchors never leave the cube (seed.h, densify.c, sprout.h), and the fixed-point inputs of networks are made from them without another look. */
+static int inside_cube(const ted4_anchors *a)
+{
+    const float *p = a->data[TED4_ROW_POSITION];
+    int          inside = 1;
+
+    for (size_t i = 0; i < a->n_blocks * 3 * TED4_LANES; i++)
+        inside &= p[i] >= -1.0f && p[i] <= 1.0f;
+    return inside;
+}
+
 static void walk_anchors(stream *s, ted4_trainer *t)
 {
     uint64_t n = t->anchors.n;
@@ -56,6 +67,7 @@ static void walk_anchors(stream *s, ted4_trainer *t)
     for (int k = 0; k < TED4_ROWS; k++)
         put(s, t->anchors.data[k], t->anchors.n_blocks * (size_t)t->anchors.rows[k] *
                                        TED4_LANES * sizeof(float));
+    s->failed |= !s->writing && !s->failed && !inside_cube(&t->anchors);
 }
 
 /* May trials of smaller models have made h of it (capacity.h)? Whatever they change is no more than it was, and valid. */
