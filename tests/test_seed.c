@@ -8,6 +8,7 @@
 #include <cmocka.h>
 
 #include "cloud_case.h"
+#include "train/cells.h"
 #include "train/seed.h"
 #include "train/space.h"
 
@@ -210,6 +211,20 @@ static void test_voxels(void **state)
     ted4_trainer_finish(&t);
 }
 
+/* No voxel is so fine that keys of different ones agree. */
+static void test_finest(void **state)
+{
+    ted4_trainer t;
+
+    (void)state;
+    cloud_make(&cloud, 1);
+    cloud.options.cell = 1e-300;
+    begin(&t);
+    assert_true(t.cell == TED4_FINEST_CELL);
+    assert_int_equal(t.anchors.n, CLOUD_POINTS);
+    ted4_trainer_finish(&t);
+}
+
 static void test_bound(void **state)
 {
     (void)state;
@@ -319,7 +334,7 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_space_make), cmocka_unit_test(test_space_view),
-        cmocka_unit_test(test_lattice), cmocka_unit_test(test_voxels), cmocka_unit_test(test_bound),
+        cmocka_unit_test(test_lattice), cmocka_unit_test(test_voxels), cmocka_unit_test(test_finest), cmocka_unit_test(test_bound),
         cmocka_unit_test(test_few_points), cmocka_unit_test(test_networks), cmocka_unit_test(test_awake),
     };
 

@@ -6,6 +6,9 @@
 #include <stddef.h>
 #include <stdint.h>
 
+/* The finest voxel that training begins with, in normalised space: those of growth, 16 times finer, have keys of their own, too. */
+#define TED4_FINEST_CELL 0x1p-15
+
 typedef struct {
     uint64_t *key;              /* owned; 0: free */
     size_t    mask, n;

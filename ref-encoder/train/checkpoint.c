@@ -1,6 +1,7 @@
 /* checkpoint.c - see checkpoint.h. Native byte order: a checkpoint stays on the machine that made it.
  * SPDX-License-Identifier: BSD-2-Clause */
 #include "capacity.h"
+#include "cells.h"
 #include "checkpoint.h"
 
 #include <errno.h>
@@ -171,7 +172,7 @@ static int order_is_whole(const ted4_trainer *t)
 static int numbers_are_possible(const ted4_trainer *t)
 {
     return (t->stage2 == 0 || t->stage2 == 1) && (t->integer == 0 || t->integer == 1) && t->integer <= t->stage2
-        && t->iteration <= ted4_trainer_total(t) && t->stage2_start <= t->iteration && t->cell > 0 && t->cell <= 1e30
+        && t->iteration <= ted4_trainer_total(t) && t->stage2_start <= t->iteration && t->cell >= TED4_FINEST_CELL && t->cell <= 1e30
         && t->decided >= TED4_DECIDED_NOTHING && t->decided <= TED4_DECIDED_ALL && t->watch.state.factor > 0 && t->watch.state.factor <= 1 && t->watch.state.rollbacks <= TED4_ROLLBACKS;
 }
 

@@ -12,12 +12,19 @@
 #define TED4_LOG2E 0x1.715476p+0f
 #define TED4_LN2   0x1.62e43p-1f
 
-/* 2^x, x clamped to [-126, 126], to about 1e-7. x + 126.5 is positive, so that truncation rounds x
- * to the nearest integer. A NaN becomes some integer, whose sums wrap. */
+/* x, or the nearer end of the range, or low for a NaN: fit for an integer. */
+static inline float ted4_lane_within(float x, float low, float high)
+{
+    x = x > low ? x : low;
+    return x < high ? x : high;
+}
+
+/* 2^x, x clamped to [-126, 126], to about 1e-7; NaN of a NaN. x + 126.5 is positive, so that truncation rounds x
+ * to the nearest integer. */
 static inline float ted4_lane_pow2(float x)
 {
     const float c = x < -126.0f ? -126.0f : x > 126.0f ? 126.0f : x;
-    const int32_t n = (int32_t)(c + 126.5f);
+    const int32_t n = (int32_t)(ted4_lane_within(x, -126.0f, 126.0f) + 126.5f);
     const float f = c - (float)(int32_t)((uint32_t)n - 126u);
     const uint32_t bits = ((uint32_t)n + 1u) << 23;
     float p = 0x1.ffcbfcp-17f, scale;

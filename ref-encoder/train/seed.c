@@ -147,7 +147,7 @@ int ted4_seed_anchors(ted4_anchors *a, const ted4_layout *l, const ted4_dataset 
     if (!bad) {
         for (size_t i = 0; i < d->n_points; i++)
             ted4_space_point(&l->head, d->points + 3 * i, p + 3 * i);
-        *cell = o->cell > 0 ? ldexp(o->cell, -l->head.exponent)
+        *cell = o->cell > 0 ? fmax(ldexp(o->cell, -l->head.exponent), TED4_FINEST_CELL)
                             : typical_distance(p, d->n_points);
         while ((n = voxelise(p, d->n_points, *cell, out, &set)) > (size_t)o->init_anchors)
             *cell *= 1.1;
