@@ -1,7 +1,8 @@
 /* fz_checkpoint.c - a trainer's checkpoint: u8 which (bit 0: of stage 1 or of the integer stage; bit 1: its hash is left wrong), then changes of a
  * good one: u24 offset, u8 number of bytes, those bytes; 255 bytes cut the file off there.
  * Claims: a good file is accepted, one with a wrong hash is refused; whatever else is in it, it is refused with a message, or a trainer comes out
- * whose header is one that the format allows, whose anchors lie in the cube, whose pictures exist, and which makes a step or says why not.
+ * whose header is one that the format allows, whose anchors lie in the cube, whose pictures exist, and which makes a step or says why not. Room for anchors: what the
+ * file fills.
  * SPDX-License-Identifier: BSD-2-Clause */
 #include <math.h>
 #include <string.h>
@@ -126,6 +127,12 @@ static void check_positions(const ted4_trainer *t)
             fuzz_require(fabsf(*ted4_cell(&t->anchors, TED4_ROW_POSITION, i, j)) <= 1, "anchors in the cube");
 }
 
+/* A position is 12 of an anchor's bytes in the file; rooms grow by half, and by a few blocks. */
+static void check_room(const ted4_trainer *t, size_t size)
+{
+    fuzz_require(t->anchors.capacity * TED4_LANES * 12 <= 2 * size + 16 * TED4_LANES * 12, "no more room than the file fills");
+}
+
 int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
 {
     fuzz_source  in = { data, data + size };
@@ -147,6 +154,7 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
     } else {
         fuzz_require(!good, "a good one is accepted");
         fuzz_check_message(&t.message);
+        check_room(&t, s.size);
     }
     ted4_trainer_finish(&t);
     ted4_snapshot_free(&s);

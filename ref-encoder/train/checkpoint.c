@@ -14,11 +14,13 @@
 #define MAGIC 0x34444554u       /* "TED4" */
 enum { FORMAT = 7 };
 
-/* One walk for both directions: put() writes or reads the bytes at p. whole: with the watch's last good state. */
+/* One walk for both directions: put() writes or reads the bytes at p. whole: with the watch's last good state. left: when reading, bytes of the file that no
+ * put() has had; no more memory is asked for than these fill. */
 typedef struct {
     FILE         *file;
     int           writing, whole, failed;
     XXH3_state_t *hash;
+    uint64_t      left;
 } stream;
 
 static void put(stream *s, void *p, size_t size)
@@ -31,6 +33,7 @@ static void put(stream *s, void *p, size_t size)
         s->failed = 1;
         return;
     }
+    s->left -= s->writing ? 0 : size;
     XXH3_64bits_update(s->hash, p, size);
 }
 
@@ -54,6 +57,16 @@ static int inside_cube(const ted4_anchors *a)
     return inside;
 }
 
+/* Room for n anchors, if the file holds so many. */
+static int make_room(const stream *s, ted4_anchors *a, uint64_t n)
+{
+    uint64_t cells = 0;
+
+    for (int k = 0; k < TED4_ROWS; k++)
+        cells += (uint64_t)a->rows[k];
+    return n > s->left / (cells * sizeof(float)) ? -1 : ted4_anchors_resize(a, (size_t)n);
+}
+
 static void walk_anchors(stream *s, ted4_trainer *t)
 {
     uint64_t n = t->anchors.n;
@@ -61,7 +74,7 @@ static void walk_anchors(stream *s, ted4_trainer *t)
     put(s, &n, sizeof n);
     if (s->failed)
         return;
-    if (!s->writing && (n > (1u << 24) || ted4_anchors_resize(&t->anchors, (size_t)n) != 0)) {
+    if (!s->writing && make_room(s, &t->anchors, n) != 0) {
         s->failed = 1;
         return;
     }
@@ -288,25 +301,26 @@ static void walk(stream *s, ted4_trainer *t)
 }
 
 /* The last eight bytes are the hash of all others. Looked at before anything in the file is
- * believed, for sizes in it decide about memory. The file is at its start again afterwards. */
-static int intact(FILE *file, XXH3_state_t *hash)
+ * believed. The file is at its start again afterwards. */
+static int intact(stream *s)
 {
     uint8_t  bytes[1 << 14];
     uint64_t want;
-    long     left = fseek(file, 0, SEEK_END) == 0 ? ftell(file) - (long)sizeof want : -1;
+    long     left = fseek(s->file, 0, SEEK_END) == 0 ? ftell(s->file) - (long)sizeof want : -1;
 
-    if (left < 0 || fseek(file, 0, SEEK_SET) != 0)
+    if (left < 0 || fseek(s->file, 0, SEEK_SET) != 0)
         return 0;
+    s->left = (uint64_t)left + sizeof want;
     while (left > 0) {
         const size_t n = left < (long)sizeof bytes ? (size_t)left : sizeof bytes;
 
-        if (fread(bytes, 1, n, file) != n)
+        if (fread(bytes, 1, n, s->file) != n)
             return 0;
-        XXH3_64bits_update(hash, bytes, n);
+        XXH3_64bits_update(s->hash, bytes, n);
         left -= (long)n;
     }
-    return fread(&want, 1, sizeof want, file) == sizeof want &&
-           XXH3_64bits_digest(hash) == want && fseek(file, 0, SEEK_SET) == 0;
+    return fread(&want, 1, sizeof want, s->file) == sizeof want &&
+           XXH3_64bits_digest(s->hash) == want && fseek(s->file, 0, SEEK_SET) == 0;
 }
 
 static void walk_hash(stream *s)
@@ -318,12 +332,12 @@ static void walk_hash(stream *s)
 
 static int run(ted4_trainer *t, FILE *file, int writing, int whole)
 {
-    stream s = { file, writing, whole, 0, XXH3_createState() };
+    stream s = { file, writing, whole, 0, XXH3_createState(), 0 };
 
     if (s.hash == NULL)
         return -1;
     XXH3_64bits_reset(s.hash);
-    s.failed = !writing && !intact(file, s.hash);
+    s.failed = !writing && !intact(&s);
     XXH3_64bits_reset(s.hash);
     walk(&s, t);
     walk_hash(&s);
