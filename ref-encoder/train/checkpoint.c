@@ -15,7 +15,7 @@
 enum { FORMAT = 7 };
 
 /* One walk for both directions: put() writes or reads the bytes at p. whole: with the watch's last good state. left: when reading, bytes of the file that no
- * put() has had; no more memory is asked for than these fill. */
+ * put() has had; anchors get room only where these fill it. */
 typedef struct {
     FILE         *file;
     int           writing, whole, failed;
