@@ -76,7 +76,9 @@ static int measure(const char *path, const uint8_t *bytes, size_t size)
             return 1;
         keep_best(&best[plain], &t);
     }
-    printf("%s: %zu bytes, %u anchors, %.0f symbols; same scene: %s\n", path, size, info[0].n_anchors, symbols,
+    const char *const slash = strrchr(path, '/');
+
+    printf("%s: %zu bytes, %u anchors, %.0f symbols; same scene: %s\n", slash != NULL ? slash + 1 : path, size, info[0].n_anchors, symbols,
            memcmp(info[0].hash, info[1].hash, sizeof info[0].hash) == 0 ? "yes" : "NO");
     for (int plain = 0; plain < 2; plain++)
         printf("  %-8s whole %7.1f ms  entropy stage %7.1f ms (%5.1f million symbols/s)\n", plain ? "plain" : "kernels", best[plain].whole,
