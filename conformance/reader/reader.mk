@@ -5,7 +5,7 @@ $B/tests/test_reader: | $B/ted4conf $B/ted4dec
 SEEDS ?= 0:200
 reader-compare: $B/ted4dec
 	python3 conformance/reader/compare.py --decoder $B/ted4dec --seeds $(SEEDS) --broken 20 --keep $B
-# The second decoder against all vectors, those made on demand too. Takes 2.8 GiB for each of the two largest, which READER_FILES=--demand leaves out. Verdict page
+# The second decoder against all vectors, those made on demand too. Each of the two largest takes 2.8 GiB; READER_FILES=--demand leaves out what is large. Verdict page
 # in out/. READER_TIMEOUT: seconds a vector, for busy machines.
 READER_FILES   ?= --large
 READER_TIMEOUT ?= 600

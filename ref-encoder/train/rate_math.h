@@ -7,6 +7,7 @@
 #include "base/bytes.h"
 #include "lane_math.h"
 
+/* x, or the nearer end of the range; a NaN stays one (and does not with ted4_lane_within, for integers). */
 static inline float ted4_lane_limit(float x, float low, float high)
 {
     x = x < low ? low : x;

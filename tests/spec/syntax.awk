@@ -60,7 +60,7 @@ function file_header(   k, j, byte, v, list) {
 
 # R-ENT-008.
 function substreams() {
-    return (head("temporal_mask") || head("offset_mask")) + head("n_slices") + 2 + (head("motion") > 0) + (head("activation") > 0)
+    return (head("temporal_mask") || head("offset_mask")) + head("n_slices") + 2 + (head("phi_dim") > 0) + (head("activation") > 0)
 }
 
 function present(when) {
