@@ -2,7 +2,6 @@
 all:
 
 OPT   ?= -O3
-ARCH  ?= -march=native
 B     ?= build
 TED4_DATA ?= ../shared/data
 
@@ -10,8 +9,19 @@ WARN  = -Wall -Wextra -Wpedantic -Wshadow -Wstrict-prototypes -Wmissing-prototyp
         -Wpointer-arith -Wcast-qual -Wwrite-strings -Wconversion -Wno-sign-conversion -Wundef -Wvla $(WERROR)
 # The two FP flags are part of the format (spec 12.2): Tier R is strict binary32.
 STRICT = -ffp-contract=off -fno-fast-math
-# Informative arithmetic (rendering, training) may contract and use every vector unit of this machine.
-FREE   = $(ARCH) -Wno-psabi -ffp-contract=fast -fno-math-errno -fno-trapping-math
+# Rendering and training: every operation is rounded as it is written, so that all machines and compilers give the same bits; fused
+# operations are explicit (render/leveled.h). ARCH=-march=native lets the compiler use this machine's instructions everywhere.
+FREE   = $(ARCH) -Wno-psabi -ffp-contract=off -fno-math-errno -fno-trapping-math
+# Files compiled once a level of instruction sets, of which base/level.c chooses one when a program runs.
+MACHINE := $(firstword $(subst -, ,$(shell $(CC) $(CFLAGS) -dumpmachine)))
+LEVELS  = $(if $(filter x86_64,$(MACHINE)),base v3 v4,base)
+LEVELED = ref-decoder/render/project.c ref-decoder/render/blend.c ref-encoder/train/blend_bwd.c ref-encoder/train/project_bwd.c \
+          ref-encoder/kernel/dense_product.c ref-encoder/kernel/dense_weights.c
+FLAGS_v3 = -mavx2 -mfma -mbmi -mbmi2
+FLAGS_v4 = $(FLAGS_v3) -mavx512f -mavx512bw -mavx512dq -mavx512vl -mprefer-vector-width=512
+# Objects of the sources $(1), with all copies of leveled ones.
+OBJECTS = $(patsubst %.c,$B/%.o,$(filter-out $(LEVELED),$(1))) \
+          $(foreach l,$(LEVELS),$(patsubst %.c,$B/%.$l.o,$(filter $(LEVELED),$(1))))
 CFLAGS_ALL = -std=c11 -D_POSIX_C_SOURCE=200809L $(OPT) -g $(WARN) -Iref-decoder -Iref-encoder -Itests \
         -fopenmp -MMD -MP $(CFLAGS)
 LIBS  = -lpng -ljpeg -ljansson -lxxhash -lz -lm
@@ -39,9 +49,17 @@ $(FREE_OBJ): FPFLAGS = $(FREE)
 $B/ref-decoder/kernel/%_avx2.o: FPFLAGS = $(STRICT) -mavx2
 $B/ref-decoder/kernel/%_avx512.o: FPFLAGS = $(STRICT) -mavx512f -mavx512bw -mavx512vl -mprefer-vector-width=512
 
-$B/libted4dec.a: $(DEC_SRC:%.c=$B/%.o)
-$B/libted4render.a: $(DRAW_SRC:%.c=$B/%.o)
-$B/libted4enc.a: $(ENC_SRC:%.c=$B/%.o)
+# $(1): level
+define COMPILE_LEVEL
+$B/%.$(1).o: %.c
+	@mkdir -p $$(@D)
+	$$(CC) $$(CFLAGS_ALL) $$(FREE) $$(FLAGS_$(1)) -DTED4_LEVEL=$(1) -c $$< -o $$@
+endef
+$(foreach l,$(LEVELS),$(eval $(call COMPILE_LEVEL,$l)))
+
+$B/libted4dec.a: $(call OBJECTS,$(DEC_SRC))
+$B/libted4render.a: $(call OBJECTS,$(DRAW_SRC))
+$B/libted4enc.a: $(call OBJECTS,$(ENC_SRC))
 $B/lib%.a:
 	@rm -f $@
 	$(AR) rcsD $@ $^

@@ -1,26 +1,17 @@
-# Benchmarks; included by the Makefile. The plain build answers what vectors bring: the same sources for any x86-64, with the
-# compiler's vectoriser off (vector types become SSE2 operations).
-RASTER_BENCH = ref-decoder/render/raster.c ref-decoder/render/project.c ref-decoder/render/bin.c ref-decoder/render/blend.c \
-        ref-encoder/train/raster_bwd.c ref-encoder/train/blend_bwd.c ref-encoder/train/project_bwd.c \
-        ref-decoder/tool/threads.c bench/bench_raster.c
+# Benchmarks; included by the Makefile.
+BENCH_FREE = $(FREE) -DTED4_LEVEL=base
 
-$B/bench/bench_raster.o: FPFLAGS = $(FREE)
-$B/bench/bench_raster: $(RASTER_BENCH:%.c=$B/%.o)
-	$(CC) -fopenmp $(LDFLAGS) $^ -o $@ -lm
-
-$B/plain/%.o: %.c
-	@mkdir -p $(@D)
-	$(CC) $(CFLAGS_ALL) $(FREE) -O2 -fno-tree-vectorize -march=x86-64 -mtune=generic -Wno-psabi -c $< -o $@
-$B/plain/bench_raster: $(RASTER_BENCH:%.c=$B/plain/%.o)
-	$(CC) -fopenmp $(LDFLAGS) $^ -o $@ -lm
+$B/bench/bench_raster.o: FPFLAGS = $(BENCH_FREE)
+$B/bench/bench_raster: $B/bench/bench_raster.o $B/ref-decoder/tool/threads.o $(ENC_LIB)
+	$(CC) -fopenmp $(LDFLAGS) $^ -o $@ $(LIBS)
 
 KEEP = MAKE_TARGET=$@ CC='$(CC)' sh bench/keep.sh
 
 # These three print their tables and keep them in bench/raster.md, bench/render.md and bench/train.md.
-bench-raster: $B/bench/bench_raster $B/plain/bench_raster
-	$(KEEP) bench/raster.md $B/bench/bench_raster $B/plain/bench_raster
+bench-raster: $B/bench/bench_raster
+	$(KEEP) bench/raster.md $B/bench/bench_raster
 
-$B/bench/bench_render.o: FPFLAGS = $(FREE)
+$B/bench/bench_render.o: FPFLAGS = $(BENCH_FREE)
 $B/bench/bench_render: $B/bench/bench_render.o $B/ref-decoder/tool/threads.o $(DEC_LIB)
 	$(CC) -fopenmp $(LDFLAGS) $^ -o $@ $(LIBS)
 
@@ -33,24 +24,17 @@ TRAIN_PARTS = ted4_dataset_pixels ted4_trainer_check ted4_schedule_event ted4_sl
         ted4_generate_backward ted4_update_volume ted4_update_bank ted4_densify_gather ted4_update_rate ted4_update_parameters
 BETWEEN = $(TRAIN_PARTS:%=-Wl,--wrap=%)
 
-# Files named for an instruction set need it; the plain program is told not to take them.
-NAMED_SET   = $(filter %_avx2.c %_avx512.c,$(DEC_SRC))
-PLAIN_TRAIN = $(filter-out $(NAMED_SET),$(ENC_SRC) $(DRAW_SRC) $(DEC_SRC)) ref-decoder/tool/threads.c bench/bench_train.c
-
-$B/bench/bench_train.o: FPFLAGS = $(FREE)
+$B/bench/bench_train.o: FPFLAGS = $(BENCH_FREE)
 $B/bench/bench_train: $B/bench/bench_train.o $B/ref-decoder/tool/threads.o $(ENC_LIB)
 	$(CC) -fopenmp $(LDFLAGS) $(BETWEEN) $^ -o $@ $(LIBS)
-$B/plain/bench_train: $(PLAIN_TRAIN:%.c=$B/plain/%.o) $(NAMED_SET:%.c=$B/%.o)
-	$(CC) -fopenmp $(LDFLAGS) $(BETWEEN) $^ -o $@ $(LIBS)
-
 # On kitchen where it is, else on a small scene made for the purpose.
 KITCHEN = $(wildcard $(TED4_DATA)/kitchen)
 TRAIN_SCENE = $(if $(KITCHEN),$(KITCHEN) 2,$B/bench/occluder 1)
 $B/bench/occluder: | $B/ted4scene
 	$B/ted4scene occluder -o $@ -f --size 320x180
 
-bench-train: $B/bench/bench_train $B/plain/bench_train $(if $(KITCHEN),,$B/bench/occluder)
-	$(KEEP) bench/train.md $B/bench/bench_train $(TRAIN_SCENE) $B/plain/bench_train
+bench-train: $B/bench/bench_train $(if $(KITCHEN),,$B/bench/occluder)
+	$(KEEP) bench/train.md $B/bench/bench_train $(TRAIN_SCENE)
 
 # Peak memory of training a large scene, in bench/memory.md: hours. MEMORY_RUNS names some of its runs.
 bench-memory: $B/ted4enc $B/ted4scene
@@ -61,7 +45,7 @@ bench-memory: $B/ted4enc $B/ted4scene
 # Programs on the decoded file: what the integer entropy model and the range coder cost; how long anchors live. rate_check is compiled as freely as it may be, for it
 # measures the speed of floating-point networks beside the integer kernels.
 BENCH_FILE = rate_check spans
-$B/bench/rate_check.o: FPFLAGS = $(FREE)
+$B/bench/rate_check.o: FPFLAGS = $(FREE) -ffp-contract=fast -march=native
 $(BENCH_FILE:%=$B/bench/%) $B/bench/bench_decode: $B/bench/%: $B/bench/%.o $(DEC_TOOL:%.c=$B/%.o) $(ENC_LIB)
 	$(CC) -fopenmp $(LDFLAGS) $(filter %.o,$^) $(filter %.a,$^) -o $@ $(LIBS)
 $B/bench/spans: $B/bench/spans_view.o $B/bench/spans_where.o

@@ -1,13 +1,12 @@
 /* bench_raster.c - how long forward and backward of the rasteriser take on random scenes at 480x270 with about 33 blended Gaussians a pixel.
- * Usage: bench_raster [OTHER]. OTHER: the same program from a plain scalar build; its times are taken in turn with ours and the ratio
- * is printed. bench_raster -t N: one line "forward_ms backward_ms" for N Gaussians and one thread, for that purpose.
+ * All levels that the machine has are timed in turn.
  * SPDX-License-Identifier: BSD-2-Clause */
 #include "measure.h"
 #include "raster_scene.h"
 #include "tool/threads.h"
 #include "train/raster_bwd.h"
 
-enum { WIDTH = 480, HEIGHT = 270, N_PIXELS = WIDTH * HEIGHT, ROUNDS = 60, OTHER_ROUNDS = 3 };
+enum { WIDTH = 480, HEIGHT = 270, N_PIXELS = WIDTH * HEIGHT, ROUNDS = 40 };
 
 /* Standard deviation in pixels that gives about 33 blended Gaussians a pixel. Blurring makes small ones larger, so the law is not quite one of area. */
 #define SIGMA(n) (0.465 * pow(1e5 / (double)(n), 0.56))
@@ -89,22 +88,6 @@ static times best(const times *t, size_t n)
     return b;
 }
 
-/* The other build's times for n Gaussians. */
-static times ask_other(const char *program, size_t n)
-{
-    char  command[4096];
-    times t;
-
-    snprintf(command, sizeof command, "'%s' -t %zu", program, n);
-    FILE *f = must(popen(command, "r"));
-    if (fscanf(f, "%lf %lf", &t.forward, &t.backward) != 2) {
-        fprintf(stderr, "bench_raster: %s gave no times\n", program);
-        exit(3);
-    }
-    pclose(f);
-    return t;
-}
-
 static void print_times(const char *what, times t, size_t pairs)
 {
     printf("  %-22s forward %7.2f ms (%5.2f ns a pair)  backward %7.2f ms (%5.2f)  both %7.2f ms\n", what, t.forward,
@@ -118,10 +101,22 @@ static times settled(bench *b, const ted4_parallel *p)
     return once(b, p);
 }
 
-static void report(size_t n, const char *other)
+static void print_level(ted4_level level, const times *t, const times *top, size_t pairs)
 {
+    char what[64];
+
+    snprintf(what, sizeof what, "%s, 1 thread", ted4_level_name(level));
+    print_times(what, *t, pairs);
+    if (t != top)
+        printf("  %-22s forward %7.2f                      backward %7.2f           both %7.2f\n", "  ratio", t->forward / top->forward,
+               t->backward / top->backward, (t->forward + t->backward) / (top->forward + top->backward));
+}
+
+static void report(size_t n)
+{
+    const ted4_level most = ted4_level_of_machine();
     ted4_parallel two;
-    times one_t[ROUNDS], two_t[ROUNDS], other_t[OTHER_ROUNDS];
+    times one_t[TED4_LEVELS][ROUNDS], two_t[ROUNDS], t1[TED4_LEVELS];
     bench b;
 
     ted4_threads_init(&two, 2);
@@ -132,40 +127,28 @@ static void report(size_t n, const char *other)
     printf("%zu Gaussians, %dx%d: %.1f blended a pixel, %zu visible, %zu instances, %.0f %% of lanes blended\n", n, WIDTH, HEIGHT,
            (double)pairs / N_PIXELS, b.r->n_visible, b.r->n_instances, 100.0 * (double)pairs / (double)count.computed);
     for (int i = 0; i < ROUNDS; i++) {
-        one_t[i] = settled(&b, NULL);
+        for (ted4_level level = TED4_LEVEL_BASE; level <= most; level++) {
+            ted4_level_use(level);
+            one_t[level][i] = settled(&b, NULL);
+        }
         two_t[i] = settled(&b, &two);
-        if (other != NULL && i < OTHER_ROUNDS)
-            other_t[i] = ask_other(other, n);
     }
-    const times t1 = best(one_t, ROUNDS), t2 = best(two_t, ROUNDS);
-    print_times("1 thread", t1, pairs);
-    print_times("2 threads", t2, pairs);
-    printf("  speed-up by 2 threads  %.2f\n", (t1.forward + t1.backward) / (t2.forward + t2.backward));
-    if (other != NULL) {
-        const times t = best(other_t, OTHER_ROUNDS);
+    for (ted4_level level = TED4_LEVEL_BASE; level <= most; level++)
+        t1[level] = best(one_t[level], ROUNDS);
+    for (ted4_level level = most; level >= TED4_LEVEL_BASE; level--)
+        print_level(level, &t1[level], &t1[most], pairs);
 
-        print_times("plain build, 1 thread", t, pairs);
-        printf("  ratio, 1 thread        forward %.1f  backward %.1f\n", t.forward / t1.forward, t.backward / t1.backward);
-    }
+    const times t2 = best(two_t, ROUNDS);
+
+    print_times("the first, 2 threads", t2, pairs);
+    printf("  speed-up by 2 threads  %.2f\n", (t1[most].forward + t1[most].backward) / (t2.forward + t2.backward));
     bench_free(&b);
     ted4_threads_finish(&two);
 }
 
-int main(int argc, char **argv)
+int main(void)
 {
-    if (argc == 3 && strcmp(argv[1], "-t") == 0) {
-        times t[OTHER_ROUNDS];
-        bench b;
-
-        bench_init(&b, (size_t)strtoul(argv[2], NULL, 10));
-        for (int i = 0; i < OTHER_ROUNDS; i++)
-            t[i] = once(&b, NULL);
-        const times m = best(t, OTHER_ROUNDS);
-        printf("%.6f %.6f\n", m.forward, m.backward);
-        bench_free(&b);
-        return 0;
-    }
-    report(10000, argc > 1 ? argv[1] : NULL);
-    report(100000, argc > 1 ? argv[1] : NULL);
+    report(10000);
+    report(100000);
     return 0;
 }

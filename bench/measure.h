@@ -1,4 +1,5 @@
 /* measure.h - what the benchmarks have in common: a clock, memory or the end, pairs counted, and the machine's name.
+ * Compiled at the base level (BENCH_FREE in bench.mk), whatever the level in use.
  * SPDX-License-Identifier: BSD-2-Clause */
 #ifndef TED4_BENCH_MEASURE_H
 #define TED4_BENCH_MEASURE_H
@@ -8,7 +9,7 @@
 #include <string.h>
 #include <time.h>
 
-#include "render/raster_state.h"
+#include "render/image_model.h"
 
 static inline double now_ms(void)
 {
@@ -40,13 +41,14 @@ static inline pair_count count_pairs(const struct ted4_raster *r, const ted4_vie
     pair_count          count = {0, 0};
 
     for (uint32_t tile = 0; tile < r->tiles_x * r->tiles_y; tile++)
-        for (int k = 0; k < TED4_TILE_BLOCKS; k++) {
-            ted4_vf px, py, alpha, w;
+        for (int k = 0; k < TED4_TILE_BLOCKS * TED4_VECS; k++) {
+            const int block = k / TED4_VECS;
+            ted4_vf   px, py, alpha, w;
 
-            ted4_block_pixels(tile % r->tiles_x, tile / r->tiles_x, k, &px, &py);
+            ted4_block_pixels(tile % r->tiles_x, tile / r->tiles_x, block, k % TED4_VECS, &px, &py);
             ted4_vf t = ted4_vf_keep((px < (float)v->width) & (py < (float)v->height), ted4_vf_all(1.0f));
             for (uint32_t i = 0; i < first[tile + 1] - first[tile]; i++)
-                if (reach[ted4_group_first(tile, first[tile]) + i / TED4_GROUP].block[k] >> i % TED4_GROUP & 1) {
+                if (reach[ted4_group_first(tile, first[tile]) + i / TED4_GROUP].block[block] >> i % TED4_GROUP & 1) {
                     ted4_blend_step(&splat[owner[first[tile] + i]], px, py, &t, &alpha, &w);
                     count.blended  += (size_t)__builtin_popcount(ted4_vi_bits(w > 0.0f));
                     count.computed += TED4_VEC;

@@ -4,6 +4,8 @@
  * SPDX-License-Identifier: BSD-2-Clause */
 #include "render/raster_state.h"
 
+#include <string.h>
+
 /* Tiles after the last that are counted in vain: see tile_four. */
 enum { SPARE_TILES = 3 };
 
@@ -133,18 +135,18 @@ typedef struct {
     uint32_t tile[4], there[4];
 } tile_four;
 
-TED4_INLINE int is_small(ted4_tile_box b)
+static inline int is_small(ted4_tile_box b)
 {
     return b.x1 - b.x0 <= 2 && b.y1 - b.y0 <= 2;
 }
 
 /* there ? tile : spare, without a branch. */
-TED4_INLINE uint32_t choose(uint32_t there, uint32_t tile, uint32_t spare)
+static inline uint32_t choose(uint32_t there, uint32_t tile, uint32_t spare)
 {
     return spare ^ ((spare ^ tile) & -there);
 }
 
-TED4_INLINE tile_four small_box(ted4_tile_box b, uint32_t tiles_x, uint32_t n_tiles)
+static inline tile_four small_box(ted4_tile_box b, uint32_t tiles_x, uint32_t n_tiles)
 {
     const uint32_t first = b.y0 * tiles_x + b.x0, right = b.x1 - b.x0 - 1u, low = b.y1 - b.y0 - 1u;
 

@@ -1,8 +1,8 @@
-/* blend.c - third stage of raster.c: one job a tile, one vector a block of 4x4 pixels. The tile's list is taken in batches; each batch is
+/* blend.c - third stage of raster.c: one job a tile, one lane group a block of 4x4 pixels. The tile's list is taken in batches; each batch is
  * copied together (its Gaussians lie on as many pages as they are), and an exact test of ellipse against block says which of them each block
  * needs; then it is blended block by block.
  * SPDX-License-Identifier: BSD-2-Clause */
-#include "render/raster_state.h"
+#include "render/image_model.h"
 
 enum {
     BATCH_GROUPS = 4,           /* groups of instances between two changes of block; their records fill a third of a level 1 cache */
@@ -17,45 +17,55 @@ typedef struct {
     int                 keep_state;
 } blend_job;
 
+/* A register's share of a block's pixels. */
 typedef struct {
     ted4_vf px, py;
     ted4_vf t;                  /* transmittance; under TED4_RASTER_T_MIN where finished or outside the image */
     ted4_vf t_out;              /* transmittance that the background sees */
     ted4_vf colour[3];
+} part_state;
+
+typedef struct {
+    part_state part[TED4_VECS];
 } block_state;
 
-/* Blocks (lanes) of the tile with corner pixel centre (x, y) which the Gaussian may reach. On a box, log2(alpha) is largest at the
- * centre if that is inside, else on one of the two sides that face it; (cx, cy) is the point nearest to the centre, and the candidates
+/* Blocks (lanes) in part part of the tile with corner pixel centre (x, y) which the Gaussian may reach. On a box, log2(alpha) is largest at
+ * the centre if that is inside, else on one of the two sides that face it; (cx, cy) is the point nearest to the centre, and the candidates
  * are the best points of the lines through it. */
-TED4_INLINE ted4_vi reached_blocks(const ted4_splat2d *g, float x, float y)
+TED4_INLINE ted4_vi reached_blocks(const ted4_splat2d *g, float x, float y, int part)
 {
-    const ted4_vf col = { 0, 4, 8, 12, 0, 4, 8, 12, 0, 4, 8, 12, 0, 4, 8, 12 };
-    const ted4_vf row = { 0, 0, 0, 0, 4, 4, 4, 4, 8, 8, 8, 8, 12, 12, 12, 12 };
+    static const float col[TED4_LANE_GROUP] = { 0, 4, 8, 12, 0, 4, 8, 12, 0, 4, 8, 12, 0, 4, 8, 12 };
+    static const float row[TED4_LANE_GROUP] = { 0, 0, 0, 0, 4, 4, 4, 4, 8, 8, 8, 8, 12, 12, 12, 12 };
     const float   span = TED4_BLOCK - 1;
     const float   slack = 0.01f;        /* of rounding; pixels decide for themselves */
-    const ted4_vf x0 = col + (x - g->x), y0 = row + (y - g->y), x1 = x0 + span, y1 = y0 + span;
-    const ted4_vf cx = ted4_vf_keep(x0 > 0.0f, x0) + ted4_vf_keep(x1 < 0.0f, x1);
-    const ted4_vf cy = ted4_vf_keep(y0 > 0.0f, y0) + ted4_vf_keep(y1 < 0.0f, y1);
+    const ted4_vf zero = {0};
+    const ted4_vf x0 = ted4_vf_load(col + part * TED4_VEC) + (x - g->x), x1 = x0 + span;
+    const ted4_vf y0 = ted4_vf_load(row + part * TED4_VEC) + (y - g->y), y1 = y0 + span;
+    const ted4_vf cx = ted4_vf_max(x0, zero) + ted4_vf_min(x1, zero), cy = ted4_vf_max(y0, zero) + ted4_vf_min(y1, zero);
     const ted4_vf dx = ted4_vf_max(x0, ted4_vf_min(x1, g->lean_x * cy)), dy = ted4_vf_max(y0, ted4_vf_min(y1, g->lean_y * cx));
-    const ted4_vf n1 = g->a1 * dx + g->a2 * cy, n2 = g->a3 * cy;
-    const ted4_vf m1 = g->a1 * cx + g->a2 * dy, m2 = g->a3 * dy;
+    const ted4_vf a1 = ted4_vf_all(g->a1);
+    const ted4_vf n1 = ted4_vf_fma(a1, dx, g->a2 * cy), n2 = g->a3 * cy;
+    const ted4_vf m1 = ted4_vf_fma(a1, cx, g->a2 * dy), m2 = g->a3 * dy;
     const float   reach = g->level - TED4_LOG2_ALPHA_MIN + slack;
+    const ted4_vf n = ted4_vf_fma(n1, n1, n2 * n2), m = ted4_vf_fma(m1, m1, m2 * m2);
 
-    return (n1 * n1 + n2 * n2 <= reach) | (m1 * m1 + m2 * m2 <= reach);
+    return ted4_vf_min(n, m) <= reach;
 }
 
-/* Half a group, n <= HALF_GROUP: bit i of lane b for instance i and block b. near: copies of the instances' Gaussians. */
-static ted4_vu reach_half(const ted4_splat2d *splat, const uint32_t *owner, uint32_t n, float x, float y, ted4_splat2d *near)
+/* Half a group, n <= HALF_GROUP: bit i of all[b] for instance i and block b. near: copies of the instances' Gaussians. */
+static void reach_half(const ted4_splat2d *splat, const uint32_t *owner, uint32_t n, float x, float y, ted4_splat2d *near,
+                       uint32_t all[TED4_TILE_BLOCKS])
 {
-    ted4_vu all = {0}, bit = all + 1u;
+    ted4_vu sum[TED4_VECS] = {{0}}, bit = sum[0] + 1u;
 
     for (uint32_t i = 0; i < n; i++) {
         __builtin_prefetch(&splat[owner[i + TED4_AHEAD]]);
         near[i] = splat[owner[i]];
-        all |= (ted4_vu)reached_blocks(&near[i], x, y) & bit;
+        for (int part = 0; part < TED4_VECS; part++)
+            sum[part] |= (ted4_vu)reached_blocks(&near[i], x, y, part) & bit;
         bit += bit;
     }
-    return all;
+    memcpy(all, sum, sizeof sum);
 }
 
 /* A group, n <= TED4_GROUP. live: all bits set for unfinished blocks, none for others. */
@@ -63,20 +73,20 @@ static void reach_group(const ted4_splat2d *splat, const uint32_t *owner, uint32
                         ted4_splat2d *near, ted4_reach *out)
 {
     const uint32_t half = n < HALF_GROUP ? n : HALF_GROUP;
-    const ted4_vu  low = reach_half(splat, owner, half, x, y, near);
-    const ted4_vu  high = reach_half(splat, owner + half, n - half, x, y, near + half);
+    uint32_t       low[TED4_TILE_BLOCKS], high[TED4_TILE_BLOCKS];
 
+    reach_half(splat, owner, half, x, y, near, low);
+    reach_half(splat, owner + half, n - half, x, y, near + half, high);
     for (int b = 0; b < TED4_TILE_BLOCKS; b++)
         out->block[b] = ((uint64_t)high[b] << HALF_GROUP | low[b]) & live[b];
 }
 
-/* Blends the Gaussians that reach says into block b. When every pixel is finished, takes those not needed out of reach; the result is
- * then 0, else 1. */
-static int blend_block(block_state *state, int b, const ted4_splat2d *near, ted4_reach *reach, uint32_t n_groups)
+/* Blends the Gaussians that reach says into a part of block b. Returns the first group that it did not need, as all its pixels were finished. */
+static uint32_t blend_part(part_state *state, int b, const ted4_splat2d *near, const ted4_reach *reach, uint32_t n_groups)
 {
-    block_state s = *state;
-    uint32_t    group = 0;
-    int         live = 1;
+    part_state s = *state;
+    uint32_t   group = 0;
+    int        live = ted4_vi_bits(s.t >= TED4_RASTER_T_MIN) != 0;
 
     for (; group < n_groups && live; group++) {
         for (uint64_t rest = reach[group].block[b]; rest != 0; rest &= rest - 1) {
@@ -86,27 +96,45 @@ static int blend_block(block_state *state, int b, const ted4_splat2d *near, ted4
             ted4_blend_step(g, s.px, s.py, &s.t, &alpha, &w);
             s.t_out -= w;
             for (int k = 0; k < 3; k++)
-                s.colour[k] += g->colour[k] * w;
+                s.colour[k] = ted4_vf_fma(ted4_vf_all(g->colour[k]), w, s.colour[k]);
         }
         live = ted4_vi_bits(s.t >= TED4_RASTER_T_MIN) != 0;
     }
-    for (; group < n_groups; group++)
-        reach[group].block[b] = 0;
     *state = s;
-    return live;
+    return live ? n_groups + 1 : group;
+}
+
+/* Blends the Gaussians that reach says into block b. When every pixel is finished, takes those not needed out of reach; the result is
+ * then 0, else 1. */
+static int blend_block(block_state *state, int b, const ted4_splat2d *near, ted4_reach *reach, uint32_t n_groups)
+{
+    uint32_t end = 0;
+
+    for (int part = 0; part < TED4_VECS; part++) {
+        const uint32_t at = blend_part(&state->part[part], b, near, reach, n_groups);
+
+        end = at > end ? at : end;
+    }
+    for (uint32_t group = end; group < n_groups; group++)
+        reach[group].block[b] = 0;
+    return end > n_groups;
 }
 
 /* live: see reach_group; blocks outside the image are finished from the start. */
 static void init_blocks(block_state *state, uint64_t *live, uint32_t tx, uint32_t ty, const ted4_view *v)
 {
+    memset(state, 0, TED4_TILE_BLOCKS * sizeof *state);
     for (int b = 0; b < TED4_TILE_BLOCKS; b++) {
-        block_state *s = &state[b];
+        live[b] = 0;
+        for (int part = 0; part < TED4_VECS; part++) {
+            part_state *s = &state[b].part[part];
 
-        memset(s, 0, sizeof *s);
-        ted4_block_pixels(tx, ty, b, &s->px, &s->py);
-        s->t     = ted4_vf_keep((s->px < (float)v->width) & (s->py < (float)v->height), ted4_vf_all(1.0f));
-        s->t_out = s->t;
-        live[b]  = ted4_vi_bits(s->t > 0.0f) != 0 ? UINT64_MAX : 0;
+            ted4_block_pixels(tx, ty, b, part, &s->px, &s->py);
+            s->t     = ted4_vf_keep((s->px < (float)v->width) & (s->py < (float)v->height), ted4_vf_all(1.0f));
+            s->t_out = s->t;
+            if (ted4_vi_bits(s->t > 0.0f) != 0)
+                live[b] = UINT64_MAX;
+        }
     }
 }
 
@@ -118,9 +146,11 @@ static void store_block(const blend_job *job, const block_state *s, size_t x, si
         return;
     const size_t n = width - x < TED4_BLOCK ? width - x : TED4_BLOCK;
     for (size_t k = 0; k < 3; k++) {
-        float out[TED4_VEC];
+        float out[TED4_LANE_GROUP];
 
-        ted4_vf_store(out, s->colour[k] + job->v->background[k] * s->t_out);
+        for (int part = 0; part < TED4_VECS; part++)
+            ted4_vf_store(out + part * TED4_VEC,
+                          ted4_vf_fma(ted4_vf_all(job->v->background[k]), s->part[part].t_out, s->part[part].colour[k]));
         for (size_t row = 0; row < TED4_BLOCK && y + row < height; row++)
             memcpy(job->image + (k * height + y + row) * width + x, out + row * TED4_BLOCK, n * sizeof *out);
     }
@@ -182,7 +212,7 @@ static void blend_tile(void *arg, size_t tile)
                     ty * TED4_TILE + (size_t)(b / TED4_BLOCK) * TED4_BLOCK);
 }
 
-int ted4_raster_blend(struct ted4_raster *r, const ted4_view *v, const ted4_parallel *p, int keep_state, float *image)
+int TED4_LEVELED(ted4_raster_blend)(struct ted4_raster *r, const ted4_view *v, const ted4_parallel *p, int keep_state, float *image)
 {
     blend_job job = { r, v, image, keep_state };
 

@@ -1,5 +1,5 @@
-/* image_model.h - the mathematics of the rasteriser, written once for forward and backward: EWA projection of 16 Gaussians, and the opacity of
- * one Gaussian at the 16 pixels of a block. Depends on vec.h.
+/* image_model.h - the mathematics of the rasteriser, written once for forward and backward: EWA projection of as many Gaussians as a
+ * register has lanes, and the opacity of one Gaussian at as many pixels of a block. Depends on raster_state.h, vec.h.
  * raster_plain.c is the same model in plain scalar code.
  *
  * The exponent of a Gaussian is taken in log2 and by the Cholesky factor of the inverse covariance [[a, b], [b, c]]^-1: with
@@ -10,7 +10,7 @@
 #ifndef TED4_IMAGE_MODEL_H
 #define TED4_IMAGE_MODEL_H
 
-#include "render/raster.h"
+#include "render/raster_state.h"
 #include "render/vec.h"
 
 #define TED4_LOG2_E           1.44269504088896341f
@@ -18,16 +18,6 @@
 
 /* The factors below carry sqrt(log2(e) / 2), so that exponents need no constant: log2(alpha) = level - n1^2 - n2^2. */
 #define TED4_WHITEN           0.84932180028801904f      /* sqrt(log2(e) / 2) */
-
-/* What a tile needs of one Gaussian: a cache line, since tiles visit Gaussians in depth order, which is no memory order. */
-typedef struct {
-    float x, y;                 /* centre, pixels */
-    float a1, a2, a3;           /* n1 = a1 dx + a2 dy, n2 = a3 dy */
-    float level;                /* log2(opacity) */
-    float colour[3];
-    float lean_x, lean_y;       /* b / c and b / a: of all points with a given dy, dx = lean_x dy is the most opaque; and vice versa */
-    float unused[5];
-} ted4_splat2d;
 
 /* View constants that projection shares between Gaussians. */
 typedef struct {
@@ -44,12 +34,12 @@ TED4_INLINE ted4_guard ted4_guard_make(const ted4_view *v)
                          mid_v - TED4_RASTER_GUARD * half_v, mid_v + TED4_RASTER_GUARD * half_v };
 }
 
-/* 16 Gaussians as they come. */
+/* As many Gaussians as a register has lanes, as they come. */
 typedef struct {
     ted4_vf mean[3], scale[3], rot[4], opacity;
-} ted4_splats16;
+} ted4_splat_lanes;
 
-TED4_INLINE void ted4_splats16_load(ted4_splats16 *g, const ted4_splats *s, size_t i, size_t n)
+TED4_INLINE void ted4_splat_lanes_load(ted4_splat_lanes *g, const ted4_splats *s, size_t i, size_t n)
 {
     for (int k = 0; k < 3; k++) {
         g->mean[k]  = ted4_vf_load_n(s->mean[k] + i, n);
@@ -77,7 +67,21 @@ typedef struct {
 
 TED4_INLINE ted4_vf ted4_dot3(const ted4_vf a[3], const ted4_vf b[3])
 {
-    return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
+    return ted4_vf_fma(a[0], b[0], ted4_vf_fma(a[1], b[1], a[2] * b[2]));
+}
+
+/* m . x for a row m of a matrix that all lanes share. */
+TED4_INLINE ted4_vf ted4_row3(const float m[3], const ted4_vf x[3])
+{
+    return ted4_vf_fma(ted4_vf_all(m[2]), x[2], ted4_vf_fma(ted4_vf_all(m[1]), x[1], m[0] * x[0]));
+}
+
+/* Component i of the cross product of a and b. */
+TED4_INLINE ted4_vf ted4_cross(const ted4_vf a[3], const ted4_vf b[3], int i)
+{
+    const int j = (i + 1) % 3, k = (i + 2) % 3;
+
+    return ted4_vf_fnma(a[k], b[j], a[j] * b[k]);
 }
 
 /* R(q) of a unit quaternion w x y z, rows first. */
@@ -106,23 +110,25 @@ TED4_INLINE void ted4_project_axis(const ted4_projection *p, const ted4_vf scale
     const ted4_vf fz = f * p->iz;
 
     for (int i = 0; i < 3; i++)
-        j[i] = fz * (w[i] - u * w2[i]);
+        j[i] = fz * ted4_vf_fnma(u, ted4_vf_all(w2[i]), ted4_vf_all(w[i]));
     for (int i = 0; i < 3; i++) {
-        q[i]   = j[0] * p->r[i] + j[1] * p->r[3 + i] + j[2] * p->r[6 + i];
+        const ted4_vf column[3] = { p->r[i], p->r[3 + i], p->r[6 + i] };
+
+        q[i]   = ted4_dot3(j, column);
         out[i] = q[i] * scale[i];
     }
 }
 
 /* Lanes behind the camera give numbers without meaning: the caller masks them by t[2] > near_z. */
-TED4_INLINE void ted4_project16(ted4_projection *p, const ted4_splats16 *g, const ted4_view *v, const ted4_guard *guard)
+TED4_INLINE void ted4_project_lanes(ted4_projection *p, const ted4_splat_lanes *g, const ted4_view *v, const ted4_guard *guard)
 {
     for (int i = 0; i < 3; i++)
-        p->t[i] = v->R[3 * i] * g->mean[0] + v->R[3 * i + 1] * g->mean[1] + v->R[3 * i + 2] * g->mean[2] + v->t[i];
+        p->t[i] = ted4_row3(v->R + 3 * i, g->mean) + v->t[i];
     p->iz = 1.0f / p->t[2];
 
     const ted4_vf u = p->t[0] * p->iz, w = p->t[1] * p->iz;
-    p->x      = v->fx * u + v->cx;
-    p->y      = v->fy * w + v->cy;
+    p->x      = ted4_vf_fma(ted4_vf_all(v->fx), u, ted4_vf_all(v->cx));
+    p->y      = ted4_vf_fma(ted4_vf_all(v->fy), w, ted4_vf_all(v->cy));
     p->u_free = (u > guard->u_min) & (u < guard->u_max);
     p->v_free = (w > guard->v_min) & (w < guard->v_max);
     p->u      = ted4_vf_min(ted4_vf_max(u, ted4_vf_all(guard->u_min)), ted4_vf_all(guard->u_max));
@@ -134,13 +140,12 @@ TED4_INLINE void ted4_project16(ted4_projection *p, const ted4_splats16 *g, cons
 
     /* det(P P^T) is the squared length of the rows' cross product: no cancellation, unlike ac - b^2. */
     const ted4_vf a0 = ted4_dot3(p->p0, p->p0), c0 = ted4_dot3(p->p1, p->p1);
-    const ted4_vf m0 = p->p0[1] * p->p1[2] - p->p0[2] * p->p1[1];
-    const ted4_vf m1 = p->p0[2] * p->p1[0] - p->p0[0] * p->p1[2];
-    const ted4_vf m2 = p->p0[0] * p->p1[1] - p->p0[1] * p->p1[0];
-    p->a   = a0 + TED4_RASTER_BLUR;
+    const ted4_vf m[3] = { ted4_cross(p->p0, p->p1, 0), ted4_cross(p->p0, p->p1, 1), ted4_cross(p->p0, p->p1, 2) };
+    const ted4_vf blur = ted4_vf_all(TED4_RASTER_BLUR);
+    p->a   = a0 + blur;
     p->b   = ted4_dot3(p->p0, p->p1);
-    p->c   = c0 + TED4_RASTER_BLUR;
-    p->det = m0 * m0 + m1 * m1 + m2 * m2 + TED4_RASTER_BLUR * (a0 + c0) + TED4_RASTER_BLUR * TED4_RASTER_BLUR;
+    p->c   = c0 + blur;
+    p->det = ted4_dot3(m, m) + ted4_vf_fma(blur, a0 + c0, blur * blur);
 
     const ted4_vf ic = 1.0f / p->c;
     p->a1 = TED4_WHITEN * ted4_vf_sqrt(p->c / p->det);
@@ -148,14 +153,27 @@ TED4_INLINE void ted4_project16(ted4_projection *p, const ted4_splats16 *g, cons
     p->a3 = TED4_WHITEN * ted4_vf_sqrt(ic);
 }
 
+/* Pixel centres of part part of block b of tile (tx, ty): columns and rows. A part is a register's share of the block's
+ * pixels, which are counted row by row. */
+TED4_INLINE void ted4_block_pixels(uint32_t tx, uint32_t ty, int b, int part, ted4_vf *px, ted4_vf *py)
+{
+    static const float col[TED4_LANE_GROUP] = { 0, 1, 2, 3, 0, 1, 2, 3, 0, 1, 2, 3, 0, 1, 2, 3 };
+    static const float row[TED4_LANE_GROUP] = { 0, 0, 0, 0, 1, 1, 1, 1, 2, 2, 2, 2, 3, 3, 3, 3 };
+
+    *px = ted4_vf_load(col + part * TED4_VEC)
+        + ((float)(tx * TED4_TILE + (uint32_t)(b % TED4_BLOCK) * TED4_BLOCK) + 0.5f);
+    *py = ted4_vf_load(row + part * TED4_VEC)
+        + ((float)(ty * TED4_TILE + (uint32_t)(b / TED4_BLOCK) * TED4_BLOCK) + 0.5f);
+}
+
 /* log2(alpha) at the pixels (px, py), and the whitened offsets. */
 TED4_INLINE ted4_vf ted4_splat_log2_alpha(const ted4_splat2d *g, ted4_vf px, ted4_vf py, ted4_vf *n1, ted4_vf *n2)
 {
     const ted4_vf dx = px - g->x, dy = py - g->y;
 
-    *n1 = g->a1 * dx + g->a2 * dy;
+    *n1 = ted4_vf_fma(ted4_vf_all(g->a1), dx, g->a2 * dy);
     *n2 = g->a3 * dy;
-    return g->level - *n1 * *n1 - *n2 * *n2;
+    return ted4_vf_fnma(*n2, *n2, ted4_vf_fnma(*n1, *n1, ted4_vf_all(g->level)));
 }
 
 /* One step of front-to-back blending. t: transmittance before the Gaussian; updated. alpha: opacity used, w = alpha t: weight; both 0 where
@@ -167,7 +185,7 @@ TED4_INLINE void ted4_blend_step(const ted4_splat2d *g, ted4_vf px, ted4_vf py, 
     const ted4_vf e = ted4_splat_log2_alpha(g, px, py, &n1, &n2);
     const ted4_vf capped = ted4_vf_min(ted4_vf_exp2(e), ted4_vf_all(TED4_RASTER_ALPHA_MAX));
     const ted4_vf al = ted4_vf_keep(e >= TED4_LOG2_ALPHA_MIN, capped);
-    const ted4_vf next = *t - al * *t;
+    const ted4_vf next = ted4_vf_fnma(al, *t, *t);
     const ted4_vi on = next >= TED4_RASTER_T_MIN;
 
     *alpha = ted4_vf_keep(on, al);

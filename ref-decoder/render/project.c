@@ -1,6 +1,6 @@
-/* project.c - first stage of raster.c: Gaussians to image plane, 16 at a time, with culling, tile boxes and depth keys.
+/* project.c - first stage of raster.c: Gaussians to image plane, a register of them at a time, with culling, tile boxes and depth keys.
  * SPDX-License-Identifier: BSD-2-Clause */
-#include "render/raster_state.h"
+#include "render/image_model.h"
 
 #include <float.h>
 
@@ -15,7 +15,7 @@ typedef struct {
  * is widened a little, as the pixels themselves decide where a Gaussian ends. */
 static inline ted4_vi pixel_range(ted4_vf centre, ted4_vf reach, int size, ted4_vi *first, ted4_vi *last)
 {
-    const ted4_vf wide = reach * 1.001f + 0.01f;
+    const ted4_vf wide = ted4_vf_fma(reach, ted4_vf_all(1.001f), ted4_vf_all(0.01f));
     const ted4_vf lo = centre - wide + 0.5f, hi = centre + wide - 0.5f;
     const ted4_vf lo_in = ted4_vf_keep(lo > 0.0f, lo), hi_in = ted4_vf_min(hi, ted4_vf_all((float)(size - 1)));
     const ted4_vi any = (lo < (float)size) & (hi >= 0.0f);
@@ -25,7 +25,7 @@ static inline ted4_vi pixel_range(ted4_vf centre, ted4_vf reach, int size, ted4_
     return any & (*first <= *last);
 }
 
-/* Writes what 16 projected Gaussians have to say, lane by lane; i: index of the first. */
+/* Writes what a register of projected Gaussians have to say, lane by lane; i: index of the first. */
 static void store_splats(const project_job *job, size_t i, const ted4_projection *p, ted4_vf level, uint32_t visible)
 {
     ted4_splat2d *out = (ted4_splat2d *)job->r->splat2d.data + i;
@@ -40,7 +40,7 @@ static void store_splats(const project_job *job, size_t i, const ted4_projection
             };
 }
 
-/* Tile boxes of 16 Gaussians, empty where not visible. All conditions are false for NaN. skipped: 1 less for each Gaussian that would be
+/* Tile boxes of a register of Gaussians, empty where not visible. All conditions are false for NaN. skipped: 1 less for each Gaussian that would be
  * drawn, as it is neither behind the camera nor too faint, but is not finite. */
 static uint32_t make_boxes(const project_job *job, const ted4_projection *p, ted4_vf level, ted4_vf opacity, size_t n,
                            ted4_tile_box *box, ted4_vi *skipped)
@@ -77,11 +77,11 @@ static void project_chunk(void *arg, size_t c)
 
     for (size_t i = begin; i < end; i += TED4_VEC) {
         const size_t n = end - i < TED4_VEC ? end - i : TED4_VEC;
-        ted4_splats16   g;
+        ted4_splat_lanes g;
         ted4_projection p;
 
-        ted4_splats16_load(&g, job->s, i, n);
-        ted4_project16(&p, &g, job->v, &job->guard);
+        ted4_splat_lanes_load(&g, job->s, i, n);
+        ted4_project_lanes(&p, &g, job->v, &job->guard);
 
         const ted4_vf  level = ted4_vf_log2(g.opacity);
         const ted4_vi  depth = (ted4_vi)p.t[2];
@@ -106,7 +106,7 @@ static void project_chunk(void *arg, size_t c)
     ((ted4_chunk *)job->r->chunk.data)[c] = count;
 }
 
-int ted4_raster_project(struct ted4_raster *r, const ted4_splats *s, const ted4_view *v, const ted4_parallel *p)
+int TED4_LEVELED(ted4_raster_project)(struct ted4_raster *r, const ted4_splats *s, const ted4_view *v, const ted4_parallel *p)
 {
     const size_t n_chunks = (s->n + TED4_CHUNK - 1) / TED4_CHUNK;
     project_job  job = { r, s, v, ted4_guard_make(v) };

@@ -52,6 +52,16 @@ uint64_t ted4_raster_skipped(const ted4_raster *r)
     return r->n_skipped;
 }
 
+int ted4_raster_project(struct ted4_raster *r, const ted4_splats *s, const ted4_view *v, const ted4_parallel *p)
+{
+    return TED4_IN_USE(ted4_raster_project)(r, s, v, p);
+}
+
+int ted4_raster_blend(struct ted4_raster *r, const ted4_view *v, const ted4_parallel *p, int keep_state, float *image)
+{
+    return TED4_IN_USE(ted4_raster_blend)(r, v, p, keep_state, image);
+}
+
 int ted4_raster_forward(ted4_raster *r, const ted4_splats *s, const ted4_view *v, const ted4_parallel *p, int keep_state,
                         float *image)
 {

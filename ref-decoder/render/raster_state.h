@@ -1,4 +1,4 @@
-/* raster_state.h - inside the workspace of raster.h: what its stages hand to each other and to the adjoint. Depends on image_model.h.
+/* raster_state.h - inside the workspace of raster.h: what its stages hand to each other and to the adjoint. Depends on raster.h, leveled.h.
  * For render/ and its adjoint in ref-encoder/train/ only.
  *
  * Terms: an instance is a (Gaussian, tile) pair. Instances have two orders: by tile and depth ("position"), in which they are
@@ -7,7 +7,8 @@
 #ifndef TED4_RASTER_STATE_H
 #define TED4_RASTER_STATE_H
 
-#include "render/image_model.h"
+#include "render/leveled.h"
+#include "render/raster.h"
 
 enum {
     TED4_TILE        = 16,      /* pixels */
@@ -15,7 +16,7 @@ enum {
     TED4_TILE_BLOCKS = 16,
     TED4_GROUP       = 64,      /* instances whose blocks are noted together */
     TED4_AHEAD       = 32,      /* items fetched before they are needed, where they lie anywhere in memory */
-    TED4_CHUNK       = 1024,    /* Gaussians of one projection job; a multiple of TED4_VEC */
+    TED4_CHUNK       = 1024,    /* Gaussians of one projection job; a multiple of 16 */
     TED4_SORT_PARTS  = 8,       /* jobs of one sorting pass; any number gives the same order */
     TED4_RADIX_BITS  = 11,      /* of a sorting pass, at most */
     TED4_SPARE       = 16,      /* instances that a sorting part may write in vain: a cache line, which no other part writes */
@@ -33,12 +34,22 @@ typedef struct {
 int  ted4_growing_grow(ted4_growing *b, size_t n, size_t element_size);
 void ted4_growing_free(ted4_growing *b);
 
+/* What a tile needs of one Gaussian: a cache line, since tiles visit Gaussians in depth order, which is no memory order. */
+typedef struct {
+    float x, y;                 /* centre, pixels */
+    float a1, a2, a3;           /* n1 = a1 dx + a2 dy, n2 = a3 dy */
+    float level;                /* log2(opacity) */
+    float colour[3];
+    float lean_x, lean_y;       /* b / c and b / a: of all points with a given dy, dx = lean_x dy is the most opaque; and vice versa */
+    float unused[5];
+} ted4_splat2d;
+
 /* Tiles [x0, x1) x [y0, y1); empty when the Gaussian is not visible. */
 typedef struct {
     uint16_t x0, y0, x1, y1;
 } ted4_tile_box;
 
-TED4_INLINE uint32_t ted4_tile_box_area(ted4_tile_box b)
+static inline uint32_t ted4_tile_box_area(ted4_tile_box b)
 {
     return (uint32_t)(b.x1 - b.x0) * (uint32_t)(b.y1 - b.y0);
 }
@@ -49,7 +60,7 @@ typedef struct {
 } ted4_reach;
 
 /* Number of the first group of a tile whose first position this is: groups of different tiles never meet. */
-TED4_INLINE size_t ted4_group_first(size_t tile, uint32_t position)
+static inline size_t ted4_group_first(size_t tile, uint32_t position)
 {
     return tile + position / TED4_GROUP;
 }
@@ -89,18 +100,8 @@ typedef struct {
 } ted4_chunk;
 
 /* The stages of ted4_raster_forward. Each: 0, or -1: no memory. */
-int ted4_raster_project(struct ted4_raster *r, const ted4_splats *s, const ted4_view *v, const ted4_parallel *p);
+TED4_EACH_LEVEL(int, ted4_raster_project, struct ted4_raster *r, const ted4_splats *s, const ted4_view *v, const ted4_parallel *p);
 int ted4_raster_bin(struct ted4_raster *r, const ted4_splats *s, const ted4_parallel *p);
-int ted4_raster_blend(struct ted4_raster *r, const ted4_view *v, const ted4_parallel *p, int keep_state, float *image);
-
-/* Pixel centres of block b of tile (tx, ty): columns and rows. */
-TED4_INLINE void ted4_block_pixels(uint32_t tx, uint32_t ty, int b, ted4_vf *px, ted4_vf *py)
-{
-    const ted4_vf col = { 0, 1, 2, 3, 0, 1, 2, 3, 0, 1, 2, 3, 0, 1, 2, 3 };
-    const ted4_vf row = { 0, 0, 0, 0, 1, 1, 1, 1, 2, 2, 2, 2, 3, 3, 3, 3 };
-
-    *px = col + ((float)(tx * TED4_TILE + (uint32_t)(b % TED4_BLOCK) * TED4_BLOCK) + 0.5f);
-    *py = row + ((float)(ty * TED4_TILE + (uint32_t)(b / TED4_BLOCK) * TED4_BLOCK) + 0.5f);
-}
+TED4_EACH_LEVEL(int, ted4_raster_blend, struct ted4_raster *r, const ted4_view *v, const ted4_parallel *p, int keep_state, float *image);
 
 #endif

@@ -1,5 +1,7 @@
-/* vec.h - sixteen floats at once, in portable vector C: the lanes are Gaussians in project.c and pixels of a 4x4 block in blend.c.
- * Compilers without 512-bit registers split the operations themselves.
+/* vec.h - the floats of one vector register, in portable vector C: 16, 8 or 4 of them. Kernels think in groups of 16
+ * lanes (Gaussians in project.c, pixels of a 4x4 block in blend.c), which are TED4_VECS registers: a lane's result does
+ * not depend on how many, and sums over lanes are taken in one order. For files compiled once a level (leveled.h).
+ * Arithmetic is that of the operators; what is worth an instruction that compilers do not find has a function.
  * SPDX-License-Identifier: BSD-2-Clause */
 #ifndef TED4_VEC_H
 #define TED4_VEC_H
@@ -7,16 +9,35 @@
 #include <math.h>
 #include <stdint.h>
 #include <string.h>
+#if defined(__x86_64__)
+#include <immintrin.h>
+#elif defined(__aarch64__)
+#include <arm_neon.h>
+#endif
+
+#include "render/leveled.h"
 
 /* Vectors are passed by value, but only to functions that are always inlined: how an ABI would pass them does not matter. */
 #pragma GCC diagnostic ignored "-Wpsabi"
 #define TED4_INLINE static inline __attribute__((always_inline))
 
-enum { TED4_VEC = 16 };
+#if defined(__AVX512DQ__) && defined(__AVX512VL__)
+#define TED4_VEC_BYTES 64
+#elif defined(__AVX2__)
+#define TED4_VEC_BYTES 32
+#else
+#define TED4_VEC_BYTES 16
+#endif
 
-typedef float    ted4_vf __attribute__((vector_size(64)));
-typedef int32_t  ted4_vi __attribute__((vector_size(64)));      /* as a mask: -1 or 0 in each lane, as comparisons give it */
-typedef uint32_t ted4_vu __attribute__((vector_size(64)));
+enum {
+    TED4_LANE_GROUP = 16,
+    TED4_VEC        = TED4_VEC_BYTES / 4,           /* floats of a register */
+    TED4_VECS       = TED4_LANE_GROUP / TED4_VEC    /* registers of a lane group */
+};
+
+typedef float    ted4_vf __attribute__((vector_size(TED4_VEC_BYTES)));
+typedef int32_t  ted4_vi __attribute__((vector_size(TED4_VEC_BYTES)));  /* as a mask: -1 or 0 in each lane, as comparisons give it */
+typedef uint32_t ted4_vu __attribute__((vector_size(TED4_VEC_BYTES)));
 
 /* x in every lane. */
 TED4_INLINE ted4_vf ted4_vf_all(float x)
@@ -56,6 +77,37 @@ TED4_INLINE void ted4_vf_store_n(float *p, ted4_vf v, size_t n)
         memcpy(p, &v, n * sizeof *p);
 }
 
+/* a b + c and c - a b, in one rounding where the level has it. */
+TED4_INLINE ted4_vf ted4_vf_fma(ted4_vf a, ted4_vf b, ted4_vf c)
+{
+#if TED4_VEC_BYTES == 64
+    return (ted4_vf)_mm512_fmadd_ps((__m512)a, (__m512)b, (__m512)c);
+#elif TED4_VEC_BYTES == 32
+    return (ted4_vf)_mm256_fmadd_ps((__m256)a, (__m256)b, (__m256)c);
+#elif defined(__aarch64__)
+    return (ted4_vf)vfmaq_f32((float32x4_t)c, (float32x4_t)a, (float32x4_t)b);
+#elif TED4_FUSED
+    for (int i = 0; i < TED4_VEC; i++)
+        c[i] = ted4_fma(a[i], b[i], c[i]);
+    return c;
+#else
+    return a * b + c;
+#endif
+}
+
+TED4_INLINE ted4_vf ted4_vf_fnma(ted4_vf a, ted4_vf b, ted4_vf c)
+{
+#if TED4_VEC_BYTES == 64
+    return (ted4_vf)_mm512_fnmadd_ps((__m512)a, (__m512)b, (__m512)c);
+#elif TED4_VEC_BYTES == 32
+    return (ted4_vf)_mm256_fnmadd_ps((__m256)a, (__m256)b, (__m256)c);
+#elif defined(__aarch64__)
+    return (ted4_vf)vfmsq_f32((float32x4_t)c, (float32x4_t)a, (float32x4_t)b);
+#else
+    return ted4_vf_fma(-a, b, c);
+#endif
+}
+
 /* m ? a : 0 and m ? a : b. */
 TED4_INLINE ted4_vf ted4_vf_keep(ted4_vi m, ted4_vf a)
 {
@@ -64,43 +116,69 @@ TED4_INLINE ted4_vf ted4_vf_keep(ted4_vi m, ted4_vf a)
 
 TED4_INLINE ted4_vf ted4_vf_select(ted4_vi m, ted4_vf a, ted4_vf b)
 {
+#if TED4_VEC_BYTES == 32
+    return (ted4_vf)_mm256_blendv_ps((__m256)b, (__m256)a, (__m256)m);
+#else
     return (ted4_vf)((m & (ted4_vi)a) | (~m & (ted4_vi)b));
+#endif
 }
 
 /* b where they do not compare (NaN). */
 TED4_INLINE ted4_vf ted4_vf_min(ted4_vf a, ted4_vf b)
 {
+#if TED4_VEC_BYTES == 64
+    return (ted4_vf)_mm512_min_ps((__m512)a, (__m512)b);
+#elif TED4_VEC_BYTES == 32
+    return (ted4_vf)_mm256_min_ps((__m256)a, (__m256)b);
+#elif defined(__x86_64__)
+    return (ted4_vf)_mm_min_ps((__m128)a, (__m128)b);
+#else
     return ted4_vf_select(a < b, a, b);
+#endif
 }
 
 TED4_INLINE ted4_vf ted4_vf_max(ted4_vf a, ted4_vf b)
 {
+#if TED4_VEC_BYTES == 64
+    return (ted4_vf)_mm512_max_ps((__m512)a, (__m512)b);
+#elif TED4_VEC_BYTES == 32
+    return (ted4_vf)_mm256_max_ps((__m256)a, (__m256)b);
+#elif defined(__x86_64__)
+    return (ted4_vf)_mm_max_ps((__m128)a, (__m128)b);
+#else
     return ted4_vf_select(a > b, a, b);
+#endif
 }
 
 TED4_INLINE ted4_vf ted4_vf_sqrt(ted4_vf x)
 {
-    float a[TED4_VEC];
-
-    memcpy(a, &x, sizeof x);
+#if TED4_VEC_BYTES == 64
+    return (ted4_vf)_mm512_sqrt_ps((__m512)x);
+#elif TED4_VEC_BYTES == 32
+    return (ted4_vf)_mm256_sqrt_ps((__m256)x);
+#elif defined(__x86_64__)
+    return (ted4_vf)_mm_sqrt_ps((__m128)x);
+#elif defined(__aarch64__)
+    return (ted4_vf)vsqrtq_f32((float32x4_t)x);
+#else
     for (int i = 0; i < TED4_VEC; i++)
-        a[i] = sqrtf(a[i]);
-    memcpy(&x, a, sizeof x);
+        x[i] = sqrtf(x[i]);
     return x;
+#endif
 }
 
 /* Bit i of the result: lane i of the mask. */
 TED4_INLINE uint32_t ted4_vi_bits(ted4_vi m)
 {
-    const ted4_vi bit = { 1 << 0, 1 << 1, 1 << 2, 1 << 3, 1 << 4, 1 << 5, 1 << 6, 1 << 7,
-                          1 << 8, 1 << 9, 1 << 10, 1 << 11, 1 << 12, 1 << 13, 1 << 14, 1 << 15 };
-    ted4_vi x = m & bit;
-
-    x |= __builtin_shufflevector(x, x, 8, 9, 10, 11, 12, 13, 14, 15, 0, 1, 2, 3, 4, 5, 6, 7);
-    x |= __builtin_shufflevector(x, x, 4, 5, 6, 7, 0, 1, 2, 3, 12, 13, 14, 15, 8, 9, 10, 11);
-    x |= __builtin_shufflevector(x, x, 2, 3, 0, 1, 6, 7, 4, 5, 10, 11, 8, 9, 14, 15, 12, 13);
-    x |= __builtin_shufflevector(x, x, 1, 0, 3, 2, 5, 4, 7, 6, 9, 8, 11, 10, 13, 12, 15, 14);
-    return (uint32_t)x[0];
+#if TED4_VEC_BYTES == 64
+    return (uint32_t)_mm512_movepi32_mask((__m512i)m);
+#elif TED4_VEC_BYTES == 32
+    return (uint32_t)_mm256_movemask_ps((__m256)m);
+#elif defined(__x86_64__)
+    return (uint32_t)_mm_movemask_ps((__m128)m);
+#else
+    return (uint32_t)(-m[0] | -m[1] << 1 | -m[2] << 2 | -m[3] << 3);
+#endif
 }
 
 /* 2^x for x in [-126, 127], relative error 5e-7 (measured on [-8, 0.2]); outside that range the value means
@@ -110,12 +188,12 @@ TED4_INLINE ted4_vf ted4_vf_exp2(ted4_vf x)
     const float   magic = 12582912.0f;      /* 1.5 * 2^23: adding it leaves round(x) in the low bits */
     const ted4_vf t = x + magic;
     const ted4_vf f = x - (t - magic);
-    ted4_vf       y = f * 0.00111255073f + 0.00966628268f;
+    ted4_vf       y = ted4_vf_fma(f, ted4_vf_all(0.00111255073f), ted4_vf_all(0.00966628268f));
 
-    y = y * f + 0.0555740036f;
-    y = y * f + 0.240223512f;
-    y = y * f + 0.693142831f;
-    y = y * f + 1.0f;
+    y = ted4_vf_fma(y, f, ted4_vf_all(0.0555740036f));
+    y = ted4_vf_fma(y, f, ted4_vf_all(0.240223512f));
+    y = ted4_vf_fma(y, f, ted4_vf_all(0.693142831f));
+    y = ted4_vf_fma(y, f, ted4_vf_all(1.0f));
     return (ted4_vf)((ted4_vu)y + ((ted4_vu)t << 23));
 }
 
@@ -128,12 +206,13 @@ TED4_INLINE ted4_vf ted4_vf_log2(ted4_vf x)
     const ted4_vi  e = (ted4_vi)d >> 23;
     const ted4_vf  m = (ted4_vf)((d & 0x7fffffu) + half);
     const ted4_vf  s = (m - 1.0f) / (m + 1.0f), s2 = s * s;
-    ted4_vf        y = s2 * (float)(2.0 / 9 / 0.6931471805599453) + (float)(2.0 / 7 / 0.6931471805599453);
+    const ted4_vf  unit = ted4_vf_all((float)(2.0 / 1 / 0.6931471805599453));
+    ted4_vf        y = ted4_vf_fma(s2, unit * (1.0f / 9.0f), unit * (1.0f / 7.0f));
 
-    y = y * s2 + (float)(2.0 / 5 / 0.6931471805599453);
-    y = y * s2 + (float)(2.0 / 3 / 0.6931471805599453);
-    y = y * s2 + (float)(2.0 / 1 / 0.6931471805599453);
-    return y * s + __builtin_convertvector(e, ted4_vf);
+    y = ted4_vf_fma(y, s2, unit * (1.0f / 5.0f));
+    y = ted4_vf_fma(y, s2, unit * (1.0f / 3.0f));
+    y = ted4_vf_fma(y, s2, unit);
+    return ted4_vf_fma(y, s, __builtin_convertvector(e, ted4_vf));
 }
 
 #endif

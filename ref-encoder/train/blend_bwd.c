@@ -9,6 +9,7 @@
  * The first walk goes block by block (T stays in a register), the second Gaussian by Gaussian (the sums over pixels do).
  * SPDX-License-Identifier: BSD-2-Clause */
 #include "train/raster_adjoint.h"
+#include "render/image_model.h"
 
 #include <stdatomic.h>
 
@@ -22,7 +23,7 @@ typedef struct {
     atomic_int          failed;
 } bwd_job;
 
-/* A Gaussian at a block's pixels, as blended. */
+/* A Gaussian at the pixels of a part of a block (a register's share of them), as blended. */
 typedef struct {
     ted4_vf alpha, w;
 } blended;
@@ -32,7 +33,7 @@ typedef struct {
     ted4_vf  d[3];              /* dL / d colour; 0 outside the image */
     ted4_vf  behind;            /* C . D */
     size_t   first, end;        /* its share of the tile's pairs; end moves to the front in the second walk */
-} block_state;
+} part_state;
 
 /* A tile at work. */
 typedef struct {
@@ -40,54 +41,82 @@ typedef struct {
     const uint32_t     *slot;           /* [n] */
     const ted4_reach   *reach;          /* [n_groups] */
     uint32_t            n, n_groups;
-    blended            *pair;           /* all pairs, block after block */
+    blended            *pair;           /* all pairs, block after block, part after part */
     uint16_t           *mask;           /* [n] bit b: has a pair in block b */
-    block_state         state[TED4_TILE_BLOCKS];
+    part_state          state[TED4_VECS][TED4_TILE_BLOCKS];
 } tile_state;
 
-/* Horizontal sums of 8 vectors, pairwise: halves, quarters, then neighbours are added. */
-TED4_INLINE void sum8(const ted4_vf v[8], float out[8])
-{
-    ted4_vf h[4], q[2], e;
+/* Sums over the pixels of a block, all in one order: pixel i and i + 8, then i and i + 4 are added, then 0 and 2, 1 and 3, and these two. */
+typedef struct {
+    ted4_vf term[TED4_GRAD_SUMS], total;
+} part_sums;
 
-    for (int i = 0; i < 4; i++) {
-        const ted4_vf a = v[2 * i], b = v[2 * i + 1];
-        h[i] = __builtin_shufflevector(a, b, 0, 1, 2, 3, 4, 5, 6, 7, 16, 17, 18, 19, 20, 21, 22, 23)
-             + __builtin_shufflevector(a, b, 8, 9, 10, 11, 12, 13, 14, 15, 24, 25, 26, 27, 28, 29, 30, 31);
-    }
-    for (int i = 0; i < 2; i++) {
-        const ted4_vf a = h[2 * i], b = h[2 * i + 1];
-        q[i] = __builtin_shufflevector(a, b, 0, 1, 2, 3, 8, 9, 10, 11, 16, 17, 18, 19, 24, 25, 26, 27)
-             + __builtin_shufflevector(a, b, 4, 5, 6, 7, 12, 13, 14, 15, 20, 21, 22, 23, 28, 29, 30, 31);
-    }
-    e = __builtin_shufflevector(q[0], q[1], 0, 1, 4, 5, 8, 9, 12, 13, 16, 17, 20, 21, 24, 25, 28, 29)
-      + __builtin_shufflevector(q[0], q[1], 2, 3, 6, 7, 10, 11, 14, 15, 18, 19, 22, 23, 26, 27, 30, 31);
-    e += __builtin_shufflevector(e, e, 1, 0, 3, 2, 5, 4, 7, 6, 9, 8, 11, 10, 13, 12, 15, 14);
-    e = __builtin_shufflevector(e, e, 0, 2, 4, 6, 8, 10, 12, 14, 0, 2, 4, 6, 8, 10, 12, 14);
-    memcpy(out, &e, 8 * sizeof *out);
+typedef float quarter __attribute__((vector_size(16)));
+
+/* The first two steps: 16 lanes to 4. v: the parts' vectors, so many floats apart. */
+#if TED4_VEC_BYTES == 64
+TED4_INLINE quarter to_quarter(const part_sums *s, size_t at)
+{
+    const ted4_vf v = ted4_vf_load((const float *)s + at);
+
+    return (__builtin_shufflevector(v, v, 0, 1, 2, 3) + __builtin_shufflevector(v, v, 8, 9, 10, 11))
+         + (__builtin_shufflevector(v, v, 4, 5, 6, 7) + __builtin_shufflevector(v, v, 12, 13, 14, 15));
+}
+#elif TED4_VEC_BYTES == 32
+TED4_INLINE quarter to_quarter(const part_sums *s, size_t at)
+{
+    const ted4_vf v = ted4_vf_load((const float *)&s[0] + at) + ted4_vf_load((const float *)&s[1] + at);
+
+    return __builtin_shufflevector(v, v, 0, 1, 2, 3) + __builtin_shufflevector(v, v, 4, 5, 6, 7);
+}
+#else
+TED4_INLINE quarter to_quarter(const part_sums *s, size_t at)
+{
+    return (ted4_vf_load((const float *)&s[0] + at) + ted4_vf_load((const float *)&s[2] + at))
+         + (ted4_vf_load((const float *)&s[1] + at) + ted4_vf_load((const float *)&s[3] + at));
+}
+#endif
+
+/* The last two, of four sums at once. */
+TED4_INLINE void finish_sums(const quarter q[4], float out[4])
+{
+    const quarter a = __builtin_shufflevector(q[0], q[1], 0, 1, 4, 5) + __builtin_shufflevector(q[0], q[1], 2, 3, 6, 7);
+    const quarter b = __builtin_shufflevector(q[2], q[3], 0, 1, 4, 5) + __builtin_shufflevector(q[2], q[3], 2, 3, 6, 7);
+    const quarter e = __builtin_shufflevector(a, b, 0, 2, 4, 6) + __builtin_shufflevector(a, b, 1, 3, 5, 7);
+
+    memcpy(out, &e, sizeof e);
 }
 
-TED4_INLINE float sum1(ted4_vf v)
+TED4_INLINE void add_parts(const part_sums *s, float sums[TED4_GRAD_SUMS], float *sum0)
 {
-    v += __builtin_shufflevector(v, v, 8, 9, 10, 11, 12, 13, 14, 15, 0, 1, 2, 3, 4, 5, 6, 7);
-    v += __builtin_shufflevector(v, v, 4, 5, 6, 7, 0, 1, 2, 3, 12, 13, 14, 15, 8, 9, 10, 11);
-    v += __builtin_shufflevector(v, v, 2, 3, 0, 1, 6, 7, 4, 5, 10, 11, 8, 9, 14, 15, 12, 13);
-    return v[0] + v[1];
+    quarter q[TED4_GRAD_SUMS], total;
+
+    for (size_t i = 0; i < TED4_GRAD_SUMS; i++)
+        q[i] = to_quarter(s, i * TED4_VEC);
+    finish_sums(q, sums);
+    finish_sums(q + 4, sums + 4);
+    total = to_quarter(s, TED4_GRAD_SUMS * TED4_VEC);
+    *sum0 = (total[0] + total[2]) + (total[1] + total[3]);
 }
 
-static void load_block(const bwd_job *job, block_state *s, size_t x, size_t y)
+static void load_block(const bwd_job *job, tile_state *tile, int b, size_t x, size_t y)
 {
     const size_t width = (size_t)job->v->width, height = (size_t)job->v->height;
     const size_t n = x >= width ? 0 : width - x < TED4_BLOCK ? width - x : TED4_BLOCK;
 
-    s->behind = ted4_vf_all(0.0f);
+    for (int part = 0; part < TED4_VECS; part++)
+        tile->state[part][b].behind = ted4_vf_all(0.0f);
     for (size_t k = 0; k < 3; k++) {
-        float d[TED4_VEC] = {0};
+        float d[TED4_LANE_GROUP] = {0};
 
         for (size_t row = 0; row < TED4_BLOCK && y + row < height; row++)
             memcpy(d + row * TED4_BLOCK, job->d_image + (k * height + y + row) * width + x, n * sizeof *d);
-        s->d[k] = ted4_vf_load(d);
-        s->behind += job->v->background[k] * s->d[k];
+        for (int part = 0; part < TED4_VECS; part++) {
+            part_state *s = &tile->state[part][b];
+
+            s->d[k] = ted4_vf_load(d + part * TED4_VEC);
+            s->behind = ted4_vf_fma(ted4_vf_all(job->v->background[k]), s->d[k], s->behind);
+        }
     }
 }
 
@@ -97,13 +126,17 @@ static int share_pairs(tile_state *tile, const ted4_splat2d *splat, const uint32
     size_t total = 0;
 
     for (int b = 0; b < TED4_TILE_BLOCKS; b++) {
-        tile->state[b].first = total;
+        size_t n = 0;
+
         for (uint32_t group = 0; group < tile->n_groups; group++)
-            total += (size_t)__builtin_popcountll(tile->reach[group].block[b]);
-        tile->state[b].end = total;
+            n += (size_t)__builtin_popcountll(tile->reach[group].block[b]);
+        for (int part = 0; part < TED4_VECS; part++) {
+            tile->state[part][b].first = total;
+            total += n;
+            tile->state[part][b].end = total;
+        }
     }
-    /* a Gaussian and its mask fit in two pairs' room */
-    if (ted4_growing_grow(scratch, total + 2 * (size_t)tile->n, sizeof(blended)) != 0)
+    if (ted4_growing_grow(scratch, 1, total * sizeof(blended) + tile->n * (sizeof(ted4_splat2d) + sizeof(uint16_t))) != 0)
         return -1;
     tile->pair  = scratch->data;
     tile->splat = (ted4_splat2d *)(tile->pair + total);
@@ -116,13 +149,13 @@ static int share_pairs(tile_state *tile, const ted4_splat2d *splat, const uint32
     return 0;
 }
 
-/* First walk: what blend.c's blend_block did, keeping opacities and weights. */
-static void walk_block(tile_state *tile, int b, const ted4_view *v)
+/* First walk: what blend.c's blend_part did, keeping opacities and weights. */
+static void walk_part(tile_state *tile, int b, int part, const ted4_view *v)
 {
-    const block_state *s = &tile->state[b];
-    const ted4_vf      px = s->px, py = s->py;
-    ted4_vf            t = ted4_vf_keep((px < (float)v->width) & (py < (float)v->height), ted4_vf_all(1.0f));
-    blended           *pair = tile->pair + s->first;
+    const part_state *s = &tile->state[part][b];
+    const ted4_vf     px = s->px, py = s->py;
+    ted4_vf           t = ted4_vf_keep((px < (float)v->width) & (py < (float)v->height), ted4_vf_all(1.0f));
+    blended          *pair = tile->pair + s->first;
 
     for (uint32_t group = 0; group < tile->n_groups; group++)
         for (uint64_t rest = tile->reach[group].block[b]; rest != 0; rest &= rest - 1, pair++) {
@@ -133,32 +166,34 @@ static void walk_block(tile_state *tile, int b, const ted4_view *v)
         }
 }
 
-/* Second walk, one Gaussian of the tile: takes its last pair off each block in mask and sums over their pixels. */
-static void sum_splat(const ted4_splat2d *g, uint32_t mask, block_state *state, const blended *pair, float *sums, float *sum0)
+/* Second walk, one Gaussian of the tile and one part of its blocks: takes its last pair off each block in mask and sums over their pixels. */
+TED4_INLINE void sum_part(const ted4_splat2d *g, uint32_t mask, part_state *state, const blended *pair, part_sums *out)
 {
     ted4_vf sum[TED4_GRAD_SUMS] = {{0}}, total = {0};
 
     for (uint32_t rest = mask; rest != 0; rest &= rest - 1) {
-        block_state *s = &state[__builtin_ctz(rest)];
+        part_state *s = &state[__builtin_ctz(rest)];
         const blended p = pair[--s->end];
-        const ted4_vf ahead = g->colour[0] * s->d[0] + g->colour[1] * s->d[1] + g->colour[2] * s->d[2] - s->behind;
+        const ted4_vf ahead = ted4_vf_fma(ted4_vf_all(g->colour[0]), s->d[0], ted4_vf_fma(ted4_vf_all(g->colour[1]), s->d[1],
+                              ted4_vf_fma(ted4_vf_all(g->colour[2]), s->d[2], -s->behind)));
         /* alpha = min(cap, o exp(-e)): d alpha / d ln(o exp(-e)) is alpha, or 0 where capped */
         const ted4_vf d = ted4_vf_keep(p.alpha < TED4_RASTER_ALPHA_MAX, p.w * ahead);
-        ted4_vf n1, n2;
+        const ted4_vf dx = s->px - g->x, dy = s->py - g->y;
+        const ted4_vf n1 = ted4_vf_fma(ted4_vf_all(g->a1), dx, g->a2 * dy), n2 = g->a3 * dy;
+        const ted4_vf d1 = d * n1, d2 = d * n2;
 
-        ted4_splat_log2_alpha(g, s->px, s->py, &n1, &n2);
-        s->behind += p.alpha * ahead;
+        s->behind = ted4_vf_fma(p.alpha, ahead, s->behind);
         total += d;
-        sum[TED4_SUM_N1]  += d * n1;
-        sum[TED4_SUM_N2]  += d * n2;
-        sum[TED4_SUM_N11] += d * n1 * n1;
-        sum[TED4_SUM_N12] += d * n1 * n2;
-        sum[TED4_SUM_N22] += d * n2 * n2;
+        sum[TED4_SUM_N1]  += d1;
+        sum[TED4_SUM_N2]  += d2;
+        sum[TED4_SUM_N11] = ted4_vf_fma(d1, n1, sum[TED4_SUM_N11]);
+        sum[TED4_SUM_N12] = ted4_vf_fma(d1, n2, sum[TED4_SUM_N12]);
+        sum[TED4_SUM_N22] = ted4_vf_fma(d2, n2, sum[TED4_SUM_N22]);
         for (int k = 0; k < 3; k++)
-            sum[TED4_SUM_COLOUR + k] += p.w * s->d[k];
+            sum[TED4_SUM_COLOUR + k] = ted4_vf_fma(p.w, s->d[k], sum[TED4_SUM_COLOUR + k]);
     }
-    sum8(sum, sums);
-    *sum0 = sum1(total);
+    memcpy(out->term, sum, sizeof sum);
+    out->total = total;
 }
 
 /* Second walk, back to front. */
@@ -172,7 +207,11 @@ static void sum_tile(tile_state *tile, const struct ted4_raster *r)
             __builtin_prefetch((float *)r->sum0.data + tile->slot[i - AHEAD], 1);
         }
         if (tile->mask[i] != 0) {
-            sum_splat(&tile->splat[i], tile->mask[i], tile->state, tile->pair, sums, sum0);
+            part_sums part[TED4_VECS];
+
+            for (int k = 0; k < TED4_VECS; k++)
+                sum_part(&tile->splat[i], tile->mask[i], tile->state[k], tile->pair, &part[k]);
+            add_parts(part, sums, sum0);
         } else {
             memset(sums, 0, TED4_GRAD_SUMS * sizeof *sums);
             *sum0 = 0;
@@ -198,10 +237,14 @@ static int tile_bwd(bwd_job *job, size_t number, ted4_growing *scratch)
     if (share_pairs(&tile, r->splat2d.data, (const uint32_t *)r->owner.data + begin, scratch) != 0)
         return -1;
     for (int b = 0; b < TED4_TILE_BLOCKS; b++) {
-        ted4_block_pixels(tx, ty, b, &tile.state[b].px, &tile.state[b].py);
-        load_block(job, &tile.state[b], tx * TED4_TILE + (size_t)(b % TED4_BLOCK) * TED4_BLOCK,
+        load_block(job, &tile, b, tx * TED4_TILE + (size_t)(b % TED4_BLOCK) * TED4_BLOCK,
                    ty * TED4_TILE + (size_t)(b / TED4_BLOCK) * TED4_BLOCK);
-        walk_block(&tile, b, job->v);
+        for (int part = 0; part < TED4_VECS; part++) {
+            part_state *s = &tile.state[part][b];
+
+            ted4_block_pixels(tx, ty, b, part, &s->px, &s->py);
+            walk_part(&tile, b, part, job->v);
+        }
     }
     sum_tile(&tile, r);
     return 0;
@@ -218,7 +261,7 @@ static void bwd_worker(void *arg, size_t worker)
             atomic_store(&job->failed, 1);
 }
 
-int ted4_raster_blend_bwd(struct ted4_raster *r, const ted4_view *v, const ted4_parallel *p, const float *d_image)
+int TED4_LEVELED(ted4_raster_blend_bwd)(struct ted4_raster *r, const ted4_view *v, const ted4_parallel *p, const float *d_image)
 {
     bwd_job job = { .r = r, .v = v, .d_image = d_image };
 

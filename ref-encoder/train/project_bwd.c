@@ -1,6 +1,7 @@
-/* project_bwd.c - adjoint of render/project.c, 16 Gaussians at a time. Comments quote the forward lines of render/image_model.h.
+/* project_bwd.c - adjoint of render/project.c, a register of Gaussians at a time. Comments quote the forward lines of render/image_model.h.
  * SPDX-License-Identifier: BSD-2-Clause */
 #include "train/raster_adjoint.h"
+#include "render/image_model.h"
 
 #include <float.h>
 
@@ -12,12 +13,12 @@ typedef struct {
     ted4_guard                guard;
 } bwd_job;
 
-/* Gradients of 16 Gaussians. */
+/* Gradients of a register of Gaussians. */
 typedef struct {
     ted4_vf mean[3], scale[3], rot[4], opacity, colour[3], mean2d;
-} grads16;
+} grad_lanes;
 
-/* Sums of 16 Gaussians, lane by lane, over their tiles in slot order. Returns which Gaussians have tiles. */
+/* Sums of a register of Gaussians, lane by lane, over their tiles in slot order. Returns which Gaussians have tiles. */
 static uint32_t add_up(const struct ted4_raster *r, size_t i, size_t n, ted4_vf sum[TED4_GRAD_SUMS], ted4_vf *sum0)
 {
     typedef float row __attribute__((vector_size(32)));
@@ -64,7 +65,7 @@ static inline void rotation_bwd(const ted4_vf q[4], const ted4_vf d[9], ted4_vf 
 /* One image axis from its row dp of dL/dP on. f: focal length; u, u_free: clamped slope; du_dt: t[0] or t[1] is slope times t[2].
  * Adds to dL/dscale, dL/dR(q), dL/dt. Forward:
  *     q[i] = j . R(q) column i,   p[i] = q[i] scale[i],   j[i] = f / t[2] (w[i] - u w2[i]),   u = clamp(t[axis] / t[2]) */
-static inline void axis_bwd(const ted4_projection *p, const ted4_splats16 *g, float f, ted4_vf u, ted4_vi u_free, const float w[3],
+static inline void axis_bwd(const ted4_projection *p, const ted4_splat_lanes *g, float f, ted4_vf u, ted4_vi u_free, const float w[3],
                             const float w2[3], const ted4_vf j[3], const ted4_vf q[3], const ted4_vf dp[3], ted4_vf d_scale[3],
                             ted4_vf d_r[9], ted4_vf *d_slope, ted4_vf *d_z)
 {
@@ -129,15 +130,15 @@ static inline void thin_bwd(const ted4_projection *p, const ted4_vf sum[TED4_GRA
     }
 }
 
-static void splats_bwd(const bwd_job *job, const ted4_splats16 *g, const ted4_vf sum[TED4_GRAD_SUMS], const ted4_vf *sum0,
-                       grads16 *out)
+static void splats_bwd(const bwd_job *job, const ted4_splat_lanes *g, const ted4_vf sum[TED4_GRAD_SUMS], const ted4_vf *sum0,
+                       grad_lanes *out)
 {
     const ted4_view *v = job->v;
     const float      unscale = 1.0f / (TED4_WHITEN * TED4_WHITEN);
     ted4_projection  p;
     ted4_vf          dp0[3], dp1[3], d_r[9] = {{0}}, d_z = {0}, d_u = {0}, d_v = {0};
 
-    ted4_project16(&p, g, v, &job->guard);
+    ted4_project_lanes(&p, g, v, &job->guard);
     covariance_bwd(&p, sum, dp0, dp1);
 
     const ted4_vi thin = p.a * p.c > THIN * p.det;
@@ -168,7 +169,7 @@ static void splats_bwd(const bwd_job *job, const ted4_splats16 *g, const ted4_vf
 }
 
 /* ok: lanes with tiles; the others' numbers may be anything. */
-static void store_grads(const ted4_splat_grads *g, const grads16 *d, ted4_vi ok, size_t i, size_t n)
+static void store_grads(const ted4_splat_grads *g, const grad_lanes *d, ted4_vi ok, size_t i, size_t n)
 {
     for (int k = 0; k < 3; k++) {
         ted4_vf_store_n(g->mean[k] + i, ted4_vf_keep(ok, d->mean[k]), n);
@@ -190,7 +191,7 @@ static void project_chunk_bwd(void *arg, size_t c)
         const size_t n = end - i < TED4_VEC ? end - i : TED4_VEC;
         ted4_vf        sum[TED4_GRAD_SUMS], sum0;
         const uint32_t visible = add_up(job->r, i, n, sum, &sum0);
-        grads16        d;
+        grad_lanes        d;
         ted4_vi        ok;
 
         memset(&d, 0, sizeof d);
@@ -199,16 +200,16 @@ static void project_chunk_bwd(void *arg, size_t c)
         for (size_t k = 0; k < n; k++)
             job->g->visible[i + k] = visible >> k & 1;
         if (visible != 0) {
-            ted4_splats16 g;
+            ted4_splat_lanes g;
 
-            ted4_splats16_load(&g, job->s, i, n);
+            ted4_splat_lanes_load(&g, job->s, i, n);
             splats_bwd(job, &g, sum, &sum0, &d);
         }
         store_grads(job->g, &d, ok, i, n);
     }
 }
 
-void ted4_raster_project_bwd(struct ted4_raster *r, const ted4_splats *s, const ted4_view *v, const ted4_parallel *p,
+void TED4_LEVELED(ted4_raster_project_bwd)(struct ted4_raster *r, const ted4_splats *s, const ted4_view *v, const ted4_parallel *p,
                              const ted4_splat_grads *g)
 {
     bwd_job job = { r, s, v, g, ted4_guard_make(v) };

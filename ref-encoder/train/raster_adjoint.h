@@ -11,9 +11,9 @@
 enum { TED4_SUM_N1, TED4_SUM_N2, TED4_SUM_N11, TED4_SUM_N12, TED4_SUM_N22, TED4_SUM_COLOUR };
 
 /* Fills sums and sum0 of every instance. 0, or -1: no memory. */
-int  ted4_raster_blend_bwd(struct ted4_raster *r, const ted4_view *v, const ted4_parallel *p, const float *d_image);
+TED4_EACH_LEVEL(int, ted4_raster_blend_bwd, struct ted4_raster *r, const ted4_view *v, const ted4_parallel *p, const float *d_image);
 /* Adds each Gaussian's sums up and takes them through the projection. */
-void ted4_raster_project_bwd(struct ted4_raster *r, const ted4_splats *s, const ted4_view *v, const ted4_parallel *p,
-                             const ted4_splat_grads *g);
+TED4_EACH_LEVEL(void, ted4_raster_project_bwd, struct ted4_raster *r, const ted4_splats *s, const ted4_view *v, const ted4_parallel *p,
+                const ted4_splat_grads *g);
 
 #endif

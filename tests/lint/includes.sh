@@ -9,7 +9,7 @@ ref-decoder/recon           base norm recon kernel ted4.h
 ref-decoder/read            base norm read kernel ted4.h
 ref-decoder/render          base render ted4.h
 ref-decoder/tool            base render tool ted4.h
-ref-encoder/kernel          base kernel
+ref-encoder/kernel          base render kernel
 ref-encoder/data            base data
 ref-encoder/eval            base eval
 ref-encoder/write           base norm write kernel ted4.h
