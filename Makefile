@@ -28,7 +28,7 @@ LIBS  = -lpng -ljpeg -ljansson -lxxhash -lz -lm
 
 DEC_SRC  = $(sort $(wildcard $(addprefix ref-decoder/,base/*.c norm/*.c recon/*.c read/*.c kernel/*.c)))
 DRAW_SRC = $(sort $(wildcard ref-decoder/render/*.c))
-ENC_SRC  = $(sort $(wildcard $(addprefix ref-encoder/,write/*.c train/*.c data/*.c eval/*.c kernel/*.c)))
+ENC_SRC  = $(sort $(wildcard $(addprefix ref-encoder/,math/*.c write/*.c train/*.c data/*.c eval/*.c kernel/*.c)))
 FREE_OBJ = $(patsubst %.c,$B/%.o,$(DRAW_SRC) $(wildcard ref-encoder/train/*.c ref-encoder/kernel/*.c ref-encoder/eval/*.c))
 DEC_TOOL = $(filter-out ref-decoder/tool/ted4%.c,$(wildcard ref-decoder/tool/*.c))
 ENC_TOOL = $(filter-out ref-encoder/tool/ted4%.c,$(wildcard ref-encoder/tool/*.c))

@@ -132,7 +132,17 @@ static int read_part(ted4_colmap *c, const char *folder, const char *name,
 
 static int by_name(const void *a, const void *b)
 {
-    return strcmp(((const ted4_colmap_image *)a)->name, ((const ted4_colmap_image *)b)->name);
+    const ted4_colmap_image *x = a, *y = b;
+    int                      order = strcmp(x->name, y->name);
+
+    /* A file may name a picture twice. */
+    if (order == 0)
+        order = (x->camera > y->camera) - (x->camera < y->camera);
+    for (int k = 0; order == 0 && k < 3; k++)
+        order = (x->t[k] > y->t[k]) - (x->t[k] < y->t[k]);
+    for (int k = 0; order == 0 && k < 9; k++)
+        order = (x->R[k] > y->R[k]) - (x->R[k] < y->R[k]);
+    return order;
 }
 
 int ted4_colmap_read(ted4_colmap *c, const char *folder, ted4_message *m)

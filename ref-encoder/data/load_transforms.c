@@ -13,6 +13,7 @@
 #include <string.h>
 #include "data/data_util.h"
 #include "data/json_field.h"
+#include "math/elementary.h"
 
 /* One transforms file while it is read. */
 typedef struct {
@@ -112,7 +113,7 @@ static int read_lens(transforms *t, ted4_lens *l)
     if (field > 0) {
         if (!(angle > 0 && angle < TED4_PI))
             return ted4_say(t->m, "%s: camera_angle_x is %g, expected an angle between 0 and pi", t->where, angle);
-        l->fx = 0.5 * l->width / tan(0.5 * angle);
+        l->fx = 0.5 * l->width / ted4_math_tan(0.5 * angle);
     }
     l->fy = l->fx;
     if (number(t, "fl_y", &l->fy) < 0 || number(t, "cx", &l->cx) < 0 || number(t, "cy", &l->cy) < 0 ||
@@ -394,7 +395,17 @@ static int split_by_lists(transforms *t, const char *test)
 
 static int by_path(const void *a, const void *b)
 {
-    return strcmp(((const ted4_shot *)a)->path, ((const ted4_shot *)b)->path);
+    const ted4_shot *x = a, *y = b;
+    int              order = strcmp(x->path, y->path);
+
+    /* A file may be listed twice. */
+    if (order == 0)
+        order = (x->time > y->time) - (x->time < y->time);
+    for (int k = 0; order == 0 && k < 3; k++)
+        order = (x->t[k] > y->t[k]) - (x->t[k] < y->t[k]);
+    for (int k = 0; order == 0 && k < 9; k++)
+        order = (x->R[k] > y->R[k]) - (x->R[k] < y->R[k]);
+    return order;
 }
 
 /* The split of a file that holds all frames. */

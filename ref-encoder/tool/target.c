@@ -3,6 +3,7 @@
 #include <math.h>
 #include <stdio.h>
 
+#include "math/elementary.h"
 #include "train/checkpoint.h"
 #include "training.h"
 
@@ -27,14 +28,14 @@ static double next_lambda(const bracket *b, double target, double lambda, double
 {
     if (b->have == 3) {
         const double slope = (b->size[1] - b->size[0]) / (b->lambda[1] - b->lambda[0]);
-        const double at = (log(target * (1.0 - 0.5 * NEAR)) - b->size[0]) / slope;
+        const double at = (ted4_math_log(target * (1.0 - 0.5 * NEAR)) - b->size[0]) / slope;
         const double span = b->lambda[1] - b->lambda[0];
 
-        return exp(b->lambda[0] + fmin(fmax(at, 0.1 * span), 0.9 * span));
+        return ted4_math_exp(b->lambda[0] + fmin(fmax(at, 0.1 * span), 0.9 * span));
     }
     const double reach = ldexp(GUESS_POWER, b->trials - 1);
-    const double away = fabs(log(size / (target * (1.0 - 0.5 * NEAR)))) * reach;
-    const double factor = fmin(fmax(exp(fmin(away, 50.0)), NEAREST), FARTHEST);
+    const double away = fabs(ted4_math_log(size / (target * (1.0 - 0.5 * NEAR)))) * reach;
+    const double factor = fmin(fmax(ted4_math_exp(fmin(away, 50.0)), NEAREST), FARTHEST);
 
     return b->have == 1 ? lambda * factor : lambda / factor;
 }
@@ -78,8 +79,8 @@ static int search(ted4_training *t, const ted4_snapshot *start, ted4_coded *best
         const int    fits = c.size <= target;
         const double size = (double)c.size;
 
-        b.lambda[fits] = log(lambda);
-        b.size[fits] = log(size);
+        b.lambda[fits] = ted4_math_log(lambda);
+        b.size[fits] = ted4_math_log(size);
         b.have |= 1 << fits;
         b.trials++;
         if (is_better(&c, best, target)) {

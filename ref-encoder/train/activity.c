@@ -9,6 +9,7 @@
 
 #include "judges.h"
 #include "make_scene.h"
+#include "math/lane_sum.h"
 #include "norm/sine.h"
 #include "random.h"
 #include "space.h"
@@ -48,11 +49,8 @@ static void dense(const float *w, size_t in, size_t out, const float *x, float *
     const float *b = w + in * out;
 
     for (size_t o = 0; o < out; o++, w += in) {
-        float sum = b[o];
+        const float sum = b[o] + ted4_lane_dot(in, w, x);
 
-#pragma omp simd reduction(+ : sum)
-        for (size_t i = 0; i < in; i++)
-            sum += w[i] * x[i];
         y[o] = relu ? fmaxf(sum, 0.0f) : sum;
     }
 }

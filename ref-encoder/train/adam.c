@@ -5,13 +5,15 @@
 #include <float.h>
 #include <math.h>
 
+#include "math/elementary.h"
+
 ted4_adam_bias ted4_adam_bias_make(uint64_t step)
 {
     const double n = (double)step;
 
     return (ted4_adam_bias){
-        (float)(1.0 / (1.0 - pow((double)TED4_ADAM_BETA1, n))),
-        (float)(1.0 / (1.0 - pow((double)TED4_ADAM_BETA2, n)))
+        (float)(1.0 / (1.0 - ted4_math_pow((double)TED4_ADAM_BETA1, n))),
+        (float)(1.0 / (1.0 - ted4_math_pow((double)TED4_ADAM_BETA2, n)))
     };
 }
 
@@ -37,5 +39,5 @@ double ted4_decay(double lr0, double last, double progress)
 {
     const double p = progress < 0 ? 0 : progress > 1 ? 1 : progress;
 
-    return lr0 * pow(last, p);
+    return lr0 * ted4_math_pow(last, p);
 }

@@ -7,6 +7,7 @@
 #include <string.h>
 
 #include "activity.h"
+#include "math/elementary.h"
 #include "surgery.h"
 
 static const char *const names[TED4_MOVES] = {
@@ -276,6 +277,8 @@ static int fewer_offsets(operation *o, int to)
     return bad ? ted4_trainer_fail(o->t, "no memory to look at Gaussians") : 0;
 }
 
+#define LN2 0x1.62e42fefa39efp-1
+
 /* A linear step that is on average as fine as the one in log2 was: d 2^x = 2^x ln 2 dx. */
 static void make_linear(operation *o)
 {
@@ -286,9 +289,9 @@ static void make_linear(operation *o)
     for (size_t i = 0; i < o->t->anchors.n; i++)
         for (int c = 0; c < 6; c++)
             sum += (double)(*ted4_cell(&o->t->anchors, TED4_ROW_VALUE, i, l->first[TED4_SCALING] + c)
-                            + log2f(*ted4_cell(&o->t->anchors, TED4_ROW_STEP, i, TED4_SCALING)));
+                            + ted4_math_log2f(*ted4_cell(&o->t->anchors, TED4_ROW_STEP, i, TED4_SCALING)));
     o->s.head.scale_domain = TED4_SCALE_LINEAR;
-    o->s.head.step[TED4_SCALING] = (float)fmax(log(2.0) * exp2(sum / n), 1e-5);
+    o->s.head.step[TED4_SCALING] = (float)fmax(LN2 * ted4_math_exp2(sum / n), 1e-5);
 }
 
 /* What a move changes, into o->s. 0, or not 0 with t->message. */

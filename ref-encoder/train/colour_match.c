@@ -8,6 +8,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "math/elementary.h"
 #include "sightings.h"
 #include "space.h"
 
@@ -342,7 +343,7 @@ static void find_gauge(match *m, undo *back)
 
     look_back(m, back);
     for (int i = 0; i < 2 * ROUNDS; i++) {
-        const levels s = add_levels(m, gain, WIDEST / 255.0 * pow(NARROWEST / WIDEST, fmin(i / (ROUNDS - 1.0), 1)));
+        const levels s = add_levels(m, gain, WIDEST / 255.0 * ted4_math_pow(NARROWEST / WIDEST, fmin(i / (ROUNDS - 1.0), 1)));
 
         for (int c = 0; c < 3; c++) {
             gain[c] = s.given[c] / s.seen[c];
@@ -388,7 +389,7 @@ static int work(match *m)
                   m->sorted == NULL
               ? ted4_trainer_fail(m->t, "no memory to compare cameras") : look_around(m);
     for (int i = 0; i < ROUNDS && !bad; i++)
-        one_round(m, back, WIDEST / 255.0 * pow(NARROWEST / WIDEST, i / (ROUNDS - 1.0)));
+        one_round(m, back, WIDEST / 255.0 * ted4_math_pow(NARROWEST / WIDEST, i / (ROUNDS - 1.0)));
     colour->matched = !bad && differ(m);
     if (colour->matched)
         find_gauge(m, back);

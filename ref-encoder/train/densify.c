@@ -6,6 +6,8 @@
 #include <string.h>
 
 #include "cells.h"
+#include "math/elementary.h"
+#include "math/quick.h"
 #include "random.h"
 #include "trainer.h"
 
@@ -27,8 +29,8 @@ uint32_t ted4_lanes_there(const ted4_generate_input *in, size_t slot)
 
     for (int j = 0; in->activation && j < TED4_LANES; j++) {
         const float *x = in->attr[slot] + first * TED4_LANES + j;
-        const float  u = now < x[0] ? (x[0] - now) / exp2f(x[TED4_LANES])
-                       : now > x[2 * TED4_LANES] ? (now - x[2 * TED4_LANES]) / exp2f(x[3 * TED4_LANES]) : 0.0f;
+        const float  u = now < x[0] ? (x[0] - now) / ted4_quick_exp2(x[TED4_LANES])
+                       : now > x[2 * TED4_LANES] ? (now - x[2 * TED4_LANES]) / ted4_quick_exp2(x[3 * TED4_LANES]) : 0.0f;
 
         if (!(u * u < 0.6931472f))
             there &= ~((uint32_t)1 << j);
@@ -72,6 +74,7 @@ void ted4_densify_gather(ted4_trainer *t, const ted4_generate_input *in, const t
 typedef struct {
     float    gradient;
     uint32_t parent;            /* anchor */
+    uint64_t found;             /* after so many others */
     float    position[3];
     float    cell;
 } candidate;
@@ -82,7 +85,9 @@ static int compare_candidates(const void *x, const void *y)
 
     if (a->gradient != b->gradient)
         return a->gradient > b->gradient ? -1 : 1;
-    return a->parent < b->parent ? -1 : a->parent > b->parent;
+    if (a->parent != b->parent)
+        return a->parent < b->parent ? -1 : 1;
+    return a->found < b->found ? -1 : a->found > b->found;
 }
 
 /* Canonical place of offset k of anchor i. */
@@ -93,7 +98,7 @@ static void place(const ted4_trainer *t, size_t i, int k, float p[3])
     for (int j = 0; j < 3; j++)
         p[j] = *ted4_cell(&t->anchors, TED4_ROW_POSITION, i, j) +
                *ted4_cell(&t->anchors, TED4_ROW_VALUE, i, l->first[TED4_OFFSET] + 3 * k + j) *
-               exp2f(*ted4_cell(&t->anchors, TED4_ROW_VALUE, i, l->first[TED4_SCALING] + j));
+               ted4_math_exp2f(*ted4_cell(&t->anchors, TED4_ROW_VALUE, i, l->first[TED4_SCALING] + j));
 }
 
 /* Mean screen gradient of offset k, negative where it was not seen enough. */
@@ -112,9 +117,9 @@ static float mean_gradient(const ted4_trainer *t, size_t i, int k)
 static size_t collect(const ted4_trainer *t, int depth, ted4_cells *set, candidate *out,
                       size_t n)
 {
-    const double cell = t->cell * pow(CELL_RATIO, depth);
-    const double threshold = t->opt.grow_gradient * pow(GRADIENT_RATIO, depth);
-    const double keep = 1.0 - pow(0.5, depth + 1);
+    const double cell = t->cell * ted4_math_pow(CELL_RATIO, depth);
+    const double threshold = t->opt.grow_gradient * ted4_math_pow(GRADIENT_RATIO, depth);
+    const double keep = 1.0 - ted4_math_pow(0.5, depth + 1);
     const uint64_t key = ted4_mix(t->opt.seed ^ (t->iteration << 8) ^ (uint64_t)depth);
     const int    K = t->layout.head.n_offsets;
 
@@ -129,7 +134,7 @@ static size_t collect(const ted4_trainer *t, int depth, ted4_cells *set, candida
     for (size_t i = 0; i < t->anchors.n; i++) {
         for (int k = 0; k < K; k++) {
             const float g = mean_gradient(t, i, k);
-            candidate   c = { g, (uint32_t)i, { 0 }, (float)cell };
+            candidate   c = { g, (uint32_t)i, n, { 0 }, (float)cell };
             int         inside = 1;
 
             if ((double)g < threshold ||
@@ -162,7 +167,7 @@ static int add_anchor(ted4_trainer *t, const candidate *c)
     for (int j = 0; j < 3 * l->head.n_offsets; j++)
         *ted4_cell(a, TED4_ROW_VALUE, i, l->first[TED4_OFFSET] + j) = 0.0f;
     for (int j = 0; j < 6; j++)
-        *ted4_cell(a, TED4_ROW_VALUE, i, l->first[TED4_SCALING] + j) = log2f(c->cell);
+        *ted4_cell(a, TED4_ROW_VALUE, i, l->first[TED4_SCALING] + j) = ted4_math_log2f(c->cell);
     return 0;
 }
 

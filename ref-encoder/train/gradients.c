@@ -4,6 +4,8 @@
 
 #include <math.h>
 
+#include "math/lane_sum.h"
+
 /* Channels of a term of anchors' values: first, and how many. */
 typedef struct { int first, n; } channels;
 
@@ -54,25 +56,15 @@ double ted4_gradients_centres(const ted4_splat_grads *g, size_t n)
 {
     float sum = 0;
 
-    for (int c = 0; c < 3; c++) {
-        const float *d = g->mean[c];
-
-#pragma omp simd reduction(+ : sum)
-        for (size_t i = 0; i < n; i++)
-            sum += d[i] * d[i];
-    }
+    for (int c = 0; c < 3; c++)
+        sum += ted4_lane_dot(n, g->mean[c], g->mean[c]);
     return sqrt((double)sum);
 }
 
 /* Sum of squares. */
 static double squares_of(const float *x, size_t n)
 {
-    float sum = 0;
-
-#pragma omp simd reduction(+ : sum)
-    for (size_t i = 0; i < n; i++)
-        sum += x[i] * x[i];
-    return (double)sum;
+    return (double)ted4_lane_dot(n, x, x);
 }
 
 double ted4_gradients_norm(const float *x, size_t n)

@@ -54,7 +54,7 @@ static inline float ted4_inward(float x, float low, float high, float d)
 /* Whether a mask with this logit is on (model.h). */
 static inline int ted4_mask_on(float logit)
 {
-    return ted4_lane_sigmoid(logit) > TED4_MASK_THRESHOLD;
+    return logit > TED4_MASK_LOGIT;
 }
 
 #endif

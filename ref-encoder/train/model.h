@@ -22,8 +22,9 @@ typedef struct {
 
 void ted4_layout_make(ted4_layout *l, const ted4_header *h);
 
-/* A mask is on when sigmoid(logit) > this; its gradient is that of the sigmoid (straight-through). */
-#define TED4_MASK_THRESHOLD 0.01f
+/* A mask is on when sigmoid(logit) > 0.01, which is asked of the logit, as files that may fuse operations and files that may not ask it; its gradient is that of
+ * the sigmoid (straight-through). */
+#define TED4_MASK_LOGIT (-4.59511985f)          /* ln(0.01 / 0.99) */
 
 /* One query over chosen blocks ("slots"). Slot i, offset k, lane j is splat (i K + k) 32 + j. */
 typedef struct {

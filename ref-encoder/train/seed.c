@@ -7,6 +7,7 @@
 #include <string.h>
 
 #include "cells.h"
+#include "math/elementary.h"
 #include "random.h"
 #include "space.h"
 
@@ -98,7 +99,7 @@ static void fill_phi(fill_job *f, size_t i)
 
     for (int c = 0; c < l->head.phi_dim; c++) {
         const uint64_t key = ted4_mix(0x706869u + (uint64_t)c);
-        const float    turns = exp2f(4.0f * ted4_uniform(key, 0));
+        const float    turns = ted4_math_exp2f(4.0f * ted4_uniform(key, 0));
         float          phase = ted4_uniform(key, 1), w[3], norm = 1e-6f;
 
         for (uint64_t j = 0; j < 3; j++) {
@@ -109,7 +110,7 @@ static void fill_phi(fill_job *f, size_t i)
             phase += 0.5f * turns * w[j] / sqrtf(norm) *
                      *ted4_cell(f->a, TED4_ROW_POSITION, i, j);
         *ted4_cell(f->a, TED4_ROW_VALUE, i, l->first[TED4_PHI] + c) =
-            PHI_AMPLITUDE * sinf(6.2831853f * phase);
+            PHI_AMPLITUDE * ted4_math_sinf(6.2831853f * phase);
     }
 }
 
@@ -121,7 +122,7 @@ static void fill_anchor(fill_job *f, size_t i)
     for (int j = 0; j < 3; j++)
         *ted4_cell(f->a, TED4_ROW_POSITION, i, j) = f->p[3 * i + (size_t)j];
     for (int j = 0; j < 6; j++)
-        *ted4_cell(f->a, TED4_ROW_VALUE, i, l->first[TED4_SCALING] + j) = log2f(d);
+        *ted4_cell(f->a, TED4_ROW_VALUE, i, l->first[TED4_SCALING] + j) = ted4_math_log2f(d);
     fill_phi(f, i);
     if (l->first[TED4_TAU] >= 0) {
         const float tau[4] = { 0.0f, -3.3f, 1.0f, -3.3f };   /* b = 0.1 */
@@ -284,7 +285,7 @@ static void seed_biases(float *bias, const ted4_layout *l, const ted4_anchors *a
         component_moments(a, l->first[t] + (int)c, &mean, &spread);
         bias[s->first_output[t] + c] = (float)(mean / q);
         bias[s->first_output[t] + s->dim[t] + c] =
-            (float)fmin(fmax(log2(fmax(spread / q, 1e-3)), -1.0), 9.0);
+            (float)fmin(fmax(ted4_math_log2(fmax(spread / q, 1e-3)), -1.0), 9.0);
     }
 }
 

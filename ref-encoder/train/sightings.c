@@ -6,6 +6,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "math/elementary.h"
 #include "space.h"
 
 /* Share of the cameras that must agree, and how far from the best a time may be to count. */
@@ -171,7 +172,7 @@ void ted4_span_set(ted4_trainer *t, size_t i, const ted4_span *span)
     const float before = (float)span->before, after = (float)span->after;
 
     *ted4_cell(&t->anchors, TED4_ROW_VALUE, i, first) = ((float)span->from - SPAN_BEYOND * before) * frame;
-    *ted4_cell(&t->anchors, TED4_ROW_VALUE, i, first + 1) = log2f(SPAN_FADES * before * frame);
+    *ted4_cell(&t->anchors, TED4_ROW_VALUE, i, first + 1) = ted4_math_log2f(SPAN_FADES * before * frame);
     *ted4_cell(&t->anchors, TED4_ROW_VALUE, i, first + 2) = ((float)span->to + SPAN_BEYOND * after) * frame;
-    *ted4_cell(&t->anchors, TED4_ROW_VALUE, i, first + 3) = log2f(SPAN_FADES * after * frame);
+    *ted4_cell(&t->anchors, TED4_ROW_VALUE, i, first + 3) = ted4_math_log2f(SPAN_FADES * after * frame);
 }

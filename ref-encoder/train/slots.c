@@ -4,6 +4,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "math/quick.h"
 #include "random.h"
 #include "trainer.h"
 
@@ -18,21 +19,28 @@ uint32_t ted4_block_visible(const ted4_trainer *t, size_t block, const ted4_view
     const float *p = ted4_block(&t->anchors, TED4_ROW_POSITION, block);
     const float *s = ted4_block(&t->anchors, TED4_ROW_VALUE, block) +
                      l->first[TED4_SCALING] * TED4_LANES;
+    const int    is_log2 = l->head.scale_domain == TED4_SCALE_LOG2;
     const float  room = l->head.motion != TED4_MOTION_NONE ? ROOM_FOR_MOTION : 0.0f;
     const float  left = TED4_RASTER_GUARD * v->cx / v->fx;
     const float  right = TED4_RASTER_GUARD * ((float)v->width - v->cx) / v->fx;
     const float  up = TED4_RASTER_GUARD * v->cy / v->fy;
     const float  down = TED4_RASTER_GUARD * ((float)v->height - v->cy) / v->fy;
+    float        widest[TED4_LANES];
     uint32_t     seen = 0;
 
+#pragma omp simd
+    for (int j = 0; j < TED4_LANES; j++) {
+        const float a = s[j], b = s[TED4_LANES + j], c = s[2 * TED4_LANES + j];
+        const float ab = b > a || a != a ? b : a, most = c > ab || ab != ab ? c : ab;
+
+        widest[j] = is_log2 ? ted4_quick_exp2(most) : most;
+    }
     for (int j = 0; j < TED4_LANES; j++) {
         const float x = p[j], y = p[TED4_LANES + j], z = p[2 * TED4_LANES + j];
         const float cx = v->R[0] * x + v->R[1] * y + v->R[2] * z + v->t[0];
         const float cy = v->R[3] * x + v->R[4] * y + v->R[5] * z + v->t[1];
         const float cz = v->R[6] * x + v->R[7] * y + v->R[8] * z + v->t[2];
-        const float widest = fmaxf(s[j], fmaxf(s[TED4_LANES + j], s[2 * TED4_LANES + j]));
-        const float reach = l->head.scale_domain == TED4_SCALE_LOG2 ? exp2f(widest) : widest;
-        const float ball = SCALES_OF_BALL * reach + room;
+        const float ball = SCALES_OF_BALL * widest[j] + room;
         const float depth = fmaxf(cz, v->near_z);
 
         if (cz + ball > v->near_z && cx < right * depth + ball && -cx < left * depth + ball &&

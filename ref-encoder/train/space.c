@@ -6,6 +6,8 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "math/elementary.h"
+
 static int compare_floats(const void *x, const void *y)
 {
     const float a = *(const float *)x, b = *(const float *)y;
@@ -42,7 +44,7 @@ void ted4_space_make(ted4_header *h, const ted4_dataset *d)
     qsort(sorted, n, sizeof *sorted, compare_floats);
 
     const double reach = 1.25 * (double)sorted[(size_t)(0.995 * (double)(n - 1))];
-    const double e = reach > 0 ? ceil(log2(reach)) : 0;
+    const double e = reach > 0 ? ceil(ted4_math_log2(reach)) : 0;
 
     h->exponent = (int8_t)(e < -30 ? -30 : e > 30 ? 30 : e);
     free(sorted);

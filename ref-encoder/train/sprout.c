@@ -7,6 +7,7 @@
 #include <string.h>
 
 #include "cells.h"
+#include "math/elementary.h"
 #include "random.h"
 #include "sightings.h"
 #include "space.h"
@@ -96,7 +97,7 @@ static int add(ted4_trainer *t, const looks *l, size_t n_old, const ted4_place *
     for (int j = 0; j < 3 * y->head.n_offsets; j++)
         *ted4_cell(a, TED4_ROW_VALUE, i, y->first[TED4_OFFSET] + j) = 0.0f;
     for (int j = 0; j < 6; j++)
-        *ted4_cell(a, TED4_ROW_VALUE, i, y->first[TED4_SCALING] + j) = log2f(p->size);
+        *ted4_cell(a, TED4_ROW_VALUE, i, y->first[TED4_SCALING] + j) = ted4_math_log2f(p->size);
     ted4_span_set(t, i, span);
     return 0;
 }
@@ -104,7 +105,7 @@ static int add(ted4_trainer *t, const looks *l, size_t n_old, const ted4_place *
 /* Marks the cell of a place at the frames of its span; 0: it was marked at its own frame already. */
 static int mark(ted4_cells *taken, const ted4_place *p, const ted4_span *span)
 {
-    const double   cell = exp2(ceil(log2((double)p->size)));
+    const double   cell = ted4_math_exp2(ceil(ted4_math_log2((double)p->size)));
     const uint64_t key = ted4_cell_key(p->point, cell);
 
     if (!ted4_cells_add(taken, ted4_mix(key + p->frame) | 1))
@@ -115,7 +116,7 @@ static int mark(ted4_cells *taken, const ted4_place *p, const ted4_span *span)
     return 1;
 }
 
-static int compare_places(const void *x, const void *y)
+int ted4_place_compare(const void *x, const void *y)
 {
     const ted4_place *a = x, *b = y;
 
@@ -123,7 +124,12 @@ static int compare_places(const void *x, const void *y)
         return a->score > b->score ? -1 : 1;
     if (a->frame != b->frame)
         return a->frame < b->frame ? -1 : 1;
-    return memcmp(a->point, b->point, sizeof a->point);
+    for (int k = 0; k < 3; k++)
+        if (a->point[k] != b->point[k])
+            return a->point[k] < b->point[k] ? -1 : 1;
+    if (a->size != b->size)
+        return a->size < b->size ? -1 : 1;
+    return memcmp(a->colour, b->colour, sizeof a->colour);
 }
 
 static int plant(ted4_trainer *t, const ted4_places *list, const ted4_sightings *s, const looks *l)
@@ -151,7 +157,7 @@ static int plant(ted4_trainer *t, const ted4_places *list, const ted4_sightings 
 static int arrange(ted4_places *list, size_t most, float **point, uint8_t **colour)
 {
     if (list->n > 0)
-        qsort(list->item, list->n, sizeof *list->item, compare_places);
+        qsort(list->item, list->n, sizeof *list->item, ted4_place_compare);
     list->n = list->n < most ? list->n : most;
     *point = malloc((list->n + 1) * 3 * sizeof **point);
     *colour = malloc(list->n * 3 + 1);

@@ -18,6 +18,9 @@ typedef struct {
     float    score;             /* agreement of the cameras times the error; larger is surer */
 } ted4_place;
 
+/* For qsort: by falling score; only places that are equal in everything compare as equal, so that their order does not depend on how qsort works. */
+int ted4_place_compare(const void *x, const void *y);
+
 typedef struct {
     ted4_place *item;           /* owned */
     size_t      n, capacity;

@@ -5,6 +5,7 @@
 #include <string.h>
 
 #include "cells.h"
+#include "math/elementary.h"
 #include "sightings.h"
 #include "space.h"
 #include "sprout.h"
@@ -240,15 +241,6 @@ static int search_eye(const ted4_trainer *t, const eye *eyes, size_t n, size_t s
     return bad ? -1 : 0;
 }
 
-static int compare_places(const void *x, const void *y)
-{
-    const ted4_place *a = x, *b = y;
-
-    if (a->score != b->score)
-        return a->score > b->score ? -1 : 1;
-    return memcmp(a->point, b->point, sizeof a->point);
-}
-
 /* The surest place of each cell from the first on, and of these the surest, most at most. 0, or -1: no memory. */
 static int thin(ted4_places *l, size_t first, size_t most)
 {
@@ -259,9 +251,9 @@ static int thin(ted4_places *l, size_t first, size_t most)
         return 0;
     if (ted4_cells_init(&taken, l->n - first) != 0)
         return -1;
-    qsort(l->item + first, l->n - first, sizeof *l->item, compare_places);
+    qsort(l->item + first, l->n - first, sizeof *l->item, ted4_place_compare);
     for (size_t i = first; i < l->n && n < first + most; i++) {
-        const double cell = exp2(ceil(log2((double)l->item[i].size)));
+        const double cell = ted4_math_exp2(ceil(ted4_math_log2((double)l->item[i].size)));
 
         if (ted4_cells_add(&taken, ted4_cell_key(l->item[i].point, cell)))
             l->item[n++] = l->item[i];

@@ -6,6 +6,7 @@
 #include <string.h>
 
 #include "lane_math.h"
+#include "math/elementary.h"
 #include "norm/half.h"
 #include "rotate.h"
 #include "seed.h"
@@ -90,20 +91,21 @@ int ted4_activation_begin(ted4_trainer *t)
 static float peak_activation(const ted4_trainer *t, size_t i)
 {
     const int first = t->layout.first[TED4_TAU];
-    float     x[4], peak = 0;
+    float     x[4], least = INFINITY;
 
     if (first < 0)
         return 1.0f;
     for (int c = 0; c < 4; c++)
         x[c] = t->slots.used[i / TED4_LANES][(size_t)(first + c) * TED4_LANES + i % TED4_LANES];
+    const float rise = ted4_math_exp2f(x[1]), fall = ted4_math_exp2f(x[3]);
+
     for (uint32_t j = 0; j < t->data->n_frames; j++) {
         const float now = frame_time(t, j);
-        const float off = now < x[0] ? (now - x[0]) / exp2f(x[1])
-                        : now > x[2] ? (now - x[2]) / exp2f(x[3]) : 0.0f;
+        const float off = now < x[0] ? (x[0] - now) / rise : now > x[2] ? (now - x[2]) / fall : 0.0f;
 
-        peak = fmaxf(peak, expf(-off * off));
+        least = fminf(least, off);
     }
-    return peak;
+    return ted4_math_expf(-least * least);
 }
 
 int ted4_stage_rising(ted4_trainer *t, uint32_t *rising, size_t *n)
@@ -240,10 +242,10 @@ static float least_activation(const ted4_trainer *t, size_t i)
     const int   first = t->layout.first[TED4_TAU];
     const float a = *ted4_cell(&t->anchors, TED4_ROW_VALUE, i, first);
     const float f = *ted4_cell(&t->anchors, TED4_ROW_VALUE, i, first + 2);
-    const float u = a > 0 ? a / exp2f(*ted4_cell(&t->anchors, TED4_ROW_VALUE, i, first + 1)) : 0;
-    const float w = f < 1 ? (1 - f) / exp2f(*ted4_cell(&t->anchors, TED4_ROW_VALUE, i, first + 3)) : 0;
+    const float u = a > 0 ? a / ted4_math_exp2f(*ted4_cell(&t->anchors, TED4_ROW_VALUE, i, first + 1)) : 0;
+    const float w = f < 1 ? (1 - f) / ted4_math_exp2f(*ted4_cell(&t->anchors, TED4_ROW_VALUE, i, first + 3)) : 0;
 
-    return expf(-fmaxf(u * u, w * w));
+    return ted4_math_expf(-fmaxf(u * u, w * w));
 }
 
 /* The header without what does nothing. */
@@ -278,7 +280,7 @@ static int reshape(ted4_trainer *t)
         for (int c = 0; c < 6; c++) {
             float *x = ted4_cell(&t->anchors, TED4_ROW_VALUE, i, t->layout.first[TED4_SCALING] + c);
 
-            *x = exp2f(*x);
+            *x = ted4_math_exp2f(*x);
         }
     return 0;
 }

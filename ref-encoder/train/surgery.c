@@ -6,6 +6,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "math/elementary.h"
 #include "seed.h"
 
 void ted4_surgery_begin(ted4_surgery *s, const ted4_trainer *t)
@@ -74,7 +75,7 @@ static void change_domain(ted4_trainer *t)
         for (int c = 0; c < 6; c++) {
             float *x = ted4_cell(a, TED4_ROW_VALUE, i, first + c);
 
-            *x = linear ? exp2f(*x) : log2f(fmaxf(*x, 1e-6f));
+            *x = linear ? ted4_math_exp2f(*x) : ted4_math_log2f(fmaxf(*x, 1e-6f));
             *ted4_cell(a, TED4_ROW_M, i, first + c) = *ted4_cell(a, TED4_ROW_V, i, first + c) = 0;
         }
         *ted4_cell(a, TED4_ROW_STEP, i, TED4_SCALING) = l->head.step[TED4_SCALING];

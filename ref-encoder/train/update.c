@@ -5,6 +5,7 @@
 
 #include "adam.h"
 #include "gradients.h"
+#include "math/quick.h"
 #include "random.h"
 #include "trainer.h"
 
@@ -17,7 +18,7 @@ size_t ted4_update_volume(ted4_trainer *t, const ted4_splats *s)
         n += g->visible[i];
 
     const float w = n > 0 ? (float)(t->opt.volume_weight / (double)n) : 0.0f;
-    float       drawn = 0;
+    uint32_t    drawn = 0;
 
 #pragma omp simd reduction(+ : drawn)
     for (size_t i = 0; i < s->n; i++) {
@@ -27,7 +28,7 @@ size_t ted4_update_volume(ted4_trainer *t, const ted4_splats *s)
         g->scale[0][i] += on * b * c;
         g->scale[1][i] += on * a * c;
         g->scale[2][i] += on * a * b;
-        drawn += a >= TED4_NO_EXTENT || b >= TED4_NO_EXTENT || c >= TED4_NO_EXTENT ? (float)g->visible[i] : 0.0f;
+        drawn += a >= TED4_NO_EXTENT || b >= TED4_NO_EXTENT || c >= TED4_NO_EXTENT ? g->visible[i] : 0u;
     }
     t->watch.drawn = (double)drawn;
     return n;
@@ -70,14 +71,19 @@ static void add_mask_loss(const slot_job *j, size_t i, int channel, int n, float
 {
     const ted4_slots *s = &j->t->slots;
 
-    for (int c = channel; c < channel + n; c++)
-        for (int k = 0; k < TED4_LANES; k++) {
-            const float x = s->raw[i][c * TED4_LANES + k];
-            const float m = 1.0f / (1.0f + expf(-x));
-            const float on = (float)(s->lanes[i] >> k & 1);
+    for (int c = channel; c < channel + n; c++) {
+        const float   *x = s->raw[i] + c * TED4_LANES;
+        float         *d = s->gradient[i] + c * TED4_LANES;
+        const uint32_t lanes = s->lanes[i];
 
-            s->gradient[i][c * TED4_LANES + k] += on * weight * m * (1.0f - m);
+#pragma omp simd
+        for (int k = 0; k < TED4_LANES; k++) {
+            const float m = ted4_quick_logistic(x[k]);
+            const float on = (float)(int32_t)(lanes >> k & 1);
+
+            d[k] += on * weight * m * (1.0f - m);
         }
+    }
 }
 
 static void update_slot(void *arg, size_t i)

@@ -10,6 +10,7 @@
 
 #include "checkpoint.h"
 #include "gradients.h"
+#include "math/elementary.h"
 
 /* Steps between looks at every anchor, also those that no picture shows, and between good states. Those lie halfway between events of the schedule, which come
  * at multiples of 100: an event that fails has steps before it that can be made smaller. */
@@ -47,7 +48,7 @@ const char *ted4_term_name(int term)
 
 double ted4_scale_usual(const ted4_scale *s)
 {
-    return s->n > 0 ? exp2(s->level) : 0.0;
+    return s->n > 0 ? ted4_math_exp2(s->level) : 0.0;
 }
 
 double ted4_scale_take(ted4_scale *s, double x)
@@ -55,8 +56,8 @@ double ted4_scale_take(ted4_scale *s, double x)
     if (!(x > 0))
         return 0;
 
-    const double away = log2(x) - s->level, most = s->n < SCALE_NEW ? SCALE_FIRST : SCALE_STEP;
-    const double times = s->n < SCALE_NEW ? 0.0 : exp2(away);
+    const double away = ted4_math_log2(x) - s->level, most = s->n < SCALE_NEW ? SCALE_FIRST : SCALE_STEP;
+    const double times = s->n < SCALE_NEW ? 0.0 : ted4_math_exp2(away);
 
     s->level += s->n == 0 ? away : fmin(fmax(away, -most), most);
     s->n++;

@@ -2,8 +2,8 @@
  * SPDX-License-Identifier: BSD-2-Clause */
 #include "write/coder_count.h"
 
-#include <math.h>
 #include <string.h>
+#include "math/elementary.h"
 #include "write/gauss_put.h"
 
 static ted4_counter *counter_of(ted4_coder *c)
@@ -53,7 +53,7 @@ static void put(void *counter, ted4_slots s)
 {
     ted4_counter *n = counter;
 
-    n->substream[n->n_opened - 1] += TED4_SLOT_BITS - log2(s.freq);
+    n->substream[n->n_opened - 1] += TED4_SLOT_BITS - ted4_math_log2(s.freq);
 }
 
 static int bit(ted4_coder *c, uint32_t prob, int value)

@@ -9,12 +9,13 @@ ref-decoder/recon           base norm recon kernel ted4.h
 ref-decoder/read            base norm read kernel ted4.h
 ref-decoder/render          base render ted4.h
 ref-decoder/tool            base render tool ted4.h
+ref-encoder/math            math
 ref-encoder/kernel          base render kernel
-ref-encoder/data            base data
+ref-encoder/data            base math data
 ref-encoder/eval            base eval
-ref-encoder/write           base norm write kernel ted4.h
-ref-encoder/train           base norm render data kernel train write ted4.h
-ref-encoder/tool            base norm render data eval kernel train write tool ted4.h
+ref-encoder/write           base norm math write kernel ted4.h
+ref-encoder/train           base norm render math data kernel train write ted4.h
+ref-encoder/tool            base norm render math data eval kernel train write tool ted4.h
 '
 bad=0
 for f in $(find ref-decoder ref-encoder -name '*.[ch]'); do

@@ -1,0 +1,35 @@
+/* lane_sum.h - sums of many binary32 products in one order, whatever the compiler and the width of vectors: term i goes to partial sum i mod 16, and partial sums
+ * are added pairwise, halves upon halves. Plain operations (elementary.h says why that counts).
+ * SPDX-License-Identifier: BSD-2-Clause */
+#ifndef TED4_LANE_SUM_H
+#define TED4_LANE_SUM_H
+
+#include <stddef.h>
+
+enum { TED4_SUM_LANES = 16 };
+
+/* The sum of 16 partial sums, in their place. */
+static inline float ted4_lanes_total(float *part)
+{
+    for (int half = TED4_SUM_LANES / 2; half > 0; half /= 2)
+        for (int j = 0; j < half; j++)
+            part[j] += part[j + half];
+    return part[0];
+}
+
+/* x y. */
+static inline float ted4_lane_dot(size_t n, const float *x, const float *y)
+{
+    float  part[TED4_SUM_LANES] = { 0 };
+    size_t i = 0;
+
+    for (; i + TED4_SUM_LANES <= n; i += TED4_SUM_LANES)
+#pragma omp simd
+        for (size_t j = 0; j < TED4_SUM_LANES; j++)
+            part[j] += x[i + j] * y[i + j];
+    for (size_t j = 0; i + j < n; j++)
+        part[j] += x[i + j] * y[i + j];
+    return ted4_lanes_total(part);
+}
+
+#endif
