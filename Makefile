@@ -40,7 +40,13 @@ TESTS    = $(patsubst tests/%.c,$B/tests/%,$(sort $(wildcard tests/test_*.c))) \
 
 all: $(PROGS)
 
-$B/%.o: %.c
+# Changes when compiler or flags do; then everything is compiled anew.
+HOW = $(CC) $(CFLAGS_ALL) $(STRICT) $(FREE) $(FLAGS_v3) $(FLAGS_v4)
+$B/how: always
+	@mkdir -p $(@D)
+	@echo '$(HOW)' | cmp -s - $@ || echo '$(HOW)' >$@
+
+$B/%.o: %.c $B/how
 	@mkdir -p $(@D)
 	$(CC) $(CFLAGS_ALL) $(FPFLAGS) -c $< -o $@
 $B/%.o: FPFLAGS = $(STRICT)
@@ -51,7 +57,7 @@ $B/ref-decoder/kernel/%_avx512.o: FPFLAGS = $(STRICT) -mavx512f -mavx512bw -mavx
 
 # $(1): level
 define COMPILE_LEVEL
-$B/%.$(1).o: %.c
+$B/%.$(1).o: %.c $B/how
 	@mkdir -p $$(@D)
 	$$(CC) $$(CFLAGS_ALL) $$(FREE) $$(FLAGS_$(1)) -DTED4_LEVEL=$(1) -c $$< -o $$@
 endef
@@ -138,6 +144,6 @@ help:
 clean:
 	rm -rf build build-* out
 
-.PHONY: all test demo lint check asan deps deps-dev install help clean
+.PHONY: all always test demo lint check asan deps deps-dev install help clean
 .SECONDARY:
 -include $(shell find $B -name '*.d' 2>/dev/null)

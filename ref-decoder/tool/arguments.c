@@ -8,6 +8,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "base/level.h"
 #include "ted4.h"
 
 /* Long options without a letter are reported by getopt as this plus their place. */
@@ -39,10 +40,26 @@ static int answer(const ted4_command *c, int i)
         return TED4_ARGUMENTS_DONE;
     }
     if (c->table[i].letter == 'V') {
-        printf("%s " TED4_VERSION " (specification " TED4_SPEC_VERSION ")\n", c->program);
+        printf("%s " TED4_VERSION " (specification " TED4_SPEC_VERSION "), kernels %s\n", c->program,
+               ted4_level_name(ted4_level_wanted()));
         return TED4_ARGUMENTS_DONE;
     }
     return i;
+}
+
+/* Are the kernels that the environment asks for to be had? */
+static int check_kernels(const ted4_command *c)
+{
+    const char      *name = getenv("TED4_KERNEL");
+    const ted4_level most = ted4_level_of_machine();
+
+    if (name == NULL || ted4_level_named(name) <= most)
+        return 0;
+    fprintf(stderr, "%s: TED4_KERNEL=%s: this machine has", c->program, name);
+    for (ted4_level level = TED4_LEVEL_PLAIN; level <= most; level++)
+        fprintf(stderr, " %s", ted4_level_name(level));
+    fputc('\n', stderr);
+    return -1;
 }
 
 int ted4_arguments_next(const ted4_command *c, int argc, char **argv, const char **value)
@@ -55,7 +72,7 @@ int ted4_arguments_next(const ted4_command *c, int argc, char **argv, const char
 
     *value = optarg;
     if (found == -1)
-        return TED4_ARGUMENTS_END;
+        return check_kernels(c) == 0 ? TED4_ARGUMENTS_END : TED4_ARGUMENTS_BAD;
     if (found >= FIRST_LONG)
         return answer(c, found - FIRST_LONG);
     for (int i = 0; i < c->n; i++)
