@@ -27,7 +27,7 @@ $B/bench/bench_render: $B/bench/bench_render.o $B/ref-decoder/tool/threads.o $(D
 bench-render: $B/bench/bench_render
 	$(KEEP) bench/render.md $B/bench/bench_render
 
-# Parts of a step are told apart by functions that bench_train.c puts in between.
+# Parts of a step are told apart by functions that train_parts.c puts in between.
 TRAIN_PARTS = ted4_dataset_pixels ted4_trainer_check ted4_schedule_event ted4_slots_fill ted4_generator_pack ted4_generate \
         ted4_raster_project ted4_raster_bin ted4_raster_blend ted4_loss ted4_raster_blend_bwd ted4_raster_project_bwd \
         ted4_generate_backward ted4_update_volume ted4_update_bank ted4_densify_gather ted4_update_rate ted4_update_parameters
@@ -35,10 +35,10 @@ BETWEEN = $(TRAIN_PARTS:%=-Wl,--wrap=%)
 
 # Files named for an instruction set need it; the plain program is told not to take them.
 NAMED_SET   = $(filter %_avx2.c %_avx512.c,$(DEC_SRC))
-PLAIN_TRAIN = $(filter-out $(NAMED_SET),$(ENC_SRC) $(DRAW_SRC) $(DEC_SRC)) ref-decoder/tool/threads.c bench/bench_train.c
+PLAIN_TRAIN = $(filter-out $(NAMED_SET),$(ENC_SRC) $(DRAW_SRC) $(DEC_SRC)) ref-decoder/tool/threads.c bench/bench_train.c bench/train_parts.c
 
 $B/bench/bench_train.o: FPFLAGS = $(FREE)
-$B/bench/bench_train: $B/bench/bench_train.o $B/ref-decoder/tool/threads.o $(ENC_LIB)
+$B/bench/bench_train: $B/bench/bench_train.o $B/bench/train_parts.o $B/ref-decoder/tool/threads.o $(ENC_LIB)
 	$(CC) -fopenmp $(LDFLAGS) $(BETWEEN) $^ -o $@ $(LIBS)
 $B/plain/bench_train: $(PLAIN_TRAIN:%.c=$B/plain/%.o) $(NAMED_SET:%.c=$B/%.o)
 	$(CC) -fopenmp $(LDFLAGS) $(BETWEEN) $^ -o $@ $(LIBS)
@@ -51,6 +51,10 @@ $B/bench/occluder: | $B/ted4scene
 
 bench-train: $B/bench/bench_train $B/plain/bench_train $(if $(KITCHEN),,$B/bench/occluder)
 	$(KEEP) bench/train.md $B/bench/bench_train $(TRAIN_SCENE) $B/plain/bench_train
+
+# How far steps and runs can use many cores, in bench/scale.md: the share outside parallel work, and the bounds.
+$B/bench/bench_scale: $B/bench/bench_scale.o $B/bench/train_parts.o $B/bench/recorder.o $(ENC_LIB)
+	$(CC) -fopenmp $(LDFLAGS) $(BETWEEN) $^ -o $@ $(LIBS)
 
 # Peak memory of training a large scene, in bench/memory.md: hours. MEMORY_RUNS names some of its runs.
 bench-memory: $B/ted4enc $B/ted4scene
