@@ -50,20 +50,6 @@ void ted4_gradients_slot(const ted4_layout *l, const float *rate, const float *v
     }
 }
 
-double ted4_gradients_centres(const ted4_splat_grads *g, size_t n)
-{
-    float sum = 0;
-
-    for (int c = 0; c < 3; c++) {
-        const float *d = g->mean[c];
-
-#pragma omp simd reduction(+ : sum)
-        for (size_t i = 0; i < n; i++)
-            sum += d[i] * d[i];
-    }
-    return sqrt((double)sum);
-}
-
 /* Sum of squares. */
 static double squares_of(const float *x, size_t n)
 {
