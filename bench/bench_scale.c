@@ -8,7 +8,7 @@
 #include "train/raster_adjoint.h"
 #include "train_parts.h"
 
-enum { STEPS = 100, WARM_UP = 15, FEWEST = 12 };
+enum { STEPS = 40, WARM_UP = 15, FEWEST = 12 };
 
 /* A part of one step, or all of it: ms on one thread, in regions alone, and in regions on recorder_cores; regions. */
 typedef struct {

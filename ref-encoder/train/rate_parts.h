@@ -11,9 +11,10 @@
 #include "model.h"
 #include "norm/prior.h"
 
-/* Slots are worked on in chunks, each with its own sums; chunks of a wave run at the same time, and their sums are added in order. So results do not
- * depend on threads, and memory does not grow with the number of slots. */
-enum { TED4_RATE_CHUNK = 8, TED4_RATE_WAVE = 32 };
+/* Slots are worked on in chunks of nearly equal size, each with its own sums; chunks of a wave run at the same time, and their sums are added in order. So results do not
+ * depend on threads, and memory does not grow with the number of slots. Where slots are few, chunks are smaller rather than fewer than a wave, but never
+ * below the least: each adds a whole set of gradients. */
+enum { TED4_RATE_CHUNK = 8, TED4_RATE_LEAST = 2, TED4_RATE_WAVE = 32 };
 
 /* spec 10.1: log2(sigma / step) and log2(q / Q0) that indices can express. */
 #define TED4_S_MIN (-4.0f)
@@ -84,7 +85,7 @@ typedef struct {
     const float *const    *d_value;     /* may be NULL */
     float *const          *d_attr;      /* NULL: no gradients */
     float *const          *steps;       /* out: [TYPES][32] q of each slot */
-    size_t                 first;       /* slot of the wave's first chunk */
+    size_t                 first, n_chunks;     /* the wave's first chunk; all there are */
     int                    steps_only;
     const ted4_rate_integer *integer;    /* NULL: the float networks alone */
     float                 *lane_bits;   /* out: [slot][1 + K][32] bits of each anchor, then of each of its offsets; NULL: not wanted */
