@@ -70,6 +70,7 @@ void ted4_rate_free(ted4_rate *r)
         free(r->room[i].storage);
         free(r->sums[i].d_net);
     }
+    ted4_rate_integer_end(&r->integer);
     net_finish(&r->hyper);
     ted4_dense_finish(&r->step);
     for (int m = 0; m < TED4_MAX_SLICES; m++)
@@ -531,16 +532,15 @@ static int evaluate(ted4_rate_job job, const ted4_parallel *p, float *d_net,
     ted4_rate *r = job.rate;
     const ted4_rate_input *in = job.in;
     const size_t n_chunks = count_chunks(in->n_slots);
-    ted4_rate_integer integer;
 
     for (int t = 0; t < TED4_TYPES && bits != NULL; t++)
         bits[t] = 0.0;
     if (rooms(r, n_chunks < TED4_RATE_WAVE ? n_chunks : TED4_RATE_WAVE) != 0)
         return -1;
     if (in->quant == TED4_QUANT_INTEGER) {
-        if (ted4_rate_integer_begin(&integer, in) != 0)
+        if (ted4_rate_integer_begin(r, in) != 0)
             return -1;
-        job.integer = &integer;
+        job.integer = &r->integer;
     }
     for (size_t c = 0; c < n_chunks; c += TED4_RATE_WAVE) {
         const size_t left = n_chunks - c;
@@ -550,8 +550,6 @@ static int evaluate(ted4_rate_job job, const ted4_parallel *p, float *d_net,
         run_wave(&job, left < TED4_RATE_WAVE ? left : TED4_RATE_WAVE, p, d_net,
                  bits);
     }
-    if (job.integer != NULL)
-        ted4_rate_integer_end(&integer);
     return 0;
 }
 

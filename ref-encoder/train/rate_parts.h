@@ -63,6 +63,15 @@ typedef struct {
     ted4_rate_sums *sums;       /* of the chunk that is being worked on */
 } ted4_rate_room;
 
+/* The integer networks, and what they were made of: it stands still from step to step, and making them is all done by one thread. */
+typedef struct {
+    ted4_arena arena;
+    ted4_prior prior;
+    int        ready;
+    float     *net;             /* owned: [n_nete] */
+    uint8_t   *shift;           /* owned: [n_units] */
+} ted4_rate_integer;
+
 struct ted4_rate {
     ted4_layout    layout;
     ted4_rate_net  hyper, slice[TED4_MAX_SLICES];
@@ -71,12 +80,8 @@ struct ted4_rate {
     ted4_rate_room room[TED4_RATE_WAVE];
     atomic_flag    busy[TED4_RATE_WAVE];
     ted4_rate_sums sums[TED4_RATE_WAVE];
+    ted4_rate_integer integer;
 };
-
-typedef struct ted4_rate_integer {
-    ted4_arena arena;
-    ted4_prior prior;
-} ted4_rate_integer;
 
 /* What a chunk needs to know besides the input. */
 typedef struct {
@@ -119,8 +124,8 @@ void ted4_rate_slot_backward(const ted4_rate_job *job, ted4_rate_room *room,
 void ted4_rate_weights_backward(const ted4_rate *r, ted4_rate_room *room,
                                 size_t n_slots);
 
-/* rate_integer.c. begin: 0, or -1: no memory, or weights that spec 7.3 refuses. */
-int  ted4_rate_integer_begin(ted4_rate_integer *x, const ted4_rate_input *in);
+/* rate_integer.c. begin: r->integer is that of the input; 0, or -1: no memory, or weights that spec 7.3 refuses. */
+int  ted4_rate_integer_begin(ted4_rate *r, const ted4_rate_input *in);
 void ted4_rate_integer_end(ted4_rate_integer *x);
 void ted4_rate_integer_steps(const ted4_rate_job *job, ted4_rate_room *room,
                              size_t slot, float *v, float *q);
