@@ -11,20 +11,22 @@
 #include "norm/half.h"
 #include "rate_math.h"
 
-static int is_made_of(const ted4_rate_integer *x, const ted4_shape *s, const float *net, const uint8_t *shift)
+static int is_made_of(const ted4_rate_integer *x, const ted4_layout *l, const float *net, const uint8_t *shift)
 {
-    return x->ready && memcmp(x->net, net, s->n_nete * sizeof *net) == 0 && memcmp(x->shift, shift, s->n_units) == 0;
+    const ted4_shape *s = &l->shape;
+
+    return x->ready && x->prior.context_bits == l->head.context_bits && memcmp(x->net, net, s->n_nete * sizeof *net) == 0 && memcmp(x->shift, shift, s->n_units) == 0;
 }
 
 int ted4_rate_integer_begin(ted4_rate *r, const ted4_rate_input *in)
 {
-    const ted4_layout *l = &r->layout;
+    const ted4_layout *l = in->layout;
 
     const ted4_shape  *s = &l->shape;
-    const float       *net = in->net + in->layout->nete;
+    const float       *net = in->net + l->nete;
     ted4_rate_integer *x = &r->integer;
 
-    if (is_made_of(x, s, net, in->shift))
+    if (is_made_of(x, l, net, in->shift))
         return 0;
     ted4_rate_integer_end(x);
     ted4_arena_init(&x->arena, NULL);
