@@ -256,8 +256,9 @@ typedef struct {
     const ted4_generate_input *in;
 } job;
 
-static void forward_slot(const job *t, size_t slot)
+static void forward_slot(void *arg, size_t slot)
 {
+    const job *t = arg;
     ted4_generator *g = t->g;
     const int k = g->layout.head.n_offsets;
     float *planes = ted4_gen_slot(g, slot);
@@ -284,15 +285,6 @@ static void forward_slot(const job *t, size_t slot)
     }
 }
 
-static void forward_chunk(void *arg, size_t chunk)
-{
-    const job *t = arg;
-    const size_t end = ted4_gen_first(t->in->n_slots, chunk + 1);
-
-    for (size_t i = ted4_gen_first(t->in->n_slots, chunk); i < end; i++)
-        forward_slot(t, i);
-}
-
 int ted4_generate(ted4_generator *g, const ted4_generate_input *in,
                   const ted4_parallel *p, ted4_splats *out)
 {
@@ -301,7 +293,7 @@ int ted4_generate(ted4_generator *g, const ted4_generate_input *in,
     if (reserve(g, in->n_slots) != 0)
         return -1;
     ted4_gen_motion_make(g, in);
-    ted4_parallel_for(p, TED4_GEN_CHUNKS, forward_chunk, &t);
+    ted4_parallel_for(p, in->n_slots, forward_slot, &t);
     out->n = in->n_slots * (size_t)g->layout.head.n_offsets * TED4_LANES;
     for (int c = 0; c < 3; c++) {
         out->mean[c] = ted4_gen_splats(g, TED4_GEN_MEAN + c, 0);

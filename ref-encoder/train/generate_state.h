@@ -16,7 +16,7 @@
 /* Work is cut into this many chunks of slots whatever the number of threads, so that sums over
  * slots have one order. Within a chunk, weight gradients are taken over groups of slots, few enough
  * to stay in the second-level cache. */
-enum { TED4_GEN_CHUNKS = 16, TED4_GEN_GROUP = 8 };
+enum { TED4_GEN_CHUNKS = 32, TED4_GEN_GROUP = 8 };
 
 /* Motion inr, spec 11.3: inputs made of the position and of the time. */
 enum { TED4_INR_OCTAVES = 10, TED4_INR_POINT = 3 + 6 * TED4_INR_OCTAVES,
