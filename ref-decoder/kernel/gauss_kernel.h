@@ -23,9 +23,11 @@ typedef size_t (*ted4_gauss_many)(ted4_gauss_lanes *d, size_t n, const int32_t *
 #if defined(__x86_64__)
 size_t ted4_gauss_many_avx2(ted4_gauss_lanes *d, size_t n, const int32_t *mu, const uint8_t *sigma, int16_t *k);
 size_t ted4_gauss_many_avx512(ted4_gauss_lanes *d, size_t n, const int32_t *mu, const uint8_t *sigma, int16_t *k);
+#elif defined(__AARCH64EL__)
+size_t ted4_gauss_many_neon(ted4_gauss_lanes *d, size_t n, const int32_t *mu, const uint8_t *sigma, int16_t *k);
 #endif
 
-/* NULL: this machine has none, or the environment says TED4_KERNEL=plain. */
+/* That of the level wanted (base/level.h). NULL: it has none. */
 ted4_gauss_many ted4_select_gauss_many(void);
 
 #endif
