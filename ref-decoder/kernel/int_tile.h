@@ -15,10 +15,16 @@
 
 enum { ROW = TED4_PRIOR_BLOCK, MAX_PAIRS = TED4_MAX_WIDTH / 2 };
 
+/* Inputs of the next block, which follow where the caller has many blocks, are on their way meanwhile: the caller comes
+ * back to all of them for every few outputs. */
 static inline void interleave(const ted4_int_layer *l, const int16_t *x, pair *p)
 {
     for (unsigned i = 0; i < l->in; i += 2) {
         const int16_t *row = x + (size_t)i * ROW;
+
+        __builtin_prefetch(row + (size_t)l->in * ROW);
+        __builtin_prefetch(row + (size_t)(l->in + 1) * ROW);
+
         const vector   a = load(row), b = i + 1 < l->in ? load(row + ROW) : nothing();
 
         p[i / 2].lo = low(a, b);
