@@ -216,9 +216,9 @@ void ted4_prior_hyper(const ted4_prior *p, const uint16_t *position, size_t n,
     chain(p, p->hyper, p->n_hyper, x, all_inputs(p, position, n, x), out);
 }
 
-unsigned ted4_prior_hidden(const ted4_prior *p)
+const ted4_int_layer *ted4_prior_last(const ted4_prior *p)
 {
-    return p->hyper[p->n_hyper - 1].in;
+    return &p->hyper[p->n_hyper - 1];
 }
 
 void ted4_prior_hyper_hidden(const ted4_prior *p, const uint16_t *position, size_t n, int16_t *hidden)
@@ -231,16 +231,25 @@ void ted4_prior_hyper_hidden(const ted4_prior *p, const uint16_t *position, size
         all_inputs(p, position, n, hidden);
 }
 
-void ted4_prior_hyper_outputs(const ted4_prior *p, const int16_t *hidden, unsigned first, unsigned n_outputs, size_t n,
-                              int32_t *out)
+void ted4_prior_hyper_some(const ted4_prior *p, const ted4_int_layer *some, const int16_t *hidden, size_t n, int32_t *out)
 {
-    ted4_int_layer l = p->hyper[p->n_hyper - 1];
+    p->dense->last(some, hidden, group_up(n), out);
+}
 
-    l.w += (size_t)first * l.in_pad;
-    l.b += first;
-    l.r += first;
-    l.out = n_outputs;
-    p->dense->last(&l, hidden, group_up(n), out);
+void ted4_prior_some(const ted4_prior *p, unsigned first, unsigned second, unsigned n, ted4_int_layer *some)
+{
+    const ted4_int_layer *l = ted4_prior_last(p);
+
+    some->in = l->in;
+    some->in_pad = l->in_pad;
+    some->out = 2 * n;
+    for (unsigned o = 0; o < 2 * n; o++) {
+        const unsigned from = o < n ? first + o : second + o - n;
+
+        memcpy(some->w + (size_t)o * l->in_pad, l->w + (size_t)from * l->in_pad, l->in_pad * sizeof *l->w);
+        some->b[o] = l->b[from];
+        some->r[o] = l->r[from];
+    }
 }
 
 /* spec 10.3 */

@@ -18,6 +18,7 @@ typedef struct {
     size_t            n_padded; /* anchors of all blocks */
     unsigned          n_hidden; /* H */
     int16_t          *hidden;   /* [n_blocks][H][64] inputs of the hyperprior's last layer */
+    ted4_int_layer    some;     /* that layer for some components */
     int16_t          *ctx;      /* [n_blocks][F][64] what the slice networks see */
     int32_t          *out, *added;      /* [2 max(F, ..)][64] outputs of the hyperprior and of a slice network, for a block */
     int32_t          *mu;       /* [C][n_padded] models of some components, for all anchors */
@@ -79,45 +80,60 @@ static size_t outputs_size(const ted4_scene *s)
     return sizeof(int32_t) * 2 * BLOCK * most_components(s);
 }
 
+/* Units of a layer of so many outputs, and more up to a multiple of 64. */
+static size_t layer_units(const ted4_scene *s)
+{
+    return block_count(2 * most_components(s)) * BLOCK;
+}
+
+/* Weights of a unit, or one more. */
+static size_t unit_weights(const ted4_scene *s)
+{
+    return (size_t)hidden_rows(&s->shape.hyper) + 1;
+}
+
 size_t ted4_tile_work_size(const ted4_scene *s)
 {
     const size_t n = block_count(tile_anchors(&s->head)) * BLOCK;
     const size_t per_anchor = (4 + 1) * ((size_t)most_components(s) + 1)
                             + 2 * ((size_t)hidden_rows(&s->shape.hyper) + s->head.feature_dim)
                             + 4 + 2;
+    const size_t fixed = 2 * outputs_size(s) + layer_units(s) * (2 * unit_weights(s) + 4 + 1);
 
-    if (n > (SIZE_MAX - 2 * outputs_size(s)) / per_anchor)
+    if (n > (SIZE_MAX - fixed) / per_anchor)
         return SIZE_MAX;
-    return n * per_anchor + 2 * outputs_size(s);
+    return n * per_anchor + fixed;
 }
 
-/* Every array is a multiple of 64 bytes long, as n is one of 64. */
+/* The next n elements of size bytes, n being a multiple of 64. */
+static void *next_array(char **at, size_t n, size_t size)
+{
+    void *array = *at;
+
+    *at += n * size;
+    return array;
+}
+
 static void carve(tile *t, void *work)
 {
-    const size_t n = t->n_blocks * BLOCK, most = most_components(t->s);
+    const size_t n = t->n_blocks * BLOCK, most = most_components(t->s), units = layer_units(t->s);
     char        *at = work;
 
     t->n_padded = n;
     t->n_hidden = hidden_rows(&t->s->shape.hyper);
-    t->out = (int32_t *)(void *)at;
-    at += outputs_size(t->s);
-    t->added = (int32_t *)(void *)at;
-    at += outputs_size(t->s);
-    t->mu = (int32_t *)(void *)at;
-    at += 4 * n * most;
-    t->some_mu = (int32_t *)(void *)at;
-    at += 4 * n;
-    t->index = (uint32_t *)(void *)at;
-    at += 4 * n;
-    t->hidden = (int16_t *)(void *)at;
-    at += 2 * n * t->n_hidden;
-    t->ctx = (int16_t *)(void *)at;
-    at += 2 * n * t->s->head.feature_dim;
-    t->k = (int16_t *)(void *)at;
-    at += 2 * n;
-    t->sigma = (uint8_t *)at;
-    at += n * most;
-    t->some_sigma = (uint8_t *)at;
+    t->out = next_array(&at, outputs_size(t->s), 1);
+    t->added = next_array(&at, outputs_size(t->s), 1);
+    t->some.w = next_array(&at, units * unit_weights(t->s), sizeof *t->some.w);
+    t->some.b = next_array(&at, units, sizeof *t->some.b);
+    t->some.r = next_array(&at, units, 1);
+    t->mu = next_array(&at, n * most, sizeof *t->mu);
+    t->some_mu = next_array(&at, n, sizeof *t->some_mu);
+    t->index = next_array(&at, n, sizeof *t->index);
+    t->hidden = next_array(&at, n * t->n_hidden, sizeof *t->hidden);
+    t->ctx = next_array(&at, n * t->s->head.feature_dim, sizeof *t->ctx);
+    t->k = next_array(&at, n, sizeof *t->k);
+    t->sigma = next_array(&at, n * most, 1);
+    t->some_sigma = next_array(&at, n, 1);
 }
 
 static uint16_t probability(ted4_coder *c, const char *name, int64_t index,
@@ -243,9 +259,12 @@ static size_t block_size(const tile *t, size_t b)
 /* Step indices of n anchors from outputs v. A scene to be written already has those. */
 static void take_steps(tile *t, uint8_t *step, const int32_t *v, size_t n)
 {
-    for (size_t i = 0; t->c->reads && i < n; i++)
-        step[i] = ted4_step_index(v[i]);
-    for (size_t i = 0; !t->c->reads && i < n; i++)
+    if (t->c->reads) {
+        for (size_t i = 0; i < n; i++)
+            step[i] = ted4_step_index(v[i]);
+        return;
+    }
+    for (size_t i = 0; i < n; i++)
         ted4_require(t->c, step[i] == ted4_step_index(v[i]), TED4_E_SYN_HASH,
                      t->c->pos);
 }
@@ -255,14 +274,15 @@ static void evaluate(tile *t)
 {
     const ted4_shape *shape = &t->s->shape;
 
+    ted4_prior_some(t->prior, shape->first_step_output, shape->first_step_output, shape->n_types, &t->some);
+    t->some.out = shape->n_types;
     for (size_t b = 0; b < t->n_blocks; b++) {
         const size_t a = t->first + b * BLOCK, n = block_size(t, b);
         int16_t     *hidden = t->hidden + b * t->n_hidden * BLOCK;
         const int32_t *v = t->out;
 
         ted4_prior_hyper_hidden(t->prior, t->s->position + 3 * a, n, hidden);
-        ted4_prior_hyper_outputs(t->prior, hidden, shape->first_step_output,
-                                 shape->n_types, n, t->out);
+        ted4_prior_hyper_some(t->prior, &t->some, hidden, n, t->out);
         for (int type = 0; type < TED4_TYPES; type++) {
             if (shape->dim[type] == 0)
                 continue;
@@ -272,40 +292,35 @@ static void evaluate(tile *t)
     }
 }
 
-/* spec 10.1, 10.3: outputs of one block for n components of a type from comp on, mu of all of them and then s of all; of features with what the network of slice m,
- * which these are, adds. */
-static void evaluate_block(tile *t, size_t b, ted4_type type, unsigned comp, unsigned n, unsigned m)
+/* spec 10.3: what the network of slice m adds to mu and s of a block. */
+static void add_slice(tile *t, size_t b, unsigned m)
 {
-    const unsigned dim = t->s->shape.dim[type], first = t->s->shape.first_output[type] + comp;
-    const int16_t *hidden = t->hidden + b * t->n_hidden * BLOCK;
-    const size_t   size = block_size(t, b);
+    const size_t size = block_size(t, b), end = 2 * (size_t)t->s->head.slice[m] * BLOCK;
 
-    if (n == dim) {             /* side by side */
-        ted4_prior_hyper_outputs(t->prior, hidden, first, 2 * n, size, t->out);
-    } else {
-        ted4_prior_hyper_outputs(t->prior, hidden, first, n, size, t->out);
-        ted4_prior_hyper_outputs(t->prior, hidden, first + dim, n, size, t->out + (size_t)n * BLOCK);
-    }
-    if (m == 0)
-        return;
     ted4_prior_slice(t->prior, m, t->ctx + b * t->s->head.feature_dim * BLOCK, size, t->added);
-    for (size_t row = 0; row < 2 * (size_t)n * BLOCK; row += BLOCK)
+    for (size_t row = 0; row < end; row += BLOCK)
         for (size_t i = row; i < row + size; i++)
             t->out[i] += t->added[i];
 }
 
-/* Models of n components of a type from comp on, for the whole tile; m as above. */
+/* spec 10.1: models of n components of a type from comp on, for the whole tile; of features those of slice m. */
 static void evaluate_components(tile *t, ted4_type type, unsigned comp, unsigned n, unsigned m)
 {
+    const unsigned first = t->s->shape.first_output[type] + comp;
+
+    ted4_prior_some(t->prior, first, first + t->s->shape.dim[type], n, &t->some);
     for (size_t b = 0; b < t->n_blocks; b++) {
         const size_t size = block_size(t, b);
 
-        evaluate_block(t, b, type, comp, n, m);
+        ted4_prior_hyper_some(t->prior, &t->some, t->hidden + b * t->n_hidden * BLOCK, size, t->out);
+        if (m > 0)
+            add_slice(t, b, m);
         for (unsigned c = 0; c < n; c++) {
-            const int32_t *s = t->out + ((size_t)n + c) * BLOCK;
-            uint8_t       *sigma = t->sigma + c * t->n_padded + b * BLOCK;
+            const int32_t *mu = t->out + (size_t)c * BLOCK, *s = mu + (size_t)n * BLOCK;
+            const size_t   to = c * t->n_padded + b * BLOCK;
+            uint8_t       *sigma = t->sigma + to;
 
-            memcpy(t->mu + c * t->n_padded + b * BLOCK, t->out + (size_t)c * BLOCK, size * sizeof *t->mu);
+            memcpy(t->mu + to, mu, size * sizeof *mu);
             for (size_t i = 0; i < size; i++)
                 sigma[i] = ted4_sigma_index(s[i]);
         }
@@ -338,6 +353,19 @@ static void choose_offset(tile *t, unsigned k)
     }
 }
 
+/* Models of the chosen anchors. */
+static void pick_models(tile *t, const int32_t *mu, const uint8_t *sigma)
+{
+    const uint32_t *index = t->index;
+    int32_t        *some_mu = t->some_mu;
+    uint8_t        *some_sigma = t->some_sigma;
+
+    for (size_t j = 0, n = t->n_index; j < n; j++) {
+        some_mu[j] = mu[index[j]];
+        some_sigma[j] = sigma[index[j]];
+    }
+}
+
 /* spec 10.2: component number comp of a type, for the chosen anchors; number i of those that were evaluated. */
 static void walk_component(tile *t, ted4_type type, unsigned comp, unsigned i)
 {
@@ -350,13 +378,14 @@ static void walk_component(tile *t, ted4_type type, unsigned comp, unsigned i)
 
     if (t->c->error.code != TED4_OK)
         return;
-    for (size_t j = 0; some && j < t->n_index; j++) {
-        t->some_mu[j] = mu[t->index[j]];
-        t->some_sigma[j] = sigma[t->index[j]];
+    if (some) {
+        pick_models(t, mu, sigma);
+        mu = t->some_mu;
+        sigma = t->some_sigma;
     }
     for (size_t j = 0; some && !t->c->reads && j < t->n_index; j++)
         k[j] = symbol[t->index[j]];
-    t->c->ops->gauss(t->c, t->n_index, some ? t->some_mu : mu, some ? t->some_sigma : sigma, k);
+    t->c->ops->gauss(t->c, t->n_index, mu, sigma, k);
     for (size_t j = 0; some && t->c->reads && j < t->n_index; j++)
         symbol[t->index[j]] = k[j];
     for (size_t j = 0; t->c->reads && t->c->trace != NULL && j < t->n_index; j++)
@@ -370,12 +399,15 @@ static void keep_context(tile *t, unsigned comp)
     const int16_t *k = s->symbol[TED4_FEATURE]
                      + (size_t)comp * s->head.n_anchors + t->first;
     const uint8_t *step = s->step_index[TED4_FEATURE] + t->first;
+    const unsigned bits = s->head.context_bits;
 
-    for (size_t i = 0; i < t->n_blocks * BLOCK; i++) {
-        int16_t *x = t->ctx + (i / BLOCK * s->head.feature_dim + comp) * BLOCK;
+    for (size_t b = 0; b < t->n_blocks; b++, k += BLOCK, step += BLOCK) {
+        const size_t n = block_size(t, b);
+        int16_t     *x = t->ctx + (b * s->head.feature_dim + comp) * BLOCK;
 
-        x[i % BLOCK] = i < t->n ? ted4_context(k[i], step[i],
-                                               s->head.context_bits) : 0;
+        for (size_t i = 0; i < n; i++)
+            x[i] = ted4_context(k[i], step[i], bits);
+        memset(x + n, 0, (BLOCK - n) * sizeof *x);
     }
 }
 
