@@ -1,7 +1,7 @@
 /* bench_train.c - what a training step costs, and which part of it how much: stage 1, stage 2 and its integer part, on one thread and on two.
  * Parts: train_parts.h. What runs on all threads is known by the regions that the trainer hands to its threads.
- * Usage: bench_train SCENE DOWNSCALE [OTHER]. OTHER: the same program from a plain scalar build; it is asked for its times on one thread.
- *        bench_train -t SCENE DOWNSCALE: one line "stage1_ms stage2_ms integer_ms" for that purpose.
+ * Parts are those of the machine's highest level (base/level.h); of lower ones the step is timed, in turn with it.
+ * Usage: bench_train SCENE DOWNSCALE
  * SPDX-License-Identifier: BSD-2-Clause */
 #include <math.h>
 
@@ -9,7 +9,7 @@
 #include "tool/threads.h"
 #include "train_parts.h"
 
-enum { STEPS = 150, WARM_UP = 15, PLAIN_STEPS = 60, ROUNDS = 2 };
+enum { STEPS = 150, WARM_UP = 15, ROUNDS = 2 };
 
 /* One step: ms of each part, of the step, and of it outside all parallel regions. */
 typedef struct {
@@ -118,9 +118,8 @@ static sample lesser(const sample *a, const sample *b)
     return s;
 }
 
-static void print_stage(const recording *r, int stage, const sample *one, const sample *two, double plain)
+static void print_parts(const sample *one, const sample *two)
 {
-    printf("%s: %zu anchors, %.0f Gaussians on screen\n", stage_name[stage], r->anchors[stage], r->splats[stage]);
     printf("  %-28s %9s %6s %10s %9s\n", "", "1 thread", "share", "2 threads", "speed-up");
     for (int i = 0; i < N_PARTS; i++)
         if (one->part[i] >= 0.005)
@@ -128,72 +127,70 @@ static void print_stage(const recording *r, int stage, const sample *one, const 
                    one->part[i] / two->part[i]);
     printf("  %-28s %6.2f ms        %7.2f ms %9.2f\n", "a step", one->whole, two->whole, one->whole / two->whole);
     printf("  %-28s %6.2f ms        %7.2f ms\n", "of it outside parallel work", one->alone, two->alone);
-    if (plain > 0)
-        printf("  %-28s %6.2f ms, ratio %.1f\n", "plain build, 1 thread", plain, plain / one->whole);
 }
 
-static void ask_other(const char *program, const char *scene, const char *downscale, double plain[STAGES])
+/* m: by level, number of threads less 1, and stage. */
+static void print_stage(const recording *r, int stage, sample m[TED4_LEVELS][2][STAGES])
 {
-    char command[4096];
+    const ted4_level most = ted4_level_of_machine();
+    const double     one = m[most][0][stage].whole, two = m[most][1][stage].whole;
 
-    snprintf(command, sizeof command, "TED4_KERNEL=plain '%s' -t '%s' '%s'", program, scene, downscale);
-    FILE *f = must(popen(command, "r"));
-    if (fscanf(f, "%lf %lf %lf", &plain[STAGE_1], &plain[STAGE_2], &plain[STAGE_INTEGER]) != STAGES) {
-        fprintf(stderr, "bench_train: %s gave no times\n", program);
-        exit(3);
+    printf("%s: %zu anchors, %.0f Gaussians on screen\n", stage_name[stage], r->anchors[stage], r->splats[stage]);
+    print_parts(&m[most][0][stage], &m[most][1][stage]);
+    for (ted4_level level = most; level >= TED4_LEVEL_BASE; level--) {
+        const double a = m[level][0][stage].whole, b = m[level][1][stage].whole;
+
+        printf("  a step, %-20s %6.2f ms        %7.2f ms", ted4_level_name(level), a, b);
+        printf(level < most ? "   ratio %.2f, %.2f\n" : "\n", a / one, b / two);
     }
-    pclose(f);
 }
 
-static void report(ted4_dataset *d, const double plain[STAGES])
+/* As the programs do: the decoder's kernels by the environment. */
+static void use(ted4_level level)
 {
-    ted4_parallel one, two;
-    sample        m[2][STAGES];
+    setenv("TED4_KERNEL", ted4_level_name(level), 1);
+    ted4_level_use(level);
+}
+
+static void report(ted4_dataset *d)
+{
+    ted4_parallel team[2];
+    sample        m[TED4_LEVELS][2][STAGES];
     recording    *r = must(malloc(sizeof *r));
 
-    ted4_threads_init(&one, 1);
-    ted4_threads_init(&two, 2);
+    ted4_threads_init(&team[0], 1);
+    ted4_threads_init(&team[1], 2);
     for (int round = 0; round < ROUNDS; round++)
-        for (int k = 0; k < 2; k++) {
-            record(r, d, k == 0 ? &one : &two, STEPS);
-            for (int stage = 0; stage < STAGES; stage++) {
-                const sample s = medians(r, stage);
+        for (ted4_level level = TED4_LEVEL_BASE; level <= ted4_level_of_machine(); level++)
+            for (int k = 0; k < 2; k++) {
+                use(level);
+                record(r, d, &team[k], STEPS);
+                for (int stage = 0; stage < STAGES; stage++) {
+                    const sample s = medians(r, stage);
 
-                m[k][stage] = round == 0 ? s : lesser(&m[k][stage], &s);
+                    m[level][k][stage] = round == 0 ? s : lesser(&m[level][k][stage], &s);
+                }
             }
-        }
     for (int stage = 0; stage < STAGES; stage++)
-        print_stage(r, stage, &m[0][stage], &m[1][stage], plain[stage]);
+        print_stage(r, stage, m);
     free(r);
-    ted4_threads_finish(&two);
-    ted4_threads_finish(&one);
+    ted4_threads_finish(&team[1]);
+    ted4_threads_finish(&team[0]);
 }
 
 int main(int argc, char **argv)
 {
-    const int    quiet = argc == 4 && strcmp(argv[1], "-t") == 0;
-    double       plain[STAGES] = {0};
     ted4_dataset d;
 
-    if (argc < 3 || argc > 4) {
-        fputs("usage: bench_train SCENE DOWNSCALE [OTHER]\n", stderr);
+    if (argc != 3) {
+        fputs("usage: bench_train SCENE DOWNSCALE\n", stderr);
         return 3;
     }
-    parts_load(&d, argv[1 + quiet], argv[2 + quiet]);
-    if (quiet) {
-        recording *r = must(malloc(sizeof *r));
-
-        record(r, &d, NULL, PLAIN_STEPS);
-        printf("%.6f %.6f %.6f\n", medians(r, STAGE_1).whole, medians(r, STAGE_2).whole, medians(r, STAGE_INTEGER).whole);
-        free(r);
-    } else {
-        if (argc == 4)
-            ask_other(argv[3], argv[1], argv[2], plain);
-        printf("%s, 1/%s size: %dx%d, %zu pictures; preset fast, full number of anchors from the first step; medians of %d steps, lesser of %d rounds\n",
-               strrchr(argv[1], '/') != NULL ? strrchr(argv[1], '/') + 1 : argv[1], argv[2], d.pictures[0].camera.width, d.pictures[0].camera.height,
-               d.n_pictures, STEPS - WARM_UP, ROUNDS);
-        report(&d, plain);
-    }
+    parts_load(&d, argv[1], argv[2]);
+    printf("%s, 1/%s size: %dx%d, %zu pictures; preset fast, full number of anchors from the first step; medians of %d steps, lesser of %d rounds\n",
+           strrchr(argv[1], '/') != NULL ? strrchr(argv[1], '/') + 1 : argv[1], argv[2], d.pictures[0].camera.width, d.pictures[0].camera.height,
+           d.n_pictures, STEPS - WARM_UP, ROUNDS);
+    report(&d);
     ted4_dataset_free(&d);
     return 0;
 }
