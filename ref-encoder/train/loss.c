@@ -2,7 +2,7 @@
  * four filtered planes u, v, u^2, v^2 give all
  * that SSIM needs (instead of five), and v is the L1 residual as well.
  *
- * Three passes, each parallel over fixed chunks of rows: (1) u, v and L1; (2) the four filters,
+ * Three passes, each parallel over fixed pieces of the picture: (1) u, v and L1; (2) the four filters,
  * SSIM and its derivatives by the filtered
  * planes; (3) the same filter, which is its own adjoint, over the three derivative planes. A filter
  * runs along rows into a ring of 11 rows of a
@@ -14,7 +14,8 @@
 #include <stdlib.h>
 #include <string.h>
 
-enum { TAPS = 11, HALF = TAPS / 2, LANES = 16, TILE = 128, BAND = 64, CHANNELS = 3 };
+/* A job is SPLIT rows in the first pass, BAND rows of a tile's width in the others: few enough that a small picture keeps 32 cores busy. */
+enum { TAPS = 11, HALF = TAPS / 2, LANES = 16, TILE = 128, SPLIT = 4, BAND = 32, CHANNELS = 3 };
 
 typedef float   lanes __attribute__((vector_size(64)));
 typedef int32_t lanes_i __attribute__((vector_size(64)));
@@ -41,7 +42,7 @@ typedef struct {
     float         *d_image;
     float         *u, *v, *d[3];
     double        *sum;
-    int            width, height, n_bands;
+    int            width, height, n_splits, n_bands, n_tiles;
     size_t         stride, plane;       /* floats from row to row, channel to channel */
     float          l1_step, ssim_step;  /* dL/d|v|, -dL/dSSIM of one value */
 } job;
@@ -82,16 +83,20 @@ static double split_row(const float *x, const uint8_t *y, float *u, float *v, in
     return (double)sum;
 }
 
-static void clear_sides(float *row, size_t stride, int width)
+static void clear_left(float *row)
 {
     memset(row, 0, LANES * sizeof *row);
+}
+
+static void clear_right(float *row, size_t stride, int width)
+{
     memset(row + LANES + width, 0, (stride - LANES - (size_t)width) * sizeof *row);
 }
 
 static void split_band(void *arg, size_t band)
 {
     const job *j = arg;
-    const int first = (int)band * BAND, last = min_int(first + BAND, j->height);
+    const int first = (int)band * SPLIT, last = min_int(first + SPLIT, j->height);
     double sum = 0.0;
 
     for (int r = first; r < last; r++) {
@@ -99,14 +104,29 @@ static void split_band(void *arg, size_t band)
             const size_t at = (size_t)c * j->plane + (size_t)r * j->stride;
             const size_t row = (size_t)r * (size_t)j->width;
 
-            clear_sides(j->u + at, j->stride, j->width);
-            clear_sides(j->v + at, j->stride, j->width);
+            clear_left(j->u + at);
+            clear_left(j->v + at);
+            clear_right(j->u + at, j->stride, j->width);
+            clear_right(j->v + at, j->stride, j->width);
             sum += split_row(j->image + (size_t)c * (size_t)j->width * (size_t)j->height + row,
                              j->truth + row * CHANNELS + c,
                              j->u + at + LANES, j->v + at + LANES, j->width);
         }
     }
     j->sum[band] = sum;
+}
+
+/* What job i of the second and third pass does. */
+typedef struct {
+    size_t channel;
+    int    first, last, x0;     /* rows, first column */
+} piece;
+
+static piece piece_of(const job *j, size_t i)
+{
+    const int tile = (int)(i % (size_t)j->n_tiles), band = (int)(i / (size_t)j->n_tiles % (size_t)j->n_bands);
+
+    return (piece){ i / (size_t)j->n_tiles / (size_t)j->n_bands, band * BAND, min_int((band + 1) * BAND, j->height), tile * TILE };
 }
 
 /* ---- pass 2: SSIM and its derivatives ---- */
@@ -219,19 +239,22 @@ static double similarity_tile(const job *j, size_t plane, int first, int last, i
     return sum;
 }
 
-static void similarity_band(void *arg, size_t i)
+static void similarity_piece(void *arg, size_t i)
 {
     const job *j = arg;
-    const size_t plane = i / (size_t)j->n_bands * j->plane;
-    const int first = (int)(i % (size_t)j->n_bands) * BAND, last = min_int(first + BAND, j->height);
-    double sum = 0.0;
+    const piece p = piece_of(j, i);
+    const size_t plane = p.channel * j->plane;
 
-    for (int r = first; r < last; r++)
-        for (int k = 0; k < 3; k++)
-            clear_sides(j->d[k] + plane + (size_t)r * j->stride, j->stride, j->width);
-    for (int x0 = 0; x0 < j->width; x0 += TILE)
-        sum += similarity_tile(j, plane, first, last, x0);
-    j->sum[i] = sum;
+    for (int r = p.first; r < p.last; r++)
+        for (int k = 0; k < 3; k++) {
+            float *row = j->d[k] + plane + (size_t)r * j->stride;
+
+            if (p.x0 == 0)
+                clear_left(row);
+            if (p.x0 + TILE >= j->width)
+                clear_right(row, j->stride, j->width);
+        }
+    j->sum[i] = similarity_tile(j, plane, p.first, p.last, p.x0);
 }
 
 /* ---- pass 3: dL/dx = l1_step sign(v) - ssim_step (G d0 + 2 u G d1 + 2 v G d2) ---- */
@@ -299,13 +322,12 @@ static void gradient_tile(const job *j, size_t channel, int first, int last, int
     }
 }
 
-static void gradient_band(void *arg, size_t i)
+static void gradient_piece(void *arg, size_t i)
 {
     const job *j = arg;
-    const int first = (int)(i % (size_t)j->n_bands) * BAND, last = min_int(first + BAND, j->height);
+    const piece p = piece_of(j, i);
 
-    for (int x0 = 0; x0 < j->width; x0 += TILE)
-        gradient_tile(j, i / (size_t)j->n_bands, first, last, x0);
+    gradient_tile(j, p.channel, p.first, p.last, p.x0);
 }
 
 /* ---- the whole ---- */
@@ -356,13 +378,16 @@ double ted4_loss(ted4_loss_workspace *w, const float *image, const uint8_t *trut
     job j = {
         .image = image, .truth = truth, .d_image = d_image, .width = width, .height = height
     };
-    size_t volume;
+    size_t volume, pieces;
 
+    j.n_splits = (height + SPLIT - 1) / SPLIT;
     j.n_bands = (height + BAND - 1) / BAND;
+    j.n_tiles = (width + TILE - 1) / TILE;
+    pieces    = CHANNELS * (size_t)j.n_bands * (size_t)j.n_tiles;
     j.stride  = (size_t)((width + LANES - 1) / LANES * LANES + 2 * LANES);
     j.plane   = j.stride * (size_t)height;
     volume    = j.plane * CHANNELS;
-    if (reserve(w, volume * 5, (size_t)j.n_bands * CHANNELS) != 0)
+    if (reserve(w, volume * 5, pieces > (size_t)j.n_splits ? pieces : (size_t)j.n_splits) != 0)
         return -1.0;
     j.u = w->block;
     j.v = j.u + volume;
@@ -372,11 +397,11 @@ double ted4_loss(ted4_loss_workspace *w, const float *image, const uint8_t *trut
     j.l1_step   = (float)((1.0 - (double)ssim_weight) / count);
     j.ssim_step = (float)((double)ssim_weight / count);
 
-    ted4_parallel_for(p, (size_t)j.n_bands, split_band, &j);
-    *l1 = sum_of(w->sum, (size_t)j.n_bands) / count;
-    ted4_parallel_for(p, (size_t)j.n_bands * CHANNELS, similarity_band, &j);
+    ted4_parallel_for(p, (size_t)j.n_splits, split_band, &j);
+    *l1 = sum_of(w->sum, (size_t)j.n_splits) / count;
+    ted4_parallel_for(p, pieces, similarity_piece, &j);
     /* Of equal pictures rounding may find a little more than 1, and a negative loss means a failure. */
-    *ssim = fmin(sum_of(w->sum, (size_t)j.n_bands * CHANNELS) / count, 1.0);
-    ted4_parallel_for(p, (size_t)j.n_bands * CHANNELS, gradient_band, &j);
+    *ssim = fmin(sum_of(w->sum, pieces) / count, 1.0);
+    ted4_parallel_for(p, pieces, gradient_piece, &j);
     return (1.0 - (double)ssim_weight) * *l1 + (double)ssim_weight * (1.0 - *ssim);
 }

@@ -70,6 +70,7 @@ void ted4_rate_free(ted4_rate *r)
         free(r->room[i].storage);
         free(r->sums[i].d_net);
     }
+    ted4_rate_integer_end(&r->integer);
     net_finish(&r->hyper);
     ted4_dense_finish(&r->step);
     for (int m = 0; m < TED4_MAX_SLICES; m++)
@@ -439,14 +440,32 @@ static void slot_forward(const ted4_rate_job *job, ted4_rate_room *room,
 
 /* ---- chunks ---- */
 
+static size_t whole_waves(size_t n_slots)
+{
+    const size_t wave = (size_t)TED4_RATE_CHUNK * TED4_RATE_WAVE;
+
+    return (n_slots + wave - 1) / wave * TED4_RATE_WAVE;
+}
+
+static size_t count_chunks(size_t n_slots)
+{
+    const size_t most = (n_slots + TED4_RATE_LEAST - 1) / TED4_RATE_LEAST, whole = whole_waves(n_slots);
+
+    return whole < most ? whole : most;
+}
+
+static size_t chunk_first(const ted4_rate_job *job, size_t chunk)
+{
+    return job->in->n_slots * chunk / job->n_chunks;
+}
+
 static void run_chunk(void *arg, size_t chunk)
 {
     const ted4_rate_job *job = arg;
     const size_t entered = room_enter(job->rate);
     ted4_rate_room *room = &job->rate->room[entered];
-    const size_t first = job->first + chunk * TED4_RATE_CHUNK;
-    const size_t left = job->in->n_slots - first;
-    const size_t n = left < TED4_RATE_CHUNK ? left : TED4_RATE_CHUNK;
+    const size_t first = chunk_first(job, job->first + chunk);
+    const size_t n = chunk_first(job, job->first + chunk + 1) - first;
 
     room->sums = &job->rate->sums[chunk];
     memset(room->sums->bits, 0, sizeof room->sums->bits);
@@ -512,28 +531,25 @@ static int evaluate(ted4_rate_job job, const ted4_parallel *p, float *d_net,
 {
     ted4_rate *r = job.rate;
     const ted4_rate_input *in = job.in;
-    const size_t n_chunks = (in->n_slots + TED4_RATE_CHUNK - 1)
-                          / TED4_RATE_CHUNK;
-    ted4_rate_integer integer;
+    const size_t n_chunks = count_chunks(in->n_slots);
 
     for (int t = 0; t < TED4_TYPES && bits != NULL; t++)
         bits[t] = 0.0;
     if (rooms(r, n_chunks < TED4_RATE_WAVE ? n_chunks : TED4_RATE_WAVE) != 0)
         return -1;
     if (in->quant == TED4_QUANT_INTEGER) {
-        if (ted4_rate_integer_begin(&integer, in) != 0)
+        if (ted4_rate_integer_begin(r, in) != 0)
             return -1;
-        job.integer = &integer;
+        job.integer = &r->integer;
     }
     for (size_t c = 0; c < n_chunks; c += TED4_RATE_WAVE) {
         const size_t left = n_chunks - c;
 
-        job.first = c * TED4_RATE_CHUNK;
+        job.first = c;
+        job.n_chunks = n_chunks;
         run_wave(&job, left < TED4_RATE_WAVE ? left : TED4_RATE_WAVE, p, d_net,
                  bits);
     }
-    if (job.integer != NULL)
-        ted4_rate_integer_end(&integer);
     return 0;
 }
 
