@@ -7,7 +7,6 @@
 #include <stdatomic.h>
 
 #include "base/arena.h"
-#include "lane_math.h"
 #include "model.h"
 #include "norm/prior.h"
 
@@ -109,27 +108,18 @@ static inline size_t ted4_row(size_t n)
     return n * TED4_LANES;
 }
 
+/* rate_fwd.c: n slots of a chunk from the first on. */
+TED4_EACH_LEVEL(void, ted4_rate_chunk, const ted4_rate_job *job, ted4_rate_room *room, size_t first, size_t n);
+
 /* rate_row.c */
-void ted4_rate_row(const float *u, const float *s, float *bits, float *d_u,
-                   float *d_s);
+TED4_EACH_LEVEL(void, ted4_rate_row, const float *u, const float *s, float *bits, float *d_u, float *d_s);
 
 /* quantise.c. Residuals n of all attribute channels: [A][32]. */
-void ted4_residuals(const ted4_layout *l, ted4_quant quant, const float *value,
-                    const float *steps, uint32_t block, uint64_t key,
-                    float *residual);
-
-/* rate_bwd.c. Gradients of slot i of the room's chunk, after its bits; then, when all slots are done, those of the weights. */
-void ted4_rate_slot_backward(const ted4_rate_job *job, ted4_rate_room *room,
-                             size_t i, size_t slot);
-void ted4_rate_weights_backward(const ted4_rate *r, ted4_rate_room *room,
-                                size_t n_slots);
+TED4_EACH_LEVEL(void, ted4_residuals, const ted4_layout *l, ted4_quant quant, const float *value,
+                const float *steps, uint32_t block, uint64_t key, float *residual);
 
 /* rate_integer.c. begin: r->integer is that of the input; 0, or -1: no memory, or weights that spec 7.3 refuses. */
 int  ted4_rate_integer_begin(ted4_rate *r, const ted4_rate_input *in);
 void ted4_rate_integer_end(ted4_rate_integer *x);
-void ted4_rate_integer_steps(const ted4_rate_job *job, ted4_rate_room *room,
-                             size_t slot, float *v, float *q);
-void ted4_rate_integer_outputs(const ted4_rate_job *job, ted4_rate_room *room,
-                               const float *q, float *out);
 
 #endif
