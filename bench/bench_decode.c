@@ -94,7 +94,7 @@ static int measure(const char *path, const uint8_t *bytes, size_t size)
     const int  n = levels_here(level);
     times      best[TED4_LEVELS], t;
     ted4_info  info[TED4_LEVELS];
-    double     symbols;
+    double     symbols = 0;
     int        same = 1;
 
     for (int i = 0; i < n; i++)
