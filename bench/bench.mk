@@ -58,6 +58,7 @@ bench-memory: $B/ted4enc $B/ted4scene
 # Programs on the decoded file: what the integer entropy model and the range coder cost; how long anchors live. rate_check is compiled as freely as it may be, for it
 # measures the speed of floating-point networks beside the integer kernels.
 BENCH_FILE = rate_check spans
+$B/bench/bench_decode.o: FPFLAGS = $(BENCH_FREE)
 $B/bench/rate_check.o: FPFLAGS = $(FREE) -ffp-contract=fast -march=native
 $(BENCH_FILE:%=$B/bench/%) $B/bench/bench_decode: $B/bench/%: $B/bench/%.o $(DEC_TOOL:%.c=$B/%.o) $(ENC_LIB)
 	$(CC) -fopenmp $(LDFLAGS) $(filter %.o,$^) $(filter %.a,$^) -o $@ $(LIBS)

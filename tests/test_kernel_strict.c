@@ -8,6 +8,7 @@
 #include <stdlib.h>
 #include <cmocka.h>
 
+#include "base/level.h"
 #include "kernel/strict_dense.h"
 #include "recon/strict.h"
 
@@ -95,7 +96,7 @@ static void avx2_is_plain(void **state)
 {
     (void)state;
 #if defined(__x86_64__)
-    if (__builtin_cpu_supports("avx2")) {
+    if (ted4_level_of_machine() >= TED4_LEVEL_V3) {
         twin_is_plain(ted4_strict_dense_avx2);
         return;
     }
@@ -107,13 +108,22 @@ static void avx512_is_plain(void **state)
 {
     (void)state;
 #if defined(__x86_64__)
-    if (__builtin_cpu_supports("avx512f") && __builtin_cpu_supports("avx512bw") &&
-        __builtin_cpu_supports("avx512vl")) {
+    if (ted4_level_of_machine() >= TED4_LEVEL_V4) {
         twin_is_plain(ted4_strict_dense_avx512);
         return;
     }
 #endif
     skip();
+}
+
+static void neon_is_plain(void **state)
+{
+    (void)state;
+#if defined(__AARCH64EL__)
+    twin_is_plain(ted4_strict_dense_neon);
+#else
+    skip();
+#endif
 }
 
 /* One lane, one input at a time, nothing else: the definition. */
@@ -139,25 +149,28 @@ static void plain_is_the_text(void **state)
         }
 }
 
-static void environment_switches_twins_off(void **state)
+static void environment_chooses(void **state)
 {
     (void)state;
     assert_int_equal(setenv("TED4_KERNEL", "plain", 1), 0);
     assert_true(ted4_select_strict_dense() == NULL);
-    assert_int_equal(unsetenv("TED4_KERNEL"), 0);
 #if defined(__x86_64__)
-    if (__builtin_cpu_supports("avx2"))
-        assert_true(ted4_select_strict_dense() != NULL);
+    assert_int_equal(setenv("TED4_KERNEL", "v1", 1), 0);
+    assert_true(ted4_select_strict_dense() == NULL);
+    assert_int_equal(setenv("TED4_KERNEL", "v3", 1), 0);
+    assert_true(ted4_select_strict_dense() == (ted4_level_of_machine() >= TED4_LEVEL_V3 ? ted4_strict_dense_avx2
+                                                                                       : NULL));
 #endif
+    assert_int_equal(unsetenv("TED4_KERNEL"), 0);
+    if (ted4_level_of_machine() >= TED4_LEVEL_V3)
+        assert_true(ted4_select_strict_dense() != NULL);
 }
 
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(plain_is_the_text),
-        cmocka_unit_test(avx2_is_plain),
-        cmocka_unit_test(avx512_is_plain),
-        cmocka_unit_test(environment_switches_twins_off),
+        cmocka_unit_test(avx2_is_plain), cmocka_unit_test(avx512_is_plain), cmocka_unit_test(neon_is_plain),
+        cmocka_unit_test(plain_is_the_text), cmocka_unit_test(environment_chooses),
     };
 
     return cmocka_run_group_tests(tests, NULL, NULL);
