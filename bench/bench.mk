@@ -111,3 +111,18 @@ capacity: all
 	bench/capacity_page.sh
 
 .PHONY: capacity
+
+# The same training everywhere: a small scene trained by the builds of bench/machines.txt whose row in bench/machines.csv is missing or stale, and the table in
+# bench/machines.md. Builds whose tools are missing are skipped, which is said; on Debian for x86-64, deps-cross-train installs them.
+cross-train: $B/ted4scene
+	TED4_BUILD=$(abspath $B) bench/machines.sh
+
+DEPS_CROSS_TRAIN = clang-14 libomp-14-dev gcc-aarch64-linux-gnu libc6-dev-arm64-cross
+DEPS_AARCH64 = libpng-dev:arm64 libjpeg62-turbo-dev:arm64 libjansson-dev:arm64 libxxhash-dev:arm64 zlib1g-dev:arm64
+deps-cross-train: deps
+	@$(call INSTALL_DEBIAN,$(DEPS_CROSS_TRAIN))
+	@command -v qemu-aarch64-static >/dev/null || command -v qemu-aarch64 >/dev/null || { $(call INSTALL_DEBIAN,qemu-user); }
+	@dpkg --print-foreign-architectures | grep -qx arm64 || { $(SUDO) dpkg --add-architecture arm64 && $(SUDO) apt-get update -q; }
+	@$(call INSTALL_DEBIAN,$(DEPS_AARCH64))
+
+.PHONY: cross-train deps-cross-train
