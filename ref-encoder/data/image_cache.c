@@ -27,7 +27,7 @@ enum { FEWEST_AHEAD = 4 };
 typedef struct {
     pthread_t threads[TED4_DATASET_AHEAD];
     size_t    queue[TED4_DATASET_AHEAD];
-    int       n_threads, n_waiting, n_queued, stop;
+    int       n_threads, n_waiting, n_queued, n_loading, stop;
     size_t    n_early;          /* pictures decoded, and not asked for since */
 } ahead;
 
@@ -194,7 +194,9 @@ static void *decode_ahead(void *cache)
         memmove(a->queue, a->queue + 1, (size_t)a->n_queued * sizeof *a->queue);
         if (c->entries[i].loading || c->entries[i].bytes != NULL)
             continue;
+        a->n_loading++;
         load(c, i, &ignored);
+        a->n_loading--;
         if (c->entries[i].bytes != NULL && c->entries[i].pins == 0 && !c->entries[i].early) {
             c->entries[i].early = 1;
             a->n_early++;
@@ -226,7 +228,7 @@ void ted4_image_cache_ahead(ted4_image_cache *c, size_t i, int n_threads)
     const int most = n_threads < TED4_DATASET_AHEAD ? n_threads : TED4_DATASET_AHEAD;
 
     pthread_mutex_lock(&c->lock);
-    const size_t waiting = a->n_early + (size_t)(a->n_queued + a->n_threads - a->n_waiting);
+    const size_t waiting = a->n_early + (size_t)(a->n_queued + a->n_loading);
     if (most > 0 && i < c->n && c->entries[i].bytes == NULL && !c->entries[i].loading && !is_queued(a, i) &&
         waiting < room_ahead(c)) {
         a->queue[a->n_queued++] = i;
