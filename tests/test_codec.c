@@ -7,6 +7,7 @@
 #include <stdlib.h>
 #include <xxhash.h>
 #include "norm/limits.h"
+#include "plain_kernels.h"
 #include "random_scene.h"
 
 enum { SCENES = 120, CHANGES = 20000 };
@@ -117,10 +118,10 @@ static void large(void **state)
     (void)state;
     t = decode(f, NULL);
     same_scene(s, t);
-    setenv("TED4_KERNEL", "plain", 1);
+    plain_kernels(1);
     ted4_scene_free(t);
     t = decode(f, NULL);
-    unsetenv("TED4_KERNEL");
+    plain_kernels(0);
     same_scene(s, t);
     ted4_scene_free(s);
     ted4_scene_free(t);

@@ -6,6 +6,7 @@
 #include <cmocka.h>
 #include <stdlib.h>
 #include "kernel/int_kernel.h"
+#include "plain_kernels.h"
 #include "random_scene.h"
 
 enum { BLOCK = TED4_PRIOR_BLOCK };
@@ -127,9 +128,9 @@ static void avx512(void **state)
 static void plain_on_demand(void **state)
 {
     (void)state;
-    setenv("TED4_KERNEL", "plain", 1);
+    plain_kernels(1);
     assert_ptr_equal(ted4_select_int_dense(), &ted4_int_dense_plain);
-    unsetenv("TED4_KERNEL");
+    plain_kernels(0);
 }
 
 int main(void)
