@@ -16,7 +16,9 @@ FREE   = $(ARCH) -Wno-psabi -ffp-contract=off -fno-math-errno -fno-trapping-math
 MACHINE := $(firstword $(subst -, ,$(shell $(CC) $(CFLAGS) -dumpmachine)))
 LEVELS  = $(if $(filter x86_64,$(MACHINE)),base v3 v4,base)
 LEVELED = ref-decoder/render/project.c ref-decoder/render/blend.c ref-encoder/train/blend_bwd.c ref-encoder/train/project_bwd.c \
-          ref-encoder/kernel/dense_product.c ref-encoder/kernel/dense_weights.c
+          ref-encoder/kernel/dense_product.c ref-encoder/kernel/dense_weights.c \
+          $(patsubst %,ref-encoder/train/%.c,generate_fwd generate_bwd generate_chain generate_effective rate_fwd rate_bwd rate_row \
+          rate_decoded quantise adam_step loss_passes colour_bands)
 FLAGS_v3 = -mavx2 -mfma -mbmi -mbmi2
 FLAGS_v4 = $(FLAGS_v3) -mavx512f -mavx512bw -mavx512dq -mavx512vl -mprefer-vector-width=512
 # Objects of the sources $(1), with all copies of leveled ones.
@@ -54,6 +56,7 @@ $(FREE_OBJ): FPFLAGS = $(FREE)
 # Only files named for an instruction set may use it; the compiler enforces it.
 $B/ref-decoder/kernel/%_avx2.o: FPFLAGS = $(STRICT) -mavx2
 $B/ref-decoder/kernel/%_avx512.o: FPFLAGS = $(STRICT) -mavx512f -mavx512bw -mavx512vl -mprefer-vector-width=512
+$B/ref-decoder/kernel/%_vnni.o: FPFLAGS = $(STRICT) -mavx512f -mavx512bw -mavx512vl -mavx512vnni -mprefer-vector-width=512
 
 # $(1): level
 define COMPILE_LEVEL

@@ -18,14 +18,14 @@ $B/bench/bench_render: $B/bench/bench_render.o $B/ref-decoder/tool/threads.o $(D
 bench-render: $B/bench/bench_render
 	$(KEEP) bench/render.md $B/bench/bench_render
 
-# Parts of a step are told apart by functions that bench_train.c puts in between.
+# Parts of a step are told apart by functions that train_parts.c puts in between.
 TRAIN_PARTS = ted4_dataset_pixels ted4_trainer_check ted4_schedule_event ted4_slots_fill ted4_generator_pack ted4_generate \
         ted4_raster_project ted4_raster_bin ted4_raster_blend ted4_loss ted4_raster_blend_bwd ted4_raster_project_bwd \
         ted4_generate_backward ted4_update_volume ted4_update_bank ted4_densify_gather ted4_update_rate ted4_update_parameters
 BETWEEN = $(TRAIN_PARTS:%=-Wl,--wrap=%)
 
-$B/bench/bench_train.o: FPFLAGS = $(BENCH_FREE)
-$B/bench/bench_train: $B/bench/bench_train.o $B/ref-decoder/tool/threads.o $(ENC_LIB)
+$B/bench/bench_train.o $B/bench/train_parts.o $B/bench/bench_scale.o $B/bench/recorder.o $B/bench/phases.o: FPFLAGS = $(BENCH_FREE)
+$B/bench/bench_train: $B/bench/bench_train.o $B/bench/train_parts.o $B/ref-decoder/tool/threads.o $(ENC_LIB)
 	$(CC) -fopenmp $(LDFLAGS) $(BETWEEN) $^ -o $@ $(LIBS)
 # On kitchen where it is, else on a small scene made for the purpose.
 KITCHEN = $(wildcard $(TED4_DATA)/kitchen)
@@ -35,6 +35,19 @@ $B/bench/occluder: | $B/ted4scene
 
 bench-train: $B/bench/bench_train $(if $(KITCHEN),,$B/bench/occluder)
 	$(KEEP) bench/train.md $B/bench/bench_train $(TRAIN_SCENE)
+
+# How far steps and runs can use many cores, in bench/scale.md: the share outside parallel work, and the bounds.
+$B/bench/bench_scale: $B/bench/bench_scale.o $B/bench/train_parts.o $B/bench/recorder.o $(ENC_LIB)
+	$(CC) -fopenmp $(LDFLAGS) $(BETWEEN) $^ -o $@ $(LIBS)
+
+# ted4enc with its phases told apart by functions that phases.c puts in between.
+PHASES = ted4_dataset_load ted4_dataset_verify ted4_header_settle ted4_trainer_init ted4_trainer_restart ted4_trainer_step ted4_branch_run \
+        ted4_snapshot_take ted4_snapshot_restore ted4_state_take ted4_state_restore ted4_densify_adjust ted4_sprout \
+        ted4_activation_begin ted4_stage2_begin ted4_integer_begin ted4_capacity_decide ted4_capacity_refine ted4_capacity_prune \
+        ted4_trainer_distortion ted4_trainer_blame ted4_make_scene ted4_encode ted4_encode_told ted4_trainer_preview ted4_run_log_step \
+        ted4_checkpoint_save ted4_verify ted4_file_write ted4_raster_blend ted4_raster_blend_bwd ted4_threads_init ted4_threads_finish
+$B/bench/phases: $B/bench/phases.o $B/bench/recorder.o $B/ref-encoder/tool/ted4enc.o $(ENC_TOOL:%.c=$B/%.o) $(DEC_TOOL:%.c=$B/%.o) $(ENC_LIB)
+	$(CC) -fopenmp $(LDFLAGS) $(PHASES:%=-Wl,--wrap=%) $^ -o $@ $(LIBS)
 
 # Peak memory of training a large scene, in bench/memory.md: hours. MEMORY_RUNS names some of its runs.
 bench-memory: $B/ted4enc $B/ted4scene

@@ -173,13 +173,13 @@ static times best(const times *t, double *median)
     return b;
 }
 
-static void print_times(const char *what, const times *t)
+static void print_times(ted4_level level, int threads, const times *t)
 {
     double      median;
     const times b = best(t, &median);
 
-    printf("  %-10s deformation, heads %6.2f ms  picture %6.2f ms  best %6.2f ms = %5.1f frames/s  median %6.2f ms = %5.1f frames/s\n",
-           what, b.query, b.draw, b.both, 1e3 / b.both, median, 1e3 / median);
+    printf("  %-2s, %d thread%s  deformation, heads %6.2f ms  picture %6.2f ms  best %6.2f ms = %5.1f frames/s  median %6.2f ms = %5.1f frames/s\n",
+           ted4_level_name(level), threads, threads == 1 ? " " : "s", b.query, b.draw, b.both, 1e3 / b.both, median, 1e3 / median);
 }
 
 /* What one frame holds. */
@@ -206,20 +206,29 @@ static void print_load(const bench *b, const model *m)
     ted4_raster_free(r);
 }
 
-static void report(const model *m, const ted4_parallel *two)
+/* As the programs do: the decoder's kernels by the environment. */
+static void use(ted4_level level)
+{
+    setenv("TED4_KERNEL", ted4_level_name(level), 1);
+    ted4_level_use(level);
+}
+
+static void report(const model *m, ted4_level level, const ted4_parallel *two)
 {
     times one_t[ROUNDS], two_t[ROUNDS];
     bench b = { .scene = make_scene(m), .viewer = must(ted4_viewer_new()), .rgb = must(malloc(3 * WIDTH * HEIGHT)) };
 
+    use(level);
     ted4_scene_info(b.scene, &b.info);
     check(ted4_recon_new(&b.recon, b.scene, NULL));
-    print_load(&b, m);
+    if (level == ted4_level_of_machine())
+        print_load(&b, m);
     for (int i = 0; i < ROUNDS; i++) {      /* a frame that differs from the one before, so that nothing is kept */
         one_t[i] = once(&b, NULL, 2 * i + 1);
         two_t[i] = once(&b, two, 2 * i + 2);
     }
-    print_times("1 thread", one_t);
-    print_times("2 threads", two_t);
+    print_times(level, 1, one_t);
+    print_times(level, 2, two_t);
     ted4_recon_free(b.recon);
     ted4_viewer_free(b.viewer);
     ted4_scene_free(b.scene);
@@ -236,7 +245,8 @@ int main(void)
 
     ted4_threads_init(&two, 2);
     for (size_t i = 0; i < sizeof models / sizeof models[0]; i++)
-        report(&models[i], &two);
+        for (ted4_level level = ted4_level_of_machine(); level >= TED4_LEVEL_BASE; level--)
+            report(&models[i], level, &two);
     ted4_threads_finish(&two);
     return 0;
 }

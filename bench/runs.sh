@@ -24,8 +24,8 @@ measure_failure() { return 1; }
 # Sources whose change may change a row; own scenes depend on their maker too.
 sources() {
     {
-        grep -E '^(OPT|STRICT|FREE|CFLAGS_ALL) ' Makefile
-        awk -f bench/sources.awk ref-encoder/train/*.[ch] ref-encoder/train/*.def ref-encoder/write/*.[ch] ref-encoder/kernel/*.[ch] \
+        grep -E '^(OPT|STRICT|FREE|FLAGS_v3|FLAGS_v4|CFLAGS_ALL) ' Makefile
+        awk -f bench/sources.awk ref-encoder/train/*.[ch] ref-encoder/train/*.def ref-encoder/math/*.[ch] ref-encoder/write/*.[ch] ref-encoder/kernel/*.[ch] \
             ref-encoder/data/*.[ch] ref-encoder/eval/*.[ch] ref-decoder/base/*.[ch] ref-decoder/norm/*.[ch] ref-decoder/recon/*.[ch] \
             ref-decoder/render/*.[ch] "$@"
     } | short_hash

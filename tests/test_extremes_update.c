@@ -112,7 +112,7 @@ static void begin(ted4_trainer *t, uint32_t frames)
 static void test_volume(void **state)
 {
     static const float size[] = { 0, 1e-45f, FLT_MIN, 0x1p-24f, 1, 65504, 1e9f, 1e12f, FLT_MAX };
-    static float       scale[3][SPLATS], d[3][SPLATS];
+    static float       scale[3][SPLATS], d[3][SPLATS], centre[3][SPLATS];
     static uint8_t     seen[SPLATS];
     ted4_splats        s = { .n = SPLATS, .scale = { scale[0], scale[1], scale[2] } };
     ted4_trainer       t;
@@ -120,8 +120,10 @@ static void test_volume(void **state)
     (void)state;
     begin(&t, 1);
     t.opt.volume_weight = 0.5;
-    for (int j = 0; j < 3; j++)
+    for (int j = 0; j < 3; j++) {
         t.splat_gradient.scale[j] = d[j];
+        t.splat_gradient.mean[j] = centre[j];
+    }
     t.splat_gradient.visible = seen;
     for (size_t k = 0; k < sizeof size / sizeof *size; k++)
         for (int who = 0; who < 3; who++) {

@@ -1,13 +1,15 @@
-/* test_threads.c - tool/threads.c: every index once, whatever the numbers of threads and indices and however uneven the work.
+/* test_threads.c - tool/threads.c: every index once, whatever the numbers of threads and indices and however uneven the work; sleepers wake.
  * SPDX-License-Identifier: BSD-2-Clause */
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stddef.h>
 #include <stdint.h>
 #include <cmocka.h>
+#include <sched.h>
 #include <stdatomic.h>
 #include <stdlib.h>
 #include <string.h>
+#include <time.h>
 #include <unistd.h>
 
 #include "tool/threads.h"
@@ -92,10 +94,50 @@ static void test_helped(void **state)
     free(c);
 }
 
+/* Waits until as many threads as there are indices have come. */
+static void meet(void *arg, size_t i)
+{
+    counts *c = arg;
+
+    take(arg, i);
+    while (atomic_load(&c->others) < c->n)
+        sched_yield();
+}
+
+/* Threads that have gone to sleep come, all of them: no job waits for them otherwise. */
+static void test_woken(void **state)
+{
+    const struct timespec pause = { 0, 2000000 };
+    counts               *c = calloc(1, sizeof *c);
+
+    (void)state;
+    alarm(60);
+    for (int threads = 2; threads <= THREADS; threads++) {
+        ted4_parallel p;
+
+        ted4_threads_init(&p, threads);
+        if (p.user == NULL) {
+            print_message("skipped: no second thread here\n");
+            skip();
+        }
+        for (int round = 0; round < 20; round++) {
+            memset(c, 0, sizeof *c);
+            c->n = (size_t)threads;
+            c->slow = c->n;
+            nanosleep(&pause, NULL);
+            ted4_parallel_for(&p, c->n, meet, c);
+            assert_int_equal(atomic_load(&c->others), threads);
+        }
+        ted4_threads_finish(&p);
+    }
+    alarm(0);
+    free(c);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_once), cmocka_unit_test(test_helped),
+        cmocka_unit_test(test_once), cmocka_unit_test(test_helped), cmocka_unit_test(test_woken),
     };
 
     return cmocka_run_group_tests_name("threads", tests, NULL, NULL);

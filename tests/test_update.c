@@ -46,11 +46,12 @@ static double volume_loss(double (*scale)[SPLATS], const uint8_t *seen, double w
 /* share: of Gaussians on screen, in tenths; 0: none, and the gradient must stay what it was. */
 static void check_volume(ted4_trainer *t, unsigned share)
 {
-    static float   scale[3][SPLATS], d[3][SPLATS];
+    static float   scale[3][SPLATS], d[3][SPLATS], centre[3][SPLATS];
     static double  x[3][SPLATS];
     static uint8_t seen[SPLATS];
     ted4_splats    s = { .n = SPLATS, .scale = { scale[0], scale[1], scale[2] } };
     size_t         n = 0;
+    double         squares = 0;
 
     for (int i = 0; i < SPLATS; i++) {
         seen[i] = ted4_below(7, (uint64_t)i, 10) < share;
@@ -59,12 +60,18 @@ static void check_volume(ted4_trainer *t, unsigned share)
             scale[j][i] = 0.01f + ted4_uniform(8 + (uint64_t)j, (uint64_t)i);
             x[j][i] = (double)scale[j][i];
             d[j][i] = 0.25f;            /* gradients are added to */
+            centre[j][i] = ted4_uniform(11 + (uint64_t)j, (uint64_t)i) - 0.5f;
+            squares += (double)centre[j][i] * (double)centre[j][i];
         }
     }
-    for (int j = 0; j < 3; j++)
+    for (int j = 0; j < 3; j++) {
         t->splat_gradient.scale[j] = d[j];
+        t->splat_gradient.mean[j] = centre[j];
+    }
     t->splat_gradient.visible = seen;
     assert_int_equal(ted4_update_volume(t, &s), n);
+    assert_true(t->watch.drawn == (double)n);
+    assert_true(fabs(t->watch.norm[TED4_TERM_CENTRE] - sqrt(squares)) < 1e-6 * sqrt(squares));
     for (int i = 0; i < SPLATS; i++)
         for (int j = 0; j < 3; j++) {
             const double h = 1e-4, at = x[j][i];

@@ -6,10 +6,13 @@
 #include "norm/prior.h"
 
 #if defined(__x86_64__)
-extern const ted4_int_dense ted4_int_dense_avx2, ted4_int_dense_avx512;
+/* vnni: AVX-512 with VNNI. */
+extern const ted4_int_dense ted4_int_dense_avx2, ted4_int_dense_avx512, ted4_int_dense_vnni;
+#elif defined(__AARCH64EL__)
+extern const ted4_int_dense ted4_int_dense_neon;
 #endif
 
-/* The fastest for this machine; the plain one when the environment says TED4_KERNEL=plain. */
+/* That of the level wanted (base/level.h). */
 const ted4_int_dense *ted4_select_int_dense(void);
 
 #endif

@@ -1,19 +1,18 @@
-/* select_gauss.c - can this machine read several symbols at a time?
+/* select_gauss.c - can this machine read several symbols at a time, and is it wanted to?
  * SPDX-License-Identifier: BSD-2-Clause */
-#include <stdlib.h>
-#include <string.h>
+#include <stddef.h>
+#include "base/level.h"
 #include "kernel/gauss_kernel.h"
 
 ted4_gauss_many ted4_select_gauss_many(void)
 {
-    const char *want = getenv("TED4_KERNEL");
-
-    if (want != NULL && strcmp(want, "plain") == 0)
-        return NULL;
+    switch (ted4_level_wanted()) {
 #if defined(__x86_64__)
-    if (__builtin_cpu_supports("avx512f") && __builtin_cpu_supports("avx512bw")
-        && __builtin_cpu_supports("avx512vl"))
-        return ted4_gauss_many_avx512;
+    case TED4_LEVEL_V4: return ted4_gauss_many_avx512;
+    case TED4_LEVEL_V3: return ted4_gauss_many_avx2;
+#elif defined(__AARCH64EL__)
+    case TED4_LEVEL_BASE: return ted4_gauss_many_neon;
 #endif
-    return NULL;
+    default: return NULL;
+    }
 }

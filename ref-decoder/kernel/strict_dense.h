@@ -19,9 +19,11 @@ typedef void (*ted4_strict_dense_fn)(const ted4_strict_layer *l, const float *x,
 #if defined(__x86_64__)
 void ted4_strict_dense_avx2(const ted4_strict_layer *l, const float *x, float *y);
 void ted4_strict_dense_avx512(const ted4_strict_layer *l, const float *x, float *y);
+#elif defined(__AARCH64EL__)
+void ted4_strict_dense_neon(const ted4_strict_layer *l, const float *x, float *y);
 #endif
 
-/* The fastest for this machine. NULL: it has none, or the environment says TED4_KERNEL=plain. */
+/* That of the level wanted (base/level.h). NULL: the plain one. */
 ted4_strict_dense_fn ted4_select_strict_dense(void);
 
 #endif

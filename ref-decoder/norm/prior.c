@@ -173,16 +173,38 @@ static size_t group_up(size_t n)
     return (n + 31) / 32 * 32;
 }
 
+/* All layers but the last; their result goes to y, or x is it when there are none. */
+static const int16_t *inner_layers(const ted4_prior *p, const ted4_int_layer *l, unsigned n_layers, const int16_t *x,
+                                   size_t n, int16_t *between, int16_t *y)
+{
+    for (unsigned i = 0; i + 1 < n_layers; i++) {
+        /* The last of them writes y, and the one before it must not. */
+        int16_t *to = (n_layers - i) % 2 == 0 ? y : between;
+
+        p->dense->hidden(&l[i], x, n, to);
+        x = to;
+    }
+    return x;
+}
+
 static void chain(const ted4_prior *p, const ted4_int_layer *l, unsigned n_layers,
                   const int16_t *x, size_t n, int32_t *out)
 {
     _Alignas(64) int16_t hidden[2][TED4_MAX_WIDTH * TED4_PRIOR_BLOCK];
 
-    for (unsigned i = 0; i + 1 < n_layers; i++) {
-        p->dense->hidden(&l[i], x, n, hidden[i % 2]);
-        x = hidden[i % 2];
-    }
+    x = inner_layers(p, l, n_layers, x, n, hidden[0], hidden[1]);
     p->dense->last(&l[n_layers - 1], x, n, out);
+}
+
+/* Of n anchors, and of the last one again up to a whole group. Returns how many that are. */
+static size_t all_inputs(const ted4_prior *p, const uint16_t *position, size_t n, int16_t *x)
+{
+    const size_t padded = group_up(n);
+
+    if (p->n_inputs > 0)
+        for (size_t i = 0; i < padded; i++)
+            hyper_inputs(p, position + 3 * (i < n ? i : n - 1), x + i);
+    return padded;
 }
 
 /* spec 10.1 */
@@ -190,12 +212,44 @@ void ted4_prior_hyper(const ted4_prior *p, const uint16_t *position, size_t n,
                       int32_t *out)
 {
     _Alignas(64) int16_t x[TED4_PRIOR_INPUTS * TED4_PRIOR_BLOCK];
-    const size_t padded = group_up(n);
 
-    if (p->n_inputs > 0)
-        for (size_t i = 0; i < padded; i++)
-            hyper_inputs(p, position + 3 * (i < n ? i : n - 1), x + i);
-    chain(p, p->hyper, p->n_hyper, x, padded, out);
+    chain(p, p->hyper, p->n_hyper, x, all_inputs(p, position, n, x), out);
+}
+
+const ted4_int_layer *ted4_prior_last(const ted4_prior *p)
+{
+    return &p->hyper[p->n_hyper - 1];
+}
+
+void ted4_prior_hyper_hidden(const ted4_prior *p, const uint16_t *position, size_t n, int16_t *hidden)
+{
+    _Alignas(64) int16_t x[TED4_PRIOR_INPUTS * TED4_PRIOR_BLOCK], between[TED4_MAX_WIDTH * TED4_PRIOR_BLOCK];
+
+    if (p->n_hyper > 1)
+        inner_layers(p, p->hyper, p->n_hyper, x, all_inputs(p, position, n, x), between, hidden);
+    else
+        all_inputs(p, position, n, hidden);
+}
+
+void ted4_prior_hyper_some(const ted4_prior *p, const ted4_int_layer *some, const int16_t *hidden, size_t n, int32_t *out)
+{
+    p->dense->last(some, hidden, group_up(n), out);
+}
+
+void ted4_prior_some(const ted4_prior *p, unsigned first, unsigned second, unsigned n, ted4_int_layer *some)
+{
+    const ted4_int_layer *l = ted4_prior_last(p);
+
+    some->in = l->in;
+    some->in_pad = l->in_pad;
+    some->out = 2 * n;
+    for (unsigned o = 0; o < 2 * n; o++) {
+        const unsigned from = o < n ? first + o : second + o - n;
+
+        memcpy(some->w + (size_t)o * l->in_pad, l->w + (size_t)from * l->in_pad, l->in_pad * sizeof *l->w);
+        some->b[o] = l->b[from];
+        some->r[o] = l->r[from];
+    }
 }
 
 /* spec 10.3 */

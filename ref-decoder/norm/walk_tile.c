@@ -15,14 +15,19 @@ typedef struct {
     ted4_scene       *s;
     const ted4_prior *prior;
     size_t            first, n, n_blocks;   /* anchors of the tile, in blocks of 64 */
-    int32_t          *out;      /* [n_blocks][P][64] outputs of the hyperprior */
+    size_t            n_padded; /* anchors of all blocks */
+    unsigned          n_hidden; /* H */
+    int16_t          *hidden;   /* [n_blocks][H][64] inputs of the hyperprior's last layer */
+    ted4_int_layer    some;     /* that layer for some components */
     int16_t          *ctx;      /* [n_blocks][F][64] what the slice networks see */
-    int32_t          *added;    /* [2 max slice][64] outputs of a slice network */
+    int32_t          *out, *added;      /* [2 max(F, ..)][64] outputs of the hyperprior and of a slice network, for a block */
+    int32_t          *mu;       /* [C][n_padded] models of some components, for all anchors */
+    uint8_t          *sigma;
     uint32_t         *index;    /* [n_index] anchors of the tile that have the component */
     size_t            n_index;
-    int32_t          *mu;       /* [n] of those anchors, as sigma and k */
+    int32_t          *some_mu;  /* [n_padded] of those anchors, as some_sigma and k */
     int16_t          *k;
-    uint8_t          *sigma;
+    uint8_t          *some_sigma;
     size_t            opened;   /* offset of the first byte of the open substream */
 } tile;
 
@@ -44,37 +49,91 @@ static size_t tile_anchors(const ted4_header *h)
     return h->tile_size < h->n_anchors ? h->tile_size : h->n_anchors;
 }
 
+static unsigned larger(unsigned a, unsigned b)
+{
+    return a > b ? a : b;
+}
+
+/* Offsets that are evaluated at once: what is kept of the hyperprior is short, and most of its outputs are theirs. */
+enum { OFFSETS = 8 };
+
+static unsigned hidden_rows(const ted4_net_shape *hyper)
+{
+    return hyper->dim[hyper->n_layers - 1];
+}
+
+/* C: most components that are evaluated at once. */
+static unsigned most_components(const ted4_scene *s)
+{
+    const unsigned k = s->head.n_offsets;
+    unsigned       most = larger(s->shape.dim[TED4_SCALING], 3 * (k < OFFSETS ? k : OFFSETS));
+
+    most = larger(most, larger(s->shape.dim[TED4_PHI], s->shape.dim[TED4_TAU]));
+    for (unsigned m = 0; m < s->head.n_slices; m++)
+        most = larger(most, s->head.slice[m]);
+    return most;
+}
+
+/* Bytes of out and of added. */
+static size_t outputs_size(const ted4_scene *s)
+{
+    return sizeof(int32_t) * 2 * BLOCK * most_components(s);
+}
+
+/* Units of a layer of so many outputs, and more up to a multiple of 64. */
+static size_t layer_units(const ted4_scene *s)
+{
+    return block_count(2 * most_components(s)) * BLOCK;
+}
+
+/* Weights of a unit, or one more. */
+static size_t unit_weights(const ted4_scene *s)
+{
+    return (size_t)hidden_rows(&s->shape.hyper) + 1;
+}
+
 size_t ted4_tile_work_size(const ted4_scene *s)
 {
     const size_t n = block_count(tile_anchors(&s->head)) * BLOCK;
-    const size_t per_anchor = 4 * (size_t)s->shape.n_outputs
-                            + 2 * (size_t)s->head.feature_dim + 4 + 4 + 2 + 1;
-    const size_t fixed = sizeof(int32_t) * 2 * TED4_MAX_FEATURE * BLOCK;
+    const size_t per_anchor = (4 + 1) * ((size_t)most_components(s) + 1)
+                            + 2 * ((size_t)hidden_rows(&s->shape.hyper) + s->head.feature_dim)
+                            + 4 + 2;
+    const size_t fixed = 2 * outputs_size(s) + layer_units(s) * (2 * unit_weights(s) + 4 + 1);
 
     if (n > (SIZE_MAX - fixed) / per_anchor)
         return SIZE_MAX;
     return n * per_anchor + fixed;
 }
 
-/* Every array is a multiple of 64 bytes long, as n is one of 64. */
+/* The next n elements of size bytes, n being a multiple of 64. */
+static void *next_array(char **at, size_t n, size_t size)
+{
+    void *array = *at;
+
+    *at += n * size;
+    return array;
+}
+
 static void carve(tile *t, void *work)
 {
-    const size_t n = t->n_blocks * BLOCK;
+    const size_t n = t->n_blocks * BLOCK, most = most_components(t->s), units = layer_units(t->s);
     char        *at = work;
 
-    t->out = (int32_t *)(void *)at;
-    at += 4 * n * t->s->shape.n_outputs;
-    t->added = (int32_t *)(void *)at;
-    at += sizeof(int32_t) * 2 * TED4_MAX_FEATURE * BLOCK;
-    t->index = (uint32_t *)(void *)at;
-    at += 4 * n;
-    t->mu = (int32_t *)(void *)at;
-    at += 4 * n;
-    t->ctx = (int16_t *)(void *)at;
-    at += 2 * n * t->s->head.feature_dim;
-    t->k = (int16_t *)(void *)at;
-    at += 2 * n;
-    t->sigma = (uint8_t *)at;
+    t->n_padded = n;
+    t->n_hidden = hidden_rows(&t->s->shape.hyper);
+    t->out = next_array(&at, outputs_size(t->s), 1);
+    t->added = next_array(&at, outputs_size(t->s), 1);
+    t->some.w = next_array(&at, units * unit_weights(t->s), sizeof *t->some.w);
+    t->some.b = next_array(&at, units, sizeof *t->some.b);
+    t->some.r = next_array(&at, units, 1);
+    t->mu = next_array(&at, n * most, sizeof *t->mu);
+    t->some_mu = next_array(&at, n, sizeof *t->some_mu);
+    t->index = next_array(&at, n, sizeof *t->index);
+    t->hidden = next_array(&at, n * t->n_hidden, sizeof *t->hidden);
+    t->ctx = next_array(&at, n * t->s->head.feature_dim, sizeof *t->ctx);
+    t->k = next_array(&at, n, sizeof *t->k);
+    t->sigma = next_array(&at, n * most, 1);
+    t->some_sigma = next_array(&at, n, 1);
 }
 
 static uint16_t probability(ted4_coder *c, const char *name, int64_t index,
@@ -189,33 +248,81 @@ static void walk_masks(tile *t, const uint16_t *prob)
         close_substream(t);
 }
 
-/* spec 10.1: outputs for the whole tile, and step indices. A scene to be written already has those. */
+/* Anchors of a block. */
+static size_t block_size(const tile *t, size_t b)
+{
+    const size_t left = t->n - b * BLOCK;
+
+    return left < BLOCK ? left : BLOCK;
+}
+
+/* Step indices of n anchors from outputs v. A scene to be written already has those. */
+static void take_steps(tile *t, uint8_t *step, const int32_t *v, size_t n)
+{
+    if (t->c->reads) {
+        for (size_t i = 0; i < n; i++)
+            step[i] = ted4_step_index(v[i]);
+        return;
+    }
+    for (size_t i = 0; i < n; i++)
+        ted4_require(t->c, step[i] == ted4_step_index(v[i]), TED4_E_SYN_HASH,
+                     t->c->pos);
+}
+
+/* spec 10.1: the hyperprior of the whole tile but for its last layer, and step indices. */
 static void evaluate(tile *t)
 {
     const ted4_shape *shape = &t->s->shape;
 
+    ted4_prior_some(t->prior, shape->first_step_output, shape->first_step_output, shape->n_types, &t->some);
+    t->some.out = shape->n_types;
     for (size_t b = 0; b < t->n_blocks; b++) {
-        const size_t a = t->first + b * BLOCK;
-        const size_t left = t->first + t->n - a;
-        const size_t n = left < BLOCK ? left : BLOCK;
-        int32_t     *out = t->out + b * shape->n_outputs * BLOCK;
-        const int32_t *v = out + (size_t)shape->first_step_output * BLOCK;
+        const size_t a = t->first + b * BLOCK, n = block_size(t, b);
+        int16_t     *hidden = t->hidden + b * t->n_hidden * BLOCK;
+        const int32_t *v = t->out;
 
-        ted4_prior_hyper(t->prior, t->s->position + 3 * a, n, out);
+        ted4_prior_hyper_hidden(t->prior, t->s->position + 3 * a, n, hidden);
+        ted4_prior_hyper_some(t->prior, &t->some, hidden, n, t->out);
         for (int type = 0; type < TED4_TYPES; type++) {
-            uint8_t *step = t->s->step_index[type];
-
             if (shape->dim[type] == 0)
                 continue;
-            for (size_t i = 0; i < n; i++) {
-                const uint8_t index = ted4_step_index(v[i]);
-
-                if (t->c->reads)
-                    step[a + i] = index;
-                ted4_require(t->c, step[a + i] == index, TED4_E_SYN_HASH,
-                             t->c->pos);
-            }
+            take_steps(t, t->s->step_index[type] + a, v, n);
             v += BLOCK;
+        }
+    }
+}
+
+/* spec 10.3: what the network of slice m adds to mu and s of a block. */
+static void add_slice(tile *t, size_t b, unsigned m)
+{
+    const size_t size = block_size(t, b), end = 2 * (size_t)t->s->head.slice[m] * BLOCK;
+
+    ted4_prior_slice(t->prior, m, t->ctx + b * t->s->head.feature_dim * BLOCK, size, t->added);
+    for (size_t row = 0; row < end; row += BLOCK)
+        for (size_t i = row; i < row + size; i++)
+            t->out[i] += t->added[i];
+}
+
+/* spec 10.1: models of n components of a type from comp on, for the whole tile; of features those of slice m. */
+static void evaluate_components(tile *t, ted4_type type, unsigned comp, unsigned n, unsigned m)
+{
+    const unsigned first = t->s->shape.first_output[type] + comp;
+
+    ted4_prior_some(t->prior, first, first + t->s->shape.dim[type], n, &t->some);
+    for (size_t b = 0; b < t->n_blocks; b++) {
+        const size_t size = block_size(t, b);
+
+        ted4_prior_hyper_some(t->prior, &t->some, t->hidden + b * t->n_hidden * BLOCK, size, t->out);
+        if (m > 0)
+            add_slice(t, b, m);
+        for (unsigned c = 0; c < n; c++) {
+            const int32_t *mu = t->out + (size_t)c * BLOCK, *s = mu + (size_t)n * BLOCK;
+            const size_t   to = c * t->n_padded + b * BLOCK;
+            uint8_t       *sigma = t->sigma + to;
+
+            memcpy(t->mu + to, mu, size * sizeof *mu);
+            for (size_t i = 0; i < size; i++)
+                sigma[i] = ted4_sigma_index(s[i]);
         }
     }
 }
@@ -246,49 +353,43 @@ static void choose_offset(tile *t, unsigned k)
     }
 }
 
-/* Models of the chosen anchors, from outputs of the hyperprior: mu and s of a component, of the tile's first block. */
-static void choose_models(tile *t, const int32_t *mu, const int32_t *s)
+/* Models of the chosen anchors. */
+static void pick_models(tile *t, const int32_t *mu, const uint8_t *sigma)
 {
-    const size_t per_block = (size_t)t->s->shape.n_outputs * BLOCK;
+    const uint32_t *index = t->index;
+    int32_t        *some_mu = t->some_mu;
+    uint8_t        *some_sigma = t->some_sigma;
 
-    if (t->n_index == t->n) {       /* side by side, a block at a time */
-        for (size_t b = 0; b < t->n; b += BLOCK, mu += per_block, s += per_block) {
-            const size_t n = t->n - b < BLOCK ? t->n - b : BLOCK;
-
-            memcpy(t->mu + b, mu, n * sizeof *mu);
-            for (size_t i = 0; i < n; i++)
-                t->sigma[b + i] = ted4_sigma_index(s[i]);
-        }
-        return;
-    }
-    for (size_t i = 0; i < t->n_index; i++) {
-        const size_t a = t->index[i], from = a / BLOCK * per_block + a % BLOCK;
-
-        t->mu[i] = mu[from];
-        t->sigma[i] = ted4_sigma_index(s[from]);
+    for (size_t j = 0, n = t->n_index; j < n; j++) {
+        some_mu[j] = mu[index[j]];
+        some_sigma[j] = sigma[index[j]];
     }
 }
 
-/* spec 10.2: component number comp of a type, for the chosen anchors. */
-static void walk_component(tile *t, ted4_type type, unsigned comp)
+/* spec 10.2: component number comp of a type, for the chosen anchors; number i of those that were evaluated. */
+static void walk_component(tile *t, ted4_type type, unsigned comp, unsigned i)
 {
-    const ted4_shape *shape = &t->s->shape;
-    const int32_t *mu = t->out + (shape->first_output[type] + comp) * BLOCK;
     const size_t   row = (size_t)comp * t->s->head.n_anchors + t->first;
+    const int32_t *mu = t->mu + i * t->n_padded;
+    const uint8_t *sigma = t->sigma + i * t->n_padded;
     int16_t       *symbol = t->s->symbol[type] + row;
-    const int      whole = t->n_index == t->n;
-    int16_t       *k = whole ? symbol : t->k;
+    const int      some = t->n_index != t->n;
+    int16_t       *k = some ? t->k : symbol;
 
     if (t->c->error.code != TED4_OK)
         return;
-    choose_models(t, mu, mu + (size_t)shape->dim[type] * BLOCK);
-    for (size_t i = 0; !whole && !t->c->reads && i < t->n_index; i++)
-        k[i] = symbol[t->index[i]];
-    t->c->ops->gauss(t->c, t->n_index, t->mu, t->sigma, k);
-    for (size_t i = 0; !whole && t->c->reads && i < t->n_index; i++)
-        symbol[t->index[i]] = k[i];
-    for (size_t i = 0; t->c->reads && t->c->trace != NULL && i < t->n_index; i++)
-        ted4_trace(t->c, t->opened, type_name[type], (int64_t)(row + t->index[i]), k[i]);
+    if (some) {
+        pick_models(t, mu, sigma);
+        mu = t->some_mu;
+        sigma = t->some_sigma;
+    }
+    for (size_t j = 0; some && !t->c->reads && j < t->n_index; j++)
+        k[j] = symbol[t->index[j]];
+    t->c->ops->gauss(t->c, t->n_index, mu, sigma, k);
+    for (size_t j = 0; some && t->c->reads && j < t->n_index; j++)
+        symbol[t->index[j]] = k[j];
+    for (size_t j = 0; t->c->reads && t->c->trace != NULL && j < t->n_index; j++)
+        ted4_trace(t->c, t->opened, type_name[type], (int64_t)(row + t->index[j]), k[j]);
 }
 
 /* spec 10.3: contexts of one feature component, for the slices that follow. */
@@ -298,37 +399,15 @@ static void keep_context(tile *t, unsigned comp)
     const int16_t *k = s->symbol[TED4_FEATURE]
                      + (size_t)comp * s->head.n_anchors + t->first;
     const uint8_t *step = s->step_index[TED4_FEATURE] + t->first;
+    const unsigned bits = s->head.context_bits;
 
-    for (size_t i = 0; i < t->n_blocks * BLOCK; i++) {
-        int16_t *x = t->ctx + (i / BLOCK * s->head.feature_dim + comp) * BLOCK;
+    for (size_t b = 0; b < t->n_blocks; b++, k += BLOCK, step += BLOCK) {
+        const size_t n = block_size(t, b);
+        int16_t     *x = t->ctx + (b * s->head.feature_dim + comp) * BLOCK;
 
-        x[i % BLOCK] = i < t->n ? ted4_context(k[i], step[i],
-                                               s->head.context_bits) : 0;
-    }
-}
-
-/* spec 10.3: what the slice network says, onto mu and s of its slice, which begins at component comp. */
-static void add_slice(tile *t, unsigned m, unsigned comp)
-{
-    const ted4_shape *shape = &t->s->shape;
-    const unsigned    dim = t->s->head.slice[m];
-
-    for (size_t b = 0; b < t->n_blocks; b++) {
-        const size_t left = t->n - b * BLOCK, n = left < BLOCK ? left : BLOCK;
-        int32_t *out = t->out + b * shape->n_outputs * BLOCK;
-        int32_t *mu = out + (shape->first_output[TED4_FEATURE] + comp) * BLOCK;
-        int32_t *s = mu + (size_t)shape->dim[TED4_FEATURE] * BLOCK;
-        const int32_t *more = t->added;
-
-        ted4_prior_slice(t->prior, m,
-                         t->ctx + b * t->s->head.feature_dim * BLOCK, n,
-                         t->added);
-        for (unsigned c = 0; c < dim; c++, mu += BLOCK, more += BLOCK)
-            for (size_t i = 0; i < n; i++)
-                mu[i] += more[i];
-        for (unsigned c = 0; c < dim; c++, s += BLOCK, more += BLOCK)
-            for (size_t i = 0; i < n; i++)
-                s[i] += more[i];
+        for (size_t i = 0; i < n; i++)
+            x[i] = ted4_context(k[i], step[i], bits);
+        memset(x + n, 0, (BLOCK - n) * sizeof *x);
     }
 }
 
@@ -340,12 +419,11 @@ static void walk_feature(tile *t)
 
     choose_all(t);
     for (unsigned m = 0; m < h->n_slices; m++) {
-        if (m > 0)
-            add_slice(t, m, comp);
+        evaluate_components(t, TED4_FEATURE, comp, h->slice[m], m);
         open_substream(t, substream_name[TED4_FEATURE], m,
                        t->n * h->slice[m]);
         for (unsigned i = 0; i < h->slice[m]; i++, comp++) {
-            walk_component(t, TED4_FEATURE, comp);
+            walk_component(t, TED4_FEATURE, comp, i);
             if (t->c->error.code != TED4_OK)
                 return;
             if (m + 1 < h->n_slices)
@@ -363,8 +441,9 @@ static void walk_type(tile *t, ted4_type type)
     if (dim == 0)
         return;
     open_substream(t, substream_name[type], 0, t->n_index * dim);
+    evaluate_components(t, type, 0, dim, 0);
     for (unsigned i = 0; i < dim; i++)
-        walk_component(t, type, i);
+        walk_component(t, type, i, i);
     close_substream(t);
 }
 
@@ -379,9 +458,14 @@ static void walk_offsets(tile *t)
     }
     open_substream(t, substream_name[TED4_OFFSET], 0, n);
     for (unsigned k = 0; k < k_max; k++) {
+        const unsigned i = k % OFFSETS, left = k_max - (k - i);
+        const unsigned some = left < OFFSETS ? left : OFFSETS;
+
+        if (i == 0)
+            evaluate_components(t, TED4_OFFSET, 3 * k, 3 * some, 0);
         choose_offset(t, k);
         for (unsigned j = 0; j < 3; j++)
-            walk_component(t, TED4_OFFSET, 3 * k + j);
+            walk_component(t, TED4_OFFSET, 3 * k + j, 3 * i + j);
     }
     close_substream(t);
 }

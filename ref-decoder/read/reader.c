@@ -219,7 +219,7 @@ static size_t gauss_many(ted4_reader *r, size_t n, const int32_t *mu,
     return done;
 }
 
-/* What is not for several lanes at a time goes one by one, up to the next group of eight lanes. */
+/* What is not for several lanes at a time goes by itself. */
 static void gauss(ted4_coder *c, size_t n, const int32_t *mu,
                   const uint8_t *sigma, int16_t *k)
 {
@@ -227,7 +227,7 @@ static void gauss(ted4_coder *c, size_t n, const int32_t *mu,
     const int    many = r->many != NULL && r->rans.n_lanes >= TED4_MANY_LANES;
 
     for (size_t i = 0; i < n && c->error.code == TED4_OK; i++) {
-        if (many && r->rans.lane % 8 == 0)
+        if (many)
             i += gauss_many(r, n - i, mu + i, sigma + i, k + i);
         if (i < n)
             k[i] = (int16_t)gauss_symbol(c, mu[i], sigma[i]);

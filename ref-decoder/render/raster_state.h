@@ -17,11 +17,11 @@ enum {
     TED4_GROUP       = 64,      /* instances whose blocks are noted together */
     TED4_AHEAD       = 32,      /* items fetched before they are needed, where they lie anywhere in memory */
     TED4_CHUNK       = 1024,    /* Gaussians of one projection job; a multiple of 16 */
-    TED4_SORT_PARTS  = 8,       /* jobs of one sorting pass; any number gives the same order */
+    TED4_SORT_PARTS  = 32,      /* jobs of one sorting pass; any number gives the same order */
     TED4_RADIX_BITS  = 11,      /* of a sorting pass, at most */
     TED4_SPARE       = 16,      /* instances that a sorting part may write in vain: a cache line, which no other part writes */
     TED4_GRAD_SUMS   = 8,       /* sums of an instance that travel as a vector; one more travels alone */
-    TED4_BWD_JOBS    = 32       /* jobs that share the tiles in the adjoint: the most threads it can use */
+    TED4_BWD_JOBS    = 64       /* jobs that share the tiles in the adjoint: the most threads it can use */
 };
 
 /* Memory that is kept from call to call. */

@@ -2,6 +2,8 @@
  * the next, and neighbours in memory are mostly written by one core. Then it helps the others.
  * A training step has some thirty parallel regions of a fraction of a millisecond, so idle threads wait a moment without sleeping, but not for long: an OpenMP
  * team that spins through its barriers made a step five times as long on a machine that had other work.
+ * A job ends when its indices are done, not when all threads have been there: one that slept, or has no processor at the moment, is not waited for. And no one wakes many:
+ * whoever enters a job wakes two sleepers, who wake two each.
  * SPDX-License-Identifier: BSD-2-Clause */
 #include "tool/threads.h"
 
@@ -11,24 +13,32 @@
 #include <string.h>
 #include <unistd.h>
 
-/* Polls before sleeping: about 20 microseconds. */
-enum { SPINS = 1000 };
+/* Polls before sleeping: about 20 microseconds; and whom each wakes. */
+enum { SPINS = 1000, WAKES = 2 };
+
+/* In team.inside beside the number of workers: the job may be entered. */
+#define OPEN 0x10000u
 
 typedef struct team team;
 
-/* A thread, and its share of the indices; a cache line of its own. Member 0 is whoever calls run. */
+/* A thread, and its share of the indices; cache lines of its own. Member 0 is whoever calls run. */
 typedef struct {
     _Alignas(64) atomic_size_t next;    /* first index not yet handed out */
-    size_t    end;
-    team     *team;
-    pthread_t thread;
+    size_t          end;
+    team           *team;
+    pthread_t       thread;
+    atomic_int      asleep;
+    pthread_mutex_t mutex;
+    pthread_cond_t  woken;
 } member;
 
 struct team {
+    _Alignas(64) atomic_uint round;     /* jobs begun; odd and even alike. Spinning threads look at nothing else */
+    _Alignas(64) atomic_uint inside;    /* workers in the job, and OPEN */
+    atomic_int      waker;              /* first member that has not been looked at by those who wake */
+    atomic_int      waiting;            /* the caller sleeps until the last worker has left */
     pthread_mutex_t mutex;
-    pthread_cond_t  start, done;
-    atomic_uint     round;              /* jobs begun; odd and even alike */
-    atomic_int      busy;               /* workers that have not left the job */
+    pthread_cond_t  left;
     void          (*body)(void *arg, size_t i);
     void           *arg;
     int             stop, n;            /* n: members */
@@ -39,6 +49,8 @@ static void relax(void)
 {
 #if defined(__x86_64__)
     __builtin_ia32_pause();
+#elif defined(__aarch64__)
+    __asm__ volatile("yield");
 #endif
 }
 
@@ -51,62 +63,112 @@ static void take_indices(team *t, const member *m)
         member *owner = &t->member[(first + k) % t->n];
         size_t  i;
 
-        while ((i = atomic_fetch_add_explicit(&owner->next, 1, memory_order_relaxed)) < owner->end)
+        /* Looking before taking leaves the line where it is when nothing is left. */
+        while (atomic_load_explicit(&owner->next, memory_order_relaxed) < owner->end
+               && (i = atomic_fetch_add_explicit(&owner->next, 1, memory_order_relaxed)) < owner->end)
             t->body(t->arg, i);
     }
 }
 
-static void wait_for_round(team *t, unsigned last)
+/* ---- waiting ---- */
+
+static void wake_some(team *t)
+{
+    for (int woken = 0, k; woken < WAKES && (k = atomic_fetch_add_explicit(&t->waker, 1, memory_order_relaxed)) < t->n;) {
+        member *m = &t->member[k];
+
+        if (!atomic_load(&m->asleep))
+            continue;
+        pthread_mutex_lock(&m->mutex);
+        pthread_cond_signal(&m->woken);
+        pthread_mutex_unlock(&m->mutex);
+        woken++;
+    }
+}
+
+/* Round and asleep are sequentially consistent: either the sleeper sees the new round, or those who wake see that it sleeps. */
+static void sleep_until_round(team *t, member *m, unsigned last)
+{
+    pthread_mutex_lock(&m->mutex);
+    atomic_store(&m->asleep, 1);
+    while (atomic_load(&t->round) == last)
+        pthread_cond_wait(&m->woken, &m->mutex);
+    atomic_store(&m->asleep, 0);
+    pthread_mutex_unlock(&m->mutex);
+}
+
+static void wait_for_round(team *t, member *m, unsigned last)
 {
     for (int k = 0; k < SPINS; k++) {
         if (atomic_load_explicit(&t->round, memory_order_acquire) != last)
             return;
         relax();
     }
-    pthread_mutex_lock(&t->mutex);
-    while (atomic_load_explicit(&t->round, memory_order_acquire) == last)
-        pthread_cond_wait(&t->start, &t->mutex);
-    pthread_mutex_unlock(&t->mutex);
+    sleep_until_round(t, m, last);
+}
+
+/* 1: the job is open, and lasts until leave. */
+static int enter(team *t)
+{
+    return (atomic_fetch_add(&t->inside, 1) & OPEN) != 0;
+}
+
+static void leave(team *t)
+{
+    if (atomic_fetch_sub(&t->inside, 1) == 1 && atomic_load(&t->waiting)) {
+        pthread_mutex_lock(&t->mutex);
+        pthread_cond_signal(&t->left);
+        pthread_mutex_unlock(&t->mutex);
+    }
 }
 
 static void *work(void *user)
 {
     member  *m = user;
     team    *t = m->team;
-    unsigned round = 0;
+    unsigned last = 0;
 
-    for (;;) {
-        wait_for_round(t, round++);
-        if (t->stop)
-            return NULL;
-        take_indices(t, m);
-        if (atomic_fetch_sub_explicit(&t->busy, 1, memory_order_acq_rel) == 1) {
-            pthread_mutex_lock(&t->mutex);
-            pthread_cond_signal(&t->done);
-            pthread_mutex_unlock(&t->mutex);
+    for (int stop = 0; !stop;) {
+        wait_for_round(t, m, last);
+
+        const int open = enter(t);
+
+        /* No other round begins while this one is open and someone is inside. */
+        last = atomic_load_explicit(&t->round, memory_order_acquire);
+        if (open) {
+            wake_some(t);
+            stop = t->stop;
+            if (!stop)
+                take_indices(t, m);
         }
+        leave(t);
     }
+    return NULL;
 }
 
 static void begin_round(team *t)
 {
-    atomic_store_explicit(&t->busy, t->n - 1, memory_order_relaxed);
-    pthread_mutex_lock(&t->mutex);
-    atomic_fetch_add_explicit(&t->round, 1, memory_order_release);
-    pthread_cond_broadcast(&t->start);
-    pthread_mutex_unlock(&t->mutex);
+    atomic_store_explicit(&t->waker, 1, memory_order_relaxed);
+    atomic_fetch_or(&t->inside, OPEN);
+    atomic_fetch_add(&t->round, 1);
+    wake_some(t);
 }
 
+/* Nobody enters any more; whoever is inside does the last indices. */
 static void end_round(team *t)
 {
+    if (atomic_fetch_and(&t->inside, ~OPEN) == OPEN)
+        return;
     for (int k = 0; k < SPINS; k++) {
-        if (atomic_load_explicit(&t->busy, memory_order_acquire) == 0)
+        if (atomic_load_explicit(&t->inside, memory_order_acquire) == 0)
             return;
         relax();
     }
     pthread_mutex_lock(&t->mutex);
-    while (atomic_load_explicit(&t->busy, memory_order_acquire) != 0)
-        pthread_cond_wait(&t->done, &t->mutex);
+    atomic_store(&t->waiting, 1);
+    while (atomic_load(&t->inside) != 0)
+        pthread_cond_wait(&t->left, &t->mutex);
+    atomic_store(&t->waiting, 0);
     pthread_mutex_unlock(&t->mutex);
 }
 
@@ -137,6 +199,24 @@ static void run_alone(void *user, size_t n, void (*body)(void *arg, size_t i), v
         body(arg, i);
 }
 
+static void forget(member *m)
+{
+    pthread_cond_destroy(&m->woken);
+    pthread_mutex_destroy(&m->mutex);
+}
+
+/* 0, or -1: there are no more threads to be had. */
+static int start(team *t, member *m)
+{
+    m->team = t;
+    pthread_mutex_init(&m->mutex, NULL);
+    pthread_cond_init(&m->woken, NULL);
+    if (pthread_create(&m->thread, NULL, work, m) == 0)
+        return 0;
+    forget(m);
+    return -1;
+}
+
 void ted4_threads_init(ted4_parallel *p, int n_threads)
 {
     team *t;
@@ -151,13 +231,9 @@ void ted4_threads_init(ted4_parallel *p, int n_threads)
         return;
     memset(t, 0, sizeof *t);
     pthread_mutex_init(&t->mutex, NULL);
-    pthread_cond_init(&t->start, NULL);
-    pthread_cond_init(&t->done, NULL);
-    for (t->n = 1; t->n < n_threads; t->n++) {
-        t->member[t->n].team = t;
-        if (pthread_create(&t->member[t->n].thread, NULL, work, &t->member[t->n]) != 0)
-            break;
-    }
+    pthread_cond_init(&t->left, NULL);
+    for (t->n = 1; t->n < n_threads && start(t, &t->member[t->n]) == 0;)
+        t->n++;
     p->run = run;
     p->user = t;
 }
@@ -172,8 +248,9 @@ void ted4_threads_finish(ted4_parallel *p)
     begin_round(t);
     for (int i = 1; i < t->n; i++)
         pthread_join(t->member[i].thread, NULL);
-    pthread_cond_destroy(&t->done);
-    pthread_cond_destroy(&t->start);
+    for (int i = 1; i < t->n; i++)
+        forget(&t->member[i]);
+    pthread_cond_destroy(&t->left);
     pthread_mutex_destroy(&t->mutex);
     free(t);
     p->run = run_alone;

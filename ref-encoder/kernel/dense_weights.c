@@ -15,7 +15,7 @@
 #if TED4_VEC_BYTES == 64 || defined(__aarch64__)
 enum { TILE_OUT = 4, TILE_IN = 4 };
 #else
-enum { TILE_OUT = 4, TILE_IN = 3 };
+enum { TILE_OUT = 2, TILE_IN = 4 };
 #endif
 
 typedef float four __attribute__((vector_size(16)));

@@ -7,6 +7,8 @@
 #include <stddef.h>
 #include <stdint.h>
 
+#include "render/leveled.h"
+
 #define TED4_ADAM_BETA1 0.9f
 #define TED4_ADAM_BETA2 0.999f
 #define TED4_ADAM_EPS   1e-15f
@@ -18,8 +20,8 @@ ted4_adam_bias ted4_adam_bias_make(uint64_t step);
 
 /* x -= rate m' / (sqrt(v') + eps) for n values that share a learning rate. A gradient whose square is beyond binary32 moves nothing; v then
  * stays at the largest number that it can hold, from which it decays again. */
-void ted4_adam(float *x, float *m, float *v, const float *gradient, size_t n,
-               float rate, ted4_adam_bias bias);
+TED4_EACH_LEVEL(void, ted4_adam, float *x, float *m, float *v, const float *gradient, size_t n,
+                float rate, ted4_adam_bias bias);
 
 /* lr0 -> lr0 last along a geometric path, progress in [0, 1]. */
 double ted4_decay(double lr0, double last, double progress);

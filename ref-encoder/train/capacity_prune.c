@@ -7,7 +7,6 @@
 #include <stdlib.h>
 
 #include "checkpoint.h"
-#include "lane_math.h"
 
 /* Prices tried, as multiples of what a bit weighs. */
 static const double prices[] = { 0.125, 0.25, 0.5, 1.0, 2.0, 4.0 };

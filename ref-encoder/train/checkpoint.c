@@ -15,24 +15,55 @@
 enum { FORMAT = 7 };
 
 /* One walk for both directions: put() writes or reads the bytes at p. whole: with the watch's last good state. left: when reading, bytes of the file that no
- * put() has had; anchors get room only where these fill it. */
+ * put() has had; anchors get room only where these fill it. Snapshots are taken and restored by one thread, often, while all others wait: these go to memory and come from
+ * there directly, without a FILE in between. */
 typedef struct {
-    FILE         *file;
-    int           writing, whole, failed;
-    XXH3_state_t *hash;
-    uint64_t      left;
+    FILE          *file;        /* NULL: memory */
+    ted4_snapshot *memory;
+    size_t         at, room;    /* in memory: what is read next; bytes it has room for when writing */
+    int            writing, whole, failed;
+    XXH3_state_t  *hash;
+    uint64_t       left;
 } stream;
+
+/* 0, or -1: no memory. */
+static int append(stream *s, const void *p, size_t size)
+{
+    ted4_snapshot *m = s->memory;
+
+    if (size > s->room - m->size) {
+        const size_t room = 2 * s->room > m->size + size ? 2 * s->room : m->size + size;
+        char        *bytes = realloc(m->bytes, room);
+
+        if (bytes == NULL)
+            return -1;
+        m->bytes = bytes;
+        s->room = room;
+    }
+    memcpy(m->bytes + m->size, p, size);
+    m->size += size;
+    return 0;
+}
+
+static int get(stream *s, void *p, size_t size)
+{
+    if (size > s->memory->size - s->at)
+        return -1;
+    memcpy(p, s->memory->bytes + s->at, size);
+    s->at += size;
+    return 0;
+}
 
 static void put(stream *s, void *p, size_t size)
 {
     if (s->failed || size == 0)
         return;
-    const size_t done = s->writing ? fwrite(p, 1, size, s->file) : fread(p, 1, size, s->file);
-
-    if (done != size) {
-        s->failed = 1;
+    if (s->file != NULL)
+        s->failed = (s->writing ? fwrite(p, 1, size, s->file) : fread(p, 1, size, s->file)) != size;
+    else
+        s->failed = (s->writing ? append(s, p, size) : get(s, p, size)) != 0;
+    if (s->failed)
         return;
-    }
     s->left -= s->writing ? 0 : size;
     XXH3_64bits_update(s->hash, p, size);
 }
@@ -300,9 +331,22 @@ static void walk(stream *s, ted4_trainer *t)
         walk_good(s, t);
 }
 
+static int intact_memory(stream *s)
+{
+    const ted4_snapshot *m = s->memory;
+    uint64_t             want;
+
+    if (m->size < sizeof want)
+        return 0;
+    s->left = m->size;
+    XXH3_64bits_update(s->hash, m->bytes, m->size - sizeof want);
+    memcpy(&want, m->bytes + m->size - sizeof want, sizeof want);
+    return XXH3_64bits_digest(s->hash) == want;
+}
+
 /* The last eight bytes are the hash of all others. Looked at before anything in the file is
  * believed. The file is at its start again afterwards. */
-static int intact(stream *s)
+static int intact_file(stream *s)
 {
     uint8_t  bytes[1 << 14];
     uint64_t want;
@@ -330,14 +374,15 @@ static void walk_hash(stream *s)
     expect(s, hash);
 }
 
-static int run(ted4_trainer *t, FILE *file, int writing, int whole)
+/* In file, or, where that is NULL, in memory, which is empty when writing. */
+static int run(ted4_trainer *t, FILE *file, ted4_snapshot *memory, int writing, int whole)
 {
-    stream s = { file, writing, whole, 0, XXH3_createState(), 0 };
+    stream s = { .file = file, .memory = memory, .writing = writing, .whole = whole, .hash = XXH3_createState() };
 
     if (s.hash == NULL)
         return -1;
     XXH3_64bits_reset(s.hash);
-    s.failed = !writing && !intact(&s);
+    s.failed = !writing && !(file != NULL ? intact_file(&s) : intact_memory(&s));
     XXH3_64bits_reset(s.hash);
     walk(&s, t);
     walk_hash(&s);
@@ -361,7 +406,7 @@ int ted4_checkpoint_save(ted4_trainer *t, const char *path)
     /* errno is the first failure's: closing what could not be written fails again, with another reason. A state that no checkpoint may hold sets none. */
     errno = 0;
 
-    const int bad = run(t, f, 1, 1) != 0 || fflush(f) != 0 || fsync(fileno(f)) != 0;
+    const int bad = run(t, f, NULL, 1, 1) != 0 || fflush(f) != 0 || fsync(fileno(f)) != 0;
     int       why = !bad ? 0 : errno != 0 ? errno : EIO;
 
     if (fclose(f) != 0 && !bad)
@@ -374,9 +419,9 @@ int ted4_checkpoint_save(ted4_trainer *t, const char *path)
     return ted4_trainer_fail(t, "%s: %s", path, strerror(why));
 }
 
-static int load(ted4_trainer *t, FILE *f, const char *name, int whole)
+static int load(ted4_trainer *t, FILE *f, ted4_snapshot *memory, const char *name, int whole)
 {
-    if (run(t, f, 0, whole) != 0)
+    if (run(t, f, memory, 0, whole) != 0)
         return ted4_trainer_fail(t, "%s: not a checkpoint of this scene with these options", name);
     if (t->integer)
         ted4_rate_pack(t->rate, t->net);
@@ -390,7 +435,7 @@ int ted4_checkpoint_load(ted4_trainer *t, const char *path)
     if (f == NULL)
         return ted4_trainer_fail(t, "%s: %s", path, strerror(errno));
 
-    const int bad = load(t, f, path, 1);
+    const int bad = load(t, f, NULL, path, 1);
 
     fclose(f);
     return bad;
@@ -398,31 +443,18 @@ int ted4_checkpoint_load(ted4_trainer *t, const char *path)
 
 static int take(ted4_trainer *t, ted4_snapshot *s, int whole)
 {
-    FILE *f;
-    int   bad;
-
     ted4_snapshot_free(s);
-    f = open_memstream(&s->bytes, &s->size);
-    if (f == NULL)
-        return ted4_trainer_fail(t, "no memory for a snapshot");
-    bad = run(t, f, 1, whole);
-    bad |= fclose(f) != 0;
-    if (bad)
-        ted4_snapshot_free(s);
-    return bad ? ted4_trainer_fail(t, "no memory for a snapshot") : 0;
+    if (run(t, NULL, s, 1, whole) == 0)
+        return 0;
+    ted4_snapshot_free(s);
+    return ted4_trainer_fail(t, "no memory for a snapshot");
 }
 
 static int restore(ted4_trainer *t, const ted4_snapshot *s, int whole)
 {
-    FILE *f = fmemopen(s->bytes, s->size, "rb");
+    ted4_snapshot memory = *s;
 
-    if (f == NULL)
-        return ted4_trainer_fail(t, "no memory for a snapshot");
-
-    const int bad = load(t, f, "snapshot", whole);
-
-    fclose(f);
-    return bad;
+    return load(t, NULL, &memory, "snapshot", whole);
 }
 
 int ted4_snapshot_take(ted4_trainer *t, ted4_snapshot *s)

@@ -7,11 +7,11 @@
 #include <string.h>
 
 #include "adam.h"
+#include "colour_job.h"
 
-/* Pixels whose products are summed in single precision, and pixels of one job. */
-enum { RUN = 1024, BAND = 16 * RUN };
+enum { BAND = TED4_COLOUR_BAND };
 
-enum { N = TED4_COLOUR_VALUES, ROW_V = 9 };     /* ROW_V: where v begins in a map */
+enum { N = TED4_COLOUR_VALUES, ROW_V = TED4_COLOUR_ROW_V };
 
 static size_t n_bands(size_t pixels)
 {
@@ -115,37 +115,12 @@ int ted4_colour_finite(const ted4_colour *c)
     return 1;
 }
 
-typedef struct {
-    const float *image, *map;
-    float       *to;            /* apply: the corrected picture; backward: the gradient, in place */
-    double      *sums;
-    size_t       pixels;
-} job;
-
-static void apply_band(void *arg, size_t band)
-{
-    const job   *j = arg;
-    const size_t first = band * BAND, n = least(BAND, j->pixels - first);
-    const float *r = j->image + first, *g = r + j->pixels, *b = g + j->pixels;
-
-    for (int k = 0; k < 3; k++) {
-        const float *a = j->map + k;
-        const float  of_r = a[0] + (k == 0), of_g = a[3] + (k == 1), of_b = a[6] + (k == 2);
-        const float  v = a[ROW_V];
-        float       *to = j->to + (size_t)k * j->pixels + first;
-
-#pragma omp simd
-        for (size_t i = 0; i < n; i++)
-            to[i] = of_r * r[i] + of_g * g[i] + of_b * b[i] + v;
-    }
-}
-
 const float *ted4_colour_apply(ted4_colour *c, uint32_t camera, const float *image, size_t pixels,
                                const ted4_parallel *p)
 {
-    job j = { .image = image, .map = c->value[camera], .to = c->image, .pixels = pixels };
+    ted4_colour_job j = { .image = image, .map = c->value[camera], .to = c->image, .pixels = pixels };
 
-    ted4_parallel_for(p, n_bands(pixels), apply_band, &j);
+    ted4_parallel_for(p, n_bands(pixels), TED4_IN_USE(ted4_colour_apply_band), &j);
     return c->image;
 }
 
@@ -208,66 +183,12 @@ const uint8_t *ted4_colour_undo(ted4_colour *c, uint32_t camera, const uint8_t *
     return c->seen;
 }
 
-/* Sums of d times 1 and each colour, over at most RUN pixels, into column k of a map. */
-static void add_products(const float *image, const float *d, size_t plane, size_t n, double *column)
-{
-    const float *r = image, *g = r + plane, *b = g + plane;
-    float        of_r = 0, of_g = 0, of_b = 0, v = 0;
-
-#pragma omp simd reduction(+ : of_r, of_g, of_b, v)
-    for (size_t i = 0; i < n; i++) {
-        of_r += r[i] * d[i];
-        of_g += g[i] * d[i];
-        of_b += b[i] * d[i];
-        v += d[i];
-    }
-    column[0] += (double)of_r;
-    column[3] += (double)of_g;
-    column[6] += (double)of_b;
-    column[ROW_V] += (double)v;
-}
-
-/* d <- (I + A) d for every pixel. */
-static void turn_gradient(const float *a, float *d, size_t plane, size_t n)
-{
-    const float r0 = a[0] + 1.0f, r1 = a[1], r2 = a[2];
-    const float g0 = a[3], g1 = a[4] + 1.0f, g2 = a[5];
-    const float b0 = a[6], b1 = a[7], b2 = a[8] + 1.0f;
-    float      *r = d, *g = r + plane, *b = g + plane;
-
-#pragma omp simd
-    for (size_t i = 0; i < n; i++) {
-        const float x = r[i], y = g[i], z = b[i];
-
-        r[i] = r0 * x + r1 * y + r2 * z;
-        g[i] = g0 * x + g1 * y + g2 * z;
-        b[i] = b0 * x + b1 * y + b2 * z;
-    }
-}
-
-static void backward_band(void *arg, size_t band)
-{
-    const job   *j = arg;
-    const size_t end = least((band + 1) * BAND, j->pixels);
-    double      *sum = j->sums + band * N;
-
-    for (int k = 0; k < N; k++)
-        sum[k] = 0;
-    for (size_t at = band * BAND; at < end; at += RUN) {
-        const size_t n = least(RUN, end - at);
-
-        for (size_t k = 0; k < 3; k++)
-            add_products(j->image + at, j->to + k * j->pixels + at, j->pixels, n, sum + k);
-        turn_gradient(j->map, j->to + at, j->pixels, n);
-    }
-}
-
 void ted4_colour_backward(ted4_colour *c, uint32_t camera, const float *image, size_t pixels,
                           const ted4_parallel *p, float *d_image, ted4_colour_map gradient)
 {
-    job j = { image, c->value[camera], d_image, c->sums, pixels };
+    ted4_colour_job j = { image, c->value[camera], d_image, c->sums, pixels };
 
-    ted4_parallel_for(p, n_bands(pixels), backward_band, &j);
+    ted4_parallel_for(p, n_bands(pixels), TED4_IN_USE(ted4_colour_backward_band), &j);
     for (int k = 0; k < N; k++) {
         double sum = 0;
 

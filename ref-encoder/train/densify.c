@@ -38,37 +38,48 @@ uint32_t ted4_lanes_there(const ted4_generate_input *in, size_t slot)
     return there;
 }
 
-/* Adds one row of statistics per splat and per anchor. */
-void ted4_densify_gather(ted4_trainer *t, const ted4_generate_input *in, const ted4_splats *s)
-{
-    const int           K = t->layout.head.n_offsets;
-    const ted4_slots   *sl = &t->slots;
-    const float        *d = t->splat_gradient.mean2d;
-    const uint8_t      *seen = t->splat_gradient.visible;
+typedef struct {
+    ted4_trainer              *t;
+    const ted4_generate_input *in;
+    const ted4_splats         *s;
+} gather_job;
 
-    for (size_t i = 0; i < sl->n; i++) {
-        float         *opacity = ted4_block(&t->anchors, TED4_ROW_OPACITY, sl->block[i]);
-        float         *gradient = ted4_block(&t->anchors, TED4_ROW_GRADIENT, sl->block[i]);
-        const uint32_t there = ted4_lanes_there(in, i);
+/* Adds one row of statistics per splat and per anchor. */
+static void gather_slot(void *arg, size_t i)
+{
+    const gather_job *g = arg;
+    ted4_trainer     *t = g->t;
+    const int         K = t->layout.head.n_offsets;
+    const uint32_t    lanes = t->slots.lanes[i], there = ted4_lanes_there(g->in, i);
+    float            *opacity = ted4_block(&t->anchors, TED4_ROW_OPACITY, t->slots.block[i]);
+    float            *gradient = ted4_block(&t->anchors, TED4_ROW_GRADIENT, t->slots.block[i]);
+
+    for (int j = 0; j < TED4_LANES; j++) {
+        opacity[TED4_LANES + j] += (float)(lanes >> j & 1);
+        opacity[2 * TED4_LANES + j] += (float)(there >> j & 1);
+    }
+    for (int k = 0; k < K; k++) {
+        const size_t   at = (i * (size_t)K + (size_t)k) * TED4_LANES;
+        const float   *d = t->splat_gradient.mean2d + at, *shown = g->s->opacity + at;
+        const uint8_t *seen = t->splat_gradient.visible + at;
+        float         *sum = gradient + k * TED4_LANES;
+        float         *count = gradient + (K + k) * TED4_LANES;
 
         for (int j = 0; j < TED4_LANES; j++) {
-            opacity[TED4_LANES + j] += (float)(sl->lanes[i] >> j & 1);
-            opacity[2 * TED4_LANES + j] += (float)(there >> j & 1);
-        }
-        for (int k = 0; k < K; k++) {
-            const size_t at = (i * (size_t)K + (size_t)k) * TED4_LANES;
-            float       *sum = gradient + k * TED4_LANES;
-            float       *count = gradient + (K + k) * TED4_LANES;
+            const float on = (float)seen[j];
 
-            for (int j = 0; j < TED4_LANES; j++) {
-                const float on = (float)seen[at + (size_t)j];
-
-                opacity[j] += s->opacity[at + (size_t)j];
-                sum[j] += on * d[at + (size_t)j];
-                count[j] += on;
-            }
+            opacity[j] += shown[j];
+            sum[j] += on * d[j];
+            count[j] += on;
         }
     }
+}
+
+void ted4_densify_gather(ted4_trainer *t, const ted4_generate_input *in, const ted4_splats *s)
+{
+    gather_job j = { t, in, s };
+
+    ted4_parallel_for(t->parallel, t->slots.n, gather_slot, &j);
 }
 
 typedef struct {

@@ -2,19 +2,11 @@
  * bank. Masks are straight-through: their gradient is that of sigmoid(logit) in the place of the
  * hard 0 or 1, which has none. Positions get none.
  * SPDX-License-Identifier: BSD-2-Clause */
-#include "generate_state.h"
+#include "generate_lanes.h"
 
 #include <float.h>
 #include <math.h>
 #include <string.h>
-
-typedef struct {
-    ted4_generator *g;
-    const ted4_generate_input *in;
-    const ted4_splat_grads *gr;
-    float *const *d_attr;
-    float *d_net;
-} job;
 
 /* One slot on its way back. */
 typedef struct {
@@ -278,7 +270,7 @@ static void activation_backward(slot_state *s, const ted4_generate_input *in)
 }
 
 /* d: the slot's planes of layer outputs; d_inputs: scratch for the inputs of the heads. */
-static void backward_slot(const job *t, size_t slot, float *d, float *d_inputs)
+static void backward_slot(const ted4_gen_job *t, size_t slot, float *d, float *d_inputs)
 {
     const ted4_layout *l = &t->g->layout;
     slot_state s;
@@ -290,7 +282,7 @@ static void backward_slot(const job *t, size_t slot, float *d, float *d_inputs)
     s.d_attr = t->d_attr[slot];
     s.d_feature = d_inputs;
     s.d_moved = ted4_gen_plane(d_inputs, l->head.feature_dim + 3);
-    ted4_gen_lanes(t->in->lanes[slot], s.on);
+    ted4_lane_set(t->in->lanes[slot], s.on);
     memset(s.d_attr, 0, (size_t)l->n_channels * TED4_LANES * sizeof *s.d_attr);
     splats_backward(&s, t->gr, slot);
     heads_backward(&s);
@@ -301,9 +293,9 @@ static void backward_slot(const job *t, size_t slot, float *d, float *d_inputs)
     activation_backward(&s, t->in);
 }
 
-static void backward_chunk(void *arg, size_t chunk)
+void TED4_LEVELED(ted4_gen_backward)(void *arg, size_t chunk)
 {
-    const job *t = arg;
+    const ted4_gen_job *t = arg;
     ted4_generator *g = t->g;
     const size_t first = ted4_gen_first(t->in->n_slots, chunk);
     const size_t n = ted4_gen_first(t->in->n_slots, chunk + 1) - first;
@@ -325,9 +317,9 @@ static void backward_chunk(void *arg, size_t chunk)
 }
 
 /* Sums one range of the gradient arrays over the chunks, in order. */
-static void sum_range(void *arg, size_t range)
+void TED4_LEVELED(ted4_gen_sum_range)(void *arg, size_t range)
 {
-    const job *t = arg;
+    const ted4_gen_job *t = arg;
     ted4_generator *g = t->g;
     const size_t from = g->n_grad * range / TED4_GEN_CHUNKS;
     const size_t to = g->n_grad * (range + 1) / TED4_GEN_CHUNKS;
@@ -347,16 +339,4 @@ static void sum_range(void *arg, size_t range)
         else
             d_tail[i - g->n_effective] += sum[i];
     }
-}
-
-int ted4_generate_backward(ted4_generator *g, const ted4_generate_input *in,
-                           const ted4_splat_grads *gr, const ted4_parallel *p,
-                           float *const *d_attr, float *d_net)
-{
-    job t = { g, in, gr, d_attr, d_net };
-
-    ted4_parallel_for(p, TED4_GEN_CHUNKS, backward_chunk, &t);
-    ted4_parallel_for(p, TED4_GEN_CHUNKS, sum_range, &t);
-    ted4_gen_motion_backward(g, in->net, d_net);
-    return 0;
 }

@@ -1,11 +1,10 @@
 /* generate_state.h - what ted4_generate keeps for ted4_generate_backward: the plan of planes,
- * packed weights, saved activations. A plane is one channel of 32 lanes. Private to generate.c,
- * generate_net.c, generate_motion.c and generate_bwd.c.
+ * packed weights, saved activations. A plane is one channel of 32 lanes. Private to generate*.c, of
+ * which generate.c, generate_net.c and generate_motion.c are compiled once and the others once a level.
  * SPDX-License-Identifier: BSD-2-Clause */
 #ifndef TED4_GENERATE_STATE_H
 #define TED4_GENERATE_STATE_H
 
-#include "lane_math.h"
 #include "model.h"
 
 /* Below this a vector has no direction, and a linear scale stops (spec 11.1, 11.5). */
@@ -16,7 +15,7 @@
 /* Work is cut into this many chunks of slots whatever the number of threads, so that sums over
  * slots have one order. Within a chunk, weight gradients are taken over groups of slots, few enough
  * to stay in the second-level cache. */
-enum { TED4_GEN_CHUNKS = 16, TED4_GEN_GROUP = 8 };
+enum { TED4_GEN_CHUNKS = 32, TED4_GEN_GROUP = 8 };
 
 /* Motion inr, spec 11.3: inputs made of the position and of the time. */
 enum { TED4_INR_OCTAVES = 10, TED4_INR_POINT = 3 + 6 * TED4_INR_OCTAVES,
@@ -90,20 +89,21 @@ struct ted4_generator {
     float  *splats;                     /* [TED4_GEN_ARRAYS][capacity K 32] owned */
 };
 
+/* What both ways over the slots are told. */
+typedef struct {
+    ted4_generator            *g;
+    const ted4_generate_input *in;
+    const ted4_splat_grads    *gr;
+    float *const              *d_attr;
+    float                     *d_net;
+} ted4_gen_job;
+
 /* n floats, 64-byte aligned; NULL: no memory. */
 float *ted4_gen_alloc(size_t n);
 
 /* generate_net.c: makes the plan, the layers and everything whose size does not depend on the
  * number of slots. 0 or -1. */
 int  ted4_gen_plan(ted4_generator *g);
-void ted4_gen_chain_forward(const ted4_gen_chain *c, float *planes);
-/* dy of the last layer is set in d (planes of layer outputs); fills those of the others, and dx
- * ([in][32], NULL: not wanted). */
-void ted4_gen_chain_backward(const ted4_generator *g, const ted4_gen_chain *c, float *planes,
-                             float *d, float *dx, int add);
-/* Adds the weight gradients of n slots to grad. */
-void ted4_gen_chain_weights(const ted4_generator *g, const ted4_gen_chain *c, float *planes,
-                            float *d, size_t n, float *grad);
 
 /* generate_motion.c. 0, or -1: no memory. */
 int  ted4_gen_motion_init(ted4_gen_motion *m, const ted4_layout *l);
@@ -112,8 +112,17 @@ void ted4_gen_motion_finish(ted4_gen_motion *m);
 void ted4_gen_motion_make(ted4_generator *g, const ted4_generate_input *in);
 /* motion inr: E(p) of 32 points, [3][32] to [63][32]. */
 void ted4_gen_encode_points(const float *position, float *to);
+
+/* generate_fwd.c: a ted4_gen_job for one slot. generate_bwd.c: for the slots of a chunk; after all chunks, the sums of a range of
+ * gradients. */
+TED4_EACH_LEVEL(void, ted4_gen_forward, void *job, size_t slot);
+TED4_EACH_LEVEL(void, ted4_gen_backward, void *job, size_t chunk);
+TED4_EACH_LEVEL(void, ted4_gen_sum_range, void *job, size_t range);
+
+/* generate_effective.c. Of the motion bank: w has n_time columns, p n_time rows; else w has in + n_time columns. */
+TED4_EACH_LEVEL(void, ted4_gen_make_effective, ted4_gen_motion *m, int is_bank, const float *w, const float *p);
 /* Takes motion.d_w back to F_project, the first layer of F_deform and the bank: adds to d_net. */
-void ted4_gen_motion_backward(ted4_generator *g, const float *net, float *d_net);
+TED4_EACH_LEVEL(void, ted4_gen_motion_backward, ted4_generator *g, const float *net, float *d_net);
 
 static inline size_t ted4_gen_stride(const ted4_generator *g)
 {
@@ -155,33 +164,6 @@ static inline size_t ted4_gen_first(size_t n_slots, size_t chunk)
 static inline int ted4_gen_activated(const ted4_generator *g, const ted4_generate_input *in)
 {
     return in->activation && g->layout.first[TED4_TAU] >= 0;
-}
-
-/* spec 11.4 for one lane: the edge that t lies beyond (side -1: before the start, 1: after the end,
- * 0: neither), and u. */
-typedef struct {
-    int   side;
-    float width, u;
-} ted4_gen_edge;
-
-static inline ted4_gen_edge ted4_gen_find_edge(float t, const float *tau)
-{
-    const float start = tau[0], start_width = tau[TED4_LANES];
-    const float end = tau[2 * TED4_LANES], end_width = tau[3 * TED4_LANES];
-    const int side = t < start ? -1 : t > end;
-    const float at = side < 0 ? start : end;
-    const float b = ted4_lane_pow2(side < 0 ? start_width : end_width);
-    const float width = b > TED4_EDGE_MIN ? b : TED4_EDGE_MIN;
-    const ted4_gen_edge e = { side, width, side != 0 ? (t - at) / width : 0.0f };
-
-    return e;
-}
-
-/* Lanes of a mask as 1.0 and 0.0 would let NaN through: -1 and 0 to choose with. */
-static inline void ted4_gen_lanes(uint32_t lanes, int32_t *on)
-{
-    for (int j = 0; j < TED4_LANES; j++)
-        on[j] = -(int32_t)(lanes >> j & 1);
 }
 
 #endif

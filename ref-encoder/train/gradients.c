@@ -52,15 +52,6 @@ void ted4_gradients_slot(const ted4_layout *l, const float *rate, const float *v
     }
 }
 
-double ted4_gradients_centres(const ted4_splat_grads *g, size_t n)
-{
-    float sum = 0;
-
-    for (int c = 0; c < 3; c++)
-        sum += ted4_lane_dot(n, g->mean[c], g->mean[c]);
-    return sqrt((double)sum);
-}
-
 /* Sum of squares. */
 static double squares_of(const float *x, size_t n)
 {

@@ -10,8 +10,6 @@
  * then 0, or 1 + the first term with a value that is not finite. values, gradient: [n_channels][32]. */
 void ted4_gradients_slot(const ted4_layout *l, const float *rate, const float *values, const float *gradient, float *squares);
 
-/* Norm of the gradients of the centres of all Gaussians on screen; not finite where one is not. */
-double ted4_gradients_centres(const ted4_splat_grads *g, size_t n);
 /* Norm of n numbers. */
 double ted4_gradients_norm(const float *x, size_t n);
 

@@ -1,5 +1,5 @@
 /* lane_math.h - the functions of spec 11 and 12.2 in fast binary32, written so that `#pragma omp
- * simd` loops over lanes vectorise them. Not strict: may be contracted.
+ * simd` loops over lanes vectorise them. For files compiled once a level (render/leveled.h).
  * SPDX-License-Identifier: BSD-2-Clause */
 #ifndef TED4_LANE_MATH_H
 #define TED4_LANE_MATH_H
@@ -8,6 +8,7 @@
 #include <string.h>
 
 #include "model.h"
+#include "render/leveled.h"
 
 #define TED4_LOG2E 0x1.715476p+0f
 #define TED4_LN2   0x1.62e43p-1f
@@ -29,13 +30,13 @@ static inline float ted4_lane_pow2(float x)
     const uint32_t bits = ((uint32_t)n + 1u) << 23;
     float p = 0x1.ffcbfcp-17f, scale;
 
-    p = p * f + 0x1.430912p-13f;
-    p = p * f + 0x1.5d87fep-10f;
-    p = p * f + 0x1.3b2ab6p-7f;
-    p = p * f + 0x1.c6b08ep-5f;
-    p = p * f + 0x1.ebfbep-3f;
-    p = p * f + 0x1.62e43p-1f;
-    p = p * f + 1.0f;
+    p = ted4_fma(p, f, 0x1.430912p-13f);
+    p = ted4_fma(p, f, 0x1.5d87fep-10f);
+    p = ted4_fma(p, f, 0x1.3b2ab6p-7f);
+    p = ted4_fma(p, f, 0x1.c6b08ep-5f);
+    p = ted4_fma(p, f, 0x1.ebfbep-3f);
+    p = ted4_fma(p, f, 0x1.62e43p-1f);
+    p = ted4_fma(p, f, 1.0f);
     memcpy(&scale, &bits, sizeof scale);
     return p * scale;
 }
@@ -51,10 +52,11 @@ static inline float ted4_inward(float x, float low, float high, float d)
     return (x <= low && d > 0.0f) || (x >= high && d < 0.0f) ? 0.0f : d;
 }
 
-/* Whether a mask with this logit is on (model.h). */
-static inline int ted4_mask_on(float logit)
+/* Lanes of a set as -1 and 0, to choose with: as 1.0 and 0.0 they would let NaN through. */
+static inline void ted4_lane_set(uint32_t lanes, int32_t *on)
 {
-    return logit > TED4_MASK_LOGIT;
+    for (int j = 0; j < TED4_LANES; j++)
+        on[j] = -(int32_t)((lanes & (uint32_t)1 << j) != 0);
 }
 
 #endif

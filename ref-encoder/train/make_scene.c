@@ -7,7 +7,6 @@
 #include <string.h>
 
 #include "base/bytes.h"
-#include "lane_math.h"
 #include "norm/half.h"
 #include "norm/scene.h"
 #include "norm/tables.h"

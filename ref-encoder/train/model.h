@@ -22,9 +22,14 @@ typedef struct {
 
 void ted4_layout_make(ted4_layout *l, const ted4_header *h);
 
-/* A mask is on when sigmoid(logit) > 0.01, which is asked of the logit, as files that may fuse operations and files that may not ask it; its gradient is that of
- * the sigmoid (straight-through). */
+/* A mask is on when sigmoid(logit) > 0.01, which is asked of the logit: files compiled once a level and others, whose sigmoids differ in the last bits, both
+ * ask it. Its gradient is that of the sigmoid (straight-through). */
 #define TED4_MASK_LOGIT (-4.59511985f)          /* ln(0.01 / 0.99) */
+
+static inline int ted4_mask_on(float logit)
+{
+    return logit > TED4_MASK_LOGIT;
+}
 
 /* One query over chosen blocks ("slots"). Slot i, offset k, lane j is splat (i K + k) 32 + j. */
 typedef struct {
@@ -100,7 +105,7 @@ int ted4_rate_lanes(ted4_rate *r, const ted4_rate_input *in,
 
 /* The quantiser by itself, for rendering: out = quantised attr with given steps [TED4_TYPES][32]; the same noise as ted4_rate_evaluate for equal block and key.
  * Logits are copied. NOISE or ROUND. After decoding, a_s <= a_f must hold: where rounding breaks it, a_f is raised to a_s. */
-void ted4_quantise(const ted4_layout *l, ted4_quant quant, const float *attr,
-                   const float *steps, uint32_t block, uint64_t key, float *out);
+TED4_EACH_LEVEL(void, ted4_quantise, const ted4_layout *l, ted4_quant quant, const float *attr,
+                const float *steps, uint32_t block, uint64_t key, float *out);
 
 #endif

@@ -65,7 +65,7 @@ static void order_tau(const float *tau, const float *q, float *residual)
     }
 }
 
-void ted4_residuals(const ted4_layout *l, ted4_quant quant, const float *value,
+void TED4_LEVELED(ted4_residuals)(const ted4_layout *l, ted4_quant quant, const float *value,
                     const float *steps, uint32_t block, uint64_t key,
                     float *residual)
 {
@@ -101,7 +101,7 @@ static void quantise_row(ted4_quant quant, const float *x, const float *q,
         out[j] = symbol(x[j] / q[j]) * q[j];
 }
 
-void ted4_quantise(const ted4_layout *l, ted4_quant quant, const float *attr,
+void TED4_LEVELED(ted4_quantise)(const ted4_layout *l, ted4_quant quant, const float *attr,
                    const float *steps, uint32_t block, uint64_t key, float *out)
 {
     for (int t = 0; t < TED4_TYPES; t++)

@@ -4,11 +4,9 @@
  * with the residual n held constant. So dk/dx = 1/q, dk/dv = -(x/q) ln 2, d(context)/dx = 1/Q0, d(x + q n)/dv = q n ln 2; and what reaches x from the rendered
  * value is the trainer's business.
  * SPDX-License-Identifier: BSD-2-Clause */
-#include "rate_parts.h"
+#include "rate_lanes.h"
 
 #include <string.h>
-
-#include "rate_math.h"
 
 /* Forward was y = max(0, x). */
 static void relu_backward(const float *y, size_t n, float *d)
@@ -38,9 +36,9 @@ static void slices_backward(const ted4_rate *r, ted4_rate_room *room, size_t i)
         known += l->head.slice[m - 1];
         memcpy(d_y, d_out + ted4_row(known), half * sizeof *d_y);
         memcpy(d_y + half, d_out + ted4_row(known + f), half * sizeof *d_y);
-        ted4_dense_backward_x(&n->layer[1], d_y, d_hidden, 0);
+        TED4_LEVELED(ted4_dense_backward_x)(&n->layer[1], d_y, d_hidden, 0);
         relu_backward(room->slice[m].x[1] + i * width, width, d_hidden);
-        ted4_dense_backward_x(&n->layer[0], d_hidden, room->slot.d_context, 1);
+        TED4_LEVELED(ted4_dense_backward_x)(&n->layer[0], d_hidden, room->slot.d_context, 1);
     }
 }
 
@@ -137,11 +135,11 @@ static void hyper_backward(const ted4_rate *r, ted4_rate_room *room, size_t i)
         const size_t width = ted4_row((size_t)h->dim[k]);
         float *d = a->d[k] + i * width;
 
-        ted4_dense_backward_x(&h->layer[k],
+        TED4_LEVELED(ted4_dense_backward_x)(&h->layer[k],
                               a->d[k + 1] + i * ted4_row((size_t)h->dim[k + 1]),
                               d, 0);
         if (k == h->n - 1)
-            ted4_dense_backward_x(&r->step, d_v, d, 1);
+            TED4_LEVELED(ted4_dense_backward_x)(&r->step, d_v, d, 1);
         relu_backward(a->x[k] + i * width, width, d);
     }
 }
@@ -179,7 +177,7 @@ static void layer_weights(const ted4_rate_net *n, int k, const float *x,
                           size_t x_stride, const float *d, size_t n_slots,
                           float *d_net)
 {
-    ted4_dense_backward_w(n->dim[k], n->dim[k + 1], x, x_stride, d,
+    TED4_LEVELED(ted4_dense_backward_w)(n->dim[k], n->dim[k + 1], x, x_stride, d,
                           ted4_row((size_t)n->dim[k + 1]), n_slots,
                           d_net + n->w[k], d_net + n->b[k]);
 }

@@ -1,117 +1,51 @@
-/* rate_integer.c - TED4_QUANT_INTEGER: mu, sigma and steps exactly as a decoder has them, from norm/prior.h. spec 7.3, 10.1, 10.3.
- * The float networks still run, for their ReLUs decide where gradients go; here their outputs are replaced by what the integers say.
+/* rate_integer.c - TED4_QUANT_INTEGER: the integer networks, made when they have changed. What they do to a slot is in rate_decoded.c.
  * SPDX-License-Identifier: BSD-2-Clause */
 #include "rate_parts.h"
 
-#include "base/bytes.h"
-#include "kernel/int_kernel.h"
-#include "norm/half.h"
-#include "rate_math.h"
+#include <stdlib.h>
+#include <string.h>
 
-int ted4_rate_integer_begin(ted4_rate_integer *x, const ted4_rate_input *in)
+#include "kernel/int_kernel.h"
+
+static int is_made_of(const ted4_rate_integer *x, const ted4_layout *l, const float *net, const uint8_t *shift)
+{
+    const ted4_shape *s = &l->shape;
+
+    return x->ready && x->prior.context_bits == l->head.context_bits && memcmp(x->net, net, s->n_nete * sizeof *net) == 0 && memcmp(x->shift, shift, s->n_units) == 0;
+}
+
+int ted4_rate_integer_begin(ted4_rate *r, const ted4_rate_input *in)
 {
     const ted4_layout *l = in->layout;
 
+    const ted4_shape  *s = &l->shape;
+    const float       *net = in->net + l->nete;
+    ted4_rate_integer *x = &r->integer;
+
+    if (is_made_of(x, l, net, in->shift))
+        return 0;
+    ted4_rate_integer_end(x);
     ted4_arena_init(&x->arena, NULL);
-    if (ted4_prior_init(&x->prior, &l->head, &l->shape, &x->arena) == TED4_OK
-        && ted4_prior_load(&x->prior, in->net + l->nete, in->shift, NULL)
-           == TED4_OK) {
+    x->ready = 1;
+    x->net = malloc(s->n_nete * sizeof *x->net + 1);
+    x->shift = malloc(s->n_units + 1);
+    if (x->net != NULL && x->shift != NULL
+        && ted4_prior_init(&x->prior, &l->head, s, &x->arena) == TED4_OK
+        && ted4_prior_load(&x->prior, net, in->shift, NULL) == TED4_OK) {
+        memcpy(x->net, net, s->n_nete * sizeof *x->net);
+        memcpy(x->shift, in->shift, s->n_units);
         x->prior.dense = ted4_select_int_dense();
         return 0;
     }
-    ted4_arena_finish(&x->arena);
+    ted4_rate_integer_end(x);
     return -1;
 }
 
 void ted4_rate_integer_end(ted4_rate_integer *x)
 {
-    ted4_arena_finish(&x->arena);
-}
-
-/* Hyperprior of a slot: its outputs stay in the room; v and the steps replace those of the float network. */
-void ted4_rate_integer_steps(const ted4_rate_job *job, ted4_rate_room *room,
-                             size_t slot, float *v, float *q)
-{
-    const ted4_shape *shape = &job->in->layout->shape;
-    const float *p = job->in->position[slot];
-    const int32_t *out = room->integer
-                       + shape->first_step_output * TED4_PRIOR_BLOCK;
-    uint16_t position[TED4_LANES][3];
-
-    for (size_t j = 0; j < TED4_LANES; j++)
-        for (size_t a = 0; a < 3; a++)
-            position[j][a] = job->in->lanes[slot] >> j & 1
-                           ? ted4_float_to_half(p[ted4_row(a) + j]) : 0;
-    ted4_prior_hyper(&job->integer->prior, position[0], TED4_LANES,
-                     room->integer);
-    for (int t = 0; t < TED4_TYPES; t++, q += TED4_LANES) {
-        if (shape->dim[t] == 0)
-            continue;
-        for (int j = 0; j < TED4_LANES; j++) {
-            const int index = ted4_step_index(out[j]);
-
-            q[j] = job->in->layout->head.step[t]
-                 * ted4_bits_float(ted4_step[index]);
-            v[j] = (float)(index - 128) * (1.0f / 32.0f);
-        }
-        out += TED4_PRIOR_BLOCK;
-        v += TED4_LANES;
-    }
-}
-
-/* Adds what the slice networks say of the features, whose symbols are x / q + n. v: of the features. */
-static void slices(const ted4_rate_job *job, ted4_rate_room *room,
-                   const float *q, const float *v)
-{
-    const ted4_layout *l = job->in->layout;
-    const size_t f = l->shape.dim[TED4_FEATURE];
-    const size_t first = ted4_row((size_t)l->first[TED4_FEATURE]);
-    const float *x = room->slot.value + first;
-    const float *n = room->slot.residual + first;
-    int32_t *mu = room->integer;
-    int32_t added[2 * TED4_MAX_FEATURE * TED4_PRIOR_BLOCK];
-    int16_t context[TED4_MAX_FEATURE * TED4_PRIOR_BLOCK];
-
-    for (size_t c = 0; c < f; c++)
-        for (size_t j = 0, at = ted4_row(c); j < TED4_LANES; j++) {
-            /* Where x / q has no room for fractions the sum may round to just outside of the range of symbols. */
-            const float k = ted4_lane_within(
-                __builtin_rintf(x[at + j] / q[j] + n[at + j]), -32767.0f, 32767.0f);
-            const int index = (int)(v[j] * 32.0f) + 128;
-
-            context[c * TED4_PRIOR_BLOCK + j] =
-                ted4_context((int16_t)k, (uint8_t)index, l->head.context_bits);
-        }
-    for (unsigned m = 1, known = 0; m < l->head.n_slices; m++) {
-        const size_t dim = l->head.slice[m];
-
-        known += l->head.slice[m - 1];
-        ted4_prior_slice(&job->integer->prior, m, context, TED4_LANES, added);
-        for (size_t c = 0; c < 2 * dim; c++) {
-            int32_t *to = mu + (known + (c < dim ? c : c - dim + f))
-                             * TED4_PRIOR_BLOCK;
-
-            for (size_t j = 0; j < TED4_LANES; j++)
-                to[j] += added[c * TED4_PRIOR_BLOCK + j];
-        }
-    }
-}
-
-/* out: [P][32], of which mu and s are replaced by the decoder's mu / 256 and (sigma index - 64) / 16. */
-void ted4_rate_integer_outputs(const ted4_rate_job *job, ted4_rate_room *room,
-                               const float *q, float *out)
-{
-    const ted4_shape *shape = &job->in->layout->shape;
-
-    slices(job, room, q, out + ted4_row(shape->first_step_output));
-    for (int t = 0; t < TED4_TYPES; t++)
-        for (size_t c = 0; c < 2 * (size_t)shape->dim[t]; c++) {
-            const size_t row = shape->first_output[t] + c;
-            const int32_t *from = room->integer + row * TED4_PRIOR_BLOCK;
-            float *to = out + ted4_row(row);
-
-            for (int j = 0; j < TED4_LANES; j++)
-                to[j] = c < shape->dim[t] ? (float)from[j] * 0x1p-8f
-                      : (float)(ted4_sigma_index(from[j]) - 64) * 0x1p-4f;
-        }
+    if (x->ready)
+        ted4_arena_finish(&x->arena);
+    free(x->net);
+    free(x->shift);
+    memset(x, 0, sizeof *x);
 }

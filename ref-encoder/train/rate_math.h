@@ -1,4 +1,5 @@
 /* rate_math.h - elementary functions of the rate model, written so that `#pragma omp simd` loops over lanes vectorise them.
+ * For files compiled once a level (render/leveled.h).
  * spec 9.4 (what is approximated).
  * SPDX-License-Identifier: BSD-2-Clause */
 #ifndef TED4_RATE_MATH_H
@@ -24,11 +25,11 @@ static inline float ted4_lane_log2(float x)
     const float z = (m - 1.0f) / (m + 1.0f), zz = z * z;
     float p = 0.320598898f;                     /* 2 / (k ln 2), k = 9, 7 .. 1 */
 
-    p = p * zz + 0.412198583f;
-    p = p * zz + 0.577078016f;
-    p = p * zz + 0.961796694f;
-    p = p * zz + 2.88539008f;
-    return (float)n + z * p;
+    p = ted4_fma(p, zz, 0.412198583f);
+    p = ted4_fma(p, zz, 0.577078016f);
+    p = ted4_fma(p, zz, 0.961796694f);
+    p = ted4_fma(p, zz, 2.88539008f);
+    return ted4_fma(z, p, (float)n);
 }
 
 /* tanh x for |x| <= 0.3, by its series. */
@@ -36,8 +37,13 @@ static inline float ted4_lane_tanh_small(float x)
 {
     const float xx = x * x;
 
-    return x * (1.0f + xx * (-0.333333333f + xx * (0.133333333f
-              + xx * (-0.0539682540f + xx * 0.0218694885f))));
+    float       p = 0.0218694885f;
+
+    p = ted4_fma(p, xx, -0.0539682540f);
+    p = ted4_fma(p, xx, 0.133333333f);
+    p = ted4_fma(p, xx, -0.333333333f);
+    p = ted4_fma(p, xx, 1.0f);
+    return p * x;
 }
 
 /* Density of the standard normal distribution; far out, where it no longer matters, it stays at 2^-120 so that nothing is subnormal. */
@@ -53,15 +59,15 @@ static inline float ted4_lane_mills(float y)
 {
     float p = 0.0510913221f;
 
-    p = p * y - 0.209401367f;
-    p = p * y + 0.252017418f;
-    p = p * y - 0.0920271200f;
-    p = p * y + 0.167158245f;
-    p = p * y + 0.145130673f;
-    p = p * y + 0.205119998f;
-    p = p * y + 0.234219276f;
-    p = p * y + 0.250005753f;
-    p = p * y + 0.249999928f;
+    p = ted4_fma(p, y, -0.209401367f);
+    p = ted4_fma(p, y, 0.252017418f);
+    p = ted4_fma(p, y, -0.0920271200f);
+    p = ted4_fma(p, y, 0.167158245f);
+    p = ted4_fma(p, y, 0.145130673f);
+    p = ted4_fma(p, y, 0.205119998f);
+    p = ted4_fma(p, y, 0.234219276f);
+    p = ted4_fma(p, y, 0.250005753f);
+    p = ted4_fma(p, y, 0.249999928f);
     return p * y;
 }
 

@@ -7,13 +7,13 @@
 #include <stdatomic.h>
 
 #include "base/arena.h"
-#include "lane_math.h"
 #include "model.h"
 #include "norm/prior.h"
 
-/* Slots are worked on in chunks, each with its own sums; chunks of a wave run at the same time, and their sums are added in order. So results do not
- * depend on threads, and memory does not grow with the number of slots. */
-enum { TED4_RATE_CHUNK = 8, TED4_RATE_WAVE = 32 };
+/* Slots are worked on in chunks of nearly equal size, each with its own sums; chunks of a wave run at the same time, and their sums are added in order. So results do not
+ * depend on threads, and memory does not grow with the number of slots. Where slots are few, chunks are smaller rather than fewer than a wave, but never
+ * below the least: each adds a whole set of gradients. */
+enum { TED4_RATE_CHUNK = 8, TED4_RATE_LEAST = 2, TED4_RATE_WAVE = 32 };
 
 /* spec 10.1: log2(sigma / step) and log2(q / Q0) that indices can express. */
 #define TED4_S_MIN (-4.0f)
@@ -62,6 +62,15 @@ typedef struct {
     ted4_rate_sums *sums;       /* of the chunk that is being worked on */
 } ted4_rate_room;
 
+/* The integer networks, and what they were made of: it stands still from step to step, and making them is all done by one thread. */
+typedef struct {
+    ted4_arena arena;
+    ted4_prior prior;
+    int        ready;
+    float     *net;             /* owned: [n_nete] */
+    uint8_t   *shift;           /* owned: [n_units] */
+} ted4_rate_integer;
+
 struct ted4_rate {
     ted4_layout    layout;
     ted4_rate_net  hyper, slice[TED4_MAX_SLICES];
@@ -70,12 +79,8 @@ struct ted4_rate {
     ted4_rate_room room[TED4_RATE_WAVE];
     atomic_flag    busy[TED4_RATE_WAVE];
     ted4_rate_sums sums[TED4_RATE_WAVE];
+    ted4_rate_integer integer;
 };
-
-typedef struct ted4_rate_integer {
-    ted4_arena arena;
-    ted4_prior prior;
-} ted4_rate_integer;
 
 /* What a chunk needs to know besides the input. */
 typedef struct {
@@ -84,7 +89,7 @@ typedef struct {
     const float *const    *d_value;     /* may be NULL */
     float *const          *d_attr;      /* NULL: no gradients */
     float *const          *steps;       /* out: [TYPES][32] q of each slot */
-    size_t                 first;       /* slot of the wave's first chunk */
+    size_t                 first, n_chunks;     /* the wave's first chunk; all there are */
     int                    steps_only;
     const ted4_rate_integer *integer;    /* NULL: the float networks alone */
     float                 *lane_bits;   /* out: [slot][1 + K][32] bits of each anchor, then of each of its offsets; NULL: not wanted */
@@ -103,27 +108,18 @@ static inline size_t ted4_row(size_t n)
     return n * TED4_LANES;
 }
 
+/* rate_fwd.c: n slots of a chunk from the first on. */
+TED4_EACH_LEVEL(void, ted4_rate_chunk, const ted4_rate_job *job, ted4_rate_room *room, size_t first, size_t n);
+
 /* rate_row.c */
-void ted4_rate_row(const float *u, const float *s, float *bits, float *d_u,
-                   float *d_s);
+TED4_EACH_LEVEL(void, ted4_rate_row, const float *u, const float *s, float *bits, float *d_u, float *d_s);
 
 /* quantise.c. Residuals n of all attribute channels: [A][32]. */
-void ted4_residuals(const ted4_layout *l, ted4_quant quant, const float *value,
-                    const float *steps, uint32_t block, uint64_t key,
-                    float *residual);
+TED4_EACH_LEVEL(void, ted4_residuals, const ted4_layout *l, ted4_quant quant, const float *value,
+                const float *steps, uint32_t block, uint64_t key, float *residual);
 
-/* rate_bwd.c. Gradients of slot i of the room's chunk, after its bits; then, when all slots are done, those of the weights. */
-void ted4_rate_slot_backward(const ted4_rate_job *job, ted4_rate_room *room,
-                             size_t i, size_t slot);
-void ted4_rate_weights_backward(const ted4_rate *r, ted4_rate_room *room,
-                                size_t n_slots);
-
-/* rate_integer.c. begin: 0, or -1: no memory, or weights that spec 7.3 refuses. */
-int  ted4_rate_integer_begin(ted4_rate_integer *x, const ted4_rate_input *in);
+/* rate_integer.c. begin: r->integer is that of the input; 0, or -1: no memory, or weights that spec 7.3 refuses. */
+int  ted4_rate_integer_begin(ted4_rate *r, const ted4_rate_input *in);
 void ted4_rate_integer_end(ted4_rate_integer *x);
-void ted4_rate_integer_steps(const ted4_rate_job *job, ted4_rate_room *room,
-                             size_t slot, float *v, float *q);
-void ted4_rate_integer_outputs(const ted4_rate_job *job, ted4_rate_room *room,
-                               const float *q, float *out);
 
 #endif

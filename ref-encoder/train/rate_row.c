@@ -9,9 +9,7 @@
  * For a < w, h stands where a coder has the constant 1. It costs at most one bit, only where the floor rules, and it has a slope everywhere: an outlier is pulled
  * back, and its sigma pushed up, however far out it lies. A constant floor would leave it without gradient (annex D.1, traps).
  * SPDX-License-Identifier: BSD-2-Clause */
-#include "rate_parts.h"
-
-#include "rate_math.h"
+#include "rate_lanes.h"
 
 #define SLOT            0x1p-16f        /* eps */
 #define MAX_HALF_WINDOW 4095.0f
@@ -71,7 +69,7 @@ static inline float tail_make(float w, float sigma, int fixed, float *d_ln_sigma
 }
 
 /* spec 9.4; see the head of this file. u = k - mu. d_u and d_s are derivatives of bits. */
-void ted4_rate_row(const float *restrict u, const float *restrict s,
+void TED4_LEVELED(ted4_rate_row)(const float *restrict u, const float *restrict s,
                    float *restrict bits, float *restrict d_u,
                    float *restrict d_s)
 {

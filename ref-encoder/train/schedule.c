@@ -91,56 +91,48 @@ void ted4_schedule_rates(const ted4_trainer *t, float *rate)
         rate[c] *= (float)t->watch.state.factor;
 }
 
-typedef struct {
-    ted4_trainer  *t;
-    ted4_adam_bias bias;
-} net_job;
-
-static void update_range(const net_job *j, size_t first, size_t n, double rate)
-{
-    ted4_trainer *t = j->t;
-
-    if (n > 0 && rate > 0)
-        ted4_adam(t->net + first, t->net_m + first, t->net_v + first,
-                  t->net_gradient + first, n, (float)(rate * t->watch.state.factor), j->bias);
-}
-
 /* In the integer stage no weight leaves a coarse grid: it would jump from point to point until the end. */
 static double rate_on_grid(const ted4_trainer *t, ted4_grid grid, double rate)
 {
     return t->integer && t->bits[grid] < TED4_GRID_FULL(grid) ? 0 : rate;
 }
 
-static void update_network(const net_job *j, size_t base, const ted4_net_shape *s,
-                           double rate)
+static size_t network_size(const ted4_net_shape *s)
 {
     size_t n = 0;
 
     for (int i = 0; i < s->n_layers; i++)
         n += ((size_t)s->dim[i] + 1) * s->dim[i + 1];
-    update_range(j, base + s->first, n, rate);
+    return n;
 }
 
-void ted4_schedule_network_step(ted4_trainer *t)
+static ted4_net_range make_range(const ted4_trainer *t, size_t first, size_t n, double rate)
+{
+    return (ted4_net_range){ first, n, (float)(rate * t->watch.state.factor) };
+}
+
+int ted4_schedule_network(const ted4_trainer *t, ted4_net_range *range)
 {
     const ted4_train_options *o = &t->opt;
     const ted4_layout        *l = &t->layout;
     const double   p = stage_progress(t);
     const double   restart = t->stage2 ? RESTART : 1.0;
-    const uint64_t count = t->iteration - (t->stage2 ? t->stage2_start : 0) + 1;
-    const net_job  j = { t, ted4_adam_bias_make(count) };
     const double   heads = rate_on_grid(t, TED4_GRID_HEADS, ted4_decay(o->lr_heads * restart, LAST_HEADS, p));
     const double   motion = ted4_decay(o->lr_motion * restart, LAST_MOTION, p);
 
-    for (int i = 0; i < TED4_NETS_R; i++) {
-        const int is_motion = i == TED4_NET_PROJECT || i == TED4_NET_DEFORM;
+    int n = 0;
 
-        update_network(&j, l->netr, &l->shape.netr[i], is_motion ? rate_on_grid(t, TED4_GRID_MOTION, motion) : heads);
+    for (int i = 0; i < TED4_NETS_R; i++) {
+        const int             is_motion = i == TED4_NET_PROJECT || i == TED4_NET_DEFORM;
+        const ted4_net_shape *s = &l->shape.netr[i];
+
+        range[n++] = make_range(t, l->netr + s->first, network_size(s),
+                                is_motion ? rate_on_grid(t, TED4_GRID_MOTION, motion) : heads);
     }
-    update_range(&j, l->bank, l->shape.n_bank, rate_on_grid(t, TED4_GRID_BANK, motion));
+    range[n++] = make_range(t, l->bank, l->shape.n_bank, rate_on_grid(t, TED4_GRID_BANK, motion));
     if (t->stage2 && !t->integer)
-        update_range(&j, l->nete, l->shape.n_nete,
-                     ted4_decay(o->lr_prior, LAST_PRIOR, p));
+        range[n++] = make_range(t, l->nete, l->shape.n_nete, ted4_decay(o->lr_prior, LAST_PRIOR, p));
+    return n;
 }
 
 /* Growth begins after a twentieth of stage 1; statistics as soon as the last adjustment is done. */

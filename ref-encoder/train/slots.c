@@ -94,6 +94,25 @@ void ted4_slots_finish(ted4_slots *s)
     memset(s, 0, sizeof *s);
 }
 
+/* Blocks that one job looks at. */
+enum { LOOKED_AT = 8 };
+
+typedef struct {
+    const ted4_trainer *t;
+    const ted4_view    *v;
+    uint32_t           *lanes;  /* [n_blocks] */
+} visible_job;
+
+static void look_at_blocks(void *arg, size_t i)
+{
+    const visible_job  *j = arg;
+    const ted4_anchors *a = &j->t->anchors;
+    const size_t        end = (i + 1) * LOOKED_AT < a->n_blocks ? (i + 1) * LOOKED_AT : a->n_blocks;
+
+    for (size_t b = i * LOOKED_AT; b < end; b++)
+        j->lanes[b] = j->v != NULL ? ted4_block_visible(j->t, b, j->v) : ted4_block_lanes(a, b);
+}
+
 /* v NULL: every block. */
 int ted4_slots_fill(ted4_trainer *t, const ted4_view *v)
 {
@@ -102,10 +121,14 @@ int ted4_slots_fill(ted4_trainer *t, const ted4_view *v)
 
     if (reserve(t, t->anchors.n_blocks) != 0)
         return -1;
+
+    /* Lanes of every block first: a slot's place, which is its block's or an earlier one, is known only then. */
+    visible_job j = { t, v, s->lanes };
+
+    ted4_parallel_for(t->parallel, (t->anchors.n_blocks + LOOKED_AT - 1) / LOOKED_AT, look_at_blocks, &j);
     s->n = 0;
     for (size_t b = 0; b < t->anchors.n_blocks; b++) {
-        const uint32_t lanes = v != NULL ? ted4_block_visible(t, b, v)
-                                         : ted4_block_lanes(&t->anchors, b);
+        const uint32_t lanes = s->lanes[b];
         const size_t   i = s->n;
 
         if (lanes == 0)

@@ -5,7 +5,6 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "lane_math.h"
 #include "math/elementary.h"
 #include "norm/half.h"
 #include "rotate.h"

@@ -114,7 +114,6 @@ static int backward(ted4_trainer *t, const ted4_view *v, const ted4_generate_inp
         return -1;
     if (ted4_raster_backward(t->raster, s, v, t->parallel, t->d_image, &t->splat_gradient) != 0)
         return ted4_trainer_fail(t, "no memory for gradients");
-    t->watch.norm[TED4_TERM_CENTRE] = ted4_gradients_centres(&t->splat_gradient, s->n);
     *on_screen = ted4_update_volume(t, s);
     memset(t->net_gradient, 0, t->layout.n_net * sizeof *t->net_gradient);
     if (ted4_generate_backward(t->generator, in, &t->splat_gradient, t->parallel,

@@ -5,24 +5,55 @@
 
 #include "adam.h"
 #include "gradients.h"
+#include "math/lane_sum.h"
 #include "math/quick.h"
 #include "random.h"
 #include "trainer.h"
 
-size_t ted4_update_volume(ted4_trainer *t, const ted4_splats *s)
+/* Gaussians are cut into this many parts whatever the number of threads, and their sums go in as many columns, so that both have one order. */
+enum { PARTS = 64, COLUMNS = 16 };
+
+typedef struct {
+    const ted4_splat_grads *g;
+    const ted4_splats      *s;
+    float                   weight;     /* of the volume of one */
+    size_t                  visible[PARTS], drawn[PARTS];
+    double                  squares[PARTS];     /* of the gradients of centres */
+} screen_job;
+
+static size_t first_of(const screen_job *j, size_t part)
 {
-    ted4_splat_grads *g = &t->splat_gradient;
-    size_t            n = 0;
+    const size_t rows = (j->s->n + COLUMNS - 1) / COLUMNS, at = rows * part / PARTS * COLUMNS;
 
-    for (size_t i = 0; i < s->n; i++)
-        n += g->visible[i];
+    return at < j->s->n ? at : j->s->n;
+}
 
-    const float w = n > 0 ? (float)(t->opt.volume_weight / (double)n) : 0.0f;
-    uint32_t    drawn = 0;
+static void count_part(void *arg, size_t part)
+{
+    screen_job  *j = arg;
+    const size_t first = first_of(j, part), n = first_of(j, part + 1) - first;
+    unsigned     visible = 0;
+
+#pragma omp simd reduction(+ : visible)
+    for (size_t i = first; i < first + n; i++)
+        visible += j->g->visible[i];
+    j->visible[part] = visible;
+    j->squares[part] = 0;
+    for (int c = 0; c < 3; c++)
+        j->squares[part] += (double)ted4_lane_dot(n, j->g->mean[c] + first, j->g->mean[c] + first);
+}
+
+static void volume_part(void *arg, size_t part)
+{
+    screen_job             *j = arg;
+    const ted4_splat_grads *g = j->g;
+    const ted4_splats      *s = j->s;
+    const size_t            end = first_of(j, part + 1);
+    unsigned                drawn = 0;
 
 #pragma omp simd reduction(+ : drawn)
-    for (size_t i = 0; i < s->n; i++) {
-        const float on = w * (float)g->visible[i];
+    for (size_t i = first_of(j, part); i < end; i++) {
+        const float on = j->weight * (float)g->visible[i];
         const float a = s->scale[0][i], b = s->scale[1][i], c = s->scale[2][i];
 
         g->scale[0][i] += on * b * c;
@@ -30,6 +61,25 @@ size_t ted4_update_volume(ted4_trainer *t, const ted4_splats *s)
         g->scale[2][i] += on * a * b;
         drawn += a >= TED4_NO_EXTENT || b >= TED4_NO_EXTENT || c >= TED4_NO_EXTENT ? g->visible[i] : 0u;
     }
+    j->drawn[part] = drawn;
+}
+
+size_t ted4_update_volume(ted4_trainer *t, const ted4_splats *s)
+{
+    screen_job j = { .g = &t->splat_gradient, .s = s };
+    size_t     n = 0, drawn = 0;
+    double     squares = 0;
+
+    ted4_parallel_for(t->parallel, PARTS, count_part, &j);
+    for (int part = 0; part < PARTS; part++) {
+        n += j.visible[part];
+        squares += j.squares[part];
+    }
+    j.weight = n > 0 ? (float)(t->opt.volume_weight / (double)n) : 0.0f;
+    ted4_parallel_for(t->parallel, PARTS, volume_part, &j);
+    for (int part = 0; part < PARTS; part++)
+        drawn += j.drawn[part];
+    t->watch.norm[TED4_TERM_CENTRE] = sqrt(squares);
     t->watch.drawn = (double)drawn;
     return n;
 }
@@ -59,15 +109,20 @@ void ted4_update_bank(ted4_trainer *t)
 /* Largest number of channels that header ranges allow (model.h). */
 enum { MAX_CHANNELS = TED4_MAX_FEATURE + 6 + 4 * TED4_MAX_OFFSETS + TED4_MAX_PHI + 4 + 1 };
 
+/* Weights of networks that one job updates. */
+enum { NET_PIECE = 2048 };
+
 typedef struct {
-    ted4_trainer *t;
-    float         rate[MAX_CHANNELS];
+    ted4_trainer  *t;
+    float          rate[MAX_CHANNELS];
     ted4_adam_bias bias;
-    float         mask_weight, temporal_weight;
-} slot_job;
+    float          mask_weight, temporal_weight;
+    ted4_net_range range[TED4_NET_RANGES];
+    size_t         n_pieces;    /* of all ranges; the first jobs, slots come after them */
+} update_job;
 
 /* d sigmoid(logit) times weight, for the anchors of the slot. */
-static void add_mask_loss(const slot_job *j, size_t i, int channel, int n, float weight)
+static void add_mask_loss(const update_job *j, size_t i, int channel, int n, float weight)
 {
     const ted4_slots *s = &j->t->slots;
 
@@ -86,9 +141,8 @@ static void add_mask_loss(const slot_job *j, size_t i, int channel, int n, float
     }
 }
 
-static void update_slot(void *arg, size_t i)
+static void update_slot(const update_job *j, size_t i)
 {
-    const slot_job    *j = arg;
     ted4_trainer      *t = j->t;
     const ted4_slots  *s = &t->slots;
     const ted4_layout *l = &t->layout;
@@ -110,20 +164,49 @@ static void update_slot(void *arg, size_t i)
     }
 }
 
+static size_t pieces_of(const ted4_net_range *r)
+{
+    return r->rate > 0 ? (r->n + NET_PIECE - 1) / NET_PIECE : 0;
+}
+
+static void update_piece(const update_job *j, size_t piece)
+{
+    const ted4_trainer   *t = j->t;
+    const ted4_net_range *r = j->range;
+
+    for (; piece >= pieces_of(r); r++)
+        piece -= pieces_of(r);
+
+    const size_t left = r->n - piece * NET_PIECE, at = r->first + piece * NET_PIECE;
+
+    ted4_adam(t->net + at, t->net_m + at, t->net_v + at, t->net_gradient + at, left < NET_PIECE ? left : NET_PIECE, r->rate, j->bias);
+}
+
+static void update_item(void *arg, size_t i)
+{
+    const update_job *j = arg;
+
+    if (i < j->n_pieces)
+        update_piece(j, i);
+    else
+        update_slot(j, i - j->n_pieces);
+}
+
 void ted4_update_parameters(ted4_trainer *t)
 {
     const ted4_header *h = &t->layout.head;
     const uint64_t     count = t->iteration - (t->stage2 ? t->stage2_start : 0) + 1;
     const double       n = (double)t->anchors.n;
-    slot_job           j = { .t = t, .bias = ted4_adam_bias_make(count) };
+    update_job         j = { .t = t, .bias = ted4_adam_bias_make(count) };
 
     ted4_schedule_rates(t, j.rate);
     if (t->stage2 && h->offset_mask)
         j.mask_weight = (float)(t->opt.lambda * t->opt.mask_weight / (n * t->charged.n_offsets));
     if (h->motion != TED4_MOTION_NONE && h->temporal_mask)
         j.temporal_weight = (float)(t->opt.temporal_weight / n);
-    ted4_parallel_for(t->parallel, t->slots.n, update_slot, &j);
-    ted4_schedule_network_step(t);
+    for (int i = ted4_schedule_network(t, j.range) - 1; i >= 0; i--)
+        j.n_pieces += pieces_of(&j.range[i]);
+    ted4_parallel_for(t->parallel, j.n_pieces + t->slots.n, update_item, &j);
 }
 
 /* A partial shuffle: after m swaps the first m slots are a uniform choice; the order of the others does not matter. */

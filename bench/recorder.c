@@ -1,0 +1,109 @@
+/* recorder.c - see recorder.h.
+ * SPDX-License-Identifier: BSD-2-Clause */
+#include "recorder.h"
+
+#include "measure.h"
+
+const int recorder_cores[RECORDER_CORES] = { 8, 16, 32 };
+
+enum { CLOCK_READINGS = 10000 };
+
+void recorder_init(recorder *r)
+{
+    const double begin = now_ms();
+
+    memset(r, 0, sizeof *r);
+    for (int i = 0; i < CLOCK_READINGS; i++)
+        (void)now_ms();
+    r->clock = (now_ms() - begin) / CLOCK_READINGS;
+}
+
+void recorder_finish(recorder *r)
+{
+    free(r->duration);
+    free(r->kept);
+    memset(r, 0, sizeof *r);
+}
+
+double recorder_schedule(const double *duration, size_t n, int cores)
+{
+    double free_at[RECORDER_MOST_CORES] = { 0 }, last = 0;
+
+    for (size_t i = 0; i < n; i++) {
+        int first = 0;
+
+        for (int k = 1; k < cores; k++)
+            if (free_at[k] < free_at[first])
+                first = k;
+        free_at[first] += duration[i];
+        last = free_at[first] > last ? free_at[first] : last;
+    }
+    return last;
+}
+
+static void reserve(recorder *r, size_t n)
+{
+    if (n <= r->capacity)
+        return;
+    r->capacity = 2 * n;
+    r->duration = must(realloc(r->duration, r->capacity * sizeof *r->duration));
+}
+
+static void keep(recorder *r)
+{
+    r->kept = must(realloc(r->kept, (r->n + 1) * sizeof *r->kept));
+    memcpy(r->kept, r->duration, r->n * sizeof *r->kept);
+    r->n_kept = r->n;
+}
+
+static double sum_of(const double *x, size_t n)
+{
+    double sum = 0;
+
+    for (size_t i = 0; i < n; i++)
+        sum += x[i];
+    return sum;
+}
+
+/* The region's indices take jobs from a common list; all of them were done by the first. */
+static double schedule_list(const recorder *r, double work, size_t n, int cores)
+{
+    const double all = sum_of(r->kept, r->n_kept);
+
+    return all > 0 ? recorder_schedule(r->kept, r->n_kept, (size_t)cores < n ? cores : (int)n) * work / all : work;
+}
+
+static void run(void *user, size_t n, void (*body)(void *arg, size_t i), void *arg)
+{
+    recorder    *r = user;
+    const int    kind = r->kind != NULL ? r->kind(n) : 0;
+    const double begin = now_ms();
+    double       at = begin;
+
+    reserve(r, n);
+    r->n = n;
+    for (size_t i = 0; i < n; i++) {
+        body(arg, i);
+
+        const double now = now_ms(), took = now - at - r->clock;
+
+        r->duration[i] = took > 0 ? took : 0;
+        at = now;
+    }
+    if (kind == 1)
+        keep(r);
+
+    const double work = sum_of(r->duration, n);
+
+    r->regions.work += at - begin;
+    r->regions.n++;
+    for (int k = 0; k < RECORDER_CORES; k++)
+        r->regions.on[k] += RECORDER_ROUND(recorder_cores[k]) + (kind == 2 ? schedule_list(r, work, n, recorder_cores[k])
+                                                                : recorder_schedule(r->duration, n, recorder_cores[k]));
+    r->regions.own += now_ms() - at;
+}
+
+ted4_parallel recorder_team(recorder *r)
+{
+    return (ted4_parallel){ run, r };
+}

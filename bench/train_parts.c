@@ -1,0 +1,120 @@
+/* train_parts.c - see train_parts.h.
+ * SPDX-License-Identifier: BSD-2-Clause */
+#include "train_parts.h"
+
+#include "measure.h"
+#include "train/raster_adjoint.h"
+
+#define AS_TEXT(name, text) text,
+const char *const part_name[N_PARTS] = { PARTS(AS_TEXT) };
+const char *const stage_name[STAGES] = { "stage 1", "stage 2", "stage 2, integer" };
+parts_clock parts;
+
+static train_part enter(train_part p)
+{
+    const train_part before = parts.current;
+    const double now = now_ms();
+
+    parts.ms[before] += now - parts.since;
+    if (parts.leave != NULL)
+        parts.leave(before);
+    parts.since = now_ms();
+    parts.current = p;
+    return before;
+}
+
+/* The functions in between. type __wrap_name is called where the trainer names name; __real_name is what it then gets. The linker compares no types: the
+ * declaration by __typeof__ does. */
+#define BETWEEN(part, type, name, parameters, arguments) \
+    extern __typeof__(name) __wrap_##name; \
+    type __real_##name parameters; \
+    type __wrap_##name parameters \
+    { \
+        const train_part before = enter(PART_##part); \
+        const type      result = __real_##name arguments; \
+        enter(before); \
+        return result; \
+    }
+#define BETWEEN_VOID(part, name, parameters, arguments) \
+    extern __typeof__(name) __wrap_##name; \
+    void __real_##name parameters; \
+    void __wrap_##name parameters \
+    { \
+        const train_part before = enter(PART_##part); \
+        __real_##name arguments; \
+        enter(before); \
+    }
+typedef const uint8_t *pixels;
+
+BETWEEN(PICTURE, pixels, ted4_dataset_pixels, (ted4_dataset *d, size_t i, ted4_message *m), (d, i, m))
+BETWEEN(SCHEDULE, int, ted4_trainer_check, (ted4_trainer *t, int anchors), (t, anchors))
+BETWEEN(SCHEDULE, int, ted4_schedule_event, (ted4_trainer *t), (t))
+BETWEEN(VISIBLE, int, ted4_slots_fill, (ted4_trainer *t, const ted4_view *v), (t, v))
+BETWEEN_VOID(GENERATE, ted4_generator_pack, (ted4_generator *g, const float *net), (g, net))
+BETWEEN(GENERATE, int, ted4_generate,
+        (ted4_generator *g, const ted4_generate_input *in, const ted4_parallel *p, ted4_splats *out), (g, in, p, out))
+BETWEEN(PROJECT, int, ted4_raster_project, (ted4_raster *r, const ted4_splats *s, const ted4_view *v, const ted4_parallel *p), (r, s, v, p))
+BETWEEN(BIN, int, ted4_raster_bin, (ted4_raster *r, const ted4_splats *s, const ted4_parallel *p), (r, s, p))
+BETWEEN(BLEND, int, ted4_raster_blend, (ted4_raster *r, const ted4_view *v, const ted4_parallel *p, int keep, float *image), (r, v, p, keep, image))
+BETWEEN(LOSS, double, ted4_loss,
+        (ted4_loss_workspace *w, const float *image, const uint8_t *truth, int width, int height, float weight, const ted4_parallel *p, float *d_image,
+         double *l1, double *ssim),
+        (w, image, truth, width, height, weight, p, d_image, l1, ssim))
+BETWEEN(BLEND_BWD, int, ted4_raster_blend_bwd, (ted4_raster *r, const ted4_view *v, const ted4_parallel *p, const float *d_image), (r, v, p, d_image))
+BETWEEN_VOID(PROJECT_BWD, ted4_raster_project_bwd,
+             (ted4_raster *r, const ted4_splats *s, const ted4_view *v, const ted4_parallel *p, const ted4_splat_grads *g), (r, s, v, p, g))
+BETWEEN(GENERATE_BWD, int, ted4_generate_backward,
+        (ted4_generator *g, const ted4_generate_input *in, const ted4_splat_grads *gr, const ted4_parallel *p, float *const *d_attr, float *d_net),
+        (g, in, gr, p, d_attr, d_net))
+BETWEEN(REGULARISE, size_t, ted4_update_volume, (ted4_trainer *t, const ted4_splats *s), (t, s))
+BETWEEN_VOID(REGULARISE, ted4_update_bank, (ted4_trainer *t), (t))
+BETWEEN_VOID(REGULARISE, ted4_densify_gather, (ted4_trainer *t, const ted4_generate_input *in, const ted4_splats *s), (t, in, s))
+BETWEEN(RATE, int, ted4_update_rate, (ted4_trainer *t, uint64_t key), (t, key))
+BETWEEN_VOID(ADAM, ted4_update_parameters, (ted4_trainer *t), (t))
+
+void parts_begin(void)
+{
+    memset(parts.ms, 0, sizeof parts.ms);
+    parts.current = PART_REST;
+    parts.since = now_ms();
+}
+
+void parts_end(void)
+{
+    enter(PART_REST);
+}
+
+int parts_stage(const ted4_trainer *t)
+{
+    return t->integer ? STAGE_INTEGER : t->stage2 ? STAGE_2 : STAGE_1;
+}
+
+void parts_options(ted4_train_options *o, int steps)
+{
+    char why[256], text[7][64];
+
+    snprintf(text[0], sizeof text[0], "stage1=%d", steps);
+    snprintf(text[1], sizeof text[1], "stage2=%d", 2 * steps);
+    snprintf(text[2], sizeof text[2], "integer_share=0.5");
+    snprintf(text[3], sizeof text[3], "init_anchors=16000");
+    snprintf(text[4], sizeof text[4], "activation_start=0");
+    snprintf(text[5], sizeof text[5], "probe=0");
+    snprintf(text[6], sizeof text[6], "capacity=0");
+    must(ted4_options_preset(o, "fast") == 0 ? o : NULL);
+    for (int i = 0; i < 7; i++)
+        if (ted4_options_set(o, text[i], why, sizeof why) != 0) {
+            fprintf(stderr, "benchmark: %s\n", why);
+            exit(3);
+        }
+}
+
+void parts_load(ted4_dataset *d, const char *scene, const char *downscale)
+{
+    const ted4_dataset_options o = { .downscale = atoi(downscale), .white = 1, .cache_bytes = (size_t)1 << 30 };
+    ted4_message               m;
+
+    if (ted4_dataset_load(d, scene, &o, &m) != 0 || ted4_dataset_verify(d, NULL, &m) != 0) {
+        fprintf(stderr, "benchmark: %s\n", m.text);
+        exit(3);
+    }
+}

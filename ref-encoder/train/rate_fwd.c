@@ -1,0 +1,278 @@
+/* rate_fwd.c - the rate model of a chunk of slots (rate.c says what of): hyperprior, steps, contexts, bits; gradients through rate_bwd.c.
+ * spec 7.3, 9.4, 10.
+ * SPDX-License-Identifier: BSD-2-Clause */
+#include "rate_lanes.h"
+
+#include <string.h>
+
+#include "norm/sine.h"
+
+static void sine_row(const uint32_t *phase, uint32_t turn, int shift, float *row)
+{
+#pragma omp simd
+    for (int j = 0; j < TED4_LANES; j++)
+        row[j] = (float)ted4_sine((phase[j] << shift) + turn) * 0x1p-12f;
+}
+
+/* spec 10.1: inputs of the hyperprior, the integers of the text divided by 4096. */
+static void encode_positions(const ted4_header *h, const float *position,
+                             uint32_t lanes, float *x)
+{
+    uint32_t phase[3][TED4_LANES];
+
+    if (h->prior == TED4_PRIOR_FACTORISED)
+        return;
+    for (int a = 0; a < 3; a++) {
+        const float *p = position + ted4_row((size_t)a);
+
+        for (int j = 0; j < TED4_LANES; j++) {
+            const float known = lanes >> j & 1 ? p[j] : 0.0f;
+
+            phase[a][j] = (uint32_t)(int32_t)(known * 0x1p24f) << 7;
+            *x++ = __builtin_floorf(known * 0x1p12f) * 0x1p-12f;
+        }
+    }
+    for (int l = 0; l < h->pe_octaves; l++)
+        for (int a = 0; a < 3; a++, x += 2 * TED4_LANES) {
+            sine_row(phase[a], 0, l, x);
+            sine_row(phase[a], 0x40000000u, l, x + TED4_LANES);
+        }
+}
+
+/* q = Q0 2^v, and 1 for absent types. v: rows of the present types. */
+static void step_sizes(const ted4_layout *l, const float *v, float *q)
+{
+    for (int t = 0; t < TED4_TYPES; t++, q += TED4_LANES) {
+        const int present = l->shape.dim[t] > 0;
+
+        for (int j = 0; j < TED4_LANES; j++)
+            q[j] = !present ? 1.0f : l->head.step[t]
+                 * ted4_lane_pow2(ted4_lane_limit(v[j], TED4_V_MIN,
+                                                  TED4_V_MAX));
+        v += present ? TED4_LANES : 0;
+    }
+}
+
+/* The hyperprior up to its rows v, and the steps q. The other outputs come in slot_forward. */
+static void steps_forward(const ted4_rate_job *job, ted4_rate_room *room,
+                          size_t i, size_t slot)
+{
+    const ted4_rate *r = job->rate;
+    const ted4_rate_net *h = &r->hyper;
+    const ted4_layout *l = job->in->layout;
+    float *x = room->hyper.x[0] + i * ted4_row((size_t)h->dim[0]);
+
+    encode_positions(&l->head, job->in->position[slot], job->in->lanes[slot],
+                     x);
+    for (int k = 0; k < h->n - 1; k++) {
+        float *y = room->hyper.x[k + 1] + i * ted4_row((size_t)h->dim[k + 1]);
+
+        TED4_LEVELED(ted4_dense_forward)(&h->layer[k], x, y, 1);
+        x = y;
+    }
+    float *v = room->hyper.x[h->n] + i * ted4_row(l->shape.n_outputs)
+             + ted4_row(l->shape.first_step_output);
+
+    TED4_LEVELED(ted4_dense_forward)(&r->step, x, v, 0);
+    step_sizes(l, v, job->steps[slot]);
+    if (job->integer != NULL)
+        ted4_rate_integer_steps(job, room, slot, v, job->steps[slot]);
+}
+
+/* Values and masks of the lanes in use. */
+static void load_slot(const ted4_rate_job *job, ted4_rate_slot *s, size_t slot)
+{
+    const ted4_layout *l = job->in->layout;
+    const float *attr = job->in->attr[slot];
+    const float *logit = attr + ted4_row((size_t)l->offset_logit);
+    const float *moves = attr + ted4_row((size_t)l->temporal_logit);
+    const uint32_t lanes = job->in->lanes[slot];
+
+    for (size_t c = 0; c < (size_t)l->offset_logit; c++)
+        for (size_t j = 0; j < TED4_LANES; j++)
+            s->value[ted4_row(c) + j] = lanes >> j & 1 ? attr[ted4_row(c) + j]
+                                                       : 0.0f;
+    for (size_t j = 0; j < TED4_LANES; j++) {
+        const int in_use = lanes >> j & 1;
+        int any = 0;
+
+        for (size_t k = 0; k < l->head.n_offsets; k++) {
+            const int on = in_use && (!l->head.offset_mask
+                                 || ted4_mask_on(logit[ted4_row(k) + j]));
+
+            s->kept[ted4_row(k) + j] = on ? 1.0f : 0.0f;
+            any |= on;
+        }
+        s->used[j] = any ? 1.0f : 0.0f;
+        s->dynamic[j] = any && (!l->head.temporal_mask
+                                || ted4_mask_on(moves[j])) ? 1.0f : 0.0f;
+    }
+}
+
+/* spec 10.3: contexts, and what each slice network adds to mu and s of its slice. */
+static void slices_forward(const ted4_rate_job *job, ted4_rate_room *room,
+                           size_t i, size_t slot)
+{
+    const ted4_rate *r = job->rate;
+    const ted4_layout *l = job->in->layout;
+    const size_t f = l->shape.dim[TED4_FEATURE];
+    const size_t first = ted4_row((size_t)l->first[TED4_FEATURE]);
+    const float *value = room->slot.value + first;
+    const float *residual = room->slot.residual + first;
+    const float *q = job->steps[slot] + ted4_row(TED4_FEATURE);
+    const float unit = 1.0f / l->head.step[TED4_FEATURE];
+    float *context = room->context + i * ted4_row(f);
+    float *out = room->hyper.x[r->hyper.n] + i * ted4_row(l->shape.n_outputs)
+               + ted4_row(l->shape.first_output[TED4_FEATURE]);
+
+    for (size_t c = 0; c < f; c++)
+        for (size_t j = 0, at = ted4_row(c); j < TED4_LANES; j++)
+            context[at + j] = (value[at + j] + q[j] * residual[at + j]) * unit;
+    for (size_t m = 1, known = 0; m < l->head.n_slices; m++) {
+        const ted4_rate_net *n = &r->slice[m];
+        float *hidden = room->slice[m].x[1] + i * ted4_row((size_t)n->dim[1]);
+        float *y = room->slice[m].x[2] + i * ted4_row((size_t)n->dim[2]);
+        const size_t half = ted4_row(l->head.slice[m]);
+
+        known += l->head.slice[m - 1];
+        TED4_LEVELED(ted4_dense_forward)(&n->layer[0], context, hidden, 1);
+        TED4_LEVELED(ted4_dense_forward)(&n->layer[1], hidden, y, 0);
+        for (size_t j = 0; j < half; j++) {
+            out[ted4_row(known) + j] += y[j];
+            out[ted4_row(known + f) + j] += y[half + j];
+        }
+    }
+}
+
+/* ---- bits ---- */
+
+/* The lanes that count component c of type t, and where its bits are gathered. */
+static const float *component_mask(ted4_rate_slot *s, int t, size_t c,
+                                   float *type_bits, float **gathered)
+{
+    const size_t k = ted4_row(c / 3);           /* offset 3k + j: spec 10.2 */
+
+    if (t == TED4_OFFSET) {
+        *gathered = s->kept_bits + k;
+        return s->kept + k;
+    }
+    *gathered = t == TED4_PHI ? s->phi_bits : type_bits;
+    return t == TED4_PHI ? s->dynamic : s->used;
+}
+
+/* Bits of one component, and dL/d(k, mu, s). A clamped s has a gradient only where it leads back inside. */
+static void component_bits(float weight, const float *mask, const float *k_mu,
+                           const float *s, float *d_symbol, float *d_mu,
+                           float *d_s, float *gathered)
+{
+    float bits[TED4_LANES], d_u[TED4_LANES], d_raw[TED4_LANES];
+
+    TED4_LEVELED(ted4_rate_row)(k_mu, s, bits, d_u, d_raw);
+#pragma omp simd
+    for (int j = 0; j < TED4_LANES; j++) {
+        const float w = weight * mask[j], ds = w * d_raw[j];
+
+        gathered[j] += bits[j];
+        d_symbol[j] = w * d_u[j];
+        d_mu[j] = -w * d_u[j];
+        d_s[j] = ted4_inward(s[j], TED4_S_MIN, TED4_S_MAX, ds);
+    }
+}
+
+static double masked_sum(const float *bits, const float *mask)
+{
+    double sum = 0.0;
+
+    for (int j = 0; j < TED4_LANES; j++)
+        sum += mask[j] > 0.0f ? (double)bits[j] : 0.0;
+    return sum;
+}
+
+/* Adds the bits of a type to those of the slot's anchors; offsets are apart. total: of a type that is coded for every anchor in use. */
+static void tell_lanes(const ted4_rate_job *job, const ted4_rate_slot *s, size_t slot, int t, const float *total)
+{
+    const size_t K = job->in->layout->head.n_offsets;
+    const float *bits = t == TED4_OFFSET ? s->kept_bits : t == TED4_PHI ? s->phi_bits : total;
+    const float *mask = t == TED4_OFFSET ? s->kept : t == TED4_PHI ? s->dynamic : s->used;
+    float       *to = job->lane_bits + slot * ted4_row(1 + K) + (t == TED4_OFFSET ? TED4_LANES : 0);
+
+    for (size_t j = 0; j < (t == TED4_OFFSET ? ted4_row(K) : TED4_LANES); j++)
+        to[j] += mask[j] > 0.0f ? bits[j] : 0.0f;
+}
+
+static void type_bits(const ted4_rate_job *job, ted4_rate_room *room, size_t i,
+                      size_t slot, int t)
+{
+    const ted4_shape *shape = &job->in->layout->shape;
+    const size_t out = i * ted4_row(shape->n_outputs)
+                     + ted4_row(shape->first_output[t]);
+    const size_t dim = shape->dim[t], s_rows = ted4_row(dim);
+    const float *mu = room->hyper.x[job->rate->hyper.n] + out;
+    float *d_mu = room->hyper.d[job->rate->hyper.n] + out;
+    const float *q = job->steps[slot] + ted4_row((size_t)t);
+    float total[TED4_LANES] = {0};
+    ted4_rate_slot *s = &room->slot;
+
+    for (size_t c = 0; c < dim; c++, mu += TED4_LANES, d_mu += TED4_LANES) {
+        const size_t at = ted4_row((size_t)job->in->layout->first[t] + c);
+        float k_mu[TED4_LANES], *gathered;
+        const float *mask = component_mask(s, t, c, total, &gathered);
+
+#pragma omp simd
+        for (int j = 0; j < TED4_LANES; j++)
+            k_mu[j] = (s->value[at + (size_t)j] / q[j]
+                       + s->residual[at + (size_t)j]) - mu[j];
+        component_bits(job->in->bit_weight, mask, k_mu, mu + s_rows,
+                       s->d_symbol + at, d_mu, d_mu + s_rows, gathered);
+    }
+    if (job->lane_bits != NULL)
+        tell_lanes(job, s, slot, t, total);
+    if (t == TED4_OFFSET)
+        for (size_t k = 0; k < dim / 3; k++)
+            room->sums->bits[t] += masked_sum(s->kept_bits + ted4_row(k),
+                                        s->kept + ted4_row(k));
+    else
+        room->sums->bits[t] += t == TED4_PHI ? masked_sum(s->phi_bits, s->dynamic)
+                                       : masked_sum(total, s->used);
+}
+
+static void slot_forward(const ted4_rate_job *job, ted4_rate_room *room,
+                         size_t i, size_t slot)
+{
+    const ted4_rate *r = job->rate;
+    const ted4_rate_input *in = job->in;
+    const ted4_rate_net *h = &r->hyper;
+    const int last = h->n - 1;
+    const float *hidden = room->hyper.x[last] + i * ted4_row((size_t)h->dim[last]);
+    float *out = room->hyper.x[h->n] + i * ted4_row((size_t)h->dim[h->n]);
+    ted4_rate_slot *s = &room->slot;
+
+    load_slot(job, s, slot);
+    TED4_LEVELED(ted4_dense_forward)(&h->layer[last], hidden, out, 0);
+    TED4_LEVELED(ted4_residuals)(in->layout, in->quant, s->value, job->steps[slot],
+                   in->block[slot], in->key, s->residual);
+    slices_forward(job, room, i, slot);
+    if (job->integer != NULL)
+        ted4_rate_integer_outputs(job, room, job->steps[slot], out);
+    memset(s->kept_bits, 0,
+           ted4_row(in->layout->head.n_offsets) * sizeof *s->kept_bits);
+    memset(s->phi_bits, 0, TED4_LANES * sizeof *s->phi_bits);
+    for (int t = 0; t < TED4_TYPES; t++)
+        if (ted4_rate_coded(job, t))
+            type_bits(job, room, i, slot, t);
+}
+
+void TED4_LEVELED(ted4_rate_chunk)(const ted4_rate_job *job, ted4_rate_room *room, size_t first, size_t n)
+{
+    memset(room->sums->bits, 0, sizeof room->sums->bits);
+    for (size_t i = 0; i < n; i++) {
+        steps_forward(job, room, i, first + i);
+        if (job->steps_only)
+            continue;
+        slot_forward(job, room, i, first + i);
+        if (job->d_attr != NULL)
+            ted4_rate_slot_backward(job, room, i, first + i);
+    }
+    if (job->d_attr != NULL && !job->steps_only)
+        ted4_rate_weights_backward(job->rate, room, n);
+}
