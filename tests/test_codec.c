@@ -8,6 +8,7 @@
 #include <xxhash.h>
 #include "base/level.h"
 #include "norm/limits.h"
+#include "use_kernels.h"
 #include "random_scene.h"
 
 enum { SCENES = 120, CHANGES = 20000 };
@@ -118,12 +119,12 @@ static void large(void **state)
 
     (void)state;
     for (int level = TED4_LEVEL_PLAIN; level <= (int)ted4_level_of_machine(); level++) {
-        setenv("TED4_KERNEL", ted4_level_name((ted4_level)level), 1);
+        use_kernels(ted4_level_name((ted4_level)level));
         t = decode(f, NULL);
         same_scene(s, t);
         ted4_scene_free(t);
     }
-    unsetenv("TED4_KERNEL");
+    use_kernels(NULL);
     ted4_scene_free(s);
     free(f.data);
 }

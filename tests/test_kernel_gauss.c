@@ -9,6 +9,7 @@
 #include "base/level.h"
 #include "read/reader.h"
 #include "substream_case.h"
+#include "use_kernels.h"
 
 typedef struct {
     ted4_error  error;
@@ -196,11 +197,11 @@ static void test_selected(void **state)
 
     if (v->level > ted4_level_of_machine())
         skip();
-    setenv("TED4_KERNEL", ted4_level_name(v->level), 1);
+    use_kernels(ted4_level_name(v->level));
     assert_true(ted4_select_gauss_many() == v->many);
-    setenv("TED4_KERNEL", "plain", 1);
+    use_kernels("plain");
     assert_true(ted4_select_gauss_many() == NULL);
-    unsetenv("TED4_KERNEL");
+    use_kernels(NULL);
 }
 
 #define TESTS(v)                                                                                       \
