@@ -164,7 +164,7 @@ static __attribute__((noinline)) void find_again(const models *m, vi slot, unsig
 }
 
 /* Models and slots of a vector, of which LANES elements of mu and sigma are read. */
-static inline void begin_row(row *r, const uint32_t *state, const model_table *t, const int32_t *mu, const uint8_t *sigma)
+static inline __attribute__((always_inline)) void begin_row(row *r, const uint32_t *state, const model_table *t, const int32_t *mu, const uint8_t *sigma)
 {
     r->m.g = indices(sigma);
     pairs(t->of, r->m.g * 2, &r->m.inv, &r->m.hw);
@@ -176,7 +176,7 @@ static inline void begin_row(row *r, const uint32_t *state, const model_table *t
 }
 
 /* Symbols, and which of them are not for this vector: escapes, and those that leave 16 bits. */
-static inline void end_row(row *r)
+static inline __attribute__((always_inline)) void end_row(row *r)
 {
     const vi k = (r->k >> TED4_MU_BITS) + (r->s.j - 1 - r->m.hw);
 
@@ -186,7 +186,7 @@ static inline void end_row(row *r)
 }
 
 /* Takes symbols of some lanes, all of those that follow one another and have no escape. 0: words are missing. */
-static inline int take(ted4_gauss_lanes *d, const row *r, unsigned lanes)
+static inline __attribute__((always_inline)) int take(ted4_gauss_lanes *d, const row *r, unsigned lanes)
 {
     const vi       y = (vi)((vu)(r->s.to - r->s.from) * ((vu)r->x >> TED4_SLOT_BITS)) + r->slot - r->s.from;
     const mask     low = equal((vi)((vu)y >> TED4_SLOT_BITS), all(0));
@@ -301,7 +301,8 @@ static __attribute__((noinline)) unsigned take_with_escapes(ted4_gauss_lanes *d,
     return left == 0 || take(d, r, left) ? r->active : r->active & ~left;
 }
 
-/* Symbols of so many rows from lane on, of which active are wanted; mu, sigma and k are of the first lane; those of all lanes are read and written. Returns how many
+/* Copies go to what is called seldom, so that rows can stay in registers.
+ * Symbols of so many rows from lane on, of which active are wanted; mu, sigma and k are of the first lane; those of all lanes are read and written. Returns how many
  * symbols were taken. */
 static inline __attribute__((always_inline)) unsigned
 take_rows(ted4_gauss_lanes *d, const model_table *t, unsigned lane, const int rows, unsigned active, const int32_t *mu, const uint8_t *sigma, int16_t *k)
@@ -324,15 +325,26 @@ take_rows(ted4_gauss_lanes *d, const model_table *t, unsigned lane, const int ro
     for (int i = 0; i < rows; i++) {
         const unsigned again = missed(&r[i].s, r[i].slot, active);
 
-        if (again != 0)
-            find_again(&r[i].m, r[i].slot, again, &r[i].s);
+        if (again != 0) {
+            const models m = r[i].m;
+            symbols      s = r[i].s;
+
+            find_again(&m, r[i].slot, again, &s);
+            r[i].s = s;
+        }
         end_row(&r[i]);
         narrow(k + i * LANES, r[i].k);
     }
     for (int i = 0; i < rows; i++) {
-        const unsigned taken = (r[i].escape | r[i].outside) != 0 ? take_with_escapes(d, &r[i], k + i * LANES)
-                             : take(d, &r[i], active) ? active : 0;
+        unsigned taken;
 
+        if ((r[i].escape | r[i].outside) != 0) {
+            const row copy = r[i];
+
+            taken = take_with_escapes(d, &copy, k + i * LANES);
+        } else {
+            taken = take(d, &r[i], active) ? active : 0;
+        }
         n += (unsigned)__builtin_popcount(taken);
         if (taken != active)
             break;

@@ -22,8 +22,8 @@ static inline void interleave(const ted4_int_layer *l, const int16_t *x, pair *p
     for (unsigned i = 0; i < l->in; i += 2) {
         const int16_t *row = x + (size_t)i * ROW;
 
-        __builtin_prefetch(row + (size_t)l->in * ROW);
-        __builtin_prefetch(row + (size_t)(l->in + 1) * ROW);
+        __builtin_prefetch(row + (size_t)l->in * ROW, 0, 2);
+        __builtin_prefetch(row + (size_t)(l->in + 1) * ROW, 0, 2);
 
         const vector   a = load(row), b = i + 1 < l->in ? load(row + ROW) : nothing();
 
