@@ -118,8 +118,9 @@ static void selected_by_name(void **state)
     setenv("TED4_KERNEL", "v1", 1);
     assert_ptr_equal(ted4_select_int_dense(), &ted4_int_dense_plain);
     setenv("TED4_KERNEL", "v3", 1);
-    assert_ptr_equal(ted4_select_int_dense(), ted4_level_of_machine() >= TED4_LEVEL_V3 ? &ted4_int_dense_avx2
-                                                                                      : &ted4_int_dense_plain);
+    assert_ptr_equal(ted4_select_int_dense(), ted4_level_of_machine() >= TED4_LEVEL_V3
+                                                  ? &ted4_int_dense_avx2
+                                                  : &ted4_int_dense_plain);
 #endif
     unsetenv("TED4_KERNEL");
 }

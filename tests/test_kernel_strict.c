@@ -158,8 +158,8 @@ static void environment_chooses(void **state)
     assert_int_equal(setenv("TED4_KERNEL", "v1", 1), 0);
     assert_true(ted4_select_strict_dense() == NULL);
     assert_int_equal(setenv("TED4_KERNEL", "v3", 1), 0);
-    assert_true(ted4_select_strict_dense() == (ted4_level_of_machine() >= TED4_LEVEL_V3 ? ted4_strict_dense_avx2
-                                                                                       : NULL));
+    assert_true(ted4_select_strict_dense() ==
+                (ted4_level_of_machine() >= TED4_LEVEL_V3 ? ted4_strict_dense_avx2 : NULL));
 #endif
     assert_int_equal(unsetenv("TED4_KERNEL"), 0);
     if (ted4_level_of_machine() >= TED4_LEVEL_V3)
@@ -169,8 +169,11 @@ static void environment_chooses(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(avx2_is_plain), cmocka_unit_test(avx512_is_plain), cmocka_unit_test(neon_is_plain),
-        cmocka_unit_test(plain_is_the_text), cmocka_unit_test(environment_chooses),
+        cmocka_unit_test(avx2_is_plain),
+        cmocka_unit_test(avx512_is_plain),
+        cmocka_unit_test(neon_is_plain),
+        cmocka_unit_test(plain_is_the_text),
+        cmocka_unit_test(environment_chooses),
     };
 
     return cmocka_run_group_tests(tests, NULL, NULL);

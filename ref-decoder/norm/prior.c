@@ -151,8 +151,8 @@ static size_t group_up(size_t n)
 }
 
 /* All layers but the last; their result goes to y, or x is it when there are none. */
-static const int16_t *inner_layers(const ted4_prior *p, const ted4_int_layer *l, unsigned n_layers, const int16_t *x,
-                                   size_t n, int16_t *between, int16_t *y)
+static const int16_t *inner_layers(const ted4_prior *p, const ted4_int_layer *l, unsigned n_layers,
+                                   const int16_t *x, size_t n, int16_t *between, int16_t *y)
 {
     for (unsigned i = 0; i + 1 < n_layers; i++) {
         /* The last of them writes y, and the one before it must not. */
@@ -219,9 +219,11 @@ const ted4_int_layer *ted4_prior_last(const ted4_prior *p)
     return &p->hyper[p->n_hyper - 1];
 }
 
-void ted4_prior_hyper_hidden(const ted4_prior *p, const uint16_t *position, size_t n, int16_t *hidden)
+void ted4_prior_hyper_hidden(const ted4_prior *p, const uint16_t *position, size_t n,
+                             int16_t *hidden)
 {
-    _Alignas(64) int16_t x[TED4_PRIOR_INPUTS * TED4_PRIOR_BLOCK], between[TED4_MAX_WIDTH * TED4_PRIOR_BLOCK];
+    _Alignas(64) int16_t x[TED4_PRIOR_INPUTS * TED4_PRIOR_BLOCK],
+        between[TED4_MAX_WIDTH * TED4_PRIOR_BLOCK];
 
     if (p->n_hyper > 1)
         inner_layers(p, p->hyper, p->n_hyper, x, all_inputs(p, position, n, x), between, hidden);
@@ -229,12 +231,14 @@ void ted4_prior_hyper_hidden(const ted4_prior *p, const uint16_t *position, size
         all_inputs(p, position, n, hidden);
 }
 
-void ted4_prior_hyper_some(const ted4_prior *p, const ted4_int_layer *some, const int16_t *hidden, size_t n, int32_t *out)
+void ted4_prior_hyper_some(const ted4_prior *p, const ted4_int_layer *some, const int16_t *hidden,
+                           size_t n, int32_t *out)
 {
     p->dense->last(some, hidden, group_up(n), out);
 }
 
-void ted4_prior_some(const ted4_prior *p, unsigned first, unsigned second, unsigned n, ted4_int_layer *some)
+void ted4_prior_some(const ted4_prior *p, unsigned first, unsigned second, unsigned n,
+                     ted4_int_layer *some)
 {
     const ted4_int_layer *l = ted4_prior_last(p);
 
@@ -244,7 +248,8 @@ void ted4_prior_some(const ted4_prior *p, unsigned first, unsigned second, unsig
     for (unsigned o = 0; o < 2 * n; o++) {
         const unsigned from = o < n ? first + o : second + o - n;
 
-        memcpy(some->w + (size_t)o * l->in_pad, l->w + (size_t)from * l->in_pad, l->in_pad * sizeof *l->w);
+        memcpy(some->w + (size_t)o * l->in_pad, l->w + (size_t)from * l->in_pad,
+               l->in_pad * sizeof *l->w);
         some->b[o] = l->b[from];
         some->r[o] = l->r[from];
     }
