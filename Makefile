@@ -98,8 +98,10 @@ $B/tests/test_install: | $(PROGS) $B/ted4conf $B/ted4tolerance
 $B/tests/test_verify: $B/ref-encoder/tool/verify.o
 $(addprefix $B/tests/test_starved_,trainer writer): override LDFLAGS += -Wl,--wrap=malloc,--wrap=calloc,--wrap=realloc,--wrap=aligned_alloc
 
+test-programs: all $(TESTS)
+
 # Lints take seconds. Prints each test program it runs and a closing line of totals.
-test: lint $(TESTS) $(PROGS)
+test: lint test-programs
 	@TED4_BUILD=$(abspath $B) TED4_DATA=$(abspath $(TED4_DATA)) sh tests/run.sh $(TESTS)
 
 # Scene, training, file, decoder in a fresh process, held-out views, picture sheet: in out/demo.
@@ -109,11 +111,20 @@ demo: $(PROGS)
 lint:
 	@for l in tests/lint/*.sh; do sh $$l || exit 1; done
 
-# Both compilers, warnings as errors, lints, tests.
-check: lint
-	$(MAKE) B=build-gcc CC=gcc WERROR=-Werror all
-	$(MAKE) B=build-clang CC=clang-14 WERROR=-Werror all
+# Both compilers, warnings as errors.
+BOTH = build-gcc build-clang
+build-gcc: COMPILER = gcc
+build-clang: COMPILER = clang-14
+$(BOTH): always
+	$(MAKE) B=$@ CC=$(COMPILER) WERROR=-Werror test-programs
+
+# Lints, both compilers, tests with one. All levels that the machine has, with both: test-machines; TEST_LEVELS="v1 v3" names some.
+check: lint $(BOTH)
 	$(MAKE) B=build-gcc CC=gcc WERROR=-Werror test
+test-machines: export TEST_LEVELS := $(TEST_LEVELS)
+test-machines: export TED4_DATA := $(abspath $(TED4_DATA))
+test-machines: lint $(BOTH)
+	@sh tests/machines.sh $(BOTH)
 
 asan:
 	$(MAKE) test B=build-asan OPT='-O1' CFLAGS='-fsanitize=address,undefined -fno-sanitize-recover=all' \
@@ -144,12 +155,13 @@ install: all
 	    $(DESTDIR)$(PREFIX)/include/ted4/base
 
 help:
-	@echo 'all demo test check lint asan deps deps-dev install clean; variables OPT ARCH CC B TED4_DATA PREFIX DESTDIR'
+	@echo 'all demo test check test-machines lint asan deps deps-dev install clean; variables OPT ARCH CC B TED4_DATA PREFIX DESTDIR'
+	@echo 'test-machines: all tests with gcc and clang, at every level of instructions that this machine has: an hour or more on two cores'
 	@echo 'spec (HTML; pandoc) spec-annexes attest; bench/bench.mk, fuzz/fuzz.mk and conformance/conf.mk add their own targets'
 
 clean:
 	rm -rf build build-* out
 
-.PHONY: all always test demo lint check asan deps deps-dev install help clean
+.PHONY: all always test-programs test test-machines $(BOTH) demo lint check asan deps deps-dev install help clean
 .SECONDARY:
 -include $(shell find $B -name '*.d' 2>/dev/null)

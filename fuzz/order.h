@@ -4,8 +4,8 @@
 #define TED4_FUZZ_ORDER_H
 
 #include <stddef.h>
-#include <stdlib.h>
 #include "base/parallel.h"
+#include "use_kernels.h"
 
 static inline void order_forward(void *user, size_t n, void (*body)(void *arg, size_t i), void *arg)
 {
@@ -35,15 +35,6 @@ static inline void order_split(void *user, size_t n, void (*body)(void *arg, siz
 static inline ted4_parallel order_parallel(int which)
 {
     return (ted4_parallel){ which == 1 ? order_forward : which == 2 ? order_backward : order_split, NULL };
-}
-
-/* plain: kernels off from now on; else those of the machine. */
-static inline void order_kernel(int plain)
-{
-    if (plain)
-        setenv("TED4_KERNEL", "plain", 1);
-    else
-        unsetenv("TED4_KERNEL");
 }
 
 #endif

@@ -60,6 +60,18 @@ static inline void ball_train(ted4_trainer *t, uint64_t iteration)
             fail_msg("%s", t->message.text);
 }
 
+/* Biases of the last layer of one of the networks that draw. */
+static inline void ball_set_biases(ted4_trainer *t, int net, size_t n, float value)
+{
+    const ted4_net_shape *s = &t->layout.shape.netr[net];
+    size_t                end = t->layout.netr + s->first;
+
+    for (int i = 0; i < s->n_layers; i++)
+        end += ((size_t)s->dim[i] + 1) * s->dim[i + 1];
+    for (size_t i = 1; i <= n; i++)
+        t->net[end - i] = value;
+}
+
 /* Ends training and makes the file. */
 static inline ball_file ball_finish(ted4_trainer *t)
 {

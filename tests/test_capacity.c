@@ -29,6 +29,16 @@ static ted4_train_options options(const char *capacity)
     return o;
 }
 
+/* Bits weigh so much that coarse weights, and a model without motion, cost far less than what pictures miss of them, whatever
+ * was trained: motion goes as soon as a bit weighs a quarter of this. */
+static ted4_train_options dear_options(void)
+{
+    ted4_train_options o = options("capacity=1");
+
+    ball_set(&o, "lambda=0.05");
+    return o;
+}
+
 static int set_up(void **state)
 {
     const ted4_train_options o = options("capacity=1");
@@ -76,7 +86,9 @@ static int is_of_bits(const struct ted4_trial *x)
     return x->move >= TED4_MOVE_HEAD_BITS && x->move <= TED4_MOVE_PRIOR_BITS;
 }
 
-/* Each trial that was taken lowers the cost, each one that was left does not. Gives how many were trained. */
+/* Each trial that was taken lowers the cost, each one that was left does not. The first moves from full bits of the heads'
+ * weights save hundreds of bytes and no picture shows them, so that some trial is taken at any rate. Gives how many were
+ * trained. */
 static int check_trials(const ted4_trainer *t)
 {
     int taken = 0, trained = 0;
@@ -92,13 +104,13 @@ static int check_trials(const ted4_trainer *t)
         trained += x->steps > 0;
         assert_true(x->move != TED4_MOVE_ANCHORS || i + 1 == t->n_trials);
     }
-    assert_true(taken > 3);
+    assert_true(taken > 0);
     return trained;
 }
 
 static void test_decides(void **state)
 {
-    const ted4_train_options o = options("capacity=1");
+    const ted4_train_options o = dear_options();
     ted4_trainer t;
     size_t       weights;
 
@@ -114,11 +126,14 @@ static void test_decides(void **state)
     assert_int_equal(ted4_trainer_step(&t), 0);
     assert_int_equal(t.decided, TED4_DECIDED_MODEL);
     assert_true(t.n_trials > 3 && ted4_capacity_charge(&t) == charge);
+    assert_int_equal(t.layout.head.motion, TED4_MOTION_NONE);
+    assert_true(t.layout.shape.n_netr + t.layout.shape.n_nete < weights);
+    assert_true(t.bits[TED4_GRID_HEADS] < TED4_GRID_FULL(TED4_GRID_HEADS));
+    assert_true(t.bits[TED4_GRID_PRIOR] < TED4_GRID_FULL(TED4_GRID_PRIOR));
+    check_trials(&t);
     ball_train(&t, TOTAL);
     assert_int_equal(t.decided, TED4_DECIDED_ALL);
     check_trials(&t);
-    assert_true(t.layout.shape.n_netr + t.layout.shape.n_nete < weights);
-    assert_true(t.bits[TED4_GRID_PRIOR] < TED4_GRID_FULL(TED4_GRID_PRIOR));
     ted4_trainer_finish(&t);
 }
 
@@ -145,7 +160,8 @@ static int refined(ted4_trainer *t, int bits)
     return bits > t->trial[first].from;
 }
 
-/* Bits of the prior that are too few when the integer stage begins are given back; how many are is up to what was trained. */
+/* Bits of the prior that are too few when the integer stage begins are given back. How many are is up to what was trained: one
+ * bit is too few for any, and so are most of the numbers tried. */
 static void test_refined(void **state)
 {
     const ted4_train_options o = options("capacity=1");
@@ -182,24 +198,35 @@ static void test_cheap_first(void **state)
     ted4_trainer_finish(&t);
 }
 
-/* What training decides depends on the machine's arithmetic; at one of these rates some move is worth it. */
+/* A model of few moves, of which features come last but one. What a feature less saves and what pictures miss of it at sight
+ * are up to training; but trials are trained wherever a bit's weight is between a fifth of their ratio and all of it (HOPE in
+ * capacity.c), and each of these rates is half as much again as the one before. */
 static void test_trained(void **state)
 {
-    static const char *const rates[] = { "lambda=0.002", "lambda=0.005", "lambda=0.007", "lambda=0.01", "lambda=0.014", "lambda=0.02" };
-    int trained = 0;
+    static const char *const few[] = { "motion=0", "activation=0", "view=0", "offsets=1", "slices=1", "octaves=0" };
+    static const char *const rates[] = { "lambda=0.0002", "lambda=0.0003", "lambda=0.00045", "lambda=0.0007", "lambda=0.001",
+                                         "lambda=0.0015", "lambda=0.0022" };
+    ted4_train_options o = options("capacity=1");
+    ted4_snapshot      early = { NULL, 0 };
+    ted4_trainer       t;
+    int                trained = 0;
 
     (void)state;
+    for (size_t i = 0; i < sizeof few / sizeof few[0]; i++)
+        ball_set(&o, few[i]);
+    ball_begin(&t, &o, &scene, NULL);
+    ball_train(&t, STAGE1);
+    assert_int_equal(ted4_snapshot_take(&t, &early), 0);
+    ted4_trainer_finish(&t);
     for (size_t i = 0; i < sizeof rates / sizeof rates[0]; i++) {
-        ted4_train_options o = options("capacity=1");
-        ted4_trainer       t;
-
         ball_set(&o, rates[i]);
-        ball_set(&o, "stage2=2400");    /* pays for more than looks */
-        begin(&t, &o, NULL);
+        ball_begin(&t, &o, &scene, NULL);
+        assert_int_equal(ted4_snapshot_restore(&t, &early), 0);
         ball_train(&t, ted4_capacity_step(&t) + 1);
         trained += check_trials(&t);
         ted4_trainer_finish(&t);
     }
+    ted4_snapshot_free(&early);
     assert_true(trained > 0);
 }
 
@@ -230,23 +257,19 @@ static void test_budget(void **state)
 }
 
 /* Weights are coarse, and in the integer stage those of the file. */
-static void test_coarse(void **state)
+static void check_coarse(const ted4_train_options *o, int coarse[TED4_GRIDS])
 {
-    const ted4_train_options o = options("capacity=1");
     ted4_trainer t;
     ted4_scene  *s;
     float       *again;
-    int          coarse[TED4_GRIDS] = { 0 };
 
-    (void)state;
-    begin(&t, &o, NULL);
+    begin(&t, o, NULL);
     ball_train(&t, TOTAL);
     for (size_t i = 0; i < t.n_trials; i++)
         if (is_of_bits(&t.trial[i]) && t.trial[i].taken)
             coarse[t.trial[i].move - TED4_MOVE_HEAD_BITS] = (int)t.trial[i].to;
     for (int i = 0; i < TED4_GRIDS; i++)
         assert_int_equal(coarse[i] > 0 ? coarse[i] : TED4_GRID_FULL(i), t.bits[i]);
-    assert_true(coarse[TED4_GRID_HEADS] > 0 && coarse[TED4_GRID_PRIOR] > 0);
 
     const double drawn = ted4_trainer_distortion(&t, t.order.item[0]);
 
@@ -260,6 +283,18 @@ static void test_coarse(void **state)
     free(again);
     ted4_scene_free(s);
     ted4_trainer_finish(&t);
+}
+
+/* At a low rate the heads' weights are coarse for sure; at a high one, where trials get as far, the prior's are, too. */
+static void test_coarse(void **state)
+{
+    const ted4_train_options cheap = options("capacity=1"), dear = dear_options();
+    int at_cheap[TED4_GRIDS] = { 0 }, at_dear[TED4_GRIDS] = { 0 };
+
+    (void)state;
+    check_coarse(&cheap, at_cheap);
+    check_coarse(&dear, at_dear);
+    assert_true(at_cheap[TED4_GRID_HEADS] > 0 && at_dear[TED4_GRID_HEADS] > 0 && at_dear[TED4_GRID_PRIOR] > 0);
 }
 
 static void test_threads(void **state)
@@ -384,15 +419,11 @@ static void test_short(void **state)
 /* A higher price of bits leaves no more model, and a smaller file. */
 static void test_lambda(void **state)
 {
-    ted4_train_options o = options("capacity=1");
-    ball_file          low, high;
+    const ted4_train_options cheap = options("capacity=1"), dear = dear_options();
+    ball_file                low = whole(&cheap, NULL), high = whole(&dear, NULL);
 
     (void)state;
-    ball_set(&o, "lambda=0.0005");
-    low = whole(&o, NULL);
-    ball_set(&o, "lambda=0.02");
-    high = whole(&o, NULL);
-    assert_true(high.size < low.size * 3 / 4);
+    assert_true(high.size < low.size * 3 / 4);      /* half of that is usual */
     free(low.bytes);
     free(high.bytes);
 }

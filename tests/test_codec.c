@@ -6,7 +6,9 @@
 #include <cmocka.h>
 #include <stdlib.h>
 #include <xxhash.h>
+#include "base/level.h"
 #include "norm/limits.h"
+#include "use_kernels.h"
 #include "random_scene.h"
 
 enum { SCENES = 120, CHANGES = 20000 };
@@ -106,7 +108,8 @@ static void round_trip(void **state)
     }
 }
 
-/* Several lanes, full tiles and one that is short; every tile after the first behind another. */
+/* Several lanes, full tiles and one that is short; every tile after the first behind another. Decoded with the kernels of
+ * each level. */
 static void large(void **state)
 {
     random_source     r = random_seed(1);
@@ -115,15 +118,14 @@ static void large(void **state)
     const file        f = encode(s, &backwards);
 
     (void)state;
-    t = decode(f, NULL);
-    same_scene(s, t);
-    setenv("TED4_KERNEL", "plain", 1);
-    ted4_scene_free(t);
-    t = decode(f, NULL);
-    unsetenv("TED4_KERNEL");
-    same_scene(s, t);
+    for (int level = TED4_LEVEL_PLAIN; level <= (int)ted4_level_of_machine(); level++) {
+        use_kernels(ted4_level_name((ted4_level)level));
+        t = decode(f, NULL);
+        same_scene(s, t);
+        ted4_scene_free(t);
+    }
+    use_kernels(NULL);
     ted4_scene_free(s);
-    ted4_scene_free(t);
     free(f.data);
 }
 

@@ -3,9 +3,12 @@
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stddef.h>
+#include <stdint.h>
 #include <cmocka.h>
 #include <stdlib.h>
+#include "base/level.h"
 #include "kernel/int_kernel.h"
+#include "use_kernels.h"
 #include "random_scene.h"
 
 enum { BLOCK = TED4_PRIOR_BLOCK };
@@ -99,46 +102,49 @@ static void selected(void **state)
     compare(ted4_select_int_dense());
 }
 
-static void avx2(void **state)
+/* The variant of a test: NULL where this machine has it not. */
+static void variant(void **state)
 {
-    (void)state;
-#if defined(__x86_64__)
-    if (__builtin_cpu_supports("avx2")) {
-        compare(&ted4_int_dense_avx2);
-        return;
-    }
-#endif
-    skip();
+    if (*state == NULL)
+        skip();
+    compare(*state);
 }
 
-static void avx512(void **state)
+static void selected_by_name(void **state)
 {
     (void)state;
-#if defined(__x86_64__)
-    if (__builtin_cpu_supports("avx512f") && __builtin_cpu_supports("avx512bw")
-        && __builtin_cpu_supports("avx512vl")) {
-        compare(&ted4_int_dense_avx512);
-        return;
-    }
-#endif
-    skip();
-}
-
-static void plain_on_demand(void **state)
-{
-    (void)state;
-    setenv("TED4_KERNEL", "plain", 1);
+    use_kernels("plain");
     assert_ptr_equal(ted4_select_int_dense(), &ted4_int_dense_plain);
-    unsetenv("TED4_KERNEL");
+#if defined(__x86_64__)
+    use_kernels("v1");
+    assert_ptr_equal(ted4_select_int_dense(), &ted4_int_dense_plain);
+    use_kernels("v3");
+    assert_ptr_equal(ted4_select_int_dense(), ted4_level_of_machine() >= TED4_LEVEL_V3 ? &ted4_int_dense_avx2
+                                                                                      : &ted4_int_dense_plain);
+#endif
+    use_kernels(NULL);
+}
+
+/* State of a test: the variant, or NULL where the machine has it not. */
+static void *of(const ted4_int_dense *v, int has)
+{
+    return has ? (void *)(uintptr_t)v : NULL;
 }
 
 int main(void)
 {
+    const ted4_level machine = ted4_level_of_machine();
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(selected),
-        cmocka_unit_test(avx2),
-        cmocka_unit_test(avx512),
-        cmocka_unit_test(plain_on_demand),
+#if defined(__x86_64__)
+        { "avx2", variant, NULL, NULL, of(&ted4_int_dense_avx2, machine >= TED4_LEVEL_V3) },
+        { "avx512", variant, NULL, NULL, of(&ted4_int_dense_avx512, machine >= TED4_LEVEL_V4) },
+        { "vnni", variant, NULL, NULL,
+          of(&ted4_int_dense_vnni, machine >= TED4_LEVEL_V4 && __builtin_cpu_supports("avx512vnni")) },
+#elif defined(__AARCH64EL__)
+        { "neon", variant, NULL, NULL, of(&ted4_int_dense_neon, machine >= TED4_LEVEL_BASE) },
+#endif
+        cmocka_unit_test(selected_by_name),
     };
 
     return cmocka_run_group_tests(tests, NULL, NULL);

@@ -8,6 +8,7 @@
 #include <cmocka.h>
 #include <pthread.h>
 
+#include "use_kernels.h"
 #include "ted4.h"
 #include "vector_files.h"
 
@@ -96,13 +97,13 @@ static void depth(void **state)
     stack = aligned_alloc(1 << 16, STACK);
     assert_non_null(stack);
     for (int plain = 0; plain < 2; plain++) {
-        assert_int_equal(plain ? setenv("TED4_KERNEL", "plain", 1) : unsetenv("TED4_KERNEL"), 0);
+        use_kernels(plain ? "plain" : NULL);
         deepest = 0;
         assert_true(each_vector("", measure) > FEW_VECTORS);
-        print_message("%s kernels: %zu bytes of stack (%s)\n", plain ? "plain" : "this machine's", deepest, where);
+        print_message("%s kernels: %zu bytes of stack (%s)\n", plain ? "plain" : "the level's", deepest, where);
         assert_true(deepest <= PROMISED);
     }
-    unsetenv("TED4_KERNEL");
+    use_kernels(NULL);
     free(stack);
 }
 

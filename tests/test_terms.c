@@ -63,9 +63,10 @@ static double wish_to_keep(const ted4_trainer *t)
     return mean_of(t, t->layout.offset_logit, t->layout.head.n_offsets);
 }
 
+/* In natural logarithm, as it falls by orders of magnitude while a training gets on. */
 static double unlike(const ted4_trainer *t)
 {
-    return 1 - t->progress.ssim;
+    return log(1 - t->progress.ssim);
 }
 
 /* An anchor's bits, as the file will have them. */
@@ -109,7 +110,7 @@ static double trained(const term *x, int heavy, const ted4_snapshot *from)
     ball_begin(&t, &o, &balls, NULL);
     if (from != NULL && ted4_snapshot_restore(&t, from) != 0)
         fail_msg("%s", t.message.text);
-    ball_train(&t, from != NULL ? STAGE1 + STAGE2 : STAGE1);
+    ball_train(&t, (uint64_t)o.stage1 + (from != NULL ? (uint64_t)o.stage2 : 0));
     found = x->what(&t);
     ted4_trainer_finish(&t);
     return found;
@@ -131,7 +132,7 @@ static void test_stage1(void **state)
         { "volume_weight=0", "volume_weight=100", "lr_heads=0", log_size, 0.05 },
         { "tv_weight=0", "tv_weight=100", NONE, roughness, 0.05 },
         { "temporal_weight=0", "temporal_weight=1", NONE, wish_to_move, 0.5 },
-        { "ssim=0", "ssim=1", NONE, unlike, 0.003 },
+        { "ssim=0", "ssim=1", "stage1=800", unlike, 0.05 },     /* 0.25 and more over seeds; nothing is sure after 150 steps */
     };
 
     (void)state;
