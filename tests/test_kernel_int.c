@@ -118,16 +118,9 @@ static void selected_by_name(void **state)
 #if defined(__x86_64__)
     use_kernels("v1");
     assert_ptr_equal(ted4_select_int_dense(), &ted4_int_dense_plain);
-<<<<<<< HEAD
     use_kernels("v3");
     assert_ptr_equal(ted4_select_int_dense(), ted4_level_of_machine() >= TED4_LEVEL_V3 ? &ted4_int_dense_avx2
                                                                                       : &ted4_int_dense_plain);
-=======
-    setenv("TED4_KERNEL", "v3", 1);
-    assert_ptr_equal(ted4_select_int_dense(), ted4_level_of_machine() >= TED4_LEVEL_V3
-                                                  ? &ted4_int_dense_avx2
-                                                  : &ted4_int_dense_plain);
->>>>>>> decode
 #endif
     use_kernels(NULL);
 }

@@ -145,15 +145,9 @@ static void environment_chooses(void **state)
 #if defined(__x86_64__)
     use_kernels("v1");
     assert_true(ted4_select_strict_dense() == NULL);
-<<<<<<< HEAD
     use_kernels("v3");
     assert_true(ted4_select_strict_dense() == (ted4_level_of_machine() >= TED4_LEVEL_V3 ? ted4_strict_dense_avx2
                                                                                        : NULL));
-=======
-    assert_int_equal(setenv("TED4_KERNEL", "v3", 1), 0);
-    assert_true(ted4_select_strict_dense() ==
-                (ted4_level_of_machine() >= TED4_LEVEL_V3 ? ted4_strict_dense_avx2 : NULL));
->>>>>>> decode
 #endif
     use_kernels(NULL);
     if (ted4_level_wanted() >= TED4_LEVEL_V3)
@@ -163,7 +157,6 @@ static void environment_chooses(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-<<<<<<< HEAD
 #if defined(__x86_64__)
         { "avx2_is_plain", variant_is_plain, NULL, NULL, &avx2 }, { "avx512_is_plain", variant_is_plain, NULL, NULL, &avx512 },
 #elif defined(__AARCH64EL__)
@@ -172,13 +165,6 @@ int main(void)
         { "no_variant", variant_is_plain, NULL, NULL, NULL },
 #endif
         cmocka_unit_test(plain_is_the_text), cmocka_unit_test(environment_chooses),
-=======
-        cmocka_unit_test(avx2_is_plain),
-        cmocka_unit_test(avx512_is_plain),
-        cmocka_unit_test(neon_is_plain),
-        cmocka_unit_test(plain_is_the_text),
-        cmocka_unit_test(environment_chooses),
->>>>>>> decode
     };
 
     return cmocka_run_group_tests(tests, NULL, NULL);
