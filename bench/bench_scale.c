@@ -87,6 +87,7 @@ static void record(recording *r, ted4_dataset *d)
     ted4_trainer        t;
 
     parts_options(&o, STEPS);
+    o.sprouts = 0;              /* the search for them, an event of minutes at full size, is no step */
     if (ted4_trainer_init(&t, &o, d, &team) != 0) {
         fprintf(stderr, "bench_scale: %s\n", t.message.text);
         exit(3);
