@@ -45,19 +45,25 @@ PHASES = ted4_dataset_load ted4_dataset_verify ted4_header_settle ted4_trainer_i
         ted4_snapshot_take ted4_snapshot_restore ted4_state_take ted4_state_restore ted4_densify_adjust ted4_sprout \
         ted4_activation_begin ted4_stage2_begin ted4_integer_begin ted4_capacity_decide ted4_capacity_refine ted4_capacity_prune \
         ted4_trainer_distortion ted4_trainer_blame ted4_make_scene ted4_encode ted4_encode_told ted4_trainer_preview ted4_run_log_step \
-        ted4_checkpoint_save ted4_verify ted4_file_write ted4_raster_blend ted4_raster_blend_bwd ted4_threads_init ted4_threads_finish
+        ted4_checkpoint_save ted4_verify ted4_file_write ted4_raster_blend ted4_raster_blend_bwd ted4_threads_init \
+        ted4_threads_count ted4_threads_finish
 $B/bench/phases: $B/bench/phases.o $B/bench/recorder.o $B/ref-encoder/tool/ted4enc.o $(ENC_TOOL:%.c=$B/%.o) $(DEC_TOOL:%.c=$B/%.o) $(ENC_LIB)
 	$(CC) -fopenmp $(LDFLAGS) $(PHASES:%=-Wl,--wrap=%) $^ -o $@ $(LIBS)
+
+# Minutes, on one core.
+bench-scale: $B/bench/bench_scale $B/bench/phases $B/ted4scene $(if $(KITCHEN),,$B/bench/occluder)
+	$(KEEP) bench/scale.md sh bench/scale.sh $B $(firstword $(TRAIN_SCENE))
 
 # Peak memory of training a large scene, in bench/memory.md: hours. MEMORY_RUNS names some of its runs.
 bench-memory: $B/ted4enc $B/ted4scene
 	TED4_BUILD=$B bench/memory.sh $(MEMORY_RUNS)
 
-.PHONY: bench-raster bench-render bench-train bench-memory
+.PHONY: bench-raster bench-render bench-train bench-scale bench-memory
 
 # Programs on the decoded file: what the integer entropy model and the range coder cost; how long anchors live. rate_check is compiled as freely as it may be, for it
 # measures the speed of floating-point networks beside the integer kernels.
 BENCH_FILE = rate_check spans
+$B/bench/bench_decode.o: FPFLAGS = $(BENCH_FREE)
 $B/bench/rate_check.o: FPFLAGS = $(FREE) -ffp-contract=fast -march=native
 $(BENCH_FILE:%=$B/bench/%) $B/bench/bench_decode: $B/bench/%: $B/bench/%.o $(DEC_TOOL:%.c=$B/%.o) $(ENC_LIB)
 	$(CC) -fopenmp $(LDFLAGS) $(filter %.o,$^) $(filter %.a,$^) -o $@ $(LIBS)
@@ -110,3 +116,18 @@ capacity: all
 	bench/capacity_page.sh
 
 .PHONY: capacity
+
+# The same training everywhere: a small scene trained by the builds of bench/machines.txt whose row in bench/machines.csv is missing or stale, and the table in
+# bench/machines.md. Builds whose tools are missing are skipped, which is said; on Debian for x86-64, deps-cross-train installs them.
+cross-train: $B/ted4scene
+	TED4_BUILD=$(abspath $B) bench/machines.sh
+
+DEPS_CROSS_TRAIN = clang-14 libomp-14-dev gcc-aarch64-linux-gnu libc6-dev-arm64-cross
+DEPS_AARCH64 = libpng-dev:arm64 libjpeg62-turbo-dev:arm64 libjansson-dev:arm64 libxxhash-dev:arm64 zlib1g-dev:arm64
+deps-cross-train: deps
+	@$(call INSTALL_DEBIAN,$(DEPS_CROSS_TRAIN))
+	@command -v qemu-aarch64-static >/dev/null || command -v qemu-aarch64 >/dev/null || { $(call INSTALL_DEBIAN,qemu-user); }
+	@dpkg --print-foreign-architectures | grep -qx arm64 || { $(SUDO) dpkg --add-architecture arm64 && $(SUDO) apt-get update -q; }
+	@$(call INSTALL_DEBIAN,$(DEPS_AARCH64))
+
+.PHONY: cross-train deps-cross-train

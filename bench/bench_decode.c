@@ -1,11 +1,13 @@
-/* bench_decode.c - how long files take to decode on one core, with the decoder's kernels and with its plain ones, and how much of that is the entropy stage: what the
- * library hands to the caller's threads, a tile at a time (prior, coder, symbols; spec 9, 10). Both ways have to give the same scene.
+/* bench_decode.c - how long files take to decode on one core, with the kernels of each level that this machine has and with
+ * none, in turn, and how much of that is the entropy stage: what the library hands to the caller's threads, a tile at a time
+ * (prior, coder, symbols; spec 9, 10). All of them have to give the same scene.
  * Usage: bench_decode FILE.ted4...
  * SPDX-License-Identifier: BSD-2-Clause */
 #include <errno.h>
 #include <math.h>
 
 #include "base/bytes.h"
+#include "base/level.h"
 #include "measure.h"
 #include "norm/scene.h"
 #include "tool/cli.h"
@@ -59,32 +61,60 @@ static void keep_best(times *best, const times *t)
     best->entropy = fmin(best->entropy, t->entropy);
 }
 
+/* Levels whose decoders differ, the fastest first. Returns how many. */
+static int levels_here(ted4_level *level)
+{
+    int n = 0;
+
+    for (int l = ted4_level_of_machine(); l >= TED4_LEVEL_PLAIN; l--) {
+#if !defined(__aarch64__)
+        if (l == TED4_LEVEL_BASE)       /* decodes as PLAIN */
+            continue;
+#endif
+        level[n++] = (ted4_level)l;
+    }
+    return n;
+}
+
+static void print_level(ted4_level level, const times *t, double symbols)
+{
+    printf("  %-6s  whole %7.1f ms  entropy stage %7.1f ms (%5.1f million symbols/s)\n", ted4_level_name(level), t->whole,
+           t->entropy, symbols / t->entropy / 1e3);
+}
+
+static void print_ratio(const char *of, const char *to, const times *a, const times *b)
+{
+    printf("  ratio   whole %7.2f     entropy stage %7.2f     (%s to %s)\n", a->whole / b->whole, a->entropy / b->entropy, of,
+           to);
+}
+
 static int measure(const char *path, const uint8_t *bytes, size_t size)
 {
-    times     best[2] = { { INFINITY, INFINITY }, { INFINITY, INFINITY } }, t;
-    ted4_info info[2];
-    double    symbols;
+    ted4_level level[TED4_LEVELS];
+    const int  n = levels_here(level);
+    times      best[TED4_LEVELS], t;
+    ted4_info  info[TED4_LEVELS];
+    double     symbols = 0;
+    int        same = 1;
 
-    for (int i = 0; i < 2 * ROUNDS; i++) {
-        const int plain = i % 2;
-
-        if (plain)
-            setenv("TED4_KERNEL", "plain", 1);
-        else
-            unsetenv("TED4_KERNEL");
-        if (once(path, bytes, size, &t, &info[plain], &symbols) != 0)
+    for (int i = 0; i < n; i++)
+        best[i] = (times){ INFINITY, INFINITY };
+    for (int i = 0; i < n * ROUNDS; i++) {
+        setenv("TED4_KERNEL", ted4_level_name(level[i % n]), 1);
+        if (once(path, bytes, size, &t, &info[i % n], &symbols) != 0)
             return 1;
-        keep_best(&best[plain], &t);
+        keep_best(&best[i % n], &t);
+        same &= memcmp(info[i % n].hash, info[0].hash, sizeof info[0].hash) == 0;
     }
     const char *const slash = strrchr(path, '/');
 
-    printf("%s: %zu bytes, %u anchors, %.0f symbols; same scene: %s\n", slash != NULL ? slash + 1 : path, size, info[0].n_anchors, symbols,
-           memcmp(info[0].hash, info[1].hash, sizeof info[0].hash) == 0 ? "yes" : "NO");
-    for (int plain = 0; plain < 2; plain++)
-        printf("  %-8s whole %7.1f ms  entropy stage %7.1f ms (%5.1f million symbols/s)\n", plain ? "plain" : "kernels", best[plain].whole,
-               best[plain].entropy, symbols / best[plain].entropy / 1e3);
-    printf("  ratio    whole %7.2f     entropy stage %7.2f\n", best[1].whole / best[0].whole, best[1].entropy / best[0].entropy);
-    return memcmp(info[0].hash, info[1].hash, sizeof info[0].hash) != 0;
+    printf("%s: %zu bytes, %u anchors, %.0f symbols; same scene: %s\n", slash != NULL ? slash + 1 : path, size,
+           info[0].n_anchors, symbols, same ? "yes" : "NO");
+    for (int i = 0; i < n; i++)
+        print_level(level[i], &best[i], symbols);
+    for (int i = 1; i < n; i++)
+        print_ratio(ted4_level_name(level[i]), ted4_level_name(level[0]), &best[i], &best[0]);
+    return !same;
 }
 
 int main(int argc, char **argv)

@@ -108,13 +108,18 @@ void parts_options(ted4_train_options *o, int steps)
         }
 }
 
-void parts_load(ted4_dataset *d, const char *scene, const char *downscale)
+double parts_load(ted4_dataset *d, const char *scene, const char *downscale)
 {
     const ted4_dataset_options o = { .downscale = atoi(downscale), .white = 1, .cache_bytes = (size_t)1 << 30 };
     ted4_message               m;
+    double                     begin = 0;
+    int                        bad = ted4_dataset_load(d, scene, &o, &m) != 0;
 
-    if (ted4_dataset_load(d, scene, &o, &m) != 0 || ted4_dataset_verify(d, NULL, &m) != 0) {
+    begin = now_ms();
+    bad = bad || ted4_dataset_verify(d, NULL, &m) != 0;
+    if (bad) {
         fprintf(stderr, "benchmark: %s\n", m.text);
         exit(3);
     }
+    return (now_ms() - begin) / (double)d->n_pictures;
 }

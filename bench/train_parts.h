@@ -44,9 +44,10 @@ extern parts_clock parts;
 void parts_begin(void);
 void parts_end(void);
 
-/* The preset "fast" with as many anchors as it may have from the beginning, and short stages; and its scene. They end the program where they fail. */
-void parts_options(ted4_train_options *o, int steps);
-void parts_load(ted4_dataset *d, const char *scene, const char *downscale);
-int  parts_stage(const ted4_trainer *t);
+/* The preset "fast" with as many anchors as it may have from the beginning, and short stages; and its scene, with the time that it takes to decode one of its pictures,
+ * in ms. They end the program where they fail. */
+void   parts_options(ted4_train_options *o, int steps);
+double parts_load(ted4_dataset *d, const char *scene, const char *downscale);
+int    parts_stage(const ted4_trainer *t);
 
 #endif

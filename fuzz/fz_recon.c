@@ -71,9 +71,9 @@ static void check_fresh(const ted4_scene *s, const ted4_query *q, const uint8_t 
     ted4_gaussians g;
     uint8_t        again[16];
 
-    plain_kernels(1);
+    kernel_level("plain");
     fuzz_require(ted4_recon_new(&r, s, NULL) == TED4_OK, "recon");
-    plain_kernels(0);
+    kernel_level(NULL);
     fuzz_require(ted4_recon_query(r, q, &backwards, &g) == verdict, "one verdict");
     ted4_gaussians_hash(&g, again);
     fuzz_require(verdict != TED4_OK || memcmp(hash, again, sizeof again) == 0, "whatever was queried before");

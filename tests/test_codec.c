@@ -6,8 +6,9 @@
 #include <cmocka.h>
 #include <stdlib.h>
 #include <xxhash.h>
+#include "base/level.h"
+#include "kernel_level.h"
 #include "norm/limits.h"
-#include "plain_kernels.h"
 #include "random_scene.h"
 
 enum { SCENES = 120, CHANGES = 20000 };
@@ -107,7 +108,8 @@ static void round_trip(void **state)
     }
 }
 
-/* Several lanes, full tiles and one that is short; every tile after the first behind another. */
+/* Several lanes, full tiles and one that is short; every tile after the first behind another. Decoded with the kernels of
+ * each level. */
 static void large(void **state)
 {
     random_source     r = random_seed(1);
@@ -116,15 +118,14 @@ static void large(void **state)
     const file        f = encode(s, &backwards);
 
     (void)state;
-    t = decode(f, NULL);
-    same_scene(s, t);
-    plain_kernels(1);
-    ted4_scene_free(t);
-    t = decode(f, NULL);
-    plain_kernels(0);
-    same_scene(s, t);
+    for (int level = TED4_LEVEL_PLAIN; level <= (int)ted4_level_of_machine(); level++) {
+        kernel_level(ted4_level_name((ted4_level)level));
+        t = decode(f, NULL);
+        same_scene(s, t);
+        ted4_scene_free(t);
+    }
+    kernel_level(NULL);
     ted4_scene_free(s);
-    ted4_scene_free(t);
     free(f.data);
 }
 

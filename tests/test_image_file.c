@@ -416,6 +416,31 @@ static void test_cache_not_ahead(void **state)
     }
 }
 
+/* Half the room is for pictures that wait; one that was asked for waits no more, nor does one that has gone. */
+static void test_cache_half_ahead(void **state)
+{
+    (void)state;
+    const struct timespec pause = { 0, 20000000 };
+    size_t made[ITEMS] = { 0 };
+    ted4_message m;
+    ted4_image_cache *c = ted4_image_cache_new(ITEMS, 10 * ITEM_BYTES, make_item, made);
+
+    assert_non_null(c);
+    assert_non_null(ted4_image_cache_pin(c, 0, &m));
+    for (int round = 0; round < 3; round++) {
+        for (size_t i = 1; i < 9; i++)
+            ted4_image_cache_ahead(c, i, 3);
+        assert_true(round > 0 || comes_to_hold(c, 6 * ITEM_BYTES));
+        nanosleep(&pause, NULL);
+    }
+    assert_int_equal(ted4_image_cache_held(c), 6 * ITEM_BYTES);
+    assert_non_null(ted4_image_cache_pin(c, 1, &m));
+    ted4_image_cache_ahead(c, 8, 3);
+    assert_true(comes_to_hold(c, 7 * ITEM_BYTES));
+    assert_int_equal(made[1], 1);
+    ted4_image_cache_free(c);
+}
+
 static void *hammer(void *arg)
 {
     ted4_image_cache *c = arg;
@@ -471,6 +496,7 @@ int main(void)
         cmocka_unit_test(test_undistort_fold),
         cmocka_unit_test(test_cache),            cmocka_unit_test(test_cache_ahead),
         cmocka_unit_test(test_cache_not_ahead),  cmocka_unit_test(test_cache_threads),
+        cmocka_unit_test(test_cache_half_ahead),
     };
 
     return cmocka_run_group_tests_name("image file", tests, NULL, NULL);

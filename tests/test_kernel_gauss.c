@@ -1,10 +1,13 @@
-/* test_kernel_gauss.c - kernel/gauss_many_avx512.c reads what read/reader.c reads one symbol at a time: symbols, error, and where the words end; for every number of lanes,
- * calls of any size, escapes, symbols out of range, and damaged substreams.
+/* test_kernel_gauss.c - each kernel/gauss_many_*.c that this machine can run reads what read/reader.c reads one symbol at a
+ * time: symbols, error, and where the words end; for every number of lanes, calls of any size, escapes, symbols out of
+ * range, and damaged substreams.
  * SPDX-License-Identifier: BSD-2-Clause */
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stddef.h>
 #include <cmocka.h>
+#include "base/level.h"
+#include "kernel_level.h"
 #include "read/reader.h"
 #include "substream_case.h"
 
@@ -54,15 +57,21 @@ static ted4_status compare(const uint8_t *data, size_t size, const symbols *s, t
     return want.error.code;
 }
 
-static ted4_gauss_many fastest(void)
-{
-    const ted4_gauss_many many = ted4_select_gauss_many();
+typedef struct {
+    ted4_level      level;
+    ted4_gauss_many many;
+} variant;
 
-    if (many == NULL) {
-        print_message("this machine has no kernel for several lanes\n");
+/* The variant of a test, unless this machine has it not. */
+static ted4_gauss_many variant_of(void **state)
+{
+    const variant *v = *state;
+
+    if (v->level > ted4_level_of_machine()) {
+        print_message("not on this machine: %s\n", ted4_level_name(v->level));
         skip();
     }
-    return many;
+    return v->many;
 }
 
 /* From 1 to 64 lanes. */
@@ -70,9 +79,8 @@ static void test_same(void **state)
 {
     static const size_t   count[] = { 1, 8192, 16384, 16385, 20000, 40000, 70001, 140000, 262144 };
     static const unsigned far[] = { 0, 2000, 9 }, widest[] = { 20, 100, TED4_N_SIGMA - 1 };
-    const ted4_gauss_many many = fastest();
+    const ted4_gauss_many many = variant_of(state);
 
-    (void)state;
     for (size_t i = 0; i < sizeof count / sizeof count[0]; i++)
         for (unsigned f = 0; f < 3; f++)
             for (unsigned v = 0; v < 3; v++) {
@@ -90,9 +98,8 @@ static void test_same(void **state)
 static void test_outside(void **state)
 {
     static const size_t   at[] = { 0, 1, 100, 4099, 39999 };
-    const ted4_gauss_many many = fastest();
+    const ted4_gauss_many many = variant_of(state);
 
-    (void)state;
     for (size_t i = 0; i < 2 * sizeof at / sizeof at[0]; i++) {
         const int    sign = i % 2 ? -1 : 1;
         symbols      s = symbols_make(7, 40000, 0, 60);
@@ -113,12 +120,11 @@ static void test_outside(void **state)
 /* A word changed, and words cut off with the size mended: the same verdict. */
 static void test_damaged(void **state)
 {
-    const ted4_gauss_many many = fastest();
+    const ted4_gauss_many many = variant_of(state);
     symbols               s = symbols_make(5, 40000, 3000, 100);
     random_source         r = random_seed(11);
     ted4_writer           w;
 
-    (void)state;
     symbols_write(&w, &s);
     for (int i = 0; i < 30; i++) {
         const size_t at = random_in(&r, 4, (uint32_t)w.out.size - 1);
@@ -140,13 +146,12 @@ static void test_damaged(void **state)
 /* The kernel does take what it is there for. */
 static void test_takes(void **state)
 {
-    const ted4_gauss_many many = fastest();
+    const ted4_gauss_many many = variant_of(state);
     symbols               s = symbols_make(6, 40000, 0, 60);
     ted4_writer           w;
     ted4_reader           r;
     uint32_t              length;
 
-    (void)state;
     symbols_write(&w, &s);
     ted4_reader_init(&r, w.out.data, 0, w.out.size, 0);
     r.base.ops->sizes(&r.base, &length, 1);
@@ -157,18 +162,65 @@ static void test_takes(void **state)
     int16_t         *k = calloc(s.n, sizeof *k);
     const size_t     done = many(&lanes, s.n, s.mu, s.sigma, k);
 
-    assert_true(done > 1000 && done % 8 == 0);
+    assert_int_equal(done, s.n);
     assert_memory_equal(k, s.k, done * sizeof *k);
     free(k);
     ted4_writer_finish(&w);
     symbols_free(&s);
 }
 
+/* Indices of sigma at both ends, means in every fraction, and symbols at the ends of the window. */
+static void test_ends(void **state)
+{
+    static const uint8_t  sigma[] = { 0, 1, 38, 64, 100, 150, 200, TED4_N_SIGMA - 1 };
+    const ted4_gauss_many many = variant_of(state);
+    symbols               s = symbols_make(9, 262144, 0, 100);
+    random_source         r = random_seed(3);
+    ted4_writer           w;
+
+    for (size_t i = 0; i < s.n; i++) {
+        const int hw = ted4_half[s.sigma[i] = sigma[random_in(&r, 0, 7)]];
+        const int ends[] = { 0, 1, -hw, -hw - 1, hw + 1, hw + 2, hw, -hw + 1 };
+
+        s.mu[i] = (int32_t)random_in(&r, 0, 512) - 256;
+        s.k[i] = (int16_t)(ends[random_in(&r, 0, 7)] + ted4_floor_shift(s.mu[i], TED4_MU_BITS));
+    }
+    symbols_write(&w, &s);
+    assert_int_equal(compare(w.out.data, w.out.size, &s, many), TED4_OK);
+    ted4_writer_finish(&w);
+    symbols_free(&s);
+}
+
+static void test_selected(void **state)
+{
+    const variant *v = *state;
+
+    if (v->level > ted4_level_of_machine())
+        skip();
+    kernel_level(ted4_level_name(v->level));
+    assert_true(ted4_select_gauss_many() == v->many);
+    kernel_level("plain");
+    assert_true(ted4_select_gauss_many() == NULL);
+    kernel_level(NULL);
+}
+
+#define TESTS(v)                                                                                       \
+    cmocka_unit_test_prestate(test_same, &(v)), cmocka_unit_test_prestate(test_outside, &(v)),         \
+        cmocka_unit_test_prestate(test_damaged, &(v)), cmocka_unit_test_prestate(test_takes, &(v)),    \
+        cmocka_unit_test_prestate(test_ends, &(v)), cmocka_unit_test_prestate(test_selected, &(v))
+
 int main(void)
 {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_same), cmocka_unit_test(test_outside), cmocka_unit_test(test_damaged), cmocka_unit_test(test_takes),
-    };
+#if defined(__x86_64__)
+    static variant v3 = { TED4_LEVEL_V3, ted4_gauss_many_avx2 }, v4 = { TED4_LEVEL_V4, ted4_gauss_many_avx512 };
+    const struct CMUnitTest tests[] = { TESTS(v3), TESTS(v4) };
+#elif defined(__AARCH64EL__)
+    static variant neon = { TED4_LEVEL_BASE, ted4_gauss_many_neon };
+    const struct CMUnitTest tests[] = { TESTS(neon) };
+#else
+    static variant none = { TED4_LEVELS, NULL };
+    const struct CMUnitTest tests[] = { TESTS(none) };
+#endif
 
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

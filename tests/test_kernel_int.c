@@ -3,10 +3,12 @@
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stddef.h>
+#include <stdint.h>
 #include <cmocka.h>
 #include <stdlib.h>
+#include "base/level.h"
 #include "kernel/int_kernel.h"
-#include "plain_kernels.h"
+#include "kernel_level.h"
 #include "random_scene.h"
 
 enum { BLOCK = TED4_PRIOR_BLOCK };
@@ -100,46 +102,48 @@ static void selected(void **state)
     compare(ted4_select_int_dense());
 }
 
-static void avx2(void **state)
+/* The variant of a test: NULL where this machine has it not. */
+static void variant(void **state)
 {
-    (void)state;
-#if defined(__x86_64__)
-    if (__builtin_cpu_supports("avx2")) {
-        compare(&ted4_int_dense_avx2);
-        return;
-    }
-#endif
-    skip();
+    if (*state == NULL)
+        skip();
+    compare(*state);
 }
 
-static void avx512(void **state)
+static void selected_by_name(void **state)
 {
     (void)state;
-#if defined(__x86_64__)
-    if (__builtin_cpu_supports("avx512f") && __builtin_cpu_supports("avx512bw")
-        && __builtin_cpu_supports("avx512vl")) {
-        compare(&ted4_int_dense_avx512);
-        return;
-    }
-#endif
-    skip();
-}
-
-static void plain_on_demand(void **state)
-{
-    (void)state;
-    plain_kernels(1);
+    kernel_level("plain");
     assert_ptr_equal(ted4_select_int_dense(), &ted4_int_dense_plain);
-    plain_kernels(0);
+#if defined(__x86_64__)
+    kernel_level("v1");
+    assert_ptr_equal(ted4_select_int_dense(), &ted4_int_dense_plain);
+    kernel_level("v3");
+    assert_ptr_equal(ted4_select_int_dense(), ted4_level_of_machine() >= TED4_LEVEL_V3 ? &ted4_int_dense_avx2
+                                                                                      : &ted4_int_dense_plain);
+#endif
+    kernel_level(NULL);
 }
 
 int main(void)
 {
+    const ted4_int_dense *set[3] = { NULL, NULL, NULL };
+#if defined(__x86_64__)
+    if (ted4_level_of_machine() >= TED4_LEVEL_V3)
+        set[0] = &ted4_int_dense_avx2;
+    if (ted4_level_of_machine() >= TED4_LEVEL_V4)
+        set[1] = &ted4_int_dense_avx512;
+    if (ted4_level_of_machine() >= TED4_LEVEL_V4 && __builtin_cpu_supports("avx512vnni"))
+        set[2] = &ted4_int_dense_vnni;
+#elif defined(__AARCH64EL__)
+    set[0] = &ted4_int_dense_neon;
+#endif
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(selected),
-        cmocka_unit_test(avx2),
-        cmocka_unit_test(avx512),
-        cmocka_unit_test(plain_on_demand),
+        { "first", variant, NULL, NULL, (void *)(uintptr_t)set[0] },
+        { "second", variant, NULL, NULL, (void *)(uintptr_t)set[1] },
+        { "third", variant, NULL, NULL, (void *)(uintptr_t)set[2] },
+        cmocka_unit_test(selected_by_name),
     };
 
     return cmocka_run_group_tests(tests, NULL, NULL);

@@ -10,7 +10,7 @@
 
 #include "base/level.h"
 #include "kernel/strict_dense.h"
-#include "plain_kernels.h"
+#include "kernel_level.h"
 #include "recon/strict.h"
 
 enum { MAX = 131 };
@@ -97,7 +97,7 @@ static void avx2_is_plain(void **state)
 {
     (void)state;
 #if defined(__x86_64__)
-    if (__builtin_cpu_supports("avx2")) {
+    if (ted4_level_of_machine() >= TED4_LEVEL_V3) {
         twin_is_plain(ted4_strict_dense_avx2);
         return;
     }
@@ -109,13 +109,22 @@ static void avx512_is_plain(void **state)
 {
     (void)state;
 #if defined(__x86_64__)
-    if (__builtin_cpu_supports("avx512f") && __builtin_cpu_supports("avx512bw") &&
-        __builtin_cpu_supports("avx512vl")) {
+    if (ted4_level_of_machine() >= TED4_LEVEL_V4) {
         twin_is_plain(ted4_strict_dense_avx512);
         return;
     }
 #endif
     skip();
+}
+
+static void neon_is_plain(void **state)
+{
+    (void)state;
+#if defined(__AARCH64EL__)
+    twin_is_plain(ted4_strict_dense_neon);
+#else
+    skip();
+#endif
 }
 
 /* One lane, one input at a time, nothing else: the definition. */
@@ -141,12 +150,19 @@ static void plain_is_the_text(void **state)
         }
 }
 
-static void environment_switches_twins_off(void **state)
+static void environment_chooses(void **state)
 {
     (void)state;
-    plain_kernels(1);
+    kernel_level("plain");
     assert_true(ted4_select_strict_dense() == NULL);
-    plain_kernels(0);
+#if defined(__x86_64__)
+    kernel_level("v1");
+    assert_true(ted4_select_strict_dense() == NULL);
+    kernel_level("v3");
+    assert_true(ted4_select_strict_dense() == (ted4_level_of_machine() >= TED4_LEVEL_V3 ? ted4_strict_dense_avx2
+                                                                                       : NULL));
+#endif
+    kernel_level(NULL);
     if (ted4_level_wanted() >= TED4_LEVEL_V3)
         assert_true(ted4_select_strict_dense() != NULL);
 }
@@ -154,10 +170,8 @@ static void environment_switches_twins_off(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(plain_is_the_text),
-        cmocka_unit_test(avx2_is_plain),
-        cmocka_unit_test(avx512_is_plain),
-        cmocka_unit_test(environment_switches_twins_off),
+        cmocka_unit_test(avx2_is_plain), cmocka_unit_test(avx512_is_plain), cmocka_unit_test(neon_is_plain),
+        cmocka_unit_test(plain_is_the_text), cmocka_unit_test(environment_chooses),
     };
 
     return cmocka_run_group_tests(tests, NULL, NULL);

@@ -10,9 +10,10 @@
 #include <cmocka.h>
 
 #include <xxhash.h>
+#include "base/level.h"
 #include "tool/threads.h"
+#include "kernel_level.h"
 #include "odd_threads.h"
-#include "plain_kernels.h"
 #include "recon_ref.h"
 #include "recon_scene.h"
 
@@ -234,26 +235,26 @@ static void threads_and_order_change_nothing(void **state)
     scene_finish(&s);
 }
 
-static void plain_kernels_give_the_same_hash(void **state)
+static void kernels_give_the_same_hash(void **state)
 {
     const ted4_header h = large_header();
-    uint8_t hash[2][16];
+    uint8_t hash[TED4_LEVELS][16];
     struct ted4_scene s;
 
     (void)state;
     scene_make(&s, &h, 9);
-    for (int plain = 0; plain < 2; plain++) {
+    for (int level = TED4_LEVEL_PLAIN; level <= (int)ted4_level_of_machine(); level++) {
         ted4_recon *r;
         ted4_gaussians g;
 
-        plain_kernels(plain);
+        kernel_level(ted4_level_name((ted4_level)level));
         assert_int_equal(ted4_recon_new(&r, &s, NULL), TED4_OK);
         assert_int_equal(ted4_recon_query(r, &queries[2], NULL, &g), TED4_OK);
-        ted4_gaussians_hash(&g, hash[plain]);
+        ted4_gaussians_hash(&g, hash[level]);
         ted4_recon_free(r);
+        assert_memory_equal(hash[level], hash[TED4_LEVEL_PLAIN], 16);
     }
-    plain_kernels(0);
-    assert_memory_equal(hash[0], hash[1], 16);
+    kernel_level(NULL);
     scene_finish(&s);
 }
 
@@ -503,7 +504,7 @@ int main(void)
         cmocka_unit_test(every_variant_is_near_real_numbers),
         cmocka_unit_test(large_networks_give_the_bits_of_the_text),
         cmocka_unit_test(threads_and_order_change_nothing),
-        cmocka_unit_test(plain_kernels_give_the_same_hash),
+        cmocka_unit_test(kernels_give_the_same_hash),
         cmocka_unit_test(records_have_stable_ids),
         cmocka_unit_test(no_record_at_all),
         cmocka_unit_test(what_is_not_finite_is_refused),

@@ -45,6 +45,15 @@ static block *header_of(void *p)
 
 void *ted4_arena_alloc(ted4_arena *a, uint64_t n, size_t size)
 {
+    void *storage = ted4_arena_alloc_raw(a, n, size);
+
+    if (storage != NULL)
+        memset(storage, 0, (size_t)n * size);
+    return storage;
+}
+
+void *ted4_arena_alloc_raw(ted4_arena *a, uint64_t n, size_t size)
+{
     const size_t extra = sizeof(block) + ALIGN;
     block  *b;
     size_t  total;
@@ -68,7 +77,6 @@ void *ted4_arena_alloc(ted4_arena *a, uint64_t n, size_t size)
         b->next->prev = b;
     a->blocks = b;
     a->used += total;
-    memset(b + 1, 0, total - extra);
     return b + 1;
 }
 

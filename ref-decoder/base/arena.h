@@ -24,6 +24,8 @@ void  ted4_arena_init(ted4_arena *a, const ted4_options *o);
 /* n elements of size bytes, zeroed, aligned to 64 bytes. n = 0 gives a pointer too. NULL: over budget, or no memory. n may be a number that a file claims,
  * more than this machine can address. */
 void *ted4_arena_alloc(ted4_arena *a, uint64_t n, size_t size);
+/* The same, with any contents. */
+void *ted4_arena_alloc_raw(ted4_arena *a, uint64_t n, size_t size);
 /* Gives one block back; NULL is fine. */
 void  ted4_arena_release(ted4_arena *a, void *block);
 /* Gives everything back. */

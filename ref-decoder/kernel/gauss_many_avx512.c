@@ -1,4 +1,4 @@
-/* gauss_many_avx512.c - gauss_tile.h with sixteen lanes of AVX-512; substreams of fewer lanes are for AVX2.
+/* gauss_many_avx512.c - gauss_tile.h with two rows of sixteen lanes of AVX-512; substreams of fewer lanes are for AVX2.
  * SPDX-License-Identifier: BSD-2-Clause */
 #if defined(__x86_64__)
 
@@ -111,7 +111,9 @@ static inline void narrow(int16_t *to, vi x)
 
 size_t ted4_gauss_many_avx512(ted4_gauss_lanes *d, size_t n, const int32_t *mu, const uint8_t *sigma, int16_t *k)
 {
-    return d->n_lanes < LANES ? ted4_gauss_many_avx2(d, n, mu, sigma, k) : many(d, n, mu, sigma, k);
+    if (d->n_lanes < 2 * LANES)
+        return ted4_gauss_many_avx2(d, n, mu, sigma, k);
+    return many_rows(d, 2, n, mu, sigma, k);
 }
 
 #else

@@ -20,8 +20,8 @@
 #include "kernel/gauss_kernel.h"
 #include "norm/gaussian.h"
 
-/* Vectors that are worked on together, as each waits for its own tables most of the time; and guesses of a bound. */
-enum { ROWS = 2, TRIES = 4 };
+/* Most vectors that are worked on together, as each waits for its tables most of the time; and guesses of a bound. */
+enum { ROWS = 4, TRIES = 4 };
 
 /* INV and half window of each index of sigma, side by side. */
 typedef struct {
@@ -357,7 +357,7 @@ take_part(ted4_gauss_lanes *d, const model_table *t, unsigned lane, unsigned fro
     return taken;
 }
 
-/* So many rows at a time, 1 or ROWS, where they are whole. */
+/* So many rows at a time where they are whole. */
 static inline __attribute__((always_inline)) size_t
 many_rows(ted4_gauss_lanes *d, const int rows, size_t n, const int32_t *mu, const uint8_t *sigma, int16_t *k)
 {
@@ -384,10 +384,14 @@ many_rows(ted4_gauss_lanes *d, const int rows, size_t n, const int32_t *mu, cons
     return done;
 }
 
-static inline __attribute__((always_inline)) size_t
-many(ted4_gauss_lanes *d, size_t n, const int32_t *mu, const uint8_t *sigma, int16_t *k)
+/* As many rows as the substream has lanes for. */
+static inline size_t many(ted4_gauss_lanes *d, size_t n, const int32_t *mu, const uint8_t *sigma, int16_t *k)
 {
-    return d->n_lanes < ROWS * LANES ? many_rows(d, 1, n, mu, sigma, k) : many_rows(d, ROWS, n, mu, sigma, k);
+    if (d->n_lanes >= 4 * LANES)
+        return many_rows(d, 4, n, mu, sigma, k);
+    if (d->n_lanes >= 2 * LANES)
+        return many_rows(d, 2, n, mu, sigma, k);
+    return many_rows(d, 1, n, mu, sigma, k);
 }
 
 #endif

@@ -21,19 +21,50 @@ static void flush(hasher *h)
     h->n = 0;
 }
 
-static void put8(hasher *h, uint8_t v)
+static void put_bytes(hasher *h, const uint8_t *v, size_t n)
 {
-    if (h->n == BUFFER)
-        flush(h);
-    h->bytes[h->n++] = v;
+    flush(h);
+    (void)XXH3_128bits_update(&h->state, v, n);
 }
 
-static void put16(hasher *h, uint16_t v)
+/* Numbers of 16 bits, of which as many as the buffer has room for are made bytes at a time. */
+static void put_numbers(hasher *h, const uint16_t *v, size_t n)
 {
-    if (h->n > BUFFER - 2)
+    const size_t room = BUFFER / 2;
+
+    flush(h);
+    for (size_t from = 0; from < n; from += room) {
+        const size_t m = n - from < room ? n - from : room;
+
+        for (size_t i = 0; i < m; i++)
+            ted4_store16(h->bytes + 2 * i, v[from + i]);
+        h->n = 2 * m;
         flush(h);
-    ted4_store16(h->bytes + h->n, v);
-    h->n += 2;
+    }
+}
+
+/* Symbols of n anchors, those of anchors that move. Returns how many bytes they are. */
+static size_t put_moving(uint8_t *to, const int16_t *k, const uint8_t *dynamic, size_t n)
+{
+    size_t at = 0;
+
+    for (size_t a = 0; a < n; a++) {
+        ted4_store16(to + at, (uint16_t)k[a]);
+        at += dynamic[a] != 0 ? 2 : 0;
+    }
+    return at;
+}
+
+/* Those of anchors that keep an offset. */
+static size_t put_kept(uint8_t *to, const int16_t *k, const uint16_t *offset_bits, unsigned offset, size_t n)
+{
+    size_t at = 0;
+
+    for (size_t a = 0; a < n; a++) {
+        ted4_store16(to + at, (uint16_t)k[a]);
+        at += (offset_bits[a] >> offset & 1) != 0 ? 2 : 0;
+    }
+    return at;
 }
 
 /* Symbols of component comp of a type for anchors first .. end - 1: those that have it. */
@@ -42,25 +73,31 @@ static void put_component(hasher *h, const ted4_scene *s, int type,
 {
     const int16_t *k = s->symbol[type] + (size_t)comp * s->head.n_anchors;
 
-    for (size_t a = first; a < end; a++) {
-        const int has = type == TED4_PHI ? s->dynamic[a]
-                      : type == TED4_OFFSET ? s->offset_bits[a] >> comp / 3 & 1
-                      : 1;
+    if (type != TED4_PHI && type != TED4_OFFSET) {
+        put_numbers(h, (const uint16_t *)(k + first), end - first);
+        return;
+    }
+    for (size_t a = first; a < end; a += BUFFER / 2) {
+        const size_t n = end - a < BUFFER / 2 ? end - a : BUFFER / 2;
 
-        if (has)
-            put16(h, (uint16_t)k[a]);
+        flush(h);
+        h->n = type == TED4_PHI ? put_moving(h->bytes, k + a, s->dynamic + a, n)
+                                : put_kept(h->bytes, k + a, s->offset_bits + a, comp / 3, n);
     }
 }
 
 static void put_tile(hasher *h, const ted4_scene *s, size_t first, size_t end)
 {
     for (size_t a = first; a < end; a++) {
-        put8(h, s->dynamic[a]);
-        put16(h, s->offset_bits[a]);
+        if (h->n > BUFFER - 3)
+            flush(h);
+        h->bytes[h->n] = s->dynamic[a];
+        ted4_store16(h->bytes + h->n + 1, s->offset_bits[a]);
+        h->n += 3;
     }
     for (int t = 0; t < TED4_TYPES; t++)
-        for (size_t a = first; s->shape.dim[t] > 0 && a < end; a++)
-            put8(h, s->step_index[t][a]);
+        if (s->shape.dim[t] > 0)
+            put_bytes(h, s->step_index[t] + first, end - first);
     for (int t = 0; t < TED4_TYPES; t++)
         for (unsigned c = 0; c < s->shape.dim[t]; c++)
             put_component(h, s, t, c, first, end);
@@ -76,8 +113,7 @@ void ted4_scene_hash(const ted4_scene *s, uint8_t hash[16])
     XXH3_INITSTATE(&h.state);
     (void)XXH3_128bits_reset(&h.state);
     h.n = 0;
-    for (size_t i = 0; i < 3 * n; i++)
-        put16(&h, s->position[i]);
+    put_numbers(&h, s->position, 3 * n);
     for (size_t first = 0; first < n; first += step)
         put_tile(&h, s, first, n - first < step ? n : first + step);
     flush(&h);

@@ -2,6 +2,7 @@
  * SPDX-License-Identifier: BSD-2-Clause */
 #include "read/decode.h"
 
+#include <stdatomic.h>
 #include <string.h>
 #include "kernel/int_kernel.h"
 #include "norm/limits.h"
@@ -11,11 +12,13 @@
 /* Tiles that run at once, and the work memory they may take together (one may always run). */
 enum { BATCH = 16, BATCH_BYTES = 1 << 28 };
 
-/* A tile on its way. Each has its own coder and work memory. */
+/* A tile on its way has its own coder, and while it runs a work area: the first one that no other has, which the machine has likely at hand already. There are as
+ * many areas as tiles that can run at once. */
 struct ted4_tile_job {
     ted4_reader reader;
     unsigned    number;
-    void       *work;
+    void       *work;           /* area i, whosever it is */
+    atomic_flag busy;
 };
 
 typedef ted4_decoder decoder;
@@ -126,9 +129,10 @@ static void prepare_jobs(decoder *d, size_t at)
         return;
     }
     for (; d->n_room < want; d->n_room++) {
-        d->jobs[d->n_room].work = ted4_arena_alloc(a, 1, size);
+        d->jobs[d->n_room].work = ted4_arena_alloc_raw(a, 1, size);
         if (d->jobs[d->n_room].work == NULL)
             break;
+        atomic_flag_clear(&d->jobs[d->n_room].busy);
     }
     if (d->n_room == 0)
         no_memory(d, at);
@@ -153,9 +157,12 @@ static void read_positions(decoder *d, const ted4_chunk_place *p)
 static void run_job(void *arg, size_t i)
 {
     decoder *d = arg;
-    job     *j = &d->jobs[i];
+    job     *j = &d->jobs[i], *area = d->jobs;
 
-    ted4_walk_tile(&j->reader.base, d->s, &d->prior, j->number, j->work);
+    while (atomic_flag_test_and_set(&area->busy))
+        area++;
+    ted4_walk_tile(&j->reader.base, d->s, &d->prior, j->number, area->work);
+    atomic_flag_clear(&area->busy);
 }
 
 /* Decodes the queued tiles. The first one in the file that fails has the lowest offset. */

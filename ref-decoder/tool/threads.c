@@ -238,6 +238,11 @@ void ted4_threads_init(ted4_parallel *p, int n_threads)
     p->user = t;
 }
 
+int ted4_threads_count(const ted4_parallel *p)
+{
+    return p->user != NULL ? ((const team *)p->user)->n : 1;
+}
+
 void ted4_threads_finish(ted4_parallel *p)
 {
     team *t = p->user;

@@ -13,6 +13,8 @@ enum { TED4_MAX_THREADS = 256 };
  * has a share of the indices and, one at a time, takes what is left of the others', so bodies may be uneven. Only one thread may use *p at a
  * time. There are never more than TED4_MAX_THREADS, and fewer where threads cannot be had. */
 void ted4_threads_init(ted4_parallel *p, int n_threads);
+/* How many threads *p has. */
+int ted4_threads_count(const ted4_parallel *p);
 /* Ends the threads. */
 void ted4_threads_finish(ted4_parallel *p);
 

@@ -15,18 +15,20 @@ typedef struct {
     size_t   size;
     size_t   pins;
     int      loading;
+    int      early;             /* decoded ahead, and not asked for since */
     size_t   before, after;     /* neighbours in the idle list, when full and not pinned */
 } entry;
 
-/* The bound must hold this many of the largest picture before any is decoded ahead: those that wait,
- * and as many in use, would push one another out. */
-enum { ROOM_FOR_AHEAD = 2 * TED4_DATASET_AHEAD };
+/* As many pictures may wait as half the bound holds of the largest, or those that wait, and as many in use, would push one another out; where these are fewer
+ * than so many, none does. */
+enum { FEWEST_AHEAD = 4 };
 
 /* Pictures wanted soon, in the order they were asked for, and who decodes them. */
 typedef struct {
     pthread_t threads[TED4_DATASET_AHEAD];
     size_t    queue[TED4_DATASET_AHEAD];
-    int       n_threads, n_waiting, n_queued, stop;
+    int       n_threads, n_waiting, n_queued, n_loading, stop;
+    size_t    n_early;          /* pictures decoded, and not asked for since */
 } ahead;
 
 struct ted4_image_cache {
@@ -99,6 +101,12 @@ static void join_idle(ted4_image_cache *c, size_t i)
     e[c->n].before = i;
 }
 
+static void not_early(ted4_image_cache *c, size_t i)
+{
+    c->ahead.n_early -= c->entries[i].early ? 1 : 0;
+    c->entries[i].early = 0;
+}
+
 /* With the lock held: drops idle pictures, oldest first, until extra more bytes fit or none is
  * left. */
 static void make_room(ted4_image_cache *c, size_t extra)
@@ -108,6 +116,7 @@ static void make_room(ted4_image_cache *c, size_t extra)
         if (i == c->n || (extra <= c->bound && c->held <= c->bound - extra))
             return;
         leave_idle(c, i);
+        not_early(c, i);
         c->held -= c->entries[i].size;
         free(c->entries[i].bytes);
         c->entries[i].bytes = NULL;
@@ -149,6 +158,7 @@ const uint8_t *ted4_image_cache_pin(ted4_image_cache *c, size_t i, ted4_message 
     if (e->bytes == NULL)
         load(c, i, m);
     const uint8_t *bytes = e->bytes;
+    not_early(c, i);
     if (bytes != NULL && e->pins++ == 0)
         leave_idle(c, i);
     pthread_mutex_unlock(&c->lock);
@@ -182,8 +192,15 @@ static void *decode_ahead(void *cache)
         const size_t i = a->queue[0];
         a->n_queued--;
         memmove(a->queue, a->queue + 1, (size_t)a->n_queued * sizeof *a->queue);
-        if (!c->entries[i].loading && c->entries[i].bytes == NULL)
-            load(c, i, &ignored);
+        if (c->entries[i].loading || c->entries[i].bytes != NULL)
+            continue;
+        a->n_loading++;
+        load(c, i, &ignored);
+        a->n_loading--;
+        if (c->entries[i].bytes != NULL && c->entries[i].pins == 0 && !c->entries[i].early) {
+            c->entries[i].early = 1;
+            a->n_early++;
+        }
     }
     pthread_mutex_unlock(&c->lock);
     return NULL;
@@ -197,14 +214,23 @@ static int is_queued(const ahead *a, size_t i)
     return 0;
 }
 
+/* Pictures that may wait, decoded or queued or on their way. */
+static size_t room_ahead(const ted4_image_cache *c)
+{
+    const size_t fit = c->largest > 0 ? c->bound / c->largest / 2 : TED4_DATASET_AHEAD;
+
+    return fit < FEWEST_AHEAD ? 0 : fit < TED4_DATASET_AHEAD ? fit : TED4_DATASET_AHEAD;
+}
+
 void ted4_image_cache_ahead(ted4_image_cache *c, size_t i, int n_threads)
 {
     ahead *a = &c->ahead;
     const int most = n_threads < TED4_DATASET_AHEAD ? n_threads : TED4_DATASET_AHEAD;
 
     pthread_mutex_lock(&c->lock);
+    const size_t waiting = a->n_early + (size_t)(a->n_queued + a->n_loading);
     if (most > 0 && i < c->n && c->entries[i].bytes == NULL && !c->entries[i].loading && !is_queued(a, i) &&
-        a->n_queued < TED4_DATASET_AHEAD && c->largest <= c->bound / ROOM_FOR_AHEAD) {
+        waiting < room_ahead(c)) {
         a->queue[a->n_queued++] = i;
         if (a->n_queued > a->n_waiting && a->n_threads < most &&
             pthread_create(&a->threads[a->n_threads], NULL, decode_ahead, c) == 0)

@@ -94,6 +94,8 @@ static int encode(const ted4_request *r, ted4_dataset *d, const ted4_parallel *p
     return status;
 }
 
+enum { FEWEST_DECODERS = 4 };
+
 static int is_device(const char *path)
 {
     struct stat s;
@@ -114,6 +116,14 @@ static int check_outputs(const ted4_request *r)
         (r->log != NULL && !is_device(r->log) && ted4_file_writable(r->log, 1, why, sizeof why) != 0))
         return complain(why);
     return 0;
+}
+
+/* Threads that decode pictures ahead: some where there are two threads or more, and as many as these where there are many. */
+static int decoders(const ted4_parallel *p)
+{
+    const int n = ted4_threads_count(p);
+
+    return n == 1 ? 0 : n < FEWEST_DECODERS ? FEWEST_DECODERS : n;
 }
 
 int main(int argc, char **argv)
@@ -139,7 +149,7 @@ int main(int argc, char **argv)
     int status = TED4_EXIT_FINE;
 
     ted4_threads_init(&p, r.threads);
-    d.ahead = p.user == NULL ? 0 : TED4_DATASET_AHEAD;      /* one thread was asked for, or is all there is */
+    d.ahead = decoders(&p);
     if (r.check)
         ted4_dataset_print(&d, stdout);
     if (ted4_dataset_verify(&d, &p, &m) != 0)

@@ -12,14 +12,11 @@ static size_t row_floats(const ted4_anchors *a, int k)
     return (size_t)a->rows[k] * TED4_LANES;
 }
 
+/* Not cleared: blocks are when they come into use, and most of the room never does. */
 static float *new_blocks(size_t floats)
 {
     /* aligned_alloc wants a multiple of the alignment; a block row is 128 bytes. */
-    float *p = aligned_alloc(64, floats * sizeof *p);
-
-    if (p != NULL)
-        memset(p, 0, floats * sizeof *p);
-    return p;
+    return aligned_alloc(64, floats * sizeof(float));
 }
 
 int ted4_anchors_init(ted4_anchors *a, const ted4_layout *l)
@@ -96,6 +93,8 @@ int ted4_anchors_select(ted4_anchors *a, const uint32_t *order, size_t n)
 
         if (p == NULL)
             return -1;
+        if (blocks > 0)
+            memset(p + (blocks - 1) * row_floats(a, k), 0, row_floats(a, k) * sizeof *p);
         for (size_t i = 0; i < n; i++) {
             const float *from = ted4_cell(a, (ted4_row)k, order[i], 0);
             float *to = p + i / TED4_LANES * row_floats(a, k) + i % TED4_LANES;

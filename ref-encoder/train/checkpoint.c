@@ -153,6 +153,23 @@ static int header_belongs(const ted4_header *began, const ted4_header *h, int de
     return ted4_header_same(&want, h);
 }
 
+/* Everything in the layout of h, empty. Where that is the trainer's own, as it is mostly when a trial ends, its memory is as good as new memory, which would
+ * have to be cleared, too, page by page. */
+static int begin_layout(ted4_trainer *t, const ted4_header *h)
+{
+    const size_t n = t->layout.n_net;
+
+    if (ted4_header_same(&t->layout.head, h) && t->generator != NULL && t->rate != NULL) {
+        memset(t->net, 0, n * sizeof *t->net);
+        memset(t->net_m, 0, n * sizeof *t->net_m);
+        memset(t->net_v, 0, n * sizeof *t->net_v);
+        return 0;
+    }
+    ted4_layout_make(&t->layout, h);
+    ted4_anchors_finish(&t->anchors);
+    return ted4_anchors_init(&t->anchors, &t->layout) != 0 || ted4_trainer_rebuild(t) != 0 ? -1 : 0;
+}
+
 /* The header tells the layout, which may have lost parts since the trainer was made. Within stage 1 what stage 2 alone looks at
  * is not taken from the file. */
 static void walk_layout(stream *s, ted4_trainer *t)
@@ -165,13 +182,7 @@ static void walk_layout(stream *s, ted4_trainer *t)
     if (!t->stage2)
         ted4_header_stage2(&h, &t->opt);
     ted4_header_make(&began, &t->opt, t->data);
-    s->failed = !header_belongs(&began, &h, t->stage2 && t->opt.capacity);
-    if (s->failed)
-        return;
-    ted4_layout_make(&t->layout, &h);
-    ted4_anchors_finish(&t->anchors);
-    if (ted4_anchors_init(&t->anchors, &t->layout) != 0 || ted4_trainer_rebuild(t) != 0)
-        s->failed = 1;
+    s->failed = !header_belongs(&began, &h, t->stage2 && t->opt.capacity) || begin_layout(t, &h) != 0;
 }
 
 /* Prior networks begin with stage 2, and their sizes are options of stage 2. */
@@ -374,10 +385,10 @@ static void walk_hash(stream *s)
     expect(s, hash);
 }
 
-/* In file, or, where that is NULL, in memory, which is empty when writing. */
-static int run(ted4_trainer *t, FILE *file, ted4_snapshot *memory, int writing, int whole)
+/* In file, or, where that is NULL, in memory, which when writing is empty but may have room. */
+static int run(ted4_trainer *t, FILE *file, ted4_snapshot *memory, size_t room, int writing, int whole)
 {
-    stream s = { .file = file, .memory = memory, .writing = writing, .whole = whole, .hash = XXH3_createState() };
+    stream s = { .file = file, .memory = memory, .room = room, .writing = writing, .whole = whole, .hash = XXH3_createState() };
 
     if (s.hash == NULL)
         return -1;
@@ -406,7 +417,7 @@ int ted4_checkpoint_save(ted4_trainer *t, const char *path)
     /* errno is the first failure's: closing what could not be written fails again, with another reason. A state that no checkpoint may hold sets none. */
     errno = 0;
 
-    const int bad = run(t, f, NULL, 1, 1) != 0 || fflush(f) != 0 || fsync(fileno(f)) != 0;
+    const int bad = run(t, f, NULL, 0, 1, 1) != 0 || fflush(f) != 0 || fsync(fileno(f)) != 0;
     int       why = !bad ? 0 : errno != 0 ? errno : EIO;
 
     if (fclose(f) != 0 && !bad)
@@ -421,7 +432,7 @@ int ted4_checkpoint_save(ted4_trainer *t, const char *path)
 
 static int load(ted4_trainer *t, FILE *f, ted4_snapshot *memory, const char *name, int whole)
 {
-    if (run(t, f, memory, 0, whole) != 0)
+    if (run(t, f, memory, 0, 0, whole) != 0)
         return ted4_trainer_fail(t, "%s: not a checkpoint of this scene with these options", name);
     if (t->integer)
         ted4_rate_pack(t->rate, t->net);
@@ -443,8 +454,10 @@ int ted4_checkpoint_load(ted4_trainer *t, const char *path)
 
 static int take(ted4_trainer *t, ted4_snapshot *s, int whole)
 {
-    ted4_snapshot_free(s);
-    if (run(t, NULL, s, 1, whole) == 0)
+    const size_t room = s->bytes != NULL ? s->size : 0;
+
+    s->size = 0;
+    if (run(t, NULL, s, room, 1, whole) == 0)
         return 0;
     ted4_snapshot_free(s);
     return ted4_trainer_fail(t, "no memory for a snapshot");

@@ -1,0 +1,241 @@
+#!/bin/sh
+# machines.sh - trains the same small scene with every build of machines.txt and compares the files: machines.csv, and the table in machines.md. `make cross-train`.
+# Usage, from anywhere:  bench/machines.sh [--list | --report] [PATTERN...]
+#     PATTERN...   builds whose name fits one of these shell patterns; all builds without any
+#     --list       says of each build what state it is in, and does nothing
+#     --report     only writes the table
+# A build is made and trains when machines.csv has no row of it with these sources, this line of machines.txt, this compiler and this scene; comments and spacing of
+# sources do not count. A build whose compiler, runner, libraries or instruction set is missing is skipped, which is said; a row that it has of the same sources stays.
+# May be killed at any moment and called again. Exit code: 0, or 1: a build fails, or two that have to agree do not, or too few of them have passed (8; 1 with a
+# PATTERN); 3: wrong usage, no scene.
+# Environment: TED4_BUILD (build: where ted4scene is; builds are made in TED4_BUILD/machines), TED4_RESULTS (bench: where machines.csv and machines.md are), TED4_TABLE
+# (bench/machines.txt).
+# SPDX-License-Identifier: BSD-2-Clause
+set -u
+LC_ALL=C; export LC_ALL
+columns=name,key,compiler,level,threads,agrees,hash,variants,bytes,seconds,verdict
+
+# The scene has what moves, what comes and goes, and cameras that disagree about colours: all parts of the method have something to do, and none is left out.
+scene="fair --size 96x64 --cameras 4 --test-cameras 1 --frames 8 --tint 1 --seed 1"
+whole="--preset draft --iterations 1000,600 --why --set init_anchors=400 --set max_anchors=800 --set grow_every=25 --set probe=0.2 --set offsets=4 --set feature=12
+    --set grow_gradient=1e-4 --set lr_mask=0.05"
+# What the whole method does not take: a network of place and time, bank and feature side by side, linear scalings, one distribution for all anchors, other views.
+small="--preset draft --iterations 120,80 --capacity fixed --set init_anchors=300 --set max_anchors=400 --set probe=0 --set offsets=4 --set feature=12 --set grow_every=20"
+variants="network:--set+motion=3+--set+linear_scale=1+--set+view=2 side:--set+motion=2+--set+factorised=1+--set+view=0+--set+slices=1"
+
+die() { echo "machines.sh: $*" >&2; exit 3; }
+short_hash() { sha256sum | cut -c1-16; }
+value() { sed -n "s/.*\"$1\":\"\{0,1\}\([-0-9a-f.]*\).*/\1/p" "$2"; }
+
+enter() {
+    cd "$(dirname "$0")/.." || exit 3
+    build=${TED4_BUILD:-build} results=${TED4_RESULTS:-bench} table=${TED4_TABLE:-bench/machines.txt}
+    csv=$results/machines.csv page=$results/machines.md
+    mkdir -p "$build/machines" || exit 3
+    work=$(cd "$build/machines" && pwd)
+    aarch64="libpng-dev:arm64 libjpeg62-turbo-dev:arm64 libjansson-dev:arm64 libxxhash-dev:arm64 zlib1g-dev:arm64"
+    sources=$({
+        find ref-decoder ref-encoder tests/scenes -name '*.[ch]' -o -name '*.def' | sort | xargs awk -f bench/sources.awk
+        sed -n '/^[A-Z_a-z0-9]* *[:?]*=/p' Makefile
+        echo "$scene $whole $small $variants"
+    } | short_hash)
+}
+
+# split LINE: the fields of machines.txt
+split() {
+    IFS=';' read -r name compiler variables level threads agrees runner packages <<END
+$(echo "$1" | sed 's/ *; */;/g')
+END
+    [ -z "$runner" ] || command -v "$runner" >/dev/null || runner=$runner-static
+    packages=$(echo "$packages" | sed "s/ARM64/$aarch64/")
+    key=$(echo "$name;$compiler;$variables;$level;$threads;$agrees;$sources" | short_hash)
+}
+
+each() { grep -v -e '^#' -e '^$' "$table"; }
+version() { ${compiler%% *} --version 2>/dev/null | head -n 1 | tr ',' ' '; }
+
+# has FLAG...: all among those that Linux says of this machine
+has() {
+    for flag; do
+        grep -qw "^flags.* $flag" /proc/cpuinfo || return 1
+    done
+}
+
+# missing: what this build needs and is not there; nothing: all is
+missing() {
+    for command in "${compiler%% *}" ${runner:+"$runner"}; do
+        command -v "$command" >/dev/null || { echo "$command"; return; }
+    done
+    case $level in
+    v[134] | best) [ "$(uname -m)" = x86_64 ] || echo "x86-64" ;;
+    neon)   [ "$(uname -m)" = aarch64 ] || [ -e /usr/lib/aarch64-linux-gnu/libjansson.a ] || echo "libraries for aarch64" ;;
+    esac
+    case $level in
+    v3) has avx2 fma bmi2 || echo "AVX2 with FMA" ;;
+    v4) has avx512f avx512bw avx512dq avx512vl || echo "AVX-512" ;;
+    esac
+}
+
+# state: sets state to passed, kept (tools missing, but a row of these sources is there), skipped, failed, stale or new; row
+state() {
+    row=$(grep "^$name," "$csv" 2>/dev/null | tail -n 1)
+    lacks=$(missing | head -n 1)
+    if [ -n "$lacks" ]; then
+        state=skipped
+        [ "$(echo "$row" | cut -d, -f2)" != "$key" ] || state=kept
+    elif [ -z "$row" ]; then
+        state=new
+    elif [ "$(echo "$row" | cut -d, -f2)" != "$key" ] || [ "$(echo "$row" | cut -d, -f3)" != "$(version)" ]; then
+        state=stale
+    elif [ "$(echo "$row" | cut -d, -f11)" = passed ]; then
+        state=passed
+    else
+        state=failed
+    fi
+}
+
+# prepare: the scene, once for all builds, as pictures must be the same ones
+prepare() {
+    pictures=$work/scene-$(echo "$scene" | short_hash)
+    [ ! -e "$pictures/truth.json" ] || return 0
+    [ -x "$build/ted4scene" ] || die "$build/ted4scene is missing: make cross-train"
+    rm -rf "$pictures.part"
+    "$build/ted4scene" $scene -o "$pictures.part" && mv "$pictures.part" "$pictures" || die "no scene"
+}
+
+# train FILE OPTION...: by the program of the build
+train() {
+    file=$1
+    shift
+    TED4_KERNEL=$level $runner "$here/ted4enc" "$pictures" -o "$file.ted4" "$@" --seed 1 -j "$threads" -f --json --log "$file.jsonl" >"$file.json" 2>"$file.stderr" ||
+        { tail -n 1 "$file.stderr" | tr ',' ';'; return 1; }
+}
+
+# one_build: compiles, trains everything; sets hash, variants_hash, bytes, verdict
+one_build() {
+    hash= variants_hash= bytes= seconds=
+    here=$work/$(echo "$compiler $variables" | short_hash)
+    set -- $(echo "$variables" | sed 's/ -/,-/g')
+    for v; do
+        shift
+        set -- "$@" "$(echo "$v" | sed 's/,-/ -/g')"
+    done
+    if ! ${MAKE:-make} -s -j "$(getconf _NPROCESSORS_ONLN)" B="$here" CC="$compiler" "$@" "$here/ted4enc" >"$work/$name.log" 2>&1; then
+        verdict="does not build: $(grep -m 1 -i -E 'error|cannot' "$work/$name.log" | tr ',' ';')"
+        return
+    fi
+    begun=$(date +%s)
+    verdict=$(train "$work/$name" $(echo $whole)) || { verdict="does not train: $verdict"; return; }
+    seconds=$(($(date +%s) - begun))
+    for v in $variants; do
+        verdict=$(train "$work/$name-${v%%:*}" $(echo $small ${v#*:} | tr + ' ')) || { verdict="does not train ${v%%:*}: $verdict"; return; }
+    done
+    bytes=$(value bytes "$work/$name.json")
+    hash=$(short_hash <"$work/$name.ted4")
+    variants_hash=$(for v in $variants; do cat "$work/$name-${v%%:*}.ted4"; done | short_hash)
+    verdict=passed
+}
+
+# put_row: in place of an earlier one
+put_row() {
+    {
+        echo $columns
+        { grep -v -e "^$name," -e "^name," "$csv" 2>/dev/null
+          echo "$name,$key,$(version),$level,$threads,$agrees,$hash,$variants_hash,$bytes,$seconds,$verdict"; } | sort
+    } >"$csv.new" && mv "$csv.new" "$csv"
+}
+
+chosen() {
+    [ -n "$patterns" ] || return 0
+    set -f
+    for pattern in $patterns; do
+        case $name in $pattern) set +f; return 0 ;; esac
+    done
+    set +f
+    return 1
+}
+
+one() {
+    state
+    case $state in
+    passed)  echo "passed   $name (as machines.csv says)"; return ;;
+    kept)    echo "kept     $name: no $lacks here; machines.csv has a row of the same sources"; return ;;
+    skipped) echo "skipped  $name: no $lacks${packages:+ (needs $packages)}"; return ;;
+    esac
+    one_build
+    put_row
+    if [ "$verdict" = passed ]; then
+        echo "passed   $name: $hash, variants $variants_hash, $bytes bytes, $seconds s"
+    else
+        echo "FAILED   $name: $verdict"
+    fi
+}
+
+# report: the table, between its marks in machines.md; rows that count go into $work/counted
+report() {
+    : >"$work/counted"
+    each | while read -r line; do
+        split "$line"
+        state
+        case $state in
+        passed)  said=passed ;;
+        kept)    said="passed elsewhere" ;;
+        failed)  said="**failed**: $(echo "$row" | cut -d, -f11)" ;;
+        stale)   said="stale" ;;
+        skipped) said="skipped: no $lacks" row= ;;
+        *)       said="not run" row= ;;
+        esac
+        case $state in passed | kept | failed) echo "$row" >>"$work/counted" ;; esac
+        echo "$row" | awk -F, -v name="$name" -v said="$said" -v compiler="$compiler" -v make="$variables" -v level="$level" -v threads="$threads" -v agrees="$agrees" '{
+            print "| " name " | `" compiler "` | `" make "` | " level " | " threads " | " ($7 == "" ? "" : "`" $7 "`") " | " ($8 == "" ? "" : "`" $8 "`") " | " $9 " | " $10 " | " \
+                said (agrees == "same" ? "" : "; may differ") " |" }'
+    done >"$work/rows"
+    awk -v rows="$work/rows" '
+        /^<!-- trainings -->$/ { print; skip = 1
+            print "| build | compiler | make | level | threads | whole method | variants | bytes | seconds | result |"
+            print "|---|---|---|---|---|---|---|---|---|---|"
+            while ((getline line < rows) > 0) print line }
+        /^<!-- end of trainings -->$/ { skip = 0 }
+        !skip' "$page" >"$page.new" && mv "$page.new" "$page"
+}
+
+# agree: of builds that have to give the same files none fails, no two differ, and enough have passed
+agree() {
+    least=8
+    [ -z "$patterns" ] || least=1
+    grep ',same,' "$work/counted" >"$work/same"
+    passed=$(grep -c ',passed$' "$work/same")
+    different=$(cut -d, -f7,8 "$work/same" | sort -u | grep -c .)
+    echo "$passed builds that have to agree passed:"
+    cut -d, -f7,8 "$work/same" | sort | uniq -c | sed 's/^ *\([0-9]*\) \(.*\),\(.*\)/    \1 gave \2, variants \3/'
+    [ "$passed" -ge $least ] || { echo "machines.sh: at least $least have to pass" >&2; return 1; }
+    [ "$different" = 1 ] && ! grep -qv ',passed$' "$work/counted"
+}
+
+main() {
+    patterns= do=run
+    for argument; do
+        case $argument in
+        --list)   do=list ;;
+        --report) do=report ;;
+        -*)       die "$argument: no such option" ;;
+        *)        patterns="$patterns $argument" ;;
+        esac
+    done
+    enter
+    [ $do != run ] || prepare
+    each >"$work/todo"
+    while [ $do != report ] && read -r line <&3; do
+        split "$line"
+        chosen || continue
+        case $do in
+        run)  one ;;
+        list) state; echo "$state $name" ;;
+        esac
+    done 3<"$work/todo"
+    [ $do = list ] || report
+    [ $do != run ] || agree
+}
+
+main "$@"
+exit
