@@ -125,9 +125,9 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
     o.trace_user = &last;
     o.max_work = work_bound_of(knob);
     memcpy(copy + knob[1] / 2 % 64, data, n);
-    kernel_level(knob[1] & PLAIN ? "plain" : NULL);
+    use_kernels(knob[1] & PLAIN ? "plain" : NULL);
     b = decode(copy + knob[1] / 2 % 64, n, &o);
-    kernel_level(NULL);
+    use_kernels(NULL);
     fuzz_require(memory.held == 0 && memory.most <= o.max_bytes, "no more memory than allowed");
     fuzz_require(last <= n && memcmp(copy + knob[1] / 2 % 64, data, n) == 0, "input left alone");
     same(&a, &b, o.max_bytes < FUZZ_MAX_BYTES, o.max_work > 0 && work_of(data, n) > o.max_work);

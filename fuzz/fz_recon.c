@@ -71,9 +71,9 @@ static void check_fresh(const ted4_scene *s, const ted4_query *q, const uint8_t 
     ted4_gaussians g;
     uint8_t        again[16];
 
-    kernel_level("plain");
+    use_kernels("plain");
     fuzz_require(ted4_recon_new(&r, s, NULL) == TED4_OK, "recon");
-    kernel_level(NULL);
+    use_kernels(NULL);
     fuzz_require(ted4_recon_query(r, q, &backwards, &g) == verdict, "one verdict");
     ted4_gaussians_hash(&g, again);
     fuzz_require(verdict != TED4_OK || memcmp(hash, again, sizeof again) == 0, "whatever was queried before");

@@ -5,7 +5,7 @@
 
 #include <stddef.h>
 #include "base/parallel.h"
-#include "kernel_level.h"
+#include "use_kernels.h"
 
 static inline void order_forward(void *user, size_t n, void (*body)(void *arg, size_t i), void *arg)
 {

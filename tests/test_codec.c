@@ -7,8 +7,8 @@
 #include <stdlib.h>
 #include <xxhash.h>
 #include "base/level.h"
-#include "kernel_level.h"
 #include "norm/limits.h"
+#include "use_kernels.h"
 #include "random_scene.h"
 
 enum { SCENES = 120, CHANGES = 20000 };
@@ -119,12 +119,12 @@ static void large(void **state)
 
     (void)state;
     for (int level = TED4_LEVEL_PLAIN; level <= (int)ted4_level_of_machine(); level++) {
-        kernel_level(ted4_level_name((ted4_level)level));
+        use_kernels(ted4_level_name((ted4_level)level));
         t = decode(f, NULL);
         same_scene(s, t);
         ted4_scene_free(t);
     }
-    kernel_level(NULL);
+    use_kernels(NULL);
     ted4_scene_free(s);
     free(f.data);
 }

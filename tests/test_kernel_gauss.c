@@ -7,9 +7,9 @@
 #include <stddef.h>
 #include <cmocka.h>
 #include "base/level.h"
-#include "kernel_level.h"
 #include "read/reader.h"
 #include "substream_case.h"
+#include "use_kernels.h"
 
 typedef struct {
     ted4_error  error;
@@ -197,11 +197,11 @@ static void test_selected(void **state)
 
     if (v->level > ted4_level_of_machine())
         skip();
-    kernel_level(ted4_level_name(v->level));
+    use_kernels(ted4_level_name(v->level));
     assert_true(ted4_select_gauss_many() == v->many);
-    kernel_level("plain");
+    use_kernels("plain");
     assert_true(ted4_select_gauss_many() == NULL);
-    kernel_level(NULL);
+    use_kernels(NULL);
 }
 
 #define TESTS(v)                                                                                       \

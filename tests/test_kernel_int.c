@@ -8,7 +8,7 @@
 #include <stdlib.h>
 #include "base/level.h"
 #include "kernel/int_kernel.h"
-#include "kernel_level.h"
+#include "use_kernels.h"
 #include "random_scene.h"
 
 enum { BLOCK = TED4_PRIOR_BLOCK };
@@ -113,36 +113,37 @@ static void variant(void **state)
 static void selected_by_name(void **state)
 {
     (void)state;
-    kernel_level("plain");
+    use_kernels("plain");
     assert_ptr_equal(ted4_select_int_dense(), &ted4_int_dense_plain);
 #if defined(__x86_64__)
-    kernel_level("v1");
+    use_kernels("v1");
     assert_ptr_equal(ted4_select_int_dense(), &ted4_int_dense_plain);
-    kernel_level("v3");
+    use_kernels("v3");
     assert_ptr_equal(ted4_select_int_dense(), ted4_level_of_machine() >= TED4_LEVEL_V3 ? &ted4_int_dense_avx2
                                                                                       : &ted4_int_dense_plain);
 #endif
-    kernel_level(NULL);
+    use_kernels(NULL);
+}
+
+/* State of a test: the variant, or NULL where the machine has it not. */
+static void *of(const ted4_int_dense *v, int has)
+{
+    return has ? (void *)(uintptr_t)v : NULL;
 }
 
 int main(void)
 {
-    const ted4_int_dense *set[3] = { NULL, NULL, NULL };
-#if defined(__x86_64__)
-    if (ted4_level_of_machine() >= TED4_LEVEL_V3)
-        set[0] = &ted4_int_dense_avx2;
-    if (ted4_level_of_machine() >= TED4_LEVEL_V4)
-        set[1] = &ted4_int_dense_avx512;
-    if (ted4_level_of_machine() >= TED4_LEVEL_V4 && __builtin_cpu_supports("avx512vnni"))
-        set[2] = &ted4_int_dense_vnni;
-#elif defined(__AARCH64EL__)
-    set[0] = &ted4_int_dense_neon;
-#endif
+    const ted4_level machine = ted4_level_of_machine();
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(selected),
-        { "first", variant, NULL, NULL, (void *)(uintptr_t)set[0] },
-        { "second", variant, NULL, NULL, (void *)(uintptr_t)set[1] },
-        { "third", variant, NULL, NULL, (void *)(uintptr_t)set[2] },
+#if defined(__x86_64__)
+        { "avx2", variant, NULL, NULL, of(&ted4_int_dense_avx2, machine >= TED4_LEVEL_V3) },
+        { "avx512", variant, NULL, NULL, of(&ted4_int_dense_avx512, machine >= TED4_LEVEL_V4) },
+        { "vnni", variant, NULL, NULL,
+          of(&ted4_int_dense_vnni, machine >= TED4_LEVEL_V4 && __builtin_cpu_supports("avx512vnni")) },
+#elif defined(__AARCH64EL__)
+        { "neon", variant, NULL, NULL, of(&ted4_int_dense_neon, machine >= TED4_LEVEL_BASE) },
+#endif
         cmocka_unit_test(selected_by_name),
     };
 

@@ -10,7 +10,7 @@
 
 #include "base/level.h"
 #include "kernel/strict_dense.h"
-#include "kernel_level.h"
+#include "use_kernels.h"
 #include "recon/strict.h"
 
 enum { MAX = 131 };
@@ -93,38 +93,25 @@ static void twin_is_plain(ted4_strict_dense_fn twin)
     compare(twin, MAX, MAX, 1);
 }
 
-static void avx2_is_plain(void **state)
-{
-    (void)state;
-#if defined(__x86_64__)
-    if (ted4_level_of_machine() >= TED4_LEVEL_V3) {
-        twin_is_plain(ted4_strict_dense_avx2);
-        return;
-    }
-#endif
-    skip();
-}
+/* What a machine of this kind may have. */
+typedef struct {
+    ted4_level           level;
+    ted4_strict_dense_fn twin;
+} variant;
 
-static void avx512_is_plain(void **state)
-{
-    (void)state;
 #if defined(__x86_64__)
-    if (ted4_level_of_machine() >= TED4_LEVEL_V4) {
-        twin_is_plain(ted4_strict_dense_avx512);
-        return;
-    }
+static variant avx2 = { TED4_LEVEL_V3, ted4_strict_dense_avx2 }, avx512 = { TED4_LEVEL_V4, ted4_strict_dense_avx512 };
+#elif defined(__AARCH64EL__)
+static variant neon = { TED4_LEVEL_BASE, ted4_strict_dense_neon };
 #endif
-    skip();
-}
 
-static void neon_is_plain(void **state)
+static void variant_is_plain(void **state)
 {
-    (void)state;
-#if defined(__AARCH64EL__)
-    twin_is_plain(ted4_strict_dense_neon);
-#else
-    skip();
-#endif
+    const variant *v = *state;
+
+    if (v == NULL || v->level > ted4_level_of_machine())
+        skip();
+    twin_is_plain(v->twin);
 }
 
 /* One lane, one input at a time, nothing else: the definition. */
@@ -153,16 +140,16 @@ static void plain_is_the_text(void **state)
 static void environment_chooses(void **state)
 {
     (void)state;
-    kernel_level("plain");
+    use_kernels("plain");
     assert_true(ted4_select_strict_dense() == NULL);
 #if defined(__x86_64__)
-    kernel_level("v1");
+    use_kernels("v1");
     assert_true(ted4_select_strict_dense() == NULL);
-    kernel_level("v3");
+    use_kernels("v3");
     assert_true(ted4_select_strict_dense() == (ted4_level_of_machine() >= TED4_LEVEL_V3 ? ted4_strict_dense_avx2
                                                                                        : NULL));
 #endif
-    kernel_level(NULL);
+    use_kernels(NULL);
     if (ted4_level_wanted() >= TED4_LEVEL_V3)
         assert_true(ted4_select_strict_dense() != NULL);
 }
@@ -170,7 +157,13 @@ static void environment_chooses(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(avx2_is_plain), cmocka_unit_test(avx512_is_plain), cmocka_unit_test(neon_is_plain),
+#if defined(__x86_64__)
+        { "avx2_is_plain", variant_is_plain, NULL, NULL, &avx2 }, { "avx512_is_plain", variant_is_plain, NULL, NULL, &avx512 },
+#elif defined(__AARCH64EL__)
+        { "neon_is_plain", variant_is_plain, NULL, NULL, &neon },
+#else
+        { "no_variant", variant_is_plain, NULL, NULL, NULL },
+#endif
         cmocka_unit_test(plain_is_the_text), cmocka_unit_test(environment_chooses),
     };
 

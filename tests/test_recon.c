@@ -12,8 +12,8 @@
 #include <xxhash.h>
 #include "base/level.h"
 #include "tool/threads.h"
-#include "kernel_level.h"
 #include "odd_threads.h"
+#include "use_kernels.h"
 #include "recon_ref.h"
 #include "recon_scene.h"
 
@@ -247,14 +247,14 @@ static void kernels_give_the_same_hash(void **state)
         ted4_recon *r;
         ted4_gaussians g;
 
-        kernel_level(ted4_level_name((ted4_level)level));
+        use_kernels(ted4_level_name((ted4_level)level));
         assert_int_equal(ted4_recon_new(&r, &s, NULL), TED4_OK);
         assert_int_equal(ted4_recon_query(r, &queries[2], NULL, &g), TED4_OK);
         ted4_gaussians_hash(&g, hash[level]);
         ted4_recon_free(r);
         assert_memory_equal(hash[level], hash[TED4_LEVEL_PLAIN], 16);
     }
-    kernel_level(NULL);
+    use_kernels(NULL);
     scene_finish(&s);
 }
 

@@ -8,7 +8,7 @@
 #include <cmocka.h>
 #include <pthread.h>
 
-#include "kernel_level.h"
+#include "use_kernels.h"
 #include "ted4.h"
 #include "vector_files.h"
 
@@ -97,13 +97,13 @@ static void depth(void **state)
     stack = aligned_alloc(1 << 16, STACK);
     assert_non_null(stack);
     for (int plain = 0; plain < 2; plain++) {
-        kernel_level(plain ? "plain" : NULL);
+        use_kernels(plain ? "plain" : NULL);
         deepest = 0;
         assert_true(each_vector("", measure) > FEW_VECTORS);
         print_message("%s kernels: %zu bytes of stack (%s)\n", plain ? "plain" : "the level's", deepest, where);
         assert_true(deepest <= PROMISED);
     }
-    kernel_level(NULL);
+    use_kernels(NULL);
     free(stack);
 }
 

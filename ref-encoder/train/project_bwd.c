@@ -72,18 +72,18 @@ static inline void axis_bwd(const ted4_projection *p, const ted4_splat_lanes *g,
     ted4_vf dj_w = {0}, dj_w2 = {0}, dq[3];
 
     for (int i = 0; i < 3; i++) {
-        d_scale[i] += dp[i] * q[i];
+        d_scale[i] = ted4_vf_fma(dp[i], q[i], d_scale[i]);
         dq[i] = dp[i] * g->scale[i];
     }
     for (int i = 0; i < 3; i++) {
-        const ted4_vf dj = p->r[3 * i] * dq[0] + p->r[3 * i + 1] * dq[1] + p->r[3 * i + 2] * dq[2];
+        const ted4_vf dj = ted4_dot3(p->r + 3 * i, dq);
 
         for (int k = 0; k < 3; k++)
-            d_r[3 * i + k] += j[i] * dq[k];
-        dj_w  += dj * w[i];
-        dj_w2 += dj * w2[i];
+            d_r[3 * i + k] = ted4_vf_fma(j[i], dq[k], d_r[3 * i + k]);
+        dj_w  = ted4_vf_fma(dj, ted4_vf_all(w[i]), dj_w);
+        dj_w2 = ted4_vf_fma(dj, ted4_vf_all(w2[i]), dj_w2);
     }
-    *d_z     -= f * p->iz * p->iz * (dj_w - u * dj_w2);
+    *d_z      = ted4_vf_fnma(f * p->iz * p->iz, ted4_vf_fnma(u, dj_w2, dj_w), *d_z);
     *d_slope += ted4_vf_keep(u_free, -f * p->iz * dj_w2);
 }
 
@@ -92,19 +92,21 @@ static inline void axis_bwd(const ted4_projection *p, const ted4_splat_lanes *g,
 static inline void covariance_bwd(const ted4_projection *p, const ted4_vf sum[TED4_GRAD_SUMS], ted4_vf dp0[3], ted4_vf dp1[3])
 {
     const float   unscale = 1.0f / (TED4_WHITEN * TED4_WHITEN * TED4_WHITEN * TED4_WHITEN);
-    const ted4_vf c = unscale * (p->a3 * sum[TED4_SUM_N12] + p->a2 * sum[TED4_SUM_N11]);
+    const ted4_vf c = unscale * ted4_vf_fma(p->a3, sum[TED4_SUM_N12], p->a2 * sum[TED4_SUM_N11]);
+    const ted4_vf d = unscale * ted4_vf_fma(p->a2, sum[TED4_SUM_N12], p->a3 * sum[TED4_SUM_N22]);
     const ted4_vf v00 = unscale * p->a1 * p->a1 * sum[TED4_SUM_N11];
     const ted4_vf v01 = p->a1 * c;
-    const ted4_vf v11 = p->a2 * c + unscale * p->a3 * (p->a2 * sum[TED4_SUM_N12] + p->a3 * sum[TED4_SUM_N22]);
+    const ted4_vf v11 = ted4_vf_fma(p->a2, c, p->a3 * d);
 
     for (int i = 0; i < 3; i++) {
-        dp0[i] = v00 * p->p0[i] + v01 * p->p1[i];
-        dp1[i] = v01 * p->p0[i] + v11 * p->p1[i];
+        dp0[i] = ted4_vf_fma(v00, p->p0[i], v01 * p->p1[i]);
+        dp1[i] = ted4_vf_fma(v01, p->p0[i], v11 * p->p1[i]);
     }
 }
 
-/* From this a c / det on: a slanting Gaussian is then a thousand times as long as it is wide, and covariance_bwd off by a sixth. */
-#define THIN 1e6f
+/* From this a c / det on, a slanting Gaussian being some 170 times as long as it is wide, covariance_bwd loses digits that
+ * show: its error grows with a c / det, to a sixth of the gradient at 1e6. */
+#define THIN 3e4f
 
 /* dL/dP again, for the lanes of thin. Above, with U P of size 1, (U^T S U) P is a difference of numbers as large as the Gaussian is long; here
  * U P is made first. Its first row, a1 p0 + a2 p1 = a1 (p0 - b / c p1), is one too, but c p0 - b p1 = blur p0 + p1 x (p0 x p1). */
@@ -116,17 +118,17 @@ static inline void thin_bwd(const ted4_projection *p, const ted4_vf sum[TED4_GRA
     ted4_vf       m[3], p1[3];
 
     for (int i = 0; i < 3; i++) {
-        m[i]  = p->p0[(i + 1) % 3] * p->p1[(i + 2) % 3] - p->p0[(i + 2) % 3] * p->p1[(i + 1) % 3];
+        m[i]  = ted4_cross(p->p0, p->p1, i);
         p1[i] = p->p1[i] * ic;
     }
     for (int i = 0; i < 3; i++) {
-        const ted4_vf turn = p1[(i + 1) % 3] * m[(i + 2) % 3] - p1[(i + 2) % 3] * m[(i + 1) % 3];
-        const ted4_vf w1 = p->a1 * (TED4_RASTER_BLUR * (p->p0[i] * ic) + turn), w2 = p->a3 * p->p1[i];
-        const ted4_vf s1 = unscale * (sum[TED4_SUM_N11] * w1 + sum[TED4_SUM_N12] * w2);
-        const ted4_vf s2 = unscale * (sum[TED4_SUM_N12] * w1 + sum[TED4_SUM_N22] * w2);
+        const ted4_vf blur = ted4_vf_all(TED4_RASTER_BLUR);
+        const ted4_vf w1 = p->a1 * ted4_vf_fma(blur, p->p0[i] * ic, ted4_cross(p1, m, i)), w2 = p->a3 * p->p1[i];
+        const ted4_vf s1 = unscale * ted4_vf_fma(sum[TED4_SUM_N11], w1, sum[TED4_SUM_N12] * w2);
+        const ted4_vf s2 = unscale * ted4_vf_fma(sum[TED4_SUM_N12], w1, sum[TED4_SUM_N22] * w2);
 
         dp0[i] = ted4_vf_select(thin, p->a1 * s1, dp0[i]);
-        dp1[i] = ted4_vf_select(thin, p->a2 * s1 + p->a3 * s2, dp1[i]);
+        dp1[i] = ted4_vf_select(thin, ted4_vf_fma(p->a2, s1, p->a3 * s2), dp1[i]);
     }
 }
 
