@@ -19,6 +19,9 @@ LEVELED = ref-decoder/render/project.c ref-decoder/render/blend.c ref-encoder/tr
           ref-encoder/kernel/dense_product.c ref-encoder/kernel/dense_weights.c \
           $(patsubst %,ref-encoder/train/%.c,generate_fwd generate_bwd generate_chain generate_effective rate_fwd rate_bwd rate_row \
           rate_decoded quantise adam_step loss_passes colour_bands)
+# Rows are short and may lie anywhere: gcc would take one lane at a time until a store is aligned, and clang has no such option.
+NO_PEELING = --param=vect-max-peeling-for-alignment=0
+LANES := $(shell $(CC) -Werror $(NO_PEELING) -x c -fsyntax-only /dev/null 2>/dev/null && echo $(NO_PEELING))
 FLAGS_v3 = -mavx2 -mfma -mbmi -mbmi2
 FLAGS_v4 = $(FLAGS_v3) -mavx512f -mavx512bw -mavx512dq -mavx512vl -mprefer-vector-width=512
 # Objects of the sources $(1), with all copies of leveled ones.
@@ -43,7 +46,7 @@ TESTS    = $(patsubst tests/%.c,$B/tests/%,$(sort $(wildcard tests/test_*.c))) \
 all: $(PROGS)
 
 # Changes when compiler or flags do; then everything is compiled anew.
-HOW = $(CC) $(CFLAGS_ALL) $(STRICT) $(FREE) $(FLAGS_v3) $(FLAGS_v4)
+HOW = $(CC) $(CFLAGS_ALL) $(STRICT) $(FREE) $(LANES) $(FLAGS_v3) $(FLAGS_v4)
 $B/how: always
 	@mkdir -p $(@D)
 	@echo '$(HOW)' | cmp -s - $@ || echo '$(HOW)' >$@
@@ -62,7 +65,7 @@ $B/ref-decoder/kernel/%_vnni.o: FPFLAGS = $(STRICT) -mavx512f -mavx512bw -mavx51
 define COMPILE_LEVEL
 $B/%.$(1).o: %.c $B/how
 	@mkdir -p $$(@D)
-	$$(CC) $$(CFLAGS_ALL) $$(FREE) $$(FLAGS_$(1)) -DTED4_LEVEL=$(1) -c $$< -o $$@
+	$$(CC) $$(CFLAGS_ALL) $$(FREE) $$(LANES) $$(FLAGS_$(1)) -DTED4_LEVEL=$(1) -c $$< -o $$@
 endef
 $(foreach l,$(LEVELS),$(eval $(call COMPILE_LEVEL,$l)))
 

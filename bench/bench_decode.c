@@ -1,6 +1,7 @@
-/* bench_decode.c - how long files take to decode on one core, with the kernels of each level that this machine has and with
- * none, in turn, and how much of that is the entropy stage: what the library hands to the caller's threads, a tile at a time
- * (prior, coder, symbols; spec 9, 10). All of them have to give the same scene.
+/* bench_decode.c - how long files take to decode on one core, with the kernels of each level that
+ * this machine has and with none, in turn, and how much of that is the entropy stage: what the
+ * library hands to the caller's threads, a tile at a time (prior, coder, symbols; spec 9, 10). All
+ * of them have to give the same scene.
  * Usage: bench_decode FILE.ted4...
  * SPDX-License-Identifier: BSD-2-Clause */
 #include <errno.h>
@@ -78,14 +79,14 @@ static int levels_here(ted4_level *level)
 
 static void print_level(ted4_level level, const times *t, double symbols)
 {
-    printf("  %-6s  whole %7.1f ms  entropy stage %7.1f ms (%5.1f million symbols/s)\n", ted4_level_name(level), t->whole,
-           t->entropy, symbols / t->entropy / 1e3);
+    printf("  %-6s  whole %7.1f ms  entropy stage %7.1f ms (%5.1f million symbols/s)\n",
+           ted4_level_name(level), t->whole, t->entropy, symbols / t->entropy / 1e3);
 }
 
 static void print_ratio(const char *of, const char *to, const times *a, const times *b)
 {
-    printf("  ratio   whole %7.2f     entropy stage %7.2f     (%s to %s)\n", a->whole / b->whole, a->entropy / b->entropy, of,
-           to);
+    printf("  ratio   whole %7.2f     entropy stage %7.2f     (%s to %s)\n", a->whole / b->whole,
+           a->entropy / b->entropy, of, to);
 }
 
 static int measure(const char *path, const uint8_t *bytes, size_t size)
@@ -108,8 +109,8 @@ static int measure(const char *path, const uint8_t *bytes, size_t size)
     }
     const char *const slash = strrchr(path, '/');
 
-    printf("%s: %zu bytes, %u anchors, %.0f symbols; same scene: %s\n", slash != NULL ? slash + 1 : path, size,
-           info[0].n_anchors, symbols, same ? "yes" : "NO");
+    printf("%s: %zu bytes, %u anchors, %.0f symbols; same scene: %s\n",
+           slash != NULL ? slash + 1 : path, size, info[0].n_anchors, symbols, same ? "yes" : "NO");
     for (int i = 0; i < n; i++)
         print_level(level[i], &best[i], symbols);
     for (int i = 1; i < n; i++)

@@ -6,6 +6,7 @@
  * SPDX-License-Identifier: BSD-2-Clause */
 #include <string.h>
 #include "harness.h"
+#include "base/level.h"
 #include "kernel/int_kernel.h"
 
 enum { BLOCK = TED4_PRIOR_BLOCK, MAX_IN = 70, MAX_OUT = 20, UNTOUCHED = 0x55 };
@@ -138,10 +139,14 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
     define(&n, &right);
     compare(&n, &ted4_int_dense_plain, &right);
 #if defined(__x86_64__)
-    if (__builtin_cpu_supports("avx2"))
+    if (ted4_level_of_machine() >= TED4_LEVEL_V3)
         compare(&n, &ted4_int_dense_avx2, &right);
-    if (__builtin_cpu_supports("avx512f") && __builtin_cpu_supports("avx512bw") && __builtin_cpu_supports("avx512vl"))
+    if (ted4_level_of_machine() >= TED4_LEVEL_V4)
         compare(&n, &ted4_int_dense_avx512, &right);
+    if (ted4_level_of_machine() >= TED4_LEVEL_V4 && __builtin_cpu_supports("avx512vnni"))
+        compare(&n, &ted4_int_dense_vnni, &right);
+#elif defined(__AARCH64EL__)
+    compare(&n, &ted4_int_dense_neon, &right);
 #endif
     return 0;
 }

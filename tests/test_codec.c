@@ -108,8 +108,8 @@ static void round_trip(void **state)
     }
 }
 
-/* Several lanes, full tiles and one that is short; every tile after the first behind another. Decoded with the kernels of
- * each level. */
+/* Several lanes, full tiles and one that is short; every tile after the first behind another.
+ * Decoded with the kernels of each level. */
 static void large(void **state)
 {
     random_source     r = random_seed(1);

@@ -1,6 +1,6 @@
-/* test_kernel_gauss.c - each kernel/gauss_many_*.c that this machine can run reads what read/reader.c reads one symbol at a
- * time: symbols, error, and where the words end; for every number of lanes, calls of any size, escapes, symbols out of
- * range, and damaged substreams.
+/* test_kernel_gauss.c - each kernel/gauss_many_*.c that this machine can run reads what
+ * read/reader.c reads one symbol at a time: symbols, error, and where the words end; for every
+ * number of lanes, calls of any size, escapes, symbols out of range, and damaged substreams.
  * SPDX-License-Identifier: BSD-2-Clause */
 #include <setjmp.h>
 #include <stdarg.h>
@@ -204,15 +204,17 @@ static void test_selected(void **state)
     use_kernels(NULL);
 }
 
-#define TESTS(v)                                                                                       \
-    cmocka_unit_test_prestate(test_same, &(v)), cmocka_unit_test_prestate(test_outside, &(v)),         \
-        cmocka_unit_test_prestate(test_damaged, &(v)), cmocka_unit_test_prestate(test_takes, &(v)),    \
-        cmocka_unit_test_prestate(test_ends, &(v)), cmocka_unit_test_prestate(test_selected, &(v))
+#define TESTS(v)                                                                                   \
+    cmocka_unit_test_prestate(test_same, &(v)), cmocka_unit_test_prestate(test_outside, &(v)),     \
+        cmocka_unit_test_prestate(test_damaged, &(v)),                                             \
+        cmocka_unit_test_prestate(test_takes, &(v)), cmocka_unit_test_prestate(test_ends, &(v)),   \
+        cmocka_unit_test_prestate(test_selected, &(v))
 
 int main(void)
 {
 #if defined(__x86_64__)
-    static variant v3 = { TED4_LEVEL_V3, ted4_gauss_many_avx2 }, v4 = { TED4_LEVEL_V4, ted4_gauss_many_avx512 };
+    static variant v3 = { TED4_LEVEL_V3, ted4_gauss_many_avx2 },
+                   v4 = { TED4_LEVEL_V4, ted4_gauss_many_avx512 };
     const struct CMUnitTest tests[] = { TESTS(v3), TESTS(v4) };
 #elif defined(__AARCH64EL__)
     static variant neon = { TED4_LEVEL_BASE, ted4_gauss_many_neon };

@@ -36,10 +36,14 @@ XXH64_hash_t __real_XXH3_64bits(const void *data, size_t size);
 XXH64_hash_t __wrap_XXH3_64bits(const void *data, size_t size);
 int          __real_inflate(z_streamp z, int flush);
 int          __wrap_inflate(z_streamp z, int flush);
-void         __real_ted4_prior_hyper_hidden(const ted4_prior *p, const uint16_t *position, size_t n, int16_t *hidden);
-void         __wrap_ted4_prior_hyper_hidden(const ted4_prior *p, const uint16_t *position, size_t n, int16_t *hidden);
-void         __real_ted4_prior_hyper_some(const ted4_prior *p, const ted4_int_layer *l, const int16_t *x, size_t n, int32_t *out);
-void         __wrap_ted4_prior_hyper_some(const ted4_prior *p, const ted4_int_layer *l, const int16_t *x, size_t n, int32_t *out);
+void __real_ted4_prior_hyper_hidden(const ted4_prior *p, const uint16_t *position, size_t n,
+                                    int16_t *hidden);
+void __wrap_ted4_prior_hyper_hidden(const ted4_prior *p, const uint16_t *position, size_t n,
+                                    int16_t *hidden);
+void __real_ted4_prior_hyper_some(const ted4_prior *p, const ted4_int_layer *l, const int16_t *x,
+                                  size_t n, int32_t *out);
+void __wrap_ted4_prior_hyper_some(const ted4_prior *p, const ted4_int_layer *l, const int16_t *x,
+                                  size_t n, int32_t *out);
 void         __real_ted4_prior_slice(const ted4_prior *p, unsigned m, const int16_t *ctx, size_t n, int32_t *out);
 void         __wrap_ted4_prior_slice(const ted4_prior *p, unsigned m, const int16_t *ctx, size_t n, int32_t *out);
 uint32_t     __real_ted4_gauss_find(unsigned g, int32_t fr, uint32_t slot, ted4_slots *slots);
@@ -78,7 +82,8 @@ static uint64_t columns(size_t n)
     return (n + 31) / 32 * 32;
 }
 
-void __wrap_ted4_prior_hyper_hidden(const ted4_prior *p, const uint16_t *position, size_t n, int16_t *hidden)
+void __wrap_ted4_prior_hyper_hidden(const ted4_prior *p, const uint16_t *position, size_t n,
+                                    int16_t *hidden)
 {
     const ted4_int_layer *last = ted4_prior_last(p);
 
@@ -87,7 +92,8 @@ void __wrap_ted4_prior_hyper_hidden(const ted4_prior *p, const uint16_t *positio
 }
 
 /* Products, and a sum for each output. */
-void __wrap_ted4_prior_hyper_some(const ted4_prior *p, const ted4_int_layer *l, const int16_t *x, size_t n, int32_t *out)
+void __wrap_ted4_prior_hyper_some(const ted4_prior *p, const ted4_int_layer *l, const int16_t *x,
+                                  size_t n, int32_t *out)
 {
     work += columns(n) * (l->in + (uint64_t)1) * l->out;
     __real_ted4_prior_hyper_some(p, l, x, n, out);

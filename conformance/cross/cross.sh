@@ -40,7 +40,8 @@ enter() {
 what_from() {
     strict=$(sed -n 's/^STRICT *= *//p' Makefile)
     avx512=$(sed -n 's/^.*_avx512\.o: FPFLAGS = \$(STRICT) *//p' Makefile)
-    [ -n "$strict" ] && [ -n "$avx512" ] || die "Makefile: STRICT or the flags of AVX-512 not found"
+    vnni=$(sed -n 's/^.*_vnni\.o: FPFLAGS = \$(STRICT) *//p' Makefile)
+    [ -n "$strict" ] && [ -n "$avx512" ] && [ -n "$vnni" ] || die "Makefile: STRICT or the flags of AVX-512 not found"
     decoder=$(ls ref-decoder/base/*.c ref-decoder/norm/*.c ref-decoder/read/*.c ref-decoder/recon/*.c ref-decoder/kernel/*.c)
     program="conformance/cross/cross_decoder.c conformance/tool/answer.c conformance/tool/text.c
         ref-decoder/tool/contract.c ref-decoder/tool/tier_hash.c ref-decoder/tool/sha256.c ref-decoder/tool/cli.c ref-decoder/tool/read_file.c"
@@ -65,7 +66,7 @@ sources_key() {
         awk -f bench/sources.awk $decoder $program ref-decoder/ted4.h ref-decoder/base/*.[hd]* ref-decoder/norm/*.h ref-decoder/read/*.[hd]* \
             ref-decoder/recon/*.h ref-decoder/kernel/*.h $headers conformance/cross/windows.h
         cat conformance/lists/few.txt conformance/cross/wasi.mjs
-        echo "$strict $avx512 $suite"
+        echo "$strict $avx512 $vnni $suite"
     } | short_hash
 }
 
@@ -185,6 +186,7 @@ compile() {
         case $source in
         *_avx2.c)   isa=-mavx2 ;;
         *_avx512.c) isa=$avx512 ;;
+        *_vnni.c)   isa=$vnni ;;
         *)          isa= ;;
         esac
         case $name in

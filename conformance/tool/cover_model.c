@@ -74,12 +74,17 @@ void conf_cover_model_goals(conf_cover *c)
         conf_goal(c, "output shifts", "%d", i);
 }
 
-/* 0 .. 4: which kind of layer; from where it lies in the prior that is evaluated. */
+/* 0 .. 4: which kind of layer; from where it lies in the prior that is evaluated. What lies elsewhere is a part of the
+ * hyperprior's last layer (ted4_prior_some). */
 static int kind_of(const ted4_prior *p, const ted4_int_layer *l)
 {
-    if (l >= p->hyper && l < p->hyper + TED4_HYPER_LAYERS)
-        return l == &p->hyper[p->n_hyper - 1] ? 2 : l == p->hyper ? 0 : 1;
-    return l >= p->slice[0] && ((size_t)(l - p->slice[0]) % TED4_SLICE_LAYERS == 0) ? 3 : 4;
+    const ted4_int_layer *slice = p->slice[0];
+
+    if (l >= slice && l < slice + sizeof p->slice / sizeof *slice)
+        return (size_t)(l - slice) % TED4_SLICE_LAYERS == 0 ? 3 : 4;
+    if (l >= p->hyper && l < p->hyper + p->n_hyper - 1)
+        return l == p->hyper ? 0 : 1;
+    return 2;
 }
 
 static const ted4_prior *prior_now;

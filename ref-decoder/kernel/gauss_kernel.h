@@ -13,18 +13,22 @@ typedef struct {
     const uint8_t *word, *end;      /* borrowed: the words not read yet */
 } ted4_gauss_lanes;
 
-/* With fewer lanes one symbol at a time is as fast. */
-enum { TED4_MANY_LANES = 8 };
+/* With fewer lanes it is not worth asking. */
+enum { TED4_MANY_LANES = 4 };
 
-/* Reads the next symbols as reader.c would, of at most n > 0; mu, sigma, k as in ted4_coder_ops, and k[n] may be written ahead. Returns how many it took, and leaves d->word
- * behind their words and d->lane alone. It stops where a symbol has to be read by itself: at an escape, a symbol out of range, and where words are missing. */
+/* Reads the next symbols as reader.c would, of at most n > 0; mu, sigma, k as in ted4_coder_ops,
+ * and k[n] may be written ahead. Returns how many it took, and leaves d->word behind their words
+ * and d->lane alone. It stops where a symbol has to be read by itself: at an escape, a symbol out
+ * of range, and where words are missing. */
 typedef size_t (*ted4_gauss_many)(ted4_gauss_lanes *d, size_t n, const int32_t *mu, const uint8_t *sigma, int16_t *k);
 
 #if defined(__x86_64__)
-size_t ted4_gauss_many_avx2(ted4_gauss_lanes *d, size_t n, const int32_t *mu, const uint8_t *sigma, int16_t *k);
+size_t ted4_gauss_many_avx2(ted4_gauss_lanes *d, size_t n, const int32_t *mu, const uint8_t *sigma,
+                            int16_t *k);
 size_t ted4_gauss_many_avx512(ted4_gauss_lanes *d, size_t n, const int32_t *mu, const uint8_t *sigma, int16_t *k);
 #elif defined(__AARCH64EL__)
-size_t ted4_gauss_many_neon(ted4_gauss_lanes *d, size_t n, const int32_t *mu, const uint8_t *sigma, int16_t *k);
+size_t ted4_gauss_many_neon(ted4_gauss_lanes *d, size_t n, const int32_t *mu, const uint8_t *sigma,
+                            int16_t *k);
 #endif
 
 /* That of the level wanted (base/level.h). NULL: it has none. */

@@ -58,7 +58,8 @@ static inline vi choose(mask m, vi yes, vi no)
     return (vi)_mm256_blendv_epi8((__m256i)no, (__m256i)yes, (__m256i)m);
 }
 
-/* Tables are looked up by loads, one an element: gather instructions take several times as long where processors are mended against leaks through them. */
+/* Tables are looked up by loads, one an element: gather instructions take several times as long
+ * where processors are mended against leaks through them. */
 static inline __m128i two_pairs(const int32_t *table, uint32_t i, uint32_t j)
 {
     const __m128 first = _mm_castsi128_ps(_mm_loadl_epi64((const void *)(table + i)));
@@ -66,7 +67,8 @@ static inline __m128i two_pairs(const int32_t *table, uint32_t i, uint32_t j)
     return _mm_castps_si128(_mm_loadh_pi(first, (const void *)(table + j)));
 }
 
-/* Indices go through memory, as moving each out of the vector takes longer; compilers think otherwise unless they are told that memory may have changed. */
+/* Indices go through memory, as moving each out of the vector takes longer; compilers think
+ * otherwise unless they are told that memory may have changed. */
 static inline void pairs(const int32_t *table, vi index, vi *low, vi *high)
 {
     _Alignas(VECTOR) uint32_t i[LANES];
@@ -90,37 +92,44 @@ static inline vi indices(const uint8_t *sigma)
 static inline vi scales(vi sigma)
 {
     const int32_t *step = ted4_stepi + 128;
-    const __m256i  near = _mm256_setr_epi32(step[0], step[2], step[4], step[6], step[8], step[10], step[12], step[14]);
-    const __m256i  far = _mm256_setr_epi32(step[16], step[18], step[20], step[22], step[24], step[26], step[28], step[30]);
+    const __m256i near = _mm256_setr_epi32(step[0], step[2], step[4], step[6], step[8], step[10],
+                                           step[12], step[14]);
+    const __m256i far = _mm256_setr_epi32(step[16], step[18], step[20], step[22], step[24],
+                                          step[26], step[28], step[30]);
     const __m256   a = _mm256_castsi256_ps(_mm256_permutevar8x32_epi32(near, (__m256i)sigma));
     const __m256   b = _mm256_castsi256_ps(_mm256_permutevar8x32_epi32(far, (__m256i)sigma));
 
-    return (vi)_mm256_castps_si256(_mm256_blendv_ps(a, b, _mm256_castsi256_ps((__m256i)(sigma << 28))));
+    return (vi)_mm256_castps_si256(
+        _mm256_blendv_ps(a, b, _mm256_castsi256_ps((__m256i)(sigma << 28))));
 }
 
 static inline __m128i expand_four(unsigned wants, const uint8_t *words)
 {
-    return _mm_shuffle_epi8(_mm_loadl_epi64((const void *)words), _mm_load_si128((const void *)ted4_word_places[wants]));
+    return _mm_shuffle_epi8(_mm_loadl_epi64((const void *)words),
+                            _mm_load_si128((const void *)ted4_word_places[wants]));
 }
 
 static inline vi expand(unsigned wants, const uint8_t *words)
 {
     const unsigned first = wants & 15;
 
-    return (vi)_mm256_set_m128i(expand_four(wants >> 4, words + 2 * __builtin_popcount(first)), expand_four(first, words));
+    return (vi)_mm256_set_m128i(expand_four(wants >> 4, words + 2 * __builtin_popcount(first)),
+                                expand_four(first, words));
 }
 
 static inline void narrow(int16_t *to, vi x)
 {
-    const __m256i low = _mm256_shuffle_epi8((__m256i)x, _mm256_setr_epi8(0, 1, 4, 5, 8, 9, 12, 13, -1, -1, -1, -1, -1, -1, -1, -1,
-                                                                        0, 1, 4, 5, 8, 9, 12, 13, -1, -1, -1, -1, -1, -1, -1, -1));
+    const __m256i low = _mm256_shuffle_epi8(
+        (__m256i)x, _mm256_setr_epi8(0, 1, 4, 5, 8, 9, 12, 13, -1, -1, -1, -1, -1, -1, -1, -1, 0, 1,
+                                     4, 5, 8, 9, 12, 13, -1, -1, -1, -1, -1, -1, -1, -1));
 
     _mm_storeu_si128((void *)to, _mm256_castsi256_si128(_mm256_permute4x64_epi64(low, 0x08)));
 }
 
 #include "kernel/gauss_tile.h"
 
-size_t ted4_gauss_many_avx2(ted4_gauss_lanes *d, size_t n, const int32_t *mu, const uint8_t *sigma, int16_t *k)
+size_t ted4_gauss_many_avx2(ted4_gauss_lanes *d, size_t n, const int32_t *mu, const uint8_t *sigma,
+                            int16_t *k)
 {
     return many(d, n, mu, sigma, k);
 }

@@ -1,4 +1,5 @@
-/* gauss_many_avx512.c - gauss_tile.h with two rows of sixteen lanes of AVX-512; substreams of fewer lanes are for AVX2.
+/* gauss_many_avx512.c - gauss_tile.h with two rows of sixteen lanes of AVX-512; substreams of fewer
+ * lanes are for AVX2.
  * SPDX-License-Identifier: BSD-2-Clause */
 #if defined(__x86_64__)
 
@@ -55,7 +56,8 @@ static inline vi choose(mask m, vi yes, vi no)
     return (vi)_mm512_mask_mov_epi32((__m512i)no, m, (__m512i)yes);
 }
 
-/* Tables are looked up by loads, one an element: gather instructions take several times as long where processors are mended against leaks through them. */
+/* Tables are looked up by loads, one an element: gather instructions take several times as long
+ * where processors are mended against leaks through them. */
 static inline __m128i two_pairs(const int32_t *table, const uint32_t *i)
 {
     const __m128 first = _mm_castsi128_ps(_mm_loadl_epi64((const void *)(table + i[0])));
@@ -68,7 +70,8 @@ static inline __m256i four_pairs(const int32_t *table, const uint32_t *i)
     return _mm256_set_m128i(two_pairs(table, i + 2), two_pairs(table, i));
 }
 
-/* Indices go through memory, as moving each out of the vector takes longer; compilers think otherwise unless they are told that memory may have changed. */
+/* Indices go through memory, as moving each out of the vector takes longer; compilers think
+ * otherwise unless they are told that memory may have changed. */
 static inline void pairs(const int32_t *table, vi index, vi *low, vi *high)
 {
     _Alignas(VECTOR) uint32_t i[LANES];
@@ -76,9 +79,12 @@ static inline void pairs(const int32_t *table, vi index, vi *low, vi *high)
     _mm512_store_si512((void *)i, (__m512i)index);
     __asm__("" : "+m"(i));
 
-    const __m512i a = _mm512_inserti64x4(_mm512_castsi256_si512(four_pairs(table, i)), four_pairs(table, i + 4), 1);
-    const __m512i b = _mm512_inserti64x4(_mm512_castsi256_si512(four_pairs(table, i + 8)), four_pairs(table, i + 12), 1);
-    const __m512i even = _mm512_setr_epi32(0, 2, 4, 6, 8, 10, 12, 14, 16, 18, 20, 22, 24, 26, 28, 30);
+    const __m512i a = _mm512_inserti64x4(_mm512_castsi256_si512(four_pairs(table, i)),
+                                         four_pairs(table, i + 4), 1);
+    const __m512i b = _mm512_inserti64x4(_mm512_castsi256_si512(four_pairs(table, i + 8)),
+                                         four_pairs(table, i + 12), 1);
+    const __m512i even =
+        _mm512_setr_epi32(0, 2, 4, 6, 8, 10, 12, 14, 16, 18, 20, 22, 24, 26, 28, 30);
 
     *low = (vi)_mm512_permutex2var_epi32(a, even, b);
     *high = (vi)_mm512_permutex2var_epi32(a, _mm512_add_epi32(even, _mm512_set1_epi32(1)), b);
@@ -91,15 +97,18 @@ static inline vi indices(const uint8_t *sigma)
 
 static inline vi scales(vi sigma)
 {
-    const __m512i even = _mm512_setr_epi32(0, 2, 4, 6, 8, 10, 12, 14, 16, 18, 20, 22, 24, 26, 28, 30);
-    const __m512i near = _mm512_loadu_si512((const void *)(ted4_stepi + 128)), far = _mm512_loadu_si512((const void *)(ted4_stepi + 144));
+    const __m512i even =
+        _mm512_setr_epi32(0, 2, 4, 6, 8, 10, 12, 14, 16, 18, 20, 22, 24, 26, 28, 30);
+    const __m512i near = _mm512_loadu_si512((const void *)(ted4_stepi + 128)),
+                  far = _mm512_loadu_si512((const void *)(ted4_stepi + 144));
 
     return (vi)_mm512_permutexvar_epi32((__m512i)sigma, _mm512_permutex2var_epi32(near, even, far));
 }
 
 static inline vi expand(unsigned wants, const uint8_t *words)
 {
-    return (vi)_mm512_maskz_expand_epi32((mask)wants, _mm512_cvtepu16_epi32(_mm256_loadu_si256((const void *)words)));
+    return (vi)_mm512_maskz_expand_epi32(
+        (mask)wants, _mm512_cvtepu16_epi32(_mm256_loadu_si256((const void *)words)));
 }
 
 static inline void narrow(int16_t *to, vi x)

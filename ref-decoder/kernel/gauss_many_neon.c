@@ -100,7 +100,8 @@ static inline void narrow(int16_t *to, vi x)
 
 #include "kernel/gauss_tile.h"
 
-size_t ted4_gauss_many_neon(ted4_gauss_lanes *d, size_t n, const int32_t *mu, const uint8_t *sigma, int16_t *k)
+size_t ted4_gauss_many_neon(ted4_gauss_lanes *d, size_t n, const int32_t *mu, const uint8_t *sigma,
+                            int16_t *k)
 {
     return many(d, n, mu, sigma, k);
 }

@@ -1,16 +1,19 @@
-/* gauss_tile.h - spec 9.2, 9.4: twin of gauss_symbol of read/reader.c for several lanes at a time, with the arithmetic of norm/gaussian.h in each 32-bit element. Lanes share
- * one sequence of words, read in the order of lanes: expand() deals them out.
- * The file that includes it says how many bytes a vector has, VECTOR, includes gauss_vector.h for the types, and defines what machines do each in their own way:
- *     vi all(int32_t x)                                                  x in each lane
- *     vi least(vi a, vi b), vi most(vi a, vi b)                          minimum and maximum, signed
- *     mask less(vi a, vi b), mask equal(vi a, vi b), mask either(mask a, mask b), mask lanes_of(unsigned bits)
- *     unsigned bits_of(mask m)                                           bit i: lane i
+/* gauss_tile.h - spec 9.2, 9.4: twin of gauss_symbol of read/reader.c for several lanes at a time,
+ * with the arithmetic of norm/gaussian.h in each 32-bit element. Lanes share one sequence of words,
+ * read in the order of lanes: expand() deals them out. The file that includes it says how many
+ * bytes a vector has, VECTOR, includes gauss_vector.h for the types, and defines what machines do
+ * each in their own way:
+ *     vi all(int32_t x)                           x in each lane
+ *     vi least(vi a, vi b), most(vi a, vi b)      minimum and maximum, signed
+ *     mask less(vi a, vi b), equal(vi a, vi b), either(mask a, mask b), lanes_of(unsigned bits)
+ *     unsigned bits_of(mask m)                    bit i: lane i
  *     vi choose(mask m, vi yes, vi no)
- *     void pairs(const int32_t *table, vi i, vi *low, vi *high)          table[i], table[i + 1]
- *     vi indices(const uint8_t *sigma)                                   each in its lane
- *     vi scales(vi sigma)                                                STEPI[128 + 2 (sigma mod 16)]
- *     vi expand(unsigned wants, const uint8_t *words)                    a word of 16 bits for each lane that wants one; LANES words may be read
- *     void narrow(int16_t *to, vi x)                                     the low half of each lane
+ *     void pairs(const int32_t *table, vi i, vi *low, vi *high)       table[i], table[i + 1]
+ *     vi indices(const uint8_t *sigma)            each in its lane
+ *     vi scales(vi sigma)                         STEPI[128 + 2 (sigma mod 16)]
+ *     vi expand(unsigned wants, const uint8_t *words)     a word of 16 bits for each lane that
+ *                                                 wants one; LANES words may be read
+ *     void narrow(int16_t *to, vi x)              the low half of each lane
  * SPDX-License-Identifier: BSD-2-Clause */
 #ifndef TED4_GAUSS_TILE_H
 #define TED4_GAUSS_TILE_H
@@ -20,8 +23,13 @@
 #include "kernel/gauss_kernel.h"
 #include "norm/gaussian.h"
 
-/* Most vectors that are worked on together, as each waits for its tables most of the time; and guesses of a bound. */
+/* Most vectors that are worked on together, as each waits for its tables most of the time; and
+ * guesses of a bound. */
 enum { ROWS = 4, TRIES = 4 };
+
+/* Of functions that are called seldom, and of those that the compiler has to see through. */
+#define TED4_SELDOM static __attribute__((noinline))
+#define TED4_ALWAYS static inline __attribute__((always_inline))
 
 /* INV and half window of each index of sigma, side by side. */
 typedef struct {
@@ -38,7 +46,8 @@ typedef struct {
     vi j, from, to;
 } symbols;
 
-/* A vector of lanes under way, from lane first on: states, slots, symbols as models have them and as the stream has them. */
+/* A vector of lanes under way, from lane first on: states, slots, symbols as models have them and
+ * as the stream has them. */
 typedef struct {
     models   m;
     vi       x, slot, k;
@@ -87,11 +96,13 @@ static inline vi inner(const models *g, vi j)
 /* ted4_gauss_cum */
 static inline vi cum(const models *g, vi j)
 {
-    return choose(equal(j, all(0)), all(0), choose(equal(j, g->size), all(1 << TED4_SLOT_BITS), inner(g, j)));
+    return choose(equal(j, all(0)), all(0),
+                  choose(equal(j, g->size), all(1 << TED4_SLOT_BITS), inner(g, j)));
 }
 
-/* Where a symbol most likely begins or ends, nearest to slot: as guess of norm/gaussian.c, between entries of the table, and less what all symbols share evenly: of that
- * an average of 21/32 of the alphabet does, as symbols far out hold less of it. */
+/* Where a symbol most likely begins or ends, nearest to slot: as guess of norm/gaussian.c, between
+ * entries of the table, and less what all symbols share evenly: of that an average of 21/32 of the
+ * alphabet does, as symbols far out hold less of it. */
 static inline vi bound_near(const models *m, vi slot)
 {
     const vi even = ((slot - (1 << 15)) * ((m->size * 21) >> 5)) >> TED4_SLOT_BITS;
@@ -145,11 +156,13 @@ static void find_alone(const models *m, vi slot, unsigned lanes, symbols *s)
     s->to = load(to);
 }
 
-/* Wide models: symbols are narrow, and the guess was off by some of them. How wide they are there says how far to go. */
-static __attribute__((noinline)) void find_again(const models *m, vi slot, unsigned lanes, symbols *s)
+/* Wide models: symbols are narrow, and the guess was off by some of them. How wide they are there
+ * says how far to go. */
+TED4_SELDOM void find_again(const models *m, vi slot, unsigned lanes, symbols *s)
 {
     for (int i = 1; i < TRIES && lanes != 0; i++) {
-        const vf      steps = __builtin_convertvector(slot - s->from, vf) / __builtin_convertvector(s->to - s->from, vf);
+        const vf steps = __builtin_convertvector(slot - s->from, vf) /
+                         __builtin_convertvector(s->to - s->from, vf);
         const vi      near = clamp(s->j + __builtin_convertvector(steps, vi), all(1), m->size - 1);
         const symbols next = beside(m, slot, near, inner(m, near));
         const mask    these = lanes_of(lanes);
@@ -164,7 +177,8 @@ static __attribute__((noinline)) void find_again(const models *m, vi slot, unsig
 }
 
 /* Models and slots of a vector, of which LANES elements of mu and sigma are read. */
-static inline void begin_row(row *r, const uint32_t *state, const model_table *t, const int32_t *mu, const uint8_t *sigma)
+TED4_ALWAYS void begin_row(row *r, const uint32_t *state, const model_table *t, const int32_t *mu,
+                           const uint8_t *sigma)
 {
     r->m.g = indices(sigma);
     pairs(t->of, r->m.g * 2, &r->m.inv, &r->m.hw);
@@ -176,19 +190,22 @@ static inline void begin_row(row *r, const uint32_t *state, const model_table *t
 }
 
 /* Symbols, and which of them are not for this vector: escapes, and those that leave 16 bits. */
-static inline void end_row(row *r)
+TED4_ALWAYS void end_row(row *r)
 {
     const vi k = (r->k >> TED4_MU_BITS) + (r->s.j - 1 - r->m.hw);
 
     r->k = k;
     r->escape = bits_of(either(equal(r->s.j, all(0)), equal(r->s.j, r->m.size - 1))) & r->active;
-    r->outside = bits_of(either(less(all(32767), k), less(k, all(-32767)))) & r->active & ~r->escape;
+    r->outside =
+        bits_of(either(less(all(32767), k), less(k, all(-32767)))) & r->active & ~r->escape;
 }
 
-/* Takes symbols of some lanes, all of those that follow one another and have no escape. 0: words are missing. */
-static inline int take(ted4_gauss_lanes *d, const row *r, unsigned lanes)
+/* Takes symbols of some lanes, all of those that follow one another and have no escape. 0: words
+ * are missing. */
+TED4_ALWAYS int take(ted4_gauss_lanes *d, const row *r, unsigned lanes)
 {
-    const vi       y = (vi)((vu)(r->s.to - r->s.from) * ((vu)r->x >> TED4_SLOT_BITS)) + r->slot - r->s.from;
+    const vi y =
+        (vi)((vu)(r->s.to - r->s.from) * ((vu)r->x >> TED4_SLOT_BITS)) + r->slot - r->s.from;
     const mask     low = equal((vi)((vu)y >> TED4_SLOT_BITS), all(0));
     const unsigned wants = bits_of(low) & lanes;
     const size_t   left = (size_t)(d->end - d->word), used = 2 * (size_t)__builtin_popcount(wants);
@@ -255,7 +272,7 @@ static int32_t escape_alone(alone *a)
     return bit < 0 ? -1 : value - 1;
 }
 
-/* The symbol of a lane that has an escape. 0: this is the reader's to judge, and nothing was taken. */
+/* The symbol of a lane that has an escape. 0: this is the reader's to judge, and nothing is taken. */
 static int take_escape(ted4_gauss_lanes *d, const row *r, unsigned lane, int16_t *k)
 {
     int32_t j[LANES], from[LANES], to[LANES], symbol[LANES], hw[LANES];
@@ -283,7 +300,7 @@ static int take_escape(ted4_gauss_lanes *d, const row *r, unsigned lane, int16_t
 }
 
 /* Takes the row, lanes between escapes at a time. Returns which lanes it took. */
-static __attribute__((noinline)) unsigned take_with_escapes(ted4_gauss_lanes *d, const row *r, int16_t *k)
+TED4_SELDOM unsigned take_with_escapes(ted4_gauss_lanes *d, const row *r, int16_t *k)
 {
     unsigned left = r->active, care = r->escape | r->outside;
 
@@ -293,7 +310,8 @@ static __attribute__((noinline)) unsigned take_with_escapes(ted4_gauss_lanes *d,
         if (before != 0 && !take(d, r, before))
             return r->active & ~left;
         left &= ~before;
-        if ((it & r->outside) != 0 || !take_escape(d, r, (unsigned)__builtin_ctz(it), k + __builtin_ctz(it)))
+        if ((it & r->outside) != 0 ||
+            !take_escape(d, r, (unsigned)__builtin_ctz(it), k + __builtin_ctz(it)))
             return r->active & ~left;
         left &= ~it;
         care &= ~it;
@@ -301,10 +319,12 @@ static __attribute__((noinline)) unsigned take_with_escapes(ted4_gauss_lanes *d,
     return left == 0 || take(d, r, left) ? r->active : r->active & ~left;
 }
 
-/* Symbols of so many rows from lane on, of which active are wanted; mu, sigma and k are of the first lane; those of all lanes are read and written. Returns how many
- * symbols were taken. */
-static inline __attribute__((always_inline)) unsigned
-take_rows(ted4_gauss_lanes *d, const model_table *t, unsigned lane, const int rows, unsigned active, const int32_t *mu, const uint8_t *sigma, int16_t *k)
+/* Copies go to what is called seldom, so that rows can stay in registers.
+ * Symbols of so many rows from lane on, of which active are wanted; mu, sigma and k are of the
+ * first lane; those of all lanes are read and written. Returns how many symbols were taken. */
+TED4_ALWAYS unsigned take_rows(ted4_gauss_lanes *d, const model_table *t, unsigned lane,
+                               const int rows, unsigned active, const int32_t *mu,
+                               const uint8_t *sigma, int16_t *k)
 {
     row      r[ROWS];
     vi       near[ROWS], bound[ROWS];
@@ -324,15 +344,26 @@ take_rows(ted4_gauss_lanes *d, const model_table *t, unsigned lane, const int ro
     for (int i = 0; i < rows; i++) {
         const unsigned again = missed(&r[i].s, r[i].slot, active);
 
-        if (again != 0)
-            find_again(&r[i].m, r[i].slot, again, &r[i].s);
+        if (again != 0) {
+            const models m = r[i].m;
+            symbols      s = r[i].s;
+
+            find_again(&m, r[i].slot, again, &s);
+            r[i].s = s;
+        }
         end_row(&r[i]);
         narrow(k + i * LANES, r[i].k);
     }
     for (int i = 0; i < rows; i++) {
-        const unsigned taken = (r[i].escape | r[i].outside) != 0 ? take_with_escapes(d, &r[i], k + i * LANES)
-                             : take(d, &r[i], active) ? active : 0;
+        unsigned taken;
 
+        if ((r[i].escape | r[i].outside) != 0) {
+            const row copy = r[i];
+
+            taken = take_with_escapes(d, &copy, k + i * LANES);
+        } else {
+            taken = take(d, &r[i], active) ? active : 0;
+        }
         n += (unsigned)__builtin_popcount(taken);
         if (taken != active)
             break;
@@ -341,8 +372,9 @@ take_rows(ted4_gauss_lanes *d, const model_table *t, unsigned lane, const int ro
 }
 
 /* One row or a part of it, n symbols from its lane from on; nothing beyond them is touched. */
-static __attribute__((noinline)) unsigned
-take_part(ted4_gauss_lanes *d, const model_table *t, unsigned lane, unsigned from, unsigned n, const int32_t *mu, const uint8_t *sigma, int16_t *k)
+TED4_SELDOM unsigned take_part(ted4_gauss_lanes *d, const model_table *t, unsigned lane,
+                               unsigned from, unsigned n, const int32_t *mu, const uint8_t *sigma,
+                               int16_t *k)
 {
     int32_t mean[LANES] = { 0 };
     uint8_t g[LANES] = { 0 };
@@ -358,8 +390,8 @@ take_part(ted4_gauss_lanes *d, const model_table *t, unsigned lane, unsigned fro
 }
 
 /* So many rows at a time where they are whole. */
-static inline __attribute__((always_inline)) size_t
-many_rows(ted4_gauss_lanes *d, const int rows, size_t n, const int32_t *mu, const uint8_t *sigma, int16_t *k)
+TED4_ALWAYS size_t many_rows(ted4_gauss_lanes *d, const int rows, size_t n, const int32_t *mu,
+                             const uint8_t *sigma, int16_t *k)
 {
     const unsigned width = d->n_lanes < LANES ? d->n_lanes : LANES, whole = width * (unsigned)rows;
     unsigned       lane = d->lane, wanted, got;
@@ -373,7 +405,8 @@ many_rows(ted4_gauss_lanes *d, const int rows, size_t n, const int32_t *mu, cons
 
         if (lane % whole == 0 && left >= (size_t)rows * LANES) {
             wanted = whole;
-            got = take_rows(d, &t, lane, rows, (1u << width) - 1, mu + done, sigma + done, k + done);
+            got =
+                take_rows(d, &t, lane, rows, (1u << width) - 1, mu + done, sigma + done, k + done);
         } else {
             wanted = left < rest ? (unsigned)left : rest;
             got = take_part(d, &t, lane - from, from, wanted, mu + done, sigma + done, k + done);
@@ -385,7 +418,8 @@ many_rows(ted4_gauss_lanes *d, const int rows, size_t n, const int32_t *mu, cons
 }
 
 /* As many rows as the substream has lanes for. */
-static inline size_t many(ted4_gauss_lanes *d, size_t n, const int32_t *mu, const uint8_t *sigma, int16_t *k)
+static inline size_t many(ted4_gauss_lanes *d, size_t n, const int32_t *mu, const uint8_t *sigma,
+                          int16_t *k)
 {
     if (d->n_lanes >= 4 * LANES)
         return many_rows(d, 4, n, mu, sigma, k);

@@ -1,4 +1,5 @@
-/* gauss_vector.h - types of gauss_tile.h: LANES elements of 32 bits, VECTOR bytes. The file that includes it defines VECTOR.
+/* gauss_vector.h - types of gauss_tile.h: LANES elements of 32 bits, VECTOR bytes. The file that
+ * includes it defines VECTOR.
  * SPDX-License-Identifier: BSD-2-Clause */
 #ifndef TED4_GAUSS_VECTOR_H
 #define TED4_GAUSS_VECTOR_H

@@ -1,4 +1,5 @@
-/* int_dense_512.h - int_tile.h with vectors of 512 bits, for int_dense_avx512.c and int_dense_vnni.c, which define dot().
+/* int_dense_512.h - int_tile.h with vectors of 512 bits, for int_dense_avx512.c and
+ * int_dense_vnni.c, which define dot().
  * SPDX-License-Identifier: BSD-2-Clause */
 #ifndef TED4_INT_DENSE_512_H
 #define TED4_INT_DENSE_512_H
@@ -11,8 +12,8 @@ enum { GROUP = 32, UNITS = 8 };
 
 typedef __m512i vector;
 
-/* 32 anchors of two channels, or sums of them: of each eight anchors the first four are in lo, the others in hi; packing
- * puts them back. */
+/* 32 anchors of two channels, or sums of them: of each eight anchors the first four are in lo, the
+ * others in hi; packing puts them back. */
 typedef struct {
     vector lo, hi;
 } pair;
@@ -52,7 +53,8 @@ static inline vector both(const int16_t *w)
 
 static inline vector shift(vector sum, unsigned r)
 {
-    return _mm512_sra_epi32(_mm512_add_epi32(sum, all(r > 0 ? 1 << (r - 1) : 0)), _mm_cvtsi32_si128((int)r));
+    return _mm512_sra_epi32(_mm512_add_epi32(sum, all(r > 0 ? 1 << (r - 1) : 0)),
+                            _mm_cvtsi32_si128((int)r));
 }
 
 static inline void store_hidden(int16_t *y, pair sum)

@@ -10,8 +10,8 @@ enum { GROUP = 16, UNITS = 4 };
 
 typedef __m256i vector;
 
-/* 16 anchors of two channels, or sums of them: unpacking leaves anchors 0-3 8-11 in lo and 4-7 12-15 in hi; packing puts
- * them back. */
+/* 16 anchors of two channels, or sums of them: unpacking leaves anchors 0-3 8-11 in lo and 4-7
+ * 12-15 in hi; packing puts them back. */
 typedef struct {
     vector lo, hi;
 } pair;
@@ -56,7 +56,8 @@ static inline vector dot(vector sum, vector x, vector w)
 
 static inline vector shift(vector sum, unsigned r)
 {
-    return _mm256_sra_epi32(_mm256_add_epi32(sum, all(r > 0 ? 1 << (r - 1) : 0)), _mm_cvtsi32_si128((int)r));
+    return _mm256_sra_epi32(_mm256_add_epi32(sum, all(r > 0 ? 1 << (r - 1) : 0)),
+                            _mm_cvtsi32_si128((int)r));
 }
 
 static inline void store_hidden(int16_t *y, pair sum)

@@ -1,5 +1,6 @@
-/* int_dense_neon.c - twin of norm/int_dense.c for NEON: eight anchors and eight output units at a time, whose weights are
- * the lanes of vectors of eight channels. R-NET-006 keeps every partial sum in 32 bits.
+/* int_dense_neon.c - twin of norm/int_dense.c for NEON: eight anchors and eight output units at a
+ * time, whose weights are the lanes of vectors of eight channels. R-NET-006 keeps every partial sum
+ * in 32 bits.
  * SPDX-License-Identifier: BSD-2-Clause */
 #if defined(__AARCH64EL__)
 

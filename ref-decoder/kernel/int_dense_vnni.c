@@ -1,4 +1,5 @@
-/* int_dense_vnni.c - int_tile.h with AVX-512 and its instruction for two products and their sum, which does not saturate.
+/* int_dense_vnni.c - int_tile.h with AVX-512 and its instruction for two products and their sum,
+ * which does not saturate.
  * SPDX-License-Identifier: BSD-2-Clause */
 #if defined(__x86_64__)
 

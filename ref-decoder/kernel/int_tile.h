@@ -1,13 +1,16 @@
-/* int_tile.h - twin of norm/int_dense.c for machines that multiply pairs of 16-bit numbers and add the two products.
- * Channels are taken in pairs, the two inputs of an anchor side by side, so that one instruction does both products;
- * R-NET-006 keeps every partial sum in 32 bits. The file that includes it says how many anchors a vector of inputs has,
- * GROUP, and how many output units are summed at once, UNITS, and defines:
+/* int_tile.h - twin of norm/int_dense.c for machines that multiply pairs of 16-bit numbers and add
+ * the two products. Channels are taken in pairs, the two inputs of an anchor side by side, so that
+ * one instruction does both products; R-NET-006 keeps every partial sum in 32 bits. The file that
+ * includes it says how many anchors a vector of inputs has, GROUP, and how many output units are
+ * summed at once, UNITS, and defines:
  *     vector                                          its type
  *     vector nothing(void), load(const int16_t *x)    zeros; GROUP inputs
- *     vector low(vector a, vector b), high(...)       inputs of two channels side by side: of some anchors, of the others
+ *     vector low(vector a, vector b), high(...)       inputs of two channels side by side: of some
+ *                                                     anchors, of the others
  *     vector both(const int16_t *w), all(int32_t x)   a pair of weights, or a number, for each anchor
  *     vector dot(vector sum, vector x, vector w)      sum + the two products of each anchor
  *     vector shift(vector sum, unsigned r)            (sum + 2^(r-1)) >> r
+ *     pair                                            type of two vectors, lo and hi
  *     void store_hidden(int16_t *y, pair sum), store_last(int32_t *y, pair sum)
  * SPDX-License-Identifier: BSD-2-Clause */
 #ifndef TED4_INT_TILE_H
@@ -15,15 +18,15 @@
 
 enum { ROW = TED4_PRIOR_BLOCK, MAX_PAIRS = TED4_MAX_WIDTH / 2 };
 
-/* Inputs of the next block, which follow where the caller has many blocks, are on their way meanwhile: the caller comes
- * back to all of them for every few outputs. */
+/* Inputs of the next block, which follow where the caller has many blocks, are on their way
+ * meanwhile: the caller comes back to all of them for every few outputs. */
 static inline void interleave(const ted4_int_layer *l, const int16_t *x, pair *p)
 {
     for (unsigned i = 0; i < l->in; i += 2) {
         const int16_t *row = x + (size_t)i * ROW;
 
-        __builtin_prefetch(row + (size_t)l->in * ROW);
-        __builtin_prefetch(row + (size_t)(l->in + 1) * ROW);
+        __builtin_prefetch(row + (size_t)l->in * ROW, 0, 2);
+        __builtin_prefetch(row + (size_t)(l->in + 1) * ROW, 0, 2);
 
         const vector   a = load(row), b = i + 1 < l->in ? load(row + ROW) : nothing();
 
@@ -63,9 +66,10 @@ units(const ted4_int_layer *l, const pair *p, unsigned o, const int n, unsigned 
     }
 }
 
-/* As many units as are summed at once, or half of them when no more are left. Returns how many, the last ones perhaps
- * several times. */
-static inline int next_units(const ted4_int_layer *l, const pair *p, unsigned o, unsigned *unit, pair *y)
+/* As many units as are summed at once, or half of them when no more are left. Returns how many, the
+ * last ones perhaps several times. */
+static inline int next_units(const ted4_int_layer *l, const pair *p, unsigned o, unsigned *unit,
+                             pair *y)
 {
     if (l->out - o > UNITS / 2) {
         units(l, p, o, UNITS, unit, y);

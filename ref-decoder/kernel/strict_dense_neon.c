@@ -1,4 +1,5 @@
-/* strict_dense_neon.c - spec 12.2: the dense layer over 32 anchors with 128-bit vectors, two outputs at a time.
+/* strict_dense_neon.c - spec 12.2: the dense layer over 32 anchors with 128-bit vectors, two
+ * outputs at a time.
  * SPDX-License-Identifier: BSD-2-Clause */
 #include "kernel/strict_dense.h"
 

@@ -1,11 +1,13 @@
-/* word_places.h - for each choice of four lanes, which of the next bytes each of them gets: two, a word, for those that were chosen, in the order of lanes, and zeros.
+/* word_places.h - for each choice of four lanes, which of the next bytes each of them gets: two, a
+ * word, for those that were chosen, in the order of lanes, and zeros.
  * SPDX-License-Identifier: BSD-2-Clause */
 #ifndef TED4_WORD_PLACES_H
 #define TED4_WORD_PLACES_H
 
 #include <stdint.h>
 
-/* NO: a lane that gets none; AT(i): one that gets word i. 255 is no byte's number, which a byte shuffle answers with 0. */
+/* NO: a lane that gets none; AT(i): one that gets word i. 255 is no byte's number, which a byte
+ * shuffle answers with 0. */
 #define TED4_NO    255, 255, 255, 255
 #define TED4_AT(i) 2 * (i), 2 * (i) + 1, 255, 255
 

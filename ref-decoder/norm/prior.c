@@ -144,29 +144,6 @@ ted4_status ted4_prior_load(ted4_prior *p, const float *nete,
     return own.code;
 }
 
-/* Inputs of one anchor into column x of [n_inputs][64]. */
-static void hyper_inputs(const ted4_prior *p, const uint16_t *position,
-                         int16_t *x)
-{
-    uint32_t phase[3];
-
-    for (int j = 0; j < 3; j++) {
-        const int32_t q24 = ted4_half_q24(position[j]);
-
-        phase[j] = (uint32_t)q24 << 7;
-        *x = (int16_t)ted4_floor_shift(q24, 12);
-        x += TED4_PRIOR_BLOCK;
-    }
-    for (unsigned l = 0; l < p->pe_octaves; l++)
-        for (int j = 0; j < 3; j++) {
-            const uint32_t u = phase[j] << l;
-
-            x[0] = ted4_sine(u);
-            x[TED4_PRIOR_BLOCK] = ted4_sine(u + ((uint32_t)1 << 30));
-            x += 2 * TED4_PRIOR_BLOCK;
-        }
-}
-
 /* Dense layers take whole groups of 32 columns. */
 static size_t group_up(size_t n)
 {
@@ -174,8 +151,8 @@ static size_t group_up(size_t n)
 }
 
 /* All layers but the last; their result goes to y, or x is it when there are none. */
-static const int16_t *inner_layers(const ted4_prior *p, const ted4_int_layer *l, unsigned n_layers, const int16_t *x,
-                                   size_t n, int16_t *between, int16_t *y)
+static const int16_t *inner_layers(const ted4_prior *p, const ted4_int_layer *l, unsigned n_layers,
+                                   const int16_t *x, size_t n, int16_t *between, int16_t *y)
 {
     for (unsigned i = 0; i + 1 < n_layers; i++) {
         /* The last of them writes y, and the one before it must not. */
@@ -196,14 +173,35 @@ static void chain(const ted4_prior *p, const ted4_int_layer *l, unsigned n_layer
     p->dense->last(&l[n_layers - 1], x, n, out);
 }
 
-/* Of n anchors, and of the last one again up to a whole group. Returns how many that are. */
+/* spec 10.1: sines and cosines of n anchors in 2^l turns, in two rows. */
+static void waves(const uint32_t *phase, unsigned l, size_t n, int16_t *x)
+{
+    for (size_t i = 0; i < n; i++) {
+        const uint32_t u = phase[i] << l;
+
+        x[i] = ted4_sine(u);
+        x[TED4_PRIOR_BLOCK + i] = ted4_sine(u + ((uint32_t)1 << 30));
+    }
+}
+
+/* Inputs of n anchors, and of the last one again up to a whole group. Returns how many that are. */
 static size_t all_inputs(const ted4_prior *p, const uint16_t *position, size_t n, int16_t *x)
 {
     const size_t padded = group_up(n);
+    uint32_t     phase[3][TED4_PRIOR_BLOCK];
 
-    if (p->n_inputs > 0)
-        for (size_t i = 0; i < padded; i++)
-            hyper_inputs(p, position + 3 * (i < n ? i : n - 1), x + i);
+    if (p->n_inputs == 0)
+        return padded;
+    for (int j = 0; j < 3; j++, x += TED4_PRIOR_BLOCK)
+        for (size_t i = 0; i < padded; i++) {
+            const int32_t q24 = ted4_half_q24(position[3 * (i < n ? i : n - 1) + (size_t)j]);
+
+            phase[j][i] = (uint32_t)q24 << 7;
+            x[i] = (int16_t)ted4_floor_shift(q24, 12);
+        }
+    for (unsigned l = 0; l < p->pe_octaves; l++)
+        for (int j = 0; j < 3; j++, x += 2 * TED4_PRIOR_BLOCK)
+            waves(phase[j], l, padded, x);
     return padded;
 }
 
@@ -221,9 +219,11 @@ const ted4_int_layer *ted4_prior_last(const ted4_prior *p)
     return &p->hyper[p->n_hyper - 1];
 }
 
-void ted4_prior_hyper_hidden(const ted4_prior *p, const uint16_t *position, size_t n, int16_t *hidden)
+void ted4_prior_hyper_hidden(const ted4_prior *p, const uint16_t *position, size_t n,
+                             int16_t *hidden)
 {
-    _Alignas(64) int16_t x[TED4_PRIOR_INPUTS * TED4_PRIOR_BLOCK], between[TED4_MAX_WIDTH * TED4_PRIOR_BLOCK];
+    _Alignas(64) int16_t x[TED4_PRIOR_INPUTS * TED4_PRIOR_BLOCK],
+        between[TED4_MAX_WIDTH * TED4_PRIOR_BLOCK];
 
     if (p->n_hyper > 1)
         inner_layers(p, p->hyper, p->n_hyper, x, all_inputs(p, position, n, x), between, hidden);
@@ -231,12 +231,14 @@ void ted4_prior_hyper_hidden(const ted4_prior *p, const uint16_t *position, size
         all_inputs(p, position, n, hidden);
 }
 
-void ted4_prior_hyper_some(const ted4_prior *p, const ted4_int_layer *some, const int16_t *hidden, size_t n, int32_t *out)
+void ted4_prior_hyper_some(const ted4_prior *p, const ted4_int_layer *some, const int16_t *hidden,
+                           size_t n, int32_t *out)
 {
     p->dense->last(some, hidden, group_up(n), out);
 }
 
-void ted4_prior_some(const ted4_prior *p, unsigned first, unsigned second, unsigned n, ted4_int_layer *some)
+void ted4_prior_some(const ted4_prior *p, unsigned first, unsigned second, unsigned n,
+                     ted4_int_layer *some)
 {
     const ted4_int_layer *l = ted4_prior_last(p);
 
@@ -246,7 +248,8 @@ void ted4_prior_some(const ted4_prior *p, unsigned first, unsigned second, unsig
     for (unsigned o = 0; o < 2 * n; o++) {
         const unsigned from = o < n ? first + o : second + o - n;
 
-        memcpy(some->w + (size_t)o * l->in_pad, l->w + (size_t)from * l->in_pad, l->in_pad * sizeof *l->w);
+        memcpy(some->w + (size_t)o * l->in_pad, l->w + (size_t)from * l->in_pad,
+               l->in_pad * sizeof *l->w);
         some->b[o] = l->b[from];
         some->r[o] = l->r[from];
     }

@@ -82,13 +82,18 @@ static inline int ted4_accumulator_legal(const ted4_unit_rule *u, int shift,
 /* spec 10.1 for n <= 64 anchors: out [P][64], all of Q8. position: [n][3] binary16 patterns, |p| <= 1. Columns from n on are undefined. */
 void ted4_prior_hyper(const ted4_prior *p, const uint16_t *position, size_t n,
                       int32_t *out);
-/* The same in two steps, for who wants outputs a few at a time. hidden: [in][64] inputs of the last layer, perhaps none,
- * in being that of ted4_prior_last(p). some: a layer for a part of the outputs, made by ted4_prior_some. */
+/* The same in two steps, for who wants outputs a few at a time. hidden: [in][64] inputs of the last
+ * layer, perhaps none, in being that of ted4_prior_last(p). some: a layer for a part of the
+ * outputs, made by ted4_prior_some. */
 const ted4_int_layer *ted4_prior_last(const ted4_prior *p);
-void ted4_prior_hyper_hidden(const ted4_prior *p, const uint16_t *position, size_t n, int16_t *hidden);
-void ted4_prior_hyper_some(const ted4_prior *p, const ted4_int_layer *some, const int16_t *hidden, size_t n, int32_t *out);
-/* n outputs from first on, and behind them n from second on. The arrays of some have room for 2 n of them. */
-void ted4_prior_some(const ted4_prior *p, unsigned first, unsigned second, unsigned n, ted4_int_layer *some);
+void ted4_prior_hyper_hidden(const ted4_prior *p, const uint16_t *position, size_t n,
+                             int16_t *hidden);
+void ted4_prior_hyper_some(const ted4_prior *p, const ted4_int_layer *some, const int16_t *hidden,
+                           size_t n, int32_t *out);
+/* n outputs from first on, and behind them n from second on. The arrays of some have room for 2 n
+ * of them. */
+void ted4_prior_some(const ted4_prior *p, unsigned first, unsigned second, unsigned n,
+                     ted4_int_layer *some);
 /* spec 10.3, slice network m = 1 .. n_slices - 1: ctx [slice[0] + .. + slice[m-1]][64] of ted4_context(), any value of that range
  * (0, say) in the columns from n to the next multiple of 32; out [2 slice[m]][64]: values added to mu, then values added to s. */
 void ted4_prior_slice(const ted4_prior *p, unsigned m, const int16_t *ctx,

@@ -56,7 +56,8 @@ static size_t put_moving(uint8_t *to, const int16_t *k, const uint8_t *dynamic, 
 }
 
 /* Those of anchors that keep an offset. */
-static size_t put_kept(uint8_t *to, const int16_t *k, const uint16_t *offset_bits, unsigned offset, size_t n)
+static size_t put_kept(uint8_t *to, const int16_t *k, const uint16_t *offset_bits, unsigned offset,
+                       size_t n)
 {
     size_t at = 0;
 

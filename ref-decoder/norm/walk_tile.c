@@ -20,8 +20,9 @@ typedef struct {
     int16_t          *hidden;   /* [n_blocks][H][64] inputs of the hyperprior's last layer */
     ted4_int_layer    some;     /* that layer for some components */
     int16_t          *ctx;      /* [n_blocks][F][64] what the slice networks see */
-    int32_t          *out, *added;      /* [2 max(F, ..)][64] outputs of the hyperprior and of a slice network, for a block */
-    int32_t          *mu;       /* [C][n_padded] models of some components, for all anchors */
+    int32_t          *out;      /* [2 C][64] outputs of the hyperprior for a block */
+    int32_t          *added;    /* as out, of a slice network */
+    int32_t          *mu;       /* [C][n_padded] models of components, for all anchors */
     uint8_t          *sigma;
     uint32_t         *index;    /* [n_index] anchors of the tile that have the component */
     size_t            n_index;
@@ -54,7 +55,8 @@ static unsigned larger(unsigned a, unsigned b)
     return a > b ? a : b;
 }
 
-/* Offsets that are evaluated at once: what is kept of the hyperprior is short, and most of its outputs are theirs. */
+/* Offsets that are evaluated at once: what is kept of the hyperprior is short, and most of its
+ * outputs are theirs. */
 enum { OFFSETS = 8 };
 
 static unsigned hidden_rows(const ted4_net_shape *hyper)
@@ -274,7 +276,8 @@ static void evaluate(tile *t)
 {
     const ted4_shape *shape = &t->s->shape;
 
-    ted4_prior_some(t->prior, shape->first_step_output, shape->first_step_output, shape->n_types, &t->some);
+    ted4_prior_some(t->prior, shape->first_step_output, shape->first_step_output, shape->n_types,
+                    &t->some);
     t->some.out = shape->n_types;
     for (size_t b = 0; b < t->n_blocks; b++) {
         const size_t a = t->first + b * BLOCK, n = block_size(t, b);
@@ -303,7 +306,8 @@ static void add_slice(tile *t, size_t b, unsigned m)
             t->out[i] += t->added[i];
 }
 
-/* spec 10.1: models of n components of a type from comp on, for the whole tile; of features those of slice m. */
+/* spec 10.1: models of n components of a type from comp on, for the whole tile; of features those
+ * of slice m. */
 static void evaluate_components(tile *t, ted4_type type, unsigned comp, unsigned n, unsigned m)
 {
     const unsigned first = t->s->shape.first_output[type] + comp;
@@ -312,7 +316,8 @@ static void evaluate_components(tile *t, ted4_type type, unsigned comp, unsigned
     for (size_t b = 0; b < t->n_blocks; b++) {
         const size_t size = block_size(t, b);
 
-        ted4_prior_hyper_some(t->prior, &t->some, t->hidden + b * t->n_hidden * BLOCK, size, t->out);
+        ted4_prior_hyper_some(t->prior, &t->some, t->hidden + b * t->n_hidden * BLOCK, size,
+                              t->out);
         if (m > 0)
             add_slice(t, b, m);
         for (unsigned c = 0; c < n; c++) {
@@ -366,7 +371,8 @@ static void pick_models(tile *t, const int32_t *mu, const uint8_t *sigma)
     }
 }
 
-/* spec 10.2: component number comp of a type, for the chosen anchors; number i of those that were evaluated. */
+/* spec 10.2: component number comp of a type, for the chosen anchors; number i of those that were
+ * evaluated. */
 static void walk_component(tile *t, ted4_type type, unsigned comp, unsigned i)
 {
     const size_t   row = (size_t)comp * t->s->head.n_anchors + t->first;

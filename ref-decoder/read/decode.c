@@ -12,8 +12,9 @@
 /* Tiles that run at once, and the work memory they may take together (one may always run). */
 enum { BATCH = 16, BATCH_BYTES = 1 << 28 };
 
-/* A tile on its way has its own coder, and while it runs a work area: the first one that no other has, which the machine has likely at hand already. There are as
- * many areas as tiles that can run at once. */
+/* A tile on its way has its own coder, and while it runs a work area: the first one that no other
+ * has, which the machine has likely at hand already. There are as many areas as tiles that can run
+ * at once. */
 struct ted4_tile_job {
     ted4_reader reader;
     unsigned    number;

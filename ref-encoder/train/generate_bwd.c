@@ -50,8 +50,8 @@ static void geometry_backward(slot_state *s, int k, const float *const *gr)
 
 #pragma omp simd
         for (int j = 0; j < TED4_LANES; j++) {
-            const float dm = s->on[j] ? d_mean[j] : 0.0f;
-            const float ds = s->on[j] ? d_scale[j] : 0.0f;
+            const float dm = ted4_lane_keep(s->on[j], d_mean[j]);
+            const float ds = ted4_lane_keep(s->on[j], d_scale[j]);
             const float v = sigmoid[row + j];
 
             d_offset[row + j] = dm * size[row + j];
@@ -77,10 +77,10 @@ static void rotation_backward(slot_state *s, int k, const float *const *gr)
         const float a = q[j], b = q[TED4_LANES + j];
         const float c = q[2 * TED4_LANES + j], d = q[3 * TED4_LANES + j];
         const float n = sqrtf(a * a + b * b + c * c + d * d);
-        const int live = s->on[j] && n >= TED4_SHORT;
-        const float scale = live ? 1.0f / n : 0.0f;
-        const float da = live ? d_w[j] : 0.0f, db = live ? d_x[j] : 0.0f;
-        const float dc = live ? d_y[j] : 0.0f, dd = live ? d_z[j] : 0.0f;
+        const int32_t live = s->on[j] & -(n >= TED4_SHORT);
+        const float scale = ted4_lane_keep(live, 1.0f / n);
+        const float da = ted4_lane_keep(live, d_w[j]), db = ted4_lane_keep(live, d_x[j]);
+        const float dc = ted4_lane_keep(live, d_y[j]), dd = ted4_lane_keep(live, d_z[j]);
         const float along = (da * a + db * b + dc * c + dd * d) * scale * scale;
 
         d_q[j] = (da - along * a) * scale;
@@ -101,10 +101,10 @@ static void endless_rotation_backward(slot_state *s, int k)
     for (int j = 0; j < TED4_LANES; j++) {
         const float a = q[j], b = q[TED4_LANES + j];
         const float c = q[2 * TED4_LANES + j], d = q[3 * TED4_LANES + j];
-        const int endless = a * a + b * b + c * c + d * d > FLT_MAX;
+        const int32_t ends = ~-(a * a + b * b + c * c + d * d > FLT_MAX);
 
         for (int i = 0; i < 4; i++)
-            d_q[i * TED4_LANES + j] = endless ? 0.0f : d_q[i * TED4_LANES + j];
+            d_q[i * TED4_LANES + j] = ted4_lane_keep(ends, d_q[i * TED4_LANES + j]);
     }
 }
 
@@ -118,7 +118,7 @@ static void colour_backward(slot_state *s, int k, const float *const *gr)
 
 #pragma omp simd
         for (int j = 0; j < TED4_LANES; j++)
-            d_y[j] = (s->on[j] ? d[j] : 0.0f) * v[j] * (1.0f - v[j]);
+            d_y[j] = ted4_lane_keep(s->on[j], d[j]) * v[j] * (1.0f - v[j]);
     }
 }
 
@@ -130,18 +130,18 @@ static void opacity_backward(slot_state *s, int k, const float *const *gr)
     const float *active = ted4_gen_plane(s->planes, g->plane.active);
     const float *logit = ted4_gen_channel(g, s->planes, g->layout.offset_logit + k);
     const float *d_opacity = gr[TED4_GEN_OPACITY];
-    const int masked = g->layout.head.offset_mask;
+    const int32_t all = g->layout.head.offset_mask ? 0 : -1;
     float *d_logit = ted4_gen_plane(s->d_attr, g->layout.offset_logit + k);
     float *d_y = d_plane(s, g->plane.opacity + k);
 
 #pragma omp simd
     for (int j = 0; j < TED4_LANES; j++) {
-        const float d = s->on[j] && o[j] > 0.0f ? d_opacity[j] : 0.0f;
-        const float d_kept = !masked || ted4_mask_on(logit[j]) ? d : 0.0f;
+        const float d = ted4_lane_keep(s->on[j] & -(o[j] > 0.0f), d_opacity[j]);
+        const float d_kept = ted4_lane_keep(all | -ted4_mask_on(logit[j]), d);
 
         d_y[j] = d_kept * active[j] * (1.0f - o[j] * o[j]);
         s->d_active[j] += d_kept * o[j];
-        d_logit[j] = masked ? d * o[j] * active[j] * mask_slope(logit[j]) : 0.0f;
+        d_logit[j] = ted4_lane_keep(~all, d * o[j] * active[j] * mask_slope(logit[j]));
     }
 }
 
@@ -262,10 +262,10 @@ static void activation_backward(slot_state *s, const ted4_generate_input *in)
         const float d_at = d_u / e.width;
         const float d_log = e.width > TED4_EDGE_MIN ? d_u * e.u * TED4_LN2 : 0.0f;
 
-        d[j] = e.side < 0 ? d_at : 0.0f;
-        d[TED4_LANES + j] = e.side < 0 ? d_log : 0.0f;
-        d[2 * TED4_LANES + j] = e.side > 0 ? d_at : 0.0f;
-        d[3 * TED4_LANES + j] = e.side > 0 ? d_log : 0.0f;
+        d[j] = ted4_lane_keep(-(e.side < 0), d_at);
+        d[TED4_LANES + j] = ted4_lane_keep(-(e.side < 0), d_log);
+        d[2 * TED4_LANES + j] = ted4_lane_keep(-(e.side > 0), d_at);
+        d[3 * TED4_LANES + j] = ted4_lane_keep(-(e.side > 0), d_log);
     }
 }
 

@@ -12,7 +12,7 @@ static void copy_lanes(int n, const int32_t *on, const float *from, float *to)
     for (int c = 0; c < n; c++, from += TED4_LANES, to += TED4_LANES) {
 #pragma omp simd
         for (int j = 0; j < TED4_LANES; j++)
-            to[j] = on[j] ? from[j] : 0.0f;
+            to[j] = ted4_lane_keep(on[j], from[j]);
     }
 }
 
@@ -168,7 +168,7 @@ static void emit(const ted4_generator *g, float *planes, const float *position,
     const float *colour = ted4_gen_plane(planes, g->plane.colour + 3 * k);
     const float *o = ted4_gen_plane(planes, g->plane.opacity + k);
     const float *active = ted4_gen_plane(planes, g->plane.active);
-    const int masked = g->layout.head.offset_mask;
+    const int32_t all = g->layout.head.offset_mask ? 0 : -1;
     float *opacity = out[TED4_GEN_OPACITY];
 
     for (int c = 0; c < 3; c++) {
@@ -185,9 +185,9 @@ static void emit(const ted4_generator *g, float *planes, const float *position,
     emit_rotation(covariance + 3 * TED4_LANES, out + TED4_GEN_ROT);
 #pragma omp simd
     for (int j = 0; j < TED4_LANES; j++) {
-        const int kept = !masked || ted4_mask_on(logit[j]);
+        const int32_t kept = on[j] & (all | -ted4_mask_on(logit[j])) & -(o[j] > 0.0f);
 
-        opacity[j] = on[j] && kept && o[j] > 0.0f ? o[j] * active[j] : 0.0f;
+        opacity[j] = ted4_lane_keep(kept, o[j] * active[j]);
     }
 }
 

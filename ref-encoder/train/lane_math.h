@@ -20,6 +20,27 @@ static inline float ted4_lane_within(float x, float low, float high)
     return x < high ? x : high;
 }
 
+/* x where on is -1, 0 where it is 0, whatever x: by bits, which every instruction set vectorises. */
+static inline float ted4_lane_keep(int32_t on, float x)
+{
+    int32_t bits;
+    float   kept;
+
+    memcpy(&bits, &x, sizeof bits);
+    bits &= on;
+    memcpy(&kept, &bits, sizeof kept);
+    return kept;
+}
+
+/* The integer nearest to x, |x| < 2^22, ties to even: adding this constant leaves no bits for a fraction. SSE2 has no
+ * instruction for it. */
+static inline float ted4_lane_round(float x)
+{
+    const float magic = 0x1.8p+23f;
+
+    return (x + magic) - magic;
+}
+
 /* 2^x, x clamped to [-126, 126], to about 1e-7; NaN of a NaN. x + 126.5 is positive, so that truncation rounds x
  * to the nearest integer. */
 static inline float ted4_lane_pow2(float x)

@@ -1,7 +1,7 @@
 /* quantise.c - quantisation of attribute blocks for rendering and for the rate: noise or rounding. spec 10.4.
  * Every value becomes k q with k = x / q + n; the residual n is all that noise and rounding decide, so both callers take it from here.
  * SPDX-License-Identifier: BSD-2-Clause */
-#include "rate_parts.h"
+#include "rate_lanes.h"
 
 #include <string.h>
 
@@ -36,11 +36,10 @@ static void noise_row(uint64_t key, uint32_t block, uint32_t channel,
     }
 }
 
+/* The nearest integer, ties to even; the limits are integers, so that it does not matter which comes first. */
 static inline float symbol(float scaled)
 {
-    const float k = __builtin_rintf(scaled);
-
-    return k > MAX_SYMBOL ? MAX_SYMBOL : k < -MAX_SYMBOL ? -MAX_SYMBOL : k;
+    return ted4_lane_round(scaled > MAX_SYMBOL ? MAX_SYMBOL : scaled < -MAX_SYMBOL ? -MAX_SYMBOL : scaled);
 }
 
 static void rounding_row(const float *x, const float *q, float *row)

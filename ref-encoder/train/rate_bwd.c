@@ -47,7 +47,7 @@ static void slices_backward(const ted4_rate *r, ted4_rate_room *room, size_t i)
 static void value_backward(const ted4_rate_job *job, const ted4_rate_slot *s,
                            int t, size_t channel, const float *q,
                            const float *d_context, const float *d_value,
-                           uint32_t lanes, float *d_x, float *d_v)
+                           const int32_t *on, float *d_x, float *d_v)
 {
     const size_t at = ted4_row(channel);
     const float unit = 1.0f / job->in->layout->head.step[t];
@@ -55,20 +55,23 @@ static void value_backward(const ted4_rate_job *job, const ted4_rate_slot *s,
     const float *x = s->value + at, *n = s->residual + at;
     const float *d_k = s->d_symbol + at;
 
-    if (d_value != NULL)
+    if (d_value != NULL) {
+#pragma omp simd
         for (int j = 0; j < TED4_LANES; j++)
-            if (lanes >> j & 1)
-                d_v[j] += distortion * d_value[at + (size_t)j] * q[j] * n[j];
+            d_v[j] += ted4_lane_keep(on[j], distortion * d_value[at + (size_t)j] * q[j] * n[j]);
+    }
 #pragma omp simd
     for (int j = 0; j < TED4_LANES; j++) {
         d_x[j] += d_k[j] / q[j];
         d_v[j] -= d_k[j] * (x[j] / q[j]);
     }
-    if (d_context != NULL)
+    if (d_context != NULL) {
+#pragma omp simd
         for (int j = 0; j < TED4_LANES; j++) {
             d_x[j] += d_context[j] * unit;
             d_v[j] += d_context[j] * unit * q[j] * n[j];
         }
+    }
 }
 
 static void type_backward(const ted4_rate_job *job, ted4_rate_room *room,
@@ -78,29 +81,31 @@ static void type_backward(const ted4_rate_job *job, ted4_rate_room *room,
     const float *q = job->steps[slot] + ted4_row((size_t)t);
     const float *d_value = job->d_value != NULL ? job->d_value[slot] : NULL;
     const float *d_context = t == TED4_FEATURE ? room->slot.d_context : NULL;
+    int32_t on[TED4_LANES];
 
+    ted4_lane_set(job->in->lanes[slot], on);
     for (size_t c = 0; c < l->shape.dim[t]; c++) {
         const size_t channel = (size_t)l->first[t] + c;
 
         value_backward(job, &room->slot, t, channel, q, d_context, d_value,
-                       job->in->lanes[slot],
-                       job->d_attr[slot] + ted4_row(channel), d_v);
+                       on, job->d_attr[slot] + ted4_row(channel), d_v);
         d_context = d_context != NULL ? d_context + TED4_LANES : NULL;
     }
+#pragma omp simd
     for (int j = 0; j < TED4_LANES; j++)
         d_v[j] = ted4_inward(v[j], TED4_V_MIN, TED4_V_MAX, d_v[j] * TED4_LN2);
 }
 
 /* Straight-through: bits count times the sigmoid of the logit. */
-static void mask_backward(float weight, const float *bits, const float *lane_on,
+static void mask_backward(float weight, const float *bits, const int32_t *on,
                           const float *logit, float *d_logit)
 {
-    for (int j = 0; j < TED4_LANES; j++)
-        if (lane_on[j] > 0.0f) {
-            const float m = ted4_lane_sigmoid(logit[j]);
+#pragma omp simd
+    for (int j = 0; j < TED4_LANES; j++) {
+        const float m = ted4_lane_sigmoid(logit[j]);
 
-            d_logit[j] += weight * bits[j] * m * (1.0f - m);
-        }
+        d_logit[j] += ted4_lane_keep(on[j], weight * bits[j] * m * (1.0f - m));
+    }
 }
 
 static void logits_backward(const ted4_rate_job *job, const ted4_rate_slot *s,
@@ -109,11 +114,13 @@ static void logits_backward(const ted4_rate_job *job, const ted4_rate_slot *s,
     const ted4_layout *l = job->in->layout;
     const float weight = job->in->bit_weight;
     const float *attr = job->in->attr[slot];
-    float *d = job->d_attr[slot], in_use[TED4_LANES];
+    float *d = job->d_attr[slot];
+    int32_t in_use[TED4_LANES], used[TED4_LANES];
     const size_t moves = ted4_row((size_t)l->temporal_logit);
 
+    ted4_lane_set(job->in->lanes[slot], in_use);
     for (int j = 0; j < TED4_LANES; j++)
-        in_use[j] = job->in->lanes[slot] >> j & 1 ? 1.0f : 0.0f;
+        used[j] = -(s->used[j] > 0.0f);
     for (size_t k = 0; l->head.offset_mask && k < l->head.n_offsets; k++) {
         const size_t at = ted4_row((size_t)l->offset_logit + k);
 
@@ -121,7 +128,7 @@ static void logits_backward(const ted4_rate_job *job, const ted4_rate_slot *s,
                       d + at);
     }
     if (l->head.temporal_mask)
-        mask_backward(weight, s->phi_bits, s->used, attr + moves, d + moves);
+        mask_backward(weight, s->phi_bits, used, attr + moves, d + moves);
 }
 
 static void hyper_backward(const ted4_rate *r, ted4_rate_room *room, size_t i)

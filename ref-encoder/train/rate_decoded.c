@@ -53,8 +53,8 @@ static void slices(const ted4_rate_job *job, ted4_rate_room *room,
     for (size_t c = 0; c < f; c++)
         for (size_t j = 0, at = ted4_row(c); j < TED4_LANES; j++) {
             /* Where x / q has no room for fractions the sum may round to just outside of the range of symbols. */
-            const float k = ted4_lane_within(
-                __builtin_rintf(x[at + j] / q[j] + n[at + j]), -32767.0f, 32767.0f);
+            const float k = ted4_lane_round(ted4_lane_within(
+                x[at + j] / q[j] + n[at + j], -32767.0f, 32767.0f));
             const int index = (int)(v[j] * 32.0f) + 128;
 
             context[c * TED4_PRIOR_BLOCK + j] =

@@ -19,18 +19,22 @@ static void encode_positions(const ted4_header *h, const float *position,
                              uint32_t lanes, float *x)
 {
     uint32_t phase[3][TED4_LANES];
+    int32_t  on[TED4_LANES];
 
     if (h->prior == TED4_PRIOR_FACTORISED)
         return;
+    ted4_lane_set(lanes, on);
     for (int a = 0; a < 3; a++) {
         const float *p = position + ted4_row((size_t)a);
 
+#pragma omp simd
         for (int j = 0; j < TED4_LANES; j++) {
-            const float known = lanes >> j & 1 ? p[j] : 0.0f;
+            const float known = ted4_lane_keep(on[j], p[j]);
 
             phase[a][j] = (uint32_t)(int32_t)(known * 0x1p24f) << 7;
-            *x++ = __builtin_floorf(known * 0x1p12f) * 0x1p-12f;
+            x[j] = __builtin_floorf(known * 0x1p12f) * 0x1p-12f;
         }
+        x += TED4_LANES;
     }
     for (int l = 0; l < h->pe_octaves; l++)
         for (int a = 0; a < 3; a++, x += 2 * TED4_LANES) {
@@ -43,13 +47,17 @@ static void encode_positions(const ted4_header *h, const float *position,
 static void step_sizes(const ted4_layout *l, const float *v, float *q)
 {
     for (int t = 0; t < TED4_TYPES; t++, q += TED4_LANES) {
-        const int present = l->shape.dim[t] > 0;
+        const float step = l->head.step[t];
 
+        if (l->shape.dim[t] == 0) {
+            for (int j = 0; j < TED4_LANES; j++)
+                q[j] = 1.0f;
+            continue;
+        }
+#pragma omp simd
         for (int j = 0; j < TED4_LANES; j++)
-            q[j] = !present ? 1.0f : l->head.step[t]
-                 * ted4_lane_pow2(ted4_lane_limit(v[j], TED4_V_MIN,
-                                                  TED4_V_MAX));
-        v += present ? TED4_LANES : 0;
+            q[j] = step * ted4_lane_pow2(ted4_lane_limit(v[j], TED4_V_MIN, TED4_V_MAX));
+        v += TED4_LANES;
     }
 }
 
@@ -86,26 +94,34 @@ static void load_slot(const ted4_rate_job *job, ted4_rate_slot *s, size_t slot)
     const float *attr = job->in->attr[slot];
     const float *logit = attr + ted4_row((size_t)l->offset_logit);
     const float *moves = attr + ted4_row((size_t)l->temporal_logit);
-    const uint32_t lanes = job->in->lanes[slot];
+    const int32_t all = l->head.offset_mask ? 0 : -1, all_move = l->head.temporal_mask ? 0 : -1;
+    int32_t on[TED4_LANES], any[TED4_LANES] = {0};
 
-    for (size_t c = 0; c < (size_t)l->offset_logit; c++)
+    ted4_lane_set(job->in->lanes[slot], on);
+    for (size_t c = 0; c < (size_t)l->offset_logit; c++) {
+        const float *from = attr + ted4_row(c);
+        float       *to = s->value + ted4_row(c);
+
+#pragma omp simd
         for (size_t j = 0; j < TED4_LANES; j++)
-            s->value[ted4_row(c) + j] = lanes >> j & 1 ? attr[ted4_row(c) + j]
-                                                       : 0.0f;
-    for (size_t j = 0; j < TED4_LANES; j++) {
-        const int in_use = lanes >> j & 1;
-        int any = 0;
+            to[j] = ted4_lane_keep(on[j], from[j]);
+    }
+    for (size_t k = 0; k < l->head.n_offsets; k++) {
+        const float *x = logit + ted4_row(k);
+        float       *kept = s->kept + ted4_row(k);
 
-        for (size_t k = 0; k < l->head.n_offsets; k++) {
-            const int on = in_use && (!l->head.offset_mask
-                                 || ted4_mask_on(logit[ted4_row(k) + j]));
+#pragma omp simd
+        for (size_t j = 0; j < TED4_LANES; j++) {
+            const int32_t keep = on[j] & (all | -ted4_mask_on(x[j]));
 
-            s->kept[ted4_row(k) + j] = on ? 1.0f : 0.0f;
-            any |= on;
+            kept[j] = ted4_lane_keep(keep, 1.0f);
+            any[j] |= keep;
         }
-        s->used[j] = any ? 1.0f : 0.0f;
-        s->dynamic[j] = any && (!l->head.temporal_mask
-                                || ted4_mask_on(moves[j])) ? 1.0f : 0.0f;
+    }
+#pragma omp simd
+    for (size_t j = 0; j < TED4_LANES; j++) {
+        s->used[j] = ted4_lane_keep(any[j], 1.0f);
+        s->dynamic[j] = ted4_lane_keep(any[j] & (all_move | -ted4_mask_on(moves[j])), 1.0f);
     }
 }
 
@@ -125,9 +141,13 @@ static void slices_forward(const ted4_rate_job *job, ted4_rate_room *room,
     float *out = room->hyper.x[r->hyper.n] + i * ted4_row(l->shape.n_outputs)
                + ted4_row(l->shape.first_output[TED4_FEATURE]);
 
-    for (size_t c = 0; c < f; c++)
-        for (size_t j = 0, at = ted4_row(c); j < TED4_LANES; j++)
+    for (size_t c = 0; c < f; c++) {
+        const size_t at = ted4_row(c);
+
+#pragma omp simd
+        for (size_t j = 0; j < TED4_LANES; j++)
             context[at + j] = (value[at + j] + q[j] * residual[at + j]) * unit;
+    }
     for (size_t m = 1, known = 0; m < l->head.n_slices; m++) {
         const ted4_rate_net *n = &r->slice[m];
         float *hidden = room->slice[m].x[1] + i * ted4_row((size_t)n->dim[1]);
@@ -137,6 +157,7 @@ static void slices_forward(const ted4_rate_job *job, ted4_rate_room *room,
         known += l->head.slice[m - 1];
         TED4_LEVELED(ted4_dense_forward)(&n->layer[0], context, hidden, 1);
         TED4_LEVELED(ted4_dense_forward)(&n->layer[1], hidden, y, 0);
+#pragma omp simd
         for (size_t j = 0; j < half; j++) {
             out[ted4_row(known) + j] += y[j];
             out[ted4_row(known + f) + j] += y[half + j];
