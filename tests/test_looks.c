@@ -45,6 +45,19 @@ static void forget(looks *l)
     free(l->rgb);
 }
 
+/* Every opacity is near a half: where it is 0 or 1, as training may have made most, all directions are alike. */
+static void soften_opacity(ted4_trainer *t)
+{
+    const ted4_net_shape *s = &t->layout.shape.netr[TED4_NET_OPACITY];
+    float                *w = t->net + t->layout.netr + s->first;
+
+    for (int i = 0; i + 1 < s->n_layers; i++)
+        w += ((size_t)s->dim[i] + 1) * s->dim[i + 1];
+    for (size_t i = 0; i < (size_t)s->dim[s->n_layers - 1] * s->dim[s->n_layers]; i++)
+        w[i] *= 0.01f;
+    ball_set_biases(t, TED4_NET_OPACITY, t->layout.head.n_offsets, 0.5f);
+}
+
 static void begin(ted4_trainer *t, int view)
 {
     ted4_train_options o = ball_options();
@@ -52,7 +65,38 @@ static void begin(ted4_trainer *t, int view)
     o.view = view;
     ball_begin(t, &o, &balls, NULL);
     ball_train(t, STEPS);
+    soften_opacity(t);
     assert_true(t->order.n > DIRECTIONS);
+}
+
+static double sum_of(const looks *l)
+{
+    double sum = 0;
+
+    for (size_t i = 0; i < l->n; i++)
+        sum += (double)l->opacity[i];
+    return sum;
+}
+
+/* Looks from all directions, of which the first is the one that shows least: one look would not do. */
+static void look_from_all(ted4_trainer *t, looks one[DIRECTIONS])
+{
+    uint32_t *const item = t->order.item;
+    uint32_t        least = 0;
+
+    for (uint32_t k = 0; k < DIRECTIONS; k++) {
+        one[k] = look_from(t, item[k * t->order.n / DIRECTIONS]);
+        if (sum_of(&one[k]) < sum_of(&one[least]))
+            least = k;
+    }
+
+    const uint32_t at = least * t->order.n / DIRECTIONS, first = item[0];
+    const looks    shows_least = one[least];
+
+    one[least] = one[0];
+    one[0] = shows_least;
+    item[0] = item[at];
+    item[at] = first;
 }
 
 static void test_all_directions(void **state)
@@ -63,9 +107,8 @@ static void test_all_directions(void **state)
 
     (void)state;
     begin(&t, TED4_VIEW_FULL);
+    look_from_all(&t, one);
     got = look(&t);
-    for (uint32_t k = 0; k < DIRECTIONS; k++)
-        one[k] = look_from(&t, t.order.item[k * t.order.n / DIRECTIONS]);
     for (size_t i = 0; i < got.n; i++) {
         size_t best = 0;
 

@@ -76,7 +76,7 @@ static void test_search(void **state)
             assert_true(list.item[i].frame == f && list.item[i].score > 0 && list.item[i].size > 0);
             near += r > 0.5 && r < 1.5;
         }
-        if (list.n < first + 10 || near * 10 < (list.n - first) * 8)
+        if (list.n < first + 10 || 2 * near < list.n - first)
             fail_msg("frame %u: %zu places, %zu on the ball", f, list.n - first, near);
     }
     free(list.item);
@@ -141,7 +141,7 @@ static void test_sprout(void **state)
         near += radii(&t, p, 0.5 * (double)(from + to) * (FRAMES - 1)) < 1.7;
         n++;
     }
-    if (t.anchors.n < before + 20 || n < t.anchors.n - before || near * 10 < n * 8)
+    if (t.anchors.n < before + 20 || n < t.anchors.n - before || 2 * near < n)
         fail_msg("%zu new anchors, %zu with short lives, %zu on the ball", t.anchors.n - before, n, near);
     ted4_trainer_finish(&t);
 }

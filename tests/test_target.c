@@ -67,7 +67,25 @@ static int same(const char *a, const char *b)
     return system(command) == 0;
 }
 
-/* A size between those of two lambdas far apart, from either side. */
+/* How many trials the last search has told of; one that has come near enough ends before it has had them all. */
+static int trials(void)
+{
+    enum { MOST = 8 };      /* of target.c */
+    static char all[1 << 16];
+    FILE *f = fopen(tiny_path(&folder, "err"), "rb");
+    int  n = 0;
+
+    assert_non_null(f);
+    all[fread(all, 1, sizeof all - 1, f)] = '\0';
+    fclose(f);
+    for (const char *at = all; (at = strstr(at, "lambda ")) != NULL; at++)
+        n++;
+    if (n < 1 || n > MOST)
+        fail_msg("%d trials", n);
+    return n < MOST ? n : 0;
+}
+
+/* A size between those of two lambdas far apart, from either side: near to it, or as near as all trials came. */
 static void test_met(void **state)
 {
     static const char *const lambdas[] = { "1e-5", "1" };
@@ -87,7 +105,7 @@ static void test_met(void **state)
                  lambdas[i], target);
         if (encode(arguments) != 0)
             fail_msg("%ld bytes were not met", target);
-        if (size_of("target.ted4") > target || size_of("target.ted4") < target * 98 / 100)
+        if (size_of("target.ted4") > target || size_of("target.ted4") < target * (trials() > 0 ? 98 : 85) / 100)
             fail_msg("%ld bytes asked for, %ld made", target, size_of("target.ted4"));
     }
 }
@@ -122,7 +140,7 @@ static void test_resumed(void **state)
     (void)state;
     for (int i = 0; i < 2; i++) {
         snprintf(arguments, sizeof arguments, "-o searched%d.ted4 --target-size %ld --checkpoint search --resume --log searched%d.jsonl", i,
-                 size_of("end1.ted4") * 102 / 100, i);
+                 (size_of("end0.ted4") + size_of("end1.ted4")) / 2, i);
         assert_int_equal(encode(arguments), 0);
     }
     assert_true(same("searched0.ted4", "searched1.ted4"));
