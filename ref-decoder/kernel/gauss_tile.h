@@ -126,6 +126,16 @@ static inline symbols beside(const models *m, vi slot, vi near, vi bound)
     return (symbols){ choose(below, near - 1, near), least(bound, other), most(bound, other) };
 }
 
+/* The same from three bounds at once: more work, but less to wait for where there is one row. */
+static inline symbols around(const models *m, vi slot, vi near)
+{
+    const vi   bound = inner(m, near), before = cum(m, near - 1), after = cum(m, near + 1);
+    const mask below = less(slot, bound);
+
+    return (symbols){ choose(below, near - 1, near), choose(below, before, bound),
+                      choose(below, bound, after) };
+}
+
 /* Which of the lanes do not hold their slots. */
 static inline unsigned missed(const symbols *s, vi slot, unsigned lanes)
 {
@@ -337,10 +347,15 @@ TED4_ALWAYS unsigned take_rows(ted4_gauss_lanes *d, const model_table *t, unsign
     }
     for (int i = 0; i < rows; i++)
         near[i] = bound_near(&r[i].m, r[i].slot);
-    for (int i = 0; i < rows; i++)
-        bound[i] = inner(&r[i].m, near[i]);
-    for (int i = 0; i < rows; i++)
-        r[i].s = beside(&r[i].m, r[i].slot, near[i], bound[i]);
+    if (rows == 1) {
+        for (int i = 0; i < rows; i++)
+            r[i].s = around(&r[i].m, r[i].slot, near[i]);
+    } else {
+        for (int i = 0; i < rows; i++)
+            bound[i] = inner(&r[i].m, near[i]);
+        for (int i = 0; i < rows; i++)
+            r[i].s = beside(&r[i].m, r[i].slot, near[i], bound[i]);
+    }
     for (int i = 0; i < rows; i++) {
         const unsigned again = missed(&r[i].s, r[i].slot, active);
 
