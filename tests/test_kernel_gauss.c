@@ -94,8 +94,8 @@ static void test_same(void **state)
             }
 }
 
-/* Read with means further out than those it was written with, the last symbol leaves 16 bits; without an escape and
- * with one. */
+/* Read with means further out than those it was written with, the last symbol leaves 16 bits;
+ * without an escape and with one. */
 static void test_outside(void **state)
 {
     static const size_t   at[] = { 0, 1, 100, 4099, 39999 };

@@ -282,7 +282,7 @@ static int32_t escape_alone(alone *a)
     return bit < 0 ? -1 : value - 1;
 }
 
-/* The symbol of a lane that has an escape. 0: this is the reader's to judge, and nothing is taken. */
+/* The symbol of a lane that has an escape. 0: this is the reader's to judge; nothing is taken. */
 static int take_escape(ted4_gauss_lanes *d, const row *r, unsigned lane, int16_t *k)
 {
     int32_t j[LANES], from[LANES], to[LANES], symbol[LANES], hw[LANES];

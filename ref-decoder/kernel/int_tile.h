@@ -7,7 +7,7 @@
  *     vector nothing(void), load(const int16_t *x)    zeros; GROUP inputs
  *     vector low(vector a, vector b), high(...)       inputs of two channels side by side: of some
  *                                                     anchors, of the others
- *     vector both(const int16_t *w), all(int32_t x)   a pair of weights, or a number, for each anchor
+ *     vector both(const int16_t *w), all(int32_t x)   a pair of weights, or a number, everywhere
  *     vector dot(vector sum, vector x, vector w)      sum + the two products of each anchor
  *     vector shift(vector sum, unsigned r)            (sum + 2^(r-1)) >> r
  *     pair                                            type of two vectors, lo and hi
