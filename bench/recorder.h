@@ -20,7 +20,7 @@ extern const int recorder_cores[RECORDER_CORES];
  * how many. */
 typedef struct {
     double work, on[RECORDER_CORES];
-    double own;                 /* what the notes themselves took, outside work */
+    double own;                 /* what the notes took, and other programs, outside work */
     size_t n;
 } recorder_regions;
 
