@@ -67,16 +67,16 @@ static int kind_of_region(size_t n)
 static phase enter(phase p)
 {
     const phase       before = current;
-    const double      now = now_ms();
+    const double      now = recorder_thread_ms();
     portion          *to = &of[before];
     recorder_regions *r = &recorded.regions;
 
-    to->whole += (since > 0 ? now - since : 0) - r->own;
+    to->whole += (since > 0 ? now - since : 0) - r->spent;
     to->work += r->work;
     for (int k = 0; k < RECORDER_CORES; k++)
         to->on[k] += r->on[k];
     memset(r, 0, sizeof *r);
-    since = now_ms();
+    since = recorder_thread_ms();
     current = p;
     return before;
 }

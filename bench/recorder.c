@@ -75,7 +75,7 @@ static double schedule_list(const recorder *r, double work, size_t n, int cores)
     return all > 0 ? recorder_schedule(r->kept, r->n_kept, takers) * work / all : work;
 }
 
-static double thread_ms(void)
+double recorder_thread_ms(void)
 {
     struct timespec t;
 
@@ -105,7 +105,7 @@ static void take_off(recorder *r, double excess)
 static double time_indices(recorder *r, size_t n, void (*body)(void *arg, size_t i), void *arg,
                            double *excess)
 {
-    const double spent = thread_ms(), begin = now_ms();
+    const double spent = recorder_thread_ms(), begin = now_ms();
     double       at = begin;
 
     for (size_t i = 0; i < n; i++) {
@@ -116,7 +116,7 @@ static double time_indices(recorder *r, size_t n, void (*body)(void *arg, size_t
         r->duration[i] = took > 0 ? took : 0;
         at = now;
     }
-    *excess = (at - begin) - (thread_ms() - spent);
+    *excess = (at - begin) - (recorder_thread_ms() - spent);
     *excess = *excess > 0 ? *excess : 0;
     return at - begin;
 }
@@ -124,7 +124,7 @@ static double time_indices(recorder *r, size_t n, void (*body)(void *arg, size_t
 static void run(void *user, size_t n, void (*body)(void *arg, size_t i), void *arg)
 {
     recorder    *r = user;
-    const double begin = now_ms();
+    const double begin = now_ms(), spent = recorder_thread_ms();
     const int    kind = r->kind != NULL ? r->kind(n) : 0;
     double       excess;
 
@@ -148,6 +148,7 @@ static void run(void *user, size_t n, void (*body)(void *arg, size_t i), void *a
         r->regions.on[k] += kind == 2 ? schedule_list(r, work, n, cores)
                                       : recorder_schedule(r->duration, n, cores);
     }
+    r->regions.spent += recorder_thread_ms() - spent - (took - excess);
     r->regions.own += now_ms() - begin - (took - excess);
 }
 
