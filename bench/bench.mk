@@ -19,8 +19,9 @@ bench-render: $B/bench/bench_render
 	$(KEEP) bench/render.md $B/bench/bench_render
 
 # Parts of a step are told apart by functions that train_parts.c puts in between.
+LEVELED_PARTS = ted4_raster_project ted4_raster_blend ted4_raster_blend_bwd ted4_raster_project_bwd
 TRAIN_PARTS = ted4_dataset_pixels ted4_trainer_check ted4_schedule_event ted4_slots_fill ted4_generator_pack ted4_generate \
-        ted4_raster_project ted4_raster_bin ted4_raster_blend ted4_loss ted4_raster_blend_bwd ted4_raster_project_bwd \
+        ted4_raster_bin ted4_loss $(foreach l,base v3 v4,$(LEVELED_PARTS:%=%_$l)) \
         ted4_generate_backward ted4_update_volume ted4_update_bank ted4_densify_gather ted4_update_rate ted4_update_parameters
 BETWEEN = $(TRAIN_PARTS:%=-Wl,--wrap=%)
 
@@ -45,7 +46,8 @@ PHASES = ted4_dataset_load ted4_dataset_verify ted4_header_settle ted4_trainer_i
         ted4_snapshot_take ted4_snapshot_restore ted4_state_take ted4_state_restore ted4_densify_adjust ted4_sprout \
         ted4_activation_begin ted4_stage2_begin ted4_integer_begin ted4_capacity_decide ted4_capacity_refine ted4_capacity_prune \
         ted4_trainer_distortion ted4_trainer_blame ted4_make_scene ted4_encode ted4_encode_told ted4_trainer_preview ted4_run_log_step \
-        ted4_checkpoint_save ted4_verify ted4_file_write ted4_raster_blend ted4_raster_blend_bwd ted4_threads_init \
+        ted4_checkpoint_save ted4_verify ted4_file_write \
+        $(foreach l,base v3 v4,ted4_raster_blend_$l ted4_raster_blend_bwd_$l) ted4_threads_init \
         ted4_threads_count ted4_threads_finish
 $B/bench/phases: $B/bench/phases.o $B/bench/recorder.o $B/ref-encoder/tool/ted4enc.o $(ENC_TOOL:%.c=$B/%.o) $(DEC_TOOL:%.c=$B/%.o) $(ENC_LIB)
 	$(CC) -fopenmp $(LDFLAGS) $(PHASES:%=-Wl,--wrap=%) $^ -o $@ $(LIBS)

@@ -56,6 +56,17 @@ static void leave(train_part p)
     memset(r, 0, sizeof *r);
 }
 
+/* The whole step is the sum of its parts. */
+static void add_parts(sample *s)
+{
+    double *all = (double *)&s->of[N_PARTS];
+
+    memset(all, 0, sizeof s->of[N_PARTS]);
+    for (int p = 0; p < N_PARTS; p++)
+        for (int i = 0; i < MEMBERS; i++)
+            all[i] += ((const double *)&s->of[p])[i];
+}
+
 static sample one_step(ted4_trainer *t)
 {
     memset(&here, 0, sizeof here);
@@ -66,17 +77,8 @@ static sample one_step(ted4_trainer *t)
         exit(3);
     }
     parts_end();
-    for (int p = 0; p < N_PARTS; p++) {
-        const portion *from = &here.of[p];
-        portion       *all = &here.of[N_PARTS];
-
+    for (int p = 0; p < N_PARTS; p++)
         here.of[p].whole += parts.ms[p];
-        all->whole += from->whole;
-        all->work += from->work;
-        all->regions += from->regions;
-        for (int k = 0; k < RECORDER_CORES; k++)
-            all->on[k] += from->on[k];
-    }
     return here;
 }
 
@@ -87,7 +89,8 @@ static void record(recording *r, ted4_dataset *d)
     ted4_trainer        t;
 
     parts_options(&o, STEPS);
-    o.sprouts = 0;              /* the search for them, an event of minutes at full size, is no step */
+    /* The search for sprouts is an event of a minute at full size, and no step. */
+    o.sprouts = 0;
     if (ted4_trainer_init(&t, &o, d, &team) != 0) {
         fprintf(stderr, "bench_scale: %s\n", t.message.text);
         exit(3);
@@ -111,13 +114,13 @@ static int by_value(const void *a, const void *b)
     return (x > y) - (x < y);
 }
 
-/* Medians over the steps of a stage, the first ones aside. */
+/* Of each part medians over the steps of a stage, the first ones aside. */
 static sample medians(const recording *r, int stage)
 {
     const size_t first = r->n[stage] > WARM_UP + FEWEST ? WARM_UP : 0, n = r->n[stage] - first;
     sample       m;
 
-    for (size_t i = 0; i < (N_PARTS + 1) * (size_t)MEMBERS; i++) {
+    for (size_t i = 0; i < N_PARTS * (size_t)MEMBERS; i++) {
         double value[STEPS];
 
         for (size_t k = 0; k < n; k++)
@@ -125,6 +128,7 @@ static sample medians(const recording *r, int stage)
         qsort(value, n, sizeof *value, by_value);
         ((double *)m.of)[i] = value[n / 2];
     }
+    add_parts(&m);
     return m;
 }
 

@@ -67,16 +67,16 @@ static int kind_of_region(size_t n)
 static phase enter(phase p)
 {
     const phase       before = current;
-    const double      now = now_ms();
+    const double      now = recorder_thread_ms();
     portion          *to = &of[before];
     recorder_regions *r = &recorded.regions;
 
-    to->whole += (since > 0 ? now - since : 0) - r->own;
+    to->whole += (since > 0 ? now - since : 0) - r->spent;
     to->work += r->work;
     for (int k = 0; k < RECORDER_CORES; k++)
         to->on[k] += r->on[k];
     memset(r, 0, sizeof *r);
-    since = now_ms();
+    since = recorder_thread_ms();
     current = p;
     return before;
 }
@@ -160,12 +160,18 @@ BETWEEN(PHASE_WRITE, int, ted4_file_write,
         flag = 0; \
         return result; \
     }
-MARKED(in_blend, ted4_raster_blend,
-        (ted4_raster *r, const ted4_view *v, const ted4_parallel *p, int keep, float *image),
-        (r, v, p, keep, image))
-MARKED(in_blend_bwd, ted4_raster_blend_bwd,
-        (ted4_raster *r, const ted4_view *v, const ted4_parallel *p, const float *d),
-        (r, v, p, d))
+#define BLENDING(level) \
+    MARKED(in_blend, ted4_raster_blend_##level, \
+           (ted4_raster *r, const ted4_view *v, const ted4_parallel *p, int keep, float *image), \
+           (r, v, p, keep, image)) \
+    MARKED(in_blend_bwd, ted4_raster_blend_bwd_##level, \
+           (ted4_raster *r, const ted4_view *v, const ted4_parallel *p, const float *d), \
+           (r, v, p, d))
+BLENDING(base)
+#if defined(__x86_64__)
+BLENDING(v3)
+BLENDING(v4)
+#endif
 
 extern __typeof__(ted4_threads_init) __wrap_ted4_threads_init;
 void __wrap_ted4_threads_init(ted4_parallel *p, int n_threads)

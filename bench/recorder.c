@@ -75,15 +75,39 @@ static double schedule_list(const recorder *r, double work, size_t n, int cores)
     return all > 0 ? recorder_schedule(r->kept, r->n_kept, takers) * work / all : work;
 }
 
-static void run(void *user, size_t n, void (*body)(void *arg, size_t i), void *arg)
+double recorder_thread_ms(void)
 {
-    recorder    *r = user;
-    const int    kind = r->kind != NULL ? r->kind(n) : 0;
-    const double begin = now_ms();
+    struct timespec t;
+
+    clock_gettime(CLOCK_THREAD_CPUTIME_ID, &t);
+    return (double)t.tv_sec * 1e3 + (double)t.tv_nsec * 1e-6;
+}
+
+/* Time that others had of this core is no index's: it is taken off the longest. */
+static void take_off(recorder *r, double excess)
+{
+    while (excess > 0) {
+        size_t longest = 0;
+
+        for (size_t i = 1; i < r->n; i++)
+            longest = r->duration[i] > r->duration[longest] ? i : longest;
+
+        const double cut = excess < r->duration[longest] ? excess : r->duration[longest];
+
+        r->duration[longest] -= cut;
+        excess -= cut;
+        if (!(cut > 0))
+            return;
+    }
+}
+
+/* Times every index, and gives what the region took of the clock, and of it what others had. */
+static double time_indices(recorder *r, size_t n, void (*body)(void *arg, size_t i), void *arg,
+                           double *excess)
+{
+    const double spent = recorder_thread_ms(), begin = now_ms();
     double       at = begin;
 
-    reserve(r, n);
-    r->n = n;
     for (size_t i = 0; i < n; i++) {
         body(arg, i);
 
@@ -92,12 +116,30 @@ static void run(void *user, size_t n, void (*body)(void *arg, size_t i), void *a
         r->duration[i] = took > 0 ? took : 0;
         at = now;
     }
+    *excess = (at - begin) - (recorder_thread_ms() - spent);
+    *excess = *excess > 0 ? *excess : 0;
+    return at - begin;
+}
+
+static void run(void *user, size_t n, void (*body)(void *arg, size_t i), void *arg)
+{
+    recorder    *r = user;
+    const double begin = now_ms(), spent = recorder_thread_ms();
+    const int    kind = r->kind != NULL ? r->kind(n) : 0;
+    double       excess;
+
+    reserve(r, n);
+    r->n = n;
+
+    const double took = time_indices(r, n, body, arg, &excess);
+
+    take_off(r, excess);
     if (kind == 1)
         keep(r);
 
     const double work = sum_of(r->duration, n);
 
-    r->regions.work += at - begin;
+    r->regions.work += took - excess;
     r->regions.n++;
     for (int k = 0; k < RECORDER_CORES; k++) {
         const int cores = recorder_cores[k];
@@ -106,7 +148,8 @@ static void run(void *user, size_t n, void (*body)(void *arg, size_t i), void *a
         r->regions.on[k] += kind == 2 ? schedule_list(r, work, n, cores)
                                       : recorder_schedule(r->duration, n, cores);
     }
-    r->regions.own += now_ms() - at;
+    r->regions.spent += recorder_thread_ms() - spent - (took - excess);
+    r->regions.own += now_ms() - begin - (took - excess);
 }
 
 ted4_parallel recorder_team(recorder *r)

@@ -20,7 +20,8 @@ extern const int recorder_cores[RECORDER_CORES];
  * how many. */
 typedef struct {
     double work, on[RECORDER_CORES];
-    double own;                 /* what the notes themselves took, outside work */
+    double own;                 /* what the notes took, and other programs, outside work */
+    double spent;               /* of own, what this thread spent */
     size_t n;
 } recorder_regions;
 
@@ -41,6 +42,9 @@ void recorder_init(recorder *r);
 void recorder_finish(recorder *r);
 /* The team; r is its user. */
 ted4_parallel recorder_team(recorder *r);
+
+/* Time that the calling thread has had of a core, in ms. */
+double recorder_thread_ms(void);
 
 /* Jobs handed out in order, each to the core that is free first: when the last one is done. */
 double recorder_schedule(const double *duration, size_t n, int cores);

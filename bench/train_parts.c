@@ -44,6 +44,19 @@ static train_part enter(train_part p)
         __real_##name arguments; \
         enter(before); \
     }
+/* A leveled function (render/leveled.h) is called by the function of its plain name in the same
+ * file, where the linker can put nothing in between, and calls its copies elsewhere. */
+#if defined(__x86_64__)
+#define OF_LEVELS(kind, part, name, parameters, arguments) \
+    kind(part, name##_base, parameters, arguments) \
+    kind(part, name##_v3, parameters, arguments) \
+    kind(part, name##_v4, parameters, arguments)
+#else
+#define OF_LEVELS(kind, part, name, parameters, arguments) \
+    kind(part, name##_base, parameters, arguments)
+#endif
+#define BETWEEN_INT(part, name, parameters, arguments) \
+    BETWEEN(part, int, name, parameters, arguments)
 typedef const uint8_t *pixels;
 
 BETWEEN(PICTURE, pixels, ted4_dataset_pixels, (ted4_dataset *d, size_t i, ted4_message *m), (d, i, m))
@@ -53,16 +66,24 @@ BETWEEN(VISIBLE, int, ted4_slots_fill, (ted4_trainer *t, const ted4_view *v), (t
 BETWEEN_VOID(GENERATE, ted4_generator_pack, (ted4_generator *g, const float *net), (g, net))
 BETWEEN(GENERATE, int, ted4_generate,
         (ted4_generator *g, const ted4_generate_input *in, const ted4_parallel *p, ted4_splats *out), (g, in, p, out))
-BETWEEN(PROJECT, int, ted4_raster_project, (ted4_raster *r, const ted4_splats *s, const ted4_view *v, const ted4_parallel *p), (r, s, v, p))
+OF_LEVELS(BETWEEN_INT, PROJECT, ted4_raster_project,
+          (ted4_raster *r, const ted4_splats *s, const ted4_view *v, const ted4_parallel *p),
+          (r, s, v, p))
 BETWEEN(BIN, int, ted4_raster_bin, (ted4_raster *r, const ted4_splats *s, const ted4_parallel *p), (r, s, p))
-BETWEEN(BLEND, int, ted4_raster_blend, (ted4_raster *r, const ted4_view *v, const ted4_parallel *p, int keep, float *image), (r, v, p, keep, image))
+OF_LEVELS(BETWEEN_INT, BLEND, ted4_raster_blend,
+          (ted4_raster *r, const ted4_view *v, const ted4_parallel *p, int keep, float *image),
+          (r, v, p, keep, image))
 BETWEEN(LOSS, double, ted4_loss,
         (ted4_loss_workspace *w, const float *image, const uint8_t *truth, int width, int height, float weight, const ted4_parallel *p, float *d_image,
          double *l1, double *ssim),
         (w, image, truth, width, height, weight, p, d_image, l1, ssim))
-BETWEEN(BLEND_BWD, int, ted4_raster_blend_bwd, (ted4_raster *r, const ted4_view *v, const ted4_parallel *p, const float *d_image), (r, v, p, d_image))
-BETWEEN_VOID(PROJECT_BWD, ted4_raster_project_bwd,
-             (ted4_raster *r, const ted4_splats *s, const ted4_view *v, const ted4_parallel *p, const ted4_splat_grads *g), (r, s, v, p, g))
+OF_LEVELS(BETWEEN_INT, BLEND_BWD, ted4_raster_blend_bwd,
+          (ted4_raster *r, const ted4_view *v, const ted4_parallel *p, const float *d_image),
+          (r, v, p, d_image))
+OF_LEVELS(BETWEEN_VOID, PROJECT_BWD, ted4_raster_project_bwd,
+          (ted4_raster *r, const ted4_splats *s, const ted4_view *v, const ted4_parallel *p,
+           const ted4_splat_grads *g),
+          (r, s, v, p, g))
 BETWEEN(GENERATE_BWD, int, ted4_generate_backward,
         (ted4_generator *g, const ted4_generate_input *in, const ted4_splat_grads *gr, const ted4_parallel *p, float *const *d_attr, float *d_net),
         (g, in, gr, p, d_attr, d_net))
