@@ -1,6 +1,9 @@
-/* bench_scale.c - how far a training step can use many cores: the share of it outside parallel work, and what that and the sizes of its jobs let 8, 16 and 32 cores reach.
- * On one thread each index of each parallel region is timed. Two bounds: Amdahl's law, for which regions take no time on many cores but their work over the cores; and
- * the same steps with their real jobs, handed out in order to whichever core is free, and what opening and closing a region costs (recorder.h).
+/* bench_scale.c - how far a training step can use many cores: the share of it outside parallel
+ * work, and what that and the sizes of its jobs let 8, 16 and 32 cores reach. On one thread each
+ * index of each parallel region is timed. Two bounds: Amdahl's law, for which regions take no
+ * time on many cores but their work over the cores; and the same steps with their real jobs,
+ * handed out in order to whichever core is free, and what opening and closing a region costs
+ * (recorder.h).
  * Usage: bench_scale SCENE DOWNSCALE
  * SPDX-License-Identifier: BSD-2-Clause */
 #include "measure.h"
@@ -10,7 +13,8 @@
 
 enum { STEPS = 120, WARM_UP = 15, FEWEST = 12 };
 
-/* A part of one step, or all of it: ms on one thread, in regions alone, and in regions on recorder_cores; regions. */
+/* A part of one step, or all of it: ms on one thread, in regions alone, and in regions on
+ * recorder_cores; regions. */
 typedef struct {
     double whole, work, on[RECORDER_CORES], regions;
 } portion;
@@ -30,10 +34,12 @@ typedef struct {
 static recorder recorded;
 static sample   here;
 
-/* The tiles of the adjoint are taken by TED4_BWD_JOBS jobs, one by one; each lasts about as long, against the others, as forward. */
+/* The tiles of the adjoint are taken by TED4_BWD_JOBS jobs, one by one; each lasts about as
+ * long, against the others, as forward. */
 static int kind_of_region(size_t n)
 {
-    return parts.current == PART_BLEND ? 1 : parts.current == PART_BLEND_BWD && n == TED4_BWD_JOBS ? 2 : 0;
+    return parts.current == PART_BLEND ? 1
+           : parts.current == PART_BLEND_BWD && n == TED4_BWD_JOBS ? 2 : 0;
 }
 
 /* What was in regions since the last change of parts belongs to p. */
@@ -81,6 +87,7 @@ static void record(recording *r, ted4_dataset *d)
     ted4_trainer        t;
 
     parts_options(&o, STEPS);
+    o.sprouts = 0;              /* the search for them, an event of minutes at full size, is no step */
     if (ted4_trainer_init(&t, &o, d, &team) != 0) {
         fprintf(stderr, "bench_scale: %s\n", t.message.text);
         exit(3);
@@ -125,7 +132,8 @@ static void print_portion(const char *name, const portion *p, double step)
 {
     const double serial = p->whole - p->work;
 
-    printf("  %-28s %7.3f %8.3f %7.2f %% %5.0f", name, p->whole, serial, 100 * serial / step, p->regions);
+    printf("  %-28s %7.3f %8.3f %7.2f %% %5.0f", name, p->whole, serial, 100 * serial / step,
+           p->regions);
     for (int k = 0; k < RECORDER_CORES; k++)
         printf(" %8.3f", serial + p->on[k]);
     putchar('\n');
@@ -137,8 +145,10 @@ static void print_stage(const recording *r, int stage)
     const portion *all = &m.of[N_PARTS];
     const double   serial = all->whole - all->work;
 
-    printf("%s: %zu anchors, %.0f Gaussians on screen\n", stage_name[stage], r->anchors[stage], r->splats[stage]);
-    printf("  %-28s %7s %8s %9s %5s %8s %8s %8s\n", "ms", "1 core", "serial", "of step", "reg.", "8 cores", "16", "32");
+    printf("%s: %zu anchors, %.0f Gaussians on screen\n", stage_name[stage], r->anchors[stage],
+           r->splats[stage]);
+    printf("  %-28s %7s %8s %9s %5s %8s %8s %8s\n", "ms", "1 core", "serial", "of step", "reg.",
+           "8 cores", "16", "32");
     for (int i = 0; i < N_PARTS; i++)
         if (m.of[i].whole >= 0.005)
             print_portion(part_name[i], &m.of[i], all->whole);
@@ -168,11 +178,14 @@ int main(int argc, char **argv)
     recorded.kind = kind_of_region;
     parts.leave = leave;
     record(r, &d);
-    printf("%s, 1/%s size: %dx%d, %zu pictures; preset fast, full number of anchors from the first step; medians of %d steps\n",
-           strrchr(argv[1], '/') != NULL ? strrchr(argv[1], '/') + 1 : argv[1], argv[2], d.pictures[0].camera.width, d.pictures[0].camera.height,
-           d.n_pictures, STEPS - WARM_UP);
-    printf("a file of a picture to pixels: %.2f ms, so that the %d threads that decode ahead have one every %.2f ms where pictures find no room in memory\n", picture,
-           TED4_DATASET_AHEAD, picture / TED4_DATASET_AHEAD);
+    const char *const name = strrchr(argv[1], '/') != NULL ? strrchr(argv[1], '/') + 1 : argv[1];
+
+    printf("%s, 1/%s size: %dx%d, %zu pictures; preset fast, full number of anchors from the first "
+           "step; medians of %d steps\n", name, argv[2], d.pictures[0].camera.width,
+           d.pictures[0].camera.height, d.n_pictures, STEPS - WARM_UP);
+    printf("a picture's file to pixels: %.2f ms; the %d threads that decode ahead, where not all "
+           "pictures stay in memory, have one every %.2f ms\n", picture, TED4_DATASET_AHEAD,
+           picture / TED4_DATASET_AHEAD);
     for (int stage = 0; stage < STAGES; stage++)
         print_stage(r, stage);
     free(r);

@@ -1,6 +1,8 @@
-/* phases.c - a whole run of ted4enc by phase: how long each lasts on one thread, how much of it is outside parallel work, and what many cores would make of it. Linked in between
- * ted4enc's own objects (-Wl,--wrap, bench.mk): its team is the recorder's, and the table goes to standard output when the team is dismissed. What one phase calls of
- * another is counted once, for the inner one; steps of a probe or of a trial are told apart from those of the training itself.
+/* phases.c - a whole run of ted4enc by phase: how long each lasts on one thread, how much of it
+ * is outside parallel work, and what many cores would make of it. Linked in between ted4enc's
+ * own objects (-Wl,--wrap, bench.mk): its team is the recorder's, and the table goes to standard
+ * output when the team is dismissed. What one phase calls of another is counted once, for the
+ * inner one; steps of a probe or of a trial are told apart from those of the training itself.
  * SPDX-License-Identifier: BSD-2-Clause */
 #include "measure.h"
 #include "recorder.h"
@@ -53,7 +55,8 @@ static portion  of[PHASES];
 static phase    current = PHASE_REST;
 static double   since;
 
-/* The tiles of the adjoint are taken by TED4_BWD_JOBS jobs, one by one; each lasts about as long, against the others, as when blending. */
+/* The tiles of the adjoint are taken by TED4_BWD_JOBS jobs, one by one; each lasts about as
+ * long, against the others, as when blending. */
 static int in_blend, in_blend_bwd;
 
 static int kind_of_region(size_t n)
@@ -78,7 +81,8 @@ static phase enter(phase p)
     return before;
 }
 
-/* type __wrap_name is called where the program names name; __real_name is what it then gets. The linker compares no types: the declaration by __typeof__ does. */
+/* type __wrap_name is called where the program names name; __real_name is what it then gets. The
+ * linker compares no types: the declaration by __typeof__ does. */
 #define BETWEEN(phase_of, type, name, parameters, arguments) \
     extern __typeof__(name) __wrap_##name; \
     type __real_##name parameters; \
@@ -91,12 +95,22 @@ static phase enter(phase p)
         return result; \
     }
 
-BETWEEN(PHASE_LOAD, int, ted4_dataset_load, (ted4_dataset *d, const char *f, const ted4_dataset_options *o, ted4_message *m), (d, f, o, m))
-BETWEEN(PHASE_CHECK, int, ted4_dataset_verify, (ted4_dataset *d, const ted4_parallel *p, ted4_message *m), (d, p, m))
-BETWEEN(PHASE_SETTLE, int, ted4_header_settle, (ted4_train_options *o, const ted4_dataset *d), (o, d))
-BETWEEN(PHASE_SEED, int, ted4_trainer_init, (ted4_trainer *t, const ted4_train_options *o, ted4_dataset *d, const ted4_parallel *p), (t, o, d, p))
+BETWEEN(PHASE_LOAD, int, ted4_dataset_load,
+        (ted4_dataset *d, const char *f, const ted4_dataset_options *o, ted4_message *m),
+        (d, f, o, m))
+BETWEEN(PHASE_CHECK, int, ted4_dataset_verify,
+        (ted4_dataset *d, const ted4_parallel *p, ted4_message *m),
+        (d, p, m))
+BETWEEN(PHASE_SETTLE, int, ted4_header_settle,
+        (ted4_train_options *o, const ted4_dataset *d),
+        (o, d))
+BETWEEN(PHASE_SEED, int, ted4_trainer_init,
+        (ted4_trainer *t, const ted4_train_options *o, ted4_dataset *d, const ted4_parallel *p),
+        (t, o, d, p))
 BETWEEN(PHASE_SEED, int, ted4_trainer_restart, (ted4_trainer *t, const ted4_header *h), (t, h))
-BETWEEN(current == PHASE_PROBE ? PHASE_PROBE : PHASE_STEPS, int, ted4_trainer_step, (ted4_trainer *t), (t))
+BETWEEN(current == PHASE_PROBE ? PHASE_PROBE : PHASE_STEPS, int, ted4_trainer_step,
+        (ted4_trainer *t),
+        (t))
 BETWEEN(PHASE_PROBE, int, ted4_branch_run, (ted4_trainer *t, int n, double *loss), (t, n, loss))
 BETWEEN(PHASE_STATES, int, ted4_snapshot_take, (ted4_trainer *t, ted4_snapshot *s), (t, s))
 BETWEEN(PHASE_STATES, int, ted4_snapshot_restore, (ted4_trainer *t, const ted4_snapshot *s), (t, s))
@@ -111,20 +125,29 @@ BETWEEN(PHASE_CAPACITY, int, ted4_capacity_decide, (ted4_trainer *t), (t))
 BETWEEN(PHASE_CAPACITY, int, ted4_capacity_refine, (ted4_trainer *t), (t))
 BETWEEN(PHASE_CAPACITY, int, ted4_capacity_prune, (ted4_trainer *t), (t))
 BETWEEN(PHASE_DRAW, double, ted4_trainer_distortion, (ted4_trainer *t, size_t item), (t, item))
-BETWEEN(PHASE_DRAW, int, ted4_trainer_blame, (ted4_trainer *t, size_t item, ted4_splats *s), (t, item, s))
+BETWEEN(PHASE_DRAW, int, ted4_trainer_blame,
+        (ted4_trainer *t, size_t item, ted4_splats *s),
+        (t, item, s))
 BETWEEN(PHASE_SCENE, int, ted4_make_scene, (ted4_trainer *t, ted4_scene **s), (t, s))
-BETWEEN(PHASE_CODE, ted4_status, ted4_encode, (const ted4_scene *s, int level, const ted4_parallel *p, uint8_t **out, size_t *size, ted4_error *e),
+BETWEEN(PHASE_CODE, ted4_status, ted4_encode,
+        (const ted4_scene *s, int level, const ted4_parallel *p, uint8_t **out, size_t *size,
+         ted4_error *e),
         (s, level, p, out, size, e))
 BETWEEN(PHASE_CODE, ted4_status, ted4_encode_told,
-        (const ted4_scene *s, int level, char *text, const ted4_parallel *p, uint8_t **out, size_t *size, ted4_error *e),
+        (const ted4_scene *s, int level, char *text, const ted4_parallel *p, uint8_t **out,
+         size_t *size, ted4_error *e),
         (s, level, text, p, out, size, e))
 BETWEEN(PHASE_PREVIEW, double, ted4_trainer_preview, (ted4_trainer *t, int n), (t, n))
-BETWEEN(PHASE_LOG, int, ted4_run_log_step, (ted4_run_log *l, const ted4_trainer *t, char *why, size_t size), (l, t, why, size))
+BETWEEN(PHASE_LOG, int, ted4_run_log_step,
+        (ted4_run_log *l, const ted4_trainer *t, char *why, size_t size),
+        (l, t, why, size))
 BETWEEN(PHASE_SAVE, int, ted4_checkpoint_save, (ted4_trainer *t, const char *path), (t, path))
 BETWEEN(PHASE_VERIFY, int, ted4_verify,
-        (const ted4_scene *s, const uint8_t *bytes, size_t size, const ted4_parallel *p, ted4_verified *v, char *why, size_t why_size),
+        (const ted4_scene *s, const uint8_t *bytes, size_t size, const ted4_parallel *p,
+         ted4_verified *v, char *why, size_t why_size),
         (s, bytes, size, p, v, why, why_size))
-BETWEEN(PHASE_WRITE, int, ted4_file_write, (const char *path, const void *data, size_t size, char *why, size_t why_size),
+BETWEEN(PHASE_WRITE, int, ted4_file_write,
+        (const char *path, const void *data, size_t size, char *why, size_t why_size),
         (path, data, size, why, why_size))
 
 #define MARKED(flag, name, parameters, arguments) \
@@ -137,8 +160,12 @@ BETWEEN(PHASE_WRITE, int, ted4_file_write, (const char *path, const void *data, 
         flag = 0; \
         return result; \
     }
-MARKED(in_blend, ted4_raster_blend, (ted4_raster *r, const ted4_view *v, const ted4_parallel *p, int keep, float *image), (r, v, p, keep, image))
-MARKED(in_blend_bwd, ted4_raster_blend_bwd, (ted4_raster *r, const ted4_view *v, const ted4_parallel *p, const float *d), (r, v, p, d))
+MARKED(in_blend, ted4_raster_blend,
+        (ted4_raster *r, const ted4_view *v, const ted4_parallel *p, int keep, float *image),
+        (r, v, p, keep, image))
+MARKED(in_blend_bwd, ted4_raster_blend_bwd,
+        (ted4_raster *r, const ted4_view *v, const ted4_parallel *p, const float *d),
+        (r, v, p, d))
 
 extern __typeof__(ted4_threads_init) __wrap_ted4_threads_init;
 void __wrap_ted4_threads_init(ted4_parallel *p, int n_threads)
@@ -160,7 +187,8 @@ static void print_phase(const char *name, const portion *p, const portion *all)
 {
     const double serial = p->whole - p->work;
 
-    printf("  %-34s %6zu %9.2f %8.2f %7.2f %%", name, p->times, 1e-3 * p->whole, 1e-3 * serial, 100 * serial / all->whole);
+    printf("  %-34s %6zu %9.2f %8.2f %7.2f %%", name, p->times, 1e-3 * p->whole, 1e-3 * serial,
+           100 * serial / all->whole);
     for (int k = 0; k < RECORDER_CORES; k++)
         printf(" %8.2f", 1e-3 * (serial + p->on[k]));
     putchar('\n');
@@ -181,7 +209,8 @@ void __wrap_ted4_threads_finish(ted4_parallel *p)
     }
     const double serial = all.whole - all.work;
 
-    printf("  %-34s %6s %9s %8s %9s %8s %8s %8s\n", "seconds", "times", "1 core", "serial", "of run", "8 cores", "16", "32");
+    printf("  %-34s %6s %9s %8s %9s %8s %8s %8s\n", "seconds", "times", "1 core", "serial",
+           "of run", "8 cores", "16", "32");
     for (int i = 0; i < PHASES; i++)
         if (of[i].whole >= 5)
             print_phase(phase_name[i], &of[i], &all);

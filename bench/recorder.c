@@ -70,7 +70,9 @@ static double schedule_list(const recorder *r, double work, size_t n, int cores)
 {
     const double all = sum_of(r->kept, r->n_kept);
 
-    return all > 0 ? recorder_schedule(r->kept, r->n_kept, (size_t)cores < n ? cores : (int)n) * work / all : work;
+    const int    takers = (size_t)cores < n ? cores : (int)n;
+
+    return all > 0 ? recorder_schedule(r->kept, r->n_kept, takers) * work / all : work;
 }
 
 static void run(void *user, size_t n, void (*body)(void *arg, size_t i), void *arg)
@@ -97,9 +99,13 @@ static void run(void *user, size_t n, void (*body)(void *arg, size_t i), void *a
 
     r->regions.work += at - begin;
     r->regions.n++;
-    for (int k = 0; k < RECORDER_CORES; k++)
-        r->regions.on[k] += RECORDER_ROUND(recorder_cores[k]) + (kind == 2 ? schedule_list(r, work, n, recorder_cores[k])
-                                                                : recorder_schedule(r->duration, n, recorder_cores[k]));
+    for (int k = 0; k < RECORDER_CORES; k++) {
+        const int cores = recorder_cores[k];
+
+        r->regions.on[k] += RECORDER_ROUND(cores);
+        r->regions.on[k] += kind == 2 ? schedule_list(r, work, n, cores)
+                                      : recorder_schedule(r->duration, n, cores);
+    }
     r->regions.own += now_ms() - at;
 }
 

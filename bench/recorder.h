@@ -1,4 +1,5 @@
-/* recorder.h - a team of one thread that takes note of how long each index of each parallel region lasts, and of how long the region would last on more cores.
+/* recorder.h - a team of one thread that takes note of how long each index of each parallel
+ * region lasts, and of how long the region would last on more cores.
  * SPDX-License-Identifier: BSD-2-Clause */
 #ifndef TED4_BENCH_RECORDER_H
 #define TED4_BENCH_RECORDER_H
@@ -11,11 +12,12 @@
 enum { RECORDER_CORES = 3, RECORDER_MOST_CORES = 32 };
 extern const int recorder_cores[RECORDER_CORES];
 
-/* What opening and closing a region takes on as many cores, in ms: a round of the team costs a few hundred nanoseconds a thread, as the cache line that says
- * so goes from one to the next. */
+/* What opening and closing a region takes on as many cores, in ms: a round of the team costs a
+ * few hundred nanoseconds a thread, as the cache line that says so goes from one to the next. */
 #define RECORDER_ROUND(cores) (1e-3 + 2e-4 * (double)(cores))
 
-/* Regions since they were counted last: the time in them on one thread, and on recorder_cores; how many. */
+/* Regions since they were counted last: the time in them on one thread, and on recorder_cores;
+ * how many. */
 typedef struct {
     double work, on[RECORDER_CORES];
     double own;                 /* what the notes themselves took, outside work */
@@ -29,8 +31,9 @@ typedef struct {
     double *kept;               /* owned: those of a region to come back to */
     size_t  n_kept;
     recorder_regions regions;   /* the caller may empty it at any time */
-    /* NULL, or asked before each region of n indices: 1: the durations of this region are kept; 2: its indices take turns at a common list of jobs, which last
-     * in proportion to those kept. */
+    /* NULL, or asked before each region of n indices: 1: the durations of this region are kept;
+     * 2: its indices take turns at a common list of jobs, which last in proportion to those
+     * kept. */
     int   (*kind)(size_t n);
 } recorder;
 

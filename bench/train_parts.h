@@ -1,5 +1,6 @@
-/* train_parts.h - the parts of a training step, told apart by the functions that do them: the linker puts those of train_parts.c in between (-Wl,--wrap, bench.mk), so
- * the trainer itself is not touched and a part that another calls is counted once, for the inner one.
+/* train_parts.h - the parts of a training step, told apart by the functions that do them: the
+ * linker puts those of train_parts.c in between (-Wl,--wrap, bench.mk), so the trainer itself is
+ * not touched and a part that another calls is counted once, for the inner one.
  * SPDX-License-Identifier: BSD-2-Clause */
 #ifndef TED4_BENCH_TRAIN_PARTS_H
 #define TED4_BENCH_TRAIN_PARTS_H
@@ -32,7 +33,8 @@ typedef enum { PARTS(AS_ENUM) N_PARTS } train_part;
 #undef AS_ENUM
 extern const char *const part_name[N_PARTS];
 
-/* What goes on now; the trainer's own thread alone looks at it. Whoever empties ms begins a step by parts_begin and ends it by parts_end. */
+/* What goes on now; the trainer's own thread alone looks at it. Whoever empties ms begins a step
+ * by parts_begin and ends it by parts_end. */
 typedef struct {
     double ms[N_PARTS];
     train_part current;
@@ -44,8 +46,9 @@ extern parts_clock parts;
 void parts_begin(void);
 void parts_end(void);
 
-/* The preset "fast" with as many anchors as it may have from the beginning, and short stages; and its scene, with the time that it takes to decode one of its pictures,
- * in ms. They end the program where they fail. */
+/* The preset "fast" with as many anchors as it may have from the beginning, and short stages;
+ * and its scene, with the time that it takes to decode one of its pictures, in ms. They end the
+ * program where they fail. */
 void   parts_options(ted4_train_options *o, int steps);
 double parts_load(ted4_dataset *d, const char *scene, const char *downscale);
 int    parts_stage(const ted4_trainer *t);

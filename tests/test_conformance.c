@@ -9,6 +9,7 @@
 #include <stdlib.h>
 #include <string.h>
 #include <sys/wait.h>
+#include "base/level.h"
 #include "ted4.h"
 
 #ifdef __SANITIZE_ADDRESS__
@@ -107,6 +108,20 @@ static void our_decoder_conforms(void **state)
         fail_msg("%s%s", said, last);
     assert_null(strstr(last, " 0 passed"));
     assert_non_null(strstr(last, " 0 failed, 0 without answer, 0 missing, 0 declined"));
+}
+
+/* With the kernels of each level that this machine has. */
+static void levels_conform(void **state)
+{
+    char last[1024];
+
+    (void)state;
+    for (int level = TED4_LEVEL_PLAIN; level <= (int)ted4_level_of_machine(); level++) {
+        setenv("TED4_KERNEL", ted4_level_name((ted4_level)level), 1);
+        if (conf(last, sizeof last, "replay") != 0)
+            fail_msg("%s: %s", ted4_level_name((ted4_level)level), said);
+    }
+    unsetenv("TED4_KERNEL");
 }
 
 /* With a caller's threads, with a trace, without options, and in a scene as encoders make it. */
@@ -282,6 +297,7 @@ int main(void)
         cmocka_unit_test(nothing_is_left_out),
         cmocka_unit_test(truncation_at_every_byte),
         cmocka_unit_test(our_decoder_conforms),
+        cmocka_unit_test(levels_conform),
         cmocka_unit_test(ways_agree),
         cmocka_unit_test(lies),
         cmocka_unit_test(class_t),

@@ -416,7 +416,8 @@ static void test_cache_not_ahead(void **state)
     }
 }
 
-/* Half the room is for pictures that wait; one that was asked for waits no more, nor does one that has gone. */
+/* Half the room is for pictures that wait; one that was asked for waits no more, nor does one
+ * that has gone. */
 static void test_cache_half_ahead(void **state)
 {
     (void)state;

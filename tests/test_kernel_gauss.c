@@ -94,20 +94,21 @@ static void test_same(void **state)
             }
 }
 
-/* Read with means further out than those it was written with, the last symbol leaves 16 bits; without an escape. */
+/* Read with means further out than those it was written with, the last symbol leaves 16 bits; without an escape and
+ * with one. */
 static void test_outside(void **state)
 {
     static const size_t   at[] = { 0, 1, 100, 4099, 39999 };
     const ted4_gauss_many many = variant_of(state);
 
-    for (size_t i = 0; i < 2 * sizeof at / sizeof at[0]; i++) {
-        const int    sign = i % 2 ? -1 : 1;
+    for (size_t i = 0; i < 4 * sizeof at / sizeof at[0]; i++) {
+        const int    sign = i % 2 ? -1 : 1, escapes = i / 2 % 2 != 0;
         symbols      s = symbols_make(7, 40000, 0, 60);
-        const size_t k = at[i / 2];
-        ted4_writer w;
+        const size_t k = at[i / 4];
+        ted4_writer  w;
 
         s.k[k] = (int16_t)(32767 * sign);
-        s.mu[k] = 32767 * 256 * sign;
+        s.mu[k] = (escapes ? 30000 : 32767) * 256 * sign;
         symbols_write(&w, &s);
         assert_int_equal(compare(w.out.data, w.out.size, &s, many), TED4_OK);
         s.mu[k] += 256 * sign;

@@ -1,4 +1,5 @@
-/* test_threads.c - tool/threads.c: every index once, whatever the numbers of threads and indices and however uneven the work; sleepers wake.
+/* test_threads.c - tool/threads.c: every index once, whatever the numbers of threads and indices
+ * and however uneven the work; sleepers wake.
  * SPDX-License-Identifier: BSD-2-Clause */
 #include <setjmp.h>
 #include <stdarg.h>

@@ -1,9 +1,12 @@
-/* threads.c - see threads.h. Each thread first takes the indices of its own share, the same ones in every job of as many: what it wrote in one it finds in its cache in
- * the next, and neighbours in memory are mostly written by one core. Then it helps the others.
- * A training step has some thirty parallel regions of a fraction of a millisecond, so idle threads wait a moment without sleeping, but not for long: an OpenMP
- * team that spins through its barriers made a step five times as long on a machine that had other work.
- * A job ends when its indices are done, not when all threads have been there: one that slept, or has no processor at the moment, is not waited for. And no one wakes many:
- * whoever enters a job wakes two sleepers, who wake two each.
+/* threads.c - see threads.h. Each thread first takes the indices of its own share, the same ones
+ * in every job of as many: what it wrote in one it finds in its cache in the next, and
+ * neighbours in memory are mostly written by one core. Then it helps the others.
+ * A training step has some thirty parallel regions of a fraction of a millisecond, so idle
+ * threads wait a moment without sleeping, but not for long: an OpenMP team that spins through
+ * its barriers made a step five times as long on a machine that had other work.
+ * A job ends when its indices are done, not when all threads have been there: one that slept, or
+ * has no processor at the moment, is not waited for. And no one wakes many: whoever enters a job
+ * wakes two sleepers, who wake two each.
  * SPDX-License-Identifier: BSD-2-Clause */
 #include "tool/threads.h"
 
@@ -33,9 +36,9 @@ typedef struct {
 } member;
 
 struct team {
-    _Alignas(64) atomic_uint round;     /* jobs begun; odd and even alike. Spinning threads look at nothing else */
+    _Alignas(64) atomic_uint round;     /* jobs begun; all that spinning threads look at */
     _Alignas(64) atomic_uint inside;    /* workers in the job, and OPEN */
-    atomic_int      waker;              /* first member that has not been looked at by those who wake */
+    atomic_int      waker;              /* first member that those who wake have not looked at */
     atomic_int      waiting;            /* the caller sleeps until the last worker has left */
     pthread_mutex_t mutex;
     pthread_cond_t  left;
@@ -64,9 +67,11 @@ static void take_indices(team *t, const member *m)
         size_t  i;
 
         /* Looking before taking leaves the line where it is when nothing is left. */
-        while (atomic_load_explicit(&owner->next, memory_order_relaxed) < owner->end
-               && (i = atomic_fetch_add_explicit(&owner->next, 1, memory_order_relaxed)) < owner->end)
-            t->body(t->arg, i);
+        while (atomic_load_explicit(&owner->next, memory_order_relaxed) < owner->end) {
+            i = atomic_fetch_add_explicit(&owner->next, 1, memory_order_relaxed);
+            if (i < owner->end)
+                t->body(t->arg, i);
+        }
     }
 }
 
@@ -74,7 +79,12 @@ static void take_indices(team *t, const member *m)
 
 static void wake_some(team *t)
 {
-    for (int woken = 0, k; woken < WAKES && (k = atomic_fetch_add_explicit(&t->waker, 1, memory_order_relaxed)) < t->n;) {
+    for (int woken = 0; woken < WAKES;) {
+        const int k = atomic_fetch_add_explicit(&t->waker, 1, memory_order_relaxed);
+
+        if (k >= t->n)
+            return;
+
         member *m = &t->member[k];
 
         if (!atomic_load(&m->asleep))
@@ -86,7 +96,8 @@ static void wake_some(team *t)
     }
 }
 
-/* Round and asleep are sequentially consistent: either the sleeper sees the new round, or those who wake see that it sleeps. */
+/* Round and asleep are sequentially consistent: either the sleeper sees the new round, or those
+ * who wake see that it sleeps. */
 static void sleep_until_round(team *t, member *m, unsigned last)
 {
     pthread_mutex_lock(&m->mutex);

@@ -66,8 +66,9 @@ void           ted4_dataset_release(ted4_dataset *d, size_t i);
 
 /* Says that the pixels of picture i will be asked for soon: d->ahead threads decode them meanwhile where that is of use. */
 void ted4_dataset_ahead(ted4_dataset *d, size_t i);
-/* More pictures than this need not be announced at a time, and more threads do not decode them. A step on 64 cores takes a few milliseconds, and a large picture's file
- * some tens of one thread's. */
+/* More pictures than this need not be announced at a time, and more threads do not decode them.
+ * A step on 64 cores takes a few milliseconds, and a large picture's file some tens of one
+ * thread's. */
 enum { TED4_DATASET_AHEAD = 16 };
 
 /* Decodes every picture once, on the threads of p (NULL: here), and sets d->content. 0, or -1 with *m naming the first that cannot

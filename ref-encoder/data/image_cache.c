@@ -19,8 +19,8 @@ typedef struct {
     size_t   before, after;     /* neighbours in the idle list, when full and not pinned */
 } entry;
 
-/* As many pictures may wait as half the bound holds of the largest, or those that wait, and as many in use, would push one another out; where these are fewer
- * than so many, none does. */
+/* As many pictures may wait as half the bound holds of the largest, or those that wait, and as
+ * many in use, would push one another out; where these are fewer than so many, none does. */
 enum { FEWEST_AHEAD = 4 };
 
 /* Pictures wanted soon, in the order they were asked for, and who decodes them. */

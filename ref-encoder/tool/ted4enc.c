@@ -118,7 +118,8 @@ static int check_outputs(const ted4_request *r)
     return 0;
 }
 
-/* Threads that decode pictures ahead: some where there are two threads or more, and as many as these where there are many. */
+/* Threads that decode pictures ahead: some where there are two threads or more, and as many as
+ * these where there are many. */
 static int decoders(const ted4_parallel *p)
 {
     const int n = ted4_threads_count(p);

@@ -14,13 +14,14 @@
 #define MAGIC 0x34444554u       /* "TED4" */
 enum { FORMAT = 7 };
 
-/* One walk for both directions: put() writes or reads the bytes at p. whole: with the watch's last good state. left: when reading, bytes of the file that no
- * put() has had; anchors get room only where these fill it. Snapshots are taken and restored by one thread, often, while all others wait: these go to memory and come from
- * there directly, without a FILE in between. */
+/* One walk for both directions: put() writes or reads the bytes at p. whole: with the watch's
+ * last good state. left: when reading, bytes of the file that no put() has had; anchors get room
+ * only where these fill it. Snapshots are taken and restored by one thread, often, while all
+ * others wait: these go to memory and come from there directly, without a FILE in between. */
 typedef struct {
     FILE          *file;        /* NULL: memory */
     ted4_snapshot *memory;
-    size_t         at, room;    /* in memory: what is read next; bytes it has room for when writing */
+    size_t         at, room;    /* in memory: what is read next; when writing, room in bytes */
     int            writing, whole, failed;
     XXH3_state_t  *hash;
     uint64_t       left;
@@ -153,8 +154,9 @@ static int header_belongs(const ted4_header *began, const ted4_header *h, int de
     return ted4_header_same(&want, h);
 }
 
-/* Everything in the layout of h, empty. Where that is the trainer's own, as it is mostly when a trial ends, its memory is as good as new memory, which would
- * have to be cleared, too, page by page. */
+/* Everything in the layout of h, empty. Where that is the trainer's own, as it is mostly when a
+ * trial ends, its memory is as good as new memory, which would have to be cleared, too, page by
+ * page. */
 static int begin_layout(ted4_trainer *t, const ted4_header *h)
 {
     const size_t n = t->layout.n_net;
@@ -182,7 +184,8 @@ static void walk_layout(stream *s, ted4_trainer *t)
     if (!t->stage2)
         ted4_header_stage2(&h, &t->opt);
     ted4_header_make(&began, &t->opt, t->data);
-    s->failed = !header_belongs(&began, &h, t->stage2 && t->opt.capacity) || begin_layout(t, &h) != 0;
+    s->failed = !header_belongs(&began, &h, t->stage2 && t->opt.capacity) ||
+                begin_layout(t, &h) != 0;
 }
 
 /* Prior networks begin with stage 2, and their sizes are options of stage 2. */
@@ -386,9 +389,11 @@ static void walk_hash(stream *s)
 }
 
 /* In file, or, where that is NULL, in memory, which when writing is empty but may have room. */
-static int run(ted4_trainer *t, FILE *file, ted4_snapshot *memory, size_t room, int writing, int whole)
+static int run(ted4_trainer *t, FILE *file, ted4_snapshot *memory, size_t room, int writing,
+               int whole)
 {
-    stream s = { .file = file, .memory = memory, .room = room, .writing = writing, .whole = whole, .hash = XXH3_createState() };
+    stream s = { .file = file, .memory = memory, .room = room, .writing = writing, .whole = whole,
+                 .hash = XXH3_createState() };
 
     if (s.hash == NULL)
         return -1;

@@ -177,7 +177,7 @@ static void emit(const ted4_generator *g, float *planes, const float *position,
 
 #pragma omp simd
         for (int j = 0; j < TED4_LANES; j++) {
-            mean[j] = position[row + j] + offset[row + j] * size[row + j];
+            mean[j] = ted4_fma(offset[row + j], size[row + j], position[row + j]);
             scale[j] = size[3 * TED4_LANES + row + j] * covariance[row + j];
         }
         memcpy(out[TED4_GEN_COLOUR + c], colour + row, TED4_LANES * sizeof *colour);

@@ -122,10 +122,12 @@ int ted4_slots_fill(ted4_trainer *t, const ted4_view *v)
     if (reserve(t, t->anchors.n_blocks) != 0)
         return -1;
 
-    /* Lanes of every block first: a slot's place, which is its block's or an earlier one, is known only then. */
+    /* Lanes of every block first: a slot's place, which is its block's or an earlier one, is
+     * known only then. */
     visible_job j = { t, v, s->lanes };
 
-    ted4_parallel_for(t->parallel, (t->anchors.n_blocks + LOOKED_AT - 1) / LOOKED_AT, look_at_blocks, &j);
+    ted4_parallel_for(t->parallel, (t->anchors.n_blocks + LOOKED_AT - 1) / LOOKED_AT,
+                      look_at_blocks, &j);
     s->n = 0;
     for (size_t b = 0; b < t->anchors.n_blocks; b++) {
         const uint32_t lanes = s->lanes[b];

@@ -109,7 +109,8 @@ double ted4_trainer_preview(ted4_trainer *t, int n);
 
 /* Learning-rate rows and schedule: schedule.c */
 void ted4_schedule_rates(const ted4_trainer *t, float *channel_rate);
-/* The stretches of the network array that are learnt, and their rates: how many; at most TED4_NET_RANGES. */
+/* The stretches of the network array that are learnt, and their rates: how many; at most
+ * TED4_NET_RANGES. */
 typedef struct {
     size_t first, n;
     float  rate;                /* 0: it stands still */
@@ -123,9 +124,11 @@ int  ted4_integer_due(const ted4_trainer *t);
 size_t ted4_schedule_room(const ted4_trainer *t);
 
 /* After the picture's gradients: update.c.
- * Volume: weight times the mean of the product of scales over the Gaussians on screen; returns how many there are, and tells the watch, with the norm of
- * the gradients of their centres: not finite where one is not. Bank: mean squared second difference of its rows. Rate
- * of a random share of the visible blocks: gradients of bits on values, masks and NETE, and of the distortion on step sizes. Parameters: mask losses and Adam. */
+ * Volume: weight times the mean of the product of scales over the Gaussians on screen; returns
+ * how many there are, and tells the watch, with the norm of the gradients of their centres: not
+ * finite where one is not. Bank: mean squared second difference of its rows. Rate of a random
+ * share of the visible blocks: gradients of bits on values, masks and NETE, and of the
+ * distortion on step sizes. Parameters: mask losses and Adam. */
 size_t ted4_update_volume(ted4_trainer *t, const ted4_splats *s);
 void   ted4_update_bank(ted4_trainer *t);
 int    ted4_update_rate(ted4_trainer *t, uint64_t key);

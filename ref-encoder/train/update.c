@@ -10,7 +10,8 @@
 #include "random.h"
 #include "trainer.h"
 
-/* Gaussians are cut into this many parts whatever the number of threads, and their sums go in as many columns, so that both have one order. */
+/* Gaussians are cut into this many parts whatever the number of threads, and their sums go in as
+ * many columns, so that both have one order. */
 enum { PARTS = 64, COLUMNS = 16 };
 
 typedef struct {
@@ -59,7 +60,8 @@ static void volume_part(void *arg, size_t part)
         g->scale[0][i] += on * b * c;
         g->scale[1][i] += on * a * c;
         g->scale[2][i] += on * a * b;
-        drawn += a >= TED4_NO_EXTENT || b >= TED4_NO_EXTENT || c >= TED4_NO_EXTENT ? g->visible[i] : 0u;
+        drawn += a >= TED4_NO_EXTENT || b >= TED4_NO_EXTENT || c >= TED4_NO_EXTENT
+                     ? g->visible[i] : 0u;
     }
     j->drawn[part] = drawn;
 }
@@ -179,7 +181,8 @@ static void update_piece(const update_job *j, size_t piece)
 
     const size_t left = r->n - piece * NET_PIECE, at = r->first + piece * NET_PIECE;
 
-    ted4_adam(t->net + at, t->net_m + at, t->net_v + at, t->net_gradient + at, left < NET_PIECE ? left : NET_PIECE, r->rate, j->bias);
+    ted4_adam(t->net + at, t->net_m + at, t->net_v + at, t->net_gradient + at,
+              left < NET_PIECE ? left : NET_PIECE, r->rate, j->bias);
 }
 
 static void update_item(void *arg, size_t i)
