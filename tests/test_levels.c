@@ -1,5 +1,6 @@
-/* test_levels.c - the kernels of drawing and training at every level that the machine has (render/leveled.h): v3 and v4 give the same bytes,
- * and the base, which fuses nothing, the same to rounding.
+/* test_levels.c - the kernels of drawing and training at every level that the machine has
+ * (render/leveled.h): v3 and v4 give the same bytes, and the base, which fuses nothing, the same to
+ * rounding.
  * SPDX-License-Identifier: BSD-2-Clause */
 #include <setjmp.h>
 #include <stdarg.h>
@@ -63,9 +64,12 @@ static float *fill(size_t n, double lo, double hi)
 static void dense_case(results *r, int in, int out)
 {
     enum { BLOCKS = 3 };
-    const size_t n_in = (size_t)in, n_out = (size_t)out, x_stride = (n_in + 1) * TED4_LANES, y_stride = (n_out + 2) * TED4_LANES;
-    float *w = fill(n_in * n_out, -1, 1), *b = fill(n_out, -1, 1), *x = fill(BLOCKS * x_stride, -1, 1);
-    float *y = fill(BLOCKS * y_stride, -1, 1), *dx = fill(x_stride, -1, 1), *dw = fill(n_in * n_out, -1, 1), *db = fill(n_out, -1, 1);
+    const size_t n_in = (size_t)in, n_out = (size_t)out;
+    const size_t x_stride = (n_in + 1) * TED4_LANES, y_stride = (n_out + 2) * TED4_LANES;
+    float *w = fill(n_in * n_out, -1, 1), *b = fill(n_out, -1, 1);
+    float *x = fill(BLOCKS * x_stride, -1, 1), *dx = fill(x_stride, -1, 1);
+    float *y = fill(BLOCKS * y_stride, -1, 1);
+    float *dw = fill(n_in * n_out, -1, 1), *db = fill(n_out, -1, 1);
     ted4_dense d;
 
     assert_int_equal(ted4_dense_init(&d, in, out), 0);
@@ -86,7 +90,8 @@ static void dense_case(results *r, int in, int out)
 
 static void dense(results *r)
 {
-    static const int shape[][2] = { { 1, 1 }, { 5, 7 }, { 13, 6 }, { 24, 48 }, { 63, 31 }, { 33, 13 } };
+    static const int shape[][2] = { { 1, 1 },   { 5, 7 },   { 13, 6 },
+                                    { 24, 48 }, { 63, 31 }, { 33, 13 } };
 
     for (size_t i = 0; i < sizeof shape / sizeof shape[0]; i++)
         dense_case(r, shape[i][0], shape[i][1]);
@@ -97,7 +102,8 @@ static void raster(results *r)
     const ted4_view  v = scene_view(101, 67);
     scene            s = scene_random(400, &v, 5, 7);
     const size_t     pixels = 3 * 101 * 67;
-    float           *image = fill(pixels, 0, 1), *d_image = fill(pixels, -1, 1), *g = fill(15 * s.n, 0, 1);
+    float           *image = fill(pixels, 0, 1), *d_image = fill(pixels, -1, 1);
+    float           *g = fill(15 * s.n, 0, 1);
     uint8_t         *visible = calloc(s.n, 1);
     ted4_splat_grads grads = { .opacity = g, .mean2d = g + s.n, .visible = visible };
     ted4_raster     *raster = ted4_raster_new();
@@ -130,7 +136,8 @@ static void raster(results *r)
 static void generate_case(results *r, const ted4_header *h)
 {
     test_case       *t = malloc(sizeof *t);
-    float           *gradient = fill(SCENE_PARAMS * CASE_SPLATS, -1, 1), *d_net = fill(CASE_NET, 0, 0);
+    float           *gradient = fill(SCENE_PARAMS * CASE_SPLATS, -1, 1);
+    float           *d_net = fill(CASE_NET, 0, 0);
     float           *d = fill(CASE_SLOTS * CASE_CHANNELS * TED4_LANES, 0, 1), *d_attr[CASE_SLOTS];
     ted4_splat_grads grads = { .opacity = gradient + SCENE_OPACITY * CASE_SPLATS };
     ted4_splats      s;
@@ -240,7 +247,8 @@ static void loss(results *r)
 static void colour(results *r)
 {
     enum { PIXELS = TED4_COLOUR_BAND + 2 * TED4_COLOUR_RUN + 21 };
-    float          *image = fill((size_t)3 * PIXELS, 0, 1), *to = fill((size_t)3 * PIXELS, -1, 1), *map = fill(TED4_COLOUR_VALUES, -0.2, 0.2);
+    float          *image = fill((size_t)3 * PIXELS, 0, 1), *to = fill((size_t)3 * PIXELS, -1, 1);
+    float          *map = fill(TED4_COLOUR_VALUES, -0.2, 0.2);
     double          sums[2 * TED4_COLOUR_VALUES];
     ted4_colour_job j = { image, map, to, sums, PIXELS };
 
@@ -275,14 +283,15 @@ static void adam(results *r)
 
 /* ---- comparison ---- */
 
-/* base: largest difference at the base, as a share of the largest value of an array; where an opacity or a bound falls to either side of a threshold the
- * base may differ by more. */
+/* base: largest difference at the base, as a share of the largest value of an array; where an
+ * opacity or a bound falls to either side of a threshold the base may differ by more. */
 static const struct {
     const char *name;
     void      (*run)(results *r);
     double      base;
 } kinds[] = {
-    { "dense", dense, 1e-6 }, { "raster", raster, 1e-4 }, { "generate", generate, 1e-5 }, { "rate", rate, 1e-5 },
+    { "dense", dense, 1e-6 }, { "raster", raster, 1e-4 }, { "generate", generate, 1e-5 },
+    { "rate", rate, 1e-5 },
     { "loss", loss, 1e-5 }, { "colour", colour, 3e-5 }, { "adam", adam, 0 },
 };
 
@@ -303,8 +312,8 @@ static void same_bytes(const results *a, const results *b, const char *name)
     for (size_t i = 0, k = 0; i < a->n; i++) {
         k += i >= a->end[k];
         if (memcmp(a->value + i, b->value + i, sizeof(float)) != 0)
-            fail_msg("%s: value %zu of array %zu is %.9g and %.9g", name, i - (k > 0 ? a->end[k - 1] : 0), k,
-                     (double)a->value[i], (double)b->value[i]);
+            fail_msg("%s: value %zu of array %zu is %.9g and %.9g", name,
+                     i - (k > 0 ? a->end[k - 1] : 0), k, (double)a->value[i], (double)b->value[i]);
     }
 }
 
@@ -340,7 +349,8 @@ static void levels_agree(void **state)
     for (size_t kind = 0; kind < sizeof kinds / sizeof kinds[0]; kind++) {
         results base = at_level(kind, TED4_LEVEL_BASE), v3 = at_level(kind, TED4_LEVEL_V3);
 
-        printf("    %-8s %7zu values; the base is off by %g of the largest\n", kinds[kind].name, v3.n,
+        printf("    %-8s %7zu values; the base is off by %g of the largest\n",
+               kinds[kind].name, v3.n,
                about_same(&v3, &base, kinds[kind].base, kinds[kind].name));
         if (most >= TED4_LEVEL_V4) {
             results v4 = at_level(kind, TED4_LEVEL_V4);

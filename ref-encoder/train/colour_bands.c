@@ -1,4 +1,5 @@
-/* colour_bands.c - the passes of colour.c over pixels. Sums over pixels go to 16 lanes, pixel i to lane i mod 16, and lanes are added in order.
+/* colour_bands.c - the passes of colour.c over pixels. Sums over pixels go to 16 lanes, pixel i to
+ * lane i mod 16, and lanes are added in order.
  * SPDX-License-Identifier: BSD-2-Clause */
 #include "colour_job.h"
 
@@ -51,7 +52,8 @@ static double add_lanes(const ted4_vf sum[TED4_VECS])
     return total;
 }
 
-/* Sums of d times each colour and 1, over at most TED4_COLOUR_RUN pixels, into column k of a map. */
+/* Sums of d times each colour and 1, over at most TED4_COLOUR_RUN pixels, into column k of a
+ * map. */
 static void add_products(const float *image, const float *d, size_t plane, size_t n, double *column)
 {
     const size_t whole = n / TED4_LANE_GROUP * TED4_LANE_GROUP;

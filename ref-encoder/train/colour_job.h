@@ -1,4 +1,5 @@
-/* colour_job.h - a picture of which colours are corrected, in bands of pixels. Private to colour.c and colour_bands.c.
+/* colour_job.h - a picture of which colours are corrected, in bands of pixels. Private to colour.c
+ * and colour_bands.c.
  * SPDX-License-Identifier: BSD-2-Clause */
 #ifndef TED4_COLOUR_JOB_H
 #define TED4_COLOUR_JOB_H
@@ -6,7 +7,8 @@
 #include "colour.h"
 #include "render/leveled.h"
 
-/* Pixels whose products are summed in single precision, pixels of one job, and where v begins in a map. */
+/* Pixels whose products are summed in single precision, pixels of one job, and where v begins in a
+ * map. */
 enum { TED4_COLOUR_RUN = 1024, TED4_COLOUR_BAND = 16 * TED4_COLOUR_RUN, TED4_COLOUR_ROW_V = 9 };
 
 typedef struct {

@@ -1,5 +1,5 @@
-/* generate_effective.c - the first layer of F_deform with all that is the same for all anchors at one time multiplied in, and its
- * adjoint: generate_motion.c says what from.
+/* generate_effective.c - the first layer of F_deform with all that is the same for all anchors at
+ * one time multiplied in, and its adjoint: generate_motion.c says what from.
  * SPDX-License-Identifier: BSD-2-Clause */
 #include "generate_state.h"
 

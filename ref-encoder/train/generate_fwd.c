@@ -1,5 +1,5 @@
-/* generate_fwd.c - anchors to Gaussians at a time and camera centre, a slot at a time (spec 11.1 to 11.5, in normalised space), with
- * the masks of training. The adjoint is generate_bwd.c.
+/* generate_fwd.c - anchors to Gaussians at a time and camera centre, a slot at a time (spec 11.1 to
+ * 11.5, in normalised space), with the masks of training. The adjoint is generate_bwd.c.
  * SPDX-License-Identifier: BSD-2-Clause */
 #include "generate_lanes.h"
 

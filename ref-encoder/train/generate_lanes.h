@@ -1,4 +1,5 @@
-/* generate_lanes.h - what the generator's files that are compiled once a level share: loops over lanes, and layers of one slot.
+/* generate_lanes.h - what the generator's files that are compiled once a level share: loops over
+ * lanes, and layers of one slot.
  * SPDX-License-Identifier: BSD-2-Clause */
 #ifndef TED4_GENERATE_LANES_H
 #define TED4_GENERATE_LANES_H

@@ -1,5 +1,6 @@
-/* loss_passes.c - the three passes of loss.c: over columns, a register of them at a time. A column's result does not depend on how
- * many fit; sums over columns go to 16 lanes, column i to lane i mod 16, and lanes are added in order.
+/* loss_passes.c - the three passes of loss.c: over columns, a register of them at a time. A
+ * column's result does not depend on how many fit; sums over columns go to 16 lanes, column i to
+ * lane i mod 16, and lanes are added in order.
  * SPDX-License-Identifier: BSD-2-Clause */
 #include "loss_state.h"
 

@@ -1,4 +1,5 @@
-/* loss_state.h - one evaluation of a loss, as its passes see it. Private to loss.c and loss_passes.c.
+/* loss_state.h - one evaluation of a loss, as its passes see it. Private to loss.c and
+ * loss_passes.c.
  * SPDX-License-Identifier: BSD-2-Clause */
 #ifndef TED4_LOSS_STATE_H
 #define TED4_LOSS_STATE_H
@@ -8,11 +9,12 @@
 #include "loss.h"
 #include "render/leveled.h"
 
-/* A job is SPLIT rows in the first pass, BAND rows of a tile's width in the others: few enough that a small picture keeps 32 cores busy. */
+/* A job is SPLIT rows in the first pass, BAND rows of a tile's width in the others: few enough that
+ * a small picture keeps 32 cores busy. */
 enum { TED4_LOSS_SPLIT = 4, TED4_LOSS_BAND = 32, TED4_LOSS_TILE = 128, TED4_LOSS_CHANNELS = 3 };
 
-/* Planes have so many zero columns on the left, and zeros from the width to the end of the row, so that a filter may read
- * over the sides. */
+/* Planes have so many zero columns on the left, and zeros from the width to the end of the row, so
+ * that a filter may read over the sides. */
 enum { TED4_LOSS_SIDE = 16 };
 
 typedef struct {

@@ -1,12 +1,14 @@
-/* rate_decoded.c - TED4_QUANT_INTEGER: mu, sigma and steps of a slot exactly as a decoder has them, from norm/prior.h. spec 7.3, 10.1, 10.3.
- * The float networks still run, for their ReLUs decide where gradients go; here their outputs are replaced by what the integers say.
+/* rate_decoded.c - TED4_QUANT_INTEGER: mu, sigma and steps of a slot exactly as a decoder has them,
+ * from norm/prior.h. spec 7.3, 10.1, 10.3. The float networks still run, for their ReLUs decide
+ * where gradients go; here their outputs are replaced by what the integers say.
  * SPDX-License-Identifier: BSD-2-Clause */
 #include "rate_lanes.h"
 
 #include "base/bytes.h"
 #include "norm/half.h"
 
-/* Hyperprior of a slot: its outputs stay in the room; v and the steps replace those of the float network. */
+/* Hyperprior of a slot: its outputs stay in the room; v and the steps replace those of the float
+ * network. */
 void ted4_rate_integer_steps(const ted4_rate_job *job, ted4_rate_room *room,
                              size_t slot, float *v, float *q)
 {
@@ -37,7 +39,8 @@ void ted4_rate_integer_steps(const ted4_rate_job *job, ted4_rate_room *room,
     }
 }
 
-/* Adds what the slice networks say of the features, whose symbols are x / q + n. v: of the features. */
+/* Adds what the slice networks say of the features, whose symbols are x / q + n. v: of the
+ * features. */
 static void slices(const ted4_rate_job *job, ted4_rate_room *room,
                    const float *q, const float *v)
 {
@@ -75,7 +78,8 @@ static void slices(const ted4_rate_job *job, ted4_rate_room *room,
     }
 }
 
-/* out: [P][32], of which mu and s are replaced by the decoder's mu / 256 and (sigma index - 64) / 16. */
+/* out: [P][32], of which mu and s are replaced by the decoder's mu / 256 and (sigma index - 64) /
+ * 16. */
 void ted4_rate_integer_outputs(const ted4_rate_job *job, ted4_rate_room *room,
                                const float *q, float *out)
 {

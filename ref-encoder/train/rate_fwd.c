@@ -1,5 +1,5 @@
-/* rate_fwd.c - the rate model of a chunk of slots (rate.c says what of): hyperprior, steps, contexts, bits; gradients through rate_bwd.c.
- * spec 7.3, 9.4, 10.
+/* rate_fwd.c - the rate model of a chunk of slots (rate.c says what of): hyperprior, steps,
+ * contexts, bits; gradients through rate_bwd.c. spec 7.3, 9.4, 10.
  * SPDX-License-Identifier: BSD-2-Clause */
 #include "rate_lanes.h"
 
@@ -181,7 +181,8 @@ static const float *component_mask(ted4_rate_slot *s, int t, size_t c,
     return t == TED4_PHI ? s->dynamic : s->used;
 }
 
-/* Bits of one component, and dL/d(k, mu, s). A clamped s has a gradient only where it leads back inside. */
+/* Bits of one component, and dL/d(k, mu, s). A clamped s has a gradient only where it leads back
+ * inside. */
 static void component_bits(float weight, const float *mask, const float *k_mu,
                            const float *s, float *d_symbol, float *d_mu,
                            float *d_s, float *gathered)
@@ -209,7 +210,8 @@ static double masked_sum(const float *bits, const float *mask)
     return sum;
 }
 
-/* Adds the bits of a type to those of the slot's anchors; offsets are apart. total: of a type that is coded for every anchor in use. */
+/* Adds the bits of a type to those of the slot's anchors; offsets are apart. total: of a type that
+ * is coded for every anchor in use. */
 static void tell_lanes(const ted4_rate_job *job, const ted4_rate_slot *s, size_t slot, int t, const float *total)
 {
     const size_t K = job->in->layout->head.n_offsets;
