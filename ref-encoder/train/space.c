@@ -8,29 +8,52 @@
 
 #include "math/elementary.h"
 
-static int compare_floats(const void *x, const void *y)
+/* What would be at place k if the n numbers were sorted; they change places. Checkpoints ask for it
+ * of all points: in a snapshot, sorting them would be most of the work. */
+static float pick(float *x, size_t n, size_t k)
 {
-    const float a = *(const float *)x, b = *(const float *)y;
+    size_t low = 0, high = n - 1;
 
-    return a < b ? -1 : a > b;
+    while (low < high) {
+        const float pivot = x[low + (high - low) / 2];
+        size_t      i = low, j = high;
+
+        for (;; i++, j--) {
+            while (x[i] < pivot)
+                i++;
+            while (x[j] > pivot)
+                j--;
+            if (i >= j)
+                break;
+
+            const float swapped = x[i];
+
+            x[i] = x[j];
+            x[j] = swapped;
+        }
+        if (k <= j)
+            high = j;
+        else
+            low = j + 1;
+    }
+    return x[k];
 }
 
 void ted4_space_make(ted4_header *h, const ted4_dataset *d)
 {
     const size_t n = d->n_points;
-    float       *sorted = malloc((n + 1) * sizeof *sorted);
+    float       *value = malloc((n + 1) * sizeof *value);
 
     h->exponent = 0;
     memset(h->origin, 0, sizeof h->origin);
-    if (sorted == NULL || n == 0) {
-        free(sorted);
+    if (value == NULL || n == 0) {
+        free(value);
         return;
     }
     for (int j = 0; j < 3; j++) {
         for (size_t i = 0; i < n; i++)
-            sorted[i] = d->points[3 * i + (size_t)j];
-        qsort(sorted, n, sizeof *sorted, compare_floats);
-        h->origin[j] = sorted[n / 2];
+            value[i] = d->points[3 * i + (size_t)j];
+        h->origin[j] = pick(value, n, n / 2);
         if (fabsf(h->origin[j]) < 1e-6f)
             h->origin[j] = 0.0f;        /* no subnormal, no -0 (R-CNV-001) */
     }
@@ -39,15 +62,14 @@ void ted4_space_make(ted4_header *h, const ted4_dataset *d)
 
         for (int j = 0; j < 3; j++)
             far = fmaxf(far, fabsf(d->points[3 * i + (size_t)j] - h->origin[j]));
-        sorted[i] = far;
+        value[i] = far;
     }
-    qsort(sorted, n, sizeof *sorted, compare_floats);
 
-    const double reach = 1.25 * (double)sorted[(size_t)(0.995 * (double)(n - 1))];
+    const double reach = 1.25 * (double)pick(value, n, (size_t)(0.995 * (double)(n - 1)));
     const double e = reach > 0 ? ceil(ted4_math_log2(reach)) : 0;
 
     h->exponent = (int8_t)(e < -30 ? -30 : e > 30 ? 30 : e);
-    free(sorted);
+    free(value);
 }
 
 void ted4_space_view(const ted4_header *h, const ted4_camera *c, ted4_view *v,
