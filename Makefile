@@ -57,9 +57,11 @@ $B/%.o: %.c $B/how
 $B/%.o: FPFLAGS = $(STRICT)
 $(FREE_OBJ): FPFLAGS = $(FREE)
 # Only files named for an instruction set may use it; the compiler enforces it.
+ifeq ($(MACHINE),x86_64)
 $B/ref-decoder/kernel/%_avx2.o: FPFLAGS = $(STRICT) -mavx2
 $B/ref-decoder/kernel/%_avx512.o: FPFLAGS = $(STRICT) -mavx512f -mavx512bw -mavx512vl -mprefer-vector-width=512
 $B/ref-decoder/kernel/%_vnni.o: FPFLAGS = $(STRICT) -mavx512f -mavx512bw -mavx512vl -mavx512vnni -mprefer-vector-width=512
+endif
 
 # $(1): level
 define COMPILE_LEVEL

@@ -6,7 +6,7 @@
 #     --report     only writes the table
 # A build is made and trains when machines.csv has no row of it with these sources, this line of machines.txt, this compiler and this scene; comments and spacing of
 # sources do not count. A build whose compiler, runner, libraries or instruction set is missing is skipped, which is said; a row that it has of the same sources stays.
-# May be killed at any moment and called again. Exit code: 0, or 1: a build fails, or two that have to agree do not, or too few of them have passed (8; 1 with a
+# May be killed at any moment and called again, and several times at once for different builds. Exit code: 0, or 1: a build fails, or two that have to agree do not, or too few of them have passed (8; 1 with a
 # PATTERN); 3: wrong usage, no scene.
 # Environment: TED4_BUILD (build: where ted4scene is; builds are made in TED4_BUILD/machines), TED4_RESULTS (bench: where machines.csv and machines.md are), TED4_TABLE
 # (bench/machines.txt).
@@ -15,12 +15,14 @@ set -u
 LC_ALL=C; export LC_ALL
 columns=name,key,compiler,level,threads,agrees,hash,variants,bytes,seconds,verdict
 
-# The scene has what moves, what comes and goes, and cameras that disagree about colours: all parts of the method have something to do, and none is left out.
-scene="fair --size 96x64 --cameras 4 --test-cameras 1 --frames 8 --tint 1 --seed 1"
-whole="--preset draft --iterations 1000,600 --why --set init_anchors=400 --set max_anchors=800 --set grow_every=25 --set probe=0.2 --set offsets=4 --set feature=12
-    --set grow_gradient=1e-4 --set lr_mask=0.05"
+# The scene has what moves, what comes and goes, and cameras that disagree about colours: all parts of the method have something to do. Sizes are odd ones, so that
+# vectors have remainders.
+scene="fair --size 44x34 --cameras 4 --test-cameras 1 --frames 6 --tint 1 --seed 1"
+model="--preset draft --set offsets=3 --set feature=10 --set phi=4 --set head_width=14 --set bank_dim=12 --set deform_width=18 --set deform_layers=1 --set hyper_width=18
+    --set ar_width=10 --set octaves=6 --set max_anchors=300 --set grow_every=25 --set grow_gradient=1e-4"
+whole="--iterations 1000,500 --why --set init_anchors=150 --set probe=0.2 --set capacity_share=0.25 --set lr_mask=0.05"
 # What the whole method does not take: a network of place and time, bank and feature side by side, linear scalings, one distribution for all anchors, other views.
-small="--preset draft --iterations 120,80 --capacity fixed --set init_anchors=300 --set max_anchors=400 --set probe=0 --set offsets=4 --set feature=12 --set grow_every=20"
+small="--iterations 60,50 --capacity fixed --set init_anchors=250 --set probe=0"
 variants="network:--set+motion=3+--set+linear_scale=1+--set+view=2 side:--set+motion=2+--set+factorised=1+--set+view=0+--set+slices=1"
 
 die() { echo "machines.sh: $*" >&2; exit 3; }
@@ -37,7 +39,7 @@ enter() {
     sources=$({
         find ref-decoder ref-encoder tests/scenes -name '*.[ch]' -o -name '*.def' | sort | xargs awk -f bench/sources.awk
         sed -n '/^[A-Z_a-z0-9]* *[:?]*=/p' Makefile
-        echo "$scene $whole $small $variants"
+        echo "$scene $model $whole $small $variants"
     } | short_hash)
 }
 
@@ -107,13 +109,15 @@ prepare() {
 train() {
     file=$1
     shift
-    TED4_KERNEL=$level $runner "$here/ted4enc" "$pictures" -o "$file.ted4" "$@" --seed 1 -j "$threads" -f --json --log "$file.jsonl" >"$file.json" 2>"$file.stderr" ||
+    env $kernel $runner "$here/ted4enc" "$pictures" -o "$file.ted4" $model "$@" --seed 1 -j "$threads" -f --json --log "$file.jsonl" >"$file.json" 2>"$file.stderr" ||
         { tail -n 1 "$file.stderr" | tr ',' ';'; return 1; }
 }
 
 # one_build: compiles, trains everything; sets hash, variants_hash, bytes, verdict
 one_build() {
     hash= variants_hash= bytes= seconds=
+    kernel=TED4_KERNEL=$level
+    [ "$level" != best ] || kernel="-u TED4_KERNEL"
     here=$work/$(echo "$compiler $variables" | short_hash)
     set -- $(echo "$variables" | sed 's/ -/,-/g')
     for v; do
@@ -125,10 +129,10 @@ one_build() {
         return
     fi
     begun=$(date +%s)
-    verdict=$(train "$work/$name" $(echo $whole)) || { verdict="does not train: $verdict"; return; }
+    verdict=$(train "$work/$name" $whole) || { verdict="does not train: $verdict"; return; }
     seconds=$(($(date +%s) - begun))
     for v in $variants; do
-        verdict=$(train "$work/$name-${v%%:*}" $(echo $small ${v#*:} | tr + ' ')) || { verdict="does not train ${v%%:*}: $verdict"; return; }
+        verdict=$(train "$work/$name-${v%%:*}" $small $(echo "${v#*:}" | tr + ' ')) || { verdict="does not train ${v%%:*}: $verdict"; return; }
     done
     bytes=$(value bytes "$work/$name.json")
     hash=$(short_hash <"$work/$name.ted4")
@@ -138,11 +142,14 @@ one_build() {
 
 # put_row: in place of an earlier one
 put_row() {
-    {
-        echo $columns
-        { grep -v -e "^$name," -e "^name," "$csv" 2>/dev/null
-          echo "$name,$key,$(version),$level,$threads,$agrees,$hash,$variants_hash,$bytes,$seconds,$verdict"; } | sort
-    } >"$csv.new" && mv "$csv.new" "$csv"
+    (
+        flock 9
+        {
+            echo $columns
+            { grep -v -e "^$name," -e "^name," "$csv" 2>/dev/null
+              echo "$name,$key,$(version),$level,$threads,$agrees,$hash,$variants_hash,$bytes,$seconds,$verdict"; } | sort
+        } >"$csv.new" && mv "$csv.new" "$csv"
+    ) 9>"$work/lock"
 }
 
 chosen() {
