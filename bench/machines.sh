@@ -1,27 +1,32 @@
 #!/bin/sh
-# machines.sh - trains the same small scene with every build of machines.txt and compares the files: machines.csv, and the table in machines.md. `make cross-train`.
+# machines.sh - trains the same small scene with every build of machines.txt and compares the files:
+# machines.csv, and the table in machines.md. `make cross-train`.
 # Usage, from anywhere:  bench/machines.sh [--list | --report] [PATTERN...]
 #     PATTERN...   builds whose name fits one of these shell patterns; all builds without any
 #     --list       says of each build what state it is in, and does nothing
 #     --report     only writes the table
-# A build is made and trains when machines.csv has no row of it with these sources, this line of machines.txt, this compiler and this scene; comments and spacing of
-# sources do not count. A build whose compiler, runner, libraries or instruction set is missing is skipped, which is said; a row that it has of the same sources stays.
-# May be killed at any moment and called again, and several times at once for different builds. Exit code: 0, or 1: a build fails, or two that have to agree do not, or too few of them have passed (8; 1 with a
-# PATTERN); 3: wrong usage, no scene.
-# Environment: TED4_BUILD (build: where ted4scene is; builds are made in TED4_BUILD/machines), TED4_RESULTS (bench: where machines.csv and machines.md are), TED4_TABLE
-# (bench/machines.txt).
+# A build is made and trains when machines.csv has no row of it with these sources, this line of
+# machines.txt, this compiler and this scene; comments and spacing of sources do not count. A build
+# whose compiler, runner, libraries or instruction set is missing is skipped, which is said; a row
+# that it has of the same sources stays. May be killed at any moment and called again, and several
+# times at once for different builds.
+# Exit code: 0, or 1: a build fails, or two that have to agree do not, or too few of them have passed
+# (8; 1 with a PATTERN); 3: wrong usage, no scene.
+# Environment: TED4_BUILD (build: where ted4scene is; builds are made in TED4_BUILD/machines),
+# TED4_RESULTS (bench: where machines.csv and machines.md are), TED4_TABLE (bench/machines.txt).
 # SPDX-License-Identifier: BSD-2-Clause
 set -u
 LC_ALL=C; export LC_ALL
 columns=name,key,compiler,level,threads,agrees,hash,variants,bytes,seconds,verdict
 
-# The scene has what moves, what comes and goes, and cameras that disagree about colours: all parts of the method have something to do. Sizes are odd ones, so that
-# vectors have remainders.
+# The scene has what moves, what comes and goes, and cameras that disagree about colours: all parts
+# of the method have something to do. Sizes are odd ones, so that vectors have remainders.
 scene="fair --size 44x34 --cameras 4 --test-cameras 1 --frames 6 --tint 1 --seed 1"
 model="--preset draft --set offsets=3 --set feature=10 --set phi=4 --set head_width=14 --set bank_dim=12 --set deform_width=18 --set deform_layers=1 --set hyper_width=18
     --set ar_width=10 --set octaves=6 --set max_anchors=300 --set grow_every=25 --set grow_gradient=1e-4"
 whole="--iterations 1000,500 --why --set init_anchors=150 --set probe=0.2 --set capacity_share=0.25 --set lr_mask=0.05"
-# What the whole method does not take: a network of place and time, bank and feature side by side, linear scalings, one distribution for all anchors, other views.
+# What the whole method does not take: a network of place and time, bank and feature side by side,
+# linear scalings, one distribution for all anchors, other views.
 small="--iterations 60,50 --capacity fixed --set init_anchors=250 --set probe=0"
 variants="network:--set+motion=3+--set+linear_scale=1+--set+view=2 side:--set+motion=2+--set+factorised=1+--set+view=0+--set+slices=1"
 
@@ -34,7 +39,11 @@ enter() {
     build=${TED4_BUILD:-build} results=${TED4_RESULTS:-bench} table=${TED4_TABLE:-bench/machines.txt}
     csv=$results/machines.csv page=$results/machines.md
     mkdir -p "$build/machines" || exit 3
-    work=$(cd "$build/machines" && pwd)
+    work=$(cd "$build/machines" && pwd) || exit 3
+    own=$work/run.$$
+    trap 'rm -rf "$own"' EXIT
+    trap 'exit 3' INT TERM
+    mkdir -p "$own" || exit 3
     aarch64="libpng-dev:arm64 libjpeg62-turbo-dev:arm64 libjansson-dev:arm64 libxxhash-dev:arm64 zlib1g-dev:arm64"
     sources=$({
         find ref-decoder ref-encoder tests/scenes -name '*.[ch]' -o -name '*.def' | sort | xargs awk -f bench/sources.awk
@@ -78,7 +87,8 @@ missing() {
     esac
 }
 
-# state: sets state to passed, kept (tools missing, but a row of these sources is there), skipped, failed, stale or new; row
+# state: sets state to passed, kept (tools missing, but a row of these sources is there), skipped,
+# failed, stale or new; row
 state() {
     row=$(grep "^$name," "$csv" 2>/dev/null | tail -n 1)
     lacks=$(missing | head -n 1)
@@ -180,7 +190,7 @@ one() {
 
 # report: the table, between its marks in machines.md; rows that count go into $work/counted
 report() {
-    : >"$work/counted"
+    : >"$own/counted"
     each | while read -r line; do
         split "$line"
         state
@@ -192,12 +202,12 @@ report() {
         skipped) said="skipped: no $lacks" row= ;;
         *)       said="not run" row= ;;
         esac
-        case $state in passed | kept | failed) echo "$row" >>"$work/counted" ;; esac
+        case $state in passed | kept | failed) echo "$row" >>"$own/counted" ;; esac
         echo "$row" | awk -F, -v name="$name" -v said="$said" -v compiler="$compiler" -v make="$variables" -v level="$level" -v threads="$threads" -v agrees="$agrees" '{
             print "| " name " | `" compiler "` | `" make "` | " level " | " threads " | " ($7 == "" ? "" : "`" $7 "`") " | " ($8 == "" ? "" : "`" $8 "`") " | " $9 " | " $10 " | " \
                 said (agrees == "same" ? "" : "; may differ") " |" }'
-    done >"$work/rows"
-    awk -v rows="$work/rows" '
+    done >"$own/rows"
+    awk -v rows="$own/rows" '
         /^<!-- trainings -->$/ { print; skip = 1
             print "| build | compiler | make | level | threads | whole method | variants | bytes | seconds | result |"
             print "|---|---|---|---|---|---|---|---|---|---|"
@@ -206,17 +216,18 @@ report() {
         !skip' "$page" >"$page.new" && mv "$page.new" "$page"
 }
 
-# agree: of builds that have to give the same files none fails, no two differ, and enough have passed
+# agree: of builds that have to give the same files none fails, no two differ, and enough have
+# passed
 agree() {
     least=8
     [ -z "$patterns" ] || least=1
-    grep ',same,' "$work/counted" >"$work/same"
-    passed=$(grep -c ',passed$' "$work/same")
-    different=$(cut -d, -f7,8 "$work/same" | sort -u | grep -c .)
+    grep ',same,' "$own/counted" >"$own/same"
+    passed=$(grep -c ',passed$' "$own/same")
+    different=$(cut -d, -f7,8 "$own/same" | sort -u | grep -c .)
     echo "$passed builds that have to agree passed:"
-    cut -d, -f7,8 "$work/same" | sort | uniq -c | sed 's/^ *\([0-9]*\) \(.*\),\(.*\)/    \1 gave \2, variants \3/'
+    cut -d, -f7,8 "$own/same" | sort | uniq -c | sed 's/^ *\([0-9]*\) \(.*\),\(.*\)/    \1 gave \2, variants \3/'
     [ "$passed" -ge $least ] || { echo "machines.sh: at least $least have to pass" >&2; return 1; }
-    [ "$different" = 1 ] && ! grep -qv ',passed$' "$work/counted"
+    [ "$different" = 1 ] && ! grep -qv ',passed$' "$own/counted"
 }
 
 main() {
@@ -231,7 +242,7 @@ main() {
     done
     enter
     [ $do != run ] || prepare
-    each >"$work/todo"
+    each >"$own/todo"
     while [ $do != report ] && read -r line <&3; do
         split "$line"
         chosen || continue
@@ -239,7 +250,7 @@ main() {
         run)  one ;;
         list) state; echo "$state $name" ;;
         esac
-    done 3<"$work/todo"
+    done 3<"$own/todo"
     [ $do = list ] || report
     [ $do != run ] || agree
 }

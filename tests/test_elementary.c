@@ -1,4 +1,5 @@
-/* test_elementary.c - math/elementary.h: against libm's functions of long double where there is one with more bits, over the whole range; awkward points; the bits.
+/* test_elementary.c - math/elementary.h: against libm's functions of long double where there is
+ * one with more bits, over the whole range; awkward points; the bits.
  * SPDX-License-Identifier: BSD-2-Clause */
 #include <setjmp.h>
 #include <stdarg.h>
@@ -19,14 +20,16 @@ typedef double (*our_function)(double);
 
 enum { POINTS = 400000 };
 
-/* Largest relative error of f at POINTS random points, evenly in [from, to], or with evenly spread logarithms and both signs where spread != 0: from = 2^-spread. */
+/* Largest relative error of f at POINTS random points, evenly in [from, to], or with evenly
+ * spread logarithms and both signs where spread != 0: from = 2^-spread. */
 static double worst_of(our_function f, long_function truth, double from, double to, double spread)
 {
     double worst = 0;
 
     for (uint64_t i = 0; i < POINTS; i++) {
         const double u = (double)ted4_mix(i) * 0x1p-64, v = (double)ted4_mix(i ^ 0x5555u) * 0x1p-64;
-        const double x = spread != 0 ? ldexp(from < 0 && (i & 1) ? -1 - v : 1 + v, (int)(spread * (2 * u - 1)))
+        const double of_one = from < 0 && (i & 1) ? -1 - v : 1 + v;
+        const double x = spread != 0 ? ldexp(of_one, (int)(spread * (2 * u - 1)))
                                      : from + u * (to - from);
         const long double y = truth((long double)x);
 
@@ -73,7 +76,10 @@ static void test_error_of_pow(void **state)
 
         if (!(truth >= DBL_MIN && truth <= DBL_MAX))
             continue;
-        worst = fmax(worst, (double)(fabsl(((long double)ted4_math_pow(x, y) - truth) / truth)) / (2 + fabs(y * log2(x))));
+
+        const double error = (double)fabsl(((long double)ted4_math_pow(x, y) - truth) / truth);
+
+        worst = fmax(worst, error / (2 + fabs(y * log2(x))));
     }
     assert_within("pow, by 2 + |y log2(x)|", worst, 3e-16);
 }
@@ -87,7 +93,8 @@ static void test_exact(void **state)
     }
     for (int k = 0; k < 60; k++)
         assert_true(ted4_math_pow(0.5, k) == ldexp(1, -k));
-    assert_true(ted4_math_exp(0) == 1 && ted4_math_exp2(-0.0) == 1 && ted4_math_log(1) == 0 && ted4_math_log2(1) == 0);
+    assert_true(ted4_math_exp(0) == 1 && ted4_math_exp2(-0.0) == 1 && ted4_math_log(1) == 0);
+    assert_true(ted4_math_log2(1) == 0);
     assert_true(ted4_math_sin(0) == 0 && ted4_math_tan(0) == 0);
     assert_true(ted4_math_sin(-1) == -ted4_math_sin(1) && ted4_math_tan(-1) == -ted4_math_tan(1));
     for (int c = 1; c < 128; c++) {
@@ -106,26 +113,40 @@ static void test_awkward(void **state)
 
     (void)state;
     assert_true(ted4_math_exp(inf) == inf && ted4_math_exp(-inf) == 0 && isnan(ted4_math_exp(nan)));
-    assert_true(ted4_math_exp(1e300) == inf && ted4_math_exp(-1e300) == 0 && ted4_math_exp(710) == inf && ted4_math_exp(-746) == 0);
+    assert_true(ted4_math_exp(1e300) == inf && ted4_math_exp(-1e300) == 0);
+    assert_true(ted4_math_exp(710) == inf && ted4_math_exp(-746) == 0);
     assert_true(ted4_math_exp(tiny) == 1 && ted4_math_exp(-745.1) == tiny);
-    assert_true(ted4_math_exp2(inf) == inf && ted4_math_exp2(-inf) == 0 && isnan(ted4_math_exp2(nan)));
-    assert_true(ted4_math_exp2(1e300) == inf && ted4_math_exp2(-1e300) == 0 && ted4_math_exp2(1024) == inf && ted4_math_exp2(-1076) == 0);
-    assert_true(ted4_math_log(0) == -inf && ted4_math_log(-0.0) == -inf && ted4_math_log(inf) == inf);
-    assert_true(isnan(ted4_math_log(-1)) && isnan(ted4_math_log(-inf)) && isnan(ted4_math_log(nan)) && isnan(ted4_math_log2(-tiny)));
-    assert_true(ted4_math_log2(0) == -inf && ted4_math_log2(inf) == inf && isnan(ted4_math_log2(nan)));
-    assert_true(fabs(ted4_math_log(3 * tiny) - log(3 * tiny)) < 1e-12 && fabs(ted4_math_log(DBL_MAX) - log(DBL_MAX)) < 1e-12);
-    assert_true(ted4_math_pow(0, 2) == 0 && ted4_math_pow(0, -1) == inf && ted4_math_pow(0, 0) == 1 && ted4_math_pow(inf, 0) == 1);
-    assert_true(ted4_math_pow(1, inf) == 1 && ted4_math_pow(2, inf) == inf && ted4_math_pow(0.5, inf) == 0 && ted4_math_pow(inf, -1) == 0);
-    assert_true(isnan(ted4_math_pow(-2, 2)) && isnan(ted4_math_pow(nan, 1)) && isnan(ted4_math_pow(2, nan)) && isnan(ted4_math_pow(1.5, nan)));
+    assert_true(ted4_math_exp2(inf) == inf && ted4_math_exp2(-inf) == 0);
+    assert_true(isnan(ted4_math_exp2(nan)));
+    assert_true(ted4_math_exp2(1e300) == inf && ted4_math_exp2(-1e300) == 0);
+    assert_true(ted4_math_exp2(1024) == inf && ted4_math_exp2(-1076) == 0);
+    assert_true(ted4_math_log(0) == -inf && ted4_math_log(-0.0) == -inf);
+    assert_true(ted4_math_log(inf) == inf);
+    assert_true(isnan(ted4_math_log(-1)) && isnan(ted4_math_log(-inf)));
+    assert_true(isnan(ted4_math_log(nan)) && isnan(ted4_math_log2(-tiny)));
+    assert_true(ted4_math_log2(0) == -inf && ted4_math_log2(inf) == inf);
+    assert_true(isnan(ted4_math_log2(nan)));
+    assert_true(fabs(ted4_math_log(3 * tiny) - log(3 * tiny)) < 1e-12);
+    assert_true(fabs(ted4_math_log(DBL_MAX) - log(DBL_MAX)) < 1e-12);
+    assert_true(ted4_math_pow(0, 2) == 0 && ted4_math_pow(0, -1) == inf);
+    assert_true(ted4_math_pow(0, 0) == 1 && ted4_math_pow(inf, 0) == 1);
+    assert_true(ted4_math_pow(1, inf) == 1 && ted4_math_pow(2, inf) == inf);
+    assert_true(ted4_math_pow(0.5, inf) == 0 && ted4_math_pow(inf, -1) == 0);
+    assert_true(isnan(ted4_math_pow(-2, 2)) && isnan(ted4_math_pow(nan, 1)));
+    assert_true(isnan(ted4_math_pow(2, nan)) && isnan(ted4_math_pow(1.5, nan)));
     assert_true(ted4_math_pow(0.999, 1e9) == 0 && ted4_math_pow(1e300, 2) == inf);
-    assert_true(isnan(ted4_math_sin(inf)) && isnan(ted4_math_sin(nan)) && isnan(ted4_math_sin(1e6)) && isnan(ted4_math_tan(-inf)));
-    assert_true(isinf(ted4_math_exp2f(130)) && ted4_math_exp2f(-160) == 0 && ted4_math_exp2f(-149) == 0x1p-149f);
+    assert_true(isnan(ted4_math_sin(inf)) && isnan(ted4_math_sin(nan)));
+    assert_true(isnan(ted4_math_sin(1e6)) && isnan(ted4_math_tan(-inf)));
+    assert_true(isinf(ted4_math_exp2f(130)) && ted4_math_exp2f(-160) == 0);
+    assert_true(ted4_math_exp2f(-149) == 0x1p-149f);
 }
 
-/* A hash of 16 results of each function: another compiler, level or machine has to give the same. */
+/* A hash of 4096 results of each function: another compiler, level or machine has to give the
+ * same. */
 static void test_bits(void **state)
 {
-    const our_function f[] = { ted4_math_exp, ted4_math_exp2, ted4_math_log, ted4_math_log2, ted4_math_sin, ted4_math_tan };
+    const our_function f[] = { ted4_math_exp,  ted4_math_exp2, ted4_math_log,
+                               ted4_math_log2, ted4_math_sin,  ted4_math_tan };
     uint64_t hash = 0, bits;
 
     (void)state;
@@ -149,8 +170,9 @@ static void test_bits(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_errors), cmocka_unit_test(test_error_of_pow), cmocka_unit_test(test_exact),
-        cmocka_unit_test(test_awkward), cmocka_unit_test(test_bits),
+        cmocka_unit_test(test_errors),  cmocka_unit_test(test_error_of_pow),
+        cmocka_unit_test(test_exact),   cmocka_unit_test(test_awkward),
+        cmocka_unit_test(test_bits),
     };
 
     return cmocka_run_group_tests(tests, NULL, NULL);

@@ -1,4 +1,5 @@
-/* elementary.c - see elementary.h. Arguments are reduced by steps that are exact, or nearly so, to where a power series converges quickly.
+/* elementary.c - see elementary.h. Arguments are reduced by steps that are exact, or nearly so,
+ * to where a power series converges quickly.
  * SPDX-License-Identifier: BSD-2-Clause */
 #include "elementary.h"
 
@@ -56,8 +57,9 @@ double ted4_math_exp2(double x)
     return ldexp(exp_series((x - n) * LN2), (int)n);
 }
 
-/* ln(1 + f) for 1 + f in [sqrt(1/2), sqrt(2)): with s = f / (2 + f) it is 2 artanh(s) = f - f^2 / 2 + s (f^2 / 2 + R), R = 2 s^2 / 3 + 2 s^4 / 5 + ..., whose
- * first term is exact. The first term left out is below 1e-18 of the whole. */
+/* ln(1 + f) for 1 + f in [sqrt(1/2), sqrt(2)): with s = f / (2 + f) it is 2 artanh(s) = f - f^2
+ * / 2 + s (f^2 / 2 + R), R = 2 s^2 / 3 + 2 s^4 / 5 + ..., whose first term is exact. The first
+ * term left out is below 1e-18 of the whole. */
 static double log_series(double f)
 {
     const double s = f / (2.0 + f), z = s * s, half = 0.5 * f * f;
@@ -76,7 +78,8 @@ static double log_series(double f)
     return f - (half - s * (half + z * p));
 }
 
-/* x = 2^e (1 + f), 1 + f in [sqrt(1/2), sqrt(2)). 1, or 0: *f is the logarithm (of 0, infinity, NaN, negative numbers). */
+/* x = 2^e (1 + f), 1 + f in [sqrt(1/2), sqrt(2)). 1, or 0: *f is the logarithm (of 0, infinity,
+ * NaN, negative numbers). */
 static int split(double x, double *f, int *e)
 {
     if (!(x > 0) || isinf(x)) {

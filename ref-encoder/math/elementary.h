@@ -1,7 +1,10 @@
-/* elementary.h - exp, log, pow, sin and tan of our own, for results that enter a training or a file: those of libm differ between its versions and machines.
- * Made of +, -, *, / and exact steps (rounding to an integer, scaling by a power of two) in binary64, without contraction, so that they have the same bits
- * wherever binary64 is IEEE 754's. What is only reported (PSNR in a log, eval/metrics.h) may use libm.
- * Relative error, as tests/test_elementary.c bounds it: 4e-16, or as said below; results beyond binary64's range are infinite or 0, those of NaN are NaN.
+/* elementary.h - exp, log, pow, sin and tan of our own, for results that enter a training or a
+ * file: those of libm differ between its versions and machines. Made of +, -, *, / and exact
+ * steps (rounding to an integer, scaling by a power of two) in binary64, without contraction, so
+ * that they have the same bits wherever binary64 is IEEE 754's. What is only reported (PSNR in a
+ * log, eval/metrics.h) may use libm. Relative error, as tests/test_elementary.c bounds it:
+ * 4e-16, or as said below; results beyond binary64's range are infinite or 0, those of NaN are
+ * NaN.
  * SPDX-License-Identifier: BSD-2-Clause */
 #ifndef TED4_ELEMENTARY_H
 #define TED4_ELEMENTARY_H

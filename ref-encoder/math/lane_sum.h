@@ -1,5 +1,6 @@
-/* lane_sum.h - sums of many binary32 products in one order, whatever the compiler and the width of vectors: term i goes to partial sum i mod 16, and partial sums
- * are added pairwise, halves upon halves. Plain operations (elementary.h says why that counts).
+/* lane_sum.h - sums of many binary32 products in one order, whatever the compiler and the width
+ * of vectors: term i goes to partial sum i mod 16, and partial sums are added pairwise, halves
+ * upon halves. Plain operations (elementary.h says why that counts).
  * SPDX-License-Identifier: BSD-2-Clause */
 #ifndef TED4_LANE_SUM_H
 #define TED4_LANE_SUM_H

@@ -1,5 +1,7 @@
-/* quick.h - 2^x and the logistic function in binary32, to about 1e-7 and 2e-7, for loops that run over every anchor in every step: written so that `#pragma omp simd`
- * vectorises them, and of plain operations, so that they have the same bits in whatever file, on whatever machine (elementary.h says why that counts).
+/* quick.h - 2^x and the logistic function in binary32, to about 1e-7 and 2e-7, for loops that
+ * run over every anchor in every step: written so that `#pragma omp simd` vectorises them, and
+ * of plain operations, so that they have the same bits in whatever file, on whatever machine
+ * (elementary.h says why that counts).
  * SPDX-License-Identifier: BSD-2-Clause */
 #ifndef TED4_QUICK_H
 #define TED4_QUICK_H
@@ -7,8 +9,8 @@
 #include <stdint.h>
 #include <string.h>
 
-/* x clamped to [-126, 126]; -126 for a NaN. c + 126.5 is positive, so that truncation rounds c to the nearest integer; a polynomial fitted to 2^f on
- * [-1/2, 1/2] makes the rest. */
+/* x clamped to [-126, 126]; -126 for a NaN. c + 126.5 is positive, so that truncation rounds c
+ * to the nearest integer; a polynomial fitted to 2^f on [-1/2, 1/2] makes the rest. */
 static inline float ted4_quick_exp2(float x)
 {
     const float    low = x > -126.0f ? x : -126.0f, c = low < 126.0f ? low : 126.0f;
