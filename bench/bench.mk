@@ -132,4 +132,12 @@ deps-cross-train: deps
 	@dpkg --print-foreign-architectures | grep -qx arm64 || { $(SUDO) dpkg --add-architecture arm64 && $(SUDO) apt-get update -q; }
 	@$(call INSTALL_DEBIAN,$(DEPS_AARCH64))
 
-.PHONY: cross-train deps-cross-train
+# Instructions of a training step by NEON and by AVX2, counted under qemu, in bench/machines.md.
+$B/bench/count_instructions.so: bench/count_instructions.c
+	@mkdir -p $(@D)
+	$(CC) -O2 $(WARN) -Wno-missing-prototypes -shared -fPIC $< -o $@
+bench-instructions: $B/bench/count_instructions.so $B/ted4scene $B/ted4enc
+	$(MAKE) B=$B/aarch64 CC=aarch64-linux-gnu-gcc LDFLAGS=-static $B/aarch64/ted4enc
+	TED4_BUILD=$(abspath $B) bench/instructions.sh
+
+.PHONY: cross-train deps-cross-train bench-instructions
