@@ -225,8 +225,10 @@ static inline void random_symbols(random_source *r, const int32_t *mu,
         const double sigma = exp2((ted4_sigma_index(s[i]) - 64) / 16.0);
         double x = mu[i] / 256.0 + sigma * random_normal(r);
 
-        if (wild && random_in(r, 0, 30) == 0)
-            x = random_normal(r) * exp2(random_in(r, 0, 15));
+        if (wild && random_in(r, 0, 30) == 0) {
+            x = random_normal(r);       /* compilers differ in which side of a product they draw first */
+            x *= exp2(random_in(r, 0, 15));
+        }
         k[i] = (int16_t)(x < -32767 ? -32767 : x > 32767 ? 32767 : rint(x));
     }
 }
