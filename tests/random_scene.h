@@ -45,8 +45,9 @@ static inline double random_unit(random_source *r)
 
 static inline double random_normal(random_source *r)
 {
-    return sqrt(-2 * log(1 - random_unit(r)))
-         * cos(6.283185307179586 * random_unit(r));
+    const double length = sqrt(-2 * log(1 - random_unit(r)));
+
+    return length * cos(6.283185307179586 * random_unit(r));
 }
 
 /* The shape of the method of the paper: F = 50 in slices 5, 10, 15, 20, K = 10, hyperprior 63-100-100. */
@@ -103,6 +104,14 @@ static inline ted4_header random_small_header(uint32_t n_anchors)
     return h;
 }
 
+/* Compilers differ in which argument of a call they draw first, so one statement draws one number. */
+static inline float random_step(random_source *r)
+{
+    const int exponent = (int)random_in(r, 0, 25) - 18;
+
+    return ldexpf((float)(0.5 + random_unit(r) / 2), exponent);
+}
+
 /* Any header whose values are in range; small enough for thousands of them. */
 static inline ted4_header random_header(random_source *r)
 {
@@ -143,8 +152,7 @@ static inline ted4_header random_header(random_source *r)
     h.ar_width = (uint16_t)(i > 1 ? random_in(r, 1, 30) : 0);
     h.context_bits = (uint8_t)random_in(r, 0, 12);
     for (int t = 0; t < TED4_TYPES; t++)
-        h.step[t] = ldexpf((float)(0.5 + random_unit(r) / 2),
-                           (int)random_in(r, 0, 25) - 18);
+        h.step[t] = random_step(r);
     h.frames = random_in(r, 1, 60);
     h.rate_num = random_in(r, 1, 60000);
     h.rate_den = random_in(r, 1, 1001);
@@ -226,7 +234,7 @@ static inline void random_symbols(random_source *r, const int32_t *mu,
         double x = mu[i] / 256.0 + sigma * random_normal(r);
 
         if (wild && random_in(r, 0, 30) == 0) {
-            x = random_normal(r);       /* compilers differ in which side of a product they draw first */
+            x = random_normal(r);
             x *= exp2(random_in(r, 0, 15));
         }
         k[i] = (int16_t)(x < -32767 ? -32767 : x > 32767 ? 32767 : rint(x));
