@@ -21,6 +21,13 @@
 #pragma GCC diagnostic ignored "-Wpsabi"
 #define TED4_INLINE static inline __attribute__((always_inline))
 
+/* Before a loop of at most 16 rounds whose vectors are to stay in registers. */
+#ifdef __clang__
+#define TED4_UNROLL _Pragma("clang loop unroll(full)")
+#else
+#define TED4_UNROLL _Pragma("GCC unroll 16")
+#endif
+
 #if defined(__AVX512DQ__) && defined(__AVX512VL__)
 #define TED4_VEC_BYTES 64
 #elif defined(__AVX2__)

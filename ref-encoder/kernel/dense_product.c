@@ -6,12 +6,6 @@
 #include "kernel/dense.h"
 #include "render/vec.h"
 
-#ifdef __clang__
-#define UNROLL _Pragma("clang loop unroll(full)")
-#else
-#define UNROLL _Pragma("GCC unroll 16")
-#endif
-
 /* Outputs of a panel: twice as many sums, two registers of inputs and a weight fit in 32 registers (AVX-512, NEON), or in
  * 16 (AVX2, SSE2). */
 #if TED4_VEC_BYTES == 64 || defined(__aarch64__)
@@ -74,7 +68,7 @@ TED4_INLINE void panel_n(const int n, int in, const float *w, const float *x, fl
 {
     ted4_vf acc[PANEL][2];
 
-    UNROLL
+    TED4_UNROLL
     for (int j = 0; j < n; j++)
         acc[j][0] = acc[j][1] = ted4_vf_all(w[j]);
     w += n;
@@ -82,7 +76,7 @@ TED4_INLINE void panel_n(const int n, int in, const float *w, const float *x, fl
         const ted4_vf x0 = ted4_vf_load(x + (size_t)i * TED4_LANES);
         const ted4_vf x1 = ted4_vf_load(x + (size_t)i * TED4_LANES + TED4_VEC);
 
-        UNROLL
+        TED4_UNROLL
         for (int j = 0; j < n; j++) {
             const ted4_vf weight = ted4_vf_all(w[j]);
 
@@ -90,7 +84,7 @@ TED4_INLINE void panel_n(const int n, int in, const float *w, const float *x, fl
             acc[j][1] = ted4_vf_fma(weight, x1, acc[j][1]);
         }
     }
-    UNROLL
+    TED4_UNROLL
     for (int j = 0; j < n; j++) {
         store(y + j * TED4_LANES, acc[j][0], mode);
         store(y + j * TED4_LANES + TED4_VEC, acc[j][1], mode);

@@ -5,12 +5,6 @@
 #include "kernel/dense.h"
 #include "render/vec.h"
 
-#ifdef __clang__
-#define UNROLL _Pragma("clang loop unroll(full)")
-#else
-#define UNROLL _Pragma("GCC unroll 16")
-#endif
-
 /* Outputs and inputs of a tile: its sums, its inputs and one output's gradient fit in 32 registers, or in 16. */
 #if TED4_VEC_BYTES == 64 || defined(__aarch64__)
 enum { TILE_OUT = 4, TILE_IN = 4 };
@@ -94,26 +88,26 @@ TED4_INLINE void keep_in_register(ted4_vf *v)
 TED4_INLINE void tile_part(const float *const *x, size_t x_stride, const float *const *dy, size_t dy_stride,
                            size_t n_blocks, int part, ted4_vf *acc)
 {
-    UNROLL
+    TED4_UNROLL
     for (int i = 0; i < TILE_OUT * TILE_IN; i++)
         acc[i] = (ted4_vf){0};
     for (size_t k = 0; k < n_blocks; k++) {
         const size_t kx = k * x_stride, ky = k * dy_stride;
 
-        UNROLL
+        TED4_UNROLL
         for (int h = part * TED4_VEC; h < TED4_LANES; h += TED4_LANE_GROUP) {
             ted4_vf xv[TILE_IN];
 
-            UNROLL
+            TED4_UNROLL
             for (int b = 0; b < TILE_IN; b++) {
                 xv[b] = ted4_vf_load(x[b] + kx + h);
                 keep_in_register(&xv[b]);
             }
-            UNROLL
+            TED4_UNROLL
             for (int a = 0; a < TILE_OUT; a++) {
                 const ted4_vf yv = ted4_vf_load(dy[a] + ky + h);
 
-                UNROLL
+                TED4_UNROLL
                 for (int b = 0; b < TILE_IN; b++)
                     acc[a * TILE_IN + b] = ted4_vf_fma(yv, xv[b], acc[a * TILE_IN + b]);
             }
@@ -127,16 +121,16 @@ TED4_INLINE void tile(const float *const *x, size_t x_stride, const float *const
 {
     four part[TILE_OUT * TILE_IN / 4][TED4_VECS];
 
-    UNROLL
+    TED4_UNROLL
     for (int p = 0; p < TED4_VECS; p++) {
         ted4_vf acc[TILE_OUT * TILE_IN];
 
         tile_part(x, x_stride, dy, dy_stride, n_blocks, p, acc);
-        UNROLL
+        TED4_UNROLL
         for (int i = 0; i < TILE_OUT * TILE_IN / 4; i++)
             part[i][p] = fold(acc + 4 * i);
     }
-    UNROLL
+    TED4_UNROLL
     for (int i = 0; i < TILE_OUT * TILE_IN / 4; i++) {
         const four s = add_parts(part[i]);
 
@@ -148,7 +142,7 @@ TED4_INLINE void tile(const float *const *x, size_t x_stride, const float *const
 TED4_INLINE void add_tile(float *dw, int n_x, int n_rows, int n_cols, const float *sum)
 {
     if (n_rows >= TILE_OUT && n_cols >= TILE_IN) {
-        UNROLL
+        TED4_UNROLL
         for (int a = 0; a < TILE_OUT; a++, dw += n_x)
             for (int b = 0; b < TILE_IN; b++)
                 dw[b] += sum[a * TILE_IN + b];

@@ -46,56 +46,110 @@ typedef struct {
     part_state          state[TED4_VECS][TED4_TILE_BLOCKS];
 } tile_state;
 
-/* Sums over the pixels of a block, all in one order: pixel i and i + 8, then i and i + 4 are added, then 0 and 2, 1 and 3, and these two. */
+/* Sums over the pixels of a block, all in one order: pixels i and i + 8, then i and i + 4 are
+ * added, then 0 and 2, 1 and 3, and these two. */
 typedef struct {
     ted4_vf term[TED4_GRAD_SUMS], total;
 } part_sums;
 
 typedef float quarter __attribute__((vector_size(16)));
 
-/* The first two steps: 16 lanes to 4. v: the parts' vectors, so many floats apart. */
 #if TED4_VEC_BYTES == 64
-TED4_INLINE quarter to_quarter(const part_sums *s, size_t at)
+/* The first two steps: 16 lanes to 4. */
+TED4_INLINE quarter to_quarter(ted4_vf v)
 {
-    const ted4_vf v = ted4_vf_load((const float *)s + at);
-
-    return (__builtin_shufflevector(v, v, 0, 1, 2, 3) + __builtin_shufflevector(v, v, 8, 9, 10, 11))
-         + (__builtin_shufflevector(v, v, 4, 5, 6, 7) + __builtin_shufflevector(v, v, 12, 13, 14, 15));
+    return (__builtin_shufflevector(v, v, 0, 1, 2, 3)
+            + __builtin_shufflevector(v, v, 8, 9, 10, 11))
+         + (__builtin_shufflevector(v, v, 4, 5, 6, 7)
+            + __builtin_shufflevector(v, v, 12, 13, 14, 15));
 }
-#elif TED4_VEC_BYTES == 32
-TED4_INLINE quarter to_quarter(const part_sums *s, size_t at)
-{
-    const ted4_vf v = ted4_vf_load((const float *)&s[0] + at) + ted4_vf_load((const float *)&s[1] + at);
 
-    return __builtin_shufflevector(v, v, 0, 1, 2, 3) + __builtin_shufflevector(v, v, 4, 5, 6, 7);
+/* The same steps of four sums at once; a quarter of the result belongs to each. */
+TED4_INLINE ted4_vf to_quarters(const ted4_vf v[4])
+{
+    ted4_vf half[2];
+
+    for (int i = 0; i < 2; i++) {
+        const ted4_vf a = v[2 * i], b = v[2 * i + 1];
+
+        half[i] = __builtin_shufflevector(a, b, 0, 1, 2, 3, 4, 5, 6, 7,
+                                          16, 17, 18, 19, 20, 21, 22, 23)
+                + __builtin_shufflevector(a, b, 8, 9, 10, 11, 12, 13, 14, 15,
+                                          24, 25, 26, 27, 28, 29, 30, 31);
+    }
+    return __builtin_shufflevector(half[0], half[1], 0, 1, 2, 3, 8, 9, 10, 11,
+                                   16, 17, 18, 19, 24, 25, 26, 27)
+         + __builtin_shufflevector(half[0], half[1], 4, 5, 6, 7, 12, 13, 14, 15,
+                                   20, 21, 22, 23, 28, 29, 30, 31);
+}
+
+TED4_INLINE void add_terms(const part_sums *s, float sums[TED4_GRAD_SUMS])
+{
+    typedef float eight __attribute__((vector_size(32)));
+    const ted4_vf p = to_quarters(s->term), q = to_quarters(s->term + 4);
+    const ted4_vf two = __builtin_shufflevector(p, q, 0, 1, 16, 17, 4, 5, 20, 21,
+                                                8, 9, 24, 25, 12, 13, 28, 29)
+                      + __builtin_shufflevector(p, q, 2, 3, 18, 19, 6, 7, 22, 23,
+                                                10, 11, 26, 27, 14, 15, 30, 31);
+    const eight   one = __builtin_shufflevector(two, two, 0, 4, 8, 12, 2, 6, 10, 14)
+                      + __builtin_shufflevector(two, two, 1, 5, 9, 13, 3, 7, 11, 15);
+
+    memcpy(sums, &one, sizeof one);
+}
+
+TED4_INLINE quarter total_quarter(const part_sums *s)
+{
+    return to_quarter(s->total);
 }
 #else
+/* The first two steps, of the sum that lies so many floats into each part's: 16 lanes to 4. */
 TED4_INLINE quarter to_quarter(const part_sums *s, size_t at)
 {
+#if TED4_VEC_BYTES == 32
+    const ted4_vf v = ted4_vf_load((const float *)&s[0] + at)
+                    + ted4_vf_load((const float *)&s[1] + at);
+
+    return __builtin_shufflevector(v, v, 0, 1, 2, 3) + __builtin_shufflevector(v, v, 4, 5, 6, 7);
+#else
     return (ted4_vf_load((const float *)&s[0] + at) + ted4_vf_load((const float *)&s[2] + at))
          + (ted4_vf_load((const float *)&s[1] + at) + ted4_vf_load((const float *)&s[3] + at));
-}
 #endif
+}
 
 /* The last two, of four sums at once. */
 TED4_INLINE void finish_sums(const quarter q[4], float out[4])
 {
-    const quarter a = __builtin_shufflevector(q[0], q[1], 0, 1, 4, 5) + __builtin_shufflevector(q[0], q[1], 2, 3, 6, 7);
-    const quarter b = __builtin_shufflevector(q[2], q[3], 0, 1, 4, 5) + __builtin_shufflevector(q[2], q[3], 2, 3, 6, 7);
-    const quarter e = __builtin_shufflevector(a, b, 0, 2, 4, 6) + __builtin_shufflevector(a, b, 1, 3, 5, 7);
+    const quarter a = __builtin_shufflevector(q[0], q[1], 0, 1, 4, 5)
+                    + __builtin_shufflevector(q[0], q[1], 2, 3, 6, 7);
+    const quarter b = __builtin_shufflevector(q[2], q[3], 0, 1, 4, 5)
+                    + __builtin_shufflevector(q[2], q[3], 2, 3, 6, 7);
+    const quarter e = __builtin_shufflevector(a, b, 0, 2, 4, 6)
+                    + __builtin_shufflevector(a, b, 1, 3, 5, 7);
 
     memcpy(out, &e, sizeof e);
 }
 
-TED4_INLINE void add_parts(const part_sums *s, float sums[TED4_GRAD_SUMS], float *sum0)
+TED4_INLINE void add_terms(const part_sums *s, float sums[TED4_GRAD_SUMS])
 {
-    quarter q[TED4_GRAD_SUMS], total;
+    quarter q[TED4_GRAD_SUMS];
 
     for (size_t i = 0; i < TED4_GRAD_SUMS; i++)
         q[i] = to_quarter(s, i * TED4_VEC);
     finish_sums(q, sums);
     finish_sums(q + 4, sums + 4);
-    total = to_quarter(s, TED4_GRAD_SUMS * TED4_VEC);
+}
+
+TED4_INLINE quarter total_quarter(const part_sums *s)
+{
+    return to_quarter(s, TED4_GRAD_SUMS * TED4_VEC);
+}
+#endif
+
+TED4_INLINE void add_parts(const part_sums *s, float sums[TED4_GRAD_SUMS], float *sum0)
+{
+    const quarter total = total_quarter(s);
+
+    add_terms(s, sums);
     *sum0 = (total[0] + total[2]) + (total[1] + total[3]);
 }
 

@@ -7,8 +7,8 @@
 
 #include "cells.h"
 #include "math/elementary.h"
-#include "math/quick.h"
 #include "random.h"
+#include "recon/strict.h"
 #include "trainer.h"
 
 enum { DEPTHS = 3 };
@@ -29,8 +29,9 @@ uint32_t ted4_lanes_there(const ted4_generate_input *in, size_t slot)
 
     for (int j = 0; in->activation && j < TED4_LANES; j++) {
         const float *x = in->attr[slot] + first * TED4_LANES + j;
-        const float  u = now < x[0] ? (x[0] - now) / ted4_quick_exp2(x[TED4_LANES])
-                       : now > x[2 * TED4_LANES] ? (now - x[2 * TED4_LANES]) / ted4_quick_exp2(x[3 * TED4_LANES]) : 0.0f;
+        const float  u = now < x[0] ? (x[0] - now) / ted4_pow2(x[TED4_LANES])
+                       : now > x[2 * TED4_LANES]
+                       ? (now - x[2 * TED4_LANES]) / ted4_pow2(x[3 * TED4_LANES]) : 0.0f;
 
         if (!(u * u < 0.6931472f))
             there &= ~((uint32_t)1 << j);

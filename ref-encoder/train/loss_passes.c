@@ -6,12 +6,6 @@
 
 #include "render/vec.h"
 
-#ifdef __clang__
-#define UNROLL _Pragma("clang loop unroll(full)")
-#else
-#define UNROLL _Pragma("GCC unroll 16")
-#endif
-
 enum { TAPS = 11, HALF = TAPS / 2, TILE = TED4_LOSS_TILE, SIDE = TED4_LOSS_SIDE, CHANNELS = TED4_LOSS_CHANNELS };
 
 /* exp(-k^2 / (2 1.5^2)) for k = 5 .. -5, divided by the sum. */
@@ -43,7 +37,7 @@ static double add_lanes(const ted4_vf sum[TED4_VECS])
 
 TED4_INLINE void split_group(const float *x, const float *t, float *u, float *v, ted4_vf sum[TED4_VECS])
 {
-    UNROLL
+    TED4_UNROLL
     for (int p = 0; p < TED4_VECS; p++) {
         const ted4_vf a = ted4_vf_load(x + p * TED4_VEC), b = ted4_vf_load(t + p * TED4_VEC), d = a - b;
 
@@ -143,7 +137,7 @@ static void filter_squares(const float *u, const float *v, int n, float out[4][T
         const ted4_vf zero = ted4_vf_all(0.0f);
         ted4_vf       mu = zero, mv = zero, uu = zero, vv = zero;
 
-        UNROLL
+        TED4_UNROLL
         for (int k = 0; k < TAPS; k++) {
             const ted4_vf a = ted4_vf_load(u + x + k - HALF), b = ted4_vf_load(v + x + k - HALF);
             const ted4_vf ga = a * GAUSS[k], gb = b * GAUSS[k];
@@ -200,25 +194,25 @@ static double similarity_row(ring4 ring, int oldest, const piece *p, float *cons
     for (int i = 0; i < TED4_VECS; i++)
         sum[i] = ted4_vf_all(0.0f);
     for (int x = 0; x < p->n; x += TED4_LANE_GROUP)
-        UNROLL
+        TED4_UNROLL
         for (int i = 0; i < TED4_VECS; i++) {
             const int at = x + i * TED4_VEC;
             ted4_vf   m[4], d[3], s;
 
-            UNROLL
+            TED4_UNROLL
             for (int c = 0; c < 4; c++)
                 m[c] = ted4_vf_all(0.0f);
-            UNROLL
+            TED4_UNROLL
             for (int k = 0; k < TAPS; k++) {
                 const int slot = oldest + k < TAPS ? oldest + k : oldest + k - TAPS;
 
-                UNROLL
+                TED4_UNROLL
                 for (int c = 0; c < 4; c++)
                     m[c] = ted4_vf_fma(ted4_vf_load(ring[slot][c] + at), ted4_vf_all(GAUSS[k]), m[c]);
             }
             s = similarity(m, d);
             sum[i] += p->valid - at >= TED4_VEC ? s : keep_first(s, p->valid - at);
-            UNROLL
+            TED4_UNROLL
             for (int c = 0; c < 3; c++)
                 ted4_vf_store(to[c] + at, d[c]);
         }
@@ -271,11 +265,11 @@ void TED4_LEVELED(ted4_loss_similarity)(void *job, size_t i)
 static void filter_derivatives(const float *const d[3], int n, float out[3][TILE])
 {
     for (int x = 0; x < n; x += TED4_VEC)
-        UNROLL
+        TED4_UNROLL
         for (int i = 0; i < 3; i++) {
             ted4_vf m = ted4_vf_all(0.0f);
 
-            UNROLL
+            TED4_UNROLL
             for (int k = 0; k < TAPS; k++)
                 m = ted4_vf_fma(ted4_vf_load(d[i] + x + k - HALF), ted4_vf_all(GAUSS[k]), m);
             ted4_vf_store(out[i] + x, m);
@@ -289,14 +283,14 @@ static void gradient_row(const ted4_loss_job *j, ring3 ring, int oldest, size_t 
         const ted4_vi sign = (b < 0.0f) - (b > 0.0f);   /* a true comparison is -1 */
         ted4_vf       m[3], ssim;
 
-        UNROLL
+        TED4_UNROLL
         for (int i = 0; i < 3; i++)
             m[i] = ted4_vf_all(0.0f);
-        UNROLL
+        TED4_UNROLL
         for (int k = 0; k < TAPS; k++) {
             const int slot = oldest + k < TAPS ? oldest + k : oldest + k - TAPS;
 
-            UNROLL
+            TED4_UNROLL
             for (int i = 0; i < 3; i++)
                 m[i] = ted4_vf_fma(ted4_vf_load(ring[slot][i] + x), ted4_vf_all(GAUSS[k]), m[i]);
         }

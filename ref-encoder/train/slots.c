@@ -4,8 +4,8 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "math/quick.h"
 #include "random.h"
+#include "recon/strict.h"
 #include "trainer.h"
 
 /* An anchor counts as a ball of three of its offset scales, and as visible when the ball touches the guarded frustum. Where things move the canonical
@@ -33,7 +33,7 @@ uint32_t ted4_block_visible(const ted4_trainer *t, size_t block, const ted4_view
         const float a = s[j], b = s[TED4_LANES + j], c = s[2 * TED4_LANES + j];
         const float ab = b > a || a != a ? b : a, most = c > ab || ab != ab ? c : ab;
 
-        widest[j] = is_log2 ? ted4_quick_exp2(most) : most;
+        widest[j] = is_log2 ? ted4_pow2(most) : most;
     }
     for (int j = 0; j < TED4_LANES; j++) {
         const float x = p[j], y = p[TED4_LANES + j], z = p[2 * TED4_LANES + j];

@@ -6,8 +6,8 @@
 #include "adam.h"
 #include "gradients.h"
 #include "math/lane_sum.h"
-#include "math/quick.h"
 #include "random.h"
+#include "recon/strict.h"
 #include "trainer.h"
 
 /* Gaussians are cut into this many parts whatever the number of threads, and their sums go in as
@@ -135,7 +135,7 @@ static void add_mask_loss(const update_job *j, size_t i, int channel, int n, flo
 
 #pragma omp simd
         for (int k = 0; k < TED4_LANES; k++) {
-            const float m = ted4_quick_logistic(x[k]);
+            const float m = ted4_sigmoid(x[k]);
             const float on = (float)(int32_t)(lanes >> k & 1);
 
             d[k] += on * weight * m * (1.0f - m);

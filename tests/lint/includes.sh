@@ -14,7 +14,7 @@ ref-encoder/kernel          base render kernel
 ref-encoder/data            base math data
 ref-encoder/eval            base eval
 ref-encoder/write           base norm math write kernel ted4.h
-ref-encoder/train           base norm render math data kernel train write ted4.h
+ref-encoder/train           base norm recon render math data kernel train write ted4.h
 ref-encoder/tool            base norm render math data eval kernel train write tool ted4.h
 '
 bad=0
