@@ -89,8 +89,6 @@ static void record(recording *r, ted4_dataset *d)
     ted4_trainer        t;
 
     parts_options(&o, STEPS);
-    /* The search for sprouts is an event of a minute at full size, and no step. */
-    o.sprouts = 0;
     if (ted4_trainer_init(&t, &o, d, &team) != 0) {
         fprintf(stderr, "bench_scale: %s\n", t.message.text);
         exit(3);

@@ -112,7 +112,7 @@ int parts_stage(const ted4_trainer *t)
 
 void parts_options(ted4_train_options *o, int steps)
 {
-    char why[256], text[7][64];
+    char why[256], text[8][64];
 
     snprintf(text[0], sizeof text[0], "stage1=%d", steps);
     snprintf(text[1], sizeof text[1], "stage2=%d", 2 * steps);
@@ -121,8 +121,10 @@ void parts_options(ted4_train_options *o, int steps)
     snprintf(text[4], sizeof text[4], "activation_start=0");
     snprintf(text[5], sizeof text[5], "probe=0");
     snprintf(text[6], sizeof text[6], "capacity=0");
+    /* The search for sprouts is an event of a minute at full size, and no step. */
+    snprintf(text[7], sizeof text[7], "sprouts=0");
     must(ted4_options_preset(o, "fast") == 0 ? o : NULL);
-    for (int i = 0; i < 7; i++)
+    for (int i = 0; i < 8; i++)
         if (ted4_options_set(o, text[i], why, sizeof why) != 0) {
             fprintf(stderr, "benchmark: %s\n", why);
             exit(3);
