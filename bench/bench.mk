@@ -25,8 +25,11 @@ TRAIN_PARTS = ted4_dataset_pixels ted4_trainer_check ted4_schedule_event ted4_sl
         ted4_generate_backward ted4_update_volume ted4_update_bank ted4_densify_gather ted4_update_rate ted4_update_parameters
 BETWEEN = $(TRAIN_PARTS:%=-Wl,--wrap=%)
 
-$B/bench/bench_train.o $B/bench/train_parts.o $B/bench/bench_scale.o $B/bench/recorder.o $B/bench/phases.o: FPFLAGS = $(BENCH_FREE)
-$B/bench/bench_train: $B/bench/bench_train.o $B/bench/train_parts.o $B/ref-decoder/tool/threads.o $(ENC_LIB)
+TRAIN_RECORD = $B/bench/train_parts.o $B/bench/train_record.o
+$(TRAIN_RECORD) $(patsubst %,$B/bench/%.o,bench_train bench_scale recorder phases): \
+        FPFLAGS = $(BENCH_FREE)
+$B/bench/bench_train: $B/bench/bench_train.o $(TRAIN_RECORD) $B/ref-decoder/tool/threads.o \
+        $(ENC_LIB)
 	$(CC) -fopenmp $(LDFLAGS) $(BETWEEN) $^ -o $@ $(LIBS)
 # On kitchen where it is, else on a small scene made for the purpose.
 KITCHEN = $(wildcard $(TED4_DATA)/kitchen)
@@ -38,7 +41,7 @@ bench-train: $B/bench/bench_train $(if $(KITCHEN),,$B/bench/occluder)
 	$(KEEP) bench/train.md $B/bench/bench_train $(TRAIN_SCENE)
 
 # How far steps and runs can use many cores, in bench/scale.md: the share outside parallel work, and the bounds.
-$B/bench/bench_scale: $B/bench/bench_scale.o $B/bench/train_parts.o $B/bench/recorder.o $(ENC_LIB)
+$B/bench/bench_scale: $B/bench/bench_scale.o $(TRAIN_RECORD) $B/bench/recorder.o $(ENC_LIB)
 	$(CC) -fopenmp $(LDFLAGS) $(BETWEEN) $^ -o $@ $(LIBS)
 
 # ted4enc with its phases told apart by functions that phases.c puts in between.

@@ -9,9 +9,9 @@
 #include "measure.h"
 #include "recorder.h"
 #include "train/raster_adjoint.h"
-#include "train_parts.h"
+#include "train_record.h"
 
-enum { STEPS = 120, WARM_UP = 15, FEWEST = 12 };
+enum { STEPS = 120 };   /* of each stage */
 
 /* A part of one step, or all of it: ms on one thread, in regions alone, and in regions on
  * recorder_cores; regions. */
@@ -24,12 +24,6 @@ enum { MEMBERS = sizeof(portion) / sizeof(double) };
 typedef struct {
     portion of[N_PARTS + 1];
 } sample;
-
-typedef struct {
-    sample step[STAGES][STEPS];
-    size_t n[STAGES], anchors[STAGES];
-    double splats[STAGES];
-} recording;
 
 static recorder recorded;
 static sample   here;
@@ -67,67 +61,14 @@ static void add_parts(sample *s)
             all[i] += ((const double *)&s->of[p])[i];
 }
 
-static sample one_step(ted4_trainer *t)
+static void one_step(ted4_trainer *t, void *measured)
 {
     memset(&here, 0, sizeof here);
     memset(&recorded.regions, 0, sizeof recorded.regions);
-    parts_begin();
-    if (ted4_trainer_step(t) != 0) {
-        fprintf(stderr, "bench_scale: %s\n", t->message.text);
-        exit(3);
-    }
-    parts_end();
+    parts_step(t);
     for (int p = 0; p < N_PARTS; p++)
         here.of[p].whole += parts.ms[p];
-    return here;
-}
-
-static void record(recording *r, ted4_dataset *d)
-{
-    const ted4_parallel team = recorder_team(&recorded);
-    ted4_train_options  o;
-    ted4_trainer        t;
-
-    parts_options(&o, STEPS);
-    if (ted4_trainer_init(&t, &o, d, &team) != 0) {
-        fprintf(stderr, "bench_scale: %s\n", t.message.text);
-        exit(3);
-    }
-    while (t.iteration < ted4_trainer_total(&t)) {
-        const sample s = one_step(&t);
-        const int    stage = parts_stage(&t);
-
-        if (r->n[stage] < STEPS)
-            r->step[stage][r->n[stage]++] = s;
-        r->anchors[stage] = t.anchors.n;
-        r->splats[stage] = t.progress.splats;
-    }
-    ted4_trainer_finish(&t);
-}
-
-static int by_value(const void *a, const void *b)
-{
-    const double x = *(const double *)a, y = *(const double *)b;
-
-    return (x > y) - (x < y);
-}
-
-/* Of each part medians over the steps of a stage, the first ones aside. */
-static sample medians(const recording *r, int stage)
-{
-    const size_t first = r->n[stage] > WARM_UP + FEWEST ? WARM_UP : 0, n = r->n[stage] - first;
-    sample       m;
-
-    for (size_t i = 0; i < N_PARTS * (size_t)MEMBERS; i++) {
-        double value[STEPS];
-
-        for (size_t k = 0; k < n; k++)
-            value[k] = ((const double *)r->step[stage][first + k].of)[i];
-        qsort(value, n, sizeof *value, by_value);
-        ((double *)m.of)[i] = value[n / 2];
-    }
-    add_parts(&m);
-    return m;
+    memcpy(measured, &here, sizeof here);
 }
 
 static void print_portion(const char *name, const portion *p, double step)
@@ -141,14 +82,16 @@ static void print_portion(const char *name, const portion *p, double step)
     putchar('\n');
 }
 
-static void print_stage(const recording *r, int stage)
+static void print_stage(const train_record *r, int stage)
 {
-    const sample   m = medians(r, stage);
+    sample         m;
     const portion *all = &m.of[N_PARTS];
-    const double   serial = all->whole - all->work;
+    double         serial = 0;
 
-    printf("%s: %zu anchors, %.0f Gaussians on screen\n", stage_name[stage], r->anchors[stage],
-           r->splats[stage]);
+    record_medians(r, stage, (double *)&m);
+    add_parts(&m);
+    serial = all->whole - all->work;
+    record_print_stage(r, stage);
     printf("  %-28s %7s %8s %9s %5s %8s %8s %8s\n", "ms", "1 core", "serial", "of step", "reg.",
            "8 cores", "16", "32");
     for (int i = 0; i < N_PARTS; i++)
@@ -166,31 +109,23 @@ static void print_stage(const recording *r, int stage)
 
 int main(int argc, char **argv)
 {
-    recording   *r = must(calloc(1, sizeof *r));
-    ted4_dataset d;
-
-    if (argc != 3) {
-        fputs("usage: bench_scale SCENE DOWNSCALE\n", stderr);
-        return 3;
-    }
-
-    const double picture = parts_load(&d, argv[1], argv[2]);
+    ted4_dataset        d;
+    train_record        r;
+    const double        picture = parts_load(&d, argc, argv);
+    const ted4_parallel team = recorder_team(&recorded);
 
     recorder_init(&recorded);
     recorded.kind = kind_of_region;
     parts.leave = leave;
-    record(r, &d);
-    const char *const name = strrchr(argv[1], '/') != NULL ? strrchr(argv[1], '/') + 1 : argv[1];
-
-    printf("%s, 1/%s size: %dx%d, %zu pictures; preset fast, full number of anchors from the first "
-           "step; medians of %d steps\n", name, argv[2], d.pictures[0].camera.width,
-           d.pictures[0].camera.height, d.n_pictures, STEPS - WARM_UP);
-    printf("a picture's file to pixels: %.2f ms; the %d threads that decode ahead, where not all "
+    record_init(&r, STEPS, sizeof(sample) / sizeof(double));
+    record_training(&r, &d, &team, one_step);
+    record_print_title(&r, &d, argv);
+    printf("\na picture's file to pixels: %.2f ms; the %d threads that decode ahead, where not all "
            "pictures stay in memory, have one every %.2f ms\n", picture, TED4_DATASET_AHEAD,
            picture / TED4_DATASET_AHEAD);
     for (int stage = 0; stage < STAGES; stage++)
-        print_stage(r, stage);
-    free(r);
+        print_stage(&r, stage);
+    record_free(&r);
     recorder_finish(&recorded);
     ted4_dataset_free(&d);
     return 0;

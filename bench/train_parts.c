@@ -105,6 +105,23 @@ void parts_end(void)
     enter(PART_REST);
 }
 
+void parts_fail(const ted4_message *m)
+{
+    fprintf(stderr, "benchmark: %s\n", m->text);
+    exit(3);
+}
+
+double parts_step(ted4_trainer *t)
+{
+    const double begin = now_ms();
+
+    parts_begin();
+    if (ted4_trainer_step(t) != 0)
+        parts_fail(&t->message);
+    parts_end();
+    return now_ms() - begin;
+}
+
 int parts_stage(const ted4_trainer *t)
 {
     return t->integer ? STAGE_INTEGER : t->stage2 ? STAGE_2 : STAGE_1;
@@ -131,18 +148,21 @@ void parts_options(ted4_train_options *o, int steps)
         }
 }
 
-double parts_load(ted4_dataset *d, const char *scene, const char *downscale)
+double parts_load(ted4_dataset *d, int argc, char *const *argv)
 {
-    const ted4_dataset_options o = { .downscale = atoi(downscale), .white = 1, .cache_bytes = (size_t)1 << 30 };
-    ted4_message               m;
-    double                     begin = 0;
-    int                        bad = ted4_dataset_load(d, scene, &o, &m) != 0;
+    ted4_dataset_options o = { .white = 1, .cache_bytes = (size_t)1 << 30 };
+    ted4_message         m;
+    double               begin = 0;
 
-    begin = now_ms();
-    bad = bad || ted4_dataset_verify(d, NULL, &m) != 0;
-    if (bad) {
-        fprintf(stderr, "benchmark: %s\n", m.text);
+    if (argc != 3) {
+        fprintf(stderr, "usage: %s SCENE DOWNSCALE\n", argv[0]);
         exit(3);
     }
+    o.downscale = atoi(argv[2]);
+    if (ted4_dataset_load(d, argv[1], &o, &m) != 0)
+        parts_fail(&m);
+    begin = now_ms();
+    if (ted4_dataset_verify(d, NULL, &m) != 0)
+        parts_fail(&m);
     return (now_ms() - begin) / (double)d->n_pictures;
 }

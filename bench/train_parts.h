@@ -39,18 +39,21 @@ typedef struct {
     double ms[N_PARTS];
     train_part current;
     double since;               /* when current began or went on */
-    void (*leave)(train_part p);      /* NULL, or called whenever one part gives way to another: p */
+    void (*leave)(train_part p);    /* NULL, or called whenever a part, p, gives way to another */
 } parts_clock;
 extern parts_clock parts;
 
-void parts_begin(void);
-void parts_end(void);
+void   parts_begin(void);
+void   parts_end(void);
+/* A step between the two: how many ms it took. */
+double parts_step(ted4_trainer *t);
 
 /* The preset "fast" with as many anchors as it may have from the beginning, and short stages;
- * and its scene, with the time that it takes to decode one of its pictures, in ms. They end the
- * program where they fail. */
+ * and the scene of a program that takes SCENE DOWNSCALE, with the time that it takes to decode one
+ * of its pictures, in ms. They end the program where they fail, and so does parts_step. */
 void   parts_options(ted4_train_options *o, int steps);
-double parts_load(ted4_dataset *d, const char *scene, const char *downscale);
+double parts_load(ted4_dataset *d, int argc, char *const *argv);
 int    parts_stage(const ted4_trainer *t);
+void   parts_fail(const ted4_message *m);
 
 #endif
