@@ -10,60 +10,59 @@
 # whose compiler, runner, libraries or instruction set is missing is skipped, which is said; a row
 # that it has of the same sources stays. May be killed at any moment and called again, and several
 # times at once for different builds.
-# Exit code: 0, or 1: a build fails, or two that have to agree do not, or too few of them have passed
-# (8; 1 with a PATTERN); 3: wrong usage, no scene.
+# Exit code: 0, or 1: a build fails, or two that have to agree do not, or too few of them have
+# passed (8; 1 with a PATTERN); 3: wrong usage, no scene.
 # Environment: TED4_BUILD (build: where ted4scene is; builds are made in TED4_BUILD/machines),
 # TED4_RESULTS (bench: where machines.csv and machines.md are), TED4_TABLE (bench/machines.txt).
 # SPDX-License-Identifier: BSD-2-Clause
 set -u
-LC_ALL=C; export LC_ALL
+program=machines.sh
 columns=name,key,compiler,level,threads,agrees,hash,variants,bytes,seconds,verdict
+fields="name compiler variables level threads agrees runner packages"
+. "$(dirname "$0")/builds.sh"
 
 # The scene has what moves, what comes and goes, and cameras that disagree about colours: all parts
 # of the method have something to do. Sizes are odd ones, so that vectors have remainders.
 scene="fair --size 44x34 --cameras 4 --test-cameras 1 --frames 6 --tint 1 --seed 1"
-model="--preset draft --set offsets=3 --set feature=10 --set phi=4 --set head_width=14 --set bank_dim=12 --set deform_width=18 --set deform_layers=1 --set hyper_width=18
-    --set ar_width=10 --set octaves=6 --set max_anchors=300 --set grow_every=25 --set grow_gradient=1e-4"
-whole="--iterations 1000,500 --why --set init_anchors=150 --set probe=0.2 --set capacity_share=0.25 --set lr_mask=0.05"
+# The line break in it belongs to the key of every row.
+model="--preset draft --set offsets=3 --set feature=10 --set phi=4 --set head_width=14"
+model="$model --set bank_dim=12 --set deform_width=18 --set deform_layers=1 --set hyper_width=18
+    --set ar_width=10 --set octaves=6 --set max_anchors=300 --set grow_every=25"
+model="$model --set grow_gradient=1e-4"
+whole="--iterations 1000,500 --why --set init_anchors=150 --set probe=0.2"
+whole="$whole --set capacity_share=0.25 --set lr_mask=0.05"
 # What the whole method does not take: a network of place and time, bank and feature side by side,
 # linear scalings, one distribution for all anchors, other views.
 small="--iterations 60,50 --capacity fixed --set init_anchors=250 --set probe=0"
-variants="network:--set+motion=3+--set+linear_scale=1+--set+view=2 side:--set+motion=2+--set+factorised=1+--set+view=0+--set+slices=1"
+variants="network:--set+motion=3+--set+linear_scale=1+--set+view=2"
+variants="$variants side:--set+motion=2+--set+factorised=1+--set+view=0+--set+slices=1"
 
-die() { echo "machines.sh: $*" >&2; exit 3; }
-short_hash() { sha256sum | cut -c1-16; }
 value() { sed -n "s/.*\"$1\":\"\{0,1\}\([-0-9a-f.]*\).*/\1/p" "$2"; }
 
 enter() {
     cd "$(dirname "$0")/.." || exit 3
-    build=${TED4_BUILD:-build} results=${TED4_RESULTS:-bench} table=${TED4_TABLE:-bench/machines.txt}
+    build=${TED4_BUILD:-build} results=${TED4_RESULTS:-bench}
+    table=${TED4_TABLE:-bench/machines.txt}
     csv=$results/machines.csv page=$results/machines.md
     mkdir -p "$build/machines" || exit 3
     work=$(cd "$build/machines" && pwd) || exit 3
-    own=$work/run.$$
-    trap 'rm -rf "$own"' EXIT
-    trap 'exit 3' INT TERM
-    mkdir -p "$own" || exit 3
-    aarch64="libpng-dev:arm64 libjpeg62-turbo-dev:arm64 libjansson-dev:arm64 libxxhash-dev:arm64 zlib1g-dev:arm64"
+    own_folder || exit 3
+    aarch64="libpng-dev:arm64 libjpeg62-turbo-dev:arm64 libjansson-dev:arm64"
+    aarch64="$aarch64 libxxhash-dev:arm64 zlib1g-dev:arm64"
     sources=$({
-        find ref-decoder ref-encoder tests/scenes -name '*.[ch]' -o -name '*.def' | sort | xargs awk -f bench/sources.awk
+        find ref-decoder ref-encoder tests/scenes -name '*.[ch]' -o -name '*.def' | sort |
+            xargs awk -f bench/sources.awk
         sed -n '/^[A-Z_a-z0-9]* *[:?]*=/p' Makefile
         echo "$scene $model $whole $small $variants"
     } | short_hash)
+    [ $do != run ] || prepare
 }
 
-# split LINE: the fields of machines.txt
-split() {
-    IFS=';' read -r name compiler variables level threads agrees runner packages <<END
-$(echo "$1" | sed 's/ *; */;/g')
-END
+settle() {
     [ -z "$runner" ] || command -v "$runner" >/dev/null || runner=$runner-static
     packages=$(echo "$packages" | sed "s/ARM64/$aarch64/")
     key=$(echo "$name;$compiler;$variables;$level;$threads;$agrees;$sources" | short_hash)
 }
-
-each() { grep -v -e '^#' -e '^$' "$table"; }
-version() { ${compiler%% *} --version 2>/dev/null | head -n 1 | tr ',' ' '; }
 
 # has FLAG...: all among those that Linux says of this machine
 has() {
@@ -72,38 +71,17 @@ has() {
     done
 }
 
-# missing: what this build needs and is not there; nothing: all is
 missing() {
-    for command in "${compiler%% *}" ${runner:+"$runner"}; do
-        command -v "$command" >/dev/null || { echo "$command"; return; }
-    done
+    missing_command ${compiler%% *} $runner
     case $level in
     v[134] | best) [ "$(uname -m)" = x86_64 ] || echo "x86-64" ;;
-    neon)   [ "$(uname -m)" = aarch64 ] || [ -e /usr/lib/aarch64-linux-gnu/libjansson.a ] || echo "libraries for aarch64" ;;
+    neon)   [ "$(uname -m)" = aarch64 ] || [ -e /usr/lib/aarch64-linux-gnu/libjansson.a ] ||
+                echo "libraries for aarch64" ;;
     esac
     case $level in
     v3) has avx2 fma bmi2 || echo "AVX2 with FMA" ;;
     v4) has avx512f avx512bw avx512dq avx512vl || echo "AVX-512" ;;
     esac
-}
-
-# state: sets state to passed, kept (tools missing, but a row of these sources is there), skipped,
-# failed, stale or new; row
-state() {
-    row=$(grep "^$name," "$csv" 2>/dev/null | tail -n 1)
-    lacks=$(missing | head -n 1)
-    if [ -n "$lacks" ]; then
-        state=skipped
-        [ "$(echo "$row" | cut -d, -f2)" != "$key" ] || state=kept
-    elif [ -z "$row" ]; then
-        state=new
-    elif [ "$(echo "$row" | cut -d, -f2)" != "$key" ] || [ "$(echo "$row" | cut -d, -f3)" != "$(version)" ]; then
-        state=stale
-    elif [ "$(echo "$row" | cut -d, -f11)" = passed ]; then
-        state=passed
-    else
-        state=failed
-    fi
 }
 
 # prepare: the scene, once for all builds, as pictures must be the same ones
@@ -112,14 +90,16 @@ prepare() {
     [ ! -e "$pictures/truth.json" ] || return 0
     [ -x "$build/ted4scene" ] || die "$build/ted4scene is missing: make cross-train"
     rm -rf "$pictures.part"
-    "$build/ted4scene" $scene -o "$pictures.part" && mv "$pictures.part" "$pictures" || die "no scene"
+    "$build/ted4scene" $scene -o "$pictures.part" && mv "$pictures.part" "$pictures" ||
+        die "no scene"
 }
 
 # train FILE OPTION...: by the program of the build
 train() {
     file=$1
     shift
-    env $kernel $runner "$here/ted4enc" "$pictures" -o "$file.ted4" $model "$@" --seed 1 -j "$threads" -f --json --log "$file.jsonl" >"$file.json" 2>"$file.stderr" ||
+    env $kernel $runner "$here/ted4enc" "$pictures" -o "$file.ted4" $model "$@" --seed 1 \
+        -j "$threads" -f --json --log "$file.jsonl" >"$file.json" 2>"$file.stderr" ||
         { tail -n 1 "$file.stderr" | tr ',' ';'; return 1; }
 }
 
@@ -134,7 +114,8 @@ one_build() {
         shift
         set -- "$@" "$(echo "$v" | sed 's/,-/ -/g')"
     done
-    if ! ${MAKE:-make} -s -j "$(getconf _NPROCESSORS_ONLN)" B="$here" CC="$compiler" "$@" "$here/ted4enc" >"$work/$name.log" 2>&1; then
+    set -- B="$here" CC="$compiler" "$@" "$here/ted4enc"
+    if ! ${MAKE:-make} -s -j "$(getconf _NPROCESSORS_ONLN)" "$@" >"$work/$name.log" 2>&1; then
         verdict="does not build: $(grep -m 1 -i -E 'error|cannot' "$work/$name.log" | tr ',' ';')"
         return
     fi
@@ -142,7 +123,9 @@ one_build() {
     verdict=$(train "$work/$name" $whole) || { verdict="does not train: $verdict"; return; }
     seconds=$(($(date +%s) - begun))
     for v in $variants; do
-        verdict=$(train "$work/$name-${v%%:*}" $small $(echo "${v#*:}" | tr + ' ')) || { verdict="does not train ${v%%:*}: $verdict"; return; }
+        v_name=${v%%:*}
+        verdict=$(train "$work/$name-$v_name" $small $(echo "${v#*:}" | tr + ' ')) ||
+            { verdict="does not train $v_name: $verdict"; return; }
     done
     bytes=$(value bytes "$work/$name.json")
     hash=$(short_hash <"$work/$name.ted4")
@@ -150,66 +133,30 @@ one_build() {
     verdict=passed
 }
 
-# put_row: in place of an earlier one
-put_row() {
-    (
-        flock 9
-        {
-            echo $columns
-            { grep -v -e "^$name," -e "^name," "$csv" 2>/dev/null
-              echo "$name,$key,$(version),$level,$threads,$agrees,$hash,$variants_hash,$bytes,$seconds,$verdict"; } | sort
-        } >"$csv.new" && mv "$csv.new" "$csv"
-    ) 9>"$work/lock"
-}
-
-chosen() {
-    [ -n "$patterns" ] || return 0
-    set -f
-    for pattern in $patterns; do
-        case $name in $pattern) set +f; return 0 ;; esac
-    done
-    set +f
-    return 1
-}
-
-one() {
-    state
-    case $state in
-    passed)  echo "passed   $name (as machines.csv says)"; return ;;
-    kept)    echo "kept     $name: no $lacks here; machines.csv has a row of the same sources"; return ;;
-    skipped) echo "skipped  $name: no $lacks${packages:+ (needs $packages)}"; return ;;
-    esac
+make_row() {
     one_build
-    put_row
-    if [ "$verdict" = passed ]; then
+    put_row "$level,$threads,$agrees,$hash,$variants_hash,$bytes,$seconds,$verdict"
+    [ "$verdict" != passed ] ||
         echo "passed   $name: $hash, variants $variants_hash, $bytes bytes, $seconds s"
-    else
-        echo "FAILED   $name: $verdict"
-    fi
 }
 
-# report: the table, between its marks in machines.md; rows that count go into $work/counted
+# report: the table, between its marks in machines.md
 report() {
     : >"$own/counted"
     each | while read -r line; do
         split "$line"
         state
-        case $state in
-        passed)  said=passed ;;
-        kept)    said="passed elsewhere" ;;
-        failed)  said="**failed**: $(echo "$row" | cut -d, -f11)" ;;
-        stale)   said="stale" ;;
-        skipped) said="skipped: no $lacks" row= ;;
-        *)       said="not run" row= ;;
-        esac
-        case $state in passed | kept | failed) echo "$row" >>"$own/counted" ;; esac
-        echo "$row" | awk -F, -v name="$name" -v said="$said" -v compiler="$compiler" -v make="$variables" -v level="$level" -v threads="$threads" -v agrees="$agrees" '{
-            print "| " name " | `" compiler "` | `" make "` | " level " | " threads " | " ($7 == "" ? "" : "`" $7 "`") " | " ($8 == "" ? "" : "`" $8 "`") " | " $9 " | " $10 " | " \
-                said (agrees == "same" ? "" : "; may differ") " |" }'
+        tell_state "passed elsewhere" stale
+        [ "$agrees" = same ] || said="$said; may differ"
+        echo "$row" | awk -F, -v what="$name | \`$compiler\` | \`$variables\` | $level | $threads" \
+            -v said="$said" '
+            function code(text) { return text == "" ? "" : "`" text "`" }
+            { print "| " what " | " code($7) " | " code($8) " | " $9 " | " $10 " | " said " |" }'
     done >"$own/rows"
     awk -v rows="$own/rows" '
         /^<!-- trainings -->$/ { print; skip = 1
-            print "| build | compiler | make | level | threads | whole method | variants | bytes | seconds | result |"
+            print "| build | compiler | make | level | threads | whole method | variants " \
+                  "| bytes | seconds | result |"
             print "|---|---|---|---|---|---|---|---|---|---|"
             while ((getline line < rows) > 0) print line }
         /^<!-- end of trainings -->$/ { skip = 0 }
@@ -225,35 +172,11 @@ agree() {
     passed=$(grep -c ',passed$' "$own/same")
     different=$(cut -d, -f7,8 "$own/same" | sort -u | grep -c .)
     echo "$passed builds that have to agree passed:"
-    cut -d, -f7,8 "$own/same" | sort | uniq -c | sed 's/^ *\([0-9]*\) \(.*\),\(.*\)/    \1 gave \2, variants \3/'
+    cut -d, -f7,8 "$own/same" | sort | uniq -c |
+        sed 's/^ *\([0-9]*\) \(.*\),\(.*\)/    \1 gave \2, variants \3/'
     [ "$passed" -ge $least ] || { echo "machines.sh: at least $least have to pass" >&2; return 1; }
     [ "$different" = 1 ] && ! grep -qv ',passed$' "$own/counted"
 }
 
-main() {
-    patterns= do=run
-    for argument; do
-        case $argument in
-        --list)   do=list ;;
-        --report) do=report ;;
-        -*)       die "$argument: no such option" ;;
-        *)        patterns="$patterns $argument" ;;
-        esac
-    done
-    enter
-    [ $do != run ] || prepare
-    each >"$own/todo"
-    while [ $do != report ] && read -r line <&3; do
-        split "$line"
-        chosen || continue
-        case $do in
-        run)  one ;;
-        list) state; echo "$state $name" ;;
-        esac
-    done 3<"$own/todo"
-    [ $do = list ] || report
-    [ $do != run ] || agree
-}
-
-main "$@"
+begin_builds "$@"
 exit

@@ -13,13 +13,13 @@
 # TED4_TABLE (conformance/cross/builds.txt).
 # SPDX-License-Identifier: BSD-2-Clause
 set -u
-LC_ALL=C; export LC_ALL
+program=cross.sh
 columns=name,key,compiler,class,vectors,passed,tier_e,class_x,contract_vectors,contract_passed,seconds,verdict
+fields="name class compiler flags link runner again contract packages"
+. "$(dirname "$0")/../../bench/builds.sh"
 
-die() { echo "cross.sh: $*" >&2; exit 3; }
-short_hash() { sha256sum | cut -c1-16; }
-
-# enter: settles folders and goes into a copy of what builds are made from, so that a source edited meanwhile does no harm
+# enter: settles folders, goes into a copy of what builds are made from, so that a source edited
+# meanwhile does no harm, and sees that suite and libraries are there
 enter() {
     cd "$(dirname "$0")/../.." || exit 3
     root=$(pwd)
@@ -28,12 +28,19 @@ enter() {
     results=$(cd "${TED4_RESULTS:-conformance}" && pwd)
     csv=$results/cross/results.csv
     work=$build/cross
-    copy=$work/copy.$$
-    trap 'rm -rf "$copy"' EXIT
-    trap 'exit 3' INT TERM
-    mkdir -p "$copy/conformance" "$copy/bench" && cp -R ref-decoder Makefile "$copy/" && cp bench/sources.awk "$copy/bench/" &&
-        cp -R conformance/tool conformance/cross conformance/lists "$copy/conformance/" &&
-        cp "${TED4_TABLE:-conformance/cross/builds.txt}" "$copy/builds" && cd "$copy" || die "no copy of the sources"
+    own_folder || exit 3
+    table=builds
+    mkdir -p "$own/conformance" "$own/bench" && cp -R ref-decoder Makefile "$own/" &&
+        cp bench/sources.awk "$own/bench/" &&
+        cp -R conformance/tool conformance/cross conformance/lists "$own/conformance/" &&
+        cp "${TED4_TABLE:-conformance/cross/builds.txt}" "$own/$table" && cd "$own" ||
+        die "no copy of the sources"
+    what_from
+    suite=suite-$(suite_key "$root/conformance")
+    sources=$(sources_key)
+    suite=$work/$suite
+    [ $do != run ] || (flock 9; fetch && prepare) 9>"$work/lock" ||
+        die "no suite, or no sources of zlib, Jansson and xxHash from Debian"
 }
 
 # what_from: the sources, and the flags that the Makefile gives them
@@ -70,42 +77,15 @@ sources_key() {
     } | short_hash
 }
 
-# split LINE: the fields of builds.txt
-split() {
-    IFS=';' read -r name class compiler flags link runner again contract packages <<END
-$(echo "$1" | sed 's/ *; */;/g')
-END
+settle() {
     judge_key=
     [ "$contract" != all ] || judge_key=$(awk -f bench/sources.awk $judge | short_hash)
-    key=$(echo "$name;$class;$compiler;$flags;$link;$runner;$again;$contract;$sources$judge_key" | short_hash)
+    key=$(echo "$name;$class;$compiler;$flags;$link;$runner;$again;$contract;$sources$judge_key" |
+        short_hash)
 }
 
-# missing: the first command of the build that is not there; nothing: all are
 missing() {
-    for command in "${compiler%% *}" "${runner%% *}"; do
-        [ -z "$command" ] || command -v "$command" >/dev/null || { echo "$command"; return; }
-    done
-}
-
-version() { ${compiler%% *} --version | head -n 1 | tr ',' ' '; }
-
-# state: sets state to passed, kept (tools missing, but a row of these sources is there), skipped, failed, stale or new; row, row_verdict
-state() {
-    row=$(grep "^$name," "$csv" 2>/dev/null | tail -n 1)
-    row_key=$(echo "$row" | cut -d, -f2)
-    row_verdict=$(echo "$row" | cut -d, -f12)
-    if [ -n "$(missing)" ]; then
-        state=skipped
-        [ "$row_key" != "$key" ] || state=kept
-    elif [ -z "$row" ]; then
-        state=new
-    elif [ "$row_key" != "$key" ] || [ "$(echo "$row" | cut -d, -f3)" != "$(version)" ]; then
-        state=stale
-    elif [ "$row_verdict" = passed ]; then
-        state=passed
-    else
-        state=failed
-    fi
+    missing_command ${compiler%% *} ${runner%% *}
 }
 
 # fetch: Debian's sources of zlib, Jansson and xxHash in $work/libraries, without touching this system
@@ -247,92 +227,57 @@ try() {
     verdict=passed
 }
 
-# put_row: in place of an earlier one
-put_row() {
-    (
-        flock 9
-        {
-            echo $columns
-            { grep -v -e "^$name," -e "^name," "$csv" 2>/dev/null
-              echo "$name,$key,$(version),$claimed,$vectors,$passed,$tier_e,$class_x,$contract_vectors,$contract_passed,$seconds,$verdict"; } | sort
-        } >"$csv.new" && mv "$csv.new" "$csv"
-    ) 9>"$work/lock"
-}
-
-chosen() {
-    [ -n "$patterns" ] || return 0
-    set -f
-    for pattern in $patterns; do
-        case $name in $pattern) set +f; return 0 ;; esac
-    done
-    set +f
-    return 1
-}
-
-one() {
-    state
-    case $state in
-    passed)  echo "passed   $name (as results.csv says)"; return ;;
-    kept)    echo "kept     $name: no $(missing) here; results.csv has a row of the same sources"; return ;;
-    skipped) echo "skipped  $name: no $(missing) (needs $packages)"; return ;;
-    esac
+make_row() {
     begun=$(date +%s)
     try
     seconds=$(($(date +%s) - begun))
-    put_row
-    if [ "$verdict" = passed ]; then
-        echo "passed   $name, $seconds s"
-        rm -rf "$here"
-    else
-        echo "FAILED   $name: $verdict"
-    fi
+    judged=$claimed,$vectors,$passed,$tier_e,$class_x
+    put_row "$judged,$contract_vectors,$contract_passed,$seconds,$verdict"
+    [ "$verdict" = passed ] || return
+    echo "passed   $name, $seconds s"
+    rm -rf "$here"
 }
 
-# result_line: the build's line of CROSS.md; its hashes go into $work/hashes
+# result_line: the build's line of CROSS.md
 result_line() {
     state
-    case $state in
-    passed)  said=passed ;;
-    kept)    said=$row_verdict ;;
-    failed)  said="**failed**: $row_verdict" ;;
-    stale)   said="stale: $row_verdict with other sources, suite, flags or compiler" ;;
-    skipped) said="skipped: no $(missing)" row= ;;
-    *)       said="not run" row= ;;
-    esac
-    [ -z "$row" ] || [ $state = stale ] || echo "$row" >>"$copy/hashes"
-    echo "$row" | awk -F, -v name="$name" -v said="$said" '{ print "| " name " | " $3 " | " $4 " | " ($5 == "" ? "" : $6 " of " $5) " | " \
-        ($9 == "" ? "" : $10 " of " $9) " | " ($7 == "" ? "" : "`" substr($7, 1, 8) "`") " | " ($8 == "" ? "" : "`" substr($8, 1, 8) "`") " | " $11 " | " said " |" }'
+    tell_state "$row_verdict" "stale: $row_verdict with other sources, suite, flags or compiler"
+    echo "$row" | awk -F, -v name="$name" -v said="$said" '
+        function start(hash) { return hash == "" ? "" : "`" substr(hash, 1, 8) "`" }
+        { print "| " name " | " $3 " | " $4 " | " ($5 == "" ? "" : $6 " of " $5) " | " \
+              ($9 == "" ? "" : $10 " of " $9) " | " start($7) " | " start($8) " | " $11 " | " said " |" }'
 }
 
-# summary: of all rows in $copy/hashes
+# summary: of all rows in $own/counted
 summary() {
     awk -F, '$12 == "passed" { n++; if ($4 == "X") x++ }
         $7 != "" && !($7 in e) { e[$7]; n_e++; one_e = $7 }
         $8 != "" && !($8 in c) { c[$8]; n_c++; one_c = $8 }
         END { print n + 0 " builds passed, " NR - n " failed."
               print "Tier E: " (n_e == 1 ? "one hash, `" one_e "`, in every build." : n_e + 0 " different hashes.")
-              print "Class X: " (n_c == 1 ? "one hash, `" one_c "`, in all " x + 0 " passing builds that claim it." : n_c + 0 " different hashes.") }' "$copy/hashes"
+              print "Class X: " (n_c == 1 ? "one hash, `" one_c "`, in all " x + 0 " passing builds that claim it." : n_c + 0 " different hashes.") }' "$own/counted"
 }
 
-# agree: no build fails, no two disagree, and enough have passed
+# agree: after a summary: no build fails, no two disagree, and enough have passed
 agree() {
-    least=12 passed=$(cut -d, -f12 "$copy/hashes" | grep -cx passed)
+    summary
+    least=12 passed=$(cut -d, -f12 "$own/counted" | grep -cx passed)
     [ -z "$patterns" ] || least=1
     [ "$passed" -ge $least ] || { echo "cross.sh: $passed builds passed; at least $least have to" >&2; return 1; }
-    [ "$passed" = "$(grep -c . "$copy/hashes")" ] && [ "$(cut -d, -f7 "$copy/hashes" | sort -u | grep -c .)" = 1 ] &&
-        [ "$(cut -d, -f8 "$copy/hashes" | grep . | sort -u | grep -c .)" -le 1 ]
+    [ "$passed" = "$(grep -c . "$own/counted")" ] && [ "$(cut -d, -f7 "$own/counted" | sort -u | grep -c .)" = 1 ] &&
+        [ "$(cut -d, -f8 "$own/counted" | grep . | sort -u | grep -c .)" -le 1 ]
 }
 
 report() {
-    : >"$copy/hashes"
-    each | while read -r line; do split "$line"; result_line; done >"$copy/rows"
+    : >"$own/counted"
+    each | while read -r line; do split "$line"; result_line; done >"$own/rows"
     {
         sed '/^<!-- results -->$/,$d' conformance/cross/intro.md
         summary
         echo
         echo "| build | compiler | class claimed | vectors | by the contract | Tier E | class X | seconds | result |"
         echo "|---|---|---|---|---|---|---|---|---|"
-        cat "$copy/rows"
+        cat "$own/rows"
         sed '1,/^<!-- results -->$/d; /^<!-- builds -->$/,$d' conformance/cross/intro.md
         echo "| build | compiler | flags | linked with | run by | Debian packages beyond \`make deps\` |"
         echo "|---|---|---|---|---|---|"
@@ -344,36 +289,5 @@ report() {
     } >"$results/CROSS.md.$$" && mv "$results/CROSS.md.$$" "$results/CROSS.md"
 }
 
-each() { grep -v -e '^#' -e '^$' builds; }
-
-main() {
-    patterns= do=run
-    for argument; do
-        case $argument in
-        --list)   do=list ;;
-        --report) do=report ;;
-        -*)       die "$argument: no such option" ;;
-        *)        patterns="$patterns $argument" ;;
-        esac
-    done
-    enter
-    what_from
-    suite=suite-$(suite_key "$root/conformance")
-    sources=$(sources_key)
-    suite=$work/$suite
-    [ $do != run ] || (flock 9; fetch && prepare) 9>"$work/lock" || die "no suite, or no sources of zlib, Jansson and xxHash from Debian"
-    each >"$copy/todo"
-    while read -r line <&3; do
-        split "$line"
-        chosen || continue
-        case $do in
-        run)  one ;;
-        list) state; echo "$state $name" ;;
-        esac
-    done 3<"$copy/todo"
-    [ $do = list ] || report
-    [ $do != run ] || { summary; agree; }
-}
-
-main "$@"
+begin_builds "$@"
 exit
