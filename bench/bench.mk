@@ -40,19 +40,23 @@ $B/bench/occluder: | $B/ted4scene
 bench-train: $B/bench/bench_train $(if $(KITCHEN),,$B/bench/occluder)
 	$(KEEP) bench/train.md $B/bench/bench_train $(TRAIN_SCENE)
 
-# How far steps and runs can use many cores, in bench/scale.md: the share outside parallel work, and the bounds.
+# How far steps and runs can use many cores, in bench/scale.md: the share outside parallel work,
+# and the bounds.
 $B/bench/bench_scale: $B/bench/bench_scale.o $(TRAIN_RECORD) $B/bench/recorder.o $(ENC_LIB)
 	$(CC) -fopenmp $(LDFLAGS) $(BETWEEN) $^ -o $@ $(LIBS)
 
 # ted4enc with its phases told apart by functions that phases.c puts in between.
-PHASES = ted4_dataset_load ted4_dataset_verify ted4_header_settle ted4_trainer_init ted4_trainer_restart ted4_trainer_step ted4_branch_run \
-        ted4_snapshot_take ted4_snapshot_restore ted4_state_take ted4_state_restore ted4_densify_adjust ted4_sprout \
-        ted4_activation_begin ted4_stage2_begin ted4_integer_begin ted4_capacity_decide ted4_capacity_refine ted4_capacity_prune \
-        ted4_trainer_distortion ted4_trainer_blame ted4_make_scene ted4_encode ted4_encode_told ted4_trainer_preview ted4_run_log_step \
+PHASES = ted4_dataset_load ted4_dataset_verify ted4_header_settle ted4_trainer_init \
+        ted4_trainer_restart ted4_trainer_step ted4_branch_run ted4_snapshot_take \
+        ted4_snapshot_restore ted4_state_take ted4_state_restore ted4_densify_adjust ted4_sprout \
+        ted4_activation_begin ted4_stage2_begin ted4_integer_begin ted4_capacity_decide \
+        ted4_capacity_refine ted4_capacity_prune ted4_trainer_distortion ted4_trainer_blame \
+        ted4_make_scene ted4_encode ted4_encode_told ted4_trainer_preview ted4_run_log_step \
         ted4_checkpoint_save ted4_verify ted4_file_write \
         $(foreach l,base v3 v4,ted4_raster_blend_$l ted4_raster_blend_bwd_$l) ted4_threads_init \
         ted4_threads_count ted4_threads_finish
-$B/bench/phases: $B/bench/phases.o $B/bench/recorder.o $B/ref-encoder/tool/ted4enc.o $(ENC_TOOL:%.c=$B/%.o) $(DEC_TOOL:%.c=$B/%.o) $(ENC_LIB)
+$B/bench/phases: $B/bench/phases.o $B/bench/recorder.o $B/ref-encoder/tool/ted4enc.o \
+        $(ENC_TOOL:%.c=$B/%.o) $(DEC_TOOL:%.c=$B/%.o) $(ENC_LIB)
 	$(CC) -fopenmp $(LDFLAGS) $(PHASES:%=-Wl,--wrap=%) $^ -o $@ $(LIBS)
 
 # Minutes, on one core.
@@ -122,17 +126,21 @@ capacity: all
 
 .PHONY: capacity
 
-# The same training everywhere: a small scene trained by the builds of bench/machines.txt whose row in bench/machines.csv is missing or stale, and the table in
-# bench/machines.md. Builds whose tools are missing are skipped, which is said; on Debian for x86-64, deps-cross-train installs them.
+# The same training everywhere: a small scene trained by the builds of bench/machines.txt whose row
+# in bench/machines.csv is missing or stale, and the table in bench/machines.md. Builds whose tools
+# are missing are skipped, which is said; on Debian for x86-64, deps-cross-train installs them.
 cross-train: $B/ted4scene
 	TED4_BUILD=$(abspath $B) bench/machines.sh
 
 DEPS_CROSS_TRAIN = clang-14 libomp-14-dev gcc-aarch64-linux-gnu libc6-dev-arm64-cross
-DEPS_AARCH64 = libpng-dev:arm64 libjpeg62-turbo-dev:arm64 libjansson-dev:arm64 libxxhash-dev:arm64 zlib1g-dev:arm64
+DEPS_AARCH64 = libpng-dev:arm64 libjpeg62-turbo-dev:arm64 libjansson-dev:arm64 libxxhash-dev:arm64 \
+        zlib1g-dev:arm64
 deps-cross-train: deps
 	@$(call INSTALL_DEBIAN,$(DEPS_CROSS_TRAIN))
-	@command -v qemu-aarch64-static >/dev/null || command -v qemu-aarch64 >/dev/null || { $(call INSTALL_DEBIAN,qemu-user); }
-	@dpkg --print-foreign-architectures | grep -qx arm64 || { $(SUDO) dpkg --add-architecture arm64 && $(SUDO) apt-get update -q; }
+	@command -v qemu-aarch64-static >/dev/null || command -v qemu-aarch64 >/dev/null || \
+	    { $(call INSTALL_DEBIAN,qemu-user); }
+	@dpkg --print-foreign-architectures | grep -qx arm64 || \
+	    { $(SUDO) dpkg --add-architecture arm64 && $(SUDO) apt-get update -q; }
 	@$(call INSTALL_DEBIAN,$(DEPS_AARCH64))
 
 # Instructions of a training step by NEON and by AVX2, counted under qemu, in bench/machines.md.

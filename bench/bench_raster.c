@@ -108,8 +108,9 @@ static void print_level(ted4_level level, const times *t, const times *top, size
     snprintf(what, sizeof what, "%s, 1 thread", ted4_level_name(level));
     print_times(what, *t, pairs);
     if (t != top)
-        printf("  %-22s forward %7.2f                      backward %7.2f           both %7.2f\n", "  ratio", t->forward / top->forward,
-               t->backward / top->backward, (t->forward + t->backward) / (top->forward + top->backward));
+        printf("  %-22s forward %7.2f                      backward %7.2f           both %7.2f\n",
+               "  ratio", t->forward / top->forward, t->backward / top->backward,
+               (t->forward + t->backward) / (top->forward + top->backward));
 }
 
 static void report(size_t n)
@@ -141,7 +142,8 @@ static void report(size_t n)
     const times t2 = best(two_t, ROUNDS);
 
     print_times("the first, 2 threads", t2, pairs);
-    printf("  speed-up by 2 threads  %.2f\n", (t1[most].forward + t1[most].backward) / (t2.forward + t2.backward));
+    printf("  speed-up by 2 threads  %.2f\n",
+           (t1[most].forward + t1[most].backward) / (t2.forward + t2.backward));
     bench_free(&b);
     ted4_threads_finish(&two);
 }

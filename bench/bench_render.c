@@ -178,8 +178,10 @@ static void print_times(ted4_level level, int threads, const times *t)
     double      median;
     const times b = best(t, &median);
 
-    printf("  %-2s, %d thread%s  deformation, heads %6.2f ms  picture %6.2f ms  best %6.2f ms = %5.1f frames/s  median %6.2f ms = %5.1f frames/s\n",
-           ted4_level_name(level), threads, threads == 1 ? " " : "s", b.query, b.draw, b.both, 1e3 / b.both, median, 1e3 / median);
+    printf("  %-2s, %d thread%s  deformation, heads %6.2f ms  picture %6.2f ms  "
+           "best %6.2f ms = %5.1f frames/s  median %6.2f ms = %5.1f frames/s\n",
+           ted4_level_name(level), threads, threads == 1 ? " " : "s", b.query, b.draw, b.both,
+           1e3 / b.both, median, 1e3 / median);
 }
 
 /* What one frame holds. */

@@ -1,7 +1,7 @@
 #!/bin/sh
-# instructions.sh - counts the instructions of a training step, by AVX2 (TED4_BUILD/ted4enc, level v3)
-# and by NEON (TED4_BUILD/aarch64/ted4enc), under qemu with count_instructions.c, and puts them into
-# bench/machines.md. `make bench-instructions`.
+# instructions.sh - counts the instructions of a training step, by AVX2 (TED4_BUILD/ted4enc, level
+# v3) and by NEON (TED4_BUILD/aarch64/ted4enc), under qemu with count_instructions.c, and puts them
+# into bench/machines.md. `make bench-instructions`.
 # Of a stage, a step is half of what three steps take more than one; all of it is counted, so that
 # loading and coding, which are in both, fall out. Both programs do the same: their files are equal.
 # SPDX-License-Identifier: BSD-2-Clause
@@ -13,7 +13,8 @@ rm -rf "$work"
 mkdir -p "$work"
 "$build/ted4scene" occluder --size 160x120 --cameras 3 --test-cameras 1 --frames 4 -o "$work/scene"
 options="--preset draft --capacity fixed --seed 1 -j 1 --set probe=0 --set integer_share=0
-    --set transients=0 --set sprouts=0 --set colour=0 --set init_anchors=1500 --set max_anchors=1500"
+    --set transients=0 --set sprouts=0 --set colour=0 --set init_anchors=1500
+    --set max_anchors=1500"
 
 # count LEVEL STEPS: instructions of a training of so many steps, in $counted
 count() {
@@ -41,7 +42,8 @@ for stage in 1 2; do
     esac
     v3=$(step v3 $few $more) neon=$(step neon $few $more)
     cmp "$work/v3-$more.ted4" "$work/neon-$more.ted4"
-    echo "| $stage | $v3 | $neon | $(awk -v a="$v3" -v b="$neon" 'BEGIN { printf "%.2f", b / a }') |"
+    ratio=$(awk -v a="$v3" -v b="$neon" 'BEGIN { printf "%.2f", b / a }')
+    echo "| $stage | $v3 | $neon | $ratio |"
 done >"$work/rows"
 cat "$work/rows"
 awk -v rows="$work/rows" '

@@ -47,12 +47,15 @@ static inline pair_count count_pairs(const struct ted4_raster *r, const ted4_vie
 
             ted4_block_pixels(tile % r->tiles_x, tile / r->tiles_x, block, k % TED4_VECS, &px, &py);
             ted4_vf t = ted4_vf_keep((px < (float)v->width) & (py < (float)v->height), ted4_vf_all(1.0f));
-            for (uint32_t i = 0; i < first[tile + 1] - first[tile]; i++)
-                if (reach[ted4_group_first(tile, first[tile]) + i / TED4_GROUP].block[block] >> i % TED4_GROUP & 1) {
+            for (uint32_t i = 0; i < first[tile + 1] - first[tile]; i++) {
+                const size_t group = ted4_group_first(tile, first[tile]) + i / TED4_GROUP;
+
+                if (reach[group].block[block] >> i % TED4_GROUP & 1) {
                     ted4_blend_step(&splat[owner[first[tile] + i]], px, py, &t, &alpha, &w);
                     count.blended  += (size_t)__builtin_popcount(ted4_vi_bits(w > 0.0f));
                     count.computed += TED4_VEC;
                 }
+            }
         }
     return count;
 }

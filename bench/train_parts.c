@@ -23,8 +23,8 @@ static train_part enter(train_part p)
     return before;
 }
 
-/* The functions in between. type __wrap_name is called where the trainer names name; __real_name is what it then gets. The linker compares no types: the
- * declaration by __typeof__ does. */
+/* The functions in between. type __wrap_name is called where the trainer names name; __real_name is
+ * what it then gets. The linker compares no types: the declaration by __typeof__ does. */
 #define BETWEEN(part, type, name, parameters, arguments) \
     extern __typeof__(name) __wrap_##name; \
     type __real_##name parameters; \
@@ -59,23 +59,27 @@ static train_part enter(train_part p)
     BETWEEN(part, int, name, parameters, arguments)
 typedef const uint8_t *pixels;
 
-BETWEEN(PICTURE, pixels, ted4_dataset_pixels, (ted4_dataset *d, size_t i, ted4_message *m), (d, i, m))
+BETWEEN(PICTURE, pixels, ted4_dataset_pixels, (ted4_dataset *d, size_t i, ted4_message *m),
+        (d, i, m))
 BETWEEN(SCHEDULE, int, ted4_trainer_check, (ted4_trainer *t, int anchors), (t, anchors))
 BETWEEN(SCHEDULE, int, ted4_schedule_event, (ted4_trainer *t), (t))
 BETWEEN(VISIBLE, int, ted4_slots_fill, (ted4_trainer *t, const ted4_view *v), (t, v))
 BETWEEN_VOID(GENERATE, ted4_generator_pack, (ted4_generator *g, const float *net), (g, net))
 BETWEEN(GENERATE, int, ted4_generate,
-        (ted4_generator *g, const ted4_generate_input *in, const ted4_parallel *p, ted4_splats *out), (g, in, p, out))
+        (ted4_generator *g, const ted4_generate_input *in, const ted4_parallel *p,
+         ted4_splats *out),
+        (g, in, p, out))
 OF_LEVELS(BETWEEN_INT, PROJECT, ted4_raster_project,
           (ted4_raster *r, const ted4_splats *s, const ted4_view *v, const ted4_parallel *p),
           (r, s, v, p))
-BETWEEN(BIN, int, ted4_raster_bin, (ted4_raster *r, const ted4_splats *s, const ted4_parallel *p), (r, s, p))
+BETWEEN(BIN, int, ted4_raster_bin,
+        (ted4_raster *r, const ted4_splats *s, const ted4_parallel *p), (r, s, p))
 OF_LEVELS(BETWEEN_INT, BLEND, ted4_raster_blend,
           (ted4_raster *r, const ted4_view *v, const ted4_parallel *p, int keep, float *image),
           (r, v, p, keep, image))
 BETWEEN(LOSS, double, ted4_loss,
-        (ted4_loss_workspace *w, const float *image, const uint8_t *truth, int width, int height, float weight, const ted4_parallel *p, float *d_image,
-         double *l1, double *ssim),
+        (ted4_loss_workspace *w, const float *image, const uint8_t *truth, int width, int height,
+         float weight, const ted4_parallel *p, float *d_image, double *l1, double *ssim),
         (w, image, truth, width, height, weight, p, d_image, l1, ssim))
 OF_LEVELS(BETWEEN_INT, BLEND_BWD, ted4_raster_blend_bwd,
           (ted4_raster *r, const ted4_view *v, const ted4_parallel *p, const float *d_image),
@@ -85,11 +89,13 @@ OF_LEVELS(BETWEEN_VOID, PROJECT_BWD, ted4_raster_project_bwd,
            const ted4_splat_grads *g),
           (r, s, v, p, g))
 BETWEEN(GENERATE_BWD, int, ted4_generate_backward,
-        (ted4_generator *g, const ted4_generate_input *in, const ted4_splat_grads *gr, const ted4_parallel *p, float *const *d_attr, float *d_net),
+        (ted4_generator *g, const ted4_generate_input *in, const ted4_splat_grads *gr,
+         const ted4_parallel *p, float *const *d_attr, float *d_net),
         (g, in, gr, p, d_attr, d_net))
 BETWEEN(REGULARISE, size_t, ted4_update_volume, (ted4_trainer *t, const ted4_splats *s), (t, s))
 BETWEEN_VOID(REGULARISE, ted4_update_bank, (ted4_trainer *t), (t))
-BETWEEN_VOID(REGULARISE, ted4_densify_gather, (ted4_trainer *t, const ted4_generate_input *in, const ted4_splats *s), (t, in, s))
+BETWEEN_VOID(REGULARISE, ted4_densify_gather,
+             (ted4_trainer *t, const ted4_generate_input *in, const ted4_splats *s), (t, in, s))
 BETWEEN(RATE, int, ted4_update_rate, (ted4_trainer *t, uint64_t key), (t, key))
 BETWEEN_VOID(ADAM, ted4_update_parameters, (ted4_trainer *t), (t))
 

@@ -17,7 +17,8 @@ FUZZ_SEEN     = -Wl,--wrap=inflate,--wrap=compress2,--wrap=uncompress2
 
 FUZZ_OBJ      = $(patsubst %.c,$B/%.o,fuzz/mend.c fuzz/parse.c)
 # A harness links what it looks at, so that a build for one kind of instrumentation stays small: decoder and writer; readers of scenes too; or all.
-FUZZ_CODEC    = $(patsubst %.c,$B/%.o,$(DEC_SRC) $(wildcard ref-encoder/math/*.c ref-encoder/write/*.c)) $(FUZZ_OBJ)
+FUZZ_CODEC    = $(patsubst %.c,$B/%.o,$(DEC_SRC) \
+                $(wildcard ref-encoder/math/*.c ref-encoder/write/*.c)) $(FUZZ_OBJ)
 FUZZ_SCENE    = $(patsubst %.c,$B/%.o,$(wildcard ref-encoder/data/*.c) ref-decoder/tool/camera_list.c ref-decoder/tool/times.c \
                 fuzz/scene_folder.c)
 FUZZ_MUTATE   = $B/fuzz/mutate.o $B/fuzz/fields.o

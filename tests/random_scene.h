@@ -104,7 +104,8 @@ static inline ted4_header random_small_header(uint32_t n_anchors)
     return h;
 }
 
-/* Compilers differ in which argument of a call they draw first, so one statement draws one number. */
+/* Compilers differ in which argument of a call they draw first, so one statement draws one
+ * number. */
 static inline float random_step(random_source *r)
 {
     const int exponent = (int)random_in(r, 0, 25) - 18;

@@ -20,6 +20,7 @@ tolerance: $B/ted4tolerance
 $B/tests/test_tolerance: | $B/ted4tolerance $B/ted4dec
 
 # Counted by the test: hashing, inflating, networks, searches; layers of Tier R.
-RESOURCES_COUNTED = XXH3_64bits inflate ted4_prior_hyper_hidden ted4_prior_hyper_some ted4_prior_slice ted4_prior_load ted4_gauss_find ted4_select_strict_dense
+RESOURCES_COUNTED = XXH3_64bits inflate ted4_prior_hyper_hidden ted4_prior_hyper_some \
+        ted4_prior_slice ted4_prior_load ted4_gauss_find ted4_select_strict_dense
 $B/tests/test_resources: $B/tests/test_resources.o $(ENC_LIB)
 	$(CC) -fopenmp $(LDFLAGS) $(RESOURCES_COUNTED:%=-Wl,--wrap=%) $^ -o $@ -lcmocka $(LIBS)

@@ -465,8 +465,9 @@ static double tint_left(ted4_colour *colour, double *there)
     return left;
 }
 
-/* One training's loss and maps move with its seed and the rounding of a machine: of 24 seeds one leaves 0.57 of the tints, the others
- * 0.11 to 0.27. Three together leave 0.14 to 0.29, with 0.56 to 0.81 of the loss without maps. */
+/* One training's loss and maps move with its seed and the rounding of a machine: of 24 seeds one
+ * leaves 0.57 of the tints, the others 0.11 to 0.27. Three together leave 0.14 to 0.29, with 0.56
+ * to 0.81 of the loss without maps. */
 static void test_finds_tints(void **state)
 {
     double without = 0, with = 0, left = 0, tints = 0;

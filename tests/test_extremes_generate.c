@@ -89,7 +89,8 @@ static void reference(int lane, const double *channel, const double *base, doubl
     ref_generate(&scene.query, channel, base, position, out);
 }
 
-/* Members of slot 0 against double arithmetic. A sum of terms of that size may be small, and has the rounding of its terms. */
+/* Members of slot 0 against double arithmetic. A sum of terms of that size may be small, and has
+ * the rounding of its terms. */
 static void check_sums(double terms)
 {
     for (int i = 0; i < CASE_NET; i++)
@@ -102,8 +103,9 @@ static void check_sums(double terms)
         for (int k = 0; k < CASE_OFFSETS; k++)
             for (int c = 0; c < REF_OUT; c++) {
                 const double got = (double)member[c][k * TED4_LANES + lane];
+                const double off = fabs(got - want[k][c]), size = 1 + fabs(want[k][c]);
 
-                if (!(fabs(got - want[k][c]) <= TOLERANCE * (1 + fabs(want[k][c])) + 2 * FLT_EPSILON * terms))
+                if (!(off <= TOLERANCE * size + 2 * FLT_EPSILON * terms))
                     fail_msg("lane %d offset %d member %d: %g, not %g", lane, k, c, got, want[k][c]);
             }
     }

@@ -119,8 +119,9 @@ static void selected_by_name(void **state)
     use_kernels("v1");
     assert_ptr_equal(ted4_select_int_dense(), &ted4_int_dense_plain);
     use_kernels("v3");
-    assert_ptr_equal(ted4_select_int_dense(), ted4_level_of_machine() >= TED4_LEVEL_V3 ? &ted4_int_dense_avx2
-                                                                                      : &ted4_int_dense_plain);
+    assert_ptr_equal(ted4_select_int_dense(),
+                     ted4_level_of_machine() >= TED4_LEVEL_V3 ? &ted4_int_dense_avx2
+                                                              : &ted4_int_dense_plain);
 #endif
     use_kernels(NULL);
 }
@@ -140,7 +141,8 @@ int main(void)
         { "avx2", variant, NULL, NULL, of(&ted4_int_dense_avx2, machine >= TED4_LEVEL_V3) },
         { "avx512", variant, NULL, NULL, of(&ted4_int_dense_avx512, machine >= TED4_LEVEL_V4) },
         { "vnni", variant, NULL, NULL,
-          of(&ted4_int_dense_vnni, machine >= TED4_LEVEL_V4 && __builtin_cpu_supports("avx512vnni")) },
+          of(&ted4_int_dense_vnni,
+             machine >= TED4_LEVEL_V4 && __builtin_cpu_supports("avx512vnni")) },
 #elif defined(__AARCH64EL__)
         { "neon", variant, NULL, NULL, of(&ted4_int_dense_neon, machine >= TED4_LEVEL_BASE) },
 #endif

@@ -100,7 +100,8 @@ typedef struct {
 } variant;
 
 #if defined(__x86_64__)
-static variant avx2 = { TED4_LEVEL_V3, ted4_strict_dense_avx2 }, avx512 = { TED4_LEVEL_V4, ted4_strict_dense_avx512 };
+static variant avx2 = { TED4_LEVEL_V3, ted4_strict_dense_avx2 };
+static variant avx512 = { TED4_LEVEL_V4, ted4_strict_dense_avx512 };
 #elif defined(__AARCH64EL__)
 static variant neon = { TED4_LEVEL_BASE, ted4_strict_dense_neon };
 #endif
@@ -146,8 +147,8 @@ static void environment_chooses(void **state)
     use_kernels("v1");
     assert_true(ted4_select_strict_dense() == NULL);
     use_kernels("v3");
-    assert_true(ted4_select_strict_dense() == (ted4_level_of_machine() >= TED4_LEVEL_V3 ? ted4_strict_dense_avx2
-                                                                                       : NULL));
+    assert_true(ted4_select_strict_dense() ==
+                (ted4_level_of_machine() >= TED4_LEVEL_V3 ? ted4_strict_dense_avx2 : NULL));
 #endif
     use_kernels(NULL);
     if (ted4_level_wanted() >= TED4_LEVEL_V3)
@@ -158,7 +159,8 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
 #if defined(__x86_64__)
-        { "avx2_is_plain", variant_is_plain, NULL, NULL, &avx2 }, { "avx512_is_plain", variant_is_plain, NULL, NULL, &avx512 },
+        { "avx2_is_plain", variant_is_plain, NULL, NULL, &avx2 },
+        { "avx512_is_plain", variant_is_plain, NULL, NULL, &avx512 },
 #elif defined(__AARCH64EL__)
         { "neon_is_plain", variant_is_plain, NULL, NULL, &neon },
 #else

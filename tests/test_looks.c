@@ -45,7 +45,8 @@ static void forget(looks *l)
     free(l->rgb);
 }
 
-/* Every opacity is near a half: where it is 0 or 1, as training may have made most, all directions are alike. */
+/* Every opacity is near a half: where it is 0 or 1, as training may have made most, all directions
+ * are alike. */
 static void soften_opacity(ted4_trainer *t)
 {
     const ted4_net_shape *s = &t->layout.shape.netr[TED4_NET_OPACITY];
@@ -78,7 +79,8 @@ static double sum_of(const looks *l)
     return sum;
 }
 
-/* Looks from all directions, of which the first is the one that shows least: one look would not do. */
+/* Looks from all directions, of which the first is the one that shows least: one look would not
+ * do. */
 static void look_from_all(ted4_trainer *t, looks one[DIRECTIONS])
 {
     uint32_t *const item = t->order.item;

@@ -78,8 +78,8 @@ static void test_log(void **state)
     assert_true(s.step == STEPS && s.cpu > 0);
 }
 
-/* A checkpoint of the end of stage 1 in out/c, and the log of the same run to its end: the clocks of two runs do not go on from
- * each other, if one of them had to wait for the machine. */
+/* A checkpoint of the end of stage 1 in out/c, and the log of the same run to its end: the clocks
+ * of two runs do not go on from each other, if one of them had to wait for the machine. */
 static void make_checkpoint_and_log(char log[MOST_LOG])
 {
     run_calmly("--stage1 out/s --log out/l");

@@ -100,7 +100,8 @@ static void depth(void **state)
         use_kernels(plain ? "plain" : NULL);
         deepest = 0;
         assert_true(each_vector("", measure) > FEW_VECTORS);
-        print_message("%s kernels: %zu bytes of stack (%s)\n", plain ? "plain" : "the level's", deepest, where);
+        print_message("%s kernels: %zu bytes of stack (%s)\n", plain ? "plain" : "the level's",
+                      deepest, where);
         assert_true(deepest <= PROMISED);
     }
     use_kernels(NULL);

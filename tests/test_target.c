@@ -67,7 +67,8 @@ static int same(const char *a, const char *b)
     return system(command) == 0;
 }
 
-/* How many trials the last search has told of; one that has come near enough ends before it has had them all. */
+/* How many trials the last search has told of; one that has come near enough ends before it has had
+ * them all. */
 static int trials(void)
 {
     enum { MOST = 8 };      /* of target.c */
@@ -85,7 +86,8 @@ static int trials(void)
     return n < MOST ? n : 0;
 }
 
-/* A size between those of two lambdas far apart, from either side: near to it, or as near as all trials came. */
+/* A size between those of two lambdas far apart, from either side: near to it, or as near as all
+ * trials came. */
 static void test_met(void **state)
 {
     static const char *const lambdas[] = { "1e-5", "1" };
@@ -105,8 +107,11 @@ static void test_met(void **state)
                  lambdas[i], target);
         if (encode(arguments) != 0)
             fail_msg("%ld bytes were not met", target);
-        if (size_of("target.ted4") > target || size_of("target.ted4") < target * (trials() > 0 ? 98 : 85) / 100)
-            fail_msg("%ld bytes asked for, %ld made", target, size_of("target.ted4"));
+
+        const long made = size_of("target.ted4"), least = target * (trials() > 0 ? 98 : 85) / 100;
+
+        if (made > target || made < least)
+            fail_msg("%ld bytes asked for, %ld made", target, made);
     }
 }
 

@@ -132,7 +132,8 @@ static void test_stage1(void **state)
         { "volume_weight=0", "volume_weight=100", "lr_heads=0", log_size, 0.05 },
         { "tv_weight=0", "tv_weight=100", NONE, roughness, 0.05 },
         { "temporal_weight=0", "temporal_weight=1", NONE, wish_to_move, 0.5 },
-        { "ssim=0", "ssim=1", "stage1=800", unlike, 0.05 },     /* 0.25 and more over seeds; nothing is sure after 150 steps */
+        /* 0.25 and more over seeds; nothing is sure after 150 steps. */
+        { "ssim=0", "ssim=1", "stage1=800", unlike, 0.05 },
     };
 
     (void)state;

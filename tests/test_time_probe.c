@@ -83,7 +83,8 @@ static void test_parts(void **state)
         ball_set(&o, without[i]);
         ball_begin(&t, &o, &d, NULL);
         ball_train(&t, BEGIN + BRANCH + 1);
-        if (!(t.probe_loss[0] > 0 && t.probe_loss[0] < 0.99 * t.probe_loss[1]))     /* the rule; a fifth is usual */
+        /* The rule; a fifth is usual. */
+        if (!(t.probe_loss[0] > 0 && t.probe_loss[0] < 0.99 * t.probe_loss[1]))
             fail_msg("%s: %g with time, %g without", without[i], t.probe_loss[0], t.probe_loss[1]);
         assert_int_equal(t.layout.head.motion, i == 0 ? TED4_MOTION_BANK : TED4_MOTION_NONE);
         assert_int_equal(t.layout.head.activation, i);
@@ -93,8 +94,9 @@ static void test_parts(void **state)
     tiny_free(&folder);
 }
 
-/* What moves may not learn, so that neither branch can be much better than the other. Learning from a still scene, the branch
- * with time may be lucky: one seed in eight has a loss that is 2 % lower with it. */
+/* What moves may not learn, so that neither branch can be much better than the other. Learning from
+ * a still scene, the branch with time may be lucky: one seed in eight has a loss that is 2 % lower
+ * with it. */
 static void test_still(void **state)
 {
     tiny_folder        folder;

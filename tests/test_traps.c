@@ -88,7 +88,8 @@ static void test_spans(void **state)
     (void)state;
     ball_begin(&t, &o, &balls, NULL);
     ball_train(&t, 40);
-    ball_set_biases(&t, TED4_NET_OPACITY, t.layout.head.n_offsets, 10.0f);      /* none is hidden at any time */
+    /* None is hidden at any time. */
+    ball_set_biases(&t, TED4_NET_OPACITY, t.layout.head.n_offsets, 10.0f);
     assert_int_equal(ted4_activation_begin(&t), 0);
     for (int end = 0; end < 2; end++) {
         opacity_gradients(&t, end ? FRAMES - 1 : 0);
@@ -144,7 +145,8 @@ static void test_saddle(void **state)
 
 /* ---- 5: symbols beyond 16 bits ---- */
 
-/* Opacity does not read the first feature: what it made of a runaway one would hide all anchors of one sign, or of both. */
+/* Opacity does not read the first feature: what it made of a runaway one would hide all anchors of
+ * one sign, or of both. */
 static void blind_opacity(ted4_trainer *t)
 {
     const ted4_net_shape *s = &t->layout.shape.netr[TED4_NET_OPACITY];

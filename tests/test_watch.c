@@ -222,8 +222,9 @@ static int steps_until_back(ted4_trainer *t)
     return 0;
 }
 
-/* Everything is hidden by one thing: opacity of all offsets, spans that are over, extents of 2^-60. Where it is not spans, these
- * are set to all times: those that training left may hide half of what is in view, and would be named. */
+/* Everything is hidden by one thing: opacity of all offsets, spans that are over, extents of 2^-60.
+ * Where it is not spans, these are set to all times: those that training left may hide half of what
+ * is in view, and would be named. */
 static void test_collapse(void **state)
 {
     static const char *const names[] = { "opacity", "activation", "scale" };
@@ -235,10 +236,12 @@ static void test_collapse(void **state)
 
         begin_at(&t, KEPT + 35);
         for (size_t i = 0; i < t.anchors.n; i++) {
+            const int tau = t.layout.first[TED4_TAU], scaling = t.layout.first[TED4_SCALING];
+
             for (int c = 0; c < 4; c++)
-                *ted4_cell(&t.anchors, TED4_ROW_VALUE, i, t.layout.first[TED4_TAU] + c) = which == 1 ? -9.0f : always[c];
+                *ted4_cell(&t.anchors, TED4_ROW_VALUE, i, tau + c) = which == 1 ? -9.0f : always[c];
             for (int c = 0; c < 6 && which == 2; c++)
-                *ted4_cell(&t.anchors, TED4_ROW_VALUE, i, t.layout.first[TED4_SCALING] + c) = -60.0f;
+                *ted4_cell(&t.anchors, TED4_ROW_VALUE, i, scaling + c) = -60.0f;
         }
         if (which == 0)
             ball_set_biases(&t, TED4_NET_OPACITY, t.layout.head.n_offsets, -1000.0f);

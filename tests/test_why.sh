@@ -29,10 +29,16 @@ equal no_names "$(grep -acF "$out" "$out/told.ted4")" 0
 taken=$(grep -c '"event":"capacity".*"taken":true' "$out/told.jsonl")
 equal taken "$("$TED4_BUILD/ted4info" "$out/told.ted4" --why | grep -c ': taken; ')" "$taken"
 
-# Of anchors that move only where trials left motion in the model; they ask about motion first of all, if there is any.
-moves() { "$TED4_BUILD/ted4info" "$out/told.ted4" --why | grep -c "^capacity.[0-9]*=motion, 1 to 0: $1;"; }
+# Of anchors that move only where trials left motion in the model; they ask about motion first of
+# all, if there is any.
+moves() {
+    "$TED4_BUILD/ted4info" "$out/told.ted4" --why |
+        grep -c "^capacity.[0-9]*=motion, 1 to 0: $1;"
+}
 if [ "$(moves taken)" = 0 ] && [ "$(moves left)" -gt 0 ]; then moving=1; else moving=0; fi
-equal moving "$("$TED4_BUILD/ted4info" "$out/told.ted4" --why | grep -c '^capacity.moving=[0-9]* of [0-9]* anchors: ')" $moving
+told_moving=$("$TED4_BUILD/ted4info" "$out/told.ted4" --why |
+    grep -c '^capacity.moving=[0-9]* of [0-9]* anchors: ')
+equal moving "$told_moving" $moving
 
 # A run that goes on after its decisions tells them once, too.
 cp "$out/told.ted4" "$out/first.ted4"

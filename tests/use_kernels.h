@@ -1,5 +1,6 @@
-/* use_kernels.h - other kernels for a part of a test, then again those that TED4_KERNEL named, or this machine's where it
- * named none. A test that took the variable away would leave the suite at one level run at another (make test-machines).
+/* use_kernels.h - other kernels for a part of a test, then again those that TED4_KERNEL named, or
+ * this machine's where it named none. A test that took the variable away would leave the suite at
+ * one level run at another (make test-machines).
  * SPDX-License-Identifier: BSD-2-Clause */
 #ifndef TED4_USE_KERNELS_H
 #define TED4_USE_KERNELS_H

@@ -48,7 +48,8 @@ what_from() {
     strict=$(sed -n 's/^STRICT *= *//p' Makefile)
     avx512=$(sed -n 's/^.*_avx512\.o: FPFLAGS = \$(STRICT) *//p' Makefile)
     vnni=$(sed -n 's/^.*_vnni\.o: FPFLAGS = \$(STRICT) *//p' Makefile)
-    [ -n "$strict" ] && [ -n "$avx512" ] && [ -n "$vnni" ] || die "Makefile: STRICT or the flags of AVX-512 not found"
+    [ -n "$strict" ] && [ -n "$avx512" ] && [ -n "$vnni" ] ||
+        die "Makefile: STRICT or the flags of AVX-512 not found"
     decoder=$(ls ref-decoder/base/*.c ref-decoder/norm/*.c ref-decoder/read/*.c ref-decoder/recon/*.c ref-decoder/kernel/*.c)
     program="conformance/cross/cross_decoder.c conformance/tool/answer.c conformance/tool/text.c
         ref-decoder/tool/contract.c ref-decoder/tool/tier_hash.c ref-decoder/tool/sha256.c ref-decoder/tool/cli.c ref-decoder/tool/read_file.c"
@@ -244,8 +245,9 @@ result_line() {
     tell_state "$row_verdict" "stale: $row_verdict with other sources, suite, flags or compiler"
     echo "$row" | awk -F, -v name="$name" -v said="$said" '
         function start(hash) { return hash == "" ? "" : "`" substr(hash, 1, 8) "`" }
-        { print "| " name " | " $3 " | " $4 " | " ($5 == "" ? "" : $6 " of " $5) " | " \
-              ($9 == "" ? "" : $10 " of " $9) " | " start($7) " | " start($8) " | " $11 " | " said " |" }'
+        function part(n, of) { return of == "" ? "" : n " of " of }
+        { print "| " name " | " $3 " | " $4 " | " part($6, $5) " | " part($10, $9) " | " \
+              start($7) " | " start($8) " | " $11 " | " said " |" }'
 }
 
 # summary: of all rows in $own/counted
@@ -255,7 +257,8 @@ summary() {
         $8 != "" && !($8 in c) { c[$8]; n_c++; one_c = $8 }
         END { print n + 0 " builds passed, " NR - n " failed."
               print "Tier E: " (n_e == 1 ? "one hash, `" one_e "`, in every build." : n_e + 0 " different hashes.")
-              print "Class X: " (n_c == 1 ? "one hash, `" one_c "`, in all " x + 0 " passing builds that claim it." : n_c + 0 " different hashes.") }' "$own/counted"
+              print "Class X: " (n_c == 1 ? "one hash, `" one_c "`, in all " x + 0 \
+                  " passing builds that claim it." : n_c + 0 " different hashes.") }' "$own/counted"
 }
 
 # agree: after a summary: no build fails, no two disagree, and enough have passed
@@ -264,7 +267,8 @@ agree() {
     least=12 passed=$(cut -d, -f12 "$own/counted" | grep -cx passed)
     [ -z "$patterns" ] || least=1
     [ "$passed" -ge $least ] || { echo "cross.sh: $passed builds passed; at least $least have to" >&2; return 1; }
-    [ "$passed" = "$(grep -c . "$own/counted")" ] && [ "$(cut -d, -f7 "$own/counted" | sort -u | grep -c .)" = 1 ] &&
+    [ "$passed" = "$(grep -c . "$own/counted")" ] &&
+        [ "$(cut -d, -f7 "$own/counted" | sort -u | grep -c .)" = 1 ] &&
         [ "$(cut -d, -f8 "$own/counted" | grep . | sort -u | grep -c .)" -le 1 ]
 }
 

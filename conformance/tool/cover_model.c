@@ -74,8 +74,8 @@ void conf_cover_model_goals(conf_cover *c)
         conf_goal(c, "output shifts", "%d", i);
 }
 
-/* 0 .. 4: which kind of layer; from where it lies in the prior that is evaluated. What lies elsewhere is a part of the
- * hyperprior's last layer (ted4_prior_some). */
+/* 0 .. 4: which kind of layer; from where it lies in the prior that is evaluated. What lies
+ * elsewhere is a part of the hyperprior's last layer (ted4_prior_some). */
 static int kind_of(const ted4_prior *p, const ted4_int_layer *l)
 {
     const ted4_int_layer *slice = p->slice[0];

@@ -34,9 +34,9 @@ typedef struct {
 enum { TED4_ARGUMENTS_END = -1, TED4_ARGUMENTS_BAD = -2, TED4_ARGUMENTS_DONE = -3 };
 
 /* Next option of the command line: its place in the table, with *value set (NULL if it takes none);
- * TED4_ARGUMENTS_END: only operands are left,
- * from argv[optind] on; TED4_ARGUMENTS_BAD: unknown option or missing value, or kernels in the environment that this
- * machine does not have, already said on stderr; TED4_ARGUMENTS_DONE: help or version was printed. */
+ * TED4_ARGUMENTS_END: only operands are left, from argv[optind] on; TED4_ARGUMENTS_BAD: unknown
+ * option or missing value, or kernels in the environment that this machine does not have, already
+ * said on stderr; TED4_ARGUMENTS_DONE: help or version was printed. */
 int  ted4_arguments_next(const ted4_command *c, int argc, char **argv, const char **value);
 void ted4_arguments_help(const ted4_command *c, FILE *f);
 
