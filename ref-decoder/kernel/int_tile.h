@@ -1,8 +1,8 @@
 /* int_tile.h - twin of norm/int_dense.c for x86-64 machines, which multiply pairs of 16-bit numbers
  * and add the two products. Channels are taken in pairs, the two inputs of an anchor side by side,
- * so that one instruction does both products; R-NET-006 keeps every partial sum in 32 bits. The file that
- * includes it says how many anchors a vector of inputs has, GROUP, and how many output units are
- * summed at once, UNITS, and defines:
+ * so that one instruction does both products; R-NET-006 keeps every partial sum in 32 bits. The
+ * file that includes it says how many anchors a vector of inputs has, GROUP, and how many output
+ * units are summed at once, UNITS, and defines:
  *     vector                                          its type
  *     vector nothing(void), load(const int16_t *x)    zeros; GROUP inputs
  *     vector low(vector a, vector b), high(...)       inputs of two channels side by side: of some
@@ -15,6 +15,13 @@
  * SPDX-License-Identifier: BSD-2-Clause */
 #ifndef TED4_INT_TILE_H
 #define TED4_INT_TILE_H
+
+/* Sums stay in registers only where loops over units are unrolled. */
+#if defined(__clang__)
+#define TED4_UNROLL _Pragma("clang loop unroll(full)")
+#else
+#define TED4_UNROLL _Pragma("GCC unroll 8")
+#endif
 
 enum { ROW = TED4_PRIOR_BLOCK, MAX_PAIRS = TED4_MAX_WIDTH / 2 };
 
@@ -39,7 +46,7 @@ units(const ted4_int_layer *l, const pair *p, unsigned o, const int n, const int
     const int16_t *w[UNITS];
     pair           sum[UNITS];
 
-#pragma GCC unroll 8
+    TED4_UNROLL
     for (int j = 0; j < n; j++) {
         unit[j] = o + (unsigned)j < l->out ? o + (unsigned)j : l->out - 1;
         w[j] = l->w + (size_t)unit[j] * l->in_pad;
@@ -53,7 +60,8 @@ units(const ted4_int_layer *l, const pair *p, unsigned o, const int n, const int
             __builtin_prefetch(ahead + ROW, 0, 2);
             ahead += 2 * ROW;
         }
-#pragma GCC unroll 8
+
+        TED4_UNROLL
         for (int j = 0; j < n; j++) {
             const vector pair_of = both(w[j] + 2 * i);
 
@@ -64,7 +72,7 @@ units(const ted4_int_layer *l, const pair *p, unsigned o, const int n, const int
             __asm__ volatile("" : "+v"(sum[j].lo), "+v"(sum[j].hi));
         }
     }
-#pragma GCC unroll 8
+    TED4_UNROLL
     for (int j = 0; j < n; j++) {
         y[j].lo = shift(sum[j].lo, l->r[unit[j]]);
         y[j].hi = shift(sum[j].hi, l->r[unit[j]]);
