@@ -173,14 +173,24 @@ static void chain(const ted4_prior *p, const ted4_int_layer *l, unsigned n_layer
     p->dense->last(&l[n_layers - 1], x, n, out);
 }
 
-/* spec 10.1: sines and cosines of n anchors in 2^l turns, in two rows. */
+/* spec 10.1: sines and cosines of n anchors in 2^l turns, in two rows: what ted4_sine gives. All
+ * entries of the table are fetched before they are interpolated, which compilers do to several at a
+ * time then. */
 static void waves(const uint32_t *phase, unsigned l, size_t n, int16_t *x)
 {
-    for (size_t i = 0; i < n; i++) {
-        const uint32_t u = phase[i] << l;
+    int16_t sine[TED4_PRIOR_BLOCK][2], cosine[TED4_PRIOR_BLOCK][2];     /* an entry, the next */
 
-        x[i] = ted4_sine(u);
-        x[TED4_PRIOR_BLOCK + i] = ted4_sine(u + ((uint32_t)1 << 30));
+    for (size_t i = 0; i < n; i++) {
+        const uint32_t at = phase[i] << l >> 22;
+
+        memcpy(sine[i], ted4_sin + at, sizeof sine[i]);
+        memcpy(cosine[i], ted4_sin + ((at + 256) & 1023), sizeof cosine[i]);
+    }
+    for (size_t i = 0; i < n; i++) {
+        const int16_t *s = sine[i], *c = cosine[i], b = (int16_t)(phase[i] << l >> 10 & 4095);
+
+        x[i] = ted4_sine_beyond(s[0], (int16_t)(s[1] - s[0]), b);
+        x[TED4_PRIOR_BLOCK + i] = ted4_sine_beyond(c[0], (int16_t)(c[1] - c[0]), b);
     }
 }
 

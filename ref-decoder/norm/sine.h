@@ -6,13 +6,19 @@
 #include "base/fixed.h"
 #include "norm/tables.h"
 
+/* From an entry of the table towards the next one, which is so much higher; b: how far, Q12. */
+static inline int16_t ted4_sine_beyond(int16_t entry, int16_t rise, int16_t b)
+{
+    return (int16_t)(entry + ted4_round_shift(rise * b, 12));
+}
+
 /* Q12; u in turns of 2^32. The cosine is the sine of u + 2^30. */
 static inline int16_t ted4_sine(uint32_t u)
 {
     const uint32_t i = u >> 22;
-    const int32_t  b = (int32_t)(u >> 10 & 4095);
+    const int16_t  b = (int16_t)(u >> 10 & 4095);
 
-    return (int16_t)(ted4_sin[i] + ted4_round_shift((ted4_sin[i + 1] - ted4_sin[i]) * b, 12));
+    return ted4_sine_beyond(ted4_sin[i], (int16_t)(ted4_sin[i + 1] - ted4_sin[i]), b);
 }
 
 #endif

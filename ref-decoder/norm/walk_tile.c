@@ -342,20 +342,26 @@ static void choose_all(tile *t)
 
 static void choose_dynamic(tile *t)
 {
-    t->n_index = 0;
+    const uint8_t *dynamic = t->s->dynamic + t->first;
+    size_t         n = 0;
+
     for (size_t i = 0; i < t->n; i++) {
-        t->index[t->n_index] = (uint32_t)i;
-        t->n_index += t->s->dynamic[t->first + i];
+        t->index[n] = (uint32_t)i;
+        n += dynamic[i];
     }
+    t->n_index = n;
 }
 
 static void choose_offset(tile *t, unsigned k)
 {
-    t->n_index = 0;
+    const uint16_t *bits = t->s->offset_bits + t->first;
+    size_t          n = 0;
+
     for (size_t i = 0; i < t->n; i++) {
-        t->index[t->n_index] = (uint32_t)i;
-        t->n_index += t->s->offset_bits[t->first + i] >> k & 1;
+        t->index[n] = (uint32_t)i;
+        n += bits[i] >> k & 1;
     }
+    t->n_index = n;
 }
 
 /* Models of the chosen anchors. */
