@@ -150,7 +150,7 @@ static void keep(ted4_name_list *l, size_t most)
 }
 
 int ted4_clip_pictures(ted4_name_list *pictures, const char *folder, const char *name, const char *video,
-                       size_t most, ted4_message *m)
+                       size_t most, const ted4_dataset_options *o, ted4_message *m)
 {
     memset(pictures, 0, sizeof *pictures);
     char *place = inner_folder(folder, "images", name);
@@ -159,7 +159,7 @@ int ted4_clip_pictures(ted4_name_list *pictures, const char *folder, const char 
     if (place == NULL && !ted4_is_file(video))
         return ted4_say(m, "%s: no such video, nor a folder images/%s or %s/images of its pictures", video, name, name);
     if (place == NULL)
-        place = ted4_video_unpack(video, most, m);
+        place = ted4_video_unpack(video, most, o, m);
     if (place == NULL)
         return -1;
     int result = list_pictures(pictures, place) != 0 ? ted4_say_no_memory(m) : 0;

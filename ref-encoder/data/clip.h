@@ -23,7 +23,7 @@ int ted4_clip_names(ted4_name_list *l, const char *folder);
  * images/NAME/ or NAME/images/, else of the video, unpacked (see video.h). At most most of them,
  * 0: all. 0, or -1 with *m filled and *pictures empty. */
 int ted4_clip_pictures(ted4_name_list *pictures, const char *folder, const char *name, const char *video,
-                       size_t most, ted4_message *m);
+                       size_t most, const ted4_dataset_options *o, ted4_message *m);
 
 /* Appends a shot for every picture: lens, pose and is_test of *model, time = index, label = name. */
 int ted4_clip_add(ted4_raw_scene *s, const ted4_name_list *pictures, const char *name, const ted4_shot *model,

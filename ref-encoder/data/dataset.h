@@ -48,6 +48,9 @@ typedef struct {
     uint32_t    seed;           /* for random points */
     size_t      cache_bytes;    /* bound of decoded pixels kept in memory */
     uint32_t    max_frames;     /* only so many times, the first ones; 0: 300 of Neu3D, else all */
+    /* Told about once a second while a video is unpacked: its file, and how many frames there are by then. NULL: nobody listens. */
+    void      (*unpacking)(void *user, const char *video, size_t frames);
+    void       *user;
 } ted4_dataset_options;
 
 /* One clear message, "file:line-or-field: what was found, what was expected". */

@@ -98,7 +98,7 @@ static int add_clip(calibration *c, const char *where, const char *name, const c
     if (video == NULL)
         return ted4_say_no_memory(c->m);
     int result = ted4_clip_pictures(&pictures, c->folder, name, video,
-                                    c->stated > 0 ? c->stated : c->scene->wanted->max_frames, c->m);
+                                    c->stated > 0 ? c->stated : c->scene->wanted->max_frames, c->scene->wanted, c->m);
     free(video);
     if (result != 0)
         return -1;

@@ -83,7 +83,8 @@ static int add_clip(neu3d *n, size_t i)
         return ted4_say_no_memory(n->m);
     int result = read_camera(n, i, &model);
     if (result == 0)
-        result = ted4_clip_pictures(&pictures, n->folder, name, video, wanted > 0 ? wanted : MOST_FRAMES, n->m);
+        result = ted4_clip_pictures(&pictures, n->folder, name, video, wanted > 0 ? wanted : MOST_FRAMES,
+                                    n->scene->wanted, n->m);
     free(video);
     if (result != 0)
         return -1;
