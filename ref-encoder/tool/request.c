@@ -8,6 +8,7 @@
 
 #include "ted4.h"
 #include "tool/arguments.h"
+#include "tool/similar.h"
 #include "tool/threads.h"
 
 enum {
@@ -139,12 +140,27 @@ static int take(ted4_request *r, pending *p, int option, const char *value)
     return TED4_REQUEST_GO;
 }
 
+/* The option or preset most like a word that is none; "": none is like it. */
+static const char *suggestion(const char *word, const char *(*name)(int i), char *text, size_t size)
+{
+    ted4_similar s = ted4_similar_to(word, strcspn(word, "="));
+
+    for (int i = 0; name(i) != NULL; i++)
+        ted4_similar_try(&s, name(i));
+    if (s.best == NULL || s.distance == 0)
+        return "";
+    snprintf(text, size, "; did you mean %s?", s.best);
+    return text;
+}
+
 static int set(ted4_request *r, const char *text)
 {
-    char why[256];
+    char why[256], hint[80], all[400];
 
-    return ted4_options_set(&r->options, text, why, sizeof why) != 0 ? complain(why)
-                                                                     : TED4_REQUEST_GO;
+    if (ted4_options_set(&r->options, text, why, sizeof why) == 0)
+        return TED4_REQUEST_GO;
+    snprintf(all, sizeof all, "%s%s", why, suggestion(text, ted4_options_name, hint, sizeof hint));
+    return complain(all);
 }
 
 /* "A,B" */
@@ -167,12 +183,12 @@ static int set_iterations(ted4_request *r, const char *text)
 static int apply(ted4_request *r, const pending *p)
 {
     const uint32_t seed = r->options.seed;
-    char           text[256];
+    char           text[256], hint[80];
     int            status = TED4_REQUEST_GO;
 
     if (ted4_options_preset(&r->options, p->preset) != 0) {
-        snprintf(text, sizeof text, "--preset %s: expected draft, fast, medium, slow or paper",
-                 p->preset);
+        snprintf(text, sizeof text, "--preset %.100s: expected draft, fast, medium, slow or paper%s", p->preset,
+                 suggestion(p->preset, ted4_options_preset_name, hint, sizeof hint));
         return complain(text);
     }
     r->options.seed = seed;
