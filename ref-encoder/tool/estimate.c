@@ -17,6 +17,8 @@
 #define STILL_GROWS 1.1
 /* Units that the latest speed is averaged over; steps after which the first estimate is said, and of which the first few do not count. */
 #define MEMORY      300.0
+/* A step that takes so many times its share was something else, too: the search for sprouts, say, which does not come again. */
+#define UNUSUAL     30.0
 enum { READY = 100, WARMING = 5 };
 
 void ted4_estimate_begin(ted4_estimate *e)
@@ -79,12 +81,12 @@ static int in_trials(const ted4_work *w)
     return w->budget > 0 && !w->probing;
 }
 
-static void forget(double *clock, double *units, double more, double seconds, double memory)
+static void learn(ted4_estimate *e, double units, double seconds)
 {
-    const double left = exp(-more / memory);
+    const double left = exp(-units / MEMORY), most = e->units > 0 ? UNUSUAL * units * e->clock / e->units : seconds;
 
-    *clock = left * *clock + seconds;
-    *units = left * *units + more;
+    e->clock = left * e->clock + fmin(seconds, most);
+    e->units = left * e->units + units;
 }
 
 void ted4_estimate_see(ted4_estimate *e, const ted4_work *w, double clock)
@@ -97,7 +99,7 @@ void ted4_estimate_see(ted4_estimate *e, const ted4_work *w, double clock)
         e->trial_clock += seconds;
         e->trial_units += w->spent - e->last.spent;
     } else if (in_trials(w) == in_trials(&e->last) && units_between(&e->last, w) > 0 && ++e->seen > WARMING) {
-        forget(&e->clock, &e->units, units_between(&e->last, w), seconds, MEMORY);
+        learn(e, units_between(&e->last, w), seconds);
     }
     e->when = clock;
     e->last = *w;

@@ -143,6 +143,14 @@ static void close_line(ted4_teller *t)
     t->open = 0;
 }
 
+void ted4_teller_clear(ted4_teller *t)
+{
+    pthread_mutex_lock(&t->lock);
+    close_line(t);
+    fflush(stderr);
+    pthread_mutex_unlock(&t->lock);
+}
+
 void ted4_teller_end(ted4_teller *t)
 {
     pthread_mutex_lock(&t->lock);

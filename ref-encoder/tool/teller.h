@@ -47,6 +47,8 @@ void ted4_teller_end(ted4_teller *t);
 void ted4_teller_say(ted4_teller *t, const char *format, ...) __attribute__((format(printf, 2, 3)));
 /* The same, also where quiet: errors. */
 void ted4_teller_error(ted4_teller *t, const char *format, ...) __attribute__((format(printf, 2, 3)));
+/* What somebody else says next on standard error begins on a line of its own. Fine before ted4_teller_begin, too. */
+void ted4_teller_clear(ted4_teller *t);
 /* What goes on from here on. */
 void ted4_teller_now(ted4_teller *t, const ted4_facts *f);
 /* The line about it, at once, as a whole one where the terminal keeps none. */
