@@ -1,5 +1,5 @@
 /* estimate.c - see estimate.h. Measured on the project's scenes with draft and fast, one thread and two: a step takes as long as its anchors are many, and a quarter
- * of the most that there may be on top; a step of stage 2 takes a little longer. Trials count their budget in steps, more than they take.
+ * of the most that there may be on top; a step of stage 2 takes a little longer. Trials count in steps, and take about what they say.
  * SPDX-License-Identifier: BSD-2-Clause */
 #include "estimate.h"
 
@@ -8,9 +8,10 @@
 
 #define FIXED       0.25        /* of the most anchors: what a step takes without any */
 #define STAGE2      1.06
-#define TRIALS      0.22        /* of a step of stage 2, a step of their budget: cheaper ones, and the search may end early */
+#define TRIALS      0.9         /* of a step of stage 2, what trials count as one */
+#define LONGER      0.05        /* of what trials were believed to take, once they have taken it */
 #define CODING      8.0         /* steps */
-/* What is learnt of trials counts against this share of their budget, as first believed. */
+/* What is learnt of trials counts against this share of all of them, as first believed. */
 #define BELIEF      0.1
 /* Growth has filled what it may soon after it began; before, it is believed to fill it, and then what there is tells. */
 #define GROWN       0.04
@@ -37,7 +38,7 @@ static double grown(const ted4_work *w)
 {
     const double cap = (1.0 - w->sprouts) * w->most_anchors;
 
-    if (w->step >= w->sprout_at * w->stage1)
+    if (w->step > w->sprout_at * w->stage1)
         return w->anchors;
     if (w->step < (w->first_growth + GROWN) * w->stage1)
         return fmax(w->anchors, cap);
@@ -47,7 +48,7 @@ static double grown(const ted4_work *w)
 /* Anchors from sprouting on. */
 static double sprouted(const ted4_work *w)
 {
-    return w->step >= w->sprout_at * w->stage1 ? w->anchors : fmin(w->most_anchors, grown(w) / (1.0 - w->sprouts));
+    return w->step > w->sprout_at * w->stage1 ? w->anchors : fmin(w->most_anchors, grown(w) / (1.0 - w->sprouts));
 }
 
 /* Steps from one to another, from where training stands on. */
@@ -111,7 +112,7 @@ void ted4_estimate_move(ted4_estimate *e, double clock)
         e->when = clock;
 }
 
-/* Seconds of a step of trials' budget. */
+/* Seconds of what trials count as a step. */
 static double trial_pace(const ted4_estimate *e, double pace)
 {
     const double believed = BELIEF * (e->last.trials + e->last.budget) + 1.0;
@@ -128,7 +129,7 @@ double ted4_estimate_left(const ted4_estimate *e)
         return -1;
 
     const double pace = e->clock / e->units;
-    const double trials = w->trials + (in_trials(w) ? fmax(w->budget - w->spent, 0.0) : 0.0);
+    const double trials = w->trials + (in_trials(w) ? fmax(w->budget - w->spent, LONGER * w->budget) : 0.0);
 
     return pace * units_left(w) + trial_pace(e, pace) * trials;
 }

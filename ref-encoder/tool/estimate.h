@@ -13,9 +13,9 @@ typedef struct {
     double sprouts;                 /* share of anchors that is kept for them; 0: none will come */
     double most_anchors;
     double probe;                   /* steps of each of the two branches of the time probe; 0: there is none any more */
-    double trials;                  /* training steps that trials which are still to come may take */
+    double trials;                  /* training steps that trials which are still to come are believed to take */
     double step, anchors;           /* done; there are */
-    double spent, budget;           /* of the probe or the trials at hand; budget 0: plain training */
+    double spent, budget;           /* of the probe or the trials at hand, so far and in the end, as believed; budget 0: plain training */
     int    probing;                 /* of the probe, not of trials */
 } ted4_work;
 

@@ -1,21 +1,38 @@
 /* look.c - what a training tells while it runs: see training.h, ted4_training_look. Nothing here reaches the trainer.
  * SPDX-License-Identifier: BSD-2-Clause */
-#include <string.h>
+#include <math.h>
 
 #include "stop.h"
 #include "train/capacity.h"
 #include "training.h"
 
-/* Training steps that trials which are still to come may take. */
+/* The search for smaller models looks at so many as a rule, and trains this share of its budget: it seldom uses all of that. */
+#define LOOKS   40.0
+#define TRAINED 0.08
+
+static double search_steps(const ted4_trainer *t)
+{
+    const double budget = ted4_capacity_budget(t) - ted4_capacity_refine_steps(t) - ted4_capacity_prune_steps(t);
+
+    return fmax(fmin(LOOKS * ted4_capacity_cost_steps(t) + TRAINED * budget, budget), 0.0);
+}
+
+/* Training steps of the trials that are still to come. */
 static double trials_left(const ted4_trainer *t)
 {
-    const double end = ted4_capacity_refine_steps(t) + ted4_capacity_prune_steps(t);
+    const double refine = ted4_capacity_refine_steps(t), prune = ted4_capacity_prune_steps(t);
 
     if (!t->opt.capacity || t->opt.stage2 == 0 || t->decided == TED4_DECIDED_ALL)
         return 0;
-    if (t->decided == TED4_DECIDED_NOTHING && t->onlooker.busy != TED4_BUSY_TRIALS)
-        return ted4_capacity_budget(t);
-    return t->decided == TED4_DECIDED_MODEL ? end : ted4_capacity_prune_steps(t);
+    if (t->decided == TED4_DECIDED_NOTHING)
+        return search_steps(t) + refine + prune;
+    return t->decided == TED4_DECIDED_MODEL ? refine + prune : prune;
+}
+
+/* Of the trials at hand, in the end. */
+static double trials_now(const ted4_trainer *t)
+{
+    return t->decided == TED4_DECIDED_MODEL ? search_steps(t) : t->onlooker.budget;
 }
 
 /* Steps between two looks at whether sprouts will come, which takes a look at all pictures. */
@@ -35,7 +52,7 @@ static ted4_work work_of(ted4_training *t)
     w.sprouts = t->sprouts;
     w.probe = w.probing ? 0.5 * o->budget : ted4_probe_steps(tr);
     w.spent = o->busy != TED4_BUSY_TRAINING ? o->spent : 0;
-    w.budget = o->busy != TED4_BUSY_TRAINING ? o->budget : 0;
+    w.budget = o->busy == TED4_BUSY_PROBE ? o->budget : o->busy == TED4_BUSY_TRIALS ? trials_now(tr) : 0;
     return w;
 }
 
@@ -69,7 +86,7 @@ int ted4_training_look(void *training)
     f->step = tr->iteration;
     f->total = ted4_trainer_total(tr);
     f->stage = o->busy == TED4_BUSY_PROBE ? "does the scene need time?" : o->busy == TED4_BUSY_TRIALS ? "trials of smaller models" : ted4_run_log_stage(tr);
-    f->share = o->busy == TED4_BUSY_TRAINING || !(o->budget > 0) ? -1 : o->spent / o->budget;
+    f->share = w.budget > 0 ? w.spent / w.budget : -1;
     f->loss = tr->progress.loss;
     f->anchors = tr->anchors.n;
     f->ms = t->log.ms;
