@@ -61,6 +61,13 @@ check no_checkpoint "$out/err" "ted4enc: $out/d: not there yet; beginning at ste
 "$enc" "$out/scene" -o "$out/x.ted4" -f $small -q 2>"$out/err"
 equal quiet "$(wc -c <"$out/err" | tr -d ' ')" 0
 
+# ted4eval says what it does, and refuses what does not belong together.
+expect eval 0 "ted4eval: comparing $out/x.ted4 with $out/scene" "$TED4_BUILD/ted4eval" "$out/x.ted4" "$out/scene"
+"$TED4_BUILD/ted4scene" pop -o "$out/longer" --size 32x24 --frames 5 --cameras 5 --test-cameras 1 -j 1 2>/dev/null
+expect eval_other 3 "x.ted4: cannot be of $out/longer: 4 times in the file, 5 in the scene" "$TED4_BUILD/ted4eval" "$out/x.ted4" "$out/longer" -q
+expect eval_anyway 0 'psnr ' "$TED4_BUILD/ted4eval" "$out/x.ted4" "$out/longer" --anyway
+expect eval_first_times 0 'psnr ' "$TED4_BUILD/ted4eval" "$out/x.ted4" "$out/longer" --max-frames 4
+
 # Nothing held out: the line says that its pictures were trained on.
 "$TED4_BUILD/ted4scene" pop -o "$out/all" --layout calibration --size 32x24 --frames 4 --cameras 5 --test-cameras 0 -j 1 2>/dev/null
 "$enc" "$out/all" -o "$out/x.ted4" -f $small -v 2>"$out/err"

@@ -35,7 +35,7 @@ static const ted4_argument OPTIONS[N_OPTIONS] = {
     [OPT_SEED]       = { 0, "seed", "S", "same scene, options and seed: same bytes" },
     [OPT_THREADS]    = { 'j', "threads", "N", "threads; 0: all cores. Default 0" },
     [OPT_CACHE]      = { 0, "cache", "MIB", "memory for decoded pictures; more of them are read again. Default 2048" },
-    [OPT_CHECKPOINT] = { 0, "checkpoint", "FILE", "saved now and then and at the end" },
+    [OPT_CHECKPOINT] = { 0, "checkpoint", "FILE", "saved now and then, when stopped, and at the end" },
     [OPT_EVERY]      = { 0, "checkpoint-every", "S", "seconds between checkpoints; 0: every step. Default 60" },
     [OPT_RESUME]     = { 0, "resume", NULL, "go on from the checkpoint if it is there" },
     [OPT_STAGE1]     = { 0, "stage1", "FILE", "begin with this end of stage 1, or make the file" },
@@ -44,8 +44,8 @@ static const ted4_argument OPTIONS[N_OPTIONS] = {
     [OPT_JSON]       = { 0, "json", NULL, "result as one JSON object" },
     [OPT_CONTRACT]   = { 0, "ted4-encode", NULL, "the contract of conformance/README.md: --json --quiet" },
     [OPT_FORCE]      = { 'f', "force", NULL, "overwrite" },
-    [OPT_QUIET]      = { 'q', "quiet", NULL, "errors only" },
-    [OPT_VERBOSE]    = { 'v', "verbose", NULL, "progress lines, terminal or not" },
+    [OPT_QUIET]      = { 'q', "quiet", NULL, "errors only: nothing of how far it is" },
+    [OPT_VERBOSE]    = { 'v', "verbose", NULL, "a line of progress every 250 steps" },
     [OPT_HELP]       = TED4_ARGUMENT_HELP,
     [OPT_VERSION]    = TED4_ARGUMENT_VERSION,
 };
@@ -58,7 +58,8 @@ static const ted4_command COMMAND = {
     "Videos need the program ffmpeg; their frames are kept in $XDG_CACHE_HOME/ted4, or in\n"
     "ted4-UID in $TMPDIR or /tmp.",
     OPTIONS, N_OPTIONS,
-    "Exit codes: 0 fine, 2 fine but larger than --target-size, 3 usage, input, output or resources.\n\n"
+    "Exit codes: 0 fine, 2 fine but larger than --target-size, 3 usage, input, output or resources,\n"
+    "130 stopped by Ctrl-C, 143 by a request to end: after the step, with a last checkpoint.\n\n"
     "Training options (--set) and their values in each preset:\n",
     ted4_options_help,
 };
