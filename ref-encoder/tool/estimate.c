@@ -19,7 +19,7 @@
 /* Units that the latest speed is averaged over; steps after which the first estimate is said, and of which the first few do not count. */
 #define MEMORY      300.0
 /* A step that takes so many times its share was something else, too: the search for sprouts, say, which does not come again. */
-#define UNUSUAL     30.0
+#define UNUSUAL     15.0
 enum { READY = 100, WARMING = 5 };
 
 void ted4_estimate_begin(ted4_estimate *e)
