@@ -82,10 +82,11 @@ static void unload(ted4_dataset *d, tiny_folder *f)
 
 static ted4_scattered scatter(ted4_dataset *d, const ted4_parallel *p)
 {
+    const ted4_scatter_options o = { .seed = 1 };
     ted4_scattered what;
     ted4_message   m;
 
-    if (ted4_dataset_scatter(d, 1, p, &what, &m) != 0)
+    if (ted4_dataset_scatter(d, &o, p, &what, &m) != 0)
         fail_msg("%s", m.text);
     return what;
 }
@@ -206,11 +207,42 @@ static void test_held_out(void **state)
     unload(&same, &g);
 }
 
+/* All points lie inside the bounds, those that came with the scene and those in their place; where there can be none, that is said. */
+static void test_bounds(void **state)
+{
+    const ball           b = ball_at(0, 0);
+    ted4_scatter_options o = { .seed = 1, .bounded = 1 };
+
+    (void)state;
+    for (int k = 0; k < 3; k++) {
+        o.low[k] = (float)(b.centre[k] - 1.1 * b.radius);
+        o.high[k] = (float)(b.centre[k] + 1.1 * b.radius);
+    }
+    for (int useful = 0; useful < 3; useful++) {
+        ted4_dataset   d;
+        tiny_folder    f;
+        ted4_scattered what;
+        ted4_message   m;
+
+        load(&d, &f, useful == 1 ? 0 : 10);
+        if (useful == 2)
+            o.low[0] = o.high[0] = 1e5f;
+        assert_int_equal(ted4_dataset_scatter(&d, &o, NULL, &what, &m), useful == 2 ? -1 : 0);
+        assert_true(useful == 1 ? d.n_points == BALL_POINTS && what.outside == (BALLS - 1) * BALL_POINTS
+                                : (what.scattered > 0) == (useful == 0));
+        for (size_t i = 0; useful < 2 && i < 3 * d.n_points; i++)
+            assert_true(d.points[i] >= o.low[i % 3] && d.points[i] <= o.high[i % 3]);
+        if (useful == 2)
+            assert_non_null(strstr(m.text, "no initial point lies inside the bounds"));
+        unload(&d, &f);
+    }
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_shown),   cmocka_unit_test(test_sweep),    cmocka_unit_test(test_useless),
-        cmocka_unit_test(test_useful),  cmocka_unit_test(test_held_out),
+        cmocka_unit_test(test_useful),  cmocka_unit_test(test_held_out), cmocka_unit_test(test_bounds),
     };
 
     return cmocka_run_group_tests_name("scatter", tests, set_up, tear_down);

@@ -27,12 +27,13 @@
 enum { RUN = 1024, PIXELS = 32, TRIES = 64 };
 
 typedef struct {
-    const ted4_shown *shown;
-    ted4_sweep        sweep;
-    uint64_t          seed, first;      /* number of the first candidate of this round */
-    int               by_colour;        /* at the depth at which pictures agree about the colour; else at any */
-    float            *point;            /* [RUNS * RUN][3] */
-    uint8_t          *rgb, *taken;      /* [RUNS * RUN][3], [RUNS * RUN] */
+    const ted4_shown           *shown;
+    const ted4_scatter_options *options;
+    ted4_sweep                  sweep;
+    uint64_t                    first;  /* number of the first candidate of this round */
+    int      by_colour;                 /* at the depth at which pictures agree; else at any */
+    float   *point;                     /* [RUNS * RUN][3] */
+    uint8_t *rgb, *taken;               /* [RUNS * RUN][3], [RUNS * RUN] */
 } round_job;
 
 enum { RUNS = 64 };
@@ -60,9 +61,17 @@ static void any_depth(const round_job *j, const ted4_camera *c, size_t pixel, do
     ted4_sweep_point(c, pixel, j->sweep.nearest * ted4_math_exp2(octaves * u), world);
 }
 
+static int is_inside(const ted4_scatter_options *o, const float p[3])
+{
+    for (int k = 0; o->bounded && k < 3; k++)
+        if (!(p[k] >= o->low[k] && p[k] <= o->high[k]))
+            return 0;
+    return 1;
+}
+
 static int try_candidate(const round_job *j, uint64_t i, float point[3], uint8_t rgb[3])
 {
-    uint64_t     state = j->seed << 40 ^ i << 8;     /* fewer numbers than 2^8 a candidate */
+    uint64_t     state = (uint64_t)j->options->seed << 40 ^ i << 8;     /* fewer numbers than 2^8 a candidate */
     const double u = ted4_split_uniform(&state);
     size_t       k, pixel;
     double       world[3];
@@ -76,6 +85,8 @@ static int try_candidate(const round_job *j, uint64_t i, float point[3], uint8_t
         return 0;
     for (int c = 0; c < 3; c++)
         point[c] = (float)world[c];
+    if (!is_inside(j->options, point))
+        return 0;
     memcpy(rgb, j->shown->rgb[k] + 3 * pixel, 3);
     ted4_shown_count(j->shown, world, &seen, &shown);
 
@@ -132,9 +143,10 @@ static int are_shown(const ted4_shown *s, const ted4_dataset *d)
 
 /* Scattered points in place of those that are there, if any can be had: where pictures agree about colours, and where they do not agree often enough, anywhere on the rays
  * of what shows something. 0, or -1 with *m filled. */
-static int replace(ted4_dataset *d, const ted4_shown *s, uint32_t seed, const ted4_parallel *p, size_t *n, ted4_message *m)
+static int replace(ted4_dataset *d, const ted4_shown *s, const ted4_scatter_options *o,
+                   const ted4_parallel *p, size_t *n, ted4_message *m)
 {
-    round_job        j = { .shown = s, .seed = seed, .by_colour = 1 };
+    round_job        j = { .shown = s, .options = o, .by_colour = 1 };
     ted4_point_cloud c;
     double           centre[3], half;
 
@@ -165,7 +177,24 @@ static int replace(ted4_dataset *d, const ted4_shown *s, uint32_t seed, const te
     return 0;
 }
 
-int ted4_dataset_scatter(ted4_dataset *d, uint32_t seed, const ted4_parallel *p, ted4_scattered *what, ted4_message *m)
+/* Points outside the bounds go; how many. */
+static size_t drop_outside(ted4_dataset *d, const ted4_scatter_options *o)
+{
+    const size_t before = d->n_points;
+    size_t       n = 0;
+
+    for (size_t i = 0; i < before; i++) {
+        if (!is_inside(o, d->points + 3 * i))
+            continue;
+        memmove(d->points + 3 * n, d->points + 3 * i, 3 * sizeof *d->points);
+        memmove(d->point_rgb + 3 * n++, d->point_rgb + 3 * i, 3);
+    }
+    d->n_points = n;
+    return before - n;
+}
+
+int ted4_dataset_scatter(ted4_dataset *d, const ted4_scatter_options *o, const ted4_parallel *p,
+                         ted4_scattered *what, ted4_message *m)
 {
     ted4_shown s;
     int        bad = ted4_shown_read(&s, d, m) != 0;
@@ -173,10 +202,16 @@ int ted4_dataset_scatter(ted4_dataset *d, uint32_t seed, const ted4_parallel *p,
     memset(what, 0, sizeof *what);
     if (!bad && s.plain)
         memcpy(d->background, s.background, sizeof d->background);
-    if (!bad && (d->random_points || (s.plain && !are_shown(&s, d)))) {
+
+    const size_t outside = bad ? 0 : drop_outside(d, o);
+
+    what->outside = d->random_points ? 0 : outside;
+    if (!bad && (d->random_points || d->n_points == 0 || (s.plain && !are_shown(&s, d)))) {
         what->given = d->random_points ? 0 : d->n_points;
-        bad = replace(d, &s, seed, p, &what->scattered, m) != 0;
+        bad = replace(d, &s, o, p, &what->scattered, m) != 0;
     }
+    if (!bad && d->n_points == 0)
+        bad = ted4_say(m, "no initial point lies inside the bounds, and pictures show nothing there");
     ted4_shown_free(&s);
     return bad ? -1 : 0;
 }
