@@ -24,7 +24,7 @@
 #define FARTHEST      3.0
 #define FARTHEST_ROOM 4.0
 /* Candidates a job, pixels tried for one, and candidates a wanted point at most. */
-enum { RUN = 1024, PIXELS = 32, TRIES = 64 };
+enum { RUN = 1024, PIXELS = 32, TRIES = 32 };
 
 typedef struct {
     const ted4_shown           *shown;
@@ -36,7 +36,7 @@ typedef struct {
     uint8_t *rgb, *taken;               /* [RUNS * RUN][3], [RUNS * RUN] */
 } round_job;
 
-enum { RUNS = 64 };
+enum { RUNS = 16 };
 
 /* A pixel that shows something, of a picture. 0: none was found. */
 static int choose_pixel(const round_job *j, uint64_t *state, size_t *picture, size_t *pixel)

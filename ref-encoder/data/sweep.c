@@ -12,6 +12,8 @@
 /* Patches agree when they are this many levels of 255 off, averaged over pixels, channels and pictures; depths are equally good when they are this near to the best. */
 #define AGREED 4.0
 #define EQUAL  1.5
+/* Where the middle pixels are so many times that off, patches hardly agree. */
+#define HOPELESS 3.0
 enum { FEWEST = 2 };
 
 static double distance(const double a[3], const double b[3])
@@ -114,39 +116,50 @@ static double patch_off(const patch *a, const patch *b)
     return sum / 15.0;
 }
 
-/* How far colours are off at a point, in the better half of the pictures that look there: the others may see something before it. Infinite where too few look. */
+/* Mean of the smaller half, two at least: the others may see something before the point. */
+static double better_half(double *x, int n)
+{
+    const int half = n / 2 > FEWEST ? n / 2 : FEWEST;
+    double    sum = 0;
+
+    for (int i = 1; i < n; i++)
+        for (int k = i; k > 0 && x[k - 1] > x[k]; k--) {
+            const double y = x[k];
+
+            x[k] = x[k - 1];
+            x[k - 1] = y;
+        }
+    for (int i = 0; i < half; i++)
+        sum += x[i];
+    return sum / half;
+}
+
+/* How far pictures are off at a point; infinite where too few look there, or where the middle alone
+ * is so far off that neighbours need not be looked at. */
 static double cost(const ted4_sweep *w, size_t i, const patch *mine, const double world[3])
 {
-    double each[TED4_SWEEP_HELPERS], sum = 0;
-    int    n = 0;
+    double each[TED4_SWEEP_HELPERS];
+    size_t at[TED4_SWEEP_HELPERS];
+    int    n = 0, looks[TED4_SWEEP_HELPERS];
 
     for (int h = 0; h < w->n_helpers[i]; h++) {
         const size_t k = w->helper[i][h];
-        size_t       pixel;
 
-        if (!ted4_shown_pixel(w->shown, k, world, &pixel))
+        if (!ted4_shown_pixel(w->shown, k, world, &at[n]))
             continue;
-
-        patch other;
-        int   at = n++;
-
-        take_patch(&picture(w->shown, k)->camera, w->shown->rgb[k], pixel, &other);
-
-        const double far = patch_off(mine, &other);
-
-
-        for (; at > 0 && each[at - 1] > far; at--)
-            each[at] = each[at - 1];
-        each[at] = far;
+        each[n] = off(mine->rgb[0], w->shown->rgb[k] + 3 * at[n]) / 3.0;
+        looks[n++] = (int)k;
     }
-    if (n < FEWEST)
+    if (n < FEWEST || better_half(each, n) > HOPELESS * AGREED)
         return INFINITY;
+    for (int h = 0; h < n; h++) {
+        const size_t k = (size_t)looks[h];
+        patch        other;
 
-    const int half = n / 2 > FEWEST ? n / 2 : FEWEST;
-
-    for (int h = 0; h < half; h++)
-        sum += each[h];
-    return sum / half;
+        take_patch(&picture(w->shown, k)->camera, w->shown->rgb[k], at[h], &other);
+        each[h] = patch_off(mine, &other);
+    }
+    return better_half(each, n);
 }
 
 int ted4_sweep_pixel(const ted4_sweep *w, size_t i, size_t pixel, double u, double world[3])
