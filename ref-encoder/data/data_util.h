@@ -44,4 +44,15 @@ int ted4_solve3(const double A[9], const double b[3], double x[3]);
 /* c = -R^T t: centre of a world-to-camera pose. */
 void ted4_pose_centre(const double R[9], const double t[3], double c[3]);
 
+/* SplitMix64: a counter through a mixing function, so any seed is as good as another. Uniform in
+ * [0, 1). */
+static inline double ted4_split_uniform(uint64_t *state)
+{
+    uint64_t z = *state += UINT64_C(0x9e3779b97f4a7c15);
+
+    z = (z ^ z >> 30) * UINT64_C(0xbf58476d1ce4e5b9);
+    z = (z ^ z >> 27) * UINT64_C(0x94d049bb133111eb);
+    return (double)((z ^ z >> 31) >> 11) * 0x1p-53;
+}
+
 #endif

@@ -23,7 +23,9 @@ uint8_t *ted4_source_decode(void *sources, size_t i, size_t *size, ted4_message 
 /* Cube of the random points of a Blender scene: the synthetic objects are made to fit it. */
 #define TED4_BLENDER_HALF_CUBE 1.3
 
-/* Cube that the cameras look at: centre is the point nearest to all optical axes in the
+#define TED4_VIEW_BOX_HALF_SIDE 0.6     /* of the median distance of the cameras */
+
+/* Cube that the cameras of training pictures look at: centre is the point nearest to all optical axes in the
  * least-squares sense, half the side is 0.6 of the median distance of the cameras from it. Where
  * the axes have no common point before the cameras (one camera, parallel or diverging axes)
  * centre lies ahead of the mean camera at the distance that the cameras are spread, at least 1.

@@ -5,12 +5,14 @@
 
 #include <stddef.h>
 
+#include "data/scatter.h"
 #include "train/options.h"
 
 typedef struct {
     const char        *scene, *out, *checkpoint, *stage1, *log;  /* borrowed from argv; NULL: not asked for */
     int                downscale, max_frames, cache_mib, checkpoint_every, threads, resume, check, json, force, quiet, verbose, black, why;
     size_t             target_size;     /* bytes; 0: not asked for */
+    ted4_scatter_options bounds;        /* its seed is set later */
     ted4_train_options options;
 } ted4_request;
 

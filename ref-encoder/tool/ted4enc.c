@@ -7,6 +7,7 @@
 #include <unistd.h>
 
 #include "data/dataset.h"
+#include "data/scatter.h"
 #include "file_out.h"
 #include "tool/threads.h"
 #include "request.h"
@@ -127,6 +128,23 @@ static int decoders(const ted4_parallel *p)
     return n == 1 ? 0 : n < FEWEST_DECODERS ? FEWEST_DECODERS : n;
 }
 
+/* Initial points where there are none that help. 0, or -1 with *m filled. */
+static int scatter(ted4_dataset *d, const ted4_request *r, const ted4_parallel *p, ted4_message *m)
+{
+    ted4_scatter_options o = r->bounds;
+    ted4_scattered       what;
+
+    o.seed = r->options.seed;
+    if (ted4_dataset_scatter(d, &o, p, &what, m) != 0)
+        return -1;
+    if (what.outside > 0 && !r->quiet)
+        fprintf(stderr, "ted4enc: warning: %zu initial points outside the bounds are not used\n", what.outside);
+    if (what.scattered > 0 && what.given > 0 && !r->quiet)
+        fprintf(stderr, "ted4enc: warning: most of the %zu initial points lie where pictures show nothing; %zu others take their place\n",
+                what.given, what.scattered);
+    return 0;
+}
+
 int main(int argc, char **argv)
 {
     ted4_request  r;
@@ -151,9 +169,12 @@ int main(int argc, char **argv)
 
     ted4_threads_init(&p, r.threads);
     d.ahead = decoders(&p);
+
+    const int bad = ted4_dataset_verify(&d, &p, &m) != 0 || scatter(&d, &r, &p, &m) != 0;
+
     if (r.check)
         ted4_dataset_print(&d, stdout);
-    if (ted4_dataset_verify(&d, &p, &m) != 0)
+    if (bad)
         status = complain(m.text);
     else if (!r.check)
         status = encode(&r, &d, &p, begin);
