@@ -108,7 +108,7 @@ static void same_scene(ted4_dataset *d, int tolerance, int split)
 static void test_layouts(void **state)
 {
     /* What each layout is recognised as; splits: by list, by list, 1 of 8, 1 of 8, by list, first camera, times. */
-    static const char *const names[RAY_LAYOUTS] = { "blender", "nerfstudio", "colmap", "colmap", "hypernerf", "neu3d", "calibration" };
+    static const char *const names[RAY_LAYOUTS] = { "D-NeRF", "nerfstudio", "colmap", "colmap", "hypernerf", "neu3d", "calibration" };
     static const int split[RAY_LAYOUTS] = { 1, 1, 0, 0, 1, 1, 0 };
 
     (void)state;

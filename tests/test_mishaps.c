@@ -164,7 +164,7 @@ static void test_full_video_cache(void **state)
 {
     static const char *const failing[] = { "printf x >000001.png; echo 'No space left on device' >&2; exit 1",
                                            "echo 'No space left on device' >&2; kill -9 $$" };
-    const ted4_dataset_options o = { 1, 0, 3, 1 << 20, 0 };
+    const ted4_dataset_options o = { .downscale = 1, .seed = 3, .cache_bytes = 1 << 20 };
     tiny_folder  f = tiny_new();
     ted4_dataset d;
     ted4_message m;

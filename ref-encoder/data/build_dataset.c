@@ -218,7 +218,25 @@ static int split(ted4_raw_scene *s, ted4_message *m)
     free(s->shots);
     s->shots = sorted;
     s->capacity = s->n_shots;
-    return sorted[0].is_test ? ted4_say(m, "all %zu pictures are held out, none is left to train on", s->n_shots) : 0;
+    if (!sorted[0].is_test)
+        return 0;
+    return s->n_missing == 0 ? ted4_say(m, "all %zu pictures are held out, none is left to train on", s->n_shots) :
+           ted4_say(m, "all %zu pictures that are there are held out, none is left to train on; %zu of %zu entries have no picture, "
+                    "the first: %s", s->n_shots, s->n_missing, s->n_entries, s->first_missing);
+}
+
+/* Entries without a picture were left out: other programs do so, and what is left may well do. */
+static int say_missing(ted4_raw_scene *s, ted4_message *m)
+{
+    if (s->n_missing == 0)
+        return 0;
+    if (s->n_shots == 0)
+        return s->n_entries == 1 ? ted4_say(m, "the scene's only entry has no picture: %s", s->first_missing) :
+               ted4_say(m, "none of %zu entries has a picture; the first: %s", s->n_entries, s->first_missing);
+    const int result = s->n_missing == 1 ?
+        ted4_raw_scene_warn(s, "1 of %zu entries has no picture: %s", s->n_entries, s->first_missing) :
+        ted4_raw_scene_warn(s, "%zu of %zu entries have no picture; the first: %s", s->n_missing, s->n_entries, s->first_missing);
+    return result != 0 ? ted4_say_no_memory(m) : 0;
 }
 
 static int take_points(ted4_dataset *d, ted4_raw_scene *s, const ted4_dataset_options *o, ted4_message *m)
@@ -258,6 +276,8 @@ int ted4_build_dataset(ted4_dataset *d, ted4_raw_scene *s, const ted4_dataset_op
 {
     int reduction;
 
+    if (say_missing(s, m) != 0)
+        return -1;
     if (s->n_shots == 0)
         return ted4_say(m, "the scene (layout %s) has no pictures", s->layout);
     if ((o->max_frames > 0 && keep_first_times(s, o->max_frames, m) != 0) ||
@@ -276,6 +296,10 @@ int ted4_build_dataset(ted4_dataset *d, ted4_raw_scene *s, const ted4_dataset_op
     choose_background(d, s, o);
     if (number_frames(d, s->shots, m) != 0 || number_cameras(d, s->shots, m) != 0 || take_points(d, s, o, m) != 0)
         return -1;
+    d->warnings = s->warnings;
+    d->n_warnings = s->n_warnings;
+    s->warnings = NULL;
+    s->n_warnings = 0;
     d->cache = ted4_image_cache_new(d->n_pictures, o->cache_bytes, ted4_source_decode, d->sources);
     return d->cache == NULL ? ted4_say_no_memory(m) : 0;
 }

@@ -65,6 +65,9 @@ void ted4_dataset_free(ted4_dataset *d)
     free(d->points);
     free(d->point_rgb);
     free(d->layout);
+    for (size_t i = 0; i < d->n_warnings; i++)
+        free(d->warnings[i]);
+    free(d->warnings);
     memset(d, 0, sizeof *d);
 }
 

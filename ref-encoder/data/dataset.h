@@ -37,6 +37,8 @@ typedef struct ted4_dataset {
     double        rate;         /* frames a second, 0: unknown */
     uint8_t       background[3];
     uint64_t      content;      /* digest of all picture files; 0 until ted4_dataset_verify */
+    char        **warnings;     /* [n_warnings] what was passed over or put right while loading, a sentence a kind; owned */
+    size_t        n_warnings;
     int           ahead;        /* threads for ted4_dataset_ahead; 0 after loading, the caller may change it: no pixel depends on it */
     struct ted4_source      *sources;   /* [n_pictures] how files become pixels; owned, opaque */
     struct ted4_image_cache *cache;     /* owned, opaque */

@@ -21,7 +21,7 @@ typedef struct {
     const char     *folder;
     char           *path;           /* of the table; owned */
     double         *poses;          /* [rows][COLUMNS]; owned */
-    size_t          rows, n_frames;
+    size_t          rows, shortest, longest;   /* of clips, in frames */
     ted4_name_list  clips;
     ted4_message   *m;
 } neu3d;
@@ -71,27 +71,21 @@ static int add_clip(neu3d *n, size_t i)
 {
     const uint32_t wanted = n->scene->wanted->max_frames;
     const char *name = n->clips.names[i];
-    char file[300];
     ted4_shot model;
     ted4_name_list pictures;
 
     memset(&model, 0, sizeof model);
     model.is_test = i == 0;
-    snprintf(file, sizeof file, "%.250s.mp4", name);
-    char *video = ted4_path_join(n->folder, file);
-    if (video == NULL)
-        return ted4_say_no_memory(n->m);
-    int result = read_camera(n, i, &model);
-    if (result == 0)
-        result = ted4_clip_pictures(&pictures, n->folder, name, video, wanted > 0 ? wanted : MOST_FRAMES, n->m);
-    free(video);
-    if (result != 0)
+    if (read_camera(n, i, &model) != 0)
         return -1;
-    if (i == 0)
-        n->n_frames = pictures.n;
-    result = pictures.n == n->n_frames ? ted4_clip_add(n->scene, &pictures, name, &model, n->m) :
-             ted4_say(n->m, "%s/%s: %zu frames, expected %zu like %s (--max-frames reads the first ones)", n->folder, name,
-                      pictures.n, n->n_frames, n->clips.names[0]);
+    int result = ted4_clip_pictures(&pictures, n->folder, name, NULL, wanted > 0 ? wanted : MOST_FRAMES, n->m);
+    if (result == 0)
+        result = ted4_say(n->m, "%s/%s: neither a video nor a folder of pictures", n->folder, name);
+    if (result < 0)
+        return -1;
+    n->shortest = i == 0 || pictures.n < n->shortest ? pictures.n : n->shortest;
+    n->longest = pictures.n > n->longest ? pictures.n : n->longest;
+    result = ted4_clip_add(n->scene, &pictures, name, &model, n->m);
     ted4_name_list_free(&pictures);
     return result;
 }
@@ -108,6 +102,8 @@ static int read_all(neu3d *n)
     for (size_t i = 0; i < n->clips.n; i++)
         if (add_clip(n, i) != 0)
             return -1;
+    if (ted4_clip_lengths(n->scene, n->shortest, n->longest, n->m) != 0)
+        return -1;
     return ted4_ply_find(&n->scene->cloud, n->folder, n->m);
 }
 

@@ -7,7 +7,7 @@
 #define TED4_RAW_SCENE_H
 
 #include <stddef.h>
-#include "data/dataset.h"
+#include "data/data_util.h"
 #include "data/point_cloud.h"
 #include "data/undistort.h"
 
@@ -38,6 +38,10 @@ typedef struct {
     int               unit_cube;    /* random points fill the cube of Blender's synthetic scenes */
     int               timed;        /* times came with the pictures */
     double            rate;         /* frames a second, 0: unknown */
+    size_t            n_entries, n_missing; /* listed, and of these without a picture */
+    char              first_missing[700];
+    char            **warnings;     /* [n_warnings] owned, as those of a dataset */
+    size_t            n_warnings;
 } ted4_raw_scene;
 
 void ted4_raw_scene_free(ted4_raw_scene *s);
@@ -46,6 +50,16 @@ void ted4_raw_scene_free(ted4_raw_scene *s);
  * failure too. where names the entry for the message. The lens is a pinhole of the file's size
  * without focal length; pose and time are zero. NULL with *m filled. */
 ted4_shot *ted4_raw_scene_add(ted4_raw_scene *s, char *path, const char *where, ted4_message *m);
+
+/* The same for an entry of a list, which may name a picture that is not there: such entries are
+ * counted and left out. 1, or 0 with *shot NULL: left out, or -1 with *m filled. */
+int ted4_raw_scene_list(ted4_raw_scene *s, char *path, const char *where, ted4_shot **shot, ted4_message *m);
+
+/* Counts an entry whose picture is missing; keeps what the first one says. */
+void ted4_raw_scene_missing(ted4_raw_scene *s, const char *where, const char *name);
+
+/* Appends a warning. 0, or -1: no memory. */
+int ted4_raw_scene_warn(ted4_raw_scene *s, const char *format, ...) TED4_PRINTF(2, 3);
 
 /* Marks shots as test by TED4_HOLD_OUT_*; they must be sorted by name. */
 void ted4_raw_scene_hold_out(ted4_raw_scene *s);

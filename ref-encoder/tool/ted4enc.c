@@ -146,6 +146,8 @@ int main(int argc, char **argv)
 
     if (ted4_dataset_load(&d, r.scene, &wanted, &m) != 0)
         return complain(m.text);
+    for (size_t i = 0; i < d.n_warnings && !r.quiet; i++)
+        fprintf(stderr, "ted4enc: warning: %s\n", d.warnings[i]);
 
     int status = TED4_EXIT_FINE;
 
