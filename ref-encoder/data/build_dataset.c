@@ -157,8 +157,32 @@ static int number_cameras(ted4_dataset *d, ted4_shot *shots, ted4_message *m)
     return result != 0 ? ted4_say_no_memory(m) : 0;
 }
 
-static int number_frames(ted4_dataset *d, const ted4_shot *shots, ted4_message *m)
+/* Farther from its frame than this part of the distance between two frames, a picture's time is said to have moved. */
+static const double MOVED = 0.1;
+
+/* Warns of times that have no frame of their own. 0, or -1: no memory. */
+static int say_moved(ted4_raw_scene *s, const ted4_dataset *d)
 {
+    const double steps = (double)d->n_frames - 1;
+    double first = s->shots[0].time, last = first, worst = 0;
+    size_t n = 0;
+
+    for (size_t i = 0; i < s->n_shots; i++) {
+        first = fmin(first, s->shots[i].time);
+        last = fmax(last, s->shots[i].time);
+    }
+    for (size_t i = 0; i < s->n_shots && last > first; i++) {
+        const double off = fabs((s->shots[i].time - first) / (last - first) * steps - d->pictures[i].frame);
+        n += off > MOVED;
+        worst = fmax(worst, off);
+    }
+    return n == 0 ? 0 : ted4_raw_scene_warn(s, "times have no common step: of %zu pictures, %zu move to the nearest of %u frames, by up to %.2g "
+                                            "of the whole time", s->n_shots, n, (unsigned)d->n_frames, worst / steps);
+}
+
+static int number_frames(ted4_dataset *d, ted4_raw_scene *s, ted4_message *m)
+{
+    const ted4_shot *shots = s->shots;
     const size_t n = d->n_pictures;
     double *time = malloc(n * sizeof *time);
     uint32_t *frame = malloc(n * sizeof *frame);
@@ -172,6 +196,8 @@ static int number_frames(ted4_dataset *d, const ted4_shot *shots, ted4_message *
         result = ted4_frame_times(time, n, frame, &d->n_frames, m);
         for (size_t i = 0; i < n && result == 0; i++)
             d->pictures[i].frame = frame[i];
+        if (result == 0 && say_moved(s, d) != 0)
+            result = ted4_say_no_memory(m);
     }
     free(time);
     free(frame);
@@ -294,7 +320,7 @@ int ted4_build_dataset(ted4_dataset *d, ted4_raw_scene *s, const ted4_dataset_op
             return -1;
     d->rate = s->rate;
     choose_background(d, s, o);
-    if (number_frames(d, s->shots, m) != 0 || number_cameras(d, s->shots, m) != 0 || take_points(d, s, o, m) != 0)
+    if (number_frames(d, s, m) != 0 || number_cameras(d, s->shots, m) != 0 || take_points(d, s, o, m) != 0)
         return -1;
     d->warnings = s->warnings;
     d->n_warnings = s->n_warnings;

@@ -79,8 +79,8 @@ int ted4_is_calibration(const char *folder);
 /* Takes shots and cloud out of *s. 0, or -1 with *m filled and *d to be freed by the caller. */
 int ted4_build_dataset(ted4_dataset *d, ted4_raw_scene *s, const ted4_dataset_options *o, ted4_message *m);
 
-/* frame_times.c: frame[i] of each of n times, *n_frames, at most TED4_MAX_FRAMES. 0, or -1 with
- * *m filled. */
+/* frame_times.c: frame[i] of each of n times, *n_frames, at most TED4_MAX_FRAMES. Times without a
+ * common step move to the nearest frame. 0, or -1: no memory, *m says so. */
 #define TED4_MAX_FRAMES 36000
 /* Sorts t[n], n > 0, and keeps one of each group of equal times, the last; returns how many. */
 size_t ted4_distinct_times(double *t, size_t n);
