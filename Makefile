@@ -94,7 +94,7 @@ $B/tests/%: tests/%.sh
 	@mkdir -p $(@D)
 	install -m 755 $< $@
 
-$(addprefix $B/tests/test_,scene scene_sets failure_scenes layouts): $(patsubst %.c,$B/%.o,$(wildcard tests/scenes/ray_*.c))
+$(addprefix $B/tests/test_,scene scene_sets failure_scenes layouts hold_out): $(patsubst %.c,$B/%.o,$(wildcard tests/scenes/ray_*.c))
 $B/tests/test_run_log: $B/ref-encoder/tool/run_log.o
 $B/tests/test_install: | $(PROGS) $B/ted4conf $B/ted4tolerance
 $B/tests/test_verify: $B/ref-encoder/tool/verify.o

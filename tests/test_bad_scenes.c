@@ -171,6 +171,26 @@ static void test_pictures(void **state)
     refuse("large --downscale 13" OUT QUICK, "cannot be reduced by 13");
 }
 
+/* The two programs take the same words about the scene. */
+static void test_hold_out(void **state)
+{
+    char command[1024];
+
+    (void)state;
+    need_program();
+    assert_int_equal(run("good --check --hold-out 2.png --alpha premultiplied"), 0);
+    must(system(NULL) != 0, "a shell");
+    snprintf(command, sizeof command, "grep -q '^pictures    2 train, 1 test$' %s", tiny_path(&folder, "out.txt"));
+    assert_int_equal(system(command), 0);
+    refuse("good --check --hold-out 9", "--hold-out 9: no camera or picture of this name, expected one of: 0.png, 1.png, 2.png");
+    refuse("good --alpha wet" OUT, "--alpha: bad value wet");
+    assert_int_equal(run("good --hold-out 2.png" OUT QUICK), 0);
+    snprintf(command, sizeof command, "cd %s && %s/ted4eval out/x.ted4 good --hold-out 0 --hold-out 1.png --alpha straight --json -j 1 >out.txt 2>err.txt"
+             " && grep -q '\"views\":2' out.txt", folder.path, build);
+    assert_int_equal(system(command), 0);
+    must(remove(tiny_path(&folder, "out/x.ted4")) == 0, "x.ted4");
+}
+
 static void test_cameras(void **state)
 {
     (void)state;
@@ -271,7 +291,8 @@ static void test_options(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_good),  cmocka_unit_test(test_pictures), cmocka_unit_test(test_cameras),
+        cmocka_unit_test(test_good),  cmocka_unit_test(test_pictures), cmocka_unit_test(test_hold_out),
+        cmocka_unit_test(test_cameras),
         cmocka_unit_test(test_empty), cmocka_unit_test(test_output),   cmocka_unit_test(test_options),
     };
 

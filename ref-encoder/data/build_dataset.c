@@ -98,24 +98,11 @@ static int make_picture(ted4_picture *p, ted4_source *source, ted4_shot *s, int 
     source->lens = s->lens;
     source->downscale = n;
     source->background = o->white ? 255 : 0;
+    source->premultiplied = o->premultiplied && s->has_alpha;
     return 0;
 }
 
-/* Shots are the same camera when their labels are equal or, without labels, their poses to six
- * decimals; then the label is the pose. */
-static char *pose_label(const ted4_shot *s)
-{
-    char text[12 * 26], *at = text;
-    double centre[3];
-
-    ted4_pose_centre(s->R, s->t, centre);
-    for (int i = 0; i < 12; i++) {
-        const double v = i < 9 ? s->R[i] : centre[i - 9];
-        at += snprintf(at, 26, "%.15g ", round(v * 1e6) + 0.0);   /* + 0.0: no -0 */
-    }
-    return ted4_text_copy(text);
-}
-
+/* Pictures are of one camera when their labels are equal. */
 typedef struct { const char *label; uint32_t picture; } labelled;
 
 static int by_label(const void *a, const void *b)
@@ -127,16 +114,13 @@ static int by_label(const void *a, const void *b)
 }
 
 /* Numbers cameras by their first picture. shots[i] belongs to d->pictures[i]. */
-static int number_cameras(ted4_dataset *d, ted4_shot *shots, ted4_message *m)
+static int number_cameras(ted4_dataset *d, const ted4_shot *shots, ted4_message *m)
 {
     const size_t n = d->n_pictures;
     labelled *list = malloc(n * sizeof *list);
     int result = list == NULL ? -1 : 0;
 
     for (size_t i = 0; i < n && result == 0; i++) {
-        if (shots[i].camera == NULL)
-            shots[i].camera = pose_label(&shots[i]);
-        result = shots[i].camera == NULL ? -1 : 0;
         list[i].label = shots[i].camera;
         list[i].picture = (uint32_t)i;
     }
@@ -307,7 +291,11 @@ int ted4_build_dataset(ted4_dataset *d, ted4_raw_scene *s, const ted4_dataset_op
     if (s->n_shots == 0)
         return ted4_say(m, "the scene (layout %s) has no pictures", s->layout);
     if ((o->max_frames > 0 && keep_first_times(s, o->max_frames, m) != 0) ||
-        left_to_reduce(s, o->downscale, &reduction, m) != 0 || split(s, m) != 0)
+        left_to_reduce(s, o->downscale, &reduction, m) != 0)
+        return -1;
+    if (ted4_raw_scene_label(s) != 0)
+        return ted4_say_no_memory(m);
+    if ((o->n_hold_out > 0 && ted4_raw_scene_hold_out_named(s, o, m) != 0) || split(s, m) != 0)
         return -1;
     d->layout = ted4_text_copy(s->layout);
     d->pictures = calloc(s->n_shots, sizeof *d->pictures);

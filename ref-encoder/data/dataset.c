@@ -163,6 +163,8 @@ uint64_t ted4_dataset_digest(const ted4_dataset *d)
         x = add(x, lens, sizeof lens);
         x = add(x, c->R, sizeof c->R);
         x = add(x, c->t, sizeof c->t);
+        if (d->sources[i].premultiplied)
+            x = add(x, &d->sources[i].premultiplied, sizeof d->sources[i].premultiplied);
     }
     x = add(x, d->points, 3 * d->n_points * sizeof *d->points);
     x = add(x, d->point_rgb, 3 * d->n_points);

@@ -50,6 +50,10 @@ typedef struct {
     uint32_t    seed;           /* for random points */
     size_t      cache_bytes;    /* bound of decoded pixels kept in memory */
     uint32_t    max_frames;     /* only so many times, the first ones; 0: 300 of Neu3D, else all */
+    int         premultiplied;  /* colours of RGBA images are multiplied by alpha already; 0: straight, as PNG has it */
+    const char *const *hold_out;    /* [n_hold_out] cameras whose pictures are test, and no others, whatever the layout says: the
+                                     * camera's label, its folder, or the name of a picture of it; borrowed */
+    size_t      n_hold_out;     /* 0: the layout's split */
 } ted4_dataset_options;
 
 /* One clear message, "file:line-or-field: what was found, what was expected". */

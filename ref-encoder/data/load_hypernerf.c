@@ -197,7 +197,7 @@ static int add_by_position(hypernerf *h, const json_t *ids)
 {
     for (size_t i = 0; i < json_array_size(ids); i++) {
         const size_t place = i % SPLIT_EVERY;
-        if ((place == 0 || place == SPLIT_TEST) &&
+        if ((place == 0 || place == SPLIT_TEST || h->scene->wanted->n_hold_out > 0) &&
             add_picture(h, json_string_value(json_array_get(ids, i)), place == SPLIT_TEST) != 0)
             return -1;
     }

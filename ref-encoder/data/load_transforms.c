@@ -329,6 +329,8 @@ static int split(ted4_transforms *t)
 {
     const char *test = NULL;
 
+    if (t->scene->wanted->n_hold_out > 0)
+        return 0;
     for (size_t i = 0; i < sizeof lists_test / sizeof lists_test[0] && test == NULL; i++)
         if (json_object_get(t->root, lists_test[i]) != NULL)
             test = lists_test[i];

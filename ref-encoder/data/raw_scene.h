@@ -19,6 +19,7 @@
 typedef struct {
     char     *path;             /* owned; exists and has a readable header */
     char     *camera;           /* owned; label of the physical camera. NULL: cameras are told apart by pose */
+    int       is_posed;         /* the label was made of the pose */
     int       width, height;    /* of the file */
     int       has_alpha;
     int       orientation;      /* as ted4_exif_orientation; pixels stay as stored, whatever it is */
@@ -63,6 +64,12 @@ int ted4_raw_scene_warn(ted4_raw_scene *s, const char *format, ...) TED4_PRINTF(
 
 /* Marks shots as test by TED4_HOLD_OUT_*; they must be sorted by name. */
 void ted4_raw_scene_hold_out(ted4_raw_scene *s);
+
+/* hold_out.c: gives shots without a label one that tells their pose. 0, or -1: no memory. */
+int ted4_raw_scene_label(ted4_raw_scene *s);
+
+/* Marks the shots of the cameras that o names as test, and no others; all have labels. 0, or -1 with *m filled. */
+int ted4_raw_scene_hold_out_named(ted4_raw_scene *s, const ted4_dataset_options *o, ted4_message *m);
 
 typedef int ted4_loader(ted4_raw_scene *s, const char *folder, ted4_message *m);
 

@@ -7,8 +7,8 @@
 #include "data/data_util.h"
 #include "data/image_file.h"
 
-/* RGBA to RGB in place, over a grey level, rounded. */
-static void composite(ted4_image *image, int background)
+/* RGBA to RGB in place, over a grey level, rounded. Premultiplied colours above their alpha, which none should be, end at white. */
+static void composite(ted4_image *image, int background, int premultiplied)
 {
     const size_t n = (size_t)image->width * (size_t)image->height;
     uint8_t *out = image->bytes;
@@ -16,8 +16,10 @@ static void composite(ted4_image *image, int background)
     for (size_t i = 0; i < n; i++) {
         const uint8_t *p = image->bytes + 4 * i;
         const int alpha = p[3];
-        for (int c = 0; c < 3; c++)
-            *out++ = (uint8_t)((p[c] * alpha + background * (255 - alpha) + 127) / 255);
+        for (int c = 0; c < 3; c++) {
+            const int sum = (p[c] * (premultiplied ? 255 : alpha) + background * (255 - alpha) + 127) / 255;
+            *out++ = (uint8_t)(sum > 255 ? 255 : sum);
+        }
     }
     image->channels = 3;
 }
@@ -60,7 +62,7 @@ uint8_t *ted4_source_decode(void *sources, size_t i, size_t *size, ted4_message 
         return NULL;
     }
     if (image.channels == 4)
-        composite(&image, s->background);
+        composite(&image, s->background, s->premultiplied);
     if (!ted4_lens_is_pinhole(&s->lens) && undistort(&image, &s->lens, m) != 0) {
         free(image.bytes);
         return NULL;
