@@ -123,7 +123,7 @@ static void test_neu3d(void **state)
 
     (void)state;
     table(&f, TWO, 2, 9);
-    refuse(&f, "poses_bounds.npy", "2 rows, but 0 cameras");
+    refuse(&f, "poses_bounds.npy", "2 rows, but 0 pictures in images/, and no cameras");
     for (int i = 0; i < 4; i++) {
         char name[64];
         snprintf(name, sizeof name, "cam%02d/images/%04d.png", i / 2, i % 2);
@@ -236,7 +236,7 @@ static void test_videos(void **state)
     (void)state;
     must(path != NULL, "PATH");
     setenv("XDG_CACHE_HOME", cache.path, 1);
-    tiny_text(&f, "it's \"one\" % $x.mp4", "not a video");
+    tiny_bytes(&f, "it's \"one\" % $x.mp4", "not a video\0\1\2", 14);
     tiny_text(&f, "cams.json", "{\"cameras\": [{\"name\": \"one\", \"video\": \"it's \\\"one\\\" % $x.mp4\"," SIZE K W2C "}]}");
     if (system("ffmpeg -version >/dev/null 2>&1") == 0) {
         refuse(&f, "it's \"one\" % $x.mp4: ffmpeg", "failed after 0 frames: ");

@@ -22,11 +22,12 @@ static const struct {
     { ted4_is_hypernerf, ted4_load_hypernerf },
     { ted4_is_calibration, ted4_load_calibration },
     { ted4_is_neu3d, ted4_load_neu3d },
+    { ted4_is_llff, ted4_load_llff },
     { ted4_is_colmap, ted4_load_colmap },
 };
 
 #define LAYOUTS "transforms_train.json, transforms.json (D-NeRF, nerfstudio), dataset.json and camera/ " \
-                "(HyperNeRF), cams.json, poses_bounds.npy (Neu3D) or sparse/ (COLMAP)"
+                "(HyperNeRF), cams.json, poses_bounds.npy (Neu3D, LLFF) or sparse/ (COLMAP)"
 
 static int load_raw(ted4_raw_scene *s, const char *folder, ted4_message *m)
 {

@@ -191,8 +191,8 @@ static void hold_out_times(ted4_raw_scene *s)
 static int say_times(calibration *c)
 {
     if (c->n_between > 0 &&
-        ted4_raw_scene_warn(c->scene, "%zu cameras start between two frames of the others, by up to %.2g of a frame: each goes with the "
-                            "nearest frame", c->n_between, c->farthest) != 0)
+        ted4_raw_scene_warn(c->scene, "%zu of %zu cameras start between two frames, by up to %.2g of a frame: each goes with the nearest "
+                            "frame", c->n_between, c->scene->n_entries, c->farthest) != 0)
         return ted4_say_no_memory(c->m);
     return c->started ? 0 : ted4_clip_lengths(c->scene, c->shortest, c->longest, c->m);
 }

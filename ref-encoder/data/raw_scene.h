@@ -74,13 +74,14 @@ int ted4_raw_scene_hold_out_named(ted4_raw_scene *s, const ted4_dataset_options 
 typedef int ted4_loader(ted4_raw_scene *s, const char *folder, ted4_message *m);
 
 /* 0, or -1 with *m filled; *s must be zero but for wanted before and is to be freed by the caller either way. */
-ted4_loader ted4_load_colmap, ted4_load_transforms, ted4_load_hypernerf, ted4_load_neu3d, ted4_load_calibration;
+ted4_loader ted4_load_colmap, ted4_load_transforms, ted4_load_hypernerf, ted4_load_neu3d, ted4_load_llff, ted4_load_calibration;
 
 /* Does the folder look like the layout? */
 int ted4_is_colmap(const char *folder);
 int ted4_is_transforms(const char *folder);
 int ted4_is_hypernerf(const char *folder);
 int ted4_is_neu3d(const char *folder);
+int ted4_is_llff(const char *folder);
 int ted4_is_calibration(const char *folder);
 
 /* Takes shots and cloud out of *s. 0, or -1 with *m filled and *d to be freed by the caller. */
