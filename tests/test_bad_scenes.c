@@ -191,6 +191,26 @@ static void test_hold_out(void **state)
     must(remove(tiny_path(&folder, "out/x.ted4")) == 0, "x.ted4");
 }
 
+/* What a scene file says of its rate comes out as it went in. */
+static void test_rate(void **state)
+{
+    static const char *const rates[][2] = { { "6", "3 at 6 a second" }, { "23.976", "3 at 23.976 a second" }, { "0.333", "3 at 0.333 a second" },
+                                            { "29.97002997002997", "3 at 30000/1001 a second" } };
+    char text[1024];
+
+    (void)state;
+    need_program();
+    for (size_t i = 0; i < sizeof rates / sizeof *rates; i++) {
+        snprintf(text, sizeof text, "\"fps\": %s, ", rates[i][0]);
+        scene("rate", text, NULL);
+        assert_int_equal(run("rate -f" OUT QUICK), 0);
+        snprintf(text, sizeof text, "cd %s && %s/ted4info out/x.ted4 | grep -qx 'frames      %s'", folder.path, build, rates[i][1]);
+        if (system(text) != 0)
+            fail_msg("%s", rates[i][0]);
+    }
+    must(remove(tiny_path(&folder, "out/x.ted4")) == 0, "x.ted4");
+}
+
 static void test_cameras(void **state)
 {
     (void)state;
@@ -291,7 +311,7 @@ static void test_options(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_good),  cmocka_unit_test(test_pictures), cmocka_unit_test(test_hold_out),
+        cmocka_unit_test(test_good),  cmocka_unit_test(test_pictures), cmocka_unit_test(test_hold_out), cmocka_unit_test(test_rate),
         cmocka_unit_test(test_cameras),
         cmocka_unit_test(test_empty), cmocka_unit_test(test_output),   cmocka_unit_test(test_options),
     };

@@ -484,6 +484,15 @@ static void test_print(void **state)
     assert_non_null(strstr(text, "layout      nerfstudio\npictures    9 train, 1 test\ncameras     2\nframes      5\n"
                            "size        16 x 12 pixels\nfocal       30..31 x 30..32 pixels\n"));
     assert_non_null(strstr(text, "rate        25 frames/s\n"));
+    /* A still has none, whatever its file says. */
+    d.n_frames = 1;
+    out = tmpfile();
+    assert_non_null(out);
+    ted4_dataset_print(&d, out);
+    rewind(out);
+    text[fread(text, 1, sizeof text - 1, out)] = 0;
+    fclose(out);
+    assert_null(strstr(text, "rate"));
     ted4_dataset_free(&d);
     tiny_free(&f);
 }

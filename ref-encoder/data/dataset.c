@@ -241,6 +241,8 @@ void ted4_dataset_print(const ted4_dataset *d, FILE *out)
     fprintf(out, "points      %zu%s\nbounds      ", d->n_points, d->random_points ? " (random)" : "");
     print_box(out, box);
     fprintf(out, "background  %d %d %d\n", d->background[0], d->background[1], d->background[2]);
+    if (d->n_frames == 1)
+        return;
     if (d->rate > 0)
         fprintf(out, "rate        %.6g frames/s\n", d->rate);
     else

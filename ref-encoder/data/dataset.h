@@ -84,7 +84,8 @@ int ted4_dataset_verify(ted4_dataset *d, const ted4_parallel *p, ted4_message *m
 /* What a training sees of the scene in one number: cameras, times, split, points, background, d->content; not where its files lie. */
 uint64_t ted4_dataset_digest(const ted4_dataset *d);
 
-/* What was found, for a reader: layout, pictures, cameras, frames, sizes, focal lengths, camera centres, points, background, rate. */
+/* What was found, for a reader: layout, pictures, cameras, frames, sizes, focal lengths, camera centres, points, background, and the rate where there are
+ * several frames. */
 void ted4_dataset_print(const ted4_dataset *d, FILE *out);
 
 #endif
