@@ -1,5 +1,6 @@
-/* test_clips.c - scenes of poses_bounds.npy and cams.json as they come: stills in place of clips, fewer clips than rows, clips that
- * start at different times or have different lengths, and clips that lie anywhere.
+/* test_clips.c - scenes of poses_bounds.npy and cams.json as they come: stills in place of clips,
+ * fewer clips than rows, clips that start at different times or have different lengths, and clips
+ * that lie anywhere.
  * SPDX-License-Identifier: BSD-2-Clause */
 #include <math.h>
 #include <setjmp.h>
@@ -24,7 +25,8 @@ static void write_table(const tiny_folder *f, int n, double w, double h)
     tiny_record r = { { 0 }, 0 };
     char head[100];
 
-    snprintf(head, sizeof head, "{'descr': '<f8', 'fortran_order': False, 'shape': (%d, 17), }\n", n);
+    snprintf(head, sizeof head, "{'descr': '<f8', 'fortran_order': False, 'shape': (%d, 17), }\n",
+             n);
     memcpy(r.bytes, "\x93NUMPY\x01\0", r.n = 8);
     tiny_put(&r, strlen(head), 2);
     memcpy(r.bytes + r.n, head, strlen(head));
@@ -37,7 +39,8 @@ static void write_table(const tiny_folder *f, int n, double w, double h)
     tiny_bytes(f, "poses_bounds.npy", r.bytes, r.n);
 }
 
-/* n pictures of that size in a folder of the scene; file i is DSC(10 i).JPG by name and a PNG by content, blue i. */
+/* n pictures of that size in a folder of the scene; file i is DSC(10 i).JPG by name and a PNG by
+ * content, blue i. */
 static void write_stills(const tiny_folder *f, const char *folder, int n, int w, int h)
 {
     for (int i = 0; i < n; i++) {
@@ -117,10 +120,12 @@ static void test_rows(void **state)
 
     (void)state;
     write_table(&f, 5, TINY_W, TINY_H);
-    write_clip(&f, "cam00/images", 2), write_clip(&f, "cam01/images", 2), write_clip(&f, "cam03/images", 2);
+    write_clip(&f, "cam00/images", 2), write_clip(&f, "cam01/images", 2),
+        write_clip(&f, "cam03/images", 2);
     refuse(&f, "poses_bounds.npy", "5 rows, but 3 cameras");
     write_clip(&f, "cam04/images", 2);
-    assert_int_equal(warned(&f, "1 of 5 entries has no picture: ", "row 2: no clip of number 2"), 8);
+    assert_int_equal(warned(&f, "1 of 5 entries has no picture: ", "row 2: no clip of number 2"),
+                     8);
     ted4_dataset d = load(&f, &tiny_options);
     for (size_t i = 0; i < d.n_pictures; i++)
         assert_int_equal(row_of(&d, i), atoi(strstr(d.pictures[i].path, "/cam") + 4));
@@ -150,9 +155,12 @@ static void test_starts(void **state)
     tiny_folder f = tiny_new();
 
     (void)state;
-    write_clip(&f, "a/images", 12), write_clip(&f, "b/images", 12), write_clip(&f, "takes/third", 10);
-    tiny_text(&f, "cams.json", "{\"fps\": 30, \"cameras\": [{\"name\": \"a\", \"start\": -0.1, " CAMERA ", {\"name\": \"b\", \"frame\": 2, " CAMERA
-              ", {\"name\": \"c\", \"video\": \"takes/third\", " CAMERA "]}");
+    write_clip(&f, "a/images", 12), write_clip(&f, "b/images", 12),
+        write_clip(&f, "takes/third", 10);
+    tiny_text(&f, "cams.json",
+              "{\"fps\": 30, \"cameras\": [{\"name\": \"a\", \"start\": -0.1, " CAMERA
+              ", {\"name\": \"b\", \"frame\": 2, " CAMERA ", {\"name\": \"c\", \"video\": "
+                                                          "\"takes/third\", " CAMERA "]}");
     ted4_dataset d = load(&f, &tiny_options);
     assert_int_equal(d.n_warnings, 0);
     assert_int_equal(d.n_frames, 17);           /* a: 0 to 11, b: 5 to 16, c: 3 to 12 */
@@ -172,9 +180,14 @@ static void test_starts(void **state)
     assert_int_equal(d.n_frames, 5);
     assert_int_equal(d.n_pictures, 7);
     ted4_dataset_free(&d);
-    tiny_text(&f, "cams.json", "{\"fps\": 30, \"cameras\": [{\"name\": \"a\", \"start\": 0.05, " CAMERA ", {\"name\": \"b\", " CAMERA "]}");
-    assert_int_equal(warned(&f, "1 of 2 cameras start between two frames", "by up to 0.5 of a frame"), 24);
-    tiny_text(&f, "cams.json", "{\"cameras\": [{\"name\": \"a\", " CAMERA ", {\"name\": \"c\", \"video\": \"takes/third/\", " CAMERA "]}");
+    tiny_text(&f, "cams.json",
+              "{\"fps\": 30, \"cameras\": [{\"name\": \"a\", \"start\": 0.05, " CAMERA
+              ", {\"name\": \"b\", " CAMERA "]}");
+    assert_int_equal(
+        warned(&f, "1 of 2 cameras start between two frames", "by up to 0.5 of a frame"), 24);
+    tiny_text(&f, "cams.json",
+              "{\"cameras\": [{\"name\": \"a\", " CAMERA ", {\"name\": \"c\", \"video\": "
+                                                         "\"takes/third/\", " CAMERA "]}");
     assert_int_equal(warned(&f, "clips have from 10 to 12 frames", "--max-frames 10"), 22);
     tiny_free(&f);
 }
@@ -182,15 +195,17 @@ static void test_starts(void **state)
 /* Text that is no video is told from one, and no list of other files or addresses is followed. */
 static void test_playlists(void **state)
 {
-    static const char *const texts[] = { "#EXTM3U\n#EXT-X-VERSION:3\nx.ts\n", "ffconcat version 1.0\nfile b.mp4\n", "<?xml version=\"1.0\"?><MPD/>",
-                                         "not a video", "" };
+    static const char *const texts[] = { "#EXTM3U\n#EXT-X-VERSION:3\nx.ts\n",
+                                         "ffconcat version 1.0\nfile b.mp4\n",
+                                         "<?xml version=\"1.0\"?><MPD/>", "not a video", "" };
     tiny_folder f = tiny_new();
 
     (void)state;
     tiny_text(&f, "cams.json", "{\"cameras\": [{\"name\": \"a\", " CAMERA "]}");
     for (size_t i = 0; i < sizeof texts / sizeof texts[0]; i++) {
         tiny_text(&f, "a.mp4", texts[i]);
-        refuse(&f, "a.mp4: ", *texts[i] == 0 ? "empty, expected a video" : "text (a playlist?), expected a video");
+        refuse(&f, "a.mp4: ",
+               *texts[i] == 0 ? "empty, expected a video" : "text (a playlist?), expected a video");
     }
     tiny_free(&f);
 }
@@ -212,7 +227,8 @@ static void test_example(void **state)
     tiny_text(&f, "cams.json", begin + 8);
     for (int i = 0; i < 600; i++) {
         char name[64];
-        snprintf(name, sizeof name, "%s/%d.png", i % 2 ? "takes/GX010042.MP4" : "images/right", i / 2);
+        snprintf(name, sizeof name, "%s/%d.png", i % 2 ? "takes/GX010042.MP4" : "images/right",
+                 i / 2);
         tiny_picture(&f, name, 16, 9, i);
     }
     ted4_dataset d = load(&f, &tiny_options);
@@ -226,7 +242,8 @@ static void test_example(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_stills), cmocka_unit_test(test_rows), cmocka_unit_test(test_starts), cmocka_unit_test(test_playlists),
+        cmocka_unit_test(test_stills),  cmocka_unit_test(test_rows),
+        cmocka_unit_test(test_starts),  cmocka_unit_test(test_playlists),
         cmocka_unit_test(test_example),
     };
 

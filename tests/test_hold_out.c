@@ -1,5 +1,6 @@
-/* test_hold_out.c - cameras that the caller names are held out, in every layout, in place of what the layout says; a name that there
- * is not gives the names that there are. Links tests/scenes/ray_*.o.
+/* test_hold_out.c - cameras that the caller names are held out, in every layout, in place of what
+ * the layout says; a name that there is not gives the names that there are. Links
+ * tests/scenes/ray_*.o.
  * SPDX-License-Identifier: BSD-2-Clause */
 #include <setjmp.h>
 #include <stdarg.h>
@@ -13,8 +14,14 @@ enum { TRAIN = 3, TEST = 1, FRAMES = 4 };
 
 static tiny_folder write_scene(ted4_ray_layout layout)
 {
-    const ted4_ray_options o = { .scene = RAY_TURN, .width = 16, .height = 12, .n_train = TRAIN, .n_test = TEST, .n_frames = FRAMES,
-                                 .seed = 3, .layout = layout };
+    const ted4_ray_options o = { .scene = RAY_TURN,
+                                 .width = 16,
+                                 .height = 12,
+                                 .n_train = TRAIN,
+                                 .n_test = TEST,
+                                 .n_frames = FRAMES,
+                                 .seed = 3,
+                                 .layout = layout };
     tiny_folder f = tiny_new();
     ted4_ray_message m;
 
@@ -32,8 +39,10 @@ static const char *load(ted4_dataset *d, const tiny_folder *f, const char *const
     return tiny_load(d, f, &o);
 }
 
-/* All pictures whose path holds one of two texts are test, the others are not; of 16 pictures in 4 cameras of 4 frames. */
-static void held(const tiny_folder *f, const char *const *names, size_t n, const char *first, const char *second)
+/* All pictures whose path holds one of two texts are test, the others are not; of 16 pictures in 4
+ * cameras of 4 frames. */
+static void held(const tiny_folder *f, const char *const *names, size_t n, const char *first,
+                 const char *second)
 {
     ted4_dataset d;
     size_t tests = 0;
@@ -42,7 +51,8 @@ static void held(const tiny_folder *f, const char *const *names, size_t n, const
     assert_int_equal(d.n_pictures, (TRAIN + TEST) * FRAMES);
     for (size_t i = 0; i < d.n_pictures; i++) {
         const char *path = d.pictures[i].path + strlen(f->path);
-        const int expected = strstr(path, first) != NULL || (second != NULL && strstr(path, second) != NULL);
+        const int expected =
+            strstr(path, first) != NULL || (second != NULL && strstr(path, second) != NULL);
         if (d.pictures[i].is_test != expected)
             fail_msg("%s: is_test %d", path, d.pictures[i].is_test);
         tests += d.pictures[i].is_test;
@@ -56,7 +66,8 @@ static void refused(const tiny_folder *f, const char *name, const char *what)
     ted4_dataset d;
     const char *text = load(&d, f, &name, 1);
 
-    if (*text == 0 || strstr(text, "--hold-out ") == NULL || strstr(text, what) == NULL || strchr(text, '\n') != NULL)
+    if (*text == 0 || strstr(text, "--hold-out ") == NULL || strstr(text, what) == NULL ||
+        strchr(text, '\n') != NULL)
         fail_msg("got \"%s\", expected \"%s\"", text, what);
     assert_null(d.pictures);
 }
@@ -64,14 +75,28 @@ static void refused(const tiny_folder *f, const char *name, const char *what)
 /* Layouts whose cameras have names. */
 static void test_labels(void **state)
 {
-    /* What three cameras are called, and parts of their pictures' paths; then all names, as a refusal lists them. */
-    static const struct { ted4_ray_layout layout; const char *name[2], *path[2], *all; } cases[] = {
-        { RAY_NERFSTUDIO, { "0", "2" }, { "train_r_000", "train_r_002" }, "expected one of: 0, 1, 2, 3" },
-        { RAY_HYPERNERF, { "0", "2" }, { "train_r_000", "train_r_002" }, "expected one of: 0, 1, 2, 3" },
+    /* What three cameras are called, and parts of their pictures' paths; then all names, as a
+     * refusal lists them. */
+    static const struct { ted4_ray_layout layout; const char *name[2], *path[2], *all;
+    } cases[] = {
+        { RAY_NERFSTUDIO,
+          { "0", "2" },
+          { "train_r_000", "train_r_002" },
+          "expected one of: 0, 1, 2, 3" },
+        { RAY_HYPERNERF,
+          { "0", "2" },
+          { "train_r_000", "train_r_002" },
+          "expected one of: 0, 1, 2, 3" },
         { RAY_COLMAP, { "cam01", "cam03" }, { "cam01", "cam03" }, "cam00, cam01, cam02, cam03" },
-        { RAY_COLMAP_TEXT, { "1/cam01/", "cam03" }, { "cam01", "cam03" }, "cam00, cam01, cam02, cam03" },
+        { RAY_COLMAP_TEXT,
+          { "1/cam01/", "cam03" },
+          { "cam01", "cam03" },
+          "cam00, cam01, cam02, cam03" },
         { RAY_NEU3D, { "cam02", "cam01" }, { "cam02", "cam01" }, "cam00, cam01, cam02, cam03" },
-        { RAY_CALIBRATION, { "cam03", "cam01" }, { "cam03", "cam01" }, "cam00, cam01, cam02, cam03" },
+        { RAY_CALIBRATION,
+          { "cam03", "cam01" },
+          { "cam03", "cam01" },
+          "cam00, cam01, cam02, cam03" },
     };
 
     (void)state;
@@ -96,7 +121,8 @@ static void test_pictures(void **state)
         held(&f, good + i, 1, "train/r_001", NULL);
     held(&f, good, 3, "train/r_001", NULL);
     refused(&f, "r_000_00", "pictures of several cameras are called so");
-    refused(&f, "001_02", "expected one of: r_000_00.png, r_001_00.png, r_002_00.png, r_000_00.png");
+    refused(&f, "001_02",
+            "expected one of: r_000_00.png, r_001_00.png, r_002_00.png, r_000_00.png");
     tiny_free(&f);
     f = write_scene(RAY_NEU3D);
     held(&f, (const char *const[]){ "cam01/images/0000.png" }, 1, "cam01", NULL);
@@ -104,7 +130,8 @@ static void test_pictures(void **state)
     tiny_free(&f);
 }
 
-/* Pictures that the layout's own split leaves out come back; nothing is left when all cameras are named. */
+/* Pictures that the layout's own split leaves out come back; nothing is left when all cameras are
+ * named. */
 static void test_whole(void **state)
 {
     tiny_folder f = write_scene(RAY_NERFSTUDIO);
@@ -120,7 +147,10 @@ static void test_whole(void **state)
     for (int i = 0; i < 300; i++) {
         if (i < 3)
             tiny_picture(&f, i == 0 ? "p0.png" : i == 1 ? "p1.png" : "p2.png", TINY_W, TINY_H, i);
-        tiny_add(&s, "%s{\"file_path\": \"p%d.png\", \"camera\": %d, \"transform_matrix\": " TINY_POSE "}", i > 0 ? "," : "", i % 3, i);
+        tiny_add(&s,
+                 "%s{\"file_path\": \"p%d.png\", \"camera\": %d, \"transform_matrix\": " TINY_POSE
+                 "}",
+                 i > 0 ? "," : "", i % 3, i);
     }
     tiny_add(&s, "]}");
     tiny_text(&f, "transforms.json", s.text);
@@ -135,7 +165,9 @@ static void test_whole(void **state)
 
 int main(void)
 {
-    const struct CMUnitTest tests[] = { cmocka_unit_test(test_labels), cmocka_unit_test(test_pictures), cmocka_unit_test(test_whole) };
+    const struct CMUnitTest tests[] = { cmocka_unit_test(test_labels),
+                                        cmocka_unit_test(test_pictures),
+                                        cmocka_unit_test(test_whole) };
 
     return cmocka_run_group_tests_name("hold out", tests, NULL, NULL);
 }

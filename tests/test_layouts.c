@@ -108,7 +108,9 @@ static void same_scene(ted4_dataset *d, int tolerance, int split)
 static void test_layouts(void **state)
 {
     /* What each layout is recognised as; splits: by list, by list, 1 of 8, 1 of 8, by list, first camera, times. */
-    static const char *const names[RAY_LAYOUTS] = { "D-NeRF", "nerfstudio", "colmap", "colmap", "hypernerf", "neu3d", "calibration" };
+    static const char *const names[RAY_LAYOUTS] = { "D-NeRF",     "nerfstudio", "colmap",
+                                                    "colmap",     "hypernerf",  "neu3d",
+                                                    "calibration" };
     static const int split[RAY_LAYOUTS] = { 1, 1, 0, 0, 1, 1, 0 };
 
     (void)state;
@@ -123,11 +125,13 @@ static void test_layouts(void **state)
     }
 }
 
-/* A checkpoint refuses a scene that loads in another way than when it was begun: digests do not change, but where a loader is wrong. */
+/* A checkpoint refuses a scene that loads in another way than when it was begun: digests do not
+ * change, but where a loader is wrong. */
 static void test_digests(void **state)
 {
     static const uint64_t known[RAY_LAYOUTS] = {
-        0xb5436a4db0da7991, 0xb5436a4db0da7991, 0x91a33f4aee0502c2, 0x91a33f4aee0502c2, 0xb5436a4db0da7991, 0xb5436a4db0da7991, 0xf5be6c1c9b13f240,
+        0xb5436a4db0da7991, 0xb5436a4db0da7991, 0x91a33f4aee0502c2, 0x91a33f4aee0502c2,
+        0xb5436a4db0da7991, 0xb5436a4db0da7991, 0xf5be6c1c9b13f240,
     };
 
     (void)state;
@@ -357,8 +361,9 @@ static int teardown(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_layouts),           cmocka_unit_test(test_digests),     cmocka_unit_test(test_videos),
-        cmocka_unit_test(test_calibration_split), cmocka_unit_test(test_neu3d_forms), cmocka_unit_test(test_hypernerf_forms),
+        cmocka_unit_test(test_layouts),     cmocka_unit_test(test_digests),
+        cmocka_unit_test(test_videos),      cmocka_unit_test(test_calibration_split),
+        cmocka_unit_test(test_neu3d_forms), cmocka_unit_test(test_hypernerf_forms),
     };
 
     return cmocka_run_group_tests_name("layouts", tests, setup, teardown);

@@ -1,5 +1,6 @@
-/* test_missing.c - entries of a list whose picture is not there are left out, counted, and said once; a picture that is there and
- * broken is an error all the same. Of every layout that lists pictures.
+/* test_missing.c - entries of a list whose picture is not there are left out, counted, and said
+ * once; a picture that is there and broken is an error all the same. Of every layout that lists
+ * pictures.
  * SPDX-License-Identifier: BSD-2-Clause */
 #include <setjmp.h>
 #include <stdarg.h>
@@ -14,8 +15,10 @@ static void gone(const tiny_folder *f, const char *name)
     must(remove(tiny_path(f, name)) == 0, name);
 }
 
-/* 20 frames at as many times; camera_angle_x, and D-NeRF's names without extension where there are two files. */
-static void write_transforms(const tiny_folder *f, const char *file, const char *part, int first, int n, const char *more)
+/* 20 frames at as many times; camera_angle_x, and D-NeRF's names without extension where there are
+ * two files. */
+static void write_transforms(const tiny_folder *f, const char *file, const char *part, int first,
+                             int n, const char *more)
 {
     tiny_string s = { "", 0 };
 
@@ -24,7 +27,9 @@ static void write_transforms(const tiny_folder *f, const char *file, const char 
         char name[64];
         snprintf(name, sizeof name, "%s/r_%02d.png", part, i);
         tiny_picture(f, name, TINY_W, TINY_H, i);
-        tiny_add(&s, "%s{\"file_path\": \"./%s/r_%02d\", \"time\": %g, \"transform_matrix\": [[1,0,0,%d],[0,1,0,0],[0,0,1,0],[0,0,0,1]]}",
+        tiny_add(&s,
+                 "%s{\"file_path\": \"./%s/r_%02d\", \"time\": %g, \"transform_matrix\": "
+                 "[[1,0,0,%d],[0,1,0,0],[0,0,1,0],[0,0,0,1]]}",
                  i > first ? "," : "", part, i, i / 19.0, i);
     }
     tiny_add(&s, "]}");
@@ -40,9 +45,13 @@ static void test_transforms(void **state)
     write_transforms(&f, "transforms_train.json", "train", 0, 16, "");
     write_transforms(&f, "transforms_test.json", "test", 16, 4, "");
     gone(&f, "train/r_03.png");
-    assert_int_equal(warned(&f, "1 of 20 entries has no picture: ", "transforms_train.json: frames[3]: ./train/r_03"), 19);
+    assert_int_equal(warned(&f, "1 of 20 entries has no picture: ",
+                            "transforms_train.json: frames[3]: ./train/r_03"),
+                     19);
     gone(&f, "train/r_07.png"), gone(&f, "test/r_17.png");
-    assert_int_equal(warned(&f, "3 of 20 entries have no picture; the first: ", "transforms_train.json: frames[3]: ./train/r_03"), 17);
+    assert_int_equal(warned(&f, "3 of 20 entries have no picture; the first: ",
+                            "transforms_train.json: frames[3]: ./train/r_03"),
+                     17);
     /* What is left keeps its own time and pose. */
     assert_string_equal(tiny_load(&d, &f, &tiny_options), "");
     assert_string_equal(d.layout, "D-NeRF");
@@ -61,7 +70,8 @@ static void test_transforms(void **state)
         snprintf(name, sizeof name, "train/r_%02d.png", i);
         (void)remove(tiny_path(&f, name));
     }
-    refuse(&f, "none is left to train on; 17 of 20 entries have no picture, the first: ", "frames[0]: ./train/r_00");
+    refuse(&f, "none is left to train on; 17 of 20 entries have no picture, the first: ",
+           "frames[0]: ./train/r_00");
     tiny_free(&f);
 }
 
@@ -72,7 +82,8 @@ static void test_lists(void **state)
     ted4_dataset d;
 
     (void)state;
-    write_transforms(&f, "transforms.json", "images", 0, 8, "\"train_filenames\": [\"images/r_01\", \"images/r_02\", \"images/r_06\"],"
+    write_transforms(&f, "transforms.json", "images", 0, 8,
+                     "\"train_filenames\": [\"images/r_01\", \"images/r_02\", \"images/r_06\"],"
                      "\"test_filenames\": [\"images/r_05\", \"images/r_00\"],");
     gone(&f, "images/r_00.png"), gone(&f, "images/r_02.png"), gone(&f, "images/r_03.png");
     assert_int_equal(warned(&f, "3 of 8 entries", "frames[0]: ./images/r_00"), 3);
@@ -102,8 +113,12 @@ static void test_colmap(void **state)
             tiny_picture(&f, name, TINY_W, TINY_H, i);
     }
     tiny_text(&f, "sparse/0/images.txt", s.text);
-    assert_int_equal(warned(&f, "17 of 50 entries have no picture; the first: COLMAP image \"p01.png\": ", "images/p01.png"), 33);
-    /* Held out is every eighth of those that are there; numbers are times, and a gap is a gap no more than in other names. */
+    assert_int_equal(
+        warned(&f, "17 of 50 entries have no picture; the first: COLMAP image \"p01.png\": ",
+               "images/p01.png"),
+        33);
+    /* Held out is every eighth of those that are there; numbers are times, and a gap is a gap no
+     * more than in other names. */
     assert_string_equal(tiny_load(&d, &f, &tiny_options), "");
     assert_int_equal(d.n_frames, 33);
     assert_int_equal(d.pictures[32].is_test, 1);
@@ -116,15 +131,21 @@ static void test_colmap(void **state)
 
 static void test_hypernerf(void **state)
 {
-    static const char camera[] = "{\"orientation\": [[1,0,0],[0,1,0],[0,0,1]], \"position\": [0,0,1], \"focal_length\": 9,"
+    static const char camera[] = "{\"orientation\": [[1,0,0],[0,1,0],[0,0,1]], \"position\": "
+                                 "[0,0,1], \"focal_length\": 9,"
                                  "\"principal_point\": [8, 6], \"image_size\": [16, 12]}";
     tiny_folder f = tiny_new();
 
     (void)state;
-    tiny_text(&f, "dataset.json", "{\"ids\": [\"a\", \"b\", \"c\"], \"train_ids\": [\"a\", \"b\"], \"val_ids\": [\"c\"]}");
-    tiny_text(&f, "metadata.json", "{\"a\": {\"warp_id\": 0}, \"b\": {\"warp_id\": 1}, \"c\": {\"warp_id\": 2}}");
-    tiny_text(&f, "camera/a.json", camera), tiny_text(&f, "camera/b.json", camera), tiny_text(&f, "camera/c.json", camera);
-    tiny_picture(&f, "rgb/1x/a.png", TINY_W, TINY_H, 0), tiny_picture(&f, "rgb/1x/c.png", TINY_W, TINY_H, 0);
+    tiny_text(&f, "dataset.json",
+              "{\"ids\": [\"a\", \"b\", \"c\"], \"train_ids\": [\"a\", \"b\"], \"val_ids\": "
+              "[\"c\"]}");
+    tiny_text(&f, "metadata.json",
+              "{\"a\": {\"warp_id\": 0}, \"b\": {\"warp_id\": 1}, \"c\": {\"warp_id\": 2}}");
+    tiny_text(&f, "camera/a.json", camera), tiny_text(&f, "camera/b.json", camera),
+        tiny_text(&f, "camera/c.json", camera);
+    tiny_picture(&f, "rgb/1x/a.png", TINY_W, TINY_H, 0),
+        tiny_picture(&f, "rgb/1x/c.png", TINY_W, TINY_H, 0);
     assert_int_equal(warned(&f, "1 of 3 entries has no picture: ", "dataset.json: \"b\": "), 2);
     gone(&f, "rgb/1x/a.png"), gone(&f, "rgb/1x/c.png");
     refuse(&f, "none of 3 entries has a picture; the first: ", "dataset.json: \"a\": ");
@@ -142,8 +163,10 @@ static void test_calibration(void **state)
     tiny_add(&s, "{\"cameras\": [");
     for (int i = 0; i < 4; i++) {
         char name[64];
-        tiny_add(&s, "%s{\"name\": \"eye%d\", \"w\": 16, \"h\": 12, \"K\": [[9,0,8],[0,9,6],[0,0,1]],"
-                 "\"w2c\": [[1,0,0,%d],[0,1,0,0],[0,0,1,0],[0,0,0,1]]}", i > 0 ? "," : "", i, i);
+        tiny_add(&s,
+                 "%s{\"name\": \"eye%d\", \"w\": 16, \"h\": 12, \"K\": [[9,0,8],[0,9,6],[0,0,1]],"
+                 "\"w2c\": [[1,0,0,%d],[0,1,0,0],[0,0,1,0],[0,0,0,1]]}",
+                 i > 0 ? "," : "", i, i);
         for (int k = 0; k < 3 && i != 1; k++) {
             snprintf(name, sizeof name, "eye%d/images/%d.png", i, k);
             tiny_picture(&f, name, TINY_W, TINY_H, k);
@@ -151,7 +174,9 @@ static void test_calibration(void **state)
     }
     tiny_add(&s, "]}");
     tiny_text(&f, "cams.json", s.text);
-    assert_int_equal(warned(&f, "1 of 4 entries has no picture: ", "cams.json: cameras[1]: eye1: no such video"), 9);
+    assert_int_equal(
+        warned(&f, "1 of 4 entries has no picture: ", "cams.json: cameras[1]: eye1: no such video"),
+        9);
     assert_string_equal(tiny_load(&d, &f, &tiny_options), "");
     assert_int_equal(d.n_cameras, 3);
     assert_true(d.pictures[3].camera.t[0] == 2);
@@ -162,8 +187,9 @@ static void test_calibration(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_transforms), cmocka_unit_test(test_lists),       cmocka_unit_test(test_colmap),
-        cmocka_unit_test(test_hypernerf),  cmocka_unit_test(test_calibration),
+        cmocka_unit_test(test_transforms),  cmocka_unit_test(test_lists),
+        cmocka_unit_test(test_colmap),      cmocka_unit_test(test_hypernerf),
+        cmocka_unit_test(test_calibration),
     };
 
     return cmocka_run_group_tests_name("missing pictures", tests, NULL, NULL);

@@ -1,5 +1,5 @@
-/* test_pictures.c - pictures of every kind that PNG and JPEG have come out as bytes that are right, or are refused; alpha that is
- * straight, as PNG says, or premultiplied, as some programs write it.
+/* test_pictures.c - pictures of every kind that PNG and JPEG have come out as bytes that are right,
+ * or are refused; alpha that is straight, as PNG says, or premultiplied, as some programs write it.
  * SPDX-License-Identifier: BSD-2-Clause */
 #include <setjmp.h>
 #include <stdarg.h>
@@ -20,10 +20,15 @@ static int level(int x, int y, int c)
     return c == 3 ? (x * 23 + y) % 256 : (x * 20 + y * 7 + c * 40) % 256;
 }
 
-/* kind: PNG_COLOR_TYPE_*. Samples of 16 bits are 257 times those of 8, less 100 where that rounds to the same. */
-static void write_png(const char *path, int kind, int depth, int interlace, const png_color_16 *clear)
+/* kind: PNG_COLOR_TYPE_*. Samples of 16 bits are 257 times those of 8, less 100 where that rounds
+ * to the same. */
+static void write_png(const char *path, int kind, int depth, int interlace,
+                      const png_color_16 *clear)
 {
-    const int n = kind == PNG_COLOR_TYPE_GRAY ? 1 : kind == PNG_COLOR_TYPE_GRAY_ALPHA ? 2 : kind == PNG_COLOR_TYPE_RGB ? 3 : 4;
+    const int n = kind == PNG_COLOR_TYPE_GRAY         ? 1
+                  : kind == PNG_COLOR_TYPE_GRAY_ALPHA ? 2
+                  : kind == PNG_COLOR_TYPE_RGB        ? 3
+                                                      : 4;
     static uint8_t px[H][W * 8];
     png_bytep rows[H];
     FILE *f = fopen(path, "wb");
@@ -32,7 +37,8 @@ static void write_png(const char *path, int kind, int depth, int interlace, cons
 
     assert_non_null(f);
     for (int i = 0; i < W * H * n; i++) {
-        const int x = i / n % W, y = i / n / W, c = n < 3 && i % n == 1 ? 3 : i % n, v = level(x, y, c);
+        const int x = i / n % W, y = i / n / W, c = n < 3 && i % n == 1 ? 3 : i % n,
+                  v = level(x, y, c);
         const int wide = v > 0 ? 257 * v - 100 : 0;
         uint8_t *at = px[y] + (x * n + i % n) * depth / 8;
         at[0] = (uint8_t)(depth == 16 ? wide >> 8 : v);
@@ -42,8 +48,8 @@ static void write_png(const char *path, int kind, int depth, int interlace, cons
     for (int y = 0; y < H; y++)
         rows[y] = px[y];
     png_init_io(p, f);
-    png_set_IHDR(p, info, W, H, depth, kind, interlace ? PNG_INTERLACE_ADAM7 : PNG_INTERLACE_NONE, PNG_COMPRESSION_TYPE_DEFAULT,
-                 PNG_FILTER_TYPE_DEFAULT);
+    png_set_IHDR(p, info, W, H, depth, kind, interlace ? PNG_INTERLACE_ADAM7 : PNG_INTERLACE_NONE,
+                 PNG_COMPRESSION_TYPE_DEFAULT, PNG_FILTER_TYPE_DEFAULT);
     if (clear != NULL)
         png_set_tRNS(p, info, NULL, 0, clear);
     png_write_info(p, info);
@@ -68,7 +74,8 @@ static ted4_image decode(const char *path)
 
 static void test_png(void **state)
 {
-    static const int kinds[] = { PNG_COLOR_TYPE_GRAY, PNG_COLOR_TYPE_GRAY_ALPHA, PNG_COLOR_TYPE_RGB, PNG_COLOR_TYPE_RGB_ALPHA };
+    static const int kinds[] = { PNG_COLOR_TYPE_GRAY, PNG_COLOR_TYPE_GRAY_ALPHA, PNG_COLOR_TYPE_RGB,
+                                 PNG_COLOR_TYPE_RGB_ALPHA };
     tiny_folder f = tiny_new();
     const char *path = tiny_path(&f, "a.png");
 
@@ -81,13 +88,18 @@ static void test_png(void **state)
         assert_int_equal(image.channels, kind & PNG_COLOR_MASK_ALPHA ? 4 : 3);
         for (int i = 0; i < W * H * image.channels; i++) {
             const int c = i % image.channels, at = i / image.channels;
-            const int want = level(at % W, at / W, c == 3 ? 3 : kind & PNG_COLOR_MASK_COLOR ? c : 0);
+            const int want = level(at % W, at / W,
+                                   c == 3                        ? 3
+                                   : kind & PNG_COLOR_MASK_COLOR ? c
+                                                                 : 0);
             if (image.bytes[i] != want)
-                fail_msg("kind %d, %d bits, interlaced %d: byte %d is %d, expected %d", kind, depth, k & 8, i, image.bytes[i], want);
+                fail_msg("kind %d, %d bits, interlaced %d: byte %d is %d, expected %d", kind, depth,
+                         k & 8, i, image.bytes[i], want);
         }
         free(image.bytes);
     }
-    /* Cut anywhere, the last one, interlaced and of 16 bits, is an error; its header alone is none to one who reads headers. */
+    /* Cut anywhere, the last one, interlaced and of 16 bits, is an error; its header alone is none
+     * to one who reads headers. */
     const size_t n = tiny_size(&f, "a.png");
     for (size_t k = n - 1; k > 8; k -= 5) {
         ted4_image image;
@@ -109,7 +121,8 @@ static void test_clear_colour(void **state)
 
     (void)state;
     for (int k = 0; k < 2; k++) {
-        write_png(path, k == 0 ? PNG_COLOR_TYPE_GRAY : PNG_COLOR_TYPE_RGB, 8, 0, k == 0 ? &grey : &rgb);
+        write_png(path, k == 0 ? PNG_COLOR_TYPE_GRAY : PNG_COLOR_TYPE_RGB, 8, 0,
+                  k == 0 ? &grey : &rgb);
         ted4_image image = decode(path);
         assert_int_equal(image.channels, 4);
         for (int i = 0; i < W * H; i++)
@@ -167,7 +180,8 @@ static void test_jpeg(void **state)
         image = decode(path);
         assert_true(image.width == 48 && image.height == 32 && image.channels == 3);
         for (int i = 0; i < 48 * 32 * 3; i++)
-            assert_true(abs(image.bytes[i] - (2 * (i / 3 % 48) + 2 * (i / 3 / 48) + (n == 3 ? 20 * (i % 3) : 0))) <= 8);
+            assert_true(abs(image.bytes[i] - (2 * (i / 3 % 48) + 2 * (i / 3 / 48) +
+                                              (n == 3 ? 20 * (i % 3) : 0))) <= 8);
         free(image.bytes);
     }
     write_jpeg(path, JCS_CMYK, 4, 0, 0);
@@ -179,18 +193,25 @@ static void test_jpeg(void **state)
     tiny_free(&f);
 }
 
-/* Half-transparent orange: straight 200 100 0, premultiplied 100 50 0; then what no premultiplied picture has, brighter than white. */
+/* Half-transparent orange: straight 200 100 0, premultiplied 100 50 0; then what no premultiplied
+ * picture has, brighter than white. */
 static void test_alpha(void **state)
 {
-    const uint8_t straight[16] = { 200, 100, 0, 128, 9, 8, 7, 255, 90, 90, 90, 0, 255, 255, 255, 128 };
-    const uint8_t premultiplied[16] = { 100, 50, 0, 128, 9, 8, 7, 255, 0, 0, 0, 0, 255, 255, 255, 128 };
+    const uint8_t straight[16] = {
+        200, 100, 0, 128, 9, 8, 7, 255, 90, 90, 90, 0, 255, 255, 255, 128
+    };
+    const uint8_t premultiplied[16] = { 100, 50, 0, 128, 9,   8,   7,   255,
+                                        0,   0,  0, 0,   255, 255, 255, 128 };
     const uint8_t white[12] = { 227, 177, 127, 9, 8, 7, 255, 255, 255, 255, 255, 255 };
-    const uint8_t black[2][12] = { { 100, 50, 0, 9, 8, 7, 0, 0, 0, 128, 128, 128 }, { 100, 50, 0, 9, 8, 7, 0, 0, 0, 255, 255, 255 } };
+    const uint8_t black[2][12] = { { 100, 50, 0, 9, 8, 7, 0, 0, 0, 128, 128, 128 },
+                                   { 100, 50, 0, 9, 8, 7, 0, 0, 0, 255, 255, 255 } };
     tiny_folder f = tiny_new();
     uint64_t digest[2];
 
     (void)state;
-    tiny_text(&f, "transforms.json", "{\"fl_x\": 9, \"frames\": [{\"file_path\": \"p.png\", \"transform_matrix\": " TINY_POSE "}]}");
+    tiny_text(&f, "transforms.json",
+              "{\"fl_x\": 9, \"frames\": [{\"file_path\": \"p.png\", "
+              "\"transform_matrix\": " TINY_POSE "}]}");
     for (int k = 0; k < 4; k++) {
         ted4_dataset_options o = tiny_options;
         ted4_dataset d;
@@ -214,7 +235,10 @@ static void test_alpha(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_png), cmocka_unit_test(test_clear_colour), cmocka_unit_test(test_jpeg), cmocka_unit_test(test_alpha),
+        cmocka_unit_test(test_png),
+        cmocka_unit_test(test_clear_colour),
+        cmocka_unit_test(test_jpeg),
+        cmocka_unit_test(test_alpha),
     };
 
     return cmocka_run_group_tests_name("pictures", tests, NULL, NULL);

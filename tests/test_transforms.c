@@ -1,5 +1,6 @@
-/* test_transforms.c - transforms files as other programs write them: intrinsics in each frame and of several forms, names of pictures
- * in any form, one file or another missing, times of their own, and what the layout is called.
+/* test_transforms.c - transforms files as other programs write them: intrinsics in each frame and
+ * of several forms, names of pictures in any form, one file or another missing, times of their own,
+ * and what the layout is called.
  * SPDX-License-Identifier: BSD-2-Clause */
 #include <math.h>
 #include <setjmp.h>
@@ -37,7 +38,8 @@ static void check_lenses(const tiny_folder *f, const char *top, const lens_case 
         char name[64];
         snprintf(name, sizeof name, "images/%03d.png", i);
         tiny_picture(f, name, cases[i].w, cases[i].h, i);
-        tiny_add(&s, "%s{\"file_path\": \"images/%03d.png\"%s" POSE, i > 0 ? "," : "", i, cases[i].frame);
+        tiny_add(&s, "%s{\"file_path\": \"images/%03d.png\"%s" POSE, i > 0 ? "," : "", i,
+                 cases[i].frame);
     }
     tiny_add(&s, "]}");
     tiny_text(f, "transforms.json", s.text);
@@ -61,15 +63,18 @@ static void test_lenses(void **state)
 {
     const double third = 8 / tan(0.5), half = 10 / tan(0.25);
     const lens_case own[] = {
-        { ", \"fl_x\": 20, \"fl_y\": 21, \"cx\": 7, \"cy\": 5, \"w\": 16, \"h\": 12", 16, 12, 20, 21, 7, 5 },
+        { ", \"fl_x\": 20, \"fl_y\": 21, \"cx\": 7, \"cy\": 5, \"w\": 16, \"h\": 12", 16, 12, 20,
+          21, 7, 5 },
         { ", \"fl_x\": 30, \"w\": 20, \"h\": 14, \"k1\": 0, \"k3\": 0.0", 20, 14, 30, 30, 10, 7 },
         { ", \"K\": [[22, 0, 6], [0, 23, 4], [0, 0, 1]]", 12, 8, 22, 23, 6, 4 },
-        { ", \"intrinsics\": [22, 0, 6, 0, 23, 4, 0, 0, 1], \"w\": 24, \"h\": 16", 12, 8, 11, 11.5, 3, 2 },
+        { ", \"intrinsics\": [22, 0, 6, 0, 23, 4, 0, 0, 1], \"w\": 24, \"h\": 16", 12, 8, 11, 11.5,
+          3, 2 },
         { ", \"intrinsics\": [22, 23, 6, 4]", 13, 9, 22, 23, 6, 4 },
         { ", \"camera_angle_x\": 1", 16, 10, third, third, 8, 5 },
         { ", \"camera_angle_x\": 0.5, \"cx\": 9", 20, 10, half, half, 9, 5 },
     };
-    /* A frame's own matrix goes before all that the top says of focal length and centre; a single field of a frame before that field. */
+    /* A frame's own matrix goes before all that the top says of focal length and centre; a single
+     * field of a frame before that field. */
     const lens_case above[] = {
         { ", \"K\": [[22, 0, 6], [0, 23, 4], [0, 0, 1]]", 16, 12, 22, 23, 6, 4 },
         { ", \"camera_angle_x\": 1", 16, 12, third, third, 7, 6 },
@@ -87,12 +92,23 @@ static void test_lenses(void **state)
 /* Every way to name a picture, and the one that is meant. */
 static void test_names(void **state)
 {
-    static const struct { const char *name, *file; } cases[] = {
-        { "images/a0.png", "images/a0.png" },         { "./images/a1.png", "images/a1.png" }, { "images/a2", "images/a2.png" },
-        { "images/a3", "images/a3.PNG" },             { "a4.png", "images/a4.png" },          { "a5", "rgb/a5.png" },
-        { "./a6", "frames/a6.JPG" },                  { "images\\\\a7.png", "images/a7.png" }, { ".\\\\images\\\\a8", "images/a8.JPEG" },
-        { "/elsewhere/scene/images/a9.png", "images/a9.png" }, { "C:\\\\other\\\\b0.png", "b0.png" }, { "images/b1.jpg", "images/b1.png" },
-        { "scene/images/b2.PNG", "images/b2.png" },   { "images/b3.1", "images/b3.1.png" },   { "images//b4.png", "images/b4.png" },
+    static const struct { const char *name, *file;
+    } cases[] = {
+        { "images/a0.png", "images/a0.png" },
+        { "./images/a1.png", "images/a1.png" },
+        { "images/a2", "images/a2.png" },
+        { "images/a3", "images/a3.PNG" },
+        { "a4.png", "images/a4.png" },
+        { "a5", "rgb/a5.png" },
+        { "./a6", "frames/a6.JPG" },
+        { "images\\\\a7.png", "images/a7.png" },
+        { ".\\\\images\\\\a8", "images/a8.JPEG" },
+        { "/elsewhere/scene/images/a9.png", "images/a9.png" },
+        { "C:\\\\other\\\\b0.png", "b0.png" },
+        { "images/b1.jpg", "images/b1.png" },
+        { "scene/images/b2.PNG", "images/b2.png" },
+        { "images/b3.1", "images/b3.1.png" },
+        { "images//b4.png", "images/b4.png" },
         { "../x/images/b5.png", "images/b5.png" },
     };
     enum { N = sizeof cases / sizeof cases[0] };
@@ -127,7 +143,8 @@ static void test_names(void **state)
 }
 
 /* Ten frames; time of frame i: from + i * step; step < 0: none. */
-static void write_part(const tiny_folder *f, const char *file, const char *part, const char *top, double from, double step)
+static void write_part(const tiny_folder *f, const char *file, const char *part, const char *top,
+                       double from, double step)
 {
     tiny_string s = { "", 0 };
 
@@ -189,7 +206,8 @@ static void test_files(void **state)
     write_part(&f, "transforms_train.json", "train", "\"fl_x\": 12,", 0, -1);
     write_part(&f, "transforms_test.json", "test", "\"fl_x\": 12,", 0, -1);
     expect(&f, 20, 10, "blender");
-    write_part(&f, "transforms_test.json", "test", "\"fl_x\": 12, \"camera_model\": \"OPENCV\",", 0, -1);
+    write_part(&f, "transforms_test.json", "test", "\"fl_x\": 12, \"camera_model\": \"OPENCV\",", 0,
+               -1);
     expect(&f, 20, 10, "nerfstudio");
     tiny_free(&f);
     f = tiny_new();
@@ -219,7 +237,8 @@ static void test_times(void **state)
     assert_int_equal(d.n_warnings, 1);
     assert_non_null(strstr(d.warnings[0], "times have no common step: of 20 pictures, "));
     for (size_t i = 0; i < d.n_pictures; i++) {
-        const double time = d.pictures[i].is_test ? 0.0000123 + (double)(i - 10) * 0.0998765 : 0.1 * (double)i;
+        const double time =
+            d.pictures[i].is_test ? 0.0000123 + (double)(i - 10) * 0.0998765 : 0.1 * (double)i;
         assert_true(fabs(d.pictures[i].frame / (d.n_frames - 1.0) - time / 0.9) < 0.001);
     }
     ted4_dataset_free(&d);
@@ -229,7 +248,10 @@ static void test_times(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_lenses), cmocka_unit_test(test_names), cmocka_unit_test(test_files), cmocka_unit_test(test_times),
+        cmocka_unit_test(test_lenses),
+        cmocka_unit_test(test_names),
+        cmocka_unit_test(test_files),
+        cmocka_unit_test(test_times),
     };
 
     return cmocka_run_group_tests_name("transforms", tests, NULL, NULL);

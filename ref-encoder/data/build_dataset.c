@@ -141,7 +141,8 @@ static int number_cameras(ted4_dataset *d, const ted4_shot *shots, ted4_message 
     return result != 0 ? ted4_say_no_memory(m) : 0;
 }
 
-/* Farther from its frame than this part of the distance between two frames, a picture's time is said to have moved. */
+/* Farther from its frame than this part of the distance between two frames, a picture's time is
+ * said to have moved. */
 static const double MOVED = 0.1;
 
 /* Warns of times that have no frame of their own. 0, or -1: no memory. */
@@ -156,12 +157,17 @@ static int say_moved(ted4_raw_scene *s, const ted4_dataset *d)
         last = fmax(last, s->shots[i].time);
     }
     for (size_t i = 0; i < s->n_shots && last > first; i++) {
-        const double off = fabs((s->shots[i].time - first) / (last - first) * steps - d->pictures[i].frame);
+        const double off =
+            fabs((s->shots[i].time - first) / (last - first) * steps - d->pictures[i].frame);
         n += off > MOVED;
         worst = fmax(worst, off);
     }
-    return n == 0 ? 0 : ted4_raw_scene_warn(s, "times have no common step: of %zu pictures, %zu move to the nearest of %u frames, by up to %.2g "
-                                            "of the whole time", s->n_shots, n, (unsigned)d->n_frames, worst / steps);
+    return n == 0 ? 0
+                  : ted4_raw_scene_warn(s,
+                                        "times have no common step: of %zu pictures, %zu move to "
+                                        "the nearest of %u frames, by up to %.2g "
+                                        "of the whole time",
+                                        s->n_shots, n, (unsigned)d->n_frames, worst / steps);
 }
 
 static int number_frames(ted4_dataset *d, ted4_raw_scene *s, ted4_message *m)
@@ -230,9 +236,13 @@ static int split(ted4_raw_scene *s, ted4_message *m)
     s->capacity = s->n_shots;
     if (!sorted[0].is_test)
         return 0;
-    return s->n_missing == 0 ? ted4_say(m, "all %zu pictures are held out, none is left to train on", s->n_shots) :
-           ted4_say(m, "all %zu pictures that are there are held out, none is left to train on; %zu of %zu entries have no picture, "
-                    "the first: %s", s->n_shots, s->n_missing, s->n_entries, s->first_missing);
+    return s->n_missing == 0
+               ? ted4_say(m, "all %zu pictures are held out, none is left to train on", s->n_shots)
+               : ted4_say(m,
+                          "all %zu pictures that are there are held out, none is left to train on; "
+                          "%zu of %zu entries have no picture, "
+                          "the first: %s",
+                          s->n_shots, s->n_missing, s->n_entries, s->first_missing);
 }
 
 /* Entries without a picture were left out: other programs do so, and what is left may well do. */
@@ -241,11 +251,16 @@ static int say_missing(ted4_raw_scene *s, ted4_message *m)
     if (s->n_missing == 0)
         return 0;
     if (s->n_shots == 0)
-        return s->n_entries == 1 ? ted4_say(m, "the scene's only entry has no picture: %s", s->first_missing) :
-               ted4_say(m, "none of %zu entries has a picture; the first: %s", s->n_entries, s->first_missing);
-    const int result = s->n_missing == 1 ?
-        ted4_raw_scene_warn(s, "1 of %zu entries has no picture: %s", s->n_entries, s->first_missing) :
-        ted4_raw_scene_warn(s, "%zu of %zu entries have no picture; the first: %s", s->n_missing, s->n_entries, s->first_missing);
+        return s->n_entries == 1
+                   ? ted4_say(m, "the scene's only entry has no picture: %s", s->first_missing)
+                   : ted4_say(m, "none of %zu entries has a picture; the first: %s", s->n_entries,
+                              s->first_missing);
+    const int result =
+        s->n_missing == 1
+            ? ted4_raw_scene_warn(s, "1 of %zu entries has no picture: %s", s->n_entries,
+                                  s->first_missing)
+            : ted4_raw_scene_warn(s, "%zu of %zu entries have no picture; the first: %s",
+                                  s->n_missing, s->n_entries, s->first_missing);
     return result != 0 ? ted4_say_no_memory(m) : 0;
 }
 
@@ -308,7 +323,8 @@ int ted4_build_dataset(ted4_dataset *d, ted4_raw_scene *s, const ted4_dataset_op
             return -1;
     d->rate = s->rate;
     choose_background(d, s, o);
-    if (number_frames(d, s, m) != 0 || number_cameras(d, s->shots, m) != 0 || take_points(d, s, o, m) != 0)
+    if (number_frames(d, s, m) != 0 || number_cameras(d, s->shots, m) != 0 ||
+        take_points(d, s, o, m) != 0)
         return -1;
     d->warnings = s->warnings;
     d->n_warnings = s->n_warnings;

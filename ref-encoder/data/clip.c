@@ -152,7 +152,8 @@ static void keep(ted4_name_list *l, size_t most)
 /* The video of that name beside the scene's list, whatever its kind; owned by the caller. */
 static char *find_video(const char *folder, const char *name)
 {
-    static const char *const ends[] = { "mp4", "mov", "mkv", "avi", "webm", "m4v", "MP4", "MOV", "MKV", "AVI" };
+    static const char *const ends[] = { "mp4", "mov", "mkv", "avi", "webm",
+                                        "m4v", "MP4", "MOV", "MKV", "AVI" };
     char file[300];
 
     for (size_t i = 0; i < sizeof ends / sizeof ends[0]; i++) {
@@ -165,8 +166,9 @@ static char *find_video(const char *folder, const char *name)
     return NULL;
 }
 
-/* The folder of a clip's pictures, if need be unpacked; owned by the caller. As ted4_clip_pictures. */
-static int find_place(const char *folder, const char *name, const char *video, size_t most, char **place, ted4_message *m)
+/* The folder of a clip's pictures, if need be unpacked; the caller's. As ted4_clip_pictures. */
+static int find_place(const char *folder, const char *name, const char *video, size_t most,
+                      char **place, ted4_message *m)
 {
     char *path = video == NULL ? NULL : ted4_path_join(folder, video);
 
@@ -230,7 +232,10 @@ int ted4_clip_add(ted4_raw_scene *s, const ted4_name_list *pictures, const char 
 
 int ted4_clip_lengths(ted4_raw_scene *s, size_t shortest, size_t longest, ted4_message *m)
 {
-    return shortest == longest ||
-           ted4_raw_scene_warn(s, "clips have from %zu to %zu frames: at the last times some cameras are missing (--max-frames %zu "
-                               "leaves these times out)", shortest, longest, shortest) == 0 ? 0 : ted4_say_no_memory(m);
+    if (shortest == longest)
+        return 0;
+    const int result = ted4_raw_scene_warn(
+        s, "clips have from %zu to %zu frames: at the last times some cameras are missing "
+        "(--max-frames %zu leaves these times out)", shortest, longest, shortest);
+    return result == 0 ? 0 : ted4_say_no_memory(m);
 }

@@ -37,7 +37,8 @@ typedef struct ted4_dataset {
     double        rate;         /* frames a second, 0: unknown */
     uint8_t       background[3];
     uint64_t      content;      /* digest of all picture files; 0 until ted4_dataset_verify */
-    char        **warnings;     /* [n_warnings] what was passed over or put right while loading, a sentence a kind; owned */
+    char        **warnings;     /* [n_warnings] what was passed over or put right while loading, one
+                                 * sentence a kind; owned */
     size_t        n_warnings;
     int           ahead;        /* threads for ted4_dataset_ahead; 0 after loading, the caller may change it: no pixel depends on it */
     struct ted4_source      *sources;   /* [n_pictures] how files become pixels; owned, opaque */
@@ -50,9 +51,11 @@ typedef struct {
     uint32_t    seed;           /* for random points */
     size_t      cache_bytes;    /* bound of decoded pixels kept in memory */
     uint32_t    max_frames;     /* only so many times, the first ones; 0: 300 of Neu3D, else all */
-    int         premultiplied;  /* colours of RGBA images are multiplied by alpha already; 0: straight, as PNG has it */
-    const char *const *hold_out;    /* [n_hold_out] cameras whose pictures are test, and no others, whatever the layout says: the
-                                     * camera's label, its folder, or the name of a picture of it; borrowed */
+    int         premultiplied;  /* colours of RGBA images are multiplied by alpha already; 0:
+                                 * straight, as PNG has it */
+    const char *const *hold_out;    /* [n_hold_out] cameras whose pictures are test, and no others,
+                                     * whatever the layout says: the camera's label, its folder, or
+                                     * the name of a picture of it; borrowed */
     size_t      n_hold_out;     /* 0: the layout's split */
 } ted4_dataset_options;
 
@@ -84,8 +87,8 @@ int ted4_dataset_verify(ted4_dataset *d, const ted4_parallel *p, ted4_message *m
 /* What a training sees of the scene in one number: cameras, times, split, points, background, d->content; not where its files lie. */
 uint64_t ted4_dataset_digest(const ted4_dataset *d);
 
-/* What was found, for a reader: layout, pictures, cameras, frames, sizes, focal lengths, camera centres, points, background, and the rate where there are
- * several frames. */
+/* What was found, for a reader: layout, pictures, cameras, frames, sizes, focal lengths, camera
+ * centres, points, background, and the rate where there are several frames. */
 void ted4_dataset_print(const ted4_dataset *d, FILE *out);
 
 #endif

@@ -8,7 +8,8 @@
 #include <string.h>
 #include "data/picture_path.h"
 
-/* Shots without a label are the same camera when their poses are, to six decimals; then the label is the pose. */
+/* Shots without a label are the same camera when their poses are, to six decimals; then the label
+ * is the pose. */
 static char *pose_label(const ted4_shot *s)
 {
     char text[12 * 26], *at = text;
@@ -33,10 +34,12 @@ int ted4_raw_scene_label(ted4_raw_scene *s)
     return 0;
 }
 
-/* COLMAP's labels are NUMBER/FOLDER/, of which the folder alone will do, and the number where there is none. */
+/* COLMAP's labels are NUMBER/FOLDER/, of which the folder alone will do, and the number where there
+ * is none. */
 static const char *short_label(const char *label, size_t *n)
 {
-    const char *slash = strchr(label, '/'), *folder = slash != NULL && slash[1] != 0 ? slash + 1 : label;
+    const char *slash = strchr(label, '/'),
+               *folder = slash != NULL && slash[1] != 0 ? slash + 1 : label;
 
     *n = strlen(folder);
     while (*n > 1 && folder[*n - 1] == '/')
@@ -49,7 +52,8 @@ static int is_label(const ted4_shot *s, const char *name)
     size_t n;
     const char *label = short_label(s->camera, &n);
 
-    return !s->is_posed && (strcmp(s->camera, name) == 0 || (strlen(name) == n && strncmp(label, name, n) == 0));
+    return !s->is_posed &&
+           (strcmp(s->camera, name) == 0 || (strlen(name) == n && strncmp(label, name, n) == 0));
 }
 
 /* Do the last parts of the path, with or without its extension, read so? */
@@ -61,7 +65,8 @@ static int is_picture(const ted4_shot *s, const char *name)
     const size_t ends[2] = { n, bare };
 
     for (int i = 0; i < 2; i++)
-        if (k > 0 && k <= ends[i] && strncmp(s->path + ends[i] - k, name, k) == 0 && (k == ends[i] || s->path[ends[i] - k - 1] == '/'))
+        if (k > 0 && k <= ends[i] && strncmp(s->path + ends[i] - k, name, k) == 0 &&
+            (k == ends[i] || s->path[ends[i] - k - 1] == '/'))
             return 1;
     return 0;
 }
@@ -85,7 +90,8 @@ static void list_names(const ted4_raw_scene *s, char *text, size_t size)
             continue;
         n++;
         if (used + length + 40 < size)
-            used += (size_t)snprintf(text + used, size - used, "%s%.*s", n > 1 ? ", " : "", (int)length, name);
+            used += (size_t)snprintf(text + used, size - used, "%s%.*s", n > 1 ? ", " : "",
+                                     (int)length, name);
         else if (used + 39 < size)
             used = size - 39;
     }
@@ -106,14 +112,18 @@ static const char *find_camera(const ted4_raw_scene *s, const char *name, ted4_m
         if (!is_picture(&s->shots[i], name))
             continue;
         if (found != NULL && strcmp(found, s->shots[i].camera) != 0) {
-            ted4_say(m, "--hold-out %.200s: pictures of several cameras are called so, expected more of the path", name);
+            ted4_say(m,
+                     "--hold-out %.200s: pictures of several cameras are called so, expected more "
+                     "of the path",
+                     name);
             return NULL;
         }
         found = s->shots[i].camera;
     }
     if (found == NULL) {
         list_names(s, names, sizeof names);
-        ted4_say(m, "--hold-out %.200s: no camera or picture of this name, expected one of: %s", name, names);
+        ted4_say(m, "--hold-out %.200s: no camera or picture of this name, expected one of: %s",
+                 name, names);
     }
     return found;
 }

@@ -1,6 +1,7 @@
-/* image_png.c - interlaced PNG of 16 bits to RGB or RGBA bytes: libpng's simplified interface (image_file.c) mixes up the rows of
- * these (pnggroup/libpng issue 853). With setjmp, as image_jpeg.c, and for the same reason: everything that lives across the jump
- * belongs to the caller of the function that sets it.
+/* image_png.c - interlaced PNG of 16 bits to RGB or RGBA bytes: libpng's simplified interface
+ * (image_file.c) mixes up the rows of these (pnggroup/libpng issue 853). With setjmp, as
+ * image_jpeg.c, and for the same reason: everything that lives across the jump belongs to the
+ * caller of the function that sets it.
  * SPDX-License-Identifier: BSD-2-Clause */
 #include <setjmp.h>
 #include <stdio.h>
@@ -53,8 +54,10 @@ static void read_all(png_job *job, ted4_image *image)
 
     png_set_read_fn(p, job, read_bytes);
     png_read_info(p, job->info);
-    const size_t width = png_get_image_width(p, job->info), height = png_get_image_height(p, job->info);
-    const int has_alpha = (png_get_color_type(p, job->info) & PNG_COLOR_MASK_ALPHA) != 0 || png_get_valid(p, job->info, PNG_INFO_tRNS) != 0;
+    const size_t width = png_get_image_width(p, job->info),
+                 height = png_get_image_height(p, job->info);
+    const int has_alpha = (png_get_color_type(p, job->info) & PNG_COLOR_MASK_ALPHA) != 0 ||
+                          png_get_valid(p, job->info, PNG_INFO_tRNS) != 0;
     if (width > TED4_IMAGE_MAX_SIDE || height > TED4_IMAGE_MAX_SIDE)
         png_error(p, "too large");
     png_set_alpha_mode_fixed(p, PNG_ALPHA_PNG, PNG_DEFAULT_sRGB);
@@ -94,7 +97,8 @@ static int guarded_read(png_job *job, ted4_image *image)
     return 0;
 }
 
-int ted4_png_decode_interlaced(const char *path, const uint8_t *bytes, size_t size, ted4_image *image, ted4_message *m)
+int ted4_png_decode_interlaced(const char *path, const uint8_t *bytes, size_t size,
+                               ted4_image *image, ted4_message *m)
 {
     png_job job;
 

@@ -1,8 +1,9 @@
 /* load_calibration.c - layout "calibration": cams.json with fixed cameras after OpenCV's model, and
- * one clip each (clip.h). A camera: name, video (a file or a folder of pictures; without it see clip.h), w, h, K (3x3), dist (k1 k2
- * p1 p2, k3 if it is there), w2c (world to camera 4x4; right, down, forward), start (seconds) or frame: when its clip begins. At the
- * top: frames (how many each clip must have at least, and how many are read), fps. Cameras without a clip are left out. Held out:
- * times by TED4_HOLD_OUT_*, of all cameras.
+ * one clip each (clip.h). A camera: name, video (a file or a folder of pictures; without it see
+ * clip.h), w, h, K (3x3), dist (k1 k2 p1 p2, k3 if it is there), w2c (world to camera 4x4; right,
+ * down, forward), start (seconds) or frame: when its clip begins. At the top: frames (how many each
+ * clip must have at least, and how many are read), fps. Cameras without a clip are left out. Held
+ * out: times by TED4_HOLD_OUT_*, of all cameras.
  * SPDX-License-Identifier: BSD-2-Clause */
 #include "data/raw_scene.h"
 
@@ -87,7 +88,8 @@ static int read_pose(const calibration *c, const json_t *o, const char *where, t
     return wrong == NULL ? 0 : ted4_say(c->m, "%s.w2c: its 3x3 part %s", where, wrong);
 }
 
-/* The time of the clip's first picture on the clock that all cameras share, in frames: "start" in seconds, or "frame". */
+/* The time of the clip's first picture on the clock that all cameras share, in frames: "start" in
+ * seconds, or "frame". */
 static int read_start(calibration *c, const json_t *o, const char *where, double *time)
 {
     double start = 0, frame = 0;
@@ -99,13 +101,17 @@ static int read_start(calibration *c, const json_t *o, const char *where, double
     if (seconds > 0 && frames > 0)
         return ted4_say(c->m, "%s: both start and frame are given, expected one", where);
     if (seconds > 0 && c->scene->rate <= 0)
-        return ted4_say(c->m, "%s.start: %g seconds, but the file has no fps at its top (frame counts frames)", where, start);
+        return ted4_say(c->m,
+                        "%s.start: %g seconds, but the file has no fps at its top (frame counts "
+                        "frames)",
+                        where, start);
     if (frames > 0 && frame != floor(frame))
         return ted4_say(c->m, "%s.frame: %g, expected a whole number", where, frame);
     const double at = seconds > 0 ? start * c->scene->rate : frame;
     *time = floor(at + 0.5);
     if (!(fabs(at) <= MOST_OFFSET))
-        return ted4_say(c->m, "%s: its clip begins %g frames from the others, expected at most %g", where, at, MOST_OFFSET);
+        return ted4_say(c->m, "%s: its clip begins %g frames from the others, expected at most %g",
+                        where, at, MOST_OFFSET);
     c->n_between += fabs(at - *time) > BETWEEN;
     c->farthest = fmax(c->farthest, fabs(at - *time));
     c->started |= seconds > 0 || frames > 0;
@@ -117,20 +123,26 @@ static int check_count(calibration *c, const char *where, size_t n)
 {
     c->shortest = c->shortest == 0 || n < c->shortest ? n : c->shortest;
     c->longest = n > c->longest ? n : c->longest;
-    return n >= c->stated ? 0 : ted4_say(c->m, "%s: %zu frames, expected %zu by the file's frames (--max-frames reads the first ones)",
-                                         where, n, c->stated);
+    return n >= c->stated ? 0
+                          : ted4_say(c->m,
+                                     "%s: %zu frames, expected %zu by the file's frames "
+                                     "(--max-frames reads the first ones)",
+                                     where, n, c->stated);
 }
 
-static int add_clip(calibration *c, const char *where, const char *name, const char *video, const ted4_shot *model)
+static int add_clip(calibration *c, const char *where, const char *name, const char *video,
+                    const ted4_shot *model)
 {
     ted4_name_list pictures;
     char text[400];
 
     c->scene->n_entries++;
-    const int found = ted4_clip_pictures(&pictures, c->folder, name, video,
-                                         c->stated > 0 ? c->stated : c->scene->wanted->max_frames, c->m);
+    const int found =
+        ted4_clip_pictures(&pictures, c->folder, name, video,
+                           c->stated > 0 ? c->stated : c->scene->wanted->max_frames, c->m);
     if (found == 0) {
-        snprintf(text, sizeof text, "%.150s: no such video, nor a folder images/%.60s or %.60s/images of its pictures",
+        snprintf(text, sizeof text,
+                 "%.150s: no such video, nor a folder images/%.60s or %.60s/images of its pictures",
                  video != NULL ? video : name, name, name);
         ted4_raw_scene_missing(c->scene, where, text);
     }
@@ -155,8 +167,9 @@ static int read_camera(calibration *c, size_t i)
     const int found = ted4_json_text(o, where, "name", &name, c->m);
     if (found <= 0)
         return missing(c, where, "name", found);
-    if (ted4_json_text(o, where, "video", &video, c->m) < 0 || read_lens(c, o, where, &model.lens) != 0 ||
-        read_pose(c, o, where, &model) != 0 || read_start(c, o, where, &model.time) != 0)
+    if (ted4_json_text(o, where, "video", &video, c->m) < 0 ||
+        read_lens(c, o, where, &model.lens) != 0 || read_pose(c, o, where, &model) != 0 ||
+        read_start(c, o, where, &model.time) != 0)
         return -1;
     return add_clip(c, where, name, video, &model);
 }
@@ -185,14 +198,18 @@ static void hold_out_times(ted4_raw_scene *s)
     for (size_t i = 0; i < s->n_shots; i++)
         first = fmin(first, s->shots[i].time);
     for (size_t i = 0; i < s->n_shots; i++)
-        s->shots[i].is_test = (size_t)(s->shots[i].time - first) % TED4_HOLD_OUT_EVERY == TED4_HOLD_OUT_PHASE;
+        s->shots[i].is_test =
+            (size_t)(s->shots[i].time - first) % TED4_HOLD_OUT_EVERY == TED4_HOLD_OUT_PHASE;
 }
 
 static int say_times(calibration *c)
 {
     if (c->n_between > 0 &&
-        ted4_raw_scene_warn(c->scene, "%zu of %zu cameras start between two frames, by up to %.2g of a frame: each goes with the nearest "
-                            "frame", c->n_between, c->scene->n_entries, c->farthest) != 0)
+        ted4_raw_scene_warn(c->scene,
+                            "%zu of %zu cameras start between two frames, by up to %.2g of a "
+                            "frame: each goes with the nearest "
+                            "frame",
+                            c->n_between, c->scene->n_entries, c->farthest) != 0)
         return ted4_say_no_memory(c->m);
     return c->started ? 0 : ted4_clip_lengths(c->scene, c->shortest, c->longest, c->m);
 }

@@ -159,7 +159,8 @@ static int add_picture(hypernerf *h, const char *id, int is_test)
     const int found = ted4_picture_find(h->pictures, name, NULL, &path);
     if (found < 0)
         return ted4_say_no_memory(h->m);
-    const int there = ted4_raw_scene_list(h->scene, found == 0 ? ted4_path_join(h->pictures, name) : path, where, &shot, h->m);
+    const int there = ted4_raw_scene_list(
+        h->scene, found == 0 ? ted4_path_join(h->pictures, name) : path, where, &shot, h->m);
     if (there <= 0)
         return there;
     shot->is_test = is_test;

@@ -1,5 +1,6 @@
-/* load_llff.c - layout "LLFF": poses_bounds.npy (poses_bounds.h) and stills in images/ or, reduced by N, in images_N/, one a row in
- * the order of names. Every eighth is held out, from the first on, as results on these scenes have it. One time.
+/* load_llff.c - layout "LLFF": poses_bounds.npy (poses_bounds.h) and stills in images/ or, reduced
+ * by N, in images_N/, one a row in the order of names. Every eighth is held out, from the first on,
+ * as results on these scenes have it. One time.
  * SPDX-License-Identifier: BSD-2-Clause */
 #include "data/raw_scene.h"
 
@@ -15,8 +16,10 @@ int ted4_is_llff(const char *folder)
     return ted4_is_poses_bounds(folder) && !ted4_is_colmap(folder);
 }
 
-/* Pictures of images_N of the wanted reduction N where there are as many as rows, else of images, else of the least reduced. */
-static int find_pictures(ted4_raw_scene *s, const char *folder, size_t rows, ted4_name_list *pictures, ted4_message *m)
+/* Pictures of images_N of the wanted reduction N where there are as many as rows, else of images,
+ * else of the least reduced. */
+static int find_pictures(ted4_raw_scene *s, const char *folder, size_t rows,
+                         ted4_name_list *pictures, ted4_message *m)
 {
     const int sizes[] = { s->wanted->downscale, 1, 2, 4, 8, 16 };
     char name[32];
@@ -33,12 +36,16 @@ static int find_pictures(ted4_raw_scene *s, const char *folder, size_t rows, ted
             break;
         ted4_name_list_free(pictures);
     }
-    return pictures->n == rows ? 0 :
-           ted4_say(m, "%s/poses_bounds.npy: %zu rows, but %zu pictures in %s/, and no cameras (cam*.mp4, cam*/images/ or images/cam*/)",
-                    folder, rows, pictures->n, pictures->n > 0 ? name : "images");
+    return pictures->n == rows
+               ? 0
+               : ted4_say(m,
+                          "%s/poses_bounds.npy: %zu rows, but %zu pictures in %s/, and no cameras "
+                          "(cam*.mp4, cam*/images/ or images/cam*/)",
+                          folder, rows, pictures->n, pictures->n > 0 ? name : "images");
 }
 
-static int add_pictures(ted4_raw_scene *s, const ted4_poses_bounds *table, const ted4_name_list *pictures, ted4_message *m)
+static int add_pictures(ted4_raw_scene *s, const ted4_poses_bounds *table,
+                        const ted4_name_list *pictures, ted4_message *m)
 {
     char where[600];
 

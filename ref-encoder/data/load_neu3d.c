@@ -1,6 +1,7 @@
 /* load_neu3d.c - layout "neu3d" (Neural 3D Video, also DyNeRF): poses_bounds.npy and one clip a
- * camera (clip.h). Row i of the table belongs to clip i in the order of names; where rows are more than clips, and the clips' numbers
- * end with the last row's, clip camNN has row NN. The first camera is held out. Times: frame over frame.
+ * camera (clip.h). Row i of the table belongs to clip i in the order of names; where rows are more
+ * than clips, and the clips' numbers end with the last row's, clip camNN has row NN. The first
+ * camera is held out. Times: frame over frame.
  * SPDX-License-Identifier: BSD-2-Clause */
 #include "data/raw_scene.h"
 
@@ -29,7 +30,8 @@ typedef struct {
 int ted4_is_neu3d(const char *folder)
 {
     ted4_name_list clips = { NULL, 0 };
-    const int found = ted4_is_poses_bounds(folder) && ted4_clip_names(&clips, folder) == 0 && clips.n > 0;
+    const int found =
+        ted4_is_poses_bounds(folder) && ted4_clip_names(&clips, folder) == 0 && clips.n > 0;
 
     ted4_name_list_free(&clips);
     return found;
@@ -60,7 +62,8 @@ static int add_clip(neu3d *n, size_t i)
     model.is_test = i == 0;
     if (ted4_poses_bounds_camera(&n->table, n->numbered ? clip_number(name) : i, &model, n->m) != 0)
         return -1;
-    int result = ted4_clip_pictures(&pictures, n->folder, name, NULL, wanted > 0 ? wanted : MOST_FRAMES, n->m);
+    int result = ted4_clip_pictures(&pictures, n->folder, name, NULL,
+                                    wanted > 0 ? wanted : MOST_FRAMES, n->m);
     if (result == 0)
         result = ted4_say(n->m, "%s/%s: neither a video nor a folder of pictures", n->folder, name);
     if (result < 0)
@@ -87,7 +90,10 @@ static int match_rows(neu3d *n)
     for (size_t i = 1; i < clips && n->numbered; i++)
         n->numbered = clip_number(n->clips.names[i - 1]) < clip_number(n->clips.names[i]);
     if (!n->numbered)
-        return ted4_say(n->m, "%s: %zu rows, but %zu cameras (cam*.mp4, cam*/images/ or images/cam*/) in the folder", n->table.path, rows, clips);
+        return ted4_say(n->m,
+                        "%s: %zu rows, but %zu cameras (cam*.mp4, cam*/images/ or images/cam*/) in "
+                        "the folder",
+                        n->table.path, rows, clips);
     for (size_t i = 0; i < rows; i++) {
         if (clip_number(n->clips.names[at]) == i) {
             at++;

@@ -1,6 +1,7 @@
-/* load_transforms.c - layouts "blender" (transforms_train.json and transforms_test.json), "D-NeRF" (the same with times) and
- * "nerfstudio" (the same pair, or one transforms.json, with fields of its own). transforms_val.json stands in where there is no
- * transforms_test.json. A file that is alone is split by its lists train_filenames and test_filenames, or val_filenames, else by
+/* load_transforms.c - layouts "blender" (transforms_train.json and transforms_test.json), "D-NeRF"
+ * (the same with times) and "nerfstudio" (the same pair, or one transforms.json, with fields of its
+ * own). transforms_val.json stands in where there is no transforms_test.json. A file that is alone
+ * is split by its lists train_filenames and test_filenames, or val_filenames, else by
  * TED4_HOLD_OUT_*. Frames without a picture are left out. The lens: transforms_lens.c.
  * transform_matrix is camera-to-world with axes right, up, backward; the world stays as it is,
  * except that applied_transform, which nerfstudio has put before poses and point cloud alike, is
@@ -33,12 +34,13 @@ static int has_file(const char *folder, const char *name)
     return found;
 }
 
-static const char file_train[] = "transforms_train.json", file_test[] = "transforms_test.json", file_val[] = "transforms_val.json",
-                  file_one[] = "transforms.json";
+static const char file_train[] = "transforms_train.json", file_test[] = "transforms_test.json",
+                  file_val[] = "transforms_val.json", file_one[] = "transforms.json";
 
 int ted4_is_transforms(const char *folder)
 {
-    return has_file(folder, file_train) || has_file(folder, file_one) || has_file(folder, file_test) || has_file(folder, file_val);
+    return has_file(folder, file_train) || has_file(folder, file_one) ||
+           has_file(folder, file_test) || has_file(folder, file_val);
 }
 
 /* x = applied^-1 y for a similarity: A^-1 = A^T / s^2. */
@@ -85,7 +87,9 @@ static int find_picture(ted4_transforms *t, char **path)
     const int told = ted4_json_text(t->frame, t->where, "file_path", &name, t->m);
 
     if (told <= 0)
-        return told < 0 ? -1 : ted4_say(t->m, "%s.file_path: missing, expected a picture's name", t->where);
+        return told < 0
+                   ? -1
+                   : ted4_say(t->m, "%s.file_path: missing, expected a picture's name", t->where);
     const int found = ted4_picture_find(t->folder, name, t->part, path);
     if (found == 0)
         ted4_raw_scene_missing(t->scene, t->where, name);
@@ -122,7 +126,8 @@ static int read_frame(ted4_transforms *t, size_t i)
         return found == 0 ? 0 : -1;
     t->shot_of[i] = t->scene->n_shots - 1;
     shot->is_test = t->is_test;
-    if (ted4_transforms_lens(t, &shot->lens) != 0 || read_pose(t, shot) != 0 || read_camera_label(t, shot) != 0)
+    if (ted4_transforms_lens(t, &shot->lens) != 0 || read_pose(t, shot) != 0 ||
+        read_camera_label(t, shot) != 0)
         return -1;
     return 0;
 }
@@ -143,7 +148,8 @@ static int read_times(ted4_transforms *t, int is_first)
     for (size_t i = 0; i < n && timed > 0; i++) {
         snprintf(t->where, sizeof t->where, "%.600s: frames[%zu]", t->path, i);
         double time = 0;
-        const int found = ted4_json_number(json_array_get(frames, i), t->where, "time", &time, t->m);
+        const int found =
+            ted4_json_number(json_array_get(frames, i), t->where, "time", &time, t->m);
         if (found < 0)
             return -1;
         if (found == 0)
@@ -344,15 +350,18 @@ static int split(ted4_transforms *t)
 
 static int has_focal(const json_t *root)
 {
-    return ted4_transforms_has_focal(root) || ted4_transforms_has_focal(json_array_get(json_object_get(root, "frames"), 0));
+    return ted4_transforms_has_focal(root) ||
+           ted4_transforms_has_focal(json_array_get(json_object_get(root, "frames"), 0));
 }
 
-/* A pair of files is what Blender scenes are made of, and with times D-NeRF's; nerfstudio writes them, too, and says more in them.
- * One file with focal lengths in pixels is nerfstudio's. */
+/* A pair of files is what Blender scenes are made of, and with times D-NeRF's; nerfstudio writes
+ * them, too, and says more in them. One file with focal lengths in pixels is nerfstudio's. */
 static const char *name_layout(const ted4_transforms *t)
 {
-    static const char *const foreign[] = { "camera_model", "applied_transform", "applied_scale", "ply_file_path", "orientation_override",
-                                           "train_filenames", "val_filenames", "test_filenames" };
+    static const char *const foreign[] = { "camera_model",         "applied_transform",
+                                           "applied_scale",        "ply_file_path",
+                                           "orientation_override", "train_filenames",
+                                           "val_filenames",        "test_filenames" };
     int nerfstudio = t->part == NULL && has_focal(t->root);
 
     for (size_t i = 0; i < sizeof foreign / sizeof foreign[0]; i++)
@@ -370,7 +379,8 @@ static int read_root(ted4_transforms *t, int holds)
         return -1;
     if (!json_is_object(t->root))
         return ted4_say(t->m, "%s: expected an object with a list \"frames\"", t->path);
-    if (read_applied(t) != 0 || read_frames(t) != 0 || (holds == BOTH && split(t) != 0) || read_cloud(t) != 0)
+    if (read_applied(t) != 0 || read_frames(t) != 0 || (holds == BOTH && split(t) != 0) ||
+        read_cloud(t) != 0)
         return -1;
     t->scene->layout = name_layout(t);
     t->scene->unit_cube = !has_focal(t->root);
@@ -384,7 +394,10 @@ static int read_file(ted4_raw_scene *s, const char *folder, const char *name, in
     memset(&t, 0, sizeof t);
     t.scene = s;
     t.folder = folder;
-    t.part = name == file_train ? "train" : name == file_test ? "test" : name == file_val ? "val" : NULL;
+    t.part = name == file_train  ? "train"
+             : name == file_test ? "test"
+             : name == file_val  ? "val"
+                                 : NULL;
     t.is_test = holds == ALL_TEST;
     t.m = m;
     t.path = ted4_path_join(folder, name);
@@ -397,12 +410,17 @@ static int read_file(ted4_raw_scene *s, const char *folder, const char *name, in
 
 int ted4_load_transforms(ted4_raw_scene *s, const char *folder, ted4_message *m)
 {
-    const char *test = has_file(folder, file_test) ? file_test : has_file(folder, file_val) ? file_val : NULL;
+    const char *test = has_file(folder, file_test)  ? file_test
+                       : has_file(folder, file_val) ? file_val
+                                                    : NULL;
 
     s->layout = "blender";
     if (!has_file(folder, file_train))
         return read_file(s, folder, has_file(folder, file_one) ? file_one : test, BOTH, m);
     if (test == NULL)
         return read_file(s, folder, file_train, BOTH, m);
-    return read_file(s, folder, file_train, ALL_TRAIN, m) == 0 && read_file(s, folder, test, ALL_TEST, m) == 0 ? 0 : -1;
+    return read_file(s, folder, file_train, ALL_TRAIN, m) == 0 &&
+                   read_file(s, folder, test, ALL_TEST, m) == 0
+               ? 0
+               : -1;
 }

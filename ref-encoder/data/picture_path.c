@@ -50,7 +50,8 @@ static int try_name(const char *folder, const char *name, char **found)
     if (path != NULL) {
         const size_t n = strlen(base), k = extension(base);
         strcpy(path, base);
-        result = ted4_is_file(path) || with_extension(path, base, n) || (k > 0 && with_extension(path, base, n - k));
+        result = ted4_is_file(path) || with_extension(path, base, n) ||
+                 (k > 0 && with_extension(path, base, n - k));
     }
     free(base);
     if (result == 1)

@@ -76,7 +76,8 @@ static int is_absent(const char *path)
     return stat(path, &st) != 0 && (errno == ENOENT || errno == ENOTDIR || errno == ENAMETOOLONG);
 }
 
-int ted4_raw_scene_list(ted4_raw_scene *s, char *path, const char *where, ted4_shot **shot, ted4_message *m)
+int ted4_raw_scene_list(ted4_raw_scene *s, char *path, const char *where, ted4_shot **shot,
+                        ted4_message *m)
 {
     *shot = NULL;
     s->n_entries++;

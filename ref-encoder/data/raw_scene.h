@@ -54,7 +54,8 @@ ted4_shot *ted4_raw_scene_add(ted4_raw_scene *s, char *path, const char *where, 
 
 /* The same for an entry of a list, which may name a picture that is not there: such entries are
  * counted and left out. 1, or 0 with *shot NULL: left out, or -1 with *m filled. */
-int ted4_raw_scene_list(ted4_raw_scene *s, char *path, const char *where, ted4_shot **shot, ted4_message *m);
+int ted4_raw_scene_list(ted4_raw_scene *s, char *path, const char *where, ted4_shot **shot,
+                        ted4_message *m);
 
 /* Counts an entry whose picture is missing; keeps what the first one says. */
 void ted4_raw_scene_missing(ted4_raw_scene *s, const char *where, const char *name);
@@ -68,13 +69,16 @@ void ted4_raw_scene_hold_out(ted4_raw_scene *s);
 /* hold_out.c: gives shots without a label one that tells their pose. 0, or -1: no memory. */
 int ted4_raw_scene_label(ted4_raw_scene *s);
 
-/* Marks the shots of the cameras that o names as test, and no others; all have labels. 0, or -1 with *m filled. */
-int ted4_raw_scene_hold_out_named(ted4_raw_scene *s, const ted4_dataset_options *o, ted4_message *m);
+/* Marks the shots of the cameras that o names as test, and no others; all have labels. 0, or -1
+ * with *m filled. */
+int ted4_raw_scene_hold_out_named(ted4_raw_scene *s, const ted4_dataset_options *o,
+                                  ted4_message *m);
 
 typedef int ted4_loader(ted4_raw_scene *s, const char *folder, ted4_message *m);
 
 /* 0, or -1 with *m filled; *s must be zero but for wanted before and is to be freed by the caller either way. */
-ted4_loader ted4_load_colmap, ted4_load_transforms, ted4_load_hypernerf, ted4_load_neu3d, ted4_load_llff, ted4_load_calibration;
+ted4_loader ted4_load_colmap, ted4_load_transforms, ted4_load_hypernerf, ted4_load_neu3d,
+    ted4_load_llff, ted4_load_calibration;
 
 /* Does the folder look like the layout? */
 int ted4_is_colmap(const char *folder);

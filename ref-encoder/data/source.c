@@ -7,7 +7,8 @@
 #include "data/data_util.h"
 #include "data/image_file.h"
 
-/* RGBA to RGB in place, over a grey level, rounded. Premultiplied colours above their alpha, which none should be, end at white. */
+/* RGBA to RGB in place, over a grey level, rounded. Premultiplied colours above their alpha, which
+ * none should be, end at white. */
 static void composite(ted4_image *image, int background, int premultiplied)
 {
     const size_t n = (size_t)image->width * (size_t)image->height;
@@ -17,7 +18,8 @@ static void composite(ted4_image *image, int background, int premultiplied)
         const uint8_t *p = image->bytes + 4 * i;
         const int alpha = p[3];
         for (int c = 0; c < 3; c++) {
-            const int sum = (p[c] * (premultiplied ? 255 : alpha) + background * (255 - alpha) + 127) / 255;
+            const int sum =
+                (p[c] * (premultiplied ? 255 : alpha) + background * (255 - alpha) + 127) / 255;
             *out++ = (uint8_t)(sum > 255 ? 255 : sum);
         }
     }

@@ -14,16 +14,18 @@ typedef struct {
     json_t         *root;           /* owned */
     const json_t   *frame;          /* the one being read; borrowed */
     char            where[700];     /* "path: frames[i]" */
-    size_t         *shot_of;        /* [frames] index of a frame's shot; NO_SHOT: it has no picture; owned */
+    size_t         *shot_of;        /* [frames] index of a frame's shot, or NO_SHOT; owned */
     int             is_test;
-    double          applied[12];    /* world of the file = applied * world of the dataset; 3x4, a similarity */
+    double          applied[12];    /* world of the file = applied * world of the dataset; 3x4 */
     double          applied_scale;
     ted4_message   *m;
 } ted4_transforms;
 
+/* Of a frame without a picture. */
 #define TED4_NO_SHOT SIZE_MAX
 
-/* transforms_lens.c: the lens of the frame that is being read; *l holds the picture's size. 0, or -1 with *m filled. */
+/* transforms_lens.c: the lens of the frame that is being read; *l holds the picture's size. 0, or
+ * -1 with *m filled. */
 int ted4_transforms_lens(ted4_transforms *t, ted4_lens *l);
 
 /* Does a frame, or the top of a file, state a focal length in pixels? */

@@ -1,6 +1,6 @@
-/* transforms_lens.c - the lens of a frame of a transforms file: fl_x, fl_y, cx, cy; or K, a 3x3 matrix (or fx fy cx cy) of several
- * names; or camera_angle_x. A frame's own fields go before those at the top of the file. k1 k2 k3 p1 p2 are OpenCV's. Pixel centres
- * are at + 0.5, in K too.
+/* transforms_lens.c - the lens of a frame of a transforms file: fl_x, fl_y, cx, cy; or K, a 3x3
+ * matrix (or fx fy cx cy) of several names; or camera_angle_x. A frame's own fields go before those
+ * at the top of the file. k1 k2 k3 p1 p2 are OpenCV's. Pixel centres are at + 0.5, in K too.
  * SPDX-License-Identifier: BSD-2-Clause */
 #include "data/transforms.h"
 
@@ -8,7 +8,8 @@
 #include <string.h>
 #include "math/elementary.h"
 
-static const char *const matrices[] = { "K", "intrinsics", "intrinsic_matrix", "camera_intrinsics" };
+static const char *const matrices[] = { "K", "intrinsics", "intrinsic_matrix",
+                                        "camera_intrinsics" };
 
 enum { N_MATRICES = sizeof matrices / sizeof matrices[0] };
 
@@ -31,13 +32,15 @@ static int number(ted4_transforms *t, const char *name, double *v)
 
 static int check_model(ted4_transforms *t)
 {
-    static const char *const known[] = { "OPENCV", "PINHOLE", "SIMPLE_PINHOLE", "SIMPLE_RADIAL", "RADIAL", "PERSPECTIVE" };
+    static const char *const known[] = { "OPENCV",        "PINHOLE", "SIMPLE_PINHOLE",
+                                         "SIMPLE_RADIAL", "RADIAL",  "PERSPECTIVE" };
     static const char *const foreign[] = { "k4", "k5", "k6" };
     const char *model = known[0];
     double v = 0;
 
     const int found = ted4_json_text(t->frame, t->where, "camera_model", &model, t->m);
-    if (found < 0 || (found == 0 && ted4_json_text(t->root, t->path, "camera_model", &model, t->m) < 0))
+    if (found < 0 ||
+        (found == 0 && ted4_json_text(t->root, t->path, "camera_model", &model, t->m) < 0))
         return -1;
     size_t i = 0;
     while (i < sizeof known / sizeof known[0] && strcmp(model, known[i]) != 0)
@@ -50,7 +53,8 @@ static int check_model(ted4_transforms *t)
         if (number(t, foreign[i], &v) < 0)
             return -1;
         else if (v != 0)
-            return ted4_say(t->m, "%s.%s: %g, only k1 k2 k3 p1 p2 are supported", t->where, foreign[i], v);
+            return ted4_say(t->m, "%s.%s: %g, only k1 k2 k3 p1 p2 are supported", t->where,
+                            foreign[i], v);
     return 0;
 }
 
@@ -62,7 +66,8 @@ static int read_size(ted4_transforms *t, ted4_lens *l)
     if (number(t, "w", &w) < 0 || number(t, "h", &h) < 0)
         return -1;
     if (!(w >= 1 && h >= 1 && w <= 1e6 && h <= 1e6) || w != floor(w) || h != floor(h))
-        return ted4_say(t->m, "%s: w, h are %g, %g, expected whole numbers of pixels", t->where, w, h);
+        return ted4_say(t->m, "%s: w, h are %g, %g, expected whole numbers of pixels", t->where, w,
+                        h);
     l->width = (int)w;
     l->height = (int)h;
     l->cx = 0.5 * w;
@@ -81,7 +86,8 @@ static int read_matrix(ted4_transforms *t, const json_t *o, const char *where, t
     if (n <= 0)
         return n;
     if (n != 4 && (n != 9 || K[3] != 0 || K[6] != 0 || K[7] != 0 || K[8] != 1))
-        return ted4_say(t->m, "%s.%s: expected fx s cx, 0 fy cy, 0 0 1 or fx fy cx cy", where, matrices[i - 1]);
+        return ted4_say(t->m, "%s.%s: expected fx s cx, 0 fy cy, 0 0 1 or fx fy cx cy", where,
+                        matrices[i - 1]);
     l->fx = K[0];
     l->fy = n == 9 ? K[4] : K[1];
     l->cx = K[2];
@@ -99,12 +105,14 @@ static int read_angle(ted4_transforms *t, const json_t *o, const char *where, te
     if (found <= 0)
         return found;
     if (!(angle > 0 && angle < TED4_PI))
-        return ted4_say(t->m, "%s: camera_angle_x is %g, expected an angle between 0 and pi", t->where, angle);
+        return ted4_say(t->m, "%s: camera_angle_x is %g, expected an angle between 0 and pi",
+                        t->where, angle);
     l->fx = l->fy = 0.5 * l->width / ted4_math_tan(0.5 * angle);
     return found;
 }
 
-/* What one level, the frame or the top of the file, says of the focal length, and with a matrix of the centre. As ted4_json_number. */
+/* What one level, the frame or the top of the file, says of the focal length, and with a matrix of
+ * the centre. As ted4_json_number. */
 static int read_focal(ted4_transforms *t, const json_t *o, const char *where, ted4_lens *l)
 {
     int found = ted4_json_number(o, where, "fl_x", &l->fx, t->m);
@@ -123,8 +131,8 @@ static int read_focal(ted4_transforms *t, const json_t *o, const char *where, te
 static int read_numbers(ted4_transforms *t, const json_t *o, const char *where, ted4_lens *l)
 {
     const struct { const char *name; double *to; } fields[] = {
-        { "fl_y", &l->fy }, { "cx", &l->cx }, { "cy", &l->cy }, { "k1", &l->k1 }, { "k2", &l->k2 }, { "k3", &l->k3 }, { "p1", &l->p1 },
-        { "p2", &l->p2 },
+        { "fl_y", &l->fy }, { "cx", &l->cx }, { "cy", &l->cy }, { "k1", &l->k1 },
+        { "k2", &l->k2 },   { "k3", &l->k3 }, { "p1", &l->p1 }, { "p2", &l->p2 },
     };
 
     for (size_t i = 0; i < sizeof fields / sizeof fields[0]; i++)
@@ -135,13 +143,19 @@ static int read_numbers(ted4_transforms *t, const json_t *o, const char *where, 
 
 int ted4_transforms_lens(ted4_transforms *t, ted4_lens *l)
 {
-    const int own = ted4_transforms_has_focal(t->frame) || json_object_get(t->frame, "camera_angle_x") != NULL;
+    const int own = ted4_transforms_has_focal(t->frame) ||
+                    json_object_get(t->frame, "camera_angle_x") != NULL;
 
     if (check_model(t) != 0 || read_size(t, l) != 0)
         return -1;
     const int above = own ? 1 : read_focal(t, t->root, t->path, l);
     if (above == 0)
-        return ted4_say(t->m, "%s: no fl_x, no K and no camera_angle_x here or at the top of the file", t->where);
-    return above < 0 || read_numbers(t, t->root, t->path, l) != 0 || read_focal(t, t->frame, t->where, l) < 0 ||
-           read_numbers(t, t->frame, t->where, l) != 0 ? -1 : 0;
+        return ted4_say(t->m,
+                        "%s: no fl_x, no K and no camera_angle_x here or at the top of the file",
+                        t->where);
+    return above < 0 || read_numbers(t, t->root, t->path, l) != 0 ||
+                   read_focal(t, t->frame, t->where, l) < 0 ||
+                   read_numbers(t, t->frame, t->where, l) != 0
+               ? -1
+               : 0;
 }

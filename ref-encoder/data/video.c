@@ -135,8 +135,9 @@ static void become_ffmpeg(const char *input, const char *limit, const char *fold
     const int none = chdir(folder) == 0 ? open("/dev/null", O_RDWR) : -1;
 
     if (none >= 0 && dup2(none, 0) >= 0 && dup2(none, 1) >= 0 && dup2(messages, 2) >= 0)
-        execlp("ffmpeg", "ffmpeg", "-nostdin", "-hide_banner", "-v", "repeat+error", "-protocol_whitelist", "file", "-i", input, "-map", "0:v:0",
-               "-vf", FILTERS, "-r", RATE, "-frames:v", limit, "-flags", "+bitexact", "-fflags", "+bitexact",
+        execlp("ffmpeg", "ffmpeg", "-nostdin", "-hide_banner", "-v", "repeat+error",
+               "-protocol_whitelist", "file", "-i", input, "-map", "0:v:0", "-vf", FILTERS, "-r",
+               RATE, "-frames:v", limit, "-flags", "+bitexact", "-fflags", "+bitexact",
                "-compression_level", "1", "-f", "image2", "%06d.png", (char *)NULL);
     _exit(NO_EXEC);
 }
@@ -239,7 +240,8 @@ static int unpack(const char *video, size_t most, const char *final, ted4_messag
     return result;
 }
 
-/* A file of text is no video, but ffmpeg would follow it where it lists other files. 0, or -1 with *m filled. */
+/* A file of text is no video, but ffmpeg would follow it where it lists other files. 0, or -1 with
+ * *m filled. */
 static int check_kind(const char *video, ted4_message *m)
 {
     uint8_t head[512];
@@ -252,7 +254,9 @@ static int check_kind(const char *video, ted4_message *m)
     fclose(f);
     while (i < n && (head[i] >= ' ' || head[i] == '\t' || head[i] == '\n' || head[i] == '\r'))
         i++;
-    return i < n ? 0 : ted4_say(m, "%s: %s, expected a video", video, n == 0 ? "empty" : "text (a playlist?)");
+    return i < n ? 0
+                 : ted4_say(m, "%s: %s, expected a video", video,
+                            n == 0 ? "empty" : "text (a playlist?)");
 }
 
 /* Independent of the folder that the program, or ffmpeg, works in. Owned by the caller. */

@@ -11,7 +11,8 @@
 #include "tool/threads.h"
 
 enum {
-    OPT_OUTPUT, OPT_PRESET, OPT_LAMBDA, OPT_ITERATIONS, OPT_CAPACITY, OPT_WHY, OPT_SET, OPT_DOWNSCALE, OPT_MAX_FRAMES, OPT_BLACK, OPT_ALPHA, OPT_HOLD_OUT,
+    OPT_OUTPUT, OPT_PRESET, OPT_LAMBDA, OPT_ITERATIONS, OPT_CAPACITY, OPT_WHY, OPT_SET, OPT_DOWNSCALE, OPT_MAX_FRAMES, OPT_BLACK,
+    OPT_ALPHA, OPT_HOLD_OUT,
     OPT_SEED, OPT_THREADS, OPT_CACHE, OPT_TARGET, OPT_CHECKPOINT, OPT_EVERY, OPT_RESUME, OPT_STAGE1, OPT_LOG, OPT_CHECK, OPT_JSON, OPT_CONTRACT, OPT_FORCE,
     OPT_QUIET, OPT_VERBOSE, OPT_HELP, OPT_VERSION, N_OPTIONS
 };
@@ -31,8 +32,10 @@ static const ted4_argument OPTIONS[N_OPTIONS] = {
     [OPT_DOWNSCALE]  = { 0, "downscale", "N", "integer area averaging of the pictures" },
     [OPT_MAX_FRAMES] = { 0, "max-frames", "N", "only so many times, the first ones (default: all, 300 of Neu3D)" },
     [OPT_BLACK]      = { 0, "black", NULL, "pictures with alpha lie on black, not white" },
-    [OPT_ALPHA]      = { 0, "alpha", "HOW", "colours of pictures with alpha are straight (default) or premultiplied" },
-    [OPT_HOLD_OUT]   = { 0, "hold-out", "NAME", "pictures of this camera are not trained on; may be repeated; replaces the layout's split" },
+    [OPT_ALPHA]      = { 0, "alpha", "HOW",
+                         "colours of pictures with alpha: straight (default) or premultiplied" },
+    [OPT_HOLD_OUT]   = { 0, "hold-out", "NAME",
+                         "train without this camera, in place of the layout's split; repeatable" },
     [OPT_SEED]       = { 0, "seed", "S", "same scene, options and seed: same bytes" },
     [OPT_THREADS]    = { 'j', "threads", "N", "threads; 0: all cores. Default 0" },
     [OPT_CACHE]      = { 0, "cache", "MIB", "memory for decoded pictures; more of them are read again. Default 2048" },
@@ -107,7 +110,8 @@ static int take(ted4_request *r, pending *p, int option, const char *value)
     case OPT_BLACK:      r->black = 1; break;
     case OPT_ALPHA:
         r->premultiplied = strcmp(value, "premultiplied") == 0;
-        return r->premultiplied || strcmp(value, "straight") == 0 ? TED4_REQUEST_GO : bad_value(option, value);
+        return r->premultiplied || strcmp(value, "straight") == 0 ? TED4_REQUEST_GO
+                                                                  : bad_value(option, value);
     case OPT_HOLD_OUT:
         if (r->n_hold_out == TED4_REQUEST_HOLD_OUT)
             return complain("too many --hold-out");

@@ -141,9 +141,14 @@ int main(int argc, char **argv)
     if (check_outputs(&r) != 0)
         return TED4_EXIT_TOOL;
 
-    const ted4_dataset_options wanted = { .downscale = r.downscale, .white = !r.black, .seed = r.options.seed,
-                                          .cache_bytes = (size_t)r.cache_mib << 20, .max_frames = (uint32_t)r.max_frames,
-                                          .premultiplied = r.premultiplied, .hold_out = r.hold_out, .n_hold_out = r.n_hold_out };
+    const ted4_dataset_options wanted = { .downscale = r.downscale,
+                                          .white = !r.black,
+                                          .seed = r.options.seed,
+                                          .cache_bytes = (size_t)r.cache_mib << 20,
+                                          .max_frames = (uint32_t)r.max_frames,
+                                          .premultiplied = r.premultiplied,
+                                          .hold_out = r.hold_out,
+                                          .n_hold_out = r.n_hold_out };
 
     if (ted4_dataset_load(&d, r.scene, &wanted, &m) != 0)
         return complain(m.text);

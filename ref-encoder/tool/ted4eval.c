@@ -42,14 +42,15 @@ enum {
     N_OPTIONS
 };
 
-enum { MAX_DOWNSCALE = 64, MAX_MAX_FRAMES = 36000, SHEET_ROWS = 3, MAX_HOLD_OUT = 256, PATH_SIZE = 4096 };
+enum { MAX_DOWNSCALE = 64, MAX_MAX_FRAMES = 36000, MAX_HOLD_OUT = 256, SHEET_ROWS = 3 };
+enum { PATH_SIZE = 4096 };
 
 static const ted4_argument OPTIONS[N_OPTIONS] = {
     [OPT_SPLIT]     = { 0, "split", "NAME", "test (default) or train pictures" },
     [OPT_DOWNSCALE] = { 0, "downscale", "N", "compare pictures shrunk N times, as ted4enc --downscale" },
     [OPT_MAX_FRAMES] = { 0, "max-frames", "N", "only the first N times of SCENE, as ted4enc --max-frames" },
     [OPT_ALPHA]     = { 0, "alpha", "HOW", "straight or premultiplied, as ted4enc --alpha" },
-    [OPT_HOLD_OUT]  = { 0, "hold-out", "NAME", "pictures of this camera are the test pictures, as ted4enc --hold-out" },
+    [OPT_HOLD_OUT]  = { 0, "hold-out", "NAME", "this camera's pictures are test, as ted4enc --hold-out" },
     [OPT_IMAGES]    = { 0, "images", "DIR", "write DIR/truth, DIR/ours, DIR/error (5 times the difference) as NNNNN.png" },
     [OPT_SHEET]     = { 0, "sheet", "FILE.png", "one picture: truth, ours, error at three times of the first camera" },
     [OPT_THREADS]   = { 'j', "threads", "N", "threads; 0: all cores. Default 0" },
@@ -77,7 +78,8 @@ typedef struct {
     const char *input, *scene, *images, *sheet;
     const char *hold_out[MAX_HOLD_OUT];
     size_t      n_hold_out;
-    int         premultiplied, want_test, downscale, max_frames, threads, force, json, quiet, verbose;
+    int         premultiplied;
+    int         want_test, downscale, max_frames, threads, force, json, quiet, verbose;
 } settings;
 
 /* Sums over pictures, later divided by views. */
@@ -138,7 +140,9 @@ static int set_option(settings *s, int option, const char *value)
         return set_number("--max-frames", value, 1, MAX_MAX_FRAMES, &s->max_frames);
     case OPT_ALPHA:
         s->premultiplied = strcmp(value, "premultiplied") == 0;
-        return s->premultiplied || strcmp(value, "straight") == 0 ? 0 : failed("--alpha", "straight or premultiplied expected");
+        return s->premultiplied || strcmp(value, "straight") == 0
+                   ? 0
+                   : failed("--alpha", "straight or premultiplied expected");
     case OPT_HOLD_OUT:
         if (s->n_hold_out == MAX_HOLD_OUT)
             return failed("--hold-out", "too many");
