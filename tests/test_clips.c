@@ -185,6 +185,9 @@ static void test_starts(void **state)
               ", {\"name\": \"b\", " CAMERA "]}");
     assert_int_equal(
         warned(&f, "1 of 2 cameras start between two frames", "by up to 0.5 of a frame"), 24);
+    d = load(&f, &tiny_options);
+    assert_int_equal(d.n_frames, 14);           /* a begins at frame 2 */
+    ted4_dataset_free(&d);
     tiny_text(&f, "cams.json",
               "{\"cameras\": [{\"name\": \"a\", " CAMERA ", {\"name\": \"c\", \"video\": "
                                                          "\"takes/third/\", " CAMERA "]}");

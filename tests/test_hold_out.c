@@ -161,6 +161,21 @@ static void test_whole(void **state)
     ted4_dataset_free(&d);
     refused(&f, "x", ", ... (300 in all)");
     tiny_free(&f);
+    /* Of HyperNeRF's ids without a split two in four are left out. */
+    f = write_scene(RAY_HYPERNERF);
+    s.n = 0;
+    tiny_add(&s, "{\"ids\": [");
+    for (int i = 0; i < TRAIN * FRAMES; i++)
+        tiny_add(&s, "%s\"train_r_%03d_%02d\"", i > 0 ? "," : "", i / FRAMES, i % FRAMES);
+    tiny_add(&s, "]}");
+    tiny_text(&f, "dataset.json", s.text);
+    assert_string_equal(load(&d, &f, NULL, 0), "");
+    assert_int_equal(d.n_pictures, 2 * TRAIN);
+    ted4_dataset_free(&d);
+    assert_string_equal(load(&d, &f, all + 1, 1), "");
+    assert_int_equal(d.n_pictures, TRAIN * FRAMES);
+    ted4_dataset_free(&d);
+    tiny_free(&f);
 }
 
 int main(void)
