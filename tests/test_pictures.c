@@ -232,13 +232,42 @@ static void test_alpha(void **state)
     tiny_free(&f);
 }
 
+/* Half-transparent pictures of 48 x 48 in colours 100 for alpha 90 or 110, declared so or so. */
+static void test_alpha_doubt(void **state)
+{
+    static uint8_t px[48 * 48 * 4];
+    tiny_folder f = tiny_new();
+
+    (void)state;
+    tiny_text(&f, "transforms.json",
+              "{\"fl_x\": 9, \"frames\": [{\"file_path\": \"p.png\", \"transform_matrix\": " TINY_POSE
+              "}]}");
+    for (int k = 0; k < 4; k++) {
+        ted4_dataset_options o = tiny_options;
+        ted4_dataset d;
+        ted4_message m;
+        const int alpha = k % 2 ? 110 : 90;
+        for (int i = 0; i < 48 * 48 * 4; i++)
+            px[i] = (uint8_t)(i % 4 == 3 ? alpha : 100);
+        tiny_png(&f, "p.png", 48, 48, PNG_FORMAT_RGBA, px);
+        o.premultiplied = k >= 2;
+        assert_string_equal(tiny_load(&d, &f, &o), "");
+        assert_int_equal(ted4_dataset_verify(&d, NULL, &m), 0);
+        assert_int_equal(d.n_warnings, k == 1 || k == 2);
+        if (k == 1)
+            assert_non_null(strstr(d.warnings[0], "(--alpha premultiplied)"));
+        if (k == 2)
+            assert_non_null(strstr(d.warnings[0], "2304 of 2304 pixels"));
+        ted4_dataset_free(&d);
+    }
+    tiny_free(&f);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_png),
-        cmocka_unit_test(test_clear_colour),
-        cmocka_unit_test(test_jpeg),
-        cmocka_unit_test(test_alpha),
+        cmocka_unit_test(test_png),   cmocka_unit_test(test_clear_colour), cmocka_unit_test(test_jpeg),
+        cmocka_unit_test(test_alpha), cmocka_unit_test(test_alpha_doubt),
     };
 
     return cmocka_run_group_tests_name("pictures", tests, NULL, NULL);

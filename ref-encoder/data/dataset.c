@@ -131,6 +131,34 @@ static void verify_picture(void *arg, size_t i)
     pthread_mutex_unlock(&v->lock);
 }
 
+/* Fewer pixels that are transparent in part do not tell how their colours are meant. */
+enum { ENOUGH_PARTIAL = 1000, FEW = 100 };
+
+/* 0, or -1: no memory. */
+static int check_alpha(ted4_dataset *d)
+{
+    size_t partial = 0, above = 0;
+    int premultiplied = 0;
+
+    for (size_t i = 0; i < d->n_pictures; i++) {
+        partial += d->sources[i].n_partial;
+        above += d->sources[i].n_above;
+        premultiplied |= d->sources[i].premultiplied;
+    }
+    if (partial < ENOUGH_PARTIAL)
+        return 0;
+    if (!premultiplied && above == 0)
+        return ted4_text_add(&d->warnings, &d->n_warnings,
+                             "no colour of a pixel that is transparent in part exceeds its alpha: "
+                             "colours seem to be premultiplied (--alpha premultiplied)");
+    if (premultiplied && above > partial / FEW)
+        return ted4_text_add(&d->warnings, &d->n_warnings,
+                             "colours of %zu of %zu pixels that are transparent in part exceed "
+                             "their alpha: they seem not to be premultiplied (--alpha straight)",
+                             above, partial);
+    return 0;
+}
+
 int ted4_dataset_verify(ted4_dataset *d, const ted4_parallel *p, ted4_message *m)
 {
     verification v = { .d = d, .bad = d->n_pictures, .m = m };
@@ -143,7 +171,7 @@ int ted4_dataset_verify(ted4_dataset *d, const ted4_parallel *p, ted4_message *m
     d->content = 0;
     for (size_t i = 0; i < d->n_pictures; i++)
         d->content = XXH3_64bits_withSeed(&d->sources[i].digest, sizeof d->sources[i].digest, d->content);
-    return 0;
+    return check_alpha(d) == 0 ? 0 : ted4_say_no_memory(m);
 }
 
 static uint64_t add(uint64_t digest, const void *p, size_t size)

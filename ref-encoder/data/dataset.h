@@ -81,7 +81,7 @@ void ted4_dataset_ahead(ted4_dataset *d, size_t i);
 enum { TED4_DATASET_AHEAD = 16 };
 
 /* Decodes every picture once, on the threads of p (NULL: here), and sets d->content. 0, or -1 with *m naming the first that cannot
- * be decoded. */
+ * be decoded. May add warnings. */
 int ted4_dataset_verify(ted4_dataset *d, const ted4_parallel *p, ted4_message *m);
 
 /* What a training sees of the scene in one number: cameras, times, split, points, background, d->content; not where its files lie. */

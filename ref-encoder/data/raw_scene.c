@@ -3,7 +3,6 @@
 #include "data/raw_scene.h"
 
 #include <errno.h>
-#include <stdarg.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -88,22 +87,6 @@ int ted4_raw_scene_list(ted4_raw_scene *s, char *path, const char *where, ted4_s
     }
     *shot = ted4_raw_scene_add(s, path, where, m);
     return *shot == NULL ? -1 : 1;
-}
-
-int ted4_raw_scene_warn(ted4_raw_scene *s, const char *format, ...)
-{
-    char text[1024];
-    va_list arguments;
-    char **warnings = realloc(s->warnings, (s->n_warnings + 1) * sizeof *warnings);
-
-    if (warnings == NULL)
-        return -1;
-    s->warnings = warnings;
-    va_start(arguments, format);
-    vsnprintf(text, sizeof text, format, arguments);
-    va_end(arguments);
-    s->warnings[s->n_warnings] = ted4_text_copy(text);
-    return s->warnings[s->n_warnings] == NULL ? -1 : (s->n_warnings++, 0);
 }
 
 void ted4_raw_scene_hold_out(ted4_raw_scene *s)

@@ -61,7 +61,7 @@ int ted4_raw_scene_list(ted4_raw_scene *s, char *path, const char *where, ted4_s
 void ted4_raw_scene_missing(ted4_raw_scene *s, const char *where, const char *name);
 
 /* Appends a warning. 0, or -1: no memory. */
-int ted4_raw_scene_warn(ted4_raw_scene *s, const char *format, ...) TED4_PRINTF(2, 3);
+#define ted4_raw_scene_warn(s, ...) ted4_text_add(&(s)->warnings, &(s)->n_warnings, __VA_ARGS__)
 
 /* Marks shots as test by TED4_HOLD_OUT_*; they must be sorted by name. */
 void ted4_raw_scene_hold_out(ted4_raw_scene *s);

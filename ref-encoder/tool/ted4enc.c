@@ -127,6 +127,14 @@ static int decoders(const ted4_parallel *p)
     return n == 1 ? 0 : n < FEWEST_DECODERS ? FEWEST_DECODERS : n;
 }
 
+/* Says what loaders warned of, from that warning on; gives how many there are. */
+static size_t warn(const ted4_request *r, const ted4_dataset *d, size_t from)
+{
+    for (size_t i = from; i < d->n_warnings && !r->quiet; i++)
+        fprintf(stderr, "ted4enc: warning: %s\n", d->warnings[i]);
+    return d->n_warnings;
+}
+
 int main(int argc, char **argv)
 {
     ted4_request  r;
@@ -152,10 +160,9 @@ int main(int argc, char **argv)
 
     if (ted4_dataset_load(&d, r.scene, &wanted, &m) != 0)
         return complain(m.text);
-    for (size_t i = 0; i < d.n_warnings && !r.quiet; i++)
-        fprintf(stderr, "ted4enc: warning: %s\n", d.warnings[i]);
 
-    int status = TED4_EXIT_FINE;
+    const size_t said = warn(&r, &d, 0);
+    int          status = TED4_EXIT_FINE;
 
     ted4_threads_init(&p, r.threads);
     d.ahead = decoders(&p);
@@ -163,7 +170,8 @@ int main(int argc, char **argv)
         ted4_dataset_print(&d, stdout);
     if (ted4_dataset_verify(&d, &p, &m) != 0)
         status = complain(m.text);
-    else if (!r.check)
+    warn(&r, &d, said);
+    if (status == TED4_EXIT_FINE && !r.check)
         status = encode(&r, &d, &p, begin);
     if (fflush(stdout) != 0 || ferror(stdout))
         status = complain("standard output cannot be written");
