@@ -338,7 +338,7 @@ static void check_case(int number, const hostile *h)
 
     write_case(h);
     snprintf(command, sizeof command,
-             "cd %s && XDG_CACHE_HOME=%s/cache %s/ted4enc s --check -j 1 >out.txt 2>err.txt "
+             "cd %s && XDG_CACHE_HOME=%s/cache %s/ted4enc s --check -q -j 1 >out.txt 2>err.txt "
              "</dev/null",
              folder.path, folder.path, build);
     const int status = system(command);

@@ -128,9 +128,9 @@ static int decoders(const ted4_parallel *p)
 }
 
 /* Says what loaders warned of, from that warning on; gives how many there are. */
-static size_t warn(const ted4_request *r, const ted4_dataset *d, size_t from)
+static size_t warn(const ted4_dataset *d, size_t from)
 {
-    for (size_t i = from; i < d->n_warnings && !r->quiet; i++)
+    for (size_t i = from; i < d->n_warnings; i++)
         fprintf(stderr, "ted4enc: warning: %s\n", d->warnings[i]);
     return d->n_warnings;
 }
@@ -161,7 +161,7 @@ int main(int argc, char **argv)
     if (ted4_dataset_load(&d, r.scene, &wanted, &m) != 0)
         return complain(m.text);
 
-    const size_t said = warn(&r, &d, 0);
+    const size_t said = warn(&d, 0);
     int          status = TED4_EXIT_FINE;
 
     ted4_threads_init(&p, r.threads);
@@ -170,7 +170,7 @@ int main(int argc, char **argv)
         ted4_dataset_print(&d, stdout);
     if (ted4_dataset_verify(&d, &p, &m) != 0)
         status = complain(m.text);
-    warn(&r, &d, said);
+    warn(&d, said);
     if (status == TED4_EXIT_FINE && !r.check)
         status = encode(&r, &d, &p, begin);
     if (fflush(stdout) != 0 || ferror(stdout))

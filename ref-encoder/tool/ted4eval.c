@@ -230,7 +230,7 @@ static int open_scene(session *s)
 
     if (ted4_dataset_load(&s->data, s->set->scene, &options, &m) != 0)
         return failed(s->set->scene, m.text);
-    for (size_t i = 0; i < s->data.n_warnings && !s->set->quiet; i++)
+    for (size_t i = 0; i < s->data.n_warnings; i++)
         fprintf(stderr, "ted4eval: warning: %s\n", s->data.warnings[i]);
     s->viewer = ted4_viewer_new();
     return s->viewer == NULL ? failed(s->set->scene, "out of memory") : TED4_EXIT_FINE;
