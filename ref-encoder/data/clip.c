@@ -168,7 +168,7 @@ static char *find_video(const char *folder, const char *name)
 
 /* The folder of a clip's pictures, if need be unpacked; the caller's. As ted4_clip_pictures. */
 static int find_place(const char *folder, const char *name, const char *video, size_t most,
-                      char **place, ted4_message *m)
+                      char **place, const ted4_dataset_options *o, ted4_message *m)
 {
     char *path = video == NULL ? NULL : ted4_path_join(folder, video);
 
@@ -190,18 +190,18 @@ static int find_place(const char *folder, const char *name, const char *video, s
     }
     if (path == NULL)
         return 0;
-    *place = ted4_video_unpack(path, most, m);
+    *place = ted4_video_unpack(path, most, o, m);
     free(path);
     return *place == NULL ? -1 : 1;
 }
 
 int ted4_clip_pictures(ted4_name_list *pictures, const char *folder, const char *name, const char *video,
-                       size_t most, ted4_message *m)
+                       size_t most, const ted4_dataset_options *o, ted4_message *m)
 {
     char *place = NULL;
 
     memset(pictures, 0, sizeof *pictures);
-    int result = find_place(folder, name, video, most, &place, m);
+    int result = find_place(folder, name, video, most, &place, o, m);
     if (result == 1 && ted4_clip_list(pictures, place, 1) != 0)
         result = ted4_say_no_memory(m);
     keep(pictures, most);

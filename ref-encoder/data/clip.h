@@ -28,7 +28,7 @@ int ted4_clip_list(ted4_name_list *pictures, const char *folder, int by_length);
  * .webm, .m4v). Videos are unpacked (see video.h). At most most pictures, 0: all. 1, or 0: there is
  * none of all these, or -1 with *m filled; *pictures is empty then. */
 int ted4_clip_pictures(ted4_name_list *pictures, const char *folder, const char *name, const char *video,
-                       size_t most, ted4_message *m);
+                       size_t most, const ted4_dataset_options *o, ted4_message *m);
 
 /* Appends a shot for every picture: lens, pose and is_test of *model, time = index from its time
  * on, label = name. */

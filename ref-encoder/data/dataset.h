@@ -57,6 +57,9 @@ typedef struct {
                                      * whatever the layout says: the camera's label, its folder, or
                                      * the name of a picture of it; borrowed */
     size_t      n_hold_out;     /* 0: the layout's split */
+    /* Told about once a second while a video is unpacked: its file, and how many frames there are by then. NULL: nobody listens. */
+    void      (*unpacking)(void *user, const char *video, size_t frames);
+    void       *user;
 } ted4_dataset_options;
 
 /* One clear message, "file:line-or-field: what was found, what was expected". */

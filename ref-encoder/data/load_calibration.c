@@ -139,7 +139,8 @@ static int add_clip(calibration *c, const char *where, const char *name, const c
     c->scene->n_entries++;
     const int found =
         ted4_clip_pictures(&pictures, c->folder, name, video,
-                           c->stated > 0 ? c->stated : c->scene->wanted->max_frames, c->m);
+                           c->stated > 0 ? c->stated : c->scene->wanted->max_frames,
+                           c->scene->wanted, c->m);
     if (found == 0) {
         snprintf(text, sizeof text,
                  "%.150s: no such video, nor a folder images/%.60s or %.60s/images of its pictures",

@@ -63,7 +63,7 @@ static int add_clip(neu3d *n, size_t i)
     if (ted4_poses_bounds_camera(&n->table, n->numbered ? clip_number(name) : i, &model, n->m) != 0)
         return -1;
     int result = ted4_clip_pictures(&pictures, n->folder, name, NULL,
-                                    wanted > 0 ? wanted : MOST_FRAMES, n->m);
+                                    wanted > 0 ? wanted : MOST_FRAMES, n->scene->wanted, n->m);
     if (result == 0)
         result = ted4_say(n->m, "%s/%s: neither a video nor a folder of pictures", n->folder, name);
     if (result < 0)

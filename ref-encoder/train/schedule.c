@@ -151,6 +151,13 @@ static uint64_t sprout_step(const ted4_trainer *t)
     return (uint64_t)(SPROUT_AT * (double)t->opt.stage1);
 }
 
+void ted4_schedule_growth(const ted4_trainer *t, double *from, double *sprout_at, double *sprouts)
+{
+    *from = GROW_FROM;
+    *sprout_at = SPROUT_AT;
+    *sprouts = sprouts_wanted(t) ? t->opt.sprouts : 0.0;
+}
+
 size_t ted4_schedule_room(const ted4_trainer *t)
 {
     const int    reserved = !t->stage2 && t->iteration < sprout_step(t) && sprouts_wanted(t);
