@@ -94,8 +94,11 @@ $B/tests/%: tests/%.sh
 	@mkdir -p $(@D)
 	install -m 755 $< $@
 
-$(addprefix $B/tests/test_,scene scene_sets failure_scenes layouts): $(patsubst %.c,$B/%.o,$(wildcard tests/scenes/ray_*.c))
-$B/tests/test_run_log: $B/ref-encoder/tool/run_log.o
+$(addprefix $B/tests/test_,scene scene_sets failure_scenes layouts hold_out): $(patsubst %.c,$B/%.o,$(wildcard tests/scenes/ray_*.c))
+$B/tests/test_run_log: $(addprefix $B/ref-encoder/tool/,run_log.o teller.o)
+$B/tests/test_teller: $B/ref-encoder/tool/teller.o
+$B/tests/test_belongs: $(addprefix $B/ref-encoder/tool/,belongs.o sheet.o)
+$B/tests/test_estimate: $B/ref-encoder/tool/estimate.o
 $B/tests/test_install: | $(PROGS) $B/ted4conf $B/ted4tolerance
 $B/tests/test_verify: $B/ref-encoder/tool/verify.o
 $(addprefix $B/tests/test_starved_,trainer writer): override LDFLAGS += -Wl,--wrap=malloc,--wrap=calloc,--wrap=realloc,--wrap=aligned_alloc

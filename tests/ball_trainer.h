@@ -12,7 +12,7 @@ typedef struct { uint8_t *bytes; size_t size; } ball_file;
 
 static inline void ball_load(tiny_folder *f, ted4_dataset *d, int frames, int moving)
 {
-    const ted4_dataset_options o = { 1, 0, 3, 1 << 20, 0 };
+    const ted4_dataset_options o = { .downscale = 1, .seed = 3, .cache_bytes = 1 << 20 };
     ted4_message m;
 
     *f = tiny_new();

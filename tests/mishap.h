@@ -286,7 +286,7 @@ static inline ted4_train_options usual_options(void)
 /* A trainer of the usual run at its start, over the scene; end_usual finishes both. */
 static inline void begin_usual(ted4_trainer *t, ted4_dataset *d)
 {
-    const ted4_dataset_options wanted = { 1, 1, 0, 1 << 20, 0 };
+    const ted4_dataset_options wanted = { .downscale = 1, .white = 1, .cache_bytes = 1 << 20 };
     const ted4_train_options   o = usual_options();
     ted4_message               m;
 

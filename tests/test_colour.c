@@ -397,7 +397,7 @@ typedef struct { tiny_folder folder; ted4_dataset data; } scene;
 
 static void open_scene(scene *s)
 {
-    const ted4_dataset_options o = { 1, 0, 3, 1 << 20, 0 };
+    const ted4_dataset_options o = { .downscale = 1, .seed = 3, .cache_bytes = 1 << 20 };
     ted4_message m;
 
     s->folder = tiny_new();

@@ -121,7 +121,7 @@ static float worst(const ted4_colour *c, const double *gain)
 /* The trainer's colours after the match. */
 static void matched(int n_points, const double *gain, double hidden, float tint, ted4_trainer *t, ted4_dataset *d, tiny_folder *f)
 {
-    const ted4_dataset_options o = { 1, 0, 3, 1 << 20, 0 };
+    const ted4_dataset_options o = { .downscale = 1, .seed = 3, .cache_bytes = 1 << 20 };
     ted4_message m;
 
     *f = tiny_new();

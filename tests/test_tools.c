@@ -500,7 +500,9 @@ static void test_eval(void **state)
     }
     write_scene_file("scene/transforms_train.json");
     write_scene_file("scene/transforms_test.json");
-    assert_int_equal(run("ted4eval v1.ted4 scene --json --images pictures --sheet sheet.png"), 0);
+    /* The vector is of no scene at all. */
+    assert_int_equal(run("ted4eval v1.ted4 scene"), 3);
+    assert_int_equal(run("ted4eval v1.ted4 scene --anyway --json --images pictures --sheet sheet.png"), 0);
     free(contents("v1.ted4", &size));
     assert_true(fabs(result("psnr") - 20.0 * log10(255.0)) < 1e-3);
     assert_true(result("ssim") > 0.99 && result("ssim") < 1.0);
@@ -514,8 +516,8 @@ static void test_eval(void **state)
     assert_true(exists("pictures/truth/00002.png") && exists("pictures/ours/00002.png")
                 && exists("pictures/error/00002.png"));
     /* The sheet is there by now. */
-    assert_int_equal(run("ted4eval v1.ted4 scene --split train --sheet sheet.png"), 3);
-    assert_int_equal(run("ted4eval v1.ted4 scene --split train --sheet sheet.png -f"), 0);
+    assert_int_equal(run("ted4eval v1.ted4 scene --anyway --split train --sheet sheet.png"), 3);
+    assert_int_equal(run("ted4eval v1.ted4 scene --anyway --split train --sheet sheet.png -f"), 0);
     assert_non_null(strstr(out, "psnr"));
     assert_int_equal(run("ted4eval bad.ted4 scene"), 1);
     assert_int_equal(run("ted4eval v1.ted4 missing"), 3);

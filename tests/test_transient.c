@@ -17,7 +17,7 @@ typedef struct { tiny_folder folder; ted4_dataset data; ted4_trainer trainer; } 
 
 static void open_scene(scene *s, int moving, int activation, int transients)
 {
-    const ted4_dataset_options o = { 1, 0, 3, 1 << 20, 0 };
+    const ted4_dataset_options o = { .downscale = 1, .seed = 3, .cache_bytes = 1 << 20 };
     ted4_train_options         train;
     ted4_message               m;
 

@@ -9,6 +9,7 @@
 #include <string.h>
 
 #include "base/level.h"
+#include "similar.h"
 #include "ted4.h"
 
 /* Long options without a letter are reported by getopt as this plus their place. */
@@ -62,6 +63,20 @@ static int check_kernels(const ted4_command *c)
     return -1;
 }
 
+/* getopt has refused a long option, and said so. */
+static void suggest(const ted4_command *c, const char *word)
+{
+    if (strncmp(word, "--", 2) != 0)
+        return;
+
+    ted4_similar s = ted4_similar_to(word + 2, strcspn(word + 2, "="));
+
+    for (int i = 0; i < c->n; i++)
+        ted4_similar_try(&s, c->table[i].name);
+    if (s.best != NULL && s.distance > 0)
+        fprintf(stderr, "%s: did you mean --%s?\n", c->program, s.best);
+}
+
 int ted4_arguments_next(const ted4_command *c, int argc, char **argv, const char **value)
 {
     struct option longs[TED4_MAX_ARGUMENTS + 1];
@@ -78,6 +93,8 @@ int ted4_arguments_next(const ted4_command *c, int argc, char **argv, const char
     for (int i = 0; i < c->n; i++)
         if (c->table[i].letter == found)
             return answer(c, i);
+    if (optopt == 0 && optind > 1)
+        suggest(c, argv[optind - 1]);
     return TED4_ARGUMENTS_BAD;
 }
 

@@ -12,6 +12,9 @@ typedef struct ted4_source {
     ted4_lens   lens;           /* of the file's size */
     int         downscale;
     uint8_t     background;     /* grey level under transparent pixels */
+    uint8_t     premultiplied;  /* as the option */
+    size_t      n_partial;      /* pixels that are transparent in part, of the last decoding */
+    size_t      n_above;        /* of these, with a colour above alpha, which premultiplied have not */
     int         is_known;       /* decoded before: a file with another digest is refused */
     uint64_t    digest;
     double      level;          /* mean of all its bytes; 0 until ted4_dataset_verify */

@@ -7,6 +7,7 @@
 #include <dirent.h>
 #include <errno.h>
 #include <fcntl.h>
+#include <poll.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -20,6 +21,7 @@
 #define COUNT   "count"         /* number of frames, in the folder when it is complete */
 #define NO_EXEC 127             /* exit status of a child that could not start ffmpeg */
 #define TAIL    2000            /* bytes kept of what ffmpeg says */
+enum { TELL_EVERY = 1000 };     /* milliseconds */
 
 /* Even time stamps, so that no frame is doubled or dropped; then RGB with a conversion that is the
  * same on every machine; without the colour tags that make a PNG reader convert once more. */
@@ -135,18 +137,37 @@ static void become_ffmpeg(const char *input, const char *limit, const char *fold
     const int none = chdir(folder) == 0 ? open("/dev/null", O_RDWR) : -1;
 
     if (none >= 0 && dup2(none, 0) >= 0 && dup2(none, 1) >= 0 && dup2(messages, 2) >= 0)
-        execlp("ffmpeg", "ffmpeg", "-nostdin", "-hide_banner", "-v", "repeat+error", "-i", input, "-map", "0:v:0",
-               "-vf", FILTERS, "-r", RATE, "-frames:v", limit, "-flags", "+bitexact", "-fflags", "+bitexact",
+        execlp("ffmpeg", "ffmpeg", "-nostdin", "-hide_banner", "-v", "repeat+error",
+               "-protocol_whitelist", "file", "-i", input, "-map", "0:v:0", "-vf", FILTERS, "-r",
+               RATE, "-frames:v", limit, "-flags", "+bitexact", "-fflags", "+bitexact",
                "-compression_level", "1", "-f", "image2", "%06d.png", (char *)NULL);
     _exit(NO_EXEC);
 }
 
+/* Who hears of a video that is being unpacked, and where its frames come to lie. */
+typedef struct {
+    const ted4_dataset_options *o;
+    const char *video, *folder;
+} audience;
+
+/* Waits until there is something to read, or nothing more will come; meanwhile the audience hears of frames. */
+static void await(int from, const audience *a)
+{
+    struct pollfd wanted = { .fd = from, .events = POLLIN };
+
+    if (a->o == NULL || a->o->unpacking == NULL)
+        return;
+    while (poll(&wanted, 1, TELL_EVERY) == 0)
+        a->o->unpacking(a->o->user, a->video, count_frames(a->folder));
+}
+
 /* Reads to the end; keeps what came last, as text. */
-static void listen(int from, char tail[TAIL])
+static void listen(int from, const audience *a, char tail[TAIL])
 {
     size_t n = 0;
 
     for (;;) {
+        await(from, a);
         if (n == TAIL - 1) {
             memmove(tail, tail + TAIL / 2, n - TAIL / 2);
             n -= TAIL / 2;
@@ -159,23 +180,23 @@ static void listen(int from, char tail[TAIL])
     tail[n] = 0;
 }
 
-/* Runs ffmpeg in the folder; gives its exit status, or -1, and what it said at the end. Its messages come
+/* Runs ffmpeg in the audience's folder; gives its exit status, or -1, and what it said at the end. Its messages come
  * through a pipe, for a full disk would swallow a file. */
-static int run_ffmpeg(const char *video, size_t most, const char *folder, char tail[TAIL])
+static int run_ffmpeg(const audience *a, size_t most, char tail[TAIL])
 {
     char input[4200], limit[24];
     int status, ends[2];
 
     tail[0] = 0;
     snprintf(limit, sizeof limit, "%zu", most);
-    if (snprintf(input, sizeof input, "file:%s", video) >= (int)sizeof input || pipe(ends) != 0)
+    if (snprintf(input, sizeof input, "file:%s", a->video) >= (int)sizeof input || pipe(ends) != 0)
         return -1;
     const pid_t child = fork();
     if (child == 0)
-        become_ffmpeg(input, limit, folder, ends[1]);
+        become_ffmpeg(input, limit, a->folder, ends[1]);
     close(ends[1]);
     if (child > 0)
-        listen(ends[0], tail);
+        listen(ends[0], a, tail);
     close(ends[0]);
     while (child > 0 && waitpid(child, &status, 0) < 0)
         if (errno != EINTR)
@@ -202,10 +223,11 @@ static void last_words(char tail[TAIL], char words[200])
     words[n] = 0;
 }
 
-static int fill(const char *video, size_t most, const char *folder, ted4_message *m)
+static int fill(const audience *a, size_t most, ted4_message *m)
 {
+    const char *const video = a->video, *const folder = a->folder;
     char tail[TAIL], words[200];
-    const int status = run_ffmpeg(video, most, folder, tail);
+    const int status = run_ffmpeg(a, most, tail);
     const size_t n = count_frames(folder);
 
     if (status == NO_EXEC)
@@ -217,7 +239,7 @@ static int fill(const char *video, size_t most, const char *folder, ted4_message
 }
 
 /* Unpacks into a new folder beside the final one and renames it. */
-static int unpack(const char *video, size_t most, const char *final, ted4_message *m)
+static int unpack(const char *video, size_t most, const char *final, const ted4_dataset_options *o, ted4_message *m)
 {
     const size_t size = strlen(final) + 8;
     char *folder = malloc(size);
@@ -230,13 +252,32 @@ static int unpack(const char *video, size_t most, const char *final, ted4_messag
         free(folder);
         return -1;
     }
-    int result = fill(video, most, folder, m);
+    int result = fill(&(audience){ o, video, folder }, most, m);
     if (result == 0 && rename(folder, final) != 0 && !is_complete(final))
         result = ted4_say(m, "%s: %s", final, strerror(errno));
     /* Gone when renamed; left when this failed or another program was first. */
     remove_folder(folder);
     free(folder);
     return result;
+}
+
+/* A file of text is no video, but ffmpeg would follow it where it lists other files. 0, or -1 with
+ * *m filled. */
+static int check_kind(const char *video, ted4_message *m)
+{
+    uint8_t head[512];
+    FILE *f = fopen(video, "rb");
+    size_t i = 0;
+
+    if (f == NULL)
+        return ted4_say(m, "%s: %s", video, strerror(errno));
+    const size_t n = fread(head, 1, sizeof head, f);
+    fclose(f);
+    while (i < n && (head[i] >= ' ' || head[i] == '\t' || head[i] == '\n' || head[i] == '\r'))
+        i++;
+    return i < n ? 0
+                 : ted4_say(m, "%s: %s, expected a video", video,
+                            n == 0 ? "empty" : "text (a playlist?)");
 }
 
 /* Independent of the folder that the program, or ffmpeg, works in. Owned by the caller. */
@@ -247,7 +288,7 @@ static char *absolute(const char *path)
     return getcwd(here, sizeof here) == NULL ? NULL : ted4_path_join(here, path);
 }
 
-char *ted4_video_unpack(const char *video, size_t most, ted4_message *m)
+char *ted4_video_unpack(const char *video, size_t most, const ted4_dataset_options *o, ted4_message *m)
 {
     struct stat s;
     const size_t limit = most > 0 && most < TED4_MAX_FRAMES ? most : TED4_MAX_FRAMES;
@@ -260,7 +301,7 @@ char *ted4_video_unpack(const char *video, size_t most, ted4_message *m)
         ted4_say_no_memory(m);
     if (final != NULL && !is_complete(final)) {
         remove_folder(final);
-        if (unpack(path, limit, final, m) != 0) {
+        if (check_kind(path, m) != 0 || unpack(path, limit, final, o, m) != 0) {
             free(final);
             final = NULL;
         }

@@ -8,10 +8,12 @@
 
 #include "ted4.h"
 #include "tool/arguments.h"
+#include "tool/similar.h"
 #include "tool/threads.h"
 
 enum {
     OPT_OUTPUT, OPT_PRESET, OPT_LAMBDA, OPT_ITERATIONS, OPT_CAPACITY, OPT_WHY, OPT_SET, OPT_DOWNSCALE, OPT_MAX_FRAMES, OPT_BOUNDS, OPT_BLACK,
+    OPT_ALPHA, OPT_HOLD_OUT,
     OPT_SEED, OPT_THREADS, OPT_CACHE, OPT_TARGET, OPT_CHECKPOINT, OPT_EVERY, OPT_RESUME, OPT_STAGE1, OPT_LOG, OPT_CHECK, OPT_JSON, OPT_CONTRACT, OPT_FORCE,
     OPT_QUIET, OPT_VERBOSE, OPT_HELP, OPT_VERSION, N_OPTIONS
 };
@@ -32,10 +34,14 @@ static const ted4_argument OPTIONS[N_OPTIONS] = {
     [OPT_MAX_FRAMES] = { 0, "max-frames", "N", "only so many times, the first ones (default: all, 300 of Neu3D)" },
     [OPT_BOUNDS]     = { 0, "bounds", "X,Y,Z,X,Y,Z", "two corners of a box of the scene; initial points lie in it" },
     [OPT_BLACK]      = { 0, "black", NULL, "pictures with alpha lie on black, not white" },
+    [OPT_ALPHA]      = { 0, "alpha", "HOW",
+                         "colours of pictures with alpha: straight (default) or premultiplied" },
+    [OPT_HOLD_OUT]   = { 0, "hold-out", "NAME",
+                         "train without this camera, in place of the layout's split; repeatable" },
     [OPT_SEED]       = { 0, "seed", "S", "same scene, options and seed: same bytes" },
     [OPT_THREADS]    = { 'j', "threads", "N", "threads; 0: all cores. Default 0" },
     [OPT_CACHE]      = { 0, "cache", "MIB", "memory for decoded pictures; more of them are read again. Default 2048" },
-    [OPT_CHECKPOINT] = { 0, "checkpoint", "FILE", "saved now and then and at the end" },
+    [OPT_CHECKPOINT] = { 0, "checkpoint", "FILE", "saved now and then, when stopped, and at the end" },
     [OPT_EVERY]      = { 0, "checkpoint-every", "S", "seconds between checkpoints; 0: every step. Default 60" },
     [OPT_RESUME]     = { 0, "resume", NULL, "go on from the checkpoint if it is there" },
     [OPT_STAGE1]     = { 0, "stage1", "FILE", "begin with this end of stage 1, or make the file" },
@@ -44,8 +50,8 @@ static const ted4_argument OPTIONS[N_OPTIONS] = {
     [OPT_JSON]       = { 0, "json", NULL, "result as one JSON object" },
     [OPT_CONTRACT]   = { 0, "ted4-encode", NULL, "the contract of conformance/README.md: --json --quiet" },
     [OPT_FORCE]      = { 'f', "force", NULL, "overwrite" },
-    [OPT_QUIET]      = { 'q', "quiet", NULL, "errors only" },
-    [OPT_VERBOSE]    = { 'v', "verbose", NULL, "progress lines, terminal or not" },
+    [OPT_QUIET]      = { 'q', "quiet", NULL, "errors only: nothing of how far it is" },
+    [OPT_VERBOSE]    = { 'v', "verbose", NULL, "a line of progress every 250 steps" },
     [OPT_HELP]       = TED4_ARGUMENT_HELP,
     [OPT_VERSION]    = TED4_ARGUMENT_VERSION,
 };
@@ -54,11 +60,12 @@ static const ted4_command COMMAND = {
     "ted4enc",
     "SCENE -o FILE.ted4 [options]",
     "Trains a scene from posed pictures and writes it as a TED4 file. SCENE is a folder: COLMAP,\n"
-    "D-NeRF/Blender, nerfstudio, HyperNeRF, Neu3D, or cams.json with one video a camera.\n"
+    "D-NeRF/Blender, nerfstudio, HyperNeRF, Neu3D, LLFF, or cams.json with one video a camera.\n"
     "Videos need the program ffmpeg; their frames are kept in $XDG_CACHE_HOME/ted4, or in\n"
     "ted4-UID in $TMPDIR or /tmp.",
     OPTIONS, N_OPTIONS,
-    "Exit codes: 0 fine, 2 fine but larger than --target-size, 3 usage, input, output or resources.\n\n"
+    "Exit codes: 0 fine, 2 fine but larger than --target-size, 3 usage, input, output or resources,\n"
+    "130 stopped by Ctrl-C, 143 by a request to end: after the step, with a last checkpoint.\n\n"
     "Training options (--set) and their values in each preset:\n",
     ted4_options_help,
 };
@@ -124,6 +131,15 @@ static int take(ted4_request *r, pending *p, int option, const char *value)
     case OPT_LOG:        r->log = value; break;
     case OPT_BOUNDS:     return take_bounds(r, value);
     case OPT_BLACK:      r->black = 1; break;
+    case OPT_ALPHA:
+        r->premultiplied = strcmp(value, "premultiplied") == 0;
+        return r->premultiplied || strcmp(value, "straight") == 0 ? TED4_REQUEST_GO
+                                                                  : bad_value(option, value);
+    case OPT_HOLD_OUT:
+        if (r->n_hold_out == TED4_REQUEST_HOLD_OUT)
+            return complain("too many --hold-out");
+        r->hold_out[r->n_hold_out++] = value;
+        break;
     case OPT_RESUME:     r->resume = 1; break;
     case OPT_CHECK:      r->check = 1; break;
     case OPT_CONTRACT:   r->json = r->quiet = 1; break;
@@ -160,12 +176,27 @@ static int take(ted4_request *r, pending *p, int option, const char *value)
     return TED4_REQUEST_GO;
 }
 
+/* The option or preset most like a word that is none; "": none is like it. */
+static const char *suggestion(const char *word, const char *(*name)(int i), char *text, size_t size)
+{
+    ted4_similar s = ted4_similar_to(word, strcspn(word, "="));
+
+    for (int i = 0; name(i) != NULL; i++)
+        ted4_similar_try(&s, name(i));
+    if (s.best == NULL || s.distance == 0)
+        return "";
+    snprintf(text, size, "; did you mean %s?", s.best);
+    return text;
+}
+
 static int set(ted4_request *r, const char *text)
 {
-    char why[256];
+    char why[256], hint[80], all[400];
 
-    return ted4_options_set(&r->options, text, why, sizeof why) != 0 ? complain(why)
-                                                                     : TED4_REQUEST_GO;
+    if (ted4_options_set(&r->options, text, why, sizeof why) == 0)
+        return TED4_REQUEST_GO;
+    snprintf(all, sizeof all, "%s%s", why, suggestion(text, ted4_options_name, hint, sizeof hint));
+    return complain(all);
 }
 
 /* "A,B" */
@@ -188,12 +219,12 @@ static int set_iterations(ted4_request *r, const char *text)
 static int apply(ted4_request *r, const pending *p)
 {
     const uint32_t seed = r->options.seed;
-    char           text[256];
+    char           text[256], hint[80];
     int            status = TED4_REQUEST_GO;
 
     if (ted4_options_preset(&r->options, p->preset) != 0) {
-        snprintf(text, sizeof text, "--preset %s: expected draft, fast, medium, slow or paper",
-                 p->preset);
+        snprintf(text, sizeof text, "--preset %.100s: expected draft, fast, medium, slow or paper%s", p->preset,
+                 suggestion(p->preset, ted4_options_preset_name, hint, sizeof hint));
         return complain(text);
     }
     r->options.seed = seed;

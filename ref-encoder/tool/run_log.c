@@ -4,7 +4,6 @@
 
 #include <errno.h>
 #include <fcntl.h>
-#include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -15,7 +14,6 @@
 #include "train/capacity.h"
 #include "train/clamped.h"
 #include "train/make_scene.h"
-#include "write/deflate.h"
 
 /* Written and read again. */
 #define CPU_SECONDS "\"cpu_seconds\":"
@@ -26,11 +24,6 @@ static double seconds_of(clockid_t clock)
 
     clock_gettime(clock, &t);
     return (double)t.tv_sec + 1e-9 * (double)t.tv_nsec;
-}
-
-double ted4_seconds(void)
-{
-    return seconds_of(CLOCK_MONOTONIC);
 }
 
 static int say(const char *path, const char *what, char *why, size_t why_size)
@@ -89,13 +82,13 @@ static int cut(const char *path, int file, const ted4_trainer *t, double *cpu, c
     return ftruncate(file, end) == 0 ? 0 : say(path, strerror(errno), why, why_size);
 }
 
-int ted4_run_log_open(ted4_run_log *l, const char *path, const ted4_trainer *t, int keep, int quiet, int verbose, char *why, size_t why_size)
+int ted4_run_log_open(ted4_run_log *l, const char *path, const ted4_trainer *t, int keep, ted4_teller *teller, char *why, size_t why_size)
 {
     memset(l, 0, sizeof *l);
     l->path = path;
     l->file = -1;
-    l->terminal = !quiet && isatty(STDERR_FILENO);
-    l->verbose = verbose;
+    l->teller = teller;
+    l->left = l->ms = -1;
     ted4_run_log_skip(l);
     ted4_run_log_move(l, t);
     if (path == NULL)
@@ -142,79 +135,12 @@ void ted4_run_log_move(ted4_run_log *l, const ted4_trainer *t)
     l->last_cpu = l->cpu_seconds;
 }
 
-/* Estimated bytes of the file; all zero before stage 2. */
-typedef struct { double positions, masks, type[TED4_TYPES], networks, sum; } estimate;
-
-/* Bytes of n flags of which some are on, at one probability for all. */
-static double bytes_of_flags(double n, double on)
-{
-    const double p = on / n;
-
-    return on <= 0 || on >= n ? 0 : n * (-p * log2(p) - (1 - p) * log2(1 - p)) / 8;
-}
-
-/* Anchors that the file will have: those with a Gaussian (*kept), and what their masks take. */
-static double mask_bytes(const ted4_trainer *t, double *kept)
-{
-    const int n_offsets = t->layout.head.n_offsets;
-    double    moving = 0, on[TED4_MAX_OFFSETS] = { 0 }, bytes;
-
-    *kept = 0;
-    for (size_t i = 0; i < t->anchors.n; i++) {
-        const unsigned bits = ted4_offset_bits(t, i);
-
-        *kept += bits != 0;
-        moving += bits != 0 && ted4_is_dynamic(t, i);
-        for (int k = 0; k < n_offsets; k++)
-            on[k] += bits >> k & 1;
-    }
-    bytes = bytes_of_flags(*kept, moving);
-    for (int k = 0; k < n_offsets; k++)
-        bytes += bytes_of_flags(*kept, on[k]);
-    return bytes;
-}
-
-/* What n weights take, as the writer deflates them. */
-static double blob_bytes(const float *values, size_t n)
-{
-    const size_t   room = ted4_deflate_room(n);
-    uint8_t *const memory = malloc(4 * n + room);
-    size_t         size = 4 * n;
-
-    if (memory != NULL && !ted4_deflate(values, n, memory, memory + 4 * n, &size))
-        size = 4 * n;
-    free(memory);
-    return (double)size;
-}
-
-static estimate estimate_bytes(const ted4_trainer *t)
-{
-    const ted4_layout *l = &t->layout;
-    const ted4_shape  *s = &l->shape;
-    estimate           e = { 0 };
-    double             kept;
-
-    if (!t->stage2)
-        return e;
-    e.masks = mask_bytes(t, &kept);
-    e.positions = 6.0 * kept;
-    e.networks = blob_bytes(t->net + l->nete, s->n_nete) + blob_bytes(t->net + l->netr, s->n_netr) + blob_bytes(t->net + l->bank, s->n_bank) +
-                 (double)s->n_units;
-    e.sum = e.positions + e.masks + e.networks;
-    for (int y = 0; y < TED4_TYPES; y++) {
-        e.type[y] = kept * t->progress.bits[y] / 8.0;
-        e.sum += e.type[y];
-    }
-    return e;
-}
-
 enum { TERMS_TEXT = TED4_TERMS * 26, MOST_LINE = 1200 + 2 * TERMS_TEXT };
 
 /* What a line tells beyond the trainer's own numbers. */
 typedef struct {
     const char *stage;
     double      ms, cpu_ms, rate;       /* a step; Gaussian-pixels a second */
-    estimate    bytes;
 } line_facts;
 
 /* {"feature":x,...} of all terms: numbers of at most 12 characters. */
@@ -230,7 +156,8 @@ static const char *print_terms(char *text, size_t size, const double *x)
 static int print_line(char *line, size_t size, const ted4_run_log *l, const ted4_trainer *t, const line_facts *f)
 {
     const ted4_progress *p = &t->progress;
-    const double        *b = p->bits, *y = f->bytes.type;
+    const ted4_preview  *v = &l->preview;
+    const double        *b = p->bits, *y = v->type;
     double               usual[TED4_TERMS], peak[TED4_TERMS];
     char                 gradients[TERMS_TEXT], peaks[TERMS_TEXT];
 
@@ -242,15 +169,15 @@ static int print_line(char *line, size_t size, const ted4_run_log *l, const ted4
                     "{\"step\":%llu,\"stage\":\"%s\",\"lambda\":%.7g,\"loss\":%.6f,\"l1\":%.6f,\"ssim\":%.6f,\"psnr\":%.4f,"
                     "\"anchors\":%zu,\"moving\":%zu,\"splats\":%.0f,\"bytes\":%.0f,"
                     "\"bytes_by_type\":{\"positions\":%.0f,\"masks\":%.0f,\"feature\":%.0f,\"scaling\":%.0f,\"offset\":%.0f,"
-                    "\"phi\":%.0f,\"tau\":%.0f,\"networks\":%.0f},\"bits\":[%.2f,%.2f,%.2f,%.2f,%.2f],"
+                    "\"phi\":%.0f,\"tau\":%.0f,\"networks\":%.0f,\"frame\":%.0f},\"bits\":[%.2f,%.2f,%.2f,%.2f,%.2f],"
                     "\"skipped\":%llu,\"clamped\":%zu,\"gradients\":{%s},\"peaks\":{%s},\"rollbacks\":%llu,"
-                    "\"ms\":%.3f,\"cpu_ms\":%.3f,\"gaussian_pixels_per_s\":%.4g,\"seconds\":%.2f," CPU_SECONDS "%.2f}\n",
-                    (unsigned long long)t->iteration, f->stage, t->opt.lambda, p->loss, p->l1, p->ssim, l->psnr, t->anchors.n,
-                    ted4_count_dynamic(t), p->splats, f->bytes.sum, f->bytes.positions, f->bytes.masks, y[TED4_FEATURE], y[TED4_SCALING],
-                    y[TED4_OFFSET], y[TED4_PHI], y[TED4_TAU], f->bytes.networks, b[TED4_FEATURE], b[TED4_SCALING], b[TED4_OFFSET],
+                    "\"split\":\"%s\",\"ms\":%.3f,\"cpu_ms\":%.3f,\"gaussian_pixels_per_s\":%.4g,\"seconds\":%.2f," CPU_SECONDS "%.2f,\"left\":%.1f}\n",
+                    (unsigned long long)t->iteration, f->stage, t->opt.lambda, p->loss, p->l1, p->ssim, v->psnr, t->anchors.n,
+                    ted4_count_dynamic(t), p->splats, v->bytes, v->positions, v->masks, y[TED4_FEATURE], y[TED4_SCALING],
+                    y[TED4_OFFSET], y[TED4_PHI], y[TED4_TAU], v->networks, v->frame, b[TED4_FEATURE], b[TED4_SCALING], b[TED4_OFFSET],
                     b[TED4_PHI], b[TED4_TAU], (unsigned long long)ted4_raster_skipped(t->raster), ted4_clamped(t),
                     print_terms(gradients, sizeof gradients, usual), print_terms(peaks, sizeof peaks, peak),
-                    (unsigned long long)t->watch.state.rollbacks, f->ms, f->cpu_ms, f->rate, t->seconds, l->cpu_seconds);
+                    (unsigned long long)t->watch.state.rollbacks, v->train ? "train" : "test", f->ms, f->cpu_ms, f->rate, t->seconds, l->cpu_seconds, l->left);
 }
 
 /* The whole line or, on a full disk, nothing of it. */
@@ -267,22 +194,23 @@ static int put_line(const ted4_run_log *l, const char *line, size_t size, char *
     return -1;
 }
 
+const char *ted4_run_log_stage(const ted4_trainer *t)
+{
+    return !t->stage2 ? "1" : t->integer ? "2i" : "2";
+}
+
 int ted4_run_log_step(ted4_run_log *l, const ted4_trainer *t, char *why, size_t why_size)
 {
     const double steps = (double)(t->iteration - l->last_step);
     char         line[MOST_LINE];
-    line_facts   f = { .stage = !t->stage2 ? "1" : t->integer ? "2i" : "2", .bytes = estimate_bytes(t) };
+    line_facts   f = { .stage = ted4_run_log_stage(t) };
 
     if (steps > 0) {
         f.ms = 1e3 * (t->seconds - l->last_seconds) / steps;
         f.cpu_ms = 1e3 * (l->cpu_seconds - l->last_cpu) / steps;
     }
     f.rate = f.ms > 0 ? 1e3 * t->progress.splat_pixels / f.ms : 0;
-    if (l->terminal || l->verbose)
-        fprintf(stderr, "%s%llu/%llu stage %s loss %.5f psnr %.2f anchors %zu bytes %.0f  %.1f ms/step (%.1f G Gaussian-pixels/s)  %.0f s left%s",
-                l->terminal ? "\r\033[K" : "", (unsigned long long)t->iteration, (unsigned long long)ted4_trainer_total(t), f.stage,
-                t->progress.loss, l->psnr, t->anchors.n, f.bytes.sum, f.ms, 1e-9 * f.rate,
-                1e-3 * f.ms * (double)(ted4_trainer_total(t) - t->iteration), l->terminal ? "" : "\n");
+    l->ms = f.ms;
     ted4_run_log_move(l, t);
     if (l->file < 0)
         return 0;
@@ -316,8 +244,8 @@ int ted4_run_log_trials(ted4_run_log *l, const ted4_trainer *t, size_t first, ch
     for (size_t i = first; i < t->n_trials; i++) {
         const struct ted4_trial *x = &t->trial[i];
 
-        if (l->verbose)
-            fprintf(stderr, "capacity: %s %lld to %lld %s: cost %.6f to %.6f (distortion %.6f to %.6f, bytes %.0f to %.0f), after %lld steps each\n",
+        if (l->teller != NULL)
+            ted4_teller_say(l->teller, "capacity: %s %lld to %lld %s: cost %.6f to %.6f (distortion %.6f to %.6f, bytes %.0f to %.0f), after %lld steps each",
                     ted4_move_name((ted4_move)x->move), (long long)x->from, (long long)x->to, x->taken ? "taken" : "left", x->before.cost,
                     x->after.cost, x->before.distortion, x->after.distortion, x->before.bytes, x->after.bytes, (long long)x->steps);
         if (l->file < 0)
@@ -341,8 +269,6 @@ int ted4_run_log_close(ted4_run_log *l, char *why, size_t why_size)
 {
     const int file = l->file;
 
-    if (l->terminal)
-        fprintf(stderr, "\n");
     l->file = -1;
     return file < 0 || close(file) == 0 ? 0 : say(l->path, strerror(errno), why, why_size);
 }

@@ -1,27 +1,31 @@
-/* run_log.h - what a training run says while it runs: a progress line on a terminal, JSON lines in a file. Keeps the time that training took, too.
+/* run_log.h - what a training run writes down while it runs: JSON lines in a file. Keeps the time that training took, too.
  * SPDX-License-Identifier: BSD-2-Clause */
 #ifndef TED4_RUN_LOG_H
 #define TED4_RUN_LOG_H
 
+#include "preview.h"
+#include "teller.h"
 #include "train/trainer.h"
 
 typedef struct {
     const char *path;           /* borrowed; NULL: no log file */
     int    file;                /* descriptor, -1: no log file */
-    int    terminal;            /* progress line wanted */
-    int    verbose;             /* plain progress lines wanted */
+    ted4_teller *teller;        /* borrowed; hears of trials. NULL: nobody does */
     double wall, cpu;           /* clocks at the last tick, seconds */
     double cpu_seconds;         /* that all threads worked between ticks, since the log began */
     uint64_t last_step;         /* the last line's step, trainer->seconds and cpu_seconds: the next one's ms count from there */
     double last_seconds, last_cpu;
-    double psnr;                /* held-out preview */
+    ted4_preview preview;       /* what the next line tells of the file */
+    double left;                /* seconds of work that the next line tells to be left; negative: not known */
+    double ms;                  /* a step, by the last line; negative: there was none */
 } ted4_run_log;
 
-double ted4_seconds(void);
+/* "1", "2", "2i" (integer model) */
+const char *ted4_run_log_stage(const ted4_trainer *t);
 
 /* path NULL: no log file. keep: a log that is there is cut after the lines of steps and rollbacks up to those of t, and goes on; else it begins anew. 0, or -1 with why
  * filled: also when keep is asked for and the file is no log. */
-int  ted4_run_log_open(ted4_run_log *l, const char *path, const ted4_trainer *t, int keep, int quiet, int verbose, char *why, size_t why_size);
+int  ted4_run_log_open(ted4_run_log *l, const char *path, const ted4_trainer *t, int keep, ted4_teller *teller, char *why, size_t why_size);
 
 /* Time since the last tick was training: adds it to t->seconds. Or was not. */
 void ted4_run_log_tick(ted4_run_log *l, ted4_trainer *t);
@@ -32,17 +36,18 @@ void ted4_run_log_move(ted4_run_log *l, const ted4_trainer *t);
 int  ted4_run_log_cut(ted4_run_log *l, const ted4_trainer *t, char *why, size_t why_size);
 
 /* One line, right after a tick:
- *   step stage             steps done; "1", "2", "2i" (integer model)
+ *   step stage             steps done; ted4_run_log_stage
  *   lambda                 of this run, or this trial of --target-size
  *   loss l1 ssim           running means over about 100 steps
- *   psnr                   of the held-out preview, dB
+ *   psnr split             mean over pictures of a spread, dB, as of the file in stage 2; "test", or "train" where nothing is held out
  *   anchors moving splats  how many; those the file would call dynamic; Gaussians on screen
- *   bytes bytes_by_type    estimate of the file in stage 2, else 0; positions, masks, the five attributes, networks. Headers and frames, some 300 bytes, are left out
+ *   bytes bytes_by_type    of the file as it would be, in stage 2, else 0; positions, masks, the five attributes, networks, and the frame around them
  *   bits                   of the five attributes, an anchor
  *   ms cpu_ms              a step, since the line before
  *   gaussian_pixels_per_s  speed
  *   seconds                of training since step 0, whatever runs it took; what was trained and thrown away (a new beginning, a rollback) counts
  *   cpu_seconds            the same of all threads, since this log began
+ *   left                   seconds until the file is written, as estimated; negative: not known
  *   skipped                Gaussians that this process has left out of pictures so far, as they were not finite (ted4_raster_skipped)
  *   clamped                values of anchors at an end of their range (clamped.h)
  *   gradients              usual norm (near the median of about 100 steps) of what each term learns from: values of anchors by attribute, masks, centres of

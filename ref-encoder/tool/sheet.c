@@ -14,6 +14,105 @@ void ted4_sheet_error(const uint8_t *a, const uint8_t *b, size_t n, uint8_t *out
     }
 }
 
+/* Which pictures may be shown: of one split, and of the size of its first. */
+typedef struct { const ted4_dataset *d; int test; size_t first; } show;
+
+static int is_shown(const show *s, size_t i)
+{
+    const ted4_picture *p = &s->d->pictures[i];
+    const ted4_camera  *a = &p->camera, *b = &s->d->pictures[s->first].camera;
+
+    return (p->is_test != 0) == (s->test != 0) && a->width == b->width && a->height == b->height;
+}
+
+/* Is it the first of its camera? */
+static int opens(const show *s, size_t i)
+{
+    for (size_t k = 0; k < i; k++)
+        if (s->d->pictures[k].camera_id == s->d->pictures[i].camera_id && is_shown(s, k))
+            return 0;
+    return is_shown(s, i);
+}
+
+/* The first picture of camera number n of those shown. */
+static size_t camera_at(const show *s, size_t n)
+{
+    size_t i = 0;
+
+    while (!opens(s, i) || n-- > 0)
+        i++;
+    return i;
+}
+
+/* The picture of rank r of n steps in the order of times, of the camera of picture first. */
+static size_t at_time(const show *s, size_t first, size_t r, size_t n)
+{
+    const ted4_picture *all = s->d->pictures;
+    size_t              of_camera = 0;
+
+    for (size_t i = 0; i < s->d->n_pictures; i++)
+        of_camera += all[i].camera_id == all[first].camera_id && is_shown(s, i);
+
+    const size_t wanted = n > 1 ? r * (of_camera - 1) / (n - 1) : (of_camera - 1) / 2;
+
+    for (size_t i = 0; i < s->d->n_pictures; i++) {
+        size_t before = 0;
+
+        if (all[i].camera_id != all[first].camera_id || !is_shown(s, i))
+            continue;
+        for (size_t k = 0; k < s->d->n_pictures; k++)
+            before += all[k].camera_id == all[first].camera_id && is_shown(s, k) &&
+                      (all[k].frame < all[i].frame || (all[k].frame == all[i].frame && k < i));
+        if (before == wanted)
+            return i;
+    }
+    return first;
+}
+
+/* A picture that is not there yet, the one wanted if that is none. */
+static size_t other(const show *s, size_t wanted, const size_t *item, size_t n)
+{
+    size_t i = wanted, at = 0;
+
+    for (;;) {
+        size_t same = 0;
+
+        for (size_t k = 0; k < n; k++)
+            same += item[k] == i;
+        if (same == 0)
+            return i;
+        while (!is_shown(s, at))
+            at++;
+        i = at++;
+    }
+}
+
+size_t ted4_sheet_choose(const ted4_dataset *d, int test, size_t most, size_t *item)
+{
+    show   s = { d, test, 0 };
+    size_t n = 0, cameras = 0;
+
+    while (s.first < d->n_pictures && (d->pictures[s.first].is_test != 0) != (test != 0))
+        s.first++;
+    if (s.first == d->n_pictures)
+        return 0;
+    for (size_t i = 0; i < d->n_pictures; i++) {
+        n += is_shown(&s, i) != 0;
+        cameras += opens(&s, i) != 0;
+    }
+
+    const size_t rows = n < most ? n : most;
+
+    for (size_t r = 0; r < rows; r++) {
+        const int    many = cameras >= rows;
+        const size_t k = many ? (rows > 1 ? r * (cameras - 1) / (rows - 1) : 0) : r % cameras;
+        const size_t turns = many ? rows : (rows - k + cameras - 1) / cameras;
+
+        item[r] = other(&s, at_time(&s, camera_at(&s, k), many ? r : r / cameras, turns), item, r);
+    }
+    return rows;
+}
+
 int ted4_sheet_init(ted4_sheet *s, int width, int height, int rows)
 {
     *s = (ted4_sheet){ width, height, rows, NULL };

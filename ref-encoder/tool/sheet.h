@@ -6,6 +6,8 @@
 #include <stddef.h>
 #include <stdint.h>
 
+#include "data/dataset.h"
+
 enum { TED4_SHEET_COLUMNS = 3, TED4_ERROR_GAIN = 5 };
 
 /* out = 5 |a - b|, at most 255; n bytes. */
@@ -16,6 +18,10 @@ typedef struct {
     int      width, height, rows;       /* of a cell; number of rows */
     uint8_t *rgb;                       /* owned: [rows height][3 width][3], black at first */
 } ted4_sheet;
+
+/* Up to most pictures of a split that a sheet shows: of cameras spread over all of them, at times spread over theirs; all of the size of the split's first. How many;
+ * 0: the split is empty. */
+size_t ted4_sheet_choose(const ted4_dataset *d, int test, size_t most, size_t *item);
 
 /* 0, or -1: no memory. */
 int  ted4_sheet_init(ted4_sheet *s, int width, int height, int rows);

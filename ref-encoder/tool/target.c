@@ -48,10 +48,10 @@ static int one_trial(ted4_training *t, const ted4_snapshot *start, double lambda
         return -1;
     }
     ted4_run_log_move(&t->log, t->trainer);
+    ted4_training_moved(t);
     if (ted4_training_go(t, ted4_trainer_total(t->trainer)) != 0 || ted4_training_code(t, c) != 0)
         return -1;
-    if (!t->request->quiet)
-        fprintf(stderr, "lambda %.5g: %zu bytes\n", lambda, c->size);
+    ted4_teller_say(t->teller, "lambda %.5g: %zu bytes", lambda, c->size);
     return 0;
 }
 

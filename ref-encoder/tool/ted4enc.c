@@ -2,6 +2,7 @@
  * SPDX-License-Identifier: BSD-2-Clause */
 #include <stdio.h>
 #include <stdlib.h>
+#include <string.h>
 #include <sys/resource.h>
 #include <sys/stat.h>
 #include <unistd.h>
@@ -15,9 +16,9 @@
 #include "tool/cli.h"
 #include "training.h"
 
-static int complain(const char *text)
+static int complain(ted4_teller *teller, const char *text)
 {
-    fprintf(stderr, "ted4enc: %s\n", text);
+    ted4_teller_error(teller, "%s", text);
     return TED4_EXIT_TOOL;
 }
 
@@ -32,7 +33,7 @@ static double peak_mib(void)
 /* Seconds of loading the scene and starting, and of training, coding and checking; those of the runs before this one, too. */
 typedef struct { double setup, train; } times;
 
-static void report(const ted4_request *r, const ted4_trainer *t, const ted4_coded *c, times s)
+static void report(const ted4_request *r, const ted4_trainer *t, ted4_teller *teller, const ted4_coded *c, times s)
 {
     const ted4_verified *v = &c->verified;
 
@@ -44,18 +45,21 @@ static void report(const ted4_request *r, const ted4_trainer *t, const ted4_code
                1e3 * s.train / (double)(t->iteration > 0 ? t->iteration : 1), v->anchors,
                v->gaussians, v->dynamic, v->estimated_bits, v->coded_bits, t->probe_loss[0],
                t->probe_loss[1], (unsigned long long)t->watch.state.rollbacks, peak_mib(), v->hash);
-    else if (!r->quiet)
-        fprintf(stderr, "%s: %zu bytes, %u anchors (%u move), %zu Gaussians, trained in %.1f s, hash %s\n",
-                r->out, c->size, v->anchors, v->dynamic, v->gaussians, s.train, v->hash);
+    else
+        ted4_teller_say(teller, "%s: %zu bytes, %u anchors (%u move), %zu Gaussians, trained in %.1f s, hash %s",
+                        r->out, c->size, v->anchors, v->dynamic, v->gaussians, s.train, v->hash);
 }
 
+/* Exit status of a run that a signal has ended, less the signal's number. */
+enum { SIGNALLED = 128 };
+
 /* Trains, codes and writes. */
-static int run(const ted4_request *r, ted4_trainer *t, double begin)
+static int run(const ted4_request *r, ted4_trainer *t, ted4_teller *teller, double begin)
 {
     const double  start = ted4_seconds();
     ted4_training training;
     ted4_coded    coded = { 0 };
-    int           bad = ted4_training_begin(&training, r, t) != 0;
+    int           bad = ted4_training_begin(&training, r, t, teller) != 0;
     const double  before = t->seconds;
 
     if (!bad && r->target_size > 0)
@@ -68,28 +72,41 @@ static int run(const ted4_request *r, ted4_trainer *t, double begin)
                                  sizeof training.why) != 0;
     bad = ted4_training_end(&training, bad) != 0;
     if (!bad)
-        report(r, t, &coded, (times){ start - begin, before + ted4_seconds() - start });
+        report(r, t, teller, &coded, (times){ start - begin, before + ted4_seconds() - start });
 
     const int over = r->target_size > 0 && coded.size > r->target_size;
 
     ted4_coded_free(&coded);
+    if (bad && training.stopped != 0) {
+        ted4_teller_say(teller, "%s", training.why);
+        return SIGNALLED + training.stopped;
+    }
     if (bad)
-        return complain(training.why);
+        return complain(teller, training.why);
     if (over)
-        fprintf(stderr, "ted4enc: warning: no lambda gave %zu bytes or less; this is the smallest file\n",
-                r->target_size);
+        ted4_teller_error(teller, "warning: no lambda gave %zu bytes or less; this is the smallest file", r->target_size);
     return over ? TED4_EXIT_WARNED : TED4_EXIT_FINE;
 }
 
-static int encode(const ted4_request *r, ted4_dataset *d, const ted4_parallel *p, double begin)
+/* What goes on until training does. */
+static void now(ted4_teller *teller, ted4_told_kind kind, const char *name)
+{
+    ted4_facts f = { .kind = kind };
+
+    snprintf(f.name, sizeof f.name, "%s", name);
+    ted4_teller_now(teller, &f);
+}
+
+static int encode(const ted4_request *r, ted4_dataset *d, const ted4_parallel *p, ted4_teller *teller, double begin)
 {
     ted4_train_options options = r->options;
     ted4_trainer       t;
 
+    now(teller, TED4_TELL_STARTING, "placing first anchors");
     if (ted4_header_settle(&options, d) != 0)
-        return complain("no memory to look for flicker");
+        return complain(teller, "no memory to look for flicker");
 
-    const int status = ted4_trainer_init(&t, &options, d, p) != 0 ? complain(t.message.text) : run(r, &t, begin);
+    const int status = ted4_trainer_init(&t, &options, d, p) != 0 ? complain(teller, t.message.text) : run(r, &t, teller, begin);
 
     ted4_trainer_finish(&t);
     return status;
@@ -105,7 +122,7 @@ static int is_device(const char *path)
 }
 
 /* Can all the files that were asked for be written? Looked at before hours of training. */
-static int check_outputs(const ted4_request *r)
+static int check_outputs(const ted4_request *r, ted4_teller *teller)
 {
     char why[1024];
 
@@ -115,7 +132,7 @@ static int check_outputs(const ted4_request *r)
         (r->checkpoint != NULL && ted4_file_writable(r->checkpoint, 1, why, sizeof why) != 0) ||
         (r->stage1 != NULL && ted4_file_writable(r->stage1, 1, why, sizeof why) != 0) ||
         (r->log != NULL && !is_device(r->log) && ted4_file_writable(r->log, 1, why, sizeof why) != 0))
-        return complain(why);
+        return complain(teller, why);
     return 0;
 }
 
@@ -128,59 +145,129 @@ static int decoders(const ted4_parallel *p)
     return n == 1 ? 0 : n < FEWEST_DECODERS ? FEWEST_DECODERS : n;
 }
 
+/* Says what loaders warned of, from that warning on; gives how many there are. */
+static size_t warn(ted4_teller *teller, const ted4_dataset *d, size_t from)
+{
+    for (size_t i = from; i < d->n_warnings; i++)
+        ted4_teller_error(teller, "warning: %s", d->warnings[i]);
+    return d->n_warnings;
+}
+
+/* A video is being unpacked. */
+static void unpacking(void *teller, const char *video, size_t frames)
+{
+    const char *base = strrchr(video, '/');
+    ted4_facts  f = { .kind = TED4_TELL_UNPACKING, .step = frames };
+
+    snprintf(f.name, sizeof f.name, "%s", base != NULL ? base + 1 : video);
+    ted4_teller_now(teller, &f);
+}
+
+static void say_found(ted4_teller *teller, const ted4_dataset *d)
+{
+    size_t tests = 0;
+    int    low = d->n_pictures > 0 ? d->pictures[0].camera.width : 0, high = low;
+
+    for (size_t i = 0; i < d->n_pictures; i++) {
+        const int width = d->pictures[i].camera.width;
+
+        tests += d->pictures[i].is_test;
+        low = width < low ? width : low;
+        high = width > high ? width : high;
+    }
+
+    char size[40];
+
+    if (low == high)
+        snprintf(size, sizeof size, "%d x %d", low, d->n_pictures > 0 ? d->pictures[0].camera.height : 0);
+    else
+        snprintf(size, sizeof size, "%d to %d wide", low, high);
+    ted4_teller_say(teller, "%s: %zu training pictures, %zu held out, of %u camera%s and %u time%s, %s pixels", d->layout, d->n_pictures - tests, tests,
+                    (unsigned)d->n_cameras, d->n_cameras == 1 ? "" : "s", (unsigned)d->n_frames, d->n_frames == 1 ? "" : "s", size);
+}
+
 /* Initial points where there are none that help. 0, or -1 with *m filled. */
-static int scatter(ted4_dataset *d, const ted4_request *r, const ted4_parallel *p, ted4_message *m)
+static int scatter(ted4_dataset *d, const ted4_request *r, const ted4_parallel *p,
+                   ted4_teller *teller, ted4_message *m)
 {
     ted4_scatter_options o = r->bounds;
     ted4_scattered       what;
 
+    now(teller, TED4_TELL_STARTING, "looking for initial points");
     o.seed = r->options.seed;
     if (ted4_dataset_scatter(d, &o, p, &what, m) != 0)
         return -1;
-    if (what.outside > 0 && !r->quiet)
-        fprintf(stderr, "ted4enc: warning: %zu initial points outside the bounds are not used\n", what.outside);
-    if (what.scattered > 0 && what.given > 0 && !r->quiet)
-        fprintf(stderr, "ted4enc: warning: most of the %zu initial points lie where pictures show nothing; %zu others take their place\n",
-                what.given, what.scattered);
+    if (what.outside > 0)
+        ted4_teller_error(teller, "warning: %zu initial points outside the bounds are not used",
+                          what.outside);
+    if (what.scattered > 0 && what.given > 0)
+        ted4_teller_error(teller, "warning: most of the %zu initial points lie where pictures show "
+                          "nothing; %zu others take their place", what.given, what.scattered);
     return 0;
+}
+
+/* Loads, and does what was asked for. */
+static int work(const ted4_request *r, ted4_teller *teller, const ted4_parallel *p, double begin)
+{
+    const ted4_dataset_options wanted = { .downscale = r->downscale,
+                                          .white = !r->black,
+                                          .seed = r->options.seed,
+                                          .cache_bytes = (size_t)r->cache_mib << 20,
+                                          .max_frames = (uint32_t)r->max_frames,
+                                          .premultiplied = r->premultiplied,
+                                          .hold_out = r->hold_out,
+                                          .n_hold_out = r->n_hold_out,
+                                          .unpacking = unpacking,
+                                          .user = teller };
+    ted4_dataset d;
+    ted4_message m;
+    int          status = TED4_EXIT_FINE;
+
+    now(teller, TED4_TELL_LOADING, r->scene);
+    ted4_teller_say(teller, "loading %s", r->scene);
+    if (ted4_dataset_load(&d, r->scene, &wanted, &m) != 0)
+        return complain(teller, m.text);
+
+    const size_t said = warn(teller, &d, 0);
+
+    d.ahead = decoders(p);
+    say_found(teller, &d);
+    now(teller, TED4_TELL_STARTING, "looking at all pictures");
+
+    const int bad = ted4_dataset_verify(&d, p, &m) != 0 || scatter(&d, r, p, teller, &m) != 0;
+
+    if (r->check)
+        ted4_dataset_print(&d, stdout);
+    if (bad)
+        status = complain(teller, m.text);
+    warn(teller, &d, said);
+    if (status == TED4_EXIT_FINE && !r->check)
+        status = encode(r, &d, p, teller, begin);
+    ted4_dataset_free(&d);
+    return status;
 }
 
 int main(int argc, char **argv)
 {
     ted4_request  r;
-    ted4_dataset  d;
-    ted4_message  m;
     ted4_parallel p;
+    ted4_teller   teller;
     const double  begin = ted4_seconds();
     const int     parsed = ted4_request_parse(&r, argc, argv);
 
     if (parsed != TED4_REQUEST_GO)
         return parsed == TED4_REQUEST_DONE ? TED4_EXIT_FINE : TED4_EXIT_TOOL;
-    if (check_outputs(&r) != 0)
-        return TED4_EXIT_TOOL;
+    ted4_teller_begin(&teller, "ted4enc", r.quiet);
 
-    const ted4_dataset_options wanted = { r.downscale, !r.black, r.options.seed, (size_t)r.cache_mib << 20,
-                                          (uint32_t)r.max_frames };
+    int status = check_outputs(&r, &teller);
 
-    if (ted4_dataset_load(&d, r.scene, &wanted, &m) != 0)
-        return complain(m.text);
-
-    int status = TED4_EXIT_FINE;
-
-    ted4_threads_init(&p, r.threads);
-    d.ahead = decoders(&p);
-
-    const int bad = ted4_dataset_verify(&d, &p, &m) != 0 || scatter(&d, &r, &p, &m) != 0;
-
-    if (r.check)
-        ted4_dataset_print(&d, stdout);
-    if (bad)
-        status = complain(m.text);
-    else if (!r.check)
-        status = encode(&r, &d, &p, begin);
+    if (status == TED4_EXIT_FINE) {
+        ted4_threads_init(&p, r.threads);
+        status = work(&r, &teller, &p, begin);
+        ted4_threads_finish(&p);
+    }
     if (fflush(stdout) != 0 || ferror(stdout))
-        status = complain("standard output cannot be written");
-    ted4_threads_finish(&p);
-    ted4_dataset_free(&d);
+        status = complain(&teller, "standard output cannot be written");
+    ted4_teller_end(&teller);
     return status;
 }

@@ -14,6 +14,7 @@
 
 #include <jansson.h>
 
+#include "belongs.h"
 #include "data/dataset.h"
 #include "eval/metrics.h"
 #include "render/png_file.h"
@@ -22,15 +23,19 @@
 #include "ted4.h"
 #include "tool/arguments.h"
 #include "tool/cli.h"
+#include "teller.h"
 #include "tool/threads.h"
 
 enum {
     OPT_SPLIT,
     OPT_DOWNSCALE,
     OPT_MAX_FRAMES,
+    OPT_ALPHA,
+    OPT_HOLD_OUT,
     OPT_IMAGES,
     OPT_SHEET,
     OPT_THREADS,
+    OPT_ANYWAY,
     OPT_FORCE,
     OPT_JSON,
     OPT_QUIET,
@@ -40,15 +45,19 @@ enum {
     N_OPTIONS
 };
 
-enum { MAX_DOWNSCALE = 64, MAX_MAX_FRAMES = 36000, SHEET_ROWS = 3, PATH_SIZE = 4096 };
+enum { MAX_DOWNSCALE = 64, MAX_MAX_FRAMES = 36000, MAX_HOLD_OUT = 256, SHEET_ROWS = 4 };
+enum { PATH_SIZE = 4096 };
 
 static const ted4_argument OPTIONS[N_OPTIONS] = {
     [OPT_SPLIT]     = { 0, "split", "NAME", "test (default) or train pictures" },
     [OPT_DOWNSCALE] = { 0, "downscale", "N", "compare pictures shrunk N times, as ted4enc --downscale" },
     [OPT_MAX_FRAMES] = { 0, "max-frames", "N", "only the first N times of SCENE, as ted4enc --max-frames" },
+    [OPT_ALPHA]     = { 0, "alpha", "HOW", "straight or premultiplied, as ted4enc --alpha" },
+    [OPT_HOLD_OUT]  = { 0, "hold-out", "NAME", "this camera's pictures are test, as ted4enc --hold-out" },
     [OPT_IMAGES]    = { 0, "images", "DIR", "write DIR/truth, DIR/ours, DIR/error (5 times the difference) as NNNNN.png" },
-    [OPT_SHEET]     = { 0, "sheet", "FILE.png", "one picture: truth, ours, error at three times of the first camera" },
+    [OPT_SHEET]     = { 0, "sheet", "FILE.png", "one picture: truth, ours, error of up to four cameras, at other times" },
     [OPT_THREADS]   = { 'j', "threads", "N", "threads; 0: all cores. Default 0" },
+    [OPT_ANYWAY]    = { 0, "anyway", NULL, "compare also where the file cannot be of this scene" },
     [OPT_FORCE]     = { 'f', "force", NULL, "overwrite pictures" },
     [OPT_JSON]      = { 0, "json", NULL, "result as one JSON object" },
     [OPT_QUIET]     = { 'q', "quiet", NULL, "errors only" },
@@ -65,13 +74,17 @@ static const ted4_command COMMAND = {
     "range 2), MS-SSIM, bytes of the file, milliseconds to decode it, and pictures drawn a second.",
     OPTIONS,
     N_OPTIONS,
-    "Exit codes: 0 fine, 1 file refused, 3 usage, input, output or resources.\n",
+    "Exit codes: 0 fine, 1 file refused, 3 usage, input, output or resources, or the file cannot be\n"
+    "of this scene.\n",
     NULL,
 };
 
 typedef struct {
     const char *input, *scene, *images, *sheet;
-    int         want_test, downscale, max_frames, threads, force, json, quiet, verbose;
+    const char *hold_out[MAX_HOLD_OUT];
+    size_t      n_hold_out;
+    int         premultiplied;
+    int         want_test, downscale, max_frames, threads, anyway, force, json, quiet, verbose;
 } settings;
 
 /* Sums over pictures, later divided by views. */
@@ -90,6 +103,7 @@ typedef struct {
     size_t          row[SHEET_ROWS];    /* picture in each row of the sheet */
     ted4_sheet      sheet;
     totals          sum;
+    ted4_belongs_sum squares;
 } session;
 
 static double seconds(void)
@@ -100,8 +114,12 @@ static double seconds(void)
     return (double)t.tv_sec + 1e-9 * (double)t.tv_nsec;
 }
 
+/* Begun by main, once the command line is known. */
+static ted4_teller teller = { .lock = PTHREAD_MUTEX_INITIALIZER };
+
 static int failed(const char *what, const char *why)
 {
+    ted4_teller_clear(&teller);
     fprintf(stderr, "ted4eval: %s: %s\n", what, why);
     return TED4_EXIT_TOOL;
 }
@@ -130,6 +148,16 @@ static int set_option(settings *s, int option, const char *value)
         return set_number("--downscale", value, 1, MAX_DOWNSCALE, &s->downscale);
     case OPT_MAX_FRAMES:
         return set_number("--max-frames", value, 1, MAX_MAX_FRAMES, &s->max_frames);
+    case OPT_ALPHA:
+        s->premultiplied = strcmp(value, "premultiplied") == 0;
+        return s->premultiplied || strcmp(value, "straight") == 0
+                   ? 0
+                   : failed("--alpha", "straight or premultiplied expected");
+    case OPT_HOLD_OUT:
+        if (s->n_hold_out == MAX_HOLD_OUT)
+            return failed("--hold-out", "too many");
+        s->hold_out[s->n_hold_out++] = value;
+        return 0;
     case OPT_IMAGES:
         s->images = value;
         return 0;
@@ -141,7 +169,8 @@ static int set_option(settings *s, int option, const char *value)
     default:
         break;
     }
-    int *const flag[N_OPTIONS] = { [OPT_FORCE] = &s->force,
+    int *const flag[N_OPTIONS] = { [OPT_ANYWAY] = &s->anyway,
+                                   [OPT_FORCE] = &s->force,
                                    [OPT_JSON] = &s->json,
                                    [OPT_QUIET] = &s->quiet,
                                    [OPT_VERBOSE] = &s->verbose };
@@ -194,6 +223,7 @@ static int open_file(session *s)
     }
     s->sum.decode_ms = 1e3 * (seconds() - start);
     free(bytes);
+    ted4_teller_clear(&teller);
     return e.code == TED4_OK ? TED4_EXIT_FINE
                              : ted4_report("ted4eval", s->set->input, &e, s->set->json);
 }
@@ -204,13 +234,29 @@ static int open_scene(session *s)
     const ted4_dataset_options options = { .downscale = s->set->downscale,
                                            .white = s->info.background[0] > 127,
                                            .cache_bytes = 64 << 20,
-                                           .max_frames = (uint32_t)s->set->max_frames };
+                                           .max_frames = (uint32_t)s->set->max_frames,
+                                           .premultiplied = s->set->premultiplied,
+                                           .hold_out = s->set->hold_out,
+                                           .n_hold_out = s->set->n_hold_out };
     ted4_message m;
 
     if (ted4_dataset_load(&s->data, s->set->scene, &options, &m) != 0)
         return failed(s->set->scene, m.text);
+    ted4_teller_clear(&teller);
+    for (size_t i = 0; i < s->data.n_warnings; i++)
+        fprintf(stderr, "ted4eval: warning: %s\n", s->data.warnings[i]);
     s->viewer = ted4_viewer_new();
     return s->viewer == NULL ? failed(s->set->scene, "out of memory") : TED4_EXIT_FINE;
+}
+
+/* why is set where the file cannot be of the scene. */
+static int refuse_pair(const session *s, int belongs, const char *why)
+{
+    if (belongs || s->set->anyway)
+        return TED4_EXIT_FINE;
+    ted4_teller_clear(&teller);
+    fprintf(stderr, "ted4eval: %s: cannot be of %s: %s; --anyway compares them all the same\n", s->set->input, s->set->scene, why);
+    return TED4_EXIT_TOOL;
 }
 
 static int in_split(const session *s, size_t i)
@@ -218,59 +264,12 @@ static int in_split(const session *s, size_t i)
     return s->data.pictures[i].is_test == s->set->want_test;
 }
 
-/* ---- sheet: first, middle and last time of one camera, or of all when the first has only one
- * picture ---- */
-
-/* Can picture i stand on the sheet beside picture first? */
-static int on_sheet(const session *s, size_t first, size_t i, int any_camera)
-{
-    const ted4_picture *const a = &s->data.pictures[first], *const b = &s->data.pictures[i];
-
-    return in_split(s, i) && (any_camera || a->camera_id == b->camera_id)
-        && a->camera.width == b->camera.width && a->camera.height == b->camera.height;
-}
-
-/* Of the n pictures that fit, the one of rank r by time (then by place). */
-static size_t by_time(const session *s, size_t first, int any_camera, size_t r)
-{
-    const ted4_picture *const all = s->data.pictures;
-
-    for (size_t i = 0; i < s->data.n_pictures; i++) {
-        size_t before = 0;
-
-        if (!on_sheet(s, first, i, any_camera))
-            continue;
-        for (size_t k = 0; k < s->data.n_pictures; k++)
-            before += on_sheet(s, first, k, any_camera)
-                      && (all[k].frame < all[i].frame || (all[k].frame == all[i].frame && k < i));
-        if (before == r)
-            return i;
-    }
-    return first;
-}
-
 static int choose_rows(session *s)
 {
-    size_t first = 0, n = 0;
-    int any_camera = 0;
+    const size_t rows = ted4_sheet_choose(&s->data, s->set->want_test, SHEET_ROWS, s->row);
+    const ted4_camera *const c = &s->data.pictures[s->row[0]].camera;
 
-    while (!in_split(s, first))
-        first++;
-    for (;;) {
-        n = 0;
-        for (size_t i = 0; i < s->data.n_pictures; i++)
-            n += (size_t)on_sheet(s, first, i, any_camera);
-        if (n > 1 || any_camera)
-            break;
-        any_camera = 1;
-    }
-    const int rows = n < SHEET_ROWS ? (int)n : SHEET_ROWS;
-    const ted4_camera *const c = &s->data.pictures[first].camera;
-
-    for (int r = 0; r < rows; r++)
-        s->row[r] =
-            by_time(s, first, any_camera, rows == 1 ? 0 : (size_t)r * (n - 1) / (size_t)(rows - 1));
-    return ted4_sheet_init(&s->sheet, c->width, c->height, rows) == 0
+    return ted4_sheet_init(&s->sheet, c->width, c->height, (int)rows) == 0
                ? TED4_EXIT_FINE
                : failed(s->set->sheet, "out of memory");
 }
@@ -337,9 +336,11 @@ static int take_picture(session *s, size_t i, const uint8_t *truth, const uint8_
 
     if (ted4_metrics_compare(truth, ours, p->camera.width, p->camera.height, &s->parallel, &m) != 0)
         return failed(p->path, "out of memory");
-    if (s->set->verbose)
+    if (s->set->verbose) {
+        ted4_teller_clear(&teller);
         fprintf(stderr, "%s frame %" PRIu32 ": psnr %.4f ssim %.5f ssim2 %.5f ms_ssim %.5f\n",
                 p->path, p->frame, m.psnr, m.ssim, m.ssim2, m.ms_ssim);
+    }
     if (s->set->images != NULL)
         code = write_images(s, &p->camera, truth, ours);
     for (int r = 0; s->set->sheet != NULL && r < s->sheet.rows; r++)
@@ -351,6 +352,7 @@ static int take_picture(session *s, size_t i, const uint8_t *truth, const uint8_
     s->sum.ms_ssim += m.ms_ssim;
     s->sum.l1 += m.l1;
     s->sum.views++;
+    ted4_belongs_add(&s->squares, truth, ours, (size_t)p->camera.width * (size_t)p->camera.height);
     return code;
 }
 
@@ -372,6 +374,7 @@ static int evaluate_picture(session *s, size_t i)
                                    &s->parallel, ours);
     s->sum.render_s += seconds() - start;
     if (e.code != TED4_OK) {
+        ted4_teller_clear(&teller);
         code = ted4_report("ted4eval", s->set->input, &e, s->set->json);
     } else if ((truth = ted4_dataset_pixels(&s->data, i, &m)) == NULL) {
         code = failed(p->path, m.text);
@@ -425,8 +428,11 @@ static int evaluate(session *s)
 
     for (size_t i = 0; i < s->data.n_pictures; i++)
         n += (size_t)in_split(s, i);
+    code = refuse_pair(s, ted4_belongs_scene(&s->info, &s->data, why, sizeof why), why);
+    if (code != TED4_EXIT_FINE)
+        return code;
     if (n == 0)
-        return failed(set->scene, set->want_test ? "no test pictures" : "no training pictures");
+        return failed(set->scene, set->want_test ? "no test pictures; --split train compares training pictures" : "no training pictures");
     if (set->images != NULL && mkdir(set->images, 0777) != 0 && errno != EEXIST)
         return failed(set->images, strerror(errno));
     if (set->sheet != NULL)
@@ -435,14 +441,15 @@ static int evaluate(session *s)
         if (!in_split(s, i))
             continue;
         code = evaluate_picture(s, i);
-        if (!set->quiet && isatty(STDERR_FILENO))
-            fprintf(stderr, "\r%zu/%zu%s", s->sum.views, n, s->sum.views == n ? "\n" : "");
+        ted4_teller_now(&teller, &(ted4_facts){ .kind = TED4_TELL_DRAWING, .step = s->sum.views, .total = n });
     }
     if (code == TED4_EXIT_FINE && set->sheet != NULL
         && ted4_png_write(set->sheet, s->sheet.width * TED4_SHEET_COLUMNS,
                           s->sheet.height * s->sheet.rows, s->sheet.rgb, why, sizeof why)
                != 0)
         code = failed(set->sheet, why);
+    if (code == TED4_EXIT_FINE)
+        code = refuse_pair(s, ted4_belongs_pictures(&s->squares, why, sizeof why), why);
     if (code == TED4_EXIT_FINE)
         print_result(s);
     return code;
@@ -456,6 +463,9 @@ int main(int argc, char **argv)
 
     if (code >= 0)
         return code;
+    ted4_teller_begin(&teller, "ted4eval", set.quiet);
+    ted4_teller_say(&teller, "comparing %s with %s", set.input, set.scene);
+    ted4_teller_now(&teller, &(ted4_facts){ .kind = TED4_TELL_LOADING, .name = "the scene" });
     ted4_threads_init(&s.parallel, set.threads);
     code = open_file(&s);
     if (code == TED4_EXIT_FINE)
@@ -467,6 +477,7 @@ int main(int argc, char **argv)
     ted4_dataset_free(&s.data);
     ted4_recon_free(s.recon);
     ted4_threads_finish(&s.parallel);
+    ted4_teller_end(&teller);
     if (fflush(stdout) != 0 || ferror(stdout))
         return failed("standard output", strerror(errno));
     return code;

@@ -7,13 +7,14 @@
 #include <string.h>
 #include <unistd.h>
 
+#include "stop.h"
 #include "train/checkpoint.h"
 #include "train/make_scene.h"
 #include "why.h"
 #include "write/encode.h"
 
-/* Steps between reports, pictures of the preview. */
-enum { REPORT_EVERY = 250, PREVIEW_PICTURES = 16 };
+/* Steps between reports; pictures of the preview, and of the last one. */
+enum { REPORT_EVERY = 250, PREVIEW_PICTURES = 16, LAST_PICTURES = 256 };
 
 /* The trainer's own words. */
 static int fail(ted4_training *t)
@@ -27,16 +28,18 @@ static int exists(const char *path)
     return path != NULL && access(path, F_OK) == 0;
 }
 
-int ted4_training_begin(ted4_training *t, const ted4_request *r, ted4_trainer *trainer)
+/* Where training begins: at a checkpoint, at the end of stage 1, or at the start. */
+static int find_start(ted4_training *t)
 {
-    memset(t, 0, sizeof *t);
-    t->request = r;
-    t->trainer = trainer;
-    t->log.file = -1;
-    t->checkpoint = r->checkpoint;
+    const ted4_request *r = t->request;
+    ted4_trainer       *trainer = t->trainer;
+
     if (r->resume && exists(r->checkpoint)) {
         if (ted4_checkpoint_load(trainer, r->checkpoint) != 0)
             return fail(t);
+        t->saved = (int64_t)trainer->iteration;
+        ted4_teller_say(t->teller, "%s: going on from step %llu of %llu", r->checkpoint, (unsigned long long)trainer->iteration,
+                        (unsigned long long)ted4_trainer_total(trainer));
     } else if (exists(r->stage1)) {
         if (ted4_checkpoint_load(trainer, r->stage1) != 0)
             return fail(t);
@@ -44,8 +47,32 @@ int ted4_training_begin(ted4_training *t, const ted4_request *r, ted4_trainer *t
             snprintf(t->why, sizeof t->why, "%s: not the end of stage 1", r->stage1);
             return -1;
         }
+        ted4_teller_say(t->teller, "%s: going on from step %llu of %llu, the end of stage 1", r->stage1, (unsigned long long)trainer->iteration,
+                        (unsigned long long)ted4_trainer_total(trainer));
+    } else if (r->resume) {
+        ted4_teller_say(t->teller, "%s: not there yet; beginning at step 0", r->checkpoint);
     }
-    return ted4_run_log_open(&t->log, r->log, trainer, r->resume, r->quiet, r->verbose, t->why, sizeof t->why);
+    return 0;
+}
+
+int ted4_training_begin(ted4_training *t, const ted4_request *r, ted4_trainer *trainer, ted4_teller *teller)
+{
+    memset(t, 0, sizeof *t);
+    t->request = r;
+    t->trainer = trainer;
+    t->teller = teller;
+    t->log.file = -1;
+    t->checkpoint = r->checkpoint;
+    t->sprouts = -1;
+    t->saved = -1;
+    t->facts.psnr = t->facts.bytes = -1;
+    ted4_estimate_begin(&t->estimate);
+    if (find_start(t) != 0)
+        return -1;
+    ted4_stop_watch(r->quiet);
+    trainer->onlooker.look = ted4_training_look;
+    trainer->onlooker.user = t;
+    return ted4_run_log_open(&t->log, r->log, trainer, r->resume, r->verbose ? teller : NULL, t->why, sizeof t->why);
 }
 
 int ted4_training_end(ted4_training *t, int bad)
@@ -62,15 +89,22 @@ int ted4_training_end(ted4_training *t, int bad)
 static int log_step(ted4_training *t)
 {
     ted4_trainer *tr = t->trainer;
+    ted4_preview *p = &t->log.preview;
 
     ted4_run_log_tick(&t->log, tr);
-    t->log.psnr = ted4_trainer_preview(tr, PREVIEW_PICTURES);
-    if (t->log.psnr < 0)
+    if (ted4_preview_make(tr, tr->iteration == ted4_trainer_total(tr) ? LAST_PICTURES : PREVIEW_PICTURES, p) != 0)
         return fail(t);
     ted4_run_log_skip(&t->log);
 
     const int bad = ted4_run_log_step(&t->log, tr, t->why, sizeof t->why);
 
+    t->facts.psnr = p->psnr;
+    t->facts.train_psnr = p->train;
+    t->facts.bytes = p->bytes > 0 ? p->bytes : -1;
+    t->facts.ms = t->log.ms;
+    ted4_teller_now(t->teller, &t->facts);
+    if (t->request->verbose && !t->teller->terminal)
+        ted4_teller_show(t->teller);
     ted4_watch_line(tr);
     return bad;
 }
@@ -80,7 +114,31 @@ static int save(ted4_training *t)
     if (t->checkpoint == NULL)
         return 0;
     ted4_run_log_tick(&t->log, t->trainer);
-    return ted4_checkpoint_save(t->trainer, t->checkpoint) != 0 ? fail(t) : 0;
+    if (ted4_checkpoint_save(t->trainer, t->checkpoint) != 0)
+        return fail(t);
+    t->saved = (int64_t)t->trainer->iteration;
+    return 0;
+}
+
+/* A signal has asked for the end. between: the step is done, and the trainer may be kept. Always -1, with why: how to go on. */
+static int stop(ted4_training *t, int between)
+{
+    const unsigned long long now = t->trainer->iteration;
+    const char              *way = "nothing of it is kept (--checkpoint FILE would)";
+    char                     text[600];
+
+    if (between && t->checkpoint != NULL && ted4_watch_calm(t->trainer) && save(t) != 0)
+        return -1;
+    if (t->saved >= 0) {
+        snprintf(text, sizeof text, "%.400s holds step %lld; the same command with --resume goes on from there", t->request->checkpoint, (long long)t->saved);
+        way = text;
+    } else if (exists(t->request->stage1)) {
+        snprintf(text, sizeof text, "%.400s holds the end of stage 1; the same command goes on from there", t->request->stage1);
+        way = text;
+    }
+    t->stopped = ted4_stop_asked();
+    snprintf(t->why, sizeof t->why, "stopped at step %llu of %llu; %s", now, (unsigned long long)ted4_trainer_total(t->trainer), way);
+    return -1;
 }
 
 /* The end of stage 1 is written once, for later runs to begin there. */
@@ -99,6 +157,7 @@ static int keep_stage1(ted4_training *t)
 static int start_over(ted4_training *t)
 {
     ted4_run_log_tick(&t->log, t->trainer);
+    ted4_training_moved(t);
     return ted4_run_log_cut(&t->log, t->trainer, t->why, sizeof t->why);
 }
 
@@ -107,15 +166,16 @@ static int tell_rollback(ted4_training *t)
 {
     const ted4_watch *w = &t->trainer->watch;
 
-    if (!t->request->quiet)
-        fprintf(stderr, "ted4enc: warning: %s; back to step %llu with learning rates times %g\n", t->trainer->message.text,
-                (unsigned long long)t->trainer->iteration, w->state.factor);
+    ted4_teller_say(t->teller, "warning: %s; back to step %llu with learning rates times %g", t->trainer->message.text,
+                    (unsigned long long)t->trainer->iteration, w->state.factor);
     return ted4_run_log_event(&t->log, t->trainer, t->why, sizeof t->why);
 }
 
 /* A failed step; a find is the last line of the log. */
 static int fail_step(ted4_training *t)
 {
+    if (t->trainer->onlooker.stopped)
+        return stop(t, 0);
     if (t->trainer->watch.found)
         (void)ted4_run_log_event(&t->log, t->trainer, t->why, sizeof t->why);
     return fail(t);
@@ -138,6 +198,12 @@ static int step(ted4_training *t)
     return tr->watch.state.rollbacks > rollbacks ? tell_rollback(t) : 0;
 }
 
+/* What probes and trials do is lost when they are stopped, for no checkpoint can be written inside them: one is written before. */
+static int before_long_step(ted4_training *t)
+{
+    return ted4_trainer_long_step(t->trainer) && t->saved != (int64_t)t->trainer->iteration && ted4_watch_calm(t->trainer) ? save(t) : 0;
+}
+
 int ted4_training_go(ted4_training *t, uint64_t steps)
 {
     ted4_trainer *tr = t->trainer;
@@ -147,7 +213,9 @@ int ted4_training_go(ted4_training *t, uint64_t steps)
     while (tr->iteration < steps) {
         const uint64_t before = tr->iteration;
 
-        if (keep_stage1(t) != 0)
+        if (ted4_stop_asked())
+            return stop(t, 1);
+        if (keep_stage1(t) != 0 || before_long_step(t) != 0)
             return -1;
         if (step(t) != 0)
             return -1;
@@ -160,7 +228,9 @@ int ted4_training_go(ted4_training *t, uint64_t steps)
         }
     }
     ted4_run_log_tick(&t->log, tr);
-    return keep_stage1(t) != 0 ? -1 : save(t);
+    if (keep_stage1(t) != 0 || save(t) != 0)
+        return -1;
+    return ted4_stop_asked() ? stop(t, 0) : 0;
 }
 
 int ted4_training_code(ted4_training *t, ted4_coded *c)
@@ -171,6 +241,8 @@ int ted4_training_code(ted4_training *t, ted4_coded *c)
     ted4_error    e = { TED4_OK, 0 };
     int           bad;
 
+    t->facts.kind = TED4_TELL_CODING;
+    ted4_teller_now(t->teller, &t->facts);
     memset(c, 0, sizeof *c);
     c->lambda = tr->opt.lambda;
     if (ted4_make_scene(tr, &scene) != 0 || ted4_integer_rate(tr, bits) != 0) {
@@ -191,6 +263,8 @@ int ted4_training_code(ted4_training *t, ted4_coded *c)
                           sizeof t->why) != 0;
     free(text);
     ted4_scene_free(scene);
+    if (!bad && ted4_stop_asked())
+        bad = stop(t, 0);
     if (bad)
         ted4_coded_free(c);
     return bad ? -1 : 0;

@@ -72,5 +72,5 @@ int ted4_capacity_usage(ted4_trainer *t, float *use)
     free(item);
     if (!bad)
         mark_unseen(t, n, use);
-    return bad ? -1 : 0;
+    return bad || ted4_trainer_told(t, ted4_capacity_usage_steps(t)) != 0 ? -1 : 0;
 }

@@ -12,7 +12,7 @@
 #include <xxhash.h>
 
 #define MAGIC 0x34444554u       /* "TED4" */
-enum { FORMAT = 7 };
+enum { FORMAT = 8 };
 
 /* One walk for both directions: put() writes or reads the bytes at p. whole: with the watch's
  * last good state. left: when reading, bytes of the file that no put() has had; anchors get room
@@ -78,6 +78,31 @@ static void expect(stream *s, uint64_t value)
 
     put(s, &x, sizeof x);
     s->failed |= x != value;
+}
+
+/* The same, and where it does not, the message says what is there and what is wanted. */
+static void expect_number(stream *s, ted4_trainer *t, uint64_t value, const char *what)
+{
+    uint64_t x = value;
+
+    put(s, &x, sizeof x);
+    if (!s->failed && x != value)
+        s->failed = ted4_trainer_fail(t, "it is of %llu %s, and there are %llu", (unsigned long long)x, what, (unsigned long long)value) != 0;
+}
+
+/* Options themselves, with the seed as the first: the message names one that differs. Those that only stage 2 looks at may, before it begins. */
+static void walk_options(stream *s, ted4_trainer *t)
+{
+    double value[1 + TED4_OPTIONS], mine[1 + TED4_OPTIONS];
+
+    mine[0] = t->opt.seed;
+    for (int i = 0; i < TED4_OPTIONS; i++)
+        mine[1 + i] = ted4_options_value(&t->opt, i);
+    memcpy(value, mine, sizeof value);
+    put(s, value, sizeof value);
+    for (int i = 0; !s->failed && i <= TED4_OPTIONS; i++)
+        if (value[i] != mine[i] && (i == 0 || ted4_options_stage(i - 1) <= (t->stage2 ? 2 : 1)))
+            s->failed = ted4_trainer_fail(t, "its %s is %g, and %g is asked for", i == 0 ? "seed" : ted4_options_name(i - 1), value[i], mine[i]) != 0;
 }
 
 /* Positions of anchors never leave the cube (seed.h, densify.c, sprout.h), and the fixed-point inputs of networks are made from them without another look. */
@@ -313,14 +338,24 @@ static void walk_colour(stream *s, ted4_trainer *t)
     put(s, c->v, c->n_cameras * sizeof *c->v);
 }
 
+static void expect_digest(stream *s, ted4_trainer *t)
+{
+    const int before = s->failed;
+
+    expect(s, ted4_dataset_digest(t->data));
+    if (s->failed && !before)
+        ted4_trainer_fail(t, "it is of other pictures, cameras, points or background (--downscale, --black, another scene)");
+}
+
 static void walk(stream *s, ted4_trainer *t)
 {
     expect(s, MAGIC);
     expect(s, FORMAT);
-    expect(s, t->data->n_pictures);
-    expect(s, t->data->n_frames);
-    expect(s, ted4_dataset_digest(t->data));
+    expect_number(s, t, t->data->n_pictures, "pictures");
+    expect_number(s, t, t->data->n_frames, "times");
+    expect_digest(s, t);
     put(s, &t->stage2, sizeof t->stage2);
+    walk_options(s, t);
     expect(s, ted4_options_hash(&t->opt, t->stage2 ? 2 : 1));
     walk_layout(s, t);
     if (!s->failed)
@@ -442,8 +477,15 @@ int ted4_checkpoint_save(ted4_trainer *t, const char *path)
 
 static int load(ted4_trainer *t, FILE *f, ted4_snapshot *memory, const char *name, int whole)
 {
-    if (run(t, f, memory, 0, 0, whole) != 0)
-        return ted4_trainer_fail(t, "%s: not a checkpoint of this scene with these options", name);
+    const ted4_message before = t->message;
+
+    t->message.text[0] = 0;
+    if (run(t, f, memory, 0, 0, whole) != 0) {
+        const ted4_message m = t->message;
+
+        return ted4_trainer_fail(t, "%s: not a checkpoint of this scene with these options%s%.500s", name, m.text[0] != 0 ? ": " : "", m.text);
+    }
+    t->message = before;
     if (t->integer)
         ted4_rate_pack(t->rate, t->net);
     return 0;

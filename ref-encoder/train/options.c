@@ -31,7 +31,7 @@ static const option table[] = {
 #undef TED4_OPTION
 };
 
-enum { N_OPTIONS = (int)(sizeof table / sizeof table[0]) };
+enum { N_OPTIONS = TED4_OPTIONS };
 
 static void store(ted4_train_options *o, const option *t, double value)
 {
@@ -102,6 +102,26 @@ int ted4_options_set(ted4_train_options *o, const char *text, char *why, size_t 
     }
     snprintf(why, why_size, "%s: expected name=value with a name from --help", text);
     return -1;
+}
+
+const char *ted4_options_preset_name(int i)
+{
+    return i < N_PRESETS ? preset_names[i] : NULL;
+}
+
+const char *ted4_options_name(int i)
+{
+    return i < N_OPTIONS ? table[i].name : NULL;
+}
+
+double ted4_options_value(const ted4_train_options *o, int i)
+{
+    return fetch(o, &table[i]);
+}
+
+int ted4_options_stage(int i)
+{
+    return table[i].stage;
 }
 
 void ted4_options_help(FILE *out)

@@ -169,6 +169,15 @@ static int sprouts_due(const ted4_trainer *t)
     return reach >= 0 && t->iteration == sprout_step(t, reach);
 }
 
+void ted4_schedule_growth(const ted4_trainer *t, double *from, double *sprout_at, double *sprouts)
+{
+    const int reach = ted4_sprout_reach(t);
+
+    *from = GROW_FROM;
+    *sprout_at = reach > 0 ? SPROUT_AT_TURNS : SPROUT_AT;
+    *sprouts = reach >= 0 ? t->opt.sprouts : 0.0;
+}
+
 size_t ted4_schedule_room(const ted4_trainer *t)
 {
     const size_t most = (size_t)((sprouts_ahead(t) ? 1.0 - t->opt.sprouts : 1.0) * (double)t->opt.max_anchors);

@@ -280,14 +280,43 @@ static int one_step(ted4_trainer *t)
     return 0;
 }
 
-/* Decides what is due now about how much model there is. */
+/* What is due now of deciding how much model there is; NULL: nothing. *budget: training steps that it takes at most. */
+static int (*decision(const ted4_trainer *t, double *budget))(ted4_trainer *)
+{
+    const double end = ted4_capacity_refine_steps(t) + ted4_capacity_prune_steps(t);
+
+    if (t->decided == TED4_DECIDED_NOTHING && t->stage2 && !t->integer && t->iteration == ted4_capacity_step(t)) {
+        *budget = ted4_capacity_budget(t) - end;
+        return ted4_capacity_decide;
+    }
+    if (t->decided == TED4_DECIDED_MODEL && ted4_integer_due(t)) {
+        *budget = ted4_capacity_refine_steps(t);
+        return ted4_capacity_refine;
+    }
+    *budget = ted4_capacity_prune_steps(t);
+    return t->decided == TED4_DECIDED_BITS && t->integer ? ted4_capacity_prune : NULL;
+}
+
 static int decide(ted4_trainer *t)
 {
-    if (t->decided == TED4_DECIDED_NOTHING && t->stage2 && !t->integer && t->iteration == ted4_capacity_step(t))
-        return ted4_capacity_decide(t);
-    if (t->decided == TED4_DECIDED_MODEL && ted4_integer_due(t))
-        return ted4_capacity_refine(t);
-    return t->decided == TED4_DECIDED_BITS && t->integer ? ted4_capacity_prune(t) : 0;
+    double budget;
+    int  (*const settle)(ted4_trainer *) = decision(t, &budget);
+
+    if (settle == NULL)
+        return 0;
+    ted4_trainer_busy(t, TED4_BUSY_TRIALS, budget);
+
+    const int bad = settle(t);
+
+    ted4_trainer_busy(t, TED4_BUSY_TRAINING, 0);
+    return bad;
+}
+
+int ted4_trainer_long_step(const ted4_trainer *t)
+{
+    double budget;
+
+    return (probe_due(t) && ted4_probe_steps(t) > 0) || (decision(t, &budget) != NULL && budget > 0);
 }
 
 int ted4_trainer_step(ted4_trainer *t)
@@ -296,53 +325,56 @@ int ted4_trainer_step(ted4_trainer *t)
         return -1;
     if (decide(t) != 0)
         return -1;
-    return one_step(t) == 0 ? 0 : ted4_watch_recover(t);
+    return one_step(t) == 0 ? ted4_trainer_told(t, 1) : ted4_watch_recover(t);
+}
+
+/* PSNR of the model as it is on one picture. Negative: failed, with t->message. */
+static double preview(ted4_trainer *t, size_t item)
+{
+    const ted4_picture *pic = &t->data->pictures[item];
+    const uint8_t      *truth = ted4_dataset_pixels(t->data, item, &t->message);
+    ted4_view           v;
+    ted4_generate_input in;
+    ted4_splats         s;
+    double              square = 0;
+
+    if (truth == NULL)
+        return -1;
+
+    const int    bad = render(t, pic, 0, &v, &in, &s) != 0;
+    const size_t pixels = bad ? 0 : (size_t)v.width * (size_t)v.height;
+
+    for (int c = 0; c < 3; c++)
+        for (size_t k = 0; k < pixels; k++) {
+            const float x = t->image[(size_t)c * pixels + k];
+            const float e = (x < 0 ? 0 : x > 1 ? 1 : x) - (float)truth[3 * k + (size_t)c] / 255.0f;
+
+            square += (double)(e * e);
+        }
+    ted4_dataset_release(t->data, item);
+    return bad ? -1 : -10.0 * log10(fmax(square / (3.0 * (double)pixels), 1e-10));
 }
 
 double ted4_trainer_preview(ted4_trainer *t, int n)
 {
-    size_t tests = 0;
+    size_t tests = 0, seen = 0, done = 0;
     double sum = 0;
-    int    done = 0;
 
     for (size_t i = 0; i < t->data->n_pictures; i++)
         tests += t->data->pictures[i].is_test;
 
-    const size_t from = tests > 0 ? tests : t->data->n_pictures;
-    size_t       seen = 0;
+    const size_t from = tests > 0 ? tests : t->data->n_pictures, most = (size_t)n < from ? (size_t)n : from;
 
-    for (size_t i = 0; i < t->data->n_pictures && done < n; i++) {
-        const ted4_picture *pic = &t->data->pictures[i];
-        ted4_view           v;
-        ted4_generate_input in;
-        ted4_splats         s;
-
-        if (tests > 0 && !pic->is_test)
+    for (size_t i = 0; i < t->data->n_pictures && done < most; i++) {
+        if ((tests > 0 && !t->data->pictures[i].is_test) || seen++ != done * from / most)
             continue;
-        if (seen++ != (size_t)done * from / (size_t)n)
-            continue;
-        const uint8_t *truth = ted4_dataset_pixels(t->data, i, &t->message);
 
-        if (truth == NULL)
+        const double psnr = preview(t, i);
+
+        if (psnr < 0)
             return -1;
-        if (render(t, pic, 0, &v, &in, &s) != 0) {
-            ted4_dataset_release(t->data, i);
-            return -1;
-        }
-        const size_t pixels = (size_t)v.width * (size_t)v.height;
-        double       square = 0;
-
-        for (int c = 0; c < 3; c++)
-            for (size_t k = 0; k < pixels; k++) {
-                const float x = t->image[(size_t)c * pixels + k];
-                const float e = (x < 0 ? 0 : x > 1 ? 1 : x) -
-                                (float)truth[3 * k + (size_t)c] / 255.0f;
-
-                square += (double)(e * e);
-            }
-        ted4_dataset_release(t->data, i);
-        sum += -10.0 * log10(fmax(square / (3.0 * (double)pixels), 1e-10));
+        sum += psnr;
         done++;
     }
-    return done > 0 ? sum / done : 0;
+    return done > 0 ? sum / (double)done : 0;
 }

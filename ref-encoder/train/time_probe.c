@@ -41,18 +41,26 @@ int ted4_branch_run(ted4_trainer *t, int n, double *loss)
     return bad;
 }
 
+int ted4_probe_steps(const ted4_trainer *t)
+{
+    const int n = (int)(t->opt.probe * (double)t->opt.stage1);
+
+    return t->probed || n < FEWEST || !has_time(t) ? 0 : n;
+}
+
 int ted4_probe_time(ted4_trainer *t)
 {
-    const int     n = (int)(t->opt.probe * (double)t->opt.stage1);
+    const int     n = ted4_probe_steps(t);
     ted4_snapshot start = { 0 }, with = { 0 };
     ted4_header   h = t->layout.head;
     double        timed = 0, still = 0;
 
     t->probed = 1;
-    if (n < FEWEST || !has_time(t))
+    if (n == 0)
         return 0;
     ted4_header_without_motion(&h);
     h.activation = 0;
+    ted4_trainer_busy(t, TED4_BUSY_PROBE, 2.0 * n);
 
     int bad = ted4_snapshot_take(t, &start) != 0 || ted4_branch_run(t, n, &timed) != 0 ||
               ted4_snapshot_take(t, &with) != 0 || ted4_snapshot_restore(t, &start) != 0;
@@ -60,6 +68,7 @@ int ted4_probe_time(ted4_trainer *t)
     t->clock_stopped = 1;
     bad = bad || ted4_branch_run(t, n, &still) != 0;
     t->clock_stopped = 0;
+    ted4_trainer_busy(t, TED4_BUSY_TRAINING, 0);
     if (!bad && timed < (1.0 - WORTH) * still)
         bad = ted4_snapshot_restore(t, &with) != 0;
     else if (!bad)

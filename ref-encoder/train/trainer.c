@@ -126,12 +126,14 @@ int ted4_trainer_restart(ted4_trainer *t, const ted4_header *h)
     ted4_dataset            *data = t->data;
     const ted4_parallel     *parallel = t->parallel;
     const double             seconds = t->seconds;
+    const ted4_onlooker      onlooker = t->onlooker;
 
     ted4_trainer_finish(t);
     t->opt = opt;
     t->data = data;
     t->parallel = parallel;
     t->seconds = seconds;
+    t->onlooker = onlooker;
     t->probed = 1;
     return begin(t, h);
 }
@@ -158,6 +160,24 @@ void ted4_trainer_finish(ted4_trainer *t)
     free(t->splat_storage);
     free(t->splat_visible);
     memset(t, 0, sizeof *t);
+}
+
+void ted4_trainer_busy(ted4_trainer *t, ted4_busy busy, double budget)
+{
+    t->onlooker.busy = busy;
+    t->onlooker.spent = 0;
+    t->onlooker.budget = budget;
+}
+
+int ted4_trainer_told(ted4_trainer *t, double spent)
+{
+    ted4_onlooker *o = &t->onlooker;
+
+    o->spent += spent;
+    if (o->look == NULL || o->look(o->user) == 0 || o->busy == TED4_BUSY_TRAINING)
+        return 0;
+    o->stopped = 1;
+    return ted4_trainer_fail(t, "stopped");
 }
 
 double ted4_trainer_charged(const ted4_trainer *t)

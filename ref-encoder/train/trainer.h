@@ -44,6 +44,19 @@ typedef struct {
     float        *squares;      /* [n][TED4_SLOT_TERMS + 1]: gradients.h */
 } ted4_slots;
 
+/* What steps are for: training, or finding something out. */
+typedef enum { TED4_BUSY_TRAINING, TED4_BUSY_PROBE, TED4_BUSY_TRIALS } ted4_busy;
+
+/* A program that watches: look is called after every step, those of probes and trials, too, and after every file that a trial makes. It decides nothing, but that
+ * what probes and trials do ends at once where it is not 0: the step at hand then fails, and stopped says why. */
+typedef struct {
+    int      (*look)(void *user);       /* NULL: nobody watches */
+    void      *user;                    /* borrowed */
+    int        stopped;
+    ted4_busy  busy;
+    double     spent, budget;           /* of a probe, or of trials: training steps, so far and at most */
+} ted4_onlooker;
+
 /* Nothing yet; how much model there is; how coarse its weights are in the end; which anchors pay, too. */
 enum { TED4_DECIDED_NOTHING, TED4_DECIDED_MODEL, TED4_DECIDED_BITS, TED4_DECIDED_ALL };
 
@@ -83,6 +96,7 @@ typedef struct {
     uint8_t            *splat_visible;
     size_t              splat_capacity;
     ted4_splat_grads    splat_gradient;
+    ted4_onlooker       onlooker;
     ted4_message        message;        /* why the last call failed */
 } ted4_trainer;
 
@@ -93,6 +107,13 @@ void ted4_trainer_finish(ted4_trainer *t);
 /* The same from the first step on, in the layout of h, and without a probe; h is none of t's own. 0, or -1 with t->message. */
 int  ted4_trainer_restart(ted4_trainer *t, const ted4_header *h);
 
+/* What steps are for from here on, and how many there will be at most. */
+void ted4_trainer_busy(ted4_trainer *t, ted4_busy busy, double budget);
+/* The onlooker's turn; so many steps were spent. 0, or -1 with t->message: it wants the work to end. */
+int  ted4_trainer_told(ted4_trainer *t, double spent);
+/* How many steps of each of its two branches the probe will have; 0: there will be none. */
+int  ted4_probe_steps(const ted4_trainer *t);
+
 /* Values an anchor that a bit's weight is spread over: of the model at the start of stage 2. */
 double ted4_trainer_charged(const ted4_trainer *t);
 /* Total steps of both stages. */
@@ -101,8 +122,10 @@ uint64_t ted4_trainer_total(const ted4_trainer *t);
  * goes wrong, the way back to the last good state: iteration is then smaller or the same, watch.state.rollbacks larger, and watch.find and message say why.
  * 0, or -1 with t->message; watch.found then tells whether it is a find that nothing more was done about. */
 int  ted4_trainer_step(ted4_trainer *t);
-/* Mean PSNR of the current model on up to n held-out pictures (training pictures when there are none), from its own floats: for the progress line
- * only. Negative: failure, with t->message. */
+/* Will the next step take as long as many, to find something out? */
+int  ted4_trainer_long_step(const ted4_trainer *t);
+/* Mean PSNR of the current model on up to n held-out pictures (training pictures when there are none), spread evenly over them, from its own floats: for the
+ * progress line only. Negative: failure, with t->message. */
 double ted4_trainer_preview(ted4_trainer *t, int n);
 
 /* ---- between the trainer's files ---- */
@@ -120,6 +143,8 @@ int  ted4_schedule_network(const ted4_trainer *t, ted4_net_range *range);
 int  ted4_schedule_event(ted4_trainer *t);
 /* Does the integer stage begin with this step? schedule.c */
 int  ted4_integer_due(const ted4_trainer *t);
+/* Shares of stage 1 at which growth begins and sprouts come, and the share of anchors that is kept for these; 0: none will come. For estimates of time. */
+void ted4_schedule_growth(const ted4_trainer *t, double *from, double *sprout_at, double *sprouts);
 /* By how many anchors growth may still add. */
 size_t ted4_schedule_room(const ted4_trainer *t);
 

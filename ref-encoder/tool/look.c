@@ -1,0 +1,104 @@
+/* look.c - what a training tells while it runs: see training.h, ted4_training_look. Nothing here reaches the trainer.
+ * SPDX-License-Identifier: BSD-2-Clause */
+#include <math.h>
+
+#include "stop.h"
+#include "train/capacity.h"
+#include "training.h"
+
+/* The search for smaller models looks at so many as a rule, and trains this share of its budget: it seldom uses all of that. */
+#define LOOKS   40.0
+#define TRAINED 0.08
+
+static double search_steps(const ted4_trainer *t)
+{
+    const double budget = ted4_capacity_budget(t) - ted4_capacity_refine_steps(t) - ted4_capacity_prune_steps(t);
+
+    return fmax(fmin(LOOKS * ted4_capacity_cost_steps(t) + TRAINED * budget, budget), 0.0);
+}
+
+/* Training steps of the trials that are still to come. */
+static double trials_left(const ted4_trainer *t)
+{
+    const double refine = ted4_capacity_refine_steps(t), prune = ted4_capacity_prune_steps(t);
+
+    if (!t->opt.capacity || t->opt.stage2 == 0 || t->decided == TED4_DECIDED_ALL)
+        return 0;
+    if (t->decided == TED4_DECIDED_NOTHING)
+        return search_steps(t) + refine + prune;
+    return t->decided == TED4_DECIDED_MODEL ? refine + prune : prune;
+}
+
+/* Of the trials at hand, in the end. */
+static double trials_now(const ted4_trainer *t)
+{
+    return t->decided == TED4_DECIDED_MODEL ? search_steps(t) : t->onlooker.budget;
+}
+
+/* Steps between two looks at whether sprouts will come, which takes a look at all pictures. */
+enum { ASK_EVERY = 500 };
+
+static ted4_work work_of(ted4_training *t)
+{
+    const ted4_trainer  *tr = t->trainer;
+    const ted4_onlooker *o = &tr->onlooker;
+    const double         before = t->sprouts;
+    ted4_work            w = { .stage1 = tr->opt.stage1, .stage2 = tr->opt.stage2, .first_growth = 0.05, .sprout_at = 0.3, .most_anchors = tr->opt.max_anchors,
+                               .trials = trials_left(tr), .step = (double)tr->iteration, .anchors = (double)tr->anchors.n,
+                               .probing = o->busy == TED4_BUSY_PROBE };
+
+    if (before < 0 || tr->iteration % ASK_EVERY == 0)
+        ted4_schedule_growth(tr, &w.first_growth, &w.sprout_at, &t->sprouts);
+    w.sprouts = t->sprouts;
+    w.probe = w.probing ? 0.5 * o->budget : ted4_probe_steps(tr);
+    w.spent = o->busy != TED4_BUSY_TRAINING ? o->spent : 0;
+    w.budget = o->busy == TED4_BUSY_PROBE ? o->budget : o->busy == TED4_BUSY_TRIALS ? trials_now(tr) : 0;
+    return w;
+}
+
+/* Once, when the first steps have shown it. */
+static void say_estimate(ted4_training *t, double left)
+{
+    char time[40];
+
+    if (t->estimated || left < 0 || !ted4_estimate_ready(&t->estimate))
+        return;
+    t->estimated = 1;
+    ted4_teller_time(left, time, sizeof time);
+    if (t->request->target_size > 0)
+        ted4_teller_say(t->teller, "about %s for the first size tried", time);
+    else
+        ted4_teller_say(t->teller, "about %s until the file is written", time);
+}
+
+int ted4_training_look(void *training)
+{
+    ted4_training       *t = training;
+    const ted4_trainer  *tr = t->trainer;
+    const ted4_onlooker *o = &tr->onlooker;
+    ted4_facts          *f = &t->facts;
+    const double         clock = ted4_seconds();
+    const ted4_work      w = work_of(t);
+
+    ted4_estimate_see(&t->estimate, &w, clock);
+    f->kind = TED4_TELL_TRAINING;
+    f->name[0] = 0;
+    f->step = tr->iteration;
+    f->total = ted4_trainer_total(tr);
+    f->stage = o->busy == TED4_BUSY_PROBE ? "does the scene need time?" : o->busy == TED4_BUSY_TRIALS ? "trials of smaller models" : ted4_run_log_stage(tr);
+    f->share = w.budget > 0 ? w.spent / w.budget : -1;
+    f->loss = tr->progress.loss;
+    f->anchors = tr->anchors.n;
+    f->ms = t->log.ms;
+    f->left = ted4_estimate_left(&t->estimate);
+    f->when = clock;
+    t->log.left = f->left;
+    ted4_teller_now(t->teller, f);
+    say_estimate(t, f->left);
+    return ted4_stop_asked();
+}
+
+void ted4_training_moved(ted4_training *t)
+{
+    ted4_estimate_move(&t->estimate, ted4_seconds());
+}

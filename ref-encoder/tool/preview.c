@@ -1,0 +1,77 @@
+/* preview.c - see preview.h. In stage 2 a copy of the model ends training, as trials of capacity do it, so that quality is that of quantised values, too.
+ * SPDX-License-Identifier: BSD-2-Clause */
+#include "preview.h"
+
+#include <stdlib.h>
+
+#include "train/checkpoint.h"
+#include "train/make_scene.h"
+#include "write/deflate.h"
+#include "write/encode.h"
+
+/* What a blob's weights take, as the writer deflates them. */
+static double blob_bytes(const ted4_blob *b)
+{
+    const size_t   room = ted4_deflate_room(b->n);
+    uint8_t *const memory = malloc(4 * b->n + room);
+    size_t         size = 4 * b->n;
+
+    if (memory != NULL && !ted4_deflate(b->values, b->n, memory, memory + 4 * b->n, &size))
+        size = 4 * b->n;
+    free(memory);
+    return (double)size;
+}
+
+/* 0, or -1: this scene cannot be coded. */
+static int count_bytes(const ted4_scene *s, const ted4_parallel *parallel, ted4_preview *p)
+{
+    uint8_t   *file;
+    size_t     size;
+    ted4_bits  bits;
+    ted4_error e = { TED4_OK, 0 };
+
+    if (ted4_encode(s, 0, parallel, &file, &size, &e) != TED4_OK)
+        return -1;
+    free(file);
+    if (ted4_count(s, parallel, &bits, &e) != TED4_OK)
+        return -1;
+    p->bytes = (double)size;
+    p->positions = 6.0 * (double)s->head.n_anchors;
+    p->masks = bits.mask / 8.0;
+    p->networks = blob_bytes(&s->nete) + blob_bytes(&s->netr) + blob_bytes(&s->bank) + (double)s->shape.n_units;
+    p->frame = p->bytes - p->positions - p->masks - p->networks;
+    for (int y = 0; y < TED4_TYPES; y++) {
+        p->type[y] = bits.type[y] / 8.0;
+        p->frame -= p->type[y];
+    }
+    return 0;
+}
+
+static int draw(ted4_trainer *t, int n, ted4_preview *p)
+{
+    p->train = 1;
+    for (size_t i = 0; i < t->data->n_pictures; i++)
+        p->train &= !t->data->pictures[i].is_test;
+    p->psnr = ted4_trainer_preview(t, n);
+    return p->psnr < 0 ? -1 : 0;
+}
+
+int ted4_preview_make(ted4_trainer *t, int n, ted4_preview *p)
+{
+    ted4_snapshot before = { 0 };
+    ted4_scene   *scene;
+
+    if (!t->stage2)
+        return draw(t, n, p);
+    if (ted4_state_take(t, &before) != 0)
+        return -1;
+    if (ted4_make_scene(t, &scene) == 0) {
+        (void)count_bytes(scene, t->parallel, p);
+        ted4_scene_free(scene);
+    }
+
+    const int drawn = draw(t, n, p), bad = ted4_state_restore(t, &before) != 0 || drawn != 0;
+
+    ted4_snapshot_free(&before);
+    return bad ? -1 : 0;
+}

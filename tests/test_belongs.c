@@ -1,0 +1,158 @@
+/* test_belongs.c - which files ted4eval takes to be of which scenes, and which pictures its sheet shows.
+ * SPDX-License-Identifier: BSD-2-Clause */
+#include <math.h>
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <stdlib.h>
+#include <string.h>
+#include <cmocka.h>
+
+#include "tool/belongs.h"
+#include "tool/sheet.h"
+#include "train/space.h"
+
+enum { POINTS = 50, FRAMES = 8, CAMERAS = 12, MOST = 200 };
+
+typedef struct {
+    ted4_dataset d;
+    ted4_info    file;
+    ted4_picture picture[MOST];
+    float        point[3 * POINTS];
+} pair;
+
+/* A scene of points around a place, and the file of it. */
+static void make_pair(pair *p)
+{
+    ted4_header h;
+
+    memset(p, 0, sizeof *p);
+    for (int i = 0; i < 3 * POINTS; i++)
+        p->point[i] = (float)((i * 37) % 101) / 50.0f;
+    p->d = (ted4_dataset){ .pictures = p->picture, .n_frames = FRAMES, .n_cameras = CAMERAS, .points = p->point, .n_points = POINTS, .rate = 30 };
+    memset(&h, 0, sizeof h);
+    ted4_space_make(&h, &p->d);
+    p->file.frames = FRAMES;
+    p->file.rate_num = 30;
+    p->file.rate_den = 1;
+    p->file.exponent = h.exponent;
+    memcpy(p->file.origin, h.origin, sizeof p->file.origin);
+}
+
+/* what: part of the reason; NULL: it belongs. */
+static void expect(const pair *p, const char *what)
+{
+    char      why[256] = "";
+    const int belongs = ted4_belongs_scene(&p->file, &p->d, why, sizeof why);
+
+    if (belongs != (what == NULL) || (what != NULL && strstr(why, what) == NULL))
+        fail_msg("%d \"%s\", expected \"%s\"", belongs, why, what == NULL ? "" : what);
+}
+
+static void test_scene(void **state)
+{
+    pair p;
+
+    (void)state;
+    make_pair(&p);
+    expect(&p, NULL);
+    p.file.frames = 1;
+    expect(&p, "1 time in the file, 8 in the scene (--max-frames reads the first ones)");
+    make_pair(&p);
+    p.file.rate_num = 25;
+    expect(&p, "25 frames a second in the file, 30 in the scene");
+    p.d.rate = 0;               /* not known */
+    expect(&p, NULL);
+    make_pair(&p);
+    p.file.origin[1] += 2.0f * ldexpf(1.0f, p.file.exponent);
+    expect(&p, "the scene around");
+    make_pair(&p);
+    p.file.origin[1] += 0.5f * ldexpf(1.0f, p.file.exponent);
+    p.file.exponent += 2;
+    expect(&p, NULL);
+    p.file.exponent += 3;
+    expect(&p, "wide");
+    make_pair(&p);
+    p.file.exponent -= 5;
+    expect(&p, "wide");
+}
+
+static void test_pictures(void **state)
+{
+    uint8_t          truth[300], drawn[300];
+    ted4_belongs_sum s = { 0, 0 };
+    char             why[256];
+
+    (void)state;
+    for (int i = 0; i < 300; i++) {
+        truth[i] = (uint8_t)((i / 3) % 2 * 100 + 50);
+        drawn[i] = (uint8_t)(truth[i] + 30);
+    }
+    ted4_belongs_add(&s, truth, drawn, 100);
+    assert_true(s.drawn == 300.0 * 900 && s.mean == 300.0 * 2500);
+    assert_int_equal(ted4_belongs_pictures(&s, why, sizeof why), 1);
+    /* Pictures of one colour count for nothing, and those of others far from them for much. */
+    memset(truth, 9, sizeof truth);
+    memset(drawn, 9, sizeof drawn);
+    ted4_belongs_add(&s, truth, drawn, 100);
+    assert_int_equal(ted4_belongs_pictures(&s, why, sizeof why), 1);
+    memset(drawn, 255, sizeof drawn);
+    ted4_belongs_add(&s, truth, drawn, 100);
+    assert_int_equal(ted4_belongs_pictures(&s, why, sizeof why), 0);
+    assert_non_null(strstr(why, "dB further"));
+}
+
+/* n pictures of so many cameras, camera by camera, each at other times; every second camera is held out. */
+static void add_pictures(pair *p, uint32_t cameras, uint32_t times)
+{
+    p->d.n_pictures = 0;
+    for (uint32_t c = 0; c < cameras; c++)
+        for (uint32_t f = 0; f < times; f++)
+            p->picture[p->d.n_pictures++] = (ted4_picture){ .camera = { .width = 8, .height = 6 }, .frame = f, .camera_id = c, .is_test = c % 2 };
+}
+
+static void expect_rows(const pair *p, int test, size_t n, const size_t *want)
+{
+    size_t row[4] = { MOST, MOST, MOST, MOST };
+
+    assert_int_equal(ted4_sheet_choose(&p->d, test, 4, row), n);
+    for (size_t i = 0; i < n; i++)
+        assert_int_equal(row[i], want[i]);
+}
+
+static void test_sheet(void **state)
+{
+    pair p;
+
+    (void)state;
+    make_pair(&p);
+    /* Six held-out cameras, 1 3 5 7 9 11 of 8 times each: the first, the last and two between, ever later. */
+    add_pictures(&p, CAMERAS, FRAMES);
+    expect_rows(&p, 1, 4, (size_t[]){ 8, 3 * 8 + 2, 7 * 8 + 4, 11 * 8 + 7 });
+    expect_rows(&p, 0, 4, (size_t[]){ 0, 2 * 8 + 2, 6 * 8 + 4, 10 * 8 + 7 });
+    /* One camera: four times of it. Two: first and last time of each. */
+    add_pictures(&p, 2, FRAMES);
+    expect_rows(&p, 1, 4, (size_t[]){ 8, 10, 12, 15 });
+    add_pictures(&p, 4, FRAMES);
+    expect_rows(&p, 1, 4, (size_t[]){ 8, 24, 15, 31 });
+    /* Fewer pictures than rows; none twice. */
+    add_pictures(&p, 3, 1);
+    expect_rows(&p, 1, 1, (size_t[]){ 1 });
+    expect_rows(&p, 0, 2, (size_t[]){ 0, 2 });
+    p.picture[2].camera.width = 9;
+    expect_rows(&p, 0, 1, (size_t[]){ 0 });
+    p.picture[1].is_test = 0;
+    expect_rows(&p, 1, 0, NULL);
+    add_pictures(&p, 6, 3);
+    p.picture[0].is_test = p.picture[1].is_test = 1;    /* of another camera only two */
+    p.d.n_pictures = 5;
+    expect_rows(&p, 1, 4, (size_t[]){ 0, 3, 1, 4 });
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = { cmocka_unit_test(test_scene), cmocka_unit_test(test_pictures), cmocka_unit_test(test_sheet) };
+
+    return cmocka_run_group_tests_name("belongs", tests, NULL, NULL);
+}

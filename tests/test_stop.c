@@ -1,0 +1,182 @@
+/* test_stop.c - ted4enc is asked to end by a signal: wherever it is, it says at which step it stopped and how to go on, writes no file, and the same command with
+ * --resume writes the bytes of a run that nothing disturbs. A second signal ends it at once.
+ * SPDX-License-Identifier: BSD-2-Clause */
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <cmocka.h>
+
+#include "mishap.h"
+
+/* A probe at step 300, stage 2 from 1200 on, trials at 1305, the integer stage at 1760. */
+static const char *const options[] = {
+    "ted4enc", "scene", "-o", "out/x", "-f", "-j1", "--preset", "draft", "--iterations", "1200,700", "--checkpoint-every", "86400", "--log", "out/l",
+    "--set", "offsets=4", "--set", "feature=8", "--set", "phi=4", "--set", "bank_dim=8", "--set", "deform_width=8", "--set", "head_width=12",
+    "--set", "hyper_width=8", "--set", "ar_width=8", "--set", "slices=2", "--set", "octaves=4", "--set", "init_anchors=150", "--set", "max_anchors=260",
+    "--set", "grow_every=20", "--set", "probe=0.2", "--set", "activation=0"
+};
+enum { N_OPTIONS = (int)(sizeof options / sizeof options[0]) };
+
+static pid_t begin(const char *one, const char *two, const char *three)
+{
+    const char *argv[N_OPTIONS + 4] = { NULL };
+    char        path[1024];
+    const pid_t child = fork();
+
+    assert_true(child >= 0);
+    if (child > 0)
+        return child;
+    memcpy(argv, options, sizeof options);
+    argv[N_OPTIONS] = one;
+    argv[N_OPTIONS + 1] = two;
+    argv[N_OPTIONS + 2] = three;
+
+    const int err = open(tiny_path(&folder, "err"), O_WRONLY | O_CREAT | O_TRUNC, 0666);
+
+    snprintf(path, sizeof path, "%s/ted4enc", build);
+    if (err < 0 || dup2(err, STDERR_FILENO) < 0 || chdir(folder.path) != 0)
+        _exit(100);
+    execv(path, (char *const *)(uintptr_t)argv);
+    _exit(101);
+}
+
+static void read_words(char *text, size_t size)
+{
+    read_text("err", text, size);
+}
+
+/* The log has this text; or the checkpoint is the one of the nth time it was written. */
+typedef struct { const char *logged; int written; } moment;
+
+static void wait_for(const moment *m)
+{
+    char  text[MOST_LOG];
+    ino_t last = 0;
+
+    for (int i = 0, n = 0; i < 60000; i++) {
+        struct stat s;
+
+        if (m->logged == NULL && stat(tiny_path(&folder, "out/c"), &s) == 0 && s.st_ino != last && ++n >= m->written)
+            return;
+        if (m->logged == NULL && is_there("out/c"))
+            last = s.st_ino;
+        if (m->logged != NULL && is_there("out/l")) {
+            read_text("out/l", text, sizeof text);
+            if (strstr(text, m->logged) != NULL)
+                return;
+        }
+        pause_us(500);
+    }
+    fail_msg("the moment did not come");
+}
+
+static const moment moments[] = { { "\"step\":1,", 1 }, { "\"step\":250,", 0 }, { NULL, 1 }, { NULL, 2 }, { "\"step\":1500,", 0 }, { "\"step\":1750,", 0 } };
+
+static void stop_at(const moment *m, int signal, const ball_file *want)
+{
+    const pid_t child = begin("--checkpoint", "out/c", NULL);
+    char        text[4096];
+    unsigned long long at = 0, held = 0;
+
+    if (m->written == 1 && m->logged != NULL)
+        pause_us(60000);        /* no more than begun */
+    else
+        wait_for(m);
+    kill(child, signal);
+
+    const int   status = finish(child);
+    const char *words;
+
+    if (status == 1000 + signal) {      /* before training */
+        assert_true(m->written == 1 && m->logged != NULL);
+        return;
+    }
+    assert_int_equal(status, 128 + signal);
+    read_words(text, sizeof text);
+    words = strstr(text, "ted4enc: stopped at step ");
+    if (words == NULL || sscanf(words, "ted4enc: stopped at step %llu of 1900; out/c holds step %llu; the same command with --resume goes on", &at, &held) != 2)
+        fail_msg("said \"%s\"", text);
+    assert_true(held <= at || m->logged == NULL);
+    assert_false(is_there("out/x"));
+    printf("signal %d at step %llu, %llu held\n", signal, at, held);
+
+    assert_int_equal(finish(begin("--checkpoint", "out/c", "--resume")), 0);
+    read_words(text, sizeof text);
+    snprintf(text + strlen(text), sizeof text - strlen(text), "\n");
+
+    char going[80];
+
+    snprintf(going, sizeof going, "ted4enc: out/c: going on from step %llu of 1900\n", held);
+    assert_non_null(strstr(text, going));
+    expect_same("out/x", want);
+    gone("out/c");
+    gone("out/l");
+}
+
+static void test_moments(void **state)
+{
+    ball_file want;
+
+    (void)state;
+    begin_test();
+    assert_int_equal(finish(begin(NULL, NULL, NULL)), 0);
+    want = read_file("out/x");
+    gone("out/x");
+    gone("out/l");
+    for (size_t i = 0; i < sizeof moments / sizeof moments[0]; i++)
+        stop_at(&moments[i], i % 2 == 0 ? SIGINT : SIGTERM, &want);
+    free(want.bytes);
+}
+
+/* Without a checkpoint nothing is kept, and this is said. */
+static void test_no_checkpoint(void **state)
+{
+    const moment m = { "\"step\":250,", 0 };
+    char         text[4096];
+    pid_t        child;
+
+    (void)state;
+    begin_test();
+    child = begin(NULL, NULL, NULL);
+    wait_for(&m);
+    kill(child, SIGINT);
+    assert_int_equal(finish(child), 130);
+    read_words(text, sizeof text);
+    assert_non_null(strstr(text, "; nothing of it is kept (--checkpoint FILE would)\n"));
+    expect_files("l");
+}
+
+/* The second signal finds the program's usual end; one that was to be ignored stays so. */
+static void test_again(void **state)
+{
+    const moment m = { "\"step\":250,", 0 };
+    pid_t        child;
+
+    (void)state;
+    begin_test();
+    child = begin(NULL, NULL, NULL);
+    wait_for(&m);
+    kill(child, SIGSTOP);
+    kill(child, SIGINT);
+    kill(child, SIGTERM);
+    kill(child, SIGCONT);
+
+    const int status = finish(child);
+
+    assert_true(status == 1000 + SIGINT || status == 1000 + SIGTERM);
+    signal(SIGINT, SIG_IGN);
+    child = begin(NULL, NULL, NULL);
+    signal(SIGINT, SIG_DFL);
+    gone("out/l");
+    wait_for(&m);
+    kill(child, SIGINT);
+    assert_int_equal(finish(child), 0);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = { cmocka_unit_test(test_moments), cmocka_unit_test(test_no_checkpoint), cmocka_unit_test(test_again) };
+
+    return cmocka_run_group_tests_name("stop", tests, set_up, tear_down);
+}
