@@ -29,7 +29,9 @@ static void set(const char *text)
 
 static void load_scene(void)
 {
-    static const ted4_dataset_options wanted = { .downscale = 1, .seed = 3, .cache_bytes = 1 << 20 };
+    static const ted4_dataset_options wanted = { .downscale = 1,
+                                                 .seed = 3,
+                                                 .cache_bytes = 1 << 20 };
     static const char scene[] = "{\"fl_x\":3,\"w\":2,\"h\":2,\"fps\":5,\"frames\":["
         "{\"file_path\":\"a.png\",\"time\":0,\"transform_matrix\":[[1,0,0,0],[0,1,0,0],[0,0,1,4],[0,0,0,1]]},"
         "{\"file_path\":\"b.png\",\"time\":1,\"transform_matrix\":[[1,0,0,0.3],[0,1,0,0],[0,0,1,4],[0,0,0,1]]}]}";

@@ -155,7 +155,9 @@ static void check_dataset(ted4_dataset *d)
 
 int fuzz_load_scene(void)
 {
-    static const ted4_dataset_options o = { .downscale = 1, .white = 1, .seed = 7, .cache_bytes = 1 << 20 };
+    static const ted4_dataset_options o = {
+        .downscale = 1, .white = 1, .seed = 7, .cache_bytes = 1 << 20
+    };
     ted4_dataset                      d;
     ted4_message                      m;
     const int                         result = ted4_dataset_load(&d, folder.scene, &o, &m);

@@ -1,4 +1,5 @@
-/* refuse.h - a scene that must not load. Depends on tiny_scene.h.
+/* refuse.h - a scene that must not load, and one that loads with a warning. Depends on
+ * tiny_scene.h.
  * SPDX-License-Identifier: BSD-2-Clause */
 #ifndef TED4_REFUSE_H
 #define TED4_REFUSE_H
@@ -16,6 +17,22 @@ static inline void refuse(const tiny_folder *f, const char *where, const char *w
     if (*text == 0 || strstr(text, where) == NULL || strstr(text, what) == NULL || strchr(text, '\n') != NULL)
         fail_msg("got \"%s\", expected \"%s\" and \"%s\"", text, where, what);
     assert_memory_equal(&d, &zero, sizeof d);
+}
+
+/* The load must succeed with one warning, a line that holds both texts. Gives how many pictures
+ * there are. */
+static inline size_t warned(const tiny_folder *f, const char *where, const char *what)
+{
+    ted4_dataset d;
+    const char *text = tiny_load(&d, f, &tiny_options);
+    const size_t n = d.n_pictures;
+
+    if (*text != 0 || d.n_warnings != 1 || strstr(d.warnings[0], where) == NULL ||
+        strstr(d.warnings[0], what) == NULL || strchr(d.warnings[0], '\n') != NULL)
+        fail_msg("got \"%s\", %zu warnings \"%s\", expected \"%s\" and \"%s\"", text, d.n_warnings,
+                 d.n_warnings > 0 ? d.warnings[0] : "", where, what);
+    ted4_dataset_free(&d);
+    return n;
 }
 
 #endif

@@ -152,8 +152,17 @@ static void test_pictures(void **state)
     need_program();
     scene("missing", "", NULL);
     must(remove(tiny_path(&folder, "missing/1.png")) == 0, "1.png");
-    refuse("missing" OUT QUICK, "1.png");
-    refuse("missing --check", "1.png");
+    assert_int_equal(run("missing" OUT QUICK), 0);
+    must(remove(tiny_path(&folder, "out/x.ted4")) == 0, "x.ted4");
+    assert_int_equal(run("missing --check -q"), 0);
+    if (strncmp(err, "ted4enc: warning: 1 of 3 entries has no picture: ", 49) != 0 ||
+        strstr(err, "frames[1]: 1.png\n") == NULL)
+        fail_msg("stderr \"%s\"", err);
+    must(remove(tiny_path(&folder, "missing/0.png")) == 0 &&
+             remove(tiny_path(&folder, "missing/2.png")) == 0,
+         "pictures");
+    refuse("missing" OUT QUICK, "none of 3 entries has a picture; the first: "
+                                "missing/transforms.json: frames[0]: 0.png");
     scene("cut", "", NULL);
     cut("cut/2.png", tiny_size(&folder, "cut/2.png") - 40);
     refuse("cut" OUT QUICK, "2.png: PNG");
@@ -164,6 +173,54 @@ static void test_pictures(void **state)
     refuse("cut" OUT QUICK, "2.png");
     scene("large", "", NULL);
     refuse("large --downscale 13" OUT QUICK, "cannot be reduced by 13");
+}
+
+/* The two programs take the same words about the scene. */
+static void test_hold_out(void **state)
+{
+    char command[1024];
+
+    (void)state;
+    need_program();
+    assert_int_equal(run("good --check --hold-out 2.png --alpha premultiplied"), 0);
+    must(system(NULL) != 0, "a shell");
+    snprintf(command, sizeof command, "grep -q '^pictures    2 train, 1 test$' %s",
+             tiny_path(&folder, "out.txt"));
+    assert_int_equal(system(command), 0);
+    refuse("good --check --hold-out 9", "--hold-out 9: no camera or picture of this name, expected "
+                                        "one of: 0.png, 1.png, 2.png");
+    refuse("good --alpha wet" OUT, "--alpha: bad value wet");
+    assert_int_equal(run("good --hold-out 2.png" OUT QUICK), 0);
+    snprintf(command, sizeof command,
+             "cd %s && %s/ted4eval out/x.ted4 good --hold-out 0 --hold-out 1.png --alpha straight "
+             "--anyway --json -j 1 >out.txt 2>err.txt"
+             " && grep -q '\"views\":2' out.txt",
+             folder.path, build);
+    assert_int_equal(system(command), 0);
+    must(remove(tiny_path(&folder, "out/x.ted4")) == 0, "x.ted4");
+}
+
+/* What a scene file says of its rate comes out as it went in. */
+static void test_rate(void **state)
+{
+    static const char *const rates[][2] = { { "6", "3 at 6 a second" },
+                                            { "23.976", "3 at 23.976 a second" },
+                                            { "0.333", "3 at 0.333 a second" },
+                                            { "29.97002997002997", "3 at 30000/1001 a second" } };
+    char text[1024];
+
+    (void)state;
+    need_program();
+    for (size_t i = 0; i < sizeof rates / sizeof *rates; i++) {
+        snprintf(text, sizeof text, "\"fps\": %s, ", rates[i][0]);
+        scene("rate", text, NULL);
+        assert_int_equal(run("rate -f" OUT QUICK), 0);
+        snprintf(text, sizeof text, "cd %s && %s/ted4info out/x.ted4 | grep -qx 'frames      %s'",
+                 folder.path, build, rates[i][1]);
+        if (system(text) != 0)
+            fail_msg("%s", rates[i][0]);
+    }
+    must(remove(tiny_path(&folder, "out/x.ted4")) == 0, "x.ted4");
 }
 
 static void test_cameras(void **state)
@@ -266,8 +323,10 @@ static void test_options(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_good),  cmocka_unit_test(test_pictures), cmocka_unit_test(test_cameras),
-        cmocka_unit_test(test_empty), cmocka_unit_test(test_output),   cmocka_unit_test(test_options),
+        cmocka_unit_test(test_good),     cmocka_unit_test(test_pictures),
+        cmocka_unit_test(test_hold_out), cmocka_unit_test(test_rate),
+        cmocka_unit_test(test_cameras),  cmocka_unit_test(test_empty),
+        cmocka_unit_test(test_output),   cmocka_unit_test(test_options),
     };
 
     return cmocka_run_group_tests_name("bad scenes", tests, setup, teardown);

@@ -457,8 +457,9 @@ static void test_times(void **state)
         near(frame[i] / (n - 1.0), odd[i], 0.5 / (n - 1.0));
     /* Too fine a grid. */
     const double close[3] = { 0, 1e-5, 1 };
-    assert_int_equal(ted4_frame_times(close, 3, frame, &n, &m), -1);
-    assert_non_null(strstr(m.text, "36000"));
+    assert_int_equal(ted4_frame_times(close, 3, frame, &n, &m), 0);
+    assert_int_equal(n, TED4_MAX_FRAMES);
+    assert_true(frame[0] == 0 && frame[1] == 0 && frame[2] == TED4_MAX_FRAMES - 1);
     const double one[2] = { 5, 5 };
     assert_int_equal(ted4_frame_times(one, 2, frame, &n, &m), 0);
     assert_int_equal(n, 1);
@@ -483,6 +484,15 @@ static void test_print(void **state)
     assert_non_null(strstr(text, "layout      nerfstudio\npictures    9 train, 1 test\ncameras     2\nframes      5\n"
                            "size        16 x 12 pixels\nfocal       30..31 x 30..32 pixels\n"));
     assert_non_null(strstr(text, "rate        25 frames/s\n"));
+    /* A still has none, whatever its file says. */
+    d.n_frames = 1;
+    out = tmpfile();
+    assert_non_null(out);
+    ted4_dataset_print(&d, out);
+    rewind(out);
+    text[fread(text, 1, sizeof text - 1, out)] = 0;
+    fclose(out);
+    assert_null(strstr(text, "rate"));
     ted4_dataset_free(&d);
     tiny_free(&f);
 }

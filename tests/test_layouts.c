@@ -108,7 +108,9 @@ static void same_scene(ted4_dataset *d, int tolerance, int split)
 static void test_layouts(void **state)
 {
     /* What each layout is recognised as; splits: by list, by list, 1 of 8, 1 of 8, by list, first camera, times. */
-    static const char *const names[RAY_LAYOUTS] = { "blender", "nerfstudio", "colmap", "colmap", "hypernerf", "neu3d", "calibration" };
+    static const char *const names[RAY_LAYOUTS] = { "D-NeRF",     "nerfstudio", "colmap",
+                                                    "colmap",     "hypernerf",  "neu3d",
+                                                    "calibration" };
     static const int split[RAY_LAYOUTS] = { 1, 1, 0, 0, 1, 1, 0 };
 
     (void)state;
@@ -118,6 +120,28 @@ static void test_layouts(void **state)
         load(&d, &f);
         assert_string_equal(d.layout, names[l]);
         same_scene(&d, 0, split[l]);
+        ted4_dataset_free(&d);
+        tiny_free(&f);
+    }
+}
+
+/* A checkpoint refuses a scene that loads in another way than when it was begun: digests do not
+ * change, but where a loader is wrong. */
+static void test_digests(void **state)
+{
+    static const uint64_t known[RAY_LAYOUTS] = {
+        0xb5436a4db0da7991, 0xb5436a4db0da7991, 0x91a33f4aee0502c2, 0x91a33f4aee0502c2,
+        0xb5436a4db0da7991, 0xb5436a4db0da7991, 0xf5be6c1c9b13f240,
+    };
+
+    (void)state;
+    for (int l = 0; l < RAY_LAYOUTS; l++) {
+        tiny_folder f = write_scene((ted4_ray_layout)l, FRAMES, 0);
+        ted4_dataset d;
+        load(&d, &f);
+        if (ted4_dataset_digest(&d) != known[l])
+            fail_msg("%s: digest %llx, expected %llx", ted4_ray_layout_name((ted4_ray_layout)l),
+                     (unsigned long long)ted4_dataset_digest(&d), (unsigned long long)known[l]);
         ted4_dataset_free(&d);
         tiny_free(&f);
     }
@@ -337,7 +361,8 @@ static int teardown(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_layouts),     cmocka_unit_test(test_videos),          cmocka_unit_test(test_calibration_split),
+        cmocka_unit_test(test_layouts),     cmocka_unit_test(test_digests),
+        cmocka_unit_test(test_videos),      cmocka_unit_test(test_calibration_split),
         cmocka_unit_test(test_neu3d_forms), cmocka_unit_test(test_hypernerf_forms),
     };
 

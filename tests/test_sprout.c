@@ -69,7 +69,7 @@ static void test_search(void **state)
         const size_t first = list.n;
         size_t       near = 0;
 
-        assert_int_equal(ted4_sprout_search(&t, f, &list), 0);
+        assert_int_equal(ted4_sprout_search(&t, f, 0, &list), 0);
         for (size_t i = first; i < list.n; i++) {
             const double r = radii(&t, list.item[i].point, f);
 
@@ -98,7 +98,7 @@ static void test_long(void **state)
     ball_train(&t, STEPS);
     balls.n_frames = 20000;
     for (uint32_t f = 0; f < 3; f++) {
-        assert_int_equal(ted4_sprout_search(&t, f, &list), 0);
+        assert_int_equal(ted4_sprout_search(&t, f, 0, &list), 0);
         assert_int_equal(list.n, f + 1);
     }
     free(list.item);
@@ -154,14 +154,14 @@ static void test_impossible(void **state)
     (void)state;
     o.activation = 0;
     ball_begin(&t, &o, &balls, NULL);
-    assert_false(ted4_sprout_possible(&t));
+    assert_int_equal(ted4_sprout_reach(&t), -1);
     assert_int_equal(t.anchors.n + ted4_schedule_room(&t), 320);
     ted4_trainer_finish(&t);
     o.activation = 1;
     for (size_t i = 0; i < balls.n_pictures; i++)           /* two cameras a time */
         balls.pictures[i].is_test = balls.pictures[i].camera_id >= 2;
     ball_begin(&t, &o, &balls, NULL);
-    assert_false(ted4_sprout_possible(&t));
+    assert_int_equal(ted4_sprout_reach(&t), -1);
     ted4_trainer_finish(&t);
     for (size_t i = 0; i < balls.n_pictures; i++)
         balls.pictures[i].is_test = 0;

@@ -156,7 +156,9 @@ static inline void tiny_put_real(tiny_record *r, double v)
 
 #define TINY_POSE "[[1,0,0,0],[0,1,0,0],[0,0,1,0],[0,0,0,1]]"
 
-static const ted4_dataset_options tiny_options = { .downscale = 1, .white = 1, .seed = 7, .cache_bytes = 1 << 20 };
+static const ted4_dataset_options tiny_options = {
+    .downscale = 1, .white = 1, .seed = 7, .cache_bytes = 1 << 20
+};
 
 /* Loads; the message of a failure is the return value, "" when fine. */
 static inline const char *tiny_load(ted4_dataset *d, const tiny_folder *f, const ted4_dataset_options *o)

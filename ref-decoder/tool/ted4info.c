@@ -91,6 +91,19 @@ static int64_t integer_value(const ted4_header_value *v)
     return strcmp(v->name, "exponent") == 0 ? (int8_t)v->value : v->value;
 }
 
+/* One frame has no rate. Rates of thousandths, as 6 or 23.976, read better than 6000/1000. */
+static void print_frames(const ted4_info *info)
+{
+    enum { THOUSAND = 1000 };
+
+    printf("frames      %" PRIu32, info->frames);
+    if (info->frames > 1 && THOUSAND % info->rate_den == 0)
+        printf(" at %.10g a second", (double)info->rate_num / info->rate_den);
+    else if (info->frames > 1)
+        printf(" at %" PRIu32 "/%" PRIu32 " a second", info->rate_num, info->rate_den);
+    putchar('\n');
+}
+
 static void print_summary(const settings *s, const ted4_info *info, size_t size)
 {
     static const char *const motion[] = {
@@ -103,7 +116,7 @@ static void print_summary(const settings *s, const ted4_info *info, size_t size)
     printf("%s: TED4, Main profile, level %d, %zu bytes\n", s->input, info->level, size);
     printf("anchors     %" PRIu32 ", moving %" PRIu32 "\n", info->n_anchors, info->n_dynamic);
     printf("Gaussians   %zu, at most %" PRIu32 " an anchor\n", info->n_gaussians, info->n_offsets);
-    printf("frames      %" PRIu32 " at %" PRIu32 "/%" PRIu32 " a second\n", info->frames, info->rate_num, info->rate_den);
+    print_frames(info);
     printf("motion      %s; activation %s; view %s\n", motion[info->motion], info->activation ? "yes" : "no", view[info->view]);
     printf("space       origin %.9g %.9g %.9g, unit 2^%d\n", (double)info->origin[0], (double)info->origin[1], (double)info->origin[2], info->exponent);
     printf("background  #%02x%02x%02x\n", info->background[0], info->background[1], info->background[2]);

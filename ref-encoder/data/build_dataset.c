@@ -98,24 +98,11 @@ static int make_picture(ted4_picture *p, ted4_source *source, ted4_shot *s, int 
     source->lens = s->lens;
     source->downscale = n;
     source->background = o->white ? 255 : 0;
+    source->premultiplied = o->premultiplied && s->has_alpha;
     return 0;
 }
 
-/* Shots are the same camera when their labels are equal or, without labels, their poses to six
- * decimals; then the label is the pose. */
-static char *pose_label(const ted4_shot *s)
-{
-    char text[12 * 26], *at = text;
-    double centre[3];
-
-    ted4_pose_centre(s->R, s->t, centre);
-    for (int i = 0; i < 12; i++) {
-        const double v = i < 9 ? s->R[i] : centre[i - 9];
-        at += snprintf(at, 26, "%.15g ", round(v * 1e6) + 0.0);   /* + 0.0: no -0 */
-    }
-    return ted4_text_copy(text);
-}
-
+/* Pictures are of one camera when their labels are equal. */
 typedef struct { const char *label; uint32_t picture; } labelled;
 
 static int by_label(const void *a, const void *b)
@@ -127,16 +114,13 @@ static int by_label(const void *a, const void *b)
 }
 
 /* Numbers cameras by their first picture. shots[i] belongs to d->pictures[i]. */
-static int number_cameras(ted4_dataset *d, ted4_shot *shots, ted4_message *m)
+static int number_cameras(ted4_dataset *d, const ted4_shot *shots, ted4_message *m)
 {
     const size_t n = d->n_pictures;
     labelled *list = malloc(n * sizeof *list);
     int result = list == NULL ? -1 : 0;
 
     for (size_t i = 0; i < n && result == 0; i++) {
-        if (shots[i].camera == NULL)
-            shots[i].camera = pose_label(&shots[i]);
-        result = shots[i].camera == NULL ? -1 : 0;
         list[i].label = shots[i].camera;
         list[i].picture = (uint32_t)i;
     }
@@ -157,8 +141,38 @@ static int number_cameras(ted4_dataset *d, ted4_shot *shots, ted4_message *m)
     return result != 0 ? ted4_say_no_memory(m) : 0;
 }
 
-static int number_frames(ted4_dataset *d, const ted4_shot *shots, ted4_message *m)
+/* Farther from its frame than this part of the distance between two frames, a picture's time is
+ * said to have moved. */
+static const double MOVED = 0.1;
+
+/* Warns of times that have no frame of their own. 0, or -1: no memory. */
+static int say_moved(ted4_raw_scene *s, const ted4_dataset *d)
 {
+    const double steps = (double)d->n_frames - 1;
+    double first = s->shots[0].time, last = first, worst = 0;
+    size_t n = 0;
+
+    for (size_t i = 0; i < s->n_shots; i++) {
+        first = fmin(first, s->shots[i].time);
+        last = fmax(last, s->shots[i].time);
+    }
+    for (size_t i = 0; i < s->n_shots && last > first; i++) {
+        const double off =
+            fabs((s->shots[i].time - first) / (last - first) * steps - d->pictures[i].frame);
+        n += off > MOVED;
+        worst = fmax(worst, off);
+    }
+    return n == 0 ? 0
+                  : ted4_raw_scene_warn(s,
+                                        "times have no common step: of %zu pictures, %zu move to "
+                                        "the nearest of %u frames, by up to %.2g "
+                                        "of the whole time",
+                                        s->n_shots, n, (unsigned)d->n_frames, worst / steps);
+}
+
+static int number_frames(ted4_dataset *d, ted4_raw_scene *s, ted4_message *m)
+{
+    const ted4_shot *shots = s->shots;
     const size_t n = d->n_pictures;
     double *time = malloc(n * sizeof *time);
     uint32_t *frame = malloc(n * sizeof *frame);
@@ -172,6 +186,8 @@ static int number_frames(ted4_dataset *d, const ted4_shot *shots, ted4_message *
         result = ted4_frame_times(time, n, frame, &d->n_frames, m);
         for (size_t i = 0; i < n && result == 0; i++)
             d->pictures[i].frame = frame[i];
+        if (result == 0 && say_moved(s, d) != 0)
+            result = ted4_say_no_memory(m);
     }
     free(time);
     free(frame);
@@ -218,7 +234,34 @@ static int split(ted4_raw_scene *s, ted4_message *m)
     free(s->shots);
     s->shots = sorted;
     s->capacity = s->n_shots;
-    return sorted[0].is_test ? ted4_say(m, "all %zu pictures are held out, none is left to train on", s->n_shots) : 0;
+    if (!sorted[0].is_test)
+        return 0;
+    return s->n_missing == 0
+               ? ted4_say(m, "all %zu pictures are held out, none is left to train on", s->n_shots)
+               : ted4_say(m,
+                          "all %zu pictures that are there are held out, none is left to train on; "
+                          "%zu of %zu entries have no picture, "
+                          "the first: %s",
+                          s->n_shots, s->n_missing, s->n_entries, s->first_missing);
+}
+
+/* Entries without a picture were left out: other programs do so, and what is left may well do. */
+static int say_missing(ted4_raw_scene *s, ted4_message *m)
+{
+    if (s->n_missing == 0)
+        return 0;
+    if (s->n_shots == 0)
+        return s->n_entries == 1
+                   ? ted4_say(m, "the scene's only entry has no picture: %s", s->first_missing)
+                   : ted4_say(m, "none of %zu entries has a picture; the first: %s", s->n_entries,
+                              s->first_missing);
+    const int result =
+        s->n_missing == 1
+            ? ted4_raw_scene_warn(s, "1 of %zu entries has no picture: %s", s->n_entries,
+                                  s->first_missing)
+            : ted4_raw_scene_warn(s, "%zu of %zu entries have no picture; the first: %s",
+                                  s->n_missing, s->n_entries, s->first_missing);
+    return result != 0 ? ted4_say_no_memory(m) : 0;
 }
 
 static int take_points(ted4_dataset *d, ted4_raw_scene *s, const ted4_dataset_options *o, ted4_message *m)
@@ -258,10 +301,16 @@ int ted4_build_dataset(ted4_dataset *d, ted4_raw_scene *s, const ted4_dataset_op
 {
     int reduction;
 
+    if (say_missing(s, m) != 0)
+        return -1;
     if (s->n_shots == 0)
         return ted4_say(m, "the scene (layout %s) has no pictures", s->layout);
     if ((o->max_frames > 0 && keep_first_times(s, o->max_frames, m) != 0) ||
-        left_to_reduce(s, o->downscale, &reduction, m) != 0 || split(s, m) != 0)
+        left_to_reduce(s, o->downscale, &reduction, m) != 0)
+        return -1;
+    if (ted4_raw_scene_label(s) != 0)
+        return ted4_say_no_memory(m);
+    if ((o->n_hold_out > 0 && ted4_raw_scene_hold_out_named(s, o, m) != 0) || split(s, m) != 0)
         return -1;
     d->layout = ted4_text_copy(s->layout);
     d->pictures = calloc(s->n_shots, sizeof *d->pictures);
@@ -274,8 +323,13 @@ int ted4_build_dataset(ted4_dataset *d, ted4_raw_scene *s, const ted4_dataset_op
             return -1;
     d->rate = s->rate;
     choose_background(d, s, o);
-    if (number_frames(d, s->shots, m) != 0 || number_cameras(d, s->shots, m) != 0 || take_points(d, s, o, m) != 0)
+    if (number_frames(d, s, m) != 0 || number_cameras(d, s->shots, m) != 0 ||
+        take_points(d, s, o, m) != 0)
         return -1;
+    d->warnings = s->warnings;
+    d->n_warnings = s->n_warnings;
+    s->warnings = NULL;
+    s->n_warnings = 0;
     d->cache = ted4_image_cache_new(d->n_pictures, o->cache_bytes, ted4_source_decode, d->sources);
     return d->cache == NULL ? ted4_say_no_memory(m) : 0;
 }

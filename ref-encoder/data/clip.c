@@ -3,9 +3,11 @@
 #include "data/clip.h"
 
 #include <dirent.h>
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 #include "data/data_util.h"
+#include "data/picture_path.h"
 #include "data/video.h"
 
 void ted4_name_list_free(ted4_name_list *l)
@@ -38,12 +40,7 @@ static int has_end(const char *name, const char *end)
 
 static int is_picture(const char *name)
 {
-    static const char *const ends[] = { ".png", ".jpg", ".jpeg", ".PNG", ".JPG" };
-
-    for (size_t i = 0; i < sizeof ends / sizeof ends[0]; i++)
-        if (has_end(name, ends[i]))
-            return name[0] != '.';
-    return 0;
+    return name[0] != '.' && ted4_picture_is_named(name);
 }
 
 static int by_name(const void *a, const void *b)
@@ -116,18 +113,21 @@ int ted4_clip_names(ted4_name_list *l, const char *folder)
     return result;
 }
 
-static int list_pictures(ted4_name_list *l, const char *folder)
+int ted4_clip_list(ted4_name_list *pictures, const char *folder, int lengths)
 {
     DIR *d = opendir(folder);
     int result = 0;
 
+    memset(pictures, 0, sizeof *pictures);
     for (struct dirent *e = d == NULL ? NULL : readdir(d); e != NULL && result == 0; e = readdir(d))
         if (is_picture(e->d_name))
-            result = append(l, ted4_path_join(folder, e->d_name));
+            result = append(pictures, ted4_path_join(folder, e->d_name));
     if (d != NULL)
         closedir(d);
-    if (l->n > 0)
-        qsort(l->names, l->n, sizeof *l->names, by_length);
+    if (result != 0)
+        ted4_name_list_free(pictures);
+    else if (pictures->n > 0)
+        qsort(pictures->names, pictures->n, sizeof *pictures->names, lengths ? by_length : by_name);
     return result;
 }
 
@@ -149,25 +149,64 @@ static void keep(ted4_name_list *l, size_t most)
         free(l->names[--l->n]);
 }
 
+/* The video of that name beside the scene's list, whatever its kind; owned by the caller. */
+static char *find_video(const char *folder, const char *name)
+{
+    static const char *const ends[] = { "mp4", "mov", "mkv", "avi", "webm",
+                                        "m4v", "MP4", "MOV", "MKV", "AVI" };
+    char file[300];
+
+    for (size_t i = 0; i < sizeof ends / sizeof ends[0]; i++) {
+        snprintf(file, sizeof file, "%.250s.%s", name, ends[i]);
+        char *path = ted4_path_join(folder, file);
+        if (path != NULL && ted4_is_file(path))
+            return path;
+        free(path);
+    }
+    return NULL;
+}
+
+/* The folder of a clip's pictures, if need be unpacked; the caller's. As ted4_clip_pictures. */
+static int find_place(const char *folder, const char *name, const char *video, size_t most,
+                      char **place, const ted4_dataset_options *o, ted4_message *m)
+{
+    char *path = video == NULL ? NULL : ted4_path_join(folder, video);
+
+    if (path != NULL && ted4_is_folder(path)) {
+        *place = path;
+        return 1;
+    }
+    if (path != NULL && !ted4_is_file(path)) {
+        free(path);
+        path = NULL;
+    }
+    if (path == NULL) {
+        *place = inner_folder(folder, "images", name);
+        if (*place == NULL)
+            *place = inner_folder(folder, name, "images");
+        if (*place != NULL)
+            return 1;
+        path = find_video(folder, name);
+    }
+    if (path == NULL)
+        return 0;
+    *place = ted4_video_unpack(path, most, o, m);
+    free(path);
+    return *place == NULL ? -1 : 1;
+}
+
 int ted4_clip_pictures(ted4_name_list *pictures, const char *folder, const char *name, const char *video,
                        size_t most, const ted4_dataset_options *o, ted4_message *m)
 {
+    char *place = NULL;
+
     memset(pictures, 0, sizeof *pictures);
-    char *place = inner_folder(folder, "images", name);
-    if (place == NULL)
-        place = inner_folder(folder, name, "images");
-    if (place == NULL && !ted4_is_file(video))
-        return ted4_say(m, "%s: no such video, nor a folder images/%s or %s/images of its pictures", video, name, name);
-    if (place == NULL)
-        place = ted4_video_unpack(video, most, o, m);
-    if (place == NULL)
-        return -1;
-    int result = list_pictures(pictures, place) != 0 ? ted4_say_no_memory(m) : 0;
+    int result = find_place(folder, name, video, most, &place, o, m);
+    if (result == 1 && ted4_clip_list(pictures, place, 1) != 0)
+        result = ted4_say_no_memory(m);
     keep(pictures, most);
-    if (result == 0 && pictures->n == 0)
+    if (result == 1 && pictures->n == 0)
         result = ted4_say(m, "%s: no pictures here", place);
-    if (result != 0)
-        ted4_name_list_free(pictures);
     free(place);
     return result;
 }
@@ -183,10 +222,20 @@ int ted4_clip_add(ted4_raw_scene *s, const ted4_name_list *pictures, const char 
         memcpy(shot->R, model->R, sizeof shot->R);
         memcpy(shot->t, model->t, sizeof shot->t);
         shot->is_test = model->is_test;
-        shot->time = (double)i;
+        shot->time = model->time + (double)i;
         shot->camera = ted4_text_copy(name);
         if (shot->camera == NULL)
             return ted4_say_no_memory(m);
     }
     return 0;
+}
+
+int ted4_clip_lengths(ted4_raw_scene *s, size_t shortest, size_t longest, ted4_message *m)
+{
+    if (shortest == longest)
+        return 0;
+    const int result = ted4_raw_scene_warn(
+        s, "clips have from %zu to %zu frames: at the last times some cameras are missing "
+        "(--max-frames %zu leaves these times out)", shortest, longest, shortest);
+    return result == 0 ? 0 : ted4_say_no_memory(m);
 }

@@ -50,6 +50,24 @@ char *ted4_text_copy(const char *text)
     return copy;
 }
 
+int ted4_text_add(char ***list, size_t *n, const char *format, ...)
+{
+    char text[1024], **longer = realloc(*list, (*n + 1) * sizeof *longer);
+    va_list arguments;
+
+    if (longer == NULL)
+        return -1;
+    *list = longer;
+    va_start(arguments, format);
+    vsnprintf(text, sizeof text, format, arguments);
+    va_end(arguments);
+    longer[*n] = ted4_text_copy(text);
+    if (longer[*n] == NULL)
+        return -1;
+    ++*n;
+    return 0;
+}
+
 int ted4_is_file(const char *path)
 {
     struct stat s;

@@ -24,6 +24,8 @@ int ted4_say_no_memory(ted4_message *m);
 /* folder/name, or name itself when it is absolute. Owned by the caller; NULL: no memory. */
 char *ted4_path_join(const char *folder, const char *name);
 char *ted4_text_copy(const char *text);     /* NULL: no memory */
+/* Appends a text to (*list)[*n], both owned by the caller. 0, or -1: no memory. */
+int   ted4_text_add(char ***list, size_t *n, const char *format, ...) TED4_PRINTF(3, 4);
 int   ted4_is_file(const char *path);
 int   ted4_is_folder(const char *path);
 
@@ -43,5 +45,16 @@ int ted4_solve3(const double A[9], const double b[3], double x[3]);
 
 /* c = -R^T t: centre of a world-to-camera pose. */
 void ted4_pose_centre(const double R[9], const double t[3], double c[3]);
+
+/* SplitMix64: a counter through a mixing function, so any seed is as good as another. Uniform in
+ * [0, 1). */
+static inline double ted4_split_uniform(uint64_t *state)
+{
+    uint64_t z = *state += UINT64_C(0x9e3779b97f4a7c15);
+
+    z = (z ^ z >> 30) * UINT64_C(0xbf58476d1ce4e5b9);
+    z = (z ^ z >> 27) * UINT64_C(0x94d049bb133111eb);
+    return (double)((z ^ z >> 31) >> 11) * 0x1p-53;
+}
 
 #endif

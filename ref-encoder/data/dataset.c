@@ -22,11 +22,12 @@ static const struct {
     { ted4_is_hypernerf, ted4_load_hypernerf },
     { ted4_is_calibration, ted4_load_calibration },
     { ted4_is_neu3d, ted4_load_neu3d },
+    { ted4_is_llff, ted4_load_llff },
     { ted4_is_colmap, ted4_load_colmap },
 };
 
 #define LAYOUTS "transforms_train.json, transforms.json (D-NeRF, nerfstudio), dataset.json and camera/ " \
-                "(HyperNeRF), cams.json, poses_bounds.npy (Neu3D) or sparse/ (COLMAP)"
+                "(HyperNeRF), cams.json, poses_bounds.npy (Neu3D, LLFF) or sparse/ (COLMAP)"
 
 static int load_raw(ted4_raw_scene *s, const char *folder, ted4_message *m)
 {
@@ -65,6 +66,9 @@ void ted4_dataset_free(ted4_dataset *d)
     free(d->points);
     free(d->point_rgb);
     free(d->layout);
+    for (size_t i = 0; i < d->n_warnings; i++)
+        free(d->warnings[i]);
+    free(d->warnings);
     memset(d, 0, sizeof *d);
 }
 
@@ -127,6 +131,34 @@ static void verify_picture(void *arg, size_t i)
     pthread_mutex_unlock(&v->lock);
 }
 
+/* Fewer pixels that are transparent in part do not tell how their colours are meant. */
+enum { ENOUGH_PARTIAL = 1000, FEW = 100 };
+
+/* 0, or -1: no memory. */
+static int check_alpha(ted4_dataset *d)
+{
+    size_t partial = 0, above = 0;
+    int premultiplied = 0;
+
+    for (size_t i = 0; i < d->n_pictures; i++) {
+        partial += d->sources[i].n_partial;
+        above += d->sources[i].n_above;
+        premultiplied |= d->sources[i].premultiplied;
+    }
+    if (partial < ENOUGH_PARTIAL)
+        return 0;
+    if (!premultiplied && above == 0)
+        return ted4_text_add(&d->warnings, &d->n_warnings,
+                             "no colour of a pixel that is transparent in part exceeds its alpha: "
+                             "colours seem to be premultiplied (--alpha premultiplied)");
+    if (premultiplied && above > partial / FEW)
+        return ted4_text_add(&d->warnings, &d->n_warnings,
+                             "colours of %zu of %zu pixels that are transparent in part exceed "
+                             "their alpha: they seem not to be premultiplied (--alpha straight)",
+                             above, partial);
+    return 0;
+}
+
 int ted4_dataset_verify(ted4_dataset *d, const ted4_parallel *p, ted4_message *m)
 {
     verification v = { .d = d, .bad = d->n_pictures, .m = m };
@@ -139,7 +171,7 @@ int ted4_dataset_verify(ted4_dataset *d, const ted4_parallel *p, ted4_message *m
     d->content = 0;
     for (size_t i = 0; i < d->n_pictures; i++)
         d->content = XXH3_64bits_withSeed(&d->sources[i].digest, sizeof d->sources[i].digest, d->content);
-    return 0;
+    return check_alpha(d) == 0 ? 0 : ted4_say_no_memory(m);
 }
 
 static uint64_t add(uint64_t digest, const void *p, size_t size)
@@ -160,6 +192,8 @@ uint64_t ted4_dataset_digest(const ted4_dataset *d)
         x = add(x, lens, sizeof lens);
         x = add(x, c->R, sizeof c->R);
         x = add(x, c->t, sizeof c->t);
+        if (d->sources[i].premultiplied)
+            x = add(x, &d->sources[i].premultiplied, sizeof d->sources[i].premultiplied);
     }
     x = add(x, d->points, 3 * d->n_points * sizeof *d->points);
     x = add(x, d->point_rgb, 3 * d->n_points);
@@ -235,6 +269,8 @@ void ted4_dataset_print(const ted4_dataset *d, FILE *out)
     fprintf(out, "points      %zu%s\nbounds      ", d->n_points, d->random_points ? " (random)" : "");
     print_box(out, box);
     fprintf(out, "background  %d %d %d\n", d->background[0], d->background[1], d->background[2]);
+    if (d->n_frames == 1)
+        return;
     if (d->rate > 0)
         fprintf(out, "rate        %.6g frames/s\n", d->rate);
     else

@@ -37,6 +37,9 @@ typedef struct ted4_dataset {
     double        rate;         /* frames a second, 0: unknown */
     uint8_t       background[3];
     uint64_t      content;      /* digest of all picture files; 0 until ted4_dataset_verify */
+    char        **warnings;     /* [n_warnings] what was passed over or put right while loading, one
+                                 * sentence a kind; owned */
+    size_t        n_warnings;
     int           ahead;        /* threads for ted4_dataset_ahead; 0 after loading, the caller may change it: no pixel depends on it */
     struct ted4_source      *sources;   /* [n_pictures] how files become pixels; owned, opaque */
     struct ted4_image_cache *cache;     /* owned, opaque */
@@ -48,6 +51,12 @@ typedef struct {
     uint32_t    seed;           /* for random points */
     size_t      cache_bytes;    /* bound of decoded pixels kept in memory */
     uint32_t    max_frames;     /* only so many times, the first ones; 0: 300 of Neu3D, else all */
+    int         premultiplied;  /* colours of RGBA images are multiplied by alpha already; 0:
+                                 * straight, as PNG has it */
+    const char *const *hold_out;    /* [n_hold_out] cameras whose pictures are test, and no others,
+                                     * whatever the layout says: the camera's label, its folder, or
+                                     * the name of a picture of it; borrowed */
+    size_t      n_hold_out;     /* 0: the layout's split */
     /* Told about once a second while a video is unpacked: its file, and how many frames there are by then. NULL: nobody listens. */
     void      (*unpacking)(void *user, const char *video, size_t frames);
     void       *user;
@@ -75,13 +84,14 @@ void ted4_dataset_ahead(ted4_dataset *d, size_t i);
 enum { TED4_DATASET_AHEAD = 16 };
 
 /* Decodes every picture once, on the threads of p (NULL: here), and sets d->content. 0, or -1 with *m naming the first that cannot
- * be decoded. */
+ * be decoded. May add warnings. */
 int ted4_dataset_verify(ted4_dataset *d, const ted4_parallel *p, ted4_message *m);
 
 /* What a training sees of the scene in one number: cameras, times, split, points, background, d->content; not where its files lie. */
 uint64_t ted4_dataset_digest(const ted4_dataset *d);
 
-/* What was found, for a reader: layout, pictures, cameras, frames, sizes, focal lengths, camera centres, points, background, rate. */
+/* What was found, for a reader: layout, pictures, cameras, frames, sizes, focal lengths, camera
+ * centres, points, background, and the rate where there are several frames. */
 void ted4_dataset_print(const ted4_dataset *d, FILE *out);
 
 #endif

@@ -68,7 +68,8 @@ static int fits(const double *u, size_t n, double steps, double tolerance)
     return 1;
 }
 
-/* Number of steps of the coarsest grid that holds all times; 0: more than the format has. */
+/* Number of steps of the coarsest grid that holds all times; where that would be more than the
+ * format has, the most that it has: times nearer than half a step then become one. */
 static uint32_t find_steps(const double *u, size_t n)
 {
     double gap = 1;
@@ -87,7 +88,8 @@ static uint32_t find_steps(const double *u, size_t n)
     /* Times of no common measure: the smallest gap is the step, everything moves to the nearest
      * position. */
     const double steps = ceil(1 / gap - ON_GRID);
-    return steps < TED4_MAX_FRAMES && fits(u, n, steps, 0.5) ? (uint32_t)steps : 0;
+    return steps < TED4_MAX_FRAMES && fits(u, n, steps, 0.5) ? (uint32_t)steps
+                                                             : TED4_MAX_FRAMES - 1;
 }
 
 /* Index of the distinct time nearest to v. */
@@ -123,8 +125,5 @@ int ted4_frame_times(const double *time, size_t n, uint32_t *frame, uint32_t *n_
     }
     free(u);
     *n_frames = steps + 1;
-    if (k > 1 && steps == 0)
-        return ted4_say(m, "%zu distinct times from %g to %g need more than %d uniformly spaced frames",
-                        k, origin, origin + range, TED4_MAX_FRAMES);
     return 0;
 }

@@ -126,11 +126,21 @@ int ted4_image_probe(const char *path, ted4_image_header *header, ted4_message *
     return result;
 }
 
+/* By the header, where bit depth and interlace method lie at these places. */
+static int is_wide_interlaced(const uint8_t *bytes, size_t size)
+{
+    enum { DEPTH = 24, INTERLACE = 28 };
+
+    return size > INTERLACE && bytes[DEPTH] == 16 && bytes[INTERLACE] != 0;
+}
+
 /* 16-bit files without a stated gamma count as sRGB like all others, not as linear light. */
 static int decode_png(const char *path, const uint8_t *bytes, size_t size, ted4_image *image, ted4_message *m)
 {
     png_image p;
 
+    if (is_wide_interlaced(bytes, size))
+        return ted4_png_decode_interlaced(path, bytes, size, image, m);
     memset(&p, 0, sizeof p);
     p.version = PNG_IMAGE_VERSION;
     if (!png_image_begin_read_from_memory(&p, bytes, size))

@@ -41,4 +41,8 @@ int ted4_exif_orientation(const uint8_t *segment, size_t size);
 /* image_jpeg.c: the JPEG half of ted4_image_read. */
 int ted4_jpeg_decode(const char *path, const uint8_t *bytes, size_t size, ted4_image *image, ted4_message *m);
 
+/* image_png.c: the same of an interlaced PNG of 16 bits. */
+int ted4_png_decode_interlaced(const char *path, const uint8_t *bytes, size_t size,
+                               ted4_image *image, ted4_message *m);
+
 #endif

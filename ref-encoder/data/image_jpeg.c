@@ -1,5 +1,5 @@
 /* image_jpeg.c - JPEG to RGB bytes through libjpeg-turbo.
- * The only file with setjmp: libjpeg's error_exit must not return, and this library offers no
+ * With setjmp: libjpeg's error_exit must not return, and this library offers no
  * other way out. Everything that lives across the jump belongs to the caller of the function
  * that sets it.
  * SPDX-License-Identifier: BSD-2-Clause */

@@ -1,8 +1,9 @@
 /* load_calibration.c - layout "calibration": cams.json with fixed cameras after OpenCV's model, and
- * one clip each (clip.h). A camera: name, video (default NAME.mp4), w, h, K (3x3), dist (k1 k2 p1 p2,
- * k3 if it is there), w2c (world to camera 4x4; right, down, forward). At the top: frames (how many
- * each clip must have at least, and how many are read), fps. Held out: times by TED4_HOLD_OUT_*, of
- * all cameras.
+ * one clip each (clip.h). A camera: name, video (a file or a folder of pictures; without it see
+ * clip.h), w, h, K (3x3), dist (k1 k2 p1 p2, k3 if it is there), w2c (world to camera 4x4; right,
+ * down, forward), start (seconds) or frame: when its clip begins. At the top: frames (how many each
+ * clip must have at least, and how many are read), fps. Cameras without a clip are left out. Held
+ * out: times by TED4_HOLD_OUT_*, of all cameras.
  * SPDX-License-Identifier: BSD-2-Clause */
 #include "data/raw_scene.h"
 
@@ -18,12 +19,19 @@
 /* OpenCV has the centre of the first pixel at 0, this program at 0.5. */
 static const double CENTRE_SHIFT = 0.5;
 
+/* Starts are rounded to frames; up to BETWEEN of one this is not worth a word. */
+static const double BETWEEN = 0.1, MOST_OFFSET = 1e6;
+
 typedef struct {
     ted4_raw_scene *scene;
     const char     *folder;
     char           *path;           /* of cams.json; owned */
     json_t         *root;           /* owned */
-    size_t          stated, n_frames;   /* 0: not stated, not known yet */
+    size_t          stated;         /* frames of each clip; 0: not stated */
+    size_t          shortest, longest;      /* of clips, in frames; 0: none yet */
+    int             started;        /* is a start given? */
+    size_t          n_between;      /* cameras that start between two frames */
+    double          farthest;       /* of these, part of a frame */
     ted4_message   *m;
 } calibration;
 
@@ -80,29 +88,68 @@ static int read_pose(const calibration *c, const json_t *o, const char *where, t
     return wrong == NULL ? 0 : ted4_say(c->m, "%s.w2c: its 3x3 part %s", where, wrong);
 }
 
-/* All clips have as many frames as stated, else as the first one has. */
-static int check_count(calibration *c, const char *where, size_t n)
+/* The time of the clip's first picture on the clock that all cameras share, in frames: "start" in
+ * seconds, or "frame". */
+static int read_start(calibration *c, const json_t *o, const char *where, double *time)
 {
-    if (c->n_frames == 0)
-        c->n_frames = c->stated > 0 ? c->stated : n;
-    return n == c->n_frames ? 0 : ted4_say(c->m, "%s: %zu frames, expected %zu %s (--max-frames reads the first ones)",
-                                           where, n, c->n_frames,
-                                           c->stated > 0 ? "by the file's frames" : "like the first camera");
+    double start = 0, frame = 0;
+    const int seconds = ted4_json_number(o, where, "start", &start, c->m);
+    const int frames = seconds < 0 ? -1 : ted4_json_number(o, where, "frame", &frame, c->m);
+
+    if (seconds < 0 || frames < 0)
+        return -1;
+    if (seconds > 0 && frames > 0)
+        return ted4_say(c->m, "%s: both start and frame are given, expected one", where);
+    if (seconds > 0 && c->scene->rate <= 0)
+        return ted4_say(c->m,
+                        "%s.start: %g seconds, but the file has no fps at its top (frame counts "
+                        "frames)",
+                        where, start);
+    if (frames > 0 && frame != floor(frame))
+        return ted4_say(c->m, "%s.frame: %g, expected a whole number", where, frame);
+    const double at = seconds > 0 ? start * c->scene->rate : frame;
+    *time = floor(at + 0.5);
+    if (!(fabs(at) <= MOST_OFFSET))
+        return ted4_say(c->m, "%s: its clip begins %g frames from the others, expected at most %g",
+                        where, at, MOST_OFFSET);
+    c->n_between += fabs(at - *time) > BETWEEN;
+    c->farthest = fmax(c->farthest, fabs(at - *time));
+    c->started |= seconds > 0 || frames > 0;
+    return 0;
 }
 
-static int add_clip(calibration *c, const char *where, const char *name, const char *file, const ted4_shot *model)
+/* A clip that is stated to be longer than it is may have been cut. */
+static int check_count(calibration *c, const char *where, size_t n)
+{
+    c->shortest = c->shortest == 0 || n < c->shortest ? n : c->shortest;
+    c->longest = n > c->longest ? n : c->longest;
+    return n >= c->stated ? 0
+                          : ted4_say(c->m,
+                                     "%s: %zu frames, expected %zu by the file's frames "
+                                     "(--max-frames reads the first ones)",
+                                     where, n, c->stated);
+}
+
+static int add_clip(calibration *c, const char *where, const char *name, const char *video,
+                    const ted4_shot *model)
 {
     ted4_name_list pictures;
-    char *video = ted4_path_join(c->folder, file);
+    char text[400];
 
-    if (video == NULL)
-        return ted4_say_no_memory(c->m);
-    int result = ted4_clip_pictures(&pictures, c->folder, name, video,
-                                    c->stated > 0 ? c->stated : c->scene->wanted->max_frames, c->scene->wanted, c->m);
-    free(video);
-    if (result != 0)
-        return -1;
-    result = check_count(c, where, pictures.n);
+    c->scene->n_entries++;
+    const int found =
+        ted4_clip_pictures(&pictures, c->folder, name, video,
+                           c->stated > 0 ? c->stated : c->scene->wanted->max_frames,
+                           c->scene->wanted, c->m);
+    if (found == 0) {
+        snprintf(text, sizeof text,
+                 "%.150s: no such video, nor a folder images/%.60s or %.60s/images of its pictures",
+                 video != NULL ? video : name, name, name);
+        ted4_raw_scene_missing(c->scene, where, text);
+    }
+    if (found <= 0)
+        return found;
+    int result = check_count(c, where, pictures.n);
     if (result == 0)
         result = ted4_clip_add(c->scene, &pictures, name, model, c->m);
     ted4_name_list_free(&pictures);
@@ -113,7 +160,7 @@ static int read_camera(calibration *c, size_t i)
 {
     const json_t *o = json_array_get(json_object_get(c->root, "cameras"), i);
     const char *name = NULL, *video = NULL;
-    char where[700], file[300];
+    char where[700];
     ted4_shot model;
 
     memset(&model, 0, sizeof model);
@@ -121,11 +168,11 @@ static int read_camera(calibration *c, size_t i)
     const int found = ted4_json_text(o, where, "name", &name, c->m);
     if (found <= 0)
         return missing(c, where, "name", found);
-    snprintf(file, sizeof file, "%.250s.mp4", name);
-    const int named = ted4_json_text(o, where, "video", &video, c->m);
-    if (named < 0 || read_lens(c, o, where, &model.lens) != 0 || read_pose(c, o, where, &model) != 0)
+    if (ted4_json_text(o, where, "video", &video, c->m) < 0 ||
+        read_lens(c, o, where, &model.lens) != 0 || read_pose(c, o, where, &model) != 0 ||
+        read_start(c, o, where, &model.time) != 0)
         return -1;
-    return add_clip(c, where, name, named > 0 ? video : file, &model);
+    return add_clip(c, where, name, video, &model);
 }
 
 static int read_frames(calibration *c)
@@ -144,6 +191,30 @@ static int read_frames(calibration *c)
     return 0;
 }
 
+/* Of all cameras, counted from the first time that any has. */
+static void hold_out_times(ted4_raw_scene *s)
+{
+    double first = s->n_shots > 0 ? s->shots[0].time : 0;
+
+    for (size_t i = 0; i < s->n_shots; i++)
+        first = fmin(first, s->shots[i].time);
+    for (size_t i = 0; i < s->n_shots; i++)
+        s->shots[i].is_test =
+            (size_t)(s->shots[i].time - first) % TED4_HOLD_OUT_EVERY == TED4_HOLD_OUT_PHASE;
+}
+
+static int say_times(calibration *c)
+{
+    if (c->n_between > 0 &&
+        ted4_raw_scene_warn(c->scene,
+                            "%zu of %zu cameras start between two frames, by up to %.2g of a "
+                            "frame: each goes with the nearest "
+                            "frame",
+                            c->n_between, c->scene->n_entries, c->farthest) != 0)
+        return ted4_say_no_memory(c->m);
+    return c->started ? 0 : ted4_clip_lengths(c->scene, c->shortest, c->longest, c->m);
+}
+
 static int read_all(calibration *c)
 {
     ted4_raw_scene *s = c->scene;
@@ -159,8 +230,9 @@ static int read_all(calibration *c)
     for (size_t i = 0; i < n; i++)
         if (read_camera(c, i) != 0)
             return -1;
-    for (size_t i = 0; i < s->n_shots; i++)
-        s->shots[i].is_test = (size_t)s->shots[i].time % TED4_HOLD_OUT_EVERY == TED4_HOLD_OUT_PHASE;
+    hold_out_times(s);
+    if (say_times(c) != 0)
+        return -1;
     return ted4_ply_find(&s->cloud, c->folder, c->m);
 }
 

@@ -93,9 +93,10 @@ static int add_image(ted4_raw_scene *s, const ted4_colmap *c, const ted4_colmap_
     snprintf(where, sizeof where, "COLMAP image \"%.250s\"", image->name);
     if (camera == NULL)
         return ted4_say(m, "%s: its camera %u is not in the cameras file", where, (unsigned)image->camera);
-    ted4_shot *shot = ted4_raw_scene_add(s, ted4_path_join(images, image->name), where, m);
-    if (shot == NULL)
-        return -1;
+    ted4_shot *shot;
+    const int there = ted4_raw_scene_list(s, ted4_path_join(images, image->name), where, &shot, m);
+    if (there <= 0)
+        return there;
     shot->lens = camera->lens;
     memcpy(shot->R, image->R, sizeof shot->R);
     memcpy(shot->t, image->t, sizeof shot->t);

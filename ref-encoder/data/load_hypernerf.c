@@ -12,6 +12,7 @@
 #include "data/data_util.h"
 #include "data/json_field.h"
 #include "data/npy_file.h"
+#include "data/picture_path.h"
 
 /* Where dataset.json lists no val_ids: of its ids every 4th is for training, the second after it
  * is held out, the others are left out. */
@@ -153,9 +154,15 @@ static int add_picture(hypernerf *h, const char *id, int is_test)
 
     snprintf(name, sizeof name, "%.250s.png", id);
     snprintf(where, sizeof where, "%.600s: \"%.80s\"", h->dataset_path, id);
-    ted4_shot *shot = ted4_raw_scene_add(h->scene, ted4_path_join(h->pictures, name), where, h->m);
-    if (shot == NULL)
-        return -1;
+    ted4_shot *shot;
+    char *path = NULL;
+    const int found = ted4_picture_find(h->pictures, name, NULL, &path);
+    if (found < 0)
+        return ted4_say_no_memory(h->m);
+    const int there = ted4_raw_scene_list(
+        h->scene, found == 0 ? ted4_path_join(h->pictures, name) : path, where, &shot, h->m);
+    if (there <= 0)
+        return there;
     shot->is_test = is_test;
     return read_camera(h, id, shot) != 0 || read_metadata(h, id, shot) != 0 ? -1 : 0;
 }
@@ -191,7 +198,7 @@ static int add_by_position(hypernerf *h, const json_t *ids)
 {
     for (size_t i = 0; i < json_array_size(ids); i++) {
         const size_t place = i % SPLIT_EVERY;
-        if ((place == 0 || place == SPLIT_TEST) &&
+        if ((place == 0 || place == SPLIT_TEST || h->scene->wanted->n_hold_out > 0) &&
             add_picture(h, json_string_value(json_array_get(ids, i)), place == SPLIT_TEST) != 0)
             return -1;
     }

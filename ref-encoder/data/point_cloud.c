@@ -44,17 +44,6 @@ int ted4_ply_find(ted4_point_cloud *c, const char *folder, ted4_message *m)
     return 0;
 }
 
-/* SplitMix64: a counter through a mixing function, so any seed is as good as another. Uniform in
- * [0, 1). */
-static double uniform(uint64_t *state)
-{
-    uint64_t z = *state += UINT64_C(0x9e3779b97f4a7c15);
-
-    z = (z ^ z >> 30) * UINT64_C(0xbf58476d1ce4e5b9);
-    z = (z ^ z >> 27) * UINT64_C(0x94d049bb133111eb);
-    return (double)((z ^ z >> 31) >> 11) * 0x1p-53;
-}
-
 int ted4_point_cloud_random(ted4_point_cloud *c, const double centre[3], double half, uint32_t seed)
 {
     uint64_t state = seed;
@@ -62,7 +51,7 @@ int ted4_point_cloud_random(ted4_point_cloud *c, const double centre[3], double 
     if (ted4_point_cloud_alloc(c, TED4_RANDOM_POINTS) != 0)
         return -1;
     for (size_t i = 0; i < 3 * c->n; i++)
-        c->xyz[i] = (float)(centre[i % 3] + half * (2 * uniform(&state) - 1));
+        c->xyz[i] = (float)(centre[i % 3] + half * (2 * ted4_split_uniform(&state) - 1));
     memset(c->rgb, TED4_POINT_GREY, 3 * c->n);
     return 0;
 }

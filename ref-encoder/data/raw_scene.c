@@ -2,9 +2,11 @@
  * SPDX-License-Identifier: BSD-2-Clause */
 #include "data/raw_scene.h"
 
+#include <errno.h>
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-#include "data/data_util.h"
+#include <sys/stat.h>
 #include "data/image_file.h"
 
 void ted4_raw_scene_free(ted4_raw_scene *s)
@@ -14,6 +16,9 @@ void ted4_raw_scene_free(ted4_raw_scene *s)
         free(s->shots[i].camera);
     }
     free(s->shots);
+    for (size_t i = 0; i < s->n_warnings; i++)
+        free(s->warnings[i]);
+    free(s->warnings);
     ted4_point_cloud_free(&s->cloud);
     memset(s, 0, sizeof *s);
 }
@@ -54,6 +59,34 @@ ted4_shot *ted4_raw_scene_add(ted4_raw_scene *s, char *path, const char *where, 
     shot->has_alpha = header.has_alpha;
     shot->orientation = header.orientation;
     return shot;
+}
+
+void ted4_raw_scene_missing(ted4_raw_scene *s, const char *where, const char *name)
+{
+    if (s->n_missing++ == 0)
+        snprintf(s->first_missing, sizeof s->first_missing, "%.500s: %.190s", where, name);
+}
+
+/* Is nothing of this name there? What is there and cannot be read is an error, not an absence. */
+static int is_absent(const char *path)
+{
+    struct stat st;
+
+    return stat(path, &st) != 0 && (errno == ENOENT || errno == ENOTDIR || errno == ENAMETOOLONG);
+}
+
+int ted4_raw_scene_list(ted4_raw_scene *s, char *path, const char *where, ted4_shot **shot,
+                        ted4_message *m)
+{
+    *shot = NULL;
+    s->n_entries++;
+    if (path != NULL && is_absent(path)) {
+        ted4_raw_scene_missing(s, where, path);
+        free(path);
+        return 0;
+    }
+    *shot = ted4_raw_scene_add(s, path, where, m);
+    return *shot == NULL ? -1 : 1;
 }
 
 void ted4_raw_scene_hold_out(ted4_raw_scene *s)

@@ -7,17 +7,25 @@
 #include "data/data_util.h"
 #include "data/image_file.h"
 
-/* RGBA to RGB in place, over a grey level, rounded. */
-static void composite(ted4_image *image, int background)
+/* RGBA to RGB in place, over a grey level, rounded. Premultiplied colours above their alpha, which
+ * none should be, end at white. */
+static void composite(ted4_image *image, ted4_source *s)
 {
+    const int background = s->background, premultiplied = s->premultiplied;
     const size_t n = (size_t)image->width * (size_t)image->height;
     uint8_t *out = image->bytes;
 
+    s->n_partial = s->n_above = 0;
     for (size_t i = 0; i < n; i++) {
         const uint8_t *p = image->bytes + 4 * i;
-        const int alpha = p[3];
-        for (int c = 0; c < 3; c++)
-            *out++ = (uint8_t)((p[c] * alpha + background * (255 - alpha) + 127) / 255);
+        const int alpha = p[3], partial = alpha > 0 && alpha < 255;
+        s->n_partial += (size_t)partial;
+        s->n_above += (size_t)(partial && (p[0] > alpha || p[1] > alpha || p[2] > alpha));
+        for (int c = 0; c < 3; c++) {
+            const int sum =
+                (p[c] * (premultiplied ? 255 : alpha) + background * (255 - alpha) + 127) / 255;
+            *out++ = (uint8_t)(sum > 255 ? 255 : sum);
+        }
     }
     image->channels = 3;
 }
@@ -60,7 +68,7 @@ uint8_t *ted4_source_decode(void *sources, size_t i, size_t *size, ted4_message 
         return NULL;
     }
     if (image.channels == 4)
-        composite(&image, s->background);
+        composite(&image, s);
     if (!ted4_lens_is_pinhole(&s->lens) && undistort(&image, &s->lens, m) != 0) {
         free(image.bytes);
         return NULL;

@@ -12,6 +12,9 @@ typedef struct ted4_source {
     ted4_lens   lens;           /* of the file's size */
     int         downscale;
     uint8_t     background;     /* grey level under transparent pixels */
+    uint8_t     premultiplied;  /* as the option */
+    size_t      n_partial;      /* pixels that are transparent in part, of the last decoding */
+    size_t      n_above;        /* of these, with a colour above alpha, which premultiplied have not */
     int         is_known;       /* decoded before: a file with another digest is refused */
     uint64_t    digest;
     double      level;          /* mean of all its bytes; 0 until ted4_dataset_verify */
@@ -23,7 +26,9 @@ uint8_t *ted4_source_decode(void *sources, size_t i, size_t *size, ted4_message 
 /* Cube of the random points of a Blender scene: the synthetic objects are made to fit it. */
 #define TED4_BLENDER_HALF_CUBE 1.3
 
-/* Cube that the cameras look at: centre is the point nearest to all optical axes in the
+#define TED4_VIEW_BOX_HALF_SIDE 0.6     /* of the median distance of the cameras */
+
+/* Cube that the cameras of training pictures look at: centre is the point nearest to all optical axes in the
  * least-squares sense, half the side is 0.6 of the median distance of the cameras from it. Where
  * the axes have no common point before the cameras (one camera, parallel or diverging axes)
  * centre lies ahead of the mean camera at the distance that the cameras are spread, at least 1.

@@ -137,8 +137,9 @@ static void become_ffmpeg(const char *input, const char *limit, const char *fold
     const int none = chdir(folder) == 0 ? open("/dev/null", O_RDWR) : -1;
 
     if (none >= 0 && dup2(none, 0) >= 0 && dup2(none, 1) >= 0 && dup2(messages, 2) >= 0)
-        execlp("ffmpeg", "ffmpeg", "-nostdin", "-hide_banner", "-v", "repeat+error", "-i", input, "-map", "0:v:0",
-               "-vf", FILTERS, "-r", RATE, "-frames:v", limit, "-flags", "+bitexact", "-fflags", "+bitexact",
+        execlp("ffmpeg", "ffmpeg", "-nostdin", "-hide_banner", "-v", "repeat+error",
+               "-protocol_whitelist", "file", "-i", input, "-map", "0:v:0", "-vf", FILTERS, "-r",
+               RATE, "-frames:v", limit, "-flags", "+bitexact", "-fflags", "+bitexact",
                "-compression_level", "1", "-f", "image2", "%06d.png", (char *)NULL);
     _exit(NO_EXEC);
 }
@@ -260,6 +261,25 @@ static int unpack(const char *video, size_t most, const char *final, const ted4_
     return result;
 }
 
+/* A file of text is no video, but ffmpeg would follow it where it lists other files. 0, or -1 with
+ * *m filled. */
+static int check_kind(const char *video, ted4_message *m)
+{
+    uint8_t head[512];
+    FILE *f = fopen(video, "rb");
+    size_t i = 0;
+
+    if (f == NULL)
+        return ted4_say(m, "%s: %s", video, strerror(errno));
+    const size_t n = fread(head, 1, sizeof head, f);
+    fclose(f);
+    while (i < n && (head[i] >= ' ' || head[i] == '\t' || head[i] == '\n' || head[i] == '\r'))
+        i++;
+    return i < n ? 0
+                 : ted4_say(m, "%s: %s, expected a video", video,
+                            n == 0 ? "empty" : "text (a playlist?)");
+}
+
 /* Independent of the folder that the program, or ffmpeg, works in. Owned by the caller. */
 static char *absolute(const char *path)
 {
@@ -281,7 +301,7 @@ char *ted4_video_unpack(const char *video, size_t most, const ted4_dataset_optio
         ted4_say_no_memory(m);
     if (final != NULL && !is_complete(final)) {
         remove_folder(final);
-        if (unpack(path, limit, final, o, m) != 0) {
+        if (check_kind(path, m) != 0 || unpack(path, limit, final, o, m) != 0) {
             free(final);
             final = NULL;
         }

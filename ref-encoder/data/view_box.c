@@ -6,18 +6,27 @@
 #include <stdlib.h>
 #include "data/data_util.h"
 
-#define HALF_SIDE    0.6        /* of the median camera distance */
 #define PARALLEL     1e-4       /* mean squared sine between axes below which their crossing means nothing */
 
 typedef struct { double centre[3], forward[3], spread; } mean_camera;
 
-static mean_camera average(const ted4_dataset *d)
+/* Pictures for training, which lie before those held out: where these look is not asked. */
+static size_t n_train(const ted4_dataset *d)
+{
+    size_t n = 0;
+
+    while (n < d->n_pictures && !d->pictures[n].is_test)
+        n++;
+    return n;
+}
+
+static mean_camera average(const ted4_dataset *d, size_t n_pictures)
 {
     mean_camera a = { { 0, 0, 0 }, { 0, 0, 0 }, 0 };
-    const double n = (double)d->n_pictures;
+    const double n = (double)n_pictures;
     double c[3], length = 0;
 
-    for (size_t i = 0; i < d->n_pictures; i++) {
+    for (size_t i = 0; i < n_pictures; i++) {
         const ted4_camera *k = &d->pictures[i].camera;
         ted4_pose_centre(k->R, k->t, c);
         for (int j = 0; j < 3; j++) {
@@ -25,7 +34,7 @@ static mean_camera average(const ted4_dataset *d)
             a.forward[j] += k->R[6 + j] / n;
         }
     }
-    for (size_t i = 0; i < d->n_pictures; i++) {
+    for (size_t i = 0; i < n_pictures; i++) {
         const ted4_camera *k = &d->pictures[i].camera;
         ted4_pose_centre(k->R, k->t, c);
         for (int j = 0; j < 3; j++)
@@ -42,17 +51,17 @@ static mean_camera average(const ted4_dataset *d)
 
 /* Least squares: sum of (I - f f^T) x = sum of (I - f f^T) c over axes c + s f. -1: the axes do
  * not determine x. */
-static int crossing(const ted4_dataset *d, double x[3])
+static int crossing(const ted4_dataset *d, size_t n, double x[3])
 {
     double A[9] = { 0 }, b[3] = { 0, 0, 0 }, c[3];
 
-    for (size_t i = 0; i < d->n_pictures; i++) {
+    for (size_t i = 0; i < n; i++) {
         const ted4_camera *k = &d->pictures[i].camera;
         const double *f = k->R + 6;
         ted4_pose_centre(k->R, k->t, c);
         for (int r = 0; r < 3; r++)
             for (int s = 0; s < 3; s++) {
-                const double v = ((r == s) - f[r] * f[s]) / (double)d->n_pictures;
+                const double v = ((r == s) - f[r] * f[s]) / (double)n;
                 A[3 * r + s] += v;
                 b[r] += v * c[s];
             }
@@ -80,34 +89,35 @@ static int by_value(const void *a, const void *b)
     return (x > y) - (x < y);
 }
 
-static int is_ahead(const ted4_dataset *d, const double x[3])
+static int is_ahead(const ted4_dataset *d, size_t n, const double x[3])
 {
     size_t ahead = 0;
 
-    for (size_t i = 0; i < d->n_pictures; i++) {
+    for (size_t i = 0; i < n; i++) {
         const ted4_camera *k = &d->pictures[i].camera;
         ahead += k->R[6] * x[0] + k->R[7] * x[1] + k->R[8] * x[2] + k->t[2] > 0;
     }
-    return 2 * ahead > d->n_pictures;
+    return 2 * ahead > n;
 }
 
 int ted4_view_box(const ted4_dataset *d, double centre[3], double *half)
 {
-    const mean_camera mean = average(d);
-    double *distances = malloc(d->n_pictures * sizeof *distances), c[3];
+    const size_t      n = n_train(d);
+    const mean_camera mean = average(d, n);
+    double *distances = malloc(n * sizeof *distances), c[3];
 
     if (distances == NULL)
         return -1;
-    if (crossing(d, centre) != 0 || !is_ahead(d, centre))
+    if (crossing(d, n, centre) != 0 || !is_ahead(d, n, centre))
         for (int j = 0; j < 3; j++)
             centre[j] = mean.centre[j] + fmax(mean.spread, 1) * mean.forward[j];
-    for (size_t i = 0; i < d->n_pictures; i++) {
+    for (size_t i = 0; i < n; i++) {
         const ted4_camera *k = &d->pictures[i].camera;
         ted4_pose_centre(k->R, k->t, c);
         distances[i] = distance(c, centre);
     }
-    qsort(distances, d->n_pictures, sizeof *distances, by_value);
-    *half = HALF_SIDE * distances[d->n_pictures / 2];
+    qsort(distances, n, sizeof *distances, by_value);
+    *half = TED4_VIEW_BOX_HALF_SIDE * distances[n / 2];
     free(distances);
     return 0;
 }

@@ -12,7 +12,8 @@
 #include "tool/threads.h"
 
 enum {
-    OPT_OUTPUT, OPT_PRESET, OPT_LAMBDA, OPT_ITERATIONS, OPT_CAPACITY, OPT_WHY, OPT_SET, OPT_DOWNSCALE, OPT_MAX_FRAMES, OPT_BLACK,
+    OPT_OUTPUT, OPT_PRESET, OPT_LAMBDA, OPT_ITERATIONS, OPT_CAPACITY, OPT_WHY, OPT_SET, OPT_DOWNSCALE, OPT_MAX_FRAMES, OPT_BOUNDS, OPT_BLACK,
+    OPT_ALPHA, OPT_HOLD_OUT,
     OPT_SEED, OPT_THREADS, OPT_CACHE, OPT_TARGET, OPT_CHECKPOINT, OPT_EVERY, OPT_RESUME, OPT_STAGE1, OPT_LOG, OPT_CHECK, OPT_JSON, OPT_CONTRACT, OPT_FORCE,
     OPT_QUIET, OPT_VERBOSE, OPT_HELP, OPT_VERSION, N_OPTIONS
 };
@@ -31,7 +32,12 @@ static const ted4_argument OPTIONS[N_OPTIONS] = {
     [OPT_SET]        = { 0, "set", "NAME=VALUE", "any training option of the table below" },
     [OPT_DOWNSCALE]  = { 0, "downscale", "N", "integer area averaging of the pictures" },
     [OPT_MAX_FRAMES] = { 0, "max-frames", "N", "only so many times, the first ones (default: all, 300 of Neu3D)" },
+    [OPT_BOUNDS]     = { 0, "bounds", "X,Y,Z,X,Y,Z", "two corners of a box of the scene; initial points lie in it" },
     [OPT_BLACK]      = { 0, "black", NULL, "pictures with alpha lie on black, not white" },
+    [OPT_ALPHA]      = { 0, "alpha", "HOW",
+                         "colours of pictures with alpha: straight (default) or premultiplied" },
+    [OPT_HOLD_OUT]   = { 0, "hold-out", "NAME",
+                         "train without this camera, in place of the layout's split; repeatable" },
     [OPT_SEED]       = { 0, "seed", "S", "same scene, options and seed: same bytes" },
     [OPT_THREADS]    = { 'j', "threads", "N", "threads; 0: all cores. Default 0" },
     [OPT_CACHE]      = { 0, "cache", "MIB", "memory for decoded pictures; more of them are read again. Default 2048" },
@@ -54,7 +60,7 @@ static const ted4_command COMMAND = {
     "ted4enc",
     "SCENE -o FILE.ted4 [options]",
     "Trains a scene from posed pictures and writes it as a TED4 file. SCENE is a folder: COLMAP,\n"
-    "D-NeRF/Blender, nerfstudio, HyperNeRF, Neu3D, or cams.json with one video a camera.\n"
+    "D-NeRF/Blender, nerfstudio, HyperNeRF, Neu3D, LLFF, or cams.json with one video a camera.\n"
     "Videos need the program ffmpeg; their frames are kept in $XDG_CACHE_HOME/ted4, or in\n"
     "ted4-UID in $TMPDIR or /tmp.",
     OPTIONS, N_OPTIONS,
@@ -92,6 +98,25 @@ static int take_number(int option, const char *value, int low, int high, int *to
     return TED4_REQUEST_GO;
 }
 
+/* Two corners, in any order. */
+static int take_bounds(ted4_request *r, const char *value)
+{
+    float corner[6];
+
+    if (ted4_arguments_floats(value, 6, corner) != 0)
+        return bad_value(OPT_BOUNDS, value);
+    for (int k = 0; k < 3; k++) {
+        const float a = corner[k], b = corner[3 + k];
+
+        if (a == b)
+            return bad_value(OPT_BOUNDS, value);
+        r->bounds.low[k] = a < b ? a : b;
+        r->bounds.high[k] = a < b ? b : a;
+    }
+    r->bounds.bounded = 1;
+    return TED4_REQUEST_GO;
+}
+
 static int take(ted4_request *r, pending *p, int option, const char *value)
 {
     switch (option) {
@@ -104,7 +129,17 @@ static int take(ted4_request *r, pending *p, int option, const char *value)
     case OPT_CHECKPOINT: r->checkpoint = value; break;
     case OPT_STAGE1:     r->stage1 = value; break;
     case OPT_LOG:        r->log = value; break;
+    case OPT_BOUNDS:     return take_bounds(r, value);
     case OPT_BLACK:      r->black = 1; break;
+    case OPT_ALPHA:
+        r->premultiplied = strcmp(value, "premultiplied") == 0;
+        return r->premultiplied || strcmp(value, "straight") == 0 ? TED4_REQUEST_GO
+                                                                  : bad_value(option, value);
+    case OPT_HOLD_OUT:
+        if (r->n_hold_out == TED4_REQUEST_HOLD_OUT)
+            return complain("too many --hold-out");
+        r->hold_out[r->n_hold_out++] = value;
+        break;
     case OPT_RESUME:     r->resume = 1; break;
     case OPT_CHECK:      r->check = 1; break;
     case OPT_CONTRACT:   r->json = r->quiet = 1; break;

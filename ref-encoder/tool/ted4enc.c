@@ -8,6 +8,7 @@
 #include <unistd.h>
 
 #include "data/dataset.h"
+#include "data/scatter.h"
 #include "file_out.h"
 #include "tool/threads.h"
 #include "request.h"
@@ -144,6 +145,14 @@ static int decoders(const ted4_parallel *p)
     return n == 1 ? 0 : n < FEWEST_DECODERS ? FEWEST_DECODERS : n;
 }
 
+/* Says what loaders warned of, from that warning on; gives how many there are. */
+static size_t warn(ted4_teller *teller, const ted4_dataset *d, size_t from)
+{
+    for (size_t i = from; i < d->n_warnings; i++)
+        ted4_teller_error(teller, "warning: %s", d->warnings[i]);
+    return d->n_warnings;
+}
+
 /* A video is being unpacked. */
 static void unpacking(void *teller, const char *video, size_t frames)
 {
@@ -177,11 +186,39 @@ static void say_found(ted4_teller *teller, const ted4_dataset *d)
                     (unsigned)d->n_cameras, d->n_cameras == 1 ? "" : "s", (unsigned)d->n_frames, d->n_frames == 1 ? "" : "s", size);
 }
 
+/* Initial points where there are none that help. 0, or -1 with *m filled. */
+static int scatter(ted4_dataset *d, const ted4_request *r, const ted4_parallel *p,
+                   ted4_teller *teller, ted4_message *m)
+{
+    ted4_scatter_options o = r->bounds;
+    ted4_scattered       what;
+
+    now(teller, TED4_TELL_STARTING, "looking for initial points");
+    o.seed = r->options.seed;
+    if (ted4_dataset_scatter(d, &o, p, &what, m) != 0)
+        return -1;
+    if (what.outside > 0)
+        ted4_teller_error(teller, "warning: %zu initial points outside the bounds are not used",
+                          what.outside);
+    if (what.scattered > 0 && what.given > 0)
+        ted4_teller_error(teller, "warning: most of the %zu initial points lie where pictures show "
+                          "nothing; %zu others take their place", what.given, what.scattered);
+    return 0;
+}
+
 /* Loads, and does what was asked for. */
 static int work(const ted4_request *r, ted4_teller *teller, const ted4_parallel *p, double begin)
 {
-    const ted4_dataset_options wanted = { .downscale = r->downscale, .white = !r->black, .seed = r->options.seed, .cache_bytes = (size_t)r->cache_mib << 20,
-                                          .max_frames = (uint32_t)r->max_frames, .unpacking = unpacking, .user = teller };
+    const ted4_dataset_options wanted = { .downscale = r->downscale,
+                                          .white = !r->black,
+                                          .seed = r->options.seed,
+                                          .cache_bytes = (size_t)r->cache_mib << 20,
+                                          .max_frames = (uint32_t)r->max_frames,
+                                          .premultiplied = r->premultiplied,
+                                          .hold_out = r->hold_out,
+                                          .n_hold_out = r->n_hold_out,
+                                          .unpacking = unpacking,
+                                          .user = teller };
     ted4_dataset d;
     ted4_message m;
     int          status = TED4_EXIT_FINE;
@@ -190,14 +227,21 @@ static int work(const ted4_request *r, ted4_teller *teller, const ted4_parallel 
     ted4_teller_say(teller, "loading %s", r->scene);
     if (ted4_dataset_load(&d, r->scene, &wanted, &m) != 0)
         return complain(teller, m.text);
+
+    const size_t said = warn(teller, &d, 0);
+
     d.ahead = decoders(p);
     say_found(teller, &d);
     now(teller, TED4_TELL_STARTING, "looking at all pictures");
+
+    const int bad = ted4_dataset_verify(&d, p, &m) != 0 || scatter(&d, r, p, teller, &m) != 0;
+
     if (r->check)
         ted4_dataset_print(&d, stdout);
-    if (ted4_dataset_verify(&d, p, &m) != 0)
+    if (bad)
         status = complain(teller, m.text);
-    else if (!r->check)
+    warn(teller, &d, said);
+    if (status == TED4_EXIT_FINE && !r->check)
         status = encode(r, &d, p, teller, begin);
     ted4_dataset_free(&d);
     return status;

@@ -30,6 +30,8 @@ enum {
     OPT_SPLIT,
     OPT_DOWNSCALE,
     OPT_MAX_FRAMES,
+    OPT_ALPHA,
+    OPT_HOLD_OUT,
     OPT_IMAGES,
     OPT_SHEET,
     OPT_THREADS,
@@ -43,12 +45,15 @@ enum {
     N_OPTIONS
 };
 
-enum { MAX_DOWNSCALE = 64, MAX_MAX_FRAMES = 36000, SHEET_ROWS = 4, PATH_SIZE = 4096 };
+enum { MAX_DOWNSCALE = 64, MAX_MAX_FRAMES = 36000, MAX_HOLD_OUT = 256, SHEET_ROWS = 4 };
+enum { PATH_SIZE = 4096 };
 
 static const ted4_argument OPTIONS[N_OPTIONS] = {
     [OPT_SPLIT]     = { 0, "split", "NAME", "test (default) or train pictures" },
     [OPT_DOWNSCALE] = { 0, "downscale", "N", "compare pictures shrunk N times, as ted4enc --downscale" },
     [OPT_MAX_FRAMES] = { 0, "max-frames", "N", "only the first N times of SCENE, as ted4enc --max-frames" },
+    [OPT_ALPHA]     = { 0, "alpha", "HOW", "straight or premultiplied, as ted4enc --alpha" },
+    [OPT_HOLD_OUT]  = { 0, "hold-out", "NAME", "this camera's pictures are test, as ted4enc --hold-out" },
     [OPT_IMAGES]    = { 0, "images", "DIR", "write DIR/truth, DIR/ours, DIR/error (5 times the difference) as NNNNN.png" },
     [OPT_SHEET]     = { 0, "sheet", "FILE.png", "one picture: truth, ours, error of up to four cameras, at other times" },
     [OPT_THREADS]   = { 'j', "threads", "N", "threads; 0: all cores. Default 0" },
@@ -76,6 +81,9 @@ static const ted4_command COMMAND = {
 
 typedef struct {
     const char *input, *scene, *images, *sheet;
+    const char *hold_out[MAX_HOLD_OUT];
+    size_t      n_hold_out;
+    int         premultiplied;
     int         want_test, downscale, max_frames, threads, anyway, force, json, quiet, verbose;
 } settings;
 
@@ -140,6 +148,16 @@ static int set_option(settings *s, int option, const char *value)
         return set_number("--downscale", value, 1, MAX_DOWNSCALE, &s->downscale);
     case OPT_MAX_FRAMES:
         return set_number("--max-frames", value, 1, MAX_MAX_FRAMES, &s->max_frames);
+    case OPT_ALPHA:
+        s->premultiplied = strcmp(value, "premultiplied") == 0;
+        return s->premultiplied || strcmp(value, "straight") == 0
+                   ? 0
+                   : failed("--alpha", "straight or premultiplied expected");
+    case OPT_HOLD_OUT:
+        if (s->n_hold_out == MAX_HOLD_OUT)
+            return failed("--hold-out", "too many");
+        s->hold_out[s->n_hold_out++] = value;
+        return 0;
     case OPT_IMAGES:
         s->images = value;
         return 0;
@@ -216,11 +234,17 @@ static int open_scene(session *s)
     const ted4_dataset_options options = { .downscale = s->set->downscale,
                                            .white = s->info.background[0] > 127,
                                            .cache_bytes = 64 << 20,
-                                           .max_frames = (uint32_t)s->set->max_frames };
+                                           .max_frames = (uint32_t)s->set->max_frames,
+                                           .premultiplied = s->set->premultiplied,
+                                           .hold_out = s->set->hold_out,
+                                           .n_hold_out = s->set->n_hold_out };
     ted4_message m;
 
     if (ted4_dataset_load(&s->data, s->set->scene, &options, &m) != 0)
         return failed(s->set->scene, m.text);
+    ted4_teller_clear(&teller);
+    for (size_t i = 0; i < s->data.n_warnings; i++)
+        fprintf(stderr, "ted4eval: warning: %s\n", s->data.warnings[i]);
     s->viewer = ted4_viewer_new();
     return s->viewer == NULL ? failed(s->set->scene, "out of memory") : TED4_EXIT_FINE;
 }

@@ -223,15 +223,44 @@ static void reset_statistics(ted4_trainer *t, size_t i, int opacity)
         *ted4_cell(&t->anchors, TED4_ROW_OPACITY, i, r) = 0.0f;
 }
 
+/* An anchor that is to go, and its mean opacity. */
+typedef struct {
+    double   opacity;
+    uint32_t anchor;
+} faded;
+
+static int compare_faded(const void *x, const void *y)
+{
+    const faded *a = x, *b = y;
+
+    if (a->opacity != b->opacity)
+        return a->opacity > b->opacity ? -1 : 1;
+    return a->anchor < b->anchor ? -1 : a->anchor > b->anchor;
+}
+
+/* So many anchors stay however faded they are, those that show most: there is something left to
+ * grow from. */
+enum { FEWEST = TED4_LANES };
+
+/* Those that stay, in order[n] and gone[m] behind them; returns how many. */
+static size_t keep_fewest(uint32_t *order, size_t n, faded *gone, size_t m)
+{
+    if (n < FEWEST && m > 0)
+        qsort(gone, m, sizeof *gone, compare_faded);
+    for (size_t i = 0; i < m && n < FEWEST; i++)
+        order[n++] = gone[i].anchor;
+    return n;
+}
+
 static int prune(ted4_trainer *t, size_t n_old)
 {
     ted4_anchors *a = &t->anchors;
     uint32_t     *order = malloc((a->n + 1) * sizeof *order);
-    size_t        n = 0;
+    faded        *gone = malloc((a->n + 1) * sizeof *gone);
+    size_t        n = 0, m = 0;
+    int           bad = order == NULL || gone == NULL;
 
-    if (order == NULL)
-        return ted4_trainer_fail(t, "no memory to prune anchors");
-    for (size_t i = 0; i < a->n; i++) {
+    for (size_t i = 0; !bad && i < a->n; i++) {
         const double visits = (double)*ted4_cell(a, TED4_ROW_OPACITY, i, 1);
         const double there = (double)*ted4_cell(a, TED4_ROW_OPACITY, i, 2);
         const double opacity = (double)*ted4_cell(a, TED4_ROW_OPACITY, i, 0);
@@ -241,13 +270,13 @@ static int prune(ted4_trainer *t, size_t n_old)
             reset_statistics(t, i, ripe);
         if (i >= n_old || !ripe || opacity >= t->opt.prune_opacity * there)
             order[n++] = (uint32_t)i;
+        else
+            gone[m++] = (faded){ opacity / there, (uint32_t)i };
     }
-    const int bad = n == 0 ? ted4_watch_find(t, "collapsed", -1, "opacity", "", "of every anchor has faded away")
-                    : ted4_anchors_select(a, order, n) != 0
-                        ? ted4_trainer_fail(t, "no memory to prune anchors") : 0;
-
+    bad = bad || ted4_anchors_select(a, order, keep_fewest(order, n, gone, m)) != 0;
     free(order);
-    return bad;
+    free(gone);
+    return bad ? ted4_trainer_fail(t, "no memory to prune anchors") : 0;
 }
 
 int ted4_densify_adjust(ted4_trainer *t)

@@ -138,30 +138,49 @@ int ted4_schedule_network(const ted4_trainer *t, ted4_net_range *range)
 /* Growth begins after a twentieth of stage 1; statistics as soon as the last adjustment is done. */
 #define GROW_FROM 0.05
 
-/* Sprouts come when what stays is drawn well enough for what does not to stand out, and before activation is learnt. */
-#define SPROUT_AT 0.3
+/* Sprouts come when what stays is drawn well enough for what does not to stand out, and before activation is learnt. Where cameras take turns nothing else finds what
+ * moves, so they come before the probe asks whether time is needed. */
+#define SPROUT_AT       0.3
+#define SPROUT_AT_TURNS 0.2
 
-static int sprouts_wanted(const ted4_trainer *t)
+static uint64_t sprout_step(const ted4_trainer *t, int reach)
 {
-    return t->opt.sprouts > 0 && ted4_sprout_possible(t);
+    return (uint64_t)((reach > 0 ? SPROUT_AT_TURNS : SPROUT_AT) * (double)t->opt.stage1);
 }
 
-static uint64_t sprout_step(const ted4_trainer *t)
+/* Are anchors kept for sprouts that are still to come? */
+static int sprouts_ahead(const ted4_trainer *t)
 {
-    return (uint64_t)(SPROUT_AT * (double)t->opt.stage1);
+    if (t->stage2 || t->opt.sprouts <= 0 || t->iteration >= sprout_step(t, 0))
+        return 0;
+
+    const int reach = ted4_sprout_reach(t);
+
+    return reach >= 0 && t->iteration < sprout_step(t, reach);
+}
+
+static int sprouts_due(const ted4_trainer *t)
+{
+    if (t->stage2 || t->opt.sprouts <= 0 || (t->iteration != sprout_step(t, 0) && t->iteration != sprout_step(t, 1)))
+        return 0;
+
+    const int reach = ted4_sprout_reach(t);
+
+    return reach >= 0 && t->iteration == sprout_step(t, reach);
 }
 
 void ted4_schedule_growth(const ted4_trainer *t, double *from, double *sprout_at, double *sprouts)
 {
+    const int reach = ted4_sprout_reach(t);
+
     *from = GROW_FROM;
-    *sprout_at = SPROUT_AT;
-    *sprouts = sprouts_wanted(t) ? t->opt.sprouts : 0.0;
+    *sprout_at = reach > 0 ? SPROUT_AT_TURNS : SPROUT_AT;
+    *sprouts = reach >= 0 ? t->opt.sprouts : 0.0;
 }
 
 size_t ted4_schedule_room(const ted4_trainer *t)
 {
-    const int    reserved = !t->stage2 && t->iteration < sprout_step(t) && sprouts_wanted(t);
-    const size_t most = (size_t)((reserved ? 1.0 - t->opt.sprouts : 1.0) * (double)t->opt.max_anchors);
+    const size_t most = (size_t)((sprouts_ahead(t) ? 1.0 - t->opt.sprouts : 1.0) * (double)t->opt.max_anchors);
 
     return t->anchors.n < most ? most - t->anchors.n : 0;
 }
@@ -181,7 +200,7 @@ int ted4_schedule_event(ted4_trainer *t)
     if (t->layout.first[TED4_TAU] >= 0 && !t->stage2 && i == activation_start(o) &&
         ted4_activation_begin(t) != 0)
         return -1;
-    if (!t->stage2 && i == sprout_step(t) && sprouts_wanted(t) && ted4_sprout(t) != 0)
+    if (sprouts_due(t) && ted4_sprout(t) != 0)
         return -1;
     if (!t->stage2 && i > (uint64_t)(GROW_FROM * (double)stage1) &&
         i <= (uint64_t)(o->grow_until * (double)stage1) &&

@@ -71,7 +71,40 @@ static int match_pictures(ted4_sightings *s, ted4_trainer *t)
     return 0;
 }
 
-int ted4_sightings_count(ted4_sightings *s, ted4_trainer *t, const float *point, const uint8_t *colour, size_t n)
+/* count[n_frames][n]: each becomes the sum over so many frames before and after its own. column: room for n_frames. */
+static void widen(uint16_t *count, size_t n, uint32_t n_frames, uint32_t reach, uint16_t *column)
+{
+    for (size_t i = 0; i < n; i++) {
+        uint32_t sum = 0;
+
+        for (uint32_t f = 0; f < n_frames; f++)
+            column[f] = count[f * n + i];
+        for (uint32_t f = 0; f < reach && f < n_frames; f++)
+            sum += column[f];
+        for (uint32_t f = 0; f < n_frames; f++) {
+            sum += f + reach < n_frames ? column[f + reach] : 0;
+            sum -= f > reach ? column[f - reach - 1] : 0;
+            count[f * n + i] = (uint16_t)(sum < UINT16_MAX ? sum : UINT16_MAX);
+        }
+    }
+}
+
+/* 0, or -1: no memory. */
+static int widen_counts(ted4_sightings *s, uint32_t reach)
+{
+    uint16_t *column = reach > 0 ? malloc(s->n_frames * sizeof *column) : NULL;
+
+    if (reach > 0 && column == NULL)
+        return -1;
+    if (reach > 0) {
+        widen(s->hits, s->n, s->n_frames, reach, column);
+        widen(s->seen, s->n, s->n_frames, reach, column);
+    }
+    free(column);
+    return 0;
+}
+
+int ted4_sightings_count(ted4_sightings *s, ted4_trainer *t, const float *point, const uint8_t *colour, size_t n, uint32_t reach)
 {
     memset(s, 0, sizeof *s);
     s->point = point;
@@ -82,7 +115,9 @@ int ted4_sightings_count(ted4_sightings *s, ted4_trainer *t, const float *point,
     s->seen = calloc(s->n_frames * n + 1, sizeof *s->seen);
     if (s->hits == NULL || s->seen == NULL)
         return ted4_trainer_fail(t, "no memory to look for what comes and goes");
-    return match_pictures(s, t);
+    if (match_pictures(s, t) != 0)
+        return -1;
+    return widen_counts(s, reach) != 0 ? ted4_trainer_fail(t, "no memory to look for what comes and goes") : 0;
 }
 
 void ted4_sightings_free(ted4_sightings *s)

@@ -1,16 +1,14 @@
 /* sightings.h - at which times a colour is seen at a place: what tells things that come and go from things that stay.
- * Depends on trainer.h.
+ * Depends on trainer.h, turns.h.
  * SPDX-License-Identifier: BSD-2-Clause */
 #ifndef TED4_SIGHTINGS_H
 #define TED4_SIGHTINGS_H
 
 #include "trainer.h"
+#include "turns.h"
 
 /* Colours agree when they differ by less than this many of 255, averaged over the channels. */
 #define TED4_COLOUR_NEAR 28
-/* With fewer cameras at a time chance matches decide. */
-enum { TED4_CAMERAS_NEEDED = 3 };
-
 static inline int ted4_colour_far(const uint8_t a[3], const uint8_t b[3])
 {
     const int r = a[0] - b[0], g = a[1] - b[1], l = a[2] - b[2];
@@ -48,8 +46,8 @@ typedef struct {
     uint16_t      *hits, *seen; /* owned: [n_frames][n] training cameras that agree, training cameras that look there */
 } ted4_sightings;
 
-/* Looks at every training picture. 0, or -1 with t->message. Free it in either case. */
-int  ted4_sightings_count(ted4_sightings *s, ted4_trainer *t, const float *point, const uint8_t *colour, size_t n);
+/* Looks at every training picture. Those of reach frames before and after a frame count as its own (turns.h). 0, or -1 with t->message. Free it in either case. */
+int  ted4_sightings_count(ted4_sightings *s, ted4_trainer *t, const float *point, const uint8_t *colour, size_t n, uint32_t reach);
 void ted4_sightings_free(ted4_sightings *s);
 
 /* Frames from..to; how many frames before and after them the next time is at which the thing is known to be gone, 1 where there is none. */

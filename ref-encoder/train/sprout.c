@@ -12,23 +12,9 @@
 #include "sightings.h"
 #include "space.h"
 
-int ted4_sprout_possible(const ted4_trainer *t)
+int ted4_sprout_reach(const ted4_trainer *t)
 {
-    int most = 0;
-
-    if (t->layout.first[TED4_TAU] < 0 || t->data->n_frames < 2)
-        return 0;
-
-    uint16_t *count = calloc(t->data->n_frames, sizeof *count);
-
-    for (size_t i = 0; count != NULL && i < t->data->n_pictures; i++) {
-        const ted4_picture *pic = &t->data->pictures[i];
-
-        if (!pic->is_test && ++count[pic->frame] > most)
-            most = count[pic->frame];
-    }
-    free(count);
-    return most >= TED4_CAMERAS_NEEDED;
+    return t->layout.first[TED4_TAU] < 0 || t->data->n_frames < 2 ? -1 : ted4_turns_reach(t);
 }
 
 /* What anchors look like now (ted4_trainer_looks). */
@@ -177,13 +163,16 @@ int ted4_sprout(ted4_trainer *t)
     looks          l = { 0 };
     float         *point = NULL;
     uint8_t       *colour = NULL;
+    const int      reach = ted4_sprout_reach(t);
     int            bad = 0;
 
+    if (reach < 0)
+        return 0;
     for (uint32_t f = 0; !bad && f < t->data->n_frames; f++)
-        bad = ted4_sprout_search(t, f, &list) != 0;
+        bad = ted4_sprout_search(t, f, (uint32_t)reach, &list) != 0;
     if (!bad && arrange(&list, ted4_sprout_room(t->data->n_frames), &point, &colour) != 0)
         bad = ted4_trainer_fail(t, "no memory for new anchors");
-    bad = bad || ted4_sightings_count(&s, t, point, colour, list.n) != 0 ||
+    bad = bad || ted4_sightings_count(&s, t, point, colour, list.n, (uint32_t)reach) != 0 ||
           look_at_anchors(t, &l) != 0 || plant(t, &list, &s, &l) != 0;
     if (!bad && ted4_anchors_sort(&t->anchors) != 0)
         bad = ted4_trainer_fail(t, "no memory to sort anchors");

@@ -21,12 +21,14 @@ enum { FEWEST_DEPTHS = 16, MOST_DEPTHS = 512 };
 #define NEARER  0.5f
 #define FARTHER 1.2f
 #define OUTLIERS 0.02f
-/* One picture of the frame. */
+/* One picture of the frame, or of those around it. */
 typedef struct {
     ted4_view view;
     float     centre[3];
     float     nearest, farthest;    /* depths to try */
     int       depths;
+    int       is_own;               /* of the frame itself */
+    int       helps;                /* in the search for what one of them misses: it is another one, far enough from it */
     uint8_t  *rgb, *error;          /* owned: [pixels][3], [pixels] */
 } eye;
 
@@ -103,7 +105,7 @@ static void sweep(const search_job *j, int column, int row, ted4_place *best)
         for (size_t i = 0; i < j->n; i++) {
             int looks;
 
-            if (i == j->self)
+            if (!j->eyes[i].helps)
                 continue;
             const float s = confirm(&j->eyes[i], p, colour, &looks);
 
@@ -221,8 +223,8 @@ static int put(ted4_places *l, const ted4_place *p)
     return 0;
 }
 
-/* What one camera of the frame misses. 0, or -1: no memory. */
-static int search_eye(const ted4_trainer *t, const eye *eyes, size_t n, size_t self, uint32_t frame, ted4_places *list)
+/* What one camera of the frame misses. Those of other frames may be the same camera again, which agrees with itself about any depth. 0, or -1: no memory. */
+static int search_eye(const ted4_trainer *t, eye *eyes, size_t n, size_t self, uint32_t frame, ted4_places *list)
 {
     const int    width = eyes[self].view.width, height = eyes[self].view.height;
     const int    step = (int)fmaxf(1.0f, roundf(SPACING * (float)width));
@@ -230,6 +232,8 @@ static int search_eye(const ted4_trainer *t, const eye *eyes, size_t n, size_t s
     search_job   j = { eyes, n, self, step, malloc(rows * columns * sizeof *j.found), (int)columns };
     int          bad = j.found == NULL;
 
+    for (size_t i = 0; i < n; i++)
+        eyes[i].helps = i != self && (eyes[i].is_own || ted4_turns_apart(eyes[self].centre, eyes[i].centre));
     if (!bad)
         ted4_parallel_for(t->parallel, rows, search_row, &j);
     for (size_t i = 0; !bad && i < rows * columns; i++)
@@ -263,14 +267,37 @@ static int thin(ted4_places *l, size_t first, size_t most)
     return 0;
 }
 
-int ted4_sprout_search(ted4_trainer *t, uint32_t frame, ted4_places *list)
+/* Is a picture for training, of a frame or of those around it? */
+static int is_near(const ted4_picture *p, uint32_t frame, uint32_t reach)
+{
+    return !p->is_test && p->frame + reach >= frame && p->frame <= frame + reach;
+}
+
+/* The pictures that look at a frame, in eyes[] if there is room for them; how many. 0, or -1 with t->message, in *bad. */
+static size_t open_eyes(ted4_trainer *t, uint32_t frame, uint32_t reach, eye *eyes, int *bad)
+{
+    size_t n = 0;
+
+    for (size_t i = 0; !*bad && i < t->data->n_pictures; i++) {
+        const ted4_picture *p = &t->data->pictures[i];
+
+        if (!is_near(p, frame, reach))
+            continue;
+        if (eyes != NULL) {
+            eyes[n].is_own = p->frame == frame;
+            *bad = open_eye(t, i, &eyes[n]) != 0;
+        }
+        n++;
+    }
+    return n;
+}
+
+int ted4_sprout_search(ted4_trainer *t, uint32_t frame, uint32_t reach, ted4_places *list)
 {
     const size_t first = list->n;
-    size_t       n = 0;
     int          bad = 0;
+    const size_t n = open_eyes(t, frame, reach, NULL, &bad);
 
-    for (size_t i = 0; i < t->data->n_pictures; i++)
-        n += !t->data->pictures[i].is_test && t->data->pictures[i].frame == frame;
     if (n < TED4_CAMERAS_NEEDED)
         return 0;
 
@@ -278,14 +305,11 @@ int ted4_sprout_search(ted4_trainer *t, uint32_t frame, ted4_places *list)
 
     if (eyes == NULL)
         return ted4_trainer_fail(t, "no memory to look for what is missing");
-    n = 0;
-    for (size_t i = 0; !bad && i < t->data->n_pictures; i++)
-        if (!t->data->pictures[i].is_test && t->data->pictures[i].frame == frame)
-            bad = open_eye(t, i, &eyes[n++]) != 0;
+    open_eyes(t, frame, reach, eyes, &bad);
     for (size_t i = 0; !bad && i < n; i++)
         count_depths(eyes, n, i);
     for (size_t i = 0; !bad && i < n; i++)
-        if (search_eye(t, eyes, n, i, frame, list) != 0)
+        if (eyes[i].is_own && search_eye(t, eyes, n, i, frame, list) != 0)
             bad = ted4_trainer_fail(t, "no memory to look for what is missing");
 
     const size_t share = ted4_sprout_room(t->data->n_frames) / t->data->n_frames;

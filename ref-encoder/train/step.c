@@ -230,18 +230,6 @@ static int probe_due(const ted4_trainer *t)
     return !t->probed && t->iteration == (uint64_t)(PROBE_FROM * (double)t->opt.stage1);
 }
 
-/* What the schedule wants done before the step. */
-static int event(ted4_trainer *t)
-{
-    const size_t before = t->anchors.n;
-    const int    stage2 = t->stage2;
-
-    if (ted4_watch_begin(t) != 0 || ted4_schedule_event(t) != 0)
-        return -1;
-    /* Compression may drop whatever never shows. */
-    return t->stage2 == stage2 ? ted4_watch_anchors(t, before) : 0;
-}
-
 /* One picture forward: in, s, v and the gradient in t->d_image. Loss, or negative with t->message. */
 static double forward(ted4_trainer *t, uint32_t item, ted4_view *v, ted4_generate_input *in, ted4_splats *s, double *l1, double *ssim)
 {
@@ -271,7 +259,7 @@ static int one_step(ted4_trainer *t)
     double              l1, ssim;
     size_t              on_screen = 0;
 
-    if (event(t) != 0)
+    if (ted4_watch_begin(t) != 0 || ted4_schedule_event(t) != 0)
         return -1;
 
     const uint64_t key = ted4_random(t->opt.seed, t->iteration);

@@ -217,11 +217,9 @@ int  ted4_trainer_check(ted4_trainer *t, int anchors);
 int  ted4_trainer_fail(ted4_trainer *t, const char *format, ...);
 
 /* The watch: watch.c. All that return int return 0, or -1 with t->message, and with watch.found when it is a find.
- * begin: before a step; looks at what is learnt, from time to time at all anchors, and then keeps the state. anchors: after an event; how many there were
- * before it.
+ * begin: before a step; looks at what is learnt, from time to time at all anchors, and then keeps the state.
  * loss: of the picture. look: after the update; gradients, values, loss, and how much was drawn of in and s. */
 int  ted4_watch_begin(ted4_trainer *t);
-int  ted4_watch_anchors(ted4_trainer *t, size_t before);
 int  ted4_watch_loss(ted4_trainer *t, double loss);
 int  ted4_watch_look(ted4_trainer *t, double loss, const ted4_generate_input *in, const ted4_splats *s);
 /* After a step that failed: back to the last good state with smaller learning rates, if it was a find, there is such a state and this was not done three

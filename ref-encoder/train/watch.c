@@ -27,14 +27,15 @@ enum { SCALE_NEW = 100 };
 /* A gradient has exploded when it is so many times its usual size. Measured: single steps of trainings that go well reach 3 times (features, scalings, offsets),
  * 20 times (bank, networks) and 130 times (activations, whose edges may be as narrow as spec 11.4 lets them). Adam bounds what one such step does. */
 #define EXPLODED 1e5
-/* The loss diverges when in so many steps on end it is so many times its usual size, and so large at all; anchors collapse when in as many steps on end this
- * share of the usual Gaussians is on screen. Pictures come in random order, so that a few that differ from the others do not make such a row. */
+/* The loss diverges when in so many steps on end it is so many times its usual size, and so large at all. Pictures come in random order, so that a few that differ
+ * from the others do not make such a row. */
 #define DIVERGED  3.0
 #define HIGH_LOSS 0.1
-#define COLLAPSED (1.0 / 8.0)
 enum { ROW = 32 };
-/* An adjustment of anchors may leave this share of them. */
-#define FEW_ANCHORS (1.0 / 8.0)
+/* The screen is nearly empty with this share of the usual Gaussians on it. That alone is no failure: anchors in empty space are right to go, however many. They have
+ * collapsed when pictures lose by it: when in a row of such steps the mean loss is so many times what was usual before the row. */
+#define NEARLY_EMPTY (1.0 / 8.0)
+#define LOST         1.25
 
 static const char *const names[TED4_TERMS] = {
     "feature", "scaling", "offset", "phi", "tau", "masks", "centres",
@@ -157,7 +158,7 @@ int ted4_watch_recover(ted4_trainer *t)
     const uint64_t rollbacks = w->state.rollbacks, failed = t->iteration;
     const double   factor = w->state.factor, seconds = t->seconds;
     const char    *why = w->good.bytes == NULL ? "there is no good state before it"
-                                               : "learning rates were made smaller three times";
+                                               : "learning rates were made smaller three times; another --seed, or smaller ones from the start (--set lr_...), may help";
 
     if (!w->found)
         return -1;
@@ -180,13 +181,6 @@ int ted4_watch_recover(ted4_trainer *t)
 }
 
 /* ---- a step ---- */
-
-int ted4_watch_anchors(ted4_trainer *t, size_t before)
-{
-    return (double)t->anchors.n < FEW_ANCHORS * (double)before
-               ? ted4_watch_find(t, "collapsed", -1, "anchors", "", "fall from %zu to %zu", before,
-                                 t->anchors.n) : 0;
-}
 
 int ted4_watch_loss(ted4_trainer *t, double loss)
 {
@@ -274,6 +268,29 @@ static int look_at_gradients(ted4_trainer *t)
     return times[worst] > EXPLODED ? bad_gradient(t, worst, times[worst]) : 0;
 }
 
+/* Has the screen been nearly empty for a row of steps, and did pictures lose by it? If they did not, this much is usual from here on. */
+static int is_lost(ted4_watch_state *w, double drawn, double usual, double loss)
+{
+    const double share = ted4_scale_take(&w->screen, drawn + 1.0);
+
+    if (!(share > 0 && share < NEARLY_EMPTY)) {
+        w->bad_screen = 0;
+        return 0;
+    }
+    if (w->bad_screen++ == 0) {
+        w->usual_loss = usual;
+        w->lost = 0;
+    }
+    w->lost += loss / ROW;
+    if (w->bad_screen < ROW)
+        return 0;
+    if (w->lost > LOST * w->usual_loss)
+        return 1;
+    memset(&w->screen, 0, sizeof w->screen);
+    w->bad_screen = 0;
+    return 0;
+}
+
 int ted4_watch_look(ted4_trainer *t, double loss, const ted4_generate_input *in,
                     const ted4_splats *s)
 {
@@ -283,12 +300,10 @@ int ted4_watch_look(ted4_trainer *t, double loss, const ted4_generate_input *in,
     if (look_at_gradients(t) != 0)
         return -1;
 
-    const double high = ted4_scale_take(&w->loss, loss);
-    const double drawn = ted4_scale_take(&w->screen, t->watch.drawn + 1.0);
+    const double usual = ted4_scale_usual(&w->loss), high = ted4_scale_take(&w->loss, loss);
 
     w->bad_loss = high > DIVERGED && loss > HIGH_LOSS ? w->bad_loss + 1 : 0;
-    w->bad_screen = drawn > 0 && drawn < COLLAPSED ? w->bad_screen + 1 : 0;
-    if (w->bad_screen == ROW)
+    if (is_lost(w, t->watch.drawn, usual, loss))
         return collapsed(t, in, s);
     return w->bad_loss == ROW
                ? ted4_watch_find(t, "diverged", -1, "loss", "", "is %.3g times what is usual", high)

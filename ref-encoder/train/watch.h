@@ -37,6 +37,7 @@ typedef struct {
     uint64_t   rollbacks;       /* so far */
     uint64_t   phase;           /* of training; another one begins with new scales */
     uint64_t   bad_loss, bad_screen;    /* steps up to now in which the loss was too high, too little was on screen */
+    double     usual_loss, lost;        /* loss before that row of little on screen, share of the row's mean loss that is summed up */
     ted4_scale gradient[TED4_TERMS], loss, screen;
 } ted4_watch_state;
 

@@ -1,0 +1,143 @@
+/* hold_out.c - which pictures are test where the caller names cameras; see raw_scene.h.
+ * SPDX-License-Identifier: BSD-2-Clause */
+#include "data/raw_scene.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include "data/picture_path.h"
+
+/* Shots without a label are the same camera when their poses are, to six decimals; then the label
+ * is the pose. */
+static char *pose_label(const ted4_shot *s)
+{
+    char text[12 * 26], *at = text;
+    double centre[3];
+
+    ted4_pose_centre(s->R, s->t, centre);
+    for (int i = 0; i < 12; i++) {
+        const double v = i < 9 ? s->R[i] : centre[i - 9];
+        at += snprintf(at, 26, "%.15g ", round(v * 1e6) + 0.0);   /* + 0.0: no -0 */
+    }
+    return ted4_text_copy(text);
+}
+
+int ted4_raw_scene_label(ted4_raw_scene *s)
+{
+    for (size_t i = 0; i < s->n_shots; i++) {
+        ted4_shot *shot = &s->shots[i];
+        shot->is_posed = shot->camera == NULL;
+        if (shot->is_posed && (shot->camera = pose_label(shot)) == NULL)
+            return -1;
+    }
+    return 0;
+}
+
+/* COLMAP's labels are NUMBER/FOLDER/, of which the folder alone will do, and the number where there
+ * is none. */
+static const char *short_label(const char *label, size_t *n)
+{
+    const char *slash = strchr(label, '/'),
+               *folder = slash != NULL && slash[1] != 0 ? slash + 1 : label;
+
+    *n = strlen(folder);
+    while (*n > 1 && folder[*n - 1] == '/')
+        --*n;
+    return folder;
+}
+
+static int is_label(const ted4_shot *s, const char *name)
+{
+    size_t n;
+    const char *label = short_label(s->camera, &n);
+
+    return !s->is_posed &&
+           (strcmp(s->camera, name) == 0 || (strlen(name) == n && strncmp(label, name, n) == 0));
+}
+
+/* Do the last parts of the path, with or without its extension, read so? */
+static int is_picture(const ted4_shot *s, const char *name)
+{
+    const size_t n = strlen(s->path), k = strlen(name);
+    const char *dot = strrchr(s->path, '.');
+    const size_t bare = dot != NULL && ted4_picture_is_named(s->path) ? (size_t)(dot - s->path) : n;
+    const size_t ends[2] = { n, bare };
+
+    for (int i = 0; i < 2; i++)
+        if (k > 0 && k <= ends[i] && strncmp(s->path + ends[i] - k, name, k) == 0 &&
+            (k == ends[i] || s->path[ends[i] - k - 1] == '/'))
+            return 1;
+    return 0;
+}
+
+/* Names of cameras, or of pictures where cameras have none, as far as there is room. */
+static void list_names(const ted4_raw_scene *s, char *text, size_t size)
+{
+    size_t used = 0, n = 0;
+
+    text[0] = 0;
+    for (size_t i = 0; i < s->n_shots; i++) {
+        const ted4_shot *shot = &s->shots[i];
+        const char *slash = strrchr(shot->path, '/');
+        const char *name = shot->is_posed ? (slash == NULL ? shot->path : slash + 1) : shot->camera;
+        size_t length = strlen(name), k = 0;
+        if (!shot->is_posed)
+            name = short_label(shot->camera, &length);
+        while (k < i && strcmp(s->shots[k].camera, shot->camera) != 0)
+            k++;
+        if (k < i)
+            continue;
+        n++;
+        if (used + length + 40 < size)
+            used += (size_t)snprintf(text + used, size - used, "%s%.*s", n > 1 ? ", " : "",
+                                     (int)length, name);
+        else if (used + 39 < size)
+            used = size - 39;
+    }
+    if (used == size - 39)
+        snprintf(text + strlen(text), 39, ", ... (%zu in all)", n);
+}
+
+/* The label of the camera that is meant; NULL with *m filled. */
+static const char *find_camera(const ted4_raw_scene *s, const char *name, ted4_message *m)
+{
+    const char *found = NULL;
+    char names[700];
+
+    for (size_t i = 0; i < s->n_shots; i++)
+        if (is_label(&s->shots[i], name))
+            return s->shots[i].camera;
+    for (size_t i = 0; i < s->n_shots; i++) {
+        if (!is_picture(&s->shots[i], name))
+            continue;
+        if (found != NULL && strcmp(found, s->shots[i].camera) != 0) {
+            ted4_say(m,
+                     "--hold-out %.200s: pictures of several cameras are called so, expected more "
+                     "of the path",
+                     name);
+            return NULL;
+        }
+        found = s->shots[i].camera;
+    }
+    if (found == NULL) {
+        list_names(s, names, sizeof names);
+        ted4_say(m, "--hold-out %.200s: no camera or picture of this name, expected one of: %s",
+                 name, names);
+    }
+    return found;
+}
+
+int ted4_raw_scene_hold_out_named(ted4_raw_scene *s, const ted4_dataset_options *o, ted4_message *m)
+{
+    for (size_t i = 0; i < s->n_shots; i++)
+        s->shots[i].is_test = 0;
+    for (size_t k = 0; k < o->n_hold_out; k++) {
+        const char *camera = find_camera(s, o->hold_out[k], m);
+        if (camera == NULL)
+            return -1;
+        for (size_t i = 0; i < s->n_shots; i++)
+            s->shots[i].is_test |= strcmp(s->shots[i].camera, camera) == 0;
+    }
+    return 0;
+}

@@ -1,0 +1,217 @@
+/* scatter.c - see scatter.h.
+ * SPDX-License-Identifier: BSD-2-Clause */
+#include "data/scatter.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+#include "data/data_util.h"
+#include "data/point_cloud.h"
+#include "data/shown.h"
+#include "data/source.h"
+#include "data/sweep.h"
+#include "math/elementary.h"
+
+/* A point lies in empty space when less than this share of the pictures that it lies in show something there. What moves is shown at few times; what lies far from things
+ * is in line with them for few cameras. */
+#define EMPTY (1.0 / 16.0)
+/* Points of things that stay are seen against something by all pictures, but for errors at outlines. Those that came with the scene are used when this share of them has
+ * this share of pictures that show something: the others may belong to what moves. */
+#define USEFUL 0.5
+#define SHOWN  0.5
+/* Depths tried, in distances of the cameras from where they look: things on a plain background stand there; in a room, walls may be far behind it. */
+#define NEAREST       0.15
+#define FARTHEST      3.0
+#define FARTHEST_ROOM 4.0
+/* Candidates a job, pixels tried for one, and candidates a wanted point at most. */
+enum { RUN = 1024, PIXELS = 32, TRIES = 32 };
+
+typedef struct {
+    const ted4_shown           *shown;
+    const ted4_scatter_options *options;
+    ted4_sweep                  sweep;
+    uint64_t                    first;  /* number of the first candidate of this round */
+    int      by_colour;                 /* at the depth at which pictures agree; else at any */
+    float   *point;                     /* [RUNS * RUN][3] */
+    uint8_t *rgb, *taken;               /* [RUNS * RUN][3], [RUNS * RUN] */
+} round_job;
+
+enum { RUNS = 16 };
+
+/* A pixel that shows something, of a picture. 0: none was found. */
+static int choose_pixel(const round_job *j, uint64_t *state, size_t *picture, size_t *pixel)
+{
+    for (int k = 0; k < PIXELS; k++) {
+        *picture = (size_t)(ted4_split_uniform(state) * (double)j->shown->n);
+
+        const ted4_camera *c = &j->shown->data->pictures[j->shown->picture[*picture]].camera;
+
+        *pixel = (size_t)(ted4_split_uniform(state) * (double)((size_t)c->width * (size_t)c->height));
+        if (ted4_shown_at(j->shown, *picture, *pixel))
+            return 1;
+    }
+    return 0;
+}
+
+/* Any depth, as many in each octave. */
+static void any_depth(const round_job *j, const ted4_camera *c, size_t pixel, double u, double world[3])
+{
+    const double octaves = ted4_math_log2(j->sweep.farthest / j->sweep.nearest);
+
+    ted4_sweep_point(c, pixel, j->sweep.nearest * ted4_math_exp2(octaves * u), world);
+}
+
+static int is_inside(const ted4_scatter_options *o, const float p[3])
+{
+    for (int k = 0; o->bounded && k < 3; k++)
+        if (!(p[k] >= o->low[k] && p[k] <= o->high[k]))
+            return 0;
+    return 1;
+}
+
+static int try_candidate(const round_job *j, uint64_t i, float point[3], uint8_t rgb[3])
+{
+    uint64_t     state = (uint64_t)j->options->seed << 40 ^ i << 8;     /* fewer numbers than 2^8 a candidate */
+    const double u = ted4_split_uniform(&state);
+    size_t       k, pixel;
+    double       world[3];
+    int          seen, shown;
+
+    if (!choose_pixel(j, &state, &k, &pixel))
+        return 0;
+    if (!j->by_colour)
+        any_depth(j, &j->shown->data->pictures[j->shown->picture[k]].camera, pixel, u, world);
+    else if (!ted4_sweep_pixel(&j->sweep, k, pixel, u, world))
+        return 0;
+    for (int c = 0; c < 3; c++)
+        point[c] = (float)world[c];
+    if (!is_inside(j->options, point))
+        return 0;
+    memcpy(rgb, j->shown->rgb[k] + 3 * pixel, 3);
+    ted4_shown_count(j->shown, world, &seen, &shown);
+
+    const double share = seen > 0 ? (double)shown / (double)seen : 0;
+
+    return (seen > 1 || j->shown->n == 1) && share >= EMPTY && ted4_split_uniform(&state) < share * share;
+}
+
+static void try_run(void *arg, size_t run)
+{
+    const round_job *j = arg;
+
+    for (size_t i = run * RUN; i < (run + 1) * RUN; i++)
+        j->taken[i] = (uint8_t)try_candidate(j, j->first + i, j->point + 3 * i, j->rgb + 3 * i);
+}
+
+/* Fills the cloud from *n on until it is full, or hope is lost. 0, or -1: no memory. */
+static int scatter(round_job *j, const ted4_parallel *p, ted4_point_cloud *c, size_t *n)
+{
+    j->point = malloc((size_t)RUNS * RUN * 3 * sizeof *j->point);
+    j->rgb = malloc((size_t)RUNS * RUN * 3);
+    j->taken = malloc((size_t)RUNS * RUN);
+
+    int bad = j->point == NULL || j->rgb == NULL || j->taken == NULL;
+
+    for (j->first = 0; !bad && *n < c->n && j->first < (uint64_t)TRIES * c->n; j->first += RUNS * RUN) {
+        ted4_parallel_for(p, RUNS, try_run, j);
+        for (size_t i = 0; i < (size_t)RUNS * RUN && *n < c->n; i++)
+            if (j->taken[i]) {
+                memcpy(c->xyz + 3 * *n, j->point + 3 * i, 3 * sizeof *c->xyz);
+                memcpy(c->rgb + 3 * (*n)++, j->rgb + 3 * i, 3);
+            }
+    }
+    free(j->point);
+    free(j->rgb);
+    free(j->taken);
+    return bad ? -1 : 0;
+}
+
+/* Do most of the points that came with the scene lie where pictures show something? */
+static int are_shown(const ted4_shown *s, const ted4_dataset *d)
+{
+    size_t n = 0;
+
+    for (size_t i = 0; i < d->n_points; i++) {
+        const double world[3] = { (double)d->points[3 * i], (double)d->points[3 * i + 1], (double)d->points[3 * i + 2] };
+        int          seen, shown;
+
+        ted4_shown_count(s, world, &seen, &shown);
+        n += (double)shown >= SHOWN * (double)seen && seen > 0;
+    }
+    return (double)n >= USEFUL * (double)d->n_points;
+}
+
+/* Scattered points in place of those that are there, if any can be had: where pictures agree about colours, and where they do not agree often enough, anywhere on the rays
+ * of what shows something. 0, or -1 with *m filled. */
+static int replace(ted4_dataset *d, const ted4_shown *s, const ted4_scatter_options *o,
+                   const ted4_parallel *p, size_t *n, ted4_message *m)
+{
+    round_job        j = { .shown = s, .options = o, .by_colour = 1 };
+    ted4_point_cloud c;
+    double           centre[3], half;
+
+    if (ted4_view_box(d, centre, &half) != 0 || ted4_point_cloud_alloc(&c, TED4_RANDOM_POINTS) != 0)
+        return ted4_say_no_memory(m);
+
+    const double ahead = half / TED4_VIEW_BOX_HALF_SIDE;
+
+    ted4_sweep_begin(&j.sweep, s, ahead, NEAREST * ahead, (s->plain ? FARTHEST : FARTHEST_ROOM) * ahead);
+
+    int bad = scatter(&j, p, &c, n) != 0;
+
+    j.by_colour = 0;
+    if (bad || scatter(&j, p, &c, n) != 0) {
+        ted4_point_cloud_free(&c);
+        return ted4_say_no_memory(m);
+    }
+    if (*n == 0) {
+        ted4_point_cloud_free(&c);
+        return 0;
+    }
+    free(d->points);
+    free(d->point_rgb);
+    d->points = c.xyz;
+    d->point_rgb = c.rgb;
+    d->n_points = *n;
+    d->random_points = 1;
+    return 0;
+}
+
+/* Points outside the bounds go; how many. */
+static size_t drop_outside(ted4_dataset *d, const ted4_scatter_options *o)
+{
+    const size_t before = d->n_points;
+    size_t       n = 0;
+
+    for (size_t i = 0; i < before; i++) {
+        if (!is_inside(o, d->points + 3 * i))
+            continue;
+        memmove(d->points + 3 * n, d->points + 3 * i, 3 * sizeof *d->points);
+        memmove(d->point_rgb + 3 * n++, d->point_rgb + 3 * i, 3);
+    }
+    d->n_points = n;
+    return before - n;
+}
+
+int ted4_dataset_scatter(ted4_dataset *d, const ted4_scatter_options *o, const ted4_parallel *p,
+                         ted4_scattered *what, ted4_message *m)
+{
+    ted4_shown s;
+    int        bad = ted4_shown_read(&s, d, m) != 0;
+
+    memset(what, 0, sizeof *what);
+    if (!bad && s.plain)
+        memcpy(d->background, s.background, sizeof d->background);
+
+    const size_t outside = bad ? 0 : drop_outside(d, o);
+
+    what->outside = d->random_points ? 0 : outside;
+    if (!bad && (d->random_points || d->n_points == 0 || (s.plain && !are_shown(&s, d)))) {
+        what->given = d->random_points ? 0 : d->n_points;
+        bad = replace(d, &s, o, p, &what->scattered, m) != 0;
+    }
+    if (!bad && d->n_points == 0)
+        bad = ted4_say(m, "no initial point lies inside the bounds, and pictures show nothing there");
+    ted4_shown_free(&s);
+    return bad ? -1 : 0;
+}

@@ -1,0 +1,34 @@
+/* transforms.h - one transforms file while load_transforms.c reads it.
+ * SPDX-License-Identifier: BSD-2-Clause */
+#ifndef TED4_TRANSFORMS_H
+#define TED4_TRANSFORMS_H
+
+#include "data/json_field.h"
+#include "data/raw_scene.h"
+
+typedef struct {
+    ted4_raw_scene *scene;
+    const char     *folder;
+    const char     *part;           /* "train", "val" or "test" of the file's name, else NULL */
+    char           *path;           /* owned */
+    json_t         *root;           /* owned */
+    const json_t   *frame;          /* the one being read; borrowed */
+    char            where[700];     /* "path: frames[i]" */
+    size_t         *shot_of;        /* [frames] index of a frame's shot, or NO_SHOT; owned */
+    int             is_test;
+    double          applied[12];    /* world of the file = applied * world of the dataset; 3x4 */
+    double          applied_scale;
+    ted4_message   *m;
+} ted4_transforms;
+
+/* Of a frame without a picture. */
+#define TED4_NO_SHOT SIZE_MAX
+
+/* transforms_lens.c: the lens of the frame that is being read; *l holds the picture's size. 0, or
+ * -1 with *m filled. */
+int ted4_transforms_lens(ted4_transforms *t, ted4_lens *l);
+
+/* Does a frame, or the top of a file, state a focal length in pixels? */
+int ted4_transforms_has_focal(const json_t *object);
+
+#endif

@@ -1,0 +1,254 @@
+/* test_clips.c - scenes of poses_bounds.npy and cams.json as they come: stills in place of clips,
+ * fewer clips than rows, clips that start at different times or have different lengths, and clips
+ * that lie anywhere.
+ * SPDX-License-Identifier: BSD-2-Clause */
+#include <math.h>
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <cmocka.h>
+
+#include "refuse.h"
+#include "tiny_scene.h"
+
+static ted4_dataset load(const tiny_folder *f, const ted4_dataset_options *o)
+{
+    ted4_dataset d;
+
+    assert_string_equal(tiny_load(&d, f, o), "");
+    return d;
+}
+
+/* poses_bounds.npy of n cameras at (i, 0, 0) for pictures of w x h. */
+static void write_table(const tiny_folder *f, int n, double w, double h)
+{
+    tiny_record r = { { 0 }, 0 };
+    char head[100];
+
+    snprintf(head, sizeof head, "{'descr': '<f8', 'fortran_order': False, 'shape': (%d, 17), }\n",
+             n);
+    memcpy(r.bytes, "\x93NUMPY\x01\0", r.n = 8);
+    tiny_put(&r, strlen(head), 2);
+    memcpy(r.bytes + r.n, head, strlen(head));
+    r.n += strlen(head);
+    for (int i = 0; i < n; i++) {
+        const double row[17] = { 0, 1, 0, i, h, 1, 0, 0, 0, w, 0, 0, -1, 0, 20, 1, 9 };
+        for (int k = 0; k < 17; k++)
+            tiny_put_real(&r, row[k]);
+    }
+    tiny_bytes(f, "poses_bounds.npy", r.bytes, r.n);
+}
+
+/* n pictures of that size in a folder of the scene; file i is DSC(10 i).JPG by name and a PNG by
+ * content, blue i. */
+static void write_stills(const tiny_folder *f, const char *folder, int n, int w, int h)
+{
+    for (int i = 0; i < n; i++) {
+        char name[64];
+        snprintf(name, sizeof name, "%s/DSC%04d.JPG", folder, 10 * i);
+        tiny_picture(f, name, w, h, i);
+    }
+}
+
+static int row_of(const ted4_dataset *d, size_t i)
+{
+    return (int)(0.5 - d->pictures[i].camera.t[0]);
+}
+
+static void check_stills(ted4_dataset *d, const char *folder, int w, double focal)
+{
+    assert_string_equal(d->layout, "LLFF");
+    assert_int_equal(d->n_pictures, 18);
+    assert_int_equal(d->n_frames, 1);
+    assert_int_equal(d->n_cameras, 18);
+    assert_true(d->rate == 0 && d->n_warnings == 0);
+    for (size_t i = 0; i < d->n_pictures; i++) {
+        const int row = row_of(d, i);
+        char name[64];
+        snprintf(name, sizeof name, "/%s/DSC%04d.JPG", folder, 10 * row);
+        assert_non_null(strstr(d->pictures[i].path, name));
+        assert_int_equal(d->pictures[i].is_test, row % 8 == 0);
+        assert_int_equal(d->pictures[i].camera.width, w);
+        assert_true(fabs(d->pictures[i].camera.fx - focal) < 1e-9);
+    }
+}
+
+static void test_stills(void **state)
+{
+    tiny_folder f = tiny_new();
+    ted4_dataset_options o = tiny_options;
+
+    (void)state;
+    write_table(&f, 18, 64, 48);
+    refuse(&f, "poses_bounds.npy", "18 rows, but 0 pictures in images/");
+    write_stills(&f, "images_4", 18, 16, 12);
+    ted4_dataset d = load(&f, &o);
+    check_stills(&d, "images_4", 16, 5);
+    ted4_dataset_free(&d);
+    write_stills(&f, "images", 18, 64, 48);
+    d = load(&f, &o);
+    check_stills(&d, "images", 64, 20);
+    ted4_dataset_free(&d);
+    o.downscale = 4;                    /* the copies that are there already */
+    d = load(&f, &o);
+    check_stills(&d, "images_4", 16, 5);
+    ted4_dataset_free(&d);
+    o.downscale = 2;
+    d = load(&f, &o);
+    check_stills(&d, "images", 32, 10);
+    ted4_dataset_free(&d);
+    must(remove(tiny_path(&f, "images/DSC0030.JPG")) == 0, "a still");
+    refuse(&f, "poses_bounds.npy", "18 rows, but 17 pictures in images/");
+    write_stills(&f, "images", 18, 63, 48);
+    refuse(&f, "images/DSC0010.JPG", "the file is 63x48, its camera says 64x48");
+    tiny_free(&f);
+}
+
+static void write_clip(const tiny_folder *f, const char *folder, int n)
+{
+    for (int i = 0; i < n; i++) {
+        char name[64];
+        snprintf(name, sizeof name, "%s/%d.png", folder, i);
+        tiny_picture(f, name, TINY_W, TINY_H, i);
+    }
+}
+
+/* Rows 0 to 4; of camera 2 there is no clip, and numbers say so. */
+static void test_rows(void **state)
+{
+    tiny_folder f = tiny_new();
+
+    (void)state;
+    write_table(&f, 5, TINY_W, TINY_H);
+    write_clip(&f, "cam00/images", 2), write_clip(&f, "cam01/images", 2),
+        write_clip(&f, "cam03/images", 2);
+    refuse(&f, "poses_bounds.npy", "5 rows, but 3 cameras");
+    write_clip(&f, "cam04/images", 2);
+    assert_int_equal(warned(&f, "1 of 5 entries has no picture: ", "row 2: no clip of number 2"),
+                     8);
+    ted4_dataset d = load(&f, &tiny_options);
+    for (size_t i = 0; i < d.n_pictures; i++)
+        assert_int_equal(row_of(&d, i), atoi(strstr(d.pictures[i].path, "/cam") + 4));
+    ted4_dataset_free(&d);
+    write_clip(&f, "cam04/images", 5);
+    d = load(&f, &tiny_options);
+    assert_int_equal(d.n_warnings, 2);
+    assert_int_equal(d.n_frames, 5);
+    ted4_dataset_free(&d);
+    tiny_free(&f);
+}
+
+/* A camera of cams.json with more fields. */
+#define CAMERA "\"w\": 16, \"h\": 12, \"K\": [[9,0,7.5],[0,9,5.5],[0,0,1]], \"w2c\": " TINY_POSE "}"
+
+/* Number of the picture of a camera at a frame; -1: none. */
+static int at(const ted4_dataset *d, const char *camera, uint32_t frame)
+{
+    for (size_t i = 0; i < d->n_pictures; i++)
+        if (d->pictures[i].frame == frame && strstr(d->pictures[i].path, camera) != NULL)
+            return atoi(strrchr(d->pictures[i].path, '/') + 1);
+    return -1;
+}
+
+static void test_starts(void **state)
+{
+    tiny_folder f = tiny_new();
+
+    (void)state;
+    write_clip(&f, "a/images", 12), write_clip(&f, "b/images", 12),
+        write_clip(&f, "takes/third", 10);
+    tiny_text(&f, "cams.json",
+              "{\"fps\": 30, \"cameras\": [{\"name\": \"a\", \"start\": -0.1, " CAMERA
+              ", {\"name\": \"b\", \"frame\": 2, " CAMERA ", {\"name\": \"c\", \"video\": "
+                                                          "\"takes/third\", " CAMERA "]}");
+    ted4_dataset d = load(&f, &tiny_options);
+    assert_int_equal(d.n_warnings, 0);
+    assert_int_equal(d.n_frames, 17);           /* a: 0 to 11, b: 5 to 16, c: 3 to 12 */
+    assert_int_equal(d.n_pictures, 34);
+    for (int k = 0; k < 17; k++) {
+        assert_int_equal(at(&d, "/a/", (uint32_t)k), k < 12 ? k : -1);
+        assert_int_equal(at(&d, "/b/", (uint32_t)k), k >= 5 ? k - 5 : -1);
+        assert_int_equal(at(&d, "/third/", (uint32_t)k), k >= 3 && k < 13 ? k - 3 : -1);
+    }
+    for (size_t i = 0; i < d.n_pictures; i++)
+        assert_int_equal(d.pictures[i].is_test, d.pictures[i].frame % 8 == 4);
+    ted4_dataset_free(&d);
+    /* The first five times of all, whoever has them. */
+    ted4_dataset_options o = tiny_options;
+    o.max_frames = 5;
+    d = load(&f, &o);
+    assert_int_equal(d.n_frames, 5);
+    assert_int_equal(d.n_pictures, 7);
+    ted4_dataset_free(&d);
+    tiny_text(&f, "cams.json",
+              "{\"fps\": 30, \"cameras\": [{\"name\": \"a\", \"start\": 0.05, " CAMERA
+              ", {\"name\": \"b\", " CAMERA "]}");
+    assert_int_equal(
+        warned(&f, "1 of 2 cameras start between two frames", "by up to 0.5 of a frame"), 24);
+    d = load(&f, &tiny_options);
+    assert_int_equal(d.n_frames, 14);           /* a begins at frame 2 */
+    ted4_dataset_free(&d);
+    tiny_text(&f, "cams.json",
+              "{\"cameras\": [{\"name\": \"a\", " CAMERA ", {\"name\": \"c\", \"video\": "
+                                                         "\"takes/third/\", " CAMERA "]}");
+    assert_int_equal(warned(&f, "clips have from 10 to 12 frames", "--max-frames 10"), 22);
+    tiny_free(&f);
+}
+
+/* Text that is no video is told from one, and no list of other files or addresses is followed. */
+static void test_playlists(void **state)
+{
+    static const char *const texts[] = { "#EXTM3U\n#EXT-X-VERSION:3\nx.ts\n",
+                                         "ffconcat version 1.0\nfile b.mp4\n",
+                                         "<?xml version=\"1.0\"?><MPD/>", "not a video", "" };
+    tiny_folder f = tiny_new();
+
+    (void)state;
+    tiny_text(&f, "cams.json", "{\"cameras\": [{\"name\": \"a\", " CAMERA "]}");
+    for (size_t i = 0; i < sizeof texts / sizeof texts[0]; i++) {
+        tiny_text(&f, "a.mp4", texts[i]);
+        refuse(&f, "a.mp4: ",
+               *texts[i] == 0 ? "empty, expected a video" : "text (a playlist?), expected a video");
+    }
+    tiny_free(&f);
+}
+
+/* The example of doc/layouts.md, with clips of 300 frames, is a scene. */
+static void test_example(void **state)
+{
+    static char text[16384];
+    tiny_folder f = tiny_new();
+    FILE *in = fopen("doc/layouts.md", "rb");
+
+    (void)state;
+    assert_non_null(in);
+    text[fread(text, 1, sizeof text - 1, in)] = 0;
+    fclose(in);
+    char *begin = strstr(text, "```json\n"), *end = begin == NULL ? NULL : strstr(begin + 8, "```");
+    assert_non_null(end);
+    *end = 0;
+    tiny_text(&f, "cams.json", begin + 8);
+    for (int i = 0; i < 600; i++) {
+        char name[64];
+        snprintf(name, sizeof name, "%s/%d.png", i % 2 ? "takes/GX010042.MP4" : "images/right",
+                 i / 2);
+        tiny_picture(&f, name, 16, 9, i);
+    }
+    ted4_dataset d = load(&f, &tiny_options);
+    assert_int_equal(d.n_warnings, 0);
+    assert_int_equal(d.n_frames, 312);
+    assert_int_equal(d.n_pictures, 600);
+    ted4_dataset_free(&d);
+    tiny_free(&f);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(test_stills),  cmocka_unit_test(test_rows),
+        cmocka_unit_test(test_starts),  cmocka_unit_test(test_playlists),
+        cmocka_unit_test(test_example),
+    };
+
+    return cmocka_run_group_tests_name("clips", tests, NULL, NULL);
+}

@@ -1,0 +1,196 @@
+/* test_missing.c - entries of a list whose picture is not there are left out, counted, and said
+ * once; a picture that is there and broken is an error all the same. Of every layout that lists
+ * pictures.
+ * SPDX-License-Identifier: BSD-2-Clause */
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <cmocka.h>
+
+#include "refuse.h"
+#include "tiny_scene.h"
+
+static void gone(const tiny_folder *f, const char *name)
+{
+    must(remove(tiny_path(f, name)) == 0, name);
+}
+
+/* 20 frames at as many times; camera_angle_x, and D-NeRF's names without extension where there are
+ * two files. */
+static void write_transforms(const tiny_folder *f, const char *file, const char *part, int first,
+                             int n, const char *more)
+{
+    tiny_string s = { "", 0 };
+
+    tiny_add(&s, "{\"camera_angle_x\": 1, %s \"frames\": [", more);
+    for (int i = first; i < first + n; i++) {
+        char name[64];
+        snprintf(name, sizeof name, "%s/r_%02d.png", part, i);
+        tiny_picture(f, name, TINY_W, TINY_H, i);
+        tiny_add(&s,
+                 "%s{\"file_path\": \"./%s/r_%02d\", \"time\": %g, \"transform_matrix\": "
+                 "[[1,0,0,%d],[0,1,0,0],[0,0,1,0],[0,0,0,1]]}",
+                 i > first ? "," : "", part, i, i / 19.0, i);
+    }
+    tiny_add(&s, "]}");
+    tiny_text(f, file, s.text);
+}
+
+static void test_transforms(void **state)
+{
+    tiny_folder f = tiny_new();
+    ted4_dataset d;
+
+    (void)state;
+    write_transforms(&f, "transforms_train.json", "train", 0, 16, "");
+    write_transforms(&f, "transforms_test.json", "test", 16, 4, "");
+    gone(&f, "train/r_03.png");
+    assert_int_equal(warned(&f, "1 of 20 entries has no picture: ",
+                            "transforms_train.json: frames[3]: ./train/r_03"),
+                     19);
+    gone(&f, "train/r_07.png"), gone(&f, "test/r_17.png");
+    assert_int_equal(warned(&f, "3 of 20 entries have no picture; the first: ",
+                            "transforms_train.json: frames[3]: ./train/r_03"),
+                     17);
+    /* What is left keeps its own time and pose. */
+    assert_string_equal(tiny_load(&d, &f, &tiny_options), "");
+    assert_string_equal(d.layout, "D-NeRF");
+    for (size_t i = 0; i < d.n_pictures; i++) {
+        const int number = atoi(strrchr(d.pictures[i].path, '_') + 1);
+        assert_int_equal(d.pictures[i].frame, number);
+        assert_true(d.pictures[i].camera.t[0] == -number);
+        assert_int_equal(d.pictures[i].is_test, number >= 16);
+    }
+    ted4_dataset_free(&d);
+    /* There and broken. */
+    tiny_text(&f, "train/r_05.png", "GIF89a.......");
+    refuse(&f, "transforms_train.json: frames[5]", "neither PNG nor JPEG");
+    for (int i = 0; i < 16; i++) {
+        char name[64];
+        snprintf(name, sizeof name, "train/r_%02d.png", i);
+        (void)remove(tiny_path(&f, name));
+    }
+    refuse(&f, "none is left to train on; 17 of 20 entries have no picture, the first: ",
+           "frames[0]: ./train/r_00");
+    tiny_free(&f);
+}
+
+/* Lists of names still mean what they mean when some of the frames before have no picture. */
+static void test_lists(void **state)
+{
+    tiny_folder f = tiny_new();
+    ted4_dataset d;
+
+    (void)state;
+    write_transforms(&f, "transforms.json", "images", 0, 8,
+                     "\"train_filenames\": [\"images/r_01\", \"images/r_02\", \"images/r_06\"],"
+                     "\"test_filenames\": [\"images/r_05\", \"images/r_00\"],");
+    gone(&f, "images/r_00.png"), gone(&f, "images/r_02.png"), gone(&f, "images/r_03.png");
+    assert_int_equal(warned(&f, "3 of 8 entries", "frames[0]: ./images/r_00"), 3);
+    assert_string_equal(tiny_load(&d, &f, &tiny_options), "");
+    assert_non_null(strstr(d.pictures[0].path, "r_01"));
+    assert_non_null(strstr(d.pictures[1].path, "r_06"));
+    assert_non_null(strstr(d.pictures[2].path, "r_05"));
+    assert_true(d.pictures[1].is_test == 0 && d.pictures[2].is_test == 1);
+    ted4_dataset_free(&d);
+    tiny_free(&f);
+}
+
+static void test_colmap(void **state)
+{
+    tiny_folder f = tiny_new();
+    tiny_string s = { "", 0 };
+    ted4_dataset d;
+
+    (void)state;
+    tiny_text(&f, "sparse/0/cameras.txt", "1 PINHOLE 16 12 9 9 8 6\n");
+    tiny_text(&f, "images/readme.txt", "");
+    for (int i = 0; i < 50; i++) {
+        char name[64];
+        snprintf(name, sizeof name, "images/p%02d.png", i);
+        tiny_add(&s, "%d 1 0 0 0 %d 0 0 1 p%02d.png\n\n", i + 1, i, i);
+        if (i % 3 != 1)
+            tiny_picture(&f, name, TINY_W, TINY_H, i);
+    }
+    tiny_text(&f, "sparse/0/images.txt", s.text);
+    assert_int_equal(
+        warned(&f, "17 of 50 entries have no picture; the first: COLMAP image \"p01.png\": ",
+               "images/p01.png"),
+        33);
+    /* Held out is every eighth of those that are there; numbers are times, and a gap is a gap no
+     * more than in other names. */
+    assert_string_equal(tiny_load(&d, &f, &tiny_options), "");
+    assert_int_equal(d.n_frames, 33);
+    assert_int_equal(d.pictures[32].is_test, 1);
+    assert_non_null(strstr(d.pictures[29].path, "p06.png"));
+    ted4_dataset_free(&d);
+    must(mkdir(tiny_path(&f, "images/p01.png"), 0777) == 0, "p01.png");
+    refuse(&f, "COLMAP image \"p01.png\"", "a folder, expected a picture");
+    tiny_free(&f);
+}
+
+static void test_hypernerf(void **state)
+{
+    static const char camera[] = "{\"orientation\": [[1,0,0],[0,1,0],[0,0,1]], \"position\": "
+                                 "[0,0,1], \"focal_length\": 9,"
+                                 "\"principal_point\": [8, 6], \"image_size\": [16, 12]}";
+    tiny_folder f = tiny_new();
+
+    (void)state;
+    tiny_text(&f, "dataset.json",
+              "{\"ids\": [\"a\", \"b\", \"c\"], \"train_ids\": [\"a\", \"b\"], \"val_ids\": "
+              "[\"c\"]}");
+    tiny_text(&f, "metadata.json",
+              "{\"a\": {\"warp_id\": 0}, \"b\": {\"warp_id\": 1}, \"c\": {\"warp_id\": 2}}");
+    tiny_text(&f, "camera/a.json", camera), tiny_text(&f, "camera/b.json", camera),
+        tiny_text(&f, "camera/c.json", camera);
+    tiny_picture(&f, "rgb/1x/a.png", TINY_W, TINY_H, 0),
+        tiny_picture(&f, "rgb/1x/c.png", TINY_W, TINY_H, 0);
+    assert_int_equal(warned(&f, "1 of 3 entries has no picture: ", "dataset.json: \"b\": "), 2);
+    gone(&f, "rgb/1x/a.png"), gone(&f, "rgb/1x/c.png");
+    refuse(&f, "none of 3 entries has a picture; the first: ", "dataset.json: \"a\": ");
+    tiny_free(&f);
+}
+
+/* A camera of which no clip is there: the others keep their poses. */
+static void test_calibration(void **state)
+{
+    tiny_folder f = tiny_new();
+    tiny_string s = { "", 0 };
+    ted4_dataset d;
+
+    (void)state;
+    tiny_add(&s, "{\"cameras\": [");
+    for (int i = 0; i < 4; i++) {
+        char name[64];
+        tiny_add(&s,
+                 "%s{\"name\": \"eye%d\", \"w\": 16, \"h\": 12, \"K\": [[9,0,8],[0,9,6],[0,0,1]],"
+                 "\"w2c\": [[1,0,0,%d],[0,1,0,0],[0,0,1,0],[0,0,0,1]]}",
+                 i > 0 ? "," : "", i, i);
+        for (int k = 0; k < 3 && i != 1; k++) {
+            snprintf(name, sizeof name, "eye%d/images/%d.png", i, k);
+            tiny_picture(&f, name, TINY_W, TINY_H, k);
+        }
+    }
+    tiny_add(&s, "]}");
+    tiny_text(&f, "cams.json", s.text);
+    assert_int_equal(
+        warned(&f, "1 of 4 entries has no picture: ", "cams.json: cameras[1]: eye1: no such video"),
+        9);
+    assert_string_equal(tiny_load(&d, &f, &tiny_options), "");
+    assert_int_equal(d.n_cameras, 3);
+    assert_true(d.pictures[3].camera.t[0] == 2);
+    ted4_dataset_free(&d);
+    tiny_free(&f);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(test_transforms),  cmocka_unit_test(test_lists),
+        cmocka_unit_test(test_colmap),      cmocka_unit_test(test_hypernerf),
+        cmocka_unit_test(test_calibration),
+    };
+
+    return cmocka_run_group_tests_name("missing pictures", tests, NULL, NULL);
+}

@@ -1,0 +1,252 @@
+/* test_scatter.c - data/shown.h, data/sweep.h and data/scatter.h: what a plain background is; points lie where pictures show something, and at the depth at which they
+ * agree; points that help stay.
+ * SPDX-License-Identifier: BSD-2-Clause */
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+#include <cmocka.h>
+
+#include "ball_trainer.h"
+#include "data/scatter.h"
+#include "data/shown.h"
+#include "data/sweep.h"
+#include "tool/threads.h"
+#include "train/random.h"
+
+enum { FRAMES = 3 };
+
+static tiny_folder  folder;
+static ted4_dataset balls;
+
+static int set_up(void **state)
+{
+    ted4_message m;
+
+    (void)state;
+    ball_load(&folder, &balls, FRAMES, 0);
+    assert_int_equal(ted4_dataset_verify(&balls, NULL, &m), 0);
+    return 0;
+}
+
+static int tear_down(void **state)
+{
+    (void)state;
+    ted4_dataset_free(&balls);
+    tiny_free(&folder);
+    return 0;
+}
+
+/* Distance from the nearest surface of a ball, in radii. */
+static double beside(const float *p)
+{
+    double best = INFINITY;
+
+    for (int k = 0; k < BALLS; k++) {
+        const ball b = ball_at(k, 0);
+        const double x = (double)p[0] - b.centre[0], y = (double)p[1] - b.centre[1], z = (double)p[2] - b.centre[2];
+
+        best = fmin(best, fabs(sqrt(x * x + y * y + z * z) / b.radius - 1));
+    }
+    return best;
+}
+
+static size_t count_near(const ted4_dataset *d, double most)
+{
+    size_t n = 0;
+
+    for (size_t i = 0; i < d->n_points; i++)
+        n += beside(d->points + 3 * i) < most;
+    return n;
+}
+
+/* A scene whose points are somebody else's: so many times as far from the middle as the balls. */
+static void load(ted4_dataset *d, tiny_folder *f, double times)
+{
+    ted4_message m;
+
+    ball_load(f, d, FRAMES, 0);
+    for (size_t i = 0; times > 0 && i < 3 * d->n_points; i++)
+        d->points[i] = (float)(times * (2 * (double)ted4_uniform(7, i) - 1));
+    assert_int_equal(ted4_dataset_verify(d, NULL, &m), 0);
+}
+
+static void unload(ted4_dataset *d, tiny_folder *f)
+{
+    ted4_dataset_free(d);
+    tiny_free(f);
+}
+
+static ted4_scattered scatter(ted4_dataset *d, const ted4_parallel *p)
+{
+    const ted4_scatter_options o = { .seed = 1 };
+    ted4_scattered what;
+    ted4_message   m;
+
+    if (ted4_dataset_scatter(d, &o, p, &what, &m) != 0)
+        fail_msg("%s", m.text);
+    return what;
+}
+
+static void test_shown(void **state)
+{
+    const ball   b = ball_at(0, 0);
+    const double nowhere[3] = { 0, 0, 1e6 };
+    ted4_message m;
+    ted4_shown   s;
+    int          seen, shown;
+    size_t       n = 0;
+
+    (void)state;
+    for (size_t i = 0; i < balls.n_pictures; i++)
+        n += !balls.pictures[i].is_test;
+    assert_true(n < balls.n_pictures);
+    assert_int_equal(ted4_shown_read(&s, &balls, &m), 0);
+    assert_true(s.plain && s.n == n);
+    assert_true(s.background[0] == 0 && s.background[1] == 0 && s.background[2] == 0);
+    ted4_shown_count(&s, b.centre, &seen, &shown);
+    assert_true(seen == shown && seen == (int)s.n);
+    ted4_shown_count(&s, nowhere, &seen, &shown);
+    assert_int_equal(shown, 0);
+    ted4_shown_free(&s);
+}
+
+/* The depth of a pixel that shows a ball is that of the ball's front. */
+static void test_sweep(void **state)
+{
+    ted4_message m;
+    ted4_shown   s;
+    ted4_sweep   w;
+    size_t       found = 0, near = 0;
+
+    (void)state;
+    assert_int_equal(ted4_shown_read(&s, &balls, &m), 0);
+    ted4_sweep_begin(&w, &s, 4, 1, 12);
+    for (size_t i = 0; i < s.n; i++) {
+        assert_in_range(w.n_helpers[i], 2, BALL_CAMERAS - 1);
+        for (int h = 0; h < w.n_helpers[i]; h++)
+            assert_true(balls.pictures[s.picture[w.helper[i][h]]].frame == balls.pictures[s.picture[i]].frame);
+        for (size_t pixel = 0; pixel < BALL_W * BALL_H; pixel++) {
+            double world[3];
+
+            if (!ted4_shown_at(&s, i, pixel) || !ted4_sweep_pixel(&w, i, pixel, 0.5, world))
+                continue;
+            const float p[3] = { (float)world[0], (float)world[1], (float)world[2] };
+
+            found++;
+            near += beside(p) < 0.5;
+        }
+    }
+    print_message("%zu pixels have a depth, %zu near a surface\n", found, near);
+    assert_true(found >= 100 && 4 * near >= 3 * found);
+    ted4_shown_free(&s);
+}
+
+/* Points in space ten times as wide as the things: others take their place, the same ones however many threads look for them. */
+static void test_useless(void **state)
+{
+    ted4_dataset  one, two;
+    tiny_folder   f[2];
+    ted4_parallel p;
+
+    (void)state;
+    load(&one, &f[0], 10);
+    load(&two, &f[1], 30);
+    ted4_threads_init(&p, 3);
+
+    const ted4_scattered a = scatter(&one, NULL), b = scatter(&two, &p);
+
+    assert_int_equal(a.given, BALLS * BALL_POINTS);
+    assert_true(a.scattered > 1000 && a.scattered == one.n_points && one.random_points);
+    assert_true(b.scattered == a.scattered);
+    assert_memory_equal(one.points, two.points, 3 * one.n_points * sizeof *one.points);
+    print_message("%zu points, %zu near a surface\n", one.n_points, count_near(&one, 1.0));
+    assert_true(2 * count_near(&one, 1.0) > one.n_points);
+    ted4_threads_finish(&p);
+    unload(&one, &f[0]);
+    unload(&two, &f[1]);
+}
+
+/* Points on things are left alone. */
+static void test_useful(void **state)
+{
+    ted4_dataset d;
+    tiny_folder  f;
+
+    (void)state;
+    load(&d, &f, 0);
+
+    const uint64_t       before = ted4_dataset_digest(&d);
+    const ted4_scattered what = scatter(&d, NULL);
+
+    assert_true(what.given == 0 && what.scattered == 0 && !d.random_points);
+    assert_true(ted4_dataset_digest(&d) == before);
+    unload(&d, &f);
+}
+
+/* Held-out pictures are not looked at: without their files it is the same. */
+static void test_held_out(void **state)
+{
+    ted4_dataset d, same;
+    tiny_folder  f, g;
+
+    (void)state;
+    load(&d, &f, 10);
+    load(&same, &g, 10);
+    for (size_t i = d.n_pictures - BALL_CAMERAS; i < d.n_pictures; i++) {
+        d.pictures[i].is_test = same.pictures[i].is_test = 1;
+        for (int k = 0; k < 3; k++)
+            d.pictures[i].camera.t[k] += 5;
+    }
+    assert_true(scatter(&d, NULL).scattered == scatter(&same, NULL).scattered);
+    assert_memory_equal(d.points, same.points, 3 * d.n_points * sizeof *d.points);
+    unload(&d, &f);
+    unload(&same, &g);
+}
+
+/* All points lie inside the bounds, those that came with the scene and those in their place; where there can be none, that is said. */
+static void test_bounds(void **state)
+{
+    const ball           b = ball_at(0, 0);
+    ted4_scatter_options o = { .seed = 1, .bounded = 1 };
+
+    (void)state;
+    for (int k = 0; k < 3; k++) {
+        o.low[k] = (float)(b.centre[k] - 1.1 * b.radius);
+        o.high[k] = (float)(b.centre[k] + 1.1 * b.radius);
+    }
+    for (int useful = 0; useful < 3; useful++) {
+        ted4_dataset   d;
+        tiny_folder    f;
+        ted4_scattered what;
+        ted4_message   m;
+
+        load(&d, &f, useful == 1 ? 0 : 10);
+        if (useful == 2)
+            o.low[0] = o.high[0] = 1e5f;
+        assert_int_equal(ted4_dataset_scatter(&d, &o, NULL, &what, &m), useful == 2 ? -1 : 0);
+        if (useful == 1)
+            assert_true(what.scattered == 0 && d.n_points >= BALL_POINTS &&
+                        d.n_points + what.outside == BALLS * BALL_POINTS);
+        else
+            assert_true((what.scattered > 0) == (useful == 0));
+        for (size_t i = 0; useful < 2 && i < 3 * d.n_points; i++)
+            assert_true(d.points[i] >= o.low[i % 3] && d.points[i] <= o.high[i % 3]);
+        if (useful == 2)
+            assert_non_null(strstr(m.text, "no initial point lies inside the bounds"));
+        unload(&d, &f);
+    }
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(test_shown),   cmocka_unit_test(test_sweep),    cmocka_unit_test(test_useless),
+        cmocka_unit_test(test_useful),  cmocka_unit_test(test_held_out), cmocka_unit_test(test_bounds),
+    };
+
+    return cmocka_run_group_tests_name("scatter", tests, set_up, tear_down);
+}

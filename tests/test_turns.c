@@ -1,0 +1,191 @@
+/* test_turns.c - train/turns.h: cameras that take turns, one picture a time. A ball that no initial point stands for is found from the pictures of several times.
+ * SPDX-License-Identifier: BSD-2-Clause */
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <stdlib.h>
+#include <string.h>
+#include <cmocka.h>
+
+#include "ball_trainer.h"
+#include "train/sprout.h"
+#include "train/transient.h"
+#include "train/turns.h"
+
+enum { BLUE = 2, SPEED = 2, FRAMES = 24, STEPS = 80 };  /* the blue ball moves by 0.3 of its radius a frame */
+
+static tiny_folder  folder;
+static ted4_dataset balls;
+
+static int set_up(void **state)
+{
+    size_t n = 0;
+
+    (void)state;
+    ball_load(&folder, &balls, FRAMES, SPEED);
+    for (size_t i = 0; i < balls.n_points; i++) {
+        if (balls.point_rgb[3 * i + 2] > 200)
+            continue;
+        memmove(balls.points + 3 * n, balls.points + 3 * i, 3 * sizeof *balls.points);
+        memmove(balls.point_rgb + 3 * n++, balls.point_rgb + 3 * i, 3);
+    }
+    balls.n_points = n;
+    return 0;
+}
+
+static int tear_down(void **state)
+{
+    (void)state;
+    ted4_dataset_free(&balls);
+    tiny_free(&folder);
+    return 0;
+}
+
+/* At frame f only camera f % cameras takes a picture, and none where f % gap is not 0. */
+static void take_turns(uint32_t cameras, uint32_t gap)
+{
+    for (size_t i = 0; i < balls.n_pictures; i++) {
+        const ted4_picture *p = &balls.pictures[i];
+
+        balls.pictures[i].is_test = p->camera_id != p->frame % cameras || p->frame % gap != 0;
+    }
+}
+
+static ted4_train_options options(void)
+{
+    ted4_train_options o = ball_options();
+
+    o.sprouts = 0.5;
+    o.max_anchors = 400;
+    return o;
+}
+
+static int reach_of(uint32_t cameras, uint32_t gap)
+{
+    const ted4_train_options o = options();
+    ted4_trainer t;
+    int          reach;
+
+    take_turns(cameras, gap);
+    ball_begin(&t, &o, &balls, NULL);
+    reach = ted4_turns_reach(&t);
+    ted4_trainer_finish(&t);
+    return reach;
+}
+
+/* Four cameras in turn are all in five frames, every other frame alone in nine; two never are four, however often they look. */
+static void test_reach(void **state)
+{
+    const ted4_train_options o = options();
+    ted4_trainer t;
+
+    (void)state;
+    for (size_t i = 0; i < balls.n_pictures; i++)
+        balls.pictures[i].is_test = 0;
+    ball_begin(&t, &o, &balls, NULL);
+    assert_int_equal(ted4_turns_reach(&t), 0);
+    ted4_trainer_finish(&t);
+    assert_int_equal(reach_of(4, 1), 2);
+    assert_int_equal(reach_of(3, 1), -1);
+    assert_int_equal(reach_of(2, 1), -1);
+    assert_int_equal(reach_of(1, 1), -1);
+}
+
+static void test_apart(void **state)
+{
+    static const float a[3] = { 0, 0, -2 }, b[3] = { 0.09f, 0, -2 }, c[3] = { 0.11f, 0, -2 };
+    static const float middle[3] = { 0, 0, 0 }, beside[3] = { 0.02f, 0, 0 };
+
+    (void)state;
+    assert_false(ted4_turns_apart(a, a));
+    assert_false(ted4_turns_apart(a, b));
+    assert_true(ted4_turns_apart(a, c));
+    assert_false(ted4_turns_apart(middle, middle));
+    assert_true(ted4_turns_apart(middle, beside));
+}
+
+/* Distance of a point from the middle of the blue ball at a frame, in radii. */
+static double radii(const ted4_trainer *t, const float *p, double frame)
+{
+    const ball b = ball_at(BLUE, SPEED * frame / (FRAMES - 1));
+    double     square = 0;
+
+    for (int k = 0; k < 3; k++) {
+        const double x = (double)t->layout.head.origin[k] + ldexp((double)p[k], t->layout.head.exponent);
+
+        square += (x - b.centre[k]) * (x - b.centre[k]);
+    }
+    return sqrt(square) / b.radius;
+}
+
+/* New anchors live for a while, and most of them where the ball is in the middle of that time. */
+static void test_found(void **state)
+{
+    const ted4_train_options o = options();
+    ted4_trainer t;
+    size_t       n = 0, near = 0;
+
+    (void)state;
+    take_turns(4, 1);
+    ball_begin(&t, &o, &balls, NULL);
+    ball_train(&t, STEPS);
+
+    const size_t before = t.anchors.n;
+
+    if (ted4_sprout(&t) != 0)
+        fail_msg("%s", t.message.text);
+    for (size_t i = 0; i < t.anchors.n; i++) {
+        const int first = t.layout.first[TED4_TAU];
+        float     p[3];
+
+        if (!ted4_is_transient(&t, i))
+            continue;
+        for (int k = 0; k < 3; k++)
+            p[k] = *ted4_cell(&t.anchors, TED4_ROW_POSITION, i, k);
+
+        const float from = *ted4_cell(&t.anchors, TED4_ROW_VALUE, i, first);
+        const float to = *ted4_cell(&t.anchors, TED4_ROW_VALUE, i, first + 2);
+
+        near += radii(&t, p, 0.5 * (double)(from + to) * (FRAMES - 1)) < 1.7;
+        n++;
+    }
+    print_message("%zu new anchors, %zu with short lives, %zu on the ball\n", t.anchors.n - before, n, near);
+    assert_true(t.anchors.n >= before + 20 && n >= t.anchors.n - before && 2 * near > n);
+    ted4_trainer_finish(&t);
+}
+
+/* They come before the probe asks whether time is needed; with several cameras at a time, after it. */
+static void test_schedule(void **state)
+{
+    const ted4_train_options o = options();
+
+    (void)state;
+    for (int turns = 0; turns < 2; turns++) {
+        const uint64_t at = (uint64_t)((turns ? 0.2 : 0.3) * (double)o.stage1);
+        ted4_trainer   t;
+
+        for (size_t i = 0; i < balls.n_pictures; i++)
+            balls.pictures[i].is_test = 0;
+        if (turns)
+            take_turns(4, 1);
+        ball_begin(&t, &o, &balls, NULL);
+        ball_train(&t, at - 1);
+        assert_int_equal(t.anchors.n + ted4_schedule_room(&t), 200);
+        ball_train(&t, at + 1);
+        assert_int_equal(t.anchors.n + ted4_schedule_room(&t), 400);
+        ted4_trainer_finish(&t);
+    }
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(test_reach),
+        cmocka_unit_test(test_apart),
+        cmocka_unit_test(test_found),
+        cmocka_unit_test(test_schedule),
+    };
+
+    return cmocka_run_group_tests_name("turns", tests, set_up, tear_down);
+}
