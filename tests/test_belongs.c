@@ -1,4 +1,5 @@
-/* test_belongs.c - which files ted4eval takes to be of which scenes, and which pictures its sheet shows.
+/* test_belongs.c - which files ted4eval takes to be of which scenes, and which pictures its sheet
+ * shows.
  * SPDX-License-Identifier: BSD-2-Clause */
 #include <math.h>
 #include <setjmp.h>
@@ -20,17 +21,29 @@ typedef struct {
     ted4_picture picture[MOST];
 } pair;
 
-/* Cameras on a circle of 10 around the origin that look at it, and a file of a cube there, 4 wide. */
+/* Cameras on a circle of 10 around the origin that look at it, and a file of a cube there, 4
+ * wide. */
 static void make_pair(pair *p)
 {
     memset(p, 0, sizeof *p);
-    p->d = (ted4_dataset){ .pictures = p->picture, .n_pictures = CAMERAS, .n_frames = FRAMES, .n_cameras = CAMERAS, .rate = 30 };
+    p->d = (ted4_dataset){ .pictures = p->picture,
+                           .n_pictures = CAMERAS,
+                           .n_frames = FRAMES,
+                           .n_cameras = CAMERAS,
+                           .rate = 30 };
     for (int i = 0; i < CAMERAS; i++) {
         const double a = 2 * 3.14159265358979 * i / CAMERAS;
 
         /* Forward is the third row: towards the origin. */
-        p->picture[i].camera = (ted4_camera){ .width = 80, .height = 60, .fx = 80, .fy = 80, .cx = 40, .cy = 30,
-                                              .R = { -sin(a), cos(a), 0, 0, 0, -1, -cos(a), -sin(a), 0 }, .t = { 0, 0, 10 } };
+        p->picture[i].camera =
+            (ted4_camera){ .width = 80,
+                           .height = 60,
+                           .fx = 80,
+                           .fy = 80,
+                           .cx = 40,
+                           .cy = 30,
+                           .R = { -sin(a), cos(a), 0, 0, 0, -1, -cos(a), -sin(a), 0 },
+                           .t = { 0, 0, 10 } };
     }
     p->file.frames = FRAMES;
     p->file.rate_num = 30;
@@ -105,13 +118,16 @@ static void test_pictures(void **state)
     assert_non_null(strstr(why, "dB further"));
 }
 
-/* n pictures of so many cameras, camera by camera, each at other times; every second camera is held out. */
+/* n pictures of so many cameras, camera by camera, each at other times; every second camera is held
+ * out. */
 static void add_pictures(pair *p, uint32_t cameras, uint32_t times)
 {
     p->d.n_pictures = 0;
     for (uint32_t c = 0; c < cameras; c++)
         for (uint32_t f = 0; f < times; f++)
-            p->picture[p->d.n_pictures++] = (ted4_picture){ .camera = { .width = 8, .height = 6 }, .frame = f, .camera_id = c, .is_test = c % 2 };
+            p->picture[p->d.n_pictures++] = (ted4_picture){
+                .camera = { .width = 8, .height = 6 }, .frame = f, .camera_id = c, .is_test = c % 2
+            };
 }
 
 static void expect_rows(const pair *p, int test, size_t n, const size_t *want)
@@ -129,7 +145,8 @@ static void test_sheet(void **state)
 
     (void)state;
     make_pair(&p);
-    /* Six held-out cameras, 1 3 5 7 9 11 of 8 times each: the first, the last and two between, ever later. */
+    /* Six held-out cameras, 1 3 5 7 9 11 of 8 times each: the first, the last and two between, ever
+     * later. */
     add_pictures(&p, CAMERAS, FRAMES);
     expect_rows(&p, 1, 4, (size_t[]){ 8, 3 * 8 + 2, 7 * 8 + 4, 11 * 8 + 7 });
     expect_rows(&p, 0, 4, (size_t[]){ 0, 2 * 8 + 2, 6 * 8 + 4, 10 * 8 + 7 });
@@ -154,7 +171,9 @@ static void test_sheet(void **state)
 
 int main(void)
 {
-    const struct CMUnitTest tests[] = { cmocka_unit_test(test_scene), cmocka_unit_test(test_pictures), cmocka_unit_test(test_sheet) };
+    const struct CMUnitTest tests[] = { cmocka_unit_test(test_scene),
+                                        cmocka_unit_test(test_pictures),
+                                        cmocka_unit_test(test_sheet) };
 
     return cmocka_run_group_tests_name("belongs", tests, NULL, NULL);
 }

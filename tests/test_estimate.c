@@ -1,5 +1,6 @@
-/* test_estimate.c - how long a training is said to take, on recorded runs: their logs have a line for many steps, and the steps between two lines are taken to last
- * equally long, but for what a probe, trials and sprouts took on top.
+/* test_estimate.c - how long a training is said to take, on recorded runs: their logs have a line
+ * for many steps, and the steps between two lines are taken to last equally long, but for what a
+ * probe, trials and sprouts took on top.
  * SPDX-License-Identifier: BSD-2-Clause */
 #include <math.h>
 #include <setjmp.h>
@@ -13,7 +14,8 @@
 #include "estimate_runs.h"
 #include "tool/estimate.h"
 
-/* As the schedule has it; trials at these shares of stage 2, which are believed to take so many steps. */
+/* As the schedule has it; trials at these shares of stage 2, which are believed to take so many
+ * steps. */
 #define PROBE_AT   0.25
 #define SPROUT_AT  0.3
 #define DECIDE_AT  0.15
@@ -51,10 +53,12 @@ static void look(replay *p, double seconds)
     p->looks++;
     p->worst = fmax(p->worst, fabs(left / truth - 1.0));
     if (fabs(left / truth - 1.0) > NEAR)
-        fail_msg("%s: at step %.0f, %.1f s of %.1f: %.1f s left, said %.1f", p->run->name, p->w.step, p->clock, whole(p->run), truth, left);
+        fail_msg("%s: at step %.0f, %.1f s of %.1f: %.1f s left, said %.1f", p->run->name,
+                 p->w.step, p->clock, whole(p->run), truth, left);
 }
 
-/* What one step does on top of itself: so many looks at spent steps of a budget, of which the work is done in so many seconds. */
+/* What one step does on top of itself: so many looks at spent steps of a budget, of which the work
+ * is done in so many seconds. */
 static void long_step(replay *p, int probing, double budget, double spent, double seconds)
 {
     const double begin = p->w.step;
@@ -78,15 +82,20 @@ static int between(double x, double from, double to)
     return x > from && x <= to;
 }
 
-/* The steps to the next line, with what is due among them. pace: seconds of a step as it was before. */
+/* The steps to the next line, with what is due among them. pace: seconds of a step as it was
+ * before. */
 static double go(replay *p, const run_line *to, double pace)
 {
     const recorded_run *r = p->run;
     const double        from = p->w.step, seconds = to->seconds - p->clock, n = to->step - from;
-    const double        probe_at = PROBE_AT * r->stage1, decide_at = r->stage1 + DECIDE_AT * r->stage2, integer_at = r->stage1 + INTEGER_AT * r->stage2;
-    const int           probes = r->probe > 0 && between(probe_at + r->probe, from, to->step), sprouts = between(SPROUT_AT * r->stage1 + 1, from, to->step);
-    const int           decides = between(decide_at + 1, from, to->step), prunes = between(integer_at + 1, from, to->step);
-    const double        extra = probes ? fmin((n + r->probe) * pace, seconds) : n * pace, more = fmax(seconds - extra, 0.0);
+    const double probe_at = PROBE_AT * r->stage1, decide_at = r->stage1 + DECIDE_AT * r->stage2,
+                 integer_at = r->stage1 + INTEGER_AT * r->stage2;
+    const int probes = r->probe > 0 && between(probe_at + r->probe, from, to->step),
+              sprouts = between(SPROUT_AT * r->stage1 + 1, from, to->step);
+    const int decides = between(decide_at + 1, from, to->step),
+              prunes = between(integer_at + 1, from, to->step);
+    const double extra = probes ? fmin((n + r->probe) * pace, seconds) : n * pace,
+                 more = fmax(seconds - extra, 0.0);
 
     if (probes) {
         long_step(p, 1, 2 * r->probe, 2 * r->probe, 2 * r->probe * pace);
@@ -97,8 +106,10 @@ static double go(replay *p, const run_line *to, double pace)
         long_step(p, 0, decides ? SEARCH : LAST, decides ? r->search : LAST, more);
     }
 
-    /* The step that sprouts come with takes what is left over, and more anchors are there from then on. */
-    const double left = to->seconds - p->clock, steps = to->step - p->w.step, rest = sprouts ? fmax(left - steps * pace, 0.0) : 0.0;
+    /* The step that sprouts come with takes what is left over, and more anchors are there from then
+     * on. */
+    const double left = to->seconds - p->clock, steps = to->step - p->w.step,
+                 rest = sprouts ? fmax(left - steps * pace, 0.0) : 0.0;
 
     while (p->w.step < to->step) {
         const int here = sprouts && p->w.step == SPROUT_AT * r->stage1;
@@ -119,8 +130,15 @@ static void test_runs(void **state)
         double              pace = r->line[0].seconds / r->line[0].step;
 
         ted4_estimate_begin(&p.e);
-        p.w = (ted4_work){ .stage1 = r->stage1, .stage2 = r->stage2, .first_growth = 0.05, .sprout_at = SPROUT_AT, .sprouts = r->sprouts,
-                           .most_anchors = r->most_anchors, .probe = r->probe, .trials = SEARCH + LAST, .anchors = r->line[0].anchors };
+        p.w = (ted4_work){ .stage1 = r->stage1,
+                           .stage2 = r->stage2,
+                           .first_growth = 0.05,
+                           .sprout_at = SPROUT_AT,
+                           .sprouts = r->sprouts,
+                           .most_anchors = r->most_anchors,
+                           .probe = r->probe,
+                           .trials = SEARCH + LAST,
+                           .anchors = r->line[0].anchors };
         for (int i = 0; i < r->n; i++)
             pace = go(&p, &r->line[i], pace);
         printf("%s: %d looks, at most %.0f %% off\n", r->name, p.looks, 100 * p.worst);
@@ -130,7 +148,12 @@ static void test_runs(void **state)
 
 static ted4_work plain(void)
 {
-    return (ted4_work){ .stage1 = 1000, .stage2 = 0, .first_growth = 0.05, .sprout_at = 0.3, .most_anchors = 100, .anchors = 100 };
+    return (ted4_work){ .stage1 = 1000,
+                        .stage2 = 0,
+                        .first_growth = 0.05,
+                        .sprout_at = 0.3,
+                        .most_anchors = 100,
+                        .anchors = 100 };
 }
 
 /* Nothing is known before there were steps, and nothing is said before there were a hundred. */
@@ -175,7 +198,9 @@ static void test_disturbed(void **state)
 
 int main(void)
 {
-    const struct CMUnitTest tests[] = { cmocka_unit_test(test_beginning), cmocka_unit_test(test_disturbed), cmocka_unit_test(test_runs) };
+    const struct CMUnitTest tests[] = { cmocka_unit_test(test_beginning),
+                                        cmocka_unit_test(test_disturbed),
+                                        cmocka_unit_test(test_runs) };
 
     return cmocka_run_group_tests_name("estimate", tests, NULL, NULL);
 }

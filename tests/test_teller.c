@@ -1,4 +1,5 @@
-/* test_teller.c - what a program says while it works: its lines, when they come, and that quiet is quiet. Standard error of this program is a file meanwhile.
+/* test_teller.c - what a program says while it works: its lines, when they come, and that quiet is
+ * quiet. Standard error of this program is a file meanwhile.
  * SPDX-License-Identifier: BSD-2-Clause */
 #include <fcntl.h>
 #include <setjmp.h>
@@ -44,7 +45,8 @@ static void end_capture(capture c)
 
 static void pause_s(double seconds)
 {
-    const struct timespec t = { (time_t)seconds, (long)(1e9 * (seconds - (double)(time_t)seconds)) };
+    const struct timespec t = { (time_t)seconds,
+                                (long)(1e9 * (seconds - (double)(time_t)seconds)) };
 
     nanosleep(&t, NULL);
 }
@@ -78,8 +80,17 @@ static void expect_line(const ted4_facts *f, double clock, double since, const c
 
 static void test_lines(void **state)
 {
-    ted4_facts f = { .kind = TED4_TELL_TRAINING, .step = 2700, .total = 14000, .stage = "1", .share = -1, .loss = 0.05, .psnr = -1, .bytes = -1, .ms = -1,
-                     .anchors = 3900, .left = -1 };
+    ted4_facts f = { .kind = TED4_TELL_TRAINING,
+                     .step = 2700,
+                     .total = 14000,
+                     .stage = "1",
+                     .share = -1,
+                     .loss = 0.05,
+                     .psnr = -1,
+                     .bytes = -1,
+                     .ms = -1,
+                     .anchors = 3900,
+                     .left = -1 };
 
     (void)state;
     expect_line(&f, 100, 0, "2700/14000 stage 1  loss 0.05000  anchors 3900");
@@ -88,15 +99,21 @@ static void test_lines(void **state)
     f.ms = 12.34;
     f.left = 90;
     f.when = 80;
-    expect_line(&f, 100, 0, "2700/14000 stage 1  loss 0.05000  psnr 25.12  anchors 3900  bytes 34868  12.3 ms/step  70 s left");
+    expect_line(&f, 100, 0,
+                "2700/14000 stage 1  loss 0.05000  psnr 25.12  anchors 3900  bytes 34868  12.3 "
+                "ms/step  70 s left");
     f.train_psnr = 1;
     f.share = 0.333;
     f.stage = "trials of smaller models";
     expect_line(&f, 300, 0,
-                "2700/14000 trials of smaller models: 33 %  loss 0.05000  train psnr 25.12  anchors 3900  bytes 34868  12.3 ms/step  1 s left");
-    expect_line(&(ted4_facts){ .kind = TED4_TELL_UNPACKING, .name = "cam00.mp4", .step = 120 }, 0, 7, "unpacking cam00.mp4: 120 frames");
-    expect_line(&(ted4_facts){ .kind = TED4_TELL_LOADING, .name = "a/b" }, 0, 7, "loading a/b, 7 s so far");
-    expect_line(&(ted4_facts){ .kind = TED4_TELL_CODING }, 0, 7, "coding and checking the file, 7 s so far");
+                "2700/14000 trials of smaller models: 33 %  loss 0.05000  train psnr 25.12  "
+                "anchors 3900  bytes 34868  12.3 ms/step  1 s left");
+    expect_line(&(ted4_facts){ .kind = TED4_TELL_UNPACKING, .name = "cam00.mp4", .step = 120 }, 0,
+                7, "unpacking cam00.mp4: 120 frames");
+    expect_line(&(ted4_facts){ .kind = TED4_TELL_LOADING, .name = "a/b" }, 0, 7,
+                "loading a/b, 7 s so far");
+    expect_line(&(ted4_facts){ .kind = TED4_TELL_CODING }, 0, 7,
+                "coding and checking the file, 7 s so far");
     expect_line(&(ted4_facts){ 0 }, 0, 7, "");
 }
 
@@ -109,7 +126,8 @@ static int count(const char *what)
     return n;
 }
 
-/* A thread of its own says what goes on, while the caller does nothing; the pause grows when training begins. */
+/* A thread of its own says what goes on, while the caller does nothing; the pause grows when
+ * training begins. */
 static void test_thread(void **state)
 {
     const capture c = begin_capture();
@@ -153,7 +171,8 @@ static void test_show_and_quiet(void **state)
         if (quiet)
             assert_string_equal(said, "tool: trouble\n");
         else
-            assert_true(count("tool: words\n") == 1 && count("tool: coding") >= 2 && count("tool: trouble\n") == 1);
+            assert_true(count("tool: words\n") == 1 && count("tool: coding") >= 2 &&
+                        count("tool: trouble\n") == 1);
     }
 }
 
@@ -171,13 +190,15 @@ static void test_terminal(void **state)
     ted4_teller_say(&t, "words");
     ted4_teller_end(&t);
     end_capture(c);
-    assert_string_equal(said, "\r\033[Ktool: coding and checking the file, 1 s so far\r\033[Ktool: words\n");
+    assert_string_equal(
+        said, "\r\033[Ktool: coding and checking the file, 1 s so far\r\033[Ktool: words\n");
 }
 
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_times), cmocka_unit_test(test_lines), cmocka_unit_test(test_thread), cmocka_unit_test(test_show_and_quiet),
+        cmocka_unit_test(test_times),    cmocka_unit_test(test_lines),
+        cmocka_unit_test(test_thread),   cmocka_unit_test(test_show_and_quiet),
         cmocka_unit_test(test_terminal),
     };
 

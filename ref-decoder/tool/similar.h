@@ -12,7 +12,8 @@ typedef struct {
 } ted4_similar;
 
 ted4_similar ted4_similar_to(const char *word, size_t length);
-/* Takes name if none before was as much like the word: letters left out, put in, changed, or two in turn. Names a third of whose letters differ are not like it. */
+/* Takes name if none before was as much like the word: letters left out, put in, changed, or two in
+ * turn. Names a third of whose letters differ are not like it. */
 void         ted4_similar_try(ted4_similar *s, const char *name);
 
 #endif

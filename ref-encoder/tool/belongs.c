@@ -1,4 +1,5 @@
-/* belongs.c - see belongs.h. Initial points say nothing about where a file lies: the encoder may have taken others in their place, and bounds that somebody set.
+/* belongs.c - see belongs.h. Initial points say nothing about where a file lies: the encoder may
+ * have taken others in their place, and bounds that somebody set.
  * SPDX-License-Identifier: BSD-2-Clause */
 #include "belongs.h"
 
@@ -7,7 +8,8 @@
 
 /* Of frames a second, relative. */
 #define OTHER_RATE 0.01
-/* Places of the file's cube that are looked at, along each of its axes; the share of all pictures that must show one. */
+/* Places of the file's cube that are looked at, along each of its axes; the share of all pictures
+ * that must show one. */
 enum { PLACES = 9 };
 #define SEEN 0.5
 
@@ -47,7 +49,8 @@ static int sees_cube(const ted4_info *file, const ted4_camera *c)
         double    x[3];
 
         for (int i = 0; i < 3; i++)
-            x[i] = (double)file->origin[i] + ldexp(2.0 * place[i] / (PLACES - 1) - 1.0, file->exponent);
+            x[i] = (double)file->origin[i] +
+                   ldexp(2.0 * place[i] / (PLACES - 1) - 1.0, file->exponent);
         seen = is_seen(c, x);
     }
     return seen;
@@ -61,18 +64,22 @@ int ted4_belongs_scene(const ted4_info *file, const ted4_dataset *d, char *why, 
     for (size_t i = 0; i < d->n_pictures; i++)
         seeing += sees_cube(file, &d->pictures[i].camera) != 0;
     if (file->frames != d->n_frames)
-        snprintf(why, why_size, "%u time%s in the file, %u in the scene (--max-frames reads the first ones)", (unsigned)file->frames,
-                 file->frames == 1 ? "" : "s", (unsigned)d->n_frames);
+        snprintf(why, why_size,
+                 "%u time%s in the file, %u in the scene (--max-frames reads the first ones)",
+                 (unsigned)file->frames, file->frames == 1 ? "" : "s", (unsigned)d->n_frames);
     else if (d->n_frames > 1 && d->rate > 0 && rate > 0 && fabs(rate / d->rate - 1.0) > OTHER_RATE)
-        snprintf(why, why_size, "%.4g frames a second in the file, %.4g in the scene", rate, d->rate);
+        snprintf(why, why_size, "%.4g frames a second in the file, %.4g in the scene", rate,
+                 d->rate);
     else if ((double)seeing < SEEN * (double)d->n_pictures)
-        snprintf(why, why_size, "only %zu of %zu pictures look at where it lies", seeing, d->n_pictures);
+        snprintf(why, why_size, "only %zu of %zu pictures look at where it lies", seeing,
+                 d->n_pictures);
     else
         return 1;
     return 0;
 }
 
-void ted4_belongs_add(ted4_belongs_sum *s, const uint8_t *truth, const uint8_t *drawn, size_t pixels)
+void ted4_belongs_add(ted4_belongs_sum *s, const uint8_t *truth, const uint8_t *drawn,
+                      size_t pixels)
 {
     for (size_t c = 0; c < 3; c++) {
         double sum = 0, squares = 0, errors = 0;
@@ -93,6 +100,8 @@ int ted4_belongs_pictures(const ted4_belongs_sum *s, char *why, size_t why_size)
 {
     if (!(s->drawn > s->mean))
         return 1;
-    snprintf(why, why_size, "its pictures are %.1f dB further from the scene's than one colour for each of these", 10.0 * log10(s->drawn / fmax(s->mean, 1.0)));
+    snprintf(why, why_size,
+             "its pictures are %.1f dB further from the scene's than one colour for each of these",
+             10.0 * log10(s->drawn / fmax(s->mean, 1.0)));
     return 0;
 }

@@ -1,5 +1,7 @@
-/* estimate.c - see estimate.h. Measured on the project's scenes with draft and fast, one thread and two: a step takes as long as its anchors are many, and a quarter
- * of the most that there may be on top; a step of stage 2 takes a little longer. Trials count in steps, and take about what they say.
+/* estimate.c - see estimate.h. Measured on the project's scenes with draft and fast, one thread and
+ * two: a step takes as long as its anchors are many, and a quarter of the most that there may be on
+ * top; a step of stage 2 takes a little longer. Trials count in steps, and take about what they
+ * say.
  * SPDX-License-Identifier: BSD-2-Clause */
 #include "estimate.h"
 
@@ -13,12 +15,15 @@
 #define CODING      8.0         /* steps */
 /* What is learnt of trials counts against this share of all of them, as first believed. */
 #define BELIEF      0.1
-/* Growth has filled what it may soon after it began; before, it is believed to fill it, and then what there is tells. */
+/* Growth has filled what it may soon after it began; before, it is believed to fill it, and then
+ * what there is tells. */
 #define GROWN       0.04
 #define STILL_GROWS 1.1
-/* Units that the latest speed is averaged over; steps after which the first estimate is said, and of which the first few do not count. */
+/* Units that the latest speed is averaged over; steps after which the first estimate is said, and
+ * of which the first few do not count. */
 #define MEMORY      300.0
-/* A step that takes so many times its share was something else, too: the search for sprouts, say, which does not come again. */
+/* A step that takes so many times its share was something else, too: the search for sprouts, say,
+ * which does not come again. */
 #define UNUSUAL     15.0
 enum { READY = 100, WARMING = 5 };
 
@@ -48,7 +53,9 @@ static double grown(const ted4_work *w)
 /* Anchors from sprouting on. */
 static double sprouted(const ted4_work *w)
 {
-    return w->step > w->sprout_at * w->stage1 ? w->anchors : fmin(w->most_anchors, grown(w) / (1.0 - w->sprouts));
+    return w->step > w->sprout_at * w->stage1
+               ? w->anchors
+               : fmin(w->most_anchors, grown(w) / (1.0 - w->sprouts));
 }
 
 /* Steps from one to another, from where training stands on. */
@@ -60,11 +67,13 @@ static double steps(const ted4_work *w, double from, double to)
 /* Units of plain steps that are left. */
 static double units_left(const ted4_work *w)
 {
-    const double grows = w->first_growth * w->stage1, sprouts = fmax(w->sprout_at * w->stage1, grows);
+    const double grows = w->first_growth * w->stage1,
+                 sprouts = fmax(w->sprout_at * w->stage1, grows);
     /* Of the probe's two branches one counts as training. */
     const double probe = w->probing && w->spent >= w->probe ? 0.0 : w->probe;
 
-    return steps(w, 0, grows) * weight(w, w->anchors) + steps(w, grows, sprouts) * weight(w, grown(w)) +
+    return steps(w, 0, grows) * weight(w, w->anchors) +
+           steps(w, grows, sprouts) * weight(w, grown(w)) +
            steps(w, sprouts, w->stage1) * weight(w, sprouted(w)) + probe * weight(w, grown(w)) +
            (STAGE2 * steps(w, w->stage1, w->stage1 + w->stage2) + CODING) * weight(w, sprouted(w));
 }
@@ -84,7 +93,8 @@ static int in_trials(const ted4_work *w)
 
 static void learn(ted4_estimate *e, double units, double seconds)
 {
-    const double left = exp(-units / MEMORY), most = e->units > 0 ? UNUSUAL * units * e->clock / e->units : seconds;
+    const double left = exp(-units / MEMORY),
+                 most = e->units > 0 ? UNUSUAL * units * e->clock / e->units : seconds;
 
     e->clock = left * e->clock + fmin(seconds, most);
     e->units = left * e->units + units;
@@ -99,7 +109,8 @@ void ted4_estimate_see(ted4_estimate *e, const ted4_work *w, double clock)
     } else if (in_trials(w) && in_trials(&e->last) && w->spent > e->last.spent) {
         e->trial_clock += seconds;
         e->trial_units += w->spent - e->last.spent;
-    } else if (in_trials(w) == in_trials(&e->last) && units_between(&e->last, w) > 0 && ++e->seen > WARMING) {
+    } else if (in_trials(w) == in_trials(&e->last) && units_between(&e->last, w) > 0 &&
+               ++e->seen > WARMING) {
         learn(e, units_between(&e->last, w), seconds);
     }
     e->when = clock;
@@ -129,7 +140,8 @@ double ted4_estimate_left(const ted4_estimate *e)
         return -1;
 
     const double pace = e->clock / e->units;
-    const double trials = w->trials + (in_trials(w) ? fmax(w->budget - w->spent, LONGER * w->budget) : 0.0);
+    const double trials =
+        w->trials + (in_trials(w) ? fmax(w->budget - w->spent, LONGER * w->budget) : 0.0);
 
     return pace * units_left(w) + trial_pace(e, pace) * trials;
 }

@@ -1,4 +1,5 @@
-/* look.c - what a training tells while it runs: see training.h, ted4_training_look. Nothing here reaches the trainer.
+/* look.c - what a training tells while it runs: see training.h, ted4_training_look. Nothing here
+ * reaches the trainer.
  * SPDX-License-Identifier: BSD-2-Clause */
 #include <math.h>
 
@@ -6,15 +7,17 @@
 #include "train/capacity.h"
 #include "training.h"
 
-/* The search for smaller models looks at so many and trains with this share of its budget at least, unless that ends it; some searches use all of it, and which ones
- * is not known before. */
+/* The search for smaller models looks at so many and trains with this share of its budget at least,
+ * unless that ends it; some searches use all of it, and which ones is not known before. */
 #define LOOKS   40.0
 #define TRAINED 0.08
 #define OFTEN   0.25
 
 static double search_steps(const ted4_trainer *t)
 {
-    const double budget = fmax(ted4_capacity_budget(t) - ted4_capacity_refine_steps(t) - ted4_capacity_prune_steps(t), 0.0);
+    const double budget =
+        fmax(ted4_capacity_budget(t) - ted4_capacity_refine_steps(t) - ted4_capacity_prune_steps(t),
+             0.0);
     const double least = fmin(LOOKS * ted4_capacity_cost_steps(t) + TRAINED * budget, budget);
 
     return least + OFTEN * (budget - least);
@@ -46,16 +49,24 @@ static ted4_work work_of(ted4_training *t)
     const ted4_trainer  *tr = t->trainer;
     const ted4_onlooker *o = &tr->onlooker;
     const double         before = t->sprouts;
-    ted4_work            w = { .stage1 = tr->opt.stage1, .stage2 = tr->opt.stage2, .first_growth = 0.05, .sprout_at = 0.3, .most_anchors = tr->opt.max_anchors,
-                               .trials = trials_left(tr), .step = (double)tr->iteration, .anchors = (double)tr->anchors.n,
-                               .probing = o->busy == TED4_BUSY_PROBE };
+    ted4_work w = { .stage1 = tr->opt.stage1,
+                    .stage2 = tr->opt.stage2,
+                    .first_growth = 0.05,
+                    .sprout_at = 0.3,
+                    .most_anchors = tr->opt.max_anchors,
+                    .trials = trials_left(tr),
+                    .step = (double)tr->iteration,
+                    .anchors = (double)tr->anchors.n,
+                    .probing = o->busy == TED4_BUSY_PROBE };
 
     if (before < 0 || tr->iteration % ASK_EVERY == 0)
         ted4_schedule_growth(tr, &w.first_growth, &w.sprout_at, &t->sprouts);
     w.sprouts = t->sprouts;
     w.probe = w.probing ? 0.5 * o->budget : ted4_probe_steps(tr);
     w.spent = o->busy != TED4_BUSY_TRAINING ? o->spent : 0;
-    w.budget = o->busy == TED4_BUSY_PROBE ? o->budget : o->busy == TED4_BUSY_TRIALS ? trials_now(tr) : 0;
+    w.budget = o->busy == TED4_BUSY_PROBE    ? o->budget
+               : o->busy == TED4_BUSY_TRIALS ? trials_now(tr)
+                                             : 0;
     return w;
 }
 
@@ -88,7 +99,9 @@ int ted4_training_look(void *training)
     f->name[0] = 0;
     f->step = tr->iteration;
     f->total = ted4_trainer_total(tr);
-    f->stage = o->busy == TED4_BUSY_PROBE ? "does the scene need time?" : o->busy == TED4_BUSY_TRIALS ? "trials of smaller models" : ted4_run_log_stage(tr);
+    f->stage = o->busy == TED4_BUSY_PROBE    ? "does the scene need time?"
+               : o->busy == TED4_BUSY_TRIALS ? "trials of smaller models"
+                                             : ted4_run_log_stage(tr);
     f->share = w.budget > 0 ? w.spent / w.budget : -1;
     f->loss = tr->progress.loss;
     f->anchors = tr->anchors.n;

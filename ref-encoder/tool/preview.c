@@ -1,4 +1,5 @@
-/* preview.c - see preview.h. In stage 2 a copy of the model ends training, as trials of capacity do it, so that quality is that of quantised values, too.
+/* preview.c - see preview.h. In stage 2 a copy of the model ends training, as trials of capacity do
+ * it, so that quality is that of quantised values, too.
  * SPDX-License-Identifier: BSD-2-Clause */
 #include "preview.h"
 
@@ -38,7 +39,8 @@ static int count_bytes(const ted4_scene *s, const ted4_parallel *parallel, ted4_
     p->bytes = (double)size;
     p->positions = 6.0 * (double)s->head.n_anchors;
     p->masks = bits.mask / 8.0;
-    p->networks = blob_bytes(&s->nete) + blob_bytes(&s->netr) + blob_bytes(&s->bank) + (double)s->shape.n_units;
+    p->networks = blob_bytes(&s->nete) + blob_bytes(&s->netr) + blob_bytes(&s->bank) +
+                  (double)s->shape.n_units;
     p->frame = p->bytes - p->positions - p->masks - p->networks;
     for (int y = 0; y < TED4_TYPES; y++) {
         p->type[y] = bits.type[y] / 8.0;

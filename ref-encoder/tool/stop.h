@@ -1,4 +1,5 @@
-/* stop.h - Ctrl-C and requests to end: the first is kept for whoever asks, the second ends the program at once.
+/* stop.h - Ctrl-C and requests to end: the first is kept for whoever asks, the second ends the
+ * program at once.
  * SPDX-License-Identifier: BSD-2-Clause */
 #ifndef TED4_STOP_H
 #define TED4_STOP_H

@@ -9,7 +9,8 @@
 #include <time.h>
 #include <unistd.h>
 
-/* Seconds: how often the thread looks, and between lines on anything but a terminal, before training and from there on. */
+/* Seconds: how often the thread looks, and between lines on anything but a terminal, before
+ * training and from there on. */
 #define LOOK_EVERY   0.5
 #define PAUSE_BEFORE 3.0
 #define PAUSE        30.0
@@ -40,15 +41,18 @@ void ted4_teller_time(double seconds, char *text, size_t size)
 static void training_line(const ted4_facts *f, double clock, char *text, size_t size)
 {
     char   left[40] = "";
-    size_t n = (size_t)snprintf(text, size, "%llu/%llu ", (unsigned long long)f->step, (unsigned long long)f->total);
+    size_t n = (size_t)snprintf(text, size, "%llu/%llu ", (unsigned long long)f->step,
+                                (unsigned long long)f->total);
 
     if (f->share >= 0)
-        n += (size_t)snprintf(text + n, size - n, "%s: %.0f %%", f->stage, fmin(100.0 * f->share, 100.0));
+        n += (size_t)snprintf(text + n, size - n, "%s: %.0f %%", f->stage,
+                              fmin(100.0 * f->share, 100.0));
     else
         n += (size_t)snprintf(text + n, size - n, "stage %s", f->stage);
     n += (size_t)snprintf(text + n, size - n, "  loss %.5f", f->loss);
     if (f->psnr >= 0)
-        n += (size_t)snprintf(text + n, size - n, "  %spsnr %.2f", f->train_psnr ? "train " : "", f->psnr);
+        n += (size_t)snprintf(text + n, size - n, "  %spsnr %.2f", f->train_psnr ? "train " : "",
+                              f->psnr);
     n += (size_t)snprintf(text + n, size - n, "  anchors %zu", f->anchors);
     if (f->bytes >= 0)
         n += (size_t)snprintf(text + n, size - n, "  bytes %.0f", f->bytes);
@@ -72,7 +76,9 @@ void ted4_teller_line(const ted4_facts *f, double clock, double since, char *tex
     case TED4_TELL_UNPACKING: snprintf(text, size, "unpacking %s: %d frames", f->name, n); break;
     case TED4_TELL_STARTING:  snprintf(text, size, "%s, %s so far", f->name, past); break;
     case TED4_TELL_TRAINING:  training_line(f, clock, text, size); break;
-    case TED4_TELL_CODING:    snprintf(text, size, "coding and checking the file, %s so far", past); break;
+    case TED4_TELL_CODING:
+        snprintf(text, size, "coding and checking the file, %s so far", past);
+        break;
     case TED4_TELL_DRAWING:   snprintf(text, size, "%d of %d pictures compared", n, all); break;
     default:                  break;
     }

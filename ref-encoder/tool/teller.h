@@ -1,6 +1,8 @@
-/* teller.h - what a program says on standard error while it works: lines at once, and a line about what goes on, from time to time. A thread of its own tells it,
- * so that something is said, too, while one call lasts for minutes. A terminal has one line that is written again every second, anything else a whole line now
- * and then. Nothing depends on what is told, and quiet says none of it.
+/* teller.h - what a program says on standard error while it works: lines at once, and a line about
+ * what goes on, from time to time. A thread of its own tells it, so that something is said, too,
+ * while one call lasts for minutes. A terminal has one line that is written again every second,
+ * anything else a whole line now and then. Nothing depends on what is told, and quiet says none of
+ * it.
  * SPDX-License-Identifier: BSD-2-Clause */
 #ifndef TED4_TELLER_H
 #define TED4_TELLER_H
@@ -9,7 +11,15 @@
 #include <stddef.h>
 #include <stdint.h>
 
-typedef enum { TED4_TELL_NOTHING, TED4_TELL_LOADING, TED4_TELL_UNPACKING, TED4_TELL_STARTING, TED4_TELL_TRAINING, TED4_TELL_CODING, TED4_TELL_DRAWING } ted4_told_kind;
+typedef enum {
+    TED4_TELL_NOTHING,
+    TED4_TELL_LOADING,
+    TED4_TELL_UNPACKING,
+    TED4_TELL_STARTING,
+    TED4_TELL_TRAINING,
+    TED4_TELL_CODING,
+    TED4_TELL_DRAWING
+} ted4_told_kind;
 
 /* What goes on. Numbers that are negative are not known. */
 typedef struct {
@@ -46,8 +56,10 @@ void ted4_teller_end(ted4_teller *t);
 /* A whole line, at once: "program: text". */
 void ted4_teller_say(ted4_teller *t, const char *format, ...) __attribute__((format(printf, 2, 3)));
 /* The same, also where quiet: errors. */
-void ted4_teller_error(ted4_teller *t, const char *format, ...) __attribute__((format(printf, 2, 3)));
-/* What somebody else says next on standard error begins on a line of its own. Fine before ted4_teller_begin, too. */
+void ted4_teller_error(ted4_teller *t, const char *format, ...)
+    __attribute__((format(printf, 2, 3)));
+/* What somebody else says next on standard error begins on a line of its own. Fine before
+ * ted4_teller_begin, too. */
 void ted4_teller_clear(ted4_teller *t);
 /* What goes on from here on. */
 void ted4_teller_now(ted4_teller *t, const ted4_facts *f);
