@@ -11,33 +11,31 @@
 
 #include "tool/belongs.h"
 #include "tool/sheet.h"
-#include "train/space.h"
 
-enum { POINTS = 50, FRAMES = 8, CAMERAS = 12, MOST = 200 };
+enum { FRAMES = 8, CAMERAS = 12, MOST = 200 };
 
 typedef struct {
     ted4_dataset d;
     ted4_info    file;
     ted4_picture picture[MOST];
-    float        point[3 * POINTS];
 } pair;
 
-/* A scene of points around a place, and the file of it. */
+/* Cameras on a circle of 10 around the origin that look at it, and a file of a cube there, 4 wide. */
 static void make_pair(pair *p)
 {
-    ted4_header h;
-
     memset(p, 0, sizeof *p);
-    for (int i = 0; i < 3 * POINTS; i++)
-        p->point[i] = (float)((i * 37) % 101) / 50.0f;
-    p->d = (ted4_dataset){ .pictures = p->picture, .n_frames = FRAMES, .n_cameras = CAMERAS, .points = p->point, .n_points = POINTS, .rate = 30 };
-    memset(&h, 0, sizeof h);
-    ted4_space_make(&h, &p->d);
+    p->d = (ted4_dataset){ .pictures = p->picture, .n_pictures = CAMERAS, .n_frames = FRAMES, .n_cameras = CAMERAS, .rate = 30 };
+    for (int i = 0; i < CAMERAS; i++) {
+        const double a = 2 * 3.14159265358979 * i / CAMERAS;
+
+        /* Forward is the third row: towards the origin. */
+        p->picture[i].camera = (ted4_camera){ .width = 80, .height = 60, .fx = 80, .fy = 80, .cx = 40, .cy = 30,
+                                              .R = { -sin(a), cos(a), 0, 0, 0, -1, -cos(a), -sin(a), 0 }, .t = { 0, 0, 10 } };
+    }
     p->file.frames = FRAMES;
     p->file.rate_num = 30;
     p->file.rate_den = 1;
-    p->file.exponent = h.exponent;
-    memcpy(p->file.origin, h.origin, sizeof p->file.origin);
+    p->file.exponent = 1;
 }
 
 /* what: part of the reason; NULL: it belongs. */
@@ -64,18 +62,22 @@ static void test_scene(void **state)
     expect(&p, "25 frames a second in the file, 30 in the scene");
     p.d.rate = 0;               /* not known */
     expect(&p, NULL);
+    /* Beside the pictures of nearly all. */
     make_pair(&p);
-    p.file.origin[1] += 2.0f * ldexpf(1.0f, p.file.exponent);
-    expect(&p, "the scene around");
-    make_pair(&p);
-    p.file.origin[1] += 0.5f * ldexpf(1.0f, p.file.exponent);
-    p.file.exponent += 2;
+    p.file.origin[2] = 9;
+    expect(&p, "only 0 of 12 pictures look at where it lies");
+    p.file.origin[2] = 5;
+    expect(&p, NULL);           /* its lower end is still seen */
+    /* Behind half of the cameras and more. */
+    p.file.origin[2] = 0;
+    p.file.origin[0] = 60;
+    expect(&p, "of 12 pictures");
+    /* Cameras in its middle see it, wherever they look; and a small one in theirs is seen. */
+    p.file.exponent = 7;
     expect(&p, NULL);
-    p.file.exponent += 3;
-    expect(&p, "wide");
-    make_pair(&p);
-    p.file.exponent -= 5;
-    expect(&p, "wide");
+    p.file.origin[0] = 0;
+    p.file.exponent = -3;
+    expect(&p, NULL);
 }
 
 static void test_pictures(void **state)

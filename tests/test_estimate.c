@@ -13,12 +13,12 @@
 #include "estimate_runs.h"
 #include "tool/estimate.h"
 
-/* As the schedule has it; trials at these shares of stage 2, which take so many steps. */
+/* As the schedule has it; trials at these shares of stage 2, which are believed to take so many steps. */
 #define PROBE_AT   0.25
 #define SPROUT_AT  0.3
 #define DECIDE_AT  0.15
 #define INTEGER_AT 0.8
-#define SEARCH     680.0
+#define SEARCH     1120.0
 #define LAST       250.0
 
 /* A tenth of the way on, within a quarter of what is left, or this share of the whole. */
@@ -94,7 +94,7 @@ static double go(replay *p, const run_line *to, double pace)
     }
     if (decides || prunes) {
         p->w.trials = decides ? LAST : 0;
-        long_step(p, 0, decides ? SEARCH : LAST, decides ? SEARCH : LAST, more);
+        long_step(p, 0, decides ? SEARCH : LAST, decides ? r->search : LAST, more);
     }
 
     /* The step that sprouts come with takes what is left over, and more anchors are there from then on. */

@@ -25,7 +25,7 @@ EOF
 chmod +x "$out/bin/ffmpeg"
 PICTURE=$(find "$out/scene" -name '*.png' | sort | head -n 1)
 export PICTURE
-: >"$out/clips/a.mp4"
+printf '\000\000\000\030ftypmp42' >"$out/clips/a.mp4"
 echo '{"frames": 3, "cameras": [{"name": "a", "w": 32, "h": 24, "K": [[30, 0, 16], [0, 30, 12], [0, 0, 1]],
     "w2c": [[1, 0, 0, 0], [0, 1, 0, 0], [0, 0, 1, 4], [0, 0, 0, 1]]}]}' >"$out/clips/cams.json"
 
@@ -46,7 +46,7 @@ else
 fi
 
 "$enc" "$out/scene" -o "$out/x.ted4" $small -v --checkpoint "$out/c" 2>"$out/err" || fail encode "$(cat "$out/err")"
-check says "$out/err" "ted4enc: blender: 20 training pictures, 4 held out, of 6 cameras and 4 times, 32 x 24 pixels" " until the file is written" \
+check says "$out/err" "ted4enc: D-NeRF: 20 training pictures, 4 held out, of 6 cameras and 4 times, 32 x 24 pixels" " until the file is written" \
     "ted4enc: 250/400 stage 1  loss " "ted4enc: 400/400 stage 2i  loss " "ted4enc: $out/x.ted4: "
 # The last line is true of the file.
 last=$(grep '^ted4enc: 400/400' "$out/err")

@@ -1,44 +1,72 @@
-/* belongs.c - see belongs.h. The same scene may be loaded with other random points than it was trained with, or with bounds that somebody set, so cubes need not be
- * equal.
+/* belongs.c - see belongs.h. Initial points say nothing about where a file lies: the encoder may have taken others in their place, and bounds that somebody set.
  * SPDX-License-Identifier: BSD-2-Clause */
 #include "belongs.h"
 
 #include <math.h>
 #include <stdio.h>
-#include <stdlib.h>
 
-#include "train/space.h"
-
-/* Of frames a second, relative; of cubes' exponents. */
+/* Of frames a second, relative. */
 #define OTHER_RATE 0.01
-enum { OTHER_SIZE = 4 };
+/* Places of the file's cube that are looked at, along each of its axes; the share of all pictures that must show one. */
+enum { PLACES = 9 };
+#define SEEN 0.5
 
-static int cubes_meet(const ted4_info *file, const ted4_header *h)
+static int is_seen(const ted4_camera *c, const double x[3])
 {
-    const double reach = ldexp(1.0, file->exponent) + ldexp(1.0, h->exponent);
-    int          meet = 1;
+    double p[3];
 
-    for (int k = 0; k < 3; k++)
-        meet &= fabs((double)file->origin[k] - (double)h->origin[k]) < reach;
-    return meet;
+    for (int i = 0; i < 3; i++)
+        p[i] = c->R[3 * i] * x[0] + c->R[3 * i + 1] * x[1] + c->R[3 * i + 2] * x[2] + c->t[i];
+    if (!(p[2] > 0))
+        return 0;
+
+    const double u = c->fx * p[0] / p[2] + c->cx, v = c->fy * p[1] / p[2] + c->cy;
+
+    return u >= 0 && u <= c->width && v >= 0 && v <= c->height;
+}
+
+static int stands_inside(const ted4_info *file, const ted4_camera *c)
+{
+    int inside = 1;
+
+    for (int i = 0; i < 3; i++) {
+        const double centre = -(c->R[i] * c->t[0] + c->R[3 + i] * c->t[1] + c->R[6 + i] * c->t[2]);
+
+        inside &= fabs(centre - (double)file->origin[i]) < ldexp(1.0, file->exponent);
+    }
+    return inside;
+}
+
+/* Does the camera see any of the cube that a file's anchors lie in? */
+static int sees_cube(const ted4_info *file, const ted4_camera *c)
+{
+    int seen = stands_inside(file, c);
+
+    for (int k = 0; !seen && k < PLACES * PLACES * PLACES; k++) {
+        const int place[3] = { k % PLACES, k / PLACES % PLACES, k / (PLACES * PLACES) };
+        double    x[3];
+
+        for (int i = 0; i < 3; i++)
+            x[i] = (double)file->origin[i] + ldexp(2.0 * place[i] / (PLACES - 1) - 1.0, file->exponent);
+        seen = is_seen(c, x);
+    }
+    return seen;
 }
 
 int ted4_belongs_scene(const ted4_info *file, const ted4_dataset *d, char *why, size_t why_size)
 {
     const double rate = file->rate_den > 0 ? (double)file->rate_num / (double)file->rate_den : 0.0;
-    ted4_header  h = { 0 };
+    size_t       seeing = 0;
 
-    ted4_space_make(&h, d);
+    for (size_t i = 0; i < d->n_pictures; i++)
+        seeing += sees_cube(file, &d->pictures[i].camera) != 0;
     if (file->frames != d->n_frames)
         snprintf(why, why_size, "%u time%s in the file, %u in the scene (--max-frames reads the first ones)", (unsigned)file->frames,
                  file->frames == 1 ? "" : "s", (unsigned)d->n_frames);
     else if (d->n_frames > 1 && d->rate > 0 && rate > 0 && fabs(rate / d->rate - 1.0) > OTHER_RATE)
         snprintf(why, why_size, "%.4g frames a second in the file, %.4g in the scene", rate, d->rate);
-    else if (d->n_points > 0 && !cubes_meet(file, &h))
-        snprintf(why, why_size, "it lies around %.4g, %.4g, %.4g, the scene around %.4g, %.4g, %.4g", (double)file->origin[0], (double)file->origin[1],
-                 (double)file->origin[2], (double)h.origin[0], (double)h.origin[1], (double)h.origin[2]);
-    else if (d->n_points > 0 && abs(file->exponent - h.exponent) > OTHER_SIZE)
-        snprintf(why, why_size, "its cube is %.4g wide, the scene's %.4g", ldexp(2.0, file->exponent), ldexp(2.0, h.exponent));
+    else if ((double)seeing < SEEN * (double)d->n_pictures)
+        snprintf(why, why_size, "only %zu of %zu pictures look at where it lies", seeing, d->n_pictures);
     else
         return 1;
     return 0;

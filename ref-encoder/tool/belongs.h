@@ -10,7 +10,7 @@
 #include "data/dataset.h"
 #include "ted4.h"
 
-/* 1, or 0 with why filled: number of times, frames a second, or cubes that do not meet or are of other sizes. */
+/* 1, or 0 with why filled: number of times, frames a second, or cameras that do not look at where the file lies. */
 int ted4_belongs_scene(const ted4_info *file, const ted4_dataset *d, char *why, size_t why_size);
 
 /* Squared errors of all pictures so far, against the drawn ones and against the mean colour of each. */

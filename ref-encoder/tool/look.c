@@ -6,15 +6,18 @@
 #include "train/capacity.h"
 #include "training.h"
 
-/* The search for smaller models looks at so many as a rule, and trains this share of its budget: it seldom uses all of that. */
+/* The search for smaller models looks at so many and trains with this share of its budget at least, unless that ends it; some searches use all of it, and which ones
+ * is not known before. */
 #define LOOKS   40.0
 #define TRAINED 0.08
+#define OFTEN   0.25
 
 static double search_steps(const ted4_trainer *t)
 {
-    const double budget = ted4_capacity_budget(t) - ted4_capacity_refine_steps(t) - ted4_capacity_prune_steps(t);
+    const double budget = fmax(ted4_capacity_budget(t) - ted4_capacity_refine_steps(t) - ted4_capacity_prune_steps(t), 0.0);
+    const double least = fmin(LOOKS * ted4_capacity_cost_steps(t) + TRAINED * budget, budget);
 
-    return fmax(fmin(LOOKS * ted4_capacity_cost_steps(t) + TRAINED * budget, budget), 0.0);
+    return least + OFTEN * (budget - least);
 }
 
 /* Training steps of the trials that are still to come. */
