@@ -470,7 +470,10 @@ static void put_poses(FILE *f, const ted4_ray_options *o, int number, int frame)
 static void put_calibration(FILE *f, const ted4_ray_options *o, int number, int frame)
 {
     (void)number, (void)frame;
-    fprintf(f, "{\"frames\": %d, \"fps\": 30, \"cameras\": [", o->n_frames);
+    fputs("{", f);
+    if (!o->ways.starts)                /* else clips differ in length */
+        fprintf(f, "\"frames\": %d, ", o->n_frames);
+    fputs("\"fps\": 30, \"cameras\": [", f);
     for (int i = 0; i < n_cameras(o); i++) {
         double R[3][3], t[3];
         char name[TED4_RAY_NAME];
