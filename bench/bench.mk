@@ -123,6 +123,8 @@ stability: all $B/bench/lab_facts
 $B/bench/zoo_masks: $B/bench/zoo_masks.o
 	$(CC) $(LDFLAGS) $^ -o $@ $(LIBS)
 
+$B/tests/test_zoo: | $(PROGS) $B/bench/zoo_masks
+
 zoo: all $B/bench/zoo_masks
 	TED4_BUILD=$B TED4_DATA=$(TED4_DATA) bench/zoo.sh
 	bench/zoo_page.sh
