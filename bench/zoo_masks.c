@@ -1,7 +1,9 @@
-/* zoo_masks.c - how well training pictures show what moves: PSNR over all pixels of the masks that ted4scene --masks wrote, as one JSON line.
+/* zoo_masks.c - how well training pictures show what moves: PSNR over all pixels of the masks that
+ * ted4scene --masks wrote, as one JSON line.
  *     zoo_masks SCENE IMAGES <VIEWS
- * IMAGES, VIEWS: what `ted4eval FILE.ted4 SCENE --split train -v --images IMAGES` wrote, VIEWS on standard error: a line "PATH frame ..." a picture.
- * The mask of SCENE/NAME.png is SCENE/truth/masks/NAME.png. Without masks, or where nothing moves, moving_psnr is null.
+ * VIEWS: a line "PATH frame ..." a picture, which ted4eval FILE.ted4 SCENE --split train -v
+ * --images IMAGES says on standard error. The mask of SCENE/NAME.png is SCENE/truth/masks/NAME.png.
+ * Without masks, or where nothing moves, moving_psnr is null.
  * SPDX-License-Identifier: BSD-2-Clause */
 #include <math.h>
 #include <stdint.h>
@@ -91,7 +93,7 @@ static int add_picture(const char *images, unsigned n, const char *mask_path, su
     return code;
 }
 
-/* The mask of the picture that a line of VIEWS begins with; 0: the line is of no picture in scene. */
+/* The mask of the picture that a line of VIEWS begins with; 0: it is of no picture in scene. */
 static int mask_of(const char *scene, char *line, char mask[MAX_PATH])
 {
     const size_t n = strlen(scene);
@@ -120,14 +122,17 @@ int main(int argc, char **argv)
     while (fgets(line, sizeof line, stdin) != NULL) {
         if (strstr(line, " frame ") == NULL)
             continue;
-        if (mask_of(argv[1], line, mask) && access(mask, R_OK) == 0 && add_picture(argv[2], n, mask, &s) != FINE)
+        if (mask_of(argv[1], line, mask) && access(mask, R_OK) == 0 &&
+            add_picture(argv[2], n, mask, &s) != FINE)
             return TROUBLE;
         n++;
     }
     if (s.pixels > 0 && s.squares > 0)
-        printf("{\"moving_psnr\":%.4f,", 10 * log10(255.0 * 255.0 * 3.0 * (double)s.pixels / s.squares));
+        printf("{\"moving_psnr\":%.4f,",
+               10 * log10(255.0 * 255.0 * 3.0 * (double)s.pixels / s.squares));
     else
         printf("{\"moving_psnr\":null,");
-    printf("\"moving_pixels\":%llu,\"pictures\":%llu}\n", (unsigned long long)s.pixels, (unsigned long long)s.pictures);
+    printf("\"moving_pixels\":%llu,\"pictures\":%llu}\n", (unsigned long long)s.pixels,
+           (unsigned long long)s.pictures);
     return FINE;
 }

@@ -1,5 +1,6 @@
-/* test_ways.c - what other writers do, as ted4scene does it: kinds of picture files, backgrounds and alpha, masks, cameras that take turns, missing pictures,
- * coordinates, points. Links tests/scenes/ray_*.o.
+/* test_ways.c - what other writers do, as ted4scene does it: kinds of picture files, backgrounds
+ * and alpha, masks, cameras that take turns, missing pictures, coordinates, points.
+ * Links tests/scenes/ray_*.o.
  * SPDX-License-Identifier: BSD-2-Clause */
 #include <math.h>
 #include <setjmp.h>
@@ -81,15 +82,20 @@ static double mean_error(const uint8_t *a, const uint8_t *b)
     return sum / (4 * AREA);
 }
 
-/* Bit depth, colour type, interlace of each kind, with and without alpha; and the same pixels come back, but for a palette's few
- * colours and for grey. */
+/* Bit depth, colour type, interlace of each kind, with and without alpha; and the same pixels come
+ * back, but for a palette's few colours and for grey. */
 static void test_kinds(void **state)
 {
-    static const struct { int kind, background; uint8_t depth, type, interlace; double error; } cases[] = {
-        { RAY_PNG, RAY_CLEAR, 8, 6, 0, 0 }, { RAY_PNG, RAY_BLACK, 8, 2, 0, 0 }, { RAY_PNG16, RAY_CLEAR, 16, 6, 0, 0 },
-        { RAY_PNG16, RAY_WHITE, 16, 2, 0, 0 }, { RAY_PALETTE, RAY_CLEAR, 8, 3, 0, 1 }, { RAY_PALETTE, RAY_ROOM, 8, 3, 0, 4 },
-        { RAY_INTERLACED, RAY_CLEAR, 8, 6, 1, 0 }, { RAY_INTERLACED, RAY_BLACK, 8, 2, 1, 0 }, { RAY_GREY, RAY_CLEAR, 8, 4, 0, 9 },
-        { RAY_GREY, RAY_WHITE, 8, 0, 0, 9 },
+    static const struct {
+        int kind, background;
+        uint8_t depth, type, interlace;
+        double error;
+    } cases[] = {
+        { RAY_PNG, RAY_CLEAR, 8, 6, 0, 0 },        { RAY_PNG, RAY_BLACK, 8, 2, 0, 0 },
+        { RAY_PNG16, RAY_CLEAR, 16, 6, 0, 0 },     { RAY_PNG16, RAY_WHITE, 16, 2, 0, 0 },
+        { RAY_PALETTE, RAY_CLEAR, 8, 3, 0, 1 },    { RAY_PALETTE, RAY_ROOM, 8, 3, 0, 4 },
+        { RAY_INTERLACED, RAY_CLEAR, 8, 6, 1, 0 }, { RAY_INTERLACED, RAY_BLACK, 8, 2, 1, 0 },
+        { RAY_GREY, RAY_CLEAR, 8, 4, 0, 9 },       { RAY_GREY, RAY_WHITE, 8, 0, 0, 9 },
     };
     static uint8_t rgba[4 * AREA], back[4 * AREA];
     char path[TEMPORARY_SIZE];
@@ -152,7 +158,8 @@ static void test_jpeg(void **state)
 
 /* ---- pixels ---- */
 
-/* What is opaque, white and black are what the transparent picture gives on them; multiplied colours are colours on black. */
+/* What is opaque, white and black are what the transparent picture gives on them; multiplied
+ * colours are colours on black. */
 static void test_backgrounds(void **state)
 {
     static uint8_t straight[4 * AREA], multiplied[4 * AREA], black[4 * AREA], white[4 * AREA];
@@ -185,7 +192,8 @@ static void test_backgrounds(void **state)
     assert_int_equal(straight[3], 0);
 }
 
-/* The mask is where a picture differs from that of a scene that stands still, and a still scene has none. */
+/* The mask is where a picture differs from that of a scene that stands still, and a still scene has
+ * none. */
 static void test_masks(void **state)
 {
     static uint8_t a[AREA], b[AREA];
@@ -209,7 +217,8 @@ static void test_masks(void **state)
         assert_int_equal(b[i], 0);
 }
 
-/* No more colours than there is room for, each pixel's the nearest of its box: exact where they are few. */
+/* No more colours than there is room for, each pixel's the nearest of its box: exact where they are
+ * few. */
 static void test_palette(void **state)
 {
     static uint8_t rgba[4 * AREA], palette[TED4_RAY_PALETTE][4], index[AREA];
@@ -227,7 +236,8 @@ static void test_palette(void **state)
 
 /* ---- what there is ---- */
 
-/* Of cameras that take turns, each has one time and each time one camera, in no order that is one of the other. */
+/* Of cameras that take turns, each has one time and each time one camera, in no order that is one
+ * of the other. */
 static void test_turns(void **state)
 {
     ted4_ray_options o = toys();
@@ -290,14 +300,17 @@ static void test_splits(void **state)
     assert_true(ted4_ray_is_taken(&o, 3, 2));
     o.ways.split = RAY_TRAIN_ONLY;
     assert_false(ted4_ray_is_taken(&o, 3, 2));
-    assert_non_null(ted4_ray_fault(&(ted4_ray_options){ .scene = RAY_STILL, .ways = { .premultiplied = 1 } }));
-    assert_non_null(ted4_ray_fault(&(ted4_ray_options){ .scene = RAY_STILL, .layout = RAY_NEU3D, .ways = { .off = { 0.1, 0 } } }));
+    assert_non_null(
+        ted4_ray_fault(&(ted4_ray_options){ .scene = RAY_STILL, .ways = { .premultiplied = 1 } }));
+    assert_non_null(ted4_ray_fault(&(ted4_ray_options){
+        .scene = RAY_STILL, .layout = RAY_NEU3D, .ways = { .off = { 0.1, 0 } } }));
     assert_null(ted4_ray_fault(&o));
 }
 
 /* ---- coordinates ---- */
 
-/* A point of the files lies on the same pixel of the same camera in any coordinates, sizes and principal points apart. */
+/* A point of the files lies on the same pixel of the same camera in any coordinates, sizes and
+ * principal points apart. */
 static void test_coordinates(void **state)
 {
     const ted4_ray_options usual = toys();
@@ -318,7 +331,8 @@ static void test_coordinates(void **state)
         ted4_ray_camera_stated(&o, i % 3, &b);
         ted4_ray_mapped(&o, at, there);
         assert_true(fabs(there[1] - 100 * at[2]) < 1e-9 && fabs(there[2] + 100 * at[1]) < 1e-9);
-        const double depth = ted4_ray_project(&a, at, pixel), far = ted4_ray_project(&b, there, other);
+        const double depth = ted4_ray_project(&a, at, pixel),
+                     far = ted4_ray_project(&b, there, other);
         assert_true(fabs(far / depth - 100) < 1e-6);
         assert_int_equal(b.width, W * (i % 3 == 1 ? 3 : i % 3 == 2 ? 5 : 4) / 4);
         assert_true(fabs((pixel[0] / W - 0.5) - (other[0] / b.width - 0.6)) < 1e-9);
@@ -353,8 +367,10 @@ static void test_points(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_kinds), cmocka_unit_test(test_jpeg), cmocka_unit_test(test_backgrounds), cmocka_unit_test(test_masks),
-        cmocka_unit_test(test_palette), cmocka_unit_test(test_turns), cmocka_unit_test(test_missing), cmocka_unit_test(test_splits),
+        cmocka_unit_test(test_kinds),       cmocka_unit_test(test_jpeg),
+        cmocka_unit_test(test_backgrounds), cmocka_unit_test(test_masks),
+        cmocka_unit_test(test_palette),     cmocka_unit_test(test_turns),
+        cmocka_unit_test(test_missing),     cmocka_unit_test(test_splits),
         cmocka_unit_test(test_coordinates), cmocka_unit_test(test_points),
     };
 

@@ -47,8 +47,8 @@ static void flat_name(const ted4_ray_options *o, int number, int frame, const ch
     const int test = is_test(o, number);
     const char *const held = o->ways.split == RAY_VAL_FILE ? "val" : "test";
 
-    snprintf(name, 40, o->n_frames > 100 ? "%s%sr_%03d_%03d" : "%s%sr_%03d_%02d", test ? held : "train",
-             separator, test ? number - o->n_train : number, frame);
+    snprintf(name, 40, o->n_frames > 100 ? "%s%sr_%03d_%03d" : "%s%sr_%03d_%02d",
+             test ? held : "train", separator, test ? number - o->n_train : number, frame);
 }
 
 void ted4_ray_picture_name(const ted4_ray_options *o, int number, int frame, char name[TED4_RAY_NAME])
@@ -105,8 +105,9 @@ static int states_each(const ted4_ray_options *o)
 
 static void put_lens(FILE *f, const ted4_ray_camera *c, const char *margin)
 {
-    fprintf(f, "%s\"w\": %d,\n%s\"h\": %d,\n%s\"fl_x\": %.17g,\n%s\"fl_y\": %.17g,\n%s\"cx\": %.17g,\n%s\"cy\": %.17g,\n",
-            margin, c->width, margin, c->height, margin, c->focal, margin, c->focal, margin, c->cx, margin, c->cy);
+    fprintf(f, "%s\"w\": %d,\n%s\"h\": %d,\n%s\"fl_x\": %.17g,\n%s\"fl_y\": %.17g,\n", margin,
+            c->width, margin, c->height, margin, c->focal, margin, c->focal);
+    fprintf(f, "%s\"cx\": %.17g,\n%s\"cy\": %.17g,\n", margin, c->cx, margin, c->cy);
 }
 
 static void put_frame(FILE *f, const ted4_ray_options *o, int number, int frame)
@@ -140,7 +141,8 @@ static void put_transforms(FILE *f, const ted4_ray_options *o, int first, int ca
         fputs("  \"camera_model\": \"OPENCV\",\n", f);
     else if (!states_each(o))
         fprintf(f, "  \"camera_angle_x\": %.17g,\n", ted4_ray_angle_x);
-    if (!states_each(o) && (o->layout == RAY_NERFSTUDIO || o->ways.off[0] != 0 || o->ways.off[1] != 0))
+    if (!states_each(o) &&
+        (o->layout == RAY_NERFSTUDIO || o->ways.off[0] != 0 || o->ways.off[1] != 0))
         put_lens(f, &c, "  ");
     fputs("  \"frames\": [", f);
     for (int i = 0; i < cameras * o->n_frames; i++) {
@@ -249,7 +251,7 @@ static void quaternion_of(double R[3][3], double q[4])
         q[i] /= norm;
 }
 
-/* ---- colmap: one camera, or as many as there are, an image for every picture, points without tracks ---- */
+/* ---- colmap: one lens, or one a camera, an image for every picture, points without tracks ---- */
 
 static int n_lenses(const ted4_ray_options *o)
 {
@@ -330,7 +332,8 @@ static void put_cameras_text(FILE *f, const ted4_ray_options *o, int number, int
     (void)number, (void)frame;
     for (int i = 0; i < n_lenses(o); i++) {
         ted4_ray_camera_stated(o, i, &c);
-        fprintf(f, "%d PINHOLE %d %d %.17g %.17g %.17g %.17g\n", i + 1, c.width, c.height, c.focal, c.focal, c.cx, c.cy);
+        fprintf(f, "%d PINHOLE %d %d %.17g %.17g %.17g %.17g\n", i + 1, c.width, c.height, c.focal,
+                c.focal, c.cx, c.cy);
     }
 }
 
@@ -400,8 +403,8 @@ static void put_metadata(FILE *f, const ted4_ray_options *o, int number, int fra
         if (!ted4_ray_is_taken(o, i / o->n_frames, i % o->n_frames))
             continue;
         flat_name(o, i / o->n_frames, i % o->n_frames, "_", id);
-        fprintf(f, "%s\"%s\": {\"warp_id\": %d, \"appearance_id\": %d, \"camera_id\": %d}", n++ > 0 ? ",\n" : "{",
-                id, i % o->n_frames, i % o->n_frames, i / o->n_frames);
+        fprintf(f, "%s\"%s\": {\"warp_id\": %d, \"appearance_id\": %d, \"camera_id\": %d}",
+                n++ > 0 ? ",\n" : "{", id, i % o->n_frames, i % o->n_frames, i / o->n_frames);
     }
     fputs("}\n", f);
 }
@@ -482,9 +485,11 @@ static void put_calibration(FILE *f, const ted4_ray_options *o, int number, int 
         ted4_ray_camera_stated(o, test_first(o, i), &c);
         ted4_ray_camera_name(o, test_first(o, i), name);
         pose_of(&c, R, t);
-        fprintf(f, "%s\n{\"name\": \"%s\", \"video\": \"%s.mp4\", \"w\": %d, \"h\": %d,\n \"K\": [[%.17g, 0, %.17g], "
-                "[0, %.17g, %.17g], [0, 0, 1]], \"dist\": [0, 0, 0, 0],\n ", i > 0 ? "," : "", name, name,
-                c.width, c.height, c.focal, c.cx - 0.5, c.focal, c.cy - 0.5);
+        fprintf(f, "%s\n{\"name\": \"%s\", \"video\": \"%s.mp4\", \"w\": %d, \"h\": %d,\n",
+                i > 0 ? "," : "", name, name, c.width, c.height);
+        fprintf(f, " \"K\": [[%.17g, 0, %.17g], [0, %.17g, %.17g], [0, 0, 1]],", c.focal,
+                c.cx - 0.5, c.focal, c.cy - 0.5);
+        fputs(" \"dist\": [0, 0, 0, 0],\n ", f);
         if (o->ways.starts)
             fprintf(f, "\"start\": %.9g, ", ted4_ray_start(o, test_first(o, i)) / 30.0);
         fputs("\"w2c\": [", f);
@@ -514,22 +519,30 @@ static int has_val(const ted4_ray_options *o)
 
 /* Last comes the file by which a folder is taken for a scene. */
 static const ted4_ray_file files[RAY_LAYOUTS][6] = {
-    [RAY_BLENDER] = { { "points3d.ply", put_points, 0, 0, has_points }, { "transforms_test.json", put_test, 0, 0, has_test },
+    [RAY_BLENDER] = { { "points3d.ply", put_points, 0, 0, has_points },
+                      { "transforms_test.json", put_test, 0, 0, has_test },
                       { "transforms_val.json", put_test, 0, 0, has_val },
                       { "transforms_train.json", put_train, 0, 0, NULL } },
-    [RAY_NERFSTUDIO] = { { "points3d.ply", put_points, 0, 0, has_points }, { "transforms_test.json", put_test, 0, 0, has_test },
-                      { "transforms_val.json", put_test, 0, 0, has_val },
+    [RAY_NERFSTUDIO] = { { "points3d.ply", put_points, 0, 0, has_points },
+                         { "transforms_test.json", put_test, 0, 0, has_test },
+                         { "transforms_val.json", put_test, 0, 0, has_val },
                          { "transforms_train.json", put_train, 0, 0, NULL } },
-    [RAY_COLMAP] = { { "sparse/0/points3D.bin", put_points_bin, 0, 0, NULL }, { "sparse/0/images.bin", put_images_bin, 0, 0, NULL },
+    [RAY_COLMAP] = { { "sparse/0/points3D.bin", put_points_bin, 0, 0, NULL },
+                     { "sparse/0/images.bin", put_images_bin, 0, 0, NULL },
                      { "sparse/0/cameras.bin", put_cameras_bin, 0, 0, NULL } },
     [RAY_COLMAP_TEXT] = { { "sparse/0/points3D.txt", put_points_text, 0, 0, NULL },
                           { "sparse/0/images.txt", put_images_text, 0, 0, NULL },
                           { "sparse/0/cameras.txt", put_cameras_text, 0, 0, NULL } },
-    [RAY_HYPERNERF] = { { "points3D_downsample.ply", put_points, 0, 0, has_points }, { "scene.json", put_scene, 0, 0, NULL },
-                        { "metadata.json", put_metadata, 0, 0, NULL }, { "dataset.json", put_dataset, 0, 0, NULL } },
-    [RAY_NEU3D] = { { "points3D_downsample2.ply", put_points, 0, 0, has_points }, { "poses_bounds.npy", put_poses, 0, 0, NULL } },
-    [RAY_LLFF] = { { "points3D_downsample2.ply", put_points, 0, 0, has_points }, { "poses_bounds.npy", put_poses, 0, 0, NULL } },
-    [RAY_CALIBRATION] = { { "points3d.ply", put_points, 0, 0, has_points }, { "cams.json", put_calibration, 0, 0, NULL } },
+    [RAY_HYPERNERF] = { { "points3D_downsample.ply", put_points, 0, 0, has_points },
+                        { "scene.json", put_scene, 0, 0, NULL },
+                        { "metadata.json", put_metadata, 0, 0, NULL },
+                        { "dataset.json", put_dataset, 0, 0, NULL } },
+    [RAY_NEU3D] = { { "points3D_downsample2.ply", put_points, 0, 0, has_points },
+                    { "poses_bounds.npy", put_poses, 0, 0, NULL } },
+    [RAY_LLFF] = { { "points3D_downsample2.ply", put_points, 0, 0, has_points },
+                   { "poses_bounds.npy", put_poses, 0, 0, NULL } },
+    [RAY_CALIBRATION] = { { "points3d.ply", put_points, 0, 0, has_points },
+                          { "cams.json", put_calibration, 0, 0, NULL } },
 };
 
 const ted4_ray_file *ted4_ray_layout_files(ted4_ray_layout l)

@@ -5,7 +5,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* A pixel and its place in the picture; the channel that pixels are sorted by, in the first byte. */
+/* A pixel and its place in the picture. key: the channel that pixels are sorted by. */
 typedef struct {
     uint8_t  key, rgba[4];
     uint32_t at;
@@ -75,7 +75,8 @@ static void mean(const pixel *p, const box *b, uint8_t rgba[4])
     }
 }
 
-int ted4_ray_palette(const uint8_t *rgba, size_t n, uint8_t palette[TED4_RAY_PALETTE][4], uint8_t *index)
+int ted4_ray_palette(const uint8_t *rgba, size_t n, uint8_t palette[TED4_RAY_PALETTE][4],
+                     uint8_t *index)
 {
     pixel *const p = malloc(n * sizeof *p);
     box boxes[TED4_RAY_PALETTE] = { { .n = n } };

@@ -8,8 +8,9 @@
 
 enum { TED4_RAY_PALETTE = 256 };
 
-/* rgba [n][4] to at most TED4_RAY_PALETTE colours and one index a pixel. The number of colours, or -1:
- * no memory. */
-int ted4_ray_palette(const uint8_t *rgba, size_t n, uint8_t palette[TED4_RAY_PALETTE][4], uint8_t *index);
+/* rgba [n][4] to at most TED4_RAY_PALETTE colours and one index a pixel. The number of colours, or
+ * -1: no memory. */
+int ted4_ray_palette(const uint8_t *rgba, size_t n, uint8_t palette[TED4_RAY_PALETTE][4],
+                     uint8_t *index);
 
 #endif

@@ -92,8 +92,8 @@ static int put_png(FILE *f, const raw *r, int clear)
     }
     png_init_io(png, f);
     png_set_IHDR(png, info, (png_uint_32)r->width, (png_uint_32)r->height, r->depth, r->type,
-                 r->interlaced ? PNG_INTERLACE_ADAM7 : PNG_INTERLACE_NONE, PNG_COMPRESSION_TYPE_DEFAULT,
-                 PNG_FILTER_TYPE_DEFAULT);
+                 r->interlaced ? PNG_INTERLACE_ADAM7 : PNG_INTERLACE_NONE,
+                 PNG_COMPRESSION_TYPE_DEFAULT, PNG_FILTER_TYPE_DEFAULT);
     if (r->type == PNG_COLOR_TYPE_PALETTE)
         put_palette(png, info, r, clear);
     png_write_info(png, info);
@@ -105,8 +105,8 @@ static int put_png(FILE *f, const raw *r, int clear)
     return 0;
 }
 
-static int write_other_png(const ted4_ray_options *o, const char *path, int clear, raw *r, const uint8_t *rgba,
-                           ted4_ray_message *m)
+static int write_other_png(const ted4_ray_options *o, const char *path, int clear, raw *r,
+                           const uint8_t *rgba, ted4_ray_message *m)
 {
     FILE *const f = fopen(path, "wb");
     int bad;
@@ -121,7 +121,8 @@ static int write_other_png(const ted4_ray_options *o, const char *path, int clea
 }
 
 /* 8 bits a channel, as libpng's short way writes it. */
-static int write_png(const char *path, png_uint_32 format, int width, int height, const uint8_t *pixels, ted4_ray_message *m)
+static int write_png(const char *path, png_uint_32 format, int width, int height,
+                     const uint8_t *pixels, ted4_ray_message *m)
 {
     png_image png = { .version = PNG_IMAGE_VERSION, .format = format, .width = (png_uint_32)width,
                       .height = (png_uint_32)height };
@@ -131,14 +132,16 @@ static int write_png(const char *path, png_uint_32 format, int width, int height
     return 0;
 }
 
-int ted4_ray_write_grey(const char *path, int width, int height, const uint8_t *grey, ted4_ray_message *m)
+int ted4_ray_write_grey(const char *path, int width, int height, const uint8_t *grey,
+                        ted4_ray_message *m)
 {
     return write_png(path, PNG_FORMAT_GRAY, width, height, grey, m);
 }
 
 /* ---- JPEG ---- */
 
-static int write_jpeg(const char *path, int width, int height, int progressive, uint8_t *rgb, ted4_ray_message *m)
+static int write_jpeg(const char *path, int width, int height, int progressive, uint8_t *rgb,
+                      ted4_ray_message *m)
 {
     struct jpeg_compress_struct jpeg;
     struct jpeg_error_mgr errors;
@@ -171,13 +174,15 @@ static int write_jpeg(const char *path, int width, int height, int progressive, 
             written = 0;
     }
     free(bytes);
-    return written == n ? 0 : complain(m, path, f == NULL ? strerror(errno) : "cannot write it (disk full?)");
+    if (f == NULL)
+        return complain(m, path, "cannot be made");
+    return written == n ? 0 : complain(m, path, "cannot write it (disk full?)");
 }
 
 /* ---- all kinds ---- */
 
-static int write_opaque(const ted4_ray_options *o, const char *path, int width, int height, const uint8_t *rgba,
-                        ted4_ray_message *m)
+static int write_opaque(const ted4_ray_options *o, const char *path, int width, int height,
+                        const uint8_t *rgba, ted4_ray_message *m)
 {
     const size_t n = (size_t)width * (size_t)height;
     uint8_t *const rgb = malloc(3 * n);
@@ -195,12 +200,16 @@ static int write_opaque(const ted4_ray_options *o, const char *path, int width, 
     return status;
 }
 
-int ted4_ray_write_picture(const ted4_ray_options *o, const char *path, int width, int height, const uint8_t *rgba,
-                           ted4_ray_message *m)
+int ted4_ray_write_picture(const ted4_ray_options *o, const char *path, int width, int height,
+                           const uint8_t *rgba, ted4_ray_message *m)
 {
     const int clear = ted4_ray_around(o) == RAY_CLEAR, kind = o->ways.file;
-    raw r = { .width = width, .height = height, .depth = kind == RAY_PNG16 ? 16 : 8, .channels = 3 + clear,
-              .type = clear ? PNG_COLOR_TYPE_RGB_ALPHA : PNG_COLOR_TYPE_RGB, .interlaced = kind == RAY_INTERLACED };
+    raw r = { .width = width,
+              .height = height,
+              .depth = kind == RAY_PNG16 ? 16 : 8,
+              .channels = 3 + clear,
+              .type = clear ? PNG_COLOR_TYPE_RGB_ALPHA : PNG_COLOR_TYPE_RGB,
+              .interlaced = kind == RAY_INTERLACED };
 
     if (kind >= RAY_JPEG || (kind == RAY_PNG && !clear))
         return write_opaque(o, path, width, height, rgba, m);

@@ -33,7 +33,8 @@ ted4_ray_options ted4_ray_defaults(ted4_ray_scene s)
 const char *ted4_ray_fault(const ted4_ray_options *o)
 {
     const ted4_ray_ways *const w = &o->ways;
-    const int transforms = o->layout == RAY_BLENDER || o->layout == RAY_NERFSTUDIO, clear = ted4_ray_around(o) == RAY_CLEAR;
+    const int transforms = o->layout == RAY_BLENDER || o->layout == RAY_NERFSTUDIO,
+              clear = ted4_ray_around(o) == RAY_CLEAR;
 
     if ((w->turns || w->split == RAY_OTHER_TIMES) && !ted4_ray_has_lists(o->layout))
         return "--turns and --split times go with the layouts blender, nerfstudio and hypernerf";
@@ -41,7 +42,8 @@ const char *ted4_ray_fault(const ted4_ray_options *o)
         return "--turns holds out no times but those of its test cameras";
     if (w->split == RAY_OTHER_TIMES && o->hold == 0)
         return "--split times needs --hold";
-    if ((w->paths != RAY_AS_USUAL || w->split == RAY_VAL_FILE || w->split == RAY_TRAIN_ONLY) && !transforms)
+    if ((w->paths != RAY_AS_USUAL || w->split == RAY_VAL_FILE || w->split == RAY_TRAIN_ONLY) &&
+        !transforms)
         return "--paths, --split val and --split train-only go with the layouts blender and nerfstudio";
     if ((w->off[0] != 0 || w->off[1] != 0) && (o->layout == RAY_NEU3D || o->layout == RAY_LLFF))
         return "--centre: the layouts neu3d and llff cannot say it";
@@ -119,7 +121,8 @@ typedef struct {
 } pictures;
 
 /* truth/masks/NAME.png */
-static void write_mask(const pictures *job, int number, int frame, const ted4_ray_camera *c, uint8_t *mask, ted4_ray_message *m)
+static void write_mask(const pictures *job, int number, int frame, const ted4_ray_camera *c,
+                       uint8_t *mask, ted4_ray_message *m)
 {
     char file[TED4_RAY_NAME], name[TED4_RAY_NAME + 24], path[MAX_PATH];
 
@@ -155,7 +158,8 @@ static void picture_job(void *arg, size_t i)
         complain(m, file, "out of memory");
     } else if (join(path, job->folder, file, m) == 0) {
         ted4_ray_shot(o, number, frame, rgba);
-        if (ted4_ray_write_picture(o, path, camera.width, camera.height, rgba, m) == 0 && o->ways.masks && number < o->n_train)
+        if (ted4_ray_write_picture(o, path, camera.width, camera.height, rgba, m) == 0 &&
+            o->ways.masks && number < o->n_train)
             write_mask(job, number, frame, &camera, rgba, m);
     }
     free(rgba);
@@ -194,7 +198,7 @@ int ted4_ray_n_points(const ted4_ray_options *o)
     return o->ways.points == RAY_BOX10 ? TED4_RAY_MANY_POINTS : TED4_RAY_POINTS;
 }
 
-/* What a training camera sees at a random place of a picture that is there; p gets camera and time. */
+/* What a training camera sees at a random place of a listed picture; p gets camera and time. */
 static ted4_ray_sight random_sight(const ted4_ray_options *o, int i, int attempt, ted4_ray_point *p)
 {
     const uint32_t seed = o->seed + 77;
@@ -218,8 +222,9 @@ static ted4_ray_point random_point(const ted4_ray_options *o, int i)
     const uint32_t seed = o->seed + 78;
     ted4_ray_point p = { .camera = -1 };
     double room[3], file[3];
-    const vec3 at = v3_along(things, v3(2 * ray_random(i, 0, 0, seed) - 1, 2 * ray_random(i, 1, 0, seed) - 1,
-                                        2 * ray_random(i, 2, 0, seed) - 1), half);
+    const vec3 from = v3(2 * ray_random(i, 0, 0, seed) - 1, 2 * ray_random(i, 1, 0, seed) - 1,
+                         2 * ray_random(i, 2, 0, seed) - 1);
+    const vec3 at = v3_along(things, from, half);
 
     room[0] = (double)at.x, room[1] = (double)at.y, room[2] = (double)at.z;
     ted4_ray_mapped(o, room, file);
@@ -370,7 +375,8 @@ int ted4_ray_write(const ted4_ray_options *o, const char *folder, const ted4_par
     if (ted4_ray_has_truth(o) && write_file(o, folder, &truth, m) != 0)
         return -1;
     for (int i = 0; files[i].name != NULL; i++) {
-        if ((files[i].wanted == NULL || files[i].wanted(o)) && write_file(o, folder, &files[i], m) != 0)
+        if ((files[i].wanted == NULL || files[i].wanted(o)) &&
+            write_file(o, folder, &files[i], m) != 0)
             return -1;
     }
     return 0;

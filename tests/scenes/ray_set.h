@@ -8,12 +8,18 @@
 #include "ray_render.h"
 #include "ray_scene.h"
 
-enum { TED4_RAY_POINTS = 4000, TED4_RAY_MANY_POINTS = 100000, TED4_RAY_MAX_SIDE = 4096, TED4_RAY_MAX_COUNT = 1000 };
+enum {
+    TED4_RAY_POINTS = 4000,
+    TED4_RAY_MANY_POINTS = 100000,
+    TED4_RAY_MAX_SIDE = 4096,
+    TED4_RAY_MAX_COUNT = 1000
+};
 
-/* RAY_NEU3D and RAY_CALIBRATION: cameras with a clip each, test cameras first. RAY_LLFF: of one time
- * only, a still a camera, test cameras first. */
+/* RAY_NEU3D and RAY_CALIBRATION: cameras with a clip each, test cameras first. RAY_LLFF: of one
+ * time only, a still a camera, test cameras first. */
 typedef enum {
-    RAY_BLENDER, RAY_NERFSTUDIO, RAY_COLMAP, RAY_COLMAP_TEXT, RAY_HYPERNERF, RAY_NEU3D, RAY_CALIBRATION, RAY_LLFF,
+    RAY_BLENDER, RAY_NERFSTUDIO, RAY_COLMAP, RAY_COLMAP_TEXT, RAY_HYPERNERF, RAY_NEU3D,
+    RAY_CALIBRATION, RAY_LLFF,
     RAY_LAYOUTS
 } ted4_ray_layout;
 

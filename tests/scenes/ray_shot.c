@@ -27,7 +27,8 @@ static void lay(const ted4_ray_options *o, uint8_t *p)
         p[3] = 255;
 }
 
-static void draw(const ted4_ray_options *o, const ted4_ray_world *w, const ted4_ray_camera *c, uint8_t *rgba)
+static void draw(const ted4_ray_options *o, const ted4_ray_world *w, const ted4_ray_camera *c,
+                 uint8_t *rgba)
 {
     const size_t n = (size_t)c->width * (size_t)c->height;
 

@@ -10,9 +10,9 @@
  * multiplied, where that is transparent. */
 void ted4_ray_shot(const ted4_ray_options *o, int number, int frame, uint8_t *rgba);
 
-/* mask [height][width]: 255 where the picture is another without the solids that are not the same at
- * all times (so where these are seen, or their shadows), by 8 of 255 or more in a channel; else 0.
- * 0, or -1: no memory. */
+/* mask [height][width]: 255 where the picture is another without the solids that are not the same
+ * at all times (so where these are seen, or their shadows), by 8 of 255 or more in a channel; else
+ * 0. 0, or -1: no memory. */
 int ted4_ray_mask(const ted4_ray_options *o, int number, int frame, uint8_t *mask);
 
 #endif

@@ -22,9 +22,11 @@ static void still_ones(ted4_ray_world *w, vec3 middle)
         RAY_CHECKER, ray_paint(.86f, .84f, .78f), ray_paint(.46f, .46f, .50f));
     add(w, ted4_ray_solid(RAY_SPHERE, v3(.22f, .22f, .22f), v3_add(middle, v3(-.3f, .1f, .28f)), 0),
         RAY_DOTS, cream, ray_paint(.82f, .26f, .20f));
-    add(w, ted4_ray_solid(RAY_BOX, v3(.17f, .17f, .17f), v3_add(middle, v3(.28f, .25f, .23f)), 0.07),
+    add(w,
+        ted4_ray_solid(RAY_BOX, v3(.17f, .17f, .17f), v3_add(middle, v3(.28f, .25f, .23f)), 0.07),
         RAY_FACES, cream, cream);
-    add(w, ted4_ray_solid(RAY_CYLINDER, v3(.12f, .12f, .2f), v3_add(middle, v3(.1f, -.3f, .26f)), 0),
+    add(w,
+        ted4_ray_solid(RAY_CYLINDER, v3(.12f, .12f, .2f), v3_add(middle, v3(.1f, -.3f, .26f)), 0),
         RAY_SPIRAL, cream, ray_paint(.20f, .42f, .70f));
 }
 

@@ -28,21 +28,22 @@ typedef enum { RAY_TEST_FILE, RAY_VAL_FILE, RAY_TRAIN_ONLY, RAY_OTHER_TIMES } te
 /* Numbers of the enumerations above, as the command line sets them, and the rest. */
 typedef struct {
     int    background, points, file, paths, split;
-    int    turns;               /* one camera a time, always another one, always elsewhere */
-    int    premultiplied;       /* colours of transparent pictures are multiplied by alpha */
-    int    sizes;               /* cameras differ in the size of their pictures: 1, 3/4, 5/4 in turn */
-    int    k_each;              /* each picture states its K */
-    int    starts;              /* clips begin at different times */
-    int    up_y;                /* coordinates of the files: y up, not z */
-    int    masks;               /* truth/masks: where training pictures show what moves */
-    int    missing;             /* of the training pictures that are listed, how many are not there */
-    double unit;                /* coordinates of the files are so many times those of the room; 0: 1 */
-    double off[2];              /* of the principal point from the middle, in widths and heights */
+    int    turns;           /* one camera a time, always another one, always elsewhere */
+    int    premultiplied;   /* colours of transparent pictures are multiplied by alpha */
+    int    sizes;           /* cameras differ in picture size: 1, 3/4, 5/4 in turn */
+    int    k_each;          /* each picture states its K */
+    int    starts;          /* clips begin at different times */
+    int    up_y;            /* coordinates of the files: y up, not z */
+    int    masks;           /* truth/masks: where training pictures show what moves */
+    int    missing;         /* of the listed training pictures, how many are not there */
+    double unit;            /* coordinates of the files in those of the room; 0: 1 */
+    double off[2];          /* of the principal point from the middle, in widths and heights */
 } ted4_ray_ways;
 
 /* Words of options. What is usual, and RAY_PNG and RAY_TEST_FILE, have none. */
 typedef enum {
-    RAY_BACKGROUNDS, RAY_POINTS_WORDS, RAY_PNG_WORDS, RAY_JPEG_WORDS, RAY_PATHS_WORDS, RAY_SPLITS, RAY_VOCABULARIES
+    RAY_BACKGROUNDS, RAY_POINTS_WORDS, RAY_PNG_WORDS, RAY_JPEG_WORDS, RAY_PATHS_WORDS, RAY_SPLITS,
+    RAY_VOCABULARIES
 } ted4_ray_vocabulary;
 
 /* The number that a word stands for, or -1. */

@@ -30,8 +30,8 @@ const char ted4_scene_ways_help[] =
     "  --masks             truth/masks: where training pictures show what moves, or its shadow\n";
 
 enum {
-    BACKGROUND = TED4_SCENE_WAYS, TURNS, POINTS, UNIT, UP, CENTRE, SIZES, ALPHA, PNG, JPEG, PATHS, SPLIT, MISSING, K_EACH,
-    STARTS, MASKS
+    BACKGROUND = TED4_SCENE_WAYS, TURNS, POINTS, UNIT, UP, CENTRE, SIZES, ALPHA, PNG, JPEG, PATHS,
+    SPLIT, MISSING, K_EACH, STARTS, MASKS
 };
 
 const struct option ted4_scene_ways[TED4_SCENE_N_WAYS] = {

@@ -186,6 +186,13 @@ static int layout_of(const char *name, ted4_ray_options *o)
     return complain(name, "not a layout (see -h)");
 }
 
+static int way(command *c, int number_of_option, const char *text)
+{
+    if (ted4_scene_way(number_of_option, text, &c->set.ways) == 0)
+        return EXIT_FINE;
+    return complain(text, "not what goes with its option (see -h)");
+}
+
 static int option(command *c, int letter, const char *text)
 {
     long long seed = 0;
@@ -234,7 +241,7 @@ static int option(command *c, int letter, const char *text)
         break;
     default:
         if (letter >= TED4_SCENE_WAYS)
-            return ted4_scene_way(letter, text, &c->set.ways) == 0 ? EXIT_FINE : complain(text, "not what goes with its option (see -h)");
+            return way(c, letter, text);
         fputs("ted4scene: see ted4scene -h\n", stderr);
         status = EXIT_TROUBLE;
     }
