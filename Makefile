@@ -94,7 +94,7 @@ $B/tests/%: tests/%.sh
 	@mkdir -p $(@D)
 	install -m 755 $< $@
 
-$(addprefix $B/tests/test_,scene scene_sets failure_scenes layouts hold_out): $(patsubst %.c,$B/%.o,$(wildcard tests/scenes/ray_*.c))
+$(addprefix $B/tests/test_,scene scene_sets failure_scenes layouts hold_out ways): $(patsubst %.c,$B/%.o,$(wildcard tests/scenes/ray_*.c))
 $B/tests/test_run_log: $(addprefix $B/ref-encoder/tool/,run_log.o teller.o)
 $B/tests/test_teller: $B/ref-encoder/tool/teller.o
 $B/tests/test_belongs: $(addprefix $B/ref-encoder/tool/,belongs.o sheet.o)

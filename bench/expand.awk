@@ -1,4 +1,4 @@
-# expand.awk - a table of runs (bench/sweep.txt, bench/stability.txt), a run a line:
+# expand.awk - a table of runs (bench/sweep.txt, bench/stability.txt, bench/zoo.txt), a run a line:
 #     GROUPS|TAG|SCENE|WHERE|VARIANT|PLACE|LAMBDA|KEEP|STAGE1|OPTIONS
 # PLACE: of the lambda, or of the seed, in its list, from 1. STAGE1: the options that decide stage 1, with no part that only stage 2 looks at, as
 # ref-encoder/train/options.def says. Options come out once each, the last value of a name winning, in the order in which names first come.
@@ -30,7 +30,7 @@ function take(i,    name) {
             if (split($(++i), half, "=") != 2)
                 fail("--set " $i ": NAME=VALUE expected")
             keep_value("--set " half[1] "=", half[2])
-        } else if (name ~ /^--(preset|capacity|lambda|seed|downscale)$/) {
+        } else if (name ~ /^--(preset|capacity|lambda|seed|downscale|alpha|hold-out)$/) {
             keep_value(name " ", $(++i))
         } else if (name == "--black") {
             keep_value(name, "")
@@ -99,6 +99,7 @@ NF == 0 { next }
     next
 }
 $1 == "base" { sub(/^[ \t]*base[ \t]*/, ""); base = $0; next }
+$1 == "case" && NF >= 4 { sub(/^[ \t]*case[ \t]+[^ \t]+[ \t]+[^ \t]+/, "scene " $2) }
 $1 == "scene" && NF >= 3 {
     name = $2
     all_scenes = all_scenes (all_scenes == "" ? "" : ",") name
@@ -124,5 +125,5 @@ $1 == "run" && NF >= 6 {
             one_run(groups, a_scene[s], variant, a_place[l], keep, options)
     next
 }
-{ fail("lambdas or seeds (one of them, once), base, scene, group or run expected") }
+{ fail("lambdas or seeds (one of them, once), base, scene, case, group or run expected") }
 END { exit failed }

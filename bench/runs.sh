@@ -1,4 +1,4 @@
-# runs.sh - what bench/sweep.sh and bench/stability.sh share: the runs of a table, one process each, and a row of a CSV for each result. Sourced, from the
+# runs.sh - what bench/sweep.sh, bench/stability.sh, bench/capacity.sh and bench/zoo.sh share: the runs of a table, one process each, and a row of a CSV for each result. Sourced, from the
 # project's root.
 # A row's key tells its options and the sources that decide its bytes and numbers; comments and spacing do not count. It is stale when either differs now. May be
 # killed at any moment and called again, also several times at once: programs are copied before use, each stage 1 that runs share and each own scene is made once,
@@ -20,6 +20,19 @@ die() { echo "$program: $*" >&2; exit 3; }
 value() { sed -n "s/.*\"$1\":\"\{0,1\}\([-0-9a-z.+]*\).*/\1/p" "$2"; }
 short_hash() { sha1sum | cut -c1-10; }
 measure_failure() { return 1; }
+
+# What a training that ended by itself without a file ended with; fails for one that was ended from outside. Signals that a program gets for what it does itself:
+# ILL TRAP ABRT BUS FPE SEGV.
+status_word() {
+    case $1 in
+    132|133|134|135|136|139) echo crash ;;
+    3)                       echo error ;;
+    *)                       return 1 ;;
+    esac
+}
+
+# What it said last, as a cell.
+last_words() { tail -n 1 "$out.err" | tr ',"' ';' | cut -c1-200; }
 
 # Sources whose change may change a row; own scenes depend on their maker too.
 sources() {

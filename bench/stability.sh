@@ -42,16 +42,11 @@ measure() {
     said="$(value psnr "$out.facts.json") dB, worst $(value worst "$out.facts.json"), $(value bytes "$out.facts.json") bytes"
 }
 
-# Signals that a program gets for what it does itself: ILL TRAP ABRT BUS FPE SEGV. Others come from outside.
 measure_failure() {
-    case $1 in
-    132|133|134|135|136|139) ended=crash ;;
-    3)                       ended=error ;;
-    *)                       return 1 ;;
-    esac
+    ended=$(status_word "$1") || return 1
     row=$tag,$key,$scene,$groups,$options,$ended
     for f in $facts; do row=$row,; done
-    row=$row,,,,$(tail -n 1 "$out.err" | tr ',"' ';' | cut -c1-200)
+    row=$row,,,,$(last_words)
     said="$ended: $(tail -n 1 "$out.err")"
 }
 

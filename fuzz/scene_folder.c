@@ -21,12 +21,15 @@ static struct {
     int  n;
 } folder;
 
-/* A clip that is a video would be taken apart by another program: not here. Linked in place of it (-Wl,--wrap). */
-char *__wrap_ted4_video_unpack(const char *video, size_t most, ted4_message *m);
+/* A clip that is a video would be taken apart by another program: not here. Linked in place of it (-Wl,--wrap), which compares no types: the
+ * declaration by __typeof__ does. */
+extern __typeof__(ted4_video_unpack) __wrap_ted4_video_unpack;
 
-char *__wrap_ted4_video_unpack(const char *video, size_t most, ted4_message *m)
+char *__wrap_ted4_video_unpack(const char *video, size_t most, const ted4_dataset_options *o,
+                               ted4_message *m)
 {
     (void)most;
+    (void)o;
     (void)snprintf(m->text, sizeof m->text, "%.900s: no videos while fuzzing", video);
     return NULL;
 }

@@ -104,6 +104,29 @@ static void test_stills(void **state)
     tiny_free(&f);
 }
 
+/* Of a COLMAP scene without images/ the reduced copies will do,
+ * of whichever kind: PNG under names that end as JPEG. */
+static void test_copies(void **state)
+{
+    (void)state;
+    tiny_folder f = tiny_new();
+    ted4_dataset_options o = tiny_options;
+
+    tiny_text(&f, "sparse/0/cameras.txt", "1 PINHOLE 64 48 40 40 32 24\n");
+    tiny_text(&f, "sparse/0/images.txt", "1 1 0 0 0 0 0 0 1 a.JPG\n\n2 1 0 0 0 0 0 0 1 b.JPG\n\n");
+    tiny_picture(&f, "images_4/a.png", 16, 12, 0), tiny_picture(&f, "images_4/b.JPG", 16, 12, 0);
+    for (int downscale = 1; downscale <= 8; downscale *= 2) {
+        o.downscale = downscale;
+        ted4_dataset d = load(&f, &o);
+        assert_int_equal(d.n_warnings, 0);
+        assert_int_equal(d.n_pictures, 2);
+        assert_int_equal(d.pictures[0].camera.width, downscale == 8 ? 8 : 16);
+        assert_true(fabs(d.pictures[0].camera.fx - (downscale == 8 ? 5 : 10)) < 1e-12);
+        ted4_dataset_free(&d);
+    }
+    tiny_free(&f);
+}
+
 static void write_clip(const tiny_folder *f, const char *folder, int n)
 {
     for (int i = 0; i < n; i++) {
@@ -245,7 +268,7 @@ static void test_example(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_stills),  cmocka_unit_test(test_rows),
+        cmocka_unit_test(test_stills), cmocka_unit_test(test_copies),  cmocka_unit_test(test_rows),
         cmocka_unit_test(test_starts),  cmocka_unit_test(test_playlists),
         cmocka_unit_test(test_example),
     };

@@ -108,13 +108,12 @@ static void same_scene(ted4_dataset *d, int tolerance, int split)
 static void test_layouts(void **state)
 {
     /* What each layout is recognised as; splits: by list, by list, 1 of 8, 1 of 8, by list, first camera, times. */
-    static const char *const names[RAY_LAYOUTS] = { "D-NeRF",     "nerfstudio", "colmap",
-                                                    "colmap",     "hypernerf",  "neu3d",
-                                                    "calibration" };
-    static const int split[RAY_LAYOUTS] = { 1, 1, 0, 0, 1, 1, 0 };
+    static const char *const names[RAY_LLFF] = { "D-NeRF",    "nerfstudio", "colmap",     "colmap",
+                                                 "hypernerf", "neu3d",      "calibration" };
+    static const int split[RAY_LLFF] = { 1, 1, 0, 0, 1, 1, 0 };
 
     (void)state;
-    for (int l = 0; l < RAY_LAYOUTS; l++) {
+    for (int l = 0; l < RAY_LLFF; l++) {
         tiny_folder f = write_scene((ted4_ray_layout)l, FRAMES, 0);
         ted4_dataset d;
         load(&d, &f);
@@ -129,13 +128,13 @@ static void test_layouts(void **state)
  * change, but where a loader is wrong. */
 static void test_digests(void **state)
 {
-    static const uint64_t known[RAY_LAYOUTS] = {
+    static const uint64_t known[RAY_LLFF] = {
         0xb5436a4db0da7991, 0xb5436a4db0da7991, 0x91a33f4aee0502c2, 0x91a33f4aee0502c2,
         0xb5436a4db0da7991, 0xb5436a4db0da7991, 0xf5be6c1c9b13f240,
     };
 
     (void)state;
-    for (int l = 0; l < RAY_LAYOUTS; l++) {
+    for (int l = 0; l < RAY_LLFF; l++) {
         tiny_folder f = write_scene((ted4_ray_layout)l, FRAMES, 0);
         ted4_dataset d;
         load(&d, &f);

@@ -41,7 +41,7 @@ static const struct { const char *name; int n_train, n_test, n_frames, held; } s
     { "wide", 6, 2, 16, 2 },    { "pair", 2, 1, 16, 2 },    { "long", 3, 1, 600, 75 },  { "wires", 6, 2, 16, 2 },
     { "shaken", 6, 2, 16, 2 },  { "change", 6, 2, 16, 2 },  { "empty", 6, 2, 16, 2 },   { "moment", 8, 2, 1, 0 },
     { "alone", 1, 1, 24, 3 },   { "edge", 6, 2, 16, 2 },    { "things0", 6, 2, 16, 2 }, { "things1", 6, 2, 16, 2 }, { "things2", 6, 2, 16, 2 },
-    { "things4", 6, 2, 16, 2 }, { "things8", 6, 2, 16, 2 }, { "rest", 6, 2, 32, 4 },
+    { "things4", 6, 2, 16, 2 }, { "things8", 6, 2, 16, 2 }, { "rest", 6, 2, 32, 4 }, { "toys", 10, 2, 16, 0 },
 };
 
 /* Member of truth.json; a list as long as n, if n is not negative. */
@@ -110,11 +110,11 @@ static void test_sets(void **state)
     }
 }
 
-/* Held-out times in every layout that has lists; in the others all pictures are there. */
+/* Held-out times in every layout that has lists; in the others that have several times all pictures are there. */
 static void test_layouts(void **state)
 {
     (void)state;
-    for (int l = 0; l < RAY_LAYOUTS; l++) {
+    for (int l = 0; l < RAY_LLFF; l++) {
         ted4_ray_options o = ted4_ray_defaults(RAY_BLINK);
         ted4_dataset d;
         size_t train = 0;

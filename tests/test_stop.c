@@ -227,5 +227,7 @@ int main(void)
                                         cmocka_unit_test(test_no_checkpoint),
                                         cmocka_unit_test(test_again) };
 
+    /* A shell that runs its commands in the background hands on that they ignore it. */
+    signal(SIGINT, SIG_DFL);
     return cmocka_run_group_tests_name("stop", tests, set_up, tear_down);
 }

@@ -2,6 +2,7 @@
  * last number in a file's name orders it; each distinct number is one frame. Split: raw_scene.h.
  * Physical camera: COLMAP's camera and the folder below images/ (one folder a camera is COLMAP's
  * own custom).
+ * Where images/ is not there, a copy reduced by N in images_N/ will do, as PNG or JPEG.
  * SPDX-License-Identifier: BSD-2-Clause */
 #include "data/raw_scene.h"
 
@@ -11,6 +12,7 @@
 #include <string.h>
 #include "data/colmap_file.h"
 #include "data/data_util.h"
+#include "data/picture_path.h"
 
 /* folder/sparse/0 or folder/sparse, whichever holds cameras.*; NULL: neither. Owned by the caller. */
 static char *find_model(const char *folder)
@@ -94,7 +96,14 @@ static int add_image(ted4_raw_scene *s, const ted4_colmap *c, const ted4_colmap_
     if (camera == NULL)
         return ted4_say(m, "%s: its camera %u is not in the cameras file", where, (unsigned)image->camera);
     ted4_shot *shot;
-    const int there = ted4_raw_scene_list(s, ted4_path_join(images, image->name), where, &shot, m);
+    char *path = ted4_path_join(images, image->name), *other = NULL;
+    /* Copies may be of another kind than what they were made of. */
+    if (s->reduced > 1 && path != NULL && !ted4_is_file(path) &&
+        ted4_picture_find(images, image->name, NULL, &other) == 1) {
+        free(path);
+        path = other;
+    }
+    const int there = ted4_raw_scene_list(s, path, where, &shot, m);
     if (there <= 0)
         return there;
     shot->lens = camera->lens;
@@ -140,8 +149,6 @@ static int rank_numbers(ted4_raw_scene *s, ted4_message *m)
 
 static int add_images(ted4_raw_scene *s, ted4_colmap *c, const char *images, ted4_message *m)
 {
-    if (!ted4_is_folder(images))
-        return ted4_say(m, "%s: no such folder, expected the %zu pictures of the sparse model", images, c->n_images);
     for (size_t i = 0; i < c->n_images; i++)
         if (add_image(s, c, &c->images[i], images, m) != 0)
             return -1;
@@ -149,20 +156,41 @@ static int add_images(ted4_raw_scene *s, ted4_colmap *c, const char *images, ted
     return rank_numbers(s, m);
 }
 
+/* images/, or where it was not kept its reduced copy images_N, the wanted or the least reduced one;
+ * owned by the caller. NULL with *m filled. */
+static char *find_images(ted4_raw_scene *s, const char *folder, size_t n, ted4_message *m)
+{
+    const int sizes[] = { 1, s->wanted->downscale, 2, 4, 8, 16 };
+    char name[32];
+
+    for (size_t i = 0; i < sizeof sizes / sizeof sizes[0]; i++) {
+        snprintf(name, sizeof name, sizes[i] > 1 ? "images_%d" : "images", sizes[i]);
+        char *images = ted4_path_join(folder, name);
+        s->reduced = sizes[i];
+        if (images == NULL)
+            ted4_say_no_memory(m);
+        if (images == NULL || ted4_is_folder(images))
+            return images;
+        free(images);
+    }
+    ted4_say(m, "%s/images: no such folder, expected the %zu pictures of the sparse model", folder, n);
+    return NULL;
+}
+
 int ted4_load_colmap(ted4_raw_scene *s, const char *folder, ted4_message *m)
 {
     ted4_colmap c;
-    char *model = find_model(folder), *images = ted4_path_join(folder, "images");
+    char *model = find_model(folder), *images = NULL;
     int result;
 
     s->layout = "colmap";
     memset(&c, 0, sizeof c);
     if (model == NULL)
         result = ted4_say(m, "%s/sparse: neither cameras.bin nor cameras.txt here or in sparse/0", folder);
-    else if (images == NULL)
-        result = ted4_say_no_memory(m);
     else
         result = ted4_colmap_read(&c, model, m);
+    if (result == 0 && (images = find_images(s, folder, c.n_images, m)) == NULL)
+        result = -1;
     if (result == 0)
         result = add_images(s, &c, images, m);
     if (result == 0 && c.cloud.n > 0) {

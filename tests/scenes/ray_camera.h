@@ -3,11 +3,11 @@
 #ifndef RAY_CAMERA_H
 #define RAY_CAMERA_H
 
-/* Pinhole, square pixels, principal point in the middle of the picture. OpenGL axes: right, up,
- * backwards. */
+/* Pinhole, square pixels. OpenGL axes: right, up, backwards. */
 typedef struct {
     int    width, height;
-    double focal;               /* in pixels */
+    double focal;               /* in pixels, as all lengths of pictures */
+    double cx, cy;              /* principal point; as placed, the middle of the picture */
     double matrix[4][4];        /* camera to world */
     float  colour[9];           /* row-major: linear light to what the camera takes it for; a unit matrix as placed */
 } ted4_ray_camera;
@@ -20,6 +20,10 @@ extern const double ted4_ray_angle_x, ted4_ray_radius;
 void ted4_ray_camera_train(ted4_ray_camera *c, int i, int n_train, int width, int height);
 void ted4_ray_camera_test(ted4_ray_camera *c, int i, int n_test, int n_train, int width,
                           int height);
+
+/* Camera i of n all about the small things of the scene "toys" and above them, a golden angle
+ * further each. */
+void ted4_ray_camera_dome(ted4_ray_camera *c, int i, int n, int width, int height);
 
 /* World point to pixel coordinates (centres at + 0.5); returns the depth, not positive when it
  * lies behind. */

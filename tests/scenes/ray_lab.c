@@ -257,6 +257,10 @@ void ted4_ray_lab_at(ted4_ray_world *w, ted4_ray_scene s, int frame, int n_frame
     const double t = ted4_ray_time(frame, n_frames);
     const int half = n_frames / 2;
 
+    if (s == RAY_TOYS) {
+        ted4_ray_toys(w, t);
+        return;
+    }
     if (s >= RAY_THINGS0) {
         ted4_ray_things(w, n_things(s), s == RAY_REST && frame > half ? half : frame);
         return;

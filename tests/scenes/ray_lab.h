@@ -18,4 +18,8 @@ float ted4_ray_flicker(int frame, uint32_t seed);
  * the time of that many frames; a second has 16. */
 void ted4_ray_things(ted4_ray_world *w, int n_moving, int frames);
 
+/* ray_toys.c: a few small things on a disk, of which a ball goes round and four droplets fall; no
+ * furniture. */
+void ted4_ray_toys(ted4_ray_world *w, double t);
+
 #endif

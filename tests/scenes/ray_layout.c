@@ -4,6 +4,8 @@
 
 #include <string.h>
 
+#include "ray_picture.h"
+
 /* The range of depths that some layouts state, in units of the room. */
 #define NEAR 0.1
 #define FAR  10.0
@@ -11,7 +13,7 @@
 const char *ted4_ray_layout_name(ted4_ray_layout l)
 {
     static const char *const names[RAY_LAYOUTS] = { "blender", "nerfstudio", "colmap", "colmap-text",
-                                                    "hypernerf", "neu3d", "calibration" };
+                                                    "hypernerf", "neu3d", "calibration", "llff" };
 
     return names[l];
 }
@@ -43,37 +45,70 @@ void ted4_ray_camera_name(const ted4_ray_options *o, int number, char name[TED4_
 static void flat_name(const ted4_ray_options *o, int number, int frame, const char *separator, char name[40])
 {
     const int test = is_test(o, number);
+    const char *const held = o->ways.split == RAY_VAL_FILE ? "val" : "test";
 
-    snprintf(name, 40, o->n_frames > 100 ? "%s%sr_%03d_%03d" : "%s%sr_%03d_%02d", test ? "test" : "train",
-             separator, test ? number - o->n_train : number, frame);
+    snprintf(name, 40, o->n_frames > 100 ? "%s%sr_%03d_%03d" : "%s%sr_%03d_%02d",
+             test ? held : "train", separator, test ? number - o->n_train : number, frame);
 }
 
 void ted4_ray_picture_name(const ted4_ray_options *o, int number, int frame, char name[TED4_RAY_NAME])
 {
+    const char *const end = ted4_ray_ending(o);
     char camera[TED4_RAY_NAME], flat[40];
 
+    frame -= ted4_ray_start(o, number);
     ted4_ray_camera_name(o, number, camera);
     flat_name(o, number, frame, o->layout == RAY_BLENDER ? "/" : "_", flat);
     switch (o->layout) {
     case RAY_BLENDER:
-        snprintf(name, TED4_RAY_NAME, "%s.png", flat);
+        snprintf(name, TED4_RAY_NAME, "%s%s", flat, end);
         break;
     case RAY_NERFSTUDIO:
-        snprintf(name, TED4_RAY_NAME, "images/%s.png", flat);
+        snprintf(name, TED4_RAY_NAME, "images/%s%s", flat, end);
         break;
     case RAY_HYPERNERF:
-        snprintf(name, TED4_RAY_NAME, "rgb/1x/%s.png", flat);
+        snprintf(name, TED4_RAY_NAME, "rgb/1x/%s%s", flat, end);
         break;
     case RAY_COLMAP:
     case RAY_COLMAP_TEXT:
-        snprintf(name, TED4_RAY_NAME, "images/%.20s/%04d.png", camera, frame);
+        snprintf(name, TED4_RAY_NAME, "images/%.20s/%04d%s", camera, frame, end);
+        break;
+    case RAY_LLFF:
+        snprintf(name, TED4_RAY_NAME, "images/%.20s%s", camera, end);
         break;
     default:
-        snprintf(name, TED4_RAY_NAME, "%.20s/images/%04d.png", camera, frame);
+        snprintf(name, TED4_RAY_NAME, "%.20s/images/%04d%s", camera, frame, end);
     }
 }
 
 /* ---- transforms: blender, nerfstudio ---- */
+
+/* How the listing names a picture. */
+static void stated_path(const ted4_ray_options *o, int number, int frame, char path[TED4_RAY_NAME])
+{
+    char name[TED4_RAY_NAME];
+
+    ted4_ray_picture_name(o, number, frame, name);
+    if (o->ways.paths == RAY_NO_ENDING || o->ways.paths == RAY_NAME_ONLY ||
+        (o->ways.paths == RAY_AS_USUAL && o->layout == RAY_BLENDER))
+        *strrchr(name, '.') = '\0';
+    if (o->ways.paths == RAY_NO_FOLDER || o->ways.paths == RAY_NAME_ONLY)
+        snprintf(path, TED4_RAY_NAME, "%s", strrchr(name, '/') + 1);
+    else
+        snprintf(path, TED4_RAY_NAME, "./%.76s", name);
+}
+
+static int states_each(const ted4_ray_options *o)
+{
+    return o->ways.k_each || o->ways.sizes;
+}
+
+static void put_lens(FILE *f, const ted4_ray_camera *c, const char *margin)
+{
+    fprintf(f, "%s\"w\": %d,\n%s\"h\": %d,\n%s\"fl_x\": %.17g,\n%s\"fl_y\": %.17g,\n", margin,
+            c->width, margin, c->height, margin, c->focal, margin, c->focal);
+    fprintf(f, "%s\"cx\": %.17g,\n%s\"cy\": %.17g,\n", margin, c->cx, margin, c->cy);
+}
 
 static void put_frame(FILE *f, const ted4_ray_options *o, int number, int frame)
 {
@@ -81,11 +116,11 @@ static void put_frame(FILE *f, const ted4_ray_options *o, int number, int frame)
     ted4_ray_camera c;
 
     ted4_ray_camera_stated(o, number, &c);
-    ted4_ray_picture_name(o, number, frame, name);
-    if (o->layout == RAY_BLENDER)
-        *strrchr(name, '.') = '\0';
-    fprintf(f, "\n    {\n      \"file_path\": \"./%s\",\n      \"time\": %.17g,\n", name,
+    stated_path(o, number, frame, name);
+    fprintf(f, "\n    {\n      \"file_path\": \"%s\",\n      \"time\": %.17g,\n", name,
             ted4_ray_time(frame, o->n_frames));
+    if (states_each(o))
+        put_lens(f, &c, "      ");
     if (o->layout == RAY_NERFSTUDIO)
         fprintf(f, "      \"camera\": %d,\n", number);
     fprintf(f, "      \"transform_matrix\": [");
@@ -98,22 +133,24 @@ static void put_frame(FILE *f, const ted4_ray_options *o, int number, int frame)
 static void put_transforms(FILE *f, const ted4_ray_options *o, int first, int cameras)
 {
     ted4_ray_camera c;
+    int n = 0;
 
     ted4_ray_camera_stated(o, 0, &c);
     fputs("{\n", f);
-    if (o->layout == RAY_BLENDER)
+    if (o->layout == RAY_NERFSTUDIO)
+        fputs("  \"camera_model\": \"OPENCV\",\n", f);
+    else if (!states_each(o))
         fprintf(f, "  \"camera_angle_x\": %.17g,\n", ted4_ray_angle_x);
-    else
-        fprintf(f, "  \"camera_model\": \"OPENCV\",\n  \"w\": %d,\n  \"h\": %d,\n  \"fl_x\": %.17g,\n"
-                "  \"fl_y\": %.17g,\n  \"cx\": %.17g,\n  \"cy\": %.17g,\n", c.width, c.height, c.focal,
-                c.focal, 0.5 * c.width, 0.5 * c.height);
+    if (!states_each(o) &&
+        (o->layout == RAY_NERFSTUDIO || o->ways.off[0] != 0 || o->ways.off[1] != 0))
+        put_lens(f, &c, "  ");
     fputs("  \"frames\": [", f);
     for (int i = 0; i < cameras * o->n_frames; i++) {
         const int number = first + i / o->n_frames, frame = i % o->n_frames;
 
         if (!ted4_ray_is_taken(o, number, frame))
             continue;
-        fputs(i > 0 ? "," : "", f);
+        fputs(n++ > 0 ? "," : "", f);
         put_frame(f, o, number, frame);
     }
     fprintf(f, "\n  ]\n}\n");
@@ -163,8 +200,8 @@ static void put_points(FILE *f, const ted4_ray_options *o, int number, int frame
             "property float x\nproperty float y\nproperty float z\n"
             "property float nx\nproperty float ny\nproperty float nz\n"
             "property uchar red\nproperty uchar green\nproperty uchar blue\nend_header\n",
-            TED4_RAY_POINTS);
-    for (int i = 0; i < TED4_RAY_POINTS; i++) {
+            ted4_ray_n_points(o));
+    for (int i = 0; i < ted4_ray_n_points(o); i++) {
         const ted4_ray_point p = ted4_ray_point_at(o, i);
         const float row[6] = { p.point.x, p.point.y, p.point.z, 0, 0, 0 };
 
@@ -214,7 +251,18 @@ static void quaternion_of(double R[3][3], double q[4])
         q[i] /= norm;
 }
 
-/* ---- colmap: one camera, an image for every picture, points without tracks ---- */
+/* ---- colmap: one lens, or one a camera, an image for every picture, points without tracks ---- */
+
+static int n_lenses(const ted4_ray_options *o)
+{
+    return states_each(o) ? n_cameras(o) : 1;
+}
+
+static int lens_of(const ted4_ray_options *o, int number)
+{
+    return states_each(o) ? number + 1 : 1;
+}
+
 
 static void colmap_image(const ted4_ray_options *o, int i, double pose[7], char name[TED4_RAY_NAME])
 {
@@ -234,10 +282,13 @@ static void put_cameras_bin(FILE *f, const ted4_ray_options *o, int number, int 
     ted4_ray_camera c;
 
     (void)number, (void)frame;
-    ted4_ray_camera_stated(o, 0, &c);
-    put_bytes(f, 1, 8), put_bytes(f, 1, 4), put_bytes(f, PINHOLE, 4);
-    put_bytes(f, (uint64_t)c.width, 8), put_bytes(f, (uint64_t)c.height, 8);
-    put_double(f, c.focal), put_double(f, c.focal), put_double(f, 0.5 * c.width), put_double(f, 0.5 * c.height);
+    put_bytes(f, (uint64_t)n_lenses(o), 8);
+    for (int i = 0; i < n_lenses(o); i++) {
+        ted4_ray_camera_stated(o, i, &c);
+        put_bytes(f, (uint64_t)i + 1, 4), put_bytes(f, PINHOLE, 4);
+        put_bytes(f, (uint64_t)c.width, 8), put_bytes(f, (uint64_t)c.height, 8);
+        put_double(f, c.focal), put_double(f, c.focal), put_double(f, c.cx), put_double(f, c.cy);
+    }
 }
 
 static void put_images_bin(FILE *f, const ted4_ray_options *o, int number, int frame)
@@ -253,7 +304,7 @@ static void put_images_bin(FILE *f, const ted4_ray_options *o, int number, int f
         put_bytes(f, (uint64_t)i + 1, 4);
         for (int k = 0; k < 7; k++)
             put_double(f, pose[k]);
-        put_bytes(f, 1, 4);
+        put_bytes(f, (uint64_t)lens_of(o, i / o->n_frames), 4);
         fwrite(strchr(name, '/') + 1, 1, strlen(strchr(name, '/')), f);    /* with its zero */
         put_bytes(f, 0, 8);
     }
@@ -262,8 +313,8 @@ static void put_images_bin(FILE *f, const ted4_ray_options *o, int number, int f
 static void put_points_bin(FILE *f, const ted4_ray_options *o, int number, int frame)
 {
     (void)number, (void)frame;
-    put_bytes(f, TED4_RAY_POINTS, 8);
-    for (int i = 0; i < TED4_RAY_POINTS; i++) {
+    put_bytes(f, (uint64_t)ted4_ray_n_points(o), 8);
+    for (int i = 0; i < ted4_ray_n_points(o); i++) {
         const ted4_ray_point p = ted4_ray_point_at(o, i);
 
         put_bytes(f, (uint64_t)i + 1, 8);
@@ -279,9 +330,11 @@ static void put_cameras_text(FILE *f, const ted4_ray_options *o, int number, int
     ted4_ray_camera c;
 
     (void)number, (void)frame;
-    ted4_ray_camera_stated(o, 0, &c);
-    fprintf(f, "1 PINHOLE %d %d %.17g %.17g %.17g %.17g\n", c.width, c.height, c.focal, c.focal, 0.5 * c.width,
-            0.5 * c.height);
+    for (int i = 0; i < n_lenses(o); i++) {
+        ted4_ray_camera_stated(o, i, &c);
+        fprintf(f, "%d PINHOLE %d %d %.17g %.17g %.17g %.17g\n", i + 1, c.width, c.height, c.focal,
+                c.focal, c.cx, c.cy);
+    }
 }
 
 static void put_images_text(FILE *f, const ted4_ray_options *o, int number, int frame)
@@ -295,14 +348,14 @@ static void put_images_text(FILE *f, const ted4_ray_options *o, int number, int 
         fprintf(f, "%d", i + 1);
         for (int k = 0; k < 7; k++)
             fprintf(f, " %.17g", pose[k]);
-        fprintf(f, " 1 %s\n\n", strchr(name, '/') + 1);
+        fprintf(f, " %d %s\n\n", lens_of(o, i / o->n_frames), strchr(name, '/') + 1);
     }
 }
 
 static void put_points_text(FILE *f, const ted4_ray_options *o, int number, int frame)
 {
     (void)number, (void)frame;
-    for (int i = 0; i < TED4_RAY_POINTS; i++) {
+    for (int i = 0; i < ted4_ray_n_points(o); i++) {
         const ted4_ray_point p = ted4_ray_point_at(o, i);
 
         fprintf(f, "%d %.9g %.9g %.9g %d %d %d 0\n", i + 1, (double)p.point.x, (double)p.point.y,
@@ -314,6 +367,8 @@ static void put_points_text(FILE *f, const ted4_ray_options *o, int number, int 
 
 static void put_ids(FILE *f, const ted4_ray_options *o, int first, int cameras)
 {
+    int n = 0;
+
     for (int i = 0; i < cameras * o->n_frames; i++) {
         const int number = first + i / o->n_frames, frame = i % o->n_frames;
         char id[40];
@@ -321,7 +376,7 @@ static void put_ids(FILE *f, const ted4_ray_options *o, int first, int cameras)
         if (!ted4_ray_is_taken(o, number, frame))
             continue;
         flat_name(o, number, frame, "_", id);
-        fprintf(f, "%s\"%s\"", i > 0 ? ", " : "", id);
+        fprintf(f, "%s\"%s\"", n++ > 0 ? ", " : "", id);
     }
 }
 
@@ -339,6 +394,8 @@ static void put_dataset(FILE *f, const ted4_ray_options *o, int number, int fram
 
 static void put_metadata(FILE *f, const ted4_ray_options *o, int number, int frame)
 {
+    int n = 0;
+
     (void)number, (void)frame;
     for (int i = 0; i < n_cameras(o) * o->n_frames; i++) {
         char id[40];
@@ -346,15 +403,15 @@ static void put_metadata(FILE *f, const ted4_ray_options *o, int number, int fra
         if (!ted4_ray_is_taken(o, i / o->n_frames, i % o->n_frames))
             continue;
         flat_name(o, i / o->n_frames, i % o->n_frames, "_", id);
-        fprintf(f, "%s\"%s\": {\"warp_id\": %d, \"appearance_id\": %d, \"camera_id\": %d}", i > 0 ? ",\n" : "{",
-                id, i % o->n_frames, i % o->n_frames, i / o->n_frames);
+        fprintf(f, "%s\"%s\": {\"warp_id\": %d, \"appearance_id\": %d, \"camera_id\": %d}",
+                n++ > 0 ? ",\n" : "{", id, i % o->n_frames, i % o->n_frames, i / o->n_frames);
     }
     fputs("}\n", f);
 }
 
 static void put_scene(FILE *f, const ted4_ray_options *o, int number, int frame)
 {
-    const double scale = ted4_ray_plan_of(o->scene)->scale;
+    const double scale = ted4_ray_scale(o);
 
     (void)number, (void)frame;
     fprintf(f, "{\"scale\": 1.0, \"center\": [0.0, 0.0, 0.0], \"near\": %.1f, \"far\": %.1f}\n", NEAR * scale,
@@ -383,7 +440,7 @@ void ted4_ray_put_hypernerf_camera(FILE *f, const ted4_ray_options *o, int numbe
     fprintf(f, "],\n\"position\": [%.17g, %.17g, %.17g],\n\"focal_length\": %.17g, \"principal_point\": [%.17g, %.17g],\n"
             "\"skew\": 0.0, \"pixel_aspect_ratio\": 1.0, \"radial_distortion\": [0.0, 0.0, 0.0],\n"
             "\"tangential_distortion\": [0.0, 0.0], \"image_size\": [%d, %d]}\n", c.matrix[0][3], c.matrix[1][3],
-            c.matrix[2][3], c.focal, 0.5 * c.width, 0.5 * c.height, c.width, c.height);
+            c.matrix[2][3], c.focal, c.cx, c.cy, c.width, c.height);
 }
 
 /* ---- one clip a camera ---- */
@@ -391,7 +448,7 @@ void ted4_ray_put_hypernerf_camera(FILE *f, const ted4_ray_options *o, int numbe
 static void put_poses(FILE *f, const ted4_ray_options *o, int number, int frame)
 {
     enum { HEADER = 128 };              /* with the 10 bytes before it */
-    const double scale = ted4_ray_plan_of(o->scene)->scale;
+    const double scale = ted4_ray_scale(o);
     char text[HEADER];
 
     (void)number, (void)frame;
@@ -416,7 +473,10 @@ static void put_poses(FILE *f, const ted4_ray_options *o, int number, int frame)
 static void put_calibration(FILE *f, const ted4_ray_options *o, int number, int frame)
 {
     (void)number, (void)frame;
-    fprintf(f, "{\"frames\": %d, \"fps\": 30, \"cameras\": [", o->n_frames);
+    fputs("{", f);
+    if (!o->ways.starts)                /* else clips differ in length */
+        fprintf(f, "\"frames\": %d, ", o->n_frames);
+    fputs("\"fps\": 30, \"cameras\": [", f);
     for (int i = 0; i < n_cameras(o); i++) {
         double R[3][3], t[3];
         char name[TED4_RAY_NAME];
@@ -425,9 +485,14 @@ static void put_calibration(FILE *f, const ted4_ray_options *o, int number, int 
         ted4_ray_camera_stated(o, test_first(o, i), &c);
         ted4_ray_camera_name(o, test_first(o, i), name);
         pose_of(&c, R, t);
-        fprintf(f, "%s\n{\"name\": \"%s\", \"video\": \"%s.mp4\", \"w\": %d, \"h\": %d,\n \"K\": [[%.17g, 0, %.17g], "
-                "[0, %.17g, %.17g], [0, 0, 1]], \"dist\": [0, 0, 0, 0],\n \"w2c\": [", i > 0 ? "," : "", name, name,
-                c.width, c.height, c.focal, 0.5 * c.width - 0.5, c.focal, 0.5 * c.height - 0.5);
+        fprintf(f, "%s\n{\"name\": \"%s\", \"video\": \"%s.mp4\", \"w\": %d, \"h\": %d,\n",
+                i > 0 ? "," : "", name, name, c.width, c.height);
+        fprintf(f, " \"K\": [[%.17g, 0, %.17g], [0, %.17g, %.17g], [0, 0, 1]],", c.focal,
+                c.cx - 0.5, c.focal, c.cy - 0.5);
+        fputs(" \"dist\": [0, 0, 0, 0],\n ", f);
+        if (o->ways.starts)
+            fprintf(f, "\"start\": %.9g, ", ted4_ray_start(o, test_first(o, i)) / 30.0);
+        fputs("\"w2c\": [", f);
         for (int r = 0; r < 3; r++)
             fprintf(f, "[%.17g, %.17g, %.17g, %.17g], ", R[r][0], R[r][1], R[r][2], t[r]);
         fputs("[0, 0, 0, 1]]}", f);
@@ -437,21 +502,47 @@ static void put_calibration(FILE *f, const ted4_ray_options *o, int number, int 
 
 /* ---- which files ---- */
 
+static int has_points(const ted4_ray_options *o)
+{
+    return o->ways.points != RAY_NO_POINTS;
+}
+
+static int has_test(const ted4_ray_options *o)
+{
+    return o->ways.split == RAY_TEST_FILE || o->ways.split == RAY_OTHER_TIMES;
+}
+
+static int has_val(const ted4_ray_options *o)
+{
+    return o->ways.split == RAY_VAL_FILE;
+}
+
 /* Last comes the file by which a folder is taken for a scene. */
-static const ted4_ray_file files[RAY_LAYOUTS][5] = {
-    [RAY_BLENDER] = { { "points3d.ply", put_points, 0, 0 }, { "transforms_test.json", put_test, 0, 0 },
-                      { "transforms_train.json", put_train, 0, 0 } },
-    [RAY_NERFSTUDIO] = { { "points3d.ply", put_points, 0, 0 }, { "transforms_test.json", put_test, 0, 0 },
-                         { "transforms_train.json", put_train, 0, 0 } },
-    [RAY_COLMAP] = { { "sparse/0/points3D.bin", put_points_bin, 0, 0 }, { "sparse/0/images.bin", put_images_bin, 0, 0 },
-                     { "sparse/0/cameras.bin", put_cameras_bin, 0, 0 } },
-    [RAY_COLMAP_TEXT] = { { "sparse/0/points3D.txt", put_points_text, 0, 0 },
-                          { "sparse/0/images.txt", put_images_text, 0, 0 },
-                          { "sparse/0/cameras.txt", put_cameras_text, 0, 0 } },
-    [RAY_HYPERNERF] = { { "points3D_downsample.ply", put_points, 0, 0 }, { "scene.json", put_scene, 0, 0 },
-                        { "metadata.json", put_metadata, 0, 0 }, { "dataset.json", put_dataset, 0, 0 } },
-    [RAY_NEU3D] = { { "points3D_downsample2.ply", put_points, 0, 0 }, { "poses_bounds.npy", put_poses, 0, 0 } },
-    [RAY_CALIBRATION] = { { "points3d.ply", put_points, 0, 0 }, { "cams.json", put_calibration, 0, 0 } },
+static const ted4_ray_file files[RAY_LAYOUTS][6] = {
+    [RAY_BLENDER] = { { "points3d.ply", put_points, 0, 0, has_points },
+                      { "transforms_test.json", put_test, 0, 0, has_test },
+                      { "transforms_val.json", put_test, 0, 0, has_val },
+                      { "transforms_train.json", put_train, 0, 0, NULL } },
+    [RAY_NERFSTUDIO] = { { "points3d.ply", put_points, 0, 0, has_points },
+                         { "transforms_test.json", put_test, 0, 0, has_test },
+                         { "transforms_val.json", put_test, 0, 0, has_val },
+                         { "transforms_train.json", put_train, 0, 0, NULL } },
+    [RAY_COLMAP] = { { "sparse/0/points3D.bin", put_points_bin, 0, 0, NULL },
+                     { "sparse/0/images.bin", put_images_bin, 0, 0, NULL },
+                     { "sparse/0/cameras.bin", put_cameras_bin, 0, 0, NULL } },
+    [RAY_COLMAP_TEXT] = { { "sparse/0/points3D.txt", put_points_text, 0, 0, NULL },
+                          { "sparse/0/images.txt", put_images_text, 0, 0, NULL },
+                          { "sparse/0/cameras.txt", put_cameras_text, 0, 0, NULL } },
+    [RAY_HYPERNERF] = { { "points3D_downsample.ply", put_points, 0, 0, has_points },
+                        { "scene.json", put_scene, 0, 0, NULL },
+                        { "metadata.json", put_metadata, 0, 0, NULL },
+                        { "dataset.json", put_dataset, 0, 0, NULL } },
+    [RAY_NEU3D] = { { "points3D_downsample2.ply", put_points, 0, 0, has_points },
+                    { "poses_bounds.npy", put_poses, 0, 0, NULL } },
+    [RAY_LLFF] = { { "points3D_downsample2.ply", put_points, 0, 0, has_points },
+                   { "poses_bounds.npy", put_poses, 0, 0, NULL } },
+    [RAY_CALIBRATION] = { { "points3d.ply", put_points, 0, 0, has_points },
+                          { "cams.json", put_calibration, 0, 0, NULL } },
 };
 
 const ted4_ray_file *ted4_ray_layout_files(ted4_ray_layout l)

@@ -21,6 +21,7 @@ typedef struct {
     const char   *name;
     ted4_ray_put *put;
     int           number, frame;        /* for put; unused by files of the whole scene */
+    int         (*wanted)(const ted4_ray_options *o);   /* NULL: always */
 } ted4_ray_file;
 
 /* In the order to write; ends with a name of NULL. */

@@ -66,8 +66,7 @@ static void sphere_range(double x, double z, double r, const double scale_middle
 static window window_of(const view *v, const ted4_ray_object *o)
 {
     const vec3 p = ray_unrotate(v->axis, v3_sub(o->centre, v->eye));
-    const double x[2] = { v->c->focal, 0.5 * v->c->width },
-                 y[2] = { v->c->focal, 0.5 * v->c->height };
+    const double x[2] = { v->c->focal, v->c->cx }, y[2] = { v->c->focal, v->c->cy };
     int across[2], down[2];
 
     sphere_range((double)p.x, (double)-p.z, (double)o->reach, x, v->c->width, across);
@@ -241,33 +240,55 @@ static ted4_ray_sight sight(view *v, const crowd *c, const sample *k)
 
 static vec3 direction(const view *v, double px, double py)
 {
-    const vec3 d = v3((float)((px - 0.5 * v->c->width) / v->c->focal),
-                      (float)((0.5 * v->c->height - py) / v->c->focal), -1);
+    const vec3 d = v3((float)((px - v->c->cx) / v->c->focal),
+                      (float)((v->c->cy - py) / v->c->focal), -1);
 
     return ray_rotate(v->axis, v3_unit(d));
 }
 
-static vec3 pixel(view *v, int x, int y)
+/* Sum of the samples of a pixel; *hits counts those that see something. */
+static vec3 samples(view *v, int x, int y, int *hits)
 {
     const crowd c = showing(v, x, y);
     vec3 sum = v3(0, 0, 0);
 
+    *hits = 0;
     for (int n = 0; n < SIDE * SIDE; n++) {
         const int i = n % SIDE, j = n / SIDE;
         const sample k = { direction(v, x + (i + 0.5) / SIDE, y + (j + 0.5) / SIDE), i, j };
-        const vec3 s = ray_rotate(v->c->colour, sight(v, &c, &k).colour);
+        const ted4_ray_sight r = sight(v, &c, &k);
+        const vec3 s = ray_rotate(v->c->colour, r.colour);
         sum = v3_add(sum, v3(ray_clamp(s.x, 0, 1), ray_clamp(s.y, 0, 1), ray_clamp(s.z, 0, 1)));
+        *hits += r.object != NOTHING;
     }
-    return v3_scale(sum, 1.0f / (SIDE * SIDE));
+    return sum;
 }
 
 void ted4_ray_render(const ted4_ray_world *w, const ted4_ray_camera *c, uint8_t *rgb)
 {
     view v = view_of(w, c);
+    int hits;
 
     for (int y = 0; y < c->height; y++) {
         for (int x = 0; x < c->width; x++)
-            ted4_ray_bytes(pixel(&v, x, y), rgb + 3 * ((size_t)y * (size_t)c->width + (size_t)x));
+            ted4_ray_bytes(v3_scale(samples(&v, x, y, &hits), 1.0f / (SIDE * SIDE)),
+                           rgb + 3 * ((size_t)y * (size_t)c->width + (size_t)x));
+    }
+}
+
+void ted4_ray_cut_out(const ted4_ray_world *w, const ted4_ray_camera *c, uint8_t *rgba)
+{
+    view v = view_of(w, c);
+    int hits;
+
+    for (int y = 0; y < c->height; y++) {
+        for (int x = 0; x < c->width; x++) {
+            uint8_t *const p = rgba + 4 * ((size_t)y * (size_t)c->width + (size_t)x);
+            const vec3 sum = samples(&v, x, y, &hits);
+
+            ted4_ray_bytes(v3_scale(sum, 1.0f / (float)(hits > 0 ? hits : 1)), p);
+            p[3] = (uint8_t)((255 * hits + SIDE * SIDE / 2) / (SIDE * SIDE));
+        }
     }
 }
 

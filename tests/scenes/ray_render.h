@@ -10,6 +10,10 @@
 /* rgb [height][width][3] sRGB bytes; 3 x 3 samples a pixel. */
 void ted4_ray_render(const ted4_ray_world *w, const ted4_ray_camera *c, uint8_t *rgb);
 
+/* rgba [height][width][4]: the same of what is seen of things alone, and how much of the pixel they
+ * cover; black where that is nothing. */
+void ted4_ray_cut_out(const ted4_ray_world *w, const ted4_ray_camera *c, uint8_t *rgba);
+
 /* What a camera sees through pixel coordinates (px, py). */
 typedef struct {
     vec3  point;

@@ -9,7 +9,7 @@
 static const double exposure = 0.4, gain = 0.12, leak = 0.03;
 
 /* Seeds of what is drawn for a camera. */
-enum { SEED_TURN = 301, SEED_MOVE = 302, SEED_TINT = 303 };
+enum { SEED_TURN = 301, SEED_MOVE = 302, SEED_TINT = 303, SEED_TIME = 304 };
 
 static double draw(const ted4_ray_options *o, int number, int which, uint32_t seed)
 {
@@ -29,9 +29,69 @@ int ted4_ray_is_held(const ted4_ray_options *o, int frame)
            frame < o->n_frames - 1;
 }
 
+/* Place of x among n in the order of their hashes. */
+static int shuffled(int x, int n, uint32_t seed)
+{
+    const uint32_t mine = ray_hash(x, 0, 0, seed);
+    int before = 0;
+
+    for (int i = 0; i < n; i++) {
+        const uint32_t other = ray_hash(i, 0, 0, seed);
+        before += other < mine || (other == mine && i < x);
+    }
+    return before;
+}
+
+int ted4_ray_start(const ted4_ray_options *o, int number)
+{
+    static const int late[4] = { 0, 3, 1, 4 };
+
+    return o->ways.starts && o->n_frames > 8 ? late[number % 4] : 0;
+}
+
 int ted4_ray_is_taken(const ted4_ray_options *o, int number, int frame)
 {
-    return number >= o->n_train || !ted4_ray_is_held(o, frame);
+    if (number >= o->n_train && o->ways.split == RAY_TRAIN_ONLY)
+        return 0;
+    if (o->ways.turns)
+        return shuffled(number, o->n_train + o->n_test, o->seed + SEED_TIME) == frame;
+    if (number < o->n_train)
+        return !ted4_ray_is_held(o, frame) && frame >= ted4_ray_start(o, number);
+    if (o->ways.split == RAY_OTHER_TIMES)
+        return ted4_ray_is_held(o, frame);
+    return frame >= ted4_ray_start(o, number);
+}
+
+int ted4_ray_is_missing(const ted4_ray_options *o, int number, int frame)
+{
+    const int mine = number * o->n_frames + frame;
+    const uint32_t hash = ray_hash(mine, 1, 0, o->seed);
+    int before = 0;
+
+    if (o->ways.missing == 0 || number >= o->n_train || !ted4_ray_is_taken(o, number, frame))
+        return 0;
+    for (int i = 0; i < o->n_train * o->n_frames && before < o->ways.missing; i++) {
+        const uint32_t other = ray_hash(i, 1, 0, o->seed);
+        before += (other < hash || (other == hash && i < mine)) &&
+                  ted4_ray_is_taken(o, i / o->n_frames, i % o->n_frames);
+    }
+    return before < o->ways.missing;
+}
+
+/* ---- worlds ---- */
+
+ted4_ray_background ted4_ray_around(const ted4_ray_options *o)
+{
+    if (o->ways.background == RAY_USUAL)
+        return ted4_ray_plan_of(o->scene)->background;
+    return (ted4_ray_background)o->ways.background;
+}
+
+void ted4_ray_world_of(const ted4_ray_options *o, int frame, ted4_ray_world *w)
+{
+    ted4_ray_world_at(w, o->scene, o->seed, frame, o->n_frames);
+    if (ted4_ray_around(o) > RAY_ROOM)
+        w->room = RAY_DARK;
 }
 
 /* ---- colours ---- */
@@ -91,17 +151,33 @@ static void turn_away(ted4_ray_camera *c)
     }
 }
 
+/* The size of the pictures and the principal point. */
+static void lens(const ted4_ray_options *o, int number, ted4_ray_camera *c)
+{
+    static const int quarters[3] = { 4, 3, 5 };
+    const int q = o->ways.sizes ? quarters[number % 3] : 4, width = (c->width * q + 2) / 4;
+
+    c->focal *= (double)width / c->width;
+    c->width = width;
+    c->height = (c->height * q + 2) / 4;
+    c->cx = (0.5 + o->ways.off[0]) * c->width;
+    c->cy = (0.5 + o->ways.off[1]) * c->height;
+}
+
 void ted4_ray_camera_of(const ted4_ray_options *o, int number, ted4_ray_camera *c)
 {
     int first;
     const int places = arc_of(o, &first);
 
-    if (number >= o->n_train)
+    if (ted4_ray_plan_of(o->scene)->dome && ted4_ray_around(o) != RAY_ROOM)
+        ted4_ray_camera_dome(c, number, o->n_train + o->n_test, o->width, o->height);
+    else if (number >= o->n_train)
         ted4_ray_camera_test(c, number - o->n_train, o->n_test, places, o->width, o->height);
     else
         ted4_ray_camera_train(c, first + number, places, o->width, o->height);
     if (ted4_ray_is_blind(o, number))
         turn_away(c);
+    lens(o, number, c);
     tint(o, number, c->colour);
 }
 
@@ -152,27 +228,54 @@ static void rotate(const double turn[3], double v[3])
         v[i] = c * v[i] + s * cross[i] + along * k[i];
 }
 
-void ted4_ray_camera_stated(const ted4_ray_options *o, int number, ted4_ray_camera *c)
+double ted4_ray_scale(const ted4_ray_options *o)
+{
+    return ted4_ray_plan_of(o->scene)->scale * (o->ways.unit > 0 ? o->ways.unit : 1);
+}
+
+/* A quarter turn about x where y is up. */
+static void upright(const ted4_ray_options *o, double v[3])
+{
+    const double z = v[2];
+
+    if (!o->ways.up_y)
+        return;
+    v[2] = -v[1];
+    v[1] = z;
+}
+
+void ted4_ray_mapped(const ted4_ray_options *o, const double room[3], double file[3])
 {
     const ted4_ray_plan *const plan = ted4_ray_plan_of(o->scene);
-    double turn[3] = { 0, 0, 0 }, move[3] = { 0, 0, 0 };
+
+    for (int i = 0; i < 3; i++)
+        file[i] = ted4_ray_scale(o) * room[i] + plan->shift[i];
+    upright(o, file);
+}
+
+void ted4_ray_camera_stated(const ted4_ray_options *o, int number, ted4_ray_camera *c)
+{
+    double turn[3] = { 0, 0, 0 }, move[3] = { 0, 0, 0 }, centre[3];
 
     ted4_ray_camera_of(o, number, c);
     if (o->pose_error > 0 && number < o->n_train)
         ted4_ray_pose_error(o, number, turn, move);
+    for (int i = 0; i < 3; i++)
+        move[i] += c->matrix[i][3];
+    ted4_ray_mapped(o, move, centre);
     for (int j = 0; j < 3; j++) {
         double axis[3] = { c->matrix[0][j], c->matrix[1][j], c->matrix[2][j] };
         rotate(turn, axis);
+        upright(o, axis);
         for (int i = 0; i < 3; i++)
             c->matrix[i][j] = axis[i];
     }
     for (int i = 0; i < 3; i++)
-        c->matrix[i][3] = plan->scale * (c->matrix[i][3] + move[i]) + plan->shift[i];
+        c->matrix[i][3] = centre[i];
 }
 
 vec3 ted4_ray_point_stated(const ted4_ray_options *o, int number, vec3 p)
 {
-    const ted4_ray_plan *const plan = ted4_ray_plan_of(o->scene);
     const double point[3] = { (double)p.x, (double)p.y, (double)p.z };
     double q[3];
     ted4_ray_camera is, stated;
@@ -188,7 +291,7 @@ vec3 ted4_ray_point_stated(const ted4_ray_options *o, int number, vec3 p)
         for (int k = 0; k < 3; k++)
             along += is.matrix[k][j] * (point[k] - is.matrix[k][3]);
         for (int i = 0; i < 3; i++)
-            q[i] += plan->scale * along * stated.matrix[i][j];
+            q[i] += ted4_ray_scale(o) * along * stated.matrix[i][j];
     }
     return v3((float)q[0], (float)q[1], (float)q[2]);
 }

@@ -15,6 +15,12 @@ void ted4_ray_camera_stated(const ted4_ray_options *o, int number, ted4_ray_came
 /* Does a training camera look away from the scene? */
 int ted4_ray_is_blind(const ted4_ray_options *o, int number);
 
+/* A point of the room in the coordinates of the files. */
+void ted4_ray_mapped(const ted4_ray_options *o, const double room[3], double file[3]);
+
+/* How many times those of the room lengths in the files are. */
+double ted4_ray_scale(const ted4_ray_options *o);
+
 /* A point of the room that a training camera sees, in the coordinates of the files: where that
  * camera, as stated, sees it. */
 vec3 ted4_ray_point_stated(const ted4_ray_options *o, int number, vec3 p);
@@ -32,7 +38,17 @@ int ted4_ray_has_lists(ted4_ray_layout l);
  * layouts without lists. */
 int ted4_ray_is_held(const ted4_ray_options *o, int frame);
 
-/* Is there a picture of that camera and time? */
+/* Is a picture of that camera and time listed? And is it, although listed, not there? */
 int ted4_ray_is_taken(const ted4_ray_options *o, int number, int frame);
+int ted4_ray_is_missing(const ted4_ray_options *o, int number, int frame);
+
+/* The first time of a camera's clip. */
+int ted4_ray_start(const ted4_ray_options *o, int number);
+
+/* What is around the things. */
+ted4_ray_background ted4_ray_around(const ted4_ray_options *o);
+
+/* The world of a time, with or without the room. */
+void ted4_ray_world_of(const ted4_ray_options *o, int frame, ted4_ray_world *w);
 
 #endif

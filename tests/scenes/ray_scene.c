@@ -1,5 +1,5 @@
 /* ray_scene.c - the table of scenes. Those of the lab are small, so that a training takes a minute
- * on one core.
+ * on one core. The last is for the zoo (bench/zoo.txt).
  * SPDX-License-Identifier: BSD-2-Clause */
 #include "ray_scene.h"
 
@@ -48,6 +48,10 @@ static const ted4_ray_plan plans[RAY_SCENES] = {
     [RAY_THINGS4] = { "things4", "eight things, four move", LAB, .hold = 8, .scale = 1 },
     [RAY_THINGS8] = { "things8", "eight things, all move", LAB, .hold = 8, .scale = 1 },
     [RAY_REST] = { "rest", "things4, then as long a rest", SMALL, .n_train = 6, .n_test = 2, .n_frames = 32, .hold = 8,
+                   .scale = 1 },
+
+    [RAY_TOYS] = { "toys", "small things on a disk, a ball goes round, droplets fall", SMALL,
+                   .n_train = 10, .n_test = 2, .n_frames = 16, .background = RAY_CLEAR, .dome = 1,
                    .scale = 1 },
 };
 

@@ -2,10 +2,11 @@
  * ray_layout.c.
  * SPDX-License-Identifier: BSD-2-Clause */
 #include "ray_layout.h"
+#include "ray_picture.h"
+#include "ray_shot.h"
 #include "ray_truth.h"
 
 #include <errno.h>
-#include <png.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -27,6 +28,36 @@ ted4_ray_options ted4_ray_defaults(ted4_ray_scene s)
     return (ted4_ray_options){ .scene = s, .width = p->width, .height = p->height, .n_train = p->n_train,
                                .n_test = p->n_test, .n_frames = p->n_frames, .seed = 1, .hold = p->hold,
                                .pose_error = p->pose_error, .tint = p->tint };
+}
+
+const char *ted4_ray_fault(const ted4_ray_options *o)
+{
+    const ted4_ray_ways *const w = &o->ways;
+    const int transforms = o->layout == RAY_BLENDER || o->layout == RAY_NERFSTUDIO,
+              clear = ted4_ray_around(o) == RAY_CLEAR;
+
+    if ((w->turns || w->split == RAY_OTHER_TIMES) && !ted4_ray_has_lists(o->layout))
+        return "--turns and --split times go with the layouts blender, nerfstudio and hypernerf";
+    if (w->turns && (o->hold > 0 || w->split == RAY_OTHER_TIMES))
+        return "--turns holds out no times but those of its test cameras";
+    if (w->split == RAY_OTHER_TIMES && o->hold == 0)
+        return "--split times needs --hold";
+    if ((w->paths != RAY_AS_USUAL || w->split == RAY_VAL_FILE || w->split == RAY_TRAIN_ONLY) &&
+        !transforms)
+        return "--paths, --split val and --split train-only go with the layouts blender and nerfstudio";
+    if ((w->off[0] != 0 || w->off[1] != 0) && (o->layout == RAY_NEU3D || o->layout == RAY_LLFF))
+        return "--centre: the layouts neu3d and llff cannot say it";
+    if (w->starts && o->layout != RAY_CALIBRATION)
+        return "--starts goes with the layout calibration";
+    if (w->missing > 0 && o->video)
+        return "--missing goes with pictures, not with videos";
+    if (w->premultiplied && !clear)
+        return "--alpha goes with a transparent background";
+    if (w->file >= RAY_JPEG && (clear || o->video))
+        return "--jpeg goes with opaque pictures, not with transparent ones and videos";
+    if (o->layout == RAY_LLFF && o->n_frames != 1)
+        return "the layout llff has one time: --frames 1";
+    return NULL;
 }
 
 static int complain(ted4_ray_message *m, const char *path, const char *why)
@@ -62,6 +93,25 @@ static int make_folders(const char *path, ted4_ray_message *m)
     return 0;
 }
 
+static int make_parent(const char *path, ted4_ray_message *m)
+{
+    char parent[MAX_PATH];
+
+    snprintf(parent, sizeof parent, "%.*s", (int)(strrchr(path, '/') - path), path);
+    return make_folders(parent, m);
+}
+
+static int remove_file(const char *folder, const char *name, ted4_ray_message *m)
+{
+    char path[MAX_PATH];
+
+    if (join(path, folder, name, m) != 0)
+        return -1;
+    if (unlink(path) != 0 && errno != ENOENT)
+        return complain(m, path, strerror(errno));
+    return 0;
+}
+
 /* ---- pictures: one job each, which finds its place from its index alone ---- */
 
 typedef struct {
@@ -70,15 +120,20 @@ typedef struct {
     ted4_ray_message *failure; /* [n_train + n_test][n_frames] one a job, empty when fine */
 } pictures;
 
-static int write_png(const char *path, const ted4_ray_camera *c, const uint8_t *rgb,
-                     ted4_ray_message *m)
+/* truth/masks/NAME.png */
+static void write_mask(const pictures *job, int number, int frame, const ted4_ray_camera *c,
+                       uint8_t *mask, ted4_ray_message *m)
 {
-    png_image png = { .version = PNG_IMAGE_VERSION, .format = PNG_FORMAT_RGB,
-                      .width = (png_uint_32)c->width, .height = (png_uint_32)c->height };
+    char file[TED4_RAY_NAME], name[TED4_RAY_NAME + 24], path[MAX_PATH];
 
-    if (png_image_write_to_file(&png, path, 0, rgb, 0, NULL) == 0)
-        return complain(m, path, png.message);
-    return 0;
+    ted4_ray_picture_name(job->o, number, frame, file);
+    snprintf(name, sizeof name, "truth/masks/%.*s.png", (int)(strrchr(file, '.') - file), file);
+    if (join(path, job->folder, name, m) != 0 || make_parent(path, m) != 0)
+        return;
+    if (ted4_ray_mask(job->o, number, frame, mask) != 0)
+        complain(m, name, "out of memory");
+    else
+        ted4_ray_write_grey(path, c->width, c->height, mask, m);
 }
 
 static void picture_job(void *arg, size_t i)
@@ -86,23 +141,28 @@ static void picture_job(void *arg, size_t i)
     const pictures *const job = arg;
     const ted4_ray_options *const o = job->o;
     const int number = (int)(i / (size_t)o->n_frames), frame = (int)(i % (size_t)o->n_frames);
+    ted4_ray_message *const m = &job->failure[i];
     ted4_ray_camera camera;
-    ted4_ray_world world;
     char file[TED4_RAY_NAME], path[MAX_PATH];
 
     if (!ted4_ray_is_taken(o, number, frame))
         return;
-    uint8_t *const rgb = malloc((size_t)o->width * (size_t)o->height * 3);
     ted4_ray_picture_name(o, number, frame, file);
-    ted4_ray_camera_of(o, number, &camera);
-    ted4_ray_world_at(&world, o->scene, o->seed, frame, o->n_frames);
-    if (rgb == NULL) {
-        complain(&job->failure[i], file, "out of memory");
-    } else if (join(path, job->folder, file, &job->failure[i]) == 0) {
-        ted4_ray_render(&world, &camera, rgb);
-        write_png(path, &camera, rgb, &job->failure[i]);
+    if (ted4_ray_is_missing(o, number, frame)) {
+        remove_file(job->folder, file, m);
+        return;
     }
-    free(rgb);
+    ted4_ray_camera_of(o, number, &camera);
+    uint8_t *const rgba = malloc((size_t)camera.width * (size_t)camera.height * 4);
+    if (rgba == NULL) {
+        complain(m, file, "out of memory");
+    } else if (join(path, job->folder, file, m) == 0) {
+        ted4_ray_shot(o, number, frame, rgba);
+        if (ted4_ray_write_picture(o, path, camera.width, camera.height, rgba, m) == 0 &&
+            o->ways.masks && number < o->n_train)
+            write_mask(job, number, frame, &camera, rgba, m);
+    }
+    free(rgba);
 }
 
 static int write_pictures(const ted4_ray_options *o, const char *folder, const ted4_parallel *p,
@@ -127,7 +187,18 @@ static int write_pictures(const ted4_ray_options *o, const char *folder, const t
 
 /* ---- points ---- */
 
-/* What a training camera sees at a random place of a picture; p gets camera and time. */
+/* Middle and half width of what things take up, in the room. */
+static const vec3 things = { 0, 0.15f, 0.6f };
+static const float things_half = 0.9f;
+
+int ted4_ray_n_points(const ted4_ray_options *o)
+{
+    if (o->ways.points == RAY_NO_POINTS)
+        return 0;
+    return o->ways.points == RAY_BOX10 ? TED4_RAY_MANY_POINTS : TED4_RAY_POINTS;
+}
+
+/* What a training camera sees at a random place of a listed picture; p gets camera and time. */
 static ted4_ray_sight random_sight(const ted4_ray_options *o, int i, int attempt, ted4_ray_point *p)
 {
     const uint32_t seed = o->seed + 77;
@@ -137,10 +208,30 @@ static ted4_ray_sight random_sight(const ted4_ray_options *o, int i, int attempt
     p->camera = (i + attempt) % o->n_train;
     p->frame = (int)(ray_hash(i, 0, attempt, seed) % (uint32_t)o->n_frames);
     p->frame += ted4_ray_is_held(o, p->frame);
+    if (!ted4_ray_is_taken(o, p->camera, p->frame))
+        return (ted4_ray_sight){ .depth = INFINITY };
     ted4_ray_camera_of(o, p->camera, &c);
-    ted4_ray_world_at(&w, o->scene, o->seed, p->frame, o->n_frames);
-    return ted4_ray_look(&w, &c, (double)ray_random(i, 1, attempt, seed) * o->width,
-                         (double)ray_random(i, 2, attempt, seed) * o->height);
+    ted4_ray_world_of(o, p->frame, &w);
+    return ted4_ray_look(&w, &c, (double)ray_random(i, 1, attempt, seed) * c.width,
+                         (double)ray_random(i, 2, attempt, seed) * c.height);
+}
+
+static ted4_ray_point random_point(const ted4_ray_options *o, int i)
+{
+    const float half = things_half * (o->ways.points == RAY_BOX10 ? 10 : 1);
+    const uint32_t seed = o->seed + 78;
+    ted4_ray_point p = { .camera = -1 };
+    double room[3], file[3];
+    const vec3 from = v3(2 * ray_random(i, 0, 0, seed) - 1, 2 * ray_random(i, 1, 0, seed) - 1,
+                         2 * ray_random(i, 2, 0, seed) - 1);
+    const vec3 at = v3_along(things, from, half);
+
+    room[0] = (double)at.x, room[1] = (double)at.y, room[2] = (double)at.z;
+    ted4_ray_mapped(o, room, file);
+    p.point = v3((float)file[0], (float)file[1], (float)file[2]);
+    for (int k = 0; k < 3; k++)
+        p.rgb[k] = (uint8_t)(ray_hash(i, 3, k, seed) >> 24);
+    return p;
 }
 
 /* Ends because the first training camera always has things in view. */
@@ -151,6 +242,8 @@ ted4_ray_point ted4_ray_point_at(const ted4_ray_options *o, int i)
     ted4_ray_sight s;
     int attempt = 0;
 
+    if (o->ways.points != RAY_ON_SURFACES)
+        return random_point(o, i);
     do {
         s = random_sight(o, i, attempt++, &p);
     } while (!isfinite(s.depth));
@@ -164,14 +257,6 @@ ted4_ray_point ted4_ray_point_at(const ted4_ray_options *o, int i)
 }
 
 /* ---- the folder ---- */
-
-static int make_parent(const char *path, ted4_ray_message *m)
-{
-    char parent[MAX_PATH];
-
-    snprintf(parent, sizeof parent, "%.*s", (int)(strrchr(path, '/') - path), path);
-    return make_folders(parent, m);
-}
 
 static int write_file(const ted4_ray_options *o, const char *folder, const ted4_ray_file *file,
                       ted4_ray_message *m)
@@ -192,24 +277,13 @@ static int write_file(const ted4_ray_options *o, const char *folder, const ted4_
     return 0;
 }
 
-static int remove_file(const char *folder, const char *name, ted4_ray_message *m)
-{
-    char path[MAX_PATH];
-
-    if (join(path, folder, name, m) != 0)
-        return -1;
-    if (unlink(path) != 0 && errno != ENOENT)
-        return complain(m, path, strerror(errno));
-    return 0;
-}
-
 /* Every folder that pictures go to; the D-NeRF layout has both even without test cameras. */
 static int make_picture_folders(const ted4_ray_options *o, const char *folder, ted4_ray_message *m)
 {
     char name[TED4_RAY_NAME], path[MAX_PATH];
 
     for (int number = 0; number < o->n_train + (o->n_test > 0 ? o->n_test : 1); number++) {
-        ted4_ray_picture_name(o, number, 0, name);
+        ted4_ray_picture_name(o, number, ted4_ray_start(o, number), name);
         if (number >= o->n_train + o->n_test && o->layout != RAY_BLENDER)
             break;
         if (join(path, folder, name, m) != 0 || make_parent(path, m) != 0)
@@ -247,7 +321,7 @@ static int make_videos(const ted4_ray_options *o, const char *folder, ted4_ray_m
         ted4_ray_camera_name(o, number, name);
         if (encode(folder, name, m) != 0)
             return -1;
-        for (int frame = 0; frame < o->n_frames; frame++) {
+        for (int frame = ted4_ray_start(o, number); frame < o->n_frames; frame++) {
             ted4_ray_picture_name(o, number, frame, name);
             if (remove_file(folder, name, m) != 0 || join(path, folder, name, m) != 0)
                 return -1;
@@ -267,7 +341,7 @@ static int write_cameras(const ted4_ray_options *o, const char *folder, ted4_ray
     for (int number = 0; number < o->n_train + o->n_test; number++)
         for (int frame = 0; frame < o->n_frames; frame++) {
             char name[TED4_RAY_NAME];
-            const ted4_ray_file file = { name, ted4_ray_put_hypernerf_camera, number, frame };
+            const ted4_ray_file file = { name, ted4_ray_put_hypernerf_camera, number, frame, NULL };
 
             if (!ted4_ray_is_taken(o, number, frame))
                 continue;
@@ -282,7 +356,7 @@ int ted4_ray_write(const ted4_ray_options *o, const char *folder, const ted4_par
                    ted4_ray_message *m)
 {
     const ted4_ray_file *const files = ted4_ray_layout_files(o->layout);
-    const ted4_ray_file truth = { truth_name, ted4_ray_put_truth, 0, 0 };
+    const ted4_ray_file truth = { truth_name, ted4_ray_put_truth, 0, 0, NULL };
 
     m->text[0] = '\0';
     if (make_folders(folder, m) != 0 || make_picture_folders(o, folder, m) != 0 ||
@@ -301,7 +375,8 @@ int ted4_ray_write(const ted4_ray_options *o, const char *folder, const ted4_par
     if (ted4_ray_has_truth(o) && write_file(o, folder, &truth, m) != 0)
         return -1;
     for (int i = 0; files[i].name != NULL; i++) {
-        if (write_file(o, folder, &files[i], m) != 0)
+        if ((files[i].wanted == NULL || files[i].wanted(o)) &&
+            write_file(o, folder, &files[i], m) != 0)
             return -1;
     }
     return 0;

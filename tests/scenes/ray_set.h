@@ -8,15 +8,22 @@
 #include "ray_render.h"
 #include "ray_scene.h"
 
-enum { TED4_RAY_POINTS = 4000, TED4_RAY_MAX_SIDE = 4096, TED4_RAY_MAX_COUNT = 1000 };
+enum {
+    TED4_RAY_POINTS = 4000,
+    TED4_RAY_MANY_POINTS = 100000,
+    TED4_RAY_MAX_SIDE = 4096,
+    TED4_RAY_MAX_COUNT = 1000
+};
 
-/* RAY_NEU3D and RAY_CALIBRATION: cameras with a clip each, test cameras first. */
+/* RAY_NEU3D and RAY_CALIBRATION: cameras with a clip each, test cameras first. RAY_LLFF: of one
+ * time only, a still a camera, test cameras first. */
 typedef enum {
-    RAY_BLENDER, RAY_NERFSTUDIO, RAY_COLMAP, RAY_COLMAP_TEXT, RAY_HYPERNERF, RAY_NEU3D, RAY_CALIBRATION,
+    RAY_BLENDER, RAY_NERFSTUDIO, RAY_COLMAP, RAY_COLMAP_TEXT, RAY_HYPERNERF, RAY_NEU3D,
+    RAY_CALIBRATION, RAY_LLFF,
     RAY_LAYOUTS
 } ted4_ray_layout;
 
-/* "blender", "nerfstudio", "colmap", "colmap-text", "hypernerf", "neu3d", "calibration" */
+/* "blender", "nerfstudio", "colmap", "colmap-text", "hypernerf", "neu3d", "calibration", "llff" */
 const char *ted4_ray_layout_name(ted4_ray_layout l);
 
 typedef struct {
@@ -29,6 +36,7 @@ typedef struct {
     int      hold;                      /* training cameras lack time hold / 2 of every hold; 0: none */
     double   pose_error;                /* of training cameras, degrees, 0 to TED4_RAY_MOST_ERROR (ray_rig.h) */
     double   tint;                      /* how much training cameras disagree in colour, 0 to TED4_RAY_MOST_TINT */
+    ted4_ray_ways ways;
 } ted4_ray_options;
 
 #define TED4_RAY_MOST_ERROR 10.0
@@ -46,12 +54,19 @@ typedef struct {
     int     camera, frame;
 } ted4_ray_point;
 
-/* Point i of the initial cloud; o and i decide it. */
+/* Points of the initial cloud. */
+int ted4_ray_n_points(const ted4_ray_options *o);
+
+/* Point i of them; o and i decide it. One that is on no surface has no camera. */
 ted4_ray_point ted4_ray_point_at(const ted4_ray_options *o, int i);
 
-/* Pictures, cameras, points; truth.json where there is something to say (ray_truth.h); last the file without which a folder is not taken for a scene. Makes
- * folders as needed, and replaces files of the same names. 0, or -1 with *m filled. The bytes do not
- * depend on p (those of videos are ffmpeg's). */
+/* What an option cannot go with, or NULL: one sentence. */
+const char *ted4_ray_fault(const ted4_ray_options *o);
+
+/* Pictures, masks, cameras, points; truth.json where there is something to say (ray_truth.h); last
+ * the file without which a folder is not taken for a scene. Makes folders as needed, and replaces
+ * files of the same names. 0, or -1 with *m filled. The bytes do not depend on p (those of videos
+ * are ffmpeg's). */
 int ted4_ray_write(const ted4_ray_options *o, const char *folder, const ted4_parallel *p,
                    ted4_ray_message *m);
 

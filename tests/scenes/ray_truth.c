@@ -2,9 +2,14 @@
  * SPDX-License-Identifier: BSD-2-Clause */
 #include "ray_truth.h"
 
+#include <string.h>
+
 int ted4_ray_has_truth(const ted4_ray_options *o)
 {
-    return o->scene > RAY_FAIR || o->hold > 0 || o->pose_error > 0 || o->tint > 0;
+    static const ted4_ray_ways usual;
+
+    return o->scene > RAY_FAIR || o->hold > 0 || o->pose_error > 0 || o->tint > 0 ||
+           memcmp(&o->ways, &usual, sizeof usual) != 0;
 }
 
 static void put_matrix(FILE *f, const char *name, const ted4_ray_camera *c)
@@ -70,8 +75,9 @@ void ted4_ray_put_truth(FILE *f, const ted4_ray_options *o, int number, int fram
     fprintf(f, "  \"train_cameras\": %d,\n  \"test_cameras\": %d,\n  \"frames\": %d,\n", o->n_train,
             o->n_test, o->n_frames);
     fprintf(f, "  \"pose_error\": %.9g,\n  \"tint\": %.9g,\n", o->pose_error, o->tint);
-    fprintf(f, "  \"world\": {\"scale\": %.17g, \"shift\": [%.17g, %.17g, %.17g]},\n", plan->scale,
-            plan->shift[0], plan->shift[1], plan->shift[2]);
+    fprintf(f, "  \"world\": {\"scale\": %.17g, \"shift\": [%.17g, %.17g, %.17g]%s},\n",
+            ted4_ray_scale(o), plan->shift[0], plan->shift[1], plan->shift[2],
+            o->ways.up_y ? ", \"up\": \"y\"" : "");
     fputs("  \"turned_away\": [", f);
     if (ted4_ray_is_blind(o, o->n_train - 1))
         fprintf(f, "%d", o->n_train - 1);

@@ -11,10 +11,10 @@
 int ted4_ray_has_truth(const ted4_ray_options *o);
 
 /* Writes it. Members: what the scene is; held_times (indices); world (coordinates of the files =
- * scale times those of the room + shift); turned_away (training cameras that see nothing but background);
- * lamp (power at each time, steady: 1) and solids (how many at each time); cameras, in the order of
- * the files: true and stated (camera to world, both in coordinates of the files), colour (3 x 3 rows,
- * linear light to what the camera takes it for). */
+ * scale times those of the room + shift, and turned about x where up is y); turned_away (training
+ * cameras that see nothing but background); lamp (power at each time, steady: 1) and solids (how
+ * many at each time); cameras, in the order of the files: true and stated (camera to world, both in
+ * coordinates of the files), colour (3 x 3 rows, linear light to what the camera takes it for). */
 ted4_ray_put ted4_ray_put_truth;
 
 #endif

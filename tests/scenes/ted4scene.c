@@ -9,6 +9,7 @@
 #include <stdlib.h>
 #include <string.h>
 #include "ray_rig.h"
+#include "scene_ways.h"
 #include "ted4.h"
 
 enum { EXIT_FINE = 0, EXIT_TROUBLE = 3 };
@@ -28,14 +29,16 @@ static const char usage[] =
     "  --tint S            training cameras disagree in colour and exposure; 0 to 2\n"
     "                      These three go with the layouts blender, nerfstudio and hypernerf, which\n"
     "                      list what is held out; in others a NAME's hold is left out\n"
-    "  --layout L          blender, nerfstudio, colmap, colmap-text, hypernerf, neu3d or\n"
-    "                      calibration (blender)\n"
+    "  --layout L          blender, nerfstudio, colmap, colmap-text, hypernerf, neu3d, calibration or\n"
+    "                      llff, of which the last has stills of one time (blender)\n"
     "  --video             neu3d and calibration: lossless videos by ffmpeg, not frames\n"
     "  --seed S            of textures, points, errors and tints, 32 bits (1)\n"
     "  -j N                threads (all)\n"
     "  -f                  write into a folder that is not empty\n"
     "  -h, -V              this help, the version\n"
-    "truth.json in the folder says what is held out or disturbed.\n"
+    "truth.json in the folder says what is held out or disturbed.\n";
+
+static const char names[] =
     "NAMEs, with picture size, training + test cameras, times, hold:\n";
 
 /* What was not given is -1. */
@@ -122,6 +125,8 @@ static int hold_of(const char *text, int *hold)
 static void help(void)
 {
     fputs(usage, stdout);
+    fputs(ted4_scene_ways_help, stdout);
+    fputs(names, stdout);
     for (int s = 0; s < RAY_SCENES; s++) {
         const ted4_ray_plan *const p = ted4_ray_plan_of((ted4_ray_scene)s);
 
@@ -145,14 +150,18 @@ static int fill(ted4_ray_options *o)
     }
     o->n_train = o->n_train < 0 ? d.n_train : o->n_train;
     o->n_test = o->n_test < 0 ? d.n_test : o->n_test;
-    o->n_frames = o->n_frames < 0 ? d.n_frames : o->n_frames;
-    o->hold = o->hold < 0 ? d.hold : o->hold;
+    if (o->ways.turns)
+        o->n_frames = o->n_train + o->n_test;
+    if (o->n_frames < 0)
+        o->n_frames = o->layout == RAY_LLFF ? 1 : d.n_frames;
+    if (o->hold < 0)
+        o->hold = o->ways.turns ? 0 : o->ways.split == RAY_OTHER_TIMES && d.hold == 0 ? 4 : d.hold;
     o->pose_error = o->pose_error < 0 ? d.pose_error : o->pose_error;
     o->tint = o->tint < 0 ? d.tint : o->tint;
     if ((o->pose_error > 0 || o->tint > 0) && !lists)
         return complain("errors and tints", "go with the layouts blender, nerfstudio and hypernerf: "
                         "others hold out pictures of disturbed cameras");
-    return EXIT_FINE;
+    return ted4_ray_fault(o) == NULL ? EXIT_FINE : complain("options", ted4_ray_fault(o));
 }
 
 static int scene_of(const char *name, ted4_ray_options *o)
@@ -175,6 +184,13 @@ static int layout_of(const char *name, ted4_ray_options *o)
         }
     }
     return complain(name, "not a layout (see -h)");
+}
+
+static int way(command *c, int number_of_option, const char *text)
+{
+    if (ted4_scene_way(number_of_option, text, &c->set.ways) == 0)
+        return EXIT_FINE;
+    return complain(text, "not what goes with its option (see -h)");
 }
 
 static int option(command *c, int letter, const char *text)
@@ -224,6 +240,8 @@ static int option(command *c, int letter, const char *text)
         c->set.seed = (uint32_t)seed;
         break;
     default:
+        if (letter >= TED4_SCENE_WAYS)
+            return way(c, letter, text);
         fputs("ted4scene: see ted4scene -h\n", stderr);
         status = EXIT_TROUBLE;
     }
@@ -233,20 +251,24 @@ static int option(command *c, int letter, const char *text)
 /* EXIT_FINE, EXIT_TROUBLE, or -1 when -h or -V has done the work. */
 static int parse(int argc, char **argv, command *c)
 {
-    static const struct option longs[] = { { "size", required_argument, NULL, 's' },
-                                           { "cameras", required_argument, NULL, 'c' },
-                                           { "test-cameras", required_argument, NULL, 't' },
-                                           { "frames", required_argument, NULL, 'n' },
-                                           { "hold", required_argument, NULL, 'H' },
-                                           { "pose-error", required_argument, NULL, 'p' },
-                                           { "tint", required_argument, NULL, 'T' },
-                                           { "layout", required_argument, NULL, 'l' },
-                                           { "video", no_argument, NULL, 'v' },
-                                           { "seed", required_argument, NULL, 'r' },
-                                           { "help", no_argument, NULL, 'h' },
-                                           { "version", no_argument, NULL, 'V' },
-                                           { NULL, 0, NULL, 0 } };
+    static const struct option own[] = { { "size", required_argument, NULL, 's' },
+                                         { "cameras", required_argument, NULL, 'c' },
+                                         { "test-cameras", required_argument, NULL, 't' },
+                                         { "frames", required_argument, NULL, 'n' },
+                                         { "hold", required_argument, NULL, 'H' },
+                                         { "pose-error", required_argument, NULL, 'p' },
+                                         { "tint", required_argument, NULL, 'T' },
+                                         { "layout", required_argument, NULL, 'l' },
+                                         { "video", no_argument, NULL, 'v' },
+                                         { "seed", required_argument, NULL, 'r' },
+                                         { "help", no_argument, NULL, 'h' },
+                                         { "version", no_argument, NULL, 'V' } };
+    enum { OWN = sizeof own / sizeof own[0] };
+    struct option longs[OWN + TED4_SCENE_N_WAYS + 1] = { { NULL, 0, NULL, 0 } };
     int letter;
+
+    memcpy(longs, own, sizeof own);
+    memcpy(longs + OWN, ted4_scene_ways, sizeof ted4_scene_ways);
 
     while ((letter = getopt_long(argc, argv, "o:j:fhV", longs, NULL)) != -1) {
         if (letter == 'h' || letter == 'V') {

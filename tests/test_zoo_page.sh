@@ -1,0 +1,105 @@
+#!/bin/sh
+# test_zoo_page.sh - bench/zoo.sh with programs that only pretend, and bench/zoo_page.sh on rows whose
+# answers can be worked out by hand. Speaks as cmocka programs do; run by `make test` from the
+# project's root.
+# SPDX-License-Identifier: BSD-2-Clause
+set -u
+unset TED4_WORK TED4_DATA
+. tests/speak.sh
+
+cat >"$out/table.txt" <<END
+seeds 1
+base --preset draft
+case kind    -     own:toys+masks
+case odd     kind  own:toys+unit=100+masks
+case held    kind  own:things4+layout=calibration --hold-out cam00 --alpha premultiplied
+case turns   kind  own:toys+turns+masks
+case broken  kind  own:toys+points=none
+run zoo default all 1 -
+END
+
+# ---- the runs, with programs that pretend ----
+
+mkdir -p "$out/build/bench" "$out/bin"
+cat >"$out/bin/make" <<END
+#!/bin/sh
+END
+cat >"$out/build/ted4scene" <<END
+#!/bin/sh
+while [ "\$1" != -o ]; do shift; done
+mkdir "\$2"
+END
+cat >"$out/build/ted4enc" <<END
+#!/bin/sh
+folder=\$1
+echo "\$*" | sed 's/[^ ]* //; s/ -o .*--seed 1//' >>"$out/calls"
+case "\$*" in
+*" --check")     echo "ted4enc: warning: one" >&2; echo "ted4enc: warning: two" >&2; exit 0 ;;
+*points=none*) echo "ted4enc: no points, none at all" >&2; exit 3 ;;
+esac
+while [ \$# -gt 0 ]; do
+    case \$1 in -o) file=\$2 ;; --log) log=\$2 ;; esac
+    shift
+done
+echo x >"\$file"
+echo '{"step":250,"stage":"1","loss":0.5,"psnr":20,"anchors":5,"bytes":0,"ms":4,"cpu_ms":2,"seconds":1.25,"cpu_seconds":0.5}' >"\$log"
+echo '{"bytes":123,"steps":250,"anchors":5,"rollbacks":1,"hash":"abc"}'
+END
+cat >"$out/build/ted4eval" <<END
+#!/bin/sh
+echo "eval \$*" | sed 's/[^ ]*\.ted4 [^ ]* //; s/--images [^ ]* //' >>"$out/calls"
+case "\$*" in
+*"--split train"*) echo '{"psnr":31.5}'; echo "a line of a view" >&2 ;;
+*)                 echo '{"psnr":30.25}' ;;
+esac
+END
+cat >"$out/build/bench/zoo_masks" <<END
+#!/bin/sh
+cat >"$out/views"
+echo '{"moving_psnr":23.5,"moving_pixels":77,"pictures":4}'
+END
+chmod +x "$out/bin/make" "$out/build/ted4scene" "$out/build/ted4enc" "$out/build/ted4eval" "$out/build/bench/zoo_masks"
+runs() { PATH=$out/bin:$PATH TED4_BUILD=$out/build TED4_RESULTS=$out/res TED4_TABLE=$out/table.txt bench/zoo.sh --jobs 1 "$@"; }
+row_of() { grep "^$1-default-1," "$out/res/zoo.csv" | cut -d, -f6-; }
+
+runs held-default-1 broken-default-1 >"$out/said" 2>&1 && ok runs || fail runs "$(cat "$out/said")"
+[ "$(row_of held)" = "fine,0,30.25,31.5,23.5,77,123,5,250,1,2,1.2,0.5,abc," ] && ok fine_row || fail fine_row "$(row_of held)"
+[ "$(row_of broken)" = "error,3,,,,,,,,,,,,,ted4enc: no points; none at all" ] && ok error_row || fail error_row "$(row_of broken)"
+[ "$(cat "$out/views")" = "a line of a view" ] && ok views || fail views "$(cat "$out/views")"
+check reading "$out/calls" 'eval --hold-out cam00 --alpha premultiplied --json -q -j 1' 'eval --hold-out cam00 --alpha premultiplied --split train --json -v -j 1' \
+    '--hold-out cam00 --alpha premultiplied --check'
+cp "$out/calls" "$out/before"
+runs held-default-1 broken-default-1 >"$out/said" 2>&1
+cmp -s "$out/calls" "$out/before" && ok nothing_twice || fail nothing_twice "$(cat "$out/said")"
+
+# ---- the page ----
+
+# odd lies 1.5 dB below, held 0.5; turns shows what moves with 21 dB; broken ended with an error.
+mkdir "$out/page"
+cat >"$out/rows" <<END
+kind-default-1,k,kind,zoo,o,fine,0,30,31,25,10,100,5,14000,0,0,50,49,aa,
+odd-default-1,k,odd,zoo,o,fine,0,28.5,31,25,10,100,5,14000,0,0,50,49,ab,
+held-default-1,k,held,zoo,o,fine,0,29.5,31,,0,100,5,14000,0,3,50,49,ac,
+turns-default-1,k,turns,zoo,o,fine,0,30.5,31,21,10,100,5,14000,0,0,50,49,ad,
+broken-default-1,k,broken,zoo,o,error,3,,,,,,,,,,,,,no points
+END
+{ head -n 1 "$out/res/zoo.csv"; cat "$out/rows"; } >"$out/page/zoo.csv"
+sed 's/\([^,]*\),.*/done \1/; s/^done odd/older odd/' "$out/rows" >"$out/states"
+printf '%s\n' "first line" "## odd" "Because it" "is odd." "## broken" "It has no points." >"$out/notes.md"
+make_page() { TED4_RESULTS=$out/page TED4_TABLE=$out/table.txt TED4_NOTES=$out/notes.md bench/zoo_page.sh "$out/states"; }
+page=$out/page/zoo.md
+make_page || { fail page "status $?"; exit 1; }
+check cells "$page" '| kind | `ted4scene toys --masks` | - | 30.00 | - | 31.00 | 25.00 | 100 | 5 | 14000 | 49 | 0 | 0 | met |' \
+    '| odd† | `ted4scene toys --unit 100 --masks` | kind | 28.50 | -1.50 |' '| **below its twin** |' \
+    '`, `--hold-out cam00 --alpha premultiplied` | kind | 29.50 | -0.50 | 31.00 | - |' '| **what moves** |' '| **error 3: no points** |'
+check bars "$page" '| 1 | cases that end with exit status 0 | all of at least 24 | 4 of 5 | **missed** |' \
+    '| at most 1 dB below | 2 of 3 | **missed** |' '| at least 22 dB | 0 of 1 | **missed** |' '| never | 0 times | met |'
+check misses "$page" '* odd (below its twin): Because it is odd.' '* turns (what moves): **not explained yet**' '* broken (error 3: no points): It has no points.'
+cp "$page" "$out/first.md"
+make_page && cmp -s "$page" "$out/first.md" && ok same_bytes || fail same_bytes "the second page differs"
+
+sed -i '/^broken/d; s/^turns\(.*\),21,/turns\1,22,/; s/,28.5,/,29,/; s/^kind\(.*\),14000,0,/kind\1,14000,2,/' "$out/page/zoo.csv"
+make_page
+check met "$page" '| at most 1 dB below | 3 of 3 | not run yet |' '| at least 22 dB | 1 of 1 | not run yet |' '| never | 2 times | **missed** |' \
+    '| broken | `ted4scene toys --points none` | kind | not run yet |'
+exit $bad
