@@ -125,6 +125,7 @@ static void test_sweep(void **state)
     (void)state;
     assert_int_equal(ted4_shown_read(&s, &balls, &m), 0);
     ted4_sweep_begin(&w, &s, 4, 1, 12);
+    w.agreed = 4;
     for (size_t i = 0; i < s.n; i++) {
         assert_in_range(w.n_helpers[i], 2, BALL_CAMERAS - 1);
         for (int h = 0; h < w.n_helpers[i]; h++)

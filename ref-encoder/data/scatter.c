@@ -23,15 +23,20 @@
 #define NEAREST       0.15
 #define FARTHEST      3.0
 #define FARTHEST_ROOM 4.0
-/* Candidates a job, pixels tried for one, and candidates a wanted point at most. */
-enum { RUN = 1024, PIXELS = 32, TRIES = 32 };
+/* Before a plain background things are what cameras look at: a point lies in this share of the pictures at least. */
+#define LOOKED_AT 0.5
+/* Levels that pictures may be off about a point, first and then; after that any depth will do. */
+static const double agreed[] = { 4, 10, 0 };
+enum { PASSES = sizeof agreed / sizeof *agreed };
+/* Candidates a job, pixels tried for one, and candidates a wanted point in each pass at most. */
+enum { RUN = 1024, PIXELS = 32, TRIES = 4, LAST_TRIES = 32 };
 
 typedef struct {
     const ted4_shown           *shown;
     const ted4_scatter_options *options;
     ted4_sweep                  sweep;
     uint64_t                    first;  /* number of the first candidate of this round */
-    int      by_colour;                 /* at the depth at which pictures agree; else at any */
+    int                         fewest; /* pictures that a point lies in */
     float   *point;                     /* [RUNS * RUN][3] */
     uint8_t *rgb, *taken;               /* [RUNS * RUN][3], [RUNS * RUN] */
 } round_job;
@@ -79,7 +84,7 @@ static int try_candidate(const round_job *j, uint64_t i, float point[3], uint8_t
 
     if (!choose_pixel(j, &state, &k, &pixel))
         return 0;
-    if (!j->by_colour)
+    if (!(j->sweep.agreed > 0))
         any_depth(j, &j->shown->data->pictures[j->shown->picture[k]].camera, pixel, u, world);
     else if (!ted4_sweep_pixel(&j->sweep, k, pixel, u, world))
         return 0;
@@ -92,7 +97,7 @@ static int try_candidate(const round_job *j, uint64_t i, float point[3], uint8_t
 
     const double share = seen > 0 ? (double)shown / (double)seen : 0;
 
-    return (seen > 1 || j->shown->n == 1) && share >= EMPTY && ted4_split_uniform(&state) < share * share;
+    return seen >= j->fewest && share >= EMPTY && ted4_split_uniform(&state) < share * share;
 }
 
 static void try_run(void *arg, size_t run)
@@ -103,16 +108,21 @@ static void try_run(void *arg, size_t run)
         j->taken[i] = (uint8_t)try_candidate(j, j->first + i, j->point + 3 * i, j->rgb + 3 * i);
 }
 
-/* Fills the cloud from *n on until it is full, or hope is lost. 0, or -1: no memory. */
-static int scatter(round_job *j, const ted4_parallel *p, ted4_point_cloud *c, size_t *n)
+/* Fills the cloud from *n on until it is full, or so many candidates a point have been tried, of
+ * which this many a point were tried before. 0, or -1: no memory. */
+static int scatter(round_job *j, const ted4_parallel *p, size_t before, size_t tries,
+                   ted4_point_cloud *c, size_t *n)
 {
+    const uint64_t end = (uint64_t)(before + tries) * c->n;
+
     j->point = malloc((size_t)RUNS * RUN * 3 * sizeof *j->point);
     j->rgb = malloc((size_t)RUNS * RUN * 3);
     j->taken = malloc((size_t)RUNS * RUN);
 
     int bad = j->point == NULL || j->rgb == NULL || j->taken == NULL;
 
-    for (j->first = 0; !bad && *n < c->n && j->first < (uint64_t)TRIES * c->n; j->first += RUNS * RUN) {
+    for (j->first = (uint64_t)before * c->n; !bad && *n < c->n && j->first < end;
+         j->first += RUNS * RUN) {
         ted4_parallel_for(p, RUNS, try_run, j);
         for (size_t i = 0; i < (size_t)RUNS * RUN && *n < c->n; i++)
             if (j->taken[i]) {
@@ -146,7 +156,7 @@ static int are_shown(const ted4_shown *s, const ted4_dataset *d)
 static int replace(ted4_dataset *d, const ted4_shown *s, const ted4_scatter_options *o,
                    const ted4_parallel *p, size_t *n, ted4_message *m)
 {
-    round_job        j = { .shown = s, .options = o, .by_colour = 1 };
+    round_job        j = { .shown = s, .options = o };
     ted4_point_cloud c;
     double           centre[3], half;
 
@@ -157,10 +167,15 @@ static int replace(ted4_dataset *d, const ted4_shown *s, const ted4_scatter_opti
 
     ted4_sweep_begin(&j.sweep, s, ahead, NEAREST * ahead, (s->plain ? FARTHEST : FARTHEST_ROOM) * ahead);
 
-    int bad = scatter(&j, p, &c, n) != 0;
+    j.fewest = s->plain && s->n > 4 ? (int)(LOOKED_AT * (double)s->n) : s->n > 1 ? 2 : 1;
 
-    j.by_colour = 0;
-    if (bad || scatter(&j, p, &c, n) != 0) {
+    int bad = 0;
+
+    for (size_t k = 0; !bad && k < PASSES; k++) {
+        j.sweep.agreed = agreed[k];
+        bad = scatter(&j, p, k * TRIES, k + 1 < PASSES ? TRIES : LAST_TRIES, &c, n) != 0;
+    }
+    if (bad) {
         ted4_point_cloud_free(&c);
         return ted4_say_no_memory(m);
     }

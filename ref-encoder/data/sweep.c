@@ -9,10 +9,9 @@
 
 /* Smallest angle between two cameras, in radians. */
 #define APART 0.05
-/* Patches agree when they are this many levels of 255 off, averaged over pixels, channels and pictures; depths are equally good when they are this near to the best. */
-#define AGREED 4.0
-#define EQUAL  1.5
-/* Where the middle pixels are so many times that off, patches hardly agree. */
+/* Depths are equally good when patches are off by so many levels more than at the best. */
+#define EQUAL 1.5
+/* Where the middle pixels are so many times as far off as patches may be, these hardly agree. */
 #define HOPELESS 3.0
 enum { FEWEST = 2 };
 
@@ -150,7 +149,7 @@ static double cost(const ted4_sweep *w, size_t i, const patch *mine, const doubl
         each[n] = off(mine->rgb[0], w->shown->rgb[k] + 3 * at[n]) / 3.0;
         looks[n++] = (int)k;
     }
-    if (n < FEWEST || better_half(each, n) > HOPELESS * AGREED)
+    if (n < FEWEST || better_half(each, n) > HOPELESS * w->agreed)
         return INFINITY;
     for (int h = 0; h < n; h++) {
         const size_t k = (size_t)looks[h];
@@ -178,7 +177,7 @@ int ted4_sweep_pixel(const ted4_sweep *w, size_t i, size_t pixel, double u, doub
         found[k] = cost(w, i, &mine, world);
         best = fmin(best, found[k]);
     }
-    if (!(best <= AGREED))
+    if (!(best <= w->agreed))
         return 0;
     for (int k = 0; k < TED4_SWEEP_DEPTHS; k++)
         if (found[k] <= best + EQUAL)
