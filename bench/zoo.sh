@@ -40,7 +40,7 @@ measure() {
     "$programs/zoo_masks" "$folder" "$out.pictures" <"$out.views" >"$out.masks.json" || return 1
     rm -rf "$out.pictures"
     times=$(awk -f bench/log.awk /dev/null "$out.jsonl") || return 1
-    warnings=$("$programs/ted4enc" "$folder" $(reading) --check 2>&1 | grep -c 'warning:')
+    warnings=$(grep -c 'warning:' "$out.err")
     row=$tag,$key,$scene,$groups,$options,fine,0,$(value psnr "$out.eval.json"),$(value psnr "$out.train.json")
     row=$row,$(value moving_psnr "$out.masks.json" | sed 's/^null$//'),$(value moving_pixels "$out.masks.json")
     for f in bytes anchors steps rollbacks; do row=$row,$(value $f "$out.json"); done

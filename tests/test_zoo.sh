@@ -6,7 +6,6 @@
 set -u
 . tests/speak.sh
 need zoo ted4enc ted4eval ted4scene bench/zoo_masks python3
-"$TED4_BUILD/ted4enc" -h | grep -q -e --hold-out || { skip zoo "this ted4enc does not read all of them"; exit 0; }
 XDG_CACHE_HOME=$out/cache; export XDG_CACHE_HOME
 
 awk -f bench/expand.awk ref-encoder/train/options.def bench/zoo.txt >"$out/runs" || { fail table "not read"; exit 1; }
@@ -14,33 +13,46 @@ awk '$1 == "case" { n++; twin[$2] = $3 }
      END { for (s in twin) if (twin[s] != "-" && !(twin[s] in twin)) { print s ": no twin " twin[s]; bad = 1 }
            if (n < 24) { print n " cases"; bad = 1 } exit bad }' bench/zoo.txt >"$out/said" && ok table || fail table "$(cat "$out/said")"
 
-# made NAME SIZE: the scene of a case, in $out/SIZE/NAME; $reading: the options with which it is read.
+# made NAME SIZE OPTIONS: the scene of a case, in $out/SIZE/NAME; $reading: the options with which it is
+# read.
 made() {
     folder=$out/$2/$1
     where=$(awk -F'|' -v s="$1" '$3 == s { print $4 }' "$out/runs")
     reading=$(awk -F'|' -v s="$1" '$3 == s { print " " $10 }' "$out/runs" | grep -o -E -- ' --(alpha|hold-out|black)( [^- ]+)?' | tr -d '\n')
-    [ -d "$folder" ] || "$TED4_BUILD/ted4scene" $(echo "${where#own:}" | sed 's/+/ --/g; s/=/ /g') --size "$2" -o "$folder" -j 2
+    shift
+    [ -d "$folder" ] || "$TED4_BUILD/ted4scene" $(echo "${where#own:}" | sed 's/+/ --/g; s/=/ /g') --size "$@" -o "$folder" -j 2
 }
 
 # ---- all are read ----
 
-# Missing pictures are said once, and so are points in empty space, which only a plain background
-# tells; the others say nothing.
+tiny="24x16 --cameras 5 --test-cameras 1"
+
+# With the warning that is due, and no other. Looking for points takes seconds: of the cases in which
+# it is needed, those that are read like others are left out.
 for name in $(awk -F'|' '{ print $3 }' "$out/runs"); do
-    case $name in videos) command -v ffmpeg >/dev/null || { skip "reads_$name" "there is no ffmpeg"; continue; } ;; esac
-    made "$name" 24x16 || { fail "reads_$name" "not made"; continue; }
+    case $name in random|white10|large10|turns10|room-box10|*-none) continue ;; esac
+    if [ "$name" = videos ] && ! command -v ffmpeg >/dev/null; then
+        skip "reads_$name" "there is no ffmpeg"
+        continue
+    fi
+    made "$name" $tiny || { fail "reads_$name" "not made"; continue; }
+    case $where in
+    *missing*)                       due='entries have no picture' ;;
+    *points=box10*|*points=random*)  due='initial points lie where' ;;
+    *)                               due= ;;
+    esac
     "$TED4_BUILD/ted4enc" "$folder" $reading --check >"$out/said" 2>&1
-    status=$? warnings=$(grep -c 'warning:' "$out/said")
-    wanted=0
-    case $name in missing | box10 | random | white10 | turns10 | large10) wanted=1 ;; esac
-    [ $status = 0 ] && [ "$warnings" = $wanted ] && ok "reads_$name" || fail "reads_$name" "status $status: $(cat "$out/said")"
+    status=$?
+    others=$(grep 'warning:' "$out/said" | grep -v -e "${due:-nothing is due}")
+    if [ $status = 0 ] && [ -z "$others" ]; then ok "reads_$name"; else fail "reads_$name" "status $status: $(cat "$out/said")"; fi
+    if [ "$name" = missing ] && ! grep -q '^ted4enc: warning: 17 of 96 ' "$out/said"; then fail counts_missing "$(cat "$out/said")"; fi
 done
 
 # ---- the same pictures, written in another way ----
 
 # hash_of NAME: of the file that a few steps make.
 hash_of() {
-    made "$1" 24x16
+    made "$1" $tiny
     "$TED4_BUILD/ted4enc" "$folder" $reading -o "$out/$1.ted4" --preset draft --iterations 30,10 --seed 1 -j 1 -f -q --json 2>&1 |
         sed 's/.*"hash":"\([0-9a-f]*\)".*/\1/'
 }
@@ -60,23 +72,23 @@ same clear-dark toys
 
 # ---- short trainings ----
 
-# trained NAME: PSNR of held-out pictures in $psnr, of what moves in training pictures in $moving.
+# trained NAME: PSNR of training pictures in $psnr, of what moves in them in $moving.
 trained() {
     made "$1" 48x32
     "$TED4_BUILD/ted4enc" "$folder" -o "$out/$1.ted4" --preset draft --iterations 1500,400 --seed 1 -j 2 -f -q >"$out/said" 2>&1 ||
         { fail "trains_$1" "status $?: $(cat "$out/said")"; return 1; }
-    psnr=$("$TED4_BUILD/ted4eval" "$out/$1.ted4" "$folder" --json -q | sed 's/.*"psnr":\([0-9.]*\).*/\1/')
-    "$TED4_BUILD/ted4eval" "$out/$1.ted4" "$folder" --split train -v --images "$out/pictures" -f >"$out/said" 2>"$out/views" &&
-        moving=$("$TED4_BUILD/bench/zoo_masks" "$folder" "$out/pictures" <"$out/views" | sed 's/.*"moving_psnr":\([0-9.]*\).*/\1/')
+    psnr=$("$TED4_BUILD/ted4eval" "$out/$1.ted4" "$folder" --split train -v --json --images "$out/pictures" -f 2>"$out/views" |
+        sed 's/.*"psnr":\([0-9.]*\).*/\1/')
+    moving=$("$TED4_BUILD/bench/zoo_masks" "$folder" "$out/pictures" <"$out/views" | sed 's/.*"moving_psnr":\([0-9.]*\).*/\1/')
 }
 
-# Within how many decibels of the friendly one so short a training is. Ten times as many steps bring
-# them within one: bench/zoo.md.
+# Within how many decibels of the friendly one so short a training is; ten times as many steps: bench/zoo.md. A picture without
+# anything has 16 dB.
 if trained toys; then
     friendly=$psnr
-    awk "BEGIN { exit !($psnr > 26 && $moving > 16) }" && ok trains_toys || fail trains_toys "$psnr dB, what moves $moving"
-    trained none && { awk "BEGIN { exit !($psnr > $friendly - 4 && $moving > 15) }" && ok trains_none ||
-        fail trains_none "$psnr dB, friendly $friendly, what moves $moving"; }
+    awk "BEGIN { exit !($psnr > 27 && $moving > 16) }" && ok trains_toys || fail trains_toys "$psnr dB, what moves $moving"
+    trained turns10 && { awk "BEGIN { exit !($psnr > $friendly - 6) }" && ok trains_turns10 ||
+        fail trains_turns10 "$psnr dB, friendly $friendly, what moves $moving"; }
 fi
 
 # ---- what moves ----

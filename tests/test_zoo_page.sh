@@ -34,13 +34,14 @@ cat >"$out/build/ted4enc" <<END
 folder=\$1
 echo "\$*" | sed 's/[^ ]* //; s/ -o .*--seed 1//' >>"$out/calls"
 case "\$*" in
-*" --check")     echo "ted4enc: warning: one" >&2; echo "ted4enc: warning: two" >&2; exit 0 ;;
 *points=none*) echo "ted4enc: no points, none at all" >&2; exit 3 ;;
 esac
 while [ \$# -gt 0 ]; do
     case \$1 in -o) file=\$2 ;; --log) log=\$2 ;; esac
     shift
 done
+echo "ted4enc: warning: one" >&2
+echo "ted4enc: warning: two" >&2
 echo x >"\$file"
 echo '{"step":250,"stage":"1","loss":0.5,"psnr":20,"anchors":5,"bytes":0,"ms":4,"cpu_ms":2,"seconds":1.25,"cpu_seconds":0.5}' >"\$log"
 echo '{"bytes":123,"steps":250,"anchors":5,"rollbacks":1,"hash":"abc"}'
@@ -66,8 +67,7 @@ runs held-default-1 broken-default-1 >"$out/said" 2>&1 && ok runs || fail runs "
 [ "$(row_of held)" = "fine,0,30.25,31.5,23.5,77,123,5,250,1,2,1.2,0.5,abc," ] && ok fine_row || fail fine_row "$(row_of held)"
 [ "$(row_of broken)" = "error,3,,,,,,,,,,,,,ted4enc: no points; none at all" ] && ok error_row || fail error_row "$(row_of broken)"
 [ "$(cat "$out/views")" = "a line of a view" ] && ok views || fail views "$(cat "$out/views")"
-check reading "$out/calls" 'eval --hold-out cam00 --alpha premultiplied --json -q -j 1' 'eval --hold-out cam00 --alpha premultiplied --split train --json -v -j 1' \
-    '--hold-out cam00 --alpha premultiplied --check'
+check reading "$out/calls" 'eval --hold-out cam00 --alpha premultiplied --json -q -j 1' 'eval --hold-out cam00 --alpha premultiplied --split train --json -v -j 1'
 cp "$out/calls" "$out/before"
 runs held-default-1 broken-default-1 >"$out/said" 2>&1
 cmp -s "$out/calls" "$out/before" && ok nothing_twice || fail nothing_twice "$(cat "$out/said")"

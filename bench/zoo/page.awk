@@ -142,7 +142,7 @@ END {
     say("## Every case")
     say("")
     say("PSNR in dB: of held-out pictures, the same against the twin's, of training pictures, and of these inside the masks of what moves and of its shadow, over")
-    say("all pixels. Seconds are of one core; warnings those of `ted4enc --check`; back: how often the watch went back to a checkpoint.")
+    say("all pixels. Seconds are of one core; warnings those of ted4enc; back: how often the watch went back to a checkpoint.")
     table("case,command,twin,held out,against twin,training,what moves,bytes,anchors,steps,seconds,warnings,back,verdict")
     for (i = 1; i <= n_scenes; i++)
         show_case(scenes[i])

@@ -292,8 +292,8 @@ static void choose_background(ted4_dataset *d, const ted4_raw_scene *s, const te
 {
     int alpha = 0;
 
-    for (size_t i = 0; i < s->n_shots; i++)
-        alpha |= s->shots[i].has_alpha;
+    for (size_t i = 0; i < s->n_shots && !alpha; i++)
+        alpha = s->shots[i].has_alpha;
     memset(d->background, alpha && o->white ? 255 : 0, sizeof d->background);
 }
 
