@@ -159,8 +159,11 @@ static int say_moved(ted4_raw_scene *s, const ted4_dataset *d)
     for (size_t i = 0; i < s->n_shots && last > first; i++) {
         const double off =
             fabs((s->shots[i].time - first) / (last - first) * steps - d->pictures[i].frame);
-        n += off > MOVED;
-        worst = fmax(worst, off);
+
+        if (off > MOVED)
+            n++;
+        if (off > worst)
+            worst = off;
     }
     return n == 0 ? 0
                   : ted4_raw_scene_warn(s,
