@@ -48,6 +48,7 @@ looks() {
 XDG_CACHE_HOME=$out/cache
 export XDG_CACHE_HOME
 expect walk_made 0 "12 of 12 pictures have poses" env FPS=2 sh tools/own-video.sh "$out/walked" "$out/walk.mp4"
+refuse too_short 3 "$out/walk.mp4: 0 pictures at FPS=0.01" env FPS=0.01 sh tools/own-video.sh "$out/short" "$out/walk.mp4"
 looks walked "11 train, 1 test" "frames      12"
 # A clip that its file says to turn has an empty line after its rate.
 mkdir "$out/bin"

@@ -30,6 +30,7 @@ else
     done
 fi
 n=$(ls "$work/images" | wc -l)
+[ "$n" -gt 1 ] || die "$1: $n pictures at FPS=$FPS"
 match=exhaustive_matcher
 [ "$n" -le 80 ] || match=sequential_matcher
 echo "own-video.sh: $n pictures; looking for their poses ($match; $out/log)"
