@@ -4,5 +4,5 @@
 export LC_ALL=C
 grep -rnE "[Aa]lgorithm facts|\(decisions\b|\bdecisions:? [0-9]|project's issue" --include='*.[ch]' --include='*.def' --include='*.sh' --include='*.awk' \
     --include='*.py' --include='*.mk' --include=Makefile --include=README.md --exclude=cites.sh \
-    Makefile README.md ref-decoder ref-encoder conformance tests fuzz bench | sed 's/$/   (cites what is not here)/' | grep . && exit 1
+    Makefile README.md ref-decoder ref-encoder conformance tests fuzz bench tools | sed 's/$/   (cites what is not here)/' | grep . && exit 1
 exit 0
