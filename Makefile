@@ -105,12 +105,17 @@ $(addprefix $B/tests/test_starved_,trainer writer): override LDFLAGS += -Wl,--wr
 
 test-programs: all $(TESTS)
 
+# What a user builds in order to see something is built on all cores, unless -j says on how many.
+JOBS = $(if $(findstring -j,$(MAKEFLAGS)),,-j$(shell nproc))
+
 # Lints take seconds. Prints each test program it runs and a closing line of totals.
-test: lint test-programs
+test: lint
+	@$(MAKE) --no-print-directory $(JOBS) test-programs
 	@TED4_BUILD=$(abspath $B) TED4_DATA=$(abspath $(TED4_DATA)) sh tests/run.sh $(TESTS)
 
 # Scene, training, file, decoder in a fresh process, held-out views, picture sheet: in out/demo.
-demo: $(PROGS)
+demo:
+	@$(MAKE) --no-print-directory $(JOBS) $(PROGS)
 	@TED4_BUILD=$(abspath $B) sh tests/demo.sh out/demo
 
 lint:
