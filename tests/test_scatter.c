@@ -1,5 +1,6 @@
-/* test_scatter.c - data/shown.h, data/sweep.h and data/scatter.h: what a plain background is; points lie where pictures show something, and at the depth at which they
- * agree; points that help stay.
+/* test_scatter.c - data/shown.h, data/sweep.h and data/scatter.h: what a plain background is;
+ * points lie where pictures show something, and at the depth at which they agree; points that help
+ * stay.
  * SPDX-License-Identifier: BSD-2-Clause */
 #include <setjmp.h>
 #include <stdarg.h>
@@ -47,7 +48,8 @@ static double beside(const float *p)
 
     for (int k = 0; k < BALLS; k++) {
         const ball b = ball_at(k, 0);
-        const double x = (double)p[0] - b.centre[0], y = (double)p[1] - b.centre[1], z = (double)p[2] - b.centre[2];
+        const double x = (double)p[0] - b.centre[0], y = (double)p[1] - b.centre[1],
+                     z = (double)p[2] - b.centre[2];
 
         best = fmin(best, fabs(sqrt(x * x + y * y + z * z) / b.radius - 1));
     }
@@ -129,7 +131,8 @@ static void test_sweep(void **state)
     for (size_t i = 0; i < s.n; i++) {
         assert_in_range(w.n_helpers[i], 2, BALL_CAMERAS - 1);
         for (int h = 0; h < w.n_helpers[i]; h++)
-            assert_true(balls.pictures[s.picture[w.helper[i][h]]].frame == balls.pictures[s.picture[i]].frame);
+            assert_true(balls.pictures[s.picture[w.helper[i][h]]].frame ==
+                        balls.pictures[s.picture[i]].frame);
         for (size_t pixel = 0; pixel < BALL_W * BALL_H; pixel++) {
             double world[3];
 
@@ -146,7 +149,8 @@ static void test_sweep(void **state)
     ted4_shown_free(&s);
 }
 
-/* Points in space ten times as wide as the things: others take their place, the same ones however many threads look for them. */
+/* Points in space ten times as wide as the things: others take their place, the same ones
+ * however many threads look for them. */
 static void test_useless(void **state)
 {
     ted4_dataset  one, two;
@@ -208,7 +212,8 @@ static void test_held_out(void **state)
     unload(&same, &g);
 }
 
-/* All points lie inside the bounds, those that came with the scene and those in their place; where there can be none, that is said. */
+/* All points lie inside the bounds, those that came with the scene and those in their place;
+ * where there can be none, that is said. */
 static void test_bounds(void **state)
 {
     const ball           b = ball_at(0, 0);
@@ -245,8 +250,9 @@ static void test_bounds(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_shown),   cmocka_unit_test(test_sweep),    cmocka_unit_test(test_useless),
-        cmocka_unit_test(test_useful),  cmocka_unit_test(test_held_out), cmocka_unit_test(test_bounds),
+        cmocka_unit_test(test_shown),    cmocka_unit_test(test_sweep),
+        cmocka_unit_test(test_useless),  cmocka_unit_test(test_useful),
+        cmocka_unit_test(test_held_out), cmocka_unit_test(test_bounds),
     };
 
     return cmocka_run_group_tests_name("scatter", tests, set_up, tear_down);

@@ -1,4 +1,5 @@
-/* test_turns.c - train/turns.h: cameras that take turns, one picture a time. A ball that no initial point stands for is found from the pictures of several times.
+/* test_turns.c - train/turns.h: cameras that take turns, one picture a time. A ball that no initial
+ * point stands for is found from the pictures of several times.
  * SPDX-License-Identifier: BSD-2-Clause */
 #include <setjmp.h>
 #include <stdarg.h>
@@ -13,7 +14,8 @@
 #include "train/transient.h"
 #include "train/turns.h"
 
-enum { BLUE = 2, SPEED = 2, FRAMES = 24, STEPS = 80 };  /* the blue ball moves by 0.3 of its radius a frame */
+/* The blue ball moves by 0.3 of its radius a frame. */
+enum { BLUE = 2, SPEED = 2, FRAMES = 24, STEPS = 80 };
 
 static tiny_folder  folder;
 static ted4_dataset balls;
@@ -74,7 +76,8 @@ static int reach_of(uint32_t cameras, uint32_t gap)
     return reach;
 }
 
-/* Four cameras in turn are all in five frames, every other frame alone in nine; two never are four, however often they look. */
+/* Four cameras in turn are all in five frames, every other frame alone in nine; two never are
+ * four, however often they look. */
 static void test_reach(void **state)
 {
     const ted4_train_options o = options();
@@ -112,7 +115,8 @@ static double radii(const ted4_trainer *t, const float *p, double frame)
     double     square = 0;
 
     for (int k = 0; k < 3; k++) {
-        const double x = (double)t->layout.head.origin[k] + ldexp((double)p[k], t->layout.head.exponent);
+        const double x = (double)t->layout.head.origin[k] +
+                         ldexp((double)p[k], t->layout.head.exponent);
 
         square += (x - b.centre[k]) * (x - b.centre[k]);
     }
@@ -150,12 +154,14 @@ static void test_found(void **state)
         near += radii(&t, p, 0.5 * (double)(from + to) * (FRAMES - 1)) < 1.7;
         n++;
     }
-    print_message("%zu new anchors, %zu with short lives, %zu on the ball\n", t.anchors.n - before, n, near);
+    print_message("%zu new anchors, %zu with short lives, %zu on the ball\n",
+                  t.anchors.n - before, n, near);
     assert_true(t.anchors.n >= before + 20 && n >= t.anchors.n - before && 2 * near > n);
     ted4_trainer_finish(&t);
 }
 
-/* They come before the probe asks whether time is needed; with several cameras at a time, after it. */
+/* They come before the probe asks whether time is needed; with several cameras at a time, after
+ * it. */
 static void test_schedule(void **state)
 {
     const ted4_train_options o = options();

@@ -12,18 +12,22 @@
 #include "data/sweep.h"
 #include "math/elementary.h"
 
-/* A point lies in empty space when less than this share of the pictures that it lies in show something there. What moves is shown at few times; what lies far from things
- * is in line with them for few cameras. */
+/* A point lies in empty space when less than this share of the pictures that it lies in show
+ * something there. What moves is shown at few times; what lies far from things is in line with
+ * them for few cameras. */
 #define EMPTY (1.0 / 16.0)
-/* Points of things that stay are seen against something by all pictures, but for errors at outlines. Those that came with the scene are used when this share of them has
- * this share of pictures that show something: the others may belong to what moves. */
+/* Points of things that stay are seen against something by all pictures, but for errors at
+ * outlines. Those that came with the scene are used when this share of them has this share of
+ * pictures that show something: the others may belong to what moves. */
 #define USEFUL 0.5
 #define SHOWN  0.5
-/* Depths tried, in distances of the cameras from where they look: things on a plain background stand there; in a room, walls may be far behind it. */
+/* Depths tried, in distances of the cameras from where they look: things on a plain background
+ * stand there; in a room, walls may be far behind it. */
 #define NEAREST       0.15
 #define FARTHEST      3.0
 #define FARTHEST_ROOM 4.0
-/* Before a plain background things are what cameras look at: a point lies in this share of the pictures at least. */
+/* Before a plain background things are what cameras look at: a point lies in this share of the
+ * pictures at least. */
 #define LOOKED_AT 0.5
 /* Levels that pictures may be off about a point, first and then; after that any depth will do. */
 static const double agreed[] = { 4, 10, 0 };
@@ -51,7 +55,8 @@ static int choose_pixel(const round_job *j, uint64_t *state, size_t *picture, si
 
         const ted4_camera *c = &j->shown->data->pictures[j->shown->picture[*picture]].camera;
 
-        *pixel = (size_t)(ted4_split_uniform(state) * (double)((size_t)c->width * (size_t)c->height));
+        *pixel = (size_t)(ted4_split_uniform(state) *
+                          (double)((size_t)c->width * (size_t)c->height));
         if (ted4_shown_at(j->shown, *picture, *pixel))
             return 1;
     }
@@ -59,7 +64,8 @@ static int choose_pixel(const round_job *j, uint64_t *state, size_t *picture, si
 }
 
 /* Any depth, as many in each octave. */
-static void any_depth(const round_job *j, const ted4_camera *c, size_t pixel, double u, double world[3])
+static void any_depth(const round_job *j, const ted4_camera *c, size_t pixel, double u,
+                      double world[3])
 {
     const double octaves = ted4_math_log2(j->sweep.farthest / j->sweep.nearest);
 
@@ -76,7 +82,8 @@ static int is_inside(const ted4_scatter_options *o, const float p[3])
 
 static int try_candidate(const round_job *j, uint64_t i, float point[3], uint8_t rgb[3])
 {
-    uint64_t     state = (uint64_t)j->options->seed << 40 ^ i << 8;     /* fewer numbers than 2^8 a candidate */
+    /* A candidate takes fewer than 2^8 numbers. */
+    uint64_t     state = (uint64_t)j->options->seed << 40 ^ i << 8;
     const double u = ted4_split_uniform(&state);
     size_t       k, pixel;
     double       world[3];
@@ -142,7 +149,8 @@ static int are_shown(const ted4_shown *s, const ted4_dataset *d)
     size_t n = 0;
 
     for (size_t i = 0; i < d->n_points; i++) {
-        const double world[3] = { (double)d->points[3 * i], (double)d->points[3 * i + 1], (double)d->points[3 * i + 2] };
+        const float *p = d->points + 3 * i;
+        const double world[3] = { (double)p[0], (double)p[1], (double)p[2] };
         int          seen, shown;
 
         ted4_shown_count(s, world, &seen, &shown);
@@ -151,8 +159,9 @@ static int are_shown(const ted4_shown *s, const ted4_dataset *d)
     return (double)n >= USEFUL * (double)d->n_points;
 }
 
-/* Scattered points in place of those that are there, if any can be had: where pictures agree about colours, and where they do not agree often enough, anywhere on the rays
- * of what shows something. 0, or -1 with *m filled. */
+/* Scattered points in place of those that are there, if any can be had: where pictures agree
+ * about colours, and where they do not agree often enough, anywhere on the rays of what shows
+ * something. 0, or -1 with *m filled. */
 static int replace(ted4_dataset *d, const ted4_shown *s, const ted4_scatter_options *o,
                    const ted4_parallel *p, size_t *n, ted4_message *m)
 {
@@ -165,7 +174,8 @@ static int replace(ted4_dataset *d, const ted4_shown *s, const ted4_scatter_opti
 
     const double ahead = half / TED4_VIEW_BOX_HALF_SIDE;
 
-    ted4_sweep_begin(&j.sweep, s, ahead, NEAREST * ahead, (s->plain ? FARTHEST : FARTHEST_ROOM) * ahead);
+    ted4_sweep_begin(&j.sweep, s, ahead, NEAREST * ahead,
+                     (s->plain ? FARTHEST : FARTHEST_ROOM) * ahead);
 
     j.fewest = s->plain && s->n > 4 ? (int)(LOOKED_AT * (double)s->n) : s->n > 1 ? 2 : 1;
 
@@ -221,12 +231,14 @@ int ted4_dataset_scatter(ted4_dataset *d, const ted4_scatter_options *o, const t
     const size_t outside = bad ? 0 : drop_outside(d, o);
 
     what->outside = d->random_points ? 0 : outside;
-    if (!bad && (d->random_points || d->n_points == 0 || (s.plain && !are_shown(&s, d)))) {
+    if (!bad && s.n > 0 &&
+        (d->random_points || d->n_points == 0 || (s.plain && !are_shown(&s, d)))) {
         what->given = d->random_points ? 0 : d->n_points;
         bad = replace(d, &s, o, p, &what->scattered, m) != 0;
     }
     if (!bad && d->n_points == 0)
-        bad = ted4_say(m, "no initial point lies inside the bounds, and pictures show nothing there");
+        bad = ted4_say(m, "no initial point lies inside the bounds, and pictures show nothing "
+                          "there");
     ted4_shown_free(&s);
     return bad ? -1 : 0;
 }

@@ -1,4 +1,5 @@
-/* scatter.h - initial points where pictures show something, for scenes that came without points, or with points of which most lie in empty space.
+/* scatter.h - initial points where pictures show something, for scenes that came without points, or
+ * with points of which most lie in empty space.
  * Depends on dataset.h.
  * SPDX-License-Identifier: BSD-2-Clause */
 #ifndef TED4_SCATTER_H
@@ -19,10 +20,12 @@ typedef struct {
     size_t outside;             /* points that came with the scene and lie outside the bounds */
 } ted4_scattered;
 
-/* Of a verified dataset. A plain background of pictures without transparency becomes that of the scene. Where points are random, or most of those given lie where no
- * picture shows anything, others take their place: on the rays of pixels that show something, where most other pictures that look there show something too. Held-out
- * pictures are not looked at. Points outside the bounds go. Same scene and options, same points, whatever the threads. 0, or -1 with *m filled: no memory, a picture that
- * cannot be read, or no point inside the bounds. */
+/* Of a verified dataset. A plain background of pictures without transparency becomes that of the
+ * scene. Where points are random, or most of those given lie where no picture shows anything,
+ * others take their place: on the rays of pixels that show something, where most other pictures
+ * that look there show something too. Held-out pictures are not looked at. Points outside the
+ * bounds go. Same scene and options, same points, whatever the threads. 0, or -1 with *m filled:
+ * no memory, a picture that cannot be read, or no point inside the bounds. */
 int ted4_dataset_scatter(ted4_dataset *d, const ted4_scatter_options *o, const ted4_parallel *p,
                          ted4_scattered *what, ted4_message *m);
 

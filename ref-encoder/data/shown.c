@@ -6,7 +6,8 @@
 #include <string.h>
 #include "data/data_util.h"
 
-/* Levels that a pixel of the background may be off, and the share of pixels at edges that make a background plain. */
+/* Levels that a pixel of the background may be off, and the share of pixels at edges that make a
+ * background plain. */
 enum { NEAR = 8 };
 #define PLAIN_SHARE 0.5
 /* Colours of edges are counted in buckets of 16 levels. */
@@ -79,7 +80,8 @@ static int read_all(ted4_shown *s, ted4_message *m)
 }
 
 /* All of every step-th frame; how many that are, and their bytes. */
-static size_t choose(const ted4_dataset *d, uint32_t step, size_t *picture, size_t most, size_t *bytes)
+static size_t choose(const ted4_dataset *d, uint32_t step, size_t *picture, size_t most,
+                     size_t *bytes)
 {
     size_t n = 0;
 
@@ -101,13 +103,11 @@ static void choose_pictures(ted4_shown *s)
     uint32_t step = 1;
     size_t   bytes;
 
-    while ((s->n = choose(s->data, step, s->picture, TED4_SHOWN_MOST, &bytes)) > TED4_SHOWN_MOST || bytes > TED4_SHOWN_BYTES) {
-        if (step >= s->data->n_frames)
-            break;
-        step++;
-    }
+    do
+        s->n = choose(s->data, step, s->picture, TED4_SHOWN_MOST, &bytes);
+    while ((s->n > TED4_SHOWN_MOST || bytes > TED4_SHOWN_BYTES) && step++ < s->data->n_frames);
     s->n = s->n < TED4_SHOWN_MOST ? s->n : TED4_SHOWN_MOST;
-    for (bytes = 0; s->n > 1; s->n--) {
+    for (; s->n > 1; s->n--) {
         bytes = 0;
         for (size_t k = 0; k < s->n; k++)
             bytes += 3 * n_pixels(&s->data->pictures[s->picture[k]].camera);
@@ -127,10 +127,16 @@ static void most_common(const bucket *count, uint8_t colour[3])
         colour[k] = best->n > 0 ? (uint8_t)((best->sum[k] + best->n / 2) / best->n) : 0;
 }
 
+/* Of the bits of picture k. */
+static size_t n_words(const ted4_shown *s, size_t k)
+{
+    return n_pixels(&s->data->pictures[s->picture[k]].camera) / 64 + 1;
+}
+
 static int make_room(ted4_shown *s)
 {
     for (size_t k = 0; k < s->n; k++) {
-        s->bits[k] = calloc(n_pixels(&s->data->pictures[s->picture[k]].camera) / 64 + 1, sizeof *s->bits[k]);
+        s->bits[k] = calloc(n_words(s, k), sizeof *s->bits[k]);
         if (s->bits[k] == NULL)
             return -1;
     }
@@ -157,9 +163,9 @@ int ted4_shown_read(ted4_shown *s, ted4_dataset *d, ted4_message *m)
     free(count);
     for (size_t k = 0; k < s->n; k++)
         mark(s, k, &edges, &near);
-    s->plain = (double)near >= PLAIN_SHARE * (double)edges;
+    s->plain = edges > 0 && (double)near >= PLAIN_SHARE * (double)edges;
     for (size_t k = 0; !s->plain && k < s->n; k++)
-        memset(s->bits[k], 0xff, (n_pixels(&d->pictures[s->picture[k]].camera) / 64 + 1) * sizeof *s->bits[k]);
+        memset(s->bits[k], 0xff, n_words(s, k) * sizeof *s->bits[k]);
     return 0;
 }
 
@@ -179,7 +185,8 @@ int ted4_shown_pixel(const ted4_shown *s, size_t i, const double world[3], size_
     double             p[3];
 
     for (int k = 0; k < 3; k++)
-        p[k] = c->R[3 * k] * world[0] + c->R[3 * k + 1] * world[1] + c->R[3 * k + 2] * world[2] + c->t[k];
+        p[k] = c->R[3 * k] * world[0] + c->R[3 * k + 1] * world[1] + c->R[3 * k + 2] * world[2] +
+               c->t[k];
 
     const double x = c->fx * p[0] / p[2] + c->cx, y = c->fy * p[1] / p[2] + c->cy;
 

@@ -1,5 +1,5 @@
-/* shown.h - training pictures looked at together before training, and which of their pixels show something, where all have the same plain background: what a point in
- * space is seen against.
+/* shown.h - training pictures looked at together before training, and which of their pixels show
+ * something, where all have the same plain background: what a point in space is seen against.
  * Depends on dataset.h.
  * SPDX-License-Identifier: BSD-2-Clause */
 #ifndef TED4_SHOWN_H
@@ -7,22 +7,25 @@
 
 #include "data/dataset.h"
 
-/* Training pictures looked at: all, or those of evenly spaced times, so many at most and no more than fit into so many bytes. */
+/* Training pictures looked at: all, or those of evenly spaced times, so many at most (none,
+ * where these are all held out) and no more than fit into so many bytes. */
 enum { TED4_SHOWN_MOST = 128 };
 #define TED4_SHOWN_BYTES ((size_t)512 << 20)
 
 typedef struct {
     ted4_dataset       *data;                   /* borrowed */
     size_t              picture[TED4_SHOWN_MOST];
-    const uint8_t      *rgb[TED4_SHOWN_MOST];   /* pixels of the dataset, held until ted4_shown_free; NULL: not read */
-    uint64_t           *bits[TED4_SHOWN_MOST];  /* owned: a bit a pixel, row major, set where it shows something; all set without a plain background */
+    const uint8_t      *rgb[TED4_SHOWN_MOST];   /* pixels, held until ted4_shown_free; NULL: none */
+    uint64_t           *bits[TED4_SHOWN_MOST];  /* owned: a bit a pixel, row major, set where it
+                                                 * shows something; all, if not plain */
     size_t              n;
     int                 plain;
     uint8_t             background[3];          /* of a plain one */
 } ted4_shown;
 
-/* Reads the pictures (of a verified dataset). The background is plain when half of the pixels at the edges of all pictures are within 8 levels of one colour. 0, or
- * -1 with *m filled. Free it in either case. */
+/* Reads the pictures (of a verified dataset). The background is plain when half of the pixels at
+ * the edges of all pictures are within 8 levels of one colour. 0, or -1 with *m filled. Free it
+ * in either case. */
 int  ted4_shown_read(ted4_shown *s, ted4_dataset *d, ted4_message *m);
 void ted4_shown_free(ted4_shown *s);
 

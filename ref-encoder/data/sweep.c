@@ -54,12 +54,14 @@ static void choose(ted4_sweep *w, const double (*centre)[3], size_t i, double ap
     for (size_t k = 0; k < w->shown->n; k++) {
         const double far = distance(centre[i], centre[k]);
 
-        if (far >= apart && (!same_time || picture(w->shown, i)->frame == picture(w->shown, k)->frame))
+        if (far >= apart &&
+            (!same_time || picture(w->shown, i)->frame == picture(w->shown, k)->frame))
             insert(w, i, k, far, list);
     }
 }
 
-void ted4_sweep_begin(ted4_sweep *w, const ted4_shown *s, double ahead, double nearest, double farthest)
+void ted4_sweep_begin(ted4_sweep *w, const ted4_shown *s, double ahead, double nearest,
+                      double farthest)
 {
     double centre[TED4_SHOWN_MOST][3];
 
@@ -78,8 +80,9 @@ void ted4_sweep_begin(ted4_sweep *w, const ted4_shown *s, double ahead, double n
 
 void ted4_sweep_point(const ted4_camera *c, size_t pixel, double z, double world[3])
 {
-    const double at[3] = { ((double)(pixel % (size_t)c->width) + 0.5 - c->cx) / c->fx * z - c->t[0],
-                           ((double)(pixel / (size_t)c->width) + 0.5 - c->cy) / c->fy * z - c->t[1], z - c->t[2] };
+    const double x = (double)(pixel % (size_t)c->width) + 0.5 - c->cx;
+    const double y = (double)(pixel / (size_t)c->width) + 0.5 - c->cy;
+    const double at[3] = { x / c->fx * z - c->t[0], y / c->fy * z - c->t[1], z - c->t[2] };
 
     for (int k = 0; k < 3; k++)
         world[k] = c->R[k] * at[0] + c->R[3 + k] * at[1] + c->R[6 + k] * at[2];
@@ -99,7 +102,8 @@ static void take_patch(const ted4_camera *c, const uint8_t *rgb, size_t pixel, p
 {
     const size_t width = (size_t)c->width, x = pixel % width, y = pixel / width;
     const size_t at[5] = { pixel, x > 0 ? pixel - 1 : pixel, x + 1 < width ? pixel + 1 : pixel,
-                           y > 0 ? pixel - width : pixel, y + 1 < (size_t)c->height ? pixel + width : pixel };
+                           y > 0 ? pixel - width : pixel,
+                           y + 1 < (size_t)c->height ? pixel + width : pixel };
 
     for (int k = 0; k < 5; k++)
         memcpy(p->rgb[k], rgb + 3 * at[k], 3);

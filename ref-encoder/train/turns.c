@@ -8,7 +8,8 @@
 
 #include "space.h"
 
-/* Smallest angle between two cameras as seen from the middle of the scene, in radians. A camera nearer to the middle than this is taken to be so far from it. */
+/* Smallest angle between two cameras as seen from the middle of the scene, in radians. A camera
+ * nearer to the middle than this is taken to be so far from it. */
 #define APART   0.05f
 #define NEAREST 0.25f
 /* What moves goes on moving meanwhile: frames on either side at most, and of so many frames one. */
@@ -30,7 +31,8 @@ int ted4_turns_apart(const float a[3], const float b[3])
     return square >= APART * APART * far;
 }
 
-/* Pictures for training of each frame, by frame: item[first[f]] to item[first[f + 1] - 1], and the centres of their cameras. */
+/* Pictures for training of each frame, by frame: item[first[f]] to item[first[f + 1] - 1], and
+ * the centres of their cameras. */
 typedef struct {
     uint32_t *first, *item;     /* owned */
     float    *centre;           /* owned: [n_pictures][3] */
