@@ -33,7 +33,7 @@ jobs=$(getconf _NPROCESSORS_ONLN) threads=1 share= judges=
 
 measure() {
     down=$(echo "$options" | sed -n 's/.*--downscale \([0-9]*\).*/\1/p')
-    run "$programs/ted4eval" "$out.ted4" "$folder" --downscale "${down:-1}" --json -q -j "$threads" >"$out.eval.json" || return 1
+    run "$programs/ted4eval" "$out.ted4" "$folder" --anyway --downscale "${down:-1}" --json -q -j "$threads" >"$out.eval.json" || return 1
     "$programs/ted4info" "$out.ted4" --budget --json >"$out.info.json" && time_decoder "$out.ted4" || return 1
     parts=$(awk -f bench/budget.awk "$out.info.json") && times=$(awk -f bench/log.awk /dev/null "$out.jsonl") || return 1
     row=$tag,$key,$scene,$groups,$options,$lambda

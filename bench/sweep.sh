@@ -37,7 +37,7 @@ keep_pictures() {
     [ -z "$judge" ] || down=1
     sheet=
     case +$keep+ in *+sheet+*) mkdir -p "$results/sheets"; sheet="--sheet $results/sheets/$tag.png" ;; esac
-    run "$programs/ted4eval" "$out.ted4" "${judge:-$folder}" --downscale "${down:-1}" --json $sheet -f -q -j "$threads" >"$out.eval.json" || return 1
+    run "$programs/ted4eval" "$out.ted4" "${judge:-$folder}" --anyway --downscale "${down:-1}" --json $sheet -f -q -j "$threads" >"$out.eval.json" || return 1
     set -- "$out.ted4"
     case +$keep+ in *+spans+*) mkdir -p "$results/charts"; set -- "$@" "$folder" "${down:-1}" "$results/charts/spans-$tag.png" ;; esac
     run "$programs/spans" "$@" >"$out.spans.json" || return 1

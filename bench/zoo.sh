@@ -33,9 +33,9 @@ reading() { echo " $options" | grep -o -E -- ' --(alpha|hold-out|downscale) [^ ]
 
 # Pictures of training are looked at where they show what moves, as far as the scene has masks.
 measure() {
-    run "$programs/ted4eval" "$out.ted4" "$folder" $(reading) --json -q -j "$threads" >"$out.eval.json" || return 1
+    run "$programs/ted4eval" "$out.ted4" "$folder" $(reading) --anyway --json -q -j "$threads" >"$out.eval.json" || return 1
     rm -rf "$out.pictures"
-    run "$programs/ted4eval" "$out.ted4" "$folder" $(reading) --split train --json -v --images "$out.pictures" -j "$threads" >"$out.train.json" \
+    run "$programs/ted4eval" "$out.ted4" "$folder" $(reading) --anyway --split train --json -v --images "$out.pictures" -j "$threads" >"$out.train.json" \
         2>"$out.views" || return 1
     "$programs/zoo_masks" "$folder" "$out.pictures" <"$out.views" >"$out.masks.json" || return 1
     rm -rf "$out.pictures"
