@@ -67,7 +67,7 @@ runs held-default-1 broken-default-1 >"$out/said" 2>&1 && ok runs || fail runs "
 [ "$(row_of held)" = "fine,0,30.25,31.5,23.5,77,123,5,250,1,2,1.2,0.5,abc," ] && ok fine_row || fail fine_row "$(row_of held)"
 [ "$(row_of broken)" = "error,3,,,,,,,,,,,,,ted4enc: no points; none at all" ] && ok error_row || fail error_row "$(row_of broken)"
 [ "$(cat "$out/views")" = "a line of a view" ] && ok views || fail views "$(cat "$out/views")"
-check reading "$out/calls" 'eval --hold-out cam00 --alpha premultiplied --anyway --json -q -j 1' 'eval --hold-out cam00 --alpha premultiplied --split train --json -v -j 1'
+check reading "$out/calls" 'eval --hold-out cam00 --alpha premultiplied --anyway --json -q -j 1' 'eval --hold-out cam00 --alpha premultiplied --anyway --split train --json -v -j 1'
 cp "$out/calls" "$out/before"
 runs held-default-1 broken-default-1 >"$out/said" 2>&1
 cmp -s "$out/calls" "$out/before" && ok nothing_twice || fail nothing_twice "$(cat "$out/said")"
