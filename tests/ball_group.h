@@ -1,12 +1,15 @@
-/* ball_group.h - a group of tests that share the moving scene of balls: the scene, set-up and tear-down. For test_phases.c, test_traps.c, test_variants.c, and
- * test_sprout.c, which sets up another one.
+/* ball_group.h - a group of tests that share the moving scene of balls: the scene, set-up and
+ * tear-down. Of five times, unless BALL_FRAMES says of how many; some tests set it up otherwise.
  * SPDX-License-Identifier: BSD-2-Clause */
 #ifndef TED4_BALL_GROUP_H
 #define TED4_BALL_GROUP_H
 
 #include "ball_trainer.h"
 
-enum { FRAMES = 5 };
+#ifndef BALL_FRAMES
+#define BALL_FRAMES 5
+#endif
+enum { FRAMES = BALL_FRAMES };
 
 static tiny_folder  folder;
 static ted4_dataset balls;

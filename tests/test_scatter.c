@@ -11,33 +11,21 @@
 #include <string.h>
 #include <cmocka.h>
 
-#include "ball_trainer.h"
+#define BALL_FRAMES 3
+#include "ball_group.h"
 #include "data/scatter.h"
 #include "data/shown.h"
 #include "data/sweep.h"
 #include "tool/threads.h"
 #include "train/random.h"
 
-enum { FRAMES = 3 };
-
-static tiny_folder  folder;
-static ted4_dataset balls;
-
-static int set_up(void **state)
+static int set_up_still(void **state)
 {
     ted4_message m;
 
     (void)state;
     ball_load(&folder, &balls, FRAMES, 0);
     assert_int_equal(ted4_dataset_verify(&balls, NULL, &m), 0);
-    return 0;
-}
-
-static int tear_down(void **state)
-{
-    (void)state;
-    ted4_dataset_free(&balls);
-    tiny_free(&folder);
     return 0;
 }
 
@@ -255,5 +243,5 @@ int main(void)
         cmocka_unit_test(test_held_out), cmocka_unit_test(test_bounds),
     };
 
-    return cmocka_run_group_tests_name("scatter", tests, set_up, tear_down);
+    return cmocka_run_group_tests_name("scatter", tests, set_up_still, tear_down);
 }

@@ -10,26 +10,15 @@
 #include <cmocka.h>
 
 #include "ball_group.h"
+#include "ball_missing.h"
 #include "train/sprout.h"
-#include "train/transient.h"
 
-enum { BLUE = 2, SPEED = 2, STEPS = 120 };     /* the blue ball moves 0.5 a frame; its radius is 0.3 */
+enum { SPEED = 2, STEPS = 120 };     /* the blue ball moves 0.5 a frame; its radius is 0.3 */
 
-/* Points of the blue ball taken out: only pictures tell of it. */
 static int set_up_without_blue(void **state)
 {
-    size_t n = 0;
-
     (void)state;
-    ball_load(&folder, &balls, FRAMES, SPEED);
-    for (size_t i = 0; i < balls.n_points; i++) {
-        if (balls.point_rgb[3 * i + 2] > 200)
-            continue;
-        memmove(balls.points + 3 * n, balls.points + 3 * i, 3 * sizeof *balls.points);
-        memmove(balls.point_rgb + 3 * n++, balls.point_rgb + 3 * i, 3);
-    }
-    assert_int_equal(n, 2 * BALL_POINTS);
-    balls.n_points = n;
+    ball_load_without_blue(&folder, &balls, FRAMES, SPEED);
     return 0;
 }
 
@@ -40,20 +29,6 @@ static ted4_train_options options(double sprouts)
     o.sprouts = sprouts;
     o.max_anchors = 320;
     return o;
-}
-
-/* Distance of a point from the middle of the blue ball at a frame, in radii. */
-static double radii(const ted4_trainer *t, const float *p, double frame)
-{
-    const ball b = ball_at(BLUE, SPEED * frame / (FRAMES - 1));
-    double     square = 0;
-
-    for (int k = 0; k < 3; k++) {
-        const double x = (double)t->layout.head.origin[k] + ldexp((double)p[k], t->layout.head.exponent);
-
-        square += (x - b.centre[k]) * (x - b.centre[k]);
-    }
-    return sqrt(square) / b.radius;
 }
 
 static void test_search(void **state)
@@ -71,7 +46,7 @@ static void test_search(void **state)
 
         assert_int_equal(ted4_sprout_search(&t, f, 0, &list), 0);
         for (size_t i = first; i < list.n; i++) {
-            const double r = radii(&t, list.item[i].point, f);
+            const double r = ball_radii(&t, list.item[i].point, SPEED, (double)f / (FRAMES - 1));
 
             assert_true(list.item[i].frame == f && list.item[i].score > 0 && list.item[i].size > 0);
             near += r > 0.5 && r < 1.5;
@@ -111,7 +86,7 @@ static void test_sprout(void **state)
 {
     const ted4_train_options o = options(0.3);
     ted4_trainer t;
-    size_t       n = 0, near = 0;
+    size_t       near;
 
     (void)state;
     ball_begin(&t, &o, &balls, NULL);
@@ -125,22 +100,9 @@ static void test_sprout(void **state)
 
     ball_train(&t, STEPS + 1);
     assert_int_equal(t.anchors.n + ted4_schedule_room(&t), 320);
-    for (size_t i = 0; i < t.anchors.n; i++) {
-        const int first = t.layout.first[TED4_TAU];
-        float     p[3];
 
-        if (!ted4_is_transient(&t, i))
-            continue;
-        for (int k = 0; k < 3; k++)
-            p[k] = *ted4_cell(&t.anchors, TED4_ROW_POSITION, i, k);
+    const size_t n = ball_count_transients(&t, SPEED, 0.71f, &near);
 
-        const float from = *ted4_cell(&t.anchors, TED4_ROW_VALUE, i, first);
-        const float to = *ted4_cell(&t.anchors, TED4_ROW_VALUE, i, first + 2);
-
-        assert_true(from < to && to - from <= 0.71f);
-        near += radii(&t, p, 0.5 * (double)(from + to) * (FRAMES - 1)) < 1.7;
-        n++;
-    }
     if (t.anchors.n < before + 20 || n < t.anchors.n - before || 2 * near < n)
         fail_msg("%zu new anchors, %zu with short lives, %zu on the ball", t.anchors.n - before, n, near);
     ted4_trainer_finish(&t);

@@ -9,38 +9,19 @@
 #include <string.h>
 #include <cmocka.h>
 
-#include "ball_trainer.h"
+#define BALL_FRAMES 24
+#include "ball_group.h"
+#include "ball_missing.h"
 #include "train/sprout.h"
-#include "train/transient.h"
 #include "train/turns.h"
 
 /* The blue ball moves by 0.3 of its radius a frame. */
-enum { BLUE = 2, SPEED = 2, FRAMES = 24, STEPS = 80 };
+enum { SPEED = 2, STEPS = 80 };
 
-static tiny_folder  folder;
-static ted4_dataset balls;
-
-static int set_up(void **state)
-{
-    size_t n = 0;
-
-    (void)state;
-    ball_load(&folder, &balls, FRAMES, SPEED);
-    for (size_t i = 0; i < balls.n_points; i++) {
-        if (balls.point_rgb[3 * i + 2] > 200)
-            continue;
-        memmove(balls.points + 3 * n, balls.points + 3 * i, 3 * sizeof *balls.points);
-        memmove(balls.point_rgb + 3 * n++, balls.point_rgb + 3 * i, 3);
-    }
-    balls.n_points = n;
-    return 0;
-}
-
-static int tear_down(void **state)
+static int set_up_without_blue(void **state)
 {
     (void)state;
-    ted4_dataset_free(&balls);
-    tiny_free(&folder);
+    ball_load_without_blue(&folder, &balls, FRAMES, SPEED);
     return 0;
 }
 
@@ -108,27 +89,12 @@ static void test_apart(void **state)
     assert_true(ted4_turns_apart(middle, beside));
 }
 
-/* Distance of a point from the middle of the blue ball at a frame, in radii. */
-static double radii(const ted4_trainer *t, const float *p, double frame)
-{
-    const ball b = ball_at(BLUE, SPEED * frame / (FRAMES - 1));
-    double     square = 0;
-
-    for (int k = 0; k < 3; k++) {
-        const double x = (double)t->layout.head.origin[k] +
-                         ldexp((double)p[k], t->layout.head.exponent);
-
-        square += (x - b.centre[k]) * (x - b.centre[k]);
-    }
-    return sqrt(square) / b.radius;
-}
-
 /* New anchors live for a while, and most of them where the ball is in the middle of that time. */
 static void test_found(void **state)
 {
     const ted4_train_options o = options();
     ted4_trainer t;
-    size_t       n = 0, near = 0;
+    size_t       near;
 
     (void)state;
     take_turns(4, 1);
@@ -139,21 +105,9 @@ static void test_found(void **state)
 
     if (ted4_sprout(&t) != 0)
         fail_msg("%s", t.message.text);
-    for (size_t i = 0; i < t.anchors.n; i++) {
-        const int first = t.layout.first[TED4_TAU];
-        float     p[3];
 
-        if (!ted4_is_transient(&t, i))
-            continue;
-        for (int k = 0; k < 3; k++)
-            p[k] = *ted4_cell(&t.anchors, TED4_ROW_POSITION, i, k);
+    const size_t n = ball_count_transients(&t, SPEED, 1.0f, &near);
 
-        const float from = *ted4_cell(&t.anchors, TED4_ROW_VALUE, i, first);
-        const float to = *ted4_cell(&t.anchors, TED4_ROW_VALUE, i, first + 2);
-
-        near += radii(&t, p, 0.5 * (double)(from + to) * (FRAMES - 1)) < 1.7;
-        n++;
-    }
     print_message("%zu new anchors, %zu with short lives, %zu on the ball\n",
                   t.anchors.n - before, n, near);
     assert_true(t.anchors.n >= before + 20 && n >= t.anchors.n - before && 2 * near > n);
@@ -193,5 +147,5 @@ int main(void)
         cmocka_unit_test(test_schedule),
     };
 
-    return cmocka_run_group_tests_name("turns", tests, set_up, tear_down);
+    return cmocka_run_group_tests_name("turns", tests, set_up_without_blue, tear_down);
 }

@@ -1,0 +1,70 @@
+/* ball_missing.h - the moving scene of balls without the initial points of the blue one, so that
+ * only pictures tell of it, and how many new anchors lie on it. For test_sprout.c, test_turns.c.
+ * SPDX-License-Identifier: BSD-2-Clause */
+#ifndef TED4_BALL_MISSING_H
+#define TED4_BALL_MISSING_H
+
+#include "ball_trainer.h"
+#include "train/transient.h"
+
+enum { BLUE = 2 };
+
+static inline void ball_load_without_blue(tiny_folder *f, ted4_dataset *d, int frames, int speed)
+{
+    size_t n = 0;
+
+    ball_load(f, d, frames, speed);
+    for (size_t i = 0; i < d->n_points; i++) {
+        if (d->point_rgb[3 * i + 2] > 200)
+            continue;
+        memmove(d->points + 3 * n, d->points + 3 * i, 3 * sizeof *d->points);
+        memmove(d->point_rgb + 3 * n++, d->point_rgb + 3 * i, 3);
+    }
+    assert_int_equal(n, (BALLS - 1) * BALL_POINTS);
+    d->n_points = n;
+}
+
+/* Distance of a point of normalised space from the middle of the blue ball, which goes its way
+ * speed times, at a time in [0, 1]; in radii. */
+static inline double ball_radii(const ted4_trainer *t, const float *p, int speed, double time)
+{
+    const ball b = ball_at(BLUE, speed * time);
+    double     square = 0;
+
+    for (int k = 0; k < 3; k++) {
+        const double x = (double)t->layout.head.origin[k] +
+                         ldexp((double)p[k], t->layout.head.exponent);
+
+        square += (x - b.centre[k]) * (x - b.centre[k]);
+    }
+    return sqrt(square) / b.radius;
+}
+
+/* Anchors with short lives, none longer than a share of all times; *near: those that lie on the
+ * ball in the middle of theirs. */
+static inline size_t ball_count_transients(const ted4_trainer *t, int speed, float longest,
+                                           size_t *near)
+{
+    const int first = t->layout.first[TED4_TAU];
+    size_t    n = 0;
+
+    *near = 0;
+    for (size_t i = 0; i < t->anchors.n; i++) {
+        float p[3];
+
+        if (!ted4_is_transient(t, i))
+            continue;
+        for (int k = 0; k < 3; k++)
+            p[k] = *ted4_cell(&t->anchors, TED4_ROW_POSITION, i, k);
+
+        const float from = *ted4_cell(&t->anchors, TED4_ROW_VALUE, i, first);
+        const float to = *ted4_cell(&t->anchors, TED4_ROW_VALUE, i, first + 2);
+
+        assert_true(from < to && to - from <= longest);
+        *near += ball_radii(t, p, speed, 0.5 * (double)(from + to)) < 1.7;
+        n++;
+    }
+    return n;
+}
+
+#endif
