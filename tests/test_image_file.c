@@ -8,8 +8,8 @@
 #include <stdio.h>
 #include <time.h>
 #include <cmocka.h>
-#include <jpeglib.h>
 
+#include "jpeg_writer.h"
 #include "data/image_cache.h"
 #include "data/image_file.h"
 #include "data/undistort.h"
@@ -113,31 +113,10 @@ static void test_png_write(void **state)
 
 static void write_jpeg(const char *path, int w, int h, int components)
 {
-    struct jpeg_compress_struct c;
-    struct jpeg_error_mgr e;
-    uint8_t row[3 * 64];
-    JSAMPROW rows[1] = { row };
-    FILE *f = fopen(path, "wb");
+    const jpeg_slopes s = { .w = w, .h = h, .n = components, .column = 4, .component = 60,
+                            .space = components == 1 ? JCS_GRAYSCALE : JCS_RGB };
 
-    assert_non_null(f);
-    c.err = jpeg_std_error(&e);
-    jpeg_create_compress(&c);
-    jpeg_stdio_dest(&c, f);
-    c.image_width = (JDIMENSION)w;
-    c.image_height = (JDIMENSION)h;
-    c.input_components = components;
-    c.in_color_space = components == 1 ? JCS_GRAYSCALE : JCS_RGB;
-    jpeg_set_defaults(&c);
-    jpeg_set_quality(&c, 98, TRUE);
-    jpeg_start_compress(&c, TRUE);
-    for (int y = 0; y < h; y++) {
-        for (int i = 0; i < w * components; i++)
-            row[i] = (uint8_t)(4 * (i / components) + 60 * (i % components));
-        jpeg_write_scanlines(&c, rows, 1);
-    }
-    jpeg_finish_compress(&c);
-    jpeg_destroy_compress(&c);
-    fclose(f);
+    jpeg_write(path, &s);
 }
 
 static void test_jpeg(void **state)
