@@ -10,17 +10,13 @@
 #include "data/shown.h"
 #include "data/source.h"
 #include "data/sweep.h"
+#include "data/useful.h"
 #include "math/elementary.h"
 
 /* A point lies in empty space when less than this share of the pictures that it lies in show
  * something there. What moves is shown at few times; what lies far from things is in line with
  * them for few cameras. */
 #define EMPTY (1.0 / 16.0)
-/* Points of things that stay are seen against something by all pictures, but for errors at
- * outlines. Those that came with the scene are used when this share of them has this share of
- * pictures that show something: the others may belong to what moves. */
-#define USEFUL 0.5
-#define SHOWN  0.5
 /* Depths tried, in distances of the cameras from where they look: things on a plain background
  * stand there; in a room, walls may be far behind it. */
 #define NEAREST       0.15
@@ -29,9 +25,10 @@
 /* Before a plain background things are what cameras look at: a point lies in this share of the
  * pictures at least. */
 #define LOOKED_AT 0.5
-/* Levels that pictures may be off about a point, first and then; after that any depth will do. */
+/* Levels that pictures may be off about a point, first and then; after that any depth will do.
+ * Points that came with the scene are judged by the second. */
 static const double agreed[] = { 4, 10, 0 };
-enum { PASSES = sizeof agreed / sizeof *agreed };
+enum { PASSES = sizeof agreed / sizeof *agreed, USEFUL_PASS = 1 };
 /* Candidates a job, pixels tried for one, and candidates a wanted point in each pass at most. */
 enum { RUN = 1024, PIXELS = 32, TRIES = 4, LAST_TRIES = 32 };
 
@@ -143,55 +140,41 @@ static int scatter(round_job *j, const ted4_parallel *p, size_t before, size_t t
     return bad ? -1 : 0;
 }
 
-/* Do most of the points that came with the scene lie where pictures show something? */
-static int are_shown(const ted4_shown *s, const ted4_dataset *d)
+/* Depths to look at, from how far away the cameras are. 0, or -1 with *m filled. */
+static int begin_sweep(ted4_sweep *w, const ted4_shown *s, ted4_message *m)
 {
-    size_t n = 0;
+    double centre[3], half;
 
-    for (size_t i = 0; i < d->n_points; i++) {
-        const float *p = d->points + 3 * i;
-        const double world[3] = { (double)p[0], (double)p[1], (double)p[2] };
-        int          seen, shown;
+    if (ted4_view_box(s->data, centre, &half) != 0)
+        return ted4_say_no_memory(m);
 
-        ted4_shown_count(s, world, &seen, &shown);
-        n += (double)shown >= SHOWN * (double)seen && seen > 0;
-    }
-    return (double)n >= USEFUL * (double)d->n_points;
+    const double ahead = half / TED4_VIEW_BOX_HALF_SIDE;
+
+    ted4_sweep_begin(w, s, ahead, NEAREST * ahead, (s->plain ? FARTHEST : FARTHEST_ROOM) * ahead);
+    return 0;
 }
 
 /* Scattered points in place of those that are there, if any can be had: where pictures agree
  * about colours, and where they do not agree often enough, anywhere on the rays of what shows
  * something. 0, or -1 with *m filled. */
-static int replace(ted4_dataset *d, const ted4_shown *s, const ted4_scatter_options *o,
+static int replace(ted4_dataset *d, const ted4_sweep *w, const ted4_scatter_options *o,
                    const ted4_parallel *p, size_t *n, ted4_message *m)
 {
-    round_job        j = { .shown = s, .options = o };
-    ted4_point_cloud c;
-    double           centre[3], half;
+    const ted4_shown *s = w->shown;
+    round_job         j = { .shown = s, .options = o, .sweep = *w };
+    ted4_point_cloud  c;
+    int               bad = 0;
 
-    if (ted4_view_box(d, centre, &half) != 0 || ted4_point_cloud_alloc(&c, TED4_RANDOM_POINTS) != 0)
+    if (ted4_point_cloud_alloc(&c, TED4_RANDOM_POINTS) != 0)
         return ted4_say_no_memory(m);
-
-    const double ahead = half / TED4_VIEW_BOX_HALF_SIDE;
-
-    ted4_sweep_begin(&j.sweep, s, ahead, NEAREST * ahead,
-                     (s->plain ? FARTHEST : FARTHEST_ROOM) * ahead);
-
     j.fewest = s->plain && s->n > 4 ? (int)(LOOKED_AT * (double)s->n) : s->n > 1 ? 2 : 1;
-
-    int bad = 0;
-
     for (size_t k = 0; !bad && k < PASSES; k++) {
         j.sweep.agreed = agreed[k];
         bad = scatter(&j, p, k * TRIES, k + 1 < PASSES ? TRIES : LAST_TRIES, &c, n) != 0;
     }
-    if (bad) {
+    if (bad || *n == 0) {
         ted4_point_cloud_free(&c);
-        return ted4_say_no_memory(m);
-    }
-    if (*n == 0) {
-        ted4_point_cloud_free(&c);
-        return 0;
+        return bad ? ted4_say_no_memory(m) : 0;
     }
     free(d->points);
     free(d->point_rgb);
@@ -222,6 +205,7 @@ int ted4_dataset_scatter(ted4_dataset *d, const ted4_scatter_options *o, const t
                          ted4_scattered *what, ted4_message *m)
 {
     ted4_shown s;
+    ted4_sweep w;
     int        bad = ted4_shown_read(&s, d, m) != 0;
 
     memset(what, 0, sizeof *what);
@@ -231,10 +215,13 @@ int ted4_dataset_scatter(ted4_dataset *d, const ted4_scatter_options *o, const t
     const size_t outside = bad ? 0 : drop_outside(d, o);
 
     what->outside = d->random_points ? 0 : outside;
-    if (!bad && s.n > 0 &&
-        (d->random_points || d->n_points == 0 || (s.plain && !are_shown(&s, d)))) {
-        what->given = d->random_points ? 0 : d->n_points;
-        bad = replace(d, &s, o, p, &what->scattered, m) != 0;
+    if (!bad && s.n > 0) {
+        bad = begin_sweep(&w, &s, m) != 0;
+        w.agreed = agreed[USEFUL_PASS];
+        if (!bad && (d->random_points || d->n_points == 0 || !ted4_points_are_useful(&w, o->seed))) {
+            what->given = d->random_points ? 0 : d->n_points;
+            bad = replace(d, &w, o, p, &what->scattered, m) != 0;
+        }
     }
     if (!bad && d->n_points == 0)
         bad = ted4_say(m, "no initial point lies inside the bounds, and pictures show nothing "

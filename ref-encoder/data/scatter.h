@@ -21,9 +21,9 @@ typedef struct {
 } ted4_scattered;
 
 /* Of a verified dataset. A plain background of pictures without transparency becomes that of the
- * scene. Where points are random, or most of those given lie where no picture shows anything,
- * others take their place: on the rays of pixels that show something, where most other pictures
- * that look there show something too. Held-out pictures are not looked at. Points outside the
+ * scene. Where points are random, or those given are of no use (useful.h), others take their place:
+ * on the rays of pixels that show something, where most other pictures that look there show
+ * something too. Held-out pictures are not looked at. Points outside the
  * bounds go. Same scene and options, same points, whatever the threads. 0, or -1 with *m filled:
  * no memory, a picture that cannot be read, or no point inside the bounds. */
 int ted4_dataset_scatter(ted4_dataset *d, const ted4_scatter_options *o, const ted4_parallel *p,

@@ -165,6 +165,14 @@ static double cost(const ted4_sweep *w, size_t i, const patch *mine, const doubl
     return better_half(each, n);
 }
 
+int ted4_sweep_agrees(const ted4_sweep *w, size_t i, size_t pixel, const double world[3])
+{
+    patch mine;
+
+    take_patch(&picture(w->shown, i)->camera, w->shown->rgb[i], pixel, &mine);
+    return cost(w, i, &mine, world) <= w->agreed;
+}
+
 int ted4_sweep_pixel(const ted4_sweep *w, size_t i, size_t pixel, double u, double world[3])
 {
     const ted4_camera *c = &picture(w->shown, i)->camera;

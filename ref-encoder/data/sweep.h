@@ -28,6 +28,10 @@ void ted4_sweep_begin(ted4_sweep *w, const ted4_shown *s, double ahead, double n
  * are equally good. 0: there is none, or fewer than two pictures look there. */
 int ted4_sweep_pixel(const ted4_sweep *w, size_t i, size_t pixel, double u, double world[3]);
 
+/* Do the better half of the pictures that look there agree about the point with that pixel of
+ * picture i which it lies in? 0: no, or fewer than two pictures look there. */
+int ted4_sweep_agrees(const ted4_sweep *w, size_t i, size_t pixel, const double world[3]);
+
 /* The point at depth z on the ray of a pixel. */
 void ted4_sweep_point(const ted4_camera *c, size_t pixel, double z, double world[3]);
 

@@ -201,8 +201,8 @@ static int scatter(ted4_dataset *d, const ted4_request *r, const ted4_parallel *
         ted4_teller_error(teller, "warning: %zu initial points outside the bounds are not used",
                           what.outside);
     if (what.scattered > 0 && what.given > 0)
-        ted4_teller_error(teller, "warning: most of the %zu initial points lie where pictures show "
-                          "nothing; %zu others take their place", what.given, what.scattered);
+        ted4_teller_error(teller, "warning: most of the %zu initial points do not lie on what "
+                          "pictures show; %zu others take their place", what.given, what.scattered);
     return 0;
 }
 
