@@ -176,6 +176,41 @@ static void test_moments(void **state)
     free(want.bytes);
 }
 
+/* At its first word, which may be too late: 0, and it has stopped elsewhere. */
+static int stop_at_loading(void)
+{
+    char text[4096] = "";
+
+    gone("err");
+
+    const pid_t child = begin("--checkpoint", "out/c", NULL);
+
+    for (int i = 0; i < 60000 && strstr(text, "loading scene\n") == NULL; i++) {
+        pause_us(100);
+        if (is_there("err"))
+            read_words(text, sizeof text);
+    }
+    kill(child, SIGINT);
+    if (finish(child) != 1000 + SIGINT)
+        return 0;
+    read_words(text, sizeof text);
+    assert_non_null(strstr(text, "\nted4enc: stopped before training; nothing was written\n"));
+    expect_files("");
+    return 1;
+}
+
+static void test_loading(void **state)
+{
+    int tries = 50;
+
+    (void)state;
+    do {
+        begin_test();
+        finish(begin("--check", NULL, NULL));   /* leaves its words */
+    } while (!stop_at_loading() && --tries > 0);
+    assert_true(tries > 0);
+}
+
 /* Without a checkpoint nothing is kept, and this is said. */
 static void test_no_checkpoint(void **state)
 {
@@ -223,7 +258,8 @@ static void test_again(void **state)
 
 int main(void)
 {
-    const struct CMUnitTest tests[] = { cmocka_unit_test(test_moments),
+    const struct CMUnitTest tests[] = { cmocka_unit_test(test_loading),
+                                        cmocka_unit_test(test_moments),
                                         cmocka_unit_test(test_no_checkpoint),
                                         cmocka_unit_test(test_again) };
 

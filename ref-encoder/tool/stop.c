@@ -10,24 +10,31 @@
 static const int signals[] = { SIGINT, SIGTERM };
 enum { N_SIGNALS = (int)(sizeof signals / sizeof signals[0]) };
 
-static volatile sig_atomic_t asked, silent;
+static volatile sig_atomic_t asked, silent, keeping;
 
+static void say(const char *word)
+{
+    if (!silent && write(STDERR_FILENO, word, strlen(word)) < 0)
+        silent = 1;
+}
+
+/* Where the signal is not kept, its usual end comes when this returns. */
 static void take(int signal)
 {
-    static const char  word[] = "\nted4enc: stopping after this step; once more ends at once\n";
-    struct sigaction   usual;
-    const int          before = errno, again = asked != 0;
+    struct sigaction usual;
+    const int        before = errno, again = asked != 0;
 
     asked = signal;
     memset(&usual, 0, sizeof usual);
     usual.sa_handler = SIG_DFL;
     for (int i = 0; i < N_SIGNALS; i++)
         sigaction(signals[i], &usual, NULL);
-    /* Two that came at once: the second's usual end comes when this returns. */
-    if (again)
+    if (!keeping && !again)
+        say("\nted4enc: stopped before training; nothing was written\n");
+    else if (!again)
+        say("\nted4enc: stopping after this step; once more ends at once\n");
+    if (!keeping || again)
         raise(signal);
-    else if (!silent && write(STDERR_FILENO, word, sizeof word - 1) < 0)
-        silent = 1;
     errno = before;
 }
 
@@ -42,6 +49,11 @@ void ted4_stop_watch(int quiet)
     for (int i = 0; i < N_SIGNALS; i++)
         if (sigaction(signals[i], NULL, &before) == 0 && before.sa_handler != SIG_IGN)
             sigaction(signals[i], &mine, NULL);
+}
+
+void ted4_stop_keep(void)
+{
+    keeping = 1;
 }
 
 int ted4_stop_asked(void)

@@ -12,6 +12,7 @@
 #include "file_out.h"
 #include "tool/threads.h"
 #include "request.h"
+#include "stop.h"
 #include "ted4.h"
 #include "tool/cli.h"
 #include "training.h"
@@ -258,6 +259,7 @@ int main(int argc, char **argv)
     if (parsed != TED4_REQUEST_GO)
         return parsed == TED4_REQUEST_DONE ? TED4_EXIT_FINE : TED4_EXIT_TOOL;
     ted4_teller_begin(&teller, "ted4enc", r.quiet);
+    ted4_stop_watch(r.quiet);
 
     int status = check_outputs(&r, &teller);
 

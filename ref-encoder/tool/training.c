@@ -69,7 +69,7 @@ int ted4_training_begin(ted4_training *t, const ted4_request *r, ted4_trainer *t
     ted4_estimate_begin(&t->estimate);
     if (find_start(t) != 0)
         return -1;
-    ted4_stop_watch(r->quiet);
+    ted4_stop_keep();
     trainer->onlooker.look = ted4_training_look;
     trainer->onlooker.user = t;
     return ted4_run_log_open(&t->log, r->log, trainer, r->resume, r->verbose ? teller : NULL, t->why, sizeof t->why);
