@@ -123,18 +123,23 @@ lint:
 
 # Both compilers, warnings as errors.
 BOTH = build-gcc build-clang
-build-gcc: COMPILER = gcc
-build-clang: COMPILER = clang-14
+COMPILER_build-gcc   = gcc
+COMPILER_build-clang = clang-14
+BUILD_OF = B=$(1) CC=$(COMPILER_$(1)) WERROR=-Werror
 $(BOTH): always
-	$(MAKE) B=$@ CC=$(COMPILER) WERROR=-Werror test-programs
+	$(MAKE) $(call BUILD_OF,$@) test-programs
 
 # Lints, both compilers, tests with one. All levels that the machine has, with both: test-machines; TEST_LEVELS="v1 v3" names some.
 check: lint $(BOTH)
-	$(MAKE) B=build-gcc CC=gcc WERROR=-Werror test
+	$(MAKE) $(call BUILD_OF,build-gcc) test
 test-machines: export TEST_LEVELS := $(TEST_LEVELS)
 test-machines: export TED4_DATA := $(abspath $(TED4_DATA))
-test-machines: lint $(BOTH)
-	@sh tests/machines.sh $(BOTH)
+test-machines: lint
+	@$(MAKE) --no-print-directory -k $(BOTH:%=%-levels)
+$(BOTH:%=%-levels): %-levels: %
+	@$(MAKE) --no-print-directory $(call BUILD_OF,$*) test-levels
+test-levels:
+	@sh tests/machines.sh $B
 
 asan:
 	$(MAKE) test B=build-asan OPT='-O1' CFLAGS='-fsanitize=address,undefined -fno-sanitize-recover=all' \
@@ -172,6 +177,6 @@ help:
 clean:
 	rm -rf build build-* out
 
-.PHONY: all always test-programs test test-machines $(BOTH) demo lint check asan deps deps-dev install help clean
+.PHONY: all always test-programs test test-machines test-levels $(BOTH) $(BOTH:%=%-levels) demo lint check asan deps deps-dev install help clean
 .SECONDARY:
 -include $(shell find $B -name '*.d' 2>/dev/null)

@@ -1,34 +1,28 @@
 #!/bin/sh
-# machines.sh BUILD... - the test programs of each build folder, once with the kernels of each level
+# machines.sh BUILD - the test programs of a build folder, once with the kernels of each level
 # (ref-decoder/base/level.h); TEST_LEVELS names some of them. Levels that this machine has not are
-# said to be left out. A line for each, a table at the end; what each said is kept in
-# BUILD/machines-LEVEL.log. Exit status: did all pass, and was there one?
+# said to be left out. A line for each as it ends; what it said is kept in BUILD/machines-LEVEL.log.
+# Exit status: did all pass, and was there one?
 # SPDX-License-Identifier: BSD-2-Clause
-has=$(TED4_KERNEL=none "$1/ted4dec" - 2>&1 </dev/null | sed -n 's/.*this machine has plain//p')
+build=$1
+has=$(TED4_KERNEL=none "$build/ted4dec" - 2>&1 </dev/null | sed -n 's/.*this machine has plain//p')
 case $has in *v1*) all="v1 v3 v4" ;; *) all=$has ;; esac
-table=$(mktemp)
-trap 'rm -f "$table"' EXIT
+programs=$(ls tests/test_*.c tests/test_*.sh | sed "s|^tests|$build/tests|;s|\.[a-z]*$||")
 bad=0 levels=
 
 for level in ${TEST_LEVELS:-$all}; do
     case " $has " in
     *" $level "*) levels="$levels $level" ;;
-    *) echo "left out: $level; this machine has$has" | tee -a "$table" ;;
+    *) echo "left out: $level; this machine has$has" ;;
     esac
 done
 [ -n "$levels" ] || { echo "machines.sh: no level is left"; exit 1; }
-for build; do
-    for level in $levels; do
-        log=$build/machines-$level.log
-        began=$(date +%s)
-        programs=$(ls tests/test_*.c tests/test_*.sh | sed "s|^tests|$build/tests|;s|\.[a-z]*$||")
-        TED4_KERNEL=$level TED4_BUILD=$(cd "$build" && pwd) \
-            sh tests/run.sh $programs >"$log" 2>&1 || bad=1
-        grep FAILED "$log" | grep -v '^\['
-        printf '%-12s %-5s %s, %d s, %s\n' "$build" "$level" "$(tail -n 1 "$log")" \
-            $(($(date +%s) - began)) "$log" | tee -a "$table"
-    done
+for level in $levels; do
+    log=$build/machines-$level.log
+    began=$(date +%s)
+    TED4_KERNEL=$level TED4_BUILD=$(cd "$build" && pwd) sh tests/run.sh $programs >"$log" 2>&1 || bad=1
+    grep FAILED "$log" | grep -v '^\['
+    printf '%-12s %-5s %s, %d s, %s\n' "$build" "$level" "$(tail -n 1 "$log")" \
+        $(($(date +%s) - began)) "$log"
 done
-echo
-cat "$table"
 exit $bad

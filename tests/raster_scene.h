@@ -96,12 +96,18 @@ static inline scene scene_random(size_t n, const ted4_view *v, double sigma, uin
     for (size_t i = 0; i < n && s.value != NULL; i++) {
         const double z = scene_range(&seed, 1, 8);
 
-        scene_place(&s, v, i, scene_range(&seed, -0.1, 1.1) * v->width, scene_range(&seed, -0.1, 1.1) * v->height, z);
+        const double y = scene_range(&seed, -0.1, 1.1) * v->height;
+
+        scene_place(&s, v, i, scene_range(&seed, -0.1, 1.1) * v->width, y, z);
         for (int k = 0; k < 3; k++) {
             *scene_param(&s, SCENE_SCALE + k, i)  = (float)(z / v->fx * sigma * exp(0.6 * scene_normal(&seed)));
             *scene_param(&s, SCENE_COLOUR + k, i) = (float)scene_uniform(&seed);
         }
-        scene_rotation(&s, i, scene_normal(&seed), scene_normal(&seed), scene_normal(&seed), scene_normal(&seed));
+        double q[4];
+
+        for (int k = 3; k >= 0; k--)
+            q[k] = scene_normal(&seed);
+        scene_rotation(&s, i, q[0], q[1], q[2], q[3]);
         *scene_param(&s, SCENE_OPACITY, i) = (float)(1 / (1 + exp(-1.8 * scene_normal(&seed))));
     }
     return s;

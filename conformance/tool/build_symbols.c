@@ -71,9 +71,13 @@ static int32_t draw(drawer *d, int type, size_t turn, int32_t mu, unsigned g)
         return clip(m + edge[turn % 8]);
     if (conf_word_is(l, 2, "sweep"))
         return clip(m - hw + (int32_t)(turn % (size_t)(2 * hw + 2)));
-    if (conf_word_is(l, 2, "wild"))
-        return clip(m + (conf_in(c, 0, 7) > 0 ? ted4_clamp(conf_bell(c, hw), -hw, hw + 1)
-                                              : drawn_escape(c, m, hw, conf_in(c, 0, 14), conf_in(c, 0, 1))));
+    if (conf_word_is(l, 2, "wild") && conf_in(c, 0, 7) > 0)
+        return clip(m + ted4_clamp(conf_bell(c, hw), -hw, hw + 1));
+    if (conf_word_is(l, 2, "wild")) {
+        const int high = conf_in(c, 0, 1);      /* drawn before bits, whatever the compiler */
+
+        return clip(m + drawn_escape(c, m, hw, conf_in(c, 0, 14), high));
+    }
     if (conf_word_is(l, 2, "escape")) {
         const int bits = (int)conf_line_number(l, 3, 0, 19);
 
