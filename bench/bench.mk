@@ -126,7 +126,8 @@ $B/bench/zoo_masks: $B/bench/zoo_masks.o
 $B/tests/test_zoo: | $(PROGS) $B/bench/zoo_masks
 
 zoo: all $B/bench/zoo_masks
-	TED4_BUILD=$B TED4_DATA=$(TED4_DATA) bench/zoo.sh
+	TED4_BUILD=$B TED4_DATA=$(TED4_DATA) bench/zoo.sh zoo long
+	TED4_BUILD=$B TED4_DATA=$(TED4_DATA) bench/zoo.sh --jobs 1 --threads 0 alone
 	bench/zoo_page.sh
 
 .PHONY: zoo

@@ -1,6 +1,6 @@
 #!/bin/sh
 # zoo.sh - makes the rows of bench/zoo.csv that bench/zoo.txt wants and that are missing or stale: makes the scene, trains, decodes, measures. `make zoo` does that
-# and writes the page.
+# and writes the page. Runs of the group alone tell how well ted4enc foresees how long it takes; they want --jobs 1 --threads 0, and nothing beside them.
 # Usage, from anywhere:  bench/zoo.sh [--list] [--missing] [--jobs N] [--threads N] [--only TAG] [PATTERN...]
 #     PATTERN...   runs of which a group or the tag fits one of these shell patterns; all runs without any
 #     --only TAG   this run (for the array of a cluster: one job a tag of --list, all of them on one TED4_WORK)
@@ -23,7 +23,7 @@ work=${TED4_WORK:-$build/zoo}
 results=${TED4_RESULTS:-bench}
 table=${TED4_TABLE:-bench/zoo.txt}
 csv=$results/zoo.csv
-columns=tag,key,scene,groups,options,status,exit,psnr,train_psnr,moving_psnr,moving_pixels,bytes,anchors,steps,rollbacks,warnings,train_s,cpu_s,hash,why
+columns=tag,key,scene,groups,options,status,exit,psnr,train_psnr,moving_psnr,moving_pixels,bytes,anchors,steps,rollbacks,warnings,train_s,cpu_s,estimate_low,estimate_high,last_psnr,last_bytes,hash,why
 want="ted4enc ted4eval ted4scene bench/zoo_masks"
 jobs=$(getconf _NPROCESSORS_ONLN) threads=1 share= judges=bench/zoo_masks.c
 . bench/runs.sh
@@ -40,17 +40,18 @@ measure() {
     "$programs/zoo_masks" "$folder" "$out.pictures" <"$out.views" >"$out.masks.json" || return 1
     rm -rf "$out.pictures"
     times=$(awk -f bench/log.awk /dev/null "$out.jsonl") || return 1
+    told=$(awk -v whole="$(value train_s "$out.json")" -f bench/told.awk "$out.jsonl") || return 1
     warnings=$(grep -c 'warning:' "$out.err")
     row=$tag,$key,$scene,$groups,$options,fine,0,$(value psnr "$out.eval.json"),$(value psnr "$out.train.json")
     row=$row,$(value moving_psnr "$out.masks.json" | sed 's/^null$//'),$(value moving_pixels "$out.masks.json")
     for f in bytes anchors steps rollbacks; do row=$row,$(value $f "$out.json"); done
-    row=$row,$warnings,$(echo "$times" | cut -d, -f1,3),$(value hash "$out.json"),
+    row=$row,$warnings,$(echo "$times" | cut -d, -f1,3),$told,$(value hash "$out.json"),
     said="$(value psnr "$out.eval.json") dB, training $(value psnr "$out.train.json"), what moves $(value moving_psnr "$out.masks.json")"
 }
 
 measure_failure() {
     ended=$(status_word "$1") || return 1
-    row=$tag,$key,$scene,$groups,$options,$ended,$1,,,,,,,,,,,,,$(last_words)
+    row=$tag,$key,$scene,$groups,$options,$ended,$1,,,,,,,,,,,,,,,,,$(last_words)
     said="$ended: $(tail -n 1 "$out.err")"
 }
 
