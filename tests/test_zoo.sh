@@ -38,7 +38,7 @@ for name in $(awk -F'|' '{ print $3 }' "$out/runs"); do
     made "$name" $tiny || { fail "reads_$name" "not made"; continue; }
     case $where in
     *missing*)                       due='entries have no picture' ;;
-    *points=box10*|*points=random*)  due='initial points lie where' ;;
+    *points=box10*|*points=random*)  due='initial points do not lie on' ;;
     *)                               due= ;;
     esac
     "$TED4_BUILD/ted4enc" "$folder" $reading --check >"$out/said" 2>&1
