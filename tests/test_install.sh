@@ -1,6 +1,6 @@
 #!/bin/sh
 # test_install.sh - what `make install` leaves is enough for who writes a program: <ted4/ted4.h> in C and in C++, with no other folder of headers, libted4dec.a
-# with no library but zlib, xxHash and libm for all that is in it, and the programs that the README names. Speaks as cmocka programs do; run by `make test` from
+# with no library but zlib, xxHash and libm for all that is in it, and the programs that doc/programs.md names. Speaks as cmocka programs do; run by `make test` from
 # the project's root.
 # SPDX-License-Identifier: BSD-2-Clause
 set -u
@@ -13,7 +13,7 @@ usr=$out/root/usr
 cp "$TED4_BUILD/how" "$out/how"
 if make install B="$TED4_BUILD" DESTDIR="$out/root" PREFIX=/usr >"$out/said" 2>&1; then ok installs; else fail installs "$(cat "$out/said")"; fi
 if cmp -s "$TED4_BUILD/how" "$out/how"; then ok as_built; else fail as_built "$(cat "$out/said")"; fi
-wanted=$(echo $(sed -n 's/^    \(ted4[a-z]*\) .*/\1/p' README.md) ted4scene | tr ' ' '\n' | sort -u)
+wanted=$(echo $(sed -n 's/^    \(ted4[a-z]*\) .*/\1/p' doc/programs.md) ted4scene | tr ' ' '\n' | sort -u)
 if [ "$(ls "$usr/bin")" = "$wanted" ]; then ok programs; else fail programs "$(ls "$usr/bin")"; fi
 if [ "$(ls "$usr/lib")" = libted4dec.a ]; then ok libraries; else fail libraries "$(ls "$usr/lib")"; fi
 

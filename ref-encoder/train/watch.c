@@ -1,5 +1,5 @@
 /* watch.c - notices a training that goes wrong, says what and where, and takes it back to its last good state with a smaller step. See trainer.h and watch.h.
- * What is judged by its usual size is so coarse that no training that went well ever came near it (README.md, "Training"); what is not finite is found at once.
+ * What is judged by its usual size is so coarse that no training that went well ever came near it (doc/training.md); what is not finite is found at once.
  * SPDX-License-Identifier: BSD-2-Clause */
 #include "watch.h"
 

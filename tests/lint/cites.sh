@@ -2,7 +2,10 @@
 # What a file cites is in this repository, or is the paper: no notes, plans and lists of work that readers do not have. Pages of bench/ that programs write follow
 # their programs.
 export LC_ALL=C
-grep -rnE "[Aa]lgorithm facts|\(decisions\b|\bdecisions:? [0-9]|project's issue" --include='*.[ch]' --include='*.def' --include='*.sh' --include='*.awk' \
-    --include='*.py' --include='*.mk' --include=Makefile --include=README.md --exclude=cites.sh \
-    Makefile README.md ref-decoder ref-encoder conformance tests fuzz bench tools | sed 's/$/   (cites what is not here)/' | grep . && exit 1
+words="[Aa]lgorithm facts|\(decisions\b|\bdecisions:? [0-9]|project's issue"
+{
+    grep -rnE "$words" --include='*.[ch]' --include='*.def' --include='*.sh' --include='*.awk' --include='*.py' --include='*.mk' --include=Makefile \
+        --include=README.md --exclude=cites.sh Makefile README.md ref-decoder ref-encoder conformance tests fuzz bench tools
+    grep -nE "$words" doc/*.md
+} | sed 's/$/   (cites what is not here)/' | grep . && exit 1
 exit 0

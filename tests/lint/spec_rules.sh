@@ -12,7 +12,7 @@ rules=$(sed -n 's/^| \(R-[A-Z]*-[0-9]*\) .*/\1/p' spec/annex-g-rules.md | sort)
 for r in $(echo "$rules" | uniq -d); do echo "$r: defined twice"; bad=1; done
 for r in $(awk -F' *\\| *' '$5 == "none" { print $2 }' spec/annex-g-rules.md); do echo "$r: no MUST, SHOULD or MAY"; bad=1; done
 quoted=$(grep -rhoE 'R-[A-Z]{3}-[0-9]{3}' --include='*.[ch]' --include='*.md' --include='*.py' --include='*.sh' --include='*.def' --include='*.json' --include='*.txt' \
-    spec ref-decoder ref-encoder tests fuzz bench conformance README.md 2>/dev/null | sort -u)
+    spec ref-decoder ref-encoder tests fuzz bench conformance doc README.md 2>/dev/null | sort -u)
 for r in $quoted; do
     echo "$rules" | grep -qx "$r" || { echo "$r: quoted, but no such rule"; bad=1; }
 done

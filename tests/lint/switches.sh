@@ -1,0 +1,14 @@
+#!/bin/sh
+# The table of all training options in doc/switches.md is options.def, line for line. `sh tests/lint/switches.sh print` prints the table to paste.
+export LC_ALL=C
+table() {
+    awk '/^TED4_OPTION\(/ {
+        help = $0; sub(/^[^"]*"/, "", help); sub(/"\)$/, "", help)
+        values = $0; sub(/^TED4_OPTION\(/, "", values); sub(/, *".*$/, "", values)
+        if (split(values, v, /, */) != 10) { print FILENAME ": " $0; exit 1 }
+        print "| `" v[3] "` | " v[4] " to " v[5] " | " v[6] " | " v[7] " | " v[8] " | " v[9] " | " v[10] " | " help " |"
+    }' ref-encoder/train/options.def
+}
+if [ "$1" = print ]; then table; exit 0; fi
+there=$(sed -n '/^<!-- options -->$/,/^<!-- end of options -->$/p' doc/switches.md | grep '^| `')
+[ "$there" = "$(table)" ] || { echo "doc/switches.md is not what options.def says: sh tests/lint/switches.sh print"; exit 1; }
