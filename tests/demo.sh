@@ -32,7 +32,7 @@ cat <<END
   training          $train s
   decoding          $decode ms
   rendering         $fps frames a second
-  truth, ours, error at three times: $out/sheet.png
+  truth, ours, error at five times: $out/sheet.png
 
 END
 echo "{\"psnr\":$psnr,\"bytes\":$bytes,\"train_s\":$train,\"decode_ms\":$decode}"

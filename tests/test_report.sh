@@ -121,21 +121,26 @@ cat >"$out/pages/raster.md" <<END
 \$ make bench-raster
 A machine
 100000 Gaussians, 480x270: 33.0 blended a pixel
-  1 thread               forward   10.00 ms ( 1.00 ns a pair)  backward   18.50 ms ( 1.00)  both   28.50 ms
-  2 threads              forward    6.00 ms ( 1.00 ns a pair)  backward    9.00 ms ( 1.00)  both   15.00 ms
+  v4, 1 thread           forward   10.00 ms ( 1.00 ns a pair)  backward   18.50 ms ( 1.00)  both   28.50 ms
+  v3, 1 thread           forward   12.00 ms ( 1.00 ns a pair)  backward   19.50 ms ( 1.00)  both   31.50 ms
+  the first, 2 threads   forward    6.00 ms ( 1.00 ns a pair)  backward    9.00 ms ( 1.00)  both   15.00 ms
   speed-up by 2 threads  1.90
 10000 Gaussians, 480x270: 33.0 blended a pixel
-  2 threads              forward    1.00 ms ( 0.10 ns a pair)  backward    1.00 ms ( 0.10)  both    2.00 ms
+  the first, 2 threads   forward    1.00 ms ( 0.10 ns a pair)  backward    1.00 ms ( 0.10)  both    2.00 ms
   speed-up by 2 threads  1.10
 END
 cat >"$out/pages/render.md" <<END
 \$ make bench-render
 A machine
 preset fast: 12625 moving anchors
-  2 threads  deformation, heads   9.16 ms  picture  20.22 ms  best  29.47 ms =  33.9 frames/s  median  49.89 ms =  31.0 frames/s
+  v4, 1 thread   deformation, heads   9.16 ms  picture  20.22 ms  best  29.47 ms =  20.9 frames/s  median  49.89 ms =  20.0 frames/s
+  v4, 2 threads  deformation, heads   9.16 ms  picture  20.22 ms  best  29.47 ms =  33.9 frames/s  median  49.89 ms =  31.0 frames/s
 preset paper: 10100 moving anchors
-  2 threads  deformation, heads   9.16 ms  picture  20.22 ms  best  29.47 ms =  39.9 frames/s  median  49.89 ms =  29.5 frames/s
+  v4, 2 threads  deformation, heads   9.16 ms  picture  20.22 ms  best  29.47 ms =  39.9 frames/s  median  49.89 ms =  29.5 frames/s
+  v3, 2 threads  deformation, heads   9.16 ms  picture  20.22 ms  best  29.47 ms =  19.9 frames/s  median  49.89 ms =  19.5 frames/s
 END
+printf '%s\n' '| run | options | anchors | Gaussians in the file | peak MiB |' '|---|---|---|---|---|' '| largest | `--preset paper` | 19582 | 195820 | 5400 |' \
+    '| smaller | | 100 | 1000 | 900 |' >"$out/pages/memory.md"
 echo "a note by hand" >"$out/pages/report-notes.md"
 
 make_report || { fail run "status $?"; exit 1; }
@@ -173,7 +178,7 @@ rows_are seeded_rows 'Small differences over seeds' 'concat noview nocolour'
 rows_are recipe_rows "The paper's recipe alone" 'inr concat'
 check kept "$page" '15.0 ms; 1.90x;' '(`make test`); A machine | met |' \
     '| preset fast: 31.0 frames/s (best 33.9); preset paper: 29.5 frames/s (best 39.9); A machine | **missed** |' \
-    '| [train.md](train.md) | a training step by its parts, 2 threads | not run yet |'
+    '| [train.md](train.md) | a training step by its parts, 2 threads | not run yet |' '| peak 5400 MiB in 2 trainings |'
 check notes "$page" 'a note by hand'
 check commands "$page" '`ted4enc $TED4_DATA/kitchen --own 1`' \
     '| kitchen-factorised-3 | `ted4enc $TED4_DATA/kitchen --preset fast --seed 1 --downscale 2 --lambda 0.004 --set factorised=1` | not run yet |'
