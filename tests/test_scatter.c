@@ -180,6 +180,33 @@ static void test_useful(void **state)
     unload(&d, &f);
 }
 
+/* One picture cannot tell depths: a few points lie anywhere on the rays of what it shows. */
+static void test_one_picture(void **state)
+{
+    ted4_dataset d;
+    tiny_folder  f;
+    ted4_message m;
+    ted4_shown   s;
+
+    (void)state;
+    load(&d, &f, 10);
+    for (size_t i = 1; i < d.n_pictures; i++)
+        d.pictures[i].is_test = 1;
+    assert_true(scatter(&d, NULL).scattered == 2048);
+    assert_true(d.n_points == 2048);
+    assert_int_equal(ted4_shown_read(&s, &d, &m), 0);
+    for (size_t i = 0; i < d.n_points; i++) {
+        const float *p = d.points + 3 * i;
+        int          seen, shown;
+
+        ted4_shown_count(&s, (double[3]){ (double)p[0], (double)p[1], (double)p[2] }, &seen, &shown);
+        assert_int_equal(seen, 1);
+        assert_int_equal(shown, 1);
+    }
+    ted4_shown_free(&s);
+    unload(&d, &f);
+}
+
 /* Held-out pictures are not looked at: without their files it is the same. */
 static void test_held_out(void **state)
 {
@@ -241,6 +268,7 @@ int main(void)
         cmocka_unit_test(test_shown),    cmocka_unit_test(test_sweep),
         cmocka_unit_test(test_useless),  cmocka_unit_test(test_useful),
         cmocka_unit_test(test_held_out), cmocka_unit_test(test_bounds),
+        cmocka_unit_test(test_one_picture),
     };
 
     return cmocka_run_group_tests_name("scatter", tests, set_up_still, tear_down);

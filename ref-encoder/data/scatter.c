@@ -25,12 +25,17 @@
 /* Before a plain background things are what cameras look at: a point lies in this share of the
  * pictures at least. */
 #define LOOKED_AT 0.5
-/* Levels that pictures may be off about a point, first and then; after that any depth will do.
- * Points that came with the scene are judged by the second. */
-static const double agreed[] = { 4, 10, 0 };
-enum { PASSES = sizeof agreed / sizeof *agreed, USEFUL_PASS = 1 };
-/* Candidates a job, pixels tried for one, and candidates a wanted point in each pass at most. */
-enum { RUN = 1024, PIXELS = 32, TRIES = 4, LAST_TRIES = 32 };
+/* Levels that pictures may be off about a point (none: any depth will do), candidates tried for
+ * each wanted point, and points wanted in all. Anywhere on a ray, most points lie in space that the
+ * others have to themselves, so that there are only as many as make a beginning. Points that came
+ * with the scene are judged by the second pass. */
+static const struct {
+    double agreed;
+    size_t tries, wanted;
+} pass[] = { { 4, 4, TED4_RANDOM_POINTS }, { 10, 8, TED4_RANDOM_POINTS }, { 0, 32, 2048 } };
+enum { PASSES = sizeof pass / sizeof *pass, USEFUL_PASS = 1 };
+/* Candidates a job, and pixels tried for one. */
+enum { RUN = 1024, PIXELS = 32 };
 
 typedef struct {
     const ted4_shown           *shown;
@@ -112,23 +117,23 @@ static void try_run(void *arg, size_t run)
         j->taken[i] = (uint8_t)try_candidate(j, j->first + i, j->point + 3 * i, j->rgb + 3 * i);
 }
 
-/* Fills the cloud from *n on until it is full, or so many candidates a point have been tried, of
- * which this many a point were tried before. 0, or -1: no memory. */
-static int scatter(round_job *j, const ted4_parallel *p, size_t before, size_t tries,
+/* Fills the cloud from *n on as pass k wants it. before: candidates that were tried before. 0, or
+ * -1: no memory. */
+static int scatter(round_job *j, const ted4_parallel *p, size_t k, uint64_t before,
                    ted4_point_cloud *c, size_t *n)
 {
-    const uint64_t end = (uint64_t)(before + tries) * c->n;
+    const uint64_t end = before + (uint64_t)pass[k].tries * TED4_RANDOM_POINTS;
 
+    j->sweep.agreed = pass[k].agreed;
     j->point = malloc((size_t)RUNS * RUN * 3 * sizeof *j->point);
     j->rgb = malloc((size_t)RUNS * RUN * 3);
     j->taken = malloc((size_t)RUNS * RUN);
 
     int bad = j->point == NULL || j->rgb == NULL || j->taken == NULL;
 
-    for (j->first = (uint64_t)before * c->n; !bad && *n < c->n && j->first < end;
-         j->first += RUNS * RUN) {
+    for (j->first = before; !bad && *n < pass[k].wanted && j->first < end; j->first += RUNS * RUN) {
         ted4_parallel_for(p, RUNS, try_run, j);
-        for (size_t i = 0; i < (size_t)RUNS * RUN && *n < c->n; i++)
+        for (size_t i = 0; i < (size_t)RUNS * RUN && *n < pass[k].wanted; i++)
             if (j->taken[i]) {
                 memcpy(c->xyz + 3 * *n, j->point + 3 * i, 3 * sizeof *c->xyz);
                 memcpy(c->rgb + 3 * (*n)++, j->rgb + 3 * i, 3);
@@ -155,8 +160,8 @@ static int begin_sweep(ted4_sweep *w, const ted4_shown *s, ted4_message *m)
 }
 
 /* Scattered points in place of those that are there, if any can be had: where pictures agree
- * about colours, and where they do not agree often enough, anywhere on the rays of what shows
- * something. 0, or -1 with *m filled. */
+ * about colours, and where that gives hardly any, anywhere on the rays of what shows something.
+ * 0, or -1 with *m filled. */
 static int replace(ted4_dataset *d, const ted4_sweep *w, const ted4_scatter_options *o,
                    const ted4_parallel *p, size_t *n, ted4_message *m)
 {
@@ -168,10 +173,8 @@ static int replace(ted4_dataset *d, const ted4_sweep *w, const ted4_scatter_opti
     if (ted4_point_cloud_alloc(&c, TED4_RANDOM_POINTS) != 0)
         return ted4_say_no_memory(m);
     j.fewest = s->plain && s->n > 4 ? (int)(LOOKED_AT * (double)s->n) : s->n > 1 ? 2 : 1;
-    for (size_t k = 0; !bad && k < PASSES; k++) {
-        j.sweep.agreed = agreed[k];
-        bad = scatter(&j, p, k * TRIES, k + 1 < PASSES ? TRIES : LAST_TRIES, &c, n) != 0;
-    }
+    for (size_t k = 0, before = 0; !bad && k < PASSES; before += pass[k++].tries)
+        bad = scatter(&j, p, k, (uint64_t)before * TED4_RANDOM_POINTS, &c, n) != 0;
     if (bad || *n == 0) {
         ted4_point_cloud_free(&c);
         return bad ? ted4_say_no_memory(m) : 0;
@@ -217,8 +220,9 @@ int ted4_dataset_scatter(ted4_dataset *d, const ted4_scatter_options *o, const t
     what->outside = d->random_points ? 0 : outside;
     if (!bad && s.n > 0) {
         bad = begin_sweep(&w, &s, m) != 0;
-        w.agreed = agreed[USEFUL_PASS];
-        if (!bad && (d->random_points || d->n_points == 0 || !ted4_points_are_useful(&w, o->seed))) {
+        w.agreed = pass[USEFUL_PASS].agreed;
+        if (!bad &&
+            (d->random_points || d->n_points == 0 || !ted4_points_are_useful(&w, o->seed))) {
             what->given = d->random_points ? 0 : d->n_points;
             bad = replace(d, &w, o, p, &what->scattered, m) != 0;
         }
