@@ -6,9 +6,9 @@
 #include <string.h>
 
 #include "cells.h"
+#include "formulas.h"
 #include "math/elementary.h"
 #include "random.h"
-#include "recon/strict.h"
 #include "trainer.h"
 
 enum { DEPTHS = 3 };
@@ -28,10 +28,8 @@ uint32_t ted4_lanes_there(const ted4_generate_input *in, size_t slot)
     uint32_t     there = in->lanes[slot];
 
     for (int j = 0; in->activation && j < TED4_LANES; j++) {
-        const float *x = in->attr[slot] + first * TED4_LANES + j;
-        const float  u = now < x[0] ? (x[0] - now) / ted4_pow2(x[TED4_LANES])
-                       : now > x[2 * TED4_LANES]
-                       ? (now - x[2 * TED4_LANES]) / ted4_pow2(x[3 * TED4_LANES]) : 0.0f;
+        const float *tau = in->attr[slot] + first * TED4_LANES + j;
+        const float  u = ted4_find_edge(now, tau, ted4_pow2).u;
 
         if (!(u * u < 0.6931472f))
             there &= ~((uint32_t)1 << j);

@@ -257,7 +257,7 @@ static void activation_backward(slot_state *s, const ted4_generate_input *in)
     d = ted4_gen_plane(s->d_attr, g->layout.first[TED4_TAU]);
 #pragma omp simd
     for (int j = 0; j < TED4_LANES; j++) {
-        const ted4_gen_edge e = ted4_gen_find_edge(t, tau + j);
+        const ted4_edge e = ted4_find_edge(t, tau + j, ted4_lane_pow2);
         const float d_u = 2.0f * e.u * active[j] * s->d_active[j];
         const float d_at = d_u / e.width;
         const float d_log = e.width > TED4_EDGE_MIN ? d_u * e.u * TED4_LN2 : 0.0f;

@@ -110,9 +110,9 @@ static void activation(const ted4_generator *g, const ted4_generate_input *in, f
     tau = ted4_gen_channel(g, planes, g->layout.first[TED4_TAU]);
 #pragma omp simd
     for (int j = 0; j < TED4_LANES; j++) {
-        const ted4_gen_edge e = ted4_gen_find_edge((float)in->num / (float)in->den, tau + j);
+        const float t = (float)in->num / (float)in->den;
 
-        a[j] = ted4_lane_pow2(-(e.u * e.u) * TED4_LOG2E);
+        a[j] = ted4_activation(ted4_find_edge(t, tau + j, ted4_lane_pow2).u, ted4_lane_pow2);
     }
 }
 

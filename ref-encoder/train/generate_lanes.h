@@ -4,6 +4,7 @@
 #ifndef TED4_GENERATE_LANES_H
 #define TED4_GENERATE_LANES_H
 
+#include "formulas.h"
 #include "generate_state.h"
 #include "lane_math.h"
 
@@ -20,25 +21,5 @@ void ted4_gen_chain_backward(const ted4_generator *g, const ted4_gen_chain *c, f
 /* Adds the weight gradients of n slots to grad. */
 void ted4_gen_chain_weights(const ted4_generator *g, const ted4_gen_chain *c, float *planes,
                             float *d, size_t n, float *grad);
-
-/* spec 11.4 for one lane: the edge that t lies beyond (side -1: before the start, 1: after the end,
- * 0: neither), and u. */
-typedef struct {
-    int   side;
-    float width, u;
-} ted4_gen_edge;
-
-static inline ted4_gen_edge ted4_gen_find_edge(float t, const float *tau)
-{
-    const float start = tau[0], start_width = tau[TED4_LANES];
-    const float end = tau[2 * TED4_LANES], end_width = tau[3 * TED4_LANES];
-    const int side = t < start ? -1 : t > end;
-    const float at = side < 0 ? start : end;
-    const float b = ted4_lane_pow2(side < 0 ? start_width : end_width);
-    const float width = b > TED4_EDGE_MIN ? b : TED4_EDGE_MIN;
-    const ted4_gen_edge e = { side, width, side != 0 ? (t - at) / width : 0.0f };
-
-    return e;
-}
 
 #endif

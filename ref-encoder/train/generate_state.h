@@ -9,8 +9,6 @@
 
 /* Below this a vector has no direction, and a linear scale stops (spec 11.1, 11.5). */
 #define TED4_SHORT 0x1p-20f
-/* Least width of an activation edge, spec 11.4. */
-#define TED4_EDGE_MIN 0x1p-12f
 
 /* Work is cut into this many chunks of slots whatever the number of threads, so that sums over
  * slots have one order. Within a chunk, weight gradients are taken over groups of slots, few enough

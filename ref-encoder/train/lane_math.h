@@ -8,9 +8,9 @@
 #include <string.h>
 
 #include "model.h"
+#include "recon/strict.h"
 #include "render/leveled.h"
 
-#define TED4_LOG2E 0x1.715476p+0f
 #define TED4_LN2   0x1.62e43p-1f
 
 /* x, or the nearer end of the range, or low for a NaN: fit for an integer. */

@@ -5,6 +5,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "formulas.h"
 #include "math/elementary.h"
 #include "norm/half.h"
 #include "rotate.h"
@@ -90,21 +91,15 @@ int ted4_activation_begin(ted4_trainer *t)
 static float peak_activation(const ted4_trainer *t, size_t i)
 {
     const int first = t->layout.first[TED4_TAU];
-    float     x[4], least = INFINITY;
+    float     least = INFINITY;
 
     if (first < 0)
         return 1.0f;
-    for (int c = 0; c < 4; c++)
-        x[c] = t->slots.used[i / TED4_LANES][(size_t)(first + c) * TED4_LANES + i % TED4_LANES];
-    const float rise = ted4_math_exp2f(x[1]), fall = ted4_math_exp2f(x[3]);
+    const float *tau = t->slots.used[i / TED4_LANES] + (size_t)first * TED4_LANES + i % TED4_LANES;
 
-    for (uint32_t j = 0; j < t->data->n_frames; j++) {
-        const float now = frame_time(t, j);
-        const float off = now < x[0] ? (x[0] - now) / rise : now > x[2] ? (now - x[2]) / fall : 0.0f;
-
-        least = fminf(least, off);
-    }
-    return ted4_math_expf(-least * least);
+    for (uint32_t j = 0; j < t->data->n_frames; j++)
+        least = fminf(least, fabsf(ted4_find_edge(frame_time(t, j), tau, ted4_pow2).u));
+    return ted4_activation(least, ted4_pow2);
 }
 
 int ted4_stage_rising(ted4_trainer *t, uint32_t *rising, size_t *n)
@@ -238,13 +233,11 @@ int ted4_stage_relayout(ted4_trainer *t, const ted4_header *h)
 
 static float least_activation(const ted4_trainer *t, size_t i)
 {
-    const int   first = t->layout.first[TED4_TAU];
-    const float a = *ted4_cell(&t->anchors, TED4_ROW_VALUE, i, first);
-    const float f = *ted4_cell(&t->anchors, TED4_ROW_VALUE, i, first + 2);
-    const float u = a > 0 ? a / ted4_math_exp2f(*ted4_cell(&t->anchors, TED4_ROW_VALUE, i, first + 1)) : 0;
-    const float w = f < 1 ? (1 - f) / ted4_math_exp2f(*ted4_cell(&t->anchors, TED4_ROW_VALUE, i, first + 3)) : 0;
+    const float *tau = ted4_cell(&t->anchors, TED4_ROW_VALUE, i, t->layout.first[TED4_TAU]);
 
-    return ted4_math_expf(-fmaxf(u * u, w * w));
+    const float  first = ted4_find_edge(0, tau, ted4_pow2).u, last = ted4_find_edge(1, tau, ted4_pow2).u;
+
+    return ted4_activation(fmaxf(fabsf(first), fabsf(last)), ted4_pow2);
 }
 
 /* The header without what does nothing. */

@@ -1,0 +1,42 @@
+/* formulas.h - formulas of the specification that several files of the trainer evaluate, each once.
+ * All are functions of one lane: a loop over lanes calls them. pow2 is the power of two that the
+ * calling file may use: ted4_lane_pow2 where it is compiled once a level, else ted4_pow2.
+ * SPDX-License-Identifier: BSD-2-Clause */
+#ifndef TED4_FORMULAS_H
+#define TED4_FORMULAS_H
+
+#include "model.h"
+#include "recon/strict.h"
+
+/* spec 11.4: least width of an edge of the activation. */
+#define TED4_EDGE_MIN 0x1p-12f
+
+/* spec 11.4: the edge that t lies beyond (side -1: before the start, 1: after the end, 0: neither),
+ * its width, at least TED4_EDGE_MIN, and u. */
+typedef struct {
+    int   side;
+    float width, u;
+} ted4_edge;
+
+/* tau: start, log2 of its width, end, log2 of its width, TED4_LANES floats apart, as blocks store
+ * them. t is from 0 to 1. */
+static inline ted4_edge ted4_find_edge(float t, const float *tau, float (*pow2)(float))
+{
+    const float start = tau[0], start_width = tau[TED4_LANES];
+    const float end = tau[2 * TED4_LANES], end_width = tau[3 * TED4_LANES];
+    const int side = t < start ? -1 : t > end;
+    const float at = side < 0 ? start : end;
+    const float b = pow2(side < 0 ? start_width : end_width);
+    const float width = b > TED4_EDGE_MIN ? b : TED4_EDGE_MIN;
+    const ted4_edge e = { side, width, side != 0 ? (t - at) / width : 0.0f };
+
+    return e;
+}
+
+/* spec 11.4: the activation of a u, from 0 to 1. */
+static inline float ted4_activation(float u, float (*pow2)(float))
+{
+    return pow2(-(u * u) * TED4_LOG2E);
+}
+
+#endif
