@@ -15,10 +15,11 @@ FREE   = $(ARCH) -Wno-psabi -ffp-contract=off -fno-math-errno -fno-trapping-math
 # Files compiled once a level of instruction sets, of which base/level.c chooses one when a program runs.
 MACHINE := $(firstword $(subst -, ,$(shell $(CC) $(CFLAGS) -dumpmachine)))
 LEVELS  = $(if $(filter x86_64,$(MACHINE)),base v3 v4,base)
-LEVELED = ref-decoder/render/project.c ref-decoder/render/blend.c ref-encoder/train/blend_bwd.c ref-encoder/train/project_bwd.c \
-          ref-encoder/kernel/dense_product.c ref-encoder/kernel/dense_weights.c \
-          $(patsubst %,ref-encoder/train/%.c,generate_fwd generate_bwd generate_chain generate_effective rate_fwd rate_bwd rate_row \
-          rate_decoded quantise adam_step loss_passes colour_bands)
+LEVELED = $(addprefix ref-decoder/render/,project.c blend.c) \
+          $(addprefix ref-encoder/kernel/,dense_product.c dense_weights.c) \
+          $(addprefix ref-encoder/train/,raster/blend_bwd.c raster/project_bwd.c splat/decode_fwd.c splat/decode_bwd.c \
+          splat/chain.c splat/effective.c rate/rate_fwd.c rate/rate_bwd.c rate/rate_row.c rate/rate_decoded.c model/quantise.c \
+          math/adam_step.c loss/loss_passes.c loss/camera_colour_bands.c)
 # Rows are short and may lie anywhere: gcc would take one lane at a time until a store is aligned, and clang has no such option.
 NO_PEELING = --param=vect-max-peeling-for-alignment=0
 LANES := $(shell $(CC) -Werror $(NO_PEELING) -x c -fsyntax-only /dev/null 2>/dev/null && echo $(NO_PEELING))
@@ -33,8 +34,10 @@ LIBS  = -lpng -ljpeg -ljansson -lxxhash -lz -lm
 
 DEC_SRC  = $(sort $(wildcard $(addprefix ref-decoder/,base/*.c norm/*.c recon/*.c read/*.c kernel/*.c)))
 DRAW_SRC = $(sort $(wildcard ref-decoder/render/*.c))
-ENC_SRC  = $(sort $(wildcard $(addprefix ref-encoder/,math/*.c write/*.c train/*.c data/*.c eval/*.c kernel/*.c)))
-FREE_OBJ = $(patsubst %.c,$B/%.o,$(DRAW_SRC) $(wildcard ref-encoder/train/*.c ref-encoder/kernel/*.c ref-encoder/eval/*.c))
+# Whatever lies below train/ is free, however deep.
+TRAIN_SRC = $(sort $(shell find ref-encoder/train -name '*.c'))
+ENC_SRC  = $(sort $(wildcard $(addprefix ref-encoder/,math/*.c write/*.c data/*.c eval/*.c kernel/*.c)) $(TRAIN_SRC))
+FREE_OBJ = $(patsubst %.c,$B/%.o,$(DRAW_SRC) $(TRAIN_SRC) $(wildcard ref-encoder/kernel/*.c ref-encoder/eval/*.c))
 DEC_TOOL = $(filter-out ref-decoder/tool/ted4%.c,$(wildcard ref-decoder/tool/*.c))
 ENC_TOOL = $(filter-out ref-encoder/tool/ted4%.c,$(wildcard ref-encoder/tool/*.c))
 DEC_PROG = $(patsubst ref-decoder/tool/%.c,%,$(wildcard ref-decoder/tool/ted4*.c))

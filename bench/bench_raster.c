@@ -4,7 +4,7 @@
 #include "measure.h"
 #include "raster_scene.h"
 #include "tool/threads.h"
-#include "train/raster_bwd.h"
+#include "train/raster/raster_bwd.h"
 
 enum { WIDTH = 480, HEIGHT = 270, N_PIXELS = WIDTH * HEIGHT, ROUNDS = 40 };
 

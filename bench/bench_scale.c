@@ -8,7 +8,7 @@
  * SPDX-License-Identifier: BSD-2-Clause */
 #include "measure.h"
 #include "recorder.h"
-#include "train/raster_adjoint.h"
+#include "train/raster/adjoint.h"
 #include "train_record.h"
 
 enum { STEPS = 120 };   /* of each stage */

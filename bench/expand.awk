@@ -1,8 +1,8 @@
 # expand.awk - a table of runs (bench/sweep.txt, bench/stability.txt, bench/zoo.txt), a run a line:
 #     GROUPS|TAG|SCENE|WHERE|VARIANT|PLACE|LAMBDA|KEEP|STAGE1|OPTIONS
 # PLACE: of the lambda, or of the seed, in its list, from 1. STAGE1: the options that decide stage 1, with no part that only stage 2 looks at, as
-# ref-encoder/train/options.def says. Options come out once each, the last value of a name winning, in the order in which names first come.
-# Usage: awk -f expand.awk ref-encoder/train/options.def bench/sweep.txt. A fault in the table ends it with status 1.
+# ref-encoder/train/model/options.def says. Options come out once each, the last value of a name winning, in the order in which names first come.
+# Usage: awk -f expand.awk ref-encoder/train/model/options.def bench/sweep.txt. A fault in the table ends it with status 1.
 # SPDX-License-Identifier: BSD-2-Clause
 
 function fail(why) {

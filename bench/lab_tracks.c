@@ -5,7 +5,7 @@
 #include <string.h>
 #include "lab_facts.h"
 #include "tool/cli.h"
-#include "train/space.h"
+#include "train/model/normalise.h"
 
 static int compare_floats(const void *x, const void *y)
 {

@@ -8,7 +8,7 @@
 #include "render/png_file.h"
 #include "tool/cli.h"
 #include "tool/sheet.h"
-#include "train/space.h"
+#include "train/model/normalise.h"
 
 typedef struct {
     ted4_viewer *viewer;            /* owned, as all below */

@@ -14,7 +14,7 @@ wanted_runs() {
     else
         TED4_WORK=$scratch/work TED4_TABLE=$table TED4_RESULTS=$results "$1" --list >"$scratch/states"
     fi
-    awk -f bench/expand.awk ref-encoder/train/options.def "$table" >"$scratch/wanted"
+    awk -f bench/expand.awk ref-encoder/train/model/options.def "$table" >"$scratch/wanted"
     awk 'FILENAME == ARGV[1] { split($0, word, " "); state[word[2]] = word[1]; next }
          { split($0, part, "|"); print (part[2] in state ? state[part[2]] : "missing") "|" $0 }' "$scratch/states" "$scratch/wanted" >"$scratch/runs"
 }

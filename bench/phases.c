@@ -10,11 +10,11 @@
 #include "tool/run_log.h"
 #include "tool/threads.h"
 #include "tool/verify.h"
-#include "train/capacity.h"
-#include "train/checkpoint.h"
-#include "train/make_scene.h"
-#include "train/raster_adjoint.h"
-#include "train/sprout.h"
+#include "train/search/model_search.h"
+#include "train/step/checkpoint.h"
+#include "train/step/export_scene.h"
+#include "train/raster/adjoint.h"
+#include "train/densify/mv_seed.h"
 #include "write/encode.h"
 
 /* In about the order in which a run comes to them. */

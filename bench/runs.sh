@@ -38,7 +38,7 @@ last_words() { tail -n 1 "$out.err" | tr ',"' ';' | cut -c1-200; }
 sources() {
     {
         grep -E '^(OPT|STRICT|FREE|FLAGS_v3|FLAGS_v4|CFLAGS_ALL) ' Makefile
-        awk -f bench/sources.awk ref-encoder/train/*.[ch] ref-encoder/train/*.def \
+        awk -f bench/sources.awk ref-encoder/train/*/*.[ch] ref-encoder/train/*/*.def \
             ref-encoder/math/*.[ch] ref-encoder/write/*.[ch] ref-encoder/kernel/*.[ch] \
             ref-encoder/data/*.[ch] ref-encoder/eval/*.[ch] ref-decoder/base/*.[ch] ref-decoder/norm/*.[ch] ref-decoder/recon/*.[ch] \
             ref-decoder/render/*.[ch] "$@"
@@ -173,7 +173,7 @@ make_row() {
 # The runs that the command line asks for, a line each. Patterns are not file names: set -f.
 each_chosen() {
     set -f
-    awk -f bench/expand.awk ref-encoder/train/options.def "$table" >"$work/table.$$" || die "$table"
+    awk -f bench/expand.awk ref-encoder/train/model/options.def "$table" >"$work/table.$$" || die "$table"
     while IFS='|' read -r groups tag scene where variant place lambda keep stage1 options; do
         wanted=
         for p in $patterns; do

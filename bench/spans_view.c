@@ -4,7 +4,7 @@
 #include <string.h>
 #include "spans.h"
 #include "tool/cli.h"
-#include "train/space.h"
+#include "train/model/normalise.h"
 
 /* What is left of the colour of a span where the Gaussian is black. */
 #define DIMMEST 0.35f

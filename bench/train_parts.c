@@ -3,7 +3,7 @@
 #include "train_parts.h"
 
 #include "measure.h"
-#include "train/raster_adjoint.h"
+#include "train/raster/adjoint.h"
 
 #define AS_TEXT(name, text) text,
 const char *const part_name[N_PARTS] = { PARTS(AS_TEXT) };

@@ -5,7 +5,7 @@
 #ifndef TED4_BENCH_TRAIN_PARTS_H
 #define TED4_BENCH_TRAIN_PARTS_H
 
-#include "train/trainer.h"
+#include "train/state/trainer.h"
 
 enum { STAGE_1, STAGE_2, STAGE_INTEGER, STAGES };
 extern const char *const stage_name[STAGES];

@@ -9,7 +9,7 @@
 #include <xxhash.h>
 #include "harness.h"
 #include "scene_folder.h"
-#include "train/checkpoint.h"
+#include "train/step/checkpoint.h"
 #include "write/coder_count.h"
 
 enum { BASES = 2, CUT = 255, STEPS_1 = 2, STEPS_2 = 4 };

@@ -4,8 +4,8 @@
 #define TED4_BALL_TRAINER_H
 
 #include "ball_scene.h"
-#include "train/make_scene.h"
-#include "train/trainer.h"
+#include "train/step/export_scene.h"
+#include "train/state/trainer.h"
 #include "write/encode.h"
 
 typedef struct { uint8_t *bytes; size_t size; } ball_file;

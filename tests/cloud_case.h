@@ -7,8 +7,8 @@
 #include <math.h>
 #include <string.h>
 
-#include "train/random.h"
-#include "train/trainer.h"
+#include "train/math/random.h"
+#include "train/state/trainer.h"
 
 enum { CLOUD_SIDE = 6, CLOUD_POINTS = CLOUD_SIDE * CLOUD_SIDE * CLOUD_SIDE };
 

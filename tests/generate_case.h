@@ -8,7 +8,7 @@
 #include <stdlib.h>
 
 #include "generate_ref.h"
-#include "train/model.h"
+#include "train/model/model.h"
 
 /* More slots than the generator has chunks. The first has no unused lane, one has no other. */
 enum { CASE_SLOTS = 18, CASE_CHANNELS = 48, CASE_NET = 6000, CASE_OFFSETS = 3,

@@ -22,7 +22,7 @@ typedef struct {
     size_t       n_netr;
 } ref_query;
 
-/* Where the parts of an anchor lie in its array of channels (train/model.h). */
+/* Where the parts of an anchor lie in its array of channels (train/model/model.h). */
 typedef struct {
     int feature, scaling, offset, phi, tau, offset_logit, temporal_logit, n;
 } ref_channels;

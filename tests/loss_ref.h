@@ -1,4 +1,4 @@
-/* loss_ref.h - the distortion of train/loss.h by its definition, in double, a pixel at a time: what
+/* loss_ref.h - the distortion of train/loss/loss.h by its definition, in double, a pixel at a time: what
  * test_loss.c, test_extremes_loss.c and test_step_grad.c compare with. Shares no code with train/.
  * SPDX-License-Identifier: BSD-2-Clause */
 #ifndef TED4_LOSS_REF_H

@@ -9,7 +9,7 @@
 #include <string.h>
 
 #include "norm/half.h"
-#include "train/model.h"
+#include "train/model/model.h"
 
 enum { REF_MAX_CHANNELS = 128, REF_MAX_OUTPUTS = 256, REF_MAX_NET = 4096, REF_SLOTS = 3 };
 

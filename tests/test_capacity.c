@@ -1,4 +1,4 @@
-/* test_capacity.c - train/capacity.c, capacity_refine.c and capacity_prune.c in a whole training: what they decide lowers the cost, within their budget, the same for any number
+/* test_capacity.c - train/search/model_search.c, capacity_refine.c and capacity_prune.c in a whole training: what they decide lowers the cost, within their budget, the same for any number
  * of threads and for a run that was interrupted; switched off they leave no trace.
  * SPDX-License-Identifier: BSD-2-Clause */
 #include <setjmp.h>
@@ -9,8 +9,8 @@
 
 #include "ball_trainer.h"
 #include "odd_threads.h"
-#include "train/capacity.h"
-#include "train/checkpoint.h"
+#include "train/search/model_search.h"
+#include "train/step/checkpoint.h"
 
 enum { STAGE1 = 400, STAGE2 = 1400, TOTAL = STAGE1 + STAGE2, FRAMES = 5 };
 

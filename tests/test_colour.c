@@ -1,4 +1,4 @@
-/* test_colour.c - train/colour.h: which cameras are corrected, the map and its gradients against central differences in double
+/* test_colour.c - train/loss/camera_colour.h: which cameras are corrected, the map and its gradients against central differences in double
  * precision, the step with its gauge; and in training: tints are found, and a view from elsewhere never gets a correction.
  * That the state survives in checkpoints is tested in test_trainer.c, whose cameras are all corrected.
  * SPDX-License-Identifier: BSD-2-Clause */
@@ -10,8 +10,8 @@
 
 #include "ball_scene.h"
 #include "odd_threads.h"
-#include "train/random.h"
-#include "train/trainer.h"
+#include "train/math/random.h"
+#include "train/state/trainer.h"
 
 enum { N = TED4_COLOUR_VALUES, MOST = 40000, CAMERAS = 4 };
 

@@ -1,4 +1,4 @@
-/* test_colour_match.c - train/colour_match.h: maps of cameras are found from the initial points alone, also where a third of what each camera sees is in the way
+/* test_colour_match.c - train/densify/camera_colour_init.h: maps of cameras are found from the initial points alone, also where a third of what each camera sees is in the way
  * of the points; what all cameras have in common, from the points' own colours, if these agree with the pictures; and what is not enough to tell leaves the identity.
  * SPDX-License-Identifier: BSD-2-Clause */
 #include <setjmp.h>
@@ -9,9 +9,9 @@
 #include <math.h>
 
 #include "tiny_scene.h"
-#include "train/colour_match.h"
-#include "train/random.h"
-#include "train/space.h"
+#include "train/densify/camera_colour_init.h"
+#include "train/math/random.h"
+#include "train/model/normalise.h"
 
 enum { W = 64, H = 48, CAMERAS = 6, FRAMES = 3, N = TED4_COLOUR_VALUES };
 

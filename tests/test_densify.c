@@ -1,5 +1,5 @@
-/* test_densify.c - voxel sets (train/cells.h), blocks of anchors (train/anchors.h), and growth and
- * pruning (train/densify.c) from planted statistics.
+/* test_densify.c - voxel sets (train/math/voxel_set.h), blocks of anchors (train/model/anchors.h), and growth and
+ * pruning (train/densify/densify.c) from planted statistics.
  * SPDX-License-Identifier: BSD-2-Clause */
 #include <setjmp.h>
 #include <stdarg.h>
@@ -10,7 +10,7 @@
 
 #include "cloud_case.h"
 #include "norm/half.h"
-#include "train/cells.h"
+#include "train/math/voxel_set.h"
 
 static cloud_case cloud;
 

@@ -13,7 +13,7 @@
 #include <string.h>
 
 #include "math/elementary.h"
-#include "train/random.h"
+#include "train/math/random.h"
 
 typedef long double (*long_function)(long double);
 typedef double (*our_function)(double);

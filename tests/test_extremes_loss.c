@@ -12,8 +12,8 @@
 #include <cmocka.h>
 
 #include "loss_ref.h"
-#include "train/colour.h"
-#include "train/loss.h"
+#include "train/loss/camera_colour.h"
+#include "train/loss/loss.h"
 
 enum { MOST = 64 * 64 };
 

@@ -11,7 +11,7 @@
 
 #include "raster_scene.h"
 #include "render/raster_plain.h"
-#include "train/raster_bwd.h"
+#include "train/raster/raster_bwd.h"
 
 enum { SIDE = 32, PIXELS = SIDE * SIDE };
 

@@ -11,7 +11,7 @@
 
 #include "raster_ref.h"
 #include "raster_scene.h"
-#include "train/raster_bwd.h"
+#include "train/raster/raster_bwd.h"
 
 enum { SIDE = 20, PIXELS = SIDE * SIDE, MOST = 8, GROUPS = 5 };
 

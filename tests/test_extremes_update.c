@@ -10,8 +10,8 @@
 #include <cmocka.h>
 
 #include "cloud_case.h"
-#include "train/adam.h"
-#include "train/clamped.h"
+#include "train/math/adam.h"
+#include "train/step/saturation.h"
 
 /* ---- Adam ---- */
 

@@ -9,7 +9,7 @@
 
 #include "data/flicker.h"
 #include "data/source.h"
-#include "train/header.h"
+#include "train/model/header_from_options.h"
 
 enum { MOST = 40 };
 

@@ -1,4 +1,4 @@
-/* test_generate.c - train/generate.c against the double-precision text of spec 11 (generate_ref.h),
+/* test_generate.c - train/splat/decode.c against the double-precision text of spec 11 (generate_ref.h),
  * for every variant of the header.
  * SPDX-License-Identifier: BSD-2-Clause */
 #include <setjmp.h>

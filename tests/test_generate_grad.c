@@ -1,4 +1,4 @@
-/* test_generate_grad.c - train/generate_bwd.c against central differences of the double-precision
+/* test_generate_grad.c - train/splat/decode_bwd.c against central differences of the double-precision
  * reference: every channel of anchors, every value of the networks and the bank.
  * SPDX-License-Identifier: BSD-2-Clause */
 #include <setjmp.h>

@@ -1,4 +1,4 @@
-/* test_grid.c - train/grid.c: weights on coarse grids, each unit on its own.
+/* test_grid.c - train/model/weight_grid.c: weights on coarse grids, each unit on its own.
  * SPDX-License-Identifier: BSD-2-Clause */
 #include <math.h>
 #include <setjmp.h>
@@ -8,8 +8,8 @@
 #include <string.h>
 #include <cmocka.h>
 
-#include "train/grid.h"
-#include "train/random.h"
+#include "train/model/weight_grid.h"
+#include "train/math/random.h"
 
 enum { N = 64 };
 

@@ -1,4 +1,4 @@
-/* test_judges.c - train/judges.c: pictures that stand for all show every frame before any twice, whatever the numbers of cameras and frames.
+/* test_judges.c - train/state/view_subset.c: pictures that stand for all show every frame before any twice, whatever the numbers of cameras and frames.
  * SPDX-License-Identifier: BSD-2-Clause */
 #include <setjmp.h>
 #include <stdarg.h>
@@ -7,7 +7,7 @@
 #include <cmocka.h>
 #include <stdlib.h>
 
-#include "train/judges.h"
+#include "train/state/view_subset.h"
 
 enum { MOST = 400 };
 

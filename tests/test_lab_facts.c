@@ -11,7 +11,7 @@
 #include "ball_scene.h"
 #include "random_scene.h"
 #include "render/png_file.h"
-#include "train/space.h"
+#include "train/model/normalise.h"
 
 /* The measuring files' way to say what went wrong: here nothing may. */
 int lab_failed(const char *what, const char *why)

@@ -14,10 +14,10 @@
 #include "generate_case.h"
 #include "raster_scene.h"
 #include "rate_ref.h"
-#include "train/adam.h"
-#include "train/colour_job.h"
-#include "train/loss.h"
-#include "train/rate_parts.h"
+#include "train/math/adam.h"
+#include "train/loss/camera_colour_job.h"
+#include "train/loss/loss.h"
+#include "train/rate/rate_parts.h"
 
 /* What a case gave at one level: arrays, one after the other. */
 enum { MAX_ARRAYS = 4096 };

@@ -1,4 +1,4 @@
-/* test_looks.c - train/looks.c: how opaque anchors are counts from where they are most opaque, when that depends on the direction, and as the file will hold
+/* test_looks.c - train/state/anchor_appearance.c: how opaque anchors are counts from where they are most opaque, when that depends on the direction, and as the file will hold
  * them.
  * SPDX-License-Identifier: BSD-2-Clause */
 #include <setjmp.h>

@@ -1,4 +1,4 @@
-/* test_loss.c - train/loss.h against an independent double implementation: values, central
+/* test_loss.c - train/loss/loss.h against an independent double implementation: values, central
  * differences, threads, sizes.
  * SPDX-License-Identifier: BSD-2-Clause */
 #include <setjmp.h>
@@ -12,7 +12,7 @@
 
 #include "loss_ref.h"
 #include "odd_threads.h"
-#include "train/loss.h"
+#include "train/loss/loss.h"
 
 /* exact: the image in double, as the reference reads it. */
 typedef struct {

@@ -8,7 +8,7 @@
 #include <cmocka.h>
 
 #include "mishap.h"
-#include "train/checkpoint.h"
+#include "train/step/checkpoint.h"
 
 /* ---- pictures ---- */
 

@@ -8,7 +8,7 @@
 #include <cmocka.h>
 
 #include "ball_trainer.h"
-#include "train/checkpoint.h"
+#include "train/step/checkpoint.h"
 
 /* A value goes bad between two checks: no checkpoint is made of it, the last one is untouched and leads where it led. */
 static void test_nan(void **state)

@@ -1,4 +1,4 @@
-/* test_narrow.c - train/narrow.c: which unit goes first, what makes up for it, and what may not go.
+/* test_narrow.c - train/math/prune_units.c: which unit goes first, what makes up for it, and what may not go.
  * SPDX-License-Identifier: BSD-2-Clause */
 #include <math.h>
 #include <setjmp.h>
@@ -7,8 +7,8 @@
 #include <stdint.h>
 #include <cmocka.h>
 
-#include "train/narrow.h"
-#include "train/random.h"
+#include "train/math/prune_units.h"
+#include "train/math/random.h"
 
 enum { N = 4, SIDE = N + 1, SAMPLES = 500, ROWS = 2 };
 

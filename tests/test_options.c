@@ -1,4 +1,4 @@
-/* test_options.c - train/options.h: presets, name=value with every way to get it wrong, the hash
+/* test_options.c - train/model/options.h: presets, name=value with every way to get it wrong, the hash
  * that ties checkpoints to options, the help table.
  * SPDX-License-Identifier: BSD-2-Clause */
 #include <setjmp.h>
@@ -10,13 +10,13 @@
 #include <string.h>
 #include <cmocka.h>
 
-#include "train/options.h"
+#include "train/model/options.h"
 
 typedef struct { const char *name; char kind; int stage; double lo, hi; } option;
 
 static const option table[] = {
 #define TED4_OPTION(kind, stage, name, lo, hi, a, b, c, d, e, help) { #name, #kind[0], stage, lo, hi },
-#include "train/options.def"
+#include "train/model/options.def"
 #undef TED4_OPTION
 };
 
@@ -47,7 +47,7 @@ static void test_presets(void **state)
 #define TED4_OPTION(kind, stage, name, lo, hi, a, b, c, d, e, help) \
         assert_true((double)o.name >= (lo) && (double)o.name <= (hi)); \
         assert_true((double)o.name == ((const double[]){ a, b, c, d, e })[p]);
-#include "train/options.def"
+#include "train/model/options.def"
 #undef TED4_OPTION
     }
     assert_int_equal(ted4_options_preset(&o, "Draft"), -1);

@@ -11,7 +11,7 @@
 
 #include "ball_group.h"
 #include "cloud_case.h"
-#include "train/transient.h"
+#include "train/densify/short_lived.h"
 
 enum { STAGE1 = 400, INTEGER = 600, ACTIVATION = 134, SPROUTS = 120, GROWTH_ENDS = 240, GROW_EVERY = 20 };
 

@@ -10,7 +10,7 @@
 #include "tool/threads.h"
 #include "raster_scene.h"
 #include "render/raster_plain.h"
-#include "train/raster_bwd.h"
+#include "train/raster/raster_bwd.h"
 
 enum { GROUPS = 5 };
 

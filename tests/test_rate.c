@@ -11,7 +11,7 @@
 #include "norm/prior.h"
 #include "odd_threads.h"
 #include "rate_ref.h"
-#include "train/rate_parts.h"
+#include "train/rate/rate_parts.h"
 
 static int close_to(double got, double want, double relative, double absolute)
 {

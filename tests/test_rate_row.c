@@ -1,4 +1,4 @@
-/* test_rate_row.c - train/rate_row.c: bits and derivatives of single symbols against double arithmetic and against the coder's own tables (spec 9.4),
+/* test_rate_row.c - train/rate/rate_row.c: bits and derivatives of single symbols against double arithmetic and against the coder's own tables (spec 9.4),
  * and the tails (annex D.1: outliers need a gradient).
  * SPDX-License-Identifier: BSD-2-Clause */
 #include <setjmp.h>
@@ -9,7 +9,7 @@
 
 #include "norm/gaussian.h"
 #include "rate_ref.h"
-#include "train/rate_parts.h"
+#include "train/rate/rate_parts.h"
 
 typedef struct {
     float u[TED4_LANES], s[TED4_LANES];

@@ -1,4 +1,4 @@
-/* test_rate_subset.c - train/update.c, the rate terms of a step: evaluated on a random share of the blocks, every block as often as any other, in mean worth
+/* test_rate_subset.c - train/step/apply_gradients.c, the rate terms of a step: evaluated on a random share of the blocks, every block as often as any other, in mean worth
  * the gradient of all blocks; lambda weighs the mean bits of a parameter; the same bits for any number of threads.
  * SPDX-License-Identifier: BSD-2-Clause */
 #include <setjmp.h>

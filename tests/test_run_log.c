@@ -9,7 +9,7 @@
 
 #include "mishap.h"
 #include "tool/run_log.h"
-#include "train/checkpoint.h"
+#include "train/step/checkpoint.h"
 
 static double number(const json_t *line, const char *name)
 {

@@ -17,7 +17,7 @@
 #include "data/shown.h"
 #include "data/sweep.h"
 #include "tool/threads.h"
-#include "train/random.h"
+#include "train/math/random.h"
 
 static int set_up_still(void **state)
 {

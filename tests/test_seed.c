@@ -1,5 +1,5 @@
-/* test_seed.c - where training starts: normalised space and views in it (train/space.h), anchors
- * from points (train/seed.h).
+/* test_seed.c - where training starts: normalised space and views in it (train/model/normalise.h), anchors
+ * from points (train/model/init.h).
  * SPDX-License-Identifier: BSD-2-Clause */
 #include <setjmp.h>
 #include <stdarg.h>
@@ -8,9 +8,9 @@
 #include <cmocka.h>
 
 #include "cloud_case.h"
-#include "train/cells.h"
-#include "train/seed.h"
-#include "train/space.h"
+#include "train/math/voxel_set.h"
+#include "train/model/init.h"
+#include "train/model/normalise.h"
 
 static cloud_case cloud;
 

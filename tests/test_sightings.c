@@ -1,4 +1,4 @@
-/* test_sightings.c - train/sightings.c: over which times a colour is there, from how many cameras look and how many agree at each.
+/* test_sightings.c - train/densify/photo_votes.c: over which times a colour is there, from how many cameras look and how many agree at each.
  * SPDX-License-Identifier: BSD-2-Clause */
 #include <setjmp.h>
 #include <stdarg.h>
@@ -7,7 +7,7 @@
 #include <string.h>
 #include <cmocka.h>
 
-#include "train/sightings.h"
+#include "train/densify/photo_votes.h"
 
 enum { FRAMES = 12, CAMERAS = 6 };
 

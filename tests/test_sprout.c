@@ -1,4 +1,4 @@
-/* test_sprout.c - train/sprout.h: a fast ball that no initial point stands for is found where and when it is, and gets anchors. That they
+/* test_sprout.c - train/densify/mv_seed.h: a fast ball that no initial point stands for is found where and when it is, and gets anchors. That they
  * matter is shown on scenes: bench/report.md.
  * SPDX-License-Identifier: BSD-2-Clause */
 #include <setjmp.h>
@@ -11,7 +11,7 @@
 
 #include "ball_group.h"
 #include "ball_missing.h"
-#include "train/sprout.h"
+#include "train/densify/mv_seed.h"
 
 enum { SPEED = 2, STEPS = 120 };     /* the blue ball moves 0.5 a frame; its radius is 0.3 */
 

@@ -7,7 +7,7 @@
 #include <cmocka.h>
 
 #include "ball_trainer.h"
-#include "train/checkpoint.h"
+#include "train/step/checkpoint.h"
 
 enum { STAGE1 = 400, FRAMES = 5 };
 

@@ -1,4 +1,4 @@
-/* test_step_grad.c - the gradient of a whole training step, chained as train/trainer.c does it:
+/* test_step_grad.c - the gradient of a whole training step, chained as train/state/trainer.c does it:
  * distortion of rasteriser of generation and, in stage 2, of the quantiser, plus the rate. Its
  * products with random directions, in each part of the model and in all at once, against central
  * differences of double-precision references. Quantisation residuals are held fixed, masks are
@@ -15,8 +15,8 @@
 #include "raster_ref.h"
 #include "rate_ref.h"
 #include "render/raster_plain.h"
-#include "train/loss.h"
-#include "train/random.h"
+#include "train/loss/loss.h"
+#include "train/math/random.h"
 
 enum { WIDTH = 32, HEIGHT = 24, PIXELS = WIDTH * HEIGHT, SLOTS = 2, OFFSETS = 3, ANCHORS = 40,
        SPLATS = SLOTS * OFFSETS * TED4_LANES, MAX_THETA = 12000 };
@@ -28,7 +28,7 @@ enum { WIDTH = 32, HEIGHT = 24, PIXELS = WIDTH * HEIGHT, SLOTS = 2, OFFSETS = 3,
 /* Float gradients against double differences, relative to the size of the terms of the product. */
 #define TOLERANCE  1e-4
 
-/* All parameters are one array: the networks, then blocks of channels as train/model.h has them. */
+/* All parameters are one array: the networks, then blocks of channels as train/model/model.h has them. */
 typedef struct {
     ted4_layout layout;
     ted4_view   view;

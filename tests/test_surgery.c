@@ -1,4 +1,4 @@
-/* test_surgery.c - train/surgery.c and the moves made with it: a model that loses what it does not use draws the same pictures, and one that loses nothing is the same.
+/* test_surgery.c - train/resize/resize.c and the moves made with it: a model that loses what it does not use draws the same pictures, and one that loses nothing is the same.
  * SPDX-License-Identifier: BSD-2-Clause */
 #include <math.h>
 #include <setjmp.h>
@@ -8,10 +8,10 @@
 #include <cmocka.h>
 
 #include "ball_trainer.h"
-#include "train/capacity.h"
-#include "train/checkpoint.h"
-#include "train/rotate.h"
-#include "train/surgery.h"
+#include "train/search/model_search.h"
+#include "train/step/checkpoint.h"
+#include "train/resize/feature_pca.h"
+#include "train/resize/resize.h"
 
 enum { STAGE1 = 400, STEPS = 440, FRAMES = 5, PIXELS = 3 * BALL_W * BALL_H, SHOTS = 6, F = 8, K = 4 };
 

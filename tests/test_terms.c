@@ -9,7 +9,7 @@
 #include <cmocka.h>
 
 #include "ball_group.h"
-#include "train/checkpoint.h"
+#include "train/step/checkpoint.h"
 
 enum { STAGE1 = 150, STAGE2 = 200 };
 

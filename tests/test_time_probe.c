@@ -1,4 +1,4 @@
-/* test_time_probe.c - train/time_probe.c: time is kept where things move and dropped where nothing does, and trying it leaves no trace in what is kept.
+/* test_time_probe.c - train/search/static_test.c: time is kept where things move and dropped where nothing does, and trying it leaves no trace in what is kept.
  * SPDX-License-Identifier: BSD-2-Clause */
 #include <setjmp.h>
 #include <stdarg.h>
@@ -7,7 +7,7 @@
 #include <cmocka.h>
 
 #include "ball_trainer.h"
-#include "train/checkpoint.h"
+#include "train/step/checkpoint.h"
 
 /* A branch of 200 steps, from a quarter of stage 1 on. */
 enum { STAGE1 = 2000, BEGIN = STAGE1 / 4, BRANCH = 200, FRAMES = 5 };

@@ -11,7 +11,7 @@
 
 #include "ball_decoded.h"
 #include "tool/threads.h"
-#include "train/checkpoint.h"
+#include "train/step/checkpoint.h"
 
 enum { STAGE1 = 400, STAGE2 = 250, INTEGER_FROM = STAGE1 + 200, FRAMES = 5 };
 

@@ -1,4 +1,4 @@
-/* test_transient.c - train/transient.c: which initial points are found to exist only for a while, and when.
+/* test_transient.c - train/densify/short_lived.c: which initial points are found to exist only for a while, and when.
  * SPDX-License-Identifier: BSD-2-Clause */
 #include <setjmp.h>
 #include <stdarg.h>
@@ -9,7 +9,7 @@
 #include <cmocka.h>
 
 #include "ball_scene.h"
-#include "train/transient.h"
+#include "train/densify/short_lived.h"
 
 enum { FRAMES = 5 };
 

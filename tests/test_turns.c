@@ -1,4 +1,4 @@
-/* test_turns.c - train/turns.h: cameras that take turns, one picture a time. A ball that no initial
+/* test_turns.c - train/densify/turns.h: cameras that take turns, one picture a time. A ball that no initial
  * point stands for is found from the pictures of several times.
  * SPDX-License-Identifier: BSD-2-Clause */
 #include <setjmp.h>
@@ -12,8 +12,8 @@
 #define BALL_FRAMES 24
 #include "ball_group.h"
 #include "ball_missing.h"
-#include "train/sprout.h"
-#include "train/turns.h"
+#include "train/densify/mv_seed.h"
+#include "train/densify/turns.h"
 
 /* The blue ball moves by 0.3 of its radius a frame. */
 enum { SPEED = 2, STEPS = 80 };

@@ -1,4 +1,4 @@
-/* test_update.c - the terms that train/update.c adds to the picture's gradients, against central differences of their losses in double precision; Adam
+/* test_update.c - the terms that train/step/apply_gradients.c adds to the picture's gradients, against central differences of their losses in double precision; Adam
  * against its formula.
  * SPDX-License-Identifier: BSD-2-Clause */
 #include <setjmp.h>
@@ -9,7 +9,7 @@
 #include <cmocka.h>
 
 #include "cloud_case.h"
-#include "train/adam.h"
+#include "train/math/adam.h"
 
 static cloud_case cloud;
 

@@ -12,7 +12,7 @@
 #include <cmocka.h>
 
 #include "data/useful.h"
-#include "train/random.h"
+#include "train/math/random.h"
 
 /* Cameras side by side before a slanted wall, z = WALL + slant x, with waves of colour on it. */
 enum { CAMERAS = 7, WIDTH = 128, HEIGHT = 96, POINTS = 3000 };

@@ -1,4 +1,4 @@
-/* test_watch.c - train/watch.c and train/gradients.c: what goes wrong is found when it happens and named, training goes on from the last good state with
+/* test_watch.c - train/step/monitor.c and train/step/grad_norm.c: what goes wrong is found when it happens and named, training goes on from the last good state with
  * smaller steps, three times; a training that goes well never notices. Files and logs of a program that went back: test_run_log.c.
  * SPDX-License-Identifier: BSD-2-Clause */
 #include <setjmp.h>
@@ -8,8 +8,8 @@
 #include <cmocka.h>
 
 #include "ball_trainer.h"
-#include "train/checkpoint.h"
-#include "train/gradients.h"
+#include "train/step/checkpoint.h"
+#include "train/step/grad_norm.h"
 
 /* States are kept at the beginning, at 250 and at the end of stage 1. */
 enum { STAGE1 = 400, INTEGER_FROM = 600, KEPT = 250, FRAMES = 5 };

@@ -1,7 +1,7 @@
 /* metrics.h - quality of one 8-bit RGB picture against another, by the definitions the literature
  * of dynamic scenes uses.
  * Depends on base/parallel.h. The differentiable loss of the trainer is
- * train/loss.h.
+ * train/loss/loss.h.
  * SPDX-License-Identifier: BSD-2-Clause */
 #ifndef TED4_METRICS_H
 #define TED4_METRICS_H

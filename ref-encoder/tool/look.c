@@ -4,7 +4,7 @@
 #include <math.h>
 
 #include "stop.h"
-#include "train/capacity.h"
+#include "train/search/model_search.h"
 #include "training.h"
 
 /* The search for smaller models looks at so many and trains with this share of its budget at least,

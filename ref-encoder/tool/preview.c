@@ -5,8 +5,8 @@
 
 #include <stdlib.h>
 
-#include "train/checkpoint.h"
-#include "train/make_scene.h"
+#include "train/step/checkpoint.h"
+#include "train/step/export_scene.h"
 #include "write/deflate.h"
 #include "write/encode.h"
 

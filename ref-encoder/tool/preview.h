@@ -4,7 +4,7 @@
 #ifndef TED4_PREVIEW_H
 #define TED4_PREVIEW_H
 
-#include "train/trainer.h"
+#include "train/state/trainer.h"
 
 /* Bytes are 0 before stage 2. */
 typedef struct {

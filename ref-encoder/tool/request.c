@@ -1,4 +1,4 @@
-/* request.c - see request.h. Training options come from their own table (train/options.def).
+/* request.c - see request.h. Training options come from their own table (train/model/options.def).
  * SPDX-License-Identifier: BSD-2-Clause */
 #include "request.h"
 

@@ -6,7 +6,7 @@
 #include <stddef.h>
 
 #include "data/scatter.h"
-#include "train/options.h"
+#include "train/model/options.h"
 
 enum { TED4_REQUEST_HOLD_OUT = 256 };
 

@@ -11,9 +11,9 @@
 #include <time.h>
 #include <unistd.h>
 
-#include "train/capacity.h"
-#include "train/clamped.h"
-#include "train/make_scene.h"
+#include "train/search/model_search.h"
+#include "train/step/saturation.h"
+#include "train/step/export_scene.h"
 
 /* Written and read again. */
 #define CPU_SECONDS "\"cpu_seconds\":"

@@ -5,7 +5,7 @@
 
 #include "preview.h"
 #include "teller.h"
-#include "train/trainer.h"
+#include "train/state/trainer.h"
 
 typedef struct {
     const char *path;           /* borrowed; NULL: no log file */
@@ -65,7 +65,7 @@ int  ted4_run_log_step(ted4_run_log *l, const ted4_trainer *t, char *why, size_t
  *   factor                 of learning rates from here on
  * The same results. */
 int  ted4_run_log_event(ted4_run_log *l, const ted4_trainer *t, char *why, size_t why_size);
-/* One line about each trial of a smaller model (train/capacity.h) from number first on, once they are made:
+/* One line about each trial of a smaller model (train/search/model_search.h) from number first on, once they are made:
  *   step                   where training goes on
  *   event                  "capacity"
  *   rollbacks              so far

@@ -4,7 +4,7 @@
 #include <stdio.h>
 
 #include "math/elementary.h"
-#include "train/checkpoint.h"
+#include "train/step/checkpoint.h"
 #include "training.h"
 
 /* Near enough: a file that leaves less than this share of the target unused. */

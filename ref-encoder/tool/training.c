@@ -8,8 +8,8 @@
 #include <unistd.h>
 
 #include "stop.h"
-#include "train/checkpoint.h"
-#include "train/make_scene.h"
+#include "train/step/checkpoint.h"
+#include "train/step/export_scene.h"
 #include "why.h"
 #include "write/encode.h"
 

@@ -6,7 +6,7 @@
 #include <string.h>
 
 #include "base/bytes.h"
-#include "train/header.h"
+#include "train/model/header_from_options.h"
 #include "write/encode.h"
 
 static int blob_differs(const ted4_blob *a, const ted4_blob *b)

@@ -6,8 +6,8 @@
 #include <stdlib.h>
 
 #include "data/flicker.h"
-#include "train/capacity.h"
-#include "train/make_scene.h"
+#include "train/search/model_search.h"
+#include "train/step/export_scene.h"
 
 static void put_time(FILE *f, const ted4_trainer *t)
 {

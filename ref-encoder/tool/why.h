@@ -3,7 +3,7 @@
 #ifndef TED4_WHY_H
 #define TED4_WHY_H
 
-#include "train/trainer.h"
+#include "train/state/trainer.h"
 
 /* Lines key=value, keys beginning with "capacity", to be freed. No times, no names. NULL: no memory. */
 char *ted4_why_text(const ted4_trainer *t);

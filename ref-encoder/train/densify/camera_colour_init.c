@@ -1,0 +1,417 @@
+/* camera_colour_init.c - see camera_colour_init.h. In turn: each point's colour is, by channel, the median over the cameras of what they see there with their maps undone; each camera's
+ * map is the weighted least squares fit from those colours to what it sees. Where something stands between, a camera sees another colour: weights are
+ * Tukey's biweight of the difference, whose width narrows from round to round. In the end the points' own colours say what all cameras have in common.
+ * SPDX-License-Identifier: BSD-2-Clause */
+#include "camera_colour_init.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "math/elementary.h"
+#include "photo_votes.h"
+#include "train/model/normalise.h"
+
+/* Pictures of a camera that are looked at: what a point looks like to it is their median, by channel. Odd. */
+enum { LOOKS = 5 };
+/* Points times cameras, at most; more points are thinned out evenly. */
+enum { MOST = 4 << 20 };
+/* Rounds, and the widths at which a difference weighs nothing, of 255: tints of the size of the first are still found; the last leaves noise of a few. */
+enum { ROUNDS = 8 };
+#define WIDEST   56.0
+#define NARROWEST 14.0
+/* Sum of weights below which a camera keeps the identity. */
+#define FEWEST 100.0
+/* Where cameras differ by less than this, of 255, it may be the noise of the fit (measured: 0.2 to 1 where no camera has a tint), and training is left alone. */
+#define ALIKE 2.0
+/* Pull towards the identity, as a share of the weights: noise of a few of 255, squared. */
+#define RIDGE 1e-4
+/* Initial points that are brighter or darker than this were not given the colours of pictures, but albedo, say, or linear light. */
+#define MOST_GAIN 1.25
+
+typedef struct {
+    ted4_trainer *t;
+    size_t        n, stride;    /* points */
+    size_t        cameras;      /* of the dataset */
+    uint8_t      *seen;         /* [cameras][n] 0 or 1 */
+    uint8_t      *rgb;          /* [cameras][n][3] */
+    float        *point;        /* [n][3] colours of the scene, 0 .. 1 */
+    uint8_t      *shared;       /* [n] is the point seen by two cameras? */
+    float        *sorted;       /* [cameras] */
+} match;
+
+static int ascending(const void *x, const void *y)
+{
+    const float a = *(const float *)x, b = *(const float *)y;
+
+    return a < b ? -1 : a > b;
+}
+
+static float median(float *x, size_t n)
+{
+    qsort(x, n, sizeof *x, ascending);
+    return 0.5f * (x[(n - 1) / 2] + x[n / 2]);
+}
+
+/* ---- what is seen ---- */
+
+/* A picture is cut into cells by cells, one for so many points: what lies deeper than the nearest point of a cell by more than this share is taken to be hidden. */
+enum { MOST_CELLS = 64 };
+#define POINTS_A_CELL 8.0
+#define HIDDEN        0.1f
+
+/* Looks of one camera: colours [n][LOOKS][3], and how many there are [n]. Of the picture at hand: each point's pixel and depth, 0 where it is not in the picture [n],
+ * and the nearest depth of each of cells times cells. */
+typedef struct {
+    uint8_t *rgb, *count;
+    size_t  *pixel;
+    float   *depth, nearest[MOST_CELLS * MOST_CELLS];
+    size_t   cells;
+} looks;
+
+static float *nearest_at(looks *l, const ted4_view *v, size_t pixel)
+{
+    const size_t w = (size_t)v->width, h = (size_t)v->height;
+
+    return &l->nearest[pixel / w * l->cells / h * l->cells + pixel % w * l->cells / w];
+}
+
+static void project(const match *m, const ted4_view *v, looks *l)
+{
+    for (size_t c = 0; c < l->cells * l->cells; c++)
+        l->nearest[c] = INFINITY;
+    for (size_t i = 0; i < m->n; i++) {
+        float p[3], *nearest;
+
+        l->depth[i] = 0;
+        ted4_space_point(&m->t->layout.head, m->t->data->points + 3 * i * m->stride, p);
+        if (!ted4_view_pixel(v, p, &l->pixel[i], &l->depth[i]))
+            continue;
+        nearest = nearest_at(l, v, l->pixel[i]);
+        *nearest = fminf(*nearest, l->depth[i]);
+    }
+}
+
+static int look(match *m, size_t item, looks *l)
+{
+    ted4_trainer       *t = m->t;
+    const ted4_picture *pic = &t->data->pictures[item];
+    const uint8_t      *pixels = ted4_dataset_pixels(t->data, item, &t->message);
+    ted4_view           v;
+    float               centre[3];
+
+    if (pixels == NULL)
+        return -1;
+    ted4_space_view(&t->layout.head, &pic->camera, &v, centre);
+    project(m, &v, l);
+    for (size_t i = 0; i < m->n; i++)
+        if (l->depth[i] > 0 && l->depth[i] <= (1.0f + HIDDEN) * *nearest_at(l, &v, l->pixel[i]))
+            memcpy(l->rgb + 3 * (i * LOOKS + l->count[i]++), pixels + 3 * l->pixel[i], 3);
+    ted4_dataset_release(t->data, item);
+    return 0;
+}
+
+static void settle(match *m, size_t camera, const looks *l)
+{
+    for (size_t i = 0; i < m->n; i++) {
+        float x[LOOKS];
+
+        m->seen[camera * m->n + i] = l->count[i] > 0;
+        for (size_t c = 0; c < 3 && l->count[i] > 0; c++) {
+            for (size_t k = 0; k < l->count[i]; k++)
+                x[k] = l->rgb[3 * (i * LOOKS + k) + c];
+            m->rgb[3 * (camera * m->n + i) + c] = (uint8_t)median(x, l->count[i]);
+        }
+    }
+}
+
+/* Training pictures of a camera. */
+static size_t count_pictures(const ted4_dataset *d, size_t camera)
+{
+    size_t n = 0;
+
+    for (size_t i = 0; i < d->n_pictures; i++)
+        n += !d->pictures[i].is_test && d->pictures[i].camera_id == camera;
+    return n;
+}
+
+static int look_from(match *m, size_t camera, looks *l)
+{
+    const ted4_dataset *d = m->t->data;
+    const size_t        pictures = count_pictures(d, camera), wanted = pictures < LOOKS ? pictures : LOOKS;
+    size_t              at = 0, taken = 0;
+
+    memset(l->count, 0, m->n);
+    for (size_t i = 0; i < d->n_pictures && taken < wanted; i++) {
+        if (d->pictures[i].is_test || d->pictures[i].camera_id != camera)
+            continue;
+        if (at++ == taken * pictures / wanted) {
+            taken++;
+            if (look(m, i, l) != 0)
+                return -1;
+        }
+    }
+    settle(m, camera, l);
+    return 0;
+}
+
+static int look_around(match *m)
+{
+    looks l = { malloc(3 * LOOKS * m->n), malloc(m->n), malloc(m->n * sizeof *l.pixel),
+                malloc(m->n * sizeof *l.depth), { 0 },
+                (size_t)fmin(ceil(sqrt((double)m->n / POINTS_A_CELL)), MOST_CELLS) };
+    int   bad = 0;
+
+    if (l.rgb == NULL || l.count == NULL || l.pixel == NULL || l.depth == NULL)
+        bad = ted4_trainer_fail(m->t, "no memory to compare cameras");
+    for (size_t k = 0; k < m->cameras && !bad; k++)
+        if (ted4_colour_has(&m->t->colour, (uint32_t)k))
+            bad = look_from(m, k, &l);
+    free(l.rgb);
+    free(l.count);
+    free(l.pixel);
+    free(l.depth);
+    return bad;
+}
+
+/* ---- one round ---- */
+
+typedef struct {
+    double inverse[9], v[3];
+    int    usable;
+} undo;
+
+static void find_points(match *m, const undo *back)
+{
+    for (size_t i = 0; i < m->n; i++)
+        for (size_t c = 0; c < 3; c++) {
+            size_t seen = 0;
+
+            for (size_t k = 0; k < m->cameras; k++) {
+                const uint8_t *x = m->rgb + 3 * (k * m->n + i);
+                double         sum = 0;
+
+                if (!back[k].usable || !m->seen[k * m->n + i])
+                    continue;
+                for (size_t j = 0; j < 3; j++)
+                    sum += (x[j] / 255.0 - back[k].v[j]) * back[k].inverse[3 * j + c];
+                m->sorted[seen++] = (float)sum;
+            }
+            m->shared[i] = seen >= 2;
+            m->point[3 * i + c] = seen > 0 ? median(m->sorted, seen) : 0.0f;
+        }
+}
+
+/* Sums of products over the points that a camera sees: of (r, g, b, 1) with itself, and with its colours. */
+typedef struct {
+    double left[4][4], right[4][3], weight;
+} normal;
+
+static void add_points(const match *m, size_t camera, const float *map, double width, normal *s)
+{
+    memset(s, 0, sizeof *s);
+    for (size_t i = 0; i < m->n; i++) {
+        const uint8_t *to = m->rgb + 3 * (camera * m->n + i);
+        const double   x[4] = { (double)m->point[3 * i], (double)m->point[3 * i + 1],
+                                (double)m->point[3 * i + 2], 1.0 };
+        double         off = 0;
+
+        if (!m->seen[camera * m->n + i] || !m->shared[i])
+            continue;
+        for (size_t c = 0; c < 3; c++) {
+            double e = x[c] + (double)map[9 + c] - to[c] / 255.0;
+
+            for (size_t j = 0; j < 3; j++)
+                e += x[j] * (double)map[3 * j + c];
+            off += e * e / 3.0;
+        }
+        const double near = 1.0 - off / (width * width), w = near > 0 ? near * near : 0.0;
+
+        s->weight += w;
+        for (size_t r = 0; r < 4; r++) {
+            for (size_t c = 0; c < 4; c++)
+                s->left[r][c] += w * x[r] * x[c];
+            for (size_t c = 0; c < 3; c++)
+                s->right[r][c] += w * x[r] * (to[c] / 255.0 - x[c]);
+        }
+    }
+}
+
+/* left * solution = right by Cholesky's method, in place of right; left is positive definite. */
+static void solve(normal *s)
+{
+    double (*a)[4] = s->left, (*b)[3] = s->right;
+
+    for (int j = 0; j < 4; j++)
+        for (int i = j; i < 4; i++) {
+            for (int k = 0; k < j; k++)
+                a[i][j] -= a[i][k] * a[j][k];
+            a[i][j] = i == j ? sqrt(a[i][j]) : a[i][j] / a[j][j];
+        }
+    for (int c = 0; c < 3; c++) {
+        for (int i = 0; i < 4; i++) {
+            for (int k = 0; k < i; k++)
+                b[i][c] -= a[i][k] * b[k][c];
+            b[i][c] /= a[i][i];
+        }
+        for (int i = 3; i >= 0; i--) {
+            for (int k = i + 1; k < 4; k++)
+                b[i][c] -= a[k][i] * b[k][c];
+            b[i][c] /= a[i][i];
+        }
+    }
+}
+
+/* Leaves the map as it is where too little is seen. */
+static void fit(const match *m, size_t camera, double width)
+{
+    float *map = m->t->colour.value[camera];
+    normal s;
+
+    add_points(m, camera, map, width, &s);
+    if (s.weight < FEWEST)
+        return;
+    for (int i = 0; i < 4; i++)
+        s.left[i][i] += RIDGE * s.weight;
+    solve(&s);
+    for (int r = 0; r < 4; r++)
+        for (int c = 0; c < 3; c++)
+            map[3 * r + c] = (float)s.right[r][c];
+}
+
+/* Colours of points with the maps as they are. */
+static void look_back(match *m, undo *back)
+{
+    const ted4_colour *colour = &m->t->colour;
+
+    for (size_t k = 0; k < m->cameras; k++) {
+        back[k].usable = ted4_colour_has(colour, (uint32_t)k) &&
+                         ted4_colour_invert(colour->value[k], back[k].inverse) == 0;
+        for (int c = 0; c < 3; c++)
+            back[k].v[c] = (double)colour->value[k][9 + c];
+    }
+    find_points(m, back);
+}
+
+static void one_round(match *m, undo *back, double width)
+{
+    look_back(m, back);
+    for (size_t k = 0; k < m->cameras; k++)
+        if (back[k].usable)
+            fit(m, k, width);
+    ted4_colour_centre(&m->t->colour);
+}
+
+/* ---- what all have in common ---- */
+
+/* Sums, over points where both agree but for gain, of the colours that came with the points and of what cameras see there, by channel; and of their weights. */
+typedef struct {
+    double given[3], seen[3], weight;
+} levels;
+
+static levels add_levels(const match *m, const double *gain, double width)
+{
+    levels s = { { 0 }, { 0 }, 0 };
+
+    for (size_t i = 0; i < m->n; i++) {
+        const uint8_t *given = m->t->data->point_rgb + 3 * i * m->stride;
+        double         off = 0;
+
+        if (!m->shared[i])
+            continue;
+        for (size_t c = 0; c < 3; c++) {
+            const double e = gain[c] * (double)m->point[3 * i + c] - given[c] / 255.0;
+
+            off += e * e / 3.0;
+        }
+        const double near = 1.0 - off / (width * width), w = near > 0 ? near * near : 0.0;
+
+        s.weight += w;
+        for (size_t c = 0; c < 3; c++) {
+            s.given[c] += w * given[c] / 255.0;
+            s.seen[c] += w * (double)m->point[3 * i + c];
+        }
+    }
+    return s;
+}
+
+/* Cameras alone cannot tell what the middle of them does to colours; initial points may have been given colours that do. Both sides are noisy, so that
+ * levels are compared, and no line is fitted, which would lie too flat. Nothing changes where hardly a point agrees, or colours mean something else. */
+static void find_gauge(match *m, undo *back)
+{
+    double gain[3] = { 1, 1, 1 };
+
+    look_back(m, back);
+    for (int i = 0; i < 2 * ROUNDS; i++) {
+        const levels s = add_levels(m, gain, WIDEST / 255.0 * ted4_math_pow(NARROWEST / WIDEST, fmin(i / (ROUNDS - 1.0), 1)));
+
+        for (int c = 0; c < 3; c++) {
+            gain[c] = s.given[c] / s.seen[c];
+            if (s.weight < FEWEST || !(gain[c] < MOST_GAIN && gain[c] > 1.0 / MOST_GAIN))
+                return;
+        }
+    }
+    ted4_colour_regauge(&m->t->colour, gain);
+}
+
+/* Do cameras differ more than the fit is wrong? Mean over cameras and points of what their maps change. */
+static int differ(const match *m)
+{
+    const ted4_colour *colour = &m->t->colour;
+    double             sum = 0, n = 0;
+
+    for (size_t k = 0; k < m->cameras; k++)
+        for (size_t i = 0; i < m->n && colour->corrected[k]; i++) {
+            const float *x = m->point + 3 * i, *map = colour->value[k];
+
+            for (size_t c = 0; c < 3 && m->shared[i]; c++) {
+                const float d = x[0] * map[c] + x[1] * map[3 + c] + x[2] * map[6 + c] + map[9 + c];
+
+                sum += (double)(d * d);
+                n++;
+            }
+        }
+    return n > 0 && sqrt(sum / n) >= ALIKE / 255.0;
+}
+
+static int work(match *m)
+{
+    ted4_colour *colour = &m->t->colour;
+    undo        *back = calloc(m->cameras, sizeof *back);
+    int          bad;
+
+    m->seen = calloc(m->cameras, m->n);
+    m->rgb = malloc(3 * m->cameras * m->n);
+    m->point = malloc(3 * m->n * sizeof *m->point);
+    m->shared = malloc(m->n);
+    m->sorted = malloc(m->cameras * sizeof *m->sorted);
+    bad = back == NULL || m->seen == NULL || m->rgb == NULL || m->point == NULL || m->shared == NULL ||
+                  m->sorted == NULL
+              ? ted4_trainer_fail(m->t, "no memory to compare cameras") : look_around(m);
+    for (int i = 0; i < ROUNDS && !bad; i++)
+        one_round(m, back, WIDEST / 255.0 * ted4_math_pow(NARROWEST / WIDEST, i / (ROUNDS - 1.0)));
+    colour->matched = !bad && differ(m);
+    if (colour->matched)
+        find_gauge(m, back);
+    else
+        memset(colour->value, 0, m->cameras * sizeof *colour->value);
+    free(back);
+    free(m->seen);
+    free(m->rgb);
+    free(m->point);
+    free(m->shared);
+    free(m->sorted);
+    return bad;
+}
+
+int ted4_colour_match(ted4_trainer *t)
+{
+    const size_t points = t->data->n_points, cameras = t->colour.n_cameras;
+    match        m = { .t = t, .cameras = cameras };
+
+    if (cameras == 0 || points == 0 || t->data->random_points)
+        return 0;
+    m.stride = 1 + points * cameras / MOST;
+    m.n = (points + m.stride - 1) / m.stride;
+    return work(&m);
+}

@@ -1,0 +1,213 @@
+/* photo_votes.c - see photo_votes.h.
+ * SPDX-License-Identifier: BSD-2-Clause */
+#include "photo_votes.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "math/elementary.h"
+#include "train/model/normalise.h"
+
+/* Share of the cameras that must agree, and how far from the best a time may be to count. */
+#define MUST_AGREE    0.5f
+#define NEAR_BEST     0.7f
+/* What comes and goes is there at no more than half of the times that are known. Or it is clearly gone, for all but a few of the cameras, at a quarter of
+ * them: where other cameras look each time, the share of those that a thing is hidden from varies, too. */
+#define LONGEST_SHARE 0.5f
+#define CLEARLY_GONE  0.25f
+#define GONE_SHARE    0.25f
+
+typedef struct {
+    ted4_sightings *s;
+    const uint8_t  *pixels;
+    ted4_view       view;
+    uint32_t        frame;
+} match_job;
+
+/* Points of one job. */
+enum { RUN = 4096 };
+
+static void match_run(void *arg, size_t run)
+{
+    const match_job *j = arg;
+    ted4_sightings  *s = j->s;
+    const size_t     end = (run + 1) * RUN < s->n ? (run + 1) * RUN : s->n;
+
+    for (size_t i = run * RUN; i < end; i++) {
+        const size_t at = j->frame * s->n + i;
+        size_t       pixel;
+        float        depth;
+
+        if (!ted4_view_pixel(&j->view, s->point + 3 * i, &pixel, &depth))
+            continue;
+        s->seen[at]++;
+        if (ted4_colour_agrees(j->pixels + 3 * pixel, s->colour + 3 * i))
+            s->hits[at]++;
+    }
+}
+
+static int match_pictures(ted4_sightings *s, ted4_trainer *t)
+{
+    match_job j = { .s = s };
+
+    for (size_t i = 0; i < t->data->n_pictures; i++) {
+        const ted4_picture *pic = &t->data->pictures[i];
+        float               centre[3];
+
+        if (pic->is_test)
+            continue;
+        for (size_t k = i + 1; k < t->data->n_pictures && k <= i + TED4_DATASET_AHEAD; k++)
+            if (!t->data->pictures[k].is_test)
+                ted4_dataset_ahead(t->data, k);
+        j.pixels = ted4_trainer_seen(t, i);
+        if (j.pixels == NULL)
+            return -1;
+        ted4_space_view(&t->layout.head, &pic->camera, &j.view, centre);
+        j.frame = pic->frame;
+        ted4_parallel_for(t->parallel, (s->n + RUN - 1) / RUN, match_run, &j);
+        ted4_dataset_release(t->data, i);
+    }
+    return 0;
+}
+
+/* count[n_frames][n]: each becomes the sum over so many frames before and after its own. column: room for n_frames. */
+static void widen(uint16_t *count, size_t n, uint32_t n_frames, uint32_t reach, uint16_t *column)
+{
+    for (size_t i = 0; i < n; i++) {
+        uint32_t sum = 0;
+
+        for (uint32_t f = 0; f < n_frames; f++)
+            column[f] = count[f * n + i];
+        for (uint32_t f = 0; f < reach && f < n_frames; f++)
+            sum += column[f];
+        for (uint32_t f = 0; f < n_frames; f++) {
+            sum += f + reach < n_frames ? column[f + reach] : 0;
+            sum -= f > reach ? column[f - reach - 1] : 0;
+            count[f * n + i] = (uint16_t)(sum < UINT16_MAX ? sum : UINT16_MAX);
+        }
+    }
+}
+
+/* 0, or -1: no memory. */
+static int widen_counts(ted4_sightings *s, uint32_t reach)
+{
+    uint16_t *column = reach > 0 ? malloc(s->n_frames * sizeof *column) : NULL;
+
+    if (reach > 0 && column == NULL)
+        return -1;
+    if (reach > 0) {
+        widen(s->hits, s->n, s->n_frames, reach, column);
+        widen(s->seen, s->n, s->n_frames, reach, column);
+    }
+    free(column);
+    return 0;
+}
+
+int ted4_sightings_count(ted4_sightings *s, ted4_trainer *t, const float *point, const uint8_t *colour, size_t n, uint32_t reach)
+{
+    memset(s, 0, sizeof *s);
+    s->point = point;
+    s->colour = colour;
+    s->n = n;
+    s->n_frames = t->data->n_frames;
+    s->hits = calloc(s->n_frames * n + 1, sizeof *s->hits);
+    s->seen = calloc(s->n_frames * n + 1, sizeof *s->seen);
+    if (s->hits == NULL || s->seen == NULL)
+        return ted4_trainer_fail(t, "no memory to look for what comes and goes");
+    if (match_pictures(s, t) != 0)
+        return -1;
+    return widen_counts(s, reach) != 0 ? ted4_trainer_fail(t, "no memory to look for what comes and goes") : 0;
+}
+
+void ted4_sightings_free(ted4_sightings *s)
+{
+    free(s->hits);
+    free(s->seen);
+    memset(s, 0, sizeof *s);
+}
+
+/* Do enough cameras look at point i at that time to tell whether it is there? Not where pictures are held out. */
+static int is_known(const ted4_sightings *s, uint32_t frame, size_t i)
+{
+    return s->seen[frame * s->n + i] >= TED4_CAMERAS_NEEDED;
+}
+
+static float agreement(const ted4_sightings *s, uint32_t frame, size_t i)
+{
+    const size_t at = frame * s->n + i;
+
+    return is_known(s, frame, i) ? (float)s->hits[at] / (float)s->seen[at] : 0.0f;
+}
+
+/* The last frame of the run that point i is there for, from a frame on in steps of +1 or -1, and in *gone how far behind it the next known time is. A time that
+ * nobody knows belongs to the run when the known times on both sides do, or when there is none on the far side. */
+static uint32_t run_end(const ted4_sightings *s, size_t i, uint32_t frame, int step, float enough, uint32_t *gone)
+{
+    const uint32_t last = step > 0 ? s->n_frames - 1 : 0;
+
+    for (uint32_t f = frame; f != last; ) {
+        f += (uint32_t)step;
+        if (!is_known(s, f, i))
+            continue;
+        if (agreement(s, f, i) < enough) {
+            *gone = step > 0 ? f - frame : frame - f;
+            return frame;
+        }
+        frame = f;
+    }
+    *gone = 1;
+    return last;
+}
+
+uint32_t ted4_sightings_best(const ted4_sightings *s, size_t i)
+{
+    uint32_t best = 0;
+
+    for (uint32_t f = 1; f < s->n_frames; f++)
+        if (agreement(s, f, i) > agreement(s, best, i))
+            best = f;
+    return best;
+}
+
+static int comes_and_goes(const ted4_sightings *s, size_t i, float best)
+{
+    uint32_t known = 0, there = 0, gone = 0;
+
+    for (uint32_t f = 0; f < s->n_frames; f++) {
+        if (!is_known(s, f, i))
+            continue;
+        known++;
+        there += agreement(s, f, i) >= NEAR_BEST * best;
+        gone += agreement(s, f, i) < CLEARLY_GONE * best;
+    }
+    return (float)there <= LONGEST_SHARE * (float)known || (float)gone >= GONE_SHARE * (float)known;
+}
+
+int ted4_sightings_span(const ted4_sightings *s, size_t i, uint32_t frame, ted4_span *span)
+{
+    const float best = agreement(s, ted4_sightings_best(s, i), i), enough = NEAR_BEST * best;
+
+    if (agreement(s, frame, i) < fmaxf(MUST_AGREE, enough) || !comes_and_goes(s, i, best))
+        return 0;
+    span->from = run_end(s, i, frame, -1, enough, &span->before);
+    span->to = run_end(s, i, frame, 1, enough, &span->after);
+    return 1;
+}
+
+/* In distances to the next known time: how far beyond its first and last frame a span goes, so that coding it a little off costs nothing, and how fast it
+ * fades then: at that time exp(-4.6) is left. */
+#define SPAN_BEYOND 0.25f
+#define SPAN_FADES  0.35f
+
+void ted4_span_set(ted4_trainer *t, size_t i, const ted4_span *span)
+{
+    const int   first = t->layout.first[TED4_TAU];
+    const float frame = 1.0f / (float)(t->data->n_frames - 1);
+    const float before = (float)span->before, after = (float)span->after;
+
+    *ted4_cell(&t->anchors, TED4_ROW_VALUE, i, first) = ((float)span->from - SPAN_BEYOND * before) * frame;
+    *ted4_cell(&t->anchors, TED4_ROW_VALUE, i, first + 1) = ted4_math_log2f(SPAN_FADES * before * frame);
+    *ted4_cell(&t->anchors, TED4_ROW_VALUE, i, first + 2) = ((float)span->to + SPAN_BEYOND * after) * frame;
+    *ted4_cell(&t->anchors, TED4_ROW_VALUE, i, first + 3) = ted4_math_log2f(SPAN_FADES * after * frame);
+}

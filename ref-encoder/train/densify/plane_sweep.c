@@ -1,0 +1,325 @@
+/* plane_sweep.c - see sprout.h: the places of one frame.
+ * SPDX-License-Identifier: BSD-2-Clause */
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "train/math/voxel_set.h"
+#include "math/elementary.h"
+#include "photo_votes.h"
+#include "train/model/normalise.h"
+#include "mv_seed.h"
+
+/* A pixel misses something when its error, averaged over the channels, is this many of 255; one that confirms it needs half of that. */
+#define MISSING 24
+/* Pixels looked at are this share of the picture's width apart. */
+#define SPACING (1.0f / 120.0f)
+/* Depths tried lie at most this many pixels apart in any other picture. */
+#define PIXELS_APART 1.5f
+enum { FEWEST_DEPTHS = 16, MOST_DEPTHS = 512 };
+/* Depths begin and end at these multiples of the depths between which 96 % of a view's anchors lie. */
+#define NEARER  0.5f
+#define FARTHER 1.2f
+#define OUTLIERS 0.02f
+/* One picture of the frame, or of those around it. */
+typedef struct {
+    ted4_view view;
+    float     centre[3];
+    float     nearest, farthest;    /* depths to try */
+    int       depths;
+    int       is_own;               /* of the frame itself */
+    int       helps;                /* in the search for what one of them misses: it is another one, far enough from it */
+    uint8_t  *rgb, *error;          /* owned: [pixels][3], [pixels] */
+} eye;
+
+typedef struct {
+    const eye  *eyes;
+    size_t      n, self;
+    int         step;               /* pixels between those looked at */
+    ted4_place *found;              /* [rows][columns], score 0: nothing */
+    int         columns;
+} search_job;
+
+/* Distance by which the point at 1/z is off in the other picture when 1/z is off by one, roughly. */
+static float parallax(const eye *a, const eye *b)
+{
+    float square = 0;
+
+    for (int k = 0; k < 3; k++)
+        square += (a->centre[k] - b->centre[k]) * (a->centre[k] - b->centre[k]);
+    return sqrtf(square) * fmaxf(b->view.fx, b->view.fy);
+}
+
+static void count_depths(eye *eyes, size_t n, size_t self)
+{
+    float farthest = 0;
+
+    for (size_t i = 0; i < n; i++)
+        farthest = fmaxf(farthest, parallax(&eyes[self], &eyes[i]));
+
+    const float range = 1.0f / eyes[self].nearest - 1.0f / eyes[self].farthest;
+    const float wanted = ceilf(range * farthest / PIXELS_APART);
+
+    eyes[self].depths = (int)fmaxf(FEWEST_DEPTHS, fminf(wanted, MOST_DEPTHS));
+}
+
+/* Does the other picture look at the point, and does it confirm it: 0 no, above: how well. */
+static float confirm(const eye *e, const float p[3], const uint8_t colour[3], int *looks)
+{
+    size_t pixel;
+    float  depth;
+
+    *looks = ted4_view_pixel(&e->view, p, &pixel, &depth);
+    if (!*looks || e->error[pixel] < MISSING / 2 ||
+        !ted4_colour_agrees(e->rgb + 3 * pixel, colour))
+        return 0.0f;
+    return 1.0f - (float)ted4_colour_far(e->rgb + 3 * pixel, colour) / (3.0f * TED4_COLOUR_NEAR + 1.0f);
+}
+
+/* Point at depth z on the ray through a pixel's centre. */
+static void point_at(const ted4_view *v, int column, int row, float z, float p[3])
+{
+    const float c[3] = { ((float)column + 0.5f - v->cx) / v->fx * z - v->t[0],
+                         ((float)row + 0.5f - v->cy) / v->fy * z - v->t[1], z - v->t[2] };
+
+    for (int k = 0; k < 3; k++)
+        p[k] = v->R[k] * c[0] + v->R[3 + k] * c[1] + v->R[6 + k] * c[2];
+}
+
+/* The depth of a pixel that most of the other cameras confirm. */
+static void sweep(const search_job *j, int column, int row, ted4_place *best)
+{
+    const eye     *me = &j->eyes[j->self];
+    const size_t   pixel = (size_t)row * (size_t)me->view.width + (size_t)column;
+    const uint8_t *colour = me->rgb + 3 * pixel;
+
+    for (int k = 0; k < me->depths; k++) {
+        const float part = (float)k / (float)(me->depths - 1);
+        const float z = 1.0f / ((1.0f - part) / me->nearest + part / me->farthest);
+        float       p[3], score = 0;
+        int         seen = 0, agree = 0;
+
+        point_at(&me->view, column, row, z, p);
+        if (fabsf(p[0]) > 1.0f || fabsf(p[1]) > 1.0f || fabsf(p[2]) > 1.0f)
+            continue;
+        for (size_t i = 0; i < j->n; i++) {
+            int looks;
+
+            if (!j->eyes[i].helps)
+                continue;
+            const float s = confirm(&j->eyes[i], p, colour, &looks);
+
+            seen += looks;
+            agree += s > 0;
+            score += s;
+        }
+        score *= (float)me->error[pixel] / 255.0f;
+        if (agree + 1 < TED4_CAMERAS_NEEDED || 2 * agree < seen || score <= best->score)
+            continue;
+        memcpy(best->point, p, sizeof p);
+        best->size = z * (float)j->step / me->view.fx;
+        best->score = score;
+    }
+    memcpy(best->colour, colour, 3);
+}
+
+static void search_row(void *arg, size_t r)
+{
+    const search_job *j = arg;
+    const eye        *me = &j->eyes[j->self];
+    const int         row = (int)r * j->step + j->step / 2;
+
+    for (int c = 0; c < j->columns; c++) {
+        ted4_place *place = &j->found[r * (size_t)j->columns + (size_t)c];
+        const int   column = c * j->step + j->step / 2;
+
+        memset(place, 0, sizeof *place);
+        if (row < me->view.height && column < me->view.width &&
+            me->error[(size_t)row * (size_t)me->view.width + (size_t)column] >= MISSING)
+            sweep(j, column, row, place);
+    }
+}
+
+static int compare_floats(const void *x, const void *y)
+{
+    const float a = *(const float *)x, b = *(const float *)y;
+
+    return a < b ? -1 : a > b;
+}
+
+/* Between which depths anchors lie in a view. 0, or -1: no memory. */
+static int depth_range(const ted4_trainer *t, eye *e)
+{
+    float *z = malloc((t->anchors.n + 1) * sizeof *z);
+    size_t n = 0;
+
+    if (z == NULL)
+        return -1;
+    for (size_t i = 0; i < t->anchors.n; i++) {
+        float  p[3];
+        size_t pixel;
+
+        for (int k = 0; k < 3; k++)
+            p[k] = *ted4_cell(&t->anchors, TED4_ROW_POSITION, i, k);
+        if (ted4_view_pixel(&e->view, p, &pixel, &z[n]))
+            n++;
+    }
+    qsort(z, n, sizeof *z, compare_floats);
+
+    const size_t out = (size_t)(OUTLIERS * (float)n);
+
+    e->nearest = n > 0 ? fmaxf(NEARER * z[out], e->view.near_z) : e->view.near_z;
+    e->farthest = n > 0 ? fmaxf(FARTHER * z[n - 1 - out], 2.0f * e->nearest) : 2.0f * e->nearest;
+    free(z);
+    return 0;
+}
+
+/* What the picture shows and what the model draws instead, both in the scene's colours. */
+static int open_eye(ted4_trainer *t, size_t item, eye *e)
+{
+    const ted4_picture *pic = &t->data->pictures[item];
+    const uint8_t      *truth = ted4_trainer_seen(t, item);
+
+    if (truth == NULL)
+        return -1;
+    if (ted4_trainer_draw(t, pic, &e->view, e->centre) != 0) {
+        ted4_dataset_release(t->data, item);
+        return -1;
+    }
+    const size_t n = (size_t)e->view.width * (size_t)e->view.height;
+
+    e->rgb = malloc(3 * n);
+    e->error = malloc(n);
+    for (size_t i = 0; e->rgb != NULL && e->error != NULL && i < n; i++) {
+        float sum = 0;
+
+        for (size_t k = 0; k < 3; k++) {
+            const float x = fminf(fmaxf(t->image[k * n + i], 0.0f), 1.0f);
+
+            sum += fabsf(255.0f * x - (float)truth[3 * i + k]);
+        }
+        e->error[i] = (uint8_t)(sum / 3.0f);
+    }
+    if (e->rgb != NULL)
+        memcpy(e->rgb, truth, 3 * n);
+    ted4_dataset_release(t->data, item);
+    if (e->rgb == NULL || e->error == NULL || depth_range(t, e) != 0)
+        return ted4_trainer_fail(t, "no memory to look for what is missing");
+    return 0;
+}
+
+static int put(ted4_places *l, const ted4_place *p)
+{
+    if (l->n == l->capacity) {
+        const size_t size = l->capacity + l->capacity / 2 + 1024;
+        ted4_place  *item = realloc(l->item, size * sizeof *item);
+
+        if (item == NULL)
+            return -1;
+        l->item = item;
+        l->capacity = size;
+    }
+    l->item[l->n++] = *p;
+    return 0;
+}
+
+/* What one camera of the frame misses. Those of other frames may be the same camera again, which agrees with itself about any depth. 0, or -1: no memory. */
+static int search_eye(const ted4_trainer *t, eye *eyes, size_t n, size_t self, uint32_t frame, ted4_places *list)
+{
+    const int    width = eyes[self].view.width, height = eyes[self].view.height;
+    const int    step = (int)fmaxf(1.0f, roundf(SPACING * (float)width));
+    const size_t columns = (size_t)((width + step - 1) / step), rows = (size_t)((height + step - 1) / step);
+    search_job   j = { eyes, n, self, step, malloc(rows * columns * sizeof *j.found), (int)columns };
+    int          bad = j.found == NULL;
+
+    for (size_t i = 0; i < n; i++)
+        eyes[i].helps = i != self && (eyes[i].is_own || ted4_turns_apart(eyes[self].centre, eyes[i].centre));
+    if (!bad)
+        ted4_parallel_for(t->parallel, rows, search_row, &j);
+    for (size_t i = 0; !bad && i < rows * columns; i++)
+        if (j.found[i].score > 0) {
+            j.found[i].frame = frame;
+            bad = put(list, &j.found[i]) != 0;
+        }
+    free(j.found);
+    return bad ? -1 : 0;
+}
+
+/* The surest place of each cell from the first on, and of these the surest, most at most. 0, or -1: no memory. */
+static int thin(ted4_places *l, size_t first, size_t most)
+{
+    ted4_cells taken;
+    size_t     n = first;
+
+    if (l->n == first)
+        return 0;
+    if (ted4_cells_init(&taken, l->n - first) != 0)
+        return -1;
+    qsort(l->item + first, l->n - first, sizeof *l->item, ted4_place_compare);
+    for (size_t i = first; i < l->n && n < first + most; i++) {
+        const double cell = ted4_math_exp2(ceil(ted4_math_log2((double)l->item[i].size)));
+
+        if (ted4_cells_add(&taken, ted4_cell_key(l->item[i].point, cell)))
+            l->item[n++] = l->item[i];
+    }
+    l->n = n;
+    ted4_cells_finish(&taken);
+    return 0;
+}
+
+/* Is a picture for training, of a frame or of those around it? */
+static int is_near(const ted4_picture *p, uint32_t frame, uint32_t reach)
+{
+    return !p->is_test && p->frame + reach >= frame && p->frame <= frame + reach;
+}
+
+/* The pictures that look at a frame, in eyes[] if there is room for them; how many. 0, or -1 with t->message, in *bad. */
+static size_t open_eyes(ted4_trainer *t, uint32_t frame, uint32_t reach, eye *eyes, int *bad)
+{
+    size_t n = 0;
+
+    for (size_t i = 0; !*bad && i < t->data->n_pictures; i++) {
+        const ted4_picture *p = &t->data->pictures[i];
+
+        if (!is_near(p, frame, reach))
+            continue;
+        if (eyes != NULL) {
+            eyes[n].is_own = p->frame == frame;
+            *bad = open_eye(t, i, &eyes[n]) != 0;
+        }
+        n++;
+    }
+    return n;
+}
+
+int ted4_sprout_search(ted4_trainer *t, uint32_t frame, uint32_t reach, ted4_places *list)
+{
+    const size_t first = list->n;
+    int          bad = 0;
+    const size_t n = open_eyes(t, frame, reach, NULL, &bad);
+
+    if (n < TED4_CAMERAS_NEEDED)
+        return 0;
+
+    eye *eyes = calloc(n, sizeof *eyes);
+
+    if (eyes == NULL)
+        return ted4_trainer_fail(t, "no memory to look for what is missing");
+    open_eyes(t, frame, reach, eyes, &bad);
+    for (size_t i = 0; !bad && i < n; i++)
+        count_depths(eyes, n, i);
+    for (size_t i = 0; !bad && i < n; i++)
+        if (eyes[i].is_own && search_eye(t, eyes, n, i, frame, list) != 0)
+            bad = ted4_trainer_fail(t, "no memory to look for what is missing");
+
+    const size_t share = ted4_sprout_room(t->data->n_frames) / t->data->n_frames;
+
+    if (!bad && thin(list, first, share > 0 ? share : 1) != 0)
+        bad = ted4_trainer_fail(t, "no memory to look for what is missing");
+    for (size_t i = 0; i < n; i++) {
+        free(eyes[i].rgb);
+        free(eyes[i].error);
+    }
+    free(eyes);
+    return bad ? -1 : 0;
+}

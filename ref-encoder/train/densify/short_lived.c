@@ -1,0 +1,76 @@
+/* short_lived.c - see short_lived.h.
+ * SPDX-License-Identifier: BSD-2-Clause */
+#include "short_lived.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "photo_votes.h"
+#include "train/model/normalise.h"
+
+/* Place of each anchor, and colour of the initial point nearest to it. */
+static void describe(const ted4_trainer *t, const float *points, float *place, uint8_t *colour)
+{
+    for (size_t i = 0; i < t->anchors.n; i++) {
+        float *p = place + 3 * i, best = INFINITY;
+        size_t at = 0;
+
+        for (int k = 0; k < 3; k++)
+            p[k] = *ted4_cell(&t->anchors, TED4_ROW_POSITION, i, k);
+        for (size_t n = 0; n < t->data->n_points; n++) {
+            const float x = points[3 * n] - p[0], y = points[3 * n + 1] - p[1],
+                        z = points[3 * n + 2] - p[2];
+            const float d = x * x + y * y + z * z;
+
+            if (d < best) {
+                best = d;
+                at = n;
+            }
+        }
+        memcpy(colour + 3 * i, t->data->point_rgb + 3 * at, 3);
+    }
+}
+
+int ted4_is_transient(const ted4_trainer *t, size_t i)
+{
+    const int first = t->layout.first[TED4_TAU];
+
+    return first >= 0 && *ted4_cell(&t->anchors, TED4_ROW_VALUE, i, first + 2) -
+                             *ted4_cell(&t->anchors, TED4_ROW_VALUE, i, first) < 1.0f;
+}
+
+int ted4_seed_transients(ted4_trainer *t)
+{
+    const size_t   n = t->anchors.n;
+    ted4_sightings s = { 0 };
+    int            bad;
+
+    if (t->layout.first[TED4_TAU] < 0 || t->data->n_frames < 2 || t->data->random_points ||
+        t->data->point_rgb == NULL)
+        return 0;
+    float   *points = malloc((t->data->n_points + 1) * 3 * sizeof *points);
+    float   *place = malloc((n + 1) * 3 * sizeof *place);
+    uint8_t *colour = malloc(3 * n + 1);
+
+    bad = points == NULL || place == NULL || colour == NULL;
+    if (bad) {
+        ted4_trainer_fail(t, "no memory to look for transients");
+    } else {
+        for (size_t i = 0; i < t->data->n_points; i++)
+            ted4_space_point(&t->layout.head, t->data->points + 3 * i, points + 3 * i);
+        describe(t, points, place, colour);
+        bad = ted4_sightings_count(&s, t, place, colour, n, 0) != 0;
+    }
+    for (size_t i = 0; !bad && i < n; i++) {
+        ted4_span span;
+
+        if (ted4_sightings_span(&s, i, ted4_sightings_best(&s, i), &span))
+            ted4_span_set(t, i, &span);
+    }
+    free(points);
+    free(place);
+    free(colour);
+    ted4_sightings_free(&s);
+    return bad ? -1 : 0;
+}

@@ -1,0 +1,259 @@
+/* camera_colour.c - see camera_colour.h.
+ * SPDX-License-Identifier: BSD-2-Clause */
+#include "camera_colour.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "train/math/adam.h"
+#include "camera_colour_job.h"
+
+enum { BAND = TED4_COLOUR_BAND };
+
+enum { N = TED4_COLOUR_VALUES, ROW_V = TED4_COLOUR_ROW_V };
+
+static size_t n_bands(size_t pixels)
+{
+    return (pixels + BAND - 1) / BAND;
+}
+
+static size_t least(size_t a, size_t b)
+{
+    return a < b ? a : b;
+}
+
+/* Marks the cameras that took at least two training pictures; how many. */
+static size_t choose(uint8_t *corrected, const ted4_dataset *d)
+{
+    size_t n = 0;
+
+    for (size_t i = 0; i < d->n_pictures; i++) {
+        uint8_t *seen = &corrected[d->pictures[i].camera_id];
+
+        if (!d->pictures[i].is_test && *seen < 2)
+            ++*seen;
+    }
+    for (size_t k = 0; k < d->n_cameras; k++) {
+        corrected[k] = corrected[k] == 2;
+        n += corrected[k];
+    }
+    return n;
+}
+
+static size_t largest_picture(const ted4_dataset *d)
+{
+    size_t largest = 0;
+
+    for (size_t i = 0; i < d->n_pictures; i++) {
+        const ted4_camera *c = &d->pictures[i].camera;
+        const size_t       n = (size_t)c->width * (size_t)c->height;
+
+        largest = n > largest ? n : largest;
+    }
+    return largest;
+}
+
+static int reserve(ted4_colour *c, size_t pixels)
+{
+    const size_t n = c->n_cameras;
+
+    c->steps = calloc(n, sizeof *c->steps);
+    c->value = calloc(n, sizeof *c->value);
+    c->m = calloc(n, sizeof *c->m);
+    c->v = calloc(n, sizeof *c->v);
+    c->image = malloc(3 * pixels * sizeof *c->image);
+    c->seen = malloc(3 * pixels);
+    c->sums = malloc(n_bands(pixels) * N * sizeof *c->sums);
+    c->sorted = malloc(n * sizeof *c->sorted);
+    return c->steps != NULL && c->value != NULL && c->m != NULL && c->v != NULL &&
+           c->image != NULL && c->seen != NULL && c->sums != NULL && c->sorted != NULL ? 0 : -1;
+}
+
+int ted4_colour_init(ted4_colour *c, const ted4_dataset *d)
+{
+    memset(c, 0, sizeof *c);
+    if (d->n_cameras < 2)
+        return 0;
+    c->corrected = calloc(d->n_cameras, 1);
+    if (c->corrected == NULL)
+        return -1;
+    c->n_cameras = d->n_cameras;
+    c->n_corrected = choose(c->corrected, d);
+    if (c->n_corrected < 2) {
+        ted4_colour_finish(c);
+        return 0;
+    }
+    return reserve(c, largest_picture(d));
+}
+
+void ted4_colour_finish(ted4_colour *c)
+{
+    free(c->corrected);
+    free(c->steps);
+    free(c->value);
+    free(c->m);
+    free(c->v);
+    free(c->image);
+    free(c->seen);
+    free(c->sums);
+    free(c->sorted);
+    memset(c, 0, sizeof *c);
+}
+
+int ted4_colour_has(const ted4_colour *c, uint32_t camera)
+{
+    return camera < c->n_cameras && c->corrected[camera];
+}
+
+int ted4_colour_finite(const ted4_colour *c)
+{
+    for (size_t i = 0; i < c->n_cameras; i++)
+        for (int k = 0; k < N; k++)
+            if (!isfinite(c->value[i][k]))
+                return 0;
+    return 1;
+}
+
+const float *ted4_colour_apply(ted4_colour *c, uint32_t camera, const float *image, size_t pixels,
+                               const ted4_parallel *p)
+{
+    ted4_colour_job j = { .image = image, .map = c->value[camera], .to = c->image, .pixels = pixels };
+
+    ted4_parallel_for(p, n_bands(pixels), TED4_IN_USE(ted4_colour_apply_band), &j);
+    return c->image;
+}
+
+/* Of I + A. */
+#define LEAST_DETERMINANT 0.1
+
+/* From cofactors. */
+int ted4_colour_invert(const float *a, double inverse[9])
+{
+    double m[9], det = 0;
+
+    for (int k = 0; k < 9; k++)
+        m[k] = (double)a[k] + (k % 4 == 0);
+    for (int r = 0; r < 3; r++)
+        for (int k = 0; k < 3; k++) {
+            const int r1 = (r + 1) % 3, r2 = (r + 2) % 3, k1 = (k + 1) % 3, k2 = (k + 2) % 3;
+
+            inverse[3 * k + r] = m[3 * r1 + k1] * m[3 * r2 + k2] - m[3 * r1 + k2] * m[3 * r2 + k1];
+        }
+    for (int k = 0; k < 3; k++)
+        det += m[k] * inverse[3 * k];
+    for (int k = 0; k < 9; k++)
+        inverse[k] /= det;
+    return fabs(det) >= LEAST_DETERMINANT ? 0 : -1;
+}
+
+typedef struct {
+    const uint8_t *picture;
+    uint8_t       *to;
+    size_t         pixels;
+    double         inverse[9], v[3];
+} undo_job;
+
+static void undo_band(void *arg, size_t band)
+{
+    const undo_job *j = arg;
+    const double   *m = j->inverse;
+
+    for (size_t i = band * BAND; i < least((band + 1) * BAND, j->pixels); i++) {
+        double c[3];
+
+        for (int k = 0; k < 3; k++)
+            c[k] = (double)j->picture[3 * i + (size_t)k] - 255.0 * j->v[k];
+        for (int k = 0; k < 3; k++)
+            j->to[3 * i + (size_t)k] =
+                (uint8_t)fmin(fmax(c[0] * m[k] + c[1] * m[3 + k] + c[2] * m[6 + k] + 0.5, 0.0), 255.0);
+    }
+}
+
+const uint8_t *ted4_colour_undo(ted4_colour *c, uint32_t camera, const uint8_t *picture,
+                                size_t pixels, const ted4_parallel *p)
+{
+    const float *map = c->value[camera];
+    undo_job     j = { .picture = picture, .to = c->seen, .pixels = pixels,
+                       .v = { (double)map[ROW_V], (double)map[ROW_V + 1], (double)map[ROW_V + 2] } };
+
+    if (ted4_colour_invert(map, j.inverse) != 0)
+        return picture;
+    ted4_parallel_for(p, n_bands(pixels), undo_band, &j);
+    return c->seen;
+}
+
+void ted4_colour_backward(ted4_colour *c, uint32_t camera, const float *image, size_t pixels,
+                          const ted4_parallel *p, float *d_image, ted4_colour_map gradient)
+{
+    ted4_colour_job j = { image, c->value[camera], d_image, c->sums, pixels };
+
+    ted4_parallel_for(p, n_bands(pixels), TED4_IN_USE(ted4_colour_backward_band), &j);
+    for (int k = 0; k < N; k++) {
+        double sum = 0;
+
+        for (size_t band = 0; band < n_bands(pixels); band++)
+            sum += c->sums[band * N + (size_t)k];
+        gradient[k] = (float)sum;
+    }
+}
+
+static int compare(const void *x, const void *y)
+{
+    const float a = *(const float *)x, b = *(const float *)y;
+
+    return a < b ? -1 : a > b;
+}
+
+/* Mean of value k over the cameras between the outer quarters. */
+static double middle_of(ted4_colour *c, int k)
+{
+    const size_t out = c->n_corrected / 4;
+    size_t       n = 0;
+    double       sum = 0;
+
+    for (size_t i = 0; i < c->n_cameras; i++)
+        if (c->corrected[i])
+            c->sorted[n++] = c->value[i][k];
+    qsort(c->sorted, n, sizeof *c->sorted, compare);
+    for (size_t i = out; i < n - out; i++)
+        sum += (double)c->sorted[i];
+    return sum / (double)(n - 2 * out);
+}
+
+void ted4_colour_centre(ted4_colour *c)
+{
+    for (int k = 0; k < N; k++) {
+        const float off = (float)middle_of(c, k) - c->middle[k];
+
+        for (size_t i = 0; i < c->n_cameras; i++)
+            if (c->corrected[i])
+                c->value[i][k] -= off;
+    }
+}
+
+/* (I + A') = diag(1 / gain) (I + A). */
+void ted4_colour_regauge(ted4_colour *c, const double *gain)
+{
+    for (size_t i = 0; i < c->n_cameras; i++)
+        for (int k = 0; k < ROW_V && c->corrected[i]; k++) {
+            const double one = k % 4 == 0;
+
+            c->value[i][k] = (float)((one + (double)c->value[i][k]) / gain[k / 3] - one);
+        }
+    for (int k = 0; k < N; k++)
+        c->middle[k] = (float)middle_of(c, k);
+}
+
+void ted4_colour_update(ted4_colour *c, uint32_t camera, const ted4_colour_map gradient,
+                        double rate, double penalty)
+{
+    float *x = c->value[camera];
+    float  g[N];
+
+    for (int k = 0; k < N; k++)
+        g[k] = gradient[k] + (float)(2.0 * penalty) * x[k];
+    ted4_adam(x, c->m[camera], c->v[camera], g, N, (float)rate,
+              ted4_adam_bias_make(++c->steps[camera]));
+    ted4_colour_centre(c);
+}

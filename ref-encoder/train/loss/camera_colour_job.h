@@ -1,0 +1,25 @@
+/* camera_colour_job.h - a picture of which colours are corrected, in bands of pixels. Private to colour.c
+ * and colour_bands.c.
+ * SPDX-License-Identifier: BSD-2-Clause */
+#ifndef TED4_COLOUR_JOB_H
+#define TED4_COLOUR_JOB_H
+
+#include "camera_colour.h"
+#include "render/leveled.h"
+
+/* Pixels whose products are summed in single precision, pixels of one job, and where v begins in a
+ * map. */
+enum { TED4_COLOUR_RUN = 1024, TED4_COLOUR_BAND = 16 * TED4_COLOUR_RUN, TED4_COLOUR_ROW_V = 9 };
+
+typedef struct {
+    const float *image, *map;
+    float       *to;            /* apply: the corrected picture; backward: the gradient, in place */
+    double      *sums;
+    size_t       pixels;
+} ted4_colour_job;
+
+TED4_EACH_LEVEL(void, ted4_colour_apply_band, void *job, size_t band);
+/* sums of the band, then the gradient turned. */
+TED4_EACH_LEVEL(void, ted4_colour_backward_band, void *job, size_t band);
+
+#endif

@@ -1,0 +1,83 @@
+/* lane_math.h - the functions of spec 11 and 12.2 in fast binary32, written so that `#pragma omp
+ * simd` loops over lanes vectorise them. For files compiled once a level (render/leveled.h).
+ * SPDX-License-Identifier: BSD-2-Clause */
+#ifndef TED4_LANE_MATH_H
+#define TED4_LANE_MATH_H
+
+#include <stdint.h>
+#include <string.h>
+
+#include "train/model/model.h"
+#include "recon/strict.h"
+#include "render/leveled.h"
+
+#define TED4_LN2   0x1.62e43p-1f
+
+/* x, or the nearer end of the range, or low for a NaN: fit for an integer. */
+static inline float ted4_lane_within(float x, float low, float high)
+{
+    x = x > low ? x : low;
+    return x < high ? x : high;
+}
+
+/* x where on is -1, 0 where it is 0, whatever x: by bits, which every instruction set vectorises. */
+static inline float ted4_lane_keep(int32_t on, float x)
+{
+    int32_t bits;
+    float   kept;
+
+    memcpy(&bits, &x, sizeof bits);
+    bits &= on;
+    memcpy(&kept, &bits, sizeof kept);
+    return kept;
+}
+
+/* The integer nearest to x, |x| < 2^22, ties to even: adding this constant leaves no bits for a fraction. SSE2 has no
+ * instruction for it. */
+static inline float ted4_lane_round(float x)
+{
+    const float magic = 0x1.8p+23f;
+
+    return (x + magic) - magic;
+}
+
+/* 2^x, x clamped to [-126, 126], to about 1e-7; NaN of a NaN. x + 126.5 is positive, so that truncation rounds x
+ * to the nearest integer. */
+static inline float ted4_lane_pow2(float x)
+{
+    const float c = x < -126.0f ? -126.0f : x > 126.0f ? 126.0f : x;
+    const int32_t n = (int32_t)(ted4_lane_within(x, -126.0f, 126.0f) + 126.5f);
+    const float f = c - (float)(int32_t)((uint32_t)n - 126u);
+    const uint32_t bits = ((uint32_t)n + 1u) << 23;
+    float p = 0x1.ffcbfcp-17f, scale;
+
+    p = ted4_fma(p, f, 0x1.430912p-13f);
+    p = ted4_fma(p, f, 0x1.5d87fep-10f);
+    p = ted4_fma(p, f, 0x1.3b2ab6p-7f);
+    p = ted4_fma(p, f, 0x1.c6b08ep-5f);
+    p = ted4_fma(p, f, 0x1.ebfbep-3f);
+    p = ted4_fma(p, f, 0x1.62e43p-1f);
+    p = ted4_fma(p, f, 1.0f);
+    memcpy(&scale, &bits, sizeof scale);
+    return p * scale;
+}
+
+static inline float ted4_lane_sigmoid(float x)
+{
+    return 1.0f / (1.0f + ted4_lane_pow2(-x * TED4_LOG2E));
+}
+
+/* Gradient d of a clamped x: outside, only what a descent step would use to come back. */
+static inline float ted4_inward(float x, float low, float high, float d)
+{
+    return (x <= low && d > 0.0f) || (x >= high && d < 0.0f) ? 0.0f : d;
+}
+
+/* Lanes of a set as -1 and 0, to choose with: as 1.0 and 0.0 they would let NaN through. */
+static inline void ted4_lane_set(uint32_t lanes, int32_t *on)
+{
+    for (int j = 0; j < TED4_LANES; j++)
+        on[j] = -(int32_t)((lanes & (uint32_t)1 << j) != 0);
+}
+
+#endif

@@ -1,0 +1,59 @@
+/* voxel_set.c - see voxel_set.h.
+ * SPDX-License-Identifier: BSD-2-Clause */
+#include "voxel_set.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "random.h"
+
+int ted4_cells_init(ted4_cells *c, size_t n)
+{
+    size_t size = 64;
+
+    while (size < 2 * n)
+        size *= 2;
+    c->key = calloc(size, sizeof *c->key);
+    c->mask = size - 1;
+    c->n = 0;
+    return c->key == NULL ? -1 : 0;
+}
+
+void ted4_cells_finish(ted4_cells *c)
+{
+    free(c->key);
+    c->key = NULL;
+}
+
+void ted4_cells_clear(ted4_cells *c)
+{
+    memset(c->key, 0, (c->mask + 1) * sizeof *c->key);
+    c->n = 0;
+}
+
+int ted4_cells_add(ted4_cells *c, uint64_t key)
+{
+    size_t i = (size_t)ted4_mix(key) & c->mask;
+
+    while (c->key[i] != 0) {
+        if (c->key[i] == key)
+            return 0;
+        i = (i + 1) & c->mask;
+    }
+    c->key[i] = key;
+    c->n++;
+    return 1;
+}
+
+uint64_t ted4_cell_key(const float p[3], double cell)
+{
+    uint64_t key = 1;
+
+    for (int j = 0; j < 3; j++) {
+        const int64_t i = (int64_t)rint((double)p[j] / cell) + (1 << 20);
+
+        key = key << 21 | ((uint64_t)i & 0x1fffff);
+    }
+    return key;
+}

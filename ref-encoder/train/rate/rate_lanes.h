@@ -1,0 +1,24 @@
+/* rate_lanes.h - what the rate model's files that are compiled once a level share.
+ * SPDX-License-Identifier: BSD-2-Clause */
+#ifndef TED4_RATE_LANES_H
+#define TED4_RATE_LANES_H
+
+#include "train/math/rate_math.h"
+#include "rate_parts.h"
+
+/* A file calls the copy of its own level. */
+#define ted4_rate_slot_backward    TED4_LEVELED(ted4_rate_slot_backward)
+#define ted4_rate_weights_backward TED4_LEVELED(ted4_rate_weights_backward)
+#define ted4_rate_integer_steps    TED4_LEVELED(ted4_rate_integer_steps)
+#define ted4_rate_integer_outputs  TED4_LEVELED(ted4_rate_integer_outputs)
+
+/* rate_bwd.c. Gradients of slot i of the room's chunk, after its bits; then, when all slots are
+ * done, those of the weights. */
+void ted4_rate_slot_backward(const ted4_rate_job *job, ted4_rate_room *room, size_t i, size_t slot);
+void ted4_rate_weights_backward(const ted4_rate *r, ted4_rate_room *room, size_t n_slots);
+
+/* rate_decoded.c */
+void ted4_rate_integer_steps(const ted4_rate_job *job, ted4_rate_room *room, size_t slot, float *v, float *q);
+void ted4_rate_integer_outputs(const ted4_rate_job *job, ted4_rate_room *room, const float *q, float *out);
+
+#endif

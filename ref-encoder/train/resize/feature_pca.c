@@ -1,0 +1,282 @@
+/* feature_pca.c - see feature_pca.h. With S the covariance of the features f, m their mean, W the stacked first layers of the heads, S = L L^T and the eigenvectors
+ * L^T W^T W L = Q D Q^T: the components z = K Q^T L^-1 (f - m) are uncorrelated, f = m + L Q K^-1 z, and what z_i does to the heads, W L Q e_i / K_i, is as
+ * large for all i with K = D^(1/2) / s. s: root mean square of the columns of W.
+ * SPDX-License-Identifier: BSD-2-Clause */
+#include "feature_pca.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "unit_stats.h"
+
+/* Share of the mean variance that each feature has at least; least D_i as a share of the largest. */
+#define RIDGE 1e-6
+#define LEAST 1e-8
+/* Sweeps of Jacobi's method: it ends by itself long before. */
+enum { MOST_SWEEPS = 60 };
+
+typedef struct {
+    size_t  n;
+    double *mean, *lower, *forms, *vectors;     /* [n], [n][n] each: L; L^T W^T W L, later D on its diagonal; Q by columns */
+    double *to, *from;          /* [n][n]: K Q^T L^-1, L Q K^-1 */
+    double *room;               /* owned: all of these */
+} axes;
+
+static int take_room(axes *a, size_t n)
+{
+    a->n = n;
+    a->room = calloc(n + 5 * n * n, sizeof *a->room);
+    if (a->room == NULL)
+        return -1;
+    a->mean = a->room;
+    a->lower = a->mean + n;
+    a->forms = a->lower + n * n;
+    a->vectors = a->forms + n * n;
+    a->to = a->vectors + n * n;
+    a->from = a->to + n * n;
+    return 0;
+}
+
+/* L from moments [n + 1][n + 1]. */
+static void factor(axes *a, const double *moment)
+{
+    const size_t n = a->n, side = n + 1;
+    double       mean = 0;
+
+    for (size_t i = 0; i < n; i++)
+        a->mean[i] = moment[i * side + n];
+    for (size_t i = 0; i < n; i++)
+        mean += (moment[i * side + i] - a->mean[i] * a->mean[i]) / (double)n;
+    for (size_t i = 0; i < n; i++)
+        for (size_t j = 0; j <= i; j++) {
+            double sum = moment[i * side + j] - a->mean[i] * a->mean[j] + (i == j ? RIDGE * mean + 1e-12 : 0.0);
+
+            for (size_t k = 0; k < j; k++)
+                sum -= a->lower[i * n + k] * a->lower[j * n + k];
+            a->lower[i * n + j] = i == j ? sqrt(fmax(sum, 1e-15)) : sum / a->lower[j * n + j];
+        }
+}
+
+/* L^T W^T W L, of rows of W. Returns s^2. */
+static double make_form(axes *a, const float *rows, size_t n_rows)
+{
+    const size_t n = a->n;
+    double       square = 0;
+
+    for (size_t r = 0; r < n_rows; r++) {
+        double seen[TED4_MAX_FEATURE] = { 0 };
+
+        for (size_t i = 0; i < n; i++) {
+            const double w = (double)rows[r * n + i];
+
+            square += w * w;
+            for (size_t k = 0; k <= i; k++)
+                seen[k] += w * a->lower[i * n + k];
+        }
+        for (size_t i = 0; i < n; i++)
+            for (size_t k = 0; k < n; k++)
+                a->forms[i * n + k] += seen[i] * seen[k];
+    }
+    return square / (double)n;
+}
+
+/* One rotation of Jacobi's method in the plane of axes p and q. */
+static void turn(axes *a, size_t p, size_t q)
+{
+    const size_t n = a->n;
+    const double x = a->forms[p * n + q];
+    const double theta = (a->forms[q * n + q] - a->forms[p * n + p]) / (2.0 * x);
+    const double t = (theta >= 0 ? 1.0 : -1.0) / (fabs(theta) + sqrt(theta * theta + 1.0));
+    const double c = 1.0 / sqrt(t * t + 1.0), s = t * c;
+
+    for (size_t k = 0; k < n; k++) {
+        const double u = a->forms[k * n + p], v = a->forms[k * n + q];
+
+        a->forms[k * n + p] = c * u - s * v;
+        a->forms[k * n + q] = s * u + c * v;
+    }
+    for (size_t k = 0; k < n; k++) {
+        const double u = a->forms[p * n + k], v = a->forms[q * n + k];
+        const double x_p = a->vectors[k * n + p], x_q = a->vectors[k * n + q];
+
+        a->forms[p * n + k] = c * u - s * v;
+        a->forms[q * n + k] = s * u + c * v;
+        a->vectors[k * n + p] = c * x_p - s * x_q;
+        a->vectors[k * n + q] = s * x_p + c * x_q;
+    }
+}
+
+static void diagonalise(axes *a)
+{
+    const size_t n = a->n;
+    double       trace = 0;
+
+    for (size_t i = 0; i < n; i++) {
+        a->vectors[i * n + i] = 1.0;
+        trace += a->forms[i * n + i];
+    }
+    for (int sweep = 0, turned = 1; turned && sweep < MOST_SWEEPS; sweep++) {
+        turned = 0;
+        for (size_t p = 0; p < n; p++)
+            for (size_t q = p + 1; q < n; q++)
+                if (fabs(a->forms[p * n + q]) > 1e-12 * trace / (double)n) {
+                    turn(a, p, q);
+                    turned = 1;
+                }
+    }
+}
+
+/* Places of the axes by falling D; equal ones as they stand. */
+static void sort_axes(const axes *a, size_t *order)
+{
+    for (size_t i = 0; i < a->n; i++) {
+        size_t at = i;
+
+        for (; at > 0 && a->forms[order[at - 1] * (a->n + 1)] < a->forms[i * (a->n + 1)]; at--)
+            order[at] = order[at - 1];
+        order[at] = i;
+    }
+}
+
+/* Both ways between features and components. s: what a step of a feature does on average. */
+static void make_ways(axes *a, double s)
+{
+    const size_t n = a->n;
+    size_t       order[TED4_MAX_FEATURE];
+
+    sort_axes(a, order);
+
+    const double largest = fmax(a->forms[order[0] * (n + 1)], 1e-30);
+
+    for (size_t i = 0; i < n; i++) {
+        const size_t axis = order[i];
+        const double k = sqrt(fmax(a->forms[axis * (n + 1)], LEAST * largest)) / s;
+        double       x[TED4_MAX_FEATURE];       /* L^-T q: the row of Q^T L^-1 */
+
+        for (size_t r = n; r-- > 0;) {
+            x[r] = a->vectors[r * n + axis];
+            for (size_t j = r + 1; j < n; j++)
+                x[r] -= a->lower[j * n + r] * x[j];
+            x[r] /= a->lower[r * n + r];
+        }
+        for (size_t j = 0; j < n; j++) {
+            double sum = 0;
+
+            for (size_t r = 0; r <= j; r++)
+                sum += a->lower[j * n + r] * a->vectors[r * n + axis];
+            a->to[i * n + j] = k * x[j];
+            a->from[j * n + i] = sum / k;
+        }
+    }
+}
+
+static void turn_anchors(ted4_trainer *t, const axes *a)
+{
+    const int first = t->layout.first[TED4_FEATURE];
+
+    for (size_t i = 0; i < t->anchors.n; i++) {
+        double x[TED4_MAX_FEATURE];
+
+        for (size_t c = 0; c < a->n; c++)
+            x[c] = (double)*ted4_cell(&t->anchors, TED4_ROW_VALUE, i, first + (int)c) - a->mean[c];
+        for (size_t c = 0; c < a->n; c++) {
+            double sum = 0;
+
+            for (size_t k = 0; k < a->n; k++)
+                sum += a->to[c * a->n + k] * x[k];
+            *ted4_cell(&t->anchors, TED4_ROW_VALUE, i, first + (int)c) = (float)sum;
+        }
+    }
+}
+
+/* The first layer of a head: W from, b + W mean. */
+static void turn_reader(float *w, size_t in, size_t out, const axes *a)
+{
+    float *b = w + in * out;
+
+    for (size_t o = 0; o < out; o++, w += in) {
+        double x[TED4_MAX_FEATURE], shift = 0;
+
+        for (size_t c = 0; c < a->n; c++) {
+            x[c] = (double)w[c];
+            shift += x[c] * a->mean[c];
+        }
+        b[o] += (float)shift;
+        for (size_t c = 0; c < a->n; c++) {
+            double sum = 0;
+
+            for (size_t k = 0; k < a->n; k++)
+                sum += x[k] * a->from[k * a->n + c];
+            w[c] = (float)sum;
+        }
+    }
+}
+
+/* The last layer of F_deform: its rows 3 .. are changes of the feature. */
+static void turn_maker(float *w, size_t in, size_t out, const axes *a)
+{
+    for (size_t i = 0; i <= in; i++) {
+        const size_t stride = i < in ? in : 1;
+        float       *at = i < in ? w + 3 * in + i : w + in * out + 3;
+        double       x[TED4_MAX_FEATURE];
+
+        for (size_t c = 0; c < a->n; c++)
+            x[c] = (double)at[c * stride];
+        for (size_t c = 0; c < a->n; c++) {
+            double sum = 0;
+
+            for (size_t k = 0; k < a->n; k++)
+                sum += a->to[c * a->n + k] * x[k];
+            at[c * stride] = (float)sum;
+        }
+    }
+}
+
+static void turn_networks(ted4_trainer *t, const axes *a)
+{
+    const ted4_net_shape *deform = &t->layout.shape.netr[TED4_NET_DEFORM];
+    float                *netr = t->net + t->layout.netr, *w = netr + deform->first;
+
+    for (int i = TED4_NET_OPACITY; i <= TED4_NET_COLOUR; i++) {
+        const ted4_net_shape *s = &t->layout.shape.netr[i];
+
+        turn_reader(netr + s->first, s->dim[0], s->dim[1], a);
+    }
+    if (deform->n_layers == 0)
+        return;
+    for (int i = 0; i + 1 < deform->n_layers; i++)
+        w += ((size_t)deform->dim[i] + 1) * deform->dim[i + 1];
+    turn_maker(w, deform->dim[deform->n_layers - 1], deform->dim[deform->n_layers], a);
+}
+
+int ted4_rotate_features(ted4_trainer *t)
+{
+    const ted4_site site = { TED4_SITE_FEATURE, 0, 0 };
+    const size_t    n = t->layout.head.feature_dim, side = n + 1;
+    double         *moment = malloc(side * side * sizeof *moment);
+    float          *rows = NULL;
+    const int       count = moment != NULL ? ted4_site_readers(t, site, &rows) : -1;
+    axes            a = { 0 };
+    int             bad = count < 0 || take_room(&a, n) != 0;
+
+    if (bad)
+        ted4_trainer_fail(t, "no memory to turn features");
+    bad = bad || ted4_site_moment(t, site, moment) != 0;
+    if (!bad) {
+        factor(&a, moment);
+
+        const double square = make_form(&a, rows, (size_t)count);
+
+        if (square > 0) {
+            diagonalise(&a);
+            make_ways(&a, sqrt(square));
+            turn_anchors(t, &a);
+            turn_networks(t, &a);
+        }
+    }
+    free(moment);
+    free(rows);
+    free(a.room);
+    return bad ? -1 : 0;
+}

@@ -1,0 +1,108 @@
+/* file_cost.c - the cost of a model, by making its file and drawing pictures from it: see capacity.h.
+ * SPDX-License-Identifier: BSD-2-Clause */
+#include "model_search.h"
+
+#include <stdlib.h>
+
+#include "train/step/checkpoint.h"
+#include "train/state/view_subset.h"
+#include "train/step/export_scene.h"
+#include "write/encode.h"
+
+/* Training pictures that judge: one a frame, within these bounds; and what drawing one takes, and making the file, in training steps, as measured on
+ * kitchen at a quarter of its size. */
+enum { LEAST_PICTURES = 16, MOST_PICTURES = 24 };
+#define STEPS_A_PICTURE 0.4
+#define STEPS_A_FILE    4.0
+/* What the end of stage 2 decides is left undecided where the budget of all trials is not so many times what it takes. */
+#define ROOM 3.0
+
+static size_t judges(const ted4_trainer *t)
+{
+    const size_t frames = ted4_judges_frames(t);
+    const size_t n = frames < LEAST_PICTURES ? LEAST_PICTURES : frames > MOST_PICTURES ? MOST_PICTURES : frames;
+
+    return n < t->order.n ? n : t->order.n;
+}
+
+double ted4_capacity_cost_steps(const ted4_trainer *t)
+{
+    return STEPS_A_FILE + STEPS_A_PICTURE * (double)judges(t);
+}
+
+double ted4_capacity_budget(const ted4_trainer *t)
+{
+    return t->opt.capacity_share * (double)ted4_trainer_total(t);
+}
+
+double ted4_capacity_afford(const ted4_trainer *t, double steps)
+{
+    return ROOM * steps <= ted4_capacity_budget(t) ? steps : 0;
+}
+
+int ted4_capacity_note(ted4_trainer *t, const struct ted4_trial *x)
+{
+    struct ted4_trial *more = realloc(t->trial, (t->n_trials + 1) * sizeof *more);
+
+    if (more == NULL)
+        return ted4_trainer_fail(t, "no memory to note a trial");
+    t->trial = more;
+    more[t->n_trials++] = *x;
+    return 0;
+}
+
+/* Bytes of the file; the trainer is at the end of stage 2 afterwards. */
+static int count_bytes(ted4_trainer *t, double *bytes)
+{
+    ted4_scene *scene;
+    uint8_t    *file;
+    size_t      size;
+    ted4_error  e = { TED4_OK, 0 };
+
+    if (ted4_make_scene(t, &scene) != 0)
+        return -1;
+
+    const int bad = ted4_encode(scene, 0, t->parallel, &file, &size, &e) != TED4_OK;
+
+    ted4_scene_free(scene);
+    if (bad)
+        return ted4_trainer_fail(t, "a trial's file was refused: %s", ted4_status_id(e.code));
+    free(file);
+    *bytes = (double)size;
+    return 0;
+}
+
+/* lambda, in units of all values. */
+double ted4_capacity_charge(const ted4_trainer *t)
+{
+    return t->opt.lambda / (ted4_trainer_charged(t) * (double)(t->anchors.n > 0 ? t->anchors.n : 1));
+}
+
+static int measure(ted4_trainer *t, ted4_cost *c)
+{
+    const size_t n = judges(t);
+    uint32_t     item[MOST_PICTURES];
+
+    if (count_bytes(t, &c->bytes) != 0 || ted4_judges_choose(t, t->opt.seed ^ 0x6a75646765u, n, item) != 0)
+        return -1;
+    c->distortion = 0;
+    for (size_t i = 0; i < n; i++) {
+        const double d = ted4_trainer_distortion(t, item[i]);
+
+        if (d < 0)
+            return -1;
+        c->distortion += d / (double)n;
+    }
+    c->cost = c->distortion + 8.0 * ted4_capacity_charge(t) * c->bytes;
+    return 0;
+}
+
+int ted4_capacity_cost(ted4_trainer *t, ted4_cost *c)
+{
+    ted4_snapshot before = { 0 };
+    int           bad = ted4_state_take(t, &before) != 0 || measure(t, c) != 0;
+
+    bad = bad || ted4_state_restore(t, &before) != 0;
+    ted4_snapshot_free(&before);
+    return bad || ted4_trainer_told(t, ted4_capacity_cost_steps(t)) != 0 ? -1 : 0;
+}

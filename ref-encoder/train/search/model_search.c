@@ -1,0 +1,242 @@
+/* model_search.c - which trials are made, and which smaller model is taken: see capacity.h. First every move is tried at sight, as far as it lowers the cost without
+ * any training; what is left of the budget trains those next that cost least at sight, against the same training of the model at hand.
+ * SPDX-License-Identifier: BSD-2-Clause */
+#include "model_search.h"
+
+#include <math.h>
+#include <stdlib.h>
+
+#include "train/step/checkpoint.h"
+
+/* Share of stage 2 before: values have begun to be cheap, and the prior knows them. Measured on three small scenes, at 0.5 costs differ by 1 % either way. */
+#define DECIDE_AT 0.15
+/* Share of the budget for trials at sight; trained trials that the budget pays for if nothing is spent on those. */
+#define SIGHT_SHARE 0.7
+enum { TRIALS = 16, FEWEST_STEPS = 50 };
+/* Of the distortion that a move adds at sight, training will take this share back, as far as one may hope; a move that would not lower the cost by that share
+ * even so is not worth training. */
+#define HOPE       0.8
+#define LEAST_GAIN 5e-4
+
+typedef struct {
+    ted4_trainer      *t;
+    ted4_snapshot      now, trained;    /* the model at hand: before training, after it */
+    ted4_cost          now_cost, trained_cost;
+    struct ted4_trial *trial;           /* owned */
+    size_t             n_trials;
+    double             budget, spent;   /* training steps */
+    int                steps;           /* of a trained trial */
+    struct { int from, to; ted4_cost cost; } sight[TED4_MOVES]; /* the next trial of each move, by its looks; to = -1: there is none */
+} search;
+
+/* Training steps that the search may take: what the end of stage 2 leaves it. */
+static double search_budget(const ted4_trainer *t)
+{
+    return ted4_capacity_budget(t) - ted4_capacity_refine_steps(t) - ted4_capacity_prune_steps(t);
+}
+
+/* Steps that a trained trial has; 0: too few to tell anything. */
+static int trial_steps(const ted4_trainer *t)
+{
+    const double budget = search_budget(t);
+    const double room = (1.0 - t->opt.integer_share - DECIDE_AT) * (double)t->opt.stage2 - 1.0;
+    const double n = fmin(fmax(budget / TRIALS, FEWEST_STEPS), room);
+
+    return n >= FEWEST_STEPS && n <= budget ? (int)n : 0;
+}
+
+uint64_t ted4_capacity_step(const ted4_trainer *t)
+{
+    return t->opt.capacity && t->opt.stage2 > 0
+               ? (uint64_t)t->opt.stage1 + (uint64_t)(DECIDE_AT * (double)t->opt.stage2) : UINT64_MAX;
+}
+
+static int note(search *s, ted4_move m, int from, int to, int taken, int steps, const ted4_cost *before, const ted4_cost *after)
+{
+    struct ted4_trial *more = realloc(s->trial, (s->n_trials + 1) * sizeof *more);
+
+    if (more == NULL)
+        return ted4_trainer_fail(s->t, "no memory to note a trial");
+    s->trial = more;
+    more[s->n_trials++] = (struct ted4_trial){ m, from, to, steps, taken, *before, *after };
+    return 0;
+}
+
+static void swap(ted4_snapshot *a, ted4_snapshot *b)
+{
+    const ted4_snapshot x = *a;
+
+    *a = *b;
+    *b = x;
+}
+
+static int measure(search *s, ted4_cost *c)
+{
+    s->spent += ted4_capacity_cost_steps(s->t);
+    return ted4_capacity_cost(s->t, c);
+}
+
+/* The model at hand, one move smaller: what it costs as it is. 1: there is no such move; -1: failed. */
+static int look(search *s, ted4_move m, int bold)
+{
+    s->sight[m].to = -1;
+    if (ted4_state_restore(s->t, &s->now) != 0)
+        return -1;
+
+    const int to = ted4_move_next(s->t, m, bold);
+
+    if (to < 0)
+        return 1;
+    s->sight[m].from = ted4_move_now(s->t, m);
+    s->spent += m == TED4_MOVE_OFFSETS ? ted4_capacity_usage_steps(s->t) : 0.0;
+    if (ted4_move_make(s->t, m, to) != 0 || measure(s, &s->sight[m].cost) != 0)
+        return -1;
+    s->sight[m].to = to;
+    return 0;
+}
+
+/* What was looked at last is the model at hand from now on if it costs less; the trainer has the model at hand then. 1: taken; 0: not; -1: failed. */
+static int take_if_cheaper(search *s, ted4_move m)
+{
+    const ted4_cost before = s->now_cost, after = s->sight[m].cost;
+    const int       taken = after.cost < before.cost, to = s->sight[m].to;
+    ted4_snapshot   smaller = { 0 };
+    int             bad = (taken ? ted4_state_take(s->t, &smaller) : ted4_state_restore(s->t, &s->now)) != 0;
+
+    bad = bad || note(s, m, s->sight[m].from, to, taken, 0, &before, &after) != 0;
+    if (!bad && taken) {
+        swap(&s->now, &smaller);
+        s->now_cost = after;
+        s->sight[m].to = -1;
+    }
+    ted4_snapshot_free(&smaller);
+    return bad ? -1 : taken;
+}
+
+/* Half of what all Gaussians are made from is never free; and few bits of a weight may cost less than all of them, but more than some in between, which a bold
+ * step would pass over. */
+static int may_be_bold(ted4_move m)
+{
+    return m != TED4_MOVE_HEADS && m != TED4_MOVE_FEATURE && m != TED4_MOVE_OFFSETS && m != TED4_MOVE_HEAD_BITS && m != TED4_MOVE_MOTION_BITS;
+}
+
+/* Goes as far with a move as each step lowers the cost at sight: in bold steps, then in small ones. */
+static int descend(search *s, ted4_move m)
+{
+    int bold = may_be_bold(m);
+
+    while (s->spent < SIGHT_SHARE * s->budget) {
+        const int bolder = ted4_move_next(s->t, m, 1), next = ted4_move_next(s->t, m, 0);
+
+        bold = bold && bolder != next;
+
+        const int seen = look(s, m, bold);
+        const int taken = seen == 0 ? take_if_cheaper(s, m) : seen;
+
+        if (taken < 0)
+            return -1;
+        if (seen > 0 || (taken == 0 && !bold))
+            break;
+        bold = bold && taken;
+    }
+    return 0;
+}
+
+/* Trains from where t stands; a model that the watch gives up is no candidate: *lost. */
+static int train(search *s, ted4_snapshot *after, ted4_cost *cost, int *lost)
+{
+    double loss;
+
+    *lost = 0;
+    if (ted4_branch_run(s->t, s->steps, &loss) != 0) {
+        *lost = s->t->watch.found;
+        s->t->watch.found = 0;
+        return *lost ? 0 : -1;
+    }
+    return ted4_state_take(s->t, after) != 0 || measure(s, cost) != 0;
+}
+
+/* The move that one may hope most of; TED4_MOVES: there is none worth training. */
+static ted4_move choose(const search *s)
+{
+    const ted4_cost *now = &s->now_cost;
+    ted4_move        best = TED4_MOVES;
+    double           least = (1.0 - LEAST_GAIN) * now->cost;
+
+    for (int m = 0; m < TED4_MOVES; m++) {
+        const ted4_cost *c = &s->sight[m].cost;
+        const double     hoped = c->cost - HOPE * fmax(c->distortion - now->distortion, 0.0);
+
+        if (s->sight[m].to >= 0 && hoped < least) {
+            least = hoped;
+            best = (ted4_move)m;
+        }
+    }
+    return best;
+}
+
+/* One trained trial. */
+static int try_move(search *s, ted4_move m)
+{
+    ted4_snapshot   start = { 0 }, end = { 0 };
+    const int       to = s->sight[m].to;
+    const ted4_cost before = s->trained_cost;
+    ted4_cost       after = { 0 };
+    int             lost = 0, bad = ted4_state_restore(s->t, &s->now) != 0;
+    const int       from = ted4_move_now(s->t, m);
+
+    bad = bad || ted4_move_make(s->t, m, to) != 0 || ted4_state_take(s->t, &start) != 0 || train(s, &end, &after, &lost) != 0;
+    s->spent += s->steps;
+
+    const int taken = !bad && !lost && after.cost < before.cost;
+
+    bad = bad || note(s, m, from, to, taken, s->steps, &before, &after) != 0;
+    s->sight[m].to = -1;
+    if (!bad && taken) {
+        swap(&s->now, &start);
+        swap(&s->trained, &end);
+        s->now_cost = s->sight[m].cost;
+        s->trained_cost = after;
+        bad = look(s, m, 0) < 0;
+    }
+    ted4_snapshot_free(&start);
+    ted4_snapshot_free(&end);
+    return bad ? -1 : 0;
+}
+
+static int search_all(search *s)
+{
+    int lost, bad = ted4_state_take(s->t, &s->now) != 0 || measure(s, &s->now_cost) != 0;
+
+    for (int m = 0; m < TED4_MOVES; m++)
+        s->sight[m].to = -1;
+    for (int m = 0; !bad && m < TED4_MOVES; m++)
+        bad = ted4_state_restore(s->t, &s->now) != 0 || descend(s, (ted4_move)m) != 0;
+    bad = bad || ted4_state_restore(s->t, &s->now) != 0 || train(s, &s->trained, &s->trained_cost, &lost) != 0;
+    if (!bad && lost)
+        return ted4_trainer_fail(s->t, "the model that trials chose could not be trained");
+    while (!bad && s->spent + s->steps <= s->budget) {
+        const ted4_move m = choose(s);
+
+        if (m == TED4_MOVES)
+            break;
+        bad = try_move(s, m) != 0;
+    }
+    return bad || ted4_state_restore(s->t, &s->trained) != 0 ? -1 : 0;
+}
+
+int ted4_capacity_decide(ted4_trainer *t)
+{
+    search s = { .t = t, .budget = search_budget(t), .steps = trial_steps(t) };
+    int    bad = 0;
+
+    t->decided = TED4_DECIDED_MODEL;    /* in every state that is kept from here on: trials make none of their own */
+    if (s.steps > 0)
+        bad = search_all(&s) != 0;
+    ted4_snapshot_free(&s.now);
+    ted4_snapshot_free(&s.trained);
+    for (size_t i = 0; !bad && i < s.n_trials; i++)
+        bad = ted4_capacity_note(t, &s.trial[i]) != 0;
+    free(s.trial);
+    return bad ? -1 : 0;
+}

@@ -1,0 +1,141 @@
+/* rd_prune.c - anchors and Gaussians that are not worth their bits: see capacity.h. How much pictures would miss one is known to first order only, so several
+ * prices of a bit are tried on all of them at once, and what the whole file then costs decides.
+ * SPDX-License-Identifier: BSD-2-Clause */
+#include "model_search.h"
+
+#include <math.h>
+#include <stdlib.h>
+
+#include "train/step/checkpoint.h"
+
+/* Prices tried, as multiples of what a bit weighs. */
+static const double prices[] = { 0.125, 0.25, 0.5, 1.0, 2.0, 4.0 };
+enum { N_PRICES = (int)(sizeof prices / sizeof prices[0]) };
+
+/* Bits of an anchor's place and of its flag of motion. */
+#define ANCHOR_BITS 49.0
+/* A logit that leaves its offset out for good. */
+#define OUT (-10.0f)
+
+double ted4_capacity_prune_steps(const ted4_trainer *t)
+{
+    const double steps = ted4_capacity_usage_steps(t) + (1 + N_PRICES) * ted4_capacity_cost_steps(t);
+
+    return t->layout.head.offset_mask ? ted4_capacity_afford(t, steps) : 0;
+}
+
+/* What is known of every anchor: use [n][K], bits [n_blocks][1 + K][32]. */
+typedef struct { float *use, *bits; } worth;
+
+static int learn(ted4_trainer *t, worth *w)
+{
+    const size_t K = t->layout.head.n_offsets;
+
+    w->use = malloc((t->anchors.n * K + 1) * sizeof *w->use);
+    w->bits = malloc(t->anchors.n_blocks * (1 + K) * TED4_LANES * sizeof *w->bits);
+    if (w->use == NULL || w->bits == NULL)
+        return ted4_trainer_fail(t, "no memory to weigh anchors");
+    if (ted4_capacity_usage(t, w->use) != 0 || ted4_slots_fill(t, NULL) != 0)
+        return -1;
+
+    const ted4_rate_input in = {
+        &t->layout, t->net, t->shift, t->slots.n, t->slots.raw, t->slots.position, t->slots.lanes, t->slots.block, 0,
+        TED4_QUANT_INTEGER, 0.0f, 0.0f, t->layout.head.activation
+    };
+
+    return ted4_rate_lanes(t->rate, &in, t->parallel, t->slots.steps, w->bits) != 0
+               ? ted4_trainer_fail(t, "no memory to weigh anchors") : 0;
+}
+
+static float *logit(const ted4_trainer *t, size_t i, size_t k)
+{
+    return ted4_cell(&t->anchors, TED4_ROW_VALUE, i, t->layout.offset_logit + (int)k);
+}
+
+static int64_t count_kept(const ted4_trainer *t)
+{
+    int64_t n = 0;
+
+    for (size_t i = 0; i < t->anchors.n; i++)
+        for (size_t k = 0; k < t->layout.head.n_offsets; k++)
+            n += ted4_mask_on(*logit(t, i, k)) != 0;
+    return n;
+}
+
+/* Leaves out the offsets of one anchor that are not worth a price, or all of them with the anchor; one anchor at least stays. */
+static void prune_anchor(ted4_trainer *t, const worth *w, size_t i, double price)
+{
+    const size_t K = t->layout.head.n_offsets;
+    const float *bits = w->bits + i / TED4_LANES * (1 + K) * TED4_LANES + i % TED4_LANES;
+    double       left = 0, cost = price * (ANCHOR_BITS + (double)bits[0]);
+
+    for (size_t k = 0; k < K; k++) {
+        const double use = (double)w->use[i * K + k], paid = price * (double)bits[(1 + k) * TED4_LANES];
+
+        if (!ted4_mask_on(*logit(t, i, k)))
+            continue;
+        if (use >= 0 && use < paid) {
+            *logit(t, i, k) = OUT;
+        } else {
+            left += use >= 0 ? use : INFINITY;      /* what was not looked at stays */
+            cost += paid;
+        }
+    }
+    for (size_t k = 0; left < cost && k < K; k++)
+        *logit(t, i, k) = OUT;
+}
+
+/* Tries one price from the state at hand; keeps it in *best if the cost is lower than there. */
+static int try_price(ted4_trainer *t, const worth *w, const ted4_snapshot *start, double price, ted4_snapshot *best, struct ted4_trial *x)
+{
+    ted4_cost     c;
+    ted4_snapshot mine = { 0 };
+
+    if (ted4_state_restore(t, start) != 0)
+        return -1;
+    for (size_t i = 0; i < t->anchors.n; i++)
+        prune_anchor(t, w, i, price);
+
+    const int64_t kept = count_kept(t);
+
+    if (kept == 0 || kept == x->from)
+        return 0;
+    if (ted4_state_take(t, &mine) != 0 || ted4_capacity_cost(t, &c) != 0) {
+        ted4_snapshot_free(&mine);
+        return -1;
+    }
+    if (x->to < 0 || c.cost < x->after.cost) {
+        x->to = kept;
+        x->after = c;
+        ted4_snapshot_free(best);
+        *best = mine;
+    } else {
+        ted4_snapshot_free(&mine);
+    }
+    return 0;
+}
+
+int ted4_capacity_prune(ted4_trainer *t)
+{
+    ted4_snapshot     start = { 0 }, best = { 0 };
+    worth             w = { NULL, NULL };
+    struct ted4_trial x = { .move = TED4_MOVE_ANCHORS, .to = -1 };
+    int               bad;
+
+    t->decided = TED4_DECIDED_ALL;
+    if (!(ted4_capacity_prune_steps(t) > 0))
+        return 0;
+    x.from = count_kept(t);
+    bad = ted4_state_take(t, &start) != 0 || ted4_capacity_cost(t, &x.before) != 0 || learn(t, &w) != 0;
+    for (int i = 0; !bad && i < N_PRICES; i++)
+        bad = try_price(t, &w, &start, prices[i] * ted4_capacity_charge(t), &best, &x) != 0;
+    x.taken = !bad && x.to >= 0 && x.after.cost < x.before.cost;
+    bad = bad || ted4_state_restore(t, x.taken ? &best : &start) != 0;
+    if (!bad && x.to >= 0)
+        bad = ted4_capacity_note(t, &x) != 0;
+    free(w.use);
+    free(w.bits);
+    ted4_snapshot_free(&start);
+    ted4_snapshot_free(&best);
+    return bad ? -1 : 0;
+}

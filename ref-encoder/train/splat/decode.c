@@ -1,0 +1,95 @@
+/* decode.c - the generator of model.h: its memory, and its two ways by the level in use (generate_fwd.c, generate_bwd.c).
+ * SPDX-License-Identifier: BSD-2-Clause */
+#include "decode_state.h"
+
+#include <stdlib.h>
+
+ted4_generator *ted4_generator_new(const ted4_layout *l)
+{
+    ted4_generator *g = calloc(1, sizeof *g);
+
+    if (g == NULL)
+        return NULL;
+    g->layout = *l;
+    if (ted4_gen_plan(g) != 0) {
+        ted4_generator_free(g);
+        return NULL;
+    }
+    return g;
+}
+
+void ted4_generator_free(ted4_generator *g)
+{
+    if (g == NULL)
+        return;
+    for (int net = 0; net < TED4_NETS_R; net++)
+        for (int i = 0; i < g->chain[net].n; i++)
+            ted4_dense_finish(&g->chain[net].layer[i].dense);
+    ted4_gen_motion_finish(&g->motion);
+    free(g->grad);
+    free(g->d_planes);
+    free(g->saved);
+    free(g->splats);
+    free(g);
+}
+
+void ted4_generator_pack(ted4_generator *g, const float *net)
+{
+    for (int k = 0; k < TED4_NETS_R; k++)
+        for (int i = k == TED4_NET_DEFORM; i < g->chain[k].n; i++) {
+            const ted4_gen_layer *layer = &g->chain[k].layer[i];
+            const float *w = net + g->layout.netr + layer->net;
+
+            ted4_dense_pack(&g->chain[k].layer[i].dense, w,
+                            w + (size_t)layer->dense.in * (size_t)layer->dense.out);
+        }
+}
+
+static int reserve(ted4_generator *g, size_t n)
+{
+    const size_t row = (size_t)g->layout.head.n_offsets * TED4_LANES;
+    size_t room;
+
+    if (n <= g->capacity && g->capacity > 0)
+        return 0;
+    room = n + n / 4 + 1;
+    free(g->saved);
+    free(g->splats);
+    g->saved = ted4_gen_alloc(room * ted4_gen_stride(g));
+    g->splats = ted4_gen_alloc(TED4_GEN_ARRAYS * room * row);
+    g->capacity = g->saved != NULL && g->splats != NULL ? room : 0;
+    return g->capacity != 0 ? 0 : -1;
+}
+
+int ted4_generate(ted4_generator *g, const ted4_generate_input *in,
+                  const ted4_parallel *p, ted4_splats *out)
+{
+    ted4_gen_job t = { .g = g, .in = in };
+
+    if (reserve(g, in->n_slots) != 0)
+        return -1;
+    ted4_gen_motion_make(g, in);
+    ted4_parallel_for(p, in->n_slots, TED4_IN_USE(ted4_gen_forward), &t);
+    out->n = in->n_slots * (size_t)g->layout.head.n_offsets * TED4_LANES;
+    for (int c = 0; c < 3; c++) {
+        out->mean[c] = ted4_gen_splats(g, TED4_GEN_MEAN + c, 0);
+        out->scale[c] = ted4_gen_splats(g, TED4_GEN_SCALE + c, 0);
+        out->colour[c] = ted4_gen_splats(g, TED4_GEN_COLOUR + c, 0);
+    }
+    for (int c = 0; c < 4; c++)
+        out->rot[c] = ted4_gen_splats(g, TED4_GEN_ROT + c, 0);
+    out->opacity = ted4_gen_splats(g, TED4_GEN_OPACITY, 0);
+    return 0;
+}
+
+int ted4_generate_backward(ted4_generator *g, const ted4_generate_input *in,
+                           const ted4_splat_grads *gr, const ted4_parallel *p,
+                           float *const *d_attr, float *d_net)
+{
+    ted4_gen_job t = { g, in, gr, d_attr, d_net };
+
+    ted4_parallel_for(p, TED4_GEN_CHUNKS, TED4_IN_USE(ted4_gen_backward), &t);
+    ted4_parallel_for(p, TED4_GEN_CHUNKS, TED4_IN_USE(ted4_gen_sum_range), &t);
+    TED4_IN_USE(ted4_gen_motion_backward)(g, in->net, d_net);
+    return 0;
+}

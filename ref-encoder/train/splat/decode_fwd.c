@@ -1,0 +1,221 @@
+/* decode_fwd.c - anchors to Gaussians at a time and camera centre, a slot at a time (spec 11.1 to
+ * 11.5, in normalised space), with the masks of training. The adjoint is generate_bwd.c.
+ * SPDX-License-Identifier: BSD-2-Clause */
+#include "decode_lanes.h"
+
+#include <math.h>
+#include <string.h>
+
+/* Copies n channels, with 0 in the lanes that are not used, whatever they hold. */
+static void copy_lanes(int n, const int32_t *on, const float *from, float *to)
+{
+    for (int c = 0; c < n; c++, from += TED4_LANES, to += TED4_LANES) {
+#pragma omp simd
+        for (int j = 0; j < TED4_LANES; j++)
+            to[j] = ted4_lane_keep(on[j], from[j]);
+    }
+}
+
+/* spec 11.5: the direction from the camera to each anchor. */
+static void view_directions(const float *camera, const float *position, float *to)
+{
+#pragma omp simd
+    for (int j = 0; j < TED4_LANES; j++) {
+        const float x = position[j] - camera[0];
+        const float y = position[TED4_LANES + j] - camera[1];
+        const float z = position[2 * TED4_LANES + j] - camera[2];
+        const float n = sqrtf(x * x + y * y + z * z);
+        const int far = n >= TED4_SHORT;
+        const float scale = far ? 1.0f / n : 0.0f;
+
+        to[j] = x * scale;
+        to[TED4_LANES + j] = y * scale;
+        to[2 * TED4_LANES + j] = far ? z * scale : 1.0f;
+    }
+}
+
+static void load_slot(ted4_generator *g, const ted4_generate_input *in, size_t slot,
+                      const float *position, const int32_t *on)
+{
+    const int f = g->layout.head.feature_dim;
+    const float *attr = in->attr[slot];
+    float *planes = ted4_gen_slot(g, slot);
+
+    copy_lanes(f, on, attr, ted4_gen_plane(planes, g->plane.feature));
+    copy_lanes(g->layout.n_channels - f, on, attr + (size_t)f * TED4_LANES,
+               ted4_gen_plane(planes, g->plane.rest));
+    if (g->plane.view >= 0)
+        view_directions(in->camera, position, ted4_gen_plane(planes, g->plane.view));
+    if (g->plane.point >= 0)
+        ted4_gen_encode_points(position, ted4_gen_plane(planes, g->plane.point));
+}
+
+/* spec 11.1: S of the six scaling values. */
+static void sizes(const ted4_generator *g, float *planes)
+{
+    const float *l = ted4_gen_channel(g, planes, g->layout.first[TED4_SCALING]);
+    float *s = ted4_gen_plane(planes, g->plane.size);
+    const int n = 6 * TED4_LANES;
+
+    if (g->layout.head.scale_domain == TED4_SCALE_LOG2) {
+#pragma omp simd
+        for (int j = 0; j < n; j++)
+            s[j] = ted4_lane_pow2(l[j]);
+    } else {
+#pragma omp simd
+        for (int j = 0; j < n; j++)
+            s[j] = l[j] > TED4_SHORT ? l[j] : TED4_SHORT;
+    }
+}
+
+/* spec 11.3: f' = f + m df; moved position = p + m dx, left in position. */
+static void move(ted4_generator *g, float *planes, float *position)
+{
+    const int f = g->layout.head.feature_dim;
+    const float *logit = ted4_gen_channel(g, planes, g->layout.temporal_logit);
+    const float *feature = ted4_gen_plane(planes, g->plane.feature);
+    float *moved = ted4_gen_plane(planes, g->plane.moved);
+    float *m = ted4_gen_plane(planes, g->plane.moving);
+    const float *y;
+
+    ted4_gen_chain_forward(&g->chain[TED4_NET_DEFORM], planes);
+    y = ted4_gen_plane(planes, g->plane.motion);
+#pragma omp simd
+    for (int j = 0; j < TED4_LANES; j++)
+        m[j] = !g->layout.head.temporal_mask || ted4_mask_on(logit[j]) ? 1.0f : 0.0f;
+    for (int c = 0; c < 3; c++, y += TED4_LANES) {
+#pragma omp simd
+        for (int j = 0; j < TED4_LANES; j++)
+            position[c * TED4_LANES + j] += m[j] * y[j];
+    }
+    for (int c = 0; c < f; c++, y += TED4_LANES, feature += TED4_LANES, moved += TED4_LANES) {
+#pragma omp simd
+        for (int j = 0; j < TED4_LANES; j++)
+            moved[j] = feature[j] + m[j] * y[j];
+    }
+    if (g->layout.head.view == TED4_VIEW_FULL)
+        memcpy(moved, ted4_gen_plane(planes, g->plane.view), 3 * TED4_LANES * sizeof *moved);
+}
+
+/* spec 11.4. */
+static void activation(const ted4_generator *g, const ted4_generate_input *in, float *planes)
+{
+    float *a = ted4_gen_plane(planes, g->plane.active);
+    const float *tau;
+
+    for (int j = 0; j < TED4_LANES; j++)
+        a[j] = 1.0f;
+    if (!ted4_gen_activated(g, in))
+        return;
+    tau = ted4_gen_channel(g, planes, g->layout.first[TED4_TAU]);
+#pragma omp simd
+    for (int j = 0; j < TED4_LANES; j++) {
+        const float t = (float)in->num / (float)in->den;
+
+        a[j] = ted4_activation(ted4_find_edge(t, tau + j, ted4_lane_pow2).u, ted4_lane_pow2);
+    }
+}
+
+/* spec 11.5, what the heads' outputs mean: in place, 2 sigmoid(2 y) - 1 and sigmoids, except for
+ * quaternions. */
+static void squash(const ted4_generator *g, float *planes)
+{
+    const int k = g->layout.head.n_offsets;
+    float *opacity = ted4_gen_plane(planes, g->plane.opacity);
+    float *colour = ted4_gen_plane(planes, g->plane.colour);
+
+#pragma omp simd
+    for (int j = 0; j < k * TED4_LANES; j++)
+        opacity[j] = 2.0f * ted4_lane_sigmoid(2.0f * opacity[j]) - 1.0f;
+#pragma omp simd
+    for (int j = 0; j < 3 * k * TED4_LANES; j++)
+        colour[j] = ted4_lane_sigmoid(colour[j]);
+    for (int i = 0; i < k; i++) {
+        float *scale = ted4_gen_plane(planes, g->plane.covariance + 7 * i);
+
+#pragma omp simd
+        for (int j = 0; j < 3 * TED4_LANES; j++)
+            scale[j] = ted4_lane_sigmoid(scale[j]);
+    }
+}
+
+static void emit_rotation(const float *q, float *const *out)
+{
+    float *w = out[0], *x = out[1], *y = out[2], *z = out[3];
+
+#pragma omp simd
+    for (int j = 0; j < TED4_LANES; j++) {
+        const float a = q[j], b = q[TED4_LANES + j];
+        const float c = q[2 * TED4_LANES + j], d = q[3 * TED4_LANES + j];
+        const float n = sqrtf(a * a + b * b + c * c + d * d);
+        const float scale = n >= TED4_SHORT ? 1.0f / n : 0.0f;
+
+        w[j] = n >= TED4_SHORT ? a * scale : 1.0f;
+        x[j] = b * scale;
+        y[j] = c * scale;
+        z[j] = d * scale;
+    }
+}
+
+/* The Gaussians of offset k of a slot. position: of the moved anchors. */
+static void emit(const ted4_generator *g, float *planes, const float *position,
+                 const int32_t *on, int k, float *const *out)
+{
+    const float *size = ted4_gen_plane(planes, g->plane.size);
+    const float *offset = ted4_gen_channel(g, planes, g->layout.first[TED4_OFFSET] + 3 * k);
+    const float *logit = ted4_gen_channel(g, planes, g->layout.offset_logit + k);
+    const float *covariance = ted4_gen_plane(planes, g->plane.covariance + 7 * k);
+    const float *colour = ted4_gen_plane(planes, g->plane.colour + 3 * k);
+    const float *o = ted4_gen_plane(planes, g->plane.opacity + k);
+    const float *active = ted4_gen_plane(planes, g->plane.active);
+    const int32_t all = g->layout.head.offset_mask ? 0 : -1;
+    float *opacity = out[TED4_GEN_OPACITY];
+
+    for (int c = 0; c < 3; c++) {
+        const int row = c * TED4_LANES;
+        float *mean = out[TED4_GEN_MEAN + c], *scale = out[TED4_GEN_SCALE + c];
+
+#pragma omp simd
+        for (int j = 0; j < TED4_LANES; j++) {
+            mean[j] = ted4_fma(offset[row + j], size[row + j], position[row + j]);
+            scale[j] = size[3 * TED4_LANES + row + j] * covariance[row + j];
+        }
+        memcpy(out[TED4_GEN_COLOUR + c], colour + row, TED4_LANES * sizeof *colour);
+    }
+    emit_rotation(covariance + 3 * TED4_LANES, out + TED4_GEN_ROT);
+#pragma omp simd
+    for (int j = 0; j < TED4_LANES; j++) {
+        const int32_t kept = on[j] & (all | -ted4_mask_on(logit[j])) & -(o[j] > 0.0f);
+
+        opacity[j] = ted4_lane_keep(kept, o[j] * active[j]);
+    }
+}
+
+void TED4_LEVELED(ted4_gen_forward)(void *job, size_t slot)
+{
+    const ted4_gen_job *t = job;
+    ted4_generator *g = t->g;
+    const int k = g->layout.head.n_offsets;
+    float *planes = ted4_gen_slot(g, slot);
+    _Alignas(64) float position[3 * TED4_LANES];
+    int32_t on[TED4_LANES];
+
+    ted4_lane_set(t->in->lanes[slot], on);
+    copy_lanes(3, on, t->in->position[slot], position);
+    load_slot(g, t->in, slot, position, on);
+    sizes(g, planes);
+    if (g->chain[TED4_NET_DEFORM].n > 0)
+        move(g, planes, position);
+    ted4_gen_chain_forward(&g->chain[TED4_NET_OPACITY], planes);
+    ted4_gen_chain_forward(&g->chain[TED4_NET_COVARIANCE], planes);
+    ted4_gen_chain_forward(&g->chain[TED4_NET_COLOUR], planes);
+    activation(g, t->in, planes);
+    squash(g, planes);
+    for (int i = 0; i < k; i++) {
+        float *out[TED4_GEN_ARRAYS];
+
+        for (int a = 0; a < TED4_GEN_ARRAYS; a++)
+            out[a] = ted4_gen_splats(g, a, slot) + (size_t)i * TED4_LANES;
+        emit(g, planes, position, on, i, out);
+    }
+}

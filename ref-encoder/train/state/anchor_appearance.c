@@ -1,0 +1,67 @@
+/* anchor_appearance.c - what all anchors look like now, one number each: for what is decided about an anchor apart from any one picture. See trainer.h.
+ * SPDX-License-Identifier: BSD-2-Clause */
+#include <math.h>
+
+#include "train/model/normalise.h"
+#include "trainer.h"
+
+/* From so many training pictures anchors are looked at whose opacity depends on the direction. */
+enum { DIRECTIONS = 8 };
+
+/* All anchors at time 0, without activation, from the camera of that picture. */
+static int generate_all(ted4_trainer *t, uint32_t item, ted4_splats *s)
+{
+    ted4_view           v;
+    ted4_generate_input in = { &t->layout, t->net, 0, NULL, NULL, NULL, 0, 1, { 0 }, 0 };
+
+    if (ted4_slots_fill(t, NULL) != 0)
+        return -1;
+    ted4_space_view(&t->layout.head, &t->data->pictures[item].camera, &v, in.camera);
+    ted4_slots_quantise(t, TED4_QUANT_ROUND);
+    in.n_slots = t->slots.n;
+    in.attr = t->slots.used;
+    in.position = t->slots.position;
+    in.lanes = t->slots.lanes;
+    ted4_generator_pack(t->generator, t->net);
+    return ted4_generate(t->generator, &in, t->parallel, s) != 0
+               ? ted4_trainer_fail(t, "no memory to look at anchors") : 0;
+}
+
+/* One look, which counts for an anchor that is more opaque in it than in those before; first: there are none before. */
+static int look(ted4_trainer *t, uint32_t item, int first, float *opacity, float *rgb)
+{
+    const size_t K = t->layout.head.n_offsets;
+    ted4_splats  s;
+
+    if (generate_all(t, item, &s) != 0)
+        return -1;
+    for (size_t i = 0; i < t->anchors.n; i++) {
+        float sum = 0, colour[3] = { 0 };
+
+        for (size_t k = 0; k < K; k++) {
+            const size_t at = (i / TED4_LANES * K + k) * TED4_LANES + i % TED4_LANES;
+            const float  o = fmaxf(s.opacity[at], 0.0f);
+
+            sum += o;
+            for (int c = 0; c < 3; c++)
+                colour[c] += o * s.colour[c][at];
+        }
+        if (!first && !(sum > opacity[i]))
+            continue;
+        opacity[i] = sum;
+        for (int c = 0; rgb != NULL && c < 3; c++)
+            rgb[3 * i + (size_t)c] = sum > 0 ? colour[c] / sum : 0.0f;
+    }
+    return 0;
+}
+
+int ted4_trainer_looks(ted4_trainer *t, float *opacity, float *rgb)
+{
+    const size_t most = t->layout.head.view == TED4_VIEW_FULL ? DIRECTIONS : 1;
+    const size_t n = t->order.n < most ? t->order.n : most;
+
+    for (size_t i = 0; i < n; i++)
+        if (look(t, t->order.item[i * t->order.n / n], i == 0, opacity, rgb) != 0)
+            return -1;
+    return 0;
+}

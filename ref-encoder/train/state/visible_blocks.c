@@ -1,0 +1,173 @@
+/* visible_blocks.c - which blocks a view sees, and the buffers of a step.
+ * SPDX-License-Identifier: BSD-2-Clause */
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "train/math/random.h"
+#include "recon/strict.h"
+#include "trainer.h"
+
+/* An anchor counts as a ball of three of its offset scales, and as visible when the ball touches the guarded frustum. Where things move the canonical
+ * place says little, so a tenth of the scene's half-size is added. */
+#define SCALES_OF_BALL  3.0f
+#define ROOM_FOR_MOTION 0.1f
+
+uint32_t ted4_block_visible(const ted4_trainer *t, size_t block, const ted4_view *v)
+{
+    const ted4_layout *l = &t->layout;
+    const float *p = ted4_block(&t->anchors, TED4_ROW_POSITION, block);
+    const float *s = ted4_block(&t->anchors, TED4_ROW_VALUE, block) +
+                     l->first[TED4_SCALING] * TED4_LANES;
+    const int    is_log2 = l->head.scale_domain == TED4_SCALE_LOG2;
+    const float  room = l->head.motion != TED4_MOTION_NONE ? ROOM_FOR_MOTION : 0.0f;
+    const float  left = TED4_RASTER_GUARD * v->cx / v->fx;
+    const float  right = TED4_RASTER_GUARD * ((float)v->width - v->cx) / v->fx;
+    const float  up = TED4_RASTER_GUARD * v->cy / v->fy;
+    const float  down = TED4_RASTER_GUARD * ((float)v->height - v->cy) / v->fy;
+    float        widest[TED4_LANES];
+    uint32_t     seen = 0;
+
+#pragma omp simd
+    for (int j = 0; j < TED4_LANES; j++) {
+        const float a = s[j], b = s[TED4_LANES + j], c = s[2 * TED4_LANES + j];
+        const float ab = b > a || a != a ? b : a, most = c > ab || ab != ab ? c : ab;
+
+        widest[j] = is_log2 ? ted4_pow2(most) : most;
+    }
+    for (int j = 0; j < TED4_LANES; j++) {
+        const float x = p[j], y = p[TED4_LANES + j], z = p[2 * TED4_LANES + j];
+        const float cx = v->R[0] * x + v->R[1] * y + v->R[2] * z + v->t[0];
+        const float cy = v->R[3] * x + v->R[4] * y + v->R[5] * z + v->t[1];
+        const float cz = v->R[6] * x + v->R[7] * y + v->R[8] * z + v->t[2];
+        const float ball = SCALES_OF_BALL * widest[j] + room;
+        const float depth = fmaxf(cz, v->near_z);
+
+        if (cz + ball > v->near_z && cx < right * depth + ball && -cx < left * depth + ball &&
+            cy < down * depth + ball && -cy < up * depth + ball)
+            seen |= (uint32_t)1 << j;
+    }
+    return seen & ted4_block_lanes(&t->anchors, block);
+}
+
+static int reserve(ted4_trainer *t, size_t n)
+{
+    ted4_slots  *s = &t->slots;
+    const size_t floats = (size_t)t->layout.n_channels * TED4_LANES;
+
+    if (n <= s->capacity)
+        return 0;
+    ted4_slots_finish(s);
+    n += n / 2 + 8;
+    s->block = malloc(n * sizeof *s->block);
+    s->lanes = malloc(n * sizeof *s->lanes);
+    s->drawn = malloc(n * sizeof *s->drawn);
+    s->position = malloc(n * sizeof *s->position);
+    s->raw = malloc(n * sizeof *s->raw);
+    s->used = malloc(n * sizeof *s->used);
+    s->gradient = malloc(n * sizeof *s->gradient);
+    s->steps = malloc(n * sizeof *s->steps);
+    s->quantised = aligned_alloc(64, n * floats * sizeof(float));
+    s->gradients = aligned_alloc(64, n * floats * sizeof(float));
+    s->squares = malloc(n * (TED4_SLOT_TERMS + 1) * sizeof *s->squares);
+    if (s->block == NULL || s->lanes == NULL || s->drawn == NULL || s->position == NULL || s->raw == NULL ||
+        s->used == NULL || s->gradient == NULL || s->steps == NULL ||
+        s->quantised == NULL || s->gradients == NULL || s->squares == NULL)
+        return ted4_trainer_fail(t, "no memory for %zu blocks", n);
+    s->capacity = n;
+    return 0;
+}
+
+void ted4_slots_finish(ted4_slots *s)
+{
+    free(s->block);
+    free(s->lanes);
+    free(s->drawn);
+    free(s->position);
+    free(s->raw);
+    free(s->used);
+    free(s->gradient);
+    free(s->steps);
+    free(s->quantised);
+    free(s->gradients);
+    free(s->squares);
+    memset(s, 0, sizeof *s);
+}
+
+/* Blocks that one job looks at. */
+enum { LOOKED_AT = 8 };
+
+typedef struct {
+    const ted4_trainer *t;
+    const ted4_view    *v;
+    uint32_t           *lanes;  /* [n_blocks] */
+} visible_job;
+
+static void look_at_blocks(void *arg, size_t i)
+{
+    const visible_job  *j = arg;
+    const ted4_anchors *a = &j->t->anchors;
+    const size_t        end = (i + 1) * LOOKED_AT < a->n_blocks ? (i + 1) * LOOKED_AT : a->n_blocks;
+
+    for (size_t b = i * LOOKED_AT; b < end; b++)
+        j->lanes[b] = j->v != NULL ? ted4_block_visible(j->t, b, j->v) : ted4_block_lanes(a, b);
+}
+
+/* v NULL: every block. */
+int ted4_slots_fill(ted4_trainer *t, const ted4_view *v)
+{
+    ted4_slots  *s = &t->slots;
+    const size_t floats = (size_t)t->layout.n_channels * TED4_LANES;
+
+    if (reserve(t, t->anchors.n_blocks) != 0)
+        return -1;
+
+    /* Lanes of every block first: a slot's place, which is its block's or an earlier one, is
+     * known only then. */
+    visible_job j = { t, v, s->lanes };
+
+    ted4_parallel_for(t->parallel, (t->anchors.n_blocks + LOOKED_AT - 1) / LOOKED_AT,
+                      look_at_blocks, &j);
+    s->n = 0;
+    for (size_t b = 0; b < t->anchors.n_blocks; b++) {
+        const uint32_t lanes = s->lanes[b];
+        const size_t   i = s->n;
+
+        if (lanes == 0)
+            continue;
+        s->block[i] = (uint32_t)b;
+        s->lanes[i] = lanes;
+        s->drawn[i] = (uint32_t)i;
+        s->position[i] = ted4_block(&t->anchors, TED4_ROW_POSITION, b);
+        s->raw[i] = ted4_block(&t->anchors, TED4_ROW_VALUE, b);
+        s->used[i] = t->stage2 ? s->quantised + i * floats : s->raw[i];
+        s->gradient[i] = s->gradients + i * floats;
+        s->steps[i] = ted4_block(&t->anchors, TED4_ROW_STEP, b);
+        s->n++;
+    }
+    return 0;
+}
+
+typedef struct {
+    const ted4_trainer *t;
+    uint64_t            key;
+    ted4_quant          quant;
+} quantise_job;
+
+static void quantise_slot(void *arg, size_t i)
+{
+    const quantise_job *j = arg;
+    const ted4_slots   *s = &j->t->slots;
+    const size_t        floats = (size_t)j->t->layout.n_channels * TED4_LANES;
+
+    ted4_quantise(&j->t->layout, j->quant, s->raw[i], s->steps[i], s->block[i], j->key,
+                  s->quantised + i * floats);
+}
+
+void ted4_slots_quantise(ted4_trainer *t, ted4_quant quant)
+{
+    quantise_job j = { t, ted4_random(t->opt.seed, t->iteration), quant };
+
+    if (t->stage2)
+        ted4_parallel_for(t->parallel, t->slots.n, quantise_slot, &j);
+}

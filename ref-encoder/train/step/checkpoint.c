@@ -1,0 +1,550 @@
+/* checkpoint.c - see checkpoint.h. Native byte order: a checkpoint stays on the machine that made it.
+ * SPDX-License-Identifier: BSD-2-Clause */
+#include "train/search/model_search.h"
+#include "train/math/voxel_set.h"
+#include "checkpoint.h"
+
+#include <errno.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <unistd.h>
+#include <xxhash.h>
+
+#define MAGIC 0x34444554u       /* "TED4" */
+enum { FORMAT = 8 };
+
+/* One walk for both directions: put() writes or reads the bytes at p. whole: with the watch's
+ * last good state. left: when reading, bytes of the file that no put() has had; anchors get room
+ * only where these fill it. Snapshots are taken and restored by one thread, often, while all
+ * others wait: these go to memory and come from there directly, without a FILE in between. */
+typedef struct {
+    FILE          *file;        /* NULL: memory */
+    ted4_snapshot *memory;
+    size_t         at, room;    /* in memory: what is read next; when writing, room in bytes */
+    int            writing, whole, failed;
+    XXH3_state_t  *hash;
+    uint64_t       left;
+} stream;
+
+/* 0, or -1: no memory. */
+static int append(stream *s, const void *p, size_t size)
+{
+    ted4_snapshot *m = s->memory;
+
+    if (size > s->room - m->size) {
+        const size_t room = 2 * s->room > m->size + size ? 2 * s->room : m->size + size;
+        char        *bytes = realloc(m->bytes, room);
+
+        if (bytes == NULL)
+            return -1;
+        m->bytes = bytes;
+        s->room = room;
+    }
+    memcpy(m->bytes + m->size, p, size);
+    m->size += size;
+    return 0;
+}
+
+static int get(stream *s, void *p, size_t size)
+{
+    if (size > s->memory->size - s->at)
+        return -1;
+    memcpy(p, s->memory->bytes + s->at, size);
+    s->at += size;
+    return 0;
+}
+
+static void put(stream *s, void *p, size_t size)
+{
+    if (s->failed || size == 0)
+        return;
+    if (s->file != NULL)
+        s->failed = (s->writing ? fwrite(p, 1, size, s->file) : fread(p, 1, size, s->file)) != size;
+    else
+        s->failed = (s->writing ? append(s, p, size) : get(s, p, size)) != 0;
+    if (s->failed)
+        return;
+    s->left -= s->writing ? 0 : size;
+    /* What comes from memory has been looked at as a whole. */
+    if (s->writing || s->file != NULL)
+        XXH3_64bits_update(s->hash, p, size);
+}
+
+/* Reading: the file must hold this very value. */
+static void expect(stream *s, uint64_t value)
+{
+    uint64_t x = value;
+
+    put(s, &x, sizeof x);
+    s->failed |= x != value;
+}
+
+/* The same, and where it does not, the message says what is there and what is wanted. */
+static void expect_number(stream *s, ted4_trainer *t, uint64_t value, const char *what)
+{
+    uint64_t x = value;
+
+    put(s, &x, sizeof x);
+    if (!s->failed && x != value)
+        s->failed = ted4_trainer_fail(t, "it is of %llu %s, and there are %llu", (unsigned long long)x, what, (unsigned long long)value) != 0;
+}
+
+/* Options themselves, with the seed as the first: the message names one that differs. Those that only stage 2 looks at may, before it begins. */
+static void walk_options(stream *s, ted4_trainer *t)
+{
+    double value[1 + TED4_OPTIONS], mine[1 + TED4_OPTIONS];
+
+    mine[0] = t->opt.seed;
+    for (int i = 0; i < TED4_OPTIONS; i++)
+        mine[1 + i] = ted4_options_value(&t->opt, i);
+    memcpy(value, mine, sizeof value);
+    put(s, value, sizeof value);
+    for (int i = 0; !s->failed && i <= TED4_OPTIONS; i++)
+        if (value[i] != mine[i] && (i == 0 || ted4_options_stage(i - 1) <= (t->stage2 ? 2 : 1)))
+            s->failed = ted4_trainer_fail(t, "its %s is %g, and %g is asked for", i == 0 ? "seed" : ted4_options_name(i - 1), value[i], mine[i]) != 0;
+}
+
+/* Positions of anchors never leave the cube (seed.h, densify.c, sprout.h), and the fixed-point inputs of networks are made from them without another look. */
+static int inside_cube(const ted4_anchors *a)
+{
+    const float *p = a->data[TED4_ROW_POSITION];
+    int          inside = 1;
+
+    for (size_t i = 0; i < a->n_blocks * 3 * TED4_LANES; i++)
+        inside &= p[i] >= -1.0f && p[i] <= 1.0f;
+    return inside;
+}
+
+/* Room for n anchors, if the file holds so many. */
+static int make_room(const stream *s, ted4_anchors *a, uint64_t n)
+{
+    uint64_t cells = 0;
+
+    for (int k = 0; k < TED4_ROWS; k++)
+        cells += (uint64_t)a->rows[k];
+    return n > s->left / (cells * sizeof(float)) ? -1 : ted4_anchors_resize(a, (size_t)n);
+}
+
+static void walk_anchors(stream *s, ted4_trainer *t)
+{
+    uint64_t n = t->anchors.n;
+
+    put(s, &n, sizeof n);
+    if (s->failed)
+        return;
+    if (!s->writing && make_room(s, &t->anchors, n) != 0) {
+        s->failed = 1;
+        return;
+    }
+    for (int k = 0; k < TED4_ROWS; k++)
+        put(s, t->anchors.data[k], t->anchors.n_blocks * (size_t)t->anchors.rows[k] *
+                                       TED4_LANES * sizeof(float));
+    s->failed |= !s->writing && !s->failed && !inside_cube(&t->anchors);
+}
+
+/* May trials of smaller models have made h of it (capacity.h)? Whatever they change is no more than it was, and valid. */
+static void allow_smaller(ted4_header *want, const ted4_header *h)
+{
+    want->n_offsets = h->n_offsets < want->n_offsets ? h->n_offsets : want->n_offsets;
+    want->bank_rows = h->bank_rows < want->bank_rows ? h->bank_rows : want->bank_rows;
+    want->bank_dim = h->bank_dim < want->bank_dim ? h->bank_dim : want->bank_dim;
+    want->phi_dim = h->phi_dim < want->phi_dim ? h->phi_dim : want->phi_dim;
+    want->deform_width = h->deform_width < want->deform_width ? h->deform_width : want->deform_width;
+    want->view = h->view < want->view ? h->view : want->view;
+    want->head_width = h->head_width < want->head_width ? h->head_width : want->head_width;
+    want->pe_octaves = h->pe_octaves < want->pe_octaves ? h->pe_octaves : want->pe_octaves;
+    want->hyper_width = h->hyper_width < want->hyper_width ? h->hyper_width : want->hyper_width;
+    want->ar_width = h->ar_width < want->ar_width ? h->ar_width : want->ar_width;
+    want->step[TED4_SCALING] = h->step[TED4_SCALING];
+    if (h->feature_dim > want->feature_dim || h->n_slices > want->n_slices)
+        return;
+    want->feature_dim = h->feature_dim;
+    want->n_slices = h->n_slices;
+    memcpy(want->slice, h->slice, sizeof want->slice);
+}
+
+/* Is h the header that this run began with, but for what stages change: motion and activation may have gone, scalings may be linear, and the
+ * context bits are chosen? A hash finds damage, not this. */
+static int header_belongs(const ted4_header *began, const ted4_header *h, int decided)
+{
+    ted4_header want = *began;
+
+    if (h->motion == TED4_MOTION_NONE)
+        ted4_header_without_motion(&want);
+    if (h->activation == 0)
+        want.activation = 0;
+    want.scale_domain = h->scale_domain;
+    want.context_bits = h->context_bits;
+    if (decided)
+        allow_smaller(&want, h);
+    return ted4_header_same(&want, h);
+}
+
+/* Everything in the layout of h, empty. Where that is the trainer's own, as it is mostly when a
+ * trial ends, its memory is as good as new memory, which would have to be cleared, too, page by
+ * page. */
+static int begin_layout(ted4_trainer *t, const ted4_header *h)
+{
+    const size_t n = t->layout.n_net;
+
+    if (ted4_header_same(&t->layout.head, h) && t->generator != NULL && t->rate != NULL) {
+        memset(t->net, 0, n * sizeof *t->net);
+        memset(t->net_m, 0, n * sizeof *t->net_m);
+        memset(t->net_v, 0, n * sizeof *t->net_v);
+        return 0;
+    }
+    ted4_layout_make(&t->layout, h);
+    ted4_anchors_finish(&t->anchors);
+    return ted4_anchors_init(&t->anchors, &t->layout) != 0 || ted4_trainer_rebuild(t) != 0 ? -1 : 0;
+}
+
+/* The header tells the layout, which may have lost parts since the trainer was made. Within stage 1 what stage 2 alone looks at
+ * is not taken from the file. */
+static void walk_layout(stream *s, ted4_trainer *t)
+{
+    ted4_header h = t->layout.head, began;
+
+    put(s, &h, sizeof h);
+    if (s->writing || s->failed)
+        return;
+    if (!t->stage2)
+        ted4_header_stage2(&h, &t->opt);
+    ted4_header_make(&began, &t->opt, t->data);
+    s->failed = !header_belongs(&began, &h, t->stage2 && t->opt.capacity) ||
+                begin_layout(t, &h) != 0;
+}
+
+/* Prior networks begin with stage 2, and their sizes are options of stage 2. */
+static void walk_networks(stream *s, ted4_trainer *t)
+{
+    const size_t n = t->stage2 ? t->layout.n_net : t->layout.nete;
+    uint8_t      has_shift = t->shift != NULL;
+
+    put(s, t->net, n * sizeof *t->net);
+    put(s, t->net_m, n * sizeof *t->net_m);
+    put(s, t->net_v, n * sizeof *t->net_v);
+    put(s, &has_shift, 1);
+    if (!s->writing) {
+        free(t->shift);
+        t->shift = has_shift && !s->failed ? malloc(t->layout.shape.n_units + 1) : NULL;
+        s->failed |= has_shift && t->shift == NULL;
+    }
+    if (has_shift && !s->failed)
+        put(s, t->shift, t->layout.shape.n_units);
+    s->failed |= !s->writing && t->integer && t->shift == NULL;
+}
+
+/* Each training picture once. */
+static int order_is_whole(const ted4_trainer *t)
+{
+    const ted4_order *o = &t->order;
+    uint8_t          *seen = calloc(t->data->n_pictures + 1, 1);
+    int               whole = seen != NULL && o->next <= o->n;
+
+    for (uint32_t i = 0; whole && i < o->n; i++) {
+        const uint32_t p = o->item[i];
+
+        whole = p < t->data->n_pictures && !t->data->pictures[p].is_test && !seen[p];
+        if (whole)
+            seen[p] = 1;
+    }
+    free(seen);
+    return whole;
+}
+
+/* Numbers that steer what happens next. */
+static int numbers_are_possible(const ted4_trainer *t)
+{
+    return (t->stage2 == 0 || t->stage2 == 1) && (t->integer == 0 || t->integer == 1) && t->integer <= t->stage2
+        && t->iteration <= ted4_trainer_total(t) && t->stage2_start <= t->iteration && t->cell >= TED4_FINEST_CELL && t->cell <= 1e30
+        && t->decided >= TED4_DECIDED_NOTHING && t->decided <= TED4_DECIDED_ALL && t->watch.state.factor > 0 && t->watch.state.factor <= 1 && t->watch.state.rollbacks <= TED4_ROLLBACKS;
+}
+
+/* The last good state, itself a file of this kind, looked at when it is needed. None is written where the next step replaces it, or there is none. Room grows
+ * with what is read: the size alone is not believed. */
+static void walk_good(stream *s, ted4_trainer *t)
+{
+    enum { PIECE = 1 << 20 };
+    ted4_watch   *w = &t->watch;
+    const int     none = w->good.bytes == NULL || ted4_watch_due(t);
+    uint64_t      size = s->writing && !none ? w->good.size : 0;
+
+    put(s, &size, sizeof size);
+    put(s, &w->good_at, sizeof w->good_at);
+    if (s->writing) {
+        put(s, w->good.bytes, size);
+        return;
+    }
+    ted4_watch_forget(t);
+    while (!s->failed && w->good.size < size) {
+        const size_t n = size - w->good.size < PIECE ? (size_t)(size - w->good.size) : PIECE;
+        char        *bytes = realloc(w->good.bytes, w->good.size + n);
+
+        s->failed = bytes == NULL;
+        if (s->failed)
+            break;
+        w->good.bytes = bytes;
+        put(s, bytes + w->good.size, n);
+        w->good.size += n;
+    }
+    if (s->failed)
+        ted4_watch_forget(t);
+}
+
+/* How the model came to be what it is. Before stage 2 there is nothing to tell; without trials the model is the one that stage 2 began with. */
+static void walk_capacity(stream *s, ted4_trainer *t)
+{
+    enum { MOST = 4096 };
+    uint64_t    n = t->n_trials;
+    ted4_header began;
+
+    if (!s->writing) {
+        t->decided = 0;
+        ted4_grid_full(t->bits);
+    }
+    if (t->stage2 && t->opt.capacity) {
+        put(s, &t->charged, sizeof t->charged);
+        put(s, &t->decided, sizeof t->decided);
+        put(s, t->bits, sizeof t->bits);
+        put(s, &n, sizeof n);
+    } else {
+        t->charged = t->layout.head;
+        n = 0;
+    }
+    if (!s->writing && !s->failed) {
+        ted4_header_make(&began, &t->opt, t->data);
+        free(t->trial);
+        t->trial = n <= MOST ? malloc((size_t)(n + 1) * sizeof *t->trial) : NULL;
+        t->n_trials = t->trial != NULL ? (size_t)n : 0;
+        s->failed = t->trial == NULL || !header_belongs(&began, &t->charged, 0);
+    }
+    if (!s->failed)
+        put(s, t->trial, (size_t)n * sizeof *t->trial);
+    for (int i = 0; !s->failed && i < TED4_GRIDS; i++)
+        s->failed = t->bits[i] < 1 || t->bits[i] > TED4_GRID_FULL(i);
+    for (size_t i = 0; !s->failed && i < n; i++)
+        s->failed = t->trial[i].move < 0 || t->trial[i].move >= TED4_MOVES;
+}
+
+static void walk_colour(stream *s, ted4_trainer *t)
+{
+    ted4_colour *c = &t->colour;
+
+    expect(s, c->n_cameras);
+    put(s, c->steps, c->n_cameras * sizeof *c->steps);
+    put(s, c->value, c->n_cameras * sizeof *c->value);
+    put(s, c->m, c->n_cameras * sizeof *c->m);
+    put(s, c->v, c->n_cameras * sizeof *c->v);
+}
+
+static void expect_digest(stream *s, ted4_trainer *t)
+{
+    const int before = s->failed;
+
+    expect(s, ted4_dataset_digest(t->data));
+    if (s->failed && !before)
+        ted4_trainer_fail(t, "it is of other pictures, cameras, points or background (--downscale, --black, another scene)");
+}
+
+static void walk(stream *s, ted4_trainer *t)
+{
+    expect(s, MAGIC);
+    expect(s, FORMAT);
+    expect_number(s, t, t->data->n_pictures, "pictures");
+    expect_number(s, t, t->data->n_frames, "times");
+    expect_digest(s, t);
+    put(s, &t->stage2, sizeof t->stage2);
+    walk_options(s, t);
+    expect(s, ted4_options_hash(&t->opt, t->stage2 ? 2 : 1));
+    walk_layout(s, t);
+    if (!s->failed)
+        walk_capacity(s, t);
+    put(s, &t->cell, sizeof t->cell);
+    put(s, &t->iteration, sizeof t->iteration);
+    put(s, &t->seconds, sizeof t->seconds);
+    put(s, &t->integer, sizeof t->integer);
+    put(s, &t->stage2_start, sizeof t->stage2_start);
+    put(s, &t->probed, sizeof t->probed);
+    put(s, t->probe_loss, sizeof t->probe_loss);
+    put(s, &t->progress, sizeof t->progress);
+    put(s, &t->watch.state, sizeof t->watch.state);
+    expect(s, t->order.n);
+    put(s, t->order.item, t->order.n * sizeof *t->order.item);
+    put(s, &t->order.next, sizeof t->order.next);
+    put(s, &t->order.round, sizeof t->order.round);
+    s->failed |= !s->writing && !s->failed && !(order_is_whole(t) && numbers_are_possible(t));
+    walk_colour(s, t);
+    walk_anchors(s, t);
+    if (!s->failed)
+        walk_networks(s, t);
+    if (s->whole)
+        walk_good(s, t);
+}
+
+static int intact_memory(stream *s)
+{
+    const ted4_snapshot *m = s->memory;
+    uint64_t             want;
+
+    if (m->size < sizeof want)
+        return 0;
+    s->left = m->size;
+    XXH3_64bits_update(s->hash, m->bytes, m->size - sizeof want);
+    memcpy(&want, m->bytes + m->size - sizeof want, sizeof want);
+    return XXH3_64bits_digest(s->hash) == want;
+}
+
+/* The last eight bytes are the hash of all others. Looked at before anything in the file is
+ * believed. The file is at its start again afterwards. */
+static int intact_file(stream *s)
+{
+    uint8_t  bytes[1 << 14];
+    uint64_t want;
+    long     left = fseek(s->file, 0, SEEK_END) == 0 ? ftell(s->file) - (long)sizeof want : -1;
+
+    if (left < 0 || fseek(s->file, 0, SEEK_SET) != 0)
+        return 0;
+    s->left = (uint64_t)left + sizeof want;
+    while (left > 0) {
+        const size_t n = left < (long)sizeof bytes ? (size_t)left : sizeof bytes;
+
+        if (fread(bytes, 1, n, s->file) != n)
+            return 0;
+        XXH3_64bits_update(s->hash, bytes, n);
+        left -= (long)n;
+    }
+    return fread(&want, 1, sizeof want, s->file) == sizeof want &&
+           XXH3_64bits_digest(s->hash) == want && fseek(s->file, 0, SEEK_SET) == 0;
+}
+
+static void walk_hash(stream *s)
+{
+    uint64_t hash = XXH3_64bits_digest(s->hash);
+
+    if (s->writing || s->file != NULL)
+        expect(s, hash);
+    else
+        put(s, &hash, sizeof hash);
+}
+
+/* In file, or, where that is NULL, in memory, which when writing is empty but may have room. */
+static int run(ted4_trainer *t, FILE *file, ted4_snapshot *memory, size_t room, int writing,
+               int whole)
+{
+    stream s = { .file = file, .memory = memory, .room = room, .writing = writing, .whole = whole,
+                 .hash = XXH3_createState() };
+
+    if (s.hash == NULL)
+        return -1;
+    XXH3_64bits_reset(s.hash);
+    s.failed = !writing && !(file != NULL ? intact_file(&s) : intact_memory(&s));
+    XXH3_64bits_reset(s.hash);
+    walk(&s, t);
+    walk_hash(&s);
+    XXH3_freeState(s.hash);
+    return s.failed ? -1 : 0;
+}
+
+int ted4_checkpoint_save(ted4_trainer *t, const char *path)
+{
+    char  name[4096];
+    FILE *f;
+
+    if (ted4_trainer_check(t, 1) != 0)
+        return -1;
+    if (snprintf(name, sizeof name, "%s.part", path) >= (int)sizeof name)
+        return ted4_trainer_fail(t, "%s: name too long", path);
+    f = fopen(name, "wb");
+    if (f == NULL)
+        return ted4_trainer_fail(t, "%s: %s", name, strerror(errno));
+
+    /* errno is the first failure's: closing what could not be written fails again, with another reason. A state that no checkpoint may hold sets none. */
+    errno = 0;
+
+    const int bad = run(t, f, NULL, 0, 1, 1) != 0 || fflush(f) != 0 || fsync(fileno(f)) != 0;
+    int       why = !bad ? 0 : errno != 0 ? errno : EIO;
+
+    if (fclose(f) != 0 && !bad)
+        why = errno;
+    if (why == 0 && rename(name, path) != 0)
+        why = errno;
+    if (why == 0)
+        return 0;
+    remove(name);
+    return ted4_trainer_fail(t, "%s: %s", path, strerror(why));
+}
+
+static int load(ted4_trainer *t, FILE *f, ted4_snapshot *memory, const char *name, int whole)
+{
+    const ted4_message before = t->message;
+
+    t->message.text[0] = 0;
+    if (run(t, f, memory, 0, 0, whole) != 0) {
+        const ted4_message m = t->message;
+
+        return ted4_trainer_fail(t, "%s: not a checkpoint of this scene with these options%s%.500s", name, m.text[0] != 0 ? ": " : "", m.text);
+    }
+    t->message = before;
+    if (t->integer)
+        ted4_rate_pack(t->rate, t->net);
+    return 0;
+}
+
+int ted4_checkpoint_load(ted4_trainer *t, const char *path)
+{
+    FILE *f = fopen(path, "rb");
+
+    if (f == NULL)
+        return ted4_trainer_fail(t, "%s: %s", path, strerror(errno));
+
+    const int bad = load(t, f, NULL, path, 1);
+
+    fclose(f);
+    return bad;
+}
+
+static int take(ted4_trainer *t, ted4_snapshot *s, int whole)
+{
+    const size_t room = s->bytes != NULL ? s->size : 0;
+
+    s->size = 0;
+    if (run(t, NULL, s, room, 1, whole) == 0)
+        return 0;
+    ted4_snapshot_free(s);
+    return ted4_trainer_fail(t, "no memory for a snapshot");
+}
+
+static int restore(ted4_trainer *t, const ted4_snapshot *s, int whole)
+{
+    ted4_snapshot memory = *s;
+
+    return load(t, NULL, &memory, "snapshot", whole);
+}
+
+int ted4_snapshot_take(ted4_trainer *t, ted4_snapshot *s)
+{
+    return take(t, s, 1);
+}
+
+int ted4_snapshot_restore(ted4_trainer *t, const ted4_snapshot *s)
+{
+    return restore(t, s, 1);
+}
+
+int ted4_state_take(ted4_trainer *t, ted4_snapshot *s)
+{
+    return take(t, s, 0);
+}
+
+int ted4_state_restore(ted4_trainer *t, const ted4_snapshot *s)
+{
+    return restore(t, s, 0);
+}
+
+void ted4_snapshot_free(ted4_snapshot *s)
+{
+    free(s->bytes);
+    s->bytes = NULL;
+    s->size = 0;
+}

@@ -1,0 +1,322 @@
+/* monitor.c - notices a training that goes wrong, says what and where, and takes it back to its last good state with a smaller step. See trainer.h and watch.h.
+ * What is judged by its usual size is so coarse that no training that went well ever came near it (doc/training.md); what is not finite is found at once.
+ * SPDX-License-Identifier: BSD-2-Clause */
+#include "monitor.h"
+
+#include <math.h>
+#include <stdarg.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "checkpoint.h"
+#include "grad_norm.h"
+#include "math/elementary.h"
+
+/* Steps between looks at every anchor, also those that no picture shows, and between good states. Those lie halfway between events of the schedule, which come
+ * at multiples of 100: an event that fails has steps before it that can be made smaller. */
+enum { LOOK_EVERY = 100, KEEP_EVERY = 500, KEEP_AT = 250 };
+
+/* Factor of all learning rates at each rollback. */
+#define SMALLER 0.5
+
+/* A scale moves by at most this factor (log2) a step; first faster, and nothing is judged by it. */
+#define SCALE_STEP  0.05
+#define SCALE_FIRST 0.5
+enum { SCALE_NEW = 100 };
+
+/* A gradient has exploded when it is so many times its usual size. Measured: single steps of trainings that go well reach 3 times (features, scalings, offsets),
+ * 20 times (bank, networks) and 130 times (activations, whose edges may be as narrow as spec 11.4 lets them). Adam bounds what one such step does. */
+#define EXPLODED 1e5
+/* The loss diverges when in so many steps on end it is so many times its usual size, and so large at all. Pictures come in random order, so that a few that differ
+ * from the others do not make such a row. */
+#define DIVERGED  3.0
+#define HIGH_LOSS 0.1
+enum { ROW = 32 };
+/* The screen is nearly empty with this share of the usual Gaussians on it. That alone is no failure: anchors in empty space are right to go, however many. They have
+ * collapsed when pictures lose by it: when in a row of such steps the mean loss is so many times what was usual before the row. */
+#define NEARLY_EMPTY (1.0 / 8.0)
+#define LOST         1.25
+
+static const char *const names[TED4_TERMS] = {
+    "feature", "scaling", "offset", "phi", "tau", "masks", "centres",
+    "heads", "motion", "bank", "prior", "steps", "colour",
+};
+
+const char *ted4_term_name(int term)
+{
+    return names[term];
+}
+
+double ted4_scale_usual(const ted4_scale *s)
+{
+    return s->n > 0 ? ted4_math_exp2(s->level) : 0.0;
+}
+
+double ted4_scale_take(ted4_scale *s, double x)
+{
+    if (!(x > 0))
+        return 0;
+
+    const double away = ted4_math_log2(x) - s->level, most = s->n < SCALE_NEW ? SCALE_FIRST : SCALE_STEP;
+    const double times = s->n < SCALE_NEW ? 0.0 : ted4_math_exp2(away);
+
+    s->level += s->n == 0 ? away : fmin(fmax(away, -most), most);
+    s->n++;
+    s->peak = fmax(s->peak, times);
+    return times;
+}
+
+/* ---- what was found ---- */
+
+int ted4_watch_find(ted4_trainer *t, const char *cause, int64_t anchor, const char *what,
+                    const char *term, const char *format, ...)
+{
+    ted4_find *f = &t->watch.find;
+    char       where[64] = "", how[128];
+    va_list    arguments;
+
+    f->cause = cause;
+    f->anchor = anchor;
+    f->step = t->iteration;
+    t->watch.found = 1;
+    snprintf(f->term, sizeof f->term, "%s%s", what, term);
+    if (anchor >= 0)
+        snprintf(where, sizeof where, " of anchor %lld", (long long)anchor);
+    va_start(arguments, format);
+    vsnprintf(how, sizeof how, format, arguments);
+    va_end(arguments);
+    return ted4_trainer_fail(t, "%s%s %s at step %llu", f->term, where, how,
+                             (unsigned long long)t->iteration);
+}
+
+static int bad_value(ted4_trainer *t, int64_t anchor, int term)
+{
+    return ted4_watch_find(t, "not finite", anchor, "value of ",
+                           term == TED4_TERM_CENTRE ? "position" : names[term], "is not finite");
+}
+
+static int bad_gradient(ted4_trainer *t, int term, double times)
+{
+    int           finite;
+    const int64_t anchor = ted4_gradients_anchor(t, term, &finite);
+
+    if (!finite || !isfinite(times))
+        return ted4_watch_find(t, finite ? "exploded" : "not finite", anchor, "gradient of ",
+                               names[term], finite ? "is beyond all numbers" : "is not finite");
+    return ted4_watch_find(t, "exploded", anchor, "gradient of ", names[term],
+                           "is %.3g times what is usual", times);
+}
+
+/* ---- the last good state ---- */
+
+static int is_calm(const ted4_watch_state *w)
+{
+    return w->bad_loss == 0 && w->bad_screen == 0;
+}
+
+int ted4_watch_due(const ted4_trainer *t)
+{
+    const uint64_t i = t->iteration;
+
+    return !t->watch.pinned && is_calm(&t->watch.state) &&
+           (i % KEEP_EVERY == KEEP_AT || i == (uint64_t)t->opt.stage1 ||
+            i == ted4_trainer_total(t));
+}
+
+void ted4_watch_forget(ted4_trainer *t)
+{
+    ted4_snapshot_free(&t->watch.good);
+}
+
+int ted4_watch_begin(ted4_trainer *t)
+{
+    ted4_watch *w = &t->watch;
+    const int   keep = w->good.bytes == NULL ||
+                       (ted4_watch_due(t) && w->good_at != t->iteration);
+
+    w->found = 0;
+    if (ted4_trainer_check(t, keep || t->iteration % LOOK_EVERY == 0) != 0) {
+        int           term;
+        const int64_t anchor = ted4_gradients_bad_value(t, &term);
+
+        if (!ted4_colour_finite(&t->colour))
+            return ted4_watch_find(t, "not finite", -1, "map of ", "colour", "is not finite");
+        return anchor >= 0
+                   ? bad_value(t, anchor, term)
+                   : ted4_watch_find(t, "not finite", -1, "weight of ",
+                                     names[ted4_gradients_bad_network(t)], "is not finite");
+    }
+    if (!keep)
+        return 0;
+    w->good_at = t->iteration;
+    return ted4_state_take(t, &w->good);
+}
+
+int ted4_watch_recover(ted4_trainer *t)
+{
+    ted4_watch    *w = &t->watch;
+    const uint64_t rollbacks = w->state.rollbacks, failed = t->iteration;
+    const double   factor = w->state.factor, seconds = t->seconds;
+    const char    *why = w->good.bytes == NULL ? "there is no good state before it"
+                                               : "learning rates were made smaller three times; another --seed, or smaller ones from the start (--set lr_...), may help";
+
+    if (!w->found)
+        return -1;
+    if (w->good.bytes == NULL || rollbacks == TED4_ROLLBACKS) {
+        const ted4_message m = t->message;
+
+        return ted4_trainer_fail(t, "%.512s; %s", m.text, why);
+    }
+    if (ted4_state_restore(t, &w->good) != 0)
+        return -1;
+    w->found = 0;
+    w->state.factor = SMALLER * factor;
+    w->state.rollbacks = rollbacks + 1;
+    t->seconds = seconds;
+    /* Where no step lies between, smaller ones change nothing: that picture is passed over. */
+    if (failed == t->iteration && t->order.next < t->order.n)
+        t->order.next++;
+    ted4_watch_forget(t);
+    return 0;
+}
+
+/* ---- a step ---- */
+
+int ted4_watch_loss(ted4_trainer *t, double loss)
+{
+    return isfinite(loss) ? 0
+                          : ted4_watch_find(t, "not finite", -1, "loss", "", "is not finite");
+}
+
+/* Which of what hides a Gaussian: activation at this time, no extent, no opacity; -1: it is not hidden. */
+enum { BY_ACTIVATION, BY_SCALE, BY_OPACITY, REASONS };
+
+static int why_hidden(const ted4_slots *slots, const ted4_generate_input *in, const ted4_splats *s,
+                      size_t slot, size_t lane)
+{
+    const size_t K = in->layout->head.n_offsets;
+    float        opacity = 0, extent = 0;
+
+    for (size_t k = 0; k < K; k++) {
+        const size_t at = (slots->drawn[slot] * K + k) * TED4_LANES + lane;
+
+        opacity = fmaxf(opacity, s->opacity[at]);
+        for (int c = 0; c < 3; c++)
+            extent = fmaxf(extent, s->scale[c][at]);
+    }
+    if (!(ted4_lanes_there(in, slot) >> lane & 1))
+        return BY_ACTIVATION;
+    return extent < TED4_NO_EXTENT ? BY_SCALE : opacity <= 0 ? BY_OPACITY : -1;
+}
+
+/* What hides most of the anchors in the view, and the first one that it hides. */
+static int collapsed(ted4_trainer *t, const ted4_generate_input *in, const ted4_splats *s)
+{
+    static const char *const reasons[REASONS] = { "activation", "scale", "opacity" };
+    size_t  count[REASONS] = { 0 }, n = 0;
+    int64_t first[REASONS] = { -1, -1, -1 };
+    int     most = BY_OPACITY;
+
+    for (size_t i = 0; i < in->n_slots; i++)
+        for (size_t j = 0; j < TED4_LANES; j++) {
+            const int why = in->lanes[i] >> j & 1 ? why_hidden(&t->slots, in, s, i, j) : -1;
+
+            n += in->lanes[i] >> j & 1;
+            if (why >= 0 && count[why]++ == 0)
+                first[why] = (int64_t)(t->slots.block[i] * (size_t)TED4_LANES + j);
+        }
+    for (int k = 0; k < REASONS; k++)
+        most = count[k] > count[most] ? k : most;
+    return ted4_watch_find(t, "collapsed", first[most], "", reasons[most],
+                           "is nothing, as that of %zu of %zu anchors in view", count[most], n);
+}
+
+/* Another phase has other gradients: rate, rounding, a stopped clock. */
+static void note_phase(ted4_trainer *t)
+{
+    ted4_watch_state *w = &t->watch.state;
+    const uint64_t    phase = (uint64_t)t->stage2 | (uint64_t)t->integer << 1 |
+                              (uint64_t)t->clock_stopped << 2;
+
+    if (phase == w->phase)
+        return;
+    memset(w->gradient, 0, sizeof w->gradient);
+    memset(&w->loss, 0, sizeof w->loss);
+    memset(&w->screen, 0, sizeof w->screen);
+    w->bad_loss = w->bad_screen = 0;
+    w->phase = phase;
+}
+
+static int look_at_gradients(ted4_trainer *t)
+{
+    ted4_watch *w = &t->watch;
+    double      times[TED4_TERMS];
+    int         worst = 0, term;
+
+    const int64_t anchor = ted4_gradients_bad_seen(t, &term);
+
+    if (anchor >= 0)
+        return bad_value(t, anchor, term);
+    ted4_gradients_gather(t, w->norm);
+    for (int k = 0; k < TED4_TERMS; k++)
+        if (!isfinite(w->norm[k]))
+            return bad_gradient(t, k, w->norm[k]);
+    for (int k = 0; k < TED4_TERMS; k++) {
+        times[k] = ted4_scale_take(&w->state.gradient[k], w->norm[k]);
+        worst = times[k] > times[worst] ? k : worst;
+    }
+    return times[worst] > EXPLODED ? bad_gradient(t, worst, times[worst]) : 0;
+}
+
+/* Has the screen been nearly empty for a row of steps, and did pictures lose by it? If they did not, this much is usual from here on. */
+static int is_lost(ted4_watch_state *w, double drawn, double usual, double loss)
+{
+    const double share = ted4_scale_take(&w->screen, drawn + 1.0);
+
+    if (!(share > 0 && share < NEARLY_EMPTY)) {
+        w->bad_screen = 0;
+        return 0;
+    }
+    if (w->bad_screen++ == 0) {
+        w->usual_loss = usual;
+        w->lost = 0;
+    }
+    w->lost += loss / ROW;
+    if (w->bad_screen < ROW)
+        return 0;
+    if (w->lost > LOST * w->usual_loss)
+        return 1;
+    memset(&w->screen, 0, sizeof w->screen);
+    w->bad_screen = 0;
+    return 0;
+}
+
+int ted4_watch_look(ted4_trainer *t, double loss, const ted4_generate_input *in,
+                    const ted4_splats *s)
+{
+    ted4_watch_state *w = &t->watch.state;
+
+    note_phase(t);
+    if (look_at_gradients(t) != 0)
+        return -1;
+
+    const double usual = ted4_scale_usual(&w->loss), high = ted4_scale_take(&w->loss, loss);
+
+    w->bad_loss = high > DIVERGED && loss > HIGH_LOSS ? w->bad_loss + 1 : 0;
+    if (is_lost(w, t->watch.drawn, usual, loss))
+        return collapsed(t, in, s);
+    return w->bad_loss == ROW
+               ? ted4_watch_find(t, "diverged", -1, "loss", "", "is %.3g times what is usual", high)
+               : 0;
+}
+
+int ted4_watch_calm(const ted4_trainer *t)
+{
+    return is_calm(&t->watch.state);
+}
+
+void ted4_watch_line(ted4_trainer *t)
+{
+    for (int k = 0; k < TED4_TERMS; k++)
+        t->watch.state.gradient[k].peak = 0;
+}

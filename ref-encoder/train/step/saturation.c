@@ -1,0 +1,35 @@
+/* saturation.c - see saturation.h.
+ * SPDX-License-Identifier: BSD-2-Clause */
+#include "saturation.h"
+
+#include <math.h>
+
+#define LARGEST_LOG2_SIZE 126.0f
+#define LEAST_SIZE        0x1p-20f
+#define LEAST_LOG2_EDGE   -12.0f
+#define BEYOND_SYMBOLS    32767.5f
+
+/* Component c of a type; q: its step size, 0 before there is one. */
+static int is_clamped(const ted4_header *h, int type, unsigned c, float x, float q)
+{
+    if (type == TED4_SCALING &&
+        (h->scale_domain == TED4_SCALE_LOG2 ? fabsf(x) > LARGEST_LOG2_SIZE : x <= LEAST_SIZE))
+        return 1;
+    if (type == TED4_TAU && c % 2 == 1 && x <= LEAST_LOG2_EDGE)
+        return 1;
+    return q > 0 && fabsf(x) > BEYOND_SYMBOLS * q;
+}
+
+size_t ted4_clamped(const ted4_trainer *t)
+{
+    const ted4_layout *l = &t->layout;
+    size_t             n = 0;
+
+    for (int y = 0; y < TED4_TYPES; y++)
+        for (unsigned c = 0; c < l->shape.dim[y]; c++)
+            for (size_t i = 0; i < t->anchors.n; i++)
+                n += (size_t)is_clamped(&l->head, y, c,
+                                        *ted4_cell(&t->anchors, TED4_ROW_VALUE, i, l->first[y] + (int)c),
+                                        *ted4_cell(&t->anchors, TED4_ROW_STEP, i, y));
+    return n;
+}

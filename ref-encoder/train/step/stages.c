@@ -1,0 +1,352 @@
+/* stages.c - the steps between phases: activation starts, compression starts, the integer model takes over.
+ * Source: paper ("Progressive 3D-to-4D Anchor Transformation", "Training Objectives"), annex D.1, D.2.
+ * SPDX-License-Identifier: BSD-2-Clause */
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "train/model/formulas.h"
+#include "math/elementary.h"
+#include "norm/half.h"
+#include "train/resize/feature_pca.h"
+#include "train/model/init.h"
+#include "train/model/normalise.h"
+#include "train/state/trainer.h"
+#include "train/densify/short_lived.h"
+#include "write/snap.h"
+
+/* spec 11: time of frame j. */
+static float frame_time(const ted4_trainer *t, uint32_t j)
+{
+    return t->data->n_frames > 1 ? (float)j / (float)(t->data->n_frames - 1) : 0.0f;
+}
+
+/* How far a first span stays inside the times seen: half a frame at most, and at most a tenth of b, so that it fades by 1 % only. */
+#define SPAN_INSIDE 0.01f
+
+/* First and last time at which a training view sees each anchor: span[2 i], span[2 i + 1]; left alone where none does. */
+static void widen_spans(const ted4_trainer *t, float *span)
+{
+    const ted4_anchors *a = &t->anchors;
+
+    for (size_t i = 0; i < t->data->n_pictures; i++) {
+        const ted4_picture *pic = &t->data->pictures[i];
+        const float         now = frame_time(t, pic->frame);
+        ted4_view           v;
+        float               centre[3];
+
+        if (pic->is_test)
+            continue;
+        ted4_space_view(&t->layout.head, &pic->camera, &v, centre);
+        for (size_t b = 0; b < a->n_blocks; b++) {
+            const uint32_t seen = ted4_block_visible(t, b, &v);
+
+            for (size_t j = 0; j < TED4_LANES; j++) {
+                float *s = span + 2 * (b * TED4_LANES + j);
+
+                if (seen >> j & 1) {
+                    s[0] = fminf(s[0], now);
+                    s[1] = fmaxf(s[1], now);
+                }
+            }
+        }
+    }
+}
+
+/* Each anchor's activation, transients aside, starts as the span between the first and the last time at which a training view sees it (without
+ * the static phase: all times), less a little at each end: with the first frame of the sequence exactly at a_s no time would ever lie before it, and its
+ * gradient would be zero for good (annex D.1, traps). */
+int ted4_activation_begin(ted4_trainer *t)
+{
+    ted4_anchors *a = &t->anchors;
+    const int     first = t->layout.first[TED4_TAU];
+    const float   inside = fminf(SPAN_INSIDE, 0.5f / fmaxf((float)t->data->n_frames - 1.0f, 1.0f));
+    float        *span = malloc((a->n_blocks + 1) * 2 * TED4_LANES * sizeof *span);
+
+    if (span == NULL)
+        return ted4_trainer_fail(t, "no memory to start activation");
+    for (size_t i = 0; i < a->n_blocks * TED4_LANES; i++) {
+        span[2 * i] = 2.0f;
+        span[2 * i + 1] = -1.0f;
+    }
+    if (t->opt.progressive)
+        widen_spans(t, span);
+    for (size_t i = 0; i < a->n; i++) {
+        const int never = span[2 * i] > span[2 * i + 1];
+        float     from = (never ? 0.0f : span[2 * i]) + inside;
+        float     to = (never ? 1.0f : span[2 * i + 1]) - inside;
+
+        if (from > to)
+            from = to = 0.5f * (from + to);
+        if (ted4_is_transient(t, i))
+            continue;
+        *ted4_cell(a, TED4_ROW_VALUE, i, first) = from;
+        *ted4_cell(a, TED4_ROW_VALUE, i, first + 2) = to;
+    }
+    free(span);
+    return 0;
+}
+
+/* Largest activation of anchor i over the frames of the sequence, in stage 2 as the file will hold it: from all slots (ted4_trainer_looks). */
+static float peak_activation(const ted4_trainer *t, size_t i)
+{
+    const int first = t->layout.first[TED4_TAU];
+    float     least = INFINITY;
+
+    if (first < 0)
+        return 1.0f;
+    const float *tau = t->slots.used[i / TED4_LANES] + (size_t)first * TED4_LANES + i % TED4_LANES;
+
+    for (uint32_t j = 0; j < t->data->n_frames; j++)
+        least = fminf(least, fabsf(ted4_find_edge(frame_time(t, j), tau, ted4_pow2).u));
+    return ted4_activation(least, ted4_pow2);
+}
+
+int ted4_stage_rising(ted4_trainer *t, uint32_t *rising, size_t *n)
+{
+    float *sum = malloc((t->anchors.n + 1) * sizeof *sum);
+    int    bad = sum == NULL ? ted4_trainer_fail(t, "no memory to look for idle anchors") : ted4_trainer_looks(t, sum, NULL);
+
+    *n = 0;
+    for (size_t i = 0; !bad && i < t->anchors.n; i++)
+        if ((double)(sum[i] * peak_activation(t, i)) >= t->opt.prune_opacity)
+            rising[(*n)++] = (uint32_t)i;
+    free(sum);
+    return bad;
+}
+
+int ted4_stage_drop_idle(ted4_trainer *t)
+{
+    uint32_t *order = malloc((t->anchors.n + 1) * sizeof *order);
+    size_t    n = 0;
+    int       bad = order == NULL ? ted4_trainer_fail(t, "no memory to drop idle anchors") : ted4_stage_rising(t, order, &n);
+
+    if (!bad && n == 0)
+        bad = ted4_trainer_fail(t, "nothing is left to encode");
+    if (!bad && n < t->anchors.n && ted4_anchors_select(&t->anchors, order, n) != 0)
+        bad = ted4_trainer_fail(t, "no memory to drop idle anchors");
+    free(order);
+    return bad;
+}
+
+/* Positions become what the file will hold; of anchors that then coincide the first stays. */
+static int settle_positions(ted4_trainer *t)
+{
+    ted4_anchors *a = &t->anchors;
+    uint32_t     *order = malloc((a->n + 1) * sizeof *order);
+    uint64_t      last = 0;
+    size_t        n = 0;
+
+    for (size_t i = 0; i < a->n; i++)
+        for (int j = 0; j < 3; j++) {
+            float *p = ted4_cell(a, TED4_ROW_POSITION, i, j);
+
+            *p = ted4_half_to_float(ted4_float_to_half(*p)) + 0.0f;
+        }
+
+    int bad = order == NULL || ted4_anchors_sort(a) != 0;
+
+    for (size_t i = 0; !bad && i < a->n; i++) {
+        uint16_t p[3];
+
+        for (int j = 0; j < 3; j++)
+            p[j] = ted4_float_to_half(*ted4_cell(a, TED4_ROW_POSITION, i, j));
+        const uint64_t code = ted4_morton(p);
+
+        if (i == 0 || code != last)
+            order[n++] = (uint32_t)i;
+        last = code;
+    }
+    bad = bad || ted4_anchors_select(a, order, n) != 0;
+    free(order);
+    return bad ? ted4_trainer_fail(t, "no memory to settle positions") : 0;
+}
+
+/* Copies the channels of a row kind from the old layout to the new one. */
+static void remap_row(const ted4_layout *from, const ted4_layout *to, const ted4_anchors *old,
+                      ted4_anchors *new, ted4_row row)
+{
+    for (size_t i = 0; i < old->n; i++) {
+        for (int y = 0; y < TED4_TYPES; y++)
+            for (unsigned c = 0; c < to->shape.dim[y]; c++)
+                *ted4_cell(new, row, i, to->first[y] + (int)c) =
+                    *ted4_cell(old, row, i, from->first[y] + (int)c);
+        for (int k = 0; k < to->head.n_offsets; k++)
+            *ted4_cell(new, row, i, to->offset_logit + k) =
+                *ted4_cell(old, row, i, from->offset_logit + k);
+        *ted4_cell(new, row, i, to->temporal_logit) =
+            *ted4_cell(old, row, i, from->temporal_logit);
+    }
+}
+
+/* Row kinds that do not depend on the layout. */
+static void copy_row(const ted4_anchors *old, ted4_anchors *new, ted4_row row)
+{
+    memcpy(new->data[row], old->data[row],
+           old->n_blocks * (size_t)old->rows[row] * TED4_LANES * sizeof(float));
+}
+
+/* One of the arrays of network parameters, NETE left zero. */
+static void remap_networks(const ted4_layout *from, const ted4_layout *to, const float *old, float *new)
+{
+    for (int i = 0; i < TED4_NETS_R; i++) {
+        const ted4_net_shape *s = &to->shape.netr[i];
+        size_t                n = 0;
+
+        for (int k = 0; k < s->n_layers; k++)
+            n += ((size_t)s->dim[k] + 1) * s->dim[k + 1];
+        memcpy(new + to->netr + s->first, old + from->netr + from->shape.netr[i].first,
+               n * sizeof *new);
+    }
+    memcpy(new + to->bank, old + from->bank, to->shape.n_bank * sizeof *new);
+}
+
+int ted4_stage_relayout(ted4_trainer *t, const ted4_header *h)
+{
+    const ted4_layout from = t->layout;
+    ted4_anchors      old = t->anchors;
+    float            *net[3] = { t->net, t->net_m, t->net_v };
+    int               bad;
+
+    ted4_layout_make(&t->layout, h);
+    t->net = t->net_m = t->net_v = NULL;
+    bad = ted4_anchors_init(&t->anchors, &t->layout) != 0 ||
+          ted4_anchors_resize(&t->anchors, old.n) != 0 || ted4_trainer_rebuild(t) != 0;
+    if (!bad) {
+        for (ted4_row r = TED4_ROW_VALUE; r <= TED4_ROW_V; r++)
+            remap_row(&from, &t->layout, &old, &t->anchors, r);
+        for (ted4_row r = TED4_ROW_POSITION; r <= TED4_ROW_GRADIENT; r++)
+            copy_row(&old, &t->anchors, r);
+        remap_networks(&from, &t->layout, net[0], t->net);
+        remap_networks(&from, &t->layout, net[1], t->net_m);
+        remap_networks(&from, &t->layout, net[2], t->net_v);
+    }
+    ted4_anchors_finish(&old);
+    for (int i = 0; i < 3; i++)
+        free(net[i]);
+    return bad ? ted4_trainer_fail(t, "no memory to change the model") : 0;
+}
+
+/* A part is dropped when it does nothing anywhere: no anchor moves, or every anchor is there at every time. */
+#define MOVING_SHARE 0.002
+#define ALWAYS_THERE 0.98f
+
+static float least_activation(const ted4_trainer *t, size_t i)
+{
+    const float *tau = ted4_cell(&t->anchors, TED4_ROW_VALUE, i, t->layout.first[TED4_TAU]);
+
+    const float  first = ted4_find_edge(0, tau, ted4_pow2).u, last = ted4_find_edge(1, tau, ted4_pow2).u;
+
+    return ted4_activation(fmaxf(fabsf(first), fabsf(last)), ted4_pow2);
+}
+
+/* The header without what does nothing. */
+static void simplify(const ted4_trainer *t, ted4_header *h)
+{
+    const double few = MOVING_SHARE * (double)t->anchors.n;
+    size_t       moving = 0, absent = 0;
+
+    for (size_t i = 0; i < t->anchors.n; i++) {
+        const float logit = *ted4_cell(&t->anchors, TED4_ROW_VALUE, i, t->layout.temporal_logit);
+
+        moving += ted4_mask_on(logit);
+        absent += h->activation && least_activation(t, i) < ALWAYS_THERE;
+    }
+    if (h->motion != TED4_MOTION_NONE && h->temporal_mask && (double)moving <= few)
+        ted4_header_without_motion(h);
+    if (h->activation && (double)absent <= few)
+        h->activation = 0;
+}
+
+/* The model as stage 2 trains it. */
+static int reshape(ted4_trainer *t)
+{
+    ted4_header h = t->layout.head;
+    const int   linear = t->opt.linear_scale;
+
+    simplify(t, &h);
+    h.scale_domain = linear ? TED4_SCALE_LINEAR : TED4_SCALE_LOG2;
+    if (ted4_stage_relayout(t, &h) != 0)
+        return -1;
+    for (size_t i = 0; linear && i < t->anchors.n; i++)
+        for (int c = 0; c < 6; c++) {
+            float *x = ted4_cell(&t->anchors, TED4_ROW_VALUE, i, t->layout.first[TED4_SCALING] + c);
+
+            *x = ted4_math_exp2f(*x);
+        }
+    return 0;
+}
+
+static void clear_moments(ted4_trainer *t)
+{
+    for (int r = TED4_ROW_M; r <= TED4_ROW_V; r++)
+        memset(t->anchors.data[r], 0, t->anchors.n_blocks * (size_t)t->layout.n_channels *
+                                          TED4_LANES * sizeof(float));
+    memset(t->net_m, 0, t->layout.n_net * sizeof *t->net_m);
+    memset(t->net_v, 0, t->layout.n_net * sizeof *t->net_v);
+}
+
+int ted4_stage2_begin(ted4_trainer *t)
+{
+    if (settle_positions(t) != 0 || ted4_stage_drop_idle(t) != 0 || reshape(t) != 0)
+        return -1;
+    if (t->opt.capacity && ted4_rotate_features(t) != 0)
+        return -1;
+    ted4_seed_prior(t->net, &t->layout, &t->anchors, t->opt.seed);
+    clear_moments(t);
+    for (size_t i = 0; i < t->anchors.n; i++)
+        for (int y = 0; y < TED4_TYPES; y++)
+            *ted4_cell(&t->anchors, TED4_ROW_STEP, i, y) = t->layout.head.step[y];
+    t->stage2 = 1;
+    t->charged = t->layout.head;
+    t->stage2_start = t->iteration;
+    return 0;
+}
+
+/* Fraction bits of the contexts: as many as leave a factor of two before 16 bits saturate. */
+static uint8_t context_bits(const ted4_trainer *t)
+{
+    const int first = t->layout.first[TED4_FEATURE];
+    float     largest = 1.0f;
+    int       bits = 10;
+
+    for (size_t i = 0; i < t->anchors.n; i++)
+        for (int c = 0; c < t->layout.head.feature_dim; c++)
+            largest = fmaxf(largest, fabsf(*ted4_cell(&t->anchors, TED4_ROW_VALUE, i, first + c)) /
+                                         t->layout.head.step[TED4_FEATURE]);
+    while (bits > 0 && ldexpf(largest, bits) > 16383.0f)
+        bits--;
+    return (uint8_t)bits;
+}
+
+/* From here on the prior is the one of the file: weights on the integer grid and fixed, steps fixed with them. So is what else lies on a coarse grid. */
+int ted4_integer_begin(ted4_trainer *t)
+{
+    t->layout.head.context_bits = context_bits(t);
+    ted4_rate_free(t->rate);
+    t->rate = ted4_rate_new(&t->layout);
+    t->shift = malloc(t->layout.shape.n_units + 1);
+    if (t->shift == NULL || t->rate == NULL || ted4_slots_fill(t, NULL) != 0)
+        return ted4_trainer_fail(t, "no memory for the integer model");
+    ted4_snap_coarse(&t->layout.head, &t->layout.shape, t->bits[TED4_GRID_PRIOR], t->net + t->layout.nete, t->shift);
+    ted4_grid_scene(&t->layout.shape, t->bits, t->net + t->layout.netr, t->net + t->layout.bank);
+    t->integer = 1;
+    ted4_rate_pack(t->rate, t->net);
+    return ted4_integer_rate(t, NULL);
+}
+
+int ted4_integer_rate(ted4_trainer *t, double *bits)
+{
+    if (ted4_slots_fill(t, NULL) != 0)
+        return -1;
+
+    const ted4_rate_input in = {
+        &t->layout, t->net, t->shift, t->slots.n, t->slots.raw, t->slots.position,
+        t->slots.lanes, t->slots.block, 0, TED4_QUANT_INTEGER, 0.0f, 0.0f,
+        t->layout.head.activation
+    };
+
+    return ted4_rate_evaluate(t->rate, &in, t->parallel, NULL, NULL, NULL, t->slots.steps,
+                              bits) != 0
+               ? ted4_trainer_fail(t, "no memory for the integer model, or weights beyond it") : 0;
+}
