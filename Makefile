@@ -151,7 +151,7 @@ asan:
 include tests/spec/spec.mk tests/strict.mk bench/bench.mk fuzz/fuzz.mk conformance/conf.mk conformance/reader/reader.mk conformance/cross/cross.mk
 
 DEPS     = gcc libc6-dev libcmocka-dev libjansson-dev libjpeg62-turbo-dev libpng-dev libxxhash-dev python3 zlib1g-dev
-DEPS_DEV = clang-14 llvm-14 libclang-rt-14-dev libomp-14-dev afl++ ffmpeg pandoc lcov valgrind
+DEPS_DEV = clang-14 clang-format-14 llvm-14 libclang-rt-14-dev libomp-14-dev afl++ ffmpeg pandoc lcov valgrind
 SUDO     = $(shell [ "$$(id -u)" = 0 ] || echo sudo)
 INSTALL_DEBIAN = missing=$$(for p in $(1); do \
 	dpkg-query -W -f='$${Status}' $$p 2>/dev/null | grep -q 'ok installed' || echo $$p; done); \

@@ -16,7 +16,7 @@
 enum { ROUNDS = 20 };
 
 typedef struct {
-    double whole, entropy;      /* ms */
+    double whole, entropy; /* ms */
 } times;
 
 /* Runs jobs one after another and adds up how long they take. */
@@ -29,16 +29,18 @@ static void run_timed(void *user, size_t n, void (*body)(void *arg, size_t i), v
     *(double *)user += now_ms() - begin;
 }
 
-/* 0, or -1 with a line. The hash of the scene and its number of coded symbols without masks go to info and *symbols. */
-static int once(const char *path, const uint8_t *bytes, size_t size, times *t, ted4_info *info, double *symbols)
+/* 0, or -1 with a line. The hash of the scene and its number of coded symbols without masks go to
+ * info and *symbols. */
+static int once(const char *path, const uint8_t *bytes, size_t size, times *t, ted4_info *info,
+                double *symbols)
 {
     ted4_parallel timed = { run_timed, &t->entropy };
-    ted4_options  o = { .parallel = &timed };
-    ted4_error    e;
-    ted4_scene   *s;
+    ted4_options o = { .parallel = &timed };
+    ted4_error e;
+    ted4_scene *s;
 
     t->entropy = 0;
-    const double      begin = now_ms();
+    const double begin = now_ms();
     const ted4_status status = ted4_decode(bytes, size, &o, &s, &e);
 
     t->whole = now_ms() - begin;
@@ -50,7 +52,8 @@ static int once(const char *path, const uint8_t *bytes, size_t size, times *t, t
 
     const ted4_shape *shape = &s->shape;
 
-    *symbols = (double)info->n_anchors * (shape->dim[TED4_FEATURE] + shape->dim[TED4_SCALING] + shape->dim[TED4_TAU]) +
+    *symbols = (double)info->n_anchors *
+                   (shape->dim[TED4_FEATURE] + shape->dim[TED4_SCALING] + shape->dim[TED4_TAU]) +
                3.0 * (double)info->n_gaussians + (double)info->n_dynamic * shape->dim[TED4_PHI];
     ted4_scene_free(s);
     return 0;
@@ -69,7 +72,7 @@ static int levels_here(ted4_level *level)
 
     for (int l = ted4_level_of_machine(); l >= TED4_LEVEL_PLAIN; l--) {
 #if !defined(__aarch64__)
-        if (l == TED4_LEVEL_BASE)       /* decodes as PLAIN */
+        if (l == TED4_LEVEL_BASE) /* decodes as PLAIN */
             continue;
 #endif
         level[n++] = (ted4_level)l;
@@ -92,14 +95,14 @@ static void print_ratio(const char *of, const char *to, const times *a, const ti
 static int measure(const char *path, const uint8_t *bytes, size_t size)
 {
     ted4_level level[TED4_LEVELS];
-    const int  n = levels_here(level);
-    times      best[TED4_LEVELS], t;
-    ted4_info  info[TED4_LEVELS];
-    double     symbols = 0;
-    int        same = 1;
+    const int n = levels_here(level);
+    times best[TED4_LEVELS], t;
+    ted4_info info[TED4_LEVELS];
+    double symbols = 0;
+    int same = 1;
 
     for (int i = 0; i < n; i++)
-        best[i] = (times){ INFINITY, INFINITY };
+        best[i] = (times) { INFINITY, INFINITY };
     for (int i = 0; i < n * ROUNDS; i++) {
         setenv("TED4_KERNEL", ted4_level_name(level[i % n]), 1);
         if (once(path, bytes, size, &t, &info[i % n], &symbols) != 0)
@@ -125,7 +128,7 @@ int main(int argc, char **argv)
     if (bad)
         fputs("usage: bench_decode FILE.ted4...\n", stderr);
     for (int i = 1; i < argc; i++) {
-        size_t         size;
+        size_t size;
         uint8_t *const bytes = ted4_read_file(argv[i], &size);
 
         if (bytes == NULL) {

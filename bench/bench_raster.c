@@ -1,5 +1,5 @@
-/* bench_raster.c - how long forward and backward of the rasteriser take on random scenes at 480x270 with about 33 blended Gaussians a pixel.
- * All levels that the machine has are timed in turn.
+/* bench_raster.c - how long forward and backward of the rasteriser take on random scenes at 480x270
+ * with about 33 blended Gaussians a pixel. All levels that the machine has are timed in turn.
  * SPDX-License-Identifier: BSD-2-Clause */
 #include "measure.h"
 #include "raster_scene.h"
@@ -8,21 +8,22 @@
 
 enum { WIDTH = 480, HEIGHT = 270, N_PIXELS = WIDTH * HEIGHT, ROUNDS = 40 };
 
-/* Standard deviation in pixels that gives about 33 blended Gaussians a pixel. Blurring makes small ones larger, so the law is not quite one of area. */
+/* Standard deviation in pixels that gives about 33 blended Gaussians a pixel. Blurring makes small
+ * ones larger, so the law is not quite one of area. */
 #define SIGMA(n) (0.465 * pow(1e5 / (double)(n), 0.56))
 
 typedef struct {
-    double forward, backward;   /* ms */
+    double forward, backward; /* ms */
 } times;
 
 typedef struct {
-    scene            s;
-    ted4_splats      g;
-    ted4_view        v;
-    ted4_raster     *r;
+    scene s;
+    ted4_splats g;
+    ted4_view v;
+    ted4_raster *r;
     ted4_splat_grads grads;
-    scene            d;
-    float           *image, *d_image;
+    scene d;
+    float *image, *d_image;
 } bench;
 
 static void bench_init(bench *b, size_t n)
@@ -33,21 +34,23 @@ static void bench_init(bench *b, size_t n)
     b->s = scene_random(n, &b->v, SIGMA(n), 1);
     must(b->s.value);
     for (size_t i = 0; i < n; i++)
-        scene_place(&b->s, &b->v, i, scene_range(&seed, 0, WIDTH), scene_range(&seed, 0, HEIGHT), scene_range(&seed, 1, 8));
+        scene_place(&b->s, &b->v, i, scene_range(&seed, 0, WIDTH), scene_range(&seed, 0, HEIGHT),
+                    scene_range(&seed, 1, 8));
     b->g = scene_splats(&b->s);
-    b->d = (scene){ n, must(malloc(n * SCENE_PARAMS * sizeof(float))) };
+    b->d = (scene) { n, must(malloc(n * SCENE_PARAMS * sizeof(float))) };
 
-    b->grads = (ted4_splat_grads){ .opacity = scene_param(&b->d, SCENE_OPACITY, 0), .mean2d = must(malloc(n * sizeof(float))),
-                                   .visible = must(malloc(n)) };
+    b->grads = (ted4_splat_grads) { .opacity = scene_param(&b->d, SCENE_OPACITY, 0),
+                                    .mean2d = must(malloc(n * sizeof(float))),
+                                    .visible = must(malloc(n)) };
     for (int k = 0; k < 3; k++) {
-        b->grads.mean[k]   = scene_param(&b->d, SCENE_MEAN + k, 0);
-        b->grads.scale[k]  = scene_param(&b->d, SCENE_SCALE + k, 0);
+        b->grads.mean[k] = scene_param(&b->d, SCENE_MEAN + k, 0);
+        b->grads.scale[k] = scene_param(&b->d, SCENE_SCALE + k, 0);
         b->grads.colour[k] = scene_param(&b->d, SCENE_COLOUR + k, 0);
     }
     for (int k = 0; k < 4; k++)
         b->grads.rot[k] = scene_param(&b->d, SCENE_ROT + k, 0);
     b->r = must(ted4_raster_new());
-    b->image   = must(malloc(3 * N_PIXELS * sizeof(float)));
+    b->image = must(malloc(3 * N_PIXELS * sizeof(float)));
     b->d_image = must(malloc(3 * N_PIXELS * sizeof(float)));
     for (size_t i = 0; i < 3 * N_PIXELS; i++)
         b->d_image[i] = (float)scene_range(&seed, -1, 1);
@@ -73,7 +76,7 @@ static times once(bench *b, const ted4_parallel *p)
     bad |= ted4_raster_backward(b->r, &b->g, &b->v, p, b->d_image, &b->grads);
     if (bad)
         must(NULL);
-    return (times){ t1 - t0, now_ms() - t1 };
+    return (times) { t1 - t0, now_ms() - t1 };
 }
 
 /* The least of each: whatever else the machine does can only add. */
@@ -82,7 +85,7 @@ static times best(const times *t, size_t n)
     times b = t[0];
 
     for (size_t i = 1; i < n; i++) {
-        b.forward  = fmin(b.forward, t[i].forward);
+        b.forward = fmin(b.forward, t[i].forward);
         b.backward = fmin(b.backward, t[i].backward);
     }
     return b;
@@ -90,11 +93,13 @@ static times best(const times *t, size_t n)
 
 static void print_times(const char *what, times t, size_t pairs)
 {
-    printf("  %-22s forward %7.2f ms (%5.2f ns a pair)  backward %7.2f ms (%5.2f)  both %7.2f ms\n", what, t.forward,
-           t.forward * 1e6 / (double)pairs, t.backward, t.backward * 1e6 / (double)pairs, t.forward + t.backward);
+    printf("  %-22s forward %7.2f ms (%5.2f ns a pair)  backward %7.2f ms (%5.2f)  both %7.2f ms\n",
+           what, t.forward, t.forward * 1e6 / (double)pairs, t.backward,
+           t.backward * 1e6 / (double)pairs, t.forward + t.backward);
 }
 
-/* As a training finds it, which goes on with as many threads as it began: after a round with as many, what a core needs lies in its cache, not in the other's. */
+/* As a training finds it, which goes on with as many threads as it began: after a round with as
+ * many, what a core needs lies in its cache, not in the other's. */
 static times settled(bench *b, const ted4_parallel *p)
 {
     once(b, p);
@@ -124,9 +129,11 @@ static void report(size_t n)
     bench_init(&b, n);
     once(&b, NULL);
     const pair_count count = count_pairs(b.r, &b.v);
-    const size_t     pairs = count.blended;
-    printf("%zu Gaussians, %dx%d: %.1f blended a pixel, %zu visible, %zu instances, %.0f %% of lanes blended\n", n, WIDTH, HEIGHT,
-           (double)pairs / N_PIXELS, b.r->n_visible, b.r->n_instances, 100.0 * (double)pairs / (double)count.computed);
+    const size_t pairs = count.blended;
+    printf("%zu Gaussians, %dx%d: %.1f blended a pixel, %zu visible, %zu instances, %.0f %% of "
+           "lanes blended\n",
+           n, WIDTH, HEIGHT, (double)pairs / N_PIXELS, b.r->n_visible, b.r->n_instances,
+           100.0 * (double)pairs / (double)count.computed);
     for (int i = 0; i < ROUNDS; i++) {
         for (ted4_level level = TED4_LEVEL_BASE; level <= most; level++) {
             ted4_level_use(level);

@@ -1,5 +1,7 @@
-/* bench_render.c - how many frames a second the decoder draws of a scene with 100,000 Gaussians in view, at 960x536: each frame is another time and another
- * camera, so that every deformation and every head is evaluated again. The scene is made here, of the sizes of two presets; all anchors move.
+/* bench_render.c - how many frames a second the decoder draws of a scene with 100,000 Gaussians in
+ * view, at 960x536: each frame is another time and another camera, so that every deformation and
+ * every head is evaluated again. The scene is made here, of the sizes of two presets; all anchors
+ * move.
  * Usage: bench_render.
  * SPDX-License-Identifier: BSD-2-Clause */
 #include <math.h>
@@ -26,42 +28,62 @@ typedef struct {
 } model;
 
 typedef struct {
-    double query, draw, both;           /* ms */
+    double query, draw, both; /* ms */
 } times;
 
 typedef struct {
-    ted4_scene  *scene;
-    ted4_recon  *recon;
+    ted4_scene *scene;
+    ted4_recon *recon;
     ted4_viewer *viewer;
-    ted4_info    info;
-    uint8_t     *rgb;
+    ted4_info info;
+    uint8_t *rgb;
 } bench;
 
 static ted4_header make_header(const model *m)
 {
     ted4_header h = {
-        .n_anchors = (uint32_t)((N_GAUSSIANS + m->offsets - 1) / m->offsets), .tile_size = 4096,
-        .n_offsets = (uint8_t)m->offsets, .feature_dim = (uint8_t)m->feature,
-        .motion = TED4_MOTION_BANK, .phi_dim = 8, .bank_rows = FRAMES / 2, .bank_dim = (uint16_t)m->bank_dim,
-        .deform_layers = (uint8_t)m->deform_layers, .deform_width = (uint16_t)m->deform_width,
-        .temporal_mask = 1, .offset_mask = 1, .activation = 1,
-        .view = TED4_VIEW_COLOUR, .head_layers = 1, .head_width = (uint16_t)m->head_width,
-        .scale_domain = TED4_SCALE_LOG2, .prior = TED4_PRIOR_INR, .pe_octaves = 10, .hyper_layers = 1, .hyper_width = 16,
-        .n_slices = 1, .slice = { (uint8_t)m->feature }, .ar_width = 16,
-        .step = { 1.0f, 0.02f, 0.1f, 0.1f, 0.01f }, .frames = FRAMES, .rate_num = 30, .rate_den = 1,
+        .n_anchors = (uint32_t)((N_GAUSSIANS + m->offsets - 1) / m->offsets),
+        .tile_size = 4096,
+        .n_offsets = (uint8_t)m->offsets,
+        .feature_dim = (uint8_t)m->feature,
+        .motion = TED4_MOTION_BANK,
+        .phi_dim = 8,
+        .bank_rows = FRAMES / 2,
+        .bank_dim = (uint16_t)m->bank_dim,
+        .deform_layers = (uint8_t)m->deform_layers,
+        .deform_width = (uint16_t)m->deform_width,
+        .temporal_mask = 1,
+        .offset_mask = 1,
+        .activation = 1,
+        .view = TED4_VIEW_COLOUR,
+        .head_layers = 1,
+        .head_width = (uint16_t)m->head_width,
+        .scale_domain = TED4_SCALE_LOG2,
+        .prior = TED4_PRIOR_INR,
+        .pe_octaves = 10,
+        .hyper_layers = 1,
+        .hyper_width = 16,
+        .n_slices = 1,
+        .slice = { (uint8_t)m->feature },
+        .ar_width = 16,
+        .step = { 1.0f, 0.02f, 0.1f, 0.1f, 0.01f },
+        .frames = FRAMES,
+        .rate_num = 30,
+        .rate_den = 1,
     };
 
     return h;
 }
 
-/* Weights that keep values near 1 whatever the width, but for the last layer: there they are last times that, and the biases are bias. */
+/* Weights that keep values near 1 whatever the width, but for the last layer: there they are last
+ * times that, and the biases are bias. */
 static void fill_network(ted4_scene *s, int net, double last, float bias, uint64_t *seed)
 {
     const ted4_net_shape *n = &s->shape.netr[net];
-    float                *w = s->netr.values + n->first;
+    float *w = s->netr.values + n->first;
 
     for (int l = 0; l < n->n_layers; l++) {
-        const int    is_last = l + 1 == n->n_layers;
+        const int is_last = l + 1 == n->n_layers;
         const double size = 1.7 / sqrt(n->dim[l]) * (is_last ? last : 1.0);
 
         for (size_t k = 0; k < (size_t)n->dim[l] * n->dim[l + 1]; k++)
@@ -78,7 +100,8 @@ static void fill_symbols(ted4_scene *s, ted4_type t, double middle, double sprea
 
     memset(s->step_index[t], STEP_ONE, n);
     for (size_t i = 0; i < n * s->shape.dim[t]; i++)
-        s->symbol[t][i] = (int16_t)lrint((middle + spread * scene_normal(seed)) / (double)s->head.step[t]);
+        s->symbol[t][i] =
+            (int16_t)lrint((middle + spread * scene_normal(seed)) / (double)s->head.step[t]);
 }
 
 /* An anchor for every place of the picture, at any depth. */
@@ -87,8 +110,10 @@ static void place_anchors(ted4_scene *s, uint64_t *seed)
     for (size_t i = 0; i < s->head.n_anchors; i++) {
         const double z = scene_range(seed, -1, 1), slope = (z + (double)DISTANCE) / (double)FOCAL;
 
-        s->position[3 * i] = ted4_float_to_half((float)(scene_range(seed, -0.47, 0.47) * WIDTH * slope));
-        s->position[3 * i + 1] = ted4_float_to_half((float)(scene_range(seed, -0.47, 0.47) * HEIGHT * slope));
+        s->position[3 * i] =
+            ted4_float_to_half((float)(scene_range(seed, -0.47, 0.47) * WIDTH * slope));
+        s->position[3 * i + 1] =
+            ted4_float_to_half((float)(scene_range(seed, -0.47, 0.47) * HEIGHT * slope));
         s->position[3 * i + 2] = ted4_float_to_half((float)z);
         s->dynamic[i] = 1;
         s->offset_bits[i] = (uint16_t)((1u << s->head.n_offsets) - 1);
@@ -98,9 +123,9 @@ static void place_anchors(ted4_scene *s, uint64_t *seed)
 static ted4_scene *make_scene(const model *m)
 {
     const ted4_header h = make_header(m);
-    ted4_scene       *s = must(ted4_scene_new(&h, NULL));
-    const size_t      n = h.n_anchors;
-    uint64_t          seed = 1;
+    ted4_scene *s = must(ted4_scene_new(&h, NULL));
+    const size_t n = h.n_anchors;
+    uint64_t seed = 1;
 
     place_anchors(s, &seed);
     fill_network(s, TED4_NET_PROJECT, 1.0, 0.0f, &seed);
@@ -111,10 +136,10 @@ static ted4_scene *make_scene(const model *m)
     for (size_t i = 0; i < s->bank.n; i++)
         s->bank.values[i] = (float)scene_normal(&seed);
     fill_symbols(s, TED4_FEATURE, 0, 1, &seed);
-    fill_symbols(s, TED4_SCALING, -6.4, 0.8, &seed);    /* log2: about a pixel */
+    fill_symbols(s, TED4_SCALING, -6.4, 0.8, &seed); /* log2: about a pixel */
     fill_symbols(s, TED4_OFFSET, 0, 1.5, &seed);
     fill_symbols(s, TED4_PHI, 0, 1, &seed);
-    fill_symbols(s, TED4_TAU, 0, 0, &seed);             /* from 0 to 1: there at all times */
+    fill_symbols(s, TED4_TAU, 0, 0, &seed); /* from 0 to 1: there at all times */
     for (size_t i = 0; i < n; i++)
         s->symbol[TED4_TAU][2 * n + i] = (int16_t)lrint(1.0 / (double)h.step[TED4_TAU]);
     return s;
@@ -123,8 +148,15 @@ static ted4_scene *make_scene(const model *m)
 /* Frame i: the camera sways by a few pixels. */
 static ted4_view camera_of(int i)
 {
-    return (ted4_view){ .width = WIDTH, .height = HEIGHT, .fx = FOCAL, .fy = FOCAL, .cx = 0.5f * WIDTH, .cy = 0.5f * HEIGHT,
-                        .R = { 1, 0, 0, 0, 1, 0, 0, 0, 1 }, .t = { 0.01f * sinf(0.2f * (float)i), 0.01f * cosf(0.3f * (float)i), DISTANCE } };
+    return (ted4_view) { .width = WIDTH,
+                         .height = HEIGHT,
+                         .fx = FOCAL,
+                         .fy = FOCAL,
+                         .cx = 0.5f * WIDTH,
+                         .cy = 0.5f * HEIGHT,
+                         .R = { 1, 0, 0, 0, 1, 0, 0, 0, 1 },
+                         .t = { 0.01f * sinf(0.2f * (float)i), 0.01f * cosf(0.3f * (float)i),
+                                DISTANCE } };
 }
 
 static void check(ted4_status status)
@@ -138,15 +170,15 @@ static void check(ted4_status status)
 static times once(bench *b, const ted4_parallel *p, int i)
 {
     const ted4_view camera = camera_of(i);
-    ted4_gaussians  g;
-    const double    t0 = now_ms();
+    ted4_gaussians g;
+    const double t0 = now_ms();
 
     check(ted4_query_for_view(b->recon, (uint32_t)(i % FRAMES), FRAMES - 1, &camera, p, &g));
     const double t1 = now_ms();
     check(ted4_render_gaussians(b->viewer, &g, &b->info, &camera, p, b->rgb));
     const double t2 = now_ms();
 
-    return (times){ t1 - t0, t2 - t1, t2 - t0 };
+    return (times) { t1 - t0, t2 - t1, t2 - t0 };
 }
 
 static int by_value(const void *a, const void *b)
@@ -159,13 +191,13 @@ static int by_value(const void *a, const void *b)
 /* Least times, and the median of the sum. */
 static times best(const times *t, double *median)
 {
-    times  b = t[0];
+    times b = t[0];
     double both[ROUNDS];
 
     for (int i = 0; i < ROUNDS; i++) {
         b.query = fmin(b.query, t[i].query);
-        b.draw  = fmin(b.draw, t[i].draw);
-        b.both  = fmin(b.both, t[i].both);
+        b.draw = fmin(b.draw, t[i].draw);
+        b.both = fmin(b.both, t[i].both);
         both[i] = t[i].both;
     }
     qsort(both, ROUNDS, sizeof *both, by_value);
@@ -175,7 +207,7 @@ static times best(const times *t, double *median)
 
 static void print_times(ted4_level level, int threads, const times *t)
 {
-    double      median;
+    double median;
     const times b = best(t, &median);
 
     printf("  %-2s, %d thread%s  deformation, heads %6.2f ms  picture %6.2f ms  "
@@ -187,23 +219,29 @@ static void print_times(ted4_level level, int threads, const times *t)
 /* What one frame holds. */
 static void print_load(const bench *b, const model *m)
 {
-    ted4_view      camera = camera_of(0);
-    ted4_raster   *r = must(ted4_raster_new());
-    float         *image = must(malloc(3 * sizeof(float) * WIDTH * HEIGHT));
+    ted4_view camera = camera_of(0);
+    ted4_raster *r = must(ted4_raster_new());
+    float *image = must(malloc(3 * sizeof(float) * WIDTH * HEIGHT));
     ted4_gaussians g;
 
     camera.near_z = (float)TED4_VIEW_NEAR;
     check(ted4_query_for_view(b->recon, 0, FRAMES - 1, &camera, NULL, &g));
-    const ted4_splats s = { g.n, { g.mean[0], g.mean[1], g.mean[2] }, { g.scale[0], g.scale[1], g.scale[2] },
-                            { g.rot[0], g.rot[1], g.rot[2], g.rot[3] }, g.opacity, { g.colour[0], g.colour[1], g.colour[2] } };
+    const ted4_splats s = { g.n,
+                            { g.mean[0], g.mean[1], g.mean[2] },
+                            { g.scale[0], g.scale[1], g.scale[2] },
+                            { g.rot[0], g.rot[1], g.rot[2], g.rot[3] },
+                            g.opacity,
+                            { g.colour[0], g.colour[1], g.colour[2] } };
     if (ted4_raster_forward(r, &s, &camera, NULL, 1, image) != 0)
         must(NULL);
     const pair_count count = count_pairs(r, &camera);
 
-    printf("preset %s: %u moving anchors of %d Gaussians, F %d, heads %d wide, F_deform %d x %d, bank %d wide\n", m->preset, b->info.n_anchors,
-           m->offsets, m->feature, m->head_width, m->deform_layers, m->deform_width, m->bank_dim);
-    printf("  %dx%d: %zu of %zu Gaussians visible, %.1f blended a pixel\n", WIDTH, HEIGHT, r->n_visible, g.n,
-           (double)count.blended / (WIDTH * HEIGHT));
+    printf("preset %s: %u moving anchors of %d Gaussians, F %d, heads %d wide, F_deform %d x %d, "
+           "bank %d wide\n",
+           m->preset, b->info.n_anchors, m->offsets, m->feature, m->head_width, m->deform_layers,
+           m->deform_width, m->bank_dim);
+    printf("  %dx%d: %zu of %zu Gaussians visible, %.1f blended a pixel\n", WIDTH, HEIGHT,
+           r->n_visible, g.n, (double)count.blended / (WIDTH * HEIGHT));
     free(image);
     ted4_raster_free(r);
 }
@@ -218,14 +256,17 @@ static void use(ted4_level level)
 static void report(const model *m, ted4_level level, const ted4_parallel *two)
 {
     times one_t[ROUNDS], two_t[ROUNDS];
-    bench b = { .scene = make_scene(m), .viewer = must(ted4_viewer_new()), .rgb = must(malloc(3 * WIDTH * HEIGHT)) };
+    bench b = { .scene = make_scene(m),
+                .viewer = must(ted4_viewer_new()),
+                .rgb = must(malloc(3 * WIDTH * HEIGHT)) };
 
     use(level);
     ted4_scene_info(b.scene, &b.info);
     check(ted4_recon_new(&b.recon, b.scene, NULL));
     if (level == ted4_level_of_machine())
         print_load(&b, m);
-    for (int i = 0; i < ROUNDS; i++) {      /* a frame that differs from the one before, so that nothing is kept */
+    for (int i = 0; i < ROUNDS;
+         i++) { /* a frame that differs from the one before, so that nothing is kept */
         one_t[i] = once(&b, NULL, 2 * i + 1);
         two_t[i] = once(&b, two, 2 * i + 2);
     }

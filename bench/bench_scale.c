@@ -11,7 +11,7 @@
 #include "train/raster/adjoint.h"
 #include "train_record.h"
 
-enum { STEPS = 120 };   /* of each stage */
+enum { STEPS = 120 }; /* of each stage */
 
 /* A part of one step, or all of it: ms on one thread, in regions alone, and in regions on
  * recorder_cores; regions. */
@@ -26,21 +26,22 @@ typedef struct {
 } sample;
 
 static recorder recorded;
-static sample   here;
+static sample here;
 
 /* The tiles of the adjoint are taken by TED4_BWD_JOBS jobs, one by one; each lasts about as
  * long, against the others, as forward. */
 static int kind_of_region(size_t n)
 {
-    return parts.current == PART_BLEND ? 1
-           : parts.current == PART_BLEND_BWD && n == TED4_BWD_JOBS ? 2 : 0;
+    return parts.current == PART_BLEND                             ? 1
+           : parts.current == PART_BLEND_BWD && n == TED4_BWD_JOBS ? 2
+                                                                   : 0;
 }
 
 /* What was in regions since the last change of parts belongs to p. */
 static void leave(train_part p)
 {
     recorder_regions *r = &recorded.regions;
-    portion          *to = &here.of[p];
+    portion *to = &here.of[p];
 
     to->work += r->work;
     to->whole -= r->own;
@@ -84,9 +85,9 @@ static void print_portion(const char *name, const portion *p, double step)
 
 static void print_stage(const train_record *r, int stage)
 {
-    sample         m;
+    sample m;
     const portion *all = &m.of[N_PARTS];
-    double         serial = 0;
+    double serial = 0;
 
     record_medians(r, stage, (double *)&m);
     add_parts(&m);
@@ -109,9 +110,9 @@ static void print_stage(const train_record *r, int stage)
 
 int main(int argc, char **argv)
 {
-    ted4_dataset        d;
-    train_record        r;
-    const double        picture = parts_load(&d, argc, argv);
+    ted4_dataset d;
+    train_record r;
+    const double picture = parts_load(&d, argc, argv);
     const ted4_parallel team = recorder_team(&recorded);
 
     recorder_init(&recorded);
@@ -121,8 +122,8 @@ int main(int argc, char **argv)
     record_training(&r, &d, &team, one_step);
     record_print_title(&r, &d, argv);
     printf("\na picture's file to pixels: %.2f ms; the %d threads that decode ahead, where not all "
-           "pictures stay in memory, have one every %.2f ms\n", picture, TED4_DATASET_AHEAD,
-           picture / TED4_DATASET_AHEAD);
+           "pictures stay in memory, have one every %.2f ms\n",
+           picture, TED4_DATASET_AHEAD, picture / TED4_DATASET_AHEAD);
     for (int stage = 0; stage < STAGES; stage++)
         print_stage(&r, stage);
     record_free(&r);

@@ -26,7 +26,7 @@ static double in_regions;
 static void run_region(void *user, size_t n, void (*body)(void *arg, size_t i), void *arg)
 {
     const ted4_parallel *team = user;
-    const double         begin = now_ms();
+    const double begin = now_ms();
 
     ted4_parallel_for(team, n, body, arg);
     in_regions += now_ms() - begin;
@@ -69,7 +69,7 @@ static void print_parts(const sample *one, const sample *two)
 static void print_stage(const train_record *r, int stage, sample m[TED4_LEVELS][2][STAGES])
 {
     const ted4_level most = ted4_level_of_machine();
-    const double     one = m[most][0][stage].whole, two = m[most][1][stage].whole;
+    const double one = m[most][0][stage].whole, two = m[most][1][stage].whole;
 
     record_print_stage(r, stage);
     print_parts(&m[most][0][stage], &m[most][1][stage]);
@@ -91,7 +91,7 @@ static void use(ted4_level level)
 static void report(train_record *r, ted4_dataset *d)
 {
     ted4_parallel team[2];
-    sample        m[TED4_LEVELS][2][STAGES];
+    sample m[TED4_LEVELS][2][STAGES];
 
     ted4_threads_init(&team[0], 1);
     ted4_threads_init(&team[1], 2);

@@ -13,16 +13,16 @@ struct qemu_plugin_tb;
 typedef void on_translation(plugin_id id, struct qemu_plugin_tb *block);
 typedef void on_exit(plugin_id id, void *arg);
 
-void   qemu_plugin_register_vcpu_tb_trans_cb(plugin_id id, on_translation *call);
-void   qemu_plugin_register_vcpu_tb_exec_inline(struct qemu_plugin_tb *block, int operation,
-                                                void *counter, uint64_t amount);
-void   qemu_plugin_register_atexit_cb(plugin_id id, on_exit *call, void *arg);
+void qemu_plugin_register_vcpu_tb_trans_cb(plugin_id id, on_translation *call);
+void qemu_plugin_register_vcpu_tb_exec_inline(struct qemu_plugin_tb *block, int operation,
+                                              void *counter, uint64_t amount);
+void qemu_plugin_register_atexit_cb(plugin_id id, on_exit *call, void *arg);
 size_t qemu_plugin_tb_n_insns(const struct qemu_plugin_tb *block);
-void   qemu_plugin_outs(const char *text);
-int    qemu_plugin_install(plugin_id id, const void *info, int argc, char **argv);
+void qemu_plugin_outs(const char *text);
+int qemu_plugin_install(plugin_id id, const void *info, int argc, char **argv);
 
 extern int qemu_plugin_version;
-int        qemu_plugin_version = 1;
+int qemu_plugin_version = 1;
 
 enum { ADD = 0 };
 
@@ -31,8 +31,7 @@ static uint64_t executed;
 static void translated(plugin_id id, struct qemu_plugin_tb *block)
 {
     (void)id;
-    qemu_plugin_register_vcpu_tb_exec_inline(block, ADD, &executed,
-                                             qemu_plugin_tb_n_insns(block));
+    qemu_plugin_register_vcpu_tb_exec_inline(block, ADD, &executed, qemu_plugin_tb_n_insns(block));
 }
 
 static void ended(plugin_id id, void *arg)

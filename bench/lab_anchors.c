@@ -1,4 +1,5 @@
-/* lab_anchors.c - anchors that their motion throws out of every picture, and how far anchors go: see lab_facts.h. Looks at tracks only.
+/* lab_anchors.c - anchors that their motion throws out of every picture, and how far anchors go:
+ * see lab_facts.h. Looks at tracks only.
  * SPDX-License-Identifier: BSD-2-Clause */
 #include <math.h>
 #include <stdlib.h>
@@ -10,7 +11,8 @@ static int sees(const ted4_camera *c, double near_z, const float x[3])
     double at[3];
 
     for (int i = 0; i < 3; i++)
-        at[i] = c->R[3 * i] * (double)x[0] + c->R[3 * i + 1] * (double)x[1] + c->R[3 * i + 2] * (double)x[2] + c->t[i];
+        at[i] = c->R[3 * i] * (double)x[0] + c->R[3 * i + 1] * (double)x[1] +
+                c->R[3 * i + 2] * (double)x[2] + c->t[i];
     if (!(at[2] > near_z))
         return 0;
 
@@ -52,7 +54,8 @@ static int seen_elsewhere(const lab_tracks *t, size_t time, size_t anchor)
 static int is_thrown_out(const lab_tracks *t, size_t anchor)
 {
     for (size_t time = 0; time < t->n_times; time++)
-        if (counts(t, time, anchor) && !rig_sees(t, time, centre_of(t, time, anchor)) && seen_elsewhere(t, time, anchor))
+        if (counts(t, time, anchor) && !rig_sees(t, time, centre_of(t, time, anchor)) &&
+            seen_elsewhere(t, time, anchor))
             return 1;
     return 0;
 }
@@ -61,11 +64,11 @@ static int is_thrown_out(const lab_tracks *t, size_t anchor)
 static double farthest(const lab_tracks *t, size_t anchor)
 {
     const float *from = NULL;
-    double       most = -1;
+    double most = -1;
 
     for (size_t time = 0; time < t->n_times; time++) {
         const float *const x = centre_of(t, time, anchor);
-        double             square = 0;
+        double square = 0;
 
         if (!counts(t, time, anchor))
             continue;
@@ -89,7 +92,7 @@ int lab_judge_anchors(const lab_tracks *t, lab_anchors *a)
 {
     double *const far = malloc((t->n + 1) * sizeof *far);
 
-    *a = (lab_anchors){ 0 };
+    *a = (lab_anchors) { 0 };
     if (far == NULL)
         return -1;
     for (size_t i = 0; i < t->n; i++) {

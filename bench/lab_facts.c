@@ -1,6 +1,7 @@
-/* lab_facts.c - what the stability lab measures on one decoded file, as one JSON line: quality of held-out pictures and the worst of them, anchors that motion
- * throws out of every picture, how far anchors go, numbers that are not finite or stand at the end of their range, escapes, and what the training's log tells.
- * lab_facts.h defines all.
+/* lab_facts.c - what the stability lab measures on one decoded file, as one JSON line: quality of
+ * held-out pictures and the worst of them, anchors that motion throws out of every picture, how far
+ * anchors go, numbers that are not finite or stand at the end of their range, escapes, and what the
+ * training's log tells. lab_facts.h defines all.
  *     lab_facts FILE.ted4 SCENE [LOG.jsonl [STRIP.png]]
  * STRIP.png: truth, ours, error of the worst held-out picture.
  * SPDX-License-Identifier: BSD-2-Clause */
@@ -21,7 +22,7 @@ int lab_failed(const char *what, const char *why)
 
 static int open_file(lab_session *s, const char *path)
 {
-    ted4_error     e = { TED4_OK, 0 };
+    ted4_error e = { TED4_OK, 0 };
     uint8_t *const bytes = ted4_read_file(path, &s->bytes);
 
     if (bytes == NULL)
@@ -38,10 +39,13 @@ static int open_file(lab_session *s, const char *path)
 static int open_scene(lab_session *s, const char *folder)
 {
     /* Pictures with transparency are compared on the background that the file carries. */
-    const ted4_dataset_options options = { .downscale = 1, .white = s->info.background[0] > 127, .cache_bytes = 16 << 20 };
+    const ted4_dataset_options options = { .downscale = 1,
+                                           .white = s->info.background[0] > 127,
+                                           .cache_bytes = 16 << 20 };
     ted4_message m;
 
-    return ted4_dataset_load(&s->data, folder, &options, &m) == 0 ? TED4_EXIT_FINE : lab_failed(folder, m.text);
+    return ted4_dataset_load(&s->data, folder, &options, &m) == 0 ? TED4_EXIT_FINE
+                                                                  : lab_failed(folder, m.text);
 }
 
 /* A share of none is 0. */
@@ -75,7 +79,8 @@ static void put_views(json_t *o, const lab_views *v)
     }
 }
 
-static void put_anchors(json_t *o, const lab_session *s, const lab_anchors *a, const lab_gaussians *g)
+static void put_anchors(json_t *o, const lab_session *s, const lab_anchors *a,
+                        const lab_gaussians *g)
 {
     put_count(o, "anchors", s->info.n_anchors);
     put_count(o, "gaussians", s->info.n_gaussians);
@@ -122,13 +127,13 @@ static void put_log(json_t *o, const lab_log *l)
 
 static int measure(lab_session *s, const char *log, const char *strip, json_t *o)
 {
-    lab_views     views;
-    lab_tracks    tracks;
+    lab_views views;
+    lab_tracks tracks;
     lab_gaussians gaussians;
-    lab_anchors   anchors;
-    lab_symbols   symbols;
-    lab_log       said;
-    int           code = lab_measure_views(s, strip, &views);
+    lab_anchors anchors;
+    lab_symbols symbols;
+    lab_log said;
+    int code = lab_measure_views(s, strip, &views);
 
     if (code == TED4_EXIT_FINE) {
         code = lab_make_tracks(s, &tracks, &gaussians);
@@ -161,9 +166,9 @@ static int is_picture(const char *path)
 
 int main(int argc, char **argv)
 {
-    lab_session   s = { 0 };
+    lab_session s = { 0 };
     json_t *const o = json_object();
-    int           code;
+    int code;
 
     if (argc < 3 || argc > 5 || (argc == 5 && !is_picture(argv[4])) || o == NULL)
         return lab_failed("usage", "lab_facts FILE.ted4 SCENE [LOG.jsonl [STRIP.png]]");

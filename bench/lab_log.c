@@ -17,17 +17,20 @@ static void take_larger(double x, const char *term, double *most, char most_term
     snprintf(most_term, 32, "%s", term);
 }
 
-/* gradients: the usual norm of each term; peaks: the largest one since the line before, as a multiple of that (run_log.h). */
+/* gradients: the usual norm of each term; peaks: the largest one since the line before, as a
+ * multiple of that (run_log.h). */
 static void take_gradients(const json_t *line, lab_log *l)
 {
     const json_t *const peaks = json_object_get(line, "peaks");
-    const char         *term;
-    json_t             *usual;
+    const char *term;
+    json_t *usual;
 
-    json_object_foreach(json_object_get(line, "gradients"), term, usual) {
+    json_object_foreach(json_object_get(line, "gradients"), term, usual)
+    {
         const double peak = json_number_value(json_object_get(peaks, term));
 
-        take_larger(json_number_value(usual) * (peak > 1 ? peak : 1), term, &l->gradient, l->gradient_term);
+        take_larger(json_number_value(usual) * (peak > 1 ? peak : 1), term, &l->gradient,
+                    l->gradient_term);
         take_larger(peak, term, &l->peak, l->peak_term);
     }
 }
@@ -58,10 +61,10 @@ static void take_line(const json_t *line, lab_log *l)
 int lab_read_log(const char *path, lab_log *l)
 {
     FILE *const f = fopen(path, "r");
-    char       *line = NULL;
-    size_t      room = 0;
+    char *line = NULL;
+    size_t room = 0;
 
-    *l = (lab_log){ .gradient = -1, .peak = -1 };
+    *l = (lab_log) { .gradient = -1, .peak = -1 };
     if (f == NULL)
         return lab_failed(path, strerror(errno));
     while (getline(&line, &room, f) > 0) {

@@ -1,5 +1,5 @@
-/* lab_symbols.c - escapes, and numbers that stand at the ends of their ranges, in the coded part of a decoded file: see lab_facts.h. The tiles are walked once more
- * with a coder that only counts.
+/* lab_symbols.c - escapes, and numbers that stand at the ends of their ranges, in the coded part of
+ * a decoded file: see lab_facts.h. The tiles are walked once more with a coder that only counts.
  * SPDX-License-Identifier: BSD-2-Clause */
 #include <string.h>
 #include "base/bytes.h"
@@ -10,7 +10,7 @@
 #include "tool/cli.h"
 
 typedef struct {
-    ted4_coder   base;          /* must be first */
+    ted4_coder base; /* must be first */
     lab_symbols *count;
 } census;
 
@@ -37,12 +37,13 @@ static void gauss(ted4_coder *c, size_t n, const int32_t *mu, const uint8_t *sig
 static void count_contexts(const ted4_scene *s, lab_symbols *y)
 {
     const ted4_header *const h = &s->head;
-    const size_t             n = h->n_anchors;
-    const unsigned           seen = h->feature_dim - h->slice[h->n_slices - 1u];
+    const size_t n = h->n_anchors;
+    const unsigned seen = h->feature_dim - h->slice[h->n_slices - 1u];
 
     for (size_t c = 0; c < seen; c++)
         for (size_t i = 0; i < n; i++) {
-            const int16_t x = ted4_context(s->symbol[TED4_FEATURE][c * n + i], s->step_index[TED4_FEATURE][i], h->context_bits);
+            const int16_t x = ted4_context(s->symbol[TED4_FEATURE][c * n + i],
+                                           s->step_index[TED4_FEATURE][i], h->context_bits);
 
             y->context_ends += x == 32767 || x == -32767;
         }
@@ -66,7 +67,8 @@ static void count_widths(const ted4_scene *s, lab_symbols *y)
     const size_t n = s->head.n_anchors;
 
     for (size_t i = 0; s->shape.dim[TED4_TAU] > 0 && i < n; i++) {
-        const float q = s->head.step[TED4_TAU] * ted4_bits_float(ted4_step[s->step_index[TED4_TAU][i]]);
+        const float q = s->head.step[TED4_TAU] *
+                        ted4_bits_float(ted4_step[s->step_index[TED4_TAU][i]]);
 
         for (size_t c = 1; c < 4; c += 2) {
             y->widths++;
@@ -79,8 +81,8 @@ int lab_count_symbols(const lab_session *s, lab_symbols *y)
 {
     ted4_coder_ops ops = ted4_listen_ops;
     ted4_listening it;
-    ted4_status    verdict = ted4_listen_init(&it, s->scene, NULL);
-    census         c = { .count = y };
+    ted4_status verdict = ted4_listen_init(&it, s->scene, NULL);
+    census c = { .count = y };
 
     memset(y, 0, sizeof *y);
     ops.bit = bit;

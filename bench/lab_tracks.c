@@ -1,4 +1,5 @@
-/* lab_tracks.c - where the anchors of a decoded file are at every time of its scene, and whether they are drawn: see lab_facts.h.
+/* lab_tracks.c - where the anchors of a decoded file are at every time of its scene, and whether
+ * they are drawn: see lab_facts.h.
  * SPDX-License-Identifier: BSD-2-Clause */
 #include <math.h>
 #include <stdlib.h>
@@ -19,7 +20,7 @@ static double scene_size(const lab_session *s)
 {
     const size_t n = s->data.n_points;
     float *const x = malloc((n + 1) * sizeof *x);
-    double       size = 0;
+    double size = 0;
 
     if (x == NULL)
         return -1;
@@ -45,7 +46,7 @@ static int fill_rigs(const lab_session *s, lab_tracks *t)
     }
     for (size_t i = 0; i < s->data.n_pictures; i++) {
         const ted4_picture *const p = &s->data.pictures[i];
-        lab_rig *const            rig = &t->rig[p->frame];
+        lab_rig *const rig = &t->rig[p->frame];
 
         if (!p->is_test)
             rig->camera[rig->n++] = &p->camera;
@@ -65,15 +66,18 @@ static int reserve(const lab_session *s, lab_tracks *t)
     t->centre = calloc(times * n * 3 + 1, sizeof *t->centre);
     t->drawn = calloc(times * n + 1, 1);
     t->rig = calloc(times, sizeof *t->rig);
-    return t->size < 0 || t->centre == NULL || t->drawn == NULL || t->rig == NULL || fill_rigs(s, t) != 0 ? -1 : 0;
+    return t->size < 0 || t->centre == NULL || t->drawn == NULL || t->rig == NULL ||
+                   fill_rigs(s, t) != 0
+               ? -1
+               : 0;
 }
 
 /* The Gaussians of one time into that time's tracks. */
 static void take_time(const lab_session *s, const ted4_gaussians *g, size_t time, lab_tracks *t)
 {
-    float *const   centre = t->centre + 3 * time * t->n;
+    float *const centre = t->centre + 3 * time * t->n;
     uint8_t *const drawn = t->drawn + time * t->n;
-    size_t         n = 0;
+    size_t n = 0;
 
     /* Records of an anchor follow each other. */
     for (size_t i = 0; i < g->n; i++) {
@@ -96,17 +100,18 @@ static void take_extremes(const lab_session *s, const ted4_gaussians *g, uint8_t
     for (size_t i = 0; i < g->n; i++) {
         met[i] |= (g->opacity[i] > 0 ? WAS_SEEN : 0) | (g->opacity[i] >= 1.0f ? WAS_FULL : 0);
         for (int c = 0; c < 3; c++)
-            met[i] |= (g->scale[c][i] < 0x1p-20f * unit ? WAS_THIN : 0) | (g->scale[c][i] > unit ? WAS_HUGE : 0);
+            met[i] |= (g->scale[c][i] < 0x1p-20f * unit ? WAS_THIN : 0) |
+                      (g->scale[c][i] > unit ? WAS_HUGE : 0);
     }
 }
 
 /* A time that the decoder refuses has no cameras: nothing counts there. */
 static int take_query(lab_session *s, size_t time, lab_tracks *t, lab_gaussians *g, uint8_t *met)
 {
-    ted4_query        q = { .num = (uint32_t)time, .den = t->n_times > 1 ? (uint32_t)t->n_times - 1 : 1 };
+    ted4_query q = { .num = (uint32_t)time, .den = t->n_times > 1 ? (uint32_t)t->n_times - 1 : 1 };
     const ted4_header world = { 0 };
-    ted4_gaussians    records;
-    ted4_view         view;
+    ted4_gaussians records;
+    ted4_view view;
 
     if (t->rig[time].n > 0)
         ted4_space_view(&world, t->rig[time].camera[0], &view, q.camera);
@@ -128,9 +133,9 @@ static int take_query(lab_session *s, size_t time, lab_tracks *t, lab_gaussians 
 int lab_make_tracks(lab_session *s, lab_tracks *t, lab_gaussians *g)
 {
     uint8_t *const met = calloc(s->info.n_gaussians + 1, 1);
-    int            code = TED4_EXIT_FINE;
+    int code = TED4_EXIT_FINE;
 
-    *g = (lab_gaussians){ .gaussians = s->info.n_gaussians };
+    *g = (lab_gaussians) { .gaussians = s->info.n_gaussians };
     if (reserve(s, t) != 0 || met == NULL)
         code = lab_failed("tracks", "out of memory");
     for (size_t time = 0; time < t->n_times && code == TED4_EXIT_FINE; time++)

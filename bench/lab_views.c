@@ -1,4 +1,5 @@
-/* lab_views.c - held-out pictures of a decoded file against the truth, and the worst of them as a strip: see lab_facts.h.
+/* lab_views.c - held-out pictures of a decoded file against the truth, and the worst of them as a
+ * strip: see lab_facts.h.
  * SPDX-License-Identifier: BSD-2-Clause */
 #include <math.h>
 #include <stdlib.h>
@@ -11,10 +12,11 @@
 #include "train/model/normalise.h"
 
 typedef struct {
-    ted4_viewer *viewer;            /* owned, as all below */
-    uint8_t     *ours, *worst;      /* [height][width][3] of the largest picture: drawn last, and as drawn of the worst picture */
-    size_t       worst_item;
-    double       sum;
+    ted4_viewer *viewer;   /* owned, as all below */
+    uint8_t *ours, *worst; /* [height][width][3] of the largest picture: drawn last, and as drawn of
+                              the worst picture */
+    size_t worst_item;
+    double sum;
 } view_work;
 
 /* Equal pictures: as if one value were wrong by one. */
@@ -27,10 +29,10 @@ static double finite_psnr(double psnr, const ted4_camera *c)
 static ted4_status draw_picture(lab_session *s, size_t i, view_work *w)
 {
     const ted4_picture *const p = &s->data.pictures[i];
-    const uint32_t            last = s->data.n_frames > 1 ? s->data.n_frames - 1 : 1;
-    const ted4_header         world = { 0 };        /* origin 0, unit 1: a view in world coordinates */
-    ted4_view                 view;
-    float                     centre[3];
+    const uint32_t last = s->data.n_frames > 1 ? s->data.n_frames - 1 : 1;
+    const ted4_header world = { 0 }; /* origin 0, unit 1: a view in world coordinates */
+    ted4_view view;
+    float centre[3];
 
     ted4_space_view(&world, &p->camera, &view, centre);
     return ted4_render_query(w->viewer, s->recon, &s->info, p->frame, last, &view, NULL, w->ours);
@@ -39,9 +41,9 @@ static ted4_status draw_picture(lab_session *s, size_t i, view_work *w)
 static int add_picture(lab_session *s, size_t i, view_work *w, lab_views *v)
 {
     const ted4_picture *const p = &s->data.pictures[i];
-    const ted4_status         status = draw_picture(s, i, w);
-    ted4_message              message;
-    ted4_metrics              m;
+    const ted4_status status = draw_picture(s, i, w);
+    ted4_message message;
+    ted4_metrics m;
 
     v->views++;
     if (status == TED4_E_REC_NONFINITE) {
@@ -56,7 +58,8 @@ static int add_picture(lab_session *s, size_t i, view_work *w, lab_views *v)
     if (truth == NULL)
         return lab_failed(p->path, message.text);
 
-    const int bad = ted4_metrics_compare(truth, w->ours, p->camera.width, p->camera.height, NULL, &m);
+    const int bad =
+        ted4_metrics_compare(truth, w->ours, p->camera.width, p->camera.height, NULL, &m);
 
     ted4_dataset_release(&s->data, i);
     if (bad)
@@ -79,10 +82,10 @@ static int add_picture(lab_session *s, size_t i, view_work *w, lab_views *v)
 static int write_strip(lab_session *s, const view_work *w, const char *path)
 {
     const ted4_camera *const c = &s->data.pictures[w->worst_item].camera;
-    ted4_message             message;
-    ted4_sheet               sheet;
-    char                     why[256];
-    const uint8_t *const     truth = ted4_dataset_pixels(&s->data, w->worst_item, &message);
+    ted4_message message;
+    ted4_sheet sheet;
+    char why[256];
+    const uint8_t *const truth = ted4_dataset_pixels(&s->data, w->worst_item, &message);
 
     if (truth == NULL)
         return lab_failed(path, message.text);
@@ -93,7 +96,8 @@ static int write_strip(lab_session *s, const view_work *w, const char *path)
     ted4_sheet_put(&sheet, 0, truth, w->worst);
     ted4_dataset_release(&s->data, w->worst_item);
 
-    const int bad = ted4_png_write(path, c->width * TED4_SHEET_COLUMNS, c->height, sheet.rgb, why, sizeof why);
+    const int bad =
+        ted4_png_write(path, c->width * TED4_SHEET_COLUMNS, c->height, sheet.rgb, why, sizeof why);
 
     ted4_sheet_finish(&sheet);
     return bad ? lab_failed(path, why) : TED4_EXIT_FINE;
@@ -102,13 +106,13 @@ static int write_strip(lab_session *s, const view_work *w, const char *path)
 int lab_measure_views(lab_session *s, const char *strip, lab_views *v)
 {
     view_work w = { .viewer = ted4_viewer_new() };
-    size_t    largest = 1;
-    int       code = TED4_EXIT_FINE;
+    size_t largest = 1;
+    int code = TED4_EXIT_FINE;
 
     memset(v, 0, sizeof *v);
     for (size_t i = 0; i < s->data.n_pictures; i++) {
         const ted4_camera *const c = &s->data.pictures[i].camera;
-        const size_t             size = 3 * (size_t)c->width * (size_t)c->height;
+        const size_t size = 3 * (size_t)c->width * (size_t)c->height;
 
         largest = size > largest ? size : largest;
     }

@@ -18,27 +18,27 @@
 #include "write/encode.h"
 
 /* In about the order in which a run comes to them. */
-#define PHASES(P) \
-    P(LOAD,     "reading the scene's files") \
-    P(CHECK,    "decoding every picture once") \
-    P(SETTLE,   "looking for flicker") \
-    P(SEED,     "first anchors, colours, transients") \
-    P(STEPS,    "steps of the training") \
-    P(STATES,   "states kept and restored") \
-    P(PROBE,    "steps of probe and trials") \
-    P(ADJUST,   "growing and pruning") \
-    P(SPROUT,   "sprouts") \
-    P(STAGE,    "changes of stage") \
-    P(CAPACITY, "trials: moves") \
-    P(DRAW,     "trials: pictures") \
-    P(SCENE,    "model to scene") \
-    P(CODE,     "coding") \
-    P(PREVIEW,  "preview") \
-    P(LOG,      "log") \
-    P(SAVE,     "checkpoints") \
-    P(VERIFY,   "reading the file back") \
-    P(WRITE,    "writing the file") \
-    P(REST,     "the rest")
+#define PHASES(P)                                 \
+    P(LOAD, "reading the scene's files")          \
+    P(CHECK, "decoding every picture once")       \
+    P(SETTLE, "looking for flicker")              \
+    P(SEED, "first anchors, colours, transients") \
+    P(STEPS, "steps of the training")             \
+    P(STATES, "states kept and restored")         \
+    P(PROBE, "steps of probe and trials")         \
+    P(ADJUST, "growing and pruning")              \
+    P(SPROUT, "sprouts")                          \
+    P(STAGE, "changes of stage")                  \
+    P(CAPACITY, "trials: moves")                  \
+    P(DRAW, "trials: pictures")                   \
+    P(SCENE, "model to scene")                    \
+    P(CODE, "coding")                             \
+    P(PREVIEW, "preview")                         \
+    P(LOG, "log")                                 \
+    P(SAVE, "checkpoints")                        \
+    P(VERIFY, "reading the file back")            \
+    P(WRITE, "writing the file")                  \
+    P(REST, "the rest")
 
 #define AS_ENUM(name, text) PHASE_##name,
 #define AS_TEXT(name, text) text,
@@ -51,9 +51,9 @@ typedef struct {
 } portion;
 
 static recorder recorded;
-static portion  of[PHASES];
-static phase    current = PHASE_REST;
-static double   since;
+static portion of[PHASES];
+static phase current = PHASE_REST;
+static double since;
 
 /* The tiles of the adjoint are taken by TED4_BWD_JOBS jobs, one by one; each lasts about as
  * long, against the others, as when blending. */
@@ -66,9 +66,9 @@ static int kind_of_region(size_t n)
 
 static phase enter(phase p)
 {
-    const phase       before = current;
-    const double      now = recorder_thread_ms();
-    portion          *to = &of[before];
+    const phase before = current;
+    const double now = recorder_thread_ms();
+    portion *to = &of[before];
     recorder_regions *r = &recorded.regions;
 
     to->whole += (since > 0 ? now - since : 0) - r->spent;
@@ -84,51 +84,48 @@ static phase enter(phase p)
 /* type __wrap_name is called where the program names name; __real_name is what it then gets. The
  * linker compares no types: the declaration by __typeof__ does. */
 #define BETWEEN(phase_of, type, name, parameters, arguments) \
-    extern __typeof__(name) __wrap_##name; \
-    type __real_##name parameters; \
-    type __wrap_##name parameters \
-    { \
-        const phase before = enter(phase_of); \
-        of[current].times++; \
-        const type result = __real_##name arguments; \
-        enter(before); \
-        return result; \
+    extern __typeof__(name) __wrap_##name;                   \
+    type __real_##name parameters;                           \
+    type __wrap_##name parameters                            \
+    {                                                        \
+        const phase before = enter(phase_of);                \
+        of[current].times++;                                 \
+        const type result = __real_##name arguments;         \
+        enter(before);                                       \
+        return result;                                       \
     }
 
 BETWEEN(PHASE_LOAD, int, ted4_dataset_load,
-        (ted4_dataset *d, const char *f, const ted4_dataset_options *o, ted4_message *m),
+        (ted4_dataset * d, const char *f, const ted4_dataset_options *o, ted4_message *m),
         (d, f, o, m))
 BETWEEN(PHASE_CHECK, int, ted4_dataset_verify,
-        (ted4_dataset *d, const ted4_parallel *p, ted4_message *m),
-        (d, p, m))
-BETWEEN(PHASE_SETTLE, int, ted4_header_settle,
-        (ted4_train_options *o, const ted4_dataset *d),
+        (ted4_dataset * d, const ted4_parallel *p, ted4_message *m), (d, p, m))
+BETWEEN(PHASE_SETTLE, int, ted4_header_settle, (ted4_train_options * o, const ted4_dataset *d),
         (o, d))
 BETWEEN(PHASE_SEED, int, ted4_trainer_init,
-        (ted4_trainer *t, const ted4_train_options *o, ted4_dataset *d, const ted4_parallel *p),
+        (ted4_trainer * t, const ted4_train_options *o, ted4_dataset *d, const ted4_parallel *p),
         (t, o, d, p))
-BETWEEN(PHASE_SEED, int, ted4_trainer_restart, (ted4_trainer *t, const ted4_header *h), (t, h))
+BETWEEN(PHASE_SEED, int, ted4_trainer_restart, (ted4_trainer * t, const ted4_header *h), (t, h))
 BETWEEN(current == PHASE_PROBE ? PHASE_PROBE : PHASE_STEPS, int, ted4_trainer_step,
-        (ted4_trainer *t),
-        (t))
-BETWEEN(PHASE_PROBE, int, ted4_branch_run, (ted4_trainer *t, int n, double *loss), (t, n, loss))
-BETWEEN(PHASE_STATES, int, ted4_snapshot_take, (ted4_trainer *t, ted4_snapshot *s), (t, s))
-BETWEEN(PHASE_STATES, int, ted4_snapshot_restore, (ted4_trainer *t, const ted4_snapshot *s), (t, s))
-BETWEEN(PHASE_STATES, int, ted4_state_take, (ted4_trainer *t, ted4_snapshot *s), (t, s))
-BETWEEN(PHASE_STATES, int, ted4_state_restore, (ted4_trainer *t, const ted4_snapshot *s), (t, s))
-BETWEEN(PHASE_ADJUST, int, ted4_densify_adjust, (ted4_trainer *t), (t))
-BETWEEN(PHASE_SPROUT, int, ted4_sprout, (ted4_trainer *t), (t))
-BETWEEN(PHASE_STAGE, int, ted4_activation_begin, (ted4_trainer *t), (t))
-BETWEEN(PHASE_STAGE, int, ted4_stage2_begin, (ted4_trainer *t), (t))
-BETWEEN(PHASE_STAGE, int, ted4_integer_begin, (ted4_trainer *t), (t))
-BETWEEN(PHASE_CAPACITY, int, ted4_capacity_decide, (ted4_trainer *t), (t))
-BETWEEN(PHASE_CAPACITY, int, ted4_capacity_refine, (ted4_trainer *t), (t))
-BETWEEN(PHASE_CAPACITY, int, ted4_capacity_prune, (ted4_trainer *t), (t))
-BETWEEN(PHASE_DRAW, double, ted4_trainer_distortion, (ted4_trainer *t, size_t item), (t, item))
-BETWEEN(PHASE_DRAW, int, ted4_trainer_blame,
-        (ted4_trainer *t, size_t item, ted4_splats *s),
+        (ted4_trainer * t), (t))
+BETWEEN(PHASE_PROBE, int, ted4_branch_run, (ted4_trainer * t, int n, double *loss), (t, n, loss))
+BETWEEN(PHASE_STATES, int, ted4_snapshot_take, (ted4_trainer * t, ted4_snapshot *s), (t, s))
+BETWEEN(PHASE_STATES, int, ted4_snapshot_restore, (ted4_trainer * t, const ted4_snapshot *s),
+        (t, s))
+BETWEEN(PHASE_STATES, int, ted4_state_take, (ted4_trainer * t, ted4_snapshot *s), (t, s))
+BETWEEN(PHASE_STATES, int, ted4_state_restore, (ted4_trainer * t, const ted4_snapshot *s), (t, s))
+BETWEEN(PHASE_ADJUST, int, ted4_densify_adjust, (ted4_trainer * t), (t))
+BETWEEN(PHASE_SPROUT, int, ted4_sprout, (ted4_trainer * t), (t))
+BETWEEN(PHASE_STAGE, int, ted4_activation_begin, (ted4_trainer * t), (t))
+BETWEEN(PHASE_STAGE, int, ted4_stage2_begin, (ted4_trainer * t), (t))
+BETWEEN(PHASE_STAGE, int, ted4_integer_begin, (ted4_trainer * t), (t))
+BETWEEN(PHASE_CAPACITY, int, ted4_capacity_decide, (ted4_trainer * t), (t))
+BETWEEN(PHASE_CAPACITY, int, ted4_capacity_refine, (ted4_trainer * t), (t))
+BETWEEN(PHASE_CAPACITY, int, ted4_capacity_prune, (ted4_trainer * t), (t))
+BETWEEN(PHASE_DRAW, double, ted4_trainer_distortion, (ted4_trainer * t, size_t item), (t, item))
+BETWEEN(PHASE_DRAW, int, ted4_trainer_blame, (ted4_trainer * t, size_t item, ted4_splats *s),
         (t, item, s))
-BETWEEN(PHASE_SCENE, int, ted4_make_scene, (ted4_trainer *t, ted4_scene **s), (t, s))
+BETWEEN(PHASE_SCENE, int, ted4_make_scene, (ted4_trainer * t, ted4_scene **s), (t, s))
 BETWEEN(PHASE_CODE, ted4_status, ted4_encode,
         (const ted4_scene *s, int level, const ted4_parallel *p, uint8_t **out, size_t *size,
          ted4_error *e),
@@ -137,11 +134,10 @@ BETWEEN(PHASE_CODE, ted4_status, ted4_encode_told,
         (const ted4_scene *s, int level, char *text, const ted4_parallel *p, uint8_t **out,
          size_t *size, ted4_error *e),
         (s, level, text, p, out, size, e))
-BETWEEN(PHASE_PREVIEW, double, ted4_trainer_preview, (ted4_trainer *t, int n), (t, n))
+BETWEEN(PHASE_PREVIEW, double, ted4_trainer_preview, (ted4_trainer * t, int n), (t, n))
 BETWEEN(PHASE_LOG, int, ted4_run_log_step,
-        (ted4_run_log *l, const ted4_trainer *t, char *why, size_t size),
-        (l, t, why, size))
-BETWEEN(PHASE_SAVE, int, ted4_checkpoint_save, (ted4_trainer *t, const char *path), (t, path))
+        (ted4_run_log * l, const ted4_trainer *t, char *why, size_t size), (l, t, why, size))
+BETWEEN(PHASE_SAVE, int, ted4_checkpoint_save, (ted4_trainer * t, const char *path), (t, path))
 BETWEEN(PHASE_VERIFY, int, ted4_verify,
         (const ted4_scene *s, const uint8_t *bytes, size_t size, const ted4_parallel *p,
          ted4_verified *v, char *why, size_t why_size),
@@ -150,22 +146,22 @@ BETWEEN(PHASE_WRITE, int, ted4_file_write,
         (const char *path, const void *data, size_t size, char *why, size_t why_size),
         (path, data, size, why, why_size))
 
-#define MARKED(flag, name, parameters, arguments) \
-    extern __typeof__(name) __wrap_##name; \
-    int __real_##name parameters; \
-    int __wrap_##name parameters \
-    { \
-        flag = 1; \
+#define MARKED(flag, name, parameters, arguments)   \
+    extern __typeof__(name) __wrap_##name;          \
+    int __real_##name parameters;                   \
+    int __wrap_##name parameters                    \
+    {                                               \
+        flag = 1;                                   \
         const int result = __real_##name arguments; \
-        flag = 0; \
-        return result; \
+        flag = 0;                                   \
+        return result;                              \
     }
-#define BLENDING(level) \
-    MARKED(in_blend, ted4_raster_blend_##level, \
-           (ted4_raster *r, const ted4_view *v, const ted4_parallel *p, int keep, float *image), \
-           (r, v, p, keep, image)) \
-    MARKED(in_blend_bwd, ted4_raster_blend_bwd_##level, \
-           (ted4_raster *r, const ted4_view *v, const ted4_parallel *p, const float *d), \
+#define BLENDING(level)                                                                           \
+    MARKED(in_blend, ted4_raster_blend_##level,                                                   \
+           (ted4_raster * r, const ted4_view *v, const ted4_parallel *p, int keep, float *image), \
+           (r, v, p, keep, image))                                                                \
+    MARKED(in_blend_bwd, ted4_raster_blend_bwd_##level,                                           \
+           (ted4_raster * r, const ted4_view *v, const ted4_parallel *p, const float *d),         \
            (r, v, p, d))
 BLENDING(base)
 #if defined(__x86_64__)

@@ -1,13 +1,18 @@
-/* rate_check.c - what the integers of Tier E cost: the attribute symbols of a file coded by rANS, by -log2 of the coded integer
- * frequencies, and by float64 and float32 evaluations of the same networks and the same Gaussian model (spec 7.1, 9.4, 10); and how long the networks take
- * in each precision, on one thread, with the vectors of this machine.
+/* rate_check.c - what the integers of Tier E cost: the attribute symbols of a file coded by rANS,
+ * by -log2 of the coded integer frequencies, and by float64 and float32 evaluations of the same
+ * networks and the same Gaussian model (spec 7.1, 9.4, 10); and how long the networks take in each
+ * precision, on one thread, with the vectors of this machine.
  *     rate_check FILE.ted4            one JSON line on stdout
- *     rate_check FILE.ted4 -s ANCHOR  also mu, sigma and k of that anchor's symbols under both, on stderr
- * float64: networks as rate_real.h has them, mu and sigma real numbers, the step index as decoded, Phi differences over the unit bin without cancellation. Sigma keeps
- * to the range of the table of spec 9.4, which belongs to the model. A symbol coded by an escape counts at what it costs in the integer
- * coder in every column. A bare Gaussian pays more than 16 bits for a symbol beyond 4 sigma, the coder never does, as every symbol of its
- * alphabet owns a slot: so "float64" can come out above the integers. "float64_floored" gives its symbols that slot too,
- * P (1 - R / 2^16) + 2^-16, and so shows the rounding alone; "float32_floored" is the same with mu and sigma from float32 networks.
+ *     rate_check FILE.ted4 -s ANCHOR  also mu, sigma and k of that anchor's symbols under both, on
+ *                                     stderr
+ * float64: networks as rate_real.h has them, mu and sigma real numbers, the step index as decoded,
+ * Phi differences over the unit bin without cancellation. Sigma keeps to the range of the table of
+ * spec 9.4, which belongs to the model. A symbol coded by an escape counts at what it costs in the
+ * integer coder in every column. A bare Gaussian pays more than 16 bits for a symbol beyond 4
+ * sigma, the coder never does, as every symbol of its alphabet owns a slot: so "float64" can come
+ * out above the integers. "float64_floored" gives its symbols that slot too, P (1 - R / 2^16) +
+ * 2^-16, and so shows the rounding alone; "float32_floored" is the same with mu and sigma from
+ * float32 networks.
  * SPDX-License-Identifier: BSD-2-Clause */
 #include <inttypes.h>
 #include <math.h>
@@ -42,33 +47,34 @@ enum { BLOCK = TED4_PRIOR_BLOCK, SUBSTREAMS = 24 };
 
 typedef struct {
     uint64_t coded_bytes, symbols, escapes;
-    double   integer, real, floored, floored32, escaped;    /* bits; escaped: the part of escapes */
+    double integer, real, floored, floored32, escaped; /* bits; escaped: the part of escapes */
 } cost;
 
 /* The model of one symbol in each precision: mu in steps, log2 sigma. */
 typedef struct {
-    int32_t  mu;                /* integers of spec 10 */
+    int32_t mu; /* integers of spec 10 */
     unsigned sigma;
-    double   real_mu, real_sigma, float_mu, float_sigma;
+    double real_mu, real_sigma, float_mu, float_sigma;
 } models;
 
 typedef struct {
     ted4_scene *s;
-    ted4_prior  prior;
-    uint64_t    substream[SUBSTREAMS];      /* bytes, all tiles */
-    int64_t     shown;                      /* anchor of -s, or -1 */
-    cost        cost[TED4_TYPES];
-    int32_t    *out, *added;                /* [P][64], [2 max slice][64] integer outputs */
-    int16_t    *ctx;                        /* [F][64] */
-    double     *y, *hidden[2], *x;          /* [P][64], layers, inputs in float64 */
-    float      *y32, *hidden32[2], *x32;    /* the same in float32 */
-    double      ms[3];                      /* of the networks: integer, float32, float64 */
+    ted4_prior prior;
+    uint64_t substream[SUBSTREAMS]; /* bytes, all tiles */
+    int64_t shown;                  /* anchor of -s, or -1 */
+    cost cost[TED4_TYPES];
+    int32_t *out, *added;           /* [P][64], [2 max slice][64] integer outputs */
+    int16_t *ctx;                   /* [F][64] */
+    double *y, *hidden[2], *x;      /* [P][64], layers, inputs in float64 */
+    float *y32, *hidden32[2], *x32; /* the same in float32 */
+    double ms[3];                   /* of the networks: integer, float32, float64 */
 } check;
 
 /* ---- floating point ---- */
 
-/* -log2 of slot + (1 - slots_all) mass, the mass being that of a Gaussian on [d - 1/2, d + 1/2], d = k - mu. By symmetry d >= 0, so
- * both ends lie in the upper tail, or the mass is 1 less two tails. */
+/* -log2 of slot + (1 - slots_all) mass, the mass being that of a Gaussian on [d - 1/2, d + 1/2], d
+ * = k - mu. By symmetry d >= 0, so both ends lie in the upper tail, or the mass is 1 less two
+ * tails. */
 static double real_bits(double d, double sigma, double slot, double slots_all)
 {
     const double a = (fabs(d) - 0.5) / sigma * SQRT_HALF, b = (fabs(d) + 0.5) / sigma * SQRT_HALF;
@@ -93,10 +99,10 @@ static double sigma_in_range(double x)
 
 static void add_symbol(check *c, int type, unsigned comp, size_t a, const models *m)
 {
-    cost        *t = &c->cost[type];
-    const int    k = c->s->symbol[type][(size_t)comp * c->s->head.n_anchors + a];
+    cost *t = &c->cost[type];
+    const int k = c->s->symbol[type][(size_t)comp * c->s->head.n_anchors + a];
     const double slot = 0x1p-16, slots = slot * ted4_gauss_size(m->sigma);
-    double       bits = 0, real, floored, floored32;
+    double bits = 0, real, floored, floored32;
 
     (void)ted4_gauss_put(m->mu, m->sigma, k, add_slots, &bits);
     t->symbols++;
@@ -116,32 +122,37 @@ static void add_symbol(check *c, int type, unsigned comp, size_t a, const models
     t->floored += floored;
     t->floored32 += floored32;
     if ((int64_t)a == c->shown)
-        fprintf(stderr, "type %d component %u k %d: integer mu %.9g log2 sigma %.4f bits %.6f; float64 mu %.9g "
-                "log2 sigma %.9g bits %.6f\n", type, comp, k, m->mu / 256.0, (m->sigma - 64.0) / 16, bits,
-                m->real_mu, m->real_sigma, real);
+        fprintf(
+            stderr,
+            "type %d component %u k %d: integer mu %.9g log2 sigma %.4f bits %.6f; float64 mu %.9g "
+            "log2 sigma %.9g bits %.6f\n",
+            type, comp, k, m->mu / 256.0, (m->sigma - 64.0) / 16, bits, m->real_mu, m->real_sigma,
+            real);
 }
 
 static int coded(const ted4_scene *s, int type, unsigned comp, size_t a)
 {
-    return type == TED4_PHI ? s->dynamic[a]
-         : type == TED4_OFFSET ? s->offset_bits[a] >> comp / 3 & 1 : 1;
+    return type == TED4_PHI      ? s->dynamic[a]
+           : type == TED4_OFFSET ? s->offset_bits[a] >> comp / 3 & 1
+                                 : 1;
 }
 
 /* Integer outputs of n <= 64 anchors from first on, the slice networks added. */
 static void integer_model(check *c, size_t first, size_t n)
 {
-    const ted4_scene  *s = c->s;
+    const ted4_scene *s = c->s;
     const ted4_header *h = &s->head;
-    unsigned           comp = h->slice[0];
+    unsigned comp = h->slice[0];
 
     ted4_prior_hyper(&c->prior, s->position + 3 * first, n, c->out);
     for (unsigned i = 0; i < h->feature_dim; i++)
         for (size_t a = 0; a < n; a++)
-            c->ctx[i * BLOCK + a] = ted4_context(s->symbol[TED4_FEATURE][(size_t)i * h->n_anchors + first + a],
-                                                 s->step_index[TED4_FEATURE][first + a], h->context_bits);
+            c->ctx[i * BLOCK + a] =
+                ted4_context(s->symbol[TED4_FEATURE][(size_t)i * h->n_anchors + first + a],
+                             s->step_index[TED4_FEATURE][first + a], h->context_bits);
     for (unsigned m = 1; m < h->n_slices; comp += h->slice[m++]) {
         const size_t part = (size_t)h->slice[m] * BLOCK;
-        int32_t     *mu = c->out + (size_t)comp * BLOCK, *sigma = mu + (size_t)h->feature_dim * BLOCK;
+        int32_t *mu = c->out + (size_t)comp * BLOCK, *sigma = mu + (size_t)h->feature_dim * BLOCK;
 
         ted4_prior_slice(&c->prior, m, c->ctx, n, c->added);
         for (size_t i = 0; i < part; i++) {
@@ -188,7 +199,8 @@ static void add_block(check *c, size_t first, size_t n)
             for (unsigned i = 0; i < shape->dim[t]; i++) {
                 const size_t at = (size_t)(shape->first_output[t] + i) * BLOCK + a;
                 const size_t sigma = at + (size_t)shape->dim[t] * BLOCK;
-                const models m = { c->out[at], ted4_sigma_index(c->out[sigma]), c->y[at], c->y[sigma],
+                const models m = { c->out[at],         ted4_sigma_index(c->out[sigma]),
+                                   c->y[at],           c->y[sigma],
                                    (double)c->y32[at], (double)c->y32[sigma] };
 
                 if (coded(c->s, t, i, first + a))
@@ -211,7 +223,7 @@ static void keep_sizes(void *arg, size_t offset, const char *element, int64_t in
 static void sort_sizes(check *c)
 {
     const ted4_header *h = &c->s->head;
-    unsigned           at = h->temporal_mask || h->offset_mask;
+    unsigned at = h->temporal_mask || h->offset_mask;
 
     for (unsigned m = 0; m < h->n_slices; m++)
         c->cost[TED4_FEATURE].coded_bytes += c->substream[at++];
@@ -236,8 +248,8 @@ static void prepare(check *c, ted4_arena *a)
     const ted4_shape *shape = &c->s->shape;
 
     ted4_arena_init(a, NULL);
-    if (ted4_prior_init(&c->prior, &c->s->head, shape, a) != TED4_OK
-        || ted4_prior_load(&c->prior, c->s->nete.values, c->s->shift, NULL) != TED4_OK) {
+    if (ted4_prior_init(&c->prior, &c->s->head, shape, a) != TED4_OK ||
+        ted4_prior_load(&c->prior, c->s->nete.values, c->s->shift, NULL) != TED4_OK) {
         fprintf(stderr, "rate_check: networks cannot be loaded\n");
         exit(3);
     }
@@ -265,11 +277,15 @@ static void print_cost(const char *name, const cost *c)
 {
     const double coded_bits = 8.0 * (double)c->coded_bytes;
 
-    printf("\"%s\":{\"symbols\":%" PRIu64 ",\"escapes\":%" PRIu64 ",\"escape_bits\":%.1f,\"coded_bits\":%.0f,"
-           "\"integer_bits\":%.1f,\"float64_bits\":%.1f,\"float64_floored_bits\":%.1f,\"float32_floored_bits\":%.1f,"
-           "\"integer_over_float64_percent\":%.4f,\"integer_over_floored_percent\":%.4f,\"rans_over_integer_percent\":%.4f}",
-           name, c->symbols, c->escapes, c->escaped, coded_bits, c->integer, c->real, c->floored, c->floored32,
-           percent(c->integer, c->real), percent(c->integer, c->floored), percent(coded_bits, c->integer));
+    printf("\"%s\":{\"symbols\":%" PRIu64 ",\"escapes\":%" PRIu64
+           ",\"escape_bits\":%.1f,\"coded_bits\":%.0f,"
+           "\"integer_bits\":%.1f,\"float64_bits\":%.1f,\"float64_floored_bits\":%.1f,\"float32_"
+           "floored_bits\":%.1f,"
+           "\"integer_over_float64_percent\":%.4f,\"integer_over_floored_percent\":%.4f,\"rans_"
+           "over_integer_percent\":%.4f}",
+           name, c->symbols, c->escapes, c->escaped, coded_bits, c->integer, c->real, c->floored,
+           c->floored32, percent(c->integer, c->real), percent(c->integer, c->floored),
+           percent(coded_bits, c->integer));
 }
 
 /* One line of JSON. 0, or 1: the integer frequencies met here are not those of ted4_count. */
@@ -277,9 +293,10 @@ static int print_result(const check *c, const char *path, const ted4_bits *count
 {
     static const char *const name[TED4_TYPES] = { "feature", "scaling", "offset", "phi", "tau" };
     cost total = { 0 };
-    int  bad = 0;
+    int bad = 0;
 
-    printf("{\"file\":\"%s\",\"anchors\":%" PRIu32 ",\"integer_ms\":%.3f,\"float32_ms\":%.3f,\"float64_ms\":%.3f,",
+    printf("{\"file\":\"%s\",\"anchors\":%" PRIu32
+           ",\"integer_ms\":%.3f,\"float32_ms\":%.3f,\"float64_ms\":%.3f,",
            path, c->s->head.n_anchors, c->ms[0], c->ms[1], c->ms[2]);
     for (int t = 0; t < TED4_TYPES; t++) {
         const cost *x = &c->cost[t];
@@ -307,20 +324,22 @@ static int print_result(const check *c, const char *path, const ted4_bits *count
 
 int main(int argc, char **argv)
 {
-    static check  c = { .shown = -1 };
+    static check c = { .shown = -1 };
     const ted4_options o = { .trace = keep_sizes, .trace_user = &c };
-    ted4_error    e = { TED4_OK, 0 };
-    ted4_arena    arena;
-    ted4_bits     counted;
-    size_t        size = 0;
-    uint8_t      *data = argc > 1 ? ted4_read_file(argv[1], &size) : NULL;
+    ted4_error e = { TED4_OK, 0 };
+    ted4_arena arena;
+    ted4_bits counted;
+    size_t size = 0;
+    uint8_t *data = argc > 1 ? ted4_read_file(argv[1], &size) : NULL;
 
     if (data == NULL || (argc != 2 && (argc != 4 || strcmp(argv[2], "-s") != 0))) {
         fprintf(stderr, "rate_check: usage: rate_check FILE.ted4 [-s ANCHOR]\n");
         return 3;
     }
-    if (ted4_decode(data, size, &o, &c.s, &e) != TED4_OK || ted4_count(c.s, NULL, &counted, &e) != TED4_OK) {
-        fprintf(stderr, "rate_check: %s: byte %zu: %s\n", argv[1], e.offset, ted4_status_id(e.code));
+    if (ted4_decode(data, size, &o, &c.s, &e) != TED4_OK ||
+        ted4_count(c.s, NULL, &counted, &e) != TED4_OK) {
+        fprintf(stderr, "rate_check: %s: byte %zu: %s\n", argv[1], e.offset,
+                ted4_status_id(e.code));
         return 1;
     }
     if (argc == 4)

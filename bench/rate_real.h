@@ -1,21 +1,24 @@
-/* rate_real.h - the entropy model in floating point, for rate_check.c, which includes this once with REAL float and once with double: NAME(x) names what
- * is made, SIN and COS are the functions of that type. Networks as spec 7.1, weights as the file stores them, sine and cosine of the exact position, contexts
- * k STEP[Qi], no rounding to integers and no saturation. Anchors in blocks of 64, arrays [channel][64]; sums run over inputs in order, so lanes are vectors.
+/* rate_real.h - the entropy model in floating point, for rate_check.c, which includes this once
+ * with REAL float and once with double: NAME(x) names what is made, SIN and COS are the functions
+ * of that type. Networks as spec 7.1, weights as the file stores them, sine and cosine of the exact
+ * position, contexts k STEP[Qi], no rounding to integers and no saturation. Anchors in blocks of
+ * 64, arrays [channel][64]; sums run over inputs in order, so lanes are vectors.
  * SPDX-License-Identifier: BSD-2-Clause */
 
 typedef REAL NAME(vec) __attribute__((vector_size(64), may_alias, aligned(sizeof(REAL))));
 
-/* One layer: y [out][64] from x [in][64]; v: weights [out][in], then biases. All layers but the last are followed by ReLU. */
+/* One layer: y [out][64] from x [in][64]; v: weights [out][in], then biases. All layers but the
+ * last are followed by ReLU. */
 static void NAME(layer)(const float *v, unsigned in, unsigned out, int last, const REAL *x, REAL *y)
 {
     enum { LANES = 64 / sizeof(REAL), VECS = BLOCK / LANES };
 
     for (unsigned o = 0; o < out; o++, y += BLOCK) {
         const REAL *column = x;
-        NAME(vec)   sum[VECS];
+        NAME(vec) sum[VECS];
 
         for (int i = 0; i < VECS; i++)
-            sum[i] = (NAME(vec)){ 0 } + (REAL)v[(size_t)in * out + o];
+            sum[i] = (NAME(vec)) { 0 } + (REAL)v[(size_t)in * out + o];
         for (unsigned j = 0; j < in; j++, column += BLOCK)
             for (int i = 0; i < VECS; i++)
                 sum[i] += (REAL)v[(size_t)o * in + j] * *(const NAME(vec) *)(column + i * LANES);
@@ -25,13 +28,14 @@ static void NAME(layer)(const float *v, unsigned in, unsigned out, int last, con
     }
 }
 
-static void NAME(net)(const ted4_net_shape *n, const float *nete, REAL *const hidden[2], const REAL *x, REAL *y)
+static void NAME(net)(const ted4_net_shape *n, const float *nete, REAL *const hidden[2],
+                      const REAL *x, REAL *y)
 {
     const float *v = nete + n->first;
 
     for (unsigned i = 0; i < n->n_layers; i++) {
         const int last = i + 1u == n->n_layers;
-        REAL     *to = last ? y : hidden[i % 2];
+        REAL *to = last ? y : hidden[i % 2];
 
         NAME(layer)(v, n->dim[i], n->dim[i + 1], last, x, to);
         v += ((size_t)n->dim[i] + 1) * n->dim[i + 1];
@@ -39,11 +43,12 @@ static void NAME(net)(const ted4_net_shape *n, const float *nete, REAL *const hi
     }
 }
 
-/* spec 10.1: the phase of octave l is p 2^(l - 1) turns, exact in a double. n anchors from first on. */
+/* spec 10.1: the phase of octave l is p 2^(l - 1) turns, exact in a double. n anchors from first
+ * on. */
 static void NAME(inputs)(const ted4_scene *s, size_t first, size_t n, REAL *x)
 {
     for (size_t a = 0; a < n; a++) {
-        REAL  *to = x + a;
+        REAL *to = x + a;
         double p[3];
 
         for (size_t j = 0; j < 3; j++, to += BLOCK) {
@@ -53,7 +58,7 @@ static void NAME(inputs)(const ted4_scene *s, size_t first, size_t n, REAL *x)
         for (int l = 0; l < s->head.pe_octaves; l++)
             for (int j = 0; j < 3; j++, to += 2 * BLOCK) {
                 const double turns = ldexp(p[j], l - 1);
-                const REAL   angle = (REAL)(2 * PI * (turns - rint(turns)));
+                const REAL angle = (REAL)(2 * PI * (turns - rint(turns)));
 
                 to[0] = SIN(angle);
                 to[BLOCK] = COS(angle);
@@ -61,23 +66,26 @@ static void NAME(inputs)(const ted4_scene *s, size_t first, size_t n, REAL *x)
     }
 }
 
-/* All mu and log2 sigma of n <= 64 anchors from first on into y [P][64], in steps, the slice networks added. x: [inputs][64] of room. */
-static void NAME(model)(const ted4_scene *s, REAL *const hidden[2], size_t first, size_t n, REAL *x, REAL *y)
+/* All mu and log2 sigma of n <= 64 anchors from first on into y [P][64], in steps, the slice
+ * networks added. x: [inputs][64] of room. */
+static void NAME(model)(const ted4_scene *s, REAL *const hidden[2], size_t first, size_t n, REAL *x,
+                        REAL *y)
 {
     const ted4_header *h = &s->head;
-    unsigned           comp = h->slice[0];
+    unsigned comp = h->slice[0];
 
     if (h->prior == TED4_PRIOR_INR)
         NAME(inputs)(s, first, n, x);
     NAME(net)(&s->shape.hyper, s->nete.values, hidden, x, y);
     for (unsigned i = 0; i < h->feature_dim; i++)
         for (size_t a = 0; a < n; a++)
-            x[i * BLOCK + a] = s->symbol[TED4_FEATURE][(size_t)i * h->n_anchors + first + a]
-                             * (REAL)ted4_bits_float(ted4_step[s->step_index[TED4_FEATURE][first + a]]);
+            x[i * BLOCK + a] =
+                s->symbol[TED4_FEATURE][(size_t)i * h->n_anchors + first + a] *
+                (REAL)ted4_bits_float(ted4_step[s->step_index[TED4_FEATURE][first + a]]);
     for (unsigned m = 1; m < h->n_slices; comp += h->slice[m++]) {
         const size_t part = (size_t)h->slice[m] * BLOCK;
-        REAL        *mu = y + (size_t)comp * BLOCK, *sigma = mu + (size_t)h->feature_dim * BLOCK;
-        REAL         add[2 * TED4_MAX_FEATURE * BLOCK];
+        REAL *mu = y + (size_t)comp * BLOCK, *sigma = mu + (size_t)h->feature_dim * BLOCK;
+        REAL add[2 * TED4_MAX_FEATURE * BLOCK];
 
         NAME(net)(&s->shape.slice[m], s->nete.values, hidden, x, add);
         for (size_t i = 0; i < part; i++) {

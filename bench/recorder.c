@@ -70,7 +70,7 @@ static double schedule_list(const recorder *r, double work, size_t n, int cores)
 {
     const double all = sum_of(r->kept, r->n_kept);
 
-    const int    takers = (size_t)cores < n ? cores : (int)n;
+    const int takers = (size_t)cores < n ? cores : (int)n;
 
     return all > 0 ? recorder_schedule(r->kept, r->n_kept, takers) * work / all : work;
 }
@@ -106,7 +106,7 @@ static double time_indices(recorder *r, size_t n, void (*body)(void *arg, size_t
                            double *excess)
 {
     const double spent = recorder_thread_ms(), begin = now_ms();
-    double       at = begin;
+    double at = begin;
 
     for (size_t i = 0; i < n; i++) {
         body(arg, i);
@@ -123,10 +123,10 @@ static double time_indices(recorder *r, size_t n, void (*body)(void *arg, size_t
 
 static void run(void *user, size_t n, void (*body)(void *arg, size_t i), void *arg)
 {
-    recorder    *r = user;
+    recorder *r = user;
     const double begin = now_ms(), spent = recorder_thread_ms();
-    const int    kind = r->kind != NULL ? r->kind(n) : 0;
-    double       excess;
+    const int kind = r->kind != NULL ? r->kind(n) : 0;
+    double excess;
 
     reserve(r, n);
     r->n = n;
@@ -154,5 +154,5 @@ static void run(void *user, size_t n, void (*body)(void *arg, size_t i), void *a
 
 ted4_parallel recorder_team(recorder *r)
 {
-    return (ted4_parallel){ run, r };
+    return (ted4_parallel) { run, r };
 }

@@ -20,22 +20,22 @@ extern const int recorder_cores[RECORDER_CORES];
  * how many. */
 typedef struct {
     double work, on[RECORDER_CORES];
-    double own;                 /* what the notes took, and other programs, outside work */
-    double spent;               /* of own, what this thread spent */
+    double own;   /* what the notes took, and other programs, outside work */
+    double spent; /* of own, what this thread spent */
     size_t n;
 } recorder_regions;
 
 typedef struct {
-    double *duration;           /* owned: [capacity] of the last region, by index, in ms */
-    size_t  n, capacity;
-    double  clock;              /* what reading the clock takes, ms */
-    double *kept;               /* owned: those of a region to come back to */
-    size_t  n_kept;
-    recorder_regions regions;   /* the caller may empty it at any time */
+    double *duration; /* owned: [capacity] of the last region, by index, in ms */
+    size_t n, capacity;
+    double clock; /* what reading the clock takes, ms */
+    double *kept; /* owned: those of a region to come back to */
+    size_t n_kept;
+    recorder_regions regions; /* the caller may empty it at any time */
     /* NULL, or asked before each region of n indices: 1: the durations of this region are kept;
      * 2: its indices take turns at a common list of jobs, which last in proportion to those
      * kept. */
-    int   (*kind)(size_t n);
+    int (*kind)(size_t n);
 } recorder;
 
 void recorder_init(recorder *r);

@@ -1,8 +1,10 @@
 /* robust.c - a file cut short and a file with a changed byte: what the decoder says of each.
  *     robust FILE.ted4 [SEED]
- * Every truncation (of a large file many) must be refused. Of 20,000 single byte changes, every other one with the hash of its chunk made
- * right, each must be refused or decode to the same integers (their hash is in ENDS). Where it decodes, the chunk changed is told: in NETR
- * and BANK the integers are the same and the weights of Tier R are others. Always with an identifier and an offset inside the file.
+ * Every truncation (of a large file many) must be refused. Of 20,000 single byte changes, every
+ * other one with the hash of its chunk made right, each must be refused or decode to the same
+ * integers (their hash is in ENDS). Where it decodes, the chunk changed is told: in NETR and BANK
+ * the integers are the same and the weights of Tier R are others. Always with an identifier and an
+ * offset inside the file.
  * SPDX-License-Identifier: BSD-2-Clause */
 #include <inttypes.h>
 #include <stdio.h>
@@ -13,17 +15,26 @@
 #include "base/bytes.h"
 #include "norm/coder.h"
 
-enum { N_CHANGES = 20000, SMALL = 1 << 16, MANY = 4000, LAST = 2000, CUT = 0, CHANGED = 1, MENDED = 2, PASSES = 3 };
+enum {
+    N_CHANGES = 20000,
+    SMALL = 1 << 16,
+    MANY = 4000,
+    LAST = 2000,
+    CUT = 0,
+    CHANGED = 1,
+    MENDED = 2,
+    PASSES = 3
+};
 
 typedef struct {
     uint8_t *data;
-    size_t   size;
-    uint8_t  hash[16];
+    size_t size;
+    uint8_t hash[16];
     uint64_t refused[PASSES][TED4_N_STATUS];
-    uint64_t valid[PASSES][TED4_CHUNKS + 2];    /* by chunk: known ones, ancillary, file header */
+    uint64_t valid[PASSES][TED4_CHUNKS + 2]; /* by chunk: known ones, ancillary, file header */
     uint64_t tried[PASSES];
-    uint64_t undone, bad;                       /* undone: the byte was one of a hash, and mending put it back */
-    uint64_t random;                            /* xorshift64* */
+    uint64_t undone, bad; /* undone: the byte was one of a hash, and mending put it back */
+    uint64_t random;      /* xorshift64* */
 } report;
 
 static uint32_t random_below(report *r, size_t n)
@@ -48,11 +59,11 @@ static int place_of(const report *r, size_t chunk)
 /* data: of exactly that size on the heap, so that reading past it is seen. place: of the change. */
 static void decode(report *r, int pass, const uint8_t *data, size_t size, size_t at, int place)
 {
-    ted4_scene       *s = NULL;
-    ted4_error        e = { TED4_OK, 0 };
-    ted4_info         info;
+    ted4_scene *s = NULL;
+    ted4_error e = { TED4_OK, 0 };
+    ted4_info info;
     const ted4_status verdict = ted4_decode(data, size, NULL, &s, &e);
-    int               good;
+    int good;
 
     r->tried[pass]++;
     if (verdict == TED4_OK) {
@@ -99,7 +110,7 @@ static void cut_everywhere(report *r)
 static void change_one(report *r, int pass)
 {
     uint8_t *const data = copy(r, r->size);
-    const size_t   at = random_below(r, r->size), chunk = ted4_chunk_holding(r->data, r->size, at);
+    const size_t at = random_below(r, r->size), chunk = ted4_chunk_holding(r->data, r->size, at);
 
     data[at] ^= (uint8_t)(1 + random_below(r, 255));
     if (pass == MENDED && chunk < r->size) {
@@ -126,23 +137,28 @@ static void print_report(const report *r)
 
     puts("| verdict | cut | byte changed | byte changed, hash mended |\n|---|---|---|---|");
     for (int s = 0; s < TED4_N_STATUS; s++)
-        print_row(ted4_status_id((ted4_status)s), r->refused[CUT][s], r->refused[CHANGED][s], r->refused[MENDED][s]);
+        print_row(ted4_status_id((ted4_status)s), r->refused[CUT][s], r->refused[CHANGED][s],
+                  r->refused[MENDED][s]);
     for (int i = 0; i < TED4_CHUNKS + 2; i++) {
         snprintf(name, sizeof name, "valid, same hash: %s%s",
-                 i < TED4_CHUNKS ? ted4_chunk_type[i] : i == TED4_CHUNKS ? "ancillary chunk" : "file header",
+                 i < TED4_CHUNKS    ? ted4_chunk_type[i]
+                 : i == TED4_CHUNKS ? "ancillary chunk"
+                                    : "file header",
                  i == TED4_NETR || i == TED4_BANK ? " (other weights)" : "");
         print_row(name, r->valid[CUT][i], r->valid[CHANGED][i], r->valid[MENDED][i]);
     }
     print_row("tried", r->tried[CUT], r->tried[CHANGED], r->tried[MENDED]);
-    printf("\nNot tried, as mending put the byte back: %" PRIu64 ". Against the rules: %" PRIu64 ".\n", r->undone, r->bad);
+    printf("\nNot tried, as mending put the byte back: %" PRIu64 ". Against the rules: %" PRIu64
+           ".\n",
+           r->undone, r->bad);
 }
 
 static int load(report *r, const char *path)
 {
-    FILE       *f = fopen(path, "rb");
+    FILE *f = fopen(path, "rb");
     ted4_scene *s = NULL;
-    ted4_info   info;
-    int         good;
+    ted4_info info;
+    int good;
 
     r->data = malloc(1 << 28);
     if (f == NULL || r->data == NULL)

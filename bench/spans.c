@@ -1,10 +1,18 @@
-/* spans.c - how long the anchors of a file live: span = a_f - a_s of spec 11.4, kept to [0, 1]; 1 for every anchor of a file without activation.
- *     spans FILE.ted4                              one JSON line: shares of anchors with a span of at most 0.2, between, of at least 0.8; mean
- *     spans FILE.ted4 SCENE DOWNSCALE PICTURE.png  also a picture: at three times of the first held-out camera, the Gaussians in their own colours
- *                                                  (above) and in the colour of their anchor's span (below): blue 0, white 1/2, red 1, darker where
- *                                                  the Gaussian is dark. The strip at the foot is the scale, 0 to 1 from left to right. The line then
- *                                                  also tells, if that camera stands still: share of pixels and times that the scene has changed,
- *                                                  share of their light that comes from short lives, and the same where it has not (spans.h).
+/* spans.c - how long the anchors of a file live: span = a_f - a_s of spec 11.4, kept to [0, 1]; 1
+ * for every anchor of a file without activation.
+ *     spans FILE.ted4                              one JSON line: shares of anchors with a span of
+ *                                                  at most 0.2, between, of at least 0.8; mean
+ *     spans FILE.ted4 SCENE DOWNSCALE PICTURE.png  also a picture: at three times of the first
+ *                                                  held-out camera, the Gaussians in their own
+ *                                                  colours (above) and in the colour of their
+ *                                                  anchor's span (below): blue 0, white 1/2, red 1,
+ *                                                  darker where the Gaussian is dark. The strip at
+ *                                                  the foot is the scale, 0 to 1 from left to
+ *                                                  right. The line then also tells, if that camera
+ *                                                  stands still: share of pixels and times that the
+ *                                                  scene has changed, share of their light that
+ *                                                  comes from short lives, and the same where it
+ *                                                  has not (spans.h).
  * SPDX-License-Identifier: BSD-2-Clause */
 #include <errno.h>
 #include <stdio.h>
@@ -39,8 +47,8 @@ static float span_of(const ted4_scene *s, size_t i)
 
 static int open_file(session *s, const char *path)
 {
-    ted4_error     e = { TED4_OK, 0 };
-    size_t         size;
+    ted4_error e = { TED4_OK, 0 };
+    size_t size;
     uint8_t *const bytes = ted4_read_file(path, &size);
 
     if (bytes == NULL)
@@ -62,24 +70,27 @@ static int open_file(session *s, const char *path)
 static void print_shares(const session *s, const spans_where *w)
 {
     const double n = s->info.n_anchors;
-    double       low = 0, high = 0, sum = 0;
+    double low = 0, high = 0, sum = 0;
 
     for (size_t i = 0; i < s->info.n_anchors; i++) {
         low += s->span[i] <= SHORT;
         high += s->span[i] >= LONG;
         sum += (double)s->span[i];
     }
-    printf("{\"anchors\":%.0f,\"span_short\":%.4f,\"span_between\":%.4f,\"span_long\":%.4f,\"span_mean\":%.4f", n, low / n,
-           (n - low - high) / n, high / n, sum / n);
+    printf("{\"anchors\":%.0f,\"span_short\":%.4f,\"span_between\":%.4f,\"span_long\":%.4f,\"span_"
+           "mean\":%.4f",
+           n, low / n, (n - low - high) / n, high / n, sum / n);
     if (w->count[0] > 0 && w->count[1] > 0)
-        printf(",\"changed\":%.4f,\"short_changed\":%.4f,\"short_same\":%.4f", w->count[1] / (w->count[0] + w->count[1]), w->share[1],
-               w->share[0]);
+        printf(",\"changed\":%.4f,\"short_changed\":%.4f,\"short_same\":%.4f",
+               w->count[1] / (w->count[0] + w->count[1]), w->share[1], w->share[0]);
     printf("}\n");
 }
 
 static int open_scene(session *s, const char *folder, int downscale)
 {
-    const ted4_dataset_options options = { .downscale = downscale, .white = 1, .cache_bytes = 1 << 20 };
+    const ted4_dataset_options options = { .downscale = downscale,
+                                           .white = 1,
+                                           .cache_bytes = 1 << 20 };
     ted4_message m;
 
     if (ted4_dataset_load(&s->data, folder, &options, &m) != 0)
@@ -96,25 +107,28 @@ static int open_scene(session *s, const char *folder, int downscale)
     s->colour = malloc((3 * s->info.n_gaussians + 1) * sizeof *s->colour);
     s->viewer = ted4_viewer_new();
     return s->view == NULL || s->picture == NULL || s->colour == NULL || s->viewer == NULL
-               ? failed(folder, "out of memory") : TED4_EXIT_FINE;
+               ? failed(folder, "out of memory")
+               : TED4_EXIT_FINE;
 }
 
 static int draw(session *s, const char *path)
 {
-    char      why[256];
+    char why[256];
     const int code = draw_picture(s);
 
     if (code != TED4_EXIT_FINE)
         return code;
-    return ted4_png_write(path, s->width * COLUMNS, 2 * s->height + STRIP, s->picture, why, sizeof why) == 0
-               ? TED4_EXIT_FINE : failed(path, why);
+    return ted4_png_write(path, s->width * COLUMNS, 2 * s->height + STRIP, s->picture, why,
+                          sizeof why) == 0
+               ? TED4_EXIT_FINE
+               : failed(path, why);
 }
 
 int main(int argc, char **argv)
 {
-    session     s = { 0 };
+    session s = { 0 };
     spans_where where = { { 0 }, { 0 } };
-    int         code;
+    int code;
 
     if (argc != 2 && (argc != 5 || atoi(argv[3]) < 1))
         return failed("usage", "spans FILE.ted4 [SCENE DOWNSCALE PICTURE.png]");

@@ -11,7 +11,8 @@
 
 static void span_colour(float span, float rgb[3])
 {
-    const float cold = span < 0.5f ? 2.0f * span : 1.0f, warm = span > 0.5f ? 2.0f - 2.0f * span : 1.0f;
+    const float cold = span < 0.5f ? 2.0f * span : 1.0f,
+                warm = span > 0.5f ? 2.0f - 2.0f * span : 1.0f;
 
     rgb[0] = cold;
     rgb[1] = cold < warm ? cold : warm;
@@ -19,7 +20,8 @@ static void span_colour(float span, float rgb[3])
 }
 
 /* Its Gaussians in other colours; arrays of g itself stay as they are. */
-static ted4_gaussians painted(const session *s, const ted4_gaussians *g, void (*paint)(float span, float rgb[3]), float dimmest)
+static ted4_gaussians painted(const session *s, const ted4_gaussians *g,
+                              void (*paint)(float span, float rgb[3]), float dimmest)
 {
     ted4_gaussians out = *g;
 
@@ -28,7 +30,7 @@ static ted4_gaussians painted(const session *s, const ted4_gaussians *g, void (*
     for (size_t i = 0; i < g->n; i++) {
         const float light = (g->colour[0][i] + g->colour[1][i] + g->colour[2][i]) / 3.0f;
         const float shade = dimmest + (1.0f - dimmest) * light;
-        float       rgb[3];
+        float rgb[3];
 
         paint(s->span[g->id[i] / s->info.n_offsets], rgb);
         for (int c = 0; c < 3; c++)
@@ -37,15 +39,16 @@ static ted4_gaussians painted(const session *s, const ted4_gaussians *g, void (*
     return out;
 }
 
-int draw_view(session *s, const ted4_picture *p, void (*paint)(float span, float rgb[3]), float dimmest)
+int draw_view(session *s, const ted4_picture *p, void (*paint)(float span, float rgb[3]),
+              float dimmest)
 {
-    const uint32_t    last = s->data.n_frames > 1 ? s->data.n_frames - 1 : 1;
-    const ted4_header world = { 0 };        /* origin 0, unit 1: a view in world coordinates */
-    ted4_info         info = s->info;
-    ted4_view         view;
-    ted4_gaussians    g;
-    float             centre[3];
-    ted4_status       status;
+    const uint32_t last = s->data.n_frames > 1 ? s->data.n_frames - 1 : 1;
+    const ted4_header world = { 0 }; /* origin 0, unit 1: a view in world coordinates */
+    ted4_info info = s->info;
+    ted4_view view;
+    ted4_gaussians g;
+    float centre[3];
+    ted4_status status;
 
     if (p->camera.width != s->width || p->camera.height != s->height)
         return failed(p->path, "size differs from the first held-out picture");
@@ -62,13 +65,13 @@ int draw_view(session *s, const ted4_picture *p, void (*paint)(float span, float
 
 const ted4_picture *held_out(const session *s, int column)
 {
-    const int64_t       want = (int64_t)(s->data.n_frames - 1) * column;
+    const int64_t want = (int64_t)(s->data.n_frames - 1) * column;
     const ted4_picture *first = NULL, *best = NULL;
-    int64_t             best_far = 0;
+    int64_t best_far = 0;
 
     for (size_t i = 0; i < s->data.n_pictures; i++) {
         const ted4_picture *const p = &s->data.pictures[i];
-        const int64_t             far = llabs((int64_t)p->frame * (COLUMNS - 1) - want);
+        const int64_t far = llabs((int64_t)p->frame * (COLUMNS - 1) - want);
 
         if (!p->is_test)
             continue;
@@ -94,7 +97,7 @@ static void put_view(const session *s, int row, int column)
 static void put_strip(const session *s)
 {
     const size_t width = (size_t)s->width * COLUMNS;
-    uint8_t     *to = s->picture + 2 * (size_t)s->height * width * 3;
+    uint8_t *to = s->picture + 2 * (size_t)s->height * width * 3;
 
     for (int y = 0; y < STRIP; y++)
         for (size_t x = 0; x < width; x++) {
@@ -110,7 +113,8 @@ int draw_picture(session *s)
 {
     for (int column = 0; column < COLUMNS; column++)
         for (int row = 0; row < 2; row++) {
-            const int code = draw_view(s, held_out(s, column), row == 0 ? NULL : span_colour, DIMMEST);
+            const int code =
+                draw_view(s, held_out(s, column), row == 0 ? NULL : span_colour, DIMMEST);
 
             if (code != TED4_EXIT_FINE)
                 return code;

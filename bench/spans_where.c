@@ -44,7 +44,7 @@ static int where_load(session *s, const size_t *which, size_t n, uint8_t *truth)
 static int where_median(const uint8_t *x, size_t n, size_t step)
 {
     size_t count[256] = { 0 }, sum = 0;
-    int    v = 0;
+    int v = 0;
 
     for (size_t k = 0; k < n; k++)
         count[x[k * step]]++;
@@ -75,7 +75,7 @@ static void short_is_white(float span, float rgb[3])
 static int where_add(session *s, const ted4_picture *p, const uint8_t *changed, spans_where *w)
 {
     const size_t pixels = (size_t)s->width * (size_t)s->height;
-    const int    code = draw_view(s, p, short_is_white, 1.0f);
+    const int code = draw_view(s, p, short_is_white, 1.0f);
 
     for (size_t i = 0; i < pixels && code == TED4_EXIT_FINE; i++) {
         w->share[changed[i]] += s->view[3 * i] / 255.0;
@@ -89,11 +89,12 @@ int short_lives_where(session *s, spans_where *w)
     const ted4_picture *const of = held_out(s, 0);
     const size_t pixels = (size_t)s->width * (size_t)s->height;
     size_t *const which = malloc(s->data.n_pictures * sizeof *which);
-    const size_t  n = which != NULL ? where_pictures(s, of->camera_id, which) : 0;
+    const size_t n = which != NULL ? where_pictures(s, of->camera_id, which) : 0;
     uint8_t *const truth = malloc(n * pixels * 3 + 1), *const changed = malloc(n * pixels + 1);
-    int      code = which == NULL || truth == NULL || changed == NULL ? failed(of->path, "out of memory") : TED4_EXIT_FINE;
+    int code = which == NULL || truth == NULL || changed == NULL ? failed(of->path, "out of memory")
+                                                                 : TED4_EXIT_FINE;
 
-    *w = (spans_where){ { 0 }, { 0 } };
+    *w = (spans_where) { { 0 }, { 0 } };
     if (code == TED4_EXIT_FINE && n >= FEWEST_TIMES) {
         code = where_load(s, which, n, truth);
         if (code == TED4_EXIT_FINE)

@@ -26,31 +26,30 @@ static train_part enter(train_part p)
 /* The functions in between. type __wrap_name is called where the trainer names name; __real_name is
  * what it then gets. The linker compares no types: the declaration by __typeof__ does. */
 #define BETWEEN(part, type, name, parameters, arguments) \
-    extern __typeof__(name) __wrap_##name; \
-    type __real_##name parameters; \
-    type __wrap_##name parameters \
-    { \
-        const train_part before = enter(PART_##part); \
-        const type      result = __real_##name arguments; \
-        enter(before); \
-        return result; \
+    extern __typeof__(name) __wrap_##name;               \
+    type __real_##name parameters;                       \
+    type __wrap_##name parameters                        \
+    {                                                    \
+        const train_part before = enter(PART_##part);    \
+        const type result = __real_##name arguments;     \
+        enter(before);                                   \
+        return result;                                   \
     }
 #define BETWEEN_VOID(part, name, parameters, arguments) \
-    extern __typeof__(name) __wrap_##name; \
-    void __real_##name parameters; \
-    void __wrap_##name parameters \
-    { \
-        const train_part before = enter(PART_##part); \
-        __real_##name arguments; \
-        enter(before); \
+    extern __typeof__(name) __wrap_##name;              \
+    void __real_##name parameters;                      \
+    void __wrap_##name parameters                       \
+    {                                                   \
+        const train_part before = enter(PART_##part);   \
+        __real_##name arguments;                        \
+        enter(before);                                  \
     }
 /* A leveled function (render/leveled.h) is called by the function of its plain name in the same
  * file, where the linker can put nothing in between, and calls its copies elsewhere. */
 #if defined(__x86_64__)
-#define OF_LEVELS(kind, part, name, parameters, arguments) \
-    kind(part, name##_base, parameters, arguments) \
-    kind(part, name##_v3, parameters, arguments) \
-    kind(part, name##_v4, parameters, arguments)
+#define OF_LEVELS(kind, part, name, parameters, arguments)                                      \
+    kind(part, name##_base, parameters, arguments) kind(part, name##_v3, parameters, arguments) \
+        kind(part, name##_v4, parameters, arguments)
 #else
 #define OF_LEVELS(kind, part, name, parameters, arguments) \
     kind(part, name##_base, parameters, arguments)
@@ -59,45 +58,45 @@ static train_part enter(train_part p)
     BETWEEN(part, int, name, parameters, arguments)
 typedef const uint8_t *pixels;
 
-BETWEEN(PICTURE, pixels, ted4_dataset_pixels, (ted4_dataset *d, size_t i, ted4_message *m),
+BETWEEN(PICTURE, pixels, ted4_dataset_pixels, (ted4_dataset * d, size_t i, ted4_message *m),
         (d, i, m))
-BETWEEN(SCHEDULE, int, ted4_trainer_check, (ted4_trainer *t, int anchors), (t, anchors))
-BETWEEN(SCHEDULE, int, ted4_schedule_event, (ted4_trainer *t), (t))
-BETWEEN(VISIBLE, int, ted4_slots_fill, (ted4_trainer *t, const ted4_view *v), (t, v))
-BETWEEN_VOID(GENERATE, ted4_generator_pack, (ted4_generator *g, const float *net), (g, net))
+BETWEEN(SCHEDULE, int, ted4_trainer_check, (ted4_trainer * t, int anchors), (t, anchors))
+BETWEEN(SCHEDULE, int, ted4_schedule_event, (ted4_trainer * t), (t))
+BETWEEN(VISIBLE, int, ted4_slots_fill, (ted4_trainer * t, const ted4_view *v), (t, v))
+BETWEEN_VOID(GENERATE, ted4_generator_pack, (ted4_generator * g, const float *net), (g, net))
 BETWEEN(GENERATE, int, ted4_generate,
-        (ted4_generator *g, const ted4_generate_input *in, const ted4_parallel *p,
+        (ted4_generator * g, const ted4_generate_input *in, const ted4_parallel *p,
          ted4_splats *out),
         (g, in, p, out))
 OF_LEVELS(BETWEEN_INT, PROJECT, ted4_raster_project,
-          (ted4_raster *r, const ted4_splats *s, const ted4_view *v, const ted4_parallel *p),
+          (ted4_raster * r, const ted4_splats *s, const ted4_view *v, const ted4_parallel *p),
           (r, s, v, p))
-BETWEEN(BIN, int, ted4_raster_bin,
-        (ted4_raster *r, const ted4_splats *s, const ted4_parallel *p), (r, s, p))
+BETWEEN(BIN, int, ted4_raster_bin, (ted4_raster * r, const ted4_splats *s, const ted4_parallel *p),
+        (r, s, p))
 OF_LEVELS(BETWEEN_INT, BLEND, ted4_raster_blend,
-          (ted4_raster *r, const ted4_view *v, const ted4_parallel *p, int keep, float *image),
+          (ted4_raster * r, const ted4_view *v, const ted4_parallel *p, int keep, float *image),
           (r, v, p, keep, image))
 BETWEEN(LOSS, double, ted4_loss,
-        (ted4_loss_workspace *w, const float *image, const uint8_t *truth, int width, int height,
+        (ted4_loss_workspace * w, const float *image, const uint8_t *truth, int width, int height,
          float weight, const ted4_parallel *p, float *d_image, double *l1, double *ssim),
         (w, image, truth, width, height, weight, p, d_image, l1, ssim))
 OF_LEVELS(BETWEEN_INT, BLEND_BWD, ted4_raster_blend_bwd,
-          (ted4_raster *r, const ted4_view *v, const ted4_parallel *p, const float *d_image),
+          (ted4_raster * r, const ted4_view *v, const ted4_parallel *p, const float *d_image),
           (r, v, p, d_image))
 OF_LEVELS(BETWEEN_VOID, PROJECT_BWD, ted4_raster_project_bwd,
-          (ted4_raster *r, const ted4_splats *s, const ted4_view *v, const ted4_parallel *p,
+          (ted4_raster * r, const ted4_splats *s, const ted4_view *v, const ted4_parallel *p,
            const ted4_splat_grads *g),
           (r, s, v, p, g))
 BETWEEN(GENERATE_BWD, int, ted4_generate_backward,
-        (ted4_generator *g, const ted4_generate_input *in, const ted4_splat_grads *gr,
+        (ted4_generator * g, const ted4_generate_input *in, const ted4_splat_grads *gr,
          const ted4_parallel *p, float *const *d_attr, float *d_net),
         (g, in, gr, p, d_attr, d_net))
-BETWEEN(REGULARISE, size_t, ted4_update_volume, (ted4_trainer *t, const ted4_splats *s), (t, s))
-BETWEEN_VOID(REGULARISE, ted4_update_bank, (ted4_trainer *t), (t))
+BETWEEN(REGULARISE, size_t, ted4_update_volume, (ted4_trainer * t, const ted4_splats *s), (t, s))
+BETWEEN_VOID(REGULARISE, ted4_update_bank, (ted4_trainer * t), (t))
 BETWEEN_VOID(REGULARISE, ted4_densify_gather,
-             (ted4_trainer *t, const ted4_generate_input *in, const ted4_splats *s), (t, in, s))
-BETWEEN(RATE, int, ted4_update_rate, (ted4_trainer *t, uint64_t key), (t, key))
-BETWEEN_VOID(ADAM, ted4_update_parameters, (ted4_trainer *t), (t))
+             (ted4_trainer * t, const ted4_generate_input *in, const ted4_splats *s), (t, in, s))
+BETWEEN(RATE, int, ted4_update_rate, (ted4_trainer * t, uint64_t key), (t, key))
+BETWEEN_VOID(ADAM, ted4_update_parameters, (ted4_trainer * t), (t))
 
 void parts_begin(void)
 {
@@ -157,8 +156,8 @@ void parts_options(ted4_train_options *o, int steps)
 double parts_load(ted4_dataset *d, int argc, char *const *argv)
 {
     ted4_dataset_options o = { .white = 1, .cache_bytes = (size_t)1 << 30 };
-    ted4_message         m;
-    double               begin = 0;
+    ted4_message m;
+    double begin = 0;
 
     if (argc != 3) {
         fprintf(stderr, "usage: %s SCENE DOWNSCALE\n", argv[0]);

@@ -33,9 +33,9 @@ static void one_step(train_record *r, ted4_trainer *t, record_step step, double 
 
 void record_training(train_record *r, ted4_dataset *d, const ted4_parallel *team, record_step step)
 {
-    double            *sample = must(malloc(r->members * sizeof *sample));
+    double *sample = must(malloc(r->members * sizeof *sample));
     ted4_train_options o;
-    ted4_trainer       t;
+    ted4_trainer t;
 
     memset(r->n, 0, sizeof r->n);
     parts_options(&o, r->steps);
@@ -56,10 +56,10 @@ static int by_value(const void *a, const void *b)
 
 void record_medians(const train_record *r, int stage, double *median)
 {
-    const size_t  first = r->n[stage] > 2 * RECORD_WARM_UP ? RECORD_WARM_UP : 0;
-    const size_t  n = r->n[stage] - first;
+    const size_t first = r->n[stage] > 2 * RECORD_WARM_UP ? RECORD_WARM_UP : 0;
+    const size_t n = r->n[stage] - first;
     const double *sample = r->sample[stage] + first * r->members;
-    double       *value = must(malloc((n + 1) * sizeof *value));
+    double *value = must(malloc((n + 1) * sizeof *value));
 
     for (size_t i = 0; i < r->members; i++) {
         for (size_t k = 0; k < n; k++)
@@ -73,11 +73,11 @@ void record_medians(const train_record *r, int stage, double *median)
 void record_print_title(const train_record *r, const ted4_dataset *d, char *const *argv)
 {
     const ted4_camera *c = &d->pictures[0].camera;
-    const char        *name = strrchr(argv[1], '/') != NULL ? strrchr(argv[1], '/') + 1 : argv[1];
+    const char *name = strrchr(argv[1], '/') != NULL ? strrchr(argv[1], '/') + 1 : argv[1];
 
     printf("%s, 1/%s size: %dx%d, %zu pictures; preset fast, full number of anchors from the first "
-           "step; medians of %d steps", name, argv[2], c->width, c->height, d->n_pictures,
-           r->steps - RECORD_WARM_UP);
+           "step; medians of %d steps",
+           name, argv[2], c->width, c->height, d->n_pictures, r->steps - RECORD_WARM_UP);
 }
 
 void record_print_stage(const train_record *r, int stage)

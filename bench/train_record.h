@@ -7,12 +7,12 @@
 #include "train_parts.h"
 
 typedef struct {
-    int     steps;              /* of a stage */
-    size_t  members;            /* doubles of a sample */
-    double *sample[STAGES];     /* owned: [n][members] */
-    size_t  n[STAGES];
-    size_t  anchors[STAGES];    /* at a stage's end */
-    double  splats[STAGES];
+    int steps;              /* of a stage */
+    size_t members;         /* doubles of a sample */
+    double *sample[STAGES]; /* owned: [n][members] */
+    size_t n[STAGES];
+    size_t anchors[STAGES]; /* at a stage's end */
+    double splats[STAGES];
 } train_record;
 
 /* Steps of a stage of which no median knows, as memory and caches have yet to fill. */

@@ -16,13 +16,13 @@
 enum { MAX_LINE = 8192, MAX_PATH = 4096, FINE = 0, TROUBLE = 3 };
 
 typedef struct {
-    int      width, height;
-    uint8_t *bytes;             /* owned */
+    int width, height;
+    uint8_t *bytes; /* owned */
 } picture;
 
 typedef struct {
     uint64_t pixels, pictures;
-    double   squares;           /* of the errors, over three channels */
+    double squares; /* of the errors, over three channels */
 } sums;
 
 static int failed(const char *what, const char *why)
@@ -72,9 +72,9 @@ static int same_size(const picture *a, const picture *b)
 /* Picture number n of the images against its mask. */
 static int add_picture(const char *images, unsigned n, const char *mask_path, sums *s)
 {
-    char    path[MAX_PATH];
+    char path[MAX_PATH];
     picture truth = { 0 }, ours = { 0 }, mask = { 0 };
-    int     code;
+    int code;
 
     snprintf(path, sizeof path, "%s/truth/%05u.png", images, n);
     code = read_picture(path, PNG_FORMAT_RGB, &truth);
@@ -97,7 +97,7 @@ static int add_picture(const char *images, unsigned n, const char *mask_path, su
 static int mask_of(const char *scene, char *line, char mask[MAX_PATH])
 {
     const size_t n = strlen(scene);
-    char *const  end = strstr(line, " frame ");
+    char *const end = strstr(line, " frame ");
 
     if (end == NULL || strncmp(line, scene, n) != 0 || line[n] != '/')
         return 0;
@@ -113,9 +113,9 @@ static int mask_of(const char *scene, char *line, char mask[MAX_PATH])
 int main(int argc, char **argv)
 {
     static char line[MAX_LINE];
-    char        mask[MAX_PATH];
-    sums        s = { 0 };
-    unsigned    n = 0;
+    char mask[MAX_PATH];
+    sums s = { 0 };
+    unsigned n = 0;
 
     if (argc != 3)
         return failed("usage", "zoo_masks SCENE IMAGES <VIEWS");

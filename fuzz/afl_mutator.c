@@ -1,5 +1,6 @@
-/* afl_mutator.c - AFL++'s entries to mutate.h: a library for AFL_CUSTOM_MUTATOR_LIBRARY, for the harnesses whose input is a .ted4 file. What AFL++'s
- * own mutations leave behind has its hashes made right before it is run, fifteen times in sixteen.
+/* afl_mutator.c - AFL++'s entries to mutate.h: a library for AFL_CUSTOM_MUTATOR_LIBRARY, for the
+ * harnesses whose input is a .ted4 file. What AFL++'s own mutations leave behind has its hashes
+ * made right before it is run, fifteen times in sixteen.
  * SPDX-License-Identifier: BSD-2-Clause */
 #include <stdlib.h>
 #include <string.h>
@@ -11,15 +12,16 @@ enum { ROOM = 1 << 16, ONE_STALE_OF = 16, MAX_TAIL = 32 };
 
 typedef struct {
     random_source r;
-    uint8_t       fuzzed[ROOM], mended[ROOM];
+    uint8_t fuzzed[ROOM], mended[ROOM];
 } state;
 
 static random_source bytes_source;
 
-void  *afl_custom_init(void *afl, unsigned seed);
-size_t afl_custom_fuzz(void *data, uint8_t *buf, size_t buf_size, uint8_t **out, uint8_t *add, size_t add_size, size_t max_size);
+void *afl_custom_init(void *afl, unsigned seed);
+size_t afl_custom_fuzz(void *data, uint8_t *buf, size_t buf_size, uint8_t **out, uint8_t *add,
+                       size_t add_size, size_t max_size);
 size_t afl_custom_post_process(void *data, uint8_t *buf, size_t buf_size, uint8_t **out);
-void   afl_custom_deinit(void *data);
+void afl_custom_deinit(void *data);
 
 /* Where nothing is known of a structure: some bytes to others, or some more of them, or fewer. */
 static size_t some_bytes(uint8_t *data, size_t size, size_t max_size)
@@ -46,15 +48,17 @@ void *afl_custom_init(void *afl, unsigned seed)
     return s;
 }
 
-size_t afl_custom_fuzz(void *data, uint8_t *buf, size_t buf_size, uint8_t **out, uint8_t *add, size_t add_size, size_t max_size)
+size_t afl_custom_fuzz(void *data, uint8_t *buf, size_t buf_size, uint8_t **out, uint8_t *add,
+                       size_t add_size, size_t max_size)
 {
-    state       *s = data;
+    state *s = data;
     const size_t room = max_size < ROOM ? max_size : ROOM;
-    size_t       n = buf_size < room ? buf_size : room;
+    size_t n = buf_size < room ? buf_size : room;
 
     *out = s->fuzzed;
     if (add != NULL && add_size > 0 && random_in(&s->r, 0, 7) == 0) {
-        const size_t crossed = fuzz_cross_files(buf, n, add, add_size, s->fuzzed, room, random_u32(&s->r));
+        const size_t crossed =
+            fuzz_cross_files(buf, n, add, add_size, s->fuzzed, room, random_u32(&s->r));
 
         if (crossed > 0)
             return crossed;

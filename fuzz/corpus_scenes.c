@@ -1,5 +1,5 @@
-/* corpus_scenes.c - see corpus.h. One byte in front says which file of a scene it is, where the harness takes several.
- * SPDX-License-Identifier: BSD-2-Clause */
+/* corpus_scenes.c - see corpus.h. One byte in front says which file of a scene it is, where the
+ * harness takes several. SPDX-License-Identifier: BSD-2-Clause */
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -10,28 +10,38 @@
 #include "base/bytes.h"
 #include "corpus.h"
 
-#define POSE "[[1,0,0,0],[0,1,0,0],[0,0,1,4],[0,0,0,1]]"
+#define POSE                "[[1,0,0,0],[0,1,0,0],[0,0,1,4],[0,0,0,1]]"
 #define PICTURE(file, more) "{\"file_path\":\"" file "\"," more "\"transform_matrix\":" POSE "}"
-#define CAMERA(name, more) "{\"name\":\"" name "\",\"w\":2,\"h\":2,\"K\":[[2,0,0.5],[0,2,0.5],[0,0,1]]," more "\"w2c\":" POSE "}"
-#define VIEW "\"width\":4,\"height\":3,\"fx\":2,\"fy\":2,\"cx\":2,\"cy\":1.5,\"R\":[1,0,0,0,1,0,0,0,1],\"t\":[0,0,4],"
+#define CAMERA(name, more)                                                             \
+    "{\"name\":\"" name "\",\"w\":2,\"h\":2,\"K\":[[2,0,0.5],[0,2,0.5],[0,0,1]]," more \
+    "\"w2c\":" POSE "}"
+#define VIEW                                                                                    \
+    "\"width\":4,\"height\":3,\"fx\":2,\"fy\":2,\"cx\":2,\"cy\":1.5,\"R\":[1,0,0,0,1,0,0,0,1]," \
+    "\"t\":[0,0,4],"
 
 enum { PLAIN = -1, ROOM = 1 << 12 };
 
 typedef struct {
     const char *group, *name;
-    int         kind;           /* the byte in front; PLAIN: none */
+    int kind; /* the byte in front; PLAIN: none */
     const char *text;
 } text_seed;
 
 static const text_seed colmap[] = {
-    { "colmap", "cameras.txt", 0, "# cameras\n1 PINHOLE 2 2 2 2 1 1\n2 SIMPLE_RADIAL 4 4 3 2 2 0.01\n3 RADIAL 2 2 2 1 1 0 0\n" },
+    { "colmap", "cameras.txt", 0,
+      "# cameras\n1 PINHOLE 2 2 2 2 1 1\n2 SIMPLE_RADIAL 4 4 3 2 2 0.01\n3 RADIAL 2 2 2 1 1 0 "
+      "0\n" },
     { "colmap", "cameras_bad.txt", 0, "1 FOV 2 2 2 2 1 1\n" },
-    { "colmap", "images.txt", 1, "# images\n1 1 0 0 0 0 0 3 1 a1.png\n1 2 3 -1 -1 -1\n2 0.70710678 0 0.70710678 0 0 0 3 1 a2.png\n\n" },
+    { "colmap", "images.txt", 1,
+      "# images\n1 1 0 0 0 0 0 3 1 a1.png\n1 2 3 -1 -1 -1\n2 0.70710678 0 0.70710678 0 0 0 3 1 "
+      "a2.png\n\n" },
     { "colmap", "images_bad.txt", 1, "1 1 1 0 0 0 0 3 1 a1.png\n\n" },
-    { "colmap", "points.txt", 2, "# points\n1 0 0 0 255 0 300 0.5 1 2 2 3\r\n2 -1e3 1 0.5 0 -4 0 0\n" },
+    { "colmap", "points.txt", 2,
+      "# points\n1 0 0 0 255 0 300 0.5 1 2 2 3\r\n2 -1e3 1 0.5 0 -4 0 0\n" },
     { "colmap", "points_bad.txt", 2, "1 nan 0 0 1 2 3 0\n" },
 };
 
+/* clang-format off */
 static const text_seed transforms[] = {
     { "transforms", "blender.json", 0, "{\"camera_angle_x\":0.7,\"frames\":[" PICTURE("./a", "\"time\":0,") ","
                                        PICTURE("b.png", "\"time\":0.5,") "]}" },
@@ -49,38 +59,65 @@ static const text_seed transforms[] = {
     { "transforms", "test.json", 2, "{\"camera_angle_x\":0.7,\"frames\":[" PICTURE("./a", "\"time\":0,") "]}" },
     { "transforms", "broken.json", 0, "{\"frames\":[1" },
 };
+/* clang-format on */
 
 static const text_seed other_json[] = {
-    { "calibration", "cams.json", PLAIN, "{\"fps\":30,\"cameras\":[" CAMERA("cam0", "\"dist\":[0.1,0,0,0,0.01],") "," CAMERA("cam1", "") "]}" },
-    { "calibration", "frames.json", PLAIN, "{\"frames\":2,\"cameras\":[" CAMERA("cam0", "\"video\":\"x.mp4\",") "]}" },
-    { "calibration", "video.json", PLAIN, "{\"cameras\":[" CAMERA("q", "\"video\":\"cams.json\",") "]}" },
-    { "calibration", "skew.json", PLAIN, "{\"cameras\":[{\"name\":\"cam0\",\"w\":2,\"h\":2,\"K\":[2,1,1,0,2,1,0,0,1],\"w2c\":" POSE "}]}" },
+    { "calibration", "cams.json", PLAIN,
+      "{\"fps\":30,\"cameras\":[" CAMERA("cam0", "\"dist\":[0.1,0,0,0,0.01],") "," CAMERA(
+          "cam1", "") "]}" },
+    { "calibration", "frames.json", PLAIN,
+      "{\"frames\":2,\"cameras\":[" CAMERA("cam0", "\"video\":\"x.mp4\",") "]}" },
+    { "calibration", "video.json", PLAIN,
+      "{\"cameras\":[" CAMERA("q", "\"video\":\"cams.json\",") "]}" },
+    { "calibration", "skew.json", PLAIN,
+      "{\"cameras\":[{\"name\":\"cam0\",\"w\":2,\"h\":2,\"K\":[2,1,1,0,2,1,0,0,1],\"w2c\":" POSE
+      "}]}" },
     { "calibration", "no_lens.json", PLAIN, "{\"cameras\":[{\"name\":\"cam0\",\"w\":2}]}" },
-    { "hypernerf", "dataset.json", 0, "{\"ids\":[\"a\",\"b\"],\"train_ids\":[\"a\"],\"val_ids\":[\"b\"]}" },
+    { "hypernerf", "dataset.json", 0,
+      "{\"ids\":[\"a\",\"b\"],\"train_ids\":[\"a\"],\"val_ids\":[\"b\"]}" },
     { "hypernerf", "by_position.json", 0, "{\"ids\":[\"a\",\"x\",\"b\"]}" },
     { "hypernerf", "twice.json", 0, "{\"train_ids\":[\"a\",\"a\"],\"val_ids\":[\"b\"]}" },
-    { "hypernerf", "metadata.json", 1, "{\"a\":{\"warp_id\":5,\"camera_id\":1},\"b\":{\"time\":0.25,\"appearance_id\":2}}" },
-    { "hypernerf", "camera.json", 2, "{\"focal_length\":3,\"skew\":0.1,\"pixel_aspect_ratio\":1.1,\"image_size\":[4,4],\"principal_point\":"
-        "[2,2],\"orientation\":[[0,1,0],[-1,0,0],[0,0,1]],\"position\":[1,2,3],\"radial_distortion\":[0.1,0,0],\"tangential\":[0,0.1]}" },
-    { "camera_list", "views.json", PLAIN, "[{" VIEW "\"frame\":3},{" VIEW "\"time\":0.25},{" VIEW "\"time\":\"1/3\"}]" },
+    { "hypernerf", "metadata.json", 1,
+      "{\"a\":{\"warp_id\":5,\"camera_id\":1},\"b\":{\"time\":0.25,\"appearance_id\":2}}" },
+    { "hypernerf", "camera.json", 2,
+      "{\"focal_length\":3,\"skew\":0.1,\"pixel_aspect_ratio\":1.1,\"image_size\":[4,4],"
+      "\"principal_point\":"
+      "[2,2],\"orientation\":[[0,1,0],[-1,0,0],[0,0,1]],\"position\":[1,2,3],\"radial_distortion\":"
+      "[0.1,0,0],\"tangential\":[0,0.1]}" },
+    { "camera_list", "views.json", PLAIN,
+      "[{" VIEW "\"frame\":3},{" VIEW "\"time\":0.25},{" VIEW "\"time\":\"1/3\"}]" },
     { "camera_list", "both.json", PLAIN, "[{" VIEW "\"frame\":3,\"time\":0.5}]" },
-    { "camera_list", "wide.json", PLAIN, "[{\"width\":16385,\"height\":3,\"fx\":2,\"fy\":2,\"cx\":2,\"cy\":1,\"R\":[1,0,0,0,1,0,0,0,1],"
-        "\"t\":[0,0,4],\"frame\":0}]" },
+    { "camera_list", "wide.json", PLAIN,
+      "[{\"width\":16385,\"height\":3,\"fx\":2,\"fy\":2,\"cx\":2,\"cy\":1,\"R\":[1,0,0,0,1,0,0,0,1]"
+      ","
+      "\"t\":[0,0,4],\"frame\":0}]" },
     { "camera_list", "empty.json", PLAIN, "[]" },
-    { "camera_list", "no_rotation.json", PLAIN, "[{\"width\":4,\"height\":3,\"fx\":2,\"fy\":2,\"cx\":2,\"cy\":1,\"R\":[1,0,0,0,2,0,0,0,1]}]" },
-    { "ply", "ascii.ply", PLAIN, "ply\nformat ascii 1.0\ncomment x\nelement vertex 2\nproperty float x\nproperty double y\nproperty short z\n"
-        "property uchar red\nproperty uint8 green\nproperty int blue\nelement face 1\nproperty list uchar int vertex_index\nend_header\n"
-        "0 1 2 255 0 9\n-1e3 0.5 7 1 2 3\n3 0 1 0\n" },
-    { "ply", "float_colours.ply", PLAIN, "ply\nformat ascii 1.0\nelement vertex 1\nproperty float x\nproperty float y\nproperty float z\n"
-        "property float red\nproperty float green\nproperty float blue\nend_header\n1 2 3 0.5 1 0\n" },
-    { "ply", "no_z.ply", PLAIN, "ply\nformat ascii 1.0\nelement vertex 1\nproperty float x\nproperty float y\nend_header\n1 2\n" },
+    { "camera_list", "no_rotation.json", PLAIN,
+      "[{\"width\":4,\"height\":3,\"fx\":2,\"fy\":2,\"cx\":2,\"cy\":1,\"R\":[1,0,0,0,2,0,0,0,1]}"
+      "]" },
+    { "ply", "ascii.ply", PLAIN,
+      "ply\nformat ascii 1.0\ncomment x\nelement vertex 2\nproperty float x\nproperty double "
+      "y\nproperty short z\n"
+      "property uchar red\nproperty uint8 green\nproperty int blue\nelement face 1\nproperty list "
+      "uchar int vertex_index\nend_header\n"
+      "0 1 2 255 0 9\n-1e3 0.5 7 1 2 3\n3 0 1 0\n" },
+    { "ply", "float_colours.ply", PLAIN,
+      "ply\nformat ascii 1.0\nelement vertex 1\nproperty float x\nproperty float y\nproperty float "
+      "z\n"
+      "property float red\nproperty float green\nproperty float blue\nend_header\n1 2 3 0.5 1 "
+      "0\n" },
+    { "ply", "no_z.ply", PLAIN,
+      "ply\nformat ascii 1.0\nelement vertex 1\nproperty float x\nproperty float y\nend_header\n1 "
+      "2\n" },
     { "ply", "big_endian.ply", PLAIN, "ply\nformat binary_big_endian 1.0\nend_header\n" },
-    { "ply", "too_many.ply", PLAIN, "ply\nformat ascii 1.0\nelement vertex 99\nproperty float x\nproperty float y\nproperty float z\nend_header\n1" },
+    { "ply", "too_many.ply", PLAIN,
+      "ply\nformat ascii 1.0\nelement vertex 99\nproperty float x\nproperty float y\nproperty "
+      "float z\nend_header\n1" },
 };
 
 static void write_text(const text_seed *s)
 {
-    uint8_t      data[ROOM];
+    uint8_t data[ROOM];
     const size_t front = s->kind >= 0, n = strlen(s->text);
 
     data[0] = (uint8_t)s->kind;
@@ -91,7 +128,7 @@ static void write_text(const text_seed *s)
 /* Little-endian records. */
 typedef struct {
     uint8_t bytes[ROOM];
-    size_t  n;
+    size_t n;
 } record;
 
 static void put(record *r, uint64_t v, unsigned size)
@@ -117,11 +154,12 @@ static void put_text(record *r, const char *text, size_t n)
 static void binary_colmap(void)
 {
     static const double pose[7] = { 1, 0, 0, 0, 0, 0, 3 };
-    record c = { .bytes = { 3 }, .n = 1 }, i = { .bytes = { 4 }, .n = 1 }, p = { .bytes = { 5 }, .n = 1 };
+    record c = { .bytes = { 3 }, .n = 1 }, i = { .bytes = { 4 }, .n = 1 },
+           p = { .bytes = { 5 }, .n = 1 };
 
     put(&c, 1, 8);
     put(&c, 1, 4);
-    put(&c, 4, 4);                              /* OPENCV */
+    put(&c, 4, 4); /* OPENCV */
     put(&c, 2, 8);
     put(&c, 2, 8);
     for (int k = 0; k < 8; k++)
@@ -151,7 +189,8 @@ static void binary_colmap(void)
 }
 
 /* kind: the byte in front, or PLAIN. */
-static void numpy(const char *group, const char *name, int kind, const char *header, const double *v, size_t n, int narrow)
+static void numpy(const char *group, const char *name, int kind, const char *header,
+                  const double *v, size_t n, int narrow)
 {
     record r = { .n = 0 };
 
@@ -175,20 +214,29 @@ static void all_numpy(void)
 
     memcpy(two, row, sizeof row);
     memcpy(two + 17, row, sizeof row);
-    numpy("npy", "poses_bounds.npy", PLAIN, "{'descr': '<f8', 'fortran_order': False, 'shape': (2, 17), }\n", two, 34, 0);
-    numpy("npy", "points.npy", PLAIN, "{'descr': '<f4', 'fortran_order': False, 'shape': (2, 3), }\n", row, 6, 1);
-    numpy("npy", "trailing.npy", PLAIN, "{'descr': '<f4', 'fortran_order': False, 'shape': (2, 3), }\n", row, 7, 1);
-    numpy("npy", "fortran.npy", PLAIN, "{'descr': '<f4', 'fortran_order': True, 'shape': (2, 3), }\n", row, 6, 1);
-    numpy("npy", "one_row.npy", PLAIN, "{'descr': '<f8', 'fortran_order': False, 'shape': (1, 17), }\n", row, 17, 0);
-    numpy("npy", "integers.npy", PLAIN, "{'descr': '<i8', 'fortran_order': False, 'shape': (1, 3), }\n", row, 3, 0);
-    numpy("hypernerf", "points.npy", 3, "{'descr': '<f4', 'fortran_order': False, 'shape': (2, 3), }\n", row, 6, 1);
+    numpy("npy", "poses_bounds.npy", PLAIN,
+          "{'descr': '<f8', 'fortran_order': False, 'shape': (2, 17), }\n", two, 34, 0);
+    numpy("npy", "points.npy", PLAIN,
+          "{'descr': '<f4', 'fortran_order': False, 'shape': (2, 3), }\n", row, 6, 1);
+    numpy("npy", "trailing.npy", PLAIN,
+          "{'descr': '<f4', 'fortran_order': False, 'shape': (2, 3), }\n", row, 7, 1);
+    numpy("npy", "fortran.npy", PLAIN,
+          "{'descr': '<f4', 'fortran_order': True, 'shape': (2, 3), }\n", row, 6, 1);
+    numpy("npy", "one_row.npy", PLAIN,
+          "{'descr': '<f8', 'fortran_order': False, 'shape': (1, 17), }\n", row, 17, 0);
+    numpy("npy", "integers.npy", PLAIN,
+          "{'descr': '<i8', 'fortran_order': False, 'shape': (1, 3), }\n", row, 3, 0);
+    numpy("hypernerf", "points.npy", 3,
+          "{'descr': '<f4', 'fortran_order': False, 'shape': (2, 3), }\n", row, 6, 1);
 }
 
 static void binary_ply(void)
 {
     record r = { .n = 0 };
-    static const char header[] = "ply\nformat binary_little_endian 1.0\nelement vertex 1\nproperty float x\nproperty float y\nproperty double z\n"
-                                 "property char a\nproperty uchar red\nproperty ushort green\nproperty uint blue\nend_header\n";
+    static const char header[] = "ply\nformat binary_little_endian 1.0\nelement vertex 1\nproperty "
+                                 "float x\nproperty float y\nproperty double z\n"
+                                 "property char a\nproperty uchar red\nproperty ushort "
+                                 "green\nproperty uint blue\nend_header\n";
 
     put_text(&r, header, sizeof header - 1);
     put(&r, ted4_float_bits(1.5f), 4);
@@ -200,7 +248,7 @@ static void binary_ply(void)
 
 static void png(const char *name, uint32_t format)
 {
-    uint8_t   pixels[6 * 6 * 8], map[4 * 256], file[ROOM];
+    uint8_t pixels[6 * 6 * 8], map[4 * 256], file[ROOM];
     png_alloc_size_t n = sizeof file;
     png_image p;
 
@@ -221,24 +269,26 @@ static void png(const char *name, uint32_t format)
 /* The beginning of a picture that was written before. */
 static void cut_png(void)
 {
-    static const uint8_t head[] = "\x89PNG\r\n\x1a\n\0\0\0\rIHDR\0\0\0\5\0\0\0\3\10\2\0\0\0\0\0\0\0\0\0\0\7tRNS\0\0\0\0\0\0\0\0\0\0\0";
+    static const uint8_t head[] = "\x89PNG\r\n\x1a\n\0\0\0\rIHDR\0\0\0\5\0\0\0\3\10\2\0\0\0\0\0\0\0"
+                                  "\0\0\0\7tRNS\0\0\0\0\0\0\0\0\0\0\0";
 
     corpus_write("image", "short.png", head, sizeof head - 1);
     corpus_write("image", "shorter.png", head, 20);
     corpus_write("image", "neither", "GIF89a", 6);
     corpus_write("image", "exif", "Exif\0\0MM\0*\0\0\0\10\0\1\1\22\0\3\0\0\0\1\0\3\0\0", 28);
-    corpus_write("image", "wide.png", "\x89PNG\r\n\x1a\n\0\0\0\rIHDR\0\1\0\0\0\0\0\3\10\2\0\0\0\0\0\0\0\0", 34);
+    corpus_write("image", "wide.png",
+                 "\x89PNG\r\n\x1a\n\0\0\0\rIHDR\0\1\0\0\0\0\0\3\10\2\0\0\0\0\0\0\0\0", 34);
 }
 
 /* components: 1 grey, 3 colours, 4 inks. bytes: of the file, at most. */
 static void jpeg(const char *name, int components, int progressive, size_t bytes)
 {
     struct jpeg_compress_struct c;
-    struct jpeg_error_mgr       e;
+    struct jpeg_error_mgr e;
     static const uint8_t exif[] = "Exif\0\0II*\0\10\0\0\0\1\0\x12\1\3\0\1\0\0\0\6\0\0\0";
-    uint8_t       row[32], *file = NULL;
+    uint8_t row[32], *file = NULL;
     unsigned long n = 0;
-    JSAMPROW      at = row;
+    JSAMPROW at = row;
 
     c.err = jpeg_std_error(&e);
     jpeg_create_compress(&c);

@@ -1,4 +1,5 @@
-/* corpus_units.c - see corpus.h. Most of these harnesses take any numbers; what must be right to get anywhere is made right.
+/* corpus_units.c - see corpus.h. Most of these harnesses take any numbers; what must be right to
+ * get anywhere is made right.
  * SPDX-License-Identifier: BSD-2-Clause */
 #include <stdio.h>
 #include <zlib.h>
@@ -12,7 +13,7 @@ enum { MOST = 1 << 12 };
 static void any(const char *group, const char *name, size_t size, const char *first, size_t n)
 {
     random_source r = random_seed(size + (unsigned char)group[0]);
-    uint8_t       data[MOST];
+    uint8_t data[MOST];
 
     for (size_t i = 0; i < size; i++)
         data[i] = (uint8_t)random_u32(&r);
@@ -21,19 +22,42 @@ static void any(const char *group, const char *name, size_t size, const char *fi
 }
 
 /* Seeds of that kind. */
-static const struct { const char *group, *name; size_t size; const char *first; size_t n; } anything[] = {
-#define SEED(group, name, size, first) { group, name, size, first, sizeof first - 1 }
-    SEED("encode", "plain", 60, "\2"), SEED("encode", "escapes", 61, "\1"), SEED("encode", "level2", 62, "\2aaaaaa\17"),
+static const struct {
+    const char *group, *name;
+    size_t size;
+    const char *first;
+    size_t n;
+} anything[] = {
+#define SEED(group, name, size, first)             \
+    {                                              \
+        group, name, size, first, sizeof first - 1 \
+    }
+    SEED("encode", "plain", 60, "\2"),
+    SEED("encode", "escapes", 61, "\1"),
+    SEED("encode", "level2", 62, "\2aaaaaa\17"),
     SEED("encode", "level4", 63, "\4aaaaaa\37"),
-    SEED("rans", "symbols", 300, "\2"), SEED("rans", "bits", 301, "\2\xff\xf0\xff"), SEED("rans", "any", 200, "\1"),
-    SEED("cdf", "narrow", 60, "\5"), SEED("cdf", "wide", 61, "\xe0"),
-    SEED("net_int", "small", 200, "\3\4"), SEED("net_int", "wide", 1200, "\x41\x07"), SEED("net_int", "odd", 400, "\5\11"),
-    SEED("integerise", "nets0", 500, ""), SEED("integerise", "nets1", 501, ""), SEED("integerise", "nets2", 502, ""),
-    SEED("integerise", "nets3", 503, ""), SEED("integerise", "nets4", 504, ""), SEED("integerise", "nets5", 505, ""),
-    SEED("integerise", "nets6", 506, ""), SEED("integerise", "nets7", 507, ""),
+    SEED("rans", "symbols", 300, "\2"),
+    SEED("rans", "bits", 301, "\2\xff\xf0\xff"),
+    SEED("rans", "any", 200, "\1"),
+    SEED("cdf", "narrow", 60, "\5"),
+    SEED("cdf", "wide", 61, "\xe0"),
+    SEED("net_int", "small", 200, "\3\4"),
+    SEED("net_int", "wide", 1200, "\x41\x07"),
+    SEED("net_int", "odd", 400, "\5\11"),
+    SEED("integerise", "nets0", 500, ""),
+    SEED("integerise", "nets1", 501, ""),
+    SEED("integerise", "nets2", 502, ""),
+    SEED("integerise", "nets3", 503, ""),
+    SEED("integerise", "nets4", 504, ""),
+    SEED("integerise", "nets5", 505, ""),
+    SEED("integerise", "nets6", 506, ""),
+    SEED("integerise", "nets7", 507, ""),
     SEED("positions", "any", 60, ""),
-    SEED("masks", "both", 300, "\4\0\1\1"), SEED("masks", "offsets", 301, "\4\0\2\1"), SEED("masks", "none", 302, "\4\0\2\2"),
-    SEED("masks", "dynamic", 303, "\4\0\1\2"), SEED("masks", "contradicting", 304, "\4\0\1\1\40\0\3\0"),
+    SEED("masks", "both", 300, "\4\0\1\1"),
+    SEED("masks", "offsets", 301, "\4\0\2\1"),
+    SEED("masks", "none", 302, "\4\0\2\2"),
+    SEED("masks", "dynamic", 303, "\4\0\1\2"),
+    SEED("masks", "contradicting", 304, "\4\0\1\1\40\0\3\0"),
     SEED("masks", "beyond", 305, "\4\0\0\1\40\0\3\0"),
     SEED("inflate", "values", 300, "\1"),
 #undef SEED
@@ -42,9 +66,9 @@ static const struct { const char *group, *name; size_t size; const char *first; 
 static void positions(void)
 {
     random_source r = random_seed(3);
-    ted4_header   h = random_header(&r);
-    ted4_scene   *s;
-    uint8_t       data[6 * 40];
+    ted4_header h = random_header(&r);
+    ted4_scene *s;
+    uint8_t data[6 * 40];
 
     h.n_anchors = 40;
     s = random_scene_of(&r, &h, 0);
@@ -60,18 +84,20 @@ static void positions(void)
     corpus_write("positions", "above_one", data, sizeof data);
 }
 
-/* Kind 1 of fz_rans.c: models, then the substream that the writer makes of a few symbols. sigma index 64, mu 0. */
+/* Kind 1 of fz_rans.c: models, then the substream that the writer makes of a few symbols. sigma
+ * index 64, mu 0. */
 static void substream(void)
 {
     static const int16_t k[6] = { 0, 1, -2, 40, -300, 3 };
     static const int32_t mu[6] = { 0 };
-    uint8_t     sigma[6], data[MOST] = { 1, 5 };
-    size_t      n = 2;
-    uint32_t    size;
+    uint8_t sigma[6], data[MOST] = { 1, 5 };
+    size_t n = 2;
+    uint32_t size;
     ted4_writer w;
 
     memset(sigma, 64, sizeof sigma);
-    for (int i = 0; i < 6; i++) {               /* prob - 1 = 65535 mod 65535 = 0, so mu is 1 << 6: of no matter below its fraction */
+    for (int i = 0; i < 6; i++) { /* prob - 1 = 65535 mod 65535 = 0, so mu is 1 << 6: of no matter
+                                     below its fraction */
         data[n++] = 64;
         data[n++] = 255;
         data[n++] = 255;
@@ -83,7 +109,7 @@ static void substream(void)
     w.base.ops->open(&w.base, 6);
     for (int i = 0; i < 6; i++) {
         const int32_t here = mu[i] + 64;
-        int16_t       symbol = k[i];
+        int16_t symbol = k[i];
 
         w.base.ops->gauss(&w.base, 1, &here, &sigma[i], &symbol);
     }
@@ -95,8 +121,8 @@ static void substream(void)
 
 static void deflated(void)
 {
-    uint8_t  values[400] = { 0 }, data[MOST] = { 0, 100, 0, 0, 0 };
-    uLongf   n = sizeof data - 5;
+    uint8_t values[400] = { 0 }, data[MOST] = { 0, 100, 0, 0, 0 };
+    uLongf n = sizeof data - 5;
 
     for (size_t i = 0; i < sizeof values; i++)
         values[i] = (uint8_t)(i / 60);
@@ -105,7 +131,7 @@ static void deflated(void)
     corpus_write("inflate", "stream", data, 5 + n);
     data[5 + n] = 0;
     corpus_write("inflate", "trailing", data, 6 + n);
-    data[3] = 8;                                /* a tight bound of memory */
+    data[3] = 8; /* a tight bound of memory */
     corpus_write("inflate", "tight", data, 5 + n);
     data[3] = 0;
     data[5 + n / 2] ^= 1;
@@ -114,14 +140,17 @@ static void deflated(void)
 
 void corpus_units(void)
 {
-    static const uint8_t times[][22] = {
-        { 1, 1, 0, 0, 0, 3, 0, 0, 0, 4 }, { 2, 0, 0, 0, 0, 9, 0, 0, 0, 1 }, { 3, 7, 0, 0, 0, 7, 0, 0, 0, 2 }, { 0, 5, 0, 0, 0, 0, 0, 0, 0 },
-        { 4, 1, 0, 0, 0, 2, 0, 0, 0, 0, 0, 0, 192, 127 }, { 5, 0xff, 0xff, 0xff, 0, 0xff, 0xff, 0xff, 0, 0 }
-    };
+    static const uint8_t times[][22] = { { 1, 1, 0, 0, 0, 3, 0, 0, 0, 4 },
+                                         { 2, 0, 0, 0, 0, 9, 0, 0, 0, 1 },
+                                         { 3, 7, 0, 0, 0, 7, 0, 0, 0, 2 },
+                                         { 0, 5, 0, 0, 0, 0, 0, 0, 0 },
+                                         { 4, 1, 0, 0, 0, 2, 0, 0, 0, 0, 0, 0, 192, 127 },
+                                         { 5, 0xff, 0xff, 0xff, 0, 0xff, 0xff, 0xff, 0, 0 } };
     char name[32];
 
     for (size_t i = 0; i < sizeof anything / sizeof *anything; i++)
-        any(anything[i].group, anything[i].name, anything[i].size, anything[i].first, anything[i].n);
+        any(anything[i].group, anything[i].name, anything[i].size, anything[i].first,
+            anything[i].n);
     substream();
     positions();
     deflated();

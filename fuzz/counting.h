@@ -1,4 +1,5 @@
-/* counting.h - a caller's allocator that counts, bounds and fails: what fz_decode and fz_alloc_fail know about memory.
+/* counting.h - a caller's allocator that counts, bounds and fails: what fz_decode and fz_alloc_fail
+ * know about memory.
  * SPDX-License-Identifier: BSD-2-Clause */
 #ifndef TED4_FUZZ_COUNTING_H
 #define TED4_FUZZ_COUNTING_H
@@ -11,9 +12,9 @@
 
 /* All zero: nothing fails. */
 typedef struct {
-    uint64_t held, most;        /* bytes: now, and at the worst moment */
-    uint64_t n, fail_at;        /* allocations so far; number of the one that fails, from 1; 0: none */
-    int      fail_on;           /* those after it fail too */
+    uint64_t held, most; /* bytes: now, and at the worst moment */
+    uint64_t n, fail_at; /* allocations so far; number of the one that fails, from 1; 0: none */
+    int fail_on;         /* those after it fail too */
 } counting_memory;
 
 enum { COUNTING_HEADER = 16 };
@@ -21,7 +22,7 @@ enum { COUNTING_HEADER = 16 };
 static inline void *counting_alloc(void *user, size_t size)
 {
     counting_memory *m = user;
-    char            *p;
+    char *p;
 
     m->n++;
     if (m->fail_at > 0 && (m->n == m->fail_at || (m->fail_on && m->n > m->fail_at)))
@@ -38,7 +39,7 @@ static inline void *counting_alloc(void *user, size_t size)
 static inline void counting_free(void *user, void *block)
 {
     counting_memory *m = user;
-    size_t           size;
+    size_t size;
 
     memcpy(&size, (char *)block - COUNTING_HEADER, sizeof size);
     m->held -= size;
@@ -47,7 +48,7 @@ static inline void counting_free(void *user, void *block)
 
 static inline ted4_allocator counting_allocator(counting_memory *m)
 {
-    return (ted4_allocator){ counting_alloc, counting_free, m };
+    return (ted4_allocator) { counting_alloc, counting_free, m };
 }
 
 #endif

@@ -7,28 +7,28 @@
 
 typedef struct {
     fuzz_field *fields;
-    size_t      n, most;
-    size_t      at;             /* of the element met last */
+    size_t n, most;
+    size_t at; /* of the element met last */
 } gatherer;
 
 static void gather(void *user, size_t offset, const char *element, int64_t index, int64_t value)
 {
-    gatherer    *g = user;
+    gatherer *g = user;
     const size_t width = offset - g->at;
 
     (void)element;
     (void)index;
     (void)value;
     if (offset > g->at && (width == 1 || width == 2 || width == 4 || width == 8) && g->n < g->most)
-        g->fields[g->n++] = (fuzz_field){ g->at, (unsigned)width };
+        g->fields[g->n++] = (fuzz_field) { g->at, (unsigned)width };
     g->at = offset;
 }
 
 size_t fuzz_fields(const uint8_t *data, size_t size, fuzz_field *fields, size_t most)
 {
-    gatherer           g = { fields, 0, most, 0 };
+    gatherer g = { fields, 0, most, 0 };
     const ted4_options o = { .max_bytes = FUZZ_MAX_BYTES, .trace = gather, .trace_user = &g };
-    ted4_scene        *s = NULL;
+    ted4_scene *s = NULL;
 
     (void)ted4_decode(data, size, &o, &s, NULL);
     ted4_scene_free(s);

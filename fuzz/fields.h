@@ -7,8 +7,8 @@
 #include <stdint.h>
 
 typedef struct {
-    size_t   at;
-    unsigned width;             /* bytes: 1, 2, 4 or 8 */
+    size_t at;
+    unsigned width; /* bytes: 1, 2, 4 or 8 */
 } fuzz_field;
 
 /* Those that the decoder meets before it stops, at most most. Gives how many. */

@@ -1,6 +1,6 @@
 /* fz_camera_list.c - the JSON list of cameras of ted4dec --render.
- * Claims: cameras with sizes, focal lengths and rotations that the renderer takes, each with a frame or a time in [0, 1]; or one line of what is
- * wrong, and no camera.
+ * Claims: cameras with sizes, focal lengths and rotations that the renderer takes, each with a
+ * frame or a time in [0, 1]; or one line of what is wrong, and no camera.
  * SPDX-License-Identifier: BSD-2-Clause */
 #include <math.h>
 #include <string.h>
@@ -11,9 +11,10 @@
 static void check_camera(const ted4_listed_camera *c)
 {
     const ted4_view *v = &c->view;
-    const float      lens[4] = { v->fx, v->fy, v->cx, v->cy };
+    const float lens[4] = { v->fx, v->fy, v->cx, v->cy };
 
-    fuzz_require(v->width >= 1 && v->height >= 1 && v->width <= 16384 && v->height <= 16384, "a size");
+    fuzz_require(v->width >= 1 && v->height >= 1 && v->width <= 16384 && v->height <= 16384,
+                 "a size");
     for (int i = 0; i < 9; i++)
         fuzz_require(isfinite(v->R[i]) && isfinite(lens[i % 4]) && isfinite(v->t[i % 3]), "finite");
     fuzz_require(v->fx > 0 && v->fy > 0, "focal lengths");
@@ -23,7 +24,7 @@ static void check_camera(const ted4_listed_camera *c)
 int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
 {
     ted4_camera_list l;
-    char             why[200];
+    char why[200];
 
     (void)fuzz_scene("camera_list");
     if (ted4_camera_list_load(&l, fuzz_file("cameras.json", data, size), why, sizeof why) == 0) {

@@ -1,7 +1,8 @@
-/* fz_cdf.c - the Gaussian model of a symbol: u8 sigma index, u8 fraction of mu, then 16-bit slots and values. All sigma indices with all
- * fractions are gone through by tests/test_gaussian.c; here they are sampled.
- * Claims: the cumulative frequencies are those of spec 9.4 in wide integers, strictly increasing from 0 to 2^16; every slot has its one symbol;
- * any k becomes a symbol, with an escape exactly when it lies outside the window, and comes back.
+/* fz_cdf.c - the Gaussian model of a symbol: u8 sigma index, u8 fraction of mu, then 16-bit slots
+ * and values. All sigma indices with all fractions are gone through by tests/test_gaussian.c; here
+ * they are sampled. Claims: the cumulative frequencies are those of spec 9.4 in wide integers,
+ * strictly increasing from 0 to 2^16; every slot has its one symbol; any k becomes a symbol, with
+ * an escape exactly when it lies outside the window, and comes back.
  * SPDX-License-Identifier: BSD-2-Clause */
 #include "harness.h"
 #include "norm/gaussian.h"
@@ -16,7 +17,7 @@ static int64_t cum(unsigned g, int64_t fr, int64_t j)
 {
     const int64_t hw = ted4_half[g], size = 2 * hw + 4;
     const int64_t d = 256 * (j - 1 - hw) - 128 - fr;
-    int64_t       z, i, b, p;
+    int64_t z, i, b, p;
 
     if (j == 0 || j == size)
         return j == 0 ? 0 : 65536;
@@ -30,37 +31,42 @@ static int64_t cum(unsigned g, int64_t fr, int64_t j)
 
 static void check_slot(unsigned g, int32_t fr, uint32_t slot)
 {
-    ted4_slots     s;
+    ted4_slots s;
     const uint32_t j = ted4_gauss_find(g, fr, slot, &s);
 
     fuzz_require(j < ted4_gauss_size(g), "a symbol of the alphabet");
     fuzz_require(s.start <= slot && slot - s.start < s.freq, "the symbol that holds the slot");
-    fuzz_require(s.start == cum(g, fr, j) && s.start + s.freq == cum(g, fr, (int64_t)j + 1), "its slots");
+    fuzz_require(s.start == cum(g, fr, j) && s.start + s.freq == cum(g, fr, (int64_t)j + 1),
+                 "its slots");
 }
 
 static void check_value(unsigned g, int32_t mu, int32_t k)
 {
-    const int64_t           m = floor_div(mu, 256), r = k - m, hw = ted4_half[g];
+    const int64_t m = floor_div(mu, 256), r = k - m, hw = ted4_half[g];
     const ted4_gauss_symbol s = ted4_gauss_of(mu, g, k);
-    ted4_slots              slots;
-    const uint32_t          j = ted4_gauss_find(g, (int32_t)(mu - 256 * m), s.slots.start, &slots);
+    ted4_slots slots;
+    const uint32_t j = ted4_gauss_find(g, (int32_t)(mu - 256 * m), s.slots.start, &slots);
 
-    fuzz_require(slots.start == s.slots.start && slots.freq == s.slots.freq, "value to slots to symbol");
+    fuzz_require(slots.start == s.slots.start && slots.freq == s.slots.freq,
+                 "value to slots to symbol");
     fuzz_require((s.escape >= 0) == (r < -hw || r > hw + 1), "escapes outside the window only");
-    fuzz_require(r == (s.escape >= 0 ? ted4_gauss_escaped(g, j, s.escape) : ted4_gauss_offset(g, j)), "and back");
+    fuzz_require(r ==
+                     (s.escape >= 0 ? ted4_gauss_escaped(g, j, s.escape) : ted4_gauss_offset(g, j)),
+                 "and back");
 }
 
 int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
 {
-    fuzz_source   in = { data, data + size };
+    fuzz_source in = { data, data + size };
     const unsigned g = fuzz_u8(&in) % TED4_N_SIGMA;
     const int32_t fr = fuzz_u8(&in);
-    int64_t       before = -1;
+    int64_t before = -1;
 
     for (uint32_t j = 0; j <= ted4_gauss_size(g); j++) {
         const int64_t c = cum(g, fr, j);
 
-        fuzz_require(c == ted4_gauss_cum(g, fr, j) && c > before && c <= 65536, "cumulative frequencies");
+        fuzz_require(c == ted4_gauss_cum(g, fr, j) && c > before && c <= 65536,
+                     "cumulative frequencies");
         before = c;
     }
     fuzz_require(before == 65536, "the sum of frequencies");
@@ -73,7 +79,8 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
         check_slot(g, fr, fuzz_u16(&in));
         check_value(g, mu, ted4_sat16(k));
         /* In the window, on its edges, and just outside. */
-        check_value(g, near, ted4_sat16((int32_t)floor_div(near, 256) + (k & 0x7fff) % width - width / 2));
+        check_value(g, near,
+                    ted4_sat16((int32_t)floor_div(near, 256) + (k & 0x7fff) % width - width / 2));
     }
     return 0;
 }

@@ -1,8 +1,9 @@
-/* fz_checkpoint.c - a trainer's checkpoint: u8 which (bit 0: of stage 1 or of the integer stage; bit 1: its hash is left wrong), then changes of a
- * good one: u24 offset, u8 number of bytes, those bytes; 255 bytes cut the file off there.
- * Claims: a good file is accepted, one with a wrong hash is refused; whatever else is in it, it is refused with a message, or a trainer comes out
- * whose header is one that the format allows, whose anchors lie in the cube, whose pictures exist, and which makes a step or says why not. Room for anchors: what the
- * file fills.
+/* fz_checkpoint.c - a trainer's checkpoint: u8 which (bit 0: of stage 1 or of the integer stage;
+ * bit 1: its hash is left wrong), then changes of a good one: u24 offset, u8 number of bytes, those
+ * bytes; 255 bytes cut the file off there. Claims: a good file is accepted, one with a wrong hash
+ * is refused; whatever else is in it, it is refused with a message, or a trainer comes out whose
+ * header is one that the format allows, whose anchors lie in the cube, whose pictures exist, and
+ * which makes a step or says why not. Room for anchors: what the file fills.
  * SPDX-License-Identifier: BSD-2-Clause */
 #include <math.h>
 #include <string.h>
@@ -15,9 +16,9 @@
 enum { BASES = 2, CUT = 255, STEPS_1 = 2, STEPS_2 = 4 };
 
 static struct {
-    ted4_dataset       data;
+    ted4_dataset data;
     ted4_train_options o;
-    ted4_snapshot      base[BASES];
+    ted4_snapshot base[BASES];
 } lab;
 
 static void set(const char *text)
@@ -33,10 +34,13 @@ static void load_scene(void)
                                                  .seed = 3,
                                                  .cache_bytes = 1 << 20 };
     static const char scene[] = "{\"fl_x\":3,\"w\":2,\"h\":2,\"fps\":5,\"frames\":["
-        "{\"file_path\":\"a.png\",\"time\":0,\"transform_matrix\":[[1,0,0,0],[0,1,0,0],[0,0,1,4],[0,0,0,1]]},"
-        "{\"file_path\":\"b.png\",\"time\":1,\"transform_matrix\":[[1,0,0,0.3],[0,1,0,0],[0,0,1,4],[0,0,0,1]]}]}";
-    static const char points[] = "ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\nproperty float z\n"
-        "end_header\n0 0 0\n0.2 0.1 0\n-0.1 0.3 0.2\n";
+                                "{\"file_path\":\"a.png\",\"time\":0,\"transform_matrix\":[[1,0,0,"
+                                "0],[0,1,0,0],[0,0,1,4],[0,0,0,1]]},"
+                                "{\"file_path\":\"b.png\",\"time\":1,\"transform_matrix\":[[1,0,0,"
+                                "0.3],[0,1,0,0],[0,0,1,4],[0,0,0,1]]}]}";
+    static const char points[] = "ply\nformat ascii 1.0\nelement vertex 3\nproperty float "
+                                 "x\nproperty float y\nproperty float z\n"
+                                 "end_header\n0 0 0\n0.2 0.1 0\n-0.1 0.3 0.2\n";
     ted4_message m;
 
     const char *folder = fuzz_scene("checkpoint");
@@ -64,8 +68,12 @@ static void check_file(ted4_trainer *t)
 /* Trains a few steps, and keeps a state of either stage. */
 static void prepare(void)
 {
-    static const char *const small[] = { "stage1=2", "stage2=3", "offsets=1", "feature=4", "phi=1", "bank_dim=1", "deform_layers=1",
-        "deform_width=1", "head_width=1", "hyper_layers=1", "hyper_width=1", "ar_width=1", "slices=2", "octaves=0", "probe=0", "sprouts=0" };
+    static const char *const small[] = { "stage1=2",        "stage2=3",       "offsets=1",
+                                         "feature=4",       "phi=1",          "bank_dim=1",
+                                         "deform_layers=1", "deform_width=1", "head_width=1",
+                                         "hyper_layers=1",  "hyper_width=1",  "ar_width=1",
+                                         "slices=2",        "octaves=0",      "probe=0",
+                                         "sprouts=0" };
     ted4_trainer t;
 
     load_scene();
@@ -87,14 +95,14 @@ static void prepare(void)
 static ted4_snapshot change(fuzz_source *in, int which)
 {
     const ted4_snapshot *base = &lab.base[which & 1];
-    ted4_snapshot        s = { malloc(base->size + 8), base->size };
-    uint64_t             hash;
+    ted4_snapshot s = { malloc(base->size + 8), base->size };
+    uint64_t hash;
 
     fuzz_require(s.bytes != NULL, "memory");
     memcpy(s.bytes, base->bytes, base->size);
     while (in->at < in->end) {
         const size_t at = (size_t)fuzz_take(in, 3);
-        const int    n = fuzz_u8(in);
+        const int n = fuzz_u8(in);
 
         if (n == CUT && at >= 8 && at < s.size)
             s.size = at;
@@ -109,11 +117,11 @@ static ted4_snapshot change(fuzz_source *in, int which)
 /* The walk that a writer of the file would begin with. */
 static void check_header(const ted4_trainer *t)
 {
-    ted4_header  h = t->layout.head;
-    ted4_shape   shape;
+    ted4_header h = t->layout.head;
+    ted4_shape shape;
     ted4_counter c;
 
-    h.n_anchors = 1;            /* which a trainer does not keep here */
+    h.n_anchors = 1; /* which a trainer does not keep here */
     ted4_counter_init(&c);
     ted4_walk_header(&c.base, &h, &shape, 31, UINT64_MAX);
     fuzz_require(c.base.error.code == TED4_OK, "a header of the format");
@@ -126,24 +134,26 @@ static void check_positions(const ted4_trainer *t)
 {
     for (size_t i = 0; i < t->anchors.n; i++)
         for (int j = 0; j < 3; j++)
-            fuzz_require(fabsf(*ted4_cell(&t->anchors, TED4_ROW_POSITION, i, j)) <= 1, "anchors in the cube");
+            fuzz_require(fabsf(*ted4_cell(&t->anchors, TED4_ROW_POSITION, i, j)) <= 1,
+                         "anchors in the cube");
 }
 
 /* A position is 12 of an anchor's bytes in the file; rooms grow by half, and by a few blocks. */
 static void check_room(const ted4_trainer *t, size_t size)
 {
-    fuzz_require(t->anchors.capacity * TED4_LANES * 12 <= 2 * size + 16 * TED4_LANES * 12, "no more room than the file fills");
+    fuzz_require(t->anchors.capacity * TED4_LANES * 12 <= 2 * size + 16 * TED4_LANES * 12,
+                 "no more room than the file fills");
 }
 
 int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
 {
-    fuzz_source  in = { data, data + size };
+    fuzz_source in = { data, data + size };
     ted4_trainer t;
 
     if (lab.base[1].bytes == NULL)
         prepare();
 
-    const int     which = fuzz_u8(&in), good = size == 1 && which < BASES;
+    const int which = fuzz_u8(&in), good = size == 1 && which < BASES;
     ted4_snapshot s = change(&in, which);
 
     fuzz_require(ted4_trainer_init(&t, &lab.o, &lab.data, NULL) == 0, "a trainer");

@@ -1,6 +1,6 @@
 /* fz_container.c - any bytes to pass 1 (spec 5.3), which parses nothing and takes no memory.
- * Claims: a refusal has an offset inside the file; what is accepted is chunks without a gap from the file header to the last byte, HEAD first, ENDS
- * last.
+ * Claims: a refusal has an offset inside the file; what is accepted is chunks without a gap from
+ * the file header to the last byte, HEAD first, ENDS last.
  * SPDX-License-Identifier: BSD-2-Clause */
 #include "harness.h"
 #include "read/container.h"
@@ -8,8 +8,8 @@
 int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
 {
     ted4_reader r;
-    size_t      at = TED4_FILE_HEADER_SIZE;
-    int         type = TED4_CHUNKS;
+    size_t at = TED4_FILE_HEADER_SIZE;
+    int type = TED4_CHUNKS;
 
     ted4_reader_init(&r, data, 0, size, 1);
     ted4_container_check(&r);
@@ -21,8 +21,9 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
     while (at < size) {
         const ted4_chunk_place p = ted4_container_next(&r);
 
-        fuzz_require(p.at == at && p.payload == at + TED4_FRAME_HEAD_SIZE && p.end >= p.payload
-                     && r.base.pos == p.end + TED4_FRAME_HASH_SIZE && r.base.pos <= size, "chunks without a gap");
+        fuzz_require(p.at == at && p.payload == at + TED4_FRAME_HEAD_SIZE && p.end >= p.payload &&
+                         r.base.pos == p.end + TED4_FRAME_HASH_SIZE && r.base.pos <= size,
+                     "chunks without a gap");
         fuzz_require(at > TED4_FILE_HEADER_SIZE || p.type == TED4_HEAD, "HEAD first");
         at = r.base.pos;
         type = p.type;

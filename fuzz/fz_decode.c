@@ -1,9 +1,10 @@
-/* fz_decode.c - any bytes to the strict decoder, under knobs that up to two bytes behind the chunk ENDS select: order in which tiles run, trace,
- * place in memory, bounds of memory and of work, kernel.
- * Claims: it returns one verdict; a refusal has an offset inside the file; the same verdict, offset and hash come out whatever the knobs say,
- * but for limit.memory under a tighter bound; limit.work is said of a file exactly when pass 1 and HEAD are right and W_E (spec 13.4) is above what is
- * allowed; no more memory is held than the bound says, nor than size and level allow (SECURITY.md), and all of it is given back; the input is left
- * alone.
+/* fz_decode.c - any bytes to the strict decoder, under knobs that up to two bytes behind the chunk
+ * ENDS select: order in which tiles run, trace, place in memory, bounds of memory and of work,
+ * kernel. Claims: it returns one verdict; a refusal has an offset inside the file; the same
+ * verdict, offset and hash come out whatever the knobs say, but for limit.memory under a tighter
+ * bound; limit.work is said of a file exactly when pass 1 and HEAD are right and W_E (spec 13.4) is
+ * above what is allowed; no more memory is held than the bound says, nor than size and level allow
+ * (SECURITY.md), and all of it is given back; the input is left alone.
  * SPDX-License-Identifier: BSD-2-Clause */
 #include <string.h>
 #include "base/bytes.h"
@@ -19,11 +20,12 @@ enum { KNOB_BYTES = 2, TRACE = 4, WORK = 8, PLAIN = 1 };
 /* What a decoder says of a file. */
 typedef struct {
     ted4_status code;
-    ted4_error  e;
-    ted4_info   info;
+    ted4_error e;
+    ted4_info info;
 } outcome;
 
-static void count_element(void *user, size_t offset, const char *element, int64_t index, int64_t value)
+static void count_element(void *user, size_t offset, const char *element, int64_t index,
+                          int64_t value)
 {
     size_t *last = user;
 
@@ -35,14 +37,15 @@ static void count_element(void *user, size_t offset, const char *element, int64_
 
 static outcome decode(const uint8_t *data, size_t size, const ted4_options *o)
 {
-    outcome     r;
+    outcome r;
     ted4_scene *s = NULL;
 
     memset(&r, 0, sizeof r);
     r.code = ted4_decode(data, size, o, &s, &r.e);
     fuzz_require(r.code == r.e.code && (s != NULL) == (r.code == TED4_OK), "one verdict");
     fuzz_require(r.e.offset <= size, "an offset in the file");
-    fuzz_require(r.code != TED4_E_IO && r.code != TED4_E_QUERY && r.code != TED4_E_REC_NONFINITE, "a verdict on a file");
+    fuzz_require(r.code != TED4_E_IO && r.code != TED4_E_QUERY && r.code != TED4_E_REC_NONFINITE,
+                 "a verdict on a file");
     if (s != NULL)
         ted4_scene_info(s, &r.info);
     ted4_scene_free(s);
@@ -64,10 +67,10 @@ static uint64_t work_bound_of(const uint8_t *knob)
 /* W_E, or 0: pass 1 or HEAD is not right. */
 static uint64_t work_of(const uint8_t *data, size_t size)
 {
-    ted4_reader      whole, head;
+    ted4_reader whole, head;
     ted4_chunk_place p;
-    ted4_header      h;
-    ted4_shape       shape;
+    ted4_header h;
+    ted4_shape shape;
 
     memset(&h, 0, sizeof h);
     ted4_reader_init(&whole, data, 0, size, 1);
@@ -85,7 +88,7 @@ static uint64_t work_of(const uint8_t *data, size_t size)
 static uint64_t most_memory(const uint8_t *data, size_t size)
 {
     const ted4_limits *l = size > 11 ? ted4_limits_of(data[11]) : NULL;
-    const uint64_t     per_byte = 8192 + (l != NULL ? 32 * l->symbols_per_byte : 0);
+    const uint64_t per_byte = 8192 + (l != NULL ? 32 * l->symbols_per_byte : 0);
 
     if (l != NULL && l->level == TED4_LEVEL_UNBOUNDED)
         return FUZZ_MAX_BYTES;
@@ -101,24 +104,27 @@ static void same(const outcome *a, const outcome *b, int tighter, int too_much)
     if (too_much)
         return;
     fuzz_require(a->code == b->code && a->e.offset == b->e.offset, "one verdict under all knobs");
-    fuzz_require(memcmp(a->info.hash, b->info.hash, sizeof a->info.hash) == 0, "one hash under all knobs");
+    fuzz_require(memcmp(a->info.hash, b->info.hash, sizeof a->info.hash) == 0,
+                 "one hash under all knobs");
 }
 
 int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
 {
-    const size_t   n = ted4_without_tail(data, size, KNOB_BYTES);
-    const uint8_t  knob[KNOB_BYTES] = { size > n ? data[n] : 0, size > n + 1 ? data[n + 1] : 0 };
+    const size_t n = ted4_without_tail(data, size, KNOB_BYTES);
+    const uint8_t knob[KNOB_BYTES] = { size > n ? data[n] : 0, size > n + 1 ? data[n + 1] : 0 };
     counting_memory default_memory = { 0 }, memory = { 0 };
-    ted4_options   plain = { .max_bytes = FUZZ_MAX_BYTES, .allocator = counting_allocator(&default_memory) };
-    ted4_options   o = { .max_bytes = bound_of(knob[0]), .allocator = counting_allocator(&memory) };
-    ted4_parallel  parallel = order_parallel(knob[0] & 3);
+    ted4_options plain = { .max_bytes = FUZZ_MAX_BYTES,
+                           .allocator = counting_allocator(&default_memory) };
+    ted4_options o = { .max_bytes = bound_of(knob[0]), .allocator = counting_allocator(&memory) };
+    ted4_parallel parallel = order_parallel(knob[0] & 3);
     uint8_t *const copy = malloc(n + 64);
-    size_t         last = 0;
-    outcome        a, b;
+    size_t last = 0;
+    outcome a, b;
 
     fuzz_require(copy != NULL, "memory");
     a = decode(data, n, &plain);
-    fuzz_require(default_memory.held == 0 && default_memory.most <= FUZZ_MAX_BYTES, "memory given back");
+    fuzz_require(default_memory.held == 0 && default_memory.most <= FUZZ_MAX_BYTES,
+                 "memory given back");
     fuzz_require(default_memory.most <= most_memory(data, n), "memory by the formula");
     o.parallel = (knob[0] & 3) != 0 ? &parallel : NULL;
     o.trace = knob[0] & TRACE ? count_element : NULL;
@@ -130,7 +136,7 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
     use_kernels(NULL);
     fuzz_require(memory.held == 0 && memory.most <= o.max_bytes, "no more memory than allowed");
     fuzz_require(last <= n && memcmp(copy + knob[1] / 2 % 64, data, n) == 0, "input left alone");
-    same(&a, &b, o.max_bytes < FUZZ_MAX_BYTES, o.max_work > 0 && work_of(data, n) > o.max_work);
+    same(&a, &b, o.max_bytes<FUZZ_MAX_BYTES, o.max_work> 0 && work_of(data, n) > o.max_work);
     free(copy);
     return 0;
 }

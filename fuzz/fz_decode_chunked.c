@@ -1,9 +1,11 @@
-/* fz_decode_chunked.c - a file that arrives in pieces, whose sizes up to three bytes behind its chunk ENDS say (R-DEC-004). The decoder begins when all is there
- * (13.1), so the pieces are gathered first; and what it would say in between is what is left of the file at that point, cut short.
- * Claims: gathered are the bytes that came, and none when the stream breaks; where a piece or a chunk ends, the verdict is con.truncated there, or one of pass 1 that no
- * byte behind it changes, or the file was complete and what comes then is con.trailing.
+/* fz_decode_chunked.c - a file that arrives in pieces, whose sizes up to three bytes behind its
+ * chunk ENDS say (R-DEC-004). The decoder begins when all is there (13.1), so the pieces are
+ * gathered first; and what it would say in between is what is left of the file at that point, cut
+ * short. Claims: gathered are the bytes that came, and none when the stream breaks; where a piece
+ * or a chunk ends, the verdict is con.truncated there, or one of pass 1 that no byte behind it
+ * changes, or the file was complete and what comes then is con.trailing.
  * SPDX-License-Identifier: BSD-2-Clause */
-#define _GNU_SOURCE                     /* fopencookie: a stream of our own */
+#define _GNU_SOURCE /* fopencookie: a stream of our own */
 #include <stdio.h>
 #include <string.h>
 #include "harness.h"
@@ -16,10 +18,10 @@ enum { TAIL = 3, MOST_ENDS = 24, MOST_BYTES = 1 << 20 };
 /* A stream: size bytes, piece by piece. */
 typedef struct {
     const uint8_t *data;
-    size_t         size, at;
-    uint32_t       seed;        /* of the sizes of pieces */
-    unsigned       bits;        /* pieces have up to 2^bits bytes */
-    size_t         breaks_at;   /* an error instead of the bytes from there on; SIZE_MAX: none */
+    size_t size, at;
+    uint32_t seed;    /* of the sizes of pieces */
+    unsigned bits;    /* pieces have up to 2^bits bytes */
+    size_t breaks_at; /* an error instead of the bytes from there on; SIZE_MAX: none */
 } pieces;
 
 static size_t next_piece(pieces *p)
@@ -36,7 +38,7 @@ static size_t next_piece(pieces *p)
 static ssize_t hand_over(void *cookie, char *to, size_t room)
 {
     pieces *const p = cookie;
-    size_t        n = next_piece(p);
+    size_t n = next_piece(p);
 
     if (p->at >= p->breaks_at)
         return -1;
@@ -48,7 +50,7 @@ static ssize_t hand_over(void *cookie, char *to, size_t room)
 
 static uint8_t *gather(pieces p, size_t *size)
 {
-    FILE *const    f = fopencookie(&p, "rb", (cookie_io_functions_t){ .read = hand_over });
+    FILE *const f = fopencookie(&p, "rb", (cookie_io_functions_t) { .read = hand_over });
     uint8_t *const data = f != NULL ? ted4_read_stream(f, size) : NULL;
 
     fuzz_require(f != NULL, "memory");
@@ -60,10 +62,10 @@ static uint8_t *gather(pieces p, size_t *size)
 static ted4_error verdict_of(const uint8_t *data, size_t n, int *pass_1)
 {
     const ted4_options o = { .max_bytes = FUZZ_MAX_BYTES };
-    uint8_t *const     copy = malloc(n > 0 ? n : 1);
-    ted4_error         e = { TED4_OK, 0 };
-    ted4_scene        *s = NULL;
-    ted4_reader        r;
+    uint8_t *const copy = malloc(n > 0 ? n : 1);
+    ted4_error e = { TED4_OK, 0 };
+    ted4_scene *s = NULL;
+    ted4_reader r;
 
     fuzz_require(copy != NULL, "memory");
     memcpy(copy, data, n);
@@ -78,28 +80,31 @@ static ted4_error verdict_of(const uint8_t *data, size_t n, int *pass_1)
 
 static void check_end(const uint8_t *data, size_t n, ted4_error whole)
 {
-    int              pass_1;
+    int pass_1;
     const ted4_error e = verdict_of(data, n, &pass_1);
 
     if (e.code == TED4_E_CON_TRUNCATED)
         fuzz_require(e.offset == n, "truncated where it ends");
     else if (pass_1)
-        fuzz_require(whole.code == TED4_E_CON_TRAILING && whole.offset == n, "all that comes behind a complete file is too much");
+        fuzz_require(whole.code == TED4_E_CON_TRAILING && whole.offset == n,
+                     "all that comes behind a complete file is too much");
     else
-        fuzz_require(e.code == whole.code && e.offset == whole.offset, "what pass 1 has found stays");
+        fuzz_require(e.code == whole.code && e.offset == whole.offset,
+                     "what pass 1 has found stays");
 }
 
 int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
 {
     const size_t n = ted4_without_tail(data, size, TAIL);
-    fuzz_source  in = { data + n, data + size };
-    pieces       p = { .data = data, .size = n, .breaks_at = SIZE_MAX };
-    size_t       got = 0;
-    uint8_t     *all;
-    ted4_error   whole;
-    int          pass_1;
+    fuzz_source in = { data + n, data + size };
+    pieces p = { .data = data, .size = n, .breaks_at = SIZE_MAX };
+    size_t got = 0;
+    uint8_t *all;
+    ted4_error whole;
+    int pass_1;
 
-    if (n > MOST_BYTES)                 /* a level's bound on file bytes is judged before all that, by the whole file */
+    if (n >
+        MOST_BYTES) /* a level's bound on file bytes is judged before all that, by the whole file */
         return 0;
     p.seed = fuzz_u16(&in);
     p.bits = fuzz_u8(&in) % 14;
@@ -112,7 +117,8 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
         if (p.at < n)
             check_end(data, p.at, whole);
     }
-    for (size_t at = TED4_FILE_HEADER_SIZE, chunks = 0; ted4_chunk_size(data, n, at) > 0 && chunks < MOST_ENDS; chunks++) {
+    for (size_t at = TED4_FILE_HEADER_SIZE, chunks = 0;
+         ted4_chunk_size(data, n, at) > 0 && chunks < MOST_ENDS; chunks++) {
         at += ted4_chunk_size(data, n, at);
         if (at < n)
             check_end(data, at, whole);

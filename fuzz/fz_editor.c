@@ -1,7 +1,8 @@
-/* fz_editor.c - what an editor may do to a valid file without decoding it (spec 3.5, 5.2): chunks that are not critical dropped, put in, doubled, moved. Up to three
- * bytes behind its chunk ENDS say what and where.
- * Claims: the edited file is valid, has the same hash, tiers T1 to T4, and T0 but for these chunks; only the bounds of 13.1 that depend on the file's size can
- * forbid it. In front of HEAD such a chunk is con.chunk-order, behind ENDS con.trailing.
+/* fz_editor.c - what an editor may do to a valid file without decoding it (spec 3.5, 5.2): chunks
+ * that are not critical dropped, put in, doubled, moved. Up to three bytes behind its chunk ENDS
+ * say what and where. Claims: the edited file is valid, has the same hash, tiers T1 to T4, and T0
+ * but for these chunks; only the bounds of 13.1 that depend on the file's size can forbid it. In
+ * front of HEAD such a chunk is con.chunk-order, behind ENDS con.trailing.
  * SPDX-License-Identifier: BSD-2-Clause */
 #include <string.h>
 #include <xxhash.h>
@@ -11,15 +12,20 @@
 #include "norm/limits.h"
 #include "read/container.h"
 
-enum { TAIL = 3, MOST_PAYLOAD = 32, FRAME = TED4_FRAME_HEAD_SIZE + TED4_FRAME_HASH_SIZE, TIERS = 5 };
+enum {
+    TAIL = 3,
+    MOST_PAYLOAD = 32,
+    FRAME = TED4_FRAME_HEAD_SIZE + TED4_FRAME_HASH_SIZE,
+    TIERS = 5
+};
 enum { DROP, PUT_IN, TWICE, MOVE, DROP_UNSAFE, WAYS };
 
 static const ted4_options options = { .max_bytes = FUZZ_MAX_BYTES };
 
 /* A file under way. */
 typedef struct {
-    uint8_t *data;              /* owned */
-    size_t   size;
+    uint8_t *data; /* owned */
+    size_t size;
 } edited;
 
 static void add(edited *e, const uint8_t *from, size_t size)
@@ -42,12 +48,15 @@ static void put_in(edited *e, uint8_t what)
     add(e, chunk, FRAME + n);
 }
 
-/* The whole file edited. place: number of the chunk that it happens to or in front of. *changed: 0: there is no such chunk. */
-static edited edit(const uint8_t *data, size_t size, int way, unsigned place, uint8_t what, int *changed)
+/* The whole file edited. place: number of the chunk that it happens to or in front of. *changed: 0:
+ * there is no such chunk. */
+static edited edit(const uint8_t *data, size_t size, int way, unsigned place, uint8_t what,
+                   int *changed)
 {
-    edited      e = { malloc(2 * size + FRAME + MOST_PAYLOAD), 0 };
-    size_t      kept_at = 0, kept = 0;  /* the chunk that moves: offset and bytes in data; in front of ENDS at the latest */
-    unsigned    i = 0;
+    edited e = { malloc(2 * size + FRAME + MOST_PAYLOAD), 0 };
+    size_t kept_at = 0, kept = 0; /* the chunk that moves: offset and bytes in data; in front of
+                                     ENDS at the latest */
+    unsigned i = 0;
     ted4_reader r;
 
     fuzz_require(e.data != NULL, "memory");
@@ -57,7 +66,8 @@ static edited edit(const uint8_t *data, size_t size, int way, unsigned place, ui
     for (; r.base.pos < size; i++) {
         const ted4_chunk_place p = ted4_container_next(&r);
         const size_t whole = p.end + TED4_FRAME_HASH_SIZE - p.at;
-        const int    mine = p.type == TED4_CHUNKS && (way == DROP_UNSAFE ? (data[p.at + 4] & 2) == 0 : i >= place);
+        const int mine = p.type == TED4_CHUNKS &&
+                         (way == DROP_UNSAFE ? (data[p.at + 4] & 2) == 0 : i >= place);
 
         if (way == PUT_IN && i == place) {
             put_in(&e, what);
@@ -91,18 +101,18 @@ static void mix(void *user, const void *bytes, size_t size)
 /* T0 without chunks that are not critical, and without offsets. */
 typedef struct {
     XXH64_hash_t hash;
-    int          skip;
+    int skip;
 } parsed;
 
 static void element(void *user, size_t offset, const char *name, int64_t index, int64_t value)
 {
-    parsed       *p = user;
+    parsed *p = user;
     const int64_t what[2] = { index, value };
 
     (void)offset;
     if (strcmp(name, "chunk_type") == 0) {
         const uint32_t type = (uint32_t)value;
-        uint8_t        bytes[4];
+        uint8_t bytes[4];
 
         ted4_store32(bytes, type);
         p->skip = 1;
@@ -120,7 +130,9 @@ static void same_tiers(const ted4_scene *a, const ted4_scene *b)
     for (int tier = 1; tier < TIERS; tier++) {
         XXH64_hash_t x = 0, y = 0;
 
-        fuzz_require(ted4_dump_tier(a, tier, NULL, mix, &x) == TED4_OK && ted4_dump_tier(b, tier, NULL, mix, &y) == TED4_OK, "tiers");
+        fuzz_require(ted4_dump_tier(a, tier, NULL, mix, &x) == TED4_OK &&
+                         ted4_dump_tier(b, tier, NULL, mix, &y) == TED4_OK,
+                     "tiers");
         fuzz_require(x == y, "the same tiers");
     }
     fuzz_require(memcmp(a->hash, b->hash, sizeof a->hash) == 0, "the same integers");
@@ -130,9 +142,9 @@ static void same_tiers(const ted4_scene *a, const ted4_scene *b)
 static ted4_scene *decode(const uint8_t *data, size_t size, parsed *p, ted4_error *e)
 {
     ted4_options o = options;
-    ted4_scene  *s = NULL;
+    ted4_scene *s = NULL;
 
-    *p = (parsed){ 0, 0 };
+    *p = (parsed) { 0, 0 };
     o.trace = element;
     o.trace_user = p;
     (void)ted4_decode(data, size, &o, &s, e);
@@ -142,11 +154,12 @@ static ted4_scene *decode(const uint8_t *data, size_t size, parsed *p, ted4_erro
 static void check(const ted4_scene *s, const parsed *p, const edited *e)
 {
     const ted4_limits *const l = ted4_limits_of(s->level);
-    ted4_error  verdict;
-    parsed      q;
+    ted4_error verdict;
+    parsed q;
     ted4_scene *other = decode(e->data, e->size, &q, &verdict);
 
-    fuzz_require((other != NULL) == ted4_limits_hold(l, &s->head, &s->shape, e->size), "valid, unless its size is not for its level");
+    fuzz_require((other != NULL) == ted4_limits_hold(l, &s->head, &s->shape, e->size),
+                 "valid, unless its size is not for its level");
     fuzz_require(other != NULL || verdict.code == TED4_E_LVL_EXCEEDED, "the level");
     if (other != NULL) {
         fuzz_require(p->hash == q.hash, "the same elements");
@@ -158,10 +171,10 @@ static void check(const ted4_scene *s, const parsed *p, const edited *e)
 /* A chunk in front of HEAD, or behind ENDS. */
 static void misplace(const uint8_t *data, size_t size, uint8_t what)
 {
-    edited     e = { malloc(size + FRAME + MOST_PAYLOAD), 0 };
-    const int  behind = what & 8;
+    edited e = { malloc(size + FRAME + MOST_PAYLOAD), 0 };
+    const int behind = what & 8;
     ted4_error verdict;
-    parsed     p;
+    parsed p;
 
     fuzz_require(e.data != NULL, "memory");
     add(&e, data, behind ? size : TED4_FILE_HEADER_SIZE);
@@ -172,20 +185,22 @@ static void misplace(const uint8_t *data, size_t size, uint8_t what)
     fuzz_require(decode(e.data, e.size, &p, &verdict) == NULL, "refused");
     if (e.size <= ted4_limits_of(data[11])->file_bytes)
         fuzz_require(behind ? verdict.code == TED4_E_CON_TRAILING && verdict.offset == size
-                            : verdict.code == TED4_E_CON_CHUNK_ORDER && verdict.offset == TED4_FILE_HEADER_SIZE, "chunks between HEAD and ENDS only");
+                            : verdict.code == TED4_E_CON_CHUNK_ORDER &&
+                                  verdict.offset == TED4_FILE_HEADER_SIZE,
+                     "chunks between HEAD and ENDS only");
     free(e.data);
 }
 
 int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
 {
-    const size_t  n = ted4_without_tail(data, size, TAIL);
-    fuzz_source   in = { data + n, data + size };
-    const int     way = fuzz_u8(&in) % WAYS;
+    const size_t n = ted4_without_tail(data, size, TAIL);
+    fuzz_source in = { data + n, data + size };
+    const int way = fuzz_u8(&in) % WAYS;
     const uint8_t place = fuzz_u8(&in), what = fuzz_u8(&in);
-    ted4_error    verdict;
-    parsed        p;
-    int           changed;
-    ted4_scene   *s = decode(data, n, &p, &verdict);
+    ted4_error verdict;
+    parsed p;
+    int changed;
+    ted4_scene *s = decode(data, n, &p, &verdict);
 
     if (s == NULL)
         return 0;
@@ -193,7 +208,8 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
     for (int i = 0; i < WAYS; i++) {
         edited e = edit(data, n, (way + i) % WAYS, 1 + place % 8u, what, &changed);
 
-        fuzz_require(changed || (e.size == n && memcmp(e.data, data, n) == 0), "unchanged when there is nothing to change");
+        fuzz_require(changed || (e.size == n && memcmp(e.data, data, n) == 0),
+                     "unchanged when there is nothing to change");
         if (changed)
             check(s, &p, &e);
         free(e.data);

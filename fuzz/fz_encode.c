@@ -1,7 +1,8 @@
-/* fz_encode.c - a scene made from the input: the first 8 bytes seed a random one, every 4 bytes more put a value in place of a symbol.
- * Claims: what the encoder accepts the decoder accepts, with the same integers, and writes back as the same bytes; the level declared is the
- * lowest whose bounds hold (spec 13): with a lower one the encoder refuses to write and the decoder to read; the count of ideal bits is not above
- * the bits written.
+/* fz_encode.c - a scene made from the input: the first 8 bytes seed a random one, every 4 bytes
+ * more put a value in place of a symbol. Claims: what the encoder accepts the decoder accepts, with
+ * the same integers, and writes back as the same bytes; the level declared is the lowest whose
+ * bounds hold (spec 13): with a lower one the encoder refuses to write and the decoder to read; the
+ * count of ideal bits is not above the bits written.
  * SPDX-License-Identifier: BSD-2-Clause */
 #include "harness.h"
 #include "mend.h"
@@ -14,7 +15,7 @@ enum { LEVEL_BYTE = 11 };
 static void place_symbols(ted4_scene *s, const uint8_t *data, size_t size)
 {
     for (size_t i = 0; i + 4 <= size; i += 4) {
-        const int    t = (int)(i / 4 % TED4_TYPES);
+        const int t = (int)(i / 4 % TED4_TYPES);
         const size_t n = (size_t)s->shape.dim[t] * s->head.n_anchors;
 
         if (n > 0)
@@ -26,15 +27,18 @@ static void place_symbols(ted4_scene *s, const uint8_t *data, size_t size)
 static void check_level(const ted4_scene *s, uint8_t *file, size_t size)
 {
     uint8_t *out;
-    size_t   n_out;
+    size_t n_out;
 
     for (uint8_t level = 1; level < 5 && level < file[LEVEL_BYTE]; level++) {
         const uint8_t declared = file[LEVEL_BYTE];
-        ted4_scene   *read = NULL;
+        ted4_scene *read = NULL;
 
-        fuzz_require(ted4_encode(s, level, NULL, &out, &n_out, NULL) == TED4_E_LVL_EXCEEDED && out == NULL, "no lower level written");
+        fuzz_require(ted4_encode(s, level, NULL, &out, &n_out, NULL) == TED4_E_LVL_EXCEEDED &&
+                         out == NULL,
+                     "no lower level written");
         file[LEVEL_BYTE] = level;
-        fuzz_require(ted4_decode(file, size, NULL, &read, NULL) == TED4_E_LVL_EXCEEDED, "no lower level read");
+        fuzz_require(ted4_decode(file, size, NULL, &read, NULL) == TED4_E_LVL_EXCEEDED,
+                     "no lower level read");
         file[LEVEL_BYTE] = declared;
     }
 }
@@ -42,7 +46,7 @@ static void check_level(const ted4_scene *s, uint8_t *file, size_t size)
 static void check_count(const ted4_scene *s, const uint8_t *file, size_t size)
 {
     ted4_bits bits;
-    size_t    tiles = 0;
+    size_t tiles = 0;
 
     for (size_t at = TED4_FILE_HEADER_SIZE; at < size; at += ted4_chunk_size(file, size, at))
         if (memcmp(file + at, "TILE", 4) == 0)
@@ -53,22 +57,27 @@ static void check_count(const ted4_scene *s, const uint8_t *file, size_t size)
 
 static void there_and_back(const ted4_scene *s)
 {
-    uint8_t    *first, *second;
-    size_t      n_first, n_second;
+    uint8_t *first, *second;
+    size_t n_first, n_second;
     ted4_scene *read = NULL;
-    ted4_error  e = { TED4_OK, 0 };
+    ted4_error e = { TED4_OK, 0 };
     const ted4_status verdict = ted4_encode(s, 0, NULL, &first, &n_first, NULL);
 
     /* -32768 is the only thing that can be wrong with such a scene. */
-    fuzz_require(verdict == TED4_OK || verdict == TED4_E_ENT_SYMBOL_RANGE, "a scene that can be written");
+    fuzz_require(verdict == TED4_OK || verdict == TED4_E_ENT_SYMBOL_RANGE,
+                 "a scene that can be written");
     if (verdict != TED4_OK)
         return;
-    fuzz_require(ted4_decode(first, n_first, NULL, &read, &e) == TED4_OK, "what is written can be read");
+    fuzz_require(ted4_decode(first, n_first, NULL, &read, &e) == TED4_OK,
+                 "what is written can be read");
     for (int t = 0; t < TED4_TYPES; t++)
-        fuzz_require(s->shape.dim[t] == 0 || memcmp(read->symbol[t], s->symbol[t],
-                                                    (size_t)2 * s->shape.dim[t] * s->head.n_anchors) == 0, "the same symbols");
-    fuzz_require(ted4_encode(read, read->level, NULL, &second, &n_second, NULL) == TED4_OK
-                 && n_second == n_first && memcmp(first, second, n_first) == 0, "the same bytes");
+        fuzz_require(s->shape.dim[t] == 0 ||
+                         memcmp(read->symbol[t], s->symbol[t],
+                                (size_t)2 * s->shape.dim[t] * s->head.n_anchors) == 0,
+                     "the same symbols");
+    fuzz_require(ted4_encode(read, read->level, NULL, &second, &n_second, NULL) == TED4_OK &&
+                     n_second == n_first && memcmp(first, second, n_first) == 0,
+                 "the same bytes");
     check_level(s, first, n_first);
     check_count(s, first, n_first);
     ted4_scene_free(read);
@@ -78,15 +87,16 @@ static void there_and_back(const ted4_scene *s)
 
 int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
 {
-    random_source r = random_seed(size < 8 ? 0 : ted4_load64(data) / 2);  /* the highest seed has no state */
-    ted4_header   h = random_header(&r);
-    ted4_scene   *s;
+    random_source r =
+        random_seed(size < 8 ? 0 : ted4_load64(data) / 2); /* the highest seed has no state */
+    ted4_header h = random_header(&r);
+    ted4_scene *s;
 
     if (size < 8)
         return 0;
-    h.n_anchors = 1 + h.n_anchors % 80;     /* for speed; enough for two tiles */
+    h.n_anchors = 1 + h.n_anchors % 80; /* for speed; enough for two tiles */
     if (data[7] & 1)
-        h.frames = 1u << (data[7] >> 1 & 31);   /* levels above the first */
+        h.frames = 1u << (data[7] >> 1 & 31); /* levels above the first */
     s = random_scene_of(&r, &h, data[0] & 1);
     if (s == NULL)
         return 0;

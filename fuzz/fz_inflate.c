@@ -1,8 +1,9 @@
-/* fz_inflate.c - a deflated blob (spec 7.2): u8 kind, u16 number n of values, u16 bound of memory, then the deflated bytes; kind 1: then
- * the values, which are deflated first.
- * Claims: accepted exactly when the bytes are one zlib stream that ends where they do, gives 4 n bytes, and is shorter (compared with zlib's own
- * uncompress() into more room than that); never more memory than the bound, all given back; values come out unshuffled; a ratio that DEFLATE
- * cannot have is refused before anything is taken.
+/* fz_inflate.c - a deflated blob (spec 7.2): u8 kind, u16 number n of values, u16 bound of memory,
+ * then the deflated bytes; kind 1: then the values, which are deflated first. Claims: accepted
+ * exactly when the bytes are one zlib stream that ends where they do, gives 4 n bytes, and is
+ * shorter (compared with zlib's own uncompress() into more room than that); never more memory than
+ * the bound, all given back; values come out unshuffled; a ratio that DEFLATE cannot have is
+ * refused before anything is taken.
  * SPDX-License-Identifier: BSD-2-Clause */
 #include <string.h>
 #include <zlib.h>
@@ -17,7 +18,7 @@ enum { ROOM = 1 << 19 };
 static int zlib_accepts(const uint8_t *data, size_t size, size_t n, uint8_t *out)
 {
     uLongf n_out = ROOM;
-    uLong  n_in = size;
+    uLong n_in = size;
 
     if (size == 0 || size >= 4 * n)
         return 0;
@@ -26,27 +27,30 @@ static int zlib_accepts(const uint8_t *data, size_t size, size_t n, uint8_t *out
 
 static void check(const uint8_t *data, size_t size, size_t n, uint64_t bound)
 {
-    static uint8_t  out[ROOM];
+    static uint8_t out[ROOM];
     counting_memory memory = { 0 };
     const ted4_options o = { .max_bytes = bound, .allocator = counting_allocator(&memory) };
-    float *const    values = calloc(n + 1, sizeof *values);
-    ted4_arena      arena;
-    ted4_status     verdict;
-    const int       good = zlib_accepts(data, size, n, out);
+    float *const values = calloc(n + 1, sizeof *values);
+    ted4_arena arena;
+    ted4_status verdict;
+    const int good = zlib_accepts(data, size, n, out);
 
     fuzz_require(values != NULL, "memory");
     ted4_arena_init(&arena, &o);
     verdict = ted4_inflate(&arena, data, size, values, n);
     fuzz_require(memory.most <= bound && memory.held == 0 && arena.used == 0, "memory");
     fuzz_require(!good || !ted4_inflate_impossible(size, n), "a possible ratio");
-    fuzz_require(!ted4_inflate_impossible(size, n) || (memory.n == 0 && verdict == TED4_E_NET_DEFLATE), "refused before memory is taken");
+    fuzz_require(!ted4_inflate_impossible(size, n) ||
+                     (memory.n == 0 && verdict == TED4_E_NET_DEFLATE),
+                 "refused before memory is taken");
     if (verdict == TED4_E_LIMIT_MEMORY)
         fuzz_require(bound < 4 * n + (1 << 17), "only when it is short");
     else
         fuzz_require((verdict == TED4_OK) == good, "accepted exactly when zlib does");
     for (size_t i = 0; i < n && verdict == TED4_OK; i++)
         for (unsigned b = 0; b < 4; b++)
-            fuzz_require((ted4_float_bits(values[i]) >> 8 * b & 255) == out[b * n + i], "unshuffled");
+            fuzz_require((ted4_float_bits(values[i]) >> 8 * b & 255) == out[b * n + i],
+                         "unshuffled");
     ted4_arena_finish(&arena);
     free(values);
 }
@@ -54,12 +58,12 @@ static void check(const uint8_t *data, size_t size, size_t n, uint64_t bound)
 int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
 {
     static uint8_t packed[ROOM];
-    fuzz_source    in = { data, data + size };
-    const int      kind = fuzz_u8(&in);
-    size_t         n = fuzz_u16(&in);
+    fuzz_source in = { data, data + size };
+    const int kind = fuzz_u8(&in);
+    size_t n = fuzz_u16(&in);
     const uint16_t knob = fuzz_u16(&in);
     const uint64_t bound = knob == 0 ? 1 << 24 : 64 + (uint64_t)knob * 16;
-    uLongf         n_packed = ROOM;
+    uLongf n_packed = ROOM;
 
     if (kind & 1) {
         n = kind & 2 ? n : (size_t)(in.end - in.at) / 4;

@@ -1,7 +1,9 @@
-/* fz_integerise.c - weights of Tier E from binary32 to integers: u8 shapes and finest shift, then shifts and values of all units.
- * Claims: ted4_rne_scaled() is round-to-nearest-even of the exact rational; ted4_prior_load() gives the verdict, and the place of the failure,
- * that the rules R-NET-002 to R-NET-006 give when they are read in that order with exact numbers; what ted4_snap() makes of any values, it accepts,
- * and evaluates to the same bounded numbers with the plain layers and this machine's.
+/* fz_integerise.c - weights of Tier E from binary32 to integers: u8 shapes and finest shift, then
+ * shifts and values of all units. Claims: ted4_rne_scaled() is round-to-nearest-even of the exact
+ * rational; ted4_prior_load() gives the verdict, and the place of the failure, that the rules
+ * R-NET-002 to R-NET-006 give when they are read in that order with exact numbers; what ted4_snap()
+ * makes of any values, it accepts, and evaluates to the same bounded numbers with the plain layers
+ * and this machine's.
  * SPDX-License-Identifier: BSD-2-Clause */
 #include <math.h>
 #include <string.h>
@@ -15,9 +17,9 @@ enum { MAX_VALUES = 4096 };
 
 typedef struct {
     ted4_header h;
-    ted4_shape  shape;
-    float       value[MAX_VALUES];
-    uint8_t     shift[MAX_VALUES];
+    ted4_shape shape;
+    float value[MAX_VALUES];
+    uint8_t shift[MAX_VALUES];
 } nets;
 
 /* A long double holds a binary32 times a power of two exactly, and rintl() rounds it as asked. */
@@ -32,15 +34,16 @@ static int64_t exact(uint32_t bits, int e)
 static void check_rounding(fuzz_source *in)
 {
     const uint32_t bits = fuzz_u32(in);
-    const int      e = (int)fuzz_in(in, 0, 72) - 36;
-    const int64_t  most = (int64_t)1 << 62;
-    int64_t        is;
+    const int e = (int)fuzz_in(in, 0, 72) - 36;
+    const int64_t most = (int64_t)1 << 62;
+    int64_t is;
 
     if (!ted4_float_legal(bits))
         return;
     is = ted4_rne_scaled(bits, e);
     /* Beyond 2^62 any result that every bound refuses will do. */
-    fuzz_require(is == exact(bits, e) || (is >= most && exact(bits, e) >= most) || (is <= -most && exact(bits, e) <= -most),
+    fuzz_require(is == exact(bits, e) || (is >= most && exact(bits, e) >= most) ||
+                     (is <= -most && exact(bits, e) <= -most),
                  "rounding");
 }
 
@@ -78,13 +81,17 @@ static void take_values(fuzz_source *in, nets *n)
     }
 }
 
-/* R-NET-003 and R-NET-005 for all units of a network, from at on. SIZE_MAX: they hold; else the first that breaks them. */
+/* R-NET-003 and R-NET-005 for all units of a network, from at on. SIZE_MAX: they hold; else the
+ * first that breaks them. */
 static size_t bad_shift(const nets *n, const ted4_net_shape *s, int hyper)
 {
     size_t at = s->first_unit;
 
     for (unsigned i = 0; i < s->n_layers; i++) {
-        const int f = i > 0 ? 10 : hyper ? 12 : n->h.context_bits, g = i + 1u < s->n_layers ? 10 : 8;
+        const int f = i > 0   ? 10
+                      : hyper ? 12
+                              : n->h.context_bits,
+                  g = i + 1u < s->n_layers ? 10 : 8;
 
         for (unsigned o = 0; o < s->dim[i + 1]; o++, at++)
             if (n->shift[at] > 20 || n->shift[at] + f - g < 0)
@@ -93,9 +100,10 @@ static size_t bad_shift(const nets *n, const ted4_net_shape *s, int hyper)
     return SIZE_MAX;
 }
 
-/* One layer: the first value that breaks a rule, R-NET-002, 004 and 006 in the order in which they are met. */
-static int bad_layer(const nets *n, unsigned in, unsigned out, const uint8_t *shift, size_t at, int f, int g, int64_t amplitude,
-                     ted4_error *e)
+/* One layer: the first value that breaks a rule, R-NET-002, 004 and 006 in the order in which they
+ * are met. */
+static int bad_layer(const nets *n, unsigned in, unsigned out, const uint8_t *shift, size_t at,
+                     int f, int g, int64_t amplitude, ted4_error *e)
 {
     const size_t bias = at + (size_t)in * out;
 
@@ -108,9 +116,9 @@ static int bad_layer(const nets *n, unsigned in, unsigned out, const uint8_t *sh
             ted4_fail(e, TED4_E_NET_WEIGHT_RANGE, at + i);
     }
     for (unsigned o = 0; o < out; o++) {
-        const int      r = shift[o] + f - g;
+        const int r = shift[o] + f - g;
         const uint32_t bits = ted4_float_bits(n->value[bias + o]);
-        int64_t        most = r > 0 ? (int64_t)1 << (r - 1) : 0;
+        int64_t most = r > 0 ? (int64_t)1 << (r - 1) : 0;
 
         if (!ted4_float_legal(bits))
             ted4_fail(e, TED4_E_NET_VALUE, bias + o);
@@ -134,7 +142,10 @@ static void bad_value(const nets *n, const ted4_net_shape *s, int hyper, ted4_er
     size_t at = s->first, unit = s->first_unit;
 
     for (unsigned i = 0; i < s->n_layers; i++) {
-        const int f = i > 0 ? 10 : hyper ? 12 : n->h.context_bits, g = i + 1u < s->n_layers ? 10 : 8;
+        const int f = i > 0   ? 10
+                      : hyper ? 12
+                              : n->h.context_bits,
+                  g = i + 1u < s->n_layers ? 10 : 8;
         const unsigned in = s->dim[i], out = s->dim[i + 1];
 
         if (bad_layer(n, in, out, n->shift + unit, at, f, g, i == 0 && hyper ? 4096 : 32767, e))
@@ -150,7 +161,7 @@ static ted4_error expected(const nets *n)
 
     for (unsigned m = 0; m < n->h.n_slices; m++) {
         const ted4_net_shape *s = m == 0 ? &n->shape.hyper : &n->shape.slice[m];
-        const size_t          at = bad_shift(n, s, m == 0);
+        const size_t at = bad_shift(n, s, m == 0);
 
         if (at != SIZE_MAX)
             ted4_fail(&e, TED4_E_NET_SHIFT, at);
@@ -184,7 +195,9 @@ static void evaluate(fuzz_source *in, const nets *n, ted4_prior *prior)
         }
         for (unsigned i = 0; i < outputs * TED4_PRIOR_BLOCK; i++)
             if (i % TED4_PRIOR_BLOCK < ANCHORS)
-                fuzz_require(out[0][i] == out[1][i] && out[0][i] >= -TED4_OUTPUT_MAX && out[0][i] <= TED4_OUTPUT_MAX, "outputs");
+                fuzz_require(out[0][i] == out[1][i] && out[0][i] >= -TED4_OUTPUT_MAX &&
+                                 out[0][i] <= TED4_OUTPUT_MAX,
+                             "outputs");
     }
 }
 
@@ -192,9 +205,9 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
 {
     static nets n;
     fuzz_source in = { data, data + size };
-    ted4_arena  arena;
-    ted4_prior  prior;
-    ted4_error  e = { TED4_OK, 0 }, want;
+    ted4_arena arena;
+    ted4_prior prior;
+    ted4_error e = { TED4_OK, 0 }, want;
 
     for (int i = 0; i < 8; i++)
         check_rounding(&in);
@@ -204,7 +217,8 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
     ted4_arena_init(&arena, NULL);
     fuzz_require(ted4_prior_init(&prior, &n.h, &n.shape, &arena) == TED4_OK, "memory");
     want = expected(&n);
-    fuzz_require(ted4_prior_load(&prior, n.value, n.shift, &e) == want.code, "the verdict of the rules");
+    fuzz_require(ted4_prior_load(&prior, n.value, n.shift, &e) == want.code,
+                 "the verdict of the rules");
     fuzz_require(e.code == want.code && e.offset == want.offset, "the first value that breaks one");
     ted4_snap_coarse(&n.h, &n.shape, fuzz_u8(&in) % 21, n.value, n.shift);
     fuzz_require(ted4_prior_load(&prior, n.value, n.shift, NULL) == TED4_OK, "snapped values");

@@ -1,7 +1,8 @@
-/* fz_masks.c - masks of a scene (spec 9.3): u8 offsets K, u8 which masks exist, u8 anchors, u8 probabilities given or counted, then masks.
- * Claims: masks that a header allows are written and read back; ones that contradict it (an offset beyond K, a mask that is not coded and not
- * what is implied) are refused by the writer, never written; a tile whose mask substream is any other bytes is refused, or gives a file that is
- * written as the same bytes.
+/* fz_masks.c - masks of a scene (spec 9.3): u8 offsets K, u8 which masks exist, u8 anchors, u8
+ * probabilities given or counted, then masks. Claims: masks that a header allows are written and
+ * read back; ones that contradict it (an offset beyond K, a mask that is not coded and not what is
+ * implied) are refused by the writer, never written; a tile whose mask substream is any other bytes
+ * is refused, or gives a file that is written as the same bytes.
  * SPDX-License-Identifier: BSD-2-Clause */
 #include "harness.h"
 #include "mend.h"
@@ -34,9 +35,9 @@ static ted4_header header_of(fuzz_source *in)
 /* Takes the masks as they come. 1: the header allows them. */
 static int take_masks(fuzz_source *in, ted4_scene *s)
 {
-    const int      wild = (fuzz_u8(in) & 3) == 3, given = fuzz_u8(in) & 1;
+    const int wild = (fuzz_u8(in) & 3) == 3, given = fuzz_u8(in) & 1;
     const uint16_t all = (uint16_t)((1u << s->head.n_offsets) - 1);
-    int            legal = 1;
+    int legal = 1;
 
     for (size_t i = 0; i < s->head.n_anchors; i++) {
         const uint16_t bits = fuzz_u16(in);
@@ -47,8 +48,8 @@ static int take_masks(fuzz_source *in, ted4_scene *s)
             s->offset_bits[i] = bits;
             s->dynamic[i] = fuzz_u8(in);
         }
-        legal = legal && s->dynamic[i] <= s->head.temporal_mask && s->offset_bits[i] <= all
-             && (s->head.offset_mask || s->offset_bits[i] == all);
+        legal = legal && s->dynamic[i] <= s->head.temporal_mask && s->offset_bits[i] <= all &&
+                (s->head.offset_mask || s->offset_bits[i] == all);
     }
     for (size_t i = 0; given && i < s->shape.n_tiles * (size_t)TED4_PROBS; i++)
         s->prob[i] = (uint16_t)(1 + fuzz_u16(in) % 65535);
@@ -71,31 +72,33 @@ static void damage(fuzz_source *in, uint8_t *data, size_t size)
 static void check_file(fuzz_source *in, const ted4_scene *s, uint8_t *data, size_t size)
 {
     ted4_scene *read = NULL;
-    uint8_t    *out;
-    size_t      n_out;
+    uint8_t *out;
+    size_t n_out;
 
     fuzz_require(ted4_decode(data, size, NULL, &read, NULL) == TED4_OK, "read");
-    fuzz_require(memcmp(read->dynamic, s->dynamic, s->head.n_anchors) == 0
-                 && memcmp(read->offset_bits, s->offset_bits, 2 * (size_t)s->head.n_anchors) == 0, "the same masks");
+    fuzz_require(memcmp(read->dynamic, s->dynamic, s->head.n_anchors) == 0 &&
+                     memcmp(read->offset_bits, s->offset_bits, 2 * (size_t)s->head.n_anchors) == 0,
+                 "the same masks");
     ted4_scene_free(read);
     damage(in, data, size);
     if (ted4_decode(data, size, NULL, &read, NULL) != TED4_OK)
         return;
-    fuzz_require(ted4_encode(read, read->level, NULL, &out, &n_out, NULL) == TED4_OK && n_out == size
-                 && memcmp(out, data, size) == 0, "the same bytes");
+    fuzz_require(ted4_encode(read, read->level, NULL, &out, &n_out, NULL) == TED4_OK &&
+                     n_out == size && memcmp(out, data, size) == 0,
+                 "the same bytes");
     free(out);
     ted4_scene_free(read);
 }
 
 int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
 {
-    fuzz_source       in = { data, data + size };
-    random_source     r = random_seed(1);
+    fuzz_source in = { data, data + size };
+    random_source r = random_seed(1);
     const ted4_header h = header_of(&in);
     ted4_scene *const s = random_scene_of(&r, &h, 0);
-    uint8_t          *out;
-    size_t            n_out;
-    int               legal;
+    uint8_t *out;
+    size_t n_out;
+    int legal;
 
     fuzz_require(s != NULL, "a scene");
     legal = take_masks(&in, s);

@@ -1,8 +1,8 @@
-/* fz_net_int.c - one dense layer of Tier E: u8 in, u8 out, then for each unit its shift, bias and weights, then inputs; the last number goes on
- * where the input ends.
- * Claims: the accumulator rule (R-NET-006) agrees with 64-bit sums of the worst inputs; where it holds, the plain layer, summation backwards in
- * 64 bits, columns in halves as two threads would take them, and every vector kernel of this machine give the same bits, and columns beyond the
- * last are left alone.
+/* fz_net_int.c - one dense layer of Tier E: u8 in, u8 out, then for each unit its shift, bias and
+ * weights, then inputs; the last number goes on where the input ends. Claims: the accumulator rule
+ * (R-NET-006) agrees with 64-bit sums of the worst inputs; where it holds, the plain layer,
+ * summation backwards in 64 bits, columns in halves as two threads would take them, and every
+ * vector kernel of this machine give the same bits, and columns beyond the last are left alone.
  * SPDX-License-Identifier: BSD-2-Clause */
 #include <string.h>
 #include "harness.h"
@@ -15,8 +15,8 @@ enum { BLOCK = TED4_PRIOR_BLOCK, MAX_IN = 70, MAX_OUT = 20, UNTOUCHED = 0x55 };
 typedef struct {
     ted4_int_layer l;
     _Alignas(64) int16_t w[MAX_OUT * (MAX_IN + 1)];
-    int32_t              b[MAX_OUT];
-    uint8_t              r[MAX_OUT];
+    int32_t b[MAX_OUT];
+    uint8_t r[MAX_OUT];
     _Alignas(64) int16_t x[MAX_IN * BLOCK];
 } layer;
 
@@ -25,7 +25,8 @@ typedef struct {
     _Alignas(64) int32_t last[MAX_OUT * BLOCK];
 } outputs;
 
-/* R-NET-006 in 64 bits, for inputs that push every product to one side. Gives what the rule has to say. */
+/* R-NET-006 in 64 bits, for inputs that push every product to one side. Gives what the rule has to
+ * say. */
 static int fits(const layer *n, unsigned o, int32_t amplitude)
 {
     int64_t most = n->b[o] < 0 ? -(int64_t)n->b[o] : n->b[o];
@@ -54,7 +55,7 @@ static void take_layer(fuzz_source *in, layer *n)
     n->l.r = n->r;
     for (unsigned o = 0; o < n->l.out; o++) {
         int16_t *w = n->w + o * n->l.in_pad;
-        int64_t  sum = 0;
+        int64_t sum = 0;
 
         n->r[o] = fuzz_u8(in) % 25;
         n->b[o] = (int32_t)fuzz_u32(in);
@@ -87,7 +88,8 @@ static void take_inputs(fuzz_source *in, layer *n)
         for (unsigned a = 0; a < BLOCK; a++) {
             const int16_t worst = (n->w[i] < 0) == (a % 2 == 0) ? -32767 : 32767;
 
-            n->x[i * BLOCK + a] = in->at < in->end ? (int16_t)ted4_sat16((int16_t)fuzz_u16(in)) : worst;
+            n->x[i * BLOCK + a] = in->at < in->end ? (int16_t)ted4_sat16((int16_t)fuzz_u16(in))
+                                                   : worst;
         }
 }
 
@@ -97,21 +99,23 @@ static void define(const layer *n, outputs *y)
     for (unsigned o = 0; o < n->l.out; o++)
         for (unsigned a = 0; a < BLOCK; a++) {
             const int64_t unit = (int64_t)1 << n->r[o];
-            int64_t       acc = 0, v;
+            int64_t acc = 0, v;
 
             for (unsigned i = n->l.in; i > 0; i--)
                 acc += (int64_t)n->w[o * n->l.in_pad + i - 1] * n->x[(i - 1) * BLOCK + a];
             acc += n->b[o] + unit / 2;
             v = acc / unit - (acc % unit < 0);
             y->hidden[o * BLOCK + a] = (int16_t)(v < 0 ? 0 : v > 32767 ? 32767 : v);
-            y->last[o * BLOCK + a] = (int32_t)(v < -TED4_OUTPUT_MAX ? -TED4_OUTPUT_MAX : v > TED4_OUTPUT_MAX ? TED4_OUTPUT_MAX : v);
+            y->last[o * BLOCK + a] = (int32_t)(v < -TED4_OUTPUT_MAX  ? -TED4_OUTPUT_MAX
+                                               : v > TED4_OUTPUT_MAX ? TED4_OUTPUT_MAX
+                                                                     : v);
         }
 }
 
 static void compare(const layer *n, const ted4_int_dense *d, const outputs *right)
 {
     static outputs y, half;
-    const size_t   units = n->l.out * (size_t)BLOCK;
+    const size_t units = n->l.out * (size_t)BLOCK;
 
     d->hidden(&n->l, n->x, BLOCK, y.hidden);
     d->last(&n->l, n->x, BLOCK, y.last);
@@ -123,16 +127,18 @@ static void compare(const layer *n, const ted4_int_dense *d, const outputs *righ
     for (size_t i = 0; i < units; i++) {
         const int inside = i % BLOCK < BLOCK / 2;
 
-        fuzz_require(half.last[i] == (inside ? right->last[i] : UNTOUCHED * 0x01010101), "half of the last layer");
-        fuzz_require(half.hidden[i] == (inside ? right->hidden[i + BLOCK / 2] : UNTOUCHED * 0x0101), "half of the hidden layer");
+        fuzz_require(half.last[i] == (inside ? right->last[i] : UNTOUCHED * 0x01010101),
+                     "half of the last layer");
+        fuzz_require(half.hidden[i] == (inside ? right->hidden[i + BLOCK / 2] : UNTOUCHED * 0x0101),
+                     "half of the hidden layer");
     }
 }
 
 int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
 {
-    static layer   n;
+    static layer n;
     static outputs right;
-    fuzz_source    in = { data, data + size };
+    fuzz_source in = { data, data + size };
 
     take_layer(&in, &n);
     take_inputs(&in, &n);

@@ -1,6 +1,6 @@
-/* fz_npy.c - NumPy's array file: as a table of 3 columns, and as poses_bounds.npy of a scene with two clips.
- * Claims: the numbers of a table are all that stands behind the file's header, and finite; or there is a message and no table. For the scene those
- * of fuzz_load_scene().
+/* fz_npy.c - NumPy's array file: as a table of 3 columns, and as poses_bounds.npy of a scene with
+ * two clips. Claims: the numbers of a table are all that stands behind the file's header, and
+ * finite; or there is a message and no table. For the scene those of fuzz_load_scene().
  * SPDX-License-Identifier: BSD-2-Clause */
 #include <math.h>
 #include "base/bytes.h"
@@ -8,10 +8,12 @@
 #include "harness.h"
 #include "scene_folder.h"
 
-/* Bytes behind the header: 6 of signature, 2 of version, 2 or 4 that say how long the rest of it is. */
+/* Bytes behind the header: 6 of signature, 2 of version, 2 or 4 that say how long the rest of it
+ * is. */
 static size_t table_size(const uint8_t *data, size_t size)
 {
-    const size_t start = data[6] == 1 ? 10 + (size_t)ted4_load16(data + 8) : 12 + (size_t)ted4_load32(data + 8);
+    const size_t start = data[6] == 1 ? 10 + (size_t)ted4_load16(data + 8)
+                                      : 12 + (size_t)ted4_load32(data + 8);
 
     return size - start;
 }
@@ -19,15 +21,16 @@ static size_t table_size(const uint8_t *data, size_t size)
 static void check_table(const char *path, size_t columns, const uint8_t *data, size_t size)
 {
     ted4_message m;
-    double      *v = NULL;
-    size_t       rows = 0;
+    double *v = NULL;
+    size_t rows = 0;
 
     if (ted4_npy_read(path, columns, &v, &rows, &m) != 0) {
         fuzz_check_message(&m);
         fuzz_require(v == NULL && rows == 0, "no table");
         return;
     }
-    fuzz_require(rows > 0 && (rows * columns * 4 == table_size(data, size) || rows * columns * 8 == table_size(data, size)),
+    fuzz_require(rows > 0 && (rows * columns * 4 == table_size(data, size) ||
+                              rows * columns * 8 == table_size(data, size)),
                  "all that stands behind the header");
     for (size_t i = 0; i < rows * columns; i++)
         fuzz_require(isfinite(v[i]), "finite");

@@ -9,7 +9,7 @@
 int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
 {
     ted4_point_cloud c = { NULL, NULL, 0 };
-    ted4_message     m;
+    ted4_message m;
 
     (void)fuzz_scene("ply");
     if (ted4_ply_read(&c, fuzz_file("points.ply", data, size), &m) == 0) {

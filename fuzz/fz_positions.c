@@ -1,7 +1,8 @@
 /* fz_positions.c - a POSN payload (spec 8): binary16 patterns, three an anchor.
- * Claims: the reading walk gives the verdict, and the place, of the rules taken literally (values as long doubles, Morton codes bit by bit); what
- * it accepts is written as the same bytes; the same anchors sorted by ted4_positions_sort() are accepted when all values are legal; binary16
- * becomes X and binary32 exactly, and comes back.
+ * Claims: the reading walk gives the verdict, and the place, of the rules taken literally (values
+ * as long doubles, Morton codes bit by bit); what it accepts is written as the same bytes; the same
+ * anchors sorted by ted4_positions_sort() are accepted when all values are legal; binary16 becomes
+ * X and binary32 exactly, and comes back.
  * SPDX-License-Identifier: BSD-2-Clause */
 #include <math.h>
 #include <string.h>
@@ -15,13 +16,14 @@ enum { MAX_N = 300 };
 
 static long double value(uint16_t h)
 {
-    const int         e = h >> 10 & 31, m = h & 0x3ff;
+    const int e = h >> 10 & 31, m = h & 0x3ff;
     const long double v = e > 0 ? ldexpl(1024 + m, e - 25) : ldexpl(m, -24);
 
     return h >> 15 ? -v : v;
 }
 
-/* Order of two patterns as numbers of two halves, the negative ones backwards: what the image of spec 8 stands for. */
+/* Order of two patterns as numbers of two halves, the negative ones backwards: what the image of
+ * spec 8 stands for. */
 static uint64_t code(const uint16_t *p)
 {
     uint64_t c = 0;
@@ -56,7 +58,7 @@ static ted4_error expected(const uint16_t *p, size_t n)
 
 static ted4_error walk(const uint8_t *bytes, uint16_t *p, size_t n)
 {
-    ted4_scene  s = { .head = { .n_anchors = (uint32_t)n }, .position = p };
+    ted4_scene s = { .head = { .n_anchors = (uint32_t)n }, .position = p };
     ted4_reader r;
 
     ted4_reader_init(&r, bytes, 0, 6 * n, 0);
@@ -66,22 +68,24 @@ static ted4_error walk(const uint8_t *bytes, uint16_t *p, size_t n)
 
 static void write_again(const uint8_t *bytes, uint16_t *p, size_t n)
 {
-    ted4_scene  s = { .head = { .n_anchors = (uint32_t)n }, .position = p };
+    ted4_scene s = { .head = { .n_anchors = (uint32_t)n }, .position = p };
     ted4_writer w;
 
     ted4_writer_init(&w);
     ted4_walk_positions(&w.base, &s);
-    fuzz_require(w.base.error.code == TED4_OK && w.out.size == 6 * n && memcmp(w.out.data, bytes, 6 * n) == 0, "the same bytes");
+    fuzz_require(w.base.error.code == TED4_OK && w.out.size == 6 * n &&
+                     memcmp(w.out.data, bytes, 6 * n) == 0,
+                 "the same bytes");
     ted4_writer_finish(&w);
 }
 
 static void sort_them(const uint16_t *p, size_t n)
 {
     static uint16_t sorted[3 * MAX_N];
-    static uint8_t  bytes[6 * MAX_N];
+    static uint8_t bytes[6 * MAX_N];
     static uint32_t order[MAX_N];
-    const size_t    kept = ted4_positions_sort(p, n, order);
-    int             legal = 1;
+    const size_t kept = ted4_positions_sort(p, n, order);
+    int legal = 1;
 
     fuzz_require(kept <= n && (kept > 0) == (n > 0), "sorted");
     for (size_t i = 0; i < 3 * kept; i++) {
@@ -99,7 +103,8 @@ static void convert(uint16_t h)
 
     if ((h >> 10 & 31) == 31)
         return;
-    fuzz_require((long double)v == value(h) && (signbit(v) != 0) == h >> 15, "binary16 to binary32");
+    fuzz_require((long double)v == value(h) && (signbit(v) != 0) == h >> 15,
+                 "binary16 to binary32");
     fuzz_require(ted4_float_to_half(v) == h, "and back");
     if (fabsl(value(h)) <= 1)
         fuzz_require((long double)ted4_half_q24(h) == ldexpl(value(h), 24), "X is exact");
@@ -108,8 +113,8 @@ static void convert(uint16_t h)
 int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
 {
     static uint16_t p[3 * MAX_N];
-    const size_t    n = size / 6 < MAX_N ? size / 6 : MAX_N;
-    ted4_error      is, want;
+    const size_t n = size / 6 < MAX_N ? size / 6 : MAX_N;
+    ted4_error is, want;
 
     for (size_t i = 0; i < 3 * n; i++) {
         p[i] = ted4_load16(data + 2 * i);

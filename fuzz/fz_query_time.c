@@ -1,7 +1,8 @@
-/* fz_query_time.c - any numerator, denominator and camera, asked of one of a few scenes: u8 scene, u32 num, u32 den, u8 factor, f32 camera[3].
- * Claims: refused exactly when den is 0 or above 2^24 - 1, or num > den; equal fractions give the same records; num = 0 and num = den give those
- * of the first and last row of the bank, and frame j of F those of j / (F - 1), however written; a NaN or infinite camera is rec.non-finite or
- * without effect.
+/* fz_query_time.c - any numerator, denominator and camera, asked of one of a few scenes: u8 scene,
+ * u32 num, u32 den, u8 factor, f32 camera[3]. Claims: refused exactly when den is 0 or above 2^24 -
+ * 1, or num > den; equal fractions give the same records; num = 0 and num = den give those of the
+ * first and last row of the bank, and frame j of F those of j / (F - 1), however written; a NaN or
+ * infinite camera is rec.non-finite or without effect.
  * SPDX-License-Identifier: BSD-2-Clause */
 #include <math.h>
 #include "harness.h"
@@ -13,9 +14,9 @@ enum { SCENES = 6, MOST = (1 << 24) - 1 };
 static ted4_recon *recon_of(unsigned which)
 {
     static ted4_recon *made[SCENES];
-    random_source      r = random_seed(which);
-    ted4_header        h = random_header(&r);
-    ted4_scene        *s;
+    random_source r = random_seed(which);
+    ted4_header h = random_header(&r);
+    ted4_scene *s;
 
     if (made[which] != NULL)
         return made[which];
@@ -36,9 +37,10 @@ static ted4_recon *recon_of(unsigned which)
 }
 
 /* TED4_OK with the hash of the records, or a refusal. */
-static ted4_status ask(ted4_recon *r, uint32_t num, uint32_t den, const float camera[3], uint8_t hash[16])
+static ted4_status ask(ted4_recon *r, uint32_t num, uint32_t den, const float camera[3],
+                       uint8_t hash[16])
 {
-    ted4_query     q = { .num = num, .den = den };
+    ted4_query q = { .num = num, .den = den };
     ted4_gaussians g;
 
     memcpy(q.camera, camera, sizeof q.camera);
@@ -48,7 +50,8 @@ static ted4_status ask(ted4_recon *r, uint32_t num, uint32_t den, const float ca
 
     fuzz_require(verdict == TED4_OK || g.n == 0, "nothing with a refusal");
     for (size_t i = 0; i < g.n; i++)
-        fuzz_require(isfinite(g.mean[0][i]) && isfinite(g.opacity[i]) && isfinite(g.colour[2][i]), "finite");
+        fuzz_require(isfinite(g.mean[0][i]) && isfinite(g.opacity[i]) && isfinite(g.colour[2][i]),
+                     "finite");
     if (verdict == TED4_OK)
         ted4_gaussians_hash(&g, hash);
     return verdict;
@@ -57,12 +60,12 @@ static ted4_status ask(ted4_recon *r, uint32_t num, uint32_t den, const float ca
 int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
 {
     static const float far[3] = { 1, 2, -9 };
-    fuzz_source    in = { data, data + size };
-    ted4_recon    *r = recon_of(fuzz_u8(&in) % SCENES);
+    fuzz_source in = { data, data + size };
+    ted4_recon *r = recon_of(fuzz_u8(&in) % SCENES);
     const uint32_t num = fuzz_u32(&in), den = fuzz_u32(&in), factor = 1 + fuzz_u8(&in);
-    const int      legal = den >= 1 && den <= MOST && num <= den;
-    float          camera[3];
-    uint8_t        a[16], b[16];
+    const int legal = den >= 1 && den <= MOST && num <= den;
+    float camera[3];
+    uint8_t a[16], b[16];
 
     for (int c = 0; c < 3; c++)
         camera[c] = ted4_bits_float(fuzz_u32(&in));
@@ -75,7 +78,9 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
     fuzz_require(verdict == TED4_OK || verdict == TED4_E_REC_NONFINITE, "a query");
     if ((uint64_t)den * factor <= MOST) {
         (void)ask(r, num, den, far, b);
-        fuzz_require(ask(r, num * factor, den * factor, camera, b) == verdict && memcmp(a, b, 16) == 0, "equal fractions");
+        fuzz_require(ask(r, num * factor, den * factor, camera, b) == verdict &&
+                         memcmp(a, b, 16) == 0,
+                     "equal fractions");
     }
     if (num == 0 || num == den) {
         (void)ask(r, 1, 2, camera, b);

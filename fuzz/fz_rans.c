@@ -1,7 +1,8 @@
-/* fz_rans.c - substreams: u8 kind, u8 n, then n models, then bytes. kind 0: symbols out of the input through writer and reader. kind 1: the rest
- * of the input is a substream itself.
- * Claims: what is written is read, with the coder in its final state at the last byte (R-ENT-005), and one byte more or less is refused; a
- * substream that is accepted is the one that the writer makes of its symbols.
+/* fz_rans.c - substreams: u8 kind, u8 n, then n models, then bytes. kind 0: symbols out of the
+ * input through writer and reader. kind 1: the rest of the input is a substream itself. Claims:
+ * what is written is read, with the coder in its final state at the last byte (R-ENT-005), and one
+ * byte more or less is refused; a substream that is accepted is the one that the writer makes of
+ * its symbols.
  * SPDX-License-Identifier: BSD-2-Clause */
 #include <string.h>
 #include "harness.h"
@@ -13,10 +14,10 @@ enum { MAX_N = 255, SIZES = 4 };
 /* One of two kinds of symbol each: a bit of that probability, or k with its mu and sigma. */
 typedef struct {
     unsigned n;
-    uint8_t  is_bit[MAX_N], sigma[MAX_N];
+    uint8_t is_bit[MAX_N], sigma[MAX_N];
     uint16_t prob[MAX_N];
-    int32_t  mu[MAX_N];
-    int16_t  k[MAX_N];
+    int32_t mu[MAX_N];
+    int16_t k[MAX_N];
 } symbols;
 
 static void take_models(fuzz_source *in, symbols *s)
@@ -60,9 +61,9 @@ static ted4_status read_all(const uint8_t *data, size_t size, symbols *s)
 
 static void there_and_back(symbols *s)
 {
-    symbols     back = *s;
+    symbols back = *s;
     ted4_writer w;
-    uint8_t    *d;
+    uint8_t *d;
 
     for (unsigned i = 0; i < s->n; i++)
         if (s->is_bit[i])
@@ -90,9 +91,9 @@ static void there_and_back(symbols *s)
 
 static void any_bytes(fuzz_source *in, symbols *s)
 {
-    const size_t   n = (size_t)(in->end - in->at);
+    const size_t n = (size_t)(in->end - in->at);
     uint8_t *const d = malloc(n + SIZES);
-    ted4_writer    w;
+    ted4_writer w;
 
     fuzz_require(d != NULL, "memory");
     ted4_store32(d, (uint32_t)n);
@@ -100,7 +101,8 @@ static void any_bytes(fuzz_source *in, symbols *s)
     if (read_all(d, n + SIZES, s) == TED4_OK) {
         ted4_writer_init(&w);
         walk(&w.base, s);
-        fuzz_require(w.base.error.code == TED4_OK && w.out.size == n + SIZES && memcmp(w.out.data, d, n + SIZES) == 0,
+        fuzz_require(w.base.error.code == TED4_OK && w.out.size == n + SIZES &&
+                         memcmp(w.out.data, d, n + SIZES) == 0,
                      "the writer's own bytes");
         ted4_writer_finish(&w);
     }
@@ -110,8 +112,8 @@ static void any_bytes(fuzz_source *in, symbols *s)
 int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
 {
     static symbols s;
-    fuzz_source    in = { data, data + size };
-    const int      kind = fuzz_u8(&in) & 1;
+    fuzz_source in = { data, data + size };
+    const int kind = fuzz_u8(&in) & 1;
 
     if (size < 2)
         return 0;

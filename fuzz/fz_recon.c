@@ -1,6 +1,8 @@
-/* fz_recon.c - the Gaussians of any file that the decoder accepts, at times and camera centres that up to 32 bytes behind the chunk ENDS give.
- * Claims: a query gives finite numbers or rec.non-finite; they are those of class X by tests/recon_ref.h, bit for bit; what was queried before,
- * the order of blocks and the kernel do not matter; there is a record for every kept offset, its id increasing.
+/* fz_recon.c - the Gaussians of any file that the decoder accepts, at times and camera centres that
+ * up to 32 bytes behind the chunk ENDS give. Claims: a query gives finite numbers or
+ * rec.non-finite; they are those of class X by tests/recon_ref.h, bit for bit; what was queried
+ * before, the order of blocks and the kernel do not matter; there is a record for every kept
+ * offset, its id increasing.
  * SPDX-License-Identifier: BSD-2-Clause */
 #include <math.h>
 #include <string.h>
@@ -14,16 +16,23 @@ enum { TAIL = 32, QUERIES = 3 };
 
 static const float *channel(const ted4_gaussians *g, int c)
 {
-    return c < 3 ? g->mean[c] : c < 6 ? g->scale[c - 3] : c < 10 ? g->rot[c - 6] : c == 10 ? g->opacity : g->colour[c - 11];
+    return c < 3     ? g->mean[c]
+           : c < 6   ? g->scale[c - 3]
+           : c < 10  ? g->rot[c - 6]
+           : c == 10 ? g->opacity
+                     : g->colour[c - 11];
 }
 
-/* The records of recon_ref.h; a value that is not finite in one of them is what rec.non-finite means. */
-static void check_reference(const ted4_scene *s, const ted4_query *q, size_t n, const ted4_gaussians *g, ted4_status verdict)
+/* The records of recon_ref.h; a value that is not finite in one of them is what rec.non-finite
+ * means. */
+static void check_reference(const ted4_scene *s, const ted4_query *q, size_t n,
+                            const ted4_gaussians *g, ted4_status verdict)
 {
     double *const record = malloc((n + 1) * REF_VALUES * sizeof *record);
-    int           finite = 1;
+    int finite = 1;
 
-    fuzz_require(record != NULL && ref_query(s, q, 1, record) == n, "every kept offset has a record");
+    fuzz_require(record != NULL && ref_query(s, q, 1, record) == n,
+                 "every kept offset has a record");
     for (size_t i = 0; i < n * REF_VALUES; i++) {
         finite = finite && isfinite(record[i]);
         if (verdict != TED4_OK)
@@ -33,7 +42,8 @@ static void check_reference(const ted4_scene *s, const ted4_query *q, size_t n, 
         fuzz_require(isfinite(v), "finite or rec.non-finite");
         fuzz_require((double)v == record[i], "class X");
     }
-    fuzz_require(finite == (verdict == TED4_OK), "rec.non-finite exactly when a value is not finite");
+    fuzz_require(finite == (verdict == TED4_OK),
+                 "rec.non-finite exactly when a value is not finite");
     free(record);
 }
 
@@ -43,7 +53,9 @@ static void check_ids(const ted4_scene *s, const ted4_gaussians *g)
 
     for (size_t i = 0; i < g->n; i++) {
         fuzz_require(i == 0 || g->id[i] > g->id[i - 1], "ids in order");
-        fuzz_require(g->id[i] / k < s->head.n_anchors && s->offset_bits[g->id[i] / k] >> g->id[i] % k & 1, "ids of kept offsets");
+        fuzz_require(g->id[i] / k < s->head.n_anchors &&
+                         s->offset_bits[g->id[i] / k] >> g->id[i] % k & 1,
+                     "ids of kept offsets");
     }
 }
 
@@ -51,42 +63,46 @@ static void check_ids(const ted4_scene *s, const ted4_gaussians *g)
 static ted4_query query_of(fuzz_source *in, const ted4_query *before)
 {
     const uint8_t keep = fuzz_u8(in);
-    ted4_query    q;
+    ted4_query q;
 
     q.den = keep & 1 ? before->den : 1 + fuzz_u32(in) % 0xffffff;
     q.num = keep & 2 && before->num <= q.den ? before->num : fuzz_u32(in) % (q.den + 1);
     for (int c = 0; c < 3; c++) {
         const uint32_t bits = fuzz_u32(in);
 
-        q.camera[c] = keep & 4 ? before->camera[c] : bits % 64 == 1 ? 0x1.fffffep+127f : (float)((int32_t)bits >> 16) / 1024.0f;
+        q.camera[c] = keep & 4         ? before->camera[c]
+                      : bits % 64 == 1 ? 0x1.fffffep+127f
+                                       : (float)((int32_t)bits >> 16) / 1024.0f;
     }
     return q;
 }
 
 /* The same query of a new object, which has no last one, by other ways. */
-static void check_fresh(const ted4_scene *s, const ted4_query *q, const uint8_t hash[16], ted4_status verdict)
+static void check_fresh(const ted4_scene *s, const ted4_query *q, const uint8_t hash[16],
+                        ted4_status verdict)
 {
     const ted4_parallel backwards = order_parallel(2);
-    ted4_recon    *r = NULL;
+    ted4_recon *r = NULL;
     ted4_gaussians g;
-    uint8_t        again[16];
+    uint8_t again[16];
 
     use_kernels("plain");
     fuzz_require(ted4_recon_new(&r, s, NULL) == TED4_OK, "recon");
     use_kernels(NULL);
     fuzz_require(ted4_recon_query(r, q, &backwards, &g) == verdict, "one verdict");
     ted4_gaussians_hash(&g, again);
-    fuzz_require(verdict != TED4_OK || memcmp(hash, again, sizeof again) == 0, "whatever was queried before");
+    fuzz_require(verdict != TED4_OK || memcmp(hash, again, sizeof again) == 0,
+                 "whatever was queried before");
     ted4_recon_free(r);
 }
 
 static void query_all(const ted4_scene *s, fuzz_source *in)
 {
-    ted4_query     q = { 0, 1, { 0, 0, 0 } };
-    ted4_recon    *r = NULL;
+    ted4_query q = { 0, 1, { 0, 0, 0 } };
+    ted4_recon *r = NULL;
     ted4_gaussians g;
-    ted4_info      info;
-    uint8_t        hash[16];
+    ted4_info info;
+    uint8_t hash[16];
 
     ted4_scene_info(s, &info);
     fuzz_require(ted4_recon_new(&r, s, NULL) == TED4_OK, "recon");
@@ -96,7 +112,8 @@ static void query_all(const ted4_scene *s, fuzz_source *in)
         const ted4_status verdict = ted4_recon_query(r, &q, NULL, &g);
 
         fuzz_require(verdict == TED4_OK || verdict == TED4_E_REC_NONFINITE, "query");
-        fuzz_require(g.n == (verdict == TED4_OK ? info.n_gaussians : 0), "every kept offset has a record");
+        fuzz_require(g.n == (verdict == TED4_OK ? info.n_gaussians : 0),
+                     "every kept offset has a record");
         ted4_gaussians_hash(&g, hash);
         check_ids(s, &g);
         check_reference(s, &q, info.n_gaussians, &g, verdict);
@@ -108,12 +125,13 @@ static void query_all(const ted4_scene *s, fuzz_source *in)
 int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
 {
     const ted4_options o = { .max_bytes = FUZZ_MAX_BYTES };
-    const size_t       n = ted4_without_tail(data, size, TAIL);
-    fuzz_source        in = { data + n, data + size };
-    ted4_scene        *s = NULL;
+    const size_t n = ted4_without_tail(data, size, TAIL);
+    fuzz_source in = { data + n, data + size };
+    ted4_scene *s = NULL;
 
     /* The reference is slow: whole networks in doubles for each anchor. */
-    if (ted4_decode(data, n, &o, &s, NULL) == TED4_OK && s->head.n_anchors <= 128 && ted4_recon_class_x())
+    if (ted4_decode(data, n, &o, &s, NULL) == TED4_OK && s->head.n_anchors <= 128 &&
+        ted4_recon_class_x())
         query_all(s, &in);
     ted4_scene_free(s);
     return 0;

@@ -1,6 +1,8 @@
-/* fz_roundtrip.c - any bytes to the strict decoder, and what it accepts to the writer. Up to two bytes behind the chunk ENDS are knobs of others.
- * Claim: write(parse(x)) is x. Ancillary chunks and the minor version are not parsed, so they are left out of x; without them a
- * file may have too many symbols a byte for its level, which the writer then says. Writing twice gives the same, tiles in any order.
+/* fz_roundtrip.c - any bytes to the strict decoder, and what it accepts to the writer. Up to two
+ * bytes behind the chunk ENDS are knobs of others. Claim: write(parse(x)) is x. Ancillary chunks
+ * and the minor version are not parsed, so they are left out of x; without them a file may have too
+ * many symbols a byte for its level, which the writer then says. Writing twice gives the same,
+ * tiles in any order.
  * SPDX-License-Identifier: BSD-2-Clause */
 #include <string.h>
 #include "harness.h"
@@ -13,16 +15,20 @@ enum { TAIL = 2 };
 static void rewrite(const ted4_scene *s, const uint8_t *data, size_t size)
 {
     const ted4_parallel backwards = order_parallel(2);
-    uint8_t     *const plain = malloc(size), *first, *second;
+    uint8_t *const plain = malloc(size), *first, *second;
     const size_t n = plain != NULL ? ted4_plain_file(plain, data, size) : 0;
-    size_t       n_first, n_second;
+    size_t n_first, n_second;
     const ted4_status verdict = ted4_encode(s, s->level, NULL, &first, &n_first, NULL);
 
     fuzz_require(plain != NULL, "memory");
-    fuzz_require(verdict == TED4_OK || (n < size && verdict == TED4_E_LVL_EXCEEDED), "what is read can be written");
-    fuzz_require(verdict != TED4_OK || (n_first == n && memcmp(first, plain, n) == 0), "the same bytes");
-    fuzz_require(ted4_encode(s, s->level, &backwards, &second, &n_second, NULL) == verdict, "the same verdict twice");
-    fuzz_require(n_second == n_first && (n_first == 0 || memcmp(first, second, n_first) == 0), "the same bytes twice");
+    fuzz_require(verdict == TED4_OK || (n < size && verdict == TED4_E_LVL_EXCEEDED),
+                 "what is read can be written");
+    fuzz_require(verdict != TED4_OK || (n_first == n && memcmp(first, plain, n) == 0),
+                 "the same bytes");
+    fuzz_require(ted4_encode(s, s->level, &backwards, &second, &n_second, NULL) == verdict,
+                 "the same verdict twice");
+    fuzz_require(n_second == n_first && (n_first == 0 || memcmp(first, second, n_first) == 0),
+                 "the same bytes twice");
     free(second);
     free(first);
     free(plain);
@@ -31,8 +37,8 @@ static void rewrite(const ted4_scene *s, const uint8_t *data, size_t size)
 int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
 {
     const ted4_options o = { .max_bytes = FUZZ_MAX_BYTES };
-    const size_t       n = ted4_without_tail(data, size, TAIL);
-    ted4_scene        *s = NULL;
+    const size_t n = ted4_without_tail(data, size, TAIL);
+    ted4_scene *s = NULL;
 
     if (ted4_decode(data, n, &o, &s, NULL) == TED4_OK)
         rewrite(s, data, n);

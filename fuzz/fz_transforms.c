@@ -1,16 +1,19 @@
-/* fz_transforms.c - D-NeRF's and nerfstudio's JSON: u8 kind (0 transforms.json; 1, 2 the training or the test file of a pair whose other one is
- * right), then that file. Pictures a.png and b.png and points.ply are there.
- * Claims: those of fuzz_load_scene().
+/* fz_transforms.c - D-NeRF's and nerfstudio's JSON: u8 kind (0 transforms.json; 1, 2 the training
+ * or the test file of a pair whose other one is right), then that file. Pictures a.png and b.png
+ * and points.ply are there. Claims: those of fuzz_load_scene().
  * SPDX-License-Identifier: BSD-2-Clause */
 #include "harness.h"
 #include "scene_folder.h"
 
 #define POSE "[[1,0,0,0],[0,1,0,0],[0,0,1,4],[0,0,0,1]]"
 
-static const char *const name[3] = { "transforms.json", "transforms_train.json", "transforms_test.json" };
-static const char good[] = "{\"camera_angle_x\":0.7,\"frames\":[{\"file_path\":\"./a\",\"time\":0,\"transform_matrix\":" POSE "},"
+static const char *const name[3] = { "transforms.json", "transforms_train.json",
+                                     "transforms_test.json" };
+static const char good[] = "{\"camera_angle_x\":0.7,\"frames\":[{\"file_path\":\"./"
+                           "a\",\"time\":0,\"transform_matrix\":" POSE "},"
                            "{\"file_path\":\"b.png\",\"time\":1,\"transform_matrix\":" POSE "}]}";
-static const char points[] = "ply\nformat ascii 1.0\nelement vertex 1\nproperty float x\nproperty float y\nproperty float z\nend_header\n0 0 1\n";
+static const char points[] = "ply\nformat ascii 1.0\nelement vertex 1\nproperty float x\nproperty "
+                             "float y\nproperty float z\nend_header\n0 0 1\n";
 
 int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
 {

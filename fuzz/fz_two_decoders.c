@@ -1,8 +1,9 @@
-/* fz_two_decoders.c - any bytes to the strict decoder and to the code that the specification prints (spec 4.5, tests/spec_model.h), which shares nothing with
- * it but the tables of annex A. Up to two bytes behind the chunk ENDS are knobs of others.
- * Claims: the same verdict, identifier and offset; of what is valid the same tiers T0 to T4, byte by byte. (two_decoders.py asks the one in Python.)
+/* fz_two_decoders.c - any bytes to the strict decoder and to the code that the specification prints
+ * (spec 4.5, tests/spec_model.h), which shares nothing with it but the tables of annex A. Up to two
+ * bytes behind the chunk ENDS are knobs of others. Claims: the same verdict, identifier and offset;
+ * of what is valid the same tiers T0 to T4, byte by byte. (two_decoders.py asks the one in Python.)
  * SPDX-License-Identifier: BSD-2-Clause */
-#include "spec_tiers.h"                 /* first: its names are common ones */
+#include "spec_tiers.h" /* first: its names are common ones */
 #include "harness.h"
 #include "mend.h"
 #include "norm/limits.h"
@@ -16,26 +17,27 @@ static const uint64_t patience = (uint64_t)1 << 24;
 /* The tier that is expected, and how much of it has come. */
 typedef struct {
     const spec_bytes *want;
-    size_t            n;
+    size_t n;
 } expected;
 
 static void compare(void *user, const void *bytes, size_t size)
 {
     expected *e = user;
 
-    fuzz_require(size <= e->want->size - e->n && memcmp(bytes, e->want->data + e->n, size) == 0, "one tier");
+    fuzz_require(size <= e->want->size - e->n && memcmp(bytes, e->want->data + e->n, size) == 0,
+                 "one tier");
     e->n += size;
 }
 
 /* Would the printed code end soon? Without a good HEAD it does. */
 static int soon(const uint8_t *data, size_t size)
 {
-    ted4_reader      r;
+    ted4_reader r;
     ted4_chunk_place p;
-    ted4_header      h;
-    ted4_shape       shape;
-    uint64_t         n;
-    int              before = -1;
+    ted4_header h;
+    ted4_shape shape;
+    uint64_t n;
+    int before = -1;
 
     memset(&h, 0, sizeof h);
     ted4_reader_init(&r, data, 0, size, 1);
@@ -47,14 +49,16 @@ static int soon(const uint8_t *data, size_t size)
     ted4_walk_header(&r.base, &h, &shape, TED4_LEVEL_UNBOUNDED, UINT64_MAX);
     if (r.base.error.code != TED4_OK)
         return 1;
-    n = h.n_anchors <= size / 6 ? h.n_anchors : 0;      /* else there are no positions */
-    return n * ted4_count_products(&h, &shape) + SEARCH * n * (ted4_count_symbols(&h, &shape) / h.n_anchors) <= patience;
+    n = h.n_anchors <= size / 6 ? h.n_anchors : 0; /* else there are no positions */
+    return n * ted4_count_products(&h, &shape) +
+               SEARCH * n * (ted4_count_symbols(&h, &shape) / h.n_anchors) <=
+           patience;
 }
 
 static void same_tiers(const spec_tiers *t, const ted4_scene *s, const uint8_t *data, size_t size)
 {
     for (int i = 0; i < N_TIERS; i++) {
-        expected          e = { &t->tier[i], 0 };
+        expected e = { &t->tier[i], 0 };
         const ted4_status verdict = i == 0 ? ted4_dump_syntax(data, size, NULL, compare, &e, NULL)
                                            : ted4_dump_tier(s, i, NULL, compare, &e);
 
@@ -65,10 +69,10 @@ static void same_tiers(const spec_tiers *t, const ted4_scene *s, const uint8_t *
 int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
 {
     const ted4_options o = { .max_bytes = FUZZ_MAX_BYTES };
-    const size_t       n = ted4_without_tail(data, size, TAIL);
-    spec_tiers         t;
-    ted4_scene        *s = NULL;
-    ted4_error         e = { TED4_OK, 0 };
+    const size_t n = ted4_without_tail(data, size, TAIL);
+    spec_tiers t;
+    ted4_scene *s = NULL;
+    ted4_error e = { TED4_OK, 0 };
 
     memset(&t, 0, sizeof t);
     if (!soon(data, n) || ted4_decode(data, n, &o, &s, &e) == TED4_E_LIMIT_MEMORY)

@@ -1,5 +1,6 @@
-/* harness.h - what the fuzzing harnesses share: a claim that ends the process when it does not hold, numbers taken from an input, and the
- * bound on a decoder's memory. Each fz_*.c is one libFuzzer entry; list.def names them all; main.c replays files through them without libFuzzer.
+/* harness.h - what the fuzzing harnesses share: a claim that ends the process when it does not
+ * hold, numbers taken from an input, and the bound on a decoder's memory. Each fz_*.c is one
+ * libFuzzer entry; list.def names them all; main.c replays files through them without libFuzzer.
  * SPDX-License-Identifier: BSD-2-Clause */
 #ifndef TED4_HARNESS_H
 #define TED4_HARNESS_H

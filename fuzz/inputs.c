@@ -29,9 +29,9 @@ fuzz_entry *fuzz_find(const char *name)
 
 static int replay_file(fuzz_entry *run, const char *path, size_t size)
 {
-    FILE *const    f = fopen(path, "rb");
+    FILE *const f = fopen(path, "rb");
     uint8_t *const data = malloc(size > 0 ? size : 1);
-    const int      whole = f != NULL && data != NULL && fread(data, 1, size, f) == size;
+    const int whole = f != NULL && data != NULL && fread(data, 1, size, f) == size;
 
     if (f != NULL)
         fclose(f);
@@ -49,9 +49,9 @@ static int no_dots(const struct dirent *e)
 static int replay_folder(fuzz_entry *run, const char *path, size_t *n)
 {
     struct dirent **list;
-    const int       count = scandir(path, &list, no_dots, alphasort);
-    int             result = count < 0 ? -1 : 0;
-    char            name[4096];
+    const int count = scandir(path, &list, no_dots, alphasort);
+    int result = count < 0 ? -1 : 0;
+    char name[4096];
 
     for (int i = 0; i < count; i++) {
         (void)snprintf(name, sizeof name, "%s/%s", path, list[i]->d_name);

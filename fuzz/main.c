@@ -1,5 +1,6 @@
-/* main.c - replays inputs through one harness, without libFuzzer: replay NAME PATH..., PATH being a file or a folder of files.
- * Good for looking at a find in a debugger, too. Ends with 3 when a path cannot be read.
+/* main.c - replays inputs through one harness, without libFuzzer: replay NAME PATH..., PATH being a
+ * file or a folder of files. Good for looking at a find in a debugger, too. Ends with 3 when a path
+ * cannot be read.
  * SPDX-License-Identifier: BSD-2-Clause */
 #include "harness.h"
 #include "inputs.h"
@@ -7,10 +8,11 @@
 int main(int argc, char **argv)
 {
     fuzz_entry *run = argc > 2 ? fuzz_find(argv[1]) : NULL;
-    size_t      n = 0;
+    size_t n = 0;
 
     if (run == NULL) {
-        fprintf(stderr, "replay: usage: replay NAME PATH..., the name of a harness of fuzz/list.def\n");
+        fprintf(stderr,
+                "replay: usage: replay NAME PATH..., the name of a harness of fuzz/list.def\n");
         return 3;
     }
     for (int i = 2; i < argc; i++)

@@ -1,5 +1,6 @@
-/* make_corpus.c - writes fuzz/corpus: tiny valid files, each with other parts of the header in use, the same with knobs behind them, files
- * that are refused, and the seeds of corpus_units.c and corpus_scenes.c. `make fuzz-corpus`.
+/* make_corpus.c - writes fuzz/corpus: tiny valid files, each with other parts of the header in use,
+ * the same with knobs behind them, files that are refused, and the seeds of corpus_units.c and
+ * corpus_scenes.c. `make fuzz-corpus`.
  *     make_corpus FOLDER
  * SPDX-License-Identifier: BSD-2-Clause */
 #include <stdio.h>
@@ -66,8 +67,10 @@ static void moving(ted4_header *h, uint8_t motion)
     h->bank_dim = 2;
 }
 
-static const char *const name[] = { "smallest", "masks", "inr", "slices", "bank", "bank_mask", "concat", "motion_inr", "activation",
-                                    "view_colour", "view_full", "linear", "two_tiles", "escapes", "deflated", "meta" };
+static const char *const name[] = { "smallest",   "masks",       "inr",       "slices",
+                                    "bank",       "bank_mask",   "concat",    "motion_inr",
+                                    "activation", "view_colour", "view_full", "linear",
+                                    "two_tiles",  "escapes",     "deflated",  "meta" };
 
 enum { N_FILES = sizeof name / sizeof *name };
 
@@ -78,17 +81,46 @@ static ted4_header header_of(int i)
     switch (i) {
     case 1: h.offset_mask = 1; break;
     case 2: inr_prior(&h); break;
-    case 3: inr_prior(&h); slices(&h); break;
+    case 3:
+        inr_prior(&h);
+        slices(&h);
+        break;
     case 4: moving(&h, TED4_MOTION_BANK); break;
-    case 5: moving(&h, TED4_MOTION_BANK); h.temporal_mask = h.offset_mask = 1; break;
+    case 5:
+        moving(&h, TED4_MOTION_BANK);
+        h.temporal_mask = h.offset_mask = 1;
+        break;
     case 6: moving(&h, TED4_MOTION_CONCAT); break;
-    case 7: moving(&h, TED4_MOTION_INR); h.temporal_mask = 1; break;
+    case 7:
+        moving(&h, TED4_MOTION_INR);
+        h.temporal_mask = 1;
+        break;
     case 8: h.activation = 1; break;
-    case 9: h.view = TED4_VIEW_COLOUR; h.head_layers = 1; h.head_width = 2; break;
-    case 10: h.view = TED4_VIEW_FULL; slices(&h); break;
-    case 11: h.scale_domain = TED4_SCALE_LINEAR; h.frames = 1; h.exponent = -7; break;
-    case 12: h.n_anchors = 67; h.n_offsets = 1; h.feature_dim = h.slice[0] = 1; h.offset_mask = 1; break;
-    case 13: inr_prior(&h); h.activation = 1; h.context_bits = 12; break;
+    case 9:
+        h.view = TED4_VIEW_COLOUR;
+        h.head_layers = 1;
+        h.head_width = 2;
+        break;
+    case 10:
+        h.view = TED4_VIEW_FULL;
+        slices(&h);
+        break;
+    case 11:
+        h.scale_domain = TED4_SCALE_LINEAR;
+        h.frames = 1;
+        h.exponent = -7;
+        break;
+    case 12:
+        h.n_anchors = 67;
+        h.n_offsets = 1;
+        h.feature_dim = h.slice[0] = 1;
+        h.offset_mask = 1;
+        break;
+    case 13:
+        inr_prior(&h);
+        h.activation = 1;
+        h.context_bits = 12;
+        break;
     default: break;
     }
     return h;
@@ -98,9 +130,10 @@ static ted4_header header_of(int i)
 static size_t add_meta(uint8_t *data, size_t size)
 {
     static const char text[] = "title=fuzz\n";
-    const size_t      n = sizeof text - 1, whole = TED4_FRAME_HEAD_SIZE + n + TED4_FRAME_HASH_SIZE;
-    const size_t      head = TED4_FILE_HEADER_SIZE;
-    const size_t      at = head + TED4_FRAME_HEAD_SIZE + ted4_load32(data + head + 8) + TED4_FRAME_HASH_SIZE;
+    const size_t n = sizeof text - 1, whole = TED4_FRAME_HEAD_SIZE + n + TED4_FRAME_HASH_SIZE;
+    const size_t head = TED4_FILE_HEADER_SIZE;
+    const size_t at = head + TED4_FRAME_HEAD_SIZE + ted4_load32(data + head + 8) +
+                      TED4_FRAME_HASH_SIZE;
 
     memmove(data + at + whole, data + at, size - at);
     memcpy(data + at, "META", 4);
@@ -114,7 +147,7 @@ static size_t add_meta(uint8_t *data, size_t size)
 
 void corpus_write(const char *group, const char *file, const void *data, size_t size)
 {
-    char  path[4096];
+    char path[4096];
     FILE *f;
 
     (void)snprintf(path, sizeof path, "%s/%s", corpus, group);
@@ -129,12 +162,12 @@ void corpus_write(const char *group, const char *file, const void *data, size_t 
 
 static int write_file(int i)
 {
-    random_source     r = random_seed((uint64_t)i);
+    random_source r = random_seed((uint64_t)i);
     const ted4_header h = header_of(i);
-    ted4_scene       *s = random_scene_of(&r, &h, i == 13);
-    uint8_t           data[MAX_FILE], *out = NULL;
-    size_t            size = 0;
-    char              file[64];
+    ted4_scene *s = random_scene_of(&r, &h, i == 13);
+    uint8_t data[MAX_FILE], *out = NULL;
+    size_t size = 0;
+    char file[64];
 
     for (size_t j = 0; i == 14 && s != NULL && j < s->netr.n; j++)
         s->netr.values[j] = 0.25f;
@@ -150,7 +183,7 @@ static int write_file(int i)
     for (int j = 0; j < QUERIES; j++)
         data[size + (size_t)j] = (uint8_t)random_u32(&r);
     corpus_write("recon", file, data, size + QUERIES);
-    data[size] = (uint8_t)(i % 8 | i / 2 << 4);         /* tile order and trace, then a bound of memory */
+    data[size] = (uint8_t)(i % 8 | i / 2 << 4); /* tile order and trace, then a bound of memory */
     corpus_write("knobs", file, data, size + KNOBS);
     return 1;
 }
@@ -169,13 +202,13 @@ static size_t flip_bits(uint8_t *data, size_t size, size_t max_size)
 static void write_refused(void)
 {
     enum { TRIES = 30000 };
-    int             met[TED4_N_STATUS] = { 1 };
-    static uint8_t  data[2 * MAX_FILE];
-    char            path[4096], file[64];
-    ted4_scene     *s;
+    int met[TED4_N_STATUS] = { 1 };
+    static uint8_t data[2 * MAX_FILE];
+    char path[4096], file[64];
+    ted4_scene *s;
 
     for (uint32_t seed = 0; seed < TRIES; seed++) {
-        FILE  *f;
+        FILE *f;
         size_t size;
 
         (void)snprintf(path, sizeof path, "%s/ted4/%s.ted4", corpus, name[seed % N_FILES]);
@@ -183,7 +216,8 @@ static void write_refused(void)
         size = f != NULL ? fread(data, 1, MAX_FILE, f) : 0;
         if (f != NULL)
             fclose(f);
-        size = ted4_without_tail(data, fuzz_mutate_file(data, size, MAX_FILE, seed, flip_bits), QUERIES);
+        size = ted4_without_tail(data, fuzz_mutate_file(data, size, MAX_FILE, seed, flip_bits),
+                                 QUERIES);
 
         const ted4_status verdict = ted4_decode(data, size, NULL, &s, NULL);
 
@@ -196,16 +230,16 @@ static void write_refused(void)
     }
 }
 
-/* Two tiles, of which a lenient decoder can save the first when the file is cut; and both damaged: whichever runs first, the first of them in the
- * file is the one that counts. */
+/* Two tiles, of which a lenient decoder can save the first when the file is cut; and both damaged:
+ * whichever runs first, the first of them in the file is the one that counts. */
 static void write_two_tiles(void)
 {
     enum { TWO_TILES = 12, BACKWARDS = 2, CUT = 60 };
-    random_source     r = random_seed(TWO_TILES);
+    random_source r = random_seed(TWO_TILES);
     const ted4_header h = header_of(TWO_TILES);
-    ted4_scene       *s = random_scene_of(&r, &h, 0);
-    uint8_t          *out = NULL, data[MAX_FILE];
-    size_t            size = 0;
+    ted4_scene *s = random_scene_of(&r, &h, 0);
+    uint8_t *out = NULL, data[MAX_FILE];
+    size_t size = 0;
 
     if (s == NULL || ted4_encode(s, 0, NULL, &out, &size, NULL) != TED4_OK || size > MAX_FILE / 2)
         exit(3);

@@ -35,7 +35,7 @@ void ted4_mend_chunks(uint8_t *data, size_t size)
 
 void ted4_mend_ends(uint8_t *data, size_t size)
 {
-    size_t            ends;
+    size_t ends;
     ted4_scene *const s = fuzz_parse(data, size, 0, &ends);
 
     if (s == NULL)
@@ -49,9 +49,9 @@ void ted4_mend_ends(uint8_t *data, size_t size)
 
 size_t ted4_mend_ranges(uint8_t *data, size_t size, size_t max_size)
 {
-    size_t            ends, n = 0;
+    size_t ends, n = 0;
     ted4_scene *const s = fuzz_parse(data, size, 1, &ends);
-    uint8_t          *out = NULL;
+    uint8_t *out = NULL;
 
     if (s == NULL)
         return size;
@@ -96,7 +96,8 @@ size_t ted4_chunk_holding(const uint8_t *data, size_t size, size_t at)
 
 size_t ted4_without_tail(const uint8_t *data, size_t size, size_t most)
 {
-    for (size_t i = TED4_FILE_HEADER_SIZE, whole; (whole = ted4_chunk_size(data, size, i)) > 0; i += whole)
+    for (size_t i = TED4_FILE_HEADER_SIZE, whole; (whole = ted4_chunk_size(data, size, i)) > 0;
+         i += whole)
         if (memcmp(data + i, ted4_chunk_type[TED4_ENDS], 4) == 0)
             return size - (i + whole) <= most ? i + whole : size;
     return size;

@@ -1,5 +1,6 @@
-/* msan_zlib.c - linked into MSan builds only (-Wl,--wrap): zlib is not compiled for MSan, so what it has written is said to be written. Nothing else
- * is changed: every call goes to zlib with its own arguments, and its own result comes back.
+/* msan_zlib.c - linked into MSan builds only (-Wl,--wrap): zlib is not compiled for MSan, so what
+ * it has written is said to be written. Nothing else is changed: every call goes to zlib with its
+ * own arguments, and its own result comes back.
  * SPDX-License-Identifier: BSD-2-Clause */
 #include <sanitizer/msan_interface.h>
 #include <zlib.h>
@@ -14,7 +15,7 @@ int __wrap_uncompress2(Bytef *to, uLongf *n_to, const Bytef *from, uLong *n_from
 int __wrap_inflate(z_stream *z, int flush)
 {
     Bytef *const begin = z->next_out;
-    const int    result = __real_inflate(z, flush);
+    const int result = __real_inflate(z, flush);
 
     __msan_unpoison(z, sizeof *z);
     __msan_unpoison(begin, (size_t)(z->next_out - begin));

@@ -12,19 +12,24 @@ enum { MAX_FIELDS = 1 << 13, MAX_TAIL = 32, ONE_STALE_OF = 16 };
 
 /* A file while it is changed. */
 typedef struct {
-    uint8_t      *data;
-    size_t        size, max_size;
+    uint8_t *data;
+    size_t size, max_size;
     random_source r;
-    int           coded;            /* bytes of a TILE were changed */
+    int coded; /* bytes of a TILE were changed */
 } file;
 
 /* Bounds of elements in the specification, of numbers, and of binary32. */
 static uint64_t boundary(random_source *r)
 {
     static const uint64_t bound[] = {
-        0, 1, 2, 3, 4, 7, 8, 10, 12, 16, 20, 30, 31, 32, 64, 127, 128, 240, 255, 256, 512, 600, 3600, 4096, 8192, 16384, 32767, 32768,
-        36000, 65535, 65536, 1 << 18, 1 << 20, 1 << 22, (1 << 24) - 1, 1 << 24, 0x7fffffff, 0x80000000, 0xffffffff, 0x3c00, 0x7c00,
-        0x35800000, 0x44800000, 0x00800000, 0x007fffff, 0x7f7fffff, 0x7f800000, 0x7fc00000, 0xff7fffff, 0x3f800000, UINT64_MAX
+        0,          1,          2,          3,          4,          7,          8,
+        10,         12,         16,         20,         30,         31,         32,
+        64,         127,        128,        240,        255,        256,        512,
+        600,        3600,       4096,       8192,       16384,      32767,      32768,
+        36000,      65535,      65536,      1 << 18,    1 << 20,    1 << 22,    (1 << 24) - 1,
+        1 << 24,    0x7fffffff, 0x80000000, 0xffffffff, 0x3c00,     0x7c00,     0x35800000,
+        0x44800000, 0x00800000, 0x007fffff, 0x7f7fffff, 0x7f800000, 0x7fc00000, 0xff7fffff,
+        0x3f800000, UINT64_MAX
     };
 
     return bound[random_in(r, 0, sizeof bound / sizeof *bound - 1)] + random_in(r, 0, 2) - 1;
@@ -48,9 +53,9 @@ static void store(uint8_t *p, unsigned width, uint64_t v)
 static void change_field(file *f)
 {
     static fuzz_field fields[MAX_FIELDS];
-    const size_t      n = fuzz_fields(f->data, f->size, fields, MAX_FIELDS);
+    const size_t n = fuzz_fields(f->data, f->size, fields, MAX_FIELDS);
     const fuzz_field *x, *y;
-    uint64_t          v;
+    uint64_t v;
 
     if (n == 0)
         return;
@@ -86,14 +91,15 @@ static void change_values(random_source *r, ted4_blob *b)
 
 static void change_symbol(random_source *r, ted4_scene *s)
 {
-    const int    t = (int)random_in(r, 0, TED4_TYPES - 1);
+    const int t = (int)random_in(r, 0, TED4_TYPES - 1);
     const size_t n = (size_t)s->shape.dim[t] * s->head.n_anchors;
-    int16_t     *k;
+    int16_t *k;
 
     if (n == 0)
         return;
     k = &s->symbol[t][random_in(r, 0, (uint32_t)n - 1)];
-    *k = (int16_t)(random_in(r, 0, 1) ? ted4_sat16((int32_t)boundary(r)) : *k + (int)random_in(r, 0, 8) - 4);
+    *k = (int16_t)(random_in(r, 0, 1) ? ted4_sat16((int32_t)boundary(r))
+                                      : *k + (int)random_in(r, 0, 8) - 4);
     *k = *k == INT16_MIN ? -INT16_MAX : *k;
 }
 
@@ -101,7 +107,9 @@ static void change_symbol(random_source *r, ted4_scene *s)
 static void change_world(random_source *r, ted4_header *h)
 {
     switch (random_in(r, 0, 4)) {
-    case 0: h->step[random_in(r, 0, TED4_TYPES - 1)] = ldexpf(1, (int)random_in(r, 0, 30) - 20); break;
+    case 0:
+        h->step[random_in(r, 0, TED4_TYPES - 1)] = ldexpf(1, (int)random_in(r, 0, 30) - 20);
+        break;
     case 1: h->origin[random_in(r, 0, 2)] = any_value(r); break;
     case 2: h->exponent = (int8_t)((int)random_in(r, 0, 60) - 30); break;
     case 3: h->scale_domain ^= 1; break;
@@ -117,7 +125,8 @@ static void change_masks(random_source *r, ted4_scene *s)
         s->dynamic[a] ^= 1;
     if (s->head.offset_mask)
         s->offset_bits[a] ^= (uint16_t)(1u << random_in(r, 0, s->head.n_offsets - 1u));
-    s->prob[random_in(r, 0, s->shape.n_tiles * TED4_PROBS - 1)] = random_in(r, 0, 1) ? 1 : (uint16_t)random_in(r, 1, 65535);
+    s->prob[random_in(r, 0, s->shape.n_tiles * TED4_PROBS - 1)] =
+        random_in(r, 0, 1) ? 1 : (uint16_t)random_in(r, 1, 65535);
 }
 
 /* Weights of Tier E must lie on the grid, and steps follow from them. */
@@ -131,9 +140,9 @@ static void change_prior(random_source *r, ted4_scene *s)
 /* The parsed scene with something else in it, written again. */
 static void change_scene(file *f)
 {
-    size_t            ends, n = 0;
+    size_t ends, n = 0;
     ted4_scene *const s = fuzz_parse(f->data, f->size, 0, &ends);
-    uint8_t          *out = NULL;
+    uint8_t *out = NULL;
 
     if (s == NULL)
         return;
@@ -160,8 +169,8 @@ static void make_scene(file *f)
 {
     ted4_header h = random_header(&f->r);
     ted4_scene *s;
-    uint8_t    *out = NULL;
-    size_t      n = 0;
+    uint8_t *out = NULL;
+    size_t n = 0;
 
     h.n_anchors = random_in(&f->r, 1, random_in(&f->r, 0, 3) ? 6 : 70);
     s = random_scene_of(&f->r, &h, (int)random_in(&f->r, 0, 1));
@@ -183,7 +192,7 @@ static int splice(file *f, size_t at, size_t old, const uint8_t *with, size_t n)
         return 0;
     }
     if (n > 0)
-        memcpy(copy, with, n);                  /* which may lie in the file itself */
+        memcpy(copy, with, n); /* which may lie in the file itself */
     memmove(f->data + at + n, f->data + at + old, f->size - at - old);
     memcpy(f->data + at, copy, n);
     f->size += n - old;
@@ -194,12 +203,15 @@ static int splice(file *f, size_t at, size_t old, const uint8_t *with, size_t n)
 /* Offset of a random chunk, or size: none. */
 static size_t any_chunk(file *f)
 {
-    return f->size == 0 ? 0 : ted4_chunk_holding(f->data, f->size, random_in(&f->r, 0, (uint32_t)f->size - 1));
+    return f->size == 0
+               ? 0
+               : ted4_chunk_holding(f->data, f->size, random_in(&f->r, 0, (uint32_t)f->size - 1));
 }
 
 static void change_chunks(file *f)
 {
-    static const uint8_t extra[TED4_FRAME_HEAD_SIZE + 4 + TED4_FRAME_HASH_SIZE] = "META\2\0\0\0\4\0\0\0a=b\n";
+    static const uint8_t extra[TED4_FRAME_HEAD_SIZE + 4 + TED4_FRAME_HASH_SIZE] =
+        "META\2\0\0\0\4\0\0\0a=b\n";
     const size_t at = any_chunk(f), to = any_chunk(f);
     const size_t n = at < f->size ? ted4_chunk_size(f->data, f->size, at) : 0;
 
@@ -210,7 +222,9 @@ static void change_chunks(file *f)
     case 1: (void)splice(f, to, 0, f->data + at, n); break;
     case 2: (void)splice(f, at, 0, extra, sizeof extra); break;
     case 3: f->data[at + random_in(&f->r, 0, 3)] ^= (uint8_t)(1u << random_in(&f->r, 0, 6)); break;
-    default: f->data[at + 4 + random_in(&f->r, 0, 3)] ^= (uint8_t)(1u << random_in(&f->r, 0, 7)); break;
+    default:
+        f->data[at + 4 + random_in(&f->r, 0, 3)] ^= (uint8_t)(1u << random_in(&f->r, 0, 7));
+        break;
     }
 }
 
@@ -218,8 +232,8 @@ static void change_chunks(file *f)
 static void change_payload(file *f, fuzz_bytes_fn *bytes)
 {
     const size_t at = any_chunk(f);
-    size_t       old, room, n;
-    uint8_t     *payload;
+    size_t old, room, n;
+    uint8_t *payload;
 
     if (at >= f->size)
         return;
@@ -240,7 +254,7 @@ static void change_payload(file *f, fuzz_bytes_fn *bytes)
 static void leave_stale(file *f)
 {
     const size_t at = any_chunk(f);
-    size_t       n;
+    size_t n;
 
     if (at >= f->size)
         return;
@@ -248,7 +262,8 @@ static void leave_stale(file *f)
     if (random_in(&f->r, 0, 1))
         f->data[at + n - 1 - random_in(&f->r, 0, 7)] ^= (uint8_t)random_in(&f->r, 1, 255);
     else {
-        f->data[at + n - 9] ^= (uint8_t)random_in(&f->r, 1, 255);   /* of the last word, or of the hash in ENDS */
+        f->data[at + n - 9] ^=
+            (uint8_t)random_in(&f->r, 1, 255); /* of the last word, or of the hash in ENDS */
         ted4_mend_chunks(f->data, f->size);
     }
 }
@@ -267,7 +282,7 @@ static void make_right(file *f)
 /* What stands behind ENDS goes along, or is chosen anew. Gives the whole size. */
 static size_t add_tail(file *f, const uint8_t *tail, size_t n)
 {
-    uint8_t  other[MAX_TAIL];
+    uint8_t other[MAX_TAIL];
     uint32_t n_other = random_in(&f->r, 0, 3) == 0 ? MAX_TAIL : random_in(&f->r, 1, 3);
 
     if (random_in(&f->r, 0, 7) > 0) {
@@ -283,29 +298,38 @@ static size_t add_tail(file *f, const uint8_t *tail, size_t n)
     return f->size + n_other;
 }
 
-size_t fuzz_mutate_file(uint8_t *data, size_t size, size_t max_size, uint32_t seed, fuzz_bytes_fn *bytes)
+size_t fuzz_mutate_file(uint8_t *data, size_t size, size_t max_size, uint32_t seed,
+                        fuzz_bytes_fn *bytes)
 {
-    file         f = { data, ted4_without_tail(data, size, MAX_TAIL), max_size, random_seed(seed), 0 };
+    file f = { data, ted4_without_tail(data, size, MAX_TAIL), max_size, random_seed(seed), 0 };
     const size_t n_tail = size - f.size;
-    uint8_t      tail[MAX_TAIL];
+    uint8_t tail[MAX_TAIL];
 
     if (n_tail > 0)
         memcpy(tail, data + f.size, n_tail);
-    for (int i = 0; i < 4; i++)                 /* the first numbers of near seeds are alike */
+    for (int i = 0; i < 4; i++) /* the first numbers of near seeds are alike */
         (void)random_u32(&f.r);
     switch (random_in(&f.r, 0, 15)) {
     case 0: f.size = bytes(data, f.size, max_size); break;
     case 1: make_scene(&f); break;
-    case 2: case 3: change_chunks(&f); break;
-    case 4: case 5: case 6: case 7: change_payload(&f, bytes); break;
-    case 8: case 9: case 10: case 11: change_scene(&f); break;
+    case 2:
+    case 3: change_chunks(&f); break;
+    case 4:
+    case 5:
+    case 6:
+    case 7: change_payload(&f, bytes); break;
+    case 8:
+    case 9:
+    case 10:
+    case 11: change_scene(&f); break;
     default: change_field(&f); break;
     }
     make_right(&f);
     return add_tail(&f, tail, n_tail);
 }
 
-size_t fuzz_mutate_frames(uint8_t *data, size_t size, size_t max_size, uint32_t seed, fuzz_bytes_fn *bytes)
+size_t fuzz_mutate_frames(uint8_t *data, size_t size, size_t max_size, uint32_t seed,
+                          fuzz_bytes_fn *bytes)
 {
     file f = { data, size, max_size, random_seed(seed), 0 };
 
@@ -321,9 +345,10 @@ size_t fuzz_mutate_frames(uint8_t *data, size_t size, size_t max_size, uint32_t 
     return f.size;
 }
 
-size_t fuzz_cross_files(const uint8_t *a, size_t a_size, const uint8_t *b, size_t b_size, uint8_t *to, size_t max_size, uint32_t seed)
+size_t fuzz_cross_files(const uint8_t *a, size_t a_size, const uint8_t *b, size_t b_size,
+                        uint8_t *to, size_t max_size, uint32_t seed)
 {
-    file   f = { to, ted4_without_tail(a, a_size, MAX_TAIL), max_size, random_seed(seed), 0 };
+    file f = { to, ted4_without_tail(a, a_size, MAX_TAIL), max_size, random_seed(seed), 0 };
     size_t from, at, n;
 
     if (f.size > max_size || b_size == 0)

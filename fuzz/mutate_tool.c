@@ -22,8 +22,8 @@ static size_t some_bytes(uint8_t *data, size_t size, size_t max_size)
 int main(int argc, char **argv)
 {
     static uint8_t data[MAX_SIZE];
-    FILE          *f = argc == 4 ? fopen(argv[2], "rb") : NULL;
-    size_t         n;
+    FILE *f = argc == 4 ? fopen(argv[2], "rb") : NULL;
+    size_t n;
 
     if (f == NULL) {
         fprintf(stderr, "mutate: usage: mutate SEED FROM TO\n");

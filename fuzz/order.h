@@ -1,4 +1,5 @@
-/* order.h - what must not matter to a result: the order in which indices of a parallel-for run, and which kernels do.
+/* order.h - what must not matter to a result: the order in which indices of a parallel-for run, and
+ * which kernels do.
  * SPDX-License-Identifier: BSD-2-Clause */
 #ifndef TED4_FUZZ_ORDER_H
 #define TED4_FUZZ_ORDER_H
@@ -14,7 +15,8 @@ static inline void order_forward(void *user, size_t n, void (*body)(void *arg, s
         body(arg, i);
 }
 
-static inline void order_backward(void *user, size_t n, void (*body)(void *arg, size_t i), void *arg)
+static inline void order_backward(void *user, size_t n, void (*body)(void *arg, size_t i),
+                                  void *arg)
 {
     (void)user;
     for (size_t i = n; i > 0; i--)
@@ -34,7 +36,10 @@ static inline void order_split(void *user, size_t n, void (*body)(void *arg, siz
 /* which: 1 in order, 2 backwards, else odd ones first. */
 static inline ted4_parallel order_parallel(int which)
 {
-    return (ted4_parallel){ which == 1 ? order_forward : which == 2 ? order_backward : order_split, NULL };
+    return (ted4_parallel) { which == 1   ? order_forward
+                             : which == 2 ? order_backward
+                                          : order_split,
+                             NULL };
 }
 
 #endif

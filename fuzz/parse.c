@@ -1,5 +1,5 @@
-/* parse.c - see parse.h. Pass 2 (spec 5.3) on one thread, with the walks of norm/ and the coder of read/. The forgiving coder is that one with
- * its failures inside tiles taken back.
+/* parse.c - see parse.h. Pass 2 (spec 5.3) on one thread, with the walks of norm/ and the coder of
+ * read/. The forgiving coder is that one with its failures inside tiles taken back.
  * SPDX-License-Identifier: BSD-2-Clause */
 #include "parse.h"
 
@@ -10,12 +10,12 @@
 #include "read/inflate.h"
 
 typedef struct {
-    ted4_scene  *s;
-    ted4_prior   prior;
-    ted4_reader  file;
-    void        *work;              /* of one tile; in the scene's arena */
-    unsigned     n_tiles;
-    int          forgiving;
+    ted4_scene *s;
+    ted4_prior prior;
+    ted4_reader file;
+    void *work; /* of one tile; in the scene's arena */
+    unsigned n_tiles;
+    int forgiving;
 } parser;
 
 /* Operations of read/reader.c, of which the forgiving ones make use. All readers have the same. */
@@ -48,8 +48,8 @@ static uint32_t any_number(ted4_coder *c, unsigned width, uint32_t value)
 static void any_sizes(ted4_coder *c, uint32_t *size, unsigned n)
 {
     ted4_reader *r = (ted4_reader *)c;
-    size_t       left;
-    const int    whole = r->end - c->pos >= 4 * (size_t)n;
+    size_t left;
+    const int whole = r->end - c->pos >= 4 * (size_t)n;
 
     strict_ops()->sizes(c, size, n);
     if (!whole)
@@ -67,7 +67,7 @@ static void any_sizes(ted4_coder *c, uint32_t *size, unsigned n)
 /* A substream that cannot begin is one without words. */
 static void any_open(ted4_coder *c, size_t n)
 {
-    ted4_reader   *r = (ted4_reader *)c;
+    ted4_reader *r = (ted4_reader *)c;
     ted4_rans_dec *d = &r->rans;
 
     strict_ops()->open(c, n);
@@ -111,7 +111,7 @@ static void any_gauss(ted4_coder *c, size_t n, const int32_t *mu, const uint8_t 
 static void order_tau(ted4_scene *s, unsigned number)
 {
     const size_t n = s->head.n_anchors, first = (size_t)number * s->head.tile_size;
-    int16_t     *tau = s->symbol[TED4_TAU];
+    int16_t *tau = s->symbol[TED4_TAU];
 
     for (size_t i = first; tau != NULL && i < n && i - first < s->head.tile_size; i++)
         if (tau[i] > tau[2 * n + i])
@@ -138,11 +138,12 @@ static int blob(parser *p, ted4_blob *b, uint64_t n, size_t left)
 
 static void nete(parser *p, ted4_reader *r)
 {
-    ted4_scene  *s = p->s;
+    ted4_scene *s = p->s;
     const size_t bytes = r->end - r->base.pos, n_shifts = s->shape.n_units;
 
-    if (bytes < n_shifts || !ted4_scene_alloc_shifts(s) || !blob(p, &s->nete, s->shape.n_nete, bytes - n_shifts)
-        || ted4_prior_init(&p->prior, &s->head, &s->shape, &s->arena) != TED4_OK)
+    if (bytes < n_shifts || !ted4_scene_alloc_shifts(s) ||
+        !blob(p, &s->nete, s->shape.n_nete, bytes - n_shifts) ||
+        ted4_prior_init(&p->prior, &s->head, &s->shape, &s->arena) != TED4_OK)
         ted4_fail(&r->base.error, TED4_E_LIMIT_MEMORY, r->base.pos);
     else
         ted4_walk_nete(&r->base, s, &p->prior);
@@ -158,9 +159,9 @@ static void values(parser *p, ted4_reader *r, ted4_blob *b, uint64_t n)
 
 static void positions(parser *p, ted4_reader *r)
 {
-    if (p->s->bank.n != p->s->shape.n_bank || (r->end - r->base.pos) / 6 < p->s->head.n_anchors
-        || !ted4_scene_alloc_anchors(p->s)
-        || (p->work = ted4_arena_alloc(&p->s->arena, 1, ted4_tile_work_size(p->s))) == NULL)
+    if (p->s->bank.n != p->s->shape.n_bank || (r->end - r->base.pos) / 6 < p->s->head.n_anchors ||
+        !ted4_scene_alloc_anchors(p->s) ||
+        (p->work = ted4_arena_alloc(&p->s->arena, 1, ted4_tile_work_size(p->s))) == NULL)
         ted4_fail(&r->base.error, TED4_E_LIMIT_MEMORY, r->base.pos);
     else
         ted4_walk_positions(&r->base, p->s);
@@ -168,8 +169,9 @@ static void positions(parser *p, ted4_reader *r)
 
 static void tile(parser *p, ted4_reader *r)
 {
-    const ted4_coder_ops any = { any_number, r->base.ops->array, r->base.ops->deflated, any_sizes, any_open, any_close, any_bit,
-                                 any_gauss };
+    const ted4_coder_ops any = { any_number, r->base.ops->array, r->base.ops->deflated,
+                                 any_sizes,  any_open,           any_close,
+                                 any_bit,    any_gauss };
 
     if (p->work == NULL || p->n_tiles == p->s->shape.n_tiles) {
         ted4_fail(&r->base.error, TED4_E_CON_CHUNK_ORDER, r->base.pos);
@@ -224,7 +226,7 @@ static int chunks(parser *p, size_t *ends)
 ted4_scene *fuzz_parse(const uint8_t *data, size_t size, int forgiving, size_t *ends)
 {
     static const ted4_options o = { .max_bytes = FUZZ_MAX_BYTES };
-    parser                    p;
+    parser p;
 
     memset(&p, 0, sizeof p);
     p.forgiving = forgiving;

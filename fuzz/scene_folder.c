@@ -15,14 +15,14 @@ enum { MOST = 64, ROOM = 512 };
 
 /* What was written, so that it can be removed. */
 static struct {
-    char base[ROOM];            /* empty: not made yet */
-    char scene[ROOM];           /* the folder chosen */
+    char base[ROOM];  /* empty: not made yet */
+    char scene[ROOM]; /* the folder chosen */
     char made[MOST][ROOM];
-    int  n;
+    int n;
 } folder;
 
-/* A clip that is a video would be taken apart by another program: not here. Linked in place of it (-Wl,--wrap), which compares no types: the
- * declaration by __typeof__ does. */
+/* A clip that is a video would be taken apart by another program: not here. Linked in place of it
+ * (-Wl,--wrap), which compares no types: the declaration by __typeof__ does. */
 extern __typeof__(ted4_video_unpack) __wrap_ted4_video_unpack;
 
 char *__wrap_ted4_video_unpack(const char *video, size_t most, const ted4_dataset_options *o,
@@ -55,7 +55,8 @@ const char *fuzz_scene(const char *name)
     const char *base = getenv("TMPDIR");
 
     if (folder.base[0] == 0) {
-        (void)snprintf(folder.base, sizeof folder.base, "%s/ted4fuzzXXXXXX", base != NULL ? base : "/tmp");
+        (void)snprintf(folder.base, sizeof folder.base, "%s/ted4fuzzXXXXXX",
+                       base != NULL ? base : "/tmp");
         fuzz_require(mkdtemp(folder.base) != NULL, "a folder for scenes");
         (void)atexit(remove_all);
     }
@@ -89,7 +90,8 @@ const char *fuzz_file(const char *name, const void *bytes, size_t size)
     const char *path = path_of(name);
     FILE *const f = fopen(path, "wb");
 
-    fuzz_require(f != NULL && fwrite(bytes, 1, size, f) == size && fclose(f) == 0, "a file of a scene");
+    fuzz_require(f != NULL && fwrite(bytes, 1, size, f) == size && fclose(f) == 0,
+                 "a file of a scene");
     return path;
 }
 
@@ -101,14 +103,15 @@ const char *fuzz_text(const char *name, const char *text)
 const char *fuzz_picture(const char *name)
 {
     static const uint8_t pixels[12] = { 255, 0, 0, 0, 255, 0, 0, 0, 255, 90, 90, 90 };
-    const char          *path = path_of(name);
-    png_image            p;
+    const char *path = path_of(name);
+    png_image p;
 
     memset(&p, 0, sizeof p);
     p.version = PNG_IMAGE_VERSION;
     p.width = p.height = 2;
     p.format = PNG_FORMAT_RGB;
-    fuzz_require(png_image_write_to_file(&p, path, 0, pixels, 0, NULL) != 0, "a picture of a scene");
+    fuzz_require(png_image_write_to_file(&p, path, 0, pixels, 0, NULL) != 0,
+                 "a picture of a scene");
     return path;
 }
 
@@ -129,13 +132,16 @@ static void check_pictures(const ted4_dataset *d)
 {
     for (size_t i = 0; i < d->n_pictures; i++) {
         const ted4_picture *p = &d->pictures[i];
-        const ted4_camera  *c = &p->camera;
-        const double        lens[4] = { c->fx, c->fy, c->cx, c->cy };
+        const ted4_camera *c = &p->camera;
+        const double lens[4] = { c->fx, c->fy, c->cx, c->cy };
 
-        fuzz_require(c->width >= 1 && c->height >= 1 && c->width <= TED4_IMAGE_MAX_SIDE && c->height <= TED4_IMAGE_MAX_SIDE, "sizes");
+        fuzz_require(c->width >= 1 && c->height >= 1 && c->width <= TED4_IMAGE_MAX_SIDE &&
+                         c->height <= TED4_IMAGE_MAX_SIDE,
+                     "sizes");
         fuzz_require(all_finite(lens, 4) && c->fx > 0 && c->fy > 0, "a lens");
         fuzz_require(all_finite(c->R, 9) && all_finite(c->t, 3), "a pose");
-        fuzz_require(p->frame < d->n_frames && p->camera_id < d->n_cameras && p->path != NULL, "frame and camera");
+        fuzz_require(p->frame < d->n_frames && p->camera_id < d->n_cameras && p->path != NULL,
+                     "frame and camera");
     }
 }
 
@@ -143,7 +149,8 @@ static void check_dataset(ted4_dataset *d)
 {
     ted4_message m;
 
-    fuzz_require(d->n_pictures > 0 && d->n_frames > 0 && d->n_cameras > 0 && d->layout != NULL, "a dataset");
+    fuzz_require(d->n_pictures > 0 && d->n_frames > 0 && d->n_cameras > 0 && d->layout != NULL,
+                 "a dataset");
     fuzz_require(d->pictures[0].is_test == 0, "a picture to train on");
     fuzz_require(isfinite(d->rate) && d->rate >= 0, "a rate");
     check_pictures(d);
@@ -161,16 +168,17 @@ int fuzz_load_scene(void)
     static const ted4_dataset_options o = {
         .downscale = 1, .white = 1, .seed = 7, .cache_bytes = 1 << 20
     };
-    ted4_dataset                      d;
-    ted4_message                      m;
-    const int                         result = ted4_dataset_load(&d, folder.scene, &o, &m);
+    ted4_dataset d;
+    ted4_message m;
+    const int result = ted4_dataset_load(&d, folder.scene, &o, &m);
 
     fuzz_require(result == 0 || result == -1, "0 or -1");
     if (result == 0)
         check_dataset(&d);
     else {
         fuzz_check_message(&m);
-        fuzz_require(d.pictures == NULL && d.n_pictures == 0 && d.points == NULL, "an empty dataset");
+        fuzz_require(d.pictures == NULL && d.n_pictures == 0 && d.points == NULL,
+                     "an empty dataset");
     }
     ted4_dataset_free(&d);
     return result;

@@ -1,4 +1,5 @@
-/* ball_decoded.h - how good a file of the scene of balls is, once it was decoded again: for test_trainer.c and test_variants.c.
+/* ball_decoded.h - how good a file of the scene of balls is, once it was decoded again: for
+ * test_trainer.c and test_variants.c.
  * SPDX-License-Identifier: BSD-2-Clause */
 #ifndef TED4_BALL_DECODED_H
 #define TED4_BALL_DECODED_H
@@ -11,10 +12,10 @@
 /* Mean PSNR of the decoded file over the training pictures. */
 static inline double ball_decoded_psnr(const ball_file *f, ted4_dataset *d, ted4_info *info)
 {
-    ted4_scene  *s;
-    ted4_recon  *r;
+    ted4_scene *s;
+    ted4_recon *r;
     ted4_viewer *viewer = ted4_viewer_new();
-    double       sum = 0, n = 0;
+    double sum = 0, n = 0;
 
     assert_non_null(viewer);
     assert_int_equal(ted4_decode(f->bytes, f->size, NULL, &s, NULL), TED4_OK);
@@ -23,10 +24,14 @@ static inline double ball_decoded_psnr(const ball_file *f, ted4_dataset *d, ted4
     ted4_scene_free(s);
     for (size_t i = 0; i < d->n_pictures; i++) {
         const ted4_picture *pic = &d->pictures[i];
-        const ted4_camera  *c = &pic->camera;
-        ted4_view    v = { .width = c->width, .height = c->height, .fx = (float)c->fx,
-                           .fy = (float)c->fy, .cx = (float)c->cx, .cy = (float)c->cy };
-        uint8_t      rgb[3 * BALL_W * BALL_H];
+        const ted4_camera *c = &pic->camera;
+        ted4_view v = { .width = c->width,
+                        .height = c->height,
+                        .fx = (float)c->fx,
+                        .fy = (float)c->fy,
+                        .cx = (float)c->cx,
+                        .cy = (float)c->cy };
+        uint8_t rgb[3 * BALL_W * BALL_H];
         ted4_metrics m;
 
         for (int k = 0; k < 9; k++)
@@ -39,7 +44,8 @@ static inline double ball_decoded_psnr(const ball_file *f, ted4_dataset *d, ted4
                                            d->n_frames > 1 ? d->n_frames - 1 : 1, &v, NULL, rgb),
                          TED4_OK);
         assert_int_equal(ted4_metrics_compare(ted4_dataset_pixels(d, i, NULL), rgb, BALL_W, BALL_H,
-                                              NULL, &m), 0);
+                                              NULL, &m),
+                         0);
         ted4_dataset_release(d, i);
         sum += m.psnr;
         n += 1;

@@ -11,7 +11,7 @@
 #endif
 enum { FRAMES = BALL_FRAMES };
 
-static tiny_folder  folder;
+static tiny_folder folder;
 static ted4_dataset balls;
 
 static inline int set_up(void **state)

@@ -29,7 +29,7 @@ static inline void ball_load_without_blue(tiny_folder *f, ted4_dataset *d, int f
 static inline double ball_radii(const ted4_trainer *t, const float *p, int speed, double time)
 {
     const ball b = ball_at(BLUE, speed * time);
-    double     square = 0;
+    double square = 0;
 
     for (int k = 0; k < 3; k++) {
         const double x = (double)t->layout.head.origin[k] +
@@ -46,7 +46,7 @@ static inline size_t ball_count_transients(const ted4_trainer *t, int speed, flo
                                            size_t *near)
 {
     const int first = t->layout.first[TED4_TAU];
-    size_t    n = 0;
+    size_t n = 0;
 
     *near = 0;
     for (size_t i = 0; i < t->anchors.n; i++) {

@@ -12,7 +12,9 @@ enum { BALL_W = 32, BALL_H = 24, BALL_CAMERAS = 4, BALLS = 3, BALL_POINTS = 70 }
 
 #define BALL_FOCAL 34.0
 
-typedef struct { double centre[3], radius, colour[3]; } ball;
+typedef struct {
+    double centre[3], radius, colour[3];
+} ball;
 
 /* time in [0, 1]. */
 static inline ball ball_at(int i, double time)
@@ -70,7 +72,7 @@ static inline void ball_trace(const double *centre, const double *d, double time
 static inline void ball_picture(const tiny_folder *f, const char *name, int camera, double time)
 {
     uint8_t px[BALL_W * BALL_H * 3];
-    double  axis[3][3], centre[3];
+    double axis[3][3], centre[3];
 
     ball_camera(camera, axis, centre);
     for (int i = 0; i < BALL_W * BALL_H; i++) {
@@ -99,12 +101,14 @@ static inline void ball_points(const tiny_folder *f, int moving)
     static tiny_string s;
 
     s.n = 0;
-    tiny_add(&s, "ply\nformat ascii 1.0\nelement vertex %d\n"
-                 "property float x\nproperty float y\nproperty float z\nproperty uchar red\n"
-                 "property uchar green\nproperty uchar blue\nend_header\n", BALLS * BALL_POINTS);
+    tiny_add(&s,
+             "ply\nformat ascii 1.0\nelement vertex %d\n"
+             "property float x\nproperty float y\nproperty float z\nproperty uchar red\n"
+             "property uchar green\nproperty uchar blue\nend_header\n",
+             BALLS * BALL_POINTS);
     for (int i = 0; i < BALLS * BALL_POINTS; i++) {
-        const int    k = i / BALLS;
-        const ball   b = ball_at(i % BALLS, moving ? 0.25 * (k % 5) : 0);
+        const int k = i / BALLS;
+        const ball b = ball_at(i % BALLS, moving ? 0.25 * (k % 5) : 0);
         const double z = 1 - 2 * (k + 0.5) / BALL_POINTS, r = sqrt(1 - z * z), a = 2.4 * k;
 
         tiny_add(&s, "%.4f %.4f %.4f %d %d %d\n", b.centre[0] + b.radius * r * cos(a),
@@ -120,13 +124,15 @@ static inline void ball_scene(const tiny_folder *f, int frames, int moving)
     static tiny_string s;
 
     s.n = 0;
-    tiny_add(&s, "{\"fl_x\": %g, \"w\": %d, \"h\": %d, \"fps\": 5, "
-                 "\"ply_file_path\": \"points.ply\", \"frames\": [", BALL_FOCAL, BALL_W, BALL_H);
+    tiny_add(&s,
+             "{\"fl_x\": %g, \"w\": %d, \"h\": %d, \"fps\": 5, "
+             "\"ply_file_path\": \"points.ply\", \"frames\": [",
+             BALL_FOCAL, BALL_W, BALL_H);
     for (int i = 0; i < frames * BALL_CAMERAS; i++) {
-        const int    camera = i % BALL_CAMERAS, frame = i / BALL_CAMERAS;
+        const int camera = i % BALL_CAMERAS, frame = i / BALL_CAMERAS;
         const double time = frames > 1 ? (double)frame / (frames - 1) : 0;
-        double       axis[3][3], centre[3];
-        char         name[64];
+        double axis[3][3], centre[3];
+        char name[64];
 
         snprintf(name, sizeof name, "images/c%d_f%d.png", camera, frame);
         ball_picture(f, name, camera, moving * time);

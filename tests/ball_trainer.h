@@ -8,7 +8,10 @@
 #include "train/state/trainer.h"
 #include "write/encode.h"
 
-typedef struct { uint8_t *bytes; size_t size; } ball_file;
+typedef struct {
+    uint8_t *bytes;
+    size_t size;
+} ball_file;
 
 static inline void ball_load(tiny_folder *f, ted4_dataset *d, int frames, int moving)
 {
@@ -32,11 +35,14 @@ static inline void ball_set(ted4_train_options *o, const char *text)
 static inline ted4_train_options ball_options(void)
 {
     static const char *const small[] = {
-        "stage1=400", "stage2=250", "offsets=4", "feature=8", "phi=4", "bank_dim=8",
-        "deform_width=8", "head_width=12", "hyper_width=8", "ar_width=8", "slices=2",
-        "octaves=4", "init_anchors=150", "max_anchors=260", "grow_every=20",
-        "lr_feature=0.03", "lr_heads=0.02", "lr_scaling=0.03", "lr_offset=0.03",
-        "lr_motion=0.005", "lr_phi=0.02", "lr_mask=0.05", "capacity=0",
+        "stage1=400",       "stage2=250",      "offsets=4",
+        "feature=8",        "phi=4",           "bank_dim=8",
+        "deform_width=8",   "head_width=12",   "hyper_width=8",
+        "ar_width=8",       "slices=2",        "octaves=4",
+        "init_anchors=150", "max_anchors=260", "grow_every=20",
+        "lr_feature=0.03",  "lr_heads=0.02",   "lr_scaling=0.03",
+        "lr_offset=0.03",   "lr_motion=0.005", "lr_phi=0.02",
+        "lr_mask=0.05",     "capacity=0",
     };
     ted4_train_options o;
 
@@ -47,7 +53,7 @@ static inline ted4_train_options ball_options(void)
 }
 
 static inline void ball_begin(ted4_trainer *t, const ted4_train_options *o, ted4_dataset *d,
-                  const ted4_parallel *p)
+                              const ted4_parallel *p)
 {
     if (ted4_trainer_init(t, o, d, p) != 0)
         fail_msg("%s", t->message.text);
@@ -64,7 +70,7 @@ static inline void ball_train(ted4_trainer *t, uint64_t iteration)
 static inline void ball_set_biases(ted4_trainer *t, int net, size_t n, float value)
 {
     const ted4_net_shape *s = &t->layout.shape.netr[net];
-    size_t                end = t->layout.netr + s->first;
+    size_t end = t->layout.netr + s->first;
 
     for (int i = 0; i < s->n_layers; i++)
         end += ((size_t)s->dim[i] + 1) * s->dim[i + 1];
@@ -76,8 +82,8 @@ static inline void ball_set_biases(ted4_trainer *t, int net, size_t n, float val
 static inline ball_file ball_finish(ted4_trainer *t)
 {
     ted4_scene *s;
-    ted4_error  e = { TED4_OK, 0 };
-    ball_file   f;
+    ted4_error e = { TED4_OK, 0 };
+    ball_file f;
 
     ball_train(t, ted4_trainer_total(t));
     if (ted4_make_scene(t, &s) != 0)

@@ -18,7 +18,7 @@ enum { CLOUD_SIDE = 6, CLOUD_POINTS = CLOUD_SIDE * CLOUD_SIDE * CLOUD_SIDE };
 typedef struct {
     ted4_dataset data;
     ted4_picture picture;
-    float        point[CLOUD_POINTS][3];
+    float point[CLOUD_POINTS][3];
     ted4_train_options options;
 } cloud_case;
 
@@ -27,7 +27,7 @@ static inline void cloud_make(cloud_case *c, uint32_t frames)
 {
     memset(c, 0, sizeof *c);
     for (uint32_t i = 0; i < CLOUD_POINTS; i++) {
-        const uint32_t k = i * 5 % CLOUD_POINTS;    /* 5 and 216 have no common factor */
+        const uint32_t k = i * 5 % CLOUD_POINTS; /* 5 and 216 have no common factor */
         const uint32_t at[3] = { k % CLOUD_SIDE, k / CLOUD_SIDE % CLOUD_SIDE,
                                  k / CLOUD_SIDE / CLOUD_SIDE };
         static const double middle[3] = { 10, -4, 2 };
@@ -35,10 +35,13 @@ static inline void cloud_make(cloud_case *c, uint32_t frames)
         for (int j = 0; j < 3; j++)
             c->point[i][j] = (float)(middle[j] + CLOUD_STEP * ((double)at[j] - 0.5 * CLOUD_SIDE));
     }
-    c->picture.camera = (ted4_camera){ 32, 24, 30, 30, 16, 12, { 1, 0, 0, 0, 1, 0, 0, 0, 1 },
-                                       { -10, 4, 5 } };
-    c->data = (ted4_dataset){ .pictures = &c->picture, .n_pictures = 1, .n_frames = frames,
-                              .points = c->point[0], .n_points = CLOUD_POINTS };
+    c->picture.camera =
+        (ted4_camera) { 32, 24, 30, 30, 16, 12, { 1, 0, 0, 0, 1, 0, 0, 0, 1 }, { -10, 4, 5 } };
+    c->data = (ted4_dataset) { .pictures = &c->picture,
+                               .n_pictures = 1,
+                               .n_frames = frames,
+                               .points = c->point[0],
+                               .n_points = CLOUD_POINTS };
     (void)ted4_options_preset(&c->options, "draft");
     c->options.offsets = 3;
     c->options.feature = 8;

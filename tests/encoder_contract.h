@@ -1,6 +1,8 @@
-/* encoder_contract.h - what an encoder owes (spec 3.4): the file of a scene is free of a validator's errors, decodes to the reconstruction that the encoder
- * had, declares the lowest level that fits, and codes blobs and probabilities the short way. It holds no META, so there is nothing declared about
- * fidelity that could be wrong. For test_encoder_contract.c and test_encoder_trained.c.
+/* encoder_contract.h - what an encoder owes (spec 3.4): the file of a scene is free of a
+ * validator's errors, decodes to the reconstruction that the encoder had, declares the lowest level
+ * that fits, and codes blobs and probabilities the short way. It holds no META, so there is nothing
+ * declared about fidelity that could be wrong. For test_encoder_contract.c and
+ * test_encoder_trained.c.
  * SPDX-License-Identifier: BSD-2-Clause */
 #ifndef TED4_ENCODER_CONTRACT_H
 #define TED4_ENCODER_CONTRACT_H
@@ -15,8 +17,9 @@ enum { LEVEL_AT = 11 };
 /* What a writer alone answers for, whatever the scene. */
 static inline int contract_of_writer(const char *id)
 {
-    static const char *const all[] = { "adv.level", "adv.minor", "adv.chunk", "adv.meta-flags", "adv.meta-text", "adv.meta-key",
-                                       "adv.blob-raw", "adv.prob" };
+    static const char *const all[] = { "adv.level",      "adv.minor",     "adv.chunk",
+                                       "adv.meta-flags", "adv.meta-text", "adv.meta-key",
+                                       "adv.blob-raw",   "adv.prob" };
 
     for (size_t i = 0; i < sizeof all / sizeof *all; i++)
         if (strcmp(id, all[i]) == 0)
@@ -27,17 +30,18 @@ static inline int contract_of_writer(const char *id)
 /* Hints may be meant. */
 static inline void contract_judge(void *trained, const ted4_finding *f)
 {
-    if (f->severity == TED4_ERROR || contract_of_writer(f->id)
-        || (*(int *)trained && f->severity == TED4_WARNING))
+    if (f->severity == TED4_ERROR || contract_of_writer(f->id) ||
+        (*(int *)trained && f->severity == TED4_WARNING))
         fail_msg("%s at byte %zu", f->id, f->offset);
 }
 
 /* Records of a scene at a time, hashed. */
-static inline void contract_reconstruct(const ted4_scene *s, uint32_t num, uint32_t den, uint8_t hash[16])
+static inline void contract_reconstruct(const ted4_scene *s, uint32_t num, uint32_t den,
+                                        uint8_t hash[16])
 {
     const ted4_query q = { num, den, { 0.25f, -0.5f, -3 } };
-    ted4_gaussians   g;
-    ted4_recon      *r;
+    ted4_gaussians g;
+    ted4_recon *r;
 
     memset(hash, 0, 16);
     assert_int_equal(ted4_recon_new(&r, s, NULL), TED4_OK);
@@ -50,7 +54,7 @@ static inline void contract_reconstruct(const ted4_scene *s, uint32_t num, uint3
 static inline void contract_same(const ted4_scene *scene, const uint8_t *data, size_t size)
 {
     ted4_scene *back;
-    uint8_t     ours[16], theirs[16];
+    uint8_t ours[16], theirs[16];
 
     assert_int_equal(ted4_decode(data, size, NULL, &back, NULL), TED4_OK);
     ted4_scene_hash(scene, ours);
@@ -67,8 +71,8 @@ static inline void contract_same(const ted4_scene *scene, const uint8_t *data, s
 static inline void contract_lowest(const ted4_scene *scene, uint8_t *data, size_t size)
 {
     const uint8_t level = data[LEVEL_AT];
-    ted4_scene   *s;
-    ted4_error    e;
+    ted4_scene *s;
+    ted4_error e;
 
     assert_int_equal(level, ted4_level_lowest(&scene->head, &scene->shape, size));
     for (unsigned below = 1; below < level; below++) {
@@ -84,7 +88,7 @@ static inline void contract_lowest(const ted4_scene *scene, uint8_t *data, size_
 static inline void contract_kept(const ted4_scene *scene, int trained)
 {
     uint8_t *data;
-    size_t   size;
+    size_t size;
 
     assert_int_equal(ted4_encode(scene, 0, NULL, &data, &size, NULL), TED4_OK);
     assert_int_equal(ted4_validate(data, size, NULL, contract_judge, &trained), TED4_OK);

@@ -11,15 +11,20 @@
 #include "train/model/model.h"
 
 /* More slots than the generator has chunks. The first has no unused lane, one has no other. */
-enum { CASE_SLOTS = 18, CASE_CHANNELS = 48, CASE_NET = 6000, CASE_OFFSETS = 3,
-       CASE_SPLATS = CASE_SLOTS * CASE_OFFSETS * TED4_LANES };
+enum {
+    CASE_SLOTS = 18,
+    CASE_CHANNELS = 48,
+    CASE_NET = 6000,
+    CASE_OFFSETS = 3,
+    CASE_SPLATS = CASE_SLOTS * CASE_OFFSETS * TED4_LANES
+};
 
 typedef struct {
-    ted4_layout         layout;
+    ted4_layout layout;
     ted4_generate_input in;
-    ref_query           query;
-    float    net[CASE_NET];
-    double   exact_net[CASE_NET];
+    ref_query query;
+    float net[CASE_NET];
+    double exact_net[CASE_NET];
     _Alignas(64) float attr[CASE_SLOTS][CASE_CHANNELS * TED4_LANES];
     _Alignas(64) float position[CASE_SLOTS][3 * TED4_LANES];
     const float *attr_list[CASE_SLOTS], *position_list[CASE_SLOTS];
@@ -81,8 +86,8 @@ static inline void case_awkward(test_case *t)
         for (int lane = 0; lane < 8; lane++) {
             /* before, just before, at the start; inside; at, just after, after the end; a floored
              * edge. */
-            static const float start[] = {0.4f, 1e-4f, 0, -0.3f, -0.5f, -0.5f, -0.9f, 0x1p-13f};
-            static const float end[] = {0.6f, 0.5f, 0.1f, 0.2f, 0, -1e-4f, -0.3f, 0.5f};
+            static const float start[] = { 0.4f, 1e-4f, 0, -0.3f, -0.5f, -0.5f, -0.9f, 0x1p-13f };
+            static const float end[] = { 0.6f, 0.5f, 0.1f, 0.2f, 0, -1e-4f, -0.3f, 0.5f };
 
             case_set(t, lane, at.tau, time + start[lane]);
             case_set(t, lane, at.tau + 1, lane == 7 ? -14.0f : -1.0f);
@@ -132,8 +137,10 @@ static inline void case_make(test_case *t, const ted4_header *h, uint32_t num, u
     n_used = t->layout.nete;
     for (size_t i = 0; i < n_used; i++)
         t->exact_net[i] = t->net[i] = 0.7f * case_random(t);
-    t->in = (ted4_generate_input){ &t->layout, t->net, CASE_SLOTS, t->attr_list, t->position_list,
-                                   t->lanes, num, den, { 0.25f, -0.5f, 2.0f }, 1 };
+    t->in = (ted4_generate_input) {
+        &t->layout, t->net, CASE_SLOTS, t->attr_list,           t->position_list,
+        t->lanes,   num,    den,        { 0.25f, -0.5f, 2.0f }, 1
+    };
     for (int i = 0; i < CASE_SLOTS; i++) {
         t->attr_list[i] = t->attr[i];
         t->position_list[i] = t->position[i];
@@ -153,7 +160,7 @@ static inline void case_make(test_case *t, const ted4_header *h, uint32_t num, u
     /* One anchor where the camera is. */
     for (int c = 0; c < 3; c++)
         t->position[0][c * TED4_LANES + 16] = t->in.camera[c];
-    t->query = (ref_query){ *h, num, den, { 0 }, 1, t->exact_net, t->layout.bank };
+    t->query = (ref_query) { *h, num, den, { 0 }, 1, t->exact_net, t->layout.bank };
     for (int c = 0; c < 3; c++)
         t->query.camera[c] = t->in.camera[c];
 }
@@ -170,8 +177,11 @@ static inline void case_channels(const test_case *t, int slot, int lane, double 
 /* Member c, in the order of the reference, of the splats. */
 static inline const float *case_member(const ted4_splats *s, int c)
 {
-    return c < 3 ? s->mean[c] : c < 6 ? s->scale[c - 3] : c < 10 ? s->rot[c - 6]
-         : c == 10 ? s->opacity : s->colour[c - 11];
+    return c < 3     ? s->mean[c]
+           : c < 6   ? s->scale[c - 3]
+           : c < 10  ? s->rot[c - 6]
+           : c == 10 ? s->opacity
+                     : s->colour[c - 11];
 }
 
 #endif

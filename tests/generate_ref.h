@@ -14,12 +14,12 @@
 enum { REF_WIDEST = 256, REF_OUT = 14 };
 
 typedef struct {
-    ted4_header  head;
-    uint32_t     num, den;
-    double       camera[3];
-    int          activation;
-    const double *net;          /* NETR, then BANK */
-    size_t       n_netr;
+    ted4_header head;
+    uint32_t num, den;
+    double camera[3];
+    int activation;
+    const double *net; /* NETR, then BANK */
+    size_t n_netr;
 } ref_query;
 
 /* Where the parts of an anchor lie in its array of channels (train/model/model.h). */
@@ -55,8 +55,8 @@ static inline double ref_mask(double logit, double base)
 }
 
 /* spec 7.1: runs a network whose values start at *w, and moves *w behind them. */
-static inline void ref_network(const double **w, int in, int hidden, int width,
-                               int out, const double *x, double *y)
+static inline void ref_network(const double **w, int in, int hidden, int width, int out,
+                               const double *x, double *y)
 {
     double a[REF_WIDEST], b[REF_WIDEST];
 
@@ -190,7 +190,7 @@ static inline void ref_generate(const ref_query *q, const double *channel, const
     const ref_channels at = ref_channels_of(h);
     const int f = h->feature_dim, k = h->n_offsets, n_full = f + (h->view == 2 ? 3 : 0);
     const double *w = q->net;
-    double y[REF_WIDEST] = {0}, seen[REF_WIDEST], moved[REF_WIDEST], size[6];
+    double y[REF_WIDEST] = { 0 }, seen[REF_WIDEST], moved[REF_WIDEST], size[6];
     double opacity[REF_WIDEST], covariance[REF_WIDEST], colour[REF_WIDEST];
     double active = 1.0, moves = h->motion != TED4_MOTION_NONE;
 

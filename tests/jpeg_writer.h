@@ -9,11 +9,11 @@
 #include <jpeglib.h>
 
 typedef struct {
-    int           w, h, n;              /* pixels, at most 64 wide; components, at most 4 */
-    J_COLOR_SPACE space;                /* of the components */
-    int           progressive;
-    int           exact;                /* RGB is stored as it is, not as YCbCr */
-    int           column, row, component;   /* levels from one to the next */
+    int w, h, n;         /* pixels, at most 64 wide; components, at most 4 */
+    J_COLOR_SPACE space; /* of the components */
+    int progressive;
+    int exact;                  /* RGB is stored as it is, not as YCbCr */
+    int column, row, component; /* levels from one to the next */
 } jpeg_slopes;
 
 static inline void jpeg_write(const char *path, const jpeg_slopes *s)

@@ -1,5 +1,6 @@
-/* loss_ref.h - the distortion of train/loss/loss.h by its definition, in double, a pixel at a time: what
- * test_loss.c, test_extremes_loss.c and test_step_grad.c compare with. Shares no code with train/.
+/* loss_ref.h - the distortion of train/loss/loss.h by its definition, in double, a pixel at a time:
+ * what test_loss.c, test_extremes_loss.c and test_step_grad.c compare with. Shares no code with
+ * train/.
  * SPDX-License-Identifier: BSD-2-Clause */
 #ifndef TED4_LOSS_REF_H
 #define TED4_LOSS_REF_H
@@ -12,8 +13,8 @@ enum { REF_RADIUS = 5 };
 
 /* image: planar [3][height][width]; truth: interleaved bytes. */
 typedef struct {
-    int            width, height;
-    const double  *image;
+    int width, height;
+    const double *image;
     const uint8_t *truth;
 } ref_picture;
 

@@ -1,5 +1,6 @@
-/* mishap.h - ted4enc as a program on a small scene, in a folder of its own, with what an undisturbed run writes: for test_mishaps.c,
- * test_mishaps_scene.c and test_run_log.c. Looks for the program in $TED4_BUILD (set by tests/run.sh).
+/* mishap.h - ted4enc as a program on a small scene, in a folder of its own, with what an
+ * undisturbed run writes: for test_mishaps.c, test_mishaps_scene.c and test_run_log.c. Looks for
+ * the program in $TED4_BUILD (set by tests/run.sh).
  * SPDX-License-Identifier: BSD-2-Clause */
 #ifndef TED4_MISHAP_H
 #define TED4_MISHAP_H
@@ -19,30 +20,67 @@ enum { MOST_WORDS = 64, MOST_BYTES = 1 << 20, MOST_LOG = 1 << 16, STAGE1 = 700, 
 /* What a run writes. */
 typedef struct {
     ball_file file;
-    char      log[MOST_LOG];
+    char log[MOST_LOG];
 } outcome;
 
-static const char *build;               /* NULL: skip */
-static tiny_folder folder;              /* scene/, out/, err: standard error of the last run */
-static outcome     reference;           /* of a run that nothing disturbs */
+static const char *build;  /* NULL: skip */
+static tiny_folder folder; /* scene/, out/, err: standard error of the last run */
+static outcome reference;  /* of a run that nothing disturbs */
 
 /* ---- the program ---- */
 
-/* Small networks, one thread, no picture kept in memory, a checkpoint after every step. A line of the log is written every 250 steps. */
-static const char *const usual[] = {
-    "ted4enc", "scene", "-f", "-j1", "-q", "--preset", "draft", "--iterations", "700,200", "--cache", "0",
-    "--checkpoint-every", "0", "--set", "offsets=4", "--set", "feature=8", "--set", "phi=4", "--set", "bank_dim=8",
-    "--set", "deform_width=8", "--set", "head_width=12", "--set", "hyper_width=8", "--set", "ar_width=8", "--set", "slices=2",
-    "--set", "octaves=4", "--set", "init_anchors=150", "--set", "max_anchors=260", "--set", "grow_every=20",
-    "--set", "capacity=0", NULL
-};
+/* Small networks, one thread, no picture kept in memory, a checkpoint after every step. A line of
+ * the log is written every 250 steps. */
+static const char *const usual[] = { "ted4enc",
+                                     "scene",
+                                     "-f",
+                                     "-j1",
+                                     "-q",
+                                     "--preset",
+                                     "draft",
+                                     "--iterations",
+                                     "700,200",
+                                     "--cache",
+                                     "0",
+                                     "--checkpoint-every",
+                                     "0",
+                                     "--set",
+                                     "offsets=4",
+                                     "--set",
+                                     "feature=8",
+                                     "--set",
+                                     "phi=4",
+                                     "--set",
+                                     "bank_dim=8",
+                                     "--set",
+                                     "deform_width=8",
+                                     "--set",
+                                     "head_width=12",
+                                     "--set",
+                                     "hyper_width=8",
+                                     "--set",
+                                     "ar_width=8",
+                                     "--set",
+                                     "slices=2",
+                                     "--set",
+                                     "octaves=4",
+                                     "--set",
+                                     "init_anchors=150",
+                                     "--set",
+                                     "max_anchors=260",
+                                     "--set",
+                                     "grow_every=20",
+                                     "--set",
+                                     "capacity=0",
+                                     NULL };
 
-/* The child's side: a file may not grow beyond limit bytes (0: any size), and a signal does not say so. */
+/* The child's side: a file may not grow beyond limit bytes (0: any size), and a signal does not say
+ * so. */
 static inline void become_program(const char *arguments, rlim_t limit)
 {
-    char        path[1024], words[1024];
+    char path[1024], words[1024];
     const char *argv[MOST_WORDS];
-    int         n = 0;
+    int n = 0;
 
     for (; usual[n] != NULL; n++)
         argv[n] = usual[n];
@@ -54,7 +92,8 @@ static inline void become_program(const char *arguments, rlim_t limit)
     const struct rlimit size = { limit, limit };
     const int err = open(tiny_path(&folder, "err"), O_WRONLY | O_CREAT | O_TRUNC, 0666);
     snprintf(path, sizeof path, "%s/ted4enc", build);
-    if (err < 0 || dup2(err, STDERR_FILENO) < 0 || chdir(folder.path) != 0 || (limit > 0 && setrlimit(RLIMIT_FSIZE, &size) != 0))
+    if (err < 0 || dup2(err, STDERR_FILENO) < 0 || chdir(folder.path) != 0 ||
+        (limit > 0 && setrlimit(RLIMIT_FSIZE, &size) != 0))
         _exit(100);
     execv(path, (char *const *)(uintptr_t)argv);
     _exit(101);
@@ -96,7 +135,7 @@ static inline void pause_us(long us)
 static inline ball_file read_file(const char *name)
 {
     ball_file f = { malloc(MOST_BYTES), 0 };
-    FILE     *in = fopen(tiny_path(&folder, name), "rb");
+    FILE *in = fopen(tiny_path(&folder, name), "rb");
 
     if (f.bytes == NULL || in == NULL)
         fail_msg("%s cannot be read", name);
@@ -134,7 +173,8 @@ static inline void expect_words(const char *what)
 
     const char *end = strchr(text, '\n');
 
-    if (strncmp(text, "ted4enc: ", 9) != 0 || end == NULL || end[1] != 0 || strstr(text, what) == NULL)
+    if (strncmp(text, "ted4enc: ", 9) != 0 || end == NULL || end[1] != 0 ||
+        strstr(text, what) == NULL)
         fail_msg("stderr \"%s\", expected one line with \"%s\"", text, what);
 }
 
@@ -164,16 +204,18 @@ static inline void expect_same(const char *name, const ball_file *want)
     gone(name);
 }
 
-/* Lines of a log, without the times at their ends, are those of the undisturbed run, and no time runs backwards. */
+/* Lines of a log, without the times at their ends, are those of the undisturbed run, and no time
+ * runs backwards. */
 static inline void expect_log(const char *name, const char *want)
 {
-    char        text[MOST_LOG];
+    char text[MOST_LOG];
     const char *got = text;
-    double      before = 0, worked = 0;
+    double before = 0, worked = 0;
 
     read_text(name, text, sizeof text);
     while (*want != 0) {
-        const char *times = strstr(want, "\"ms\":"), *seconds = strstr(got, "\"seconds\":"), *cpu = strstr(got, "\"cpu_seconds\":");
+        const char *times = strstr(want, "\"ms\":"), *seconds = strstr(got, "\"seconds\":"),
+                   *cpu = strstr(got, "\"cpu_seconds\":");
 
         assert_true(times != NULL && seconds != NULL && cpu != NULL);
         assert_int_equal(strncmp(got, want, (size_t)(times - want)), 0);
@@ -218,7 +260,7 @@ static inline void make_checkpoint(void)
 
 static inline outcome make_outcome(const char *options)
 {
-    char    words[256];
+    char words[256];
     outcome r;
 
     snprintf(words, sizeof words, "--log out/l %s", options);
@@ -237,7 +279,7 @@ static inline int set_up(void **state)
     if (build == NULL)
         return 0;
     folder = tiny_new();
-    (void)tiny_path(&folder, "out/x");      /* makes the folder */
+    (void)tiny_path(&folder, "out/x"); /* makes the folder */
 
     tiny_folder scene;
 
@@ -287,15 +329,17 @@ static inline ted4_train_options usual_options(void)
 static inline void begin_usual(ted4_trainer *t, ted4_dataset *d)
 {
     const ted4_dataset_options wanted = { .downscale = 1, .white = 1, .cache_bytes = 1 << 20 };
-    const ted4_train_options   o = usual_options();
-    ted4_message               m;
+    const ted4_train_options o = usual_options();
+    ted4_message m;
 
-    if (ted4_dataset_load(d, tiny_path(&folder, "scene"), &wanted, &m) != 0 || ted4_dataset_verify(d, NULL, &m) != 0)
+    if (ted4_dataset_load(d, tiny_path(&folder, "scene"), &wanted, &m) != 0 ||
+        ted4_dataset_verify(d, NULL, &m) != 0)
         fail_msg("%s", m.text);
     ball_begin(t, &o, d, NULL);
 }
 
-/* Writes the trainer's state as the checkpoint name, unseen by ted4_checkpoint_save, which refuses values that are not finite. */
+/* Writes the trainer's state as the checkpoint name, unseen by ted4_checkpoint_save, which refuses
+ * values that are not finite. */
 static inline void end_usual(ted4_trainer *t, ted4_dataset *d, const char *name)
 {
     ted4_snapshot s = { NULL, 0 };

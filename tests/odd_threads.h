@@ -1,4 +1,5 @@
-/* odd_threads.h - lent threads (base/parallel.h) that do what a caller's may do, and of which no result may depend: for the run member of ted4_parallel.
+/* odd_threads.h - lent threads (base/parallel.h) that do what a caller's may do, and of which no
+ * result may depend: for the run member of ted4_parallel.
  * SPDX-License-Identifier: BSD-2-Clause */
 #ifndef TED4_ODD_THREADS_H
 #define TED4_ODD_THREADS_H

@@ -1,5 +1,6 @@
-/* random_scene.h - valid scenes made of random numbers, for tests: header, networks on the integer grid, sorted positions, masks,
- * step indices, symbols drawn from the scene's own model. Header only; link libted4enc and libted4dec.
+/* random_scene.h - valid scenes made of random numbers, for tests: header, networks on the integer
+ * grid, sorted positions, masks, step indices, symbols drawn from the scene's own model. Header
+ * only; link libted4enc and libted4dec.
  * SPDX-License-Identifier: BSD-2-Clause */
 #ifndef TED4_RANDOM_SCENE_H
 #define TED4_RANDOM_SCENE_H
@@ -20,7 +21,7 @@ typedef struct {
 
 static inline random_source random_seed(uint64_t seed)
 {
-    return (random_source){ (seed + 1) * 0x9e3779b97f4a7c15u };
+    return (random_source) { (seed + 1) * 0x9e3779b97f4a7c15u };
 }
 
 static inline uint32_t random_u32(random_source *r)
@@ -50,7 +51,8 @@ static inline double random_normal(random_source *r)
     return length * cos(6.283185307179586 * random_unit(r));
 }
 
-/* The shape of the method of the paper: F = 50 in slices 5, 10, 15, 20, K = 10, hyperprior 63-100-100. */
+/* The shape of the method of the paper: F = 50 in slices 5, 10, 15, 20, K = 10, hyperprior
+ * 63-100-100. */
 static inline ted4_header random_paper_header(uint32_t n_anchors)
 {
     ted4_header h;
@@ -117,7 +119,7 @@ static inline float random_step(random_source *r)
 static inline ted4_header random_header(random_source *r)
 {
     ted4_header h;
-    unsigned    left, i;
+    unsigned left, i;
 
     memset(&h, 0, sizeof h);
     h.n_anchors = random_in(r, 1, 300);
@@ -165,8 +167,8 @@ static inline ted4_header random_header(random_source *r)
     return h;
 }
 
-static inline void random_layer(random_source *r, float *v, unsigned in,
-                                unsigned out, double gain, double bias)
+static inline void random_layer(random_source *r, float *v, unsigned in, unsigned out, double gain,
+                                double bias)
 {
     for (size_t i = 0; i < (size_t)in * out; i++)
         v[i] = (float)(random_normal(r) * gain / sqrt(in));
@@ -174,14 +176,13 @@ static inline void random_layer(random_source *r, float *v, unsigned in,
         v[(size_t)in * out + o] = (float)(random_normal(r) * bias);
 }
 
-static inline void random_net(random_source *r, float *values,
-                              const ted4_net_shape *n, double bias)
+static inline void random_net(random_source *r, float *values, const ted4_net_shape *n, double bias)
 {
     size_t at = n->first;
 
     for (unsigned i = 0; i < n->n_layers; i++) {
-        random_layer(r, values + at, n->dim[i], n->dim[i + 1],
-                     i + 1u < n->n_layers ? 1.4 : 0.7, bias);
+        random_layer(r, values + at, n->dim[i], n->dim[i + 1], i + 1u < n->n_layers ? 1.4 : 0.7,
+                     bias);
         at += (n->dim[i] + (size_t)1) * n->dim[i + 1];
     }
 }
@@ -191,7 +192,7 @@ static inline void random_positions(random_source *r, ted4_scene *s)
     const size_t n = s->head.n_anchors, tries = n + n / 8 + 16;
     uint16_t *p = malloc(3 * tries * sizeof *p);
     uint32_t *order = malloc(tries * sizeof *order);
-    size_t    kept;
+    size_t kept;
 
     for (size_t i = 0; i < 3 * tries; i++) {
         double x = random_normal(r) / 3;
@@ -220,15 +221,14 @@ static inline void random_masks(random_source *r, ted4_scene *s)
             s->dynamic[i] = random_in(r, 0, 4) == 0;
         s->offset_bits[i] = all;
         if (s->head.offset_mask)
-            s->offset_bits[i] = (uint16_t)(all & (random_u32(r)
-                                                  | random_u32(r)));
+            s->offset_bits[i] = (uint16_t)(all & (random_u32(r) | random_u32(r)));
     }
 }
 
-/* Symbols of one component, from mu and s of a block of anchors. wild: some far away, so that escapes are met. */
-static inline void random_symbols(random_source *r, const int32_t *mu,
-                                  const int32_t *s, size_t n, int wild,
-                                  int16_t *k)
+/* Symbols of one component, from mu and s of a block of anchors. wild: some far away, so that
+ * escapes are met. */
+static inline void random_symbols(random_source *r, const int32_t *mu, const int32_t *s, size_t n,
+                                  int wild, int16_t *k)
 {
     for (size_t i = 0; i < n; i++) {
         const double sigma = exp2((ted4_sigma_index(s[i]) - 64) / 16.0);
@@ -243,9 +243,8 @@ static inline void random_symbols(random_source *r, const int32_t *mu,
 }
 
 /* All symbols of a block of n <= 64 anchors from anchor a on. */
-static inline void random_block(random_source *r, ted4_scene *s,
-                                const ted4_prior *p, size_t a, size_t n,
-                                int wild)
+static inline void random_block(random_source *r, ted4_scene *s, const ted4_prior *p, size_t a,
+                                size_t n, int wild)
 {
     const ted4_shape *sh = &s->shape;
     const size_t N = s->head.n_anchors;
@@ -271,22 +270,22 @@ static inline void random_block(random_source *r, ted4_scene *s,
             }
             random_symbols(r, mu, sg, n, wild, k);
             for (size_t i = 0; i < n; i++)
-                ctx[64 * comp + i] = ted4_context(k[i],
-                    s->step_index[TED4_FEATURE][a + i], p->context_bits);
+                ctx[64 * comp + i] =
+                    ted4_context(k[i], s->step_index[TED4_FEATURE][a + i], p->context_bits);
         }
     }
     for (int t = TED4_SCALING; t < TED4_TYPES; t++)
         for (unsigned c = 0; c < sh->dim[t]; c++)
             random_symbols(r, out + 64 * (size_t)(sh->first_output[t] + c),
-                           out + 64 * (size_t)(sh->first_output[t] + sh->dim[t]
-                                               + c),
-                           n, wild, s->symbol[t] + c * N + a);
+                           out + 64 * (size_t)(sh->first_output[t] + sh->dim[t] + c), n, wild,
+                           s->symbol[t] + c * N + a);
     free(out);
     free(add);
     free(ctx);
 }
 
-/* Symbols that no mask hides stay; the others become 0, as a decoder leaves them. a_s <= a_f is made true. */
+/* Symbols that no mask hides stay; the others become 0, as a decoder leaves them. a_s <= a_f is
+ * made true. */
 static inline void random_tidy(ted4_scene *s)
 {
     const size_t n = s->head.n_anchors;
@@ -307,13 +306,13 @@ static inline void random_tidy(ted4_scene *s)
     }
 }
 
-/* A scene of that header that ted4_encode accepts. wild: with escapes. NULL: no memory. Free with ted4_scene_free. */
-static inline ted4_scene *random_scene_of(random_source *r,
-                                          const ted4_header *h, int wild)
+/* A scene of that header that ted4_encode accepts. wild: with escapes. NULL: no memory. Free with
+ * ted4_scene_free. */
+static inline ted4_scene *random_scene_of(random_source *r, const ted4_header *h, int wild)
 {
     ted4_scene *s = ted4_scene_new(h, NULL);
-    ted4_arena  arena;
-    ted4_prior  p;
+    ted4_arena arena;
+    ted4_prior p;
 
     if (s == NULL)
         return NULL;
@@ -328,16 +327,15 @@ static inline ted4_scene *random_scene_of(random_source *r,
     random_positions(r, s);
     random_masks(r, s);
     ted4_arena_init(&arena, NULL);
-    if (ted4_prior_init(&p, h, &s->shape, &arena) != TED4_OK
-        || ted4_prior_load(&p, s->nete.values, s->shift, NULL) != TED4_OK
-        || ted4_scene_steps(s, NULL, NULL) != TED4_OK) {
+    if (ted4_prior_init(&p, h, &s->shape, &arena) != TED4_OK ||
+        ted4_prior_load(&p, s->nete.values, s->shift, NULL) != TED4_OK ||
+        ted4_scene_steps(s, NULL, NULL) != TED4_OK) {
         ted4_arena_finish(&arena);
         ted4_scene_free(s);
         return NULL;
     }
     for (size_t a = 0; a < h->n_anchors; a += 64)
-        random_block(r, s, &p, a,
-                     h->n_anchors - a < 64 ? h->n_anchors - a : 64, wild);
+        random_block(r, s, &p, a, h->n_anchors - a < 64 ? h->n_anchors - a : 64, wild);
     random_tidy(s);
     ted4_arena_finish(&arena);
     return s;
@@ -346,7 +344,7 @@ static inline ted4_scene *random_scene_of(random_source *r,
 /* A small scene of any header. */
 static inline ted4_scene *random_scene(uint64_t seed)
 {
-    random_source     r = random_seed(seed);
+    random_source r = random_seed(seed);
     const ted4_header h = random_header(&r);
 
     return random_scene_of(&r, &h, seed % 2 == 1);

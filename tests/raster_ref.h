@@ -9,7 +9,7 @@
 
 #include "render/raster.h"
 
-enum { REF_SPLATS = 256, REF_SPLAT = 14 };  /* mean 3, scale 3, rotation 4, opacity, colour 3 */
+enum { REF_SPLATS = 256, REF_SPLAT = 14 }; /* mean 3, scale 3, rotation 4, opacity, colour 3 */
 
 typedef struct {
     double depth, centre[2], conic[3], opacity, colour[3];
@@ -70,16 +70,18 @@ static inline int ref_footprint_of(const ted4_view *v, const double *splat, ref_
         yy += y[k] * y[k];
         det += blur * (x[k] * x[k] + y[k] * y[k]);
     }
-    for (int k = 0; k < 3; k++) {       /* xx yy - xy xy by Lagrange: long thin Gaussians keep their digits */
+    for (int k = 0; k < 3;
+         k++) { /* xx yy - xy xy by Lagrange: long thin Gaussians keep their digits */
         const double cross = x[k] * y[(k + 1) % 3] - x[(k + 1) % 3] * y[k];
 
         det += cross * cross;
     }
 
-    *f = (ref_footprint){ t[2],
-                          { fx * t[0] / t[2] + (double)v->cx, fy * t[1] / t[2] + (double)v->cy },
-                          { yy / det, -xy / det, xx / det }, splat[10],
-                          { splat[11], splat[12], splat[13] } };
+    *f = (ref_footprint) { t[2],
+                           { fx * t[0] / t[2] + (double)v->cx, fy * t[1] / t[2] + (double)v->cy },
+                           { yy / det, -xy / det, xx / det },
+                           splat[10],
+                           { splat[11], splat[12], splat[13] } };
     return 1;
 }
 
@@ -101,8 +103,8 @@ static inline void ref_blend(const ref_footprint *f, size_t n, const ted4_view *
         const double dx = x - f[i].centre[0], dy = y - f[i].centre[1];
         const double e = 0.5 * (f[i].conic[0] * dx * dx + f[i].conic[2] * dy * dy) +
                          f[i].conic[1] * dx * dy;
-        const double alpha = e > 6 ? 0 : fmin((double)TED4_RASTER_ALPHA_MAX,
-                                              f[i].opacity * exp(-e));
+        const double alpha = e > 6 ? 0
+                                   : fmin((double)TED4_RASTER_ALPHA_MAX, f[i].opacity * exp(-e));
 
         if (alpha < (double)TED4_RASTER_ALPHA_MIN)
             continue;
@@ -121,8 +123,8 @@ static inline size_t ref_render(const ted4_view *v, const double (*splat)[REF_SP
                                 double *image)
 {
     ref_footprint f[REF_SPLATS];
-    const size_t  width = (size_t)v->width, height = (size_t)v->height;
-    size_t        kept = 0;
+    const size_t width = (size_t)v->width, height = (size_t)v->height;
+    size_t kept = 0;
 
     for (size_t i = 0; i < n; i++)
         kept += (size_t)ref_footprint_of(v, splat[i], &f[kept]);

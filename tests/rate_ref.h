@@ -1,5 +1,5 @@
-/* rate_ref.h - the rate model again, in double, one anchor at a time, from spec 9.4, 10.1, 10.3 and the head of rate_row.c; and random models to try it on.
- * Shares no arithmetic with train/rate*.c.
+/* rate_ref.h - the rate model again, in double, one anchor at a time, from spec 9.4, 10.1, 10.3 and
+ * the head of rate_row.c; and random models to try it on. Shares no arithmetic with train/rate*.c.
  * SPDX-License-Identifier: BSD-2-Clause */
 #ifndef TED4_RATE_REF_H
 #define TED4_RATE_REF_H
@@ -22,7 +22,7 @@ enum { REF_MAX_CHANNELS = 128, REF_MAX_OUTPUTS = 256, REF_MAX_NET = 4096, REF_SL
 
 static uint32_t ref_seed = 1;
 
-static inline double ref_uniform(void)                 /* in [-1, 1) */
+static inline double ref_uniform(void) /* in [-1, 1) */
 {
     ref_seed = ref_seed * 1664525u + 1013904223u;
     return (double)(int32_t)(ref_seed ^ ref_seed >> 13) * 0x1p-31;
@@ -30,23 +30,24 @@ static inline double ref_uniform(void)                 /* in [-1, 1) */
 
 /* ---- the model ---- */
 
-/* What a clamped output does while weights are varied: an open one follows its raw value from the limit on (the one-sided gradient), a closed one stays. */
+/* What a clamped output does while weights are varied: an open one follows its raw value from the
+ * limit on (the one-sided gradient), a closed one stays. */
 typedef struct {
-    double raw[REF_MAX_OUTPUTS];        /* at the base point */
-    int    open[REF_MAX_OUTPUTS];       /* -1: not clamped */
+    double raw[REF_MAX_OUTPUTS]; /* at the base point */
+    int open[REF_MAX_OUTPUTS];   /* -1: not clamped */
     double nudge[REF_MAX_OUTPUTS];
 } ref_clamps;
 
 typedef struct {
     double position[3];
-    double x[REF_MAX_CHANNELS], n[REF_MAX_CHANNELS];    /* attribute channels; k = x / q + n */
-    double logit[TED4_MAX_OFFSETS + 1];                 /* offsets, then temporal */
+    double x[REF_MAX_CHANNELS], n[REF_MAX_CHANNELS]; /* attribute channels; k = x / q + n */
+    double logit[TED4_MAX_OFFSETS + 1];              /* offsets, then temporal */
     double d_value[REF_MAX_CHANNELS];
 } ref_anchor;
 
 typedef struct {
-    double bits[TED4_TYPES];            /* masked */
-    double offset_bits[TED4_MAX_OFFSETS], phi_bits;     /* unmasked */
+    double bits[TED4_TYPES];                        /* masked */
+    double offset_bits[TED4_MAX_OFFSETS], phi_bits; /* unmasked */
     double steps[TED4_TYPES];
     double loss;
     double raw[REF_MAX_OUTPUTS];
@@ -54,9 +55,9 @@ typedef struct {
 
 typedef struct {
     const ted4_layout *layout;
-    const double      *nete;
-    double             bit_weight, distortion_weight;
-    int                activation;
+    const double *nete;
+    double bit_weight, distortion_weight;
+    int activation;
 } ref_model;
 
 static inline double ref_octave_sine(uint32_t u)
@@ -85,8 +86,7 @@ static inline void ref_inputs(const ted4_header *h, const double *p, double *x)
 }
 
 /* spec 7.1 */
-static inline void ref_net(const ted4_net_shape *n, const double *nete, const double *x,
-                    double *y)
+static inline void ref_net(const ted4_net_shape *n, const double *nete, const double *x, double *y)
 {
     const double *w = nete + n->first;
     double buffer[2][REF_MAX_OUTPUTS];
@@ -120,23 +120,20 @@ static inline double ref_bits(double u, double s)
     const double p = low > 0.0 ? ref_tail(low) - ref_tail(high)
                                : 1.0 - ref_tail(-low) - ref_tail(high);
     const double w = fmin(6.0 * sigma, 4095.0) + 2.0;
-    const double h = a < w ? 1.0 / (1.0 + a / w)
-                           : 0.5 / ((1.0 + a - w) * (1.0 + a - w));
+    const double h = a < w ? 1.0 / (1.0 + a / w) : 0.5 / ((1.0 + a - w) * (1.0 + a - w));
 
     const double share = a < w ? p : h * ref_tail((w - 1.5) / sigma);
 
     return -log2((1.0 - 2.0 * w / 65536.0) * share + h / 65536.0);
 }
 
-static inline double ref_limit(const ref_clamps *c, unsigned i, double raw, double low,
-                        double high)
+static inline double ref_limit(const ref_clamps *c, unsigned i, double raw, double low, double high)
 {
     const double limited = fmin(fmax(raw, low), high);
 
     if (c == NULL || c->open[i] < 0)
         return limited;
-    return fmin(fmax(c->raw[i], low), high) + c->nudge[i]
-         + (c->open[i] ? raw - c->raw[i] : 0.0);
+    return fmin(fmax(c->raw[i], low), high) + c->nudge[i] + (c->open[i] ? raw - c->raw[i] : 0.0);
 }
 
 static inline int ref_mask_on(double logit)
@@ -145,8 +142,8 @@ static inline int ref_mask_on(double logit)
 }
 
 /* Outputs of all networks: hyperprior and slices. q: steps. */
-static inline void ref_outputs(const ref_model *m, const ref_anchor *a,
-                        const ref_clamps *c, ref_result *r)
+static inline void ref_outputs(const ref_model *m, const ref_anchor *a, const ref_clamps *c,
+                               ref_result *r)
 {
     const ted4_layout *l = m->layout;
     const ted4_shape *s = &l->shape;
@@ -158,8 +155,8 @@ static inline void ref_outputs(const ref_model *m, const ref_anchor *a,
     for (unsigned t = 0, i = s->first_step_output; t < TED4_TYPES; t++) {
         r->steps[t] = 1.0;
         if (s->dim[t] > 0) {
-            r->steps[t] = (double)l->head.step[t]
-                        * exp2(ref_limit(c, i, r->raw[i], REF_V_MIN, REF_V_MAX));
+            r->steps[t] = (double)l->head.step[t] *
+                          exp2(ref_limit(c, i, r->raw[i], REF_V_MIN, REF_V_MAX));
             i++;
         }
     }
@@ -177,8 +174,8 @@ static inline void ref_outputs(const ref_model *m, const ref_anchor *a,
     }
 }
 
-static inline void ref_evaluate(const ref_model *m, const ref_anchor *a,
-                         const ref_clamps *clamps, ref_result *r)
+static inline void ref_evaluate(const ref_model *m, const ref_anchor *a, const ref_clamps *clamps,
+                                ref_result *r)
 {
     const ted4_layout *l = m->layout;
     const ted4_shape *s = &l->shape;
@@ -199,10 +196,8 @@ static inline void ref_evaluate(const ref_model *m, const ref_anchor *a,
             const unsigned mu = s->first_output[t] + c, i = mu + s->dim[t];
             const unsigned ch = (unsigned)l->first[t] + c;
             const double sigma = ref_limit(clamps, i, r->raw[i], REF_S_MIN, REF_S_MAX);
-            const double bits = ref_bits(a->x[ch] / r->steps[t] + a->n[ch] - r->raw[mu],
-                                         sigma);
-            const int on = t == TED4_OFFSET ? kept[c / 3] : t == TED4_PHI ? any && moves
-                                                                         : any;
+            const double bits = ref_bits(a->x[ch] / r->steps[t] + a->n[ch] - r->raw[mu], sigma);
+            const int on = t == TED4_OFFSET ? kept[c / 3] : t == TED4_PHI ? any && moves : any;
 
             r->bits[t] += on ? bits : 0.0;
             if (t == TED4_OFFSET)
@@ -230,8 +225,7 @@ static inline void ref_find_clamps(const ref_model *m, const ref_anchor *a, ref_
         int is_s = 0;
 
         for (int t = 0; t < TED4_TYPES; t++)
-            is_s |= i >= s->first_output[t] + s->dim[t]
-                 && i < s->first_output[t] + 2 * s->dim[t];
+            is_s |= i >= s->first_output[t] + s->dim[t] && i < s->first_output[t] + 2 * s->dim[t];
         const int is_v = i >= s->first_step_output;
         const double low = is_v ? REF_V_MIN : REF_S_MIN, high = is_v ? REF_V_MAX : REF_S_MAX;
 
@@ -251,13 +245,13 @@ static inline void ref_find_clamps(const ref_model *m, const ref_anchor *a, ref_
 
 typedef struct {
     ted4_layout layout;
-    float      *net;
-    double      nete[REF_MAX_NET];
-    float      *attr[REF_SLOTS], *position[REF_SLOTS], *d_value[REF_SLOTS];
-    float      *d_attr[REF_SLOTS], *steps[REF_SLOTS];
-    float      *d_net;
-    uint32_t    lanes[REF_SLOTS], block[REF_SLOTS];
-    ted4_rate  *rate;
+    float *net;
+    double nete[REF_MAX_NET];
+    float *attr[REF_SLOTS], *position[REF_SLOTS], *d_value[REF_SLOTS];
+    float *d_attr[REF_SLOTS], *steps[REF_SLOTS];
+    float *d_net;
+    uint32_t lanes[REF_SLOTS], block[REF_SLOTS];
+    ted4_rate *rate;
     ted4_rate_input in;
 } ref_world;
 
@@ -273,15 +267,32 @@ static inline float *ref_floats(size_t n)
 /* A small model with every feature; tests change it before ref_world_make. */
 static inline ted4_header ref_header(void)
 {
-    ted4_header h = {
-        .n_anchors = 96, .tile_size = 96, .n_offsets = 2, .feature_dim = 7,
-        .motion = TED4_MOTION_BANK, .phi_dim = 2, .bank_rows = 2, .bank_dim = 2,
-        .deform_layers = 1, .deform_width = 2, .temporal_mask = 1, .offset_mask = 1,
-        .activation = 1, .scale_domain = TED4_SCALE_LOG2, .prior = TED4_PRIOR_INR,
-        .pe_octaves = 3, .hyper_layers = 2, .hyper_width = 9, .n_slices = 3,
-        .slice = { 2, 1, 4 }, .ar_width = 5, .context_bits = 6,
-        .step = { 0.75f, 0.03f, 0.2f, 0.1f, 0.01f }, .frames = 10, .rate_num = 30,
-        .rate_den = 1 };
+    ted4_header h = { .n_anchors = 96,
+                      .tile_size = 96,
+                      .n_offsets = 2,
+                      .feature_dim = 7,
+                      .motion = TED4_MOTION_BANK,
+                      .phi_dim = 2,
+                      .bank_rows = 2,
+                      .bank_dim = 2,
+                      .deform_layers = 1,
+                      .deform_width = 2,
+                      .temporal_mask = 1,
+                      .offset_mask = 1,
+                      .activation = 1,
+                      .scale_domain = TED4_SCALE_LOG2,
+                      .prior = TED4_PRIOR_INR,
+                      .pe_octaves = 3,
+                      .hyper_layers = 2,
+                      .hyper_width = 9,
+                      .n_slices = 3,
+                      .slice = { 2, 1, 4 },
+                      .ar_width = 5,
+                      .context_bits = 6,
+                      .step = { 0.75f, 0.03f, 0.2f, 0.1f, 0.01f },
+                      .frames = 10,
+                      .rate_num = 30,
+                      .rate_den = 1 };
 
     return h;
 }
@@ -343,12 +354,18 @@ static inline void ref_world_make(ref_world *w, const ted4_header *h)
         ref_random_slot(w, i);
     }
     w->rate = ted4_rate_new(&w->layout);
-    w->in = (ted4_rate_input){
-        .layout = &w->layout, .net = w->net, .n_slots = REF_SLOTS,
-        .attr = (const float *const *)w->attr,
-        .position = (const float *const *)w->position, .lanes = w->lanes,
-        .block = w->block, .key = 0x123456789abcdefu, .quant = TED4_QUANT_NOISE,
-        .bit_weight = 0.7f, .distortion_weight = 0.3f, .activation = 1 };
+    w->in = (ted4_rate_input) { .layout = &w->layout,
+                                .net = w->net,
+                                .n_slots = REF_SLOTS,
+                                .attr = (const float *const *)w->attr,
+                                .position = (const float *const *)w->position,
+                                .lanes = w->lanes,
+                                .block = w->block,
+                                .key = 0x123456789abcdefu,
+                                .quant = TED4_QUANT_NOISE,
+                                .bit_weight = 0.7f,
+                                .distortion_weight = 0.3f,
+                                .activation = 1 };
 }
 
 static inline void ref_world_finish(ref_world *w)
@@ -374,19 +391,20 @@ static inline int ref_run(ref_world *w, const ted4_parallel *p, double *bits)
         memset(w->d_attr[i], 0, block * sizeof(float));
     memset(w->d_net, 0, w->layout.n_net * sizeof(float));
     ted4_rate_pack(w->rate, w->net);
-    return ted4_rate_evaluate(w->rate, &w->in, p, (const float *const *)w->d_value,
-                              w->d_attr, w->d_net, w->steps, bits);
+    return ted4_rate_evaluate(w->rate, &w->in, p, (const float *const *)w->d_value, w->d_attr,
+                              w->d_net, w->steps, bits);
 }
 
 static inline ref_model ref_model_make(ref_world *w)
 {
     for (size_t i = 0; i < w->layout.shape.n_nete; i++)
         w->nete[i] = (double)w->net[w->layout.nete + i];
-    return (ref_model){ &w->layout, w->nete, (double)w->in.bit_weight,
-                        (double)w->in.distortion_weight, w->in.activation };
+    return (ref_model) { &w->layout, w->nete, (double)w->in.bit_weight,
+                         (double)w->in.distortion_weight, w->in.activation };
 }
 
-/* The noise of a block, seen through ted4_quantise: values 0 and steps 1 (a_s and a_f are kept apart, so that their order does not matter). */
+/* The noise of a block, seen through ted4_quantise: values 0 and steps 1 (a_s and a_f are kept
+ * apart, so that their order does not matter). */
 static inline void ref_noise(const ref_world *w, int slot, float *noise)
 {
     const ted4_layout *l = &w->layout;
@@ -408,7 +426,7 @@ static inline void ref_noise(const ref_world *w, int slot, float *noise)
 
 /* Anchor of a slot and lane after ref_run, with its residuals. */
 static inline void ref_anchor_make(const ref_world *w, const ref_model *m, int slot, int lane,
-                            const float *noise, ref_anchor *a)
+                                   const float *noise, ref_anchor *a)
 {
     const ted4_layout *l = &w->layout;
     ref_result r;
@@ -423,14 +441,14 @@ static inline void ref_anchor_make(const ref_world *w, const ref_model *m, int s
     }
     for (int c = l->offset_logit; c < l->n_channels; c++)
         a->logit[c - l->offset_logit] = (double)w->attr[slot][c * TED4_LANES + lane];
-    ref_outputs(m, a, NULL, &r);                /* steps do not depend on residuals */
+    ref_outputs(m, a, NULL, &r); /* steps do not depend on residuals */
     for (int t = 0; t < TED4_TYPES && w->in.quant == TED4_QUANT_ROUND; t++)
         for (unsigned c = 0; c < l->shape.dim[t]; c++) {
             const double x = a->x[l->first[t] + (int)c] / r.steps[t];
 
             a->n[l->first[t] + (int)c] = rint(x) - x;
         }
-    if (l->first[TED4_TAU] >= 0) {              /* R-ATT-001 */
+    if (l->first[TED4_TAU] >= 0) { /* R-ATT-001 */
         const int s = l->first[TED4_TAU], f = s + 2;
         const double k = a->x[s] / r.steps[TED4_TAU] + a->n[s];
         const double end = a->x[f] / r.steps[TED4_TAU];

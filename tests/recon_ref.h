@@ -1,6 +1,8 @@
-/* recon_ref.h - spec 11 once more, one record at a time, straight from the text, to test ref-decoder/recon against.
- * Numbers are doubles. In strict mode each operation is rounded to binary32 by rd(): with 53 bits against 24 the second rounding
- * is harmless for + - * / and square root, so this is class X whatever the compiler's flags. Otherwise nothing is rounded and pow2 is exp2.
+/* recon_ref.h - spec 11 once more, one record at a time, straight from the text, to test
+ * ref-decoder/recon against. Numbers are doubles. In strict mode each operation is rounded to
+ * binary32 by rd(): with 53 bits against 24 the second rounding is harmless for + - * / and square
+ * root, so this is class X whatever the compiler's flags. Otherwise nothing is rounded and pow2 is
+ * exp2.
  * SPDX-License-Identifier: BSD-2-Clause */
 #ifndef RECON_REF_H
 #define RECON_REF_H
@@ -14,8 +16,8 @@ enum { REF_VALUES = 14, REF_WIDTH = 640 };
 
 typedef struct {
     const struct ted4_scene *s;
-    const ted4_query        *q;
-    int                      strict;
+    const ted4_query *q;
+    int strict;
 } ref;
 
 /* volatile: gcc 12.2 at -O3 loses the narrowing where it makes vectors of two doubles. */
@@ -33,9 +35,8 @@ static inline double ref_max(double a, double b)
 
 static inline double ref_pow2(const ref *r, double x)
 {
-    static const double c[8] = { 0x1.ffcbfcp-17, 0x1.430912p-13, 0x1.5d87fep-10,
-                                 0x1.3b2ab6p-7, 0x1.c6b08ep-5, 0x1.ebfbep-3,
-                                 0x1.62e43p-1, 1 };
+    static const double c[8] = { 0x1.ffcbfcp-17, 0x1.430912p-13, 0x1.5d87fep-10, 0x1.3b2ab6p-7,
+                                 0x1.c6b08ep-5,  0x1.ebfbep-3,   0x1.62e43p-1,   1 };
     if (x != x)
         return x;
     x = x < -126 ? -126 : x > 126 ? 126 : x;
@@ -200,8 +201,8 @@ static inline void ref_direction(const ref *r, const double *p, double *dir)
     double v[3];
 
     for (int c = 0; c < 3; c++) {
-        const double eye = rd(r, rd(r, (double)r->q->camera[c] - (double)r->s->head.origin[c])
-                                 * exp2(-r->s->head.exponent));
+        const double eye = rd(r, rd(r, (double)r->q->camera[c] - (double)r->s->head.origin[c]) *
+                                     exp2(-r->s->head.exponent));
         v[c] = rd(r, p[c] - eye);
     }
     const double n = ref_norm(r, v, 3);

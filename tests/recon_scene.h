@@ -1,4 +1,5 @@
-/* recon_scene.h - scenes for the tests of ref-decoder/recon: random contents for any header, without a stream.
+/* recon_scene.h - scenes for the tests of ref-decoder/recon: random contents for any header,
+ * without a stream.
  * SPDX-License-Identifier: BSD-2-Clause */
 #ifndef RECON_SCENE_H
 #define RECON_SCENE_H
@@ -57,7 +58,8 @@ static inline void scene_networks(struct ted4_scene *s, scene_random *r)
 }
 
 /* Symbols of a type around a centre, in units of the step; steps of about Q0. */
-static inline void scene_symbols(struct ted4_scene *s, scene_random *r, ted4_type t, int low, int high)
+static inline void scene_symbols(struct ted4_scene *s, scene_random *r, ted4_type t, int low,
+                                 int high)
 {
     const size_t n = s->head.n_anchors, dim = s->shape.dim[t];
 
@@ -102,8 +104,8 @@ static inline void scene_make(struct ted4_scene *s, const ted4_header *h, uint64
         for (size_t c = 0; c < 3; c++)
             s->position[3 * i + c] = ted4_float_to_half(scene_uniform(&r, -1, 1));
         s->dynamic[i] = h->temporal_mask ? scene_bits(&r) % 3 == 0 : h->phi_dim > 0;
-        s->offset_bits[i] = (uint16_t)((h->offset_mask ? scene_bits(&r) >> 8 : ~0u) &
-                                       ((1u << h->n_offsets) - 1));
+        s->offset_bits[i] =
+            (uint16_t)((h->offset_mask ? scene_bits(&r) >> 8 : ~0u) & ((1u << h->n_offsets) - 1));
     }
     scene_symbols(s, &r, TED4_FEATURE, -30, 30);
     scene_symbols(s, &r, TED4_SCALING, h->scale_domain == TED4_SCALE_LOG2 ? -200 : -5, 40);

@@ -14,7 +14,8 @@ static inline void refuse(const tiny_folder *f, const char *where, const char *w
     const char *text = tiny_load(&d, f, &tiny_options);
 
     memset(&zero, 0, sizeof zero);
-    if (*text == 0 || strstr(text, where) == NULL || strstr(text, what) == NULL || strchr(text, '\n') != NULL)
+    if (*text == 0 || strstr(text, where) == NULL || strstr(text, what) == NULL ||
+        strchr(text, '\n') != NULL)
         fail_msg("got \"%s\", expected \"%s\" and \"%s\"", text, where, what);
     assert_memory_equal(&d, &zero, sizeof d);
 }

@@ -1,4 +1,5 @@
-/* run_json.h - a program of this project run on bytes as a user would, for what it prints: for test_lenient.c and test_validate.c.
+/* run_json.h - a program of this project run on bytes as a user would, for what it prints: for
+ * test_lenient.c and test_validate.c.
  * SPDX-License-Identifier: BSD-2-Clause */
 #ifndef TED4_RUN_JSON_H
 #define TED4_RUN_JSON_H
@@ -11,13 +12,14 @@
 #include <unistd.h>
 #include "temporary.h"
 
-/* program: one of the folder $TED4_BUILD, with options; the file's path is put behind. Gives the exit code; *printed: the JSON on stdout, the caller's. */
+/* program: one of the folder $TED4_BUILD, with options; the file's path is put behind. Gives the
+ * exit code; *printed: the JSON on stdout, the caller's. */
 static inline int run_json(const char *program, const uint8_t *data, size_t size, json_t **printed)
 {
-    char      path[TEMPORARY_SIZE], command[512];
+    char path[TEMPORARY_SIZE], command[512];
     const int fd = temporary_file(path, "ted4-run");
-    FILE     *pipe;
-    int       status;
+    FILE *pipe;
+    int status;
 
     assert_true(write(fd, data, size) == (ssize_t)size);
     close(fd);

@@ -1,6 +1,8 @@
-/* spec_model.h - a whole decoder made of the code that the specification prints, its tables of elements (6.1) and of levels (13.1), and what its rules say in
- * words. Shares nothing with ref-decoder but the tables of annex A. Slow, plain; for tests and for the generator of annex B.
- * spec/code.h, spec/head.inc and spec/levels.inc are extracted from spec/ by tests/spec/ (see spec.mk).
+/* spec_model.h - a whole decoder made of the code that the specification prints, its tables of
+ * elements (6.1) and of levels (13.1), and what its rules say in words. Shares nothing with
+ * ref-decoder but the tables of annex A. Slow, plain; for tests and for the generator of annex B.
+ * spec/code.h, spec/head.inc and spec/levels.inc are extracted from spec/ by tests/spec/ (see
+ * spec.mk).
  * SPDX-License-Identifier: BSD-2-Clause */
 #ifndef TED4_SPEC_MODEL_H
 #define TED4_SPEC_MODEL_H
@@ -17,27 +19,37 @@
 #include "spec/code.h"
 #pragma GCC diagnostic pop
 
-enum { BOUND_NONE, BOUND_n_anchors, BOUND_n_offsets, BOUND_frames, BOUND_values, BOUND_products, BOUND_file_bytes, BOUND_symbols,
-       N_BOUNDS };
+enum {
+    BOUND_NONE,
+    BOUND_n_anchors,
+    BOUND_n_offsets,
+    BOUND_frames,
+    BOUND_values,
+    BOUND_products,
+    BOUND_file_bytes,
+    BOUND_symbols,
+    N_BOUNDS
+};
 
 typedef struct {
-    struct scene   s;
+    struct scene s;
     struct verdict v;
-    uint64_t       bound[N_BOUNDS];
-    size_t         n_nete, n_units, n_netr, n_bank, n_tiles, tiles_seen;
-    struct net     net_e[16], net_r[NETS_R];
-    int32_t       *model;               /* of the tile decoded last: [its anchors][P] */
-    int            bank_seen;
-    void          *block[32];           /* owned */
-    int            n_blocks;
-    void         (*tile_done)(void *user, uint32_t number);     /* NULL, or called when a tile has been decoded */
-    void          *user;
+    uint64_t bound[N_BOUNDS];
+    size_t n_nete, n_units, n_netr, n_bank, n_tiles, tiles_seen;
+    struct net net_e[16], net_r[NETS_R];
+    int32_t *model; /* of the tile decoded last: [its anchors][P] */
+    int bank_seen;
+    void *block[32]; /* owned */
+    int n_blocks;
+    void (*tile_done)(void *user,
+                      uint32_t number); /* NULL, or called when a tile has been decoded */
+    void *user;
 } spec_model;
 
 /* Part of a file under way. */
 typedef struct {
     const uint8_t *file;
-    uint64_t       pos, end;            /* offsets in the file */
+    uint64_t pos, end; /* offsets in the file */
     struct verdict *v;
 } spec_reader;
 
@@ -77,11 +89,13 @@ static inline void spec_all_read(spec_reader *r)
 
 static inline int64_t spec_signed(uint32_t x, int width)
 {
-    return x >= (uint32_t)1 << (8 * width - 1) ? (int64_t)x - ((int64_t)1 << 8 * width) : (int64_t)x;
+    return x >= (uint32_t)1 << (8 * width - 1) ? (int64_t)x - ((int64_t)1 << 8 * width)
+                                               : (int64_t)x;
 }
 
 /* R-HDR-001 to R-HDR-003 for an element read at offset at. */
-static inline void spec_judge(spec_model *m, uint64_t at, int64_t x, int64_t low, int64_t high, int conditional, int holds, int bound)
+static inline void spec_judge(spec_model *m, uint64_t at, int64_t x, int64_t low, int64_t high,
+                              int conditional, int holds, int bound)
 {
     const int64_t lowest = conditional && low > 0 ? 0 : low;
 
@@ -95,10 +109,10 @@ static inline void spec_judge(spec_model *m, uint64_t at, int64_t x, int64_t low
 
 static inline void spec_set_level(spec_model *m, int level)
 {
-#define LEVEL(number, ...)                                                                  \
-    if (level == (number)) {                                                                \
-        const uint64_t row[N_BOUNDS] = { UINT64_MAX, __VA_ARGS__ };                         \
-        memcpy(m->bound, row, sizeof row);                                                  \
+#define LEVEL(number, ...)                                          \
+    if (level == (number)) {                                        \
+        const uint64_t row[N_BOUNDS] = { UINT64_MAX, __VA_ARGS__ }; \
+        memcpy(m->bound, row, sizeof row);                          \
     }
 #include "spec/levels.inc"
 #undef LEVEL
@@ -107,29 +121,29 @@ static inline void spec_set_level(spec_model *m, int level)
 static inline void spec_read_elements(spec_model *m, spec_reader *r)
 {
     struct header *h = &m->s.h;
-    int64_t        sum = 0;
-    uint64_t       at;
+    int64_t sum = 0;
+    uint64_t at;
 
-#define ELEMENT(name, count, width, is_signed, low, high, conditional, condition, level)    \
-    for (int64_t i = 0; i < (count) && m->v.id == NULL; i++) {                              \
-        int64_t *x = &((int64_t *)&h->name)[i];                                             \
-        at = r->pos;                                                                        \
-        *x = spec_number(r, width);                                                         \
-        if (is_signed)                                                                      \
-            *x = spec_signed((uint32_t)*x, width);                                          \
-        if (m->v.id == NULL)                                                                \
-            spec_judge(m, at, *x, low, high, conditional, condition, BOUND_##level);        \
-        sum += x == h->slice + i ? *x : 0;                                                  \
-        if (x == h->slice + i && i == h->n_slices - 1 && sum != h->feature_dim)             \
-            fail(&m->v, "hdr.combination", at);                                             \
+#define ELEMENT(name, count, width, is_signed, low, high, conditional, condition, level) \
+    for (int64_t i = 0; i < (count) && m->v.id == NULL; i++) {                           \
+        int64_t *x = &((int64_t *)&h->name)[i];                                          \
+        at = r->pos;                                                                     \
+        *x = spec_number(r, width);                                                      \
+        if (is_signed)                                                                   \
+            *x = spec_signed((uint32_t)*x, width);                                       \
+        if (m->v.id == NULL)                                                             \
+            spec_judge(m, at, *x, low, high, conditional, condition, BOUND_##level);     \
+        sum += x == h->slice + i ? *x : 0;                                               \
+        if (x == h->slice + i && i == h->n_slices - 1 && sum != h->feature_dim)          \
+            fail(&m->v, "hdr.combination", at);                                          \
     }
-#define REAL(name, count, bounded)                                                          \
-    for (int64_t i = 0; i < (count) && m->v.id == NULL; i++) {                              \
-        at = r->pos;                                                                        \
-        h->name[i] = spec_number(r, 4);                                                     \
-        if (!f32_legal(h->name[i]) ||                                                       \
-            ((bounded) && !(from_bits(h->name[i]) >= 0x1p-20f && from_bits(h->name[i]) <= 0x1p10f))) \
-            fail(&m->v, "hdr.range", at);                                                   \
+#define REAL(name, count, bounded)                                                         \
+    for (int64_t i = 0; i < (count) && m->v.id == NULL; i++) {                             \
+        at = r->pos;                                                                       \
+        h->name[i] = spec_number(r, 4);                                                    \
+        if (!f32_legal(h->name[i]) || ((bounded) && !(from_bits(h->name[i]) >= 0x1p-20f && \
+                                                      from_bits(h->name[i]) <= 0x1p10f)))  \
+            fail(&m->v, "hdr.range", at);                                                  \
     }
 #include "spec/head.inc"
 #undef ELEMENT
@@ -160,7 +174,8 @@ static inline void spec_read_head(spec_model *m, spec_reader *r, uint64_t file_b
     m->n_tiles = (size_t)((h->n_anchors + h->tile_size - 1) / h->tile_size);
     for (int i = 0; i < h->n_slices; i++)
         products += spec_products(&m->net_e[i]);
-    if (m->n_nete + m->n_netr + m->n_bank > m->bound[BOUND_values] || products > m->bound[BOUND_products] ||
+    if (m->n_nete + m->n_netr + m->n_bank > m->bound[BOUND_values] ||
+        products > m->bound[BOUND_products] ||
         (m->bound[BOUND_symbols] != UINT64_MAX &&
          (uint64_t)h->n_anchors * components(h) > m->bound[BOUND_symbols] * file_bytes))
         fail(&m->v, "lvl.exceeded", r->pos - 1);
@@ -168,13 +183,14 @@ static inline void spec_read_head(spec_model *m, spec_reader *r, uint64_t file_b
 }
 
 /* spec 7.2. at, step: where the values are for errors. NULL after an error. */
-static inline uint32_t *spec_read_blob(spec_model *m, spec_reader *r, size_t n, uint64_t *at, int *step)
+static inline uint32_t *spec_read_blob(spec_model *m, spec_reader *r, size_t n, uint64_t *at,
+                                       int *step)
 {
     const uint64_t before = r->pos;
     const uint32_t mode = spec_number(r, 1);
     const uint64_t left = r->end - r->pos;
-    uint32_t      *values;
-    uint8_t       *bytes;
+    uint32_t *values;
+    uint8_t *bytes;
 
     *at = r->pos;
     *step = mode == 0 ? 4 : 0;
@@ -220,9 +236,9 @@ static inline void spec_read_shifts(spec_model *m, spec_reader *r, uint8_t *shif
 
 static inline void spec_read_nete(spec_model *m, spec_reader *r)
 {
-    uint8_t  *shift = spec_take(m, m->n_units, 1);
-    uint64_t  at = 0;
-    int       step = 0;
+    uint8_t *shift = spec_take(m, m->n_units, 1);
+    uint64_t at = 0;
+    int step = 0;
     uint32_t *values;
 
     spec_read_shifts(m, r, shift);
@@ -234,7 +250,8 @@ static inline void spec_read_nete(spec_model *m, spec_reader *r)
         size_t v = n->first_value, unit = n->first_unit;
 
         for (int i = 0; i < n->n_layers && m->v.id == NULL; i++) {
-            judge_layer(&m->s.h, n, k, i, values + v, shift + unit, at + (uint64_t)step * v, step, &m->v);
+            judge_layer(&m->s.h, n, k, i, values + v, shift + unit, at + (uint64_t)step * v, step,
+                        &m->v);
             v += (size_t)(n->dim[i] + 1) * (size_t)n->dim[i + 1];
             unit += (size_t)n->dim[i + 1];
         }
@@ -244,8 +261,8 @@ static inline void spec_read_nete(spec_model *m, spec_reader *r)
 
 static inline const uint32_t *spec_read_values(spec_model *m, spec_reader *r, size_t n)
 {
-    uint64_t  at = 0;
-    int       step = 0;
+    uint64_t at = 0;
+    int step = 0;
     uint32_t *values = spec_read_blob(m, r, n, &at, &step);
 
     for (size_t i = 0; m->v.id == NULL && i < n; i++)
@@ -258,7 +275,7 @@ static inline const uint32_t *spec_read_values(spec_model *m, spec_reader *r, si
 static inline void spec_read_positions(spec_model *m, spec_reader *r)
 {
     const size_t n = (size_t)m->s.h.n_anchors, tile = (size_t)m->s.h.tile_size;
-    uint16_t    *p;
+    uint16_t *p;
 
     if ((r->end - r->pos) / 6 < n) {
         fail(&m->v, "con.payload-size", r->pos);
@@ -283,7 +300,7 @@ static inline void spec_read_positions(spec_model *m, spec_reader *r)
 /* A byte string that grows. */
 typedef struct {
     uint8_t *data;
-    size_t   size, room;
+    size_t size, room;
 } spec_bytes;
 
 static inline void spec_put(spec_bytes *b, uint64_t x, int width)
@@ -300,7 +317,8 @@ static inline void spec_put(spec_bytes *b, uint64_t x, int width)
 
 static inline size_t spec_tile_end(const struct header *h, size_t first)
 {
-    return (size_t)(h->n_anchors - (int64_t)first < h->tile_size ? h->n_anchors : (int64_t)first + h->tile_size);
+    return (size_t)(h->n_anchors - (int64_t)first < h->tile_size ? h->n_anchors
+                                                                 : (int64_t)first + h->tile_size);
 }
 
 /* R-INT-002 */
@@ -308,7 +326,7 @@ static inline void spec_integers_hash(const struct scene *s, uint8_t hash[16])
 {
     const struct header *h = &s->h;
     const size_t n = (size_t)h->n_anchors;
-    spec_bytes   b = { NULL, 0, 0 };
+    spec_bytes b = { NULL, 0, 0 };
 
     for (size_t i = 0; i < 3 * n; i++)
         spec_put(&b, s->position[i], 2);
@@ -349,15 +367,16 @@ static inline void spec_read_ends(spec_model *m, spec_reader *r)
 static inline int spec_in_order(const spec_model *m, int kind)
 {
     switch (kind) {
-    case 3:  return m->n_bank > 0;
-    case 4:  return m->n_bank == 0 || m->bank_seen;
-    case 5:  return m->tiles_seen < m->n_tiles;
-    case 6:  return m->tiles_seen == m->n_tiles;
+    case 3: return m->n_bank > 0;
+    case 4: return m->n_bank == 0 || m->bank_seen;
+    case 5: return m->tiles_seen < m->n_tiles;
+    case 6: return m->tiles_seen == m->n_tiles;
     default: return 1;
     }
 }
 
-static inline void spec_read_chunk(spec_model *m, spec_reader *r, uint64_t at, int kind, uint64_t file_bytes)
+static inline void spec_read_chunk(spec_model *m, spec_reader *r, uint64_t at, int kind,
+                                   uint64_t file_bytes)
 {
     if (!spec_in_order(m, kind)) {
         fail(&m->v, "con.chunk-order", at);
@@ -367,10 +386,14 @@ static inline void spec_read_chunk(spec_model *m, spec_reader *r, uint64_t at, i
     case 0: spec_read_head(m, r, file_bytes); break;
     case 1: spec_read_nete(m, r); break;
     case 2: m->s.netr = spec_read_values(m, r, m->n_netr); break;
-    case 3: m->s.bank = spec_read_values(m, r, m->n_bank); m->bank_seen = 1; break;
+    case 3:
+        m->s.bank = spec_read_values(m, r, m->n_bank);
+        m->bank_seen = 1;
+        break;
     case 4: spec_read_positions(m, r); break;
     case 5:
-        decode_tile(&m->s, (uint32_t)m->tiles_seen, m->model, r->file + r->pos, r->end - r->pos, r->pos, &m->v);
+        decode_tile(&m->s, (uint32_t)m->tiles_seen, m->model, r->file + r->pos, r->end - r->pos,
+                    r->pos, &m->v);
         if (m->v.id == NULL && m->tile_done != NULL)
             m->tile_done(m->user, (uint32_t)m->tiles_seen);
         m->tiles_seen++;
@@ -379,7 +402,8 @@ static inline void spec_read_chunk(spec_model *m, spec_reader *r, uint64_t at, i
     }
 }
 
-/* m->v is the verdict; m->v.id NULL: valid, and m->s is filled. m: zeroed but for tile_done and user; free it in any case. */
+/* m->v is the verdict; m->v.id NULL: valid, and m->s is filled. m: zeroed but for tile_done and
+ * user; free it in any case. */
 static inline void spec_model_decode(spec_model *m, const uint8_t *file, uint64_t size)
 {
     uint64_t at = 12;
@@ -389,7 +413,7 @@ static inline void spec_model_decode(spec_model *m, const uint8_t *file, uint64_
         spec_set_level(m, file[11]);
     while (m->v.id == NULL && at < size) {
         const uint64_t n = load32(file + at + 8);
-        spec_reader    r = { file, at + 12, at + 12 + n, &m->v };
+        spec_reader r = { file, at + 12, at + 12 + n, &m->v };
 
         spec_read_chunk(m, &r, at, kind_of(file + at), size);
         at += 20 + n;

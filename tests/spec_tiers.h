@@ -1,5 +1,6 @@
-/* spec_tiers.h - the byte strings of annex J, made by what the specification prints (spec_model.h): T0 from a valid file, T1 to T4 from what was decoded, T5 from
- * queries. Element numbers come from the table of J.2.
+/* spec_tiers.h - the byte strings of annex J, made by what the specification prints (spec_model.h):
+ * T0 from a valid file, T1 to T4 from what was decoded, T5 from queries. Element numbers come from
+ * the table of J.2.
  * SPDX-License-Identifier: BSD-2-Clause */
 #ifndef TED4_SPEC_TIERS_H
 #define TED4_SPEC_TIERS_H
@@ -25,7 +26,8 @@ static inline uint32_t spec_load(const uint8_t *p, int width)
 }
 
 /* The next n numbers of a file, each a record. */
-static inline const uint8_t *spec_t0_numbers(spec_bytes *b, int id, const uint8_t *p, int width, size_t n)
+static inline const uint8_t *spec_t0_numbers(spec_bytes *b, int id, const uint8_t *p, int width,
+                                             size_t n)
 {
     for (size_t i = 0; i < n; i++, p += width) {
         spec_put(b, (uint64_t)id, 2);
@@ -62,7 +64,7 @@ static inline void spec_t0_blob(spec_bytes *b, int id, const uint8_t *p, size_t 
     if (raw)
         spec_t0_numbers(b, id, p, 4, n);
     else
-        spec_t0_bytes(b, id + 1, p, left - 1);      /* nete_deflated follows nete, and so on: J.2 */
+        spec_t0_bytes(b, id + 1, p, left - 1); /* nete_deflated follows nete, and so on: J.2 */
 }
 
 static inline int spec_n_substreams(const struct header *h)
@@ -76,8 +78,9 @@ static inline int spec_n_substreams(const struct header *h)
 
 static inline void spec_t0_tile(spec_bytes *b, const struct header *h, const uint8_t *p)
 {
-    static const int id[TYPES] = { ID_feature_substream, ID_scaling_substream, ID_offset_substream, ID_phi_substream, ID_tau_substream };
-    const int      n = spec_n_substreams(h);
+    static const int id[TYPES] = { ID_feature_substream, ID_scaling_substream, ID_offset_substream,
+                                   ID_phi_substream, ID_tau_substream };
+    const int n = spec_n_substreams(h);
     const uint8_t *size;
 
     p = spec_t0_numbers(b, ID_tile_index, p, 4, 1);
@@ -90,11 +93,13 @@ static inline void spec_t0_tile(spec_bytes *b, const struct header *h, const uin
         size += 4;
     }
     for (int type = 0; type < TYPES; type++)
-        for (int i = 0; type_dim(h, type) > 0 && i < (type == FEATURE ? h->n_slices : 1); i++, size += 4)
+        for (int i = 0; type_dim(h, type) > 0 && i < (type == FEATURE ? h->n_slices : 1);
+             i++, size += 4)
             p = spec_t0_bytes(b, id[type], p, load32(size));
 }
 
-static inline void spec_t0_payload(spec_bytes *b, const spec_model *m, int kind, const uint8_t *p, size_t n)
+static inline void spec_t0_payload(spec_bytes *b, const spec_model *m, int kind, const uint8_t *p,
+                                   size_t n)
 {
     switch (kind) {
     case 0: spec_t0_head(b, &m->s.h, p); break;
@@ -154,7 +159,8 @@ static inline int16_t spec_k(const struct scene *s, int type, int comp, size_t a
 }
 
 /* J.5, one substream: components comp .. comp + n_comps - 1 */
-static inline void spec_t3_substream(spec_bytes *b, const struct scene *s, int type, int comp, int n_comps, size_t first, size_t end)
+static inline void spec_t3_substream(spec_bytes *b, const struct scene *s, int type, int comp,
+                                     int n_comps, size_t first, size_t end)
 {
     uint32_t n = 0;
 
@@ -173,7 +179,7 @@ static inline void spec_t3_substream(spec_bytes *b, const struct scene *s, int t
 
 static inline void spec_t3_masks(spec_bytes *b, const struct scene *s, size_t first, size_t end)
 {
-    const int      t = (int)s->h.temporal_mask, o = (int)s->h.offset_mask;
+    const int t = (int)s->h.temporal_mask, o = (int)s->h.offset_mask;
     const uint32_t n = (uint32_t)(end - first) * (uint32_t)(t + (o ? s->h.n_offsets : 0));
 
     if (n == 0)
@@ -193,11 +199,11 @@ static inline void spec_t3_masks(spec_bytes *b, const struct scene *s, size_t fi
 /* J.4 to J.6 of a tile, while its model is there */
 static inline void spec_tile_done(void *user, uint32_t number)
 {
-    spec_tiers   *t = user;
+    spec_tiers *t = user;
     const spec_model *m = &t->model;
     const struct scene *s = &m->s;
-    const size_t  first = (size_t)number * (size_t)s->h.tile_size, end = spec_tile_end(&s->h, first);
-    int           comp = 0;
+    const size_t first = (size_t)number * (size_t)s->h.tile_size, end = spec_tile_end(&s->h, first);
+    int comp = 0;
 
     for (int type = 0; type < TYPES; type++)
         for (size_t a = first; type_dim(&s->h, type) > 0 && a < end; a++)
@@ -207,8 +213,8 @@ static inline void spec_tile_done(void *user, uint32_t number)
             for (size_t a = first; a < end; a++)
                 if (has(s, type, c, a)) {
                     const int32_t *mu = spec_mu(m, type, c, a - first);
-                    const float    x = value_of(s, type, c, a);
-                    uint32_t       pattern;
+                    const float x = value_of(s, type, c, a);
+                    uint32_t pattern;
 
                     memcpy(&pattern, &x, 4);
                     spec_put(&t->tier[2], (uint64_t)sigma_index(mu[type_dim(&s->h, type)]), 1);
@@ -225,7 +231,8 @@ static inline void spec_tile_done(void *user, uint32_t number)
 }
 
 /* J.7 */
-static inline void spec_t5(spec_bytes *b, const spec_model *m, uint32_t num, uint32_t den, const float *camera)
+static inline void spec_t5(spec_bytes *b, const spec_model *m, uint32_t num, uint32_t den,
+                           const float *camera)
 {
     float record[16][14];
 

@@ -1,5 +1,5 @@
-/* spec_tolerance.h - annex E: the thresholds of class T for a stream and a query, and whether records keep them.
- * Evaluations are made of the code that the specification prints (spec/eval.c).
+/* spec_tolerance.h - annex E: the thresholds of class T for a stream and a query, and whether
+ * records keep them. Evaluations are made of the code that the specification prints (spec/eval.c).
  * SPDX-License-Identifier: BSD-2-Clause */
 #ifndef TED4_SPEC_TOLERANCE_H
 #define TED4_SPEC_TOLERANCE_H
@@ -10,19 +10,21 @@ enum { TOL_POSITION, TOL_SCALE, TOL_ROTATION, TOL_OPACITY, TOL_COLOUR, TOL_GROUP
 enum { TOL_EXACT, TOL_WIDE, TOL_FUSED, TOL_REORDERED, TOL_EVALUATIONS };
 
 /* Each gives the records of a struct scene and returns how many. */
-typedef size_t tol_evaluation(const void *scene, uint32_t num, uint32_t den, const float *camera, float (*out)[14]);
+typedef size_t tol_evaluation(const void *scene, uint32_t num, uint32_t den, const float *camera,
+                              float (*out)[14]);
 tol_evaluation tol_exact, tol_wide, tol_fused, tol_reordered;
 
 typedef struct {
-    size_t   n;                         /* records */
-    float  (*record[TOL_EVALUATIONS])[14];      /* owned */
-    uint8_t *judged;                    /* [n] bit g: group g of the record counts */
-    double   peak[TOL_GROUPS], rms[TOL_GROUPS];
-    double   unit;                      /* 2^e */
+    size_t n;                             /* records */
+    float (*record[TOL_EVALUATIONS])[14]; /* owned */
+    uint8_t *judged;                      /* [n] bit g: group g of the record counts */
+    double peak[TOL_GROUPS], rms[TOL_GROUPS];
+    double unit; /* 2^e */
 } tol_reference;
 
 /* R-TOL-002: deviation of y from the record x of class X, not below u. */
-static inline void tol_deviation(const float *x, const float *y, double unit, double dev[TOL_GROUPS])
+static inline void tol_deviation(const float *x, const float *y, double unit,
+                                 double dev[TOL_GROUPS])
 {
     double u = 0, minus = 0, plus = 0;
 
@@ -30,7 +32,8 @@ static inline void tol_deviation(const float *x, const float *y, double unit, do
     for (int j = 0; j < 3; j++) {
         u = fmax(u, fabs((double)x[j]));
         dev[TOL_POSITION] = fmax(dev[TOL_POSITION], fabs((double)y[j] - (double)x[j]) / unit);
-        dev[TOL_SCALE] = fmax(dev[TOL_SCALE], fabs((double)y[3 + j] - (double)x[3 + j]) / fmax((double)x[3 + j], 0x1p-24 * unit));
+        dev[TOL_SCALE] = fmax(dev[TOL_SCALE], fabs((double)y[3 + j] - (double)x[3 + j]) /
+                                                  fmax((double)x[3 + j], 0x1p-24 * unit));
         dev[TOL_COLOUR] = fmax(dev[TOL_COLOUR], fabs((double)y[11 + j] - (double)x[11 + j]));
     }
     for (int j = 6; j < 10; j++) {
@@ -44,7 +47,8 @@ static inline void tol_deviation(const float *x, const float *y, double unit, do
 }
 
 /* Largest deviation and root of the mean square of each group; 0 where nothing is judged. */
-static inline void tol_measure(const tol_reference *t, float (*y)[14], double peak[TOL_GROUPS], double rms[TOL_GROUPS])
+static inline void tol_measure(const tol_reference *t, float (*y)[14], double peak[TOL_GROUPS],
+                               double rms[TOL_GROUPS])
 {
     size_t n[TOL_GROUPS] = { 0 };
 
@@ -84,8 +88,9 @@ static inline int tol_far(const struct scene *s, size_t anchor, const float *cam
     double sum = 0;
 
     for (size_t j = 0; j < 3; j++) {
-        const double v = q24(s->position[3 * anchor + j]) / 16777216.0
-                       - ((double)camera[j] - (double)from_bits(s->h.origin[j])) * exp2((double)-s->h.exponent);
+        const double v = q24(s->position[3 * anchor + j]) / 16777216.0 -
+                         ((double)camera[j] - (double)from_bits(s->h.origin[j])) *
+                             exp2((double)-s->h.exponent);
 
         sum += v * v;
     }
@@ -111,7 +116,7 @@ static inline void tol_mark(tol_reference *t, const struct scene *s, const float
             if (s->offset_bits[a] >> k & 1) {
                 t->judged[i] = tol_far(s, a, camera) ? (1 << TOL_GROUPS) - 1 : 1 << TOL_POSITION;
                 if (!tol_same_fallback(t, i))
-                    t->judged[i] &= (uint8_t)~(1u << TOL_ROTATION);
+                    t->judged[i] &= (uint8_t) ~(1u << TOL_ROTATION);
                 if (!tol_finite(t, i))
                     t->judged[i] = 0;
                 i++;
@@ -126,10 +131,13 @@ static inline double tol_round_up(double x)
     return x == 0 ? 0 : frexp(x, &e) == 0.5 ? x : ldexp(1.0, e);
 }
 
-/* Records of all evaluations, and thresholds. 1; 0: class X has no result. t: zeroed; tol_free in any case. */
-static inline int tol_make(tol_reference *t, const struct scene *s, uint32_t num, uint32_t den, const float *camera)
+/* Records of all evaluations, and thresholds. 1; 0: class X has no result. t: zeroed; tol_free in
+ * any case. */
+static inline int tol_make(tol_reference *t, const struct scene *s, uint32_t num, uint32_t den,
+                           const float *camera)
 {
-    tol_evaluation *const evaluate[TOL_EVALUATIONS] = { tol_exact, tol_wide, tol_fused, tol_reordered };
+    tol_evaluation *const evaluate[TOL_EVALUATIONS] = { tol_exact, tol_wide, tol_fused,
+                                                        tol_reordered };
     const size_t most = (size_t)(s->h.n_anchors * s->h.n_offsets) + 1;
 
     t->unit = exp2((double)s->h.exponent);

@@ -1,4 +1,5 @@
-/* starving.h - allocations of everything linked into a test, of which one fails, or all from one on. The linker wraps them (-Wl,--wrap); one test program each.
+/* starving.h - allocations of everything linked into a test, of which one fails, or all from one
+ * on. The linker wraps them (-Wl,--wrap); one test program each.
  * SPDX-License-Identifier: BSD-2-Clause */
 #ifndef TED4_STARVING_H
 #define TED4_STARVING_H
@@ -15,7 +16,7 @@ void *__wrap_realloc(void *block, size_t size);
 void *__wrap_aligned_alloc(size_t alignment, size_t size);
 
 static struct {
-    int    on, fail_on;
+    int on, fail_on;
     size_t n, fail_at;
 } wrapped;
 
@@ -63,7 +64,8 @@ static inline int feed(void)
     return wrapped.n >= wrapped.fail_at;
 }
 
-/* The deed tells whether an allocation failed: one after the other does, by itself and with all behind it. */
+/* The deed tells whether an allocation failed: one after the other does, by itself and with all
+ * behind it. */
 static inline void starve_each(int (*deed)(size_t n, int fail_on))
 {
     for (int fail_on = 0; fail_on < 2; fail_on++) {

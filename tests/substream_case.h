@@ -1,4 +1,5 @@
-/* substream_case.h - symbols with their models, and the substream that write/coder_write.c makes of them, for tests of what reads it.
+/* substream_case.h - symbols with their models, and the substream that write/coder_write.c makes of
+ * them, for tests of what reads it.
  * SPDX-License-Identifier: BSD-2-Clause */
 #ifndef SUBSTREAM_CASE_H
 #define SUBSTREAM_CASE_H
@@ -9,17 +10,18 @@
 
 /* n symbols with their models: means in 1/256, indices of sigma. */
 typedef struct {
-    size_t   n;
+    size_t n;
     int32_t *mu;
     uint8_t *sigma;
     int16_t *k;
 } symbols;
 
-/* far: one symbol of so many lies where only an escape reaches; 0: none. widest: largest index of sigma; the wider, the worse are guesses. */
+/* far: one symbol of so many lies where only an escape reaches; 0: none. widest: largest index of
+ * sigma; the wider, the worse are guesses. */
 static inline symbols symbols_make(uint64_t seed, size_t n, unsigned far, unsigned widest)
 {
     random_source r = random_seed(seed);
-    symbols       s = { n, malloc(n * sizeof *s.mu), malloc(n), malloc(n * sizeof *s.k) };
+    symbols s = { n, malloc(n * sizeof *s.mu), malloc(n), malloc(n * sizeof *s.k) };
 
     for (size_t i = 0; i < n; i++) {
         const double x = random_normal(&r) * 40;

@@ -1,4 +1,5 @@
-/* temporary.h - a folder or a file of a test's own, below $TMPDIR or /tmp. What cannot be made ends the test program. Depends on nothing.
+/* temporary.h - a folder or a file of a test's own, below $TMPDIR or /tmp. What cannot be made ends
+ * the test program. Depends on nothing.
  * SPDX-License-Identifier: BSD-2-Clause */
 #ifndef TED4_TEMPORARY_H
 #define TED4_TEMPORARY_H
@@ -7,7 +8,7 @@
 #include <stdlib.h>
 #include <unistd.h>
 
-enum { TEMPORARY_SIZE = 192 };          /* of a path */
+enum { TEMPORARY_SIZE = 192 }; /* of a path */
 
 static inline void temporary_made(int ok, const char *path)
 {
@@ -20,7 +21,8 @@ static inline void temporary_made(int ok, const char *path)
 static inline void temporary_name(char *path, const char *name)
 {
     const char *base = getenv("TMPDIR");
-    const int   n = snprintf(path, TEMPORARY_SIZE, "%s/%s-XXXXXX", base != NULL && *base != '\0' ? base : "/tmp", name);
+    const int n = snprintf(path, TEMPORARY_SIZE, "%s/%s-XXXXXX",
+                           base != NULL && *base != '\0' ? base : "/tmp", name);
 
     temporary_made(n > 0 && n < TEMPORARY_SIZE, path);
 }

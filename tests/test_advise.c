@@ -1,4 +1,5 @@
-/* test_advise.c - what a validator says of valid files: each kind of advice is given for a file made to deserve it, and not for one that does not.
+/* test_advise.c - what a validator says of valid files: each kind of advice is given for a file
+ * made to deserve it, and not for one that does not.
  * SPDX-License-Identifier: BSD-2-Clause */
 #include <setjmp.h>
 #include <stdarg.h>
@@ -31,7 +32,7 @@ static void expect(const uint8_t *data, size_t size, ted4_advice what, int to_be
 
 static void expect_scene(const ted4_scene *s, int level, ted4_advice what, int to_be)
 {
-    size_t   size;
+    size_t size;
     uint8_t *data = encoded(s, level, &size);
 
     expect(data, size, what, to_be);
@@ -40,9 +41,9 @@ static void expect_scene(const ted4_scene *s, int level, ted4_advice what, int t
 
 static void advice_on_masks(void **state)
 {
-    ted4_header   h = random_small_header(200);
-    ted4_scene   *s = useful(1, &h);
-    const size_t  n = h.n_anchors;
+    ted4_header h = random_small_header(200);
+    ted4_scene *s = useful(1, &h);
+    const size_t n = h.n_anchors;
 
     (void)state;
     expect_scene(s, 0, TED4_ADV_STILL, 0);
@@ -64,9 +65,9 @@ static void advice_on_masks(void **state)
 
 static void advice_on_time(void **state)
 {
-    ted4_header  h = random_small_header(200);
+    ted4_header h = random_small_header(200);
     const size_t n = h.n_anchors;
-    ted4_scene  *s = useful(2, &h);
+    ted4_scene *s = useful(2, &h);
 
     (void)state;
     expect_scene(s, 0, TED4_ADV_ACTIVATION, 0);
@@ -86,11 +87,11 @@ static void advice_on_time(void **state)
     s->head.frames = 1;
     expect_scene(s, 0, TED4_ADV_ONE_FRAME, 1);
     expect_scene(s, 0, TED4_ADV_BANK_ROWS, 1);
-    s->head.frames = 2;                 /* times 0 and 1: the rows between are not seen */
+    s->head.frames = 2; /* times 0 and 1: the rows between are not seen */
     expect_scene(s, 0, TED4_ADV_BANK_ROWS, 1);
-    s->head.frames = 3;                 /* 0, 2, 4 of 5 */
+    s->head.frames = 3; /* 0, 2, 4 of 5 */
     expect_scene(s, 0, TED4_ADV_BANK_ROWS, 1);
-    s->head.frames = 4;                 /* 0, 4/3, 8/3, 4 */
+    s->head.frames = 4; /* 0, 4/3, 8/3, 4 */
     expect_scene(s, 0, TED4_ADV_BANK_ROWS, 0);
     ted4_scene_free(s);
 }
@@ -99,8 +100,8 @@ static void advice_on_files(void **state)
 {
     ted4_header h = random_small_header(200);
     ted4_scene *s = useful(3, &h);
-    size_t      size;
-    uint8_t    *data;
+    size_t size;
+    uint8_t *data;
 
     (void)state;
     for (size_t i = 0; i < s->bank.n; i++)
@@ -120,11 +121,11 @@ static void advice_on_files(void **state)
 }
 
 /* A file with a chunk more, behind HEAD. */
-static void expect_chunk(const uint8_t *data, size_t size, const char *type, uint32_t flags, const char *payload,
-                         ted4_advice what, int to_be)
+static void expect_chunk(const uint8_t *data, size_t size, const char *type, uint32_t flags,
+                         const char *payload, ted4_advice what, int to_be)
 {
     const size_t head = 12 + ted4_chunk_size(data, size, 12), n = strlen(payload), more = 20 + n;
-    uint8_t     *with = malloc(size + more);
+    uint8_t *with = malloc(size + more);
 
     memcpy(with, data, head);
     memcpy(with + head, type, 4);
@@ -139,13 +140,17 @@ static void expect_chunk(const uint8_t *data, size_t size, const char *type, uin
 
 static void advice_on_chunks(void **state)
 {
-    static const char *const wrong[] = { "a=b", "=b\n", "ab\n", "a=\xff\n", "a=\xc0\x80\n", "a=\xed\xa0\x80\n", "a=b\n\n", "a=\x01\n",
-                                         "a=\xf5\x80\x80\x80\n", "a=\xe2\x82\n" };
-    static const char *const right[] = { "", "a=b\n", "a=\nb=\xc3\xa9=\xe2\x82\xac\xf0\x9f\x98\x80\n", "aa=1\na=1\n" };
+    static const char *const wrong[] = { "a=b",         "=b\n",         "ab\n",
+                                         "a=\xff\n",    "a=\xc0\x80\n", "a=\xed\xa0\x80\n",
+                                         "a=b\n\n",     "a=\x01\n",     "a=\xf5\x80\x80\x80\n",
+                                         "a=\xe2\x82\n" };
+    static const char *const right[] = { "", "a=b\n",
+                                         "a=\nb=\xc3\xa9=\xe2\x82\xac\xf0\x9f\x98\x80\n",
+                                         "aa=1\na=1\n" };
     ted4_header h = random_small_header(200);
     ted4_scene *s = useful(4, &h);
-    size_t      size;
-    uint8_t    *data = encoded(s, 0, &size);
+    size_t size;
+    uint8_t *data = encoded(s, 0, &size);
 
     (void)state;
     for (size_t i = 0; i < sizeof wrong / sizeof *wrong; i++)
@@ -190,7 +195,7 @@ static void advice_on_symbols(void **state)
 {
     ted4_header h = random_small_header(200);
     ted4_scene *s;
-    unsigned    scaling;
+    unsigned scaling;
 
     (void)state;
     s = useful(5, &h);
@@ -198,12 +203,12 @@ static void advice_on_symbols(void **state)
     expect_scene(s, 0, TED4_ADV_CONTEXT, 0);
     expect_scene(s, 0, TED4_ADV_PROB, 0);
     expect_scene(s, 0, TED4_ADV_PROB_EXTREME, 0);
-    set_outputs(s, scaling, 12, 0);                             /* mu 0, s 0: sigma index 64, a step */
+    set_outputs(s, scaling, 12, 0); /* mu 0, s 0: sigma index 64, a step */
     snap(s);
     memset(s->symbol[TED4_SCALING], 0, 6 * h.n_anchors * sizeof(int16_t));
     expect_scene(s, 0, TED4_ADV_ESCAPES, 0);
     for (size_t i = 0; i < h.n_anchors; i++)
-        s->symbol[TED4_SCALING][i] = 100;                       /* 100 sigma */
+        s->symbol[TED4_SCALING][i] = 100; /* 100 sigma */
     expect_scene(s, 0, TED4_ADV_ESCAPES, 1);
     expect_scene(s, 0, TED4_ADV_SIGMA, 0);
     set_outputs(s, scaling + 6, 6, -100);
@@ -217,7 +222,7 @@ static void advice_on_symbols(void **state)
     expect_scene(s, 0, TED4_ADV_STEP, 1);
     s->symbol[TED4_FEATURE][3] = 32767;
     expect_scene(s, 0, TED4_ADV_CONTEXT, 1);
-    s->prob[0] = 40000;                                         /* of dynamic, of which one in five is 1 */
+    s->prob[0] = 40000; /* of dynamic, of which one in five is 1 */
     expect_scene(s, 0, TED4_ADV_PROB, 1);
     s->prob[0] = 1;
     expect_scene(s, 0, TED4_ADV_PROB_EXTREME, 1);
@@ -228,7 +233,7 @@ static void advice_on_symbols(void **state)
 static void all_given(void **state)
 {
     (void)state;
-    given[TED4_ADV_MORE] = given[TED4_ADV_MEMORY] = 1;      /* test_validate.c */
+    given[TED4_ADV_MORE] = given[TED4_ADV_MEMORY] = 1; /* test_validate.c */
     for (int i = 0; i < TED4_N_ADVICE; i++) {
         if (!given[i])
             print_message("%s: never given\n", advice_id[i]);
@@ -239,8 +244,9 @@ static void all_given(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(advice_on_masks), cmocka_unit_test(advice_on_time), cmocka_unit_test(advice_on_files),
-        cmocka_unit_test(advice_on_chunks), cmocka_unit_test(advice_on_symbols), cmocka_unit_test(all_given),
+        cmocka_unit_test(advice_on_masks),   cmocka_unit_test(advice_on_time),
+        cmocka_unit_test(advice_on_files),   cmocka_unit_test(advice_on_chunks),
+        cmocka_unit_test(advice_on_symbols), cmocka_unit_test(all_given),
     };
 
     return cmocka_run_group_tests(tests, NULL, NULL);

@@ -1,5 +1,6 @@
-/* test_attest.c - a sample of the defined functions of class X over all binary32 numbers against conformance/attest/sample.txt; all of them: `make attest`
- * (annex J.9). pow2 is what it is named for, to two units in the last place.
+/* test_attest.c - a sample of the defined functions of class X over all binary32 numbers against
+ * conformance/attest/sample.txt; all of them: `make attest` (annex J.9). pow2 is what it is named
+ * for, to two units in the last place.
  * SPDX-License-Identifier: BSD-2-Clause */
 #include <setjmp.h>
 #include <stdarg.h>
@@ -9,7 +10,7 @@
 #include <cmocka.h>
 #include "gen/attest.h"
 
-enum { STRIDE = 4093 };                 /* a prime: every exponent with many fractions */
+enum { STRIDE = 4093 }; /* a prime: every exponent with many fractions */
 
 static float pow2_of(float x)
 {
@@ -36,7 +37,7 @@ static void sample(float (*f)(float x), const char *name, FILE *out)
 
 static void as_attested(void **state)
 {
-    char  now[512] = "", kept[2048] = "";
+    char now[512] = "", kept[2048] = "";
     FILE *f = tmpfile();
 
     (void)state;
@@ -59,7 +60,7 @@ static void accurate(void **state)
 {
     (void)state;
     for (uint64_t i = 0; i < (uint64_t)1 << 32; i += STRIDE) {
-        const float  x = ted4_bits_float((uint32_t)i);
+        const float x = ted4_bits_float((uint32_t)i);
         const double exact = exp2(fmin(fmax((double)x, -126), 126));
 
         if (x == x)

@@ -1,6 +1,7 @@
-/* test_bad_scenes.c - ted4enc as a program, given what it cannot use: one line on stderr that begins with its name, exit status 3, and
- * nothing left in the folder of the output. A scene of a few pixels that is fine shows that the others fail for their own reason.
- * Looks for it in $TED4_BUILD (set by tests/run.sh); skips when that is not set.
+/* test_bad_scenes.c - ted4enc as a program, given what it cannot use: one line on stderr that
+ * begins with its name, exit status 3, and nothing left in the folder of the output. A scene of a
+ * few pixels that is fine shows that the others fail for their own reason. Looks for it in
+ * $TED4_BUILD (set by tests/run.sh); skips when that is not set.
  * SPDX-License-Identifier: BSD-2-Clause */
 #include <setjmp.h>
 #include <stdarg.h>
@@ -10,26 +11,28 @@
 
 #include "tiny_scene.h"
 
-#define OUT   " -o out/x.ted4"
-#define QUICK " --preset draft --iterations 3,3 -j 1 -q"
-#define POSE  "\"transform_matrix\": [[1,0,0,0],[0,1,0,0],[0,0,1,%d],[0,0,0,1]]"
-#define FRAME "{\"file_path\": \"%d.png\", \"time\": %d, \"fl_x\": 12, " POSE "}"
+#define OUT    " -o out/x.ted4"
+#define QUICK  " --preset draft --iterations 3,3 -j 1 -q"
+#define POSE   "\"transform_matrix\": [[1,0,0,0],[0,1,0,0],[0,0,1,%d],[0,0,0,1]]"
+#define FRAME  "{\"file_path\": \"%d.png\", \"time\": %d, \"fl_x\": 12, " POSE "}"
 #define SECOND "{\"file_path\": \"1.png\", \"time\": 1, \"fl_x\": 12, "
 
 enum { N_PICTURES = 3 };
 
 static const char *build;
 static tiny_folder folder;
-static char        err[4096];           /* stderr of the last run */
+static char err[4096]; /* stderr of the last run */
 
-/* ted4enc with these arguments, in the folder, without what it says on its way; gives its exit status. */
+/* ted4enc with these arguments, in the folder, without what it says on its way; gives its exit
+ * status. */
 static int run(const char *arguments)
 {
-    char   command[2048];
-    FILE  *f;
-    int    status;
+    char command[2048];
+    FILE *f;
+    int status;
 
-    snprintf(command, sizeof command, "cd %s && %s/ted4enc -q %s >out.txt 2>err.txt", folder.path, build, arguments);
+    snprintf(command, sizeof command, "cd %s && %s/ted4enc -q %s >out.txt 2>err.txt", folder.path,
+             build, arguments);
     status = system(command);
     f = fopen(tiny_path(&folder, "err.txt"), "rb");
     assert_non_null(f);
@@ -42,7 +45,7 @@ static int run(const char *arguments)
 static int files_in(const char *name)
 {
     DIR *d = opendir(tiny_path(&folder, name));
-    int  n = -2;                        /* . and .. */
+    int n = -2; /* . and .. */
 
     assert_non_null(d);
     while (readdir(d) != NULL)
@@ -54,12 +57,14 @@ static int files_in(const char *name)
 /* what: part of the message. */
 static void refuse(const char *arguments, const char *what)
 {
-    const int   before = files_in("out");
-    const int   status = run(arguments);
+    const int before = files_in("out");
+    const int status = run(arguments);
     const char *end = strchr(err, '\n');
 
-    if (status != 3 || strncmp(err, "ted4enc: ", 9) != 0 || end == NULL || end[1] != 0 || strstr(err, what) == NULL)
-        fail_msg("ted4enc %s: exit %d, stderr \"%s\", expected 3 and \"%s\"", arguments, status, err, what);
+    if (status != 3 || strncmp(err, "ted4enc: ", 9) != 0 || end == NULL || end[1] != 0 ||
+        strstr(err, what) == NULL)
+        fail_msg("ted4enc %s: exit %d, stderr \"%s\", expected 3 and \"%s\"", arguments, status,
+                 err, what);
     if (files_in("out") != before)
         fail_msg("ted4enc %s: left a file behind", arguments);
 }
@@ -68,7 +73,7 @@ static void refuse(const char *arguments, const char *what)
 static void scene(const char *name, const char *top, const char *second)
 {
     tiny_string s = { "", 0 };
-    char        path[256];
+    char path[256];
 
     tiny_add(&s, "{%s\"frames\": [", top);
     for (int i = 0; i < N_PICTURES; i++) {
@@ -239,7 +244,8 @@ static void test_cameras(void **state)
     refuse("null" OUT QUICK, "transforms.json:1");
     scene("null", "", SECOND "\"transform_matrix\": [[1,0,0,null],[0,1,0,0],[0,0,1,0],[0,0,0,1]]}");
     refuse("null" OUT QUICK, "frames[1].transform_matrix");
-    scene("null", "", SECOND "\"transform_matrix\": [[1,0,0,1e999],[0,1,0,0],[0,0,1,0],[0,0,0,1]]}");
+    scene("null", "",
+          SECOND "\"transform_matrix\": [[1,0,0,1e999],[0,1,0,0],[0,0,1,0],[0,0,0,1]]}");
     refuse("null" OUT QUICK, "transforms.json:1");
     scene("null", "", SECOND "\"transform_matrix\": [[0,0,0,0],[0,0,0,0],[0,0,0,0],[0,0,0,1]]}");
     refuse("null" OUT QUICK, "frames[1].transform_matrix");
@@ -266,7 +272,7 @@ static void test_empty(void **state)
 
 static void test_output(void **state)
 {
-    char   name[400], text[512];
+    char name[400], text[512];
 
     (void)state;
     need_program();
@@ -292,20 +298,32 @@ static void test_output(void **state)
 static void test_options(void **state)
 {
     static const char *const wrong[][2] = {
-        { "-j x", "--threads: bad value x" },       { "-j -1", "--threads: bad value -1" },
-        { "--downscale 0", "--downscale" },         { "--downscale 65", "--downscale: bad value 65" },
-        { "--downscale 1.5", "--downscale" },       { "--downscale ''", "--downscale" },
-        { "--seed -1", "--seed" },                  { "--seed 99999999999999999999", "--seed" },
-        { "--preset best", "--preset best" },       { "--iterations 5", "--iterations" },
-        { "--iterations 0,5", "stage1=0" },         { "--iterations 5,-1", "stage2=-1" },
-        { "--iterations a,b", "stage1=a" },         { "--iterations 5,5,5", "stage2=5,5" },
+        { "-j x", "--threads: bad value x" },
+        { "-j -1", "--threads: bad value -1" },
+        { "--downscale 0", "--downscale" },
+        { "--downscale 65", "--downscale: bad value 65" },
+        { "--downscale 1.5", "--downscale" },
+        { "--downscale ''", "--downscale" },
+        { "--seed -1", "--seed" },
+        { "--seed 99999999999999999999", "--seed" },
+        { "--preset best", "--preset best" },
+        { "--iterations 5", "--iterations" },
+        { "--iterations 0,5", "stage1=0" },
+        { "--iterations 5,-1", "stage2=-1" },
+        { "--iterations a,b", "stage1=a" },
+        { "--iterations 5,5,5", "stage2=5,5" },
         { "--iterations 10000001,5", "stage1=10000001: expected" },
         { "--iterations 5,10000001", "stage2=10000001: expected" },
-        { "--lambda x", "lambda=x" },               { "--lambda nan", "lambda=nan" },
-        { "--lambda -1", "lambda=-1" },             { "--lambda ''", "lambda=" },
-        { "--set nothing=1", "nothing=1" },         { "--set lambda", "lambda" },
-        { "--set lambda=1e999", "lambda" },         { "--resume", "--checkpoint" },
-        { "--nothing", "nothing" },                 { "--preset", "preset" },
+        { "--lambda x", "lambda=x" },
+        { "--lambda nan", "lambda=nan" },
+        { "--lambda -1", "lambda=-1" },
+        { "--lambda ''", "lambda=" },
+        { "--set nothing=1", "nothing=1" },
+        { "--set lambda", "lambda" },
+        { "--set lambda=1e999", "lambda" },
+        { "--resume", "--checkpoint" },
+        { "--nothing", "nothing" },
+        { "--preset", "preset" },
         { "good", "one scene folder" },
     };
     char text[256];

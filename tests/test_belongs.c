@@ -17,7 +17,7 @@ enum { FRAMES = 8, CAMERAS = 12, MOST = 200 };
 
 typedef struct {
     ted4_dataset d;
-    ted4_info    file;
+    ted4_info file;
     ted4_picture picture[MOST];
 } pair;
 
@@ -26,24 +26,24 @@ typedef struct {
 static void make_pair(pair *p)
 {
     memset(p, 0, sizeof *p);
-    p->d = (ted4_dataset){ .pictures = p->picture,
-                           .n_pictures = CAMERAS,
-                           .n_frames = FRAMES,
-                           .n_cameras = CAMERAS,
-                           .rate = 30 };
+    p->d = (ted4_dataset) { .pictures = p->picture,
+                            .n_pictures = CAMERAS,
+                            .n_frames = FRAMES,
+                            .n_cameras = CAMERAS,
+                            .rate = 30 };
     for (int i = 0; i < CAMERAS; i++) {
         const double a = 2 * 3.14159265358979 * i / CAMERAS;
 
         /* Forward is the third row: towards the origin. */
         p->picture[i].camera =
-            (ted4_camera){ .width = 80,
-                           .height = 60,
-                           .fx = 80,
-                           .fy = 80,
-                           .cx = 40,
-                           .cy = 30,
-                           .R = { -sin(a), cos(a), 0, 0, 0, -1, -cos(a), -sin(a), 0 },
-                           .t = { 0, 0, 10 } };
+            (ted4_camera) { .width = 80,
+                            .height = 60,
+                            .fx = 80,
+                            .fy = 80,
+                            .cx = 40,
+                            .cy = 30,
+                            .R = { -sin(a), cos(a), 0, 0, 0, -1, -cos(a), -sin(a), 0 },
+                            .t = { 0, 0, 10 } };
     }
     p->file.frames = FRAMES;
     p->file.rate_num = 30;
@@ -54,7 +54,7 @@ static void make_pair(pair *p)
 /* what: part of the reason; NULL: it belongs. */
 static void expect(const pair *p, const char *what)
 {
-    char      why[256] = "";
+    char why[256] = "";
     const int belongs = ted4_belongs_scene(&p->file, &p->d, why, sizeof why);
 
     if (belongs != (what == NULL) || (what != NULL && strstr(why, what) == NULL))
@@ -73,14 +73,14 @@ static void test_scene(void **state)
     make_pair(&p);
     p.file.rate_num = 25;
     expect(&p, "25 frames a second in the file, 30 in the scene");
-    p.d.rate = 0;               /* not known */
+    p.d.rate = 0; /* not known */
     expect(&p, NULL);
     /* Beside the pictures of nearly all. */
     make_pair(&p);
     p.file.origin[2] = 9;
     expect(&p, "only 0 of 12 pictures look at where it lies");
     p.file.origin[2] = 5;
-    expect(&p, NULL);           /* its lower end is still seen */
+    expect(&p, NULL); /* its lower end is still seen */
     /* Behind half of the cameras and more. */
     p.file.origin[2] = 0;
     p.file.origin[0] = 60;
@@ -95,9 +95,9 @@ static void test_scene(void **state)
 
 static void test_pictures(void **state)
 {
-    uint8_t          truth[300], drawn[300];
+    uint8_t truth[300], drawn[300];
     ted4_belongs_sum s = { 0, 0 };
-    char             why[256];
+    char why[256];
 
     (void)state;
     for (int i = 0; i < 300; i++) {
@@ -125,7 +125,7 @@ static void add_pictures(pair *p, uint32_t cameras, uint32_t times)
     p->d.n_pictures = 0;
     for (uint32_t c = 0; c < cameras; c++)
         for (uint32_t f = 0; f < times; f++)
-            p->picture[p->d.n_pictures++] = (ted4_picture){
+            p->picture[p->d.n_pictures++] = (ted4_picture) {
                 .camera = { .width = 8, .height = 6 }, .frame = f, .camera_id = c, .is_test = c % 2
             };
 }
@@ -148,25 +148,25 @@ static void test_sheet(void **state)
     /* Six held-out cameras, 1 3 5 7 9 11 of 8 times each: the first, the last and two between, ever
      * later. */
     add_pictures(&p, CAMERAS, FRAMES);
-    expect_rows(&p, 1, 4, (size_t[]){ 8, 3 * 8 + 2, 7 * 8 + 4, 11 * 8 + 7 });
-    expect_rows(&p, 0, 4, (size_t[]){ 0, 2 * 8 + 2, 6 * 8 + 4, 10 * 8 + 7 });
+    expect_rows(&p, 1, 4, (size_t[]) { 8, 3 * 8 + 2, 7 * 8 + 4, 11 * 8 + 7 });
+    expect_rows(&p, 0, 4, (size_t[]) { 0, 2 * 8 + 2, 6 * 8 + 4, 10 * 8 + 7 });
     /* One camera: four times of it. Two: first and last time of each. */
     add_pictures(&p, 2, FRAMES);
-    expect_rows(&p, 1, 4, (size_t[]){ 8, 10, 12, 15 });
+    expect_rows(&p, 1, 4, (size_t[]) { 8, 10, 12, 15 });
     add_pictures(&p, 4, FRAMES);
-    expect_rows(&p, 1, 4, (size_t[]){ 8, 24, 15, 31 });
+    expect_rows(&p, 1, 4, (size_t[]) { 8, 24, 15, 31 });
     /* Fewer pictures than rows; none twice. */
     add_pictures(&p, 3, 1);
-    expect_rows(&p, 1, 1, (size_t[]){ 1 });
-    expect_rows(&p, 0, 2, (size_t[]){ 0, 2 });
+    expect_rows(&p, 1, 1, (size_t[]) { 1 });
+    expect_rows(&p, 0, 2, (size_t[]) { 0, 2 });
     p.picture[2].camera.width = 9;
-    expect_rows(&p, 0, 1, (size_t[]){ 0 });
+    expect_rows(&p, 0, 1, (size_t[]) { 0 });
     p.picture[1].is_test = 0;
     expect_rows(&p, 1, 0, NULL);
     add_pictures(&p, 6, 3);
-    p.picture[0].is_test = p.picture[1].is_test = 1;    /* of another camera only two */
+    p.picture[0].is_test = p.picture[1].is_test = 1; /* of another camera only two */
     p.d.n_pictures = 5;
-    expect_rows(&p, 1, 4, (size_t[]){ 0, 3, 1, 4 });
+    expect_rows(&p, 1, 4, (size_t[]) { 0, 3, 1, 4 });
 }
 
 int main(void)

@@ -16,9 +16,9 @@ static void every_byte(void **state)
     (void)state;
     for (uint64_t seed = 0; seed < 60; seed++) {
         ted4_scene *s = random_scene(seed), *t;
-        uint64_t    sum = 0, bank = 0, position = 0;
-        uint8_t    *d;
-        size_t      size;
+        uint64_t sum = 0, bank = 0, position = 0;
+        uint8_t *d;
+        size_t size;
 
         assert_int_equal(ted4_encode(s, 0, NULL, &d, &size, NULL), TED4_OK);
         memset(&b, 0, sizeof b);
@@ -33,8 +33,8 @@ static void every_byte(void **state)
         }
         assert_int_equal(sum, size);
         assert_int_equal(position, 6 * (size_t)s->head.n_anchors);
-        assert_int_equal(bank, t->bank.mode == TED4_BLOB_DEFLATED
-                               ? t->bank.deflated_size : 4 * t->bank.n);
+        assert_int_equal(bank, t->bank.mode == TED4_BLOB_DEFLATED ? t->bank.deflated_size
+                                                                  : 4 * t->bank.n);
         assert_int_equal(b.header[0].value, s->head.n_anchors);
         ted4_scene_free(s);
         ted4_scene_free(t);

@@ -1,5 +1,6 @@
-/* test_canonical.c - R-BIT-002 over every valid vector of the suite: a writer that knows annex J alone gets the file back from its elements (T0), ancillary
- * chunks and minor version included; and the encoder, which is given a decoded scene alone, writes the file without these, bit for bit.
+/* test_canonical.c - R-BIT-002 over every valid vector of the suite: a writer that knows annex J
+ * alone gets the file back from its elements (T0), ancillary chunks and minor version included; and
+ * the encoder, which is given a decoded scene alone, writes the file without these, bit for bit.
  * SPDX-License-Identifier: BSD-2-Clause */
 #include <setjmp.h>
 #include <stdarg.h>
@@ -16,16 +17,17 @@
 
 enum { MAX_FILE = MAX_VECTOR, MAX_T0 = 8 * MAX_FILE, MAX_ID = 256, FEW_FILES = 800, MINOR_AT = 9 };
 
-/* Bytes of an element that is a number, by annex J.2; 0: it is bytes, or there is no such element. */
+/* Bytes of an element that is a number, by annex J.2; 0: it is bytes, or there is no such element.
+ */
 static unsigned width_of[MAX_ID];
-static int      known[MAX_ID];
+static int known[MAX_ID];
 
 /* "number u8", "bytes (8)", "number: the four bytes as u32" */
 static unsigned number_width(const char *kind)
 {
     static const struct {
         const char *name;
-        unsigned    width;
+        unsigned width;
     } type[] = { { "u8", 1 }, { "i8", 1 }, { "u16", 2 }, { "f16", 2 }, { "u32", 4 }, { "f32", 4 } };
 
     for (size_t i = 0; strncmp(kind, "number", 6) == 0 && i < sizeof type / sizeof *type; i++)
@@ -38,8 +40,8 @@ static unsigned number_width(const char *kind)
 static int read_annex(void **state)
 {
     FILE *const f = fopen("spec/annex-j-dumps.md", "r");
-    char  line[1024], kind[200];
-    int   n = 0;
+    char line[1024], kind[200];
+    int n = 0;
 
     (void)state;
     while (f != NULL && fgets(line, sizeof line, f) != NULL) {
@@ -59,7 +61,7 @@ static int read_annex(void **state)
 /* Byte strings of a file. */
 static struct {
     uint8_t file[MAX_FILE], t0[MAX_T0], back[MAX_FILE];
-    size_t  size, n_t0, n_back;
+    size_t size, n_t0, n_back;
 } x;
 
 static void gather(void *user, const void *bytes, size_t size)
@@ -78,7 +80,8 @@ static void write_elements(void)
     x.n_back = 0;
     while (at < x.n_t0) {
         const unsigned id = ted4_load16(x.t0 + at);
-        const uint32_t value = ted4_load32(x.t0 + at + 2), n = width_of[id % MAX_ID] > 0 ? width_of[id % MAX_ID] : value;
+        const uint32_t value = ted4_load32(x.t0 + at + 2),
+                       n = width_of[id % MAX_ID] > 0 ? width_of[id % MAX_ID] : value;
 
         assert_true(id < MAX_ID && known[id] && n <= sizeof x.back - x.n_back);
         at += 6;
@@ -97,9 +100,9 @@ static void write_elements(void)
 /* Without ancillary chunks a file can have too many symbols a byte for its level. */
 static void write_scene(const ted4_scene *s)
 {
-    const size_t      n = ted4_plain_file(x.back, x.file, x.size);
-    uint8_t          *out;
-    size_t            size;
+    const size_t n = ted4_plain_file(x.back, x.file, x.size);
+    uint8_t *out;
+    size_t size;
     const ted4_status verdict = ted4_encode(s, s->level, NULL, &out, &size, NULL);
 
     assert_true(verdict == TED4_OK || (verdict == TED4_E_LVL_EXCEEDED && n < x.size));

@@ -1,5 +1,6 @@
-/* test_capacity.c - train/search/model_search.c, capacity_refine.c and capacity_prune.c in a whole training: what they decide lowers the cost, within their budget, the same for any number
- * of threads and for a run that was interrupted; switched off they leave no trace.
+/* test_capacity.c - train/search/model_search.c, prior_bits.c and rd_prune.c in a whole
+ * training: what they decide lowers the cost, within their budget, the same for any number of
+ * threads and for a run that was interrupted; switched off they leave no trace.
  * SPDX-License-Identifier: BSD-2-Clause */
 #include <setjmp.h>
 #include <stdarg.h>
@@ -14,9 +15,9 @@
 
 enum { STAGE1 = 400, STAGE2 = 1400, TOTAL = STAGE1 + STAGE2, FRAMES = 5 };
 
-static tiny_folder   folder;
-static ted4_dataset  scene;
-static ted4_snapshot stage1;            /* its end */
+static tiny_folder folder;
+static ted4_dataset scene;
+static ted4_snapshot stage1; /* its end */
 
 static ted4_train_options options(const char *capacity)
 {
@@ -74,7 +75,7 @@ static void begin(ted4_trainer *t, const ted4_train_options *o, const ted4_paral
 static ball_file whole(const ted4_train_options *o, const ted4_parallel *p)
 {
     ted4_trainer t;
-    ball_file    f;
+    ball_file f;
 
     begin(&t, o, p);
     f = ball_finish(&t);
@@ -98,7 +99,8 @@ static int check_trials(const ted4_trainer *t)
         const struct ted4_trial *x = &t->trial[i];
 
         assert_in_range(x->move, 0, TED4_MOVES - 1);
-        assert_true((x->to < x->from || x->move == TED4_MOVE_PRIOR_BITS) && x->to != x->from && x->before.cost > 0);
+        assert_true((x->to < x->from || x->move == TED4_MOVE_PRIOR_BITS) && x->to != x->from &&
+                    x->before.cost > 0);
         assert_true(x->before.cost > x->before.distortion && x->before.bytes > 100);
         assert_int_equal(x->taken, x->after.cost < x->before.cost);
         taken += x->taken != 0;
@@ -113,7 +115,7 @@ static void test_decides(void **state)
 {
     const ted4_train_options o = dear_options();
     ted4_trainer t;
-    size_t       weights;
+    size_t weights;
 
     (void)state;
     begin(&t, &o, NULL);
@@ -138,11 +140,12 @@ static void test_decides(void **state)
     ted4_trainer_finish(&t);
 }
 
-/* Refines from so many bits of the prior; each look is noted, and the best stays. Gives whether any was. */
+/* Refines from so many bits of the prior; each look is noted, and the best stays. Gives whether any
+ * was. */
 static int refined(ted4_trainer *t, int bits)
 {
     const size_t first = t->n_trials;
-    ted4_cost    before, after;
+    ted4_cost before, after;
 
     t->bits[TED4_GRID_PRIOR] = bits;
     assert_int_equal(ted4_capacity_cost(t, &before), 0);
@@ -152,12 +155,14 @@ static int refined(ted4_trainer *t, int bits)
     for (size_t i = first; i < t->n_trials; i++) {
         const struct ted4_trial *x = &t->trial[i];
 
-        assert_true(x->move == TED4_MOVE_PRIOR_BITS && x->from == bits && x->to > x->from && x->steps == 0);
+        assert_true(x->move == TED4_MOVE_PRIOR_BITS && x->from == bits && x->to > x->from &&
+                    x->steps == 0);
         assert_int_equal(x->taken, x->after.cost < x->before.cost);
         bits = (int)(x->taken ? x->to : x->from);
     }
     assert_int_equal(t->bits[TED4_GRID_PRIOR], bits);
-    assert_true(bits == t->trial[first].from ? after.cost == before.cost : after.cost < before.cost);
+    assert_true(bits == t->trial[first].from ? after.cost == before.cost
+                                             : after.cost < before.cost);
     return bits > t->trial[first].from;
 }
 
@@ -167,7 +172,7 @@ static void test_refined(void **state)
 {
     const ted4_train_options o = options("capacity=1");
     ted4_trainer t;
-    int          raised = 0;
+    int raised = 0;
 
     (void)state;
     begin(&t, &o, NULL);
@@ -184,8 +189,8 @@ static void test_refined(void **state)
 static void test_cheap_first(void **state)
 {
     ted4_train_options o = options("capacity=1");
-    ted4_trainer       t;
-    int                coarse = 0;
+    ted4_trainer t;
+    int coarse = 0;
 
     (void)state;
     ball_set(&o, "capacity_share=0.16");
@@ -201,19 +206,19 @@ static void test_cheap_first(void **state)
 
 /* A model of few moves, of which features come last but one. What a feature less saves and what
  * pictures miss of it at sight are up to training; but trials are trained wherever a bit's weight
- * is between a fifth of their ratio and all of it (HOPE in capacity.c), and each of these rates is
- * half as much again as the one before. */
+ * is between a fifth of their ratio and all of it (HOPE in model_search.c), and each of these rates
+ * is half as much again as the one before. */
 static void test_trained(void **state)
 {
-    static const char *const few[] = { "motion=0", "activation=0", "view=0", "offsets=1",
-                                       "slices=1", "octaves=0" };
+    static const char *const few[] = { "motion=0",  "activation=0", "view=0",
+                                       "offsets=1", "slices=1",     "octaves=0" };
     static const char *const rates[] = { "lambda=0.0002", "lambda=0.0003", "lambda=0.00045",
-                                         "lambda=0.0007", "lambda=0.001", "lambda=0.0015",
+                                         "lambda=0.0007", "lambda=0.001",  "lambda=0.0015",
                                          "lambda=0.0022" };
     ted4_train_options o = options("capacity=1");
-    ted4_snapshot      early = { NULL, 0 };
-    ted4_trainer       t;
-    int                trained = 0;
+    ted4_snapshot early = { NULL, 0 };
+    ted4_trainer t;
+    int trained = 0;
 
     (void)state;
     for (size_t i = 0; i < sizeof few / sizeof few[0]; i++)
@@ -234,13 +239,13 @@ static void test_trained(void **state)
     assert_true(trained > 0);
 }
 
-/* Steps that trials took, looks among them, as capacity.h counts them. */
+/* Steps that trials took, looks among them, as model_search.h counts them. */
 static void test_budget(void **state)
 {
     const ted4_train_options o = options("capacity=1");
     ted4_trainer t;
-    double       spent;
-    int          taken_trained = 0;
+    double spent;
+    int taken_trained = 0;
 
     (void)state;
     begin(&t, &o, NULL);
@@ -264,8 +269,8 @@ static void test_budget(void **state)
 static void check_coarse(const ted4_train_options *o, int coarse[TED4_GRIDS])
 {
     ted4_trainer t;
-    ted4_scene  *s;
-    float       *again;
+    ted4_scene *s;
+    float *again;
 
     begin(&t, o, NULL);
     ball_train(&t, TOTAL);
@@ -306,8 +311,8 @@ static void test_coarse(void **state)
 static void test_threads(void **state)
 {
     const ted4_train_options o = options("capacity=1");
-    const ted4_parallel      odd[] = { { odd_backwards, NULL }, { odd_threads, NULL } };
-    ball_file                one;
+    const ted4_parallel odd[] = { { odd_backwards, NULL }, { odd_threads, NULL } };
+    ball_file one;
 
     (void)state;
     one = whole(&o, NULL);
@@ -325,9 +330,9 @@ static void test_resumed(void **state)
 {
     const ted4_train_options o = options("capacity=1");
     ted4_snapshot kept[4] = { { NULL, 0 } };
-    ted4_trainer  t;
-    ball_file     one;
-    int           n = 0;
+    ted4_trainer t;
+    ball_file one;
+    int n = 0;
 
     (void)state;
     begin(&t, &o, NULL);
@@ -366,9 +371,9 @@ static void test_resumed(void **state)
 static void test_not_mixed(void **state)
 {
     const ted4_train_options o = options("capacity=1");
-    ted4_train_options       other[2] = { options("capacity=0"), o };
-    ted4_snapshot            kept = { NULL, 0 };
-    ted4_trainer             t;
+    ted4_train_options other[2] = { options("capacity=0"), o };
+    ted4_snapshot kept = { NULL, 0 };
+    ted4_trainer t;
 
     (void)state;
     ball_set(&other[1], "lambda=0.01");
@@ -388,15 +393,16 @@ static void test_not_mixed(void **state)
 static void test_fixed(void **state)
 {
     ted4_train_options o = options("capacity=0"), plain = options("capacity=0");
-    ted4_trainer       t;
-    ball_file          a, b;
+    ted4_trainer t;
+    ball_file a, b;
 
     (void)state;
     begin(&t, &o, NULL);
     assert_true(ted4_capacity_step(&t) == UINT64_MAX);
     a = ball_finish(&t);
     assert_true(t.n_trials == 0 && t.decided == TED4_DECIDED_NOTHING);
-    assert_true(t.layout.head.n_offsets == o.offsets && t.layout.head.feature_dim == o.feature && t.layout.head.hyper_width == o.hyper_width);
+    assert_true(t.layout.head.n_offsets == o.offsets && t.layout.head.feature_dim == o.feature &&
+                t.layout.head.hyper_width == o.hyper_width);
     ted4_trainer_finish(&t);
     ball_set(&plain, "capacity_share=0");
     b = whole(&plain, NULL);
@@ -409,8 +415,8 @@ static void test_fixed(void **state)
 static void test_short(void **state)
 {
     ted4_train_options o = options("capacity=1");
-    ted4_trainer       t;
-    ball_file          f;
+    ted4_trainer t;
+    ball_file f;
 
     (void)state;
     ball_set(&o, "stage2=30");
@@ -426,10 +432,10 @@ static void test_short(void **state)
 static void test_lambda(void **state)
 {
     const ted4_train_options cheap = options("capacity=1"), dear = dear_options();
-    ball_file                low = whole(&cheap, NULL), high = whole(&dear, NULL);
+    ball_file low = whole(&cheap, NULL), high = whole(&dear, NULL);
 
     (void)state;
-    assert_true(high.size < low.size * 3 / 4);      /* half of that is usual */
+    assert_true(high.size < low.size * 3 / 4); /* half of that is usual */
     free(low.bytes);
     free(high.bytes);
 }
@@ -437,9 +443,12 @@ static void test_lambda(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_decides), cmocka_unit_test(test_refined), cmocka_unit_test(test_cheap_first), cmocka_unit_test(test_trained), cmocka_unit_test(test_budget), cmocka_unit_test(test_coarse),
-        cmocka_unit_test(test_threads), cmocka_unit_test(test_resumed), cmocka_unit_test(test_not_mixed), cmocka_unit_test(test_fixed),
-        cmocka_unit_test(test_short), cmocka_unit_test(test_lambda),
+        cmocka_unit_test(test_decides),     cmocka_unit_test(test_refined),
+        cmocka_unit_test(test_cheap_first), cmocka_unit_test(test_trained),
+        cmocka_unit_test(test_budget),      cmocka_unit_test(test_coarse),
+        cmocka_unit_test(test_threads),     cmocka_unit_test(test_resumed),
+        cmocka_unit_test(test_not_mixed),   cmocka_unit_test(test_fixed),
+        cmocka_unit_test(test_short),       cmocka_unit_test(test_lambda),
     };
 
     return cmocka_run_group_tests(tests, set_up, tear_down);

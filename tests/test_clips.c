@@ -89,7 +89,7 @@ static void test_stills(void **state)
     d = load(&f, &o);
     check_stills(&d, "images", 64, 20);
     ted4_dataset_free(&d);
-    o.downscale = 4;                    /* the copies that are there already */
+    o.downscale = 4; /* the copies that are there already */
     d = load(&f, &o);
     check_stills(&d, "images_4", 16, 5);
     ted4_dataset_free(&d);
@@ -183,10 +183,10 @@ static void test_starts(void **state)
     tiny_text(&f, "cams.json",
               "{\"fps\": 30, \"cameras\": [{\"name\": \"a\", \"start\": -0.1, " CAMERA
               ", {\"name\": \"b\", \"frame\": 2, " CAMERA ", {\"name\": \"c\", \"video\": "
-                                                          "\"takes/third\", " CAMERA "]}");
+              "\"takes/third\", " CAMERA "]}");
     ted4_dataset d = load(&f, &tiny_options);
     assert_int_equal(d.n_warnings, 0);
-    assert_int_equal(d.n_frames, 17);           /* a: 0 to 11, b: 5 to 16, c: 3 to 12 */
+    assert_int_equal(d.n_frames, 17); /* a: 0 to 11, b: 5 to 16, c: 3 to 12 */
     assert_int_equal(d.n_pictures, 34);
     for (int k = 0; k < 17; k++) {
         assert_int_equal(at(&d, "/a/", (uint32_t)k), k < 12 ? k : -1);
@@ -209,11 +209,11 @@ static void test_starts(void **state)
     assert_int_equal(
         warned(&f, "1 of 2 cameras start between two frames", "by up to 0.5 of a frame"), 24);
     d = load(&f, &tiny_options);
-    assert_int_equal(d.n_frames, 14);           /* a begins at frame 2 */
+    assert_int_equal(d.n_frames, 14); /* a begins at frame 2 */
     ted4_dataset_free(&d);
     tiny_text(&f, "cams.json",
               "{\"cameras\": [{\"name\": \"a\", " CAMERA ", {\"name\": \"c\", \"video\": "
-                                                         "\"takes/third/\", " CAMERA "]}");
+              "\"takes/third/\", " CAMERA "]}");
     assert_int_equal(warned(&f, "clips have from 10 to 12 frames", "--max-frames 10"), 22);
     tiny_free(&f);
 }
@@ -268,9 +268,9 @@ static void test_example(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_stills), cmocka_unit_test(test_copies),  cmocka_unit_test(test_rows),
-        cmocka_unit_test(test_starts),  cmocka_unit_test(test_playlists),
-        cmocka_unit_test(test_example),
+        cmocka_unit_test(test_stills),    cmocka_unit_test(test_copies),
+        cmocka_unit_test(test_rows),      cmocka_unit_test(test_starts),
+        cmocka_unit_test(test_playlists), cmocka_unit_test(test_example),
     };
 
     return cmocka_run_group_tests_name("clips", tests, NULL, NULL);

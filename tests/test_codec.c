@@ -15,26 +15,24 @@ enum { SCENES = 120, CHANGES = 20000 };
 
 typedef struct {
     uint8_t *data;
-    size_t   size;
+    size_t size;
 } file;
 
 static file encode(const ted4_scene *s, const ted4_parallel *p)
 {
     ted4_error e;
-    file       f;
+    file f;
 
-    assert_string_equal(ted4_status_id(ted4_encode(s, 0, p, &f.data, &f.size,
-                                                   &e)), "ok");
+    assert_string_equal(ted4_status_id(ted4_encode(s, 0, p, &f.data, &f.size, &e)), "ok");
     return f;
 }
 
 static ted4_scene *decode(file f, const ted4_options *o)
 {
     ted4_scene *s;
-    ted4_error  e;
+    ted4_error e;
 
-    assert_string_equal(ted4_status_id(ted4_decode(f.data, f.size, o, &s, &e)),
-                        "ok");
+    assert_string_equal(ted4_status_id(ted4_decode(f.data, f.size, o, &s, &e)), "ok");
     return s;
 }
 
@@ -60,8 +58,7 @@ static void same_scene(const ted4_scene *a, const ted4_scene *b)
     for (int t = 0; t < TED4_TYPES; t++)
         if (a->shape.dim[t] > 0) {
             assert_memory_equal(a->step_index[t], b->step_index[t], n);
-            assert_memory_equal(a->symbol[t], b->symbol[t],
-                                2 * n * a->shape.dim[t]);
+            assert_memory_equal(a->symbol[t], b->symbol[t], 2 * n * a->shape.dim[t]);
         }
 }
 
@@ -72,8 +69,7 @@ static void same_file(file a, file b)
 }
 
 /* Threads, and the last index first. */
-static void run_backwards(void *user, size_t n,
-                          void (*body)(void *arg, size_t i), void *arg)
+static void run_backwards(void *user, size_t n, void (*body)(void *arg, size_t i), void *arg)
 {
     (void)user;
 #pragma omp parallel for num_threads(3) schedule(dynamic, 1)
@@ -89,7 +85,7 @@ static void round_trip(void **state)
     for (uint64_t seed = 0; seed < SCENES; seed++) {
         const ted4_options o = { .parallel = &backwards };
         ted4_scene *s = random_scene(seed), *t;
-        file        f, again;
+        file f, again;
 
         assert_non_null(s);
         f = encode(s, NULL);
@@ -99,7 +95,7 @@ static void round_trip(void **state)
         t = decode(f, seed % 2 ? &o : NULL);
         same_scene(s, t);
         assert_int_equal(t->level, f.data[11]);
-        again = encode(t, NULL);        /* canonical: as it was parsed */
+        again = encode(t, NULL); /* canonical: as it was parsed */
         same_file(f, again);
         free(again.data);
         free(f.data);
@@ -112,10 +108,10 @@ static void round_trip(void **state)
  * Decoded with the kernels of each level. */
 static void large(void **state)
 {
-    random_source     r = random_seed(1);
+    random_source r = random_seed(1);
     const ted4_header h = random_paper_header(9000);
-    ted4_scene       *s = random_scene_of(&r, &h, 1), *t;
-    const file        f = encode(s, &backwards);
+    ted4_scene *s = random_scene_of(&r, &h, 1), *t;
+    const file f = encode(s, &backwards);
 
     (void)state;
     for (int level = TED4_LEVEL_PLAIN; level <= (int)ted4_level_of_machine(); level++) {
@@ -140,16 +136,17 @@ static size_t tile_bytes(file f)
     return sum;
 }
 
-/* The coder loses about 0.002 bits a symbol: its states are at least one slot total, and no more (spec 9.2). */
+/* The coder loses about 0.002 bits a symbol: its states are at least one slot total, and no more
+ * (spec 9.2). */
 static void count_is_size(void **state)
 {
-    random_source     r = random_seed(2);
+    random_source r = random_seed(2);
     const ted4_header h = random_paper_header(6000);
-    ted4_scene       *s = random_scene_of(&r, &h, 0);
-    const file        f = encode(s, NULL);
-    const double      size = (double)tile_bytes(f);
-    ted4_bits         one, many;
-    double            sum;
+    ted4_scene *s = random_scene_of(&r, &h, 0);
+    const file f = encode(s, NULL);
+    const double size = (double)tile_bytes(f);
+    ted4_bits one, many;
+    double sum;
 
     (void)state;
     assert_int_equal(ted4_count(s, NULL, &one, NULL), TED4_OK);
@@ -170,18 +167,16 @@ static void truncations(void **state)
     (void)state;
     for (uint64_t seed = 3; seed < 7; seed++) {
         ted4_scene *s = random_scene(seed), *t;
-        const file  f = encode(s, NULL);
-        ted4_error  e;
+        const file f = encode(s, NULL);
+        ted4_error e;
 
         for (size_t n = 0; n < f.size; n++) {
-            assert_int_equal(ted4_decode(f.data, n, NULL, &t, &e),
-                             TED4_E_CON_TRUNCATED);
+            assert_int_equal(ted4_decode(f.data, n, NULL, &t, &e), TED4_E_CON_TRUNCATED);
             assert_null(t);
             assert_int_equal(e.offset, n);
         }
         f.data[0] ^= 1;
-        assert_int_equal(ted4_decode(f.data, f.size, NULL, &t, &e),
-                         TED4_E_CON_MAGIC);
+        assert_int_equal(ted4_decode(f.data, f.size, NULL, &t, &e), TED4_E_CON_MAGIC);
         ted4_scene_free(s);
         free(f.data);
     }
@@ -198,26 +193,26 @@ static void mend_hash(file f, size_t at)
         if (n > f.size - p - 20)
             return;
         if (at < p + 20 + n) {
-            ted4_store64(f.data + p + 12 + n,
-                         XXH3_64bits(f.data + p, 12 + (size_t)n));
+            ted4_store64(f.data + p + 12 + n, XXH3_64bits(f.data + p, 12 + (size_t)n));
             return;
         }
         p += 20 + (size_t)n;
     }
 }
 
-/* Random bytes in place of right ones, the chunk's hash mended in most cases: refused, or the same integers. */
+/* Random bytes in place of right ones, the chunk's hash mended in most cases: refused, or the same
+ * integers. */
 static void changes(void **state)
 {
     random_source r = random_seed(4);
-    size_t        accepted = 0;
+    size_t accepted = 0;
 
     (void)state;
     for (uint64_t seed = 0; seed < 20; seed++) {
         ted4_scene *s = random_scene(seed + 40), *t;
-        const file  f = encode(s, NULL);
-        const file  g = { malloc(f.size), f.size };
-        uint8_t     hash[16];
+        const file f = encode(s, NULL);
+        const file g = { malloc(f.size), f.size };
+        uint8_t hash[16];
 
         ted4_scene_hash(s, hash);
         for (int n = 0; n < CHANGES / 20; n++) {
@@ -264,15 +259,15 @@ static void count_free(void *user, void *p)
 static void memory_runs_out(void **state)
 {
     ted4_scene *s = random_scene(8), *t;
-    const file  f = encode(s, NULL);
-    counter     c = { 0, 0, 0 };
+    const file f = encode(s, NULL);
+    counter c = { 0, 0, 0 };
     ted4_options o = { .allocator = { count_alloc, count_free, &c } };
-    ted4_error  e;
-    long        n;
+    ted4_error e;
+    long n;
 
     (void)state;
     for (n = 1;; n++) {
-        c = (counter){ 0, n, 0 };
+        c = (counter) { 0, n, 0 };
         if (ted4_decode(f.data, f.size, &o, &t, &e) == TED4_OK)
             break;
         assert_int_equal(e.code, TED4_E_LIMIT_MEMORY);
@@ -281,8 +276,8 @@ static void memory_runs_out(void **state)
     assert_true(n > 10);
     ted4_scene_free(t);
     assert_int_equal(c.out, 0);
-    for (o.max_bytes = 1; ; o.max_bytes *= 2) {
-        c = (counter){ 0, 0, 0 };
+    for (o.max_bytes = 1;; o.max_bytes *= 2) {
+        c = (counter) { 0, 0, 0 };
         if (ted4_decode(f.data, f.size, &o, &t, &e) == TED4_OK)
             break;
         assert_int_equal(e.code, TED4_E_LIMIT_MEMORY);
@@ -295,12 +290,11 @@ static void memory_runs_out(void **state)
 
 /* The trace names elements in file order, and the same ones every time. */
 typedef struct {
-    size_t   offset, n;
+    size_t offset, n;
     uint64_t sum;
 } tracer;
 
-static void trace(void *user, size_t offset, const char *element,
-                  int64_t index, int64_t value)
+static void trace(void *user, size_t offset, const char *element, int64_t index, int64_t value)
 {
     tracer *t = user;
 
@@ -313,10 +307,9 @@ static void trace(void *user, size_t offset, const char *element,
 static void traced(void **state)
 {
     ted4_scene *s = random_scene(20);
-    const file  f = encode(s, NULL);
-    tracer      a = { 0, 0, 0 }, b = { 0, 0, 0 };
-    ted4_options o = { .parallel = &backwards, .trace = trace,
-                       .trace_user = &a };
+    const file f = encode(s, NULL);
+    tracer a = { 0, 0, 0 }, b = { 0, 0, 0 };
+    ted4_options o = { .parallel = &backwards, .trace = trace, .trace_user = &a };
 
     (void)state;
     ted4_scene_free(decode(f, &o));
@@ -338,8 +331,7 @@ static size_t hashed_string(const ted4_scene *s, uint8_t *p)
     for (size_t i = 0; i < 3 * n; i++, p += 2)
         ted4_store16(p, s->position[i]);
     for (size_t from = 0; from < n; from += s->head.tile_size) {
-        const size_t to = from + s->head.tile_size < n
-                        ? from + s->head.tile_size : n;
+        const size_t to = from + s->head.tile_size < n ? from + s->head.tile_size : n;
 
         for (size_t a = from; a < to; a++, p += 3) {
             p[0] = s->dynamic[a];
@@ -384,9 +376,9 @@ static void hash_of_the_text(void **state)
 static void info(void **state)
 {
     ted4_scene *s = random_scene(21), *t;
-    const file  f = encode(s, NULL);
-    ted4_info   i;
-    size_t      kept = 0;
+    const file f = encode(s, NULL);
+    ted4_info i;
+    size_t kept = 0;
 
     (void)state;
     t = decode(f, NULL);
@@ -405,10 +397,9 @@ static void info(void **state)
 
 static const char *encoding(const ted4_scene *s, int level)
 {
-    file       f;
+    file f;
     ted4_error e;
-    const ted4_status verdict = ted4_encode(s, level, NULL, &f.data, &f.size,
-                                            &e);
+    const ted4_status verdict = ted4_encode(s, level, NULL, &f.data, &f.size, &e);
 
     free(f.data);
     return ted4_status_id(verdict);
@@ -418,14 +409,14 @@ static const char *encoding(const ted4_scene *s, int level)
 static void illegal_scenes(void **state)
 {
     random_source r = random_seed(30);
-    ted4_header   h = random_paper_header(100);
-    ted4_scene   *s;
-    uint16_t      p;
+    ted4_header h = random_paper_header(100);
+    ted4_scene *s;
+    uint16_t p;
 
     (void)state;
     h.n_offsets = 9;
     s = random_scene_of(&r, &h, 0);
-    assert_string_equal(encoding(s, 1), "lvl.exceeded");    /* frames */
+    assert_string_equal(encoding(s, 1), "lvl.exceeded"); /* frames */
     assert_string_equal(encoding(s, 2), "ok");
     assert_string_equal(encoding(s, 31), "ok");
     assert_string_equal(encoding(s, 7), "con.level");
@@ -461,16 +452,11 @@ static void illegal_scenes(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(round_trip),
-        cmocka_unit_test(large),
-        cmocka_unit_test(count_is_size),
-        cmocka_unit_test(truncations),
-        cmocka_unit_test(changes),
-        cmocka_unit_test(memory_runs_out),
-        cmocka_unit_test(traced),
-        cmocka_unit_test(hash_of_the_text),
-        cmocka_unit_test(info),
-        cmocka_unit_test(illegal_scenes),
+        cmocka_unit_test(round_trip),    cmocka_unit_test(large),
+        cmocka_unit_test(count_is_size), cmocka_unit_test(truncations),
+        cmocka_unit_test(changes),       cmocka_unit_test(memory_runs_out),
+        cmocka_unit_test(traced),        cmocka_unit_test(hash_of_the_text),
+        cmocka_unit_test(info),          cmocka_unit_test(illegal_scenes),
     };
 
     return cmocka_run_group_tests(tests, NULL, NULL);

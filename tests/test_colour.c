@@ -1,6 +1,7 @@
-/* test_colour.c - train/loss/camera_colour.h: which cameras are corrected, the map and its gradients against central differences in double
- * precision, the step with its gauge; and in training: tints are found, and a view from elsewhere never gets a correction.
- * That the state survives in checkpoints is tested in test_trainer.c, whose cameras are all corrected.
+/* test_colour.c - train/loss/camera_colour.h: which cameras are corrected, the map and its
+ * gradients against central differences in double precision, the step with its gauge; and in
+ * training: tints are found, and a view from elsewhere never gets a correction. That the state
+ * survives in checkpoints is tested in test_trainer.c, whose cameras are all corrected.
  * SPDX-License-Identifier: BSD-2-Clause */
 #include <setjmp.h>
 #include <stdarg.h>
@@ -17,14 +18,16 @@ enum { N = TED4_COLOUR_VALUES, MOST = 40000, CAMERAS = 4 };
 
 /* ---- who is corrected ---- */
 
-/* Pictures by camera; a capital letter marks a held-out picture. want: what each camera shall be. */
+/* Pictures by camera; a capital letter marks a held-out picture. want: what each camera shall be.
+ */
 static void check_choice(const char *pictures, const char *want)
 {
-    ted4_picture       pic[32];
-    const ted4_dataset d = { .pictures = pic, .n_pictures = strlen(pictures),
+    ted4_picture pic[32];
+    const ted4_dataset d = { .pictures = pic,
+                             .n_pictures = strlen(pictures),
                              .n_cameras = (uint32_t)strlen(want) };
     ted4_colour c;
-    size_t      n = 0;
+    size_t n = 0;
 
     memset(pic, 0, sizeof pic);
     for (size_t i = 0; i < d.n_pictures; i++) {
@@ -49,13 +52,13 @@ static void test_choice(void **state)
 {
     (void)state;
     check_choice("", "");
-    check_choice("aaaa", "0");                  /* one camera */
-    check_choice("abcdef", "000000");           /* a picture each: views of something still */
+    check_choice("aaaa", "0");        /* one camera */
+    check_choice("abcdef", "000000"); /* a picture each: views of something still */
     check_choice("aabb", "11");
     check_choice("abcabdab", "1100");
-    check_choice("aab", "00");                  /* the only one with two pictures */
-    check_choice("aaBBcc", "101");              /* held-out camera */
-    check_choice("aAbBBb", "00");               /* held-out pictures do not count */
+    check_choice("aab", "00");     /* the only one with two pictures */
+    check_choice("aaBBcc", "101"); /* held-out camera */
+    check_choice("aAbBBb", "00");  /* held-out pictures do not count */
     check_choice("aaAbbBBB", "11");
 }
 
@@ -64,7 +67,7 @@ static void test_choice(void **state)
 /* Two cameras and pictures of so many pixels; camera 1 has a map of its own. */
 static void open_colour(ted4_colour *c, size_t pixels)
 {
-    ted4_picture       pic[4];
+    ted4_picture pic[4];
     const ted4_dataset d = { .pictures = pic, .n_pictures = 4, .n_cameras = 2 };
 
     memset(pic, 0, sizeof pic);
@@ -150,8 +153,8 @@ static void check_image_gradient(const ted4_colour *c, const float *image, const
     for (size_t i = 0; i < 3 * pixels; i += 1 + pixels / 50) {
         const double h = 1e-4;
         const size_t p = i % pixels;
-        float        one[3], w[3];
-        double       sum[2];
+        float one[3], w[3];
+        double sum[2];
 
         for (size_t k = 0; k < 3; k++)
             w[k] = weight[k * pixels + p];
@@ -174,12 +177,12 @@ static void check_image_gradient(const ted4_colour *c, const float *image, const
 static void test_gradients(void **state)
 {
     static const size_t sizes[] = { 1, 37, 1024, 16 * 1024, 16 * 1024 + 1, MOST };
-    static float        image[3 * MOST], weight[3 * MOST], d_image[3 * MOST];
+    static float image[3 * MOST], weight[3 * MOST], d_image[3 * MOST];
 
     (void)state;
     for (size_t s = 0; s < sizeof sizes / sizeof sizes[0]; s++) {
-        const size_t    n = sizes[s];
-        ted4_colour     c;
+        const size_t n = sizes[s];
+        ted4_colour c;
         ted4_colour_map gradient;
 
         open_colour(&c, n);
@@ -199,8 +202,8 @@ static void test_gradients(void **state)
 /* Camera 0 has the identity still: no bit of the picture or of its gradient may change. */
 static void test_identity(void **state)
 {
-    static float    image[3 * MOST], d_image[3 * MOST];
-    ted4_colour     c;
+    static float image[3 * MOST], d_image[3 * MOST];
+    ted4_colour c;
     ted4_colour_map gradient;
 
     (void)state;
@@ -216,11 +219,11 @@ static void test_identity(void **state)
 
 static void test_threads(void **state)
 {
-    const ted4_parallel  how[2] = { { odd_backwards, NULL }, { odd_threads, NULL } };
+    const ted4_parallel how[2] = { { odd_backwards, NULL }, { odd_threads, NULL } };
     const ted4_parallel *which[3] = { NULL, &how[0], &how[1] };
-    static float         image[3 * MOST], out[3][3 * MOST], d[3][3 * MOST];
-    ted4_colour          c;
-    ted4_colour_map      gradient[3];
+    static float image[3 * MOST], out[3][3 * MOST], d[3][3 * MOST];
+    ted4_colour c;
+    ted4_colour_map gradient[3];
 
     (void)state;
     open_colour(&c, MOST);
@@ -243,14 +246,15 @@ static uint8_t to_byte(float x)
     return (uint8_t)(255.0f * fminf(fmaxf(x, 0.0f), 1.0f) + 0.5f);
 }
 
-/* The first step of Adam moves each value by the rate, whatever the size of its gradient; then half of it goes to either camera,
- * for the middle of two is their mean, and stays the identity. Camera 2 has one picture. */
+/* The first step of Adam moves each value by the rate, whatever the size of its gradient; then half
+ * of it goes to either camera, for the middle of two is their mean, and stays the identity. Camera
+ * 2 has one picture. */
 static void test_update(void **state)
 {
-    ted4_picture       pic[5];
+    ted4_picture pic[5];
     const ted4_dataset d = { .pictures = pic, .n_pictures = 5, .n_cameras = 3 };
-    ted4_colour        c;
-    ted4_colour_map    gradient;
+    ted4_colour c;
+    ted4_colour_map gradient;
 
     (void)state;
     memset(pic, 0, sizeof pic);
@@ -285,10 +289,10 @@ static void test_update(void **state)
 static void test_outlier(void **state)
 {
     enum { CAMS = 8 };
-    ted4_picture       pic[2 * CAMS];
+    ted4_picture pic[2 * CAMS];
     const ted4_dataset d = { .pictures = pic, .n_pictures = 2 * CAMS, .n_cameras = CAMS };
-    ted4_colour        c;
-    ted4_colour_map    gradient = { 0 };
+    ted4_colour c;
+    ted4_colour_map gradient = { 0 };
 
     (void)state;
     memset(pic, 0, sizeof pic);
@@ -299,7 +303,8 @@ static void test_outlier(void **state)
         for (int i = 0; i < CAMS; i++)
             c.value[i][k] = i == 5 ? 0.5f : 0.01f * (float)(i < 5 ? i - 2 : i - 5);
     ted4_colour_update(&c, 0, gradient, 0.01, 0);
-    /* Between the outer quarters lie 0, 0.01, 0.01, 0.02; their mean is 0.01. That of all would be 0.066. */
+    /* Between the outer quarters lie 0, 0.01, 0.01, 0.02; their mean is 0.01. That of all would be
+     * 0.066. */
     for (int k = 0; k < N; k++) {
         assert_true(fabsf(c.value[2][k] + 0.01f) < 1e-6f);
         assert_true(fabsf(c.value[5][k] - 0.49f) < 1e-6f);
@@ -307,14 +312,16 @@ static void test_outlier(void **state)
     ted4_colour_finish(&c);
 }
 
-/* What apply does to the scene's colours undo takes back, for any number of threads; a map without an inverse leaves the picture alone. */
+/* What apply does to the scene's colours undo takes back, for any number of threads; a map without
+ * an inverse leaves the picture alone. */
 static void test_undo(void **state)
 {
-    static const ted4_colour_map map = { 0.2f, -0.1f, 0.05f, 0.02f, -0.3f, 0.1f, -0.05f, 0.08f, 0.15f, 0.02f, -0.01f, 0.03f };
-    static float   scene[3 * MOST];
+    static const ted4_colour_map map = { 0.2f,   -0.1f, 0.05f, 0.02f, -0.3f,  0.1f,
+                                         -0.05f, 0.08f, 0.15f, 0.02f, -0.01f, 0.03f };
+    static float scene[3 * MOST];
     static uint8_t picture[3 * MOST];
     const ted4_parallel backwards = { odd_backwards, NULL };
-    ted4_colour    c;
+    ted4_colour c;
 
     (void)state;
     open_colour(&c, MOST);
@@ -339,12 +346,13 @@ static void test_undo(void **state)
     ted4_colour_finish(&c);
 }
 
-/* The penalty's gradient is 2 w x: a gradient a little smaller gives way to it, a little larger does not. */
+/* The penalty's gradient is 2 w x: a gradient a little smaller gives way to it, a little larger
+ * does not. */
 static void test_penalty(void **state)
 {
     (void)state;
     for (int side = 0; side < 2; side++) {
-        ted4_colour     c;
+        ted4_colour c;
         ted4_colour_map gradient, before;
 
         open_colour(&c, 1);
@@ -362,22 +370,26 @@ static void test_penalty(void **state)
 
 /* ---- in training ---- */
 
-/* What camera k did to the picture's colours, in mean the identity: gain of red and blue, offset of green. */
-static const float tint[CAMERAS][3] = { { 0.12f, -0.08f, 0.04f }, { -0.12f, 0.03f, -0.02f },
-                                        { 0.06f, 0.10f, -0.05f }, { -0.06f, -0.05f, 0.03f } };
+/* What camera k did to the picture's colours, in mean the identity: gain of red and blue, offset of
+ * green. */
+static const float tint[CAMERAS][3] = { { 0.12f, -0.08f, 0.04f },
+                                        { -0.12f, 0.03f, -0.02f },
+                                        { 0.06f, 0.10f, -0.05f },
+                                        { -0.06f, -0.05f, 0.03f } };
 
 static float tinted(const float *x, const float *rgb, int k)
 {
     return k == 1 ? rgb[1] + x[2] : rgb[k] * (1.0f + x[k / 2]);
 }
 
-/* The same pictures as their cameras would have taken them, less bright first, so that none is clipped. */
+/* The same pictures as their cameras would have taken them, less bright first, so that none is
+ * clipped. */
 static void tint_pictures(const tiny_folder *f, ted4_dataset *d)
 {
     for (size_t i = 0; i < d->n_pictures; i++) {
         const ted4_picture *pic = &d->pictures[i];
-        const uint8_t      *px = ted4_dataset_pixels(d, i, NULL);
-        uint8_t             out[3 * BALL_W * BALL_H];
+        const uint8_t *px = ted4_dataset_pixels(d, i, NULL);
+        uint8_t out[3 * BALL_W * BALL_H];
 
         assert_non_null(px);
         for (int q = 0; q < BALL_W * BALL_H; q++) {
@@ -393,7 +405,10 @@ static void tint_pictures(const tiny_folder *f, ted4_dataset *d)
     }
 }
 
-typedef struct { tiny_folder folder; ted4_dataset data; } scene;
+typedef struct {
+    tiny_folder folder;
+    ted4_dataset data;
+} scene;
 
 static void open_scene(scene *s)
 {
@@ -423,9 +438,10 @@ static void close_scene(scene *s)
 static void train(ted4_trainer *t, ted4_dataset *d, int colour, uint32_t seed, int steps)
 {
     static const char *const small[] = {
-        "stage1=1000", "stage2=0", "colour_start=0.1", "lr_colour=0.004", "offsets=1", "feature=8",
-        "motion=0", "activation=0", "head_width=12", "init_anchors=60", "max_anchors=60",
-        "lr_feature=0.03", "lr_heads=0.02", "lr_scaling=0.03", "lr_offset=0.03", "view=0",
+        "stage1=1000",   "stage2=0",        "colour_start=0.1", "lr_colour=0.004",
+        "offsets=1",     "feature=8",       "motion=0",         "activation=0",
+        "head_width=12", "init_anchors=60", "max_anchors=60",   "lr_feature=0.03",
+        "lr_heads=0.02", "lr_scaling=0.03", "lr_offset=0.03",   "view=0",
     };
     ted4_train_options o;
     char why[256];
@@ -443,11 +459,14 @@ static void train(ted4_trainer *t, ted4_dataset *d, int colour, uint32_t seed, i
             fail_msg("%s", t->message.text);
 }
 
-/* Mean squared difference that is left, and that there was, between what the cameras did to the scene's colours and the maps. */
+/* Mean squared difference that is left, and that there was, between what the cameras did to the
+ * scene's colours and the maps. */
 static double tint_left(ted4_colour *colour, double *there)
 {
-    static const float seen[4][3] = { { 0.7f, 0.26f, 0.21f }, { 0.24f, 0.65f, 0.32f },
-                                      { 0.26f, 0.35f, 0.73f }, { 0.1f, 0.1f, 0.1f } };
+    static const float seen[4][3] = { { 0.7f, 0.26f, 0.21f },
+                                      { 0.24f, 0.65f, 0.32f },
+                                      { 0.26f, 0.35f, 0.73f },
+                                      { 0.1f, 0.1f, 0.1f } };
     double left = 0;
 
     *there = 0;
@@ -471,13 +490,13 @@ static double tint_left(ted4_colour *colour, double *there)
 static void test_finds_tints(void **state)
 {
     double without = 0, with = 0, left = 0, tints = 0;
-    scene  s;
+    scene s;
 
     (void)state;
     open_scene(&s);
     for (uint32_t seed = 0; seed < 3; seed++) {
         ted4_trainer t;
-        double       there;
+        double there;
 
         train(&t, &s.data, 0, seed, 1000);
         assert_int_equal(t.colour.n_cameras, 0);
@@ -501,8 +520,8 @@ static void test_finds_tints(void **state)
 static void test_where(void **state)
 {
     ted4_trainer t;
-    scene        s;
-    double       before;
+    scene s;
+    double before;
 
     (void)state;
     open_scene(&s);
@@ -511,7 +530,8 @@ static void test_where(void **state)
         for (int k = 0; k < N; k++)
             assert_true(t.colour.value[c][k] == 0.0f);
     assert_int_equal(ted4_trainer_step(&t), 0);
-    assert_int_equal(t.colour.steps[0] + t.colour.steps[1] + t.colour.steps[2] + t.colour.steps[3], 1);
+    assert_int_equal(t.colour.steps[0] + t.colour.steps[1] + t.colour.steps[2] + t.colour.steps[3],
+                     1);
     before = ted4_trainer_preview(&t, 4);
     for (uint32_t c = 0; c < CAMERAS; c++)
         t.colour.value[c][9] = 0.5f;
@@ -523,14 +543,11 @@ static void test_where(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_choice),
-        cmocka_unit_test(test_gradients),
-        cmocka_unit_test(test_identity),
-        cmocka_unit_test(test_threads),
-        cmocka_unit_test(test_update),
-        cmocka_unit_test(test_outlier), cmocka_unit_test(test_undo), cmocka_unit_test(test_penalty),
-        cmocka_unit_test(test_finds_tints),
-        cmocka_unit_test(test_where),
+        cmocka_unit_test(test_choice),      cmocka_unit_test(test_gradients),
+        cmocka_unit_test(test_identity),    cmocka_unit_test(test_threads),
+        cmocka_unit_test(test_update),      cmocka_unit_test(test_outlier),
+        cmocka_unit_test(test_undo),        cmocka_unit_test(test_penalty),
+        cmocka_unit_test(test_finds_tints), cmocka_unit_test(test_where),
     };
 
     return cmocka_run_group_tests_name("colour", tests, NULL, NULL);

@@ -1,5 +1,7 @@
-/* test_colour_match.c - train/densify/camera_colour_init.h: maps of cameras are found from the initial points alone, also where a third of what each camera sees is in the way
- * of the points; what all cameras have in common, from the points' own colours, if these agree with the pictures; and what is not enough to tell leaves the identity.
+/* test_colour_match.c - train/densify/camera_colour_init.h: maps of cameras are found from the
+ * initial points alone, also where a third of what each camera sees is in the way of the points;
+ * what all cameras have in common, from the points' own colours, if these agree with the pictures;
+ * and what is not enough to tell leaves the identity.
  * SPDX-License-Identifier: BSD-2-Clause */
 #include <setjmp.h>
 #include <stdarg.h>
@@ -15,7 +17,7 @@
 
 enum { W = 64, H = 48, CAMERAS = 6, FRAMES = 3, N = TED4_COLOUR_VALUES };
 
-#define FOCAL 60.0
+#define FOCAL    60.0
 #define DISTANCE 3.0
 
 /* True map of camera k times size: of each value the middle half of the cameras has mean 0. */
@@ -38,17 +40,20 @@ static double camera_x(int k)
     return 0.15 * (k - 0.5 * (CAMERAS - 1));
 }
 
-/* hidden: share of blocks of 4x4 pixels where something else is seen, at each time and from each camera at other places. */
-static void picture(const tiny_folder *f, const char *name, int k, int frame, double hidden, float tint)
+/* hidden: share of blocks of 4x4 pixels where something else is seen, at each time and from each
+ * camera at other places. */
+static void picture(const tiny_folder *f, const char *name, int k, int frame, double hidden,
+                    float tint)
 {
     uint8_t px[W * H * 3];
 
     for (int i = 0; i < W * H; i++) {
-        const uint64_t block = (uint64_t)((i / W / 4 * W + i % W / 4) * FRAMES + frame), key = (uint64_t)k + 1;
-        const double   x = camera_x(k) + (i % W + 0.5 - 0.5 * W) * DISTANCE / FOCAL;
-        const double   y = -(i / W + 0.5 - 0.5 * H) * DISTANCE / FOCAL;
-        const int      away = (double)ted4_uniform(key, 8 * block) < hidden;
-        double         rgb[3];
+        const uint64_t block = (uint64_t)((i / W / 4 * W + i % W / 4) * FRAMES + frame),
+                       key = (uint64_t)k + 1;
+        const double x = camera_x(k) + (i % W + 0.5 - 0.5 * W) * DISTANCE / FOCAL;
+        const double y = -(i / W + 0.5 - 0.5 * H) * DISTANCE / FOCAL;
+        const int away = (double)ted4_uniform(key, 8 * block) < hidden;
+        double rgb[3];
 
         painted(x, y, rgb);
         for (uint64_t c = 0; c < 3 && away; c++)
@@ -64,17 +69,22 @@ static void picture(const tiny_folder *f, const char *name, int k, int frame, do
     tiny_png(f, name, W, H, PNG_FORMAT_RGB, px);
 }
 
-/* Colours that come with the points: gain times what the plane shows, by channel; NULL: nearly black. */
+/* Colours that come with the points: gain times what the plane shows, by channel; NULL: nearly
+ * black. */
 static void points(const tiny_folder *f, int n, const double *gain)
 {
     static tiny_string s;
 
     s.n = 0;
-    tiny_add(&s, "ply\nformat ascii 1.0\nelement vertex %d\nproperty float x\nproperty float y\nproperty float z\n"
-                 "property uchar red\nproperty uchar green\nproperty uchar blue\nend_header\n", n);
+    tiny_add(&s,
+             "ply\nformat ascii 1.0\nelement vertex %d\nproperty float x\nproperty float "
+             "y\nproperty float z\n"
+             "property uchar red\nproperty uchar green\nproperty uchar blue\nend_header\n",
+             n);
     for (uint64_t i = 0; i < (uint64_t)n; i++) {
-        const double x = 2.4 * (double)ted4_uniform(7, 2 * i) - 1.2, y = 1.8 * (double)ted4_uniform(7, 2 * i + 1) - 0.9;
-        double       rgb[3];
+        const double x = 2.4 * (double)ted4_uniform(7, 2 * i) - 1.2,
+                     y = 1.8 * (double)ted4_uniform(7, 2 * i + 1) - 0.9;
+        double rgb[3];
 
         painted(x, y, rgb);
         for (int c = 0; c < 3; c++)
@@ -84,19 +94,25 @@ static void points(const tiny_folder *f, int n, const double *gain)
     tiny_text(f, "points.ply", s.text);
 }
 
-static void write_scene(const tiny_folder *f, int n_points, const double *gain, double hidden, float tint)
+static void write_scene(const tiny_folder *f, int n_points, const double *gain, double hidden,
+                        float tint)
 {
     static tiny_string s;
 
     s.n = 0;
-    tiny_add(&s, "{\"fl_x\": %g, \"w\": %d, \"h\": %d, \"fps\": 5, \"ply_file_path\": \"points.ply\", \"frames\": [", FOCAL, W, H);
+    tiny_add(&s,
+             "{\"fl_x\": %g, \"w\": %d, \"h\": %d, \"fps\": 5, \"ply_file_path\": \"points.ply\", "
+             "\"frames\": [",
+             FOCAL, W, H);
     for (int i = 0; i < FRAMES * CAMERAS; i++) {
         const int k = i % CAMERAS, frame = i / CAMERAS;
-        char      name[64];
+        char name[64];
 
         snprintf(name, sizeof name, "images/c%d_f%d.png", k, frame);
         picture(f, name, k, frame, hidden, tint);
-        tiny_add(&s, "%s{\"file_path\": \"%s\", \"time\": %.17g, \"transform_matrix\": [[1,0,0,%.9f],[0,1,0,0],[0,0,1,%.9f],[0,0,0,1]]}",
+        tiny_add(&s,
+                 "%s{\"file_path\": \"%s\", \"time\": %.17g, \"transform_matrix\": "
+                 "[[1,0,0,%.9f],[0,1,0,0],[0,0,1,%.9f],[0,0,0,1]]}",
                  i > 0 ? "," : "", name, (double)frame / (FRAMES - 1), camera_x(k), DISTANCE);
     }
     tiny_add(&s, "]}");
@@ -104,7 +120,8 @@ static void write_scene(const tiny_folder *f, int n_points, const double *gain, 
     points(f, n_points, gain);
 }
 
-/* Largest difference of a map's value from the true one, for a scene that shows gain times these colours. */
+/* Largest difference of a map's value from the true one, for a scene that shows gain times these
+ * colours. */
 static float worst(const ted4_colour *c, const double *gain)
 {
     float most = 0;
@@ -119,7 +136,8 @@ static float worst(const ted4_colour *c, const double *gain)
 }
 
 /* The trainer's colours after the match. */
-static void matched(int n_points, const double *gain, double hidden, float tint, ted4_trainer *t, ted4_dataset *d, tiny_folder *f)
+static void matched(int n_points, const double *gain, double hidden, float tint, ted4_trainer *t,
+                    ted4_dataset *d, tiny_folder *f)
 {
     const ted4_dataset_options o = { .downscale = 1, .seed = 3, .cache_bytes = 1 << 20 };
     ted4_message m;
@@ -142,13 +160,13 @@ static void test_found(void **state)
 {
     static const double hidden[3] = { 0, 0.15, 0.3 };
     /* Largest errors measured: 0.0025, 0.0052, 0.0136. */
-    static const float  bound[3] = { 0.005f, 0.01f, 0.025f };
+    static const float bound[3] = { 0.005f, 0.01f, 0.025f };
 
     (void)state;
     for (int i = 0; i < 3; i++) {
         ted4_trainer t;
         ted4_dataset d;
-        tiny_folder  f;
+        tiny_folder f;
 
         matched(600, NULL, hidden[i], 1, &t, &d, &f);
         assert_int_equal(t.colour.matched, 1);
@@ -159,13 +177,14 @@ static void test_found(void **state)
     }
 }
 
-/* Points know that the middle of all cameras is too dark in red and too bright in green; training keeps to it. */
+/* Points know that the middle of all cameras is too dark in red and too bright in green; training
+ * keeps to it. */
 static void test_gauge(void **state)
 {
     static const double gain[3] = { 1.05, 0.96, 1.0 };
-    ted4_trainer        t;
-    ted4_dataset        d;
-    tiny_folder         f;
+    ted4_trainer t;
+    ted4_dataset d;
+    tiny_folder f;
 
     (void)state;
     matched(600, gain, 0.15, 1, &t, &d, &f);
@@ -190,7 +209,7 @@ static void test_other_colours(void **state)
     for (int i = 0; i < 2; i++) {
         ted4_trainer t;
         ted4_dataset d;
-        tiny_folder  f;
+        tiny_folder f;
 
         matched(600, gain[i], 0, 1, &t, &d, &f);
         assert_true(worst(&t.colour, none) < 0.005f);
@@ -206,7 +225,7 @@ static void check_alone(int n_points, float tint)
 {
     ted4_trainer t;
     ted4_dataset d;
-    tiny_folder  f;
+    tiny_folder f;
 
     matched(n_points, NULL, 0, tint, &t, &d, &f);
     assert_int_equal(t.colour.matched, 0);
@@ -233,8 +252,10 @@ static void test_no_tint(void **state)
 
 int main(void)
 {
-    const struct CMUnitTest tests[] = { cmocka_unit_test(test_found), cmocka_unit_test(test_gauge), cmocka_unit_test(test_other_colours),
-                                        cmocka_unit_test(test_few_points), cmocka_unit_test(test_no_tint) };
+    const struct CMUnitTest tests[] = { cmocka_unit_test(test_found), cmocka_unit_test(test_gauge),
+                                        cmocka_unit_test(test_other_colours),
+                                        cmocka_unit_test(test_few_points),
+                                        cmocka_unit_test(test_no_tint) };
 
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -90,15 +90,16 @@ static void test_times(void **state)
     assert_true(t.num == 0 && t.den == 1);
     t = ted4_time_of_frame(5, 1u << 24);
     assert_true(t.num == 5 && t.den == (1u << 24) - 1);
-    t = ted4_time_of_frame(3u << 23, (1u << 25) + 1);          /* 3 2^23 / 2^25 = 3 / 4 */
+    t = ted4_time_of_frame(3u << 23, (1u << 25) + 1); /* 3 2^23 / 2^25 = 3 / 4 */
     assert_true(t.num == 3 && t.den == 4);
-    t = ted4_time_of_frame(UINT32_MAX / 2, UINT32_MAX);         /* (2^31 - 1) / (2^32 - 2) = 1 / 2 */
+    t = ted4_time_of_frame(UINT32_MAX / 2, UINT32_MAX); /* (2^31 - 1) / (2^32 - 2) = 1 / 2 */
     assert_true(t.num == 1 && t.den == 2);
-    t = ted4_time_of_frame(UINT32_MAX - 2, UINT32_MAX);         /* (2^32 - 3) / (2^32 - 2): 16777214.996 of 2^24 - 1 */
+    t = ted4_time_of_frame(UINT32_MAX - 2,
+                           UINT32_MAX); /* (2^32 - 3) / (2^32 - 2): 16777214.996 of 2^24 - 1 */
     assert_true(t.num == (1u << 24) - 1 && t.den == (1u << 24) - 1);
-    t = ted4_time_of_frame(1000000001, UINT32_MAX);             /* 3906249.77 of 2^24 - 1 */
+    t = ted4_time_of_frame(1000000001, UINT32_MAX); /* 3906249.77 of 2^24 - 1 */
     assert_true(t.num == 3906250 && t.den == (1u << 24) - 1);
-    t = ted4_time_of_frame(29, (1u << 25) - 1);                 /* 14.5 and 5.5 of 2^24 - 1: to even */
+    t = ted4_time_of_frame(29, (1u << 25) - 1); /* 14.5 and 5.5 of 2^24 - 1: to even */
     assert_true(t.num == 14 && t.den == (1u << 24) - 1);
     t = ted4_time_of_frame(11, (1u << 25) - 1);
     assert_true(t.num == 6 && t.den == (1u << 24) - 1);

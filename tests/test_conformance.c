@@ -1,5 +1,6 @@
-/* test_conformance.c - the suite: its recipes give the bytes that are published, these leave nothing out, our decoder passes all of them, and
- * the runner sees through decoders that do not (conformance/tests/bad_decoder.sh). Programs are run as a user would.
+/* test_conformance.c - the suite: its recipes give the bytes that are published, these leave
+ * nothing out, our decoder passes all of them, and the runner sees through decoders that do not
+ * (conformance/tests/bad_decoder.sh). Programs are run as a user would.
  * SPDX-License-Identifier: BSD-2-Clause */
 #include <setjmp.h>
 #include <stdarg.h>
@@ -13,7 +14,7 @@
 #include "ted4.h"
 
 #ifdef __SANITIZE_ADDRESS__
-#define MEMORY " --memory 0"            /* its shadow takes terabytes of addresses */
+#define MEMORY " --memory 0" /* its shadow takes terabytes of addresses */
 #else
 #define MEMORY ""
 #endif
@@ -31,15 +32,16 @@ static char said[4096];
 /* Exit code of ted4conf with those arguments; its last line in last. */
 static int conf(char *last, size_t size, const char *format, ...)
 {
-    char    arguments[1024], command[2048], line[1024];
+    char arguments[1024], command[2048], line[1024];
     va_list a;
-    FILE   *f;
-    int     status;
+    FILE *f;
+    int status;
 
     va_start(a, format);
     vsnprintf(arguments, sizeof arguments, format, a);
     va_end(a);
-    snprintf(command, sizeof command, "TED4DEC=%s/ted4dec MOOD=%s/mood %s/ted4conf %s 2>&1", build(), build(), build(), arguments);
+    snprintf(command, sizeof command, "TED4DEC=%s/ted4dec MOOD=%s/mood %s/ted4conf %s 2>&1",
+             build(), build(), build(), arguments);
     f = popen(command, "r");
     assert_non_null(f);
     last[0] = said[0] = '\0';
@@ -61,7 +63,8 @@ static void recipes_give_the_published_bytes(void **state)
         fail_msg("%s", last);
 }
 
-/* No rule without a vector, no vector without a rule, every value, pair, table entry and extreme reached. */
+/* No rule without a vector, no vector without a rule, every value, pair, table entry and extreme
+ * reached. */
 static void nothing_is_left_out(void **state)
 {
     char last[1024];
@@ -74,14 +77,15 @@ static void nothing_is_left_out(void **state)
 /* Files that end early at every byte: con.truncated at the end, or what pass 1 finds before it. */
 static void truncation_at_every_byte(void **state)
 {
-    static const char *const file[] = { "worked/WRK-smallest", "worked/WRK-masks", "worked/WRK-dynamic" };
+    static const char *const file[] = { "worked/WRK-smallest", "worked/WRK-masks",
+                                        "worked/WRK-dynamic" };
     uint8_t data[4096];
 
     (void)state;
     for (size_t i = 0; i < sizeof file / sizeof *file; i++) {
-        char       path[256];
-        FILE      *f;
-        size_t     size;
+        char path[256];
+        FILE *f;
+        size_t size;
         ted4_scene *s;
         ted4_error e;
 
@@ -104,7 +108,8 @@ static void our_decoder_conforms(void **state)
     char last[1024];
 
     (void)state;
-    if (conf(last, sizeof last, "run -j 2 -t 300 -d %s/ted4dec --second TED4_KERNEL=plain%s", build(), MEMORY) != 0)
+    if (conf(last, sizeof last, "run -j 2 -t 300 -d %s/ted4dec --second TED4_KERNEL=plain%s",
+             build(), MEMORY) != 0)
         fail_msg("%s%s", said, last);
     assert_null(strstr(last, " 0 passed"));
     assert_non_null(strstr(last, " 0 failed, 0 without answer, 0 missing, 0 declined"));
@@ -139,9 +144,12 @@ static void expect_of(const char *list, const char *way, int code, const char *w
 {
     char last[1024];
 
-    assert_int_equal(conf(last, sizeof last, "run -j %d -t %d --memory 0 -q -l conformance/%s "
-                          "-d 'sh conformance/tests/bad_decoder.sh %s'", strcmp(way, "moody") == 0 ? 1 : 4,
-                          strncmp(way, "hang", 4) == 0 ? 1 : 60, list, way), code);
+    assert_int_equal(conf(last, sizeof last,
+                          "run -j %d -t %d --memory 0 -q -l conformance/%s "
+                          "-d 'sh conformance/tests/bad_decoder.sh %s'",
+                          strcmp(way, "moody") == 0 ? 1 : 4, strncmp(way, "hang", 4) == 0 ? 1 : 60,
+                          list, way),
+                     code);
     if (strstr(last, what) == NULL)
         fail_msg("%s: \"%s\" lacks \"%s\"", way, last, what);
 }
@@ -154,8 +162,9 @@ static void expect(const char *way, int code, const char *what)
 /* few.txt: 4 valid vectors, 3 invalid ones, 1 limit. */
 static void no_answers(void **state)
 {
-    static const char *const way[] = { "crash", "silent", "exit-code", "chatter", "chatter-behind", "two-answers", "no-json", "no-utf8",
-                                       "flood", "hang" };
+    static const char *const way[] = { "crash",          "silent",      "exit-code", "chatter",
+                                       "chatter-behind", "two-answers", "no-json",   "no-utf8",
+                                       "flood",          "hang" };
 
     (void)state;
     for (size_t i = 0; i < sizeof way / sizeof *way; i++)
@@ -167,9 +176,10 @@ static void no_answers(void **state)
 static void lies(void **state)
 {
     (void)state;
-    expect("good", 0, " 8 passed, 0 failed, 0 without answer, 0 missing, 0 declined, 0 not run: conforms");
+    expect("good", 0,
+           " 8 passed, 0 failed, 0 without answer, 0 missing, 0 declined, 0 not run: conforms");
     expect("says-valid", 1, " 0 passed, 8 failed");
-    expect("says-invalid", 1, " 1 passed, 7 failed");   /* one of them is */
+    expect("says-invalid", 1, " 1 passed, 7 failed"); /* one of them is */
     expect("says-limit", 1, " 1 passed, 7 failed");
     expect("wrong-hash", 1, " 4 passed, 4 failed");
     expect("half-wrong", 1, " 4 passed, 4 failed");
@@ -189,7 +199,9 @@ static void declining(void **state)
     expect("no-knobs", 0, " 7 passed, 0 failed, 0 without answer, 0 missing, 1 declined");
     expect("declines-moving", 0, " 5 passed, 0 failed, 0 without answer, 0 missing, 3 declined");
     expect("declines-all", 1, "no valid stream decoded");
-    expect("fewer-tiers", 1, " 8 passed, 0 failed, 0 without answer, 0 missing, 0 declined, 0 not run: does not conform: T1 is not claimed");
+    expect("fewer-tiers", 1,
+           " 8 passed, 0 failed, 0 without answer, 0 missing, 0 declined, 0 not run: does not "
+           "conform: T1 is not claimed");
     expect("class-alone", 1, "a class is claimed, but not T5");
 }
 
@@ -200,19 +212,23 @@ static void left_behind(void **state)
     expect("hang-behind", 1, " 8 without answer");
 }
 
-/* class-t.txt: a valid vector; one of whose four queries three are out of range; one with queries that have no
- * result in class X; an invalid one. */
+/* class-t.txt: a valid vector; one of whose four queries three are out of range; one with queries
+ * that have no result in class X; an invalid one. */
 static void class_t(void **state)
 {
     static const char *const kept[] = { "exact", "inside", "more" };
-    static const char *const broken[] = { "beyond-scale", "beyond-rotation", "beyond-opacity", "beyond-colour", "nan", "short" };
+    static const char *const broken[] = {
+        "beyond-scale", "beyond-rotation", "beyond-opacity", "beyond-colour", "nan", "short"
+    };
     static const char list[] = "tests/class-t.txt";
     char way[40];
 
     (void)state;
     for (size_t i = 0; i < sizeof kept / sizeof *kept; i++) {
         snprintf(way, sizeof way, "class-t-%s", kept[i]);
-        expect_of(list, way, 0, " 4 passed, 0 failed, 0 without answer, 0 missing, 0 declined, 0 not run: conforms");
+        expect_of(
+            list, way, 0,
+            " 4 passed, 0 failed, 0 without answer, 0 missing, 0 declined, 0 not run: conforms");
     }
     for (size_t i = 0; i < sizeof broken / sizeof *broken; i++) {
         snprintf(way, sizeof way, "class-t-%s", broken[i]);
@@ -224,7 +240,8 @@ static void class_t(void **state)
     expect_of(list, "class-t-other-dump", 1, " 1 passed, 3 failed, 0 without answer");
 }
 
-/* lenient.txt: of six vectors two of which nothing, three of which something can be salvaged, and a valid one. */
+/* lenient.txt: of six vectors two of which nothing, three of which something can be salvaged, and a
+ * valid one. */
 static void lenient_mode(void **state)
 {
     static const char list[] = "tests/lenient.txt";
@@ -245,7 +262,10 @@ static void missing_vectors(void **state)
     char last[1024];
 
     (void)state;
-    assert_int_equal(conf(last, sizeof last, "run -q" MEMORY " -l conformance/tests/absent.txt -d %s/ted4dec", build()), 1);
+    assert_int_equal(conf(last, sizeof last,
+                          "run -q" MEMORY " -l conformance/tests/absent.txt -d %s/ted4dec",
+                          build()),
+                     1);
     assert_non_null(strstr(last, " 1 passed, 0 failed, 0 without answer, 1 missing"));
 }
 
@@ -258,14 +278,16 @@ static void limits(void **state)
     expect_of(list, "says-limit", 1, " 1 passed, 1 failed");
 }
 
-/* above.txt: a valid vector of level 1; of higher levels one that is valid, one with an error of pass 2, and one of pass 1, which is nobody's to decline. */
+/* above.txt: a valid vector of level 1; of higher levels one that is valid, one with an error of
+ * pass 2, and one of pass 1, which is nobody's to decline. */
 static void levels_above(void **state)
 {
     static const char list[] = "tests/above.txt";
 
     (void)state;
     expect_of(list, "good", 0, " 4 passed, 0 failed, 0 without answer, 0 missing, 0 declined");
-    expect_of(list, "limit-above-1", 1, " 1 passed, 1 failed, 0 without answer, 0 missing, 2 declined");
+    expect_of(list, "limit-above-1", 1,
+              " 1 passed, 1 failed, 0 without answer, 0 missing, 2 declined");
 }
 
 static void version(void **state)

@@ -1,5 +1,6 @@
-/* test_dataset.c - scenes of every layout, written here, come out as the dataset they describe; real scenes under $TED4_DATA too.
- * Errors: test_dataset_errors.c. Pictures, lens, cache: test_image_file.c.
+/* test_dataset.c - scenes of every layout, written here, come out as the dataset they describe;
+ * real scenes under $TED4_DATA too. Errors: test_dataset_errors.c. Pictures, lens, cache:
+ * test_image_file.c.
  * SPDX-License-Identifier: BSD-2-Clause */
 #include <math.h>
 #include <setjmp.h>
@@ -51,7 +52,7 @@ static void colmap_text(const tiny_folder *f, const char *camera, int n, const c
     tiny_string s = { "# comment\n\n", 11 };
 
     tiny_text(f, "sparse/0/cameras.txt", camera);
-    for (int i = n; i > 0; i--) {           /* not in the order of names */
+    for (int i = n; i > 0; i--) { /* not in the order of names */
         char name[64], file[80];
         snprintf(name, sizeof name, name_format, i * 3);
         snprintf(file, sizeof file, "images/%s", name);
@@ -60,7 +61,8 @@ static void colmap_text(const tiny_folder *f, const char *camera, int n, const c
         tiny_add(&s, i % 2 ? "\n" : "1.5 2.5 -1 3 4 7\n");
     }
     tiny_text(f, "sparse/0/images.txt", s.text);
-    tiny_text(f, "sparse/0/points3D.txt", "# none\n1 0.5 -1.5 2 10 20 30 0.1 1 2\n2 4 5 6 1 2 3 0.1\n");
+    tiny_text(f, "sparse/0/points3D.txt",
+              "# none\n1 0.5 -1.5 2 10 20 30 0.1 1 2\n2 4 5 6 1 2 3 0.1\n");
 }
 
 static const char pinhole[] = "# c\n1 PINHOLE 16 12 20 21 7.5 6.5\n";
@@ -118,7 +120,8 @@ static void write_colmap_binary(const tiny_folder *f)
     tiny_record c = { { 0 }, 0 }, s = { { 0 }, 0 }, p = { { 0 }, 0 };
     const double pose[7] = { sqrt(0.5), 0, 0, sqrt(0.5), 1, 2, 0 };
 
-    tiny_put(&c, 1, 8), tiny_put(&c, 1, 4), tiny_put(&c, 1, 4), tiny_put(&c, TINY_W, 8), tiny_put(&c, TINY_H, 8);
+    tiny_put(&c, 1, 8), tiny_put(&c, 1, 4), tiny_put(&c, 1, 4), tiny_put(&c, TINY_W, 8),
+        tiny_put(&c, TINY_H, 8);
     tiny_put_real(&c, 20), tiny_put_real(&c, 21), tiny_put_real(&c, 7.5), tiny_put_real(&c, 6.5);
     tiny_put(&s, 14, 8);
     for (int i = 14; i > 0; i--) {
@@ -134,7 +137,7 @@ static void write_colmap_binary(const tiny_folder *f)
         s.n += strlen(name) + 1;
         tiny_put(&s, 2, 8);
         for (int k = 0; k < 6; k++)
-            tiny_put(&s, 0, 8);        /* two observations */
+            tiny_put(&s, 0, 8); /* two observations */
     }
     tiny_put(&p, 2, 8);
     for (int i = 0; i < 2; i++) {
@@ -163,7 +166,8 @@ static void test_colmap_binary(void **state)
     tiny_free(&f);
 }
 
-/* Two folders are two cameras that share frames; names without a number are all frame 0; files may be the smaller copies. */
+/* Two folders are two cameras that share frames; names without a number are all frame 0; files may
+ * be the smaller copies. */
 static void test_colmap_names(void **state)
 {
     (void)state;
@@ -203,12 +207,18 @@ static void write_blender(const tiny_folder *f, const char *time_a, const char *
 
     tiny_png(f, "train/r_0.png", 2, 2, PNG_FORMAT_RGBA, px);
     tiny_png(f, "test/r_0.png", 2, 2, PNG_FORMAT_RGBA, px);
-    tiny_add(&s, "{\"camera_angle_x\": 1.5707963267948966, \"frames\": [{\"file_path\": \"./train/r_0\"%s,"
-             "\"transform_matrix\": [[0,0,1,5],[1,0,0,6],[0,1,0,7],[0,0,0,1]]}]}", time_a);
+    tiny_add(
+        &s,
+        "{\"camera_angle_x\": 1.5707963267948966, \"frames\": [{\"file_path\": \"./train/r_0\"%s,"
+        "\"transform_matrix\": [[0,0,1,5],[1,0,0,6],[0,1,0,7],[0,0,0,1]]}]}",
+        time_a);
     tiny_text(f, "transforms_train.json", s.text);
     s.n = 0;
-    tiny_add(&s, "{\"camera_angle_x\": 1.5707963267948966, \"frames\": [{\"file_path\": \"./test/r_0\"%s,"
-             "\"transform_matrix\": " TINY_POSE "}]}", time_b);
+    tiny_add(
+        &s,
+        "{\"camera_angle_x\": 1.5707963267948966, \"frames\": [{\"file_path\": \"./test/r_0\"%s,"
+        "\"transform_matrix\": " TINY_POSE "}]}",
+        time_b);
     tiny_text(f, "transforms_test.json", s.text);
 }
 
@@ -230,10 +240,13 @@ static void test_blender(void **state)
     const ted4_camera *c = &d.pictures[0].camera;
     near(c->fx, 1, 1e-12);
     near(c->cx, 1, 0);
-    /* Camera at (5, 6, 7) whose right is +y, up +z and backward +x: looks along -x. x_cam of world (4, 8, 10) is (2, -3, 1). */
+    /* Camera at (5, 6, 7) whose right is +y, up +z and backward +x: looks along -x. x_cam of world
+     * (4, 8, 10) is (2, -3, 1). */
     const double world[3] = { 4, 8, 10 }, expected[3] = { 2, -3, 1 };
     for (int i = 0; i < 3; i++)
-        near(c->R[3 * i] * world[0] + c->R[3 * i + 1] * world[1] + c->R[3 * i + 2] * world[2] + c->t[i], expected[i], 1e-12);
+        near(c->R[3 * i] * world[0] + c->R[3 * i + 1] * world[1] + c->R[3 * i + 2] * world[2] +
+                 c->t[i],
+             expected[i], 1e-12);
     const uint8_t white[12] = { 200, 100, 0, 255, 255, 255, 227, 177, 127, 0, 0, 0 };
     const uint8_t black[12] = { 200, 100, 0, 0, 0, 0, 100, 50, 0, 0, 0, 0 };
     assert_memory_equal(ted4_dataset_pixels(&d, 0, &m), white, 12);
@@ -259,18 +272,22 @@ static void write_nerfstudio(const tiny_folder *f)
 {
     tiny_string s = { "", 0 };
 
-    tiny_add(&s, "{\"fl_x\": 30, \"cx\": 7, \"w\": 16, \"h\": 12, \"fps\": 25, \"ply_file_path\": \"cloud.ply\","
-             "\"applied_transform\": [[0,0,2,1],[2,0,0,2],[0,2,0,3]], \"frames\": [");
+    tiny_add(&s, "{\"fl_x\": 30, \"cx\": 7, \"w\": 16, \"h\": 12, \"fps\": 25, \"ply_file_path\": "
+                 "\"cloud.ply\","
+                 "\"applied_transform\": [[0,0,2,1],[2,0,0,2],[0,2,0,3]], \"frames\": [");
     for (int i = 9; i >= 0; i--) {
         char name[32];
         snprintf(name, sizeof name, "images/p%d.png", i);
         tiny_picture(f, name, TINY_W, TINY_H, i);
-        tiny_add(&s, "{\"file_path\": \"%s\", \"time\": %.6f, \"camera\": %s%s, \"transform_matrix\": "
-                 "[[1,0,0,3],[0,1,0,6],[0,0,1,9],[0,0,0,1]]}%s\n", name, i / 2 / 4.0, i % 2 ? "\"odd\"" : "0",
+        tiny_add(&s,
+                 "{\"file_path\": \"%s\", \"time\": %.6f, \"camera\": %s%s, \"transform_matrix\": "
+                 "[[1,0,0,3],[0,1,0,6],[0,0,1,9],[0,0,0,1]]}%s\n",
+                 name, i / 2 / 4.0, i % 2 ? "\"odd\"" : "0",
                  i == 3 ? ", \"fl_x\": 31, \"fl_y\": 32, \"cy\": 5" : "", i > 0 ? "," : "]}");
     }
     tiny_text(f, "transforms.json", s.text);
-    tiny_text(f, "cloud.ply", "ply\nformat ascii 1.0\nelement vertex 1\nproperty double x\nproperty double y\n"
+    tiny_text(f, "cloud.ply",
+              "ply\nformat ascii 1.0\nelement vertex 1\nproperty double x\nproperty double y\n"
               "property double z\nend_header\n3 6 9\n");
 }
 
@@ -299,7 +316,8 @@ static void test_nerfstudio(void **state)
     near(d.pictures[2].camera.fy, 30, 0);
     near(d.pictures[2].camera.cy, 6, 0);
     near(d.pictures[2].camera.cx, 7, 0);
-    /* applied: (x, y, z) -> (2z + 1, 2x + 2, 2y + 3), so camera and point at (3, 6, 9) come from (2, 3, 1). */
+    /* applied: (x, y, z) -> (2z + 1, 2x + 2, 2y + 3), so camera and point at (3, 6, 9) come from
+     * (2, 3, 1). */
     double centre[3];
     const double expected[3] = { 2, 3, 1 };
     ted4_pose_centre(d.pictures[0].camera.R, d.pictures[0].camera.t, centre);
@@ -307,7 +325,8 @@ static void test_nerfstudio(void **state)
         near(centre[k], expected[k], 1e-12);
         near(d.points[k], expected[k], 1e-6);
     }
-    /* It looks along -z of the applied world, which is -y of the dataset's; its right is x there, z here. */
+    /* It looks along -z of the applied world, which is -y of the dataset's; its right is x there, z
+     * here. */
     near(d.pictures[0].camera.R[7], -1, 1e-12);
     near(d.pictures[0].camera.R[2], 1, 1e-12);
     ted4_dataset_free(&d);
@@ -348,8 +367,10 @@ static void test_ply(void **state)
     ted4_point_cloud c = { NULL, NULL, 0 };
     ted4_message m;
     tiny_folder f = tiny_new();
-    const char head[] = "ply\r\nformat binary_little_endian 1.0\ncomment x\nelement vertex 2\nproperty float nx\n"
-        "property double x\nproperty float y\nproperty float z\nproperty uchar red\nproperty uchar green\n"
+    const char head[] =
+        "ply\r\nformat binary_little_endian 1.0\ncomment x\nelement vertex 2\nproperty float nx\n"
+        "property double x\nproperty float y\nproperty float z\nproperty uchar red\nproperty uchar "
+        "green\n"
         "property uchar blue\nelement face 0\nproperty list uchar int vertex_indices\nend_header\n";
     tiny_record r = { { 0 }, 0 };
 
@@ -367,8 +388,10 @@ static void test_ply(void **state)
     assert_memory_equal(c.xyz, xyz, sizeof xyz);
     assert_int_equal(c.rgb[5], 3);
     ted4_point_cloud_free(&c);
-    tiny_text(&f, "points3d.ply", "ply\nformat ascii 1.0\nelement vertex 2\nproperty float x\nproperty float y\n"
-              "property float z\nproperty float red\nproperty float green\nproperty float blue\nend_header\n"
+    tiny_text(&f, "points3d.ply",
+              "ply\nformat ascii 1.0\nelement vertex 2\nproperty float x\nproperty float y\n"
+              "property float z\nproperty float red\nproperty float green\nproperty float "
+              "blue\nend_header\n"
               "1 2 3 0.5 1 0\n4 5 6 0 0 0");
     assert_int_equal(ted4_ply_find(&c, f.path, &m), 0);
     assert_int_equal(c.rgb[0], 128);
@@ -378,7 +401,8 @@ static void test_ply(void **state)
     tiny_free(&f);
 }
 
-/* Without a cloud: a box around what the cameras look at. Four cameras on a circle of radius 10 look at (0, 0, 3). */
+/* Without a cloud: a box around what the cameras look at. Four cameras on a circle of radius 10
+ * look at (0, 0, 3). */
 static void test_random_points(void **state)
 {
     (void)state;
@@ -390,7 +414,9 @@ static void test_random_points(void **state)
     tiny_add(&s, "{\"fl_x\": 10, \"frames\": [");
     for (int i = 0; i < 4; i++) {
         const double x = i == 0 ? 1 : i == 2 ? -1 : 0, y = i == 1 ? 1 : i == 3 ? -1 : 0;
-        tiny_add(&s, "{\"file_path\": \"p.png\", \"transform_matrix\": [[%g,0,%g,%g],[%g,0,%g,%g],[0,1,0,3],[0,0,0,1]]}%s",
+        tiny_add(&s,
+                 "{\"file_path\": \"p.png\", \"transform_matrix\": "
+                 "[[%g,0,%g,%g],[%g,0,%g,%g],[0,1,0,3],[0,0,0,1]]}%s",
                  -y, x, 10 * x, x, y, 10 * y, i < 3 ? "," : "]}");
     }
     tiny_text(&f, "transforms.json", s.text);
@@ -406,7 +432,9 @@ static void test_random_points(void **state)
     tiny_add(&s, "{\"fl_x\": 10, \"frames\": [");
     for (int i = 0; i < 2; i++) {
         const double r = sqrt(0.5), side = i == 0 ? 1 : -1;
-        tiny_add(&s, "{\"file_path\": \"p.png\", \"transform_matrix\": [[%.9g,0,%.9g,%g],[0,1,0,0],[%.9g,0,%.9g,0],[0,0,0,1]]}%s",
+        tiny_add(&s,
+                 "{\"file_path\": \"p.png\", \"transform_matrix\": "
+                 "[[%.9g,0,%.9g,%g],[0,1,0,0],[%.9g,0,%.9g,0],[0,0,0,1]]}%s",
                  r, -r * side, side, r * side, r, i < 1 ? "," : "]}");
     }
     tiny_text(&f, "transforms.json", s.text);
@@ -481,8 +509,9 @@ static void test_print(void **state)
     rewind(out);
     assert_true(fread(text, 1, sizeof text - 1, out) > 0);
     fclose(out);
-    assert_non_null(strstr(text, "layout      nerfstudio\npictures    9 train, 1 test\ncameras     2\nframes      5\n"
-                           "size        16 x 12 pixels\nfocal       30..31 x 30..32 pixels\n"));
+    assert_non_null(strstr(
+        text, "layout      nerfstudio\npictures    9 train, 1 test\ncameras     2\nframes      5\n"
+              "size        16 x 12 pixels\nfocal       30..31 x 30..32 pixels\n"));
     assert_non_null(strstr(text, "rate        25 frames/s\n"));
     /* A still has none, whatever its file says. */
     d.n_frames = 1;
@@ -497,14 +526,24 @@ static void test_print(void **state)
     tiny_free(&f);
 }
 
-/* Counts of the README beside the real scenes; the frame is told by the picture's name where names are numbers from 0 or 1. */
+/* Counts of the README beside the real scenes; the frame is told by the picture's name where names
+ * are numbers from 0 or 1. */
 static void test_real(void **state)
 {
     (void)state;
-    static const struct { const char *name; size_t train, test; uint32_t cameras, frames; int width, height; size_t points; } scenes[] = {
-        { "dog", 107, 15, 1, 122, 640, 359, 23642 },      { "chair", 100, 25, 125, 1, 400, 400, TED4_RANDOM_POINTS },
-        { "kitchen", 520, 40, 14, 40, 480, 270, 15000 }, { "kitchen_tint", 520, 40, 14, 40, 240, 135, 15000 },
-        { "walk", 80, 80, 2, 80, 270, 480, 15000 },      { "still", 104, 8, 14, 8, 480, 270, 15000 },
+    static const struct {
+        const char *name;
+        size_t train, test;
+        uint32_t cameras, frames;
+        int width, height;
+        size_t points;
+    } scenes[] = {
+        { "dog", 107, 15, 1, 122, 640, 359, 23642 },
+        { "chair", 100, 25, 125, 1, 400, 400, TED4_RANDOM_POINTS },
+        { "kitchen", 520, 40, 14, 40, 480, 270, 15000 },
+        { "kitchen_tint", 520, 40, 14, 40, 240, 135, 15000 },
+        { "walk", 80, 80, 2, 80, 270, 480, 15000 },
+        { "still", 104, 8, 14, 8, 480, 270, 15000 },
     };
     const char *base = getenv("TED4_DATA");
 
@@ -513,14 +552,16 @@ static void test_real(void **state)
         ted4_dataset d;
         snprintf(f.path, sizeof f.path, "%s/%s", base == NULL ? "" : base, scenes[s].name);
         if (base == NULL || !ted4_is_folder(f.path)) {
-            print_message("no scene %s under TED4_DATA, real scenes are not tested\n", scenes[s].name);
+            print_message("no scene %s under TED4_DATA, real scenes are not tested\n",
+                          scenes[s].name);
             skip();
         }
         load(&d, &f, &tiny_options);
         size_t n_test = 0;
         for (size_t i = 0; i < d.n_pictures; i++) {
             n_test += d.pictures[i].is_test;
-            const int number = atoi(strrchr(d.pictures[i].path, '/') + 1) - (strcmp(scenes[s].name, "dog") == 0);
+            const int number = atoi(strrchr(d.pictures[i].path, '/') + 1) -
+                               (strcmp(scenes[s].name, "dog") == 0);
             if (scenes[s].frames > 1)
                 assert_int_equal(d.pictures[i].frame, number);
         }
@@ -535,7 +576,8 @@ static void test_real(void **state)
     }
 }
 
-/* Four fixed cameras with a video and a distorting lens each: the first five times, of which the last is held out. */
+/* Four fixed cameras with a video and a distorting lens each: the first five times, of which the
+ * last is held out. */
 static void test_real_videos(void **state)
 {
     (void)state;
@@ -547,7 +589,8 @@ static void test_real_videos(void **state)
 
     snprintf(f.path, sizeof f.path, "%s/treadmill", base == NULL ? "" : base);
     if (base == NULL || !ted4_is_folder(f.path) || system("ffmpeg -version >/dev/null 2>&1") != 0) {
-        print_message("no scene treadmill under TED4_DATA, or no ffmpeg: real videos are not tested\n");
+        print_message(
+            "no scene treadmill under TED4_DATA, or no ffmpeg: real videos are not tested\n");
         skip();
     }
     cache = tiny_new();
@@ -562,7 +605,8 @@ static void test_real_videos(void **state)
     for (size_t i = 0; i < d.n_pictures; i++) {
         const ted4_camera *c = &d.pictures[i].camera;
         assert_int_equal(d.pictures[i].is_test, d.pictures[i].frame == 4);
-        assert_true(c->width == 1088 && c->height == 1920 && fabs(c->fx - 1677) < 6 && fabs(c->fy - 1677) < 6);
+        assert_true(c->width == 1088 && c->height == 1920 && fabs(c->fx - 1677) < 6 &&
+                    fabs(c->fy - 1677) < 6);
     }
     near(d.pictures[0].camera.cx, 532.97369384375 + 0.5, 1e-9);
     assert_non_null(ted4_dataset_pixels(&d, 0, &m));
@@ -575,10 +619,12 @@ static void test_real_videos(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_colmap_text),   cmocka_unit_test(test_colmap_binary), cmocka_unit_test(test_colmap_names),
-        cmocka_unit_test(test_blender),       cmocka_unit_test(test_nerfstudio),    cmocka_unit_test(test_downscale),
-        cmocka_unit_test(test_ply),           cmocka_unit_test(test_random_points), cmocka_unit_test(test_times),
-        cmocka_unit_test(test_print),         cmocka_unit_test(test_real),          cmocka_unit_test(test_real_videos),
+        cmocka_unit_test(test_colmap_text),  cmocka_unit_test(test_colmap_binary),
+        cmocka_unit_test(test_colmap_names), cmocka_unit_test(test_blender),
+        cmocka_unit_test(test_nerfstudio),   cmocka_unit_test(test_downscale),
+        cmocka_unit_test(test_ply),          cmocka_unit_test(test_random_points),
+        cmocka_unit_test(test_times),        cmocka_unit_test(test_print),
+        cmocka_unit_test(test_real),         cmocka_unit_test(test_real_videos),
     };
 
     return cmocka_run_group_tests_name("dataset", tests, NULL, NULL);

@@ -1,4 +1,5 @@
-/* test_dataset_errors.c - everything a scene can get wrong gives one message that says where and what, and an empty dataset.
+/* test_dataset_errors.c - everything a scene can get wrong gives one message that says where and
+ * what, and an empty dataset.
  * SPDX-License-Identifier: BSD-2-Clause */
 #include <setjmp.h>
 #include <stdarg.h>
@@ -15,7 +16,11 @@ static void transforms(const tiny_folder *f, const char *top, const char *frame)
     tiny_string s = { "", 0 };
 
     tiny_picture(f, "p.png", TINY_W, TINY_H, 0);
-    tiny_add(&s, "{%s\n\"frames\": [{\"file_path\": \"p.png\", \"fl_x\": 9, \"transform_matrix\": " TINY_POSE "},\n{%s}]}", top, frame);
+    tiny_add(
+        &s,
+        "{%s\n\"frames\": [{\"file_path\": \"p.png\", \"fl_x\": 9, \"transform_matrix\": " TINY_POSE
+        "},\n{%s}]}",
+        top, frame);
     tiny_text(f, "transforms.json", s.text);
 }
 
@@ -25,33 +30,50 @@ static void transforms(const tiny_folder *f, const char *top, const char *frame)
 static void test_transforms(void **state)
 {
     (void)state;
-    static const struct { const char *top, *frame, *where, *what; } cases[] = {
+    static const struct {
+        const char *top, *frame, *where, *what;
+    } cases[] = {
         { "", "", "transforms.json: frames[1].file_path", "missing" },
         { "", "\"file_path\": 3", "frames[1].file_path", "expected a string" },
         { "", FILE_PATH, "frames[1].transform_matrix", "expected 4x4 numbers" },
-        { "", FILE_PATH ", \"transform_matrix\": [[1,0,0,0],[0,1,0],[0,0,1,0],[0,0,0,1]]", "frames[1].transform_matrix", "expected 4x4 numbers" },
-        { "", FILE_PATH ", \"transform_matrix\": [[1,0,0,0],[0,1,\"a\",0],[0,0,1,0],[0,0,0,1]]", "frames[1].transform_matrix", "expected 4x4 numbers" },
-        { "", FILE_PATH ", \"transform_matrix\": [[1,0,0,0],[0,1,0,0],[0,0,1,0],[0,0,1,1]]", "frames[1].transform_matrix", "expected 0 0 0 1" },
-        { "", FILE_PATH ", \"transform_matrix\": [[1,0,0,0],[0,1,0,0],[0,1,0,0],[0,0,0,1]]", "frames[1].transform_matrix", "singular" },
-        { "", FILE_PATH ", \"transform_matrix\": [[1,0,0,0],[0,1,0.1,0],[0,0,1,0],[0,0,0,1]]", "frames[1].transform_matrix", "not orthonormal" },
-        { "", FILE_PATH ", \"transform_matrix\": [[1,0,0,0],[0,1,0,0],[0,0,-1,0],[0,0,0,1]]", "frames[1].transform_matrix", "mirror" },
-        { "", FILE_PATH ", \"transform_matrix\": [[NaN,0,0,0],[0,1,0,0],[0,0,1,0],[0,0,0,1]]", "transforms.json:3", "not valid JSON" },
+        { "", FILE_PATH ", \"transform_matrix\": [[1,0,0,0],[0,1,0],[0,0,1,0],[0,0,0,1]]",
+          "frames[1].transform_matrix", "expected 4x4 numbers" },
+        { "", FILE_PATH ", \"transform_matrix\": [[1,0,0,0],[0,1,\"a\",0],[0,0,1,0],[0,0,0,1]]",
+          "frames[1].transform_matrix", "expected 4x4 numbers" },
+        { "", FILE_PATH ", \"transform_matrix\": [[1,0,0,0],[0,1,0,0],[0,0,1,0],[0,0,1,1]]",
+          "frames[1].transform_matrix", "expected 0 0 0 1" },
+        { "", FILE_PATH ", \"transform_matrix\": [[1,0,0,0],[0,1,0,0],[0,1,0,0],[0,0,0,1]]",
+          "frames[1].transform_matrix", "singular" },
+        { "", FILE_PATH ", \"transform_matrix\": [[1,0,0,0],[0,1,0.1,0],[0,0,1,0],[0,0,0,1]]",
+          "frames[1].transform_matrix", "not orthonormal" },
+        { "", FILE_PATH ", \"transform_matrix\": [[1,0,0,0],[0,1,0,0],[0,0,-1,0],[0,0,0,1]]",
+          "frames[1].transform_matrix", "mirror" },
+        { "", FILE_PATH ", \"transform_matrix\": [[NaN,0,0,0],[0,1,0,0],[0,0,1,0],[0,0,0,1]]",
+          "transforms.json:3", "not valid JSON" },
         { "", GOOD ", \"time\": 0.5", "frames[0].time", "missing" },
         { "", GOOD ", \"time\": \"x\"", "frames[0].time", "missing" },
         { "", GOOD ", \"fl_x\": 8", "transforms.json:3", "duplicate" },
-        { "", "\"file_path\": \"p.png\", \"transform_matrix\": " TINY_POSE, "frames[1]", "no fl_x" },
-        { "\"camera_angle_x\": 4,", "\"file_path\": \"p.png\"", "frames[1]", "camera_angle_x is 4" },
+        { "", "\"file_path\": \"p.png\", \"transform_matrix\": " TINY_POSE, "frames[1]",
+          "no fl_x" },
+        { "\"camera_angle_x\": 4,", "\"file_path\": \"p.png\"", "frames[1]",
+          "camera_angle_x is 4" },
         { "\"camera_model\": \"OPENCV_FISHEYE\",", GOOD, "camera_model", "OPENCV_FISHEYE" },
         { "\"k4\": 0.1,", GOOD, ".k4", "only k1 k2 k3 p1 p2" },
-        { "", "\"file_path\": \"p.png\", \"K\": [[9,0,8],[0,9,6]]", "frames[1].K", "expected fx s cx" },
-        { "", "\"file_path\": \"p.png\", \"intrinsics\": [9]", "frames[1].intrinsics", "expected 4 to 9 numbers" },
-        { "", "\"file_path\": \"p.png\", \"K\": [[-9,0,8],[0,9,6],[0,0,1]], \"transform_matrix\": " TINY_POSE, "p.png", "focal lengths -9, 9" },
+        { "", "\"file_path\": \"p.png\", \"K\": [[9,0,8],[0,9,6]]", "frames[1].K",
+          "expected fx s cx" },
+        { "", "\"file_path\": \"p.png\", \"intrinsics\": [9]", "frames[1].intrinsics",
+          "expected 4 to 9 numbers" },
+        { "",
+          "\"file_path\": \"p.png\", \"K\": [[-9,0,8],[0,9,6],[0,0,1]], "
+          "\"transform_matrix\": " TINY_POSE,
+          "p.png", "focal lengths -9, 9" },
         { "\"w\": 20, \"h\": 12,", GOOD, "p.png", "file is 16x12, its camera says 20x12" },
         { "\"w\": 8, \"h\": 6,", GOOD, "p.png", "file is 16x12, its camera says 8x6" },
         { "\"cx\": \"left\",", GOOD, "transforms.json.cx", "expected a number" },
         { "\"fl_y\": -1,", GOOD, "p.png", "focal lengths 9, -1" },
         { "\"ply_file_path\": \"no.ply\",", GOOD, "no.ply", "No such file" },
-        { "\"applied_transform\": [[1,0,0,0],[1,0,0,0],[0,0,1,0]],", GOOD, "applied_transform", "singular" },
+        { "\"applied_transform\": [[1,0,0,0],[1,0,0,0],[0,0,1,0]],", GOOD, "applied_transform",
+          "singular" },
         { "\"fps\": -3,", GOOD, "fps", "-3" },
         { "\"fps\": 5.9e-8,", GOOD, "transforms.json.fps: 5.9e-08", "from 1/16777215" },
         { "\"fps\": 16777216,", GOOD, "transforms.json.fps", "to 16777215" },
@@ -70,8 +92,12 @@ static void test_transforms(void **state)
     refuse(&f, "transforms.json", "expected an object");
     tiny_text(&f, "transforms.json", "");
     refuse(&f, "transforms.json:1", "not valid JSON");
-    tiny_text(&f, "transforms_train.json", "{\"fl_x\": 9, \"frames\": [{\"file_path\": \"p\", \"transform_matrix\": " TINY_POSE "}]}");
-    tiny_text(&f, "transforms_test.json", "{\"fl_x\": 9, \"frames\": [{\"file_path\": \"p\", \"time\": 0, \"transform_matrix\": " TINY_POSE "}]}");
+    tiny_text(&f, "transforms_train.json",
+              "{\"fl_x\": 9, \"frames\": [{\"file_path\": \"p\", \"transform_matrix\": " TINY_POSE
+              "}]}");
+    tiny_text(&f, "transforms_test.json",
+              "{\"fl_x\": 9, \"frames\": [{\"file_path\": \"p\", \"time\": 0, "
+              "\"transform_matrix\": " TINY_POSE "}]}");
     refuse(&f, "transforms_test.json", "have a time");
     tiny_free(&f);
 }
@@ -100,12 +126,18 @@ static void test_folders(void **state)
 static void test_colmap_text(void **state)
 {
     (void)state;
-    static const char camera[] = "1 PINHOLE 16 12 9 9 8 6\n", image[] = "1 1 0 0 0 0 0 0 1 p1.png\n\n";
-    static const struct { const char *cameras, *images, *points, *where, *what; } cases[] = {
-        { "# c\n7 OPENCV_FISHEYE 16 12 9 9 8 6 0 0 0 0\n", image, "", "cameras.txt:2: camera 7", "model OPENCV_FISHEYE" },
+    static const char camera[] = "1 PINHOLE 16 12 9 9 8 6\n",
+                      image[] = "1 1 0 0 0 0 0 0 1 p1.png\n\n";
+    static const struct {
+        const char *cameras, *images, *points, *where, *what;
+    } cases[] = {
+        { "# c\n7 OPENCV_FISHEYE 16 12 9 9 8 6 0 0 0 0\n", image, "", "cameras.txt:2: camera 7",
+          "model OPENCV_FISHEYE" },
         { "7 FOV9 16 12 9\n", image, "", "cameras.txt:1: camera 7", "model FOV9" },
-        { "7 PINHOLE 16 12 9 9 8\n", image, "", "cameras.txt:1: camera 7", "4 parameters of PINHOLE" },
-        { "7 PINHOLE 16 12 9 9 8 6 1\n", image, "", "cameras.txt:1: camera 7", "4 parameters of PINHOLE" },
+        { "7 PINHOLE 16 12 9 9 8\n", image, "", "cameras.txt:1: camera 7",
+          "4 parameters of PINHOLE" },
+        { "7 PINHOLE 16 12 9 9 8 6 1\n", image, "", "cameras.txt:1: camera 7",
+          "4 parameters of PINHOLE" },
         { "1 PINHOLE 0 12 9 9 8 6\n", image, "", "camera 1", "size 0x12" },
         { "1 PINHOLE 16 12 nan 9 8 6\n", image, "", "p1.png", "focal lengths" },
         { "x\n", image, "", "cameras.txt:1", "expected CAMERA_ID" },
@@ -115,7 +147,8 @@ static void test_colmap_text(void **state)
         { camera, "\n1 nan 0 0 0 0 0 0 1 p1.png\n", "", "images.txt:2", "not finite" },
         { camera, "1 1 0 0 0 0 inf 0 1 p1.png\n", "", "images.txt:1", "not finite" },
         { camera, "1 1 0 0 0 0 0 0 5 p1.png\n", "", "p1.png", "camera 5 is not in" },
-        { camera, "1 1 0 0 0 0 0 0 1 p1.png\n\n1 1 0 0 0 0 0 0 1 p.png\n\n", "", "COLMAP images", "order in time" },
+        { camera, "1 1 0 0 0 0 0 0 1 p1.png\n\n1 1 0 0 0 0 0 0 1 p.png\n\n", "", "COLMAP images",
+          "order in time" },
         { camera, image, "1 0 0 nan 1 1 1\n", "points3D.txt:1", "not finite" },
         { camera, image, "1 0 0 0 1 1\n", "points3D.txt:1", "expected POINT_ID" },
         { "1 PINHOLE 20 12 9 9 8 6\n", image, "", "p1.png", "its camera says 20x12" },
@@ -157,7 +190,8 @@ static void test_colmap_binary(void **state)
     tiny_folder f = tiny_new();
     ted4_dataset d;
 
-    tiny_put(&c, 1, 8), tiny_put(&c, 1, 4), tiny_put(&c, 2, 4), tiny_put(&c, TINY_W, 8), tiny_put(&c, TINY_H, 8);
+    tiny_put(&c, 1, 8), tiny_put(&c, 1, 4), tiny_put(&c, 2, 4), tiny_put(&c, TINY_W, 8),
+        tiny_put(&c, TINY_H, 8);
     for (int i = 0; i < 4; i++)
         tiny_put_real(&c, i < 3 ? 9 : 0.1);
     tiny_put(&s, 1, 8), tiny_put(&s, 1, 4);
@@ -191,17 +225,25 @@ static void test_ply(void **state)
 {
     (void)state;
 #define XYZ "property float x\nproperty float y\nproperty float z\n"
-    static const struct { const char *text, *what; } cases[] = {
+    static const struct {
+        const char *text, *what;
+    } cases[] = {
         { "plx\n", "not a PLY" },
         { "ply\nformat ascii 1.0\nelement vertex 1\n" XYZ, "without end_header" },
         { "ply\nformat binary_big_endian 1.0\nend_header\n", ":2: format" },
         { "ply\nformat ascii 1.0\nelement face 1\nend_header\n", "first element" },
-        { "ply\nformat ascii 1.0\nelement vertex 1\nproperty float x\nend_header\n1\n", "without vertex properties" },
-        { "ply\nformat ascii 1.0\nelement vertex 1\nproperty list uchar int x\nend_header\n1\n", ":4: vertex property" },
-        { "ply\nformat ascii 1.0\nelement vertex 2\n" XYZ "end_header\n1 2 3\n1 2 \n", "vertex 1 of 2" },
-        { "ply\nformat ascii 1.0\nelement vertex 1\n" XYZ "end_header\n1 2 nan\n", "vertex 0: a coordinate" },
-        { "ply\nformat ascii 1.0\nelement vertex 4000000000000\n" XYZ "end_header\n1 2 3\n", "announced" },
-        { "ply\nformat binary_little_endian 1.0\nelement vertex 2\n" XYZ "end_header\n123456789012", "announced" },
+        { "ply\nformat ascii 1.0\nelement vertex 1\nproperty float x\nend_header\n1\n",
+          "without vertex properties" },
+        { "ply\nformat ascii 1.0\nelement vertex 1\nproperty list uchar int x\nend_header\n1\n",
+          ":4: vertex property" },
+        { "ply\nformat ascii 1.0\nelement vertex 2\n" XYZ "end_header\n1 2 3\n1 2 \n",
+          "vertex 1 of 2" },
+        { "ply\nformat ascii 1.0\nelement vertex 1\n" XYZ "end_header\n1 2 nan\n",
+          "vertex 0: a coordinate" },
+        { "ply\nformat ascii 1.0\nelement vertex 4000000000000\n" XYZ "end_header\n1 2 3\n",
+          "announced" },
+        { "ply\nformat binary_little_endian 1.0\nelement vertex 2\n" XYZ "end_header\n123456789012",
+          "announced" },
         { "ply\nformat ascii 1.0\nelement vertex 1\n" XYZ "end_header", "announced" },
     };
     tiny_folder f = tiny_new();
@@ -271,8 +313,9 @@ static void test_options(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_transforms),    cmocka_unit_test(test_folders), cmocka_unit_test(test_colmap_text),
-        cmocka_unit_test(test_colmap_binary), cmocka_unit_test(test_ply),     cmocka_unit_test(test_damaged_pictures),
+        cmocka_unit_test(test_transforms),  cmocka_unit_test(test_folders),
+        cmocka_unit_test(test_colmap_text), cmocka_unit_test(test_colmap_binary),
+        cmocka_unit_test(test_ply),         cmocka_unit_test(test_damaged_pictures),
         cmocka_unit_test(test_options),
     };
 

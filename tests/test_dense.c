@@ -39,8 +39,7 @@ static void near(double got, double want, int n)
     assert_true(fabs(got - want) < 1e-6 * (n + 4));
 }
 
-static void check_forward(const ted4_dense *d, const float *w, const float *b,
-                          const float *x)
+static void check_forward(const ted4_dense *d, const float *w, const float *b, const float *x)
 {
     float *y = fill((size_t)(d->out + 1) * TED4_LANES);
     const float guard = y[d->out * TED4_LANES];
@@ -62,8 +61,7 @@ static void check_forward(const ted4_dense *d, const float *w, const float *b,
     free(y);
 }
 
-static void check_backward_x(const ted4_dense *d, const float *w,
-                             const float *dy)
+static void check_backward_x(const ted4_dense *d, const float *w, const float *dy)
 {
     const size_t n = (size_t)d->in * TED4_LANES;
     float *dx = fill(n + TED4_LANES), *old = fill(n);
@@ -106,8 +104,8 @@ static void check_backward_w(int in, int out, size_t n_blocks)
 
             for (size_t k = 0; k < n_blocks; k++)
                 for (int j = 0; j < TED4_LANES; j++)
-                    acc += (double)dy[k * sy + (size_t)(o * TED4_LANES + j)]
-                         * x[k * sx + (size_t)(i * TED4_LANES + j)];
+                    acc += (double)dy[k * sy + (size_t)(o * TED4_LANES + j)] *
+                           x[k * sx + (size_t)(i * TED4_LANES + j)];
             near(dw[o * in + i], acc, 32 * MAX_BLOCKS);
         }
         for (size_t k = 0; k < n_blocks; k++)
@@ -146,8 +144,9 @@ static void test_small_shapes(void **state)
 
 static void test_real_shapes(void **state)
 {
-    static const int shape[][2] = { {50, 10}, {53, 70}, {50, 50}, {32, 32},
-        {8, 128}, {128, 35}, {99, MAX_CH}, {MAX_CH, 1}, {63, 64} };
+    static const int shape[][2] = { { 50, 10 },     { 53, 70 },    { 50, 50 },
+                                    { 32, 32 },     { 8, 128 },    { 128, 35 },
+                                    { 99, MAX_CH }, { MAX_CH, 1 }, { 63, 64 } };
 
     (void)state;
     for (size_t i = 0; i < sizeof shape / sizeof shape[0]; i++)

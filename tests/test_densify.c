@@ -1,5 +1,5 @@
-/* test_densify.c - voxel sets (train/math/voxel_set.h), blocks of anchors (train/model/anchors.h), and growth and
- * pruning (train/densify/densify.c) from planted statistics.
+/* test_densify.c - voxel sets (train/math/voxel_set.h), blocks of anchors (train/model/anchors.h),
+ * and growth and pruning (train/densify/densify.c) from planted statistics.
  * SPDX-License-Identifier: BSD-2-Clause */
 #include <setjmp.h>
 #include <stdarg.h>
@@ -46,9 +46,9 @@ static void test_cell_key(void **state)
     for (size_t s = 0; s < sizeof sizes / sizeof sizes[0]; s++)
         for (uint64_t i = 0; i < 500; i++) {
             const double cell = sizes[s], most = floor(1 / cell) - 2;
-            double       at[3];
-            float        p[3], q[3];
-            uint64_t     key;
+            double at[3];
+            float p[3], q[3];
+            uint64_t key;
 
             for (uint64_t j = 0; j < 3; j++) {
                 at[j] = rint((2 * (double)ted4_uniform(i, j) - 1) * fmax(most, 0));
@@ -151,7 +151,7 @@ static void test_select(void **state)
 {
     enum { N = 75, KEPT = 41 };
     ted4_trainer t;
-    uint32_t     order[N];
+    uint32_t order[N];
 
     (void)state;
     cloud_make(&cloud, 5);
@@ -159,7 +159,7 @@ static void test_select(void **state)
     assert_int_equal(ted4_anchors_resize(&t.anchors, N), 0);
     mark_all(&t.anchors);
     for (uint32_t i = 0; i < N; i++)
-        order[i] = i * 7 % N;           /* 7 and 75 have no common factor */
+        order[i] = i * 7 % N; /* 7 and 75 have no common factor */
     assert_int_equal(ted4_anchors_select(&t.anchors, order, KEPT), 0);
     assert_int_equal(t.anchors.n, KEPT);
     check_blocks(&t.anchors);
@@ -185,7 +185,7 @@ static void test_sort(void **state)
     enum { N = 200 };
     ted4_trainer t;
     ted4_anchors *a = &t.anchors;
-    int          ties = 0;
+    int ties = 0;
 
     (void)state;
     cloud_make(&cloud, 5);
@@ -193,7 +193,7 @@ static void test_sort(void **state)
     assert_int_equal(ted4_anchors_resize(a, N), 0);
     mark_all(a);
     for (size_t i = 0; i < N; i++)
-        for (int j = 0; j < 3; j++)     /* the last 50 repeat the first, a hair off */
+        for (int j = 0; j < 3; j++) /* the last 50 repeat the first, a hair off */
             *ted4_cell(a, TED4_ROW_POSITION, i, j) =
                 (2.0f * ted4_uniform((uint64_t)j, i % 150) - 1.0f) *
                 (i < 150 ? 1.0f : 1.0f + 0x1p-23f);
@@ -217,7 +217,7 @@ static void test_sort(void **state)
 
 /* ---- growth ---- */
 
-enum { K = 3, SEEN = 5 };       /* an offset counts from more than 0.4 grow_every = 4 views on */
+enum { K = 3, SEEN = 5 }; /* an offset counts from more than 0.4 grow_every = 4 views on */
 
 #define THRESHOLD 2e-4f
 
@@ -233,8 +233,9 @@ static void aim(ted4_trainer *t, size_t i, int k, float place[3])
     const ted4_layout *l = &t->layout;
 
     for (int j = 0; j < 3; j++) {
-        const float o = 0.5f + 0.1f * (float)(k - 1), s =
-            exp2f(*ted4_cell(&t->anchors, TED4_ROW_VALUE, i, l->first[TED4_SCALING] + j));
+        const float o = 0.5f + 0.1f * (float)(k - 1),
+                    s = exp2f(
+                        *ted4_cell(&t->anchors, TED4_ROW_VALUE, i, l->first[TED4_SCALING] + j));
 
         *ted4_cell(&t->anchors, TED4_ROW_VALUE, i, l->first[TED4_OFFSET] + 3 * k + j) = o;
         place[j] = *ted4_cell(&t->anchors, TED4_ROW_POSITION, i, j) + o * s;
@@ -266,9 +267,9 @@ static int is_new(const ted4_trainer *t, size_t i)
 static void check_child(const ted4_trainer *t, size_t i, const float place[3])
 {
     const ted4_layout *l = &t->layout;
-    const int    scaling = l->first[TED4_SCALING];
+    const int scaling = l->first[TED4_SCALING];
     const double s = exp2((double)*ted4_cell(&t->anchors, TED4_ROW_VALUE, i, scaling));
-    int          depth = 0;
+    int depth = 0;
 
     while (depth < 3 && fabs(s - t->cell * pow(0.25, depth)) > 1e-5 * s)
         depth++;
@@ -299,7 +300,7 @@ static void test_growth(void **state)
 {
     static float place[CLOUD_POINTS][3];
     ted4_trainer t;
-    size_t       children[CLOUD_POINTS] = { 0 }, n_parents = 0, n_planted = 0, old = 0;
+    size_t children[CLOUD_POINTS] = { 0 }, n_parents = 0, n_planted = 0, old = 0;
 
     (void)state;
     cloud_make(&cloud, 5);
@@ -336,7 +337,8 @@ static void test_growth(void **state)
     ted4_trainer_finish(&t);
 }
 
-/* The finer the grid the stronger the gradient that it takes: 2, 4 times the threshold at the second and third depth. */
+/* The finer the grid the stronger the gradient that it takes: 2, 4 times the threshold at the
+ * second and third depth. */
 static void test_growth_depths(void **state)
 {
     static float place[CLOUD_POINTS][3];
@@ -344,22 +346,26 @@ static void test_growth_depths(void **state)
     (void)state;
     for (int most = 0; most < 3; most++) {
         ted4_trainer t;
-        int          n[3] = { 0 };
+        int n[3] = { 0 };
 
         cloud_make(&cloud, 5);
         begin(&t);
         give_moments(&t);
         for (size_t i = 0; i < CLOUD_POINTS; i++) {
-            aim(&t, i, K - 1, place[i]);        /* nearer to the next cell than to its own, which is free at the lattice's faces */
+            aim(&t, i, K - 1, place[i]); /* nearer to the next cell than to its own, which is free
+                                            at the lattice's faces */
             plant(&t, i, K - 1, 1.5f * (float)(1 << most) * THRESHOLD, SEEN);
         }
         assert_int_equal(ted4_densify_adjust(&t), 0);
         for (size_t i = 0; i < t.anchors.n; i++)
             if (is_new(&t, i))
-                n[(int)lrint(0.5 * (log2(t.cell) - (double)*ted4_cell(&t.anchors, TED4_ROW_VALUE, i, t.layout.first[TED4_SCALING])))]++;
+                n[(int)lrint(0.5 *
+                             (log2(t.cell) - (double)*ted4_cell(&t.anchors, TED4_ROW_VALUE, i,
+                                                                t.layout.first[TED4_SCALING])))]++;
         for (int depth = 0; depth < 3; depth++)
             if ((n[depth] > 10) != (depth <= most) || (n[depth] > 0) != (depth <= most))
-                fail_msg("%d at depth %d, gradients of %g thresholds", n[depth], depth, 1.5 * (1 << most));
+                fail_msg("%d at depth %d, gradients of %g thresholds", n[depth], depth,
+                         1.5 * (1 << most));
         ted4_trainer_finish(&t);
     }
 }
@@ -369,14 +375,14 @@ static void test_growth_depths(void **state)
 static void test_growth_limits(void **state)
 {
     ted4_trainer t;
-    float        place[3];
+    float place[3];
 
     (void)state;
     cloud_make(&cloud, 5);
     begin(&t);
     give_moments(&t);
     aim(&t, 50, 0, place);
-    for (int k = 0; k < K; k++)         /* offsets 1 and 2 are zero: there is an anchor already */
+    for (int k = 0; k < K; k++) /* offsets 1 and 2 are zero: there is an anchor already */
         plant(&t, 50, k, 1.0f, SEEN);
     plant(&t, 51, 0, 1.0f, SEEN - 1);
     *ted4_cell(&t.anchors, TED4_ROW_VALUE, 52, t.layout.first[TED4_OFFSET]) = 30.0f;
@@ -411,8 +417,8 @@ static void test_max_anchors(void **state)
     (void)state;
     for (int full = 0; full < 2; full++) {
         ted4_trainer t;
-        float        place[3], least = 1e9f;
-        size_t       n = 0;
+        float place[3], least = 1e9f;
+        size_t n = 0;
 
         cloud_make(&cloud, 5);
         cloud.options.max_anchors = CLOUD_POINTS + (full ? -20 : ROOM);
@@ -439,7 +445,7 @@ static void test_max_anchors(void **state)
 
 /* ---- pruning ---- */
 
-enum { VISITS = 9 };            /* more than 0.8 grow_every */
+enum { VISITS = 9 }; /* more than 0.8 grow_every */
 
 static void fade(ted4_trainer *t, size_t i, double mean, float visits)
 {
@@ -472,12 +478,19 @@ static void test_pruning(void **state)
     ted4_trainer_finish(&t);
 }
 
-/* What lives for a short time is judged by the visits at that time, and not before there were some: nine visits, of which so many while it was there; the mean opacity
- * over those alone decides. */
+/* What lives for a short time is judged by the visits at that time, and not before there were some:
+ * nine visits, of which so many while it was there; the mean opacity over those alone decides. */
 static void test_pruning_short_lives(void **state)
 {
-    static const struct { float there; double mean; int goes; } lives[] = {
-        { 0, 0, 0 }, { 7, 0, 0 }, { 8, 0.99, 1 }, { 8, 1.01, 0 },
+    static const struct {
+        float there;
+        double mean;
+        int goes;
+    } lives[] = {
+        { 0, 0, 0 },
+        { 7, 0, 0 },
+        { 8, 0.99, 1 },
+        { 8, 1.01, 0 },
     };
     ted4_trainer t;
 
@@ -495,7 +508,8 @@ static void test_pruning_short_lives(void **state)
         const int id = (int)*ted4_cell(&t.anchors, TED4_ROW_VALUE, i, 0) - 1;
 
         assert_false(lives[id % 4].goes);
-        assert_true(*ted4_cell(&t.anchors, TED4_ROW_OPACITY, i, 1) == (lives[id % 4].there < 8 ? VISITS : 0));
+        assert_true(*ted4_cell(&t.anchors, TED4_ROW_OPACITY, i, 1) ==
+                    (lives[id % 4].there < 8 ? VISITS : 0));
     }
     ted4_trainer_finish(&t);
 }
@@ -527,11 +541,11 @@ static void test_all_faded(void **state)
 static void test_gather(void **state)
 {
     enum { SPLATS = 2 * K * TED4_LANES };
-    static float   opacity[SPLATS], moved[SPLATS];
+    static float opacity[SPLATS], moved[SPLATS];
     static uint8_t visible[SPLATS];
     const ted4_splats s = { .n = SPLATS, .opacity = opacity };
     ted4_generate_input in = { 0 };
-    ted4_trainer   t;
+    ted4_trainer t;
 
     (void)state;
     cloud_make(&cloud, 5);
@@ -540,17 +554,19 @@ static void test_gather(void **state)
     in.num = 1;
     in.den = 4;
     in.activation = 1;
-    for (size_t i = 0; i < CLOUD_POINTS; i++)       /* odd ones come at 1/4 exactly, even ones at 1/2 */
+    for (size_t i = 0; i < CLOUD_POINTS; i++) /* odd ones come at 1/4 exactly, even ones at 1/2 */
         for (int c = 0; c < 4; c++)
-            *ted4_cell(&t.anchors, TED4_ROW_VALUE, i, t.layout.first[TED4_TAU] + c) =
-                c % 2 ? -4.0f : i % 2 ? 0.25f : 0.5f;
+            *ted4_cell(&t.anchors, TED4_ROW_VALUE, i, t.layout.first[TED4_TAU] + c) = c % 2 ? -4.0f
+                                                                                      : i % 2
+                                                                                          ? 0.25f
+                                                                                          : 0.5f;
     for (size_t i = 0; i < SPLATS; i++) {
         opacity[i] = 0.25f * (float)(i % 3);
         moved[i] = (float)i;
         visible[i] = i % 2;
     }
     assert_int_equal(ted4_slots_fill(&t, NULL), 0);
-    t.slots.n = 2;                      /* the second block is seen, and half of the fourth */
+    t.slots.n = 2; /* the second block is seen, and half of the fourth */
     t.slots.block[0] = 1;
     t.slots.block[1] = 3;
     t.slots.lanes[1] = 0xffffu;
@@ -563,12 +579,12 @@ static void test_gather(void **state)
     ted4_densify_gather(&t, &in, &s);
     for (size_t i = 0; i < t.anchors.n; i++) {
         const size_t slot = i / TED4_LANES == 1 ? 0 : 1, j = i % TED4_LANES;
-        const int    seen = i / TED4_LANES == 1 || i / TED4_LANES == 3;
-        float        sum = 0;
+        const int seen = i / TED4_LANES == 1 || i / TED4_LANES == 3;
+        float sum = 0;
 
         for (int k = 0; k < K; k++) {
             const size_t at = (slot * K + (size_t)k) * TED4_LANES + j;
-            const float  on = seen && at % 2 ? 2.0f : 0.0f;
+            const float on = seen && at % 2 ? 2.0f : 0.0f;
 
             sum += seen ? 2 * opacity[at] : 0;
             assert_true(*ted4_cell(&t.anchors, TED4_ROW_GRADIENT, i, k) == on * moved[at]);
@@ -586,11 +602,17 @@ static void test_gather(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_cells), cmocka_unit_test(test_cell_key),
-        cmocka_unit_test(test_resize), cmocka_unit_test(test_select),
-        cmocka_unit_test(test_sort), cmocka_unit_test(test_growth), cmocka_unit_test(test_growth_depths),
-        cmocka_unit_test(test_growth_limits), cmocka_unit_test(test_max_anchors),
-        cmocka_unit_test(test_pruning), cmocka_unit_test(test_pruning_short_lives),
+        cmocka_unit_test(test_cells),
+        cmocka_unit_test(test_cell_key),
+        cmocka_unit_test(test_resize),
+        cmocka_unit_test(test_select),
+        cmocka_unit_test(test_sort),
+        cmocka_unit_test(test_growth),
+        cmocka_unit_test(test_growth_depths),
+        cmocka_unit_test(test_growth_limits),
+        cmocka_unit_test(test_max_anchors),
+        cmocka_unit_test(test_pruning),
+        cmocka_unit_test(test_pruning_short_lives),
         cmocka_unit_test(test_all_faded),
         cmocka_unit_test(test_gather),
     };

@@ -170,8 +170,8 @@ static void test_bits(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_errors),  cmocka_unit_test(test_error_of_pow),
-        cmocka_unit_test(test_exact),   cmocka_unit_test(test_awkward),
+        cmocka_unit_test(test_errors), cmocka_unit_test(test_error_of_pow),
+        cmocka_unit_test(test_exact),  cmocka_unit_test(test_awkward),
         cmocka_unit_test(test_bits),
     };
 

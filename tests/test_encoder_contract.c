@@ -1,4 +1,5 @@
-/* test_encoder_contract.c - spec 3.4 for scenes of random numbers, and levels that a caller asks for.
+/* test_encoder_contract.c - spec 3.4 for scenes of random numbers, and levels that a caller asks
+ * for.
  * SPDX-License-Identifier: BSD-2-Clause */
 #include <setjmp.h>
 #include <stdarg.h>
@@ -14,11 +15,11 @@ static void random_scenes(void **state)
     (void)state;
     for (uint64_t seed = 0; seed < N_SCENES; seed++) {
         random_source r = random_seed(seed + 40);
-        ted4_header   h = random_header(&r);
-        ted4_scene   *s;
+        ted4_header h = random_header(&r);
+        ted4_scene *s;
 
         if (seed % 3 == 1)
-            h.frames = 65 + (uint32_t)seed;             /* more than level 1 allows */
+            h.frames = 65 + (uint32_t)seed; /* more than level 1 allows */
         if (seed % 3 == 2)
             h.frames = seed % 2 ? 3601 : 36001;
         s = random_scene_of(&r, &h, (int)(seed % 2));
@@ -32,15 +33,16 @@ static void random_scenes(void **state)
 static void levels_asked_for(void **state)
 {
     random_source r = random_seed(9);
-    ted4_header   h = random_header(&r);
-    ted4_scene   *s;
+    ted4_header h = random_header(&r);
+    ted4_scene *s;
 
     (void)state;
     h.frames = 601;
     s = random_scene_of(&r, &h, 0);
-    for (int level = 1; level <= TED4_LEVEL_UNBOUNDED; level = level == 4 ? TED4_LEVEL_UNBOUNDED : level + 1) {
-        uint8_t          *data;
-        size_t            size;
+    for (int level = 1; level <= TED4_LEVEL_UNBOUNDED;
+         level = level == 4 ? TED4_LEVEL_UNBOUNDED : level + 1) {
+        uint8_t *data;
+        size_t size;
         const ted4_status e = ted4_encode(s, level, NULL, &data, &size, NULL);
 
         assert_int_equal(e, level < 3 ? TED4_E_LVL_EXCEEDED : TED4_OK);
@@ -54,7 +56,8 @@ static void levels_asked_for(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(random_scenes), cmocka_unit_test(levels_asked_for),
+        cmocka_unit_test(random_scenes),
+        cmocka_unit_test(levels_asked_for),
     };
 
     return cmocka_run_group_tests(tests, NULL, NULL);

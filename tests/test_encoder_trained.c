@@ -1,4 +1,5 @@
-/* test_encoder_trained.c - spec 3.4 for files of short trainings, one for each variant of the method.
+/* test_encoder_trained.c - spec 3.4 for files of short trainings, one for each variant of the
+ * method.
  * SPDX-License-Identifier: BSD-2-Clause */
 #include <setjmp.h>
 #include <stdarg.h>
@@ -11,25 +12,35 @@
 static void trained(void **state)
 {
     static const char *const variant[] = {
-        "", "motion=0", "motion=2", "motion=3", "activation=0", "temporal_mask=0", "offset_mask=0", "factorised=1", "slices=1", "view=0",
-        "view=2", "linear_scale=1",
+        "",
+        "motion=0",
+        "motion=2",
+        "motion=3",
+        "activation=0",
+        "temporal_mask=0",
+        "offset_mask=0",
+        "factorised=1",
+        "slices=1",
+        "view=0",
+        "view=2",
+        "linear_scale=1",
     };
     ted4_parallel p;
-    ted4_dataset  d;
-    tiny_folder   f;
+    ted4_dataset d;
+    tiny_folder f;
 
     (void)state;
     ted4_threads_init(&p, 2);
     ball_load(&f, &d, 4, 1);
     for (size_t i = 0; i < sizeof variant / sizeof *variant; i++) {
         ted4_train_options o = ball_options();
-        ted4_trainer       t;
-        ted4_scene        *s;
+        ted4_trainer t;
+        ted4_scene *s;
 
         ball_set(&o, "stage1=60");
         ball_set(&o, "stage2=40");
         ball_set(&o, "probe=0");
-        ball_set(&o, "lr_heads=0.004");     /* so few steps do not hide what begins in view */
+        ball_set(&o, "lr_heads=0.004"); /* so few steps do not hide what begins in view */
         if (variant[i][0] != '\0')
             ball_set(&o, variant[i]);
         ball_begin(&t, &o, &d, &p);

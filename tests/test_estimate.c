@@ -30,10 +30,10 @@
 
 typedef struct {
     const recorded_run *run;
-    ted4_estimate       e;
-    ted4_work           w;
-    double              clock, worst;
-    int                 looks;
+    ted4_estimate e;
+    ted4_work w;
+    double clock, worst;
+    int looks;
 } replay;
 
 static double whole(const recorded_run *r)
@@ -87,7 +87,7 @@ static int between(double x, double from, double to)
 static double go(replay *p, const run_line *to, double pace)
 {
     const recorded_run *r = p->run;
-    const double        from = p->w.step, seconds = to->seconds - p->clock, n = to->step - from;
+    const double from = p->w.step, seconds = to->seconds - p->clock, n = to->step - from;
     const double probe_at = PROBE_AT * r->stage1, decide_at = r->stage1 + DECIDE_AT * r->stage2,
                  integer_at = r->stage1 + INTEGER_AT * r->stage2;
     const int probes = r->probe > 0 && between(probe_at + r->probe, from, to->step),
@@ -126,19 +126,19 @@ static void test_runs(void **state)
     (void)state;
     for (size_t k = 0; k < sizeof runs / sizeof runs[0]; k++) {
         const recorded_run *r = &runs[k];
-        replay              p = { .run = r };
-        double              pace = r->line[0].seconds / r->line[0].step;
+        replay p = { .run = r };
+        double pace = r->line[0].seconds / r->line[0].step;
 
         ted4_estimate_begin(&p.e);
-        p.w = (ted4_work){ .stage1 = r->stage1,
-                           .stage2 = r->stage2,
-                           .first_growth = 0.05,
-                           .sprout_at = SPROUT_AT,
-                           .sprouts = r->sprouts,
-                           .most_anchors = r->most_anchors,
-                           .probe = r->probe,
-                           .trials = SEARCH + LAST,
-                           .anchors = r->line[0].anchors };
+        p.w = (ted4_work) { .stage1 = r->stage1,
+                            .stage2 = r->stage2,
+                            .first_growth = 0.05,
+                            .sprout_at = SPROUT_AT,
+                            .sprouts = r->sprouts,
+                            .most_anchors = r->most_anchors,
+                            .probe = r->probe,
+                            .trials = SEARCH + LAST,
+                            .anchors = r->line[0].anchors };
         for (int i = 0; i < r->n; i++)
             pace = go(&p, &r->line[i], pace);
         printf("%s: %d looks, at most %.0f %% off\n", r->name, p.looks, 100 * p.worst);
@@ -148,19 +148,19 @@ static void test_runs(void **state)
 
 static ted4_work plain(void)
 {
-    return (ted4_work){ .stage1 = 1000,
-                        .stage2 = 0,
-                        .first_growth = 0.05,
-                        .sprout_at = 0.3,
-                        .most_anchors = 100,
-                        .anchors = 100 };
+    return (ted4_work) { .stage1 = 1000,
+                         .stage2 = 0,
+                         .first_growth = 0.05,
+                         .sprout_at = 0.3,
+                         .most_anchors = 100,
+                         .anchors = 100 };
 }
 
 /* Nothing is known before there were steps, and nothing is said before there were a hundred. */
 static void test_beginning(void **state)
 {
     ted4_estimate e;
-    ted4_work     w = plain();
+    ted4_work w = plain();
 
     (void)state;
     ted4_estimate_begin(&e);
@@ -177,8 +177,8 @@ static void test_beginning(void **state)
 static void test_disturbed(void **state)
 {
     ted4_estimate e;
-    ted4_work     w = plain();
-    double        clock = 0;
+    ted4_work w = plain();
+    double clock = 0;
 
     (void)state;
     ted4_estimate_begin(&e);

@@ -32,13 +32,13 @@ static double uniform(double low, double high)
 
 /* Random Gaussians with unit rotations. */
 typedef struct {
-    float      column[14][N], sh[N * 3 * TED4_SH_MAX_COEFS];
+    float column[14][N], sh[N * 3 * TED4_SH_MAX_COEFS];
     ted4_frame frame;
 } set;
 
 static void make(set *s, size_t n, int degree)
 {
-    *s = (set){ .frame = { .n = n, .opacity = s->column[10], .sh_degree = degree, .sh = s->sh } };
+    *s = (set) { .frame = { .n = n, .opacity = s->column[10], .sh_degree = degree, .sh = s->sh } };
     s->frame.comment = "one line\nanother: %d\n";
     for (size_t i = 0; i < n; i++) {
         double length = 0.0;
@@ -58,8 +58,8 @@ static void make(set *s, size_t n, int degree)
     for (int k = 0; k < 4; k++)
         s->frame.rot[k] = s->column[6 + k];
     for (int k = 0; k < 3; k++) {
-        s->frame.mean[k]   = s->column[k];
-        s->frame.scale[k]  = s->column[3 + k];
+        s->frame.mean[k] = s->column[k];
+        s->frame.scale[k] = s->column[3 + k];
         s->frame.colour[k] = s->column[11 + k];
     }
 }
@@ -138,7 +138,7 @@ static void check_ply_record(const float *v, const set *s, size_t i, int n_rest)
         assert_true(v[c] == s->column[c][i] && v[3 + c] == 0.0f);
         assert_true(v[6 + c] == sh[c * n_coefs]);
         assert_true(fabsf(expf(tail[1 + c]) / s->column[3 + c][i] - 1.0f) < 1e-5f);
-        for (int k = 1; k < n_coefs; k++)       /* all of red, then green, then blue */
+        for (int k = 1; k < n_coefs; k++) /* all of red, then green, then blue */
             assert_true(v[9 + c * (n_coefs - 1) + k - 1] == sh[c * n_coefs + k]);
     }
     assert_true(fabs(1.0 / (1.0 + exp(-(double)tail[0])) - (double)s->column[10][i]) < 2e-6);
@@ -214,8 +214,8 @@ static void test_splat(void **state)
         while (i < N && float_at(p) != s.column[0][i])
             i++;
         assert_true(i < N && seen[i]++ == 0);
-        const double weight = (double)s.column[3][i] * (double)s.column[4][i]
-                              * (double)s.column[5][i] * (double)s.column[10][i];
+        const double weight = (double)s.column[3][i] * (double)s.column[4][i] *
+                              (double)s.column[5][i] * (double)s.column[10][i];
 
         assert_true(weight <= last);
         last = weight;
@@ -239,16 +239,16 @@ static void rotate(const double q[4], const double v[3], double out[3])
 {
     const double w = q[0], x = q[1], y = q[2], z = q[3];
 
-    out[0] =
-        (1 - 2 * (y * y + z * z)) * v[0] + 2 * (x * y - w * z) * v[1] + 2 * (x * z + w * y) * v[2];
-    out[1] =
-        2 * (x * y + w * z) * v[0] + (1 - 2 * (x * x + z * z)) * v[1] + 2 * (y * z - w * x) * v[2];
-    out[2] =
-        2 * (x * z - w * y) * v[0] + 2 * (y * z + w * x) * v[1] + (1 - 2 * (x * x + y * y)) * v[2];
+    out[0] = (1 - 2 * (y * y + z * z)) * v[0] + 2 * (x * y - w * z) * v[1] +
+             2 * (x * z + w * y) * v[2];
+    out[1] = 2 * (x * y + w * z) * v[0] + (1 - 2 * (x * x + z * z)) * v[1] +
+             2 * (y * z - w * x) * v[2];
+    out[2] = 2 * (x * z - w * y) * v[0] + 2 * (y * z + w * x) * v[1] +
+             (1 - 2 * (x * x + y * y)) * v[2];
 }
 
 typedef struct {
-    json_t        *json;
+    json_t *json;
     const uint8_t *data;
 } glb;
 
@@ -330,12 +330,12 @@ static void check_glb_shape(const glb *g, const set *s)
 
             assert_true(fabs(got[c] - want[c]) < 1e-5);
             assert_true(p == (c == 0 ? s->column[c][i] : -s->column[c][i]));
-            assert_true(p >= (float)json_number_value(json_array_get(low, c))
-                        && p <= (float)json_number_value(json_array_get(high, c)));
+            assert_true(p >= (float)json_number_value(json_array_get(low, c)) &&
+                        p <= (float)json_number_value(json_array_get(high, c)));
             assert_true(float_at(scale + i * 12 + c * 4) == s->column[3 + c][i]);
         }
-        assert_true(float_at(opacity + i * 4) == s->column[10][i]
-                    && near_byte(colour[i * 4 + 3], 255.0 * (double)s->column[10][i]));
+        assert_true(float_at(opacity + i * 4) == s->column[10][i] &&
+                    near_byte(colour[i * 4 + 3], 255.0 * (double)s->column[10][i]));
     }
 }
 
@@ -363,8 +363,8 @@ static void check_glb_colour(const glb *g, const set *s, int degree)
             double want = 0.0, got = 0.0;
 
             for (int k = 0; k < ted4_sh_count(degree); k++) {
-                want += before[k]
-                        * (double)s->sh[(i * 3 + c) * (size_t)ted4_sh_count(degree) + (size_t)k];
+                want += before[k] *
+                        (double)s->sh[(i * 3 + c) * (size_t)ted4_sh_count(degree) + (size_t)k];
                 got += after[k] * (double)float_at(coef[k] + i * 12 + c * 4);
             }
             assert_true(fabs(got - want) < 1e-6);
@@ -470,12 +470,8 @@ static int folder_remove(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_ply),
-        cmocka_unit_test(test_raw),
-        cmocka_unit_test(test_splat),
-        cmocka_unit_test(test_glb),
-        cmocka_unit_test(test_empty),
-        cmocka_unit_test(test_no_debris),
+        cmocka_unit_test(test_ply), cmocka_unit_test(test_raw),   cmocka_unit_test(test_splat),
+        cmocka_unit_test(test_glb), cmocka_unit_test(test_empty), cmocka_unit_test(test_no_debris),
     };
     return cmocka_run_group_tests(tests, folder_make, folder_remove);
 }

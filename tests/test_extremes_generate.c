@@ -1,5 +1,6 @@
-/* test_extremes_generate.c - generation of Gaussians, motion, activation and heads at their extremes, forward and backward: against spec 11 in double
- * precision (generate_ref.h) where that is a number, and finite everywhere.
+/* test_extremes_generate.c - generation of Gaussians, motion, activation and heads at their
+ * extremes, forward and backward: against spec 11 in double precision (generate_ref.h) where that
+ * is a number, and finite everywhere.
  * SPDX-License-Identifier: BSD-2-Clause */
 #include <setjmp.h>
 #include <stdarg.h>
@@ -20,7 +21,8 @@ static float gradient[REF_OUT][CASE_SPLATS], d_net[CASE_NET];
 static _Alignas(64) float d_attr[CASE_SLOTS][CASE_CHANNELS * TED4_LANES];
 static float member[REF_OUT][CASE_SPLATS];
 
-/* Scene of random anchors; slot 0 is the test's. Gradients of splats are random, of the size given. */
+/* Scene of random anchors; slot 0 is the test's. Gradients of splats are random, of the size given.
+ */
 static void begin(const ted4_header *h, float size)
 {
     case_make(&scene, h, 5, 16, 77u + h->motion);
@@ -61,8 +63,8 @@ static void run(void)
 {
     const ted4_splat_grads gr = splat_gradients();
     ted4_generator *g = ted4_generator_new(&scene.layout);
-    float          *list[CASE_SLOTS];
-    ted4_splats     s;
+    float *list[CASE_SLOTS];
+    ted4_splats s;
 
     assert_non_null(g);
     for (int i = 0; i < CASE_SLOTS; i++)
@@ -76,7 +78,8 @@ static void run(void)
         all_finite(member[c], CASE_SPLATS, "value");
     }
     for (int i = 0; i < CASE_SLOTS; i++)
-        all_finite(d_attr[i], (size_t)scene.layout.n_channels * TED4_LANES, "gradient of an anchor");
+        all_finite(d_attr[i], (size_t)scene.layout.n_channels * TED4_LANES,
+                   "gradient of an anchor");
     all_finite(d_net, CASE_NET, "gradient of a network");
     ted4_generator_free(g);
 }
@@ -106,7 +109,8 @@ static void check_sums(double terms)
                 const double off = fabs(got - want[k][c]), size = 1 + fabs(want[k][c]);
 
                 if (!(off <= TOLERANCE * size + 2 * FLT_EPSILON * terms))
-                    fail_msg("lane %d offset %d member %d: %g, not %g", lane, k, c, got, want[k][c]);
+                    fail_msg("lane %d offset %d member %d: %g, not %g", lane, k, c, got,
+                             want[k][c]);
             }
     }
 }
@@ -116,18 +120,19 @@ static void check_values(void)
     check_sums(0);
 }
 
-/* The gradient of a channel of slot 0 against central differences of step h, or of a hundredth of it where the two differ (a kink). */
+/* The gradient of a channel of slot 0 against central differences of step h, or of a hundredth of
+ * it where the two differ (a kink). */
 static void check_channel(int c, double h)
 {
     for (int lane = 0; lane < TED4_LANES; lane++) {
-        double       base[CASE_CHANNELS], channel[CASE_CHANNELS], position[3], want[2];
+        double base[CASE_CHANNELS], channel[CASE_CHANNELS], position[3], want[2];
         const double got = (double)d_attr[0][c * TED4_LANES + lane];
 
         case_channels(&scene, 0, lane, base, position);
         memcpy(channel, base, sizeof channel);
         for (int fine = 0; fine < 2; fine++) {
             const double step = fine ? 0.01 * h : h;
-            double       side[2] = { 0, 0 };
+            double side[2] = { 0, 0 };
 
             for (int up = 0; up < 2; up++) {
                 double out[CASE_OFFSETS][REF_OUT];
@@ -149,13 +154,16 @@ static void check_channel(int c, double h)
 
 /* ---- activation ---- */
 
-/* Widths from far below their floor to huge, at times before, on, at and after the edges: values and gradients are those of exp(-u u), which at the
- * floor is 0 a few thousandths beyond the edge. */
+/* Widths from far below their floor to huge, at times before, on, at and after the edges: values
+ * and gradients are those of exp(-u u), which at the floor is 0 a few thousandths beyond the edge.
+ */
 static void test_activation(void **state)
 {
-    static const float width[] = { -FLT_MAX, -126, -30, -12.0001f, -12, -11.9999f, -1, 0, 30, 126, 65504, FLT_MAX };
-    static const float beyond[] = { 0, 1e-45f, 0x1p-24f, 0x1p-13f, 0x1p-12f, 0x1p-10f, 0.01f, 0.3f, 1, 100, 65504 };
-    const ted4_header  h = case_header(TED4_MOTION_NONE, TED4_VIEW_NONE);
+    static const float width[] = { -FLT_MAX, -126, -30, -12.0001f, -12,   -11.9999f,
+                                   -1,       0,    30,  126,       65504, FLT_MAX };
+    static const float beyond[] = { 0,     1e-45f, 0x1p-24f, 0x1p-13f, 0x1p-12f, 0x1p-10f,
+                                    0.01f, 0.3f,   1,        100,      65504 };
+    const ted4_header h = case_header(TED4_MOTION_NONE, TED4_VIEW_NONE);
     const ref_channels at = ref_channels_of(&h);
 
     (void)state;
@@ -170,24 +178,28 @@ static void test_activation(void **state)
                 run();
                 check_values();
                 /* Steps that stay on one side of the edge, and of the floor. */
-                check_channel(at.tau + 2 * late, 1e-3 * fmax(exp2(fmin((double)width[w], 6)), 0x1p-12));
-                if (fabs((double)width[w]) < 1e3 && width[w] != -12)        /* the floor's kink */
+                check_channel(at.tau + 2 * late,
+                              1e-3 * fmax(exp2(fmin((double)width[w], 6)), 0x1p-12));
+                if (fabs((double)width[w]) < 1e3 && width[w] != -12) /* the floor's kink */
                     check_channel(at.tau + 2 * late + 1, 1e-5);
             }
 }
 
 /* ---- sizes, offsets ---- */
 
-/* log2 sizes as far as they are clamped and beyond; linear ones from below their floor to FP16's largest. */
+/* log2 sizes as far as they are clamped and beyond; linear ones from below their floor to FP16's
+ * largest. */
 static void test_sizes(void **state)
 {
     static const float log_size[] = { -FLT_MAX, -200, -126, -100, -24, 0, 10, 60 };
-    static const float linear[] = { -65504, -0.0f, 0, 1e-45f, FLT_MIN, 0x1p-24f, 0x1p-20f, 0x1.000002p-20f, 1, 65504, 1e18f };
+    static const float linear[] = { -65504,   -0.0f,           0, 1e-45f, FLT_MIN, 0x1p-24f,
+                                    0x1p-20f, 0x1.000002p-20f, 1, 65504,  1e18f };
 
     (void)state;
     for (int domain = 0; domain < 2; domain++) {
         ted4_header h = case_header(TED4_MOTION_BANK, TED4_VIEW_COLOUR);
-        const size_t n = domain == TED4_SCALE_LOG2 ? sizeof log_size / sizeof *log_size : sizeof linear / sizeof *linear;
+        const size_t n = domain == TED4_SCALE_LOG2 ? sizeof log_size / sizeof *log_size
+                                                   : sizeof linear / sizeof *linear;
 
         h.scale_domain = (uint8_t)domain;
         const ref_channels at = ref_channels_of(&h);
@@ -202,19 +214,22 @@ static void test_sizes(void **state)
             check_values();
             if (domain == TED4_SCALE_LOG2 ? fabs((double)l) < 100 : l > 0x1p-20f && l < 100)
                 for (int c = 0; c < 6; c++)
-                    check_channel(at.scaling + c, 1e-6 * (fabs((double)l) + 1e-3 * (domain == TED4_SCALE_LOG2)) + 1e-12);
+                    check_channel(at.scaling + c,
+                                  1e-6 * (fabs((double)l) + 1e-3 * (domain == TED4_SCALE_LOG2)) +
+                                      1e-12);
         }
     }
 }
 
-/* Linear sizes at their floor and below have the gradient of one just above it where a step would bring them up, and none where it would take them farther
- * down: else they would stay there for good. */
+/* Linear sizes at their floor and below have the gradient of one just above it where a step would
+ * bring them up, and none where it would take them farther down: else they would stay there for
+ * good. */
 static void test_size_floor(void **state)
 {
     static const float low[] = { 0x1p-20f, 0, -0.001f, -65504 };
     static float above[6 * TED4_LANES];
-    ted4_header  h = case_header(TED4_MOTION_BANK, TED4_VIEW_COLOUR);
-    int          up = 0, down = 0;
+    ted4_header h = case_header(TED4_MOTION_BANK, TED4_VIEW_COLOUR);
+    int up = 0, down = 0;
 
     (void)state;
     h.scale_domain = TED4_SCALE_LINEAR;
@@ -233,7 +248,8 @@ static void test_size_floor(void **state)
             const float want = above[j] > 0 ? 0 : above[j];
 
             if (fabsf(d[j] - want) > 1e-3f * fabsf(want))
-                fail_msg("size %g, gradient %d: %g, not %g", (double)low[i], j, (double)d[j], (double)want);
+                fail_msg("size %g, gradient %d: %g, not %g", (double)low[i], j, (double)d[j],
+                         (double)want);
             up += want < 0;
             down += above[j] > 0;
         }
@@ -244,12 +260,13 @@ static void test_size_floor(void **state)
 /* Offsets, features and phi at FP16's ends; products of sizes and offsets stay within binary32. */
 static void test_half_extremes(void **state)
 {
-    static const float half[] = { 0, -0.0f, 0x1p-24f, -0x1p-24f, 0x1.ff8p-15f, 0x1p-14f, 65504, -65504 };
+    static const float half[] = { 0,        -0.0f, 0x1p-24f, -0x1p-24f, 0x1.ff8p-15f,
+                                  0x1p-14f, 65504, -65504 };
 
     (void)state;
     for (int motion = 0; motion < 4; motion++)
         for (size_t i = 0; i < sizeof half / sizeof *half; i++) {
-            const ted4_header  h = case_header(motion, TED4_VIEW_FULL);
+            const ted4_header h = case_header(motion, TED4_VIEW_FULL);
             const ref_channels at = ref_channels_of(&h);
 
             begin(&h, 1);
@@ -278,13 +295,15 @@ static float *last_bias(int net, float weight)
     return w + n;
 }
 
-/* Quaternions of the covariance head: of no length, just short of a direction, just long enough, as long as squares allow. dq = (dr - (dr r) r) / |q| for
- * all that have a direction; (1, 0, 0, 0) and no gradient for others. */
+/* Quaternions of the covariance head: of no length, just short of a direction, just long enough, as
+ * long as squares allow. dq = (dr - (dr r) r) / |q| for all that have a direction; (1, 0, 0, 0) and
+ * no gradient for others. */
 static void test_quaternions(void **state)
 {
-    static const float length[] = { 0, 1e-45f, 1e-30f, 0x1.fffp-21f, 0x1p-20f, 0x1.002p-20f, 1e-3f, 65504, 1e10f, 1e18f };
-    const ted4_header  h = case_header(TED4_MOTION_NONE, TED4_VIEW_NONE);
-    const int          K = CASE_OFFSETS;
+    static const float length[] = { 0,     1e-45f, 1e-30f, 0x1.fffp-21f, 0x1p-20f, 0x1.002p-20f,
+                                    1e-3f, 65504,  1e10f,  1e18f };
+    const ted4_header h = case_header(TED4_MOTION_NONE, TED4_VIEW_NONE);
+    const int K = CASE_OFFSETS;
 
     (void)state;
     for (size_t i = 0; i < sizeof length / sizeof *length; i++)
@@ -307,26 +326,30 @@ static void test_quaternions(void **state)
 
                     for (int s = 0; s < CASE_SLOTS * TED4_LANES; s++) {
                         const int at = (s / TED4_LANES * K + k) * TED4_LANES + s % TED4_LANES;
-                        double    along = 0;
+                        double along = 0;
 
                         if ((scene.lanes[s / TED4_LANES] >> s % TED4_LANES & 1) == 0 || n < 0x1p-20)
                             continue;
                         for (int m = 0; m < 4; m++)
                             along += (double)gradient[6 + m][at] * (double)b[7 * k + 3 + m] / n;
-                        want += ((double)gradient[6 + c][at] - along * (double)b[7 * k + 3 + c] / n) / n;
+                        want +=
+                            ((double)gradient[6 + c][at] - along * (double)b[7 * k + 3 + c] / n) /
+                            n;
                         size += 1 / n;
                     }
                     if (!(fabs((double)d[7 * k + 3 + c] - want) <= 1e-5 * size))
-                        fail_msg("length %g: gradient %g, not %g", n, (double)d[7 * k + 3 + c], want);
+                        fail_msg("length %g: gradient %g, not %g", n, (double)d[7 * k + 3 + c],
+                                 want);
                 }
         }
 }
 
-/* Longer than squares allow: binary32 has no length for it, and so no rotation (spec 11.5 in strict arithmetic says the same); nothing is worse than that. */
+/* Longer than squares allow: binary32 has no length for it, and so no rotation (spec 11.5 in strict
+ * arithmetic says the same); nothing is worse than that. */
 static void test_longest_quaternions(void **state)
 {
     static const float length[] = { 3e19f, 1e30f, FLT_MAX };
-    const ted4_header  h = case_header(TED4_MOTION_NONE, TED4_VIEW_NONE);
+    const ted4_header h = case_header(TED4_MOTION_NONE, TED4_VIEW_NONE);
 
     (void)state;
     for (size_t i = 0; i < sizeof length / sizeof *length; i++) {
@@ -342,10 +365,12 @@ static void test_longest_quaternions(void **state)
     }
 }
 
-/* Heads driven to their rails and to 0: opacity 0, 1 and just either side of 0; colour and size shares of 0 and 1. Saturated heads have no gradient. */
+/* Heads driven to their rails and to 0: opacity 0, 1 and just either side of 0; colour and size
+ * shares of 0 and 1. Saturated heads have no gradient. */
 static void test_heads(void **state)
 {
-    static const float y[] = { -FLT_MAX, -1e30f, -65504, -100, -20, -1e-6f, -1e-45f, 0, 1e-45f, 1e-6f, 20, 100, 65504, 1e30f, FLT_MAX };
+    static const float y[] = { -FLT_MAX, -1e30f, -65504, -100, -20,   -1e-6f, -1e-45f, 0,
+                               1e-45f,   1e-6f,  20,     100,  65504, 1e30f,  FLT_MAX };
 
     (void)state;
     for (int motion = 0; motion < 2; motion++)
@@ -356,7 +381,9 @@ static void test_heads(void **state)
             for (int net = TED4_NET_OPACITY; net <= TED4_NET_COLOUR; net++) {
                 float *b = last_bias(net, 0);
 
-                for (int k = 0; k < scene.layout.shape.netr[net].dim[scene.layout.shape.netr[net].n_layers]; k++)
+                for (int k = 0;
+                     k < scene.layout.shape.netr[net].dim[scene.layout.shape.netr[net].n_layers];
+                     k++)
                     if (net != TED4_NET_COVARIANCE || k % 7 < 3)
                         b[k] = y[i];
             }
@@ -372,7 +399,8 @@ static void test_heads(void **state)
         }
 }
 
-/* All weights, biases and the bank at FP16's largest and least: sums of products stay within binary32 through every layer, and signs decide the heads. */
+/* All weights, biases and the bank at FP16's largest and least: sums of products stay within
+ * binary32 through every layer, and signs decide the heads. */
 static void test_weights(void **state)
 {
     static const float size[] = { 0, 0x1p-24f, 0x1p-14f, 65504 };
@@ -390,7 +418,8 @@ static void test_weights(void **state)
                     for (int c = 0; c < h.feature_dim; c++)
                         scene.attr[s][c * TED4_LANES + j] *= 100;
             run();
-            if (motion == TED4_MOTION_NONE || size[i] < 1)     /* else positions are so large that offsets are lost in them */
+            if (motion == TED4_MOTION_NONE ||
+                size[i] < 1) /* else positions are so large that offsets are lost in them */
                 check_values();
         }
 }
@@ -399,8 +428,8 @@ static void test_weights(void **state)
 static void test_gradient_sizes(void **state)
 {
     static const float factor[] = { 0, 0x1p-100f, 0x1p60f, 0x1p90f };
-    static float       one[CASE_CHANNELS * TED4_LANES];
-    const ted4_header  h = case_header(TED4_MOTION_BANK, TED4_VIEW_FULL);
+    static float one[CASE_CHANNELS * TED4_LANES];
+    const ted4_header h = case_header(TED4_MOTION_BANK, TED4_VIEW_FULL);
 
     (void)state;
     begin(&h, 1);
@@ -412,16 +441,18 @@ static void test_gradient_sizes(void **state)
         for (int k = 0; k < scene.layout.n_channels * TED4_LANES; k++) {
             const double want = (double)one[k] * (double)factor[i];
 
-            assert_true(fabs((double)d_attr[0][k] - want) <= 1e-4 * fabs(want) + 1e-5 * (double)factor[i]);
+            assert_true(fabs((double)d_attr[0][k] - want) <=
+                        1e-4 * fabs(want) + 1e-5 * (double)factor[i]);
         }
     }
 }
 
-/* A camera on an anchor, so near that squares vanish, and so far that they are at their largest: a direction of length 1 everywhere. */
+/* A camera on an anchor, so near that squares vanish, and so far that they are at their largest: a
+ * direction of length 1 everywhere. */
 static void test_directions(void **state)
 {
     static const float from[] = { 0, 1e-30f, 0x1p-21f, 0x1p-20f, 0x1p-19f, 65504, 1e18f };
-    const ted4_header  h = case_header(TED4_MOTION_CONCAT, TED4_VIEW_FULL);
+    const ted4_header h = case_header(TED4_MOTION_CONCAT, TED4_VIEW_FULL);
 
     (void)state;
     for (size_t i = 0; i < sizeof from / sizeof *from; i++)
@@ -441,10 +472,11 @@ static void test_directions(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_activation), cmocka_unit_test(test_sizes), cmocka_unit_test(test_size_floor),
-        cmocka_unit_test(test_half_extremes),
-        cmocka_unit_test(test_quaternions), cmocka_unit_test(test_longest_quaternions), cmocka_unit_test(test_heads),
-        cmocka_unit_test(test_weights), cmocka_unit_test(test_gradient_sizes), cmocka_unit_test(test_directions),
+        cmocka_unit_test(test_activation),     cmocka_unit_test(test_sizes),
+        cmocka_unit_test(test_size_floor),     cmocka_unit_test(test_half_extremes),
+        cmocka_unit_test(test_quaternions),    cmocka_unit_test(test_longest_quaternions),
+        cmocka_unit_test(test_heads),          cmocka_unit_test(test_weights),
+        cmocka_unit_test(test_gradient_sizes), cmocka_unit_test(test_directions),
     };
 
     return cmocka_run_group_tests_name("generation at its extremes", tests, NULL, NULL);

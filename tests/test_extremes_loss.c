@@ -1,5 +1,6 @@
-/* test_extremes_loss.c - the loss of a picture and the colour maps of cameras at their extremes: pictures of one colour, black, white, smaller than
- * the window, far brighter than any screen; maps without an inverse. Values and gradients are finite, and are those of loss_ref.h.
+/* test_extremes_loss.c - the loss of a picture and the colour maps of cameras at their extremes:
+ * pictures of one colour, black, white, smaller than the window, far brighter than any screen; maps
+ * without an inverse. Values and gradients are finite, and are those of loss_ref.h.
  * SPDX-License-Identifier: BSD-2-Clause */
 #include <setjmp.h>
 #include <stdarg.h>
@@ -19,10 +20,10 @@ enum { MOST = 64 * 64 };
 
 typedef struct {
     ted4_loss_workspace *w;
-    int                  width, height;
-    float                image[3 * MOST], gradient[3 * MOST];
-    double               exact[3 * MOST];
-    uint8_t              truth[3 * MOST];
+    int width, height;
+    float image[3 * MOST], gradient[3 * MOST];
+    double exact[3 * MOST];
+    uint8_t truth[3 * MOST];
 } problem;
 
 static problem p;
@@ -44,37 +45,43 @@ static int tear_down(void **state)
 /* Everything finite; returns L. */
 static double run(float weight, double *l1, double *ssim)
 {
-    const int    n = 3 * p.width * p.height;
-    const double loss = ted4_loss(p.w, p.image, p.truth, p.width, p.height, weight, NULL, p.gradient, l1, ssim);
+    const int n = 3 * p.width * p.height;
+    const double loss =
+        ted4_loss(p.w, p.image, p.truth, p.width, p.height, weight, NULL, p.gradient, l1, ssim);
 
     assert_true(isfinite(loss) && isfinite(*l1) && isfinite(*ssim) && loss >= -1e-6);
     for (int i = 0; i < n; i++)
         if (!isfinite(p.gradient[i]))
-            fail_msg("value %d of %d x %d: %g has gradient %g", i, p.width, p.height, (double)p.image[i], (double)p.gradient[i]);
+            fail_msg("value %d of %d x %d: %g has gradient %g", i, p.width, p.height,
+                     (double)p.image[i], (double)p.gradient[i]);
     return loss;
 }
 
 /* Against the definition; gradients of every step-th value. */
 static void check(float weight, int step)
 {
-    const int         n = 3 * p.width * p.height, plane = p.width * p.height;
+    const int n = 3 * p.width * p.height, plane = p.width * p.height;
     const ref_picture ref = { p.width, p.height, p.exact, p.truth };
-    const double      h = 1e-4, w = (double)weight;
-    double            l1, ssim, want_l1, want_ssim;
+    const double h = 1e-4, w = (double)weight;
+    double l1, ssim, want_l1, want_ssim;
 
     for (int i = 0; i < n; i++)
         p.exact[i] = (double)p.image[i];
-    const double loss = run(weight, &l1, &ssim), want = ref_distortion(&ref, w, &want_l1, &want_ssim);
+    const double loss = run(weight, &l1, &ssim),
+                 want = ref_distortion(&ref, w, &want_l1, &want_ssim);
 
-    if (!(fabs(loss - want) < 1e-4 && fabs(l1 - want_l1) < 1e-6 * (1 + want_l1) && fabs(ssim - want_ssim) < 1e-4))
-        fail_msg("%d x %d: %g, not %g; SSIM %g, not %g", p.width, p.height, loss, want, ssim, want_ssim);
+    if (!(fabs(loss - want) < 1e-4 && fabs(l1 - want_l1) < 1e-6 * (1 + want_l1) &&
+          fabs(ssim - want_ssim) < 1e-4))
+        fail_msg("%d x %d: %g, not %g; SSIM %g, not %g", p.width, p.height, loss, want, ssim,
+                 want_ssim);
     for (int i = 0; i < n; i += step) {
-        const int    c = i / plane, y = i % plane / p.width, x = i % p.width;
-        const double up = ref_local_loss(&ref, w, c, y, x, h), down = ref_local_loss(&ref, w, c, y, x, -h);
+        const int c = i / plane, y = i % plane / p.width, x = i % p.width;
+        const double up = ref_local_loss(&ref, w, c, y, x, h),
+                     down = ref_local_loss(&ref, w, c, y, x, -h);
         const double slope = (up - down) / (2 * h), got = (double)p.gradient[i] * n;
 
         if (weight < 1.0f && ref_absolute(&ref, c, y, x, 0) < 2 * h)
-            continue;                   /* at the corner of |.| */
+            continue; /* at the corner of |.| */
         if (!(fabs(got - slope) < 5e-3 * (1 + fabs(slope))))
             fail_msg("%d x %d, (%d, %d) of %d: %g, not %g", p.width, p.height, x, y, c, got, slope);
     }
@@ -89,12 +96,14 @@ static void fill(int width, int height, float image, uint8_t truth)
     memset(p.truth, truth, sizeof p.truth);
 }
 
-/* One colour against one colour: there is no variance, and rounding must not make one. The first is 1/255 of a byte off its truth. */
+/* One colour against one colour: there is no variance, and rounding must not make one. The first is
+ * 1/255 of a byte off its truth. */
 static void test_constant(void **state)
 {
-    static const int     size[][2] = { {1, 1}, {2, 1}, {1, 13}, {5, 5}, {11, 11}, {40, 3}, {33, 17} };
+    static const int size[][2] = { { 1, 1 },   { 2, 1 },  { 1, 13 }, { 5, 5 },
+                                   { 11, 11 }, { 40, 3 }, { 33, 17 } };
     static const uint8_t truth[] = { 0, 1, 128, 255 };
-    static const float   image[] = { 0, 1, 0.5f, -0.25f, 1.5f, 0x1p-24f, 1e-45f, FLT_MIN };
+    static const float image[] = { 0, 1, 0.5f, -0.25f, 1.5f, 0x1p-24f, 1e-45f, FLT_MIN };
 
     (void)state;
     for (size_t s = 0; s < sizeof size / sizeof *size; s++)
@@ -141,7 +150,8 @@ static void test_contrast(void **state)
     }
 }
 
-/* Far beyond white, where squares have no digits left for the variance: what the numbers are then is rounding, but numbers they are, and L1 is right. */
+/* Far beyond white, where squares have no digits left for the variance: what the numbers are then
+ * is rounding, but numbers they are, and L1 is right. */
 static void test_bright(void **state)
 {
     static const float bright[] = { 30, 100, 1e3f, 65504, 1e6f, 1e9f, 1e15f, 1e18f };
@@ -164,8 +174,9 @@ static void test_bright(void **state)
         }
 }
 
-/* The same where rounding is about as large as what SSIM's denominator adds to the variances: no pixel's quotient may run away, whichever way the rounding
- * goes. By mathematics SSIM is below 2 / 29, and the slope that of L1. */
+/* The same where rounding is about as large as what SSIM's denominator adds to the variances: no
+ * pixel's quotient may run away, whichever way the rounding goes. By mathematics SSIM is below 2 /
+ * 29, and the slope that of L1. */
 static void test_rounding(void **state)
 {
     enum { SIDE = 23, N = 3 * SIDE * SIDE };
@@ -173,7 +184,7 @@ static void test_rounding(void **state)
     (void)state;
     for (int n = 0; n < 400; n++) {
         const float bright = 30.0f + 0.7f * (float)n;
-        double      l1, ssim;
+        double l1, ssim;
 
         fill(SIDE, SIDE, n % 3 == 1 ? -bright : bright, 255);
         for (int i = 0; i < N && n % 3 == 2; i++)
@@ -191,7 +202,7 @@ enum { PIXELS = 3000 };
 
 static void open_colour(ted4_colour *c)
 {
-    ted4_picture       pic[4];
+    ted4_picture pic[4];
     const ted4_dataset d = { .pictures = pic, .n_pictures = 4, .n_cameras = 2 };
 
     memset(pic, 0, sizeof pic);
@@ -203,18 +214,19 @@ static void open_colour(ted4_colour *c)
     assert_int_equal(ted4_colour_init(c, &d), 0);
 }
 
-/* Constant pictures and gradients from 0 to huge through maps from the identity to FP16's largest: c' = c (I + A) + v in double, and its adjoint.
- * All products are the same in every pixel, so sums are PIXELS times one. */
+/* Constant pictures and gradients from 0 to huge through maps from the identity to FP16's largest:
+ * c' = c (I + A) + v in double, and its adjoint. All products are the same in every pixel, so sums
+ * are PIXELS times one. */
 static void test_maps(void **state)
 {
     static const float map[] = { 0, -1, 0x1p-24f, 1e-45f, 1, -65504, 65504 };
     static const float colour[] = { 0, 1, 1e-45f, 65504, -1e6f };
-    static float       image[3 * PIXELS], d[3 * PIXELS];
+    static float image[3 * PIXELS], d[3 * PIXELS];
 
     (void)state;
     for (size_t m = 0; m < sizeof map / sizeof *map; m++)
         for (size_t k = 0; k < sizeof colour / sizeof *colour; k++) {
-            ted4_colour     c;
+            ted4_colour c;
             ted4_colour_map gradient;
 
             open_colour(&c);
@@ -228,7 +240,8 @@ static void test_maps(void **state)
             const double a = (double)map[m], x = (double)colour[k], want = x * (1 + 3 * a) + a;
 
             for (int i = 0; i < 3 * PIXELS; i++)
-                assert_true(fabs((double)out[i] - want) <= 1e-5 * (fabs(x) * (1 + 3 * fabs(a)) + fabs(a)));
+                assert_true(fabs((double)out[i] - want) <=
+                            1e-5 * (fabs(x) * (1 + 3 * fabs(a)) + fabs(a)));
             ted4_colour_backward(&c, 1, image, PIXELS, NULL, d, gradient);
             for (int i = 0; i < TED4_COLOUR_VALUES; i++) {
                 const double sum = 0.25 * PIXELS * (i < 9 ? x : 1);
@@ -241,17 +254,20 @@ static void test_maps(void **state)
         }
 }
 
-/* Whatever the map, what is taken back is a picture: bytes, or the very picture where there is no inverse. */
+/* Whatever the map, what is taken back is a picture: bytes, or the very picture where there is no
+ * inverse. */
 static void test_undo(void **state)
 {
-    static const float diagonal[] = { 0, -1, -0.9999f, -2, 1e-45f, 65504, 1e30f, FLT_MAX, -FLT_MAX };
-    static uint8_t     picture[3 * PIXELS];
+    static const float diagonal[] = {
+        0, -1, -0.9999f, -2, 1e-45f, 65504, 1e30f, FLT_MAX, -FLT_MAX
+    };
+    static uint8_t picture[3 * PIXELS];
 
     (void)state;
     for (size_t i = 0; i < sizeof diagonal / sizeof *diagonal; i++)
         for (int all = 0; all < 2; all++) {
             ted4_colour c;
-            double      inverse[9];
+            double inverse[9];
 
             open_colour(&c);
             for (size_t k = 0; k < sizeof picture; k++)
@@ -259,7 +275,7 @@ static void test_undo(void **state)
             for (int k = 0; k < 9; k++)
                 c.value[1][k] = all || k % 4 == 0 ? diagonal[i] : 0;
             c.value[1][9] = diagonal[i];
-            const int      bad = ted4_colour_invert(c.value[1], inverse);
+            const int bad = ted4_colour_invert(c.value[1], inverse);
             const uint8_t *seen = ted4_colour_undo(&c, 1, picture, PIXELS, NULL);
 
             if (bad)
@@ -270,14 +286,15 @@ static void test_undo(void **state)
         }
 }
 
-/* A step from gradients of any size, over and over: the map stays finite and moves by about the rate. */
+/* A step from gradients of any size, over and over: the map stays finite and moves by about the
+ * rate. */
 static void test_steps(void **state)
 {
     static const float gradient_of[] = { 0, 1e-45f, 1e-30f, 1e-10f, 1, 1e10f, 1e18f };
 
     (void)state;
     for (size_t i = 0; i < sizeof gradient_of / sizeof *gradient_of; i++) {
-        ted4_colour     c;
+        ted4_colour c;
         ted4_colour_map gradient;
 
         open_colour(&c);
@@ -287,7 +304,8 @@ static void test_steps(void **state)
             ted4_colour_update(&c, 1, gradient, 0.01, 0);
         for (int k = 0; k < TED4_COLOUR_VALUES; k++) {
             assert_true(isfinite(c.value[1][k]) && fabsf(c.value[1][k]) < 0.11f);
-            if (gradient_of[i] >= 1e-10f)       /* half of 20 steps: the other half is the other camera's */
+            if (gradient_of[i] >=
+                1e-10f) /* half of 20 steps: the other half is the other camera's */
                 assert_true(fabsf(fabsf(c.value[1][k]) - 0.1f) < 1e-4f);
         }
         ted4_colour_finish(&c);
@@ -297,10 +315,12 @@ static void test_steps(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_constant), cmocka_unit_test(test_equal), cmocka_unit_test(test_contrast), cmocka_unit_test(test_bright),
-        cmocka_unit_test(test_rounding),
-        cmocka_unit_test(test_maps), cmocka_unit_test(test_undo), cmocka_unit_test(test_steps),
+        cmocka_unit_test(test_constant), cmocka_unit_test(test_equal),
+        cmocka_unit_test(test_contrast), cmocka_unit_test(test_bright),
+        cmocka_unit_test(test_rounding), cmocka_unit_test(test_maps),
+        cmocka_unit_test(test_undo),     cmocka_unit_test(test_steps),
     };
 
-    return cmocka_run_group_tests_name("loss and colour at their extremes", tests, set_up, tear_down);
+    return cmocka_run_group_tests_name("loss and colour at their extremes", tests, set_up,
+                                       tear_down);
 }

@@ -1,5 +1,6 @@
-/* test_extremes_raster.c - projection, binning and blending at the ends of what binary32 holds: against the plain renderer where that has an
- * answer, and what is left out is counted (render/raster.h). test_raster.c has what scenes hold.
+/* test_extremes_raster.c - projection, binning and blending at the ends of what binary32 holds:
+ * against the plain renderer where that has an answer, and what is left out is counted
+ * (render/raster.h). test_raster.c has what scenes hold.
  * SPDX-License-Identifier: BSD-2-Clause */
 #include <setjmp.h>
 #include <stdarg.h>
@@ -16,15 +17,22 @@
 enum { SIDE = 32, PIXELS = SIDE * SIDE };
 
 /* A pixel may differ by a Gaussian of opacity 1/255, where rounding decides on its other side. */
-#define MAX_ERROR (1.5 / 255)
+#define MAX_ERROR  (1.5 / 255)
 /* Mean squared error: 90 dB. */
 #define MAX_SQUARE 1e-9
 
 /* Looks along +z from the origin; centres of pixels fall on multiples of 1/64 at depth 1. */
 static ted4_view straight(void)
 {
-    return (ted4_view){ .width = SIDE, .height = SIDE, .fx = SIDE, .fy = SIDE, .cx = 0, .cy = 0,
-                        .R = { 1, 0, 0, 0, 1, 0, 0, 0, 1 }, .near_z = 0.25f, .background = { 0.25f, 0.5f, 1 } };
+    return (ted4_view) { .width = SIDE,
+                         .height = SIDE,
+                         .fx = SIDE,
+                         .fy = SIDE,
+                         .cx = 0,
+                         .cy = 0,
+                         .R = { 1, 0, 0, 0, 1, 0, 0, 0, 1 },
+                         .near_z = 0.25f,
+                         .background = { 0.25f, 0.5f, 1 } };
 }
 
 static scene make(size_t n)
@@ -54,7 +62,7 @@ static void set(scene *s, size_t i, double x, double y, float z, float size, flo
 static uint64_t draw(const scene *s, const ted4_view *v, float *image)
 {
     const ted4_splats g = scene_splats(s);
-    ted4_raster      *r = ted4_raster_new();
+    ted4_raster *r = ted4_raster_new();
 
     assert_non_null(r);
     assert_int_equal(ted4_raster_forward(r, &g, v, NULL, 1, image), 0);
@@ -69,11 +77,11 @@ static uint64_t draw(const scene *s, const ted4_view *v, float *image)
 /* Nothing is left out, and the picture is that of the plain renderer. */
 static void check(const scene *s, const ted4_view *v)
 {
-    static float      image[3 * PIXELS];
-    static double     plain[3 * PIXELS];
+    static float image[3 * PIXELS];
+    static double plain[3 * PIXELS];
     const ted4_splats g = scene_splats(s);
-    const int         n = 3 * v->width * v->height;
-    double            square = 0;
+    const int n = 3 * v->width * v->height;
+    double square = 0;
 
     assert_int_equal(draw(s, v, image), 0);
     assert_int_equal(ted4_raster_plain(&g, v, plain), 0);
@@ -91,7 +99,7 @@ static void check(const scene *s, const ted4_view *v)
 static void test_sizes(void **state)
 {
     static const float size[] = { 0, 1e-45f, FLT_MIN, 0x1p-24f, 1e-6f, 1, 65504, 1e6f, 1e8f };
-    const ted4_view    v = straight();
+    const ted4_view v = straight();
 
     (void)state;
     for (size_t i = 0; i < sizeof size / sizeof *size; i++)
@@ -110,8 +118,9 @@ static void test_sizes(void **state)
 /* At the near plane, on either side of it, at the camera, behind it. */
 static void test_depths(void **state)
 {
-    static const float depth[] = { 0.25f, -0.25f, 0, -0.0f, 1e-45f, FLT_MIN, -1, -65504, -FLT_MAX, FLT_MAX, 65504, 1e30f };
-    const ted4_view    v = straight();
+    static const float depth[] = { 0.25f, -0.25f, 0,        -0.0f,   1e-45f, FLT_MIN,
+                                   -1,    -65504, -FLT_MAX, FLT_MAX, 65504,  1e30f };
+    const ted4_view v = straight();
 
     (void)state;
     for (size_t i = 0; i < sizeof depth / sizeof *depth; i++) {
@@ -125,22 +134,23 @@ static void test_depths(void **state)
         if (depth[i] < FLT_MAX)
             check(&s, &v);
         else
-            (void)draw(&s, &v, (float[3 * PIXELS]){ 0 });
+            (void)draw(&s, &v, (float[3 * PIXELS]) { 0 });
         scene_free(&s);
     }
 }
 
-/* Depths over the whole range of binary32, neighbours in it and equal ones, in no order, one behind the other. */
+/* Depths over the whole range of binary32, neighbours in it and equal ones, in no order, one behind
+ * the other. */
 static void test_order(void **state)
 {
     enum { N = 60 };
     const ted4_view v = straight();
-    scene           s = make(N);
+    scene s = make(N);
 
     (void)state;
     for (size_t i = 0; i < N; i++) {
         const size_t k = i * 37 % N;
-        float        z = k < 40 ? 0.3f * powf(7, (float)k) : 0x1.8p20f;
+        float z = k < 40 ? 0.3f * powf(7, (float)k) : 0x1.8p20f;
 
         for (size_t n = 50; n < k; n++)
             z = nextafterf(z, FLT_MAX);
@@ -154,8 +164,8 @@ static void test_order(void **state)
 static void test_no_near_plane(void **state)
 {
     static float image[3 * PIXELS];
-    ted4_view    v = straight();
-    scene        s = make(4);
+    ted4_view v = straight();
+    scene s = make(4);
 
     (void)state;
     v.near_z = 0;
@@ -165,11 +175,13 @@ static void test_no_near_plane(void **state)
     *scene_param(&s, SCENE_MEAN + 2, 1) = 1e-40f;
     *scene_param(&s, SCENE_MEAN + 2, 2) = 0;
     *scene_param(&s, SCENE_MEAN + 2, 3) = 1e-10f;
-    assert_int_equal(draw(&s, &v, image), 2);   /* the third's footprint overflows, too; 0 is not before the camera */
+    assert_int_equal(draw(&s, &v, image),
+                     2); /* the third's footprint overflows, too; 0 is not before the camera */
     scene_free(&s);
 }
 
-/* Centres on edges and corners of tiles, blocks, pixels and the picture; widths of the picture that end in a tile and at its edge. */
+/* Centres on edges and corners of tiles, blocks, pixels and the picture; widths of the picture that
+ * end in a tile and at its edge. */
 static void test_edges(void **state)
 {
     static const double at[] = { -0.5, 0, 0.5, 3.5, 4, 15.5, 16, 16.5, 31, 31.5, 32, 32.5 };
@@ -179,10 +191,11 @@ static void test_edges(void **state)
     for (int width = 29; width <= SIDE; width += 3)
         for (int faint = 0; faint < 3; faint++) {
             ted4_view v = straight();
-            scene     s = make(N * N);
+            scene s = make(N * N);
 
             for (size_t i = 0; i < N * N; i++)
-                set(&s, i, at[i % N], at[i / N], 1, faint == 2 ? 0.01f : 0, faint == 0 ? 1.001f / 255 : 0.4f);
+                set(&s, i, at[i % N], at[i / N], 1, faint == 2 ? 0.01f : 0,
+                    faint == 0 ? 1.001f / 255 : 0.4f);
             v.width = width;
             check(&s, &v);
             scene_free(&s);
@@ -192,9 +205,22 @@ static void test_edges(void **state)
 /* Opacities from 0 to 1, either side of the threshold, and none at all: below 0, subnormal. */
 static void test_opacities(void **state)
 {
-    const float     least = TED4_RASTER_ALPHA_MIN;
-    const float     opacity[] = { 0, -0.0f, 1e-45f, -1e-45f, FLT_MIN, 0x1p-24f, -1, -FLT_MAX, nextafterf(least, 0), least,
-                                  nextafterf(least, 1), 0.5f, TED4_RASTER_ALPHA_MAX, nextafterf(1, 0), 1 };
+    const float least = TED4_RASTER_ALPHA_MIN;
+    const float opacity[] = { 0,
+                              -0.0f,
+                              1e-45f,
+                              -1e-45f,
+                              FLT_MIN,
+                              0x1p-24f,
+                              -1,
+                              -FLT_MAX,
+                              nextafterf(least, 0),
+                              least,
+                              nextafterf(least, 1),
+                              0.5f,
+                              TED4_RASTER_ALPHA_MAX,
+                              nextafterf(1, 0),
+                              1 };
     const ted4_view v = straight();
 
     (void)state;
@@ -208,11 +234,12 @@ static void test_opacities(void **state)
     }
 }
 
-/* Rotations that no head gives: the rotation of a quaternion is a polynomial, with 1 at 0, whatever its length. */
+/* Rotations that no head gives: the rotation of a quaternion is a polynomial, with 1 at 0, whatever
+ * its length. */
 static void test_rotations(void **state)
 {
     static const float length[] = { 0, 1e-45f, 1e-20f, 0x1p-20f, 1e-3f, 1, 30, 1e3f };
-    const ted4_view    v = straight();
+    const ted4_view v = straight();
 
     (void)state;
     for (size_t i = 0; i < sizeof length / sizeof *length; i++)
@@ -229,14 +256,14 @@ static void test_rotations(void **state)
         }
 }
 
-/* What binary32 cannot hold is left out and counted, and leaves every bit of the others alone. What is behind the camera or too faint does
- * not count, whatever else is wrong with it. */
+/* What binary32 cannot hold is left out and counted, and leaves every bit of the others alone. What
+ * is behind the camera or too faint does not count, whatever else is wrong with it. */
 static void test_skipped(void **state)
 {
     static const float bad[] = { NAN, INFINITY, -INFINITY, FLT_MAX, -FLT_MAX };
-    static float       without[3 * PIXELS], with[3 * PIXELS];
-    const ted4_view    v = straight();
-    scene              s = make(3);
+    static float without[3 * PIXELS], with[3 * PIXELS];
+    const ted4_view v = straight();
+    scene s = make(3);
 
     (void)state;
     for (size_t i = 0; i < 3; i++)
@@ -244,22 +271,26 @@ static void test_skipped(void **state)
     assert_int_equal(draw(&s, &v, without), 0);
     for (int param = 0; param <= SCENE_OPACITY; param++)
         for (size_t k = 0; k < sizeof bad / sizeof *bad; k++) {
-            const int at_x = param < SCENE_MEAN + 2, is_z = param == SCENE_MEAN + 2, is_opacity = param == SCENE_OPACITY;
-            const int gone = is_z || is_opacity ? k == 2 || k == 4 : 0;       /* behind the camera; below every threshold */
-            const int held = (at_x || is_opacity) && k >= 3;                  /* far off the picture; 1 and more is 1 */
+            const int at_x = param < SCENE_MEAN + 2, is_z = param == SCENE_MEAN + 2,
+                      is_opacity = param == SCENE_OPACITY;
+            const int gone = is_z || is_opacity ? k == 2 || k == 4
+                                                : 0; /* behind the camera; below every threshold */
+            const int held = (at_x || is_opacity) &&
+                             k >= 3; /* far off the picture; 1 and more is 1 */
 
             set(&s, 1, 16, 16, 3, 0.1f, 0.7f);
             scene_rotation(&s, 1, 1, 1, 1, 1);
             *scene_param(&s, param, 1) = bad[k];
             if (is_opacity && k == 3)
-                continue;               /* drawn */
+                continue; /* drawn */
             const uint64_t skipped = draw(&s, &v, with);
 
             if (skipped != (uint64_t)(!gone && !held))
-                fail_msg("parameter %d, %g: %llu left out", param, (double)bad[k], (unsigned long long)skipped);
+                fail_msg("parameter %d, %g: %llu left out", param, (double)bad[k],
+                         (unsigned long long)skipped);
             assert_memory_equal(without, with, sizeof with);
             *scene_param(&s, SCENE_MEAN + 2, 1) = -1;
-            if (!is_z)                  /* 0 times infinity: the depth is not known then */
+            if (!is_z) /* 0 times infinity: the depth is not known then */
                 assert_int_equal(draw(&s, &v, with), at_x && k < 3);
             set(&s, 1, 16, 16, 3, 0.1f, 0);
             if (!is_opacity) {
@@ -273,13 +304,13 @@ static void test_skipped(void **state)
 /* Counts add up over passes, chunks of projection and lanes. */
 static void test_skipped_adds_up(void **state)
 {
-    static float      image[3 * PIXELS];
+    static float image[3 * PIXELS];
     enum { N = 2 * 1024 + 37 };
-    const ted4_view   v = straight();
-    scene             s = make(N);
+    const ted4_view v = straight();
+    scene s = make(N);
     const ted4_splats g = scene_splats(&s);
-    ted4_raster      *r = ted4_raster_new();
-    uint64_t          bad = 0;
+    ted4_raster *r = ted4_raster_new();
+    uint64_t bad = 0;
 
     (void)state;
     assert_non_null(r);
@@ -297,14 +328,16 @@ static void test_skipped_adds_up(void **state)
 
 enum { CROWD = 100000 };
 
-/* A crowd in one tile, all at the same depth when equal: so faint that over a thousand of them blend into a pixel. */
+/* A crowd in one tile, all at the same depth when equal: so faint that over a thousand of them
+ * blend into a pixel. */
 static scene make_crowd(int equal)
 {
-    scene    s = make(CROWD);
+    scene s = make(CROWD);
     uint64_t seed = 5;
 
     for (size_t i = 0; i < CROWD; i++) {
-        set(&s, i, scene_range(&seed, 1, 15), scene_range(&seed, 1, 15), equal ? 2.0f : (float)scene_range(&seed, 1, 9), 0.01f,
+        set(&s, i, scene_range(&seed, 1, 15), scene_range(&seed, 1, 15),
+            equal ? 2.0f : (float)scene_range(&seed, 1, 9), 0.01f,
             (float)scene_range(&seed, 0.004, 0.03));
         for (int k = 0; k < 3; k++)
             *scene_param(&s, SCENE_COLOUR + k, i) = (float)scene_uniform(&seed);
@@ -312,11 +345,12 @@ static scene make_crowd(int equal)
     return s;
 }
 
-/* sum: of all gradients of a colour, where that of every pixel is 1. All colours of g are 1 now, so the picture shows the weights. */
+/* sum: of all gradients of a colour, where that of every pixel is 1. All colours of g are 1 now, so
+ * the picture shows the weights. */
 static void check_weights(const ted4_splats *g, const ted4_view *v, double sum)
 {
     static double plain[3 * PIXELS];
-    double        want = 0;
+    double want = 0;
 
     assert_int_equal(ted4_raster_plain(g, v, plain), 0);
     for (int i = 0; i < v->width * v->height; i++)
@@ -324,11 +358,12 @@ static void check_weights(const ted4_splats *g, const ted4_view *v, double sum)
     assert_true(want > 200 && fabs(sum - want) <= 1e-3 * want);
 }
 
-/* One tile of 100,000: the picture, and gradients that are finite; those of colours are the weights, which sum to what the background lacks. */
+/* One tile of 100,000: the picture, and gradients that are finite; those of colours are the
+ * weights, which sum to what the background lacks. */
 static void test_crowd(void **state)
 {
-    static float  d_image[3 * PIXELS];
-    ted4_view     v = straight();
+    static float d_image[3 * PIXELS];
+    ted4_view v = straight();
 
     (void)state;
     v.width = v.height = 16;
@@ -336,17 +371,19 @@ static void test_crowd(void **state)
     for (int i = 0; i < 3 * 256; i++)
         d_image[i] = 1;
     for (int equal = 0; equal < 2; equal++) {
-        static float      image[3 * PIXELS];
-        static double     plain[3 * PIXELS];
-        scene             s = make_crowd(equal), d = make(CROWD);
+        static float image[3 * PIXELS];
+        static double plain[3 * PIXELS];
+        scene s = make_crowd(equal), d = make(CROWD);
         const ted4_splats g = scene_splats(&s);
-        float            *mean2d = malloc(CROWD * sizeof *mean2d);
-        uint8_t          *visible = malloc(CROWD);
-        ted4_raster      *r = ted4_raster_new();
-        double            square = 0, sum = 0;
+        float *mean2d = malloc(CROWD * sizeof *mean2d);
+        uint8_t *visible = malloc(CROWD);
+        ted4_raster *r = ted4_raster_new();
+        double square = 0, sum = 0;
 
         assert_true(mean2d != NULL && visible != NULL && r != NULL);
-        ted4_splat_grads grads = { .opacity = scene_param(&d, SCENE_OPACITY, 0), .mean2d = mean2d, .visible = visible };
+        ted4_splat_grads grads = { .opacity = scene_param(&d, SCENE_OPACITY, 0),
+                                   .mean2d = mean2d,
+                                   .visible = visible };
 
         for (int k = 0; k < 4; k++)
             grads.rot[k] = scene_param(&d, SCENE_ROT + k, 0);
@@ -381,9 +418,11 @@ static void test_crowd(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_sizes), cmocka_unit_test(test_depths), cmocka_unit_test(test_order), cmocka_unit_test(test_no_near_plane),
-        cmocka_unit_test(test_edges), cmocka_unit_test(test_opacities), cmocka_unit_test(test_rotations),
-        cmocka_unit_test(test_skipped), cmocka_unit_test(test_skipped_adds_up), cmocka_unit_test(test_crowd),
+        cmocka_unit_test(test_sizes),           cmocka_unit_test(test_depths),
+        cmocka_unit_test(test_order),           cmocka_unit_test(test_no_near_plane),
+        cmocka_unit_test(test_edges),           cmocka_unit_test(test_opacities),
+        cmocka_unit_test(test_rotations),       cmocka_unit_test(test_skipped),
+        cmocka_unit_test(test_skipped_adds_up), cmocka_unit_test(test_crowd),
     };
 
     return cmocka_run_group_tests_name("raster at its extremes", tests, NULL, NULL);

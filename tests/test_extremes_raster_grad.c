@@ -1,5 +1,6 @@
-/* test_extremes_raster_grad.c - the rasteriser's adjoint at the ends of what binary32 holds: every gradient is finite, and is the central
- * difference of the image model in double precision (raster_ref.h), whose parameters are double, too.
+/* test_extremes_raster_grad.c - the rasteriser's adjoint at the ends of what binary32 holds: every
+ * gradient is finite, and is the central difference of the image model in double precision
+ * (raster_ref.h), whose parameters are double, too.
  * SPDX-License-Identifier: BSD-2-Clause */
 #include <setjmp.h>
 #include <stdarg.h>
@@ -16,25 +17,27 @@
 enum { SIDE = 20, PIXELS = SIDE * SIDE, MOST = 8, GROUPS = 5 };
 
 /* mean, scale, rotation, opacity, colour */
-static const int group_first[GROUPS + 1] = { SCENE_MEAN, SCENE_SCALE, SCENE_ROT, SCENE_OPACITY, SCENE_COLOUR, SCENE_PARAMS };
+static const int group_first[GROUPS + 1] = { SCENE_MEAN,    SCENE_SCALE,  SCENE_ROT,
+                                             SCENE_OPACITY, SCENE_COLOUR, SCENE_PARAMS };
 
-/* Of the parameter and of 1 / SIDE of a unit; the second step tells a pixel's jump over a threshold from a wrong gradient. */
+/* Of the parameter and of 1 / SIDE of a unit; the second step tells a pixel's jump over a threshold
+ * from a wrong gradient. */
 #define STEP       1e-6
 #define SMALL_STEP 2e-7
-/* Float gradients against double differences: share of the value, of the largest gradient in its group, and what rounding of the loss leaves
- * in the difference. */
-#define RELATIVE 2e-3
-#define ABSOLUTE 2e-5
-#define ROUNDING 1e-14
+/* Float gradients against double differences: share of the value, of the largest gradient in its
+ * group, and what rounding of the loss leaves in the difference. */
+#define RELATIVE   2e-3
+#define ABSOLUTE   2e-5
+#define ROUNDING   1e-14
 
 typedef struct {
     ted4_view v;
-    scene     s;                /* at most MOST Gaussians */
-    float     d_image[3 * PIXELS];
-    double    exact[MOST][REF_SPLAT];
-    double    size;             /* sum of |d_image| */
-    float     d[SCENE_PARAMS * MOST], mean2d[MOST];
-    uint8_t   visible[MOST];
+    scene s; /* at most MOST Gaussians */
+    float d_image[3 * PIXELS];
+    double exact[MOST][REF_SPLAT];
+    double size; /* sum of |d_image| */
+    float d[SCENE_PARAMS * MOST], mean2d[MOST];
+    uint8_t visible[MOST];
 } problem;
 
 static problem p;
@@ -42,9 +45,9 @@ static problem p;
 static double loss(void)
 {
     static double image[3 * PIXELS];
-    double        sum = 0;
+    double sum = 0;
 
-    (void)ref_render(&p.v, (const double (*)[REF_SPLAT])p.exact, p.s.n, image);
+    (void)ref_render(&p.v, (const double(*)[REF_SPLAT])p.exact, p.s.n, image);
     for (int i = 0; i < 3 * PIXELS; i++)
         sum += image[i] * (double)p.d_image[i];
     return sum;
@@ -71,7 +74,8 @@ static void begin(size_t n, uint64_t seed)
     p.v = scene_view(SIDE, SIDE);
     p.s = scene_random(n, &p.v, 3, seed);
     for (size_t i = 0; i < n; i++) {
-        scene_place(&p.s, &p.v, i, scene_range(&seed, 6, 14), scene_range(&seed, 6, 14), 2 + (double)i);
+        scene_place(&p.s, &p.v, i, scene_range(&seed, 6, 14), scene_range(&seed, 6, 14),
+                    2 + (double)i);
         *scene_param(&p.s, SCENE_OPACITY, i) = 0.6f;
     }
     for (int i = 0; i < 3 * PIXELS; i++) {
@@ -83,11 +87,13 @@ static void begin(size_t n, uint64_t seed)
 /* Runs the kernels. Returns how many Gaussians were left out. */
 static uint64_t run(void)
 {
-    static float      image[3 * PIXELS];
+    static float image[3 * PIXELS];
     const ted4_splats g = scene_splats(&p.s);
-    const scene       d = { p.s.n, p.d };
-    ted4_splat_grads  grads = { .opacity = scene_param(&d, SCENE_OPACITY, 0), .mean2d = p.mean2d, .visible = p.visible };
-    ted4_raster      *r = ted4_raster_new();
+    const scene d = { p.s.n, p.d };
+    ted4_splat_grads grads = { .opacity = scene_param(&d, SCENE_OPACITY, 0),
+                               .mean2d = p.mean2d,
+                               .visible = p.visible };
+    ted4_raster *r = ted4_raster_new();
 
     assert_non_null(r);
     for (int k = 0; k < 4; k++)
@@ -102,7 +108,8 @@ static uint64_t run(void)
     assert_int_equal(ted4_raster_backward(r, &g, &p.v, NULL, p.d_image, &grads), 0);
     for (size_t i = 0; i < p.s.n * SCENE_PARAMS; i++)
         if (!isfinite(p.d[i]))
-            fail_msg("parameter %zu of Gaussian %zu: gradient %g", i / p.s.n, i % p.s.n, (double)p.d[i]);
+            fail_msg("parameter %zu of Gaussian %zu: gradient %g", i / p.s.n, i % p.s.n,
+                     (double)p.d[i]);
     for (size_t i = 0; i < p.s.n; i++)
         assert_true(isfinite(p.mean2d[i]) && p.mean2d[i] >= 0);
     const uint64_t skipped = ted4_raster_skipped(r);
@@ -113,8 +120,8 @@ static uint64_t run(void)
 
 static void compare(size_t i, int param, double top)
 {
-    const double got = (double)*scene_param(&(scene){ p.s.n, p.d }, param, i);
-    double      *x = &p.exact[i][param];
+    const double got = (double)*scene_param(&(scene) { p.s.n, p.d }, param, i);
+    double *x = &p.exact[i][param];
     const double h = STEP * (fabs(*x) + 1.0 / SIDE), want = difference(x, h);
     const double allowed = ABSOLUTE * top + RELATIVE * fabs(want) + ROUNDING * p.size / h;
 
@@ -123,11 +130,12 @@ static void compare(size_t i, int param, double top)
     const double small = difference(x, SMALL_STEP / STEP * h);
 
     if (fabs(small - want) <= 1e-3 * (fabs(small) + fabs(want)) + 5 * ROUNDING * p.size / h)
-        fail_msg("parameter %d of Gaussian %zu: %g, should be %g (largest %g)", param, i, got, want, top);
+        fail_msg("parameter %d of Gaussian %zu: %g, should be %g (largest %g)", param, i, got, want,
+                 top);
 }
 
 /* Every parameter of every Gaussian but those of the group not (-1: none). */
-static void check(int not)
+static void check(int not )
 {
     for (size_t i = 0; i < p.s.n; i++)
         for (int k = 0; k < SCENE_PARAMS; k++)
@@ -136,9 +144,10 @@ static void check(int not)
     for (int group = 0; group < GROUPS; group++) {
         double top = 0;
 
-        if (group == not)
+        if (group == not )
             continue;
-        for (size_t k = p.s.n * (size_t)group_first[group]; k < p.s.n * (size_t)group_first[group + 1]; k++)
+        for (size_t k = p.s.n * (size_t)group_first[group];
+             k < p.s.n * (size_t)group_first[group + 1]; k++)
             top = fmax(top, fabs((double)p.d[k]));
         for (size_t i = 0; i < p.s.n; i++)
             for (int k = group_first[group]; k < group_first[group + 1]; k++)
@@ -160,10 +169,13 @@ static void set_kind(size_t i, float size, int kind)
     set_size(i, size, kind > 0 ? 0.2f : size, kind < 2 ? size : kind == 2 ? 0.3f : 0);
 }
 
-/* The covariance goes with the square of a size: at 0 its gradient is 0. Huge ones are flat, and nothing but opacity and colour matters. */
+/* The covariance goes with the square of a size: at 0 its gradient is 0. Huge ones are flat, and
+ * nothing but opacity and colour matters. */
 static void test_sizes(void **state)
 {
-    static const float size[] = { 0, 1e-45f, FLT_MIN, 0x1p-24f, 1e-4f, 10, 1e3f, 65504, 1e6f, 1e8f };
+    static const float size[] = {
+        0, 1e-45f, FLT_MIN, 0x1p-24f, 1e-4f, 10, 1e3f, 65504, 1e6f, 1e8f
+    };
 
     (void)state;
     for (size_t i = 0; i < sizeof size / sizeof *size; i++)
@@ -196,7 +208,7 @@ static void test_depths(void **state)
             begin(2, 20 + i);
             scene_place(&p.s, &p.v, 0, off == 0 ? 10 : off == 1 ? -2 : 24, 10.3, depth[i]);
             set_size(0, size, 0.5f * size, 2 * size);
-            check(depth[i] < 0.2001 ? 0 : -1);          /* a step of the mean may lead behind the plane */
+            check(depth[i] < 0.2001 ? 0 : -1); /* a step of the mean may lead behind the plane */
         }
 }
 
@@ -208,7 +220,7 @@ static void test_unseen(void **state)
     (void)state;
     for (size_t i = 0; i < sizeof depth / sizeof *depth; i++) {
         begin(3, 30 + i);
-        memcpy(p.v.R, (const float[9]){ 1, 0, 0, 0, 1, 0, 0, 0, 1 }, sizeof p.v.R);
+        memcpy(p.v.R, (const float[9]) { 1, 0, 0, 0, 1, 0, 0, 0, 1 }, sizeof p.v.R);
         memset(p.v.t, 0, sizeof p.v.t);
         *scene_param(&p.s, SCENE_MEAN + 2, 1) = depth[i];
         *scene_param(&p.s, SCENE_MEAN, 2) = 65504;
@@ -225,7 +237,7 @@ static void test_unseen(void **state)
 static void test_skipped(void **state)
 {
     static const float bad[] = { NAN, INFINITY, FLT_MAX, 1e12f };
-    float              before[SCENE_PARAMS * 3];
+    float before[SCENE_PARAMS * 3];
 
     (void)state;
     begin(3, 40);
@@ -248,7 +260,8 @@ static void test_skipped(void **state)
 /* Centres on edges and corners of tiles and of the picture. */
 static void test_edges(void **state)
 {
-    static const double at[][2] = { {16, 16}, {15.5, 16.5}, {16.5, 15.5}, {0, 0}, {-0.5, 16}, {20, 20}, {4, 4}, {20.4, 0.5} };
+    static const double at[][2] = { { 16, 16 },   { 15.5, 16.5 }, { 16.5, 15.5 }, { 0, 0 },
+                                    { -0.5, 16 }, { 20, 20 },     { 4, 4 },       { 20.4, 0.5 } };
 
     (void)state;
     for (size_t i = 0; i < sizeof at / sizeof *at; i++)
@@ -299,13 +312,14 @@ static void test_rotations(void **state)
     }
 }
 
-/* All at one depth: the lower index is in front, for gradients too. A step of a mean changes the order, so means are not varied. */
+/* All at one depth: the lower index is in front, for gradients too. A step of a mean changes the
+ * order, so means are not varied. */
 static void test_ties(void **state)
 {
     (void)state;
     for (uint64_t seed = 90; seed < 93; seed++) {
         begin(MOST, seed);
-        memcpy(p.v.R, (const float[9]){ 1, 0, 0, 0, 1, 0, 0, 0, 1 }, sizeof p.v.R);
+        memcpy(p.v.R, (const float[9]) { 1, 0, 0, 0, 1, 0, 0, 0, 1 }, sizeof p.v.R);
         for (size_t i = 0; i < MOST; i++)
             *scene_param(&p.s, SCENE_MEAN + 2, i) = 1.75f;
         check(0);
@@ -316,7 +330,7 @@ static void test_ties(void **state)
 static void test_picture_gradients(void **state)
 {
     static const float factor[] = { 0, 0x1p-126f, 0x1p-60f, 0x1p60f, 0x1p90f };
-    float              one[SCENE_PARAMS * 3];
+    float one[SCENE_PARAMS * 3];
 
     (void)state;
     begin(3, 100);
@@ -329,7 +343,8 @@ static void test_picture_gradients(void **state)
             p.d_image[k] *= factor[i];
         (void)run();
         for (int k = 0; k < SCENE_PARAMS * 3; k++)
-            assert_true(fabs((double)p.d[k] - (double)one[k] * (double)factor[i]) <= 1e-5 * fabs((double)one[k] * (double)factor[i]) + 1e-38);
+            assert_true(fabs((double)p.d[k] - (double)one[k] * (double)factor[i]) <=
+                        1e-5 * fabs((double)one[k] * (double)factor[i]) + 1e-38);
     }
     scene_free(&p.s);
 }
@@ -337,8 +352,14 @@ static void test_picture_gradients(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_sizes), cmocka_unit_test(test_depths), cmocka_unit_test(test_unseen), cmocka_unit_test(test_skipped),
-        cmocka_unit_test(test_edges), cmocka_unit_test(test_opacities), cmocka_unit_test(test_rotations), cmocka_unit_test(test_ties),
+        cmocka_unit_test(test_sizes),
+        cmocka_unit_test(test_depths),
+        cmocka_unit_test(test_unseen),
+        cmocka_unit_test(test_skipped),
+        cmocka_unit_test(test_edges),
+        cmocka_unit_test(test_opacities),
+        cmocka_unit_test(test_rotations),
+        cmocka_unit_test(test_ties),
         cmocka_unit_test(test_picture_gradients),
     };
 

@@ -1,5 +1,6 @@
-/* test_extremes_rate.c - quantiser, rate model and its adjoint at their extremes: sigma and step at floor and ceiling, FP16's ends in values and
- * weights, noise and rounding of what no symbol holds; and the coder's own tables at theirs. Against double precision (rate_ref.h); all finite.
+/* test_extremes_rate.c - quantiser, rate model and its adjoint at their extremes: sigma and step at
+ * floor and ceiling, FP16's ends in values and weights, noise and rounding of what no symbol holds;
+ * and the coder's own tables at theirs. Against double precision (rate_ref.h); all finite.
  * SPDX-License-Identifier: BSD-2-Clause */
 #include <setjmp.h>
 #include <stdarg.h>
@@ -27,11 +28,17 @@ static void all_finite(const float *x, size_t n, const char *what)
 
 /* ---- one symbol ---- */
 
-static const float distances[] = { 0, -0.0f, 1e-45f, FLT_MIN, 0x1p-24f, 0.4999999f, 0.5f, 0.5000001f, 1, 2.374f, 2.375f, 2.376f, 4096.9f, 4097, 4097.1f,
-                                   32767, 65504, 1e9f, 1.1e9f, 1e20f, 1e30f, FLT_MAX };
-static const float log_sigmas[] = { -FLT_MAX, -65504, -5, -4.0000005f, -4, -3.9999998f, -1e-45f, 0, 1, 9.414f, 9.415f, 10.9374f, 10.9375f,
-                                    10.93751f, 12, 65504, FLT_MAX };
-enum { N_DISTANCES = sizeof distances / sizeof *distances, N_SIGMAS = sizeof log_sigmas / sizeof *log_sigmas };
+static const float distances[] = { 0,       -0.0f,      1e-45f,  FLT_MIN, 0x1p-24f, 0.4999999f,
+                                   0.5f,    0.5000001f, 1,       2.374f,  2.375f,   2.376f,
+                                   4096.9f, 4097,       4097.1f, 32767,   65504,    1e9f,
+                                   1.1e9f,  1e20f,      1e30f,   FLT_MAX };
+static const float log_sigmas[] = { -FLT_MAX, -65504,    -5, -4.0000005f, -4,     -3.9999998f,
+                                    -1e-45f,  0,         1,  9.414f,      9.415f, 10.9374f,
+                                    10.9375f, 10.93751f, 12, 65504,       FLT_MAX };
+enum {
+    N_DISTANCES = sizeof distances / sizeof *distances,
+    N_SIGMAS = sizeof log_sigmas / sizeof *log_sigmas
+};
 
 /* Bits of every distance with every sigma, and slopes where they are smooth. */
 static void test_symbols(void **state)
@@ -50,26 +57,33 @@ static void test_symbols(void **state)
             all_finite(d_u, TED4_LANES, "slope by k");
             all_finite(d_s, TED4_LANES, "slope by s");
 
-            const double sigma = fmin(fmax((double)s[0], REF_S_MIN), REF_S_MAX), a = fmin((double)distances[k], 1e9);
+            const double sigma = fmin(fmax((double)s[0], REF_S_MIN), REF_S_MAX),
+                         a = fmin((double)distances[k], 1e9);
             const double w = fmin(6 * exp2(sigma), 4095) + 2, h = 1e-5 * exp2(sigma);
 
             if (!close_to((double)bits[0], ref_bits(a, sigma), 2e-6, 3e-5))
-                fail_msg("distance %g, log2 sigma %g: %g bits, not %g", a, sigma, (double)bits[0], ref_bits(a, sigma));
-            assert_true(bits[0] > 0 && bits[0] == bits[1] && d_s[0] == d_s[1] && (a <= 0 || d_u[0] == -d_u[1]));
+                fail_msg("distance %g, log2 sigma %g: %g bits, not %g", a, sigma, (double)bits[0],
+                         ref_bits(a, sigma));
+            assert_true(bits[0] > 0 && bits[0] == bits[1] && d_s[0] == d_s[1] &&
+                        (a <= 0 || d_u[0] == -d_u[1]));
             if (fabs(a - w) < 0.01 || a < 2 * h || a > 1e8)
-                continue;               /* kinks, and where a step is lost in a */
+                continue; /* kinks, and where a step is lost in a */
             const double du = (ref_bits(a + h, sigma) - ref_bits(a - h, sigma)) / (2 * h);
 
             if (!close_to((double)d_u[0], du, 5e-4, 5e-5 / exp2(sigma)))
-                fail_msg("distance %g, log2 sigma %g: slope %g, not %g", a, sigma, (double)d_u[0], du);
+                fail_msg("distance %g, log2 sigma %g: slope %g, not %g", a, sigma, (double)d_u[0],
+                         du);
         }
 }
 
-/* The coder at the same ends: every sigma index, means at the ends of what networks give, symbols at the rails. Slots are never empty, escapes within their
- * bits, and the way back leads to the symbol. */
+/* The coder at the same ends: every sigma index, means at the ends of what networks give, symbols
+ * at the rails. Slots are never empty, escapes within their bits, and the way back leads to the
+ * symbol. */
 static void test_coder(void **state)
 {
-    static const int32_t mu[] = { 0, 1, -1, 255, -256, 32767 * 256, -32767 * 256, (1 << 23) - 1, -(1 << 23) + 1 };
+    static const int32_t mu[] = {
+        0, 1, -1, 255, -256, 32767 * 256, -32767 * 256, (1 << 23) - 1, -(1 << 23) + 1
+    };
     static const int32_t symbol[] = { 0, 1, -1, 4095, -4096, 32766, 32767, -32767 };
 
     (void)state;
@@ -77,39 +91,46 @@ static void test_coder(void **state)
         for (size_t m = 0; m < sizeof mu / sizeof *mu; m++)
             for (size_t k = 0; k < sizeof symbol / sizeof *symbol; k++) {
                 const ted4_gauss_symbol s = ted4_gauss_of(mu[m], g, symbol[k]);
-                const int32_t whole = ted4_floor_shift(mu[m], TED4_MU_BITS), fr = mu[m] - whole * 256;
-                ted4_slots    found;
+                const int32_t whole = ted4_floor_shift(mu[m], TED4_MU_BITS),
+                              fr = mu[m] - whole * 256;
+                ted4_slots found;
 
                 assert_true(s.slots.freq > 0 && s.slots.start + s.slots.freq <= 65536);
                 assert_true(s.escape >= -1 && s.escape < 1 << TED4_ESCAPE_BITS);
                 const uint32_t j = ted4_gauss_find(g, fr, s.slots.start + s.slots.freq - 1, &found);
 
                 assert_true(found.start == s.slots.start && found.freq == s.slots.freq);
-                assert_int_equal(symbol[k], whole + (s.escape < 0 ? ted4_gauss_offset(g, j) : ted4_gauss_escaped(g, j, s.escape)));
+                assert_int_equal(symbol[k],
+                                 whole + (s.escape < 0 ? ted4_gauss_offset(g, j)
+                                                       : ted4_gauss_escaped(g, j, s.escape)));
             }
 }
 
 /* ---- the quantiser ---- */
 
-/* Values from nothing to beyond every symbol with steps from the least to the largest of the format: rounding gives the nearest multiple within +-32767 steps,
- * noise moves by less than half a step, and a_f is never before a_s. */
+/* Values from nothing to beyond every symbol with steps from the least to the largest of the
+ * format: rounding gives the nearest multiple within +-32767 steps, noise moves by less than half a
+ * step, and a_f is never before a_s. */
 static void test_quantiser(void **state)
 {
-    static const float value[] = { 0, -0.0f, 1e-45f, FLT_MIN, 0x1p-24f, 0.5f, 1, 65504, -65504, 1e9f, -1e30f, 1e31f };
+    static const float value[] = { 0, -0.0f, 1e-45f, FLT_MIN, 0x1p-24f, 0.5f,
+                                   1, 65504, -65504, 1e9f,    -1e30f,   1e31f };
     static const float step[] = { 1e-6f, 0x1p-14f, 0.01f, 1, 65504 };
-    static ref_world   w;
-    const ted4_header  h = ref_header();
+    static ref_world w;
+    const ted4_header h = ref_header();
 
     (void)state;
     ref_world_make(&w, &h);
     const ted4_layout *l = &w.layout;
-    const size_t       size = (size_t)l->n_channels * TED4_LANES, n = (size_t)l->offset_logit * TED4_LANES;
-    float             *out = ref_floats(size), *residual = ref_floats(size);
+    const size_t size = (size_t)l->n_channels * TED4_LANES,
+                 n = (size_t)l->offset_logit * TED4_LANES;
+    float *out = ref_floats(size), *residual = ref_floats(size);
 
     for (size_t i = 0; i < sizeof value / sizeof *value; i++)
         for (size_t k = 0; k < sizeof step / sizeof *step; k++)
             for (int quant = TED4_QUANT_NOISE; quant <= TED4_QUANT_ROUND; quant++) {
-                const double x = (double)value[i], q = (double)step[k], symbol = fmin(fmax(rint(x / q), -32767), 32767);
+                const double x = (double)value[i], q = (double)step[k],
+                             symbol = fmin(fmax(rint(x / q), -32767), 32767);
 
                 for (size_t j = 0; j < n; j++)
                     w.attr[0][j] = value[i];
@@ -123,13 +144,18 @@ static void test_quantiser(void **state)
                     const double k_of = x / q + (double)residual[j];
 
                     if (quant == TED4_QUANT_ROUND)
-                        assert_true(close_to((double)out[j], symbol * q, 1e-6, fabs(x / q - rint(x / q)) > 0.499 ? q : 0)
-                                    && close_to(k_of, symbol, 1e-6, 1e-6 * (fabs(x / q) + 1) + (fabs(x / q - rint(x / q)) > 0.499)));
+                        assert_true(close_to((double)out[j], symbol * q, 1e-6,
+                                             fabs(x / q - rint(x / q)) > 0.499 ? q : 0) &&
+                                    close_to(k_of, symbol, 1e-6,
+                                             1e-6 * (fabs(x / q) + 1) +
+                                                 (fabs(x / q - rint(x / q)) > 0.499)));
                     else
-                        assert_true(fabs((double)out[j] - x) <= 0.5 * q + 1e-6 * fabs(x) && fabs((double)residual[j]) < 0.5);
+                        assert_true(fabs((double)out[j] - x) <= 0.5 * q + 1e-6 * fabs(x) &&
+                                    fabs((double)residual[j]) < 0.5);
                 }
                 for (size_t j = 0; j < TED4_LANES; j++)
-                    assert_true(out[(size_t)l->first[TED4_TAU] * TED4_LANES + j] <= out[((size_t)l->first[TED4_TAU] + 2) * TED4_LANES + j]);
+                    assert_true(out[(size_t)l->first[TED4_TAU] * TED4_LANES + j] <=
+                                out[((size_t)l->first[TED4_TAU] + 2) * TED4_LANES + j]);
             }
     free(out);
     free(residual);
@@ -144,7 +170,8 @@ static void run(ref_world *w, double *bits)
     for (int t = 0; t < TED4_TYPES; t++)
         assert_true(isfinite(bits[t]) && bits[t] >= 0);
     for (int i = 0; i < REF_SLOTS; i++) {
-        all_finite(w->d_attr[i], (size_t)w->layout.n_channels * TED4_LANES, "gradient of an anchor");
+        all_finite(w->d_attr[i], (size_t)w->layout.n_channels * TED4_LANES,
+                   "gradient of an anchor");
         all_finite(w->steps[i], TED4_TYPES * TED4_LANES, "step");
     }
     all_finite(w->d_net, w->layout.n_net, "gradient of a network");
@@ -154,8 +181,8 @@ static void run(ref_world *w, double *bits)
 static void compare(ref_world *w, const double *bits, double relative)
 {
     const ref_model m = ref_model_make(w);
-    double          want[TED4_TYPES] = { 0 };
-    float          *noise = ref_floats((size_t)w->layout.n_channels * TED4_LANES);
+    double want[TED4_TYPES] = { 0 };
+    float *noise = ref_floats((size_t)w->layout.n_channels * TED4_LANES);
 
     for (int i = 0; i < REF_SLOTS; i++) {
         ref_noise(w, i, noise);
@@ -183,9 +210,9 @@ static void test_values(void **state)
     (void)state;
     for (size_t i = 0; i < sizeof value / sizeof *value; i++)
         for (int quant = TED4_QUANT_NOISE; quant <= TED4_QUANT_ROUND; quant++) {
-            static ref_world  w;
+            static ref_world w;
             const ted4_header h = ref_header();
-            double            bits[TED4_TYPES];
+            double bits[TED4_TYPES];
 
             ref_world_make(&w, &h);
             w.in.quant = (ted4_quant)quant;
@@ -194,14 +221,16 @@ static void test_values(void **state)
                     for (int j = 0; j < TED4_LANES; j++)
                         w.attr[s][c * TED4_LANES + j] = value[i];
             run(&w, bits);
-            /* Rounding holds symbols within their range, and distances are held below 1e9, which the reference does not know. */
+            /* Rounding holds symbols within their range, and distances are held below 1e9, which
+             * the reference does not know. */
             if (quant == TED4_QUANT_NOISE && value[i] < 1e8f)
                 compare(&w, bits, 1e-4);
             ref_world_finish(&w);
         }
 }
 
-/* Every output of the hyperprior at a rail: sigmas at floor and ceiling, steps at theirs, means beyond every symbol. */
+/* Every output of the hyperprior at a rail: sigmas at floor and ceiling, steps at theirs, means
+ * beyond every symbol. */
 static void test_outputs(void **state)
 {
     static const float out[] = { -65504, -200, -4, 0, 3.96875f, 10.9375f, 200, 65504 };
@@ -209,9 +238,9 @@ static void test_outputs(void **state)
     (void)state;
     for (size_t i = 0; i < sizeof out / sizeof *out; i++)
         for (int which = 0; which < 3; which++) {
-            static ref_world  w;
+            static ref_world w;
             const ted4_header h = ref_header();
-            double            bits[TED4_TYPES];
+            double bits[TED4_TYPES];
 
             ref_world_make(&w, &h);
             const ted4_shape *s = &w.layout.shape;
@@ -238,9 +267,9 @@ static void test_weights(void **state)
 
     (void)state;
     for (size_t i = 0; i < sizeof size / sizeof *size; i++) {
-        static ref_world  w;
+        static ref_world w;
         const ted4_header h = ref_header();
-        double            bits[TED4_TYPES];
+        double bits[TED4_TYPES];
 
         ref_world_make(&w, &h);
         for (size_t k = w.layout.nete; k < w.layout.n_net; k++)
@@ -259,9 +288,9 @@ static void test_gradient_sizes(void **state)
 
     (void)state;
     for (size_t i = 0; i < sizeof factor / sizeof *factor; i++) {
-        static ref_world  w;
+        static ref_world w;
         const ted4_header h = ref_header();
-        double            bits[TED4_TYPES];
+        double bits[TED4_TYPES];
 
         ref_world_make(&w, &h);
         w.in.bit_weight = factor[i];
@@ -278,22 +307,23 @@ static void test_gradient_sizes(void **state)
 
 /* ---- as the decoder does it ---- */
 
-/* Integer networks with all weights at the rails that their shifts allow, and values at FP16's ends: steps, means and sigmas stay within the tables; a value
- * farther beyond the last symbol is that symbol still, for the contexts of others too. */
+/* Integer networks with all weights at the rails that their shifts allow, and values at FP16's
+ * ends: steps, means and sigmas stay within the tables; a value farther beyond the last symbol is
+ * that symbol still, for the contexts of others too. */
 static void test_integer(void **state)
 {
     static const float value[] = { 0, 0x1p-24f, 1, 65504, 5e5f, -65504, -5e5f, 1e9f };
-    double             before[2] = { 0 };       /* bits of features that were at the last symbol, too */
+    double before[2] = { 0 }; /* bits of features that were at the last symbol, too */
 
     (void)state;
     for (size_t i = 0; i < sizeof value / sizeof *value; i++)
         for (int rail = 0; rail < 2; rail++) {
             static ref_world w;
-            ted4_header      h = ref_header();
-            double           bits[TED4_TYPES];
+            ted4_header h = ref_header();
+            double bits[TED4_TYPES];
 
             h.step[TED4_FEATURE] = 0.01f;
-            ref_seed = 5;               /* the same networks for every value */
+            ref_seed = 5; /* the same networks for every value */
             ref_world_make(&w, &h);
             uint8_t *shift = calloc(w.layout.shape.n_units, 1);
 
@@ -303,14 +333,17 @@ static void test_integer(void **state)
             for (size_t k = w.layout.nete; k < w.layout.n_net; k++) {
                 const float x = rail ? (w.net[k] < 0 ? -100.0f : 100.0f) : w.net[k];
 
-                w.net[k] = rintf(x * 256.0f) / 256.0f + 0.0f;   /* no -0 */
+                w.net[k] = rintf(x * 256.0f) / 256.0f + 0.0f; /* no -0 */
             }
             for (int s = 0; s < REF_SLOTS; s++)
                 for (int k = 0; k < w.layout.offset_logit * TED4_LANES; k++)
                     w.attr[s][k] = k % 3 == 1 ? -value[i] : value[i];
             for (int s = 0; s < REF_SLOTS; s++)
                 for (int k = 0; k < 3 * TED4_LANES; k++)
-                    w.position[s][k] = k % 4 == 0 ? 1 : k % 4 == 1 ? -1 : k % 4 == 2 ? 0x1p-24f : -0x1p-24f;
+                    w.position[s][k] = k % 4 == 0   ? 1
+                                       : k % 4 == 1 ? -1
+                                       : k % 4 == 2 ? 0x1p-24f
+                                                    : -0x1p-24f;
             w.in.quant = TED4_QUANT_INTEGER;
             w.in.shift = shift;
             run(&w, bits);
@@ -319,9 +352,11 @@ static void test_integer(void **state)
                     for (int j = 0; j < TED4_LANES; j++) {
                         const double q = (double)w.steps[s][t * TED4_LANES + j] / (double)h.step[t];
 
-                        assert_true(q >= exp2(REF_V_MIN) * 0.999999 && q <= exp2(REF_V_MAX) * 1.000001);
+                        assert_true(q >= exp2(REF_V_MIN) * 0.999999 &&
+                                    q <= exp2(REF_V_MAX) * 1.000001);
                     }
-            if (fabs((double)value[i]) == 5e5 && !close_to(bits[TED4_FEATURE], before[rail], 1e-3, 0))
+            if (fabs((double)value[i]) == 5e5 &&
+                !close_to(bits[TED4_FEATURE], before[rail], 1e-3, 0))
                 fail_msg("%g: %g bits, not %g", (double)value[i], bits[TED4_FEATURE], before[rail]);
             before[rail] = bits[TED4_FEATURE];
             free(shift);
@@ -332,9 +367,10 @@ static void test_integer(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_symbols), cmocka_unit_test(test_coder), cmocka_unit_test(test_quantiser), cmocka_unit_test(test_values),
-        cmocka_unit_test(test_outputs), cmocka_unit_test(test_weights), cmocka_unit_test(test_gradient_sizes),
-        cmocka_unit_test(test_integer),
+        cmocka_unit_test(test_symbols),        cmocka_unit_test(test_coder),
+        cmocka_unit_test(test_quantiser),      cmocka_unit_test(test_values),
+        cmocka_unit_test(test_outputs),        cmocka_unit_test(test_weights),
+        cmocka_unit_test(test_gradient_sizes), cmocka_unit_test(test_integer),
     };
 
     return cmocka_run_group_tests_name("rate at its extremes", tests, NULL, NULL);

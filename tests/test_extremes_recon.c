@@ -1,6 +1,6 @@
-/* test_extremes_recon.c - strict reconstruction and the integer networks at the ends of what a file can say: symbols, steps, exponents, FP16
- * positions, weights and durations at their rails; a query that gives anything infinite is refused, and all others give the bits of the text
- * (recon_ref.h).
+/* test_extremes_recon.c - strict reconstruction and the integer networks at the ends of what a file
+ * can say: symbols, steps, exponents, FP16 positions, weights and durations at their rails; a query
+ * that gives anything infinite is refused, and all others give the bits of the text (recon_ref.h).
  * SPDX-License-Identifier: BSD-2-Clause */
 #include <setjmp.h>
 #include <stdarg.h>
@@ -26,9 +26,22 @@ static int n_refused, n_answered;
 /* Small, with everything that steers reconstruction in it. */
 static ted4_header base_header(int motion)
 {
-    ted4_header h = { .n_anchors = 40, .tile_size = 64, .n_offsets = 3, .feature_dim = 6, .prior = TED4_PRIOR_FACTORISED, .n_slices = 1,
-                      .slice = { 6 }, .view = TED4_VIEW_FULL, .head_layers = 1, .head_width = 9, .activation = 1, .frames = 9,
-                      .rate_num = 30, .rate_den = 1, .exponent = 2, .motion = (uint8_t)motion };
+    ted4_header h = { .n_anchors = 40,
+                      .tile_size = 64,
+                      .n_offsets = 3,
+                      .feature_dim = 6,
+                      .prior = TED4_PRIOR_FACTORISED,
+                      .n_slices = 1,
+                      .slice = { 6 },
+                      .view = TED4_VIEW_FULL,
+                      .head_layers = 1,
+                      .head_width = 9,
+                      .activation = 1,
+                      .frames = 9,
+                      .rate_num = 30,
+                      .rate_den = 1,
+                      .exponent = 2,
+                      .motion = (uint8_t)motion };
 
     if (motion != TED4_MOTION_NONE) {
         h.deform_layers = 2;
@@ -45,16 +58,20 @@ static ted4_header base_header(int motion)
 
 static float record_value(const ted4_gaussians *g, size_t i, int c)
 {
-    return c < 3 ? g->mean[c][i] : c < 6 ? g->scale[c - 3][i] : c < 10 ? g->rot[c - 6][i] : c == 10 ? g->opacity[i] : g->colour[c - 11][i];
+    return c < 3     ? g->mean[c][i]
+           : c < 6   ? g->scale[c - 3][i]
+           : c < 10  ? g->rot[c - 6][i]
+           : c == 10 ? g->opacity[i]
+                     : g->colour[c - 11][i];
 }
 
 /* One query of the scene: the bits of the text, or a refusal where these are not all finite. */
 static void check(const ted4_query *q)
 {
-    const size_t   n = ref_query(&scene, q, 1, wanted);
+    const size_t n = ref_query(&scene, q, 1, wanted);
     ted4_gaussians g;
-    ted4_recon    *r;
-    int            finite = 1;
+    ted4_recon *r;
+    int finite = 1;
 
     assert_true(n > 0 && n <= MAX_RECORDS);
     for (size_t i = 0; i < n * REF_VALUES; i++)
@@ -64,7 +81,8 @@ static void check(const ted4_query *q)
     assert_int_equal(g.n, finite ? n : 0);
     for (size_t i = 0; i < g.n; i++)
         for (int c = 0; c < REF_VALUES; c++) {
-            const float got = record_value(&g, i, c), want = (float)wanted[i * REF_VALUES + (size_t)c];
+            const float got = record_value(&g, i, c),
+                        want = (float)wanted[i * REF_VALUES + (size_t)c];
 
             if (ted4_float_bits(got) != ted4_float_bits(want))
                 fail_msg("record %zu, value %d: %.9g, not %.9g", i, c, (double)got, (double)want);
@@ -77,7 +95,10 @@ static void check(const ted4_query *q)
 static void check_times(void)
 {
     static const ted4_query queries[] = {
-        { 0, 1, { 0.5f, -2, 3 } }, { 1, 1, { 0.5f, -2, 3 } }, { 16777214, 16777215, { -1.5f, 0.25f, 0.125f } }, { 1, 16777215, { 65504, 0, -65504 } },
+        { 0, 1, { 0.5f, -2, 3 } },
+        { 1, 1, { 0.5f, -2, 3 } },
+        { 16777214, 16777215, { -1.5f, 0.25f, 0.125f } },
+        { 1, 16777215, { 65504, 0, -65504 } },
     };
 
     for (size_t i = 0; i < sizeof queries / sizeof *queries; i++)
@@ -90,7 +111,8 @@ static void begin(const ted4_header *h)
     scene_make(&scene, h, 41u + h->motion);
 }
 
-/* Symbols of all types at the rails and around 0, with the finest and the coarsest step, in both domains of scalings. */
+/* Symbols of all types at the rails and around 0, with the finest and the coarsest step, in both
+ * domains of scalings. */
 static void test_symbols(void **state)
 {
     static const int16_t symbol[] = { 0, 1, -1, 32767, -32767 };
@@ -114,7 +136,8 @@ static void test_symbols(void **state)
             }
 }
 
-/* One type at a time, the others ordinary: durations at their floor and far beyond, sizes from 2^-126 to 2^126. */
+/* One type at a time, the others ordinary: durations at their floor and far beyond, sizes from
+ * 2^-126 to 2^126. */
 static void test_types(void **state)
 {
     (void)state;
@@ -143,13 +166,14 @@ static void test_edges(void **state)
     scene.head.step[TED4_TAU] = 0x1p-7f;
     for (size_t i = 0; i < h.n_anchors; i++) {
         scene.step_index[TED4_TAU][i] = 128;
-        scene.symbol[TED4_TAU][i] = 32;                 /* 1/4 */
-        scene.symbol[TED4_TAU][2 * h.n_anchors + i] = 96;       /* 3/4 */
-        scene.symbol[TED4_TAU][h.n_anchors + i] = scene.symbol[TED4_TAU][3 * h.n_anchors + i] = (int16_t)(-1536 + 4 * ((int)i % 3 - 1));   /* 2^-12 */
+        scene.symbol[TED4_TAU][i] = 32;                   /* 1/4 */
+        scene.symbol[TED4_TAU][2 * h.n_anchors + i] = 96; /* 3/4 */
+        scene.symbol[TED4_TAU][h.n_anchors + i] = scene.symbol[TED4_TAU][3 * h.n_anchors + i] =
+            (int16_t)(-1536 + 4 * ((int)i % 3 - 1)); /* 2^-12 */
     }
     for (uint32_t at = 0; at <= 4; at++)
         for (int off = -3; off <= 3; off++) {
-            const int64_t    num = (int64_t)at * (1 << 21) + off;
+            const int64_t num = (int64_t)at * (1 << 21) + off;
             const ted4_query q = { (uint32_t)num, 1 << 23, { 1, 2, 3 } };
 
             if (num >= 0 && num <= 1 << 23)
@@ -159,11 +183,13 @@ static void test_edges(void **state)
     scene_finish(&scene);
 }
 
-/* Positions from the least FP16 to 1, exponents from -30 to 30, origins from nothing to huge, cameras likewise. */
+/* Positions from the least FP16 to 1, exponents from -30 to 30, origins from nothing to huge,
+ * cameras likewise. */
 static void test_places(void **state)
 {
-    static const uint16_t half[] = { 0x0000, 0x8000, 0x0001, 0x8001, 0x03ff, 0x0400, 0x8400, 0x3bff, 0x3c00, 0xbc00 };
-    static const float    far[] = { 0, 0x1p-126f, 1, 65504, 1e20f, 1e38f, FLT_MAX };
+    static const uint16_t half[] = { 0x0000, 0x8000, 0x0001, 0x8001, 0x03ff,
+                                     0x0400, 0x8400, 0x3bff, 0x3c00, 0xbc00 };
+    static const float far[] = { 0, 0x1p-126f, 1, 65504, 1e20f, 1e38f, FLT_MAX };
 
     (void)state;
     for (int exponent = -30; exponent <= 30; exponent += 15)
@@ -178,12 +204,13 @@ static void test_places(void **state)
                 scene.position[k] = half[k % (sizeof half / sizeof *half)];
             check_times();
             for (size_t k = 0; k < sizeof far / sizeof *far; k++)
-                check(&(ted4_query){ 3, 7, { far[k], -far[k], 0 } });
+                check(&(ted4_query) { 3, 7, { far[k], -far[k], 0 } });
             scene_finish(&scene);
         }
 }
 
-/* Weights, biases and the bank at FP16's ends and at those of binary32: heads saturate, and sums that overflow are refused. */
+/* Weights, biases and the bank at FP16's ends and at those of binary32: heads saturate, and sums
+ * that overflow are refused. */
 static void test_weights(void **state)
 {
     static const float size[] = { 0, 0x1p-126f, 0x1p-24f, 0x1p-14f, 65504, 1e10f, 1e20f, FLT_MAX };
@@ -211,7 +238,8 @@ static void test_weights(void **state)
 
 enum { IN = 64, OUT = 25, BLOCK = TED4_PRIOR_BLOCK };
 
-/* A layer whose sums reach, but do not pass, the ends of 32 bits: sum |W| 32767 + |B| + 2^(r-1) is 2^31 - 1, for every shift r from 0 on. */
+/* A layer whose sums reach, but do not pass, the ends of 32 bits: sum |W| 32767 + |B| + 2^(r-1) is
+ * 2^31 - 1, for every shift r from 0 on. */
 static void test_sums(void **state)
 {
     static _Alignas(64) int16_t w[OUT * IN], x[IN * BLOCK], h[OUT * BLOCK], fast_h[OUT * BLOCK];
@@ -223,7 +251,7 @@ static void test_sums(void **state)
     for (int sign = -1; sign <= 1; sign += 2) {
         for (int o = 0; o < OUT; o++) {
             const int64_t half = o > 0 ? (int64_t)1 << (o - 1) : 0;
-            int64_t       left = INT32_MAX - half;
+            int64_t left = INT32_MAX - half;
 
             for (int i = 0; i < IN; i++) {
                 const int64_t most = left / 32767 < 32767 ? left / 32767 : 32767;
@@ -236,7 +264,11 @@ static void test_sums(void **state)
         }
         for (int i = 0; i < IN; i++)
             for (int a = 0; a < BLOCK; a++)
-                x[i * BLOCK + a] = (int16_t)(a % 4 == 0 ? 32767 : a % 4 == 1 ? -32767 : (i % 2 ? -1 : 1) * (a % 4 == 2 ? sign : -sign) * 32767);
+                x[i * BLOCK + a] =
+                    (int16_t)(a % 4 == 0 ? 32767
+                              : a % 4 == 1
+                                  ? -32767
+                                  : (i % 2 ? -1 : 1) * (a % 4 == 2 ? sign : -sign) * 32767);
         ted4_int_dense_plain.hidden(&l, x, BLOCK, h);
         ted4_int_dense_plain.last(&l, x, BLOCK, y);
         ted4_select_int_dense()->hidden(&l, x, BLOCK, fast_h);
@@ -253,9 +285,13 @@ static void test_sums(void **state)
                 assert_true(sum >= INT32_MIN && sum <= INT32_MAX);
                 if (a % 4 == 2)
                     assert_true(sum > INT32_MAX - 32768 || sum < INT32_MIN + ((int64_t)1 << 25));
-                const int64_t shifted = (sum - ((sum % ((int64_t)1 << o) + ((int64_t)1 << o)) % ((int64_t)1 << o))) / ((int64_t)1 << o);
+                const int64_t shifted =
+                    (sum - ((sum % ((int64_t)1 << o) + ((int64_t)1 << o)) % ((int64_t)1 << o))) /
+                    ((int64_t)1 << o);
                 const int64_t want_h = shifted < 0 ? 0 : shifted > 32767 ? 32767 : shifted;
-                const int64_t want_y = shifted < -TED4_OUTPUT_MAX ? -TED4_OUTPUT_MAX : shifted > TED4_OUTPUT_MAX ? TED4_OUTPUT_MAX : shifted;
+                const int64_t want_y = shifted < -TED4_OUTPUT_MAX  ? -TED4_OUTPUT_MAX
+                                       : shifted > TED4_OUTPUT_MAX ? TED4_OUTPUT_MAX
+                                                                   : shifted;
 
                 assert_int_equal(h[o * BLOCK + a], want_h);
                 assert_int_equal(y[o * BLOCK + a], want_y);
@@ -263,21 +299,28 @@ static void test_sums(void **state)
     }
 }
 
-/* What outputs mean, at the ends of what they can be: an output of the hyperprior and what all slices add. */
+/* What outputs mean, at the ends of what they can be: an output of the hyperprior and what all
+ * slices add. */
 static void test_indices(void **state)
 {
-    static const int32_t output[] = { 0, TED4_OUTPUT_MAX, -TED4_OUTPUT_MAX, 2 * TED4_OUTPUT_MAX, -2 * TED4_OUTPUT_MAX };
+    static const int32_t output[] = { 0, TED4_OUTPUT_MAX, -TED4_OUTPUT_MAX, 2 * TED4_OUTPUT_MAX,
+                                      -2 * TED4_OUTPUT_MAX };
 
     (void)state;
     for (size_t i = 0; i < sizeof output / sizeof *output; i++) {
-        assert_int_equal(ted4_step_index(output[i]), output[i] == 0 ? 128 : output[i] > 0 ? 255 : 0);
-        assert_int_equal(ted4_sigma_index(output[i]), output[i] == 0 ? 64 : output[i] > 0 ? TED4_N_SIGMA - 1 : 0);
+        assert_int_equal(ted4_step_index(output[i]), output[i] == 0  ? 128
+                                                     : output[i] > 0 ? 255
+                                                                     : 0);
+        assert_int_equal(ted4_sigma_index(output[i]), output[i] == 0  ? 64
+                                                      : output[i] > 0 ? TED4_N_SIGMA - 1
+                                                                      : 0);
     }
     for (unsigned bits = 0; bits <= 12; bits++)
         for (int index = 0; index < 256; index++)
             for (int k = -32767; k <= 32767; k += 32767) {
-                const int    got = ted4_context((int16_t)k, (uint8_t)index, bits);
-                const double want = fmin(fmax(k * exp2((index - 128) / 32.0 + bits), -32767), 32767);
+                const int got = ted4_context((int16_t)k, (uint8_t)index, bits);
+                const double want =
+                    fmin(fmax(k * exp2((index - 128) / 32.0 + bits), -32767), 32767);
 
                 assert_true(fabs(got - want) <= 2.5e-3 * fabs(want) + 0.5);
             }
@@ -286,8 +329,10 @@ static void test_indices(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_symbols), cmocka_unit_test(test_types), cmocka_unit_test(test_edges), cmocka_unit_test(test_places),
-        cmocka_unit_test(test_weights), cmocka_unit_test(test_sums), cmocka_unit_test(test_indices),
+        cmocka_unit_test(test_symbols), cmocka_unit_test(test_types),
+        cmocka_unit_test(test_edges),   cmocka_unit_test(test_places),
+        cmocka_unit_test(test_weights), cmocka_unit_test(test_sums),
+        cmocka_unit_test(test_indices),
     };
 
     return cmocka_run_group_tests_name("reconstruction at its extremes", tests, NULL, NULL);

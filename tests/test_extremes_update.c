@@ -1,5 +1,6 @@
-/* test_extremes_update.c - Adam, the regulariser of volumes, that of the bank, mask losses and learning rates at their extremes: gradients from nothing to the
- * largest of binary32, no Gaussian on screen and one, banks of FP16's ends. Against double precision; everything stays finite.
+/* test_extremes_update.c - Adam, the regulariser of volumes, that of the bank, mask losses and
+ * learning rates at their extremes: gradients from nothing to the largest of binary32, no Gaussian
+ * on screen and one, banks of FP16's ends. Against double precision; everything stays finite.
  * SPDX-License-Identifier: BSD-2-Clause */
 #include <setjmp.h>
 #include <stdarg.h>
@@ -15,27 +16,32 @@
 
 /* ---- Adam ---- */
 
-typedef struct { float x[TED4_LANES], m[TED4_LANES], v[TED4_LANES], g[TED4_LANES]; } row;
+typedef struct {
+    float x[TED4_LANES], m[TED4_LANES], v[TED4_LANES], g[TED4_LANES];
+} row;
 
 static void step(row *r, uint64_t count, float rate)
 {
     ted4_adam(r->x, r->m, r->v, r->g, TED4_LANES, rate, ted4_adam_bias_make(count));
     for (int j = 0; j < TED4_LANES; j++)
         if (!(isfinite(r->x[j]) && isfinite(r->m[j]) && isfinite(r->v[j]) && r->v[j] >= 0))
-            fail_msg("step %llu of gradient %g: %g, moments %g, %g", (unsigned long long)count, (double)r->g[j], (double)r->x[j], (double)r->m[j],
-                     (double)r->v[j]);
+            fail_msg("step %llu of gradient %g: %g, moments %g, %g", (unsigned long long)count,
+                     (double)r->g[j], (double)r->x[j], (double)r->m[j], (double)r->v[j]);
 }
 
-/* The same gradient again and again moves a value by the rate times g / (|g| + 1e-15) a step, in double. Squares below 1e-38 and above 1e38 vanish and
- * overflow: there the step is smaller than that, and never against the gradient. */
+/* The same gradient again and again moves a value by the rate times g / (|g| + 1e-15) a step, in
+ * double. Squares below 1e-38 and above 1e38 vanish and overflow: there the step is smaller than
+ * that, and never against the gradient. */
 static void test_adam_sizes(void **state)
 {
-    static const float size[] = { 0, 1e-45f, FLT_MIN, 1e-30f, 1e-22f, 1e-19f, 1e-17f, 1e-15f, 1e-10f, 1, 65504, 1e10f, 1e17f, 1e19f, 1e21f, 1e30f, FLT_MAX };
+    static const float size[] = { 0,      1e-45f, FLT_MIN, 1e-30f, 1e-22f, 1e-19f,
+                                  1e-17f, 1e-15f, 1e-10f,  1,      65504,  1e10f,
+                                  1e17f,  1e19f,  1e21f,   1e30f,  FLT_MAX };
 
     (void)state;
     for (size_t i = 0; i < sizeof size / sizeof *size; i++) {
         const double g = (double)size[i];
-        row          r = { .x = { 0 } };
+        row r = { .x = { 0 } };
 
         for (int j = 0; j < TED4_LANES; j++)
             r.g[j] = j % 2 ? -size[i] : size[i];
@@ -107,15 +113,16 @@ static void begin(ted4_trainer *t, uint32_t frames)
         fail_msg("%s", t->message.text);
 }
 
-/* Sizes from nothing to what the rasteriser still draws, for all, one or none on screen: the gradient of a size is weight / n times the product of the others,
- * and those off screen, which may be of any size at all, have none. */
+/* Sizes from nothing to what the rasteriser still draws, for all, one or none on screen: the
+ * gradient of a size is weight / n times the product of the others, and those off screen, which may
+ * be of any size at all, have none. */
 static void test_volume(void **state)
 {
     static const float size[] = { 0, 1e-45f, FLT_MIN, 0x1p-24f, 1, 65504, 1e9f, 1e12f, FLT_MAX };
-    static float       scale[3][SPLATS], d[3][SPLATS], centre[3][SPLATS];
-    static uint8_t     seen[SPLATS];
-    ted4_splats        s = { .n = SPLATS, .scale = { scale[0], scale[1], scale[2] } };
-    ted4_trainer       t;
+    static float scale[3][SPLATS], d[3][SPLATS], centre[3][SPLATS];
+    static uint8_t seen[SPLATS];
+    ted4_splats s = { .n = SPLATS, .scale = { scale[0], scale[1], scale[2] } };
+    ted4_trainer t;
 
     (void)state;
     begin(&t, 1);
@@ -127,7 +134,7 @@ static void test_volume(void **state)
     t.splat_gradient.visible = seen;
     for (size_t k = 0; k < sizeof size / sizeof *size; k++)
         for (int who = 0; who < 3; who++) {
-            const int    n = who == 0 ? 0 : who == 1 ? 1 : SPLATS;
+            const int n = who == 0 ? 0 : who == 1 ? 1 : SPLATS;
             const double a = (double)size[k], want = n > 0 ? 0.5 / n * a * 0.25 : 0;
 
             if (who == 2 && size[k] > 1e30f)
@@ -144,8 +151,9 @@ static void test_volume(void **state)
                 for (int j = 0; j < 3; j++)
                     assert_true(isfinite(d[j][i]) && (seen[i] || d[j][i] == 0));
                 if (seen[i] && size[k] < 1e30f)
-                    assert_true(fabs((double)d[1][i] - want) <= 1e-6 * want + 1e-45 && d[1][i] == d[2][i]
-                                && fabs((double)d[0][i] - 0.5 / n * 0.0625) <= 1e-8);
+                    assert_true(fabs((double)d[1][i] - want) <= 1e-6 * want + 1e-45 &&
+                                d[1][i] == d[2][i] &&
+                                fabs((double)d[0][i] - 0.5 / n * 0.0625) <= 1e-8);
             }
         }
     ted4_trainer_finish(&t);
@@ -153,11 +161,12 @@ static void test_volume(void **state)
 
 /* ---- bank ---- */
 
-/* Rows from all 0 to alternating FP16 extremes, and beyond: 2 weight / count times the second difference of the second differences. */
+/* Rows from all 0 to alternating FP16 extremes, and beyond: 2 weight / count times the second
+ * difference of the second differences. */
 static void test_bank(void **state)
 {
     static const float size[] = { 0, 1e-45f, 0x1p-24f, 1, 65504, 1e18f, 1e30f };
-    ted4_trainer       t;
+    ted4_trainer t;
 
     (void)state;
     begin(&t, 9);
@@ -191,11 +200,14 @@ static void test_bank(void **state)
 
 /* ---- masks ---- */
 
-/* Logits from one rail to the other: the slope of the sigmoid, 0 at the rails, and a step of Adam that leaves everything finite. */
+/* Logits from one rail to the other: the slope of the sigmoid, 0 at the rails, and a step of Adam
+ * that leaves everything finite. */
 static void test_masks(void **state)
 {
-    static const float logit[] = { -FLT_MAX, -65504, -100, -88, -20, 0, 20, 88, 100, 65504, FLT_MAX };
-    ted4_trainer       t;
+    static const float logit[] = {
+        -FLT_MAX, -65504, -100, -88, -20, 0, 20, 88, 100, 65504, FLT_MAX
+    };
+    ted4_trainer t;
 
     (void)state;
     begin(&t, 5);
@@ -204,7 +216,8 @@ static void test_masks(void **state)
 
     t.opt.temporal_weight = 0.7;
     for (size_t k = 0; k < sizeof logit / sizeof *logit; k++) {
-        const double x = (double)logit[k], want = 0.7 / n * (fabs(x) > 700 ? 0 : 1 / (2 + exp(x) + exp(-x)));
+        const double x = (double)logit[k],
+                     want = 0.7 / n * (fabs(x) > 700 ? 0 : 1 / (2 + exp(x) + exp(-x)));
 
         for (size_t i = 0; i < t.anchors.n; i++)
             *ted4_cell(&t.anchors, TED4_ROW_VALUE, i, t.layout.temporal_logit) = logit[k];
@@ -213,7 +226,8 @@ static void test_masks(void **state)
         ted4_update_parameters(&t);
         for (size_t b = 0; b < t.slots.n; b++)
             for (size_t j = 0; j < TED4_LANES; j++) {
-                const double got = (double)t.slots.gradient[b][(size_t)t.layout.temporal_logit * TED4_LANES + j];
+                const double got =
+                    (double)t.slots.gradient[b][(size_t)t.layout.temporal_logit * TED4_LANES + j];
 
                 if (t.slots.lanes[b] >> j & 1 && !(fabs(got - want) <= 1e-5 * want + 1e-9))
                     fail_msg("logit %g: gradient %g, not %g", x, got, want);
@@ -228,10 +242,14 @@ static void test_masks(void **state)
 /* Nothing at first; then one value at a time at, and just inside of, each end. */
 static void test_clamped(void **state)
 {
-    static const struct { int type, component; float held, free, step; } at[] = {
-        { TED4_SCALING, 0, 126.5f, 126, 0 },       { TED4_SCALING, 5, -200, -126, 0 },     { TED4_TAU, 1, -12, -11.99f, 0 },
-        { TED4_TAU, 3, -FLT_MAX, 5, 0 },           { TED4_TAU, 2, 65504, 2, 0.01f },       { TED4_FEATURE, 3, -32768, -32767, 1 },
-        { TED4_OFFSET, 8, FLT_MAX, 655, 0.02f },   { TED4_PHI, 0, -65504, 1.5f, 0x1p-14f },
+    static const struct {
+        int type, component;
+        float held, free, step;
+    } at[] = {
+        { TED4_SCALING, 0, 126.5f, 126, 0 },     { TED4_SCALING, 5, -200, -126, 0 },
+        { TED4_TAU, 1, -12, -11.99f, 0 },        { TED4_TAU, 3, -FLT_MAX, 5, 0 },
+        { TED4_TAU, 2, 65504, 2, 0.01f },        { TED4_FEATURE, 3, -32768, -32767, 1 },
+        { TED4_OFFSET, 8, FLT_MAX, 655, 0.02f }, { TED4_PHI, 0, -65504, 1.5f, 0x1p-14f },
     };
     ted4_trainer t;
 
@@ -241,7 +259,8 @@ static void test_clamped(void **state)
 
     assert_int_equal(ted4_clamped(&t), 0);
     for (size_t k = 0; k < sizeof at / sizeof *at; k++) {
-        float *x = ted4_cell(&t.anchors, TED4_ROW_VALUE, last, t.layout.first[at[k].type] + at[k].component);
+        float *x = ted4_cell(&t.anchors, TED4_ROW_VALUE, last,
+                             t.layout.first[at[k].type] + at[k].component);
         float *q = ted4_cell(&t.anchors, TED4_ROW_STEP, last, at[k].type);
         const float before = *x;
 
@@ -256,7 +275,8 @@ static void test_clamped(void **state)
     t.layout.head.scale_domain = TED4_SCALE_LINEAR;
     for (size_t i = 0; i < t.anchors.n; i++)
         for (int c = 0; c < 6; c++)
-            *ted4_cell(&t.anchors, TED4_ROW_VALUE, i, t.layout.first[TED4_SCALING] + c) = i < 3 && c == 1 ? 0x1p-20f : 0x1p-19f;
+            *ted4_cell(&t.anchors, TED4_ROW_VALUE, i, t.layout.first[TED4_SCALING] + c) =
+                i < 3 && c == 1 ? 0x1p-20f : 0x1p-19f;
     assert_int_equal(ted4_clamped(&t), 3);
     ted4_trainer_finish(&t);
 }
@@ -264,8 +284,9 @@ static void test_clamped(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_adam_sizes), cmocka_unit_test(test_adam_recovers), cmocka_unit_test(test_bias),
-        cmocka_unit_test(test_volume), cmocka_unit_test(test_bank), cmocka_unit_test(test_masks),
+        cmocka_unit_test(test_adam_sizes), cmocka_unit_test(test_adam_recovers),
+        cmocka_unit_test(test_bias),       cmocka_unit_test(test_volume),
+        cmocka_unit_test(test_bank),       cmocka_unit_test(test_masks),
         cmocka_unit_test(test_clamped),
     };
 

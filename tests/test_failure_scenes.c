@@ -1,5 +1,5 @@
-/* test_failure_scenes.c - the scenes in which methods fail show what they are named for, judged by what cameras see; and those for file sizes. Links
- * tests/scenes/ray_*.o.
+/* test_failure_scenes.c - the scenes in which methods fail show what they are named for, judged by
+ * what cameras see; and those for file sizes. Links tests/scenes/ray_*.o.
  * SPDX-License-Identifier: BSD-2-Clause */
 #include <math.h>
 #include <setjmp.h>
@@ -74,9 +74,10 @@ static double brightness(const uint8_t *rgb)
     return sum / SIZE;
 }
 
-/* mask[height][width]: is one of those of-many objects seen that come before the last from_end of the world? Returns in how many
- * pixels. */
-static int find(const ted4_ray_options *o, int number, int frame, int from_end, int of, uint8_t *mask)
+/* mask[height][width]: is one of those of-many objects seen that come before the last from_end of
+ * the world? Returns in how many pixels. */
+static int find(const ted4_ray_options *o, int number, int frame, int from_end, int of,
+                uint8_t *mask)
 {
     ted4_ray_camera c;
     ted4_ray_world w;
@@ -139,7 +140,9 @@ static void test_edge(void **state)
 {
     const ted4_ray_options o = plan(RAY_EDGE);
     static uint8_t mask[AREA];
-    const struct { int frame, from_end; } there[] = { { 6, 0 }, { 8, 0 }, { 8, 1 }, { 8, 2 } };
+    const struct {
+        int frame, from_end;
+    } there[] = { { 6, 0 }, { 8, 0 }, { 8, 1 }, { 8, 2 } };
 
     (void)state;
     check_jumps(RAY_EDGE, 3);
@@ -148,7 +151,7 @@ static void test_edge(void **state)
 
         for (int camera = 0; camera < o.n_train + o.n_test; camera++) {
             const int n = find(&o, camera, there[i].frame, there[i].from_end, 1, mask);
-            int       top = 0;
+            int top = 0;
 
             for (int x = 0; x < o.width; x++)
                 top += mask[x];
@@ -161,8 +164,8 @@ static void test_edge(void **state)
 
 static int same_solid(const ted4_ray_object *a, const ted4_ray_object *b)
 {
-    return a->kind == b->kind && a->pos.x == b->pos.x && a->pos.y == b->pos.y && a->pos.z == b->pos.z &&
-           memcmp(a->rot, b->rot, sizeof a->rot) == 0;
+    return a->kind == b->kind && a->pos.x == b->pos.x && a->pos.y == b->pos.y &&
+           a->pos.z == b->pos.z && memcmp(a->rot, b->rot, sizeof a->rot) == 0;
 }
 
 static void test_change(void **state)
@@ -203,7 +206,9 @@ static void test_held_times(void **state)
                     assert_int_equal(at.object[i].kind, near.object[i].kind);
             }
         }
-        assert_int_equal(held, s == RAY_HIDE || s == RAY_FLICKER || s == RAY_MOMENT || s == RAY_TOYS ? 0 : (o.n_frames + 3) / 8);
+        assert_int_equal(held, s == RAY_HIDE || s == RAY_FLICKER || s == RAY_MOMENT || s == RAY_TOYS
+                                   ? 0
+                                   : (o.n_frames + 3) / 8);
     }
     ted4_ray_options o = plan(RAY_BLINK);
     o.n_frames = 13;
@@ -213,7 +218,9 @@ static void test_held_times(void **state)
 
 /* ---- 3: fast ---- */
 
-typedef struct { double x, y, width, height; } extent;
+typedef struct {
+    double x, y, width, height;
+} extent;
 
 static extent extent_of(const uint8_t *mask, int width, int height)
 {
@@ -232,11 +239,11 @@ static extent extent_of(const uint8_t *mask, int width, int height)
         }
         n++;
     }
-    return (extent){ sum[0] / n, sum[1] / n, high[0] - low[0] + 1, high[1] - low[1] + 1 };
+    return (extent) { sum[0] / n, sum[1] / n, high[0] - low[0] + 1, high[1] - low[1] + 1 };
 }
 
-/* Ball (the last but one solid) and box: pictures of them at successive times are apart by more than they are wide or high, in room and
- * picture. */
+/* Ball (the last but one solid) and box: pictures of them at successive times are apart by more
+ * than they are wide or high, in room and picture. */
 static void test_fast(void **state)
 {
     const ted4_ray_options o = plan_at(RAY_FAST, 96, 64);
@@ -251,7 +258,8 @@ static void test_fast(void **state)
             ted4_ray_world a, b;
             world_at(&a, &o, frame);
             world_at(&b, &o, frame + 1);
-            const ted4_ray_object *const p = &a.object[a.n - 1 - which], *const q = &b.object[b.n - 1 - which];
+            const ted4_ray_object *const p = &a.object[a.n - 1 - which],
+                                         *const q = &b.object[b.n - 1 - which];
             assert_true(v3_length(v3_sub(p->pos, q->pos)) > 1.45f * 2 * p->size.x);
 
             const int n = find(&o, camera, frame, which, 1, mask);
@@ -261,7 +269,7 @@ static void test_fast(void **state)
                             fabs(now.y - before.y) > fmin(now.height, before.height));
                 pairs++;
             }
-            before = n > 0 ? now : (extent){ 0 };
+            before = n > 0 ? now : (extent) { 0 };
         }
         assert_true(pairs >= 7);
     }
@@ -367,7 +375,8 @@ static void test_flicker(void **state)
     assert_true(fabs(brightness(a) / brightness(b) - 1) < 0.02);
 }
 
-/* Share of neighbours on the walls of the room that differ by more than 12; at shadows and solids they do even without texture. */
+/* Share of neighbours on the walls of the room that differ by more than 12; at shadows and solids
+ * they do even without texture. */
 static double roughness(ted4_ray_scene s)
 {
     const ted4_ray_options o = plan_at(s, 96, 64);
@@ -381,7 +390,8 @@ static double roughness(ted4_ray_scene s)
     ted4_ray_render(&w, &c, rgb);
     for (int i = 0; i < 95 * 40; i++) {
         const int x = i % 95, y = i / 95, at = 3 * (y * 96 + x);
-        const ted4_ray_sight p = ted4_ray_look(&w, &c, x + 0.5, y + 0.5), q = ted4_ray_look(&w, &c, x + 1.5, y + 0.5);
+        const ted4_ray_sight p = ted4_ray_look(&w, &c, x + 0.5, y + 0.5),
+                             q = ted4_ray_look(&w, &c, x + 1.5, y + 0.5);
         if (p.object != -1 || q.object != -1 || p.point.z < 0.1f || q.point.z < 0.1f)
             continue;
         n++;
@@ -451,7 +461,8 @@ static void test_empty(void **state)
     }
     for (int i = 0; i < 500; i++) {
         const ted4_ray_point p = ted4_ray_point_at(&o, i);
-        assert_true(p.camera != o.n_train - 1 && isfinite(p.point.x) && isfinite(p.point.y) && isfinite(p.point.z));
+        assert_true(p.camera != o.n_train - 1 && isfinite(p.point.x) && isfinite(p.point.y) &&
+                    isfinite(p.point.z));
     }
 }
 
@@ -496,7 +507,8 @@ static void test_things(void **state)
     }
 }
 
-/* The first half of rest is things4, its second half does not move, that of things4 of the same length does. */
+/* The first half of rest is things4, its second half does not move, that of things4 of the same
+ * length does. */
 static void test_rest(void **state)
 {
     const ted4_ray_options rest = plan(RAY_REST), four = plan(RAY_THINGS4);
@@ -523,12 +535,13 @@ static void test_rest(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_hide),  cmocka_unit_test(test_blink),   cmocka_unit_test(test_change),
-        cmocka_unit_test(test_edge),
-        cmocka_unit_test(test_held_times), cmocka_unit_test(test_fast), cmocka_unit_test(test_split),
-        cmocka_unit_test(test_tints), cmocka_unit_test(test_flicker), cmocka_unit_test(test_bare),
-        cmocka_unit_test(test_wires), cmocka_unit_test(test_empty),   cmocka_unit_test(test_things),
-        cmocka_unit_test(test_rest),
+        cmocka_unit_test(test_hide),       cmocka_unit_test(test_blink),
+        cmocka_unit_test(test_change),     cmocka_unit_test(test_edge),
+        cmocka_unit_test(test_held_times), cmocka_unit_test(test_fast),
+        cmocka_unit_test(test_split),      cmocka_unit_test(test_tints),
+        cmocka_unit_test(test_flicker),    cmocka_unit_test(test_bare),
+        cmocka_unit_test(test_wires),      cmocka_unit_test(test_empty),
+        cmocka_unit_test(test_things),     cmocka_unit_test(test_rest),
     };
 
     return cmocka_run_group_tests_name("failure scenes", tests, NULL, NULL);

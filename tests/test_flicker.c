@@ -1,4 +1,5 @@
-/* test_flicker.c - data/flicker.c: which changes of light from picture to picture are flicker, and what follows from it.
+/* test_flicker.c - data/flicker.c: which changes of light from picture to picture are flicker, and
+ * what follows from it.
  * SPDX-License-Identifier: BSD-2-Clause */
 #include <math.h>
 #include <setjmp.h>
@@ -15,7 +16,7 @@ enum { MOST = 40 };
 
 typedef struct {
     ted4_picture picture[MOST];
-    ted4_source  source[MOST];
+    ted4_source source[MOST];
     ted4_dataset data;
 } scene;
 
@@ -26,8 +27,9 @@ static void add(scene *s, uint32_t camera, uint32_t frame, double level, int is_
     assert_true(i < MOST);
     s->data.pictures = s->picture;
     s->data.sources = s->source;
-    s->picture[i] = (ted4_picture){ .camera_id = camera, .frame = frame, .is_test = (uint8_t)is_test };
-    s->source[i] = (ted4_source){ .level = level };
+    s->picture[i] =
+        (ted4_picture) { .camera_id = camera, .frame = frame, .is_test = (uint8_t)is_test };
+    s->source[i] = (ted4_source) { .level = level };
 }
 
 static void expect(const scene *s, double wanted)
@@ -38,13 +40,14 @@ static void expect(const scene *s, double wanted)
         fail_msg("%g levels, not %g", got, wanted);
 }
 
-/* One lamp for all, cameras of different brightness; pictures of two cameras in turn, times backwards. */
+/* One lamp for all, cameras of different brightness; pictures of two cameras in turn, times
+ * backwards. */
 static void test_lamp(void **state)
 {
     scene s = { 0 };
 
     (void)state;
-    for (uint32_t f = 8; f-- > 0; ) {
+    for (uint32_t f = 8; f-- > 0;) {
         add(&s, 0, f, f % 2 ? 120 : 100, 0);
         add(&s, 7, f, f % 2 ? 60 : 40, 0);
     }
@@ -66,7 +69,8 @@ static void test_steady(void **state)
     expect(&pops, 0);
 }
 
-/* Held-out pictures tell nothing, and leave gaps; a camera for each picture, as with one that moves, tells nothing either. */
+/* Held-out pictures tell nothing, and leave gaps; a camera for each picture, as with one that
+ * moves, tells nothing either. */
 static void test_unknown(void **state)
 {
     scene held = { 0 }, moves = { 0 }, none = { 0 };
@@ -88,7 +92,7 @@ static void test_settled(void **state)
     (void)state;
     for (int rows = 0; rows < 2; rows++)
         for (int flickers = 0; flickers < 2; flickers++) {
-            scene              s = { 0 };
+            scene s = { 0 };
             ted4_train_options o;
 
             for (uint32_t f = 0; f < 12; f++)

@@ -1,5 +1,6 @@
-/* test_fuzz.c - every fuzzing harness of fuzz/list.def over its seeds and its regressions, the decoder's over changed copies of its seeds too, so
- * that none of them can rot; and those seeds themselves. Runs in the project's root, as `make test` does.
+/* test_fuzz.c - every fuzzing harness of fuzz/list.def over its seeds and its regressions, the
+ * decoder's over changed copies of its seeds too, so that none of them can rot; and those seeds
+ * themselves. Runs in the project's root, as `make test` does.
  * SPDX-License-Identifier: BSD-2-Clause */
 #include <setjmp.h>
 #include <stdarg.h>
@@ -21,15 +22,15 @@ enum { MAX_FILES = 64, MAX_SIZE = 1 << 13, CHANGES = 400 };
 
 static struct {
     uint8_t data[MAX_SIZE];
-    size_t  size;
+    size_t size;
 } file[MAX_FILES];
 static int n_files;
 
 static int setup(void **state)
 {
-    DIR *const     d = opendir(CORPUS);
+    DIR *const d = opendir(CORPUS);
     struct dirent *e;
-    char           path[512];
+    char path[512];
 
     (void)state;
     while (d != NULL && (e = readdir(d)) != NULL && n_files < MAX_FILES) {
@@ -59,7 +60,7 @@ static void run_all(const uint8_t *data, size_t size)
 
 static ted4_status decode(const uint8_t *data, size_t size, ted4_info *info)
 {
-    ted4_scene       *s;
+    ted4_scene *s;
     const ted4_status verdict = ted4_decode(data, size, NULL, &s, NULL);
 
     if (verdict == TED4_OK)
@@ -91,14 +92,15 @@ static void test_corpus(void **state)
     assert_true(dynamic);
 }
 
-/* A claim that does not hold ends the process; what it says comes before the name of the harness here. */
+/* A claim that does not hold ends the process; what it says comes before the name of the harness
+ * here. */
 static void test_harnesses(void **state)
 {
     char path[512];
 
     (void)state;
     for (const fuzz_harness *h = fuzz_list; h->name != NULL; h++) {
-        size_t      n = 0;
+        size_t n = 0;
         struct stat s;
 
         printf("%s\n", h->name);
@@ -113,13 +115,14 @@ static void test_harnesses(void **state)
     }
 }
 
-/* Changed bytes behind mended hashes reach every part of the decoder; some of the files are valid. */
+/* Changed bytes behind mended hashes reach every part of the decoder; some of the files are valid.
+ */
 static void test_changes(void **state)
 {
-    random_source  r = random_seed(4);
+    random_source r = random_seed(4);
     uint8_t *const data = malloc(MAX_SIZE);
-    ted4_info      info;
-    int            n_valid = 0, n_unmended = 0;
+    ted4_info info;
+    int n_valid = 0, n_unmended = 0;
 
     (void)state;
     assert_non_null(data);
@@ -141,21 +144,22 @@ static void test_changes(void **state)
     free(data);
 }
 
-/* The mutator keeps to its room, gives the same for the same seed, and most of what it makes is refused for something else than a hash, or valid. The code
- * that the specification prints says the same of it as the decoder. */
+/* The mutator keeps to its room, gives the same for the same seed, and most of what it makes is
+ * refused for something else than a hash, or valid. The code that the specification prints says the
+ * same of it as the decoder. */
 static void test_mutator(void **state)
 {
     enum { ROOM = 4 * MAX_SIZE, ROUNDS = 60 };
     uint8_t *const a = malloc(ROOM), *const b = malloc(ROOM);
-    uint64_t       met[TED4_N_STATUS] = { 0 };
-    size_t         kinds = 0;
-    ted4_info      info;
+    uint64_t met[TED4_N_STATUS] = { 0 };
+    size_t kinds = 0;
+    ted4_info info;
 
     (void)state;
     assert_true(a != NULL && b != NULL);
     for (uint32_t i = 0; i < (uint32_t)(n_files * ROUNDS); i++) {
         const int n = (int)i % n_files;
-        size_t    size;
+        size_t size;
 
         memcpy(a, file[n].data, file[n].size);
         memcpy(b, file[n].data, file[n].size);
@@ -165,7 +169,8 @@ static void test_mutator(void **state)
         assert_memory_equal(a, b, size);
         met[decode(a, ted4_without_tail(a, size, 32), &info)]++;
         (void)fuzz_find("two_decoders")(a, size);
-        size = fuzz_cross_files(file[n].data, file[n].size, file[(n + 1) % n_files].data, file[(n + 1) % n_files].size, a, ROOM, i);
+        size = fuzz_cross_files(file[n].data, file[n].size, file[(n + 1) % n_files].data,
+                                file[(n + 1) % n_files].size, a, ROOM, i);
         assert_true(size <= ROOM);
         (void)decode(a, size, &info);
     }
@@ -181,9 +186,9 @@ static void test_mutator(void **state)
 /* Any bytes in the substreams become symbols of a valid file. */
 static void test_mend_ranges(void **state)
 {
-    random_source  r = random_seed(9);
+    random_source r = random_seed(9);
     uint8_t *const data = malloc(2 * MAX_SIZE);
-    ted4_info      info;
+    ted4_info info;
 
     (void)state;
     assert_non_null(data);
@@ -193,7 +198,8 @@ static void test_mend_ranges(void **state)
         memcpy(data, file[i].data, size);
         while (memcmp(data + at, "TILE", 4) != 0)
             at += ted4_chunk_size(data, size, at);
-        for (size_t j = TED4_FRAME_HEAD_SIZE; j + TED4_FRAME_HASH_SIZE < ted4_chunk_size(data, size, at); j++)
+        for (size_t j = TED4_FRAME_HEAD_SIZE;
+             j + TED4_FRAME_HASH_SIZE < ted4_chunk_size(data, size, at); j++)
             data[at + j] = (uint8_t)random_u32(&r);
         ted4_mend_chunks(data, size);
         assert_true(decode(data, size, &info) != TED4_OK);
@@ -206,10 +212,8 @@ static void test_mend_ranges(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_corpus),
-        cmocka_unit_test(test_harnesses),
-        cmocka_unit_test(test_changes),
-        cmocka_unit_test(test_mutator),
+        cmocka_unit_test(test_corpus),      cmocka_unit_test(test_harnesses),
+        cmocka_unit_test(test_changes),     cmocka_unit_test(test_mutator),
         cmocka_unit_test(test_mend_ranges),
     };
 

@@ -1,4 +1,5 @@
-/* test_gaussian.c - norm/gaussian.h: cumulative frequencies of every model, and the way back from a slot (spec 9.4).
+/* test_gaussian.c - norm/gaussian.h: cumulative frequencies of every model, and the way back from a
+ * slot (spec 9.4).
  * SPDX-License-Identifier: BSD-2-Clause */
 #include <setjmp.h>
 #include <stdarg.h>
@@ -27,12 +28,10 @@ static void increasing(void **state)
 
             for (uint32_t j = 1; j < size; j++) {
                 const uint32_t c = ted4_gauss_inner(g, fr, j);
-                const int64_t  d = 256 * ((int64_t)j - 1 - ted4_half[g]) - 128
-                                   - fr;
+                const int64_t d = 256 * ((int64_t)j - 1 - ted4_half[g]) - 128 - fr;
 
                 check(c > before);
-                check(d * ted4_inv[g] < (int64_t)1 << 31
-                      && d * ted4_inv[g] > -((int64_t)1 << 31));
+                check(d * ted4_inv[g] < (int64_t)1 << 31 && d * ted4_inv[g] > -((int64_t)1 << 31));
                 before = c;
             }
             check(before < 65536);
@@ -42,20 +41,19 @@ static void increasing(void **state)
     }
 }
 
-/* Against the distribution whose sigma is that of INV, which is rounded: all steps of the integer path together are off by less than
- * four slots (z alone: 1.6). */
+/* Against the distribution whose sigma is that of INV, which is rounded: all steps of the integer
+ * path together are off by less than four slots (z alone: 1.6). */
 static void accurate(void **state)
 {
     (void)state;
     for (unsigned g = 0; g < TED4_N_SIGMA; g += 3) {
-        const double   sigma = 131072.0 / ted4_inv[g];
+        const double sigma = 131072.0 / ted4_inv[g];
         const uint32_t size = ted4_gauss_size(g);
 
         check(fabs(sigma / exp2((g - 64.0) / 16) - 1) < 0.008);
         for (int32_t fr = 0; fr < 256; fr += 51)
             for (uint32_t j = 1; j < size; j++) {
-                const double x = (double)j - 1 - ted4_half[g] - 0.5
-                                 - fr / 256.0;
+                const double x = (double)j - 1 - ted4_half[g] - 0.5 - fr / 256.0;
                 const double p = erfc(-x / sigma / sqrt(2)) / 2;
                 const double c = p * (65536 - size) + j;
 
@@ -72,7 +70,7 @@ static void find_is_inverse(void **state)
     for (unsigned g = 0; g < TED4_N_SIGMA; g++)
         for (size_t f = 0; f < sizeof fractions / sizeof *fractions; f++)
             for (uint32_t j = 0; j < ted4_gauss_size(g); j++) {
-                const int32_t  fr = fractions[f];
+                const int32_t fr = fractions[f];
                 const uint32_t from = ted4_gauss_cum(g, fr, j);
                 const uint32_t to = ted4_gauss_cum(g, fr, j + 1);
                 ted4_slots s;
@@ -92,20 +90,18 @@ static void symbols(void **state)
     (void)state;
     for (int n = 0; n < 1000000; n++) {
         const unsigned g = random_in(&r, 0, TED4_N_SIGMA - 1);
-        const int32_t  mu = (int32_t)random_u32(&r) >> random_in(&r, 4, 31);
-        const int32_t  m = (int32_t)floor(mu / 256.0);
-        const int32_t  near = m + (int32_t)random_in(&r, 0, 9000) - 4500;
-        const int32_t  k = n % 2 ? near : (int32_t)random_in(&r, 0, 65534)
-                                          - 32767;
+        const int32_t mu = (int32_t)random_u32(&r) >> random_in(&r, 4, 31);
+        const int32_t m = (int32_t)floor(mu / 256.0);
+        const int32_t near = m + (int32_t)random_in(&r, 0, 9000) - 4500;
+        const int32_t k = n % 2 ? near : (int32_t)random_in(&r, 0, 65534) - 32767;
         const ted4_gauss_symbol s = ted4_gauss_of(mu, g, k);
-        ted4_slots     slots;
-        const uint32_t j = ted4_gauss_find(g, mu - 256 * m, s.slots.start,
-                                           &slots);
+        ted4_slots slots;
+        const uint32_t j = ted4_gauss_find(g, mu - 256 * m, s.slots.start, &slots);
 
         check(slots.freq == s.slots.freq && slots.start == s.slots.start);
         check((j == 0 || j == ted4_gauss_size(g) - 1) == (s.escape >= 0));
-        check(k == m + (s.escape >= 0 ? ted4_gauss_escaped(g, j, s.escape)
-                                      : ted4_gauss_offset(g, j)));
+        check(k ==
+              m + (s.escape >= 0 ? ted4_gauss_escaped(g, j, s.escape) : ted4_gauss_offset(g, j)));
     }
 }
 

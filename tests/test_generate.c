@@ -1,5 +1,5 @@
-/* test_generate.c - train/splat/decode.c against the double-precision text of spec 11 (generate_ref.h),
- * for every variant of the header.
+/* test_generate.c - train/splat/decode.c against the double-precision text of spec 11
+ * (generate_ref.h), for every variant of the header.
  * SPDX-License-Identifier: BSD-2-Clause */
 #include <setjmp.h>
 #include <stdarg.h>
@@ -100,8 +100,9 @@ static void test_times(void **state)
 {
     /* First and last time, on a row and between rows of a bank of 5, one frame, and the largest
      * den. */
-    static const uint32_t time[][2] = { {0, 8}, {8, 8}, {2, 8}, {3, 8}, {0, 1}, {1, 1}, {7, 8},
-                                        {16777214, 16777215}, {1, 16777215} };
+    static const uint32_t time[][2] = { { 0, 8 },       { 8, 8 }, { 2, 8 }, { 3, 8 },
+                                        { 0, 1 },       { 1, 1 }, { 7, 8 }, { 16777214, 16777215 },
+                                        { 1, 16777215 } };
 
     (void)state;
     for (int motion = 0; motion < 4; motion++)
@@ -187,12 +188,9 @@ static void test_slots(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_variants),
-        cmocka_unit_test(test_depths),
-        cmocka_unit_test(test_times),
-        cmocka_unit_test(test_activation_off),
-        cmocka_unit_test(test_threads),
-        cmocka_unit_test(test_slots),
+        cmocka_unit_test(test_variants), cmocka_unit_test(test_depths),
+        cmocka_unit_test(test_times),    cmocka_unit_test(test_activation_off),
+        cmocka_unit_test(test_threads),  cmocka_unit_test(test_slots),
     };
 
     return cmocka_run_group_tests(tests, NULL, NULL);

@@ -1,5 +1,5 @@
-/* test_generate_grad.c - train/splat/decode_bwd.c against central differences of the double-precision
- * reference: every channel of anchors, every value of the networks and the bank.
+/* test_generate_grad.c - train/splat/decode_bwd.c against central differences of the
+ * double-precision reference: every channel of anchors, every value of the networks and the bank.
  * SPDX-License-Identifier: BSD-2-Clause */
 #include <setjmp.h>
 #include <stdarg.h>
@@ -15,11 +15,11 @@
 
 /* Step of the differences: small, because networks of ReLUs have kinks everywhere; double loses
  * about 1e-9 to it. */
-#define STEP 1e-7
+#define STEP       1e-7
 /* Linear sizes are at least this (spec 11). */
 #define SIZE_FLOOR 0x1p-20
 /* Of the gradient, relative to the size of the terms it sums. */
-#define TOLERANCE 2e-5
+#define TOLERANCE  2e-5
 
 static test_case scene;
 static float gradient[REF_OUT][CASE_SPLATS];
@@ -89,12 +89,14 @@ static double loss(int slot, int lane, const double *channel)
     return sum;
 }
 
-/* A linear size at its floor or below: there only what would bring it up has a gradient, the one of a size just above the floor. */
+/* A linear size at its floor or below: there only what would bring it up has a gradient, the one of
+ * a size just above the floor. */
 static int is_floored(int c, double value)
 {
     const int first = scene.layout.first[TED4_SCALING];
 
-    return scene.layout.head.scale_domain == TED4_SCALE_LINEAR && c >= first && c < first + 6 && value <= SIZE_FLOOR;
+    return scene.layout.head.scale_domain == TED4_SCALE_LINEAR && c >= first && c < first + 6 &&
+           value <= SIZE_FLOOR;
 }
 
 static void check_anchor(int slot, int lane)
@@ -166,7 +168,7 @@ static void check_header(const ted4_header *h, uint32_t num, uint32_t den, size_
     ted4_generator *g = make(h, num, den);
 
     run(g, NULL);
-    for (int i = 0; i < CASE_SLOTS; i += step > 1 ? 5 : 1)
+    for (int i = 0; i<CASE_SLOTS; i += step> 1 ? 5 : 1)
         for (int lane = 0; lane < TED4_LANES; lane++)
             check_anchor(i, lane);
     check_net(step);
@@ -213,7 +215,9 @@ static void test_depths(void **state)
 
 static void test_times(void **state)
 {
-    static const uint32_t time[][2] = { {0, 8}, {8, 8}, {2, 8}, {3, 8}, {0, 1}, {1, 1} };
+    static const uint32_t time[][2] = {
+        { 0, 8 }, { 8, 8 }, { 2, 8 }, { 3, 8 }, { 0, 1 }, { 1, 1 }
+    };
 
     (void)state;
     for (int motion = TED4_MOTION_BANK; motion <= TED4_MOTION_CONCAT; motion++)
@@ -335,14 +339,10 @@ static void test_threads(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_everything),
-        cmocka_unit_test(test_variants),
-        cmocka_unit_test(test_depths),
-        cmocka_unit_test(test_times),
-        cmocka_unit_test(test_activation_off),
-        cmocka_unit_test(test_dead),
-        cmocka_unit_test(test_many_slots),
-        cmocka_unit_test(test_threads),
+        cmocka_unit_test(test_everything),     cmocka_unit_test(test_variants),
+        cmocka_unit_test(test_depths),         cmocka_unit_test(test_times),
+        cmocka_unit_test(test_activation_off), cmocka_unit_test(test_dead),
+        cmocka_unit_test(test_many_slots),     cmocka_unit_test(test_threads),
     };
 
     return cmocka_run_group_tests(tests, NULL, NULL);

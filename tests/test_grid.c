@@ -43,7 +43,8 @@ static void test_rounds(void **state)
     }
 }
 
-/* What is on a grid stays there; all bits change nothing; nothing at all, and what is next to nothing, stays as it is. */
+/* What is on a grid stays there; all bits change nothing; nothing at all, and what is next to
+ * nothing, stays as it is. */
 static void test_stays(void **state)
 {
     float x[N], once[N], tiny[2] = { 0x1p-100f, -0x1p-149f }, none[3] = { 0, 0, 0 };
@@ -55,7 +56,8 @@ static void test_stays(void **state)
     assert_memory_equal(x, once, sizeof x);
     for (int bits = 1; bits < 12; bits++)
         for (int k = 0; k < 40; k++) {
-            draw(x, N, 7, 0.9f + 0.01f * (float)k);     /* the largest goes up to a power of two, or down to one, or neither */
+            draw(x, N, 7, 0.9f + 0.01f * (float)k); /* the largest goes up to a power of two, or
+                                                       down to one, or neither */
             ted4_grid_round(x, N, bits);
             memcpy(once, x, sizeof x);
             ted4_grid_round(x, N, bits);
@@ -72,20 +74,22 @@ static ted4_shape shape_of(unsigned in, unsigned hidden, unsigned out)
 {
     ted4_shape s = { 0 };
 
-    s.netr[TED4_NET_DEFORM] = (ted4_net_shape){ 2, { (uint16_t)in, (uint16_t)hidden, (uint16_t)out }, 0, 0 };
+    s.netr[TED4_NET_DEFORM] =
+        (ted4_net_shape) { 2, { (uint16_t)in, (uint16_t)hidden, (uint16_t)out }, 0, 0 };
     s.n_netr = (in + 1) * hidden + (hidden + 1) * out;
-    s.netr[TED4_NET_OPACITY] = (ted4_net_shape){ 1, { (uint16_t)in, (uint16_t)out }, s.n_netr, 0 };
+    s.netr[TED4_NET_OPACITY] = (ted4_net_shape) { 1, { (uint16_t)in, (uint16_t)out }, s.n_netr, 0 };
     s.n_netr += (in + 1) * out;
     s.n_bank = 10;
     return s;
 }
 
-/* A unit of small weights loses no more of them than one of large weights does, and networks, and the bank, have bits of their own. */
+/* A unit of small weights loses no more of them than one of large weights does, and networks, and
+ * the bank, have bits of their own. */
 static void test_units(void **state)
 {
     const ted4_shape s = shape_of(8, 4, 2);
-    const int        bits[TED4_GRIDS] = { 24, 5, 3, 20 };
-    float            netr[N * 2], was[N * 2], bank[10], bank_was[10];
+    const int bits[TED4_GRIDS] = { 24, 5, 3, 20 };
+    float netr[N * 2], was[N * 2], bank[10], bank_was[10];
 
     (void)state;
     assert_true(s.n_netr <= N * 2);
@@ -100,7 +104,8 @@ static void test_units(void **state)
     for (int i = 0; i < 36; i++)
         assert_true(fabsf(netr[i] - was[i]) <= 0x1p-6f);
     assert_memory_not_equal(netr, was, 36 * sizeof *netr);
-    assert_memory_equal(netr + s.netr[TED4_NET_OPACITY].first, was + s.netr[TED4_NET_OPACITY].first, 18 * sizeof *netr);
+    assert_memory_equal(netr + s.netr[TED4_NET_OPACITY].first, was + s.netr[TED4_NET_OPACITY].first,
+                        18 * sizeof *netr);
     assert_memory_not_equal(bank, bank_was, sizeof bank);
     ted4_grid_round(bank_was, 10, 3);
     assert_memory_equal(bank, bank_was, sizeof bank);
@@ -109,7 +114,9 @@ static void test_units(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_rounds), cmocka_unit_test(test_stays), cmocka_unit_test(test_units),
+        cmocka_unit_test(test_rounds),
+        cmocka_unit_test(test_stays),
+        cmocka_unit_test(test_units),
     };
 
     return cmocka_run_group_tests(tests, NULL, NULL);

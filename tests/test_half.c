@@ -11,7 +11,7 @@
 /* The value of a finite pattern, from its definition. */
 static double value(unsigned h)
 {
-    const int    e = h >> 10 & 31;
+    const int e = h >> 10 & 31;
     const double m = h & 0x3ff;
     const double x = e > 0 ? ldexp(1024 + m, e - 25) : ldexp(m, -24);
 
@@ -47,8 +47,7 @@ static void from_float(void **state)
         assert_int_equal(ted4_float_to_half((float)middle), even);
         assert_int_equal(ted4_float_to_half(-(float)middle), even | 0x8000);
         assert_int_equal(ted4_float_to_half(nextafterf((float)middle, 0)), h);
-        assert_int_equal(ted4_float_to_half(nextafterf((float)middle, 1e9f)),
-                         h + 1);
+        assert_int_equal(ted4_float_to_half(nextafterf((float)middle, 1e9f)), h + 1);
     }
     assert_int_equal(ted4_float_to_half(65520), 0x7c00);
     assert_int_equal(ted4_float_to_half(nextafterf(65520, 0)), 0x7bff);
@@ -63,10 +62,9 @@ static void order(void **state)
 {
     (void)state;
     for (unsigned h = 0; h + 1 < 0x7c00; h++) {
-        assert_true(ted4_half_order((uint16_t)h)
-                    < ted4_half_order((uint16_t)(h + 1)));
-        assert_true(ted4_half_order((uint16_t)(h | 0x8000))
-                    > ted4_half_order((uint16_t)((h + 1) | 0x8000)));
+        assert_true(ted4_half_order((uint16_t)h) < ted4_half_order((uint16_t)(h + 1)));
+        assert_true(ted4_half_order((uint16_t)(h | 0x8000)) >
+                    ted4_half_order((uint16_t)((h + 1) | 0x8000)));
     }
     assert_true(ted4_half_order(0x8001) < ted4_half_order(0));
 }
@@ -84,8 +82,7 @@ static void morton(void **state)
             p[j] = (uint16_t)random_u32(&r);
         for (unsigned i = 0; i < 16; i++)
             for (unsigned j = 0; j < 3; j++)
-                code |= (uint64_t)(ted4_half_order(p[j]) >> i & 1)
-                        << (3 * i + 2 - j);
+                code |= (uint64_t)(ted4_half_order(p[j]) >> i & 1) << (3 * i + 2 - j);
         assert_true(ted4_morton(p) == code);
     }
 }

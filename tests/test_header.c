@@ -1,5 +1,5 @@
-/* test_header.c - the header of the file to be, from the options and the scene: the frame rate as a fraction, rows of the bank, and that no training begins
- * whose header no file may have.
+/* test_header.c - the header of the file to be, from the options and the scene: the frame rate as a
+ * fraction, rows of the bank, and that no training begins whose header no file may have.
  * SPDX-License-Identifier: BSD-2-Clause */
 #include <setjmp.h>
 #include <stdarg.h>
@@ -18,7 +18,8 @@ static void expect_rate(double rate, uint32_t num, uint32_t den)
 
     assert_int_equal(ted4_frame_rate(rate, &n, &d), 0);
     if (n != num || d != den)
-        fail_msg("%.17g: %u/%u, expected %u/%u", rate, (unsigned)n, (unsigned)d, (unsigned)num, (unsigned)den);
+        fail_msg("%.17g: %u/%u, expected %u/%u", rate, (unsigned)n, (unsigned)d, (unsigned)num,
+                 (unsigned)den);
 }
 
 static void test_rates(void **state)
@@ -42,13 +43,14 @@ static void test_rates(void **state)
         assert_int_equal(ted4_frame_rate(none[i], &n, &d), -1);
 }
 
-/* Between the bounds every rate has a fraction, and it is off by a ten-millionth of the rate at most. */
+/* Between the bounds every rate has a fraction, and it is off by a ten-millionth of the rate at
+ * most. */
 static void test_any_rate(void **state)
 {
     (void)state;
     for (uint64_t i = 0; i < 100000; i++) {
         const double rate = exp2(48 * ted4_uniform(7, i) - 24);
-        uint32_t     n, d;
+        uint32_t n, d;
 
         if (rate < 1.0 / TED4_RATE_MOST || rate > TED4_RATE_MOST)
             continue;
@@ -91,7 +93,9 @@ static void test_begin(void **state)
 
 static void test_rows(void **state)
 {
-    static const uint32_t want[][2] = { { 2, 2 }, { 3, 2 }, { 4, 2 }, { 5, 3 }, { 16, 8 }, { 17, 9 } };
+    static const uint32_t want[][2] = {
+        { 2, 2 }, { 3, 2 }, { 4, 2 }, { 5, 3 }, { 16, 8 }, { 17, 9 }
+    };
     static cloud_case c;
     ted4_header h;
 

@@ -51,8 +51,8 @@ static void held(const tiny_folder *f, const char *const *names, size_t n, const
     assert_int_equal(d.n_pictures, (TRAIN + TEST) * FRAMES);
     for (size_t i = 0; i < d.n_pictures; i++) {
         const char *path = d.pictures[i].path + strlen(f->path);
-        const int expected =
-            strstr(path, first) != NULL || (second != NULL && strstr(path, second) != NULL);
+        const int expected = strstr(path, first) != NULL ||
+                             (second != NULL && strstr(path, second) != NULL);
         if (d.pictures[i].is_test != expected)
             fail_msg("%s: is_test %d", path, d.pictures[i].is_test);
         tests += d.pictures[i].is_test;
@@ -77,7 +77,9 @@ static void test_labels(void **state)
 {
     /* What three cameras are called, and parts of their pictures' paths; then all names, as a
      * refusal lists them. */
-    static const struct { ted4_ray_layout layout; const char *name[2], *path[2], *all;
+    static const struct {
+        ted4_ray_layout layout;
+        const char *name[2], *path[2], *all;
     } cases[] = {
         { RAY_NERFSTUDIO,
           { "0", "2" },
@@ -125,7 +127,7 @@ static void test_pictures(void **state)
             "expected one of: r_000_00.png, r_001_00.png, r_002_00.png, r_000_00.png");
     tiny_free(&f);
     f = write_scene(RAY_NEU3D);
-    held(&f, (const char *const[]){ "cam01/images/0000.png" }, 1, "cam01", NULL);
+    held(&f, (const char *const[]) { "cam01/images/0000.png" }, 1, "cam01", NULL);
     refused(&f, "0000.png", "pictures of several cameras are called so");
     tiny_free(&f);
 }

@@ -1,5 +1,6 @@
-/* test_hostile.c - files that make others work: what a validator, or a decoder with a trace, does for them is bounded by their bytes. What takes seconds here would
- * take hours or days if it grew with the square of the file or with a number that the file only claims.
+/* test_hostile.c - files that make others work: what a validator, or a decoder with a trace, does
+ * for them is bounded by their bytes. What takes seconds here would take hours or days if it grew
+ * with the square of the file or with a number that the file only claims.
  * SPDX-License-Identifier: BSD-2-Clause */
 #include <setjmp.h>
 #include <stdarg.h>
@@ -12,21 +13,29 @@
 #include "../fuzz/mend.h"
 #include "random_scene.h"
 
-enum { PATIENCE = 60, N_CHUNKS = 1 << 20, N_KEYS = 1 << 20, FRAME = 20, LEVEL_AT = 11, HEAD_AT = 12, LARGE = 4 };
+enum {
+    PATIENCE = 60,
+    N_CHUNKS = 1 << 20,
+    N_KEYS = 1 << 20,
+    FRAME = 20,
+    LEVEL_AT = 11,
+    HEAD_AT = 12,
+    LARGE = 4
+};
 
 /* A valid file, and room for more behind HEAD. */
 typedef struct {
     uint8_t *data;
-    size_t   size, head;        /* head: offset behind HEAD */
+    size_t size, head; /* head: offset behind HEAD */
 } file;
 
 static file file_of(const ted4_header *h, size_t more)
 {
     random_source r = random_seed(5);
-    ted4_scene   *s = random_scene_of(&r, h, 0);
-    uint8_t      *data;
-    size_t        size;
-    file          f;
+    ted4_scene *s = random_scene_of(&r, h, 0);
+    uint8_t *data;
+    size_t size;
+    file f;
 
     assert_int_equal(ted4_encode(s, 0, NULL, &data, &size, NULL), TED4_OK);
     f.head = HEAD_AT + ted4_chunk_size(data, size, HEAD_AT);
@@ -46,7 +55,7 @@ static file file_of(const ted4_header *h, size_t more)
 /* How often a validator finds something. */
 typedef struct {
     const char *id;
-    size_t      n;
+    size_t n;
 } count;
 
 static void add(void *user, const ted4_finding *f)
@@ -85,7 +94,7 @@ static void keys(void **state)
     enum { LINE = 9 };
     const ted4_header h = random_small_header(100);
     const size_t n = (size_t)N_KEYS * LINE;
-    file     f = file_of(&h, n + FRAME);
+    file f = file_of(&h, n + FRAME);
     uint8_t *chunk = f.data + f.head;
 
     (void)state;
@@ -94,7 +103,8 @@ static void keys(void **state)
     for (size_t i = 0; i < N_KEYS; i++) {
         char line[LINE + 1];
 
-        snprintf(line, sizeof line, "%07x=\n", (unsigned)(i + 1 < N_KEYS ? i * 2654435761u % N_KEYS : 0));
+        snprintf(line, sizeof line, "%07x=\n",
+                 (unsigned)(i + 1 < N_KEYS ? i * 2654435761u % N_KEYS : 0));
         memcpy(chunk + 12 + i * LINE, line, LINE);
     }
     ted4_store64(chunk + 12 + n, XXH3_64bits(chunk, 12 + n));
@@ -107,7 +117,7 @@ static void keys(void **state)
 static void frames(void **state)
 {
     ted4_header h = random_small_header(100);
-    file        f;
+    file f;
 
     (void)state;
     h.bank_rows = 5;
@@ -133,17 +143,19 @@ static void see(void *user, size_t offset, const char *element, int64_t index, i
 /* HEAD claims 2^32 - 1 rows; BANK does not hold them. */
 static void claims(void **state)
 {
-    static const char *const name[] = { "LIM-claims-rows-0xffffffff", "LIM-claims-rows-deflated-0xffffffff", "LIM-claims-anchors-0xffffffff" };
+    static const char *const name[] = { "LIM-claims-rows-0xffffffff",
+                                        "LIM-claims-rows-deflated-0xffffffff",
+                                        "LIM-claims-anchors-0xffffffff" };
     static uint8_t data[1 << 16];
 
     (void)state;
     for (size_t i = 0; i < sizeof name / sizeof *name; i++) {
-        size_t       calls = 0, size;
+        size_t calls = 0, size;
         ted4_options o = { .trace = see, .trace_user = &calls };
-        ted4_scene  *s;
-        ted4_error   e;
-        char         path[200];
-        FILE        *f;
+        ted4_scene *s;
+        ted4_error e;
+        char path[200];
+        FILE *f;
 
         snprintf(path, sizeof path, "conformance/vectors/limit/%s.ted4", name[i]);
         f = fopen(path, "rb");
@@ -160,7 +172,10 @@ static void claims(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(chunks), cmocka_unit_test(keys), cmocka_unit_test(frames), cmocka_unit_test(claims),
+        cmocka_unit_test(chunks),
+        cmocka_unit_test(keys),
+        cmocka_unit_test(frames),
+        cmocka_unit_test(claims),
     };
 
     return cmocka_run_group_tests(tests, NULL, NULL);

@@ -11,8 +11,8 @@
 #include "tiny_scene.h"
 
 static const char *build;
-static tiny_folder folder;              /* holds s, the case's scene, and what the program says */
-static char        out[8192], err[8192];
+static tiny_folder folder; /* holds s, the case's scene, and what the program says */
+static char out[8192], err[8192];
 
 /* ---- what a case consists of ---- */
 
@@ -20,16 +20,16 @@ static char        out[8192], err[8192];
 typedef enum { TRANSFORMS, FRAMES, CAMERAS, IMAGES, POINTS, OTHER } kind;
 
 typedef struct {
-    kind        what;
+    kind what;
     const char *text;
-    const char *says;                   /* part of the message */
-    int         warns;                  /* a warning, not an error */
-    void      (*make)(void);            /* more that belongs to it, or OTHER's all */
+    const char *says;   /* part of the message */
+    int warns;          /* a warning, not an error */
+    void (*make)(void); /* more that belongs to it, or OTHER's all */
 } hostile;
 
-#define POSE    "\"transform_matrix\": " TINY_POSE
-#define LENS    "\"K\": [[9,0,8],[0,9,6],[0,0,1]], \"w\": 16, \"h\": 12, \"w2c\": " TINY_POSE "}"
-#define A       "{\"name\": \"a\", " LENS
+#define POSE       "\"transform_matrix\": " TINY_POSE
+#define LENS       "\"K\": [[9,0,8],[0,9,6],[0,0,1]], \"w\": 16, \"h\": 12, \"w2c\": " TINY_POSE "}"
+#define A          "{\"name\": \"a\", " LENS
 #define ROTATED(m) "{\"file_path\": \"1.png\", \"transform_matrix\": " m "}"
 
 static const char *const names[] = { "s/0.png",        "s/1.png",          "s/2.png",
@@ -38,7 +38,9 @@ static const char *const names[] = { "s/0.png",        "s/1.png",          "s/2.
 static void write_case(const hostile *h)
 {
     static tiny_string s;
-    static const struct { int first, end; } pictures[] = {
+    static const struct {
+        int first, end;
+    } pictures[] = {
         [TRANSFORMS] = { 0, 3 }, [FRAMES] = { 0, 3 }, [CAMERAS] = { 4, 6 },
         [IMAGES] = { 3, 4 },     [POINTS] = { 3, 4 }, [OTHER] = { 0, 0 },
     };
@@ -84,10 +86,22 @@ static void cut_png(void)
          "1.png");
 }
 
-static void bare_png(void)    { bytes_as("s/1.png", "\x89PNG\r\n\x1a\n", 8); }
-static void empty_png(void)   { bytes_as("s/1.png", "", 0); }
-static void text_png(void)    { bytes_as("s/1.png", "<svg></svg>", 11); }
-static void cut_jpeg(void)    { bytes_as("s/1.png", "\xff\xd8\xff\xe0\0\x10JFIF", 10); }
+static void bare_png(void)
+{
+    bytes_as("s/1.png", "\x89PNG\r\n\x1a\n", 8);
+}
+static void empty_png(void)
+{
+    bytes_as("s/1.png", "", 0);
+}
+static void text_png(void)
+{
+    bytes_as("s/1.png", "<svg></svg>", 11);
+}
+static void cut_jpeg(void)
+{
+    bytes_as("s/1.png", "\xff\xd8\xff\xe0\0\x10JFIF", 10);
+}
 static void cmyk_jpeg(void)
 {
     bytes_as("s/1.png", "\xff\xd8\xff\xc0\0\x14\x08\0\x0c\0\x10\x04\0\0\0\0\0\0\0\0\0\0\0\0", 24);
@@ -113,7 +127,10 @@ static void no_pictures(void)
         must(remove(tiny_path(&folder, names[i])) == 0, names[i]);
 }
 
-static void missing_picture(void) { must(remove(tiny_path(&folder, "s/1.png")) == 0, "1.png"); }
+static void missing_picture(void)
+{
+    must(remove(tiny_path(&folder, "s/1.png")) == 0, "1.png");
+}
 
 static void fifo_picture(void)
 {
@@ -145,27 +162,60 @@ static void long_list(const char *before, const char *item, size_t n, const char
     must(fputs(after, o) >= 0 && fclose(o) == 0, "transforms.json");
 }
 
-static void ten_million(void)    { long_list("[0", ",0", 10000000, "]"); }
-static void million_frames(void) { long_list("{\"fl_x\": 9, \"frames\": [0", ",0", 1000000, "]}"); }
-static void deep(void)           { long_list("", "[", 100000, ""); }
+static void ten_million(void)
+{
+    long_list("[0", ",0", 10000000, "]");
+}
+static void million_frames(void)
+{
+    long_list("{\"fl_x\": 9, \"frames\": [0", ",0", 1000000, "]}");
+}
+static void deep(void)
+{
+    long_list("", "[", 100000, "");
+}
 static void long_name(void)
 {
     long_list("{\"fl_x\": 9, \"frames\": [{\"file_path\": \"0.png\", " POSE "}, {\"file_path\": \"",
               "../long", 2000, "\", " POSE "}]}");
 }
 
-static void playlist(void) { tiny_text(&folder, "s/b.mp4", "#EXTM3U\n#EXTINF:1,\n/etc/passwd\n"); }
-static void words(void)    { tiny_text(&folder, "s/b.mp4", "a letter\n"); }
-static void noise(void)    { bytes_as("s/b.mp4", "\0\0\0\x20" "ftypisom\0\0\2\0\1\2\3", 19); }
-static void no_bytes(void) { bytes_as("s/b.mp4", "", 0); }
-static void empty_clip(void) { tiny_text(&folder, "s/b/images/x.txt", ""); }
+static void playlist(void)
+{
+    tiny_text(&folder, "s/b.mp4", "#EXTM3U\n#EXTINF:1,\n/etc/passwd\n");
+}
+static void words(void)
+{
+    tiny_text(&folder, "s/b.mp4", "a letter\n");
+}
+static void noise(void)
+{
+    bytes_as("s/b.mp4",
+             "\0\0\0\x20"
+             "ftypisom\0\0\2\0\1\2\3",
+             19);
+}
+static void no_bytes(void)
+{
+    bytes_as("s/b.mp4", "", 0);
+}
+static void empty_clip(void)
+{
+    tiny_text(&folder, "s/b/images/x.txt", "");
+}
 static void many_images(void)
 {
     bytes_as("s/sparse/0/images.bin", "\xff\xff\xff\xff\xff\xff\xff\x7f\0\0\0\0\0\0\0\0", 16);
 }
 
-static void nothing(void) { tiny_text(&folder, "s/readme.txt", ""); }
-static void folder_list(void) { tiny_text(&folder, "s/transforms.json/x", ""); }
+static void nothing(void)
+{
+    tiny_text(&folder, "s/readme.txt", "");
+}
+static void folder_list(void)
+{
+    tiny_text(&folder, "s/transforms.json/x", "");
+}
 
 static void npy(const char *shape, size_t n)
 {
@@ -176,15 +226,24 @@ static void npy(const char *shape, size_t n)
                               0x93, 1, 0, 118, 0, shape);
 
     memset(bytes + head, ' ', 128 - (size_t)head);
-    memset(bytes + 128, 0xff, n);       /* numbers that are none */
+    memset(bytes + 128, 0xff, n); /* numbers that are none */
     bytes[127] = '\n';
     bytes_as("s/poses_bounds.npy", bytes, 128 + n);
     tiny_picture(&folder, "s/images/0.png", TINY_W, TINY_H, 0);
 }
 
-static void npy_large(void) { npy("(9223372036854775807, 17)", 136); }
-static void npy_nan(void)   { npy("(1, 17)", 136); }
-static void npy_short(void) { npy("(3, 17)", 136); }
+static void npy_large(void)
+{
+    npy("(9223372036854775807, 17)", 136);
+}
+static void npy_nan(void)
+{
+    npy("(1, 17)", 136);
+}
+static void npy_short(void)
+{
+    npy("(3, 17)", 136);
+}
 
 static void hypernerf_gap(void)
 {

@@ -1,4 +1,5 @@
-/* test_image_file.c - picture files to bytes, the writer of render/png_file.c, lens undistortion against an analytic pattern, and the cache.
+/* test_image_file.c - picture files to bytes, the writer of render/png_file.c, lens undistortion
+ * against an analytic pattern, and the cache.
  * SPDX-License-Identifier: BSD-2-Clause */
 #include <math.h>
 #include <pthread.h>
@@ -16,8 +17,10 @@
 #include "render/png_file.h"
 #include "tiny_scene.h"
 
-/* A PNG of any colour type (plus 8: with the first palette entry transparent) and depth; rows are packed as in the file. */
-static void write_png(const char *path, int w, int h, int depth, int type, const uint8_t *rows, size_t stride)
+/* A PNG of any colour type (plus 8: with the first palette entry transparent) and depth; rows are
+ * packed as in the file. */
+static void write_png(const char *path, int w, int h, int depth, int type, const uint8_t *rows,
+                      size_t stride)
 {
     const png_color palette[3] = { { 1, 2, 3 }, { 40, 50, 60 }, { 255, 0, 9 } };
     const png_byte transparent[1] = { 0 };
@@ -65,8 +68,9 @@ static void test_png(void **state)
     tiny_folder f = tiny_new();
     const char *path = tiny_path(&f, "a.png");
     const uint8_t grey[3] = { 0, 77, 255 }, grey_rgb[9] = { 0, 0, 0, 77, 77, 77, 255, 255, 255 };
-    const uint8_t grey16[6] = { 0, 100, 77, 77, 255, 255 };         /* 100 / 257 rounds to 0 */
-    const uint8_t rgb16[6] = { 9, 138, 200, 200, 128, 255 }, rgb16_8[3] = { 10, 200, 128 };     /* 9.502, 200, 128.49 */
+    const uint8_t grey16[6] = { 0, 100, 77, 77, 255, 255 }; /* 100 / 257 rounds to 0 */
+    const uint8_t rgb16[6] = { 9, 138, 200, 200, 128, 255 },
+                  rgb16_8[3] = { 10, 200, 128 }; /* 9.502, 200, 128.49 */
     const uint8_t rgba[8] = { 1, 2, 3, 0, 250, 128, 7, 99 };
     const uint8_t grey_alpha[2] = { 9, 200 }, grey_alpha_rgba[4] = { 9, 9, 9, 200 };
     const uint8_t index[1] = { 0x18 }, indexed[9] = { 1, 2, 3, 40, 50, 60, 255, 0, 9 };
@@ -113,7 +117,11 @@ static void test_png_write(void **state)
 
 static void write_jpeg(const char *path, int w, int h, int components)
 {
-    const jpeg_slopes s = { .w = w, .h = h, .n = components, .column = 4, .component = 60,
+    const jpeg_slopes s = { .w = w,
+                            .h = h,
+                            .n = components,
+                            .column = 4,
+                            .component = 60,
                             .space = components == 1 ? JCS_GRAYSCALE : JCS_RGB };
 
     jpeg_write(path, &s);
@@ -137,7 +145,8 @@ static void test_jpeg(void **state)
         assert_int_equal(ted4_image_read(path, &image, &m), 0);
         assert_int_equal(image.channels, 3);
         for (int i = 0; i < 33 * 17 * 3; i++)
-            assert_true(abs(image.bytes[i] - (4 * (i / 3 % 33) + (components == 3 ? 60 * (i % 3) : 0))) <= 8);
+            assert_true(abs(image.bytes[i] -
+                            (4 * (i / 3 % 33) + (components == 3 ? 60 * (i % 3) : 0))) <= 8);
         free(image.bytes);
     }
     const size_t n = tiny_size(&f, "a.jpg");
@@ -162,14 +171,16 @@ static double pattern(double u, double v, int c)
     return 128 + 60 * sin(9 * u + c) * cos(7 * v - c) + 50 * sin(5 * v + 2 * u * c);
 }
 
-/* The pinhole position (u, v) whose distorted position is (a, b), by fixed-point iteration of the lens equations. */
+/* The pinhole position (u, v) whose distorted position is (a, b), by fixed-point iteration of the
+ * lens equations. */
 static void invert(const ted4_lens *l, double a, double b, double *u, double *v)
 {
     a -= l->skew * b / l->fx;
     *u = a;
     *v = b;
     for (int k = 0; k < 60; k++) {
-        const double s = *u * *u + *v * *v, radial = 1 + l->k1 * s + l->k2 * s * s + l->k3 * s * s * s;
+        const double s = *u * *u + *v * *v,
+                     radial = 1 + l->k1 * s + l->k2 * s * s + l->k3 * s * s * s;
         const double tu = 2 * l->p1 * *u * *v + l->p2 * (s + 2 * *u * *u);
         const double tv = l->p1 * (s + 2 * *v * *v) + 2 * l->p2 * *u * *v;
         *u = (a - tu) / radial;
@@ -177,7 +188,8 @@ static void invert(const ted4_lens *l, double a, double b, double *u, double *v)
     }
 }
 
-/* The lens equations themselves: where in the distorted picture the pinhole position (u, v) lies. */
+/* The lens equations themselves: where in the distorted picture the pinhole position (u, v) lies.
+ */
 static void distort(const ted4_lens *l, double u, double v, double *a, double *b)
 {
     const double s = u * u + v * v, radial = 1 + l->k1 * s + l->k2 * s * s + l->k3 * s * s * s;
@@ -191,7 +203,8 @@ static void test_undistort(void **state)
 {
     (void)state;
     static const ted4_lens lenses[] = {
-        { 320, 240, 260, 250, 155, 124, -0.08, 0, 0, 0, 0, 0 }, { 320, 240, 260, 250, 155, 124, 0.06, -0.02, 0, 0, 0, 0 },
+        { 320, 240, 260, 250, 155, 124, -0.08, 0, 0, 0, 0, 0 },
+        { 320, 240, 260, 250, 155, 124, 0.06, -0.02, 0, 0, 0, 0 },
         { 320, 240, 260, 250, 155, 124, -0.09, 0.02, 0.004, -0.006, 0, 0 },
         { 320, 240, 260, 250, 155, 124, -0.09, 0.05, 0.002, -0.001, -0.03, 4 },
     };
@@ -215,7 +228,8 @@ static void test_undistort(void **state)
                 continue;
             seen++;
             for (int c = 0; c < 3; c++) {
-                const double want = pattern((i % 320 + 0.5 - l->cx) / l->fx, (i / 320 + 0.5 - l->cy) / l->fy, c);
+                const double want =
+                    pattern((i % 320 + 0.5 - l->cx) / l->fx, (i / 320 + 0.5 - l->cy) / l->fy, c);
                 if (fabs(out[3 * i + c] - want) > 1.5)
                     fail_msg("lens %zu pixel %d: %d, expected %.1f", k, i, out[3 * i + c], want);
             }
@@ -242,7 +256,8 @@ static void test_undistort_border(void **state)
 
 enum { SIDE = 100, MIDDLE = 50 };
 
-/* The middle row, undistorted, of a picture that is black up to column edge and white from the next one on. */
+/* The middle row, undistorted, of a picture that is black up to column edge and white from the next
+ * one on. */
 static void undistort_edge(const ted4_lens *l, int edge, uint8_t row[SIDE])
 {
     static uint8_t in[SIDE * SIDE * 3], out[SIDE * SIDE * 3];
@@ -254,13 +269,16 @@ static void undistort_edge(const ted4_lens *l, int edge, uint8_t row[SIDE])
         row[i] = out[(MIDDLE * SIDE + i) * 3];
 }
 
-/* Where the polynomial would fold back, the position stays on the fold. r (1 - 0.2 r^2) is largest at r = sqrt(5 / 3): 0.86066, 17.213 pixels from the middle;
- * r (1 - 0.1 r^6) at r^6 = 1 / 0.7: 0.90964, 18.193 pixels; r (1 + r^2 - r^4 + r^6) never folds. */
+/* Where the polynomial would fold back, the position stays on the fold. r (1 - 0.2 r^2) is largest
+ * at r = sqrt(5 / 3): 0.86066, 17.213 pixels from the middle; r (1 - 0.1 r^6) at r^6 = 1 / 0.7:
+ * 0.90964, 18.193 pixels; r (1 + r^2 - r^4 + r^6) never folds. */
 static void test_undistort_fold(void **state)
 {
     (void)state;
     static const ted4_lens fold = { SIDE, SIDE, 20, 20, MIDDLE, MIDDLE + 0.5, -0.2, 0, 0, 0, 0, 0 };
-    static const ted4_lens sixth = { SIDE, SIDE, 20, 20, MIDDLE, MIDDLE + 0.5, 0, 0, 0, 0, -0.1, 0 };
+    static const ted4_lens sixth = {
+        SIDE, SIDE, 20, 20, MIDDLE, MIDDLE + 0.5, 0, 0, 0, 0, -0.1, 0
+    };
     static const ted4_lens grows = { SIDE, SIDE, 20, 20, MIDDLE, MIDDLE + 0.5, 1, -1, 0, 0, 1, 0 };
     uint8_t row[SIDE];
 
@@ -289,7 +307,7 @@ static uint8_t *make_item(void *user, size_t i, size_t *size, ted4_message *m)
         return NULL;
     }
     memset(p, (int)i, ITEM_BYTES);
-    ((size_t *)user)[i]++;                  /* each cell by one thread at a time, as promised */
+    ((size_t *)user)[i]++; /* each cell by one thread at a time, as promised */
     *size = ITEM_BYTES;
     return p;
 }
@@ -306,7 +324,7 @@ static void test_cache(void **state)
         assert_int_equal(ted4_image_cache_pin(c, i, &m)[7], i);
         ted4_image_cache_unpin(c, i);
     }
-    ted4_image_cache_pin(c, 0, &m);         /* now 1 is the oldest idle one */
+    ted4_image_cache_pin(c, 0, &m); /* now 1 is the oldest idle one */
     ted4_image_cache_unpin(c, 0);
     ted4_image_cache_pin(c, 3, &m);
     ted4_image_cache_unpin(c, 3);
@@ -329,7 +347,7 @@ static void test_cache(void **state)
     for (size_t i = 4; i < 9; i++)
         ted4_image_cache_unpin(c, i);
     assert_int_equal(ted4_image_cache_held(c), 3 * ITEM_BYTES);
-    assert_int_equal(held[0][0], 4);        /* pinned twice, unpinned once */
+    assert_int_equal(held[0][0], 4); /* pinned twice, unpinned once */
     ted4_image_cache_unpin(c, 4);
     assert_null(ted4_image_cache_pin(c, 11, &m));
     assert_string_equal(m.text, "item 11 is broken");
@@ -369,7 +387,8 @@ static void test_cache_ahead(void **state)
     ted4_image_cache_ahead(c, 11, 2);
     assert_null(ted4_image_cache_pin(c, 11, &m));
     assert_string_equal(m.text, "item 11 is broken");
-    for (size_t i = 3; i < 10; i++)         /* more than the queue takes; the end comes before they are done */
+    for (size_t i = 3; i < 10;
+         i++) /* more than the queue takes; the end comes before they are done */
         ted4_image_cache_ahead(c, i, 1);
     ted4_image_cache_free(c);
 }
@@ -383,7 +402,8 @@ static void test_cache_not_ahead(void **state)
 
     for (int room = 0; room < 2; room++) {
         size_t made[ITEMS] = { 0 };
-        ted4_image_cache *c = ted4_image_cache_new(ITEMS, room ? ITEMS * ITEM_BYTES : 3 * ITEM_BYTES, make_item, made);
+        ted4_image_cache *c = ted4_image_cache_new(
+            ITEMS, room ? ITEMS * ITEM_BYTES : 3 * ITEM_BYTES, make_item, made);
         assert_non_null(c);
         assert_non_null(ted4_image_cache_pin(c, 0, &m));
         ted4_image_cache_unpin(c, 0);
@@ -471,11 +491,16 @@ static void test_cache_threads(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_png),              cmocka_unit_test(test_png_write), cmocka_unit_test(test_jpeg),
-        cmocka_unit_test(test_undistort),        cmocka_unit_test(test_undistort_border),
+        cmocka_unit_test(test_png),
+        cmocka_unit_test(test_png_write),
+        cmocka_unit_test(test_jpeg),
+        cmocka_unit_test(test_undistort),
+        cmocka_unit_test(test_undistort_border),
         cmocka_unit_test(test_undistort_fold),
-        cmocka_unit_test(test_cache),            cmocka_unit_test(test_cache_ahead),
-        cmocka_unit_test(test_cache_not_ahead),  cmocka_unit_test(test_cache_threads),
+        cmocka_unit_test(test_cache),
+        cmocka_unit_test(test_cache_ahead),
+        cmocka_unit_test(test_cache_not_ahead),
+        cmocka_unit_test(test_cache_threads),
         cmocka_unit_test(test_cache_half_ahead),
     };
 

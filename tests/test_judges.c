@@ -1,4 +1,5 @@
-/* test_judges.c - train/state/view_subset.c: pictures that stand for all show every frame before any twice, whatever the numbers of cameras and frames.
+/* test_judges.c - train/state/view_subset.c: pictures that stand for all show every frame before
+ * any twice, whatever the numbers of cameras and frames.
  * SPDX-License-Identifier: BSD-2-Clause */
 #include <setjmp.h>
 #include <stdarg.h>
@@ -11,13 +12,17 @@
 
 enum { MOST = 400 };
 
-/* Camera by camera, as folders come; one camera of all is held out, and frame 0 of the others' first, so that frames differ in their number. */
+/* Camera by camera, as folders come; one camera of all is held out, and frame 0 of the others'
+ * first, so that frames differ in their number. */
 static void make(ted4_dataset *d, ted4_picture *picture, uint32_t frames, uint32_t cameras)
 {
-    *d = (ted4_dataset){ .pictures = picture, .n_pictures = (size_t)frames * cameras, .n_frames = frames };
+    *d = (ted4_dataset) { .pictures = picture,
+                          .n_pictures = (size_t)frames * cameras,
+                          .n_frames = frames };
     for (uint32_t c = 0; c < cameras; c++)
         for (uint32_t f = 0; f < frames; f++)
-            picture[c * frames + f] = (ted4_picture){ .frame = f, .is_test = c == 1 || (c == 0 && f == 0) };
+            picture[c * frames + f] =
+                (ted4_picture) { .frame = f, .is_test = c == 1 || (c == 0 && f == 0) };
 }
 
 static void check(ted4_trainer *t, uint64_t key, size_t n, size_t frames)
@@ -27,10 +32,11 @@ static void check(ted4_trainer *t, uint64_t key, size_t n, size_t frames)
 
     assert_int_equal(ted4_judges_choose(t, key, n, item), 0);
     for (size_t i = 0; i < n; i++) {
-        assert_true(item[i] < t->data->n_pictures && !t->data->pictures[item[i]].is_test && chosen[item[i]]++ == 0);
+        assert_true(item[i] < t->data->n_pictures && !t->data->pictures[item[i]].is_test &&
+                    chosen[item[i]]++ == 0);
         times[t->data->pictures[item[i]].frame]++;
     }
-    for (size_t f = 1; f < frames; f++) {       /* frame 0 has one picture less */
+    for (size_t f = 1; f < frames; f++) { /* frame 0 has one picture less */
         least = times[f] < least ? times[f] : least;
         most = times[f] > most ? times[f] : most;
     }
@@ -60,8 +66,8 @@ static void test_drawn(void **state)
     static ted4_picture picture[MOST];
     ted4_dataset d;
     ted4_trainer t = { .data = &d };
-    uint32_t     a[16], b[16];
-    int          same = 0, odd = 0;
+    uint32_t a[16], b[16];
+    int same = 0, odd = 0;
 
     (void)state;
     make(&d, picture, 80, 5);
@@ -77,7 +83,8 @@ static void test_drawn(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_all_frames), cmocka_unit_test(test_drawn),
+        cmocka_unit_test(test_all_frames),
+        cmocka_unit_test(test_drawn),
     };
 
     return cmocka_run_group_tests_name("judges", tests, NULL, NULL);

@@ -12,24 +12,26 @@
 #include "use_kernels.h"
 
 typedef struct {
-    ted4_error  error;
-    size_t      left;           /* bytes of words not read */
-    int16_t    *k;
+    ted4_error error;
+    size_t left; /* bytes of words not read */
+    int16_t *k;
 } outcome;
 
 /* In calls of step symbols. */
-static outcome read_symbols(const uint8_t *data, size_t size, const symbols *s, size_t step, ted4_gauss_many many)
+static outcome read_symbols(const uint8_t *data, size_t size, const symbols *s, size_t step,
+                            ted4_gauss_many many)
 {
     ted4_reader r;
-    uint32_t    length;
-    outcome     o = { { TED4_OK, 0 }, 0, calloc(s->n, sizeof *o.k) };
+    uint32_t length;
+    outcome o = { { TED4_OK, 0 }, 0, calloc(s->n, sizeof *o.k) };
 
     ted4_reader_init(&r, data, 0, size, 0);
     r.many = many;
     r.base.ops->sizes(&r.base, &length, 1);
     r.base.ops->open(&r.base, s->n);
     for (size_t i = 0; i < s->n; i += step)
-        r.base.ops->gauss(&r.base, s->n - i < step ? s->n - i : step, s->mu + i, s->sigma + i, o.k + i);
+        r.base.ops->gauss(&r.base, s->n - i < step ? s->n - i : step, s->mu + i, s->sigma + i,
+                          o.k + i);
     r.base.ops->close(&r.base);
     o.error = r.base.error;
     o.left = (size_t)(r.rans.end - r.rans.word);
@@ -40,7 +42,7 @@ static outcome read_symbols(const uint8_t *data, size_t size, const symbols *s, 
 static ted4_status compare(const uint8_t *data, size_t size, const symbols *s, ted4_gauss_many many)
 {
     static const size_t step[] = { 1 << 20, 4096, 1001, 64, 7 };
-    const outcome       want = read_symbols(data, size, s, s->n, NULL);
+    const outcome want = read_symbols(data, size, s, s->n, NULL);
 
     for (size_t i = 0; i < sizeof step / sizeof step[0]; i++) {
         const outcome got = read_symbols(data, size, s, step[i], many);
@@ -58,7 +60,7 @@ static ted4_status compare(const uint8_t *data, size_t size, const symbols *s, t
 }
 
 typedef struct {
-    ted4_level      level;
+    ted4_level level;
     ted4_gauss_many many;
 } variant;
 
@@ -77,14 +79,14 @@ static ted4_gauss_many variant_of(void **state)
 /* From 1 to 64 lanes. */
 static void test_same(void **state)
 {
-    static const size_t   count[] = { 1, 8192, 16384, 16385, 20000, 40000, 70001, 140000, 262144 };
+    static const size_t count[] = { 1, 8192, 16384, 16385, 20000, 40000, 70001, 140000, 262144 };
     static const unsigned far[] = { 0, 2000, 9 }, widest[] = { 20, 100, TED4_N_SIGMA - 1 };
     const ted4_gauss_many many = variant_of(state);
 
     for (size_t i = 0; i < sizeof count / sizeof count[0]; i++)
         for (unsigned f = 0; f < 3; f++)
             for (unsigned v = 0; v < 3; v++) {
-                symbols     s = symbols_make(3 * i + f, count[i], far[f], widest[v]);
+                symbols s = symbols_make(3 * i + f, count[i], far[f], widest[v]);
                 ted4_writer w;
 
                 symbols_write(&w, &s);
@@ -98,14 +100,14 @@ static void test_same(void **state)
  * without an escape and with one. */
 static void test_outside(void **state)
 {
-    static const size_t   at[] = { 0, 1, 100, 4099, 39999 };
+    static const size_t at[] = { 0, 1, 100, 4099, 39999 };
     const ted4_gauss_many many = variant_of(state);
 
     for (size_t i = 0; i < 4 * sizeof at / sizeof at[0]; i++) {
-        const int    sign = i % 2 ? -1 : 1, escapes = i / 2 % 2 != 0;
-        symbols      s = symbols_make(7, 40000, 0, 60);
+        const int sign = i % 2 ? -1 : 1, escapes = i / 2 % 2 != 0;
+        symbols s = symbols_make(7, 40000, 0, 60);
         const size_t k = at[i / 4];
-        ted4_writer  w;
+        ted4_writer w;
 
         s.k[k] = (int16_t)(32767 * sign);
         s.mu[k] = (escapes ? 30000 : 32767) * 256 * sign;
@@ -122,9 +124,9 @@ static void test_outside(void **state)
 static void test_damaged(void **state)
 {
     const ted4_gauss_many many = variant_of(state);
-    symbols               s = symbols_make(5, 40000, 3000, 100);
-    random_source         r = random_seed(11);
-    ted4_writer           w;
+    symbols s = symbols_make(5, 40000, 3000, 100);
+    random_source r = random_seed(11);
+    ted4_writer w;
 
     symbols_write(&w, &s);
     for (int i = 0; i < 30; i++) {
@@ -148,10 +150,10 @@ static void test_damaged(void **state)
 static void test_takes(void **state)
 {
     const ted4_gauss_many many = variant_of(state);
-    symbols               s = symbols_make(6, 40000, 0, 60);
-    ted4_writer           w;
-    ted4_reader           r;
-    uint32_t              length;
+    symbols s = symbols_make(6, 40000, 0, 60);
+    ted4_writer w;
+    ted4_reader r;
+    uint32_t length;
 
     symbols_write(&w, &s);
     ted4_reader_init(&r, w.out.data, 0, w.out.size, 0);
@@ -160,8 +162,8 @@ static void test_takes(void **state)
     assert_int_equal(r.rans.n_lanes, 8);
 
     ted4_gauss_lanes lanes = { r.rans.state, 8, 0, r.rans.word, r.rans.end };
-    int16_t         *k = calloc(s.n, sizeof *k);
-    const size_t     done = many(&lanes, s.n, s.mu, s.sigma, k);
+    int16_t *k = calloc(s.n, sizeof *k);
+    const size_t done = many(&lanes, s.n, s.mu, s.sigma, k);
 
     assert_int_equal(done, s.n);
     assert_memory_equal(k, s.k, done * sizeof *k);
@@ -173,11 +175,11 @@ static void test_takes(void **state)
 /* Indices of sigma at both ends, means in every fraction, and symbols at the ends of the window. */
 static void test_ends(void **state)
 {
-    static const uint8_t  sigma[] = { 0, 1, 38, 64, 100, 150, 200, TED4_N_SIGMA - 1 };
+    static const uint8_t sigma[] = { 0, 1, 38, 64, 100, 150, 200, TED4_N_SIGMA - 1 };
     const ted4_gauss_many many = variant_of(state);
-    symbols               s = symbols_make(9, 262144, 0, 100);
-    random_source         r = random_seed(3);
-    ted4_writer           w;
+    symbols s = symbols_make(9, 262144, 0, 100);
+    random_source r = random_seed(3);
+    ted4_writer w;
 
     for (size_t i = 0; i < s.n; i++) {
         const int hw = ted4_half[s.sigma[i] = sigma[random_in(&r, 0, 7)]];
@@ -205,10 +207,10 @@ static void test_selected(void **state)
     use_kernels(NULL);
 }
 
-#define TESTS(v)                                                                                   \
-    cmocka_unit_test_prestate(test_same, &(v)), cmocka_unit_test_prestate(test_outside, &(v)),     \
-        cmocka_unit_test_prestate(test_damaged, &(v)),                                             \
-        cmocka_unit_test_prestate(test_takes, &(v)), cmocka_unit_test_prestate(test_ends, &(v)),   \
+#define TESTS(v)                                                                                 \
+    cmocka_unit_test_prestate(test_same, &(v)), cmocka_unit_test_prestate(test_outside, &(v)),   \
+        cmocka_unit_test_prestate(test_damaged, &(v)),                                           \
+        cmocka_unit_test_prestate(test_takes, &(v)), cmocka_unit_test_prestate(test_ends, &(v)), \
         cmocka_unit_test_prestate(test_selected, &(v))
 
 int main(void)

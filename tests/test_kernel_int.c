@@ -1,4 +1,5 @@
-/* test_kernel_int.c - kernel/int_dense_*.c give the bits of norm/int_dense.c, up to the ends of what R-NET-006 allows.
+/* test_kernel_int.c - kernel/int_dense_*.c give the bits of norm/int_dense.c, up to the ends of
+ * what R-NET-006 allows.
  * SPDX-License-Identifier: BSD-2-Clause */
 #include <setjmp.h>
 #include <stdarg.h>
@@ -13,7 +14,8 @@
 
 enum { BLOCK = TED4_PRIOR_BLOCK };
 
-/* A layer whose weights use up the accumulator: sum |W| 32767 + |B| + 2^(r-1) is just under 2^31. */
+/* A layer whose weights use up the accumulator: sum |W| 32767 + |B| + 2^(r-1) is just under 2^31.
+ */
 static ted4_int_layer make(random_source *r, unsigned in, unsigned out)
 {
     ted4_int_layer l = { in, in + in % 2, out, NULL, NULL, NULL };
@@ -32,13 +34,10 @@ static ted4_int_layer make(random_source *r, unsigned in, unsigned out)
 
             most = most > 32767 ? 32767 : most;
             if (i + 1 < in)
-                most = most * 2 / (int64_t)(in - i) > 0
-                     ? most * 2 / (int64_t)(in - i) : most;
-            w = (int32_t)random_in(r, 0, (uint32_t)(most > 32767 ? 32767
-                                                                 : most));
+                most = most * 2 / (int64_t)(in - i) > 0 ? most * 2 / (int64_t)(in - i) : most;
+            w = (int32_t)random_in(r, 0, (uint32_t)(most > 32767 ? 32767 : most));
             left -= (int64_t)w * 32767;
-            l.w[(size_t)o * l.in_pad + i] = (int16_t)(random_in(r, 0, 1) ? w
-                                                                         : -w);
+            l.w[(size_t)o * l.in_pad + i] = (int16_t)(random_in(r, 0, 1) ? w : -w);
         }
         l.b[o] = (int32_t)(random_in(r, 0, 1) ? left : -left);
         if (random_in(r, 0, 3) == 0)
@@ -61,8 +60,7 @@ static void fill(random_source *r, const ted4_int_layer *l, int16_t *x)
         for (int a = 0; a < BLOCK; a++) {
             const int16_t rail = random_in(r, 0, 1) ? 32767 : -32767;
 
-            x[i * BLOCK + a] = a % 3 == 0 ? rail
-                             : (int16_t)(random_normal(r) * 300);
+            x[i * BLOCK + a] = a % 3 == 0 ? rail : (int16_t)(random_normal(r) * 300);
             if (a == 1)
                 x[i * BLOCK + a] = l->w[i] < 0 ? -32767 : 32767;
         }
@@ -77,11 +75,10 @@ static void compare(const ted4_int_dense *fast)
 
     for (int n = 0; n < 400; n++) {
         const unsigned in = n < 20 ? (unsigned)n : random_in(&r, 1, 130);
-        const unsigned out = n < 20 ? random_in(&r, 1, 20)
-                                    : random_in(&r, 1, 130);
+        const unsigned out = n < 20 ? random_in(&r, 1, 20) : random_in(&r, 1, 130);
         const size_t columns = n % 2 ? 32 : 64;
-        ted4_int_layer l = make(&r, n == 399 ? TED4_MAX_WIDTH : in,
-                                n == 399 ? TED4_MAX_WIDTH : out);
+        ted4_int_layer l =
+            make(&r, n == 399 ? TED4_MAX_WIDTH : in, n == 399 ? TED4_MAX_WIDTH : out);
 
         fill(&r, &l, x);
         memset(h, 0x55, sizeof h);
@@ -119,9 +116,9 @@ static void selected_by_name(void **state)
     use_kernels("v1");
     assert_ptr_equal(ted4_select_int_dense(), &ted4_int_dense_plain);
     use_kernels("v3");
-    assert_ptr_equal(ted4_select_int_dense(),
-                     ted4_level_of_machine() >= TED4_LEVEL_V3 ? &ted4_int_dense_avx2
-                                                              : &ted4_int_dense_plain);
+    assert_ptr_equal(ted4_select_int_dense(), ted4_level_of_machine() >= TED4_LEVEL_V3
+                                                  ? &ted4_int_dense_avx2
+                                                  : &ted4_int_dense_plain);
 #endif
     use_kernels(NULL);
 }

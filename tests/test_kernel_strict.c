@@ -1,5 +1,6 @@
-/* test_kernel_strict.c - kernel/strict_dense.h: each twin this machine can run gives the bits of the plain layer, for odd and even
- * shapes, ordinary and special numbers. NaNs are equal whatever their payload: R-REC-001 refuses them all.
+/* test_kernel_strict.c - kernel/strict_dense.h: each twin this machine can run gives the bits of
+ * the plain layer, for odd and even shapes, ordinary and special numbers. NaNs are equal whatever
+ * their payload: R-REC-001 refuses them all.
  * SPDX-License-Identifier: BSD-2-Clause */
 #include <setjmp.h>
 #include <stdarg.h>
@@ -33,8 +34,8 @@ static float ordinary(void)
 /* Zeros of both signs, subnormals, huge and non-finite numbers among ordinary ones. */
 static float special(void)
 {
-    static const uint32_t list[] = { 0, 0x80000000, 1, 0x80000001, 0x007fffff, 0x00800000,
-                                     0x7f7fffff, 0xff7fffff, 0x7f800000, 0xff800000,
+    static const uint32_t list[] = { 0,          0x80000000, 1,          0x80000001, 0x007fffff,
+                                     0x00800000, 0x7f7fffff, 0xff7fffff, 0x7f800000, 0xff800000,
                                      0x7fc00000, 0x3f800001, 0x33800000 };
     const uint32_t pick = bits32() >> 8;
 
@@ -95,7 +96,7 @@ static void twin_is_plain(ted4_strict_dense_fn twin)
 
 /* What a machine of this kind may have. */
 typedef struct {
-    ted4_level           level;
+    ted4_level level;
     ted4_strict_dense_fn twin;
 } variant;
 
@@ -166,7 +167,8 @@ int main(void)
 #else
         { "no_variant", variant_is_plain, NULL, NULL, NULL },
 #endif
-        cmocka_unit_test(plain_is_the_text), cmocka_unit_test(environment_chooses),
+        cmocka_unit_test(plain_is_the_text),
+        cmocka_unit_test(environment_chooses),
     };
 
     return cmocka_run_group_tests(tests, NULL, NULL);

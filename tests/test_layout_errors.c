@@ -1,5 +1,6 @@
-/* test_layout_errors.c - everything that a scene of the layouts hypernerf, neu3d and calibration can get wrong, and videos, give one
- * message that says where and what, and an empty dataset. The other layouts: test_dataset_errors.c.
+/* test_layout_errors.c - everything that a scene of the layouts hypernerf, neu3d and calibration
+ * can get wrong, and videos, give one message that says where and what, and an empty dataset. The
+ * other layouts: test_dataset_errors.c.
  * SPDX-License-Identifier: BSD-2-Clause */
 #include <math.h>
 #include <setjmp.h>
@@ -20,13 +21,14 @@ static void accept(const tiny_folder *f)
 
 /* hypernerf */
 
-#define EYE    "\"orientation\": [[1,0,0],[0,1,0],[0,0,1]],"
-#define PLACE  "\"position\": [0,0,1],"
-#define LENS   "\"focal_length\": 9, \"principal_point\": [8, 6], \"image_size\": [16, 12]"
-#define IDS    "{\"ids\": [\"a\"], \"train_ids\": [\"a\"], \"val_ids\": [\"b\"]}"
-#define WARPS  "{\"a\": {\"warp_id\": 0}, \"b\": {\"warp_id\": 1}}"
+#define EYE   "\"orientation\": [[1,0,0],[0,1,0],[0,0,1]],"
+#define PLACE "\"position\": [0,0,1],"
+#define LENS  "\"focal_length\": 9, \"principal_point\": [8, 6], \"image_size\": [16, 12]"
+#define IDS   "{\"ids\": [\"a\"], \"train_ids\": [\"a\"], \"val_ids\": [\"b\"]}"
+#define WARPS "{\"a\": {\"warp_id\": 0}, \"b\": {\"warp_id\": 1}}"
 
-static void hypernerf(const tiny_folder *f, const char *dataset, const char *metadata, const char *camera)
+static void hypernerf(const tiny_folder *f, const char *dataset, const char *metadata,
+                      const char *camera)
 {
     tiny_text(f, "dataset.json", dataset);
     tiny_text(f, "metadata.json", metadata);
@@ -37,30 +39,49 @@ static void hypernerf(const tiny_folder *f, const char *dataset, const char *met
 static void test_hypernerf(void **state)
 {
     static const char good[] = "{" EYE PLACE LENS "}";
-    static const struct { const char *dataset, *metadata, *camera, *where, *what; } cases[] = {
+    static const struct {
+        const char *dataset, *metadata, *camera, *where, *what;
+    } cases[] = {
         { "{", WARPS, good, "dataset.json:1", "not valid JSON" },
         { "{\"ids\": 3}", WARPS, good, "dataset.json.ids", "expected a list" },
         { "{\"ids\": [3]}", WARPS, good, "dataset.json.ids[0]", "expected a name" },
         { "{\"ids\": []}", WARPS, good, "layout hypernerf", "no pictures" },
-        { "{\"train_ids\": [\"a\"], \"val_ids\": [\"a\"]}", WARPS, good, "dataset.json: \"a\"", "twice" },
-        { "{\"train_ids\": [\"c\"], \"val_ids\": [\"a\"]}", WARPS, good, "none is left to train on", "1 of 2 entries have no picture, the first: " },
+        { "{\"train_ids\": [\"a\"], \"val_ids\": [\"a\"]}", WARPS, good, "dataset.json: \"a\"",
+          "twice" },
+        { "{\"train_ids\": [\"c\"], \"val_ids\": [\"a\"]}", WARPS, good, "none is left to train on",
+          "1 of 2 entries have no picture, the first: " },
         { "{\"train_ids\": [\"c\", \"d\"], \"val_ids\": []}", WARPS, good, "no pictures", "" },
         { "{\"val_ids\": [\"a\"]}", WARPS, good, "held out", "none is left" },
         { IDS, "{\"a\": {\"warp_id\": 0}}", good, "metadata.json: \"b\"", "no such entry" },
-        { IDS, "{\"a\": {\"warp_id\": 0}, \"b\": {}}", good, "metadata.json: \"b\".warp_id", "missing" },
-        { IDS, "{\"a\": {\"warp_id\": \"0\"}}", good, "metadata.json: \"a\".warp_id", "expected a number" },
+        { IDS, "{\"a\": {\"warp_id\": 0}, \"b\": {}}", good, "metadata.json: \"b\".warp_id",
+          "missing" },
+        { IDS, "{\"a\": {\"warp_id\": \"0\"}}", good, "metadata.json: \"a\".warp_id",
+          "expected a number" },
         { IDS, WARPS, "[", "camera/a.json:1", "not valid JSON" },
         { IDS, WARPS, "{" PLACE LENS "}", "camera/a.json.orientation", "missing" },
         { IDS, WARPS, "{" EYE LENS "}", "camera/a.json.position", "missing" },
-        { IDS, WARPS, "{" EYE "\"position\": [1, 2]," LENS "}", "camera/a.json.position", "expected 3 numbers" },
-        { IDS, WARPS, "{" EYE "\"position\": [1, 2, 3, 4]," LENS "}", "camera/a.json.position", "expected 3 numbers" },
-        { IDS, WARPS, "{\"orientation\": [[1,0,0],[0,1,0],[0,0,-1]]," PLACE LENS "}", "camera/a.json.orientation", "mirror" },
-        { IDS, WARPS, "{" EYE PLACE "\"principal_point\": [8, 6], \"image_size\": [16, 12]}", "a.json.focal_length", "missing" },
-        { IDS, WARPS, "{" EYE PLACE "\"focal_length\": 9, \"principal_point\": [8, 6]}", "a.json.image_size", "missing" },
-        { IDS, WARPS, "{" EYE PLACE "\"focal_length\": 9, \"principal_point\": [8, 6], \"image_size\": [0, 12]}", "a.json.image_size", "0, 12" },
-        { IDS, WARPS, "{" EYE PLACE "\"focal_length\": 9, \"principal_point\": [8, 6], \"image_size\": [20, 12]}", "a.png", "camera says 20x12" },
-        { IDS, WARPS, "{" EYE PLACE LENS ", \"radial_distortion\": [1, 2]}", "a.json.radial_distortion", "expected 3 numbers" },
-        { IDS, WARPS, "{" EYE PLACE LENS ", \"pixel_aspect_ratio\": 0}", "a.png", "focal lengths 9, 0" },
+        { IDS, WARPS, "{" EYE "\"position\": [1, 2]," LENS "}", "camera/a.json.position",
+          "expected 3 numbers" },
+        { IDS, WARPS, "{" EYE "\"position\": [1, 2, 3, 4]," LENS "}", "camera/a.json.position",
+          "expected 3 numbers" },
+        { IDS, WARPS, "{\"orientation\": [[1,0,0],[0,1,0],[0,0,-1]]," PLACE LENS "}",
+          "camera/a.json.orientation", "mirror" },
+        { IDS, WARPS, "{" EYE PLACE "\"principal_point\": [8, 6], \"image_size\": [16, 12]}",
+          "a.json.focal_length", "missing" },
+        { IDS, WARPS, "{" EYE PLACE "\"focal_length\": 9, \"principal_point\": [8, 6]}",
+          "a.json.image_size", "missing" },
+        { IDS, WARPS,
+          "{" EYE PLACE
+          "\"focal_length\": 9, \"principal_point\": [8, 6], \"image_size\": [0, 12]}",
+          "a.json.image_size", "0, 12" },
+        { IDS, WARPS,
+          "{" EYE PLACE
+          "\"focal_length\": 9, \"principal_point\": [8, 6], \"image_size\": [20, 12]}",
+          "a.png", "camera says 20x12" },
+        { IDS, WARPS, "{" EYE PLACE LENS ", \"radial_distortion\": [1, 2]}",
+          "a.json.radial_distortion", "expected 3 numbers" },
+        { IDS, WARPS, "{" EYE PLACE LENS ", \"pixel_aspect_ratio\": 0}", "a.png",
+          "focal lengths 9, 0" },
     };
     tiny_folder f = tiny_new();
 
@@ -100,12 +121,18 @@ static void table(const tiny_folder *f, const char *header, int n, double focal)
     tiny_bytes(f, "poses_bounds.npy", r.bytes, r.n);
 }
 
-#define NPY(type, order, shape) "{'descr': '" type "', 'fortran_order': " order ", 'shape': " shape ", }\n"
+#define NPY(type, order, shape) \
+    "{'descr': '" type "', 'fortran_order': " order ", 'shape': " shape ", }\n"
 #define TWO NPY("<f8", "False", "(2, 17)")
 
 static void test_neu3d(void **state)
 {
-    static const struct { const char *header; int rows; double focal; const char *what; } cases[] = {
+    static const struct {
+        const char *header;
+        int rows;
+        double focal;
+        const char *what;
+    } cases[] = {
         { NPY("<f8", "False", "(2, 15)"), 2, 9, "shape (2, 15), expected rows of 17" },
         { NPY("<f8", "False", "(34,)"), 2, 9, "shape (34,), expected two dimensions" },
         { NPY("<f8", "False", "(2, 17, 1)"), 2, 9, "expected two dimensions" },
@@ -165,8 +192,11 @@ static void calibration(const tiny_folder *f, const char *top, const char *camer
 static void test_calibration(void **state)
 {
     static const char good[] = "\"name\": \"two\"," SIZE K W2C;
-    static const struct { const char *top, *camera, *where, *what; } cases[] = {
-        { "\"frames\": 3,", good, "cams.json: cameras[0]", "2 frames, expected 3 by the file's frames" },
+    static const struct {
+        const char *top, *camera, *where, *what;
+    } cases[] = {
+        { "\"frames\": 3,", good, "cams.json: cameras[0]",
+          "2 frames, expected 3 by the file's frames" },
         { "\"frames\": 2.5,", good, "cams.json.frames", "2.5" },
         { "\"frames\": 1e9,", good, "cams.json.frames", "1e+09" },
         { "\"fps\": -1,", good, "cams.json.fps", "-1" },
@@ -175,17 +205,24 @@ static void test_calibration(void **state)
         { "", SIZE K W2C, "cameras[1]", "no name" },
         { "", "\"name\": \"two\"," K W2C, "cameras[1]", "no w, h" },
         { "", "\"name\": \"two\"," SIZE W2C, "cameras[1]", "no K" },
-        { "", "\"name\": \"two\"," SIZE "\"K\": [[9,0,8],[0,9,6]]," W2C, "cameras[1].K", "expected 9 numbers" },
-        { "", "\"name\": \"two\"," SIZE "\"K\": [[9,0,8],[1,9,6],[0,0,1]]," W2C, "cameras[1].K", "expected fx s cx" },
-        { "", "\"name\": \"two\"," SIZE K "\"dist\": [1, 2]," W2C, "cameras[1].dist", "expected 4 to 5 numbers" },
-        { "", "\"name\": \"two\"," SIZE K "\"dist\": [1, 2, 3, 4, 5, 6]," W2C, "cameras[1].dist", "expected 4 to 5 numbers" },
-        { "", "\"name\": \"two\"," SIZE K "\"w2c\": [[1,0,0,0],[0,1,0,0],[0,0,-1,0]]", "cameras[1].w2c", "mirror" },
+        { "", "\"name\": \"two\"," SIZE "\"K\": [[9,0,8],[0,9,6]]," W2C, "cameras[1].K",
+          "expected 9 numbers" },
+        { "", "\"name\": \"two\"," SIZE "\"K\": [[9,0,8],[1,9,6],[0,0,1]]," W2C, "cameras[1].K",
+          "expected fx s cx" },
+        { "", "\"name\": \"two\"," SIZE K "\"dist\": [1, 2]," W2C, "cameras[1].dist",
+          "expected 4 to 5 numbers" },
+        { "", "\"name\": \"two\"," SIZE K "\"dist\": [1, 2, 3, 4, 5, 6]," W2C, "cameras[1].dist",
+          "expected 4 to 5 numbers" },
+        { "", "\"name\": \"two\"," SIZE K "\"w2c\": [[1,0,0,0],[0,1,0,0],[0,0,-1,0]]",
+          "cameras[1].w2c", "mirror" },
         { "", "\"name\": \"two\", \"w\": 16, \"h\": 12," K "\"x\": 1", "cameras[1]", "no w2c" },
         { "", "\"name\": \"two\", \"start\": 1," SIZE K W2C, "cameras[1].start", "no fps" },
-        { "\"fps\": 30,", "\"name\": \"two\", \"start\": 1, \"frame\": 3," SIZE K W2C, "cameras[1]", "both start and frame" },
+        { "\"fps\": 30,", "\"name\": \"two\", \"start\": 1, \"frame\": 3," SIZE K W2C, "cameras[1]",
+          "both start and frame" },
         { "", "\"name\": \"two\", \"frame\": 1.5," SIZE K W2C, "cameras[1].frame", "1.5" },
         { "", "\"name\": \"two\", \"frame\": 1e9," SIZE K W2C, "cameras[1]", "1e+09 frames" },
-        { "", "\"name\": \"two\", \"w\": 20, \"h\": 12," K W2C, "two/images/0.png", "its camera says 20x12" },
+        { "", "\"name\": \"two\", \"w\": 20, \"h\": 12," K W2C, "two/images/0.png",
+          "its camera says 20x12" },
     };
     tiny_folder f = tiny_new();
 
@@ -205,9 +242,11 @@ static void test_calibration(void **state)
     must(remove(tiny_path(&f, "two/images/1.png")) == 0, "1.png");
     assert_int_equal(warned(&f, "from 1 to 2 frames", "--max-frames 1"), 3);
     calibration(&f, "", "\"name\": \"six\"," SIZE K W2C);
-    assert_int_equal(warned(&f, "1 of 2 entries has no picture: ", "cameras[1]: six: no such video"), 2);
+    assert_int_equal(
+        warned(&f, "1 of 2 entries has no picture: ", "cameras[1]: six: no such video"), 2);
     calibration(&f, "", "\"name\": \"six\", \"video\": \"x.mkv\"," SIZE K W2C);
-    assert_int_equal(warned(&f, "1 of 2 entries has no picture: ", "cameras[1]: x.mkv: no such video"), 2);
+    assert_int_equal(
+        warned(&f, "1 of 2 entries has no picture: ", "cameras[1]: x.mkv: no such video"), 2);
     tiny_text(&f, "cams.json", "{}");
     refuse(&f, "cams.json", "cameras: expected a list");
     tiny_free(&f);
@@ -218,7 +257,7 @@ static void test_calibration(void **state)
 static int files_in(const char *path)
 {
     DIR *d = opendir(path);
-    int n = -2;                         /* . and .. */
+    int n = -2; /* . and .. */
 
     assert_non_null(d);
     while (readdir(d) != NULL)
@@ -237,7 +276,10 @@ static void test_videos(void **state)
     must(path != NULL, "PATH");
     setenv("XDG_CACHE_HOME", cache.path, 1);
     tiny_bytes(&f, "it's \"one\" % $x.mp4", "not a video\0\1\2", 14);
-    tiny_text(&f, "cams.json", "{\"cameras\": [{\"name\": \"one\", \"video\": \"it's \\\"one\\\" % $x.mp4\"," SIZE K W2C "}]}");
+    tiny_text(
+        &f, "cams.json",
+        "{\"cameras\": [{\"name\": \"one\", \"video\": \"it's \\\"one\\\" % $x.mp4\"," SIZE K W2C
+        "}]}");
     if (system("ffmpeg -version >/dev/null 2>&1") == 0) {
         refuse(&f, "it's \"one\" % $x.mp4: ffmpeg", "failed after 0 frames: ");
         assert_int_equal(files_in(tiny_path(&cache, "ted4")), 0);
@@ -257,7 +299,10 @@ static void test_videos(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_hypernerf), cmocka_unit_test(test_neu3d), cmocka_unit_test(test_calibration), cmocka_unit_test(test_videos),
+        cmocka_unit_test(test_hypernerf),
+        cmocka_unit_test(test_neu3d),
+        cmocka_unit_test(test_calibration),
+        cmocka_unit_test(test_videos),
     };
 
     return cmocka_run_group_tests_name("layout errors", tests, NULL, NULL);

@@ -1,5 +1,6 @@
-/* test_layouts.c - one tiny scene written in every layout loads as one and the same: cameras, times, splits, points, pixels; then
- * what only some layouts can say (lens terms, reduced pictures, splits by position, arrays of numbers). Links tests/scenes/ray_*.o.
+/* test_layouts.c - one tiny scene written in every layout loads as one and the same: cameras,
+ * times, splits, points, pixels; then what only some layouts can say (lens terms, reduced pictures,
+ * splits by position, arrays of numbers). Links tests/scenes/ray_*.o.
  * SPDX-License-Identifier: BSD-2-Clause */
 #include <math.h>
 #include <setjmp.h>
@@ -11,12 +12,25 @@
 #include "scenes/ray_set.h"
 #include "tiny_scene.h"
 
-enum { W = 48, H = 36, TRAIN = 2, TEST = 1, CAMERAS = TRAIN + TEST, FRAMES = 3, PICTURES = CAMERAS * FRAMES };
+enum {
+    W = 48,
+    H = 36,
+    TRAIN = 2,
+    TEST = 1,
+    CAMERAS = TRAIN + TEST,
+    FRAMES = 3,
+    PICTURES = CAMERAS * FRAMES
+};
 
-static const ted4_ray_options scene = { .scene = RAY_TURN, .width = W, .height = H, .n_train = TRAIN, .n_test = TEST, .n_frames = FRAMES,
+static const ted4_ray_options scene = { .scene = RAY_TURN,
+                                        .width = W,
+                                        .height = H,
+                                        .n_train = TRAIN,
+                                        .n_test = TEST,
+                                        .n_frames = FRAMES,
                                         .seed = 3 };
-static tiny_folder    reference_folder;
-static ted4_dataset   reference;
+static tiny_folder reference_folder;
+static ted4_dataset reference;
 
 static void near(double a, double b, double tolerance)
 {
@@ -50,11 +64,13 @@ static size_t twin(const ted4_dataset *r, const ted4_picture *p)
         const ted4_camera *a = &r->pictures[i].camera;
         double worst = 0;
         for (int k = 0; k < 12; k++)
-            worst = fmax(worst, k < 9 ? fabs(a->R[k] - p->camera.R[k]) : fabs(a->t[k - 9] - p->camera.t[k - 9]));
+            worst = fmax(worst, k < 9 ? fabs(a->R[k] - p->camera.R[k])
+                                      : fabs(a->t[k - 9] - p->camera.t[k - 9]));
         if (worst < 1e-6 && r->pictures[i].frame == p->frame)
             return i;
     }
-    fail_msg("%s: no picture of the reference has this pose and frame %u", p->path, (unsigned)p->frame);
+    fail_msg("%s: no picture of the reference has this pose and frame %u", p->path,
+             (unsigned)p->frame);
     return 0;
 }
 
@@ -107,7 +123,8 @@ static void same_scene(ted4_dataset *d, int tolerance, int split)
 
 static void test_layouts(void **state)
 {
-    /* What each layout is recognised as; splits: by list, by list, 1 of 8, 1 of 8, by list, first camera, times. */
+    /* What each layout is recognised as; splits: by list, by list, 1 of 8, 1 of 8, by list, first
+     * camera, times. */
     static const char *const names[RAY_LLFF] = { "D-NeRF",    "nerfstudio", "colmap",     "colmap",
                                                  "hypernerf", "neu3d",      "calibration" };
     static const int split[RAY_LLFF] = { 1, 1, 0, 0, 1, 1, 0 };
@@ -245,7 +262,9 @@ static void test_neu3d_forms(void **state)
     const ted4_camera *c = &d.pictures[0].camera;
     const double world[3] = { 4, 8, 10 }, expected[3] = { 2, -3, 1 };
     for (int i = 0; i < 3; i++)
-        near(c->R[3 * i] * world[0] + c->R[3 * i + 1] * world[1] + c->R[3 * i + 2] * world[2] + c->t[i], expected[i], 1e-6);
+        near(c->R[3 * i] * world[0] + c->R[3 * i + 1] * world[1] + c->R[3 * i + 2] * world[2] +
+                 c->t[i],
+             expected[i], 1e-6);
     near(c->fx, 10, 1e-9);
     near(c->cy, 6, 1e-9);
     ted4_dataset_free(&d);
@@ -262,22 +281,30 @@ static void write_lenses(const tiny_folder *f)
         char name[64];
         snprintf(name, sizeof name, "rgb/2x/%d.png", i);
         tiny_picture(f, name, TINY_W, TINY_H, i);
-        tiny_add(&s, "{\"orientation\": [[1,0,0],[0,1,0],[0,0,1]], \"position\": [1,2,3], \"focal_length\": 20, \"principal_point\": [15, 13],"
-                 "\"skew\": 4, \"pixel_aspect_ratio\": 1.1, \"radial_distortion\": [0.1, -0.2, 0.3], \"%s\": [0.01, -0.02],"
-                 "\"image_size\": [32, 24]}", i == 0 ? "tangential" : "tangential_distortion");
+        tiny_add(&s,
+                 "{\"orientation\": [[1,0,0],[0,1,0],[0,0,1]], \"position\": [1,2,3], "
+                 "\"focal_length\": 20, \"principal_point\": [15, 13],"
+                 "\"skew\": 4, \"pixel_aspect_ratio\": 1.1, \"radial_distortion\": [0.1, -0.2, "
+                 "0.3], \"%s\": [0.01, -0.02],"
+                 "\"image_size\": [32, 24]}",
+                 i == 0 ? "tangential" : "tangential_distortion");
         snprintf(name, sizeof name, "camera/%d.json", i);
         tiny_text(f, name, s.text);
-        tiny_add(&meta, "%s\"%d\": {\"%s\": %d}", i > 0 ? ", " : "{", i, i == 2 ? "time_id" : "warp_id", 10 * i);
+        tiny_add(&meta, "%s\"%d\": {\"%s\": %d}", i > 0 ? ", " : "{", i,
+                 i == 2 ? "time_id" : "warp_id", 10 * i);
     }
     tiny_add(&meta, "}");
     tiny_text(f, "metadata.json", meta.text);
-    tiny_text(f, "dataset.json", "{\"ids\": [\"0\", \"1\", \"2\", \"3\", \"4\", \"5\"], \"val_ids\": []}");
+    tiny_text(f, "dataset.json",
+              "{\"ids\": [\"0\", \"1\", \"2\", \"3\", \"4\", \"5\"], \"val_ids\": []}");
 }
 
-/* Red grows by 255 / W a column, green by 255 / H a row: the undistorted picture tells where it was sampled. */
+/* Red grows by 255 / W a column, green by 255 / H a row: the undistorted picture tells where it was
+ * sampled. */
 static void check_sampling(ted4_dataset *d)
 {
-    const double f = 10, g = 11, cx = 7.5, cy = 6.5, k[3] = { 0.1, -0.2, 0.3 }, p1 = 0.01, p2 = -0.02;
+    const double f = 10, g = 11, cx = 7.5, cy = 6.5, k[3] = { 0.1, -0.2, 0.3 }, p1 = 0.01,
+                 p2 = -0.02;
     ted4_message m;
     const uint8_t *px = ted4_dataset_pixels(d, 0, &m);
 
@@ -314,7 +341,7 @@ static void test_hypernerf_forms(void **state)
     tiny_bytes(&f, "points.npy", r.bytes, r.n);
     for (int downscale = 1; downscale <= 4; downscale++) {
         o.downscale = downscale;
-        if (downscale == 3) {           /* of 2x only even ones can be made */
+        if (downscale == 3) { /* of 2x only even ones can be made */
             assert_non_null(strstr(tiny_load(&d, &f, &o), "a reduction by 3"));
             continue;
         }

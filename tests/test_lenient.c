@@ -1,5 +1,6 @@
-/* test_lenient.c - spec 3.3: what lenient decoding gives of cut and damaged files is the beginning of the truth, whole tiles of it, and never more
- * than stands before the first error; of a valid file it is the same scene.
+/* test_lenient.c - spec 3.3: what lenient decoding gives of cut and damaged files is the beginning
+ * of the truth, whole tiles of it, and never more than stands before the first error; of a valid
+ * file it is the same scene.
  * SPDX-License-Identifier: BSD-2-Clause */
 #include <setjmp.h>
 #include <stdarg.h>
@@ -14,11 +15,11 @@ enum { N_FILES = 6, MAX_CHUNKS = 32, N_MUTATIONS = 2000 };
 
 /* A valid file, what is in it, and where its tiles end. */
 typedef struct {
-    uint8_t    *data;
-    size_t      size;
+    uint8_t *data;
+    size_t size;
     ted4_scene *scene;
-    size_t      tile_end[MAX_CHUNKS];   /* offset behind each TILE */
-    unsigned    n_tiles;
+    size_t tile_end[MAX_CHUNKS]; /* offset behind each TILE */
+    unsigned n_tiles;
 } truth;
 
 static truth file[N_FILES];
@@ -37,17 +38,17 @@ static int setup(void **state)
     (void)state;
     for (int i = 0; i < N_FILES; i++) {
         random_source r = random_seed((uint64_t)i + 100);
-        ted4_header   h = random_header(&r);
-        ted4_scene   *s;
+        ted4_header h = random_header(&r);
+        ted4_scene *s;
 
         h.n_anchors = 64 * (uint32_t)(i + 1) + (i % 2 ? 17 : 0);
         h.tile_size = i == 4 ? 1000 : 64;
-        h.feature_dim = h.slice[0] = 3;         /* so that every byte can be cut at */
+        h.feature_dim = h.slice[0] = 3; /* so that every byte can be cut at */
         h.n_slices = 1;
         h.ar_width = 0;
         s = random_scene_of(&r, &h, i % 2);
-        if (s == NULL || ted4_encode(s, 0, NULL, &file[i].data, &file[i].size, NULL) != TED4_OK
-            || ted4_decode(file[i].data, file[i].size, NULL, &file[i].scene, NULL) != TED4_OK)
+        if (s == NULL || ted4_encode(s, 0, NULL, &file[i].data, &file[i].size, NULL) != TED4_OK ||
+            ted4_decode(file[i].data, file[i].size, NULL, &file[i].scene, NULL) != TED4_OK)
             return -1;
         find_tiles(&file[i]);
         ted4_scene_free(s);
@@ -92,15 +93,16 @@ static uint32_t anchors_of(const truth *f, unsigned n_tiles)
 
 static void cut_at(const truth *f, size_t size, const ted4_options *o)
 {
-    unsigned     n = 0;
+    unsigned n = 0;
     ted4_salvage what;
-    ted4_scene  *s;
-    ted4_error   e;
+    ted4_scene *s;
+    ted4_error e;
 
     while (n < f->n_tiles && f->tile_end[n] <= size)
         n++;
     assert_int_equal(ted4_decode_lenient(f->data, size, o, &s, &what), TED4_E_CON_TRUNCATED);
-    assert_int_equal(ted4_decode(f->data, size, NULL, &(ted4_scene *){ NULL }, &e), TED4_E_CON_TRUNCATED);
+    assert_int_equal(ted4_decode(f->data, size, NULL, &(ted4_scene *) { NULL }, &e),
+                     TED4_E_CON_TRUNCATED);
     assert_true(what.verdict.code == e.code && what.verdict.offset == e.offset);
     assert_int_equal(what.n_tiles, n);
     assert_int_equal(what.stop.code, TED4_E_CON_TRUNCATED);
@@ -119,7 +121,7 @@ static void cut_at(const truth *f, size_t size, const ted4_options *o)
 static void truncations(void **state)
 {
     ted4_parallel p;
-    ted4_options  o = { .parallel = &p };
+    ted4_options o = { .parallel = &p };
 
     (void)state;
     ted4_threads_init(&p, 2);
@@ -134,8 +136,8 @@ static void whole_files(void **state)
     (void)state;
     for (int i = 0; i < N_FILES; i++) {
         ted4_salvage what;
-        ted4_scene  *s;
-        ted4_info    info, want;
+        ted4_scene *s;
+        ted4_info info, want;
 
         assert_int_equal(ted4_decode_lenient(file[i].data, file[i].size, NULL, &s, &what), TED4_OK);
         ted4_scene_info(s, &info);
@@ -147,20 +149,20 @@ static void whole_files(void **state)
     }
 }
 
-/* Bytes changed anywhere, chunk hashes made right or not: no more is delivered than whole tiles before the first error, and what is, is the
- * truth as far as nothing before it was changed. */
+/* Bytes changed anywhere, chunk hashes made right or not: no more is delivered than whole tiles
+ * before the first error, and what is, is the truth as far as nothing before it was changed. */
 static void damage(void **state)
 {
     random_source r = random_seed(5);
-    unsigned      saved = 0;
+    unsigned saved = 0;
 
     (void)state;
     for (int i = 0; i < N_MUTATIONS; i++) {
         const truth *f = &file[random_in(&r, 0, N_FILES - 1)];
         const size_t at = random_in(&r, 0, (uint32_t)f->size - 1);
         ted4_salvage what;
-        ted4_scene  *s, *strict;
-        ted4_error   e;
+        ted4_scene *s, *strict;
+        ted4_error e;
         uint8_t *const copy = malloc(f->size);
 
         assert_non_null(copy);
@@ -185,22 +187,23 @@ static void damage(void **state)
     assert_true(saved > N_MUTATIONS / 16);
 }
 
-/* The reduced scene is one like any other: a file can be made of it, with its hash, and it can be queried, and its records are the first of the
- * whole one's. */
+/* The reduced scene is one like any other: a file can be made of it, with its hash, and it can be
+ * queried, and its records are the first of the whole one's. */
 static void queries(void **state)
 {
-    const truth     *f = &file[5];
+    const truth *f = &file[5];
     const ted4_query q = { 1, 3, { 0.5f, 0, -2 } };
-    ted4_gaussians   part, whole;
-    ted4_info        before, after;
-    ted4_recon      *a, *b;
-    ted4_salvage     what;
-    ted4_scene      *s, *again;
-    uint8_t         *data;
-    size_t           size;
+    ted4_gaussians part, whole;
+    ted4_info before, after;
+    ted4_recon *a, *b;
+    ted4_salvage what;
+    ted4_scene *s, *again;
+    uint8_t *data;
+    size_t size;
 
     (void)state;
-    assert_int_equal(ted4_decode_lenient(f->data, f->tile_end[2] + 3, NULL, &s, &what), TED4_E_CON_TRUNCATED);
+    assert_int_equal(ted4_decode_lenient(f->data, f->tile_end[2] + 3, NULL, &s, &what),
+                     TED4_E_CON_TRUNCATED);
     ted4_scene_info(s, &before);
     assert_int_equal(ted4_encode(s, 0, NULL, &data, &size, NULL), TED4_OK);
     assert_int_equal(ted4_decode(data, size, NULL, &again, NULL), TED4_OK);
@@ -225,13 +228,14 @@ static void queries(void **state)
 /* Nothing is saved of what memory does not allow. */
 static void memory(void **state)
 {
-    const truth       *f = &file[5];
+    const truth *f = &file[5];
     const ted4_options o = { .max_bytes = 4096 };
-    ted4_salvage       what;
-    ted4_scene        *s;
+    ted4_salvage what;
+    ted4_scene *s;
 
     (void)state;
-    assert_int_equal(ted4_decode_lenient(f->data, f->tile_end[2] + 3, &o, &s, &what), TED4_E_CON_TRUNCATED);
+    assert_int_equal(ted4_decode_lenient(f->data, f->tile_end[2] + 3, &o, &s, &what),
+                     TED4_E_CON_TRUNCATED);
     assert_null(s);
     assert_int_equal(what.stop.code, TED4_E_LIMIT_MEMORY);
     assert_int_equal(ted4_decode_lenient(f->data, f->size, &o, &s, &what), TED4_E_LIMIT_MEMORY);
@@ -241,13 +245,14 @@ static void memory(void **state)
 /* Nor of what a limit on work forbids. */
 static void work(void **state)
 {
-    const truth       *f = &file[5];
+    const truth *f = &file[5];
     const ted4_options o = { .max_work = f->size };
-    ted4_salvage       what;
-    ted4_scene        *s;
+    ted4_salvage what;
+    ted4_scene *s;
 
     (void)state;
-    assert_int_equal(ted4_decode_lenient(f->data, f->tile_end[2] + 3, &o, &s, &what), TED4_E_CON_TRUNCATED);
+    assert_int_equal(ted4_decode_lenient(f->data, f->tile_end[2] + 3, &o, &s, &what),
+                     TED4_E_CON_TRUNCATED);
     assert_null(s);
     assert_int_equal(what.stop.code, TED4_E_LIMIT_WORK);
     assert_int_equal(ted4_decode_lenient(f->data, f->size, &o, &s, &what), TED4_E_LIMIT_WORK);
@@ -255,35 +260,40 @@ static void work(void **state)
     assert_int_equal(what.stop.code, TED4_E_LIMIT_WORK);
 }
 
-/* ted4dec: with warnings when something was saved, refused when nothing was, or when it was not asked to. */
+/* ted4dec: with warnings when something was saved, refused when nothing was, or when it was not
+ * asked to. */
 static void program(void **state)
 {
     const truth *f = &file[5];
-    json_t      *o, *saved;
+    json_t *o, *saved;
 
     (void)state;
     if (getenv("TED4_BUILD") == NULL) {
         print_message("skipped: TED4_BUILD is not set\n");
         skip();
     }
-    assert_int_equal(run_json("ted4dec --json -q --lenient --test", f->data, f->tile_end[2] + 3, &o), 2);
+    assert_int_equal(
+        run_json("ted4dec --json -q --lenient --test", f->data, f->tile_end[2] + 3, &o), 2);
     saved = json_object_get(o, "salvage");
     assert_string_equal(json_string_value(json_object_get(o, "verdict")), "invalid");
     assert_string_equal(json_string_value(json_object_get(o, "error")), "con.truncated");
     assert_int_equal(json_integer_value(json_object_get(saved, "tiles")), 3);
     assert_int_equal(json_integer_value(json_object_get(saved, "tiles_declared")), f->n_tiles);
     assert_int_equal(json_integer_value(json_object_get(saved, "anchors")), 3 * 64);
-    assert_int_equal(json_integer_value(json_object_get(saved, "anchors_declared")), f->scene->head.n_anchors);
+    assert_int_equal(json_integer_value(json_object_get(saved, "anchors_declared")),
+                     f->scene->head.n_anchors);
     json_decref(o);
     assert_int_equal(run_json("ted4dec --json -q --test", f->data, f->tile_end[2] + 3, &o), 1);
     assert_null(json_object_get(o, "salvage"));
     json_decref(o);
-    assert_int_equal(run_json("ted4dec --json -q --lenient --test", f->data, f->tile_end[0] - 1, &o), 1);
+    assert_int_equal(
+        run_json("ted4dec --json -q --lenient --test", f->data, f->tile_end[0] - 1, &o), 1);
     json_decref(o);
     assert_int_equal(run_json("ted4dec --json -q --max-work 5000 --test", f->data, f->size, &o), 3);
     assert_string_equal(json_string_value(json_object_get(o, "error")), "limit.work");
     json_decref(o);
-    assert_int_equal(run_json("ted4dec --json -q --max-memory 5000 --test", f->data, f->size, &o), 3);
+    assert_int_equal(run_json("ted4dec --json -q --max-memory 5000 --test", f->data, f->size, &o),
+                     3);
     assert_string_equal(json_string_value(json_object_get(o, "error")), "limit.memory");
     json_decref(o);
     assert_int_equal(run_json("ted4dec --json -q --lenient --test", f->data, f->size, &o), 0);
@@ -295,7 +305,8 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(truncations), cmocka_unit_test(whole_files), cmocka_unit_test(damage),
-        cmocka_unit_test(queries), cmocka_unit_test(memory), cmocka_unit_test(work), cmocka_unit_test(program),
+        cmocka_unit_test(queries),     cmocka_unit_test(memory),      cmocka_unit_test(work),
+        cmocka_unit_test(program),
     };
 
     return cmocka_run_group_tests(tests, setup, teardown);

@@ -1,5 +1,6 @@
-/* test_lenses.c - one distorted picture in every layout whose cameras have lens terms: each loader must hand the same lens, with its own conventions, to the
- * undistortion (data/undistort.h; tested by itself in test_image_file.c). The picture tells where it was sampled.
+/* test_lenses.c - one distorted picture in every layout whose cameras have lens terms: each loader
+ * must hand the same lens, with its own conventions, to the undistortion (data/undistort.h; tested
+ * by itself in test_image_file.c). The picture tells where it was sampled.
  * SPDX-License-Identifier: BSD-2-Clause */
 #include <math.h>
 #include <setjmp.h>
@@ -10,7 +11,9 @@
 #include "tiny_scene.h"
 
 /* After OpenCV, but with the centre of the first pixel at 0.5. */
-typedef struct { double f, g, cx, cy, skew, k[3], p1, p2; } lens;
+typedef struct {
+    double f, g, cx, cy, skew, k[3], p1, p2;
+} lens;
 
 #define CENTRE 7.5, 6.25
 
@@ -26,13 +29,14 @@ static void distorted(const lens *l, double x, double y, double *a, double *b)
     *b = l->g * vd + l->cy;
 }
 
-/* Red grows by 255 / W a column, green by 255 / H a row. Beyond the centres of the outermost pixels nothing is known. */
+/* Red grows by 255 / W a column, green by 255 / H a row. Beyond the centres of the outermost pixels
+ * nothing is known. */
 static void check(const tiny_folder *f, const char *layout, const lens *l)
 {
-    ted4_dataset   d;
-    ted4_message   m;
-    int            inside = 0;
-    const char    *wrong = tiny_load(&d, f, &tiny_options);
+    ted4_dataset d;
+    ted4_message m;
+    int inside = 0;
+    const char *wrong = tiny_load(&d, f, &tiny_options);
 
     if (*wrong != 0)
         fail_msg("%s: %s", layout, wrong);
@@ -49,9 +53,10 @@ static void check(const tiny_folder *f, const char *layout, const lens *l)
             if (a < 0.5 || b < 0.5 || a > TINY_W - 0.5 || b > TINY_H - 0.5)
                 continue;
             inside++;
-            if (fabs(at[0] - (a - 0.5) * 255 / TINY_W) > 2 || fabs(at[1] - (b - 0.5) * 255 / TINY_H) > 2)
-                fail_msg("%s: pixel %d %d comes from %g %g, expected %g %g", layout, x, y, at[0] * TINY_W / 255.0, at[1] * TINY_H / 255.0,
-                         a - 0.5, b - 0.5);
+            if (fabs(at[0] - (a - 0.5) * 255 / TINY_W) > 2 ||
+                fabs(at[1] - (b - 0.5) * 255 / TINY_H) > 2)
+                fail_msg("%s: pixel %d %d comes from %g %g, expected %g %g", layout, x, y,
+                         at[0] * TINY_W / 255.0, at[1] * TINY_H / 255.0, a - 0.5, b - 0.5);
         }
     assert_true(inside > TINY_W * TINY_H / 2);
     ted4_dataset_release(&d, 0);
@@ -67,8 +72,11 @@ static void test_hypernerf(void **state)
     tiny_picture(&f, "rgb/1x/a.png", TINY_W, TINY_H, 0);
     tiny_text(&f, "dataset.json", "{\"ids\": [\"a\"]}");
     tiny_text(&f, "metadata.json", "{\"a\": {\"warp_id\": 0}}");
-    tiny_text(&f, "camera/a.json", "{\"orientation\": [[1,0,0],[0,1,0],[0,0,1]], \"position\": [0,0,0], \"focal_length\": 10, \"principal_point\": [7.5, 6.25],"
-              "\"skew\": 1, \"pixel_aspect_ratio\": 1.1, \"radial_distortion\": [0.1, -0.2, 0.3], \"tangential_distortion\": [0.05, -0.08],"
+    tiny_text(&f, "camera/a.json",
+              "{\"orientation\": [[1,0,0],[0,1,0],[0,0,1]], \"position\": [0,0,0], "
+              "\"focal_length\": 10, \"principal_point\": [7.5, 6.25],"
+              "\"skew\": 1, \"pixel_aspect_ratio\": 1.1, \"radial_distortion\": [0.1, -0.2, 0.3], "
+              "\"tangential_distortion\": [0.05, -0.08],"
               "\"image_size\": [16, 12]}");
     check(&f, "hypernerf", &l);
     tiny_free(&f);
@@ -77,7 +85,8 @@ static void test_hypernerf(void **state)
 /* OpenCV has the first pixel's centre at 0; dist is k1 k2 p1 p2, and k3 behind them. */
 static void test_calibration(void **state)
 {
-    static const lens l[] = { { 10, 11, CENTRE, 1, { 0.1, -0.2, 0 }, 0.05, -0.08 }, { 10, 11, CENTRE, 1, { 0.1, -0.2, 0.3 }, 0.05, -0.08 } };
+    static const lens l[] = { { 10, 11, CENTRE, 1, { 0.1, -0.2, 0 }, 0.05, -0.08 },
+                              { 10, 11, CENTRE, 1, { 0.1, -0.2, 0.3 }, 0.05, -0.08 } };
     static const char *const dist[] = { "0.1, -0.2, 0.05, -0.08", "0.1, -0.2, 0.05, -0.08, 0.3" };
 
     (void)state;
@@ -86,7 +95,9 @@ static void test_calibration(void **state)
         tiny_string s = { "", 0 };
 
         tiny_picture(&f, "one/images/0.png", TINY_W, TINY_H, 0);
-        tiny_add(&s, "{\"cameras\": [{\"name\": \"one\", \"w\": 16, \"h\": 12, \"K\": [[10,1,7],[0,11,5.75],[0,0,1]], \"dist\": [%s], \"w2c\": %s}]}",
+        tiny_add(&s,
+                 "{\"cameras\": [{\"name\": \"one\", \"w\": 16, \"h\": 12, \"K\": "
+                 "[[10,1,7],[0,11,5.75],[0,0,1]], \"dist\": [%s], \"w2c\": %s}]}",
                  dist[i], TINY_POSE);
         tiny_text(&f, "cams.json", s.text);
         check(&f, "calibration", &l[i]);
@@ -101,19 +112,26 @@ static void test_nerfstudio(void **state)
 
     (void)state;
     tiny_picture(&f, "images/a.png", TINY_W, TINY_H, 0);
-    tiny_text(&f, "transforms.json", "{\"camera_model\": \"OPENCV\", \"fl_x\": 10, \"fl_y\": 11, \"cx\": 7.5, \"cy\": 6.25, \"w\": 16, \"h\": 12,"
+    tiny_text(&f, "transforms.json",
+              "{\"camera_model\": \"OPENCV\", \"fl_x\": 10, \"fl_y\": 11, \"cx\": 7.5, \"cy\": "
+              "6.25, \"w\": 16, \"h\": 12,"
               "\"k1\": 0.1, \"k2\": -0.2, \"p1\": 0.05, \"p2\": -0.08,"
-              "\"frames\": [{\"file_path\": \"images/a.png\", \"transform_matrix\": " TINY_POSE "}]}");
+              "\"frames\": [{\"file_path\": \"images/a.png\", \"transform_matrix\": " TINY_POSE
+              "}]}");
     check(&f, "nerfstudio", &l);
     tiny_free(&f);
 }
 
 static void test_colmap(void **state)
 {
-    static const struct { const char *camera; lens l; } cases[] = {
+    static const struct {
+        const char *camera;
+        lens l;
+    } cases[] = {
         { "SIMPLE_RADIAL 16 12 10 7.5 6.25 0.25", { 10, 10, CENTRE, 0, { 0.25, 0, 0 }, 0, 0 } },
         { "RADIAL 16 12 10 7.5 6.25 0.1 -0.3", { 10, 10, CENTRE, 0, { 0.1, -0.3, 0 }, 0, 0 } },
-        { "OPENCV 16 12 10 11 7.5 6.25 0.1 -0.2 0.05 -0.08", { 10, 11, CENTRE, 0, { 0.1, -0.2, 0 }, 0.05, -0.08 } },
+        { "OPENCV 16 12 10 11 7.5 6.25 0.1 -0.2 0.05 -0.08",
+          { 10, 11, CENTRE, 0, { 0.1, -0.2, 0 }, 0.05, -0.08 } },
     };
 
     (void)state;

@@ -99,14 +99,14 @@ static void dense(results *r)
 
 static void raster(results *r)
 {
-    const ted4_view  v = scene_view(101, 67);
-    scene            s = scene_random(400, &v, 5, 7);
-    const size_t     pixels = 3 * 101 * 67;
-    float           *image = fill(pixels, 0, 1), *d_image = fill(pixels, -1, 1);
-    float           *g = fill(15 * s.n, 0, 1);
-    uint8_t         *visible = calloc(s.n, 1);
+    const ted4_view v = scene_view(101, 67);
+    scene s = scene_random(400, &v, 5, 7);
+    const size_t pixels = 3 * 101 * 67;
+    float *image = fill(pixels, 0, 1), *d_image = fill(pixels, -1, 1);
+    float *g = fill(15 * s.n, 0, 1);
+    uint8_t *visible = calloc(s.n, 1);
     ted4_splat_grads grads = { .opacity = g, .mean2d = g + s.n, .visible = visible };
-    ted4_raster     *raster = ted4_raster_new();
+    ted4_raster *raster = ted4_raster_new();
 
     assert_non_null(s.value);
     assert_non_null(visible);
@@ -135,12 +135,12 @@ static void raster(results *r)
 
 static void generate_case(results *r, const ted4_header *h)
 {
-    test_case       *t = malloc(sizeof *t);
-    float           *gradient = fill(SCENE_PARAMS * CASE_SPLATS, -1, 1);
-    float           *d_net = fill(CASE_NET, 0, 0);
-    float           *d = fill(CASE_SLOTS * CASE_CHANNELS * TED4_LANES, 0, 1), *d_attr[CASE_SLOTS];
+    test_case *t = malloc(sizeof *t);
+    float *gradient = fill(SCENE_PARAMS * CASE_SPLATS, -1, 1);
+    float *d_net = fill(CASE_NET, 0, 0);
+    float *d = fill(CASE_SLOTS * CASE_CHANNELS * TED4_LANES, 0, 1), *d_attr[CASE_SLOTS];
     ted4_splat_grads grads = { .opacity = gradient + SCENE_OPACITY * CASE_SPLATS };
-    ted4_splats      s;
+    ted4_splats s;
 
     assert_non_null(t);
     case_make(t, h, 2, 7, 5);
@@ -186,7 +186,7 @@ static void rate(results *r)
 {
     static const ted4_quant quant[] = { TED4_QUANT_NOISE, TED4_QUANT_ROUND, TED4_QUANT_INTEGER };
     const ted4_header h = ref_header();
-    ref_world        *w = malloc(sizeof *w);
+    ref_world *w = malloc(sizeof *w);
 
     assert_non_null(w);
     for (size_t q = 0; q < sizeof quant / sizeof quant[0]; q++) {
@@ -217,9 +217,9 @@ static void rate(results *r)
 static void loss_case(results *r, int width, int height)
 {
     const size_t n = 3 * (size_t)width * (size_t)height;
-    float       *image = fill(n, -0.1, 1.1), *d_image = fill(n, 0, 1);
-    uint8_t     *truth = malloc(n);
-    double       l1, ssim;
+    float *image = fill(n, -0.1, 1.1), *d_image = fill(n, 0, 1);
+    uint8_t *truth = malloc(n);
+    double l1, ssim;
     ted4_loss_workspace *w = ted4_loss_workspace_new();
 
     assert_non_null(truth);
@@ -247,9 +247,9 @@ static void loss(results *r)
 static void colour(results *r)
 {
     enum { PIXELS = TED4_COLOUR_BAND + 2 * TED4_COLOUR_RUN + 21 };
-    float          *image = fill((size_t)3 * PIXELS, 0, 1), *to = fill((size_t)3 * PIXELS, -1, 1);
-    float          *map = fill(TED4_COLOUR_VALUES, -0.2, 0.2);
-    double          sums[2 * TED4_COLOUR_VALUES];
+    float *image = fill((size_t)3 * PIXELS, 0, 1), *to = fill((size_t)3 * PIXELS, -1, 1);
+    float *map = fill(TED4_COLOUR_VALUES, -0.2, 0.2);
+    double sums[2 * TED4_COLOUR_VALUES];
     ted4_colour_job j = { image, map, to, sums, PIXELS };
 
     for (size_t band = 0; band < 2; band++)
@@ -287,17 +287,17 @@ static void adam(results *r)
  * opacity or a bound falls to either side of a threshold the base may differ by more. */
 static const struct {
     const char *name;
-    void      (*run)(results *r);
-    double      base;
+    void (*run)(results *r);
+    double base;
 } kinds[] = {
     { "dense", dense, 1e-6 }, { "raster", raster, 1e-4 }, { "generate", generate, 1e-5 },
-    { "rate", rate, 1e-5 },
-    { "loss", loss, 1e-5 }, { "colour", colour, 3e-5 }, { "adam", adam, 0 },
+    { "rate", rate, 1e-5 },   { "loss", loss, 1e-5 },     { "colour", colour, 3e-5 },
+    { "adam", adam, 0 },
 };
 
 static results at_level(size_t kind, ted4_level level)
 {
-    results r = {0};
+    results r = { 0 };
 
     seed = 11;
     assert_int_equal(ted4_level_use(level), level);
@@ -349,9 +349,8 @@ static void levels_agree(void **state)
     for (size_t kind = 0; kind < sizeof kinds / sizeof kinds[0]; kind++) {
         results base = at_level(kind, TED4_LEVEL_BASE), v3 = at_level(kind, TED4_LEVEL_V3);
 
-        printf("    %-8s %7zu values; the base is off by %g of the largest\n",
-               kinds[kind].name, v3.n,
-               about_same(&v3, &base, kinds[kind].base, kinds[kind].name));
+        printf("    %-8s %7zu values; the base is off by %g of the largest\n", kinds[kind].name,
+               v3.n, about_same(&v3, &base, kinds[kind].base, kinds[kind].name));
         if (most >= TED4_LEVEL_V4) {
             results v4 = at_level(kind, TED4_LEVEL_V4);
 

@@ -1,5 +1,5 @@
-/* test_looks.c - train/state/anchor_appearance.c: how opaque anchors are counts from where they are most opaque, when that depends on the direction, and as the file will hold
- * them.
+/* test_looks.c - train/state/anchor_appearance.c: how opaque anchors are counts from where they are
+ * most opaque, when that depends on the direction, and as the file will hold them.
  * SPDX-License-Identifier: BSD-2-Clause */
 #include <setjmp.h>
 #include <stdarg.h>
@@ -13,12 +13,13 @@ enum { STEPS = 60, DIRECTIONS = 8 };
 
 typedef struct {
     size_t n;
-    float *opacity, *rgb;       /* [n], [n][3] */
+    float *opacity, *rgb; /* [n], [n][3] */
 } looks;
 
 static looks look(ted4_trainer *t)
 {
-    looks l = { t->anchors.n, malloc(t->anchors.n * sizeof(float)), malloc(3 * t->anchors.n * sizeof(float)) };
+    looks l = { t->anchors.n, malloc(t->anchors.n * sizeof(float)),
+                malloc(3 * t->anchors.n * sizeof(float)) };
 
     assert_true(l.opacity != NULL && l.rgb != NULL);
     if (ted4_trainer_looks(t, l.opacity, l.rgb) != 0)
@@ -30,7 +31,7 @@ static looks look(ted4_trainer *t)
 static looks look_from(ted4_trainer *t, uint32_t item)
 {
     const ted4_order whole = t->order;
-    looks            l;
+    looks l;
 
     t->order.item = &item;
     t->order.n = 1;
@@ -50,7 +51,7 @@ static void forget(looks *l)
 static void soften_opacity(ted4_trainer *t)
 {
     const ted4_net_shape *s = &t->layout.shape.netr[TED4_NET_OPACITY];
-    float                *w = t->net + t->layout.netr + s->first;
+    float *w = t->net + t->layout.netr + s->first;
 
     for (int i = 0; i + 1 < s->n_layers; i++)
         w += ((size_t)s->dim[i] + 1) * s->dim[i + 1];
@@ -84,7 +85,7 @@ static double sum_of(const looks *l)
 static void look_from_all(ted4_trainer *t, looks one[DIRECTIONS])
 {
     uint32_t *const item = t->order.item;
-    uint32_t        least = 0;
+    uint32_t least = 0;
 
     for (uint32_t k = 0; k < DIRECTIONS; k++) {
         one[k] = look_from(t, item[k * t->order.n / DIRECTIONS]);
@@ -93,7 +94,7 @@ static void look_from_all(ted4_trainer *t, looks one[DIRECTIONS])
     }
 
     const uint32_t at = least * t->order.n / DIRECTIONS, first = item[0];
-    const looks    shows_least = one[least];
+    const looks shows_least = one[least];
 
     one[least] = one[0];
     one[0] = shows_least;
@@ -104,8 +105,8 @@ static void look_from_all(ted4_trainer *t, looks one[DIRECTIONS])
 static void test_all_directions(void **state)
 {
     ted4_trainer t;
-    looks        got, one[DIRECTIONS];
-    size_t       more = 0;
+    looks got, one[DIRECTIONS];
+    size_t more = 0;
 
     (void)state;
     begin(&t, TED4_VIEW_FULL);
@@ -132,7 +133,7 @@ static void test_all_directions(void **state)
 static void test_one_direction(void **state)
 {
     ted4_trainer t;
-    looks        got, first;
+    looks got, first;
 
     (void)state;
     begin(&t, TED4_VIEW_COLOUR);
@@ -145,14 +146,15 @@ static void test_one_direction(void **state)
     ted4_trainer_finish(&t);
 }
 
-/* In stage 2 an anchor looks as the file will hold it: rounding its values first changes nothing. */
+/* In stage 2 an anchor looks as the file will hold it: rounding its values first changes nothing.
+ */
 static void test_rounded(void **state)
 {
     const ted4_train_options o = ball_options();
-    const ted4_layout       *l;
+    const ted4_layout *l;
     ted4_trainer t;
-    looks        before, after;
-    size_t       moved = 0;
+    looks before, after;
+    size_t moved = 0;
 
     (void)state;
     ball_begin(&t, &o, &balls, NULL);
@@ -162,7 +164,7 @@ static void test_rounded(void **state)
     for (size_t i = 0; i < t.anchors.n; i++)
         for (int c = 0; c < l->offset_logit; c++) {
             float *const x = ted4_cell(&t.anchors, TED4_ROW_VALUE, i, c);
-            const float  q = t.slots.used[i / TED4_LANES][(size_t)c * TED4_LANES + i % TED4_LANES];
+            const float q = t.slots.used[i / TED4_LANES][(size_t)c * TED4_LANES + i % TED4_LANES];
 
             moved += *x != q;
             *x = q;

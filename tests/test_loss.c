@@ -16,10 +16,10 @@
 
 /* exact: the image in double, as the reference reads it. */
 typedef struct {
-    int         width, height;
-    float      *image, *gradient;
-    double     *exact;
-    uint8_t    *truth;
+    int width, height;
+    float *image, *gradient;
+    double *exact;
+    uint8_t *truth;
     ref_picture reference;
 } picture;
 
@@ -36,8 +36,11 @@ static uint32_t draw(void)
 static picture make(int width, int height)
 {
     const size_t n = (size_t)width * (size_t)height * 3;
-    picture p = { .width = width, .height = height, .image = malloc(n * sizeof(float)),
-                  .gradient = malloc(n * sizeof(float)), .exact = malloc(n * sizeof(double)),
+    picture p = { .width = width,
+                  .height = height,
+                  .image = malloc(n * sizeof(float)),
+                  .gradient = malloc(n * sizeof(float)),
+                  .exact = malloc(n * sizeof(double)),
                   .truth = malloc(n) };
 
     assert_true(p.image != NULL && p.gradient != NULL && p.exact != NULL && p.truth != NULL);
@@ -50,14 +53,15 @@ static picture make(int width, int height)
                 const float noise = (float)(draw() % 1000) / 1000.0f - 0.5f;
 
                 p.image[((size_t)c * (size_t)height + (size_t)y) * (size_t)width + (size_t)x] =
-                    (float)p.truth[((size_t)y * (size_t)width + (size_t)x) * 3 + (size_t)c] / 255.0f
-                    + amount * noise + 0.003f;
+                    (float)p.truth[((size_t)y * (size_t)width + (size_t)x) * 3 + (size_t)c] /
+                        255.0f +
+                    amount * noise + 0.003f;
             }
         }
     }
     for (size_t i = 0; i < n; i++)
         p.exact[i] = (double)p.image[i];
-    p.reference = (ref_picture){ width, height, p.exact, p.truth };
+    p.reference = (ref_picture) { width, height, p.exact, p.truth };
     return p;
 }
 
@@ -73,12 +77,13 @@ static void check_gradient(const picture *p, double w, int c, int y, int x)
 {
     const ref_picture *ref = &p->reference;
     const double h = 1e-4, count = 3.0 * p->width * p->height;
-    const double up = ref_local_loss(ref, w, c, y, x, h), down = ref_local_loss(ref, w, c, y, x, -h);
+    const double up = ref_local_loss(ref, w, c, y, x, h),
+                 down = ref_local_loss(ref, w, c, y, x, -h);
     const double want = (up - down) / (2.0 * h);
     const double got = (double)p->gradient[ref_pixel(ref, c, y, x)] * count;
 
     if (ref_absolute(ref, c, y, x, 0.0) < 2.0 * h)
-        return;                         /* at the corner of |.| */
+        return; /* at the corner of |.| */
     assert_true(fabs(got - want) < 2e-3 * (1.0 + fabs(want)));
 }
 
@@ -134,7 +139,7 @@ static void test_equal(void **state)
     assert_true(ted4_loss(w, p.image, p.truth, 40, 30, 0.2f, NULL, p.gradient, &l1, &ssim) < 1e-6);
     assert_true(l1 < 1e-7 && ssim > 1.0 - 1e-6);
     assert_true(ted4_loss(w, p.image, p.truth, 40, 30, 1.0f, NULL, p.gradient, &l1, &ssim) < 1e-6);
-    for (int i = 0; i < 3 * 40 * 30; i++)   /* SSIM is at its maximum */
+    for (int i = 0; i < 3 * 40 * 30; i++) /* SSIM is at its maximum */
         assert_true(fabsf(p.gradient[i]) * 3 * 40 * 30 < 1e-2f);
     drop(&p);
     ted4_loss_workspace_free(w);
@@ -155,8 +160,7 @@ static void test_threads(void **state)
         double l1_again, ssim_again;
 
         assert_true(ted4_loss(w, p.image, p.truth, 200, 150, 0.2f, &how[i], p.gradient, &l1_again,
-                              &ssim_again)
-                    == loss);
+                              &ssim_again) == loss);
         assert_true(l1 == l1_again && ssim == ssim_again);
         assert_memory_equal(first, p.gradient, size);
     }

@@ -1,5 +1,6 @@
-/* test_machine.c - machines whose size_t has 32 bits: what a file claims must not wrap there (spec 13.3). The walk of POSN, the coder that reads, and the ratio
- * of a zlib stream are compiled here once more with such a size_t, and all that they call here. `make cross` runs all vectors on i686.
+/* test_machine.c - machines whose size_t has 32 bits: what a file claims must not wrap there (spec
+ * 13.3). The walk of POSN, the coder that reads, and the ratio of a zlib stream are compiled here
+ * once more with such a size_t, and all that they call here. `make cross` runs all vectors on i686.
  * SPDX-License-Identifier: BSD-2-Clause */
 #include <setjmp.h>
 #include <stdarg.h>
@@ -25,7 +26,7 @@
 static ted4_error walk(uint32_t n_anchors, uint32_t bytes)
 {
     static const uint8_t payload[16];
-    ted4_scene  s;
+    ted4_scene s;
     ted4_reader r;
 
     memset(&s, 0, sizeof s);
@@ -38,7 +39,8 @@ static ted4_error walk(uint32_t n_anchors, uint32_t bytes)
 /* Three coordinates of two bytes: both products may wrap to something that fits. */
 static void claimed_anchors(void **state)
 {
-    static const uint32_t n[] = { 0x55555556, 0xaaaaaaab, 0x2aaaaaab, 0xffffffff, 0x80000000, 0x7fffffff, 0x55555555, 2 };
+    static const uint32_t n[] = { 0x55555556, 0xaaaaaaab, 0x2aaaaaab, 0xffffffff,
+                                  0x80000000, 0x7fffffff, 0x55555555, 2 };
 
     (void)state;
     for (unsigned i = 0; i < sizeof n / sizeof *n; i++)
@@ -50,13 +52,14 @@ static void claimed_anchors(void **state)
         }
 }
 
-/* 2^30 values take all addresses, but a stream of 5 MB may hold them: that is no statement about the file. */
+/* 2^30 values take all addresses, but a stream of 5 MB may hold them: that is no statement about
+ * the file. */
 static void claimed_values(void **state)
 {
     const uint64_t n = ((uint64_t)1 << 30) + 1;
-    ted4_options   o = { .max_bytes = 1 << 20 };
-    uint8_t        stream[64] = { 0 };
-    ted4_arena     arena;
+    ted4_options o = { .max_bytes = 1 << 20 };
+    uint8_t stream[64] = { 0 };
+    ted4_arena arena;
 
     (void)state;
     assert_false(ted4_inflate_impossible(5000000, n));
@@ -71,7 +74,7 @@ static void claimed_values(void **state)
 static void shape_of_bank(void **state)
 {
     ted4_header h;
-    ted4_shape  s;
+    ted4_shape s;
 
     (void)state;
     memset(&h, 0, sizeof h);
@@ -88,7 +91,9 @@ static void shape_of_bank(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(claimed_anchors), cmocka_unit_test(claimed_values), cmocka_unit_test(shape_of_bank),
+        cmocka_unit_test(claimed_anchors),
+        cmocka_unit_test(claimed_values),
+        cmocka_unit_test(shape_of_bank),
     };
 
     return cmocka_run_group_tests(tests, NULL, NULL);

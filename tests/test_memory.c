@@ -1,6 +1,8 @@
-/* test_memory.c - what SECURITY.md promises of memory: under every bound the library holds at most max_bytes for a scene, and at most as much again while
- * something is made of it (a validator's findings, what a lenient decoder saves, tiers, records); all of it comes from the caller's allocator and goes back.
- * Vectors of the suite, bombs among them, under bounds from nothing to more than they need; what goes through numbers that a file only claims never ends.
+/* test_memory.c - what SECURITY.md promises of memory: under every bound the library holds at most
+ * max_bytes for a scene, and at most as much again while something is made of it (a validator's
+ * findings, what a lenient decoder saves, tiers, records); all of it comes from the caller's
+ * allocator and goes back. Vectors of the suite, bombs among them, under bounds from nothing to
+ * more than they need; what goes through numbers that a file only claims never ends.
  * SPDX-License-Identifier: BSD-2-Clause */
 #include <setjmp.h>
 #include <stdarg.h>
@@ -15,11 +17,11 @@ enum { MAX_PATH = 1024, MAX_FILE = 1 << 20, FEW_VECTORS = 100, TIERS = 5, PATIEN
 
 /* A file, and what is done with it under a bound. */
 typedef struct {
-    const char     *name;
-    const uint8_t  *data;
-    size_t          size;
+    const char *name;
+    const uint8_t *data;
+    size_t size;
     counting_memory memory;
-    ted4_options    o;
+    ted4_options o;
 } use;
 
 static void sink(void *user, const void *bytes, size_t size)
@@ -38,15 +40,16 @@ static void finding(void *user, const ted4_finding *f)
 static void judge(const use *u, uint64_t times, const char *what)
 {
     if (u->memory.most / times > u->o.max_bytes || u->memory.held != 0)
-        fail_msg("%s, %s: %llu bytes held at most, %llu at the end; the bound is %llu", u->name, what, (unsigned long long)u->memory.most,
-                 (unsigned long long)u->memory.held, (unsigned long long)u->o.max_bytes);
+        fail_msg("%s, %s: %llu bytes held at most, %llu at the end; the bound is %llu", u->name,
+                 what, (unsigned long long)u->memory.most, (unsigned long long)u->memory.held,
+                 (unsigned long long)u->o.max_bytes);
 }
 
 static use under(const use *u, uint64_t bound, counting_memory *m)
 {
     use v = *u;
 
-    *m = (counting_memory){ 0 };
+    *m = (counting_memory) { 0 };
     v.o.allocator = counting_allocator(m);
     v.o.max_bytes = bound;
     return v;
@@ -57,7 +60,7 @@ static void made_of(const use *u, uint64_t bound, const ted4_scene *s)
 {
     static const ted4_query q = { 0, 1, { 0, 0, 0 } };
     counting_memory m;
-    use             v;
+    use v;
 
     for (int tier = 1; tier < TIERS; tier++) {
         v = under(u, bound, &m);
@@ -66,7 +69,7 @@ static void made_of(const use *u, uint64_t bound, const ted4_scene *s)
         judge(&v, 1, "a tier");
     }
 
-    ted4_recon    *r;
+    ted4_recon *r;
     ted4_gaussians g;
 
     v = under(u, bound, &m);
@@ -80,10 +83,10 @@ static void made_of(const use *u, uint64_t bound, const ted4_scene *s)
 static void hold(const use *u, uint64_t bound)
 {
     counting_memory m;
-    use             v = under(u, bound, &m);
-    ted4_scene     *s;
-    ted4_salvage    what;
-    int             errors = 0;
+    use v = under(u, bound, &m);
+    ted4_scene *s;
+    ted4_salvage what;
+    int errors = 0;
     const ted4_status verdict = ted4_decode(u->data, u->size, &v.o, &s, NULL);
 
     if (s != NULL)
@@ -113,11 +116,11 @@ static void hold(const use *u, uint64_t bound)
 /* Bounds around what decoding takes when it may take anything. */
 static void hold_all(const char *name, const uint8_t *data, size_t size)
 {
-    static const int part[] = { 0, 4, 7, 8, 16 };    /* eighths */
-    const use        u = { .name = name, .data = data, .size = size };
-    counting_memory  m;
-    use              v = under(&u, (uint64_t)1 << 28, &m);
-    ted4_scene      *s;
+    static const int part[] = { 0, 4, 7, 8, 16 }; /* eighths */
+    const use u = { .name = name, .data = data, .size = size };
+    counting_memory m;
+    use v = under(&u, (uint64_t)1 << 28, &m);
+    ted4_scene *s;
 
     (void)ted4_decode(data, size, &v.o, &s, NULL);
     ted4_scene_free(s);
@@ -127,11 +130,12 @@ static void hold_all(const char *name, const uint8_t *data, size_t size)
 
 static void vectors(void **state)
 {
-    static const char files[] = "cd conformance/vectors && find limit worked tolerant valid/masks content -name '*.ted4' | LC_ALL=C sort";
+    static const char files[] = "cd conformance/vectors && find limit worked tolerant valid/masks "
+                                "content -name '*.ted4' | LC_ALL=C sort";
     static uint8_t data[MAX_FILE];
-    char           name[MAX_PATH], path[2 * MAX_PATH];
-    int            n = 0;
-    FILE          *list;
+    char name[MAX_PATH], path[2 * MAX_PATH];
+    int n = 0;
+    FILE *list;
 
     (void)state;
     (void)alarm(PATIENCE);

@@ -39,8 +39,8 @@ static uint8_t *pattern(int width, int height, uint32_t noise)
         for (int x = 0; x < width; x++)
             for (int c = 0; c < 3; c++)
                 v[(y * width + x) * 3 + c] =
-                    (uint8_t)(90.0 + 60.0 * sin(0.1 * x * (c + 1)) * cos(0.07 * y)
-                              + draw() % noise);
+                    (uint8_t)(90.0 + 60.0 * sin(0.1 * x * (c + 1)) * cos(0.07 * y) +
+                              draw() % noise);
     return v;
 }
 
@@ -54,9 +54,9 @@ static void test_psnr(void **state)
     assert_true(fabs(m.psnr - 20.0 * log10(255.0 / 5.0)) < 1e-12);
     assert_int_equal(ted4_metrics_compare(a, a, 20, 10, NULL, &m), 0);
     assert_true(isinf(m.psnr) && fabs(m.ssim - 1.0) < 1e-12 && fabs(m.ssim2 - 1.0) < 1e-12);
-    assert_true(isnan(m.ms_ssim) && m.scales == 0);     /* ten rows: the window does not fit */
+    assert_true(isnan(m.ms_ssim) && m.scales == 0); /* ten rows: the window does not fit */
     memcpy(b, a, 20 * 10 * 3);
-    b[300] = 115;                                       /* one value of 600 off by 15 */
+    b[300] = 115; /* one value of 600 off by 15 */
     assert_int_equal(ted4_metrics_compare(a, b, 20, 10, NULL, &m), 0);
     assert_true(fabs(m.psnr - 10.0 * log10(255.0 * 255.0 * 600.0 / 225.0)) < 1e-12);
     assert_true(fabs(m.l1 - 15.0 / (600.0 * 255.0)) < 1e-15);
@@ -85,16 +85,17 @@ static void test_constants(void **state)
     a = constant(176, 176, 100);
     b = constant(176, 176, 160);
     assert_int_equal(ted4_metrics_compare(a, b, 176, 176, NULL, &m), 0);
-    assert_true(
-        fabs(m.ms_ssim - pow((2.0 * x * y + 1e-4) / (x * x + y * y + 1e-4), 0.1333 / 1.0001))
-        < 1e-9);
+    assert_true(fabs(m.ms_ssim -
+                     pow((2.0 * x * y + 1e-4) / (x * x + y * y + 1e-4), 0.1333 / 1.0001)) < 1e-9);
     free(a);
     free(b);
 }
 
 /* ---- definitions, without separation or reuse ---- */
 
-typedef struct { double ssim, contrast; } similarity;
+typedef struct {
+    double ssim, contrast;
+} similarity;
 
 /* Window of 2 half + 1 pixels; sigma 0: uniform. Pixels outside count as zero. */
 static similarity window_at(const double *a, const double *b, int w, int h, int x, int y, int half,
@@ -127,7 +128,7 @@ static similarity window_at(const double *a, const double *b, int w, int h, int 
     ab = (ab / total - ma * mb) * fix;
     const double cs = (2.0 * ab + c2) / (aa + bb + c2);
 
-    return (similarity){ cs * (2.0 * ma * mb + c1) / (ma * ma + mb * mb + c1), cs };
+    return (similarity) { cs * (2.0 * ma * mb + c1) / (ma * ma + mb * mb + c1), cs };
 }
 
 static similarity mean_over(const double *a, const double *b, int w, int h, int margin, int half,
@@ -249,10 +250,10 @@ static void test_threads(void **state)
     assert_int_equal(ted4_metrics_compare(a, b, 90, 77, NULL, &one), 0);
     assert_int_equal(ted4_metrics_compare(a, b, 90, 77, &p, &three), 0);
     assert_int_equal(ted4_metrics_compare(b, a, 90, 77, &p, &swapped), 0);
-    assert_true(one.psnr == three.psnr && one.ssim == three.ssim && one.ssim2 == three.ssim2
-                && one.ms_ssim == three.ms_ssim);
-    assert_true(one.psnr == swapped.psnr && fabs(one.ssim - swapped.ssim) < 1e-12
-                && fabs(one.ms_ssim - swapped.ms_ssim) < 1e-12);
+    assert_true(one.psnr == three.psnr && one.ssim == three.ssim && one.ssim2 == three.ssim2 &&
+                one.ms_ssim == three.ms_ssim);
+    assert_true(one.psnr == swapped.psnr && fabs(one.ssim - swapped.ssim) < 1e-12 &&
+                fabs(one.ms_ssim - swapped.ms_ssim) < 1e-12);
     free(a);
     free(b);
 }

@@ -1,5 +1,6 @@
-/* test_mishaps.c - ted4enc as a program when it is killed, or the disk is full: one line on standard error says why, exit status 3, nothing half-written
- * stays, and the last checkpoint leads to the bytes of a run that nothing disturbed. Pictures and values: test_mishaps_scene.c.
+/* test_mishaps.c - ted4enc as a program when it is killed, or the disk is full: one line on
+ * standard error says why, exit status 3, nothing half-written stays, and the last checkpoint leads
+ * to the bytes of a run that nothing disturbed. Pictures and values: test_mishaps_scene.c.
  * SPDX-License-Identifier: BSD-2-Clause */
 #include <setjmp.h>
 #include <stdarg.h>
@@ -11,7 +12,8 @@
 
 /* ---- kill -9 ---- */
 
-/* A program that is killed while it tries whether it can write, or while it writes its last file, leaves a file that bears its number. */
+/* A program that is killed while it tries whether it can write, or while it writes its last file,
+ * leaves a file that bears its number. */
 static void remove_leftovers(pid_t child)
 {
     static const char *const outputs[] = { "x", "c", "l" };
@@ -27,7 +29,7 @@ static void remove_leftovers(pid_t child)
 /* Is the checkpoint another one than *old, which it becomes? */
 static int is_new(ball_file *old)
 {
-    ball_file now = is_there("out/c") ? read_file("out/c") : (ball_file){ calloc(1, 1), 0 };
+    ball_file now = is_there("out/c") ? read_file("out/c") : (ball_file) { calloc(1, 1), 0 };
     const int same = now.size == old->size && memcmp(now.bytes, old->bytes, now.size) == 0;
 
     free(old->bytes);
@@ -35,19 +37,21 @@ static int is_new(ball_file *old)
     return !same;
 }
 
-/* Killed again and again, sooner or later each time, until it has gone on from enough checkpoints. The time until then follows the machine: it shrinks when the
- * program was faster, which then begins anew, and grows when there was no new checkpoint yet. */
+/* Killed again and again, sooner or later each time, until it has gone on from enough checkpoints.
+ * The time until then follows the machine: it shrinks when the program was faster, which then
+ * begins anew, and grows when there was no new checkpoint yet. */
 static void kill_again(const char *options, const outcome *want, int enough)
 {
     enum { MOST_LIVES = 200 };
     ball_file last = { calloc(1, 1), 0 };
-    uint32_t  x = (uint32_t)time(NULL);
-    long      longest = 400000;
-    int       killed = 0;
-    char      arguments[256];
+    uint32_t x = (uint32_t)time(NULL);
+    long longest = 400000;
+    int killed = 0;
+    char arguments[256];
 
     print_message("seed %u\n", (unsigned)x);
-    snprintf(arguments, sizeof arguments, "-o out/x --checkpoint out/c --log out/l --resume %s", options);
+    snprintf(arguments, sizeof arguments, "-o out/x --checkpoint out/c --log out/l --resume %s",
+             options);
     for (int life = 0; killed < enough && life < MOST_LIVES; life++) {
         const pid_t child = start(arguments, 0);
 
@@ -74,10 +78,11 @@ static void kill_again(const char *options, const outcome *want, int enough)
     assert_int_equal(killed, enough);
 }
 
-/* Then it goes on to the end: file and log are those of a run that nothing disturbed, whose log says that. */
+/* Then it goes on to the end: file and log are those of a run that nothing disturbed, whose log
+ * says that. */
 static void expect_survival(const char *options, int kills, const char *that)
 {
-    char    arguments[256];
+    char arguments[256];
     outcome want;
 
     begin_test();
@@ -102,7 +107,8 @@ static void test_killed(void **state)
 static void test_killed_deciding(void **state)
 {
     (void)state;
-    expect_survival("--iterations 1000,200 --set probe=0.2 --set capacity=1", 4, "\"event\":\"capacity\"");
+    expect_survival("--iterations 1000,200 --set probe=0.2 --set capacity=1", 4,
+                    "\"event\":\"capacity\"");
 }
 
 /* ---- a full disk ---- */
@@ -140,7 +146,7 @@ static void test_full_output(void **state)
 /* The second line of the log does not fit. */
 static void test_full_log(void **state)
 {
-    char        text[MOST_LOG];
+    char text[MOST_LOG];
     const char *end = strchr(reference.log, '\n') + 1;
 
     (void)state;
@@ -159,23 +165,28 @@ static void test_full_log(void **state)
     }
 }
 
-/* A disk that fills while frames of a video are unpacked: what ffmpeg says is passed on, its frames are removed. */
+/* A disk that fills while frames of a video are unpacked: what ffmpeg says is passed on, its frames
+ * are removed. */
 static void test_full_video_cache(void **state)
 {
-    static const char *const failing[] = { "printf x >000001.png; echo 'No space left on device' >&2; exit 1",
-                                           "echo 'No space left on device' >&2; kill -9 $$" };
+    static const char *const failing[] = {
+        "printf x >000001.png; echo 'No space left on device' >&2; exit 1",
+        "echo 'No space left on device' >&2; kill -9 $$"
+    };
     const ted4_dataset_options o = { .downscale = 1, .seed = 3, .cache_bytes = 1 << 20 };
-    tiny_folder  f = tiny_new();
+    tiny_folder f = tiny_new();
     ted4_dataset d;
     ted4_message m;
-    tiny_string  script = { "", 0 };
-    char        *path = ted4_text_copy(getenv("PATH"));
+    tiny_string script = { "", 0 };
+    char *path = ted4_text_copy(getenv("PATH"));
 
     (void)state;
     must(path != NULL, "PATH");
     setenv("XDG_CACHE_HOME", tiny_path(&f, "cache"), 1);
     tiny_text(&f, "one.mp4", "a video\1");
-    tiny_text(&f, "cams.json", "{\"cameras\": [{\"name\": \"one\", \"w\": 16, \"h\": 12, \"K\": [[9,0,8],[0,9,6],[0,0,1]], \"w2c\": " TINY_POSE "}]}");
+    tiny_text(&f, "cams.json",
+              "{\"cameras\": [{\"name\": \"one\", \"w\": 16, \"h\": 12, \"K\": "
+              "[[9,0,8],[0,9,6],[0,0,1]], \"w2c\": " TINY_POSE "}]}");
     for (size_t i = 0; i < sizeof failing / sizeof failing[0]; i++) {
         script.n = 0;
         tiny_add(&script, "#!/bin/sh\n%s\n", failing[i]);
@@ -184,9 +195,10 @@ static void test_full_video_cache(void **state)
         setenv("PATH", tiny_path(&f, "bin"), 1);
         assert_int_equal(ted4_dataset_load(&d, f.path, &o, &m), -1);
         setenv("PATH", path, 1);
-        if (strstr(m.text, "one.mp4: ffmpeg") == NULL || strstr(m.text, "No space left on device") == NULL)
+        if (strstr(m.text, "one.mp4: ffmpeg") == NULL ||
+            strstr(m.text, "No space left on device") == NULL)
             fail_msg("%s", m.text);
-        assert_int_equal(rmdir(tiny_path(&f, "cache/ted4")), 0);        /* empty */
+        assert_int_equal(rmdir(tiny_path(&f, "cache/ted4")), 0); /* empty */
     }
     unsetenv("XDG_CACHE_HOME");
     free(path);
@@ -219,12 +231,9 @@ static void test_full_stdout(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_killed),
-        cmocka_unit_test(test_killed_deciding),
-        cmocka_unit_test(test_full_checkpoint),
-        cmocka_unit_test(test_full_output),
-        cmocka_unit_test(test_full_log),
-        cmocka_unit_test(test_full_video_cache),
+        cmocka_unit_test(test_killed),          cmocka_unit_test(test_killed_deciding),
+        cmocka_unit_test(test_full_checkpoint), cmocka_unit_test(test_full_output),
+        cmocka_unit_test(test_full_log),        cmocka_unit_test(test_full_video_cache),
         cmocka_unit_test(test_full_stdout),
     };
 

@@ -1,5 +1,6 @@
-/* test_mishaps_scene.c - ted4enc as a program when a picture goes away or changes while it trains, when a checkpoint is of other pictures, or a value is not
- * finite: one line on standard error says why, exit status 3, and the last checkpoint leads to the bytes of a run that nothing disturbed.
+/* test_mishaps_scene.c - ted4enc as a program when a picture goes away or changes while it trains,
+ * when a checkpoint is of other pictures, or a value is not finite: one line on standard error says
+ * why, exit status 3, and the last checkpoint leads to the bytes of a run that nothing disturbed.
  * SPDX-License-Identifier: BSD-2-Clause */
 #include <setjmp.h>
 #include <stdarg.h>
@@ -12,8 +13,11 @@
 
 /* ---- pictures ---- */
 
-/* Both ends of a pipe with a name: while it is full, a program whose log it is cannot go beyond the 250th step. */
-typedef struct { int read, write; } gate;
+/* Both ends of a pipe with a name: while it is full, a program whose log it is cannot go beyond the
+ * 250th step. */
+typedef struct {
+    int read, write;
+} gate;
 
 static gate close_gate(const char *path)
 {
@@ -42,7 +46,7 @@ static void open_gate(const gate *g)
 static pid_t start_until_checkpoint(void)
 {
     const pid_t child = start("-o out/x --checkpoint out/c --log gate", 0);
-    int         status;
+    int status;
 
     while (!is_there("out/c")) {
         if (waitpid(child, &status, WNOHANG) != 0)
@@ -56,9 +60,9 @@ static pid_t start_until_checkpoint(void)
 static void spoil(void (*damage)(const char *path), const char *what)
 {
     static const char name[] = "scene/images/c1_f2.png";
-    const gate  g = close_gate(tiny_path(&folder, "gate"));
+    const gate g = close_gate(tiny_path(&folder, "gate"));
     const pid_t child = start_until_checkpoint();
-    ball_file   whole = read_file(name);
+    ball_file whole = read_file(name);
 
     damage(tiny_path(&folder, name));
     open_gate(&g);

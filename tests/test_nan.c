@@ -1,5 +1,6 @@
-/* test_nan.c - a value of the model that is not finite: it never reaches a checkpoint, and the last checkpoint still leads where it led. A loss that is not
- * finite ends the training before it reaches the model.
+/* test_nan.c - a value of the model that is not finite: it never reaches a checkpoint, and the last
+ * checkpoint still leads where it led. A loss that is not finite ends the training before it
+ * reaches the model.
  * SPDX-License-Identifier: BSD-2-Clause */
 #include <setjmp.h>
 #include <stdarg.h>
@@ -10,14 +11,15 @@
 #include "ball_trainer.h"
 #include "train/step/checkpoint.h"
 
-/* A value goes bad between two checks: no checkpoint is made of it, the last one is untouched and leads where it led. */
+/* A value goes bad between two checks: no checkpoint is made of it, the last one is untouched and
+ * leads where it led. */
 static void test_nan(void **state)
 {
     const ted4_train_options o = ball_options();
-    tiny_folder  f;
+    tiny_folder f;
     ted4_dataset d;
     ted4_trainer t;
-    ball_file    whole, again;
+    ball_file whole, again;
 
     (void)state;
     ball_load(&f, &d, 5, 1);
@@ -39,9 +41,10 @@ static void test_nan(void **state)
             *ted4_cell(&t.anchors, TED4_ROW_VALUE, 3, 0) = INFINITY;
         assert_int_equal(ted4_checkpoint_save(&t, path), -1);
         assert_non_null(strstr(t.message.text, "not finite at step 130"));
-        ted4_watch_forget(&t);          /* else the step would go back: test_watch.c */
+        ted4_watch_forget(&t); /* else the step would go back: test_watch.c */
         assert_int_equal(ted4_trainer_step(&t), -1);
-        assert_non_null(strstr(t.message.text, "not finite at step 130; there is no good state before it"));
+        assert_non_null(
+            strstr(t.message.text, "not finite at step 130; there is no good state before it"));
         assert_int_equal(ted4_checkpoint_save(&t, path), -1);
         ted4_trainer_finish(&t);
         assert_int_equal(access(tiny_path(&f, "checkpoint.part"), F_OK), -1);
@@ -59,14 +62,15 @@ static void test_nan(void **state)
     tiny_free(&f);
 }
 
-/* A camera's map that is no number is found before a step, which has changed neither networks nor anchors. */
+/* A camera's map that is no number is found before a step, which has changed neither networks nor
+ * anchors. */
 static void test_colour(void **state)
 {
     const ted4_train_options o = ball_options();
-    tiny_folder  f;
+    tiny_folder f;
     ted4_dataset d;
     ted4_trainer t;
-    float       *net;
+    float *net;
 
     (void)state;
     ball_load(&f, &d, 5, 1);
@@ -81,7 +85,8 @@ static void test_colour(void **state)
     ted4_watch_forget(&t);
     assert_int_equal(ted4_trainer_step(&t), -1);
     assert_non_null(strstr(t.message.text, "map of colour"));
-    assert_non_null(strstr(t.message.text, "not finite at step 130; there is no good state before it"));
+    assert_non_null(
+        strstr(t.message.text, "not finite at step 130; there is no good state before it"));
     assert_int_equal(t.iteration, 130);
     assert_memory_equal(net, t.net, t.layout.n_net * sizeof *net);
     assert_int_equal(ted4_trainer_check(&t, 1), -1);

@@ -1,4 +1,5 @@
-/* test_narrow.c - train/math/prune_units.c: which unit goes first, what makes up for it, and what may not go.
+/* test_narrow.c - train/math/prune_units.c: which unit goes first, what makes up for it, and what
+ * may not go.
  * SPDX-License-Identifier: BSD-2-Clause */
 #include <math.h>
 #include <setjmp.h>
@@ -58,7 +59,7 @@ static double worst(const ted4_narrow *w, const float *readers)
 
             for (int a = 0; a < N; a++) {
                 const double *d = w->decode + a * (w->to + 1);
-                double        estimate = d[w->to];
+                double estimate = d[w->to];
 
                 for (int k = 0; k < w->to; k++)
                     estimate += d[k] * x[w->keep[k]];
@@ -74,15 +75,15 @@ static double worst(const ted4_narrow *w, const float *readers)
 static void test_dependent(void **state)
 {
     static const float readers[ROWS * N] = { 1, 2, 3, 4, -1, 1, 2, 0.5f };
-    double             m[SIDE * SIDE];
-    ted4_units         u = { N, ROWS, m, readers, NULL };
-    ted4_narrow        w;
+    double m[SIDE * SIDE];
+    ted4_units u = { N, ROWS, m, readers, NULL };
+    ted4_narrow w;
 
     (void)state;
     moments(m);
     assert_int_equal(ted4_narrow_make(&w, &u, N - 1), 0);
     assert_int_equal(w.to, N - 1);
-    assert_true(keeps(&w, 3));          /* the one that none of the others knows */
+    assert_true(keeps(&w, 3)); /* the one that none of the others knows */
     if (worst(&w, readers) > 1e-3)
         fail_msg("%g is missed", worst(&w, readers));
     ted4_narrow_finish(&w);
@@ -94,9 +95,9 @@ static void test_dependent(void **state)
 static void test_nothing_gone(void **state)
 {
     static const float readers[ROWS * N] = { 1, 2, 3, 4, -1, 1, 2, 0.5f };
-    double             m[SIDE * SIDE];
-    ted4_units         u = { N, ROWS, m, readers, NULL };
-    ted4_narrow        w;
+    double m[SIDE * SIDE];
+    ted4_units u = { N, ROWS, m, readers, NULL };
+    ted4_narrow w;
 
     (void)state;
     moments(m);
@@ -112,9 +113,9 @@ static void test_nothing_gone(void **state)
 static void test_unread(void **state)
 {
     static const float readers[ROWS * N] = { 1, 0, 3, 4, -1, 0, 2, 0.5f };
-    double             m[SIDE * SIDE];
-    ted4_units         u = { N, ROWS, m, readers, NULL };
-    ted4_narrow        w;
+    double m[SIDE * SIDE];
+    ted4_units u = { N, ROWS, m, readers, NULL };
+    ted4_narrow w;
 
     (void)state;
     moments(m);
@@ -125,11 +126,11 @@ static void test_unread(void **state)
 
 static void test_held(void **state)
 {
-    static const float   readers[ROWS * N] = { 1, 0, 3, 4, -1, 0, 2, 0.5f };
+    static const float readers[ROWS * N] = { 1, 0, 3, 4, -1, 0, 2, 0.5f };
     static const uint8_t held[N] = { 1, 1, 1, 0 };
-    double               m[SIDE * SIDE];
-    ted4_units           u = { N, ROWS, m, readers, held };
-    ted4_narrow          w;
+    double m[SIDE * SIDE];
+    ted4_units u = { N, ROWS, m, readers, held };
+    ted4_narrow w;
 
     (void)state;
     moments(m);
@@ -142,7 +143,10 @@ static void test_held(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_dependent), cmocka_unit_test(test_nothing_gone), cmocka_unit_test(test_unread), cmocka_unit_test(test_held),
+        cmocka_unit_test(test_dependent),
+        cmocka_unit_test(test_nothing_gone),
+        cmocka_unit_test(test_unread),
+        cmocka_unit_test(test_held),
     };
 
     return cmocka_run_group_tests(tests, NULL, NULL);

@@ -1,5 +1,5 @@
-/* test_options.c - train/model/options.h: presets, name=value with every way to get it wrong, the hash
- * that ties checkpoints to options, the help table.
+/* test_options.c - train/model/options.h: presets, name=value with every way to get it wrong, the
+ * hash that ties checkpoints to options, the help table.
  * SPDX-License-Identifier: BSD-2-Clause */
 #include <setjmp.h>
 #include <stdarg.h>
@@ -12,10 +12,16 @@
 
 #include "train/model/options.h"
 
-typedef struct { const char *name; char kind; int stage; double lo, hi; } option;
+typedef struct {
+    const char *name;
+    char kind;
+    int stage;
+    double lo, hi;
+} option;
 
 static const option table[] = {
-#define TED4_OPTION(kind, stage, name, lo, hi, a, b, c, d, e, help) { #name, #kind[0], stage, lo, hi },
+#define TED4_OPTION(kind, stage, name, lo, hi, a, b, c, d, e, help) \
+    { #name, #kind[0], stage, lo, hi },
 #include "train/model/options.def"
 #undef TED4_OPTION
 };
@@ -27,7 +33,7 @@ static const char *const presets[] = { "draft", "fast", "medium", "slow", "paper
 static int set_to(ted4_train_options *o, const option *t, double value)
 {
     char text[128], why[256] = "";
-    int  result;
+    int result;
 
     snprintf(text, sizeof text, "%s=%.17g", t->name, value);
     result = ted4_options_set(o, text, why, sizeof why);
@@ -45,8 +51,8 @@ static void test_presets(void **state)
         assert_int_equal(ted4_options_preset(&o, presets[p]), 0);
         assert_int_equal(o.seed, 0);
 #define TED4_OPTION(kind, stage, name, lo, hi, a, b, c, d, e, help) \
-        assert_true((double)o.name >= (lo) && (double)o.name <= (hi)); \
-        assert_true((double)o.name == ((const double[]){ a, b, c, d, e })[p]);
+    assert_true((double)o.name >= (lo) && (double)o.name <= (hi));  \
+    assert_true((double)o.name == ((const double[]) { a, b, c, d, e })[p]);
 #include "train/model/options.def"
 #undef TED4_OPTION
     }
@@ -77,10 +83,29 @@ static void test_set(void **state)
 static void test_bad_text(void **state)
 {
     static const char *const bad[] = {
-        "", "=", "=5", "stage1", "stage1=", "stage1 =5", "stage=5", "stage11=5", "Stage1=5",
-        "nothing=1", "stage1=five", "stage1=5x", "stage1=5 ", "stage1=5,6", "stage1=-1",
-        "stage1=nan", "stage1=1e99", "lambda=nan", "lambda=inf", "lambda=1e999",
-        "lambda=1e-400", "lambda=--1", "lambda=0.1.2",
+        "",
+        "=",
+        "=5",
+        "stage1",
+        "stage1=",
+        "stage1 =5",
+        "stage=5",
+        "stage11=5",
+        "Stage1=5",
+        "nothing=1",
+        "stage1=five",
+        "stage1=5x",
+        "stage1=5 ",
+        "stage1=5,6",
+        "stage1=-1",
+        "stage1=nan",
+        "stage1=1e99",
+        "lambda=nan",
+        "lambda=inf",
+        "lambda=1e999",
+        "lambda=1e-400",
+        "lambda=--1",
+        "lambda=0.1.2",
         "seed=1",
     };
     ted4_train_options o, before;
@@ -101,10 +126,11 @@ static void test_bad_text(void **state)
     assert_memory_equal(&o, &before, sizeof o);
 }
 
-/* Every option, moved by itself, gives a hash of its own; one of stage 2 leaves the hash of stage 1. */
+/* Every option, moved by itself, gives a hash of its own; one of stage 2 leaves the hash of stage
+ * 1. */
 static void test_hash(void **state)
 {
-    static uint64_t    hash[N_OPTIONS + 2];
+    static uint64_t hash[N_OPTIONS + 2];
     ted4_train_options o, base;
 
     (void)state;
@@ -132,7 +158,7 @@ static void test_hash(void **state)
 static void test_help(void **state)
 {
     static char text[1 << 15];
-    FILE       *f = tmpfile();
+    FILE *f = tmpfile();
 
     (void)state;
     assert_non_null(f);
@@ -149,8 +175,9 @@ static void test_help(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_presets), cmocka_unit_test(test_set), cmocka_unit_test(test_bad_text),
-        cmocka_unit_test(test_hash), cmocka_unit_test(test_help),
+        cmocka_unit_test(test_presets),  cmocka_unit_test(test_set),
+        cmocka_unit_test(test_bad_text), cmocka_unit_test(test_hash),
+        cmocka_unit_test(test_help),
     };
 
     return cmocka_run_group_tests_name("options", tests, NULL, NULL);

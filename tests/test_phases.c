@@ -1,7 +1,8 @@
-/* test_phases.c - what happens when during training (paper, "Progressive 3D-to-4D Anchor Transformation"): activation begins after the static phase, from the
- * first and last time at which training views see an anchor; anchors come and go within the time that growth has; stage 2 only ever loses them, at its begin;
- * pictures come in rounds, drawn from plain values, then from values with noise, then from those that the file will hold.
- * Single steps: test_densify.c, test_traps.c.
+/* test_phases.c - what happens when during training (paper, "Progressive 3D-to-4D Anchor
+ * Transformation"): activation begins after the static phase, from the first and last time at which
+ * training views see an anchor; anchors come and go within the time that growth has; stage 2 only
+ * ever loses them, at its begin; pictures come in rounds, drawn from plain values, then from values
+ * with noise, then from those that the file will hold. Single steps: test_densify.c, test_traps.c.
  * SPDX-License-Identifier: BSD-2-Clause */
 #include <setjmp.h>
 #include <stdarg.h>
@@ -13,7 +14,14 @@
 #include "cloud_case.h"
 #include "train/densify/short_lived.h"
 
-enum { STAGE1 = 400, INTEGER = 600, ACTIVATION = 134, SPROUTS = 120, GROWTH_ENDS = 240, GROW_EVERY = 20 };
+enum {
+    STAGE1 = 400,
+    INTEGER = 600,
+    ACTIVATION = 134,
+    SPROUTS = 120,
+    GROWTH_ENDS = 240,
+    GROW_EVERY = 20
+};
 
 static float tau(const ted4_trainer *t, size_t i, int c)
 {
@@ -25,8 +33,8 @@ static float tau(const ted4_trainer *t, size_t i, int c)
 /* World units between the two halves of the cloud: far more than a picture shows. */
 #define APART 40.0
 
-/* Every other point of a cloud lies far to the right. One camera sees the left half, in frames 1 to 3; the other the right half, in frames 2 to 4 and, held
- * out, in frames 0 and 1. */
+/* Every other point of a cloud lies far to the right. One camera sees the left half, in frames 1 to
+ * 3; the other the right half, in frames 2 to 4 and, held out, in frames 0 and 1. */
 static void make_halves(cloud_case *c, ted4_picture *pictures)
 {
     size_t n = 0;
@@ -56,7 +64,7 @@ static void check_span(const ted4_trainer *t, size_t i, float from, float to)
 
 static void test_spans(void **state)
 {
-    static cloud_case   c;
+    static cloud_case c;
     static ted4_picture pictures[2 * FRAMES];
     ted4_trainer t;
 
@@ -71,10 +79,15 @@ static void test_spans(void **state)
         assert_int_equal(t.anchors.n, CLOUD_POINTS);
         for (size_t i = 0; i < t.anchors.n; i++) {
             const double x = (double)t.layout.head.origin[0] +
-                             ldexp((double)*ted4_cell(&t.anchors, TED4_ROW_POSITION, i, 0), t.layout.head.exponent);
+                             ldexp((double)*ted4_cell(&t.anchors, TED4_ROW_POSITION, i, 0),
+                                   t.layout.head.exponent);
 
             right += x > 30;
-            check_span(&t, i, !progressive ? 0.0f : x > 30 ? 0.5f : 0.25f, !progressive || x > 30 ? 1.0f : 0.75f);
+            check_span(&t, i,
+                       !progressive ? 0.0f
+                       : x > 30     ? 0.5f
+                                    : 0.25f,
+                       !progressive || x > 30 ? 1.0f : 0.75f);
         }
         assert_int_equal(right, CLOUD_POINTS / 2);
         ted4_trainer_finish(&t);
@@ -83,18 +96,23 @@ static void test_spans(void **state)
 
 /* ---- when activation is learnt ---- */
 
-/* Anchors that are not transient: those whose span is all times, as it was before activation; those whose span lies inside and has moved since it began. A
- * transient is there at three of the five times at most: 0.625 with what its span goes beyond them. */
-typedef struct { size_t whole, learnt, transient; } spans;
+/* Anchors that are not transient: those whose span is all times, as it was before activation; those
+ * whose span lies inside and has moved since it began. A transient is there at three of the five
+ * times at most: 0.625 with what its span goes beyond them. */
+typedef struct {
+    size_t whole, learnt, transient;
+} spans;
 
 static spans count_spans(const ted4_trainer *t)
 {
     spans n = { 0, 0, 0 };
 
     for (size_t i = 0; i < t->anchors.n; i++)
-        if (tau(t, i, 0) == 0.0f && tau(t, i, 1) == -3.3f && tau(t, i, 2) == 1.0f && tau(t, i, 3) == -3.3f)
+        if (tau(t, i, 0) == 0.0f && tau(t, i, 1) == -3.3f && tau(t, i, 2) == 1.0f &&
+            tau(t, i, 3) == -3.3f)
             n.whole++;
-        else if (tau(t, i, 1) != -3.3f && tau(t, i, 3) != -3.3f && tau(t, i, 2) - tau(t, i, 0) > 0.65f)
+        else if (tau(t, i, 1) != -3.3f && tau(t, i, 3) != -3.3f &&
+                 tau(t, i, 2) - tau(t, i, 0) > 0.65f)
             n.learnt++;
         else
             n.transient++;
@@ -122,12 +140,13 @@ static void test_static_phase(void **state)
     const ted4_train_options o = ball_options();
     static float seed[4 * BALLS * BALL_POINTS];
     ted4_trainer t;
-    size_t       n;
+    size_t n;
 
     (void)state;
     ball_begin(&t, &o, &balls, NULL);
     n = t.anchors.n;
-    assert_true(n <= BALLS * BALL_POINTS && count_spans(&t).whole > 10 && count_spans(&t).transient > 10);
+    assert_true(n <= BALLS * BALL_POINTS && count_spans(&t).whole > 10 &&
+                count_spans(&t).transient > 10);
     for (size_t i = 0; i < n; i++)
         for (int c = 0; c < 4; c++)
             seed[4 * i + (size_t)c] = tau(&t, i, c);
@@ -167,7 +186,7 @@ static void test_growth(void **state)
 {
     const ted4_train_options o = ball_options();
     ted4_trainer t;
-    int          early = 0, late = 0;
+    int early = 0, late = 0;
 
     (void)state;
     ball_begin(&t, &o, &balls, NULL);
@@ -197,7 +216,7 @@ static void test_order(void **state)
 {
     enum { ROUNDS = 3, MOST = 64 };
     const ted4_train_options o = ball_options();
-    uint32_t     item[ROUNDS][MOST];
+    uint32_t item[ROUNDS][MOST];
     ted4_trainer t;
 
     (void)state;
@@ -209,7 +228,8 @@ static void test_order(void **state)
         for (uint32_t i = 0; i < t.order.n; i++) {
             ball_train(&t, t.iteration + 1);
             item[r][i] = t.order.item[t.order.next - 1];
-            assert_true(item[r][i] < balls.n_pictures && item[r][i] < MOST && !balls.pictures[item[r][i]].is_test);
+            assert_true(item[r][i] < balls.n_pictures && item[r][i] < MOST &&
+                        !balls.pictures[item[r][i]].is_test);
             assert_int_equal(seen[item[r][i]]++, 0);
         }
         for (int k = 0; k < r; k++)
@@ -220,7 +240,8 @@ static void test_order(void **state)
 
 /* ---- what is drawn ---- */
 
-/* How far the last step's values were from whole symbols, in mean: a quarter with noise. *most: the largest. */
+/* How far the last step's values were from whole symbols, in mean: a quarter with noise. *most: the
+ * largest. */
 static double off_symbols(const ted4_trainer *t, double *most)
 {
     double sum = 0, n = 0;
@@ -229,8 +250,11 @@ static double off_symbols(const ted4_trainer *t, double *most)
     for (size_t i = 0; i < t->slots.n; i++)
         for (int y = 0; y < TED4_TYPES; y++)
             for (size_t at = 0; at < (size_t)t->layout.shape.dim[y] * TED4_LANES; at++) {
-                const float  q = t->slots.steps[i][(size_t)y * TED4_LANES + at % TED4_LANES];
-                const double k = (double)(t->slots.used[i][(size_t)t->layout.first[y] * TED4_LANES + at] / q), off = fabs(k - rint(k));
+                const float q = t->slots.steps[i][(size_t)y * TED4_LANES + at % TED4_LANES];
+                const double
+                    k = (double)(t->slots.used[i][(size_t)t->layout.first[y] * TED4_LANES + at] /
+                                 q),
+                    off = fabs(k - rint(k));
 
                 if (!(t->slots.lanes[i] >> at % TED4_LANES & 1))
                     continue;
@@ -260,16 +284,17 @@ static void test_drawn(void **state)
 {
     const ted4_train_options o = ball_options();
     ted4_trainer t;
-    double       most;
+    double most;
 
     (void)state;
     ball_begin(&t, &o, &balls, NULL);
     ball_train(&t, STAGE1);
     for (size_t i = 0; i < t.slots.n; i++)
         assert_ptr_equal(t.slots.used[i], t.slots.raw[i]);
-    for (size_t i = 0; i < t.anchors.n; i++)        /* offset masks wait for the rate */
+    for (size_t i = 0; i < t.anchors.n; i++) /* offset masks wait for the rate */
         for (int k = 0; k < t.layout.head.n_offsets; k++)
-            assert_true(*ted4_cell(&t.anchors, TED4_ROW_VALUE, i, t.layout.offset_logit + k) == 1.0f);
+            assert_true(*ted4_cell(&t.anchors, TED4_ROW_VALUE, i, t.layout.offset_logit + k) ==
+                        1.0f);
     ball_train(&t, INTEGER);
     assert_true(fabs(off_symbols(&t, &most) - 0.25) < 0.02 && most > 0.49);
     assert_false(steps_are_tabled(&t));
@@ -282,12 +307,9 @@ static void test_drawn(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_spans),
-        cmocka_unit_test(test_static_phase),
-        cmocka_unit_test(test_activation),
-        cmocka_unit_test(test_growth),
-        cmocka_unit_test(test_order),
-        cmocka_unit_test(test_drawn),
+        cmocka_unit_test(test_spans),      cmocka_unit_test(test_static_phase),
+        cmocka_unit_test(test_activation), cmocka_unit_test(test_growth),
+        cmocka_unit_test(test_order),      cmocka_unit_test(test_drawn),
     };
 
     return cmocka_run_group_tests_name("phases", tests, set_up, tear_down);

@@ -134,8 +134,15 @@ static void test_clear_colour(void **state)
 
 static void write_jpeg(const char *path, J_COLOR_SPACE space, int n, int progressive, int exact)
 {
-    const jpeg_slopes s = { .w = 48, .h = 32, .n = n, .space = space, .progressive = progressive,
-                            .exact = exact, .column = 2, .row = 2, .component = 20 };
+    const jpeg_slopes s = { .w = 48,
+                            .h = 32,
+                            .n = n,
+                            .space = space,
+                            .progressive = progressive,
+                            .exact = exact,
+                            .column = 2,
+                            .row = 2,
+                            .component = 20 };
 
     jpeg_write(path, &s);
 }
@@ -214,9 +221,10 @@ static void test_alpha_doubt(void **state)
     tiny_folder f = tiny_new();
 
     (void)state;
-    tiny_text(&f, "transforms.json",
-              "{\"fl_x\": 9, \"frames\": [{\"file_path\": \"p.png\", \"transform_matrix\": " TINY_POSE
-              "}]}");
+    tiny_text(
+        &f, "transforms.json",
+        "{\"fl_x\": 9, \"frames\": [{\"file_path\": \"p.png\", \"transform_matrix\": " TINY_POSE
+        "}]}");
     for (int k = 0; k < 4; k++) {
         ted4_dataset_options o = tiny_options;
         ted4_dataset d;
@@ -241,8 +249,9 @@ static void test_alpha_doubt(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_png),   cmocka_unit_test(test_clear_colour), cmocka_unit_test(test_jpeg),
-        cmocka_unit_test(test_alpha), cmocka_unit_test(test_alpha_doubt),
+        cmocka_unit_test(test_png),         cmocka_unit_test(test_clear_colour),
+        cmocka_unit_test(test_jpeg),        cmocka_unit_test(test_alpha),
+        cmocka_unit_test(test_alpha_doubt),
     };
 
     return cmocka_run_group_tests_name("pictures", tests, NULL, NULL);

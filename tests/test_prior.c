@@ -1,4 +1,5 @@
-/* test_prior.c - norm/prior.c and write/snap.c: integers from binary32, evaluation, and the rules of spec 7.3 and 10.1.
+/* test_prior.c - norm/prior.c and write/snap.c: integers from binary32, evaluation, and the rules
+ * of spec 7.3 and 10.1.
  * SPDX-License-Identifier: BSD-2-Clause */
 #include <setjmp.h>
 #include <stdarg.h>
@@ -8,7 +9,8 @@
 #include <stdlib.h>
 #include "random_scene.h"
 
-/* long double holds a binary32 times a power of two exactly, and rintl rounds to nearest, ties to even. */
+/* long double holds a binary32 times a power of two exactly, and rintl rounds to nearest, ties to
+ * even. */
 static void integerise(void **state)
 {
     random_source r = random_seed(1);
@@ -16,13 +18,12 @@ static void integerise(void **state)
     (void)state;
     for (int n = 0; n < 2000000; n++) {
         const int e = (int)random_in(&r, 0, 32);
-        uint32_t  bits = random_u32(&r);
+        uint32_t bits = random_u32(&r);
         long double v;
 
-        if (n % 4 != 0)     /* near the rounding point, half of them ties */
-            bits = (bits & 0x80000000)
-                 | (uint32_t)(127 + (int)random_in(&r, 0, 20) - e) << 23
-                 | (bits & 0x7fffff & (n % 2 ? 0xffffffff : 0x7c0000));
+        if (n % 4 != 0) /* near the rounding point, half of them ties */
+            bits = (bits & 0x80000000) | (uint32_t)(127 + (int)random_in(&r, 0, 20) - e) << 23 |
+                   (bits & 0x7fffff & (n % 2 ? 0xffffffff : 0x7c0000));
         if (!ted4_float_legal(bits))
             continue;
         v = rintl(ldexpl((long double)ted4_bits_float(bits), e));
@@ -32,9 +33,9 @@ static void integerise(void **state)
             assert_true(llabs(ted4_rne_scaled(bits, e)) >= (int64_t)1 << 61);
     }
     assert_int_equal(ted4_rne_scaled(0, 32), 0);
-    assert_int_equal(ted4_rne_scaled(0x3f000000, 0), 0);    /* 0.5 */
-    assert_int_equal(ted4_rne_scaled(0x3fc00000, 0), 2);    /* 1.5 */
-    assert_int_equal(ted4_rne_scaled(0x40200000, 0), 2);    /* 2.5 */
+    assert_int_equal(ted4_rne_scaled(0x3f000000, 0), 0); /* 0.5 */
+    assert_int_equal(ted4_rne_scaled(0x3fc00000, 0), 2); /* 1.5 */
+    assert_int_equal(ted4_rne_scaled(0x40200000, 0), 2); /* 2.5 */
     assert_int_equal(ted4_rne_scaled(0xc0200000, 0), -2);
 }
 
@@ -44,12 +45,12 @@ static void fixed_point(void **state)
 
     (void)state;
     for (int n = 0; n < 1000000; n++) {
-        const int32_t  x = (int32_t)random_u32(&r) / 2;
+        const int32_t x = (int32_t)random_u32(&r) / 2;
         const unsigned s = random_in(&r, 0, 30);
-        const double   v = ldexp(x, -(int)s);
+        const double v = ldexp(x, -(int)s);
 
-        if (ted4_floor_shift(x, s) != (int32_t)floor(v)
-            || ted4_round_shift(x, s) != (int32_t)floor(s ? v + 0.5 : v))
+        if (ted4_floor_shift(x, s) != (int32_t)floor(v) ||
+            ted4_round_shift(x, s) != (int32_t)floor(s ? v + 0.5 : v))
             fail();
     }
     for (uint32_t x = 1; x < 1 << 20; x += 7)
@@ -58,38 +59,38 @@ static void fixed_point(void **state)
 }
 
 /* spec 7.3 in 64 bits, from the binary32 values. x: [in]; y: [out]. */
-static void oracle_layer(const float *w, const uint8_t *shift, unsigned in,
-                         unsigned out, int f, int g, const int64_t *x,
-                         int64_t *y)
+static void oracle_layer(const float *w, const uint8_t *shift, unsigned in, unsigned out, int f,
+                         int g, const int64_t *x, int64_t *y)
 {
     for (unsigned o = 0; o < out; o++) {
         const int64_t r = shift[o] + f - g;
-        int64_t acc = (int64_t)rint(ldexp(w[(size_t)in * out + o],
-                                          shift[o] + f));
+        int64_t acc = (int64_t)rint(ldexp(w[(size_t)in * out + o], shift[o] + f));
 
         for (unsigned i = 0; i < in; i++) {
             acc += (int64_t)rint(ldexp(w[(size_t)o * in + i], shift[o])) * x[i];
             assert_true(llabs(acc) <= INT32_MAX);
         }
         acc = (int64_t)floor(ldexp((double)acc, -(int)r) + (r > 0 ? 0.5 : 0));
-        y[o] = g == 10 ? (acc < 0 ? 0 : acc > 32767 ? 32767 : acc)
-             : acc < -((1 << 26) - 1) ? -((1 << 26) - 1)
-             : acc > (1 << 26) - 1 ? (1 << 26) - 1 : acc;
+        y[o] = g == 10                  ? (acc < 0       ? 0
+                                           : acc > 32767 ? 32767
+                                                         : acc)
+               : acc < -((1 << 26) - 1) ? -((1 << 26) - 1)
+               : acc > (1 << 26) - 1    ? (1 << 26) - 1
+                                        : acc;
     }
 }
 
-static void oracle_net(const ted4_net_shape *n, const float *nete,
-                       const uint8_t *shift, int f, const int64_t *input,
-                       int64_t *output)
+static void oracle_net(const ted4_net_shape *n, const float *nete, const uint8_t *shift, int f,
+                       const int64_t *input, int64_t *output)
 {
     int64_t hidden[2][TED4_MAX_WIDTH];
-    size_t  at = n->first, unit = n->first_unit;
+    size_t at = n->first, unit = n->first_unit;
 
     for (unsigned i = 0; i < n->n_layers; i++) {
         const int last = i + 1u == n->n_layers;
 
-        oracle_layer(nete + at, shift + unit, n->dim[i], n->dim[i + 1],
-                     i > 0 ? 10 : f, last ? 8 : 10, i > 0 ? hidden[i % 2] : input,
+        oracle_layer(nete + at, shift + unit, n->dim[i], n->dim[i + 1], i > 0 ? 10 : f,
+                     last ? 8 : 10, i > 0 ? hidden[i % 2] : input,
                      last ? output : hidden[(i + 1) % 2]);
         at += (n->dim[i] + (size_t)1) * n->dim[i + 1];
         unit += n->dim[i + 1];
@@ -106,17 +107,14 @@ static void check_inputs(const ted4_header *h, const uint16_t *p, int64_t *x)
     for (unsigned l = 0; l < h->pe_octaves; l++)
         for (int j = 0; j < 3; j++)
             for (int c = 0; c < 2; c++, at++) {
-                const uint32_t X = (uint32_t)(int32_t)
-                    (16777216 * (double)ted4_half_to_float(p[j]));
-                const uint32_t u = (X << (7 + l))
-                                 + (c ? 0x40000000u : 0);
+                const uint32_t X = (uint32_t)(int32_t)(16777216 * (double)ted4_half_to_float(p[j]));
+                const uint32_t u = (X << (7 + l)) + (c ? 0x40000000u : 0);
                 const unsigned i = u >> 22, b = u >> 10 & 4095;
-                const double   a = ted4_sin[i], d = ted4_sin[i + 1] - a;
+                const double a = ted4_sin[i], d = ted4_sin[i + 1] - a;
 
                 x[at] = (int64_t)(a + floor(d * b / 4096 + 0.5));
-                assert_true(fabs((double)x[at]
-                                 - 4096 * sin(u / 4294967296.0
-                                              * 6.283185307179586)) < 1.6);
+                assert_true(fabs((double)x[at] - 4096 * sin(u / 4294967296.0 * 6.283185307179586)) <
+                            1.6);
             }
 }
 
@@ -126,16 +124,15 @@ static void evaluation(void **state)
     for (uint64_t seed = 0; seed < 60; seed++) {
         ted4_scene *s = random_scene(seed);
         const ted4_shape *sh = &s->shape;
-        ted4_arena  arena;
-        ted4_prior  p;
-        int32_t    *out = malloc(sizeof *out * 64 * (sh->n_outputs + 512));
-        int64_t     x[TED4_PRIOR_INPUTS], y[600];
+        ted4_arena arena;
+        ted4_prior p;
+        int32_t *out = malloc(sizeof *out * 64 * (sh->n_outputs + 512));
+        int64_t x[TED4_PRIOR_INPUTS], y[600];
         const size_t n = s->head.n_anchors < 64 ? s->head.n_anchors : 64;
 
         ted4_arena_init(&arena, NULL);
         assert_int_equal(ted4_prior_init(&p, &s->head, sh, &arena), TED4_OK);
-        assert_int_equal(ted4_prior_load(&p, s->nete.values, s->shift, NULL),
-                         TED4_OK);
+        assert_int_equal(ted4_prior_load(&p, s->nete.values, s->shift, NULL), TED4_OK);
         ted4_prior_hyper(&p, s->position, n, out);
         for (size_t a = 0; a < n; a++) {
             check_inputs(&s->head, s->position + 3 * a, x);
@@ -149,7 +146,8 @@ static void evaluation(void **state)
     }
 }
 
-/* Slice networks with contexts at their rails: the accumulator bound holds, in the order of the oracle too. */
+/* Slice networks with contexts at their rails: the accumulator bound holds, in the order of the
+ * oracle too. */
 static void slices(void **state)
 {
     random_source r = random_seed(5);
@@ -157,25 +155,26 @@ static void slices(void **state)
     (void)state;
     for (uint64_t seed = 0; seed < 60; seed++) {
         ted4_scene *s = random_scene(seed);
-        ted4_arena  arena;
-        ted4_prior  p;
+        ted4_arena arena;
+        ted4_prior p;
         _Alignas(64) static int16_t ctx[128 * 64];
         static int32_t out[256 * 64];
-        int64_t     x[128], y[256];
+        int64_t x[128], y[256];
 
         ted4_arena_init(&arena, NULL);
         (void)ted4_prior_init(&p, &s->head, &s->shape, &arena);
         (void)ted4_prior_load(&p, s->nete.values, s->shift, NULL);
         for (size_t i = 0; i < 128 * 64; i++)
-            ctx[i] = (int16_t)(i % 3 ? (int)random_in(&r, 0, 2000)
-                               : random_in(&r, 0, 1) ? 32767 : -32767);
+            ctx[i] = (int16_t)(i % 3                 ? (int)random_in(&r, 0, 2000)
+                               : random_in(&r, 0, 1) ? 32767
+                                                     : -32767);
         for (unsigned m = 1; m < s->head.n_slices; m++) {
             ted4_prior_slice(&p, m, ctx, 64, out);
             for (size_t a = 0; a < 64; a++) {
                 for (unsigned i = 0; i < s->shape.slice[m].dim[0]; i++)
                     x[i] = ctx[64 * i + a];
-                oracle_net(&s->shape.slice[m], s->nete.values, s->shift,
-                           s->head.context_bits, x, y);
+                oracle_net(&s->shape.slice[m], s->nete.values, s->shift, s->head.context_bits, x,
+                           y);
                 for (unsigned o = 0; o < s->shape.slice[m].dim[2]; o++)
                     assert_int_equal(out[64 * o + a], y[o]);
             }
@@ -185,7 +184,8 @@ static void slices(void **state)
     }
 }
 
-/* Weights of any size: what ted4_snap gives is legal, on the grid, and near what it was given unless that was too large. */
+/* Weights of any size: what ted4_snap gives is legal, on the grid, and near what it was given
+ * unless that was too large. */
 static void snapping(void **state)
 {
     random_source r = random_seed(6);
@@ -193,13 +193,13 @@ static void snapping(void **state)
     (void)state;
     for (int n = 0; n < 200; n++) {
         const ted4_header h = random_header(&r);
-        ted4_shape  s;
-        ted4_arena  arena;
-        ted4_prior  p;
-        ted4_error  e = { TED4_OK, 0 };
-        float      *v, *was;
-        uint8_t    *shift;
-        const int   wild = n % 4 == 3;
+        ted4_shape s;
+        ted4_arena arena;
+        ted4_prior p;
+        ted4_error e = { TED4_OK, 0 };
+        float *v, *was;
+        uint8_t *shift;
+        const int wild = n % 4 == 3;
 
         ted4_shape_make(&s, &h);
         v = malloc(s.n_nete * sizeof *v);
@@ -217,7 +217,7 @@ static void snapping(void **state)
         assert_int_equal(ted4_prior_load(&p, v, shift, &e), TED4_OK);
         for (size_t i = 0; i < s.n_nete; i++) {
             assert_true(ted4_float_legal(ted4_float_bits(v[i])));
-            if (!wild)      /* 30 inputs leave at least 11 bits for a weight below 2 */
+            if (!wild) /* 30 inputs leave at least 11 bits for a weight below 2 */
                 assert_true(fabsf(v[i] - was[i]) < 0.0005f);
         }
         memcpy(was, v, s.n_nete * sizeof *v);
@@ -226,7 +226,8 @@ static void snapping(void **state)
         ted4_snap_coarse(&h, &s, 6, v, shift);
         assert_int_equal(ted4_prior_load(&p, v, shift, &e), TED4_OK);
         for (size_t i = 0; i < s.n_units; i++)
-            assert_true(shift[i] <= 10);    /* 6, or what a slice network with few context bits needs */
+            assert_true(shift[i] <=
+                        10); /* 6, or what a slice network with few context bits needs */
         ted4_arena_finish(&arena);
         free(v);
         free(was);
@@ -234,8 +235,7 @@ static void snapping(void **state)
     }
 }
 
-static const char *load_with(ted4_prior *p, float *v, uint8_t *shift,
-                             size_t *at)
+static const char *load_with(ted4_prior *p, float *v, uint8_t *shift, size_t *at)
 {
     ted4_error e = { TED4_OK, 0 };
 
@@ -248,12 +248,12 @@ static const char *load_with(ted4_prior *p, float *v, uint8_t *shift,
 static void rules(void **state)
 {
     ted4_header h = random_paper_header(1);
-    ted4_shape  s;
-    ted4_arena  arena;
-    ted4_prior  p;
-    float      *v;
-    uint8_t    *shift;
-    size_t      at, bias;
+    ted4_shape s;
+    ted4_arena arena;
+    ted4_prior p;
+    float *v;
+    uint8_t *shift;
+    size_t at, bias;
 
     (void)state;
     h.pe_octaves = h.hyper_layers = 0;
@@ -272,7 +272,7 @@ static void rules(void **state)
     assert_int_equal(at, 7);
     shift[7] = 20;
     assert_string_equal(load_with(&p, v, shift, &at), "ok");
-    v[22] = 32767.0f / 1048576;         /* row 7 */
+    v[22] = 32767.0f / 1048576; /* row 7 */
     assert_string_equal(load_with(&p, v, shift, &at), "ok");
     v[22] = -32768.0f / 1048576;
     assert_string_equal(load_with(&p, v, shift, &at), "net.weight-range");
@@ -320,19 +320,15 @@ static void indices(void **state)
     assert_int_equal(ted4_context(-3, 128, 0), -3);
     assert_int_equal(ted4_context(32767, 255, 12), 32767);
     assert_int_equal(ted4_context(-32767, 255, 12), -32767);
-    assert_int_equal(ted4_context(1, 96, 0), 1);        /* 0.5 rounds up */
+    assert_int_equal(ted4_context(1, 96, 0), 1); /* 0.5 rounds up */
     assert_int_equal(ted4_context(-1, 96, 0), 0);
 }
 
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(integerise),
-        cmocka_unit_test(fixed_point),
-        cmocka_unit_test(evaluation),
-        cmocka_unit_test(slices),
-        cmocka_unit_test(snapping),
-        cmocka_unit_test(rules),
+        cmocka_unit_test(integerise), cmocka_unit_test(fixed_point), cmocka_unit_test(evaluation),
+        cmocka_unit_test(slices),     cmocka_unit_test(snapping),    cmocka_unit_test(rules),
         cmocka_unit_test(indices),
     };
 

@@ -1,4 +1,5 @@
-/* test_process.c - decoders as processes (conformance/tool/process.h): what they said is whole when they have ended, whenever that was noticed.
+/* test_process.c - decoders as processes (conformance/tool/process.h): what they said is whole when
+ * they have ended, whenever that was noticed.
  * SPDX-License-Identifier: BSD-2-Clause */
 #include <setjmp.h>
 #include <stdarg.h>
@@ -21,13 +22,15 @@ static void sleep_a_while(int signal)
     nanosleep(&t, NULL);
 }
 
-/* It speaks and ends when its pipes have been looked at and it has not: the signal makes that moment long. */
+/* It speaks and ends when its pipes have been looked at and it has not: the signal makes that
+ * moment long. */
 static void test_late_answer(void **state)
 {
-    const conf_process_options o = { "sleep 0.5; printf answer; printf complaint >&2; exit 5;", NULL, 30, 0 };
-    const struct itimerval     soon = { { 0, 0 }, { 0, 200000 } };
-    struct sigaction           slow = { .sa_handler = sleep_a_while };
-    conf_process               p, *const all[] = { &p };
+    const conf_process_options o = { "sleep 0.5; printf answer; printf complaint >&2; exit 5;",
+                                     NULL, 30, 0 };
+    const struct itimerval soon = { { 0, 0 }, { 0, 200000 } };
+    struct sigaction slow = { .sa_handler = sleep_a_while };
+    conf_process p, *const all[] = { &p };
 
     (void)state;
     assert_int_equal(sigaction(SIGALRM, &slow, NULL), 0);
@@ -46,7 +49,7 @@ static void test_late_answer(void **state)
 static void test_left_behind(void **state)
 {
     const conf_process_options o = { "printf answer; sleep 60 & exit 0;", NULL, 30, 0 };
-    conf_process               p, *const all[] = { &p };
+    conf_process p, *const all[] = { &p };
 
     (void)state;
     conf_process_start(&p, &o, none);

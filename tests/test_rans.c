@@ -1,4 +1,5 @@
-/* test_rans.c - substreams: write/coder_write.c into read/reader.c (spec 9.2 to 9.4), and damaged ones.
+/* test_rans.c - substreams: write/coder_write.c into read/reader.c (spec 9.2 to 9.4), and damaged
+ * ones.
  * SPDX-License-Identifier: BSD-2-Clause */
 #include <setjmp.h>
 #include <stdarg.h>
@@ -18,11 +19,10 @@ static void push_out(symbols *s, uint64_t seed)
     }
 }
 
-static const char *read_symbols(const uint8_t *data, size_t size,
-                                const symbols *s, int16_t *k)
+static const char *read_symbols(const uint8_t *data, size_t size, const symbols *s, int16_t *k)
 {
     ted4_reader r;
-    uint32_t    length;
+    uint32_t length;
 
     ted4_reader_init(&r, data, 0, size, 0);
     r.base.ops->sizes(&r.base, &length, 1);
@@ -34,13 +34,12 @@ static const char *read_symbols(const uint8_t *data, size_t size,
 
 static void round_trip(void **state)
 {
-    static const size_t count[] = { 1, 2, 1000, 4095, 8191, 8192, 16384,
-                                    200000, 600000 };
+    static const size_t count[] = { 1, 2, 1000, 4095, 8191, 8192, 16384, 200000, 600000 };
 
     (void)state;
     for (size_t i = 0; i < 2 * sizeof count / sizeof *count; i++) {
-        symbols     s = symbols_make(i, count[i / 2], 0, TED4_N_SIGMA - 1);
-        int16_t    *k = malloc(s.n * sizeof *k);
+        symbols s = symbols_make(i, count[i / 2], 0, TED4_N_SIGMA - 1);
+        int16_t *k = malloc(s.n * sizeof *k);
         ted4_writer w;
 
         if (i % 2)
@@ -70,10 +69,10 @@ static void bits(void **state)
     enum { N = 100000 };
     random_source r = random_seed(3);
     static uint32_t prob[N];
-    static uint8_t  bit[N];
+    static uint8_t bit[N];
     ted4_writer w;
     ted4_reader d;
-    uint32_t    size;
+    uint32_t size;
 
     (void)state;
     ted4_writer_init(&w);
@@ -99,11 +98,11 @@ static void bits(void **state)
 /* What a damaged substream is refused with. change: bytes added at the end, or taken away. */
 static void damaged(void **state)
 {
-    symbols     s = symbols_make(9, 500, 0, TED4_N_SIGMA - 1);
-    int16_t     k[500];
+    symbols s = symbols_make(9, 500, 0, TED4_N_SIGMA - 1);
+    int16_t k[500];
     ted4_writer w;
-    uint8_t    *d;
-    size_t      n;
+    uint8_t *d;
+    size_t n;
 
     (void)state;
     symbols_write(&w, &s);
@@ -132,14 +131,14 @@ static void damaged(void **state)
 /* A substream of one symbol, mu 0 and sigma 1, which is a high escape followed by the bits of E. */
 static const char *read_escape(uint32_t E, int16_t *k)
 {
-    int32_t  mu = 0;
-    uint8_t  sigma = 64;
-    const symbols     s = { 1, &mu, &sigma, NULL };
-    const unsigned    n = ted4_log2_floor(E);
-    const ted4_slots  half[2] = { { 0, 32768 }, { 32768, 32768 } };
-    ted4_rans_enc     e = { 0 };
-    ted4_buffer       out = { 0 };
-    const char       *verdict;
+    int32_t mu = 0;
+    uint8_t sigma = 64;
+    const symbols s = { 1, &mu, &sigma, NULL };
+    const unsigned n = ted4_log2_floor(E);
+    const ted4_slots half[2] = { { 0, 32768 }, { 32768, 32768 } };
+    ted4_rans_enc e = { 0 };
+    ted4_buffer out = { 0 };
+    const char *verdict;
 
     memset(ted4_buffer_add(&out, 4), 0, 4);
     ted4_rans_enc_init(&e, 1);
@@ -177,9 +176,9 @@ static void refused_by_the_writer(void **state)
 {
     const int32_t mu = 0;
     const uint8_t sigma = 64;
-    int16_t       k = -32768;
-    ted4_writer   w;
-    uint32_t      size;
+    int16_t k = -32768;
+    ted4_writer w;
+    uint32_t size;
 
     (void)state;
     ted4_writer_init(&w);
@@ -190,12 +189,13 @@ static void refused_by_the_writer(void **state)
     ted4_writer_finish(&w);
 }
 
-/* One symbol with slots [0, 2^15) in each lane, from states set by hand, with some words left over. */
+/* One symbol with slots [0, 2^15) in each lane, from states set by hand, with some words left over.
+ */
 static ted4_status end_of(size_t n, const uint32_t *state, size_t n_lanes, size_t words)
 {
-    uint8_t          data[32] = { 0 };
+    uint8_t data[32] = { 0 };
     const ted4_slots half = { 0, 1 << 15 };
-    ted4_rans_dec    d;
+    ted4_rans_dec d;
 
     for (size_t i = 0; i < n_lanes; i++)
         ted4_store32(data + 4 * i, state[i]);
@@ -208,7 +208,8 @@ static ted4_status end_of(size_t n, const uint32_t *state, size_t n_lanes, size_
     return ted4_rans_dec_finish(&d);
 }
 
-/* R-ENT-005, each half of it alone: 2^15 (x / 2^16) + slot is 2^16 for x = 2 2^16, and more for a slot or a quotient above. */
+/* R-ENT-005, each half of it alone: 2^15 (x / 2^16) + slot is 2^16 for x = 2 2^16, and more for a
+ * slot or a quotient above. */
 static void final_state(void **state)
 {
     const uint32_t good[2] = { 2u << 16, 2u << 16 }, slot[2] = { 2u << 16, (2u << 16) + 1 },

@@ -1,4 +1,5 @@
-/* test_raster.c - the tile rasteriser against its plain twin, and against itself with other threads.
+/* test_raster.c - the tile rasteriser against its plain twin, and against itself with other
+ * threads.
  * SPDX-License-Identifier: BSD-2-Clause */
 #include <setjmp.h>
 #include <stdarg.h>
@@ -12,8 +13,9 @@
 #include "raster_scene.h"
 #include "render/raster_plain.h"
 
-/* The project asks for 60 dB between any two renderers; float against double keeps far more. A pixel may still differ by one
- * Gaussian of opacity 1/255, where rounding decides on its other side. */
+/* The project asks for 60 dB between any two renderers; float against double keeps far more. A
+ * pixel may still differ by one Gaussian of opacity 1/255, where rounding decides on its other
+ * side. */
 #define MIN_PSNR  90.0
 #define MAX_ERROR (1.5 / 255)
 
@@ -34,11 +36,11 @@ static double psnr(const float *a, const double *b, size_t n, double *worst)
 
 static void check_against_plain(const scene *s, const ted4_view *v)
 {
-    const size_t      n = 3 * (size_t)v->width * (size_t)v->height;
+    const size_t n = 3 * (size_t)v->width * (size_t)v->height;
     const ted4_splats g = scene_splats(s);
-    float            *image = malloc(n * sizeof *image);
-    double           *plain = malloc(n * sizeof *plain), worst;
-    ted4_raster      *r = ted4_raster_new();
+    float *image = malloc(n * sizeof *image);
+    double *plain = malloc(n * sizeof *plain), worst;
+    ted4_raster *r = ted4_raster_new();
 
     assert_non_null(image);
     assert_non_null(plain);
@@ -54,7 +56,8 @@ static void check_against_plain(const scene *s, const ted4_view *v)
 
 static void test_random(void **state)
 {
-    static const int size[][2] = { {1, 1}, {3, 2}, {16, 16}, {17, 33}, {64, 48}, {100, 70} };
+    static const int size[][2] = { { 1, 1 },   { 3, 2 },   { 16, 16 },
+                                   { 17, 33 }, { 64, 48 }, { 100, 70 } };
 
     (void)state;
     for (size_t i = 0; i < sizeof size / sizeof size[0]; i++)
@@ -102,15 +105,22 @@ static void test_awkward(void **state)
         case 7: *opacity = 1; break;
         case 8: *opacity = -0.5f; break;
         case 9: scene_place(&s, &v, i, 400, -300, 1); break;
-        case 10: *scale[0] = 3; *scale[1] = *scale[2] = 1e-4f; break;
-        default: scene_place(&s, &v, i, -80, y, 1); *scale[0] = *scale[1] = *scale[2] = 1; break;
+        case 10:
+            *scale[0] = 3;
+            *scale[1] = *scale[2] = 1e-4f;
+            break;
+        default:
+            scene_place(&s, &v, i, -80, y, 1);
+            *scale[0] = *scale[1] = *scale[2] = 1;
+            break;
         }
     }
     check_against_plain(&s, &v);
     scene_free(&s);
 }
 
-/* A needle along the diagonal whose centre is far outside: the case in which the textbook form of the exponent loses its digits. */
+/* A needle along the diagonal whose centre is far outside: the case in which the textbook form of
+ * the exponent loses its digits. */
 static void test_needle(void **state)
 {
     ted4_view v = scene_view(64, 64);
@@ -163,7 +173,7 @@ static void test_ties(void **state)
     for (size_t i = 0; i < s.n; i++)
         for (int k = 0; k < 3; k++)
             *scene_param(&s, SCENE_MEAN + k, i) = k == 2 ? 2.0f : 0.01f * (float)(i % 7) - 0.1f;
-    memcpy(v.R, (const float[9]){ 1, 0, 0, 0, 1, 0, 0, 0, 1 }, sizeof v.R);
+    memcpy(v.R, (const float[9]) { 1, 0, 0, 0, 1, 0, 0, 0, 1 }, sizeof v.R);
     check_against_plain(&s, &v);
     scene_free(&s);
 }
@@ -223,9 +233,10 @@ static void test_reuse(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_random), cmocka_unit_test(test_nothing), cmocka_unit_test(test_awkward),
-        cmocka_unit_test(test_needle), cmocka_unit_test(test_not_finite), cmocka_unit_test(test_ties),
-        cmocka_unit_test(test_threads), cmocka_unit_test(test_reuse),
+        cmocka_unit_test(test_random),     cmocka_unit_test(test_nothing),
+        cmocka_unit_test(test_awkward),    cmocka_unit_test(test_needle),
+        cmocka_unit_test(test_not_finite), cmocka_unit_test(test_ties),
+        cmocka_unit_test(test_threads),    cmocka_unit_test(test_reuse),
     };
 
     return cmocka_run_group_tests(tests, NULL, NULL);

@@ -1,4 +1,5 @@
-/* test_raster_grad.c - every gradient of the rasteriser against central differences of the plain renderer in double precision.
+/* test_raster_grad.c - every gradient of the rasteriser against central differences of the plain
+ * renderer in double precision.
  * SPDX-License-Identifier: BSD-2-Clause */
 #include <setjmp.h>
 #include <stdarg.h>
@@ -15,26 +16,29 @@
 enum { GROUPS = 5 };
 
 /* mean, scale, rotation, opacity, colour */
-static const int group_first[GROUPS + 1] = { SCENE_MEAN, SCENE_SCALE, SCENE_ROT, SCENE_OPACITY, SCENE_COLOUR, SCENE_PARAMS };
+static const int group_first[GROUPS + 1] = { SCENE_MEAN,    SCENE_SCALE,  SCENE_ROT,
+                                             SCENE_OPACITY, SCENE_COLOUR, SCENE_PARAMS };
 
-/* The step is so small that few Gaussians reach another pixel, or stop reaching one, within it; those that do, a jump, are found by
- * a second, smaller step: a jump of height J adds J / step, so the two results differ by far more than this share. */
+/* The step is so small that few Gaussians reach another pixel, or stop reaching one, within it;
+ * those that do, a jump, are found by a second, smaller step: a jump of height J adds J / step, so
+ * the two results differ by far more than this share. */
 #define STEP_ULPS      32
 #define SMALL_ULPS     8
 #define JUMP_TOLERANCE 1e-3
-/* Float gradients against double differences: share of the value, plus share of the largest gradient in its group. */
-#define RELATIVE  2e-3
-#define ABSOLUTE  2e-5
-#define COSINE    0.99999
+/* Float gradients against double differences: share of the value, plus share of the largest
+ * gradient in its group. */
+#define RELATIVE       2e-3
+#define ABSOLUTE       2e-5
+#define COSINE         0.99999
 /* At most this share of the parameters may sit on a jump. */
-#define MAX_JUMPS 0.02
+#define MAX_JUMPS      0.02
 
 typedef struct {
-    scene     s;
+    scene s;
     ted4_view v;
-    float    *d_image;          /* dL / d image, random; L = sum d_image image */
-    double   *image;
-    size_t    n_image;
+    float *d_image; /* dL / d image, random; L = sum d_image image */
+    double *image;
+    size_t n_image;
 } problem;
 
 static void *must(void *p)
@@ -71,7 +75,8 @@ static double loss(const problem *p)
     return sum;
 }
 
-/* Central difference over a step of so many units in the last place of x: exact steps, though x is float. */
+/* Central difference over a step of so many units in the last place of x: exact steps, though x is
+ * float. */
 static double difference(const problem *p, float *x, int ulps)
 {
     const float keep = *x, h = (fabsf(keep) + 0.05f) * 0x1p-23f * (float)ulps;
@@ -87,11 +92,13 @@ static double difference(const problem *p, float *x, int ulps)
 
 static ted4_splat_grads grads_of(const scene *d, float *mean2d, uint8_t *visible)
 {
-    ted4_splat_grads g = { .opacity = scene_param(d, SCENE_OPACITY, 0), .mean2d = mean2d, .visible = visible };
+    ted4_splat_grads g = { .opacity = scene_param(d, SCENE_OPACITY, 0),
+                           .mean2d = mean2d,
+                           .visible = visible };
 
     for (int k = 0; k < 3; k++) {
-        g.mean[k]   = scene_param(d, SCENE_MEAN + k, 0);
-        g.scale[k]  = scene_param(d, SCENE_SCALE + k, 0);
+        g.mean[k] = scene_param(d, SCENE_MEAN + k, 0);
+        g.scale[k] = scene_param(d, SCENE_SCALE + k, 0);
         g.colour[k] = scene_param(d, SCENE_COLOUR + k, 0);
     }
     for (int k = 0; k < 4; k++)
@@ -100,14 +107,16 @@ static ted4_splat_grads grads_of(const scene *d, float *mean2d, uint8_t *visible
 }
 
 /* Analytic gradients of p into d, same layout as the scene. */
-static void gradients(const problem *p, const ted4_parallel *threads, scene *d, float *mean2d, uint8_t *visible)
+static void gradients(const problem *p, const ted4_parallel *threads, scene *d, float *mean2d,
+                      uint8_t *visible)
 {
     const ted4_splats g = scene_splats(&p->s);
     const ted4_splat_grads grads = grads_of(d, mean2d, visible);
-    float       *image = must(malloc(p->n_image * sizeof *image));
+    float *image = must(malloc(p->n_image * sizeof *image));
     ted4_raster *r = must(ted4_raster_new());
 
-    memset(d->value, 0xff, p->s.n * SCENE_PARAMS * sizeof(float));      /* NaN: all must be overwritten */
+    memset(d->value, 0xff,
+           p->s.n * SCENE_PARAMS * sizeof(float)); /* NaN: all must be overwritten */
     assert_int_equal(ted4_raster_forward(r, &g, &p->v, threads, 1, image), 0);
     assert_int_equal(ted4_raster_backward(r, &g, &p->v, threads, p->d_image, &grads), 0);
     ted4_raster_free(r);
@@ -118,15 +127,16 @@ static void gradients(const problem *p, const ted4_parallel *threads, scene *d, 
 static void check(problem *p)
 {
     const size_t n = p->s.n;
-    scene    d = { n, must(malloc(n * SCENE_PARAMS * sizeof(float))) };
-    double  *want = must(malloc(n * SCENE_PARAMS * sizeof(double)));
-    float   *mean2d = must(malloc(n * sizeof *mean2d));
+    scene d = { n, must(malloc(n * SCENE_PARAMS * sizeof(float))) };
+    double *want = must(malloc(n * SCENE_PARAMS * sizeof(double)));
+    float *mean2d = must(malloc(n * sizeof *mean2d));
     uint8_t *visible = must(malloc(n)), *jump = must(calloc(n * SCENE_PARAMS, 1));
-    size_t   n_jumps = 0;
+    size_t n_jumps = 0;
 
     gradients(p, NULL, &d, mean2d, visible);
     for (int group = 0; group < GROUPS; group++) {
-        const size_t begin = n * (size_t)group_first[group], end = n * (size_t)group_first[group + 1];
+        const size_t begin = n * (size_t)group_first[group],
+                     end = n * (size_t)group_first[group + 1];
         double top = 0, dot = 0, got2 = 0, want2 = 0;
 
         for (size_t i = begin; i < end; i++) {
@@ -140,15 +150,17 @@ static void check(problem *p)
             if (fabs(got - want[i]) > allowed) {
                 const double small = difference(p, &p->s.value[i], SMALL_ULPS);
 
-                jump[i] = fabs(small - want[i]) > JUMP_TOLERANCE * (fabs(small) + fabs(want[i])) + ABSOLUTE * top;
+                jump[i] = fabs(small - want[i]) >
+                          JUMP_TOLERANCE * (fabs(small) + fabs(want[i])) + ABSOLUTE * top;
                 if (!jump[i])
-                    print_error("group %d, Gaussian %zu: %g, should be %g (largest %g)\n", group, i % n, got, want[i], top);
+                    print_error("group %d, Gaussian %zu: %g, should be %g (largest %g)\n", group,
+                                i % n, got, want[i], top);
                 assert_true(jump[i]);
                 n_jumps++;
                 continue;
             }
-            dot   += got * want[i];
-            got2  += got * got;
+            dot += got * want[i];
+            got2 += got * got;
             want2 += want[i] * want[i];
         }
         assert_true(dot >= COSINE * sqrt(got2 * want2));
@@ -163,7 +175,10 @@ static void check(problem *p)
 
 static void test_random(void **state)
 {
-    static const struct { int width, height; double sigma; } c[] = { {24, 20, 2}, {17, 33, 4}, {33, 18, 1}, {1, 1, 3} };
+    static const struct {
+        int width, height;
+        double sigma;
+    } c[] = { { 24, 20, 2 }, { 17, 33, 4 }, { 33, 18, 1 }, { 1, 1, 3 } };
 
     (void)state;
     for (size_t i = 0; i < sizeof c / sizeof c[0]; i++) {
@@ -201,10 +216,12 @@ static void test_early_stop(void **state)
     free_problem(&p);
 }
 
-/* Centres outside the guard band, to all four sides, but large enough to be seen: the Jacobian's slope is clamped. */
+/* Centres outside the guard band, to all four sides, but large enough to be seen: the Jacobian's
+ * slope is clamped. */
 static void test_clamped_jacobian(void **state)
 {
-    static const double place[][2] = { {-12, 10}, {32, 10}, {10, -12}, {10, 32}, {-12, -12}, {35, 33}, {10, 10} };
+    static const double place[][2] = { { -12, 10 },  { 32, 10 }, { 10, -12 }, { 10, 32 },
+                                       { -12, -12 }, { 35, 33 }, { 10, 10 } };
     enum { N = sizeof place / sizeof place[0] };
     const ted4_view v = scene_view(20, 20);
     problem p = make_problem(scene_random(N, &v, 6, 5), &v, 5);
@@ -218,8 +235,8 @@ static void test_clamped_jacobian(void **state)
     free_problem(&p);
 }
 
-/* Behind the camera, too faint, off the image; near the camera; needles; and one rotation that is not quite unit, since the
- * gradient is that of the polynomial R(q). */
+/* Behind the camera, too faint, off the image; near the camera; needles; and one rotation that is
+ * not quite unit, since the gradient is that of the polynomial R(q). */
 static void test_awkward(void **state)
 {
     const ted4_view v = scene_view(24, 24);
@@ -241,16 +258,17 @@ static void test_awkward(void **state)
     free_problem(&p);
 }
 
-/* mean2d is the image-plane gradient in half image sizes: for a Gaussian on the optical axis, moving the mean by z / fx along the camera's x
- * axis moves the centre by one pixel and leaves all else, to first order, but the Jacobian; a tiny Gaussian does not
- * notice the Jacobian. visible tells who had a tile. */
+/* mean2d is the image-plane gradient in half image sizes: for a Gaussian on the optical axis,
+ * moving the mean by z / fx along the camera's x axis moves the centre by one pixel and leaves all
+ * else, to first order, but the Jacobian; a tiny Gaussian does not notice the Jacobian. visible
+ * tells who had a tile. */
 static void test_mean2d(void **state)
 {
     ted4_view v = scene_view(32, 16);
     problem p;
 
     (void)state;
-    memcpy(v.R, (const float[9]){ 1, 0, 0, 0, 1, 0, 0, 0, 1 }, sizeof v.R);
+    memcpy(v.R, (const float[9]) { 1, 0, 0, 0, 1, 0, 0, 0, 1 }, sizeof v.R);
     p = make_problem(scene_random(3, &v, 3, 7), &v, 7);
     scene_place(&p.s, &v, 0, v.cx, v.cy, 2);
     scene_place(&p.s, &v, 1, v.cx, v.cy, -2);
@@ -259,14 +277,15 @@ static void test_mean2d(void **state)
         for (int k = 0; k < 3; k++)
             *scene_param(&p.s, SCENE_SCALE + k, i) = 1e-4f;
 
-    scene   d = { 3, must(malloc(3 * SCENE_PARAMS * sizeof(float))) };
-    float   mean2d[3];
+    scene d = { 3, must(malloc(3 * SCENE_PARAMS * sizeof(float))) };
+    float mean2d[3];
     uint8_t visible[3];
     gradients(&p, NULL, &d, mean2d, visible);
-    const double gx = *scene_param(&d, SCENE_MEAN, 0) * 2 / v.fx * 16, gy = *scene_param(&d, SCENE_MEAN + 1, 0) * 2 / v.fy * 8;
+    const double gx = *scene_param(&d, SCENE_MEAN, 0) * 2 / v.fx * 16,
+                 gy = *scene_param(&d, SCENE_MEAN + 1, 0) * 2 / v.fy * 8;
     assert_true(gx != 0 && fabs(hypot(gx, gy) - mean2d[0]) < 1e-3 * mean2d[0]);
     assert_true(mean2d[1] == 0 && mean2d[2] == 0);
-    assert_memory_equal(visible, ((const uint8_t[]){ 1, 0, 0 }), 3);
+    assert_memory_equal(visible, ((const uint8_t[]) { 1, 0, 0 }), 3);
     scene_free(&d);
     free_problem(&p);
 }
@@ -278,7 +297,8 @@ static void test_threads(void **state)
     static uint8_t one_visible[N], many_visible[N];
     const ted4_view v = scene_view(90, 61);
     problem p = make_problem(scene_random(N, &v, 2, 8), &v, 8);
-    scene one = { N, must(malloc(N * SCENE_PARAMS * sizeof(float))) }, many = { N, must(malloc(N * SCENE_PARAMS * sizeof(float))) };
+    scene one = { N, must(malloc(N * SCENE_PARAMS * sizeof(float))) },
+          many = { N, must(malloc(N * SCENE_PARAMS * sizeof(float))) };
 
     (void)state;
     gradients(&p, NULL, &one, one2d, one_visible);
@@ -314,9 +334,10 @@ static void test_nothing(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_random), cmocka_unit_test(test_cap), cmocka_unit_test(test_early_stop),
-        cmocka_unit_test(test_clamped_jacobian), cmocka_unit_test(test_awkward), cmocka_unit_test(test_mean2d),
-        cmocka_unit_test(test_threads), cmocka_unit_test(test_nothing),
+        cmocka_unit_test(test_random),     cmocka_unit_test(test_cap),
+        cmocka_unit_test(test_early_stop), cmocka_unit_test(test_clamped_jacobian),
+        cmocka_unit_test(test_awkward),    cmocka_unit_test(test_mean2d),
+        cmocka_unit_test(test_threads),    cmocka_unit_test(test_nothing),
     };
 
     return cmocka_run_group_tests(tests, NULL, NULL);

@@ -1,5 +1,6 @@
-/* test_rate.c - train/rate*.c and quantise.c: bits against the double model, the noise, the quantiser, threads, lanes that are not there, the integer mode,
- * and clamped outputs (annex D.1: sigma clamped from below, steps near 0).
+/* test_rate.c - train/rate*.c and quantise.c: bits against the double model, the noise, the
+ * quantiser, threads, lanes that are not there, the integer mode, and clamped outputs (annex D.1:
+ * sigma clamped from below, steps near 0).
  * SPDX-License-Identifier: BSD-2-Clause */
 #include <setjmp.h>
 #include <stdarg.h>
@@ -29,7 +30,7 @@ static void fill_noise(ref_world *w, float *noise[REF_SLOTS])
 /* Bits of every type, and steps, against the double model, whichever lanes are in use. */
 static void check_world(ref_world *w)
 {
-    double bits[TED4_TYPES], want[TED4_TYPES] = {0}, total = 0.0;
+    double bits[TED4_TYPES], want[TED4_TYPES] = { 0 }, total = 0.0;
     float *noise[REF_SLOTS];
 
     w->lanes[1] = 0x80f00f05u;
@@ -49,8 +50,8 @@ static void check_world(ref_world *w)
             for (int t = 0; t < TED4_TYPES; t++) {
                 want[t] += r.bits[t];
                 total += r.bits[t];
-                assert_true(close_to((double)w->steps[i][t * TED4_LANES + j], r.steps[t],
-                                     1e-5, 0.0));
+                assert_true(
+                    close_to((double)w->steps[i][t * TED4_LANES + j], r.steps[t], 1e-5, 0.0));
             }
         }
     assert_true(total > 100.0);
@@ -64,8 +65,7 @@ static void variant(ted4_header *h, int which)
 {
     *h = ref_header();
     if (which == 1)
-        h->prior = TED4_PRIOR_FACTORISED, h->pe_octaves = h->hyper_layers = 0,
-        h->hyper_width = 0;
+        h->prior = TED4_PRIOR_FACTORISED, h->pe_octaves = h->hyper_layers = 0, h->hyper_width = 0;
     if (which == 2)
         h->n_slices = 1, h->slice[0] = h->feature_dim, h->ar_width = 0;
     if (which == 3)
@@ -75,7 +75,7 @@ static void variant(ted4_header *h, int which)
         h->offset_mask = h->temporal_mask = 0, h->hyper_layers = 0, h->hyper_width = 0;
 }
 
-enum { VARIANTS = 6 };                          /* the last: static phase */
+enum { VARIANTS = 6 }; /* the last: static phase */
 
 static void test_values(void **state)
 {
@@ -125,13 +125,14 @@ static void test_unused_lanes(void **state)
     ref_world_finish(&w);
 }
 
-/* Mean 0, variance 1/12, flat, and no correlation between channels, lanes, blocks or keys: each within 5 standard deviations. */
+/* Mean 0, variance 1/12, flat, and no correlation between channels, lanes, blocks or keys: each
+ * within 5 standard deviations. */
 static void test_noise(void **state)
 {
     static ref_world w;
     const ted4_header h = ref_header();
     enum { BLOCKS = 2048 };
-    double sum = 0.0, square = 0.0, bins[16] = {0}, n = 0.0;
+    double sum = 0.0, square = 0.0, bins[16] = { 0 }, n = 0.0;
     double channels = 0.0, lanes = 0.0, blocks = 0.0, keys = 0.0;
 
     (void)state;
@@ -162,7 +163,7 @@ static void test_noise(void **state)
             }
         memcpy(before, now, size * sizeof *now);
     }
-    const double five = 5.0 / sqrt(n);          /* standard deviations of a mean of n */
+    const double five = 5.0 / sqrt(n); /* standard deviations of a mean of n */
 
     assert_true(fabs(sum / n) < five * sqrt(1.0 / 12.0));
     assert_true(fabs(square / n - 1.0 / 12.0) < five * sqrt(1.0 / 180.0));
@@ -178,7 +179,8 @@ static void test_noise(void **state)
     ref_world_finish(&w);
 }
 
-/* k q with the nearest k within the range of symbols; logits untouched; a_f never before a_s, in either mode. */
+/* k q with the nearest k within the range of symbols; logits untouched; a_f never before a_s, in
+ * either mode. */
 static void test_quantise(void **state)
 {
     static ref_world w;
@@ -210,8 +212,8 @@ static void test_quantise(void **state)
                 if (quant == TED4_QUANT_ROUND)
                     assert_true(out[at] == fminf(fmaxf(k, -32767.0f), 32767.0f) * q);
                 else
-                    assert_true(fabsf(out[at] - w.attr[0][at])
-                                <= q * 0.5f + 1e-6f * fabsf(w.attr[0][at]));
+                    assert_true(fabsf(out[at] - w.attr[0][at]) <=
+                                q * 0.5f + 1e-6f * fabsf(w.attr[0][at]));
             }
         for (int j = 0; j < TED4_LANES; j++) {
             const float start = out[tau * TED4_LANES + j];
@@ -223,8 +225,7 @@ static void test_quantise(void **state)
         assert_true(raised > 4);
         assert_memory_equal(out + l->offset_logit * TED4_LANES,
                             w.attr[0] + l->offset_logit * TED4_LANES,
-                            (size_t)(l->n_channels - l->offset_logit) * TED4_LANES
-                            * sizeof *out);
+                            (size_t)(l->n_channels - l->offset_logit) * TED4_LANES * sizeof *out);
     }
     free(out);
     ref_world_finish(&w);
@@ -234,12 +235,12 @@ static void test_quantise(void **state)
 enum { MANY = TED4_RATE_CHUNK * TED4_RATE_WAVE + 21 };
 
 typedef struct {
-    ref_world       w;
-    const float    *attr[MANY], *position[MANY];
-    float          *d_attr[MANY], *steps[MANY], *d_net;
-    uint32_t        lanes[MANY], block[MANY];
+    ref_world w;
+    const float *attr[MANY], *position[MANY];
+    float *d_attr[MANY], *steps[MANY], *d_net;
+    uint32_t lanes[MANY], block[MANY];
     ted4_rate_input in;
-    double          bits[TED4_TYPES];
+    double bits[TED4_TYPES];
 } crowd;
 
 static void crowd_make(crowd *c)
@@ -289,7 +290,8 @@ static uint64_t crowd_run(crowd *c, const ted4_parallel *p, size_t first, size_t
         memset(c->d_attr[i], 0, size * sizeof(float));
     memset(c->d_net, 0, c->w.layout.n_net * sizeof(float));
     assert_int_equal(ted4_rate_evaluate(c->w.rate, &c->in, p, NULL, c->d_attr + first, c->d_net,
-                                        c->steps + first, c->bits), 0);
+                                        c->steps + first, c->bits),
+                     0);
     for (size_t i = first; i < first + n; i++)
         for (size_t j = 0; j < size; j++)
             sum = sum * 0x9e3779b97f4a7c15u + ted4_float_bits(c->d_attr[i][j]);
@@ -325,7 +327,7 @@ static void test_threads(void **state)
 static void test_sums(void **state)
 {
     static crowd c;
-    double bits[TED4_TYPES] = {0};
+    double bits[TED4_TYPES] = { 0 };
 
     (void)state;
     crowd_make(&c);
@@ -366,12 +368,10 @@ static void test_partial(void **state)
         memcpy(steps[i], w.steps[i], sizeof steps[i]);
         memset(w.steps[i], 0, sizeof steps[i]);
     }
-    assert_int_equal(ted4_rate_evaluate(w.rate, &w.in, NULL, NULL, NULL, NULL, w.steps, NULL),
-                     0);
+    assert_int_equal(ted4_rate_evaluate(w.rate, &w.in, NULL, NULL, NULL, NULL, w.steps, NULL), 0);
     for (int i = 0; i < REF_SLOTS; i++)
         assert_memory_equal(steps[i], w.steps[i], sizeof steps[i]);
-    assert_int_equal(ted4_rate_evaluate(w.rate, &w.in, NULL, NULL, NULL, NULL, w.steps, again),
-                     0);
+    assert_int_equal(ted4_rate_evaluate(w.rate, &w.in, NULL, NULL, NULL, NULL, w.steps, again), 0);
     assert_memory_equal(bits, again, sizeof bits);
     ref_world_finish(&w);
 }
@@ -389,13 +389,15 @@ static void test_shared_gradients(void **state)
 
     assert_int_equal(ref_run(&w, NULL, bits), 0);
     assert_int_equal(ted4_rate_evaluate(w.rate, &w.in, NULL, (const float *const *)w.d_value,
-                                        w.d_value, d_net, w.steps, bits), 0);
+                                        w.d_value, d_net, w.steps, bits),
+                     0);
     assert_memory_equal(d_net, w.d_net, w.layout.n_net * sizeof *d_net);
     free(d_net);
     ref_world_finish(&w);
 }
 
-/* Items 3 and 5: sigma and steps driven far out of range by their biases. Steps stay within 2^-4 .. 2^(127/32) of Q0, and descent brings both back. */
+/* Items 3 and 5: sigma and steps driven far out of range by their biases. Steps stay within 2^-4 ..
+ * 2^(127/32) of Q0, and descent brings both back. */
 static void test_clamped_outputs_recover(void **state)
 {
     static ref_world w;
@@ -416,11 +418,11 @@ static void test_clamped_outputs_recover(void **state)
         for (int t = 0; t < TED4_TYPES; t++)
             for (int j = 0; j < TED4_LANES; j++)
                 assert_true(close_to((double)w.steps[0][t * TED4_LANES + j],
-                                     (double)h.step[t] * exp2(high ? REF_V_MAX : REF_V_MIN),
-                                     1e-6, 0.0));
+                                     (double)h.step[t] * exp2(high ? REF_V_MAX : REF_V_MIN), 1e-6,
+                                     0.0));
         const float *d = w.d_net + (ref_bias(&w, 0) - w.net);
 
-        for (unsigned c = 0; c < 6; c++)        /* down is forbidden when low, up when high */
+        for (unsigned c = 0; c < 6; c++) /* down is forbidden when low, up when high */
             assert_true(high ? d[sigma + c] > 0.0f : d[sigma + c] < 0.0f);
         if (!high)
             assert_true(d[v + TED4_FEATURE] < 0.0f);
@@ -428,7 +430,8 @@ static void test_clamped_outputs_recover(void **state)
     }
 }
 
-/* TED4_QUANT_INTEGER is the decoder: bits from mu, sigma index, step index of norm/prior.h, k an integer. */
+/* TED4_QUANT_INTEGER is the decoder: bits from mu, sigma index, step index of norm/prior.h, k an
+ * integer. */
 static double integer_bits(const ref_world *w, const ted4_prior *p, int slot, double *bits)
 {
     const ted4_layout *l = &w->layout;
@@ -448,12 +451,13 @@ static double integer_bits(const ref_world *w, const ted4_prior *p, int slot, do
                 ted4_prior_slice(p, 1, context, TED4_LANES, add);
                 for (unsigned i = 0; i < 2u * l->head.slice[1]; i++)
                     for (int j = 0; j < TED4_LANES; j++)
-                        out[(c + i + (i >= l->head.slice[1] ? s->dim[0] - l->head.slice[1]
-                                                                : 0u)) * 64 + (unsigned)j]
-                            += add[i * 64 + (unsigned)j];
+                        out[(c + i + (i >= l->head.slice[1] ? s->dim[0] - l->head.slice[1] : 0u)) *
+                                64 +
+                            (unsigned)j] += add[i * 64 + (unsigned)j];
             }
             for (int j = 0; j < TED4_LANES; j++) {
-                const uint8_t i = ted4_step_index(out[(s->first_step_output + t) * 64 + (unsigned)j]);
+                const uint8_t i =
+                    ted4_step_index(out[(s->first_step_output + t) * 64 + (unsigned)j]);
                 const float q = l->head.step[t] * ted4_bits_float(ted4_step[i]);
                 const float x = w->attr[slot][((unsigned)l->first[t] + c) * 32 + (unsigned)j];
                 const int16_t k = (int16_t)rintf(x / q);
@@ -465,7 +469,7 @@ static double integer_bits(const ref_world *w, const ted4_prior *p, int slot, do
                 if (t == TED4_FEATURE)
                     context[c * 64 + (unsigned)j] = ted4_context(k, i, l->head.context_bits);
                 if (t == TED4_TAU && c == 2)
-                    continue;                   /* set apart by the test: a_f > a_s */
+                    continue; /* set apart by the test: a_f > a_s */
                 bits[t] += b;
                 total += b;
             }
@@ -477,7 +481,7 @@ static void test_integer(void **state)
 {
     static ref_world w;
     ted4_header h = ref_header();
-    double bits[TED4_TYPES], want[TED4_TYPES] = {0}, rounded[TED4_TYPES];
+    double bits[TED4_TYPES], want[TED4_TYPES] = { 0 }, rounded[TED4_TYPES];
     ted4_arena arena;
     ted4_prior prior;
 
@@ -490,7 +494,7 @@ static void test_integer(void **state)
     for (size_t i = 0; i < w.layout.shape.n_units; i++)
         shift[i] = 11;
     for (size_t i = w.layout.nete; i < w.layout.n_net; i++)
-        w.net[i] = rintf(w.net[i] * 2048.0f) / 2048.0f + 0.0f;  /* no -0 */
+        w.net[i] = rintf(w.net[i] * 2048.0f) / 2048.0f + 0.0f; /* no -0 */
     w.in.quant = TED4_QUANT_ROUND;
     assert_int_equal(ref_run(&w, NULL, rounded), 0);
     float *gradient = ref_floats(w.layout.n_net);
@@ -516,7 +520,7 @@ static void test_integer(void **state)
         assert_true(close_to(bits[t], rounded[t], 0.02, 0.0));
     }
     assert_true(inner > 0.99 * sqrt(a * b) && close_to(a, b, 0.1, 0.0));
-    shift[0] = 21;                              /* R-NET-003 */
+    shift[0] = 21; /* R-NET-003 */
     assert_int_equal(ref_run(&w, NULL, bits), -1);
     ted4_arena_finish(&arena);
     free(gradient);

@@ -1,5 +1,6 @@
-/* test_rate_grad.c - every gradient of train/rate*.c against central differences of the double model of rate_ref.h, residuals held fixed:
- * values, mask logits, weights of hyperprior and slices; at random points and at awkward ones.
+/* test_rate_grad.c - every gradient of train/rate*.c against central differences of the double
+ * model of rate_ref.h, residuals held fixed: values, mask logits, weights of hyperprior and slices;
+ * at random points and at awkward ones.
  * SPDX-License-Identifier: BSD-2-Clause */
 #include <setjmp.h>
 #include <stdarg.h>
@@ -13,10 +14,10 @@ enum { MAX_ANCHORS = 16 };
 
 /* The anchors in use and what is clamped at each of them. */
 typedef struct {
-    ref_model  model;
+    ref_model model;
     ref_anchor anchor[MAX_ANCHORS];
     ref_clamps clamps[MAX_ANCHORS];
-    int        slot[MAX_ANCHORS], lane[MAX_ANCHORS], n, n_clamped, n_open;
+    int slot[MAX_ANCHORS], lane[MAX_ANCHORS], n, n_clamped, n_open;
 } points;
 
 static points pts;
@@ -182,13 +183,14 @@ static void test_variants(void **state)
             h.bank_rows = h.bank_dim = h.deform_width = 0;
         }
         ref_world_make(&w, &h);
-        w.in.activation = which != 3;           /* 3: the static phase */
+        w.in.activation = which != 3; /* 3: the static phase */
         check_all(&w, 3);
         ref_world_finish(&w);
     }
 }
 
-/* Every fourth output pushed out of range, on either side, v too: gradients follow the one-sided rule (annex D.1, traps). */
+/* Every fourth output pushed out of range, on either side, v too: gradients follow the one-sided
+ * rule (annex D.1, traps). */
 static void test_clamped(void **state)
 {
     (void)state;
@@ -212,7 +214,8 @@ static void test_clamped(void **state)
     }
 }
 
-/* Values far out in the tail, some with sigma at its floor: the pull is finite and right (annex D.1, traps). */
+/* Values far out in the tail, some with sigma at its floor: the pull is finite and right (annex
+ * D.1, traps). */
 static void test_outliers(void **state)
 {
     static ref_world w;
@@ -227,8 +230,10 @@ static void test_outliers(void **state)
             *ref_bias(&w, l->shape.first_output[t] + l->shape.dim[t] + c) = -2.0f - (float)(c % 3);
             for (int j = 0; j < TED4_LANES; j++)
                 for (int i = 0; i < REF_SLOTS; i++)
-                    w.attr[i][((size_t)l->first[t] + c) * TED4_LANES + (size_t)j]
-                        *= t == TED4_FEATURE ? 4.0f : j % 2 ? 5.0f : 200.0f;
+                    w.attr[i][((size_t)l->first[t] + c) * TED4_LANES + (size_t)j] *=
+                        t == TED4_FEATURE ? 4.0f
+                        : j % 2           ? 5.0f
+                                          : 200.0f;
         }
     check_all(&w, 1);
     ref_world_finish(&w);
@@ -259,10 +264,8 @@ static void test_all_masked(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_random_points),
-        cmocka_unit_test(test_variants),
-        cmocka_unit_test(test_clamped),
-        cmocka_unit_test(test_outliers),
+        cmocka_unit_test(test_random_points), cmocka_unit_test(test_variants),
+        cmocka_unit_test(test_clamped),       cmocka_unit_test(test_outliers),
         cmocka_unit_test(test_all_masked),
     };
 

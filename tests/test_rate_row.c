@@ -1,5 +1,6 @@
-/* test_rate_row.c - train/rate/rate_row.c: bits and derivatives of single symbols against double arithmetic and against the coder's own tables (spec 9.4),
- * and the tails (annex D.1: outliers need a gradient).
+/* test_rate_row.c - train/rate/rate_row.c: bits and derivatives of single symbols against double
+ * arithmetic and against the coder's own tables (spec 9.4), and the tails (annex D.1: outliers need
+ * a gradient).
  * SPDX-License-Identifier: BSD-2-Clause */
 #include <setjmp.h>
 #include <stdarg.h>
@@ -48,16 +49,17 @@ static void test_row_values(void **state)
             const double ds = (ref_bits(u, s + hs) - ref_bits(u, s - hs)) / (2 * hs);
 
             assert_true(close_to((double)r.bits[j], ref_bits(u, s), 2e-6, 2e-5));
-            if (fabs(fabs(u) - fmin(6.0 * exp2(s), 4095.0) - 2.0) < 1e-2
-                || fabs(s - log2(4095.0 / 6.0)) < 1e-3)
-                continue;                       /* kinks of h and w */
+            if (fabs(fabs(u) - fmin(6.0 * exp2(s), 4095.0) - 2.0) < 1e-2 ||
+                fabs(s - log2(4095.0 / 6.0)) < 1e-3)
+                continue; /* kinks of h and w */
             assert_true(close_to((double)r.d_u[j], du, 2e-4, 2e-5 / exp2(s)));
             assert_true(close_to((double)r.d_s[j], ds, 2e-4, 5e-5));
         }
     }
 }
 
-/* Item 4: far out and farther, bits are finite and grow, and the gradient leads back; in the plateau at 16 bits too. */
+/* Item 4: far out and farther, bits are finite and grow, and the gradient leads back; in the
+ * plateau at 16 bits too. */
 static void test_outliers_have_gradient(void **state)
 {
     static const float distance[] = { 1.4f, 5.5f, 40.0f, 1e3f, 1e5f, 1e8f, 1e20f, 3e38f };
@@ -70,7 +72,7 @@ static void test_outliers_have_gradient(void **state)
             r.s[j] = -4.0f + 0.1f * (float)(j / 2);
             r.u[j] = (j % 2 ? -1.0f : 1.0f) * distance[i];
             if (distance[i] < 1e5f && i > 0)
-                r.u[j] *= exp2f(r.s[j]) + 0.5f / distance[i];   /* sigmas beyond the bin of 0 */
+                r.u[j] *= exp2f(r.s[j]) + 0.5f / distance[i]; /* sigmas beyond the bin of 0 */
         }
         run_row(&r);
         for (int j = 0; j < TED4_LANES; j++) {
@@ -78,7 +80,7 @@ static void test_outliers_have_gradient(void **state)
             assert_true(isfinite(r.d_u[j]) && isfinite(r.d_s[j]));
             assert_true(j % 2 ? r.d_u[j] < 0.0f : r.d_u[j] > 0.0f);
             if (distance[i] < 1e5f)
-                assert_true(r.d_s[j] < 0.0f);   /* a wider sigma is cheaper */
+                assert_true(r.d_s[j] < 0.0f); /* a wider sigma is cheaper */
             if (distance[i] == 1e8f)
                 assert_true(close_to((double)r.bits[j], 17.0 + 2.0 * log2(1e8), 0.0, 1e-3));
         }
@@ -108,8 +110,9 @@ static double model_bits(int32_t mu, unsigned g, int32_t k)
     return (double)r.bits[0];
 }
 
-/* Where symbols are likely, the model is the coder; at the floor and in escapes it is within 3 bits, also beyond sigma 682, where the window is narrower than
- * the distribution, but for the few symbols about its edge, 4095.5 on one side and 4096.5 on the other. */
+/* Where symbols are likely, the model is the coder; at the floor and in escapes it is within 3
+ * bits, also beyond sigma 682, where the window is narrower than the distribution, but for the few
+ * symbols about its edge, 4095.5 on one side and 4096.5 on the other. */
 static void test_row_is_the_coder(void **state)
 {
     (void)state;
@@ -129,7 +132,11 @@ static void test_row_is_the_coder(void **state)
             coded += exp(-0.5 * z * z) * a;
             modelled += exp(-0.5 * z * z) * b;
         }
-        assert_true(close_to(modelled, coded, sigma < 16.0 ? 2e-4 : sigma < 1e3 ? 2e-3 : 6e-3, 1e-4));
+        assert_true(close_to(modelled, coded,
+                             sigma < 16.0  ? 2e-4
+                             : sigma < 1e3 ? 2e-3
+                                           : 6e-3,
+                             1e-4));
     }
 }
 

@@ -1,5 +1,6 @@
-/* test_rate_subset.c - train/step/apply_gradients.c, the rate terms of a step: evaluated on a random share of the blocks, every block as often as any other, in mean worth
- * the gradient of all blocks; lambda weighs the mean bits of a parameter; the same bits for any number of threads.
+/* test_rate_subset.c - train/step/apply_gradients.c, the rate terms of a step: evaluated on a
+ * random share of the blocks, every block as often as any other, in mean worth the gradient of all
+ * blocks; lambda weighs the mean bits of a parameter; the same bits for any number of threads.
  * SPDX-License-Identifier: BSD-2-Clause */
 #include <setjmp.h>
 #include <stdarg.h>
@@ -30,7 +31,8 @@ static void begin(ted4_trainer *t, const ted4_parallel *p)
     assert_int_equal(t->anchors.n_blocks, BLOCKS);
 }
 
-/* Gradients of the rate alone, or on top of d_value on every value, which then reach the step sizes too. */
+/* Gradients of the rate alone, or on top of d_value on every value, which then reach the step sizes
+ * too. */
 static void run(ted4_trainer *t, uint64_t key, double share, float d_value)
 {
     const size_t floats = (size_t)t->layout.n_channels * TED4_LANES;
@@ -46,7 +48,8 @@ static void run(ted4_trainer *t, uint64_t key, double share, float d_value)
         fail_msg("%s", t->message.text);
 }
 
-/* Sum of the gradients of a block's offset masks: bits of offsets times the slope of the sigmoid, 0 for blocks that were not chosen. */
+/* Sum of the gradients of a block's offset masks: bits of offsets times the slope of the sigmoid, 0
+ * for blocks that were not chosen. */
 static double of_masks(const ted4_trainer *t, size_t slot)
 {
     double sum = 0;
@@ -62,7 +65,7 @@ static double of_masks(const ted4_trainer *t, size_t slot)
 static void test_choice(void **state)
 {
     ted4_trainer t;
-    int          often[BLOCKS] = { 0 };
+    int often[BLOCKS] = { 0 };
 
     (void)state;
     begin(&t, NULL);
@@ -88,13 +91,14 @@ static void test_choice(void **state)
 
 /* ---- what it is worth ---- */
 
-/* Rate: lambda times the mean bits of a parameter, absent ones included, over the anchors looked at. All masks are at 1. */
+/* Rate: lambda times the mean bits of a parameter, absent ones included, over the anchors looked
+ * at. All masks are at 1. */
 static void test_weight(void **state)
 {
     static const double shares[] = { SHARE, 1 };
     const double slope = 1 / (1 + exp(-1.0)) * (1 - 1 / (1 + exp(-1.0)));
     ted4_trainer t;
-    double       params = 0;
+    double params = 0;
 
     (void)state;
     begin(&t, NULL);
@@ -106,9 +110,10 @@ static void test_weight(void **state)
         run(&t, 5, shares[k], 0);
         for (size_t i = 0; i < BLOCKS; i++)
             sum += of_masks(&t, i);
-        bits = t.progress.bits[TED4_OFFSET] / 0.02;      /* an anchor; a running mean's first step */
+        bits = t.progress.bits[TED4_OFFSET] / 0.02; /* an anchor; a running mean's first step */
         if (!(bits > 5 && fabs(sum - t.opt.lambda * slope * bits / params) < 1e-4 * sum))
-            fail_msg("share %g: %g for %g bits an anchor of %g parameters", shares[k], sum, bits, params);
+            fail_msg("share %g: %g for %g bits an anchor of %g parameters", shares[k], sum, bits,
+                     params);
     }
     ted4_trainer_finish(&t);
 }
@@ -121,7 +126,7 @@ static void test_lambda(void **state)
     (void)state;
     begin(&t, NULL);
     const size_t n = t.layout.n_net;
-    float       *once = malloc(n * sizeof *once);
+    float *once = malloc(n * sizeof *once);
 
     assert_non_null(once);
     run(&t, 9, SHARE, 0);
@@ -134,14 +139,15 @@ static void test_lambda(void **state)
     ted4_trainer_finish(&t);
 }
 
-/* How the sum over keys of a share's gradient compares with that of all blocks: least squares' factor, over the biases that give the step sizes. */
+/* How the sum over keys of a share's gradient compares with that of all blocks: least squares'
+ * factor, over the biases that give the step sizes. */
 static double factor(ted4_trainer *t, float d_value)
 {
     const ted4_shape *s = &t->layout.shape;
-    const int         last = s->hyper.n_layers - 1;
-    size_t            at = t->layout.nete + s->hyper.first;
-    double            product = 0, square = 0;
-    float             all[TED4_TYPES];
+    const int last = s->hyper.n_layers - 1;
+    size_t at = t->layout.nete + s->hyper.first;
+    double product = 0, square = 0;
+    float all[TED4_TYPES];
 
     for (int i = 0; i < last; i++)
         at += ((size_t)s->hyper.dim[i] + 1) * s->hyper.dim[i + 1];
@@ -181,7 +187,7 @@ static void test_mean(void **state)
 static void test_threads(void **state)
 {
     ted4_parallel how[3] = { { odd_backwards, NULL }, { odd_threads, NULL } };
-    ted4_trainer  alone, t;
+    ted4_trainer alone, t;
 
     (void)state;
     ted4_threads_init(&how[2], 2);
@@ -192,8 +198,10 @@ static void test_threads(void **state)
 
         begin(&t, &how[i]);
         run(&t, 3, 0.6, 0.5f);
-        assert_memory_equal(t.net_gradient, alone.net_gradient, t.layout.n_net * sizeof *t.net_gradient);
-        assert_memory_equal(t.slots.gradients, alone.slots.gradients, BLOCKS * floats * sizeof(float));
+        assert_memory_equal(t.net_gradient, alone.net_gradient,
+                            t.layout.n_net * sizeof *t.net_gradient);
+        assert_memory_equal(t.slots.gradients, alone.slots.gradients,
+                            BLOCKS * floats * sizeof(float));
         assert_memory_equal(t.slots.block, alone.slots.block, BLOCKS * sizeof *t.slots.block);
         assert_memory_equal(t.anchors.data[TED4_ROW_STEP], alone.anchors.data[TED4_ROW_STEP],
                             BLOCKS * TED4_TYPES * TED4_LANES * sizeof(float));
@@ -207,10 +215,8 @@ static void test_threads(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_choice),
-        cmocka_unit_test(test_weight),
-        cmocka_unit_test(test_lambda),
-        cmocka_unit_test(test_mean),
+        cmocka_unit_test(test_choice),  cmocka_unit_test(test_weight),
+        cmocka_unit_test(test_lambda),  cmocka_unit_test(test_mean),
         cmocka_unit_test(test_threads),
     };
 

@@ -1,5 +1,5 @@
-/* test_recon.c - spec 11, 12.2, 15.3: reconstruction against recon_ref.h, bit for bit, in every variant of the header; against doubles;
- * any threads, any order of queries, any memory.
+/* test_recon.c - spec 11, 12.2, 15.3: reconstruction against recon_ref.h, bit for bit, in every
+ * variant of the header; against doubles; any threads, any order of queries, any memory.
  * SPDX-License-Identifier: BSD-2-Clause */
 #include <setjmp.h>
 #include <stdarg.h>
@@ -74,10 +74,18 @@ static void assert_near(const ted4_gaussians *g, size_t n)
 
 static ted4_header base_header(void)
 {
-    ted4_header h = { .n_anchors = 75, .tile_size = 64, .n_offsets = 3, .feature_dim = 6,
-                      .prior = TED4_PRIOR_FACTORISED, .n_slices = 1, .slice = { 6 },
-                      .frames = 8, .rate_num = 30, .rate_den = 1,
-                      .origin = { 1.5f, -20.25f, 0.3f }, .exponent = 2 };
+    ted4_header h = { .n_anchors = 75,
+                      .tile_size = 64,
+                      .n_offsets = 3,
+                      .feature_dim = 6,
+                      .prior = TED4_PRIOR_FACTORISED,
+                      .n_slices = 1,
+                      .slice = { 6 },
+                      .frames = 8,
+                      .rate_num = 30,
+                      .rate_den = 1,
+                      .origin = { 1.5f, -20.25f, 0.3f },
+                      .exponent = 2 };
     return h;
 }
 
@@ -354,7 +362,8 @@ static void a_good_query_may_follow_a_bad_one(void **state)
     scene_finish(&s);
 }
 
-/* A camera on an anchor has no direction: (0, 0, 1). Covariance weights of 0 have no rotation: (1, 0, 0, 0). */
+/* A camera on an anchor has no direction: (0, 0, 1). Covariance weights of 0 have no rotation: (1,
+ * 0, 0, 0). */
 static void directions_and_rotations_of_no_length(void **state)
 {
     ted4_header h = base_header();
@@ -384,9 +393,15 @@ static void directions_and_rotations_of_no_length(void **state)
 
 static void times_out_of_range_are_refused(void **state)
 {
-    static const struct { uint32_t num, den; ted4_status want; } cases[] = {
-        { 0, 0, TED4_E_QUERY }, { 2, 1, TED4_E_QUERY }, { 0, 1u << 24, TED4_E_QUERY },
-        { 0, UINT32_MAX, TED4_E_QUERY }, { (1u << 24) - 1, (1u << 24) - 1, TED4_OK },
+    static const struct {
+        uint32_t num, den;
+        ted4_status want;
+    } cases[] = {
+        { 0, 0, TED4_E_QUERY },
+        { 2, 1, TED4_E_QUERY },
+        { 0, 1u << 24, TED4_E_QUERY },
+        { 0, UINT32_MAX, TED4_E_QUERY },
+        { (1u << 24) - 1, (1u << 24) - 1, TED4_OK },
         { 1, 1, TED4_OK },
     };
     const ted4_header h = base_header();
@@ -440,7 +455,7 @@ static void memory_that_runs_out_is_given_back(void **state)
         const ted4_options o = { .allocator = { count_alloc, count_free, &c } };
         ted4_recon *r;
 
-        c = (counter){ n, 0 };
+        c = (counter) { n, 0 };
         last = ted4_recon_new(&r, &s, &o);
         assert_true(last == TED4_OK || (last == TED4_E_LIMIT_MEMORY && r == NULL));
         ted4_recon_free(r);

@@ -14,26 +14,41 @@
 enum { MAX_CHUNKS = 16, MAX_PAYLOAD = 1 << 17 };
 
 typedef struct {
-    char     type[5];
+    char type[5];
     uint32_t flags, size;
-    uint8_t  payload[MAX_PAYLOAD];
+    uint8_t payload[MAX_PAYLOAD];
 } chunk;
 
 /* A file taken apart, to be changed and put together again with right sizes and hashes. */
 static struct {
     uint8_t header[12];
-    chunk   chunk[MAX_CHUNKS];
-    int     n;
+    chunk chunk[MAX_CHUNKS];
+    int n;
 } pristine, f;
 
 enum { HEAD, NETE, NETR, BANK, POSN, TILE0, TILE1, ENDS };
 
 /* Offsets in the HEAD payload (spec 6.1) of a file with two slices. */
-enum { N_ANCHORS = 0, TILE_SIZE = 4, N_OFFSETS = 8, FEATURE_DIM = 9,
-       MOTION = 10, PHI_DIM = 11, BANK_ROWS = 12, TEMPORAL_MASK = 21,
-       HYPER_LAYERS = 31, N_SLICES = 34, SLICE = 35, AR_WIDTH = 37,
-       CONTEXT_BITS = 39, STEP = 40, FRAMES = 60, ORIGIN = 72, EXPONENT = 84,
-       RESERVED = 88 };
+enum {
+    N_ANCHORS = 0,
+    TILE_SIZE = 4,
+    N_OFFSETS = 8,
+    FEATURE_DIM = 9,
+    MOTION = 10,
+    PHI_DIM = 11,
+    BANK_ROWS = 12,
+    TEMPORAL_MASK = 21,
+    HYPER_LAYERS = 31,
+    N_SLICES = 34,
+    SLICE = 35,
+    AR_WIDTH = 37,
+    CONTEXT_BITS = 39,
+    STEP = 40,
+    FRAMES = 60,
+    ORIGIN = 72,
+    EXPONENT = 84,
+    RESERVED = 88
+};
 
 static void take_apart(const uint8_t *d, size_t size)
 {
@@ -53,16 +68,16 @@ static void take_apart(const uint8_t *d, size_t size)
 
 static int setup(void **state)
 {
-    random_source     r = random_seed(77);
+    random_source r = random_seed(77);
     const ted4_header h = random_small_header(100);
-    ted4_scene       *s = random_scene_of(&r, &h, 1);
-    uint8_t          *d;
-    size_t            size;
+    ted4_scene *s = random_scene_of(&r, &h, 1);
+    uint8_t *d;
+    size_t size;
 
     (void)state;
     s->nete.mode = s->netr.mode = TED4_BLOB_RAW;
     for (size_t i = 0; i < s->bank.n; i++)
-        s->bank.values[i] = 0.5f;       /* deflates well */
+        s->bank.values[i] = 0.5f; /* deflates well */
     if (ted4_encode(s, 0, NULL, &d, &size, NULL) != TED4_OK)
         return -1;
     take_apart(d, size);
@@ -94,8 +109,7 @@ static size_t put_together(uint8_t *d)
         ted4_store32(d + at + 4, c->flags);
         ted4_store32(d + at + 8, c->size);
         memcpy(d + at + 12, c->payload, c->size);
-        ted4_store64(d + at + 12 + c->size,
-                     XXH3_64bits(d + at, 12 + c->size));
+        ted4_store64(d + at + 12 + c->size, XXH3_64bits(d + at, 12 + c->size));
         at += 20 + c->size;
     }
     return at;
@@ -106,7 +120,7 @@ static uint8_t bytes[MAX_CHUNKS * MAX_PAYLOAD / 4];
 static void expect_bytes(size_t size, const char *id, size_t offset)
 {
     ted4_scene *s;
-    ted4_error  e;
+    ted4_error e;
 
     (void)ted4_decode(bytes, size, NULL, &s, &e);
     assert_string_equal(ted4_status_id(e.code), id);
@@ -135,8 +149,7 @@ static void set(int number, size_t byte, unsigned width, uint32_t value)
         f.chunk[number].payload[byte + i] = (uint8_t)(value >> 8 * i);
 }
 
-static void expect_set(int number, size_t byte, unsigned width,
-                       uint32_t value, const char *id)
+static void expect_set(int number, size_t byte, unsigned width, uint32_t value, const char *id)
 {
     const size_t offset = at(number, byte);
 
@@ -146,14 +159,12 @@ static void expect_set(int number, size_t byte, unsigned width,
 
 static void drop_chunk(int number)
 {
-    memmove(&f.chunk[number], &f.chunk[number + 1],
-            (size_t)(--f.n - number) * sizeof f.chunk[0]);
+    memmove(&f.chunk[number], &f.chunk[number + 1], (size_t)(--f.n - number) * sizeof f.chunk[0]);
 }
 
 static void insert_chunk(int number, const char *type, uint32_t flags)
 {
-    memmove(&f.chunk[number + 1], &f.chunk[number],
-            (size_t)(f.n++ - number) * sizeof f.chunk[0]);
+    memmove(&f.chunk[number + 1], &f.chunk[number], (size_t)(f.n++ - number) * sizeof f.chunk[0]);
     strcpy(f.chunk[number].type, type);
     f.chunk[number].flags = flags;
     f.chunk[number].size = 3;
@@ -167,7 +178,7 @@ static void file_header(void **state)
     expect("con.magic", 0);
     f.header[8] = 2;
     expect("con.version", 8);
-    f.header[9] = 200;                  /* a later minor version */
+    f.header[9] = 200; /* a later minor version */
     expect("ok", 0);
     f.header[10] = 1;
     expect("unsupported.profile", 10);
@@ -179,7 +190,7 @@ static void file_header(void **state)
 static void nothing(void **state)
 {
     ted4_scene *s;
-    ted4_error  e;
+    ted4_error e;
 
     (void)state;
     assert_int_equal(ted4_decode(NULL, 0, NULL, &s, &e), TED4_E_CON_TRUNCATED);
@@ -244,10 +255,10 @@ static void order(void **state)
 static void needless_bank(void **state)
 {
     random_source r = random_seed(5);
-    ted4_header   h = random_small_header(100);
-    ted4_scene   *s;
-    uint8_t      *d;
-    size_t        size;
+    ted4_header h = random_small_header(100);
+    ted4_scene *s;
+    uint8_t *d;
+    size_t size;
 
     (void)state;
     h.motion = TED4_MOTION_INR;
@@ -267,8 +278,8 @@ static void payload_sizes(void **state)
 {
     static const size_t first_array[] = { 0, 0, 1, 1, 0, 0, 0, 0 };
     const ted4_header h = random_small_header(100);
-    ted4_shape        shape;
-    size_t            units;
+    ted4_shape shape;
+    size_t units;
 
     (void)state;
     ted4_shape_make(&shape, &h);
@@ -278,8 +289,8 @@ static void payload_sizes(void **state)
 
         f.chunk[i].payload[f.chunk[i].size++] = 0;
         if (i == TILE0 || i == TILE1)
-            end = at(i, 4 + 2 + 12);    /* size[] */
-        if (i == BANK)                  /* deflated */
+            end = at(i, 4 + 2 + 12); /* size[] */
+        if (i == BANK)               /* deflated */
             expect("net.deflate", at(i, 1));
         else
             expect("con.payload-size", end);
@@ -331,19 +342,19 @@ static void header_values(void **state)
     expect_set(HEAD, ORIGIN + 4, 4, 0x80000000, "hdr.range");
     expect_set(HEAD, ORIGIN + 8, 4, 0x7f800000, "hdr.range");
     expect_set(HEAD, EXPONENT, 1, 31, "hdr.range");
-    expect_set(HEAD, EXPONENT, 1, 0xe1, "hdr.range");   /* -31 */
+    expect_set(HEAD, EXPONENT, 1, 0xe1, "hdr.range"); /* -31 */
     expect_set(HEAD, EXPONENT, 1, 0xe2, "ok");
     expect_set(HEAD, RESERVED, 1, 1, "hdr.range");
-    set(HEAD, 19, 2, 512);              /* a wide F_deform: too many values for level 1 */
+    set(HEAD, 19, 2, 512); /* a wide F_deform: too many values for level 1 */
     set(HEAD, 18, 1, 8);
     expect("lvl.exceeded", at(HEAD, RESERVED));
 }
 
 static void networks(void **state)
 {
-    ted4_shape     s;
+    ted4_shape s;
     const ted4_header h = random_small_header(100);
-    size_t         mode, w;
+    size_t mode, w;
 
     (void)state;
     ted4_shape_make(&s, &h);
@@ -361,7 +372,7 @@ static void networks(void **state)
     set(NETE, w + 80, 4, 0x7f800000);
     expect_set(NETE, w + 40, 4, 0x7f000000, "net.weight-range");
     expect_set(NETE, w + 4 * 8 * (size_t)s.hyper.dim[0], 4, 0x7f000000,
-               "net.accumulator");      /* first bias */
+               "net.accumulator"); /* first bias */
     expect_set(NETR, 0, 1, 3, "net.mode");
     expect_set(NETR, 1 + 400, 4, 0xff800000, "net.value");
     set(BANK, 0, 1, 0);
@@ -383,26 +394,26 @@ static void deflated(void **state)
     uint8_t raw[84] = { 0 };
 
     (void)state;
-    repack(raw, 80, 9);                 /* 20 zeros: legal, another bank */
+    repack(raw, 80, 9); /* 20 zeros: legal, another bank */
     expect("ok", 0);
     repack(raw, 84, 9);
     expect("net.deflate", at(BANK, 1));
     repack(raw, 76, 9);
     expect("net.deflate", at(BANK, 1));
-    repack(raw, 80, 0);                 /* stored: not shorter */
+    repack(raw, 80, 0); /* stored: not shorter */
     expect("net.deflate", at(BANK, 1));
     repack(raw, 80, 9);
     f.chunk[BANK].payload[f.chunk[BANK].size++] = 0;
     expect("net.deflate", at(BANK, 1));
     repack(raw, 80, 9);
-    f.chunk[BANK].payload[2] |= 0x20;   /* FDICT */
+    f.chunk[BANK].payload[2] |= 0x20; /* FDICT */
     expect("net.deflate", at(BANK, 1));
     repack(raw, 80, 9);
-    f.chunk[BANK].payload[f.chunk[BANK].size - 1] ^= 1;     /* Adler-32 */
+    f.chunk[BANK].payload[f.chunk[BANK].size - 1] ^= 1; /* Adler-32 */
     expect("net.deflate", at(BANK, 1));
     f.chunk[BANK].size = 1;
     expect("net.deflate", at(BANK, 1));
-    raw[60] = 0x80;                     /* sign of value 0 */
+    raw[60] = 0x80; /* sign of value 0 */
     repack(raw, 80, 9);
     expect("net.value", at(BANK, 1));
 }
@@ -417,15 +428,16 @@ static void positions(void **state)
     expect_set(POSN, 14, 2, 0xbc01, "pos.range");
     memcpy(f.chunk[POSN].payload + 60, f.chunk[POSN].payload + 54, 6);
     expect("pos.order", at(POSN, 60));
-    set(POSN, 60, 2, 0xbc00);           /* smaller than what precedes it */
+    set(POSN, 60, 2, 0xbc00); /* smaller than what precedes it */
     set(POSN, 62, 2, 0xbc00);
-    set(POSN, 64, 2, 0x3c01);           /* but it is not judged: this one is wrong first */
+    set(POSN, 64, 2, 0x3c01); /* but it is not judged: this one is wrong first */
     expect("pos.range", at(POSN, 64));
 }
 
 static void tiles(void **state)
 {
-    /* tile_index, dynamic_prob, offset_prob[6], size[7]: masks, two slices, scaling, offset, phi, tau */
+    /* tile_index, dynamic_prob, offset_prob[6], size[7]: masks, two slices, scaling, offset, phi,
+     * tau */
     const size_t sizes = 4 + 2 + 12, body = sizes + 28;
     const uint32_t first = ted4_load32(f.chunk[TILE1].payload + sizes);
     const uint32_t second = ted4_load32(f.chunk[TILE1].payload + sizes + 4);
@@ -435,7 +447,7 @@ static void tiles(void **state)
     expect_set(TILE0, 4, 2, 0, "ent.prob");
     expect_set(TILE0, 16, 2, 0, "ent.prob");
     expect_set(TILE1, sizes, 4, first + 1, "con.payload-size");
-    set(TILE1, sizes, 4, first - 1);    /* same sum, impossible parts */
+    set(TILE1, sizes, 4, first - 1); /* same sum, impossible parts */
     set(TILE1, sizes + 4, 4, second + 1);
     expect("ent.size", at(TILE1, body));
     set(TILE1, body, 4, 65535);
@@ -462,21 +474,19 @@ static void hashes(void **state)
 /* Bytes of a tile that breaks R-ATT-001: the writing walk has made them before it judges them. */
 static void tau_order(void **state)
 {
-    random_source     r = random_seed(77);
+    random_source r = random_seed(77);
     const ted4_header h = random_small_header(100);
-    ted4_scene       *s = random_scene_of(&r, &h, 1);
-    ted4_draft        d;
-    ted4_writer       w;
-    void             *work = aligned_alloc(64, 64 * ((ted4_tile_work_size(s)
-                                                      + 63) / 64));
-    uint32_t          before = 0;
+    ted4_scene *s = random_scene_of(&r, &h, 1);
+    ted4_draft d;
+    ted4_writer w;
+    void *work = aligned_alloc(64, 64 * ((ted4_tile_work_size(s) + 63) / 64));
+    uint32_t before = 0;
 
     (void)state;
-    s->symbol[TED4_TAU][70] = 5;        /* an anchor of the second tile */
+    s->symbol[TED4_TAU][70] = 5; /* an anchor of the second tile */
     s->symbol[TED4_TAU][270] = 4;
     assert_int_equal(ted4_draft_init(&d, s), TED4_OK);
-    assert_int_equal(ted4_prior_load(&d.prior, s->nete.values, s->shift, NULL),
-                     TED4_OK);
+    assert_int_equal(ted4_prior_load(&d.prior, s->nete.values, s->shift, NULL), TED4_OK);
     ted4_writer_init(&w);
     ted4_walk_tile(&w.base, &d.s, &d.prior, 1, work);
     assert_int_equal(w.base.error.code, TED4_E_ATT_TAU_ORDER);
@@ -494,17 +504,12 @@ static void tau_order(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(file_header),
-        cmocka_unit_test(nothing), cmocka_unit_test(frames),
-        cmocka_unit_test(order),
-        cmocka_unit_test(needless_bank),
-        cmocka_unit_test(payload_sizes),
-        cmocka_unit_test(header_values),
-        cmocka_unit_test(networks),
-        cmocka_unit_test(deflated),
-        cmocka_unit_test(positions),
-        cmocka_unit_test(tiles),
-        cmocka_unit_test(hashes),
+        cmocka_unit_test(file_header),   cmocka_unit_test(nothing),
+        cmocka_unit_test(frames),        cmocka_unit_test(order),
+        cmocka_unit_test(needless_bank), cmocka_unit_test(payload_sizes),
+        cmocka_unit_test(header_values), cmocka_unit_test(networks),
+        cmocka_unit_test(deflated),      cmocka_unit_test(positions),
+        cmocka_unit_test(tiles),         cmocka_unit_test(hashes),
         cmocka_unit_test(tau_order),
     };
 

@@ -1,7 +1,8 @@
-/* test_resources.c - spec 13.3, 13.4: what the decoder takes and does, counted, for every vector of the suite (bombs among them), for random headers, and for
- * scenes of few and of many tiles: memory within M_E and within what the bytes have paid for (R-LVL-005), work within a constant times W_E, for queries
- * W_R; and under max_work next to none before a file is refused, exactly when W_E is larger (R-LVL-008).
- * The functions that do the work are wrapped by the linker (strict.mk).
+/* test_resources.c - spec 13.3, 13.4: what the decoder takes and does, counted, for every vector of
+ * the suite (bombs among them), for random headers, and for scenes of few and of many tiles: memory
+ * within M_E and within what the bytes have paid for (R-LVL-005), work within a constant times W_E,
+ * for queries W_R; and under max_work next to none before a file is refused, exactly when W_E is
+ * larger (R-LVL-008). The functions that do the work are wrapped by the linker (strict.mk).
  * SPDX-License-Identifier: BSD-2-Clause */
 #include <setjmp.h>
 #include <stdarg.h>
@@ -24,8 +25,9 @@ enum { N_SCENES = 40, FEW_VECTORS = 500 };
 /* Networks are evaluated for 32 anchors at once, however few there are. */
 enum { WORK_CONSTANT = 32 };
 
-/* A stream pays for memory by its bytes: at most 76 for each byte of POSN (6 an anchor, of which 2 C + 16 are kept and as many worked on), 4128 for each of a
- * zlib stream (1032 values a 4 bytes, 16 bytes each); the rest is head room. */
+/* A stream pays for memory by its bytes: at most 76 for each byte of POSN (6 an anchor, of which 2
+ * C + 16 are kept and as many worked on), 4128 for each of a zlib stream (1032 values a 4 bytes, 16
+ * bytes each); the rest is head room. */
 static const uint64_t free_bytes = (uint64_t)1 << 20, paid_by_byte = 8192;
 
 /* ---- work, counted ---- */
@@ -34,8 +36,8 @@ static uint64_t work;
 
 XXH64_hash_t __real_XXH3_64bits(const void *data, size_t size);
 XXH64_hash_t __wrap_XXH3_64bits(const void *data, size_t size);
-int          __real_inflate(z_streamp z, int flush);
-int          __wrap_inflate(z_streamp z, int flush);
+int __real_inflate(z_streamp z, int flush);
+int __wrap_inflate(z_streamp z, int flush);
 void __real_ted4_prior_hyper_hidden(const ted4_prior *p, const uint16_t *position, size_t n,
                                     int16_t *hidden);
 void __wrap_ted4_prior_hyper_hidden(const ted4_prior *p, const uint16_t *position, size_t n,
@@ -44,13 +46,17 @@ void __real_ted4_prior_hyper_some(const ted4_prior *p, const ted4_int_layer *l, 
                                   size_t n, int32_t *out);
 void __wrap_ted4_prior_hyper_some(const ted4_prior *p, const ted4_int_layer *l, const int16_t *x,
                                   size_t n, int32_t *out);
-void         __real_ted4_prior_slice(const ted4_prior *p, unsigned m, const int16_t *ctx, size_t n, int32_t *out);
-void         __wrap_ted4_prior_slice(const ted4_prior *p, unsigned m, const int16_t *ctx, size_t n, int32_t *out);
-uint32_t     __real_ted4_gauss_find(unsigned g, int32_t fr, uint32_t slot, ted4_slots *slots);
-uint32_t     __wrap_ted4_gauss_find(unsigned g, int32_t fr, uint32_t slot, ted4_slots *slots);
+void __real_ted4_prior_slice(const ted4_prior *p, unsigned m, const int16_t *ctx, size_t n,
+                             int32_t *out);
+void __wrap_ted4_prior_slice(const ted4_prior *p, unsigned m, const int16_t *ctx, size_t n,
+                             int32_t *out);
+uint32_t __real_ted4_gauss_find(unsigned g, int32_t fr, uint32_t slot, ted4_slots *slots);
+uint32_t __wrap_ted4_gauss_find(unsigned g, int32_t fr, uint32_t slot, ted4_slots *slots);
 ted4_strict_dense_fn __wrap_ted4_select_strict_dense(void);
-ted4_status  __real_ted4_prior_load(ted4_prior *p, const float *nete, const uint8_t *shift, ted4_error *e);
-ted4_status  __wrap_ted4_prior_load(ted4_prior *p, const float *nete, const uint8_t *shift, ted4_error *e);
+ted4_status __real_ted4_prior_load(ted4_prior *p, const float *nete, const uint8_t *shift,
+                                   ted4_error *e);
+ted4_status __wrap_ted4_prior_load(ted4_prior *p, const float *nete, const uint8_t *shift,
+                                   ted4_error *e);
 
 XXH64_hash_t __wrap_XXH3_64bits(const void *data, size_t size)
 {
@@ -61,7 +67,7 @@ XXH64_hash_t __wrap_XXH3_64bits(const void *data, size_t size)
 int __wrap_inflate(z_streamp z, int flush)
 {
     const unsigned long before = z->total_out;
-    const int           verdict = __real_inflate(z, flush);
+    const int verdict = __real_inflate(z, flush);
 
     work += z->total_out - before;
     return verdict;
@@ -99,7 +105,8 @@ void __wrap_ted4_prior_hyper_some(const ted4_prior *p, const ted4_int_layer *l, 
     __real_ted4_prior_hyper_some(p, l, x, n, out);
 }
 
-void __wrap_ted4_prior_slice(const ted4_prior *p, unsigned m, const int16_t *ctx, size_t n, int32_t *out)
+void __wrap_ted4_prior_slice(const ted4_prior *p, unsigned m, const int16_t *ctx, size_t n,
+                             int32_t *out)
 {
     work += columns(n) * products_of(&p->slice_shape[m]);
     __real_ted4_prior_slice(p, m, ctx, n, out);
@@ -124,7 +131,8 @@ ted4_strict_dense_fn __wrap_ted4_select_strict_dense(void)
 }
 
 /* Every value is looked at. */
-ted4_status __wrap_ted4_prior_load(ted4_prior *p, const float *nete, const uint8_t *shift, ted4_error *e)
+ted4_status __wrap_ted4_prior_load(ted4_prior *p, const float *nete, const uint8_t *shift,
+                                   ted4_error *e)
 {
     work += products_of(&p->hyper_shape);
     for (unsigned m = 1; m < p->n_slices; m++)
@@ -137,9 +145,9 @@ ted4_status __wrap_ted4_prior_load(ted4_prior *p, const float *nete, const uint8
 /* HEAD of a file whose frames begin well. 1, or 0: nothing follows from it. */
 static int head_of(const uint8_t *data, size_t size, ted4_header *h, ted4_shape *shape)
 {
-    ted4_reader      r;
+    ted4_reader r;
     ted4_chunk_place p;
-    int              before = -1;
+    int before = -1;
 
     memset(h, 0, sizeof *h);
     ted4_reader_init(&r, data, 0, size, 1);
@@ -163,14 +171,16 @@ static uint64_t memory_bound(const ted4_header *h, const ted4_shape *s, uint64_t
     const uint64_t n = h->n_anchors, tile = h->tile_size, c = ted4_count_symbols(h, s) / n;
     const uint64_t n_t = ((tile < n ? tile : n) + 63) / 64 * 64;
 
-    return ((uint64_t)1 << 20) + b + 16 * values(s) + n * (2 * c + 16)
-         + n_t * (4 * (uint64_t)s->n_outputs + 2 * (uint64_t)h->feature_dim + 11) + ((uint64_t)1 << 17);
+    return ((uint64_t)1 << 20) + b + 16 * values(s) + n * (2 * c + 16) +
+           n_t * (4 * (uint64_t)s->n_outputs + 2 * (uint64_t)h->feature_dim + 11) +
+           ((uint64_t)1 << 17);
 }
 
 /* W_E of 13.4 */
 static uint64_t work_bound(const ted4_header *h, const ted4_shape *s, uint64_t b)
 {
-    const uint64_t n = h->n_anchors, symbols = ted4_count_symbols(h, s) + n * (h->n_offsets + (uint64_t)1);
+    const uint64_t n = h->n_anchors,
+                   symbols = ted4_count_symbols(h, s) + n * (h->n_offsets + (uint64_t)1);
 
     return b + 4 * values(s) + n * (ted4_count_products(h, s) + s->n_outputs) + symbols;
 }
@@ -179,7 +189,7 @@ static uint64_t work_bound(const ted4_header *h, const ted4_shape *s, uint64_t b
 static uint64_t query_bound(const ted4_scene *s)
 {
     ted4_info info;
-    uint64_t  products = 0;
+    uint64_t products = 0;
 
     ted4_scene_info(s, &info);
     for (int i = 0; i < TED4_NETS_R; i++)
@@ -191,8 +201,8 @@ static uint64_t query_bound(const ted4_scene *s)
 static uint64_t hold_query(const ted4_scene *s, const char *name)
 {
     static const ted4_query q = { 1, 2, { 0, 0, 0 } };
-    ted4_options   o = { .max_work = query_bound(s) };
-    ted4_recon    *r;
+    ted4_options o = { .max_work = query_bound(s) };
+    ted4_recon *r;
     ted4_gaussians g;
 
     work = 0;
@@ -208,35 +218,37 @@ static uint64_t hold_query(const ted4_scene *s, const char *name)
 }
 
 /* A file that asks for one step more than it may: only pass 1 and HEAD have been looked at. */
-static void hold_refused(const uint8_t *data, size_t size, uint64_t bound, ted4_status verdict, const char *name)
+static void hold_refused(const uint8_t *data, size_t size, uint64_t bound, ted4_status verdict,
+                         const char *name)
 {
     counting_memory memory = { 0 };
-    ted4_options    o = { .allocator = counting_allocator(&memory), .max_work = bound };
-    ted4_scene     *s;
+    ted4_options o = { .allocator = counting_allocator(&memory), .max_work = bound };
+    ted4_scene *s;
 
     if (verdict == TED4_OK) {
         assert_int_equal(ted4_decode(data, size, &o, &s, NULL), TED4_OK);
         ted4_scene_free(s);
     }
     o.max_work--;
-    memory = (counting_memory){ 0 };
+    memory = (counting_memory) { 0 };
     work = 0;
     if (ted4_decode(data, size, &o, &s, NULL) != TED4_E_LIMIT_WORK && verdict == TED4_OK)
         fail_msg("%s: not refused", name);
     if (work > size || memory.most > 1 << 16 || memory.held > 0)
-        fail_msg("%s: %zu steps, %zu bytes of what is refused", name, (size_t)work, (size_t)memory.most);
+        fail_msg("%s: %zu steps, %zu bytes of what is refused", name, (size_t)work,
+                 (size_t)memory.most);
 }
 
 static void hold(const uint8_t *data, size_t size, const char *name)
 {
     counting_memory memory = { 0 };
-    ted4_options    o = { .allocator = counting_allocator(&memory), .max_bytes = UINT64_MAX };
-    ted4_header     h;
-    ted4_shape      shape;
-    ted4_scene     *s;
-    const int       known = head_of(data, size, &h, &shape);
-    ted4_status     verdict;
-    uint64_t        did;
+    ted4_options o = { .allocator = counting_allocator(&memory), .max_bytes = UINT64_MAX };
+    ted4_header h;
+    ted4_shape shape;
+    ted4_scene *s;
+    const int known = head_of(data, size, &h, &shape);
+    ted4_status verdict;
+    uint64_t did;
 
     work = 0;
     verdict = ted4_decode(data, size, &o, &s, NULL);
@@ -244,7 +256,8 @@ static void hold(const uint8_t *data, size_t size, const char *name)
     if (verdict == TED4_OK)
         (void)hold_query(s, name);
     ted4_scene_free(s);
-    if (memory.most > free_bytes + paid_by_byte * size || (known && memory.most > memory_bound(&h, &shape, size)))
+    if (memory.most > free_bytes + paid_by_byte * size ||
+        (known && memory.most > memory_bound(&h, &shape, size)))
         fail_msg("%s: %zu bytes of memory", name, (size_t)memory.most);
     if (known ? did > WORK_CONSTANT * work_bound(&h, &shape, size) : did > size)
         fail_msg("%s: %zu steps", name, (size_t)did);
@@ -264,7 +277,7 @@ static void vectors(void **state)
 static void hold_scene(const ted4_scene *s, const char *name)
 {
     uint8_t *data;
-    size_t   size;
+    size_t size;
 
     assert_int_equal(ted4_encode(s, 0, NULL, &data, &size, NULL), TED4_OK);
     hold(data, size, name);
@@ -276,7 +289,7 @@ static void random_headers(void **state)
     (void)state;
     for (uint64_t seed = 0; seed < N_SCENES; seed++) {
         ted4_scene *s = random_scene(seed);
-        char        name[32];
+        char name[32];
 
         snprintf(name, sizeof name, "scene %d", (int)seed);
         hold_scene(s, name);
@@ -284,15 +297,16 @@ static void random_headers(void **state)
     }
 }
 
-/* Work is what the formula says, not only less than 32 times that: of a scene of whole groups each anchor is evaluated once. */
+/* Work is what the formula says, not only less than 32 times that: of a scene of whole groups each
+ * anchor is evaluated once. */
 static void tight(void **state)
 {
     random_source r = random_seed(21);
-    ted4_header   h = random_paper_header(2048), back;
-    ted4_shape    shape;
-    ted4_scene   *s, *decoded;
-    uint8_t      *data;
-    size_t        size;
+    ted4_header h = random_paper_header(2048), back;
+    ted4_shape shape;
+    ted4_scene *s, *decoded;
+    uint8_t *data;
+    size_t size;
 
     (void)state;
     h.tile_size = 256;
@@ -308,7 +322,8 @@ static void tight(void **state)
     free(data);
 }
 
-/* The file with only the first keep bytes of the payload of its chunk of that type, whose hash is right. Gives its size. */
+/* The file with only the first keep bytes of the payload of its chunk of that type, whose hash is
+ * right. Gives its size. */
 static size_t shorten(uint8_t *data, size_t size, const char *type, size_t keep)
 {
     size_t at = 12;
@@ -327,34 +342,38 @@ static size_t shorten(uint8_t *data, size_t size, const char *type, size_t keep)
 /* Memory that a file takes of whose chunk of that type only keep bytes are there. */
 static uint64_t memory_of(const uint8_t *file, size_t size, const char *type, size_t keep)
 {
-    counting_memory    memory = { 0 };
+    counting_memory memory = { 0 };
     const ted4_options o = { .allocator = counting_allocator(&memory) };
-    uint8_t *const     data = malloc(size);
-    ted4_scene        *s;
+    uint8_t *const data = malloc(size);
+    ted4_scene *s;
 
     assert_non_null(data);
     memcpy(data, file, size);
-    assert_int_equal(ted4_decode(data, shorten(data, size, type, keep), &o, &s, NULL), TED4_E_CON_PAYLOAD_SIZE);
+    assert_int_equal(ted4_decode(data, shorten(data, size, type, keep), &o, &s, NULL),
+                     TED4_E_CON_PAYLOAD_SIZE);
     free(data);
     return memory.most;
 }
 
-/* R-LVL-005: values that are not deflated have to be there, all of them, before they get memory; so have those of a network before its integers do. */
+/* R-LVL-005: values that are not deflated have to be there, all of them, before they get memory; so
+ * have those of a network before its integers do. */
 static void raw_values_are_paid_for(void **state)
 {
-    random_source     r = random_seed(23);
+    random_source r = random_seed(23);
     const ted4_header h = random_paper_header(64);
-    ted4_scene       *s = random_scene_of(&r, &h, 0);
-    ted4_shape        shape;
-    uint8_t          *data;
-    size_t            size;
+    ted4_scene *s = random_scene_of(&r, &h, 0);
+    ted4_shape shape;
+    uint8_t *data;
+    size_t size;
 
     (void)state;
     ted4_shape_make(&shape, &h);
     s->nete.mode = s->netr.mode = TED4_BLOB_RAW;
     assert_int_equal(ted4_encode(s, 0, NULL, &data, &size, NULL), TED4_OK);
-    assert_int_equal(memory_of(data, size, "NETE", shape.n_units + 4 * shape.n_nete), memory_of(data, size, "NETE", shape.n_units + 1));
-    assert_int_equal(memory_of(data, size, "NETR", 4 * shape.n_netr), memory_of(data, size, "NETR", 1));
+    assert_int_equal(memory_of(data, size, "NETE", shape.n_units + 4 * shape.n_nete),
+                     memory_of(data, size, "NETE", shape.n_units + 1));
+    assert_int_equal(memory_of(data, size, "NETR", 4 * shape.n_netr),
+                     memory_of(data, size, "NETR", 1));
     free(data);
     ted4_scene_free(s);
 }
@@ -363,9 +382,9 @@ static void raw_values_are_paid_for(void **state)
 static void tight_query(void **state)
 {
     random_source r = random_seed(22);
-    ted4_header   h = random_paper_header(2048);
-    ted4_scene   *s;
-    uint64_t      did;
+    ted4_header h = random_paper_header(2048);
+    ted4_scene *s;
+    uint64_t did;
 
     (void)state;
     h.temporal_mask = 0;
@@ -379,7 +398,9 @@ static void tight_query(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(vectors), cmocka_unit_test(random_headers), cmocka_unit_test(tight), cmocka_unit_test(raw_values_are_paid_for), cmocka_unit_test(tight_query),
+        cmocka_unit_test(vectors),     cmocka_unit_test(random_headers),
+        cmocka_unit_test(tight),       cmocka_unit_test(raw_values_are_paid_for),
+        cmocka_unit_test(tight_query),
     };
 
     return cmocka_run_group_tests(tests, NULL, NULL);

@@ -1,4 +1,5 @@
-/* test_run_log.c - the log that ted4enc writes while it trains: what is in its lines, and that it is one log after a run was resumed.
+/* test_run_log.c - the log that ted4enc writes while it trains: what is in its lines, and that it
+ * is one log after a run was resumed.
  * SPDX-License-Identifier: BSD-2-Clause */
 #include <setjmp.h>
 #include <stdarg.h>
@@ -21,19 +22,26 @@ static double number(const json_t *line, const char *name)
 }
 
 /* What the lines so far have come to. */
-typedef struct { double step, seconds, cpu; } log_state;
+typedef struct {
+    double step, seconds, cpu;
+} log_state;
 
 /* What a chart needs is in every line, and makes sense. */
 static void check_line(const json_t *line, log_state *s, double size)
 {
-    static const char *const names[] = { "lambda", "loss", "l1", "ssim", "psnr", "anchors", "moving", "splats", "bytes", "ms", "cpu_ms",
-                                         "gaussian_pixels_per_s", "seconds", "skipped", "clamped" };
-    static const char *const types[] = { "positions", "masks", "feature", "scaling", "offset", "phi", "tau", "networks", "frame" };
-    static const char *const learnt[] = { "feature", "scaling", "offset", "phi", "masks", "centres", "heads", "motion", "bank" };
-    const json_t *gradients = json_object_get(line, "gradients"), *peaks = json_object_get(line, "peaks");
-    const char  *stage = json_string_value(json_object_get(line, "stage"));
+    static const char *const names[] = { "lambda",  "loss",    "l1",     "ssim",
+                                         "psnr",    "anchors", "moving", "splats",
+                                         "bytes",   "ms",      "cpu_ms", "gaussian_pixels_per_s",
+                                         "seconds", "skipped", "clamped" };
+    static const char *const types[] = { "positions", "masks", "feature",  "scaling", "offset",
+                                         "phi",       "tau",   "networks", "frame" };
+    static const char *const learnt[] = { "feature", "scaling", "offset", "phi", "masks",
+                                          "centres", "heads",   "motion", "bank" };
+    const json_t *gradients = json_object_get(line, "gradients"),
+                 *peaks = json_object_get(line, "peaks");
+    const char *stage = json_string_value(json_object_get(line, "stage"));
     const double step = number(line, "step"), steps = step - s->step, bytes = number(line, "bytes");
-    double       sum = 0;
+    double sum = 0;
 
     for (size_t i = 0; i < sizeof names / sizeof names[0]; i++)
         assert_true(number(line, names[i]) >= 0);
@@ -41,24 +49,32 @@ static void check_line(const json_t *line, log_state *s, double size)
         sum += number(json_object_get(line, "bytes_by_type"), types[i]);
     for (size_t i = 0; i < sizeof learnt / sizeof learnt[0]; i++) {
         assert_true(number(gradients, learnt[i]) > 0 && number(gradients, learnt[i]) < 1000);
-        assert_true(number(peaks, learnt[i]) >= (step == 500 ? 1 : 0) && number(peaks, learnt[i]) < 100);
+        assert_true(number(peaks, learnt[i]) >= (step == 500 ? 1 : 0) &&
+                    number(peaks, learnt[i]) < 100);
     }
-    assert_true((number(gradients, "prior") > 0) == (step == 750) && (number(gradients, "steps") > 0) == (step == 750));
+    assert_true((number(gradients, "prior") > 0) == (step == 750) &&
+                (number(gradients, "steps") > 0) == (step == 750));
     assert_true(number(gradients, "tau") >= 0 && number(gradients, "colour") >= 0);
-    assert_true(json_object_size(gradients) == TED4_TERMS && json_object_size(peaks) == TED4_TERMS && number(line, "rollbacks") == 0);
+    assert_true(json_object_size(gradients) == TED4_TERMS &&
+                json_object_size(peaks) == TED4_TERMS && number(line, "rollbacks") == 0);
     assert_int_equal(json_array_size(json_object_get(line, "bits")), TED4_TYPES);
     assert_true(fabs(sum - bytes) <= 5 && steps > 0);
     assert_non_null(stage);
     assert_string_equal(stage, step <= STAGE1 ? "1" : step < 860 ? "2" : "2i");
     /* At the last line it is the file's own. */
-    assert_true(step <= STAGE1 ? bytes == 0 : fabs(bytes - size) <= (step < STEPS ? 0.05 * size : 0));
+    assert_true(step <= STAGE1 ? bytes == 0
+                               : fabs(bytes - size) <= (step < STEPS ? 0.05 * size : 0));
     assert_string_equal(json_string_value(json_object_get(line, "split")), "test");
     assert_true(step == STEPS ? number(line, "left") < 60 : number(line, "left") >= 0);
-    assert_true(number(line, "anchors") > 50 && number(line, "moving") > 0 && number(line, "moving") <= number(line, "anchors"));
-    assert_true(number(line, "psnr") > 10 && number(line, "splats") > 0 && number(line, "skipped") == 0);
+    assert_true(number(line, "anchors") > 50 && number(line, "moving") > 0 &&
+                number(line, "moving") <= number(line, "anchors"));
+    assert_true(number(line, "psnr") > 10 && number(line, "splats") > 0 &&
+                number(line, "skipped") == 0);
     /* seconds are rounded to hundredths, milliseconds to thousandths. */
-    assert_true(fabs(number(line, "seconds") - s->seconds - 1e-3 * steps * number(line, "ms")) < 0.011 + 1e-6 * steps);
-    assert_true(fabs(number(line, "cpu_seconds") - s->cpu - 1e-3 * steps * number(line, "cpu_ms")) < 0.011 + 1e-6 * steps);
+    assert_true(fabs(number(line, "seconds") - s->seconds - 1e-3 * steps * number(line, "ms")) <
+                0.011 + 1e-6 * steps);
+    assert_true(fabs(number(line, "cpu_seconds") - s->cpu - 1e-3 * steps * number(line, "cpu_ms")) <
+                0.011 + 1e-6 * steps);
     s->step = step;
     s->seconds = number(line, "seconds");
     s->cpu = number(line, "cpu_seconds");
@@ -71,7 +87,8 @@ static void test_log(void **state)
     (void)state;
     begin_test();
     for (const char *at = reference.log; *at != 0; at = strchr(at, '\n') + 1) {
-        json_t *line = json_loadb(at, (size_t)(strchr(at, '\n') - at), JSON_REJECT_DUPLICATES, NULL);
+        json_t *line =
+            json_loadb(at, (size_t)(strchr(at, '\n') - at), JSON_REJECT_DUPLICATES, NULL);
 
         assert_non_null(line);
         check_line(line, &s, (double)reference.file.size);
@@ -112,14 +129,16 @@ static void test_log_goes_on(void **state)
 /* Lines from after a rollback that the checkpoint knows nothing of are not kept. */
 static void test_log_before_rollback(void **state)
 {
-    char        log[MOST_LOG], text[MOST_LOG + 256];
+    char log[MOST_LOG], text[MOST_LOG + 256];
     const char *second;
 
     (void)state;
     begin_test();
     make_checkpoint_and_log(log);
     second = strchr(strchr(log, '\n') + 1, '\n') + 1;
-    snprintf(text, sizeof text, "%.*s{\"step\":500,\"event\":\"rollback\",\"rollbacks\":1,\"failed\":640}\n{\"step\":600,\"stage\":\"1\"}\n",
+    snprintf(text, sizeof text,
+             "%.*s{\"step\":500,\"event\":\"rollback\",\"rollbacks\":1,\"failed\":640}\n{\"step\":"
+             "600,\"stage\":\"1\"}\n",
              (int)(second - log), log);
     tiny_text(&folder, "out/l", text);
     run_calmly("--checkpoint out/c --resume --log out/l");
@@ -127,7 +146,8 @@ static void test_log_before_rollback(void **state)
     expect_same("out/x", &reference.file);
 }
 
-/* A checkpoint of step 300 with a value that is not finite; good: and with the state that the watch keeps, that of step 250. */
+/* A checkpoint of step 300 with a value that is not finite; good: and with the state that the watch
+ * keeps, that of step 250. */
 static void poison(int good)
 {
     ted4_dataset d;
@@ -145,7 +165,7 @@ static void poison(int good)
 static void kill_after_rollback(void)
 {
     const pid_t child = start("-o out/x --checkpoint out/c --resume --log out/l", 0);
-    char        text[MOST_LOG] = "";
+    char text[MOST_LOG] = "";
 
     for (int i = 0; i < 60000 && strstr(text, "\"step\":500") == NULL; i++) {
         pause_us(1000);
@@ -160,7 +180,7 @@ static void kill_after_rollback(void)
 /* What the watch does is told by the log. */
 static void test_rollback(void **state)
 {
-    char      text[MOST_LOG];
+    char text[MOST_LOG];
     ball_file first, second;
 
     (void)state;
@@ -168,8 +188,12 @@ static void test_rollback(void **state)
     poison(1);
     run_calmly("--checkpoint out/c --resume --log out/l");
     read_text("out/l", text, sizeof text);
-    assert_true(strstr(text, "{\"step\":250,\"event\":\"rollback\",\"rollbacks\":1,\"failed\":300,\"cause\":\"not finite\","
-                                   "\"term\":\"value of offset\",\"anchor\":5,\"factor\":0.5}\n{\"step\":500,\"stage\":\"1\",") == text);
+    assert_true(strstr(text,
+                       "{\"step\":250,\"event\":\"rollback\",\"rollbacks\":1,\"failed\":300,"
+                       "\"cause\":\"not finite\","
+                       "\"term\":\"value of "
+                       "offset\",\"anchor\":5,\"factor\":0.5}\n{\"step\":500,\"stage\":\"1\",") ==
+                text);
     assert_non_null(strstr(strchr(text, '\n'), "\"rollbacks\":1,"));
     first = read_file("out/x");
     gone("out/x");
@@ -187,7 +211,8 @@ static void test_rollback(void **state)
 
     poison(0);
     assert_int_equal(run("-o out/y --checkpoint out/c --resume --log out/l", 0), 3);
-    expect_words("value of offset of anchor 5 is not finite at step 300; there is no good state before it");
+    expect_words(
+        "value of offset of anchor 5 is not finite at step 300; there is no good state before it");
     read_text("out/l", text, sizeof text);
     assert_non_null(strstr(text, "\"event\":\"failure\",\"rollbacks\":0,\"failed\":300,"));
     expect_files("c l x");
@@ -218,16 +243,17 @@ static void put(ted4_run_log *l, ted4_trainer *t, uint64_t step, double *cpu, do
     *ms = strtod(strstr(last, "\"ms\":") + 5, NULL);
 }
 
-/* What was trained and thrown away is in the log's seconds and in no step's milliseconds; a log that goes on counts from its last line. */
+/* What was trained and thrown away is in the log's seconds and in no step's milliseconds; a log
+ * that goes on counts from its last line. */
 static void test_thrown_away(void **state)
 {
     const ted4_train_options o = ball_options();
     ted4_dataset d;
     ted4_trainer t;
     ted4_run_log l;
-    tiny_folder  scene;
-    double       cpu, ms;
-    char         why[256], path[600];
+    tiny_folder scene;
+    double cpu, ms;
+    char why[256], path[600];
 
     (void)state;
     begin_test();

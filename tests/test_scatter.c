@@ -74,7 +74,7 @@ static ted4_scattered scatter(ted4_dataset *d, const ted4_parallel *p)
 {
     const ted4_scatter_options o = { .seed = 1 };
     ted4_scattered what;
-    ted4_message   m;
+    ted4_message m;
 
     if (ted4_dataset_scatter(d, &o, p, &what, &m) != 0)
         fail_msg("%s", m.text);
@@ -83,12 +83,12 @@ static ted4_scattered scatter(ted4_dataset *d, const ted4_parallel *p)
 
 static void test_shown(void **state)
 {
-    const ball   b = ball_at(0, 0);
+    const ball b = ball_at(0, 0);
     const double nowhere[3] = { 0, 0, 1e6 };
     ted4_message m;
-    ted4_shown   s;
-    int          seen, shown;
-    size_t       n = 0;
+    ted4_shown s;
+    int seen, shown;
+    size_t n = 0;
 
     (void)state;
     for (size_t i = 0; i < balls.n_pictures; i++)
@@ -108,9 +108,9 @@ static void test_shown(void **state)
 static void test_sweep(void **state)
 {
     ted4_message m;
-    ted4_shown   s;
-    ted4_sweep   w;
-    size_t       found = 0, near = 0;
+    ted4_shown s;
+    ted4_sweep w;
+    size_t found = 0, near = 0;
 
     (void)state;
     assert_int_equal(ted4_shown_read(&s, &balls, &m), 0);
@@ -141,8 +141,8 @@ static void test_sweep(void **state)
  * however many threads look for them. */
 static void test_useless(void **state)
 {
-    ted4_dataset  one, two;
-    tiny_folder   f[2];
+    ted4_dataset one, two;
+    tiny_folder f[2];
     ted4_parallel p;
 
     (void)state;
@@ -167,12 +167,12 @@ static void test_useless(void **state)
 static void test_useful(void **state)
 {
     ted4_dataset d;
-    tiny_folder  f;
+    tiny_folder f;
 
     (void)state;
     load(&d, &f, 0);
 
-    const uint64_t       before = ted4_dataset_digest(&d);
+    const uint64_t before = ted4_dataset_digest(&d);
     const ted4_scattered what = scatter(&d, NULL);
 
     assert_true(what.given == 0 && what.scattered == 0 && !d.random_points);
@@ -184,9 +184,9 @@ static void test_useful(void **state)
 static void test_one_picture(void **state)
 {
     ted4_dataset d;
-    tiny_folder  f;
+    tiny_folder f;
     ted4_message m;
-    ted4_shown   s;
+    ted4_shown s;
 
     (void)state;
     load(&d, &f, 10);
@@ -197,9 +197,10 @@ static void test_one_picture(void **state)
     assert_int_equal(ted4_shown_read(&s, &d, &m), 0);
     for (size_t i = 0; i < d.n_points; i++) {
         const float *p = d.points + 3 * i;
-        int          seen, shown;
+        int seen, shown;
 
-        ted4_shown_count(&s, (double[3]){ (double)p[0], (double)p[1], (double)p[2] }, &seen, &shown);
+        ted4_shown_count(&s, (double[3]) { (double)p[0], (double)p[1], (double)p[2] }, &seen,
+                         &shown);
         assert_int_equal(seen, 1);
         assert_int_equal(shown, 1);
     }
@@ -211,7 +212,7 @@ static void test_one_picture(void **state)
 static void test_held_out(void **state)
 {
     ted4_dataset d, same;
-    tiny_folder  f, g;
+    tiny_folder f, g;
 
     (void)state;
     load(&d, &f, 10);
@@ -231,7 +232,7 @@ static void test_held_out(void **state)
  * where there can be none, that is said. */
 static void test_bounds(void **state)
 {
-    const ball           b = ball_at(0, 0);
+    const ball b = ball_at(0, 0);
     ted4_scatter_options o = { .seed = 1, .bounded = 1 };
 
     (void)state;
@@ -240,10 +241,10 @@ static void test_bounds(void **state)
         o.high[k] = (float)(b.centre[k] + 1.1 * b.radius);
     }
     for (int useful = 0; useful < 3; useful++) {
-        ted4_dataset   d;
-        tiny_folder    f;
+        ted4_dataset d;
+        tiny_folder f;
         ted4_scattered what;
-        ted4_message   m;
+        ted4_message m;
 
         load(&d, &f, useful == 1 ? 0 : 10);
         if (useful == 2)
@@ -265,9 +266,9 @@ static void test_bounds(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_shown),    cmocka_unit_test(test_sweep),
-        cmocka_unit_test(test_useless),  cmocka_unit_test(test_useful),
-        cmocka_unit_test(test_held_out), cmocka_unit_test(test_bounds),
+        cmocka_unit_test(test_shown),       cmocka_unit_test(test_sweep),
+        cmocka_unit_test(test_useless),     cmocka_unit_test(test_useful),
+        cmocka_unit_test(test_held_out),    cmocka_unit_test(test_bounds),
         cmocka_unit_test(test_one_picture),
     };
 

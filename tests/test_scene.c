@@ -83,14 +83,10 @@ static int is_inside(const ted4_ray_object *o, vec3 point)
     vec3 q;
 
     switch (o->kind) {
-    case RAY_SPHERE:
-        return v3_length(p) < s.x;
-    case RAY_BOX:
-        return fabsf(p.x) < s.x && fabsf(p.y) < s.y && fabsf(p.z) < s.z;
-    case RAY_CYLINDER:
-        return sqrtf(p.x * p.x + p.y * p.y) < s.x && fabsf(p.z) < s.z;
-    case RAY_BAR:
-        break;
+    case RAY_SPHERE: return v3_length(p) < s.x;
+    case RAY_BOX: return fabsf(p.x) < s.x && fabsf(p.y) < s.y && fabsf(p.z) < s.z;
+    case RAY_CYLINDER: return sqrtf(p.x * p.x + p.y * p.y) < s.x && fabsf(p.z) < s.z;
+    case RAY_BAR: break;
     }
     q = ted4_ray_unbend(o, p);
     q = v3(fabsf(q.x) - s.x + 0.02f, fabsf(q.y) - s.y + 0.02f,
@@ -167,7 +163,9 @@ static void test_surfaces(void **state)
 
 static void test_shape_values(void **state)
 {
-    ted4_ray_object o = { .kind = RAY_SPHERE, .size = v3(0.5f, 0.5f, 0.5f), .pos = v3(0, 0, 1),
+    ted4_ray_object o = { .kind = RAY_SPHERE,
+                          .size = v3(0.5f, 0.5f, 0.5f),
+                          .pos = v3(0, 0, 1),
                           .rot = { 1, 0, 0, 0, 1, 0, 0, 0, 1 } };
     const vec3 down = v3(0, 0, -1);
 
@@ -216,7 +214,7 @@ static void test_bar(void **state)
 
 static void check_camera(const ted4_ray_camera *c)
 {
-    const double (*const m)[4] = c->matrix;
+    const double(*const m)[4] = c->matrix;
 
     for (int i = 0; i < 3; i++) {
         for (int j = 0; j < 3; j++) {
@@ -381,7 +379,12 @@ static void test_occlusion(void **state)
 /* A point is where its own camera sees a surface, and has the colour of it. */
 static void test_points_on_surfaces(void **state)
 {
-    ted4_ray_options o = { .scene = RAY_STILL, .width = W, .height = H, .n_train = 3, .n_test = 1, .n_frames = 5,
+    ted4_ray_options o = { .scene = RAY_STILL,
+                           .width = W,
+                           .height = H,
+                           .n_train = 3,
+                           .n_test = 1,
+                           .n_frames = 5,
                            .seed = 1 };
 
     (void)state;
@@ -413,7 +416,12 @@ static void test_points_on_surfaces(void **state)
 static void test_points_colours(void **state)
 {
     static uint8_t rgb[SIZE * 9];
-    const ted4_ray_options o = { .scene = RAY_STILL, .width = W, .height = H, .n_train = 3, .n_test = 1, .n_frames = 5,
+    const ted4_ray_options o = { .scene = RAY_STILL,
+                                 .width = W,
+                                 .height = H,
+                                 .n_train = 3,
+                                 .n_test = 1,
+                                 .n_frames = 5,
                                  .seed = 1 };
     ted4_ray_camera c;
     ted4_ray_world w;
@@ -447,7 +455,7 @@ static void run_openmp(void *user, size_t n, void (*body)(void *arg, size_t i), 
 {
     const int threads = *(const int *)user;
 
-    #pragma omp parallel for schedule(dynamic) num_threads(threads)
+#pragma omp parallel for schedule(dynamic) num_threads(threads)
     for (size_t i = 0; i < n; i++)
         body(arg, i);
 }
@@ -544,7 +552,12 @@ static void check_ply(const char *folder, const ted4_ray_options *o)
 static void test_files(void **state)
 {
     char a[TEMPORARY_SIZE], b[TEMPORARY_SIZE];
-    const ted4_ray_options o = { .scene = RAY_TURN, .width = W, .height = H, .n_train = 2, .n_test = 1, .n_frames = 3,
+    const ted4_ray_options o = { .scene = RAY_TURN,
+                                 .width = W,
+                                 .height = H,
+                                 .n_train = 2,
+                                 .n_test = 1,
+                                 .n_frames = 3,
                                  .seed = 5 };
     int threads = 2;
     const ted4_parallel two = { run_openmp, &threads };
@@ -568,7 +581,12 @@ static void test_files(void **state)
 static void test_refusal(void **state)
 {
     char file[TEMPORARY_SIZE], folder[TEMPORARY_SIZE + 8];
-    const ted4_ray_options o = { .scene = RAY_STILL, .width = W, .height = H, .n_train = 1, .n_test = 0, .n_frames = 1,
+    const ted4_ray_options o = { .scene = RAY_STILL,
+                                 .width = W,
+                                 .height = H,
+                                 .n_train = 1,
+                                 .n_test = 0,
+                                 .n_frames = 1,
                                  .seed = 1 };
     ted4_ray_message m = { "" };
 
@@ -585,12 +603,18 @@ static void test_refusal(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_math),          cmocka_unit_test(test_shapes),
-        cmocka_unit_test(test_surfaces),      cmocka_unit_test(test_shape_values),
-        cmocka_unit_test(test_bar),           cmocka_unit_test(test_cameras),
-        cmocka_unit_test(test_marker),        cmocka_unit_test(test_motion),
-        cmocka_unit_test(test_occlusion),     cmocka_unit_test(test_points_on_surfaces),
-        cmocka_unit_test(test_points_colours), cmocka_unit_test(test_files),
+        cmocka_unit_test(test_math),
+        cmocka_unit_test(test_shapes),
+        cmocka_unit_test(test_surfaces),
+        cmocka_unit_test(test_shape_values),
+        cmocka_unit_test(test_bar),
+        cmocka_unit_test(test_cameras),
+        cmocka_unit_test(test_marker),
+        cmocka_unit_test(test_motion),
+        cmocka_unit_test(test_occlusion),
+        cmocka_unit_test(test_points_on_surfaces),
+        cmocka_unit_test(test_points_colours),
+        cmocka_unit_test(test_files),
         cmocka_unit_test(test_refusal),
     };
 

@@ -1,5 +1,6 @@
-/* test_scene_input.c - what the scenes of users bring: JPEGs that EXIF turns, JPEGs of four colours, nerfstudio's own lists of the split, more times
- * than wanted, pictures that change or go away while they are in use, pictures that are damaged.
+/* test_scene_input.c - what the scenes of users bring: JPEGs that EXIF turns, JPEGs of four
+ * colours, nerfstudio's own lists of the split, more times than wanted, pictures that change or go
+ * away while they are in use, pictures that are damaged.
  * SPDX-License-Identifier: BSD-2-Clause */
 #include <setjmp.h>
 #include <stdarg.h>
@@ -22,7 +23,8 @@ static void put(uint8_t *to, uint32_t v, int n, int little)
         to[little ? i : n - 1 - i] = (uint8_t)(v >> 8 * i);
 }
 
-/* The payload of an APP1 segment: a directory of two entries, the second of them the orientation. */
+/* The payload of an APP1 segment: a directory of two entries, the second of them the orientation.
+ */
 static void make_exif(uint8_t exif[EXIF_SIZE], uint32_t orientation, int little)
 {
     uint8_t *tiff = exif + 6, *entry = tiff + 10;
@@ -50,7 +52,8 @@ static void test_exif(void **state)
             assert_int_equal(ted4_exif_orientation(exif, sizeof exif), v >= 1 && v <= 8 ? v : 1);
         }
         make_exif(exif, 6, little);
-        for (size_t n = 0; n < sizeof exif; n++) {      /* cut anywhere: at its exact size, for sanitizers to watch */
+        for (size_t n = 0; n < sizeof exif;
+             n++) { /* cut anywhere: at its exact size, for sanitizers to watch */
             uint8_t *cut = malloc(n + 1);
             assert_non_null(cut);
             memmove(cut, exif, n);
@@ -58,16 +61,17 @@ static void test_exif(void **state)
             assert_true(v == 1 || (v == 6 && n >= sizeof exif - 6));
             free(cut);
         }
-        put(exif + 10, 0xfffffff0, 4, little);          /* a directory far away */
+        put(exif + 10, 0xfffffff0, 4, little); /* a directory far away */
         assert_int_equal(ted4_exif_orientation(exif, sizeof exif), 1);
         make_exif(exif, 6, little);
-        put(exif + 14, 0xffff, 2, little);              /* more entries than bytes */
+        put(exif + 14, 0xffff, 2, little); /* more entries than bytes */
         assert_int_equal(ted4_exif_orientation(exif, sizeof exif), 6);
     }
 }
 
 /* Grey (1), RGB (3) or CMYK (4 components) with an EXIF orientation, 0: without EXIF. */
-static void write_jpeg(const tiny_folder *f, const char *name, int w, int h, int components, uint32_t orientation)
+static void write_jpeg(const tiny_folder *f, const char *name, int w, int h, int components,
+                       uint32_t orientation)
 {
     struct jpeg_compress_struct c;
     struct jpeg_error_mgr e;
@@ -101,7 +105,10 @@ static const char *load_jpeg(const tiny_folder *f, ted4_dataset *d, int w, int h
 {
     tiny_string s = { "", 0 };
 
-    tiny_add(&s, "{\"fl_x\": 9, \"w\": %d, \"h\": %d, \"frames\": [{\"file_path\": \"a.jpg\", \"transform_matrix\": " TINY_POSE "}]}", w, h);
+    tiny_add(&s,
+             "{\"fl_x\": 9, \"w\": %d, \"h\": %d, \"frames\": [{\"file_path\": \"a.jpg\", "
+             "\"transform_matrix\": " TINY_POSE "}]}",
+             w, h);
     tiny_text(f, "transforms.json", s.text);
     return tiny_load(d, f, &tiny_options);
 }
@@ -114,18 +121,20 @@ static void test_turned(void **state)
 
     (void)state;
     write_jpeg(&f, "a.jpg", TINY_W, TINY_H, 3, 6);
-    assert_string_equal(load_jpeg(&f, &d, TINY_W, TINY_H), "");         /* as stored: COLMAP's way */
+    assert_string_equal(load_jpeg(&f, &d, TINY_W, TINY_H), ""); /* as stored: COLMAP's way */
     assert_int_equal(d.pictures[0].camera.width, TINY_W);
     assert_non_null(ted4_dataset_pixels(&d, 0, &m));
     ted4_dataset_release(&d, 0);
     ted4_dataset_free(&d);
-    assert_non_null(strstr(load_jpeg(&f, &d, TINY_H, TINY_W), "a.jpg: the file is 16x12 (EXIF turns it by a quarter"));
+    assert_non_null(strstr(load_jpeg(&f, &d, TINY_H, TINY_W),
+                           "a.jpg: the file is 16x12 (EXIF turns it by a quarter"));
     assert_non_null(strstr(load_jpeg(&f, &d, 2 * TINY_H, 2 * TINY_W), "EXIF turns it"));
     assert_null(strstr(load_jpeg(&f, &d, 99, 7), "EXIF"));
     write_jpeg(&f, "a.jpg", TINY_W, TINY_H, 3, 3);
     assert_null(strstr(load_jpeg(&f, &d, TINY_H, TINY_W), "EXIF"));
     write_jpeg(&f, "a.jpg", TINY_W, TINY_H, 1, 0);
-    assert_non_null(strstr(load_jpeg(&f, &d, TINY_H, TINY_W), "the file is 16x12, its camera says 12x16"));
+    assert_non_null(
+        strstr(load_jpeg(&f, &d, TINY_H, TINY_W), "the file is 16x12, its camera says 12x16"));
     tiny_free(&f);
 }
 
@@ -138,7 +147,8 @@ static void test_four_colours(void **state)
 
     (void)state;
     write_jpeg(&f, "a.jpg", TINY_W, TINY_H, 4, 0);
-    assert_non_null(strstr(load_jpeg(&f, &d, TINY_W, TINY_H), "a.jpg: JPEG of 4 colours (CMYK?), expected grey or RGB"));
+    assert_non_null(strstr(load_jpeg(&f, &d, TINY_W, TINY_H),
+                           "a.jpg: JPEG of 4 colours (CMYK?), expected grey or RGB"));
     assert_int_equal(ted4_image_read(tiny_path(&f, "a.jpg"), &image, &m), -1);
     assert_null(image.bytes);
     tiny_free(&f);
@@ -146,7 +156,8 @@ static void test_four_colours(void **state)
 
 /* ---- split and times ---- */
 
-/* transforms.json of pictures 0.png to 7.png, with what else is to stand in it. Picture i is of time i / 2. */
+/* transforms.json of pictures 0.png to 7.png, with what else is to stand in it. Picture i is of
+ * time i / 2. */
 enum { N = 8 };
 
 static void write_scene(const tiny_folder *f, const char *more)
@@ -158,13 +169,16 @@ static void write_scene(const tiny_folder *f, const char *more)
         char name[16];
         snprintf(name, sizeof name, "%d.png", i);
         tiny_picture(f, name, TINY_W, TINY_H, 10 * i);
-        tiny_add(&s, "%s{\"file_path\": \"./%s\", \"time\": %d, \"transform_matrix\": " TINY_POSE "}", i > 0 ? "," : "", name, i / 2);
+        tiny_add(&s,
+                 "%s{\"file_path\": \"./%s\", \"time\": %d, \"transform_matrix\": " TINY_POSE "}",
+                 i > 0 ? "," : "", name, i / 2);
     }
     tiny_add(&s, "]}");
     tiny_text(f, "transforms.json", s.text);
 }
 
-/* The names of the training pictures, a bar, those of the test pictures; and the times: "02|1 f3". */
+/* The names of the training pictures, a bar, those of the test pictures; and the times: "02|1 f3".
+ */
 static const char *summary(const tiny_folder *f, const ted4_dataset_options *o)
 {
     static char text[1200];
@@ -186,17 +200,25 @@ static const char *summary(const tiny_folder *f, const ted4_dataset_options *o)
 
 static void test_lists(void **state)
 {
-    static const struct { const char *more, *want; } cases[] = {
+    static const struct {
+        const char *more, *want;
+    } cases[] = {
         { "", "0123567|4 f4" },
-        { "\"train_filenames\": [\"./0.png\", \"3.png\", \"2.png\"], \"val_filenames\": [\"1.png\"], \"test_filenames\": [\"7.png\"],", "023|7 f4" },
-        { "\"train_filenames\": [\"./0.png\", \"3.png\"], \"val_filenames\": [\"1.png\"],", "03|1 f2" },
+        { "\"train_filenames\": [\"./0.png\", \"3.png\", \"2.png\"], \"val_filenames\": "
+          "[\"1.png\"], \"test_filenames\": [\"7.png\"],",
+          "023|7 f4" },
+        { "\"train_filenames\": [\"./0.png\", \"3.png\"], \"val_filenames\": [\"1.png\"],",
+          "03|1 f2" },
         { "\"train_filenames\": [\"5.png\"],", "5 f1" },
         { "\"test_filenames\": [\"5.png\"],", "train_filenames: missing" },
         { "\"train_filenames\": \"5.png\",", "train_filenames: not a list" },
         { "\"train_filenames\": [\"5.png\", 3],", "train_filenames[1]: expected a file_path" },
-        { "\"train_filenames\": [\"5.png\", \"9.png\"],", "train_filenames[1]: no frame has the file_path 9.png" },
-        { "\"train_filenames\": [\"5.png\"], \"test_filenames\": [\"5.png\"],", "test_filenames[0]: 5.png is listed twice" },
-        { "\"train_filenames\": [], \"test_filenames\": [\"5.png\"],", "all 1 pictures are held out" },
+        { "\"train_filenames\": [\"5.png\", \"9.png\"],",
+          "train_filenames[1]: no frame has the file_path 9.png" },
+        { "\"train_filenames\": [\"5.png\"], \"test_filenames\": [\"5.png\"],",
+          "test_filenames[0]: 5.png is listed twice" },
+        { "\"train_filenames\": [], \"test_filenames\": [\"5.png\"],",
+          "all 1 pictures are held out" },
         { "\"train_filenames\": [],", "no pictures" },
     };
     tiny_folder f = tiny_new();
@@ -213,7 +235,8 @@ static void test_lists(void **state)
 
 static void test_max_frames(void **state)
 {
-    static const char *const want[] = { "0123567|4 f4", "01 f1", "0123 f2", "01235|4 f3", "0123567|4 f4", "0123567|4 f4" };
+    static const char *const want[] = { "0123567|4 f4", "01 f1",        "0123 f2",
+                                        "01235|4 f3",   "0123567|4 f4", "0123567|4 f4" };
     ted4_dataset_options o = tiny_options;
     tiny_folder f = tiny_new();
 
@@ -224,7 +247,9 @@ static void test_max_frames(void **state)
     o.max_frames = 2;
     write_scene(&f, "\"train_filenames\": [\"6.png\", \"7.png\"],");
     assert_string_equal(summary(&f, &o), "67 f1");
-    write_scene(&f, "\"train_filenames\": [\"6.png\", \"3.png\", \"0.png\"], \"test_filenames\": [\"2.png\"],");
+    write_scene(
+        &f,
+        "\"train_filenames\": [\"6.png\", \"3.png\", \"0.png\"], \"test_filenames\": [\"2.png\"],");
     assert_string_equal(summary(&f, &o), "03|2 f2");
     o.max_frames = 1;
     write_scene(&f, "\"train_filenames\": [\"7.png\"], \"test_filenames\": [\"0.png\"],");
@@ -264,7 +289,7 @@ static void test_changed(void **state)
     write_scene(&f, "");
     load_uncached(&d, &f);
     tiny_picture(&f, "1.png", TINY_W, TINY_H, 99);
-    expect_pixels(&d, 1, "");                               /* not read before: nobody can tell */
+    expect_pixels(&d, 1, ""); /* not read before: nobody can tell */
     assert_int_equal(ted4_dataset_verify(&d, NULL, &m), 0);
     tiny_picture(&f, "2.png", TINY_W, TINY_H, 21);
     expect_pixels(&d, 2, "2.png: the file has changed since it was read first");
@@ -273,7 +298,7 @@ static void test_changed(void **state)
     must(remove(tiny_path(&f, "2.png")) == 0, "2.png");
     expect_pixels(&d, 2, "2.png: No such file");
     tiny_picture(&f, "2.png", TINY_W, TINY_H, 20);
-    expect_pixels(&d, 2, "");                               /* as it was */
+    expect_pixels(&d, 2, ""); /* as it was */
     ted4_dataset_free(&d);
     tiny_free(&f);
 }
@@ -287,7 +312,9 @@ static void test_verify(void **state)
     ted4_message m;
 
     (void)state;
-    write_scene(&f, "\"train_filenames\": [\"0.png\",\"1.png\",\"2.png\",\"3.png\",\"4.png\",\"5.png\",\"6.png\",\"7.png\"],");
+    write_scene(
+        &f, "\"train_filenames\": "
+            "[\"0.png\",\"1.png\",\"2.png\",\"3.png\",\"4.png\",\"5.png\",\"6.png\",\"7.png\"],");
     for (int i = 0; i < 3; i++)
         must(truncate(tiny_path(&f, names[i]), (off_t)tiny_size(&f, names[i]) - 30) == 0, names[i]);
     for (int threads = 1; threads <= 4; threads++) {
@@ -329,15 +356,17 @@ static void test_digest(void **state)
     write_scene(&b, "");
     const uint64_t plain = digest(&a, 1, 0), whole = digest(&a, 1, 1);
     assert_true(plain != whole);
-    assert_true(digest(&b, 1, 0) == plain);                 /* another place */
+    assert_true(digest(&b, 1, 0) == plain); /* another place */
     assert_true(digest(&b, 1, 1) == whole);
     assert_true(digest(&b, 2, 1) != whole);
     tiny_picture(&b, "3.png", TINY_W, TINY_H, 31);
-    assert_true(digest(&b, 1, 0) == plain);                 /* nobody has looked at the pixels */
+    assert_true(digest(&b, 1, 0) == plain); /* nobody has looked at the pixels */
     assert_true(digest(&b, 1, 1) != whole);
     write_scene(&b, "\"fl_y\": 10,");
     assert_true(digest(&b, 1, 0) != plain);
-    write_scene(&b, "\"train_filenames\": [\"0.png\",\"1.png\",\"2.png\",\"3.png\",\"4.png\",\"5.png\",\"6.png\"], \"test_filenames\": [\"7.png\"],");
+    write_scene(&b, "\"train_filenames\": "
+                    "[\"0.png\",\"1.png\",\"2.png\",\"3.png\",\"4.png\",\"5.png\",\"6.png\"], "
+                    "\"test_filenames\": [\"7.png\"],");
     assert_true(digest(&b, 1, 0) != plain);
     tiny_free(&a);
     tiny_free(&b);
@@ -346,9 +375,10 @@ static void test_digest(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_exif),       cmocka_unit_test(test_turned),  cmocka_unit_test(test_four_colours),
-        cmocka_unit_test(test_lists),      cmocka_unit_test(test_max_frames), cmocka_unit_test(test_changed),
-        cmocka_unit_test(test_verify),     cmocka_unit_test(test_digest),
+        cmocka_unit_test(test_exif),         cmocka_unit_test(test_turned),
+        cmocka_unit_test(test_four_colours), cmocka_unit_test(test_lists),
+        cmocka_unit_test(test_max_frames),   cmocka_unit_test(test_changed),
+        cmocka_unit_test(test_verify),       cmocka_unit_test(test_digest),
     };
 
     return cmocka_run_group_tests_name("scene input", tests, NULL, NULL);

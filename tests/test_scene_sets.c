@@ -1,5 +1,6 @@
-/* test_scene_sets.c - folders of the scenes in which methods fail: what a reader finds in them, held-out times, stated cameras against true ones, truth.json;
- * and that the first scenes keep their bytes. Links tests/scenes/ray_*.o.
+/* test_scene_sets.c - folders of the scenes in which methods fail: what a reader finds in them,
+ * held-out times, stated cameras against true ones, truth.json; and that the first scenes keep
+ * their bytes. Links tests/scenes/ray_*.o.
  * SPDX-License-Identifier: BSD-2-Clause */
 #include <math.h>
 #include <setjmp.h>
@@ -35,13 +36,19 @@ static tiny_folder write_set(const ted4_ray_options *o)
 }
 
 /* Defaults of the lab: what the table must say, told again. */
-static const struct { const char *name; int n_train, n_test, n_frames, held; } sets[] = {
-    { "hide", 6, 2, 16, 0 },    { "blink", 6, 2, 16, 2 },   { "fast", 6, 2, 16, 2 },    { "split", 6, 2, 16, 2 },
-    { "tints", 6, 2, 16, 2 },   { "flicker", 6, 2, 16, 0 }, { "bare", 6, 2, 16, 2 },    { "far", 6, 2, 16, 2 },
-    { "wide", 6, 2, 16, 2 },    { "pair", 2, 1, 16, 2 },    { "long", 3, 1, 600, 75 },  { "wires", 6, 2, 16, 2 },
-    { "shaken", 6, 2, 16, 2 },  { "change", 6, 2, 16, 2 },  { "empty", 6, 2, 16, 2 },   { "moment", 8, 2, 1, 0 },
-    { "alone", 1, 1, 24, 3 },   { "edge", 6, 2, 16, 2 },    { "things0", 6, 2, 16, 2 }, { "things1", 6, 2, 16, 2 }, { "things2", 6, 2, 16, 2 },
-    { "things4", 6, 2, 16, 2 }, { "things8", 6, 2, 16, 2 }, { "rest", 6, 2, 32, 4 }, { "toys", 10, 2, 16, 0 },
+static const struct {
+    const char *name;
+    int n_train, n_test, n_frames, held;
+} sets[] = {
+    { "hide", 6, 2, 16, 0 },    { "blink", 6, 2, 16, 2 },   { "fast", 6, 2, 16, 2 },
+    { "split", 6, 2, 16, 2 },   { "tints", 6, 2, 16, 2 },   { "flicker", 6, 2, 16, 0 },
+    { "bare", 6, 2, 16, 2 },    { "far", 6, 2, 16, 2 },     { "wide", 6, 2, 16, 2 },
+    { "pair", 2, 1, 16, 2 },    { "long", 3, 1, 600, 75 },  { "wires", 6, 2, 16, 2 },
+    { "shaken", 6, 2, 16, 2 },  { "change", 6, 2, 16, 2 },  { "empty", 6, 2, 16, 2 },
+    { "moment", 8, 2, 1, 0 },   { "alone", 1, 1, 24, 3 },   { "edge", 6, 2, 16, 2 },
+    { "things0", 6, 2, 16, 2 }, { "things1", 6, 2, 16, 2 }, { "things2", 6, 2, 16, 2 },
+    { "things4", 6, 2, 16, 2 }, { "things8", 6, 2, 16, 2 }, { "rest", 6, 2, 32, 4 },
+    { "toys", 10, 2, 16, 0 },
 };
 
 /* Member of truth.json; a list as long as n, if n is not negative. */
@@ -61,7 +68,8 @@ static void check_truth(const tiny_folder *f, const ted4_ray_options *o, int hel
     json_t *const truth = json_load_file(tiny_path(f, "truth.json"), 0, NULL);
 
     assert_non_null(truth);
-    assert_string_equal(json_string_value(member(truth, "scene", -1)), ted4_ray_scene_name(o->scene));
+    assert_string_equal(json_string_value(member(truth, "scene", -1)),
+                        ted4_ray_scene_name(o->scene));
     assert_int_equal(json_integer_value(member(truth, "frames", -1)), o->n_frames);
     member(truth, "lamp", o->n_frames);
     member(truth, "solids", o->n_frames);
@@ -79,8 +87,8 @@ static void check_truth(const tiny_folder *f, const ted4_ray_options *o, int hel
     json_decref(truth);
 }
 
-/* Every set, of pictures as small as can be, is read as the table says; training pictures have none of the held-out times, test pictures all
- * times. */
+/* Every set, of pictures as small as can be, is read as the table says; training pictures have none
+ * of the held-out times, test pictures all times. */
 static void test_sets(void **state)
 {
     (void)state;
@@ -110,7 +118,8 @@ static void test_sets(void **state)
     }
 }
 
-/* Held-out times in every layout that has lists; in the others that have several times all pictures are there. */
+/* Held-out times in every layout that has lists; in the others that have several times all pictures
+ * are there. */
 static void test_layouts(void **state)
 {
     (void)state;
@@ -139,7 +148,8 @@ static void test_layouts(void **state)
 
 static double distance(const double a[3], const double b[3])
 {
-    return sqrt((a[0] - b[0]) * (a[0] - b[0]) + (a[1] - b[1]) * (a[1] - b[1]) + (a[2] - b[2]) * (a[2] - b[2]));
+    return sqrt((a[0] - b[0]) * (a[0] - b[0]) + (a[1] - b[1]) * (a[1] - b[1]) +
+                (a[2] - b[2]) * (a[2] - b[2]));
 }
 
 static void centre_of(const ted4_ray_camera *c, double x[3])
@@ -148,8 +158,9 @@ static void centre_of(const ted4_ray_camera *c, double x[3])
         x[i] = c->matrix[i][3];
 }
 
-/* A point of a disturbed or moved scene is to the stated camera that it comes from where that of the plain scene is to the true one. Files hold
- * points in single precision: 1,000 units away 3e-5 units, and 8e-4 pixels. */
+/* A point of a disturbed or moved scene is to the stated camera that it comes from where that of
+ * the plain scene is to the true one. Files hold points in single precision: 1,000 units away 3e-5
+ * units, and 8e-4 pixels. */
 static void check_points(const ted4_ray_options *o, const ted4_ray_options *plain)
 {
     for (int i = 0; i < 200; i++) {
@@ -162,7 +173,9 @@ static void check_points(const ted4_ray_options *o, const ted4_ray_options *plai
         ted4_ray_camera_stated(o, a.camera, &c);
         const double depth = ted4_ray_project(&c, p, at);
         ted4_ray_camera_of(plain, b.camera, &c);
-        assert_true(fabs(depth / (ted4_ray_plan_of(o->scene)->scale * ted4_ray_project(&c, q, expected)) - 1) < 1e-4);
+        assert_true(
+            fabs(depth / (ted4_ray_plan_of(o->scene)->scale * ted4_ray_project(&c, q, expected)) -
+                 1) < 1e-4);
         assert_true(fabs(at[0] - expected[0]) < 0.01 && fabs(at[1] - expected[1]) < 0.01);
         assert_memory_equal(a.rgb, b.rgb, 3);
     }
@@ -197,7 +210,8 @@ static void test_shaken(void **state)
         centre_of(&stated, b);
         assert_true(angle > 0.1 && angle < 0.9);
         assert_true(distance(a, b) > 0.005 && distance(a, b) < 0.06);
-        assert_true(fabs(angle * RAY_PI / 180 - sqrt(turn[0] * turn[0] + turn[1] * turn[1] + turn[2] * turn[2])) < 1e-8);
+        assert_true(fabs(angle * RAY_PI / 180 -
+                         sqrt(turn[0] * turn[0] + turn[1] * turn[1] + turn[2] * turn[2])) < 1e-8);
         size += angle / o.n_train;
     }
     assert_true(size > 0.25 && size < 0.55);
@@ -230,7 +244,8 @@ static void test_far_and_wide(void **state)
         ted4_ray_render(&w, &c, b);
         assert_memory_equal(a, b, SIZE);
     }
-    assert_true(fabs((double)(w.room_high.x - w.room_low.x) * ted4_ray_plan_of(RAY_WIDE)->scale - 1000) < 1e-3);
+    assert_true(fabs((double)(w.room_high.x - w.room_low.x) * ted4_ray_plan_of(RAY_WIDE)->scale -
+                     1000) < 1e-3);
     for (int i = 0; i < TED4_RAY_POINTS; i++) {
         const double x = (double)ted4_ray_point_at(&wide, i).point.x;
         low = fmin(low, x);
@@ -257,7 +272,8 @@ static void test_pair(void **state)
     const ted4_ray_options o = plan(RAY_PAIR);
 
     (void)state;
-    assert_true(azimuth_of(&o, 1) - azimuth_of(&o, 0) > 10 && azimuth_of(&o, 1) - azimuth_of(&o, 0) < 20);
+    assert_true(azimuth_of(&o, 1) - azimuth_of(&o, 0) > 10 &&
+                azimuth_of(&o, 1) - azimuth_of(&o, 0) < 20);
     assert_true(fabs(azimuth_of(&o, 2) - (azimuth_of(&o, 0) + azimuth_of(&o, 1)) / 2) < 1e-6);
 }
 
@@ -276,11 +292,13 @@ static uint64_t digest_of(uint64_t digest, const tiny_folder *f, const char *nam
     return digest;
 }
 
-/* Results elsewhere are told of these six: pictures (pixels, for png bytes are zlib's), poses and points must never change. */
+/* Results elsewhere are told of these six: pictures (pixels, for png bytes are zlib's), poses and
+ * points must never change. */
 static void test_first_scenes(void **state)
 {
-    static const uint64_t expected[RAY_FAIR + 1] = { 0x7ebe707bb353771a, 0x8279dfb403aee29c, 0xfcd9521557f18fc5,
-                                                     0x6296e30d4d1a2f63, 0x0276803685b99907, 0xb25d7b32f1a3ee94 };
+    static const uint64_t expected[RAY_FAIR + 1] = { 0x7ebe707bb353771a, 0x8279dfb403aee29c,
+                                                     0xfcd9521557f18fc5, 0x6296e30d4d1a2f63,
+                                                     0x0276803685b99907, 0xb25d7b32f1a3ee94 };
     static uint8_t rgb[SIZE];
 
     (void)state;
@@ -311,8 +329,9 @@ static void test_first_scenes(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_sets), cmocka_unit_test(test_layouts), cmocka_unit_test(test_shaken), cmocka_unit_test(test_far_and_wide),
-        cmocka_unit_test(test_pair), cmocka_unit_test(test_first_scenes),
+        cmocka_unit_test(test_sets),   cmocka_unit_test(test_layouts),
+        cmocka_unit_test(test_shaken), cmocka_unit_test(test_far_and_wide),
+        cmocka_unit_test(test_pair),   cmocka_unit_test(test_first_scenes),
     };
 
     return cmocka_run_group_tests_name("scene sets", tests, NULL, NULL);

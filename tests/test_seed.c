@@ -1,5 +1,5 @@
-/* test_seed.c - where training starts: normalised space and views in it (train/model/normalise.h), anchors
- * from points (train/model/init.h).
+/* test_seed.c - where training starts: normalised space and views in it (train/model/normalise.h),
+ * anchors from points (train/model/init.h).
  * SPDX-License-Identifier: BSD-2-Clause */
 #include <setjmp.h>
 #include <stdarg.h>
@@ -19,7 +19,7 @@ static cloud_case cloud;
 static void test_space_make(void **state)
 {
     static float many[1000][3];
-    ted4_header  h;
+    ted4_header h;
 
     (void)state;
     memset(&h, 0, sizeof h);
@@ -54,7 +54,7 @@ static void test_space_make(void **state)
 static ted4_camera random_camera(uint64_t key)
 {
     ted4_camera c = { 640, 480, 500, 520, 300, 250, { 0 }, { 0 } };
-    double      q[4], n = 0;
+    double q[4], n = 0;
 
     for (uint64_t k = 0; k < 4; k++) {
         q[k] = (double)ted4_uniform(key, k) - 0.5;
@@ -63,9 +63,11 @@ static ted4_camera random_camera(uint64_t key)
     for (int k = 0; k < 4; k++)
         q[k] /= sqrt(n);
     const double w = q[0], x = q[1], y = q[2], z = q[3];
-    const double R[9] = { 1 - 2 * (y * y + z * z), 2 * (x * y - w * z), 2 * (x * z + w * y),
-                          2 * (x * y + w * z), 1 - 2 * (x * x + z * z), 2 * (y * z - w * x),
-                          2 * (x * z - w * y), 2 * (y * z + w * x), 1 - 2 * (x * x + y * y) };
+    const double R[9] = {
+        1 - 2 * (y * y + z * z), 2 * (x * y - w * z),     2 * (x * z + w * y),
+        2 * (x * y + w * z),     1 - 2 * (x * x + z * z), 2 * (y * z - w * x),
+        2 * (x * z - w * y),     2 * (y * z + w * x),     1 - 2 * (x * x + y * y)
+    };
 
     memcpy(c.R, R, sizeof R);
     for (uint64_t k = 0; k < 3; k++)
@@ -77,9 +79,9 @@ static ted4_camera random_camera(uint64_t key)
 static void check_point(const ted4_header *h, const ted4_camera *c, const float world[3])
 {
     const double unit = ldexp(1.0, h->exponent);
-    ted4_view    v;
-    float        centre[3], p[3];
-    double       far[3], near[3];
+    ted4_view v;
+    float centre[3], p[3];
+    double far[3], near[3];
 
     ted4_space_view(h, c, &v, centre);
     ted4_space_point(h, world, p);
@@ -112,9 +114,9 @@ static void test_space_view(void **state)
     (void)state;
     for (uint64_t i = 0; i < 60; i++) {
         const ted4_camera c = random_camera(i);
-        ted4_header       h;
-        ted4_view         v;
-        float             centre[3], world[3];
+        ted4_header h;
+        ted4_view v;
+        float centre[3], world[3];
 
         memset(&h, 0, sizeof h);
         h.exponent = (int8_t)(i % 7 - 2);
@@ -145,7 +147,7 @@ static void check_values(const ted4_trainer *t, size_t i, float scale)
 
     for (int c = 0; c < l->n_channels; c++) {
         const float x = *ted4_cell(&t->anchors, TED4_ROW_VALUE, i, c);
-        const int   s = c - l->first[TED4_SCALING], a = c - l->first[TED4_TAU];
+        const int s = c - l->first[TED4_SCALING], a = c - l->first[TED4_TAU];
 
         if (s >= 0 && s < 6)
             assert_true(fabsf(x - scale) < 1e-5f);
@@ -164,7 +166,7 @@ static void test_lattice(void **state)
     (void)state;
     for (int single = 0; single < 2; single++) {
         ted4_trainer t;
-        uint8_t      seen[CLOUD_POINTS] = { 0 };
+        uint8_t seen[CLOUD_POINTS] = { 0 };
 
         cloud_make(&cloud, single ? 1 : 5);
         begin(&t);
@@ -197,7 +199,7 @@ static void test_voxels(void **state)
 
     (void)state;
     cloud_make(&cloud, 1);
-    cloud.options.cell = 1.0;           /* scene units: half a unit of normalised space */
+    cloud.options.cell = 1.0; /* scene units: half a unit of normalised space */
     cloud.point[0][0] = 100;
     begin(&t);
     assert_true(fabs(t.cell - 0.5) < 1e-9);
@@ -262,7 +264,7 @@ static void test_few_points(void **state)
 static void test_networks(void **state)
 {
     ted4_trainer t, other;
-    size_t       same = 0;
+    size_t same = 0;
 
     (void)state;
     cloud_make(&cloud, 5);
@@ -276,7 +278,7 @@ static void test_networks(void **state)
         same += t.net[i] == other.net[i];
 
     const ted4_net_shape *deform = &t.layout.shape.netr[TED4_NET_DEFORM];
-    const int    last = deform->n_layers - 1;
+    const int last = deform->n_layers - 1;
     const size_t n = ((size_t)deform->dim[last] + 1) * deform->dim[last + 1];
     const size_t end = t.layout.shape.netr[TED4_NET_OPACITY].first;
 
@@ -315,7 +317,7 @@ static void test_awake(void **state)
     cloud_make(&cloud, 5);
     for (uint32_t seed = 0; seed < 40; seed++) {
         ted4_trainer t;
-        double       y[64];
+        double y[64];
 
         cloud.options.seed = seed;
         begin(&t);
@@ -334,8 +336,10 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_space_make), cmocka_unit_test(test_space_view),
-        cmocka_unit_test(test_lattice), cmocka_unit_test(test_voxels), cmocka_unit_test(test_finest), cmocka_unit_test(test_bound),
-        cmocka_unit_test(test_few_points), cmocka_unit_test(test_networks), cmocka_unit_test(test_awake),
+        cmocka_unit_test(test_lattice),    cmocka_unit_test(test_voxels),
+        cmocka_unit_test(test_finest),     cmocka_unit_test(test_bound),
+        cmocka_unit_test(test_few_points), cmocka_unit_test(test_networks),
+        cmocka_unit_test(test_awake),
     };
 
     return cmocka_run_group_tests_name("seed", tests, NULL, NULL);

@@ -26,7 +26,7 @@ static float uniform(void)
 
 /* Colours made from known coefficients. */
 typedef struct {
-    int   degree, calls, fail_at;
+    int degree, calls, fail_at;
     float sh[N * 3 * TED4_SH_MAX_COEFS];
 } known;
 
@@ -71,7 +71,7 @@ static void test_fit_exact(void **state)
         if (degree == 0)
             continue;
         assert_int_equal(ted4_sh_fit(degree - 1, N, sample_known, &k, sh, &rms), 0);
-        assert_true(rms > 0.05);        /* a degree too few cannot follow */
+        assert_true(rms > 0.05); /* a degree too few cannot follow */
         k.calls = 0;
         k.fail_at = 70;
         assert_int_equal(ted4_sh_fit(degree, N, sample_known, &k, sh, &rms), 5);
@@ -99,8 +99,8 @@ static double harmonic(int l, int m, const double d[3])
     const double pi = 3.14159265358979323846, phi = atan2(d[1], d[0]);
     const int a = abs(m);
     const double scale =
-        sqrt((2.0 * l + 1.0) / (4.0 * pi) * tgamma(l - a + 1.0) / tgamma(l + a + 1.0))
-        * legendre(l, a, d[2]);
+        sqrt((2.0 * l + 1.0) / (4.0 * pi) * tgamma(l - a + 1.0) / tgamma(l + a + 1.0)) *
+        legendre(l, a, d[2]);
 
     return m == 0 ? scale : sqrt(2.0) * scale * (m < 0 ? sin(a * phi) : cos(a * phi));
 }

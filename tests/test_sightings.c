@@ -1,4 +1,5 @@
-/* test_sightings.c - train/densify/photo_votes.c: over which times a colour is there, from how many cameras look and how many agree at each.
+/* test_sightings.c - train/densify/photo_votes.c: over which times a colour is there, from how many
+ * cameras look and how many agree at each.
  * SPDX-License-Identifier: BSD-2-Clause */
 #include <setjmp.h>
 #include <stdarg.h>
@@ -11,26 +12,33 @@
 
 enum { FRAMES = 12, CAMERAS = 6 };
 
-/* One point; a letter a time: '#' all cameras agree, '+' five of six, '-' four, '=' three, '.' none, '?' too few look there to tell. */
+/* One point; a letter a time: '#' all cameras agree, '+' five of six, '-' four, '=' three, '.'
+ * none, '?' too few look there to tell. */
 static ted4_sightings seen(const char *times, uint16_t look[FRAMES], uint16_t hits[FRAMES])
 {
     assert_int_equal(strlen(times), FRAMES);
     for (int f = 0; f < FRAMES; f++) {
         look[f] = times[f] == '?' ? TED4_CAMERAS_NEEDED - 1 : CAMERAS;
-        hits[f] = times[f] == '#' ? 6 : times[f] == '+' ? 5 : times[f] == '-' ? 4 : times[f] == '=' ? 3 : times[f] == '?' ? 2 : 0;
+        hits[f] = times[f] == '#'   ? 6
+                  : times[f] == '+' ? 5
+                  : times[f] == '-' ? 4
+                  : times[f] == '=' ? 3
+                  : times[f] == '?' ? 2
+                                    : 0;
     }
-    return (ted4_sightings){ .n = 1, .n_frames = FRAMES, .hits = hits, .seen = look };
+    return (ted4_sightings) { .n = 1, .n_frames = FRAMES, .hits = hits, .seen = look };
 }
 
 static void expect_span(const char *times, uint32_t frame, const char *wanted)
 {
-    uint16_t             look[FRAMES], hits[FRAMES];
+    uint16_t look[FRAMES], hits[FRAMES];
     const ted4_sightings s = seen(times, look, hits);
-    ted4_span            span;
-    char                 got[40] = "none";
+    ted4_span span;
+    char got[40] = "none";
 
     if (ted4_sightings_span(&s, 0, frame, &span))
-        snprintf(got, sizeof got, "%u-%u before %u after %u", span.from, span.to, span.before, span.after);
+        snprintf(got, sizeof got, "%u-%u before %u after %u", span.from, span.to, span.before,
+                 span.after);
     if (strcmp(got, wanted) != 0)
         fail_msg("%s at %u: %s, not %s", times, frame, got, wanted);
 }
@@ -46,7 +54,8 @@ static void test_run(void **state)
     expect_span("............", 3, "none");
 }
 
-/* Clearly fewer cameras than at its best are taken for chance; where its best is no better, half of them will do. */
+/* Clearly fewer cameras than at its best are taken for chance; where its best is no better, half of
+ * them will do. */
 static void test_chance(void **state)
 {
     (void)state;
@@ -88,13 +97,14 @@ static void test_unknown(void **state)
     expect_span("..#???????..", 2, "2-2 before 1 after 8");
     expect_span("..#.????????", 2, "2-2 before 1 after 1");
     expect_span("..##????????", 2, "2-11 before 1 after 1");
-    expect_span(".####???????", 2, "none");             /* gone at less than a quarter of the times that are known */
+    expect_span(".####???????", 2,
+                "none"); /* gone at less than a quarter of the times that are known */
     expect_span("..#?#.......", 3, "none");
 }
 
 static void test_best(void **state)
 {
-    uint16_t             look[FRAMES], hits[FRAMES];
+    uint16_t look[FRAMES], hits[FRAMES];
     const ted4_sightings s = seen(".=?-##..+...", look, hits);
 
     (void)state;
@@ -104,8 +114,9 @@ static void test_best(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_run),        cmocka_unit_test(test_chance),  cmocka_unit_test(test_stays),
-        cmocka_unit_test(test_comes_back), cmocka_unit_test(test_unknown), cmocka_unit_test(test_best),
+        cmocka_unit_test(test_run),     cmocka_unit_test(test_chance),
+        cmocka_unit_test(test_stays),   cmocka_unit_test(test_comes_back),
+        cmocka_unit_test(test_unknown), cmocka_unit_test(test_best),
     };
 
     return cmocka_run_group_tests(tests, NULL, NULL);

@@ -1,7 +1,8 @@
-/* test_spec_annexes.c - annexes A, B, C and H, and the hashes of functions in annex J, are what their generators print now, and the lints of the specification hold.
- * Runs in the top folder, as make does.
+/* test_spec_annexes.c - annexes A, B, C and H, and the hashes of functions in annex J, are what
+ * their generators print now, and the lints of the specification hold. Runs in the top folder, as
+ * make does.
  * SPDX-License-Identifier: BSD-2-Clause */
-#include "gen/annex_b.h"                /* first: fail() is a function there */
+#include "gen/annex_b.h" /* first: fail() is a function there */
 #include "gen/annex_a.h"
 #include "gen/annex_c.h"
 #include "gen/annex_h.h"
@@ -31,9 +32,9 @@ static char *contents(const char *path, size_t *size)
 
 static void current(const char *path, void (*print)(FILE *out))
 {
-    char  *made = NULL, *kept;
+    char *made = NULL, *kept;
     size_t n_made = 0, n_kept;
-    FILE  *out = open_memstream(&made, &n_made);
+    FILE *out = open_memstream(&made, &n_made);
 
     assert_non_null(out);
     print(out);
@@ -75,8 +76,8 @@ static void limits(void **state)
 static void functions(void **state)
 {
     size_t n = 0, n_rows = 0;
-    char  *rows = NULL, *text = contents("spec/annex-j-dumps.md", &n);
-    FILE  *out = open_memstream(&rows, &n_rows);
+    char *rows = NULL, *text = contents("spec/annex-j-dumps.md", &n);
+    FILE *out = open_memstream(&rows, &n_rows);
 
     (void)state;
     text[n] = 0;
@@ -108,17 +109,19 @@ static void indices(void **state)
 /* No valid file is shorter: B.1 says why. */
 static void smallest(void **state)
 {
-    size_t   size;
+    size_t size;
     uint8_t *data = annex_b_encode(annex_b_smallest(), &size);
 
     (void)state;
-    assert_int_equal(size, 12 + 6 * 20 + 88 + (23 + 1 + 11) + (1 + 11) + 6 + (4 + 3 * 4 + 3 * 4) + 16);
+    assert_int_equal(size,
+                     12 + 6 * 20 + 88 + (23 + 1 + 11) + (1 + 11) + 6 + (4 + 3 * 4 + 3 * 4) + 16);
     free(data);
 }
 
 static void lints(void **state)
 {
-    static const char *const lint[] = { "errors", "sections", "spec_rules", "spec_text", "spec_json" };
+    static const char *const lint[] = { "errors", "sections", "spec_rules", "spec_text",
+                                        "spec_json" };
 
     (void)state;
     for (size_t i = 0; i < sizeof lint / sizeof *lint; i++) {
@@ -132,8 +135,8 @@ static void lints(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(tables), cmocka_unit_test(examples), cmocka_unit_test(levels), cmocka_unit_test(limits),
-        cmocka_unit_test(functions), cmocka_unit_test(indices),
+        cmocka_unit_test(tables),   cmocka_unit_test(examples),  cmocka_unit_test(levels),
+        cmocka_unit_test(limits),   cmocka_unit_test(functions), cmocka_unit_test(indices),
         cmocka_unit_test(smallest), cmocka_unit_test(lints),
     };
 

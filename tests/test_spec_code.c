@@ -1,7 +1,8 @@
-/* test_spec_code.c - the code and tables that the specification prints (spec 4.5), compiled into a decoder of their own (spec_model.h), against the
- * reference decoder: the same integers and records of valid streams, the same verdict, identifier and offset of damaged ones.
+/* test_spec_code.c - the code and tables that the specification prints (spec 4.5), compiled into a
+ * decoder of their own (spec_model.h), against the reference decoder: the same integers and records
+ * of valid streams, the same verdict, identifier and offset of damaged ones.
  * SPDX-License-Identifier: BSD-2-Clause */
-#include "spec_tiers.h"                 /* first: its fail() is a function, that of cmocka a macro */
+#include "spec_tiers.h" /* first: its fail() is a function, that of cmocka a macro */
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stdio.h>
@@ -11,7 +12,14 @@
 #include "recon/strict.h"
 #include "vector_files.h"
 
-enum { N_VALID = 40, N_DAMAGED = 20, N_DAMAGES = 200, N_EDGES = 10, N_HASHED = 3000, MAX_CHUNKS = 32 };
+enum {
+    N_VALID = 40,
+    N_DAMAGED = 20,
+    N_DAMAGES = 200,
+    N_EDGES = 10,
+    N_HASHED = 3000,
+    MAX_CHUNKS = 32
+};
 
 static void hashes(void **state)
 {
@@ -22,7 +30,7 @@ static void hashes(void **state)
         bytes[i] = (uint8_t)(i * 2654435761u >> 13);
     for (size_t n = 9; n < N_HASHED; n++)
         assert_true(xxh3_64(bytes, n) == XXH3_64bits(bytes, n));
-    for (size_t n = 0; n < N_HASHED; n += n > 0 ? 1 : 9) {
+    for (size_t n = 0; n<N_HASHED; n += n> 0 ? 1 : 9) {
         const XXH128_hash_t theirs = XXH3_128bits(bytes, n);
         const struct hash128 ours = xxh3_128(bytes, n);
 
@@ -35,7 +43,7 @@ static void functions(void **state)
     (void)state;
     for (uint32_t i = 0; i < 1u << 22; i++) {
         const uint32_t bits = i << 10 | (i * 2654435761u >> 22);
-        const float    x = ted4_bits_float(bits), a = pow2(x), b = ted4_pow2(x);
+        const float x = ted4_bits_float(bits), a = pow2(x), b = ted4_pow2(x);
 
         assert_true(x != x ? a != a && b != b : ted4_float_bits(a) == ted4_float_bits(b));
     }
@@ -76,21 +84,22 @@ static void same_scene(const spec_model *m, const ted4_scene *s)
 
 static void same_record(const ted4_gaussians *g, size_t i, const float *record)
 {
-    const float *const channel[14] = {
-        g->mean[0], g->mean[1], g->mean[2], g->scale[0], g->scale[1], g->scale[2], g->rot[0], g->rot[1], g->rot[2], g->rot[3],
-        g->opacity, g->colour[0], g->colour[1], g->colour[2]
-    };
+    const float *const channel[14] = { g->mean[0],   g->mean[1],  g->mean[2], g->scale[0],
+                                       g->scale[1],  g->scale[2], g->rot[0],  g->rot[1],
+                                       g->rot[2],    g->rot[3],   g->opacity, g->colour[0],
+                                       g->colour[1], g->colour[2] };
 
     for (int c = 0; c < 14; c++)
         assert_int_equal(ted4_float_bits(channel[c][i]), ted4_float_bits(record[c]));
 }
 
 /* finite: did the reference decoder find the records finite? */
-static void same_query(const spec_model *m, const ted4_query *q, const ted4_gaussians *g, int finite)
+static void same_query(const spec_model *m, const ted4_query *q, const ted4_gaussians *g,
+                       int finite)
 {
-    float  record[16][14];
+    float record[16][14];
     size_t i = 0;
-    int    all_finite = 1;
+    int all_finite = 1;
 
     for (size_t a = 0; a < (size_t)m->s.h.n_anchors; a++) {
         const int n = anchor_records(&m->s, m->net_r, a, q->num, q->den, q->camera, record);
@@ -134,10 +143,13 @@ static void same_tiers(const spec_tiers *t, const ted4_scene *s, const uint8_t *
 static int same_queries(const spec_model *m, const ted4_scene *s)
 {
     static const ted4_query queries[] = {
-        { 0, 1, { 0.5f, -1.0f, 2.0f } }, { 1, 3, { 0.25f, 0.0f, 0.0f } }, { 5, 7, { 1e3f, 2.0f, -3.0f } }, { 1, 1, { 0.0f, 0.0f, 0.0f } },
+        { 0, 1, { 0.5f, -1.0f, 2.0f } },
+        { 1, 3, { 0.25f, 0.0f, 0.0f } },
+        { 5, 7, { 1e3f, 2.0f, -3.0f } },
+        { 1, 1, { 0.0f, 0.0f, 0.0f } },
     };
     ted4_recon *r;
-    int         n_finite = 0;
+    int n_finite = 0;
 
     assert_int_equal(ted4_recon_new(&r, s, NULL), TED4_OK);
     for (size_t i = 0; i < sizeof queries / sizeof *queries; i++) {
@@ -159,9 +171,9 @@ static void valid_streams(void **state)
     (void)state;
     for (uint64_t seed = 0; seed < N_VALID; seed++) {
         ted4_scene *s = random_scene(seed), *back;
-        spec_tiers  t = { .model.n_blocks = 0 };
-        size_t      size;
-        uint8_t    *data = encoded(s, &size);
+        spec_tiers t = { .model.n_blocks = 0 };
+        size_t size;
+        uint8_t *data = encoded(s, &size);
 
         spec_tiers_make(&t, data, size);
         assert_null(t.model.v.id);
@@ -205,9 +217,9 @@ static void change_byte(random_source *r, uint8_t *p)
     static const uint8_t special[] = { 0, 1, 2, 31, 63, 127, 128, 255 };
 
     switch (random_in(r, 0, 3)) {
-    case 0:  *p ^= (uint8_t)(1u << random_in(r, 0, 7)); break;
-    case 1:  *p = (uint8_t)(*p + 1); break;
-    case 2:  *p = (uint8_t)(*p - 1); break;
+    case 0: *p ^= (uint8_t)(1u << random_in(r, 0, 7)); break;
+    case 1: *p = (uint8_t)(*p + 1); break;
+    case 2: *p = (uint8_t)(*p - 1); break;
     default: *p = special[random_in(r, 0, 7)]; break;
     }
 }
@@ -216,51 +228,50 @@ static void change_byte(random_source *r, uint8_t *p)
 static size_t damage(random_source *r, uint8_t *data, size_t size)
 {
     size_t at[MAX_CHUNKS + 1];
-    const size_t n = chunks_of(data, size, at), c = random_in(r, 0, (uint32_t)n - 1), length = at[c + 1] - at[c];
+    const size_t n = chunks_of(data, size, at), c = random_in(r, 0, (uint32_t)n - 1),
+                 length = at[c + 1] - at[c];
 
     switch (random_in(r, 0, 14)) {
-    case 0:                                     /* any byte, hash or not */
+    case 0: /* any byte, hash or not */
         change_byte(r, data + random_in(r, 0, (uint32_t)size - 1));
         return size;
-    case 1:                                     /* cut */
-        return random_in(r, 0, (uint32_t)size - 1);
-    case 2:                                     /* a chunk twice */
+    case 1: /* cut */ return random_in(r, 0, (uint32_t)size - 1);
+    case 2: /* a chunk twice */
         memmove(data + at[c + 1] + length, data + at[c + 1], size - at[c + 1]);
         memcpy(data + at[c + 1], data + at[c], length);
         return size + length;
-    case 3:                                     /* a chunk less */
+    case 3: /* a chunk less */
         memmove(data + at[c], data + at[c + 1], size - at[c + 1]);
         return size - length;
-    case 4:                                     /* type, flags, hash mended */
+    case 4: /* type, flags, hash mended */
         change_byte(r, data + at[c] + random_in(r, 0, 7));
         mend_hash(data + at[c]);
         return size;
-    case 5:                                     /* a byte more at the end of a payload */
+    case 5: /* a byte more at the end of a payload */
         memmove(data + at[c + 1] + 1, data + at[c + 1], size - at[c + 1]);
         data[at[c + 1]] = 0;
         ted4_store32(data + at[c] + 8, (uint32_t)length - 20 + 1);
         mend_hash(data + at[c]);
         return size + 1;
-    case 6:                                     /* a byte less */
+    case 6: /* a byte less */
         if (length == 20)
             return size;
         memmove(data + at[c + 1] - 1, data + at[c + 1], size - at[c + 1]);
         ted4_store32(data + at[c] + 8, (uint32_t)length - 20 - 1);
         mend_hash(data + at[c]);
         return size - 1;
-    case 7:                                     /* the file header */
-        change_byte(r, data + random_in(r, 0, 11));
-        return size;
-    case 8:                                     /* HEAD */
+    case 7: /* the file header */ change_byte(r, data + random_in(r, 0, 11)); return size;
+    case 8: /* HEAD */
         change_byte(r, data + at[0] + 12 + random_in(r, 0, (uint32_t)(at[1] - at[0]) - 21));
         mend_hash(data + at[0]);
         return size;
-    case 9:                                     /* the first bytes of a payload */
+    case 9: /* the first bytes of a payload */
         if (length > 20)
-            change_byte(r, data + at[c] + 12 + random_in(r, 0, (uint32_t)(length < 60 ? length : 60) - 21));
+            change_byte(r, data + at[c] + 12 +
+                               random_in(r, 0, (uint32_t)(length < 60 ? length : 60) - 21));
         mend_hash(data + at[c]);
         return size;
-    default:                                    /* some bytes of a payload, hash mended */
+    default: /* some bytes of a payload, hash mended */
         for (uint32_t i = random_in(r, 1, 3); i > 0 && length > 20; i--)
             change_byte(r, data + at[c] + 12 + random_in(r, 0, (uint32_t)length - 21));
         mend_hash(data + at[c]);
@@ -270,15 +281,16 @@ static size_t damage(random_source *r, uint8_t *data, size_t size)
 
 static void same_verdict(const uint8_t *data, size_t size, unsigned *seen)
 {
-    spec_model  m = { .n_blocks = 0 };
-    ted4_error  e = { TED4_OK, 0 };
+    spec_model m = { .n_blocks = 0 };
+    ted4_error e = { TED4_OK, 0 };
     ted4_scene *s;
     const ted4_status status = ted4_decode(data, size, NULL, &s, &e);
 
     spec_model_decode(&m, data, size);
-    if (strcmp(m.v.id == NULL ? "ok" : m.v.id, ted4_status_id(status)) != 0 || (status != TED4_OK && e.offset != m.v.offset)) {
-        printf("text: %s at %llu; decoder: %s at %zu\n", m.v.id == NULL ? "ok" : m.v.id, (unsigned long long)m.v.offset,
-               ted4_status_id(status), e.offset);
+    if (strcmp(m.v.id == NULL ? "ok" : m.v.id, ted4_status_id(status)) != 0 ||
+        (status != TED4_OK && e.offset != m.v.offset)) {
+        printf("text: %s at %llu; decoder: %s at %zu\n", m.v.id == NULL ? "ok" : m.v.id,
+               (unsigned long long)m.v.offset, ted4_status_id(status), e.offset);
         fail();
     }
     seen[status]++;
@@ -289,14 +301,14 @@ static void same_verdict(const uint8_t *data, size_t size, unsigned *seen)
 static void damaged_streams(void **state)
 {
     unsigned seen[TED4_N_STATUS] = { 0 };
-    int      n_kinds = 0;
+    int n_kinds = 0;
 
     (void)state;
     for (uint64_t seed = 0; seed < N_DAMAGED; seed++) {
         random_source r = random_seed(1000 + seed);
-        ted4_scene   *s = random_scene(seed);
-        size_t        size;
-        uint8_t      *data = encoded(s, &size), *copy = malloc(2 * size + 64);
+        ted4_scene *s = random_scene(seed);
+        size_t size;
+        uint8_t *data = encoded(s, &size), *copy = malloc(2 * size + 64);
 
         for (int i = 0; i < N_DAMAGES; i++) {
             memcpy(copy, data, size);
@@ -327,9 +339,10 @@ static void vectors(void **state)
     assert_true(published[TED4_OK] > 300);
 }
 
-/* An entry of HEAD: its place in the payload, and values at and beyond the ends of its range and of the level's bounds. */
+/* An entry of HEAD: its place in the payload, and values at and beyond the ends of its range and of
+ * the level's bounds. */
 typedef struct {
-    size_t  at, width;
+    size_t at, width;
     int64_t value[8];
 } head_entry;
 
@@ -340,13 +353,19 @@ static size_t head_entries(const spec_model *m, head_entry *e)
     const struct header *h = &m->s.h;
     size_t n = 0, at = 0;
 
-#define ELEMENT(name, count, bytes, is_signed, low, high, conditional, condition, level)                    \
-    for (int64_t i = 0; i < (count); i++, at += bytes)                                                      \
-        e[n++] = (head_entry){ at, bytes, { 0, (low) - 1, low, (low) + 1, high, (high) + 1,                 \
-                                            (int64_t)m->bound[BOUND_##level], (int64_t)m->bound[BOUND_##level] + 1 } };
-#define REAL(name, count, bounded)                                                                          \
-    for (int64_t i = 0; i < (count); i++, at += 4)                                                          \
-        e[n++] = (head_entry){ at, 4, { 0, 0x80000000, 0x357fffff, 0x35800000, 0x44800000, 0x44800001, 0x7f800000, 1 } };
+#define ELEMENT(name, count, bytes, is_signed, low, high, conditional, condition, level) \
+    for (int64_t i = 0; i < (count); i++, at += bytes)                                   \
+        e[n++] = (head_entry) { at,                                                      \
+                                bytes,                                                   \
+                                { 0, (low)-1, low, (low) + 1, high, (high) + 1,          \
+                                  (int64_t)m->bound[BOUND_##level],                      \
+                                  (int64_t)m->bound[BOUND_##level] + 1 } };
+#define REAL(name, count, bounded)                                                               \
+    for (int64_t i = 0; i < (count); i++, at += 4)                                               \
+        e[n++] = (head_entry) { at,                                                              \
+                                4,                                                               \
+                                { 0, 0x80000000, 0x357fffff, 0x35800000, 0x44800000, 0x44800001, \
+                                  0x7f800000, 1 } };
 #include "spec/head.inc"
 #undef ELEMENT
 #undef REAL
@@ -362,10 +381,10 @@ static void edges_of_head(void **state)
     (void)state;
     for (uint64_t seed = 0; seed < N_EDGES; seed++) {
         ted4_scene *s = random_scene(2 * seed);
-        head_entry  e[MAX_ENTRIES];
-        spec_model  m = { .n_blocks = 0 };
-        size_t      size, n;
-        uint8_t    *data = encoded(s, &size), *copy = malloc(size);
+        head_entry e[MAX_ENTRIES];
+        spec_model m = { .n_blocks = 0 };
+        size_t size, n;
+        uint8_t *data = encoded(s, &size), *copy = malloc(size);
 
         data[11] = level[seed % sizeof level];
         spec_model_decode(&m, data, size);
@@ -383,18 +402,16 @@ static void edges_of_head(void **state)
         free(copy);
         free(data);
     }
-    assert_true(seen[TED4_E_HDR_RANGE] > 100 && seen[TED4_E_HDR_COMBINATION] > 50 && seen[TED4_E_LVL_EXCEEDED] > 5);
+    assert_true(seen[TED4_E_HDR_RANGE] > 100 && seen[TED4_E_HDR_COMBINATION] > 50 &&
+                seen[TED4_E_LVL_EXCEEDED] > 5);
 }
 
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(edges_of_head),
-        cmocka_unit_test(hashes),
-        cmocka_unit_test(functions),
-        cmocka_unit_test(valid_streams),
-        cmocka_unit_test(damaged_streams),
-        cmocka_unit_test(vectors),
+        cmocka_unit_test(edges_of_head),   cmocka_unit_test(hashes),
+        cmocka_unit_test(functions),       cmocka_unit_test(valid_streams),
+        cmocka_unit_test(damaged_streams), cmocka_unit_test(vectors),
     };
 
     return cmocka_run_group_tests(tests, NULL, NULL);

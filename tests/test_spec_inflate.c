@@ -1,7 +1,8 @@
-/* test_spec_inflate.c - annex L, as the text prints it, against zlib, which the decoder uses: both accept the same streams and give the same bytes. Streams of every
- * kind of block, and each damaged many times.
+/* test_spec_inflate.c - annex L, as the text prints it, against zlib, which the decoder uses: both
+ * accept the same streams and give the same bytes. Streams of every kind of block, and each damaged
+ * many times.
  * SPDX-License-Identifier: BSD-2-Clause */
-#include "spec_model.h"                 /* first: fail() is a function there */
+#include "spec_model.h" /* first: fail() is a function there */
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stdio.h>
@@ -14,7 +15,7 @@ enum { N_STREAMS = 60, N_DAMAGES = 2000, MOST = 4096 };
 static int zlib_accepts(const uint8_t *in, size_t n_in, uint8_t *out, size_t n_out)
 {
     uLongf got = (uLongf)n_out;
-    uLong  used = (uLong)n_in;
+    uLong used = (uLong)n_in;
 
     return uncompress2(out, &got, in, &used) == Z_OK && got == n_out && used == n_in;
 }
@@ -38,8 +39,10 @@ static void fill(random_source *r, uint8_t *text, size_t n)
 
     for (size_t i = 0; i < n; i++)
         text[i] = kind == 0 || i == 0 ? (uint8_t)random_in(r, 0, spread)
-                : kind == 1 ? (uint8_t)(random_in(r, 0, 15) ? text[i - 1] : random_in(r, 0, spread))
-                : kind == 2 ? text[i / 2] : (uint8_t)(i * spread >> 3);
+                  : kind == 1
+                      ? (uint8_t)(random_in(r, 0, 15) ? text[i - 1] : random_in(r, 0, spread))
+                  : kind == 2 ? text[i / 2]
+                              : (uint8_t)(i * spread >> 3);
 }
 
 static size_t deflated(random_source *r, const uint8_t *text, size_t n, uint8_t *out)
@@ -48,8 +51,9 @@ static size_t deflated(random_source *r, const uint8_t *text, size_t n, uint8_t 
     z_stream z;
 
     memset(&z, 0, sizeof z);
-    assert_int_equal(deflateInit2(&z, (int)random_in(r, 0, 9), Z_DEFLATED, (int)random_in(r, 9, 15), (int)random_in(r, 1, 9),
-                                  strategy[random_in(r, 0, 3)]), Z_OK);
+    assert_int_equal(deflateInit2(&z, (int)random_in(r, 0, 9), Z_DEFLATED, (int)random_in(r, 9, 15),
+                                  (int)random_in(r, 1, 9), strategy[random_in(r, 0, 3)]),
+                     Z_OK);
     z.next_in = (uint8_t *)(uintptr_t)text;
     z.avail_in = (unsigned)(n / 2);
     z.next_out = out;
@@ -64,13 +68,13 @@ static size_t deflated(random_source *r, const uint8_t *text, size_t n, uint8_t 
 static void damaged(void **state)
 {
     static uint8_t text[MOST], stream[2 * MOST], copy[2 * MOST + 1];
-    random_source  r = random_seed(11);
-    unsigned       n_valid = 0;
+    random_source r = random_seed(11);
+    unsigned n_valid = 0;
 
     (void)state;
     for (int i = 0; i < N_STREAMS; i++) {
         const size_t n = random_in(&r, 1, i % 4 ? 300 : MOST);
-        size_t       size;
+        size_t size;
 
         fill(&r, text, n);
         size = deflated(&r, text, n, stream);
@@ -82,25 +86,27 @@ static void damaged(void **state)
             memcpy(copy, stream, size);
             copy[size] = 0;
             for (uint32_t c = random_in(&r, 1, 2); c > 0; c--)
-                copy[random_in(&r, 0, (uint32_t)(size < 80 || k % 2 ? size : 80) - 1)] ^= (uint8_t)(1u << random_in(&r, 0, 7));
+                copy[random_in(&r, 0, (uint32_t)(size < 80 || k % 2 ? size : 80) - 1)] ^=
+                    (uint8_t)(1u << random_in(&r, 0, 7));
             n_valid += (unsigned)same(copy, size + (k % 16 == 0), n);
         }
     }
-    assert_true(n_valid > 10);          /* bits that nobody looks at */
+    assert_true(n_valid > 10); /* bits that nobody looks at */
 }
 
-/* A checksum that fits hides damage from the check at the end: only the rules on blocks are left. */
+/* A checksum that fits hides damage from the check at the end: only the rules on blocks are left.
+ */
 static void damaged_and_mended(void **state)
 {
     static uint8_t text[MOST], stream[2 * MOST], out[MOST];
-    random_source  r = random_seed(12);
-    unsigned       n_valid = 0, n_wrong = 0;
+    random_source r = random_seed(12);
+    unsigned n_valid = 0, n_wrong = 0;
 
     (void)state;
     for (int i = 0; i < 20 * N_DAMAGES; i++) {
         const size_t n = random_in(&r, 1, 64);
-        size_t       size, n_out = n;
-        z_stream     z;
+        size_t size, n_out = n;
+        z_stream z;
 
         if (i % 50 == 0) {
             fill(&r, text, n);
@@ -138,7 +144,7 @@ static void damaged_and_mended(void **state)
 /* Bits of a stream, the lowest of each byte first. */
 typedef struct {
     uint8_t byte[512];
-    size_t  n;
+    size_t n;
 } bit_string;
 
 static void put_bits(bit_string *b, unsigned value, int n)
@@ -151,8 +157,9 @@ static void put_bits(bit_string *b, unsigned value, int n)
 static void some_code(random_source *r, uint8_t *length, const int symbol[4])
 {
     static const uint8_t choice[][4] = {
-        { 1, 0, 0, 0 }, { 1, 1, 0, 0 }, { 1, 2, 2, 0 }, { 2, 2, 2, 2 }, { 2, 2, 2, 0 }, { 2, 0, 0, 0 }, { 1, 1, 1, 0 }, { 0, 1, 1, 0 },
-        { 0, 0, 0, 0 }, { 1, 2, 3, 3 }, { 1, 2, 3, 0 }, { 0, 1, 0, 0 }, { 15, 1, 2, 3 },
+        { 1, 0, 0, 0 }, { 1, 1, 0, 0 }, { 1, 2, 2, 0 },  { 2, 2, 2, 2 }, { 2, 2, 2, 0 },
+        { 2, 0, 0, 0 }, { 1, 1, 1, 0 }, { 0, 1, 1, 0 },  { 0, 0, 0, 0 }, { 1, 2, 3, 3 },
+        { 1, 2, 3, 0 }, { 0, 1, 0, 0 }, { 15, 1, 2, 3 },
     };
     const uint8_t *c = choice[random_in(r, 0, sizeof choice / sizeof *choice - 1)];
 
@@ -161,7 +168,8 @@ static void some_code(random_source *r, uint8_t *length, const int symbol[4])
 }
 
 /* A dynamic block with these codes, and data. */
-static bit_string block_of(const uint8_t *literal, unsigned n_literal, const uint8_t *distance, unsigned n_distance, const uint32_t data[4])
+static bit_string block_of(const uint8_t *literal, unsigned n_literal, const uint8_t *distance,
+                           unsigned n_distance, const uint32_t data[4])
 {
     bit_string b = { { 0x78, 0x01 }, 16 };
 
@@ -169,7 +177,7 @@ static bit_string block_of(const uint8_t *literal, unsigned n_literal, const uin
     put_bits(&b, n_literal - 257, 5);
     put_bits(&b, n_distance - 1, 5);
     put_bits(&b, 15, 4);
-    for (int k = 0; k < 19; k++)                /* symbols 0 .. 15 of the code length code have 4 bits */
+    for (int k = 0; k < 19; k++) /* symbols 0 .. 15 of the code length code have 4 bits */
         put_bits(&b, k < 3 ? 0 : 4, 3);
     for (unsigned k = 0; k < n_literal + n_distance; k++)
         for (int bit = 3; bit >= 0; bit--)
@@ -183,7 +191,7 @@ static bit_string block_of(const uint8_t *literal, unsigned n_literal, const uin
 static size_t blocks_end(const bit_string *b, uint8_t out[MOST], size_t *n_out)
 {
     z_stream z;
-    int      verdict;
+    int verdict;
 
     memset(&z, 0, sizeof z);
     assert_int_equal(inflateInit2(&z, -15), Z_OK);
@@ -208,20 +216,21 @@ static int same_with_sum(bit_string b, size_t end, const uint8_t *out, size_t n_
     return same(b.byte, b.n / 8, n_out);
 }
 
-/* One dynamic block whose codes are what R-NET-007 is about, and bits at random; and the same with more codes than there may be. */
+/* One dynamic block whose codes are what R-NET-007 is about, and bits at random; and the same with
+ * more codes than there may be. */
 static void codes(void **state)
 {
     static const int literals[4] = { 256, 65, 257, 285 }, distances[4] = { 0, 1, 5, 29 };
-    static uint8_t   out[MOST];
-    random_source    r = random_seed(14);
-    unsigned         n_valid = 0;
+    static uint8_t out[MOST];
+    random_source r = random_seed(14);
+    unsigned n_valid = 0;
 
     (void)state;
     for (int i = 0; i < 20 * N_DAMAGES; i++) {
-        uint8_t        literal[288] = { 0 }, distance[32] = { 0 };
+        uint8_t literal[288] = { 0 }, distance[32] = { 0 };
         const uint32_t data[4] = { random_u32(&r), random_u32(&r), random_u32(&r), random_u32(&r) };
-        bit_string     b;
-        size_t         end, n_out;
+        bit_string b;
+        size_t end, n_out;
 
         some_code(&r, literal, literals);
         some_code(&r, distance, distances);
@@ -233,11 +242,16 @@ static void codes(void **state)
         }
         assert_true(same_with_sum(b, end, out, n_out));
         n_valid++;
-        for (size_t more = 0; more < 2; more++) {       /* 4 or 8 bits more may end in the same byte or in the next */
-            assert_false(same_with_sum(block_of(literal, 287, distance, 30, data), end + more, out, n_out));
-            assert_false(same_with_sum(block_of(literal, 288, distance, 30, data), end + more, out, n_out));
-            assert_false(same_with_sum(block_of(literal, 286, distance, 31, data), end + more, out, n_out));
-            assert_false(same_with_sum(block_of(literal, 286, distance, 32, data), end + more, out, n_out));
+        for (size_t more = 0; more < 2;
+             more++) { /* 4 or 8 bits more may end in the same byte or in the next */
+            assert_false(
+                same_with_sum(block_of(literal, 287, distance, 30, data), end + more, out, n_out));
+            assert_false(
+                same_with_sum(block_of(literal, 288, distance, 30, data), end + more, out, n_out));
+            assert_false(
+                same_with_sum(block_of(literal, 286, distance, 31, data), end + more, out, n_out));
+            assert_false(
+                same_with_sum(block_of(literal, 286, distance, 32, data), end + more, out, n_out));
         }
     }
     assert_true(n_valid > 100);
@@ -247,8 +261,8 @@ static void codes(void **state)
 static void narrow_window(void **state)
 {
     static uint8_t text[1024], stream[2 * MOST];
-    random_source  r = random_seed(13);
-    uLongf         size = sizeof stream;
+    random_source r = random_seed(13);
+    uLongf size = sizeof stream;
 
     (void)state;
     for (int i = 0; i < 1024; i++)
@@ -258,7 +272,7 @@ static void narrow_window(void **state)
     stream[1] = 0x1d;
     assert_true(size < 400);
     assert_true(same(stream, size, sizeof text));
-    stream[0] = 0x88;                   /* CINFO = 8 */
+    stream[0] = 0x88; /* CINFO = 8 */
     stream[1] = 0x1c;
     assert_int_equal((256 * stream[0] + stream[1]) % 31, 0);
     assert_false(same(stream, size, sizeof text));
@@ -267,7 +281,10 @@ static void narrow_window(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(damaged), cmocka_unit_test(damaged_and_mended), cmocka_unit_test(codes), cmocka_unit_test(narrow_window),
+        cmocka_unit_test(damaged),
+        cmocka_unit_test(damaged_and_mended),
+        cmocka_unit_test(codes),
+        cmocka_unit_test(narrow_window),
     };
 
     return cmocka_run_group_tests(tests, NULL, NULL);

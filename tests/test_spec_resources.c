@@ -1,7 +1,9 @@
-/* test_spec_resources.c - the formulas of spec 13.3 and 13.4, as the text prints them, against what decoding and queries take: a budget of M_E and M_R is
- * enough, W_E and W_R are what a limit on work is held against, to the step, and the elements of HEAD are traced in the order, width and name of the table of 6.1, all others under names of annex J.
+/* test_spec_resources.c - the formulas of spec 13.3 and 13.4, as the text prints them, against what
+ * decoding and queries take: a budget of M_E and M_R is enough, W_E and W_R are what a limit on
+ * work is held against, to the step, and the elements of HEAD are traced in the order, width and
+ * name of the table of 6.1, all others under names of annex J.
  * SPDX-License-Identifier: BSD-2-Clause */
-#include "spec_model.h"                 /* first: fail() is a function there */
+#include "spec_model.h" /* first: fail() is a function there */
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stdio.h>
@@ -22,12 +24,12 @@ static uint8_t *encoded(const ted4_scene *s, size_t *size)
 /* A scene decoded and queried under budgets that follow from its header. */
 static void fits(const uint8_t *data, size_t size, const ted4_parallel *p, uint64_t tiles)
 {
-    spec_model     m = { .n_blocks = 0 };
-    ted4_options   o = { .parallel = p };
-    ted4_scene    *s;
-    ted4_recon    *r;
-    ted4_info      info;
-    uint64_t       v;
+    spec_model m = { .n_blocks = 0 };
+    ted4_options o = { .parallel = p };
+    ted4_scene *s;
+    ted4_recon *r;
+    ted4_info info;
+    uint64_t v;
 
     spec_model_decode(&m, data, size);
     assert_null(m.v.id);
@@ -44,16 +46,16 @@ static void fits(const uint8_t *data, size_t size, const ted4_parallel *p, uint6
 
 static void memory(void **state)
 {
-    random_source     r = random_seed(7);
+    random_source r = random_seed(7);
     const ted4_header paper = random_paper_header(N_PAPER);
-    ted4_parallel     p;
+    ted4_parallel p;
 
     (void)state;
     ted4_threads_init(&p, 2);
     for (uint64_t seed = 0; seed <= N_SCENES; seed++) {
         ted4_scene *s = seed < N_SCENES ? random_scene(seed) : random_scene_of(&r, &paper, 0);
-        size_t      size;
-        uint8_t    *data = encoded(s, &size);
+        size_t size;
+        uint8_t *data = encoded(s, &size);
 
         fits(data, size, NULL, 1);
         fits(data, size, &p, REFERENCE_TILES);
@@ -66,13 +68,13 @@ static void memory(void **state)
 /* A scene decoded and queried under limits on work that follow from its header. */
 static void works(const uint8_t *data, size_t size)
 {
-    spec_model   m = { .n_blocks = 0 };
+    spec_model m = { .n_blocks = 0 };
     ted4_options o = { .max_work = 0 };
-    uint64_t     a_e = 0, a_r = 0, least;
-    ted4_scene  *s;
-    ted4_recon  *r;
-    ted4_error   e;
-    ted4_info    info;
+    uint64_t a_e = 0, a_r = 0, least;
+    ted4_scene *s;
+    ted4_recon *r;
+    ted4_error e;
+    ted4_info info;
 
     spec_model_decode(&m, data, size);
     for (int i = 0; i < m.s.h.n_slices; i++)
@@ -102,8 +104,8 @@ static void work(void **state)
     (void)state;
     for (uint64_t seed = 0; seed < N_SCENES; seed++) {
         ted4_scene *s = random_scene(seed);
-        size_t      size;
-        uint8_t    *data = encoded(s, &size);
+        size_t size;
+        uint8_t *data = encoded(s, &size);
 
         works(data, size);
         ted4_scene_free(s);
@@ -114,8 +116,8 @@ static void work(void **state)
 /* Elements of HEAD as 6.1 lists them for one header. */
 typedef struct {
     const char *name;
-    int64_t     index;
-    size_t      width;
+    int64_t index;
+    size_t width;
 } head_element;
 
 enum { MAX_HEAD = 96 };
@@ -126,10 +128,10 @@ static size_t head_elements(const struct header *h, head_element *e)
 
 #define ELEMENT(element, count, bytes, is_signed, low, high, conditional, condition, level) \
     for (int64_t i = 0; i < (count); i++)                                                   \
-        e[n++] = (head_element){ #element, i, bytes };
-#define REAL(element, count, bounded)                                                       \
-    for (int64_t i = 0; i < (count); i++)                                                   \
-        e[n++] = (head_element){ #element, i, 4 };
+        e[n++] = (head_element) { #element, i, bytes };
+#define REAL(element, count, bounded)     \
+    for (int64_t i = 0; i < (count); i++) \
+        e[n++] = (head_element) { #element, i, 4 };
 #include "spec/head.inc"
 #undef ELEMENT
 #undef REAL
@@ -139,8 +141,8 @@ static size_t head_elements(const struct header *h, head_element *e)
 /* What the decoder traces, held against the tables. */
 typedef struct {
     const head_element *head;
-    size_t              n_head, seen, next_at;
-    int                 in_head, good;
+    size_t n_head, seen, next_at;
+    int in_head, good;
 } traced;
 
 static int in_annex_j(const char *name)
@@ -186,12 +188,12 @@ static void syntax(void **state)
     (void)state;
     for (uint64_t seed = 0; seed < N_SCENES; seed++) {
         head_element head[MAX_HEAD];
-        traced       t = { .head = head, .good = 1 };
-        spec_model   m = { .n_blocks = 0 };
+        traced t = { .head = head, .good = 1 };
+        spec_model m = { .n_blocks = 0 };
         ted4_options o = { .trace = hold, .trace_user = &t };
-        ted4_scene  *s = random_scene(seed), *back;
-        size_t       size;
-        uint8_t     *data = encoded(s, &size);
+        ted4_scene *s = random_scene(seed), *back;
+        size_t size;
+        uint8_t *data = encoded(s, &size);
 
         spec_model_decode(&m, data, size);
         t.n_head = head_elements(&m.s.h, head);
@@ -207,7 +209,8 @@ static void syntax(void **state)
 
 int main(void)
 {
-    const struct CMUnitTest tests[] = { cmocka_unit_test(memory), cmocka_unit_test(work), cmocka_unit_test(syntax) };
+    const struct CMUnitTest tests[] = { cmocka_unit_test(memory), cmocka_unit_test(work),
+                                        cmocka_unit_test(syntax) };
 
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -1,6 +1,7 @@
-/* test_spec_tolerance.c - annex E: thresholds of class T computed by its rule; what keeps them and what does not.
+/* test_spec_tolerance.c - annex E: thresholds of class T computed by its rule; what keeps them and
+ * what does not.
  * SPDX-License-Identifier: BSD-2-Clause */
-#include "spec_tolerance.h"             /* first: fail() is a function there */
+#include "spec_tolerance.h" /* first: fail() is a function there */
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stdio.h>
@@ -17,9 +18,9 @@ static int for_each(void (*check)(const tol_reference *t, const struct scene *s)
 
     for (uint64_t seed = 0; seed < N_SCENES; seed++) {
         ted4_scene *s = random_scene(seed);
-        spec_model  m = { .n_blocks = 0 };
-        uint8_t    *data = NULL;
-        size_t      size;
+        spec_model m = { .n_blocks = 0 };
+        uint8_t *data = NULL;
+        size_t size;
 
         assert_int_equal(ted4_encode(s, 0, NULL, &data, &size, NULL), TED4_OK);
         spec_model_decode(&m, data, size);
@@ -58,7 +59,8 @@ static void check_evaluations(const tol_reference *t, const struct scene *s)
     }
 }
 
-/* Every evaluation keeps the thresholds that it helped to make, and each of them is another arithmetic. */
+/* Every evaluation keeps the thresholds that it helped to make, and each of them is another
+ * arithmetic. */
 static void evaluations(void **state)
 {
     (void)state;
@@ -73,11 +75,14 @@ static void check_error(const tol_reference *t, const struct scene *s)
 {
     static const int first[TOL_GROUPS] = { 0, 3, 6, 10, 11 };
     const size_t bytes = t->n * sizeof *t->record[0], i = t->n / 2;
-    float      (*y)[14] = malloc(bytes);
+    float(*y)[14] = malloc(bytes);
 
     (void)s;
     for (int g = 0; g < TOL_GROUPS; g++) {
-        const double scale = g == TOL_POSITION ? t->unit : g == TOL_SCALE ? fmax((double)t->record[TOL_EXACT][i][3], 0x1p-24 * t->unit) : 1.0;
+        const double scale = g == TOL_POSITION ? t->unit
+                             : g == TOL_SCALE
+                                 ? fmax((double)t->record[TOL_EXACT][i][3], 0x1p-24 * t->unit)
+                                 : 1.0;
 
         if (!(t->judged[i] >> g & 1))
             continue;
@@ -88,7 +93,7 @@ static void check_error(const tol_reference *t, const struct scene *s)
     memcpy(y, t->record[TOL_EXACT], bytes);
     for (int j = 6; j < 10; j++)
         y[i][j] = -y[i][j];
-    assert_int_equal(tol_judge(t, y), -1);      /* the same rotation */
+    assert_int_equal(tol_judge(t, y), -1); /* the same rotation */
     y[i][10] = NAN;
     assert_true(tol_judge(t, y) >= 0);
     free(y);
@@ -103,9 +108,9 @@ static void errors(void **state)
 /* A record that one evaluation leaves the numbers with is not judged; the others are as before. */
 static void check_infinite(const tol_reference *t, const struct scene *s)
 {
-    const size_t   i = t->n / 2;
-    tol_reference  u = *t;
-    float   *const number = &u.record[TOL_WIDE + i % 3][i][i % 14], finite = *number;
+    const size_t i = t->n / 2;
+    tol_reference u = *t;
+    float *const number = &u.record[TOL_WIDE + i % 3][i][i % 14], finite = *number;
     uint8_t *const before = malloc(t->n);
 
     memcpy(before, t->judged, t->n);
@@ -125,7 +130,8 @@ static void infinite(void **state)
     assert_true(for_each(check_infinite) > N_SCENES);
 }
 
-/* tol_exact is the reference decoder, bit for bit: test_spec_code.c. Rounded up to a power of two means just that. */
+/* tol_exact is the reference decoder, bit for bit: test_spec_code.c. Rounded up to a power of two
+ * means just that. */
 static void rounding(void **state)
 {
     (void)state;
@@ -137,7 +143,8 @@ static void rounding(void **state)
 
 int main(void)
 {
-    const struct CMUnitTest tests[] = { cmocka_unit_test(evaluations), cmocka_unit_test(errors), cmocka_unit_test(infinite), cmocka_unit_test(rounding) };
+    const struct CMUnitTest tests[] = { cmocka_unit_test(evaluations), cmocka_unit_test(errors),
+                                        cmocka_unit_test(infinite), cmocka_unit_test(rounding) };
 
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -1,5 +1,5 @@
-/* test_sprout.c - train/densify/mv_seed.h: a fast ball that no initial point stands for is found where and when it is, and gets anchors. That they
- * matter is shown on scenes: bench/report.md.
+/* test_sprout.c - train/densify/mv_seed.h: a fast ball that no initial point stands for is found
+ * where and when it is, and gets anchors. That they matter is shown on scenes: bench/report.md.
  * SPDX-License-Identifier: BSD-2-Clause */
 #include <setjmp.h>
 #include <stdarg.h>
@@ -13,7 +13,7 @@
 #include "ball_missing.h"
 #include "train/densify/mv_seed.h"
 
-enum { SPEED = 2, STEPS = 120 };     /* the blue ball moves 0.5 a frame; its radius is 0.3 */
+enum { SPEED = 2, STEPS = 120 }; /* the blue ball moves 0.5 a frame; its radius is 0.3 */
 
 static int set_up_without_blue(void **state)
 {
@@ -34,15 +34,15 @@ static ted4_train_options options(double sprouts)
 static void test_search(void **state)
 {
     const ted4_train_options o = options(0.3);
-    ted4_places  list = { 0 };
+    ted4_places list = { 0 };
     ted4_trainer t;
 
     (void)state;
     ball_begin(&t, &o, &balls, NULL);
     ball_train(&t, STEPS);
-    for (uint32_t f = 0; f < 3; f++) {          /* then it leaves the pictures */
+    for (uint32_t f = 0; f < 3; f++) { /* then it leaves the pictures */
         const size_t first = list.n;
-        size_t       near = 0;
+        size_t near = 0;
 
         assert_int_equal(ted4_sprout_search(&t, f, 0, &list), 0);
         for (size_t i = first; i < list.n; i++) {
@@ -62,8 +62,8 @@ static void test_search(void **state)
 static void test_long(void **state)
 {
     const ted4_train_options o = options(0.3);
-    const uint32_t           frames = balls.n_frames;
-    ted4_places  list = { 0 };
+    const uint32_t frames = balls.n_frames;
+    ted4_places list = { 0 };
     ted4_trainer t;
 
     (void)state;
@@ -86,14 +86,14 @@ static void test_sprout(void **state)
 {
     const ted4_train_options o = options(0.3);
     ted4_trainer t;
-    size_t       near;
+    size_t near;
 
     (void)state;
     ball_begin(&t, &o, &balls, NULL);
     for (size_t i = 0; i < t.anchors.n; i++)
         assert_false(ted4_is_transient(&t, i));
     ball_train(&t, STEPS - 1);
-    assert_int_equal(t.anchors.n + ted4_schedule_room(&t), 224);    /* 0.7 of 320 */
+    assert_int_equal(t.anchors.n + ted4_schedule_room(&t), 224); /* 0.7 of 320 */
     ball_train(&t, STEPS);
 
     const size_t before = t.anchors.n;
@@ -104,7 +104,8 @@ static void test_sprout(void **state)
     const size_t n = ball_count_transients(&t, SPEED, 0.71f, &near);
 
     if (t.anchors.n < before + 20 || n < t.anchors.n - before || 2 * near < n)
-        fail_msg("%zu new anchors, %zu with short lives, %zu on the ball", t.anchors.n - before, n, near);
+        fail_msg("%zu new anchors, %zu with short lives, %zu on the ball", t.anchors.n - before, n,
+                 near);
     ted4_trainer_finish(&t);
 }
 
@@ -120,7 +121,7 @@ static void test_impossible(void **state)
     assert_int_equal(t.anchors.n + ted4_schedule_room(&t), 320);
     ted4_trainer_finish(&t);
     o.activation = 1;
-    for (size_t i = 0; i < balls.n_pictures; i++)           /* two cameras a time */
+    for (size_t i = 0; i < balls.n_pictures; i++) /* two cameras a time */
         balls.pictures[i].is_test = balls.pictures[i].camera_id >= 2;
     ball_begin(&t, &o, &balls, NULL);
     assert_int_equal(ted4_sprout_reach(&t), -1);

@@ -1,4 +1,5 @@
-/* test_stack.c - how deep the library's calls go on their thread's stack, for every vector of the suite: no deeper than SECURITY.md says.
+/* test_stack.c - how deep the library's calls go on their thread's stack, for every vector of the
+ * suite: no deeper than SECURITY.md says.
  * SPDX-License-Identifier: BSD-2-Clause */
 #include <setjmp.h>
 #include <stdarg.h>
@@ -17,27 +18,30 @@ enum { PROMISED = 256 << 10, STACK = 1 << 20, PAINT = 0xa5, FEW_VECTORS = 250 };
 
 typedef struct {
     const uint8_t *data;
-    size_t         size;
+    size_t size;
 } file;
 
 static unsigned char *stack;
-static size_t         deepest;
-static char           where[1024];
+static size_t deepest;
+static char where[1024];
 
 static void keep_nothing(void *user, const void *bytes, size_t size)
 {
-    (void)user; (void)bytes; (void)size;
+    (void)user;
+    (void)bytes;
+    (void)size;
 }
 
 static void find_nothing(void *user, const ted4_finding *f)
 {
-    (void)user; (void)f;
+    (void)user;
+    (void)f;
 }
 
 static void look_at(const ted4_scene *s)
 {
     static const ted4_query q = { 1, 3, { 1, 2, 3 } };
-    ted4_recon    *r;
+    ted4_recon *r;
     ted4_gaussians g;
 
     for (int tier = 1; tier <= 4; tier++)
@@ -50,9 +54,9 @@ static void look_at(const ted4_scene *s)
 
 static void *every_call(void *arg)
 {
-    const file  *f = arg;
-    ted4_scene  *s;
-    ted4_error   e;
+    const file *f = arg;
+    ted4_scene *s;
+    ted4_error e;
     ted4_salvage what;
 
     if (ted4_decode(f->data, f->size, NULL, &s, &e) == TED4_OK)
@@ -68,10 +72,10 @@ static void *every_call(void *arg)
 /* Runs it on a painted stack. Stacks grow down here. */
 static void measure(const uint8_t *data, size_t size, const char *path)
 {
-    file           f = { data, size };
+    file f = { data, size };
     pthread_attr_t attributes;
-    pthread_t      thread;
-    size_t         untouched = 0;
+    pthread_t thread;
+    size_t untouched = 0;
 
     memset(stack, PAINT, STACK);
     assert_int_equal(pthread_attr_init(&attributes), 0);

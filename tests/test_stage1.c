@@ -1,4 +1,5 @@
-/* test_stage1.c - one end of stage 1 serves every lambda and every variant of stage 2: what comes out is what a training of its own would have given.
+/* test_stage1.c - one end of stage 1 serves every lambda and every variant of stage 2: what comes
+ * out is what a training of its own would have given.
  * SPDX-License-Identifier: BSD-2-Clause */
 #include <setjmp.h>
 #include <stdarg.h>
@@ -11,8 +12,8 @@
 
 enum { STAGE1 = 400, FRAMES = 5 };
 
-static tiny_folder   folder;
-static ted4_dataset  scene;
+static tiny_folder folder;
+static ted4_dataset scene;
 static ted4_snapshot shared;
 
 static int set_up(void **state)
@@ -41,7 +42,7 @@ static int tear_down(void **state)
 static ball_file train(const ted4_train_options *o, int from_shared)
 {
     ted4_trainer t;
-    ball_file    f;
+    ball_file f;
 
     ball_begin(&t, o, &scene, NULL);
     if (from_shared && ted4_snapshot_restore(&t, &shared) != 0)
@@ -53,8 +54,8 @@ static ball_file train(const ted4_train_options *o, int from_shared)
 }
 
 static const char *const variants[] = {
-    "lambda=0.02", "stage2=120", "slices=1", "factorised=1", "offset_mask=0", "step_feature=0.5",
-    "hyper_layers=0", "octaves=0", "linear_scale=1", "integer_share=0.5",
+    "lambda=0.02",      "stage2=120",     "slices=1",  "factorised=1",   "offset_mask=0",
+    "step_feature=0.5", "hyper_layers=0", "octaves=0", "linear_scale=1", "integer_share=0.5",
 };
 
 static void test_variants(void **state)
@@ -87,7 +88,7 @@ static void test_refused(void **state)
 {
     static const char *const bad[] = { "motion=2", "view=0", "temporal_weight=0.1", "stage1=401" };
     ted4_train_options o;
-    ted4_trainer  t;
+    ted4_trainer t;
     ted4_snapshot later = { 0 };
 
     (void)state;
@@ -112,7 +113,8 @@ static void test_refused(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_variants), cmocka_unit_test(test_refused),
+        cmocka_unit_test(test_variants),
+        cmocka_unit_test(test_refused),
     };
 
     return cmocka_run_group_tests(tests, set_up, tear_down);

@@ -1,6 +1,7 @@
-/* test_starved.c - branches of norm/ and read/ that no file takes: every allocation fails, by itself and with all behind it, in everything the library does with a
- * file: a verdict, nothing given, nothing kept; and mistakes of callers who write scenes. conformance/branches-excluded.txt lists them, and `make conformance-branches`
- * sees that this takes each.
+/* test_starved.c - branches of norm/ and read/ that no file takes: every allocation fails, by
+ * itself and with all behind it, in everything the library does with a file: a verdict, nothing
+ * given, nothing kept; and mistakes of callers who write scenes. conformance/branches-excluded.txt
+ * lists them, and `make conformance-branches` sees that this takes each.
  * SPDX-License-Identifier: BSD-2-Clause */
 #include <setjmp.h>
 #include <stdarg.h>
@@ -13,7 +14,7 @@
 
 typedef struct {
     uint8_t *data;
-    size_t   size;
+    size_t size;
 } file;
 
 static void throw_away(void *user, const void *bytes, size_t size)
@@ -42,8 +43,8 @@ typedef ted4_status deed(const file *f, const ted4_options *o);
 
 static ted4_status decodes(const file *f, const ted4_options *o)
 {
-    ted4_scene       *s;
-    ted4_error        e;
+    ted4_scene *s;
+    ted4_error e;
     const ted4_status verdict = ted4_decode(f->data, f->size, o, &s, &e);
 
     assert_int_equal(s != NULL, verdict == TED4_OK);
@@ -56,7 +57,7 @@ static ted4_status decodes(const file *f, const ted4_options *o)
 static ted4_status salvages(const file *f, const ted4_options *o)
 {
     ted4_salvage what;
-    ted4_scene  *s;
+    ted4_scene *s;
 
     (void)ted4_decode_lenient(f->data, f->size, o, &s, &what);
     ted4_scene_free(s);
@@ -65,7 +66,7 @@ static ted4_status salvages(const file *f, const ted4_options *o)
 
 static ted4_status validates(const file *f, const ted4_options *o)
 {
-    int               n = 0;
+    int n = 0;
     const ted4_status verdict = ted4_validate(f->data, f->size, o, overhear, &n);
 
     assert_true(n > 0 || verdict == TED4_OK);
@@ -104,18 +105,18 @@ static ted4_status makes_scene(const file *f, const ted4_options *o)
     return made != NULL ? TED4_OK : TED4_E_LIMIT_MEMORY;
 }
 
-/* Until an allocation that does not take place was to fail: then it ends as it does with all the memory it wants. What is told of a file that is
- * wrong anyway may stay its verdict. */
+/* Until an allocation that does not take place was to fail: then it ends as it does with all the
+ * memory it wants. What is told of a file that is wrong anyway may stay its verdict. */
 static void starve(deed *act, const file *f, int fail_on)
 {
     const ted4_options rich = { .parallel = &threads };
-    const ted4_status  wanted = act(f, &rich);
-    int                calm = 0, failed = 0;
+    const ted4_status wanted = act(f, &rich);
+    int calm = 0, failed = 0;
 
     for (uint64_t n = 1; !calm; n++) {
-        counting_memory    memory = { .fail_at = n, .fail_on = fail_on };
+        counting_memory memory = { .fail_at = n, .fail_on = fail_on };
         const ted4_options o = { .allocator = counting_allocator(&memory), .parallel = &threads };
-        const ted4_status  verdict = act(f, &o);
+        const ted4_status verdict = act(f, &o);
 
         calm = memory.n < n;
         failed += verdict == TED4_E_LIMIT_MEMORY;
@@ -128,7 +129,8 @@ static void starve(deed *act, const file *f, int fail_on)
 
 static void starve_all(const file *f)
 {
-    static deed *const all[] = { decodes, salvages, validates, dumps_syntax, dumps_tiers, makes_scene };
+    static deed *const all[] = { decodes,      salvages,    validates,
+                                 dumps_syntax, dumps_tiers, makes_scene };
 
     for (size_t i = 0; i < sizeof all / sizeof *all; i++) {
         starve(all[i], f, 0);
@@ -138,7 +140,7 @@ static void starve_all(const file *f)
 
 static file encode(const ted4_scene *s)
 {
-    file       f;
+    file f;
     ted4_error e;
 
     assert_int_equal(ted4_encode(s, 0, NULL, &f.data, &f.size, &e), TED4_OK);
@@ -147,8 +149,8 @@ static file encode(const ted4_scene *s)
 
 static file read_vector(const char *id)
 {
-    char  path[256];
-    file  f = { malloc(1 << 20), 0 };
+    char path[256];
+    file f = { malloc(1 << 20), 0 };
     FILE *in;
 
     snprintf(path, sizeof path, "conformance/vectors/%s.ted4", id);
@@ -163,7 +165,7 @@ static file read_vector(const char *id)
 static ted4_scene *example(void)
 {
     random_source r = random_seed(8);
-    ted4_header   h = random_small_header(200);
+    ted4_header h = random_small_header(200);
 
     return random_scene_of(&r, &h, 0);
 }
@@ -171,7 +173,7 @@ static ted4_scene *example(void)
 static void whole_files(void **state)
 {
     ted4_scene *s = example();
-    file        f = encode(s);
+    file f = encode(s);
 
     (void)state;
     starve_all(&f);
@@ -179,11 +181,12 @@ static void whole_files(void **state)
     ted4_scene_free(s);
 }
 
-/* What a validator and a lenient decoder do behind an error: a file that ends early, a tile that is damaged, positions out of order. */
+/* What a validator and a lenient decoder do behind an error: a file that ends early, a tile that is
+ * damaged, positions out of order. */
 static void damaged_files(void **state)
 {
     ted4_scene *s = example();
-    file        f = encode(s), g;
+    file f = encode(s), g;
 
     (void)state;
     f.size -= 100;
@@ -202,7 +205,8 @@ static void damaged_files(void **state)
 /* Blobs that are deflated, text for people. */
 static void vectors(void **state)
 {
-    static const char *const id[] = { "valid/random/RND-pack-inr-0-netr", "valid/extension/EXT-meta-anything" };
+    static const char *const id[] = { "valid/random/RND-pack-inr-0-netr",
+                                      "valid/extension/EXT-meta-anything" };
 
     (void)state;
     for (size_t i = 0; i < sizeof id / sizeof *id; i++) {
@@ -216,8 +220,8 @@ static void vectors(void **state)
 /* Of a scene that is to be written, or listened to. */
 static void expect_refused(const ted4_scene *s)
 {
-    uint8_t   *data;
-    size_t     size;
+    uint8_t *data;
+    size_t size;
     ted4_error e;
 
     assert_int_equal(ted4_encode(s, 0, NULL, &data, &size, &e), TED4_E_SYN_HASH);
@@ -229,18 +233,19 @@ static void wrong_masks(void **state)
 {
     for (uint8_t coded = 0; coded <= 1; coded++) {
         random_source r = random_seed(9);
-        ted4_header   h = random_small_header(70);
-        ted4_scene   *s;
-        file          f;
-        uint8_t       dynamic;
-        uint16_t      bits;
+        ted4_header h = random_small_header(70);
+        ted4_scene *s;
+        file f;
+        uint8_t dynamic;
+        uint16_t bits;
 
         (void)state;
         h.temporal_mask = h.offset_mask = coded;
         s = random_scene_of(&r, &h, 0);
         f = encode(s);
         ted4_scene_free(s);
-        assert_int_equal(ted4_decode(f.data, f.size, NULL, &s, NULL), TED4_OK);     /* with probabilities */
+        assert_int_equal(ted4_decode(f.data, f.size, NULL, &s, NULL),
+                         TED4_OK); /* with probabilities */
         dynamic = s->dynamic[3];
         bits = s->offset_bits[3];
         s->dynamic[3] = coded ? 2 : 0;
@@ -259,9 +264,9 @@ static void wrong_masks(void **state)
 static void wrong_shift(void **state)
 {
     ted4_scene *s = example();
-    ted4_arena  arena;
-    ted4_prior  p;
-    ted4_error  e = { TED4_OK, 0 };
+    ted4_arena arena;
+    ted4_prior p;
+    ted4_error e = { TED4_OK, 0 };
 
     (void)state;
     ted4_arena_init(&arena, NULL);

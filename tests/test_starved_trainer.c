@@ -1,4 +1,5 @@
-/* test_starved_trainer.c - the trainer when memory runs out: each allocation in turn fails. It says so, says nothing else, and gives back what it holds.
+/* test_starved_trainer.c - the trainer when memory runs out: each allocation in turn fails. It says
+ * so, says nothing else, and gives back what it holds.
  * SPDX-License-Identifier: BSD-2-Clause */
 #include <setjmp.h>
 #include <stdarg.h>
@@ -11,7 +12,7 @@
 #include "data/image_cache.h"
 #include "starving.h"
 
-static cloud_case   cloud;
+static cloud_case cloud;
 static ted4_trainer trainer;
 
 static void begin(void)
@@ -51,7 +52,7 @@ static int preview(size_t n, int fail_on)
     assert_non_null(cloud.data.cache);
     starve(n, fail_on);
     const double psnr = ted4_trainer_preview(&trainer, 4);
-    const int    failed = feed();
+    const int failed = feed();
 
     assert_true((psnr < 0) == failed);
     assert_int_equal(ted4_image_cache_held(cloud.data.cache), 0);

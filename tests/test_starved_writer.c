@@ -1,5 +1,6 @@
-/* test_starved_writer.c - the writer when memory runs out: each allocation in turn fails, and the verdict is limit.memory.
- * It is compiled here as where size_t has 32 bits: no size is more than UINT32_MAX there.
+/* test_starved_writer.c - the writer when memory runs out: each allocation in turn fails, and the
+ * verdict is limit.memory. It is compiled here as where size_t has 32 bits: no size is more than
+ * UINT32_MAX there.
  * SPDX-License-Identifier: BSD-2-Clause */
 #include <setjmp.h>
 #include <stdarg.h>
@@ -18,13 +19,13 @@
 static int write_scene(size_t n, int fail_on)
 {
     ted4_scene *s = random_scene(3);
-    uint8_t    *out;
-    size_t      size;
+    uint8_t *out;
+    size_t size;
 
     assert_non_null(s);
     starve(n, fail_on);
     const ted4_status verdict = ted4_encode(s, 0, NULL, &out, &size, NULL);
-    const int         failed = feed();
+    const int failed = feed();
 
     assert_int_equal(verdict, failed ? TED4_E_LIMIT_MEMORY : TED4_OK);
     assert_true((out == NULL) == failed && (size == 0) == failed);

@@ -1,5 +1,5 @@
-/* test_step_grad.c - the gradient of a whole training step, chained as train/state/trainer.c does it:
- * distortion of rasteriser of generation and, in stage 2, of the quantiser, plus the rate. Its
+/* test_step_grad.c - the gradient of a whole training step, chained as train/state/trainer.c does
+ * it: distortion of rasteriser of generation and, in stage 2, of the quantiser, plus the rate. Its
  * products with random directions, in each part of the model and in all at once, against central
  * differences of double-precision references. Quantisation residuals are held fixed, masks are
  * straight-through.
@@ -18,35 +18,44 @@
 #include "train/loss/loss.h"
 #include "train/math/random.h"
 
-enum { WIDTH = 32, HEIGHT = 24, PIXELS = WIDTH * HEIGHT, SLOTS = 2, OFFSETS = 3, ANCHORS = 40,
-       SPLATS = SLOTS * OFFSETS * TED4_LANES, MAX_THETA = 12000 };
+enum {
+    WIDTH = 32,
+    HEIGHT = 24,
+    PIXELS = WIDTH * HEIGHT,
+    SLOTS = 2,
+    OFFSETS = 3,
+    ANCHORS = 40,
+    SPLATS = SLOTS * OFFSETS * TED4_LANES,
+    MAX_THETA = 12000
+};
 
 #define SSIM_WEIGHT 0.3f
 /* Step of the difference, and how far its two halves may disagree: a jump shows as jump / STEP. */
-#define STEP       1e-7
-#define JUMP_SHARE 1e-3
+#define STEP        1e-7
+#define JUMP_SHARE  1e-3
 /* Float gradients against double differences, relative to the size of the terms of the product. */
-#define TOLERANCE  1e-4
+#define TOLERANCE   1e-4
 
-/* All parameters are one array: the networks, then blocks of channels as train/model/model.h has them. */
+/* All parameters are one array: the networks, then blocks of channels as train/model/model.h has
+ * them. */
 typedef struct {
     ted4_layout layout;
-    ted4_view   view;
-    float       camera[3];
-    uint32_t    num, den;
-    int         activation, stage2;
-    float       bit_weight;
-    uint64_t    key;
-    size_t      n_theta;
-    uint32_t    lanes[SLOTS], block[SLOTS];
-    uint8_t     truth[3 * PIXELS];
+    ted4_view view;
+    float camera[3];
+    uint32_t num, den;
+    int activation, stage2;
+    float bit_weight;
+    uint64_t key;
+    size_t n_theta;
+    uint32_t lanes[SLOTS], block[SLOTS];
+    uint8_t truth[3 * PIXELS];
     _Alignas(64) float position[SLOTS][3 * TED4_LANES];
     _Alignas(64) float steps[SLOTS][TED4_TYPES * TED4_LANES];
     _Alignas(64) float net[MAX_THETA], attr[MAX_THETA], used[MAX_THETA];
     _Alignas(64) float d_net[MAX_THETA], d_attr[MAX_THETA];
-    double      theta[MAX_THETA], moved[MAX_THETA], gradient[MAX_THETA], residual[MAX_THETA];
-    double      splat[SPLATS][REF_SPLAT];
-    float       image[3 * PIXELS], d_image[3 * PIXELS];
+    double theta[MAX_THETA], moved[MAX_THETA], gradient[MAX_THETA], residual[MAX_THETA];
+    double splat[SPLATS][REF_SPLAT];
+    float image[3 * PIXELS], d_image[3 * PIXELS];
 } problem;
 
 static problem pr;
@@ -110,10 +119,17 @@ static void make_view(void)
 {
     const double a = 0.3, c = cos(a), s = sin(a);
 
-    pr.view = (ted4_view){
-        .width = WIDTH, .height = HEIGHT, .fx = 34.0f, .fy = 36.0f, .cx = 15.0f, .cy = 12.5f,
+    pr.view = (ted4_view) {
+        .width = WIDTH,
+        .height = HEIGHT,
+        .fx = 34.0f,
+        .fy = 36.0f,
+        .cx = 15.0f,
+        .cy = 12.5f,
         .R = { (float)c, 0, (float)-s, 0, 1, 0, (float)s, 0, (float)c },
-        .t = { 0.1f, -0.2f, 2.6f }, .near_z = 0.02f, .background = { 0.2f, 0.5f, 0.8f },
+        .t = { 0.1f, -0.2f, 2.6f },
+        .near_z = 0.02f,
+        .background = { 0.2f, 0.5f, 0.8f },
     };
     for (int j = 0; j < 3; j++)
         pr.camera[j] = -(pr.view.R[j] * pr.view.t[0] + pr.view.R[3 + j] * pr.view.t[1] +
@@ -159,7 +175,7 @@ static void make(uint32_t seed, uint32_t num, int activation, int stage2)
 
 typedef struct {
     const float *attr[SLOTS], *used[SLOTS], *position[SLOTS];
-    float       *d_attr[SLOTS], *steps[SLOTS];
+    float *d_attr[SLOTS], *steps[SLOTS];
 } lists;
 
 static lists make_lists(void)
@@ -178,8 +194,9 @@ static lists make_lists(void)
 
 static ted4_rate_input rate_input(const lists *l)
 {
-    return (ted4_rate_input){ &pr.layout, pr.net, NULL, SLOTS, l->attr, l->position, pr.lanes,
-                              pr.block, pr.key, TED4_QUANT_NOISE, pr.bit_weight, 1.0f, 1 };
+    return (ted4_rate_input) { &pr.layout,    pr.net,   NULL,     SLOTS,  l->attr,
+                               l->position,   pr.lanes, pr.block, pr.key, TED4_QUANT_NOISE,
+                               pr.bit_weight, 1.0f,     1 };
 }
 
 /* Values as rendered, and what was added to them in units of their steps. */
@@ -208,7 +225,7 @@ static void distortion_backward(ted4_raster *raster, ted4_generator *g,
                                 const ted4_generate_input *in, const ted4_splats *s,
                                 float *const *d_attr)
 {
-    static float   of_splat[15][SPLATS];
+    static float of_splat[15][SPLATS];
     static uint8_t visible[SPLATS];
     ted4_splat_grads gr = { .opacity = of_splat[10], .mean2d = of_splat[14], .visible = visible };
 
@@ -226,16 +243,19 @@ static void distortion_backward(ted4_raster *raster, ted4_generator *g,
 /* Fills the gradient, residuals, image; returns the loss. */
 static double analytic(void)
 {
-    const lists      l = make_lists();
-    ted4_generator  *g = ted4_generator_new(&pr.layout);
-    ted4_rate       *rate = ted4_rate_new(&pr.layout);
-    ted4_raster     *raster = ted4_raster_new();
+    const lists l = make_lists();
+    ted4_generator *g = ted4_generator_new(&pr.layout);
+    ted4_rate *rate = ted4_rate_new(&pr.layout);
+    ted4_raster *raster = ted4_raster_new();
     ted4_loss_workspace *w = ted4_loss_workspace_new();
-    const ted4_generate_input in = { &pr.layout, pr.net, SLOTS, l.used, l.position, pr.lanes,
-                                     pr.num, pr.den, { pr.camera[0], pr.camera[1], pr.camera[2] },
-                                     pr.activation };
+    const ted4_generate_input in = {
+        &pr.layout,   pr.net,     SLOTS,
+        l.used,       l.position, pr.lanes,
+        pr.num,       pr.den,     { pr.camera[0], pr.camera[1], pr.camera[2] },
+        pr.activation
+    };
     ted4_splats s;
-    double      bits[TED4_TYPES], l1, ssim, loss;
+    double bits[TED4_TYPES], l1, ssim, loss;
 
     assert_true(g != NULL && rate != NULL && raster != NULL && w != NULL);
     if (pr.stage2)
@@ -243,21 +263,22 @@ static double analytic(void)
     ted4_generator_pack(g, pr.net);
     assert_int_equal(ted4_generate(g, &in, NULL, &s), 0);
     assert_int_equal(ted4_raster_forward(raster, &s, &pr.view, NULL, 1, pr.image), 0);
-    loss = ted4_loss(w, pr.image, pr.truth, WIDTH, HEIGHT, SSIM_WEIGHT, NULL, pr.d_image, &l1,
-                     &ssim);
+    loss =
+        ted4_loss(w, pr.image, pr.truth, WIDTH, HEIGHT, SSIM_WEIGHT, NULL, pr.d_image, &l1, &ssim);
     memset(pr.d_net, 0, sizeof pr.d_net);
     distortion_backward(raster, g, &in, &s, l.d_attr);
     if (pr.stage2) {
         const ted4_rate_input r = rate_input(&l);
 
         assert_int_equal(ted4_rate_evaluate(rate, &r, NULL, (const float *const *)l.d_attr,
-                                            l.d_attr, pr.d_net, l.steps, bits), 0);
+                                            l.d_attr, pr.d_net, l.steps, bits),
+                         0);
         for (int t = 0; t < TED4_TYPES; t++)
             loss += (double)pr.bit_weight * bits[t];
     }
     for (size_t i = 0; i < pr.n_theta; i++)
-        pr.gradient[i] = (double)(i < pr.layout.n_net ? pr.d_net[i]
-                                                      : pr.d_attr[i - pr.layout.n_net]);
+        pr.gradient[i] =
+            (double)(i < pr.layout.n_net ? pr.d_net[i] : pr.d_attr[i - pr.layout.n_net]);
     ted4_generator_free(g);
     ted4_rate_free(rate);
     ted4_raster_free(raster);
@@ -271,8 +292,8 @@ static double analytic(void)
 static double reference_bits(const double *theta, int slot, int j, ref_result *r)
 {
     const ted4_layout *l = &pr.layout;
-    const ref_model    m = { l, theta + l->nete, 1.0, 0.0, 1 };
-    ref_anchor         a;
+    const ref_model m = { l, theta + l->nete, 1.0, 0.0, 1 };
+    ref_anchor a;
 
     memset(&a, 0, sizeof a);
     for (int c = 0; c < 3; c++)
@@ -284,7 +305,7 @@ static double reference_bits(const double *theta, int slot, int j, ref_result *r
     for (int c = l->offset_logit; c < l->n_channels; c++)
         a.logit[c - l->offset_logit] = pr.theta[l->n_net + channel_at(slot, c, j)];
     ref_evaluate(&m, &a, NULL, r);
-    for (unsigned i = 0; i < l->shape.n_outputs; i++)      /* nothing is near a clamp */
+    for (unsigned i = 0; i < l->shape.n_outputs; i++) /* nothing is near a clamp */
         assert_true(r->raw[i] > -3.9 && r->raw[i] < 3.9);
 
     double bits = r->loss;
@@ -314,15 +335,18 @@ static double reference(const double *theta)
 {
     static double image[3 * PIXELS];
     const ted4_layout *l = &pr.layout;
-    const ref_query q = { l->head, pr.num, pr.den,
-                          { (double)pr.camera[0], (double)pr.camera[1], (double)pr.camera[2] },
-                          pr.activation, theta, l->bank };
+    const ref_query q = {
+        l->head,       pr.num,
+        pr.den,        { (double)pr.camera[0], (double)pr.camera[1], (double)pr.camera[2] },
+        pr.activation, theta,
+        l->bank
+    };
     double bits = 0, l1, ssim;
     size_t n = 0;
 
     for (int i = 0; i < SLOTS; i++)
         for (int j = 0; j < TED4_LANES; j++) {
-            double     p[3], x[REF_MAX_CHANNELS], base[REF_MAX_CHANNELS];
+            double p[3], x[REF_MAX_CHANNELS], base[REF_MAX_CHANNELS];
             ref_result r;
 
             if (!is_used(i, j))
@@ -337,7 +361,7 @@ static double reference(const double *theta)
             ref_generate(&q, x, base, p, pr.splat + n);
             n += OFFSETS;
         }
-    const size_t seen = ref_render(&pr.view, (const double (*)[REF_SPLAT])pr.splat, n, image);
+    const size_t seen = ref_render(&pr.view, (const double(*)[REF_SPLAT])pr.splat, n, image);
     const ref_picture picture = { WIDTH, HEIGHT, image, pr.truth };
 
     assert_true(n == ANCHORS * OFFSETS && seen > ANCHORS / 2);
@@ -347,7 +371,11 @@ static double reference(const double *theta)
 /* ---- directions ---- */
 
 /* A part of the model: network values, or channels, [first, first + n). */
-typedef struct { const char *name; size_t first, n; int is_channels; } part;
+typedef struct {
+    const char *name;
+    size_t first, n;
+    int is_channels;
+} part;
 
 enum { MAX_PARTS = 16 };
 
@@ -362,16 +390,16 @@ static size_t list_parts(part *p)
     for (int i = 0; i < TED4_NETS_R; i++) {
         const size_t end = i + 1 < TED4_NETS_R ? l->shape.netr[i + 1].first : l->shape.n_netr;
 
-        p[n++] = (part){ nets[i], l->shape.netr[i].first, end - l->shape.netr[i].first, 0 };
+        p[n++] = (part) { nets[i], l->shape.netr[i].first, end - l->shape.netr[i].first, 0 };
     }
-    p[n++] = (part){ "bank", l->bank, l->shape.n_bank, 0 };
+    p[n++] = (part) { "bank", l->bank, l->shape.n_bank, 0 };
     if (pr.stage2)
-        p[n++] = (part){ "prior", l->nete, l->shape.n_nete, 0 };
+        p[n++] = (part) { "prior", l->nete, l->shape.n_nete, 0 };
     for (int t = 0; t < TED4_TYPES; t++)
         if (t != TED4_TAU || pr.activation)
-            p[n++] = (part){ types[t], (size_t)l->first[t], l->shape.dim[t], 1 };
-    p[n++] = (part){ "offset mask", (size_t)l->offset_logit, OFFSETS, 1 };
-    p[n++] = (part){ "temporal mask", (size_t)l->temporal_logit, 1, 1 };
+            p[n++] = (part) { types[t], (size_t)l->first[t], l->shape.dim[t], 1 };
+    p[n++] = (part) { "offset mask", (size_t)l->offset_logit, OFFSETS, 1 };
+    p[n++] = (part) { "temporal mask", (size_t)l->temporal_logit, 1, 1 };
     return n;
 }
 
@@ -434,9 +462,9 @@ static void check(const char *name, const double *direction, double size)
 static void check_all(void)
 {
     static double all[MAX_THETA], one[MAX_THETA];
-    part          parts[MAX_PARTS];
-    const size_t  n = list_parts(parts);
-    const double  loss = analytic(), want = reference(pr.theta);
+    part parts[MAX_PARTS];
+    const size_t n = list_parts(parts);
+    const double loss = analytic(), want = reference(pr.theta);
 
     assert_true(n <= MAX_PARTS && fabs(loss - want) < 1e-5 * (1.0 + want));
     memset(all, 0, sizeof all);
@@ -455,9 +483,9 @@ static void check_all(void)
 /* The double renderer against the project's own. */
 static void test_renderer(void **state)
 {
-    static float  rounded[REF_SPLAT][SPLATS];
+    static float rounded[REF_SPLAT][SPLATS];
     static double image[3 * PIXELS], plain[3 * PIXELS];
-    ted4_splats   s = { .n = ANCHORS * OFFSETS, .opacity = rounded[10] };
+    ted4_splats s = { .n = ANCHORS * OFFSETS, .opacity = rounded[10] };
 
     (void)state;
     make(1, 4, 1, 0);
@@ -476,7 +504,7 @@ static void test_renderer(void **state)
     for (int c = 0; c < 4; c++)
         s.rot[c] = rounded[6 + c];
     assert_int_equal(ted4_raster_plain(&s, &pr.view, plain), 0);
-    assert_true(ref_render(&pr.view, (const double (*)[REF_SPLAT])pr.splat, s.n, image) > 30);
+    assert_true(ref_render(&pr.view, (const double(*)[REF_SPLAT])pr.splat, s.n, image) > 30);
     for (size_t i = 0; i < 3 * PIXELS; i++)
         assert_true(fabs(image[i] - plain[i]) < 1e-9);
 }

@@ -60,7 +60,7 @@ enum { N_OPTIONS = (int)(sizeof options / sizeof options[0]) };
 static pid_t begin(const char *one, const char *two, const char *three)
 {
     const char *argv[N_OPTIONS + 4] = { NULL };
-    char        path[1024];
+    char path[1024];
     const pid_t child = fork();
 
     assert_true(child >= 0);
@@ -87,11 +87,14 @@ static void read_words(char *text, size_t size)
 
 /* The log has this text; or the checkpoint is the one of the nth time it was written; or neither:
  * soon after the start. */
-typedef struct { const char *logged; int written; } moment;
+typedef struct {
+    const char *logged;
+    int written;
+} moment;
 
 static void wait_for(const moment *m)
 {
-    char  text[MOST_LOG];
+    char text[MOST_LOG];
     ino_t last = 0;
 
     for (int i = 0, n = 0; i < 60000; i++) {
@@ -112,15 +115,13 @@ static void wait_for(const moment *m)
     fail_msg("the moment did not come");
 }
 
-static const moment moments[] = {
-    { NULL, 0 }, { "\"step\":250,", 0 },  { NULL, 1 },
-    { NULL, 2 },          { "\"step\":1500,", 0 }, { "\"step\":1750,", 0 }
-};
+static const moment moments[] = { { NULL, 0 }, { "\"step\":250,", 0 },  { NULL, 1 },
+                                  { NULL, 2 }, { "\"step\":1500,", 0 }, { "\"step\":1750,", 0 } };
 
 static void stop_at(const moment *m, int signal, const ball_file *want)
 {
     const pid_t child = begin("--checkpoint", "out/c", NULL);
-    char        text[4096];
+    char text[4096];
     unsigned long long at = 0, held = 0;
 
     if (m->written == 0 && m->logged == NULL)
@@ -129,10 +130,10 @@ static void stop_at(const moment *m, int signal, const ball_file *want)
         wait_for(m);
     kill(child, signal);
 
-    const int   status = finish(child);
+    const int status = finish(child);
     const char *words;
 
-    if (status == 1000 + signal) {      /* before training */
+    if (status == 1000 + signal) { /* before training */
         assert_true(m->written == 0 && m->logged == NULL);
         return;
     }
@@ -206,7 +207,7 @@ static void test_loading(void **state)
     (void)state;
     do {
         begin_test();
-        finish(begin("--check", NULL, NULL));   /* leaves its words */
+        finish(begin("--check", NULL, NULL)); /* leaves its words */
     } while (!stop_at_loading() && --tries > 0);
     assert_true(tries > 0);
 }
@@ -215,8 +216,8 @@ static void test_loading(void **state)
 static void test_no_checkpoint(void **state)
 {
     const moment m = { "\"step\":250,", 0 };
-    char         text[4096];
-    pid_t        child;
+    char text[4096];
+    pid_t child;
 
     (void)state;
     begin_test();
@@ -233,7 +234,7 @@ static void test_no_checkpoint(void **state)
 static void test_again(void **state)
 {
     const moment m = { "\"step\":250,", 0 };
-    pid_t        child;
+    pid_t child;
 
     (void)state;
     begin_test();

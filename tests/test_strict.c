@@ -1,4 +1,5 @@
-/* test_strict.c - spec 12.2: pow2 and its edges, the class X probe under each way of spoiling the arithmetic.
+/* test_strict.c - spec 12.2: pow2 and its edges, the class X probe under each way of spoiling the
+ * arithmetic.
  * SPDX-License-Identifier: BSD-2-Clause */
 #include <setjmp.h>
 #include <stdarg.h>
@@ -27,7 +28,7 @@ static void pow2_is_within_two_tenths_of_a_millionth(void **state)
         worst = error > worst ? error : worst;
     }
     assert_true(worst < 2e-7);
-    assert_true(worst > 1e-8);          /* the measurement works */
+    assert_true(worst > 1e-8); /* the measurement works */
 }
 
 static void pow2_of_whole_numbers_is_exact(void **state)
@@ -49,8 +50,13 @@ static void pow2_is_clamped_and_keeps_nan(void **state)
 /* The text's code with floorf, around every change of n. */
 static float pow2_of_the_text(float x)
 {
-    static const float c[7] = { 0x1.430912p-13f, 0x1.5d87fep-10f, 0x1.3b2ab6p-7f, 0x1.c6b08ep-5f,
-                                0x1.ebfbep-3f, 0x1.62e43p-1f, 1.0f };
+    static const float c[7] = { 0x1.430912p-13f,
+                                0x1.5d87fep-10f,
+                                0x1.3b2ab6p-7f,
+                                0x1.c6b08ep-5f,
+                                0x1.ebfbep-3f,
+                                0x1.62e43p-1f,
+                                1.0f };
     x = x < -126.0f ? -126.0f : x > 126.0f ? 126.0f : x;
     const float n = floorf(x + 0.5f), f = x - n;
     float p = 0x1.ffcbfcp-17f;
@@ -66,7 +72,8 @@ static void pow2_is_that_of_the_text(void **state)
     for (int n = -254; n <= 254; n++)
         for (int i = -200; i <= 200; i++) {
             const float middle = (float)n / 2;
-            const float x = ted4_bits_float(ted4_float_bits(middle) + (uint32_t)i * (i % 2 ? 1 : 977));
+            const float x =
+                ted4_bits_float(ted4_float_bits(middle) + (uint32_t)i * (i % 2 ? 1 : 977));
 
             if (x == x)
                 assert_int_equal(ted4_float_bits(ted4_pow2(x)),

@@ -1,4 +1,5 @@
-/* test_surgery.c - train/resize/resize.c and the moves made with it: a model that loses what it does not use draws the same pictures, and one that loses nothing is the same.
+/* test_surgery.c - train/resize/resize.c and the moves made with it: a model that loses what it
+ * does not use draws the same pictures, and one that loses nothing is the same.
  * SPDX-License-Identifier: BSD-2-Clause */
 #include <math.h>
 #include <setjmp.h>
@@ -13,17 +14,25 @@
 #include "train/resize/feature_pca.h"
 #include "train/resize/resize.h"
 
-enum { STAGE1 = 400, STEPS = 440, FRAMES = 5, PIXELS = 3 * BALL_W * BALL_H, SHOTS = 6, F = 8, K = 4 };
+enum {
+    STAGE1 = 400,
+    STEPS = 440,
+    FRAMES = 5,
+    PIXELS = 3 * BALL_W * BALL_H,
+    SHOTS = 6,
+    F = 8,
+    K = 4
+};
 
-static tiny_folder   folder;
-static ted4_dataset  scene;
-static ted4_snapshot begun;             /* some steps into stage 2 */
-static float         shot[SHOTS][PIXELS];
+static tiny_folder folder;
+static ted4_dataset scene;
+static ted4_snapshot begun; /* some steps into stage 2 */
+static float shot[SHOTS][PIXELS];
 
 static int set_up(void **state)
 {
     ted4_train_options o = ball_options();
-    ted4_trainer       t;
+    ted4_trainer t;
 
     (void)state;
     ball_load(&folder, &scene, FRAMES, 1);
@@ -56,14 +65,15 @@ static void go_there(ted4_trainer *t)
         fail_msg("%s", t->message.text);
 }
 
-/* Pictures of all times; the first call after keep = 1 is what later ones are held against. Largest difference. */
+/* Pictures of all times; the first call after keep = 1 is what later ones are held against. Largest
+ * difference. */
 static double look(ted4_trainer *t, int keep)
 {
     double most = 0;
 
     for (size_t i = 0; i < SHOTS; i++) {
         ted4_view v;
-        float     centre[3];
+        float centre[3];
 
         if (ted4_trainer_draw(t, &scene.pictures[i * scene.n_pictures / SHOTS], &v, centre) != 0)
             fail_msg("%s", t->message.text);
@@ -79,7 +89,7 @@ static double look(ted4_trainer *t, int keep)
 static float *weight(ted4_trainer *t, int net, int layer, size_t *in, size_t *out)
 {
     const ted4_net_shape *s = &t->layout.shape.netr[net];
-    float                *w = t->net + t->layout.netr + s->first;
+    float *w = t->net + t->layout.netr + s->first;
 
     for (int i = 0; i < layer; i++)
         w += ((size_t)s->dim[i] + 1) * s->dim[i + 1];
@@ -107,14 +117,14 @@ static void make(ted4_trainer *t, ted4_move m, int to)
 /* Pictures as before, and a smaller file that says nearly the same in as many bits or fewer. */
 static void expect_same(ted4_trainer *t, const ted4_cost *before, double tolerance)
 {
-    const double    away = look(t, 0);
+    const double away = look(t, 0);
     const ted4_cost after = cost(t);
 
     if (!(away <= tolerance))
         fail_msg("a picture changed by %g", away);
     if (!(after.bytes < before->bytes))
         fail_msg("%.0f bytes after %.0f", after.bytes, before->bytes);
-    ball_train(t, STEPS + 5);           /* and it is a trainer that works */
+    ball_train(t, STEPS + 5); /* and it is a trainer that works */
 }
 
 /* The same of one move from where the trainer stands. */
@@ -130,17 +140,18 @@ static void expect_free(ted4_trainer *t, ted4_move m, int to, double tolerance)
 
 static void test_nothing(void **state)
 {
-    ted4_trainer  t, twin;
-    ted4_surgery  s;
-    ball_file     a, b;
+    ted4_trainer t, twin;
+    ted4_surgery s;
+    ball_file a, b;
 
     (void)state;
     go_there(&t);
     go_there(&twin);
     ted4_surgery_begin(&s, &t);
     assert_int_equal(ted4_surgery_apply(&t, &s), 0);
-    for (size_t i = 0; i < t.layout.n_net; i++)         /* a zero may lose its sign */
-        assert_true(t.net[i] == twin.net[i] && t.net_m[i] == twin.net_m[i] && t.net_v[i] == twin.net_v[i]);
+    for (size_t i = 0; i < t.layout.n_net; i++) /* a zero may lose its sign */
+        assert_true(t.net[i] == twin.net[i] && t.net_m[i] == twin.net_m[i] &&
+                    t.net_v[i] == twin.net_v[i]);
     a = ball_finish(&t);
     b = ball_finish(&twin);
     ball_check_same(&a, &b);
@@ -162,16 +173,18 @@ static void test_offset(void **state)
     ted4_trainer_finish(&t);
 }
 
-/* Two features that are nothing and that nobody changes; the second slice of features loses both, the first none. */
+/* Two features that are nothing and that nobody changes; the second slice of features loses both,
+ * the first none. */
 static void test_feature(void **state)
 {
     ted4_trainer t;
-    size_t       in, out;
+    size_t in, out;
 
     (void)state;
     go_there(&t);
 
-    float *last = weight(&t, TED4_NET_DEFORM, t.layout.shape.netr[TED4_NET_DEFORM].n_layers - 1, &in, &out);
+    float *last =
+        weight(&t, TED4_NET_DEFORM, t.layout.shape.netr[TED4_NET_DEFORM].n_layers - 1, &in, &out);
 
     for (size_t c = F - 2; c < F; c++) {
         for (size_t i = 0; i < t.anchors.n; i++)
@@ -196,7 +209,7 @@ static void test_feature(void **state)
 static void test_heads(void **state)
 {
     ted4_trainer t;
-    size_t       in, out;
+    size_t in, out;
 
     (void)state;
     go_there(&t);
@@ -214,15 +227,16 @@ static void test_heads(void **state)
     const ted4_cost before = cost(&t);
 
     make(&t, TED4_MOVE_HEADS, 8);
-    expect_same(&t, &before, 1e-4);     /* what stays is estimated anew, by moments with a ridge */
+    expect_same(&t, &before, 1e-4); /* what stays is estimated anew, by moments with a ridge */
     ted4_trainer_finish(&t);
 }
 
-/* Two features of which one is always the other's double need no second unit: least squares find it out, though both are read. */
+/* Two features of which one is always the other's double need no second unit: least squares find it
+ * out, though both are read. */
 static void test_double(void **state)
 {
     ted4_trainer t;
-    size_t       in, out;
+    size_t in, out;
 
     (void)state;
     go_there(&t);
@@ -242,7 +256,7 @@ static void test_double(void **state)
 static void test_view(void **state)
 {
     ted4_trainer t;
-    size_t       in, out;
+    size_t in, out;
 
     (void)state;
     go_there(&t);
@@ -266,7 +280,7 @@ static void test_rows(void **state)
     go_there(&t);
 
     const size_t D = t.layout.head.bank_dim;
-    float       *z = t.net + t.layout.bank;
+    float *z = t.net + t.layout.bank;
 
     assert_int_equal(t.layout.head.bank_rows, 3);
     for (size_t c = 0; c < D; c++)
@@ -274,7 +288,7 @@ static void test_rows(void **state)
     look(&t, 1);
 
     const ted4_cost before = cost(&t);
-    ted4_surgery    s;
+    ted4_surgery s;
 
     ted4_surgery_begin(&s, &t);
     s.head.bank_rows = 2;
@@ -301,12 +315,13 @@ static void test_activation(void **state)
 static void test_motion(void **state)
 {
     ted4_trainer t;
-    size_t       in, out;
+    size_t in, out;
 
     (void)state;
     go_there(&t);
 
-    float *last = weight(&t, TED4_NET_DEFORM, t.layout.shape.netr[TED4_NET_DEFORM].n_layers - 1, &in, &out);
+    float *last =
+        weight(&t, TED4_NET_DEFORM, t.layout.shape.netr[TED4_NET_DEFORM].n_layers - 1, &in, &out);
 
     for (size_t i = 0; i < (in + 1) * out; i++)
         last[i] = 0;
@@ -324,8 +339,8 @@ static void test_motion(void **state)
 static void test_rotation(void **state)
 {
     ted4_train_options o = ball_options();
-    ted4_trainer       t;
-    double             spread[F] = { 0 };
+    ted4_trainer t;
+    double spread[F] = { 0 };
 
     (void)state;
     ball_begin(&t, &o, &scene, NULL);
@@ -335,14 +350,16 @@ static void test_rotation(void **state)
     const float was = *ted4_cell(&t.anchors, TED4_ROW_VALUE, 7, t.layout.first[TED4_FEATURE]);
 
     assert_int_equal(ted4_rotate_features(&t), 0);
-    assert_true(fabsf(*ted4_cell(&t.anchors, TED4_ROW_VALUE, 7, t.layout.first[TED4_FEATURE]) - was) > 1e-3f);
+    assert_true(fabsf(*ted4_cell(&t.anchors, TED4_ROW_VALUE, 7, t.layout.first[TED4_FEATURE]) -
+                      was) > 1e-3f);
     if (look(&t, 0) > 1e-3)
         fail_msg("a picture changed by %g", look(&t, 0));
     for (int c = 0; c < F; c++) {
         double sum = 0, square = 0;
 
         for (size_t i = 0; i < t.anchors.n; i++) {
-            const double x = (double)*ted4_cell(&t.anchors, TED4_ROW_VALUE, i, t.layout.first[TED4_FEATURE] + c);
+            const double x =
+                (double)*ted4_cell(&t.anchors, TED4_ROW_VALUE, i, t.layout.first[TED4_FEATURE] + c);
 
             sum += x;
             square += x * x;
@@ -353,11 +370,16 @@ static void test_rotation(void **state)
     ted4_trainer_finish(&t);
 }
 
-/* Moves that cannot be exact cost little when they are small: the cost at sight stays within a share of what it was. */
+/* Moves that cannot be exact cost little when they are small: the cost at sight stays within a
+ * share of what it was. */
 static void test_little(void **state)
 {
-    static const struct { ted4_move m; int to; } all[] = {
-        { TED4_MOVE_HYPER, 6 }, { TED4_MOVE_AR, 6 }, { TED4_MOVE_DEFORM, 6 }, { TED4_MOVE_BANK, 6 }, { TED4_MOVE_PHI, 3 }, { TED4_MOVE_SLICES, 1 },
+    static const struct {
+        ted4_move m;
+        int to;
+    } all[] = {
+        { TED4_MOVE_HYPER, 6 },   { TED4_MOVE_AR, 6 },    { TED4_MOVE_DEFORM, 6 },
+        { TED4_MOVE_BANK, 6 },    { TED4_MOVE_PHI, 3 },   { TED4_MOVE_SLICES, 1 },
         { TED4_MOVE_OCTAVES, 3 }, { TED4_MOVE_SCALE, 0 },
     };
 
@@ -374,8 +396,8 @@ static void test_little(void **state)
         const ted4_cost after = cost(&t);
 
         if (!(after.distortion < 1.25 * before.distortion && after.bytes < 1.05 * before.bytes))
-            fail_msg("%s: distortion %g to %g, bytes %g to %g", ted4_move_name(all[i].m), before.distortion, after.distortion, before.bytes,
-                     after.bytes);
+            fail_msg("%s: distortion %g to %g, bytes %g to %g", ted4_move_name(all[i].m),
+                     before.distortion, after.distortion, before.bytes, after.bytes);
         ball_train(&t, STEPS + 3);
         ted4_trainer_finish(&t);
     }
@@ -384,9 +406,12 @@ static void test_little(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_nothing), cmocka_unit_test(test_offset), cmocka_unit_test(test_feature), cmocka_unit_test(test_heads),
-        cmocka_unit_test(test_double), cmocka_unit_test(test_view), cmocka_unit_test(test_rows), cmocka_unit_test(test_activation),
-        cmocka_unit_test(test_motion), cmocka_unit_test(test_rotation), cmocka_unit_test(test_little),
+        cmocka_unit_test(test_nothing), cmocka_unit_test(test_offset),
+        cmocka_unit_test(test_feature), cmocka_unit_test(test_heads),
+        cmocka_unit_test(test_double),  cmocka_unit_test(test_view),
+        cmocka_unit_test(test_rows),    cmocka_unit_test(test_activation),
+        cmocka_unit_test(test_motion),  cmocka_unit_test(test_rotation),
+        cmocka_unit_test(test_little),
     };
 
     return cmocka_run_group_tests(tests, set_up, tear_down);

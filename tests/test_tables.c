@@ -11,12 +11,12 @@
 static int64_t compiled(int t, int i)
 {
     switch (t) {
-    case 0:  return ted4_half[i];
-    case 1:  return ted4_inv[i];
-    case 2:  return ted4_phi[i];
-    case 3:  return ted4_sin[i];
-    case 4:  return ted4_step[i];
-    case 5:  return ted4_stepi[i];
+    case 0: return ted4_half[i];
+    case 1: return ted4_inv[i];
+    case 2: return ted4_phi[i];
+    case 3: return ted4_sin[i];
+    case 4: return ted4_step[i];
+    case 5: return ted4_stepi[i];
     default: return ted4_where[i];
     }
 }
@@ -32,14 +32,14 @@ static void formulas(void **state)
 static void known_values(void **state)
 {
     (void)state;
-    assert_int_equal(ted4_half[64], 6);             /* sigma = 1 */
+    assert_int_equal(ted4_half[64], 6); /* sigma = 1 */
     assert_int_equal(ted4_inv[64], 1 << 17);
-    assert_int_equal(ted4_inv[0], 1 << 21);         /* sigma = 1/16 */
+    assert_int_equal(ted4_inv[0], 1 << 21); /* sigma = 1/16 */
     assert_int_equal(ted4_half[239], 4095);
     assert_int_equal(ted4_phi[512], 1 << 23);
     assert_int_equal(ted4_sin[256], 4096);
     assert_int_equal(ted4_sin[768], -4096);
-    assert_int_equal(ted4_step[128], 0x3f800000);   /* 1.0f */
+    assert_int_equal(ted4_step[128], 0x3f800000); /* 1.0f */
     assert_int_equal(ted4_stepi[160], 8192);
 }
 

@@ -1,5 +1,6 @@
-/* test_target.c - the program ted4enc with --target-size and --stage1: the size asked for is met from below, a second run begins where stage 1 ended.
- * Looks for the program in $TED4_BUILD (set by tests/run.sh); skips when that is not set.
+/* test_target.c - the program ted4enc with --target-size and --stage1: the size asked for is met
+ * from below, a second run begins where stage 1 ended. Looks for the program in $TED4_BUILD (set by
+ * tests/run.sh); skips when that is not set.
  * SPDX-License-Identifier: BSD-2-Clause */
 #include <setjmp.h>
 #include <stdarg.h>
@@ -25,9 +26,12 @@ static int encode(const char *arguments)
     }
 
     snprintf(command, sizeof command,
-             "cd %s && %s/ted4enc . -f -j1 --preset draft --capacity fixed --iterations 150,250 --set offsets=4 --set feature=8 --set phi=4"
-             " --set bank_dim=8 --set deform_width=8 --set head_width=12 --set hyper_width=8 --set ar_width=8 --set slices=2"
-             " --set octaves=4 --set init_anchors=150 --set max_anchors=260 %s 2>err", folder.path, build, arguments);
+             "cd %s && %s/ted4enc . -f -j1 --preset draft --capacity fixed --iterations 150,250 "
+             "--set offsets=4 --set feature=8 --set phi=4"
+             " --set bank_dim=8 --set deform_width=8 --set head_width=12 --set hyper_width=8 --set "
+             "ar_width=8 --set slices=2"
+             " --set octaves=4 --set init_anchors=150 --set max_anchors=260 %s 2>err",
+             folder.path, build, arguments);
 
     const int status = system(command);
 
@@ -71,10 +75,10 @@ static int same(const char *a, const char *b)
  * them all. */
 static int trials(void)
 {
-    enum { MOST = 8 };      /* of target.c */
+    enum { MOST = 8 }; /* of target.c */
     static char all[1 << 16];
     FILE *f = fopen(tiny_path(&folder, "err"), "rb");
-    int  n = 0;
+    int n = 0;
 
     assert_non_null(f);
     all[fread(all, 1, sizeof all - 1, f)] = '\0';
@@ -96,15 +100,16 @@ static void test_met(void **state)
 
     (void)state;
     for (int i = 0; i < 2; i++) {
-        snprintf(arguments, sizeof arguments, "-o end%d.ted4 --lambda %s --stage1 s1", i, lambdas[i]);
+        snprintf(arguments, sizeof arguments, "-o end%d.ted4 --lambda %s --stage1 s1", i,
+                 lambdas[i]);
         assert_int_equal(encode(arguments), 0);
         size[i] = size_of(i ? "end1.ted4" : "end0.ted4");
     }
     assert_true(size[1] < size[0] * 97 / 100);
     target = (size[0] + size[1]) / 2;
     for (int i = 0; i < 2; i++) {
-        snprintf(arguments, sizeof arguments, "-o target.ted4 --lambda %s --target-size %ld --stage1 s1",
-                 lambdas[i], target);
+        snprintf(arguments, sizeof arguments,
+                 "-o target.ted4 --lambda %s --target-size %ld --stage1 s1", lambdas[i], target);
         if (encode(arguments) != 0)
             fail_msg("%ld bytes were not met", target);
 
@@ -123,7 +128,8 @@ static void test_not_met(void **state)
     assert_true(size_of("small.ted4") > 500 && size_of("small.ted4") < size_of("end0.ted4"));
 }
 
-/* The same file from a shared end of stage 1, which the run does not write again; another scene's or other options' is refused. */
+/* The same file from a shared end of stage 1, which the run does not write again; another scene's
+ * or other options' is refused. */
 static void test_stage1(void **state)
 {
     (void)state;
@@ -136,7 +142,8 @@ static void test_stage1(void **state)
     assert_int_equal(access(tiny_path(&folder, "other.ted4"), F_OK), -1);
 }
 
-/* A search that was cut off begins again at the end of stage 1, where the checkpoint is, and comes to the same file. */
+/* A search that was cut off begins again at the end of stage 1, where the checkpoint is, and comes
+ * to the same file. */
 static void test_resumed(void **state)
 {
     char arguments[128];
@@ -144,8 +151,10 @@ static void test_resumed(void **state)
 
     (void)state;
     for (int i = 0; i < 2; i++) {
-        snprintf(arguments, sizeof arguments, "-o searched%d.ted4 --target-size %ld --checkpoint search --resume --log searched%d.jsonl", i,
-                 (size_of("end0.ted4") + size_of("end1.ted4")) / 2, i);
+        snprintf(arguments, sizeof arguments,
+                 "-o searched%d.ted4 --target-size %ld --checkpoint search --resume --log "
+                 "searched%d.jsonl",
+                 i, (size_of("end0.ted4") + size_of("end1.ted4")) / 2, i);
         assert_int_equal(encode(arguments), 0);
     }
     assert_true(same("searched0.ted4", "searched1.ted4"));
@@ -156,16 +165,20 @@ static void test_resumed(void **state)
 static void test_too_late(void **state)
 {
     (void)state;
-    assert_int_equal(encode("-o late.ted4 --checkpoint late --checkpoint-every 0 --lambda 0.01"), 0);
-    assert_int_equal(encode("-o later.ted4 --lambda 0.01 --checkpoint late --resume --target-size 20000"), 3);
-    assert_true(contains("err", "late: inside stage 2; a search for a size begins at the end of stage 1"));
+    assert_int_equal(encode("-o late.ted4 --checkpoint late --checkpoint-every 0 --lambda 0.01"),
+                     0);
+    assert_int_equal(
+        encode("-o later.ted4 --lambda 0.01 --checkpoint late --resume --target-size 20000"), 3);
+    assert_true(
+        contains("err", "late: inside stage 2; a search for a size begins at the end of stage 1"));
     assert_int_equal(access(tiny_path(&folder, "later.ted4"), F_OK), -1);
 }
 
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_met), cmocka_unit_test(test_not_met), cmocka_unit_test(test_stage1), cmocka_unit_test(test_resumed),
+        cmocka_unit_test(test_met),      cmocka_unit_test(test_not_met),
+        cmocka_unit_test(test_stage1),   cmocka_unit_test(test_resumed),
         cmocka_unit_test(test_too_late),
     };
 

@@ -18,11 +18,14 @@
 
 static char said[65536];
 
-typedef struct { char name[TEMPORARY_SIZE]; int usual; } capture;
+typedef struct {
+    char name[TEMPORARY_SIZE];
+    int usual;
+} capture;
 
 static capture begin_capture(void)
 {
-    capture   c = { .usual = dup(STDERR_FILENO) };
+    capture c = { .usual = dup(STDERR_FILENO) };
     const int file = temporary_file(c.name, "test_teller");
 
     assert_true(file >= 0 && c.usual >= 0 && dup2(file, STDERR_FILENO) >= 0);
@@ -108,13 +111,13 @@ static void test_lines(void **state)
     expect_line(&f, 300, 0,
                 "2700/14000 trials of smaller models: 33 %  loss 0.05000  train psnr 25.12  "
                 "anchors 3900  bytes 34868  12.3 ms/step  1 s left");
-    expect_line(&(ted4_facts){ .kind = TED4_TELL_UNPACKING, .name = "cam00.mp4", .step = 120 }, 0,
+    expect_line(&(ted4_facts) { .kind = TED4_TELL_UNPACKING, .name = "cam00.mp4", .step = 120 }, 0,
                 7, "unpacking cam00.mp4: 120 frames");
-    expect_line(&(ted4_facts){ .kind = TED4_TELL_LOADING, .name = "a/b" }, 0, 7,
+    expect_line(&(ted4_facts) { .kind = TED4_TELL_LOADING, .name = "a/b" }, 0, 7,
                 "loading a/b, 7 s so far");
-    expect_line(&(ted4_facts){ .kind = TED4_TELL_CODING }, 0, 7,
+    expect_line(&(ted4_facts) { .kind = TED4_TELL_CODING }, 0, 7,
                 "coding and checking the file, 7 s so far");
-    expect_line(&(ted4_facts){ 0 }, 0, 7, "");
+    expect_line(&(ted4_facts) { 0 }, 0, 7, "");
 }
 
 static int count(const char *what)
@@ -131,7 +134,7 @@ static int count(const char *what)
 static void test_thread(void **state)
 {
     const capture c = begin_capture();
-    ted4_teller   t;
+    ted4_teller t;
 
     (void)state;
     ted4_teller_begin(&t, "tool", 0);
@@ -139,9 +142,9 @@ static void test_thread(void **state)
     t.pause[0] = 0.6;
     t.pause[1] = 60;
     ted4_teller_say(&t, "first %d", 1);
-    ted4_teller_now(&t, &(ted4_facts){ .kind = TED4_TELL_UNPACKING, .name = "x.mp4", .step = 3 });
+    ted4_teller_now(&t, &(ted4_facts) { .kind = TED4_TELL_UNPACKING, .name = "x.mp4", .step = 3 });
     pause_s(2.5);
-    ted4_teller_now(&t, &(ted4_facts){ .kind = TED4_TELL_TRAINING, .stage = "1", .share = -1 });
+    ted4_teller_now(&t, &(ted4_facts) { .kind = TED4_TELL_TRAINING, .stage = "1", .share = -1 });
     pause_s(1.2);
     ted4_teller_end(&t);
     end_capture(c);
@@ -162,7 +165,7 @@ static void test_show_and_quiet(void **state)
         ted4_teller_begin(&t, "tool", quiet);
         t.pause[0] = t.pause[1] = 0;
         ted4_teller_say(&t, "words");
-        ted4_teller_now(&t, &(ted4_facts){ .kind = TED4_TELL_CODING });
+        ted4_teller_now(&t, &(ted4_facts) { .kind = TED4_TELL_CODING });
         ted4_teller_show(&t);
         pause_s(0.7);
         ted4_teller_error(&t, "trouble");
@@ -180,12 +183,12 @@ static void test_show_and_quiet(void **state)
 static void test_terminal(void **state)
 {
     const capture c = begin_capture();
-    ted4_teller   t;
+    ted4_teller t;
 
     (void)state;
     ted4_teller_begin(&t, "tool", 0);
     t.terminal = 1;
-    ted4_teller_now(&t, &(ted4_facts){ .kind = TED4_TELL_CODING });
+    ted4_teller_now(&t, &(ted4_facts) { .kind = TED4_TELL_CODING });
     ted4_teller_show(&t);
     ted4_teller_say(&t, "words");
     ted4_teller_end(&t);

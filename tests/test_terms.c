@@ -1,6 +1,7 @@
-/* test_terms.c - what a training step optimises (paper, "Training Objectives"): each term of the loss, made heavier in a training from pictures, moves what it
- * is about; the prior and its step sizes are learnt; and every part of the model moves when it is its turn, and only then. What each is worth:
- * test_update.c, test_rate_subset.c, test_step_grad.c.
+/* test_terms.c - what a training step optimises (paper, "Training Objectives"): each term of the
+ * loss, made heavier in a training from pictures, moves what it is about; the prior and its step
+ * sizes are learnt; and every part of the model moves when it is its turn, and only then. What each
+ * is worth: test_update.c, test_rate_subset.c, test_step_grad.c.
  * SPDX-License-Identifier: BSD-2-Clause */
 #include <setjmp.h>
 #include <stdarg.h>
@@ -45,7 +46,7 @@ static double roughness(const ted4_trainer *t)
 {
     const size_t D = t->layout.head.bank_dim, M = t->layout.head.bank_rows;
     const float *z = t->net + t->layout.bank;
-    double       sum = 0;
+    double sum = 0;
 
     for (size_t i = 0; i + 2 < M; i++)
         for (size_t c = 0; c < D; c++)
@@ -84,7 +85,7 @@ static double bits(const ted4_trainer *t)
 static double sameness(const ted4_trainer *t)
 {
     const double q0 = (double)t->layout.head.step[TED4_FEATURE];
-    double       sum = 0;
+    double sum = 0;
 
     for (size_t i = 0; i < t->anchors.n; i++)
         sum -= fabs(log2((double)*ted4_cell(&t->anchors, TED4_ROW_STEP, i, TED4_FEATURE) / q0));
@@ -96,15 +97,15 @@ static double sameness(const ted4_trainer *t)
 
 typedef struct {
     const char *light, *heavy, *both;
-    double    (*what)(const ted4_trainer *t);   /* less of it is wanted */
-    double      least;                          /* by which the heavy one must be less */
+    double (*what)(const ted4_trainer *t); /* less of it is wanted */
+    double least;                          /* by which the heavy one must be less */
 } term;
 
 static double trained(const term *x, int heavy, const ted4_snapshot *from)
 {
     ted4_train_options o = options(heavy ? x->heavy : x->light);
     ted4_trainer t;
-    double       found;
+    double found;
 
     ball_set(&o, x->both);
     ball_begin(&t, &o, &balls, NULL);
@@ -150,7 +151,7 @@ static void test_stage2(void **state)
     };
     const ted4_train_options o = options("stage1=150");
     ted4_snapshot from = { 0 };
-    ted4_trainer  t;
+    ted4_trainer t;
 
     (void)state;
     ball_begin(&t, &o, &balls, NULL);
@@ -163,9 +164,19 @@ static void test_stage2(void **state)
 
 /* ---- whose turn it is ---- */
 
-/* Parts of the model, a bit each: the five networks, bank, prior; the five types of values, masks of offsets, of motion. */
-enum { NETS = 1 << TED4_NETS_R, BANK = NETS, PRIOR = NETS << 1, TYPES = NETS << 2, TAU = TYPES << TED4_TAU, OFFSET_MASK = TYPES << TED4_TYPES,
-       TEMPORAL_MASK = OFFSET_MASK << 1, ALL = (TEMPORAL_MASK << 1) - 1, STEPS = 8 };
+/* Parts of the model, a bit each: the five networks, bank, prior; the five types of values, masks
+ * of offsets, of motion. */
+enum {
+    NETS = 1 << TED4_NETS_R,
+    BANK = NETS,
+    PRIOR = NETS << 1,
+    TYPES = NETS << 2,
+    TAU = TYPES << TED4_TAU,
+    OFFSET_MASK = TYPES << TED4_TYPES,
+    TEMPORAL_MASK = OFFSET_MASK << 1,
+    ALL = (TEMPORAL_MASK << 1) - 1,
+    STEPS = 8
+};
 
 static int differs(const float *a, const float *b, size_t first, size_t n)
 {
@@ -175,7 +186,9 @@ static int differs(const float *a, const float *b, size_t first, size_t n)
 static int channels_differ(const ted4_trainer *t, const float *before, int first, int n)
 {
     for (size_t b = 0; b < t->anchors.n_blocks; b++)
-        if (differs(t->anchors.data[TED4_ROW_VALUE], before, (b * (size_t)t->layout.n_channels + (size_t)first) * TED4_LANES, (size_t)n * TED4_LANES))
+        if (differs(t->anchors.data[TED4_ROW_VALUE], before,
+                    (b * (size_t)t->layout.n_channels + (size_t)first) * TED4_LANES,
+                    (size_t)n * TED4_LANES))
             return 1;
     return 0;
 }
@@ -184,10 +197,11 @@ static int channels_differ(const ted4_trainer *t, const float *before, int first
 static int moved(ted4_trainer *t)
 {
     const ted4_layout *l = &t->layout;
-    const ted4_shape  *s = &l->shape;
-    const size_t       values = t->anchors.n_blocks * (size_t)l->n_channels * TED4_LANES, anchors = t->anchors.n;
-    float             *net = malloc(l->n_net * sizeof *net), *value = malloc(values * sizeof *value);
-    int                parts = 0;
+    const ted4_shape *s = &l->shape;
+    const size_t values = t->anchors.n_blocks * (size_t)l->n_channels * TED4_LANES,
+                 anchors = t->anchors.n;
+    float *net = malloc(l->n_net * sizeof *net), *value = malloc(values * sizeof *value);
+    int parts = 0;
 
     assert_true(net != NULL && value != NULL);
     memcpy(net, t->net, l->n_net * sizeof *net);
@@ -210,12 +224,18 @@ static int moved(ted4_trainer *t)
     return parts;
 }
 
-/* Between adjustments of anchors: in the static phase, with activation, with the rate, and with the integer model. */
+/* Between adjustments of anchors: in the static phase, with activation, with the rate, and with the
+ * integer model. */
 static void test_turns(void **state)
 {
-    static const struct { uint64_t step; int parts; } turns[] = {
-        { 10, ALL & ~(PRIOR | TAU | OFFSET_MASK) }, { STAGE1 - 20, ALL & ~(PRIOR | OFFSET_MASK) },
-        { STAGE1 + 5, ALL }, { STAGE1 + STAGE2 - 20, ALL & ~PRIOR },
+    static const struct {
+        uint64_t step;
+        int parts;
+    } turns[] = {
+        { 10, ALL & ~(PRIOR | TAU | OFFSET_MASK) },
+        { STAGE1 - 20, ALL & ~(PRIOR | OFFSET_MASK) },
+        { STAGE1 + 5, ALL },
+        { STAGE1 + STAGE2 - 20, ALL & ~PRIOR },
     };
     const ted4_train_options o = options("stage1=150");
     ted4_trainer t;
@@ -227,7 +247,8 @@ static void test_turns(void **state)
         const int parts = moved(&t);
 
         if (parts != turns[i].parts)
-            fail_msg("from step %d on: parts %x moved, expected %x", (int)turns[i].step, (unsigned)parts, (unsigned)turns[i].parts);
+            fail_msg("from step %d on: parts %x moved, expected %x", (int)turns[i].step,
+                     (unsigned)parts, (unsigned)turns[i].parts);
     }
     ted4_trainer_finish(&t);
 }
@@ -235,7 +256,9 @@ static void test_turns(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_stage1), cmocka_unit_test(test_stage2), cmocka_unit_test(test_turns),
+        cmocka_unit_test(test_stage1),
+        cmocka_unit_test(test_stage2),
+        cmocka_unit_test(test_turns),
     };
 
     return cmocka_run_group_tests_name("terms", tests, set_up, tear_down);

@@ -19,9 +19,9 @@ enum { MOST = 3000, THREADS = 9 };
 
 typedef struct {
     atomic_uint taken[MOST];
-    size_t      slow;           /* this index takes as long as all others together */
-    atomic_uint others;         /* indices done, slow apart */
-    size_t      n;
+    size_t slow;        /* this index takes as long as all others together */
+    atomic_uint others; /* indices done, slow apart */
+    size_t n;
 } counts;
 
 static void take(void *arg, size_t i)
@@ -61,7 +61,8 @@ static void test_once(void **state)
     free(c);
 }
 
-/* The first index, of a share of 1,500, waits until all others are done: someone else has to take the rest of its share. */
+/* The first index, of a share of 1,500, waits until all others are done: someone else has to take
+ * the rest of its share. */
 static void wait_for_others(void *arg, size_t i)
 {
     counts *c = arg;
@@ -73,7 +74,7 @@ static void wait_for_others(void *arg, size_t i)
 
 static void test_helped(void **state)
 {
-    counts       *c = calloc(1, sizeof *c);
+    counts *c = calloc(1, sizeof *c);
     ted4_parallel p;
 
     (void)state;
@@ -82,7 +83,7 @@ static void test_helped(void **state)
         print_message("skipped: no second thread here\n");
         skip();
     }
-    alarm(60);          /* without help it would wait for ever */
+    alarm(60); /* without help it would wait for ever */
     for (int end = 0; end < 2; end++) {
         memset(c, 0, sizeof *c);
         c->n = MOST;
@@ -109,7 +110,7 @@ static void meet(void *arg, size_t i)
 static void test_woken(void **state)
 {
     const struct timespec pause = { 0, 2000000 };
-    counts               *c = calloc(1, sizeof *c);
+    counts *c = calloc(1, sizeof *c);
 
     (void)state;
     alarm(60);
@@ -138,7 +139,9 @@ static void test_woken(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_once), cmocka_unit_test(test_helped), cmocka_unit_test(test_woken),
+        cmocka_unit_test(test_once),
+        cmocka_unit_test(test_helped),
+        cmocka_unit_test(test_woken),
     };
 
     return cmocka_run_group_tests_name("threads", tests, NULL, NULL);

@@ -1,4 +1,5 @@
-/* test_time_probe.c - train/search/static_test.c: time is kept where things move and dropped where nothing does, and trying it leaves no trace in what is kept.
+/* test_time_probe.c - train/search/static_test.c: time is kept where things move and dropped where
+ * nothing does, and trying it leaves no trace in what is kept.
  * SPDX-License-Identifier: BSD-2-Clause */
 #include <setjmp.h>
 #include <stdarg.h>
@@ -35,7 +36,8 @@ static void check_same(const ted4_trainer *a, const ted4_trainer *b)
     assert_int_equal(a->anchors.n, b->anchors.n);
     for (int k = 0; k < TED4_ROWS; k++)
         assert_memory_equal(a->anchors.data[k], b->anchors.data[k],
-                            a->anchors.n_blocks * (size_t)a->anchors.rows[k] * TED4_LANES * sizeof(float));
+                            a->anchors.n_blocks * (size_t)a->anchors.rows[k] * TED4_LANES *
+                                sizeof(float));
     assert_memory_equal(a->net, b->net, a->layout.n_net * sizeof *a->net);
     assert_memory_equal(a->net_v, b->net_v, a->layout.n_net * sizeof *a->net_v);
     assert_memory_equal(a->order.item, b->order.item, a->order.n * sizeof *a->order.item);
@@ -44,7 +46,7 @@ static void check_same(const ted4_trainer *a, const ted4_trainer *b)
 
 static void test_moving(void **state)
 {
-    tiny_folder  folder;
+    tiny_folder folder;
     ted4_dataset d;
     ted4_trainer a, b;
 
@@ -67,18 +69,19 @@ static void test_moving(void **state)
     tiny_free(&folder);
 }
 
-/* Either part of time is stopped with the clock: where only one of them is modelled, it is missed. */
+/* Either part of time is stopped with the clock: where only one of them is modelled, it is missed.
+ */
 static void test_parts(void **state)
 {
     static const char *const without[] = { "activation=0", "motion=0" };
-    tiny_folder  folder;
+    tiny_folder folder;
     ted4_dataset d;
 
     (void)state;
     ball_load(&folder, &d, FRAMES, 1);
     for (int i = 0; i < 2; i++) {
         ted4_train_options o = options("probe=0.1");
-        ted4_trainer       t;
+        ted4_trainer t;
 
         ball_set(&o, without[i]);
         ball_begin(&t, &o, &d, NULL);
@@ -99,10 +102,10 @@ static void test_parts(void **state)
  * with it. */
 static void test_still(void **state)
 {
-    tiny_folder        folder;
-    ted4_dataset       d;
-    ted4_trainer       t, twin;
-    ted4_snapshot      early = { 0 };
+    tiny_folder folder;
+    ted4_dataset d;
+    ted4_trainer t, twin;
+    ted4_snapshot early = { 0 };
     ted4_train_options o = options("probe=0.1");
 
     (void)state;
@@ -123,7 +126,8 @@ static void test_still(void **state)
     assert_int_equal(ted4_snapshot_take(&t, &early), 0);
     ball_train(&t, BEGIN + BRANCH + 1);
 
-    /* A run that was killed after it had begun again goes on without time, and does not ask once more. */
+    /* A run that was killed after it had begun again goes on without time, and does not ask once
+     * more. */
     ball_begin(&twin, &o, &d, NULL);
     if (ted4_snapshot_restore(&twin, &early) != 0)
         fail_msg("%s", twin.message.text);
@@ -148,7 +152,7 @@ static void test_still(void **state)
 /* Too few steps tell nothing. */
 static void test_short(void **state)
 {
-    tiny_folder  folder;
+    tiny_folder folder;
     ted4_dataset d;
     ted4_trainer t;
 
@@ -165,7 +169,10 @@ static void test_short(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_moving), cmocka_unit_test(test_parts), cmocka_unit_test(test_still), cmocka_unit_test(test_short),
+        cmocka_unit_test(test_moving),
+        cmocka_unit_test(test_parts),
+        cmocka_unit_test(test_still),
+        cmocka_unit_test(test_short),
     };
 
     return cmocka_run_group_tests(tests, NULL, NULL);

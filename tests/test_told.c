@@ -1,4 +1,5 @@
-/* test_told.c - tool/told.c: which lines of META come out, and that none of them can steer a terminal.
+/* test_told.c - tool/told.c: which lines of META come out, and that none of them can steer a
+ * terminal.
  * SPDX-License-Identifier: BSD-2-Clause */
 #include <setjmp.h>
 #include <stdarg.h>
@@ -13,7 +14,7 @@
 enum { ROOM = 4096 };
 
 static uint8_t file[ROOM];
-static size_t  size;
+static size_t size;
 
 /* What told.c looks at: types and sizes. */
 static void add_chunk(const char *type, const char *text, size_t n)
@@ -45,8 +46,10 @@ static void expect(const char *const *lines, size_t n)
 
 static void test_lines(void **state)
 {
-    static const char        text[] = "title=x\ncapacity=auto\ncapacity.1=one\ncapacityx=no\ncapacity\n\ncapacity.2=two=2\n";
-    static const char *const want[] = { "capacity=auto", "capacity.1=one", "capacity.2=two=2", "capacity.3=no end" };
+    static const char text[] =
+        "title=x\ncapacity=auto\ncapacity.1=one\ncapacityx=no\ncapacity\n\ncapacity.2=two=2\n";
+    static const char *const want[] = { "capacity=auto", "capacity.1=one", "capacity.2=two=2",
+                                        "capacity.3=no end" };
 
     (void)state;
     begin();
@@ -58,7 +61,8 @@ static void test_lines(void **state)
 
 static void test_steering(void **state)
 {
-    static const char        text[] = "capacity=\x1b[2J\x07\xc2\x9b" "1m\x7f!\n";
+    static const char text[] = "capacity=\x1b[2J\x07\xc2\x9b"
+                               "1m\x7f!\n";
     static const char *const want[] = { "capacity=?[2J???1m?!" };
 
     (void)state;
@@ -89,7 +93,9 @@ static void test_none(void **state)
 
 int main(void)
 {
-    const struct CMUnitTest tests[] = { cmocka_unit_test(test_lines), cmocka_unit_test(test_steering), cmocka_unit_test(test_none) };
+    const struct CMUnitTest tests[] = { cmocka_unit_test(test_lines),
+                                        cmocka_unit_test(test_steering),
+                                        cmocka_unit_test(test_none) };
 
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

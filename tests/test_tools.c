@@ -32,11 +32,11 @@ static const char *build;
 
 /* a file for each kind of view input, none, colour, full: name, and what it holds. */
 static struct {
-    ted4_info   info;
+    ted4_info info;
     ted4_recon *recon;
 } file[3];
 
-static char out[MAX_TEXT];              /* standard output of the last program */
+static char out[MAX_TEXT]; /* standard output of the last program */
 
 /* Runs a program in the folder; returns its exit code. */
 static int run(const char *format, ...)
@@ -106,8 +106,8 @@ static void make_file(int view)
         char name[16];
 
         assert_non_null(s);
-        if (s->head.view != view || s->head.n_anchors < 50 || s->head.frames < 3
-            || s->head.frames > 60 || abs(s->head.exponent) > 12) {
+        if (s->head.view != view || s->head.n_anchors < 50 || s->head.frames < 3 ||
+            s->head.frames > 60 || abs(s->head.exponent) > 12) {
             ted4_scene_free(s);
             continue;
         }
@@ -115,7 +115,7 @@ static void make_file(int view)
         ted4_scene_free(s);
         snprintf(name, sizeof name, "v%d.ted4", view);
         write_contents(name, data, size);
-        assert_int_equal(ted4_decode(data, size, NULL, &s, &(ted4_error){ TED4_OK, 0 }), TED4_OK);
+        assert_int_equal(ted4_decode(data, size, NULL, &s, &(ted4_error) { TED4_OK, 0 }), TED4_OK);
         ted4_scene_info(s, &file[view].info);
         assert_int_equal(ted4_recon_new(&file[view].recon, s, NULL), TED4_OK);
         ted4_scene_free(s);
@@ -193,7 +193,8 @@ static void test_verdicts(void **state)
     assert_non_null(strstr(out, "--sh-degree N"));
 }
 
-/* The contract's bound of memory holds for queries too: those of this vector take more than decoding. */
+/* The contract's bound of memory holds for queries too: those of this vector take more than
+ * decoding. */
 static void test_contract_bound(void **state)
 {
     static const char query[] = "[{\"t\":[0,1],\"cam\":[0,0,0]}]";
@@ -204,8 +205,12 @@ static void test_contract_bound(void **state)
     assert_non_null(getcwd(here, sizeof here));
     write_contents("query.json", (const uint8_t *)query, strlen(query));
     for (int tier = 1; tier <= 5; tier += 4) {
-        assert_int_equal(run("ted4dec --ted4-run %s/conformance/vectors/valid/header/HDR-head_width-512.ted4 --tiers T%d --queries query.json "
-                             "--knob max_alloc_total=180000", here, tier), 0);
+        assert_int_equal(
+            run("ted4dec --ted4-run %s/conformance/vectors/valid/header/HDR-head_width-512.ted4 "
+                "--tiers T%d --queries query.json "
+                "--knob max_alloc_total=180000",
+                here, tier),
+            0);
         assert_non_null(strstr(out, tier == 1 ? "\"result\":\"valid\"" : "\"limit.memory\""));
     }
 }
@@ -289,7 +294,7 @@ static float float_at(const uint8_t *p)
 {
     float v;
 
-    memcpy(&v, &(uint32_t){ p[0] | p[1] << 8 | p[2] << 16 | (uint32_t)p[3] << 24 }, sizeof v);
+    memcpy(&v, &(uint32_t) { p[0] | p[1] << 8 | p[2] << 16 | (uint32_t)p[3] << 24 }, sizeof v);
     return v;
 }
 
@@ -331,7 +336,7 @@ static void test_fitted_colours(void **state)
         }
     }
     assert_true(sqrt(sum / (3.0 * (double)info->n_gaussians)) < 0.02);
-    assert_true(sum < 0.1 * spread);    /* and it is the direction that makes the difference */
+    assert_true(sum < 0.1 * spread); /* and it is the direction that makes the difference */
     free(ply);
     free(raw);
 }
@@ -348,12 +353,12 @@ static void camera_make(const ted4_info *info, int i, ted4_view *v, double centr
     };
     double t[3] = { 0.0, 0.0, 0.0 };
 
-    *v = (ted4_view){ .width = WIDTH, .height = HEIGHT, .fx = 80, .fy = 80, .cx = 48, .cy = 32 };
+    *v = (ted4_view) { .width = WIDTH, .height = HEIGHT, .fx = 80, .fy = 80, .cx = 48, .cy = 32 };
     memcpy(v->R, R[i], sizeof v->R);
     for (int k = 0; k < 3; k++) {
         /* As a float, so that text files carry it exactly. */
-        centre[k] = (double)(float)((double)info->origin[k]
-                                    - ldexp(2.5 * (double)R[i][6 + k], info->exponent));
+        centre[k] = (double)(float)((double)info->origin[k] -
+                                    ldexp(2.5 * (double)R[i][6 + k], info->exponent));
         for (int r = 0; r < 3; r++)
             t[r] -= (double)R[i][3 * r + k] * centre[k];
     }
@@ -434,7 +439,7 @@ static void test_render(void **state)
         free(image.bytes);
         free(want);
     }
-    assert_true(colours > 1000);        /* something is to be seen */
+    assert_true(colours > 1000); /* something is to be seen */
 }
 
 /* ---- ted4eval ---- */
@@ -450,7 +455,7 @@ static void write_scene_file(const char *name)
         char picture[16];
 
         camera_make(&file[1].info, i, &v, centre);
-        for (int r = 0; r < 3; r++)     /* columns right, up, backward, centre */
+        for (int r = 0; r < 3; r++) /* columns right, up, backward, centre */
             json_array_append_new(rows, json_pack("[f,f,f,f]", (double)v.R[r], -(double)v.R[3 + r],
                                                   -(double)v.R[6 + r], centre[r]));
         json_array_append_new(rows, json_pack("[f,f,f,f]", 0.0, 0.0, 0.0, 1.0));
@@ -502,7 +507,8 @@ static void test_eval(void **state)
     write_scene_file("scene/transforms_test.json");
     /* The vector is of no scene at all. */
     assert_int_equal(run("ted4eval v1.ted4 scene"), 3);
-    assert_int_equal(run("ted4eval v1.ted4 scene --anyway --json --images pictures --sheet sheet.png"), 0);
+    assert_int_equal(
+        run("ted4eval v1.ted4 scene --anyway --json --images pictures --sheet sheet.png"), 0);
     free(contents("v1.ted4", &size));
     assert_true(fabs(result("psnr") - 20.0 * log10(255.0)) < 1e-3);
     assert_true(result("ssim") > 0.99 && result("ssim") < 1.0);
@@ -513,8 +519,8 @@ static void test_eval(void **state)
     path_of(path, "sheet.png");
     assert_int_equal(ted4_image_probe(path, &sheet, &m), 0);
     assert_true(sheet.width == 3 * WIDTH && sheet.height == 3 * HEIGHT);
-    assert_true(exists("pictures/truth/00002.png") && exists("pictures/ours/00002.png")
-                && exists("pictures/error/00002.png"));
+    assert_true(exists("pictures/truth/00002.png") && exists("pictures/ours/00002.png") &&
+                exists("pictures/error/00002.png"));
     /* The sheet is there by now. */
     assert_int_equal(run("ted4eval v1.ted4 scene --anyway --split train --sheet sheet.png"), 3);
     assert_int_equal(run("ted4eval v1.ted4 scene --anyway --split train --sheet sheet.png -f"), 0);
@@ -527,14 +533,10 @@ static void test_eval(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_verdicts),
-        cmocka_unit_test(test_contract_bound),
-        cmocka_unit_test(test_usage),
-        cmocka_unit_test(test_hash),
-        cmocka_unit_test(test_frames),
-        cmocka_unit_test(test_fitted_colours),
-        cmocka_unit_test(test_render),
-        cmocka_unit_test(test_eval),
+        cmocka_unit_test(test_verdicts), cmocka_unit_test(test_contract_bound),
+        cmocka_unit_test(test_usage),    cmocka_unit_test(test_hash),
+        cmocka_unit_test(test_frames),   cmocka_unit_test(test_fitted_colours),
+        cmocka_unit_test(test_render),   cmocka_unit_test(test_eval),
     };
     return cmocka_run_group_tests(tests, setup, teardown);
 }

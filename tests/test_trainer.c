@@ -15,7 +15,7 @@
 
 enum { STAGE1 = 400, STAGE2 = 250, INTEGER_FROM = STAGE1 + 200, FRAMES = 5 };
 
-static tiny_folder  moving_folder, still_folder, single_folder;
+static tiny_folder moving_folder, still_folder, single_folder;
 static ted4_dataset moving_scene, still_scene, single_scene;
 
 static int set_up(void **state)
@@ -45,8 +45,8 @@ static void test_learns(void **state)
 {
     ted4_train_options o = ball_options();
     ted4_trainer t;
-    ted4_info    info;
-    double       first;
+    ted4_info info;
+    double first;
 
     (void)state;
     ball_begin(&t, &o, &moving_scene, NULL);
@@ -63,14 +63,13 @@ static void test_learns(void **state)
     free(f.bytes);
 }
 
-
 /* ---- same bytes ---- */
 
 static ball_file run(const ted4_parallel *p)
 {
     const ted4_train_options o = ball_options();
     ted4_trainer t;
-    ball_file    f;
+    ball_file f;
 
     ball_begin(&t, &o, &moving_scene, p);
     f = ball_finish(&t);
@@ -85,7 +84,7 @@ static void test_threads(void **state)
     (void)state;
     for (int n = 1; n <= 2; n++) {
         ted4_parallel p;
-        ball_file    f;
+        ball_file f;
 
         ted4_threads_init(&p, n);
         f = run(&p);
@@ -100,8 +99,9 @@ static void test_threads(void **state)
 
 /* In stage 1 without and with activation; before and after the first step of stage 2; before and in
  * the integer stage; at the end. */
-static const uint64_t stops[] = { 0, 90, 230, STAGE1, STAGE1 + 1, INTEGER_FROM, INTEGER_FROM + 7,
-                                  STAGE1 + STAGE2 };
+static const uint64_t stops[] = {
+    0, 90, 230, STAGE1, STAGE1 + 1, INTEGER_FROM, INTEGER_FROM + 7, STAGE1 + STAGE2
+};
 
 enum { N_STOPS = (int)(sizeof stops / sizeof stops[0]) };
 
@@ -118,7 +118,7 @@ static ball_file run_and_save(void)
 {
     const ted4_train_options o = ball_options();
     ted4_trainer t;
-    ball_file    f;
+    ball_file f;
 
     ball_begin(&t, &o, &moving_scene, NULL);
     for (int i = 0; i < N_STOPS; i++) {
@@ -139,7 +139,7 @@ static void test_checkpoints(void **state)
     ball_check_same(&plain, &whole);
     for (int i = 0; i < N_STOPS; i++) {
         ted4_trainer t;
-        ball_file    f;
+        ball_file f;
 
         ball_begin(&t, &o, &moving_scene, NULL);
         if (ted4_checkpoint_load(&t, stop_path(i)) != 0)
@@ -168,7 +168,7 @@ static void check_refused(const ted4_train_options *o, ted4_dataset *d, const ch
 static ball_file read_file(const char *path)
 {
     FILE *in = fopen(path, "rb");
-    ball_file    f = { malloc(1 << 24), 0 };
+    ball_file f = { malloc(1 << 24), 0 };
 
     assert_true(in != NULL && f.bytes != NULL);
     f.size = fread(f.bytes, 1, 1 << 24, in);
@@ -229,12 +229,13 @@ static void test_bad_checkpoints(void **state)
     check_refused(&o, &moving_scene, stop_path(1));
 }
 
-/* A state that no checkpoint may hold is not written, and the last good checkpoint stays, though no call of the system failed. */
+/* A state that no checkpoint may hold is not written, and the last good checkpoint stays, though no
+ * call of the system failed. */
 static void test_impossible_state(void **state)
 {
     const ted4_train_options o = ball_options();
     ted4_trainer t;
-    ball_file    before, after;
+    ball_file before, after;
 
     (void)state;
     ball_begin(&t, &o, &moving_scene, NULL);
@@ -256,8 +257,8 @@ static void test_impossible_state(void **state)
 static ted4_info train_and_look(const ted4_train_options *o, ted4_dataset *d, double *psnr)
 {
     ted4_trainer t;
-    ted4_info    info;
-    ball_file    f;
+    ted4_info info;
+    ball_file f;
 
     ball_begin(&t, o, d, NULL);
     f = ball_finish(&t);
@@ -270,7 +271,7 @@ static ted4_info train_and_look(const ted4_train_options *o, ted4_dataset *d, do
 static void test_single_frame(void **state)
 {
     const ted4_train_options o = ball_options();
-    double          psnr;
+    double psnr;
     const ted4_info info = train_and_look(&o, &single_scene, &psnr);
 
     (void)state;
@@ -286,7 +287,7 @@ static void test_single_frame(void **state)
 static void test_still(void **state)
 {
     const ted4_train_options o = ball_options();
-    double          psnr;
+    double psnr;
     const ted4_info info = train_and_look(&o, &still_scene, &psnr);
 
     (void)state;
@@ -300,7 +301,7 @@ static void test_simplified(void **state)
 {
     ted4_train_options o = ball_options();
     ted4_trainer t;
-    ted4_info    info;
+    ted4_info info;
 
     (void)state;
     ball_set(&o, "temporal_weight=1");
@@ -334,9 +335,9 @@ static void test_rate(void **state)
 {
     const ted4_train_options o = ball_options();
     ted4_trainer t;
-    ted4_scene  *s;
-    ted4_bits    coded;
-    double       bits[TED4_TYPES], sum = 0, want = 0;
+    ted4_scene *s;
+    ted4_bits coded;
+    double bits[TED4_TYPES], sum = 0, want = 0;
 
     (void)state;
     ball_begin(&t, &o, &moving_scene, NULL);
@@ -346,9 +347,19 @@ static void test_rate(void **state)
     ted4_scene_free(s);
     assert_int_equal(ted4_slots_fill(&t, NULL), 0);
 
-    const ted4_rate_input in = { &t.layout, t.net, t.shift, t.slots.n, t.slots.raw,
-                                 t.slots.position, t.slots.lanes, t.slots.block, 0,
-                                 TED4_QUANT_INTEGER, 0.0f, 0.0f, 1 };
+    const ted4_rate_input in = { &t.layout,
+                                 t.net,
+                                 t.shift,
+                                 t.slots.n,
+                                 t.slots.raw,
+                                 t.slots.position,
+                                 t.slots.lanes,
+                                 t.slots.block,
+                                 0,
+                                 TED4_QUANT_INTEGER,
+                                 0.0f,
+                                 0.0f,
+                                 1 };
 
     ted4_rate_pack(t.rate, t.net);
     assert_int_equal(ted4_rate_evaluate(t.rate, &in, NULL, NULL, NULL, NULL, t.slots.steps, bits),
@@ -364,30 +375,35 @@ static void test_rate(void **state)
 
 /* ---- not a number ---- */
 
-/* A NaN, or an infinity, in a network is never written; the next step finds it, says where, and goes back (test_watch.c). */
+/* A NaN, or an infinity, in a network is never written; the next step finds it, says where, and
+ * goes back (test_watch.c). */
 static void check_nan(uint64_t iteration, int which)
 {
     const ted4_train_options o = ball_options();
     ted4_trainer t;
-    ted4_scene  *s;
+    ted4_scene *s;
 
     ball_begin(&t, &o, &moving_scene, NULL);
     ball_train(&t, iteration);
 
     const ted4_layout *l = &t.layout;
-    const size_t at = which < TED4_NETS_R ? l->netr + l->shape.netr[which].first
-                    : which == TED4_NETS_R ? l->bank + 1 : l->nete + 1;
+    const size_t at = which < TED4_NETS_R    ? l->netr + l->shape.netr[which].first
+                      : which == TED4_NETS_R ? l->bank + 1
+                                             : l->nete + 1;
 
     t.net[at] = which % 2 ? NAN : INFINITY;
     assert_int_equal(ted4_make_scene(&t, &s), -1);
     assert_null(s);
     assert_non_null(strstr(t.message.text, "network weight is not finite at step"));
     assert_int_equal(ted4_trainer_step(&t), 0);
-    assert_non_null(strstr(t.message.text, which == TED4_NET_PROJECT || which == TED4_NET_DEFORM ? "weight of motion is not finite at step"
-                                           : which < TED4_NETS_R  ? "weight of heads is not finite at step"
-                                           : which == TED4_NETS_R ? "weight of bank is not finite at step"
-                                                                  : "weight of prior is not finite at step"));
-    assert_true(t.iteration < iteration && t.watch.find.step == iteration && t.watch.state.rollbacks == 1);
+    assert_non_null(
+        strstr(t.message.text, which == TED4_NET_PROJECT || which == TED4_NET_DEFORM
+                                   ? "weight of motion is not finite at step"
+                               : which < TED4_NETS_R  ? "weight of heads is not finite at step"
+                               : which == TED4_NETS_R ? "weight of bank is not finite at step"
+                                                      : "weight of prior is not finite at step"));
+    assert_true(t.iteration < iteration && t.watch.find.step == iteration &&
+                t.watch.state.rollbacks == 1);
     ted4_trainer_finish(&t);
 }
 
@@ -401,12 +417,13 @@ static void test_nan(void **state)
     check_nan(INTEGER_FROM + 5, TED4_NETS_R + 1);
 }
 
-/* A value of an anchor is found by the first step whose picture may show the anchor, or when all anchors are next looked at, at most 100 steps later. */
+/* A value of an anchor is found by the first step whose picture may show the anchor, or when all
+ * anchors are next looked at, at most 100 steps later. */
 static void test_nan_anchor(void **state)
 {
     const ted4_train_options o = ball_options();
     ted4_trainer t;
-    ted4_scene  *s;
+    ted4_scene *s;
 
     (void)state;
     ball_begin(&t, &o, &moving_scene, NULL);
@@ -415,7 +432,8 @@ static void test_nan_anchor(void **state)
     assert_int_equal(ted4_make_scene(&t, &s), -1);
     for (int i = 0; i < 100 && t.watch.state.rollbacks == 0; i++)
         assert_int_equal(ted4_trainer_step(&t), 0);
-    assert_true(t.watch.state.rollbacks == 1 && strstr(t.message.text, "value of feature of anchor 7 is not finite") != NULL);
+    assert_true(t.watch.state.rollbacks == 1 &&
+                strstr(t.message.text, "value of feature of anchor 7 is not finite") != NULL);
     ted4_trainer_finish(&t);
 }
 

@@ -27,7 +27,11 @@ static ted4_dataset load(const tiny_folder *f)
     return d;
 }
 
-typedef struct { const char *frame; int w, h; double fx, fy, cx, cy; } lens_case;
+typedef struct {
+    const char *frame;
+    int w, h;
+    double fx, fy, cx, cy;
+} lens_case;
 
 static void check_lenses(const tiny_folder *f, const char *top, const lens_case *cases, int n)
 {
@@ -92,7 +96,8 @@ static void test_lenses(void **state)
 /* Every way to name a picture, and the one that is meant. */
 static void test_names(void **state)
 {
-    static const struct { const char *name, *file;
+    static const struct {
+        const char *name, *file;
     } cases[] = {
         { "images/a0.png", "images/a0.png" },
         { "./images/a1.png", "images/a1.png" },
@@ -190,7 +195,7 @@ static void test_files(void **state)
 
     (void)state;
     write_part(&f, "transforms_train.json", "train", ANGLE, 0, -1);
-    expect(&f, 10, 1, "blender");               /* alone: 1 of 8 */
+    expect(&f, 10, 1, "blender"); /* alone: 1 of 8 */
     write_part(&f, "transforms_val.json", "val", ANGLE, 0, -1);
     expect(&f, 20, 10, "blender");
     must(remove(tiny_path(&f, "transforms_train.json")) == 0, "train");
@@ -200,7 +205,7 @@ static void test_files(void **state)
     write_part(&f, "transforms_train.json", "train", ANGLE, 0, 0.1);
     write_part(&f, "transforms_val.json", "val", ANGLE, 0, 0.1);
     write_part(&f, "transforms_test.json", "test", ANGLE, 0, 0.1);
-    expect(&f, 20, 10, "D-NeRF");               /* val is nobody's */
+    expect(&f, 20, 10, "D-NeRF"); /* val is nobody's */
     write_part(&f, "transforms_train.json", "train", "\"fl_x\": 12,", 0, 0.1);
     expect(&f, 20, 10, "D-NeRF");
     write_part(&f, "transforms_train.json", "train", "\"fl_x\": 12,", 0, -1);
@@ -237,8 +242,8 @@ static void test_times(void **state)
     assert_int_equal(d.n_warnings, 1);
     assert_non_null(strstr(d.warnings[0], "times have no common step: of 20 pictures, "));
     for (size_t i = 0; i < d.n_pictures; i++) {
-        const double time =
-            d.pictures[i].is_test ? 0.0000123 + (double)(i - 10) * 0.0998765 : 0.1 * (double)i;
+        const double time = d.pictures[i].is_test ? 0.0000123 + (double)(i - 10) * 0.0998765
+                                                  : 0.1 * (double)i;
         assert_true(fabs(d.pictures[i].frame / (d.n_frames - 1.0) - time / 0.9) < 0.001);
     }
     ted4_dataset_free(&d);

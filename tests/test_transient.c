@@ -1,4 +1,5 @@
-/* test_transient.c - train/densify/short_lived.c: which initial points are found to exist only for a while, and when.
+/* test_transient.c - train/densify/short_lived.c: which initial points are found to exist only for
+ * a while, and when.
  * SPDX-License-Identifier: BSD-2-Clause */
 #include <setjmp.h>
 #include <stdarg.h>
@@ -13,13 +14,17 @@
 
 enum { FRAMES = 5 };
 
-typedef struct { tiny_folder folder; ted4_dataset data; ted4_trainer trainer; } scene;
+typedef struct {
+    tiny_folder folder;
+    ted4_dataset data;
+    ted4_trainer trainer;
+} scene;
 
 static void open_scene(scene *s, int moving, int activation, int transients)
 {
     const ted4_dataset_options o = { .downscale = 1, .seed = 3, .cache_bytes = 1 << 20 };
-    ted4_train_options         train;
-    ted4_message               m;
+    ted4_train_options train;
+    ted4_message m;
 
     s->folder = tiny_new();
     ball_scene(&s->folder, FRAMES, moving);
@@ -43,12 +48,13 @@ static void close_scene(scene *s)
 static double radii(const ted4_trainer *t, size_t i, int which, double time)
 {
     const ted4_header *h = &t->layout.head;
-    const ball         b = ball_at(which, time);
+    const ball b = ball_at(which, time);
     double square = 0;
 
     for (int k = 0; k < 3; k++) {
-        const double x = (double)h->origin[k] +
-                         ldexp((double)*ted4_cell(&t->anchors, TED4_ROW_POSITION, i, k), h->exponent);
+        const double x =
+            (double)h->origin[k] +
+            ldexp((double)*ted4_cell(&t->anchors, TED4_ROW_POSITION, i, k), h->exponent);
 
         square += (x - b.centre[k]) * (x - b.centre[k]);
     }
@@ -60,10 +66,11 @@ static float tau(const ted4_trainer *t, size_t i, int c)
     return *ted4_cell(&t->anchors, TED4_ROW_VALUE, i, t->layout.first[TED4_TAU] + c);
 }
 
-/* The blue ball's points get spans around the time at which it was there; the green ball, far from its way, gets none. */
+/* The blue ball's points get spans around the time at which it was there; the green ball, far from
+ * its way, gets none. */
 static void test_moving(void **state)
 {
-    scene  s;
+    scene s;
     size_t found = 0, blue = 0;
 
     (void)state;

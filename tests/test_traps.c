@@ -1,12 +1,15 @@
-/* test_traps.c - the places where the published recipe fails (annex D.1, in its order, and two more), each with what we do instead.
- * Those that the test of one module shows are there:
- *   3 sigma clamped from below gets no gradient: test_rate.c, clamped outputs recover; test_rate_grad.c, clamped
- *   4 a floor under likelihoods leaves outliers without gradient: test_rate_row.c, outliers have gradient; test_rate_grad.c, outliers
- *   5 steps that reach 0: test_rate.c, clamped outputs recover; the symbols that would overflow: test_rate.c, quantise; and here
- *   7 the cap of opacity and the early stop are steps: test_raster_grad.c, cap and early stop; so pictures are compared with a tolerance, test_raster.c,
+/* test_traps.c - the places where the published recipe fails (annex D.1, in its order, and two
+ * more), each with what we do instead. Those that the test of one module shows are there:
+ *   3 sigma clamped from below gets no gradient: test_rate.c, clamped outputs recover;
+ *   test_rate_grad.c, clamped 4 a floor under likelihoods leaves outliers without gradient:
+ *   test_rate_row.c, outliers have gradient; test_rate_grad.c, outliers 5 steps that reach 0:
+ *   test_rate.c, clamped outputs recover; the symbols that would overflow: test_rate.c, quantise;
+ *   and here 7 the cap of opacity and the early stop are steps: test_raster_grad.c, cap and early
+ *   stop; so pictures are compared with a tolerance, test_raster.c,
  *     and what has to be equal to the bit ends at the Gaussians, test_recon.c
- * Here: 1 spans that begin with the sequence, 2 the saddle of the bank's query, 5 symbols of a file, 6 units of the world and small scalings, 8 anchors that
- * are never there; and positions in FP16: none beyond 1, no two alike.
+ * Here: 1 spans that begin with the sequence, 2 the saddle of the bank's query, 5 symbols of a
+ * file, 6 units of the world and small scalings, 8 anchors that are never there; and positions in
+ * FP16: none beyond 1, no two alike.
  * SPDX-License-Identifier: BSD-2-Clause */
 #include <setjmp.h>
 #include <stdarg.h>
@@ -28,9 +31,11 @@ static cloud_case cloud;
 /* Gradients of the sum of all opacities at a frame, in t->slots.gradient. */
 static void opacity_gradients(ted4_trainer *t, uint32_t frame)
 {
-    ted4_generate_input in = { &t->layout, t->net, 0, NULL, NULL, NULL, frame, FRAMES - 1, { 0 }, 1 };
-    ted4_splats         s;
-    ted4_splat_grads    g;
+    ted4_generate_input in = {
+        &t->layout, t->net, 0, NULL, NULL, NULL, frame, FRAMES - 1, { 0 }, 1
+    };
+    ted4_splats s;
+    ted4_splat_grads g;
 
     in.camera[2] = 4.0f;
     assert_int_equal(ted4_slots_fill(t, NULL), 0);
@@ -41,7 +46,7 @@ static void opacity_gradients(ted4_trainer *t, uint32_t frame)
     ted4_generator_pack(t->generator, t->net);
     assert_int_equal(ted4_generate(t->generator, &in, NULL, &s), 0);
 
-    float   *zero = calloc(s.n, sizeof *zero), *one = malloc(s.n * sizeof *one);
+    float *zero = calloc(s.n, sizeof *zero), *one = malloc(s.n * sizeof *one);
     uint8_t *seen = malloc(s.n);
 
     assert_true(zero != NULL && one != NULL && seen != NULL);
@@ -56,8 +61,8 @@ static void opacity_gradients(ted4_trainer *t, uint32_t frame)
     g.opacity = one;
     g.mean2d = zero;
     g.visible = seen;
-    assert_int_equal(ted4_generate_backward(t->generator, &in, &g, NULL, t->slots.gradient,
-                                            t->net_gradient), 0);
+    assert_int_equal(
+        ted4_generate_backward(t->generator, &in, &g, NULL, t->slots.gradient, t->net_gradient), 0);
     free(zero);
     free(one);
     free(seen);
@@ -78,8 +83,8 @@ static size_t pulled(const ted4_trainer *t, int c)
     return n;
 }
 
-/* Everything is seen at every time, so all spans reach from the first frame to the last. With a_s at the first frame itself no
- * frame would lie before it, and it could never move. */
+/* Everything is seen at every time, so all spans reach from the first frame to the last. With a_s
+ * at the first frame itself no frame would lie before it, and it could never move. */
 static void test_spans(void **state)
 {
     const ted4_train_options o = ball_options();
@@ -116,22 +121,23 @@ static size_t first_layer(const ted4_net_shape *s)
     return (size_t)s->dim[0] * s->dim[1];
 }
 
-/* The last layer of F_deform begins at zero, so that the first step reaches it alone; with the second all that moves anchors must have begun to learn. */
+/* The last layer of F_deform begins at zero, so that the first step reaches it alone; with the
+ * second all that moves anchors must have begun to learn. */
 static void test_saddle(void **state)
 {
     ted4_train_options o = ball_options();
-    ted4_trainer  t;
-    const size_t  phi = TED4_LANES * 4;     /* values of phi in a block */
-    double        on_phi = 0;
+    ted4_trainer t;
+    const size_t phi = TED4_LANES * 4; /* values of phi in a block */
+    double on_phi = 0;
 
     (void)state;
-    o.tv_weight = 0;                        /* or the bank would have a gradient of its own */
+    o.tv_weight = 0; /* or the bank would have a gradient of its own */
     ball_begin(&t, &o, &balls, NULL);
     ball_train(&t, 2);
     assert_int_equal(t.layout.head.phi_dim, 4);
 
-    const ted4_shape   *s = &t.layout.shape;
-    const float        *d = t.net_gradient + t.layout.netr;
+    const ted4_shape *s = &t.layout.shape;
+    const float *d = t.net_gradient + t.layout.netr;
     const ted4_net_shape *project = &s->netr[TED4_NET_PROJECT], *deform = &s->netr[TED4_NET_DEFORM];
 
     for (size_t i = 0; i < t.slots.n; i++)
@@ -160,10 +166,10 @@ static void test_symbols(void **state)
 {
     ted4_train_options o = ball_options();
     ted4_trainer t;
-    ted4_scene  *s, *back;
-    uint8_t     *bytes;
-    size_t       size, n, low = 0, high = 0;
-    ted4_error   e = { TED4_OK, 0 };
+    ted4_scene *s, *back;
+    uint8_t *bytes;
+    size_t size, n, low = 0, high = 0;
+    ted4_error e = { TED4_OK, 0 };
 
     (void)state;
     ball_set(&o, "stage1=30");
@@ -171,8 +177,8 @@ static void test_symbols(void **state)
     ball_begin(&t, &o, &balls, NULL);
     ball_train(&t, 30);
     for (size_t i = 0; i < t.anchors.n; i++)
-        *ted4_cell(&t.anchors, TED4_ROW_VALUE, i, t.layout.first[TED4_FEATURE]) =
-            i % 2 ? 3e6f : -3e6f;
+        *ted4_cell(&t.anchors, TED4_ROW_VALUE, i, t.layout.first[TED4_FEATURE]) = i % 2 ? 3e6f
+                                                                                        : -3e6f;
     blind_opacity(&t);
     if (ted4_make_scene(&t, &s) != 0)
         fail_msg("%s", t.message.text);
@@ -196,7 +202,7 @@ static void test_symbols(void **state)
 static void test_units(void **state)
 {
     ted4_trainer metre, league;
-    cloud_case   far;
+    cloud_case far;
 
     (void)state;
     cloud_make(&cloud, 5);
@@ -212,44 +218,49 @@ static void test_units(void **state)
     assert_true(metre.cell == league.cell && metre.anchors.n == league.anchors.n);
     for (int row = 0; row < TED4_ROWS; row++)
         assert_memory_equal(metre.anchors.data[row], league.anchors.data[row],
-                            metre.anchors.n_blocks * (size_t)metre.anchors.rows[row] *
-                                TED4_LANES * sizeof(float));
+                            metre.anchors.n_blocks * (size_t)metre.anchors.rows[row] * TED4_LANES *
+                                sizeof(float));
     ted4_trainer_finish(&metre);
     ted4_trainer_finish(&league);
 }
 
-/* log2 of component c of all scalings: far below the linear step, as scenes in small units have them. */
+/* log2 of component c of all scalings: far below the linear step, as scenes in small units have
+ * them. */
 static float small_scaling(unsigned c)
 {
     return -17.0f - 0.37f * (float)c;
 }
 
-/* How many scalings of the file are within half a step of what they were, and that step is less than a seventh of them; in linear units: above 0. */
+/* How many scalings of the file are within half a step of what they were, and that step is less
+ * than a seventh of them; in linear units: above 0. */
 static size_t count_right(const ted4_scene *s, int linear)
 {
     const size_t n = s->head.n_anchors;
-    size_t       right = 0;
+    size_t right = 0;
 
     for (size_t i = 0; i < n; i++) {
-        const float q = s->head.step[TED4_SCALING] * ted4_bits_float(ted4_step[s->step_index[TED4_SCALING][i]]);
+        const float q = s->head.step[TED4_SCALING] *
+                        ted4_bits_float(ted4_step[s->step_index[TED4_SCALING][i]]);
 
         for (unsigned c = 0; c < 6; c++) {
             const float got = q * (float)s->symbol[TED4_SCALING][c * n + i];
 
-            right += linear ? got > 0 : q < 0.2f && fabsf(got - small_scaling(c)) <= 0.5f * q + 1e-4f;
+            right += linear ? got > 0
+                            : q < 0.2f && fabsf(got - small_scaling(c)) <= 0.5f * q + 1e-4f;
         }
     }
     return right;
 }
 
-/* In log2 the error of a scaling is a share of it, however small it is. In linear units, kept for comparison, such scalings are lost. */
+/* In log2 the error of a scaling is a share of it, however small it is. In linear units, kept for
+ * comparison, such scalings are lost. */
 static void test_scalings(void **state)
 {
     (void)state;
     for (int linear = 0; linear < 2; linear++) {
         ted4_train_options o = ball_options();
         ted4_trainer t;
-        ted4_scene  *s;
+        ted4_scene *s;
 
         ball_set(&o, "stage1=30");
         ball_set(&o, "stage2=0");
@@ -261,10 +272,12 @@ static void test_scalings(void **state)
         ball_train(&t, 30);
         for (size_t i = 0; i < t.anchors.n; i++)
             for (unsigned c = 0; c < 6; c++)
-                *ted4_cell(&t.anchors, TED4_ROW_VALUE, i, t.layout.first[TED4_SCALING] + (int)c) = small_scaling(c);
+                *ted4_cell(&t.anchors, TED4_ROW_VALUE, i, t.layout.first[TED4_SCALING] + (int)c) =
+                    small_scaling(c);
         if (ted4_make_scene(&t, &s) != 0)
             fail_msg("%s", t.message.text);
-        assert_true(s->head.n_anchors > 10 && s->head.scale_domain == (linear ? TED4_SCALE_LINEAR : TED4_SCALE_LOG2));
+        assert_true(s->head.n_anchors > 10 &&
+                    s->head.scale_domain == (linear ? TED4_SCALE_LINEAR : TED4_SCALE_LOG2));
         assert_int_equal(count_right(s, linear), linear ? 0 : 6 * s->head.n_anchors);
         ted4_scene_free(s);
         ted4_trainer_finish(&t);
@@ -273,7 +286,8 @@ static void test_scalings(void **state)
 
 /* ---- 8: anchors whose activation stays near 0 ---- */
 
-/* Every third anchor is marked by an offset that nothing else has; absent: it also lives between two frames, far too short for either. */
+/* Every third anchor is marked by an offset that nothing else has; absent: it also lives between
+ * two frames, far too short for either. */
 static void mark(ted4_trainer *t, int absent)
 {
     const int tau = t->layout.first[TED4_TAU];
@@ -281,8 +295,8 @@ static void mark(ted4_trainer *t, int absent)
     for (size_t i = 0; i < t->anchors.n; i += 3) {
         *ted4_cell(&t->anchors, TED4_ROW_VALUE, i, t->layout.first[TED4_OFFSET]) = 1000.0f;
         for (int c = 0; c < 4 && absent; c++)
-            *ted4_cell(&t->anchors, TED4_ROW_VALUE, i, tau + c) =
-                c % 2 ? -10.0f : 0.5f / (FRAMES - 1);
+            *ted4_cell(&t->anchors, TED4_ROW_VALUE, i, tau + c) = c % 2 ? -10.0f
+                                                                        : 0.5f / (FRAMES - 1);
     }
 }
 
@@ -291,7 +305,8 @@ static void count(const ted4_trainer *t, size_t *marked, size_t *others)
 {
     *marked = 0;
     for (size_t i = 0; i < t->anchors.n; i++)
-        *marked += *ted4_cell(&t->anchors, TED4_ROW_VALUE, i, t->layout.first[TED4_OFFSET]) == 1000.0f;
+        *marked += *ted4_cell(&t->anchors, TED4_ROW_VALUE, i, t->layout.first[TED4_OFFSET]) ==
+                   1000.0f;
     *others = t->anchors.n - *marked;
 }
 
@@ -319,8 +334,8 @@ static void test_absent(void **state)
 
 /* ---- positions in FP16 ---- */
 
-/* Far from the origin of the world, FP16 of world coordinates would be coarser than the scene's details; and a stray point must neither spread the range nor
- * leave it. */
+/* Far from the origin of the world, FP16 of world coordinates would be coarser than the scene's
+ * details; and a stray point must neither spread the range nor leave it. */
 static void test_far_away(void **state)
 {
     static const float shift[3] = { 1000, -500, 2000 };
@@ -342,12 +357,14 @@ static void test_far_away(void **state)
             const float half = ted4_half_to_float(ted4_float_to_half(p));
 
             assert_true(fabsf(p) <= 1.0f && fabsf(half) <= 1.0f);
-            assert_true(ldexpf(fabsf(half - p), t.layout.head.exponent) < 0.002f * (float)CLOUD_STEP);
+            assert_true(ldexpf(fabsf(half - p), t.layout.head.exponent) <
+                        0.002f * (float)CLOUD_STEP);
         }
     ted4_trainer_finish(&t);
 }
 
-/* Places that FP16 cannot tell apart become one anchor, before stage 2 trains on what the file holds. */
+/* Places that FP16 cannot tell apart become one anchor, before stage 2 trains on what the file
+ * holds. */
 static void test_twins(void **state)
 {
     const ted4_train_options o = ball_options();
@@ -372,8 +389,8 @@ static void test_twins(void **state)
                 const float x = *ted4_cell(&t.anchors, TED4_ROW_POSITION, i, j);
 
                 p[1][j] = ted4_float_to_half(x);
-                p[0][j] = ted4_float_to_half(*ted4_cell(&t.anchors, TED4_ROW_POSITION,
-                                                        i > 0 ? i - 1 : 0, j));
+                p[0][j] = ted4_float_to_half(
+                    *ted4_cell(&t.anchors, TED4_ROW_POSITION, i > 0 ? i - 1 : 0, j));
                 assert_true(ted4_half_to_float(p[1][j]) == x);
             }
             assert_true(i == 0 || ted4_morton(p[0]) < ted4_morton(p[1]));
@@ -386,14 +403,10 @@ static void test_twins(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_spans),
-        cmocka_unit_test(test_saddle),
-        cmocka_unit_test(test_symbols),
-        cmocka_unit_test(test_units),
-        cmocka_unit_test(test_scalings),
-        cmocka_unit_test(test_absent),
-        cmocka_unit_test(test_far_away),
-        cmocka_unit_test(test_twins),
+        cmocka_unit_test(test_spans),    cmocka_unit_test(test_saddle),
+        cmocka_unit_test(test_symbols),  cmocka_unit_test(test_units),
+        cmocka_unit_test(test_scalings), cmocka_unit_test(test_absent),
+        cmocka_unit_test(test_far_away), cmocka_unit_test(test_twins),
     };
 
     return cmocka_run_group_tests_name("traps", tests, set_up, tear_down);

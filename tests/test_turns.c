@@ -1,5 +1,5 @@
-/* test_turns.c - train/densify/turns.h: cameras that take turns, one picture a time. A ball that no initial
- * point stands for is found from the pictures of several times.
+/* test_turns.c - train/densify/turns.h: cameras that take turns, one picture a time. A ball that no
+ * initial point stands for is found from the pictures of several times.
  * SPDX-License-Identifier: BSD-2-Clause */
 #include <setjmp.h>
 #include <stdarg.h>
@@ -48,7 +48,7 @@ static int reach_of(uint32_t cameras, uint32_t gap)
 {
     const ted4_train_options o = options();
     ted4_trainer t;
-    int          reach;
+    int reach;
 
     take_turns(cameras, gap);
     ball_begin(&t, &o, &balls, NULL);
@@ -94,7 +94,7 @@ static void test_found(void **state)
 {
     const ted4_train_options o = options();
     ted4_trainer t;
-    size_t       near;
+    size_t near;
 
     (void)state;
     take_turns(4, 1);
@@ -108,8 +108,8 @@ static void test_found(void **state)
 
     const size_t n = ball_count_transients(&t, SPEED, 1.0f, &near);
 
-    print_message("%zu new anchors, %zu with short lives, %zu on the ball\n",
-                  t.anchors.n - before, n, near);
+    print_message("%zu new anchors, %zu with short lives, %zu on the ball\n", t.anchors.n - before,
+                  n, near);
     assert_true(t.anchors.n >= before + 20 && n >= t.anchors.n - before && 2 * near > n);
     ted4_trainer_finish(&t);
 }
@@ -123,7 +123,7 @@ static void test_schedule(void **state)
     (void)state;
     for (int turns = 0; turns < 2; turns++) {
         const uint64_t at = (uint64_t)((turns ? 0.2 : 0.3) * (double)o.stage1);
-        ted4_trainer   t;
+        ted4_trainer t;
 
         for (size_t i = 0; i < balls.n_pictures; i++)
             balls.pictures[i].is_test = 0;

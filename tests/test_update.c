@@ -1,5 +1,5 @@
-/* test_update.c - the terms that train/step/apply_gradients.c adds to the picture's gradients, against central differences of their losses in double precision; Adam
- * against its formula.
+/* test_update.c - the terms that train/step/apply_gradients.c adds to the picture's gradients,
+ * against central differences of their losses in double precision; Adam against its formula.
  * SPDX-License-Identifier: BSD-2-Clause */
 #include <setjmp.h>
 #include <stdarg.h>
@@ -46,12 +46,12 @@ static double volume_loss(double (*scale)[SPLATS], const uint8_t *seen, double w
 /* share: of Gaussians on screen, in tenths; 0: none, and the gradient must stay what it was. */
 static void check_volume(ted4_trainer *t, unsigned share)
 {
-    static float   scale[3][SPLATS], d[3][SPLATS], centre[3][SPLATS];
-    static double  x[3][SPLATS];
+    static float scale[3][SPLATS], d[3][SPLATS], centre[3][SPLATS];
+    static double x[3][SPLATS];
     static uint8_t seen[SPLATS];
-    ted4_splats    s = { .n = SPLATS, .scale = { scale[0], scale[1], scale[2] } };
-    size_t         n = 0;
-    double         squares = 0;
+    ted4_splats s = { .n = SPLATS, .scale = { scale[0], scale[1], scale[2] } };
+    size_t n = 0;
+    double squares = 0;
 
     for (int i = 0; i < SPLATS; i++) {
         seen[i] = ted4_below(7, (uint64_t)i, 10) < share;
@@ -59,7 +59,7 @@ static void check_volume(ted4_trainer *t, unsigned share)
         for (int j = 0; j < 3; j++) {
             scale[j][i] = 0.01f + ted4_uniform(8 + (uint64_t)j, (uint64_t)i);
             x[j][i] = (double)scale[j][i];
-            d[j][i] = 0.25f;            /* gradients are added to */
+            d[j][i] = 0.25f; /* gradients are added to */
             centre[j][i] = ted4_uniform(11 + (uint64_t)j, (uint64_t)i) - 0.5f;
             squares += (double)centre[j][i] * (double)centre[j][i];
         }
@@ -127,7 +127,7 @@ static void test_bank(void **state)
         t.opt.tv_weight = 2;
         const size_t rows = t.layout.head.bank_rows, width = t.layout.head.bank_dim;
         const float *d = t.net_gradient + t.layout.bank;
-        double      *z = malloc(rows * width * sizeof *z);
+        double *z = malloc(rows * width * sizeof *z);
 
         assert_non_null(z);
         assert_int_equal(rows, (frames[k] + 1) / 2);
@@ -158,7 +158,8 @@ static double sigmoid(double x)
     return 1 / (1 + exp(-x));
 }
 
-/* Gradients of a logit channel after ted4_update_parameters on zero gradients: weight / n times the slope of the sigmoid, in every lane that is used. */
+/* Gradients of a logit channel after ted4_update_parameters on zero gradients: weight / n times the
+ * slope of the sigmoid, in every lane that is used. */
 static void check_logits(const ted4_trainer *t, const float *before, int channel, double weight)
 {
     const double n = (double)t->anchors.n;
@@ -168,7 +169,8 @@ static void check_logits(const ted4_trainer *t, const float *before, int channel
             const size_t at = (size_t)channel * TED4_LANES + j;
             const double x = (double)before[b * (size_t)t->layout.n_channels * TED4_LANES + at];
             const double want = t->slots.lanes[b] >> j & 1
-                                    ? weight / n * (sigmoid(x + 1e-4) - sigmoid(x - 1e-4)) / 2e-4 : 0;
+                                    ? weight / n * (sigmoid(x + 1e-4) - sigmoid(x - 1e-4)) / 2e-4
+                                    : 0;
 
             expect_near((double)t->slots.gradient[b][at], want, weight / n);
         }
@@ -182,7 +184,7 @@ static void test_masks(void **state)
 
         begin(&t, 5);
         const size_t floats = (size_t)t.layout.n_channels * TED4_LANES;
-        const int    K = t.layout.head.n_offsets;
+        const int K = t.layout.head.n_offsets;
 
         t.stage2 = stage2;
         t.opt.lambda = 5;
@@ -212,7 +214,7 @@ static void test_masks(void **state)
 
 static void test_adam(void **state)
 {
-    float  x = 0.5f, m = 0, v = 0;
+    float x = 0.5f, m = 0, v = 0;
     double X = 0.5, M = 0, V = 0;
 
     (void)state;

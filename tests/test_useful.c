@@ -28,10 +28,10 @@ static const double height[] = { 20, 0, 8 };
 
 typedef struct {
     ted4_dataset data;
-    ted4_shown   shown;
+    ted4_shown shown;
     ted4_picture pictures[CAMERAS];
-    uint8_t      rgb[CAMERAS][3 * WIDTH * HEIGHT];
-    float        points[3 * POINTS];
+    uint8_t rgb[CAMERAS][3 * WIDTH * HEIGHT];
+    float points[3 * POINTS];
 } wall;
 
 static uint8_t wave(double x, double y, int channel, double high)
@@ -51,9 +51,8 @@ static void draw(wall *w, int camera, look how, double slant)
         const double z = (WALL - slant * at) / (1 - slant * u);
 
         for (int k = 0; k < 3; k++)
-            w->rgb[camera][3 * i + k] =
-                (uint8_t)(wave(u * z - at, v * z, k, height[how]) +
-                          (how == TINTED ? 20 * camera : 0));
+            w->rgb[camera][3 * i + k] = (uint8_t)(wave(u * z - at, v * z, k, height[how]) +
+                                                  (how == TINTED ? 20 * camera : 0));
     }
 }
 
@@ -82,9 +81,14 @@ static wall *build(look how, uint32_t random_of_ten, double slant)
     w->data.n_points = POINTS;
     w->shown.data = &w->data;
     for (int i = 0; i < CAMERAS; i++) {
-        w->pictures[i].camera = (ted4_camera){ WIDTH, HEIGHT, FOCAL, FOCAL, WIDTH / 2, HEIGHT / 2,
-                                               { 1, 0, 0, 0, 1, 0, 0, 0, 1 },
-                                               { APART * (CAMERAS / 2 - i), 0, 0 } };
+        w->pictures[i].camera = (ted4_camera) { WIDTH,
+                                                HEIGHT,
+                                                FOCAL,
+                                                FOCAL,
+                                                WIDTH / 2,
+                                                HEIGHT / 2,
+                                                { 1, 0, 0, 0, 1, 0, 0, 0, 1 },
+                                                { APART * (CAMERAS / 2 - i), 0, 0 } };
         w->shown.picture[i] = (size_t)i;
         w->shown.rgb[i] = w->rgb[i];
         draw(w, i, how, slant);
@@ -95,7 +99,7 @@ static wall *build(look how, uint32_t random_of_ten, double slant)
 
 static int are_useful(look how, uint32_t random_of_ten, double slant)
 {
-    wall      *w = build(how, random_of_ten, slant);
+    wall *w = build(how, random_of_ten, slant);
     ted4_sweep sweep;
 
     ted4_sweep_begin(&sweep, &w->shown, WALL, 1, 16);
@@ -135,7 +139,8 @@ static void test_nothing_told(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_surface), cmocka_unit_test(test_random),
+        cmocka_unit_test(test_surface),
+        cmocka_unit_test(test_random),
         cmocka_unit_test(test_nothing_told),
     };
 

@@ -1,5 +1,6 @@
-/* test_validate.c - spec 3.6: a validator finds errors exactly where the strict decoder refuses, that decoder's error first, and finds it by itself too;
- * it goes on behind an error, and its JSON is what its schema says.
+/* test_validate.c - spec 3.6: a validator finds errors exactly where the strict decoder refuses,
+ * that decoder's error first, and finds it by itself too; it goes on behind an error, and its JSON
+ * is what its schema says.
  * SPDX-License-Identifier: BSD-2-Clause */
 #include <setjmp.h>
 #include <stdarg.h>
@@ -19,8 +20,8 @@ static void valid_files(void **state)
     (void)state;
     for (uint64_t seed = 0; seed < N_SCENES; seed++) {
         ted4_scene *s = random_scene(seed);
-        size_t      size;
-        uint8_t    *data = encoded(s, 0, &size);
+        size_t size;
+        uint8_t *data = encoded(s, 0, &size);
 
         assert_int_equal(validate(data, size)->errors, 0);
         free(data);
@@ -32,14 +33,14 @@ static void valid_files(void **state)
 static void changed_files(void **state)
 {
     random_source r = random_seed(11);
-    unsigned      refused = 0, several = 0;
+    unsigned refused = 0, several = 0;
 
     (void)state;
     for (int i = 0; i < N_MUTATIONS; i++) {
         ted4_scene *s = random_scene(random_in(&r, 0, 15));
-        size_t      size, max_size;
-        uint8_t    *data = encoded(s, 0, &size), *copy;
-        findings   *all;
+        size_t size, max_size;
+        uint8_t *data = encoded(s, 0, &size), *copy;
+        findings *all;
 
         max_size = 2 * size + 4096;
         copy = malloc(max_size);
@@ -61,11 +62,11 @@ static void many_errors(void **state)
 {
     enum { HEAD_VIEW = 24, HEAD_RATE = 40 };
     random_source r = random_seed(3);
-    ted4_header   h = random_small_header(200);
-    ted4_scene   *s = random_scene_of(&r, &h, 0);
-    size_t        size, nete, netr, bank, posn, tile, ends;
-    uint8_t      *data;
-    findings     *all;
+    ted4_header h = random_small_header(200);
+    ted4_scene *s = random_scene_of(&r, &h, 0);
+    size_t size, nete, netr, bank, posn, tile, ends;
+    uint8_t *data;
+    findings *all;
 
     (void)state;
     s->nete.mode = s->netr.mode = s->bank.mode = TED4_BLOB_RAW;
@@ -76,15 +77,15 @@ static void many_errors(void **state)
     posn = chunk_at(data, size, "POSN", 0) + 12;
     tile = chunk_at(data, size, "TILE", 2);
     ends = chunk_at(data, size, "ENDS", 0);
-    data[nete + 3] = data[nete + 7] = 21;                       /* shifts */
-    ted4_store32(data + netr + 1 + 4 * 2, 0x7f800000);          /* values */
+    data[nete + 3] = data[nete + 7] = 21;              /* shifts */
+    ted4_store32(data + netr + 1 + 4 * 2, 0x7f800000); /* values */
     ted4_store32(data + netr + 1 + 4 * 9, 0x80000000);
     ted4_store32(data + bank + 1, 1);
-    ted4_store16(data + posn + 6 * 10, 0x8000);                 /* positions */
+    ted4_store16(data + posn + 6 * 10, 0x8000); /* positions */
     memcpy(data + posn + 6 * 50, data + posn + 6 * 49, 6);
-    data[ends + 4] = 0;                                         /* flags */
+    data[ends + 4] = 0; /* flags */
     ted4_mend_chunks(data, size);
-    data[tile + 20] ^= 1;                                       /* its hash */
+    data[tile + 20] ^= 1; /* its hash */
     all = validate(data, size);
     assert_int_equal(has(all, "con.reserved", ends + 4), 1);
     assert_int_equal(has(all, "con.chunk-hash", tile), 1);
@@ -98,10 +99,10 @@ static void many_errors(void **state)
     assert_int_equal(all->errors, 9);
     free(data);
 
-    data = encoded(s, 0, &size);                                /* HEAD: three elements; nothing behind it is judged */
+    data = encoded(s, 0, &size); /* HEAD: three elements; nothing behind it is judged */
     ted4_store32(data + 24 + 4, 70000);
     data[24 + HEAD_VIEW] = 3;
-    ted4_store32(data + 24 + HEAD_RATE, 0);                     /* step[0] */
+    ted4_store32(data + 24 + HEAD_RATE, 0); /* step[0] */
     data[posn + 1] = 0x7f;
     ted4_mend_chunks(data, size);
     all = validate(data, size);
@@ -117,11 +118,11 @@ static void many_errors(void **state)
 static void too_many(void **state)
 {
     random_source r = random_seed(4);
-    ted4_header   h = random_small_header(200);
-    ted4_scene   *s = random_scene_of(&r, &h, 0);
-    size_t        size, posn;
-    uint8_t      *data = encoded(s, 0, &size);
-    findings     *all;
+    ted4_header h = random_small_header(200);
+    ted4_scene *s = random_scene_of(&r, &h, 0);
+    size_t size, posn;
+    uint8_t *data = encoded(s, 0, &size);
+    findings *all;
 
     (void)state;
     posn = chunk_at(data, size, "POSN", 0) + 12;
@@ -135,11 +136,14 @@ static void too_many(void **state)
     ted4_scene_free(s);
 }
 
-/* Of the suite's vectors that break a rule nearly all break that one only: nothing else is to be found in them. (Those of precedence, which hold several
- * errors on purpose, are not counted.) The others, by parts of their paths; conformance/GAPS.md says why. */
+/* Of the suite's vectors that break a rule nearly all break that one only: nothing else is to be
+ * found in them. (Those of precedence, which hold several errors on purpose, are not counted.) The
+ * others, by parts of their paths; conformance/GAPS.md says why. */
 static const char *const of_several[] = {
-    "/levels/", "/NEG-range-feature_dim-", "/NEG-range-slice0-", "/NEG-range-motion-", "/NEG-range-head_layers-", "/NEG-range-hyper_layers-", "/NEG-size-HEAD-",
-    "/NEG-swapped-", "/NEG-tile-swapped.", "-wrong-before."
+    "/levels/",           "/NEG-range-feature_dim-", "/NEG-range-slice0-",
+    "/NEG-range-motion-", "/NEG-range-head_layers-", "/NEG-range-hyper_layers-",
+    "/NEG-size-HEAD-",    "/NEG-swapped-",           "/NEG-tile-swapped.",
+    "-wrong-before."
 };
 static int n_negative, n_alone, n_unexplained;
 
@@ -154,9 +158,9 @@ static int explained(const char *path)
 /* Does the vector's descriptor name that rule? */
 static int is_named(const char *path, const char *rule)
 {
-    char    name[1024];
+    char name[1024];
     json_t *d, *rules;
-    int     named = 0;
+    int named = 0;
 
     snprintf(name, sizeof name, "%.*s.json", (int)(strlen(path) - strlen(".ted4")), path);
     d = json_load_file(name, 0, NULL);
@@ -171,7 +175,7 @@ static int is_named(const char *path, const char *rule)
 static void count_errors(const uint8_t *data, size_t size, const char *path)
 {
     const findings *all = validate(data, size);
-    const int       n = all->errors;
+    const int n = all->errors;
 
     if (!is_named(path, all->list[0].rule)) {
         print_error("%s: %s is no rule of it\n", path, all->list[0].rule);
@@ -196,31 +200,32 @@ static void negative_vectors(void **state)
     assert_int_equal(n_unexplained, 0);
 }
 
-/* Every allocation fails once, and all behind it: the strict decoder's verdict, which what a validator looks for beyond it does not change, and
- * everything is given back. */
+/* Every allocation fails once, and all behind it: the strict decoder's verdict, which what a
+ * validator looks for beyond it does not change, and everything is given back. */
 static void starve(const uint8_t *data, size_t size)
 {
     static findings all;
-    ted4_status     verdict;
-    int             calm = 0, hints = 0;
+    ted4_status verdict;
+    int calm = 0, hints = 0;
 
     for (uint64_t n = 1; !calm; n++) {
         counting_memory memory = { .fail_at = n, .fail_on = 1 };
-        ted4_options    o = { .allocator = counting_allocator(&memory) };
-        ted4_salvage    what;
-        ted4_scene     *s;
+        ted4_options o = { .allocator = counting_allocator(&memory) };
+        ted4_salvage what;
+        ted4_scene *s;
 
         verdict = ted4_decode(data, size, &o, &s, NULL);
         ted4_scene_free(s);
-        memory = (counting_memory){ .fail_at = n, .fail_on = 1 };
+        memory = (counting_memory) { .fail_at = n, .fail_on = 1 };
         all.n = all.errors = 0;
         assert_int_equal(ted4_validate(data, size, &o, keep, &all), verdict);
         assert_int_equal(all.errors > 0, verdict != TED4_OK);
         assert_int_equal(memory.held, 0);
         calm = memory.n < n;
-        assert_true(has(&all, "adv.memory", 0) <= !calm && has(&all, "limit.memory", ANYWHERE) <= (verdict == TED4_E_LIMIT_MEMORY));
+        assert_true(has(&all, "adv.memory", 0) <= !calm &&
+                    has(&all, "limit.memory", ANYWHERE) <= (verdict == TED4_E_LIMIT_MEMORY));
         hints += has(&all, "adv.memory", 0);
-        memory = (counting_memory){ .fail_at = n, .fail_on = 1 };
+        memory = (counting_memory) { .fail_at = n, .fail_on = 1 };
         (void)ted4_decode_lenient(data, size, &o, &s, &what);
         ted4_scene_free(s);
         assert_int_equal(memory.held, 0);
@@ -232,10 +237,10 @@ static void starve(const uint8_t *data, size_t size)
 static void no_memory(void **state)
 {
     random_source r = random_seed(8);
-    ted4_header   h = random_small_header(200);
-    ted4_scene   *s = random_scene_of(&r, &h, 0);
-    size_t        size;
-    uint8_t      *data = encoded(s, 0, &size);
+    ted4_header h = random_small_header(200);
+    ted4_scene *s = random_scene_of(&r, &h, 0);
+    size_t size;
+    uint8_t *data = encoded(s, 0, &size);
 
     (void)state;
     starve(data, size);
@@ -249,14 +254,16 @@ static void no_memory(void **state)
 
 /* ---- the program ---- */
 
-static void expect_run(json_t *schema, const uint8_t *data, size_t size, int code, const char *verdict)
+static void expect_run(json_t *schema, const uint8_t *data, size_t size, int code,
+                       const char *verdict)
 {
     json_t *printed;
 
     assert_int_equal(run_json("ted4info --validate --json", data, size, &printed), code);
     assert_true(schema_holds(schema, printed));
     assert_string_equal(json_string_value(json_object_get(printed, "verdict")), verdict);
-    assert_int_equal(json_array_size(json_object_get(printed, "findings")), validate(data, size)->n);
+    assert_int_equal(json_array_size(json_object_get(printed, "findings")),
+                     validate(data, size)->n);
     json_object_set_new(printed, "more", json_null());
     assert_false(schema_holds(schema, printed));
     json_decref(printed);
@@ -266,9 +273,9 @@ static void program(void **state)
 {
     ted4_header h = random_small_header(200);
     ted4_scene *s = useful(6, &h);
-    json_t     *schema;
-    size_t      size;
-    uint8_t    *data;
+    json_t *schema;
+    size_t size;
+    uint8_t *data;
 
     (void)state;
     if (getenv("TED4_BUILD") == NULL) {
@@ -294,9 +301,9 @@ static void program(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(valid_files), cmocka_unit_test(changed_files), cmocka_unit_test(many_errors), cmocka_unit_test(too_many),
-        cmocka_unit_test(negative_vectors),
-        cmocka_unit_test(no_memory),
+        cmocka_unit_test(valid_files),      cmocka_unit_test(changed_files),
+        cmocka_unit_test(many_errors),      cmocka_unit_test(too_many),
+        cmocka_unit_test(negative_vectors), cmocka_unit_test(no_memory),
         cmocka_unit_test(program),
     };
 

@@ -1,6 +1,8 @@
-/* test_variants.c - every variant of the method, trained from pictures to a file: the file says which it is and can be written again from what was decoded,
- * what the variant does without is not there, the rate that training optimised is the rate of the file within 1 %, and the pictures are about right.
- * Variants of stage 2 from one stage 1: test_stage1.c. What the gradients of each are worth: test_generate_grad.c, test_rate_grad.c.
+/* test_variants.c - every variant of the method, trained from pictures to a file: the file says
+ * which it is and can be written again from what was decoded, what the variant does without is not
+ * there, the rate that training optimised is the rate of the file within 1 %, and the pictures are
+ * about right. Variants of stage 2 from one stage 1: test_stage1.c. What the gradients of each are
+ * worth: test_generate_grad.c, test_rate_grad.c.
  * SPDX-License-Identifier: BSD-2-Clause */
 #include <setjmp.h>
 #include <stdarg.h>
@@ -15,41 +17,54 @@
 enum { MOST_OPTIONS = 2 };
 
 /* What a file says of itself. */
-typedef struct { int motion, bank, activation, temporal_mask, offset_mask, view, linear, factorised, slices; } traits;
+typedef struct {
+    int motion, bank, activation, temporal_mask, offset_mask, view, linear, factorised, slices;
+} traits;
 
 static traits traits_of(const ted4_header *h)
 {
-    return (traits){ h->motion, h->bank_rows > 0, h->activation, h->temporal_mask, h->offset_mask, h->view,
-                     h->scale_domain == TED4_SCALE_LINEAR, h->prior == TED4_PRIOR_FACTORISED, h->n_slices };
+    return (traits) { h->motion,
+                      h->bank_rows > 0,
+                      h->activation,
+                      h->temporal_mask,
+                      h->offset_mask,
+                      h->view,
+                      h->scale_domain == TED4_SCALE_LINEAR,
+                      h->prior == TED4_PRIOR_FACTORISED,
+                      h->n_slices };
 }
 
 typedef struct {
     const char *name, *option[MOST_OPTIONS];
-    traits      want;
-    double      psnr;           /* at least, over the training pictures */
+    traits want;
+    double psnr; /* at least, over the training pictures */
 } variant;
 
-/* Traits of the whole method: { 1, 1, 1, 1, 1, 1, 0, 0, 2 }. Qualities are floors, 5 dB and more below what comes out. */
+/* Traits of the whole method: { 1, 1, 1, 1, 1, 1, 0, 0, 2 }. Qualities are floors, 5 dB and more
+ * below what comes out. */
 static const variant variants[] = {
-    { "whole",             { NULL },                                { 1, 1, 1, 1, 1, 1, 0, 0, 2 }, 28 },
-    { "no motion",         { "motion=0" },                          { 0, 0, 1, 0, 1, 1, 0, 0, 2 }, 28 },
-    { "concat",            { "motion=2" },                          { 2, 1, 1, 1, 1, 1, 0, 0, 2 }, 28 },
-    { "inr",               { "motion=3" },                          { 3, 0, 1, 1, 1, 1, 0, 0, 2 }, 28 },
-    { "no activation",     { "activation=0" },                      { 1, 1, 0, 1, 1, 1, 0, 0, 2 }, 23 },
-    { "no progressive",    { "progressive=0" },                     { 1, 1, 1, 1, 1, 1, 0, 0, 2 }, 28 },
-    { "no temporal mask",  { "temporal_mask=0" },                   { 1, 1, 1, 0, 1, 1, 0, 0, 2 }, 28 },
-    { "no offset mask",    { "offset_mask=0" },                     { 1, 1, 1, 1, 0, 1, 0, 0, 2 }, 28 },
-    { "factorised",        { "factorised=1" },                      { 1, 1, 1, 1, 1, 1, 0, 1, 2 }, 28 },
-    { "no autoregression", { "slices=1" },                          { 1, 1, 1, 1, 1, 1, 0, 0, 1 }, 28 },
-    { "no view",           { "view=0" },                            { 1, 1, 1, 1, 1, 0, 0, 0, 2 }, 28 },
-    { "full view",         { "view=2" },                            { 1, 1, 1, 1, 1, 2, 0, 0, 2 }, 28 },
-    { "linear scale",      { "linear_scale=1", "step_scaling=0.001" }, { 1, 1, 1, 1, 1, 1, 1, 0, 2 }, 28 },
-    { "no colour",         { "colour=0" },                          { 1, 1, 1, 1, 1, 1, 0, 0, 2 }, 28 },
+    { "whole", { NULL }, { 1, 1, 1, 1, 1, 1, 0, 0, 2 }, 28 },
+    { "no motion", { "motion=0" }, { 0, 0, 1, 0, 1, 1, 0, 0, 2 }, 28 },
+    { "concat", { "motion=2" }, { 2, 1, 1, 1, 1, 1, 0, 0, 2 }, 28 },
+    { "inr", { "motion=3" }, { 3, 0, 1, 1, 1, 1, 0, 0, 2 }, 28 },
+    { "no activation", { "activation=0" }, { 1, 1, 0, 1, 1, 1, 0, 0, 2 }, 23 },
+    { "no progressive", { "progressive=0" }, { 1, 1, 1, 1, 1, 1, 0, 0, 2 }, 28 },
+    { "no temporal mask", { "temporal_mask=0" }, { 1, 1, 1, 0, 1, 1, 0, 0, 2 }, 28 },
+    { "no offset mask", { "offset_mask=0" }, { 1, 1, 1, 1, 0, 1, 0, 0, 2 }, 28 },
+    { "factorised", { "factorised=1" }, { 1, 1, 1, 1, 1, 1, 0, 1, 2 }, 28 },
+    { "no autoregression", { "slices=1" }, { 1, 1, 1, 1, 1, 1, 0, 0, 1 }, 28 },
+    { "no view", { "view=0" }, { 1, 1, 1, 1, 1, 0, 0, 0, 2 }, 28 },
+    { "full view", { "view=2" }, { 1, 1, 1, 1, 1, 2, 0, 0, 2 }, 28 },
+    { "linear scale",
+      { "linear_scale=1", "step_scaling=0.001" },
+      { 1, 1, 1, 1, 1, 1, 1, 0, 2 },
+      28 },
+    { "no colour", { "colour=0" }, { 1, 1, 1, 1, 1, 1, 0, 0, 2 }, 28 },
 };
 
 static void check_rate(const variant *v, ted4_trainer *t, const ted4_scene *s)
 {
-    double    estimate[TED4_TYPES], sum = 0, coded = 0;
+    double estimate[TED4_TYPES], sum = 0, coded = 0;
     ted4_bits bits;
 
     assert_int_equal(ted4_integer_rate(t, estimate), 0);
@@ -64,10 +79,10 @@ static void check_rate(const variant *v, ted4_trainer *t, const ted4_scene *s)
 
 static void check_file(const variant *v, const ball_file *f)
 {
-    ted4_scene  *back;
-    ted4_info    info;
-    ted4_error   e = { TED4_OK, 0 };
-    ball_file    again;
+    ted4_scene *back;
+    ted4_info info;
+    ted4_error e = { TED4_OK, 0 };
+    ball_file again;
     const double psnr = ball_decoded_psnr(f, &balls, &info);
 
     assert_int_equal(ted4_decode(f->bytes, f->size, NULL, &back, NULL), TED4_OK);
@@ -78,8 +93,10 @@ static void check_file(const variant *v, const ball_file *f)
     const traits got = traits_of(&back->head);
 
     if (memcmp(&got, &v->want, sizeof got) != 0)
-        fail_msg("%s: motion %d, bank %d, activation %d, masks %d %d, view %d, linear %d, factorised %d, slices %d", v->name, got.motion, got.bank,
-                 got.activation, got.temporal_mask, got.offset_mask, got.view, got.linear, got.factorised, got.slices);
+        fail_msg("%s: motion %d, bank %d, activation %d, masks %d %d, view %d, linear %d, "
+                 "factorised %d, slices %d",
+                 v->name, got.motion, got.bank, got.activation, got.temporal_mask, got.offset_mask,
+                 got.view, got.linear, got.factorised, got.slices);
     ted4_scene_free(back);
     if (v->want.motion == 0)
         assert_int_equal(info.n_dynamic, 0);
@@ -94,8 +111,8 @@ static void check_file(const variant *v, const ball_file *f)
 static ball_file code(const variant *v, ted4_trainer *t)
 {
     ted4_scene *s;
-    ted4_error  e = { TED4_OK, 0 };
-    ball_file   f;
+    ted4_error e = { TED4_OK, 0 };
+    ball_file f;
 
     if (ted4_make_scene(t, &s) != 0)
         fail_msg("%s: %s", v->name, t->message.text);

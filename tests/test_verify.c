@@ -1,4 +1,5 @@
-/* test_verify.c - what the encoder compares when it has decoded its own file: whatever of the scene is another, it is seen.
+/* test_verify.c - what the encoder compares when it has decoded its own file: whatever of the scene
+ * is another, it is seen.
  * SPDX-License-Identifier: BSD-2-Clause */
 #include <setjmp.h>
 #include <stdarg.h>
@@ -10,12 +11,12 @@
 #include "tool/verify.h"
 
 static ted4_scene *scene;
-static uint8_t    *bytes;
-static size_t      size;
+static uint8_t *bytes;
+static size_t size;
 
 static int set_up(void **state)
 {
-    random_source     r = random_seed(5);
+    random_source r = random_seed(5);
     const ted4_header h = random_paper_header(200);
 
     (void)state;
@@ -34,8 +35,8 @@ static int tear_down(void **state)
 static int verify(void)
 {
     ted4_verified v;
-    char          why[256] = "";
-    const int     result = ted4_verify(scene, bytes, size, NULL, &v, why, sizeof why);
+    char why[256] = "";
+    const int result = ted4_verify(scene, bytes, size, NULL, &v, why, sizeof why);
 
     assert_true(result == 0 || strstr(why, "differs from the encoded one") != NULL);
     return result;
@@ -99,7 +100,8 @@ static void test_arrays(void **state)
 
 int main(void)
 {
-    const struct CMUnitTest tests[] = { cmocka_unit_test(test_header), cmocka_unit_test(test_arrays) };
+    const struct CMUnitTest tests[] = { cmocka_unit_test(test_header),
+                                        cmocka_unit_test(test_arrays) };
 
     return cmocka_run_group_tests_name("verify", tests, set_up, tear_down);
 }

@@ -1,5 +1,7 @@
-/* test_watch.c - train/step/monitor.c and train/step/grad_norm.c: what goes wrong is found when it happens and named, training goes on from the last good state with
- * smaller steps, three times; a training that goes well never notices. Files and logs of a program that went back: test_run_log.c.
+/* test_watch.c - train/step/monitor.c and train/step/grad_norm.c: what goes wrong is found when it
+ * happens and named, training goes on from the last good state with smaller steps, three times; a
+ * training that goes well never notices. Files and logs of a program that went back:
+ * test_run_log.c.
  * SPDX-License-Identifier: BSD-2-Clause */
 #include <setjmp.h>
 #include <stdarg.h>
@@ -14,7 +16,7 @@
 /* States are kept at the beginning, at 250 and at the end of stage 1. */
 enum { STAGE1 = 400, INTEGER_FROM = 600, KEPT = 250, FRAMES = 5 };
 
-static tiny_folder  folder, still_folder;
+static tiny_folder folder, still_folder;
 static ted4_dataset scene, still;
 
 static int set_up(void **state)
@@ -53,7 +55,8 @@ static void test_scale(void **state)
     assert_true(ted4_scale_usual(&s) == 0 && ted4_scale_take(&s, 0) == 0 && s.n == 0);
     for (int i = 0; i < 100; i++)
         assert_true(ted4_scale_take(&s, i % 2 ? 3.0 : 1.0) == 0);
-    assert_true(s.n == 100 && s.peak == 0 && ted4_scale_usual(&s) > 0.7 && ted4_scale_usual(&s) < 4.3);
+    assert_true(s.n == 100 && s.peak == 0 && ted4_scale_usual(&s) > 0.7 &&
+                ted4_scale_usual(&s) < 4.3);
     for (int i = 0; i < 300; i++)
         (void)ted4_scale_take(&s, i % 20 ? 2.0 : 2e9);
     assert_true(ted4_scale_usual(&s) > 1.9 && ted4_scale_usual(&s) < 2.1);
@@ -67,12 +70,13 @@ static void test_scale(void **state)
 static void test_healthy(void **state)
 {
     ted4_trainer t;
-    ball_file    plain, kept;
+    ball_file plain, kept;
 
     (void)state;
     begin_at(&t, 0);
     plain = ball_finish(&t);
-    assert_true(t.watch.state.rollbacks == 0 && t.watch.state.factor == 1 && t.watch.find.cause == NULL);
+    assert_true(t.watch.state.rollbacks == 0 && t.watch.state.factor == 1 &&
+                t.watch.find.cause == NULL);
     for (int k = 0; k < TED4_TERMS; k++) {
         assert_true(t.watch.state.gradient[k].peak < 100);
         assert_true((t.watch.norm[k] > 0) == (k != TED4_TERM_PRIOR && k != TED4_TERM_STEP));
@@ -93,22 +97,26 @@ static void test_healthy(void **state)
 /* ---- what is found ---- */
 
 /* The next step goes back to a state, because of that. */
-static void expect_back(ted4_trainer *t, uint64_t to, const char *cause, const char *term, int64_t anchor)
+static void expect_back(ted4_trainer *t, uint64_t to, const char *cause, const char *term,
+                        int64_t anchor)
 {
     const ted4_find *f = &t->watch.find;
-    const uint64_t   at = t->iteration, rollbacks = t->watch.state.rollbacks;
-    const double     factor = t->watch.state.factor;
-    char             words[64];
+    const uint64_t at = t->iteration, rollbacks = t->watch.state.rollbacks;
+    const double factor = t->watch.state.factor;
+    char words[64];
 
     if (ted4_trainer_step(t) != 0)
         fail_msg("%s", t->message.text);
-    if (strcmp(f->cause, cause) != 0 || strcmp(f->term, term) != 0 || f->anchor != anchor || f->step != at)
-        fail_msg("%s, %s, %d, %d: %s", f->cause, f->term, (int)f->anchor, (int)f->step, t->message.text);
+    if (strcmp(f->cause, cause) != 0 || strcmp(f->term, term) != 0 || f->anchor != anchor ||
+        f->step != at)
+        fail_msg("%s, %s, %d, %d: %s", f->cause, f->term, (int)f->anchor, (int)f->step,
+                 t->message.text);
     snprintf(words, sizeof words, "at step %d", (int)at);
     assert_non_null(strstr(t->message.text, words));
     assert_non_null(strstr(t->message.text, term));
     assert_int_equal(t->iteration, to);
-    assert_true(t->watch.state.rollbacks == rollbacks + 1 && t->watch.state.factor == 0.5 * factor && !t->watch.found);
+    assert_true(t->watch.state.rollbacks == rollbacks + 1 &&
+                t->watch.state.factor == 0.5 * factor && !t->watch.found);
 }
 
 static void finish(ted4_trainer *t)
@@ -122,13 +130,17 @@ static void finish(ted4_trainer *t)
 
 static void test_values(void **state)
 {
-    static const char *const names[] = { "value of feature", "value of scaling", "value of offset", "value of phi", "value of tau" };
+    static const char *const names[] = { "value of feature", "value of scaling", "value of offset",
+                                         "value of phi", "value of tau" };
     ted4_trainer t;
 
     (void)state;
     for (int y = 0; y < TED4_TYPES; y++) {
-        begin_at(&t, y == TED4_FEATURE ? INTEGER_FROM + 5 : y == TED4_SCALING ? STAGE1 + 5 : KEPT + 3);
-        *ted4_cell(&t.anchors, TED4_ROW_VALUE, 40 + (size_t)y, t.layout.first[y] + 1) = y % 2 ? NAN : -INFINITY;
+        begin_at(&t, y == TED4_FEATURE   ? INTEGER_FROM + 5
+                     : y == TED4_SCALING ? STAGE1 + 5
+                                         : KEPT + 3);
+        *ted4_cell(&t.anchors, TED4_ROW_VALUE, 40 + (size_t)y, t.layout.first[y] + 1) =
+            y % 2 ? NAN : -INFINITY;
         expect_back(&t, y < TED4_OFFSET ? STAGE1 : KEPT, "not finite", names[y], 40 + y);
         finish(&t);
     }
@@ -150,7 +162,8 @@ static int look_again(ted4_trainer *t, size_t slot, int channel, size_t lane, fl
 
     ted4_schedule_rates(t, rate);
     t->slots.gradient[slot][(size_t)channel * TED4_LANES + lane] = gradient;
-    ted4_gradients_slot(&t->layout, rate, t->slots.raw[slot], t->slots.gradient[slot], t->slots.squares + slot * (TED4_SLOT_TERMS + 1));
+    ted4_gradients_slot(&t->layout, rate, t->slots.raw[slot], t->slots.gradient[slot],
+                        t->slots.squares + slot * (TED4_SLOT_TERMS + 1));
     return ted4_watch_look(t, t->progress.last_loss, NULL, NULL);
 }
 
@@ -169,12 +182,14 @@ static void test_gradients(void **state)
     for (int stage2 = 0; stage2 < 2; stage2++) {
         begin_at(&t, stage2 ? STAGE1 + 110 : KEPT + 20);
 
-        const int    offset = t.layout.first[TED4_OFFSET] + 5, phi = t.layout.first[TED4_PHI];
-        const size_t anchor = t.slots.block[2] * (size_t)TED4_LANES + 7, first = t.slots.block[0] * (size_t)TED4_LANES;
-        const float  usual = (float)ted4_scale_usual(&t.watch.state.gradient[TED4_OFFSET]);
+        const int offset = t.layout.first[TED4_OFFSET] + 5, phi = t.layout.first[TED4_PHI];
+        const size_t anchor = t.slots.block[2] * (size_t)TED4_LANES + 7,
+                     first = t.slots.block[0] * (size_t)TED4_LANES;
+        const float usual = (float)ted4_scale_usual(&t.watch.state.gradient[TED4_OFFSET]);
 
         assert_int_equal(look_again(&t, 2, offset, 7, 100 * usual), 0);
-        assert_true(t.watch.state.gradient[TED4_OFFSET].peak > 90 && t.watch.state.gradient[TED4_OFFSET].peak < 120);
+        assert_true(t.watch.state.gradient[TED4_OFFSET].peak > 90 &&
+                    t.watch.state.gradient[TED4_OFFSET].peak < 120);
         assert_int_equal(look_again(&t, 2, offset, 7, -2e5f * usual), -1);
         expect_found(&t, "exploded", "gradient of offset", anchor);
         assert_int_equal(look_again(&t, 2, offset, 7, 1e30f), -1);
@@ -202,7 +217,8 @@ static void test_networks(void **state)
     assert_int_equal(t.iteration, KEPT);
     for (int which = 0; which < 2; which++) {
         ball_train(&t, KEPT + 20);
-        t.net[which ? t.layout.bank + 2 : t.layout.netr + t.layout.shape.netr[TED4_NET_COLOUR].first] = NAN;
+        t.net[which ? t.layout.bank + 2
+                    : t.layout.netr + t.layout.shape.netr[TED4_NET_COLOUR].first] = NAN;
         expect_back(&t, KEPT, "not finite", which ? "weight of bank" : "weight of heads", -1);
     }
     finish(&t);
@@ -228,7 +244,7 @@ static int steps_until_back(ted4_trainer *t)
 static void test_collapse(void **state)
 {
     static const char *const names[] = { "opacity", "activation", "scale" };
-    static const float       always[4] = { 0, 0, 1, 0 };
+    static const float always[4] = { 0, 0, 1, 0 };
 
     (void)state;
     for (int which = 0; which < 3; which++) {
@@ -274,14 +290,15 @@ static void test_divergence(void **state)
     finish(&t);
 }
 
-/* A screen that is nearly empty all at once is no failure where pictures lose nothing by it: so much is usual from then on. */
+/* A screen that is nearly empty all at once is no failure where pictures lose nothing by it: so
+ * much is usual from then on. */
 static void test_empty_space(void **state)
 {
     ted4_trainer t;
 
     (void)state;
     begin_at(&t, KEPT + 1);
-    t.watch.state.screen.level += 6;        /* as if 64 times as many had been usual */
+    t.watch.state.screen.level += 6; /* as if 64 times as many had been usual */
     ball_train(&t, KEPT + 32);
     assert_true(t.watch.state.bad_screen == 31 && !ted4_watch_calm(&t));
     ball_train(&t, KEPT + 34);
@@ -296,7 +313,7 @@ static void test_empty_space(void **state)
 static void test_smaller(void **state)
 {
     ted4_trainer t;
-    float        before[256] = { 0 }, after[256] = { 0 };
+    float before[256] = { 0 }, after[256] = { 0 };
 
     (void)state;
     begin_at(&t, KEPT);
@@ -316,7 +333,8 @@ static void test_smaller(void **state)
     const float start = t.net[t.layout.netr];
 
     ball_train(&t, KEPT + 1);
-    assert_true(weight != start && fabsf((t.net[t.layout.netr] - start) / (weight - start) - 0.5f) < 0.01f);
+    assert_true(weight != start &&
+                fabsf((t.net[t.layout.netr] - start) / (weight - start) - 0.5f) < 0.01f);
     ted4_trainer_finish(&t);
 }
 
@@ -324,7 +342,7 @@ static void test_smaller(void **state)
 static void test_other_layout(void **state)
 {
     ted4_train_options o = ball_options();
-    ted4_trainer       t;
+    ted4_trainer t;
 
     (void)state;
     ball_set(&o, "linear_scale=1");
@@ -345,8 +363,8 @@ static void test_three_times(void **state)
 {
     const ted4_train_options o = ball_options();
     ted4_trainer t;
-    ball_file    whole, again;
-    char         path[512];
+    ball_file whole, again;
+    char path[512];
 
     (void)state;
     snprintf(path, sizeof path, "%s", tiny_path(&folder, "checkpoint"));
@@ -366,7 +384,8 @@ static void test_three_times(void **state)
     *ted4_cell(&t.anchors, TED4_ROW_VALUE, 9, 0) = NAN;
     assert_int_equal(ted4_trainer_step(&t), -1);
     assert_true(t.watch.found && t.iteration == KEPT + 5);
-    assert_non_null(strstr(t.message.text, "value of feature of anchor 9 is not finite at step 255; learning rates were made smaller three times"));
+    assert_non_null(strstr(t.message.text, "value of feature of anchor 9 is not finite at step "
+                                           "255; learning rates were made smaller three times"));
     ted4_trainer_finish(&t);
 
     ball_begin(&t, &o, &scene, NULL);
@@ -393,8 +412,8 @@ static void test_resumed(void **state)
 {
     const ted4_train_options o = ball_options();
     ted4_trainer t;
-    ball_file    whole, again, calm;
-    char         path[512];
+    ball_file whole, again, calm;
+    char path[512];
 
     (void)state;
     snprintf(path, sizeof path, "%s", tiny_path(&folder, "checkpoint"));
@@ -425,10 +444,12 @@ static void test_resumed(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_scale),        cmocka_unit_test(test_healthy),      cmocka_unit_test(test_values),
-        cmocka_unit_test(test_gradients),    cmocka_unit_test(test_networks),     cmocka_unit_test(test_collapse),
-        cmocka_unit_test(test_divergence),   cmocka_unit_test(test_empty_space),  cmocka_unit_test(test_smaller),
-        cmocka_unit_test(test_other_layout), cmocka_unit_test(test_three_times),  cmocka_unit_test(test_resumed),
+        cmocka_unit_test(test_scale),       cmocka_unit_test(test_healthy),
+        cmocka_unit_test(test_values),      cmocka_unit_test(test_gradients),
+        cmocka_unit_test(test_networks),    cmocka_unit_test(test_collapse),
+        cmocka_unit_test(test_divergence),  cmocka_unit_test(test_empty_space),
+        cmocka_unit_test(test_smaller),     cmocka_unit_test(test_other_layout),
+        cmocka_unit_test(test_three_times), cmocka_unit_test(test_resumed),
     };
 
     return cmocka_run_group_tests_name("watch", tests, set_up, tear_down);

@@ -301,8 +301,8 @@ static void test_splits(void **state)
     o.ways.split = RAY_TRAIN_ONLY;
     assert_false(ted4_ray_is_taken(&o, 3, 2));
     assert_non_null(
-        ted4_ray_fault(&(ted4_ray_options){ .scene = RAY_STILL, .ways = { .premultiplied = 1 } }));
-    assert_non_null(ted4_ray_fault(&(ted4_ray_options){
+        ted4_ray_fault(&(ted4_ray_options) { .scene = RAY_STILL, .ways = { .premultiplied = 1 } }));
+    assert_non_null(ted4_ray_fault(&(ted4_ray_options) {
         .scene = RAY_STILL, .layout = RAY_NEU3D, .ways = { .off = { 0.1, 0 } } }));
     assert_null(ted4_ray_fault(&o));
 }

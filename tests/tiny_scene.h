@@ -1,5 +1,5 @@
-/* tiny_scene.h - writes scenes of a few pixels into a temporary folder for test_dataset*.c and test_image_file.c.
- * Whatever cannot be written ends the test program.
+/* tiny_scene.h - writes scenes of a few pixels into a temporary folder for test_dataset*.c and
+ * test_image_file.c. Whatever cannot be written ends the test program.
  * SPDX-License-Identifier: BSD-2-Clause */
 #ifndef TED4_TINY_SCENE_H
 #define TED4_TINY_SCENE_H
@@ -18,7 +18,9 @@
 
 enum { TINY_W = 16, TINY_H = 12 };
 
-typedef struct { char path[256]; } tiny_folder;
+typedef struct {
+    char path[256];
+} tiny_folder;
 
 static inline void must(int ok, const char *what)
 {
@@ -62,7 +64,8 @@ static inline void tiny_free(tiny_folder *f)
     tiny_remove_path(f->path);
 }
 
-/* Full path of name; makes the folders on the way. The text lives until the next but seven calls. */
+/* Full path of name; makes the folders on the way. The text lives until the next but seven calls.
+ */
 static inline const char *tiny_path(const tiny_folder *f, const char *name)
 {
     static char text[8][1024];
@@ -97,7 +100,8 @@ static inline size_t tiny_size(const tiny_folder *f, const char *name)
     return (size_t)s.st_size;
 }
 
-static inline void tiny_png(const tiny_folder *f, const char *name, int w, int h, uint32_t format, const uint8_t *px)
+static inline void tiny_png(const tiny_folder *f, const char *name, int w, int h, uint32_t format,
+                            const uint8_t *px)
 {
     png_image p;
 
@@ -125,7 +129,10 @@ static inline void tiny_picture(const tiny_folder *f, const char *name, int w, i
 }
 
 /* Growing text. */
-typedef struct { char text[32768]; size_t n; } tiny_string;
+typedef struct {
+    char text[32768];
+    size_t n;
+} tiny_string;
 
 static inline void tiny_add(tiny_string *s, const char *format, ...)
 {
@@ -138,7 +145,10 @@ static inline void tiny_add(tiny_string *s, const char *format, ...)
 }
 
 /* Growing little-endian record. */
-typedef struct { uint8_t bytes[16384]; size_t n; } tiny_record;
+typedef struct {
+    uint8_t bytes[16384];
+    size_t n;
+} tiny_record;
 
 static inline void tiny_put(tiny_record *r, uint64_t v, size_t size)
 {
@@ -161,7 +171,8 @@ static const ted4_dataset_options tiny_options = {
 };
 
 /* Loads; the message of a failure is the return value, "" when fine. */
-static inline const char *tiny_load(ted4_dataset *d, const tiny_folder *f, const ted4_dataset_options *o)
+static inline const char *tiny_load(ted4_dataset *d, const tiny_folder *f,
+                                    const ted4_dataset_options *o)
 {
     static ted4_message m;
 

@@ -12,7 +12,7 @@
 static inline void use_kernels(const char *level)
 {
     static char before[32];
-    static int  known;
+    static int known;
 
     if (!known && getenv("TED4_KERNEL") != NULL)
         snprintf(before, sizeof before, "%s", getenv("TED4_KERNEL"));

@@ -1,5 +1,5 @@
-/* validate_case.h - a validator's findings gathered, with the claims that hold for every byte string (spec 3.6), and scenes to make files of. For
- * test_validate.c and test_advise.c.
+/* validate_case.h - a validator's findings gathered, with the claims that hold for every byte
+ * string (spec 3.6), and scenes to make files of. For test_validate.c and test_advise.c.
  * SPDX-License-Identifier: BSD-2-Clause */
 #ifndef TED4_VALIDATE_CASE_H
 #define TED4_VALIDATE_CASE_H
@@ -15,7 +15,7 @@ enum { MOST_FINDINGS = 400 };
 /* What a validator has said. */
 typedef struct {
     ted4_finding list[MOST_FINDINGS];
-    int          n, errors;
+    int n, errors;
 } findings;
 
 static inline void keep(void *user, const ted4_finding *f)
@@ -39,7 +39,8 @@ static inline int has(const findings *all, const char *id, size_t offset)
     int n = 0;
 
     for (int i = 0; i < all->n; i++)
-        n += strcmp(all->list[i].id, id) == 0 && (offset == ANYWHERE || all->list[i].offset == offset);
+        n += strcmp(all->list[i].id, id) == 0 &&
+             (offset == ANYWHERE || all->list[i].offset == offset);
     return n;
 }
 
@@ -48,9 +49,9 @@ static inline findings *validate(const uint8_t *data, size_t size)
 {
     static findings all;
     counting_memory memory = { 0 };
-    ted4_options    o = { .allocator = counting_allocator(&memory) };
-    ted4_scene     *s;
-    ted4_error      e;
+    ted4_options o = { .allocator = counting_allocator(&memory) };
+    ted4_scene *s;
+    ted4_error e;
     const ted4_status verdict = ted4_decode(data, size, &o, &s, &e);
 
     all.n = all.errors = 0;
@@ -67,7 +68,9 @@ static inline findings *validate(const uint8_t *data, size_t size)
     }
     if (ted4_status_verdict(verdict) == TED4_INVALID) {
         static findings alone;
-        ted4_findings   f = { .data = data, .size = size, .sink = keep, .user = &alone, .verdict = e };
+        ted4_findings f = {
+            .data = data, .size = size, .sink = keep, .user = &alone, .verdict = e
+        };
 
         alone.n = alone.errors = 0;
         assert_int_equal(ted4_collect(&f, &o), TED4_OK);
@@ -100,7 +103,7 @@ static inline size_t chunk_at(const uint8_t *data, size_t size, const char *type
 static inline ted4_scene *useful(uint64_t seed, const ted4_header *h)
 {
     random_source r = random_seed(seed);
-    ted4_scene   *s = random_scene_of(&r, h, 0);
+    ted4_scene *s = random_scene_of(&r, h, 0);
 
     assert_non_null(s);
     for (size_t i = 0; i < h->n_anchors; i++)

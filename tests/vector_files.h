@@ -1,4 +1,5 @@
-/* vector_files.h - the streams that lie in conformance/vectors, one after the other in the order of their names.
+/* vector_files.h - the streams that lie in conformance/vectors, one after the other in the order of
+ * their names.
  * SPDX-License-Identifier: BSD-2-Clause */
 #ifndef TED4_TESTS_VECTOR_FILES_H
 #define TED4_TESTS_VECTOR_FILES_H
@@ -9,14 +10,17 @@
 
 enum { MAX_VECTOR = 1 << 20 };
 
-/* Calls visit(data, size, path) for each stream that find(1) finds with these further conditions; data is visit's while it runs. Returns how many there were. */
-static inline int each_vector(const char *conditions, void (*visit)(const uint8_t *data, size_t size, const char *path))
+/* Calls visit(data, size, path) for each stream that find(1) finds with these further conditions;
+ * data is visit's while it runs. Returns how many there were. */
+static inline int each_vector(const char *conditions,
+                              void (*visit)(const uint8_t *data, size_t size, const char *path))
 {
     static uint8_t data[MAX_VECTOR];
-    char           command[256], path[1024];
-    int            n = 0;
+    char command[256], path[1024];
+    int n = 0;
 
-    snprintf(command, sizeof command, "find conformance/vectors -name '*.ted4' %s | LC_ALL=C sort", conditions);
+    snprintf(command, sizeof command, "find conformance/vectors -name '*.ted4' %s | LC_ALL=C sort",
+             conditions);
 
     FILE *const list = popen(command, "r");
 

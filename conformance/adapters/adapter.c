@@ -11,13 +11,13 @@ enum { TIERS = 6, MAX_QUERIES = 1 << 16, BAD = 3 };
 
 typedef struct {
     const char *input, *queries;
-    int         tier[TIERS];    /* asked for? */
-    uint64_t    max_bytes, max_work;
+    int tier[TIERS]; /* asked for? */
+    uint64_t max_bytes, max_work;
 } request;
 
 typedef struct {
-    uint8_t *data;              /* owned, followed by a 0 that size does not count */
-    size_t   size;
+    uint8_t *data; /* owned, followed by a 0 that size does not count */
+    size_t size;
 } file;
 
 static int usage(const char *why)
@@ -28,17 +28,20 @@ static int usage(const char *why)
 
 static int capabilities(const ted4_adapter *a)
 {
-    printf("{\"protocol\":1,\"name\":\"%s\",\"version\":\"%s\",\"spec\":\"1.0\",\"profiles\":[\"Main\"],\"max_level\":%d,"
-           "\"tiers\":[\"T0\",\"T1\",\"T2\",\"T3\",\"T4\"%s],\"class\":%s,\"strict\":true,\"declines\":[],\"knobs\":[%s%s%s]}\n",
-           a->name, a->version, a->max_level, a->class_x ? ",\"T5\"" : "", a->class_x ? "\"X\"" : "null",
-           a->bounded ? "\"max_alloc_total\"" : "", a->bounded && a->bounded_work ? "," : "", a->bounded_work ? "\"max_work\"" : "");
+    printf("{\"protocol\":1,\"name\":\"%s\",\"version\":\"%s\",\"spec\":\"1.0\",\"profiles\":["
+           "\"Main\"],\"max_level\":%d,"
+           "\"tiers\":[\"T0\",\"T1\",\"T2\",\"T3\",\"T4\"%s],\"class\":%s,\"strict\":true,"
+           "\"declines\":[],\"knobs\":[%s%s%s]}\n",
+           a->name, a->version, a->max_level, a->class_x ? ",\"T5\"" : "",
+           a->class_x ? "\"X\"" : "null", a->bounded ? "\"max_alloc_total\"" : "",
+           a->bounded && a->bounded_work ? "," : "", a->bounded_work ? "\"max_work\"" : "");
     return 0;
 }
 
 /* 0, or -1. */
 static int read_file(file *f, const char *path)
 {
-    FILE  *in = fopen(path, "rb");
+    FILE *in = fopen(path, "rb");
     size_t room = 1 << 16, n = 1;
 
     f->size = 0;
@@ -81,7 +84,8 @@ static int parse(request *r, int argc, char **argv)
             r->max_work = strtoull(value + sizeof work - 1, NULL, 10);
         else if (strcmp(argv[i], "--tiers") != 0)
             return -1;
-        for (const char *t = value; strcmp(argv[i], "--tiers") == 0 && t != NULL; t = strchr(t, ',') != NULL ? strchr(t, ',') + 1 : NULL)
+        for (const char *t = value; strcmp(argv[i], "--tiers") == 0 && t != NULL;
+             t = strchr(t, ',') != NULL ? strchr(t, ',') + 1 : NULL)
             if (t[0] == 'T' && t[1] >= '0' && t[1] < '0' + TIERS)
                 r->tier[t[1] - '0'] = 1;
     }
@@ -91,7 +95,7 @@ static int parse(request *r, int argc, char **argv)
 /* A hash under way. */
 typedef struct {
     ted4_sha256 hash;
-    uint64_t    size;
+    uint64_t size;
 } sum;
 
 static void add(void *user, const void *bytes, size_t size)
@@ -122,12 +126,14 @@ static void print_sum(sum *s)
 /* The text behind "name":[ of the object at p; NULL: it has none. */
 static char *member(char *p, const char *name)
 {
-    char *const end = strchr(p, '}'), *const at = strstr(p, name), *const list = at != NULL ? strchr(at, '[') : NULL;
+    char *const end = strchr(p, '}'), *const at = strstr(p, name),
+                *const list = at != NULL ? strchr(at, '[') : NULL;
 
     return end != NULL && list != NULL && list < end ? list + 1 : NULL;
 }
 
-/* [{"t":[num,den],"cam":[x,y,z]}, ...]: next query behind *p. 1, 0: there is none, -1: what stands there is none. */
+/* [{"t":[num,den],"cam":[x,y,z]}, ...]: next query behind *p. 1, 0: there is none, -1: what stands
+ * there is none. */
 static int next_query(char **p, uint32_t *num, uint32_t *den, float camera[3])
 {
     char *const object = *p != NULL ? strchr(*p, '{') : NULL;
@@ -152,13 +158,13 @@ static int next_query(char **p, uint32_t *num, uint32_t *den, float camera[3])
 static int print_records(const ted4_adapter *a, void *scene, char *queries)
 {
     const char *comma = "";
-    uint32_t    num, den;
-    float       camera[3];
-    int         more;
+    uint32_t num, den;
+    float camera[3];
+    int more;
 
     printf(",\"T5\":[");
     while ((more = next_query(&queries, &num, &den, camera)) > 0) {
-        sum         s;
+        sum s;
         const char *error;
 
         begin(&s);
@@ -178,8 +184,8 @@ static int print_records(const ted4_adapter *a, void *scene, char *queries)
 static int print_valid(const ted4_adapter *a, const request *r, void *scene)
 {
     const char *comma = "";
-    file        queries = { NULL, 0 };
-    int         bad = 0;
+    file queries = { NULL, 0 };
+    int bad = 0;
 
     printf("{\"result\":\"valid\",\"tiers\":{");
     for (int i = 0; i < TIERS - 1 && bad == 0; i++) {
@@ -194,7 +200,10 @@ static int print_valid(const ted4_adapter *a, const request *r, void *scene)
         comma = ",";
     }
     if (bad == 0 && r->queries != NULL && a->class_x && r->tier[TIERS - 1])
-        bad = read_file(&queries, r->queries) != 0 || print_records(a, scene, (char *)queries.data) != 0 ? -1 : 0;
+        bad = read_file(&queries, r->queries) != 0 ||
+                      print_records(a, scene, (char *)queries.data) != 0
+                  ? -1
+                  : 0;
     printf("}}\n");
     free(queries.data);
     return bad;
@@ -203,9 +212,9 @@ static int print_valid(const ted4_adapter *a, const request *r, void *scene)
 static int run(const ted4_adapter *a, const request *r)
 {
     ted4_adapter_verdict v = { "invalid", "", 0 };
-    file  f;
+    file f;
     void *scene;
-    int   bad = 0;
+    int bad = 0;
 
     if (read_file(&f, r->input) != 0) {
         printf("{\"result\":\"io\",\"error\":\"io.read\"}\n");
@@ -217,7 +226,8 @@ static int run(const ted4_adapter *a, const request *r)
     else if (strcmp(v.result, "limit") == 0)
         printf("{\"result\":\"limit\",\"error\":\"%s\"}\n", v.error);
     else
-        printf("{\"result\":\"%s\",\"error\":\"%s\",\"offset\":%llu}\n", v.result, v.error, (unsigned long long)v.offset);
+        printf("{\"result\":\"%s\",\"error\":\"%s\",\"offset\":%llu}\n", v.result, v.error,
+               (unsigned long long)v.offset);
     if (scene != NULL)
         a->release(scene);
     free(f.data);
@@ -230,5 +240,7 @@ int ted4_adapter_main(const ted4_adapter *a, int argc, char **argv)
 
     if (argc == 2 && strcmp(argv[1], "--ted4-capabilities") == 0)
         return capabilities(a);
-    return parse(&r, argc, argv) == 0 ? run(a, &r) : usage("usage: --ted4-capabilities | --ted4-run FILE --tiers T0,.. [--queries FILE] [--knob NAME=VALUE]");
+    return parse(&r, argc, argv) == 0 ? run(a, &r)
+                                      : usage("usage: --ted4-capabilities | --ted4-run FILE "
+                                              "--tiers T0,.. [--queries FILE] [--knob NAME=VALUE]");
 }

@@ -1,10 +1,14 @@
-/* cross_decoder.c - our decoder for the matrix of builds (conformance/CROSS.md): one program that needs C's library, zlib, Jansson and xxHash alone.
- *     cross_decoder --ted4-...     the driver contract of conformance/README.md, as ted4dec answers it
- *     cross_decoder SUITE          judges every vector of SUITE/SUITE.json, in one process, as ted4conf would; files made on demand have to be there,
- *                                  but for large ones.
- * Prints the class claimed, a line a failure, the counts, and two hashes (XXH3-128): tier-e of all verdicts and of T0 to T4, and, where class X is claimed,
- * class-x of all T5. Two builds agree when these are equal. On stderr: each vector before it is judged, so that a crash has a name.
- * Exit code: 0 all pass, 1 not, 3 no such suite.
+/* cross_decoder.c - our decoder for the matrix of builds (conformance/CROSS.md): one program that
+ * needs C's library, zlib, Jansson and xxHash alone.
+ *     cross_decoder --ted4-...     the driver contract of conformance/README.md, as ted4dec answers
+ *                                  it
+ *     cross_decoder SUITE          judges every vector of SUITE/SUITE.json, in one process, as
+ *                                  ted4conf would; files made on demand have to be there, but for
+ *                                  large ones.
+ * Prints the class claimed, a line a failure, the counts, and two hashes (XXH3-128): tier-e of all
+ * verdicts and of T0 to T4, and, where class X is claimed, class-x of all T5. Two builds agree when
+ * these are equal. On stderr: each vector before it is judged, so that a crash has a name. Exit
+ * code: 0 all pass, 1 not, 3 no such suite.
  * SPDX-License-Identifier: BSD-2-Clause */
 #include <stdio.h>
 #include <stdlib.h>
@@ -17,9 +21,9 @@
 
 typedef struct {
     const char *suite;
-    json_t     *capabilities;   /* owned */
-    conf_bytes  tier_e, class_x;        /* owned: one line a vector, its answer as JSON */
-    size_t      n_run, n_bad;
+    json_t *capabilities;       /* owned */
+    conf_bytes tier_e, class_x; /* owned: one line a vector, its answer as JSON */
+    size_t n_run, n_bad;
 } session;
 
 static const char *text_of(const json_t *o, const char *key)
@@ -34,7 +38,8 @@ static int read_vector(const session *s, const json_t *entry, conf_bytes *file)
 {
     char path[CONF_PATH], hash[CONF_HASH + 1];
 
-    conf_path(path, "%s/vectors/%s/%s.ted4", s->suite, text_of(entry, "folder"), text_of(entry, "id"));
+    conf_path(path, "%s/vectors/%s/%s.ted4", s->suite, text_of(entry, "folder"),
+              text_of(entry, "id"));
     if (!conf_read(path, file))
         return 0;
     conf_hash(hash, file->data, file->size);
@@ -44,11 +49,12 @@ static int read_vector(const session *s, const json_t *entry, conf_bytes *file)
 /* Its descriptor, owned; NULL: missing, or another one. */
 static json_t *read_descriptor(const session *s, const json_t *entry)
 {
-    char       path[CONF_PATH], hash[CONF_HASH + 1];
+    char path[CONF_PATH], hash[CONF_HASH + 1];
     conf_bytes text;
-    json_t    *d = NULL;
+    json_t *d = NULL;
 
-    conf_path(path, "%s/vectors/%s/%s.json", s->suite, text_of(entry, "folder"), text_of(entry, "id"));
+    conf_path(path, "%s/vectors/%s/%s.json", s->suite, text_of(entry, "folder"),
+              text_of(entry, "id"));
     if (!conf_read(path, &text))
         return NULL;
     conf_hash(hash, text.data, text.size);
@@ -76,10 +82,12 @@ static void keep_records(session *s, const char *id, json_t *tiers)
     json_object_del(tiers, "T5");
 }
 
-static void ask(session *s, const char *id, const json_t *d, const conf_bytes *file, conf_verdict *v)
+static void ask(session *s, const char *id, const json_t *d, const conf_bytes *file,
+                conf_verdict *v)
 {
-    const int      lenient = json_object_get(d, "salvage") != NULL;
-    json_t *const  answer = (lenient ? conf_answer_lenient : conf_answer)(file, json_object_get(d, "queries"), conf_knobs_of(d));
+    const int lenient = json_object_get(d, "salvage") != NULL;
+    json_t *const answer = (lenient ? conf_answer_lenient : conf_answer)(
+        file, json_object_get(d, "queries"), conf_knobs_of(d));
 
     conf_judge(s->capabilities, d, answer, v);
     if (lenient && v->outcome == CONF_PASS)
@@ -92,10 +100,10 @@ static void ask(session *s, const char *id, const json_t *d, const conf_bytes *f
 
 static void judge(session *s, const json_t *entry)
 {
-    const char  *const id = text_of(entry, "id");
-    conf_bytes   file = { NULL, 0, 0 };
+    const char *const id = text_of(entry, "id");
+    conf_bytes file = { NULL, 0, 0 };
     conf_verdict v = { CONF_MISSING, "no such file, or another one than in the manifest" };
-    json_t      *d;
+    json_t *d;
 
     fprintf(stderr, "at %s\n", id);
     fflush(stderr);
@@ -114,7 +122,7 @@ static void judge(session *s, const json_t *entry)
 static void print_hash(const char *name, const conf_bytes *b)
 {
     XXH128_canonical_t canonical;
-    char               hex[33];
+    char hex[33];
 
     XXH128_canonicalFromHash(&canonical, XXH3_128bits(b->data, b->size));
     conf_hex(hex, canonical.digest, sizeof canonical.digest);
@@ -124,12 +132,14 @@ static void print_hash(const char *name, const conf_bytes *b)
 static int judge_all(const char *suite)
 {
     const int strict = ted4_recon_class_x();
-    session   s = { .suite = suite };
-    char      path[CONF_PATH];
-    json_t   *manifest, *list;
+    session s = { .suite = suite };
+    char path[CONF_PATH];
+    json_t *manifest, *list;
 
-    s.capabilities = json_pack("{s:i, s:[s,s,s,s,s,s], s:o, s:[], s:[s,s]}", "max_level", 31, "tiers", "T0", "T1", "T2", "T3", "T4", "T5",
-                               "class", strict ? json_string("X") : json_null(), "declines", "knobs", "max_alloc_total", "max_work");
+    s.capabilities = json_pack("{s:i, s:[s,s,s,s,s,s], s:o, s:[], s:[s,s]}", "max_level", 31,
+                               "tiers", "T0", "T1", "T2", "T3", "T4", "T5", "class",
+                               strict ? json_string("X") : json_null(), "declines", "knobs",
+                               "max_alloc_total", "max_work");
     conf_path(path, "%s/SUITE.json", suite);
     manifest = json_load_file(path, 0, NULL);
     list = json_object_get(manifest, "vector");

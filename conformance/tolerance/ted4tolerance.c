@@ -1,7 +1,11 @@
-/* ted4tolerance.c - class T (spec E): thresholds for the queries of streams, computed by rule, and whether a decoder's records keep them.
- *     ted4tolerance judge FILE.ted4 QUERIES.json FOLDER   FOLDER/T5-0.bin, T5-1.bin, ...: as CMD --ted4-run FILE --tiers T5 --dump FOLDER leaves them
- *     ted4tolerance table ID.json...                      thresholds of vectors, by their descriptors, as lines of thresholds.csv
- * QUERIES.json: a list of queries, or a descriptor. Exit codes: 0 class T can be claimed, or the table is made; 1 it cannot; 3 usage, input, resources.
+/* ted4tolerance.c - class T (spec E): thresholds for the queries of streams, computed by rule, and
+ * whether a decoder's records keep them.
+ *     ted4tolerance judge FILE.ted4 QUERIES.json FOLDER   FOLDER/T5-0.bin, T5-1.bin, ...: as CMD
+ *         --ted4-run FILE --tiers T5 --dump FOLDER leaves them
+ *     ted4tolerance table ID.json...                      thresholds of vectors, by their
+ *         descriptors, as lines of thresholds.csv
+ * QUERIES.json: a list of queries, or a descriptor. Exit codes: 0 class T can be claimed, or the
+ * table is made; 1 it cannot; 3 usage, input, resources.
  * SPDX-License-Identifier: BSD-2-Clause */
 #include <jansson.h>
 #include <math.h>
@@ -22,7 +26,8 @@ static int complain(const char *what, const char *which)
 /* Element i of a list of queries. 1, or 0: there is none, or it is none. */
 static int get_query(const json_t *list, size_t i, class_t_query *q)
 {
-    const json_t *const o = json_array_get(list, i), *const t = json_object_get(o, "t"), *const cam = json_object_get(o, "cam");
+    const json_t *const o = json_array_get(list, i), *const t = json_object_get(o, "t"),
+                        *const cam = json_object_get(o, "cam");
 
     if (json_array_size(t) != 2 || json_array_size(cam) != 3)
         return 0;
@@ -51,8 +56,8 @@ static json_t *load_queries(const char *path)
 /* The stream of a file; NULL, and it has been said why. */
 static class_t *open_stream(const char *path)
 {
-    size_t         size;
-    const char    *why = "cannot be read";
+    size_t size;
+    const char *why = "cannot be read";
     uint8_t *const data = ted4_read_file(path, &size);
     class_t *const c = data != NULL ? class_t_open(data, size, &why) : NULL;
 
@@ -64,9 +69,9 @@ static class_t *open_stream(const char *path)
 
 static int judge(const char *file, const char *queries, const char *folder)
 {
-    json_t    *const list = load_queries(queries), *const said = json_array();
-    class_t   *c;
-    int        good = 1;
+    json_t *const list = load_queries(queries), *const said = json_array();
+    class_t *c;
+    int good = 1;
 
     if (list == NULL || json_array_size(list) == 0)
         return complain(queries, "no queries");
@@ -74,11 +79,11 @@ static int judge(const char *file, const char *queries, const char *folder)
     if (c == NULL)
         return TED4_EXIT_TOOL;
     for (size_t i = 0; i < json_array_size(list); i++) {
-        char          path[MAX_PATH];
+        char path[MAX_PATH];
         class_t_query q;
-        const char   *verdict;
-        uint8_t      *records;
-        size_t        size = 0;
+        const char *verdict;
+        uint8_t *records;
+        size_t size = 0;
 
         if (!get_query(list, i, &q))
             return complain(queries, "not a query");
@@ -112,14 +117,15 @@ static void print_exponent(double x)
     }
 }
 
-/* Lines of one vector: id, query, records, and for each group the exponents of peak and rms. Queries without an answer have none. */
+/* Lines of one vector: id, query, records, and for each group the exponents of peak and rms.
+ * Queries without an answer have none. */
 static int print_vector(const char *descriptor)
 {
     json_t *const list = load_queries(descriptor);
-    const char   *name = strrchr(descriptor, '/');
-    const int     n = (int)strlen(descriptor) - 5;      /* without .json */
-    char          path[MAX_PATH];
-    class_t      *c;
+    const char *name = strrchr(descriptor, '/');
+    const int n = (int)strlen(descriptor) - 5; /* without .json */
+    char path[MAX_PATH];
+    class_t *c;
     class_t_query q;
 
     name = name == NULL ? descriptor : name + 1;
@@ -154,7 +160,8 @@ int main(int argc, char **argv)
         for (int i = 2; code == 0 && i < argc; i++)
             code = print_vector(argv[i]);
     } else {
-        return complain("usage", "ted4tolerance judge FILE.ted4 QUERIES.json FOLDER | table ID.json...");
+        return complain("usage",
+                        "ted4tolerance judge FILE.ted4 QUERIES.json FOLDER | table ID.json...");
     }
     return fflush(stdout) != 0 ? TED4_EXIT_TOOL : code;
 }

@@ -1,19 +1,27 @@
-/* breaks.c - `do ...`: one change to a file taken apart. Sizes and hashes follow by themselves, unless they are what is broken.
- *     do patch ELEMENT VALUE [WIDTH]       its bytes; WIDTH: bytes, found from the element that follows without it
+/* breaks.c - `do ...`: one change to a file taken apart. Sizes and hashes follow by themselves,
+ * unless they are what is broken.
+ *     do patch ELEMENT VALUE [WIDTH]       its bytes; WIDTH: bytes, found from the element that
+ *                                          follows without it
  *     do patch-all NAME VALUE              every entry of an array
  *     do flip ELEMENT                      the lowest bit of its first byte
- *     do insert REF|end TYPE FLAGS N | text ... | hex XX...      a chunk before another one: N zeros, or a text, as payload
+ *     do insert REF|end TYPE FLAGS N | text ... | hex XX...      a chunk before another one: N
+ *         zeros, or a text, as payload
  *     do insert-many REF TYPE N            N ancillary chunks without payload
- *     do drop REF; do repeat REF; do swap REF REF; do retype REF TYPE; do flags REF N; do type-byte REF I HEX
+ *     do drop REF; do repeat REF; do swap REF REF; do retype REF TYPE; do flags REF N; do type-byte
+ *     REF I HEX
  *     do size REF N                        what the frame says
  *     do hash REF                          one bit of the hash
- *     do grow REF N; do shrink REF N       bytes at the payload's end; do keep REF N: the first N bytes of the payload
+ *     do grow REF N; do shrink REF N       bytes at the payload's end; do keep REF N: the first N
+ *                                          bytes of the payload
  *     do payload REF HEX                   another payload
- *     do tail REF HEX                      the payload's last bytes; do set-bias NET LAYER UNIT B; do copy-position FROM TO
+ *     do tail REF HEX                      the payload's last bytes; do set-bias NET LAYER UNIT B;
+ *                                          do copy-position FROM TO
  *     do cut N | ELEMENT | chunk REF ...   the file ends there; do append HEX
- *     do stream-grow | stream-set TILE SUB HEX; do stream-shrink TILE SUB N; do stream-patch TILE SUB OFFSET WIDTH VALUE
+ *     do stream-grow | stream-set TILE SUB HEX; do stream-shrink TILE SUB N; do stream-patch TILE
+ *     SUB OFFSET WIDTH VALUE
  *     do final TILE SUB                    1 more in what the coder reads last
- *     do value REF INDEX PATTERN           a value of the blob in REF, for `do pack` only: the file is as it was
+ *     do value REF INDEX PATTERN           a value of the blob in REF, for `do pack` only: the file
+ *                                          is as it was
  *     do pack REF WAY FAULT                the blob's values packed again, wrongly
  *     do pack-zeros REF N                  a blob of N bytes of zeros
  *     do inject TILE SUB SYMBOL value K | escape E low|high | ones N      see inject.h
@@ -34,8 +42,8 @@ static void hex_bytes(const conf_line *l, int i, conf_bytes *out)
 {
     for (; i < l->n; i++)
         for (const char *p = l->word[i]; p[0] != '\0' && p[1] != '\0'; p += 2) {
-            const char    two[3] = { p[0], p[1], '\0' };
-            char         *end;
+            const char two[3] = { p[0], p[1], '\0' };
+            char *end;
             const uint8_t byte = (uint8_t)strtoul(two, &end, 16);
 
             if (*end != '\0')
@@ -51,10 +59,11 @@ static uint8_t *bytes_of(conf_stream *s, const conf_element *e)
 
 static unsigned width_of(const conf_line *l, const conf_element *e)
 {
-    static const char *const four[] = { "n_anchors", "tile_size", "bank_rows", "step", "frames", "rate_num", "rate_den", "origin",
-                                        "nete", "netr", "bank", "tile_index", "size" };
-    static const char *const two[] = { "bank_dim", "deform_width", "head_width", "hyper_width", "ar_width", "position",
-                                       "dynamic_prob", "offset_prob" };
+    static const char *const four[] = { "n_anchors", "tile_size",  "bank_rows", "step", "frames",
+                                        "rate_num",  "rate_den",   "origin",    "nete", "netr",
+                                        "bank",      "tile_index", "size" };
+    static const char *const two[] = { "bank_dim", "deform_width", "head_width",   "hyper_width",
+                                       "ar_width", "position",     "dynamic_prob", "offset_prob" };
 
     if (l->n > 4)
         return (unsigned)conf_line_number(l, 4, 1, 4);
@@ -84,7 +93,8 @@ static void patch_all(conf_stream *s, const conf_line *l)
 {
     for (size_t i = 0; i < s->n_elements; i++)
         if (strcmp(s->element[i].name, l->word[2]) == 0)
-            store(bytes_of(s, &s->element[i]), width_of(l, &s->element[i]), (uint32_t)conf_line_number(l, 3, 0, UINT32_MAX));
+            store(bytes_of(s, &s->element[i]), width_of(l, &s->element[i]),
+                  (uint32_t)conf_line_number(l, 3, 0, UINT32_MAX));
 }
 
 static void flip(conf_stream *s, const conf_line *l)
@@ -115,7 +125,7 @@ static void open_gap(conf_stream *s, int at)
 
 static void insert(conf_stream *s, const conf_line *l)
 {
-    const int   at = conf_word_is(l, 2, "end") ? s->n : conf_stream_chunk(s, l, l->word[2]);
+    const int at = conf_word_is(l, 2, "end") ? s->n : conf_stream_chunk(s, l, l->word[2]);
     conf_chunk *c;
 
     if (l->n < 6 || strlen(l->word[3]) != 4)
@@ -132,7 +142,7 @@ static void insert(conf_stream *s, const conf_line *l)
         hex_bytes(l, 6, &c->payload);
     } else {
         static const uint8_t zero[1 << 16];
-        long long            n = conf_line_number(l, 5, 0, 1 << 28);
+        long long n = conf_line_number(l, 5, 0, 1 << 28);
 
         for (; n > 0; n -= (long long)sizeof zero)
             conf_add(&c->payload, zero, n < (long long)sizeof zero ? (size_t)n : sizeof zero);
@@ -178,7 +188,7 @@ static void swap(conf_stream *s, int a, int b)
 static void tail(conf_stream *s, const conf_line *l)
 {
     conf_bytes *const p = &s->chunk[conf_stream_chunk(s, l, l->word[2])].payload;
-    conf_bytes        more = { NULL, 0, 0 };
+    conf_bytes more = { NULL, 0, 0 };
 
     hex_bytes(l, 3, &more);
     conf_remove(p, p->size - more.size, more.size);
@@ -190,9 +200,9 @@ static void tail(conf_stream *s, const conf_line *l)
 static void set_bias(conf_stream *s, const conf_line *l)
 {
     conf_bytes *const p = &s->chunk[conf_stream_chunk(s, l, "NETE")].payload;
-    int          scale;
+    int scale;
     const size_t index = conf_bias_index(s->build, l, 2, &scale);
-    const float  v = ldexpf((float)conf_line_number(l, 5, INT32_MIN, INT32_MAX), -scale);
+    const float v = ldexpf((float)conf_line_number(l, 5, INT32_MIN, INT32_MAX), -scale);
 
     ted4_store32(p->data + s->build->scene->shape.n_units + 1 + 4 * index, ted4_float_bits(v));
 }
@@ -208,7 +218,10 @@ static void copy_position(conf_stream *s, const conf_line *l)
 /* What a line does to one chunk. 1: it was such a line. */
 static int chunk_line(conf_stream *s, const conf_line *l, const char *what)
 {
-    static const char *const word[] = { "drop", "repeat", "swap", "retype", "flags", "size", "hash", "grow", "shrink", "payload", "type-byte", "keep" };
+    static const char *const word[] = {
+        "drop", "repeat", "swap",   "retype",  "flags",     "size",
+        "hash", "grow",   "shrink", "payload", "type-byte", "keep"
+    };
     size_t way = 0;
 
     while (way < sizeof word / sizeof *word && strcmp(word[way], what) != 0)
@@ -216,7 +229,7 @@ static int chunk_line(conf_stream *s, const conf_line *l, const char *what)
     if (way == sizeof word / sizeof *word)
         return 0;
 
-    const int   at = conf_stream_chunk(s, l, l->word[2]);
+    const int at = conf_stream_chunk(s, l, l->word[2]);
     conf_chunk *c = &s->chunk[at];
 
     switch (way) {
@@ -231,15 +244,23 @@ static int chunk_line(conf_stream *s, const conf_line *l, const char *what)
         for (long long n = conf_line_number(l, 3, 1, 1 << 20); n > 0; n--)
             conf_add(&c->payload, "", 1);
         break;
-    case 8: conf_remove(&c->payload, c->payload.size - (size_t)conf_line_number(l, 3, 1, (long long)c->payload.size),
-                        (size_t)conf_line_number(l, 3, 1, (long long)c->payload.size)); break;
+    case 8:
+        conf_remove(&c->payload,
+                    c->payload.size - (size_t)conf_line_number(l, 3, 1, (long long)c->payload.size),
+                    (size_t)conf_line_number(l, 3, 1, (long long)c->payload.size));
+        break;
     case 9:
         conf_free(&c->payload);
         hex_bytes(l, 3, &c->payload);
         break;
-    case 11: conf_remove(&c->payload, (size_t)conf_line_number(l, 3, 0, (long long)c->payload.size),
-                         c->payload.size - (size_t)conf_line_number(l, 3, 0, (long long)c->payload.size)); break;
-    default: c->type[conf_line_number(l, 3, 0, 3)] = (uint8_t)strtoul(l->n > 4 ? l->word[4] : "", NULL, 16);
+    case 11:
+        conf_remove(&c->payload, (size_t)conf_line_number(l, 3, 0, (long long)c->payload.size),
+                    c->payload.size -
+                        (size_t)conf_line_number(l, 3, 0, (long long)c->payload.size));
+        break;
+    default:
+        c->type[conf_line_number(l, 3, 0, 3)] =
+            (uint8_t)strtoul(l->n > 4 ? l->word[4] : "", NULL, 16);
     }
     return 1;
 }
@@ -271,9 +292,9 @@ static int stream_line(conf_stream *s, const conf_line *l, const char *what)
     if (strncmp(what, "stream-", 7) != 0 && strcmp(what, "final") != 0)
         return 0;
 
-    const int         chunk = conf_stream_chunk(s, l, l->word[2]);
+    const int chunk = conf_stream_chunk(s, l, l->word[2]);
     conf_bytes *const p = &s->chunk[chunk].payload;
-    conf_bytes        more = { NULL, 0, 0 };
+    conf_bytes more = { NULL, 0, 0 };
 
     at = conf_stream_substream(s, chunk, (unsigned)conf_line_number(l, 3, 0, 99), &size, &size_at);
     if (strcmp(what, "stream-grow") == 0) {
@@ -291,7 +312,8 @@ static int stream_line(conf_stream *s, const conf_line *l, const char *what)
     } else if (strcmp(what, "final") == 0) {
         spoil_final(p->data + at, size);
     } else {
-        store(p->data + at + (size_t)conf_line_number(l, 4, 0, (long long)size - 1), (unsigned)conf_line_number(l, 5, 1, 4),
+        store(p->data + at + (size_t)conf_line_number(l, 4, 0, (long long)size - 1),
+              (unsigned)conf_line_number(l, 5, 1, 4),
               (uint32_t)conf_line_number(l, 6, 0, UINT32_MAX));
     }
     return 1;
@@ -299,7 +321,9 @@ static int stream_line(conf_stream *s, const conf_line *l, const char *what)
 
 static ted4_blob *blob_of(const conf_build *b, const conf_line *l)
 {
-    return conf_word_is(l, 2, "NETE") ? &b->scene->nete : conf_word_is(l, 2, "NETR") ? &b->scene->netr : &b->scene->bank;
+    return conf_word_is(l, 2, "NETE")   ? &b->scene->nete
+           : conf_word_is(l, 2, "NETR") ? &b->scene->netr
+                                        : &b->scene->bank;
 }
 
 static void value(const conf_build *b, const conf_line *l)
@@ -311,12 +335,13 @@ static void value(const conf_build *b, const conf_line *l)
 
 static void pack(conf_stream *s, const conf_build *b, const conf_line *l)
 {
-    const int         chunk = conf_stream_chunk(s, l, l->word[2]);
+    const int chunk = conf_stream_chunk(s, l, l->word[2]);
     conf_bytes *const p = &s->chunk[chunk].payload;
-    const int         way = l->n > 3 ? conf_pack_way_of(l->word[3]) : -1, fault = l->n > 4 ? conf_pack_fault_of(l->word[4]) : -1;
-    const ted4_blob  *blob = blob_of(b, l);
-    const size_t      head = conf_word_is(l, 2, "NETE") ? b->scene->shape.n_units : 0;
-    uint8_t          *bytes;
+    const int way = l->n > 3 ? conf_pack_way_of(l->word[3]) : -1,
+              fault = l->n > 4 ? conf_pack_fault_of(l->word[4]) : -1;
+    const ted4_blob *blob = blob_of(b, l);
+    const size_t head = conf_word_is(l, 2, "NETE") ? b->scene->shape.n_units : 0;
+    uint8_t *bytes;
 
     if (way < 0 || fault < 0)
         conf_line_bad(l, "pack REF WAY FAULT");
@@ -331,8 +356,8 @@ static void pack(conf_stream *s, const conf_build *b, const conf_line *l)
 static void pack_zeros(conf_stream *s, const conf_line *l)
 {
     conf_bytes *const p = &s->chunk[conf_stream_chunk(s, l, l->word[2])].payload;
-    const size_t      n = (size_t)conf_line_number(l, 3, 1, 1 << 26);
-    uint8_t          *bytes = conf_alloc(n, 1);
+    const size_t n = (size_t)conf_line_number(l, 3, 1, 1 << 26);
+    uint8_t *bytes = conf_alloc(n, 1);
 
     conf_remove(p, 0, p->size);
     conf_add(p, "\1", 1);
@@ -340,7 +365,8 @@ static void pack_zeros(conf_stream *s, const conf_line *l)
     free(bytes);
 }
 
-static void recode(conf_stream *s, const conf_build *b, int chunk, unsigned tile, const conf_injection *what)
+static void recode(conf_stream *s, const conf_build *b, int chunk, unsigned tile,
+                   const conf_injection *what)
 {
     conf_free(&s->chunk[chunk].payload);
     conf_inject(&s->chunk[chunk].payload, b->scene, tile, what);
@@ -348,9 +374,12 @@ static void recode(conf_stream *s, const conf_build *b, int chunk, unsigned tile
 
 static void inject(conf_stream *s, const conf_build *b, const conf_line *l)
 {
-    conf_injection j = { .substream = (unsigned)conf_line_number(l, 3, 0, 99), .symbol = (size_t)conf_line_number(l, 4, 0, 1 << 20) };
+    conf_injection j = { .substream = (unsigned)conf_line_number(l, 3, 0, 99),
+                         .symbol = (size_t)conf_line_number(l, 4, 0, 1 << 20) };
 
-    j.way = conf_word_is(l, 5, "value") ? CONF_INJECT_VALUE : conf_word_is(l, 5, "escape") ? CONF_INJECT_ESCAPE : CONF_INJECT_ONES;
+    j.way = conf_word_is(l, 5, "value")    ? CONF_INJECT_VALUE
+            : conf_word_is(l, 5, "escape") ? CONF_INJECT_ESCAPE
+                                           : CONF_INJECT_ONES;
     j.value = conf_line_number(l, 6, -(1LL << 40), 1LL << 40);
     j.high = conf_word_is(l, 7, "high");
     recode(s, b, conf_stream_chunk(s, l, l->word[2]), (unsigned)atoi(l->word[2] + 4), &j);
@@ -361,10 +390,11 @@ static void symbol(conf_stream *s, conf_build *b, const conf_line *l)
     static const conf_injection nothing = { .way = CONF_INJECT_NOTHING };
     const size_t anchor = (size_t)conf_line_number(l, 4, 0, b->head.n_anchors - 1);
     const unsigned tile = (unsigned)(anchor / b->head.tile_size);
-    char         ref[16];
+    char ref[16];
 
-    b->scene->symbol[conf_word_type(l, 2)][(size_t)conf_line_number(l, 3, 0, 1000) * b->head.n_anchors + anchor]
-        = (int16_t)conf_line_number(l, 5, -32767, 32767);
+    b->scene->symbol[conf_word_type(l, 2)]
+                    [(size_t)conf_line_number(l, 3, 0, 1000) * b->head.n_anchors + anchor] =
+        (int16_t)conf_line_number(l, 5, -32767, 32767);
     snprintf(ref, sizeof ref, "TILE%u", tile);
     recode(s, b, conf_stream_chunk(s, l, ref), tile, &nothing);
 }
@@ -374,10 +404,19 @@ static int plain_line(conf_stream *s, const conf_line *l, const char *what)
 {
     static const struct {
         const char *word;
-        void      (*run)(conf_stream *s, const conf_line *l);
+        void (*run)(conf_stream *s, const conf_line *l);
     } table[] = {
-        { "patch", patch }, { "patch-all", patch_all }, { "flip", flip }, { "insert", insert }, { "insert-many", insert_many }, { "cut", cut }, { "append", append },
-        { "tail", tail }, { "set-bias", set_bias }, { "copy-position", copy_position }, { "pack-zeros", pack_zeros },
+        { "patch", patch },
+        { "patch-all", patch_all },
+        { "flip", flip },
+        { "insert", insert },
+        { "insert-many", insert_many },
+        { "cut", cut },
+        { "append", append },
+        { "tail", tail },
+        { "set-bias", set_bias },
+        { "copy-position", copy_position },
+        { "pack-zeros", pack_zeros },
     };
 
     for (size_t i = 0; i < sizeof table / sizeof *table; i++)
@@ -419,7 +458,7 @@ size_t conf_stream_where(const conf_stream *s, const conf_line *l, int i)
         return (size_t)conf_line_number(l, i, 0, UINT32_MAX);
     if (strncmp(l->word[i], "size", 4) == 0 && (l->word[i][4] == '\0' || l->word[i][4] == '-')) {
         conf_bytes file;
-        size_t     n;
+        size_t n;
 
         conf_stream_join(s, &file);
         n = file.size - strtoul(l->word[i][4] == '-' ? l->word[i] + 5 : "0", NULL, 10);
@@ -431,26 +470,31 @@ size_t conf_stream_where(const conf_stream *s, const conf_line *l, int i)
     if (conf_word_is(l, i, "last")) {
         const int chunk = conf_stream_chunk(s, l, l->word[i + 1]);
 
-        return conf_stream_place(s, chunk) + TED4_FRAME_HEAD_SIZE + s->chunk[chunk].payload.size
-             - (size_t)conf_line_number(l, i + 2, 0, INT32_MAX);
+        return conf_stream_place(s, chunk) + TED4_FRAME_HEAD_SIZE + s->chunk[chunk].payload.size -
+               (size_t)conf_line_number(l, i + 2, 0, INT32_MAX);
     }
     if (conf_word_is(l, i, "bias")) {
-        int          scale;
+        int scale;
         const size_t index = conf_bias_index(s->build, l, i + 1, &scale);
 
-        return conf_stream_place(s, conf_stream_chunk(s, l, "NETE")) + TED4_FRAME_HEAD_SIZE + s->build->scene->shape.n_units + 1
-             + 4 * index;
+        return conf_stream_place(s, conf_stream_chunk(s, l, "NETE")) + TED4_FRAME_HEAD_SIZE +
+               s->build->scene->shape.n_units + 1 + 4 * index;
     }
     if (conf_word_is(l, i, "payload"))
-        return conf_stream_place(s, conf_stream_chunk(s, l, l->word[i + 1])) + TED4_FRAME_HEAD_SIZE + plus(l, i + 2);
+        return conf_stream_place(s, conf_stream_chunk(s, l, l->word[i + 1])) +
+               TED4_FRAME_HEAD_SIZE + plus(l, i + 2);
     if (conf_word_is(l, i, "stream")) {
         const int chunk = conf_stream_chunk(s, l, l->word[i + 1]);
 
-        return conf_stream_place(s, chunk) + TED4_FRAME_HEAD_SIZE
-             + conf_stream_substream(s, chunk, (unsigned)conf_line_number(l, i + 2, 0, 99), &size, &size_at) + plus(l, i + 3);
+        return conf_stream_place(s, chunk) + TED4_FRAME_HEAD_SIZE +
+               conf_stream_substream(s, chunk, (unsigned)conf_line_number(l, i + 2, 0, 99), &size,
+                                     &size_at) +
+               plus(l, i + 3);
     }
 
     const conf_element *const e = conf_stream_element(s, l, l->word[i]);
 
-    return e->chunk < 0 ? e->at : conf_stream_place(s, s->moved[e->chunk]) + TED4_FRAME_HEAD_SIZE + e->at + plus(l, i + 1);
+    return e->chunk < 0 ? e->at
+                        : conf_stream_place(s, s->moved[e->chunk]) + TED4_FRAME_HEAD_SIZE + e->at +
+                              plus(l, i + 1);
 }

@@ -40,8 +40,10 @@ int conf_word_type(const conf_line *l, int i)
 
 int conf_is_scene_line(const conf_line *l)
 {
-    static const char *const name[] = { "set", "seed", "level", "nete", "unit", "out", "value", "netr", "bank", "pack",
-                                        "positions", "dynamic", "offsets", "prob", "symbols", "symbol" };
+    static const char *const name[] = { "set",     "seed", "level",     "nete",
+                                        "unit",    "out",  "value",     "netr",
+                                        "bank",    "pack", "positions", "dynamic",
+                                        "offsets", "prob", "symbols",   "symbol" };
 
     for (size_t i = 0; i < sizeof name / sizeof *name; i++)
         if (conf_word_is(l, 0, name[i]))
@@ -51,9 +53,10 @@ int conf_is_scene_line(const conf_line *l)
 
 void conf_build_file(conf_build *b, const conf_recipe *r, conf_bytes *file)
 {
-    const conf_line *const seed = conf_line_find(r, "seed"), *const level = conf_line_find(r, "level");
-    uint8_t   *out;
-    size_t     size;
+    const conf_line *const seed = conf_line_find(r, "seed"), *const level =
+                                                                 conf_line_find(r, "level");
+    uint8_t *out;
+    size_t size;
     ted4_error e = { TED4_OK, 0 };
 
     memset(b, 0, sizeof *b);

@@ -2,11 +2,14 @@
  *     positions random                     the default: any binary16 within 1
  *     positions line START BITS            anchor i at x = (START + i) / 2^BITS, y = z = 0
  *     positions tiny                       subnormal binary16
- *     positions bit B                      two anchors whose x differ in bit B of the pattern only; 14: in the sign
- *     positions at X:Y:Z ...               patterns in hexadecimal; sorted and repeated ones left out, they have to be n_anchors
+ *     positions bit B                      two anchors whose x differ in bit B of the pattern only;
+ *                                          14: in the sign
+ *     positions at X:Y:Z ...               patterns in hexadecimal; sorted and repeated ones left
+ *                                          out, they have to be n_anchors
  *     dynamic random | all | none | alternate | first N
  *     offsets random | all | none | alternate | bits B0 B1 ...   (masks of anchors in turn)
- *     prob I P                             probability I (0 dynamic, 1 .. 6 offset) of all tiles; without a line they are counted
+ *     prob I P                             probability I (0 dynamic, 1 .. 6 offset) of all tiles;
+ *                                          without a line they are counted
  * SPDX-License-Identifier: BSD-2-Clause */
 #include <stdlib.h>
 #include <string.h>
@@ -17,7 +20,7 @@
 static uint16_t random_half(conf_chance *c, int tiny)
 {
     const uint32_t u = conf_u32(c);
-    uint16_t       h = (uint16_t)(u & 0x3ff);
+    uint16_t h = (uint16_t)(u & 0x3ff);
 
     if (!tiny)
         h |= (uint16_t)((u >> 10 & 7) == 0 ? u >> 13 & 0x3c00 : 0x3000 + ((u >> 13) % 3 << 10));
@@ -30,7 +33,7 @@ static uint16_t random_half(conf_chance *c, int tiny)
 static void keep(conf_build *b, const uint16_t *p, size_t tries)
 {
     const size_t n = b->head.n_anchors;
-    uint32_t    *order = conf_alloc(tries, sizeof *order);
+    uint32_t *order = conf_alloc(tries, sizeof *order);
     const size_t kept = ted4_positions_sort(p, tries, order);
 
     if (kept == SIZE_MAX || kept < n)
@@ -56,7 +59,9 @@ static void positions_at(conf_build *b, const conf_line *l)
 
 static void positions_bit(conf_build *b, const conf_line *l)
 {
-    const uint16_t p[6] = { 0, 0x2e00, 0xb123, (uint16_t)(1u << (conf_line_number(l, 2, 0, 14) % 14)), 0x2e00, 0xb123 };
+    const uint16_t p[6] = { 0,      0x2e00,
+                            0xb123, (uint16_t)(1u << (conf_line_number(l, 2, 0, 14) % 14)),
+                            0x2e00, 0xb123 };
     const uint16_t sign[6] = { 0x3555, 1, 1, 0xb555, 1, 1 };
 
     keep(b, conf_line_number(l, 2, 0, 14) == 14 ? sign : p, 2);
@@ -65,9 +70,10 @@ static void positions_bit(conf_build *b, const conf_line *l)
 void conf_build_positions(conf_build *b)
 {
     const conf_line *const l = conf_line_find(b->recipe, "positions");
-    const int    line = l != NULL && conf_word_is(l, 1, "line"), tiny = l != NULL && conf_word_is(l, 1, "tiny");
+    const int line = l != NULL && conf_word_is(l, 1, "line"),
+              tiny = l != NULL && conf_word_is(l, 1, "tiny");
     const size_t n = b->head.n_anchors, tries = line ? n : n + n / 8 + 16;
-    uint16_t    *p;
+    uint16_t *p;
 
     if (l != NULL && conf_word_is(l, 1, "at")) {
         positions_at(b, l);
@@ -83,23 +89,28 @@ void conf_build_positions(conf_build *b)
             if (!line)
                 p[3 * i + j] = random_half(&b->chance, tiny);
             else if (j == 0)
-                p[3 * i] = ted4_float_to_half((float)(conf_line_number(l, 2, -65536, 65536) + (long long)i)
-                                              / (float)(1 << conf_line_number(l, 3, 0, 20)));
+                p[3 * i] = ted4_float_to_half(
+                    (float)(conf_line_number(l, 2, -65536, 65536) + (long long)i) /
+                    (float)(1 << conf_line_number(l, 3, 0, 20)));
     keep(b, p, tries);
     free(p);
 }
 
 static void dynamic(conf_build *b, const conf_line *l)
 {
-    const size_t first = l != NULL && conf_word_is(l, 1, "first") ? (size_t)conf_line_number(l, 2, 0, UINT32_MAX) : 0;
+    const size_t first = l != NULL && conf_word_is(l, 1, "first")
+                             ? (size_t)conf_line_number(l, 2, 0, UINT32_MAX)
+                             : 0;
 
     for (size_t i = 0; i < b->head.n_anchors; i++) {
         uint8_t v = b->head.motion != TED4_MOTION_NONE;
 
         if (b->head.temporal_mask)
             v = l == NULL || conf_word_is(l, 1, "random") ? conf_in(&b->chance, 0, 2) == 0
-              : conf_word_is(l, 1, "all") ? 1 : conf_word_is(l, 1, "none") ? 0
-              : conf_word_is(l, 1, "first") ? i < first : (uint8_t)(i % 2);
+                : conf_word_is(l, 1, "all")               ? 1
+                : conf_word_is(l, 1, "none")              ? 0
+                : conf_word_is(l, 1, "first")             ? i < first
+                                                          : (uint8_t)(i % 2);
         b->scene->dynamic[i] = v;
     }
 }
@@ -112,10 +123,14 @@ static void offsets(conf_build *b, const conf_line *l)
         unsigned v = all;
 
         if (b->head.offset_mask)
-            v = l == NULL || conf_word_is(l, 1, "random") ? conf_u32(&b->chance) | conf_u32(&b->chance)
-              : conf_word_is(l, 1, "all") ? all : conf_word_is(l, 1, "none") ? 0
-              : conf_word_is(l, 1, "bits") ? (unsigned)conf_line_number(l, 2 + (int)(i % (size_t)(l->n - 2)), 0, 65535)
-              : i % 2 ? 0xaaaa : 0x5555;
+            v = l == NULL || conf_word_is(l, 1, "random")
+                    ? conf_u32(&b->chance) | conf_u32(&b->chance)
+                : conf_word_is(l, 1, "all")  ? all
+                : conf_word_is(l, 1, "none") ? 0
+                : conf_word_is(l, 1, "bits")
+                    ? (unsigned)conf_line_number(l, 2 + (int)(i % (size_t)(l->n - 2)), 0, 65535)
+                : i % 2 ? 0xaaaa
+                        : 0x5555;
         b->scene->offset_bits[i] = (uint16_t)(v & all);
     }
 }
@@ -128,7 +143,7 @@ void conf_build_masks(conf_build *b)
         const conf_line *const l = &b->recipe->line[i];
 
         for (size_t t = 0; conf_word_is(l, 0, "prob") && t < b->scene->shape.n_tiles; t++)
-            b->scene->prob[t * TED4_PROBS + (size_t)conf_line_number(l, 1, 0, 6)]
-                = (uint16_t)conf_line_number(l, 2, 1, 65535);
+            b->scene->prob[t * TED4_PROBS + (size_t)conf_line_number(l, 1, 0, 6)] =
+                (uint16_t)conf_line_number(l, 2, 1, 65535);
     }
 }

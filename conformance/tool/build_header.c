@@ -6,18 +6,23 @@
 
 typedef struct {
     const char *name;
-    size_t      offset, width;
+    size_t offset, width;
 } field;
 
-#define FIELD(name) { #name, offsetof(ted4_header, name), sizeof ((ted4_header *)0)->name }
+#define FIELD(name)                                                        \
+    {                                                                      \
+#name, offsetof(ted4_header, name), sizeof((ted4_header *)0)->name \
+    }
 
-static const field fields[] = {
-    FIELD(n_anchors), FIELD(tile_size), FIELD(n_offsets), FIELD(feature_dim), FIELD(motion), FIELD(phi_dim),
-    FIELD(bank_rows), FIELD(bank_dim), FIELD(deform_layers), FIELD(deform_width), FIELD(temporal_mask),
-    FIELD(offset_mask), FIELD(activation), FIELD(view), FIELD(head_layers), FIELD(head_width), FIELD(scale_domain),
-    FIELD(prior), FIELD(pe_octaves), FIELD(hyper_layers), FIELD(hyper_width), FIELD(ar_width), FIELD(context_bits),
-    FIELD(frames), FIELD(rate_num), FIELD(rate_den), FIELD(exponent)
-};
+static const field fields[] = { FIELD(n_anchors),    FIELD(tile_size),     FIELD(n_offsets),
+                                FIELD(feature_dim),  FIELD(motion),        FIELD(phi_dim),
+                                FIELD(bank_rows),    FIELD(bank_dim),      FIELD(deform_layers),
+                                FIELD(deform_width), FIELD(temporal_mask), FIELD(offset_mask),
+                                FIELD(activation),   FIELD(view),          FIELD(head_layers),
+                                FIELD(head_width),   FIELD(scale_domain),  FIELD(prior),
+                                FIELD(pe_octaves),   FIELD(hyper_layers),  FIELD(hyper_width),
+                                FIELD(ar_width),     FIELD(context_bits),  FIELD(frames),
+                                FIELD(rate_num),     FIELD(rate_den),      FIELD(exponent) };
 
 /* The least that a file holds: nothing moves, no masks, one slice, no view. */
 static void smallest(ted4_header *h)
@@ -115,7 +120,7 @@ static void set_random(conf_build *b)
 {
     ted4_header *h = &b->head;
     conf_chance *c = &b->chance;
-    unsigned     left = (unsigned)conf_in(c, 1, 9), i = 0;
+    unsigned left = (unsigned)conf_in(c, 1, 9), i = 0;
 
     h->n_anchors = (uint32_t)conf_in(c, 1, 90);
     h->tile_size = (uint32_t)conf_in(c, 64, 80);
@@ -169,7 +174,8 @@ static void set_field(ted4_header *h, const conf_line *l)
 {
     for (size_t i = 0; i < sizeof fields / sizeof *fields; i++)
         if (conf_word_is(l, 1, fields[i].name)) {
-            store((char *)h + fields[i].offset, fields[i].width, conf_line_number(l, 2, -128, UINT32_MAX));
+            store((char *)h + fields[i].offset, fields[i].width,
+                  conf_line_number(l, 2, -128, UINT32_MAX));
             return;
         }
     conf_line_bad(l, "no such element");

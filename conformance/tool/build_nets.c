@@ -1,9 +1,14 @@
-/* build_nets.c - networks and bank of a scene. Weights of Tier E are given as the integers that the decoder will find (spec 7.3).
- *     nete random | zero                   all networks of Tier E; random is what happens without a line
- *     unit NET LAYER OUT shift S [bias B] [all W | w W0 W1 ...]     one output unit; NET: hyper, slice1, slice2, ...
- *     out TYPE COMPS mu|g|q|s|v VALUE[:STEP] [W0 W1 W2 ...]     last layer of the hyperprior: mu in Q8, sigma index, step index, or
- *                                          the outputs s and v themselves; VALUE + STEP times the component; weights of shift 0,
- *                                          none without them. COMPS: *, 3 or 3-7
+/* build_nets.c - networks and bank of a scene. Weights of Tier E are given as the integers that the
+ * decoder will find (spec 7.3).
+ *     nete random | zero                   all networks of Tier E; random is what happens without a
+ *                                          line
+ *     unit NET LAYER OUT shift S [bias B] [all W | w W0 W1 ...]     one output unit; NET: hyper,
+ *         slice1, slice2, ...
+ *     out TYPE COMPS mu|g|q|s|v VALUE[:STEP] [W0 W1 W2 ...]     last layer of the hyperprior: mu in
+ *         Q8, sigma index, step index, or
+ *                                          the outputs s and v themselves; VALUE + STEP times the
+ *                                          component; weights of shift 0, none without them. COMPS:
+ *                                          *, 3 or 3-7
  *     netr | bank random | zero | const X
  *     value nete | netr | bank INDEX X ... single values, from INDEX on
  * SPDX-License-Identifier: BSD-2-Clause */
@@ -15,18 +20,18 @@
 
 /* A layer: where its values and shifts are. */
 typedef struct {
-    float         *w, *b;       /* [out][in], [out] */
-    uint8_t       *shift;       /* [out] */
-    unsigned       in, out;
+    float *w, *b;   /* [out][in], [out] */
+    uint8_t *shift; /* [out] */
+    unsigned in, out;
     ted4_unit_rule rule;
 } layer;
 
 static layer layer_of(const conf_build *b, unsigned m, unsigned number)
 {
-    const ted4_shape     *s = &b->scene->shape;
+    const ted4_shape *s = &b->scene->shape;
     const ted4_net_shape *n = m == 0 ? &s->hyper : &s->slice[m];
     size_t at = n->first, unit = n->first_unit;
-    layer  l;
+    layer l;
 
     for (unsigned i = 0; i < number; i++) {
         at += ((size_t)n->dim[i] + 1) * n->dim[i + 1];
@@ -74,13 +79,16 @@ static int root(int x)
 static void random_layer(conf_build *b, const layer *l, int last)
 {
     for (unsigned o = 0; o < l->out; o++) {
-        const int shift = least_shift(l) + conf_in(&b->chance, 6, 9), bound = (1 << 30) / l->rule.amplitude / ((int)l->in + 1);
+        const int shift = least_shift(l) + conf_in(&b->chance, 6, 9),
+                  bound = (1 << 30) / l->rule.amplitude / ((int)l->in + 1);
         const int wish = (1 << shift) / root((int)l->in + 1), most = wish < bound ? wish : bound;
 
         l->shift[o] = (uint8_t)shift;
         for (unsigned i = 0; i < l->in; i++)
             put_w(l, o, i, conf_in(&b->chance, -most, most));
-        put_b(l, o, conf_in(&b->chance, -(1 << (shift + l->rule.f)), 1 << (shift + l->rule.f)) / (last ? 1 : 4));
+        put_b(l, o,
+              conf_in(&b->chance, -(1 << (shift + l->rule.f)), 1 << (shift + l->rule.f)) /
+                  (last ? 1 : 4));
     }
 }
 
@@ -122,7 +130,8 @@ static void weights(const conf_line *line, int i, const layer *l, unsigned o)
 /* Words i, i + 1, i + 2: network, layer, unit. */
 static layer named_unit(const conf_build *b, const conf_line *line, int i, unsigned *unit)
 {
-    const unsigned m = conf_word_is(line, i, "hyper") ? 0 : (unsigned)strtoul(line->word[i] + 5, NULL, 10);
+    const unsigned m =
+        conf_word_is(line, i, "hyper") ? 0 : (unsigned)strtoul(line->word[i] + 5, NULL, 10);
     layer l;
 
     if (m >= b->head.n_slices)
@@ -134,7 +143,7 @@ static layer named_unit(const conf_build *b, const conf_line *line, int i, unsig
 
 size_t conf_bias_index(const conf_build *b, const conf_line *l, int i, int *scale)
 {
-    unsigned    unit;
+    unsigned unit;
     const layer named = named_unit(b, l, i, &unit);
 
     *scale = named.shift[unit] + named.rule.f;
@@ -143,7 +152,7 @@ size_t conf_bias_index(const conf_build *b, const conf_line *l, int i, int *scal
 
 static void unit_line(conf_build *b, const conf_line *line)
 {
-    unsigned    o;
+    unsigned o;
     const layer l = named_unit(b, line, 1, &o);
 
     for (unsigned i = 0; i < l.in; i++)
@@ -184,11 +193,12 @@ static void components(const conf_line *l, int i, unsigned dim, unsigned *first,
 static void out_line(conf_build *b, const conf_line *line)
 {
     const ted4_shape *s = &b->scene->shape;
-    const int         type = conf_word_type(line, 1);
-    const layer       l = layer_of(b, 0, layers_of(b, 0) - 1u);
+    const int type = conf_word_type(line, 1);
+    const layer l = layer_of(b, 0, layers_of(b, 0) - 1u);
     const char *const step = strchr(line->word[4], ':');
-    const long        value = strtol(line->word[4], NULL, 10), by = step != NULL ? strtol(step + 1, NULL, 10) : 0;
-    unsigned          first, end, at = s->first_output[type];
+    const long value = strtol(line->word[4], NULL, 10),
+               by = step != NULL ? strtol(step + 1, NULL, 10) : 0;
+    unsigned first, end, at = s->first_output[type];
 
     if (s->dim[type] == 0)
         conf_line_bad(line, "the type is absent");
@@ -203,13 +213,16 @@ static void out_line(conf_build *b, const conf_line *line)
         end = 1;
     }
     for (unsigned c = first; c < end; c++) {
-        const unsigned  o = at + c;
+        const unsigned o = at + c;
         const long long v = value + by * (long)c;
-        const long long y = conf_word_is(line, 3, "g") ? 16 * (v - 64) : conf_word_is(line, 3, "q") ? 8 * (v - 128) : v;
+        const long long y = conf_word_is(line, 3, "g")   ? 16 * (v - 64)
+                            : conf_word_is(line, 3, "q") ? 8 * (v - 128)
+                                                         : v;
 
         l.shift[o] = 0;
         for (unsigned i = 0; i < l.in; i++)
-            put_w(&l, o, i, 5 + (int)i < line->n ? conf_line_number(line, 5 + (int)i, -32767, 32767) : 0);
+            put_w(&l, o, i,
+                  5 + (int)i < line->n ? conf_line_number(line, 5 + (int)i, -32767, 32767) : 0);
         put_b(&l, o, y * (1LL << (l.rule.f - l.rule.g)));
     }
 }
@@ -224,14 +237,17 @@ static void blob_line(conf_build *b, const conf_line *l, ted4_blob *blob)
 {
     for (size_t i = 0; i < blob->n; i++)
         blob->values[i] = conf_word_is(l, 1, "zero") ? 0
-                        : conf_word_is(l, 1, "const") ? conf_word_float(l, 2)
-                        : (float)conf_in(&b->chance, -256, 256) / 256;
+                          : conf_word_is(l, 1, "const")
+                              ? conf_word_float(l, 2)
+                              : (float)conf_in(&b->chance, -256, 256) / 256;
 }
 
 static ted4_blob *blob_of(conf_build *b, const conf_line *l, int i)
 {
-    return conf_word_is(l, i, "nete") ? &b->scene->nete : conf_word_is(l, i, "netr") ? &b->scene->netr
-         : conf_word_is(l, i, "bank") ? &b->scene->bank : NULL;
+    return conf_word_is(l, i, "nete")   ? &b->scene->nete
+           : conf_word_is(l, i, "netr") ? &b->scene->netr
+           : conf_word_is(l, i, "bank") ? &b->scene->bank
+                                        : NULL;
 }
 
 static void value_line(conf_build *b, const conf_line *l)

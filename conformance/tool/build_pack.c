@@ -1,4 +1,5 @@
-/* build_pack.c - `pack nete|netr|bank raw | fixed | dynamic | mixed | small`: modes of the blobs. Raw without a line.
+/* build_pack.c - `pack nete|netr|bank raw | fixed | dynamic | mixed | small`: modes of the blobs.
+ * Raw without a line.
  * SPDX-License-Identifier: BSD-2-Clause */
 #include <stdlib.h>
 #include <string.h>
@@ -7,8 +8,8 @@
 
 static void pack(conf_build *b, const conf_line *l, ted4_blob *blob)
 {
-    const int  way = l->n > 2 ? conf_pack_way_of(l->word[2]) : -1;
-    uint8_t   *bytes;
+    const int way = l->n > 2 ? conf_pack_way_of(l->word[2]) : -1;
+    uint8_t *bytes;
     conf_bytes out = { NULL, 0, 0 };
 
     if (way < 0)
@@ -38,6 +39,9 @@ void conf_build_pack(conf_build *b)
 
         if (!conf_word_is(l, 0, "pack"))
             continue;
-        pack(b, l, conf_word_is(l, 1, "nete") ? &s->nete : conf_word_is(l, 1, "netr") ? &s->netr : &s->bank);
+        pack(b, l,
+             conf_word_is(l, 1, "nete")   ? &s->nete
+             : conf_word_is(l, 1, "netr") ? &s->netr
+                                          : &s->bank);
     }
 }

@@ -1,9 +1,12 @@
-/* build_symbols.c - symbols of a scene, chosen with a view to the model that will code them (spec 9.4): r = k - m counts from mu.
+/* build_symbols.c - symbols of a scene, chosen with a view to the model that will code them (spec
+ * 9.4): r = k - m counts from mu.
  *     symbols TYPE|* near                  the default: bell-shaped within the window
- *     symbols TYPE|* edges                 in turn: low escape, both ends of the window and what is next to them, the middle, high escape
+ *     symbols TYPE|* edges                 in turn: low escape, both ends of the window and what is
+ *                                          next to them, the middle, high escape
  *     symbols TYPE|* sweep                 the window from end to end, round and round
  *     symbols TYPE|* wild                  one in eight an escape of any length
- *     symbols TYPE|* escape B [low|high]   e has B bits behind the first: 2^B - 1 <= e < 2^(B+1) - 1; both sides in turn without a word
+ *     symbols TYPE|* escape B [low|high]   e has B bits behind the first: 2^B - 1 <= e < 2^(B+1) -
+ *                                          1; both sides in turn without a word
  *     symbols TYPE|* value K ...           these k in turn
  *     symbols TYPE|* r R ...               these r in turn
  *     symbol TYPE COMP ANCHOR K            one k; after all other lines
@@ -17,12 +20,12 @@
 enum { BLOCK = TED4_PRIOR_BLOCK };
 
 typedef struct {
-    conf_build      *b;
-    const conf_line *mode[TED4_TYPES];  /* NULL: near */
-    ted4_prior       prior;
-    int32_t         *out, *added;       /* [P][64], [2 F][64] */
-    int16_t         *ctx;               /* [F][64] */
-    size_t           first, n;          /* anchors of the block */
+    conf_build *b;
+    const conf_line *mode[TED4_TYPES]; /* NULL: near */
+    ted4_prior prior;
+    int32_t *out, *added; /* [P][64], [2 F][64] */
+    int16_t *ctx;         /* [F][64] */
+    size_t first, n;      /* anchors of the block */
 } drawer;
 
 static int legal(int32_t k)
@@ -60,10 +63,10 @@ static int32_t clip(int32_t k)
 
 static int32_t draw(drawer *d, int type, size_t turn, int32_t mu, unsigned g)
 {
-    conf_chance     *c = &d->b->chance;
+    conf_chance *c = &d->b->chance;
     const conf_line *l = d->mode[type];
-    const int32_t    hw = ted4_half[g], m = ted4_floor_shift(mu, TED4_MU_BITS);
-    const int32_t    edge[8] = { -hw - 1, -hw, 1 - hw, 0, 1, hw, hw + 1, hw + 2 };
+    const int32_t hw = ted4_half[g], m = ted4_floor_shift(mu, TED4_MU_BITS);
+    const int32_t edge[8] = { -hw - 1, -hw, 1 - hw, 0, 1, hw, hw + 1, hw + 2 };
 
     if (l == NULL || conf_word_is(l, 2, "near"))
         return clip(m + ted4_clamp(conf_bell(c, hw), -hw, hw + 1));
@@ -74,19 +77,21 @@ static int32_t draw(drawer *d, int type, size_t turn, int32_t mu, unsigned g)
     if (conf_word_is(l, 2, "wild") && conf_in(c, 0, 7) > 0)
         return clip(m + ted4_clamp(conf_bell(c, hw), -hw, hw + 1));
     if (conf_word_is(l, 2, "wild")) {
-        const int high = conf_in(c, 0, 1);      /* drawn before bits, whatever the compiler */
+        const int high = conf_in(c, 0, 1); /* drawn before bits, whatever the compiler */
 
         return clip(m + drawn_escape(c, m, hw, conf_in(c, 0, 14), high));
     }
     if (conf_word_is(l, 2, "escape")) {
         const int bits = (int)conf_line_number(l, 3, 0, 19);
 
-        return clip(m + drawn_escape(c, m, hw, bits, l->n > 4 ? conf_word_is(l, 4, "high") : (int)(turn % 2)));
+        return clip(m + drawn_escape(c, m, hw, bits,
+                                     l->n > 4 ? conf_word_is(l, 4, "high") : (int)(turn % 2)));
     }
     if (l->n < 4)
         conf_line_bad(l, "no such way, or no value");
 
-    const int32_t v = (int32_t)conf_line_number(l, 3 + (int)(turn % (size_t)(l->n - 3)), -(1 << 20), 1 << 20);
+    const int32_t v =
+        (int32_t)conf_line_number(l, 3 + (int)(turn % (size_t)(l->n - 3)), -(1 << 20), 1 << 20);
 
     return conf_word_is(l, 2, "value") ? v : clip(m + v);
 }
@@ -96,7 +101,7 @@ static void component(drawer *d, int type, unsigned comp, const int32_t *mu, con
 {
     ted4_scene *scene = d->b->scene;
     const size_t n = scene->head.n_anchors;
-    int16_t     *k = scene->symbol[type] + comp * n;
+    int16_t *k = scene->symbol[type] + comp * n;
 
     for (size_t i = 0; i < d->n; i++) {
         const size_t a = d->first + i;
@@ -106,7 +111,8 @@ static void component(drawer *d, int type, unsigned comp, const int32_t *mu, con
     for (size_t i = 0; i < d->b->recipe->n; i++) {
         const conf_line *const l = &d->b->recipe->line[i];
 
-        if (!conf_word_is(l, 0, "symbol") || conf_word_type(l, 1) != type || conf_line_number(l, 2, 0, 1000) != comp)
+        if (!conf_word_is(l, 0, "symbol") || conf_word_type(l, 1) != type ||
+            conf_line_number(l, 2, 0, 1000) != comp)
             continue;
 
         const size_t a = (size_t)conf_line_number(l, 3, 0, (long long)n - 1);
@@ -119,9 +125,9 @@ static void component(drawer *d, int type, unsigned comp, const int32_t *mu, con
 /* spec 10.3 */
 static void feature(drawer *d)
 {
-    ted4_scene    *s = d->b->scene;
+    ted4_scene *s = d->b->scene;
     const unsigned F = s->head.feature_dim;
-    unsigned       comp = 0;
+    unsigned comp = 0;
 
     for (unsigned m = 0; m < s->head.n_slices; m++) {
         const unsigned dim = s->head.slice[m];
@@ -137,8 +143,9 @@ static void feature(drawer *d)
             }
             component(d, TED4_FEATURE, comp, mu, g);
             for (size_t i = 0; i < d->n; i++)
-                d->ctx[BLOCK * comp + i] = ted4_context(s->symbol[TED4_FEATURE][comp * (size_t)s->head.n_anchors + d->first + i],
-                                                        s->step_index[TED4_FEATURE][d->first + i], d->prior.context_bits);
+                d->ctx[BLOCK * comp + i] = ted4_context(
+                    s->symbol[TED4_FEATURE][comp * (size_t)s->head.n_anchors + d->first + i],
+                    s->step_index[TED4_FEATURE][d->first + i], d->prior.context_bits);
         }
     }
 }
@@ -189,15 +196,15 @@ static void block(drawer *d)
 
 void conf_build_symbols(conf_build *b)
 {
-    ted4_scene  *s = b->scene;
+    ted4_scene *s = b->scene;
     const size_t n = s->head.n_anchors;
-    ted4_arena   arena;
-    drawer       d = { .b = b };
+    ted4_arena arena;
+    drawer d = { .b = b };
 
     ted4_arena_init(&arena, NULL);
     find_modes(&d);
-    if (ted4_prior_init(&d.prior, &b->head, &s->shape, &arena) != TED4_OK
-        || ted4_prior_load(&d.prior, s->nete.values, s->shift, NULL) != TED4_OK)
+    if (ted4_prior_init(&d.prior, &b->head, &s->shape, &arena) != TED4_OK ||
+        ted4_prior_load(&d.prior, s->nete.values, s->shift, NULL) != TED4_OK)
         conf_die("%s: networks", b->recipe->id);
     d.out = conf_alloc((size_t)s->shape.n_outputs, BLOCK * sizeof *d.out);
     d.added = conf_alloc(2 * (size_t)b->head.feature_dim, BLOCK * sizeof *d.added);

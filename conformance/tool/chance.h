@@ -25,14 +25,15 @@ static inline int32_t conf_in(conf_chance *c, int32_t low, int32_t high)
     return low + (int32_t)(conf_u32(c) % (uint32_t)(high - low + 1));
 }
 
-/* Bell-shaped over -6 sigma .. 6 sigma, rounded down: the sum of four uniform numbers. six_sigma < 2^13. */
+/* Bell-shaped over -6 sigma .. 6 sigma, rounded down: the sum of four uniform numbers. six_sigma <
+ * 2^13. */
 static inline int32_t conf_bell(conf_chance *c, int32_t six_sigma)
 {
     int32_t sum = -131070;
 
     for (int i = 0; i < 4; i++)
         sum += (int32_t)(conf_u32(c) >> 16);
-    return sum * six_sigma / 227023;            /* the sum's sigma is 65536 / sqrt(3) = 37837 */
+    return sum * six_sigma / 227023; /* the sum's sigma is 65536 / sqrt(3) = 37837 */
 }
 
 #endif

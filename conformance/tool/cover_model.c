@@ -1,5 +1,6 @@
-/* cover_model.c - what the integer arithmetic of a valid file meets: entries of tables, ways of the coder, bounds and rails and ties of accumulators.
- * The file's tiles are decoded once more, by the decoder's own walk, with a coder and dense layers that count.
+/* cover_model.c - what the integer arithmetic of a valid file meets: entries of tables, ways of the
+ * coder, bounds and rails and ties of accumulators. The file's tiles are decoded once more, by the
+ * decoder's own walk, with a coder and dense layers that count.
  * SPDX-License-Identifier: BSD-2-Clause */
 #include <stdio.h>
 #include <stdlib.h>
@@ -13,29 +14,41 @@
 
 enum { N_FRACTIONS = 256, KINDS = 5, MAX_LANES_LOG = 7, MAX_ESCAPE = 20, WORDS = 4, SHIFTS = 25 };
 
-static const char *const kind_name[KINDS] = { "first hyper", "later hyper", "last hyper", "first slice", "last slice" };
+static const char *const kind_name[KINDS] = { "first hyper", "later hyper", "last hyper",
+                                              "first slice", "last slice" };
 
 /* What one file reaches. */
 typedef struct {
-    ted4_reader     r;          /* must be first */
+    ted4_reader r; /* must be first */
     const ted4_coder_ops *plain;
-    uint8_t         sigma[TED4_N_SIGMA], phi[TED4_N_PHI], step[TED4_N_STEP], context_step[TED4_N_STEP], sine[TED4_N_SIN];
-    uint8_t         fraction[N_FRACTIONS], escape[2][MAX_ESCAPE], lanes[MAX_LANES_LOG], words[WORDS];
-    uint8_t         edge[8];    /* low escape, -hw, between, hw + 1, high escape; k at both rails; frequency 1 */
-    uint8_t         full[KINDS][2];     /* accumulator at 90 % of its bound, negative and positive */
-    uint8_t         tie[KINDS][2];      /* requantisation of a tie, negative and positive */
-    uint8_t         rail[8];
-    uint8_t         even[4];    /* ties of weights and biases, to an even integer below and above */
-    uint8_t         shift_out[SHIFTS];
+    uint8_t sigma[TED4_N_SIGMA], phi[TED4_N_PHI], step[TED4_N_STEP], context_step[TED4_N_STEP],
+        sine[TED4_N_SIN];
+    uint8_t fraction[N_FRACTIONS], escape[2][MAX_ESCAPE], lanes[MAX_LANES_LOG], words[WORDS];
+    uint8_t
+        edge[8]; /* low escape, -hw, between, hw + 1, high escape; k at both rails; frequency 1 */
+    uint8_t full[KINDS][2]; /* accumulator at 90 % of its bound, negative and positive */
+    uint8_t tie[KINDS][2];  /* requantisation of a tie, negative and positive */
+    uint8_t rail[8];
+    uint8_t even[4]; /* ties of weights and biases, to an even integer below and above */
+    uint8_t shift_out[SHIFTS];
 } seen;
 
-static seen *now;               /* dense layers have no argument for it; the tool is single-threaded */
+static seen *now; /* dense layers have no argument for it; the tool is single-threaded */
 
-static const char *const edge_name[8] = { "low escape", "lowest of the window", "inside the window", "highest of the window", "high escape",
-                                          "k = -32767", "k = 32767", "frequency 1" };
-static const char *const rail_name[8] = { "hidden output cut at 32767", "hidden output cut at 0", "output at 2^26 - 1", "output at -(2^26 - 1)",
-                                          "z at 2^17", "z at -2^17", "context at 32767", "context at -32767" };
-static const char *const even_name[4] = { "weight, down to even", "weight, up to even", "bias, down to even", "bias, up to even" };
+static const char *const edge_name[8] = { "low escape",        "lowest of the window",
+                                          "inside the window", "highest of the window",
+                                          "high escape",       "k = -32767",
+                                          "k = 32767",         "frequency 1" };
+static const char *const rail_name[8] = { "hidden output cut at 32767",
+                                          "hidden output cut at 0",
+                                          "output at 2^26 - 1",
+                                          "output at -(2^26 - 1)",
+                                          "z at 2^17",
+                                          "z at -2^17",
+                                          "context at 32767",
+                                          "context at -32767" };
+static const char *const even_name[4] = { "weight, down to even", "weight, up to even",
+                                          "bias, down to even", "bias, up to even" };
 
 void conf_cover_model_goals(conf_cover *c)
 {
@@ -65,8 +78,10 @@ void conf_cover_model_goals(conf_cover *c)
     }
     for (int i = 0; i < KINDS; i++)
         for (int s = 0; s < 2; s++) {
-            conf_goal(c, "accumulators at 90 % of 2^31", "%s layer, %s", kind_name[i], s ? "positive" : "negative");
-            conf_goal(c, "requantisation of ties", "%s layer, %s", kind_name[i], s ? "positive" : "negative");
+            conf_goal(c, "accumulators at 90 % of 2^31", "%s layer, %s", kind_name[i],
+                      s ? "positive" : "negative");
+            conf_goal(c, "requantisation of ties", "%s layer, %s", kind_name[i],
+                      s ? "positive" : "negative");
         }
     for (int i = 0; i < 4; i++)
         conf_goal(c, "integerisation of ties", "%s", even_name[i]);
@@ -98,12 +113,14 @@ static void note_sums(const ted4_int_layer *l, const int16_t *x, size_t n, int h
             int64_t acc = l->b[o];
 
             for (unsigned i = 0; i < l->in; i++)
-                acc += (int64_t)l->w[(size_t)o * l->in_pad + i] * x[(size_t)i * TED4_PRIOR_BLOCK + a];
+                acc += (int64_t)l->w[(size_t)o * l->in_pad + i] *
+                       x[(size_t)i * TED4_PRIOR_BLOCK + a];
 
             const int32_t y = ted4_round_shift((int32_t)acc, l->r[o]);
 
             now->full[kind][acc > 0] |= 10 * (acc < 0 ? -acc : acc) >= 9 * (int64_t)INT32_MAX;
-            if (l->r[o] > 0 && ((uint64_t)acc & (((uint64_t)1 << l->r[o]) - 1)) == (uint64_t)1 << (l->r[o] - 1))
+            if (l->r[o] > 0 &&
+                ((uint64_t)acc & (((uint64_t)1 << l->r[o]) - 1)) == (uint64_t)1 << (l->r[o] - 1))
                 now->tie[kind][acc > 0] = 1;
             now->shift_out[l->r[o]] = 1;
             if (hidden) {
@@ -134,7 +151,8 @@ static void note_cum(seen *s, unsigned g, int32_t fr, uint32_t j)
         return;
 
     const int32_t d = 256 * ((int32_t)j - 1 - ted4_half[g]) - 128 - fr;
-    const int32_t raw = ted4_floor_shift(d * ted4_inv[g], 11), z = ted4_clamp(raw, -(1 << 17), 1 << 17);
+    const int32_t raw = ted4_floor_shift(d * ted4_inv[g], 11),
+                  z = ted4_clamp(raw, -(1 << 17), 1 << 17);
     const uint32_t i = (uint32_t)(z + (1 << 17)) / 256;
 
     s->phi[i] = 1;
@@ -145,7 +163,8 @@ static void note_cum(seen *s, unsigned g, int32_t fr, uint32_t j)
 
 static void note_symbol(seen *s, int32_t mu, unsigned g, int32_t k, unsigned words)
 {
-    const int32_t  m = ted4_floor_shift(mu, TED4_MU_BITS), fr = mu - m * 256, hw = ted4_half[g], r = k - m;
+    const int32_t m = ted4_floor_shift(mu, TED4_MU_BITS), fr = mu - m * 256, hw = ted4_half[g],
+                  r = k - m;
     const uint32_t j = r < -hw ? 0 : r > hw + 1 ? ted4_gauss_size(g) - 1 : (uint32_t)(r + hw + 1);
 
     s->sigma[g] = 1;
@@ -192,20 +211,21 @@ static void note_ties(seen *s, const ted4_net_shape *n, const ted4_scene *scene,
 
     for (unsigned i = 0; i < n->n_layers; i++) {
         const ted4_unit_rule rule = ted4_prior_rule(n, i, hyper, scene->head.context_bits);
-        const size_t         n_w = (size_t)n->dim[i] * n->dim[i + 1];
+        const size_t n_w = (size_t)n->dim[i] * n->dim[i + 1];
 
         for (size_t j = 0; j < n_w + n->dim[i + 1]; j++) {
-            const int      bias = j >= n_w;
+            const int bias = j >= n_w;
             const unsigned o = (unsigned)(bias ? j - n_w : j / (n->dim[i] > 0 ? n->dim[i] : 1));
-            const int      e = scene->shift[unit + o] + (bias ? rule.f : 0);
+            const int e = scene->shift[unit + o] + (bias ? rule.f : 0);
             const uint32_t u = ted4_float_bits(scene->nete.values[at + j]);
-            const int64_t  twice = ted4_rne_scaled(u, e + 1);
+            const int64_t twice = ted4_rne_scaled(u, e + 1);
 
             /* twice the value is exact and odd: a tie */
             if (ted4_rne_scaled(u, e + 2) == 2 * twice && (twice & 1) != 0) {
                 const int64_t rounded = ted4_rne_scaled(u, e);
 
-                s->even[2 * bias + (2 * (rounded < 0 ? -rounded : rounded) > (twice < 0 ? -twice : twice))] = 1;
+                s->even[2 * bias + (2 * (rounded < 0 ? -rounded : rounded) >
+                                    (twice < 0 ? -twice : twice))] = 1;
             }
         }
         at += n_w + n->dim[i + 1];
@@ -215,10 +235,12 @@ static void note_ties(seen *s, const ted4_net_shape *n, const ted4_scene *scene,
 
 static void note_sines(seen *s, const ted4_scene *scene)
 {
-    for (size_t i = 0; scene->head.prior == TED4_PRIOR_INR && i < 3 * (size_t)scene->head.n_anchors; i++)
+    for (size_t i = 0; scene->head.prior == TED4_PRIOR_INR && i < 3 * (size_t)scene->head.n_anchors;
+         i++)
         for (unsigned l = 0; l < scene->head.pe_octaves; l++)
             for (uint32_t quarter = 0; quarter < 2; quarter++) {
-                const uint32_t u = ((uint32_t)ted4_half_q24(scene->position[i]) << (7 + l)) + (quarter << 30);
+                const uint32_t u = ((uint32_t)ted4_half_q24(scene->position[i]) << (7 + l)) +
+                                   (quarter << 30);
 
                 s->sine[u >> 22] = s->sine[(u >> 22) + 1] = 1;
             }
@@ -232,7 +254,10 @@ static void note_steps(seen *s, const ted4_scene *scene)
         for (int t = 0; t < TED4_TYPES; t++)
             if (scene->shape.dim[t] > 0)
                 s->step[scene->step_index[t][a]] = 1;
-        for (unsigned c = 0; scene->head.n_slices > 1 && c + scene->head.slice[scene->head.n_slices - 1] < scene->head.feature_dim; c++) {
+        for (unsigned c = 0;
+             scene->head.n_slices > 1 &&
+             c + scene->head.slice[scene->head.n_slices - 1] < scene->head.feature_dim;
+             c++) {
             const int16_t k = scene->symbol[TED4_FEATURE][c * n + a];
             const uint8_t q = scene->step_index[TED4_FEATURE][a];
             const int32_t x = ted4_round_shift(k * ted4_stepi[q], 12 - scene->head.context_bits);
@@ -244,7 +269,8 @@ static void note_steps(seen *s, const ted4_scene *scene)
     }
 }
 
-static void reach_all(conf_cover *c, const char *id, const char *group, const char *format, const uint8_t *flag, int n)
+static void reach_all(conf_cover *c, const char *id, const char *group, const char *format,
+                      const uint8_t *flag, int n)
 {
     for (int i = 0; i < n; i++)
         if (flag[i]) {
@@ -285,14 +311,16 @@ static void report(conf_cover *c, const char *id, const seen *s)
         const char *const sign = i % 2 ? "positive" : "negative";
 
         if (s->full[i / 2][i % 2])
-            conf_reach(c, "accumulators at 90 % of 2^31", id, "%s layer, %s", kind_name[i / 2], sign);
+            conf_reach(c, "accumulators at 90 % of 2^31", id, "%s layer, %s", kind_name[i / 2],
+                       sign);
         if (s->tie[i / 2][i % 2])
             conf_reach(c, "requantisation of ties", id, "%s layer, %s", kind_name[i / 2], sign);
     }
 }
 
 /* Every TILE of the file, read again. */
-static void walk_tiles(seen *s, ted4_scene *scene, const ted4_prior *prior, const conf_bytes *file, void *work)
+static void walk_tiles(seen *s, ted4_scene *scene, const ted4_prior *prior, const conf_bytes *file,
+                       void *work)
 {
     unsigned tile = 0;
 
@@ -317,19 +345,19 @@ static void walk_tiles(seen *s, ted4_scene *scene, const ted4_prior *prior, cons
 void conf_cover_model(conf_cover *c, const conf_entry *e, const conf_bytes *file)
 {
     static const ted4_int_dense counting = { hidden, last };
-    seen       *s = conf_alloc(1, sizeof *s);
+    seen *s = conf_alloc(1, sizeof *s);
     ted4_scene *scene;
-    ted4_error  why;
-    ted4_arena  arena;
-    ted4_prior  prior;
-    void       *work;
+    ted4_error why;
+    ted4_arena arena;
+    ted4_prior prior;
+    void *work;
 
     if (ted4_decode(file->data, file->size, NULL, &scene, &why) != TED4_OK)
         conf_die("%s: should be valid", e->id);
     ted4_arena_init(&arena, NULL);
     work = ted4_arena_alloc(&arena, 1, ted4_tile_work_size(scene));
-    if (work == NULL || ted4_prior_init(&prior, &scene->head, &scene->shape, &arena) != TED4_OK
-        || ted4_prior_load(&prior, scene->nete.values, scene->shift, NULL) != TED4_OK)
+    if (work == NULL || ted4_prior_init(&prior, &scene->head, &scene->shape, &arena) != TED4_OK ||
+        ted4_prior_load(&prior, scene->nete.values, scene->shift, NULL) != TED4_OK)
         conf_die("no memory");
     prior.dense = &counting;
     prior_now = &prior;

@@ -1,6 +1,7 @@
 /* cover_rules.c - rules (from annex G), error identifiers (from status.def), pairs of features.
- * A rule that binds streams needs a valid vector, and two that break it where it names an error; one that binds decoders needs a vector. Rules that
- * no file can show are listed with the reason in conformance/rules-elsewhere.txt; those that bind others need a vector or a line there.
+ * A rule that binds streams needs a valid vector, and two that break it where it names an error;
+ * one that binds decoders needs a vector. Rules that no file can show are listed with the reason in
+ * conformance/rules-elsewhere.txt; those that bind others need a vector or a line there.
  * SPDX-License-Identifier: BSD-2-Clause */
 #include <stdio.h>
 #include <stdlib.h>
@@ -12,14 +13,14 @@
 enum { MAX_RULES = 400 };
 
 typedef struct {
-    char   id[16], binds[24];
-    int    refusable;           /* names an error that a stream can cause */
-    int    elsewhere;           /* listed as looked after elsewhere */
+    char id[16], binds[24];
+    int refusable; /* names an error that a stream can cause */
+    int elsewhere; /* listed as looked after elsewhere */
     size_t n_valid, n_other;
 } rule;
 
 typedef struct {
-    rule   rule[MAX_RULES];
+    rule rule[MAX_RULES];
     size_t n;
 } rules;
 
@@ -42,7 +43,7 @@ static rule *find(rules *r, const char *id)
 /* | R-CON-001 | 5.1 | stream | MUST | `con.magic` | */
 static void read_index(rules *r, const char *spec)
 {
-    char       path[CONF_PATH];
+    char path[CONF_PATH];
     conf_bytes text;
 
     conf_path(path, "%s/annex-g-rules.md", spec);
@@ -50,10 +51,11 @@ static void read_index(rules *r, const char *spec)
         conf_die("%s: no index of rules", path);
     for (char *line = strtok((char *)text.data, "\n"); line != NULL; line = strtok(NULL, "\n")) {
         rule *const x = &r->rule[r->n];
-        char        errors[200] = "";
+        char errors[200] = "";
 
-        if (r->n == MAX_RULES || sscanf(line, "| %15s | %*s | %23s | %*s | %199[^|]", x->id, x->binds, errors) < 2
-            || strncmp(x->id, "R-", 2) != 0)
+        if (r->n == MAX_RULES ||
+            sscanf(line, "| %15s | %*s | %23s | %*s | %199[^|]", x->id, x->binds, errors) < 2 ||
+            strncmp(x->id, "R-", 2) != 0)
             continue;
         x->refusable = strchr(errors, '`') != NULL && strcmp(x->binds, "stream") == 0;
         r->n++;
@@ -64,15 +66,15 @@ static void read_index(rules *r, const char *spec)
 /* Lines "R-ABC-nnn reason": rules that no file can show. */
 static void read_elsewhere(conf_cover *c, rules *r, const char *suite)
 {
-    char       path[CONF_PATH];
+    char path[CONF_PATH];
     conf_bytes text;
 
     conf_path(path, "%s/rules-elsewhere.txt", suite);
     if (!conf_read(path, &text))
         return;
     for (char *line = strtok((char *)text.data, "\n"); line != NULL; line = strtok(NULL, "\n")) {
-        char        id[16];
-        rule       *x;
+        char id[16];
+        rule *x;
 
         if (line[0] == '#' || sscanf(line, "%15s", id) != 1)
             continue;
@@ -95,7 +97,7 @@ static const char *result_of(const conf_entry *e)
 static void count_rules(conf_cover *c, rules *r, const conf_entry *e)
 {
     const json_t *const list = json_object_get(e->descriptor, "rules");
-    const int           valid = strcmp(result_of(e), "valid") == 0;
+    const int valid = strcmp(result_of(e), "valid") == 0;
 
     for (size_t i = 0; i < json_array_size(list); i++) {
         rule *const x = find(r, json_string_value(json_array_get(list, i)));
@@ -125,7 +127,8 @@ static void set_rule_goals(conf_cover *c, const rules *r)
         if (x->elsewhere || (strcmp(x->binds, "stream") != 0 && strcmp(x->binds, "decoder") != 0)) {
             conf_goal(c, "rules that bind others, or that no vector shows", "%s", x->id);
             if (x->elsewhere)
-                conf_reach(c, "rules that bind others, or that no vector shows", "rules-elsewhere.txt", "%s", x->id);
+                conf_reach(c, "rules that bind others, or that no vector shows",
+                           "rules-elsewhere.txt", "%s", x->id);
             continue;
         }
         conf_goal(c, "rules: shown by a vector", "%s", x->id);
@@ -145,20 +148,23 @@ static void cover_errors(conf_cover *c, const conf_entry *e, size_t n)
         if (ted4_status_verdict((ted4_status)s) != TED4_IO)
             conf_goal(c, "error identifiers: two vectors", "%s", ted4_status_id((ted4_status)s));
     for (size_t i = 0; i < n; i++) {
-        const char *const id = json_string_value(json_object_get(json_object_get(e[i].descriptor, "expect"), "error"));
-        const json_t     *t5 = json_object_get(json_object_get(e[i].descriptor, "tiers"), "T5");
+        const char *const id =
+            json_string_value(json_object_get(json_object_get(e[i].descriptor, "expect"), "error"));
+        const json_t *t5 = json_object_get(json_object_get(e[i].descriptor, "tiers"), "T5");
 
         for (int s = 1; s < TED4_N_STATUS; s++) {
             int hit = id != NULL && strcmp(id, ted4_status_id((ted4_status)s)) == 0;
 
             for (size_t q = 0; q < json_array_size(t5); q++) {
-                const char *const error = json_string_value(json_object_get(json_array_get(t5, q), "error"));
+                const char *const error =
+                    json_string_value(json_object_get(json_array_get(t5, q), "error"));
 
                 hit |= error != NULL && strcmp(error, ted4_status_id((ted4_status)s)) == 0;
             }
             count[s] += (size_t)hit;
             if (hit && count[s] >= (s == TED4_E_QUERY ? 1u : 2u))
-                conf_reach(c, "error identifiers: two vectors", e[i].id, "%s", ted4_status_id((ted4_status)s));
+                conf_reach(c, "error identifiers: two vectors", e[i].id, "%s",
+                           ted4_status_id((ted4_status)s));
         }
     }
 }
@@ -197,7 +203,8 @@ static void each_pair(conf_cover *c, const conf_entry *e, on_pair *what)
                     what(c, conf_feature_groups[g][i], conf_feature_groups[h][j], e);
 }
 
-void conf_cover_rules(conf_cover *c, const char *spec, const char *suite, const conf_entry *e, size_t n)
+void conf_cover_rules(conf_cover *c, const char *spec, const char *suite, const conf_entry *e,
+                      size_t n)
 {
     rules *r = conf_alloc(1, sizeof *r);
 

@@ -1,5 +1,6 @@
-/* cover_syntax.c - values of syntax elements: in valid files the least and the greatest of the range, what is next to them, every value where
- * there are few, and one besides; in files refused at the element the values just outside.
+/* cover_syntax.c - values of syntax elements: in valid files the least and the greatest of the
+ * range, what is next to them, every value where there are few, and one besides; in files refused
+ * at the element the values just outside.
  * SPDX-License-Identifier: BSD-2-Clause */
 #include <stdio.h>
 #include <string.h>
@@ -7,34 +8,60 @@
 #include "cover.h"
 #include "ted4.h"
 
-/* width: bytes in the file. high: of level 1 where a level bounds it, so that small files reach it. */
+/* width: bytes in the file. high: of level 1 where a level bounds it, so that small files reach it.
+ */
 typedef struct {
     const char *name;
-    unsigned    width;
-    uint32_t    low, high;
-    int         levelled;       /* above high another level, not hdr.range */
+    unsigned width;
+    uint32_t low, high;
+    int levelled; /* above high another level, not hdr.range */
 } element;
 
-static const element table[] = {
-    { "minor", 1, 0, 255, 1 }, { "n_anchors", 4, 1, UINT32_MAX, 1 }, { "tile_size", 4, 64, 65536, 0 }, { "n_offsets", 1, 1, 16, 0 },
-    { "feature_dim", 1, 1, 128, 0 }, { "motion", 1, 0, 3, 0 }, { "phi_dim", 1, 0, 32, 0 }, { "bank_rows", 4, 0, 64, 1 },
-    { "bank_dim", 2, 0, 512, 0 }, { "deform_layers", 1, 0, 8, 0 }, { "deform_width", 2, 0, 512, 0 }, { "temporal_mask", 1, 0, 1, 0 },
-    { "offset_mask", 1, 0, 1, 0 }, { "activation", 1, 0, 1, 0 }, { "view", 1, 0, 2, 0 }, { "head_layers", 1, 0, 4, 0 },
-    { "head_width", 2, 0, 512, 0 }, { "scale_domain", 1, 0, 1, 0 }, { "prior", 1, 0, 1, 0 }, { "pe_octaves", 1, 0, 16, 0 },
-    { "hyper_layers", 1, 0, 4, 0 }, { "hyper_width", 2, 0, 512, 0 }, { "n_slices", 1, 1, 16, 0 }, { "slice", 1, 1, 128, 0 },
-    { "ar_width", 2, 0, 512, 0 }, { "context_bits", 1, 0, 12, 0 }, { "step", 4, 0x35800000, 0x44800000, 0 },
-    { "frames", 4, 1, UINT32_MAX, 1 }, { "rate_num", 4, 1, 16777215, 0 }, { "rate_den", 4, 1, 16777215, 0 },
-    { "background", 1, 0, 255, 1 }, { "reserved", 1, 0, 0, 0 }, { "shift", 1, 0, 20, 1 }, { "mode", 1, 0, 1, 1 },
-    { "dynamic_prob", 2, 1, 65535, 1 }, { "offset_prob", 2, 1, 65535, 1 }
-};
+static const element table[] = { { "minor", 1, 0, 255, 1 },
+                                 { "n_anchors", 4, 1, UINT32_MAX, 1 },
+                                 { "tile_size", 4, 64, 65536, 0 },
+                                 { "n_offsets", 1, 1, 16, 0 },
+                                 { "feature_dim", 1, 1, 128, 0 },
+                                 { "motion", 1, 0, 3, 0 },
+                                 { "phi_dim", 1, 0, 32, 0 },
+                                 { "bank_rows", 4, 0, 64, 1 },
+                                 { "bank_dim", 2, 0, 512, 0 },
+                                 { "deform_layers", 1, 0, 8, 0 },
+                                 { "deform_width", 2, 0, 512, 0 },
+                                 { "temporal_mask", 1, 0, 1, 0 },
+                                 { "offset_mask", 1, 0, 1, 0 },
+                                 { "activation", 1, 0, 1, 0 },
+                                 { "view", 1, 0, 2, 0 },
+                                 { "head_layers", 1, 0, 4, 0 },
+                                 { "head_width", 2, 0, 512, 0 },
+                                 { "scale_domain", 1, 0, 1, 0 },
+                                 { "prior", 1, 0, 1, 0 },
+                                 { "pe_octaves", 1, 0, 16, 0 },
+                                 { "hyper_layers", 1, 0, 4, 0 },
+                                 { "hyper_width", 2, 0, 512, 0 },
+                                 { "n_slices", 1, 1, 16, 0 },
+                                 { "slice", 1, 1, 128, 0 },
+                                 { "ar_width", 2, 0, 512, 0 },
+                                 { "context_bits", 1, 0, 12, 0 },
+                                 { "step", 4, 0x35800000, 0x44800000, 0 },
+                                 { "frames", 4, 1, UINT32_MAX, 1 },
+                                 { "rate_num", 4, 1, 16777215, 0 },
+                                 { "rate_den", 4, 1, 16777215, 0 },
+                                 { "background", 1, 0, 255, 1 },
+                                 { "reserved", 1, 0, 0, 0 },
+                                 { "shift", 1, 0, 20, 1 },
+                                 { "mode", 1, 0, 1, 1 },
+                                 { "dynamic_prob", 2, 1, 65535, 1 },
+                                 { "offset_prob", 2, 1, 65535, 1 } };
 
 enum { N_TABLE = sizeof table / sizeof *table, FEW = 20 };
 
-static const char group[] = "values of syntax elements", outside[] = "values just outside of HEAD's ranges";
+static const char group[] = "values of syntax elements",
+                  outside[] = "values just outside of HEAD's ranges";
 
 static int is_last(const element *e)
 {
-    return strcmp(e->name, "n_anchors") == 0;   /* its greatest value is beyond any file */
+    return strcmp(e->name, "n_anchors") == 0; /* its greatest value is beyond any file */
 }
 
 static void set_goals(conf_cover *c, const element *e)
@@ -59,13 +86,38 @@ static void set_goals(conf_cover *c, const element *e)
         conf_goal(c, outside, "%s = %u", e->name, e->high + 1);
 }
 
-static const char *const special[] = {
-    "exponent = -30", "exponent = -29", "exponent = 0", "exponent = 29", "exponent = 30", "origin zero", "origin negative", "origin least normal",
-    "origin largest", "position zero", "position one", "position minus one", "position subnormal", "position least normal", "position between",
-    "chunk ancillary with flags 0", "chunk ancillary with flags 2", "chunk empty", "substream empty", "size zero", "level 1", "level 2", "level 3",
-    "level 4", "level 31", "tile_index = 0", "tile_index = 1", "tile_index between", "value of a blob zero", "value of a blob negative",
-    "value of a blob least normal", "value of a blob largest"
-};
+static const char *const special[] = { "exponent = -30",
+                                       "exponent = -29",
+                                       "exponent = 0",
+                                       "exponent = 29",
+                                       "exponent = 30",
+                                       "origin zero",
+                                       "origin negative",
+                                       "origin least normal",
+                                       "origin largest",
+                                       "position zero",
+                                       "position one",
+                                       "position minus one",
+                                       "position subnormal",
+                                       "position least normal",
+                                       "position between",
+                                       "chunk ancillary with flags 0",
+                                       "chunk ancillary with flags 2",
+                                       "chunk empty",
+                                       "substream empty",
+                                       "size zero",
+                                       "level 1",
+                                       "level 2",
+                                       "level 3",
+                                       "level 4",
+                                       "level 31",
+                                       "tile_index = 0",
+                                       "tile_index = 1",
+                                       "tile_index between",
+                                       "value of a blob zero",
+                                       "value of a blob negative",
+                                       "value of a blob least normal",
+                                       "value of a blob largest" };
 
 void conf_cover_syntax_goals(conf_cover *c)
 {
@@ -80,8 +132,8 @@ void conf_cover_syntax_goals(conf_cover *c)
 typedef struct {
     conf_cover *c;
     const char *id;
-    uint32_t    chunk_flags;
-    int         ancillary;      /* type of the chunk is not a known one */
+    uint32_t chunk_flags;
+    int ancillary; /* type of the chunk is not a known one */
 } listener;
 
 static void reach(const listener *l, const char *what)
@@ -91,16 +143,24 @@ static void reach(const listener *l, const char *what)
 
 static void reach_position(const listener *l, unsigned h)
 {
-    reach(l, h == 0 ? "position zero" : h == 0x3c00 ? "position one" : h == 0xbc00 ? "position minus one"
-          : (h & 0x7c00) == 0 ? "position subnormal" : (h & 0x7fff) == 0x400 ? "position least normal" : "position between");
+    reach(l, h == 0                  ? "position zero"
+             : h == 0x3c00           ? "position one"
+             : h == 0xbc00           ? "position minus one"
+             : (h & 0x7c00) == 0     ? "position subnormal"
+             : (h & 0x7fff) == 0x400 ? "position least normal"
+                                     : "position between");
 }
 
 static void reach_float(const listener *l, const char *name, uint32_t u)
 {
     char text[64];
 
-    snprintf(text, sizeof text, "%s %s", name, u == 0 ? "zero" : (u & 0x7fffffff) == 0x800000 ? "least normal"
-             : (u & 0x7fffffff) == 0x7f7fffff ? "largest" : u >> 31 ? "negative" : "between");
+    snprintf(text, sizeof text, "%s %s", name,
+             u == 0                           ? "zero"
+             : (u & 0x7fffffff) == 0x800000   ? "least normal"
+             : (u & 0x7fffffff) == 0x7f7fffff ? "largest"
+             : u >> 31                        ? "negative"
+                                              : "between");
     reach(l, text);
     if (u >> 31) {
         snprintf(text, sizeof text, "%s negative", name);
@@ -131,7 +191,8 @@ static void note_special(listener *l, const char *name, int64_t value)
     if (strcmp(name, "level") == 0)
         conf_reach(l->c, group, l->id, "level %d", (int)value);
     if (strcmp(name, "tile_index") == 0)
-        conf_reach(l->c, group, l->id, value < 2 ? "tile_index = %d" : "tile_index between", (int)value);
+        conf_reach(l->c, group, l->id, value < 2 ? "tile_index = %d" : "tile_index between",
+                   (int)value);
     if (strcmp(name, "size") == 0 && value == 0)
         reach(l, "size zero");
     if (strstr(name, "_substream") != NULL && value == 0)
@@ -168,18 +229,25 @@ static void note(void *user, size_t offset, const char *name, int64_t index, int
 static void note_refused(conf_cover *c, const conf_entry *e, const conf_bytes *file)
 {
     static const char *const order[] = {
-        "n_anchors", "tile_size", "n_offsets", "feature_dim", "motion", "phi_dim", "bank_rows", "bank_dim", "deform_layers", "deform_width",
-        "temporal_mask", "offset_mask", "activation", "view", "head_layers", "head_width", "scale_domain", "prior", "pe_octaves",
-        "hyper_layers", "hyper_width", "n_slices", "slice", "ar_width", "context_bits", "step", "frames", "rate_num", "rate_den", "origin",
-        "exponent", "background", "reserved"
+        "n_anchors",     "tile_size",    "n_offsets",  "feature_dim",   "motion",
+        "phi_dim",       "bank_rows",    "bank_dim",   "deform_layers", "deform_width",
+        "temporal_mask", "offset_mask",  "activation", "view",          "head_layers",
+        "head_width",    "scale_domain", "prior",      "pe_octaves",    "hyper_layers",
+        "hyper_width",   "n_slices",     "slice",      "ar_width",      "context_bits",
+        "step",          "frames",       "rate_num",   "rate_den",      "origin",
+        "exponent",      "background",   "reserved"
     };
-    const size_t wrong = (size_t)json_integer_value(json_object_get(json_object_get(e->descriptor, "expect"), "offset"));
-    size_t       at = 24, n_slices = 1;
+    const size_t wrong = (size_t)json_integer_value(
+        json_object_get(json_object_get(e->descriptor, "expect"), "offset"));
+    size_t at = 24, n_slices = 1;
 
     for (size_t i = 0; i < sizeof order / sizeof *order; i++) {
-        const size_t times = strcmp(order[i], "slice") == 0 ? n_slices : strcmp(order[i], "step") == 0 ? 5
-                           : strcmp(order[i], "origin") == 0 || strcmp(order[i], "background") == 0 ? 3 : 1;
-        unsigned     width = strcmp(order[i], "origin") == 0 ? 4 : 1;
+        const size_t times =
+            strcmp(order[i], "slice") == 0                                           ? n_slices
+            : strcmp(order[i], "step") == 0                                          ? 5
+            : strcmp(order[i], "origin") == 0 || strcmp(order[i], "background") == 0 ? 3
+                                                                                     : 1;
+        unsigned width = strcmp(order[i], "origin") == 0 ? 4 : 1;
 
         for (int j = 0; j < N_TABLE; j++)
             if (strcmp(table[j].name, order[i]) == 0)
@@ -201,11 +269,12 @@ static void note_refused(conf_cover *c, const conf_entry *e, const conf_bytes *f
 
 void conf_cover_syntax(conf_cover *c, const conf_entry *e, const conf_bytes *file)
 {
-    const char *const  error = json_string_value(json_object_get(json_object_get(e->descriptor, "expect"), "error"));
-    listener           l = { .c = c, .id = e->id };
+    const char *const error =
+        json_string_value(json_object_get(json_object_get(e->descriptor, "expect"), "error"));
+    listener l = { .c = c, .id = e->id };
     const ted4_options o = { .trace = note, .trace_user = &l };
-    ted4_scene        *s;
-    ted4_error         why;
+    ted4_scene *s;
+    ted4_error why;
 
     if (error != NULL) {
         if (strcmp(error, "hdr.range") == 0)

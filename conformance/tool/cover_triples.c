@@ -1,4 +1,5 @@
-/* cover_triples.c - triples of features in valid vectors: reported, no goal, as most of them come by chance.
+/* cover_triples.c - triples of features in valid vectors: reported, no goal, as most of them come
+ * by chance.
  * SPDX-License-Identifier: BSD-2-Clause */
 #include <stdlib.h>
 #include <string.h>
@@ -10,7 +11,7 @@ enum { MOST = 64 };
 /* All features, numbered through the groups. */
 typedef struct {
     const char *name[MOST];
-    size_t      group[MOST], n;
+    size_t group[MOST], n;
 } features;
 
 static void number(features *f)
@@ -29,7 +30,7 @@ static void number(features *f)
 static uint64_t mask_of(const features *f, const json_t *descriptor)
 {
     const json_t *const list = json_object_get(descriptor, "features");
-    uint64_t            mask = 0;
+    uint64_t mask = 0;
 
     for (size_t i = 0; i < json_array_size(list); i++)
         for (size_t j = 0; j < f->n; j++)
@@ -45,19 +46,21 @@ static int together(const features *f, size_t a, size_t b)
 
 conf_triples conf_cover_triples(const conf_entry *e, size_t n)
 {
-    uint64_t    *mask = conf_alloc(n, sizeof *mask);
+    uint64_t *mask = conf_alloc(n, sizeof *mask);
     conf_triples t = { 0, 0 };
-    features     f;
+    features f;
 
     number(&f);
     for (size_t i = 0; i < n; i++)
-        if (strcmp(json_string_value(json_object_get(json_object_get(e[i].descriptor, "expect"), "result")), "valid") == 0)
+        if (strcmp(json_string_value(
+                       json_object_get(json_object_get(e[i].descriptor, "expect"), "result")),
+                   "valid") == 0)
             mask[i] = mask_of(&f, e[i].descriptor);
     for (size_t a = 0; a < f.n; a++)
         for (size_t b = a + 1; b < f.n; b++)
             for (size_t c = b + 1; together(&f, a, b) && c < f.n; c++) {
                 const uint64_t three = (uint64_t)1 << a | (uint64_t)1 << b | (uint64_t)1 << c;
-                size_t         i = 0;
+                size_t i = 0;
 
                 if (!together(&f, a, c) || !together(&f, b, c))
                     continue;

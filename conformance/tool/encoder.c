@@ -1,4 +1,5 @@
-/* encoder.c - see encoder.h. The encoder is run once, in a process group of its own; what it has written is judged by the validator and the strict decoder.
+/* encoder.c - see encoder.h. The encoder is run once, in a process group of its own; what it has
+ * written is judged by the validator and the strict decoder.
  * SPDX-License-Identifier: BSD-2-Clause */
 #include "encoder.h"
 
@@ -15,7 +16,8 @@ static void wrong(int *n, const char *what, const char *why)
     ++*n;
 }
 
-/* Hints may be meant; a warning breaks a rule that binds encoders, or spends bits for nothing (3.6). */
+/* Hints may be meant; a warning breaks a rule that binds encoders, or spends bits for nothing
+ * (3.6). */
 static void finding(void *user, const ted4_finding *f)
 {
     char text[400];
@@ -30,7 +32,7 @@ static void finding(void *user, const ted4_finding *f)
 static void judge_hash(const json_t *answer, const ted4_info *info, int *n)
 {
     const char *const said = json_string_value(json_object_get(answer, "hash"));
-    char              hex[2 * sizeof info->hash + 1];
+    char hex[2 * sizeof info->hash + 1];
 
     conf_hex(hex, info->hash, sizeof info->hash);
     if (said == NULL || strcmp(said, hex) != 0)
@@ -40,9 +42,9 @@ static void judge_hash(const json_t *answer, const ted4_info *info, int *n)
 /* *level: of a file that is valid. */
 static void judge_file(const json_t *answer, const char *path, int *n, size_t *size, int *level)
 {
-    conf_bytes  file = { NULL, 0, 0 };
+    conf_bytes file = { NULL, 0, 0 };
     ted4_scene *s;
-    ted4_info   info;
+    ted4_info info;
 
     if (!conf_read(path, &file)) {
         wrong(n, "there is no file", "");
@@ -63,10 +65,13 @@ static void judge_file(const json_t *answer, const char *path, int *n, size_t *s
 static json_t *ask(const conf_encode_options *o, const char *path, int *n)
 {
     const conf_process_options how = { o->encoder, NULL, o->timeout, 0 };
-    const char   *argv[] = { "--ted4-encode", o->scene, "-o", path, o->preset != NULL ? "--preset" : NULL, o->preset, NULL };
-    conf_process  p, *list[1] = { &p };
-    conf_verdict  v;
-    json_t       *answer;
+    const char *argv[] = {
+        "--ted4-encode", o->scene, "-o", path, o->preset != NULL ? "--preset" : NULL,
+        o->preset,       NULL
+    };
+    conf_process p, *list[1] = { &p };
+    conf_verdict v;
+    json_t *answer;
 
     conf_process_start(&p, &how, argv);
     while (conf_process_wait(list, 1, 100) < 0)
@@ -81,10 +86,10 @@ static json_t *ask(const conf_encode_options *o, const char *path, int *n)
 int conf_encode(const conf_encode_options *o)
 {
     const char *const tmp = getenv("TMPDIR");
-    char    folder[CONF_PATH], path[CONF_PATH];
-    size_t  size = 0;
+    char folder[CONF_PATH], path[CONF_PATH];
+    size_t size = 0;
     json_t *answer;
-    int     n = 0, level = 0;
+    int n = 0, level = 0;
 
     conf_path(folder, "%s/ted4conf-XXXXXX", tmp != NULL ? tmp : "/tmp");
     if (mkdtemp(folder) == NULL)
@@ -96,6 +101,7 @@ int conf_encode(const conf_encode_options *o)
     unlink(path);
     rmdir(folder);
     json_decref(answer);
-    printf("%s: %zu bytes, level %d: %s\n", o->scene, size, level, n == 0 ? "conforms" : "does not conform");
+    printf("%s: %zu bytes, level %d: %s\n", o->scene, size, level,
+           n == 0 ? "conforms" : "does not conform");
     return n > 0;
 }

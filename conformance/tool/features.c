@@ -28,11 +28,22 @@ const size_t conf_n_feature_groups = sizeof conf_feature_groups / sizeof *conf_f
 json_t *conf_features(const ted4_scene *s)
 {
     const ted4_header *h = &s->head;
-    const unsigned     choice[] = {
-        h->motion, h->temporal_mask, h->offset_mask, h->activation, h->view, h->head_layers > 0, h->scale_domain, h->prior,
-        h->hyper_layers > 0, h->pe_octaves > 0, h->n_slices > 1, s->shape.n_tiles > 1, h->frames > 1, s->nete.mode, s->netr.mode,
-        s->bank.n == 0 ? 0 : 1u + s->bank.mode
-    };
+    const unsigned choice[] = { h->motion,
+                                h->temporal_mask,
+                                h->offset_mask,
+                                h->activation,
+                                h->view,
+                                h->head_layers > 0,
+                                h->scale_domain,
+                                h->prior,
+                                h->hyper_layers > 0,
+                                h->pe_octaves > 0,
+                                h->n_slices > 1,
+                                s->shape.n_tiles > 1,
+                                h->frames > 1,
+                                s->nete.mode,
+                                s->netr.mode,
+                                s->bank.n == 0 ? 0 : 1u + s->bank.mode };
     json_t *o = json_array();
 
     for (size_t i = 0; i < conf_n_feature_groups; i++)
@@ -48,9 +59,11 @@ static int both(const char *a, const char *b, const char *x, const char *y)
 int conf_feature_excludes(const char *a, const char *b)
 {
     static const char *const pair[][2] = {
-        { "motion.none", "temporal-mask.on" }, { "motion.none", "bank.raw" }, { "motion.none", "bank.deflated" },
-        { "motion.inr", "bank.raw" }, { "motion.inr", "bank.deflated" }, { "motion.bank", "bank.none" },
-        { "motion.concat", "bank.none" }, { "prior.factorised", "hyper.hidden" }, { "prior.factorised", "pe.octaves" },
+        { "motion.none", "temporal-mask.on" }, { "motion.none", "bank.raw" },
+        { "motion.none", "bank.deflated" },    { "motion.inr", "bank.raw" },
+        { "motion.inr", "bank.deflated" },     { "motion.bank", "bank.none" },
+        { "motion.concat", "bank.none" },      { "prior.factorised", "hyper.hidden" },
+        { "prior.factorised", "pe.octaves" },
     };
 
     for (size_t i = 0; i < sizeof pair / sizeof *pair; i++)

@@ -1,5 +1,5 @@
-/* gen.c - see gen.h. A vector is its file and its descriptor, side by side; of one that is made on demand only the descriptor is kept.
- * What is large is made only when asked for.
+/* gen.c - see gen.h. A vector is its file and its descriptor, side by side; of one that is made on
+ * demand only the descriptor is kept. What is large is made only when asked for.
  * SPDX-License-Identifier: BSD-2-Clause */
 #include "gen.h"
 
@@ -10,15 +10,16 @@
 #include "suite.h"
 #include "vector.h"
 
-enum { CONF_LEVELS = 4 };       /* that have bounds, numbered from 1 */
+enum { CONF_LEVELS = 4 }; /* that have bounds, numbered from 1 */
 
 typedef struct {
     const conf_gen_options *o;
-    char     output[CONF_PATH];
-    json_t  *manifest;          /* array of entries */
-    json_t  *least[CONF_LEVELS + 1];    /* arrays of entries: vectors that a decoder of that level has to get right, but none of a lower one */
-    json_t  *counts;            /* by category, then result */
-    size_t   bytes, n_bad, n_made;
+    char output[CONF_PATH];
+    json_t *manifest;               /* array of entries */
+    json_t *least[CONF_LEVELS + 1]; /* arrays of entries: vectors that a decoder of that level has
+                                       to get right, but none of a lower one */
+    json_t *counts;                 /* by category, then result */
+    size_t bytes, n_bad, n_made;
 } generator;
 
 /* Writes, or says that what is there differs. */
@@ -46,7 +47,8 @@ static void put(generator *g, const char *path, const void *data, size_t size)
 /* A member a line, its value in one piece; the entries of an array of objects a line each. */
 static void print_member(conf_bytes *b, const char *key, const json_t *value, int last)
 {
-    const int lines = json_is_array(value) && json_is_object(json_array_get(value, 0)) && json_array_size(value) > 8;
+    const int lines = json_is_array(value) && json_is_object(json_array_get(value, 0)) &&
+                      json_array_size(value) > 8;
 
     conf_print(b, " \"%s\":", key);
     if (lines) {
@@ -69,15 +71,14 @@ static void print_member(conf_bytes *b, const char *key, const json_t *value, in
 /* hash: of what is written, as a manifest has it; may be NULL. */
 static void put_json(generator *g, const char *path, json_t *o, char *hash)
 {
-    conf_bytes  b = { NULL, 0, 0 };
-    char        whole[CONF_HASH + 1];
+    conf_bytes b = { NULL, 0, 0 };
+    char whole[CONF_HASH + 1];
     const char *key;
-    json_t     *value;
-    size_t      left = json_object_size(o);
+    json_t *value;
+    size_t left = json_object_size(o);
 
     conf_print(&b, "{\n");
-    json_object_foreach(o, key, value)
-        print_member(&b, key, value, --left == 0);
+    json_object_foreach(o, key, value) print_member(&b, key, value, --left == 0);
     conf_print(&b, "}\n");
     put(g, path, b.data, b.size);
     conf_hash(whole, b.data, b.size);
@@ -100,13 +101,16 @@ static void count(generator *g, const char *group, const char *what)
 /* The descriptor beside its file, and a line of the manifest. */
 static void note(generator *g, json_t *d)
 {
-    const char *const result = json_string_value(json_object_get(json_object_get(d, "expect"), "result"));
+    const char *const result =
+        json_string_value(json_object_get(json_object_get(d, "expect"), "result"));
     const char *const folder = json_string_value(json_object_get(d, "category"));
-    const json_int_t  level = strcmp(result, "valid") == 0 ? json_integer_value(json_object_get(d, "level")) : 1;
-    json_t           *e = json_object();
-    char              path[CONF_PATH], hash[CONF_SHORT_HASH + 1];
+    const json_int_t level =
+        strcmp(result, "valid") == 0 ? json_integer_value(json_object_get(d, "level")) : 1;
+    json_t *e = json_object();
+    char path[CONF_PATH], hash[CONF_SHORT_HASH + 1];
 
-    conf_path(path, "%s/%s/%s.json", g->output, folder, json_string_value(json_object_get(d, "id")));
+    conf_path(path, "%s/%s/%s.json", g->output, folder,
+              json_string_value(json_object_get(d, "id")));
     put_json(g, path, d, hash);
     json_object_set(e, "id", json_object_get(d, "id"));
     json_object_set_new(e, "folder", json_string(folder));
@@ -125,11 +129,12 @@ static void note(generator *g, json_t *d)
 /* What is large stays as the suite has it. */
 static void keep(generator *g, const conf_recipe *r)
 {
-    char         path[CONF_PATH];
-    json_t      *d;
+    char path[CONF_PATH];
+    json_t *d;
     json_error_t why;
 
-    conf_path(path, "%s/vectors/%s/%s.json", g->o->suite, conf_line_find(r, "category")->word[1], r->id);
+    conf_path(path, "%s/vectors/%s/%s.json", g->o->suite, conf_line_find(r, "category")->word[1],
+              r->id);
     d = json_load_file(path, 0, &why);
     if (d == NULL)
         conf_die("%s: %s: gen --large makes it", path, why.text);
@@ -140,9 +145,9 @@ static void keep(generator *g, const conf_recipe *r)
 static void make(generator *g, const conf_recipe *r)
 {
     const conf_line *const demand = conf_line_find(r, "demand");
-    const int              large = demand != NULL && conf_word_is(demand, 1, "large");
+    const int large = demand != NULL && conf_word_is(demand, 1, "large");
     conf_vector v;
-    char        path[CONF_PATH];
+    char path[CONF_PATH];
 
     if (large && !g->o->large) {
         keep(g, r);
@@ -167,7 +172,7 @@ static int by_id(const void *a, const void *b)
 static json_t *sorted(const json_t *entries)
 {
     const size_t n = json_array_size(entries);
-    json_t     **e = conf_alloc(n, sizeof *e), *out = json_array();
+    json_t **e = conf_alloc(n, sizeof *e), *out = json_array();
 
     for (size_t i = 0; i < n; i++)
         e[i] = json_array_get(entries, i);
@@ -180,30 +185,33 @@ static json_t *sorted(const json_t *entries)
 
 static void put_manifest(generator *g)
 {
-    char    path[CONF_PATH];
-    json_t *o = json_pack("{s:s, s:i, s:s, s:s, s:s, s:I, s:O, s:o}", "suite", CONF_SUITE_VERSION, "schema", 1, "spec", "1.0",
-                          "generator", "ted4conf gen", "license", "CC0-1.0", "vectors", (json_int_t)json_array_size(g->manifest),
-                          "counts", g->counts, "vector", sorted(g->manifest));
+    char path[CONF_PATH];
+    json_t *o = json_pack("{s:s, s:i, s:s, s:s, s:s, s:I, s:O, s:o}", "suite", CONF_SUITE_VERSION,
+                          "schema", 1, "spec", "1.0", "generator", "ted4conf gen", "license",
+                          "CC0-1.0", "vectors", (json_int_t)json_array_size(g->manifest), "counts",
+                          g->counts, "vector", sorted(g->manifest));
 
     conf_path(path, "%s/SUITE.json", g->o->output != NULL ? g->output : g->o->suite);
     put_json(g, path, o, NULL);
     json_decref(o);
 }
 
-/* lists/level-N.txt: what a decoder of level N has to get right: valid files up to that level, and all others. The list of a level begins with that of
- * the level below. */
+/* lists/level-N.txt: what a decoder of level N has to get right: valid files up to that level, and
+ * all others. The list of a level begins with that of the level below. */
 static void put_level_lists(generator *g)
 {
     for (int level = 1; level <= CONF_LEVELS; level++) {
         conf_bytes b = { NULL, 0, 0 };
-        char       path[CONF_PATH];
-        json_t    *list = sorted(g->least[level]);
+        char path[CONF_PATH];
+        json_t *list = sorted(g->least[level]);
 
         if (level > 1)
             conf_print(&b, "@level-%d.txt\n", level - 1);
         for (size_t i = 0; i < json_array_size(list); i++)
-            conf_print(&b, "%s\n", json_string_value(json_object_get(json_array_get(list, i), "id")));
-        conf_path(path, "%s/lists/level-%d.txt", g->o->output != NULL ? g->output : g->o->suite, level);
+            conf_print(&b, "%s\n",
+                       json_string_value(json_object_get(json_array_get(list, i), "id")));
+        conf_path(path, "%s/lists/level-%d.txt", g->o->output != NULL ? g->output : g->o->suite,
+                  level);
         put(g, path, b.data, b.size);
         conf_free(&b);
         json_decref(list);
@@ -213,12 +221,14 @@ static void put_level_lists(generator *g)
 /* A vector of whose recipe nothing is left. */
 static void find_orphans(generator *g)
 {
-    size_t         n;
-    conf_entry    *e;
-    json_t        *known = json_object();
+    size_t n;
+    conf_entry *e;
+    json_t *known = json_object();
 
     for (size_t i = 0; i < json_array_size(g->manifest); i++)
-        json_object_set(known, json_string_value(json_object_get(json_array_get(g->manifest, i), "id")), json_true());
+        json_object_set(known,
+                        json_string_value(json_object_get(json_array_get(g->manifest, i), "id")),
+                        json_true());
     e = conf_suite_load(g->output, NULL, &n);
     for (size_t i = 0; i < n; i++)
         if (json_object_get(known, e[i].id) == NULL) {
@@ -231,11 +241,12 @@ static void find_orphans(generator *g)
 
 int conf_gen(const conf_gen_options *o)
 {
-    generator    g = { .o = o };
+    generator g = { .o = o };
     conf_recipes r;
-    char         path[CONF_PATH];
+    char path[CONF_PATH];
 
-    conf_path(g.output, "%s%s", o->output != NULL ? o->output : o->suite, o->output != NULL ? "" : "/vectors");
+    conf_path(g.output, "%s%s", o->output != NULL ? o->output : o->suite,
+              o->output != NULL ? "" : "/vectors");
     conf_path(path, "%s/recipes", o->suite);
     conf_recipes_load(&r, path);
     g.manifest = json_array();
@@ -250,8 +261,8 @@ int conf_gen(const conf_gen_options *o)
         put_level_lists(&g);
         find_orphans(&g);
     }
-    fprintf(stderr, "ted4conf: %zu vectors %s, %zu bytes with descriptors, %zu bad\n", g.n_made, o->verify ? "compared" : "made",
-            g.bytes, g.n_bad);
+    fprintf(stderr, "ted4conf: %zu vectors %s, %zu bytes with descriptors, %zu bad\n", g.n_made,
+            o->verify ? "compared" : "made", g.bytes, g.n_bad);
     json_decref(g.manifest);
     for (int level = 1; level <= CONF_LEVELS; level++)
         json_decref(g.least[level]);

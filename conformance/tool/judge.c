@@ -6,9 +6,11 @@
 #include <stdio.h>
 #include <string.h>
 
-const char *const conf_outcome_name[CONF_OUTCOMES] = { "pass", "fail", "no answer", "declined", "missing", "not run" };
+const char *const conf_outcome_name[CONF_OUTCOMES] = { "pass",     "fail",    "no answer",
+                                                       "declined", "missing", "not run" };
 
-static void say(conf_verdict *v, conf_outcome outcome, const char *format, ...) __attribute__((format(printf, 3, 4)));
+static void say(conf_verdict *v, conf_outcome outcome, const char *format, ...)
+    __attribute__((format(printf, 3, 4)));
 static void say(conf_verdict *v, conf_outcome outcome, const char *format, ...)
 {
     va_list a;
@@ -22,16 +24,24 @@ static void say(conf_verdict *v, conf_outcome outcome, const char *format, ...)
 json_t *conf_judge_document(const conf_process *p, conf_verdict *v)
 {
     json_error_t why;
-    json_t      *o;
+    json_t *o;
 
     switch (p->end) {
-    case CONF_CRASHED:  say(v, CONF_NO_ANSWER, "ended by signal %d; stderr: %s", p->code, (const char *)p->complaint.data); return NULL;
-    case CONF_HUNG:     say(v, CONF_NO_ANSWER, "no answer within %.1f s", p->options->timeout); return NULL;
-    case CONF_TOO_LONG: say(v, CONF_NO_ANSWER, "more than %d bytes of output", CONF_MAX_OUTPUT); return NULL;
+    case CONF_CRASHED:
+        say(v, CONF_NO_ANSWER, "ended by signal %d; stderr: %s", p->code,
+            (const char *)p->complaint.data);
+        return NULL;
+    case CONF_HUNG:
+        say(v, CONF_NO_ANSWER, "no answer within %.1f s", p->options->timeout);
+        return NULL;
+    case CONF_TOO_LONG:
+        say(v, CONF_NO_ANSWER, "more than %d bytes of output", CONF_MAX_OUTPUT);
+        return NULL;
     default: break;
     }
     if (p->code != 0) {
-        say(v, CONF_NO_ANSWER, "exit code %d, where a verdict is exit code 0; stderr: %s", p->code, (const char *)p->complaint.data);
+        say(v, CONF_NO_ANSWER, "exit code %d, where a verdict is exit code 0; stderr: %s", p->code,
+            (const char *)p->complaint.data);
         return NULL;
     }
     if (p->answer.size == 0) {
@@ -40,7 +50,8 @@ json_t *conf_judge_document(const conf_process *p, conf_verdict *v)
     }
     o = json_loadb((const char *)p->answer.data, p->answer.size, JSON_REJECT_DUPLICATES, &why);
     if (!json_is_object(o)) {
-        say(v, CONF_NO_ANSWER, "stdout is not one JSON object and nothing else: %s: %.60s", why.text, (const char *)p->answer.data);
+        say(v, CONF_NO_ANSWER, "stdout is not one JSON object and nothing else: %s: %.60s",
+            why.text, (const char *)p->answer.data);
         json_decref(o);
         return NULL;
     }
@@ -71,11 +82,14 @@ int conf_judge_capabilities(const json_t *c, conf_verdict *v)
         say(v, CONF_NO_ANSWER, "capabilities: protocol is not 1");
     else if (text_of(c, "name")[0] == '\0' || !json_is_string(json_object_get(c, "version")))
         say(v, CONF_NO_ANSWER, "capabilities: name or version is missing");
-    else if (!json_is_array(json_object_get(c, "tiers")) || json_array_size(json_object_get(c, "tiers")) == 0)
+    else if (!json_is_array(json_object_get(c, "tiers")) ||
+             json_array_size(json_object_get(c, "tiers")) == 0)
         say(v, CONF_NO_ANSWER, "capabilities: no tiers");
-    else if (!json_is_integer(json_object_get(c, "max_level")) || !json_is_array(json_object_get(c, "declines")))
+    else if (!json_is_integer(json_object_get(c, "max_level")) ||
+             !json_is_array(json_object_get(c, "declines")))
         say(v, CONF_NO_ANSWER, "capabilities: max_level or declines are missing");
-    else if (json_is_string(json_object_get(c, "class")) && !holds(json_object_get(c, "tiers"), "T5"))
+    else if (json_is_string(json_object_get(c, "class")) &&
+             !holds(json_object_get(c, "tiers"), "T5"))
         say(v, CONF_NO_ANSWER, "capabilities: a class is claimed, but not T5, which shows it");
     else
         return 1;
@@ -95,19 +109,20 @@ const char *conf_judge_lacks(const json_t *c)
 /* What is invalid has to be refused by everybody. */
 int conf_judge_declines(const json_t *capabilities, const json_t *d)
 {
-    const json_t *const features = json_object_get(d, "features"), *const knobs = json_object_get(d, "knobs");
-    const char   *const result = text_of(json_object_get(d, "expect"), "result");
-    const char         *knob;
-    json_t             *value;
+    const json_t *const features = json_object_get(d, "features"), *const knobs =
+                                                                       json_object_get(d, "knobs");
+    const char *const result = text_of(json_object_get(d, "expect"), "result");
+    const char *knob;
+    json_t *value;
 
     if (strcmp(result, "invalid") == 0 || strcmp(result, "unsupported") == 0)
         return 0;
     for (size_t i = 0; i < json_array_size(features); i++)
-        if (holds(json_object_get(capabilities, "declines"), json_string_value(json_array_get(features, i))))
+        if (holds(json_object_get(capabilities, "declines"),
+                  json_string_value(json_array_get(features, i))))
             return 1;
-    json_object_foreach((json_t *)(uintptr_t)knobs, knob, value)
-        if (!holds(json_object_get(capabilities, "knobs"), knob))
-            return 1;
+    json_object_foreach((json_t *)(uintptr_t)knobs, knob,
+                        value) if (!holds(json_object_get(capabilities, "knobs"), knob)) return 1;
     return 0;
 }
 
@@ -138,15 +153,17 @@ int conf_same_hash(const json_t *want, const json_t *got)
 static int judge_queries(const json_t *want, const json_t *got, conf_verdict *v)
 {
     if (!json_is_array(got) || json_array_size(got) != json_array_size(want)) {
-        say(v, CONF_FAIL, "T5: %zu results for %zu queries", json_array_size(got), json_array_size(want));
+        say(v, CONF_FAIL, "T5: %zu results for %zu queries", json_array_size(got),
+            json_array_size(want));
         return 0;
     }
     for (size_t i = 0; i < json_array_size(want); i++) {
         const json_t *const w = json_array_get(want, i), *const g = json_array_get(got, i);
-        const char   *const error = text_of(w, "error");
+        const char *const error = text_of(w, "error");
 
         if (error[0] != '\0' ? strcmp(error, text_of(g, "error")) != 0 : !conf_same_hash(w, g)) {
-            say(v, CONF_FAIL, "T5: query %zu: %s", i, error[0] != '\0' ? "should have no result" : "other records");
+            say(v, CONF_FAIL, "T5: query %zu: %s", i,
+                error[0] != '\0' ? "should have no result" : "other records");
             return 0;
         }
     }
@@ -154,15 +171,17 @@ static int judge_queries(const json_t *want, const json_t *got, conf_verdict *v)
 }
 
 /* The first tier that differs says where to look. What is salvaged has no T0. */
-static void judge_tiers(const json_t *capabilities, const json_t *want, const json_t *got, conf_verdict *v)
+static void judge_tiers(const json_t *capabilities, const json_t *want, const json_t *got,
+                        conf_verdict *v)
 {
     const char *const class = text_of(capabilities, "class");
 
     for (int t = 0; t < 6; t++) {
-        const char          name[3] = { 'T', (char)('0' + t), '\0' };
+        const char name[3] = { 'T', (char)('0' + t), '\0' };
         const json_t *const w = json_object_get(want, name), *const g = json_object_get(got, name);
 
-        if (w == NULL || !holds(json_object_get(capabilities, "tiers"), name) || (t == 5 && strcmp(class, "X") != 0))
+        if (w == NULL || !holds(json_object_get(capabilities, "tiers"), name) ||
+            (t == 5 && strcmp(class, "X") != 0))
             continue;
         if (t == 5) {
             if (!judge_queries(w, g, v))
@@ -175,61 +194,75 @@ static void judge_tiers(const json_t *capabilities, const json_t *want, const js
     say(v, CONF_PASS, "%s", "");
 }
 
-/* Does pass 1 find the error that is expected? A limit may come before errors of pass 2 alone (R-ERR-005). Of con.chunk-order either pass may be the one (5.3). */
+/* Does pass 1 find the error that is expected? A limit may come before errors of pass 2 alone
+ * (R-ERR-005). Of con.chunk-order either pass may be the one (5.3). */
 static int is_of_pass_1(const json_t *expect)
 {
-    static const char *const id[] = { "con.truncated", "con.magic", "con.version", "con.level", "con.reserved", "con.chunk-hash",
-                                      "con.unknown-critical", "con.trailing", "unsupported.profile" };
-    enum { LEVEL_AT = 11 };             /* the bound on the file's size is judged there (R-LVL-003) */
+    static const char *const id[] = { "con.truncated",        "con.magic",
+                                      "con.version",          "con.level",
+                                      "con.reserved",         "con.chunk-hash",
+                                      "con.unknown-critical", "con.trailing",
+                                      "unsupported.profile" };
+    enum { LEVEL_AT = 11 }; /* the bound on the file's size is judged there (R-LVL-003) */
     const char *const error = text_of(expect, "error");
 
     for (size_t i = 0; i < sizeof id / sizeof *id; i++)
         if (strcmp(error, id[i]) == 0)
             return 1;
-    return strcmp(error, "lvl.exceeded") == 0 && json_integer_value(json_object_get(expect, "offset")) == LEVEL_AT;
+    return strcmp(error, "lvl.exceeded") == 0 &&
+           json_integer_value(json_object_get(expect, "offset")) == LEVEL_AT;
 }
 
 void conf_judge(const json_t *capabilities, const json_t *d, const json_t *answer, conf_verdict *v)
 {
     const json_t *const expect = json_object_get(d, "expect");
-    const char *const   want = text_of(expect, "result"), *const got = text_of(answer, "result");
+    const char *const want = text_of(expect, "result"), *const got = text_of(answer, "result");
     const json_t *const offset = json_object_get(expect, "offset");
     /* R-LVL-008 says which limit is met under max_work. */
-    const int           any = strcmp(want, "limit") == 0 && json_object_get(json_object_get(d, "knobs"), "max_work") == NULL;
+    const int any = strcmp(want, "limit") == 0 &&
+                    json_object_get(json_object_get(d, "knobs"), "max_work") == NULL;
 
     if (holds(json_object_get(expect, "also_ok"), got)) {
         say(v, CONF_PASS, "%s, which the specification allows too", got);
         return;
     }
-    if (strcmp(want, "limit") != 0 && strcmp(got, "limit") == 0 && !is_of_pass_1(expect)
-        && json_integer_value(json_object_get(d, "level")) > json_integer_value(json_object_get(capabilities, "max_level"))) {
+    if (strcmp(want, "limit") != 0 && strcmp(got, "limit") == 0 && !is_of_pass_1(expect) &&
+        json_integer_value(json_object_get(d, "level")) >
+            json_integer_value(json_object_get(capabilities, "max_level"))) {
         say(v, CONF_DECLINED, "above the decoder's greatest level");
         return;
     }
     if (strcmp(want, got) != 0) {
-        say(v, CONF_FAIL, "should be %s %s, is %s %s", want, text_of(expect, "error"), got, text_of(answer, "error"));
+        say(v, CONF_FAIL, "should be %s %s, is %s %s", want, text_of(expect, "error"), got,
+            text_of(answer, "error"));
         return;
     }
     if (strcmp(want, "valid") == 0) {
         judge_tiers(capabilities, json_object_get(d, "tiers"), json_object_get(answer, "tiers"), v);
         return;
     }
-    if (any ? strncmp(text_of(answer, "error"), "limit.", 6) != 0 : strcmp(text_of(expect, "error"), text_of(answer, "error")) != 0) {
-        say(v, CONF_FAIL, "should be %s, is %s", text_of(expect, "error"), text_of(answer, "error"));
+    if (any ? strncmp(text_of(answer, "error"), "limit.", 6) != 0
+            : strcmp(text_of(expect, "error"), text_of(answer, "error")) != 0) {
+        say(v, CONF_FAIL, "should be %s, is %s", text_of(expect, "error"),
+            text_of(answer, "error"));
         return;
     }
     if (offset != NULL && !json_equal(offset, json_object_get(answer, "offset"))) {
         say(v, CONF_FAIL, "%s at %lld, should be at %lld", text_of(expect, "error"),
-            (long long)json_integer_value(json_object_get(answer, "offset")), (long long)json_integer_value(offset));
+            (long long)json_integer_value(json_object_get(answer, "offset")),
+            (long long)json_integer_value(offset));
         return;
     }
     say(v, CONF_PASS, "%s", "");
 }
 
-void conf_judge_salvage(const json_t *capabilities, const json_t *d, const json_t *answer, conf_verdict *v)
+void conf_judge_salvage(const json_t *capabilities, const json_t *d, const json_t *answer,
+                        conf_verdict *v)
 {
-    static const char *const name[] = { "tiles", "tiles_declared", "anchors", "anchors_declared", "error", "offset", "hash" };
-    const json_t *const want = json_object_get(d, "salvage"), *const got = json_object_get(answer, "salvage");
+    static const char *const name[] = { "tiles", "tiles_declared", "anchors", "anchors_declared",
+                                        "error", "offset",         "hash" };
+    const json_t *const want = json_object_get(d, "salvage"), *const got = json_object_get(
+                                                                  answer, "salvage");
 
     if (!json_is_object(want)) {
         if (got != NULL && !json_is_null(got))
@@ -238,7 +271,8 @@ void conf_judge_salvage(const json_t *capabilities, const json_t *d, const json_
     }
     for (size_t i = 0; i < sizeof name / sizeof *name; i++)
         if (!json_equal(json_object_get(want, name[i]), json_object_get(got, name[i]))) {
-            say(v, CONF_FAIL, "lenient mode: %s", json_is_object(got) ? name[i] : "nothing is salvaged");
+            say(v, CONF_FAIL, "lenient mode: %s",
+                json_is_object(got) ? name[i] : "nothing is salvaged");
             return;
         }
     judge_tiers(capabilities, json_object_get(want, "tiers"), json_object_get(got, "tiers"), v);

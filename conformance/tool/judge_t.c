@@ -1,4 +1,5 @@
-/* judge_t.c - see judge_t.h. Thresholds are computed anew for every query whose records are not those of class X bit for bit, by class_t.h.
+/* judge_t.c - see judge_t.h. Thresholds are computed anew for every query whose records are not
+ * those of class X bit for bit, by class_t.h.
  * SPDX-License-Identifier: BSD-2-Clause */
 #include "judge_t.h"
 
@@ -11,8 +12,8 @@
 /* A decoder's records of one vector under judgement. */
 typedef struct {
     const conf_bytes *file;
-    class_t          *stream;           /* NULL until a query needs it */
-    const char       *folder;
+    class_t *stream; /* NULL until a query needs it */
+    const char *folder;
 } records_case;
 
 static const char *text_of(const json_t *o, const char *key)
@@ -24,7 +25,8 @@ static const char *text_of(const json_t *o, const char *key)
 
 int conf_class_t_asked(const json_t *capabilities, const json_t *d)
 {
-    return strcmp(text_of(capabilities, "class"), "T") == 0 && conf_expects(d, "valid") && json_array_size(json_object_get(d, "queries")) > 0;
+    return strcmp(text_of(capabilities, "class"), "T") == 0 && conf_expects(d, "valid") &&
+           json_array_size(json_object_get(d, "queries")) > 0;
 }
 
 static class_t_query query_of(const json_t *o)
@@ -42,8 +44,8 @@ static class_t_query query_of(const json_t *o)
 static int is_that(const conf_bytes *records, const json_t *got)
 {
     ted4_tier_hash *const h = ted4_tier_hash_new(NULL);
-    json_t         *hash;
-    int             same;
+    json_t *hash;
+    int same;
 
     if (h == NULL)
         conf_die("no memory");
@@ -55,18 +57,20 @@ static int is_that(const conf_bytes *records, const json_t *got)
 }
 
 /* What is wrong with the records of a query; NULL: nothing. want: of class X. */
-static const char *judge_records(records_case *c, size_t i, const json_t *query, const json_t *want, const json_t *got)
+static const char *judge_records(records_case *c, size_t i, const json_t *query, const json_t *want,
+                                 const json_t *got)
 {
     const class_t_query q = query_of(query);
     struct stat file;
-    conf_bytes  records;
-    char        path[CONF_PATH];
+    conf_bytes records;
+    char path[CONF_PATH];
     const char *why = "the file that --dump has left is not what the answer says";
 
     conf_path(path, "%s/T5-%zu.bin", c->folder, i);
     if (lstat(path, &file) != 0 || !S_ISREG(file.st_mode))
         return "--dump has left no file";
-    if (file.st_size != json_integer_value(json_object_get(want, "bytes")) || !conf_read(path, &records))
+    if (file.st_size != json_integer_value(json_object_get(want, "bytes")) ||
+        !conf_read(path, &records))
         return "not as many records as in class X";
     if (is_that(&records, got)) {
         if (c->stream == NULL)
@@ -80,14 +84,15 @@ static const char *judge_records(records_case *c, size_t i, const json_t *query,
 }
 
 /* want: of class X. What is wrong with the answer to a query; NULL: nothing. */
-static const char *judge_query(records_case *c, size_t i, const json_t *query, const json_t *want, const json_t *got)
+static const char *judge_query(records_case *c, size_t i, const json_t *query, const json_t *want,
+                               const json_t *got)
 {
     const char *const none = text_of(want, "error"), *const error = text_of(got, "error");
 
     if (strcmp(none, error) == 0 && none[0] != '\0')
         return NULL;
     if (strcmp(none, "rec.non-finite") == 0 && conf_same_hash(got, got))
-        return NULL;                    /* R-TOL-006: records all the same, which are not judged */
+        return NULL; /* R-TOL-006: records all the same, which are not judged */
     if (none[0] != '\0')
         return "should have no result";
     if (error[0] != '\0')
@@ -95,19 +100,24 @@ static const char *judge_query(records_case *c, size_t i, const json_t *query, c
     return conf_same_hash(want, got) ? NULL : judge_records(c, i, query, want, got);
 }
 
-void conf_judge_class_t(const conf_bytes *file, const json_t *d, const json_t *answer, const char *folder, conf_verdict *v)
+void conf_judge_class_t(const conf_bytes *file, const json_t *d, const json_t *answer,
+                        const char *folder, conf_verdict *v)
 {
-    const json_t *const queries = json_object_get(d, "queries"), *const want = json_object_get(json_object_get(d, "tiers"), "T5");
+    const json_t *const queries = json_object_get(d, "queries"), *const want = json_object_get(
+                                                                     json_object_get(d, "tiers"),
+                                                                     "T5");
     const json_t *const got = json_object_get(json_object_get(answer, "tiers"), "T5");
     records_case c = { file, NULL, folder };
-    const char  *why = NULL;
+    const char *why = NULL;
 
     if (json_array_size(got) != json_array_size(queries)) {
-        snprintf(v->reason, sizeof v->reason, "T5: %zu results for %zu queries", json_array_size(got), json_array_size(queries));
+        snprintf(v->reason, sizeof v->reason, "T5: %zu results for %zu queries",
+                 json_array_size(got), json_array_size(queries));
         v->outcome = CONF_FAIL;
     }
     for (size_t i = 0; v->outcome == CONF_PASS && i < json_array_size(queries); i++) {
-        why = judge_query(&c, i, json_array_get(queries, i), json_array_get(want, i), json_array_get(got, i));
+        why = judge_query(&c, i, json_array_get(queries, i), json_array_get(want, i),
+                          json_array_get(got, i));
         if (why != NULL) {
             snprintf(v->reason, sizeof v->reason, "T5: query %zu: class T: %s", i, why);
             v->outcome = CONF_FAIL;

@@ -59,16 +59,18 @@ static void take_line(conf_mutant_list *l, const char *path, const char *line)
 int conf_mutant_apply(const conf_mutant *m, conf_bytes *out)
 {
     conf_bytes in;
-    int        n = 0;
+    int n = 0;
 
     if (!conf_read(m->file, &in))
         conf_die("%s: %s cannot be read", m->id, m->file);
     for (char *line = (char *)in.data, *next; *line != '\0'; line = next) {
-        char *const  end = strchr(line, '\n');
-        const size_t indent = strspn(line, " \t"), length = end != NULL ? (size_t)(end - line) : strlen(line);
+        char *const end = strchr(line, '\n');
+        const size_t indent = strspn(line, " \t"),
+                     length = end != NULL ? (size_t)(end - line) : strlen(line);
 
         next = line + length + (end != NULL);
-        if (length - indent == strlen(m->from) && memcmp(line + indent, m->from, length - indent) == 0 && ++n == 1)
+        if (length - indent == strlen(m->from) &&
+            memcmp(line + indent, m->from, length - indent) == 0 && ++n == 1)
             conf_print(out, "%.*s%s\n", (int)indent, line, m->to);
         else
             conf_add(out, line, (size_t)(next - line));
@@ -79,7 +81,7 @@ int conf_mutant_apply(const conf_mutant *m, conf_bytes *out)
 
 void conf_mutant_list_read(conf_mutant_list *l, const char *path)
 {
-    char  line[CONF_MUTANT_LINE];
+    char line[CONF_MUTANT_LINE];
     FILE *f = fopen(path, "r");
 
     if (f == NULL)
@@ -91,10 +93,11 @@ void conf_mutant_list_read(conf_mutant_list *l, const char *path)
     fclose(f);
     for (size_t i = 0; i < l->n; i++) {
         conf_bytes changed = { NULL, 0, 0 };
-        const int  n = conf_mutant_apply(&l->m[i], &changed);
+        const int n = conf_mutant_apply(&l->m[i], &changed);
 
         if (n != 1)
-            conf_die("%s: %s: its line is in %s %d times: %s", path, l->m[i].id, l->m[i].file, n, l->m[i].from);
+            conf_die("%s: %s: its line is in %s %d times: %s", path, l->m[i].id, l->m[i].file, n,
+                     l->m[i].from);
         conf_free(&changed);
     }
 }
@@ -103,17 +106,17 @@ void conf_mutant_list_free(conf_mutant_list *l)
 {
     free(l->m);
     conf_suite_free(l->vector, l->n_vectors);
-    *l = (conf_mutant_list){ .m = NULL };
+    *l = (conf_mutant_list) { .m = NULL };
 }
 
 /* Of the code of source files, comments and spacing aside. files: words of a shell. */
 static uint64_t code_of(const char *files)
 {
-    char                 command[CONF_PATH];
-    const char          *none[] = { NULL };
+    char command[CONF_PATH];
+    const char *none[] = { NULL };
     conf_process_options o = { command, "LC_ALL=C", MAX_SECONDS, 0 };
-    conf_process         p, *one[1] = { &p };
-    uint64_t             hash;
+    conf_process p, *one[1] = { &p };
+    uint64_t hash;
 
     conf_path(command, "exec awk -f bench/sources.awk %s", files);
     conf_process_start(&p, &o, none);
@@ -129,10 +132,12 @@ static uint64_t code_of(const char *files)
 /* Of a vector, its hashes and what is expected: of its descriptor without what is said of it. */
 static uint64_t hash_of(const conf_entry *vector)
 {
-    static const char *const said[] = { "features", "intent", "license", "origin", "rules", "since" };
+    static const char *const said[] = {
+        "features", "intent", "license", "origin", "rules", "since"
+    };
     json_t *const d = json_copy(vector->descriptor);
-    char         *text;
-    uint64_t      hash;
+    char *text;
+    uint64_t hash;
 
     for (size_t i = 0; i < sizeof said / sizeof *said; i++)
         (void)json_object_del(d, said[i]);
@@ -148,7 +153,7 @@ static uint64_t hash_of(const conf_entry *vector)
 static void hash_ground(conf_mutant_list *l, const char *suite)
 {
     conf_bytes all = { NULL, 0, 0 };
-    char       folder[CONF_PATH];
+    char folder[CONF_PATH];
 
     for (size_t i = 0; i < l->n; i++) {
         for (size_t j = 0; j < i && l->m[i].code == 0; j++)
@@ -159,7 +164,9 @@ static void hash_ground(conf_mutant_list *l, const char *suite)
     }
     conf_path(folder, "%s/vectors", suite);
     l->vector = conf_suite_load(folder, NULL, &l->n_vectors);
-    conf_print(&all, "%016" PRIx64, code_of("ref-decoder/base/*.[ch] ref-decoder/norm/*.[ch] ref-decoder/read/*.[ch] ref-decoder/recon/*.[ch]"));
+    conf_print(&all, "%016" PRIx64,
+               code_of("ref-decoder/base/*.[ch] ref-decoder/norm/*.[ch] ref-decoder/read/*.[ch] "
+                       "ref-decoder/recon/*.[ch]"));
     for (size_t i = 0; i < l->n_vectors; i++)
         conf_print(&all, "%016" PRIx64, hash_of(&l->vector[i]));
     l->all = conf_seed((const char *)all.data);
@@ -170,14 +177,15 @@ static void hash_ground(conf_mutant_list *l, const char *suite)
 static uint64_t key_of(const conf_mutant_list *l, const conf_mutant *m)
 {
     conf_bytes text = { NULL, 0, 0 };
-    uint64_t   ground = 0, key;
+    uint64_t ground = 0, key;
 
     if (strcmp(m->verdict, "killed") != 0)
         ground = l->all;
     for (size_t i = 0; i < l->n_vectors && ground == 0; i++)
         if (strcmp(l->vector[i].id, m->vector) == 0)
             ground = hash_of(&l->vector[i]);
-    conf_print(&text, "%s|%s|%s|%016" PRIx64 "|%s|%016" PRIx64, m->file, m->from, m->to, m->code, m->verdict, ground);
+    conf_print(&text, "%s|%s|%s|%016" PRIx64 "|%s|%016" PRIx64, m->file, m->from, m->to, m->code,
+               m->verdict, ground);
     key = ground == 0 ? 0 : conf_seed((const char *)text.data);
     conf_free(&text);
     return key;
@@ -186,11 +194,12 @@ static uint64_t key_of(const conf_mutant_list *l, const conf_mutant *m)
 static void take_row(conf_mutant_list *l, const char *row)
 {
     conf_mutant given = { .id = "" };
-    uint64_t    key;
-    int         at = 0;
+    uint64_t key;
+    int at = 0;
 
     /* The vector may be empty, which %[ does not take. */
-    if (sscanf(row, "%63[^,],%" SCNx64 ",%15[^,],%n", given.id, &key, given.verdict, &at) < 3 || at == 0)
+    if (sscanf(row, "%63[^,],%" SCNx64 ",%15[^,],%n", given.id, &key, given.verdict, &at) < 3 ||
+        at == 0)
         return;
     if (sscanf(row + at, "%95[^,]", given.vector) == 1)
         at += (int)strlen(given.vector);
@@ -198,7 +207,7 @@ static void take_row(conf_mutant_list *l, const char *row)
         return;
     for (size_t i = 0; i < l->n; i++) {
         conf_mutant *const m = &l->m[i];
-        conf_mutant        with = *m;
+        conf_mutant with = *m;
 
         if (strcmp(m->id, given.id) != 0)
             continue;
@@ -212,7 +221,7 @@ static void take_row(conf_mutant_list *l, const char *row)
 
 void conf_mutant_results_read(conf_mutant_list *l, const char *suite)
 {
-    char  path[CONF_PATH], row[ROW];
+    char path[CONF_PATH], row[ROW];
     FILE *f;
 
     if (l->vector == NULL)
@@ -229,12 +238,13 @@ void conf_mutant_results_read(conf_mutant_list *l, const char *suite)
 
 void conf_mutant_results_add(const conf_mutant_list *l, const conf_mutant *m, const char *suite)
 {
-    char  path[CONF_PATH], row[ROW];
+    char path[CONF_PATH], row[ROW];
     FILE *f;
 
     conf_path(path, "%s/mutants.csv", suite);
     f = fopen(path, "a");
-    snprintf(row, sizeof row, "%s,%016" PRIx64 ",%s,%s,%s\n", m->id, key_of(l, m), m->verdict, m->vector, m->by);
+    snprintf(row, sizeof row, "%s,%016" PRIx64 ",%s,%s,%s\n", m->id, key_of(l, m), m->verdict,
+             m->vector, m->by);
     if (f == NULL || fputs(row, f) == EOF || fclose(f) != 0)
         conf_die("%s: cannot be written", path);
 }

@@ -1,7 +1,9 @@
-/* mutants.c - see mutants.h and mutant_list.h. The changed file is compiled from a folder of its own that comes first among the include paths; a changed
- * header takes all of the decoder's sources with it that include it. Then `ted4conf replay --stop`, linked with these objects, goes through the suite: killed
- * means that it fails, crashes, hangs or gives up at a vector, which is written down. What does not compile counts apart. Before that the unchanged program,
- * built and run in the same way, has to pass: a machine, build or suite that is broken would kill everything.
+/* mutants.c - see mutants.h and mutant_list.h. The changed file is compiled from a folder of its
+ * own that comes first among the include paths; a changed header takes all of the decoder's sources
+ * with it that include it. Then `ted4conf replay --stop`, linked with these objects, goes through
+ * the suite: killed means that it fails, crashes, hangs or gives up at a vector, which is written
+ * down. What does not compile counts apart. Before that the unchanged program, built and run in the
+ * same way, has to pass: a machine, build or suite that is broken would kill everything.
  * SPDX-License-Identifier: BSD-2-Clause */
 #include "mutants.h"
 
@@ -18,7 +20,7 @@ enum { LEAST_PERCENT = 95, LEAST_MUTANTS = 200, SLACK = 4 };
 
 typedef struct {
     const conf_mutant_options *o;
-    conf_mutant_list           list;
+    conf_mutant_list list;
 } campaign;
 
 /* A shell command; 1: it went well. */
@@ -50,7 +52,7 @@ static void remove_folder(const char *folder)
 /* The program's log of compiling and linking, for who has to find out why. */
 static void show_log(const char *folder)
 {
-    char       path[CONF_PATH];
+    char path[CONF_PATH];
     conf_bytes log;
 
     conf_path(path, "%s/log", folder);
@@ -63,7 +65,9 @@ static void show_log(const char *folder)
 static void add_sources(const campaign *c, const char *file, conf_bytes *b)
 {
     if (strcmp(file + strlen(file) - 2, ".h") == 0)
-        conf_print(b, "(cd %s && grep -l '%s' ref-decoder/norm/*.d ref-decoder/read/*.d ref-decoder/recon/*.d | sed 's/\\.d$/.c/'); ",
+        conf_print(b,
+                   "(cd %s && grep -l '%s' ref-decoder/norm/*.d ref-decoder/read/*.d "
+                   "ref-decoder/recon/*.d | sed 's/\\.d$/.c/'); ",
                    c->o->build, file);
     else
         conf_print(b, "echo %s; ", file);
@@ -73,17 +77,23 @@ static void add_sources(const campaign *c, const char *file, conf_bytes *b)
 static int build(const campaign *c, const conf_mutant *m, size_t n, const char *folder)
 {
     const char *const b = c->o->build;
-    conf_bytes        command = { NULL, 0, 0 };
-    int               good;
+    conf_bytes command = { NULL, 0, 0 };
+    int good;
 
     conf_print(&command, "d='%s'; for s in $({ ", folder);
     for (size_t i = 0; i < n; i++)
         if (i == 0 || strcmp(m[i].file, m[i - 1].file) != 0)
             add_sources(c, m[i].file, &command);
-    conf_print(&command, "} | sort -u); do from=$s; [ -f \"$d/$s\" ] && from=$d/$s; %s -I\"$d/ref-decoder\" -Iref-decoder -Iref-encoder -w -c $from "
-               "-o \"$d/$(echo $s | tr / _).o\" 2>>\"$d/log\" || exit 1; done; ", c->o->compile);
-    conf_print(&command, "cc -fopenmp \"$d\"/*.o %s/conformance/tool/*.o %s/conformance/tolerance/class_t.o %s/tests/spec/eval_*.o "
-               "$(ls %s/ref-decoder/tool/*.o | grep -v /ted4) %s/libted4enc.a %s/libted4render.a %s/libted4dec.a -o \"$d/ted4conf\" %s 2>>\"$d/log\"",
+    conf_print(&command,
+               "} | sort -u); do from=$s; [ -f \"$d/$s\" ] && from=$d/$s; %s -I\"$d/ref-decoder\" "
+               "-Iref-decoder -Iref-encoder -w -c $from "
+               "-o \"$d/$(echo $s | tr / _).o\" 2>>\"$d/log\" || exit 1; done; ",
+               c->o->compile);
+    conf_print(&command,
+               "cc -fopenmp \"$d\"/*.o %s/conformance/tool/*.o %s/conformance/tolerance/class_t.o "
+               "%s/tests/spec/eval_*.o "
+               "$(ls %s/ref-decoder/tool/*.o | grep -v /ted4) %s/libted4enc.a %s/libted4render.a "
+               "%s/libted4dec.a -o \"$d/ted4conf\" %s 2>>\"$d/log\"",
                b, b, b, b, b, b, b, c->o->libraries);
     good = shell((const char *)command.data);
     conf_free(&command);
@@ -93,9 +103,17 @@ static int build(const campaign *c, const conf_mutant *m, size_t n, const char *
 /* Sends the program in folder through the suite; p is to be freed. */
 static void replay(const campaign *c, const char *folder, conf_process *p)
 {
-    const conf_process_options o = { "exec", "TED4_KERNEL=plain", c->o->timeout, (uint64_t)4 << 30 };
-    char          program[CONF_PATH];
-    const char   *argv[] = { program, "replay", "--stop", "--names", "--ways", "--suite", c->o->vectors != NULL ? c->o->vectors : c->o->suite, NULL };
+    const conf_process_options o = { "exec", "TED4_KERNEL=plain", c->o->timeout,
+                                     (uint64_t)4 << 30 };
+    char program[CONF_PATH];
+    const char *argv[] = { program,
+                           "replay",
+                           "--stop",
+                           "--names",
+                           "--ways",
+                           "--suite",
+                           c->o->vectors != NULL ? c->o->vectors : c->o->suite,
+                           NULL };
     conf_process *one[1] = { p };
 
     conf_path(program, "%s/ted4conf", folder);
@@ -114,7 +132,8 @@ static void take_reason(conf_mutant *m, const char *how, const char *text)
             *c = ' ';
 }
 
-/* Survived when the whole suite passed; killed when something went wrong at a vector. Anything else is no result, and ends the program. */
+/* Survived when the whole suite passed; killed when something went wrong at a vector. Anything else
+ * is no result, and ends the program. */
 static void judge(conf_mutant *m, conf_process *p)
 {
     char how[32] = "", *said = (char *)p->complaint.data, *rest, *line, *id;
@@ -124,13 +143,18 @@ static void judge(conf_mutant *m, conf_process *p)
         return;
     }
     if (p->end != CONF_ENDED)
-        snprintf(how, sizeof how, "%s ", p->end == CONF_CRASHED ? "crash" : p->end == CONF_HUNG ? "hang" : "endless output");
+        snprintf(how, sizeof how, "%s ",
+                 p->end == CONF_CRASHED ? "crash"
+                 : p->end == CONF_HUNG  ? "hang"
+                                        : "endless output");
     else if (p->code != 1)
         snprintf(how, sizeof how, "exit %d ", p->code);
-    for (line = strtok_r((char *)p->answer.data, "\n", &rest); line != NULL; line = strtok_r(NULL, "\n", &rest))
+    for (line = strtok_r((char *)p->answer.data, "\n", &rest); line != NULL;
+         line = strtok_r(NULL, "\n", &rest))
         if (strncmp(line, "at ", 3) == 0)
             snprintf(m->vector, sizeof m->vector, "%s", line + 3);
-        else if (how[0] == '\0' && (id = strstr(line, m->vector)) != NULL && strncmp(id + strlen(m->vector), ": ", 2) == 0)
+        else if (how[0] == '\0' && (id = strstr(line, m->vector)) != NULL &&
+                 strncmp(id + strlen(m->vector), ": ", 2) == 0)
             said = id + strlen(m->vector) + 2;
     if (m->vector[0] == '\0' || (p->end == CONF_CRASHED && p->code == SIGKILL))
         conf_die("%s: the runner was ended, or came to no vector: %s%s", m->id, how, said);
@@ -146,10 +170,11 @@ static void put_file(const char *folder, const char *file, const conf_bytes *b)
     conf_write(path, b->data, b->size);
 }
 
-/* The unchanged program, made of all files that mutants change. A time limit that is near to what it takes would count slowness as a kill. */
+/* The unchanged program, made of all files that mutants change. A time limit that is near to what
+ * it takes would count slowness as a kill. */
 static void baseline(const campaign *c)
 {
-    char         folder[CONF_PATH];
+    char folder[CONF_PATH];
     conf_process p;
 
     make_folder(folder);
@@ -166,9 +191,11 @@ static void baseline(const campaign *c)
     }
     replay(c, folder, &p);
     if (p.end != CONF_ENDED || p.code != 0)
-        conf_die("the unchanged program does not pass: %s%s", (const char *)p.answer.data, (const char *)p.complaint.data);
+        conf_die("the unchanged program does not pass: %s%s", (const char *)p.answer.data,
+                 (const char *)p.complaint.data);
     if (SLACK * p.ms > 1000 * c->o->timeout)
-        conf_die("the unchanged program takes %.0f s: mutants need a time limit of %d times that", p.ms / 1000, SLACK);
+        conf_die("the unchanged program takes %.0f s: mutants need a time limit of %d times that",
+                 p.ms / 1000, SLACK);
     fprintf(stderr, "unchanged: passes in %.1f s\n", p.ms / 1000);
     conf_process_free(&p);
     remove_folder(folder);
@@ -176,8 +203,8 @@ static void baseline(const campaign *c)
 
 static void try_one(const campaign *c, conf_mutant *m)
 {
-    char         folder[CONF_PATH];
-    conf_bytes   changed = { NULL, 0, 0 };
+    char folder[CONF_PATH];
+    conf_bytes changed = { NULL, 0, 0 };
     conf_process p;
 
     make_folder(folder);
@@ -198,7 +225,8 @@ static void try_one(const campaign *c, conf_mutant *m)
 
 static int is_due(const campaign *c, const conf_mutant *m)
 {
-    return m->verdict[0] == '\0' && (c->o->only == NULL || strncmp(m->id, c->o->only, strlen(c->o->only)) == 0);
+    return m->verdict[0] == '\0' &&
+           (c->o->only == NULL || strncmp(m->id, c->o->only, strlen(c->o->only)) == 0);
 }
 
 /* Every jobs-th mutant without result, in a process of its own. */
@@ -208,7 +236,7 @@ static void work(const campaign *c)
 
     for (int j = 0; j < c->o->jobs; j++) {
         const pid_t pid = fork();
-        int         turn = 0;
+        int turn = 0;
 
         if (pid < 0)
             conf_die("fork");
@@ -254,11 +282,13 @@ static void print_mutants(const conf_mutant_list *l, conf_bytes *b)
         conf_print(b, "none\n");
     for (size_t i = 0; i < l->n; i++)
         if (strcmp(l->m[i].verdict, "survived") == 0 || strcmp(l->m[i].verdict, "no compile") == 0)
-            conf_print(b, "* %s (%s, %s): `%s` for `%s`%s%s\n", l->m[i].id, l->m[i].file, l->m[i].verdict, l->m[i].to, l->m[i].from,
+            conf_print(b, "* %s (%s, %s): `%s` for `%s`%s%s\n", l->m[i].id, l->m[i].file,
+                       l->m[i].verdict, l->m[i].to, l->m[i].from,
                        l->m[i].why[0] != '\0' ? ": " : "", l->m[i].why);
     conf_print(b, "\n## Not run since what their results stood on has changed\n\n");
     print_waiting(l, b);
-    conf_print(b, "\n## Killed, and by what first\n\n`mutants.list` says what each changes.\n\n| mutant | vector | what was wrong |\n|---|---|---|\n");
+    conf_print(b, "\n## Killed, and by what first\n\n`mutants.list` says what each changes.\n\n| "
+                  "mutant | vector | what was wrong |\n|---|---|---|\n");
     for (size_t i = 0; i < l->n; i++)
         if (strcmp(l->m[i].verdict, "killed") == 0)
             conf_print(b, "| %s | %s | %s |\n", l->m[i].id, l->m[i].vector, l->m[i].by);
@@ -267,26 +297,35 @@ static void print_mutants(const conf_mutant_list *l, conf_bytes *b)
 static int write_report(const campaign *c)
 {
     const conf_mutant_list *l = &c->list;
-    const size_t killed = conf_mutant_count(l, "killed"), survived = conf_mutant_count(l, "survived"), judged = killed + survived;
-    const int    good = judged >= LEAST_MUTANTS && 100 * killed >= LEAST_PERCENT * judged && judged == l->n;
-    conf_bytes   b = { NULL, 0, 0 };
-    char         path[CONF_PATH], share[16] = "";
+    const size_t killed = conf_mutant_count(l, "killed"),
+                 survived = conf_mutant_count(l, "survived"), judged = killed + survived;
+    const int good = judged >= LEAST_MUTANTS && 100 * killed >= LEAST_PERCENT * judged &&
+                     judged == l->n;
+    conf_bytes b = { NULL, 0, 0 };
+    char path[CONF_PATH], share[16] = "";
 
     /* Kills outlast survivals, so that a share of some would flatter. */
     if (judged == l->n && judged > 0)
         snprintf(share, sizeof share, " (%.1f %%)", 100.0 * (double)killed / (double)judged);
-    conf_print(&b, "# Mutants\n\nFaults seeded into the reference decoder, one at a time (`mutants.list`), against the published vectors alone: `make "
-               "conformance-mutants`, which first sees that\nthe unchanged program, built and run in the same way, passes. The plain kernels are used, so that "
-               "`norm/` is what is tested. Results are kept in `mutants.csv` for as long as what they\nstand on is the same "
-               "([README](README.md#mutants)); `ted4conf mutants --check` says how many still hold.\n\n| | |\n|---|---|\n| mutants | %zu |\n| judged | %zu "
-               "|\n| killed | %zu%s |\n| survived | %zu |\n| do not compile | %zu |\n| not run | %zu |\n\n", l->n, judged, killed, share, survived,
-               conf_mutant_count(l, "no compile"), conf_mutant_count(l, ""));
+    conf_print(&b,
+               "# Mutants\n\nFaults seeded into the reference decoder, one at a time "
+               "(`mutants.list`), against the published vectors alone: `make "
+               "conformance-mutants`, which first sees that\nthe unchanged program, built and run "
+               "in the same way, passes. The plain kernels are used, so that "
+               "`norm/` is what is tested. Results are kept in `mutants.csv` for as long as what "
+               "they\nstand on is the same "
+               "([README](README.md#mutants)); `ted4conf mutants --check` says how many still "
+               "hold.\n\n| | |\n|---|---|\n| mutants | %zu |\n| judged | %zu "
+               "|\n| killed | %zu%s |\n| survived | %zu |\n| do not compile | %zu |\n| not run | "
+               "%zu |\n\n",
+               l->n, judged, killed, share, survived, conf_mutant_count(l, "no compile"),
+               conf_mutant_count(l, ""));
     print_mutants(l, &b);
     conf_path(path, "%s/MUTANTS.md", c->o->suite);
     conf_write(path, b.data, b.size);
     conf_free(&b);
-    printf("%zu mutants, %zu killed, %zu survived, %zu not judged: %s\n", l->n, killed, survived, l->n - judged,
-           good ? "enough" : "not enough");
+    printf("%zu mutants, %zu killed, %zu survived, %zu not judged: %s\n", l->n, killed, survived,
+           l->n - judged, good ? "enough" : "not enough");
     return good;
 }
 
@@ -294,7 +333,7 @@ static int write_report(const campaign *c)
 static void check_equivalents(const char *suite)
 {
     conf_mutant_list l = { .m = NULL };
-    char             path[CONF_PATH];
+    char path[CONF_PATH];
 
     conf_path(path, "%s/mutants-equivalent.list", suite);
     conf_mutant_list_read(&l, path);
@@ -310,7 +349,8 @@ static void run_due(campaign *c)
     for (size_t i = 0; i < c->list.n; i++)
         if (is_due(c, &c->list.m[i])) {
             if (c->o->compile == NULL)
-                conf_die("--compile is missing: the decoder's compiler and flags (make conformance-mutants has them)");
+                conf_die("--compile is missing: the decoder's compiler and flags (make "
+                         "conformance-mutants has them)");
             baseline(c);
             work(c);
             conf_mutant_results_read(&c->list, c->o->suite);
@@ -321,15 +361,16 @@ static void run_due(campaign *c)
 int conf_mutants(const conf_mutant_options *o)
 {
     campaign c = { .o = o };
-    char     path[CONF_PATH];
-    int      good = 1;
+    char path[CONF_PATH];
+    int good = 1;
 
     conf_path(path, "%s/mutants.list", o->suite);
     conf_mutant_list_read(&c.list, path);
     check_equivalents(o->suite);
     conf_mutant_results_read(&c.list, o->suite);
     if (o->check) {
-        printf("%zu mutants, %zu with a result that holds\n", c.list.n, c.list.n - conf_mutant_count(&c.list, ""));
+        printf("%zu mutants, %zu with a result that holds\n", c.list.n,
+               c.list.n - conf_mutant_count(&c.list, ""));
     } else {
         run_due(&c);
         good = write_report(&c);

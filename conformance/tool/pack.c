@@ -1,4 +1,5 @@
-/* pack.c - see pack.h. Matches are looked for at the last place of the same four bytes and at distance 1.
+/* pack.c - see pack.h. Matches are looked for at the last place of the same four bytes and at
+ * distance 1.
  * SPDX-License-Identifier: BSD-2-Clause */
 #include "pack.h"
 
@@ -6,21 +7,29 @@
 #include <string.h>
 #include "base/bytes.h"
 
-enum { LITERALS = 288, DISTANCES = 30, END = 256, LEAST = 4, MOST = 258, HASH = 1 << 14, WINDOW = 32768 };
+enum {
+    LITERALS = 288,
+    DISTANCES = 30,
+    END = 256,
+    LEAST = 4,
+    MOST = 258,
+    HASH = 1 << 14,
+    WINDOW = 32768
+};
 
 typedef struct {
-    uint16_t length, distance;          /* distance 0: literal length */
+    uint16_t length, distance; /* distance 0: literal length */
 } token;
 
 typedef struct {
     conf_bytes *out;
-    uint32_t    bits;
-    unsigned    n;
+    uint32_t bits;
+    unsigned n;
 } bit_writer;
 
 /* Length of every code; codes themselves follow from them (RFC 1951, 3.2.2). */
 typedef struct {
-    uint8_t  length[LITERALS];
+    uint8_t length[LITERALS];
     uint16_t code[LITERALS];
 } codes;
 
@@ -99,7 +108,7 @@ static size_t match(const uint8_t *data, size_t size, size_t at, size_t from)
 /* Tokens of the data; an owned array. */
 static token *find_tokens(const uint8_t *data, size_t size, size_t *n)
 {
-    token  *t = conf_alloc(size + 1, sizeof *t);
+    token *t = conf_alloc(size + 1, sizeof *t);
     size_t *last = conf_alloc(HASH, sizeof *last);
 
     *n = 0;
@@ -120,7 +129,8 @@ static token *find_tokens(const uint8_t *data, size_t size, size_t *n)
             }
             last[slot] = at + 1;
         }
-        t[(*n)++] = best >= LEAST ? (token){ (uint16_t)best, (uint16_t)distance } : (token){ data[at], 0 };
+        t[(*n)++] = best >= LEAST ? (token) { (uint16_t)best, (uint16_t)distance }
+                                  : (token) { data[at], 0 };
         at += best >= LEAST ? best : 1;
     }
     free(last);
@@ -161,7 +171,8 @@ static unsigned distance_symbol(unsigned distance, unsigned *extra, unsigned *va
     return symbol;
 }
 
-static void put_tokens(bit_writer *w, const codes *literal, const codes *distance, const token *t, size_t n)
+static void put_tokens(bit_writer *w, const codes *literal, const codes *distance, const token *t,
+                       size_t n)
 {
     for (size_t i = 0; i < n; i++) {
         unsigned extra, value;
@@ -181,9 +192,10 @@ static void put_tokens(bit_writer *w, const codes *literal, const codes *distanc
 /* RFC 1951, 3.2.7, without repeat codes. over: one length too short. */
 static void put_dynamic(bit_writer *w, const token *t, size_t n, int over)
 {
-    static const uint8_t order[19] = { 16, 17, 18, 0, 8, 7, 9, 6, 10, 5, 11, 4, 12, 3, 13, 2, 14, 1, 15 };
+    static const uint8_t order[19] = { 16, 17, 18, 0, 8,  7, 9,  6, 10, 5,
+                                       11, 4,  12, 3, 13, 2, 14, 1, 15 };
     uint8_t used[LITERALS] = { 0 }, far[DISTANCES] = { 0 }, lengths[19] = { 0 };
-    codes   literal, distance, length;
+    codes literal, distance, length;
 
     used[END] = far[0] = far[1] = 1;
     for (size_t i = 0; i < n; i++) {
@@ -257,10 +269,12 @@ static void put_head(conf_bytes *out, conf_pack_way way, conf_pack_fault fault)
         conf_add(out, "\0\0\0\1", 4);
 }
 
-static void put_body(bit_writer *w, const uint8_t *data, size_t size, conf_pack_way way, conf_pack_fault fault)
+static void put_body(bit_writer *w, const uint8_t *data, size_t size, conf_pack_way way,
+                     conf_pack_fault fault)
 {
-    codes  literal, distance;
-    size_t n, stored = way == CONF_PACK_MIXED || fault == CONF_PACK_STORED ? size < 5 ? size : 5 : 0;
+    codes literal, distance;
+    size_t n,
+        stored = way == CONF_PACK_MIXED || fault == CONF_PACK_STORED ? size < 5 ? size : 5 : 0;
     token *t;
 
     if (fault == CONF_PACK_NOT_SHORTER) {
@@ -279,19 +293,20 @@ static void put_body(bit_writer *w, const uint8_t *data, size_t size, conf_pack_
         put_bits(w, 1, 2);
         fixed_codes(&literal, &distance);
         if (fault == CONF_PACK_DISTANCE)
-            put_tokens(w, &literal, &distance, (const token[]){ { 'x', 0 }, { 5, 2 } }, 2);
+            put_tokens(w, &literal, &distance, (const token[]) { { 'x', 0 }, { 5, 2 } }, 2);
         put_tokens(w, &literal, &distance, t, n);
     }
     to_byte(w);
     free(t);
 }
 
-void conf_pack(conf_bytes *out, const uint8_t *data, size_t size, conf_pack_way way, conf_pack_fault fault)
+void conf_pack(conf_bytes *out, const uint8_t *data, size_t size, conf_pack_way way,
+               conf_pack_fault fault)
 {
     bit_writer w = { .out = out };
     conf_bytes other = { NULL, 0, 0 };
-    uint8_t    check[4];
-    uint32_t   sum;
+    uint8_t check[4];
+    uint32_t sum;
 
     if (fault == CONF_PACK_EMPTY)
         return;
@@ -327,8 +342,8 @@ int conf_pack_way_of(const char *name)
 int conf_pack_fault_of(const char *name)
 {
     static const char *const fault[CONF_PACK_FAULTS] = {
-        "good", "adler", "check", "method", "window", "dictionary", "short", "long", "trailing", "cut", "block3", "distance",
-        "stored", "over", "not-shorter", "empty"
+        "good",     "adler", "check",  "method",   "window", "dictionary", "short",       "long",
+        "trailing", "cut",   "block3", "distance", "stored", "over",       "not-shorter", "empty"
     };
 
     return index_of(fault, CONF_PACK_FAULTS, name);

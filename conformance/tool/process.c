@@ -1,4 +1,5 @@
-/* process.c - see process.h. Every run is a process group, so that what it has started ends with it.
+/* process.c - see process.h. Every run is a process group, so that what it has started ends with
+ * it.
  * SPDX-License-Identifier: BSD-2-Clause */
 #include "process.h"
 
@@ -26,14 +27,15 @@ static double seconds(void)
     return (double)t.tv_sec + 1e-9 * (double)t.tv_nsec;
 }
 
-static _Noreturn void child(const conf_process_options *o, const char *const *argv, int out, int err)
+static _Noreturn void child(const conf_process_options *o, const char *const *argv, int out,
+                            int err)
 {
-    const int     null = open("/dev/null", O_RDONLY);
-    char         *list[MAX_ARGUMENTS] = { NULL };
-    char          shell[] = "sh", flag[] = "-c", name[] = "ted4conf";
-    conf_bytes    command = { NULL, 0, 0 };
+    const int null = open("/dev/null", O_RDONLY);
+    char *list[MAX_ARGUMENTS] = { NULL };
+    char shell[] = "sh", flag[] = "-c", name[] = "ted4conf";
+    conf_bytes command = { NULL, 0, 0 };
     struct rlimit limit = { (rlim_t)o->memory, (rlim_t)o->memory }, core = { 0, 0 };
-    int           n = 0;
+    int n = 0;
 
     setpgid(0, 0);
     dup2(null, 0);
@@ -53,7 +55,7 @@ static _Noreturn void child(const conf_process_options *o, const char *const *ar
     list[n++] = name;
     for (; *argv != NULL && n + 1 < MAX_ARGUMENTS; argv++)
         list[n++] = conf_copy(*argv);
-    if (o->memory > 0)          /* of the program: last, for a runner with sanitizers has more already */
+    if (o->memory > 0) /* of the program: last, for a runner with sanitizers has more already */
         setrlimit(RLIMIT_AS, &limit);
     execv("/bin/sh", list);
     _exit(127);
@@ -89,7 +91,7 @@ void conf_process_start(conf_process *p, const conf_process_options *o, const ch
 /* What a pipe holds now; closed ones become -1. Gives 0 when there is too much of it. */
 static int drain(int *fd, conf_bytes *to, size_t most, int keep_all)
 {
-    uint8_t       piece[PIECE];
+    uint8_t piece[PIECE];
     const ssize_t n = read(*fd, piece, sizeof piece);
 
     if (n <= 0) {
@@ -117,7 +119,7 @@ static void finish(conf_process *p, conf_process_end end)
         kill(-p->pid, SIGKILL);
     while (waitpid(p->pid, &status, 0) < 0 && errno == EINTR)
         ;
-    kill(-p->pid, SIGKILL);             /* what it left behind */
+    kill(-p->pid, SIGKILL); /* what it left behind */
     if (p->out >= 0)
         close(p->out);
     if (p->err >= 0)
@@ -133,10 +135,12 @@ static int leader_ended(const conf_process *p)
     siginfo_t info;
 
     info.si_pid = 0;
-    return waitid(P_PID, (id_t)p->pid, &info, WEXITED | WNOHANG | WNOWAIT) == 0 && info.si_pid == p->pid;
+    return waitid(P_PID, (id_t)p->pid, &info, WEXITED | WNOHANG | WNOWAIT) == 0 &&
+           info.si_pid == p->pid;
 }
 
-/* What the pipes hold; f says which have something. Gives 0 when there is too much of it on stdout. */
+/* What the pipes hold; f says which have something. Gives 0 when there is too much of it on stdout.
+ */
 static int hear(conf_process *p, const struct pollfd *f)
 {
     if (f[0].revents != 0 && p->out >= 0 && !drain(&p->out, &p->answer, CONF_MAX_OUTPUT, 1))
@@ -146,8 +150,8 @@ static int hear(conf_process *p, const struct pollfd *f)
     return 1;
 }
 
-/* The leader may have spoken between the last look at its pipes and its end: that is in them. What others of the group say after it does not count, and
- * need not end. */
+/* The leader may have spoken between the last look at its pipes and its end: that is in them. What
+ * others of the group say after it does not count, and need not end. */
 static int last_words(conf_process *p)
 {
     for (int i = 0; i < PIECES; i++) {
@@ -181,15 +185,15 @@ static int look(conf_process *p, const struct pollfd *f)
 int conf_process_wait(conf_process *const *p, int n, int ms)
 {
     struct pollfd f[2 * MAX_PROCESSES];
-    int           waiting = ms;
+    int waiting = ms;
 
     if (n > MAX_PROCESSES)
         conf_die("more than %d processes", MAX_PROCESSES);
     for (int i = 0; i < n; i++) {
-        f[2 * i] = (struct pollfd){ p[i]->pid > 0 ? p[i]->out : -1, POLLIN, 0 };
-        f[2 * i + 1] = (struct pollfd){ p[i]->pid > 0 ? p[i]->err : -1, POLLIN, 0 };
+        f[2 * i] = (struct pollfd) { p[i]->pid > 0 ? p[i]->out : -1, POLLIN, 0 };
+        f[2 * i + 1] = (struct pollfd) { p[i]->pid > 0 ? p[i]->err : -1, POLLIN, 0 };
         if (p[i]->pid > 0 && p[i]->out < 0 && waiting > 1)
-            waiting = 1;                /* it has closed its stdout and is about to end */
+            waiting = 1; /* it has closed its stdout and is about to end */
     }
     (void)poll(f, (nfds_t)(2 * n), waiting);
     for (int i = 0; i < n; i++)

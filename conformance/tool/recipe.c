@@ -1,4 +1,5 @@
-/* recipe.c - see recipe.h. Lines are read once; a vector under `each` is read again for every value.
+/* recipe.c - see recipe.h. Lines are read once; a vector under `each` is read again for every
+ * value.
  * SPDX-License-Identifier: BSD-2-Clause */
 #include "recipe.h"
 
@@ -13,32 +14,32 @@ enum { MAX_EACH = 4, MAX_NAMES = 6, MAX_DEPTH = 8 };
 
 /* A file's lines as they stand, comments and ends stripped. */
 typedef struct {
-    char      **line;
-    int        *number;
-    int         n;
+    char **line;
+    int *number;
+    int n;
     const char *name;
 } source;
 
 typedef struct {
     char *name;
     source *from;
-    int    first, end;
+    int first, end;
 } preset;
 
 /* `each a:b in 1:2 3:4`: names, and the values that they take together. */
 typedef struct {
     char *name[MAX_NAMES];
-    int   n_names;
+    int n_names;
     char **value;
-    int   n_values;
+    int n_values;
 } each;
 
 typedef struct {
     conf_recipes *out;
-    preset       *presets;
-    int           n_presets;
-    each          each[MAX_EACH];
-    int           n_each, at[MAX_EACH];
+    preset *presets;
+    int n_presets;
+    each each[MAX_EACH];
+    int n_each, at[MAX_EACH];
 } reader;
 
 _Noreturn void conf_line_bad(const conf_line *l, const char *why)
@@ -48,7 +49,7 @@ _Noreturn void conf_line_bad(const conf_line *l, const char *why)
 
 long long conf_line_number(const conf_line *l, int i, long long low, long long high)
 {
-    char     *end;
+    char *end;
     long long v;
 
     if (i >= l->n)
@@ -72,17 +73,17 @@ const conf_line *conf_line_find(const conf_recipe *r, const char *name)
 
 static source *read_source(const char *path, const char *name)
 {
-    source    *s = conf_alloc(1, sizeof *s);
+    source *s = conf_alloc(1, sizeof *s);
     conf_bytes b;
-    char      *p;
-    int        number = 0;
+    char *p;
+    int number = 0;
 
     if (!conf_read(path, &b))
         conf_die("%s: cannot be read", path);
     s->name = name;
     for (p = (char *)b.data; *p != '\0';) {
-        char  *end = strchr(p, '\n'), *const next = end != NULL ? end + 1 : p + strlen(p);
-        char  *hash;
+        char *end = strchr(p, '\n'), *const next = end != NULL ? end + 1 : p + strlen(p);
+        char *hash;
 
         number++;
         if (end != NULL)
@@ -124,7 +125,8 @@ static int split(char *text, char **word, int room)
     return n;
 }
 
-/* Value of a name under `each`, as part of the value taken now; NULL: no such name. to: room for it. */
+/* Value of a name under `each`, as part of the value taken now; NULL: no such name. to: room for
+ * it. */
 static const char *value_of(const reader *r, const char *name, size_t length, char *to, size_t room)
 {
     for (int i = 0; i < r->n_each; i++) {
@@ -147,14 +149,14 @@ static const char *value_of(const reader *r, const char *name, size_t length, ch
 /* The line with {name}, {name+1}, {name-1} replaced. */
 static char *replace(const reader *r, const source *s, int i)
 {
-    conf_bytes  out = { NULL, 0, 0 };
+    conf_bytes out = { NULL, 0, 0 };
     const char *p = s->line[i];
 
     conf_add(&out, "", 0);
     while (*p != '\0') {
         const char *const end = *p == '{' ? strchr(p, '}') : NULL;
-        const size_t      name = end != NULL ? strcspn(p + 1, "+-}") : 0;
-        char              value[64];
+        const size_t name = end != NULL ? strcspn(p + 1, "+-}") : 0;
+        char value[64];
 
         if (end == NULL) {
             conf_add(&out, p++, 1);
@@ -181,7 +183,7 @@ static const preset *find_preset(const reader *r, const char *name)
 
 static void add_line(conf_recipe *v, const source *s, int i, char *text)
 {
-    conf_line  *l;
+    conf_line *l;
     const char *rest = text + strcspn(text, " \t");
 
     v->line = realloc(v->line, (v->n + 1) * sizeof *v->line);
@@ -201,7 +203,7 @@ static void add_line(conf_recipe *v, const source *s, int i, char *text)
 static void add_lines(reader *r, conf_recipe *v, const source *s, int first, int end, int depth)
 {
     for (int i = first; i < end; i++) {
-        char         *text = replace(r, s, i);
+        char *text = replace(r, s, i);
         const preset *p;
 
         if (strncmp(text, "use ", 4) != 0) {
@@ -231,7 +233,7 @@ static char *tidy_id(char *id)
 static void add_vector(reader *r, const source *s, int first, int end)
 {
     conf_recipe *v;
-    char        *head = replace(r, s, first);
+    char *head = replace(r, s, first);
 
     r->out->recipe = realloc(r->out->recipe, (r->out->n + 1) * sizeof *r->out->recipe);
     if (r->out->recipe == NULL)
@@ -281,7 +283,7 @@ static void add_value(each *e, const char *text)
 static void add_each(reader *r, const source *s, int at)
 {
     char *text = conf_copy(s->line[at]), *word[CONF_WORDS], number[24];
-    int   n = split(text, word, CONF_WORDS);
+    int n = split(text, word, CONF_WORDS);
     each *e = &r->each[r->n_each++];
 
     if (n < 4 || strcmp(word[2], "in") != 0 || r->n_each > MAX_EACH)
@@ -329,7 +331,7 @@ static void read_file(reader *r, source *s)
             r->presets = realloc(r->presets, (size_t)(r->n_presets + 1) * sizeof *r->presets);
             if (r->presets == NULL)
                 conf_die("no memory");
-            r->presets[r->n_presets++] = (preset){ s->line[first] + 7, s, first + 1, i };
+            r->presets[r->n_presets++] = (preset) { s->line[first] + 7, s, first + 1, i };
         } else if (strncmp(s->line[i], "vector ", 7) == 0) {
             i = find_end(s, i);
             add_vectors(r, s, first, i);
@@ -341,7 +343,7 @@ static void read_file(reader *r, source *s)
 
 void conf_recipes_load(conf_recipes *out, const char *folder)
 {
-    reader  r = { .out = out };
+    reader r = { .out = out };
     source **s;
 
     memset(out, 0, sizeof *out);

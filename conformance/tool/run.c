@@ -1,5 +1,7 @@
-/* run.c - see run.h. Each vector is copied into a folder of its own, given to the decoder twice, and both answers have to agree. A decoder that claims lenient
- * mode is asked about vectors that are not invalid the second time in that mode, and those that say what can be salvaged a third time.
+/* run.c - see run.h. Each vector is copied into a folder of its own, given to the decoder twice,
+ * and both answers have to agree. A decoder that claims lenient mode is asked about vectors that
+ * are not invalid the second time in that mode, and those that say what can be salvaged a third
+ * time.
  * SPDX-License-Identifier: BSD-2-Clause */
 #include "run.h"
 
@@ -18,27 +20,27 @@ typedef enum { RUN_FIRST, RUN_SECOND, RUN_LENIENT } run_kind;
 /* A vector under way. */
 typedef struct {
     conf_process process;
-    size_t       entry;
-    run_kind     run;
-    json_t      *first;         /* answer of the first run; owned */
-    conf_bytes   file;          /* owned */
-    char         folder[CONF_PATH], dump[CONF_PATH];
+    size_t entry;
+    run_kind run;
+    json_t *first;   /* answer of the first run; owned */
+    conf_bytes file; /* owned */
+    char folder[CONF_PATH], dump[CONF_PATH];
 } slot;
 
 typedef struct {
-    conf_run_result      *r;
-    conf_process_options  options[3];           /* of each kind of run */
-    conf_process        **process;              /* [jobs] of the slots */
-    char                  folder[CONF_PATH];    /* of all slots; removed at the end */
-    conf_recipes          recipes;              /* for what is made on demand; empty until then */
+    conf_run_result *r;
+    conf_process_options options[3]; /* of each kind of run */
+    conf_process **process;          /* [jobs] of the slots */
+    char folder[CONF_PATH];          /* of all slots; removed at the end */
+    conf_recipes recipes;            /* for what is made on demand; empty until then */
 } runner;
 
 static json_t *ask_capabilities(runner *w)
 {
     static const char *const argv[] = { "--ted4-capabilities", NULL };
-    conf_process  p;
+    conf_process p;
     conf_process *list[1] = { &p };
-    json_t       *o;
+    json_t *o;
 
     conf_process_start(&p, &w->options[0], argv);
     while (conf_process_wait(list, 1, 100) < 0)
@@ -85,22 +87,25 @@ static int make_on_demand(runner *w, const conf_entry *e, conf_bytes *b)
 static int fetch(runner *w, size_t i, conf_bytes *b)
 {
     const conf_entry *e = &w->r->entry[i];
-    conf_verdict     *v = &w->r->verdict[i];
-    const json_t     *demand = json_object_get(e->descriptor, "demand");
+    conf_verdict *v = &w->r->verdict[i];
+    const json_t *demand = json_object_get(e->descriptor, "demand");
 
-    *v = (conf_verdict){ CONF_MISSING, "" };
+    *v = (conf_verdict) { CONF_MISSING, "" };
     if (e->descriptor == NULL) {
-        snprintf(v->reason, sizeof v->reason, "there is no descriptor, or not the one that SUITE.json knows");
+        snprintf(v->reason, sizeof v->reason,
+                 "there is no descriptor, or not the one that SUITE.json knows");
         return 0;
     }
     if (conf_judge_declines(w->r->capabilities, e->descriptor)) {
-        *v = (conf_verdict){ CONF_DECLINED, "the decoder declines a feature or knob of it" };
+        *v = (conf_verdict) { CONF_DECLINED, "the decoder declines a feature or knob of it" };
         return 0;
     }
     if (!conf_read(e->file, b)) {
-        if (demand != NULL && (json_is_string(demand) ? !w->r->options->large : !w->r->options->demand)) {
+        if (demand != NULL &&
+            (json_is_string(demand) ? !w->r->options->large : !w->r->options->demand)) {
             v->outcome = CONF_NOT_RUN;
-            snprintf(v->reason, sizeof v->reason, "made on demand only (--%s)", json_is_string(demand) ? "large" : "demand");
+            snprintf(v->reason, sizeof v->reason, "made on demand only (--%s)",
+                     json_is_string(demand) ? "large" : "demand");
             return 0;
         }
         if (demand == NULL || !make_on_demand(w, e, b)) {
@@ -119,14 +124,15 @@ static int fetch(runner *w, size_t i, conf_bytes *b)
 /* Is the run of a slot in lenient mode? */
 static int lenient(const runner *w, const slot *s)
 {
-    return s->run == RUN_LENIENT
-        || (s->run == RUN_SECOND && conf_judge_lenient(w->r->capabilities) && !conf_expects(w->r->entry[s->entry].descriptor, "invalid"));
+    return s->run == RUN_LENIENT ||
+           (s->run == RUN_SECOND && conf_judge_lenient(w->r->capabilities) &&
+            !conf_expects(w->r->entry[s->entry].descriptor, "invalid"));
 }
 
 /* Removes what decoders have left in the folder of --dump, as far as it is files. */
 static void empty(const char *folder)
 {
-    char   path[CONF_PATH];
+    char path[CONF_PATH];
     size_t n;
     char **name = conf_list(folder, "", &n);
 
@@ -140,10 +146,10 @@ static void empty(const char *folder)
 static void start(runner *w, slot *s)
 {
     const conf_entry *e = &w->r->entry[s->entry];
-    char        file[CONF_PATH], queries[CONF_PATH], knob[64];
+    char file[CONF_PATH], queries[CONF_PATH], knob[64];
     const char *argv[16] = { "--ted4-run", file, "--tiers", "T0,T1,T2,T3,T4,T5" }, *name;
-    json_t     *value, *knobs = json_object_get(e->descriptor, "knobs");
-    int         n = 4;
+    json_t *value, *knobs = json_object_get(e->descriptor, "knobs");
+    int n = 4;
 
     conf_path(file, "%s/input.ted4", s->folder);
     conf_path(queries, "%s/queries.json", s->folder);
@@ -151,7 +157,8 @@ static void start(runner *w, slot *s)
         argv[n++] = "--queries";
         argv[n++] = queries;
     }
-    json_object_foreach(knobs, name, value) {
+    json_object_foreach(knobs, name, value)
+    {
         snprintf(knob, sizeof knob, "%s=%lld", name, (long long)json_integer_value(value));
         argv[n++] = "--knob";
         argv[n++] = knob;
@@ -172,8 +179,9 @@ static void start(runner *w, slot *s)
 /* Copies file, which becomes the slot's, and queries into a fresh folder. */
 static void prepare(runner *w, slot *s, const conf_bytes *b)
 {
-    const json_t *const d = w->r->entry[s->entry].descriptor, *const queries = json_object_get(d, "queries");
-    char                path[CONF_PATH];
+    const json_t *const d = w->r->entry[s->entry].descriptor, *const queries =
+                                                                  json_object_get(d, "queries");
+    char path[CONF_PATH];
 
     s->file = *b;
     conf_path(s->folder, "%s/%zu", w->folder, s->entry);
@@ -211,7 +219,8 @@ static void tell(const runner *w, size_t i)
 {
     const conf_verdict *v = &w->r->verdict[i];
 
-    if ((v->outcome == CONF_PASS || v->outcome == CONF_DECLINED || v->outcome == CONF_NOT_RUN) || w->r->options->quiet)
+    if ((v->outcome == CONF_PASS || v->outcome == CONF_DECLINED || v->outcome == CONF_NOT_RUN) ||
+        w->r->options->quiet)
         return;
     fprintf(stderr, "%s: %s: %s\n", conf_outcome_name[v->outcome], w->r->entry[i].id, v->reason);
 }
@@ -220,7 +229,7 @@ static void tell(const runner *w, size_t i)
 static int same_answer(const runner *w, const slot *s, const json_t *answer)
 {
     json_t *a, *b;
-    int     same = json_equal(answer, s->first);
+    int same = json_equal(answer, s->first);
 
     if (same || !conf_class_t_asked(w->r->capabilities, w->r->entry[s->entry].descriptor))
         return same;
@@ -246,14 +255,15 @@ static double seconds(void)
 static void judge(runner *w, const slot *s, const json_t *answer, conf_verdict *v)
 {
     const json_t *const d = w->r->entry[s->entry].descriptor;
-    const double        now = seconds();
+    const double now = seconds();
 
     if (s->run != RUN_SECOND)
         conf_judge(w->r->capabilities, d, answer, v);
     else if (!same_answer(w, s, answer))
-        *v = (conf_verdict){ CONF_FAIL, "" };
+        *v = (conf_verdict) { CONF_FAIL, "" };
     if (v->outcome != CONF_PASS && s->run == RUN_SECOND)
-        snprintf(v->reason, sizeof v->reason, "%s", lenient(w, s) ? "lenient mode gave another answer" : "two runs gave two answers");
+        snprintf(v->reason, sizeof v->reason, "%s",
+                 lenient(w, s) ? "lenient mode gave another answer" : "two runs gave two answers");
     if (v->outcome == CONF_PASS && s->run == RUN_LENIENT)
         conf_judge_salvage(w->r->capabilities, d, answer, v);
     if (v->outcome == CONF_PASS && conf_class_t_asked(w->r->capabilities, d)) {
@@ -267,8 +277,8 @@ static int next_run(const runner *w, slot *s)
 {
     if (s->run == RUN_FIRST && !w->r->options->once)
         s->run = RUN_SECOND;
-    else if (s->run != RUN_LENIENT && conf_judge_lenient(w->r->capabilities)
-             && json_object_get(w->r->entry[s->entry].descriptor, "salvage") != NULL)
+    else if (s->run != RUN_LENIENT && conf_judge_lenient(w->r->capabilities) &&
+             json_object_get(w->r->entry[s->entry].descriptor, "salvage") != NULL)
         s->run = RUN_LENIENT;
     else
         return 0;
@@ -279,7 +289,7 @@ static int next_run(const runner *w, slot *s)
 static int take(runner *w, slot *s)
 {
     conf_verdict *v = &w->r->verdict[s->entry];
-    json_t       *answer = conf_judge_document(&s->process, v);
+    json_t *answer = conf_judge_document(&s->process, v);
 
     w->r->ms[s->entry] += s->process.ms;
     conf_process_free(&s->process);
@@ -320,10 +330,10 @@ static int fill(runner *w, slot *s, size_t *next)
 
 static void run_all(runner *w)
 {
-    const int      jobs = w->r->options->jobs;
-    slot          *s = conf_alloc((size_t)jobs, sizeof *s);
-    size_t         next = 0;
-    int            busy = 0;
+    const int jobs = w->r->options->jobs;
+    slot *s = conf_alloc((size_t)jobs, sizeof *s);
+    size_t next = 0;
+    int busy = 0;
 
     w->process = conf_alloc((size_t)jobs, sizeof *w->process);
     for (int i = 0; i < jobs; i++) {
@@ -356,13 +366,16 @@ static int same_member(const json_t *a, const char *key, const json_t *b, const 
     return x == y || json_equal(x, y);
 }
 
-/* Is that the descriptor that the manifest knows? Its hash says so; the members that both have say that the manifest holds together. */
+/* Is that the descriptor that the manifest knows? Its hash says so; the members that both have say
+ * that the manifest holds together. */
 static int as_published(const json_t *listed, const conf_entry *e)
 {
     const json_t *const d = e->descriptor;
 
-    return strcmp(listed_text(listed, "json"), e->hash) == 0 && same_member(listed, "folder", d, "category")
-        && same_member(listed, "bytes", d, "bytes") && same_member(listed, "sha256", d, "sha256") && same_member(listed, "demand", d, "demand");
+    return strcmp(listed_text(listed, "json"), e->hash) == 0 &&
+           same_member(listed, "folder", d, "category") &&
+           same_member(listed, "bytes", d, "bytes") && same_member(listed, "sha256", d, "sha256") &&
+           same_member(listed, "demand", d, "demand");
 }
 
 /* The manifest's line of a vector, borrowed; NULL: it has none. */
@@ -378,7 +391,7 @@ static void add_missing(conf_run_result *r, const json_t *list, size_t n_found)
 {
     for (size_t i = 0; i < json_array_size(list); i++) {
         const char *const id = json_string_value(json_object_get(json_array_get(list, i), "id"));
-        size_t            j = 0;
+        size_t j = 0;
 
         while (j < n_found && strcmp(r->entry[j].id, id) != 0)
             j++;
@@ -392,11 +405,12 @@ static void add_missing(conf_run_result *r, const json_t *list, size_t n_found)
     }
 }
 
-/* Descriptors have to be those of SUITE.json, and all that it names have to be there, unless a list says which. */
+/* Descriptors have to be those of SUITE.json, and all that it names have to be there, unless a list
+ * says which. */
 static void hold_to_manifest(conf_run_result *r)
 {
-    char          path[CONF_PATH];
-    json_t       *manifest;
+    char path[CONF_PATH];
+    json_t *manifest;
     const json_t *list;
 
     conf_path(path, "%s/SUITE.json", r->options->suite);
@@ -407,7 +421,8 @@ static void hold_to_manifest(conf_run_result *r)
     for (size_t i = 0; i < r->n; i++) {
         const json_t *const listed = listed_as(list, r->entry[i].id);
 
-        if (r->entry[i].descriptor != NULL && (listed == NULL || !as_published(listed, &r->entry[i]))) {
+        if (r->entry[i].descriptor != NULL &&
+            (listed == NULL || !as_published(listed, &r->entry[i]))) {
             json_decref(r->entry[i].descriptor);
             r->entry[i].descriptor = NULL;
         }
@@ -421,10 +436,12 @@ static void sum_up(conf_run_result *r)
 {
     for (size_t i = 0; i < r->n; i++) {
         r->count[r->verdict[i].outcome]++;
-        r->valid_passed += r->verdict[i].outcome == CONF_PASS && conf_expects(r->entry[i].descriptor, "valid");
+        r->valid_passed += r->verdict[i].outcome == CONF_PASS &&
+                           conf_expects(r->entry[i].descriptor, "valid");
     }
-    r->passed = r->capabilities != NULL && r->count[CONF_FAIL] + r->count[CONF_NO_ANSWER] + r->count[CONF_MISSING] == 0
-             && r->valid_passed > 0 && conf_judge_lacks(r->capabilities) == NULL;
+    r->passed = r->capabilities != NULL &&
+                r->count[CONF_FAIL] + r->count[CONF_NO_ANSWER] + r->count[CONF_MISSING] == 0 &&
+                r->valid_passed > 0 && conf_judge_lacks(r->capabilities) == NULL;
 }
 
 /* Why it does not conform, as far as no vector says so. */
@@ -438,7 +455,8 @@ static const char *reason(const conf_run_result *r)
         return "does not conform: no valid stream decoded";
     if (conf_judge_lacks(r->capabilities) == NULL)
         return "does not conform";
-    snprintf(text, sizeof text, "does not conform: %s is not claimed (R-DMP-070)", conf_judge_lacks(r->capabilities));
+    snprintf(text, sizeof text, "does not conform: %s is not claimed (R-DMP-070)",
+             conf_judge_lacks(r->capabilities));
     return text;
 }
 
@@ -450,19 +468,21 @@ static void write_reports(const conf_run_result *r)
         conf_run_write_junit(r);
     if (r->options->html != NULL)
         conf_run_write_html(r);
-    printf("%s: %zu passed, %zu failed, %zu without answer, %zu missing, %zu declined, %zu not run: %s\n",
-           r->capabilities != NULL ? json_string_value(json_object_get(r->capabilities, "name")) : r->options->decoder,
-           r->count[CONF_PASS], r->count[CONF_FAIL], r->count[CONF_NO_ANSWER], r->count[CONF_MISSING], r->count[CONF_DECLINED],
-           r->count[CONF_NOT_RUN],
+    printf("%s: %zu passed, %zu failed, %zu without answer, %zu missing, %zu declined, %zu not "
+           "run: %s\n",
+           r->capabilities != NULL ? json_string_value(json_object_get(r->capabilities, "name"))
+                                   : r->options->decoder,
+           r->count[CONF_PASS], r->count[CONF_FAIL], r->count[CONF_NO_ANSWER],
+           r->count[CONF_MISSING], r->count[CONF_DECLINED], r->count[CONF_NOT_RUN],
            r->passed ? "conforms" : reason(r));
 }
 
 int conf_run(const conf_run_options *o)
 {
     conf_run_result r = { .options = o };
-    runner          w = { .r = &r };
-    char            vectors[CONF_PATH];
-    const char     *tmp = getenv("TMPDIR");
+    runner w = { .r = &r };
+    char vectors[CONF_PATH];
+    const char *tmp = getenv("TMPDIR");
 
     conf_path(vectors, "%s/vectors", o->suite);
     r.entry = conf_suite_load(vectors, o->list, &r.n);
@@ -470,7 +490,8 @@ int conf_run(const conf_run_options *o)
     r.verdict = conf_alloc(r.n, sizeof *r.verdict);
     r.ms = conf_alloc(r.n, sizeof *r.ms);
     for (int i = RUN_FIRST; i <= RUN_LENIENT; i++)
-        w.options[i] = (conf_process_options){ o->decoder, i == RUN_SECOND ? o->second : NULL, o->timeout, o->memory };
+        w.options[i] = (conf_process_options) { o->decoder, i == RUN_SECOND ? o->second : NULL,
+                                                o->timeout, o->memory };
     conf_path(w.folder, "%s/ted4conf-XXXXXX", tmp != NULL ? tmp : "/tmp");
     if (mkdtemp(w.folder) == NULL)
         conf_die("%s: cannot be made", w.folder);
@@ -478,7 +499,7 @@ int conf_run(const conf_run_options *o)
     if (r.capabilities != NULL)
         run_all(&w);
     for (size_t i = 0; r.capabilities == NULL && i < r.n; i++)
-        r.verdict[i] = (conf_verdict){ CONF_NO_ANSWER, "no capabilities" };
+        r.verdict[i] = (conf_verdict) { CONF_NO_ANSWER, "no capabilities" };
     rmdir(w.folder);
     sum_up(&r);
     write_reports(&r);

@@ -6,26 +6,26 @@
 #include "judge.h"
 
 typedef struct {
-    const char *suite;          /* folder of SUITE.json, vectors/, recipes/ */
-    const char *decoder;        /* command */
-    const char *list;           /* file of ids; NULL: all */
-    const char *second;         /* NAME=VALUE for the second run; NULL: as the first */
-    const char *json, *junit, *html;    /* files to write; NULL: none */
-    int         jobs, once, demand, large, quiet;
-    double      timeout;        /* seconds a run */
-    uint64_t    memory;         /* bytes of address space a run; 0: no bound */
+    const char *suite;               /* folder of SUITE.json, vectors/, recipes/ */
+    const char *decoder;             /* command */
+    const char *list;                /* file of ids; NULL: all */
+    const char *second;              /* NAME=VALUE for the second run; NULL: as the first */
+    const char *json, *junit, *html; /* files to write; NULL: none */
+    int jobs, once, demand, large, quiet;
+    double timeout;  /* seconds a run */
+    uint64_t memory; /* bytes of address space a run; 0: no bound */
 } conf_run_options;
 
 /* What came out of it. */
 typedef struct {
     const conf_run_options *options;
-    json_t       *capabilities; /* NULL: none */
-    conf_verdict  handshake;    /* what is wrong with them */
-    conf_entry   *entry;        /* [n] */
-    conf_verdict *verdict;      /* [n] */
-    double       *ms;           /* [n] */
-    size_t        n, count[CONF_OUTCOMES], valid_passed;
-    int           passed;       /* the verdict on the decoder */
+    json_t *capabilities;   /* NULL: none */
+    conf_verdict handshake; /* what is wrong with them */
+    conf_entry *entry;      /* [n] */
+    conf_verdict *verdict;  /* [n] */
+    double *ms;             /* [n] */
+    size_t n, count[CONF_OUTCOMES], valid_passed;
+    int passed; /* the verdict on the decoder */
 } conf_run_result;
 
 /* Exit code: 0 conforms, 1 does not, 3 wrong usage. */

@@ -1,4 +1,5 @@
-/* salvage.c - see salvage.h. Takes the strict decoder's scene of the valid file and leaves out its last tiles; lenient decoding has no part in it.
+/* salvage.c - see salvage.h. Takes the strict decoder's scene of the valid file and leaves out its
+ * last tiles; lenient decoding has no part in it.
  * SPDX-License-Identifier: BSD-2-Clause */
 #include "salvage.h"
 
@@ -27,19 +28,22 @@ static ted4_status status_of(const conf_line *l, const char *id)
     conf_line_bad(l, "no such error identifier");
 }
 
-json_t *conf_salvage(const conf_line *l, const conf_bytes *valid, const conf_stream *s, const json_t *stop, const json_t *queries)
+json_t *conf_salvage(const conf_line *l, const conf_bytes *valid, const conf_stream *s,
+                     const json_t *stop, const json_t *queries)
 {
-    const char *const id = l->n > 2 ? l->word[2] : json_string_value(json_object_get(stop, "error"));
+    const char *const id = l->n > 2 ? l->word[2]
+                                    : json_string_value(json_object_get(stop, "error"));
     ted4_salvage what = { .n_tiles = (uint32_t)conf_line_number(l, 1, 0, UINT32_MAX) };
-    ted4_scene  *scene;
-    json_t      *o;
+    ted4_scene *scene;
+    json_t *o;
 
     if (what.n_tiles == 0)
         return json_null();
     if (ted4_decode(valid->data, valid->size, NULL, &scene, NULL) != TED4_OK)
         conf_line_bad(l, "the file that is broken was not valid");
     what.stop.code = status_of(l, id);
-    what.stop.offset = l->n > 2 ? conf_stream_where(s, l, 4) : (size_t)json_integer_value(json_object_get(stop, "offset"));
+    what.stop.offset = l->n > 2 ? conf_stream_where(s, l, 4)
+                                : (size_t)json_integer_value(json_object_get(stop, "offset"));
     what.anchors_declared = scene->head.n_anchors;
     what.tiles_declared = scene->shape.n_tiles;
     if (what.n_tiles > what.tiles_declared)

@@ -11,7 +11,8 @@
 
 static int is_symbol(const char *name)
 {
-    static const char *const symbol[] = { "dynamic", "offset_bit", "feature", "scaling", "offset", "phi", "tau" };
+    static const char *const symbol[] = { "dynamic", "offset_bit", "feature", "scaling",
+                                          "offset",  "phi",        "tau" };
 
     for (size_t i = 0; i < sizeof symbol / sizeof *symbol; i++)
         if (strcmp(symbol[i], name) == 0)
@@ -37,10 +38,10 @@ static int chunk_at(const conf_stream *s, size_t offset, size_t *at)
 
 static void note(void *user, size_t offset, const char *name, int64_t index, int64_t value)
 {
-    conf_stream  *s = user;
+    conf_stream *s = user;
     conf_element *e;
-    size_t        at = offset;
-    const int     chunk = chunk_at(s, offset, &at);
+    size_t at = offset;
+    const int chunk = chunk_at(s, offset, &at);
 
     (void)value;
     if (is_symbol(name) || strncmp(name, "chunk_", 6) == 0)
@@ -60,8 +61,8 @@ static void note(void *user, size_t offset, const char *name, int64_t index, int
 void conf_stream_open(conf_stream *s, const conf_bytes *file, const conf_build *b)
 {
     const ted4_options o = { .trace = note, .trace_user = s };
-    ted4_scene        *scene;
-    ted4_error         e;
+    ted4_scene *scene;
+    ted4_error e;
 
     memset(s, 0, sizeof *s);
     s->build = b;
@@ -98,15 +99,16 @@ void conf_stream_join(const conf_stream *s, conf_bytes *file)
     conf_add(file, s->header, sizeof s->header);
     for (int i = 0; i < s->n; i++) {
         const conf_chunk *c = &s->chunk[i];
-        const size_t      at = file->size;
-        uint8_t           frame[8];
+        const size_t at = file->size;
+        uint8_t frame[8];
 
         conf_add(file, c->type, 4);
         ted4_store32(frame, c->flags);
         ted4_store32(frame + 4, c->size < 0 ? (uint32_t)c->payload.size : (uint32_t)c->size);
         conf_add(file, frame, 8);
         conf_add(file, c->payload.data, c->payload.size);
-        ted4_store64(frame, XXH3_64bits(file->data + at, file->size - at) ^ (c->bad_hash ? (uint64_t)1 << 37 : 0));
+        ted4_store64(frame, XXH3_64bits(file->data + at, file->size - at) ^
+                                (c->bad_hash ? (uint64_t)1 << 37 : 0));
         conf_add(file, frame, 8);
     }
     conf_add(file, s->tail.data, s->tail.size);
@@ -126,11 +128,12 @@ int conf_stream_chunk(const conf_stream *s, const conf_line *l, const char *ref)
 
 const conf_element *conf_stream_element(const conf_stream *s, const conf_line *l, const char *ref)
 {
-    const char *const dot = strchr(ref, '.'), *const name = dot != NULL ? dot + 1 : ref, *const bracket = strchr(name, '[');
-    const size_t      length = bracket != NULL ? (size_t)(bracket - name) : strlen(name);
-    const int64_t     index = bracket != NULL ? strtoll(bracket + 1, NULL, 10) : 0;
-    char              chunk[16];
-    int               want = -2;
+    const char *const dot = strchr(ref, '.'), *const name = dot != NULL ? dot + 1 : ref,
+                      *const bracket = strchr(name, '[');
+    const size_t length = bracket != NULL ? (size_t)(bracket - name) : strlen(name);
+    const int64_t index = bracket != NULL ? strtoll(bracket + 1, NULL, 10) : 0;
+    char chunk[16];
+    int want = -2;
 
     if (dot != NULL) {
         snprintf(chunk, sizeof chunk, "%.*s", (int)(dot - ref), ref);
@@ -139,8 +142,8 @@ const conf_element *conf_stream_element(const conf_stream *s, const conf_line *l
     for (size_t i = 0; i < s->n_elements; i++) {
         const conf_element *e = &s->element[i];
 
-        if (strlen(e->name) == length && memcmp(e->name, name, length) == 0 && (e->index == index || e->index == -1)
-            && (want == -2 || e->chunk == want))
+        if (strlen(e->name) == length && memcmp(e->name, name, length) == 0 &&
+            (e->index == index || e->index == -1) && (want == -2 || e->chunk == want))
             return e;
     }
     fprintf(stderr, "ted4conf: \"%s\"\n", ref);
@@ -156,10 +159,11 @@ size_t conf_stream_place(const conf_stream *s, int i)
     return at;
 }
 
-size_t conf_stream_substream(const conf_stream *s, int chunk, unsigned sub, size_t *size, size_t *size_at)
+size_t conf_stream_substream(const conf_stream *s, int chunk, unsigned sub, size_t *size,
+                             size_t *size_at)
 {
     const conf_bytes *p = &s->chunk[chunk].payload;
-    int    original = 0;
+    int original = 0;
     size_t first = 0, at, n = 0;
 
     while (original < CONF_CHUNKS && s->moved[original] != chunk)

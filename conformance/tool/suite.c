@@ -12,7 +12,7 @@ enum { CONF_LISTS = 8 };
 
 typedef struct {
     conf_entry *entry;
-    size_t      n;
+    size_t n;
 } list;
 
 static conf_entry *add(list *l)
@@ -27,9 +27,9 @@ static conf_entry *add(list *l)
 static void load(list *l, const char *folder, const char *name)
 {
     conf_entry *e = add(l);
-    conf_bytes   text;
+    conf_bytes text;
     json_error_t why;
-    char         hash[CONF_HASH + 1];
+    char hash[CONF_HASH + 1];
 
     snprintf(e->id, sizeof e->id, "%.*s", (int)(strlen(name) - 5), name);
     conf_path(e->path, "%s/%s", folder, name);
@@ -51,7 +51,7 @@ static void walk(list *l, const char *folder)
 
     for (size_t i = 0; i < n; i++) {
         const size_t length = strlen(name[i]);
-        char         path[CONF_PATH];
+        char path[CONF_PATH];
 
         if (length > 5 && strcmp(name[i] + length - 5, ".json") == 0) {
             if (strcmp(name[i], "SUITE.json") != 0)
@@ -85,12 +85,13 @@ static void take(list *chosen, const list *l, const char *id)
 static void take_all(list *chosen, const list *l, const char *path, int depth)
 {
     const char *const slash = strrchr(path, '/');
-    conf_bytes  text;
-    char       *rest;
+    conf_bytes text;
+    char *rest;
 
     if (depth == CONF_LISTS || !conf_read(path, &text))
         conf_die("%s: cannot be read", path);
-    for (char *id = strtok_r((char *)text.data, " \t\r\n", &rest); id != NULL; id = strtok_r(NULL, " \t\r\n", &rest)) {
+    for (char *id = strtok_r((char *)text.data, " \t\r\n", &rest); id != NULL;
+         id = strtok_r(NULL, " \t\r\n", &rest)) {
         char other[CONF_PATH];
 
         if (id[0] == '@') {

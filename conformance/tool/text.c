@@ -63,7 +63,7 @@ void conf_add(conf_bytes *b, const void *data, size_t size)
 void conf_print(conf_bytes *b, const char *format, ...)
 {
     va_list a;
-    int     n;
+    int n;
 
     va_start(a, format);
     n = vsnprintf(NULL, 0, format, a);
@@ -97,16 +97,16 @@ void conf_remove(conf_bytes *b, size_t at, size_t size)
 void conf_free(conf_bytes *b)
 {
     free(b->data);
-    *b = (conf_bytes){ NULL, 0, 0 };
+    *b = (conf_bytes) { NULL, 0, 0 };
 }
 
 int conf_read(const char *path, conf_bytes *b)
 {
-    FILE   *f = fopen(path, "rb");
+    FILE *f = fopen(path, "rb");
     uint8_t piece[1 << 14];
-    size_t  n;
+    size_t n;
 
-    *b = (conf_bytes){ NULL, 0, 0 };
+    *b = (conf_bytes) { NULL, 0, 0 };
     if (f == NULL)
         return 0;
     conf_add(b, "", 0);
@@ -138,9 +138,9 @@ void conf_make_folder(const char *path)
 
 void conf_write(const char *path, const void *data, size_t size)
 {
-    char        folder[CONF_PATH];
+    char folder[CONF_PATH];
     const char *slash = strrchr(path, '/');
-    FILE       *f;
+    FILE *f;
 
     if (slash != NULL) {
         conf_path(folder, "%.*s", (int)(slash - path), path);
@@ -158,10 +158,10 @@ static int by_bytes(const void *a, const void *b)
 
 char **conf_list(const char *folder, const char *suffix, size_t *n)
 {
-    DIR           *d = opendir(folder);
-    char         **name = NULL;
+    DIR *d = opendir(folder);
+    char **name = NULL;
     struct dirent *e;
-    size_t         count = 0;
+    size_t count = 0;
 
     *n = 0;
     if (d == NULL)
@@ -193,7 +193,7 @@ void conf_list_free(char **name, size_t n)
 void conf_path(char *to, const char *format, ...)
 {
     va_list a;
-    int     n;
+    int n;
 
     va_start(a, format);
     n = vsnprintf(to, CONF_PATH, format, a);
@@ -209,7 +209,7 @@ void conf_hex(char *to, const uint8_t *bytes, size_t n)
 
 void conf_hash(char to[CONF_HASH + 1], const void *data, size_t size)
 {
-    uint8_t     sha[TED4_SHA256_SIZE];
+    uint8_t sha[TED4_SHA256_SIZE];
     ted4_sha256 h;
 
     ted4_sha256_init(&h);

@@ -1,5 +1,6 @@
-/* text.h - what the suite's tool does all the time: bytes that grow, files, folders, giving up with a reason.
- * A tool that runs out of memory or cannot write says so and ends; nothing here returns such a failure.
+/* text.h - what the suite's tool does all the time: bytes that grow, files, folders, giving up with
+ * a reason. A tool that runs out of memory or cannot write says so and ends; nothing here returns
+ * such a failure.
  * SPDX-License-Identifier: BSD-2-Clause */
 #ifndef CONF_TEXT_H
 #define CONF_TEXT_H
@@ -19,7 +20,7 @@ char *conf_copy(const char *text);
 /* All zero is an empty one. data is owned and followed by a 0 that size does not count. */
 typedef struct {
     uint8_t *data;
-    size_t   size, room;
+    size_t size, room;
 } conf_bytes;
 
 void conf_add(conf_bytes *b, const void *data, size_t size);
@@ -30,7 +31,7 @@ void conf_remove(conf_bytes *b, size_t at, size_t size);
 void conf_free(conf_bytes *b);
 
 /* 1, or 0: no such file. */
-int  conf_read(const char *path, conf_bytes *b);
+int conf_read(const char *path, conf_bytes *b);
 /* Makes the folders on the way. */
 void conf_write(const char *path, const void *data, size_t size);
 void conf_make_folder(const char *path);

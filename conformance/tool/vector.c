@@ -1,14 +1,20 @@
-/* vector.c - see vector.h. Offsets that a recipe expects are worked out from the file's own layout, never taken from the decoder.
+/* vector.c - see vector.h. Offsets that a recipe expects are worked out from the file's own layout,
+ * never taken from the decoder.
  *     category CATEGORY/AREA               folder of the vector
  *     intent TEXT; rules R-...; bug TYPE EFFECT
- *     query NUM/DEN X Y Z                  repeated; a valid vector without one gets three; knob NAME VALUE
+ *     query NUM/DEN X Y Z                  repeated; a valid vector without one gets three; knob
+ *                                          NAME VALUE
  *     demand [large]                       only the descriptor is kept
- *     kept                                 the file is the one that is there: it came out of a training and cannot be made again everywhere
+ *     kept                                 the file is the one that is there: it came out of a
+ *                                          training and cannot be made again everywhere
  *     expect valid | invalid ID at WHERE | unsupported ID at WHERE | limit ID
- *     also limit                           a decoder may refuse with a limit before it comes to that error
+ *     also limit                           a decoder may refuse with a limit before it comes to
+ *                                          that error
  *     expect-query I ID                    query I has no result
- *     salvage TILES [ID at PLACE]          what a lenient decoder gives: the first tiles, and the first error in the order of the file, when that is
- *                                          not the expected one. Every vector of the category tolerant has this line
+ *     salvage TILES [ID at PLACE]          what a lenient decoder gives: the first tiles, and the
+ *                                          first error in the order of the file, when that is not
+ *                                          the expected one. Every vector of the category tolerant
+ *                                          has this line
  * SPDX-License-Identifier: BSD-2-Clause */
 #include "vector.h"
 
@@ -25,9 +31,11 @@
 /* Does a decoder give records of it? */
 static int has_records(const conf_recipe *r)
 {
-    const conf_line *const expect = conf_line_find(r, "expect"), *const saved = conf_line_find(r, "salvage");
+    const conf_line *const expect = conf_line_find(r, "expect"), *const saved =
+                                                                     conf_line_find(r, "salvage");
 
-    return expect == NULL || conf_word_is(expect, 1, "valid") || (saved != NULL && !conf_word_is(saved, 1, "0"));
+    return expect == NULL || conf_word_is(expect, 1, "valid") ||
+           (saved != NULL && !conf_word_is(saved, 1, "0"));
 }
 
 static json_t *queries_of(const conf_recipe *r)
@@ -36,8 +44,8 @@ static json_t *queries_of(const conf_recipe *r)
 
     for (size_t i = 0; i < r->n; i++) {
         const conf_line *const l = &r->line[i];
-        unsigned long long     num, den;
-        float                  c[3];
+        unsigned long long num, den;
+        float c[3];
 
         if (!conf_word_is(l, 0, "query"))
             continue;
@@ -45,13 +53,17 @@ static json_t *queries_of(const conf_recipe *r)
             conf_line_bad(l, "query NUM/DEN X Y Z");
         for (int j = 0; j < 3; j++)
             c[j] = conf_word_float(l, 2 + j);
-        json_array_append_new(o, json_pack("{s:[I,I], s:[f,f,f]}", "t", (json_int_t)num, (json_int_t)den, "cam",
-                                           (double)c[0], (double)c[1], (double)c[2]));
+        json_array_append_new(o, json_pack("{s:[I,I], s:[f,f,f]}", "t", (json_int_t)num,
+                                           (json_int_t)den, "cam", (double)c[0], (double)c[1],
+                                           (double)c[2]));
     }
     if (json_array_size(o) == 0 && has_records(r)) {
-        json_array_append_new(o, json_pack("{s:[i,i], s:[f,f,f]}", "t", 0, 1, "cam", 0.0, 0.0, 0.0));
-        json_array_append_new(o, json_pack("{s:[i,i], s:[f,f,f]}", "t", 1, 2, "cam", 0.5, -0.25, -2.0));
-        json_array_append_new(o, json_pack("{s:[i,i], s:[f,f,f]}", "t", 1, 1, "cam", -3.0, 1.0, 0.125));
+        json_array_append_new(o,
+                              json_pack("{s:[i,i], s:[f,f,f]}", "t", 0, 1, "cam", 0.0, 0.0, 0.0));
+        json_array_append_new(o, json_pack("{s:[i,i], s:[f,f,f]}", "t", 1, 2, "cam", 0.5, -0.25,
+                                           -2.0));
+        json_array_append_new(o, json_pack("{s:[i,i], s:[f,f,f]}", "t", 1, 1, "cam", -3.0, 1.0,
+                                           0.125));
     }
     return o;
 }
@@ -81,9 +93,9 @@ static json_t *knob_of(const conf_recipe *r)
 static json_t *hashes(const conf_bytes *file, json_t *descriptor)
 {
     XXH128_canonical_t canonical;
-    uint8_t            sha[TED4_SHA256_SIZE];
-    ted4_sha256        h;
-    char               text[2 * TED4_SHA256_SIZE + 1];
+    uint8_t sha[TED4_SHA256_SIZE];
+    ted4_sha256 h;
+    char text[2 * TED4_SHA256_SIZE + 1];
 
     ted4_sha256_init(&h);
     ted4_sha256_add(&h, file->data, file->size);
@@ -99,7 +111,7 @@ static json_t *hashes(const conf_bytes *file, json_t *descriptor)
 static json_t *expected(const conf_recipe *r, const conf_stream *s)
 {
     const conf_line *const l = conf_line_find(r, "expect");
-    json_t                *o;
+    json_t *o;
 
     if (l == NULL || conf_word_is(l, 1, "valid"))
         return json_pack("{s:s}", "result", "valid");
@@ -120,7 +132,7 @@ static json_t *expected(const conf_recipe *r, const conf_stream *s)
 static int queries_agree(const conf_recipe *r, const json_t *tiers)
 {
     const json_t *const t5 = json_object_get(tiers, "T5");
-    const char         *want[64] = { NULL };
+    const char *want[64] = { NULL };
 
     for (size_t i = 0; i < r->n; i++)
         if (conf_word_is(&r->line[i], 0, "expect-query"))
@@ -137,9 +149,12 @@ static int queries_agree(const conf_recipe *r, const json_t *tiers)
 /* The answer without its tiers, and what is salvaged, have to be what was expected. */
 static int agrees(const conf_recipe *r, json_t *answer, json_t *descriptor)
 {
-    const json_t *const expect = json_object_get(descriptor, "expect"), *const saved = json_object_get(descriptor, "salvage");
+    const json_t *const expect = json_object_get(descriptor, "expect"), *const saved =
+                                                                            json_object_get(
+                                                                                descriptor,
+                                                                                "salvage");
     json_t *tiers = json_incref(json_object_get(answer, "tiers")), *strict = json_deep_copy(expect);
-    int     good;
+    int good;
 
     json_object_del(answer, "tiers");
     json_object_del(strict, "also_ok");
@@ -147,11 +162,12 @@ static int agrees(const conf_recipe *r, json_t *answer, json_t *descriptor)
         json_object_set(strict, "salvage", json_object_get(descriptor, "salvage"));
     good = json_equal(strict, answer) && queries_agree(r, tiers);
     if (!good) {
-        char *const want = json_dumps(strict, JSON_COMPACT), *const got = json_dumps(answer, JSON_COMPACT);
+        char *const want = json_dumps(strict, JSON_COMPACT), *const got =
+                                                                 json_dumps(answer, JSON_COMPACT);
         char *const t5 = json_dumps(json_object_get(tiers, "T5"), JSON_COMPACT);
 
-        fprintf(stderr, "ted4conf: %s: %s: expected %s, decoder says %s %s\n", r->file, r->id, want, got,
-                t5 != NULL && strstr(t5, "error") ? t5 : "");
+        fprintf(stderr, "ted4conf: %s: %s: expected %s, decoder says %s %s\n", r->file, r->id, want,
+                got, t5 != NULL && strstr(t5, "error") ? t5 : "");
         free(want);
         free(got);
         free(t5);
@@ -164,7 +180,7 @@ static int agrees(const conf_recipe *r, json_t *answer, json_t *descriptor)
 
 static void read_kept(conf_build *b, const conf_recipe *r, const char *suite, conf_bytes *file)
 {
-    char       path[CONF_PATH];
+    char path[CONF_PATH];
     ted4_error e;
 
     conf_path(path, "%s/vectors/%s/%s.ted4", suite, conf_line_find(r, "category")->word[1], r->id);
@@ -176,8 +192,10 @@ static void read_kept(conf_build *b, const conf_recipe *r, const char *suite, co
     b->head = b->scene->head;
 }
 
-/* The file, and the stream as it stands at the end. valid: the file before it was broken, the caller's. */
-static void make_file(conf_vector *v, conf_build *b, conf_stream *s, const conf_recipe *r, const char *suite, conf_bytes *valid)
+/* The file, and the stream as it stands at the end. valid: the file before it was broken, the
+ * caller's. */
+static void make_file(conf_vector *v, conf_build *b, conf_stream *s, const conf_recipe *r,
+                      const char *suite, conf_bytes *valid)
 {
     if (conf_line_find(r, "kept") != NULL)
         read_kept(b, r, suite, valid);
@@ -192,8 +210,9 @@ static void make_file(conf_vector *v, conf_build *b, conf_stream *s, const conf_
 
 static void check_words(const conf_recipe *r)
 {
-    static const char *const name[] = { "also", "category", "intent", "rules", "bug", "query", "knob", "expect", "expect-query", "do",
-                                        "demand", "kept", "salvage" };
+    static const char *const name[] = { "also",   "category", "intent", "rules",        "bug",
+                                        "query",  "knob",     "expect", "expect-query", "do",
+                                        "demand", "kept",     "salvage" };
 
     for (size_t i = 0; i < r->n; i++) {
         int known = conf_is_scene_line(&r->line[i]);
@@ -203,9 +222,11 @@ static void check_words(const conf_recipe *r)
         if (!known)
             conf_line_bad(&r->line[i], "unknown word");
     }
-    if (conf_line_find(r, "intent") == NULL || conf_line_find(r, "category") == NULL || conf_line_find(r, "rules") == NULL)
+    if (conf_line_find(r, "intent") == NULL || conf_line_find(r, "category") == NULL ||
+        conf_line_find(r, "rules") == NULL)
         conf_die("%s: %s: category, intent or rules are missing", r->file, r->id);
-    if (conf_word_is(conf_line_find(r, "category"), 1, "tolerant") != (conf_line_find(r, "salvage") != NULL))
+    if (conf_word_is(conf_line_find(r, "category"), 1, "tolerant") !=
+        (conf_line_find(r, "salvage") != NULL))
         conf_die("%s: %s: salvage belongs to the category tolerant", r->file, r->id);
 }
 
@@ -219,40 +240,51 @@ static int refused(const conf_recipe *r)
 
 int conf_vector_make(conf_vector *v, const conf_recipe *r, const char *suite)
 {
-    const conf_line *const bug = conf_line_find(r, "bug"), *const saved = conf_line_find(r, "salvage"), *const demand = conf_line_find(r, "demand");
-    json_t *const  knobs = knob_of(r);
-    conf_bytes     valid;
-    conf_stream    s;
-    conf_build     b;
-    json_t        *d, *answer;
-    char           name[128];
-    int            good;
+    const conf_line *const bug = conf_line_find(r, "bug"),
+                           *const saved = conf_line_find(r, "salvage"),
+                           *const demand = conf_line_find(r, "demand");
+    json_t *const knobs = knob_of(r);
+    conf_bytes valid;
+    conf_stream s;
+    conf_build b;
+    json_t *d, *answer;
+    char name[128];
+    int good;
 
     memset(v, 0, sizeof *v);
     check_words(r);
     make_file(v, &b, &s, r, suite, &valid);
     snprintf(v->folder, sizeof v->folder, "%s", conf_line_find(r, "category")->word[1]);
     snprintf(name, sizeof name, "%s.ted4", r->id);
-    d = v->descriptor = json_pack("{s:s, s:i, s:s, s:s, s:I, s:s, s:s, s:s, s:i}", "id", r->id, "schema", 1, "category", v->folder,
-                                  "file", name, "bytes", (json_int_t)v->file.size, "since", "1.0.0", "status", "active",
-                                  "profile", "Main", "level", v->file.size > 11 ? v->file.data[11] : 0);
+    d = v->descriptor = json_pack("{s:s, s:i, s:s, s:s, s:I, s:s, s:s, s:s, s:i}", "id", r->id,
+                                  "schema", 1, "category", v->folder, "file", name, "bytes",
+                                  (json_int_t)v->file.size, "since", "1.0.0", "status", "active",
+                                  "profile", "Main", "level",
+                                  v->file.size > 11 ? v->file.data[11] : 0);
     hashes(&v->file, d);
     json_object_set_new(d, "features", refused(r) ? json_array() : conf_features(b.scene));
     json_object_set_new(d, "rules", rules_of(r));
     json_object_set_new(d, "intent", json_string(conf_line_find(r, "intent")->rest));
     if (bug != NULL)
-        json_object_set_new(d, "bug", json_pack("{s:s, s:s}", "type", bug->word[1], "effect", bug->n > 2 ? bug->word[2] : ""));
+        json_object_set_new(d, "bug",
+                            json_pack("{s:s, s:s}", "type", bug->word[1], "effect",
+                                      bug->n > 2 ? bug->word[2] : ""));
     json_object_set_new(d, "queries", queries_of(r));
     if (knobs != NULL)
         json_object_set_new(d, "knobs", knobs);
     json_object_set_new(d, "expect", expected(r, &s));
     if (saved != NULL)
-        json_object_set_new(d, "salvage", conf_salvage(saved, &valid, &s, json_object_get(d, "expect"), json_object_get(d, "queries")));
+        json_object_set_new(d, "salvage",
+                            conf_salvage(saved, &valid, &s, json_object_get(d, "expect"),
+                                         json_object_get(d, "queries")));
     if (demand != NULL)
-        json_object_set_new(d, "demand", conf_word_is(demand, 1, "large") ? json_string("large") : json_true());
-    json_object_set_new(d, "origin", json_pack("{s:s, s:s}", "generator", "ted4conf gen", "recipe", r->file));
+        json_object_set_new(d, "demand",
+                            conf_word_is(demand, 1, "large") ? json_string("large") : json_true());
+    json_object_set_new(d, "origin",
+                        json_pack("{s:s, s:s}", "generator", "ted4conf gen", "recipe", r->file));
     json_object_set_new(d, "license", json_string("CC0-1.0"));
-    answer = (saved != NULL ? conf_answer_lenient : conf_answer)(&v->file, json_object_get(d, "queries"), conf_knobs_of(d));
+    answer = (saved != NULL ? conf_answer_lenient : conf_answer)(
+        &v->file, json_object_get(d, "queries"), conf_knobs_of(d));
     good = agrees(r, answer, d);
     json_decref(answer);
     conf_free(&valid);

@@ -8,14 +8,14 @@
 #include "text.h"
 
 typedef struct {
-    conf_bytes file;            /* owned */
-    json_t    *descriptor;      /* owned */
-    char       folder[64];      /* "valid/header" */
+    conf_bytes file;    /* owned */
+    json_t *descriptor; /* owned */
+    char folder[64];    /* "valid/header" */
 } conf_vector;
 
-/* Made from its recipe; suite: the folder of vectors/, where files that are kept lie. 0: our decoder answers something else than what the
- * recipe expects, which is said on stderr. */
-int  conf_vector_make(conf_vector *v, const conf_recipe *r, const char *suite);
+/* Made from its recipe; suite: the folder of vectors/, where files that are kept lie. 0: our
+ * decoder answers something else than what the recipe expects, which is said on stderr. */
+int conf_vector_make(conf_vector *v, const conf_recipe *r, const char *suite);
 void conf_vector_free(conf_vector *v);
 
 #endif

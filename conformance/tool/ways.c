@@ -8,7 +8,7 @@
 /* What came of a file. Hashes are 0 where there is nothing to hash. */
 typedef struct {
     ted4_salvage what;
-    uint8_t      scene[16], copy[16], records[16];
+    uint8_t scene[16], copy[16], records[16];
 } outcome;
 
 /* A caller's threads that take the last index first. */
@@ -37,9 +37,9 @@ static void overhear(void *user, const ted4_finding *f)
 static void take_records(const ted4_scene *s, const ted4_parallel *threads, outcome *r)
 {
     const ted4_options o = { .parallel = threads, .max_work = UINT64_MAX };
-    const ted4_query   q = { 0, 1, { 0, 0, 0 } };
-    ted4_recon        *recon;
-    ted4_gaussians     g;
+    const ted4_query q = { 0, 1, { 0, 0, 0 } };
+    ted4_recon *recon;
+    ted4_gaussians g;
 
     if (ted4_recon_new(&recon, s, threads != NULL ? &o : NULL) != TED4_OK)
         conf_die("no memory");
@@ -51,7 +51,7 @@ static void take_records(const ted4_scene *s, const ted4_parallel *threads, outc
 /* The hash of the same integers in a scene as encoders fill it (15.2). */
 static void take_copy(const ted4_scene *s, outcome *r)
 {
-    const size_t      n = s->head.n_anchors;
+    const size_t n = s->head.n_anchors;
     ted4_scene *const copy = ted4_scene_new(&s->head, NULL);
 
     if (copy == NULL)
@@ -71,9 +71,9 @@ static void take_copy(const ted4_scene *s, outcome *r)
 static outcome decode(const conf_bytes *file, const ted4_options *o)
 {
     const ted4_parallel *const threads = o != NULL ? o->parallel : NULL;
-    outcome     r = { .scene = { 0 } };
+    outcome r = { .scene = { 0 } };
     ted4_scene *s;
-    ted4_info   info;
+    ted4_info info;
 
     (void)ted4_decode_lenient(file->data, file->size, o, &s, &r.what);
     if (s == NULL)
@@ -93,29 +93,31 @@ static int same_error(ted4_error a, ted4_error b)
 
 static int same(const outcome *a, const outcome *b)
 {
-    return same_error(a->what.verdict, b->what.verdict) && same_error(a->what.stop, b->what.stop) && a->what.n_tiles == b->what.n_tiles
-        && a->what.tiles_declared == b->what.tiles_declared && a->what.anchors_declared == b->what.anchors_declared
-        && memcmp(a->scene, b->scene, sizeof a->scene) == 0 && memcmp(a->records, b->records, sizeof a->records) == 0;
+    return same_error(a->what.verdict, b->what.verdict) && same_error(a->what.stop, b->what.stop) &&
+           a->what.n_tiles == b->what.n_tiles && a->what.tiles_declared == b->what.tiles_declared &&
+           a->what.anchors_declared == b->what.anchors_declared &&
+           memcmp(a->scene, b->scene, sizeof a->scene) == 0 &&
+           memcmp(a->records, b->records, sizeof a->records) == 0;
 }
 
 /* Nobody wants to know why, and tiers, advice and salvage come without options, or with them. */
 static int verdict_stays(const conf_bytes *file, const ted4_options *o, ted4_status verdict)
 {
     ted4_scene *s;
-    ted4_error  e;
-    int         good = ted4_decode(file->data, file->size, o, &s, NULL) == verdict;
+    ted4_error e;
+    int good = ted4_decode(file->data, file->size, o, &s, NULL) == verdict;
 
     ted4_scene_free(s);
-    return good && ted4_validate(file->data, file->size, o, overhear, NULL) == verdict
-        && ted4_dump_syntax(file->data, file->size, o, throw_away, NULL, &e) == verdict;
+    return good && ted4_validate(file->data, file->size, o, overhear, NULL) == verdict &&
+           ted4_dump_syntax(file->data, file->size, o, throw_away, NULL, &e) == verdict;
 }
 
 const char *conf_ways_differ(const conf_bytes *file, conf_knobs knobs)
 {
     static const ted4_parallel threads = { backwards, NULL };
-    ted4_options  o = { .max_bytes = knobs.memory, .max_work = knobs.work };
+    ted4_options o = { .max_bytes = knobs.memory, .max_work = knobs.work };
     const outcome plain = decode(file, &o);
-    outcome       other;
+    outcome other;
 
     if (memcmp(plain.scene, plain.copy, sizeof plain.scene) != 0)
         return "of a copy";
@@ -126,11 +128,14 @@ const char *conf_ways_differ(const conf_bytes *file, conf_knobs knobs)
     o.trace = NULL;
     o.parallel = &threads;
     other = decode(file, &o);
-    if (knobs.memory == 0 && !same(&plain, &other))         /* threads take memory */
+    if (knobs.memory == 0 && !same(&plain, &other)) /* threads take memory */
         return "with threads";
     if (knobs.memory > 0 || knobs.work > 0)
         return NULL;
     other = decode(file, NULL);
     return !same(&plain, &other) ? "without options"
-         : !verdict_stays(file, &o, plain.what.verdict.code) || !verdict_stays(file, NULL, plain.what.verdict.code) ? "by another function" : NULL;
+           : !verdict_stays(file, &o, plain.what.verdict.code) ||
+                   !verdict_stays(file, NULL, plain.what.verdict.code)
+               ? "by another function"
+               : NULL;
 }

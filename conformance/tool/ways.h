@@ -1,5 +1,6 @@
-/* ways.h - a file given to our decoder as other callers may give it: with threads, with a trace, with nothing but the file. None of that may matter (R-DEC-004). What is
- * decoded is copied into a scene as encoders make it, too.
+/* ways.h - a file given to our decoder as other callers may give it: with threads, with a trace,
+ * with nothing but the file. None of that may matter (R-DEC-004). What is decoded is copied into a
+ * scene as encoders make it, too.
  * SPDX-License-Identifier: BSD-2-Clause */
 #ifndef CONF_WAYS_H
 #define CONF_WAYS_H

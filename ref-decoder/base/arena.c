@@ -10,8 +10,8 @@ enum { ALIGN = 64 };
 typedef struct ted4_arena_block block;
 struct ted4_arena_block {
     block *next, *prev;
-    void  *storage;             /* as the allocator returned it */
-    size_t size;                /* asked from the allocator */
+    void *storage; /* as the allocator returned it */
+    size_t size;   /* asked from the allocator */
 };
 
 static void *malloc_alloc(void *user, size_t size)
@@ -31,10 +31,8 @@ void ted4_arena_init(ted4_arena *a, const ted4_options *o)
     static const ted4_allocator standard = { malloc_alloc, malloc_free, NULL };
 
     memset(a, 0, sizeof *a);
-    a->allocator = o != NULL && o->allocator.alloc != NULL ? o->allocator
-                                                           : standard;
-    a->max = o != NULL && o->max_bytes != 0 ? o->max_bytes
-                                            : TED4_ARENA_DEFAULT;
+    a->allocator = o != NULL && o->allocator.alloc != NULL ? o->allocator : standard;
+    a->max = o != NULL && o->max_bytes != 0 ? o->max_bytes : TED4_ARENA_DEFAULT;
 }
 
 /* The header lies right before the aligned storage. */
@@ -55,9 +53,9 @@ void *ted4_arena_alloc(ted4_arena *a, uint64_t n, size_t size)
 void *ted4_arena_alloc_raw(ted4_arena *a, uint64_t n, size_t size)
 {
     const size_t extra = sizeof(block) + ALIGN;
-    block  *b;
-    size_t  total;
-    char   *storage;
+    block *b;
+    size_t total;
+    char *storage;
 
     if (size != 0 && n > (SIZE_MAX - extra) / size)
         return NULL;
@@ -67,8 +65,7 @@ void *ted4_arena_alloc_raw(ted4_arena *a, uint64_t n, size_t size)
     storage = a->allocator.alloc(a->allocator.user, total);
     if (storage == NULL)
         return NULL;
-    b = (block *)(void *)(storage + extra
-                          - ((uintptr_t)storage + extra) % ALIGN) - 1;
+    b = (block *)(void *)(storage + extra - ((uintptr_t)storage + extra) % ALIGN) - 1;
     b->storage = storage;
     b->size = total;
     b->prev = NULL;

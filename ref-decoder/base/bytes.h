@@ -1,4 +1,5 @@
-/* bytes.h - spec 4.2: little-endian numbers in byte strings, on any machine; and bytes as people read them.
+/* bytes.h - spec 4.2: little-endian numbers in byte strings, on any machine; and bytes as people
+ * read them.
  * SPDX-License-Identifier: BSD-2-Clause */
 #ifndef TED4_BYTES_H
 #define TED4_BYTES_H

@@ -29,15 +29,14 @@ static inline int32_t ted4_sat16(int32_t x)
     return ted4_clamp(x, -32767, 32767);
 }
 
-/* spec 4.3 rne(v 2^e) of the binary32 pattern bits of v; v is finite and normal, or zero. Results beyond +-2^62 are given as +-2^62,
- * which every bound of the specification refuses. */
+/* spec 4.3 rne(v 2^e) of the binary32 pattern bits of v; v is finite and normal, or zero. Results
+ * beyond +-2^62 are given as +-2^62, which every bound of the specification refuses. */
 static inline int64_t ted4_rne_scaled(uint32_t bits, int e)
 {
     const int64_t huge = (int64_t)1 << 62;
-    const int     shift = (int)(bits >> 23 & 0xff) - 150 + e;
-    const int64_t m = (bits & 0x7fffffff) == 0 ? 0
-                    : (int64_t)((bits & 0x7fffff) | 0x800000);
-    int64_t       v;
+    const int shift = (int)(bits >> 23 & 0xff) - 150 + e;
+    const int64_t m = (bits & 0x7fffffff) == 0 ? 0 : (int64_t)((bits & 0x7fffff) | 0x800000);
+    int64_t v;
 
     if (shift >= 0) {
         v = shift > 38 && m != 0 ? huge : m << (shift > 38 ? 0 : shift);

@@ -25,9 +25,9 @@ const char *ted4_level_name(ted4_level level)
 {
     switch (level) {
     case TED4_LEVEL_PLAIN: return "plain";
-    case TED4_LEVEL_V3:    return "v3";
-    case TED4_LEVEL_V4:    return "v4";
-    default:               break;
+    case TED4_LEVEL_V3: return "v3";
+    case TED4_LEVEL_V4: return "v4";
+    default: break;
     }
 #if defined(__x86_64__)
     return "v1";
@@ -49,7 +49,7 @@ ted4_level ted4_level_named(const char *name)
 ted4_level ted4_level_wanted(void)
 {
     const ted4_level most = ted4_level_of_machine();
-    const char      *name = getenv("TED4_KERNEL");
+    const char *name = getenv("TED4_KERNEL");
     const ted4_level level = name != NULL ? ted4_level_named(name) : TED4_LEVELS;
 
     return level < most ? level : most;

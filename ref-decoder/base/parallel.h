@@ -1,5 +1,5 @@
-/* parallel.h - how a caller lends its threads to the library; the library starts none (SECURITY.md).
- * Results never depend on which thread runs which index.
+/* parallel.h - how a caller lends its threads to the library; the library starts none
+ * (SECURITY.md). Results never depend on which thread runs which index.
  * SPDX-License-Identifier: BSD-2-Clause */
 #ifndef TED4_PARALLEL_H
 #define TED4_PARALLEL_H
@@ -10,17 +10,16 @@
 extern "C" {
 #endif
 
-/* run() calls body(arg, i) once for each i in [0, n), in any order, on any threads, and returns when all are done. */
+/* run() calls body(arg, i) once for each i in [0, n), in any order, on any threads, and returns
+ * when all are done. */
 typedef struct {
-    void (*run)(void *user, size_t n, void (*body)(void *arg, size_t i),
-                void *arg);
-    void  *user;
+    void (*run)(void *user, size_t n, void (*body)(void *arg, size_t i), void *arg);
+    void *user;
 } ted4_parallel;
 
 /* p may be NULL: then the calling thread does everything, in order. */
 static inline void ted4_parallel_for(const ted4_parallel *p, size_t n,
-                                     void (*body)(void *arg, size_t i),
-                                     void *arg)
+                                     void (*body)(void *arg, size_t i), void *arg)
 {
     if (p != NULL && n > 1) {
         p->run(p->user, n, body, arg);

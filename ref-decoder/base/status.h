@@ -22,16 +22,18 @@ typedef enum { TED4_VALID, TED4_INVALID, TED4_LIMIT, TED4_UNSUPPORTED, TED4_IO }
 /* The first failure sticks: code, and byte offset in the file. */
 typedef struct {
     ted4_status code;
-    size_t      offset;
+    size_t offset;
 } ted4_error;
 
-/* Sets *e unless it already holds a failure. Set a breakpoint here to stop at the first rejected byte. */
-void         ted4_fail(ted4_error *e, ted4_status code, size_t offset);
-const char  *ted4_status_id(ted4_status s);       /* "con.chunk-hash"; "ok" */
-const char  *ted4_status_section(ted4_status s);  /* "5.2" */
-const char  *ted4_status_text(ted4_status s);
-ted4_verdict ted4_status_verdict(ted4_status s);  /* from the id's first word */
-const char  *ted4_verdict_name(ted4_verdict v);   /* "valid", "invalid", "limit", "unsupported", "io" */
+/* Sets *e unless it already holds a failure. Set a breakpoint here to stop at the first rejected
+ * byte. */
+void ted4_fail(ted4_error *e, ted4_status code, size_t offset);
+const char *ted4_status_id(ted4_status s);      /* "con.chunk-hash"; "ok" */
+const char *ted4_status_section(ted4_status s); /* "5.2" */
+const char *ted4_status_text(ted4_status s);
+ted4_verdict ted4_status_verdict(ted4_status s); /* from the id's first word */
+const char *ted4_verdict_name(
+    ted4_verdict v); /* "valid", "invalid", "limit", "unsupported", "io" */
 
 #ifdef __cplusplus
 }

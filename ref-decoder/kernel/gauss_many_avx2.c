@@ -9,7 +9,7 @@
 #include "kernel/word_places.h"
 #include "norm/tables.h"
 
-typedef vi mask;    /* all bits of a lane, or none */
+typedef vi mask; /* all bits of a lane, or none */
 
 static inline vi all(int32_t x)
 {
@@ -78,7 +78,7 @@ static inline void pairs(const int32_t *table, vi index, vi *low, vi *high)
 
     const __m256i a = _mm256_set_m128i(two_pairs(table, i[4], i[5]), two_pairs(table, i[0], i[1]));
     const __m256i b = _mm256_set_m128i(two_pairs(table, i[6], i[7]), two_pairs(table, i[2], i[3]));
-    const __m256  x = _mm256_castsi256_ps(a), y = _mm256_castsi256_ps(b);
+    const __m256 x = _mm256_castsi256_ps(a), y = _mm256_castsi256_ps(b);
 
     *low = (vi)_mm256_castps_si256(_mm256_shuffle_ps(x, y, 0x88));
     *high = (vi)_mm256_castps_si256(_mm256_shuffle_ps(x, y, 0xdd));
@@ -96,8 +96,8 @@ static inline vi scales(vi sigma)
                                            step[12], step[14]);
     const __m256i far = _mm256_setr_epi32(step[16], step[18], step[20], step[22], step[24],
                                           step[26], step[28], step[30]);
-    const __m256   a = _mm256_castsi256_ps(_mm256_permutevar8x32_epi32(near, (__m256i)sigma));
-    const __m256   b = _mm256_castsi256_ps(_mm256_permutevar8x32_epi32(far, (__m256i)sigma));
+    const __m256 a = _mm256_castsi256_ps(_mm256_permutevar8x32_epi32(near, (__m256i)sigma));
+    const __m256 b = _mm256_castsi256_ps(_mm256_permutevar8x32_epi32(far, (__m256i)sigma));
 
     return (vi)_mm256_castps_si256(
         _mm256_blendv_ps(a, b, _mm256_castsi256_ps((__m256i)(sigma << 28))));

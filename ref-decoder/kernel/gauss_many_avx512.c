@@ -118,7 +118,8 @@ static inline void narrow(int16_t *to, vi x)
 
 #include "kernel/gauss_tile.h"
 
-size_t ted4_gauss_many_avx512(ted4_gauss_lanes *d, size_t n, const int32_t *mu, const uint8_t *sigma, int16_t *k)
+size_t ted4_gauss_many_avx512(ted4_gauss_lanes *d, size_t n, const int32_t *mu,
+                              const uint8_t *sigma, int16_t *k)
 {
     if (d->n_lanes < 2 * LANES)
         return ted4_gauss_many_avx2(d, n, mu, sigma, k);

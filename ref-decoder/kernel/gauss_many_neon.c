@@ -10,7 +10,7 @@
 #include "kernel/word_places.h"
 #include "norm/tables.h"
 
-typedef vi mask;    /* all bits of a lane, or none */
+typedef vi mask; /* all bits of a lane, or none */
 
 static inline vi all(int32_t x)
 {
@@ -72,14 +72,14 @@ static inline void pairs(const int32_t *table, vi index, vi *low, vi *high)
 
 static inline vi indices(const uint8_t *sigma)
 {
-    return (vi){ sigma[0], sigma[1], sigma[2], sigma[3] };
+    return (vi) { sigma[0], sigma[1], sigma[2], sigma[3] };
 }
 
 /* Bytes 0 to 3 of the entry of each lane. */
 static inline vi scales(vi sigma)
 {
     const int32_t *step = ted4_stepi + 128;
-    uint8x16x4_t   even;
+    uint8x16x4_t even;
 
     for (int i = 0; i < 4; i++)
         even.val[i] = vreinterpretq_u8_s32(vld2q_s32(step + 8 * i).val[0]);

@@ -49,9 +49,9 @@ typedef struct {
 /* A vector of lanes under way, from lane first on: states, slots, symbols as models have them and
  * as the stream has them. */
 typedef struct {
-    models   m;
-    vi       x, slot, k;
-    symbols  s;
+    models m;
+    vi x, slot, k;
+    symbols s;
     unsigned first, active, escape, outside;
 } row;
 
@@ -83,7 +83,7 @@ static inline vi inner(const models *g, vi j)
     const vi at = clamp((vi)((vu)d * (vu)g->inv) >> 11, all(-(1 << 17)), all(1 << 17)) + (1 << 17);
     /* The last entry is reached from the one before, with b = 256. */
     const vi i = least(at >> 8, all(TED4_N_PHI - 2)), b = at - i * 256;
-    vi       low, high;
+    vi low, high;
 
     pairs(ted4_phi, i, &low, &high);
 
@@ -107,7 +107,7 @@ static inline vi bound_near(const models *m, vi slot)
 {
     const vi even = ((slot - (1 << 15)) * ((m->size * 21) >> 5)) >> TED4_SLOT_BITS;
     const vi at = slot + even - 128, i = clamp(at >> 8, all(0), all(TED4_N_WHERE - 2));
-    vi       low, high;
+    vi low, high;
 
     pairs(ted4_where, i, &low, &high);
 
@@ -121,19 +121,19 @@ static inline vi bound_near(const models *m, vi slot)
 static inline symbols beside(const models *m, vi slot, vi near, vi bound)
 {
     const mask below = less(slot, bound);
-    const vi   other = cum(m, choose(below, near - 1, near + 1));
+    const vi other = cum(m, choose(below, near - 1, near + 1));
 
-    return (symbols){ choose(below, near - 1, near), least(bound, other), most(bound, other) };
+    return (symbols) { choose(below, near - 1, near), least(bound, other), most(bound, other) };
 }
 
 /* The same from three bounds at once: more work, but less to wait for where there is one row. */
 static inline symbols around(const models *m, vi slot, vi near)
 {
-    const vi   bound = inner(m, near), before = cum(m, near - 1), after = cum(m, near + 1);
+    const vi bound = inner(m, near), before = cum(m, near - 1), after = cum(m, near + 1);
     const mask below = less(slot, bound);
 
-    return (symbols){ choose(below, near - 1, near), choose(below, before, bound),
-                      choose(below, bound, after) };
+    return (symbols) { choose(below, near - 1, near), choose(below, before, bound),
+                       choose(below, bound, after) };
 }
 
 /* Which of the lanes do not hold their slots. */
@@ -155,7 +155,7 @@ static void find_alone(const models *m, vi slot, unsigned lanes, symbols *s)
     memcpy(to, &s->to, sizeof to);
     for (; lanes != 0; lanes &= lanes - 1) {
         const unsigned i = (unsigned)__builtin_ctz(lanes);
-        ted4_slots     slots;
+        ted4_slots slots;
 
         j[i] = (int32_t)ted4_gauss_find((unsigned)g[i], fr[i], (uint32_t)at[i], &slots);
         from[i] = (int32_t)slots.start;
@@ -173,9 +173,9 @@ TED4_SELDOM void find_again(const models *m, vi slot, unsigned lanes, symbols *s
     for (int i = 1; i < TRIES && lanes != 0; i++) {
         const vf steps = __builtin_convertvector(slot - s->from, vf) /
                          __builtin_convertvector(s->to - s->from, vf);
-        const vi      near = clamp(s->j + __builtin_convertvector(steps, vi), all(1), m->size - 1);
+        const vi near = clamp(s->j + __builtin_convertvector(steps, vi), all(1), m->size - 1);
         const symbols next = beside(m, slot, near, inner(m, near));
-        const mask    these = lanes_of(lanes);
+        const mask these = lanes_of(lanes);
 
         s->j = choose(these, next.j, s->j);
         s->from = choose(these, next.from, s->from);
@@ -206,22 +206,22 @@ TED4_ALWAYS void end_row(row *r)
 
     r->k = k;
     r->escape = bits_of(either(equal(r->s.j, all(0)), equal(r->s.j, r->m.size - 1))) & r->active;
-    r->outside =
-        bits_of(either(less(all(32767), k), less(k, all(-32767)))) & r->active & ~r->escape;
+    r->outside = bits_of(either(less(all(32767), k), less(k, all(-32767)))) & r->active &
+                 ~r->escape;
 }
 
 /* Takes symbols of some lanes, all of those that follow one another and have no escape. 0: words
  * are missing. */
 TED4_ALWAYS int take(ted4_gauss_lanes *d, const row *r, unsigned lanes)
 {
-    const vi y =
-        (vi)((vu)(r->s.to - r->s.from) * ((vu)r->x >> TED4_SLOT_BITS)) + r->slot - r->s.from;
-    const mask     low = equal((vi)((vu)y >> TED4_SLOT_BITS), all(0));
+    const vi y = (vi)((vu)(r->s.to - r->s.from) * ((vu)r->x >> TED4_SLOT_BITS)) + r->slot -
+                 r->s.from;
+    const mask low = equal((vi)((vu)y >> TED4_SLOT_BITS), all(0));
     const unsigned wants = bits_of(low) & lanes;
-    const size_t   left = (size_t)(d->end - d->word), used = 2 * (size_t)__builtin_popcount(wants);
-    uint8_t        last[2 * LANES] = { 0 };
+    const size_t left = (size_t)(d->end - d->word), used = 2 * (size_t)__builtin_popcount(wants);
+    uint8_t last[2 * LANES] = { 0 };
     const uint8_t *word = d->word;
-    uint32_t      *state = d->state + r->first;
+    uint32_t *state = d->state + r->first;
 
     if (left < sizeof last) {
         if (used > left)
@@ -241,7 +241,7 @@ TED4_ALWAYS int take(ted4_gauss_lanes *d, const row *r, unsigned lanes)
 
 /* A lane's state while it reads an escape, and the next word. */
 typedef struct {
-    uint32_t       x;
+    uint32_t x;
     const uint8_t *word, *end;
 } alone;
 
@@ -270,7 +270,7 @@ static int bit_alone(alone *a)
 static int32_t escape_alone(alone *a)
 {
     int32_t value = 1;
-    int     n = 0, bit;
+    int n = 0, bit;
 
     while ((bit = bit_alone(a)) == 1)
         if (++n > TED4_ESCAPE_BITS)
@@ -336,8 +336,8 @@ TED4_ALWAYS unsigned take_rows(ted4_gauss_lanes *d, const model_table *t, unsign
                                const int rows, unsigned active, const int32_t *mu,
                                const uint8_t *sigma, int16_t *k)
 {
-    row      r[ROWS];
-    vi       near[ROWS], bound[ROWS];
+    row r[ROWS];
+    vi near[ROWS], bound[ROWS];
     unsigned n = 0;
 
     for (int i = 0; i < rows; i++) {
@@ -361,7 +361,7 @@ TED4_ALWAYS unsigned take_rows(ted4_gauss_lanes *d, const model_table *t, unsign
 
         if (again != 0) {
             const models m = r[i].m;
-            symbols      s = r[i].s;
+            symbols s = r[i].s;
 
             find_again(&m, r[i].slot, again, &s);
             r[i].s = s;
@@ -409,14 +409,14 @@ TED4_ALWAYS size_t many_rows(ted4_gauss_lanes *d, const int rows, size_t n, cons
                              const uint8_t *sigma, int16_t *k)
 {
     const unsigned width = d->n_lanes < LANES ? d->n_lanes : LANES, whole = width * (unsigned)rows;
-    unsigned       lane = d->lane, wanted, got;
-    size_t         done = 0;
-    model_table    t;
+    unsigned lane = d->lane, wanted, got;
+    size_t done = 0;
+    model_table t;
 
     fill_models(&t);
     do {
         const unsigned from = lane & (width - 1), rest = width - from;
-        const size_t   left = n - done;
+        const size_t left = n - done;
 
         if (lane % whole == 0 && left >= (size_t)rows * LANES) {
             wanted = whole;

@@ -8,8 +8,8 @@
 
 enum { LANES = VECTOR / 4 };
 
-typedef int32_t  vi __attribute__((vector_size(VECTOR)));
-typedef float    vf __attribute__((vector_size(VECTOR)));
+typedef int32_t vi __attribute__((vector_size(VECTOR)));
+typedef float vf __attribute__((vector_size(VECTOR)));
 typedef uint32_t vu __attribute__((vector_size(VECTOR)));
 
 #endif

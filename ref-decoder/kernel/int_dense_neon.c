@@ -15,22 +15,22 @@ typedef struct {
 } pair;
 
 /* Channel c of eight, of which w has the weights. */
-#define TED4_CHANNEL(c)                                                                          \
-    do {                                                                                         \
-        const int16x8_t in = vld1q_s16(row + (c) * ROW);                                         \
-                                                                                                 \
-        for (int j = 0; j < UNITS; j++) {                                                        \
-            sum[j].lo = vmlal_laneq_s16(sum[j].lo, vget_low_s16(in), w[j], c);                   \
-            sum[j].hi = vmlal_high_laneq_s16(sum[j].hi, in, w[j], c);                            \
-        }                                                                                        \
+#define TED4_CHANNEL(c)                                                        \
+    do {                                                                       \
+        const int16x8_t in = vld1q_s16(row + (c)*ROW);                         \
+                                                                               \
+        for (int j = 0; j < UNITS; j++) {                                      \
+            sum[j].lo = vmlal_laneq_s16(sum[j].lo, vget_low_s16(in), w[j], c); \
+            sum[j].hi = vmlal_high_laneq_s16(sum[j].hi, in, w[j], c);          \
+        }                                                                      \
     } while (0)
 
 /* Units from o on, the last one several times at the end of a layer, of eight anchors. */
 static void units(const ted4_int_layer *l, const int16_t *x, unsigned o, unsigned *unit, pair *y)
 {
     const int16_t *row = x, *at[UNITS];
-    pair           sum[UNITS];
-    unsigned       i = 0;
+    pair sum[UNITS];
+    unsigned i = 0;
 
     for (int j = 0; j < UNITS; j++) {
         unit[j] = o + (unsigned)j < l->out ? o + (unsigned)j : l->out - 1;
@@ -69,7 +69,7 @@ static void units(const ted4_int_layer *l, const int16_t *x, unsigned o, unsigne
 
 static void hidden(const ted4_int_layer *l, const int16_t *x, size_t n, int16_t *y)
 {
-    pair     sum[UNITS];
+    pair sum[UNITS];
     unsigned unit[UNITS];
 
     for (size_t a = 0; a < n; a += GROUP)
@@ -86,8 +86,8 @@ static void hidden(const ted4_int_layer *l, const int16_t *x, size_t n, int16_t 
 static void last(const ted4_int_layer *l, const int16_t *x, size_t n, int32_t *y)
 {
     const int32x4_t most = vdupq_n_s32(TED4_OUTPUT_MAX), least = vdupq_n_s32(-TED4_OUTPUT_MAX);
-    pair            sum[UNITS];
-    unsigned        unit[UNITS];
+    pair sum[UNITS];
+    unsigned unit[UNITS];
 
     for (size_t a = 0; a < n; a += GROUP)
         for (unsigned o = 0; o < l->out; o += UNITS) {

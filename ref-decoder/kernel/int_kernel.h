@@ -1,4 +1,5 @@
-/* int_kernel.h - faster twins of norm/int_dense.c, bit for bit equal, and which one this machine takes.
+/* int_kernel.h - faster twins of norm/int_dense.c, bit for bit equal, and which one this machine
+ * takes.
  * SPDX-License-Identifier: BSD-2-Clause */
 #ifndef TED4_INT_KERNEL_H
 #define TED4_INT_KERNEL_H

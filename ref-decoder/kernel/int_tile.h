@@ -30,7 +30,7 @@ static inline void interleave(const ted4_int_layer *l, const int16_t *x, pair *p
 {
     for (unsigned i = 0; i < l->in; i += 2) {
         const int16_t *row = x + (size_t)i * ROW;
-        const vector   a = load(row), b = i + 1 < l->in ? load(row + ROW) : nothing();
+        const vector a = load(row), b = i + 1 < l->in ? load(row + ROW) : nothing();
 
         p[i / 2].lo = low(a, b);
         p[i / 2].hi = high(a, b);
@@ -39,12 +39,13 @@ static inline void interleave(const ted4_int_layer *l, const int16_t *x, pair *p
 
 /* n output units from o on; at the end of a layer the last unit is done several times. ahead: the
  * same inputs of the next block, or NULL. */
-static inline __attribute__((always_inline)) void
-units(const ted4_int_layer *l, const pair *p, unsigned o, const int n, const int16_t *ahead,
-      unsigned *unit, pair *y)
+static inline __attribute__((always_inline)) void units(const ted4_int_layer *l, const pair *p,
+                                                        unsigned o, const int n,
+                                                        const int16_t *ahead, unsigned *unit,
+                                                        pair *y)
 {
     const int16_t *w[UNITS];
-    pair           sum[UNITS];
+    pair sum[UNITS];
 
     TED4_UNROLL
     for (int j = 0; j < n; j++) {
@@ -81,9 +82,9 @@ units(const ted4_int_layer *l, const pair *p, unsigned o, const int n, const int
 
 /* As many units as are summed at once, or half of them when no more are left. Returns how many, the
  * last ones perhaps several times. */
-static inline __attribute__((always_inline)) int
-next_units(const ted4_int_layer *l, const pair *p, unsigned o, const int16_t *ahead, unsigned *unit,
-           pair *y)
+static inline __attribute__((always_inline)) int next_units(const ted4_int_layer *l, const pair *p,
+                                                            unsigned o, const int16_t *ahead,
+                                                            unsigned *unit, pair *y)
 {
     if (l->out - o > UNITS / 2) {
         units(l, p, o, UNITS, ahead, unit, y);
@@ -97,19 +98,20 @@ next_units(const ted4_int_layer *l, const pair *p, unsigned o, const int16_t *ah
  * one behind the other, and the caller comes back to all of them for every few outputs. Then those
  * of the next block are fetched while the first units of this one are summed, a few at a time, as
  * processors wait when many are asked for at once. */
-static inline __attribute__((always_inline)) void
-layer(const ted4_int_layer *l, const int16_t *x, size_t n, const int many_blocks,
-      void (*store)(void *y, size_t at, pair sum), void *y)
+static inline __attribute__((always_inline)) void layer(const ted4_int_layer *l, const int16_t *x,
+                                                        size_t n, const int many_blocks,
+                                                        void (*store)(void *y, size_t at, pair sum),
+                                                        void *y)
 {
     const size_t block = (size_t)l->in * ROW;
-    pair         p[MAX_PAIRS], sum[UNITS];
-    unsigned     unit[UNITS];
+    pair p[MAX_PAIRS], sum[UNITS];
+    unsigned unit[UNITS];
 
     for (size_t a = 0; a < n; a += GROUP) {
         interleave(l, x + a, p);
         for (unsigned o = 0; o < l->out;) {
             const int16_t *ahead = many_blocks && o == 0 ? x + a + block : NULL;
-            const int      m = next_units(l, p, o, ahead, unit, sum);
+            const int m = next_units(l, p, o, ahead, unit, sum);
 
             for (int j = 0; j < m; j++)
                 store(y, (size_t)unit[j] * ROW + a, sum[j]);

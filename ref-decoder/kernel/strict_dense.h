@@ -1,20 +1,20 @@
-/* strict_dense.h - spec 7.1, 12.2: one dense layer over a block of 32 anchors, faster twins of ted4_strict_dense_plain (recon/strict.h), bit for bit equal, and which one
- * this machine takes. Depends on nothing.
+/* strict_dense.h - spec 7.1, 12.2: one dense layer over a block of 32 anchors, faster twins of
+ * ted4_strict_dense_plain (recon/strict.h), bit for bit equal, and which one this machine takes.
+ * Depends on nothing.
  * SPDX-License-Identifier: BSD-2-Clause */
 #ifndef TED4_STRICT_DENSE_H
 #define TED4_STRICT_DENSE_H
 
 /* w: [out][in], b: [out], borrowed. relu: y = max(0, y). */
 typedef struct {
-    unsigned     in, out;
+    unsigned in, out;
     const float *w, *b;
-    int          relu;
+    int relu;
 } ted4_strict_layer;
 
-/* y[out][32] = W x[in][32] + b in the order of spec 12.2. x and y are 64-byte aligned and do not overlap. All variants give the
- * same bits. */
-typedef void (*ted4_strict_dense_fn)(const ted4_strict_layer *l, const float *x,
-                                     float *y);
+/* y[out][32] = W x[in][32] + b in the order of spec 12.2. x and y are 64-byte aligned and do not
+ * overlap. All variants give the same bits. */
+typedef void (*ted4_strict_dense_fn)(const ted4_strict_layer *l, const float *x, float *y);
 
 #if defined(__x86_64__)
 void ted4_strict_dense_avx2(const ted4_strict_layer *l, const float *x, float *y);

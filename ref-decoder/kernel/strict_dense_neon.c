@@ -12,8 +12,8 @@ enum { TILE = 2 };
 void ted4_strict_dense_neon(const ted4_strict_layer *l, const float *x, float *y)
 {
     const vf *in = (const vf *)(const void *)x;
-    vf       *out = (vf *)(void *)y;
-    unsigned  o = 0;
+    vf *out = (vf *)(void *)y;
+    unsigned o = 0;
 
     for (; o + 2 <= l->out; o += 2)
         dense_tile(l, o, 2, in, out);

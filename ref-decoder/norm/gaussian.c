@@ -4,11 +4,11 @@
 
 ted4_gauss_symbol ted4_gauss_of(int32_t mu, unsigned g, int32_t k)
 {
-    const int32_t  hw = ted4_half[g], m = ted4_floor_shift(mu, TED4_MU_BITS);
-    const int32_t  fr = mu - m * (1 << TED4_MU_BITS), r = k - m;
+    const int32_t hw = ted4_half[g], m = ted4_floor_shift(mu, TED4_MU_BITS);
+    const int32_t fr = mu - m * (1 << TED4_MU_BITS), r = k - m;
     const uint32_t last = ted4_gauss_size(g) - 1;
     ted4_gauss_symbol s;
-    uint32_t          j;
+    uint32_t j;
 
     if (r < -hw) {
         j = 0;
@@ -25,23 +25,21 @@ ted4_gauss_symbol ted4_gauss_of(int32_t mu, unsigned g, int32_t k)
     return s;
 }
 
-/* A symbol near the one that holds slot: the Gaussian inverted by table, in Q8 of a step as d of spec 9.4.
- * sigma = STEPI[128 + 2 (g mod 16)] 2^(g / 16 - 16); where is Q14. */
+/* A symbol near the one that holds slot: the Gaussian inverted by table, in Q8 of a step as d of
+ * spec 9.4. sigma = STEPI[128 + 2 (g mod 16)] 2^(g / 16 - 16); where is Q14. */
 static uint32_t guess(unsigned g, int32_t fr, uint32_t slot)
 {
-    const int32_t d = ted4_floor_shift(ted4_where[slot / 256]
-                                       * ted4_stepi[128 + 2 * (g % 16)],
-                                       22 - g / 16);
+    const int32_t d =
+        ted4_floor_shift(ted4_where[slot / 256] * ted4_stepi[128 + 2 * (g % 16)], 22 - g / 16);
 
-    return (uint32_t)ted4_clamp(ted4_floor_shift(d + 128 + fr, 8) + 1
-                                + ted4_half[g], 0,
+    return (uint32_t)ted4_clamp(ted4_floor_shift(d + 128 + fr, 8) + 1 + ted4_half[g], 0,
                                 (int32_t)ted4_gauss_size(g) - 1);
 }
 
-/* cum is strictly increasing, so there is one j with cum(j) <= slot < cum(j + 1). The guess is nearly always right; otherwise steps
- * that double reach beyond it, and bisection finds it between them. */
-uint32_t ted4_gauss_find(unsigned g, int32_t fr, uint32_t slot,
-                         ted4_slots *slots)
+/* cum is strictly increasing, so there is one j with cum(j) <= slot < cum(j + 1). The guess is
+ * nearly always right; otherwise steps that double reach beyond it, and bisection finds it between
+ * them. */
+uint32_t ted4_gauss_find(unsigned g, int32_t fr, uint32_t slot, ted4_slots *slots)
 {
     const uint32_t size = ted4_gauss_size(g);
     uint32_t low = guess(g, fr, slot), high = low + 1;

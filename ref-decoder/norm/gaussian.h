@@ -6,8 +6,11 @@
 #include "base/fixed.h"
 #include "norm/tables.h"
 
-enum { TED4_SLOT_BITS = 16, TED4_ESCAPE_BITS = 19,  /* R-ENT-006 */
-       TED4_MU_BITS = 8 };
+enum {
+    TED4_SLOT_BITS = 16,
+    TED4_ESCAPE_BITS = 19, /* R-ENT-006 */
+    TED4_MU_BITS = 8
+};
 
 /* A range of slots: [start, start + freq) of 2^16. */
 typedef struct {
@@ -17,7 +20,7 @@ typedef struct {
 /* A symbol k as spec 9.4 codes it. escape: e, or -1. */
 typedef struct {
     ted4_slots slots;
-    int32_t    escape;
+    int32_t escape;
 } ted4_gauss_symbol;
 
 /* R: symbols of the alphabet. */
@@ -29,17 +32,15 @@ static inline uint32_t ted4_gauss_size(unsigned g)
 /* cum(j) for 0 < j < R. fr: fraction of mu, 0 .. 255. */
 static inline uint32_t ted4_gauss_inner(unsigned g, int32_t fr, uint32_t j)
 {
-    const int32_t  d = 256 * ((int32_t)j - 1 - ted4_half[g]) - 128 - fr;
-    const int32_t  z = ted4_clamp(ted4_floor_shift(d * ted4_inv[g], 11),
-                                  -(1 << 17), 1 << 17);
+    const int32_t d = 256 * ((int32_t)j - 1 - ted4_half[g]) - 128 - fr;
+    const int32_t z = ted4_clamp(ted4_floor_shift(d * ted4_inv[g], 11), -(1 << 17), 1 << 17);
     const uint32_t at = (uint32_t)(z + (1 << 17));
     const uint32_t i = at / 256, b = at % 256;
     const uint32_t low = (uint32_t)ted4_phi[i];
     const uint32_t high = (uint32_t)ted4_phi[i < 1024 ? i + 1 : 1024];
     const uint32_t p = low + ((high - low) * b >> 8);
 
-    return ((p >> 8) * ((1u << TED4_SLOT_BITS) - ted4_gauss_size(g))
-            >> TED4_SLOT_BITS) + j;
+    return ((p >> 8) * ((1u << TED4_SLOT_BITS) - ted4_gauss_size(g)) >> TED4_SLOT_BITS) + j;
 }
 
 /* cum(j), 0 <= j <= R. */
@@ -53,8 +54,7 @@ static inline uint32_t ted4_gauss_cum(unsigned g, int32_t fr, uint32_t j)
 /* The symbol of k. */
 ted4_gauss_symbol ted4_gauss_of(int32_t mu, unsigned g, int32_t k);
 /* The symbol j whose slots hold slot, and those slots. */
-uint32_t ted4_gauss_find(unsigned g, int32_t fr, uint32_t slot,
-                         ted4_slots *slots);
+uint32_t ted4_gauss_find(unsigned g, int32_t fr, uint32_t slot, ted4_slots *slots);
 /* k - m of symbol j when it is no escape; of an escape with e. */
 static inline int32_t ted4_gauss_offset(unsigned g, uint32_t j)
 {

@@ -1,4 +1,5 @@
-/* half.h - spec 8: binary16 patterns as exact integers and as sort keys; conversions by bit operations.
+/* half.h - spec 8: binary16 patterns as exact integers and as sort keys; conversions by bit
+ * operations.
  * SPDX-License-Identifier: BSD-2-Clause */
 #ifndef TED4_HALF_H
 #define TED4_HALF_H
@@ -10,8 +11,8 @@
 static inline int32_t ted4_half_q24(uint16_t h)
 {
     const unsigned e = h >> 10 & 15;
-    const int32_t  m = h & 0x3ff;
-    const int32_t  x = e > 0 ? (m | 0x400) << (e - 1) : m;
+    const int32_t m = h & 0x3ff;
+    const int32_t x = e > 0 ? (m | 0x400) << (e - 1) : m;
 
     return h >> 15 ? -x : x;
 }
@@ -27,7 +28,7 @@ static inline float ted4_half_to_float(uint16_t h)
     if (e == 0) {
         if (m == 0)
             return ted4_bits_float(sign);
-        for (e = 1; m < 0x400; e--)         /* wraps below 0, as 112 is added */
+        for (e = 1; m < 0x400; e--) /* wraps below 0, as 112 is added */
             m <<= 1;
         m &= 0x3ff;
     }
@@ -54,7 +55,7 @@ static inline uint16_t ted4_float_to_half(float x)
     rest = m & (2 * half - 1);
     v = m >> shift;
     if (e >= 113)
-        v += (e - 113) << 10;               /* v holds 1 << 10 already */
+        v += (e - 113) << 10; /* v holds 1 << 10 already */
     v += rest > half || (rest == half && (v & 1) != 0);
     return (uint16_t)(sign | v);
 }
@@ -78,9 +79,8 @@ static inline uint64_t ted4_spread3(uint64_t x)
 /* spec 8: the 48-bit Morton code of an anchor's three patterns. */
 static inline uint64_t ted4_morton(const uint16_t *p)
 {
-    return ted4_spread3(ted4_half_order(p[0])) << 2
-         | ted4_spread3(ted4_half_order(p[1])) << 1
-         | ted4_spread3(ted4_half_order(p[2]));
+    return ted4_spread3(ted4_half_order(p[0])) << 2 | ted4_spread3(ted4_half_order(p[1])) << 1 |
+           ted4_spread3(ted4_half_order(p[2]));
 }
 
 #endif

@@ -1,11 +1,11 @@
-/* int_dense.c - spec 7.3 "Evaluation": dense layers in integers, plainly. Its faster twins are in kernel/.
- * R-NET-006 is why nothing here can overflow, in any order of summation.
+/* int_dense.c - spec 7.3 "Evaluation": dense layers in integers, plainly. Its faster twins are in
+ * kernel/. R-NET-006 is why nothing here can overflow, in any order of summation.
  * SPDX-License-Identifier: BSD-2-Clause */
 #include "norm/prior.h"
 
 /* Sums of one output unit for n columns. */
-static void accumulate(const ted4_int_layer *l, unsigned o, const int16_t *x,
-                       size_t n, int32_t *acc)
+static void accumulate(const ted4_int_layer *l, unsigned o, const int16_t *x, size_t n,
+                       int32_t *acc)
 {
     const int16_t *w = l->w + (size_t)o * l->in_pad;
 
@@ -19,29 +19,25 @@ static void accumulate(const ted4_int_layer *l, unsigned o, const int16_t *x,
     }
 }
 
-static void hidden(const ted4_int_layer *l, const int16_t *x, size_t n,
-                   int16_t *y)
+static void hidden(const ted4_int_layer *l, const int16_t *x, size_t n, int16_t *y)
 {
     int32_t acc[TED4_PRIOR_BLOCK];
 
     for (unsigned o = 0; o < l->out; o++, y += TED4_PRIOR_BLOCK) {
         accumulate(l, o, x, n, acc);
         for (size_t a = 0; a < n; a++)
-            y[a] = (int16_t)ted4_clamp(ted4_round_shift(acc[a], l->r[o]), 0,
-                                       32767);
+            y[a] = (int16_t)ted4_clamp(ted4_round_shift(acc[a], l->r[o]), 0, 32767);
     }
 }
 
-static void last(const ted4_int_layer *l, const int16_t *x, size_t n,
-                 int32_t *y)
+static void last(const ted4_int_layer *l, const int16_t *x, size_t n, int32_t *y)
 {
     int32_t acc[TED4_PRIOR_BLOCK];
 
     for (unsigned o = 0; o < l->out; o++, y += TED4_PRIOR_BLOCK) {
         accumulate(l, o, x, n, acc);
         for (size_t a = 0; a < n; a++)
-            y[a] = ted4_clamp(ted4_round_shift(acc[a], l->r[o]),
-                              -TED4_OUTPUT_MAX, TED4_OUTPUT_MAX);
+            y[a] = ted4_clamp(ted4_round_shift(acc[a], l->r[o]), -TED4_OUTPUT_MAX, TED4_OUTPUT_MAX);
     }
 }
 

@@ -10,10 +10,10 @@ enum { TED4_LEVEL_UNBOUNDED = 31 };
 
 /* Largest values a level allows. */
 typedef struct {
-    uint8_t  level;
+    uint8_t level;
     uint32_t n_anchors, n_offsets, frames;
-    uint64_t values;            /* f32 values of all blobs */
-    uint64_t products;          /* per anchor, Tier E */
+    uint64_t values;   /* f32 values of all blobs */
+    uint64_t products; /* per anchor, Tier E */
     uint64_t file_bytes;
     uint64_t symbols_per_byte;
 } ted4_limits;
@@ -26,18 +26,15 @@ uint64_t ted4_count_symbols(const ted4_header *h, const ted4_shape *s);
 /* Sum of inputs x outputs over the layers of Tier E. */
 uint64_t ted4_count_products(const ted4_header *h, const ted4_shape *s);
 /* W_E of spec 13.4, which follows from HEAD and the size of the file. */
-uint64_t ted4_count_work(const ted4_header *h, const ted4_shape *s,
-                         uint64_t file_bytes);
+uint64_t ted4_count_work(const ted4_header *h, const ted4_shape *s, uint64_t file_bytes);
 /* Steps of a query, spec 13.4: N A_R + 20 G, of a scene that keeps n_records offsets. */
-uint64_t ted4_count_query_work(const ted4_header *h, const ted4_shape *s,
-                               uint64_t n_records);
+uint64_t ted4_count_query_work(const ted4_header *h, const ted4_shape *s, uint64_t n_records);
 
 /* The bounds that no single element breaks: 1 when a file of that size keeps them, else 0. */
-int ted4_limits_hold(const ted4_limits *l, const ted4_header *h,
-                     const ted4_shape *s, uint64_t file_bytes);
+int ted4_limits_hold(const ted4_limits *l, const ted4_header *h, const ted4_shape *s,
+                     uint64_t file_bytes);
 
 /* R-ENC-002: the lowest level all of whose bounds hold for a file of that size. */
-unsigned ted4_level_lowest(const ted4_header *h, const ted4_shape *s,
-                           uint64_t file_bytes);
+unsigned ted4_level_lowest(const ted4_header *h, const ted4_shape *s, uint64_t file_bytes);
 
 #endif

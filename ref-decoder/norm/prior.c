@@ -7,8 +7,7 @@
 #include "norm/half.h"
 #include "norm/sine.h"
 
-static int layer_init(ted4_int_layer *l, unsigned in, unsigned out,
-                      ted4_arena *arena)
+static int layer_init(ted4_int_layer *l, unsigned in, unsigned out, ted4_arena *arena)
 {
     l->in = in;
     l->in_pad = in + in % 2;
@@ -19,8 +18,7 @@ static int layer_init(ted4_int_layer *l, unsigned in, unsigned out,
     return l->w != NULL && l->b != NULL && l->r != NULL;
 }
 
-static int net_init(ted4_int_layer *l, const ted4_net_shape *n,
-                    ted4_arena *arena)
+static int net_init(ted4_int_layer *l, const ted4_net_shape *n, ted4_arena *arena)
 {
     for (unsigned i = 0; i < n->n_layers; i++)
         if (!layer_init(&l[i], n->dim[i], n->dim[i + 1], arena))
@@ -28,8 +26,8 @@ static int net_init(ted4_int_layer *l, const ted4_net_shape *n,
     return 1;
 }
 
-ted4_status ted4_prior_init(ted4_prior *p, const ted4_header *h,
-                            const ted4_shape *s, ted4_arena *arena)
+ted4_status ted4_prior_init(ted4_prior *p, const ted4_header *h, const ted4_shape *s,
+                            ted4_arena *arena)
 {
     memset(p, 0, sizeof *p);
     p->dense = &ted4_int_dense_plain;
@@ -55,22 +53,20 @@ ted4_unit_rule ted4_prior_rule(const ted4_net_shape *n, unsigned i, int hyper,
 {
     ted4_unit_rule u;
 
-    u.f = i > 0 ? TED4_HIDDEN_BITS : hyper ? TED4_INPUT_BITS
-                                           : (int)context_bits;
+    u.f = i > 0 ? TED4_HIDDEN_BITS : hyper ? TED4_INPUT_BITS : (int)context_bits;
     u.g = i + 1u < n->n_layers ? TED4_HIDDEN_BITS : TED4_OUTPUT_BITS;
     u.amplitude = i == 0 && hyper ? 1 << TED4_INPUT_BITS : 32767;
     return u;
 }
 
 /* One layer whose f32 values begin at nete[at]: all W, then all b (spec 7.1). */
-static void layer_load(ted4_int_layer *l, const ted4_unit_rule *u,
-                       const float *nete, size_t at, const uint8_t *shift,
-                       ted4_error *e)
+static void layer_load(ted4_int_layer *l, const ted4_unit_rule *u, const float *nete, size_t at,
+                       const uint8_t *shift, ted4_error *e)
 {
     for (unsigned o = 0; o < l->out; o++)
         for (unsigned i = 0; i < l->in; i++, at++) {
             const uint32_t bits = ted4_float_bits(nete[at]);
-            const int64_t  w = ted4_rne_scaled(bits, shift[o]);
+            const int64_t w = ted4_rne_scaled(bits, shift[o]);
 
             if (!ted4_float_legal(bits))
                 ted4_fail(e, TED4_E_NET_VALUE, at);
@@ -82,8 +78,8 @@ static void layer_load(ted4_int_layer *l, const ted4_unit_rule *u,
         }
     for (unsigned o = 0; o < l->out; o++, at++) {
         const uint32_t bits = ted4_float_bits(nete[at]);
-        const int64_t  b = ted4_rne_scaled(bits, shift[o] + u->f);
-        int64_t        sum = 0;
+        const int64_t b = ted4_rne_scaled(bits, shift[o] + u->f);
+        int64_t sum = 0;
 
         for (unsigned i = 0; i < l->in; i++) {
             const int32_t w = l->w[(size_t)o * l->in_pad + i];
@@ -102,15 +98,13 @@ static void layer_load(ted4_int_layer *l, const ted4_unit_rule *u,
 }
 
 /* shifts: only those are judged (they precede the values in a file); else the values are loaded. */
-static void net_load(ted4_prior *p, ted4_int_layer *l, const ted4_net_shape *n,
-                     int hyper, const float *nete, const uint8_t *shift,
-                     ted4_error *e)
+static void net_load(ted4_prior *p, ted4_int_layer *l, const ted4_net_shape *n, int hyper,
+                     const float *nete, const uint8_t *shift, ted4_error *e)
 {
     size_t at = n->first, unit = n->first_unit;
 
     for (unsigned i = 0; i < n->n_layers && e->code == TED4_OK; i++) {
-        const ted4_unit_rule u = ted4_prior_rule(n, i, hyper,
-                                                 p->context_bits);
+        const ted4_unit_rule u = ted4_prior_rule(n, i, hyper, p->context_bits);
 
         if (nete != NULL)
             layer_load(&l[i], &u, nete, at, shift + unit, e);
@@ -123,16 +117,14 @@ static void net_load(ted4_prior *p, ted4_int_layer *l, const ted4_net_shape *n,
     }
 }
 
-static void load_all(ted4_prior *p, const float *nete, const uint8_t *shift,
-                     ted4_error *e)
+static void load_all(ted4_prior *p, const float *nete, const uint8_t *shift, ted4_error *e)
 {
     net_load(p, p->hyper, &p->hyper_shape, 1, nete, shift, e);
     for (unsigned m = 1; m < p->n_slices; m++)
         net_load(p, p->slice[m], &p->slice_shape[m], 0, nete, shift, e);
 }
 
-ted4_status ted4_prior_load(ted4_prior *p, const float *nete,
-                            const uint8_t *shift, ted4_error *e)
+ted4_status ted4_prior_load(ted4_prior *p, const float *nete, const uint8_t *shift, ted4_error *e)
 {
     ted4_error own = { TED4_OK, 0 };
 
@@ -164,8 +156,8 @@ static const int16_t *inner_layers(const ted4_prior *p, const ted4_int_layer *l,
     return x;
 }
 
-static void chain(const ted4_prior *p, const ted4_int_layer *l, unsigned n_layers,
-                  const int16_t *x, size_t n, int32_t *out)
+static void chain(const ted4_prior *p, const ted4_int_layer *l, unsigned n_layers, const int16_t *x,
+                  size_t n, int32_t *out)
 {
     _Alignas(64) int16_t hidden[2][TED4_MAX_WIDTH * TED4_PRIOR_BLOCK];
 
@@ -178,7 +170,7 @@ static void chain(const ted4_prior *p, const ted4_int_layer *l, unsigned n_layer
  * time then. */
 static void waves(const uint32_t *phase, unsigned l, size_t n, int16_t *x)
 {
-    int16_t sine[TED4_PRIOR_BLOCK][2], cosine[TED4_PRIOR_BLOCK][2];     /* an entry, the next */
+    int16_t sine[TED4_PRIOR_BLOCK][2], cosine[TED4_PRIOR_BLOCK][2]; /* an entry, the next */
 
     for (size_t i = 0; i < n; i++) {
         const uint32_t at = phase[i] << l >> 22;
@@ -198,7 +190,7 @@ static void waves(const uint32_t *phase, unsigned l, size_t n, int16_t *x)
 static size_t all_inputs(const ted4_prior *p, const uint16_t *position, size_t n, int16_t *x)
 {
     const size_t padded = group_up(n);
-    uint32_t     phase[3][TED4_PRIOR_BLOCK];
+    uint32_t phase[3][TED4_PRIOR_BLOCK];
 
     if (p->n_inputs == 0)
         return padded;
@@ -216,8 +208,7 @@ static size_t all_inputs(const ted4_prior *p, const uint16_t *position, size_t n
 }
 
 /* spec 10.1 */
-void ted4_prior_hyper(const ted4_prior *p, const uint16_t *position, size_t n,
-                      int32_t *out)
+void ted4_prior_hyper(const ted4_prior *p, const uint16_t *position, size_t n, int32_t *out)
 {
     _Alignas(64) int16_t x[TED4_PRIOR_INPUTS * TED4_PRIOR_BLOCK];
 
@@ -266,8 +257,7 @@ void ted4_prior_some(const ted4_prior *p, unsigned first, unsigned second, unsig
 }
 
 /* spec 10.3 */
-void ted4_prior_slice(const ted4_prior *p, unsigned m, const int16_t *ctx,
-                      size_t n, int32_t *out)
+void ted4_prior_slice(const ted4_prior *p, unsigned m, const int16_t *ctx, size_t n, int32_t *out)
 {
     chain(p, p->slice[m], TED4_SLICE_LAYERS, ctx, group_up(n), out);
 }

@@ -1,6 +1,7 @@
 /* prior.h - spec 7.3, 10.1, 10.3: the networks of Tier E as integers, and what their outputs mean.
  * Depends on syntax.h. It needs no scene:
- *     ted4_arena_init(&a, NULL); ted4_prior_init(&p, &head, &shape, &a); ... ted4_prior_load(&p, nete, shift, &error) as often as
+ *     ted4_arena_init(&a, NULL); ted4_prior_init(&p, &head, &shape, &a); ... ted4_prior_load(&p,
+ *     nete, shift, &error) as often as
  * weights change; ted4_prior_hyper and ted4_prior_slice from any thread; ted4_arena_finish(&a).
  * SPDX-License-Identifier: BSD-2-Clause */
 #ifndef TED4_PRIOR_H
@@ -10,26 +11,30 @@
 #include "norm/syntax.h"
 #include "norm/tables.h"
 
-enum { TED4_PRIOR_BLOCK = 64,       /* anchors evaluated at once, at most; arrays are [channel][64] */
-       TED4_PRIOR_INPUTS = 3 + 6 * 16,  /* most inputs of the hyperprior */
-       TED4_INPUT_BITS = 12, TED4_HIDDEN_BITS = 10, TED4_OUTPUT_BITS = 8,
-       TED4_OUTPUT_MAX = (1 << 26) - 1, TED4_MAX_SHIFT = 20 };
+enum {
+    TED4_PRIOR_BLOCK = 64, /* anchors evaluated at once, at most; arrays are [channel][64] */
+    TED4_PRIOR_INPUTS = 3 + 6 * 16, /* most inputs of the hyperprior */
+    TED4_INPUT_BITS = 12,
+    TED4_HIDDEN_BITS = 10,
+    TED4_OUTPUT_BITS = 8,
+    TED4_OUTPUT_MAX = (1 << 26) - 1,
+    TED4_MAX_SHIFT = 20
+};
 
-/* One dense layer: y_o = b_o + sum_i w_oi x_i, shifted right by r_o with rounding. in_pad: in rounded up to even; the padding of w is 0. */
+/* One dense layer: y_o = b_o + sum_i w_oi x_i, shifted right by r_o with rounding. in_pad: in
+ * rounded up to even; the padding of w is 0. */
 typedef struct {
     unsigned in, in_pad, out;
-    int16_t *w;                 /* [out][in_pad] */
-    int32_t *b;                 /* [out] */
-    uint8_t *r;                 /* [out] */
+    int16_t *w; /* [out][in_pad] */
+    int32_t *b; /* [out] */
+    uint8_t *r; /* [out] */
 } ted4_int_layer;
 
 /* n is a multiple of 32, at most 64; x is [in][64]. Columns from n on are neither read nor written.
  * hidden: max(0, sat16(y)) into [out][64]. last: clamped to +-TED4_OUTPUT_MAX into [out][64]. */
 typedef struct {
-    void (*hidden)(const ted4_int_layer *l, const int16_t *x, size_t n,
-                   int16_t *y);
-    void (*last)(const ted4_int_layer *l, const int16_t *x, size_t n,
-                 int32_t *y);
+    void (*hidden)(const ted4_int_layer *l, const int16_t *x, size_t n, int16_t *y);
+    void (*last)(const ted4_int_layer *l, const int16_t *x, size_t n, int32_t *y);
 } ted4_int_dense;
 
 extern const ted4_int_dense ted4_int_dense_plain;
@@ -37,28 +42,30 @@ extern const ted4_int_dense ted4_int_dense_plain;
 enum { TED4_HYPER_LAYERS = 5, TED4_SLICE_LAYERS = 2 };
 
 typedef struct ted4_prior {
-    const ted4_int_dense *dense;    /* the plain one after init; may be replaced by one that gives the same bits */
-    unsigned       pe_octaves, context_bits;
-    unsigned       n_inputs, n_outputs, n_slices;
-    uint8_t        slice_dim[TED4_MAX_SLICES];
-    unsigned       n_hyper;         /* layers of the hyperprior */
+    const ted4_int_dense
+        *dense; /* the plain one after init; may be replaced by one that gives the same bits */
+    unsigned pe_octaves, context_bits;
+    unsigned n_inputs, n_outputs, n_slices;
+    uint8_t slice_dim[TED4_MAX_SLICES];
+    unsigned n_hyper; /* layers of the hyperprior */
     ted4_int_layer hyper[TED4_HYPER_LAYERS];
-    ted4_int_layer slice[TED4_MAX_SLICES][TED4_SLICE_LAYERS];  /* [0] is unused */
+    ted4_int_layer slice[TED4_MAX_SLICES][TED4_SLICE_LAYERS]; /* [0] is unused */
     ted4_net_shape hyper_shape, slice_shape[TED4_MAX_SLICES];
 } ted4_prior;
 
 /* Shapes and storage; weights are 0 until ted4_prior_load. TED4_OK or TED4_E_LIMIT_MEMORY. */
-ted4_status ted4_prior_init(ted4_prior *p, const ted4_header *h,
-                            const ted4_shape *s, ted4_arena *arena);
-/* Integerises nete [n_nete] with shift [n_units], by bit operations, and checks R-NET-002 to R-NET-006 in the order of the blob.
- * TED4_OK; or the failure, e->offset then being an index into nete, or into shift for TED4_E_NET_SHIFT. e may be NULL. */
-ted4_status ted4_prior_load(ted4_prior *p, const float *nete,
-                            const uint8_t *shift, ted4_error *e);
+ted4_status ted4_prior_init(ted4_prior *p, const ted4_header *h, const ted4_shape *s,
+                            ted4_arena *arena);
+/* Integerises nete [n_nete] with shift [n_units], by bit operations, and checks R-NET-002 to
+ * R-NET-006 in the order of the blob. TED4_OK; or the failure, e->offset then being an index into
+ * nete, or into shift for TED4_E_NET_SHIFT. e may be NULL. */
+ted4_status ted4_prior_load(ted4_prior *p, const float *nete, const uint8_t *shift, ted4_error *e);
 
-/* What R-NET-003 to R-NET-006 ask of one output unit. f: fraction bits of its inputs; g: of its output. */
+/* What R-NET-003 to R-NET-006 ask of one output unit. f: fraction bits of its inputs; g: of its
+ * output. */
 typedef struct {
-    int     f, g;
-    int32_t amplitude;          /* A: bound of its inputs */
+    int f, g;
+    int32_t amplitude; /* A: bound of its inputs */
 } ted4_unit_rule;
 
 /* Layer i of net n; hyper: it is the hyperprior. */
@@ -70,18 +77,18 @@ static inline int ted4_shift_legal(const ted4_unit_rule *u, int shift)
     return shift <= TED4_MAX_SHIFT && shift + u->f - u->g >= 0;
 }
 /* R-NET-006. sum_w: sum of |W|, below 2^31. */
-static inline int ted4_accumulator_legal(const ted4_unit_rule *u, int shift,
-                                         int64_t sum_w, int64_t b)
+static inline int ted4_accumulator_legal(const ted4_unit_rule *u, int shift, int64_t sum_w,
+                                         int64_t b)
 {
-    const int     r = shift + u->f - u->g;
+    const int r = shift + u->f - u->g;
     const int64_t half = r > 0 ? (int64_t)1 << (r - 1) : 0;
 
     return sum_w * u->amplitude + (b < 0 ? -b : b) + half <= INT32_MAX;
 }
 
-/* spec 10.1 for n <= 64 anchors: out [P][64], all of Q8. position: [n][3] binary16 patterns, |p| <= 1. Columns from n on are undefined. */
-void ted4_prior_hyper(const ted4_prior *p, const uint16_t *position, size_t n,
-                      int32_t *out);
+/* spec 10.1 for n <= 64 anchors: out [P][64], all of Q8. position: [n][3] binary16 patterns, |p| <=
+ * 1. Columns from n on are undefined. */
+void ted4_prior_hyper(const ted4_prior *p, const uint16_t *position, size_t n, int32_t *out);
 /* The same in two steps, for who wants outputs a few at a time. hidden: [in][64] inputs of the last
  * layer, perhaps none, in being that of ted4_prior_last(p). some: a layer for a part of the
  * outputs, made by ted4_prior_some. */
@@ -94,10 +101,10 @@ void ted4_prior_hyper_some(const ted4_prior *p, const ted4_int_layer *some, cons
  * of them. */
 void ted4_prior_some(const ted4_prior *p, unsigned first, unsigned second, unsigned n,
                      ted4_int_layer *some);
-/* spec 10.3, slice network m = 1 .. n_slices - 1: ctx [slice[0] + .. + slice[m-1]][64] of ted4_context(), any value of that range
- * (0, say) in the columns from n to the next multiple of 32; out [2 slice[m]][64]: values added to mu, then values added to s. */
-void ted4_prior_slice(const ted4_prior *p, unsigned m, const int16_t *ctx,
-                      size_t n, int32_t *out);
+/* spec 10.3, slice network m = 1 .. n_slices - 1: ctx [slice[0] + .. + slice[m-1]][64] of
+ * ted4_context(), any value of that range (0, say) in the columns from n to the next multiple of
+ * 32; out [2 slice[m]][64]: values added to mu, then values added to s. */
+void ted4_prior_slice(const ted4_prior *p, unsigned m, const int16_t *ctx, size_t n, int32_t *out);
 
 /* spec 10.1: index into the step tables from an output v. */
 static inline uint8_t ted4_step_index(int32_t v)
@@ -108,16 +115,13 @@ static inline uint8_t ted4_step_index(int32_t v)
 /* spec 10.1: sigma index from an output s (with what the slice network adds). */
 static inline uint8_t ted4_sigma_index(int32_t s)
 {
-    return (uint8_t)ted4_clamp(64 + ted4_round_shift(s, 4), 0,
-                               TED4_N_SIGMA - 1);
+    return (uint8_t)ted4_clamp(64 + ted4_round_shift(s, 4), 0, TED4_N_SIGMA - 1);
 }
 
 /* spec 10.3: what the slice networks see of symbol k. */
-static inline int16_t ted4_context(int16_t k, uint8_t step_index,
-                                   unsigned context_bits)
+static inline int16_t ted4_context(int16_t k, uint8_t step_index, unsigned context_bits)
 {
-    return (int16_t)ted4_sat16(ted4_round_shift(k * ted4_stepi[step_index],
-                                                12 - context_bits));
+    return (int16_t)ted4_sat16(ted4_round_shift(k * ted4_stepi[step_index], 12 - context_bits));
 }
 
 #endif

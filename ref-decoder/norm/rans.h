@@ -1,4 +1,5 @@
-/* rans.h - spec 9.2: what both directions of the rANS coder share. read/rans_dec.c and ref-encoder/write/rans_enc.c hold the arithmetic.
+/* rans.h - spec 9.2: what both directions of the rANS coder share. read/rans_dec.c and
+ * ref-encoder/write/rans_enc.c hold the arithmetic.
  * SPDX-License-Identifier: BSD-2-Clause */
 #ifndef TED4_RANS_H
 #define TED4_RANS_H
@@ -8,9 +9,12 @@
 
 enum { TED4_MAX_LANES = 64, TED4_SYMBOLS_PER_LANE = 4096 };
 
-#define TED4_RANS_LOW ((uint32_t)1 << 16)   /* least legal state; the state before the first and after the last symbol */
+#define TED4_RANS_LOW \
+    ((uint32_t)1      \
+     << 16) /* least legal state; the state before the first and after the last symbol */
 
-/* Lanes of a substream of n > 0 symbols: the largest power of two not above n / 4096, between 1 and 64. */
+/* Lanes of a substream of n > 0 symbols: the largest power of two not above n / 4096, between 1 and
+ * 64. */
 static inline unsigned ted4_rans_lanes(size_t n)
 {
     unsigned lanes = 1;

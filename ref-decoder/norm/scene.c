@@ -6,7 +6,7 @@
 
 ted4_scene *ted4_scene_empty(const ted4_options *o)
 {
-    ted4_arena  arena;
+    ted4_arena arena;
     ted4_scene *s;
 
     ted4_arena_init(&arena, o);
@@ -22,7 +22,7 @@ void ted4_scene_free(ted4_scene *s)
 
     if (s == NULL)
         return;
-    arena = s->arena;           /* the scene itself lies in it */
+    arena = s->arena; /* the scene itself lies in it */
     ted4_arena_finish(&arena);
 }
 
@@ -40,23 +40,20 @@ int ted4_scene_alloc_shifts(ted4_scene *s)
 
 int ted4_scene_alloc_anchors(ted4_scene *s)
 {
-    ted4_arena  *a = &s->arena;
+    ted4_arena *a = &s->arena;
     const size_t n = s->head.n_anchors;
-    int          good;
+    int good;
 
     s->position = ted4_arena_alloc(a, n, 3 * sizeof *s->position);
     s->dynamic = ted4_arena_alloc(a, n, 1);
     s->offset_bits = ted4_arena_alloc(a, n, sizeof *s->offset_bits);
-    s->prob = ted4_arena_alloc(a, s->shape.n_tiles,
-                               TED4_PROBS * sizeof *s->prob);
-    good = s->position != NULL && s->dynamic != NULL && s->offset_bits != NULL
-        && s->prob != NULL;
+    s->prob = ted4_arena_alloc(a, s->shape.n_tiles, TED4_PROBS * sizeof *s->prob);
+    good = s->position != NULL && s->dynamic != NULL && s->offset_bits != NULL && s->prob != NULL;
     for (int t = 0; t < TED4_TYPES && good; t++) {
         if (s->shape.dim[t] == 0)
             continue;
         s->step_index[t] = ted4_arena_alloc(a, n, 1);
-        s->symbol[t] = ted4_arena_alloc(a, n,
-                                        s->shape.dim[t] * sizeof(int16_t));
+        s->symbol[t] = ted4_arena_alloc(a, n, s->shape.dim[t] * sizeof(int16_t));
         good = s->step_index[t] != NULL && s->symbol[t] != NULL;
     }
     return good;
@@ -77,10 +74,9 @@ ted4_scene *ted4_scene_new(const ted4_header *h, const ted4_options *o)
         return NULL;
     s->head = *h;
     ted4_shape_make(&s->shape, h);
-    if (blob_new(s, &s->nete, s->shape.n_nete)
-        && blob_new(s, &s->netr, s->shape.n_netr)
-        && blob_new(s, &s->bank, s->shape.n_bank)
-        && ted4_scene_alloc_shifts(s) && ted4_scene_alloc_anchors(s))
+    if (blob_new(s, &s->nete, s->shape.n_nete) && blob_new(s, &s->netr, s->shape.n_netr) &&
+        blob_new(s, &s->bank, s->shape.n_bank) && ted4_scene_alloc_shifts(s) &&
+        ted4_scene_alloc_anchors(s))
         return s;
     ted4_scene_free(s);
     return NULL;

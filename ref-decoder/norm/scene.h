@@ -9,11 +9,13 @@
 ted4_scene *ted4_scene_empty(const ted4_options *o);
 /* Storage for one blob of n values: 1, or 0: no memory. */
 int ted4_blob_alloc(ted4_scene *s, ted4_blob *b, uint64_t n);
-/* Everything that has one entry an anchor, and shift and prob. head and shape are filled. 1, or 0: no memory. */
+/* Everything that has one entry an anchor, and shift and prob. head and shape are filled. 1, or 0:
+ * no memory. */
 int ted4_scene_alloc_anchors(ted4_scene *s);
 int ted4_scene_alloc_shifts(ted4_scene *s);
 
-/* For encoders: a scene of that header with all arrays, zeroed, and blobs in mode TED4_BLOB_AUTO. The header's values must be in range.
+/* For encoders: a scene of that header with all arrays, zeroed, and blobs in mode TED4_BLOB_AUTO.
+ * The header's values must be in range.
  * NULL: no memory. o may be NULL. */
 ted4_scene *ted4_scene_new(const ted4_header *h, const ted4_options *o);
 

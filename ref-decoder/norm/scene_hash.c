@@ -1,6 +1,6 @@
 /* scene_hash.c - spec 15.2: the hash of everything Tier E decodes.
  * SPDX-License-Identifier: BSD-2-Clause */
-#define XXH_STATIC_LINKING_ONLY             /* the hash state may lie on the stack */
+#define XXH_STATIC_LINKING_ONLY /* the hash state may lie on the stack */
 #include <xxhash.h>
 
 #include "base/bytes.h"
@@ -11,8 +11,8 @@ enum { BUFFER = 4096 };
 /* Gathers the byte string of 15.2 piece by piece. */
 typedef struct {
     XXH3_state_t state;
-    size_t       n;
-    uint8_t      bytes[BUFFER];
+    size_t n;
+    uint8_t bytes[BUFFER];
 } hasher;
 
 static void flush(hasher *h)
@@ -69,8 +69,8 @@ static size_t put_kept(uint8_t *to, const int16_t *k, const uint16_t *offset_bit
 }
 
 /* Symbols of component comp of a type for anchors first .. end - 1: those that have it. */
-static void put_component(hasher *h, const ted4_scene *s, int type,
-                          unsigned comp, size_t first, size_t end)
+static void put_component(hasher *h, const ted4_scene *s, int type, unsigned comp, size_t first,
+                          size_t end)
 {
     const int16_t *k = s->symbol[type] + (size_t)comp * s->head.n_anchors;
 

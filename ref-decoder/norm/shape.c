@@ -4,9 +4,10 @@
 
 #include <string.h>
 
-/* Appends a network: in inputs, hidden layers of one width, out outputs. *values and *units run through the blob. */
-static void chain(ted4_net_shape *n, unsigned in, unsigned hidden,
-                  unsigned width, unsigned out, size_t *values, size_t *units)
+/* Appends a network: in inputs, hidden layers of one width, out outputs. *values and *units run
+ * through the blob. */
+static void chain(ted4_net_shape *n, unsigned in, unsigned hidden, unsigned width, unsigned out,
+                  size_t *values, size_t *units)
 {
     n->n_layers = (uint8_t)(hidden + 1);
     n->first = *values;
@@ -37,23 +38,19 @@ static void shape_types(ted4_shape *s, const ted4_header *h)
     }
     s->first_step_output = at;
     s->n_outputs = at + s->n_types;
-    s->n_tiles = h->n_anchors / h->tile_size
-               + (h->n_anchors % h->tile_size != 0);
-    s->n_substreams = h->n_slices + s->n_types - 1u
-                    + (h->temporal_mask || h->offset_mask);
+    s->n_tiles = h->n_anchors / h->tile_size + (h->n_anchors % h->tile_size != 0);
+    s->n_substreams = h->n_slices + s->n_types - 1u + (h->temporal_mask || h->offset_mask);
 }
 
 static void shape_tier_e(ted4_shape *s, const ted4_header *h)
 {
     unsigned known = 0;
 
-    chain(&s->hyper, h->prior == TED4_PRIOR_INR ? 3 + 6u * h->pe_octaves : 0,
-          h->hyper_layers, h->hyper_width, s->n_outputs, &s->n_nete,
-          &s->n_units);
+    chain(&s->hyper, h->prior == TED4_PRIOR_INR ? 3 + 6u * h->pe_octaves : 0, h->hyper_layers,
+          h->hyper_width, s->n_outputs, &s->n_nete, &s->n_units);
     for (unsigned m = 1; m < h->n_slices; m++) {
         known += h->slice[m - 1];
-        chain(&s->slice[m], known, 1, h->ar_width, 2u * h->slice[m],
-              &s->n_nete, &s->n_units);
+        chain(&s->slice[m], known, 1, h->ar_width, 2u * h->slice[m], &s->n_nete, &s->n_units);
     }
 }
 
@@ -62,23 +59,21 @@ static void shape_tier_r(ted4_shape *s, const ted4_header *h)
     const unsigned f = h->feature_dim, k = h->n_offsets;
     const unsigned seen = f + (h->view == TED4_VIEW_FULL ? 3 : 0);
     const unsigned colour = f + (h->view != TED4_VIEW_NONE ? 3 : 0);
-    const unsigned deform = h->motion == TED4_MOTION_INR ? 84
-        : h->motion == TED4_MOTION_CONCAT ? (unsigned)h->phi_dim + h->bank_dim
-        : h->bank_dim;
+    const unsigned deform = h->motion == TED4_MOTION_INR      ? 84
+                            : h->motion == TED4_MOTION_CONCAT ? (unsigned)h->phi_dim + h->bank_dim
+                                                              : h->bank_dim;
     size_t units = 0;
 
     if (h->motion == TED4_MOTION_BANK)
-        chain(&s->netr[TED4_NET_PROJECT], h->phi_dim, 0, 0, h->bank_dim,
-              &s->n_netr, &units);
+        chain(&s->netr[TED4_NET_PROJECT], h->phi_dim, 0, 0, h->bank_dim, &s->n_netr, &units);
     if (h->motion != TED4_MOTION_NONE)
-        chain(&s->netr[TED4_NET_DEFORM], deform, h->deform_layers,
-              h->deform_width, 3 + f, &s->n_netr, &units);
-    chain(&s->netr[TED4_NET_OPACITY], seen, h->head_layers, h->head_width, k,
-          &s->n_netr, &units);
-    chain(&s->netr[TED4_NET_COVARIANCE], seen, h->head_layers, h->head_width,
-          7 * k, &s->n_netr, &units);
-    chain(&s->netr[TED4_NET_COLOUR], colour, h->head_layers, h->head_width,
-          3 * k, &s->n_netr, &units);
+        chain(&s->netr[TED4_NET_DEFORM], deform, h->deform_layers, h->deform_width, 3 + f,
+              &s->n_netr, &units);
+    chain(&s->netr[TED4_NET_OPACITY], seen, h->head_layers, h->head_width, k, &s->n_netr, &units);
+    chain(&s->netr[TED4_NET_COVARIANCE], seen, h->head_layers, h->head_width, 7 * k, &s->n_netr,
+          &units);
+    chain(&s->netr[TED4_NET_COLOUR], colour, h->head_layers, h->head_width, 3 * k, &s->n_netr,
+          &units);
     s->n_bank = h->phi_dim > 0 ? (uint64_t)h->bank_rows * h->bank_dim : 0;
 }
 

@@ -16,7 +16,7 @@ static inline int16_t ted4_sine_beyond(int16_t entry, int16_t rise, int16_t b)
 static inline int16_t ted4_sine(uint32_t u)
 {
     const uint32_t i = u >> 22;
-    const int16_t  b = (int16_t)(u >> 10 & 4095);
+    const int16_t b = (int16_t)(u >> 10 & 4095);
 
     return ted4_sine_beyond(ted4_sin[i], (int16_t)(ted4_sin[i + 1] - ted4_sin[i]), b);
 }

@@ -8,13 +8,18 @@
 #include "ted4.h"
 #include "base/arena.h"
 
-enum { TED4_MAX_OFFSETS = 16, TED4_MAX_FEATURE = 128, TED4_MAX_SLICES = 16,
-       TED4_MAX_PHI = 32, TED4_MAX_LAYERS = 10, TED4_MAX_WIDTH = 512,
-       TED4_MAX_NETS = 24 };
+enum {
+    TED4_MAX_OFFSETS = 16,
+    TED4_MAX_FEATURE = 128,
+    TED4_MAX_SLICES = 16,
+    TED4_MAX_PHI = 32,
+    TED4_MAX_LAYERS = 10,
+    TED4_MAX_WIDTH = 512,
+    TED4_MAX_NETS = 24
+};
 
 /* spec 6.2: attribute types in stream order. */
-typedef enum { TED4_FEATURE, TED4_SCALING, TED4_OFFSET, TED4_PHI, TED4_TAU,
-               TED4_TYPES } ted4_type;
+typedef enum { TED4_FEATURE, TED4_SCALING, TED4_OFFSET, TED4_PHI, TED4_TAU, TED4_TYPES } ted4_type;
 
 /* spec 6.1; those of motion and view are in ted4.h. */
 enum { TED4_SCALE_LOG2, TED4_SCALE_LINEAR };
@@ -23,50 +28,57 @@ enum { TED4_PRIOR_INR, TED4_PRIOR_FACTORISED };
 /* spec 6.1, in file order; names as in the text. */
 typedef struct {
     uint32_t n_anchors, tile_size;
-    uint8_t  n_offsets, feature_dim;
-    uint8_t  motion, phi_dim;
+    uint8_t n_offsets, feature_dim;
+    uint8_t motion, phi_dim;
     uint32_t bank_rows;
     uint16_t bank_dim;
-    uint8_t  deform_layers;
+    uint8_t deform_layers;
     uint16_t deform_width;
-    uint8_t  temporal_mask, offset_mask, activation;
-    uint8_t  view, head_layers;
+    uint8_t temporal_mask, offset_mask, activation;
+    uint8_t view, head_layers;
     uint16_t head_width;
-    uint8_t  scale_domain, prior, pe_octaves, hyper_layers;
+    uint8_t scale_domain, prior, pe_octaves, hyper_layers;
     uint16_t hyper_width;
-    uint8_t  n_slices, slice[TED4_MAX_SLICES];
+    uint8_t n_slices, slice[TED4_MAX_SLICES];
     uint16_t ar_width;
-    uint8_t  context_bits;
-    float    step[TED4_TYPES];          /* Q0 */
+    uint8_t context_bits;
+    float step[TED4_TYPES]; /* Q0 */
     uint32_t frames, rate_num, rate_den;
-    float    origin[3];
-    int8_t   exponent;
-    uint8_t  background[3];
+    float origin[3];
+    int8_t exponent;
+    uint8_t background[3];
 } ted4_header;
 
-/* Shapes that follow from a header (spec 7). Layer i of a network maps dim[i] values to dim[i + 1]. */
+/* Shapes that follow from a header (spec 7). Layer i of a network maps dim[i] values to dim[i + 1].
+ */
 typedef struct {
-    uint8_t  n_layers;                  /* 0: the network does not exist */
+    uint8_t n_layers; /* 0: the network does not exist */
     uint16_t dim[TED4_MAX_LAYERS + 1];
-    size_t   first;                     /* index of its first f32 in its blob */
-    size_t   first_unit;                /* index of its first shift (NETE) */
+    size_t first;      /* index of its first f32 in its blob */
+    size_t first_unit; /* index of its first shift (NETE) */
 } ted4_net_shape;
 
-enum { TED4_NET_PROJECT, TED4_NET_DEFORM, TED4_NET_OPACITY,
-       TED4_NET_COVARIANCE, TED4_NET_COLOUR, TED4_NETS_R };
+enum {
+    TED4_NET_PROJECT,
+    TED4_NET_DEFORM,
+    TED4_NET_OPACITY,
+    TED4_NET_COVARIANCE,
+    TED4_NET_COLOUR,
+    TED4_NETS_R
+};
 
 typedef struct {
-    unsigned       dim[TED4_TYPES];     /* 0: type absent */
-    unsigned       n_types;             /* present ones */
-    unsigned       n_outputs;           /* P of spec 7.3 */
-    unsigned       first_output[TED4_TYPES];  /* of mu; s follows at + dim */
-    unsigned       first_step_output;   /* v of the first present type */
-    unsigned       n_tiles, n_substreams;
+    unsigned dim[TED4_TYPES];          /* 0: type absent */
+    unsigned n_types;                  /* present ones */
+    unsigned n_outputs;                /* P of spec 7.3 */
+    unsigned first_output[TED4_TYPES]; /* of mu; s follows at + dim */
+    unsigned first_step_output;        /* v of the first present type */
+    unsigned n_tiles, n_substreams;
     ted4_net_shape hyper, slice[TED4_MAX_SLICES]; /* slice[0] never exists */
-    size_t         n_nete, n_units;     /* f32 values, shifts */
+    size_t n_nete, n_units;                       /* f32 values, shifts */
     ted4_net_shape netr[TED4_NETS_R];
-    size_t         n_netr;
-    uint64_t       n_bank;              /* up to 2^41 */
+    size_t n_netr;
+    uint64_t n_bank; /* up to 2^41 */
 } ted4_shape;
 
 /* Fills *s from a header whose values are in range. Never fails. shape.c */
@@ -74,33 +86,34 @@ void ted4_shape_make(ted4_shape *s, const ted4_header *h);
 
 enum { TED4_BLOB_RAW, TED4_BLOB_DEFLATED, TED4_BLOB_AUTO = 255 };
 
-/* spec 7.2. values: n binary32 numbers, owned by the scene; NULL: not there, and n is what the header claims. deflated: the opaque zlib bytes when mode is 1.
- * mode AUTO: no file has said; the writer takes the smaller one. */
+/* spec 7.2. values: n binary32 numbers, owned by the scene; NULL: not there, and n is what the
+ * header claims. deflated: the opaque zlib bytes when mode is 1. mode AUTO: no file has said; the
+ * writer takes the smaller one. */
 typedef struct {
-    float   *values;
+    float *values;
     uint64_t n;
-    uint8_t  mode;
+    uint8_t mode;
     uint8_t *deflated;
-    size_t   deflated_size;
+    size_t deflated_size;
 } ted4_blob;
 
-enum { TED4_PROBS = 7 };                /* dynamic_prob, offset_prob[6] */
+enum { TED4_PROBS = 7 }; /* dynamic_prob, offset_prob[6] */
 
 /* Everything Tier E decodes. Arrays of the scene belong to its arena (see scene.h). */
 struct ted4_scene {
-    ted4_arena  arena;
-    uint8_t     level;                  /* 0: not from a file */
+    ted4_arena arena;
+    uint8_t level; /* 0: not from a file */
     ted4_header head;
-    ted4_shape  shape;
-    uint8_t    *shift;                  /* [n_units] spec 7.3 */
-    ted4_blob   nete, netr, bank;
-    uint16_t   *position;               /* [N][3] binary16 patterns */
-    uint8_t    *dynamic;                /* [N] 0 or 1 */
-    uint16_t   *offset_bits;            /* [N] bit k: offset k is kept */
-    uint8_t    *step_index[TED4_TYPES]; /* [N] each; NULL: type absent */
-    int16_t    *symbol[TED4_TYPES];     /* [dim][N]; 0 where not coded */
-    uint16_t   *prob;                   /* [n_tiles][TED4_PROBS]; 0: no file has said, the writer counts */
-    uint8_t     hash[16];               /* ENDS, spec 15.2 */
+    ted4_shape shape;
+    uint8_t *shift; /* [n_units] spec 7.3 */
+    ted4_blob nete, netr, bank;
+    uint16_t *position;              /* [N][3] binary16 patterns */
+    uint8_t *dynamic;                /* [N] 0 or 1 */
+    uint16_t *offset_bits;           /* [N] bit k: offset k is kept */
+    uint8_t *step_index[TED4_TYPES]; /* [N] each; NULL: type absent */
+    int16_t *symbol[TED4_TYPES];     /* [dim][N]; 0 where not coded */
+    uint16_t *prob;   /* [n_tiles][TED4_PROBS]; 0: no file has said, the writer counts */
+    uint8_t hash[16]; /* ENDS, spec 15.2 */
 };
 
 #endif

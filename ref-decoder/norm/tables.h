@@ -1,21 +1,27 @@
-/* tables.h - annex A: the tables of Tier E. tables.c is made by tests/gen/gen_tables.c and checked by tests/test_tables.c.
+/* tables.h - annex A: the tables of Tier E. tables.c is made by tests/gen/gen_tables.c and checked
+ * by tests/test_tables.c.
  * SPDX-License-Identifier: BSD-2-Clause */
 #ifndef TED4_TABLES_H
 #define TED4_TABLES_H
 
 #include <stdint.h>
 
-enum { TED4_N_SIGMA = 240, TED4_N_PHI = 1025, TED4_N_SIN = 1025,
-       TED4_N_STEP = 256, TED4_N_WHERE = 256 };
+enum {
+    TED4_N_SIGMA = 240,
+    TED4_N_PHI = 1025,
+    TED4_N_SIN = 1025,
+    TED4_N_STEP = 256,
+    TED4_N_WHERE = 256
+};
 
-extern const uint16_t ted4_half[TED4_N_SIGMA];      /* HALF: half window of a sigma index, spec 9.4 */
-extern const int32_t  ted4_inv[TED4_N_SIGMA];       /* INV: 2^17 / sigma */
-extern const int32_t  ted4_phi[TED4_N_PHI];         /* PHI: 2^24 Phi((i - 512) / 64) */
-extern const int16_t  ted4_sin[TED4_N_SIN];         /* SIN: 4096 sin(2 pi i / 1024), spec 10.1 */
-extern const uint32_t ted4_step[TED4_N_STEP];       /* STEP: binary32 patterns of 2^((i - 128) / 32) */
-extern const int32_t  ted4_stepi[TED4_N_STEP];      /* STEPI: 4096 STEP */
+extern const uint16_t ted4_half[TED4_N_SIGMA]; /* HALF: half window of a sigma index, spec 9.4 */
+extern const int32_t ted4_inv[TED4_N_SIGMA];   /* INV: 2^17 / sigma */
+extern const int32_t ted4_phi[TED4_N_PHI];     /* PHI: 2^24 Phi((i - 512) / 64) */
+extern const int16_t ted4_sin[TED4_N_SIN];     /* SIN: 4096 sin(2 pi i / 1024), spec 10.1 */
+extern const uint32_t ted4_step[TED4_N_STEP];  /* STEP: binary32 patterns of 2^((i - 128) / 32) */
+extern const int32_t ted4_stepi[TED4_N_STEP];  /* STEPI: 4096 STEP */
 
 /* Not of the specification: where gaussian.c begins to search. 2^14 Phi^-1((i + 1/2) / 256). */
-extern const int32_t  ted4_where[TED4_N_WHERE];
+extern const int32_t ted4_where[TED4_N_WHERE];
 
 #endif

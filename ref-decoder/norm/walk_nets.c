@@ -5,13 +5,13 @@
 #include "base/bytes.h"
 #include "norm/prior.h"
 
-/* Mode and bytes. Gives the offset in the file of value i as at + i step: step is 0 when one opaque element holds them all. */
+/* Mode and bytes. Gives the offset in the file of value i as at + i step: step is 0 when one opaque
+ * element holds them all. */
 typedef struct {
     size_t at, step;
 } value_offsets;
 
-static value_offsets walk_bytes(ted4_coder *c, const char *element,
-                                ted4_blob *b)
+static value_offsets walk_bytes(ted4_coder *c, const char *element, ted4_blob *b)
 {
     size_t at = c->pos;
     value_offsets v;
@@ -27,10 +27,8 @@ static value_offsets walk_bytes(ted4_coder *c, const char *element,
         return v;
     }
     c->ops->array(c, 4, b->values, b->n);
-    for (size_t i = 0; c->error.code == TED4_OK && c->trace != NULL && i < b->n;
-         i++)
-        ted4_trace(c, at + 4 * i, element, (int64_t)i,
-                   ted4_float_bits(b->values[i]));
+    for (size_t i = 0; c->error.code == TED4_OK && c->trace != NULL && i < b->n; i++)
+        ted4_trace(c, at + 4 * i, element, (int64_t)i, ted4_float_bits(b->values[i]));
     return v;
 }
 
@@ -40,29 +38,25 @@ void ted4_walk_blob(ted4_coder *c, const char *element, ted4_blob *b)
     const value_offsets v = walk_bytes(c, element, b);
 
     for (size_t i = 0; c->error.code == TED4_OK && i < b->n; i++) {
-        ted4_require(c, ted4_float_legal(ted4_float_bits(b->values[i])),
-                     TED4_E_NET_VALUE, v.at + v.step * i);
+        ted4_require(c, ted4_float_legal(ted4_float_bits(b->values[i])), TED4_E_NET_VALUE,
+                     v.at + v.step * i);
     }
 }
 
-static void walk_shifts(ted4_coder *c, uint8_t *shift, const ted4_shape *s,
-                        unsigned context_bits)
+static void walk_shifts(ted4_coder *c, uint8_t *shift, const ted4_shape *s, unsigned context_bits)
 {
     for (int m = -1; m < TED4_MAX_SLICES; m++) {
         const ted4_net_shape *n = m < 0 ? &s->hyper : &s->slice[m];
         size_t unit = n->first_unit;
 
         for (unsigned i = 0; i < n->n_layers; i++) {
-            const ted4_unit_rule rule = ted4_prior_rule(n, i, m < 0,
-                                                        context_bits);
+            const ted4_unit_rule rule = ted4_prior_rule(n, i, m < 0, context_bits);
 
             for (unsigned o = 0; o < n->dim[i + 1]; o++, unit++) {
                 const size_t at = c->pos;
 
-                shift[unit] = (uint8_t)ted4_code(c, "shift", (int64_t)unit, 1,
-                                                 shift[unit]);
-                ted4_require(c, ted4_shift_legal(&rule, shift[unit]),
-                             TED4_E_NET_SHIFT, at);
+                shift[unit] = (uint8_t)ted4_code(c, "shift", (int64_t)unit, 1, shift[unit]);
+                ted4_require(c, ted4_shift_legal(&rule, shift[unit]), TED4_E_NET_SHIFT, at);
                 if (c->error.code != TED4_OK)
                     return;
             }
@@ -74,13 +68,12 @@ static void walk_shifts(ted4_coder *c, uint8_t *shift, const ted4_shape *s,
 void ted4_walk_nete(ted4_coder *c, ted4_scene *s, ted4_prior *prior)
 {
     value_offsets v;
-    ted4_error    e = { TED4_OK, 0 };
+    ted4_error e = { TED4_OK, 0 };
 
     walk_shifts(c, s->shift, &s->shape, s->head.context_bits);
     if (c->error.code != TED4_OK)
         return;
     v = walk_bytes(c, "nete", &s->nete);
-    if (c->error.code == TED4_OK
-        && ted4_prior_load(prior, s->nete.values, s->shift, &e) != TED4_OK)
+    if (c->error.code == TED4_OK && ted4_prior_load(prior, s->nete.values, s->shift, &e) != TED4_OK)
         ted4_fail(&c->error, e.code, v.at + v.step * e.offset);
 }

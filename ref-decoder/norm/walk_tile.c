@@ -6,39 +6,35 @@
 
 #include "norm/prior.h"
 
-enum { BLOCK = TED4_PRIOR_BLOCK,
-       MAX_SUBSTREAMS = 1 + TED4_MAX_SLICES + TED4_TYPES - 1 };
+enum { BLOCK = TED4_PRIOR_BLOCK, MAX_SUBSTREAMS = 1 + TED4_MAX_SLICES + TED4_TYPES - 1 };
 
 /* A walk under way. Arrays lie in the caller's work memory. */
 typedef struct {
-    ted4_coder       *c;
-    ted4_scene       *s;
+    ted4_coder *c;
+    ted4_scene *s;
     const ted4_prior *prior;
-    size_t            first, n, n_blocks;   /* anchors of the tile, in blocks of 64 */
-    size_t            n_padded; /* anchors of all blocks */
-    unsigned          n_hidden; /* H */
-    int16_t          *hidden;   /* [n_blocks][H][64] inputs of the hyperprior's last layer */
-    ted4_int_layer    some;     /* that layer for some components */
-    int16_t          *ctx;      /* [n_blocks][F][64] what the slice networks see */
-    int32_t          *out;      /* [2 C][64] outputs of the hyperprior for a block */
-    int32_t          *added;    /* as out, of a slice network */
-    int32_t          *mu;       /* [C][n_padded] models of components, for all anchors */
-    uint8_t          *sigma;
-    uint32_t         *index;    /* [n_index] anchors of the tile that have the component */
-    size_t            n_index;
-    int32_t          *some_mu;  /* [n_padded] of those anchors, as some_sigma and k */
-    int16_t          *k;
-    uint8_t          *some_sigma;
-    size_t            opened;   /* offset of the first byte of the open substream */
+    size_t first, n, n_blocks; /* anchors of the tile, in blocks of 64 */
+    size_t n_padded;           /* anchors of all blocks */
+    unsigned n_hidden;         /* H */
+    int16_t *hidden;           /* [n_blocks][H][64] inputs of the hyperprior's last layer */
+    ted4_int_layer some;       /* that layer for some components */
+    int16_t *ctx;              /* [n_blocks][F][64] what the slice networks see */
+    int32_t *out;              /* [2 C][64] outputs of the hyperprior for a block */
+    int32_t *added;            /* as out, of a slice network */
+    int32_t *mu;               /* [C][n_padded] models of components, for all anchors */
+    uint8_t *sigma;
+    uint32_t *index; /* [n_index] anchors of the tile that have the component */
+    size_t n_index;
+    int32_t *some_mu; /* [n_padded] of those anchors, as some_sigma and k */
+    int16_t *k;
+    uint8_t *some_sigma;
+    size_t opened; /* offset of the first byte of the open substream */
 } tile;
 
-static const char *const type_name[TED4_TYPES] = {
-    "feature", "scaling", "offset", "phi", "tau"
-};
-static const char *const substream_name[TED4_TYPES] = {
-    "feature_substream", "scaling_substream", "offset_substream",
-    "phi_substream", "tau_substream"
-};
+static const char *const type_name[TED4_TYPES] = { "feature", "scaling", "offset", "phi", "tau" };
+static const char *const substream_name[TED4_TYPES] = { "feature_substream", "scaling_substream",
+                                                        "offset_substream", "phi_substream",
+                                                        "tau_substream" };
 
 static size_t block_count(size_t n)
 {
@@ -68,7 +64,7 @@ static unsigned hidden_rows(const ted4_net_shape *hyper)
 static unsigned most_components(const ted4_scene *s)
 {
     const unsigned k = s->head.n_offsets;
-    unsigned       most = larger(s->shape.dim[TED4_SCALING], 3 * (k < OFFSETS ? k : OFFSETS));
+    unsigned most = larger(s->shape.dim[TED4_SCALING], 3 * (k < OFFSETS ? k : OFFSETS));
 
     most = larger(most, larger(s->shape.dim[TED4_PHI], s->shape.dim[TED4_TAU]));
     for (unsigned m = 0; m < s->head.n_slices; m++)
@@ -97,9 +93,9 @@ static size_t unit_weights(const ted4_scene *s)
 size_t ted4_tile_work_size(const ted4_scene *s)
 {
     const size_t n = block_count(tile_anchors(&s->head)) * BLOCK;
-    const size_t per_anchor = (4 + 1) * ((size_t)most_components(s) + 1)
-                            + 2 * ((size_t)hidden_rows(&s->shape.hyper) + s->head.feature_dim)
-                            + 4 + 2;
+    const size_t per_anchor = (4 + 1) * ((size_t)most_components(s) + 1) +
+                              2 * ((size_t)hidden_rows(&s->shape.hyper) + s->head.feature_dim) + 4 +
+                              2;
     const size_t fixed = 2 * outputs_size(s) + layer_units(s) * (2 * unit_weights(s) + 4 + 1);
 
     if (n > (SIZE_MAX - fixed) / per_anchor)
@@ -119,7 +115,7 @@ static void *next_array(char **at, size_t n, size_t size)
 static void carve(tile *t, void *work)
 {
     const size_t n = t->n_blocks * BLOCK, most = most_components(t->s), units = layer_units(t->s);
-    char        *at = work;
+    char *at = work;
 
     t->n_padded = n;
     t->n_hidden = hidden_rows(&t->s->shape.hyper);
@@ -138,8 +134,7 @@ static void carve(tile *t, void *work)
     t->some_sigma = next_array(&at, n, 1);
 }
 
-static uint16_t probability(ted4_coder *c, const char *name, int64_t index,
-                            uint16_t value)
+static uint16_t probability(ted4_coder *c, const char *name, int64_t index, uint16_t value)
 {
     const size_t at = c->pos;
 
@@ -152,12 +147,11 @@ static uint16_t probability(ted4_coder *c, const char *name, int64_t index,
 static void walk_head(tile *t, unsigned number)
 {
     ted4_coder *c = t->c;
-    uint16_t   *prob = t->s->prob + (size_t)number * TED4_PROBS;
-    uint32_t    size[MAX_SUBSTREAMS];
-    size_t      at = c->pos;
+    uint16_t *prob = t->s->prob + (size_t)number * TED4_PROBS;
+    uint32_t size[MAX_SUBSTREAMS];
+    size_t at = c->pos;
 
-    ted4_require(c, ted4_code(c, "tile_index", 0, 4, number) == number,
-                 TED4_E_ENT_TILE_INDEX, at);
+    ted4_require(c, ted4_code(c, "tile_index", 0, 4, number) == number, TED4_E_ENT_TILE_INDEX, at);
     if (t->s->head.temporal_mask)
         prob[0] = probability(c, "dynamic_prob", 0, prob[0]);
     for (int i = 0; t->s->head.offset_mask && i < 6; i++)
@@ -184,8 +178,8 @@ static void close_substream(tile *t)
 /* What a mask is that is not coded; a scene to be written must agree, or its hash could not. */
 static void imply(tile *t, size_t a, int dynamic_too, int offsets_too)
 {
-    ted4_scene    *s = t->s;
-    const uint8_t  dynamic = s->head.motion != TED4_MOTION_NONE;
+    ted4_scene *s = t->s;
+    const uint8_t dynamic = s->head.motion != TED4_MOTION_NONE;
     const uint16_t all = (uint16_t)((1u << s->head.n_offsets) - 1);
 
     if (t->c->reads) {
@@ -195,26 +189,24 @@ static void imply(tile *t, size_t a, int dynamic_too, int offsets_too)
             s->offset_bits[a] = all;
         return;
     }
-    ted4_require(t->c, (dynamic_too ? s->dynamic[a] == dynamic
-                                    : s->dynamic[a] <= 1)
-                 && (offsets_too ? s->offset_bits[a] == all
-                                 : s->offset_bits[a] <= all),
+    ted4_require(t->c,
+                 (dynamic_too ? s->dynamic[a] == dynamic : s->dynamic[a] <= 1) &&
+                     (offsets_too ? s->offset_bits[a] == all : s->offset_bits[a] <= all),
                  TED4_E_SYN_HASH, t->opened);
 }
 
-/* spec 9.3, the offset bits of an anchor. seen: 0 all bits so far 0, 1 all 1 or none yet, 2 mixed. */
+/* spec 9.3, the offset bits of an anchor. seen: 0 all bits so far 0, 1 all 1 or none yet, 2 mixed.
+ */
 static void walk_offset_bits(tile *t, size_t a, const uint16_t *prob)
 {
-    ted4_scene    *s = t->s;
+    ted4_scene *s = t->s;
     const unsigned k_max = s->head.n_offsets, given = s->offset_bits[a];
-    unsigned       bits = 0, seen = 1;
+    unsigned bits = 0, seen = 1;
 
     for (unsigned k = 0; k < k_max; k++) {
-        const int bit = t->c->ops->bit(t->c, prob[3 * s->dynamic[a] + seen],
-                                       given >> k & 1);
+        const int bit = t->c->ops->bit(t->c, prob[3 * s->dynamic[a] + seen], given >> k & 1);
 
-        ted4_trace(t->c, t->opened, "offset_bit", (int64_t)(a * k_max + k),
-                   bit);
+        ted4_trace(t->c, t->opened, "offset_bit", (int64_t)(a * k_max + k), bit);
         bits |= (unsigned)bit << k;
         seen = bits == 0 ? 0 : bits == (2u << k) - 1 ? 1 : 2;
     }
@@ -226,12 +218,11 @@ static void walk_offset_bits(tile *t, size_t a, const uint16_t *prob)
 static void walk_masks(tile *t, const uint16_t *prob)
 {
     ted4_scene *s = t->s;
-    const int   temporal = s->head.temporal_mask, offset = s->head.offset_mask;
+    const int temporal = s->head.temporal_mask, offset = s->head.offset_mask;
 
     if (temporal || offset)
         open_substream(t, "mask_substream", 0,
-                       t->n * ((temporal ? 1u : 0u)
-                               + (offset ? s->head.n_offsets : 0u)));
+                       t->n * ((temporal ? 1u : 0u) + (offset ? s->head.n_offsets : 0u)));
     for (size_t a = t->first; a < t->first + t->n; a++) {
         imply(t, a, !temporal, !offset);
         if (t->c->error.code != TED4_OK)
@@ -267,8 +258,7 @@ static void take_steps(tile *t, uint8_t *step, const int32_t *v, size_t n)
         return;
     }
     for (size_t i = 0; i < n; i++)
-        ted4_require(t->c, step[i] == ted4_step_index(v[i]), TED4_E_SYN_HASH,
-                     t->c->pos);
+        ted4_require(t->c, step[i] == ted4_step_index(v[i]), TED4_E_SYN_HASH, t->c->pos);
 }
 
 /* spec 10.1: the hyperprior of the whole tile but for its last layer, and step indices. */
@@ -281,7 +271,7 @@ static void evaluate(tile *t)
     t->some.out = shape->n_types;
     for (size_t b = 0; b < t->n_blocks; b++) {
         const size_t a = t->first + b * BLOCK, n = block_size(t, b);
-        int16_t     *hidden = t->hidden + b * t->n_hidden * BLOCK;
+        int16_t *hidden = t->hidden + b * t->n_hidden * BLOCK;
         const int32_t *v = t->out;
 
         ted4_prior_hyper_hidden(t->prior, t->s->position + 3 * a, n, hidden);
@@ -322,8 +312,8 @@ static void evaluate_components(tile *t, ted4_type type, unsigned comp, unsigned
             add_slice(t, b, m);
         for (unsigned c = 0; c < n; c++) {
             const int32_t *mu = t->out + (size_t)c * BLOCK, *s = mu + (size_t)n * BLOCK;
-            const size_t   to = c * t->n_padded + b * BLOCK;
-            uint8_t       *sigma = t->sigma + to;
+            const size_t to = c * t->n_padded + b * BLOCK;
+            uint8_t *sigma = t->sigma + to;
 
             memcpy(t->mu + to, mu, size * sizeof *mu);
             for (size_t i = 0; i < size; i++)
@@ -343,7 +333,7 @@ static void choose_all(tile *t)
 static void choose_dynamic(tile *t)
 {
     const uint8_t *dynamic = t->s->dynamic + t->first;
-    size_t         n = 0;
+    size_t n = 0;
 
     for (size_t i = 0; i < t->n; i++) {
         t->index[n] = (uint32_t)i;
@@ -355,7 +345,7 @@ static void choose_dynamic(tile *t)
 static void choose_offset(tile *t, unsigned k)
 {
     const uint16_t *bits = t->s->offset_bits + t->first;
-    size_t          n = 0;
+    size_t n = 0;
 
     for (size_t i = 0; i < t->n; i++) {
         t->index[n] = (uint32_t)i;
@@ -368,8 +358,8 @@ static void choose_offset(tile *t, unsigned k)
 static void pick_models(tile *t, const int32_t *mu, const uint8_t *sigma)
 {
     const uint32_t *index = t->index;
-    int32_t        *some_mu = t->some_mu;
-    uint8_t        *some_sigma = t->some_sigma;
+    int32_t *some_mu = t->some_mu;
+    uint8_t *some_sigma = t->some_sigma;
 
     for (size_t j = 0, n = t->n_index; j < n; j++) {
         some_mu[j] = mu[index[j]];
@@ -381,12 +371,12 @@ static void pick_models(tile *t, const int32_t *mu, const uint8_t *sigma)
  * evaluated. */
 static void walk_component(tile *t, ted4_type type, unsigned comp, unsigned i)
 {
-    const size_t   row = (size_t)comp * t->s->head.n_anchors + t->first;
+    const size_t row = (size_t)comp * t->s->head.n_anchors + t->first;
     const int32_t *mu = t->mu + i * t->n_padded;
     const uint8_t *sigma = t->sigma + i * t->n_padded;
-    int16_t       *symbol = t->s->symbol[type] + row;
-    const int      some = t->n_index != t->n;
-    int16_t       *k = some ? t->k : symbol;
+    int16_t *symbol = t->s->symbol[type] + row;
+    const int some = t->n_index != t->n;
+    int16_t *k = some ? t->k : symbol;
 
     if (t->c->error.code != TED4_OK)
         return;
@@ -408,14 +398,13 @@ static void walk_component(tile *t, ted4_type type, unsigned comp, unsigned i)
 static void keep_context(tile *t, unsigned comp)
 {
     const ted4_scene *s = t->s;
-    const int16_t *k = s->symbol[TED4_FEATURE]
-                     + (size_t)comp * s->head.n_anchors + t->first;
+    const int16_t *k = s->symbol[TED4_FEATURE] + (size_t)comp * s->head.n_anchors + t->first;
     const uint8_t *step = s->step_index[TED4_FEATURE] + t->first;
     const unsigned bits = s->head.context_bits;
 
     for (size_t b = 0; b < t->n_blocks; b++, k += BLOCK, step += BLOCK) {
         const size_t n = block_size(t, b);
-        int16_t     *x = t->ctx + (b * s->head.feature_dim + comp) * BLOCK;
+        int16_t *x = t->ctx + (b * s->head.feature_dim + comp) * BLOCK;
 
         for (size_t i = 0; i < n; i++)
             x[i] = ted4_context(k[i], step[i], bits);
@@ -432,8 +421,7 @@ static void walk_feature(tile *t)
     choose_all(t);
     for (unsigned m = 0; m < h->n_slices; m++) {
         evaluate_components(t, TED4_FEATURE, comp, h->slice[m], m);
-        open_substream(t, substream_name[TED4_FEATURE], m,
-                       t->n * h->slice[m]);
+        open_substream(t, substream_name[TED4_FEATURE], m, t->n * h->slice[m]);
         for (unsigned i = 0; i < h->slice[m]; i++, comp++) {
             walk_component(t, TED4_FEATURE, comp, i);
             if (t->c->error.code != TED4_OK)
@@ -462,7 +450,7 @@ static void walk_type(tile *t, ted4_type type)
 static void walk_offsets(tile *t)
 {
     const unsigned k_max = t->s->head.n_offsets;
-    size_t         n = 0;
+    size_t n = 0;
 
     for (unsigned k = 0; k < k_max; k++) {
         choose_offset(t, k);
@@ -485,7 +473,7 @@ static void walk_offsets(tile *t)
 /* R-ATT-001 */
 static void judge_tau(tile *t)
 {
-    const size_t   n = t->s->head.n_anchors;
+    const size_t n = t->s->head.n_anchors;
     const int16_t *start, *end;
 
     if (t->s->shape.dim[TED4_TAU] == 0 || t->c->error.code != TED4_OK)
@@ -493,13 +481,12 @@ static void judge_tau(tile *t)
     start = t->s->symbol[TED4_TAU] + t->first;
     end = start + 2 * n;
     for (size_t i = 0; i < t->n; i++)
-        ted4_require(t->c, start[i] <= end[i], TED4_E_ATT_TAU_ORDER,
-                     t->opened);
+        ted4_require(t->c, start[i] <= end[i], TED4_E_ATT_TAU_ORDER, t->opened);
 }
 
 /* spec 9.1 */
-void ted4_walk_tile(ted4_coder *c, ted4_scene *s, const ted4_prior *prior,
-                    unsigned number, void *work)
+void ted4_walk_tile(ted4_coder *c, ted4_scene *s, const ted4_prior *prior, unsigned number,
+                    void *work)
 {
     tile t = { .c = c, .s = s, .prior = prior };
 

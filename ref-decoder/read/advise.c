@@ -1,5 +1,5 @@
-/* advise.c - what is doubtful in a valid file: level, chunks, and parts that the scene does not need (spec 3.4, R-ENC-004). Symbols are looked at in
- * advise_symbols.c, META in advise_meta.c.
+/* advise.c - what is doubtful in a valid file: level, chunks, and parts that the scene does not
+ * need (spec 3.4, R-ENC-004). Symbols are looked at in advise_symbols.c, META in advise_meta.c.
  * SPDX-License-Identifier: BSD-2-Clause */
 #include <string.h>
 #define ZLIB_CONST
@@ -16,7 +16,7 @@ enum { MINOR_AT = 9, LEVEL_AT = 11, HEAD_AT = 12 };
 /* Where an element of HEAD that is no array is in the file. */
 typedef struct {
     const char *name;
-    size_t      offset;
+    size_t offset;
 } sought;
 
 static void seek(void *user, size_t offset, const char *element, int64_t index, int64_t value)
@@ -31,9 +31,9 @@ static void seek(void *user, size_t offset, const char *element, int64_t index, 
 
 static size_t offset_of(const ted4_findings *f, const char *element)
 {
-    sought      s = { element, 0 };
+    sought s = { element, 0 };
     ted4_header h;
-    ted4_shape  shape;
+    ted4_shape shape;
     ted4_reader r;
 
     ted4_reader_init(&r, f->data, HEAD_AT + TED4_FRAME_HEAD_SIZE, f->size, 1);
@@ -58,14 +58,15 @@ static void shuffle(const ted4_blob *b, size_t at, uint8_t *bytes, size_t n)
     }
 }
 
-/* Size of the values shuffled and deflated by zlib, which is shown them piece by piece; raw size when there is no memory to find out. */
+/* Size of the values shuffled and deflated by zlib, which is shown them piece by piece; raw size
+ * when there is no memory to find out. */
 static size_t deflated_size(ted4_findings *f, const ted4_blob *b, ted4_arena *a)
 {
     enum { PIECE = 1 << 14 };
     const size_t raw = 4 * (size_t)b->n;
-    uint8_t     *piece = ted4_arena_alloc(a, 2, PIECE);
-    size_t       size = 0, at = 0;
-    z_stream     z;
+    uint8_t *piece = ted4_arena_alloc(a, 2, PIECE);
+    size_t size = 0, at = 0;
+    z_stream z;
 
     memset(&z, 0, sizeof z);
     z.zalloc = ted4_zlib_alloc;
@@ -94,7 +95,8 @@ static size_t deflated_size(ted4_findings *f, const ted4_blob *b, ted4_arena *a)
     return size;
 }
 
-static void advise_blob(ted4_findings *f, const ted4_blob *b, const ted4_chunk_place *p, ted4_arena *a)
+static void advise_blob(ted4_findings *f, const ted4_blob *b, const ted4_chunk_place *p,
+                        ted4_arena *a)
 {
     size_t size;
 
@@ -102,7 +104,8 @@ static void advise_blob(ted4_findings *f, const ted4_blob *b, const ted4_chunk_p
         return;
     size = deflated_size(f, b, a);
     if (size < 4 * b->n)
-        ted4_find_advice(f, TED4_ADV_BLOB_RAW, ted4_chunk_type[p->type], p->at, 2, (int64_t)(4 * b->n), (int64_t)size);
+        ted4_find_advice(f, TED4_ADV_BLOB_RAW, ted4_chunk_type[p->type], p->at, 2,
+                         (int64_t)(4 * b->n), (int64_t)size);
 }
 
 static void advise_chunks(ted4_findings *f, const ted4_scene *s, ted4_arena *a)
@@ -126,8 +129,8 @@ static void advise_chunks(ted4_findings *f, const ted4_scene *s, ted4_arena *a)
 static void advise_masks(ted4_findings *f, const ted4_scene *s)
 {
     const ted4_header *h = &s->head;
-    const unsigned     all = (1u << h->n_offsets) - 1;
-    uint32_t           moving = 0, whole = 0, empty = 0;
+    const unsigned all = (1u << h->n_offsets) - 1;
+    uint32_t moving = 0, whole = 0, empty = 0;
 
     for (size_t i = 0; i < h->n_anchors; i++) {
         moving += s->dynamic[i];
@@ -141,7 +144,8 @@ static void advise_masks(ted4_findings *f, const ted4_scene *s)
     if (h->offset_mask && whole == h->n_anchors)
         ted4_find_advice(f, TED4_ADV_OFFSET_MASK, "HEAD", offset_of(f, "offset_mask"), 0, 0, 0);
     if (empty > 0)
-        ted4_find_advice(f, TED4_ADV_EMPTY_ANCHORS, "POSN", offset_of(f, "n_anchors"), 2, empty, h->n_anchors);
+        ted4_find_advice(f, TED4_ADV_EMPTY_ANCHORS, "POSN", offset_of(f, "n_anchors"), 2, empty,
+                         h->n_anchors);
 }
 
 /* spec 10.4: value of a component of tau. */
@@ -156,10 +160,11 @@ static float tau(const ted4_scene *s, unsigned comp, size_t i)
 static void advise_time(ted4_findings *f, const ted4_scene *s)
 {
     const ted4_header *h = &s->head;
-    size_t             always = 0;
+    size_t always = 0;
 
     if (h->frames == 1 && (h->motion != TED4_MOTION_NONE || h->activation))
-        ted4_find_advice(f, TED4_ADV_ONE_FRAME, "HEAD", offset_of(f, "frames"), 2, h->motion, h->activation);
+        ted4_find_advice(f, TED4_ADV_ONE_FRAME, "HEAD", offset_of(f, "frames"), 2, h->motion,
+                         h->activation);
     if (!h->activation)
         return;
     while (always < h->n_anchors && tau(s, 0, always) <= 0 && tau(s, 2, always) >= 1)
@@ -172,11 +177,11 @@ static void advise_time(ted4_findings *f, const ted4_scene *s)
 static uint32_t rows_unseen(const ted4_header *h)
 {
     const uint64_t last = h->bank_rows - 1, end = h->frames > 1 ? h->frames - 1 : 1;
-    uint64_t       next = 0;            /* first row that no frame so far sees */
-    uint32_t       unseen = 0;
+    uint64_t next = 0; /* first row that no frame so far sees */
+    uint32_t unseen = 0;
 
-    if (h->frames > 1 && last <= end)   /* no frame goes on by more than a row */
-        return 0;                       /* else each does, and there are fewer frames than rows */
+    if (h->frames > 1 && last <= end) /* no frame goes on by more than a row */
+        return 0;                     /* else each does, and there are fewer frames than rows */
     for (uint64_t j = 0; j < h->frames; j++) {
         const uint64_t g = j * last, row = g / end;
 
@@ -190,12 +195,14 @@ static uint32_t rows_unseen(const ted4_header *h)
 static void advise_bank(ted4_findings *f, const ted4_scene *s)
 {
     const ted4_header *h = &s->head;
-    const size_t       row = h->bank_dim * sizeof(float), at = s->shape.n_bank > 0 ? offset_of(f, "bank_rows") : 0;
-    uint32_t           same = 1, unseen;
+    const size_t row = h->bank_dim * sizeof(float),
+                 at = s->shape.n_bank > 0 ? offset_of(f, "bank_rows") : 0;
+    uint32_t same = 1, unseen;
 
     if (s->shape.n_bank == 0)
         return;
-    while (same < h->bank_rows && memcmp(s->bank.values, s->bank.values + (size_t)same * h->bank_dim, row) == 0)
+    while (same < h->bank_rows &&
+           memcmp(s->bank.values, s->bank.values + (size_t)same * h->bank_dim, row) == 0)
         same++;
     if (same == h->bank_rows && same > 1)
         ted4_find_advice(f, TED4_ADV_BANK_CONSTANT, "BANK", at, 1, h->bank_rows, 0);
@@ -207,7 +214,7 @@ static void advise_bank(ted4_findings *f, const ted4_scene *s)
 void ted4_advise(ted4_findings *f, const ted4_scene *s, const ted4_options *o)
 {
     const unsigned lowest = ted4_level_lowest(&s->head, &s->shape, f->size);
-    ted4_arena     a;
+    ted4_arena a;
 
     if (f->data[MINOR_AT] != 0)
         ted4_find_advice(f, TED4_ADV_MINOR, NULL, MINOR_AT, 1, f->data[MINOR_AT], 0);

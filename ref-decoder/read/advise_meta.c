@@ -1,4 +1,5 @@
-/* advise_meta.c - ancillary chunks: is the type registered (spec 16.3), and is META what spec 5.2 says?
+/* advise_meta.c - ancillary chunks: is the type registered (spec 16.3), and is META what spec 5.2
+ * says?
  * SPDX-License-Identifier: BSD-2-Clause */
 #include <string.h>
 #include "base/bytes.h"
@@ -6,12 +7,17 @@
 
 enum { META_FLAGS = 2 };
 
-/* Bytes of the UTF-8 character at p, 1 to 4; 0: none that is well-formed and no control character. */
+/* Bytes of the UTF-8 character at p, 1 to 4; 0: none that is well-formed and no control character.
+ */
 static size_t utf8_character(const uint8_t *p, size_t left)
 {
     static const uint32_t least[5] = { 0, 0, 0x80, 0x800, 0x10000 };
-    const size_t n = p[0] < 0x80 ? 1 : p[0] >> 5 == 6 ? 2 : p[0] >> 4 == 14 ? 3 : p[0] >> 3 == 30 ? 4 : 0;
-    uint32_t     c;
+    const size_t n = p[0] < 0x80       ? 1
+                     : p[0] >> 5 == 6  ? 2
+                     : p[0] >> 4 == 14 ? 3
+                     : p[0] >> 3 == 30 ? 4
+                                       : 0;
+    uint32_t c;
 
     if (n == 0 || n > left)
         return 0;
@@ -21,7 +27,8 @@ static size_t utf8_character(const uint8_t *p, size_t left)
             return 0;
         c = c << 6 | (p[i] & 63);
     }
-    return c >= least[n] && c < 0x110000 && (c < 0xd800 || c > 0xdfff) && c >= ' ' && c != 0x7f ? n : 0;
+    return c >= least[n] && c < 0x110000 && (c < 0xd800 || c > 0xdfff) && c >= ' ' && c != 0x7f ? n
+                                                                                                : 0;
 }
 
 /* A line from at on: offset of its LF, or 0 when it is none. *key: bytes before the first '='. */
@@ -39,16 +46,16 @@ static size_t line_end(const uint8_t *data, size_t at, size_t end, size_t *key)
             *key = i - at;
         i += n;
     }
-    return i < end && *key > 0 ? i : 0;
+    return i<end && * key> 0 ? i : 0;
 }
 
 /* Lines of META, all of them right. */
 typedef struct {
     const uint8_t *data;
-    size_t        *at;          /* [n], offsets */
-    size_t        *order, *spare;   /* [n]: numbers of lines, by key, then as they stand */
-    uint8_t       *again;       /* [n]: the key stands in a line before */
-    size_t         n;
+    size_t *at;            /* [n], offsets */
+    size_t *order, *spare; /* [n]: numbers of lines, by key, then as they stand */
+    uint8_t *again;        /* [n]: the key stands in a line before */
+    size_t n;
 } lines;
 
 /* Below 0, 0, above 0: order of the keys of two lines. */
@@ -69,7 +76,9 @@ static void merge(const lines *l, size_t first, size_t middle, size_t end)
     size_t i = first, j = middle;
 
     for (size_t k = first; k < end; k++)
-        l->spare[k] = j == end || (i < middle && compare(l, l->order[i], l->order[j]) <= 0) ? l->order[i++] : l->order[j++];
+        l->spare[k] = j == end || (i < middle && compare(l, l->order[i], l->order[j]) <= 0)
+                          ? l->order[i++]
+                          : l->order[j++];
 }
 
 static size_t least(size_t a, size_t b)
@@ -94,8 +103,10 @@ static void find_again(lines *l)
         l->again[l->order[i]] = compare(l, l->order[i - 1], l->order[i]) == 0;
 }
 
-/* Right lines of a payload, up to the first that is none: how many, and *end: behind them. at: where they begin; NULL: not wanted. */
-static size_t right_lines(const ted4_findings *f, const ted4_chunk_place *p, size_t *at, size_t *end)
+/* Right lines of a payload, up to the first that is none: how many, and *end: behind them. at:
+ * where they begin; NULL: not wanted. */
+static size_t right_lines(const ted4_findings *f, const ted4_chunk_place *p, size_t *at,
+                          size_t *end)
 {
     size_t n = 0, key;
 
@@ -113,7 +124,7 @@ static size_t right_lines(const ted4_findings *f, const ted4_chunk_place *p, siz
 
 static void advise_text(ted4_findings *f, const ted4_chunk_place *p, ted4_arena *a)
 {
-    lines  l = { .data = f->data };
+    lines l = { .data = f->data };
     size_t end;
 
     l.n = right_lines(f, p, NULL, &end);
@@ -147,5 +158,6 @@ void ted4_advise_ancillary(ted4_findings *f, const ted4_chunk_place *p, ted4_are
         advise_text(f, p, a);
         return;
     }
-    ted4_find_advice(f, type[0] == 'x' ? TED4_ADV_PRIVATE : TED4_ADV_CHUNK, NULL, p->at, 2, flags, (int64_t)(p->end - p->payload));
+    ted4_find_advice(f, type[0] == 'x' ? TED4_ADV_PRIVATE : TED4_ADV_CHUNK, NULL, p->at, 2, flags,
+                     (int64_t)(p->end - p->payload));
 }

@@ -1,5 +1,6 @@
-/* advise_symbols.c - what is doubtful in the coded symbols of a valid file: probabilities, escapes, indices and contexts at the ends of their ranges. The
- * tiles are walked once more with a coder that only counts.
+/* advise_symbols.c - what is doubtful in the coded symbols of a valid file: probabilities, escapes,
+ * indices and contexts at the ends of their ranges. The tiles are walked once more with a coder
+ * that only counts.
  * SPDX-License-Identifier: BSD-2-Clause */
 #include <string.h>
 #include "norm/gaussian.h"
@@ -16,10 +17,10 @@ typedef struct {
 
 /* The walk is given probabilities 1 .. 7, so that a bit says which one it was coded with. */
 typedef struct {
-    ted4_coder  base;           /* must be first */
-    int         type;           /* of the open substream */
+    ted4_coder base; /* must be first */
+    int type;        /* of the open substream */
     type_counts count[TED4_TYPES];
-    uint64_t    bits[TED4_PROBS], ones[TED4_PROBS];     /* of the tile */
+    uint64_t bits[TED4_PROBS], ones[TED4_PROBS]; /* of the tile */
 } census;
 
 static int bit(ted4_coder *c, uint32_t prob, int value)
@@ -33,7 +34,7 @@ static int bit(ted4_coder *c, uint32_t prob, int value)
 
 static void gauss(ted4_coder *c, size_t n, const int32_t *mu, const uint8_t *sigma, int16_t *k)
 {
-    census      *all = (census *)c;
+    census *all = (census *)c;
     type_counts *t = &all->count[all->type];
 
     t->symbols += n;
@@ -48,13 +49,14 @@ static const char *const type_name[TED4_TYPES] = { "feature", "scaling", "offset
 /* The walk names a substream when it opens it. */
 static void follow(void *user, size_t offset, const char *element, int64_t index, int64_t value)
 {
-    census      *n = user;
+    census *n = user;
 
     (void)offset;
     (void)index;
     (void)value;
     for (int t = 0; t < TED4_TYPES; t++)
-        if (strncmp(element, type_name[t], strlen(type_name[t])) == 0 && strcmp(element + strlen(type_name[t]), "_substream") == 0)
+        if (strncmp(element, type_name[t], strlen(type_name[t])) == 0 &&
+            strcmp(element + strlen(type_name[t]), "_substream") == 0)
             n->type = t;
 }
 
@@ -63,7 +65,7 @@ static void advise_probs(ted4_findings *f, const census *n, const uint16_t *prob
 {
     for (int i = 0; i < TED4_PROBS; i++) {
         const uint64_t ones = n->ones[i], bits = n->bits[i];
-        const int64_t  best = bits > 0 ? (int64_t)((ones * 65536 + bits / 2) / bits) : prob[i];
+        const int64_t best = bits > 0 ? (int64_t)((ones * 65536 + bits / 2) / bits) : prob[i];
         const uint64_t dear = prob[i] == 1 ? ones : prob[i] == 65535 ? bits - ones : 0;
 
         if (prob[i] - best > PROB_FAR || best - prob[i] > PROB_FAR)
@@ -79,9 +81,11 @@ static void advise_counts(ted4_findings *f, const census *n, size_t at)
         const type_counts *c = &n->count[t];
 
         if (c->symbols >= FEW && c->escapes * ESCAPES_ONE_OF > c->symbols)
-            ted4_find_advice(f, TED4_ADV_ESCAPES, type_name[t], at, 2, (int64_t)c->escapes, (int64_t)c->symbols);
+            ted4_find_advice(f, TED4_ADV_ESCAPES, type_name[t], at, 2, (int64_t)c->escapes,
+                             (int64_t)c->symbols);
         if (c->symbols >= FEW && c->sigma_ends * SIGMA_ONE_OF > c->symbols)
-            ted4_find_advice(f, TED4_ADV_SIGMA, type_name[t], at, 2, (int64_t)c->sigma_ends, (int64_t)c->symbols);
+            ted4_find_advice(f, TED4_ADV_SIGMA, type_name[t], at, 2, (int64_t)c->sigma_ends,
+                             (int64_t)c->symbols);
     }
 }
 
@@ -101,13 +105,14 @@ static void advise_steps(ted4_findings *f, const ted4_scene *s, size_t at)
 static void advise_contexts(ted4_findings *f, const ted4_scene *s, size_t at)
 {
     const ted4_header *h = &s->head;
-    const size_t       n = h->n_anchors;
-    const unsigned     seen = h->feature_dim - h->slice[h->n_slices - 1u];
-    int64_t            ends = 0;
+    const size_t n = h->n_anchors;
+    const unsigned seen = h->feature_dim - h->slice[h->n_slices - 1u];
+    int64_t ends = 0;
 
     for (size_t c = 0; c < seen; c++)
         for (size_t i = 0; i < n; i++) {
-            const int16_t x = ted4_context(s->symbol[TED4_FEATURE][c * n + i], s->step_index[TED4_FEATURE][i], h->context_bits);
+            const int16_t x = ted4_context(s->symbol[TED4_FEATURE][c * n + i],
+                                           s->step_index[TED4_FEATURE][i], h->context_bits);
 
             ends += x == 32767 || x == -32767;
         }
@@ -115,11 +120,13 @@ static void advise_contexts(ted4_findings *f, const ted4_scene *s, size_t at)
         ted4_find_advice(f, TED4_ADV_CONTEXT, "feature", at, 2, ends, (int64_t)(seen * n));
 }
 
-/* All tiles of a valid file, with probabilities of their own. *first_at: offset of the first one. */
-static void walk_tiles(ted4_findings *f, const ted4_scene *given, census *n, ted4_listening *it, size_t *first_at)
+/* All tiles of a valid file, with probabilities of their own. *first_at: offset of the first one.
+ */
+static void walk_tiles(ted4_findings *f, const ted4_scene *given, census *n, ted4_listening *it,
+                       size_t *first_at)
 {
     ted4_reader r;
-    unsigned    tile = 0;
+    unsigned tile = 0;
 
     ted4_reader_init(&r, f->data, TED4_FILE_HEADER_SIZE, f->size, 1);
     while (r.base.pos < f->size) {
@@ -154,9 +161,9 @@ void ted4_advise_symbols(ted4_findings *f, const ted4_scene *given, const ted4_o
 {
     ted4_coder_ops ops = ted4_listen_ops;
     ted4_listening it;
-    ted4_status    verdict = ted4_listen_init(&it, given, o);
-    census         n;
-    size_t         at = 0;
+    ted4_status verdict = ted4_listen_init(&it, given, o);
+    census n;
+    size_t at = 0;
 
     memset(&n, 0, sizeof n);
     ops.bit = bit;

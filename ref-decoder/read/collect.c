@@ -1,5 +1,6 @@
-/* collect.c - every error of an invalid file as far as parsing can go on. The strict decoder's own parts judge; what they refuse is mended in a copy, and
- * they are asked again. Nothing is judged that depends on a value that was wrong (R-ERR-003): with a wrong HEAD no other payload, with
+/* collect.c - every error of an invalid file as far as parsing can go on. The strict decoder's own
+ * parts judge; what they refuse is mended in a copy, and they are asked again. Nothing is judged
+ * that depends on a value that was wrong (R-ERR-003): with a wrong HEAD no other payload, with
  * wrong networks or positions no tile, with anything wrong no hash in ENDS.
  * SPDX-License-Identifier: BSD-2-Clause */
 #include "read/collect.h"
@@ -58,22 +59,20 @@ static int order_that_fits(ted4_reader r, size_t at)
     return before;
 }
 
-/* Mends an error of a frame, so that the chunk can be judged again after *before. 1, or 0: that is all there is to say about it. */
-static int mend_frame(ted4_collector *c, const ted4_reader *r, const ted4_chunk_place *p, ted4_error e, int *before)
+/* Mends an error of a frame, so that the chunk can be judged again after *before. 1, or 0: that is
+ * all there is to say about it. */
+static int mend_frame(ted4_collector *c, const ted4_reader *r, const ted4_chunk_place *p,
+                      ted4_error e, int *before)
 {
     switch (e.code) {
-    case TED4_E_CON_CHUNK_HASH:
-        break;
-    case TED4_E_CON_CHUNK_ORDER:
-        *before = order_that_fits(*r, p->at);
-        break;
+    case TED4_E_CON_CHUNK_HASH: break;
+    case TED4_E_CON_CHUNK_ORDER: *before = order_that_fits(*r, p->at); break;
     case TED4_E_CON_RESERVED:
         if (e.offset == p->at)
             return 0;
         ted4_store32(c->copy + p->at + 4, p->type < TED4_CHUNKS ? (uint32_t)TED4_FLAG_CRITICAL : 0);
         break;
-    default:
-        return 0;
+    default: return 0;
     }
     store_hash(c, p);
     return 1;
@@ -83,11 +82,11 @@ static int mend_frame(ted4_collector *c, const ted4_reader *r, const ted4_chunk_
 static int judge_frame(ted4_collector *c, ted4_reader *r, int *before)
 {
     const size_t at = r->base.pos;
-    int          b = *before, again = 1;
+    int b = *before, again = 1;
 
     while (again) {
         ted4_chunk_place p;
-        int              after = b;
+        int after = b;
 
         r->base.pos = at;
         r->base.error.code = TED4_OK;
@@ -110,23 +109,23 @@ static int judge_frame(ted4_collector *c, ted4_reader *r, int *before)
 static size_t judge_frames(ted4_collector *c)
 {
     ted4_reader r;
-    size_t      end = TED4_FILE_HEADER_SIZE;
-    int         before = -1;
+    size_t end = TED4_FILE_HEADER_SIZE;
+    int before = -1;
 
     ted4_reader_init(&r, c->copy, end, c->f->size, 1);
     while (before != TED4_ENDS && judge_frame(c, &r, &before))
         end = r.base.pos;
     if (before == TED4_ENDS && end < c->f->size)
-        ted4_find_error(c->f, (ted4_error){ TED4_E_CON_TRAILING, end });
-    if (before != TED4_ENDS)            /* cut: how large it was is not known */
+        ted4_find_error(c->f, (ted4_error) { TED4_E_CON_TRAILING, end });
+    if (before != TED4_ENDS) /* cut: how large it was is not known */
         c->d.file_bytes = ted4_limits_of(c->level)->file_bytes;
     return end;
 }
 
 static void judge_ends(ted4_collector *c, const ted4_chunk_place *p)
 {
-    ted4_reader   r = ted4_decoder_reader(&c->d, p);
-    const size_t  size = sizeof c->d.s->hash;
+    ted4_reader r = ted4_decoder_reader(&c->d, p);
+    const size_t size = sizeof c->d.s->hash;
 
     if (c->n_tile_chunks < c->d.s->shape.n_tiles && !c->disordered) {
         ted4_fail(&c->d.file.base.error, TED4_E_CON_CHUNK_ORDER, p->at);
@@ -162,13 +161,14 @@ static void judge_payload(ted4_collector *c, const ted4_chunk_place *p)
 static void judge_payloads(ted4_collector *c, size_t end)
 {
     ted4_reader r;
-    int         seen[TED4_CHUNKS + 1] = { 0 };
+    int seen[TED4_CHUNKS + 1] = { 0 };
 
     ted4_reader_init(&r, c->copy, TED4_FILE_HEADER_SIZE, c->f->size, 1);
     while (r.base.pos < end) {
         const ted4_chunk_place p = ted4_container_next(&r);
 
-        if (p.type < TED4_CHUNKS && (p.type == TED4_HEAD || c->head) && (!seen[p.type] || p.type == TED4_TILE))
+        if (p.type < TED4_CHUNKS && (p.type == TED4_HEAD || c->head) &&
+            (!seen[p.type] || p.type == TED4_TILE))
             judge_payload(c, &p);
         seen[p.type] = 1;
     }
@@ -177,12 +177,12 @@ static void judge_payloads(ted4_collector *c, size_t end)
 
 ted4_status ted4_collect(ted4_findings *f, const ted4_options *o)
 {
-    ted4_options   own = *o;
+    ted4_options own = *o;
     ted4_collector c;
-    ted4_status    code = TED4_E_LIMIT_MEMORY;
+    ted4_status code = TED4_E_LIMIT_MEMORY;
 
     memset(&c, 0, sizeof c);
-    own.parallel = NULL;                /* tiles are judged one by one */
+    own.parallel = NULL; /* tiles are judged one by one */
     if (!ted4_decoder_init(&c.d, f->data, f->size, &own))
         return code;
     c.f = f;

@@ -39,34 +39,36 @@ static void keep_name(void *user, size_t offset, const char *element, int64_t in
 static ted4_error walk_head(ted4_collector *c, const ted4_chunk_place *p, const char **last)
 {
     const uint64_t most = ted4_limits_of(c->level)->file_bytes;
-    ted4_reader    r = ted4_decoder_reader(&c->d, p);
-    ted4_header    h;
-    ted4_shape     shape;
+    ted4_reader r = ted4_decoder_reader(&c->d, p);
+    ted4_header h;
+    ted4_shape shape;
 
     memset(&h, 0, sizeof h);
     *last = "magic";
     r.base.trace = keep_name;
     r.base.trace_user = last;
-    ted4_walk_header(&r.base, &h, &shape, c->level, c->d.file_bytes < most ? c->d.file_bytes : most);
+    ted4_walk_header(&r.base, &h, &shape, c->level,
+                     c->d.file_bytes < most ? c->d.file_bytes : most);
     if (r.base.error.code == TED4_OK)
         *last = "";
     return verdict(&r);
 }
 
-/* Puts a number in the element at an offset with which there is no error there any more. 0: none was found. */
+/* Puts a number in the element at an offset with which there is no error there any more. 0: none
+ * was found. */
 static int mend_head(ted4_collector *c, const ted4_chunk_place *p, size_t at)
 {
     static const uint32_t wide[] = { 0, 1, 64, 0x3f800000 };
 
     for (unsigned width = 1; width <= 4 && width <= p->end - at; width *= 2) {
         const unsigned n = width == 1 ? 256 : sizeof wide / sizeof *wide;
-        uint8_t        keep[4];
+        uint8_t keep[4];
 
         memcpy(keep, c->copy + at, width);
         for (unsigned i = 0; i < n; i++) {
             const uint32_t value = width == 1 ? i : wide[i];
-            ted4_error     e;
-            const char    *last;
+            ted4_error e;
+            const char *last;
 
             for (unsigned j = 0; j < width; j++)
                 c->copy[at + j] = (uint8_t)(value >> 8 * j);
@@ -79,13 +81,14 @@ static int mend_head(ted4_collector *c, const ted4_chunk_place *p, size_t at)
     return 0;
 }
 
-/* Lists the errors; then HEAD is read as it is, without bounds of a level, if its values are right. Beyond max_work nothing else is judged. */
+/* Lists the errors; then HEAD is read as it is, without bounds of a level, if its values are right.
+ * Beyond max_work nothing else is judged. */
 void ted4_collect_head(ted4_collector *c, const ted4_chunk_place *p)
 {
     const size_t size = p->end - p->payload, kept = size < HEAD_BYTES ? size : HEAD_BYTES;
-    uint8_t      keep[HEAD_BYTES];
-    const char  *last;
-    ted4_error   e;
+    uint8_t keep[HEAD_BYTES];
+    const char *last;
+    ted4_error e;
 
     c->head = 1;
     memcpy(keep, c->copy + p->payload, kept);
@@ -95,7 +98,8 @@ void ted4_collect_head(ted4_collector *c, const ted4_chunk_place *p)
         (void)ted4_collect_error(c);
         c->head &= *last == '\0' || e.code == TED4_E_LVL_EXCEEDED;
         /* Without n_slices it is not known where the elements behind it are. */
-        more = *last != '\0' && e.code != TED4_E_CON_PAYLOAD_SIZE && strcmp(last, "n_slices") != 0 && mend_head(c, p, e.offset);
+        more = *last != '\0' && e.code != TED4_E_CON_PAYLOAD_SIZE &&
+               strcmp(last, "n_slices") != 0 && mend_head(c, p, e.offset);
     }
     memcpy(c->copy + p->payload, keep, kept);
     if (!c->head)
@@ -136,7 +140,8 @@ static ted4_error walk_nete(ted4_collector *c, const ted4_chunk_place *p)
     return verdict(&r);
 }
 
-/* The value with that error becomes 0, if the blob, whose values begin at values_at, is raw. 0: it is not. */
+/* The value with that error becomes 0, if the blob, whose values begin at values_at, is raw. 0: it
+ * is not. */
 static int mend_value(ted4_collector *c, size_t values_at, ted4_error e)
 {
     if (c->copy[values_at - 1] != TED4_BLOB_RAW)
@@ -149,13 +154,15 @@ static int mend_nete(ted4_collector *c, const ted4_chunk_place *p, ted4_error e)
 {
     const size_t values_at = p->payload + c->d.s->shape.n_units + 1;
 
-    if (e.code == TED4_E_NET_SHIFT) {   /* the least that is legal; TED4_MAX_SHIFT is, for every unit */
+    if (e.code ==
+        TED4_E_NET_SHIFT) { /* the least that is legal; TED4_MAX_SHIFT is, for every unit */
         c->copy[e.offset] = 0;
         while (walk_nete(c, p).offset == e.offset)
             c->copy[e.offset]++;
         return 1;
     }
-    if (e.code != TED4_E_NET_VALUE && e.code != TED4_E_NET_WEIGHT_RANGE && e.code != TED4_E_NET_ACCUMULATOR)
+    if (e.code != TED4_E_NET_VALUE && e.code != TED4_E_NET_WEIGHT_RANGE &&
+        e.code != TED4_E_NET_ACCUMULATOR)
         return 0;
     if (!mend_value(c, values_at, e))
         return 0;
@@ -177,13 +184,16 @@ void ted4_collect_nete(ted4_collector *c, const ted4_chunk_place *p)
     }
 }
 
-void ted4_collect_blob(ted4_collector *c, const ted4_chunk_place *p, const char *element, ted4_blob *b)
+void ted4_collect_blob(ted4_collector *c, const ted4_chunk_place *p, const char *element,
+                       ted4_blob *b)
 {
     ted4_error e;
 
     ted4_decoder_chunk(&c->d, p);
     e = ted4_collect_error(c);
-    for (int n = 1; e.code == TED4_E_NET_VALUE && mend_value(c, p->payload + 1, e) && may_go_on(c, p, n); n++) {
+    for (int n = 1;
+         e.code == TED4_E_NET_VALUE && mend_value(c, p->payload + 1, e) && may_go_on(c, p, n);
+         n++) {
         ted4_reader r = ted4_decoder_reader(&c->d, p);
 
         ted4_walk_blob(&r.base, element, b);
@@ -196,7 +206,7 @@ void ted4_collect_blob(ted4_collector *c, const ted4_chunk_place *p, const char 
 static ted4_error walk_rest(ted4_collector *c, const ted4_chunk_place *p, size_t first)
 {
     ted4_reader r = ted4_decoder_reader(&c->d, p);
-    ted4_scene  part = *c->d.s;
+    ted4_scene part = *c->d.s;
 
     part.head.n_anchors -= (uint32_t)first;
     part.position += 3 * first;
@@ -211,13 +221,14 @@ void ted4_collect_positions(ted4_collector *c, const ted4_chunk_place *p)
 
     ted4_decoder_chunk(&c->d, p);
     e = ted4_collect_error(c);
-    if (e.code == TED4_E_CON_CHUNK_ORDER) {     /* no BANK; positions can do without */
+    if (e.code == TED4_E_CON_CHUNK_ORDER) { /* no BANK; positions can do without */
         c->d.s->shape.n_bank = 0;
         ted4_decoder_chunk(&c->d, p);
         e = ted4_collect_error(c);
     }
     c->posn = e.code == TED4_OK;
-    for (int n = 1; e.code >= TED4_E_POS_VALUE && e.code <= TED4_E_POS_ORDER && may_go_on(c, p, n); n++) {
+    for (int n = 1; e.code >= TED4_E_POS_VALUE && e.code <= TED4_E_POS_ORDER && may_go_on(c, p, n);
+         n++) {
         const size_t anchor = (e.offset - p->payload) / 6;
 
         c->d.file.base.error = walk_rest(c, p, anchor + (e.code != TED4_E_POS_ORDER));
@@ -228,8 +239,8 @@ void ted4_collect_positions(ted4_collector *c, const ted4_chunk_place *p)
 void ted4_collect_tile(ted4_collector *c, const ted4_chunk_place *p)
 {
     const unsigned number = c->n_tile_chunks++;
-    int            guessed = 0;         /* index or probability: other errors may come from that */
-    ted4_error     e;
+    int guessed = 0; /* index or probability: other errors may come from that */
+    ted4_error e;
 
     if (number >= c->d.s->shape.n_tiles) {
         ted4_fail(&c->d.file.base.error, TED4_E_CON_CHUNK_ORDER, p->at);

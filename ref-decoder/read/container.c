@@ -18,41 +18,39 @@ static int chunk_of(const uint8_t *type)
 static int legal_type(const uint8_t *type)
 {
     for (int i = 0; i < 4; i++)
-        if (!((type[i] >= '0' && type[i] <= '9')
-              || (type[i] >= 'A' && type[i] <= 'Z')
-              || (type[i] >= 'a' && type[i] <= 'z')))
+        if (!((type[i] >= '0' && type[i] <= '9') || (type[i] >= 'A' && type[i] <= 'Z') ||
+              (type[i] >= 'a' && type[i] <= 'z')))
             return 0;
     return 1;
 }
 
-/* R-CON-003: may a known chunk follow the one before (-1: none)? BANK and the number of TILE are judged in pass 2. */
+/* R-CON-003: may a known chunk follow the one before (-1: none)? BANK and the number of TILE are
+ * judged in pass 2. */
 static int may_follow(int before, int type)
 {
     switch (type) {
     case TED4_POSN: return before == TED4_NETR || before == TED4_BANK;
     case TED4_TILE: return before == TED4_POSN || before == TED4_TILE;
-    default:        return before == type - 1;
+    default: return before == type - 1;
     }
 }
 
 /* R-CON-002 to R-CON-004, for a chunk that fits. *before: the last known chunk. */
 static void judge(ted4_reader *r, size_t at, const ted4_frame *f, int *before)
 {
-    ted4_coder  *c = &r->base;
+    ted4_coder *c = &r->base;
     const size_t hashed = TED4_FRAME_HEAD_SIZE + f->size;
-    const int    type = chunk_of(f->type), known = type < TED4_CHUNKS;
+    const int type = chunk_of(f->type), known = type < TED4_CHUNKS;
 
-    ted4_require(c, XXH3_64bits(r->data + at, hashed)
-                    == ted4_load64(r->data + at + hashed),
+    ted4_require(c, XXH3_64bits(r->data + at, hashed) == ted4_load64(r->data + at + hashed),
                  TED4_E_CON_CHUNK_HASH, at);
     ted4_require(c, legal_type(f->type), TED4_E_CON_RESERVED, at);
-    ted4_require(c, known ? may_follow(*before, type) : *before >= 0,
-                 TED4_E_CON_CHUNK_ORDER, at);
-    ted4_require(c, known ? f->flags == TED4_FLAG_CRITICAL
-                          : f->flags <= (TED4_FLAG_CRITICAL | TED4_FLAG_COPY),
+    ted4_require(c, known ? may_follow(*before, type) : *before >= 0, TED4_E_CON_CHUNK_ORDER, at);
+    ted4_require(c,
+                 known ? f->flags == TED4_FLAG_CRITICAL
+                       : f->flags <= (TED4_FLAG_CRITICAL | TED4_FLAG_COPY),
                  TED4_E_CON_RESERVED, at + 4);
-    ted4_require(c, known || (f->flags & TED4_FLAG_CRITICAL) == 0,
-                 TED4_E_CON_UNKNOWN_CRITICAL, at);
+    ted4_require(c, known || (f->flags & TED4_FLAG_CRITICAL) == 0, TED4_E_CON_UNKNOWN_CRITICAL, at);
     if (known)
         *before = type;
 }
@@ -60,12 +58,12 @@ static void judge(ted4_reader *r, size_t at, const ted4_frame *f, int *before)
 uint8_t ted4_container_header(ted4_reader *r)
 {
     ted4_coder *c = &r->base;
-    uint8_t     level = 0;
+    uint8_t level = 0;
 
     ted4_walk_file_header(c, &level);
     if (c->error.code == TED4_OK)
-        ted4_require(c, r->end <= ted4_limits_of(level)->file_bytes,
-                     TED4_E_LVL_EXCEEDED, c->pos - 1);
+        ted4_require(c, r->end <= ted4_limits_of(level)->file_bytes, TED4_E_LVL_EXCEEDED,
+                     c->pos - 1);
     return level;
 }
 
@@ -83,9 +81,9 @@ static ted4_chunk_place pass_over(ted4_reader *r, size_t at, const ted4_frame *f
 ted4_chunk_place ted4_container_judge(ted4_reader *r, int *before)
 {
     static const ted4_chunk_place none = { 0, 0, 0, TED4_CHUNKS };
-    ted4_coder  *c = &r->base;
+    ted4_coder *c = &r->base;
     const size_t at = c->pos;
-    ted4_frame   f;
+    ted4_frame f;
 
     memset(&f, 0, sizeof f);
     ted4_walk_frame(c, &f);
@@ -103,7 +101,7 @@ ted4_chunk_place ted4_container_judge(ted4_reader *r, int *before)
 void ted4_container_check(ted4_reader *r)
 {
     ted4_coder *c = &r->base;
-    int         before = -1;
+    int before = -1;
 
     (void)ted4_container_header(r);
     while (c->error.code == TED4_OK && before != TED4_ENDS)
@@ -114,7 +112,7 @@ void ted4_container_check(ted4_reader *r)
 ted4_chunk_place ted4_container_next(ted4_reader *r)
 {
     const size_t at = r->base.pos;
-    ted4_frame   f;
+    ted4_frame f;
 
     memset(&f, 0, sizeof f);
     ted4_walk_frame(&r->base, &f);

@@ -17,8 +17,8 @@ enum { BATCH = 16, BATCH_BYTES = 1 << 28 };
  * at once. */
 struct ted4_tile_job {
     ted4_reader reader;
-    unsigned    number;
-    void       *work;           /* area i, whosever it is */
+    unsigned number;
+    void *work; /* area i, whosever it is */
     atomic_flag busy;
 };
 
@@ -46,38 +46,33 @@ ted4_reader ted4_decoder_reader(decoder *d, const ted4_chunk_place *p)
 /* Takes over the verdict on a payload, which has to be used up. */
 static void finish_payload(decoder *d, ted4_reader *r)
 {
-    ted4_require(&r->base, r->base.pos == r->end, TED4_E_CON_PAYLOAD_SIZE,
-                 r->base.pos);
+    ted4_require(&r->base, r->base.pos == r->end, TED4_E_CON_PAYLOAD_SIZE, r->base.pos);
     if (r->base.error.code != TED4_OK)
-        ted4_fail(&d->file.base.error, r->base.error.code,
-                  r->base.error.offset);
+        ted4_fail(&d->file.base.error, r->base.error.code, r->base.error.offset);
 }
 
 static void read_head(decoder *d, const ted4_chunk_place *p)
 {
     ted4_reader r = ted4_decoder_reader(d, p);
 
-    ted4_walk_header(&r.base, &d->s->head, &d->s->shape, d->s->level,
-                     d->file_bytes);
-    if (r.base.error.code == TED4_OK && d->o->max_work > 0
-        && ted4_count_work(&d->s->head, &d->s->shape, d->file.end)
-           > d->o->max_work)
+    ted4_walk_header(&r.base, &d->s->head, &d->s->shape, d->s->level, d->file_bytes);
+    if (r.base.error.code == TED4_OK && d->o->max_work > 0 &&
+        ted4_count_work(&d->s->head, &d->s->shape, d->file.end) > d->o->max_work)
         ted4_fail(&r.base.error, TED4_E_LIMIT_WORK, p->payload);
     finish_payload(d, &r);
 }
 
-/* Values get memory only when the payload can hold them behind its first skip bytes: as they are, or deflated (R-LVL-005). */
-static void prepare_blob(decoder *d, const ted4_chunk_place *p, size_t skip,
-                         ted4_blob *b, uint64_t n)
+/* Values get memory only when the payload can hold them behind its first skip bytes: as they are,
+ * or deflated (R-LVL-005). */
+static void prepare_blob(decoder *d, const ted4_chunk_place *p, size_t skip, ted4_blob *b,
+                         uint64_t n)
 {
-    const size_t   bytes = p->end - p->payload;
-    const size_t   left = bytes > skip ? bytes - skip - 1 : 0;
-    const uint8_t  mode = bytes > skip ? d->file.data[p->payload + skip]
-                                       : TED4_BLOB_RAW;
+    const size_t bytes = p->end - p->payload;
+    const size_t left = bytes > skip ? bytes - skip - 1 : 0;
+    const uint8_t mode = bytes > skip ? d->file.data[p->payload + skip] : TED4_BLOB_RAW;
 
     b->n = n;
-    if (mode == TED4_BLOB_RAW ? left / 4 >= n
-                              : !ted4_inflate_impossible(left, n))
+    if (mode == TED4_BLOB_RAW ? left / 4 >= n : !ted4_inflate_impossible(left, n))
         if (!ted4_blob_alloc(d->s, b, n))
             no_memory(d, p->payload);
 }
@@ -85,13 +80,12 @@ static void prepare_blob(decoder *d, const ted4_chunk_place *p, size_t skip,
 static void read_nete(decoder *d, const ted4_chunk_place *p)
 {
     const ted4_shape *shape = &d->s->shape;
-    ted4_reader       r = ted4_decoder_reader(d, p);
+    ted4_reader r = ted4_decoder_reader(d, p);
 
     prepare_blob(d, p, shape->n_units, &d->s->nete, shape->n_nete);
-    if (!ted4_scene_alloc_shifts(d->s)
-        || (d->s->nete.values != NULL
-            && ted4_prior_init(&d->prior, &d->s->head, shape, &d->s->arena)
-               != TED4_OK))
+    if (!ted4_scene_alloc_shifts(d->s) ||
+        (d->s->nete.values != NULL &&
+         ted4_prior_init(&d->prior, &d->s->head, shape, &d->s->arena) != TED4_OK))
         no_memory(d, p->payload);
     d->prior.dense = ted4_select_int_dense();
     if (d->file.base.error.code != TED4_OK)
@@ -100,8 +94,8 @@ static void read_nete(decoder *d, const ted4_chunk_place *p)
     finish_payload(d, &r);
 }
 
-static void read_blob(decoder *d, const ted4_chunk_place *p,
-                      const char *element, ted4_blob *b, uint64_t n)
+static void read_blob(decoder *d, const ted4_chunk_place *p, const char *element, ted4_blob *b,
+                      uint64_t n)
 {
     ted4_reader r = ted4_decoder_reader(d, p);
 
@@ -115,10 +109,9 @@ static void read_blob(decoder *d, const ted4_chunk_place *p,
 /* As many work areas as tiles can run at once; fewer when memory is short. */
 static void prepare_jobs(decoder *d, size_t at)
 {
-    ted4_arena  *a = &d->s->arena;
+    ted4_arena *a = &d->s->arena;
     const size_t size = ted4_tile_work_size(d->s);
-    unsigned     want = d->s->shape.n_tiles < BATCH ? d->s->shape.n_tiles
-                                                    : BATCH;
+    unsigned want = d->s->shape.n_tiles < BATCH ? d->s->shape.n_tiles : BATCH;
 
     if (want > BATCH_BYTES / size)
         want = BATCH_BYTES / size > 0 ? (unsigned)(BATCH_BYTES / size) : 1;
@@ -158,7 +151,7 @@ static void read_positions(decoder *d, const ted4_chunk_place *p)
 static void run_job(void *arg, size_t i)
 {
     decoder *d = arg;
-    job     *j = &d->jobs[i], *area = d->jobs;
+    job *j = &d->jobs[i], *area = d->jobs;
 
     while (atomic_flag_test_and_set(&area->busy))
         area++;
@@ -212,7 +205,7 @@ void ted4_decoder_chunk(decoder *d, const ted4_chunk_place *p)
     ted4_scene *s = d->s;
 
     if (p->type == TED4_BANK ? s->shape.n_bank == 0
-        : p->type == TED4_POSN && s->shape.n_bank > 0 && s->bank.n == 0) {
+                             : p->type == TED4_POSN && s->shape.n_bank > 0 && s->bank.n == 0) {
         ted4_fail(&d->file.base.error, TED4_E_CON_CHUNK_ORDER, p->at);
         return;
     }
@@ -226,8 +219,7 @@ void ted4_decoder_chunk(decoder *d, const ted4_chunk_place *p)
     case TED4_ENDS: read_ends(d, p); break;
     default:
         if (p->end > p->payload)
-            ted4_trace(&d->file.base, p->payload, "ancillary", 0,
-                       (int64_t)(p->end - p->payload));
+            ted4_trace(&d->file.base, p->payload, "ancillary", 0, (int64_t)(p->end - p->payload));
     }
 }
 
@@ -244,14 +236,12 @@ static void read_payloads(decoder *d)
         const ted4_chunk_place p = ted4_container_next(&d->file);
 
         ted4_decoder_chunk(d, &p);
-        ted4_trace(c, p.end, "chunk_hash", 0,
-                   (int64_t)ted4_load64(d->file.data + p.end));
+        ted4_trace(c, p.end, "chunk_hash", 0, (int64_t)ted4_load64(d->file.data + p.end));
     }
     ted4_decoder_finish(d);
 }
 
-int ted4_decoder_init(decoder *d, const void *data, size_t size,
-                      const ted4_options *o)
+int ted4_decoder_init(decoder *d, const void *data, size_t size, const ted4_options *o)
 {
     static const ted4_options standard = { .max_bytes = 0 };
 
@@ -276,12 +266,12 @@ void ted4_decoder_finish(decoder *d)
     d->n_room = 0;
 }
 
-ted4_status ted4_decode(const void *data, size_t size, const ted4_options *o,
-                        ted4_scene **scene, ted4_error *e)
+ted4_status ted4_decode(const void *data, size_t size, const ted4_options *o, ted4_scene **scene,
+                        ted4_error *e)
 {
     ted4_reader whole;
-    decoder     d;
-    ted4_error  verdict;
+    decoder d;
+    ted4_error verdict;
 
     *scene = NULL;
     ted4_reader_init(&whole, data, 0, size, 1);

@@ -9,40 +9,86 @@ enum { BYTES = 0, SUBSTREAM = 255, MAX_SUBSTREAMS = 24, DEFLATED = -1 };
 /* width: of a number; BYTES: size below; SUBSTREAM: size from the size element. */
 typedef struct {
     const char *name;
-    uint16_t    id;
-    uint8_t     width;
-    uint8_t     size;
+    uint16_t id;
+    uint8_t width;
+    uint8_t size;
 } element;
 
 static const element table[] = {
-    { "major", 2, 1, 0 }, { "minor", 3, 1, 0 }, { "profile", 4, 1, 0 }, { "level", 5, 1, 0 },
-    { "chunk_type", 16, 4, 0 }, { "chunk_flags", 17, 4, 0 }, { "chunk_size", 18, 4, 0 }, { "chunk_hash", 20, BYTES, 8 },
-    { "n_anchors", 32, 4, 0 }, { "tile_size", 33, 4, 0 }, { "n_offsets", 34, 1, 0 }, { "feature_dim", 35, 1, 0 },
-    { "motion", 36, 1, 0 }, { "phi_dim", 37, 1, 0 }, { "bank_rows", 38, 4, 0 }, { "bank_dim", 39, 2, 0 },
-    { "deform_layers", 40, 1, 0 }, { "deform_width", 41, 2, 0 }, { "temporal_mask", 42, 1, 0 }, { "offset_mask", 43, 1, 0 },
-    { "activation", 44, 1, 0 }, { "view", 45, 1, 0 }, { "head_layers", 46, 1, 0 }, { "head_width", 47, 2, 0 },
-    { "scale_domain", 48, 1, 0 }, { "prior", 49, 1, 0 }, { "pe_octaves", 50, 1, 0 }, { "hyper_layers", 51, 1, 0 },
-    { "hyper_width", 52, 2, 0 }, { "n_slices", 53, 1, 0 }, { "slice", 54, 1, 0 }, { "ar_width", 55, 2, 0 },
-    { "context_bits", 56, 1, 0 }, { "step", 57, 4, 0 }, { "frames", 58, 4, 0 }, { "rate_num", 59, 4, 0 },
-    { "rate_den", 60, 4, 0 }, { "origin", 61, 4, 0 }, { "exponent", 62, 1, 0 }, { "background", 63, 1, 0 },
-    { "reserved", 64, 1, 0 }, { "shift", 96, 1, 0 }, { "mode", 97, 1, 0 }, { "nete", 98, 4, 0 },
-    { "netr", 100, 4, 0 }, { "bank", 102, 4, 0 }, { "position", 112, 2, 0 }, { "tile_index", 128, 4, 0 },
-    { "dynamic_prob", 129, 2, 0 }, { "offset_prob", 130, 2, 0 }, { "size", 131, 4, 0 },
-    { "mask_substream", 132, SUBSTREAM, 0 }, { "feature_substream", 133, SUBSTREAM, 0 },
-    { "scaling_substream", 134, SUBSTREAM, 0 }, { "offset_substream", 135, SUBSTREAM, 0 },
-    { "phi_substream", 136, SUBSTREAM, 0 }, { "tau_substream", 137, SUBSTREAM, 0 },
+    { "major", 2, 1, 0 },
+    { "minor", 3, 1, 0 },
+    { "profile", 4, 1, 0 },
+    { "level", 5, 1, 0 },
+    { "chunk_type", 16, 4, 0 },
+    { "chunk_flags", 17, 4, 0 },
+    { "chunk_size", 18, 4, 0 },
+    { "chunk_hash", 20, BYTES, 8 },
+    { "n_anchors", 32, 4, 0 },
+    { "tile_size", 33, 4, 0 },
+    { "n_offsets", 34, 1, 0 },
+    { "feature_dim", 35, 1, 0 },
+    { "motion", 36, 1, 0 },
+    { "phi_dim", 37, 1, 0 },
+    { "bank_rows", 38, 4, 0 },
+    { "bank_dim", 39, 2, 0 },
+    { "deform_layers", 40, 1, 0 },
+    { "deform_width", 41, 2, 0 },
+    { "temporal_mask", 42, 1, 0 },
+    { "offset_mask", 43, 1, 0 },
+    { "activation", 44, 1, 0 },
+    { "view", 45, 1, 0 },
+    { "head_layers", 46, 1, 0 },
+    { "head_width", 47, 2, 0 },
+    { "scale_domain", 48, 1, 0 },
+    { "prior", 49, 1, 0 },
+    { "pe_octaves", 50, 1, 0 },
+    { "hyper_layers", 51, 1, 0 },
+    { "hyper_width", 52, 2, 0 },
+    { "n_slices", 53, 1, 0 },
+    { "slice", 54, 1, 0 },
+    { "ar_width", 55, 2, 0 },
+    { "context_bits", 56, 1, 0 },
+    { "step", 57, 4, 0 },
+    { "frames", 58, 4, 0 },
+    { "rate_num", 59, 4, 0 },
+    { "rate_den", 60, 4, 0 },
+    { "origin", 61, 4, 0 },
+    { "exponent", 62, 1, 0 },
+    { "background", 63, 1, 0 },
+    { "reserved", 64, 1, 0 },
+    { "shift", 96, 1, 0 },
+    { "mode", 97, 1, 0 },
+    { "nete", 98, 4, 0 },
+    { "netr", 100, 4, 0 },
+    { "bank", 102, 4, 0 },
+    { "position", 112, 2, 0 },
+    { "tile_index", 128, 4, 0 },
+    { "dynamic_prob", 129, 2, 0 },
+    { "offset_prob", 130, 2, 0 },
+    { "size", 131, 4, 0 },
+    { "mask_substream", 132, SUBSTREAM, 0 },
+    { "feature_substream", 133, SUBSTREAM, 0 },
+    { "scaling_substream", 134, SUBSTREAM, 0 },
+    { "offset_substream", 135, SUBSTREAM, 0 },
+    { "phi_substream", 136, SUBSTREAM, 0 },
+    { "tau_substream", 137, SUBSTREAM, 0 },
 };
 
-enum { N_TABLE = sizeof table / sizeof *table, ID_MAGIC = 1, ID_ANCILLARY = 19, ID_ENDS_HASH = 160 };
+enum {
+    N_TABLE = sizeof table / sizeof *table,
+    ID_MAGIC = 1,
+    ID_ANCILLARY = 19,
+    ID_ENDS_HASH = 160
+};
 
 typedef struct {
-    const uint8_t *data;        /* borrowed: the file */
-    ted4_sink     *sink;
-    void          *user;
-    uint32_t       size[MAX_SUBSTREAMS];    /* of the tile */
-    unsigned       n_opened;
-    uint32_t       chunk_size;
-    int            last;        /* entry of the element before: arrays and names in order are found at once */
+    const uint8_t *data; /* borrowed: the file */
+    ted4_sink *sink;
+    void *user;
+    uint32_t size[MAX_SUBSTREAMS]; /* of the tile */
+    unsigned n_opened;
+    uint32_t chunk_size;
+    int last; /* entry of the element before: arrays and names in order are found at once */
 } dump;
 
 static void put_number(dump *d, uint16_t id, uint32_t value)
@@ -86,7 +132,7 @@ static void put_special(dump *d, size_t offset, const char *name, int64_t index,
 
 static void trace(void *user, size_t offset, const char *name, int64_t index, int64_t value)
 {
-    dump     *d = user;
+    dump *d = user;
     const int at = find(d, name);
 
     if (at < 0) {
@@ -99,7 +145,8 @@ static void trace(void *user, size_t offset, const char *name, int64_t index, in
     if (e->width == SUBSTREAM) {
         put_bytes(d, e->id, offset, d->size[d->n_opened++]);
     } else if (e->width == BYTES) {
-        if (d->chunk_size == 0)         /* only an ancillary chunk can be empty, and then it is not traced */
+        if (d->chunk_size ==
+            0) /* only an ancillary chunk can be empty, and then it is not traced */
             put_bytes(d, ID_ANCILLARY, offset, 0);
         put_bytes(d, e->id, offset, e->size);
     } else if (index == DEFLATED) {
@@ -115,12 +162,12 @@ static void trace(void *user, size_t offset, const char *name, int64_t index, in
     }
 }
 
-ted4_status ted4_dump_syntax(const void *data, size_t size, const ted4_options *o,
-                             ted4_sink *sink, void *user, ted4_error *e)
+ted4_status ted4_dump_syntax(const void *data, size_t size, const ted4_options *o, ted4_sink *sink,
+                             void *user, ted4_error *e)
 {
-    dump         d = { .data = data, .sink = sink, .user = user };
+    dump d = { .data = data, .sink = sink, .user = user };
     ted4_options own;
-    ted4_scene  *s;
+    ted4_scene *s;
 
     memset(&own, 0, sizeof own);
     if (o != NULL)

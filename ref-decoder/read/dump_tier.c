@@ -1,4 +1,5 @@
-/* dump_tier.c - spec J.3 to J.6: tiers T1 to T4 of a decoded scene. T2 and T3 walk the tiles once more, with a coder that only listens.
+/* dump_tier.c - spec J.3 to J.6: tiers T1 to T4 of a decoded scene. T2 and T3 walk the tiles once
+ * more, with a coder that only listens.
  * SPDX-License-Identifier: BSD-2-Clause */
 #include <string.h>
 #include "base/bytes.h"
@@ -9,11 +10,11 @@
 #include "read/listen.h"
 
 typedef struct {
-    ted4_coder base;            /* must be first */
+    ted4_coder base; /* must be first */
     ted4_sink *sink;
-    void      *user;
-    int        tier;
-    size_t     n;               /* symbols of the open substream */
+    void *user;
+    int tier;
+    size_t n; /* symbols of the open substream */
 } listener;
 
 static void put8(listener *l, uint8_t v)
@@ -54,7 +55,7 @@ static void open_substream(ted4_coder *c, size_t n)
 /* The decoder has seen each lane end in its final state. */
 static void close_substream(ted4_coder *c)
 {
-    listener      *l = listener_of(c);
+    listener *l = listener_of(c);
     const unsigned lanes = l->n > 0 ? ted4_rans_lanes(l->n) : 0;
 
     if (l->tier != 3)
@@ -114,10 +115,13 @@ static void dump_steps(listener *l, const ted4_scene *s, size_t first)
 
 static int has(const ted4_scene *s, int type, unsigned comp, size_t a)
 {
-    return type == TED4_PHI ? s->dynamic[a] : type == TED4_OFFSET ? s->offset_bits[a] >> comp / 3 & 1 : 1;
+    return type == TED4_PHI      ? s->dynamic[a]
+           : type == TED4_OFFSET ? s->offset_bits[a] >> comp / 3 & 1
+                                 : 1;
 }
 
-/* J.6; spec 10.4. T4 is exact whatever the build's class (R-TOL-007): q is volatile, so that no compiler multiplies in another order or keeps it wider. */
+/* J.6; spec 10.4. T4 is exact whatever the build's class (R-TOL-007): q is volatile, so that no
+ * compiler multiplies in another order or keeps it wider. */
 static void dump_values(listener *l, const ted4_scene *s, int type, unsigned comp, size_t first)
 {
     const int16_t *k = s->symbol[type] + (size_t)comp * s->head.n_anchors;
@@ -139,7 +143,7 @@ static ted4_status dump_walk(listener *l, const ted4_scene *given, const ted4_op
 {
     ted4_coder_ops ops = ted4_listen_ops;
     ted4_listening it;
-    ted4_status    verdict = ted4_listen_init(&it, given, o);
+    ted4_status verdict = ted4_listen_init(&it, given, o);
 
     ops.open = open_substream;
     ops.close = close_substream;
@@ -156,8 +160,8 @@ static ted4_status dump_walk(listener *l, const ted4_scene *given, const ted4_op
     return verdict;
 }
 
-ted4_status ted4_dump_tier(const ted4_scene *s, int tier, const ted4_options *o,
-                           ted4_sink *sink, void *user)
+ted4_status ted4_dump_tier(const ted4_scene *s, int tier, const ted4_options *o, ted4_sink *sink,
+                           void *user)
 {
     listener l;
 

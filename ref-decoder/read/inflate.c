@@ -29,7 +29,7 @@ int ted4_inflate_impossible(size_t size, uint64_t n)
 static int inflate_all(z_stream *z, uint8_t *out, size_t out_size)
 {
     const size_t piece = (size_t)1 << 30;
-    int          verdict = Z_OK;
+    int verdict = Z_OK;
 
     while (verdict == Z_OK) {
         const size_t now = out_size < piece ? out_size : piece;
@@ -42,25 +42,23 @@ static int inflate_all(z_stream *z, uint8_t *out, size_t out_size)
         if (verdict == Z_OK && (z->avail_out > 0 || out_size == 0))
             return Z_DATA_ERROR;
     }
-    return verdict == Z_STREAM_END && (out_size > 0 || z->avail_in > 0)
-         ? Z_DATA_ERROR : verdict;
+    return verdict == Z_STREAM_END && (out_size > 0 || z->avail_in > 0) ? Z_DATA_ERROR : verdict;
 }
 
 static void unshuffle(float *values, const uint8_t *bytes, size_t n)
 {
     for (size_t i = 0; i < n; i++)
-        values[i] = ted4_bits_float((uint32_t)bytes[i]
-                                    | (uint32_t)bytes[n + i] << 8
-                                    | (uint32_t)bytes[2 * n + i] << 16
-                                    | (uint32_t)bytes[3 * n + i] << 24);
+        values[i] = ted4_bits_float((uint32_t)bytes[i] | (uint32_t)bytes[n + i] << 8 |
+                                    (uint32_t)bytes[2 * n + i] << 16 |
+                                    (uint32_t)bytes[3 * n + i] << 24);
 }
 
-ted4_status ted4_inflate(ted4_arena *arena, const uint8_t *data, size_t size,
-                         float *values, uint64_t n)
+ted4_status ted4_inflate(ted4_arena *arena, const uint8_t *data, size_t size, float *values,
+                         uint64_t n)
 {
     uint8_t *bytes;
     z_stream z;
-    int      verdict;
+    int verdict;
 
     if (ted4_inflate_impossible(size, n))
         return TED4_E_NET_DEFLATE;
@@ -81,6 +79,7 @@ ted4_status ted4_inflate(ted4_arena *arena, const uint8_t *data, size_t size,
     if (verdict == Z_STREAM_END)
         unshuffle(values, bytes, (size_t)n);
     ted4_arena_release(arena, bytes);
-    return verdict == Z_STREAM_END ? TED4_OK
-         : verdict == Z_MEM_ERROR ? TED4_E_LIMIT_MEMORY : TED4_E_NET_DEFLATE;
+    return verdict == Z_STREAM_END  ? TED4_OK
+           : verdict == Z_MEM_ERROR ? TED4_E_LIMIT_MEMORY
+                                    : TED4_E_NET_DEFLATE;
 }

@@ -1,31 +1,33 @@
-/* lenient.c - spec 3.3: what can be saved of a file that is not valid: the first tiles, as far as all before and in them is right.
+/* lenient.c - spec 3.3: what can be saved of a file that is not valid: the first tiles, as far as
+ * all before and in them is right.
  * SPDX-License-Identifier: BSD-2-Clause */
 #include <string.h>
 #include "norm/limits.h"
 #include "norm/scene.h"
 #include "read/decode.h"
 
-/* Both passes at once: each chunk is judged, then read, up to the first error in the order of the file. */
+/* Both passes at once: each chunk is judged, then read, up to the first error in the order of the
+ * file. */
 static ted4_error read_while_good(ted4_decoder *d, int truncated)
 {
     ted4_reader frames = d->file;
-    int         before = -1;
-    ted4_error  e;
+    int before = -1;
+    ted4_error e;
 
     d->s->level = ted4_container_header(&frames);
-    /* How large a truncated file was is not known; the least that its level does not forbid is assumed. */
+    /* How large a truncated file was is not known; the least that its level does not forbid is
+     * assumed. */
     if (frames.base.error.code == TED4_OK && truncated)
         d->file_bytes = ted4_limits_of(d->s->level)->file_bytes;
-    while (frames.base.error.code == TED4_OK
-           && d->file.base.error.code == TED4_OK && before != TED4_ENDS) {
+    while (frames.base.error.code == TED4_OK && d->file.base.error.code == TED4_OK &&
+           before != TED4_ENDS) {
         const ted4_chunk_place p = ted4_container_judge(&frames, &before);
 
         if (frames.base.error.code == TED4_OK)
             ted4_decoder_chunk(d, &p);
     }
     ted4_decoder_finish(d);
-    ted4_require(&frames.base, frames.base.pos == frames.end,
-                 TED4_E_CON_TRAILING, frames.base.pos);
+    ted4_require(&frames.base, frames.base.pos == frames.end, TED4_E_CON_TRAILING, frames.base.pos);
     /* Payloads are read up to the chunk before the one that is wrong. */
     e = d->file.base.error;
     ted4_fail(&e, frames.base.error.code, frames.base.error.offset);
@@ -39,20 +41,19 @@ static void keep_anchors(ted4_scene *s, uint32_t n)
 
     for (int t = 0; t < TED4_TYPES; t++)
         for (size_t c = 0; c < s->shape.dim[t]; c++)
-            memmove(s->symbol[t] + c * n, s->symbol[t] + c * before,
-                    n * sizeof *s->symbol[t]);
+            memmove(s->symbol[t] + c * n, s->symbol[t] + c * before, n * sizeof *s->symbol[t]);
     s->head.n_anchors = n;
     ted4_shape_make(&s->shape, &s->head);
     ted4_scene_hash(s, s->hash);
 }
 
-static void salvage(const void *data, size_t size, const ted4_options *o,
-                    ted4_scene **scene, ted4_salvage *what)
+static void salvage(const void *data, size_t size, const ted4_options *o, ted4_scene **scene,
+                    ted4_salvage *what)
 {
-    const int    truncated = what->verdict.code == TED4_E_CON_TRUNCATED;
+    const int truncated = what->verdict.code == TED4_E_CON_TRUNCATED;
     ted4_options quiet;
     ted4_decoder d;
-    uint64_t     n;
+    uint64_t n;
 
     memset(&quiet, 0, sizeof quiet);
     if (o != NULL)
@@ -64,7 +65,7 @@ static void salvage(const void *data, size_t size, const ted4_options *o,
     }
     what->stop = read_while_good(&d, truncated);
     what->n_tiles = d.n_good;
-    if (d.s->shape.n_tiles > 0) {       /* HEAD was right */
+    if (d.s->shape.n_tiles > 0) { /* HEAD was right */
         what->tiles_declared = d.s->shape.n_tiles;
         what->anchors_declared = d.s->head.n_anchors;
     }
@@ -73,14 +74,12 @@ static void salvage(const void *data, size_t size, const ted4_options *o,
         return;
     }
     n = (uint64_t)d.n_good * d.s->head.tile_size;
-    keep_anchors(d.s, n < d.s->head.n_anchors ? (uint32_t)n
-                                              : d.s->head.n_anchors);
+    keep_anchors(d.s, n < d.s->head.n_anchors ? (uint32_t)n : d.s->head.n_anchors);
     *scene = d.s;
 }
 
-ted4_status ted4_decode_lenient(const void *data, size_t size,
-                                const ted4_options *o, ted4_scene **scene,
-                                ted4_salvage *what)
+ted4_status ted4_decode_lenient(const void *data, size_t size, const ted4_options *o,
+                                ted4_scene **scene, ted4_salvage *what)
 {
     memset(what, 0, sizeof *what);
     if (ted4_decode(data, size, o, scene, &what->verdict) == TED4_OK) {

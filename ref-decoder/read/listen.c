@@ -29,10 +29,11 @@ static void close_substream(ted4_coder *c)
     (void)c;
 }
 
-const ted4_coder_ops ted4_listen_ops = { .number = number, .sizes = sizes, .open = open_substream, .close = close_substream };
+const ted4_coder_ops ted4_listen_ops = {
+    .number = number, .sizes = sizes, .open = open_substream, .close = close_substream
+};
 
-ted4_status ted4_listen_init(ted4_listening *l, const ted4_scene *given,
-                             const ted4_options *o)
+ted4_status ted4_listen_init(ted4_listening *l, const ted4_scene *given, const ted4_options *o)
 {
     ted4_status verdict;
 

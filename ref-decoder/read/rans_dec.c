@@ -2,8 +2,7 @@
  * SPDX-License-Identifier: BSD-2-Clause */
 #include "read/rans_dec.h"
 
-ted4_status ted4_rans_dec_init(ted4_rans_dec *d, const uint8_t *data,
-                               size_t size, size_t n)
+ted4_status ted4_rans_dec_init(ted4_rans_dec *d, const uint8_t *data, size_t size, size_t n)
 {
     const size_t n_lanes = ted4_rans_lanes(n);
 

@@ -10,15 +10,14 @@
 #include "norm/rans.h"
 
 typedef struct {
-    const uint8_t *word, *end;  /* borrowed: the words not read yet */
-    unsigned       n_lanes, lane;   /* lane: of the next symbol */
-    int            underrun;    /* a word was missing */
-    uint32_t       state[TED4_MAX_LANES];
+    const uint8_t *word, *end; /* borrowed: the words not read yet */
+    unsigned n_lanes, lane;    /* lane: of the next symbol */
+    int underrun;              /* a word was missing */
+    uint32_t state[TED4_MAX_LANES];
 } ted4_rans_dec;
 
 /* A substream of n > 0 symbols. TED4_OK, TED4_E_ENT_SIZE or TED4_E_ENT_STATE. */
-ted4_status ted4_rans_dec_init(ted4_rans_dec *d, const uint8_t *data,
-                               size_t size, size_t n);
+ted4_status ted4_rans_dec_init(ted4_rans_dec *d, const uint8_t *data, size_t size, size_t n);
 /* R-ENT-005: TED4_OK or TED4_E_ENT_FINAL. */
 ted4_status ted4_rans_dec_finish(const ted4_rans_dec *d);
 

@@ -10,7 +10,8 @@ static ted4_reader *reader_of(ted4_coder *c)
     return (ted4_reader *)c;
 }
 
-/* After a failure. Nothing is traced behind an error: no walk needs to go through what is not there. */
+/* After a failure. Nothing is traced behind an error: no walk needs to go through what is not
+ * there. */
 static const uint8_t *nothing(ted4_coder *c)
 {
     c->trace = NULL;
@@ -20,7 +21,7 @@ static const uint8_t *nothing(ted4_coder *c)
 /* The next size bytes, or NULL after a failure. */
 static const uint8_t *take(ted4_coder *c, size_t size)
 {
-    ted4_reader   *r = reader_of(c);
+    ted4_reader *r = reader_of(c);
     const uint8_t *p;
 
     if (c->error.code != TED4_OK)
@@ -76,10 +77,10 @@ static void array(ted4_coder *c, unsigned width, void *values, uint64_t n)
 
 static void deflated(ted4_coder *c, ted4_blob *b)
 {
-    ted4_reader   *r = reader_of(c);
-    const size_t   at = c->pos, size = r->end - at;
+    ted4_reader *r = reader_of(c);
+    const size_t at = c->pos, size = r->end - at;
     const uint8_t *p = take(c, size);
-    ted4_status    verdict;
+    ted4_status verdict;
 
     if (p == NULL)
         return;
@@ -102,7 +103,7 @@ static void sizes(ted4_coder *c, uint32_t *size, unsigned n)
 {
     ted4_reader *r = reader_of(c);
     const size_t at = c->pos;
-    uint64_t     sum = 0;
+    uint64_t sum = 0;
 
     memset(size, 0, n * sizeof *size);
     array(c, 4, size, n);
@@ -116,15 +117,14 @@ static void sizes(ted4_coder *c, uint32_t *size, unsigned n)
 static void open_substream(ted4_coder *c, size_t n)
 {
     ted4_reader *r = reader_of(c);
-    ted4_status  verdict;
+    ted4_status verdict;
 
     if (c->error.code != TED4_OK)
         return;
     r->opened = c->pos;
     r->n_symbols = n;
     if (n > 0)
-        verdict = ted4_rans_dec_init(&r->rans, r->data + c->pos,
-                                     r->size[r->n_opened], n);
+        verdict = ted4_rans_dec_init(&r->rans, r->data + c->pos, r->size[r->n_opened], n);
     else
         verdict = r->size[r->n_opened] == 0 ? TED4_OK : TED4_E_ENT_SIZE;
     ted4_require(c, verdict == TED4_OK, verdict, r->opened);
@@ -136,20 +136,19 @@ static void close_substream(ted4_coder *c)
     ted4_reader *r = reader_of(c);
 
     if (c->error.code == TED4_OK && r->n_symbols > 0)
-        ted4_require(c, ted4_rans_dec_finish(&r->rans) == TED4_OK,
-                     TED4_E_ENT_FINAL, r->opened);
+        ted4_require(c, ted4_rans_dec_finish(&r->rans) == TED4_OK, TED4_E_ENT_FINAL, r->opened);
 }
 
 static int bit(ted4_coder *c, uint32_t prob, int value)
 {
     ted4_reader *r = reader_of(c);
-    const int    one = ted4_rans_dec_slot(&r->rans) < prob;
+    const int one = ted4_rans_dec_slot(&r->rans) < prob;
 
     (void)value;
     if (c->error.code != TED4_OK)
         return 0;
-    ted4_rans_dec_take(&r->rans, one ? (ted4_slots){ 0, prob }
-                              : (ted4_slots){ prob, TED4_RANS_LOW - prob });
+    ted4_rans_dec_take(&r->rans, one ? (ted4_slots) { 0, prob }
+                                     : (ted4_slots) { prob, TED4_RANS_LOW - prob });
     ted4_rans_dec_next(&r->rans);
     ted4_require(c, !r->rans.underrun, TED4_E_ENT_UNDERRUN, r->opened);
     return one;
@@ -161,7 +160,7 @@ static uint32_t escape_bit(ted4_rans_dec *d)
     const uint32_t half = TED4_RANS_LOW / 2;
     const uint32_t one = ted4_rans_dec_slot(d) >= half;
 
-    ted4_rans_dec_take(d, (ted4_slots){ one * half, half });
+    ted4_rans_dec_take(d, (ted4_slots) { one * half, half });
     return one;
 }
 
@@ -181,13 +180,13 @@ static int32_t escape(ted4_rans_dec *d)
 /* spec 9.4: one symbol. */
 static int32_t gauss_symbol(ted4_coder *c, int32_t mu, unsigned g)
 {
-    ted4_reader   *r = reader_of(c);
+    ted4_reader *r = reader_of(c);
     ted4_rans_dec *d = &r->rans;
-    const int32_t  m = ted4_floor_shift(mu, TED4_MU_BITS);
-    ted4_slots     slots;
-    const uint32_t j = ted4_gauss_find(g, mu - m * (1 << TED4_MU_BITS),
-                                       ted4_rans_dec_slot(d), &slots);
-    int32_t        k;
+    const int32_t m = ted4_floor_shift(mu, TED4_MU_BITS);
+    ted4_slots slots;
+    const uint32_t j =
+        ted4_gauss_find(g, mu - m * (1 << TED4_MU_BITS), ted4_rans_dec_slot(d), &slots);
+    int32_t k;
 
     ted4_rans_dec_take(d, slots);
     if (j == 0 || j == ted4_gauss_size(g) - 1) {
@@ -200,19 +199,18 @@ static int32_t gauss_symbol(ted4_coder *c, int32_t mu, unsigned g)
         k = m + ted4_gauss_offset(g, j);
     }
     ted4_require(c, !d->underrun, TED4_E_ENT_UNDERRUN, r->opened);
-    ted4_require(c, k >= -32767 && k <= 32767, TED4_E_ENT_SYMBOL_RANGE,
-                 r->opened);
+    ted4_require(c, k >= -32767 && k <= 32767, TED4_E_ENT_SYMBOL_RANGE, r->opened);
     ted4_rans_dec_next(d);
     return k;
 }
 
 /* As many symbols as several lanes at a time can take. */
-static size_t gauss_many(ted4_reader *r, size_t n, const int32_t *mu,
-                         const uint8_t *sigma, int16_t *k)
+static size_t gauss_many(ted4_reader *r, size_t n, const int32_t *mu, const uint8_t *sigma,
+                         int16_t *k)
 {
-    ted4_rans_dec   *d = &r->rans;
+    ted4_rans_dec *d = &r->rans;
     ted4_gauss_lanes lanes = { d->state, d->n_lanes, d->lane, d->word, d->end };
-    const size_t     done = r->many(&lanes, n, mu, sigma, k);
+    const size_t done = r->many(&lanes, n, mu, sigma, k);
 
     d->word = lanes.word;
     d->lane = (d->lane + (unsigned)done) & (d->n_lanes - 1);
@@ -220,11 +218,10 @@ static size_t gauss_many(ted4_reader *r, size_t n, const int32_t *mu,
 }
 
 /* What is not for several lanes at a time goes by itself. */
-static void gauss(ted4_coder *c, size_t n, const int32_t *mu,
-                  const uint8_t *sigma, int16_t *k)
+static void gauss(ted4_coder *c, size_t n, const int32_t *mu, const uint8_t *sigma, int16_t *k)
 {
     ted4_reader *r = reader_of(c);
-    const int    many = r->many != NULL && r->rans.n_lanes >= TED4_MANY_LANES;
+    const int many = r->many != NULL && r->rans.n_lanes >= TED4_MANY_LANES;
 
     for (size_t i = 0; i < n && c->error.code == TED4_OK; i++) {
         if (many)
@@ -234,13 +231,10 @@ static void gauss(ted4_coder *c, size_t n, const int32_t *mu,
     }
 }
 
-void ted4_reader_init(ted4_reader *r, const uint8_t *data, size_t pos,
-                      size_t end, int whole_file)
+void ted4_reader_init(ted4_reader *r, const uint8_t *data, size_t pos, size_t end, int whole_file)
 {
-    static const ted4_coder_ops ops = {
-        number, array, deflated, sizes, open_substream, close_substream, bit,
-        gauss
-    };
+    static const ted4_coder_ops ops = { number,         array,           deflated, sizes,
+                                        open_substream, close_substream, bit,      gauss };
 
     memset(r, 0, sizeof *r);
     r->base.ops = &ops;

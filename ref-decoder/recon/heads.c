@@ -39,7 +39,8 @@ static void put(ted4_recon_scratch *w, size_t n, const float *value, float *out)
     w->worst = worst;
 }
 
-/* n: from squares of norms to what to divide by: the norm, or 1 where it is below LEAST_NORM, with none set. */
+/* n: from squares of norms to what to divide by: the norm, or 1 where it is below LEAST_NORM, with
+ * none set. */
 static void norm_row(float *n, int32_t *none)
 {
     for (int j = 0; j < TED4_ROW; j++)
@@ -104,8 +105,7 @@ static void normalise_rotation(float *y)
     int32_t none[TED4_ROW];
 
     for (int j = 0; j < TED4_ROW; j++) {
-        const float a = y[j], b = y[TED4_ROW + j], c = y[2 * TED4_ROW + j],
-                    d = y[3 * TED4_ROW + j];
+        const float a = y[j], b = y[TED4_ROW + j], c = y[2 * TED4_ROW + j], d = y[3 * TED4_ROW + j];
 
         n[j] = a * a + b * b + c * c + d * d;
     }
@@ -135,8 +135,7 @@ static void covariance_head(const ted4_recon_job *q, size_t block, const float *
                     size[c * TED4_ROW + j] * ted4_sigmoid(y[c * TED4_ROW + j]) * q->unit;
         normalise_rotation(y + 3 * TED4_ROW);
         for (size_t c = 3; c < 7; c++)
-            memcpy(w->value + c * channel + k * TED4_ROW, y + c * TED4_ROW,
-                   TED4_ROW * sizeof *y);
+            memcpy(w->value + c * channel + k * TED4_ROW, y + c * TED4_ROW, TED4_ROW * sizeof *y);
     }
     for (size_t c = 0; c < 3; c++)
         put(w, n, w->value + c * channel, r->out.scale[c]);
@@ -154,7 +153,8 @@ static void place_records(const ted4_recon_job *q, size_t block, const float *po
     for (size_t c = 0; c < 3; c++) {
         for (size_t k = 0; k < r->head.n_offsets; k++)
             for (size_t j = 0; j < TED4_ROW; j++)
-                w->value[k * TED4_ROW + j] = r->head.origin[c] +
+                w->value[k * TED4_ROW + j] =
+                    r->head.origin[c] +
                     (point[c * TED4_ROW + j] + shift[(3 * k + c) * TED4_ROW + j]) * q->unit;
         put(w, n, w->value, r->out.mean[c]);
     }
@@ -169,7 +169,7 @@ static void activate(const ted4_recon_job *q, size_t block, size_t n, ted4_recon
     float activation[TED4_ROW];
 
     for (int j = 0; j < TED4_ROW; j++) {
-        const int early = q->t < a_s[j], late = q->t > a_f[j];
+        const int early = q->t<a_s[j], late = q->t> a_f[j];
         const float a = early ? a_s[j] : a_f[j], b = early ? b_s[j] : b_f[j];
         const float u = (q->t - a) / b;
         const float fading = ted4_pow2(-(u * u) * TED4_LOG2E);
@@ -177,8 +177,7 @@ static void activate(const ted4_recon_job *q, size_t block, size_t n, ted4_recon
         activation[j] = early | late ? fading : 1.0f;
     }
     for (size_t i = 0; i < n; i++)
-        q->r->out.opacity[w->to[i]] =
-            q->r->opacity[w->to[i]] * activation[w->from[i] % TED4_ROW];
+        q->r->out.opacity[w->to[i]] = q->r->opacity[w->to[i]] * activation[w->from[i] % TED4_ROW];
 }
 
 void ted4_recon_block(const ted4_recon_job *q, size_t block, ted4_recon_scratch *w)

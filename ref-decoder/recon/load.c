@@ -1,11 +1,12 @@
-/* load.c - spec 10.4, 11.1: from a scene's integers to blocks of binary32 rows, once for all queries.
+/* load.c - spec 10.4, 11.1: from a scene's integers to blocks of binary32 rows, once for all
+ * queries.
  * SPDX-License-Identifier: BSD-2-Clause */
 #include "norm/half.h"
 #include "norm/tables.h"
 #include "recon/recon.h"
 
 typedef struct {
-    ted4_recon              *r;
+    ted4_recon *r;
     const struct ted4_scene *s;
 } load_job;
 
@@ -34,21 +35,20 @@ void ted4_recon_load_lanes(ted4_recon *r, const struct ted4_scene *s)
     }
 }
 
-/* Values of components first .. first + n - 1 of a type for the 32 lanes of a block, to row and the rows after it. */
-static void load_type(const load_job *l, size_t block, ted4_type type, unsigned first,
-                      unsigned n, float *row)
+/* Values of components first .. first + n - 1 of a type for the 32 lanes of a block, to row and the
+ * rows after it. */
+static void load_type(const load_job *l, size_t block, ted4_type type, unsigned first, unsigned n,
+                      float *row)
 {
     const struct ted4_scene *s = l->s;
     const uint32_t *anchor = l->r->anchor + block * TED4_ROW;
 
     for (size_t j = 0; j < TED4_ROW; j++) {
         const size_t i = anchor[j];
-        const float q = s->head.step[type] *
-                        ted4_bits_float(ted4_step[s->step_index[type][i]]);
+        const float q = s->head.step[type] * ted4_bits_float(ted4_step[s->step_index[type][i]]);
 
         for (size_t c = 0; c < n; c++)
-            row[c * TED4_ROW + j] =
-                (float)s->symbol[type][(first + c) * s->head.n_anchors + i] * q;
+            row[c * TED4_ROW + j] = (float)s->symbol[type][(first + c) * s->head.n_anchors + i] * q;
     }
 }
 

@@ -2,8 +2,8 @@
  * SPDX-License-Identifier: BSD-2-Clause */
 #include "recon/recon.h"
 
-void ted4_recon_network(const ted4_recon *r, int net, const float *x,
-                        ted4_recon_scratch *w, float *y)
+void ted4_recon_network(const ted4_recon *r, int net, const float *x, ted4_recon_scratch *w,
+                        float *y)
 {
     const ted4_net_shape *n = &r->net[net];
     const float *value = r->netr + n->first;
@@ -11,8 +11,7 @@ void ted4_recon_network(const ted4_recon *r, int net, const float *x,
     for (unsigned i = 0; i < n->n_layers; i++) {
         const int last = i + 1 == n->n_layers;
         const size_t n_weights = (size_t)n->dim[i] * n->dim[i + 1];
-        const ted4_strict_layer l = { n->dim[i], n->dim[i + 1], value,
-                                      value + n_weights, !last };
+        const ted4_strict_layer l = { n->dim[i], n->dim[i + 1], value, value + n_weights, !last };
         float *to = last ? y : w->hidden[i % 2];
 
         r->dense(&l, x, to);

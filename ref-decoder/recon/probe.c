@@ -1,5 +1,6 @@
-/* probe.c - spec 12.2: does this build, on this machine, with this floating-point environment, compute as class X asks?
- * Operands are volatile, so that the compiler cannot answer for the machine.
+/* probe.c - spec 12.2: does this build, on this machine, with this floating-point environment,
+ * compute as class X asks? Operands are volatile, so that the compiler cannot answer for the
+ * machine.
  * SPDX-License-Identifier: BSD-2-Clause */
 #include <float.h>
 #include <math.h>
@@ -48,13 +49,14 @@ static int no_flush(void)
 /* Ties to even, then both directions, for both signs. */
 static int rounds_to_nearest(void)
 {
-    static const struct { float a, b; uint32_t sum; } probe[] = {
-        { 1.0f, 0x1p-24f, 0x3f800000 },         /* tie, down to even */
+    static const struct {
+        float a, b;
+        uint32_t sum;
+    } probe[] = {
+        { 1.0f, 0x1p-24f, 0x3f800000 },           /* tie, down to even */
         { 0x1.000002p+0f, 0x1p-24f, 0x3f800002 }, /* tie, up to even */
-        { 1.0f, 0x1.8p-24f, 0x3f800001 },
-        { 1.0f, 0x1p-25f, 0x3f800000 },
-        { -1.0f, -0x1.8p-24f, 0xbf800001 },
-        { -1.0f, -0x1p-25f, 0xbf800000 },
+        { 1.0f, 0x1.8p-24f, 0x3f800001 },         { 1.0f, 0x1p-25f, 0x3f800000 },
+        { -1.0f, -0x1.8p-24f, 0xbf800001 },       { -1.0f, -0x1p-25f, 0xbf800000 },
     };
     int ok = 1;
 
@@ -76,7 +78,8 @@ static int divides_exactly(void)
     return ted4_float_bits(third) == 0x3eaaaaab && ted4_float_bits(root) == 0x3fb504f3;
 }
 
-/* A compiler that may divide by multiplying with a reciprocal does so where quotients share a divisor: 9 / 11 and 18 / 11 are then one unit off. */
+/* A compiler that may divide by multiplying with a reciprocal does so where quotients share a
+ * divisor: 9 / 11 and 18 / 11 are then one unit off. */
 static void divide_all(const volatile float *a, volatile float *q, float divisor)
 {
     const float p0 = a[0] / divisor, p1 = a[1] / divisor, p2 = a[2] / divisor, p3 = a[3] / divisor;
@@ -90,13 +93,14 @@ static void divide_all(const volatile float *a, volatile float *q, float divisor
 static int no_reciprocal(void)
 {
     volatile float a[4] = { 9.0f, 13.0f, 17.0f, 18.0f }, q[4], divisor = 11.0f;
-    int            ok = 1;
+    int ok = 1;
 
     divide_all(a, q, divisor);
     for (int i = 0; i < 4; i++) {
         volatile float alone = a[i] / divisor, constant = a[i] / 11.0f;
 
-        ok &= ted4_float_bits(alone) == ted4_float_bits(q[i]) && ted4_float_bits(alone) == ted4_float_bits(constant);
+        ok &= ted4_float_bits(alone) == ted4_float_bits(q[i]) &&
+              ted4_float_bits(alone) == ted4_float_bits(constant);
     }
     return ok;
 }
@@ -123,11 +127,12 @@ static int no_assumptions(void)
 
 int ted4_strict_ok(void)
 {
-    return no_contraction() && no_excess_or_reordering() && no_flush() &&
-           rounds_to_nearest() && divides_exactly() && no_reciprocal() && no_assumptions();
+    return no_contraction() && no_excess_or_reordering() && no_flush() && rounds_to_nearest() &&
+           divides_exactly() && no_reciprocal() && no_assumptions();
 }
 
-/* FLT_EVAL_METHOD 16 is that of machines with binary16 arithmetic: binary32 is computed as binary32 there, too. */
+/* FLT_EVAL_METHOD 16 is that of machines with binary16 arithmetic: binary32 is computed as binary32
+ * there, too. */
 int ted4_recon_class_x(void)
 {
 #if defined(__FAST_MATH__) || (FLT_EVAL_METHOD != 0 && FLT_EVAL_METHOD != 16)

@@ -1,19 +1,18 @@
 /* query_hash.c - spec 15.3: the hash of a query's records.
  * SPDX-License-Identifier: BSD-2-Clause */
-#define XXH_STATIC_LINKING_ONLY         /* state on the stack */
+#define XXH_STATIC_LINKING_ONLY /* state on the stack */
 #include <xxhash.h>
 #include "base/bytes.h"
 #include "ted4.h"
 
-enum { VALUES = 14, BATCH = 64 };       /* of a record; records hashed at once */
+enum { VALUES = 14, BATCH = 64 }; /* of a record; records hashed at once */
 
 void ted4_gaussians_hash(const ted4_gaussians *g, uint8_t hash[16])
 {
-    const float *const channel[VALUES] = {
-        g->mean[0], g->mean[1], g->mean[2], g->scale[0], g->scale[1], g->scale[2],
-        g->rot[0], g->rot[1], g->rot[2], g->rot[3], g->opacity,
-        g->colour[0], g->colour[1], g->colour[2]
-    };
+    const float *const channel[VALUES] = { g->mean[0],   g->mean[1],  g->mean[2], g->scale[0],
+                                           g->scale[1],  g->scale[2], g->rot[0],  g->rot[1],
+                                           g->rot[2],    g->rot[3],   g->opacity, g->colour[0],
+                                           g->colour[1], g->colour[2] };
     uint8_t bytes[BATCH * VALUES * 4];
     XXH128_canonical_t canonical;
     XXH3_state_t state;

@@ -1,12 +1,12 @@
-/* recon.c - spec 11: queries, and what they need: memory, plan of work, threads. load.c fills it, heads.c does the work.
- * A query does again only what its time and camera change: the records of the last one stay in place.
+/* recon.c - spec 11: queries, and what they need: memory, plan of work, threads. load.c fills it,
+ * heads.c does the work. A query does again only what its time and camera change: the records of
+ * the last one stay in place.
  * SPDX-License-Identifier: BSD-2-Clause */
 #include "kernel/strict_dense.h"
 #include "norm/limits.h"
 #include "recon/recon.h"
 
 enum { MAX_CHUNKS = 64, BLOCKS_PER_CHUNK = 16 };
-
 
 /* Like ted4_arena_alloc, but remembers in *ok that one failed. */
 static void *take(ted4_arena *a, int *ok, size_t n, size_t size)
@@ -36,7 +36,7 @@ static uint64_t set_sizes(ted4_recon *r, const struct ted4_scene *s)
     if (r->dense == NULL)
         r->dense = ted4_strict_dense_plain;
     r->n_motion_rows = h->motion == TED4_MOTION_INR ? TED4_POINT_INPUTS : h->phi_dim;
-    r->rows = (ted4_recon_rows){ 0, 3, 3 + h->feature_dim, 0, 0, 0 };
+    r->rows = (ted4_recon_rows) { 0, 3, 3 + h->feature_dim, 0, 0, 0 };
     r->rows.size = r->rows.shift + 3 * k;
     r->rows.tau = r->rows.size + 3;
     r->rows.n = r->rows.tau + (h->activation ? 4 : 0);
@@ -134,8 +134,8 @@ ted4_status ted4_recon_new(ted4_recon **out, const ted4_scene *s, const ted4_opt
     r->n_bank = (size_t)s->bank.n;
     const uint64_t n_records = set_sizes(r, s);
 
-    if (o != NULL && o->max_work > 0
-        && ted4_count_query_work(&s->head, &s->shape, n_records) > o->max_work) {
+    if (o != NULL && o->max_work > 0 &&
+        ted4_count_query_work(&s->head, &s->shape, n_records) > o->max_work) {
         ted4_recon_free(r);
         return TED4_E_LIMIT_WORK;
     }
@@ -159,7 +159,7 @@ void ted4_recon_free(ted4_recon *r)
 {
     if (r == NULL)
         return;
-    ted4_arena arena = r->arena;        /* r lies in it */
+    ted4_arena arena = r->arena; /* r lies in it */
 
     ted4_arena_finish(&arena);
 }
@@ -208,7 +208,7 @@ ted4_status ted4_recon_query(ted4_recon *r, const ted4_query *q, const ted4_para
     for (int moving = 0; moving < 2; moving++)
         job.todo[moving] = plan(r, q, moving);
     const int e = r->head.exponent;
-    const float shrink = ted4_bits_float((uint32_t)(127 - e) << 23);    /* 2^-e */
+    const float shrink = ted4_bits_float((uint32_t)(127 - e) << 23); /* 2^-e */
 
     for (int c = 0; c < 3; c++)
         job.camera[c] = (q->camera[c] - r->head.origin[c]) * shrink;
@@ -219,7 +219,7 @@ ted4_status ted4_recon_query(ted4_recon *r, const ted4_query *q, const ted4_para
     for (size_t i = 0; i < r->n_chunks; i++)
         worst = r->scratch[i].worst > worst ? r->scratch[i].worst : worst;
     r->last = *q;
-    r->fresh = worst < 0x7f800000u;     /* R-REC-001: neither infinite nor NaN */
+    r->fresh = worst < 0x7f800000u; /* R-REC-001: neither infinite nor NaN */
     if (!r->fresh)
         return TED4_E_REC_NONFINITE;
     *g = r->out;

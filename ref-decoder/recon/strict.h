@@ -1,7 +1,8 @@
 /* strict.h - spec 12.2: the arithmetic of class X: pow2, sigmoid, and the dense layer, plain.
- * Every operation is one binary32 operation, so files that include this are compiled without contraction.
- * Anchors are worked on in blocks of 32: a row is one value of each, a block [channel][32]. Loops run over lanes, never across a sum,
- * so that vectors give the bits of the scalar definition. Depends on base/bytes.h, kernel/strict_dense.h.
+ * Every operation is one binary32 operation, so files that include this are compiled without
+ * contraction. Anchors are worked on in blocks of 32: a row is one value of each, a block
+ * [channel][32]. Loops run over lanes, never across a sum, so that vectors give the bits of the
+ * scalar definition. Depends on base/bytes.h, kernel/strict_dense.h.
  * SPDX-License-Identifier: BSD-2-Clause */
 #ifndef TED4_STRICT_H
 #define TED4_STRICT_H
@@ -11,7 +12,7 @@
 #include "base/bytes.h"
 #include "kernel/strict_dense.h"
 
-enum { TED4_ROW = 32 };                 /* lanes of a row */
+enum { TED4_ROW = 32 }; /* lanes of a row */
 
 #define TED4_LOG2E 0x1.715476p+0f
 
@@ -21,10 +22,11 @@ static inline float ted4_max(float a, float b)
     return a > b ? a : b;
 }
 
-/* spec 12.2 pow2. floor() is a conversion and a correction, as conversions are vectors on every machine and floorf() is not. */
+/* spec 12.2 pow2. floor() is a conversion and a correction, as conversions are vectors on every
+ * machine and floorf() is not. */
 static inline float ted4_pow2(float x)
 {
-    const float low = x > -126.0f ? x : -126.0f;       /* a NaN too, for the conversion's sake */
+    const float low = x > -126.0f ? x : -126.0f; /* a NaN too, for the conversion's sake */
     const float y = low < 126.0f ? low : 126.0f;
     const float v = y + 0.5f;
     const int32_t cut = (int32_t)v;

@@ -1,4 +1,5 @@
-/* strict_dense.c - spec 12.2: the dense layer over 32 anchors, plain. Faster twins: kernel/strict_dense_*.c.
+/* strict_dense.c - spec 12.2: the dense layer over 32 anchors, plain. Faster twins:
+ * kernel/strict_dense_*.c.
  * SPDX-License-Identifier: BSD-2-Clause */
 #include "recon/strict.h"
 

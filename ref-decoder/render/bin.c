@@ -1,6 +1,7 @@
-/* bin.c - second stage of raster.c: visible Gaussians in depth order (stable radix sort), then the list of each tile (counting sort).
- * Each pass splits its input into TED4_SORT_PARTS parts that count alone, adds the counts up in order, and lets the parts
- * place their items alone: a stable sort whatever runs the parts.
+/* bin.c - second stage of raster.c: visible Gaussians in depth order (stable radix sort), then the
+ * list of each tile (counting sort). Each pass splits its input into TED4_SORT_PARTS parts that
+ * count alone, adds the counts up in order, and lets the parts place their items alone: a stable
+ * sort whatever runs the parts.
  * SPDX-License-Identifier: BSD-2-Clause */
 #include "render/raster_state.h"
 
@@ -14,12 +15,12 @@ enum { ROOM = TED4_AHEAD + TED4_SPARE * (TED4_SORT_PARTS + 1) };
 
 typedef struct {
     struct ted4_raster *r;
-    size_t              n_splats;
-    const uint64_t     *from;
-    uint64_t           *to;
-    uint32_t            nearest;        /* depth bits that all keys begin from */
-    int                 depth_bits;     /* of keys, from there on */
-    int                 shift, digit;   /* the bits that this pass sorts by: first, number */
+    size_t n_splats;
+    const uint64_t *from;
+    uint64_t *to;
+    uint32_t nearest; /* depth bits that all keys begin from */
+    int depth_bits;   /* of keys, from there on */
+    int shift, digit; /* the bits that this pass sorts by: first, number */
 } bin_job;
 
 static size_t part_begin(const bin_job *job, size_t part)
@@ -43,14 +44,16 @@ static void counts_to_places(uint32_t *hist, size_t n_buckets, uint32_t *bucket_
     }
 }
 
-/* Moves a chunk's keys to their common array, depths from the nearest on, and makes its slots count from the beginning of the scene. */
+/* Moves a chunk's keys to their common array, depths from the nearest on, and makes its slots count
+ * from the beginning of the scene. */
 static void gather_chunk(void *arg, size_t c)
 {
-    const bin_job   *job = arg;
+    const bin_job *job = arg;
     const ted4_chunk before = ((const ted4_chunk *)job->r->chunk.data)[c];
-    const uint32_t   n_after = ((const ted4_chunk *)job->r->chunk.data)[c + 1].n_visible;
-    const size_t     begin = c * TED4_CHUNK, end = begin + TED4_CHUNK < job->n_splats ? begin + TED4_CHUNK : job->n_splats;
-    uint32_t        *first_slot = job->r->first_slot.data;
+    const uint32_t n_after = ((const ted4_chunk *)job->r->chunk.data)[c + 1].n_visible;
+    const size_t begin = c * TED4_CHUNK,
+                 end = begin + TED4_CHUNK < job->n_splats ? begin + TED4_CHUNK : job->n_splats;
+    uint32_t *first_slot = job->r->first_slot.data;
 
     for (size_t i = 0; i < n_after - before.n_visible; i++)
         job->to[before.n_visible + i] = job->from[begin + i] - ((uint64_t)job->nearest << 32);
@@ -58,26 +61,28 @@ static void gather_chunk(void *arg, size_t c)
         first_slot[i] += before.n_instances;
 }
 
-/* The chunks' counts become the totals before them, with one entry more for all. -1: more instances than 32 bits count. */
+/* The chunks' counts become the totals before them, with one entry more for all. -1: more instances
+ * than 32 bits count. */
 static int add_up_chunks(bin_job *job, size_t n_chunks)
 {
     ted4_chunk *chunk = job->r->chunk.data;
-    size_t      n_visible = 0, n_instances = 0;
-    uint32_t    nearest = UINT32_MAX, farthest = 0;
+    size_t n_visible = 0, n_instances = 0;
+    uint32_t nearest = UINT32_MAX, farthest = 0;
 
     for (size_t c = 0; c <= n_chunks; c++) {
-        const ted4_chunk count = c < n_chunks ? chunk[c] : (ted4_chunk){ .nearest = UINT32_MAX };
+        const ted4_chunk count = c < n_chunks ? chunk[c] : (ted4_chunk) { .nearest = UINT32_MAX };
 
         if (n_instances > UINT32_MAX - ROOM)
             return -1;
-        chunk[c] = (ted4_chunk){ .n_visible = (uint32_t)n_visible, .n_instances = (uint32_t)n_instances };
-        n_visible   += count.n_visible;
+        chunk[c] =
+            (ted4_chunk) { .n_visible = (uint32_t)n_visible, .n_instances = (uint32_t)n_instances };
+        n_visible += count.n_visible;
         n_instances += count.n_instances;
         job->r->n_skipped += count.n_skipped;
-        nearest  = count.nearest < nearest ? count.nearest : nearest;
+        nearest = count.nearest < nearest ? count.nearest : nearest;
         farthest = count.farthest > farthest ? count.farthest : farthest;
     }
-    job->r->n_visible   = n_visible;
+    job->r->n_visible = n_visible;
     job->r->n_instances = n_instances;
     job->nearest = nearest;
     for (job->depth_bits = 0; n_visible > 0 && (farthest - nearest) >> job->depth_bits > 0;)
@@ -93,7 +98,7 @@ static size_t digit_of(const bin_job *job, size_t i)
 static void count_digits(void *arg, size_t part)
 {
     const bin_job *job = arg;
-    uint32_t      *hist = (uint32_t *)job->r->hist.data + (part << job->digit);
+    uint32_t *hist = (uint32_t *)job->r->hist.data + (part << job->digit);
 
     memset(hist, 0, sizeof *hist << job->digit);
     for (size_t i = part_begin(job, part); i < part_begin(job, part + 1); i++)
@@ -103,14 +108,14 @@ static void count_digits(void *arg, size_t part)
 static void place_keys(void *arg, size_t part)
 {
     const bin_job *job = arg;
-    uint32_t      *place = (uint32_t *)job->r->hist.data + (part << job->digit);
+    uint32_t *place = (uint32_t *)job->r->hist.data + (part << job->digit);
 
     for (size_t i = part_begin(job, part); i < part_begin(job, part + 1); i++)
         job->to[place[digit_of(job, i)]++] = job->from[i];
 }
 
-/* Sorts by the upper 32 bits, of which only depth_bits differ, in passes of nearly equal digits. Depths are positive, so their bits are in
- * their order. */
+/* Sorts by the upper 32 bits, of which only depth_bits differ, in passes of nearly equal digits.
+ * Depths are positive, so their bits are in their order. */
 static void sort_by_depth(bin_job *job, const ted4_parallel *p)
 {
     int left = job->depth_bits;
@@ -124,13 +129,13 @@ static void sort_by_depth(bin_job *job, const ted4_parallel *p)
         ted4_parallel_for(p, TED4_SORT_PARTS, place_keys, job);
 
         uint64_t *const sorted = job->to;
-        job->to   = job->r->key[sorted == job->r->key[0].data].data;
+        job->to = job->r->key[sorted == job->r->key[0].data].data;
         job->from = sorted;
     }
 }
 
-/* The tiles of a small box and whether there is each: a box that is one tile wide, or high, has spare tiles in the place of others, so that
- * no branch waits for the box. */
+/* The tiles of a small box and whether there is each: a box that is one tile wide, or high, has
+ * spare tiles in the place of others, so that no branch waits for the box. */
 typedef struct {
     uint32_t tile[4], there[4];
 } tile_four;
@@ -150,19 +155,18 @@ static inline tile_four small_box(ted4_tile_box b, uint32_t tiles_x, uint32_t n_
 {
     const uint32_t first = b.y0 * tiles_x + b.x0, right = b.x1 - b.x0 - 1u, low = b.y1 - b.y0 - 1u;
 
-    return (tile_four){
-        { first, choose(right, first + 1, n_tiles), choose(low, first + tiles_x, n_tiles + 1),
-          choose(right & low, first + tiles_x + 1, n_tiles + 2) },
-        { 1, right, low, right & low }
-    };
+    return (tile_four) { { first, choose(right, first + 1, n_tiles),
+                           choose(low, first + tiles_x, n_tiles + 1),
+                           choose(right & low, first + tiles_x + 1, n_tiles + 2) },
+                         { 1, right, low, right & low } };
 }
 
 static void count_tiles(void *arg, size_t part)
 {
-    const bin_job       *job = arg;
+    const bin_job *job = arg;
     const ted4_tile_box *box = job->r->box.data;
-    const uint32_t       tiles_x = job->r->tiles_x, n_tiles = tiles_x * job->r->tiles_y;
-    uint32_t            *hist = (uint32_t *)job->r->hist.data + part * (n_tiles + SPARE_TILES);
+    const uint32_t tiles_x = job->r->tiles_x, n_tiles = tiles_x * job->r->tiles_y;
+    uint32_t *hist = (uint32_t *)job->r->hist.data + part * (n_tiles + SPARE_TILES);
 
     memset(hist, 0, (n_tiles + SPARE_TILES) * sizeof *hist);
     for (size_t i = part_begin(job, part), end = part_begin(job, part + 1); i < end; i++) {
@@ -186,19 +190,19 @@ static void count_tiles(void *arg, size_t part)
 /* Puts the instances of a part in their places; those of spare tiles where no one looks. */
 static void place_instances(void *arg, size_t part)
 {
-    const bin_job       *job = arg;
+    const bin_job *job = arg;
     const ted4_tile_box *box = job->r->box.data;
-    const uint32_t      *first_slot = job->r->first_slot.data;
-    const uint32_t       tiles_x = job->r->tiles_x, n_tiles = tiles_x * job->r->tiles_y;
+    const uint32_t *first_slot = job->r->first_slot.data;
+    const uint32_t tiles_x = job->r->tiles_x, n_tiles = tiles_x * job->r->tiles_y;
     uint32_t *place = (uint32_t *)job->r->hist.data + part * (n_tiles + SPARE_TILES);
     uint32_t *owner = job->r->owner.data, *slot = job->r->slot.data;
 
     for (int k = 0; k < SPARE_TILES; k++)
         place[n_tiles + k] = (uint32_t)(job->r->n_instances + TED4_AHEAD + TED4_SPARE * (part + 1));
     for (size_t i = part_begin(job, part), end = part_begin(job, part + 1); i < end; i++) {
-        const uint32_t      g = (uint32_t)job->from[i];
+        const uint32_t g = (uint32_t)job->from[i];
         const ted4_tile_box b = box[g];
-        uint32_t            s = first_slot[g];
+        uint32_t s = first_slot[g];
 
         if (i + TED4_AHEAD < end) {
             __builtin_prefetch(&box[(uint32_t)job->from[i + TED4_AHEAD]]);
@@ -211,7 +215,7 @@ static void place_instances(void *arg, size_t part)
                 const uint32_t at = place[f.tile[k]];
 
                 owner[at] = g;
-                slot[at]  = s;
+                slot[at] = s;
                 place[f.tile[k]] = at + f.there[k];
             }
             continue;
@@ -221,29 +225,31 @@ static void place_instances(void *arg, size_t part)
                 const uint32_t at = place[y * tiles_x + x]++;
 
                 owner[at] = g;
-                slot[at]  = s++;
+                slot[at] = s++;
             }
     }
 }
 
 int ted4_raster_bin(struct ted4_raster *r, const ted4_splats *s, const ted4_parallel *p)
 {
-    const size_t n_chunks = (s->n + TED4_CHUNK - 1) / TED4_CHUNK, n_tiles = (size_t)r->tiles_x * r->tiles_y;
+    const size_t n_chunks = (s->n + TED4_CHUNK - 1) / TED4_CHUNK,
+                 n_tiles = (size_t)r->tiles_x * r->tiles_y;
     const size_t n_counted = n_tiles + SPARE_TILES, n_digits = (size_t)1 << TED4_RADIX_BITS;
-    bin_job      job = { .r = r, .n_splats = s->n, .from = r->key[1].data, .to = r->key[0].data };
+    bin_job job = { .r = r, .n_splats = s->n, .from = r->key[1].data, .to = r->key[0].data };
 
-    if (add_up_chunks(&job, n_chunks) != 0
-        || ted4_growing_grow(&r->hist, TED4_SORT_PARTS * (n_counted > n_digits ? n_counted : n_digits), sizeof(uint32_t)) != 0
-        || ted4_growing_grow(&r->tile_first, n_counted, sizeof(uint32_t)) != 0
-        || ted4_growing_grow(&r->owner, r->n_instances + ROOM, sizeof(uint32_t)) != 0
-        || ted4_growing_grow(&r->slot, r->n_instances + ROOM, sizeof(uint32_t)) != 0)
+    if (add_up_chunks(&job, n_chunks) != 0 ||
+        ted4_growing_grow(&r->hist, TED4_SORT_PARTS * (n_counted > n_digits ? n_counted : n_digits),
+                          sizeof(uint32_t)) != 0 ||
+        ted4_growing_grow(&r->tile_first, n_counted, sizeof(uint32_t)) != 0 ||
+        ted4_growing_grow(&r->owner, r->n_instances + ROOM, sizeof(uint32_t)) != 0 ||
+        ted4_growing_grow(&r->slot, r->n_instances + ROOM, sizeof(uint32_t)) != 0)
         return -1;
     ((uint32_t *)r->first_slot.data)[s->n] = (uint32_t)r->n_instances;
     memset((uint32_t *)r->owner.data + r->n_instances, 0, TED4_AHEAD * sizeof(uint32_t));
 
     ted4_parallel_for(p, n_chunks, gather_chunk, &job);
     job.from = r->key[0].data;
-    job.to   = r->key[1].data;
+    job.to = r->key[1].data;
     sort_by_depth(&job, p);
 
     uint32_t *tile_first = r->tile_first.data;

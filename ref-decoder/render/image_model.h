@@ -1,11 +1,13 @@
-/* image_model.h - the mathematics of the rasteriser, written once for forward and backward: EWA projection of as many Gaussians as a
- * register has lanes, and the opacity of one Gaussian at as many pixels of a block. Depends on raster_state.h, vec.h.
- * raster_plain.c is the same model in plain scalar code.
+/* image_model.h - the mathematics of the rasteriser, written once for forward and backward: EWA
+ * projection of as many Gaussians as a register has lanes, and the opacity of one Gaussian at as
+ * many pixels of a block. Depends on raster_state.h, vec.h. raster_plain.c is the same model in
+ * plain scalar code.
  *
- * The exponent of a Gaussian is taken in log2 and by the Cholesky factor of the inverse covariance [[a, b], [b, c]]^-1: with
- * d = pixel - centre and det = ac - b^2,
+ * The exponent of a Gaussian is taken in log2 and by the Cholesky factor of the inverse covariance
+ * [[a, b], [b, c]]^-1: with d = pixel - centre and det = ac - b^2,
  *     d^T cov^-1 d = (c / det) (dx - (b / c) dy)^2 + (1 / c) dy^2,
- * a sum of squares, where the usual A dx^2 + 2B dx dy + C dy^2 loses all its digits on long thin Gaussians.
+ * a sum of squares, where the usual A dx^2 + 2B dx dy + C dy^2 loses all its digits on long thin
+ * Gaussians.
  * SPDX-License-Identifier: BSD-2-Clause */
 #ifndef TED4_IMAGE_MODEL_H
 #define TED4_IMAGE_MODEL_H
@@ -13,15 +15,16 @@
 #include "render/raster_state.h"
 #include "render/vec.h"
 
-#define TED4_LOG2_E           1.44269504088896341f
-#define TED4_LOG2_ALPHA_MIN   -7.99435343685885793f     /* log2(1 / 255) */
+#define TED4_LOG2_E         1.44269504088896341f
+#define TED4_LOG2_ALPHA_MIN -7.99435343685885793f /* log2(1 / 255) */
 
-/* The factors below carry sqrt(log2(e) / 2), so that exponents need no constant: log2(alpha) = level - n1^2 - n2^2. */
-#define TED4_WHITEN           0.84932180028801904f      /* sqrt(log2(e) / 2) */
+/* The factors below carry sqrt(log2(e) / 2), so that exponents need no constant: log2(alpha) =
+ * level - n1^2 - n2^2. */
+#define TED4_WHITEN 0.84932180028801904f /* sqrt(log2(e) / 2) */
 
 /* View constants that projection shares between Gaussians. */
 typedef struct {
-    float u_min, u_max, v_min, v_max;   /* clamp of x / z and y / z in the Jacobian */
+    float u_min, u_max, v_min, v_max; /* clamp of x / z and y / z in the Jacobian */
 } ted4_guard;
 
 /* Frustum centre plus or minus TED4_RASTER_GUARD half-extents, from the actual principal point. */
@@ -30,8 +33,8 @@ TED4_INLINE ted4_guard ted4_guard_make(const ted4_view *v)
     const float half_u = 0.5f * (float)v->width / v->fx, half_v = 0.5f * (float)v->height / v->fy;
     const float mid_u = half_u - v->cx / v->fx, mid_v = half_v - v->cy / v->fy;
 
-    return (ted4_guard){ mid_u - TED4_RASTER_GUARD * half_u, mid_u + TED4_RASTER_GUARD * half_u,
-                         mid_v - TED4_RASTER_GUARD * half_v, mid_v + TED4_RASTER_GUARD * half_v };
+    return (ted4_guard) { mid_u - TED4_RASTER_GUARD * half_u, mid_u + TED4_RASTER_GUARD * half_u,
+                          mid_v - TED4_RASTER_GUARD * half_v, mid_v + TED4_RASTER_GUARD * half_v };
 }
 
 /* As many Gaussians as a register has lanes, as they come. */
@@ -39,10 +42,11 @@ typedef struct {
     ted4_vf mean[3], scale[3], rot[4], opacity;
 } ted4_splat_lanes;
 
-TED4_INLINE void ted4_splat_lanes_load(ted4_splat_lanes *g, const ted4_splats *s, size_t i, size_t n)
+TED4_INLINE void ted4_splat_lanes_load(ted4_splat_lanes *g, const ted4_splats *s, size_t i,
+                                       size_t n)
 {
     for (int k = 0; k < 3; k++) {
-        g->mean[k]  = ted4_vf_load_n(s->mean[k] + i, n);
+        g->mean[k] = ted4_vf_load_n(s->mean[k] + i, n);
         g->scale[k] = ted4_vf_load_n(s->scale[k] + i, n);
     }
     for (int k = 0; k < 4; k++)
@@ -50,19 +54,19 @@ TED4_INLINE void ted4_splat_lanes_load(ted4_splat_lanes *g, const ted4_splats *s
     g->opacity = ted4_vf_load_n(s->opacity + i, n);
 }
 
-/* Projection with everything its adjoint needs. cov2d = P P^T + blur, row r of P = (j_r^T R(q)) diag(scale), j = Jacobian times
- * view rotation. */
+/* Projection with everything its adjoint needs. cov2d = P P^T + blur, row r of P = (j_r^T R(q))
+ * diag(scale), j = Jacobian times view rotation. */
 typedef struct {
-    ted4_vf t[3], iz;           /* camera space; 1 / t[2] */
-    ted4_vf u, v;               /* clamped x / z, y / z */
-    ted4_vi u_free, v_free;     /* not clamped */
+    ted4_vf t[3], iz;       /* camera space; 1 / t[2] */
+    ted4_vf u, v;           /* clamped x / z, y / z */
+    ted4_vi u_free, v_free; /* not clamped */
     ted4_vf j0[3], j1[3];
-    ted4_vf r[9];               /* R(q) */
-    ted4_vf q0[3], q1[3];       /* j_r^T R(q) */
+    ted4_vf r[9];         /* R(q) */
+    ted4_vf q0[3], q1[3]; /* j_r^T R(q) */
     ted4_vf p0[3], p1[3];
-    ted4_vf a, b, c, det;       /* cov2d with blur */
-    ted4_vf x, y;               /* centre, pixels */
-    ted4_vf a1, a2, a3;         /* as in ted4_splat2d */
+    ted4_vf a, b, c, det; /* cov2d with blur */
+    ted4_vf x, y;         /* centre, pixels */
+    ted4_vf a1, a2, a3;   /* as in ted4_splat2d */
 } ted4_projection;
 
 TED4_INLINE ted4_vf ted4_dot3(const ted4_vf a[3], const ted4_vf b[3])
@@ -103,9 +107,11 @@ TED4_INLINE void ted4_rotation(const ted4_vf q[4], ted4_vf r[9])
     r[8] = 1.0f - xx - yy;
 }
 
-/* Rows j_r, q_r, p_r for one image axis: focal length f, clamped slope u, view rotation rows w and w2. */
-TED4_INLINE void ted4_project_axis(const ted4_projection *p, const ted4_vf scale[3], float f, ted4_vf u, const float w[3],
-                                   const float w2[3], ted4_vf j[3], ted4_vf q[3], ted4_vf out[3])
+/* Rows j_r, q_r, p_r for one image axis: focal length f, clamped slope u, view rotation rows w and
+ * w2. */
+TED4_INLINE void ted4_project_axis(const ted4_projection *p, const ted4_vf scale[3], float f,
+                                   ted4_vf u, const float w[3], const float w2[3], ted4_vf j[3],
+                                   ted4_vf q[3], ted4_vf out[3])
 {
     const ted4_vf fz = f * p->iz;
 
@@ -114,37 +120,40 @@ TED4_INLINE void ted4_project_axis(const ted4_projection *p, const ted4_vf scale
     for (int i = 0; i < 3; i++) {
         const ted4_vf column[3] = { p->r[i], p->r[3 + i], p->r[6 + i] };
 
-        q[i]   = ted4_dot3(j, column);
+        q[i] = ted4_dot3(j, column);
         out[i] = q[i] * scale[i];
     }
 }
 
 /* Lanes behind the camera give numbers without meaning: the caller masks them by t[2] > near_z. */
-TED4_INLINE void ted4_project_lanes(ted4_projection *p, const ted4_splat_lanes *g, const ted4_view *v, const ted4_guard *guard)
+TED4_INLINE void ted4_project_lanes(ted4_projection *p, const ted4_splat_lanes *g,
+                                    const ted4_view *v, const ted4_guard *guard)
 {
     for (int i = 0; i < 3; i++)
         p->t[i] = ted4_row3(v->R + 3 * i, g->mean) + v->t[i];
     p->iz = 1.0f / p->t[2];
 
     const ted4_vf u = p->t[0] * p->iz, w = p->t[1] * p->iz;
-    p->x      = ted4_vf_fma(ted4_vf_all(v->fx), u, ted4_vf_all(v->cx));
-    p->y      = ted4_vf_fma(ted4_vf_all(v->fy), w, ted4_vf_all(v->cy));
+    p->x = ted4_vf_fma(ted4_vf_all(v->fx), u, ted4_vf_all(v->cx));
+    p->y = ted4_vf_fma(ted4_vf_all(v->fy), w, ted4_vf_all(v->cy));
     p->u_free = (u > guard->u_min) & (u < guard->u_max);
     p->v_free = (w > guard->v_min) & (w < guard->v_max);
-    p->u      = ted4_vf_min(ted4_vf_max(u, ted4_vf_all(guard->u_min)), ted4_vf_all(guard->u_max));
-    p->v      = ted4_vf_min(ted4_vf_max(w, ted4_vf_all(guard->v_min)), ted4_vf_all(guard->v_max));
+    p->u = ted4_vf_min(ted4_vf_max(u, ted4_vf_all(guard->u_min)), ted4_vf_all(guard->u_max));
+    p->v = ted4_vf_min(ted4_vf_max(w, ted4_vf_all(guard->v_min)), ted4_vf_all(guard->v_max));
 
     ted4_rotation(g->rot, p->r);
     ted4_project_axis(p, g->scale, v->fx, p->u, v->R, v->R + 6, p->j0, p->q0, p->p0);
     ted4_project_axis(p, g->scale, v->fy, p->v, v->R + 3, v->R + 6, p->j1, p->q1, p->p1);
 
-    /* det(P P^T) is the squared length of the rows' cross product: no cancellation, unlike ac - b^2. */
+    /* det(P P^T) is the squared length of the rows' cross product: no cancellation, unlike ac -
+     * b^2. */
     const ted4_vf a0 = ted4_dot3(p->p0, p->p0), c0 = ted4_dot3(p->p1, p->p1);
-    const ted4_vf m[3] = { ted4_cross(p->p0, p->p1, 0), ted4_cross(p->p0, p->p1, 1), ted4_cross(p->p0, p->p1, 2) };
+    const ted4_vf m[3] = { ted4_cross(p->p0, p->p1, 0), ted4_cross(p->p0, p->p1, 1),
+                           ted4_cross(p->p0, p->p1, 2) };
     const ted4_vf blur = ted4_vf_all(TED4_RASTER_BLUR);
-    p->a   = a0 + blur;
-    p->b   = ted4_dot3(p->p0, p->p1);
-    p->c   = c0 + blur;
+    p->a = a0 + blur;
+    p->b = ted4_dot3(p->p0, p->p1);
+    p->c = c0 + blur;
     p->det = ted4_dot3(m, m) + ted4_vf_fma(blur, a0 + c0, blur * blur);
 
     const ted4_vf ic = 1.0f / p->c;
@@ -153,21 +162,23 @@ TED4_INLINE void ted4_project_lanes(ted4_projection *p, const ted4_splat_lanes *
     p->a3 = TED4_WHITEN * ted4_vf_sqrt(ic);
 }
 
-/* Pixel centres of part part of block b of tile (tx, ty): columns and rows. A part is a register's share of the block's
- * pixels, which are counted row by row. */
-TED4_INLINE void ted4_block_pixels(uint32_t tx, uint32_t ty, int b, int part, ted4_vf *px, ted4_vf *py)
+/* Pixel centres of part part of block b of tile (tx, ty): columns and rows. A part is a register's
+ * share of the block's pixels, which are counted row by row. */
+TED4_INLINE void ted4_block_pixels(uint32_t tx, uint32_t ty, int b, int part, ted4_vf *px,
+                                   ted4_vf *py)
 {
     static const float col[TED4_LANE_GROUP] = { 0, 1, 2, 3, 0, 1, 2, 3, 0, 1, 2, 3, 0, 1, 2, 3 };
     static const float row[TED4_LANE_GROUP] = { 0, 0, 0, 0, 1, 1, 1, 1, 2, 2, 2, 2, 3, 3, 3, 3 };
 
-    *px = ted4_vf_load(col + part * TED4_VEC)
-        + ((float)(tx * TED4_TILE + (uint32_t)(b % TED4_BLOCK) * TED4_BLOCK) + 0.5f);
-    *py = ted4_vf_load(row + part * TED4_VEC)
-        + ((float)(ty * TED4_TILE + (uint32_t)(b / TED4_BLOCK) * TED4_BLOCK) + 0.5f);
+    *px = ted4_vf_load(col + part * TED4_VEC) +
+          ((float)(tx * TED4_TILE + (uint32_t)(b % TED4_BLOCK) * TED4_BLOCK) + 0.5f);
+    *py = ted4_vf_load(row + part * TED4_VEC) +
+          ((float)(ty * TED4_TILE + (uint32_t)(b / TED4_BLOCK) * TED4_BLOCK) + 0.5f);
 }
 
 /* log2(alpha) at the pixels (px, py), and the whitened offsets. */
-TED4_INLINE ted4_vf ted4_splat_log2_alpha(const ted4_splat2d *g, ted4_vf px, ted4_vf py, ted4_vf *n1, ted4_vf *n2)
+TED4_INLINE ted4_vf ted4_splat_log2_alpha(const ted4_splat2d *g, ted4_vf px, ted4_vf py,
+                                          ted4_vf *n1, ted4_vf *n2)
 {
     const ted4_vf dx = px - g->x, dy = py - g->y;
 
@@ -176,10 +187,12 @@ TED4_INLINE ted4_vf ted4_splat_log2_alpha(const ted4_splat2d *g, ted4_vf px, ted
     return ted4_vf_fnma(*n2, *n2, ted4_vf_fnma(*n1, *n1, ted4_vf_all(g->level)));
 }
 
-/* One step of front-to-back blending. t: transmittance before the Gaussian; updated. alpha: opacity used, w = alpha t: weight; both 0 where
- * the Gaussian is too faint or the pixel is finished. Nothing marks a finished pixel but its t, below TED4_RASTER_T_MIN ever after: so the
- * only thing that one step waits for in the one before is a multiplication and a subtraction. */
-TED4_INLINE void ted4_blend_step(const ted4_splat2d *g, ted4_vf px, ted4_vf py, ted4_vf *t, ted4_vf *alpha, ted4_vf *w)
+/* One step of front-to-back blending. t: transmittance before the Gaussian; updated. alpha: opacity
+ * used, w = alpha t: weight; both 0 where the Gaussian is too faint or the pixel is finished.
+ * Nothing marks a finished pixel but its t, below TED4_RASTER_T_MIN ever after: so the only thing
+ * that one step waits for in the one before is a multiplication and a subtraction. */
+TED4_INLINE void ted4_blend_step(const ted4_splat2d *g, ted4_vf px, ted4_vf py, ted4_vf *t,
+                                 ted4_vf *alpha, ted4_vf *w)
 {
     ted4_vf n1, n2;
     const ted4_vf e = ted4_splat_log2_alpha(g, px, py, &n1, &n2);
@@ -189,8 +202,8 @@ TED4_INLINE void ted4_blend_step(const ted4_splat2d *g, ted4_vf px, ted4_vf py, 
     const ted4_vi on = next >= TED4_RASTER_T_MIN;
 
     *alpha = ted4_vf_keep(on, al);
-    *w     = ted4_vf_keep(on, al * *t);
-    *t     = next;
+    *w = ted4_vf_keep(on, al * *t);
+    *t = next;
 }
 
 #endif

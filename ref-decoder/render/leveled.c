@@ -4,7 +4,8 @@
 
 #include <stdatomic.h>
 
-/* 0, which is TED4_LEVEL_PLAIN: not chosen yet. Threads that choose at the same time choose the same. */
+/* 0, which is TED4_LEVEL_PLAIN: not chosen yet. Threads that choose at the same time choose the
+ * same. */
 static atomic_int in_use;
 
 ted4_level ted4_level_use(ted4_level level)

@@ -25,7 +25,8 @@ static int write_png(FILE *f, int width, int height, const uint8_t *rgb, char *w
     return -1;
 }
 
-int ted4_png_write(const char *path, int width, int height, const uint8_t *rgb, char *why, size_t why_size)
+int ted4_png_write(const char *path, int width, int height, const uint8_t *rgb, char *why,
+                   size_t why_size)
 {
     const size_t room = strlen(path) + 32;
     char *temporary = malloc(room);

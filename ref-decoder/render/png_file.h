@@ -9,6 +9,7 @@
 
 /* rgb: [height][width][3] sRGB bytes. Written under a temporary name beside path, then renamed,
  * so path never holds half a picture. 0, or -1 with a reason in why (cut to why_size). */
-int ted4_png_write(const char *path, int width, int height, const uint8_t *rgb, char *why, size_t why_size);
+int ted4_png_write(const char *path, int width, int height, const uint8_t *rgb, char *why,
+                   size_t why_size);
 
 #endif

@@ -1,4 +1,5 @@
-/* raster.c - see raster.h. Forward: project (project.c), sort by depth and list per tile (bin.c), blend (blend.c).
+/* raster.c - see raster.h. Forward: project (project.c), sort by depth and list per tile (bin.c),
+ * blend (blend.c).
  * SPDX-License-Identifier: BSD-2-Clause */
 #include "render/raster_state.h"
 
@@ -38,8 +39,9 @@ void ted4_raster_free(ted4_raster *r)
     if (r == NULL)
         return;
 
-    ted4_growing *const all[] = { &r->splat2d, &r->box, &r->first_slot, &r->key[0], &r->key[1], &r->chunk, &r->hist,
-                                 &r->tile_first, &r->owner, &r->slot, &r->reach, &r->sums, &r->sum0 };
+    ted4_growing *const all[] = { &r->splat2d, &r->box,  &r->first_slot, &r->key[0], &r->key[1],
+                                  &r->chunk,   &r->hist, &r->tile_first, &r->owner,  &r->slot,
+                                  &r->reach,   &r->sums, &r->sum0 };
     for (size_t i = 0; i < sizeof all / sizeof all[0]; i++)
         ted4_growing_free(all[i]);
     for (int i = 0; i < TED4_BWD_JOBS; i++)
@@ -52,18 +54,20 @@ uint64_t ted4_raster_skipped(const ted4_raster *r)
     return r->n_skipped;
 }
 
-int ted4_raster_project(struct ted4_raster *r, const ted4_splats *s, const ted4_view *v, const ted4_parallel *p)
+int ted4_raster_project(struct ted4_raster *r, const ted4_splats *s, const ted4_view *v,
+                        const ted4_parallel *p)
 {
     return TED4_IN_USE(ted4_raster_project)(r, s, v, p);
 }
 
-int ted4_raster_blend(struct ted4_raster *r, const ted4_view *v, const ted4_parallel *p, int keep_state, float *image)
+int ted4_raster_blend(struct ted4_raster *r, const ted4_view *v, const ted4_parallel *p,
+                      int keep_state, float *image)
 {
     return TED4_IN_USE(ted4_raster_blend)(r, v, p, keep_state, image);
 }
 
-int ted4_raster_forward(ted4_raster *r, const ted4_splats *s, const ted4_view *v, const ted4_parallel *p, int keep_state,
-                        float *image)
+int ted4_raster_forward(ted4_raster *r, const ted4_splats *s, const ted4_view *v,
+                        const ted4_parallel *p, int keep_state, float *image)
 {
     r->tiles_x = ((uint32_t)v->width + TED4_TILE - 1) / TED4_TILE;
     r->tiles_y = ((uint32_t)v->height + TED4_TILE - 1) / TED4_TILE;

@@ -7,9 +7,9 @@
 
 typedef struct {
     size_t index;
-    float  depth;               /* the fast renderer's: depth order is decided in float */
-    double x, y;                /* centre, pixels */
-    double A, B, C;             /* inverse of the 2D covariance [[A, B], [B, C]] */
+    float depth;    /* the fast renderer's: depth order is decided in float */
+    double x, y;    /* centre, pixels */
+    double A, B, C; /* inverse of the 2D covariance [[A, B], [B, C]] */
     double opacity, colour[3];
 } plain_splat;
 
@@ -38,7 +38,8 @@ static double clamp_slope(double slope, int size, double focal, double principal
 {
     const double half = 0.5 * size / focal, mid = half - principal / focal;
 
-    return fmin(fmax(slope, mid - (double)TED4_RASTER_GUARD * half), mid + (double)TED4_RASTER_GUARD * half);
+    return fmin(fmax(slope, mid - (double)TED4_RASTER_GUARD * half),
+                mid + (double)TED4_RASTER_GUARD * half);
 }
 
 /* a^T M b. */
@@ -58,8 +59,8 @@ static int project(const ted4_splats *s, const ted4_view *v, size_t i, plain_spl
     double t[3], cov[3][3], j0[3], j1[3];
 
     for (int k = 0; k < 3; k++)
-        t[k] = (double)v->R[3 * k] * s->mean[0][i] + (double)v->R[3 * k + 1] * s->mean[1][i]
-             + (double)v->R[3 * k + 2] * s->mean[2][i] + v->t[k];
+        t[k] = (double)v->R[3 * k] * s->mean[0][i] + (double)v->R[3 * k + 1] * s->mean[1][i] +
+               (double)v->R[3 * k + 2] * s->mean[2][i] + v->t[k];
     if (t[2] <= v->near_z || s->opacity[i] < TED4_RASTER_ALPHA_MIN)
         return 0;
 
@@ -70,12 +71,19 @@ static int project(const ted4_splats *s, const ted4_view *v, size_t i, plain_spl
         j1[k] = v->fy / t[2] * (v->R[3 + k] - w * v->R[6 + k]);
     }
     covariance3(s, i, cov);
-    const double a = form3(j0, cov, j0) + (double)TED4_RASTER_BLUR, c = form3(j1, cov, j1) + (double)TED4_RASTER_BLUR;
+    const double a = form3(j0, cov, j0) + (double)TED4_RASTER_BLUR,
+                 c = form3(j1, cov, j1) + (double)TED4_RASTER_BLUR;
     const double b = form3(j0, cov, j1), det = a * c - b * b;
 
-    *g = (plain_splat){ .index = i, .depth = (float)t[2], .x = v->fx * t[0] / t[2] + v->cx, .y = v->fy * t[1] / t[2] + v->cy,
-                        .A = c / det, .B = -b / det, .C = a / det, .opacity = s->opacity[i],
-                        .colour = { s->colour[0][i], s->colour[1][i], s->colour[2][i] } };
+    *g = (plain_splat) { .index = i,
+                         .depth = (float)t[2],
+                         .x = v->fx * t[0] / t[2] + v->cx,
+                         .y = v->fy * t[1] / t[2] + v->cy,
+                         .A = c / det,
+                         .B = -b / det,
+                         .C = a / det,
+                         .opacity = s->opacity[i],
+                         .colour = { s->colour[0][i], s->colour[1][i], s->colour[2][i] } };
     return 1;
 }
 
@@ -89,7 +97,8 @@ static int by_depth(const void *left, const void *right)
 }
 
 /* The pixel with centre (x, y): its colour. */
-static void blend(const plain_splat *g, size_t n, const ted4_view *v, double x, double y, double colour[3])
+static void blend(const plain_splat *g, size_t n, const ted4_view *v, double x, double y,
+                  double colour[3])
 {
     double T = 1;
 
@@ -115,7 +124,7 @@ int ted4_raster_plain(const ted4_splats *s, const ted4_view *v, double *image)
 {
     const size_t width = (size_t)v->width, height = (size_t)v->height;
     plain_splat *g = s->n < SIZE_MAX / sizeof *g ? malloc((s->n + 1) * sizeof *g) : NULL;
-    size_t       n = 0;
+    size_t n = 0;
 
     if (g == NULL)
         return -1;

@@ -1,7 +1,8 @@
-/* vec.h - the floats of one vector register, in portable vector C: 16, 8 or 4 of them. Kernels think in groups of 16
- * lanes (Gaussians in project.c, pixels of a 4x4 block in blend.c), which are TED4_VECS registers: a lane's result does
- * not depend on how many, and sums over lanes are taken in one order. For files compiled once a level (leveled.h).
- * Arithmetic is that of the operators; what is worth an instruction that compilers do not find has a function.
+/* vec.h - the floats of one vector register, in portable vector C: 16, 8 or 4 of them. Kernels
+ * think in groups of 16 lanes (Gaussians in project.c, pixels of a 4x4 block in blend.c), which are
+ * TED4_VECS registers: a lane's result does not depend on how many, and sums over lanes are taken
+ * in one order. For files compiled once a level (leveled.h). Arithmetic is that of the operators;
+ * what is worth an instruction that compilers do not find has a function.
  * SPDX-License-Identifier: BSD-2-Clause */
 #ifndef TED4_VEC_H
 #define TED4_VEC_H
@@ -17,7 +18,8 @@
 
 #include "render/leveled.h"
 
-/* Vectors are passed by value, but only to functions that are always inlined: how an ABI would pass them does not matter. */
+/* Vectors are passed by value, but only to functions that are always inlined: how an ABI would pass
+ * them does not matter. */
 #pragma GCC diagnostic ignored "-Wpsabi"
 #define TED4_INLINE static inline __attribute__((always_inline))
 
@@ -38,18 +40,19 @@
 
 enum {
     TED4_LANE_GROUP = 16,
-    TED4_VEC        = TED4_VEC_BYTES / 4,           /* floats of a register */
-    TED4_VECS       = TED4_LANE_GROUP / TED4_VEC    /* registers of a lane group */
+    TED4_VEC = TED4_VEC_BYTES / 4,         /* floats of a register */
+    TED4_VECS = TED4_LANE_GROUP / TED4_VEC /* registers of a lane group */
 };
 
-typedef float    ted4_vf __attribute__((vector_size(TED4_VEC_BYTES)));
-typedef int32_t  ted4_vi __attribute__((vector_size(TED4_VEC_BYTES)));  /* as a mask: -1 or 0 in each lane, as comparisons give it */
+typedef float ted4_vf __attribute__((vector_size(TED4_VEC_BYTES)));
+typedef int32_t ted4_vi __attribute__((
+    vector_size(TED4_VEC_BYTES))); /* as a mask: -1 or 0 in each lane, as comparisons give it */
 typedef uint32_t ted4_vu __attribute__((vector_size(TED4_VEC_BYTES)));
 
 /* x in every lane. */
 TED4_INLINE ted4_vf ted4_vf_all(float x)
 {
-    return x - (ted4_vf){0};
+    return x - (ted4_vf) { 0 };
 }
 
 TED4_INLINE ted4_vf ted4_vf_load(const float *p)
@@ -68,7 +71,7 @@ TED4_INLINE void ted4_vf_store(float *p, ted4_vf v)
 /* The first n <= TED4_VEC values; lanes after them are 0, or are not stored. */
 TED4_INLINE ted4_vf ted4_vf_load_n(const float *p, size_t n)
 {
-    ted4_vf v = {0};
+    ted4_vf v = { 0 };
 
     if (n >= TED4_VEC)
         return ted4_vf_load(p);
@@ -188,14 +191,15 @@ TED4_INLINE uint32_t ted4_vi_bits(ted4_vi m)
 #endif
 }
 
-/* 2^x for x in [-126, 127], relative error 5e-7 (measured on [-8, 0.2]); outside that range the value means
- * nothing. Polynomial: minimax on [-1/2, 1/2] with value 1 at 0, computed for this file by Remez exchange. */
+/* 2^x for x in [-126, 127], relative error 5e-7 (measured on [-8, 0.2]); outside that range the
+ * value means nothing. Polynomial: minimax on [-1/2, 1/2] with value 1 at 0, computed for this file
+ * by Remez exchange. */
 TED4_INLINE ted4_vf ted4_vf_exp2(ted4_vf x)
 {
-    const float   magic = 12582912.0f;      /* 1.5 * 2^23: adding it leaves round(x) in the low bits */
+    const float magic = 12582912.0f; /* 1.5 * 2^23: adding it leaves round(x) in the low bits */
     const ted4_vf t = x + magic;
     const ted4_vf f = x - (t - magic);
-    ted4_vf       y = ted4_vf_fma(f, ted4_vf_all(0.00111255073f), ted4_vf_all(0.00966628268f));
+    ted4_vf y = ted4_vf_fma(f, ted4_vf_all(0.00111255073f), ted4_vf_all(0.00966628268f));
 
     y = ted4_vf_fma(y, f, ted4_vf_all(0.0555740036f));
     y = ted4_vf_fma(y, f, ted4_vf_all(0.240223512f));
@@ -204,17 +208,18 @@ TED4_INLINE ted4_vf ted4_vf_exp2(ted4_vf x)
     return (ted4_vf)((ted4_vu)y + ((ted4_vu)t << 23));
 }
 
-/* log2(x) for normal x > 0, absolute error 4e-7 on [1/255, 1]; else the value means nothing. x = m 2^e with m in [sqrt(1/2), sqrt(2)), and
- * log2(m) = 2 / ln(2) artanh((m - 1) / (m + 1)) by its power series. */
+/* log2(x) for normal x > 0, absolute error 4e-7 on [1/255, 1]; else the value means nothing. x = m
+ * 2^e with m in [sqrt(1/2), sqrt(2)), and log2(m) = 2 / ln(2) artanh((m - 1) / (m + 1)) by its
+ * power series. */
 TED4_INLINE ted4_vf ted4_vf_log2(ted4_vf x)
 {
-    const uint32_t half = 0x3f3504f3u;      /* bits of sqrt(1/2) */
-    const ted4_vu  d = (ted4_vu)x - half;
-    const ted4_vi  e = (ted4_vi)d >> 23;
-    const ted4_vf  m = (ted4_vf)((d & 0x7fffffu) + half);
-    const ted4_vf  s = (m - 1.0f) / (m + 1.0f), s2 = s * s;
-    const ted4_vf  unit = ted4_vf_all((float)(2.0 / 1 / 0.6931471805599453));
-    ted4_vf        y = ted4_vf_fma(s2, unit * (1.0f / 9.0f), unit * (1.0f / 7.0f));
+    const uint32_t half = 0x3f3504f3u; /* bits of sqrt(1/2) */
+    const ted4_vu d = (ted4_vu)x - half;
+    const ted4_vi e = (ted4_vi)d >> 23;
+    const ted4_vf m = (ted4_vf)((d & 0x7fffffu) + half);
+    const ted4_vf s = (m - 1.0f) / (m + 1.0f), s2 = s * s;
+    const ted4_vf unit = ted4_vf_all((float)(2.0 / 1 / 0.6931471805599453));
+    ted4_vf y = ted4_vf_fma(s2, unit * (1.0f / 9.0f), unit * (1.0f / 7.0f));
 
     y = ted4_vf_fma(y, s2, unit * (1.0f / 5.0f));
     y = ted4_vf_fma(y, s2, unit * (1.0f / 3.0f));

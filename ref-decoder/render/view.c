@@ -6,9 +6,9 @@
 #include <stdlib.h>
 
 struct ted4_viewer {
-    ted4_raster *raster;        /* owned */
-    float       *image;         /* owned: planar, capacity floats */
-    size_t       capacity;
+    ted4_raster *raster; /* owned */
+    float *image;        /* owned: planar, capacity floats */
+    size_t capacity;
 };
 
 ted4_viewer *ted4_viewer_new(void)
@@ -57,8 +57,8 @@ static void camera_centre(const ted4_view *camera, float c[3])
 
 typedef struct {
     const float *image;
-    uint8_t     *rgb;
-    size_t       width, plane;
+    uint8_t *rgb;
+    size_t width, plane;
 } round_job;
 
 static void round_row(void *arg, size_t row)
@@ -89,11 +89,12 @@ ted4_status ted4_render_gaussians(ted4_viewer *v, const ted4_gaussians *g, const
     for (int c = 0; c < 3; c++)
         view.background[c] = (float)info->background[c] / 255.0f;
 
-    const ted4_splats s = {
-        g->n, { g->mean[0], g->mean[1], g->mean[2] }, { g->scale[0], g->scale[1], g->scale[2] },
-        { g->rot[0], g->rot[1], g->rot[2], g->rot[3] }, g->opacity,
-        { g->colour[0], g->colour[1], g->colour[2] }
-    };
+    const ted4_splats s = { g->n,
+                            { g->mean[0], g->mean[1], g->mean[2] },
+                            { g->scale[0], g->scale[1], g->scale[2] },
+                            { g->rot[0], g->rot[1], g->rot[2], g->rot[3] },
+                            g->opacity,
+                            { g->colour[0], g->colour[1], g->colour[2] } };
 
     if (ted4_raster_forward(v->raster, &s, &view, p, 0, v->image) != 0)
         return TED4_E_LIMIT_MEMORY;

@@ -40,7 +40,7 @@ static ted4_time time_at(const ted4_session *s, size_t i, uint32_t *number)
 
 static int failed_status(ted4_status status, const ted4_session *s)
 {
-    return ted4_report(PROGRAM, s->set->input, &(ted4_error){ status, 0 }, s->set->json);
+    return ted4_report(PROGRAM, s->set->input, &(ted4_error) { status, 0 }, s->set->json);
 }
 
 static int failed_file(const char *path, const char *why)
@@ -83,8 +83,8 @@ static int check_frames(const ted4_session *s)
 {
     const ted4_settings *const set = s->set;
 
-    if (set->range.first >= s->info.frames
-        || (set->range.end != UINT32_MAX && set->range.end > s->info.frames)) {
+    if (set->range.first >= s->info.frames ||
+        (set->range.end != UINT32_MAX && set->range.end > s->info.frames)) {
         fprintf(stderr, "%s: --frames: the file has frames 0 to %" PRIu32 "\n", PROGRAM,
                 s->info.frames - 1);
         return TED4_EXIT_TOOL;
@@ -209,8 +209,8 @@ static int export_time(ted4_session *s, const ted4_sampler *how, ted4_time t, ui
         snprintf(comment + n, sizeof comment - (size_t)n,
                  "colours fitted to a view-dependent head, rms error %.4f\n", sample.sh_rms);
     sample.frame.comment = comment;
-    if (ted4_pattern_make(path, s->set->output, number) != 0
-        || ted4_export(s->set->format, &sample.frame, path) != 0)
+    if (ted4_pattern_make(path, s->set->output, number) != 0 ||
+        ted4_export(s->set->format, &sample.frame, path) != 0)
         code = failed_file(s->set->output, strerror(errno));
     else if (s->set->json)
         append(s->report, "exports",
@@ -230,8 +230,8 @@ int ted4_action_export(ted4_session *s)
 {
     const ted4_settings *const set = s->set;
     const size_t n = count_times(s);
-    ted4_sampler how = { s->recon, &s->info, &s->parallel,
-                         { set->centre[0], set->centre[1], set->centre[2] },
+    ted4_sampler how = { s->recon,       &s->info,
+                         &s->parallel,   { set->centre[0], set->centre[1], set->centre[2] },
                          set->sh_degree, set->keep_all };
     double worst_rms = 0.0;
     int code = TED4_EXIT_FINE;
@@ -246,7 +246,8 @@ int ted4_action_export(ted4_session *s)
         code = export_time(s, &how, t, number, &worst_rms);
         progress(s, "written", i + 1, n);
     }
-    if (code == TED4_EXIT_FINE && !set->quiet && s->info.view != TED4_VIEW_NONE && how.sh_degree >= 0)
+    if (code == TED4_EXIT_FINE && !set->quiet && s->info.view != TED4_VIEW_NONE &&
+        how.sh_degree >= 0)
         fprintf(stderr,
                 "%s: note: spherical harmonics of degree %d stand for view-dependent colours; rms "
                 "error at most %.4f\n",

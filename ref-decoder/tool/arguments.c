@@ -22,15 +22,15 @@ static void make_getopt(const ted4_command *c, struct option *longs, char *lette
     for (int i = 0; i < c->n; i++) {
         const ted4_argument *const a = &c->table[i];
 
-        longs[i] = (struct option){ a->name, a->value != NULL ? required_argument : no_argument,
-                                    NULL, FIRST_LONG + i };
+        longs[i] = (struct option) { a->name, a->value != NULL ? required_argument : no_argument,
+                                     NULL, FIRST_LONG + i };
         if (a->letter != 0) {
             *p++ = (char)a->letter;
             if (a->value != NULL)
                 *p++ = ':';
         }
     }
-    longs[c->n] = (struct option){ NULL, 0, NULL, 0 };
+    longs[c->n] = (struct option) { NULL, 0, NULL, 0 };
     *p = '\0';
 }
 
@@ -41,8 +41,8 @@ static int answer(const ted4_command *c, int i)
         return TED4_ARGUMENTS_DONE;
     }
     if (c->table[i].letter == 'V') {
-        printf("%s " TED4_VERSION " (specification " TED4_SPEC_VERSION "), kernels %s\n", c->program,
-               ted4_level_name(ted4_level_wanted()));
+        printf("%s " TED4_VERSION " (specification " TED4_SPEC_VERSION "), kernels %s\n",
+               c->program, ted4_level_name(ted4_level_wanted()));
         return TED4_ARGUMENTS_DONE;
     }
     return i;
@@ -51,7 +51,7 @@ static int answer(const ted4_command *c, int i)
 /* Are the kernels that the environment asks for to be had? */
 static int check_kernels(const ted4_command *c)
 {
-    const char      *name = getenv("TED4_KERNEL");
+    const char *name = getenv("TED4_KERNEL");
     const ted4_level most = ted4_level_of_machine();
 
     if (name == NULL || ted4_level_named(name) <= most)

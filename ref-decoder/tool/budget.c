@@ -5,10 +5,12 @@
 #include <stdio.h>
 #include <string.h>
 
-/* Symbols of substreams are traced at the substream's first byte, which belongs to the substream. */
+/* Symbols of substreams are traced at the substream's first byte, which belongs to the substream.
+ */
 static int is_symbol(const char *element)
 {
-    static const char *const name[] = { "dynamic", "offset_bit", "feature", "scaling", "offset", "phi", "tau" };
+    static const char *const name[] = { "dynamic", "offset_bit", "feature", "scaling",
+                                        "offset",  "phi",        "tau" };
 
     for (size_t i = 0; i < sizeof name / sizeof *name; i++)
         if (strcmp(element, name[i]) == 0)
@@ -26,13 +28,14 @@ static int ends_in(const char *text, const char *end)
 static int row_of(ted4_budget *b, const char *element, int64_t index)
 {
     char name[TED4_BUDGET_NAME];
-    int  i = 0;
+    int i = 0;
 
     if (strcmp(element, "feature_substream") == 0)
         snprintf(name, sizeof name, "%s %d", element, (int)index);
     else
         snprintf(name, sizeof name, "%s", element);
-    while (i < b->n_rows && (strcmp(b->row[i].element, name) != 0 || strcmp(b->row[i].chunk, b->chunk) != 0))
+    while (i < b->n_rows &&
+           (strcmp(b->row[i].element, name) != 0 || strcmp(b->row[i].chunk, b->chunk) != 0))
         i++;
     if (i == TED4_BUDGET_ROWS) {
         b->disordered = 1;
@@ -49,7 +52,7 @@ static int row_of(ted4_budget *b, const char *element, int64_t index)
 static void keep_header(ted4_budget *b, const char *element, int64_t index, int64_t value)
 {
     if (b->n_header < TED4_HEADER_VALUES)
-        b->header[b->n_header++] = (ted4_header_value){ element, index, value };
+        b->header[b->n_header++] = (ted4_header_value) { element, index, value };
     else
         b->disordered = 1;
 }

@@ -82,7 +82,7 @@ static int get_time(const json_t *o, ted4_listed_camera *c)
 
     if (!json_is_number(time) || !(t >= 0.0 && t <= 1.0))
         return 0;
-    c->time = (ted4_time){ (uint32_t)(t * TIME_DENOMINATOR + 0.5), TIME_DENOMINATOR };
+    c->time = (ted4_time) { (uint32_t)(t * TIME_DENOMINATOR + 0.5), TIME_DENOMINATOR };
     return 1;
 }
 
@@ -95,8 +95,8 @@ static const char *get_camera(const json_t *o, ted4_listed_camera *c)
         return "is not an object";
     if (!get_side(o, "width", &v->width) || !get_side(o, "height", &v->height))
         return "needs width and height, whole numbers from 1 to 16384";
-    if (!get_number(o, "fx", &v->fx) || !get_number(o, "fy", &v->fy)
-        || !(v->fx > 0.0f && v->fy > 0.0f))
+    if (!get_number(o, "fx", &v->fx) || !get_number(o, "fy", &v->fy) ||
+        !(v->fx > 0.0f && v->fy > 0.0f))
         return "needs fx and fy above 0";
     if (!get_number(o, "cx", &v->cx) || !get_number(o, "cy", &v->cy))
         return "needs cx and cy";
@@ -113,7 +113,7 @@ int ted4_camera_list_load(ted4_camera_list *l, const char *path, char *why, size
     json_t *const list = json_load_file(path, JSON_REJECT_DUPLICATES, &e);
     const char *wrong = NULL;
 
-    *l = (ted4_camera_list){ NULL, 0 };
+    *l = (ted4_camera_list) { NULL, 0 };
     if (list == NULL) {
         snprintf(why, why_size, "line %d: %s", e.line, e.text);
         return -1;
@@ -141,5 +141,5 @@ int ted4_camera_list_load(ted4_camera_list *l, const char *path, char *why, size
 void ted4_camera_list_free(ted4_camera_list *l)
 {
     free(l->camera);
-    *l = (ted4_camera_list){ NULL, 0 };
+    *l = (ted4_camera_list) { NULL, 0 };
 }

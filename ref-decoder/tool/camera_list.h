@@ -13,19 +13,19 @@
 #include "times.h"
 
 typedef struct {
-    ted4_view  view;                    /* near_z and background are not set */
-    int        has_frame;               /* frame counts, otherwise time */
-    uint32_t   frame;
-    ted4_time  time;
+    ted4_view view; /* near_z and background are not set */
+    int has_frame;  /* frame counts, otherwise time */
+    uint32_t frame;
+    ted4_time time;
 } ted4_listed_camera;
 
 typedef struct {
-    ted4_listed_camera *camera;         /* owned */
-    size_t              n;
+    ted4_listed_camera *camera; /* owned */
+    size_t n;
 } ted4_camera_list;
 
 /* 0, or -1 with why filled and the list empty. */
-int  ted4_camera_list_load(ted4_camera_list *l, const char *path, char *why, size_t why_size);
+int ted4_camera_list_load(ted4_camera_list *l, const char *path, char *why, size_t why_size);
 void ted4_camera_list_free(ted4_camera_list *l);
 
 #endif

@@ -10,11 +10,11 @@ int ted4_report(const char *program, const char *path, const ted4_error *e, int 
     const ted4_verdict verdict = ted4_status_verdict(e->code);
 
     if (json) {
-        json_t *const name = json_string(path);         /* NULL: not UTF-8 */
+        json_t *const name = json_string(path); /* NULL: not UTF-8 */
         json_t *const o =
             json_pack("{s:o, s:s, s:s, s:I, s:s}", "file", name != NULL ? name : json_null(),
-                      "verdict", ted4_verdict_name(verdict), "error", ted4_status_id(e->code), "offset",
-                      (json_int_t)e->offset, "text", ted4_status_text(e->code));
+                      "verdict", ted4_verdict_name(verdict), "error", ted4_status_id(e->code),
+                      "offset", (json_int_t)e->offset, "text", ted4_status_text(e->code));
 
         json_dumpf(o, stdout, JSON_COMPACT);
         putchar('\n');

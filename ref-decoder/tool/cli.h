@@ -12,9 +12,11 @@
 
 enum { TED4_EXIT_FINE = 0, TED4_EXIT_REFUSED = 1, TED4_EXIT_WARNED = 2, TED4_EXIT_TOOL = 3 };
 
-/* read_file.c: a whole file, or standard input when path is "-". malloc'd, to be freed; NULL with errno set. */
+/* read_file.c: a whole file, or standard input when path is "-". malloc'd, to be freed; NULL with
+ * errno set. */
 uint8_t *ted4_read_file(const char *path, size_t *size);
-/* All that is left of a stream, in whatever pieces it comes. malloc'd; NULL: no memory, or an error of the stream. */
+/* All that is left of a stream, in whatever pieces it comes. malloc'd; NULL: no memory, or an error
+ * of the stream. */
 uint8_t *ted4_read_stream(FILE *f, size_t *size);
 
 /* Says on stderr why path was not decoded: "ted4dec: a.ted4: byte 1234: text [id] (specification

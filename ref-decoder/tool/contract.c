@@ -12,10 +12,10 @@ enum { MAX_PATH = 4096, T5 = 5 };
 
 typedef struct {
     const char *input, *queries, *dump;
-    int         tier[TED4_TIERS];       /* asked for? */
-    uint64_t    max_bytes, max_work;
-    int         lenient;
-    int         failed;                 /* of our own accord: no memory, a file that cannot be written */
+    int tier[TED4_TIERS]; /* asked for? */
+    uint64_t max_bytes, max_work;
+    int lenient;
+    int failed; /* of our own accord: no memory, a file that cannot be written */
 } request;
 
 static int usage(const char *text)
@@ -31,7 +31,8 @@ int ted4_contract_asked(int argc, char **argv)
 
 static int print(json_t *o)
 {
-    const int bad = o == NULL || json_dumpf(o, stdout, JSON_COMPACT) != 0 || putchar('\n') == EOF || fflush(stdout) != 0;
+    const int bad = o == NULL || json_dumpf(o, stdout, JSON_COMPACT) != 0 || putchar('\n') == EOF ||
+                    fflush(stdout) != 0;
 
     json_decref(o);
     return bad ? TED4_EXIT_TOOL : TED4_EXIT_FINE;
@@ -39,10 +40,12 @@ static int print(json_t *o)
 
 static json_t *capabilities(void)
 {
-    return json_pack("{s:i, s:s, s:s, s:s, s:[s], s:i, s:[s,s,s,s,s,s], s:o, s:b, s:b, s:[], s:[s,s]}", "protocol", 1, "name", "ted4dec",
-                     "version", TED4_VERSION, "spec", TED4_SPEC_VERSION, "profiles", "Main", "max_level", 31, "tiers",
-                     "T0", "T1", "T2", "T3", "T4", "T5", "class", ted4_recon_class_x() ? json_string("X") : json_null(),
-                     "strict", 1, "lenient", 1, "declines", "knobs", "max_alloc_total", "max_work");
+    return json_pack(
+        "{s:i, s:s, s:s, s:s, s:[s], s:i, s:[s,s,s,s,s,s], s:o, s:b, s:b, s:[], s:[s,s]}",
+        "protocol", 1, "name", "ted4dec", "version", TED4_VERSION, "spec", TED4_SPEC_VERSION,
+        "profiles", "Main", "max_level", 31, "tiers", "T0", "T1", "T2", "T3", "T4", "T5", "class",
+        ted4_recon_class_x() ? json_string("X") : json_null(), "strict", 1, "lenient", 1,
+        "declines", "knobs", "max_alloc_total", "max_work");
 }
 
 /* "T0,T3": 0, or -1. */
@@ -60,8 +63,10 @@ static int parse_tiers(request *r, const char *text)
 static int parse_knob(request *r, const char *text)
 {
     const char *const is = strchr(text, '=');
-    uint64_t   *const knob = strncmp(text, "max_alloc_total=", 16) == 0 ? &r->max_bytes : strncmp(text, "max_work=", 9) == 0 ? &r->max_work : NULL;
-    char             *end;
+    uint64_t *const knob = strncmp(text, "max_alloc_total=", 16) == 0 ? &r->max_bytes
+                           : strncmp(text, "max_work=", 9) == 0       ? &r->max_work
+                                                                      : NULL;
+    char *end;
 
     if (knob == NULL || is[1] < '0' || is[1] > '9')
         return -1;
@@ -103,10 +108,11 @@ static int parse(request *r, int argc, char **argv)
     return 0;
 }
 
-/* One tier's file in the folder of --dump; NULL without that, or when it cannot be made. number: of a query, or -1. */
+/* One tier's file in the folder of --dump; NULL without that, or when it cannot be made. number: of
+ * a query, or -1. */
 static FILE *open_dump(request *r, int tier, int number)
 {
-    char  path[MAX_PATH];
+    char path[MAX_PATH];
     FILE *f;
 
     if (r->dump == NULL)
@@ -124,16 +130,18 @@ static void close_dump(request *r, FILE *f)
 }
 
 /* A tier of Tier E; *verdict says when memory does not allow it. */
-static json_t *tier_e(request *r, const void *data, size_t size, const ted4_scene *s, const ted4_options *o, int tier, ted4_status *verdict)
+static json_t *tier_e(request *r, const void *data, size_t size, const ted4_scene *s,
+                      const ted4_options *o, int tier, ted4_status *verdict)
 {
-    FILE *const     keep = open_dump(r, tier, -1);
+    FILE *const keep = open_dump(r, tier, -1);
     ted4_tier_hash *h = ted4_tier_hash_new(keep);
-    ted4_error      e;
-    json_t         *answer;
+    ted4_error e;
+    json_t *answer;
 
     r->failed |= h == NULL;
     if (h != NULL)
-        *verdict = tier == 0 ? ted4_dump_syntax(data, size, o, ted4_tier_hash_add, h, &e) : ted4_dump_tier(s, tier, o, ted4_tier_hash_add, h);
+        *verdict = tier == 0 ? ted4_dump_syntax(data, size, o, ted4_tier_hash_add, h, &e)
+                             : ted4_dump_tier(s, tier, o, ted4_tier_hash_add, h);
     answer = ted4_tier_hash_end(h);
     close_dump(r, keep);
     return answer;
@@ -163,15 +171,15 @@ static int read_query(const json_t *from, ted4_query *q)
 
 static json_t *records(request *r, ted4_recon *recon, const ted4_query *q, int number)
 {
-    ted4_gaussians    g;
+    ted4_gaussians g;
     const ted4_status verdict = ted4_recon_query(recon, q, NULL, &g);
 
     if (verdict != TED4_OK)
         return json_pack("{s:s}", "error", ted4_status_id(verdict));
 
-    FILE *const     keep = open_dump(r, T5, number);
+    FILE *const keep = open_dump(r, T5, number);
     ted4_tier_hash *h = ted4_tier_hash_new(keep);
-    json_t         *answer;
+    json_t *answer;
 
     if (h != NULL)
         ted4_tier_records(&g, ted4_tier_hash_add, h);
@@ -180,11 +188,12 @@ static json_t *records(request *r, ted4_recon *recon, const ted4_query *q, int n
     return answer;
 }
 
-/* An array, one entry a query; NULL: the queries cannot be read, or no memory, which *verdict says. */
+/* An array, one entry a query; NULL: the queries cannot be read, or no memory, which *verdict says.
+ */
 static json_t *tier_r(request *r, const ted4_scene *s, const ted4_options *o, ted4_status *verdict)
 {
-    json_t     *queries = r->queries != NULL ? json_load_file(r->queries, 0, NULL) : json_array();
-    json_t     *answer = json_array();
+    json_t *queries = r->queries != NULL ? json_load_file(r->queries, 0, NULL) : json_array();
+    json_t *answer = json_array();
     ted4_recon *recon = NULL;
 
     r->failed |= !json_is_array(queries);
@@ -206,7 +215,8 @@ static json_t *tier_r(request *r, const ted4_scene *s, const ted4_options *o, te
 static json_t *refusal(const ted4_error *e)
 {
     const ted4_verdict v = ted4_status_verdict(e->code);
-    json_t *o = json_pack("{s:s, s:s}", "result", ted4_verdict_name(v), "error", ted4_status_id(e->code));
+    json_t *o =
+        json_pack("{s:s, s:s}", "result", ted4_verdict_name(v), "error", ted4_status_id(e->code));
 
     if (v == TED4_INVALID || v == TED4_UNSUPPORTED)
         json_object_set_new(o, "offset", json_integer((json_int_t)e->offset));
@@ -214,7 +224,8 @@ static json_t *refusal(const ted4_error *e)
 }
 
 /* The tiers asked for, from T<first> on; *verdict says when memory does not allow it. */
-static json_t *tiers(request *r, int first, const void *data, size_t size, const ted4_scene *s, const ted4_options *o, ted4_status *verdict)
+static json_t *tiers(request *r, int first, const void *data, size_t size, const ted4_scene *s,
+                     const ted4_options *o, ted4_status *verdict)
 {
     json_t *t = json_object();
 
@@ -222,15 +233,18 @@ static json_t *tiers(request *r, int first, const void *data, size_t size, const
         if (r->tier[i]) {
             const char name[3] = { 'T', (char)('0' + i), '\0' };
 
-            json_object_set_new(t, name, i == T5 ? tier_r(r, s, o, verdict) : tier_e(r, data, size, s, o, i, verdict));
+            json_object_set_new(t, name,
+                                i == T5 ? tier_r(r, s, o, verdict)
+                                        : tier_e(r, data, size, s, o, i, verdict));
         }
     return t;
 }
 
-static json_t *answer_valid(request *r, const void *data, size_t size, const ted4_scene *s, const ted4_options *o)
+static json_t *answer_valid(request *r, const void *data, size_t size, const ted4_scene *s,
+                            const ted4_options *o)
 {
     ted4_error e = { TED4_OK, 0 };
-    json_t    *t = tiers(r, 0, data, size, s, o, &e.code);
+    json_t *t = tiers(r, 0, data, size, s, o, &e.code);
 
     if (e.code == TED4_OK)
         return json_pack("{s:s, s:o}", "result", "valid", "tiers", t);
@@ -238,44 +252,51 @@ static json_t *answer_valid(request *r, const void *data, size_t size, const ted
     return refusal(&e);
 }
 
-/* The strict verdict and beside it what there is in spite of it (spec 3.3). T0 belongs to valid files only. */
-static json_t *answer_salvage(request *r, const ted4_scene *s, const ted4_salvage *what, const ted4_options *o)
+/* The strict verdict and beside it what there is in spite of it (spec 3.3). T0 belongs to valid
+ * files only. */
+static json_t *answer_salvage(request *r, const ted4_scene *s, const ted4_salvage *what,
+                              const ted4_options *o)
 {
-    json_t     *answer = refusal(&what->verdict);
+    json_t *answer = refusal(&what->verdict);
     ted4_status verdict = TED4_OK;
-    ted4_info   info;
-    char        hash[2 * sizeof info.hash + 1];
+    ted4_info info;
+    char hash[2 * sizeof info.hash + 1];
 
     ted4_scene_info(s, &info);
     ted4_hex(hash, info.hash, sizeof info.hash);
-    json_object_set_new(answer, "salvage", json_pack("{s:I, s:I, s:I, s:I, s:s, s:I, s:s, s:o}", "tiles", (json_int_t)what->n_tiles,
-                                                     "tiles_declared", (json_int_t)what->tiles_declared, "anchors",
-                                                     (json_int_t)info.n_anchors, "anchors_declared", (json_int_t)what->anchors_declared,
-                                                     "error", ted4_status_id(what->stop.code), "offset",
-                                                     (json_int_t)what->stop.offset, "hash", hash, "tiers", tiers(r, 1, NULL, 0, s, o, &verdict)));
+    json_object_set_new(
+        answer, "salvage",
+        json_pack("{s:I, s:I, s:I, s:I, s:s, s:I, s:s, s:o}", "tiles", (json_int_t)what->n_tiles,
+                  "tiles_declared", (json_int_t)what->tiles_declared, "anchors",
+                  (json_int_t)info.n_anchors, "anchors_declared",
+                  (json_int_t)what->anchors_declared, "error", ted4_status_id(what->stop.code),
+                  "offset", (json_int_t)what->stop.offset, "hash", hash, "tiers",
+                  tiers(r, 1, NULL, 0, s, o, &verdict)));
     r->failed |= verdict != TED4_OK;
     return answer;
 }
 
-static json_t *answer_scene(request *r, const void *data, size_t size, const ted4_scene *s, const ted4_salvage *what)
+static json_t *answer_scene(request *r, const void *data, size_t size, const ted4_scene *s,
+                            const ted4_salvage *what)
 {
     ted4_options o;
 
     memset(&o, 0, sizeof o);
-    o.max_bytes = r->max_bytes;         /* the knob max_work bounds W_E, which decoding has held */
+    o.max_bytes = r->max_bytes; /* the knob max_work bounds W_E, which decoding has held */
     if (s == NULL)
         return refusal(&what->verdict);
-    return what->verdict.code == TED4_OK ? answer_valid(r, data, size, s, &o) : answer_salvage(r, s, what, &o);
+    return what->verdict.code == TED4_OK ? answer_valid(r, data, size, s, &o)
+                                         : answer_salvage(r, s, what, &o);
 }
 
 static int answer_run(request *r)
 {
     ted4_salvage what = { .verdict = { TED4_E_IO, 0 } };
-    ted4_scene  *s = NULL;
+    ted4_scene *s = NULL;
     ted4_options o;
-    size_t       size;
-    uint8_t     *data = ted4_read_file(r->input, &size);
-    json_t      *answer;
+    size_t size;
+    uint8_t *data = ted4_read_file(r->input, &size);
+    json_t *answer;
 
     memset(&o, 0, sizeof o);
     o.max_bytes = r->max_bytes;
@@ -299,5 +320,6 @@ int ted4_contract(int argc, char **argv)
 
     if (argc == 2 && strcmp(argv[1], "--ted4-capabilities") == 0)
         return print(capabilities());
-    return parse(&r, argc, argv) == 0 ? answer_run(&r) : usage("bad command line of the driver contract");
+    return parse(&r, argc, argv) == 0 ? answer_run(&r)
+                                      : usage("bad command line of the driver contract");
 }

@@ -6,9 +6,8 @@
 
 #include "output.h"
 
-const ted4_format *const ted4_formats[] = {
-    &ted4_format_ply, &ted4_format_splat, &ted4_format_glb, &ted4_format_raw, NULL
-};
+const ted4_format *const ted4_formats[] = { &ted4_format_ply, &ted4_format_splat, &ted4_format_glb,
+                                            &ted4_format_raw, NULL };
 
 const ted4_format *ted4_format_find(const char *path)
 {

@@ -12,18 +12,18 @@ static const char *const severity_name[] = { "error", "warning", "hint" };
 
 typedef struct {
     const char *path;
-    json_t     *list;                   /* NULL: print text */
-    int         quiet;
-    int         count[3];               /* by severity */
-    int         no_memory;
+    json_t *list; /* NULL: print text */
+    int quiet;
+    int count[3]; /* by severity */
+    int no_memory;
 } report;
 
 static void print_text(const report *r, const ted4_finding *f)
 {
     if (r->quiet && f->severity != TED4_ERROR)
         return;
-    printf("%s: %s: byte %zu%s%s: %s", r->path, severity_name[f->severity], f->offset, f->where != NULL ? ", " : "",
-           f->where != NULL ? f->where : "", f->text);
+    printf("%s: %s: byte %zu%s%s: %s", r->path, severity_name[f->severity], f->offset,
+           f->where != NULL ? ", " : "", f->where != NULL ? f->where : "", f->text);
     for (unsigned i = 0; i < f->n_values; i++)
         printf("%s%" PRId64, i == 0 ? ": " : ", ", f->value[i]);
     printf(" [%s] (%s)\n", f->id, f->rule);
@@ -31,8 +31,9 @@ static void print_text(const report *r, const ted4_finding *f)
 
 static void keep(report *r, const ted4_finding *f)
 {
-    json_t *const o = json_pack("{s:s, s:s, s:I, s:s, s:s}", "severity", severity_name[f->severity], "id", f->id, "offset",
-                                (json_int_t)f->offset, "rule", f->rule, "text", f->text);
+    json_t *const o = json_pack("{s:s, s:s, s:I, s:s, s:s}", "severity", severity_name[f->severity],
+                                "id", f->id, "offset", (json_int_t)f->offset, "rule", f->rule,
+                                "text", f->text);
 
     if (f->where != NULL)
         json_object_set_new(o, "where", json_string(f->where));
@@ -60,17 +61,20 @@ static void take(void *user, const ted4_finding *f)
 
 static void print_json(const report *r, ted4_status verdict, size_t size)
 {
-    json_t *const path = json_string(r->path);          /* NULL: not UTF-8 */
-    json_t *const o = json_pack("{s:o, s:I, s:s, s:{s:i, s:i, s:i}, s:O}", "file", path != NULL ? path : json_null(), "bytes",
-                                (json_int_t)size, "verdict", ted4_verdict_name(ted4_status_verdict(verdict)), "counts", severity_name[0],
-                                r->count[0], severity_name[1], r->count[1], severity_name[2], r->count[2], "findings", r->list);
+    json_t *const path = json_string(r->path); /* NULL: not UTF-8 */
+    json_t *const o = json_pack("{s:o, s:I, s:s, s:{s:i, s:i, s:i}, s:O}", "file",
+                                path != NULL ? path : json_null(), "bytes", (json_int_t)size,
+                                "verdict", ted4_verdict_name(ted4_status_verdict(verdict)),
+                                "counts", severity_name[0], r->count[0], severity_name[1],
+                                r->count[1], severity_name[2], r->count[2], "findings", r->list);
 
     json_dumpf(o, stdout, JSON_COMPACT);
     putchar('\n');
     json_decref(o);
 }
 
-int ted4_findings_print(const char *path, const uint8_t *data, size_t size, const ted4_options *o, int json, int quiet)
+int ted4_findings_print(const char *path, const uint8_t *data, size_t size, const ted4_options *o,
+                        int json, int quiet)
 {
     report r = { .path = path, .list = json ? json_array() : NULL, .quiet = quiet };
     const ted4_status verdict = ted4_validate(data, size, o, take, &r);
@@ -80,5 +84,7 @@ int ted4_findings_print(const char *path, const uint8_t *data, size_t size, cons
     json_decref(r.list);
     if (r.no_memory || ted4_status_verdict(verdict) == TED4_LIMIT)
         return TED4_EXIT_TOOL;
-    return r.count[TED4_ERROR] > 0 ? TED4_EXIT_REFUSED : r.count[TED4_WARNING] > 0 ? TED4_EXIT_WARNED : TED4_EXIT_FINE;
+    return r.count[TED4_ERROR] > 0     ? TED4_EXIT_REFUSED
+           : r.count[TED4_WARNING] > 0 ? TED4_EXIT_WARNED
+                                       : TED4_EXIT_FINE;
 }

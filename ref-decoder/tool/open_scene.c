@@ -1,4 +1,5 @@
-/* open_scene.c - ted4dec's first step: a file to a recon, strictly or leniently, and what that took.
+/* open_scene.c - ted4dec's first step: a file to a recon, strictly or leniently, and what that
+ * took.
  * SPDX-License-Identifier: BSD-2-Clause */
 #include <errno.h>
 #include <inttypes.h>
@@ -32,8 +33,8 @@ static int only_checks(const ted4_settings *s)
     return s->test || (s->output == NULL && s->render == NULL && !s->hash && !s->trace);
 }
 
-/* What is in the file, and what decoding it to attributes took. ru_maxrss: of this process, its copy of the file included; in KiB
- * on Linux. */
+/* What is in the file, and what decoding it to attributes took. ru_maxrss: of this process, its
+ * copy of the file included; in KiB on Linux. */
 static void tell_cost(const ted4_session *s, size_t size, double ms)
 {
     const ted4_settings *const set = s->set;
@@ -44,7 +45,8 @@ static void tell_cost(const ted4_session *s, size_t size, double ms)
         fprintf(stderr,
                 "ted4dec: %s: %s, %zu bytes, %" PRIu32 " anchors, %zu Gaussians, %" PRIu32
                 " frames; decoded to attributes in %.1f ms, peak memory %.1f MiB\n",
-                set->input, s->warned ? "incomplete" : "valid", size, s->info.n_anchors, s->info.n_gaussians, s->info.frames, ms, mib);
+                set->input, s->warned ? "incomplete" : "valid", size, s->info.n_anchors,
+                s->info.n_gaussians, s->info.frames, ms, mib);
     if (only_checks(set)) {
         json_object_set_new(s->report, "decode_ms", json_real(ms));
         json_object_set_new(s->report, "peak_mib", json_real(mib));
@@ -59,23 +61,27 @@ static void tell_salvage(ted4_session *s, const ted4_salvage *what)
     s->warned = 1;
     fprintf(stderr,
             "ted4dec: %s: byte %zu: %s [%s] (specification %s)\n"
-            "ted4dec: %s: incomplete: tiles 0 to %" PRIu32 " of %" PRIu32 ", %" PRIu32 " anchors of %" PRIu32
-            "; nothing from byte %zu on: %s [%s]\n",
-            s->set->input, v->offset, ted4_status_text(v->code), ted4_status_id(v->code), ted4_status_section(v->code),
-            s->set->input, what->n_tiles - 1, what->tiles_declared, s->info.n_anchors, what->anchors_declared,
-            stop->offset, ted4_status_text(stop->code), ted4_status_id(stop->code));
+            "ted4dec: %s: incomplete: tiles 0 to %" PRIu32 " of %" PRIu32 ", %" PRIu32
+            " anchors of %" PRIu32 "; nothing from byte %zu on: %s [%s]\n",
+            s->set->input, v->offset, ted4_status_text(v->code), ted4_status_id(v->code),
+            ted4_status_section(v->code), s->set->input, what->n_tiles - 1, what->tiles_declared,
+            s->info.n_anchors, what->anchors_declared, stop->offset, ted4_status_text(stop->code),
+            ted4_status_id(stop->code));
     json_object_set_new(s->report, "verdict", json_string("invalid"));
     json_object_set_new(s->report, "error", json_string(ted4_status_id(v->code)));
     json_object_set_new(s->report, "offset", json_integer((json_int_t)v->offset));
-    json_object_set_new(s->report, "salvage",
-                        json_pack("{s:I, s:I, s:I, s:I, s:s, s:I}", "tiles", (json_int_t)what->n_tiles, "tiles_declared",
-                                  (json_int_t)what->tiles_declared, "anchors", (json_int_t)s->info.n_anchors,
-                                  "anchors_declared", (json_int_t)what->anchors_declared, "stop",
-                                  ted4_status_id(stop->code), "stop_offset", (json_int_t)stop->offset));
+    json_object_set_new(
+        s->report, "salvage",
+        json_pack("{s:I, s:I, s:I, s:I, s:s, s:I}", "tiles", (json_int_t)what->n_tiles,
+                  "tiles_declared", (json_int_t)what->tiles_declared, "anchors",
+                  (json_int_t)s->info.n_anchors, "anchors_declared",
+                  (json_int_t)what->anchors_declared, "stop", ted4_status_id(stop->code),
+                  "stop_offset", (json_int_t)stop->offset));
 }
 
 /* What the settings ask for: a scene and its verdict; with --lenient a scene in spite of it. */
-static ted4_scene *decode(ted4_session *s, const uint8_t *data, size_t size, const ted4_options *o, ted4_salvage *what)
+static ted4_scene *decode(ted4_session *s, const uint8_t *data, size_t size, const ted4_options *o,
+                          ted4_salvage *what)
 {
     ted4_scene *scene;
 
@@ -107,7 +113,7 @@ int ted4_action_open(ted4_session *s)
     ted4_scene *const scene = decode(s, data, size, &options, &what);
     ted4_error e = what.verdict;
 
-    if (scene != NULL) {        /* needed no longer once there is a recon */
+    if (scene != NULL) { /* needed no longer once there is a recon */
         ted4_scene_info(scene, &s->info);
         if (e.code != TED4_OK)
             tell_salvage(s, &what);

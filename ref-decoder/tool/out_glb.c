@@ -16,17 +16,22 @@
 #include "sh.h"
 #include "ted4.h"
 
-enum { GLTF_FLOAT = 5126, GLTF_BYTE = 5121, MAX_ATTRIBUTES = 5 + TED4_SH_MAX_COEFS,
-       GLB_HEADER = 12, GLB_CHUNK = 8 };
+enum {
+    GLTF_FLOAT = 5126,
+    GLTF_BYTE = 5121,
+    MAX_ATTRIBUTES = 5 + TED4_SH_MAX_COEFS,
+    GLB_HEADER = 12,
+    GLB_CHUNK = 8
+};
 
 /* One attribute: fill writes the value of Gaussian i. */
 typedef struct glb_attribute {
-    char        name[64];
+    char name[64];
     const char *type;
-    int         component;              /* GLTF_FLOAT, or GLTF_BYTE normalised */
-    int         coef;                   /* of spherical harmonics */
-    size_t      size;                   /* bytes a Gaussian, a multiple of 4 */
-    void      (*fill)(uint8_t *out, const ted4_frame *x, size_t i, const struct glb_attribute *a);
+    int component; /* GLTF_FLOAT, or GLTF_BYTE normalised */
+    int coef;      /* of spherical harmonics */
+    size_t size;   /* bytes a Gaussian, a multiple of 4 */
+    void (*fill)(uint8_t *out, const ted4_frame *x, size_t i, const struct glb_attribute *a);
 } glb_attribute;
 
 static void glb_floats(uint8_t *out, int n, const float *v)
@@ -38,26 +43,27 @@ static void glb_floats(uint8_t *out, int n, const float *v)
 static void glb_position(uint8_t *out, const ted4_frame *x, size_t i, const glb_attribute *a)
 {
     (void)a;
-    glb_floats(out, 3, (const float[]){ x->mean[0][i], -x->mean[1][i], -x->mean[2][i] });
+    glb_floats(out, 3, (const float[]) { x->mean[0][i], -x->mean[1][i], -x->mean[2][i] });
 }
 
 /* (0, 1, 0, 0) times the rotation, stored x y z w. */
 static void glb_rotation(uint8_t *out, const ted4_frame *x, size_t i, const glb_attribute *a)
 {
     (void)a;
-    glb_floats(out, 4, (const float[]){ x->rot[0][i], -x->rot[3][i], x->rot[2][i], -x->rot[1][i] });
+    glb_floats(out, 4,
+               (const float[]) { x->rot[0][i], -x->rot[3][i], x->rot[2][i], -x->rot[1][i] });
 }
 
 static void glb_scale(uint8_t *out, const ted4_frame *x, size_t i, const glb_attribute *a)
 {
     (void)a;
-    glb_floats(out, 3, (const float[]){ x->scale[0][i], x->scale[1][i], x->scale[2][i] });
+    glb_floats(out, 3, (const float[]) { x->scale[0][i], x->scale[1][i], x->scale[2][i] });
 }
 
 static void glb_opacity(uint8_t *out, const ted4_frame *x, size_t i, const glb_attribute *a)
 {
     (void)a;
-    glb_floats(out, 1, (const float[]){ fminf(fmaxf(x->opacity[i], 0.0f), 1.0f) });
+    glb_floats(out, 1, (const float[]) { fminf(fmaxf(x->opacity[i], 0.0f), 1.0f) });
 }
 
 static uint8_t glb_byte(double v)
@@ -77,9 +83,8 @@ static void glb_colour(uint8_t *out, const ted4_frame *x, size_t i, const glb_at
 
 /* Turning by 180 degrees about X changes the signs of y and z, hence of the basis functions odd in
  * them together. */
-static const float SH_SIGN[TED4_SH_MAX_COEFS] = {
-    1, -1, -1, 1, -1, 1, 1, -1, 1, -1, 1, -1, -1, 1, -1, 1
-};
+static const float SH_SIGN[TED4_SH_MAX_COEFS] = { 1, -1, -1, 1,  -1, 1, 1,  -1,
+                                                  1, -1, 1,  -1, -1, 1, -1, 1 };
 
 static void glb_sh(uint8_t *out, const ted4_frame *x, size_t i, const glb_attribute *a)
 {
@@ -105,7 +110,7 @@ static int list_attributes(glb_attribute *a, int sh_degree)
     memcpy(a, fixed, sizeof fixed);
     for (int l = 0; l <= sh_degree; l++) {
         for (int m = 0; m <= 2 * l; m++, n++) {
-            a[n] = (glb_attribute){ "", "VEC3", GLTF_FLOAT, l * l + m, 12, glb_sh };
+            a[n] = (glb_attribute) { "", "VEC3", GLTF_FLOAT, l * l + m, 12, glb_sh };
             snprintf(a[n].name, sizeof a[n].name, "KHR_gaussian_splatting:SH_DEGREE_%d_COEF_%d", l,
                      m);
         }
@@ -114,12 +119,16 @@ static int list_attributes(glb_attribute *a, int sh_degree)
 }
 
 /* Text that grows inside a fixed array; the longest JSON (degree 3) takes about 5 kB. */
-typedef struct { char text[16384]; size_t n; } glb_json;
+typedef struct {
+    char text[16384];
+    size_t n;
+} glb_json;
 
 #if defined(__GNUC__)
 __attribute__((format(printf, 2, 3)))
 #endif
-static void say(glb_json *j, const char *format, ...)
+static void
+say(glb_json *j, const char *format, ...)
 {
     va_list ap;
 
@@ -139,7 +148,7 @@ static void say_bounds(glb_json *j, const ted4_frame *x)
         for (int c = 0; c < 3; c++) {
             const float v = c == 0 ? x->mean[c][i] : -x->mean[c][i];
 
-            low[c]  = fminf(low[c], v);
+            low[c] = fminf(low[c], v);
             high[c] = fmaxf(high[c], v);
         }
     }
@@ -224,8 +233,8 @@ static int write_glb(FILE *f, const ted4_frame *x)
     memcpy(head, "glTF", 4);
     ted4_store32(head + 4, 2);
     ted4_store32(head + 8, (uint32_t)total);
-    if (fwrite(head, sizeof head, 1, f) != 1 || write_chunk_head(f, j.n, "JSON") != 0
-        || fwrite(j.text, j.n, 1, f) != 1)
+    if (fwrite(head, sizeof head, 1, f) != 1 || write_chunk_head(f, j.n, "JSON") != 0 ||
+        fwrite(j.text, j.n, 1, f) != 1)
         return -1;
     if (x->n == 0)
         return 0;

@@ -21,13 +21,15 @@ static int write_header(FILE *f, const ted4_frame *x, int n_rest)
     fprintf(f, "ply\nformat binary_little_endian 1.0\nelement vertex %zu\n", x->n);
     fputs("property float x\nproperty float y\nproperty float z\n"
           "property float nx\nproperty float ny\nproperty float nz\n"
-          "property float f_dc_0\nproperty float f_dc_1\nproperty float f_dc_2\n", f);
+          "property float f_dc_0\nproperty float f_dc_1\nproperty float f_dc_2\n",
+          f);
     for (int i = 0; i < n_rest; i++)
         fprintf(f, "property float f_rest_%d\n", i);
     fputs("property float opacity\n"
           "property float scale_0\nproperty float scale_1\nproperty float scale_2\n"
           "property float rot_0\nproperty float rot_1\n"
-          "property float rot_2\nproperty float rot_3\n", f);
+          "property float rot_2\nproperty float rot_3\n",
+          f);
     for (const char *c = x->comment; *c != '\0'; c++) {
         if (c == x->comment || c[-1] == '\n')
             fputs("comment ", f);
@@ -72,7 +74,7 @@ static int write_ply(FILE *f, const ted4_frame *x)
     if (write_header(f, x, 3 * (ted4_sh_count(x->sh_degree) - 1)) != 0)
         return -1;
     for (size_t i = 0; i < x->n; i++) {
-        float   v[MAX_FLOATS];
+        float v[MAX_FLOATS];
         uint8_t bytes[4 * MAX_FLOATS];
         const int n = fill_record(v, x, i);
 

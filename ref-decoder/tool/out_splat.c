@@ -12,7 +12,10 @@
 
 enum { SPLAT_SIZE = 32 };
 
-typedef struct { double weight; size_t index; } splat_order;
+typedef struct {
+    double weight;
+    size_t index;
+} splat_order;
 
 static int by_weight(const void *a, const void *b)
 {
@@ -51,7 +54,7 @@ static int write_splat(FILE *f, const ted4_frame *x)
     if (order == NULL)
         return -1;
     for (size_t i = 0; i < x->n; i++)
-        order[i] = (splat_order){
+        order[i] = (splat_order) {
             (double)x->scale[0][i] * x->scale[1][i] * x->scale[2][i] * x->opacity[i], i
         };
     qsort(order, x->n, sizeof *order, by_weight);
@@ -65,6 +68,5 @@ static int write_splat(FILE *f, const ted4_frame *x)
     return r;
 }
 
-const ted4_format ted4_format_splat = {
-    ".splat", "32 bytes a Gaussian, largest first; one colour", 0, write_splat
-};
+const ted4_format ted4_format_splat = { ".splat", "32 bytes a Gaussian, largest first; one colour",
+                                        0, write_splat };

@@ -64,8 +64,8 @@ static int find_conversion(const char *pattern, size_t *at, size_t *length, int 
 
         if (pattern[i] != '%')
             continue;
-        *at    = i;
-        *zero  = pattern[k] == '0';
+        *at = i;
+        *zero = pattern[k] == '0';
         *width = 0;
         k += (size_t)*zero;
         if (pattern[k] >= '1' && pattern[k] <= '9')

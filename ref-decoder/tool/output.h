@@ -11,15 +11,15 @@
 enum { TED4_PATH_SIZE = 4096 };
 
 typedef struct {
-    FILE *file;                         /* open for writing bytes */
-    char  path[TED4_PATH_SIZE], temporary[TED4_PATH_SIZE];
+    FILE *file; /* open for writing bytes */
+    char path[TED4_PATH_SIZE], temporary[TED4_PATH_SIZE];
 } ted4_output;
 
 /* Opens a temporary file next to path. 0, or -1 with errno set. */
-int  ted4_output_open(ted4_output *o, const char *path);
+int ted4_output_open(ted4_output *o, const char *path);
 /* Flushes, closes and renames to path, replacing what is there. 0, or -1 with errno set and the
  * temporary file gone. */
-int  ted4_output_close(ted4_output *o);
+int ted4_output_close(ted4_output *o);
 /* Closes and removes the temporary file; errno is kept. */
 void ted4_output_cancel(ted4_output *o);
 

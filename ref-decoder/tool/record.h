@@ -9,10 +9,12 @@
 enum { TED4_RECORD_FLOATS = 14 };
 
 /* Columns in record order, of anything with members mean, scale, rot, opacity, colour. */
-#define TED4_RECORD_COLUMNS(g) { \
-    (g)->mean[0], (g)->mean[1], (g)->mean[2], (g)->scale[0], (g)->scale[1], (g)->scale[2], \
-    (g)->rot[0], (g)->rot[1], (g)->rot[2], (g)->rot[3], (g)->opacity, \
-    (g)->colour[0], (g)->colour[1], (g)->colour[2] }
+#define TED4_RECORD_COLUMNS(g)                                                                 \
+    {                                                                                          \
+        (g)->mean[0], (g)->mean[1], (g)->mean[2], (g)->scale[0], (g)->scale[1], (g)->scale[2], \
+            (g)->rot[0], (g)->rot[1], (g)->rot[2], (g)->rot[3], (g)->opacity, (g)->colour[0],  \
+            (g)->colour[1], (g)->colour[2]                                                     \
+    }
 
 static inline void ted4_record_store(uint8_t bytes[4 * TED4_RECORD_FLOATS],
                                      const float *const column[TED4_RECORD_FLOATS], size_t i)

@@ -18,10 +18,10 @@ static const float OPACITY_MIN = 1.0f / 255.0f;
 
 typedef struct {
     const ted4_sampler *sampler;
-    ted4_query          query;
-    const size_t       *kept;
-    size_t              n;
-    ted4_status         status;
+    ted4_query query;
+    const size_t *kept;
+    size_t n;
+    ted4_status status;
 } direction_job;
 
 static int sample_direction(void *user, const double direction[3], float *const colour[3])
@@ -53,12 +53,9 @@ static ted4_status fit_colours(const ted4_sampler *s, const ted4_query *q, ted4_
         return TED4_OK;
     }
     switch (ted4_sh_fit(s->sh_degree, x->n, sample_direction, &j, sh, &out->sh_rms)) {
-    case 0:
-        return TED4_OK;
-    case 1:
-        return j.status;
-    default:
-        return TED4_E_LIMIT_MEMORY;
+    case 0: return TED4_OK;
+    case 1: return j.status;
+    default: return TED4_E_LIMIT_MEMORY;
     }
 }
 
@@ -114,7 +111,7 @@ ted4_status ted4_sample_make(const ted4_sampler *s, uint32_t num, uint32_t den, 
     ted4_gaussians g;
     ted4_status status = ted4_recon_query(s->recon, &q, s->parallel, &g);
 
-    *out = (ted4_sample){ .frame.comment = "" };
+    *out = (ted4_sample) { .frame.comment = "" };
     if (status == TED4_OK)
         status = sample_kept(s, &q, &g, out);
     if (status != TED4_OK)
@@ -126,5 +123,5 @@ void ted4_sample_finish(ted4_sample *s)
 {
     free(s->block);
     free(s->kept);
-    *s = (ted4_sample){ .frame.comment = "" };
+    *s = (ted4_sample) { .frame.comment = "" };
 }

@@ -30,8 +30,7 @@ typedef int (*ted4_sh_sampler)(void *user, const double direction[3], float *con
  * square difference of fit and colours over 16 other
  * directions and all channels; 0 when n = 0. Returns 0, what the sampler returned, or -1: no
  * memory. */
-int ted4_sh_fit(int degree, size_t n, ted4_sh_sampler sample, void *user,
-                float *sh, double *rms);
+int ted4_sh_fit(int degree, size_t n, ted4_sh_sampler sample, void *user, float *sh, double *rms);
 
 /* sh of a colour that does not depend on direction. */
 void ted4_sh_constant(int degree, size_t n, const float *const colour[3], float *sh);

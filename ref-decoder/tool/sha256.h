@@ -1,4 +1,5 @@
-/* sha256.h - SHA-256 (FIPS 180-4) of a byte string that comes in pieces. Used where files have to be named for other programs.
+/* sha256.h - SHA-256 (FIPS 180-4) of a byte string that comes in pieces. Used where files have to
+ * be named for other programs.
  * SPDX-License-Identifier: BSD-2-Clause */
 #ifndef TED4_SHA256_H
 #define TED4_SHA256_H
@@ -10,8 +11,8 @@ enum { TED4_SHA256_SIZE = 32 };
 
 typedef struct {
     uint32_t state[8];
-    uint64_t size;              /* bytes so far */
-    uint8_t  block[64];         /* the last size % 64 of them */
+    uint64_t size;     /* bytes so far */
+    uint8_t block[64]; /* the last size % 64 of them */
 } ted4_sha256;
 
 void ted4_sha256_init(ted4_sha256 *h);

@@ -10,7 +10,7 @@ ted4_similar ted4_similar_to(const char *word, size_t length)
 {
     const size_t most = length / 3 > 1 ? length / 3 : 1;
 
-    return (ted4_similar){ word, length, most + 1, NULL };
+    return (ted4_similar) { word, length, most + 1, NULL };
 }
 
 static size_t least(size_t a, size_t b)

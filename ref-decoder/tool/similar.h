@@ -6,14 +6,14 @@
 #include <stddef.h>
 
 typedef struct {
-    const char *word;           /* borrowed; need not end */
-    size_t      length, distance;
-    const char *best;           /* borrowed; NULL: nothing is like it */
+    const char *word; /* borrowed; need not end */
+    size_t length, distance;
+    const char *best; /* borrowed; NULL: nothing is like it */
 } ted4_similar;
 
 ted4_similar ted4_similar_to(const char *word, size_t length);
 /* Takes name if none before was as much like the word: letters left out, put in, changed, or two in
  * turn. Names a third of whose letters differ are not like it. */
-void         ted4_similar_try(ted4_similar *s, const char *name);
+void ted4_similar_try(ted4_similar *s, const char *name);
 
 #endif

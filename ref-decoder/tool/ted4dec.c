@@ -41,27 +41,46 @@ enum {
 };
 
 static const ted4_argument OPTIONS[N_OPTIONS] = {
-    [OPT_OUTPUT]    = { 'o', "output", "FILE", "write Gaussians, one file a frame; the name ends in a format below and may hold one %d" },
-    [OPT_FRAMES]    = { 0, "frames", "A:B:STEP", "frames A to B - 1 by STEP; parts may be missing; A alone: that frame. Default: all" },
-    [OPT_TIME]      = { 0, "time", "T", "one time from 0 to 1 instead, as 0.25 or 7/30" },
-    [OPT_CENTRE]    = { 0, "camera-centre", "X,Y,Z", "where --hash and -o look from, in world coordinates. Default 0,0,0" },
-    [OPT_SH_DEGREE] = { 0, "sh-degree", "N", "spherical harmonics that stand for view-dependent colours, 0 to 3. Default 0" },
-    [OPT_KEEP_ALL]  = { 0, "keep-all", NULL, "also write Gaussians whose opacity is below 1/255" },
-    [OPT_RENDER]    = { 0, "render", "FILE.png", "draw the cameras of --camera; the name may hold one %d" },
-    [OPT_CAMERA]    = { 0, "camera", "FILE.json", "list of {width, height, fx, fy, cx, cy, R[9], t[3], frame or time}" },
-    [OPT_HASH]      = { 0, "hash", NULL, "print the hash of the decoded integers and, for --frames or --time, of these queries" },
-    [OPT_TEST]      = { 0, "test", NULL, "only decode, checking everything, and tell time and peak memory (also what happens when nothing else is asked for)" },
-    [OPT_LENIENT]   = { 0, "lenient", NULL, "of a damaged or truncated file take the first whole tiles, and say so" },
-    [OPT_TRACE]     = { 0, "trace", NULL, "print every syntax element: byte offset, name, index, value" },
-    [OPT_MEMORY]    = { 0, "max-memory", "BYTES", "refuse a file that takes more, as a scene or for queries. Default 4 GiB each" },
-    [OPT_WORK]      = { 0, "max-work", "STEPS", "refuse a file that asks for more steps, also for one query (specification 13.4). Default: any number" },
-    [OPT_THREADS]   = { 'j', "threads", "N", "threads; 0: all cores. Default 0" },
-    [OPT_FORCE]     = { 'f', "force", NULL, "overwrite files" },
-    [OPT_JSON]      = { 0, "json", NULL, "results as one JSON object" },
-    [OPT_QUIET]     = { 'q', "quiet", NULL, "errors and warnings only" },
-    [OPT_VERBOSE]   = { 'v', "verbose", NULL, "say more" },
-    [OPT_HELP]      = TED4_ARGUMENT_HELP,
-    [OPT_VERSION]   = TED4_ARGUMENT_VERSION,
+    [OPT_OUTPUT] = { 'o', "output", "FILE",
+                     "write Gaussians, one file a frame; the name ends in a format below and may "
+                     "hold one %d" },
+    [OPT_FRAMES] = { 0, "frames", "A:B:STEP",
+                     "frames A to B - 1 by STEP; parts may be missing; A alone: that frame. "
+                     "Default: all" },
+    [OPT_TIME] = { 0, "time", "T", "one time from 0 to 1 instead, as 0.25 or 7/30" },
+    [OPT_CENTRE] = { 0, "camera-centre", "X,Y,Z",
+                     "where --hash and -o look from, in world coordinates. Default 0,0,0" },
+    [OPT_SH_DEGREE] = { 0, "sh-degree", "N",
+                        "spherical harmonics that stand for view-dependent colours, 0 to 3. "
+                        "Default 0" },
+    [OPT_KEEP_ALL] = { 0, "keep-all", NULL, "also write Gaussians whose opacity is below 1/255" },
+    [OPT_RENDER] = { 0, "render", "FILE.png",
+                     "draw the cameras of --camera; the name may hold one %d" },
+    [OPT_CAMERA] = { 0, "camera", "FILE.json",
+                     "list of {width, height, fx, fy, cx, cy, R[9], t[3], frame or time}" },
+    [OPT_HASH] = { 0, "hash", NULL,
+                   "print the hash of the decoded integers and, for --frames or --time, of these "
+                   "queries" },
+    [OPT_TEST] = { 0, "test", NULL,
+                   "only decode, checking everything, and tell time and peak memory (also what "
+                   "happens when nothing else is asked for)" },
+    [OPT_LENIENT] = { 0, "lenient", NULL,
+                      "of a damaged or truncated file take the first whole tiles, and say so" },
+    [OPT_TRACE] = { 0, "trace", NULL,
+                    "print every syntax element: byte offset, name, index, value" },
+    [OPT_MEMORY] = { 0, "max-memory", "BYTES",
+                     "refuse a file that takes more, as a scene or for queries. Default 4 GiB "
+                     "each" },
+    [OPT_WORK] = { 0, "max-work", "STEPS",
+                   "refuse a file that asks for more steps, also for one query (specification "
+                   "13.4). Default: any number" },
+    [OPT_THREADS] = { 'j', "threads", "N", "threads; 0: all cores. Default 0" },
+    [OPT_FORCE] = { 'f', "force", NULL, "overwrite files" },
+    [OPT_JSON] = { 0, "json", NULL, "results as one JSON object" },
+    [OPT_QUIET] = { 'q', "quiet", NULL, "errors and warnings only" },
+    [OPT_VERBOSE] = { 'v', "verbose", NULL, "say more" },
+    [OPT_HELP] = TED4_ARGUMENT_HELP,
+    [OPT_VERSION] = TED4_ARGUMENT_VERSION,
 };
 
 static void print_formats(FILE *f)
@@ -124,27 +143,20 @@ static int set_option(ted4_settings *s, int option, const char *value)
         return ted4_arguments_floats(value, 3, s->centre) != 0
                    ? usage_error("--camera-centre", value)
                    : 0;
-    case OPT_SH_DEGREE:
-        return set_number("--sh-degree", value, TED4_SH_MAX_DEGREE, &s->sh_degree);
+    case OPT_SH_DEGREE: return set_number("--sh-degree", value, TED4_SH_MAX_DEGREE, &s->sh_degree);
     case OPT_RENDER:
         s->render = value;
         return ted4_pattern_count(value) < 0 ? usage_error("bad file name", value) : 0;
-    case OPT_CAMERA:
-        s->cameras = value;
-        return 0;
-    case OPT_MEMORY:
-        return set_bound("--max-memory", value, &s->max_memory);
-    case OPT_WORK:
-        return set_bound("--max-work", value, &s->max_work);
-    case OPT_THREADS:
-        return set_number("--threads", value, TED4_MAX_THREADS, &s->threads);
-    default:
-        break;
+    case OPT_CAMERA: s->cameras = value; return 0;
+    case OPT_MEMORY: return set_bound("--max-memory", value, &s->max_memory);
+    case OPT_WORK: return set_bound("--max-work", value, &s->max_work);
+    case OPT_THREADS: return set_number("--threads", value, TED4_MAX_THREADS, &s->threads);
+    default: break;
     }
     int *const flag[N_OPTIONS] = {
-        [OPT_KEEP_ALL] = &s->keep_all, [OPT_HASH] = &s->hash,      [OPT_TEST] = &s->test,
-        [OPT_LENIENT] = &s->lenient, [OPT_TRACE] = &s->trace,       [OPT_FORCE] = &s->force,    [OPT_JSON] = &s->json,
-        [OPT_QUIET] = &s->quiet,       [OPT_VERBOSE] = &s->verbose
+        [OPT_KEEP_ALL] = &s->keep_all, [OPT_HASH] = &s->hash,   [OPT_TEST] = &s->test,
+        [OPT_LENIENT] = &s->lenient,   [OPT_TRACE] = &s->trace, [OPT_FORCE] = &s->force,
+        [OPT_JSON] = &s->json,         [OPT_QUIET] = &s->quiet, [OPT_VERBOSE] = &s->verbose
     };
 
     *flag[option] = 1;
@@ -169,7 +181,7 @@ static int parse(ted4_settings *s, int argc, char **argv)
 {
     const char *value;
 
-    *s = (ted4_settings){ .range = { 0, UINT32_MAX, 1 } };
+    *s = (ted4_settings) { .range = { 0, UINT32_MAX, 1 } };
     for (int i; (i = ted4_arguments_next(&COMMAND, argc, argv, &value)) != TED4_ARGUMENTS_END;) {
         if (i == TED4_ARGUMENTS_BAD)
             return TED4_EXIT_TOOL;
@@ -204,7 +216,7 @@ static int run(ted4_session *s)
     if (code != TED4_EXIT_FINE || !set->json)
         return code;
 
-    json_t *const name = json_string(set->input);       /* NULL: not UTF-8 */
+    json_t *const name = json_string(set->input); /* NULL: not UTF-8 */
 
     json_object_set_new(s->report, "file", name != NULL ? name : json_null());
     if (json_object_get(s->report, "verdict") == NULL)
@@ -231,8 +243,8 @@ int main(int argc, char **argv)
         return code;
     ted4_threads_init(&s.parallel, set.threads);
     s.report = json_object();
-    if (set.cameras != NULL
-        && ted4_camera_list_load(&s.cameras, set.cameras, why, sizeof why) != 0) {
+    if (set.cameras != NULL &&
+        ted4_camera_list_load(&s.cameras, set.cameras, why, sizeof why) != 0) {
         fprintf(stderr, "ted4dec: %s: %s\n", set.cameras, why);
         code = TED4_EXIT_TOOL;
     } else {

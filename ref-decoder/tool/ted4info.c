@@ -17,34 +17,56 @@
 #include "threads.h"
 #include "told.h"
 
-enum { OPT_BUDGET, OPT_WHY, OPT_VALIDATE, OPT_MEMORY, OPT_WORK, OPT_THREADS, OPT_JSON, OPT_QUIET, OPT_VERBOSE, OPT_HELP, OPT_VERSION, N_OPTIONS };
+enum {
+    OPT_BUDGET,
+    OPT_WHY,
+    OPT_VALIDATE,
+    OPT_MEMORY,
+    OPT_WORK,
+    OPT_THREADS,
+    OPT_JSON,
+    OPT_QUIET,
+    OPT_VERBOSE,
+    OPT_HELP,
+    OPT_VERSION,
+    N_OPTIONS
+};
 
 static const ted4_argument OPTIONS[N_OPTIONS] = {
-    [OPT_BUDGET]  = { 0, "budget", NULL, "attribute every byte of the file to a syntax element" },
-    [OPT_WHY]     = { 0, "why", NULL, "what the encoder says of its decisions, if it was asked to (ted4enc --why)" },
-    [OPT_VALIDATE] = { 0, "validate", NULL, "for authors of encoders: every error, and what is legal but doubtful, with byte offset and rule" },
-    [OPT_MEMORY]  = { 0, "max-memory", "BYTES", "refuse a file that takes more. Default 4 GiB" },
-    [OPT_WORK]    = { 0, "max-work", "STEPS", "refuse a file that asks for more steps (specification 13.4). Default: any number" },
-    [OPT_THREADS] = { 'j', "threads", "N", "accepted; elements are listed in order, by one thread" },
-    [OPT_JSON]    = { 0, "json", NULL, "everything as one JSON object" },
-    [OPT_QUIET]   = { 'q', "quiet", NULL, "errors only: is the file valid?" },
+    [OPT_BUDGET] = { 0, "budget", NULL, "attribute every byte of the file to a syntax element" },
+    [OPT_WHY] = { 0, "why", NULL,
+                  "what the encoder says of its decisions, if it was asked to (ted4enc --why)" },
+    [OPT_VALIDATE] = { 0, "validate", NULL,
+                       "for authors of encoders: every error, and what is legal but doubtful, with "
+                       "byte offset and rule" },
+    [OPT_MEMORY] = { 0, "max-memory", "BYTES", "refuse a file that takes more. Default 4 GiB" },
+    [OPT_WORK] = { 0, "max-work", "STEPS",
+                   "refuse a file that asks for more steps (specification 13.4). Default: any "
+                   "number" },
+    [OPT_THREADS] = { 'j', "threads", "N",
+                      "accepted; elements are listed in order, by one thread" },
+    [OPT_JSON] = { 0, "json", NULL, "everything as one JSON object" },
+    [OPT_QUIET] = { 'q', "quiet", NULL, "errors only: is the file valid?" },
     [OPT_VERBOSE] = { 'v', "verbose", NULL, "also every element of the header" },
-    [OPT_HELP]    = TED4_ARGUMENT_HELP,
+    [OPT_HELP] = TED4_ARGUMENT_HELP,
     [OPT_VERSION] = TED4_ARGUMENT_VERSION,
 };
 
 static const ted4_command COMMAND = {
-    "ted4info", "FILE.ted4 [options]        (- reads standard input)",
+    "ted4info",
+    "FILE.ted4 [options]        (- reads standard input)",
     "Says what a TED4 file holds.",
-    OPTIONS, N_OPTIONS,
-    "Exit codes: 0 fine, 1 file refused, 2 fine with warnings (--validate), 3 usage, input, output or resources.\n",
+    OPTIONS,
+    N_OPTIONS,
+    "Exit codes: 0 fine, 1 file refused, 2 fine with warnings (--validate), 3 usage, input, output "
+    "or resources.\n",
     NULL,
 };
 
 typedef struct {
     const char *input;
-    int         on[N_OPTIONS];          /* flags given */
-    int64_t     max_memory, max_work;   /* 0: not given */
+    int on[N_OPTIONS];            /* flags given */
+    int64_t max_memory, max_work; /* 0: not given */
 } settings;
 
 static int usage_error(const char *text)
@@ -57,7 +79,7 @@ static int usage_error(const char *text)
 static int parse(settings *s, int argc, char **argv)
 {
     const char *value;
-    int64_t     threads;
+    int64_t threads;
 
     memset(s, 0, sizeof *s);
     for (int i; (i = ted4_arguments_next(&COMMAND, argc, argv, &value)) != TED4_ARGUMENTS_END;) {
@@ -106,10 +128,13 @@ static void print_frames(const ted4_info *info)
 
 static void print_summary(const settings *s, const ted4_info *info, size_t size)
 {
-    static const char *const motion[] = {
-        [TED4_MOTION_NONE] = "none", [TED4_MOTION_BANK] = "bank", [TED4_MOTION_CONCAT] = "concat", [TED4_MOTION_INR] = "inr"
+    static const char *const motion[] = { [TED4_MOTION_NONE] = "none",
+                                          [TED4_MOTION_BANK] = "bank",
+                                          [TED4_MOTION_CONCAT] = "concat",
+                                          [TED4_MOTION_INR] = "inr" };
+    static const char *const view[] = {
+        [TED4_VIEW_NONE] = "none", [TED4_VIEW_COLOUR] = "colour", [TED4_VIEW_FULL] = "full"
     };
-    static const char *const view[] = { [TED4_VIEW_NONE] = "none", [TED4_VIEW_COLOUR] = "colour", [TED4_VIEW_FULL] = "full" };
     char hash[33];
 
     ted4_hex(hash, info->hash, sizeof info->hash);
@@ -117,9 +142,12 @@ static void print_summary(const settings *s, const ted4_info *info, size_t size)
     printf("anchors     %" PRIu32 ", moving %" PRIu32 "\n", info->n_anchors, info->n_dynamic);
     printf("Gaussians   %zu, at most %" PRIu32 " an anchor\n", info->n_gaussians, info->n_offsets);
     print_frames(info);
-    printf("motion      %s; activation %s; view %s\n", motion[info->motion], info->activation ? "yes" : "no", view[info->view]);
-    printf("space       origin %.9g %.9g %.9g, unit 2^%d\n", (double)info->origin[0], (double)info->origin[1], (double)info->origin[2], info->exponent);
-    printf("background  #%02x%02x%02x\n", info->background[0], info->background[1], info->background[2]);
+    printf("motion      %s; activation %s; view %s\n", motion[info->motion],
+           info->activation ? "yes" : "no", view[info->view]);
+    printf("space       origin %.9g %.9g %.9g, unit 2^%d\n", (double)info->origin[0],
+           (double)info->origin[1], (double)info->origin[2], info->exponent);
+    printf("background  #%02x%02x%02x\n", info->background[0], info->background[1],
+           info->background[2]);
     printf("hash        %s\n", hash);
 }
 
@@ -143,13 +171,16 @@ static void print_header(const ted4_budget *b)
 
 static void print_budget(const ted4_budget *b, size_t size)
 {
-    printf("%-6s %-20s %12s %8s %12s %12s\n", "chunk", "element", "bytes", "%", "symbols", "bits/symbol");
+    printf("%-6s %-20s %12s %8s %12s %12s\n", "chunk", "element", "bytes", "%", "symbols",
+           "bits/symbol");
     for (int i = 0; i < b->n_rows; i++) {
         const ted4_budget_row *const r = &b->row[i];
 
-        printf("%-6s %-20s %12" PRIu64 " %8.3f", r->chunk, r->element, r->bytes, 100.0 * (double)r->bytes / (double)size);
+        printf("%-6s %-20s %12" PRIu64 " %8.3f", r->chunk, r->element, r->bytes,
+               100.0 * (double)r->bytes / (double)size);
         if (r->symbols > 0)
-            printf(" %12" PRIu64 " %12.4f", r->symbols, 8.0 * (double)r->bytes / (double)r->symbols);
+            printf(" %12" PRIu64 " %12.4f", r->symbols,
+                   8.0 * (double)r->bytes / (double)r->symbols);
         printf("\n");
     }
     printf("%-6s %-20s %12zu\n", "all", "", size);
@@ -161,9 +192,12 @@ static json_t *header_json(const ted4_budget *b)
 
     for (int i = 0; i < b->n_header; i++) {
         const ted4_header_value *const v = &b->header[i];
-        json_t *const value = is_float(v->name) ? json_real((double)ted4_bits_float((uint32_t)v->value)) : json_integer(integer_value(v));
+        json_t *const value = is_float(v->name)
+                                  ? json_real((double)ted4_bits_float((uint32_t)v->value))
+                                  : json_integer(integer_value(v));
         json_t *list = json_object_get(o, v->name);
-        const int is_list = is_float(v->name) || strcmp(v->name, "slice") == 0 || strcmp(v->name, "background") == 0;
+        const int is_list = is_float(v->name) || strcmp(v->name, "slice") == 0 ||
+                            strcmp(v->name, "background") == 0;
 
         if (list == NULL && is_list) {
             list = json_array();
@@ -183,7 +217,8 @@ static json_t *budget_json(const ted4_budget *b)
 
     for (int i = 0; i < b->n_rows; i++) {
         const ted4_budget_row *const r = &b->row[i];
-        json_t *const o = json_pack("{s:s, s:s, s:I}", "chunk", r->chunk, "element", r->element, "bytes", (json_int_t)r->bytes);
+        json_t *const o = json_pack("{s:s, s:s, s:I}", "chunk", r->chunk, "element", r->element,
+                                    "bytes", (json_int_t)r->bytes);
 
         if (r->symbols > 0)
             json_object_set_new(o, "symbols", json_integer((json_int_t)r->symbols));
@@ -192,16 +227,19 @@ static json_t *budget_json(const ted4_budget *b)
     return list;
 }
 
-static void print_json(const settings *s, const ted4_info *info, const ted4_budget *b, const uint8_t *data, size_t size)
+static void print_json(const settings *s, const ted4_info *info, const ted4_budget *b,
+                       const uint8_t *data, size_t size)
 {
-    json_t *const name = json_string(s->input);         /* NULL: not UTF-8 */
-    char    hash[33];
+    json_t *const name = json_string(s->input); /* NULL: not UTF-8 */
+    char hash[33];
     json_t *o;
 
     ted4_hex(hash, info->hash, sizeof info->hash);
-    o = json_pack("{s:o, s:s, s:I, s:i, s:s, s:I, s:I, s:I, s:o}", "file", name != NULL ? name : json_null(), "verdict", "valid",
-                  "bytes", (json_int_t)size, "level", info->level, "hash", hash, "anchors", (json_int_t)info->n_anchors,
-                  "moving", (json_int_t)info->n_dynamic, "gaussians", (json_int_t)info->n_gaussians, "header", header_json(b));
+    o = json_pack("{s:o, s:s, s:I, s:i, s:s, s:I, s:I, s:I, s:o}", "file",
+                  name != NULL ? name : json_null(), "verdict", "valid", "bytes", (json_int_t)size,
+                  "level", info->level, "hash", hash, "anchors", (json_int_t)info->n_anchors,
+                  "moving", (json_int_t)info->n_dynamic, "gaussians", (json_int_t)info->n_gaussians,
+                  "header", header_json(b));
     if (s->on[OPT_BUDGET])
         json_object_set_new(o, "budget", budget_json(b));
     if (s->on[OPT_WHY])
@@ -211,7 +249,8 @@ static void print_json(const settings *s, const ted4_info *info, const ted4_budg
     json_decref(o);
 }
 
-static int show(const settings *s, const ted4_info *info, const ted4_budget *b, const uint8_t *data, size_t size)
+static int show(const settings *s, const ted4_info *info, const ted4_budget *b, const uint8_t *data,
+                size_t size)
 {
     if (s->on[OPT_JSON]) {
         print_json(s, info, b, data, size);
@@ -229,21 +268,24 @@ static int show(const settings *s, const ted4_info *info, const ted4_budget *b, 
 
 static int run(const settings *s, ted4_budget *budget)
 {
-    const ted4_options options = { .max_bytes = (uint64_t)s->max_memory, .max_work = (uint64_t)s->max_work,
-                                   .trace = ted4_budget_trace, .trace_user = budget };
-    ted4_error  e = { TED4_OK, 0 };
+    const ted4_options options = { .max_bytes = (uint64_t)s->max_memory,
+                                   .max_work = (uint64_t)s->max_work,
+                                   .trace = ted4_budget_trace,
+                                   .trace_user = budget };
+    ted4_error e = { TED4_OK, 0 };
     ted4_scene *scene = NULL;
-    ted4_info   info;
-    size_t      size;
+    ted4_info info;
+    size_t size;
     uint8_t *const data = ted4_read_file(s->input, &size);
-    int         code;
+    int code;
 
     if (data == NULL) {
         fprintf(stderr, "ted4info: %s: %s\n", s->input, strerror(errno));
         return TED4_EXIT_TOOL;
     }
     if (s->on[OPT_VALIDATE]) {
-        code = ted4_findings_print(s->input, data, size, &options, s->on[OPT_JSON], s->on[OPT_QUIET]);
+        code =
+            ted4_findings_print(s->input, data, size, &options, s->on[OPT_JSON], s->on[OPT_QUIET]);
     } else if (ted4_decode(data, size, &options, &scene, &e) != TED4_OK) {
         code = ted4_report("ted4info", s->input, &e, s->on[OPT_JSON]);
     } else if (!ted4_budget_finish(budget, size)) {
@@ -265,7 +307,7 @@ static int run(const settings *s, ted4_budget *budget)
 int main(int argc, char **argv)
 {
     static ted4_budget budget;
-    settings  s;
+    settings s;
     const int code = parse(&s, argc, argv);
 
     return code >= 0 ? code : run(&s, &budget);

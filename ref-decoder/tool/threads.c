@@ -26,26 +26,26 @@ typedef struct team team;
 
 /* A thread, and its share of the indices; cache lines of its own. Member 0 is whoever calls run. */
 typedef struct {
-    _Alignas(64) atomic_size_t next;    /* first index not yet handed out */
-    size_t          end;
-    team           *team;
-    pthread_t       thread;
-    atomic_int      asleep;
+    _Alignas(64) atomic_size_t next; /* first index not yet handed out */
+    size_t end;
+    team *team;
+    pthread_t thread;
+    atomic_int asleep;
     pthread_mutex_t mutex;
-    pthread_cond_t  woken;
+    pthread_cond_t woken;
 } member;
 
 struct team {
-    _Alignas(64) atomic_uint round;     /* jobs begun; all that spinning threads look at */
-    _Alignas(64) atomic_uint inside;    /* workers in the job, and OPEN */
-    atomic_int      waker;              /* first member that those who wake have not looked at */
-    atomic_int      waiting;            /* the caller sleeps until the last worker has left */
+    _Alignas(64) atomic_uint round;  /* jobs begun; all that spinning threads look at */
+    _Alignas(64) atomic_uint inside; /* workers in the job, and OPEN */
+    atomic_int waker;                /* first member that those who wake have not looked at */
+    atomic_int waiting;              /* the caller sleeps until the last worker has left */
     pthread_mutex_t mutex;
-    pthread_cond_t  left;
-    void          (*body)(void *arg, size_t i);
-    void           *arg;
-    int             stop, n;            /* n: members */
-    member          member[TED4_MAX_THREADS];
+    pthread_cond_t left;
+    void (*body)(void *arg, size_t i);
+    void *arg;
+    int stop, n; /* n: members */
+    member member[TED4_MAX_THREADS];
 };
 
 static void relax(void)
@@ -64,7 +64,7 @@ static void take_indices(team *t, const member *m)
 
     for (int k = 0; k < t->n; k++) {
         member *owner = &t->member[(first + k) % t->n];
-        size_t  i;
+        size_t i;
 
         /* Looking before taking leaves the line where it is when nothing is left. */
         while (atomic_load_explicit(&owner->next, memory_order_relaxed) < owner->end) {
@@ -135,8 +135,8 @@ static void leave(team *t)
 
 static void *work(void *user)
 {
-    member  *m = user;
-    team    *t = m->team;
+    member *m = user;
+    team *t = m->team;
     unsigned last = 0;
 
     for (int stop = 0; !stop;) {

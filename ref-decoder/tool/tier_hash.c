@@ -11,12 +11,12 @@
 enum { BUFFER = 1 << 14, VALUES = 14 };
 
 struct ted4_tier_hash {
-    FILE         *keep;
-    XXH3_state_t *xxh3;         /* owned */
-    ted4_sha256   sha256;
-    uint64_t      size;
-    size_t        n;            /* bytes that wait */
-    uint8_t       bytes[BUFFER];
+    FILE *keep;
+    XXH3_state_t *xxh3; /* owned */
+    ted4_sha256 sha256;
+    uint64_t size;
+    size_t n; /* bytes that wait */
+    uint8_t bytes[BUFFER];
 };
 
 ted4_tier_hash *ted4_tier_hash_new(FILE *keep)
@@ -41,7 +41,7 @@ static void flush(ted4_tier_hash *h)
     (void)XXH3_128bits_update(h->xxh3, h->bytes, h->n);
     ted4_sha256_add(&h->sha256, h->bytes, h->n);
     if (h->keep != NULL)
-        fwrite(h->bytes, 1, h->n, h->keep);     /* the owner of keep asks ferror */
+        fwrite(h->bytes, 1, h->n, h->keep); /* the owner of keep asks ferror */
     h->size += h->n;
     h->n = 0;
 }
@@ -49,7 +49,7 @@ static void flush(ted4_tier_hash *h)
 void ted4_tier_hash_add(void *hash, const void *bytes, size_t size)
 {
     ted4_tier_hash *h = hash;
-    const uint8_t  *p = bytes;
+    const uint8_t *p = bytes;
 
     while (size > 0) {
         const size_t room = BUFFER - h->n, n = size < room ? size : room;
@@ -67,7 +67,7 @@ json_t *ted4_tier_hash_end(ted4_tier_hash *h)
 {
     XXH128_canonical_t canonical;
     uint8_t sha[TED4_SHA256_SIZE];
-    char    xxh3_hex[33], sha_hex[65];
+    char xxh3_hex[33], sha_hex[65];
     json_t *o;
 
     if (h == NULL)
@@ -77,7 +77,8 @@ json_t *ted4_tier_hash_end(ted4_tier_hash *h)
     ted4_sha256_end(&h->sha256, sha);
     ted4_hex(xxh3_hex, canonical.digest, sizeof canonical.digest);
     ted4_hex(sha_hex, sha, sizeof sha);
-    o = json_pack("{s:I, s:s, s:s}", "bytes", (json_int_t)h->size, "xxh3", xxh3_hex, "sha256", sha_hex);
+    o = json_pack("{s:I, s:s, s:s}", "bytes", (json_int_t)h->size, "xxh3", xxh3_hex, "sha256",
+                  sha_hex);
     XXH3_freeState(h->xxh3);
     free(h);
     return o;
@@ -85,11 +86,10 @@ json_t *ted4_tier_hash_end(ted4_tier_hash *h)
 
 void ted4_tier_records(const ted4_gaussians *g, ted4_sink *sink, void *user)
 {
-    const float *const channel[VALUES] = {
-        g->mean[0], g->mean[1], g->mean[2], g->scale[0], g->scale[1], g->scale[2],
-        g->rot[0], g->rot[1], g->rot[2], g->rot[3], g->opacity,
-        g->colour[0], g->colour[1], g->colour[2]
-    };
+    const float *const channel[VALUES] = { g->mean[0],   g->mean[1],  g->mean[2], g->scale[0],
+                                           g->scale[1],  g->scale[2], g->rot[0],  g->rot[1],
+                                           g->rot[2],    g->rot[3],   g->opacity, g->colour[0],
+                                           g->colour[1], g->colour[2] };
 
     for (size_t i = 0; i < g->n; i++) {
         uint8_t record[4 * VALUES];

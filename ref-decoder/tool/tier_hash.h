@@ -1,4 +1,5 @@
-/* tier_hash.h - spec J.1: a tier's byte string as it comes, hashed twice, counted and kept in a file if wanted.
+/* tier_hash.h - spec J.1: a tier's byte string as it comes, hashed twice, counted and kept in a
+ * file if wanted.
  * SPDX-License-Identifier: BSD-2-Clause */
 #ifndef TED4_TIER_HASH_H
 #define TED4_TIER_HASH_H

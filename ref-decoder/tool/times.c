@@ -33,7 +33,7 @@ int ted4_range_parse(const char *text, ted4_range *r)
 {
     const char *p;
 
-    *r = (ted4_range){ 0, UINT32_MAX, 1 };
+    *r = (ted4_range) { 0, UINT32_MAX, 1 };
     p = read_part(text, &r->first);
     if (p == NULL || *text == '\0')
         return -1;
@@ -108,5 +108,5 @@ ted4_time ted4_time_of_frame(uint32_t frame, uint32_t n_frames)
     const uint32_t common = last < DENOMINATORS ? 1 : divisor(last, frame);
     const ted4_time t = { frame / common, last / common };
 
-    return t.den < DENOMINATORS ? t : (ted4_time){ nearest((uint64_t)t.num * most, t.den), most };
+    return t.den < DENOMINATORS ? t : (ted4_time) { nearest((uint64_t)t.num * most, t.den), most };
 }

@@ -6,10 +6,14 @@
 #include <stdint.h>
 
 /* Time num / den as spec 11 takes it. */
-typedef struct { uint32_t num, den; } ted4_time;
+typedef struct {
+    uint32_t num, den;
+} ted4_time;
 
 /* Frames first, first + step, ... below end; end UINT32_MAX: to the last. */
-typedef struct { uint32_t first, end, step; } ted4_range;
+typedef struct {
+    uint32_t first, end, step;
+} ted4_range;
 
 /* "A:B:STEP" as in Python: from A up to, not including, B; each part may be missing, also its
  * colon. "A" alone is that frame. 0, or -1. */

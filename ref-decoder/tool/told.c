@@ -12,13 +12,13 @@ enum { FILE_HEADER = 12, FRAME_HEAD = 12, FRAME_HASH = 8, MOST = 1000 };
 /* Where line after line goes. */
 typedef struct {
     const char *word;
-    json_t     *list;           /* NULL: standard output */
+    json_t *list; /* NULL: standard output */
 } sink;
 
 static void put(const sink *to, const uint8_t *line, size_t n)
 {
     const size_t word = strlen(to->word);
-    char         text[MOST + 1];
+    char text[MOST + 1];
 
     if (n <= word || memcmp(line, to->word, word) != 0 || (line[word] != '=' && line[word] != '.'))
         return;

@@ -7,7 +7,8 @@
 #include <stddef.h>
 #include <stdint.h>
 
-/* Prints, of a file that a decoder accepted, the lines whose key is a word or begins with it and a dot; bytes that are no printable ASCII come out as '?'. */
+/* Prints, of a file that a decoder accepted, the lines whose key is a word or begins with it and a
+ * dot; bytes that are no printable ASCII come out as '?'. */
 void ted4_told_print(const uint8_t *data, size_t size, const char *word);
 /* The same as an array of strings. */
 json_t *ted4_told_json(const uint8_t *data, size_t size, const char *word);

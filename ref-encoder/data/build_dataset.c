@@ -10,15 +10,17 @@
 #include "data/data_util.h"
 #include "data/source.h"
 
-/* Is the file the integer fraction 1 / *n of what the lens says, rounded either way, when it is of this size? */
+/* Is the file the integer fraction 1 / *n of what the lens says, rounded either way, when it is of
+ * this size? */
 static int is_fraction(const ted4_lens *l, int width, int height, int *n)
 {
     *n = (l->width + width / 2) / width;
-    return *n >= 1 && fabs((double)l->width / *n - width) < 1 && fabs((double)l->height / *n - height) < 1;
+    return *n >= 1 && fabs((double)l->width / *n - width) < 1 &&
+           fabs((double)l->height / *n - height) < 1;
 }
 
-/* Makes the lens refer to the file's size. A file may be an integer fraction of what the lens says (the
- * images_2 folders of static sets); the whole extent then maps to the whole extent. */
+/* Makes the lens refer to the file's size. A file may be an integer fraction of what the lens says
+ * (the images_2 folders of static sets); the whole extent then maps to the whole extent. */
 static int fit_lens(ted4_shot *s, ted4_message *m)
 {
     ted4_lens *l = &s->lens;
@@ -26,17 +28,22 @@ static int fit_lens(ted4_shot *s, ted4_message *m)
     const double ax = (double)s->width / l->width, ay = (double)s->height / l->height;
 
     if (!(isfinite(l->fx) && isfinite(l->fy) && l->fx > 0 && l->fy > 0))
-        return ted4_say(m, "%s: focal lengths %g, %g, expected positive numbers", s->path, l->fx, l->fy);
+        return ted4_say(m, "%s: focal lengths %g, %g, expected positive numbers", s->path, l->fx,
+                        l->fy);
     if (!(isfinite(l->cx) && isfinite(l->cy)))
         return ted4_say(m, "%s: principal point %g, %g is not finite", s->path, l->cx, l->cy);
-    if (!(isfinite(l->k1) && isfinite(l->k2) && isfinite(l->p1) && isfinite(l->p2) && isfinite(l->k3) &&
-          isfinite(l->skew)))
+    if (!(isfinite(l->k1) && isfinite(l->k2) && isfinite(l->p1) && isfinite(l->p2) &&
+          isfinite(l->k3) && isfinite(l->skew)))
         return ted4_say(m, "%s: a distortion coefficient is not finite", s->path);
     if (!is_fraction(l, s->width, s->height, &n))
-        return ted4_say(m, "%s: the file is %dx%d%s, its camera says %dx%d, expected the same or an integer fraction of it",
+        return ted4_say(m,
+                        "%s: the file is %dx%d%s, its camera says %dx%d, expected the same or an "
+                        "integer fraction of it",
                         s->path, s->width, s->height,
-                        s->orientation >= 5 && is_fraction(l, s->height, s->width, &n) ?
-                        " (EXIF turns it by a quarter when shown; turn the pixels themselves)" : "", l->width, l->height);
+                        s->orientation >= 5 && is_fraction(l, s->height, s->width, &n)
+                            ? " (EXIF turns it by a quarter when shown; turn the pixels themselves)"
+                            : "",
+                        l->width, l->height);
     l->fx *= ax;
     l->cx *= ax;
     l->skew *= ax;
@@ -54,10 +61,12 @@ static int check_pose(const ted4_shot *s, ted4_message *m)
 {
     for (int i = 0; i < 9; i++)
         if (!isfinite(s->R[i]))
-            return ted4_say(m, "%s: its camera's rotation holds a value that is not finite", s->path);
+            return ted4_say(m, "%s: its camera's rotation holds a value that is not finite",
+                            s->path);
     for (int i = 0; i < 3; i++)
         if (!(fabs(s->t[i]) <= FARTHEST))
-            return ted4_say(m, "%s: its camera is %g units away, expected at most %g", s->path, fabs(s->t[i]), FARTHEST);
+            return ted4_say(m, "%s: its camera is %g units away, expected at most %g", s->path,
+                            fabs(s->t[i]), FARTHEST);
     return 0;
 }
 
@@ -69,8 +78,10 @@ static int left_to_reduce(const ted4_raw_scene *s, int downscale, int *n, ted4_m
 
     *n = done > 1 && downscale < done ? 1 : downscale / done;
     if (downscale > done && downscale % done != 0)
-        return ted4_say(m, "%s: the finest pictures are reduced by %d, a reduction by %d cannot be made of them",
-                        s->shots[0].path, done, downscale);
+        return ted4_say(
+            m,
+            "%s: the finest pictures are reduced by %d, a reduction by %d cannot be made of them",
+            s->shots[0].path, done, downscale);
     return 0;
 }
 
@@ -82,7 +93,8 @@ static int make_picture(ted4_picture *p, ted4_source *source, ted4_shot *s, int 
     if (fit_lens(s, m) != 0 || check_pose(s, m) != 0)
         return -1;
     if (n < 1 || s->width / n < 1 || s->height / n < 1)
-        return ted4_say(m, "%s: a picture of %dx%d cannot be reduced by %d", s->path, s->width, s->height, n);
+        return ted4_say(m, "%s: a picture of %dx%d cannot be reduced by %d", s->path, s->width,
+                        s->height, n);
     c->width = s->width / n;
     c->height = s->height / n;
     c->fx = s->lens.fx / n;
@@ -103,7 +115,10 @@ static int make_picture(ted4_picture *p, ted4_source *source, ted4_shot *s, int 
 }
 
 /* Pictures are of one camera when their labels are equal. */
-typedef struct { const char *label; uint32_t picture; } labelled;
+typedef struct {
+    const char *label;
+    uint32_t picture;
+} labelled;
 
 static int by_label(const void *a, const void *b)
 {
@@ -267,7 +282,8 @@ static int say_missing(ted4_raw_scene *s, ted4_message *m)
     return result != 0 ? ted4_say_no_memory(m) : 0;
 }
 
-static int take_points(ted4_dataset *d, ted4_raw_scene *s, const ted4_dataset_options *o, ted4_message *m)
+static int take_points(ted4_dataset *d, ted4_raw_scene *s, const ted4_dataset_options *o,
+                       ted4_message *m)
 {
     double centre[3] = { 0, 0, 0 }, half = TED4_BLENDER_HALF_CUBE;
 
@@ -291,7 +307,8 @@ static int take_points(ted4_dataset *d, ted4_raw_scene *s, const ted4_dataset_op
 
 /* Pictures with transparency were composited over the background the caller chose; without any,
  * what no Gaussian covers is black. */
-static void choose_background(ted4_dataset *d, const ted4_raw_scene *s, const ted4_dataset_options *o)
+static void choose_background(ted4_dataset *d, const ted4_raw_scene *s,
+                              const ted4_dataset_options *o)
 {
     int alpha = 0;
 
@@ -300,7 +317,8 @@ static void choose_background(ted4_dataset *d, const ted4_raw_scene *s, const te
     memset(d->background, alpha && o->white ? 255 : 0, sizeof d->background);
 }
 
-int ted4_build_dataset(ted4_dataset *d, ted4_raw_scene *s, const ted4_dataset_options *o, ted4_message *m)
+int ted4_build_dataset(ted4_dataset *d, ted4_raw_scene *s, const ted4_dataset_options *o,
+                       ted4_message *m)
 {
     int reduction;
 

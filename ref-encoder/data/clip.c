@@ -57,12 +57,14 @@ static int by_length(const void *a, const void *b)
 
 /* One of the forms in which a clip can lie in a folder. */
 typedef struct {
-    const char *parent;         /* of the entries to look at, in the scene's folder */
-    const char *inner;          /* folder that an entry must hold, NULL: the entry itself is the folder */
-    const char *end;            /* of a file's name, NULL: the entry is a folder */
+    const char *parent; /* of the entries to look at, in the scene's folder */
+    const char *inner;  /* folder that an entry must hold, NULL: the entry itself is the folder */
+    const char *end;    /* of a file's name, NULL: the entry is a folder */
 } form;
 
-static const form forms[] = { { "images", NULL, NULL }, { ".", "images", NULL }, { ".", NULL, ".mp4" } };
+static const form forms[] = { { "images", NULL, NULL },
+                              { ".", "images", NULL },
+                              { ".", NULL, ".mp4" } };
 
 static int fits(const form *f, const char *parent, const char *entry)
 {
@@ -72,7 +74,7 @@ static int fits(const form *f, const char *parent, const char *entry)
     char *inner = path != NULL && f->inner != NULL ? ted4_path_join(path, f->inner) : NULL;
     const int found = f->end != NULL ? has_end(entry, f->end) && path != NULL && ted4_is_file(path)
                                      : (f->inner == NULL ? path : inner) != NULL &&
-                                       ted4_is_folder(f->inner == NULL ? path : inner);
+                                           ted4_is_folder(f->inner == NULL ? path : inner);
     free(path);
     free(inner);
     return found;
@@ -83,7 +85,8 @@ static int add_fitting(ted4_name_list *l, const form *f, const char *parent)
     DIR *d = opendir(parent);
     int result = 0;
 
-    for (struct dirent *e = d == NULL ? NULL : readdir(d); e != NULL && result == 0; e = readdir(d)) {
+    for (struct dirent *e = d == NULL ? NULL : readdir(d); e != NULL && result == 0;
+         e = readdir(d)) {
         if (!fits(f, parent, e->d_name))
             continue;
         char *name = ted4_text_copy(e->d_name);
@@ -134,7 +137,8 @@ int ted4_clip_list(ted4_name_list *pictures, const char *folder, int lengths)
 /* folder/first/second if it is a folder; owned by the caller. */
 static char *inner_folder(const char *folder, const char *first, const char *second)
 {
-    char *outer = ted4_path_join(folder, first), *path = outer == NULL ? NULL : ted4_path_join(outer, second);
+    char *outer = ted4_path_join(folder, first),
+         *path = outer == NULL ? NULL : ted4_path_join(outer, second);
 
     free(outer);
     if (path != NULL && ted4_is_folder(path))
@@ -195,8 +199,9 @@ static int find_place(const char *folder, const char *name, const char *video, s
     return *place == NULL ? -1 : 1;
 }
 
-int ted4_clip_pictures(ted4_name_list *pictures, const char *folder, const char *name, const char *video,
-                       size_t most, const ted4_dataset_options *o, ted4_message *m)
+int ted4_clip_pictures(ted4_name_list *pictures, const char *folder, const char *name,
+                       const char *video, size_t most, const ted4_dataset_options *o,
+                       ted4_message *m)
 {
     char *place = NULL;
 
@@ -211,8 +216,8 @@ int ted4_clip_pictures(ted4_name_list *pictures, const char *folder, const char 
     return result;
 }
 
-int ted4_clip_add(ted4_raw_scene *s, const ted4_name_list *pictures, const char *name, const ted4_shot *model,
-                  ted4_message *m)
+int ted4_clip_add(ted4_raw_scene *s, const ted4_name_list *pictures, const char *name,
+                  const ted4_shot *model, ted4_message *m)
 {
     for (size_t i = 0; i < pictures->n; i++) {
         ted4_shot *shot = ted4_raw_scene_add(s, ted4_text_copy(pictures->names[i]), name, m);
@@ -235,7 +240,9 @@ int ted4_clip_lengths(ted4_raw_scene *s, size_t shortest, size_t longest, ted4_m
     if (shortest == longest)
         return 0;
     const int result = ted4_raw_scene_warn(
-        s, "clips have from %zu to %zu frames: at the last times some cameras are missing "
-        "(--max-frames %zu leaves these times out)", shortest, longest, shortest);
+        s,
+        "clips have from %zu to %zu frames: at the last times some cameras are missing "
+        "(--max-frames %zu leaves these times out)",
+        shortest, longest, shortest);
     return result == 0 ? 0 : ted4_say_no_memory(m);
 }

@@ -27,13 +27,14 @@ int ted4_clip_list(ted4_name_list *pictures, const char *folder, int by_length);
  * is there, else of images/NAME/ or NAME/images/, else of a video NAME.mp4 (.mov, .mkv, .avi,
  * .webm, .m4v). Videos are unpacked (see video.h). At most most pictures, 0: all. 1, or 0: there is
  * none of all these, or -1 with *m filled; *pictures is empty then. */
-int ted4_clip_pictures(ted4_name_list *pictures, const char *folder, const char *name, const char *video,
-                       size_t most, const ted4_dataset_options *o, ted4_message *m);
+int ted4_clip_pictures(ted4_name_list *pictures, const char *folder, const char *name,
+                       const char *video, size_t most, const ted4_dataset_options *o,
+                       ted4_message *m);
 
 /* Appends a shot for every picture: lens, pose and is_test of *model, time = index from its time
  * on, label = name. */
-int ted4_clip_add(ted4_raw_scene *s, const ted4_name_list *pictures, const char *name, const ted4_shot *model,
-                  ted4_message *m);
+int ted4_clip_add(ted4_raw_scene *s, const ted4_name_list *pictures, const char *name,
+                  const ted4_shot *model, ted4_message *m);
 
 /* Warns when clips that should show the same times have from shortest to longest frames. 0, or -1
  * with *m filled. */

@@ -1,7 +1,8 @@
 /* colmap_bin.c - COLMAP's binary model files, little-endian and packed. See colmap_file.h.
  * Format notes: each file is a u64 count, then the records
  *   camera   u32 id, i32 model, u64 width, u64 height, f64 parameters
- *   image    u32 id, f64 q[4] t[3], u32 camera, name ending in 0, u64 n, n x (f64 x, f64 y, u64 point)
+ *   image    u32 id, f64 q[4] t[3], u32 camera, name ending in 0, u64 n, n x (f64 x, f64 y, u64
+ *            point)
  *   point    u64 id, f64 xyz[3], u8 rgb[3], f64 error, u64 n, n x (u32 image, u32 index)
  * SPDX-License-Identifier: BSD-2-Clause */
 #include "data/colmap_file.h"
@@ -13,14 +14,20 @@
 #include "data/data_util.h"
 
 /* Smallest size of a record: what a count is checked against. */
-enum { CAMERA_MIN = 24 + 3 * 8, IMAGE_MIN = 64 + 1 + 8, OBSERVATION = 24, POINT_MIN = 43 + 8, TRACK = 8 };
+enum {
+    CAMERA_MIN = 24 + 3 * 8,
+    IMAGE_MIN = 64 + 1 + 8,
+    OBSERVATION = 24,
+    POINT_MIN = 43 + 8,
+    TRACK = 8
+};
 
 /* After the first read past the end every read gives 0 and overrun stays set. */
 typedef struct {
     const char *path;
-    uint8_t    *bytes;      /* owned */
-    size_t      size, at;
-    int         overrun;
+    uint8_t *bytes; /* owned */
+    size_t size, at;
+    int overrun;
 } reader;
 
 static const uint8_t *take(reader *r, size_t n)
@@ -63,7 +70,8 @@ static double real(reader *r)
 }
 
 /* Opens the file and reads the count, at most what the file has room for. */
-static int start(reader *r, const char *path, const char *what, size_t record_min, size_t *count, ted4_message *m)
+static int start(reader *r, const char *path, const char *what, size_t record_min, size_t *count,
+                 ted4_message *m)
 {
     memset(r, 0, sizeof *r);
     r->path = path;
@@ -111,7 +119,8 @@ static int read_camera(reader *r, ted4_colmap_camera *c, size_t index, ted4_mess
         return -1;
     for (size_t i = 0; i < n; i++)
         p[i] = real(r);
-    return r->overrun ? cut_short(r, where, m) : ted4_colmap_set_camera(c, model, width, height, p, where, m);
+    return r->overrun ? cut_short(r, where, m)
+                      : ted4_colmap_set_camera(c, model, width, height, p, where, m);
 }
 
 int ted4_colmap_bin_cameras(ted4_colmap *c, const char *path, ted4_message *m)
@@ -154,7 +163,8 @@ static int read_image(reader *r, ted4_colmap_image *image, size_t index, ted4_me
         qt[i] = real(r);
     image->camera = (uint32_t)integer(r, 4);
     const char *name = read_name(r);
-    snprintf(where, sizeof where, "%s: image \"%.200s\" (record %zu)", r->path, name == NULL ? "" : name, index);
+    snprintf(where, sizeof where, "%s: image \"%.200s\" (record %zu)", r->path,
+             name == NULL ? "" : name, index);
     skip(r, integer(r, 8), OBSERVATION);
     if (r->overrun)
         return cut_short(r, where, m);
@@ -188,7 +198,8 @@ static int read_point(reader *r, float *xyz, uint8_t *rgb, size_t index, ted4_me
     real(r);
     skip(r, integer(r, 8), TRACK);
     if (r->overrun)
-        return ted4_say(m, "%s: point %zu: the file ends here (%zu bytes)", r->path, index, r->size);
+        return ted4_say(m, "%s: point %zu: the file ends here (%zu bytes)", r->path, index,
+                        r->size);
     if (!isfinite(xyz[0]) || !isfinite(xyz[1]) || !isfinite(xyz[2]))
         return ted4_say(m, "%s: point %zu: a coordinate is not finite", r->path, index);
     return 0;

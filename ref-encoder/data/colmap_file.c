@@ -13,31 +13,42 @@
 enum { SIMPLE_PINHOLE, PINHOLE, SIMPLE_RADIAL, RADIAL, OPENCV, N_SUPPORTED };
 
 /* COLMAP's numbers are the positions in this table. Those after OPENCV are known by name only. */
-static const struct { const char *name; size_t n_parameters; } models[] = {
-    { "SIMPLE_PINHOLE", 3 },        /* f cx cy */
-    { "PINHOLE", 4 },               /* fx fy cx cy */
-    { "SIMPLE_RADIAL", 4 },         /* f cx cy k1 */
-    { "RADIAL", 5 },                /* f cx cy k1 k2 */
-    { "OPENCV", 8 },                /* fx fy cx cy k1 k2 p1 p2 */
-    { "OPENCV_FISHEYE", 0 },        { "FULL_OPENCV", 0 },  { "FOV", 0 },
-    { "SIMPLE_RADIAL_FISHEYE", 0 }, { "RADIAL_FISHEYE", 0 }, { "THIN_PRISM_FISHEYE", 0 },
+static const struct {
+    const char *name;
+    size_t n_parameters;
+} models[] = {
+    { "SIMPLE_PINHOLE", 3 }, /* f cx cy */
+    { "PINHOLE", 4 },        /* fx fy cx cy */
+    { "SIMPLE_RADIAL", 4 },  /* f cx cy k1 */
+    { "RADIAL", 5 },         /* f cx cy k1 k2 */
+    { "OPENCV", 8 },         /* fx fy cx cy k1 k2 p1 p2 */
+    { "OPENCV_FISHEYE", 0 },
+    { "FULL_OPENCV", 0 },
+    { "FOV", 0 },
+    { "SIMPLE_RADIAL_FISHEYE", 0 },
+    { "RADIAL_FISHEYE", 0 },
+    { "THIN_PRISM_FISHEYE", 0 },
     { "RAD_TAN_THIN_PRISM_FISHEYE", 0 },
 };
 enum { N_MODELS = sizeof models / sizeof models[0] };
 
-#define SUPPORTED "SIMPLE_PINHOLE, PINHOLE, SIMPLE_RADIAL, RADIAL or OPENCV (undistort the pictures with COLMAP first)"
+#define SUPPORTED                                                                            \
+    "SIMPLE_PINHOLE, PINHOLE, SIMPLE_RADIAL, RADIAL or OPENCV (undistort the pictures with " \
+    "COLMAP first)"
 
 int ted4_colmap_model_by_id(int64_t id, const char *where, size_t *n_parameters, ted4_message *m)
 {
     if (id < 0 || id >= N_MODELS)
-        return ted4_say(m, "%s: camera model number %lld, expected " SUPPORTED, where, (long long)id);
+        return ted4_say(m, "%s: camera model number %lld, expected " SUPPORTED, where,
+                        (long long)id);
     if (id >= N_SUPPORTED)
         return ted4_say(m, "%s: camera model %s, expected " SUPPORTED, where, models[id].name);
     *n_parameters = models[id].n_parameters;
     return (int)id;
 }
 
-int ted4_colmap_model_by_name(const char *name, const char *where, size_t *n_parameters, ted4_message *m)
+int ted4_colmap_model_by_name(const char *name, const char *where, size_t *n_parameters,
+                              ted4_message *m)
 {
     for (int i = 0; i < N_SUPPORTED; i++)
         if (strcmp(name, models[i].name) == 0) {
@@ -51,7 +62,7 @@ int ted4_colmap_set_camera(ted4_colmap_camera *c, int model, uint64_t width, uin
                            const double *p, const char *where, ted4_message *m)
 {
     ted4_lens *l = &c->lens;
-    const int two = model == PINHOLE || model == OPENCV;    /* focal lengths */
+    const int two = model == PINHOLE || model == OPENCV; /* focal lengths */
 
     if (width < 1 || height < 1 || width > TED4_IMAGE_MAX_SIDE || height > TED4_IMAGE_MAX_SIDE)
         return ted4_say(m, "%s: picture size %llux%llu, expected 1 to %d a side", where,
@@ -74,7 +85,8 @@ int ted4_colmap_set_camera(ted4_colmap_camera *c, int model, uint64_t width, uin
     return 0;
 }
 
-int ted4_colmap_set_pose(ted4_colmap_image *i, const double qt[7], const char *where, ted4_message *m)
+int ted4_colmap_set_pose(ted4_colmap_image *i, const double qt[7], const char *where,
+                         ted4_message *m)
 {
     const double norm2 = qt[0] * qt[0] + qt[1] * qt[1] + qt[2] * qt[2] + qt[3] * qt[3];
     const double n = 1 / sqrt(norm2);
@@ -98,8 +110,9 @@ int ted4_colmap_set_pose(ted4_colmap_image *i, const double qt[7], const char *w
 int ted4_colmap_reserve(void **array, size_t n, size_t record_size)
 {
     if (n != 0 && (n & (n - 1)) != 0)
-        return 0;                           /* full only at powers of two */
-    void *p = n > SIZE_MAX / 2 / record_size ? NULL : realloc(*array, (n == 0 ? 1 : 2 * n) * record_size);
+        return 0; /* full only at powers of two */
+    void *p = n > SIZE_MAX / 2 / record_size ? NULL
+                                             : realloc(*array, (n == 0 ? 1 : 2 * n) * record_size);
     if (p == NULL)
         return -1;
     *array = p;
@@ -109,8 +122,8 @@ int ted4_colmap_reserve(void **array, size_t n, size_t record_size)
 typedef int part_reader(ted4_colmap *c, const char *path, ted4_message *m);
 
 /* folder/name.bin, else folder/name.txt. 1: neither exists. */
-static int read_part(ted4_colmap *c, const char *folder, const char *name,
-                     part_reader *bin, part_reader *txt, ted4_message *m)
+static int read_part(ted4_colmap *c, const char *folder, const char *name, part_reader *bin,
+                     part_reader *txt, ted4_message *m)
 {
     part_reader *const reader[2] = { bin, txt };
 
@@ -133,7 +146,7 @@ static int read_part(ted4_colmap *c, const char *folder, const char *name,
 static int by_name(const void *a, const void *b)
 {
     const ted4_colmap_image *x = a, *y = b;
-    int                      order = strcmp(x->name, y->name);
+    int order = strcmp(x->name, y->name);
 
     /* A file may name a picture twice. */
     if (order == 0)
@@ -153,7 +166,9 @@ int ted4_colmap_read(ted4_colmap *c, const char *folder, ted4_message *m)
         return -1;
     if (c->n_images > 0)
         qsort(c->images, c->n_images, sizeof *c->images, by_name);
-    return read_part(c, folder, "points3D", ted4_colmap_bin_points, ted4_colmap_txt_points, m) < 0 ? -1 : 0;
+    return read_part(c, folder, "points3D", ted4_colmap_bin_points, ted4_colmap_txt_points, m) < 0
+               ? -1
+               : 0;
 }
 
 void ted4_colmap_free(ted4_colmap *c)

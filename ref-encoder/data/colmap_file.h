@@ -10,27 +10,27 @@
 #include "data/undistort.h"
 
 typedef struct {
-    uint32_t  id;
+    uint32_t id;
     ted4_lens lens;
 } ted4_colmap_camera;
 
 typedef struct {
-    char    *name;              /* owned; relative to images/ */
-    uint32_t camera;            /* id */
-    double   R[9], t[3];        /* world to camera */
+    char *name;        /* owned; relative to images/ */
+    uint32_t camera;   /* id */
+    double R[9], t[3]; /* world to camera */
 } ted4_colmap_image;
 
 typedef struct {
-    ted4_colmap_camera *cameras;    /* owned */
-    ted4_colmap_image  *images;     /* owned, sorted by name */
-    size_t              n_cameras, n_images;
-    ted4_point_cloud    cloud;      /* empty when the model has no points3D file */
+    ted4_colmap_camera *cameras; /* owned */
+    ted4_colmap_image *images;   /* owned, sorted by name */
+    size_t n_cameras, n_images;
+    ted4_point_cloud cloud; /* empty when the model has no points3D file */
 } ted4_colmap;
 
 /* Reads the model in folder (that holds cameras.bin or cameras.txt). Each file may be binary or
  * text on its own, binary first. Counts are checked against the file's size before anything is
  * allocated. 0, or -1 with *m filled; free in both cases. */
-int  ted4_colmap_read(ted4_colmap *c, const char *folder, ted4_message *m);
+int ted4_colmap_read(ted4_colmap *c, const char *folder, ted4_message *m);
 void ted4_colmap_free(ted4_colmap *c);
 
 /* Shared by the two encodings, colmap_bin.c and colmap_txt.c. */
@@ -38,7 +38,8 @@ void ted4_colmap_free(ted4_colmap *c);
 /* Camera model by COLMAP's number or name; -1 when unknown or with a lens that cannot be
  * undistorted here (*m is filled). where names the camera. n_parameters may be NULL. */
 int ted4_colmap_model_by_id(int64_t id, const char *where, size_t *n_parameters, ted4_message *m);
-int ted4_colmap_model_by_name(const char *name, const char *where, size_t *n_parameters, ted4_message *m);
+int ted4_colmap_model_by_name(const char *name, const char *where, size_t *n_parameters,
+                              ted4_message *m);
 
 #define TED4_COLMAP_MAX_PARAMETERS 8
 
@@ -47,7 +48,8 @@ int ted4_colmap_set_camera(ted4_colmap_camera *c, int model, uint64_t width, uin
                            const double *parameters, const char *where, ted4_message *m);
 
 /* Fills R, t from quaternion w x y z and translation. 0, or -1 with *m filled. */
-int ted4_colmap_set_pose(ted4_colmap_image *i, const double qt[7], const char *where, ted4_message *m);
+int ted4_colmap_set_pose(ted4_colmap_image *i, const double qt[7], const char *where,
+                         ted4_message *m);
 
 /* Room for one more record at the end of an array of n; grows by doubling. 0, or -1: no memory. */
 int ted4_colmap_reserve(void **array, size_t n, size_t record_size);

@@ -14,10 +14,10 @@
 
 typedef struct {
     const char *path;
-    char       *text;       /* owned; cut into lines as they are read */
-    char       *next;       /* NULL at the end */
-    size_t      line;
-    char        where[600]; /* "path:line" of the line last read */
+    char *text; /* owned; cut into lines as they are read */
+    char *next; /* NULL at the end */
+    size_t line;
+    char where[600]; /* "path:line" of the line last read */
 } text_reader;
 
 static int start(text_reader *r, const char *path, ted4_message *m)
@@ -29,7 +29,7 @@ static int start(text_reader *r, const char *path, ted4_message *m)
     if (ted4_read_whole(path, &bytes, &size, m) != 0)
         return -1;
     r->path = path;
-    r->text = r->next = (char *)bytes;      /* ends in a zero byte */
+    r->text = r->next = (char *)bytes; /* ends in a zero byte */
     return 0;
 }
 
@@ -139,7 +139,8 @@ static int read_image(text_reader *r, char *line, ted4_colmap_image *image, ted4
     double id, qt[7], camera;
 
     memset(image, 0, sizeof *image);
-    if (numbers(&at, &id, 1) != 0 || numbers(&at, qt, 7) != 0 || numbers(&at, &camera, 1) != 0 || *rest(at) == 0)
+    if (numbers(&at, &id, 1) != 0 || numbers(&at, qt, 7) != 0 || numbers(&at, &camera, 1) != 0 ||
+        *rest(at) == 0)
         return ted4_say(m, "%s: expected IMAGE_ID QW QX QY QZ TX TY TZ CAMERA_ID NAME", r->where);
     image->camera = (uint32_t)whole(camera);
     image->name = ted4_text_copy(rest(at));
@@ -147,7 +148,7 @@ static int read_image(text_reader *r, char *line, ted4_colmap_image *image, ted4
         return ted4_say_no_memory(m);
     if (ted4_colmap_set_pose(image, qt, r->where, m) != 0)
         return -1;
-    any_line(r);                            /* observations */
+    any_line(r); /* observations */
     return 0;
 }
 

@@ -35,8 +35,7 @@ char *ted4_path_join(const char *folder, const char *name)
         name += 2;
     char *path = malloc(n + k + 2);
     if (path != NULL)
-        snprintf(path, n + k + 2, "%s%s%s", folder,
-                 n > 0 && folder[n - 1] == '/' ? "" : "/", name);
+        snprintf(path, n + k + 2, "%s%s%s", folder, n > 0 && folder[n - 1] == '/' ? "" : "/", name);
     return path;
 }
 

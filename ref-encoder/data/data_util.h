@@ -23,11 +23,11 @@ int ted4_say_no_memory(ted4_message *m);
 
 /* folder/name, or name itself when it is absolute. Owned by the caller; NULL: no memory. */
 char *ted4_path_join(const char *folder, const char *name);
-char *ted4_text_copy(const char *text);     /* NULL: no memory */
+char *ted4_text_copy(const char *text); /* NULL: no memory */
 /* Appends a text to (*list)[*n], both owned by the caller. 0, or -1: no memory. */
-int   ted4_text_add(char ***list, size_t *n, const char *format, ...) TED4_PRINTF(3, 4);
-int   ted4_is_file(const char *path);
-int   ted4_is_folder(const char *path);
+int ted4_text_add(char ***list, size_t *n, const char *format, ...) TED4_PRINTF(3, 4);
+int ted4_is_file(const char *path);
+int ted4_is_folder(const char *path);
 
 /* The whole file and a zero byte that *size does not count; *bytes owned by the caller. 0, or -1
  * with *m filled. */

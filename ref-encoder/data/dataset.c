@@ -15,7 +15,7 @@
 
 /* The first whose probe says yes loads. */
 static const struct {
-    int         (*probe)(const char *folder);
+    int (*probe)(const char *folder);
     ted4_loader *load;
 } layouts[] = {
     { ted4_is_transforms, ted4_load_transforms },
@@ -26,8 +26,9 @@ static const struct {
     { ted4_is_colmap, ted4_load_colmap },
 };
 
-#define LAYOUTS "transforms_train.json, transforms.json (D-NeRF, nerfstudio), dataset.json and camera/ " \
-                "(HyperNeRF), cams.json, poses_bounds.npy (Neu3D, LLFF) or sparse/ (COLMAP)"
+#define LAYOUTS                                                                              \
+    "transforms_train.json, transforms.json (D-NeRF, nerfstudio), dataset.json and camera/ " \
+    "(HyperNeRF), cams.json, poses_bounds.npy (Neu3D, LLFF) or sparse/ (COLMAP)"
 
 static int load_raw(ted4_raw_scene *s, const char *folder, ted4_message *m)
 {
@@ -39,7 +40,8 @@ static int load_raw(ted4_raw_scene *s, const char *folder, ted4_message *m)
     return ted4_say(m, "%s: no scene recognised, expected " LAYOUTS, folder);
 }
 
-int ted4_dataset_load(ted4_dataset *d, const char *folder, const ted4_dataset_options *o, ted4_message *m)
+int ted4_dataset_load(ted4_dataset *d, const char *folder, const ted4_dataset_options *o,
+                      ted4_message *m)
 {
     ted4_raw_scene raw;
 
@@ -88,23 +90,24 @@ void ted4_dataset_ahead(ted4_dataset *d, size_t i)
 }
 
 typedef struct {
-    ted4_dataset   *d;
+    ted4_dataset *d;
     pthread_mutex_t lock;
-    size_t          bad;        /* first picture known to be bad, else n_pictures */
-    ted4_message   *m;          /* why */
+    size_t bad;      /* first picture known to be bad, else n_pictures */
+    ted4_message *m; /* why */
 } verification;
 
 static double mean_level(const uint8_t *pixels, const ted4_camera *c)
 {
     const size_t n = 3 * (size_t)c->width * (size_t)c->height;
-    uint64_t     sum = 0;
+    uint64_t sum = 0;
 
     for (size_t i = 0; i < n; i++)
         sum += pixels[i];
     return (double)sum / (double)n;
 }
 
-/* Pictures after a bad one need no look; those before it do, so that every number of threads names the same one. */
+/* Pictures after a bad one need no look; those before it do, so that every number of threads names
+ * the same one. */
 static void verify_picture(void *arg, size_t i)
 {
     verification *v = arg;
@@ -170,7 +173,8 @@ int ted4_dataset_verify(ted4_dataset *d, const ted4_parallel *p, ted4_message *m
         return -1;
     d->content = 0;
     for (size_t i = 0; i < d->n_pictures; i++)
-        d->content = XXH3_64bits_withSeed(&d->sources[i].digest, sizeof d->sources[i].digest, d->content);
+        d->content =
+            XXH3_64bits_withSeed(&d->sources[i].digest, sizeof d->sources[i].digest, d->content);
     return check_alpha(d) == 0 ? 0 : ted4_say_no_memory(m);
 }
 
@@ -186,7 +190,8 @@ uint64_t ted4_dataset_digest(const ted4_dataset *d)
     for (size_t i = 0; i < d->n_pictures; i++) {
         const ted4_picture *p = &d->pictures[i];
         const ted4_camera *c = &p->camera;
-        const uint32_t whole[5] = { (uint32_t)c->width, (uint32_t)c->height, p->frame, p->camera_id, p->is_test };
+        const uint32_t whole[5] = { (uint32_t)c->width, (uint32_t)c->height, p->frame, p->camera_id,
+                                    p->is_test };
         const double lens[4] = { c->fx, c->fy, c->cx, c->cy };
         x = add(x, whole, sizeof whole);
         x = add(x, lens, sizeof lens);
@@ -200,7 +205,9 @@ uint64_t ted4_dataset_digest(const ted4_dataset *d)
     return add(x, d->background, sizeof d->background);
 }
 
-typedef struct { double low, high; } range;
+typedef struct {
+    double low, high;
+} range;
 
 static const range nothing = { INFINITY, -INFINITY };
 
@@ -227,7 +234,8 @@ static void print_box(FILE *out, const range r[3])
 
 static void print_cameras(const ted4_dataset *d, FILE *out)
 {
-    range width = nothing, height = nothing, fx = nothing, fy = nothing, box[3] = { nothing, nothing, nothing };
+    range width = nothing, height = nothing, fx = nothing, fy = nothing,
+          box[3] = { nothing, nothing, nothing };
 
     for (size_t i = 0; i < d->n_pictures; i++) {
         const ted4_camera *c = &d->pictures[i].camera;
@@ -266,7 +274,8 @@ void ted4_dataset_print(const ted4_dataset *d, FILE *out)
     print_cameras(d, out);
     for (size_t i = 0; i < 3 * d->n_points; i++)
         widen(&box[i % 3], d->points[i]);
-    fprintf(out, "points      %zu%s\nbounds      ", d->n_points, d->random_points ? " (random)" : "");
+    fprintf(out, "points      %zu%s\nbounds      ", d->n_points,
+            d->random_points ? " (random)" : "");
     print_box(out, box);
     fprintf(out, "background  %d %d %d\n", d->background[0], d->background[1], d->background[2]);
     if (d->n_frames == 1)

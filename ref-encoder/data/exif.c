@@ -11,8 +11,8 @@ enum { TAG_ORIENTATION = 0x0112, TYPE_SHORT = 3, ENTRY_SIZE = 12 };
 /* A TIFF file; offsets count from its begin. */
 typedef struct {
     const uint8_t *bytes;
-    size_t         size;
-    int            little;
+    size_t size;
+    int little;
 } tiff;
 
 /* Unsigned number of n bytes; beyond the end: 0. */

@@ -8,10 +8,10 @@
 #include "data/data_util.h"
 
 /* All on the scale where the first time is 0 and the last 1. */
-#define SAME_TIME    2e-6   /* two roundings to six digits of one time differ by 1e-6 */
-#define UNIFORM      1e-3   /* distance from j / (n - 1) that still counts as uniform */
-#define ON_GRID      0.02   /* distance from a position of a finer grid, in steps */
-#define GRID_EFFORT  4      /* finest grid tried: its step is this part of the smallest gap */
+#define SAME_TIME   2e-6 /* two roundings to six digits of one time differ by 1e-6 */
+#define UNIFORM     1e-3 /* distance from j / (n - 1) that still counts as uniform */
+#define ON_GRID     0.02 /* distance from a position of a finer grid, in steps */
+#define GRID_EFFORT 4    /* finest grid tried: its step is this part of the smallest gap */
 
 static int by_value(const void *a, const void *b)
 {
@@ -27,7 +27,7 @@ size_t ted4_distinct_times(double *t, size_t n)
 
     qsort(t, n, sizeof *t, by_value);
     const double same = SAME_TIME * (t[n - 1] - t[0]);
-    double first = t[0];                /* of the group */
+    double first = t[0]; /* of the group */
     for (size_t i = 0; i < n; i++) {
         if (t[i] - first > same) {
             first = t[i];
@@ -107,7 +107,8 @@ static size_t nearest(const double *u, size_t n, double v)
     return v - u[low] <= u[high] - v ? low : high;
 }
 
-int ted4_frame_times(const double *time, size_t n, uint32_t *frame, uint32_t *n_frames, ted4_message *m)
+int ted4_frame_times(const double *time, size_t n, uint32_t *frame, uint32_t *n_frames,
+                     ted4_message *m)
 {
     double *u = malloc(n * sizeof *u), origin, range;
 

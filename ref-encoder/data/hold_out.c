@@ -18,7 +18,7 @@ static char *pose_label(const ted4_shot *s)
     ted4_pose_centre(s->R, s->t, centre);
     for (int i = 0; i < 12; i++) {
         const double v = i < 9 ? s->R[i] : centre[i - 9];
-        at += snprintf(at, 26, "%.15g ", round(v * 1e6) + 0.0);   /* + 0.0: no -0 */
+        at += snprintf(at, 26, "%.15g ", round(v * 1e6) + 0.0); /* + 0.0: no -0 */
     }
     return ted4_text_copy(text);
 }

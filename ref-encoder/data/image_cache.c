@@ -11,12 +11,12 @@
 #include "data/data_util.h"
 
 typedef struct {
-    uint8_t *bytes;             /* owned; NULL unless full */
-    size_t   size;
-    size_t   pins;
-    int      loading;
-    int      early;             /* decoded ahead, and not asked for since */
-    size_t   before, after;     /* neighbours in the idle list, when full and not pinned */
+    uint8_t *bytes; /* owned; NULL unless full */
+    size_t size;
+    size_t pins;
+    int loading;
+    int early;            /* decoded ahead, and not asked for since */
+    size_t before, after; /* neighbours in the idle list, when full and not pinned */
 } entry;
 
 /* As many pictures may wait as half the bound holds of the largest, or those that wait, and as
@@ -26,23 +26,25 @@ enum { FEWEST_AHEAD = 4 };
 /* Pictures wanted soon, in the order they were asked for, and who decodes them. */
 typedef struct {
     pthread_t threads[TED4_DATASET_AHEAD];
-    size_t    queue[TED4_DATASET_AHEAD];
-    int       n_threads, n_waiting, n_queued, n_loading, stop;
-    size_t    n_early;          /* pictures decoded, and not asked for since */
+    size_t queue[TED4_DATASET_AHEAD];
+    int n_threads, n_waiting, n_queued, n_loading, stop;
+    size_t n_early; /* pictures decoded, and not asked for since */
 } ahead;
 
 struct ted4_image_cache {
     pthread_mutex_t lock;
-    pthread_cond_t  loaded, wanted;
-    ahead           ahead;
-    entry          *entries;    /* owned, [n + 1]; the last is the head of the idle list: after = oldest, before = newest */
-    size_t          n, bound, held;
-    size_t          largest;    /* size of a picture seen so far */
+    pthread_cond_t loaded, wanted;
+    ahead ahead;
+    entry *entries; /* owned, [n + 1]; the last is the head of the idle list: after = oldest, before
+                       = newest */
+    size_t n, bound, held;
+    size_t largest; /* size of a picture seen so far */
     ted4_image_decoder *decode;
-    void           *user;       /* borrowed */
+    void *user; /* borrowed */
 };
 
-ted4_image_cache *ted4_image_cache_new(size_t n, size_t bound, ted4_image_decoder *decode, void *user)
+ted4_image_cache *ted4_image_cache_new(size_t n, size_t bound, ted4_image_decoder *decode,
+                                       void *user)
 {
     ted4_image_cache *c = calloc(1, sizeof *c);
     entry *entries = calloc(n + 1, sizeof *entries);
@@ -229,8 +231,8 @@ void ted4_image_cache_ahead(ted4_image_cache *c, size_t i, int n_threads)
 
     pthread_mutex_lock(&c->lock);
     const size_t waiting = a->n_early + (size_t)(a->n_queued + a->n_loading);
-    if (most > 0 && i < c->n && c->entries[i].bytes == NULL && !c->entries[i].loading && !is_queued(a, i) &&
-        waiting < room_ahead(c)) {
+    if (most > 0 && i < c->n && c->entries[i].bytes == NULL && !c->entries[i].loading &&
+        !is_queued(a, i) && waiting < room_ahead(c)) {
         a->queue[a->n_queued++] = i;
         if (a->n_queued > a->n_waiting && a->n_threads < most &&
             pthread_create(&a->threads[a->n_threads], NULL, decode_ahead, c) == 0)

@@ -93,12 +93,14 @@ static int probe_jpeg(FILE *f, const char *path, ted4_image_header *h, ted4_mess
             if (length < 8 || fread(s, 1, 6, f) != 6)
                 break;
             if (s[5] != 1 && s[5] != 3)
-                return ted4_say(m, "%s: JPEG of %d colours (CMYK?), expected grey or RGB", path, s[5]);
+                return ted4_say(m, "%s: JPEG of %d colours (CMYK?), expected grey or RGB", path,
+                                s[5]);
             h->height = s[1] << 8 | s[2];
             h->width = s[3] << 8 | s[4];
             return check_size(path, (uint32_t)h->width, (uint32_t)h->height, m);
         }
-        if (length < 2 || (c == APP1 ? read_exif(f, length - 2, h) : fseek(f, length - 2, SEEK_CUR)) != 0)
+        if (length < 2 ||
+            (c == APP1 ? read_exif(f, length - 2, h) : fseek(f, length - 2, SEEK_CUR)) != 0)
             break;
     }
     return ted4_say(m, "%s: JPEG without a frame header (cut short?)", path);
@@ -135,7 +137,8 @@ static int is_wide_interlaced(const uint8_t *bytes, size_t size)
 }
 
 /* 16-bit files without a stated gamma count as sRGB like all others, not as linear light. */
-static int decode_png(const char *path, const uint8_t *bytes, size_t size, ted4_image *image, ted4_message *m)
+static int decode_png(const char *path, const uint8_t *bytes, size_t size, ted4_image *image,
+                      ted4_message *m)
 {
     png_image p;
 

@@ -15,10 +15,10 @@
 #include "data/image_file.h"
 
 typedef struct {
-    struct jpeg_error_mgr        errors;    /* must be first: cinfo->err points at it */
+    struct jpeg_error_mgr errors; /* must be first: cinfo->err points at it */
     struct jpeg_decompress_struct cinfo;
-    jmp_buf                      out;
-    char                         text[JMSG_LENGTH_MAX];
+    jmp_buf out;
+    char text[JMSG_LENGTH_MAX];
 } jpeg_job;
 
 static void leave(j_common_ptr c)
@@ -35,7 +35,8 @@ static void warn(j_common_ptr c, int level)
 {
     const int code = c->err->msg_code;
 
-    if (level < 0 && (code == JWRN_JPEG_EOF || code == JWRN_HIT_MARKER || code == JWRN_HUFF_BAD_CODE))
+    if (level < 0 &&
+        (code == JWRN_JPEG_EOF || code == JWRN_HIT_MARKER || code == JWRN_HUFF_BAD_CODE))
         leave(c);
 }
 
@@ -73,7 +74,8 @@ static int guarded_read(jpeg_job *job, const uint8_t *bytes, size_t size, ted4_i
     return 0;
 }
 
-int ted4_jpeg_decode(const char *path, const uint8_t *bytes, size_t size, ted4_image *image, ted4_message *m)
+int ted4_jpeg_decode(const char *path, const uint8_t *bytes, size_t size, ted4_image *image,
+                     ted4_message *m)
 {
     jpeg_job job;
 

@@ -14,13 +14,13 @@
 #include "data/image_file.h"
 
 typedef struct {
-    png_structp    png;
-    png_infop      info;
-    const uint8_t *bytes;       /* borrowed; what is left of the file */
-    size_t         size;
-    png_bytep     *rows;        /* owned; into the image */
-    jmp_buf        out;
-    char           text[200];
+    png_structp png;
+    png_infop info;
+    const uint8_t *bytes; /* borrowed; what is left of the file */
+    size_t size;
+    png_bytep *rows; /* owned; into the image */
+    jmp_buf out;
+    char text[200];
 } png_job;
 
 static void leave(png_structp p, const char *text)

@@ -22,7 +22,8 @@ json_t *ted4_json_read(const char *path, ted4_message *m)
     return root;
 }
 
-int ted4_json_number(const json_t *object, const char *where, const char *name, double *v, ted4_message *m)
+int ted4_json_number(const json_t *object, const char *where, const char *name, double *v,
+                     ted4_message *m)
 {
     const json_t *field = json_object_get(object, name);
 
@@ -34,7 +35,8 @@ int ted4_json_number(const json_t *object, const char *where, const char *name, 
     return 1;
 }
 
-int ted4_json_text(const json_t *object, const char *where, const char *name, const char **v, ted4_message *m)
+int ted4_json_text(const json_t *object, const char *where, const char *name, const char **v,
+                   ted4_message *m)
 {
     const json_t *field = json_object_get(object, name);
 
@@ -63,7 +65,8 @@ static int gather(const json_t *list, double *v, size_t *n, size_t high)
     return 0;
 }
 
-int ted4_json_numbers(const json_t *object, const char *where, const char *name, double *v, size_t low, size_t high, ted4_message *m)
+int ted4_json_numbers(const json_t *object, const char *where, const char *name, double *v,
+                      size_t low, size_t high, ted4_message *m)
 {
     const json_t *field = json_object_get(object, name);
     size_t n = 0;
@@ -71,8 +74,9 @@ int ted4_json_numbers(const json_t *object, const char *where, const char *name,
     if (field == NULL)
         return 0;
     if (!json_is_array(field) || gather(field, v, &n, high) != 0 || n < low)
-        return low == high ? ted4_say(m, "%s.%s: expected %zu numbers", where, name, low)
-                           : ted4_say(m, "%s.%s: expected %zu to %zu numbers", where, name, low, high);
+        return low == high
+                   ? ted4_say(m, "%s.%s: expected %zu numbers", where, name, low)
+                   : ted4_say(m, "%s.%s: expected %zu to %zu numbers", where, name, low, high);
     return (int)n;
 }
 
@@ -92,7 +96,8 @@ static int read_row(const json_t *matrix, size_t i, double v[4])
     return 0;
 }
 
-int ted4_json_affine(const json_t *object, const char *where, const char *name, double v[12], ted4_message *m)
+int ted4_json_affine(const json_t *object, const char *where, const char *name, double v[12],
+                     ted4_message *m)
 {
     const json_t *matrix = json_object_get(object, name);
     const size_t rows = json_array_size(matrix);
@@ -106,8 +111,8 @@ int ted4_json_affine(const json_t *object, const char *where, const char *name, 
     if (bad || (rows == 4 && read_row(matrix, 3, last) != 0))
         return ted4_say(m, "%s.%s: expected 4x4 numbers", where, name);
     if (fabs(last[0]) + fabs(last[1]) + fabs(last[2]) + fabs(last[3] - 1) > 1e-6)
-        return ted4_say(m, "%s.%s: last row %g %g %g %g, expected 0 0 0 1", where, name,
-                        last[0], last[1], last[2], last[3]);
+        return ted4_say(m, "%s.%s: last row %g %g %g %g, expected 0 0 0 1", where, name, last[0],
+                        last[1], last[2], last[3]);
     return 1;
 }
 
@@ -118,6 +123,7 @@ int ted4_json_rate(const json_t *object, const char *where, double *rate, ted4_m
 
     if (found <= 0 || *rate == 0 || ted4_frame_rate(*rate, &num, &den) == 0)
         return found;
-    return ted4_say(m, "%s.fps: %g, expected frames a second from 1/%d to %d, or 0 where they are not known", where, *rate,
-                    TED4_RATE_MOST, TED4_RATE_MOST);
+    return ted4_say(
+        m, "%s.fps: %g, expected frames a second from 1/%d to %d, or 0 where they are not known",
+        where, *rate, TED4_RATE_MOST, TED4_RATE_MOST);
 }

@@ -24,15 +24,15 @@ static const double BETWEEN = 0.1, MOST_OFFSET = 1e6;
 
 typedef struct {
     ted4_raw_scene *scene;
-    const char     *folder;
-    char           *path;           /* of cams.json; owned */
-    json_t         *root;           /* owned */
-    size_t          stated;         /* frames of each clip; 0: not stated */
-    size_t          shortest, longest;      /* of clips, in frames; 0: none yet */
-    int             started;        /* is a start given? */
-    size_t          n_between;      /* cameras that start between two frames */
-    double          farthest;       /* of these, part of a frame */
-    ted4_message   *m;
+    const char *folder;
+    char *path;               /* of cams.json; owned */
+    json_t *root;             /* owned */
+    size_t stated;            /* frames of each clip; 0: not stated */
+    size_t shortest, longest; /* of clips, in frames; 0: none yet */
+    int started;              /* is a start given? */
+    size_t n_between;         /* cameras that start between two frames */
+    double farthest;          /* of these, part of a frame */
+    ted4_message *m;
 } calibration;
 
 int ted4_is_calibration(const char *folder)
@@ -67,9 +67,18 @@ static int read_lens(const calibration *c, const json_t *o, const char *where, t
         return ted4_say(c->m, "%s.K: expected fx s cx, 0 fy cy, 0 0 1", where);
     if (ted4_json_numbers(o, where, "dist", dist, 4, 5, c->m) < 0)
         return -1;
-    *l = (ted4_lens){ .width = (int)w, .height = (int)h, .fx = K[0], .fy = K[4], .skew = K[1],
-                      .cx = K[2] + CENTRE_SHIFT, .cy = K[5] + CENTRE_SHIFT,
-                      .k1 = dist[0], .k2 = dist[1], .p1 = dist[2], .p2 = dist[3], .k3 = dist[4] };
+    *l = (ted4_lens) { .width = (int)w,
+                       .height = (int)h,
+                       .fx = K[0],
+                       .fy = K[4],
+                       .skew = K[1],
+                       .cx = K[2] + CENTRE_SHIFT,
+                       .cy = K[5] + CENTRE_SHIFT,
+                       .k1 = dist[0],
+                       .k2 = dist[1],
+                       .p1 = dist[2],
+                       .p2 = dist[3],
+                       .k3 = dist[4] };
     return 0;
 }
 
@@ -137,10 +146,9 @@ static int add_clip(calibration *c, const char *where, const char *name, const c
     char text[400];
 
     c->scene->n_entries++;
-    const int found =
-        ted4_clip_pictures(&pictures, c->folder, name, video,
-                           c->stated > 0 ? c->stated : c->scene->wanted->max_frames,
-                           c->scene->wanted, c->m);
+    const int found = ted4_clip_pictures(&pictures, c->folder, name, video,
+                                         c->stated > 0 ? c->stated : c->scene->wanted->max_frames,
+                                         c->scene->wanted, c->m);
     if (found == 0) {
         snprintf(text, sizeof text,
                  "%.150s: no such video, nor a folder images/%.60s or %.60s/images of its pictures",
@@ -184,7 +192,8 @@ static int read_frames(calibration *c)
         ted4_json_rate(c->root, c->path, &c->scene->rate, c->m) < 0)
         return -1;
     if (!(frames >= 0 && frames <= TED4_MAX_FRAMES) || frames != floor(frames))
-        return ted4_say(c->m, "%s.frames: %g, expected a whole number up to %d", c->path, frames, TED4_MAX_FRAMES);
+        return ted4_say(c->m, "%s.frames: %g, expected a whole number up to %d", c->path, frames,
+                        TED4_MAX_FRAMES);
     c->stated = (size_t)frames;
     if (most > 0 && c->stated > most)
         c->stated = most;
@@ -199,8 +208,8 @@ static void hold_out_times(ted4_raw_scene *s)
     for (size_t i = 0; i < s->n_shots; i++)
         first = fmin(first, s->shots[i].time);
     for (size_t i = 0; i < s->n_shots; i++)
-        s->shots[i].is_test =
-            (size_t)(s->shots[i].time - first) % TED4_HOLD_OUT_EVERY == TED4_HOLD_OUT_PHASE;
+        s->shots[i].is_test = (size_t)(s->shots[i].time - first) % TED4_HOLD_OUT_EVERY ==
+                              TED4_HOLD_OUT_PHASE;
 }
 
 static int say_times(calibration *c)

@@ -14,7 +14,8 @@
 #include "data/data_util.h"
 #include "data/picture_path.h"
 
-/* folder/sparse/0 or folder/sparse, whichever holds cameras.*; NULL: neither. Owned by the caller. */
+/* folder/sparse/0 or folder/sparse, whichever holds cameras.*; NULL: neither. Owned by the caller.
+ */
 static char *find_model(const char *folder)
 {
     static const char *const places[] = { "sparse/0", "sparse" };
@@ -61,7 +62,7 @@ static double name_number(const char *name)
         ;
     if (begin == end)
         return -1;
-    if (end - begin > 15)                   /* a double holds 15 digits */
+    if (end - begin > 15) /* a double holds 15 digits */
         return -2;
     for (; begin < end; begin++)
         v = 10 * v + (*begin - '0');
@@ -94,7 +95,8 @@ static int add_image(ted4_raw_scene *s, const ted4_colmap *c, const ted4_colmap_
 
     snprintf(where, sizeof where, "COLMAP image \"%.250s\"", image->name);
     if (camera == NULL)
-        return ted4_say(m, "%s: its camera %u is not in the cameras file", where, (unsigned)image->camera);
+        return ted4_say(m, "%s: its camera %u is not in the cameras file", where,
+                        (unsigned)image->camera);
     ted4_shot *shot;
     char *path = ted4_path_join(images, image->name), *other = NULL;
     /* Copies may be of another kind than what they were made of. */
@@ -144,7 +146,9 @@ static int rank_numbers(ted4_raw_scene *s, ted4_message *m)
     }
     const int mixed = k > 1 && v[0] == -1;
     free(v);
-    return mixed ? ted4_say(m, "COLMAP images: some names hold a number, some none: their order in time is unknown") : 0;
+    return mixed ? ted4_say(m, "COLMAP images: some names hold a number, some none: their order in "
+                               "time is unknown")
+                 : 0;
 }
 
 static int add_images(ted4_raw_scene *s, ted4_colmap *c, const char *images, ted4_message *m)
@@ -173,7 +177,8 @@ static char *find_images(ted4_raw_scene *s, const char *folder, size_t n, ted4_m
             return images;
         free(images);
     }
-    ted4_say(m, "%s/images: no such folder, expected the %zu pictures of the sparse model", folder, n);
+    ted4_say(m, "%s/images: no such folder, expected the %zu pictures of the sparse model", folder,
+             n);
     return NULL;
 }
 
@@ -186,7 +191,8 @@ int ted4_load_colmap(ted4_raw_scene *s, const char *folder, ted4_message *m)
     s->layout = "colmap";
     memset(&c, 0, sizeof c);
     if (model == NULL)
-        result = ted4_say(m, "%s/sparse: neither cameras.bin nor cameras.txt here or in sparse/0", folder);
+        result = ted4_say(m, "%s/sparse: neither cameras.bin nor cameras.txt here or in sparse/0",
+                          folder);
     else
         result = ted4_colmap_read(&c, model, m);
     if (result == 0 && (images = find_images(s, folder, c.n_images, m)) == NULL)

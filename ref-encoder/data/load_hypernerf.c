@@ -1,7 +1,7 @@
 /* load_hypernerf.c - layout "hypernerf" (Nerfies): dataset.json names the pictures and the split,
- * metadata.json gives times, camera/ID.json one camera a picture, rgb/Nx/ID.png the pictures reduced
- * by N. Everything but rgb is in units of the unreduced picture. scene.json (centre, scale, near,
- * far) concerns other programs' normalised space and is not read.
+ * metadata.json gives times, camera/ID.json one camera a picture, rgb/Nx/ID.png the pictures
+ * reduced by N. Everything but rgb is in units of the unreduced picture. scene.json (centre, scale,
+ * near, far) concerns other programs' normalised space and is not read.
  * SPDX-License-Identifier: BSD-2-Clause */
 #include "data/raw_scene.h"
 
@@ -20,16 +20,18 @@ enum { SPLIT_EVERY = 4, SPLIT_TEST = 2 };
 
 typedef struct {
     ted4_raw_scene *scene;
-    const char     *folder;
-    json_t         *dataset, *metadata;     /* owned */
-    char           *dataset_path, *metadata_path, *pictures;    /* owned; pictures: rgb/Nx */
-    ted4_message   *m;
+    const char *folder;
+    json_t *dataset, *metadata;                    /* owned */
+    char *dataset_path, *metadata_path, *pictures; /* owned; pictures: rgb/Nx */
+    ted4_message *m;
 } hypernerf;
 
 int ted4_is_hypernerf(const char *folder)
 {
-    char *list = ted4_path_join(folder, "dataset.json"), *cameras = ted4_path_join(folder, "camera");
-    const int found = list != NULL && cameras != NULL && ted4_is_file(list) && ted4_is_folder(cameras);
+    char *list = ted4_path_join(folder, "dataset.json"),
+         *cameras = ted4_path_join(folder, "camera");
+    const int found = list != NULL && cameras != NULL && ted4_is_file(list) &&
+                      ted4_is_folder(cameras);
 
     free(list);
     free(cameras);
@@ -57,11 +59,14 @@ static int find_pictures(hypernerf *h)
 }
 
 /* A list of n numbers that must be there. */
-static int need(const json_t *o, const char *path, const char *name, double *v, size_t n, ted4_message *m)
+static int need(const json_t *o, const char *path, const char *name, double *v, size_t n,
+                ted4_message *m)
 {
     const int found = ted4_json_numbers(o, path, name, v, n, n, m);
 
-    return found > 0 ? 0 : found < 0 ? -1 : ted4_say(m, "%s.%s: missing, expected %zu numbers", path, name, n);
+    return found > 0   ? 0
+           : found < 0 ? -1
+                       : ted4_say(m, "%s.%s: missing, expected %zu numbers", path, name, n);
 }
 
 static int read_lens(const json_t *o, const char *path, ted4_lens *l, ted4_message *m)
@@ -71,7 +76,8 @@ static int read_lens(const json_t *o, const char *path, ted4_lens *l, ted4_messa
     const int focal = ted4_json_number(o, path, "focal_length", &l->fx, m);
     if (focal <= 0)
         return focal < 0 ? -1 : ted4_say(m, "%s.focal_length: missing", path);
-    if (need(o, path, "image_size", size, 2, m) != 0 || need(o, path, "principal_point", centre, 2, m) != 0 ||
+    if (need(o, path, "image_size", size, 2, m) != 0 ||
+        need(o, path, "principal_point", centre, 2, m) != 0 ||
         ted4_json_number(o, path, "skew", &l->skew, m) < 0 ||
         ted4_json_number(o, path, "pixel_aspect_ratio", &aspect, m) < 0 ||
         ted4_json_numbers(o, path, "radial_distortion", radial, 3, 3, m) < 0 ||
@@ -79,7 +85,8 @@ static int read_lens(const json_t *o, const char *path, ted4_lens *l, ted4_messa
         ted4_json_numbers(o, path, "tangential_distortion", tangential, 2, 2, m) < 0)
         return -1;
     if (!(size[0] >= 1 && size[1] >= 1 && size[0] <= 1e6 && size[1] <= 1e6))
-        return ted4_say(m, "%s.image_size: %g, %g, expected numbers of pixels", path, size[0], size[1]);
+        return ted4_say(m, "%s.image_size: %g, %g, expected numbers of pixels", path, size[0],
+                        size[1]);
     l->width = (int)size[0];
     l->height = (int)size[1];
     l->fy = l->fx * aspect;
@@ -104,7 +111,8 @@ static int read_pose(const json_t *o, const char *path, ted4_shot *shot, ted4_me
     if (wrong != NULL)
         return ted4_say(m, "%s.orientation: it %s", path, wrong);
     for (int i = 0; i < 3; i++)
-        shot->t[i] = -(shot->R[3 * i] * c[0] + shot->R[3 * i + 1] * c[1] + shot->R[3 * i + 2] * c[2]);
+        shot->t[i] =
+            -(shot->R[3 * i] * c[0] + shot->R[3 * i + 1] * c[1] + shot->R[3 * i + 2] * c[2]);
     return 0;
 }
 
@@ -118,7 +126,9 @@ static int read_camera(hypernerf *h, const char *id, ted4_shot *shot)
         return ted4_say_no_memory(h->m);
     json_t *o = ted4_json_read(path, h->m);
     const int result = o == NULL || read_lens(o, path, &shot->lens, h->m) != 0 ||
-                       read_pose(o, path, shot, h->m) != 0 ? -1 : 0;
+                               read_pose(o, path, shot, h->m) != 0
+                           ? -1
+                           : 0;
     json_decref(o);
     free(path);
     return result;
@@ -140,7 +150,8 @@ static int read_metadata(hypernerf *h, const char *id, ted4_shot *shot)
         found = ted4_json_number(entry, where, names[i], &shot->time, h->m);
     if (found == 0)
         return ted4_say(h->m, "%s.warp_id: missing", where);
-    const int labelled = found < 0 ? -1 : ted4_json_number(entry, where, "camera_id", &camera, h->m);
+    const int labelled = found < 0 ? -1
+                                   : ted4_json_number(entry, where, "camera_id", &camera, h->m);
     if (labelled <= 0)
         return labelled;
     snprintf(label, sizeof label, "%.15g", camera);
@@ -185,7 +196,8 @@ static int add_list(hypernerf *h, const json_t *list, int is_test, json_t *seen)
     for (size_t i = 0; i < json_array_size(list); i++) {
         const char *id = json_string_value(json_array_get(list, i));
         if (json_object_get(seen, id) != NULL)
-            return ted4_say(h->m, "%s: \"%.80s\" is listed twice in train_ids and val_ids", h->dataset_path, id);
+            return ted4_say(h->m, "%s: \"%.80s\" is listed twice in train_ids and val_ids",
+                            h->dataset_path, id);
         if (json_object_set_new(seen, id, json_true()) != 0)
             return ted4_say_no_memory(h->m);
         if (add_picture(h, id, is_test) != 0)
@@ -209,13 +221,15 @@ static int add_pictures(hypernerf *h)
 {
     const json_t *ids, *train, *test;
 
-    if (read_list(h, "ids", &ids) != 0 || read_list(h, "train_ids", &train) != 0 || read_list(h, "val_ids", &test) != 0)
+    if (read_list(h, "ids", &ids) != 0 || read_list(h, "train_ids", &train) != 0 ||
+        read_list(h, "val_ids", &test) != 0)
         return -1;
     if (json_array_size(test) == 0)
         return add_by_position(h, ids);
     json_t *seen = json_object();
-    const int result = seen == NULL ? ted4_say_no_memory(h->m) :
-                       add_list(h, train, 0, seen) != 0 || add_list(h, test, 1, seen) != 0 ? -1 : 0;
+    const int result = seen == NULL ? ted4_say_no_memory(h->m)
+                       : add_list(h, train, 0, seen) != 0 || add_list(h, test, 1, seen) != 0 ? -1
+                                                                                             : 0;
     json_decref(seen);
     return result;
 }

@@ -12,26 +12,26 @@
 #include "data/clip.h"
 #include "data/poses_bounds.h"
 
-enum { MOST_FRAMES = 300 };     /* the frames that results on these scenes refer to */
+enum { MOST_FRAMES = 300 }; /* the frames that results on these scenes refer to */
 
-static const double VIDEO_RATE = 30;            /* frames a second, of every scene of the set */
+static const double VIDEO_RATE = 30; /* frames a second, of every scene of the set */
 
 typedef struct {
-    ted4_raw_scene   *scene;
-    const char       *folder;
+    ted4_raw_scene *scene;
+    const char *folder;
     ted4_poses_bounds table;
-    size_t            shortest, longest;        /* of clips, in frames */
-    ted4_name_list    clips;
-    int               numbered;                 /* are rows those of the clips' numbers? */
-    ted4_message     *m;
+    size_t shortest, longest; /* of clips, in frames */
+    ted4_name_list clips;
+    int numbered; /* are rows those of the clips' numbers? */
+    ted4_message *m;
 } neu3d;
 
 /* A COLMAP scene, or stills, may hold such a table too; the clips decide. */
 int ted4_is_neu3d(const char *folder)
 {
     ted4_name_list clips = { NULL, 0 };
-    const int found =
-        ted4_is_poses_bounds(folder) && ted4_clip_names(&clips, folder) == 0 && clips.n > 0;
+    const int found = ted4_is_poses_bounds(folder) && ted4_clip_names(&clips, folder) == 0 &&
+                      clips.n > 0;
 
     ted4_name_list_free(&clips);
     return found;

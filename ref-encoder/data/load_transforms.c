@@ -62,7 +62,9 @@ static int read_pose(ted4_transforms *t, ted4_shot *shot)
     const int found = ted4_json_affine(t->frame, t->where, "transform_matrix", M, t->m);
 
     if (found <= 0)
-        return found < 0 ? -1 : ted4_say(t->m, "%s.transform_matrix: missing, expected 4x4 numbers", t->where);
+        return found < 0
+                   ? -1
+                   : ted4_say(t->m, "%s.transform_matrix: missing, expected 4x4 numbers", t->where);
     for (int i = 0; i < 3; i++)
         for (int j = 0; j < 3; j++) {
             /* Entry j of applied^-1 times column i. */
@@ -74,9 +76,10 @@ static int read_pose(ted4_transforms *t, ted4_shot *shot)
     const char *wrong = ted4_rotation_clean(shot->R);
     if (wrong != NULL)
         return ted4_say(t->m, "%s.transform_matrix: its 3x3 part %s", t->where, wrong);
-    undo_applied(t, (const double[]){ M[3], M[7], M[11] }, centre);
+    undo_applied(t, (const double[]) { M[3], M[7], M[11] }, centre);
     for (int i = 0; i < 3; i++)
-        shot->t[i] = -(shot->R[3 * i] * centre[0] + shot->R[3 * i + 1] * centre[1] + shot->R[3 * i + 2] * centre[2]);
+        shot->t[i] = -(shot->R[3 * i] * centre[0] + shot->R[3 * i + 1] * centre[1] +
+                       shot->R[3 * i + 2] * centre[2]);
     return 0;
 }
 
@@ -153,7 +156,8 @@ static int read_times(ted4_transforms *t, int is_first)
         if (found < 0)
             return -1;
         if (found == 0)
-            return ted4_say(t->m, "%s.time: missing, while %zu of %zu frames have one", t->where, timed, n);
+            return ted4_say(t->m, "%s.time: missing, while %zu of %zu frames have one", t->where,
+                            timed, n);
         if (t->shot_of[i] != TED4_NO_SHOT)
             t->scene->shots[t->shot_of[i]].time = time;
     }
@@ -177,7 +181,8 @@ static int read_applied(ted4_transforms *t)
         R[i] = norm2 > 0 ? A[i / 3 * 4 + i % 3] / t->applied_scale : 0;
     const char *wrong = ted4_rotation_clean(R);
     if (wrong != NULL)
-        return ted4_say(t->m, "%s.applied_transform: its 3x3 part, scale removed, %s", t->path, wrong);
+        return ted4_say(t->m, "%s.applied_transform: its 3x3 part, scale removed, %s", t->path,
+                        wrong);
     for (int i = 0; i < 9; i++)
         t->applied[i / 3 * 4 + i % 3] = t->applied_scale * R[i];
     return 0;
@@ -201,7 +206,8 @@ static int read_cloud(ted4_transforms *t)
     free(path);
     for (size_t i = 0; i < c->n; i++) {
         double x[3];
-        undo_applied(t, (const double[]){ c->xyz[3 * i], c->xyz[3 * i + 1], c->xyz[3 * i + 2] }, x);
+        undo_applied(t, (const double[]) { c->xyz[3 * i], c->xyz[3 * i + 1], c->xyz[3 * i + 2] },
+                     x);
         for (size_t k = 0; k < 3; k++)
             c->xyz[3 * i + k] = (float)x[k];
     }
@@ -234,7 +240,8 @@ static int read_frames(ted4_transforms *t)
     return read_times(t, is_first);
 }
 
-/* nerfstudio's lists of file_paths for training, and to hold out: the first of these that is there. */
+/* nerfstudio's lists of file_paths for training, and to hold out: the first of these that is there.
+ */
 static const char list_train[] = "train_filenames";
 static const char *const lists_test[] = { "test_filenames", "val_filenames" };
 
@@ -245,15 +252,16 @@ static const char *plain_name(const char *name)
     return name;
 }
 
-/* Index of the frame of that file_path, n when there is none; looks from start on, for lists are mostly in the order of
- * the frames. */
+/* Index of the frame of that file_path, n when there is none; looks from start on, for lists are
+ * mostly in the order of the frames. */
 static size_t find_frame(const json_t *frames, size_t start, const char *name)
 {
     const size_t n = json_array_size(frames);
 
     for (size_t k = 0; k < n; k++) {
         const size_t i = (start + k) % n;
-        const char *path = json_string_value(json_object_get(json_array_get(frames, i), "file_path"));
+        const char *path =
+            json_string_value(json_object_get(json_array_get(frames, i), "file_path"));
         if (strcmp(plain_name(path), plain_name(name)) == 0)
             return i;
     }
@@ -265,18 +273,21 @@ enum { UNNAMED, TRAIN, TEST };
 /* use[i] = what for the frames that a list names. */
 static int read_list(ted4_transforms *t, const char *name, int what, uint8_t *use)
 {
-    const json_t *list = json_object_get(t->root, name), *frames = json_object_get(t->root, "frames");
+    const json_t *list = json_object_get(t->root, name),
+                 *frames = json_object_get(t->root, "frames");
     size_t at = 0;
 
     if (!json_is_array(list))
-        return ted4_say(t->m, "%s.%s: %s, expected a list of file_paths", t->path, name, list == NULL ? "missing" : "not a list");
+        return ted4_say(t->m, "%s.%s: %s, expected a list of file_paths", t->path, name,
+                        list == NULL ? "missing" : "not a list");
     for (size_t i = 0; i < json_array_size(list); i++) {
         const char *text = json_string_value(json_array_get(list, i));
         if (text == NULL)
             return ted4_say(t->m, "%s.%s[%zu]: expected a file_path", t->path, name, i);
         at = find_frame(frames, at, text);
         if (at == json_array_size(frames))
-            return ted4_say(t->m, "%s.%s[%zu]: no frame has the file_path %.300s", t->path, name, i, text);
+            return ted4_say(t->m, "%s.%s[%zu]: no frame has the file_path %.300s", t->path, name, i,
+                            text);
         if (use[at] != UNNAMED)
             return ted4_say(t->m, "%s.%s[%zu]: %.300s is listed twice", t->path, name, i, text);
         use[at] = (uint8_t)what;
@@ -318,7 +329,7 @@ static int split_by_lists(ted4_transforms *t, const char *test)
 static int by_path(const void *a, const void *b)
 {
     const ted4_shot *x = a, *y = b;
-    int              order = strcmp(x->path, y->path);
+    int order = strcmp(x->path, y->path);
 
     /* A file may be listed twice. */
     if (order == 0)
@@ -387,7 +398,8 @@ static int read_root(ted4_transforms *t, int holds)
     return 0;
 }
 
-static int read_file(ted4_raw_scene *s, const char *folder, const char *name, int holds, ted4_message *m)
+static int read_file(ted4_raw_scene *s, const char *folder, const char *name, int holds,
+                     ted4_message *m)
 {
     ted4_transforms t;
 

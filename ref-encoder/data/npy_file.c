@@ -12,10 +12,10 @@
 #include "data/data_util.h"
 
 typedef struct {
-    char           text[512];   /* the header */
-    size_t         rows, columns, item;     /* item: bytes of a number */
+    char text[512];             /* the header */
+    size_t rows, columns, item; /* item: bytes of a number */
     const uint8_t *data;        /* borrowed */
-    size_t         size;
+    size_t size;
 } table;
 
 static const char *after(const char *text, const char *key)
@@ -37,11 +37,12 @@ static int read_header(table *t, const char *path, const uint8_t *p, size_t size
         return ted4_say(m, "%s: not a NumPy array file", path);
     const size_t start = p[6] == 1 ? 10 : 12;
     const size_t length = p[6] == 1 ? (size_t)p[8] | (size_t)p[9] << 8
-                                    : (size_t)p[8] | (size_t)p[9] << 8 | (size_t)p[10] << 16 | (size_t)p[11] << 24;
+                                    : (size_t)p[8] | (size_t)p[9] << 8 | (size_t)p[10] << 16 |
+                                          (size_t)p[11] << 24;
     if (length > size - start)
         return ted4_say(m, "%s: NumPy header cut short", path);
-    snprintf(t->text, sizeof t->text, "%.*s", (int)(length < sizeof t->text ? length : sizeof t->text - 1),
-             (const char *)p + start);
+    snprintf(t->text, sizeof t->text, "%.*s",
+             (int)(length < sizeof t->text ? length : sizeof t->text - 1), (const char *)p + start);
     const char *type = after(t->text, "'descr'");
     t->item = strncmp(type, "'<f8'", 5) == 0 ? 8 : strncmp(type, "'<f4'", 5) == 0 ? 4 : 0;
     if (t->item == 0)
@@ -52,7 +53,8 @@ static int read_header(table *t, const char *path, const uint8_t *p, size_t size
     const char *shape = after(t->text, "'shape'");
     const int found = sscanf(shape, "(%9lu , %9lu %c %c", &rows, &columns, &end, &last);
     if (found < 3 || (end != ')' && !(end == ',' && last == ')')))
-        return ted4_say(m, "%s: shape %.*s), expected two dimensions", path, (int)strcspn(shape, ")}\n"), shape);
+        return ted4_say(m, "%s: shape %.*s), expected two dimensions", path,
+                        (int)strcspn(shape, ")}\n"), shape);
     t->rows = rows;
     t->columns = columns;
     t->data = p + start + length;
@@ -83,10 +85,11 @@ static int read_table(table *t, const char *path, size_t columns, double **v, te
     const size_t n = t->rows * columns;
 
     if (t->columns != columns || t->rows == 0 || t->rows > SIZE_MAX / sizeof **v / columns)
-        return ted4_say(m, "%s: shape (%zu, %zu), expected rows of %zu numbers", path, t->rows, t->columns, columns);
+        return ted4_say(m, "%s: shape (%zu, %zu), expected rows of %zu numbers", path, t->rows,
+                        t->columns, columns);
     if (t->size != n * t->item)
-        return ted4_say(m, "%s: %zu bytes of numbers, its shape (%zu, %zu) needs %zu", path, t->size, t->rows,
-                        t->columns, n * t->item);
+        return ted4_say(m, "%s: %zu bytes of numbers, its shape (%zu, %zu) needs %zu", path,
+                        t->size, t->rows, t->columns, n * t->item);
     *v = malloc(n * sizeof **v);
     if (*v == NULL)
         return ted4_say_no_memory(m);
@@ -95,7 +98,8 @@ static int read_table(table *t, const char *path, size_t columns, double **v, te
         if (!isfinite((*v)[i])) {
             free(*v);
             *v = NULL;
-            return ted4_say(m, "%s: row %zu, column %zu is not finite", path, i / columns, i % columns);
+            return ted4_say(m, "%s: row %zu, column %zu is not finite", path, i / columns,
+                            i % columns);
         }
     }
     return 0;

@@ -12,13 +12,16 @@
 #include <string.h>
 #include "data/data_util.h"
 
-enum { MAX_PROPERTIES = 256 };      /* a Gaussian splat file has 62 */
+enum { MAX_PROPERTIES = 256 }; /* a Gaussian splat file has 62 */
 
 typedef enum { I8, U8, I16, U16, I32, U32, F32, F64, N_TYPES } ply_type;
 
-static const struct { const char *name[2]; size_t size; } types[N_TYPES] = {
-    { { "char", "int8" }, 1 },    { { "uchar", "uint8" }, 1 },   { { "short", "int16" }, 2 },
-    { { "ushort", "uint16" }, 2 }, { { "int", "int32" }, 4 },     { { "uint", "uint32" }, 4 },
+static const struct {
+    const char *name[2];
+    size_t size;
+} types[N_TYPES] = {
+    { { "char", "int8" }, 1 },     { { "uchar", "uint8" }, 1 },    { { "short", "int16" }, 2 },
+    { { "ushort", "uint16" }, 2 }, { { "int", "int32" }, 4 },      { { "uint", "uint32" }, 4 },
     { { "float", "float32" }, 4 }, { { "double", "float64" }, 8 },
 };
 
@@ -26,17 +29,17 @@ enum { X, Y, Z, RED, GREEN, BLUE, N_WANTED };
 static const char *const wanted[N_WANTED] = { "x", "y", "z", "red", "green", "blue" };
 
 typedef struct {
-    const char   *path;
+    const char *path;
     const uint8_t *bytes;
-    size_t        size, at;         /* at: next byte to read */
-    size_t        line;
-    int           binary;
-    int           in_vertex, elements;
-    uint64_t      count;
-    ply_type      type[MAX_PROPERTIES];
-    size_t        offset[MAX_PROPERTIES];
-    size_t        n_properties, stride;
-    int           index[N_WANTED];  /* property number, -1: absent */
+    size_t size, at; /* at: next byte to read */
+    size_t line;
+    int binary;
+    int in_vertex, elements;
+    uint64_t count;
+    ply_type type[MAX_PROPERTIES];
+    size_t offset[MAX_PROPERTIES];
+    size_t n_properties, stride;
+    int index[N_WANTED]; /* property number, -1: absent */
 } ply;
 
 /* The next header line without its end, cut to the buffer. 0 at the end of the file. */
@@ -73,7 +76,8 @@ static int read_property(ply *p, const char *type_name, const char *name, ted4_m
         return ted4_say(m, "%s:%zu: vertex property of type \"%s\", expected a number type",
                         p->path, p->line, type_name);
     if (p->n_properties == MAX_PROPERTIES)
-        return ted4_say(m, "%s:%zu: more than %d vertex properties", p->path, p->line, MAX_PROPERTIES);
+        return ted4_say(m, "%s:%zu: more than %d vertex properties", p->path, p->line,
+                        MAX_PROPERTIES);
     for (int i = 0; i < N_WANTED; i++)
         if (strcmp(name, wanted[i]) == 0)
             p->index[i] = (int)p->n_properties;
@@ -98,7 +102,8 @@ static int read_header_line(ply *p, const char *line, ted4_message *m)
     } else if (sscanf(line, "element %63s %63s", a, b) == 2) {
         p->in_vertex = strcmp(a, "vertex") == 0;
         if (p->elements++ == 0 && !p->in_vertex)
-            return ted4_say(m, "%s:%zu: first element \"%s\", expected vertex", p->path, p->line, a);
+            return ted4_say(m, "%s:%zu: first element \"%s\", expected vertex", p->path, p->line,
+                            a);
         if (p->in_vertex && sscanf(b, "%" SCNu64, &p->count) != 1)
             return ted4_say(m, "%s:%zu: vertex count \"%s\"", p->path, p->line, b);
     } else if (p->in_vertex && sscanf(line, "property %63s %63s", a, b) == 2) {
@@ -148,12 +153,12 @@ static double binary_value(const uint8_t *b, ply_type type)
     double d;
 
     switch (type) {
-    case I8:  return (int8_t)v;
+    case I8: return (int8_t)v;
     case I16: return (int16_t)v;
     case I32: return (int32_t)v;
     case F32: memcpy(&f, &v32, sizeof f); return f;
     case F64: memcpy(&d, &v, sizeof d); return d;
-    default:  return (double)v;
+    default: return (double)v;
     }
 }
 
@@ -173,7 +178,7 @@ static int read_vertex(ply *p, double value[N_WANTED])
         for (size_t i = 0; i < p->n_properties; i++) {
             const char *start = (const char *)p->bytes + p->at;
             char *end;
-            all[i] = strtod(start, &end);   /* the text ends in a zero byte */
+            all[i] = strtod(start, &end); /* the text ends in a zero byte */
             if (end == start)
                 return -1;
             p->at += (size_t)(end - start);
@@ -217,7 +222,8 @@ static int read_vertices(ply *p, ted4_point_cloud *c, ted4_message *m)
             c->xyz[3 * i + (size_t)k] = (float)v[k];
             c->rgb[3 * i + (size_t)k] = colour_byte(v[RED + k] * scale);
         }
-        if (!isfinite(c->xyz[3 * i]) || !isfinite(c->xyz[3 * i + 1]) || !isfinite(c->xyz[3 * i + 2]))
+        if (!isfinite(c->xyz[3 * i]) || !isfinite(c->xyz[3 * i + 1]) ||
+            !isfinite(c->xyz[3 * i + 2]))
             return ted4_say(m, "%s: vertex %zu: a coordinate is not finite", p->path, i);
     }
     return 0;

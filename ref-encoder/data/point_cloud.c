@@ -27,8 +27,13 @@ void ted4_point_cloud_free(ted4_point_cloud *c)
 int ted4_ply_find(ted4_point_cloud *c, const char *folder, ted4_message *m)
 {
     static const char *const names[] = {
-        "points3D_downsample.ply", "points3D_downsample2.ply", "points3d.ply", "points3D.ply", "fused.ply",
-        "sparse.ply", "colmap/dense/workspace/fused.ply",
+        "points3D_downsample.ply",
+        "points3D_downsample2.ply",
+        "points3d.ply",
+        "points3D.ply",
+        "fused.ply",
+        "sparse.ply",
+        "colmap/dense/workspace/fused.ply",
     };
 
     for (size_t i = 0; i < sizeof names / sizeof names[0]; i++) {

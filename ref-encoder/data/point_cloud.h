@@ -8,15 +8,15 @@
 #include "data/dataset.h"
 
 typedef struct {
-    float   *xyz;           /* owned, [n][3] world */
-    uint8_t *rgb;           /* owned, [n][3] */
-    size_t   n;
+    float *xyz;   /* owned, [n][3] world */
+    uint8_t *rgb; /* owned, [n][3] */
+    size_t n;
 } ted4_point_cloud;
 
-#define TED4_POINT_GREY 128     /* colour of points that have none */
+#define TED4_POINT_GREY 128 /* colour of points that have none */
 
 /* Zeroed room for n points. 0, or -1: no memory. */
-int  ted4_point_cloud_alloc(ted4_point_cloud *c, size_t n);
+int ted4_point_cloud_alloc(ted4_point_cloud *c, size_t n);
 void ted4_point_cloud_free(ted4_point_cloud *c);
 
 /* Ascii or binary little-endian PLY whose first element is "vertex" with x y z of any type; red
@@ -31,6 +31,7 @@ int ted4_ply_find(ted4_point_cloud *c, const char *folder, ted4_message *m);
 #define TED4_RANDOM_POINTS 20000
 
 /* Uniform in the box centre +- half, grey. Same seed, same points. 0, or -1: no memory. */
-int ted4_point_cloud_random(ted4_point_cloud *c, const double centre[3], double half, uint32_t seed);
+int ted4_point_cloud_random(ted4_point_cloud *c, const double centre[3], double half,
+                            uint32_t seed);
 
 #endif

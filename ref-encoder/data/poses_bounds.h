@@ -8,15 +8,15 @@
 #include "data/raw_scene.h"
 
 typedef struct {
-    char   *path;               /* owned */
-    double *poses;              /* [rows][17]; owned */
-    size_t  rows;
+    char *path;    /* owned */
+    double *poses; /* [rows][17]; owned */
+    size_t rows;
 } ted4_poses_bounds;
 
-int  ted4_is_poses_bounds(const char *folder);
+int ted4_is_poses_bounds(const char *folder);
 
 /* 0, or -1 with *m filled; free in both cases. */
-int  ted4_poses_bounds_read(ted4_poses_bounds *p, const char *folder, ted4_message *m);
+int ted4_poses_bounds_read(ted4_poses_bounds *p, const char *folder, ted4_message *m);
 void ted4_poses_bounds_free(ted4_poses_bounds *p);
 
 /* Lens and pose of a row. 0, or -1 with *m filled. */

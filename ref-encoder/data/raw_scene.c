@@ -28,7 +28,9 @@ static int reserve(ted4_raw_scene *s)
     if (s->n_shots < s->capacity)
         return 0;
     const size_t capacity = s->capacity == 0 ? 64 : 2 * s->capacity;
-    ted4_shot *shots = s->capacity > SIZE_MAX / 2 / sizeof *shots ? NULL : realloc(s->shots, capacity * sizeof *shots);
+    ted4_shot *shots = s->capacity > SIZE_MAX / 2 / sizeof *shots
+                           ? NULL
+                           : realloc(s->shots, capacity * sizeof *shots);
     if (shots == NULL)
         return -1;
     s->shots = shots;

@@ -17,32 +17,34 @@
 #define TED4_HOLD_OUT_PHASE 4
 
 typedef struct {
-    char     *path;             /* owned; exists and has a readable header */
-    char     *camera;           /* owned; label of the physical camera. NULL: cameras are told apart by pose */
-    int       is_posed;         /* the label was made of the pose */
-    int       width, height;    /* of the file */
-    int       has_alpha;
-    int       orientation;      /* as ted4_exif_orientation; pixels stay as stored, whatever it is */
-    ted4_lens lens;             /* may state another size than the file's */
-    double    R[9], t[3];       /* world to camera, right-down-forward; R a clean rotation */
-    double    time;             /* any unit and origin; equal times are one frame */
-    int       is_test;
+    char *path;   /* owned; exists and has a readable header */
+    char *camera; /* owned; label of the physical camera. NULL: cameras are told apart by pose */
+    int is_posed; /* the label was made of the pose */
+    int width, height; /* of the file */
+    int has_alpha;
+    int orientation;   /* as ted4_exif_orientation; pixels stay as stored, whatever it is */
+    ted4_lens lens;    /* may state another size than the file's */
+    double R[9], t[3]; /* world to camera, right-down-forward; R a clean rotation */
+    double time;       /* any unit and origin; equal times are one frame */
+    int is_test;
 } ted4_shot;
 
 typedef struct {
-    const ted4_dataset_options *wanted; /* borrowed; for layouts that can read less than everything */
-    const char       *layout;       /* static text */
-    ted4_shot        *shots;        /* owned, in the layout's order */
-    size_t            n_shots, capacity;
-    ted4_point_cloud  cloud;        /* empty: none came with the scene */
-    int               reduced;      /* downscale counts from pictures this many times finer than the files; 0 or 1: from these */
-    int               unit_cube;    /* random points fill the cube of Blender's synthetic scenes */
-    int               timed;        /* times came with the pictures */
-    double            rate;         /* frames a second, 0: unknown */
-    size_t            n_entries, n_missing; /* listed, and of these without a picture */
-    char              first_missing[700];
-    char            **warnings;     /* [n_warnings] owned, as those of a dataset */
-    size_t            n_warnings;
+    const ted4_dataset_options
+        *wanted;        /* borrowed; for layouts that can read less than everything */
+    const char *layout; /* static text */
+    ted4_shot *shots;   /* owned, in the layout's order */
+    size_t n_shots, capacity;
+    ted4_point_cloud cloud; /* empty: none came with the scene */
+    int reduced;   /* downscale counts from pictures this many times finer than the files; 0 or 1:
+                      from these */
+    int unit_cube; /* random points fill the cube of Blender's synthetic scenes */
+    int timed;     /* times came with the pictures */
+    double rate;   /* frames a second, 0: unknown */
+    size_t n_entries, n_missing; /* listed, and of these without a picture */
+    char first_missing[700];
+    char **warnings; /* [n_warnings] owned, as those of a dataset */
+    size_t n_warnings;
 } ted4_raw_scene;
 
 void ted4_raw_scene_free(ted4_raw_scene *s);
@@ -76,7 +78,8 @@ int ted4_raw_scene_hold_out_named(ted4_raw_scene *s, const ted4_dataset_options 
 
 typedef int ted4_loader(ted4_raw_scene *s, const char *folder, ted4_message *m);
 
-/* 0, or -1 with *m filled; *s must be zero but for wanted before and is to be freed by the caller either way. */
+/* 0, or -1 with *m filled; *s must be zero but for wanted before and is to be freed by the caller
+ * either way. */
 ted4_loader ted4_load_colmap, ted4_load_transforms, ted4_load_hypernerf, ted4_load_neu3d,
     ted4_load_llff, ted4_load_calibration;
 
@@ -89,13 +92,15 @@ int ted4_is_llff(const char *folder);
 int ted4_is_calibration(const char *folder);
 
 /* Takes shots and cloud out of *s. 0, or -1 with *m filled and *d to be freed by the caller. */
-int ted4_build_dataset(ted4_dataset *d, ted4_raw_scene *s, const ted4_dataset_options *o, ted4_message *m);
+int ted4_build_dataset(ted4_dataset *d, ted4_raw_scene *s, const ted4_dataset_options *o,
+                       ted4_message *m);
 
 /* frame_times.c: frame[i] of each of n times, *n_frames, at most TED4_MAX_FRAMES. Times without a
  * common step move to the nearest frame. 0, or -1: no memory, *m says so. */
 #define TED4_MAX_FRAMES 36000
 /* Sorts t[n], n > 0, and keeps one of each group of equal times, the last; returns how many. */
 size_t ted4_distinct_times(double *t, size_t n);
-int ted4_frame_times(const double *time, size_t n, uint32_t *frame, uint32_t *n_frames, ted4_message *m);
+int ted4_frame_times(const double *time, size_t n, uint32_t *frame, uint32_t *n_frames,
+                     ted4_message *m);
 
 #endif

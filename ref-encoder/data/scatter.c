@@ -16,7 +16,7 @@
 /* A point lies in empty space when less than this share of the pictures that it lies in show
  * something there. What moves is shown at few times; what lies far from things is in line with
  * them for few cameras. */
-#define EMPTY (1.0 / 16.0)
+#define EMPTY         (1.0 / 16.0)
 /* Depths tried, in distances of the cameras from where they look: things on a plain background
  * stand there; in a room, walls may be far behind it. */
 #define NEAREST       0.15
@@ -24,7 +24,7 @@
 #define FARTHEST_ROOM 4.0
 /* Before a plain background things are what cameras look at: a point lies in this share of the
  * pictures at least. */
-#define LOOKED_AT 0.5
+#define LOOKED_AT     0.5
 /* Levels that pictures may be off about a point (none: any depth will do), candidates tried for
  * each wanted point, and points wanted in all. Anywhere on a ray, most points lie in space that the
  * others have to themselves, so that there are only as many as make a beginning. Points that came
@@ -38,13 +38,13 @@ enum { PASSES = sizeof pass / sizeof *pass, USEFUL_PASS = 1 };
 enum { RUN = 1024, PIXELS = 32 };
 
 typedef struct {
-    const ted4_shown           *shown;
+    const ted4_shown *shown;
     const ted4_scatter_options *options;
-    ted4_sweep                  sweep;
-    uint64_t                    first;  /* number of the first candidate of this round */
-    int                         fewest; /* pictures that a point lies in */
-    float   *point;                     /* [RUNS * RUN][3] */
-    uint8_t *rgb, *taken;               /* [RUNS * RUN][3], [RUNS * RUN] */
+    ted4_sweep sweep;
+    uint64_t first;       /* number of the first candidate of this round */
+    int fewest;           /* pictures that a point lies in */
+    float *point;         /* [RUNS * RUN][3] */
+    uint8_t *rgb, *taken; /* [RUNS * RUN][3], [RUNS * RUN] */
 } round_job;
 
 enum { RUNS = 16 };
@@ -57,8 +57,8 @@ static int choose_pixel(const round_job *j, uint64_t *state, size_t *picture, si
 
         const ted4_camera *c = &j->shown->data->pictures[j->shown->picture[*picture]].camera;
 
-        *pixel = (size_t)(ted4_split_uniform(state) *
-                          (double)((size_t)c->width * (size_t)c->height));
+        *pixel =
+            (size_t)(ted4_split_uniform(state) * (double)((size_t)c->width * (size_t)c->height));
         if (ted4_shown_at(j->shown, *picture, *pixel))
             return 1;
     }
@@ -85,11 +85,11 @@ static int is_inside(const ted4_scatter_options *o, const float p[3])
 static int try_candidate(const round_job *j, uint64_t i, float point[3], uint8_t rgb[3])
 {
     /* A candidate takes fewer than 2^8 numbers. */
-    uint64_t     state = (uint64_t)j->options->seed << 40 ^ i << 8;
+    uint64_t state = (uint64_t)j->options->seed << 40 ^ i << 8;
     const double u = ted4_split_uniform(&state);
-    size_t       k, pixel;
-    double       world[3];
-    int          seen, shown;
+    size_t k, pixel;
+    double world[3];
+    int seen, shown;
 
     if (!choose_pixel(j, &state, &k, &pixel))
         return 0;
@@ -166,9 +166,9 @@ static int replace(ted4_dataset *d, const ted4_sweep *w, const ted4_scatter_opti
                    const ted4_parallel *p, size_t *n, ted4_message *m)
 {
     const ted4_shown *s = w->shown;
-    round_job         j = { .shown = s, .options = o, .sweep = *w };
-    ted4_point_cloud  c;
-    int               bad = 0;
+    round_job j = { .shown = s, .options = o, .sweep = *w };
+    ted4_point_cloud c;
+    int bad = 0;
 
     if (ted4_point_cloud_alloc(&c, TED4_RANDOM_POINTS) != 0)
         return ted4_say_no_memory(m);
@@ -192,7 +192,7 @@ static int replace(ted4_dataset *d, const ted4_sweep *w, const ted4_scatter_opti
 static size_t drop_outside(ted4_dataset *d, const ted4_scatter_options *o)
 {
     const size_t before = d->n_points;
-    size_t       n = 0;
+    size_t n = 0;
 
     for (size_t i = 0; i < before; i++) {
         if (!is_inside(o, d->points + 3 * i))
@@ -209,7 +209,7 @@ int ted4_dataset_scatter(ted4_dataset *d, const ted4_scatter_options *o, const t
 {
     ted4_shown s;
     ted4_sweep w;
-    int        bad = ted4_shown_read(&s, d, m) != 0;
+    int bad = ted4_shown_read(&s, d, m) != 0;
 
     memset(what, 0, sizeof *what);
     if (!bad && s.plain)

@@ -9,15 +9,15 @@
 
 typedef struct {
     uint32_t seed;
-    int      bounded;
-    float    low[3], high[3];   /* of a box of the world that has all points, if bounded */
+    int bounded;
+    float low[3], high[3]; /* of a box of the world that has all points, if bounded */
 } ted4_scatter_options;
 
 /* What came of it. */
 typedef struct {
-    size_t given;               /* points that came with the scene and were replaced */
-    size_t scattered;           /* points in their place, or in place of random ones */
-    size_t outside;             /* points that came with the scene and lie outside the bounds */
+    size_t given;     /* points that came with the scene and were replaced */
+    size_t scattered; /* points in their place, or in place of random ones */
+    size_t outside;   /* points that came with the scene and lie outside the bounds */
 } ted4_scattered;
 
 /* Of a verified dataset. A plain background of pictures without transparency becomes that of the

@@ -101,7 +101,7 @@ static size_t choose(const ted4_dataset *d, uint32_t step, size_t *picture, size
 static void choose_pictures(ted4_shown *s)
 {
     uint32_t step = 1;
-    size_t   bytes;
+    size_t bytes;
 
     do
         s->n = choose(s->data, step, s->picture, TED4_SHOWN_MOST, &bytes);
@@ -145,7 +145,7 @@ static int make_room(ted4_shown *s)
 
 int ted4_shown_read(ted4_shown *s, ted4_dataset *d, ted4_message *m)
 {
-    bucket  *count = calloc(BUCKETS, sizeof *count);
+    bucket *count = calloc(BUCKETS, sizeof *count);
     uint64_t edges = 0, near = 0;
 
     memset(s, 0, sizeof *s);
@@ -182,7 +182,7 @@ void ted4_shown_free(ted4_shown *s)
 int ted4_shown_pixel(const ted4_shown *s, size_t i, const double world[3], size_t *pixel)
 {
     const ted4_camera *c = &s->data->pictures[s->picture[i]].camera;
-    double             p[3];
+    double p[3];
 
     for (int k = 0; k < 3; k++)
         p[k] = c->R[3 * k] * world[0] + c->R[3 * k + 1] * world[1] + c->R[3 * k + 2] * world[2] +

@@ -13,20 +13,20 @@ enum { TED4_SHOWN_MOST = 128 };
 #define TED4_SHOWN_BYTES ((size_t)512 << 20)
 
 typedef struct {
-    ted4_dataset       *data;                   /* borrowed */
-    size_t              picture[TED4_SHOWN_MOST];
-    const uint8_t      *rgb[TED4_SHOWN_MOST];   /* pixels, held until ted4_shown_free; NULL: none */
-    uint64_t           *bits[TED4_SHOWN_MOST];  /* owned: a bit a pixel, row major, set where it
-                                                 * shows something; all, if not plain */
-    size_t              n;
-    int                 plain;
-    uint8_t             background[3];          /* of a plain one */
+    ted4_dataset *data; /* borrowed */
+    size_t picture[TED4_SHOWN_MOST];
+    const uint8_t *rgb[TED4_SHOWN_MOST]; /* pixels, held until ted4_shown_free; NULL: none */
+    uint64_t *bits[TED4_SHOWN_MOST];     /* owned: a bit a pixel, row major, set where it
+                                          * shows something; all, if not plain */
+    size_t n;
+    int plain;
+    uint8_t background[3]; /* of a plain one */
 } ted4_shown;
 
 /* Reads the pictures (of a verified dataset). The background is plain when half of the pixels at
  * the edges of all pictures are within 8 levels of one colour. 0, or -1 with *m filled. Free it
  * in either case. */
-int  ted4_shown_read(ted4_shown *s, ted4_dataset *d, ted4_message *m);
+int ted4_shown_read(ted4_shown *s, ted4_dataset *d, ted4_message *m);
 void ted4_shown_free(ted4_shown *s);
 
 /* Does the pixel of picture i of those looked at show something? */

@@ -42,8 +42,8 @@ static int undistort(ted4_image *image, const ted4_lens *l, ted4_message *m)
     return 0;
 }
 
-/* Is it the file that was probed, and decoded before? A picture that changes while a scene is trained
- * would make the result one of chance. */
+/* Is it the file that was probed, and decoded before? A picture that changes while a scene is
+ * trained would make the result one of chance. */
 static int check_same(ted4_source *s, const ted4_image *image, ted4_message *m)
 {
     if (image->width != s->lens.width || image->height != s->lens.height)

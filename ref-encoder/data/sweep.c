@@ -8,9 +8,9 @@
 #include "data/data_util.h"
 
 /* Smallest angle between two cameras, in radians. */
-#define APART 0.05
+#define APART    0.05
 /* Depths are equally good when patches are off by so many levels more than at the best. */
-#define EQUAL 1.5
+#define EQUAL    1.5
 /* Where the middle pixels are so many times as far off as patches may be, these hardly agree. */
 #define HOPELESS 3.0
 enum { FEWEST = 2 };
@@ -72,9 +72,9 @@ void ted4_sweep_begin(ted4_sweep *w, const ted4_shown *s, double ahead, double n
     for (size_t i = 0; i < s->n; i++)
         ted4_pose_centre(picture(s, i)->camera.R, picture(s, i)->camera.t, centre[i]);
     for (size_t i = 0; i < s->n; i++) {
-        choose(w, (const double (*)[3])centre, i, APART * ahead, 1);
+        choose(w, (const double(*)[3])centre, i, APART * ahead, 1);
         if (w->n_helpers[i] < FEWEST)
-            choose(w, (const double (*)[3])centre, i, APART * ahead, 0);
+            choose(w, (const double(*)[3])centre, i, APART * ahead, 0);
     }
 }
 
@@ -123,7 +123,7 @@ static double patch_off(const patch *a, const patch *b)
 static double better_half(double *x, int n)
 {
     const int half = n / 2 > FEWEST ? n / 2 : FEWEST;
-    double    sum = 0;
+    double sum = 0;
 
     for (int i = 1; i < n; i++)
         for (int k = i; k > 0 && x[k - 1] > x[k]; k--) {
@@ -143,7 +143,7 @@ static double cost(const ted4_sweep *w, size_t i, const patch *mine, const doubl
 {
     double each[TED4_SWEEP_HELPERS];
     size_t at[TED4_SWEEP_HELPERS];
-    int    n = 0, looks[TED4_SWEEP_HELPERS];
+    int n = 0, looks[TED4_SWEEP_HELPERS];
 
     for (int h = 0; h < w->n_helpers[i]; h++) {
         const size_t k = w->helper[i][h];
@@ -157,7 +157,7 @@ static double cost(const ted4_sweep *w, size_t i, const patch *mine, const doubl
         return INFINITY;
     for (int h = 0; h < n; h++) {
         const size_t k = (size_t)looks[h];
-        patch        other;
+        patch other;
 
         take_patch(&picture(w->shown, k)->camera, w->shown->rgb[k], at[h], &other);
         each[h] = patch_off(mine, &other);
@@ -176,9 +176,9 @@ int ted4_sweep_agrees(const ted4_sweep *w, size_t i, size_t pixel, const double 
 int ted4_sweep_pixel(const ted4_sweep *w, size_t i, size_t pixel, double u, double world[3])
 {
     const ted4_camera *c = &picture(w->shown, i)->camera;
-    patch              mine;
-    double             depth[TED4_SWEEP_DEPTHS], found[TED4_SWEEP_DEPTHS], best = INFINITY;
-    int                n = 0;
+    patch mine;
+    double depth[TED4_SWEEP_DEPTHS], found[TED4_SWEEP_DEPTHS], best = INFINITY;
+    int n = 0;
 
     take_patch(c, w->shown->rgb[i], pixel, &mine);
     for (int k = 0; k < TED4_SWEEP_DEPTHS; k++) {

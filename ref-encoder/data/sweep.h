@@ -12,10 +12,10 @@ enum { TED4_SWEEP_HELPERS = 8, TED4_SWEEP_DEPTHS = 256 };
 
 typedef struct {
     const ted4_shown *shown;
-    double            nearest, farthest;    /* depths, spaced evenly by their inverse */
-    double            agreed;               /* levels of 255 that patches may be off, in the mean */
-    uint8_t           helper[TED4_SHOWN_MOST][TED4_SWEEP_HELPERS];
-    uint8_t           n_helpers[TED4_SHOWN_MOST];
+    double nearest, farthest; /* depths, spaced evenly by their inverse */
+    double agreed;            /* levels of 255 that patches may be off, in the mean */
+    uint8_t helper[TED4_SHOWN_MOST][TED4_SWEEP_HELPERS];
+    uint8_t n_helpers[TED4_SHOWN_MOST];
 } ted4_sweep;
 
 /* Chooses for each picture the nearest others of its time (where a time has too few, of any), at

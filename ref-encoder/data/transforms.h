@@ -8,17 +8,17 @@
 
 typedef struct {
     ted4_raw_scene *scene;
-    const char     *folder;
-    const char     *part;           /* "train", "val" or "test" of the file's name, else NULL */
-    char           *path;           /* owned */
-    json_t         *root;           /* owned */
-    const json_t   *frame;          /* the one being read; borrowed */
-    char            where[700];     /* "path: frames[i]" */
-    size_t         *shot_of;        /* [frames] index of a frame's shot, or NO_SHOT; owned */
-    int             is_test;
-    double          applied[12];    /* world of the file = applied * world of the dataset; 3x4 */
-    double          applied_scale;
-    ted4_message   *m;
+    const char *folder;
+    const char *part;    /* "train", "val" or "test" of the file's name, else NULL */
+    char *path;          /* owned */
+    json_t *root;        /* owned */
+    const json_t *frame; /* the one being read; borrowed */
+    char where[700];     /* "path: frames[i]" */
+    size_t *shot_of;     /* [frames] index of a frame's shot, or NO_SHOT; owned */
+    int is_test;
+    double applied[12]; /* world of the file = applied * world of the dataset; 3x4 */
+    double applied_scale;
+    ted4_message *m;
 } ted4_transforms;
 
 /* Of a frame without a picture. */

@@ -130,7 +130,10 @@ static int read_focal(ted4_transforms *t, const json_t *o, const char *where, te
 /* Fields of one level that say one number each. */
 static int read_numbers(ted4_transforms *t, const json_t *o, const char *where, ted4_lens *l)
 {
-    const struct { const char *name; double *to; } fields[] = {
+    const struct {
+        const char *name;
+        double *to;
+    } fields[] = {
         { "fl_y", &l->fy }, { "cx", &l->cx }, { "cy", &l->cy }, { "k1", &l->k1 },
         { "k2", &l->k2 },   { "k3", &l->k3 }, { "p1", &l->p1 }, { "p2", &l->p2 },
     };

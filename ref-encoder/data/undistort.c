@@ -21,7 +21,8 @@ static double slope(const ted4_lens *l, double s)
 static double cubic_fold(const ted4_lens *l)
 {
     const double FAR = 1e6, disc = 25 * l->k2 * l->k2 - 63 * l->k1 * l->k3;
-    const double half = disc > 0 ? sqrt(disc) / fabs(21 * l->k3) : 0, middle = -5 * l->k2 / (21 * l->k3);
+    const double half = disc > 0 ? sqrt(disc) / fabs(21 * l->k3) : 0,
+                 middle = -5 * l->k2 / (21 * l->k3);
     const double ends[3] = { middle - half, middle + half, FAR };
     double low = 0;
 
@@ -58,8 +59,9 @@ static double fold_radius2(const ted4_lens *l)
     return q > 0 ? 2 / q : INFINITY;
 }
 
-/* Position in the distorted picture, in pixels, of the ray that a pinhole of the same fx fy cx cy without skew sees at (x, y). Beyond the radius where the
- * radial polynomial stops growing (where it would fold back) it is the position on that radius. */
+/* Position in the distorted picture, in pixels, of the ray that a pinhole of the same fx fy cx cy
+ * without skew sees at (x, y). Beyond the radius where the radial polynomial stops growing (where
+ * it would fold back) it is the position on that radius. */
 static void distort(const ted4_lens *l, double fold2, double x, double y, double *dx, double *dy)
 {
     double u = (x - l->cx) / l->fx, v = (y - l->cy) / l->fy;

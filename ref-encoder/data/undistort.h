@@ -11,7 +11,7 @@
  * Nerfies. skew: pixels to the right for each unit down of the image plane at depth 1. These six
  * zero: a pinhole. */
 typedef struct {
-    int    width, height;
+    int width, height;
     double fx, fy, cx, cy;
     double k1, k2, p1, p2, k3;
     double skew;

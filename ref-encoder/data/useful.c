@@ -13,14 +13,14 @@
  * depths of surfaces five to forty times as often as at those exchanged, and at those of random
  * points 0.3 to 1.2 times. */
 enum { DRAWS = 16384 };
-#define TIMES 2.0
+#define TIMES   2.0
 /* Before a wall, or where little has a texture, pictures agree at most depths exchanged, too; the
  * few that are left over tell nothing when fewer than this share agree at those only. At random
  * points 0.7 times as many and more did. */
 #define TELLING 0.25
 /* Colours differ between cameras too much for anything to be told where fewer than this share of
  * pairs agree at either depth. */
-#define FEW (1.0 / 64)
+#define FEW     (1.0 / 64)
 
 static void to_double(const float p[3], double world[3])
 {
@@ -31,11 +31,11 @@ static void to_double(const float p[3], double world[3])
 static int are_shown(const ted4_shown *s)
 {
     const ted4_dataset *d = s->data;
-    size_t              n = 0;
+    size_t n = 0;
 
     for (size_t i = 0; i < d->n_points; i++) {
         double world[3];
-        int    seen, shown;
+        int seen, shown;
 
         to_double(d->points + 3 * i, world);
         ted4_shown_count(s, world, &seen, &shown);
@@ -59,15 +59,15 @@ static double depth(const ted4_camera *c, const double world[3])
 static int agree(const ted4_sweep *w, uint32_t seed)
 {
     const ted4_dataset *d = w->shown->data;
-    uint64_t            state = seed;
-    size_t              own = 0, others = 0, both = 0, pairs = 0;
+    uint64_t state = seed;
+    size_t own = 0, others = 0, both = 0, pairs = 0;
 
     for (int k = 0; k < DRAWS; k++) {
         const size_t i = draw(&state, w->shown->n), point = draw(&state, d->n_points),
                      other = draw(&state, d->n_points);
         const ted4_camera *c = &d->pictures[w->shown->picture[i]].camera;
-        double             here[3], there[3];
-        size_t             pixel;
+        double here[3], there[3];
+        size_t pixel;
 
         to_double(d->points + 3 * point, here);
         to_double(d->points + 3 * other, there);

@@ -18,16 +18,17 @@
 #include "data/data_util.h"
 #include "data/raw_scene.h"
 
-#define COUNT   "count"         /* number of frames, in the folder when it is complete */
-#define NO_EXEC 127             /* exit status of a child that could not start ffmpeg */
-#define TAIL    2000            /* bytes kept of what ffmpeg says */
-enum { TELL_EVERY = 1000 };     /* milliseconds */
+#define COUNT   "count"     /* number of frames, in the folder when it is complete */
+#define NO_EXEC 127         /* exit status of a child that could not start ffmpeg */
+#define TAIL    2000        /* bytes kept of what ffmpeg says */
+enum { TELL_EVERY = 1000 }; /* milliseconds */
 
 /* Even time stamps, so that no frame is doubled or dropped; then RGB with a conversion that is the
  * same on every machine; without the colour tags that make a PNG reader convert once more. */
-#define FILTERS "settb=AVTB,setpts=N*40000,scale=flags=bitexact+accurate_rnd+full_chroma_int+full_chroma_inp," \
-                "format=rgb24,setparams=color_primaries=unknown:color_trc=unknown"
-#define RATE    "25"            /* 1 / 40000 us */
+#define FILTERS                                                                                    \
+    "settb=AVTB,setpts=N*40000,scale=flags=bitexact+accurate_rnd+full_chroma_int+full_chroma_inp," \
+    "format=rgb24,setparams=color_primaries=unknown:color_trc=unknown"
+#define RATE "25" /* 1 / 40000 us */
 
 /* Removes a folder of files. */
 static void remove_folder(const char *folder)
@@ -66,9 +67,14 @@ static char *cache_folder(ted4_message *m)
     if (has_cache)
         mkdir(cache, 0700);
     if (mkdir(folder, 0700) != 0 && errno != EEXIST)
-        ted4_say(m, "%s: cannot be made, for the frames of videos (XDG_CACHE_HOME, TMPDIR choose): %s", folder, strerror(errno));
+        ted4_say(m,
+                 "%s: cannot be made, for the frames of videos (XDG_CACHE_HOME, TMPDIR choose): %s",
+                 folder, strerror(errno));
     else if (lstat(folder, &s) != 0 || !S_ISDIR(s.st_mode) || s.st_uid != getuid())
-        ted4_say(m, "%s: not a folder of this user, needed for the frames of videos (XDG_CACHE_HOME, TMPDIR choose)", folder);
+        ted4_say(m,
+                 "%s: not a folder of this user, needed for the frames of videos (XDG_CACHE_HOME, "
+                 "TMPDIR choose)",
+                 folder);
     else
         return folder;
     free(folder);
@@ -84,7 +90,8 @@ static char *final_folder(const char *cache, const char *path, const struct stat
     snprintf(identity, sizeof identity, "%lld %lld.%09ld %zu " FILTERS, (long long)s->st_size,
              (long long)s->st_mtim.tv_sec, (long)s->st_mtim.tv_nsec, most);
     const XXH64_hash_t key = XXH64(path, strlen(path), XXH64(identity, strlen(identity), 0));
-    snprintf(name, sizeof name, "%.80s-%016llx", base == NULL ? path : base + 1, (unsigned long long)key);
+    snprintf(name, sizeof name, "%.80s-%016llx", base == NULL ? path : base + 1,
+             (unsigned long long)key);
     return ted4_path_join(cache, name);
 }
 
@@ -150,7 +157,8 @@ typedef struct {
     const char *video, *folder;
 } audience;
 
-/* Waits until there is something to read, or nothing more will come; meanwhile the audience hears of frames. */
+/* Waits until there is something to read, or nothing more will come; meanwhile the audience hears
+ * of frames. */
 static void await(int from, const audience *a)
 {
     struct pollfd wanted = { .fd = from, .events = POLLIN };
@@ -180,8 +188,8 @@ static void listen(int from, const audience *a, char tail[TAIL])
     tail[n] = 0;
 }
 
-/* Runs ffmpeg in the audience's folder; gives its exit status, or -1, and what it said at the end. Its messages come
- * through a pipe, for a full disk would swallow a file. */
+/* Runs ffmpeg in the audience's folder; gives its exit status, or -1, and what it said at the end.
+ * Its messages come through a pipe, for a full disk would swallow a file. */
 static int run_ffmpeg(const audience *a, size_t most, char tail[TAIL])
 {
     char input[4200], limit[24];
@@ -204,7 +212,8 @@ static int run_ffmpeg(const audience *a, size_t most, char tail[TAIL])
     return child > 0 && WIFEXITED(status) ? WEXITSTATUS(status) : -1;
 }
 
-/* Last line of what was said, with ": " before it, or nothing. Other bytes than text are left out. */
+/* Last line of what was said, with ": " before it, or nothing. Other bytes than text are left out.
+ */
 static void last_words(char tail[TAIL], char words[200])
 {
     size_t end = strlen(tail), start, n = 0;
@@ -231,15 +240,20 @@ static int fill(const audience *a, size_t most, ted4_message *m)
     const size_t n = count_frames(folder);
 
     if (status == NO_EXEC)
-        return ted4_say(m, "%s: the program ffmpeg is needed to read it and cannot be started (is it installed?)", video);
+        return ted4_say(
+            m,
+            "%s: the program ffmpeg is needed to read it and cannot be started (is it installed?)",
+            video);
     last_words(tail, words);
     if (status != 0 || n == 0)
-        return ted4_say(m, "%s: ffmpeg, unpacking into %s, failed after %zu frames%s", video, folder, n, words);
+        return ted4_say(m, "%s: ffmpeg, unpacking into %s, failed after %zu frames%s", video,
+                        folder, n, words);
     return write_count(folder, n) == 0 ? 0 : ted4_say(m, "%s: %s", folder, strerror(errno));
 }
 
 /* Unpacks into a new folder beside the final one and renames it. */
-static int unpack(const char *video, size_t most, const char *final, const ted4_dataset_options *o, ted4_message *m)
+static int unpack(const char *video, size_t most, const char *final, const ted4_dataset_options *o,
+                  ted4_message *m)
 {
     const size_t size = strlen(final) + 8;
     char *folder = malloc(size);
@@ -252,7 +266,7 @@ static int unpack(const char *video, size_t most, const char *final, const ted4_
         free(folder);
         return -1;
     }
-    int result = fill(&(audience){ o, video, folder }, most, m);
+    int result = fill(&(audience) { o, video, folder }, most, m);
     if (result == 0 && rename(folder, final) != 0 && !is_complete(final))
         result = ted4_say(m, "%s: %s", final, strerror(errno));
     /* Gone when renamed; left when this failed or another program was first. */
@@ -288,7 +302,8 @@ static char *absolute(const char *path)
     return getcwd(here, sizeof here) == NULL ? NULL : ted4_path_join(here, path);
 }
 
-char *ted4_video_unpack(const char *video, size_t most, const ted4_dataset_options *o, ted4_message *m)
+char *ted4_video_unpack(const char *video, size_t most, const ted4_dataset_options *o,
+                        ted4_message *m)
 {
     struct stat s;
     const size_t limit = most > 0 && most < TED4_MAX_FRAMES ? most : TED4_MAX_FRAMES;

@@ -6,9 +6,13 @@
 #include <stdlib.h>
 #include "data/data_util.h"
 
-#define PARALLEL     1e-4       /* mean squared sine between axes below which their crossing means nothing */
+#define PARALLEL                                                                    \
+    1e-4 /* mean squared sine between axes below which their crossing means nothing \
+          */
 
-typedef struct { double centre[3], forward[3], spread; } mean_camera;
+typedef struct {
+    double centre[3], forward[3], spread;
+} mean_camera;
 
 /* Pictures for training, which lie before those held out: where these look is not asked. */
 static size_t n_train(const ted4_dataset *d)
@@ -102,7 +106,7 @@ static int is_ahead(const ted4_dataset *d, size_t n, const double x[3])
 
 int ted4_view_box(const ted4_dataset *d, double centre[3], double *half)
 {
-    const size_t      n = n_train(d);
+    const size_t n = n_train(d);
     const mean_camera mean = average(d, n);
     double *distances = malloc(n * sizeof *distances), c[3];
 

@@ -16,15 +16,15 @@ static const double SCALE_WEIGHT[TED4_MS_SSIM_SCALES] = { 0.0448, 0.2856, 0.3001
 
 /* Two planes of one channel in [0, 1]. */
 typedef struct {
-    int     width, height;
+    int width, height;
     double *a, *b;
 } pair;
 
 typedef struct {
     const uint8_t *a, *b;
-    int            width, height, scales;
-    double         value[KINDS][CHANNELS];
-    int            failed[KINDS][CHANNELS];
+    int width, height, scales;
+    double value[KINDS][CHANNELS];
+    int failed[KINDS][CHANNELS];
 } job;
 
 static void window_make(double g[TED4_SSIM_WINDOW])
@@ -73,7 +73,9 @@ static void filter_along(const double *g, const double *in, double *out, int wid
             out[x] += g[k] * in[x + k];
 }
 
-typedef struct { double ssim, contrast; } similarity;
+typedef struct {
+    double ssim, contrast;
+} similarity;
 
 /* Sums of both over columns [margin, width - margin) of a filtered row. */
 static similarity row_similarity(double *const row[4], int width, int margin)
@@ -90,7 +92,7 @@ static similarity row_similarity(double *const row[4], int width, int margin)
         contrast += cs;
         ssim += cs * (2.0 * a * b + c1) / (a * a + b * b + c1);
     }
-    return (similarity){ ssim, contrast };
+    return (similarity) { ssim, contrast };
 }
 
 /* Means over the picture; margin 0: zero padding, HALF: only whole windows. 0, or -1: no memory. */
@@ -106,10 +108,10 @@ static int gauss_similarity(const pair *p, int margin, similarity *mean)
         return -1;
     window_make(g);
     for (int i = 0; i < 4; i++) {
-        row[i]   = block + (size_t)i * padded;
+        row[i] = block + (size_t)i * padded;
         along[i] = block + (size_t)(4 + i) * padded;
     }
-    *mean = (similarity){ 0.0, 0.0 };
+    *mean = (similarity) { 0.0, 0.0 };
     for (int y = margin; y < p->height - margin; y++) {
         filter_down(p, g, y, row);
         for (int i = 0; i < 4; i++)
@@ -155,7 +157,7 @@ static int scale_count(int width, int height)
 
     while (n < TED4_MS_SSIM_SCALES && width >= TED4_SSIM_WINDOW && height >= TED4_SSIM_WINDOW) {
         n++;
-        width  = side_halved(width);
+        width = side_halved(width);
         height = side_halved(height);
     }
     return n;
@@ -176,7 +178,7 @@ static int multi_scale(pair *p, int scales, double *value)
         product *= pow(fmax(0.0, i + 1 < scales ? s.contrast : s.ssim), SCALE_WEIGHT[i] / total);
         plane_halve(p->a, p->width, p->height);
         plane_halve(p->b, p->width, p->height);
-        p->width  = side_halved(p->width);
+        p->width = side_halved(p->width);
         p->height = side_halved(p->height);
     }
     *value = scales > 0 ? product : (double)NAN;
@@ -276,8 +278,8 @@ static void compare_task(void *arg, size_t i)
     const int kind = (int)(i % KINDS), channel = (int)(i / KINDS);
 
     j->failed[kind][channel] = kind == KIND_BOX
-        ? box_similarity(j, channel, &j->value[kind][channel])
-        : gauss_task(j, channel, kind, &j->value[kind][channel]);
+                                   ? box_similarity(j, channel, &j->value[kind][channel])
+                                   : gauss_task(j, channel, kind, &j->value[kind][channel]);
 }
 
 static double psnr(const uint8_t *a, const uint8_t *b, size_t n)
@@ -317,8 +319,11 @@ int ted4_metrics_compare(const uint8_t *a, const uint8_t *b, int width, int heig
             mean[k] += j.value[k][c] / CHANNELS;
         }
     }
-    *m = (ted4_metrics){ psnr(a, b, (size_t)width * (size_t)height * CHANNELS), mean[KIND_GAUSS],
-                         mean[KIND_BOX], mean[KIND_SCALES],
-                         l1(a, b, (size_t)width * (size_t)height * CHANNELS), j.scales };
+    *m = (ted4_metrics) { psnr(a, b, (size_t)width * (size_t)height * CHANNELS),
+                          mean[KIND_GAUSS],
+                          mean[KIND_BOX],
+                          mean[KIND_SCALES],
+                          l1(a, b, (size_t)width * (size_t)height * CHANNELS),
+                          j.scales };
     return 0;
 }

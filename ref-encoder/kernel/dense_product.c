@@ -1,13 +1,13 @@
-/* dense_product.c - a dense layer forward and its transpose (dense.h), which share one kernel: a panel of outputs times
- * two registers of lanes lives in registers while the inputs stream by, one broadcast weight for two fused
- * multiply-adds. spec 7.1. Each output of each lane is summed on its own, input after input, so that no blocking changes
- * a bit.
+/* dense_product.c - a dense layer forward and its transpose (dense.h), which share one kernel: a
+ * panel of outputs times two registers of lanes lives in registers while the inputs stream by, one
+ * broadcast weight for two fused multiply-adds. spec 7.1. Each output of each lane is summed on its
+ * own, input after input, so that no blocking changes a bit.
  * SPDX-License-Identifier: BSD-2-Clause */
 #include "kernel/dense.h"
 #include "render/vec.h"
 
-/* Outputs of a panel: twice as many sums, two registers of inputs and a weight fit in 32 registers (AVX-512, NEON), or in
- * 16 (AVX2, SSE2). */
+/* Outputs of a panel: twice as many sums, two registers of inputs and a weight fit in 32 registers
+ * (AVX-512, NEON), or in 16 (AVX2, SSE2). */
 #if TED4_VEC_BYTES == 64 || defined(__aarch64__)
 enum { PANEL = 12 };
 #else
@@ -32,7 +32,8 @@ static int panel_width(int out, int panel)
 
 /* Panel by panel: the biases of its outputs, then for each input the weights of its outputs.
  * step_out and step_in say how w lies; b is NULL for zeros. */
-static void pack(int in, int out, const float *w, size_t step_out, size_t step_in, const float *b, float *to)
+static void pack(int in, int out, const float *w, size_t step_out, size_t step_in, const float *b,
+                 float *to)
 {
     for (int p = 0, o = 0; p < n_panels(out); p++) {
         const int width = panel_width(out, p);
@@ -64,7 +65,8 @@ TED4_INLINE void store(float *y, ted4_vf sum, store_mode mode)
 }
 
 /* n outputs, SPAN lanes. */
-TED4_INLINE void panel_n(const int n, int in, const float *w, const float *x, float *y, store_mode mode)
+TED4_INLINE void panel_n(const int n, int in, const float *w, const float *x, float *y,
+                         store_mode mode)
 {
     ted4_vf acc[PANEL][2];
 

@@ -1,11 +1,12 @@
-/* dense_weights.c - the weight gradient of a dense layer (dense.h): dot products over lanes, a tile of outputs times
- * inputs at a time, block after block. A lane group has 16 sums; these are added in pairs of neighbours, pairs of pairs
- * and so on, at every level alike.
+/* dense_weights.c - the weight gradient of a dense layer (dense.h): dot products over lanes, a tile
+ * of outputs times inputs at a time, block after block. A lane group has 16 sums; these are added
+ * in pairs of neighbours, pairs of pairs and so on, at every level alike.
  * SPDX-License-Identifier: BSD-2-Clause */
 #include "kernel/dense.h"
 #include "render/vec.h"
 
-/* Outputs and inputs of a tile: its sums, its inputs and one output's gradient fit in 32 registers, or in 16. */
+/* Outputs and inputs of a tile: its sums, its inputs and one output's gradient fit in 32 registers,
+ * or in 16. */
 #if TED4_VEC_BYTES == 64 || defined(__aarch64__)
 enum { TILE_OUT = 4, TILE_IN = 4 };
 #else
@@ -18,11 +19,12 @@ typedef float four __attribute__((vector_size(16)));
 TED4_INLINE ted4_vf pairs(ted4_vf a, ted4_vf b)
 {
 #if TED4_VEC_BYTES == 64
-    return __builtin_shufflevector(a, b, 0, 2, 16, 18, 4, 6, 20, 22, 8, 10, 24, 26, 12, 14, 28, 30)
-         + __builtin_shufflevector(a, b, 1, 3, 17, 19, 5, 7, 21, 23, 9, 11, 25, 27, 13, 15, 29, 31);
+    return __builtin_shufflevector(a, b, 0, 2, 16, 18, 4, 6, 20, 22, 8, 10, 24, 26, 12, 14, 28,
+                                   30) +
+           __builtin_shufflevector(a, b, 1, 3, 17, 19, 5, 7, 21, 23, 9, 11, 25, 27, 13, 15, 29, 31);
 #elif TED4_VEC_BYTES == 32
-    return __builtin_shufflevector(a, b, 0, 2, 8, 10, 4, 6, 12, 14)
-         + __builtin_shufflevector(a, b, 1, 3, 9, 11, 5, 7, 13, 15);
+    return __builtin_shufflevector(a, b, 0, 2, 8, 10, 4, 6, 12, 14) +
+           __builtin_shufflevector(a, b, 1, 3, 9, 11, 5, 7, 13, 15);
 #else
     return __builtin_shufflevector(a, b, 0, 2, 4, 6) + __builtin_shufflevector(a, b, 1, 3, 5, 7);
 #endif
@@ -34,8 +36,9 @@ TED4_INLINE four fold(const ted4_vf v[4])
     const ted4_vf s = pairs(pairs(v[0], v[1]), pairs(v[2], v[3]));
 
 #if TED4_VEC_BYTES == 64
-    return (__builtin_shufflevector(s, s, 0, 1, 2, 3) + __builtin_shufflevector(s, s, 4, 5, 6, 7))
-         + (__builtin_shufflevector(s, s, 8, 9, 10, 11) + __builtin_shufflevector(s, s, 12, 13, 14, 15));
+    return (__builtin_shufflevector(s, s, 0, 1, 2, 3) + __builtin_shufflevector(s, s, 4, 5, 6, 7)) +
+           (__builtin_shufflevector(s, s, 8, 9, 10, 11) +
+            __builtin_shufflevector(s, s, 12, 13, 14, 15));
 #elif TED4_VEC_BYTES == 32
     return __builtin_shufflevector(s, s, 0, 1, 2, 3) + __builtin_shufflevector(s, s, 4, 5, 6, 7);
 #else
@@ -63,18 +66,20 @@ static int last_below(int i, int n)
 /* One operand of all the tiles: n rows in each of n_blocks blocks. */
 typedef struct {
     const float *base;
-    size_t       stride;
-    int          n;
+    size_t stride;
+    int n;
 } operand;
 
-/* Rows first .. first + n - 1; beyond the end the last one is repeated and its sums are not used. */
+/* Rows first .. first + n - 1; beyond the end the last one is repeated and its sums are not used.
+ */
 TED4_INLINE void rows(const operand *m, int first, int n, const float **row)
 {
     for (int a = 0; a < n; a++)
         row[a] = m->base + (size_t)last_below(first + a, m->n) * TED4_LANES;
 }
 
-/* Keeps gcc from folding a load into each product that uses it: the load ports are the bottleneck. */
+/* Keeps gcc from folding a load into each product that uses it: the load ports are the bottleneck.
+ */
 TED4_INLINE void keep_in_register(ted4_vf *v)
 {
 #if TED4_VEC_BYTES >= 32
@@ -85,12 +90,12 @@ TED4_INLINE void keep_in_register(ted4_vf *v)
 }
 
 /* Products of part part of the rows' lane groups, summed over groups and blocks. */
-TED4_INLINE void tile_part(const float *const *x, size_t x_stride, const float *const *dy, size_t dy_stride,
-                           size_t n_blocks, int part, ted4_vf *acc)
+TED4_INLINE void tile_part(const float *const *x, size_t x_stride, const float *const *dy,
+                           size_t dy_stride, size_t n_blocks, int part, ted4_vf *acc)
 {
     TED4_UNROLL
     for (int i = 0; i < TILE_OUT * TILE_IN; i++)
-        acc[i] = (ted4_vf){0};
+        acc[i] = (ted4_vf) { 0 };
     for (size_t k = 0; k < n_blocks; k++) {
         const size_t kx = k * x_stride, ky = k * dy_stride;
 
@@ -116,8 +121,8 @@ TED4_INLINE void tile_part(const float *const *x, size_t x_stride, const float *
 }
 
 /* sum[TILE_IN a + b] = dot product of row a of dy and row b of x over all blocks. */
-TED4_INLINE void tile(const float *const *x, size_t x_stride, const float *const *dy, size_t dy_stride,
-                      size_t n_blocks, float *sum)
+TED4_INLINE void tile(const float *const *x, size_t x_stride, const float *const *dy,
+                      size_t dy_stride, size_t n_blocks, float *sum)
 {
     four part[TILE_OUT * TILE_IN / 4][TED4_VECS];
 
@@ -165,7 +170,7 @@ static void weight_sums(const operand *x, const operand *dy, size_t n_blocks, fl
             rows(dy, o, TILE_OUT, dy_row);
             for (int i = group; i < group + GROUP && i < x->n; i += TILE_IN) {
                 const float *x_row[TILE_IN];
-                float        sum[TILE_OUT * TILE_IN];
+                float sum[TILE_OUT * TILE_IN];
 
                 rows(x, i, TILE_IN, x_row);
                 tile(x_row, x->stride, dy_row, dy->stride, n_blocks, sum);
@@ -178,11 +183,11 @@ static void bias_sums(const operand *dy, size_t n_blocks, float *db)
 {
     for (int o = 0; o < dy->n; o += 4) {
         const float *row[4];
-        four         part[TED4_VECS], sum;
+        four part[TED4_VECS], sum;
 
         rows(dy, o, 4, row);
         for (int p = 0; p < TED4_VECS; p++) {
-            ted4_vf acc[4] = {{0}};
+            ted4_vf acc[4] = { { 0 } };
 
             for (size_t k = 0; k < n_blocks; k++)
                 for (int j = 0; j < 4; j++) {
@@ -198,8 +203,9 @@ static void bias_sums(const operand *dy, size_t n_blocks, float *db)
     }
 }
 
-void TED4_LEVELED(ted4_dense_backward_w)(int in, int out, const float *x, size_t x_stride, const float *dy,
-                                         size_t dy_stride, size_t n_blocks, float *dw, float *db)
+void TED4_LEVELED(ted4_dense_backward_w)(int in, int out, const float *x, size_t x_stride,
+                                         const float *dy, size_t dy_stride, size_t n_blocks,
+                                         float *dw, float *db)
 {
     const operand xo = { x, x_stride, in }, yo = { dy, dy_stride, out };
 

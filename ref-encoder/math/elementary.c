@@ -12,11 +12,11 @@
 #define QUARTER_MID  0x1.0b4611a6p-34
 #define QUARTER_LOW  0x1.3198a2e037073p-69
 
-#define LN2          0x1.62e42fefa39efp-1
-#define LOG2_E       0x1.71547652b82fep+0
-#define TWO_PER_PI   0x1.45f306dc9c883p-1
-#define SQRT_HALF    0x1.6a09e667f3bcdp-1
-#define MOST_SIN     1e5
+#define LN2        0x1.62e42fefa39efp-1
+#define LOG2_E     0x1.71547652b82fep+0
+#define TWO_PER_PI 0x1.45f306dc9c883p-1
+#define SQRT_HALF  0x1.6a09e667f3bcdp-1
+#define MOST_SIN   1e5
 
 /* e^r for |r| <= 0.35, by its series: the first term left out is below 5e-18. */
 static double exp_series(double r)
@@ -63,7 +63,7 @@ double ted4_math_exp2(double x)
 static double log_series(double f)
 {
     const double s = f / (2.0 + f), z = s * s, half = 0.5 * f * f;
-    double       p = 2.0 / 23;
+    double p = 2.0 / 23;
 
     p = p * z + 2.0 / 21;
     p = p * z + 2.0 / 19;
@@ -98,7 +98,7 @@ static int split(double x, double *f, int *e)
 double ted4_math_log(double x)
 {
     double f;
-    int    e;
+    int e;
 
     return split(x, &f, &e) ? e * LN2_HIGH + (log_series(f) + e * LN2_LOW) : f;
 }
@@ -106,7 +106,7 @@ double ted4_math_log(double x)
 double ted4_math_log2(double x)
 {
     double f;
-    int    e;
+    int e;
 
     return split(x, &f, &e) ? e + log_series(f) * LOG2_E : f;
 }
@@ -122,7 +122,7 @@ double ted4_math_pow(double x, double y)
 static double sin_series(double r)
 {
     const double z = r * r;
-    double       p = -1.0 / 121645100408832000;
+    double p = -1.0 / 121645100408832000;
 
     p = p * z + 1.0 / 355687428096000;
     p = p * z - 1.0 / 1307674368000;
@@ -138,7 +138,7 @@ static double sin_series(double r)
 static double cos_series(double r)
 {
     const double z = r * r;
-    double       p = 1.0 / 2432902008176640000;
+    double p = 1.0 / 2432902008176640000;
 
     p = p * z - 1.0 / 6402373705728000;
     p = p * z + 1.0 / 20922789888000;

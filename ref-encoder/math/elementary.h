@@ -10,11 +10,11 @@
 #define TED4_ELEMENTARY_H
 
 double ted4_math_exp(double x);
-double ted4_math_exp2(double x);     /* exact for integers */
+double ted4_math_exp2(double x); /* exact for integers */
 
 /* NaN of negative numbers, -infinity of 0. */
 double ted4_math_log(double x);
-double ted4_math_log2(double x);     /* exact for powers of two */
+double ted4_math_log2(double x); /* exact for powers of two */
 
 /* x^y for x >= 0, NaN for other x; 1 for y = 0. Relative error 3e-16 (2 + |y log2(x)|). */
 double ted4_math_pow(double x, double y);

@@ -21,7 +21,7 @@ static inline float ted4_lanes_total(float *part)
 /* x y. */
 static inline float ted4_lane_dot(size_t n, const float *x, const float *y)
 {
-    float  part[TED4_SUM_LANES] = { 0 };
+    float part[TED4_SUM_LANES] = { 0 };
     size_t i = 0;
 
     for (; i + TED4_SUM_LANES <= n; i += TED4_SUM_LANES)

@@ -46,7 +46,7 @@ static int sees_cube(const ted4_info *file, const ted4_camera *c)
 
     for (int k = 0; !seen && k < PLACES * PLACES * PLACES; k++) {
         const int place[3] = { k % PLACES, k / PLACES % PLACES, k / (PLACES * PLACES) };
-        double    x[3];
+        double x[3];
 
         for (int i = 0; i < 3; i++)
             x[i] = (double)file->origin[i] +
@@ -59,7 +59,7 @@ static int sees_cube(const ted4_info *file, const ted4_camera *c)
 int ted4_belongs_scene(const ted4_info *file, const ted4_dataset *d, char *why, size_t why_size)
 {
     const double rate = file->rate_den > 0 ? (double)file->rate_num / (double)file->rate_den : 0.0;
-    size_t       seeing = 0;
+    size_t seeing = 0;
 
     for (size_t i = 0; i < d->n_pictures; i++)
         seeing += sees_cube(file, &d->pictures[i].camera) != 0;

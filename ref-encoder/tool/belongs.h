@@ -16,11 +16,13 @@ int ted4_belongs_scene(const ted4_info *file, const ted4_dataset *d, char *why, 
 
 /* Squared errors of all pictures so far, against the drawn ones and against the mean colour of
  * each. */
-typedef struct { double drawn, mean; } ted4_belongs_sum;
+typedef struct {
+    double drawn, mean;
+} ted4_belongs_sum;
 
 void ted4_belongs_add(ted4_belongs_sum *s, const uint8_t *truth, const uint8_t *drawn,
                       size_t pixels);
 /* 1, or 0 with why filled. */
-int  ted4_belongs_pictures(const ted4_belongs_sum *s, char *why, size_t why_size);
+int ted4_belongs_pictures(const ted4_belongs_sum *s, char *why, size_t why_size);
 
 #endif

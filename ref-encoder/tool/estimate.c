@@ -8,11 +8,11 @@
 #include <math.h>
 #include <string.h>
 
-#define FIXED       0.25        /* of the most anchors: what a step takes without any */
+#define FIXED       0.25 /* of the most anchors: what a step takes without any */
 #define STAGE2      1.06
-#define TRIALS      0.9         /* of a step of stage 2, what trials count as one */
-#define LONGER      0.05        /* of what trials were believed to take, once they have taken it */
-#define CODING      8.0         /* steps */
+#define TRIALS      0.9  /* of a step of stage 2, what trials count as one */
+#define LONGER      0.05 /* of what trials were believed to take, once they have taken it */
+#define CODING      8.0  /* steps */
 /* What is learnt of trials counts against this share of all of them, as first believed. */
 #define BELIEF      0.1
 /* Growth has filled what it may soon after it began; before, it is believed to fill it, and then
@@ -140,8 +140,8 @@ double ted4_estimate_left(const ted4_estimate *e)
         return -1;
 
     const double pace = e->clock / e->units;
-    const double trials =
-        w->trials + (in_trials(w) ? fmax(w->budget - w->spent, LONGER * w->budget) : 0.0);
+    const double trials = w->trials +
+                          (in_trials(w) ? fmax(w->budget - w->spent, LONGER * w->budget) : 0.0);
 
     return pace * units_left(w) + trial_pace(e, pace) * trials;
 }

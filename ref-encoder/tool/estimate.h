@@ -9,26 +9,26 @@
 
 /* Schedule, and where training stands in it. */
 typedef struct {
-    double stage1, stage2;  /* steps */
+    double stage1, stage2; /* steps */
     /* Shares of stage 1: where growth begins, and where sprouts come. */
     double first_growth, sprout_at;
-    double sprouts;         /* share of anchors that is kept for them; 0: none will come */
+    double sprouts; /* share of anchors that is kept for them; 0: none will come */
     double most_anchors;
     /* Steps of each of the two branches of the time probe; 0: there is none any more. */
     double probe;
-    double trials;          /* steps that trials which are still to come are believed to take */
-    double step, anchors;   /* done; there are */
+    double trials;        /* steps that trials which are still to come are believed to take */
+    double step, anchors; /* done; there are */
     /* Of the probe or the trials at hand, so far and in the end, as believed; budget 0: plain
      * training. */
     double spent, budget;
-    int    probing;         /* of the probe, not of trials */
+    int probing; /* of the probe, not of trials */
 } ted4_work;
 
 typedef struct {
-    double    clock, units;         /* seconds of steps and their work, the latest weighing most */
-    double    trial_clock, trial_units;
-    double    when;                 /* at the last look; negative: there was none */
-    double    first, seen;          /* clock at the first look; steps since */
+    double clock, units; /* seconds of steps and their work, the latest weighing most */
+    double trial_clock, trial_units;
+    double when;        /* at the last look; negative: there was none */
+    double first, seen; /* clock at the first look; steps since */
     ted4_work last;
 } ted4_estimate;
 

@@ -9,7 +9,8 @@
 
 #include "tool/output.h"
 
-/* Permissions do not tell all (root, /proc, full file systems), so the temporary file is made and removed again. */
+/* Permissions do not tell all (root, /proc, full file systems), so the temporary file is made and
+ * removed again. */
 int ted4_file_writable(const char *path, int force, char *why, size_t why_size)
 {
     ted4_output o;
@@ -37,11 +38,10 @@ int ted4_file_writable(const char *path, int force, char *why, size_t why_size)
     return 0;
 }
 
-int ted4_file_write(const char *path, const void *data, size_t size, char *why,
-                    size_t why_size)
+int ted4_file_write(const char *path, const void *data, size_t size, char *why, size_t why_size)
 {
     ted4_output o;
-    int         bad = ted4_output_open(&o, path) != 0;
+    int bad = ted4_output_open(&o, path) != 0;
 
     if (!bad) {
         fwrite(data, 1, size, o.file);

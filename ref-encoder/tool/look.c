@@ -46,9 +46,9 @@ enum { ASK_EVERY = 500 };
 
 static ted4_work work_of(ted4_training *t)
 {
-    const ted4_trainer  *tr = t->trainer;
+    const ted4_trainer *tr = t->trainer;
     const ted4_onlooker *o = &tr->onlooker;
-    const double         before = t->sprouts;
+    const double before = t->sprouts;
     ted4_work w = { .stage1 = tr->opt.stage1,
                     .stage2 = tr->opt.stage2,
                     .first_growth = 0.05,
@@ -87,12 +87,12 @@ static void say_estimate(ted4_training *t, double left)
 
 int ted4_training_look(void *training)
 {
-    ted4_training       *t = training;
-    const ted4_trainer  *tr = t->trainer;
+    ted4_training *t = training;
+    const ted4_trainer *tr = t->trainer;
     const ted4_onlooker *o = &tr->onlooker;
-    ted4_facts          *f = &t->facts;
-    const double         clock = ted4_seconds();
-    const ted4_work      w = work_of(t);
+    ted4_facts *f = &t->facts;
+    const double clock = ted4_seconds();
+    const ted4_work w = work_of(t);
 
     ted4_estimate_see(&t->estimate, &w, clock);
     f->kind = TED4_TELL_TRAINING;

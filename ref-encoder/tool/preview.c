@@ -13,9 +13,9 @@
 /* What a blob's weights take, as the writer deflates them. */
 static double blob_bytes(const ted4_blob *b)
 {
-    const size_t   room = ted4_deflate_room(b->n);
+    const size_t room = ted4_deflate_room(b->n);
     uint8_t *const memory = malloc(4 * b->n + room);
-    size_t         size = 4 * b->n;
+    size_t size = 4 * b->n;
 
     if (memory != NULL && !ted4_deflate(b->values, b->n, memory, memory + 4 * b->n, &size))
         size = 4 * b->n;
@@ -26,9 +26,9 @@ static double blob_bytes(const ted4_blob *b)
 /* 0, or -1: this scene cannot be coded. */
 static int count_bytes(const ted4_scene *s, const ted4_parallel *parallel, ted4_preview *p)
 {
-    uint8_t   *file;
-    size_t     size;
-    ted4_bits  bits;
+    uint8_t *file;
+    size_t size;
+    ted4_bits bits;
     ted4_error e = { TED4_OK, 0 };
 
     if (ted4_encode(s, 0, parallel, &file, &size, &e) != TED4_OK)
@@ -61,7 +61,7 @@ static int draw(ted4_trainer *t, int n, ted4_preview *p)
 int ted4_preview_make(ted4_trainer *t, int n, ted4_preview *p)
 {
     ted4_snapshot before = { 0 };
-    ted4_scene   *scene;
+    ted4_scene *scene;
 
     if (!t->stage2)
         return draw(t, n, p);

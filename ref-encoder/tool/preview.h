@@ -8,9 +8,9 @@
 
 /* Bytes are 0 before stage 2. */
 typedef struct {
-    double psnr;                /* mean over pictures, dB */
-    int    train;               /* of training pictures: none is held out */
-    double bytes;               /* of the file */
+    double psnr;  /* mean over pictures, dB */
+    int train;    /* of training pictures: none is held out */
+    double bytes; /* of the file */
     /* Of which; frame: tiles, header, container. */
     double positions, masks, type[TED4_TYPES], networks, frame;
 } ted4_preview;

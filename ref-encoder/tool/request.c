@@ -12,48 +12,93 @@
 #include "tool/threads.h"
 
 enum {
-    OPT_OUTPUT, OPT_PRESET, OPT_LAMBDA, OPT_ITERATIONS, OPT_CAPACITY, OPT_WHY, OPT_SET, OPT_DOWNSCALE, OPT_MAX_FRAMES, OPT_BOUNDS, OPT_BLACK,
-    OPT_ALPHA, OPT_HOLD_OUT,
-    OPT_SEED, OPT_THREADS, OPT_CACHE, OPT_TARGET, OPT_CHECKPOINT, OPT_EVERY, OPT_RESUME, OPT_STAGE1, OPT_LOG, OPT_CHECK, OPT_JSON, OPT_CONTRACT, OPT_FORCE,
-    OPT_QUIET, OPT_VERBOSE, OPT_HELP, OPT_VERSION, N_OPTIONS
+    OPT_OUTPUT,
+    OPT_PRESET,
+    OPT_LAMBDA,
+    OPT_ITERATIONS,
+    OPT_CAPACITY,
+    OPT_WHY,
+    OPT_SET,
+    OPT_DOWNSCALE,
+    OPT_MAX_FRAMES,
+    OPT_BOUNDS,
+    OPT_BLACK,
+    OPT_ALPHA,
+    OPT_HOLD_OUT,
+    OPT_SEED,
+    OPT_THREADS,
+    OPT_CACHE,
+    OPT_TARGET,
+    OPT_CHECKPOINT,
+    OPT_EVERY,
+    OPT_RESUME,
+    OPT_STAGE1,
+    OPT_LOG,
+    OPT_CHECK,
+    OPT_JSON,
+    OPT_CONTRACT,
+    OPT_FORCE,
+    OPT_QUIET,
+    OPT_VERBOSE,
+    OPT_HELP,
+    OPT_VERSION,
+    N_OPTIONS
 };
 
-enum { MAX_SETS = 64, MAX_DOWNSCALE = 64, MAX_MAX_FRAMES = 36000,
-       DEFAULT_CACHE = 2048, MAX_CACHE = 1 << 24, DEFAULT_EVERY = 60, MAX_EVERY = 86400, MAX_TARGET = 0x7fffffff };
+enum {
+    MAX_SETS = 64,
+    MAX_DOWNSCALE = 64,
+    MAX_MAX_FRAMES = 36000,
+    DEFAULT_CACHE = 2048,
+    MAX_CACHE = 1 << 24,
+    DEFAULT_EVERY = 60,
+    MAX_EVERY = 86400,
+    MAX_TARGET = 0x7fffffff
+};
 
 static const ted4_argument OPTIONS[N_OPTIONS] = {
-    [OPT_OUTPUT]     = { 'o', "output", "FILE", "the .ted4 file to write" },
-    [OPT_PRESET]     = { 0, "preset", "NAME", "draft, fast, medium (default), slow, paper" },
-    [OPT_LAMBDA]     = { 0, "lambda", "X", "weight of the rate, as --set lambda=X" },
-    [OPT_TARGET]     = { 0, "target-size", "BYTES", "repeat stage 2 in search of the lambda for this size" },
-    [OPT_ITERATIONS] = { 0, "iterations", "A,B", "steps of both stages, as --set stage1=A stage2=B" },
-    [OPT_CAPACITY]   = { 0, "capacity", "HOW", "auto (default): no more model than pays; fixed: as options say" },
-    [OPT_WHY]        = { 0, "why", NULL, "the file says what was decided and why: ted4info --why" },
-    [OPT_SET]        = { 0, "set", "NAME=VALUE", "any training option of the table below" },
-    [OPT_DOWNSCALE]  = { 0, "downscale", "N", "integer area averaging of the pictures" },
-    [OPT_MAX_FRAMES] = { 0, "max-frames", "N", "only so many times, the first ones (default: all, 300 of Neu3D)" },
-    [OPT_BOUNDS]     = { 0, "bounds", "X,Y,Z,X,Y,Z", "two corners of a box of the scene; initial points lie in it" },
-    [OPT_BLACK]      = { 0, "black", NULL, "pictures with alpha lie on black, not white" },
-    [OPT_ALPHA]      = { 0, "alpha", "HOW",
-                         "colours of pictures with alpha: straight (default) or premultiplied" },
-    [OPT_HOLD_OUT]   = { 0, "hold-out", "NAME",
-                         "train without this camera, in place of the layout's split; repeatable" },
-    [OPT_SEED]       = { 0, "seed", "S", "same scene, options and seed: same bytes" },
-    [OPT_THREADS]    = { 'j', "threads", "N", "threads; 0: all cores. Default 0" },
-    [OPT_CACHE]      = { 0, "cache", "MIB", "memory for decoded pictures; more of them are read again. Default 2048" },
-    [OPT_CHECKPOINT] = { 0, "checkpoint", "FILE", "saved now and then, when stopped, and at the end" },
-    [OPT_EVERY]      = { 0, "checkpoint-every", "S", "seconds between checkpoints; 0: every step. Default 60" },
-    [OPT_RESUME]     = { 0, "resume", NULL, "go on from the checkpoint if it is there" },
-    [OPT_STAGE1]     = { 0, "stage1", "FILE", "begin with this end of stage 1, or make the file" },
-    [OPT_LOG]        = { 0, "log", "FILE", "JSON lines of progress; with --resume it goes on" },
-    [OPT_CHECK]      = { 0, "check", NULL, "say what the scene holds, or the one thing that is wrong, and stop" },
-    [OPT_JSON]       = { 0, "json", NULL, "result as one JSON object" },
-    [OPT_CONTRACT]   = { 0, "ted4-encode", NULL, "the contract of conformance/README.md: --json --quiet" },
-    [OPT_FORCE]      = { 'f', "force", NULL, "overwrite" },
-    [OPT_QUIET]      = { 'q', "quiet", NULL, "errors only: nothing of how far it is" },
-    [OPT_VERBOSE]    = { 'v', "verbose", NULL, "a line of progress every 250 steps" },
-    [OPT_HELP]       = TED4_ARGUMENT_HELP,
-    [OPT_VERSION]    = TED4_ARGUMENT_VERSION,
+    [OPT_OUTPUT] = { 'o', "output", "FILE", "the .ted4 file to write" },
+    [OPT_PRESET] = { 0, "preset", "NAME", "draft, fast, medium (default), slow, paper" },
+    [OPT_LAMBDA] = { 0, "lambda", "X", "weight of the rate, as --set lambda=X" },
+    [OPT_TARGET] = { 0, "target-size", "BYTES",
+                     "repeat stage 2 in search of the lambda for this size" },
+    [OPT_ITERATIONS] = { 0, "iterations", "A,B",
+                         "steps of both stages, as --set stage1=A stage2=B" },
+    [OPT_CAPACITY] = { 0, "capacity", "HOW",
+                       "auto (default): no more model than pays; fixed: as options say" },
+    [OPT_WHY] = { 0, "why", NULL, "the file says what was decided and why: ted4info --why" },
+    [OPT_SET] = { 0, "set", "NAME=VALUE", "any training option of the table below" },
+    [OPT_DOWNSCALE] = { 0, "downscale", "N", "integer area averaging of the pictures" },
+    [OPT_MAX_FRAMES] = { 0, "max-frames", "N",
+                         "only so many times, the first ones (default: all, 300 of Neu3D)" },
+    [OPT_BOUNDS] = { 0, "bounds", "X,Y,Z,X,Y,Z",
+                     "two corners of a box of the scene; initial points lie in it" },
+    [OPT_BLACK] = { 0, "black", NULL, "pictures with alpha lie on black, not white" },
+    [OPT_ALPHA] = { 0, "alpha", "HOW",
+                    "colours of pictures with alpha: straight (default) or premultiplied" },
+    [OPT_HOLD_OUT] = { 0, "hold-out", "NAME",
+                       "train without this camera, in place of the layout's split; repeatable" },
+    [OPT_SEED] = { 0, "seed", "S", "same scene, options and seed: same bytes" },
+    [OPT_THREADS] = { 'j', "threads", "N", "threads; 0: all cores. Default 0" },
+    [OPT_CACHE] = { 0, "cache", "MIB",
+                    "memory for decoded pictures; more of them are read again. Default 2048" },
+    [OPT_CHECKPOINT] = { 0, "checkpoint", "FILE",
+                         "saved now and then, when stopped, and at the end" },
+    [OPT_EVERY] = { 0, "checkpoint-every", "S",
+                    "seconds between checkpoints; 0: every step. Default 60" },
+    [OPT_RESUME] = { 0, "resume", NULL, "go on from the checkpoint if it is there" },
+    [OPT_STAGE1] = { 0, "stage1", "FILE", "begin with this end of stage 1, or make the file" },
+    [OPT_LOG] = { 0, "log", "FILE", "JSON lines of progress; with --resume it goes on" },
+    [OPT_CHECK] = { 0, "check", NULL,
+                    "say what the scene holds, or the one thing that is wrong, and stop" },
+    [OPT_JSON] = { 0, "json", NULL, "result as one JSON object" },
+    [OPT_CONTRACT] = { 0, "ted4-encode", NULL,
+                       "the contract of conformance/README.md: --json --quiet" },
+    [OPT_FORCE] = { 'f', "force", NULL, "overwrite" },
+    [OPT_QUIET] = { 'q', "quiet", NULL, "errors only: nothing of how far it is" },
+    [OPT_VERBOSE] = { 'v', "verbose", NULL, "a line of progress every 250 steps" },
+    [OPT_HELP] = TED4_ARGUMENT_HELP,
+    [OPT_VERSION] = TED4_ARGUMENT_VERSION,
 };
 
 static const ted4_command COMMAND = {
@@ -63,8 +108,10 @@ static const ted4_command COMMAND = {
     "D-NeRF/Blender, nerfstudio, HyperNeRF, Neu3D, LLFF, or cams.json with one video a camera.\n"
     "Videos need the program ffmpeg; their frames are kept in $XDG_CACHE_HOME/ted4, or in\n"
     "ted4-UID in $TMPDIR or /tmp.",
-    OPTIONS, N_OPTIONS,
-    "Exit codes: 0 fine, 2 fine but larger than --target-size, 3 usage, input, output or resources,\n"
+    OPTIONS,
+    N_OPTIONS,
+    "Exit codes: 0 fine, 2 fine but larger than --target-size, 3 usage, input, output or "
+    "resources,\n"
     "130 stopped by Ctrl-C, 143 by a request to end: after the step, with a last checkpoint.\n\n"
     "Training options (--set) and their values in each preset:\n",
     ted4_options_help,
@@ -73,7 +120,7 @@ static const ted4_command COMMAND = {
 /* What cannot be applied before the preset is known. */
 typedef struct {
     const char *preset, *lambda, *iterations, *capacity, *set[MAX_SETS];
-    int         n_sets;
+    int n_sets;
 } pending;
 
 static int complain(const char *text)
@@ -120,17 +167,17 @@ static int take_bounds(ted4_request *r, const char *value)
 static int take(ted4_request *r, pending *p, int option, const char *value)
 {
     switch (option) {
-    case OPT_OUTPUT:     r->out = value; break;
-    case OPT_PRESET:     p->preset = value; break;
-    case OPT_LAMBDA:     p->lambda = value; break;
+    case OPT_OUTPUT: r->out = value; break;
+    case OPT_PRESET: p->preset = value; break;
+    case OPT_LAMBDA: p->lambda = value; break;
     case OPT_ITERATIONS: p->iterations = value; break;
-    case OPT_CAPACITY:   p->capacity = value; break;
-    case OPT_WHY:        r->why = 1; break;
+    case OPT_CAPACITY: p->capacity = value; break;
+    case OPT_WHY: r->why = 1; break;
     case OPT_CHECKPOINT: r->checkpoint = value; break;
-    case OPT_STAGE1:     r->stage1 = value; break;
-    case OPT_LOG:        r->log = value; break;
-    case OPT_BOUNDS:     return take_bounds(r, value);
-    case OPT_BLACK:      r->black = 1; break;
+    case OPT_STAGE1: r->stage1 = value; break;
+    case OPT_LOG: r->log = value; break;
+    case OPT_BOUNDS: return take_bounds(r, value);
+    case OPT_BLACK: r->black = 1; break;
     case OPT_ALPHA:
         r->premultiplied = strcmp(value, "premultiplied") == 0;
         return r->premultiplied || strcmp(value, "straight") == 0 ? TED4_REQUEST_GO
@@ -140,27 +187,27 @@ static int take(ted4_request *r, pending *p, int option, const char *value)
             return complain("too many --hold-out");
         r->hold_out[r->n_hold_out++] = value;
         break;
-    case OPT_RESUME:     r->resume = 1; break;
-    case OPT_CHECK:      r->check = 1; break;
-    case OPT_CONTRACT:   r->json = r->quiet = 1; break;
-    case OPT_JSON:       r->json = 1; break;
-    case OPT_FORCE:      r->force = 1; break;
-    case OPT_QUIET:      r->quiet = 1; break;
-    case OPT_VERBOSE:    r->verbose = 1; break;
-    case OPT_DOWNSCALE:  return take_number(option, value, 1, MAX_DOWNSCALE, &r->downscale);
+    case OPT_RESUME: r->resume = 1; break;
+    case OPT_CHECK: r->check = 1; break;
+    case OPT_CONTRACT: r->json = r->quiet = 1; break;
+    case OPT_JSON: r->json = 1; break;
+    case OPT_FORCE: r->force = 1; break;
+    case OPT_QUIET: r->quiet = 1; break;
+    case OPT_VERBOSE: r->verbose = 1; break;
+    case OPT_DOWNSCALE: return take_number(option, value, 1, MAX_DOWNSCALE, &r->downscale);
     case OPT_MAX_FRAMES: return take_number(option, value, 1, MAX_MAX_FRAMES, &r->max_frames);
-    case OPT_CACHE:      return take_number(option, value, 0, MAX_CACHE, &r->cache_mib);
-    case OPT_EVERY:      return take_number(option, value, 0, MAX_EVERY, &r->checkpoint_every);
-    case OPT_THREADS:    return take_number(option, value, 0, TED4_MAX_THREADS, &r->threads);
+    case OPT_CACHE: return take_number(option, value, 0, MAX_CACHE, &r->cache_mib);
+    case OPT_EVERY: return take_number(option, value, 0, MAX_EVERY, &r->checkpoint_every);
+    case OPT_THREADS: return take_number(option, value, 0, TED4_MAX_THREADS, &r->threads);
     case OPT_SEED: {
-        int       seed = 0;
+        int seed = 0;
         const int status = take_number(option, value, 0, 0x7fffffff, &seed);
 
         r->options.seed = (uint32_t)seed;
         return status;
     }
     case OPT_TARGET: {
-        int64_t   bytes = 0;
+        int64_t bytes = 0;
 
         if (ted4_arguments_number(value, 1, MAX_TARGET, &bytes) != 0)
             return bad_value(option, value);
@@ -203,7 +250,7 @@ static int set(ted4_request *r, const char *text)
 static int set_iterations(ted4_request *r, const char *text)
 {
     const char *comma = strchr(text, ',');
-    char        one[256];
+    char one[256];
 
     if (comma == NULL || comma - text > 100)
         return complain("--iterations: expected A,B");
@@ -219,11 +266,12 @@ static int set_iterations(ted4_request *r, const char *text)
 static int apply(ted4_request *r, const pending *p)
 {
     const uint32_t seed = r->options.seed;
-    char           text[256], hint[80];
-    int            status = TED4_REQUEST_GO;
+    char text[256], hint[80];
+    int status = TED4_REQUEST_GO;
 
     if (ted4_options_preset(&r->options, p->preset) != 0) {
-        snprintf(text, sizeof text, "--preset %.100s: expected draft, fast, medium, slow or paper%s", p->preset,
+        snprintf(text, sizeof text,
+                 "--preset %.100s: expected draft, fast, medium, slow or paper%s", p->preset,
                  suggestion(p->preset, ted4_options_preset_name, hint, sizeof hint));
         return complain(text);
     }
@@ -234,7 +282,8 @@ static int apply(ted4_request *r, const pending *p)
         snprintf(text, sizeof text, "lambda=%s", p->lambda);
         status = set(r, text);
     }
-    if (status == TED4_REQUEST_GO && p->capacity != NULL && strcmp(p->capacity, "auto") != 0 && strcmp(p->capacity, "fixed") != 0)
+    if (status == TED4_REQUEST_GO && p->capacity != NULL && strcmp(p->capacity, "auto") != 0 &&
+        strcmp(p->capacity, "fixed") != 0)
         return bad_value(OPT_CAPACITY, p->capacity);
     if (p->capacity != NULL)
         r->options.capacity = strcmp(p->capacity, "auto") == 0;
@@ -245,10 +294,10 @@ static int apply(ted4_request *r, const pending *p)
 
 int ted4_request_parse(ted4_request *r, int argc, char **argv)
 {
-    static char name[] = "ted4enc";     /* what getopt's messages begin with, however we were called */
-    pending     p = { .preset = "medium" };
+    static char name[] = "ted4enc"; /* what getopt's messages begin with, however we were called */
+    pending p = { .preset = "medium" };
     const char *value;
-    int         option;
+    int option;
 
     argv[0] = name;
     memset(r, 0, sizeof *r);

@@ -11,13 +11,15 @@
 enum { TED4_REQUEST_HOLD_OUT = 256 };
 
 typedef struct {
-    const char        *scene, *out, *checkpoint, *stage1, *log;  /* borrowed from argv; NULL: not asked for */
-    int                downscale, max_frames, cache_mib, checkpoint_every, threads, resume, check, json, force, quiet, verbose, black, why;
-    int                premultiplied;
-    const char        *hold_out[TED4_REQUEST_HOLD_OUT];     /* borrowed from argv */
-    size_t             n_hold_out;
-    size_t             target_size;     /* bytes; 0: not asked for */
-    ted4_scatter_options bounds;        /* its seed is set later */
+    const char *scene, *out, *checkpoint, *stage1,
+        *log; /* borrowed from argv; NULL: not asked for */
+    int downscale, max_frames, cache_mib, checkpoint_every, threads, resume, check, json, force,
+        quiet, verbose, black, why;
+    int premultiplied;
+    const char *hold_out[TED4_REQUEST_HOLD_OUT]; /* borrowed from argv */
+    size_t n_hold_out;
+    size_t target_size;          /* bytes; 0: not asked for */
+    ted4_scatter_options bounds; /* its seed is set later */
     ted4_train_options options;
 } ted4_request;
 

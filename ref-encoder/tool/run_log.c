@@ -1,4 +1,5 @@
-/* run_log.c - see run_log.h. A line goes out in one write, so that a log is whole but for a line cut by a crash, which resuming takes off.
+/* run_log.c - see run_log.h. A line goes out in one write, so that a log is whole but for a line
+ * cut by a crash, which resuming takes off.
  * SPDX-License-Identifier: BSD-2-Clause */
 #include "run_log.h"
 
@@ -39,20 +40,24 @@ static int is_regular(int file)
     return fstat(file, &s) == 0 && S_ISREG(s.st_mode);
 }
 
-/* Bytes of the lines up to a step and a number of rollbacks; a line without an end is none. -1: a line that ted4enc never wrote.
+/* Bytes of the lines up to a step and a number of rollbacks; a line without an end is none. -1: a
+ * line that ted4enc never wrote.
  * *cpu: cpu_seconds of the last one that has them. */
 static off_t find_end(FILE *f, uint64_t step, uint64_t rollbacks, double *cpu)
 {
-    char              *line = NULL;
-    size_t             room = 0;
-    ssize_t            n;
-    off_t              end = 0;
+    char *line = NULL;
+    size_t room = 0;
+    ssize_t n;
+    off_t end = 0;
     unsigned long long at, count;
 
     while (end >= 0 && (n = getline(&line, &room, f)) > 0 && line[n - 1] == '\n') {
         if (sscanf(line, "{\"step\":%llu,", &at) != 1)
             end = -1;
-        else if (at > step || (sscanf(line, "{\"step\":%*u,\"event\":\"%*[a-z]\",\"rollbacks\":%llu,", &count) == 1 && count > rollbacks))
+        else if (at > step ||
+                 (sscanf(line, "{\"step\":%*u,\"event\":\"%*[a-z]\",\"rollbacks\":%llu,", &count) ==
+                      1 &&
+                  count > rollbacks))
             break;
         else {
             const char *said = strstr(line, CPU_SECONDS);
@@ -66,8 +71,10 @@ static off_t find_end(FILE *f, uint64_t step, uint64_t rollbacks, double *cpu)
     return end;
 }
 
-/* Takes off what lies beyond the trainer's step and rollbacks. *cpu: cpu_seconds of the last line left that has them. */
-static int cut(const char *path, int file, const ted4_trainer *t, double *cpu, char *why, size_t why_size)
+/* Takes off what lies beyond the trainer's step and rollbacks. *cpu: cpu_seconds of the last line
+ * left that has them. */
+static int cut(const char *path, int file, const ted4_trainer *t, double *cpu, char *why,
+               size_t why_size)
 {
     FILE *f = fopen(path, "r");
 
@@ -82,7 +89,8 @@ static int cut(const char *path, int file, const ted4_trainer *t, double *cpu, c
     return ftruncate(file, end) == 0 ? 0 : say(path, strerror(errno), why, why_size);
 }
 
-int ted4_run_log_open(ted4_run_log *l, const char *path, const ted4_trainer *t, int keep, ted4_teller *teller, char *why, size_t why_size)
+int ted4_run_log_open(ted4_run_log *l, const char *path, const ted4_trainer *t, int keep,
+                      ted4_teller *teller, char *why, size_t why_size)
 {
     memset(l, 0, sizeof *l);
     l->path = path;
@@ -107,7 +115,7 @@ int ted4_run_log_open(ted4_run_log *l, const char *path, const ted4_trainer *t, 
 
 int ted4_run_log_cut(ted4_run_log *l, const ted4_trainer *t, char *why, size_t why_size)
 {
-    double said;        /* before what goes: it was work, and stays counted */
+    double said; /* before what goes: it was work, and stays counted */
 
     ted4_run_log_move(l, t);
     return is_regular(l->file) ? cut(l->path, l->file, t, &said, why, why_size) : 0;
@@ -140,7 +148,7 @@ enum { TERMS_TEXT = TED4_TERMS * 26, MOST_LINE = 1200 + 2 * TERMS_TEXT };
 /* What a line tells beyond the trainer's own numbers. */
 typedef struct {
     const char *stage;
-    double      ms, cpu_ms, rate;       /* a step; Gaussian-pixels a second */
+    double ms, cpu_ms, rate; /* a step; Gaussian-pixels a second */
 } line_facts;
 
 /* {"feature":x,...} of all terms: numbers of at most 12 characters. */
@@ -149,46 +157,57 @@ static const char *print_terms(char *text, size_t size, const double *x)
     size_t at = 0;
 
     for (int k = 0; k < TED4_TERMS && at < size; k++)
-        at += (size_t)snprintf(text + at, size - at, "%s\"%s\":%.4g", k == 0 ? "" : ",", ted4_term_name(k), x[k]);
+        at += (size_t)snprintf(text + at, size - at, "%s\"%s\":%.4g", k == 0 ? "" : ",",
+                               ted4_term_name(k), x[k]);
     return text;
 }
 
-static int print_line(char *line, size_t size, const ted4_run_log *l, const ted4_trainer *t, const line_facts *f)
+static int print_line(char *line, size_t size, const ted4_run_log *l, const ted4_trainer *t,
+                      const line_facts *f)
 {
     const ted4_progress *p = &t->progress;
-    const ted4_preview  *v = &l->preview;
-    const double        *b = p->bits, *y = v->type;
-    double               usual[TED4_TERMS], peak[TED4_TERMS];
-    char                 gradients[TERMS_TEXT], peaks[TERMS_TEXT];
+    const ted4_preview *v = &l->preview;
+    const double *b = p->bits, *y = v->type;
+    double usual[TED4_TERMS], peak[TED4_TERMS];
+    char gradients[TERMS_TEXT], peaks[TERMS_TEXT];
 
     for (int k = 0; k < TED4_TERMS; k++) {
         usual[k] = ted4_scale_usual(&t->watch.state.gradient[k]);
         peak[k] = t->watch.state.gradient[k].peak;
     }
-    return snprintf(line, size,
-                    "{\"step\":%llu,\"stage\":\"%s\",\"lambda\":%.7g,\"loss\":%.6f,\"l1\":%.6f,\"ssim\":%.6f,\"psnr\":%.4f,"
-                    "\"anchors\":%zu,\"moving\":%zu,\"splats\":%.0f,\"bytes\":%.0f,"
-                    "\"bytes_by_type\":{\"positions\":%.0f,\"masks\":%.0f,\"feature\":%.0f,\"scaling\":%.0f,\"offset\":%.0f,"
-                    "\"phi\":%.0f,\"tau\":%.0f,\"networks\":%.0f,\"frame\":%.0f},\"bits\":[%.2f,%.2f,%.2f,%.2f,%.2f],"
-                    "\"skipped\":%llu,\"clamped\":%zu,\"gradients\":{%s},\"peaks\":{%s},\"rollbacks\":%llu,"
-                    "\"split\":\"%s\",\"ms\":%.3f,\"cpu_ms\":%.3f,\"gaussian_pixels_per_s\":%.4g,\"seconds\":%.2f," CPU_SECONDS "%.2f,\"left\":%.1f}\n",
-                    (unsigned long long)t->iteration, f->stage, t->opt.lambda, p->loss, p->l1, p->ssim, v->psnr, t->anchors.n,
-                    ted4_count_dynamic(t), p->splats, v->bytes, v->positions, v->masks, y[TED4_FEATURE], y[TED4_SCALING],
-                    y[TED4_OFFSET], y[TED4_PHI], y[TED4_TAU], v->networks, v->frame, b[TED4_FEATURE], b[TED4_SCALING], b[TED4_OFFSET],
-                    b[TED4_PHI], b[TED4_TAU], (unsigned long long)ted4_raster_skipped(t->raster), ted4_clamped(t),
-                    print_terms(gradients, sizeof gradients, usual), print_terms(peaks, sizeof peaks, peak),
-                    (unsigned long long)t->watch.state.rollbacks, v->train ? "train" : "test", f->ms, f->cpu_ms, f->rate, t->seconds, l->cpu_seconds, l->left);
+    return snprintf(
+        line, size,
+        "{\"step\":%llu,\"stage\":\"%s\",\"lambda\":%.7g,\"loss\":%.6f,\"l1\":%.6f,\"ssim\":%.6f,"
+        "\"psnr\":%.4f,"
+        "\"anchors\":%zu,\"moving\":%zu,\"splats\":%.0f,\"bytes\":%.0f,"
+        "\"bytes_by_type\":{\"positions\":%.0f,\"masks\":%.0f,\"feature\":%.0f,\"scaling\":%.0f,"
+        "\"offset\":%.0f,"
+        "\"phi\":%.0f,\"tau\":%.0f,\"networks\":%.0f,\"frame\":%.0f},\"bits\":[%.2f,%.2f,%.2f,%.2f,"
+        "%.2f],"
+        "\"skipped\":%llu,\"clamped\":%zu,\"gradients\":{%s},\"peaks\":{%s},\"rollbacks\":%llu,"
+        "\"split\":\"%s\",\"ms\":%.3f,\"cpu_ms\":%.3f,\"gaussian_pixels_per_s\":%.4g,\"seconds\":%."
+        "2f," CPU_SECONDS "%.2f,\"left\":%.1f}\n",
+        (unsigned long long)t->iteration, f->stage, t->opt.lambda, p->loss, p->l1, p->ssim, v->psnr,
+        t->anchors.n, ted4_count_dynamic(t), p->splats, v->bytes, v->positions, v->masks,
+        y[TED4_FEATURE], y[TED4_SCALING], y[TED4_OFFSET], y[TED4_PHI], y[TED4_TAU], v->networks,
+        v->frame, b[TED4_FEATURE], b[TED4_SCALING], b[TED4_OFFSET], b[TED4_PHI], b[TED4_TAU],
+        (unsigned long long)ted4_raster_skipped(t->raster), ted4_clamped(t),
+        print_terms(gradients, sizeof gradients, usual), print_terms(peaks, sizeof peaks, peak),
+        (unsigned long long)t->watch.state.rollbacks, v->train ? "train" : "test", f->ms, f->cpu_ms,
+        f->rate, t->seconds, l->cpu_seconds, l->left);
 }
 
 /* The whole line or, on a full disk, nothing of it. */
-static int put_line(const ted4_run_log *l, const char *line, size_t size, char *why, size_t why_size)
+static int put_line(const ted4_run_log *l, const char *line, size_t size, char *why,
+                    size_t why_size)
 {
-    const off_t   before = lseek(l->file, 0, SEEK_END);
+    const off_t before = lseek(l->file, 0, SEEK_END);
     const ssize_t done = write(l->file, line, size);
 
     if (done == (ssize_t)size)
         return 0;
-    say(l->path, done < 0 ? strerror(errno) : "cannot write all of a line (disk full?)", why, why_size);
+    say(l->path, done < 0 ? strerror(errno) : "cannot write all of a line (disk full?)", why,
+        why_size);
     if (done > 0 && is_regular(l->file) && ftruncate(l->file, before) != 0)
         say(l->path, "ends with half a line, which cannot be taken off", why, why_size);
     return -1;
@@ -202,8 +221,8 @@ const char *ted4_run_log_stage(const ted4_trainer *t)
 int ted4_run_log_step(ted4_run_log *l, const ted4_trainer *t, char *why, size_t why_size)
 {
     const double steps = (double)(t->iteration - l->last_step);
-    char         line[MOST_LINE];
-    line_facts   f = { .stage = ted4_run_log_stage(t) };
+    char line[MOST_LINE];
+    line_facts f = { .stage = ted4_run_log_stage(t) };
 
     if (steps > 0) {
         f.ms = 1e3 * (t->seconds - l->last_seconds) / steps;
@@ -220,24 +239,26 @@ int ted4_run_log_step(ted4_run_log *l, const ted4_trainer *t, char *why, size_t 
 int ted4_run_log_event(ted4_run_log *l, const ted4_trainer *t, char *why, size_t why_size)
 {
     const ted4_find *f = &t->watch.find;
-    char             line[400], anchor[24] = "null";
+    char line[400], anchor[24] = "null";
 
     if (l->file < 0)
         return 0;
     if (f->anchor >= 0)
         snprintf(anchor, sizeof anchor, "%lld", (long long)f->anchor);
 
-    const int n = snprintf(line, sizeof line,
-                           "{\"step\":%llu,\"event\":\"%s\",\"rollbacks\":%llu,\"failed\":%llu,"
-                           "\"cause\":\"%s\",\"term\":\"%s\",\"anchor\":%s,\"factor\":%.7g}\n",
-                           (unsigned long long)t->iteration, t->watch.found ? "failure" : "rollback",
-                           (unsigned long long)t->watch.state.rollbacks, (unsigned long long)f->step, f->cause, f->term, anchor,
-                           t->watch.state.factor);
+    const int n =
+        snprintf(line, sizeof line,
+                 "{\"step\":%llu,\"event\":\"%s\",\"rollbacks\":%llu,\"failed\":%llu,"
+                 "\"cause\":\"%s\",\"term\":\"%s\",\"anchor\":%s,\"factor\":%.7g}\n",
+                 (unsigned long long)t->iteration, t->watch.found ? "failure" : "rollback",
+                 (unsigned long long)t->watch.state.rollbacks, (unsigned long long)f->step,
+                 f->cause, f->term, anchor, t->watch.state.factor);
 
     return put_line(l, line, (size_t)n, why, why_size);
 }
 
-int ted4_run_log_trials(ted4_run_log *l, const ted4_trainer *t, size_t first, char *why, size_t why_size)
+int ted4_run_log_trials(ted4_run_log *l, const ted4_trainer *t, size_t first, char *why,
+                        size_t why_size)
 {
     char line[600];
 
@@ -245,19 +266,27 @@ int ted4_run_log_trials(ted4_run_log *l, const ted4_trainer *t, size_t first, ch
         const struct ted4_trial *x = &t->trial[i];
 
         if (l->teller != NULL)
-            ted4_teller_say(l->teller, "capacity: %s %lld to %lld %s: cost %.6f to %.6f (distortion %.6f to %.6f, bytes %.0f to %.0f), after %lld steps each",
-                    ted4_move_name((ted4_move)x->move), (long long)x->from, (long long)x->to, x->taken ? "taken" : "left", x->before.cost,
-                    x->after.cost, x->before.distortion, x->after.distortion, x->before.bytes, x->after.bytes, (long long)x->steps);
+            ted4_teller_say(l->teller,
+                            "capacity: %s %lld to %lld %s: cost %.6f to %.6f (distortion %.6f to "
+                            "%.6f, bytes %.0f to %.0f), after %lld steps each",
+                            ted4_move_name((ted4_move)x->move), (long long)x->from,
+                            (long long)x->to, x->taken ? "taken" : "left", x->before.cost,
+                            x->after.cost, x->before.distortion, x->after.distortion,
+                            x->before.bytes, x->after.bytes, (long long)x->steps);
         if (l->file < 0)
             continue;
 
         const int n = snprintf(line, sizeof line,
-                               "{\"step\":%llu,\"event\":\"capacity\",\"rollbacks\":%llu,\"what\":\"%s\",\"from\":%lld,\"to\":%lld,"
-                               "\"trained\":%lld,\"taken\":%s,\"cost\":[%.8f,%.8f],\"distortion\":[%.8f,%.8f],\"bytes\":[%.0f,%.0f]}\n",
-                               (unsigned long long)t->iteration, (unsigned long long)t->watch.state.rollbacks,
-                               ted4_move_name((ted4_move)x->move), (long long)x->from, (long long)x->to, (long long)x->steps,
-                               x->taken ? "true" : "false", x->before.cost, x->after.cost, x->before.distortion, x->after.distortion,
-                               x->before.bytes, x->after.bytes);
+                               "{\"step\":%llu,\"event\":\"capacity\",\"rollbacks\":%llu,\"what\":"
+                               "\"%s\",\"from\":%lld,\"to\":%lld,"
+                               "\"trained\":%lld,\"taken\":%s,\"cost\":[%.8f,%.8f],\"distortion\":["
+                               "%.8f,%.8f],\"bytes\":[%.0f,%.0f]}\n",
+                               (unsigned long long)t->iteration,
+                               (unsigned long long)t->watch.state.rollbacks,
+                               ted4_move_name((ted4_move)x->move), (long long)x->from,
+                               (long long)x->to, (long long)x->steps, x->taken ? "true" : "false",
+                               x->before.cost, x->after.cost, x->before.distortion,
+                               x->after.distortion, x->before.bytes, x->after.bytes);
 
         if (put_line(l, line, (size_t)n, why, why_size) != 0)
             return -1;

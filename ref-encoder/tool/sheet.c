@@ -15,12 +15,16 @@ void ted4_sheet_error(const uint8_t *a, const uint8_t *b, size_t n, uint8_t *out
 }
 
 /* Which pictures may be shown: of one split, and of the size of its first. */
-typedef struct { const ted4_dataset *d; int test; size_t first; } show;
+typedef struct {
+    const ted4_dataset *d;
+    int test;
+    size_t first;
+} show;
 
 static int is_shown(const show *s, size_t i)
 {
     const ted4_picture *p = &s->d->pictures[i];
-    const ted4_camera  *a = &p->camera, *b = &s->d->pictures[s->first].camera;
+    const ted4_camera *a = &p->camera, *b = &s->d->pictures[s->first].camera;
 
     return (p->is_test != 0) == (s->test != 0) && a->width == b->width && a->height == b->height;
 }
@@ -48,7 +52,7 @@ static size_t camera_at(const show *s, size_t n)
 static size_t at_time(const show *s, size_t first, size_t r, size_t n)
 {
     const ted4_picture *all = s->d->pictures;
-    size_t              of_camera = 0;
+    size_t of_camera = 0;
 
     for (size_t i = 0; i < s->d->n_pictures; i++)
         of_camera += all[i].camera_id == all[first].camera_id && is_shown(s, i);
@@ -89,7 +93,7 @@ static size_t other(const show *s, size_t wanted, const size_t *item, size_t n)
 
 size_t ted4_sheet_choose(const ted4_dataset *d, int test, size_t most, size_t *item)
 {
-    show   s = { d, test, 0 };
+    show s = { d, test, 0 };
     size_t n = 0, cameras = 0;
 
     while (s.first < d->n_pictures && (d->pictures[s.first].is_test != 0) != (test != 0))
@@ -104,7 +108,7 @@ size_t ted4_sheet_choose(const ted4_dataset *d, int test, size_t most, size_t *i
     const size_t rows = n < most ? n : most;
 
     for (size_t r = 0; r < rows; r++) {
-        const int    many = cameras >= rows;
+        const int many = cameras >= rows;
         const size_t k = many ? (rows > 1 ? r * (cameras - 1) / (rows - 1) : 0) : r % cameras;
         const size_t turns = many ? rows : (rows - k + cameras - 1) / cameras;
 
@@ -115,7 +119,7 @@ size_t ted4_sheet_choose(const ted4_dataset *d, int test, size_t most, size_t *i
 
 int ted4_sheet_init(ted4_sheet *s, int width, int height, int rows)
 {
-    *s = (ted4_sheet){ width, height, rows, NULL };
+    *s = (ted4_sheet) { width, height, rows, NULL };
     s->rgb = calloc((size_t)width * (size_t)height, 3 * TED4_SHEET_COLUMNS * (size_t)rows);
     return s->rgb == NULL ? -1 : 0;
 }
@@ -131,8 +135,8 @@ void ted4_sheet_put(ted4_sheet *s, int row, const uint8_t *truth, const uint8_t 
     const size_t line = (size_t)s->width * 3;
 
     for (size_t y = 0; y < (size_t)s->height; y++) {
-        uint8_t *const to =
-            s->rgb + ((size_t)row * (size_t)s->height + y) * line * TED4_SHEET_COLUMNS;
+        uint8_t *const to = s->rgb +
+                            ((size_t)row * (size_t)s->height + y) * line * TED4_SHEET_COLUMNS;
 
         memcpy(to, truth + y * line, line);
         memcpy(to + line, ours + y * line, line);

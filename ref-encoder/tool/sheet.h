@@ -15,16 +15,16 @@ void ted4_sheet_error(const uint8_t *a, const uint8_t *b, size_t n, uint8_t *out
 
 /* Rows of truth, ours, error in cells of one size. */
 typedef struct {
-    int      width, height, rows;       /* of a cell; number of rows */
-    uint8_t *rgb;                       /* owned: [rows height][3 width][3], black at first */
+    int width, height, rows; /* of a cell; number of rows */
+    uint8_t *rgb;            /* owned: [rows height][3 width][3], black at first */
 } ted4_sheet;
 
-/* Up to most pictures of a split that a sheet shows: of cameras spread over all of them, at times spread over theirs; all of the size of the split's first. How many;
- * 0: the split is empty. */
+/* Up to most pictures of a split that a sheet shows: of cameras spread over all of them, at times
+ * spread over theirs; all of the size of the split's first. How many; 0: the split is empty. */
 size_t ted4_sheet_choose(const ted4_dataset *d, int test, size_t most, size_t *item);
 
 /* 0, or -1: no memory. */
-int  ted4_sheet_init(ted4_sheet *s, int width, int height, int rows);
+int ted4_sheet_init(ted4_sheet *s, int width, int height, int rows);
 void ted4_sheet_finish(ted4_sheet *s);
 void ted4_sheet_put(ted4_sheet *s, int row, const uint8_t *truth, const uint8_t *ours);
 

@@ -22,7 +22,7 @@ static void say(const char *word)
 static void take(int signal)
 {
     struct sigaction usual;
-    const int        before = errno, again = asked != 0;
+    const int before = errno, again = asked != 0;
 
     asked = signal;
     memset(&usual, 0, sizeof usual);

@@ -4,11 +4,12 @@
 #ifndef TED4_STOP_H
 #define TED4_STOP_H
 
-/* From here on. quiet: nothing is said when one comes. A signal that was ignored before stays so. */
+/* From here on. quiet: nothing is said when one comes. A signal that was ignored before stays so.
+ */
 void ted4_stop_watch(int quiet);
 /* From here on there is something to keep. */
 void ted4_stop_keep(void);
 /* The signal that came; 0: none. */
-int  ted4_stop_asked(void);
+int ted4_stop_asked(void);
 
 #endif

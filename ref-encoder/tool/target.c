@@ -1,4 +1,5 @@
-/* target.c - the lambda that a size asks for: see training.h. Stage 1 knows no lambda, so each trial repeats stage 2 only.
+/* target.c - the lambda that a size asks for: see training.h. Stage 1 knows no lambda, so each
+ * trial repeats stage 2 only.
  * SPDX-License-Identifier: BSD-2-Clause */
 #include <math.h>
 #include <stdio.h>
@@ -10,18 +11,20 @@
 /* Near enough: a file that leaves less than this share of the target unused. */
 #define NEAR 0.02
 enum { MOST_TRIALS = 8 };
-/* Bytes fall about as lambda^(-1/4) at most, and less where networks and positions are the most of a small file: until the target lies between two trials, each
- * guess reaches twice as far (in the logarithm) as the one before. */
-#define GUESS_POWER 4.0
-#define NEAREST     2.0
-#define FARTHEST    1000.0
+/* Bytes fall about as lambda^(-1/4) at most, and less where networks and positions are the most of
+ * a small file: until the target lies between two trials, each guess reaches twice as far (in the
+ * logarithm) as the one before. */
+#define GUESS_POWER  4.0
+#define NEAREST      2.0
+#define FARTHEST     1000.0
 #define LEAST_LAMBDA 1e-7
 #define MOST_LAMBDA  10.0
 
-/* Trials on both sides of the target, in logarithms; have: bit 0 a larger file, bit 1 one that fits. */
+/* Trials on both sides of the target, in logarithms; have: bit 0 a larger file, bit 1 one that
+ * fits. */
 typedef struct {
     double lambda[2], size[2];
-    int    have, trials;
+    int have, trials;
 } bracket;
 
 static double next_lambda(const bracket *b, double target, double lambda, double size)
@@ -55,7 +58,8 @@ static int one_trial(ted4_training *t, const ted4_snapshot *start, double lambda
     return 0;
 }
 
-/* A file that fits beats one that does not; of two that fit the larger, of two that do not the smaller. */
+/* A file that fits beats one that does not; of two that fit the larger, of two that do not the
+ * smaller. */
 static int is_better(const ted4_coded *a, const ted4_coded *b, size_t target)
 {
     if (b->bytes == NULL || (a->size <= target) != (b->size <= target))
@@ -66,8 +70,8 @@ static int is_better(const ted4_coded *a, const ted4_coded *b, size_t target)
 static int search(ted4_training *t, const ted4_snapshot *start, ted4_coded *best)
 {
     const size_t target = t->request->target_size;
-    double       lambda = t->trainer->opt.lambda;
-    bracket      b = { 0 };
+    double lambda = t->trainer->opt.lambda;
+    bracket b = { 0 };
 
     for (int i = 0; i < MOST_TRIALS; i++) {
         ted4_coded c;
@@ -76,7 +80,7 @@ static int search(ted4_training *t, const ted4_snapshot *start, ted4_coded *best
         if (one_trial(t, start, lambda, &c) != 0)
             return -1;
 
-        const int    fits = c.size <= target;
+        const int fits = c.size <= target;
         const double size = (double)c.size;
 
         b.lambda[fits] = ted4_math_log(lambda);
@@ -89,8 +93,8 @@ static int search(ted4_training *t, const ted4_snapshot *start, ted4_coded *best
         } else {
             ted4_coded_free(&c);
         }
-        if ((fits && size >= (1.0 - NEAR) * (double)target) ||
-            (fits && lambda <= LEAST_LAMBDA) || (!fits && lambda >= MOST_LAMBDA))
+        if ((fits && size >= (1.0 - NEAR) * (double)target) || (fits && lambda <= LEAST_LAMBDA) ||
+            (!fits && lambda >= MOST_LAMBDA))
             break;
         lambda = next_lambda(&b, (double)target, lambda, size);
     }
@@ -100,16 +104,18 @@ static int search(ted4_training *t, const ted4_snapshot *start, ted4_coded *best
 int ted4_training_target(ted4_training *t, ted4_coded *c)
 {
     ted4_snapshot start = { 0 };
-    int           bad;
+    int bad;
 
     c->bytes = NULL;
     if (t->trainer->stage2) {
-        snprintf(t->why, sizeof t->why, "%s: inside stage 2; a search for a size begins at the end of stage 1", t->checkpoint);
+        snprintf(t->why, sizeof t->why,
+                 "%s: inside stage 2; a search for a size begins at the end of stage 1",
+                 t->checkpoint);
         return -1;
     }
     if (ted4_training_go(t, (uint64_t)t->trainer->opt.stage1) != 0)
         return -1;
-    t->checkpoint = NULL;       /* a trial is not resumed: the search would not know where it was */
+    t->checkpoint = NULL; /* a trial is not resumed: the search would not know where it was */
     bad = ted4_snapshot_take(t->trainer, &start) != 0;
     if (bad)
         snprintf(t->why, sizeof t->why, "%s", t->trainer->message.text);

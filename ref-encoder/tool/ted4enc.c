@@ -31,24 +31,32 @@ static double peak_mib(void)
     return getrusage(RUSAGE_SELF, &u) == 0 ? (double)u.ru_maxrss / 1024.0 : 0.0;
 }
 
-/* Seconds of loading the scene and starting, and of training, coding and checking; those of the runs before this one, too. */
-typedef struct { double setup, train; } times;
+/* Seconds of loading the scene and starting, and of training, coding and checking; those of the
+ * runs before this one, too. */
+typedef struct {
+    double setup, train;
+} times;
 
-static void report(const ted4_request *r, const ted4_trainer *t, ted4_teller *teller, const ted4_coded *c, times s)
+static void report(const ted4_request *r, const ted4_trainer *t, ted4_teller *teller,
+                   const ted4_coded *c, times s)
 {
     const ted4_verified *v = &c->verified;
 
     if (r->json)
-        printf("{\"bytes\":%zu,\"lambda\":%.7g,\"setup_s\":%.2f,\"train_s\":%.2f,\"steps\":%llu,\"ms_per_step\":%.3f,\"anchors\":%u,"
+        printf("{\"bytes\":%zu,\"lambda\":%.7g,\"setup_s\":%.2f,\"train_s\":%.2f,\"steps\":%llu,"
+               "\"ms_per_step\":%.3f,\"anchors\":%u,"
                "\"gaussians\":%zu,\"dynamic\":%u,\"estimated_bits\":%.0f,\"coded_bits\":%.0f,"
-               "\"probe_with_time\":%.6f,\"probe_without\":%.6f,\"rollbacks\":%llu,\"peak_mib\":%.0f,\"hash\":\"%s\"}\n",
+               "\"probe_with_time\":%.6f,\"probe_without\":%.6f,\"rollbacks\":%llu,\"peak_mib\":%."
+               "0f,\"hash\":\"%s\"}\n",
                c->size, c->lambda, s.setup, s.train, (unsigned long long)t->iteration,
                1e3 * s.train / (double)(t->iteration > 0 ? t->iteration : 1), v->anchors,
                v->gaussians, v->dynamic, v->estimated_bits, v->coded_bits, t->probe_loss[0],
                t->probe_loss[1], (unsigned long long)t->watch.state.rollbacks, peak_mib(), v->hash);
     else
-        ted4_teller_say(teller, "%s: %zu bytes, %u anchors (%u move), %zu Gaussians, trained in %.1f s, hash %s",
-                        r->out, c->size, v->anchors, v->dynamic, v->gaussians, s.train, v->hash);
+        ted4_teller_say(
+            teller,
+            "%s: %zu bytes, %u anchors (%u move), %zu Gaussians, trained in %.1f s, hash %s",
+            r->out, c->size, v->anchors, v->dynamic, v->gaussians, s.train, v->hash);
 }
 
 /* Exit status of a run that a signal has ended, less the signal's number. */
@@ -57,11 +65,11 @@ enum { SIGNALLED = 128 };
 /* Trains, codes and writes. */
 static int run(const ted4_request *r, ted4_trainer *t, ted4_teller *teller, double begin)
 {
-    const double  start = ted4_seconds();
+    const double start = ted4_seconds();
     ted4_training training;
-    ted4_coded    coded = { 0 };
-    int           bad = ted4_training_begin(&training, r, t, teller) != 0;
-    const double  before = t->seconds;
+    ted4_coded coded = { 0 };
+    int bad = ted4_training_begin(&training, r, t, teller) != 0;
+    const double before = t->seconds;
 
     if (!bad && r->target_size > 0)
         bad = ted4_training_target(&training, &coded) != 0;
@@ -69,11 +77,11 @@ static int run(const ted4_request *r, ted4_trainer *t, ted4_teller *teller, doub
         bad = ted4_training_go(&training, ted4_trainer_total(t)) != 0 ||
               ted4_training_code(&training, &coded) != 0;
     /* Before the log ends: no finished file is lost to a log that cannot be closed. */
-    bad = bad || ted4_file_write(r->out, coded.bytes, coded.size, training.why,
-                                 sizeof training.why) != 0;
+    bad = bad ||
+          ted4_file_write(r->out, coded.bytes, coded.size, training.why, sizeof training.why) != 0;
     bad = ted4_training_end(&training, bad) != 0;
     if (!bad)
-        report(r, t, teller, &coded, (times){ start - begin, before + ted4_seconds() - start });
+        report(r, t, teller, &coded, (times) { start - begin, before + ted4_seconds() - start });
 
     const int over = r->target_size > 0 && coded.size > r->target_size;
 
@@ -85,7 +93,9 @@ static int run(const ted4_request *r, ted4_trainer *t, ted4_teller *teller, doub
     if (bad)
         return complain(teller, training.why);
     if (over)
-        ted4_teller_error(teller, "warning: no lambda gave %zu bytes or less; this is the smallest file", r->target_size);
+        ted4_teller_error(teller,
+                          "warning: no lambda gave %zu bytes or less; this is the smallest file",
+                          r->target_size);
     return over ? TED4_EXIT_WARNED : TED4_EXIT_FINE;
 }
 
@@ -98,16 +108,18 @@ static void now(ted4_teller *teller, ted4_told_kind kind, const char *name)
     ted4_teller_now(teller, &f);
 }
 
-static int encode(const ted4_request *r, ted4_dataset *d, const ted4_parallel *p, ted4_teller *teller, double begin)
+static int encode(const ted4_request *r, ted4_dataset *d, const ted4_parallel *p,
+                  ted4_teller *teller, double begin)
 {
     ted4_train_options options = r->options;
-    ted4_trainer       t;
+    ted4_trainer t;
 
     now(teller, TED4_TELL_STARTING, "placing first anchors");
     if (ted4_header_settle(&options, d) != 0)
         return complain(teller, "no memory to look for flicker");
 
-    const int status = ted4_trainer_init(&t, &options, d, p) != 0 ? complain(teller, t.message.text) : run(r, &t, teller, begin);
+    const int status = ted4_trainer_init(&t, &options, d, p) != 0 ? complain(teller, t.message.text)
+                                                                  : run(r, &t, teller, begin);
 
     ted4_trainer_finish(&t);
     return status;
@@ -132,7 +144,8 @@ static int check_outputs(const ted4_request *r, ted4_teller *teller)
     if (ted4_file_writable(r->out, r->force, why, sizeof why) != 0 ||
         (r->checkpoint != NULL && ted4_file_writable(r->checkpoint, 1, why, sizeof why) != 0) ||
         (r->stage1 != NULL && ted4_file_writable(r->stage1, 1, why, sizeof why) != 0) ||
-        (r->log != NULL && !is_device(r->log) && ted4_file_writable(r->log, 1, why, sizeof why) != 0))
+        (r->log != NULL && !is_device(r->log) &&
+         ted4_file_writable(r->log, 1, why, sizeof why) != 0))
         return complain(teller, why);
     return 0;
 }
@@ -158,7 +171,7 @@ static size_t warn(ted4_teller *teller, const ted4_dataset *d, size_t from)
 static void unpacking(void *teller, const char *video, size_t frames)
 {
     const char *base = strrchr(video, '/');
-    ted4_facts  f = { .kind = TED4_TELL_UNPACKING, .step = frames };
+    ted4_facts f = { .kind = TED4_TELL_UNPACKING, .step = frames };
 
     snprintf(f.name, sizeof f.name, "%s", base != NULL ? base + 1 : video);
     ted4_teller_now(teller, &f);
@@ -167,7 +180,7 @@ static void unpacking(void *teller, const char *video, size_t frames)
 static void say_found(ted4_teller *teller, const ted4_dataset *d)
 {
     size_t tests = 0;
-    int    low = d->n_pictures > 0 ? d->pictures[0].camera.width : 0, high = low;
+    int low = d->n_pictures > 0 ? d->pictures[0].camera.width : 0, high = low;
 
     for (size_t i = 0; i < d->n_pictures; i++) {
         const int width = d->pictures[i].camera.width;
@@ -180,11 +193,14 @@ static void say_found(ted4_teller *teller, const ted4_dataset *d)
     char size[40];
 
     if (low == high)
-        snprintf(size, sizeof size, "%d x %d", low, d->n_pictures > 0 ? d->pictures[0].camera.height : 0);
+        snprintf(size, sizeof size, "%d x %d", low,
+                 d->n_pictures > 0 ? d->pictures[0].camera.height : 0);
     else
         snprintf(size, sizeof size, "%d to %d wide", low, high);
-    ted4_teller_say(teller, "%s: %zu training pictures, %zu held out, of %u camera%s and %u time%s, %s pixels", d->layout, d->n_pictures - tests, tests,
-                    (unsigned)d->n_cameras, d->n_cameras == 1 ? "" : "s", (unsigned)d->n_frames, d->n_frames == 1 ? "" : "s", size);
+    ted4_teller_say(
+        teller, "%s: %zu training pictures, %zu held out, of %u camera%s and %u time%s, %s pixels",
+        d->layout, d->n_pictures - tests, tests, (unsigned)d->n_cameras,
+        d->n_cameras == 1 ? "" : "s", (unsigned)d->n_frames, d->n_frames == 1 ? "" : "s", size);
 }
 
 /* Initial points where there are none that help. 0, or -1 with *m filled. */
@@ -192,7 +208,7 @@ static int scatter(ted4_dataset *d, const ted4_request *r, const ted4_parallel *
                    ted4_teller *teller, ted4_message *m)
 {
     ted4_scatter_options o = r->bounds;
-    ted4_scattered       what;
+    ted4_scattered what;
 
     now(teller, TED4_TELL_STARTING, "looking for initial points");
     o.seed = r->options.seed;
@@ -202,8 +218,10 @@ static int scatter(ted4_dataset *d, const ted4_request *r, const ted4_parallel *
         ted4_teller_error(teller, "warning: %zu initial points outside the bounds are not used",
                           what.outside);
     if (what.scattered > 0 && what.given > 0)
-        ted4_teller_error(teller, "warning: most of the %zu initial points do not lie on what "
-                          "pictures show; %zu others take their place", what.given, what.scattered);
+        ted4_teller_error(teller,
+                          "warning: most of the %zu initial points do not lie on what "
+                          "pictures show; %zu others take their place",
+                          what.given, what.scattered);
     return 0;
 }
 
@@ -222,7 +240,7 @@ static int work(const ted4_request *r, ted4_teller *teller, const ted4_parallel 
                                           .user = teller };
     ted4_dataset d;
     ted4_message m;
-    int          status = TED4_EXIT_FINE;
+    int status = TED4_EXIT_FINE;
 
     now(teller, TED4_TELL_LOADING, r->scene);
     ted4_teller_say(teller, "loading %s", r->scene);
@@ -250,11 +268,11 @@ static int work(const ted4_request *r, ted4_teller *teller, const ted4_parallel 
 
 int main(int argc, char **argv)
 {
-    ted4_request  r;
+    ted4_request r;
     ted4_parallel p;
-    ted4_teller   teller;
-    const double  begin = ted4_seconds();
-    const int     parsed = ted4_request_parse(&r, argc, argv);
+    ted4_teller teller;
+    const double begin = ted4_seconds();
+    const int parsed = ted4_request_parse(&r, argc, argv);
 
     if (parsed != TED4_REQUEST_GO)
         return parsed == TED4_REQUEST_DONE ? TED4_EXIT_FINE : TED4_EXIT_TOOL;

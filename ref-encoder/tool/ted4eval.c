@@ -49,21 +49,26 @@ enum { MAX_DOWNSCALE = 64, MAX_MAX_FRAMES = 36000, MAX_HOLD_OUT = 256, SHEET_ROW
 enum { PATH_SIZE = 4096 };
 
 static const ted4_argument OPTIONS[N_OPTIONS] = {
-    [OPT_SPLIT]     = { 0, "split", "NAME", "test (default) or train pictures" },
-    [OPT_DOWNSCALE] = { 0, "downscale", "N", "compare pictures shrunk N times, as ted4enc --downscale" },
-    [OPT_MAX_FRAMES] = { 0, "max-frames", "N", "only the first N times of SCENE, as ted4enc --max-frames" },
-    [OPT_ALPHA]     = { 0, "alpha", "HOW", "straight or premultiplied, as ted4enc --alpha" },
-    [OPT_HOLD_OUT]  = { 0, "hold-out", "NAME", "this camera's pictures are test, as ted4enc --hold-out" },
-    [OPT_IMAGES]    = { 0, "images", "DIR", "write DIR/truth, DIR/ours, DIR/error (5 times the difference) as NNNNN.png" },
-    [OPT_SHEET]     = { 0, "sheet", "FILE.png", "one picture: truth, ours, error of up to four cameras, at other times" },
-    [OPT_THREADS]   = { 'j', "threads", "N", "threads; 0: all cores. Default 0" },
-    [OPT_ANYWAY]    = { 0, "anyway", NULL, "compare also where the file cannot be of this scene" },
-    [OPT_FORCE]     = { 'f', "force", NULL, "overwrite pictures" },
-    [OPT_JSON]      = { 0, "json", NULL, "result as one JSON object" },
-    [OPT_QUIET]     = { 'q', "quiet", NULL, "errors only" },
-    [OPT_VERBOSE]   = { 'v', "verbose", NULL, "metrics of every picture on standard error" },
-    [OPT_HELP]      = TED4_ARGUMENT_HELP,
-    [OPT_VERSION]   = TED4_ARGUMENT_VERSION,
+    [OPT_SPLIT] = { 0, "split", "NAME", "test (default) or train pictures" },
+    [OPT_DOWNSCALE] = { 0, "downscale", "N",
+                        "compare pictures shrunk N times, as ted4enc --downscale" },
+    [OPT_MAX_FRAMES] = { 0, "max-frames", "N",
+                         "only the first N times of SCENE, as ted4enc --max-frames" },
+    [OPT_ALPHA] = { 0, "alpha", "HOW", "straight or premultiplied, as ted4enc --alpha" },
+    [OPT_HOLD_OUT] = { 0, "hold-out", "NAME",
+                       "this camera's pictures are test, as ted4enc --hold-out" },
+    [OPT_IMAGES] = { 0, "images", "DIR",
+                     "write DIR/truth, DIR/ours, DIR/error (5 times the difference) as NNNNN.png" },
+    [OPT_SHEET] = { 0, "sheet", "FILE.png",
+                    "one picture: truth, ours, error of up to four cameras, at other times" },
+    [OPT_THREADS] = { 'j', "threads", "N", "threads; 0: all cores. Default 0" },
+    [OPT_ANYWAY] = { 0, "anyway", NULL, "compare also where the file cannot be of this scene" },
+    [OPT_FORCE] = { 'f', "force", NULL, "overwrite pictures" },
+    [OPT_JSON] = { 0, "json", NULL, "result as one JSON object" },
+    [OPT_QUIET] = { 'q', "quiet", NULL, "errors only" },
+    [OPT_VERBOSE] = { 'v', "verbose", NULL, "metrics of every picture on standard error" },
+    [OPT_HELP] = TED4_ARGUMENT_HELP,
+    [OPT_VERSION] = TED4_ARGUMENT_VERSION,
 };
 
 static const ted4_command COMMAND = {
@@ -74,7 +79,8 @@ static const ted4_command COMMAND = {
     "range 2), MS-SSIM, bytes of the file, milliseconds to decode it, and pictures drawn a second.",
     OPTIONS,
     N_OPTIONS,
-    "Exit codes: 0 fine, 1 file refused, 3 usage, input, output or resources, or the file cannot be\n"
+    "Exit codes: 0 fine, 1 file refused, 3 usage, input, output or resources, or the file cannot "
+    "be\n"
     "of this scene.\n",
     NULL,
 };
@@ -82,9 +88,9 @@ static const ted4_command COMMAND = {
 typedef struct {
     const char *input, *scene, *images, *sheet;
     const char *hold_out[MAX_HOLD_OUT];
-    size_t      n_hold_out;
-    int         premultiplied;
-    int         want_test, downscale, max_frames, threads, anyway, force, json, quiet, verbose;
+    size_t n_hold_out;
+    int premultiplied;
+    int want_test, downscale, max_frames, threads, anyway, force, json, quiet, verbose;
 } settings;
 
 /* Sums over pictures, later divided by views. */
@@ -95,14 +101,14 @@ typedef struct {
 
 typedef struct {
     const settings *set;
-    ted4_parallel   parallel;
-    ted4_info       info;
-    ted4_recon     *recon;              /* owned, as all below */
-    ted4_viewer    *viewer;
-    ted4_dataset    data;
-    size_t          row[SHEET_ROWS];    /* picture in each row of the sheet */
-    ted4_sheet      sheet;
-    totals          sum;
+    ted4_parallel parallel;
+    ted4_info info;
+    ted4_recon *recon; /* owned, as all below */
+    ted4_viewer *viewer;
+    ted4_dataset data;
+    size_t row[SHEET_ROWS]; /* picture in each row of the sheet */
+    ted4_sheet sheet;
+    totals sum;
     ted4_belongs_sum squares;
 } session;
 
@@ -144,8 +150,7 @@ static int set_option(settings *s, int option, const char *value)
         return s->want_test || strcmp(value, "train") == 0
                    ? 0
                    : failed("--split", "test or train expected");
-    case OPT_DOWNSCALE:
-        return set_number("--downscale", value, 1, MAX_DOWNSCALE, &s->downscale);
+    case OPT_DOWNSCALE: return set_number("--downscale", value, 1, MAX_DOWNSCALE, &s->downscale);
     case OPT_MAX_FRAMES:
         return set_number("--max-frames", value, 1, MAX_MAX_FRAMES, &s->max_frames);
     case OPT_ALPHA:
@@ -158,16 +163,10 @@ static int set_option(settings *s, int option, const char *value)
             return failed("--hold-out", "too many");
         s->hold_out[s->n_hold_out++] = value;
         return 0;
-    case OPT_IMAGES:
-        s->images = value;
-        return 0;
-    case OPT_SHEET:
-        s->sheet = value;
-        return 0;
-    case OPT_THREADS:
-        return set_number("--threads", value, 0, TED4_MAX_THREADS, &s->threads);
-    default:
-        break;
+    case OPT_IMAGES: s->images = value; return 0;
+    case OPT_SHEET: s->sheet = value; return 0;
+    case OPT_THREADS: return set_number("--threads", value, 0, TED4_MAX_THREADS, &s->threads);
+    default: break;
     }
     int *const flag[N_OPTIONS] = { [OPT_ANYWAY] = &s->anyway,
                                    [OPT_FORCE] = &s->force,
@@ -184,7 +183,7 @@ static int parse(settings *s, int argc, char **argv)
 {
     const char *value;
 
-    *s = (settings){ .want_test = 1, .downscale = 1 };
+    *s = (settings) { .want_test = 1, .downscale = 1 };
     for (int i; (i = ted4_arguments_next(&COMMAND, argc, argv, &value)) != TED4_ARGUMENTS_END;) {
         if (i == TED4_ARGUMENTS_BAD)
             return TED4_EXIT_TOOL;
@@ -255,7 +254,8 @@ static int refuse_pair(const session *s, int belongs, const char *why)
     if (belongs || s->set->anyway)
         return TED4_EXIT_FINE;
     ted4_teller_clear(&teller);
-    fprintf(stderr, "ted4eval: %s: cannot be of %s: %s; --anyway compares them all the same\n", s->set->input, s->set->scene, why);
+    fprintf(stderr, "ted4eval: %s: cannot be of %s: %s; --anyway compares them all the same\n",
+            s->set->input, s->set->scene, why);
     return TED4_EXIT_TOOL;
 }
 
@@ -407,12 +407,12 @@ static void print_result(const session *s)
         return;
     }
     json_t *const o = json_pack(
-        "{s:o, s:o, s:o, s:o, s:o, s:I, s:o, s:o, s:I, s:s, s:I, s:I, s:I}", "psnr", number(t->psnr / n),
-        "ssim", number(t->ssim / n), "ssim2", number(t->ssim2 / n), "ms_ssim",
-        number(t->ms_ssim / n), "l1", number(t->l1 / n), "bytes", (json_int_t)t->bytes, "decode_ms", number(t->decode_ms),
-        "render_fps", number(n / t->render_s), "views", (json_int_t)t->views, "split",
-        s->set->want_test ? "test" : "train", "frames", (json_int_t)s->info.frames, "anchors",
-        (json_int_t)s->info.n_anchors, "gaussians", (json_int_t)s->info.n_gaussians);
+        "{s:o, s:o, s:o, s:o, s:o, s:I, s:o, s:o, s:I, s:s, s:I, s:I, s:I}", "psnr",
+        number(t->psnr / n), "ssim", number(t->ssim / n), "ssim2", number(t->ssim2 / n), "ms_ssim",
+        number(t->ms_ssim / n), "l1", number(t->l1 / n), "bytes", (json_int_t)t->bytes, "decode_ms",
+        number(t->decode_ms), "render_fps", number(n / t->render_s), "views", (json_int_t)t->views,
+        "split", s->set->want_test ? "test" : "train", "frames", (json_int_t)s->info.frames,
+        "anchors", (json_int_t)s->info.n_anchors, "gaussians", (json_int_t)s->info.n_gaussians);
 
     json_dumpf(o, stdout, JSON_COMPACT | JSON_REAL_PRECISION(6));
     putchar('\n');
@@ -432,7 +432,9 @@ static int evaluate(session *s)
     if (code != TED4_EXIT_FINE)
         return code;
     if (n == 0)
-        return failed(set->scene, set->want_test ? "no test pictures; --split train compares training pictures" : "no training pictures");
+        return failed(set->scene, set->want_test
+                                      ? "no test pictures; --split train compares training pictures"
+                                      : "no training pictures");
     if (set->images != NULL && mkdir(set->images, 0777) != 0 && errno != EEXIST)
         return failed(set->images, strerror(errno));
     if (set->sheet != NULL)
@@ -441,12 +443,12 @@ static int evaluate(session *s)
         if (!in_split(s, i))
             continue;
         code = evaluate_picture(s, i);
-        ted4_teller_now(&teller, &(ted4_facts){ .kind = TED4_TELL_DRAWING, .step = s->sum.views, .total = n });
+        ted4_teller_now(
+            &teller, &(ted4_facts) { .kind = TED4_TELL_DRAWING, .step = s->sum.views, .total = n });
     }
-    if (code == TED4_EXIT_FINE && set->sheet != NULL
-        && ted4_png_write(set->sheet, s->sheet.width * TED4_SHEET_COLUMNS,
-                          s->sheet.height * s->sheet.rows, s->sheet.rgb, why, sizeof why)
-               != 0)
+    if (code == TED4_EXIT_FINE && set->sheet != NULL &&
+        ted4_png_write(set->sheet, s->sheet.width * TED4_SHEET_COLUMNS,
+                       s->sheet.height * s->sheet.rows, s->sheet.rgb, why, sizeof why) != 0)
         code = failed(set->sheet, why);
     if (code == TED4_EXIT_FINE)
         code = refuse_pair(s, ted4_belongs_pictures(&s->squares, why, sizeof why), why);
@@ -465,7 +467,7 @@ int main(int argc, char **argv)
         return code;
     ted4_teller_begin(&teller, "ted4eval", set.quiet);
     ted4_teller_say(&teller, "comparing %s with %s", set.input, set.scene);
-    ted4_teller_now(&teller, &(ted4_facts){ .kind = TED4_TELL_LOADING, .name = "the scene" });
+    ted4_teller_now(&teller, &(ted4_facts) { .kind = TED4_TELL_LOADING, .name = "the scene" });
     ted4_threads_init(&s.parallel, set.threads);
     code = open_file(&s);
     if (code == TED4_EXIT_FINE)

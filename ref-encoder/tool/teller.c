@@ -40,7 +40,7 @@ void ted4_teller_time(double seconds, char *text, size_t size)
 
 static void training_line(const ted4_facts *f, double clock, char *text, size_t size)
 {
-    char   left[40] = "";
+    char left[40] = "";
     size_t n = (size_t)snprintf(text, size, "%llu/%llu ", (unsigned long long)f->step,
                                 (unsigned long long)f->total);
 
@@ -66,21 +66,21 @@ static void training_line(const ted4_facts *f, double clock, char *text, size_t 
 
 void ted4_teller_line(const ted4_facts *f, double clock, double since, char *text, size_t size)
 {
-    char         past[40];
-    const int    n = (int)f->step, all = (int)f->total;
+    char past[40];
+    const int n = (int)f->step, all = (int)f->total;
 
     ted4_teller_time(since, past, sizeof past);
     text[0] = 0;
     switch (f->kind) {
-    case TED4_TELL_LOADING:   snprintf(text, size, "loading %s, %s so far", f->name, past); break;
+    case TED4_TELL_LOADING: snprintf(text, size, "loading %s, %s so far", f->name, past); break;
     case TED4_TELL_UNPACKING: snprintf(text, size, "unpacking %s: %d frames", f->name, n); break;
-    case TED4_TELL_STARTING:  snprintf(text, size, "%s, %s so far", f->name, past); break;
-    case TED4_TELL_TRAINING:  training_line(f, clock, text, size); break;
+    case TED4_TELL_STARTING: snprintf(text, size, "%s, %s so far", f->name, past); break;
+    case TED4_TELL_TRAINING: training_line(f, clock, text, size); break;
     case TED4_TELL_CODING:
         snprintf(text, size, "coding and checking the file, %s so far", past);
         break;
-    case TED4_TELL_DRAWING:   snprintf(text, size, "%d of %d pictures compared", n, all); break;
-    default:                  break;
+    case TED4_TELL_DRAWING: snprintf(text, size, "%d of %d pictures compared", n, all); break;
+    default: break;
     }
 }
 

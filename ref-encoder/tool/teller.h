@@ -24,28 +24,28 @@ typedef enum {
 /* What goes on. Numbers that are negative are not known. */
 typedef struct {
     ted4_told_kind kind;
-    char        name[200];      /* of what is loaded, unpacked, drawn */
-    uint64_t    step, total;    /* steps done of all; frames; pictures done of all */
-    const char *stage;          /* "1", "2", "2i", or what a probe or trial is for */
-    double      share;          /* done of a probe or of trials; negative: plain training */
-    double      loss, psnr, bytes, ms;
-    int         train_psnr;     /* psnr is of training pictures */
-    size_t      anchors;
-    double      left;           /* seconds, at the clock when */
-    double      when;
+    char name[200];       /* of what is loaded, unpacked, drawn */
+    uint64_t step, total; /* steps done of all; frames; pictures done of all */
+    const char *stage;    /* "1", "2", "2i", or what a probe or trial is for */
+    double share;         /* done of a probe or of trials; negative: plain training */
+    double loss, psnr, bytes, ms;
+    int train_psnr; /* psnr is of training pictures */
+    size_t anchors;
+    double left; /* seconds, at the clock when */
+    double when;
 } ted4_facts;
 
 typedef struct {
-    const char     *program;
-    int             quiet, terminal, running, ending;
-    double          pause[2];   /* seconds between lines: before training, and from there on */
-    pthread_t       thread;
+    const char *program;
+    int quiet, terminal, running, ending;
+    double pause[2]; /* seconds between lines: before training, and from there on */
+    pthread_t thread;
     pthread_mutex_t lock;
-    pthread_cond_t  wake;
-    ted4_facts      now;
-    double          since;      /* when now.kind or now.name became what they are */
-    double          last;       /* when something was said last */
-    int             open;       /* the terminal's line has text */
+    pthread_cond_t wake;
+    ted4_facts now;
+    double since; /* when now.kind or now.name became what they are */
+    double last;  /* when something was said last */
+    int open;     /* the terminal's line has text */
 } ted4_teller;
 
 double ted4_seconds(void);

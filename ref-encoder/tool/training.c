@@ -32,13 +32,14 @@ static int exists(const char *path)
 static int find_start(ted4_training *t)
 {
     const ted4_request *r = t->request;
-    ted4_trainer       *trainer = t->trainer;
+    ted4_trainer *trainer = t->trainer;
 
     if (r->resume && exists(r->checkpoint)) {
         if (ted4_checkpoint_load(trainer, r->checkpoint) != 0)
             return fail(t);
         t->saved = (int64_t)trainer->iteration;
-        ted4_teller_say(t->teller, "%s: going on from step %llu of %llu", r->checkpoint, (unsigned long long)trainer->iteration,
+        ted4_teller_say(t->teller, "%s: going on from step %llu of %llu", r->checkpoint,
+                        (unsigned long long)trainer->iteration,
                         (unsigned long long)ted4_trainer_total(trainer));
     } else if (exists(r->stage1)) {
         if (ted4_checkpoint_load(trainer, r->stage1) != 0)
@@ -47,7 +48,8 @@ static int find_start(ted4_training *t)
             snprintf(t->why, sizeof t->why, "%s: not the end of stage 1", r->stage1);
             return -1;
         }
-        ted4_teller_say(t->teller, "%s: going on from step %llu of %llu, the end of stage 1", r->stage1, (unsigned long long)trainer->iteration,
+        ted4_teller_say(t->teller, "%s: going on from step %llu of %llu, the end of stage 1",
+                        r->stage1, (unsigned long long)trainer->iteration,
                         (unsigned long long)ted4_trainer_total(trainer));
     } else if (r->resume) {
         ted4_teller_say(t->teller, "%s: not there yet; beginning at step 0", r->checkpoint);
@@ -55,7 +57,8 @@ static int find_start(ted4_training *t)
     return 0;
 }
 
-int ted4_training_begin(ted4_training *t, const ted4_request *r, ted4_trainer *trainer, ted4_teller *teller)
+int ted4_training_begin(ted4_training *t, const ted4_request *r, ted4_trainer *trainer,
+                        ted4_teller *teller)
 {
     memset(t, 0, sizeof *t);
     t->request = r;
@@ -72,13 +75,14 @@ int ted4_training_begin(ted4_training *t, const ted4_request *r, ted4_trainer *t
     ted4_stop_keep();
     trainer->onlooker.look = ted4_training_look;
     trainer->onlooker.user = t;
-    return ted4_run_log_open(&t->log, r->log, trainer, r->resume, r->verbose ? teller : NULL, t->why, sizeof t->why);
+    return ted4_run_log_open(&t->log, r->log, trainer, r->resume, r->verbose ? teller : NULL,
+                             t->why, sizeof t->why);
 }
 
 int ted4_training_end(ted4_training *t, int bad)
 {
-    char       why[sizeof t->why];
-    const int  closed = ted4_run_log_close(&t->log, why, sizeof why) == 0;
+    char why[sizeof t->why];
+    const int closed = ted4_run_log_close(&t->log, why, sizeof why) == 0;
 
     if (!bad && !closed)
         memcpy(t->why, why, sizeof why);
@@ -92,7 +96,8 @@ static int log_step(ted4_training *t)
     ted4_preview *p = &t->log.preview;
 
     ted4_run_log_tick(&t->log, tr);
-    if (ted4_preview_make(tr, tr->iteration == ted4_trainer_total(tr) ? LAST_PICTURES : PREVIEW_PICTURES, p) != 0)
+    if (ted4_preview_make(
+            tr, tr->iteration == ted4_trainer_total(tr) ? LAST_PICTURES : PREVIEW_PICTURES, p) != 0)
         return fail(t);
     ted4_run_log_skip(&t->log);
 
@@ -120,24 +125,30 @@ static int save(ted4_training *t)
     return 0;
 }
 
-/* A signal has asked for the end. between: the step is done, and the trainer may be kept. Always -1, with why: how to go on. */
+/* A signal has asked for the end. between: the step is done, and the trainer may be kept. Always
+ * -1, with why: how to go on. */
 static int stop(ted4_training *t, int between)
 {
     const unsigned long long now = t->trainer->iteration;
-    const char              *way = "nothing of it is kept (--checkpoint FILE would)";
-    char                     text[600];
+    const char *way = "nothing of it is kept (--checkpoint FILE would)";
+    char text[600];
 
     if (between && t->checkpoint != NULL && ted4_watch_calm(t->trainer) && save(t) != 0)
         return -1;
     if (t->saved >= 0) {
-        snprintf(text, sizeof text, "%.400s holds step %lld; the same command with --resume goes on from there", t->request->checkpoint, (long long)t->saved);
+        snprintf(text, sizeof text,
+                 "%.400s holds step %lld; the same command with --resume goes on from there",
+                 t->request->checkpoint, (long long)t->saved);
         way = text;
     } else if (exists(t->request->stage1)) {
-        snprintf(text, sizeof text, "%.400s holds the end of stage 1; the same command goes on from there", t->request->stage1);
+        snprintf(text, sizeof text,
+                 "%.400s holds the end of stage 1; the same command goes on from there",
+                 t->request->stage1);
         way = text;
     }
     t->stopped = ted4_stop_asked();
-    snprintf(t->why, sizeof t->why, "stopped at step %llu of %llu; %s", now, (unsigned long long)ted4_trainer_total(t->trainer), way);
+    snprintf(t->why, sizeof t->why, "stopped at step %llu of %llu; %s", now,
+             (unsigned long long)ted4_trainer_total(t->trainer), way);
     return -1;
 }
 
@@ -145,7 +156,7 @@ static int stop(ted4_training *t, int between)
 static int keep_stage1(ted4_training *t)
 {
     ted4_trainer *tr = t->trainer;
-    const char   *path = t->request->stage1;
+    const char *path = t->request->stage1;
 
     if (path == NULL || tr->stage2 || tr->iteration != (uint64_t)tr->opt.stage1 || exists(path))
         return 0;
@@ -166,8 +177,9 @@ static int tell_rollback(ted4_training *t)
 {
     const ted4_watch *w = &t->trainer->watch;
 
-    ted4_teller_say(t->teller, "warning: %s; back to step %llu with learning rates times %g", t->trainer->message.text,
-                    (unsigned long long)t->trainer->iteration, w->state.factor);
+    ted4_teller_say(t->teller, "warning: %s; back to step %llu with learning rates times %g",
+                    t->trainer->message.text, (unsigned long long)t->trainer->iteration,
+                    w->state.factor);
     return ted4_run_log_event(&t->log, t->trainer, t->why, sizeof t->why);
 }
 
@@ -184,30 +196,35 @@ static int fail_step(ted4_training *t)
 /* One step, and what the log has to say if it was not simply that. */
 static int step(ted4_training *t)
 {
-    ted4_trainer  *tr = t->trainer;
+    ted4_trainer *tr = t->trainer;
     const uint64_t before = tr->iteration, rollbacks = tr->watch.state.rollbacks;
-    const size_t   trials = tr->n_trials;
+    const size_t trials = tr->n_trials;
 
     if (ted4_trainer_step(tr) != 0)
         return fail_step(t);
     /* A step may be many: what a probe has done counts. Or it began again, or went back. */
     if (tr->iteration <= before && start_over(t) != 0)
         return -1;
-    if (tr->n_trials > trials && ted4_run_log_trials(&t->log, tr, trials, t->why, sizeof t->why) != 0)
+    if (tr->n_trials > trials &&
+        ted4_run_log_trials(&t->log, tr, trials, t->why, sizeof t->why) != 0)
         return -1;
     return tr->watch.state.rollbacks > rollbacks ? tell_rollback(t) : 0;
 }
 
-/* What probes and trials do is lost when they are stopped, for no checkpoint can be written inside them: one is written before. */
+/* What probes and trials do is lost when they are stopped, for no checkpoint can be written inside
+ * them: one is written before. */
 static int before_long_step(ted4_training *t)
 {
-    return ted4_trainer_long_step(t->trainer) && t->saved != (int64_t)t->trainer->iteration && ted4_watch_calm(t->trainer) ? save(t) : 0;
+    return ted4_trainer_long_step(t->trainer) && t->saved != (int64_t)t->trainer->iteration &&
+                   ted4_watch_calm(t->trainer)
+               ? save(t)
+               : 0;
 }
 
 int ted4_training_go(ted4_training *t, uint64_t steps)
 {
     ted4_trainer *tr = t->trainer;
-    double        saved = ted4_seconds();
+    double saved = ted4_seconds();
 
     ted4_run_log_skip(&t->log);
     while (tr->iteration < steps) {
@@ -219,7 +236,8 @@ int ted4_training_go(ted4_training *t, uint64_t steps)
             return -1;
         if (step(t) != 0)
             return -1;
-        if ((tr->iteration / REPORT_EVERY > before / REPORT_EVERY || tr->iteration == steps) && log_step(t) != 0)
+        if ((tr->iteration / REPORT_EVERY > before / REPORT_EVERY || tr->iteration == steps) &&
+            log_step(t) != 0)
             return -1;
         if (ted4_seconds() - saved >= t->request->checkpoint_every && ted4_watch_calm(tr)) {
             if (save(t) != 0)
@@ -236,10 +254,10 @@ int ted4_training_go(ted4_training *t, uint64_t steps)
 int ted4_training_code(ted4_training *t, ted4_coded *c)
 {
     ted4_trainer *tr = t->trainer;
-    ted4_scene   *scene;
-    double        bits[TED4_TYPES];
-    ted4_error    e = { TED4_OK, 0 };
-    int           bad;
+    ted4_scene *scene;
+    double bits[TED4_TYPES];
+    ted4_error e = { TED4_OK, 0 };
+    int bad;
 
     t->facts.kind = TED4_TELL_CODING;
     ted4_teller_now(t->teller, &t->facts);
@@ -256,8 +274,10 @@ int ted4_training_code(ted4_training *t, ted4_coded *c)
     bad = t->request->why && text == NULL;
     if (bad)
         snprintf(t->why, sizeof t->why, "no memory to say why");
-    else if ((bad = ted4_encode_told(scene, 0, text, tr->parallel, &c->bytes, &c->size, &e) != TED4_OK))
-        snprintf(t->why, sizeof t->why, "encoder refused its own scene: %s", ted4_status_id(e.code));
+    else if ((bad = ted4_encode_told(scene, 0, text, tr->parallel, &c->bytes, &c->size, &e) !=
+                    TED4_OK))
+        snprintf(t->why, sizeof t->why, "encoder refused its own scene: %s",
+                 ted4_status_id(e.code));
     else
         bad = ted4_verify(scene, c->bytes, c->size, tr->parallel, &c->verified, t->why,
                           sizeof t->why) != 0;

@@ -12,10 +12,11 @@
 static void put_time(FILE *f, const ted4_trainer *t)
 {
     const double *loss = t->probe_loss;
-    const int     timed = t->layout.head.motion != TED4_MOTION_NONE || t->layout.head.activation;
+    const int timed = t->layout.head.motion != TED4_MOTION_NONE || t->layout.head.activation;
 
     if (loss[0] > 0)
-        fprintf(f, "capacity.time=%s: loss %.6f with it, %.6f without\n", timed ? "needed" : "not needed", loss[0], loss[1]);
+        fprintf(f, "capacity.time=%s: loss %.6f with it, %.6f without\n",
+                timed ? "needed" : "not needed", loss[0], loss[1]);
 }
 
 static void put_light(FILE *f, const ted4_trainer *t)
@@ -23,21 +24,31 @@ static void put_light(FILE *f, const ted4_trainer *t)
     const double flicker = ted4_dataset_flicker(t->data);
 
     if (flicker >= TED4_FLICKER_SEEN)
-        fprintf(f, "capacity.light=flickers by %.1f levels; trained with a bank of %d rows for %u times\n", flicker, t->opt.bank_rows, t->data->n_frames);
+        fprintf(
+            f,
+            "capacity.light=flickers by %.1f levels; trained with a bank of %d rows for %u times\n",
+            flicker, t->opt.bank_rows, t->data->n_frames);
 }
 
 /* Which anchors move no trial decides, but training itself, with the same weight of a bit. */
 static void put_moving(FILE *f, const ted4_trainer *t)
 {
-    if (t->opt.capacity && t->layout.head.motion != TED4_MOTION_NONE && t->layout.head.temporal_mask)
-        fprintf(f, "capacity.moving=%zu of %zu anchors: masks learn in every step whether motion is worth its bits\n", ted4_count_dynamic(t), t->anchors.n);
+    if (t->opt.capacity && t->layout.head.motion != TED4_MOTION_NONE &&
+        t->layout.head.temporal_mask)
+        fprintf(f,
+                "capacity.moving=%zu of %zu anchors: masks learn in every step whether motion is "
+                "worth its bits\n",
+                ted4_count_dynamic(t), t->anchors.n);
 }
 
 static void put_trial(FILE *f, size_t number, const struct ted4_trial *x)
 {
-    fprintf(f, "capacity.%03zu=%s, %lld to %lld: %s; cost %.6f to %.6f, distortion %.6f to %.6f, %.0f to %.0f bytes; ", number,
-            ted4_move_name((ted4_move)x->move), (long long)x->from, (long long)x->to, x->taken ? "taken" : "left", x->before.cost,
-            x->after.cost, x->before.distortion, x->after.distortion, x->before.bytes, x->after.bytes);
+    fprintf(f,
+            "capacity.%03zu=%s, %lld to %lld: %s; cost %.6f to %.6f, distortion %.6f to %.6f, %.0f "
+            "to %.0f bytes; ",
+            number, ted4_move_name((ted4_move)x->move), (long long)x->from, (long long)x->to,
+            x->taken ? "taken" : "left", x->before.cost, x->after.cost, x->before.distortion,
+            x->after.distortion, x->before.bytes, x->after.bytes);
     if (x->steps > 0)
         fprintf(f, "after %lld steps each\n", (long long)x->steps);
     else
@@ -46,9 +57,9 @@ static void put_trial(FILE *f, size_t number, const struct ted4_trial *x)
 
 char *ted4_why_text(const ted4_trainer *t)
 {
-    char  *text = NULL;
+    char *text = NULL;
     size_t size;
-    FILE  *f = open_memstream(&text, &size);
+    FILE *f = open_memstream(&text, &size);
 
     if (f == NULL)
         return NULL;

@@ -1,11 +1,13 @@
-/* why.h - what was decided about how much model a scene needs, as text for people: the lines of META that `ted4info --why` prints.
+/* why.h - what was decided about how much model a scene needs, as text for people: the lines of
+ * META that `ted4info --why` prints.
  * SPDX-License-Identifier: BSD-2-Clause */
 #ifndef TED4_WHY_H
 #define TED4_WHY_H
 
 #include "train/state/trainer.h"
 
-/* Lines key=value, keys beginning with "capacity", to be freed. No times, no names. NULL: no memory. */
+/* Lines key=value, keys beginning with "capacity", to be freed. No times, no names. NULL: no
+ * memory. */
 char *ted4_why_text(const ted4_trainer *t);
 
 #endif

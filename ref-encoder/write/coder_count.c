@@ -59,12 +59,11 @@ static void put(void *counter, ted4_slots s)
 static int bit(ted4_coder *c, uint32_t prob, int value)
 {
     if (c->error.code == TED4_OK)
-        put(c, (ted4_slots){ 0, value ? prob : TED4_RANS_LOW - prob });
+        put(c, (ted4_slots) { 0, value ? prob : TED4_RANS_LOW - prob });
     return value;
 }
 
-static void gauss(ted4_coder *c, size_t n, const int32_t *mu,
-                  const uint8_t *sigma, int16_t *k)
+static void gauss(ted4_coder *c, size_t n, const int32_t *mu, const uint8_t *sigma, int16_t *k)
 {
     for (size_t i = 0; i < n && c->error.code == TED4_OK; i++) {
         const ted4_status s = ted4_gauss_put(mu[i], sigma[i], k[i], put, c);
@@ -75,10 +74,8 @@ static void gauss(ted4_coder *c, size_t n, const int32_t *mu,
 
 void ted4_counter_init(ted4_counter *n)
 {
-    static const ted4_coder_ops ops = {
-        number, array, deflated, sizes, open_substream, close_substream, bit,
-        gauss
-    };
+    static const ted4_coder_ops ops = { number,         array,           deflated, sizes,
+                                        open_substream, close_substream, bit,      gauss };
 
     memset(n, 0, sizeof *n);
     n->base.ops = &ops;

@@ -8,10 +8,10 @@
 enum { TED4_COUNTER_SUBSTREAMS = 24 };
 
 typedef struct {
-    ted4_coder base;            /* must be first */
-    double     frame;           /* bits outside the slots */
-    double     substream[TED4_COUNTER_SUBSTREAMS];
-    unsigned   n_opened;
+    ted4_coder base; /* must be first */
+    double frame;    /* bits outside the slots */
+    double substream[TED4_COUNTER_SUBSTREAMS];
+    unsigned n_opened;
 } ted4_counter;
 
 void ted4_counter_init(ted4_counter *n);

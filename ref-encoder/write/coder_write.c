@@ -15,7 +15,7 @@ static ted4_writer *writer_of(ted4_coder *c)
 static uint8_t *add(ted4_coder *c, size_t size)
 {
     ted4_writer *w = writer_of(c);
-    uint8_t     *p;
+    uint8_t *p;
 
     if (c->error.code != TED4_OK)
         return NULL;
@@ -46,11 +46,11 @@ static uint32_t number(ted4_coder *c, unsigned width, uint32_t value)
 
 static void array(ted4_coder *c, unsigned width, void *values, uint64_t n)
 {
-    uint8_t    *p = add(c, (size_t)n * width);
+    uint8_t *p = add(c, (size_t)n * width);
     const char *from = values;
 
     for (size_t i = 0; p != NULL && i < n; i++) {
-        uint8_t  v1;
+        uint8_t v1;
         uint16_t v2;
         uint32_t v4;
 
@@ -112,8 +112,8 @@ static int bit(ted4_coder *c, uint32_t prob, int value)
     ted4_rans_enc *e = &writer_of(c)->rans;
 
     if (c->error.code == TED4_OK) {
-        ted4_rans_enc_put(e, value ? (ted4_slots){ 0, prob }
-                              : (ted4_slots){ prob, TED4_RANS_LOW - prob });
+        ted4_rans_enc_put(e, value ? (ted4_slots) { 0, prob }
+                                   : (ted4_slots) { prob, TED4_RANS_LOW - prob });
         ted4_rans_enc_next(e);
     }
     return value;
@@ -124,14 +124,12 @@ static void put(void *encoder, ted4_slots s)
     ted4_rans_enc_put(encoder, s);
 }
 
-static void gauss(ted4_coder *c, size_t n, const int32_t *mu,
-                  const uint8_t *sigma, int16_t *k)
+static void gauss(ted4_coder *c, size_t n, const int32_t *mu, const uint8_t *sigma, int16_t *k)
 {
     ted4_writer *w = writer_of(c);
 
     for (size_t i = 0; i < n && c->error.code == TED4_OK; i++) {
-        const ted4_status s = ted4_gauss_put(mu[i], sigma[i], k[i], put,
-                                             &w->rans);
+        const ted4_status s = ted4_gauss_put(mu[i], sigma[i], k[i], put, &w->rans);
 
         ted4_require(c, s == TED4_OK, s, w->opened);
         ted4_rans_enc_next(&w->rans);
@@ -140,10 +138,8 @@ static void gauss(ted4_coder *c, size_t n, const int32_t *mu,
 
 void ted4_writer_init(ted4_writer *w)
 {
-    static const ted4_coder_ops ops = {
-        number, array, deflated, sizes, open_substream, close_substream, bit,
-        gauss
-    };
+    static const ted4_coder_ops ops = { number,         array,           deflated, sizes,
+                                        open_substream, close_substream, bit,      gauss };
 
     memset(w, 0, sizeof *w);
     w->base.ops = &ops;

@@ -6,8 +6,7 @@
 #include "write/tiles.h"
 
 /* Substreams in order of spec 9.1. */
-static void add_tile(ted4_bits *bits, const ted4_counter *n,
-                     const ted4_scene *s)
+static void add_tile(ted4_bits *bits, const ted4_counter *n, const ted4_scene *s)
 {
     unsigned at = 0;
 
@@ -23,11 +22,10 @@ static void add_tile(ted4_bits *bits, const ted4_counter *n,
             bits->type[t] += n->substream[at++];
 }
 
-ted4_status ted4_count(const ted4_scene *s, const ted4_parallel *p,
-                       ted4_bits *bits, ted4_error *e)
+ted4_status ted4_count(const ted4_scene *s, const ted4_parallel *p, ted4_bits *bits, ted4_error *e)
 {
-    ted4_error    own = { TED4_OK, 0 };
-    ted4_draft    d;
+    ted4_error own = { TED4_OK, 0 };
+    ted4_draft d;
     ted4_counter *counters = NULL;
 
     memset(bits, 0, sizeof *bits);
@@ -35,8 +33,7 @@ ted4_status ted4_count(const ted4_scene *s, const ted4_parallel *p,
     if (own.code == TED4_OK)
         (void)ted4_prior_load(&d.prior, s->nete.values, s->shift, &own);
     if (own.code == TED4_OK) {
-        counters = ted4_arena_alloc(&d.arena, s->shape.n_tiles,
-                                    sizeof *counters);
+        counters = ted4_arena_alloc(&d.arena, s->shape.n_tiles, sizeof *counters);
         if (counters == NULL)
             ted4_fail(&own, TED4_E_LIMIT_MEMORY, 0);
     }

@@ -23,7 +23,7 @@ size_t ted4_deflate_room(size_t n)
 
 int ted4_deflate(const float *values, size_t n, uint8_t *work, uint8_t *packed, size_t *size)
 {
-    uLongf    length = compressBound((uLong)(4 * n));
+    uLongf length = compressBound((uLong)(4 * n));
     const int best = 9;
 
     shuffle(work, values, n);

@@ -1,4 +1,5 @@
-/* gauss_put.h - spec 9.4, the direction that writes: a symbol k as a sequence of slots. Shared by coder_write.c and coder_count.c.
+/* gauss_put.h - spec 9.4, the direction that writes: a symbol k as a sequence of slots. Shared by
+ * coder_write.c and coder_count.c.
  * SPDX-License-Identifier: BSD-2-Clause */
 #ifndef TED4_GAUSS_PUT_H
 #define TED4_GAUSS_PUT_H
@@ -7,10 +8,10 @@
 #include "norm/gaussian.h"
 #include "norm/rans.h"
 
-/* Calls put(user, slots) for the symbol and for each bit of its escape. TED4_OK, TED4_E_ENT_SYMBOL_RANGE or TED4_E_ENT_ESCAPE. */
+/* Calls put(user, slots) for the symbol and for each bit of its escape. TED4_OK,
+ * TED4_E_ENT_SYMBOL_RANGE or TED4_E_ENT_ESCAPE. */
 static inline ted4_status ted4_gauss_put(int32_t mu, unsigned g, int32_t k,
-                                         void (*put)(void *user, ted4_slots s),
-                                         void *user)
+                                         void (*put)(void *user, ted4_slots s), void *user)
 {
     const ted4_slots zero = { 0, TED4_RANS_LOW / 2 };
     const ted4_slots one = { TED4_RANS_LOW / 2, TED4_RANS_LOW / 2 };

@@ -1,4 +1,5 @@
-/* rans_enc.c - spec 9.2, backwards: the decoder's steps undone in reverse order, from the state in which it has to end.
+/* rans_enc.c - spec 9.2, backwards: the decoder's steps undone in reverse order, from the state in
+ * which it has to end.
  * SPDX-License-Identifier: BSD-2-Clause */
 #include "write/rans_enc.h"
 
@@ -22,7 +23,7 @@ void ted4_rans_enc_init(ted4_rans_enc *e, size_t n)
 void ted4_rans_enc_put(ted4_rans_enc *e, ted4_slots s)
 {
     if (e->n == e->room) {
-        const size_t      room = 2 * e->room + 4096;
+        const size_t room = 2 * e->room + 4096;
         ted4_rans_record *r = realloc(e->record, room * sizeof *r);
 
         if (r == NULL) {
@@ -32,9 +33,8 @@ void ted4_rans_enc_put(ted4_rans_enc *e, ted4_slots s)
         e->record = r;
         e->room = room;
     }
-    e->record[e->n++] = (ted4_rans_record){ (uint16_t)s.start,
-                                            (uint16_t)s.freq,
-                                            (uint8_t)e->lane };
+    e->record[e->n++] =
+        (ted4_rans_record) { (uint16_t)s.start, (uint16_t)s.freq, (uint8_t)e->lane };
 }
 
 /* Backward of ted4_rans_dec_take(), which was:
@@ -54,10 +54,10 @@ static int push(uint32_t *x, ted4_rans_record r, uint16_t *word)
 
 void ted4_rans_enc_finish(ted4_rans_enc *e, ted4_buffer *out)
 {
-    uint32_t  state[TED4_MAX_LANES];
+    uint32_t state[TED4_MAX_LANES];
     uint16_t *words = malloc((e->n + 1) * sizeof *words);
-    size_t    n_words = 0;
-    uint8_t  *p;
+    size_t n_words = 0;
+    uint8_t *p;
 
     if (words == NULL || e->failed) {
         free(words);
@@ -67,8 +67,7 @@ void ted4_rans_enc_finish(ted4_rans_enc *e, ted4_buffer *out)
     for (unsigned i = 0; i < e->n_lanes; i++)
         state[i] = TED4_RANS_LOW;
     for (size_t i = e->n; i > 0; i--)
-        n_words += (size_t)push(&state[e->record[i - 1].lane],
-                                e->record[i - 1], &words[n_words]);
+        n_words += (size_t)push(&state[e->record[i - 1].lane], e->record[i - 1], &words[n_words]);
     p = ted4_buffer_add(out, 4 * (size_t)e->n_lanes + 2 * n_words);
     for (unsigned i = 0; p != NULL && i < e->n_lanes; i++, p += 4)
         ted4_store32(p, state[i]);

@@ -1,5 +1,6 @@
 /* rans_enc.h - spec 9.2: rANS, the direction that writes. Knows no element and no model.
- * Last in, first out: slots are gathered and coded backwards when the substream ends. Mirror image: ref-decoder/read/rans_dec.h.
+ * Last in, first out: slots are gathered and coded backwards when the substream ends. Mirror image:
+ * ref-decoder/read/rans_dec.h.
  * SPDX-License-Identifier: BSD-2-Clause */
 #ifndef TED4_RANS_ENC_H
 #define TED4_RANS_ENC_H
@@ -10,15 +11,15 @@
 
 typedef struct {
     uint16_t start, freq;
-    uint8_t  lane;
+    uint8_t lane;
 } ted4_rans_record;
 
 /* All zero is a good start; reused from substream to substream. */
 typedef struct {
-    ted4_rans_record *record;   /* owned */
-    size_t            n, room;
-    unsigned          n_lanes, lane;    /* lane: of the next symbol */
-    int               failed;   /* memory ran out */
+    ted4_rans_record *record; /* owned */
+    size_t n, room;
+    unsigned n_lanes, lane; /* lane: of the next symbol */
+    int failed;             /* memory ran out */
 } ted4_rans_enc;
 
 void ted4_rans_enc_free(ted4_rans_enc *e);

@@ -10,11 +10,11 @@ enum { MAX_W = 32767 };
 
 /* One output unit: its row of weights and its bias in a blob. */
 typedef struct {
-    float   *w, *b;
+    float *w, *b;
     unsigned in;
-    int32_t  W[TED4_MAX_WIDTH + 1];
-    int64_t  B;
-    int64_t  sum;               /* of |W| */
+    int32_t W[TED4_MAX_WIDTH + 1];
+    int64_t B;
+    int64_t sum; /* of |W| */
 } unit;
 
 static float tame(float x)
@@ -39,17 +39,17 @@ static int integerise(unit *u, const ted4_unit_rule *rule, int shift)
     return whole;
 }
 
-/* Pulls a unit in until its accumulator is bounded: the bias to half of the range, the weights evenly into the rest. */
+/* Pulls a unit in until its accumulator is bounded: the bias to half of the range, the weights
+ * evenly into the rest. */
 static void pull_in(unit *u, const ted4_unit_rule *rule, int shift)
 {
     const int64_t half = INT32_MAX / 2;
-    int64_t       room;
+    int64_t room;
 
     if (ted4_accumulator_legal(rule, shift, u->sum, u->B))
         return;
     /* 2^24 grid: what is left of B has to be a binary32. */
-    u->B = u->B > half ? half & ~(int64_t)127
-         : u->B < -half ? -(half & ~(int64_t)127) : u->B;
+    u->B = u->B > half ? half & ~(int64_t)127 : u->B < -half ? -(half & ~(int64_t)127) : u->B;
     room = (half - ((int64_t)1 << 24)) / rule->amplitude;
     if (u->sum <= room)
         return;
@@ -57,17 +57,15 @@ static void pull_in(unit *u, const ted4_unit_rule *rule, int shift)
         u->W[i] = (int32_t)(u->W[i] * room / u->sum);
 }
 
-static void snap_unit(unit *u, const ted4_unit_rule *rule, int finest,
-                      uint8_t *shift)
+static void snap_unit(unit *u, const ted4_unit_rule *rule, int finest, uint8_t *shift)
 {
     const int least = rule->g > rule->f ? rule->g - rule->f : 0;
-    int       s = finest > least ? finest : least;
+    int s = finest > least ? finest : least;
 
     for (unsigned i = 0; i < u->in; i++)
         u->w[i] = tame(u->w[i]);
     *u->b = tame(*u->b);
-    while (!(integerise(u, rule, s)
-             && ted4_accumulator_legal(rule, s, u->sum, u->B)) && s > least)
+    while (!(integerise(u, rule, s) && ted4_accumulator_legal(rule, s, u->sum, u->B)) && s > least)
         s--;
     pull_in(u, rule, s);
     for (unsigned i = 0; i < u->in; i++)
@@ -76,11 +74,11 @@ static void snap_unit(unit *u, const ted4_unit_rule *rule, int finest,
     *shift = (uint8_t)s;
 }
 
-static void snap_net(const ted4_net_shape *n, int hyper, unsigned context_bits,
-                     int finest, float *nete, uint8_t *shift)
+static void snap_net(const ted4_net_shape *n, int hyper, unsigned context_bits, int finest,
+                     float *nete, uint8_t *shift)
 {
     size_t at = n->first, first_unit = n->first_unit;
-    unit   u;
+    unit u;
 
     for (unsigned i = 0; i < n->n_layers; i++) {
         const ted4_unit_rule rule = ted4_prior_rule(n, i, hyper, context_bits);
@@ -97,16 +95,15 @@ static void snap_net(const ted4_net_shape *n, int hyper, unsigned context_bits,
     }
 }
 
-void ted4_snap_coarse(const ted4_header *h, const ted4_shape *s, int finest,
-                      float *nete, uint8_t *shift)
+void ted4_snap_coarse(const ted4_header *h, const ted4_shape *s, int finest, float *nete,
+                      uint8_t *shift)
 {
     snap_net(&s->hyper, 1, h->context_bits, finest, nete, shift);
     for (unsigned m = 1; m < h->n_slices; m++)
         snap_net(&s->slice[m], 0, h->context_bits, finest, nete, shift);
 }
 
-void ted4_snap(const ted4_header *h, const ted4_shape *s, float *nete,
-               uint8_t *shift)
+void ted4_snap(const ted4_header *h, const ted4_shape *s, float *nete, uint8_t *shift)
 {
     ted4_snap_coarse(h, s, TED4_MAX_SHIFT, nete, shift);
 }
@@ -127,13 +124,13 @@ static int compare(const void *a, const void *b)
 
 size_t ted4_positions_sort(const uint16_t *position, size_t n, uint32_t *order)
 {
-    key   *keys = malloc((n + 1) * sizeof *keys);
+    key *keys = malloc((n + 1) * sizeof *keys);
     size_t kept = 0;
 
     if (keys == NULL)
         return SIZE_MAX;
     for (size_t i = 0; i < n; i++)
-        keys[i] = (key){ ted4_morton(position + 3 * i), (uint32_t)i };
+        keys[i] = (key) { ted4_morton(position + 3 * i), (uint32_t)i };
     qsort(keys, n, sizeof *keys, compare);
     for (size_t i = 0; i < n; i++)
         if (i == 0 || keys[i].code != keys[i - 1].code)

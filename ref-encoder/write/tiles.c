@@ -17,8 +17,8 @@ static uint16_t probability(uint64_t ones, uint64_t n)
 }
 
 /* Counts of 1 and of all bits in each context of spec 9.3. */
-static void count_masks(const ted4_scene *s, size_t first, size_t end,
-                        uint64_t ones[TED4_PROBS], uint64_t n[TED4_PROBS])
+static void count_masks(const ted4_scene *s, size_t first, size_t end, uint64_t ones[TED4_PROBS],
+                        uint64_t n[TED4_PROBS])
 {
     for (size_t a = first; a < end; a++) {
         unsigned seen = 1;
@@ -44,14 +44,11 @@ static void choose_probabilities(ted4_draft *d, const ted4_scene *s)
         const size_t first = t * step;
         uint64_t ones[TED4_PROBS] = { 0 }, n[TED4_PROBS] = { 0 };
 
-        count_masks(s, first, n_anchors - first < step ? n_anchors
-                                                       : first + step,
-                    ones, n);
+        count_masks(s, first, n_anchors - first < step ? n_anchors : first + step, ones, n);
         for (int i = 0; i < TED4_PROBS; i++) {
             const uint16_t said = s->prob[t * TED4_PROBS + i];
 
-            d->s.prob[t * TED4_PROBS + i] = said != 0 ? said
-                                          : probability(ones[i], n[i]);
+            d->s.prob[t * TED4_PROBS + i] = said != 0 ? said : probability(ones[i], n[i]);
         }
     }
 }
@@ -67,8 +64,7 @@ ted4_status ted4_draft_init(ted4_draft *d, const ted4_scene *s)
     for (size_t a = 0; a < h->n_anchors; a++)
         if (s->dynamic[a] > 1 || s->offset_bits[a] >> h->n_offsets != 0)
             return TED4_E_SYN_HASH;
-    d->s.prob = ted4_arena_alloc(&d->arena, s->shape.n_tiles,
-                                 TED4_PROBS * sizeof *d->s.prob);
+    d->s.prob = ted4_arena_alloc(&d->arena, s->shape.n_tiles, TED4_PROBS * sizeof *d->s.prob);
     if (d->s.prob == NULL)
         return TED4_E_LIMIT_MEMORY;
     choose_probabilities(d, s);
@@ -85,9 +81,9 @@ void ted4_draft_finish(ted4_draft *d)
 
 typedef struct {
     ted4_draft *d;
-    char       *coders;
-    size_t      stride, first, work_size;
-    char       *work;           /* [BATCH][work_size] */
+    char *coders;
+    size_t stride, first, work_size;
+    char *work; /* [BATCH][work_size] */
 } batch;
 
 static void walk_one(void *arg, size_t i)
@@ -95,18 +91,16 @@ static void walk_one(void *arg, size_t i)
     const batch *b = arg;
     const size_t tile = b->first + i;
 
-    ted4_walk_tile((ted4_coder *)(void *)(b->coders + tile * b->stride),
-                   &b->d->s, &b->d->prior, (unsigned)tile,
-                   b->work + i * b->work_size);
+    ted4_walk_tile((ted4_coder *)(void *)(b->coders + tile * b->stride), &b->d->s, &b->d->prior,
+                   (unsigned)tile, b->work + i * b->work_size);
 }
 
-ted4_error ted4_draft_tiles(ted4_draft *d, void *coders, size_t stride,
-                            const ted4_parallel *p)
+ted4_error ted4_draft_tiles(ted4_draft *d, void *coders, size_t stride, const ted4_parallel *p)
 {
     const size_t n_tiles = d->s.shape.n_tiles;
-    size_t       room = p == NULL ? 1 : n_tiles < BATCH ? n_tiles : BATCH;
-    ted4_error   e = { TED4_OK, 0 };
-    batch        b = { .d = d, .coders = coders, .stride = stride };
+    size_t room = p == NULL ? 1 : n_tiles < BATCH ? n_tiles : BATCH;
+    ted4_error e = { TED4_OK, 0 };
+    batch b = { .d = d, .coders = coders, .stride = stride };
 
     b.work_size = (ted4_tile_work_size(&d->s) + 63) / 64 * 64;
     if (room > BATCH_BYTES / b.work_size)
@@ -119,8 +113,8 @@ ted4_error ted4_draft_tiles(ted4_draft *d, void *coders, size_t stride,
 
         ted4_parallel_for(p, left < room ? left : room, walk_one, &b);
         for (size_t i = 0; i < left && i < room; i++) {
-            const ted4_coder *c = (const ted4_coder *)(const void *)
-                                  (b.coders + (b.first + i) * stride);
+            const ted4_coder *c =
+                (const ted4_coder *)(const void *)(b.coders + (b.first + i) * stride);
 
             if (c->error.code != TED4_OK)
                 ted4_fail(&e, c->error.code, c->error.offset);

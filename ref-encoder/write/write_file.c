@@ -17,7 +17,7 @@ enum { LEVEL_BYTE = 11, META_FLAGS = 2 };
 static size_t open_chunk(ted4_writer *w, ted4_chunk type)
 {
     const size_t at = w->base.pos;
-    ted4_frame   f;
+    ted4_frame f;
 
     memcpy(f.type, ted4_chunk_type[type], sizeof f.type);
     f.flags = TED4_FLAG_CRITICAL;
@@ -28,9 +28,9 @@ static size_t open_chunk(ted4_writer *w, ted4_chunk type)
 
 static void close_chunk(ted4_writer *w, size_t at)
 {
-    ted4_coder  *c = &w->base;
+    ted4_coder *c = &w->base;
     const size_t size = c->pos - at - TED4_FRAME_HEAD_SIZE;
-    uint64_t     hash;
+    uint64_t hash;
 
     /* The chunk may not even have begun. */
     if (c->error.code != TED4_OK)
@@ -47,7 +47,7 @@ static void close_chunk(ted4_writer *w, size_t at)
 static void choose_mode(ted4_blob *b, ted4_arena *arena, ted4_error *e)
 {
     uint8_t *bytes, *packed;
-    size_t   size;
+    size_t size;
 
     if (b->mode != TED4_BLOB_AUTO || b->n == 0)
         return;
@@ -77,7 +77,7 @@ static void write_blob(ted4_writer *w, ted4_chunk type, ted4_blob *b)
 static void write_front(ted4_writer *w, ted4_draft *d)
 {
     ted4_coder *c = &w->base;
-    size_t      at;
+    size_t at;
 
     choose_mode(&d->s.nete, &d->arena, &c->error);
     choose_mode(&d->s.netr, &d->arena, &c->error);
@@ -97,7 +97,7 @@ static void write_front(ted4_writer *w, ted4_draft *d)
 static void write_meta(ted4_writer *w, char *text)
 {
     const size_t at = w->base.pos;
-    ted4_frame   f = { .type = { 'M', 'E', 'T', 'A' }, .flags = META_FLAGS };
+    ted4_frame f = { .type = { 'M', 'E', 'T', 'A' }, .flags = META_FLAGS };
 
     if (w->base.error.code != TED4_OK || text == NULL)
         return;
@@ -118,7 +118,7 @@ static void write_tiles(ted4_writer *w, ted4_draft *d, const ted4_parallel *p)
 {
     const size_t n_tiles = d->s.shape.n_tiles;
     ted4_writer *tiles;
-    ted4_error   e;
+    ted4_error e;
 
     if (w->base.error.code != TED4_OK)
         return;
@@ -155,22 +155,21 @@ static void set_level(ted4_writer *w, const ted4_scene *s, int level)
         level = (int)ted4_level_lowest(&s->head, &s->shape, w->out.size);
     else
         ted4_require(&w->base,
-                     ted4_limits_hold(ted4_limits_of((unsigned)level),
-                                      &s->head, &s->shape, w->out.size),
+                     ted4_limits_hold(ted4_limits_of((unsigned)level), &s->head, &s->shape,
+                                      w->out.size),
                      TED4_E_LVL_EXCEEDED, LEVEL_BYTE);
     w->out.data[LEVEL_BYTE] = (uint8_t)level;
 }
 
-static void write_file(ted4_writer *w, const ted4_scene *s, int level,
-                       char *text, const ted4_parallel *p)
+static void write_file(ted4_writer *w, const ted4_scene *s, int level, char *text,
+                       const ted4_parallel *p)
 {
-    ted4_coder  *c = &w->base;
-    uint8_t      declared = (uint8_t)(level == 0 ? TED4_LEVEL_UNBOUNDED
-                                                 : level);
-    ted4_header  head = s->head;
-    ted4_shape   shape;
-    ted4_draft   d;
-    size_t       at;
+    ted4_coder *c = &w->base;
+    uint8_t declared = (uint8_t)(level == 0 ? TED4_LEVEL_UNBOUNDED : level);
+    ted4_header head = s->head;
+    ted4_shape shape;
+    ted4_draft d;
+    size_t at;
 
     ted4_walk_file_header(c, &declared);
     at = open_chunk(w, TED4_HEAD);
@@ -190,8 +189,8 @@ static void write_file(ted4_writer *w, const ted4_scene *s, int level,
     set_level(w, s, level);
 }
 
-ted4_status ted4_encode(const ted4_scene *s, int level, const ted4_parallel *p,
-                        uint8_t **out, size_t *size, ted4_error *e)
+ted4_status ted4_encode(const ted4_scene *s, int level, const ted4_parallel *p, uint8_t **out,
+                        size_t *size, ted4_error *e)
 {
     return ted4_encode_told(s, level, NULL, p, out, size, e);
 }

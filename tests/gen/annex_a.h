@@ -10,13 +10,14 @@
 
 static inline void annex_a_hash(FILE *out, const struct table *t)
 {
-    uint8_t     digest[TED4_SHA256_SIZE];
+    uint8_t digest[TED4_SHA256_SIZE];
     ted4_sha256 h;
 
     ted4_sha256_init(&h);
     for (int i = 0; i < t->n; i++) {
         const uint32_t v = (uint32_t)t->entry(i);
-        const uint8_t  bytes[4] = { (uint8_t)v, (uint8_t)(v >> 8), (uint8_t)(v >> 16), (uint8_t)(v >> 24) };
+        const uint8_t bytes[4] = { (uint8_t)v, (uint8_t)(v >> 8), (uint8_t)(v >> 16),
+                                   (uint8_t)(v >> 24) };
 
         ted4_sha256_add(&h, bytes, 4);
     }
@@ -27,13 +28,16 @@ static inline void annex_a_hash(FILE *out, const struct table *t)
 
 static inline void annex_a(FILE *out)
 {
-    fprintf(out, "# Annex A (normative): tables\n\nIn row order; i counts from 0. sigma = 2^((g - 64) / 16). `rne` is taken of the exact real number. The SHA-256 is "
-                 "that of the entries as 32-bit little-endian integers, two's complement.\n\nWhere a formula and a printed entry differ, the entry counts.\n");
+    fprintf(out, "# Annex A (normative): tables\n\nIn row order; i counts from 0. sigma = 2^((g - "
+                 "64) / 16). `rne` is taken of the exact real number. The SHA-256 is "
+                 "that of the entries as 32-bit little-endian integers, two's complement.\n\nWhere "
+                 "a formula and a printed entry differ, the entry counts.\n");
     for (int i = 0; i < N_ANNEX; i++) {
         const struct table *t = &table_list[i];
         const int hex = t->entry == table_step;
 
-        fprintf(out, "\n## A.%d %s\n\n`%s[i]` = %s; %d entries. SHA-256\n`", i + 1, t->name, t->name, t->text, t->n);
+        fprintf(out, "\n## A.%d %s\n\n`%s[i]` = %s; %d entries. SHA-256\n`", i + 1, t->name,
+                t->name, t->text, t->n);
         annex_a_hash(out, t);
         fprintf(out, "`\n\n```\n");
         for (int k = 0; k < t->n; k++) {

@@ -1,5 +1,5 @@
-/* annex_b.h - the text of annex B: two files byte by byte, with the coder's steps, the values and the records, all worked out by the code that the
- * specification prints (spec_tiers.h).
+/* annex_b.h - the text of annex B: two files byte by byte, with the coder's steps, the values and
+ * the records, all worked out by the code that the specification prints (spec_tiers.h).
  * SPDX-License-Identifier: BSD-2-Clause */
 #ifndef TED4_ANNEX_B_H
 #define TED4_ANNEX_B_H
@@ -14,14 +14,14 @@ enum { ANNEX_B_WIDTH = 16, ANNEX_B_NOTE = 96 };
 
 /* An element under way, and the run of equal ones that it ends. */
 typedef struct {
-    FILE          *out;
+    FILE *out;
     const uint8_t *data;
-    size_t         at;                  /* of the element that has not been printed yet */
-    char           name[32];
-    int64_t        index, value;
-    size_t         run;                 /* equal entries of one array, the current one included */
-    char           previous[32];
-    int            n_repeated;
+    size_t at; /* of the element that has not been printed yet */
+    char name[32];
+    int64_t index, value;
+    size_t run; /* equal entries of one array, the current one included */
+    char previous[32];
+    int n_repeated;
 } annex_b_dissection;
 
 static inline void annex_b_hex(FILE *out, const uint8_t *p, size_t n)
@@ -40,7 +40,8 @@ static inline void annex_b_note(const annex_b_dissection *d, char note[ANNEX_B_N
         if (strcmp(d->name, real[i]) == 0 && d->index >= 0)
             snprintf(note, ANNEX_B_NOTE, "%g", (double)from_bits((uint32_t)d->value));
     if (strcmp(d->name, "position") == 0)
-        snprintf(note, ANNEX_B_NOTE, "%g, X = %" PRId32, (double)q24((uint16_t)d->value) / 16777216.0, q24((uint16_t)d->value));
+        snprintf(note, ANNEX_B_NOTE, "%g, X = %" PRId32,
+                 (double)q24((uint16_t)d->value) / 16777216.0, q24((uint16_t)d->value));
     if (strcmp(d->name, "chunk_type") == 0)
         snprintf(note, ANNEX_B_NOTE, "%.4s", (const char *)d->data + d->at);
     if (strstr(d->name, "_substream") != NULL)
@@ -55,9 +56,10 @@ static inline void annex_b_note(const annex_b_dissection *d, char note[ANNEX_B_N
 static inline void annex_b_row(annex_b_dissection *d, size_t end)
 {
     const size_t n = end - d->at;
-    char         note[ANNEX_B_NOTE];
-    const int    whole = strcmp(d->name, "chunk_hash") == 0 || strcmp(d->name, "magic") == 0 || strcmp(d->name, "ends_hash") == 0 ||
-                         strstr(d->name, "_substream") != NULL || d->index < 0;
+    char note[ANNEX_B_NOTE];
+    const int whole = strcmp(d->name, "chunk_hash") == 0 || strcmp(d->name, "magic") == 0 ||
+                      strcmp(d->name, "ends_hash") == 0 || strstr(d->name, "_substream") != NULL ||
+                      d->index < 0;
 
     annex_b_note(d, note);
     fprintf(d->out, "| %zu | `", d->at);
@@ -77,7 +79,8 @@ static inline void annex_b_row(annex_b_dissection *d, size_t end)
 
 static inline int annex_b_symbol(const char *name)
 {
-    static const char *const symbol[] = { "dynamic", "offset_bit", "feature", "scaling", "offset", "phi", "tau" };
+    static const char *const symbol[] = { "dynamic", "offset_bit", "feature", "scaling",
+                                          "offset",  "phi",        "tau" };
 
     for (size_t i = 0; i < sizeof symbol / sizeof *symbol; i++)
         if (strcmp(symbol[i], name) == 0)
@@ -86,14 +89,17 @@ static inline int annex_b_symbol(const char *name)
 }
 
 /* For ted4_options.trace. */
-static inline void annex_b_element(void *user, size_t at, const char *name, int64_t index, int64_t value)
+static inline void annex_b_element(void *user, size_t at, const char *name, int64_t index,
+                                   int64_t value)
 {
     annex_b_dissection *d = user;
     const int same = strcmp(d->name, name) == 0;
 
-    if (annex_b_symbol(name) || (same && index > 0 && (strcmp(name, "magic") == 0 || strcmp(name, "ends_hash") == 0)))
+    if (annex_b_symbol(name) ||
+        (same && index > 0 && (strcmp(name, "magic") == 0 || strcmp(name, "ends_hash") == 0)))
         return;
-    if (same && index > 0 && value == d->value && strcmp(name, "position") != 0 && strstr(name, "_substream") == NULL) {
+    if (same && index > 0 && value == d->value && strcmp(name, "position") != 0 &&
+        strstr(name, "_substream") == NULL) {
         d->run++;
         return;
     }
@@ -110,9 +116,10 @@ static inline void annex_b_bytes(FILE *out, const uint8_t *data, size_t size)
 {
     annex_b_dissection d = { .out = out, .data = data };
     const ted4_options o = { .trace = annex_b_element, .trace_user = &d };
-    ted4_scene        *s;
+    ted4_scene *s;
 
-    fprintf(out, "Offsets are decimal, bytes hexadecimal; \"n x\" stands for n entries that are the same.\n\n"
+    fprintf(out, "Offsets are decimal, bytes hexadecimal; \"n x\" stands for n entries that are "
+                 "the same.\n\n"
                  "| offset | bytes | element | value | note |\n|---|---|---|---|---|\n");
     if (ted4_decode(data, size, &o, &s, NULL) != TED4_OK)
         abort();
@@ -121,15 +128,18 @@ static inline void annex_b_bytes(FILE *out, const uint8_t *data, size_t size)
 }
 
 /* One step of the coder. */
-static inline void annex_b_step(FILE *out, const struct coder *before, const struct coder *after, unsigned lane, const char *what)
+static inline void annex_b_step(FILE *out, const struct coder *before, const struct coder *after,
+                                unsigned lane, const char *what)
 {
-    fprintf(out, "| %s | %08" PRIx32 " | %" PRIu32 " | %08" PRIx32 " |", what, before->state[lane], before->state[lane] % 65536, after->state[lane]);
+    fprintf(out, "| %s | %08" PRIx32 " | %" PRIu32 " | %08" PRIx32 " |", what, before->state[lane],
+            before->state[lane] % 65536, after->state[lane]);
     for (const uint8_t *word = before->word; word < after->word; word += 2)
         fprintf(out, " %04" PRIx32, load16(word));
     fprintf(out, " |\n");
 }
 
-static inline void annex_b_steps_head(FILE *out, const char *name, const uint8_t *bytes, size_t size)
+static inline void annex_b_steps_head(FILE *out, const char *name, const uint8_t *bytes,
+                                      size_t size)
 {
     fprintf(out, "\n`%s`, bytes `", name);
     annex_b_hex(out, bytes, size);
@@ -137,12 +147,13 @@ static inline void annex_b_steps_head(FILE *out, const char *name, const uint8_t
 }
 
 typedef struct {
-    spec_tiers     t;                   /* first: spec_tile_done takes the same pointer */
-    FILE          *out;
-    const uint8_t *payload;             /* of the TILE */
+    spec_tiers t; /* first: spec_tile_done takes the same pointer */
+    FILE *out;
+    const uint8_t *payload; /* of the TILE */
 } annex_b_tile;
 
-static inline const uint8_t *annex_b_masks(const annex_b_tile *b, const uint8_t *p, size_t size, const uint32_t prob[7])
+static inline const uint8_t *annex_b_masks(const annex_b_tile *b, const uint8_t *p, size_t size,
+                                           const uint32_t prob[7])
 {
     const struct scene *s = &b->t.model.s;
     struct coder c;
@@ -152,14 +163,17 @@ static inline const uint8_t *annex_b_masks(const annex_b_tile *b, const uint8_t 
     for (size_t a = 0; a < (size_t)s->h.n_anchors; a++)
         for (int k = -1, seen = 1, bits = 0; k < s->h.n_offsets; k++) {
             const uint32_t pr = k < 0 ? prob[0] : prob[1 + 3 * s->dynamic[a] + seen];
-            struct coder   before = c;
-            char           what[ANNEX_B_NOTE];
-            const int      bit = take_bit(&c, 0, pr);
+            struct coder before = c;
+            char what[ANNEX_B_NOTE];
+            const int bit = take_bit(&c, 0, pr);
 
             if (k < 0)
-                snprintf(what, sizeof what, "anchor %zu dynamic: %d, slots of 1 below %" PRIu32, a, bit, pr);
+                snprintf(what, sizeof what, "anchor %zu dynamic: %d, slots of 1 below %" PRIu32, a,
+                         bit, pr);
             else
-                snprintf(what, sizeof what, "anchor %zu offset %d: %d, context %d, slots of 1 below %" PRIu32, a, k, bit, 3 * s->dynamic[a] + seen, pr);
+                snprintf(what, sizeof what,
+                         "anchor %zu offset %d: %d, context %d, slots of 1 below %" PRIu32, a, k,
+                         bit, 3 * s->dynamic[a] + seen, pr);
             annex_b_step(b->out, &before, &c, 0, what);
             if (k >= 0) {
                 bits |= bit << k;
@@ -178,10 +192,11 @@ static inline int32_t annex_b_escape(int32_t mu, int g, int32_t k)
 }
 
 /* Components comp .. comp + n - 1 of a type, which one substream holds. */
-static inline const uint8_t *annex_b_attributes(const annex_b_tile *b, const char *name, int type, int comp, int n, const uint8_t *p, size_t size)
+static inline const uint8_t *annex_b_attributes(const annex_b_tile *b, const char *name, int type,
+                                                int comp, int n, const uint8_t *p, size_t size)
 {
     const struct scene *s = &b->t.model.s;
-    uint64_t     n_symbols = 0;
+    uint64_t n_symbols = 0;
     struct coder c;
 
     for (int k = comp; k < comp + n; k++)
@@ -192,18 +207,22 @@ static inline const uint8_t *annex_b_attributes(const annex_b_tile *b, const cha
     for (int k = comp; k < comp + n; k++)
         for (size_t a = 0; a < (size_t)s->h.n_anchors; a++) {
             const int32_t *mu = spec_mu(&b->t.model, type, k, a);
-            const int      g = sigma_index(mu[type_dim(&s->h, type)]);
-            struct coder   before = c;
-            char           what[2 * ANNEX_B_NOTE];
-            int32_t        x;
-            int            n_text;
+            const int g = sigma_index(mu[type_dim(&s->h, type)]);
+            struct coder before = c;
+            char what[2 * ANNEX_B_NOTE];
+            int32_t x;
+            int n_text;
 
             if (!has(s, type, k, a))
                 continue;
             x = decode_symbol(&c, 0, mu[0], g);
-            n_text = snprintf(what, sizeof what, "component %d, anchor %zu: mu %" PRId32 ", sigma index %d, k = %" PRId32, k, a, mu[0], g, x);
+            n_text = snprintf(what, sizeof what,
+                              "component %d, anchor %zu: mu %" PRId32
+                              ", sigma index %d, k = %" PRId32,
+                              k, a, mu[0], g, x);
             if (annex_b_escape(mu[0], g, x) >= 0)
-                snprintf(what + n_text, sizeof what - (size_t)n_text, ", escape with e = %" PRId32, annex_b_escape(mu[0], g, x));
+                snprintf(what + n_text, sizeof what - (size_t)n_text, ", escape with e = %" PRId32,
+                         annex_b_escape(mu[0], g, x));
             annex_b_step(b->out, &before, &c, 0, what);
         }
     return p + size;
@@ -211,12 +230,13 @@ static inline const uint8_t *annex_b_attributes(const annex_b_tile *b, const cha
 
 static inline void annex_b_tile_done(void *user, uint32_t number)
 {
-    static const char *const name[TYPES] = { "feature_substream", "scaling_substream", "offset_substream", "phi_substream", "tau_substream" };
-    annex_b_tile        *b = user;
+    static const char *const name[TYPES] = { "feature_substream", "scaling_substream",
+                                             "offset_substream", "phi_substream", "tau_substream" };
+    annex_b_tile *b = user;
     const struct header *h = &b->t.model.s.h;
-    uint32_t             prob[7] = { 0 };
-    const uint8_t       *at = b->payload + 4, *size, *p;
-    int                  comp = 0;
+    uint32_t prob[7] = { 0 };
+    const uint8_t *at = b->payload + 4, *size, *p;
+    int comp = 0;
 
     spec_tile_done(&b->t, number);
     for (int i = 0; i < 7; i++)
@@ -241,7 +261,7 @@ static inline void annex_b_tile_done(void *user, uint32_t number)
 
 static inline void annex_b_hashes(FILE *out, const char *name, const spec_bytes *b)
 {
-    uint8_t     xxh[16], sha[TED4_SHA256_SIZE];
+    uint8_t xxh[16], sha[TED4_SHA256_SIZE];
     ted4_sha256 h;
 
     canonical(xxh3_128(b->data, b->size), xxh);
@@ -257,11 +277,15 @@ static inline void annex_b_hashes(FILE *out, const char *name, const spec_bytes 
     fprintf(out, "` |\n");
 }
 
-static inline void annex_b_query(FILE *out, const spec_model *m, uint32_t num, uint32_t den, const float *camera)
+static inline void annex_b_query(FILE *out, const spec_model *m, uint32_t num, uint32_t den,
+                                 const float *camera)
 {
     float record[16][14];
 
-    fprintf(out, "\nTime %" PRIu32 "/%" PRIu32 ", camera centre (%g, %g, %g):\n\n| record | position | scale | rotation | opacity | colour |\n|---|---|---|---|---|---|\n",
+    fprintf(out,
+            "\nTime %" PRIu32 "/%" PRIu32
+            ", camera centre (%g, %g, %g):\n\n| record | position | scale | rotation | opacity | "
+            "colour |\n|---|---|---|---|---|---|\n",
             num, den, (double)camera[0], (double)camera[1], (double)camera[2]);
     for (size_t a = 0, i = 0; a < (size_t)m->s.h.n_anchors; a++) {
         const int n = anchor_records(&m->s, m->net_r, a, num, den, camera, record);
@@ -272,7 +296,9 @@ static inline void annex_b_query(FILE *out, const spec_model *m, uint32_t num, u
                 uint32_t pattern;
 
                 memcpy(&pattern, &record[k][c], 4);
-                fprintf(out, "%s`%08" PRIx32 "` %.6g", c == 0 || c == 3 || c == 6 || c == 10 || c == 11 ? " | " : "<br>", pattern, (double)record[k][c]);
+                fprintf(out, "%s`%08" PRIx32 "` %.6g",
+                        c == 0 || c == 3 || c == 6 || c == 10 || c == 11 ? " | " : "<br>", pattern,
+                        (double)record[k][c]);
             }
             fprintf(out, " |\n");
         }
@@ -290,7 +316,8 @@ static inline void annex_b_values(FILE *out, const struct scene *s)
 
             if (type_dim(&s->h, type) == 0 || (type == PHI_TYPE && !s->dynamic[a]))
                 continue;
-            fprintf(out, "| %zu | %s | %d | %g |", a, name[type], i, (double)(from_bits(s->h.step[type]) * from_bits(STEP[i])));
+            fprintf(out, "| %zu | %s | %d | %g |", a, name[type], i,
+                    (double)(from_bits(s->h.step[type]) * from_bits(STEP[i])));
             for (int c = 0; c < type_dim(&s->h, type); c++) {
                 if (has(s, type, c, a))
                     fprintf(out, " %g", (double)value_of(s, type, c, a));
@@ -302,11 +329,12 @@ static inline void annex_b_values(FILE *out, const struct scene *s)
 }
 
 /* One file; closes with its tiers. */
-static inline void annex_b_file(FILE *out, int section, const uint8_t *data, size_t size, int n_times)
+static inline void annex_b_file(FILE *out, int section, const uint8_t *data, size_t size,
+                                int n_times)
 {
     static const float camera[3] = { 0.0f, 0.0f, -2.0f };
     annex_b_tile b = { .out = out };
-    size_t       at = 12;
+    size_t at = 12;
 
     fprintf(out, "\n### B.%d.1 Bytes\n\n", section);
     annex_b_bytes(out, data, size);
@@ -315,7 +343,11 @@ static inline void annex_b_file(FILE *out, int section, const uint8_t *data, siz
     b.payload = data + at + 12;
     b.t.model.tile_done = annex_b_tile_done;
     b.t.model.user = &b;
-    fprintf(out, "\n### B.%d.2 Substreams\n\nEach has one lane. States are hexadecimal; a state below 10000 takes the next word. The last state is 00010000 in each. The row of an escape covers all its bits.\n", section);
+    fprintf(out,
+            "\n### B.%d.2 Substreams\n\nEach has one lane. States are hexadecimal; a state below "
+            "10000 takes the next word. The last state is 00010000 in each. The row of an escape "
+            "covers all its bits.\n",
+            section);
     spec_model_decode(&b.t.model, data, size);
     if (b.t.model.v.id != NULL)
         abort();
@@ -325,13 +357,15 @@ static inline void annex_b_file(FILE *out, int section, const uint8_t *data, siz
     annex_b_values(out, &b.t.model.s);
     fprintf(out, "\n### B.%d.4 Records\n", section);
     for (int i = 0; i < n_times; i++)
-        annex_b_query(out, &b.t.model, (uint32_t)i, n_times > 1 ? (uint32_t)n_times - 1 : 1, camera);
-    fprintf(out, "\n### B.%d.5 Tiers\n\n| tier | bytes | XXH3-128 | SHA-256 |\n|---|---|---|---|\n", section);
+        annex_b_query(out, &b.t.model, (uint32_t)i, n_times > 1 ? (uint32_t)n_times - 1 : 1,
+                      camera);
+    fprintf(out, "\n### B.%d.5 Tiers\n\n| tier | bytes | XXH3-128 | SHA-256 |\n|---|---|---|---|\n",
+            section);
     for (int i = 0; i < N_TIERS; i++)
-        annex_b_hashes(out, (const char *[]){ "T0", "T1", "T2", "T3", "T4" }[i], &b.t.tier[i]);
+        annex_b_hashes(out, (const char *[]) { "T0", "T1", "T2", "T3", "T4" }[i], &b.t.tier[i]);
     for (int i = 0; i < n_times; i++) {
         spec_bytes t5 = { NULL, 0, 0 };
-        char       name[ANNEX_B_NOTE];
+        char name[ANNEX_B_NOTE];
 
         spec_t5(&t5, &b.t.model, (uint32_t)i, n_times > 1 ? (uint32_t)n_times - 1 : 1, camera);
         snprintf(name, sizeof name, "T5 at %d/%d", i, n_times > 1 ? n_times - 1 : 1);
@@ -343,19 +377,36 @@ static inline void annex_b_file(FILE *out, int section, const uint8_t *data, siz
 
 static inline void annex_b(FILE *out)
 {
-    size_t   size;
+    size_t size;
     uint8_t *data = annex_b_encode(annex_b_smallest(), &size);
 
-    fprintf(out, "# Annex B (informative): worked examples\n\nMade by `make spec-annexes`: the bytes by the reference encoder, everything else by the code that this specification prints. A test proves that this text is "
-                 "what they give.\n\n## B.1 The smallest file\n\nOne anchor, one Gaussian, a feature of one component, no motion, no masks, all weights and biases 0. %zu bytes; no valid file has fewer: HEAD cannot "
-                 "be shorter than with one slice; 92 and 88 bytes of values cannot be coded in fewer than 11 each (a zlib stream has 6 bytes around its blocks, and a literal, a match and an end take 34 bits); three "
-                 "substreams need a state each.\n\nWith all outputs of the hyperprior 0, every mu is 0, every sigma index 64 (sigma is one step), every step index 128 (q = Q0). The Gaussian has opacity 0, as the heads are 0 too: smallest is not prettiest.\n", size);
+    fprintf(out,
+            "# Annex B (informative): worked examples\n\nMade by `make spec-annexes`: the bytes by "
+            "the reference encoder, everything else by the code that this specification prints. A "
+            "test proves that this text is "
+            "what they give.\n\n## B.1 The smallest file\n\nOne anchor, one Gaussian, a feature of "
+            "one component, no motion, no masks, all weights and biases 0. %zu bytes; no valid "
+            "file has fewer: HEAD cannot "
+            "be shorter than with one slice; 92 and 88 bytes of values cannot be coded in fewer "
+            "than 11 each (a zlib stream has 6 bytes around its blocks, and a literal, a match and "
+            "an end take 34 bits); three "
+            "substreams need a state each.\n\nWith all outputs of the hyperprior 0, every mu is 0, "
+            "every sigma index 64 (sigma is one step), every step index 128 (q = Q0). The Gaussian "
+            "has opacity 0, as the heads are 0 too: smallest is not prettiest.\n",
+            size);
     annex_b_file(out, 1, data, size, 1);
     free(data);
     data = annex_b_encode(annex_b_dynamic(), &size);
-    fprintf(out, "\n## B.2 A dynamic anchor\n\nTwo anchors with two offsets each. Anchor 0 stands still and keeps one offset; anchor 1 moves, keeps both, and comes and goes (tau in B.2.3: a_s, log2 b_s, a_f, log2 b_f). The second slice of the feature "
-                 "is predicted from the first; feature 1 of anchor 0 is far from its mean and needs an escape. %zu bytes, most of them weights that are 0.\n\nAt t = 1/2 the bank gives z = -1 + 1/2 (1 - (-1)) = 0 (11.2), so F_deform sees "
-                 "w z = 0 and nothing moves; at t = 1 it gives z = 1, w = F_project(phi) = 0.5 + 0.5 = 1 and F_deform adds 0.25 to x in normalised space, 0.5 in the world, as 2^e = 2.\n", size);
+    fprintf(out,
+            "\n## B.2 A dynamic anchor\n\nTwo anchors with two offsets each. Anchor 0 stands still "
+            "and keeps one offset; anchor 1 moves, keeps both, and comes and goes (tau in B.2.3: "
+            "a_s, log2 b_s, a_f, log2 b_f). The second slice of the feature "
+            "is predicted from the first; feature 1 of anchor 0 is far from its mean and needs an "
+            "escape. %zu bytes, most of them weights that are 0.\n\nAt t = 1/2 the bank gives z = "
+            "-1 + 1/2 (1 - (-1)) = 0 (11.2), so F_deform sees "
+            "w z = 0 and nothing moves; at t = 1 it gives z = 1, w = F_project(phi) = 0.5 + 0.5 = "
+            "1 and F_deform adds 0.25 to x in normalised space, 0.5 in the world, as 2^e = 2.\n",
+            size);
     annex_b_file(out, 2, data, size, 5);
     free(data);
 }

@@ -11,7 +11,7 @@
 
 /* Bits of a DEFLATE stream, from the lowest of each byte. */
 typedef struct {
-    uint8_t  byte[16];
+    uint8_t byte[16];
     unsigned n_bits;
 } annex_b_bits;
 
@@ -34,20 +34,21 @@ static inline void annex_b_code(annex_b_bits *b, unsigned code, unsigned n)
         annex_b_bit(b, code >> n & 1);
 }
 
-/* A zlib stream of n zero bytes, 84 <= n <= 99, by the fixed code: the literal 0, then a match of n - 1 at distance 1. 11 bytes. */
+/* A zlib stream of n zero bytes, 84 <= n <= 99, by the fixed code: the literal 0, then a match of n
+ * - 1 at distance 1. 11 bytes. */
 static inline size_t annex_b_zeros(uint8_t out[16], unsigned n)
 {
     annex_b_bits b = { { 0x78, 0x01 }, 16 };
 
-    annex_b_number(&b, 1, 1);                   /* last block */
-    annex_b_number(&b, 1, 2);                   /* fixed code */
-    annex_b_code(&b, 0x30, 8);                  /* literal 0 */
-    annex_b_code(&b, 278 - 256, 7);             /* lengths 83 .. 98 */
+    annex_b_number(&b, 1, 1);       /* last block */
+    annex_b_number(&b, 1, 2);       /* fixed code */
+    annex_b_code(&b, 0x30, 8);      /* literal 0 */
+    annex_b_code(&b, 278 - 256, 7); /* lengths 83 .. 98 */
     annex_b_number(&b, n - 1 - 83, 4);
-    annex_b_code(&b, 0, 5);                     /* distance 1 */
-    annex_b_code(&b, 0, 7);                     /* end */
+    annex_b_code(&b, 0, 5); /* distance 1 */
+    annex_b_code(&b, 0, 7); /* end */
     b.n_bits = (b.n_bits + 7) / 8 * 8;
-    for (unsigned i = 0; i < 4; i++)            /* Adler-32, highest byte first: b = n, a = 1 */
+    for (unsigned i = 0; i < 4; i++) /* Adler-32, highest byte first: b = n, a = 1 */
         annex_b_number(&b, i == 1 ? n : i == 3 ? 1 : 0, 8);
     memcpy(out, b.byte, sizeof b.byte);
     return b.n_bits / 8;
@@ -66,10 +67,10 @@ static inline void annex_b_common(ted4_header *h)
 /* B.1: one anchor, one Gaussian, all networks 0. */
 static inline ted4_scene *annex_b_smallest(void)
 {
-    static uint8_t     nete[16], netr[16];
+    static uint8_t nete[16], netr[16];
     static const int16_t scaling[6] = { -1, 0, 0, 1, 0, 0 }, offset[3] = { 1, 0, -1 };
-    ted4_header        h;
-    ted4_scene        *s;
+    ted4_header h;
+    ted4_scene *s;
 
     annex_b_common(&h);
     h.n_anchors = 1;
@@ -100,19 +101,19 @@ static inline void annex_b_networks(ted4_scene *s)
     float *e = s->nete.values, *v = s->netr.values;
     float *const last = v + r[TED4_NET_DEFORM].first + 2;
 
-    e[0] = 0.5f;                                /* mu of feature 0 from x */
-    e[3 * 2] = 0.25f;                           /* s of feature 0 from x */
-    e[3 * 4 + 1] = -1.5f;                       /* mu of scaling 0 from y */
+    e[0] = 0.5f;                                    /* mu of feature 0 from x */
+    e[3 * 2] = 0.25f;                               /* s of feature 0 from x */
+    e[3 * 4 + 1] = -1.5f;                           /* mu of scaling 0 from y */
     *annex_b_bias(e, &s->shape.hyper, 4) = -12.0f;  /* mu of scaling 0 */
     *annex_b_bias(e, &s->shape.hyper, 10) = -0.75f; /* s of scaling 0 */
-    e[3 * 42] = 0.5f;                           /* v of tau from x */
-    e[s->shape.slice[1].first] = 1.0f;          /* slice network: hidden unit */
-    e[s->shape.slice[1].first + 2] = 0.75f;     /* what it adds to mu */
+    e[3 * 42] = 0.5f;                               /* v of tau from x */
+    e[s->shape.slice[1].first] = 1.0f;              /* slice network: hidden unit */
+    e[s->shape.slice[1].first + 2] = 0.75f;         /* what it adds to mu */
     v[r[TED4_NET_PROJECT].first] = 1.0f;
     v[r[TED4_NET_PROJECT].first + 1] = 0.5f;
     v[r[TED4_NET_DEFORM].first] = 1.0f;
-    last[0] = 0.25f;                            /* x moves */
-    last[3] = -0.5f;                            /* feature 0 changes */
+    last[0] = 0.25f; /* x moves */
+    last[3] = -0.5f; /* feature 0 changes */
     v[r[TED4_NET_OPACITY].first] = 0.25f;
     *annex_b_bias(v, &r[TED4_NET_OPACITY], 0) = 1.0f;
     *annex_b_bias(v, &r[TED4_NET_OPACITY], 1) = 2.0f;
@@ -128,7 +129,7 @@ static inline void annex_b_networks(ted4_scene *s)
 /* B.2: two anchors, one of which moves and comes and goes. */
 static inline ted4_scene *annex_b_dynamic(void)
 {
-    static const float   position[2][3] = { { -0.25f, 0.5f, 0.0f }, { 0.5f, 0.25f, 1.0f } };
+    static const float position[2][3] = { { -0.25f, 0.5f, 0.0f }, { 0.5f, 0.25f, 1.0f } };
     static const int16_t feature[2][2] = { { 1, -60 }, { 2, 3 } };
     static const int16_t tau[4] = { 3, -2, 6, -1 };
     ted4_header h;
@@ -181,10 +182,11 @@ static inline ted4_scene *annex_b_dynamic(void)
 /* The file; *size bytes, to be freed. Ends the program when the scene is refused. */
 static inline uint8_t *annex_b_encode(ted4_scene *s, size_t *size)
 {
-    uint8_t    *data = NULL;
-    ted4_error  e = { TED4_OK, 0 };
+    uint8_t *data = NULL;
+    ted4_error e = { TED4_OK, 0 };
 
-    if (s == NULL || ted4_scene_steps(s, NULL, &e) != TED4_OK || ted4_encode(s, 0, NULL, &data, size, &e) != TED4_OK) {
+    if (s == NULL || ted4_scene_steps(s, NULL, &e) != TED4_OK ||
+        ted4_encode(s, 0, NULL, &data, size, &e) != TED4_OK) {
         fprintf(stderr, "annex B: %s\n", ted4_status_id(e.code));
         abort();
     }

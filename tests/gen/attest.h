@@ -1,5 +1,5 @@
-/* attest.h - the byte strings of annex J.9: defined functions over all their inputs, hashed. The short ones are checked by test_spec_annexes.c, all of them by
- * `make attest`.
+/* attest.h - the byte strings of annex J.9: defined functions over all their inputs, hashed. The
+ * short ones are checked by test_spec_annexes.c, all of them by `make attest`.
  * SPDX-License-Identifier: BSD-2-Clause */
 #ifndef TED4_ATTEST_H
 #define TED4_ATTEST_H
@@ -18,9 +18,9 @@ enum { ATTEST_BATCH = 4096 };
 
 typedef struct {
     XXH3_state_t state;
-    uint64_t     n;                     /* values so far */
-    uint32_t     n_batch;
-    uint8_t      bytes[4 * ATTEST_BATCH];
+    uint64_t n; /* values so far */
+    uint32_t n_batch;
+    uint8_t bytes[4 * ATTEST_BATCH];
 } attest_string;
 
 static inline void attest_begin(attest_string *a)

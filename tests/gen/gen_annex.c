@@ -1,5 +1,6 @@
-/* gen_annex.c - prints an annex of the specification that is made by a program: gen_annex a|b|c|h|b1|b2. b1 and b2: the files of annex B.
- * Run by `make spec-annexes`; tests/test_spec_annexes.c compares.
+/* gen_annex.c - prints an annex of the specification that is made by a program: gen_annex
+ * a|b|c|h|b1|b2. b1 and b2: the files of annex B. Run by `make spec-annexes`;
+ * tests/test_spec_annexes.c compares.
  * SPDX-License-Identifier: BSD-2-Clause */
 #include "gen/annex_b.h"
 #include "gen/annex_a.h"
@@ -8,7 +9,7 @@
 
 static int print_file(ted4_scene *s)
 {
-    size_t   size;
+    size_t size;
     uint8_t *data = annex_b_encode(s, &size);
     const int ok = fwrite(data, 1, size, stdout) == size;
 
@@ -20,7 +21,7 @@ int main(int argc, char **argv)
 {
     static const struct {
         const char *name;
-        void      (*print)(FILE *out);
+        void (*print)(FILE *out);
     } annex[] = { { "a", annex_a }, { "b", annex_b }, { "c", annex_c }, { "h", annex_h } };
     const char *which = argc == 2 ? argv[1] : "";
 

@@ -1,12 +1,12 @@
 /* gen_tables.c - prints ref-decoder/norm/tables.c. The text of annex A: annex_a.h.
- *     cc tests/gen/gen_tables.c -lm -o /tmp/gen_tables;  /tmp/gen_tables > ref-decoder/norm/tables.c
+ *     cc tests/gen/gen_tables.c -lm -o /tmp/gen_tables;  /tmp/gen_tables >
+ *         ref-decoder/norm/tables.c
  * SPDX-License-Identifier: BSD-2-Clause */
 #include <inttypes.h>
 #include <stdio.h>
 #include "table_math.h"
 
-static void print_entries(const struct table *t, const char *indent,
-                          int hex, const char *last)
+static void print_entries(const struct table *t, const char *indent, int hex, const char *last)
 {
     for (int i = 0; i < t->n; i++) {
         printf(i % 8 == 0 ? "%s" : " ", indent);
@@ -29,8 +29,7 @@ static void print_c(void)
         printf("\n/* ");
         if (i < N_ANNEX)
             printf("spec A.%d ", i + 1);
-        printf("%s: %s */\nconst %s %s[%s] = {\n", t->name, t->text, t->type,
-               t->c_name, t->size);
+        printf("%s: %s */\nconst %s %s[%s] = {\n", t->name, t->text, t->type, t->c_name, t->size);
         print_entries(t, "    ", t->entry == table_step, ",");
         printf("};\n");
     }

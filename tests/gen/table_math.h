@@ -1,4 +1,5 @@
-/* table_math.h - annex A from its formulas, in long double: shared by gen_tables.c (prints) and test_tables.c (compares).
+/* table_math.h - annex A from its formulas, in long double: shared by gen_tables.c (prints) and
+ * test_tables.c (compares).
  * SPDX-License-Identifier: BSD-2-Clause */
 #ifndef TED4_TABLE_MATH_H
 #define TED4_TABLE_MATH_H
@@ -39,7 +40,7 @@ static int64_t table_sin(int i)
 static int64_t table_step(int i)
 {
     const float v = (float)exp2l((i - 128) / 32.0L);
-    uint32_t    u;
+    uint32_t u;
 
     memcpy(&u, &v, sizeof u);
     return u;
@@ -71,25 +72,20 @@ enum { N_TABLES = 7, N_ANNEX = 6 };
 
 static const struct table {
     const char *name, *type, *c_name, *size, *text;
-    int         n;
-    int64_t   (*entry)(int i);
+    int n;
+    int64_t (*entry)(int i);
 } table_list[N_TABLES] = {
-    { "HALF", "uint16_t", "ted4_half", "TED4_N_SIGMA",
-      "clamp(ceil(6 sigma), 2, 4095)", 240, table_half },
-    { "INV", "int32_t", "ted4_inv", "TED4_N_SIGMA",
-      "rne(2^17 / sigma)", 240, table_inv },
+    { "HALF", "uint16_t", "ted4_half", "TED4_N_SIGMA", "clamp(ceil(6 sigma), 2, 4095)", 240,
+      table_half },
+    { "INV", "int32_t", "ted4_inv", "TED4_N_SIGMA", "rne(2^17 / sigma)", 240, table_inv },
     { "PHI", "int32_t", "ted4_phi", "TED4_N_PHI",
-      "rne(2^24 Phi((i - 512) / 64)), the first 0, the last 2^24", 1025,
-      table_phi },
-    { "SIN", "int16_t", "ted4_sin", "TED4_N_SIN",
-      "rne(4096 sin(2 pi i / 1024))", 1025, table_sin },
-    { "STEP", "uint32_t", "ted4_step", "TED4_N_STEP",
-      "2^((i - 128) / 32), binary32 patterns", 256, table_step },
-    { "STEPI", "int32_t", "ted4_stepi", "TED4_N_STEP",
-      "rne(4096 STEP[i])", 256, table_stepi },
+      "rne(2^24 Phi((i - 512) / 64)), the first 0, the last 2^24", 1025, table_phi },
+    { "SIN", "int16_t", "ted4_sin", "TED4_N_SIN", "rne(4096 sin(2 pi i / 1024))", 1025, table_sin },
+    { "STEP", "uint32_t", "ted4_step", "TED4_N_STEP", "2^((i - 128) / 32), binary32 patterns", 256,
+      table_step },
+    { "STEPI", "int32_t", "ted4_stepi", "TED4_N_STEP", "rne(4096 STEP[i])", 256, table_stepi },
     { "WHERE", "int32_t", "ted4_where", "TED4_N_WHERE",
-      "rne(2^14 Phi^-1((i + 1/2) / 256)), no part of the specification", 256,
-      table_where },
+      "rne(2^14 Phi^-1((i + 1/2) / 256)), no part of the specification", 256, table_where },
 };
 
 #endif

@@ -5,11 +5,12 @@
 
 /* Pinhole, square pixels. OpenGL axes: right, up, backwards. */
 typedef struct {
-    int    width, height;
-    double focal;               /* in pixels, as all lengths of pictures */
-    double cx, cy;              /* principal point; as placed, the middle of the picture */
-    double matrix[4][4];        /* camera to world */
-    float  colour[9];           /* row-major: linear light to what the camera takes it for; a unit matrix as placed */
+    int width, height;
+    double focal;        /* in pixels, as all lengths of pictures */
+    double cx, cy;       /* principal point; as placed, the middle of the picture */
+    double matrix[4][4]; /* camera to world */
+    float colour[9]; /* row-major: linear light to what the camera takes it for; a unit matrix as
+                        placed */
 } ted4_ray_camera;
 
 /* Horizontal field of view in radians; distance from the middle of the scene in units. */

@@ -1,5 +1,5 @@
-/* ray_lab.c - one function a scene. Events of whole sequences are at fixed shares of them, chosen so
- * that in the default length no held-out time (ray_scene.h) is next to a change of what exists:
+/* ray_lab.c - one function a scene. Events of whole sequences are at fixed shares of them, chosen
+ * so that in the default length no held-out time (ray_scene.h) is next to a change of what exists:
  * there nobody could know on which side of it the time lies. Speeds are per frame.
  * SPDX-License-Identifier: BSD-2-Clause */
 #include "ray_lab.h"
@@ -8,8 +8,14 @@
 
 #include "ray_texture.h"
 
-static vec3 cream(void) { return ray_paint(.95f, .91f, .82f); }
-static vec3 ink(void) { return ray_paint(.15f, .16f, .22f); }
+static vec3 cream(void)
+{
+    return ray_paint(.95f, .91f, .82f);
+}
+static vec3 ink(void)
+{
+    return ray_paint(.15f, .16f, .22f);
+}
 
 static void add_ball(ted4_ray_world *w, float r, vec3 pos, ted4_ray_texture_kind texture)
 {
@@ -96,8 +102,8 @@ static int there_and_back(int frame, int n)
     return k <= n ? k : 2 * n - k;
 }
 
-/* By the standing carousel a ball flies to and fro by two of its widths a frame, and a box goes up and
- * down by one and eight tenths; neither turns at a time that is held out by default. */
+/* By the standing carousel a ball flies to and fro by two of its widths a frame, and a box goes up
+ * and down by one and eight tenths; neither turns at a time that is held out by default. */
 static void fast(ted4_ray_world *w, int frame)
 {
     const int ball = there_and_back(frame, 5), box = there_and_back(frame + 1, 3);
@@ -110,8 +116,8 @@ static void fast(ted4_ray_world *w, int frame)
 /* One half, side -1 or 1, of a marble block that lies at distance gap from the middle. */
 static void add_half(ted4_ray_world *w, float side, float gap)
 {
-    ted4_ray_object o = ted4_ray_solid(RAY_BOX, v3(.27f, .27f, .4f),
-                                       v3(side * (.27f + gap), .1f, .4f), 0);
+    ted4_ray_object o =
+        ted4_ray_solid(RAY_BOX, v3(.27f, .27f, .4f), v3(side * (.27f + gap), .1f, .4f), 0);
 
     ted4_ray_dress(&o, RAY_MARBLE, ray_paint(.86f, .34f, .24f), ray_paint(.97f, .90f, .66f), ink());
     o.skin = v3(side * .27f, 0, 0);
@@ -141,8 +147,8 @@ static void flicker(ted4_ray_world *w, int frame, int n_frames)
     w->lamp_power *= ted4_ray_flicker(frame, w->seed);
 }
 
-/* The carousel turns once in 120 frames, a ball goes round above it once in 150; a box is there from
- * 44 to 68 hundredths of the sequence. */
+/* The carousel turns once in 120 frames, a ball goes round above it once in 150; a box is there
+ * from 44 to 68 hundredths of the sequence. */
 static void longer(ted4_ray_world *w, int frame, int n_frames)
 {
     const int part = 100 * frame / n_frames;
@@ -160,8 +166,8 @@ static void add_rod(ted4_ray_world *w, vec3 a, vec3 b, float r, vec3 colour)
 {
     const vec3 z = v3_unit(v3_sub(b, a)), aside = fabsf(z.z) < 0.7f ? v3(0, 0, 1) : v3(1, 0, 0);
     const vec3 x = v3_unit(v3_along(aside, z, -v3_dot(aside, z)));
-    ted4_ray_object o = ted4_ray_solid(RAY_CYLINDER, v3(r, r, .5f * v3_length(v3_sub(b, a))),
-                                       v3_mix(a, b, .5f), 0);
+    ted4_ray_object o =
+        ted4_ray_solid(RAY_CYLINDER, v3(r, r, .5f * v3_length(v3_sub(b, a))), v3_mix(a, b, .5f), 0);
     const float rot[9] = { x.x, z.y * x.z - z.z * x.y, z.x, x.y, z.z * x.x - z.x * x.z, z.y,
                            x.z, z.x * x.y - z.y * x.x, z.z };
 
@@ -229,7 +235,8 @@ static void stage(ted4_ray_world *w, double t)
     ted4_ray_object o = ted4_ray_solid(RAY_CYLINDER, v3(2.65f, 2.65f, .1f), v3(0, .1f, -.1f), 0);
 
     w->room = RAY_DARK;
-    ted4_ray_dress(&o, RAY_CHECKER, ray_paint(.70f, .62f, .52f), ray_paint(.42f, .32f, .27f), ink());
+    ted4_ray_dress(&o, RAY_CHECKER, ray_paint(.70f, .62f, .52f), ray_paint(.42f, .32f, .27f),
+                   ink());
     ted4_ray_add(w, &o);
     turn(w, t);
 }
@@ -238,17 +245,12 @@ static void stage(ted4_ray_world *w, double t)
 static int n_things(ted4_ray_scene s)
 {
     switch (s) {
-    case RAY_THINGS1:
-        return 1;
-    case RAY_THINGS2:
-        return 2;
+    case RAY_THINGS1: return 1;
+    case RAY_THINGS2: return 2;
     case RAY_THINGS4:
-    case RAY_REST:
-        return 4;
-    case RAY_THINGS8:
-        return 8;
-    default:
-        return 0;
+    case RAY_REST: return 4;
+    case RAY_THINGS8: return 8;
+    default: return 0;
     }
 }
 
@@ -266,41 +268,20 @@ void ted4_ray_lab_at(ted4_ray_world *w, ted4_ray_scene s, int frame, int n_frame
         return;
     }
     switch (s) {
-    case RAY_HIDE:
-        hide(w, t);
-        break;
-    case RAY_BLINK:
-        blink(w, frame, n_frames);
-        break;
-    case RAY_EDGE:
-        edge(w, frame, n_frames);
-        break;
-    case RAY_FAST:
-        fast(w, frame);
-        break;
-    case RAY_SPLIT:
-        split(w, t);
-        break;
-    case RAY_FLICKER:
-        flicker(w, frame, n_frames);
-        break;
-    case RAY_LONG:
-        longer(w, frame, n_frames);
-        break;
-    case RAY_WIRES:
-        wires(w, t);
-        break;
-    case RAY_CHANGE:
-        change(w, frame, n_frames);
-        break;
-    case RAY_EMPTY:
-        stage(w, t);
-        break;
+    case RAY_HIDE: hide(w, t); break;
+    case RAY_BLINK: blink(w, frame, n_frames); break;
+    case RAY_EDGE: edge(w, frame, n_frames); break;
+    case RAY_FAST: fast(w, frame); break;
+    case RAY_SPLIT: split(w, t); break;
+    case RAY_FLICKER: flicker(w, frame, n_frames); break;
+    case RAY_LONG: longer(w, frame, n_frames); break;
+    case RAY_WIRES: wires(w, t); break;
+    case RAY_CHANGE: change(w, frame, n_frames); break;
+    case RAY_EMPTY: stage(w, t); break;
     case RAY_BARE:
         w->room = RAY_PLAIN;
         turn(w, t);
         break;
-    default:
-        turn(w, t);
+    default: turn(w, t);
     }
 }

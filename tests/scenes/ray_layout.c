@@ -12,8 +12,9 @@
 
 const char *ted4_ray_layout_name(ted4_ray_layout l)
 {
-    static const char *const names[RAY_LAYOUTS] = { "blender", "nerfstudio", "colmap", "colmap-text",
-                                                    "hypernerf", "neu3d", "calibration", "llff" };
+    static const char *const names[RAY_LAYOUTS] = { "blender",     "nerfstudio", "colmap",
+                                                    "colmap-text", "hypernerf",  "neu3d",
+                                                    "calibration", "llff" };
 
     return names[l];
 }
@@ -42,7 +43,8 @@ void ted4_ray_camera_name(const ted4_ray_options *o, int number, char name[TED4_
 }
 
 /* "train", separator, "r_003_07": wide enough that names sort as numbers. */
-static void flat_name(const ted4_ray_options *o, int number, int frame, const char *separator, char name[40])
+static void flat_name(const ted4_ray_options *o, int number, int frame, const char *separator,
+                      char name[40])
 {
     const int test = is_test(o, number);
     const char *const held = o->ways.split == RAY_VAL_FILE ? "val" : "test";
@@ -51,7 +53,8 @@ static void flat_name(const ted4_ray_options *o, int number, int frame, const ch
              test ? held : "train", separator, test ? number - o->n_train : number, frame);
 }
 
-void ted4_ray_picture_name(const ted4_ray_options *o, int number, int frame, char name[TED4_RAY_NAME])
+void ted4_ray_picture_name(const ted4_ray_options *o, int number, int frame,
+                           char name[TED4_RAY_NAME])
 {
     const char *const end = ted4_ray_ending(o);
     char camera[TED4_RAY_NAME], flat[40];
@@ -60,24 +63,15 @@ void ted4_ray_picture_name(const ted4_ray_options *o, int number, int frame, cha
     ted4_ray_camera_name(o, number, camera);
     flat_name(o, number, frame, o->layout == RAY_BLENDER ? "/" : "_", flat);
     switch (o->layout) {
-    case RAY_BLENDER:
-        snprintf(name, TED4_RAY_NAME, "%s%s", flat, end);
-        break;
-    case RAY_NERFSTUDIO:
-        snprintf(name, TED4_RAY_NAME, "images/%s%s", flat, end);
-        break;
-    case RAY_HYPERNERF:
-        snprintf(name, TED4_RAY_NAME, "rgb/1x/%s%s", flat, end);
-        break;
+    case RAY_BLENDER: snprintf(name, TED4_RAY_NAME, "%s%s", flat, end); break;
+    case RAY_NERFSTUDIO: snprintf(name, TED4_RAY_NAME, "images/%s%s", flat, end); break;
+    case RAY_HYPERNERF: snprintf(name, TED4_RAY_NAME, "rgb/1x/%s%s", flat, end); break;
     case RAY_COLMAP:
     case RAY_COLMAP_TEXT:
         snprintf(name, TED4_RAY_NAME, "images/%.20s/%04d%s", camera, frame, end);
         break;
-    case RAY_LLFF:
-        snprintf(name, TED4_RAY_NAME, "images/%.20s%s", camera, end);
-        break;
-    default:
-        snprintf(name, TED4_RAY_NAME, "%.20s/images/%04d%s", camera, frame, end);
+    case RAY_LLFF: snprintf(name, TED4_RAY_NAME, "images/%.20s%s", camera, end); break;
+    default: snprintf(name, TED4_RAY_NAME, "%.20s/images/%04d%s", camera, frame, end);
     }
 }
 
@@ -263,7 +257,6 @@ static int lens_of(const ted4_ray_options *o, int number)
     return states_each(o) ? number + 1 : 1;
 }
 
-
 static void colmap_image(const ted4_ray_options *o, int i, double pose[7], char name[TED4_RAY_NAME])
 {
     const int number = i / o->n_frames;
@@ -305,7 +298,7 @@ static void put_images_bin(FILE *f, const ted4_ray_options *o, int number, int f
         for (int k = 0; k < 7; k++)
             put_double(f, pose[k]);
         put_bytes(f, (uint64_t)lens_of(o, i / o->n_frames), 4);
-        fwrite(strchr(name, '/') + 1, 1, strlen(strchr(name, '/')), f);    /* with its zero */
+        fwrite(strchr(name, '/') + 1, 1, strlen(strchr(name, '/')), f); /* with its zero */
         put_bytes(f, 0, 8);
     }
 }
@@ -318,7 +311,8 @@ static void put_points_bin(FILE *f, const ted4_ray_options *o, int number, int f
         const ted4_ray_point p = ted4_ray_point_at(o, i);
 
         put_bytes(f, (uint64_t)i + 1, 8);
-        put_double(f, (double)p.point.x), put_double(f, (double)p.point.y), put_double(f, (double)p.point.z);
+        put_double(f, (double)p.point.x), put_double(f, (double)p.point.y),
+            put_double(f, (double)p.point.z);
         fwrite(p.rgb, 1, 3, f);
         put_double(f, 0);
         put_bytes(f, 0, 8);
@@ -414,11 +408,12 @@ static void put_scene(FILE *f, const ted4_ray_options *o, int number, int frame)
     const double scale = ted4_ray_scale(o);
 
     (void)number, (void)frame;
-    fprintf(f, "{\"scale\": 1.0, \"center\": [0.0, 0.0, 0.0], \"near\": %.1f, \"far\": %.1f}\n", NEAR * scale,
-            FAR * scale);
+    fprintf(f, "{\"scale\": 1.0, \"center\": [0.0, 0.0, 0.0], \"near\": %.1f, \"far\": %.1f}\n",
+            NEAR * scale, FAR * scale);
 }
 
-void ted4_ray_hypernerf_camera_name(const ted4_ray_options *o, int number, int frame, char name[TED4_RAY_NAME])
+void ted4_ray_hypernerf_camera_name(const ted4_ray_options *o, int number, int frame,
+                                    char name[TED4_RAY_NAME])
 {
     char id[40];
 
@@ -437,22 +432,26 @@ void ted4_ray_put_hypernerf_camera(FILE *f, const ted4_ray_options *o, int numbe
     fputs("{\"orientation\": [", f);
     for (int i = 0; i < 3; i++)
         fprintf(f, "%s[%.17g, %.17g, %.17g]", i > 0 ? ", " : "", R[i][0], R[i][1], R[i][2]);
-    fprintf(f, "],\n\"position\": [%.17g, %.17g, %.17g],\n\"focal_length\": %.17g, \"principal_point\": [%.17g, %.17g],\n"
+    fprintf(f,
+            "],\n\"position\": [%.17g, %.17g, %.17g],\n\"focal_length\": %.17g, "
+            "\"principal_point\": [%.17g, %.17g],\n"
             "\"skew\": 0.0, \"pixel_aspect_ratio\": 1.0, \"radial_distortion\": [0.0, 0.0, 0.0],\n"
-            "\"tangential_distortion\": [0.0, 0.0], \"image_size\": [%d, %d]}\n", c.matrix[0][3], c.matrix[1][3],
-            c.matrix[2][3], c.focal, c.cx, c.cy, c.width, c.height);
+            "\"tangential_distortion\": [0.0, 0.0], \"image_size\": [%d, %d]}\n",
+            c.matrix[0][3], c.matrix[1][3], c.matrix[2][3], c.focal, c.cx, c.cy, c.width, c.height);
 }
 
 /* ---- one clip a camera ---- */
 
 static void put_poses(FILE *f, const ted4_ray_options *o, int number, int frame)
 {
-    enum { HEADER = 128 };              /* with the 10 bytes before it */
+    enum { HEADER = 128 }; /* with the 10 bytes before it */
     const double scale = ted4_ray_scale(o);
     char text[HEADER];
 
     (void)number, (void)frame;
-    const int n = snprintf(text, sizeof text, "{'descr': '<f8', 'fortran_order': False, 'shape': (%d, 17), }", n_cameras(o));
+    const int n = snprintf(text, sizeof text,
+                           "{'descr': '<f8', 'fortran_order': False, 'shape': (%d, 17), }",
+                           n_cameras(o));
     fwrite("\x93NUMPY\x01", 1, 7, f);
     put_bytes(f, 0, 1), put_bytes(f, HEADER - 10, 2);
     fprintf(f, "%-*s\n", HEADER - 11, n > 0 ? text : "");
@@ -462,7 +461,7 @@ static void put_poses(FILE *f, const ted4_ray_options *o, int number, int frame)
         ted4_ray_camera_stated(o, test_first(o, i), &c);
         const double size[3] = { c.height, c.width, c.focal };
         for (int r = 0; r < 3; r++) {
-            const double *const m = c.matrix[r];    /* right, up, back, centre */
+            const double *const m = c.matrix[r]; /* right, up, back, centre */
             put_double(f, -m[1]), put_double(f, m[0]), put_double(f, m[2]), put_double(f, m[3]);
             put_double(f, size[r]);
         }
@@ -474,7 +473,7 @@ static void put_calibration(FILE *f, const ted4_ray_options *o, int number, int 
 {
     (void)number, (void)frame;
     fputs("{", f);
-    if (!o->ways.starts)                /* else clips differ in length */
+    if (!o->ways.starts) /* else clips differ in length */
         fprintf(f, "\"frames\": %d, ", o->n_frames);
     fputs("\"fps\": 30, \"cameras\": [", f);
     for (int i = 0; i < n_cameras(o); i++) {

@@ -13,22 +13,24 @@ enum { TED4_RAY_NAME = 80 };
 void ted4_ray_camera_name(const ted4_ray_options *o, int number, char name[TED4_RAY_NAME]);
 
 /* File of a picture in the scene's folder. */
-void ted4_ray_picture_name(const ted4_ray_options *o, int number, int frame, char name[TED4_RAY_NAME]);
+void ted4_ray_picture_name(const ted4_ray_options *o, int number, int frame,
+                           char name[TED4_RAY_NAME]);
 
 typedef void ted4_ray_put(FILE *f, const ted4_ray_options *o, int number, int frame);
 
 typedef struct {
-    const char   *name;
+    const char *name;
     ted4_ray_put *put;
-    int           number, frame;        /* for put; unused by files of the whole scene */
-    int         (*wanted)(const ted4_ray_options *o);   /* NULL: always */
+    int number, frame;                        /* for put; unused by files of the whole scene */
+    int (*wanted)(const ted4_ray_options *o); /* NULL: always */
 } ted4_ray_file;
 
 /* In the order to write; ends with a name of NULL. */
 const ted4_ray_file *ted4_ray_layout_files(ted4_ray_layout l);
 
 /* The camera file of one picture, which hypernerf has in addition. */
-void ted4_ray_hypernerf_camera_name(const ted4_ray_options *o, int number, int frame, char name[TED4_RAY_NAME]);
+void ted4_ray_hypernerf_camera_name(const ted4_ray_options *o, int number, int frame,
+                                    char name[TED4_RAY_NAME]);
 ted4_ray_put ted4_ray_put_hypernerf_camera;
 
 #endif

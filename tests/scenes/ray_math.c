@@ -66,8 +66,7 @@ static float cube_root(float x)
 uint8_t ted4_ray_srgb(float linear)
 {
     const float x = ray_clamp(linear, 0, 1);
-    const float y = x <= 0.0031308f ? 12.92f * x
-                                    : 1.055f * cube_root(x * sqrtf(sqrtf(x))) - 0.055f;
+    const float y = x <= 0.0031308f ? 12.92f * x : 1.055f * cube_root(x * sqrtf(sqrtf(x))) - 0.055f;
 
     return (uint8_t)(255 * y + 0.5f);
 }
@@ -79,8 +78,14 @@ void ted4_ray_bytes(vec3 linear, uint8_t rgb[3])
     rgb[2] = ted4_ray_srgb(linear.z);
 }
 
-static float fade(float f) { return f * f * (3 - 2 * f); }
-static float mix(float a, float b, float s) { return a + s * (b - a); }
+static float fade(float f)
+{
+    return f * f * (3 - 2 * f);
+}
+static float mix(float a, float b, float s)
+{
+    return a + s * (b - a);
+}
 
 /* One z layer of the lattice; fx, fy faded fractions. */
 static float layer(int x, int y, int z, float fx, float fy, uint32_t seed)

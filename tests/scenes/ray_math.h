@@ -9,7 +9,9 @@
 
 #define RAY_PI 3.14159265358979323846
 
-typedef struct { float x, y, z; } vec3;
+typedef struct {
+    float x, y, z;
+} vec3;
 
 static inline vec3 v3(float x, float y, float z)
 {
@@ -17,19 +19,55 @@ static inline vec3 v3(float x, float y, float z)
     return r;
 }
 
-static inline vec3 v3_add(vec3 a, vec3 b) { return v3(a.x + b.x, a.y + b.y, a.z + b.z); }
-static inline vec3 v3_sub(vec3 a, vec3 b) { return v3(a.x - b.x, a.y - b.y, a.z - b.z); }
-static inline vec3 v3_mul(vec3 a, vec3 b) { return v3(a.x * b.x, a.y * b.y, a.z * b.z); }
-static inline vec3 v3_scale(vec3 a, float s) { return v3(a.x * s, a.y * s, a.z * s); }
-static inline vec3 v3_along(vec3 a, vec3 d, float t) { return v3_add(a, v3_scale(d, t)); }
-static inline float v3_dot(vec3 a, vec3 b) { return a.x * b.x + a.y * b.y + a.z * b.z; }
-static inline float v3_length(vec3 a) { return sqrtf(v3_dot(a, a)); }
-static inline vec3 v3_unit(vec3 a) { return v3_scale(a, 1.0f / v3_length(a)); }
-static inline vec3 v3_mix(vec3 a, vec3 b, float s) { return v3_along(a, v3_sub(b, a), s); }
+static inline vec3 v3_add(vec3 a, vec3 b)
+{
+    return v3(a.x + b.x, a.y + b.y, a.z + b.z);
+}
+static inline vec3 v3_sub(vec3 a, vec3 b)
+{
+    return v3(a.x - b.x, a.y - b.y, a.z - b.z);
+}
+static inline vec3 v3_mul(vec3 a, vec3 b)
+{
+    return v3(a.x * b.x, a.y * b.y, a.z * b.z);
+}
+static inline vec3 v3_scale(vec3 a, float s)
+{
+    return v3(a.x * s, a.y * s, a.z * s);
+}
+static inline vec3 v3_along(vec3 a, vec3 d, float t)
+{
+    return v3_add(a, v3_scale(d, t));
+}
+static inline float v3_dot(vec3 a, vec3 b)
+{
+    return a.x * b.x + a.y * b.y + a.z * b.z;
+}
+static inline float v3_length(vec3 a)
+{
+    return sqrtf(v3_dot(a, a));
+}
+static inline vec3 v3_unit(vec3 a)
+{
+    return v3_scale(a, 1.0f / v3_length(a));
+}
+static inline vec3 v3_mix(vec3 a, vec3 b, float s)
+{
+    return v3_along(a, v3_sub(b, a), s);
+}
 
-static inline float ray_min(float a, float b) { return a < b ? a : b; }
-static inline float ray_max(float a, float b) { return a > b ? a : b; }
-static inline float ray_clamp(float x, float a, float b) { return ray_min(ray_max(x, a), b); }
+static inline float ray_min(float a, float b)
+{
+    return a < b ? a : b;
+}
+static inline float ray_max(float a, float b)
+{
+    return a > b ? a : b;
+}
+static inline float ray_clamp(float x, float a, float b)
+{
+    return ray_min(ray_max(x, a), b);
+}
 
 /* |x| < 2^31 */
 static inline int ray_floor(float x)
@@ -38,7 +76,10 @@ static inline int ray_floor(float x)
     return i - (x < (float)i);
 }
 
-static inline float ray_fract(float x) { return x - (float)ray_floor(x); }
+static inline float ray_fract(float x)
+{
+    return x - (float)ray_floor(x);
+}
 
 /* 0 up to x = a, 1 from x = b, smooth between. */
 static inline float ray_step(float a, float b, float x)
@@ -64,7 +105,7 @@ static inline vec3 ray_unrotate(const float m[9], vec3 v)
 double ted4_ray_sin(double turns);
 double ted4_ray_cos(double turns);
 /* Angle of (x, y) in radians, (-pi, pi], to about 2e-7. */
-float  ted4_ray_atan2(float y, float x);
+float ted4_ray_atan2(float y, float x);
 
 /* Arc tangent for 0 <= q < 2.4: a series on |r| <= tan(pi/8), after atan q = pi/4 + atan((q - 1)
  * / (q + 1)) where q exceeds that. First omitted term 2e-8. */
@@ -83,7 +124,7 @@ static inline float ray_atan(float q)
 
 /* A linear colour channel as an sRGB byte, and the bytes of a colour. */
 uint8_t ted4_ray_srgb(float linear);
-void    ted4_ray_bytes(vec3 linear, uint8_t rgb[3]);
+void ted4_ray_bytes(vec3 linear, uint8_t rgb[3]);
 
 static inline uint32_t ray_hash(int x, int y, int z, uint32_t seed)
 {

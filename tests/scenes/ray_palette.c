@@ -7,11 +7,14 @@
 
 /* A pixel and its place in the picture. key: the channel that pixels are sorted by. */
 typedef struct {
-    uint8_t  key, rgba[4];
+    uint8_t key, rgba[4];
     uint32_t at;
 } pixel;
 
-typedef struct { size_t first, n; int channel, width; } box;
+typedef struct {
+    size_t first, n;
+    int channel, width;
+} box;
 
 /* By the key; equal ones by their place, so that one order is right. */
 static int by_key(const void *x, const void *y)
@@ -85,7 +88,7 @@ int ted4_ray_palette(const uint8_t *rgba, size_t n, uint8_t palette[TED4_RAY_PAL
     if (p == NULL)
         return -1;
     for (size_t i = 0; i < n; i++) {
-        p[i] = (pixel){ .at = (uint32_t)i };
+        p[i] = (pixel) { .at = (uint32_t)i };
         memcpy(p[i].rgba, rgba + 4 * i, 4);
     }
     measure(p, boxes);

@@ -30,7 +30,7 @@ const char *ted4_ray_ending(const ted4_ray_options *o)
 
 typedef struct {
     int width, height, depth, type, interlaced, channels;
-    uint8_t *rows;                          /* owned */
+    uint8_t *rows; /* owned */
     uint8_t palette[TED4_RAY_PALETTE][4];
     int n_palette;
 } raw;
@@ -71,7 +71,7 @@ static void put_palette(png_structp png, png_infop info, const raw *r, int clear
     png_byte alpha[TED4_RAY_PALETTE];
 
     for (int i = 0; i < r->n_palette; i++) {
-        colours[i] = (png_color){ r->palette[i][0], r->palette[i][1], r->palette[i][2] };
+        colours[i] = (png_color) { r->palette[i][0], r->palette[i][1], r->palette[i][2] };
         alpha[i] = r->palette[i][3];
     }
     png_set_PLTE(png, info, colours, r->n_palette);
@@ -124,7 +124,9 @@ static int write_other_png(const ted4_ray_options *o, const char *path, int clea
 static int write_png(const char *path, png_uint_32 format, int width, int height,
                      const uint8_t *pixels, ted4_ray_message *m)
 {
-    png_image png = { .version = PNG_IMAGE_VERSION, .format = format, .width = (png_uint_32)width,
+    png_image png = { .version = PNG_IMAGE_VERSION,
+                      .format = format,
+                      .width = (png_uint_32)width,
                       .height = (png_uint_32)height };
 
     if (png_image_write_to_file(&png, path, 0, pixels, 0, NULL) == 0)

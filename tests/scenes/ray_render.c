@@ -15,33 +15,37 @@ static const float near_plane = 0.05f, lift = 0.003f, patch = 0.1f;
 enum { NOTHING = -2, ROOM = -1 };
 
 /* Half-open pixel rectangle in which an object can show. */
-typedef struct { int x0, x1, y0, y1; } window;
+typedef struct {
+    int x0, x1, y0, y1;
+} window;
 
 /* Objects a ray may meet. */
-typedef struct { int n, id[TED4_RAY_MAX_OBJECTS]; } crowd;
+typedef struct {
+    int n, id[TED4_RAY_MAX_OBJECTS];
+} crowd;
 
 typedef struct {
     const ted4_ray_world *w;
     const ted4_ray_camera *c;
-    vec3   eye;
-    float  axis[9];                         /* columns right, up, backwards, as rows x y z */
-    float  light_reach;                     /* radius of a sphere about the lamp */
+    vec3 eye;
+    float axis[9];     /* columns right, up, backwards, as rows x y z */
+    float light_reach; /* radius of a sphere about the lamp */
     window shows[TED4_RAY_MAX_OBJECTS];
     crowd shade; /* what can hide the lamp within patch of shade_at on shade_of */
-    vec3   shade_at;
-    int    shade_of;
+    vec3 shade_at;
+    int shade_of;
 } view;
 
 /* One of the samples of a pixel: its direction, and its place (i, j) among them. */
 typedef struct {
     vec3 d;
-    int  i, j;
+    int i, j;
 } sample;
 
 /* What a ray has met. */
 typedef struct {
     ted4_ray_surface surface;
-    vec3  albedo;
+    vec3 albedo;
     float gloss;
 } matter;
 
@@ -71,7 +75,7 @@ static window window_of(const view *v, const ted4_ray_object *o)
 
     sphere_range((double)p.x, (double)-p.z, (double)o->reach, x, v->c->width, across);
     sphere_range((double)-p.y, (double)-p.z, (double)o->reach, y, v->c->height, down);
-    return (window){ across[0], across[1], down[0], down[1] };
+    return (window) { across[0], across[1], down[0], down[1] };
 }
 
 static view view_of(const ted4_ray_world *w, const ted4_ray_camera *c)
@@ -240,8 +244,8 @@ static ted4_ray_sight sight(view *v, const crowd *c, const sample *k)
 
 static vec3 direction(const view *v, double px, double py)
 {
-    const vec3 d = v3((float)((px - v->c->cx) / v->c->focal),
-                      (float)((v->c->cy - py) / v->c->focal), -1);
+    const vec3 d =
+        v3((float)((px - v->c->cx) / v->c->focal), (float)((v->c->cy - py) / v->c->focal), -1);
 
     return ray_rotate(v->axis, v3_unit(d));
 }

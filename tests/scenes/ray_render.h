@@ -16,10 +16,10 @@ void ted4_ray_cut_out(const ted4_ray_world *w, const ted4_ray_camera *c, uint8_t
 
 /* What a camera sees through pixel coordinates (px, py). */
 typedef struct {
-    vec3  point;
-    float depth;        /* along the ray; infinite where nothing is */
-    int   object;       /* index in the world, -1: the room, -2: nothing, colour black, no point */
-    vec3  colour;       /* linear, lit; what the camera makes of it is left out */
+    vec3 point;
+    float depth; /* along the ray; infinite where nothing is */
+    int object;  /* index in the world, -1: the room, -2: nothing, colour black, no point */
+    vec3 colour; /* linear, lit; what the camera makes of it is left out */
 } ted4_ray_sight;
 
 ted4_ray_sight ted4_ray_look(const ted4_ray_world *w, const ted4_ray_camera *c, double px,

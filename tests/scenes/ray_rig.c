@@ -4,8 +4,8 @@
 
 #include <string.h>
 
-/* Of tint 1, before the mean is taken off: exposure up to this share up or down, and at least half of
- * it; gains of the channels; light that gets into another channel. In linear light. */
+/* Of tint 1, before the mean is taken off: exposure up to this share up or down, and at least half
+ * of it; gains of the channels; light that gets into another channel. In linear light. */
 static const double exposure = 0.4, gain = 0.12, leak = 0.03;
 
 /* Seeds of what is drawn for a camera. */
@@ -96,7 +96,8 @@ void ted4_ray_world_of(const ted4_ray_options *o, int frame, ted4_ray_world *w)
 
 /* ---- colours ---- */
 
-/* Signs of the exposures are + - - + in turn, that they do not go with the heights of the cameras. */
+/* Signs of the exposures are + - - + in turn, that they do not go with the heights of the cameras.
+ */
 static void raw_tint(const ted4_ray_options *o, int number, double A[9])
 {
     const double sign = (number + number / 2) % 2 == 0 ? 1 : -1;
@@ -182,7 +183,8 @@ void ted4_ray_camera_of(const ted4_ray_options *o, int number, ted4_ray_camera *
 }
 
 /* A vector of length r in a random direction, even over the sphere. */
-static void random_vector(const ted4_ray_options *o, int number, uint32_t seed, double r, double v[3])
+static void random_vector(const ted4_ray_options *o, int number, uint32_t seed, double r,
+                          double v[3])
 {
     const double z = 2 * draw(o, number, 0, seed) - 1, side = sqrt(1 - z * z);
     const double turns = draw(o, number, 1, seed);

@@ -25,9 +25,9 @@ double ted4_ray_scale(const ted4_ray_options *o);
  * camera, as stated, sees it. */
 vec3 ted4_ray_point_stated(const ted4_ray_options *o, int number, vec3 p);
 
-/* Training camera: turn (rotation vector, radians) and move (units of the room) of its error of pose.
- * Before the mean over the training cameras is taken off, where there are two or more, each is
- * turned by o->pose_error and moved by what that angle is at the distance of the middle. */
+/* Training camera: turn (rotation vector, radians) and move (units of the room) of its error of
+ * pose. Before the mean over the training cameras is taken off, where there are two or more, each
+ * is turned by o->pose_error and moved by what that angle is at the distance of the middle. */
 void ted4_ray_pose_error(const ted4_ray_options *o, int number, double turn[3], double move[3]);
 
 /* Does a layout list what is held out? Where it does not, readers hold out by rules of their own,

@@ -8,19 +8,21 @@
 #include "ray_world.h"
 
 typedef struct {
-    const char *name;           /* "still", "turn", ... */
-    const char *shows;          /* one line */
+    const char *name;  /* "still", "turn", ... */
+    const char *shows; /* one line */
     int width, height;
-    int n_train, n_test;        /* cameras */
-    int n_frames;               /* times */
-    int hold;                   /* training cameras lack the middle one of each so many times (ted4_ray_is_held); 0: none */
-    double pose_error;          /* degrees, see ray_rig.h */
-    double tint;                /* strength, see ray_rig.h */
-    int places;                 /* on the arc, of which the training cameras take the middle ones; 0: as many as cameras */
-    int turned_away;            /* the last of several training cameras looks away from the scene */
+    int n_train, n_test; /* cameras */
+    int n_frames;        /* times */
+    int hold; /* training cameras lack the middle one of each so many times (ted4_ray_is_held); 0:
+                 none */
+    double pose_error; /* degrees, see ray_rig.h */
+    double tint;       /* strength, see ray_rig.h */
+    int places; /* on the arc, of which the training cameras take the middle ones; 0: as many as
+                   cameras */
+    int turned_away; /* the last of several training cameras looks away from the scene */
     ted4_ray_background background; /* what is around the things, unless said */
-    int dome;                   /* cameras stand all about the things, unless these are in a room */
-    double scale, shift[3];     /* coordinates in the files = scale times those of the room + shift */
+    int dome;               /* cameras stand all about the things, unless these are in a room */
+    double scale, shift[3]; /* coordinates in the files = scale times those of the room + shift */
 } ted4_ray_plan;
 
 /* Of a scene before RAY_SCENES. */

@@ -25,9 +25,16 @@ ted4_ray_options ted4_ray_defaults(ted4_ray_scene s)
 {
     const ted4_ray_plan *const p = ted4_ray_plan_of(s);
 
-    return (ted4_ray_options){ .scene = s, .width = p->width, .height = p->height, .n_train = p->n_train,
-                               .n_test = p->n_test, .n_frames = p->n_frames, .seed = 1, .hold = p->hold,
-                               .pose_error = p->pose_error, .tint = p->tint };
+    return (ted4_ray_options) { .scene = s,
+                                .width = p->width,
+                                .height = p->height,
+                                .n_train = p->n_train,
+                                .n_test = p->n_test,
+                                .n_frames = p->n_frames,
+                                .seed = 1,
+                                .hold = p->hold,
+                                .pose_error = p->pose_error,
+                                .tint = p->tint };
 }
 
 const char *ted4_ray_fault(const ted4_ray_options *o)
@@ -44,7 +51,8 @@ const char *ted4_ray_fault(const ted4_ray_options *o)
         return "--split times needs --hold";
     if ((w->paths != RAY_AS_USUAL || w->split == RAY_VAL_FILE || w->split == RAY_TRAIN_ONLY) &&
         !transforms)
-        return "--paths, --split val and --split train-only go with the layouts blender and nerfstudio";
+        return "--paths, --split val and --split train-only go with the layouts blender and "
+               "nerfstudio";
     if ((w->off[0] != 0 || w->off[1] != 0) && (o->layout == RAY_NEU3D || o->layout == RAY_LLFF))
         return "--centre: the layouts neu3d and llff cannot say it";
     if (w->starts && o->layout != RAY_CALIBRATION)
@@ -209,7 +217,7 @@ static ted4_ray_sight random_sight(const ted4_ray_options *o, int i, int attempt
     p->frame = (int)(ray_hash(i, 0, attempt, seed) % (uint32_t)o->n_frames);
     p->frame += ted4_ray_is_held(o, p->frame);
     if (!ted4_ray_is_taken(o, p->camera, p->frame))
-        return (ted4_ray_sight){ .depth = INFINITY };
+        return (ted4_ray_sight) { .depth = INFINITY };
     ted4_ray_camera_of(o, p->camera, &c);
     ted4_ray_world_of(o, p->frame, &w);
     return ted4_ray_look(&w, &c, (double)ray_random(i, 1, attempt, seed) * c.width,
@@ -304,11 +312,12 @@ static int encode(const char *folder, const char *camera, ted4_ray_message *m)
         return complain(m, folder, "the path is too long");
     const pid_t child = fork();
     if (child == 0) {
-        execlp("ffmpeg", "ffmpeg", "-nostdin", "-v", "error", "-y", "-framerate", "30", "-i", input, "-c:v",
-               "png", output, (char *)NULL);
+        execlp("ffmpeg", "ffmpeg", "-nostdin", "-v", "error", "-y", "-framerate", "30", "-i", input,
+               "-c:v", "png", output, (char *)NULL);
         _exit(127);
     }
-    if (child < 0 || waitpid(child, &status, 0) < 0 || !WIFEXITED(status) || WEXITSTATUS(status) != 0)
+    if (child < 0 || waitpid(child, &status, 0) < 0 || !WIFEXITED(status) ||
+        WEXITSTATUS(status) != 0)
         return complain(m, output, "the program ffmpeg cannot make it (is it installed?)");
     return 0;
 }

@@ -18,8 +18,14 @@ enum {
 /* RAY_NEU3D and RAY_CALIBRATION: cameras with a clip each, test cameras first. RAY_LLFF: of one
  * time only, a still a camera, test cameras first. */
 typedef enum {
-    RAY_BLENDER, RAY_NERFSTUDIO, RAY_COLMAP, RAY_COLMAP_TEXT, RAY_HYPERNERF, RAY_NEU3D,
-    RAY_CALIBRATION, RAY_LLFF,
+    RAY_BLENDER,
+    RAY_NERFSTUDIO,
+    RAY_COLMAP,
+    RAY_COLMAP_TEXT,
+    RAY_HYPERNERF,
+    RAY_NEU3D,
+    RAY_CALIBRATION,
+    RAY_LLFF,
     RAY_LAYOUTS
 } ted4_ray_layout;
 
@@ -28,14 +34,14 @@ const char *ted4_ray_layout_name(ted4_ray_layout l);
 
 typedef struct {
     ted4_ray_scene scene;
-    int      width, height;             /* 8 to TED4_RAY_MAX_SIDE */
-    int      n_train, n_test, n_frames; /* 1 (n_test 0) to TED4_RAY_MAX_COUNT */
+    int width, height;             /* 8 to TED4_RAY_MAX_SIDE */
+    int n_train, n_test, n_frames; /* 1 (n_test 0) to TED4_RAY_MAX_COUNT */
     uint32_t seed;
     ted4_ray_layout layout;
-    int      video;                     /* clips as lossless videos, made by ffmpeg, not as folders of frames */
-    int      hold;                      /* training cameras lack time hold / 2 of every hold; 0: none */
-    double   pose_error;                /* of training cameras, degrees, 0 to TED4_RAY_MOST_ERROR (ray_rig.h) */
-    double   tint;                      /* how much training cameras disagree in colour, 0 to TED4_RAY_MOST_TINT */
+    int video;         /* clips as lossless videos, made by ffmpeg, not as folders of frames */
+    int hold;          /* training cameras lack time hold / 2 of every hold; 0: none */
+    double pose_error; /* of training cameras, degrees, 0 to TED4_RAY_MOST_ERROR (ray_rig.h) */
+    double tint;       /* how much training cameras disagree in colour, 0 to TED4_RAY_MOST_TINT */
     ted4_ray_ways ways;
 } ted4_ray_options;
 
@@ -45,13 +51,15 @@ typedef struct {
 /* Seed 1, layout blender, the rest as the table of scenes has it. */
 ted4_ray_options ted4_ray_defaults(ted4_ray_scene s);
 
-typedef struct { char text[1200]; } ted4_ray_message;
+typedef struct {
+    char text[1200];
+} ted4_ray_message;
 
 /* A point on a surface that a training camera sees at a frame that is not held out. */
 typedef struct {
-    vec3    point;              /* in the coordinates of the files */
+    vec3 point; /* in the coordinates of the files */
     uint8_t rgb[3];
-    int     camera, frame;
+    int camera, frame;
 } ted4_ray_point;
 
 /* Points of the initial cloud. */

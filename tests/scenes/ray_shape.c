@@ -4,14 +4,14 @@
 #include "ray_shape.h"
 
 /* Edge radius of the bar; and the surface is met within this distance of it. */
-#define BAR_ROUND    0.02f
-#define BAR_NEAR     0.0006f
+#define BAR_ROUND  0.02f
+#define BAR_NEAR   0.0006f
 /* Bending and twisting stretch space by less than 1 / 0.62 for |bend| size.x < 0.2 and |twist|
  * size.x < 0.05 (test_scene checks). */
-#define BAR_STRIDE   0.62f
-#define BAR_LEAVE    2.5f
-#define BAR_STEPS    160
-#define BEND_LEAST   1e-5f
+#define BAR_STRIDE 0.62f
+#define BAR_LEAVE  2.5f
+#define BAR_STEPS  160
+#define BEND_LEAST 1e-5f
 
 static float sphere_meet(float r, vec3 o, vec3 d, float near, float far)
 {
@@ -108,7 +108,9 @@ static float bend_of(const ted4_ray_object *o)
  * (1/k, 0) in the xz plane; a = 1 - k x and b = k z are coordinates from there in radii, h their
  * length; u = (1 - h) / k, written without cancellation, is the distance inwards from the axis
  * within the plane. */
-typedef struct { float k, a, b, h, u; } arc;
+typedef struct {
+    float k, a, b, h, u;
+} arc;
 
 static arc arc_at(const ted4_ray_object *o, vec3 p)
 {
@@ -135,8 +137,11 @@ static float arc_length(const arc *r)
 static void twist_at(const ted4_ray_object *o, float s, float sine_cosine[2])
 {
     const float x = (float)(2 * RAY_PI) * o->twist * ray_clamp(s, 0, o->size.z), y = x * x;
-    const float sine = x * (1 - y * (1.0f / 6) * (1 - y * (1.0f / 20) * (1 - y * (1.0f / 42) *
-                       (1 - y * (1.0f / 72) * (1 - y * (1.0f / 110))))));
+    const float sine =
+        x *
+        (1 - y * (1.0f / 6) *
+                 (1 - y * (1.0f / 20) *
+                          (1 - y * (1.0f / 42) * (1 - y * (1.0f / 72) * (1 - y * (1.0f / 110))))));
 
     sine_cosine[0] = sine;
     sine_cosine[1] = sqrtf(ray_max(0, 1 - sine * sine));
@@ -239,8 +244,8 @@ static void bar_bound(ted4_ray_object *o)
     for (int i = 0; i <= 2 * steps + 1; i++) {
         ted4_ray_object plain = *o;
         plain.twist = 0;
-        const vec3 p = ted4_ray_rebend(
-            &plain, v3(i % 2 ? r : -r, 0, o->size.z * (float)(i / 2) / (float)steps));
+        const vec3 p = ted4_ray_rebend(&plain, v3(i % 2 ? r : -r, 0,
+                                                  o->size.z * (float)(i / 2) / (float)steps));
         o->low = v3(ray_min(o->low.x, p.x - margin), -r, ray_min(o->low.z, p.z - margin));
         o->high = v3(ray_max(o->high.x, p.x + margin), r, ray_max(o->high.z, p.z + margin));
     }
@@ -251,15 +256,9 @@ void ted4_ray_bound(ted4_ray_object *o)
     vec3 middle = v3(0, 0, 0);
 
     switch (o->kind) {
-    case RAY_SPHERE:
-        o->reach = o->size.x;
-        break;
-    case RAY_BOX:
-        o->reach = v3_length(o->size);
-        break;
-    case RAY_CYLINDER:
-        o->reach = v3_length(v3(o->size.x, 0, o->size.z));
-        break;
+    case RAY_SPHERE: o->reach = o->size.x; break;
+    case RAY_BOX: o->reach = v3_length(o->size); break;
+    case RAY_CYLINDER: o->reach = v3_length(v3(o->size.x, 0, o->size.z)); break;
     case RAY_BAR:
         bar_bound(o);
         middle = v3_scale(v3_add(o->low, o->high), 0.5f);
@@ -274,19 +273,18 @@ float ted4_ray_meet(const ted4_ray_object *o, vec3 from, vec3 d, float near, flo
     const vec3 p = ray_unrotate(o->rot, v3_sub(from, o->pos)), e = ray_unrotate(o->rot, d);
 
     switch (o->kind) {
-    case RAY_SPHERE:
-        return sphere_meet(o->size.x, p, e, near, far);
-    case RAY_BOX:
-        return box_meet(o->size, p, e, near, far);
-    case RAY_CYLINDER:
-        return cylinder_meet(o->size, p, e, near, far);
-    case RAY_BAR:
-        return bar_meet(o, p, e, near, far);
+    case RAY_SPHERE: return sphere_meet(o->size.x, p, e, near, far);
+    case RAY_BOX: return box_meet(o->size, p, e, near, far);
+    case RAY_CYLINDER: return cylinder_meet(o->size, p, e, near, far);
+    case RAY_BAR: return bar_meet(o, p, e, near, far);
     }
     return far;
 }
 
-static float sign_of(float x) { return x < 0 ? -1.0f : 1.0f; }
+static float sign_of(float x)
+{
+    return x < 0 ? -1.0f : 1.0f;
+}
 
 static vec3 box_normal(vec3 h, vec3 p)
 {
@@ -327,15 +325,9 @@ ted4_ray_surface ted4_ray_surface_at(const ted4_ray_object *o, vec3 point)
     ted4_ray_surface s = { v3(0, 0, 1), p };
 
     switch (o->kind) {
-    case RAY_SPHERE:
-        s.normal = v3_unit(p);
-        break;
-    case RAY_BOX:
-        s.normal = box_normal(o->size, p);
-        break;
-    case RAY_CYLINDER:
-        s.normal = cylinder_normal(o->size, p);
-        break;
+    case RAY_SPHERE: s.normal = v3_unit(p); break;
+    case RAY_BOX: s.normal = box_normal(o->size, p); break;
+    case RAY_CYLINDER: s.normal = cylinder_normal(o->size, p); break;
     case RAY_BAR:
         s.normal = bar_normal(o, p);
         s.material = ted4_ray_unbend(o, p);

@@ -15,27 +15,37 @@
  *             to an arc (bend radians a unit length, towards +x) */
 typedef enum { RAY_SPHERE, RAY_BOX, RAY_CYLINDER, RAY_BAR } ted4_ray_kind;
 
-typedef enum { RAY_FLAT, RAY_WOOD, RAY_MARBLE, RAY_CHECKER, RAY_SPIRAL, RAY_DOTS, RAY_FACES,
-               RAY_BEACH, RAY_RIBBON, RAY_BRICK } ted4_ray_texture_kind;
+typedef enum {
+    RAY_FLAT,
+    RAY_WOOD,
+    RAY_MARBLE,
+    RAY_CHECKER,
+    RAY_SPIRAL,
+    RAY_DOTS,
+    RAY_FACES,
+    RAY_BEACH,
+    RAY_RIBBON,
+    RAY_BRICK
+} ted4_ray_texture_kind;
 
 typedef struct {
     ted4_ray_kind kind;
-    vec3  size;
-    float rot[9];               /* row-major: x_world = rot x_local + pos */
-    vec3  pos;
-    float bend, twist;          /* bar only */
+    vec3 size;
+    float rot[9]; /* row-major: x_world = rot x_local + pos */
+    vec3 pos;
+    float bend, twist; /* bar only */
     ted4_ray_texture_kind texture;
-    vec3  skin;                 /* added to material coordinates: pieces of one thing share a pattern */
-    vec3  colour[3];            /* linear */
-    float gloss;                /* specular weight */
-    vec3  low, high;            /* bar only: local bounding box; set by ted4_ray_bound */
-    vec3  centre;               /* bounding sphere in world axes; set by ted4_ray_bound */
+    vec3 skin;      /* added to material coordinates: pieces of one thing share a pattern */
+    vec3 colour[3]; /* linear */
+    float gloss;    /* specular weight */
+    vec3 low, high; /* bar only: local bounding box; set by ted4_ray_bound */
+    vec3 centre;    /* bounding sphere in world axes; set by ted4_ray_bound */
     float reach;
 } ted4_ray_object;
 
 typedef struct {
-    vec3 normal;                /* world, unit, outwards */
-    vec3 material;              /* coordinates that stick to the object, for textures */
+    vec3 normal;   /* world, unit, outwards */
+    vec3 material; /* coordinates that stick to the object, for textures */
 } ted4_ray_surface;
 
 /* Fills the bounds of o; call after the last change of its other members. */

@@ -12,16 +12,24 @@ static float bars(float x, float p)
 {
     const float f = 2 * p * ray_fract(x / (2 * p)), e = ray_min(EDGE, p / 4);
 
-    return ray_step(p - e, p + e, f) - ray_step(2 * p - e, 2 * p + e, f) +
-           (1 - ray_step(-e, e, f));
+    return ray_step(p - e, p + e, f) - ray_step(2 * p - e, 2 * p + e, f) + (1 - ray_step(-e, e, f));
 }
 
-static float exclusive(float a, float b) { return a + b - 2 * a * b; }
+static float exclusive(float a, float b)
+{
+    return a + b - 2 * a * b;
+}
 
 /* 1 inside, 0 outside a shape of which d is the distance outwards. */
-static float inside(float d) { return 1 - ray_step(-EDGE, EDGE, d); }
+static float inside(float d)
+{
+    return 1 - ray_step(-EDGE, EDGE, d);
+}
 
-static float length2(float x, float y) { return sqrtf(x * x + y * y); }
+static float length2(float x, float y)
+{
+    return sqrtf(x * x + y * y);
+}
 
 static float grain(vec3 p, uint32_t seed)
 {
@@ -61,8 +69,8 @@ static vec3 spiral(const ted4_ray_object *o, vec3 p, uint32_t seed)
 {
     const float turn = ted4_ray_atan2(p.y, p.x) / (float)(2 * RAY_PI);
     const float f = ray_fract(2 * turn + 2.6f * p.z);
-    vec3 c = v3_mix(o->colour[0], o->colour[1],
-                    ray_step(0.48f, 0.52f, f) - ray_step(0.98f, 1.02f, f));
+    vec3 c =
+        v3_mix(o->colour[0], o->colour[1], ray_step(0.48f, 0.52f, f) - ray_step(0.98f, 1.02f, f));
 
     c = v3_mix(c, o->colour[2], inside(fabsf(f - 0.25f) * 0.3f - 0.025f));
     return v3_scale(c, grain(p, seed));
@@ -90,19 +98,15 @@ static float face_pattern(int n, float u, float v)
     const float r = length2(u, v);
 
     switch (n) {
-    case 0:
-        return bars(r, 0.075f);
-    case 1:
-        return exclusive(bars(u, 0.13f), bars(v, 0.13f));
-    case 2:
-        return bars(u + v, 0.1f);
-    case 3:
-        return inside(ray_min(fabsf(u), fabsf(v)) - 0.08f);
+    case 0: return bars(r, 0.075f);
+    case 1: return exclusive(bars(u, 0.13f), bars(v, 0.13f));
+    case 2: return bars(u + v, 0.1f);
+    case 3: return inside(ray_min(fabsf(u), fabsf(v)) - 0.08f);
     case 4:
-        return inside(length2(0.22f * ray_fract(u / 0.22f) - 0.11f,
-                              0.22f * ray_fract(v / 0.22f) - 0.11f) - 0.065f);
-    default:
-        return inside(fabsf(r - 0.22f) - 0.07f);
+        return inside(
+            length2(0.22f * ray_fract(u / 0.22f) - 0.11f, 0.22f * ray_fract(v / 0.22f) - 0.11f) -
+            0.065f);
+    default: return inside(fabsf(r - 0.22f) - 0.07f);
     }
 }
 
@@ -127,7 +131,8 @@ static vec3 faces(const ted4_ray_object *o, vec3 p, uint32_t seed)
     }
     n += side > 0;
     return v3_scale(v3_mix(ray_paint(hue[n][0], hue[n][1], hue[n][2]), o->colour[0],
-                           face_pattern(n, u, v)), grain(p, seed));
+                           face_pattern(n, u, v)),
+                    grain(p, seed));
 }
 
 /* Eight sectors about z, and rings across them. */
@@ -191,26 +196,16 @@ static vec3 brick(const ted4_ray_object *o, vec3 p, uint32_t seed)
 vec3 ted4_ray_texture(const ted4_ray_object *o, vec3 p, uint32_t seed)
 {
     switch (o->texture) {
-    case RAY_FLAT:
-        return o->colour[0];
-    case RAY_WOOD:
-        return wood(o, p, seed);
-    case RAY_MARBLE:
-        return marble(o, p, seed);
-    case RAY_CHECKER:
-        return checker(o, p, seed);
-    case RAY_SPIRAL:
-        return spiral(o, p, seed);
-    case RAY_DOTS:
-        return dots(o, p, seed);
-    case RAY_FACES:
-        return faces(o, p, seed);
-    case RAY_BEACH:
-        return beach(o, p, seed);
-    case RAY_RIBBON:
-        return ribbon(o, p, seed);
-    case RAY_BRICK:
-        return brick(o, p, seed);
+    case RAY_FLAT: return o->colour[0];
+    case RAY_WOOD: return wood(o, p, seed);
+    case RAY_MARBLE: return marble(o, p, seed);
+    case RAY_CHECKER: return checker(o, p, seed);
+    case RAY_SPIRAL: return spiral(o, p, seed);
+    case RAY_DOTS: return dots(o, p, seed);
+    case RAY_FACES: return faces(o, p, seed);
+    case RAY_BEACH: return beach(o, p, seed);
+    case RAY_RIBBON: return ribbon(o, p, seed);
+    case RAY_BRICK: return brick(o, p, seed);
     }
     return o->colour[0];
 }
@@ -273,10 +268,8 @@ vec3 ted4_ray_room_texture(ted4_ray_side side, vec3 p, uint32_t seed)
     const float mottle = 0.86f + 0.28f * ted4_ray_noise2(p.y * 6, p.z * 6 + p.x, seed + 9);
 
     switch (side) {
-    case RAY_FLOOR:
-        return planks(p.x, p.y, seed);
-    case RAY_BACK:
-        return back_wall(p.x, p.z, seed + 20);
+    case RAY_FLOOR: return planks(p.x, p.y, seed);
+    case RAY_BACK: return back_wall(p.x, p.z, seed + 20);
     case RAY_LEFT:
         return v3_scale(wallpaper(p.y, p.z, ray_paint(.52f, .66f, .58f),
                                   ray_paint(.64f, .76f, .66f), ray_paint(.92f, .86f, .60f)),
@@ -286,8 +279,7 @@ vec3 ted4_ray_room_texture(ted4_ray_side side, vec3 p, uint32_t seed)
                                   ray_paint(.66f, .72f, .84f), ray_paint(.90f, .60f, .50f)),
                         mottle);
     case RAY_CEILING:
-    case RAY_FRONT:
-        break;
+    case RAY_FRONT: break;
     }
     return v3_scale(ray_paint(.86f, .84f, .80f), mottle);
 }

@@ -9,7 +9,10 @@
 typedef enum { RAY_FLOOR, RAY_CEILING, RAY_BACK, RAY_FRONT, RAY_LEFT, RAY_RIGHT } ted4_ray_side;
 
 /* A colour typed as sRGB in [0, 1], made linear (by squaring, near enough for a palette). */
-static inline vec3 ray_paint(float r, float g, float b) { return v3(r * r, g * g, b * b); }
+static inline vec3 ray_paint(float r, float g, float b)
+{
+    return v3(r * r, g * g, b * b);
+}
 
 /* Linear albedo at material coordinates p of o. */
 vec3 ted4_ray_texture(const ted4_ray_object *o, vec3 p, uint32_t seed);

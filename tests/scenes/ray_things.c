@@ -11,7 +11,7 @@ enum { THINGS = 8, SECOND = 16 };
  * sideways, in depth, upwards (units), and turning (turns); rates (turns a second) of no common
  * measure, so that no time is like another. */
 typedef struct {
-    ted4_ray_kind         kind;
+    ted4_ray_kind kind;
     ted4_ray_texture_kind texture;
     float size, x, y;
     float across, along, up, about;
@@ -37,7 +37,10 @@ static const float palette[THINGS][2][3] = {
     { { .28f, .60f, .74f }, { .92f, .48f, .24f } }, { { .88f, .64f, .36f }, { .46f, .26f, .16f } },
 };
 
-static vec3 paint(const float c[3]) { return ray_paint(c[0], c[1], c[2]); }
+static vec3 paint(const float c[3])
+{
+    return ray_paint(c[0], c[1], c[2]);
+}
 
 /* Two sines of rates 1 and the golden ratio, 0 at time 0, within -1 and 1. */
 static float wave(double turns)

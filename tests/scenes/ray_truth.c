@@ -70,8 +70,10 @@ void ted4_ray_put_truth(FILE *f, const ted4_ray_options *o, int number, int fram
     const ted4_ray_plan *const plan = ted4_ray_plan_of(o->scene);
 
     (void)number, (void)frame;
-    fprintf(f, "{\n  \"scene\": \"%s\",\n  \"shows\": \"%s\",\n  \"seed\": %u,\n  \"size\": [%d, %d],\n", plan->name,
-            plan->shows, (unsigned)o->seed, o->width, o->height);
+    fprintf(
+        f,
+        "{\n  \"scene\": \"%s\",\n  \"shows\": \"%s\",\n  \"seed\": %u,\n  \"size\": [%d, %d],\n",
+        plan->name, plan->shows, (unsigned)o->seed, o->width, o->height);
     fprintf(f, "  \"train_cameras\": %d,\n  \"test_cameras\": %d,\n  \"frames\": %d,\n", o->n_train,
             o->n_test, o->n_frames);
     fprintf(f, "  \"pose_error\": %.9g,\n  \"tint\": %.9g,\n", o->pose_error, o->tint);

@@ -5,7 +5,10 @@
 #include <stddef.h>
 #include <string.h>
 
-typedef struct { const char *word; int number; } meaning;
+typedef struct {
+    const char *word;
+    int number;
+} meaning;
 
 static const meaning words[RAY_VOCABULARIES][5] = {
     [RAY_BACKGROUNDS] = { { "room", RAY_ROOM },

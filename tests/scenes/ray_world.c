@@ -213,25 +213,12 @@ void ted4_ray_world_at(ted4_ray_world *w, ted4_ray_scene s, uint32_t seed, int f
     ted4_ray_world_empty(w, seed);
     furniture(w);
     switch (s) {
-    case RAY_TURN:
-        ted4_ray_carousel(w, 0.04 + 0.33 * t);
-        break;
-    case RAY_OCCLUDER:
-        occluder(w, t);
-        break;
-    case RAY_POP:
-        pop(w, frame, n_frames);
-        break;
-    case RAY_BEND:
-        bend(w, t);
-        break;
-    case RAY_FAIR:
-        fair(w, frame, n_frames);
-        break;
-    case RAY_STILL:
-        ted4_ray_carousel(w, 0.04);
-        break;
-    default:
-        ted4_ray_lab_at(w, s, frame, n_frames);
+    case RAY_TURN: ted4_ray_carousel(w, 0.04 + 0.33 * t); break;
+    case RAY_OCCLUDER: occluder(w, t); break;
+    case RAY_POP: pop(w, frame, n_frames); break;
+    case RAY_BEND: bend(w, t); break;
+    case RAY_FAIR: fair(w, frame, n_frames); break;
+    case RAY_STILL: ted4_ray_carousel(w, 0.04); break;
+    default: ted4_ray_lab_at(w, s, frame, n_frames);
     }
 }

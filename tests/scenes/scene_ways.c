@@ -20,9 +20,11 @@ const char ted4_scene_ways_help[] =
     "  --alpha A           straight (default) or premultiplied\n"
     "  --png K             16 (bits), grey, palette or interlaced\n"
     "  --jpeg K            baseline or progressive\n"
-    "  --paths P           file_path is plain (neither folder nor ending), ext (without folder) or\n"
+    "  --paths P           file_path is plain (neither folder nor ending), ext (without folder) "
+    "or\n"
     "                      folder (without ending)\n"
-    "  --split S           val (transforms_val.json), train-only (nothing else) or times (test times\n"
+    "  --split S           val (transforms_val.json), train-only (nothing else) or times (test "
+    "times\n"
     "                      are those that training lacks: see --hold)\n"
     "  --missing N         of the pictures that are listed for training, N are not there\n"
     "  --k-each            each picture states its K; of colmap, each camera\n"
@@ -30,8 +32,22 @@ const char ted4_scene_ways_help[] =
     "  --masks             truth/masks: where training pictures show what moves, or its shadow\n";
 
 enum {
-    BACKGROUND = TED4_SCENE_WAYS, TURNS, POINTS, UNIT, UP, CENTRE, SIZES, ALPHA, PNG, JPEG, PATHS,
-    SPLIT, MISSING, K_EACH, STARTS, MASKS
+    BACKGROUND = TED4_SCENE_WAYS,
+    TURNS,
+    POINTS,
+    UNIT,
+    UP,
+    CENTRE,
+    SIZES,
+    ALPHA,
+    PNG,
+    JPEG,
+    PATHS,
+    SPLIT,
+    MISSING,
+    K_EACH,
+    STARTS,
+    MASKS
 };
 
 const struct option ted4_scene_ways[TED4_SCENE_N_WAYS] = {
@@ -103,37 +119,21 @@ static int flag(int *set)
 int ted4_scene_way(int number, const char *text, ted4_ray_ways *w)
 {
     switch (number) {
-    case BACKGROUND:
-        return word(RAY_BACKGROUNDS, text, &w->background);
-    case TURNS:
-        return flag(&w->turns);
-    case POINTS:
-        return word(RAY_POINTS_WORDS, text, &w->points);
-    case UNIT:
-        return unit(text, &w->unit);
-    case UP:
-        return either("z", "y", text, &w->up_y);
-    case CENTRE:
-        return centre(text, w->off);
-    case SIZES:
-        return flag(&w->sizes);
-    case ALPHA:
-        return either("straight", "premultiplied", text, &w->premultiplied);
-    case PNG:
-        return word(RAY_PNG_WORDS, text, &w->file);
-    case JPEG:
-        return word(RAY_JPEG_WORDS, text, &w->file);
-    case PATHS:
-        return word(RAY_PATHS_WORDS, text, &w->paths);
-    case SPLIT:
-        return word(RAY_SPLITS, text, &w->split);
-    case MISSING:
-        return count(text, &w->missing);
-    case K_EACH:
-        return flag(&w->k_each);
-    case STARTS:
-        return flag(&w->starts);
-    default:
-        return flag(&w->masks);
+    case BACKGROUND: return word(RAY_BACKGROUNDS, text, &w->background);
+    case TURNS: return flag(&w->turns);
+    case POINTS: return word(RAY_POINTS_WORDS, text, &w->points);
+    case UNIT: return unit(text, &w->unit);
+    case UP: return either("z", "y", text, &w->up_y);
+    case CENTRE: return centre(text, w->off);
+    case SIZES: return flag(&w->sizes);
+    case ALPHA: return either("straight", "premultiplied", text, &w->premultiplied);
+    case PNG: return word(RAY_PNG_WORDS, text, &w->file);
+    case JPEG: return word(RAY_JPEG_WORDS, text, &w->file);
+    case PATHS: return word(RAY_PATHS_WORDS, text, &w->paths);
+    case SPLIT: return word(RAY_SPLITS, text, &w->split);
+    case MISSING: return count(text, &w->missing);
+    case K_EACH: return flag(&w->k_each);
+    case STARTS: return flag(&w->starts);
+    default: return flag(&w->masks);
     }
 }

@@ -16,7 +16,8 @@ enum { EXIT_FINE = 0, EXIT_TROUBLE = 3 };
 
 static const char usage[] =
     "usage: ted4scene NAME -o FOLDER [options]\n"
-    "Makes a small synthetic dynamic scene. What is not given, and has no default here, is that of the\n"
+    "Makes a small synthetic dynamic scene. What is not given, and has no default here, is that of "
+    "the\n"
     "NAME in the list below.\n"
     "  -o FOLDER           where to; made if missing, must be empty without -f\n"
     "  --size WxH          picture size, 8 to 4096\n"
@@ -25,11 +26,14 @@ static const char usage[] =
     "  --frames N          times, 1 to 1000\n"
     "  --hold N            training cameras lack time N/2 of every N, test cameras have it; 2 to\n"
     "                      1000, 0: none\n"
-    "  --pose-error D      training cameras are stated turned by D degrees, and moved as far; 0 to 10\n"
+    "  --pose-error D      training cameras are stated turned by D degrees, and moved as far; 0 to "
+    "10\n"
     "  --tint S            training cameras disagree in colour and exposure; 0 to 2\n"
-    "                      These three go with the layouts blender, nerfstudio and hypernerf, which\n"
+    "                      These three go with the layouts blender, nerfstudio and hypernerf, "
+    "which\n"
     "                      list what is held out; in others a NAME's hold is left out\n"
-    "  --layout L          blender, nerfstudio, colmap, colmap-text, hypernerf, neu3d, calibration or\n"
+    "  --layout L          blender, nerfstudio, colmap, colmap-text, hypernerf, neu3d, calibration "
+    "or\n"
     "                      llff, of which the last has stills of one time (blender)\n"
     "  --video             neu3d and calibration: lossless videos by ffmpeg, not frames\n"
     "  --seed S            of textures, points, errors and tints, 32 bits (1)\n"
@@ -38,8 +42,7 @@ static const char usage[] =
     "  -h, -V              this help, the version\n"
     "truth.json in the folder says what is held out or disturbed.\n";
 
-static const char names[] =
-    "NAMEs, with picture size, training + test cameras, times, hold:\n";
+static const char names[] = "NAMEs, with picture size, training + test cameras, times, hold:\n";
 
 /* What was not given is -1. */
 typedef struct {
@@ -52,7 +55,7 @@ static void run_openmp(void *user, size_t n, void (*body)(void *arg, size_t i), 
 {
     const int threads = *(const int *)user;
 
-    #pragma omp parallel for schedule(dynamic) num_threads(threads)
+#pragma omp parallel for schedule(dynamic) num_threads(threads)
     for (size_t i = 0; i < n; i++)
         body(arg, i);
 }
@@ -159,7 +162,8 @@ static int fill(ted4_ray_options *o)
     o->pose_error = o->pose_error < 0 ? d.pose_error : o->pose_error;
     o->tint = o->tint < 0 ? d.tint : o->tint;
     if ((o->pose_error > 0 || o->tint > 0) && !lists)
-        return complain("errors and tints", "go with the layouts blender, nerfstudio and hypernerf: "
+        return complain("errors and tints",
+                        "go with the layouts blender, nerfstudio and hypernerf: "
                         "others hold out pictures of disturbed cameras");
     return ted4_ray_fault(o) == NULL ? EXIT_FINE : complain("options", ted4_ray_fault(o));
 }
@@ -199,42 +203,18 @@ static int option(command *c, int letter, const char *text)
     int status = EXIT_FINE;
 
     switch (letter) {
-    case 'o':
-        c->folder = text;
-        break;
-    case 'f':
-        c->force = 1;
-        break;
-    case 'j':
-        status = integer(text, 1, 1024, &c->threads);
-        break;
-    case 's':
-        status = size_of(text, &c->set);
-        break;
-    case 'c':
-        status = integer(text, 1, TED4_RAY_MAX_COUNT, &c->set.n_train);
-        break;
-    case 't':
-        status = integer(text, 0, TED4_RAY_MAX_COUNT, &c->set.n_test);
-        break;
-    case 'n':
-        status = integer(text, 1, TED4_RAY_MAX_COUNT, &c->set.n_frames);
-        break;
-    case 'H':
-        status = hold_of(text, &c->set.hold);
-        break;
-    case 'p':
-        status = real(text, TED4_RAY_MOST_ERROR, &c->set.pose_error);
-        break;
-    case 'T':
-        status = real(text, TED4_RAY_MOST_TINT, &c->set.tint);
-        break;
-    case 'l':
-        status = layout_of(text, &c->set);
-        break;
-    case 'v':
-        c->set.video = 1;
-        break;
+    case 'o': c->folder = text; break;
+    case 'f': c->force = 1; break;
+    case 'j': status = integer(text, 1, 1024, &c->threads); break;
+    case 's': status = size_of(text, &c->set); break;
+    case 'c': status = integer(text, 1, TED4_RAY_MAX_COUNT, &c->set.n_train); break;
+    case 't': status = integer(text, 0, TED4_RAY_MAX_COUNT, &c->set.n_test); break;
+    case 'n': status = integer(text, 1, TED4_RAY_MAX_COUNT, &c->set.n_frames); break;
+    case 'H': status = hold_of(text, &c->set.hold); break;
+    case 'p': status = real(text, TED4_RAY_MOST_ERROR, &c->set.pose_error); break;
+    case 'T': status = real(text, TED4_RAY_MOST_TINT, &c->set.tint); break;
+    case 'l': status = layout_of(text, &c->set); break;
+    case 'v': c->set.video = 1; break;
     case 'r':
         status = number(text, 0, UINT32_MAX, &seed);
         c->set.seed = (uint32_t)seed;

@@ -1,5 +1,7 @@
-/* eval.c - the records of a query by one variant of the code that the specification prints. Compiled once for each evaluation of annex E, with
- * VARIANT: the header, REAL: its floating-point type, RECORDS: the name of the function. See spec_tolerance.h.
+/* eval.c - the records of a query by one variant of the code that the specification prints.
+ * Compiled once for each evaluation of annex E, with
+ * VARIANT: the header, REAL: its floating-point type, RECORDS: the name of the function. See
+ * spec_tolerance.h.
  * SPDX-License-Identifier: BSD-2-Clause */
 #include <math.h>
 #include <stddef.h>
@@ -10,15 +12,16 @@
 #pragma GCC diagnostic ignored "-Wunused-function"
 #include VARIANT
 
-size_t RECORDS(const void *scene, uint32_t num, uint32_t den, const float *camera, float (*out)[14]);
+size_t RECORDS(const void *scene, uint32_t num, uint32_t den, const float *camera,
+               float (*out)[14]);
 
 size_t RECORDS(const void *scene, uint32_t num, uint32_t den, const float *camera, float (*out)[14])
 {
     const struct scene *s = scene;
-    const REAL  c[3] = { camera[0], camera[1], camera[2] };
-    REAL        record[16][14];
-    struct net  net[NETS_R];
-    size_t      n = 0;
+    const REAL c[3] = { camera[0], camera[1], camera[2] };
+    REAL record[16][14];
+    struct net net[NETS_R];
+    size_t n = 0;
 
     (void)nets_r(&s->h, net);
     for (size_t a = 0; a < (size_t)s->h.n_anchors; a++) {

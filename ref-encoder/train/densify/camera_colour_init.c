@@ -1,6 +1,8 @@
-/* camera_colour_init.c - see camera_colour_init.h. In turn: each point's colour is, by channel, the median over the cameras of what they see there with their maps undone; each camera's
- * map is the weighted least squares fit from those colours to what it sees. Where something stands between, a camera sees another colour: weights are
- * Tukey's biweight of the difference, whose width narrows from round to round. In the end the points' own colours say what all cameras have in common.
+/* camera_colour_init.c - see camera_colour_init.h. In turn: each point's colour is, by channel, the
+ * median over the cameras of what they see there with their maps undone; each camera's map is the
+ * weighted least squares fit from those colours to what it sees. Where something stands between, a
+ * camera sees another colour: weights are Tukey's biweight of the difference, whose width narrows
+ * from round to round. In the end the points' own colours say what all cameras have in common.
  * SPDX-License-Identifier: BSD-2-Clause */
 #include "camera_colour_init.h"
 
@@ -12,32 +14,36 @@
 #include "photo_votes.h"
 #include "train/model/normalise.h"
 
-/* Pictures of a camera that are looked at: what a point looks like to it is their median, by channel. Odd. */
+/* Pictures of a camera that are looked at: what a point looks like to it is their median, by
+ * channel. Odd. */
 enum { LOOKS = 5 };
 /* Points times cameras, at most; more points are thinned out evenly. */
 enum { MOST = 4 << 20 };
-/* Rounds, and the widths at which a difference weighs nothing, of 255: tints of the size of the first are still found; the last leaves noise of a few. */
+/* Rounds, and the widths at which a difference weighs nothing, of 255: tints of the size of the
+ * first are still found; the last leaves noise of a few. */
 enum { ROUNDS = 8 };
-#define WIDEST   56.0
+#define WIDEST    56.0
 #define NARROWEST 14.0
 /* Sum of weights below which a camera keeps the identity. */
-#define FEWEST 100.0
-/* Where cameras differ by less than this, of 255, it may be the noise of the fit (measured: 0.2 to 1 where no camera has a tint), and training is left alone. */
-#define ALIKE 2.0
+#define FEWEST    100.0
+/* Where cameras differ by less than this, of 255, it may be the noise of the fit (measured: 0.2 to
+ * 1 where no camera has a tint), and training is left alone. */
+#define ALIKE     2.0
 /* Pull towards the identity, as a share of the weights: noise of a few of 255, squared. */
-#define RIDGE 1e-4
-/* Initial points that are brighter or darker than this were not given the colours of pictures, but albedo, say, or linear light. */
+#define RIDGE     1e-4
+/* Initial points that are brighter or darker than this were not given the colours of pictures, but
+ * albedo, say, or linear light. */
 #define MOST_GAIN 1.25
 
 typedef struct {
     ted4_trainer *t;
-    size_t        n, stride;    /* points */
-    size_t        cameras;      /* of the dataset */
-    uint8_t      *seen;         /* [cameras][n] 0 or 1 */
-    uint8_t      *rgb;          /* [cameras][n][3] */
-    float        *point;        /* [n][3] colours of the scene, 0 .. 1 */
-    uint8_t      *shared;       /* [n] is the point seen by two cameras? */
-    float        *sorted;       /* [cameras] */
+    size_t n, stride; /* points */
+    size_t cameras;   /* of the dataset */
+    uint8_t *seen;    /* [cameras][n] 0 or 1 */
+    uint8_t *rgb;     /* [cameras][n][3] */
+    float *point;     /* [n][3] colours of the scene, 0 .. 1 */
+    uint8_t *shared;  /* [n] is the point seen by two cameras? */
+    float *sorted;    /* [cameras] */
 } match;
 
 static int ascending(const void *x, const void *y)
@@ -55,18 +61,20 @@ static float median(float *x, size_t n)
 
 /* ---- what is seen ---- */
 
-/* A picture is cut into cells by cells, one for so many points: what lies deeper than the nearest point of a cell by more than this share is taken to be hidden. */
+/* A picture is cut into cells by cells, one for so many points: what lies deeper than the nearest
+ * point of a cell by more than this share is taken to be hidden. */
 enum { MOST_CELLS = 64 };
 #define POINTS_A_CELL 8.0
 #define HIDDEN        0.1f
 
-/* Looks of one camera: colours [n][LOOKS][3], and how many there are [n]. Of the picture at hand: each point's pixel and depth, 0 where it is not in the picture [n],
- * and the nearest depth of each of cells times cells. */
+/* Looks of one camera: colours [n][LOOKS][3], and how many there are [n]. Of the picture at hand:
+ * each point's pixel and depth, 0 where it is not in the picture [n], and the nearest depth of each
+ * of cells times cells. */
 typedef struct {
     uint8_t *rgb, *count;
-    size_t  *pixel;
-    float   *depth, nearest[MOST_CELLS * MOST_CELLS];
-    size_t   cells;
+    size_t *pixel;
+    float *depth, nearest[MOST_CELLS * MOST_CELLS];
+    size_t cells;
 } looks;
 
 static float *nearest_at(looks *l, const ted4_view *v, size_t pixel)
@@ -94,11 +102,11 @@ static void project(const match *m, const ted4_view *v, looks *l)
 
 static int look(match *m, size_t item, looks *l)
 {
-    ted4_trainer       *t = m->t;
+    ted4_trainer *t = m->t;
     const ted4_picture *pic = &t->data->pictures[item];
-    const uint8_t      *pixels = ted4_dataset_pixels(t->data, item, &t->message);
-    ted4_view           v;
-    float               centre[3];
+    const uint8_t *pixels = ted4_dataset_pixels(t->data, item, &t->message);
+    ted4_view v;
+    float centre[3];
 
     if (pixels == NULL)
         return -1;
@@ -138,8 +146,8 @@ static size_t count_pictures(const ted4_dataset *d, size_t camera)
 static int look_from(match *m, size_t camera, looks *l)
 {
     const ted4_dataset *d = m->t->data;
-    const size_t        pictures = count_pictures(d, camera), wanted = pictures < LOOKS ? pictures : LOOKS;
-    size_t              at = 0, taken = 0;
+    const size_t pictures = count_pictures(d, camera), wanted = pictures < LOOKS ? pictures : LOOKS;
+    size_t at = 0, taken = 0;
 
     memset(l->count, 0, m->n);
     for (size_t i = 0; i < d->n_pictures && taken < wanted; i++) {
@@ -157,10 +165,13 @@ static int look_from(match *m, size_t camera, looks *l)
 
 static int look_around(match *m)
 {
-    looks l = { malloc(3 * LOOKS * m->n), malloc(m->n), malloc(m->n * sizeof *l.pixel),
-                malloc(m->n * sizeof *l.depth), { 0 },
+    looks l = { malloc(3 * LOOKS * m->n),
+                malloc(m->n),
+                malloc(m->n * sizeof *l.pixel),
+                malloc(m->n * sizeof *l.depth),
+                { 0 },
                 (size_t)fmin(ceil(sqrt((double)m->n / POINTS_A_CELL)), MOST_CELLS) };
-    int   bad = 0;
+    int bad = 0;
 
     if (l.rgb == NULL || l.count == NULL || l.pixel == NULL || l.depth == NULL)
         bad = ted4_trainer_fail(m->t, "no memory to compare cameras");
@@ -178,7 +189,7 @@ static int look_around(match *m)
 
 typedef struct {
     double inverse[9], v[3];
-    int    usable;
+    int usable;
 } undo;
 
 static void find_points(match *m, const undo *back)
@@ -189,7 +200,7 @@ static void find_points(match *m, const undo *back)
 
             for (size_t k = 0; k < m->cameras; k++) {
                 const uint8_t *x = m->rgb + 3 * (k * m->n + i);
-                double         sum = 0;
+                double sum = 0;
 
                 if (!back[k].usable || !m->seen[k * m->n + i])
                     continue;
@@ -202,7 +213,8 @@ static void find_points(match *m, const undo *back)
         }
 }
 
-/* Sums of products over the points that a camera sees: of (r, g, b, 1) with itself, and with its colours. */
+/* Sums of products over the points that a camera sees: of (r, g, b, 1) with itself, and with its
+ * colours. */
 typedef struct {
     double left[4][4], right[4][3], weight;
 } normal;
@@ -212,9 +224,9 @@ static void add_points(const match *m, size_t camera, const float *map, double w
     memset(s, 0, sizeof *s);
     for (size_t i = 0; i < m->n; i++) {
         const uint8_t *to = m->rgb + 3 * (camera * m->n + i);
-        const double   x[4] = { (double)m->point[3 * i], (double)m->point[3 * i + 1],
-                                (double)m->point[3 * i + 2], 1.0 };
-        double         off = 0;
+        const double x[4] = { (double)m->point[3 * i], (double)m->point[3 * i + 1],
+                              (double)m->point[3 * i + 2], 1.0 };
+        double off = 0;
 
         if (!m->seen[camera * m->n + i] || !m->shared[i])
             continue;
@@ -240,7 +252,7 @@ static void add_points(const match *m, size_t camera, const float *map, double w
 /* left * solution = right by Cholesky's method, in place of right; left is positive definite. */
 static void solve(normal *s)
 {
-    double (*a)[4] = s->left, (*b)[3] = s->right;
+    double(*a)[4] = s->left, (*b)[3] = s->right;
 
     for (int j = 0; j < 4; j++)
         for (int i = j; i < 4; i++) {
@@ -304,7 +316,8 @@ static void one_round(match *m, undo *back, double width)
 
 /* ---- what all have in common ---- */
 
-/* Sums, over points where both agree but for gain, of the colours that came with the points and of what cameras see there, by channel; and of their weights. */
+/* Sums, over points where both agree but for gain, of the colours that came with the points and of
+ * what cameras see there, by channel; and of their weights. */
 typedef struct {
     double given[3], seen[3], weight;
 } levels;
@@ -315,7 +328,7 @@ static levels add_levels(const match *m, const double *gain, double width)
 
     for (size_t i = 0; i < m->n; i++) {
         const uint8_t *given = m->t->data->point_rgb + 3 * i * m->stride;
-        double         off = 0;
+        double off = 0;
 
         if (!m->shared[i])
             continue;
@@ -335,15 +348,19 @@ static levels add_levels(const match *m, const double *gain, double width)
     return s;
 }
 
-/* Cameras alone cannot tell what the middle of them does to colours; initial points may have been given colours that do. Both sides are noisy, so that
- * levels are compared, and no line is fitted, which would lie too flat. Nothing changes where hardly a point agrees, or colours mean something else. */
+/* Cameras alone cannot tell what the middle of them does to colours; initial points may have been
+ * given colours that do. Both sides are noisy, so that levels are compared, and no line is fitted,
+ * which would lie too flat. Nothing changes where hardly a point agrees, or colours mean something
+ * else. */
 static void find_gauge(match *m, undo *back)
 {
     double gain[3] = { 1, 1, 1 };
 
     look_back(m, back);
     for (int i = 0; i < 2 * ROUNDS; i++) {
-        const levels s = add_levels(m, gain, WIDEST / 255.0 * ted4_math_pow(NARROWEST / WIDEST, fmin(i / (ROUNDS - 1.0), 1)));
+        const levels s = add_levels(
+            m, gain,
+            WIDEST / 255.0 * ted4_math_pow(NARROWEST / WIDEST, fmin(i / (ROUNDS - 1.0), 1)));
 
         for (int c = 0; c < 3; c++) {
             gain[c] = s.given[c] / s.seen[c];
@@ -354,11 +371,12 @@ static void find_gauge(match *m, undo *back)
     ted4_colour_regauge(&m->t->colour, gain);
 }
 
-/* Do cameras differ more than the fit is wrong? Mean over cameras and points of what their maps change. */
+/* Do cameras differ more than the fit is wrong? Mean over cameras and points of what their maps
+ * change. */
 static int differ(const match *m)
 {
     const ted4_colour *colour = &m->t->colour;
-    double             sum = 0, n = 0;
+    double sum = 0, n = 0;
 
     for (size_t k = 0; k < m->cameras; k++)
         for (size_t i = 0; i < m->n && colour->corrected[k]; i++) {
@@ -377,17 +395,18 @@ static int differ(const match *m)
 static int work(match *m)
 {
     ted4_colour *colour = &m->t->colour;
-    undo        *back = calloc(m->cameras, sizeof *back);
-    int          bad;
+    undo *back = calloc(m->cameras, sizeof *back);
+    int bad;
 
     m->seen = calloc(m->cameras, m->n);
     m->rgb = malloc(3 * m->cameras * m->n);
     m->point = malloc(3 * m->n * sizeof *m->point);
     m->shared = malloc(m->n);
     m->sorted = malloc(m->cameras * sizeof *m->sorted);
-    bad = back == NULL || m->seen == NULL || m->rgb == NULL || m->point == NULL || m->shared == NULL ||
-                  m->sorted == NULL
-              ? ted4_trainer_fail(m->t, "no memory to compare cameras") : look_around(m);
+    bad = back == NULL || m->seen == NULL || m->rgb == NULL || m->point == NULL ||
+                  m->shared == NULL || m->sorted == NULL
+              ? ted4_trainer_fail(m->t, "no memory to compare cameras")
+              : look_around(m);
     for (int i = 0; i < ROUNDS && !bad; i++)
         one_round(m, back, WIDEST / 255.0 * ted4_math_pow(NARROWEST / WIDEST, i / (ROUNDS - 1.0)));
     colour->matched = !bad && differ(m);
@@ -407,7 +426,7 @@ static int work(match *m)
 int ted4_colour_match(ted4_trainer *t)
 {
     const size_t points = t->data->n_points, cameras = t->colour.n_cameras;
-    match        m = { .t = t, .cameras = cameras };
+    match m = { .t = t, .cameras = cameras };
 
     if (cameras == 0 || points == 0 || t->data->random_points)
         return 0;

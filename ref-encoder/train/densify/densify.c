@@ -1,5 +1,6 @@
-/* densify.c - where anchors are missing and where they are not needed. Source: paper, "Preliminary: ScaffoldGS", with the opacity taken after activation
- * ("Progressive 3D-to-4D Anchor Transformation"); annex D.1. Candidates in canonical space.
+/* densify.c - where anchors are missing and where they are not needed. Source: paper, "Preliminary:
+ * ScaffoldGS", with the opacity taken after activation ("Progressive 3D-to-4D Anchor
+ * Transformation"); annex D.1. Candidates in canonical space.
  * SPDX-License-Identifier: BSD-2-Clause */
 #include <math.h>
 #include <stdlib.h>
@@ -12,24 +13,26 @@
 #include "train/state/trainer.h"
 
 enum { DEPTHS = 3 };
-#define CELL_RATIO      0.25    /* voxel of depth i: cell 4^-i */
-#define GRADIENT_RATIO  2.0     /* threshold of depth i: times 2^i */
-/* An offset may grow, and an anchor may go, once it was seen in this share of the steps since the last adjustment. */
-#define GROW_SEEN  0.4
-#define PRUNE_SEEN 0.8
-/* No anchor goes before it was seen so often while it was there. What lives for one frame of forty is seen by few of the steps between two adjustments, often by none, and
- * judged by all of them it would go, however right it is at its time. */
+#define CELL_RATIO     0.25 /* voxel of depth i: cell 4^-i */
+#define GRADIENT_RATIO 2.0  /* threshold of depth i: times 2^i */
+/* An offset may grow, and an anchor may go, once it was seen in this share of the steps since the
+ * last adjustment. */
+#define GROW_SEEN      0.4
+#define PRUNE_SEEN     0.8
+/* No anchor goes before it was seen so often while it was there. What lives for one frame of forty
+ * is seen by few of the steps between two adjustments, often by none, and judged by all of them it
+ * would go, however right it is at its time. */
 enum { SEEN_THERE = 8 };
 
 uint32_t ted4_lanes_there(const ted4_generate_input *in, size_t slot)
 {
-    const int    first = in->layout->first[TED4_TAU];
-    const float  now = (float)in->num / (float)in->den;
-    uint32_t     there = in->lanes[slot];
+    const int first = in->layout->first[TED4_TAU];
+    const float now = (float)in->num / (float)in->den;
+    uint32_t there = in->lanes[slot];
 
     for (int j = 0; in->activation && j < TED4_LANES; j++) {
         const float *tau = in->attr[slot] + first * TED4_LANES + j;
-        const float  u = ted4_find_edge(now, tau, ted4_pow2).u;
+        const float u = ted4_find_edge(now, tau, ted4_pow2).u;
 
         if (!(u * u < 0.6931472f))
             there &= ~((uint32_t)1 << j);
@@ -38,31 +41,31 @@ uint32_t ted4_lanes_there(const ted4_generate_input *in, size_t slot)
 }
 
 typedef struct {
-    ted4_trainer              *t;
+    ted4_trainer *t;
     const ted4_generate_input *in;
-    const ted4_splats         *s;
+    const ted4_splats *s;
 } gather_job;
 
 /* Adds one row of statistics per splat and per anchor. */
 static void gather_slot(void *arg, size_t i)
 {
     const gather_job *g = arg;
-    ted4_trainer     *t = g->t;
-    const int         K = t->layout.head.n_offsets;
-    const uint32_t    lanes = t->slots.lanes[i], there = ted4_lanes_there(g->in, i);
-    float            *opacity = ted4_block(&t->anchors, TED4_ROW_OPACITY, t->slots.block[i]);
-    float            *gradient = ted4_block(&t->anchors, TED4_ROW_GRADIENT, t->slots.block[i]);
+    ted4_trainer *t = g->t;
+    const int K = t->layout.head.n_offsets;
+    const uint32_t lanes = t->slots.lanes[i], there = ted4_lanes_there(g->in, i);
+    float *opacity = ted4_block(&t->anchors, TED4_ROW_OPACITY, t->slots.block[i]);
+    float *gradient = ted4_block(&t->anchors, TED4_ROW_GRADIENT, t->slots.block[i]);
 
     for (int j = 0; j < TED4_LANES; j++) {
         opacity[TED4_LANES + j] += (float)(lanes >> j & 1);
         opacity[2 * TED4_LANES + j] += (float)(there >> j & 1);
     }
     for (int k = 0; k < K; k++) {
-        const size_t   at = (i * (size_t)K + (size_t)k) * TED4_LANES;
-        const float   *d = t->splat_gradient.mean2d + at, *shown = g->s->opacity + at;
+        const size_t at = (i * (size_t)K + (size_t)k) * TED4_LANES;
+        const float *d = t->splat_gradient.mean2d + at, *shown = g->s->opacity + at;
         const uint8_t *seen = t->splat_gradient.visible + at;
-        float         *sum = gradient + k * TED4_LANES;
-        float         *count = gradient + (K + k) * TED4_LANES;
+        float *sum = gradient + k * TED4_LANES;
+        float *count = gradient + (K + k) * TED4_LANES;
 
         for (int j = 0; j < TED4_LANES; j++) {
             const float on = (float)seen[j];
@@ -82,11 +85,11 @@ void ted4_densify_gather(ted4_trainer *t, const ted4_generate_input *in, const t
 }
 
 typedef struct {
-    float    gradient;
-    uint32_t parent;            /* anchor */
-    uint64_t found;             /* after so many others */
-    float    position[3];
-    float    cell;
+    float gradient;
+    uint32_t parent; /* anchor */
+    uint64_t found;  /* after so many others */
+    float position[3];
+    float cell;
 } candidate;
 
 static int compare_candidates(const void *x, const void *y)
@@ -108,13 +111,14 @@ static void place(const ted4_trainer *t, size_t i, int k, float p[3])
     for (int j = 0; j < 3; j++)
         p[j] = *ted4_cell(&t->anchors, TED4_ROW_POSITION, i, j) +
                *ted4_cell(&t->anchors, TED4_ROW_VALUE, i, l->first[TED4_OFFSET] + 3 * k + j) *
-               ted4_math_exp2f(*ted4_cell(&t->anchors, TED4_ROW_VALUE, i, l->first[TED4_SCALING] + j));
+                   ted4_math_exp2f(
+                       *ted4_cell(&t->anchors, TED4_ROW_VALUE, i, l->first[TED4_SCALING] + j));
 }
 
 /* Mean screen gradient of offset k, negative where it was not seen enough. */
 static float mean_gradient(const ted4_trainer *t, size_t i, int k)
 {
-    const int   K = t->layout.head.n_offsets;
+    const int K = t->layout.head.n_offsets;
     const float count = *ted4_cell(&t->anchors, TED4_ROW_GRADIENT, i, K + k);
     const float sum = *ted4_cell(&t->anchors, TED4_ROW_GRADIENT, i, k);
 
@@ -124,14 +128,13 @@ static float mean_gradient(const ted4_trainer *t, size_t i, int k)
 }
 
 /* Candidates of one depth, at most one a free cell; appended to out. */
-static size_t collect(const ted4_trainer *t, int depth, ted4_cells *set, candidate *out,
-                      size_t n)
+static size_t collect(const ted4_trainer *t, int depth, ted4_cells *set, candidate *out, size_t n)
 {
     const double cell = t->cell * ted4_math_pow(CELL_RATIO, depth);
     const double threshold = t->opt.grow_gradient * ted4_math_pow(GRADIENT_RATIO, depth);
     const double keep = 1.0 - ted4_math_pow(0.5, depth + 1);
     const uint64_t key = ted4_mix(t->opt.seed ^ (t->iteration << 8) ^ (uint64_t)depth);
-    const int    K = t->layout.head.n_offsets;
+    const int K = t->layout.head.n_offsets;
 
     ted4_cells_clear(set);
     for (size_t i = 0; i < t->anchors.n; i++) {
@@ -144,8 +147,8 @@ static size_t collect(const ted4_trainer *t, int depth, ted4_cells *set, candida
     for (size_t i = 0; i < t->anchors.n; i++) {
         for (int k = 0; k < K; k++) {
             const float g = mean_gradient(t, i, k);
-            candidate   c = { g, (uint32_t)i, n, { 0 }, (float)cell };
-            int         inside = 1;
+            candidate c = { g, (uint32_t)i, n, { 0 }, (float)cell };
+            int inside = 1;
 
             if ((double)g < threshold ||
                 (double)ted4_uniform(key, i * (size_t)K + (size_t)k) >= keep)
@@ -165,8 +168,8 @@ static size_t collect(const ted4_trainer *t, int depth, ted4_cells *set, candida
 static int add_anchor(ted4_trainer *t, const candidate *c)
 {
     const ted4_layout *l = &t->layout;
-    ted4_anchors      *a = &t->anchors;
-    const size_t       i = a->n;
+    ted4_anchors *a = &t->anchors;
+    const size_t i = a->n;
 
     if (ted4_anchors_resize(a, i + 1) != 0)
         return ted4_trainer_fail(t, "no memory for %zu anchors", i + 1);
@@ -185,10 +188,10 @@ static int grow(ted4_trainer *t)
 {
     const size_t n = t->anchors.n, K = t->layout.head.n_offsets;
     const size_t room = ted4_schedule_room(t);
-    candidate   *c = malloc((DEPTHS * n * K + 1) * sizeof *c);
-    ted4_cells   set;
-    size_t       found = 0;
-    int          bad = 0;
+    candidate *c = malloc((DEPTHS * n * K + 1) * sizeof *c);
+    ted4_cells set;
+    size_t found = 0;
+    int bad = 0;
 
     if (c == NULL || ted4_cells_init(&set, n * (K + 1)) != 0) {
         free(c);
@@ -223,7 +226,7 @@ static void reset_statistics(ted4_trainer *t, size_t i, int opacity)
 
 /* An anchor that is to go, and its mean opacity. */
 typedef struct {
-    double   opacity;
+    double opacity;
     uint32_t anchor;
 } faded;
 
@@ -253,23 +256,23 @@ static size_t keep_fewest(uint32_t *order, size_t n, faded *gone, size_t m)
 static int prune(ted4_trainer *t, size_t n_old)
 {
     ted4_anchors *a = &t->anchors;
-    uint32_t     *order = malloc((a->n + 1) * sizeof *order);
-    faded        *gone = malloc((a->n + 1) * sizeof *gone);
-    size_t        n = 0, m = 0;
-    int           bad = order == NULL || gone == NULL;
+    uint32_t *order = malloc((a->n + 1) * sizeof *order);
+    faded *gone = malloc((a->n + 1) * sizeof *gone);
+    size_t n = 0, m = 0;
+    int bad = order == NULL || gone == NULL;
 
     for (size_t i = 0; !bad && i < a->n; i++) {
         const double visits = (double)*ted4_cell(a, TED4_ROW_OPACITY, i, 1);
         const double there = (double)*ted4_cell(a, TED4_ROW_OPACITY, i, 2);
         const double opacity = (double)*ted4_cell(a, TED4_ROW_OPACITY, i, 0);
-        const int    ripe = visits > PRUNE_SEEN * (double)t->opt.grow_every && there >= SEEN_THERE;
+        const int ripe = visits > PRUNE_SEEN * (double)t->opt.grow_every && there >= SEEN_THERE;
 
         if (i < n_old)
             reset_statistics(t, i, ripe);
         if (i >= n_old || !ripe || opacity >= t->opt.prune_opacity * there)
             order[n++] = (uint32_t)i;
         else
-            gone[m++] = (faded){ opacity / there, (uint32_t)i };
+            gone[m++] = (faded) { opacity / there, (uint32_t)i };
     }
     bad = bad || ted4_anchors_select(a, order, keep_fewest(order, n, gone, m)) != 0;
     free(order);
@@ -283,6 +286,6 @@ int ted4_densify_adjust(ted4_trainer *t)
 
     if (grow(t) != 0 || prune(t, n) != 0)
         return -1;
-    return ted4_anchors_sort(&t->anchors) != 0
-               ? ted4_trainer_fail(t, "no memory to sort anchors") : 0;
+    return ted4_anchors_sort(&t->anchors) != 0 ? ted4_trainer_fail(t, "no memory to sort anchors")
+                                               : 0;
 }

@@ -19,7 +19,7 @@ int ted4_sprout_reach(const ted4_trainer *t)
 
 /* What anchors look like now (ted4_trainer_looks). */
 typedef struct {
-    float *rgb, *opacity;       /* owned: [n][3], [n] */
+    float *rgb, *opacity; /* owned: [n][3], [n] */
 } looks;
 
 /* 0, or -1 with t->message. */
@@ -36,7 +36,8 @@ static int look_at_anchors(ted4_trainer *t, looks *l)
 #define OPAQUE 0.5f
 
 /* Among the first n anchors: the one whose colour comes nearest, and the one that lies nearest. */
-static void find_parents(const ted4_trainer *t, const looks *l, size_t n, const ted4_place *p, size_t *alike, size_t *near)
+static void find_parents(const ted4_trainer *t, const looks *l, size_t n, const ted4_place *p,
+                         size_t *alike, size_t *near)
 {
     float best_colour = INFINITY, best_place = INFINITY;
 
@@ -63,12 +64,13 @@ static void find_parents(const ted4_trainer *t, const looks *l, size_t n, const 
 }
 
 /* Its features are those of an anchor of its colour, its motion that of what is near. */
-static int add(ted4_trainer *t, const looks *l, size_t n_old, const ted4_place *p, const ted4_span *span)
+static int add(ted4_trainer *t, const looks *l, size_t n_old, const ted4_place *p,
+               const ted4_span *span)
 {
     const ted4_layout *y = &t->layout;
-    ted4_anchors      *a = &t->anchors;
-    const size_t       i = a->n;
-    size_t             alike, near;
+    ted4_anchors *a = &t->anchors;
+    const size_t i = a->n;
+    size_t alike, near;
 
     if (ted4_anchors_resize(a, i + 1) != 0)
         return ted4_trainer_fail(t, "no memory for %zu anchors", i + 1);
@@ -88,10 +90,11 @@ static int add(ted4_trainer *t, const looks *l, size_t n_old, const ted4_place *
     return 0;
 }
 
-/* Marks the cell of a place at the frames of its span; 0: it was marked at its own frame already. */
+/* Marks the cell of a place at the frames of its span; 0: it was marked at its own frame already.
+ */
 static int mark(ted4_cells *taken, const ted4_place *p, const ted4_span *span)
 {
-    const double   cell = ted4_math_exp2(ceil(ted4_math_log2((double)p->size)));
+    const double cell = ted4_math_exp2(ceil(ted4_math_log2((double)p->size)));
     const uint64_t key = ted4_cell_key(p->point, cell);
 
     if (!ted4_cells_add(taken, ted4_mix(key + p->frame) | 1))
@@ -122,24 +125,24 @@ static int plant(ted4_trainer *t, const ted4_places *list, const ted4_sightings 
 {
     const size_t n_old = t->anchors.n, most = (size_t)t->opt.max_anchors;
     const size_t room = n_old < most ? most - n_old : 0;
-    ted4_cells   taken;
-    int          bad = 0;
+    ted4_cells taken;
+    int bad = 0;
 
     if (ted4_cells_init(&taken, (list->n < room ? list->n : room) * t->data->n_frames) != 0)
         return ted4_trainer_fail(t, "no memory for new anchors");
     for (size_t i = 0; !bad && i < list->n && t->anchors.n < most; i++) {
         const ted4_place *p = &list->item[i];
-        ted4_span         span;
+        ted4_span span;
 
-        if (ted4_sightings_span(s, i, p->frame, &span) &&
-            mark(&taken, p, &span))
+        if (ted4_sightings_span(s, i, p->frame, &span) && mark(&taken, p, &span))
             bad = add(t, l, n_old, p, &span) != 0;
     }
     ted4_cells_finish(&taken);
     return bad ? -1 : 0;
 }
 
-/* The list in the order of score, most at most, and its points and colours by themselves. 0, or -1: no memory. */
+/* The list in the order of score, most at most, and its points and colours by themselves. 0, or -1:
+ * no memory. */
 static int arrange(ted4_places *list, size_t most, float **point, uint8_t **colour)
 {
     if (list->n > 0)
@@ -158,13 +161,13 @@ static int arrange(ted4_places *list, size_t most, float **point, uint8_t **colo
 
 int ted4_sprout(ted4_trainer *t)
 {
-    ted4_places    list = { 0 };
+    ted4_places list = { 0 };
     ted4_sightings s = { 0 };
-    looks          l = { 0 };
-    float         *point = NULL;
-    uint8_t       *colour = NULL;
-    const int      reach = ted4_sprout_reach(t);
-    int            bad = 0;
+    looks l = { 0 };
+    float *point = NULL;
+    uint8_t *colour = NULL;
+    const int reach = ted4_sprout_reach(t);
+    int bad = 0;
 
     if (reach < 0)
         return 0;

@@ -12,17 +12,18 @@
 /* Share of the cameras that must agree, and how far from the best a time may be to count. */
 #define MUST_AGREE    0.5f
 #define NEAR_BEST     0.7f
-/* What comes and goes is there at no more than half of the times that are known. Or it is clearly gone, for all but a few of the cameras, at a quarter of
- * them: where other cameras look each time, the share of those that a thing is hidden from varies, too. */
+/* What comes and goes is there at no more than half of the times that are known. Or it is clearly
+ * gone, for all but a few of the cameras, at a quarter of them: where other cameras look each time,
+ * the share of those that a thing is hidden from varies, too. */
 #define LONGEST_SHARE 0.5f
 #define CLEARLY_GONE  0.25f
 #define GONE_SHARE    0.25f
 
 typedef struct {
     ted4_sightings *s;
-    const uint8_t  *pixels;
-    ted4_view       view;
-    uint32_t        frame;
+    const uint8_t *pixels;
+    ted4_view view;
+    uint32_t frame;
 } match_job;
 
 /* Points of one job. */
@@ -31,13 +32,13 @@ enum { RUN = 4096 };
 static void match_run(void *arg, size_t run)
 {
     const match_job *j = arg;
-    ted4_sightings  *s = j->s;
-    const size_t     end = (run + 1) * RUN < s->n ? (run + 1) * RUN : s->n;
+    ted4_sightings *s = j->s;
+    const size_t end = (run + 1) * RUN < s->n ? (run + 1) * RUN : s->n;
 
     for (size_t i = run * RUN; i < end; i++) {
         const size_t at = j->frame * s->n + i;
-        size_t       pixel;
-        float        depth;
+        size_t pixel;
+        float depth;
 
         if (!ted4_view_pixel(&j->view, s->point + 3 * i, &pixel, &depth))
             continue;
@@ -53,7 +54,7 @@ static int match_pictures(ted4_sightings *s, ted4_trainer *t)
 
     for (size_t i = 0; i < t->data->n_pictures; i++) {
         const ted4_picture *pic = &t->data->pictures[i];
-        float               centre[3];
+        float centre[3];
 
         if (pic->is_test)
             continue;
@@ -71,7 +72,8 @@ static int match_pictures(ted4_sightings *s, ted4_trainer *t)
     return 0;
 }
 
-/* count[n_frames][n]: each becomes the sum over so many frames before and after its own. column: room for n_frames. */
+/* count[n_frames][n]: each becomes the sum over so many frames before and after its own. column:
+ * room for n_frames. */
 static void widen(uint16_t *count, size_t n, uint32_t n_frames, uint32_t reach, uint16_t *column)
 {
     for (size_t i = 0; i < n; i++) {
@@ -104,7 +106,8 @@ static int widen_counts(ted4_sightings *s, uint32_t reach)
     return 0;
 }
 
-int ted4_sightings_count(ted4_sightings *s, ted4_trainer *t, const float *point, const uint8_t *colour, size_t n, uint32_t reach)
+int ted4_sightings_count(ted4_sightings *s, ted4_trainer *t, const float *point,
+                         const uint8_t *colour, size_t n, uint32_t reach)
 {
     memset(s, 0, sizeof *s);
     s->point = point;
@@ -117,7 +120,9 @@ int ted4_sightings_count(ted4_sightings *s, ted4_trainer *t, const float *point,
         return ted4_trainer_fail(t, "no memory to look for what comes and goes");
     if (match_pictures(s, t) != 0)
         return -1;
-    return widen_counts(s, reach) != 0 ? ted4_trainer_fail(t, "no memory to look for what comes and goes") : 0;
+    return widen_counts(s, reach) != 0
+               ? ted4_trainer_fail(t, "no memory to look for what comes and goes")
+               : 0;
 }
 
 void ted4_sightings_free(ted4_sightings *s)
@@ -127,7 +132,8 @@ void ted4_sightings_free(ted4_sightings *s)
     memset(s, 0, sizeof *s);
 }
 
-/* Do enough cameras look at point i at that time to tell whether it is there? Not where pictures are held out. */
+/* Do enough cameras look at point i at that time to tell whether it is there? Not where pictures
+ * are held out. */
 static int is_known(const ted4_sightings *s, uint32_t frame, size_t i)
 {
     return s->seen[frame * s->n + i] >= TED4_CAMERAS_NEEDED;
@@ -140,13 +146,15 @@ static float agreement(const ted4_sightings *s, uint32_t frame, size_t i)
     return is_known(s, frame, i) ? (float)s->hits[at] / (float)s->seen[at] : 0.0f;
 }
 
-/* The last frame of the run that point i is there for, from a frame on in steps of +1 or -1, and in *gone how far behind it the next known time is. A time that
- * nobody knows belongs to the run when the known times on both sides do, or when there is none on the far side. */
-static uint32_t run_end(const ted4_sightings *s, size_t i, uint32_t frame, int step, float enough, uint32_t *gone)
+/* The last frame of the run that point i is there for, from a frame on in steps of +1 or -1, and in
+ * *gone how far behind it the next known time is. A time that nobody knows belongs to the run when
+ * the known times on both sides do, or when there is none on the far side. */
+static uint32_t run_end(const ted4_sightings *s, size_t i, uint32_t frame, int step, float enough,
+                        uint32_t *gone)
 {
     const uint32_t last = step > 0 ? s->n_frames - 1 : 0;
 
-    for (uint32_t f = frame; f != last; ) {
+    for (uint32_t f = frame; f != last;) {
         f += (uint32_t)step;
         if (!is_known(s, f, i))
             continue;
@@ -195,19 +203,24 @@ int ted4_sightings_span(const ted4_sightings *s, size_t i, uint32_t frame, ted4_
     return 1;
 }
 
-/* In distances to the next known time: how far beyond its first and last frame a span goes, so that coding it a little off costs nothing, and how fast it
- * fades then: at that time exp(-4.6) is left. */
+/* In distances to the next known time: how far beyond its first and last frame a span goes, so that
+ * coding it a little off costs nothing, and how fast it fades then: at that time exp(-4.6) is left.
+ */
 #define SPAN_BEYOND 0.25f
 #define SPAN_FADES  0.35f
 
 void ted4_span_set(ted4_trainer *t, size_t i, const ted4_span *span)
 {
-    const int   first = t->layout.first[TED4_TAU];
+    const int first = t->layout.first[TED4_TAU];
     const float frame = 1.0f / (float)(t->data->n_frames - 1);
     const float before = (float)span->before, after = (float)span->after;
 
-    *ted4_cell(&t->anchors, TED4_ROW_VALUE, i, first) = ((float)span->from - SPAN_BEYOND * before) * frame;
-    *ted4_cell(&t->anchors, TED4_ROW_VALUE, i, first + 1) = ted4_math_log2f(SPAN_FADES * before * frame);
-    *ted4_cell(&t->anchors, TED4_ROW_VALUE, i, first + 2) = ((float)span->to + SPAN_BEYOND * after) * frame;
-    *ted4_cell(&t->anchors, TED4_ROW_VALUE, i, first + 3) = ted4_math_log2f(SPAN_FADES * after * frame);
+    *ted4_cell(&t->anchors, TED4_ROW_VALUE, i, first) = ((float)span->from - SPAN_BEYOND * before) *
+                                                        frame;
+    *ted4_cell(&t->anchors, TED4_ROW_VALUE, i, first + 1) =
+        ted4_math_log2f(SPAN_FADES * before * frame);
+    *ted4_cell(&t->anchors, TED4_ROW_VALUE, i, first + 2) =
+        ((float)span->to + SPAN_BEYOND * after) * frame;
+    *ted4_cell(&t->anchors, TED4_ROW_VALUE, i, first + 3) =
+        ted4_math_log2f(SPAN_FADES * after * frame);
 }

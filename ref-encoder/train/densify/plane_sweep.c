@@ -1,4 +1,4 @@
-/* plane_sweep.c - see sprout.h: the places of one frame.
+/* plane_sweep.c - see mv_seed.h: the places of one frame.
  * SPDX-License-Identifier: BSD-2-Clause */
 #include <math.h>
 #include <stdlib.h>
@@ -10,37 +10,41 @@
 #include "train/model/normalise.h"
 #include "mv_seed.h"
 
-/* A pixel misses something when its error, averaged over the channels, is this many of 255; one that confirms it needs half of that. */
-#define MISSING 24
+/* A pixel misses something when its error, averaged over the channels, is this many of 255; one
+ * that confirms it needs half of that. */
+#define MISSING      24
 /* Pixels looked at are this share of the picture's width apart. */
-#define SPACING (1.0f / 120.0f)
+#define SPACING      (1.0f / 120.0f)
 /* Depths tried lie at most this many pixels apart in any other picture. */
 #define PIXELS_APART 1.5f
 enum { FEWEST_DEPTHS = 16, MOST_DEPTHS = 512 };
-/* Depths begin and end at these multiples of the depths between which 96 % of a view's anchors lie. */
-#define NEARER  0.5f
-#define FARTHER 1.2f
+/* Depths begin and end at these multiples of the depths between which 96 % of a view's anchors lie.
+ */
+#define NEARER   0.5f
+#define FARTHER  1.2f
 #define OUTLIERS 0.02f
 /* One picture of the frame, or of those around it. */
 typedef struct {
     ted4_view view;
-    float     centre[3];
-    float     nearest, farthest;    /* depths to try */
-    int       depths;
-    int       is_own;               /* of the frame itself */
-    int       helps;                /* in the search for what one of them misses: it is another one, far enough from it */
-    uint8_t  *rgb, *error;          /* owned: [pixels][3], [pixels] */
+    float centre[3];
+    float nearest, farthest; /* depths to try */
+    int depths;
+    int is_own; /* of the frame itself */
+    int helps;  /* in the search for what one of them misses: it is another one, far enough from it
+                 */
+    uint8_t *rgb, *error; /* owned: [pixels][3], [pixels] */
 } eye;
 
 typedef struct {
-    const eye  *eyes;
-    size_t      n, self;
-    int         step;               /* pixels between those looked at */
-    ted4_place *found;              /* [rows][columns], score 0: nothing */
-    int         columns;
+    const eye *eyes;
+    size_t n, self;
+    int step;          /* pixels between those looked at */
+    ted4_place *found; /* [rows][columns], score 0: nothing */
+    int columns;
 } search_job;
 
-/* Distance by which the point at 1/z is off in the other picture when 1/z is off by one, roughly. */
+/* Distance by which the point at 1/z is off in the other picture when 1/z is off by one, roughly.
+ */
 static float parallax(const eye *a, const eye *b)
 {
     float square = 0;
@@ -67,13 +71,13 @@ static void count_depths(eye *eyes, size_t n, size_t self)
 static float confirm(const eye *e, const float p[3], const uint8_t colour[3], int *looks)
 {
     size_t pixel;
-    float  depth;
+    float depth;
 
     *looks = ted4_view_pixel(&e->view, p, &pixel, &depth);
-    if (!*looks || e->error[pixel] < MISSING / 2 ||
-        !ted4_colour_agrees(e->rgb + 3 * pixel, colour))
+    if (!*looks || e->error[pixel] < MISSING / 2 || !ted4_colour_agrees(e->rgb + 3 * pixel, colour))
         return 0.0f;
-    return 1.0f - (float)ted4_colour_far(e->rgb + 3 * pixel, colour) / (3.0f * TED4_COLOUR_NEAR + 1.0f);
+    return 1.0f -
+           (float)ted4_colour_far(e->rgb + 3 * pixel, colour) / (3.0f * TED4_COLOUR_NEAR + 1.0f);
 }
 
 /* Point at depth z on the ray through a pixel's centre. */
@@ -89,15 +93,15 @@ static void point_at(const ted4_view *v, int column, int row, float z, float p[3
 /* The depth of a pixel that most of the other cameras confirm. */
 static void sweep(const search_job *j, int column, int row, ted4_place *best)
 {
-    const eye     *me = &j->eyes[j->self];
-    const size_t   pixel = (size_t)row * (size_t)me->view.width + (size_t)column;
+    const eye *me = &j->eyes[j->self];
+    const size_t pixel = (size_t)row * (size_t)me->view.width + (size_t)column;
     const uint8_t *colour = me->rgb + 3 * pixel;
 
     for (int k = 0; k < me->depths; k++) {
         const float part = (float)k / (float)(me->depths - 1);
         const float z = 1.0f / ((1.0f - part) / me->nearest + part / me->farthest);
-        float       p[3], score = 0;
-        int         seen = 0, agree = 0;
+        float p[3], score = 0;
+        int seen = 0, agree = 0;
 
         point_at(&me->view, column, row, z, p);
         if (fabsf(p[0]) > 1.0f || fabsf(p[1]) > 1.0f || fabsf(p[2]) > 1.0f)
@@ -126,12 +130,12 @@ static void sweep(const search_job *j, int column, int row, ted4_place *best)
 static void search_row(void *arg, size_t r)
 {
     const search_job *j = arg;
-    const eye        *me = &j->eyes[j->self];
-    const int         row = (int)r * j->step + j->step / 2;
+    const eye *me = &j->eyes[j->self];
+    const int row = (int)r * j->step + j->step / 2;
 
     for (int c = 0; c < j->columns; c++) {
         ted4_place *place = &j->found[r * (size_t)j->columns + (size_t)c];
-        const int   column = c * j->step + j->step / 2;
+        const int column = c * j->step + j->step / 2;
 
         memset(place, 0, sizeof *place);
         if (row < me->view.height && column < me->view.width &&
@@ -156,7 +160,7 @@ static int depth_range(const ted4_trainer *t, eye *e)
     if (z == NULL)
         return -1;
     for (size_t i = 0; i < t->anchors.n; i++) {
-        float  p[3];
+        float p[3];
         size_t pixel;
 
         for (int k = 0; k < 3; k++)
@@ -178,7 +182,7 @@ static int depth_range(const ted4_trainer *t, eye *e)
 static int open_eye(ted4_trainer *t, size_t item, eye *e)
 {
     const ted4_picture *pic = &t->data->pictures[item];
-    const uint8_t      *truth = ted4_trainer_seen(t, item);
+    const uint8_t *truth = ted4_trainer_seen(t, item);
 
     if (truth == NULL)
         return -1;
@@ -212,7 +216,7 @@ static int put(ted4_places *l, const ted4_place *p)
 {
     if (l->n == l->capacity) {
         const size_t size = l->capacity + l->capacity / 2 + 1024;
-        ted4_place  *item = realloc(l->item, size * sizeof *item);
+        ted4_place *item = realloc(l->item, size * sizeof *item);
 
         if (item == NULL)
             return -1;
@@ -223,17 +227,21 @@ static int put(ted4_places *l, const ted4_place *p)
     return 0;
 }
 
-/* What one camera of the frame misses. Those of other frames may be the same camera again, which agrees with itself about any depth. 0, or -1: no memory. */
-static int search_eye(const ted4_trainer *t, eye *eyes, size_t n, size_t self, uint32_t frame, ted4_places *list)
+/* What one camera of the frame misses. Those of other frames may be the same camera again, which
+ * agrees with itself about any depth. 0, or -1: no memory. */
+static int search_eye(const ted4_trainer *t, eye *eyes, size_t n, size_t self, uint32_t frame,
+                      ted4_places *list)
 {
-    const int    width = eyes[self].view.width, height = eyes[self].view.height;
-    const int    step = (int)fmaxf(1.0f, roundf(SPACING * (float)width));
-    const size_t columns = (size_t)((width + step - 1) / step), rows = (size_t)((height + step - 1) / step);
-    search_job   j = { eyes, n, self, step, malloc(rows * columns * sizeof *j.found), (int)columns };
-    int          bad = j.found == NULL;
+    const int width = eyes[self].view.width, height = eyes[self].view.height;
+    const int step = (int)fmaxf(1.0f, roundf(SPACING * (float)width));
+    const size_t columns = (size_t)((width + step - 1) / step),
+                 rows = (size_t)((height + step - 1) / step);
+    search_job j = { eyes, n, self, step, malloc(rows * columns * sizeof *j.found), (int)columns };
+    int bad = j.found == NULL;
 
     for (size_t i = 0; i < n; i++)
-        eyes[i].helps = i != self && (eyes[i].is_own || ted4_turns_apart(eyes[self].centre, eyes[i].centre));
+        eyes[i].helps = i != self &&
+                        (eyes[i].is_own || ted4_turns_apart(eyes[self].centre, eyes[i].centre));
     if (!bad)
         ted4_parallel_for(t->parallel, rows, search_row, &j);
     for (size_t i = 0; !bad && i < rows * columns; i++)
@@ -245,11 +253,12 @@ static int search_eye(const ted4_trainer *t, eye *eyes, size_t n, size_t self, u
     return bad ? -1 : 0;
 }
 
-/* The surest place of each cell from the first on, and of these the surest, most at most. 0, or -1: no memory. */
+/* The surest place of each cell from the first on, and of these the surest, most at most. 0, or -1:
+ * no memory. */
 static int thin(ted4_places *l, size_t first, size_t most)
 {
     ted4_cells taken;
-    size_t     n = first;
+    size_t n = first;
 
     if (l->n == first)
         return 0;
@@ -273,7 +282,8 @@ static int is_near(const ted4_picture *p, uint32_t frame, uint32_t reach)
     return !p->is_test && p->frame + reach >= frame && p->frame <= frame + reach;
 }
 
-/* The pictures that look at a frame, in eyes[] if there is room for them; how many. 0, or -1 with t->message, in *bad. */
+/* The pictures that look at a frame, in eyes[] if there is room for them; how many. 0, or -1 with
+ * t->message, in *bad. */
 static size_t open_eyes(ted4_trainer *t, uint32_t frame, uint32_t reach, eye *eyes, int *bad)
 {
     size_t n = 0;
@@ -295,7 +305,7 @@ static size_t open_eyes(ted4_trainer *t, uint32_t frame, uint32_t reach, eye *ey
 int ted4_sprout_search(ted4_trainer *t, uint32_t frame, uint32_t reach, ted4_places *list)
 {
     const size_t first = list->n;
-    int          bad = 0;
+    int bad = 0;
     const size_t n = open_eyes(t, frame, reach, NULL, &bad);
 
     if (n < TED4_CAMERAS_NEEDED)

@@ -37,20 +37,21 @@ int ted4_is_transient(const ted4_trainer *t, size_t i)
     const int first = t->layout.first[TED4_TAU];
 
     return first >= 0 && *ted4_cell(&t->anchors, TED4_ROW_VALUE, i, first + 2) -
-                             *ted4_cell(&t->anchors, TED4_ROW_VALUE, i, first) < 1.0f;
+                                 *ted4_cell(&t->anchors, TED4_ROW_VALUE, i, first) <
+                             1.0f;
 }
 
 int ted4_seed_transients(ted4_trainer *t)
 {
-    const size_t   n = t->anchors.n;
+    const size_t n = t->anchors.n;
     ted4_sightings s = { 0 };
-    int            bad;
+    int bad;
 
     if (t->layout.first[TED4_TAU] < 0 || t->data->n_frames < 2 || t->data->random_points ||
         t->data->point_rgb == NULL)
         return 0;
-    float   *points = malloc((t->data->n_points + 1) * 3 * sizeof *points);
-    float   *place = malloc((n + 1) * 3 * sizeof *place);
+    float *points = malloc((t->data->n_points + 1) * 3 * sizeof *points);
+    float *place = malloc((n + 1) * 3 * sizeof *place);
     uint8_t *colour = malloc(3 * n + 1);
 
     bad = points == NULL || place == NULL || colour == NULL;

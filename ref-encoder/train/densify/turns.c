@@ -34,9 +34,9 @@ int ted4_turns_apart(const float a[3], const float b[3])
 /* Pictures for training of each frame, by frame: item[first[f]] to item[first[f + 1] - 1], and
  * the centres of their cameras. */
 typedef struct {
-    uint32_t *first, *item;     /* owned */
-    float    *centre;           /* owned: [n_pictures][3] */
-    uint32_t  n_frames;
+    uint32_t *first, *item; /* owned */
+    float *centre;          /* owned: [n_pictures][3] */
+    uint32_t n_frames;
 } frames;
 
 static void free_frames(frames *f)
@@ -75,11 +75,11 @@ static int list_frames(frames *f, const ted4_trainer *t)
 static int cameras(const frames *f, uint32_t from, uint32_t to)
 {
     const float *found[WANTED];
-    int          n = 0;
+    int n = 0;
 
     for (uint32_t k = f->first[from]; k < f->first[to + 1] && n < WANTED; k++) {
         const float *c = f->centre + 3 * (size_t)f->item[k];
-        int          new = 1;
+        int new = 1;
 
         for (int i = 0; i < n; i++)
             new &= ted4_turns_apart(found[i], c);
@@ -109,7 +109,7 @@ static int is_enough(const frames *f, uint32_t reach)
 int ted4_turns_reach(const ted4_trainer *t)
 {
     frames f = { 0 };
-    int    reach = -1;
+    int reach = -1;
 
     if (list_frames(&f, t) == 0) {
         for (uint32_t k = 0; k < f.n_frames && reach < 0; k++)

@@ -47,7 +47,7 @@ static size_t largest_picture(const ted4_dataset *d)
 
     for (size_t i = 0; i < d->n_pictures; i++) {
         const ted4_camera *c = &d->pictures[i].camera;
-        const size_t       n = (size_t)c->width * (size_t)c->height;
+        const size_t n = (size_t)c->width * (size_t)c->height;
 
         largest = n > largest ? n : largest;
     }
@@ -67,7 +67,9 @@ static int reserve(ted4_colour *c, size_t pixels)
     c->sums = malloc(n_bands(pixels) * N * sizeof *c->sums);
     c->sorted = malloc(n * sizeof *c->sorted);
     return c->steps != NULL && c->value != NULL && c->m != NULL && c->v != NULL &&
-           c->image != NULL && c->seen != NULL && c->sums != NULL && c->sorted != NULL ? 0 : -1;
+                   c->image != NULL && c->seen != NULL && c->sums != NULL && c->sorted != NULL
+               ? 0
+               : -1;
 }
 
 int ted4_colour_init(ted4_colour *c, const ted4_dataset *d)
@@ -118,7 +120,9 @@ int ted4_colour_finite(const ted4_colour *c)
 const float *ted4_colour_apply(ted4_colour *c, uint32_t camera, const float *image, size_t pixels,
                                const ted4_parallel *p)
 {
-    ted4_colour_job j = { .image = image, .map = c->value[camera], .to = c->image, .pixels = pixels };
+    ted4_colour_job j = {
+        .image = image, .map = c->value[camera], .to = c->image, .pixels = pixels
+    };
 
     ted4_parallel_for(p, n_bands(pixels), TED4_IN_USE(ted4_colour_apply_band), &j);
     return c->image;
@@ -149,15 +153,15 @@ int ted4_colour_invert(const float *a, double inverse[9])
 
 typedef struct {
     const uint8_t *picture;
-    uint8_t       *to;
-    size_t         pixels;
-    double         inverse[9], v[3];
+    uint8_t *to;
+    size_t pixels;
+    double inverse[9], v[3];
 } undo_job;
 
 static void undo_band(void *arg, size_t band)
 {
     const undo_job *j = arg;
-    const double   *m = j->inverse;
+    const double *m = j->inverse;
 
     for (size_t i = band * BAND; i < least((band + 1) * BAND, j->pixels); i++) {
         double c[3];
@@ -165,8 +169,8 @@ static void undo_band(void *arg, size_t band)
         for (int k = 0; k < 3; k++)
             c[k] = (double)j->picture[3 * i + (size_t)k] - 255.0 * j->v[k];
         for (int k = 0; k < 3; k++)
-            j->to[3 * i + (size_t)k] =
-                (uint8_t)fmin(fmax(c[0] * m[k] + c[1] * m[3 + k] + c[2] * m[6 + k] + 0.5, 0.0), 255.0);
+            j->to[3 * i + (size_t)k] = (uint8_t)fmin(
+                fmax(c[0] * m[k] + c[1] * m[3 + k] + c[2] * m[6 + k] + 0.5, 0.0), 255.0);
     }
 }
 
@@ -174,8 +178,10 @@ const uint8_t *ted4_colour_undo(ted4_colour *c, uint32_t camera, const uint8_t *
                                 size_t pixels, const ted4_parallel *p)
 {
     const float *map = c->value[camera];
-    undo_job     j = { .picture = picture, .to = c->seen, .pixels = pixels,
-                       .v = { (double)map[ROW_V], (double)map[ROW_V + 1], (double)map[ROW_V + 2] } };
+    undo_job j = { .picture = picture,
+                   .to = c->seen,
+                   .pixels = pixels,
+                   .v = { (double)map[ROW_V], (double)map[ROW_V + 1], (double)map[ROW_V + 2] } };
 
     if (ted4_colour_invert(map, j.inverse) != 0)
         return picture;
@@ -209,8 +215,8 @@ static int compare(const void *x, const void *y)
 static double middle_of(ted4_colour *c, int k)
 {
     const size_t out = c->n_corrected / 4;
-    size_t       n = 0;
-    double       sum = 0;
+    size_t n = 0;
+    double sum = 0;
 
     for (size_t i = 0; i < c->n_cameras; i++)
         if (c->corrected[i])
@@ -249,7 +255,7 @@ void ted4_colour_update(ted4_colour *c, uint32_t camera, const ted4_colour_map g
                         double rate, double penalty)
 {
     float *x = c->value[camera];
-    float  g[N];
+    float g[N];
 
     for (int k = 0; k < N; k++)
         g[k] = gradient[k] + (float)(2.0 * penalty) * x[k];

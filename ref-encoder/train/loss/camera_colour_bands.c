@@ -1,6 +1,6 @@
-/* camera_colour_bands.c - the passes of colour.c over pixels. Sums over pixels go to 16 lanes, pixel i to
- * lane i mod 16, and lanes are added in order.
- * SPDX-License-Identifier: BSD-2-Clause */
+/* camera_colour_bands.c - the passes of camera_colour.c over pixels. Sums over pixels go to 16
+ * lanes, pixel i to lane i mod 16, and lanes are added in order. SPDX-License-Identifier:
+ * BSD-2-Clause */
 #include "camera_colour_job.h"
 
 #include "render/vec.h"
@@ -18,9 +18,9 @@ void TED4_LEVELED(ted4_colour_apply_band)(void *job, size_t band)
 
     for (int k = 0; k < 3; k++) {
         const float *a = j->map + k;
-        const float  of_r = a[0] + (k == 0), of_g = a[3] + (k == 1), of_b = a[6] + (k == 2);
-        const float  v = a[TED4_COLOUR_ROW_V];
-        float       *to = j->to + (size_t)k * j->pixels + first;
+        const float of_r = a[0] + (k == 0), of_g = a[3] + (k == 1), of_b = a[6] + (k == 2);
+        const float v = a[TED4_COLOUR_ROW_V];
+        float *to = j->to + (size_t)k * j->pixels + first;
 
 #pragma omp simd
         for (size_t i = 0; i < n; i++)
@@ -29,10 +29,11 @@ void TED4_LEVELED(ted4_colour_apply_band)(void *job, size_t band)
 }
 
 /* Products of the pixels of one lane group; 0 for those from n on. */
-TED4_INLINE void add_group(const float *image, const float *d, size_t plane, size_t n, ted4_vf sum[4][TED4_VECS])
+TED4_INLINE void add_group(const float *image, const float *d, size_t plane, size_t n,
+                           ted4_vf sum[4][TED4_VECS])
 {
     for (size_t p = 0; p < TED4_VECS; p++) {
-        const size_t  at = p * TED4_VEC, left = n > at ? n - at : 0;
+        const size_t at = p * TED4_VEC, left = n > at ? n - at : 0;
         const ted4_vf e = ted4_vf_load_n(d + at, left);
 
         for (size_t k = 0; k < 3; k++)
@@ -43,7 +44,7 @@ TED4_INLINE void add_group(const float *image, const float *d, size_t plane, siz
 
 static double add_lanes(const ted4_vf sum[TED4_VECS])
 {
-    float  lane[TED4_LANE_GROUP];
+    float lane[TED4_LANE_GROUP];
     double total = 0;
 
     memcpy(lane, sum, sizeof lane);
@@ -57,7 +58,7 @@ static double add_lanes(const ted4_vf sum[TED4_VECS])
 static void add_products(const float *image, const float *d, size_t plane, size_t n, double *column)
 {
     const size_t whole = n / TED4_LANE_GROUP * TED4_LANE_GROUP;
-    ted4_vf      sum[4][TED4_VECS];
+    ted4_vf sum[4][TED4_VECS];
 
     for (int k = 0; k < 4; k++)
         for (int p = 0; p < TED4_VECS; p++)
@@ -76,7 +77,7 @@ static void turn_gradient(const float *a, float *d, size_t plane, size_t n)
     const float r0 = a[0] + 1.0f, r1 = a[1], r2 = a[2];
     const float g0 = a[3], g1 = a[4] + 1.0f, g2 = a[5];
     const float b0 = a[6], b1 = a[7], b2 = a[8] + 1.0f;
-    float      *r = d, *g = r + plane, *b = g + plane;
+    float *r = d, *g = r + plane, *b = g + plane;
 
 #pragma omp simd
     for (size_t i = 0; i < n; i++) {
@@ -92,7 +93,7 @@ void TED4_LEVELED(ted4_colour_backward_band)(void *job, size_t band)
 {
     const ted4_colour_job *j = job;
     const size_t end = least((band + 1) * TED4_COLOUR_BAND, j->pixels);
-    double      *sum = j->sums + band * TED4_COLOUR_VALUES;
+    double *sum = j->sums + band * TED4_COLOUR_VALUES;
 
     for (int k = 0; k < TED4_COLOUR_VALUES; k++)
         sum[k] = 0;

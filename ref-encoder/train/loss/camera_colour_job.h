@@ -1,5 +1,5 @@
-/* camera_colour_job.h - a picture of which colours are corrected, in bands of pixels. Private to colour.c
- * and colour_bands.c.
+/* camera_colour_job.h - a picture of which colours are corrected, in bands of pixels. Private to
+ * camera_colour.c and camera_colour_bands.c.
  * SPDX-License-Identifier: BSD-2-Clause */
 #ifndef TED4_COLOUR_JOB_H
 #define TED4_COLOUR_JOB_H
@@ -13,9 +13,9 @@ enum { TED4_COLOUR_RUN = 1024, TED4_COLOUR_BAND = 16 * TED4_COLOUR_RUN, TED4_COL
 
 typedef struct {
     const float *image, *map;
-    float       *to;            /* apply: the corrected picture; backward: the gradient, in place */
-    double      *sums;
-    size_t       pixels;
+    float *to; /* apply: the corrected picture; backward: the gradient, in place */
+    double *sums;
+    size_t pixels;
 } ted4_colour_job;
 
 TED4_EACH_LEVEL(void, ted4_colour_apply_band, void *job, size_t band);

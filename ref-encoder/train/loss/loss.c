@@ -1,9 +1,11 @@
-/* loss.c - see loss.h. SSIM of an 11 x 11 Gaussian window (sigma 1.5), turned by 45 degrees: with u = x + y and v = x - y the
- * four filtered planes u, v, u^2, v^2 give all that SSIM needs (instead of five), and v is the L1 residual as well.
+/* loss.c - see loss.h. SSIM of an 11 x 11 Gaussian window (sigma 1.5), turned by 45 degrees: with u
+ * = x + y and v = x - y the four filtered planes u, v, u^2, v^2 give all that SSIM needs (instead
+ * of five), and v is the L1 residual as well.
  *
- * Three passes (loss_passes.c), each parallel over fixed pieces of the picture: (1) u, v and L1; (2) the four filters, SSIM and
- * its derivatives by the filtered planes; (3) the same filter, which is its own adjoint, over the three derivative planes. A
- * filter runs along rows into a ring of 11 rows of a tile that stays in the first-level cache, then down the ring.
+ * Three passes (loss_passes.c), each parallel over fixed pieces of the picture: (1) u, v and L1;
+ * (2) the four filters, SSIM and its derivatives by the filtered planes; (3) the same filter, which
+ * is its own adjoint, over the three derivative planes. A filter runs along rows into a ring of 11
+ * rows of a tile that stays in the first-level cache, then down the ring.
  * SPDX-License-Identifier: BSD-2-Clause */
 #include "loss_state.h"
 
@@ -11,10 +13,10 @@
 #include <stdlib.h>
 
 struct ted4_loss_workspace {
-    float  *block;              /* owned: u, v, then three derivatives, each [3][height][stride] */
-    size_t  capacity;           /* floats in block */
-    double *sum;                /* owned: one partial sum a chunk */
-    size_t  n_sums;
+    float *block;    /* owned: u, v, then three derivatives, each [3][height][stride] */
+    size_t capacity; /* floats in block */
+    double *sum;     /* owned: one partial sum a chunk */
+    size_t n_sums;
 };
 
 ted4_loss_workspace *ted4_loss_workspace_new(void)
@@ -68,24 +70,26 @@ double ted4_loss(ted4_loss_workspace *w, const float *image, const uint8_t *trut
     j.n_splits = (height + TED4_LOSS_SPLIT - 1) / TED4_LOSS_SPLIT;
     j.n_bands = (height + TED4_LOSS_BAND - 1) / TED4_LOSS_BAND;
     j.n_tiles = (width + TED4_LOSS_TILE - 1) / TED4_LOSS_TILE;
-    pieces    = TED4_LOSS_CHANNELS * (size_t)j.n_bands * (size_t)j.n_tiles;
-    j.stride  = (size_t)((width + TED4_LOSS_SIDE - 1) / TED4_LOSS_SIDE * TED4_LOSS_SIDE + 2 * TED4_LOSS_SIDE);
-    j.plane   = j.stride * (size_t)height;
-    volume    = j.plane * TED4_LOSS_CHANNELS;
+    pieces = TED4_LOSS_CHANNELS * (size_t)j.n_bands * (size_t)j.n_tiles;
+    j.stride = (size_t)((width + TED4_LOSS_SIDE - 1) / TED4_LOSS_SIDE * TED4_LOSS_SIDE +
+                        2 * TED4_LOSS_SIDE);
+    j.plane = j.stride * (size_t)height;
+    volume = j.plane * TED4_LOSS_CHANNELS;
     if (reserve(w, volume * 5, pieces > (size_t)j.n_splits ? pieces : (size_t)j.n_splits) != 0)
         return -1.0;
     j.u = w->block;
     j.v = j.u + volume;
     for (int k = 0; k < 3; k++)
         j.d[k] = j.v + (size_t)(k + 1) * volume;
-    j.sum       = w->sum;
-    j.l1_step   = (float)((1.0 - (double)ssim_weight) / count);
+    j.sum = w->sum;
+    j.l1_step = (float)((1.0 - (double)ssim_weight) / count);
     j.ssim_step = (float)((double)ssim_weight / count);
 
     ted4_parallel_for(p, (size_t)j.n_splits, TED4_IN_USE(ted4_loss_split), &j);
     *l1 = sum_of(w->sum, (size_t)j.n_splits) / count;
     ted4_parallel_for(p, pieces, TED4_IN_USE(ted4_loss_similarity), &j);
-    /* Of equal pictures rounding may find a little more than 1, and a negative loss means a failure. */
+    /* Of equal pictures rounding may find a little more than 1, and a negative loss means a
+     * failure. */
     *ssim = fmin(sum_of(w->sum, pieces) / count, 1.0);
     ted4_parallel_for(p, pieces, TED4_IN_USE(ted4_loss_gradient), &j);
     return (1.0 - (double)ssim_weight) * *l1 + (double)ssim_weight * (1.0 - *ssim);

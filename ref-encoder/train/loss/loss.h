@@ -15,8 +15,8 @@
 /* Planes reused from view to view; grows to the largest image seen. */
 typedef struct ted4_loss_workspace ted4_loss_workspace;
 
-ted4_loss_workspace *ted4_loss_workspace_new(void);     /* NULL: no memory */
-void                 ted4_loss_workspace_free(ted4_loss_workspace *w);  /* NULL is fine */
+ted4_loss_workspace *ted4_loss_workspace_new(void);    /* NULL: no memory */
+void ted4_loss_workspace_free(ted4_loss_workspace *w); /* NULL is fine */
 
 /* L, over all pixels and channels. image: planar [3][height][width], not clamped; truth:
  * interleaved bytes [height][width][3].
@@ -24,9 +24,8 @@ void                 ted4_loss_workspace_free(ted4_loss_workspace *w);  /* NULL 
  * structural similarity. Same bits for any number of threads. Returns -1, nothing written, when
  * memory ran out
  * (L itself is never negative for ssim_weight in [0, 1]). */
-double ted4_loss(ted4_loss_workspace *w, const float *image,
-                 const uint8_t *truth, int width, int height,
-                 float ssim_weight, const ted4_parallel *p, float *d_image,
-                 double *l1, double *ssim);
+double ted4_loss(ted4_loss_workspace *w, const float *image, const uint8_t *truth, int width,
+                 int height, float ssim_weight, const ted4_parallel *p, float *d_image, double *l1,
+                 double *ssim);
 
 #endif

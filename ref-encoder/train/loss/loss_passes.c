@@ -6,13 +6,18 @@
 
 #include "render/vec.h"
 
-enum { TAPS = 11, HALF = TAPS / 2, TILE = TED4_LOSS_TILE, SIDE = TED4_LOSS_SIDE, CHANNELS = TED4_LOSS_CHANNELS };
+enum {
+    TAPS = 11,
+    HALF = TAPS / 2,
+    TILE = TED4_LOSS_TILE,
+    SIDE = TED4_LOSS_SIDE,
+    CHANNELS = TED4_LOSS_CHANNELS
+};
 
 /* exp(-k^2 / (2 1.5^2)) for k = 5 .. -5, divided by the sum. */
-static const float GAUSS[TAPS] = {
-    0.00102838008f, 0.00759875814f, 0.0360007721f, 0.10936069f, 0.213005538f, 0.266011725f,
-    0.213005538f, 0.10936069f, 0.0360007721f, 0.00759875814f, 0.00102838008f
-};
+static const float GAUSS[TAPS] = { 0.00102838008f, 0.00759875814f, 0.0360007721f, 0.10936069f,
+                                   0.213005538f,   0.266011725f,   0.213005538f,  0.10936069f,
+                                   0.0360007721f,  0.00759875814f, 0.00102838008f };
 
 typedef float ring4[TAPS][4][TILE];
 typedef float ring3[TAPS][3][TILE];
@@ -24,7 +29,7 @@ static inline int min_int(int a, int b)
 
 static double add_lanes(const ted4_vf sum[TED4_VECS])
 {
-    float  lane[TED4_LANE_GROUP];
+    float lane[TED4_LANE_GROUP];
     double total = 0.0;
 
     memcpy(lane, sum, sizeof lane);
@@ -35,11 +40,13 @@ static double add_lanes(const ted4_vf sum[TED4_VECS])
 
 /* ---- pass 1: u = x + y, v = x - y, sum of |v| ---- */
 
-TED4_INLINE void split_group(const float *x, const float *t, float *u, float *v, ted4_vf sum[TED4_VECS])
+TED4_INLINE void split_group(const float *x, const float *t, float *u, float *v,
+                             ted4_vf sum[TED4_VECS])
 {
     TED4_UNROLL
     for (int p = 0; p < TED4_VECS; p++) {
-        const ted4_vf a = ted4_vf_load(x + p * TED4_VEC), b = ted4_vf_load(t + p * TED4_VEC), d = a - b;
+        const ted4_vf a = ted4_vf_load(x + p * TED4_VEC), b = ted4_vf_load(t + p * TED4_VEC),
+                      d = a - b;
 
         ted4_vf_store(u + p * TED4_VEC, a + b);
         ted4_vf_store(v + p * TED4_VEC, d);
@@ -51,8 +58,8 @@ TED4_INLINE void split_group(const float *x, const float *t, float *u, float *v,
 static double split_row(const float *x, const uint8_t *y, float *u, float *v, int width)
 {
     const int whole = width / TED4_LANE_GROUP * TED4_LANE_GROUP;
-    float     t[TED4_LANE_GROUP], rest[TED4_LANE_GROUP] = {0};
-    ted4_vf   sum[TED4_VECS];
+    float t[TED4_LANE_GROUP], rest[TED4_LANE_GROUP] = { 0 };
+    ted4_vf sum[TED4_VECS];
 
     for (int p = 0; p < TED4_VECS; p++)
         sum[p] = ted4_vf_all(0.0f);
@@ -99,8 +106,8 @@ void TED4_LEVELED(ted4_loss_split)(void *job, size_t i)
             clear_right(j->u + at, j->stride, j->width);
             clear_right(j->v + at, j->stride, j->width);
             sum += split_row(j->image + (size_t)c * (size_t)j->width * (size_t)j->height + row,
-                             j->truth + row * CHANNELS + c,
-                             j->u + at + SIDE, j->v + at + SIDE, j->width);
+                             j->truth + row * CHANNELS + c, j->u + at + SIDE, j->v + at + SIDE,
+                             j->width);
         }
     }
     j->sum[i] = sum;
@@ -109,17 +116,22 @@ void TED4_LEVELED(ted4_loss_split)(void *job, size_t i)
 /* What job i of the second and third pass does. */
 typedef struct {
     size_t channel;
-    int    first, last, x0;     /* rows, first column */
-    int    n, valid;            /* columns: whole lane groups, those of the picture */
+    int first, last, x0; /* rows, first column */
+    int n, valid;        /* columns: whole lane groups, those of the picture */
 } piece;
 
 static piece piece_of(const ted4_loss_job *j, size_t i)
 {
-    const int tile = (int)(i % (size_t)j->n_tiles), band = (int)(i / (size_t)j->n_tiles % (size_t)j->n_bands);
+    const int tile = (int)(i % (size_t)j->n_tiles),
+              band = (int)(i / (size_t)j->n_tiles % (size_t)j->n_bands);
     const int x0 = tile * TILE, n = min_int(TILE, (int)j->stride - 2 * SIDE - x0);
 
-    return (piece){ i / (size_t)j->n_tiles / (size_t)j->n_bands, band * TED4_LOSS_BAND,
-                    min_int((band + 1) * TED4_LOSS_BAND, j->height), x0, n, min_int(n, j->width - x0) };
+    return (piece) { i / (size_t)j->n_tiles / (size_t)j->n_bands,
+                     band * TED4_LOSS_BAND,
+                     min_int((band + 1) * TED4_LOSS_BAND, j->height),
+                     x0,
+                     n,
+                     min_int(n, j->width - x0) };
 }
 
 /* Where row r of a plane holds the first column of a piece. */
@@ -135,7 +147,7 @@ static void filter_squares(const float *u, const float *v, int n, float out[4][T
 {
     for (int x = 0; x < n; x += TED4_VEC) {
         const ted4_vf zero = ted4_vf_all(0.0f);
-        ted4_vf       mu = zero, mv = zero, uu = zero, vv = zero;
+        ted4_vf mu = zero, mv = zero, uu = zero, vv = zero;
 
         TED4_UNROLL
         for (int k = 0; k < TAPS; k++) {
@@ -157,12 +169,12 @@ static void filter_squares(const float *u, const float *v, int n, float out[4][T
 /* SSIM = (A1 A2) / (B1 B2) from the local means mu, mv and second moments uu, vv. With a = mu^2,
  * b = mv^2, p = uu - a, q = vv - b:
  *     A1 = a - b + 2 C1,  B1 = a + b + 2 C1,  A2 = p - q + 2 C2,  B2 = p + q + 2 C2
- * p and q are variances, so nothing is divided by less than 2 C2; where the picture is so bright that their rounding is larger than that, they
- * are held above -C2 / 2, and NaN stays NaN.
- * d: derivatives by what x is filtered into: mu + mv together (du/dx = dv/dx = 1), uu, vv. */
+ * p and q are variances, so nothing is divided by less than 2 C2; where the picture is so bright
+ * that their rounding is larger than that, they are held above -C2 / 2, and NaN stays NaN. d:
+ * derivatives by what x is filtered into: mu + mv together (du/dx = dv/dx = 1), uu, vv. */
 TED4_INLINE ted4_vf similarity(const ted4_vf m[4], ted4_vf d[3])
 {
-    const float   c1 = 2.0f * TED4_SSIM_C1, c2 = 2.0f * TED4_SSIM_C2;
+    const float c1 = 2.0f * TED4_SSIM_C1, c2 = 2.0f * TED4_SSIM_C2;
     const ted4_vf mu = m[0], mv = m[1], least = ted4_vf_all(-0.25f * c2);
     const ted4_vf a = mu * mu, b = mv * mv;
     const ted4_vf p = ted4_vf_max(least, m[2] - a), q = ted4_vf_max(least, m[3] - b);
@@ -195,27 +207,27 @@ static double similarity_row(ring4 ring, int oldest, const piece *p, float *cons
         sum[i] = ted4_vf_all(0.0f);
     for (int x = 0; x < p->n; x += TED4_LANE_GROUP)
         TED4_UNROLL
-        for (int i = 0; i < TED4_VECS; i++) {
-            const int at = x + i * TED4_VEC;
-            ted4_vf   m[4], d[3], s;
+    for (int i = 0; i < TED4_VECS; i++) {
+        const int at = x + i * TED4_VEC;
+        ted4_vf m[4], d[3], s;
+
+        TED4_UNROLL
+        for (int c = 0; c < 4; c++)
+            m[c] = ted4_vf_all(0.0f);
+        TED4_UNROLL
+        for (int k = 0; k < TAPS; k++) {
+            const int slot = oldest + k < TAPS ? oldest + k : oldest + k - TAPS;
 
             TED4_UNROLL
             for (int c = 0; c < 4; c++)
-                m[c] = ted4_vf_all(0.0f);
-            TED4_UNROLL
-            for (int k = 0; k < TAPS; k++) {
-                const int slot = oldest + k < TAPS ? oldest + k : oldest + k - TAPS;
-
-                TED4_UNROLL
-                for (int c = 0; c < 4; c++)
-                    m[c] = ted4_vf_fma(ted4_vf_load(ring[slot][c] + at), ted4_vf_all(GAUSS[k]), m[c]);
-            }
-            s = similarity(m, d);
-            sum[i] += p->valid - at >= TED4_VEC ? s : keep_first(s, p->valid - at);
-            TED4_UNROLL
-            for (int c = 0; c < 3; c++)
-                ted4_vf_store(to[c] + at, d[c]);
+                m[c] = ted4_vf_fma(ted4_vf_load(ring[slot][c] + at), ted4_vf_all(GAUSS[k]), m[c]);
         }
+        s = similarity(m, d);
+        sum[i] += p->valid - at >= TED4_VEC ? s : keep_first(s, p->valid - at);
+        TED4_UNROLL
+        for (int c = 0; c < 3; c++)
+            ted4_vf_store(to[c] + at, d[c]);
+    }
     for (int c = 0; c < 3 && p->valid < p->n; c++)
         memset(to[c] + p->valid, 0, (size_t)(p->n - p->valid) * sizeof(float));
     return add_lanes(sum);
@@ -223,8 +235,8 @@ static double similarity_row(ring4 ring, int oldest, const piece *p, float *cons
 
 static double similarity_piece(const ted4_loss_job *j, const piece *p)
 {
-    ring4  ring;
-    int    slot = 0;
+    ring4 ring;
+    int slot = 0;
     double sum = 0.0;
 
     for (int r = p->first - HALF; r < p->last + HALF; r++) {
@@ -266,22 +278,23 @@ static void filter_derivatives(const float *const d[3], int n, float out[3][TILE
 {
     for (int x = 0; x < n; x += TED4_VEC)
         TED4_UNROLL
-        for (int i = 0; i < 3; i++) {
-            ted4_vf m = ted4_vf_all(0.0f);
+    for (int i = 0; i < 3; i++) {
+        ted4_vf m = ted4_vf_all(0.0f);
 
-            TED4_UNROLL
-            for (int k = 0; k < TAPS; k++)
-                m = ted4_vf_fma(ted4_vf_load(d[i] + x + k - HALF), ted4_vf_all(GAUSS[k]), m);
-            ted4_vf_store(out[i] + x, m);
-        }
+        TED4_UNROLL
+        for (int k = 0; k < TAPS; k++)
+            m = ted4_vf_fma(ted4_vf_load(d[i] + x + k - HALF), ted4_vf_all(GAUSS[k]), m);
+        ted4_vf_store(out[i] + x, m);
+    }
 }
 
-static void gradient_row(const ted4_loss_job *j, ring3 ring, int oldest, size_t from, int valid, float *out)
+static void gradient_row(const ted4_loss_job *j, ring3 ring, int oldest, size_t from, int valid,
+                         float *out)
 {
     for (int x = 0; x < valid; x += TED4_VEC) {
         const ted4_vf a = ted4_vf_load(j->u + from + x), b = ted4_vf_load(j->v + from + x);
-        const ted4_vi sign = (b < 0.0f) - (b > 0.0f);   /* a true comparison is -1 */
-        ted4_vf       m[3], ssim;
+        const ted4_vi sign = (b < 0.0f) - (b > 0.0f); /* a true comparison is -1 */
+        ted4_vf m[3], ssim;
 
         TED4_UNROLL
         for (int i = 0; i < 3; i++)
@@ -295,7 +308,8 @@ static void gradient_row(const ted4_loss_job *j, ring3 ring, int oldest, size_t 
                 m[i] = ted4_vf_fma(ted4_vf_load(ring[slot][i] + x), ted4_vf_all(GAUSS[k]), m[i]);
         }
         ssim = m[0] + 2.0f * (a * m[1] + b * m[2]);
-        ted4_vf_store_n(out + x, __builtin_convertvector(sign, ted4_vf) * j->l1_step - ssim * j->ssim_step,
+        ted4_vf_store_n(out + x,
+                        __builtin_convertvector(sign, ted4_vf) * j->l1_step - ssim * j->ssim_step,
                         (size_t)(valid - x));
     }
 }
@@ -305,7 +319,7 @@ void TED4_LEVELED(ted4_loss_gradient)(void *job, size_t i)
     const ted4_loss_job *j = job;
     const piece p = piece_of(j, i);
     ring3 ring;
-    int   slot = 0;
+    int slot = 0;
 
     for (int r = p.first - HALF; r < p.last + HALF; r++) {
         const size_t at = row_of(j, &p, r < 0 ? 0 : r);
@@ -318,7 +332,8 @@ void TED4_LEVELED(ted4_loss_gradient)(void *job, size_t i)
         slot = slot + 1 < TAPS ? slot + 1 : 0;
         if (r >= p.first + HALF) {
             const int row = r - HALF;
-            const size_t to = (p.channel * (size_t)j->height + (size_t)row) * (size_t)j->width + (size_t)p.x0;
+            const size_t to = (p.channel * (size_t)j->height + (size_t)row) * (size_t)j->width +
+                              (size_t)p.x0;
 
             gradient_row(j, ring, slot, row_of(j, &p, row), p.valid, j->d_image + to);
         }

@@ -18,14 +18,14 @@ enum { TED4_LOSS_SPLIT = 4, TED4_LOSS_BAND = 32, TED4_LOSS_TILE = 128, TED4_LOSS
 enum { TED4_LOSS_SIDE = 16 };
 
 typedef struct {
-    const float   *image;
+    const float *image;
     const uint8_t *truth;
-    float         *d_image;
-    float         *u, *v, *d[3];
-    double        *sum;                 /* [jobs of a pass] */
-    int            width, height, n_splits, n_bands, n_tiles;
-    size_t         stride, plane;       /* floats from row to row, channel to channel */
-    float          l1_step, ssim_step;  /* dL/d|v|, -dL/dSSIM of one value */
+    float *d_image;
+    float *u, *v, *d[3];
+    double *sum; /* [jobs of a pass] */
+    int width, height, n_splits, n_bands, n_tiles;
+    size_t stride, plane;     /* floats from row to row, channel to channel */
+    float l1_step, ssim_step; /* dL/d|v|, -dL/dSSIM of one value */
 } ted4_loss_job;
 
 /* The passes: a ted4_loss_job's rows, pieces, pieces. */

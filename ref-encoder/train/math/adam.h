@@ -14,12 +14,15 @@
 #define TED4_ADAM_EPS   1e-15f
 
 /* Corrections 1 / (1 - beta^step) of step >= 1. */
-typedef struct { float m, v; } ted4_adam_bias;
+typedef struct {
+    float m, v;
+} ted4_adam_bias;
 
 ted4_adam_bias ted4_adam_bias_make(uint64_t step);
 
-/* x -= rate m' / (sqrt(v') + eps) for n values that share a learning rate. A gradient whose square is beyond binary32 moves nothing; v then
- * stays at the largest number that it can hold, from which it decays again. */
+/* x -= rate m' / (sqrt(v') + eps) for n values that share a learning rate. A gradient whose square
+ * is beyond binary32 moves nothing; v then stays at the largest number that it can hold, from which
+ * it decays again. */
 TED4_EACH_LEVEL(void, ted4_adam, float *x, float *m, float *v, const float *gradient, size_t n,
                 float rate, ted4_adam_bias bias);
 

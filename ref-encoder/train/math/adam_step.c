@@ -5,8 +5,9 @@
 #include <float.h>
 #include <math.h>
 
-void TED4_LEVELED(ted4_adam)(float *restrict x, float *restrict m, float *restrict v, const float *restrict gradient,
-                             size_t n, float rate, ted4_adam_bias bias)
+void TED4_LEVELED(ted4_adam)(float *restrict x, float *restrict m, float *restrict v,
+                             const float *restrict gradient, size_t n, float rate,
+                             ted4_adam_bias bias)
 {
     const float step = rate * bias.m;
 

@@ -11,7 +11,7 @@
 #include "recon/strict.h"
 #include "render/leveled.h"
 
-#define TED4_LN2   0x1.62e43p-1f
+#define TED4_LN2 0x1.62e43p-1f
 
 /* x, or the nearer end of the range, or low for a NaN: fit for an integer. */
 static inline float ted4_lane_within(float x, float low, float high)
@@ -20,11 +20,12 @@ static inline float ted4_lane_within(float x, float low, float high)
     return x < high ? x : high;
 }
 
-/* x where on is -1, 0 where it is 0, whatever x: by bits, which every instruction set vectorises. */
+/* x where on is -1, 0 where it is 0, whatever x: by bits, which every instruction set vectorises.
+ */
 static inline float ted4_lane_keep(int32_t on, float x)
 {
     int32_t bits;
-    float   kept;
+    float kept;
 
     memcpy(&bits, &x, sizeof bits);
     bits &= on;
@@ -32,8 +33,8 @@ static inline float ted4_lane_keep(int32_t on, float x)
     return kept;
 }
 
-/* The integer nearest to x, |x| < 2^22, ties to even: adding this constant leaves no bits for a fraction. SSE2 has no
- * instruction for it. */
+/* The integer nearest to x, |x| < 2^22, ties to even: adding this constant leaves no bits for a
+ * fraction. SSE2 has no instruction for it. */
 static inline float ted4_lane_round(float x)
 {
     const float magic = 0x1.8p+23f;
@@ -41,8 +42,8 @@ static inline float ted4_lane_round(float x)
     return (x + magic) - magic;
 }
 
-/* 2^x, x clamped to [-126, 126], to about 1e-7; NaN of a NaN. x + 126.5 is positive, so that truncation rounds x
- * to the nearest integer. */
+/* 2^x, x clamped to [-126, 126], to about 1e-7; NaN of a NaN. x + 126.5 is positive, so that
+ * truncation rounds x to the nearest integer. */
 static inline float ted4_lane_pow2(float x)
 {
     const float c = x < -126.0f ? -126.0f : x > 126.0f ? 126.0f : x;

@@ -1,21 +1,24 @@
-/* prune_units.c - see prune_units.h. With P the inverse of the moments of the units that are left, and w the weights of a reader: without unit j the best weights are
- * w - P_j w_j / P_jj, and the mean square of what is missed grows by w_j^2 / P_jj.
+/* prune_units.c - see prune_units.h. With P the inverse of the moments of the units that are left,
+ * and w the weights of a reader: without unit j the best weights are w - P_j w_j / P_jj, and the
+ * mean square of what is missed grows by w_j^2 / P_jj.
  * SPDX-License-Identifier: BSD-2-Clause */
 #include "prune_units.h"
 
 #include <stdlib.h>
 #include <string.h>
 
-/* Share of the mean square of all units that is added to each: units that never move, or move together, leave P finite. */
+/* Share of the mean square of all units that is added to each: units that never move, or move
+ * together, leave P finite. */
 #define RIDGE 1e-6
 
-/* Weights over the units and the constant: of readers, then of the units themselves, which show what each is replaced by. */
+/* Weights over the units and the constant: of readers, then of the units themselves, which show
+ * what each is replaced by. */
 typedef struct {
-    size_t   side;              /* n + 1 */
-    size_t   n_readers, n_rows;
-    double  *inverse;           /* [side][side] */
-    double  *weight;            /* [n_rows][side] */
-    uint8_t *gone;              /* [side] */
+    size_t side; /* n + 1 */
+    size_t n_readers, n_rows;
+    double *inverse; /* [side][side] */
+    double *weight;  /* [n_rows][side] */
+    uint8_t *gone;   /* [side] */
 } elimination;
 
 static void invert(double *a, size_t n)
@@ -41,7 +44,7 @@ static void invert(double *a, size_t n)
 static int begin(elimination *e, const ted4_units *u)
 {
     const size_t n = (size_t)u->n;
-    double       mean = 0;
+    double mean = 0;
 
     e->side = n + 1;
     e->n_readers = (size_t)u->n_rows;
@@ -95,10 +98,10 @@ static void take_away(elimination *e, size_t j)
 {
     const size_t side = e->side;
     const double *p = e->inverse + j * side;
-    const double  scale = 1.0 / p[j];
+    const double scale = 1.0 / p[j];
 
     for (size_t r = 0; r < e->n_rows; r++) {
-        double      *w = e->weight + r * side;
+        double *w = e->weight + r * side;
         const double f = w[j] * scale;
 
         for (size_t k = 0; f != 0.0 && k < side; k++)
@@ -119,7 +122,7 @@ static void take_away(elimination *e, size_t j)
 static int finish(ted4_narrow *w, const elimination *e)
 {
     const size_t n = e->side - 1;
-    int          to = 0;
+    int to = 0;
 
     for (size_t i = 0; i < n; i++)
         to += !e->gone[i];
@@ -134,7 +137,7 @@ static int finish(ted4_narrow *w, const elimination *e)
             w->keep[k++] = (int)i;
     for (size_t i = 0; i < n; i++) {
         const double *from = e->weight + (e->n_readers + i) * e->side;
-        double       *at = w->decode + i * ((size_t)to + 1);
+        double *at = w->decode + i * ((size_t)to + 1);
 
         for (int k = 0; k < to; k++)
             at[k] = from[w->keep[k]];
@@ -146,7 +149,7 @@ static int finish(ted4_narrow *w, const elimination *e)
 int ted4_narrow_make(ted4_narrow *w, const ted4_units *u, int to)
 {
     elimination e = { 0 };
-    int         bad = begin(&e, u) != 0;
+    int bad = begin(&e, u) != 0;
 
     memset(w, 0, sizeof *w);
     for (int left = u->n; !bad && left > to; left--) {

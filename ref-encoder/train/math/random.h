@@ -1,11 +1,13 @@
-/* random.h - counter-based random numbers for the trainer: a function of (key, counter), so that nothing depends on the order of calls.
+/* random.h - counter-based random numbers for the trainer: a function of (key, counter), so that
+ * nothing depends on the order of calls.
  * SPDX-License-Identifier: BSD-2-Clause */
 #ifndef TED4_RANDOM_H
 #define TED4_RANDOM_H
 
 #include <stdint.h>
 
-/* A bijective mix of 64 bits (two xor-shift-multiply rounds, odd constants from the golden ratio and pi). */
+/* A bijective mix of 64 bits (two xor-shift-multiply rounds, odd constants from the golden ratio
+ * and pi). */
 static inline uint64_t ted4_mix(uint64_t x)
 {
     x += 0x9e3779b97f4a7c15u;

@@ -1,6 +1,6 @@
-/* rate_math.h - elementary functions of the rate model, written so that `#pragma omp simd` loops over lanes vectorise them.
- * For files compiled once a level (render/leveled.h).
- * spec 9.4 (what is approximated).
+/* rate_math.h - elementary functions of the rate model, written so that `#pragma omp simd` loops
+ * over lanes vectorise them. For files compiled once a level (render/leveled.h). spec 9.4 (what is
+ * approximated).
  * SPDX-License-Identifier: BSD-2-Clause */
 #ifndef TED4_RATE_MATH_H
 #define TED4_RATE_MATH_H
@@ -8,14 +8,16 @@
 #include "base/bytes.h"
 #include "lane_math.h"
 
-/* x, or the nearer end of the range; a NaN stays one (and does not with ted4_lane_within, for integers). */
+/* x, or the nearer end of the range; a NaN stays one (and does not with ted4_lane_within, for
+ * integers). */
 static inline float ted4_lane_limit(float x, float low, float high)
 {
     x = x < low ? low : x;
     return x > high ? high : x;
 }
 
-/* log2 of a normal x > 0: x = 2^n m with m in [sqrt(1/2), sqrt 2), then the series of the inverse hyperbolic tangent of (m - 1) / (m + 1). */
+/* log2 of a normal x > 0: x = 2^n m with m in [sqrt(1/2), sqrt 2), then the series of the inverse
+ * hyperbolic tangent of (m - 1) / (m + 1). */
 static inline float ted4_lane_log2(float x)
 {
     const uint32_t sqrt_half = 0x3f3504f3u;
@@ -23,7 +25,7 @@ static inline float ted4_lane_log2(float x)
     const int32_t n = (int32_t)(u >> 23) - (int32_t)((u >> 31) << 9);
     const float m = ted4_bits_float((u & 0x7fffffu) + sqrt_half);
     const float z = (m - 1.0f) / (m + 1.0f), zz = z * z;
-    float p = 0.320598898f;                     /* 2 / (k ln 2), k = 9, 7 .. 1 */
+    float p = 0.320598898f; /* 2 / (k ln 2), k = 9, 7 .. 1 */
 
     p = ted4_fma(p, zz, 0.412198583f);
     p = ted4_fma(p, zz, 0.577078016f);
@@ -37,7 +39,7 @@ static inline float ted4_lane_tanh_small(float x)
 {
     const float xx = x * x;
 
-    float       p = 0.0218694885f;
+    float p = 0.0218694885f;
 
     p = ted4_fma(p, xx, -0.0539682540f);
     p = ted4_fma(p, xx, 0.133333333f);
@@ -46,7 +48,8 @@ static inline float ted4_lane_tanh_small(float x)
     return p * x;
 }
 
-/* Density of the standard normal distribution; far out, where it no longer matters, it stays at 2^-120 so that nothing is subnormal. */
+/* Density of the standard normal distribution; far out, where it no longer matters, it stays at
+ * 2^-120 so that nothing is subnormal. */
 static inline float ted4_lane_normal(float t)
 {
     const float e = t * t * (-0.5f * TED4_LOG2E);
@@ -54,7 +57,8 @@ static inline float ted4_lane_normal(float t)
     return 0.398942280f * ted4_lane_pow2(e < -120.0f ? -120.0f : e);
 }
 
-/* (1 - Phi(t)) / phi(t) for t >= 0, relative error 1e-7, given y = 1 / (1 + t/4): a polynomial fitted for least relative error over t in [0, 196]. */
+/* (1 - Phi(t)) / phi(t) for t >= 0, relative error 1e-7, given y = 1 / (1 + t/4): a polynomial
+ * fitted for least relative error over t in [0, 196]. */
 static inline float ted4_lane_mills(float y)
 {
     float p = 0.0510913221f;

@@ -22,12 +22,12 @@ static float *new_blocks(size_t floats)
 int ted4_anchors_init(ted4_anchors *a, const ted4_layout *l)
 {
     memset(a, 0, sizeof *a);
-    a->rows[TED4_ROW_VALUE]    = l->n_channels;
-    a->rows[TED4_ROW_M]        = l->n_channels;
-    a->rows[TED4_ROW_V]        = l->n_channels;
+    a->rows[TED4_ROW_VALUE] = l->n_channels;
+    a->rows[TED4_ROW_M] = l->n_channels;
+    a->rows[TED4_ROW_V] = l->n_channels;
     a->rows[TED4_ROW_POSITION] = 3;
-    a->rows[TED4_ROW_STEP]     = TED4_TYPES;
-    a->rows[TED4_ROW_OPACITY]  = 3;
+    a->rows[TED4_ROW_STEP] = TED4_TYPES;
+    a->rows[TED4_ROW_OPACITY] = 3;
     a->rows[TED4_ROW_GRADIENT] = 2 * l->head.n_offsets;
     return ted4_anchors_resize(a, 0);
 }
@@ -126,16 +126,16 @@ static int compare_keyed(const void *x, const void *y)
 
 int ted4_anchors_sort(ted4_anchors *a)
 {
-    keyed    *key = malloc((a->n + 1) * sizeof *key);
+    keyed *key = malloc((a->n + 1) * sizeof *key);
     uint32_t *order = malloc((a->n + 1) * sizeof *order);
-    int       bad = key == NULL || order == NULL;
+    int bad = key == NULL || order == NULL;
 
     for (size_t i = 0; !bad && i < a->n; i++) {
         uint16_t p[3];
 
         for (int j = 0; j < 3; j++)
             p[j] = ted4_float_to_half(*ted4_cell(a, TED4_ROW_POSITION, i, j));
-        key[i] = (keyed){ ted4_morton(p), (uint32_t)i };
+        key[i] = (keyed) { ted4_morton(p), (uint32_t)i };
     }
     if (!bad) {
         qsort(key, a->n, sizeof *key, compare_keyed);

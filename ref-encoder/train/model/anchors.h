@@ -1,5 +1,5 @@
-/* anchors.h - the trained anchors: values, optimiser moments and densification statistics in blocks of 32.
- * Depends on model.h.
+/* anchors.h - the trained anchors: values, optimiser moments and densification statistics in blocks
+ * of 32. Depends on model.h.
  * SPDX-License-Identifier: BSD-2-Clause */
 #ifndef TED4_ANCHORS_H
 #define TED4_ANCHORS_H
@@ -11,31 +11,33 @@
 
 /* Arrays are [n_blocks][rows][32]; unused lanes of the last block are zero. Kinds of rows: */
 typedef enum {
-    TED4_ROW_VALUE,             /* n_channels: the parameters (model.h) */
-    TED4_ROW_M, TED4_ROW_V,     /* n_channels: Adam's moments */
-    TED4_ROW_POSITION,          /* 3, normalised space */
-    TED4_ROW_STEP,              /* TED4_TYPES: step sizes last seen (stage 2) */
-    TED4_ROW_OPACITY,           /* 3: summed opacity after activation, visits, visits while activation was at least a half */
-    TED4_ROW_GRADIENT,          /* 2K: summed screen-space gradient, count, by offset */
+    TED4_ROW_VALUE, /* n_channels: the parameters (model.h) */
+    TED4_ROW_M,
+    TED4_ROW_V,        /* n_channels: Adam's moments */
+    TED4_ROW_POSITION, /* 3, normalised space */
+    TED4_ROW_STEP,     /* TED4_TYPES: step sizes last seen (stage 2) */
+    TED4_ROW_OPACITY,  /* 3: summed opacity after activation, visits, visits while activation was at
+                          least a half */
+    TED4_ROW_GRADIENT, /* 2K: summed screen-space gradient, count, by offset */
     TED4_ROWS
 } ted4_row;
 
 typedef struct {
-    size_t n;                   /* anchors */
-    size_t n_blocks, capacity;  /* blocks */
-    int    rows[TED4_ROWS];
-    float *data[TED4_ROWS];     /* owned, 64-byte aligned */
+    size_t n;                  /* anchors */
+    size_t n_blocks, capacity; /* blocks */
+    int rows[TED4_ROWS];
+    float *data[TED4_ROWS]; /* owned, 64-byte aligned */
 } ted4_anchors;
 
 /* 0, or -1: no memory. */
-int  ted4_anchors_init(ted4_anchors *a, const ted4_layout *l);
+int ted4_anchors_init(ted4_anchors *a, const ted4_layout *l);
 void ted4_anchors_finish(ted4_anchors *a);
 /* Room for n anchors; the new ones are zero. 0 or -1. */
-int  ted4_anchors_resize(ted4_anchors *a, size_t n);
+int ted4_anchors_resize(ted4_anchors *a, size_t n);
 /* Keeps anchors order[0 .. n), in that order; indices may not repeat. 0 or -1. */
-int  ted4_anchors_select(ted4_anchors *a, const uint32_t *order, size_t n);
+int ted4_anchors_select(ted4_anchors *a, const uint32_t *order, size_t n);
 /* Sorts by the Morton code of spec 8 (of positions rounded to binary16), ties by index. 0 or -1. */
-int  ted4_anchors_sort(ted4_anchors *a);
+int ted4_anchors_sort(ted4_anchors *a);
 
 static inline float *ted4_block(const ted4_anchors *a, ted4_row k, size_t block)
 {

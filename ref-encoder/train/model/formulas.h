@@ -14,7 +14,7 @@
 /* spec 11.4: the edge that t lies beyond (side -1: before the start, 1: after the end, 0: neither),
  * its width, at least TED4_EDGE_MIN, and u. */
 typedef struct {
-    int   side;
+    int side;
     float width, u;
 } ted4_edge;
 

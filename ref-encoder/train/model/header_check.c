@@ -1,4 +1,4 @@
-/* header_check.c - see header.h: the elements of a header as a file would hold them.
+/* header_check.c - see header_from_options.h: the elements of a header as a file would hold them.
  * SPDX-License-Identifier: BSD-2-Clause */
 #include "header_from_options.h"
 
@@ -11,12 +11,13 @@ enum { MAX_ELEMENTS = 96 };
 
 /* In the order of a file. */
 typedef struct {
-    size_t      n;
-    int64_t     value[MAX_ELEMENTS];
-    const char *last;           /* static text: name of the last one that was walked */
+    size_t n;
+    int64_t value[MAX_ELEMENTS];
+    const char *last; /* static text: name of the last one that was walked */
 } elements;
 
-static void note_element(void *user, size_t offset, const char *element, int64_t index, int64_t value)
+static void note_element(void *user, size_t offset, const char *element, int64_t index,
+                         int64_t value)
 {
     elements *e = user;
 
@@ -27,11 +28,12 @@ static void note_element(void *user, size_t offset, const char *element, int64_t
         e->value[e->n++] = value;
 }
 
-/* 0, or -1: not a header of the format; the last element is the wrong one, for a walk tells none after it. */
+/* 0, or -1: not a header of the format; the last element is the wrong one, for a walk tells none
+ * after it. */
 static int walk(const ted4_header *h, elements *e)
 {
-    ted4_header  whole = *h;
-    ted4_shape   shape;
+    ted4_header whole = *h;
+    ted4_shape shape;
     ted4_counter c;
 
     whole.n_anchors = 1;
@@ -54,5 +56,6 @@ int ted4_header_same(const ted4_header *a, const ted4_header *b)
 {
     elements x, y;
 
-    return walk(a, &x) == 0 && walk(b, &y) == 0 && x.n == y.n && memcmp(x.value, y.value, x.n * sizeof *x.value) == 0;
+    return walk(a, &x) == 0 && walk(b, &y) == 0 && x.n == y.n &&
+           memcmp(x.value, y.value, x.n * sizeof *x.value) == 0;
 }

@@ -12,11 +12,12 @@
 /* Frames a second of a scene that does not say. */
 enum { UNKNOWN_RATE = 30 };
 
-/* The feature is cut in slices that grow like 1, 2, 3, ... (four of 50: 5, 10, 15, 20): early ones are the context of all others. */
+/* The feature is cut in slices that grow like 1, 2, 3, ... (four of 50: 5, 10, 15, 20): early ones
+ * are the context of all others. */
 static void make_slices(ted4_header *h, int n)
 {
     const int whole = n * (n + 1) / 2;
-    int       done = 0;
+    int done = 0;
 
     h->n_slices = 0;
     for (int i = 1; i <= n; i++) {
@@ -36,8 +37,7 @@ static uint32_t rows_of(uint32_t frames)
     return half < 2 ? 2 : half;
 }
 
-static void make_header_time(ted4_header *h, const ted4_train_options *o,
-                             const ted4_dataset *d)
+static void make_header_time(ted4_header *h, const ted4_train_options *o, const ted4_dataset *d)
 {
     const int still = d->n_frames <= 1;
 
@@ -45,7 +45,7 @@ static void make_header_time(ted4_header *h, const ted4_train_options *o,
     h->rate_num = UNKNOWN_RATE;
     h->rate_den = 1;
     if (d->rate != 0 && ted4_frame_rate(d->rate, &h->rate_num, &h->rate_den) != 0)
-        h->rate_num = h->rate_den = 0;      /* no header: ted4_header_wrong says so */
+        h->rate_num = h->rate_den = 0; /* no header: ted4_header_wrong says so */
     h->activation = (uint8_t)(still ? 0 : o->activation);
     h->motion = (uint8_t)(still ? TED4_MOTION_NONE : o->motion);
     if (h->motion == TED4_MOTION_NONE)
@@ -73,8 +73,8 @@ int ted4_header_settle(ted4_train_options *o, const ted4_dataset *d)
 
 void ted4_header_stage2(ted4_header *h, const ted4_train_options *o)
 {
-    const double step[TED4_TYPES] = { o->step_feature, o->step_scaling, o->step_offset,
-                                      o->step_phi, o->step_tau };
+    const double step[TED4_TYPES] = { o->step_feature, o->step_scaling, o->step_offset, o->step_phi,
+                                      o->step_tau };
 
     h->tile_size = (uint32_t)o->tile;
     h->offset_mask = (uint8_t)o->offset_mask;

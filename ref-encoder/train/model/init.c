@@ -40,7 +40,7 @@ static float neighbour_distance(const float *p, size_t n, size_t i)
     }
 
     const int found = n > 3 ? 3 : n > 1 ? (int)n - 1 : 0;
-    float     sum = 0;
+    float sum = 0;
 
     for (int b = 0; b < found; b++)
         sum += sqrtf(best[b]);
@@ -51,7 +51,7 @@ static float neighbour_distance(const float *p, size_t n, size_t i)
 static double typical_distance(const float *p, size_t n)
 {
     enum { SAMPLE = 500 };
-    float        d[SAMPLE];
+    float d[SAMPLE];
     const size_t m = n < SAMPLE ? n : SAMPLE;
 
     for (size_t i = 0; i < m; i++)
@@ -60,16 +60,16 @@ static double typical_distance(const float *p, size_t n)
     return m > 0 ? fmax((double)d[m / 2], 1e-4) : 0.01;
 }
 
-/* Points inside [-1, 1], one a voxel, at the voxel's multiple. Returns how many; out has room for n. */
-static size_t voxelise(const float *p, size_t n, double cell, float *out,
-                       ted4_cells *set)
+/* Points inside [-1, 1], one a voxel, at the voxel's multiple. Returns how many; out has room for
+ * n. */
+static size_t voxelise(const float *p, size_t n, double cell, float *out, ted4_cells *set)
 {
     size_t m = 0;
 
     ted4_cells_clear(set);
     for (size_t i = 0; i < n; i++) {
         float q[3];
-        int   inside = 1;
+        int inside = 1;
 
         for (int j = 0; j < 3; j++) {
             q[j] = (float)(rint((double)p[3 * i + (size_t)j] / cell) * cell);
@@ -83,14 +83,15 @@ static size_t voxelise(const float *p, size_t n, double cell, float *out,
 }
 
 typedef struct {
-    ted4_anchors      *a;
+    ted4_anchors *a;
     const ted4_layout *l;
-    const float       *p;
-    size_t             n;
+    const float *p;
+    size_t n;
 } fill_job;
 
-/* Temporal features start as waves over space, so that neighbours are moved together and the decoder can tell places apart from the first step: with equal
- * features all anchors could only move as one. Wavelengths from the whole scene to a sixteenth of it. */
+/* Temporal features start as waves over space, so that neighbours are moved together and the
+ * decoder can tell places apart from the first step: with equal features all anchors could only
+ * move as one. Wavelengths from the whole scene to a sixteenth of it. */
 #define PHI_AMPLITUDE 0.5f
 
 static void fill_phi(fill_job *f, size_t i)
@@ -99,16 +100,15 @@ static void fill_phi(fill_job *f, size_t i)
 
     for (int c = 0; c < l->head.phi_dim; c++) {
         const uint64_t key = ted4_mix(0x706869u + (uint64_t)c);
-        const float    turns = ted4_math_exp2f(4.0f * ted4_uniform(key, 0));
-        float          phase = ted4_uniform(key, 1), w[3], norm = 1e-6f;
+        const float turns = ted4_math_exp2f(4.0f * ted4_uniform(key, 0));
+        float phase = ted4_uniform(key, 1), w[3], norm = 1e-6f;
 
         for (uint64_t j = 0; j < 3; j++) {
             w[j] = 2.0f * ted4_uniform(key, 2 + j) - 1.0f;
             norm += w[j] * w[j];
         }
         for (int j = 0; j < 3; j++)
-            phase += 0.5f * turns * w[j] / sqrtf(norm) *
-                     *ted4_cell(f->a, TED4_ROW_POSITION, i, j);
+            phase += 0.5f * turns * w[j] / sqrtf(norm) * *ted4_cell(f->a, TED4_ROW_POSITION, i, j);
         *ted4_cell(f->a, TED4_ROW_VALUE, i, l->first[TED4_PHI] + c) =
             PHI_AMPLITUDE * ted4_math_sinf(6.2831853f * phase);
     }
@@ -125,7 +125,7 @@ static void fill_anchor(fill_job *f, size_t i)
         *ted4_cell(f->a, TED4_ROW_VALUE, i, l->first[TED4_SCALING] + j) = ted4_math_log2f(d);
     fill_phi(f, i);
     if (l->first[TED4_TAU] >= 0) {
-        const float tau[4] = { 0.0f, -3.3f, 1.0f, -3.3f };   /* b = 0.1 */
+        const float tau[4] = { 0.0f, -3.3f, 1.0f, -3.3f }; /* b = 0.1 */
 
         for (int j = 0; j < 4; j++)
             *ted4_cell(f->a, TED4_ROW_VALUE, i, l->first[TED4_TAU] + j) = tau[j];
@@ -138,12 +138,11 @@ static void fill_anchor(fill_job *f, size_t i)
 int ted4_seed_anchors(ted4_anchors *a, const ted4_layout *l, const ted4_dataset *d,
                       const ted4_train_options *o, double *cell)
 {
-    float     *p = malloc((d->n_points + 1) * 3 * sizeof *p);
-    float     *out = malloc((d->n_points + 1) * 3 * sizeof *out);
+    float *p = malloc((d->n_points + 1) * 3 * sizeof *p);
+    float *out = malloc((d->n_points + 1) * 3 * sizeof *out);
     ted4_cells set;
-    int        bad = p == NULL || out == NULL ||
-                     ted4_cells_init(&set, d->n_points) != 0;
-    size_t     n = 0;
+    int bad = p == NULL || out == NULL || ted4_cells_init(&set, d->n_points) != 0;
+    size_t n = 0;
 
     if (!bad) {
         for (size_t i = 0; i < d->n_points; i++)
@@ -165,8 +164,8 @@ int ted4_seed_anchors(ted4_anchors *a, const ted4_layout *l, const ted4_dataset 
     return bad || ted4_anchors_sort(a) != 0 ? -1 : 0;
 }
 
-static void seed_layer(float *w, unsigned in, unsigned out, float gain,
-                       uint64_t key, uint64_t *counter)
+static void seed_layer(float *w, unsigned in, unsigned out, float gain, uint64_t key,
+                       uint64_t *counter)
 {
     const float range = in > 0 ? gain / sqrtf((float)in) : 0.0f;
 
@@ -177,14 +176,13 @@ static void seed_layer(float *w, unsigned in, unsigned out, float gain,
 }
 
 /* last: gain of the last layer; 0 leaves it zero. */
-static void seed_network(float *blob, const ted4_net_shape *s, float last,
-                         uint64_t key, uint64_t *counter)
+static void seed_network(float *blob, const ted4_net_shape *s, float last, uint64_t key,
+                         uint64_t *counter)
 {
     float *w = blob + s->first;
 
     for (int i = 0; i < s->n_layers; i++) {
-        seed_layer(w, s->dim[i], s->dim[i + 1], i + 1 < s->n_layers ? 1.0f : last,
-                   key, counter);
+        seed_layer(w, s->dim[i], s->dim[i + 1], i + 1 < s->n_layers ? 1.0f : last, key, counter);
         w += ((size_t)s->dim[i] + 1) * s->dim[i + 1];
     }
 }
@@ -195,11 +193,12 @@ static void negate(float *x, size_t n)
         x[i] = -x[i];
 }
 
-/* Turns those outputs of the opacity head around that are below zero where features begin, at zero: such a Gaussian is not drawn, so it gets no gradient and
- * stays dead in every anchor. It would be half of them on average, but with one seed more than with another. */
+/* Turns those outputs of the opacity head around that are below zero where features begin, at zero:
+ * such a Gaussian is not drawn, so it gets no gradient and stays dead in every anchor. It would be
+ * half of them on average, but with one seed more than with another. */
 static void wake(float *blob, const ted4_net_shape *s)
 {
-    float  x[TED4_MAX_WIDTH] = { 0 }, y[TED4_MAX_WIDTH];
+    float x[TED4_MAX_WIDTH] = { 0 }, y[TED4_MAX_WIDTH];
     float *w = blob + s->first;
 
     for (int i = 0; i < s->n_layers; i++) {
@@ -224,12 +223,12 @@ static void wake(float *blob, const ted4_net_shape *s)
 void ted4_seed_networks(float *net, const ted4_layout *l, uint32_t seed)
 {
     const uint64_t key = ted4_mix(seed ^ 0x6e657477u);
-    uint64_t       counter = 0;
+    uint64_t counter = 0;
 
     memset(net, 0, l->n_net * sizeof *net);
     for (int i = 0; i < TED4_NETS_R; i++)
-        seed_network(net + l->netr, &l->shape.netr[i],
-                     i == TED4_NET_DEFORM ? 0.0f : 1.0f, key, &counter);
+        seed_network(net + l->netr, &l->shape.netr[i], i == TED4_NET_DEFORM ? 0.0f : 1.0f, key,
+                     &counter);
     wake(net + l->netr, &l->shape.netr[TED4_NET_OPACITY]);
     /* N(0, 0.1) as a sum of four uniforms of variance 1/12 each. */
     for (size_t i = 0; i < l->shape.n_bank; i++) {
@@ -242,8 +241,7 @@ void ted4_seed_networks(float *net, const ted4_layout *l, uint32_t seed)
 }
 
 /* Mean and spread of one component over all anchors. */
-static void component_moments(const ted4_anchors *a, int channel, double *mean,
-                              double *spread)
+static void component_moments(const ted4_anchors *a, int channel, double *mean, double *spread)
 {
     double sum = 0, square = 0;
 
@@ -263,8 +261,8 @@ static void component_moments(const ted4_anchors *a, int channel, double *mean,
 static float *last_biases(float *net, const ted4_layout *l, float **weights, unsigned *in)
 {
     const ted4_net_shape *s = &l->shape.hyper;
-    const int             last = s->n_layers - 1;
-    float                *at = net + l->nete + s->first;
+    const int last = s->n_layers - 1;
+    float *at = net + l->nete + s->first;
 
     for (int i = 0; i < last; i++)
         at += ((size_t)s->dim[i] + 1) * s->dim[i + 1];
@@ -280,7 +278,7 @@ static void seed_biases(float *bias, const ted4_layout *l, const ted4_anchors *a
 
     for (unsigned c = 0; c < s->dim[t]; c++) {
         const double q = (double)l->head.step[t];
-        double       mean, spread;
+        double mean, spread;
 
         component_moments(a, l->first[t] + (int)c, &mean, &spread);
         bias[s->first_output[t] + c] = (float)(mean / q);
@@ -289,14 +287,13 @@ static void seed_biases(float *bias, const ted4_layout *l, const ted4_anchors *a
     }
 }
 
-void ted4_seed_prior(float *net, const ted4_layout *l, const ted4_anchors *a,
-                     uint32_t seed)
+void ted4_seed_prior(float *net, const ted4_layout *l, const ted4_anchors *a, uint32_t seed)
 {
     const ted4_shape *s = &l->shape;
-    const uint64_t    key = ted4_mix(seed ^ 0x7072696fu);
-    uint64_t          counter = 0;
-    float            *nete = net + l->nete, *weights;
-    unsigned          in;
+    const uint64_t key = ted4_mix(seed ^ 0x7072696fu);
+    uint64_t counter = 0;
+    float *nete = net + l->nete, *weights;
+    unsigned in;
 
     memset(nete, 0, s->n_nete * sizeof *nete);
     seed_network(nete, &s->hyper, 0.1f, key, &counter);
@@ -314,13 +311,14 @@ void ted4_seed_prior(float *net, const ted4_layout *l, const ted4_anchors *a,
 void ted4_seed_prior_type(float *net, const ted4_layout *l, const ted4_anchors *a, int type)
 {
     const ted4_shape *s = &l->shape;
-    float            *weights;
-    unsigned          in, step = s->first_step_output;
-    float *const      bias = last_biases(net, l, &weights, &in);
+    float *weights;
+    unsigned in, step = s->first_step_output;
+    float *const bias = last_biases(net, l, &weights, &in);
 
     for (int t = 0; t < type; t++)
         step += s->dim[t] > 0;
-    memset(weights + (size_t)s->first_output[type] * in, 0, (size_t)2 * s->dim[type] * in * sizeof *weights);
+    memset(weights + (size_t)s->first_output[type] * in, 0,
+           (size_t)2 * s->dim[type] * in * sizeof *weights);
     memset(weights + (size_t)step * in, 0, in * sizeof *weights);
     seed_biases(bias, l, a, type);
     bias[step] = 0.0f;

@@ -16,7 +16,7 @@ static float pick(float *x, size_t n, size_t k)
 
     while (low < high) {
         const float pivot = x[low + (high - low) / 2];
-        size_t      i = low, j = high;
+        size_t i = low, j = high;
 
         for (;; i++, j--) {
             while (x[i] < pivot)
@@ -42,7 +42,7 @@ static float pick(float *x, size_t n, size_t k)
 void ted4_space_make(ted4_header *h, const ted4_dataset *d)
 {
     const size_t n = d->n_points;
-    float       *value = malloc((n + 1) * sizeof *value);
+    float *value = malloc((n + 1) * sizeof *value);
 
     h->exponent = 0;
     memset(h->origin, 0, sizeof h->origin);
@@ -55,7 +55,7 @@ void ted4_space_make(ted4_header *h, const ted4_dataset *d)
             value[i] = d->points[3 * i + (size_t)j];
         h->origin[j] = pick(value, n, n / 2);
         if (fabsf(h->origin[j]) < 1e-6f)
-            h->origin[j] = 0.0f;        /* no subnormal, no -0 (R-CNV-001) */
+            h->origin[j] = 0.0f; /* no subnormal, no -0 (R-CNV-001) */
     }
     for (size_t i = 0; i < n; i++) {
         float far = 0;
@@ -72,8 +72,7 @@ void ted4_space_make(ted4_header *h, const ted4_dataset *d)
     free(value);
 }
 
-void ted4_space_view(const ted4_header *h, const ted4_camera *c, ted4_view *v,
-                     float centre[3])
+void ted4_space_view(const ted4_header *h, const ted4_camera *c, ted4_view *v, float centre[3])
 {
     const double unit = ldexp(1.0, -h->exponent);
 

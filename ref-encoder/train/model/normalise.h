@@ -1,4 +1,5 @@
-/* normalise.h - normalised space (spec 6.1, 11): world = origin + 2^exponent p, and cameras seen from there.
+/* normalise.h - normalised space (spec 6.1, 11): world = origin + 2^exponent p, and cameras seen
+ * from there.
  * SPDX-License-Identifier: BSD-2-Clause */
 #ifndef TED4_SPACE_H
 #define TED4_SPACE_H
@@ -7,16 +8,16 @@
 #include "norm/syntax.h"
 #include "render/raster.h"
 
-/* Origin: component-wise median of the initial points (FP16 is finest there). Exponent: the smallest that puts 99.5 % of the points, with a
- * quarter of room, inside [-1, 1]. Fills those members of *h. */
+/* Origin: component-wise median of the initial points (FP16 is finest there). Exponent: the
+ * smallest that puts 99.5 % of the points, with a quarter of room, inside [-1, 1]. Fills those
+ * members of *h. */
 void ted4_space_make(ted4_header *h, const ted4_dataset *d);
 
 /* Nearest distance at which Gaussians are drawn, in normalised space. */
 #define TED4_NEAR 0.02f
 
 /* The view of a picture in normalised space, and its camera centre. */
-void ted4_space_view(const ted4_header *h, const ted4_camera *c, ted4_view *v,
-                     float centre[3]);
+void ted4_space_view(const ted4_header *h, const ted4_camera *c, ted4_view *v, float centre[3]);
 /* World to normalised. */
 void ted4_space_point(const ted4_header *h, const float world[3], float p[3]);
 

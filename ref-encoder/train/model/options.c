@@ -11,16 +11,14 @@
 
 enum { N_PRESETS = 5 };
 
-static const char *const preset_names[N_PRESETS] = {
-    "draft", "fast", "medium", "slow", "paper"
-};
+static const char *const preset_names[N_PRESETS] = { "draft", "fast", "medium", "slow", "paper" };
 
 typedef struct {
-    char        kind;
-    int         stage;
+    char kind;
+    int stage;
     const char *name;
-    size_t      offset;
-    double      lo, hi, preset[N_PRESETS];
+    size_t offset;
+    double lo, hi, preset[N_PRESETS];
     const char *help;
 } option;
 
@@ -49,8 +47,8 @@ static void store(ted4_train_options *o, const option *t, double value)
 static double fetch(const ted4_train_options *o, const option *t)
 {
     const char *at = (const char *)o + t->offset;
-    double      value;
-    int         i;
+    double value;
+    int i;
 
     if (t->kind == 'I') {
         memcpy(&i, at, sizeof i);
@@ -88,9 +86,9 @@ int ted4_options_set(ted4_train_options *o, const char *text, char *why, size_t 
 
         errno = 0;
         const double value = strtod(equal + 1, &end);
-        const int    bad = equal[1] == '\0' || *end != '\0' || errno != 0 ||
-                           !(value >= t->lo && value <= t->hi) ||
-                           (t->kind == 'I' && value != (double)(int)value);
+        const int bad = equal[1] == '\0' || *end != '\0' || errno != 0 ||
+                        !(value >= t->lo && value <= t->hi) ||
+                        (t->kind == 'I' && value != (double)(int)value);
 
         if (bad) {
             snprintf(why, why_size, "%s: expected %s from %g to %g", text,
@@ -144,7 +142,7 @@ uint64_t ted4_options_hash(const ted4_train_options *o, int stage)
 
     for (int i = 0; i < N_OPTIONS; i++) {
         const double value = fetch(o, &table[i]);
-        uint64_t     bits;
+        uint64_t bits;
 
         if (table[i].stage > stage)
             continue;

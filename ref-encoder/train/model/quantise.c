@@ -1,13 +1,14 @@
-/* quantise.c - quantisation of attribute blocks for rendering and for the rate: noise or rounding. spec 10.4.
- * Every value becomes k q with k = x / q + n; the residual n is all that noise and rounding decide, so both callers take it from here.
+/* quantise.c - quantisation of attribute blocks for rendering and for the rate: noise or rounding.
+ * spec 10.4. Every value becomes k q with k = x / q + n; the residual n is all that noise and
+ * rounding decide, so both callers take it from here.
  * SPDX-License-Identifier: BSD-2-Clause */
 #include "train/rate/rate_lanes.h"
 
 #include <string.h>
 
-#define MAX_SYMBOL 32767.0f             /* spec 9.4, R-ENT-007 */
+#define MAX_SYMBOL 32767.0f /* spec 9.4, R-ENT-007 */
 
-enum { TAU_START = 0, TAU_END = 2 };    /* components a_s and a_f of tau: spec 11.4 */
+enum { TAU_START = 0, TAU_END = 2 }; /* components a_s and a_f of tau: spec 11.4 */
 
 /* Mixes 64 bits: two rounds of shift, xor and multiplication by odd constants (digits of pi). */
 static uint64_t mix(uint64_t x)
@@ -17,12 +18,11 @@ static uint64_t mix(uint64_t x)
     return x ^ (x >> 32);
 }
 
-/* Uniform in (-1/2, 1/2), mean exactly 0: a hash of (key, block, channel, lane), 32-bit arithmetic within the row. */
-static void noise_row(uint64_t key, uint32_t block, uint32_t channel,
-                      float *row)
+/* Uniform in (-1/2, 1/2), mean exactly 0: a hash of (key, block, channel, lane), 32-bit arithmetic
+ * within the row. */
+static void noise_row(uint64_t key, uint32_t block, uint32_t channel, float *row)
 {
-    const uint64_t seed = mix(mix(key + 0x9e3779b97f4a7c15u)
-                              + ((uint64_t)block << 32 | channel));
+    const uint64_t seed = mix(mix(key + 0x9e3779b97f4a7c15u) + ((uint64_t)block << 32 | channel));
     const uint32_t low = (uint32_t)seed, high = (uint32_t)(seed >> 32);
 
 #pragma omp simd
@@ -36,10 +36,13 @@ static void noise_row(uint64_t key, uint32_t block, uint32_t channel,
     }
 }
 
-/* The nearest integer, ties to even; the limits are integers, so that it does not matter which comes first. */
+/* The nearest integer, ties to even; the limits are integers, so that it does not matter which
+ * comes first. */
 static inline float symbol(float scaled)
 {
-    return ted4_lane_round(scaled > MAX_SYMBOL ? MAX_SYMBOL : scaled < -MAX_SYMBOL ? -MAX_SYMBOL : scaled);
+    return ted4_lane_round(scaled > MAX_SYMBOL    ? MAX_SYMBOL
+                           : scaled < -MAX_SYMBOL ? -MAX_SYMBOL
+                                                  : scaled);
 }
 
 static void rounding_row(const float *x, const float *q, float *row)
@@ -65,8 +68,7 @@ static void order_tau(const float *tau, const float *q, float *residual)
 }
 
 void TED4_LEVELED(ted4_residuals)(const ted4_layout *l, ted4_quant quant, const float *value,
-                    const float *steps, uint32_t block, uint64_t key,
-                    float *residual)
+                                  const float *steps, uint32_t block, uint64_t key, float *residual)
 {
     for (int t = 0; t < TED4_TYPES; t++)
         for (unsigned c = 0; c < l->shape.dim[t]; c++) {
@@ -75,8 +77,7 @@ void TED4_LEVELED(ted4_residuals)(const ted4_layout *l, ted4_quant quant, const 
             if (quant == TED4_QUANT_NOISE)
                 noise_row(key, block, channel, residual + ted4_row(channel));
             else
-                rounding_row(value + ted4_row(channel),
-                             steps + ted4_row((size_t)t),
+                rounding_row(value + ted4_row(channel), steps + ted4_row((size_t)t),
                              residual + ted4_row(channel));
         }
     if (l->first[TED4_TAU] >= 0) {
@@ -86,8 +87,8 @@ void TED4_LEVELED(ted4_residuals)(const ted4_layout *l, ted4_quant quant, const 
     }
 }
 
-static void quantise_row(ted4_quant quant, const float *x, const float *q,
-                         const float *noise, float *out)
+static void quantise_row(ted4_quant quant, const float *x, const float *q, const float *noise,
+                         float *out)
 {
     if (quant == TED4_QUANT_NOISE) {
 #pragma omp simd
@@ -101,7 +102,7 @@ static void quantise_row(ted4_quant quant, const float *x, const float *q,
 }
 
 void TED4_LEVELED(ted4_quantise)(const ted4_layout *l, ted4_quant quant, const float *attr,
-                   const float *steps, uint32_t block, uint64_t key, float *out)
+                                 const float *steps, uint32_t block, uint64_t key, float *out)
 {
     for (int t = 0; t < TED4_TYPES; t++)
         for (unsigned c = 0; c < l->shape.dim[t]; c++) {
@@ -111,8 +112,7 @@ void TED4_LEVELED(ted4_quantise)(const ted4_layout *l, ted4_quant quant, const f
 
             if (quant == TED4_QUANT_NOISE)
                 noise_row(key, block, channel, noise);
-            quantise_row(quant, attr + at, steps + ted4_row((size_t)t), noise,
-                         out + at);
+            quantise_row(quant, attr + at, steps + ted4_row((size_t)t), noise, out + at);
         }
     if (l->first[TED4_TAU] >= 0) {
         float *tau = out + ted4_row((size_t)l->first[TED4_TAU]);

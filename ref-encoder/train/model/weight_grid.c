@@ -19,8 +19,8 @@ void ted4_grid_round(float *x, size_t n, int bits)
     if (bits >= TED4_GRID_FULL(TED4_GRID_HEADS) || !(most > 0x1p-64f))
         return;
 
-    int         e;
-    const float fraction = frexpf(most, &e);    /* in [1/2, 1) */
+    int e;
+    const float fraction = frexpf(most, &e); /* in [1/2, 1) */
     const float step = ldexpf(1.0f, (fraction > 0.5f ? e : e - 1) - bits), inverse = 1.0f / step;
 
     for (size_t i = 0; i < n; i++)
@@ -43,6 +43,9 @@ static void round_network(const ted4_net_shape *net, int bits, float *x)
 void ted4_grid_scene(const ted4_shape *s, const int *bits, float *netr, float *bank)
 {
     for (int i = 0; i < TED4_NETS_R; i++)
-        round_network(&s->netr[i], bits[i == TED4_NET_PROJECT || i == TED4_NET_DEFORM ? TED4_GRID_MOTION : TED4_GRID_HEADS], netr);
+        round_network(&s->netr[i],
+                      bits[i == TED4_NET_PROJECT || i == TED4_NET_DEFORM ? TED4_GRID_MOTION
+                                                                         : TED4_GRID_HEADS],
+                      netr);
     ted4_grid_round(bank, s->n_bank, bits[TED4_GRID_BANK]);
 }

@@ -1,26 +1,29 @@
 /* blend_bwd.c - adjoint of render/blend.c, a tile at a time.
  *
- * With T the transmittance before a Gaussian, C the colour of everything behind it as it would look if it were the first, and D the
- * pixel's gradient,
- *     image = ... + T (alpha colour + (1 - alpha) C),   dL/dalpha = T (colour - C) . D,   dL/dcolour = alpha T D,
- * so walking back to front only C . D need be carried: behind <- behind + alpha (colour . D - behind). Nothing is divided by
- * 1 - alpha: opacities and weights come from a first walk, front to back, that repeats what the forward pass did.
+ * With T the transmittance before a Gaussian, C the colour of everything behind it as it would look
+ * if it were the first, and D the pixel's gradient,
+ *     image = ... + T (alpha colour + (1 - alpha) C),   dL/dalpha = T (colour - C) . D,
+ *         dL/dcolour = alpha T D,
+ * so walking back to front only C . D need be carried: behind <- behind + alpha (colour . D -
+ * behind). Nothing is divided by 1 - alpha: opacities and weights come from a first walk, front to
+ * back, that repeats what the forward pass did.
  *
- * The first walk goes block by block (T stays in a register), the second Gaussian by Gaussian (the sums over pixels do).
+ * The first walk goes block by block (T stays in a register), the second Gaussian by Gaussian (the
+ * sums over pixels do).
  * SPDX-License-Identifier: BSD-2-Clause */
 #include "adjoint.h"
 #include "render/image_model.h"
 
 #include <stdatomic.h>
 
-enum { AHEAD = 8 };             /* slots fetched before they are needed: they lie anywhere in memory */
+enum { AHEAD = 8 }; /* slots fetched before they are needed: they lie anywhere in memory */
 
 typedef struct {
     struct ted4_raster *r;
-    const ted4_view    *v;
-    const float        *d_image;
-    atomic_size_t       next_tile;
-    atomic_int          failed;
+    const ted4_view *v;
+    const float *d_image;
+    atomic_size_t next_tile;
+    atomic_int failed;
 } bwd_job;
 
 /* A Gaussian at the pixels of a part of a block (a register's share of them), as blended. */
@@ -29,21 +32,23 @@ typedef struct {
 } blended;
 
 typedef struct {
-    ted4_vf  px, py;
-    ted4_vf  d[3];              /* dL / d colour; 0 outside the image */
-    ted4_vf  behind;            /* C . D */
-    size_t   first, end;        /* its share of the tile's pairs; end moves to the front in the second walk */
+    ted4_vf px, py;
+    ted4_vf d[3];   /* dL / d colour; 0 outside the image */
+    ted4_vf behind; /* C . D */
+    size_t first,
+        end; /* its share of the tile's pairs; end moves to the front in the second walk */
 } part_state;
 
 /* A tile at work. */
 typedef struct {
-    ted4_splat2d       *splat;          /* [n] copies, back to back: the originals lie on as many pages as they are */
-    const uint32_t     *slot;           /* [n] */
-    const ted4_reach   *reach;          /* [n_groups] */
-    uint32_t            n, n_groups;
-    blended            *pair;           /* all pairs, block after block, part after part */
-    uint16_t           *mask;           /* [n] bit b: has a pair in block b */
-    part_state          state[TED4_VECS][TED4_TILE_BLOCKS];
+    ted4_splat2d
+        *splat; /* [n] copies, back to back: the originals lie on as many pages as they are */
+    const uint32_t *slot;    /* [n] */
+    const ted4_reach *reach; /* [n_groups] */
+    uint32_t n, n_groups;
+    blended *pair;  /* all pairs, block after block, part after part */
+    uint16_t *mask; /* [n] bit b: has a pair in block b */
+    part_state state[TED4_VECS][TED4_TILE_BLOCKS];
 } tile_state;
 
 /* Sums over the pixels of a block, all in one order: pixels i and i + 8, then i and i + 4 are
@@ -58,10 +63,10 @@ typedef float quarter __attribute__((vector_size(16)));
 /* The first two steps: 16 lanes to 4. */
 TED4_INLINE quarter to_quarter(ted4_vf v)
 {
-    return (__builtin_shufflevector(v, v, 0, 1, 2, 3)
-            + __builtin_shufflevector(v, v, 8, 9, 10, 11))
-         + (__builtin_shufflevector(v, v, 4, 5, 6, 7)
-            + __builtin_shufflevector(v, v, 12, 13, 14, 15));
+    return (__builtin_shufflevector(v, v, 0, 1, 2, 3) +
+            __builtin_shufflevector(v, v, 8, 9, 10, 11)) +
+           (__builtin_shufflevector(v, v, 4, 5, 6, 7) +
+            __builtin_shufflevector(v, v, 12, 13, 14, 15));
 }
 
 /* The same steps of four sums at once; a quarter of the result belongs to each. */
@@ -72,27 +77,26 @@ TED4_INLINE ted4_vf to_quarters(const ted4_vf v[4])
     for (int i = 0; i < 2; i++) {
         const ted4_vf a = v[2 * i], b = v[2 * i + 1];
 
-        half[i] = __builtin_shufflevector(a, b, 0, 1, 2, 3, 4, 5, 6, 7,
-                                          16, 17, 18, 19, 20, 21, 22, 23)
-                + __builtin_shufflevector(a, b, 8, 9, 10, 11, 12, 13, 14, 15,
-                                          24, 25, 26, 27, 28, 29, 30, 31);
+        half[i] =
+            __builtin_shufflevector(a, b, 0, 1, 2, 3, 4, 5, 6, 7, 16, 17, 18, 19, 20, 21, 22, 23) +
+            __builtin_shufflevector(a, b, 8, 9, 10, 11, 12, 13, 14, 15, 24, 25, 26, 27, 28, 29, 30,
+                                    31);
     }
-    return __builtin_shufflevector(half[0], half[1], 0, 1, 2, 3, 8, 9, 10, 11,
-                                   16, 17, 18, 19, 24, 25, 26, 27)
-         + __builtin_shufflevector(half[0], half[1], 4, 5, 6, 7, 12, 13, 14, 15,
-                                   20, 21, 22, 23, 28, 29, 30, 31);
+    return __builtin_shufflevector(half[0], half[1], 0, 1, 2, 3, 8, 9, 10, 11, 16, 17, 18, 19, 24,
+                                   25, 26, 27) +
+           __builtin_shufflevector(half[0], half[1], 4, 5, 6, 7, 12, 13, 14, 15, 20, 21, 22, 23, 28,
+                                   29, 30, 31);
 }
 
 TED4_INLINE void add_terms(const part_sums *s, float sums[TED4_GRAD_SUMS])
 {
     typedef float eight __attribute__((vector_size(32)));
     const ted4_vf p = to_quarters(s->term), q = to_quarters(s->term + 4);
-    const ted4_vf two = __builtin_shufflevector(p, q, 0, 1, 16, 17, 4, 5, 20, 21,
-                                                8, 9, 24, 25, 12, 13, 28, 29)
-                      + __builtin_shufflevector(p, q, 2, 3, 18, 19, 6, 7, 22, 23,
-                                                10, 11, 26, 27, 14, 15, 30, 31);
-    const eight   one = __builtin_shufflevector(two, two, 0, 4, 8, 12, 2, 6, 10, 14)
-                      + __builtin_shufflevector(two, two, 1, 5, 9, 13, 3, 7, 11, 15);
+    const ted4_vf two =
+        __builtin_shufflevector(p, q, 0, 1, 16, 17, 4, 5, 20, 21, 8, 9, 24, 25, 12, 13, 28, 29) +
+        __builtin_shufflevector(p, q, 2, 3, 18, 19, 6, 7, 22, 23, 10, 11, 26, 27, 14, 15, 30, 31);
+    const eight one = __builtin_shufflevector(two, two, 0, 4, 8, 12, 2, 6, 10, 14) +
+                      __builtin_shufflevector(two, two, 1, 5, 9, 13, 3, 7, 11, 15);
 
     memcpy(sums, &one, sizeof one);
 }
@@ -106,25 +110,25 @@ TED4_INLINE quarter total_quarter(const part_sums *s)
 TED4_INLINE quarter to_quarter(const part_sums *s, size_t at)
 {
 #if TED4_VEC_BYTES == 32
-    const ted4_vf v = ted4_vf_load((const float *)&s[0] + at)
-                    + ted4_vf_load((const float *)&s[1] + at);
+    const ted4_vf v = ted4_vf_load((const float *)&s[0] + at) +
+                      ted4_vf_load((const float *)&s[1] + at);
 
     return __builtin_shufflevector(v, v, 0, 1, 2, 3) + __builtin_shufflevector(v, v, 4, 5, 6, 7);
 #else
-    return (ted4_vf_load((const float *)&s[0] + at) + ted4_vf_load((const float *)&s[2] + at))
-         + (ted4_vf_load((const float *)&s[1] + at) + ted4_vf_load((const float *)&s[3] + at));
+    return (ted4_vf_load((const float *)&s[0] + at) + ted4_vf_load((const float *)&s[2] + at)) +
+           (ted4_vf_load((const float *)&s[1] + at) + ted4_vf_load((const float *)&s[3] + at));
 #endif
 }
 
 /* The last two, of four sums at once. */
 TED4_INLINE void finish_sums(const quarter q[4], float out[4])
 {
-    const quarter a = __builtin_shufflevector(q[0], q[1], 0, 1, 4, 5)
-                    + __builtin_shufflevector(q[0], q[1], 2, 3, 6, 7);
-    const quarter b = __builtin_shufflevector(q[2], q[3], 0, 1, 4, 5)
-                    + __builtin_shufflevector(q[2], q[3], 2, 3, 6, 7);
-    const quarter e = __builtin_shufflevector(a, b, 0, 2, 4, 6)
-                    + __builtin_shufflevector(a, b, 1, 3, 5, 7);
+    const quarter a = __builtin_shufflevector(q[0], q[1], 0, 1, 4, 5) +
+                      __builtin_shufflevector(q[0], q[1], 2, 3, 6, 7);
+    const quarter b = __builtin_shufflevector(q[2], q[3], 0, 1, 4, 5) +
+                      __builtin_shufflevector(q[2], q[3], 2, 3, 6, 7);
+    const quarter e = __builtin_shufflevector(a, b, 0, 2, 4, 6) +
+                      __builtin_shufflevector(a, b, 1, 3, 5, 7);
 
     memcpy(out, &e, sizeof e);
 }
@@ -161,10 +165,11 @@ static void load_block(const bwd_job *job, tile_state *tile, int b, size_t x, si
     for (int part = 0; part < TED4_VECS; part++)
         tile->state[part][b].behind = ted4_vf_all(0.0f);
     for (size_t k = 0; k < 3; k++) {
-        float d[TED4_LANE_GROUP] = {0};
+        float d[TED4_LANE_GROUP] = { 0 };
 
         for (size_t row = 0; row < TED4_BLOCK && y + row < height; row++)
-            memcpy(d + row * TED4_BLOCK, job->d_image + (k * height + y + row) * width + x, n * sizeof *d);
+            memcpy(d + row * TED4_BLOCK, job->d_image + (k * height + y + row) * width + x,
+                   n * sizeof *d);
         for (int part = 0; part < TED4_VECS; part++) {
             part_state *s = &tile->state[part][b];
 
@@ -174,8 +179,10 @@ static void load_block(const bwd_job *job, tile_state *tile, int b, size_t x, si
     }
 }
 
-/* Gives each block its share of the pairs, and copies the tile's Gaussians together. 0, or -1: no memory. */
-static int share_pairs(tile_state *tile, const ted4_splat2d *splat, const uint32_t *owner, ted4_growing *scratch)
+/* Gives each block its share of the pairs, and copies the tile's Gaussians together. 0, or -1: no
+ * memory. */
+static int share_pairs(tile_state *tile, const ted4_splat2d *splat, const uint32_t *owner,
+                       ted4_growing *scratch)
 {
     size_t total = 0;
 
@@ -190,11 +197,13 @@ static int share_pairs(tile_state *tile, const ted4_splat2d *splat, const uint32
             tile->state[part][b].end = total;
         }
     }
-    if (ted4_growing_grow(scratch, 1, total * sizeof(blended) + tile->n * (sizeof(ted4_splat2d) + sizeof(uint16_t))) != 0)
+    if (ted4_growing_grow(scratch, 1,
+                          total * sizeof(blended) +
+                              tile->n * (sizeof(ted4_splat2d) + sizeof(uint16_t))) != 0)
         return -1;
-    tile->pair  = scratch->data;
+    tile->pair = scratch->data;
     tile->splat = (ted4_splat2d *)(tile->pair + total);
-    tile->mask  = (uint16_t *)(tile->splat + tile->n);
+    tile->mask = (uint16_t *)(tile->splat + tile->n);
     memset(tile->mask, 0, tile->n * sizeof *tile->mask);
     for (uint32_t i = 0; i < tile->n; i++) {
         __builtin_prefetch(&splat[owner[i + TED4_AHEAD]]);
@@ -207,9 +216,9 @@ static int share_pairs(tile_state *tile, const ted4_splat2d *splat, const uint32
 static void walk_part(tile_state *tile, int b, int part, const ted4_view *v)
 {
     const part_state *s = &tile->state[part][b];
-    const ted4_vf     px = s->px, py = s->py;
-    ted4_vf           t = ted4_vf_keep((px < (float)v->width) & (py < (float)v->height), ted4_vf_all(1.0f));
-    blended          *pair = tile->pair + s->first;
+    const ted4_vf px = s->px, py = s->py;
+    ted4_vf t = ted4_vf_keep((px < (float)v->width) & (py < (float)v->height), ted4_vf_all(1.0f));
+    blended *pair = tile->pair + s->first;
 
     for (uint32_t group = 0; group < tile->n_groups; group++)
         for (uint64_t rest = tile->reach[group].block[b]; rest != 0; rest &= rest - 1, pair++) {
@@ -220,16 +229,20 @@ static void walk_part(tile_state *tile, int b, int part, const ted4_view *v)
         }
 }
 
-/* Second walk, one Gaussian of the tile and one part of its blocks: takes its last pair off each block in mask and sums over their pixels. */
-TED4_INLINE void sum_part(const ted4_splat2d *g, uint32_t mask, part_state *state, const blended *pair, part_sums *out)
+/* Second walk, one Gaussian of the tile and one part of its blocks: takes its last pair off each
+ * block in mask and sums over their pixels. */
+TED4_INLINE void sum_part(const ted4_splat2d *g, uint32_t mask, part_state *state,
+                          const blended *pair, part_sums *out)
 {
-    ted4_vf sum[TED4_GRAD_SUMS] = {{0}}, total = {0};
+    ted4_vf sum[TED4_GRAD_SUMS] = { { 0 } }, total = { 0 };
 
     for (uint32_t rest = mask; rest != 0; rest &= rest - 1) {
         part_state *s = &state[__builtin_ctz(rest)];
         const blended p = pair[--s->end];
-        const ted4_vf ahead = ted4_vf_fma(ted4_vf_all(g->colour[0]), s->d[0], ted4_vf_fma(ted4_vf_all(g->colour[1]), s->d[1],
-                              ted4_vf_fma(ted4_vf_all(g->colour[2]), s->d[2], -s->behind)));
+        const ted4_vf ahead =
+            ted4_vf_fma(ted4_vf_all(g->colour[0]), s->d[0],
+                        ted4_vf_fma(ted4_vf_all(g->colour[1]), s->d[1],
+                                    ted4_vf_fma(ted4_vf_all(g->colour[2]), s->d[2], -s->behind)));
         /* alpha = min(cap, o exp(-e)): d alpha / d ln(o exp(-e)) is alpha, or 0 where capped */
         const ted4_vf d = ted4_vf_keep(p.alpha < TED4_RASTER_ALPHA_MAX, p.w * ahead);
         const ted4_vf dx = s->px - g->x, dy = s->py - g->y;
@@ -238,8 +251,8 @@ TED4_INLINE void sum_part(const ted4_splat2d *g, uint32_t mask, part_state *stat
 
         s->behind = ted4_vf_fma(p.alpha, ahead, s->behind);
         total += d;
-        sum[TED4_SUM_N1]  += d1;
-        sum[TED4_SUM_N2]  += d2;
+        sum[TED4_SUM_N1] += d1;
+        sum[TED4_SUM_N2] += d2;
         sum[TED4_SUM_N11] = ted4_vf_fma(d1, n1, sum[TED4_SUM_N11]);
         sum[TED4_SUM_N12] = ted4_vf_fma(d1, n2, sum[TED4_SUM_N12]);
         sum[TED4_SUM_N22] = ted4_vf_fma(d2, n2, sum[TED4_SUM_N22]);
@@ -254,10 +267,12 @@ TED4_INLINE void sum_part(const ted4_splat2d *g, uint32_t mask, part_state *stat
 static void sum_tile(tile_state *tile, const struct ted4_raster *r)
 {
     for (uint32_t i = tile->n; i-- > 0;) {
-        float *sums = (float *)r->sums.data + (size_t)tile->slot[i] * TED4_GRAD_SUMS, *sum0 = (float *)r->sum0.data + tile->slot[i];
+        float *sums = (float *)r->sums.data + (size_t)tile->slot[i] * TED4_GRAD_SUMS,
+              *sum0 = (float *)r->sum0.data + tile->slot[i];
 
         if (i >= AHEAD) {
-            __builtin_prefetch((float *)r->sums.data + (size_t)tile->slot[i - AHEAD] * TED4_GRAD_SUMS, 1);
+            __builtin_prefetch(
+                (float *)r->sums.data + (size_t)tile->slot[i - AHEAD] * TED4_GRAD_SUMS, 1);
             __builtin_prefetch((float *)r->sum0.data + tile->slot[i - AHEAD], 1);
         }
         if (tile->mask[i] != 0) {
@@ -280,11 +295,11 @@ static int tile_bwd(bwd_job *job, size_t number, ted4_growing *scratch)
     const uint32_t begin = ((const uint32_t *)r->tile_first.data)[number];
     const uint32_t n = ((const uint32_t *)r->tile_first.data)[number + 1] - begin;
     const uint32_t tx = (uint32_t)number % r->tiles_x, ty = (uint32_t)number / r->tiles_x;
-    tile_state     tile;
+    tile_state tile;
 
-    tile.slot     = (const uint32_t *)r->slot.data + begin;
-    tile.reach    = (const ted4_reach *)r->reach.data + ted4_group_first(number, begin);
-    tile.n        = n;
+    tile.slot = (const uint32_t *)r->slot.data + begin;
+    tile.reach = (const ted4_reach *)r->reach.data + ted4_group_first(number, begin);
+    tile.n = n;
     tile.n_groups = (n + TED4_GROUP - 1) / TED4_GROUP;
     if (n == 0)
         return 0;
@@ -307,7 +322,7 @@ static int tile_bwd(bwd_job *job, size_t number, ted4_growing *scratch)
 /* Takes tiles until none is left: whoever does a tile, it gives the same sums. */
 static void bwd_worker(void *arg, size_t worker)
 {
-    bwd_job     *job = arg;
+    bwd_job *job = arg;
     const size_t n_tiles = (size_t)job->r->tiles_x * job->r->tiles_y;
 
     for (size_t tile; (tile = atomic_fetch_add(&job->next_tile, 1)) < n_tiles;)
@@ -315,12 +330,13 @@ static void bwd_worker(void *arg, size_t worker)
             atomic_store(&job->failed, 1);
 }
 
-int TED4_LEVELED(ted4_raster_blend_bwd)(struct ted4_raster *r, const ted4_view *v, const ted4_parallel *p, const float *d_image)
+int TED4_LEVELED(ted4_raster_blend_bwd)(struct ted4_raster *r, const ted4_view *v,
+                                        const ted4_parallel *p, const float *d_image)
 {
     bwd_job job = { .r = r, .v = v, .d_image = d_image };
 
-    if (ted4_growing_grow(&r->sums, r->n_instances, TED4_GRAD_SUMS * sizeof(float)) != 0
-        || ted4_growing_grow(&r->sum0, r->n_instances, sizeof(float)) != 0)
+    if (ted4_growing_grow(&r->sums, r->n_instances, TED4_GRAD_SUMS * sizeof(float)) != 0 ||
+        ted4_growing_grow(&r->sum0, r->n_instances, sizeof(float)) != 0)
         return -1;
     atomic_init(&job.next_tile, 0);
     atomic_init(&job.failed, 0);

@@ -1,4 +1,5 @@
-/* project_bwd.c - adjoint of render/project.c, a register of Gaussians at a time. Comments quote the forward lines of render/image_model.h.
+/* project_bwd.c - adjoint of render/project.c, a register of Gaussians at a time. Comments quote
+ * the forward lines of render/image_model.h.
  * SPDX-License-Identifier: BSD-2-Clause */
 #include "adjoint.h"
 #include "render/image_model.h"
@@ -7,10 +8,10 @@
 
 typedef struct {
     const struct ted4_raster *r;
-    const ted4_splats        *s;
-    const ted4_view          *v;
-    const ted4_splat_grads   *g;
-    ted4_guard                guard;
+    const ted4_splats *s;
+    const ted4_view *v;
+    const ted4_splat_grads *g;
+    ted4_guard guard;
 } bwd_job;
 
 /* Gradients of a register of Gaussians. */
@@ -18,24 +19,26 @@ typedef struct {
     ted4_vf mean[3], scale[3], rot[4], opacity, colour[3], mean2d;
 } grad_lanes;
 
-/* Sums of a register of Gaussians, lane by lane, over their tiles in slot order. Returns which Gaussians have tiles. */
-static uint32_t add_up(const struct ted4_raster *r, size_t i, size_t n, ted4_vf sum[TED4_GRAD_SUMS], ted4_vf *sum0)
+/* Sums of a register of Gaussians, lane by lane, over their tiles in slot order. Returns which
+ * Gaussians have tiles. */
+static uint32_t add_up(const struct ted4_raster *r, size_t i, size_t n, ted4_vf sum[TED4_GRAD_SUMS],
+                       ted4_vf *sum0)
 {
     typedef float row __attribute__((vector_size(32)));
     const uint32_t *first = (const uint32_t *)r->first_slot.data + i;
-    const float    *sums = r->sums.data, *one = r->sum0.data;
-    float           lane[TED4_GRAD_SUMS][TED4_VEC] = {{0}}, lane0[TED4_VEC] = {0};
-    uint32_t        visible = 0;
+    const float *sums = r->sums.data, *one = r->sum0.data;
+    float lane[TED4_GRAD_SUMS][TED4_VEC] = { { 0 } }, lane0[TED4_VEC] = { 0 };
+    uint32_t visible = 0;
 
     for (size_t k = 0; k < n; k++) {
-        row   total = {0};
+        row total = { 0 };
         float total0 = 0;
 
         for (uint32_t at = first[k]; at < first[k + 1]; at++) {
             row here;
 
             memcpy(&here, sums + (size_t)at * TED4_GRAD_SUMS, sizeof here);
-            total  += here;
+            total += here;
             total0 += one[at];
         }
         for (int c = 0; c < TED4_GRAD_SUMS; c++)
@@ -49,7 +52,8 @@ static uint32_t add_up(const struct ted4_raster *r, size_t i, size_t n, ted4_vf 
     return visible;
 }
 
-/* From dL/dR(q) to the four components of q. Forward: r[0] = 1 - 2 (yy + zz), r[1] = 2 (xy - wz), ... */
+/* From dL/dR(q) to the four components of q. Forward: r[0] = 1 - 2 (yy + zz), r[1] = 2 (xy - wz),
+ * ... */
 static inline void rotation_bwd(const ted4_vf q[4], const ted4_vf d[9], ted4_vf out[4])
 {
     const ted4_vf w = q[0], x = q[1], y = q[2], z = q[3];
@@ -62,14 +66,16 @@ static inline void rotation_bwd(const ted4_vf q[4], const ted4_vf d[9], ted4_vf 
     out[3] = 2.0f * (w * az + x * sy + y * sx - 2.0f * z * (d[0] + d[4]));
 }
 
-/* One image axis from its row dp of dL/dP on. f: focal length; u, u_free: clamped slope; du_dt: t[0] or t[1] is slope times t[2].
- * Adds to dL/dscale, dL/dR(q), dL/dt. Forward:
- *     q[i] = j . R(q) column i,   p[i] = q[i] scale[i],   j[i] = f / t[2] (w[i] - u w2[i]),   u = clamp(t[axis] / t[2]) */
-static inline void axis_bwd(const ted4_projection *p, const ted4_splat_lanes *g, float f, ted4_vf u, ted4_vi u_free, const float w[3],
-                            const float w2[3], const ted4_vf j[3], const ted4_vf q[3], const ted4_vf dp[3], ted4_vf d_scale[3],
+/* One image axis from its row dp of dL/dP on. f: focal length; u, u_free: clamped slope; du_dt:
+ * t[0] or t[1] is slope times t[2]. Adds to dL/dscale, dL/dR(q), dL/dt. Forward:
+ *     q[i] = j . R(q) column i,   p[i] = q[i] scale[i],   j[i] = f / t[2] (w[i] - u w2[i]),   u =
+ *                                 clamp(t[axis] / t[2]) */
+static inline void axis_bwd(const ted4_projection *p, const ted4_splat_lanes *g, float f, ted4_vf u,
+                            ted4_vi u_free, const float w[3], const float w2[3], const ted4_vf j[3],
+                            const ted4_vf q[3], const ted4_vf dp[3], ted4_vf d_scale[3],
                             ted4_vf d_r[9], ted4_vf *d_slope, ted4_vf *d_z)
 {
-    ted4_vf dj_w = {0}, dj_w2 = {0}, dq[3];
+    ted4_vf dj_w = { 0 }, dj_w2 = { 0 }, dq[3];
 
     for (int i = 0; i < 3; i++) {
         d_scale[i] = ted4_vf_fma(dp[i], q[i], d_scale[i]);
@@ -80,18 +86,20 @@ static inline void axis_bwd(const ted4_projection *p, const ted4_splat_lanes *g,
 
         for (int k = 0; k < 3; k++)
             d_r[3 * i + k] = ted4_vf_fma(j[i], dq[k], d_r[3 * i + k]);
-        dj_w  = ted4_vf_fma(dj, ted4_vf_all(w[i]), dj_w);
+        dj_w = ted4_vf_fma(dj, ted4_vf_all(w[i]), dj_w);
         dj_w2 = ted4_vf_fma(dj, ted4_vf_all(w2[i]), dj_w2);
     }
-    *d_z      = ted4_vf_fnma(f * p->iz * p->iz, ted4_vf_fnma(u, dj_w2, dj_w), *d_z);
+    *d_z = ted4_vf_fnma(f * p->iz * p->iz, ted4_vf_fnma(u, dj_w2, dj_w), *d_z);
     *d_slope += ted4_vf_keep(u_free, -f * p->iz * dj_w2);
 }
 
-/* dL/dP from the sums. Forward: ln(alpha) = ln(o) - d^T K d / 2 with K = cov2d^-1 = U^T U, U d the whitened offsets.
- * dL/dK = -1/2 sum g d d^T and dL/dcov = -K dL/dK K = 1/2 U^T (sum g (U d)(U d)^T) U; cov = P P^T + blur doubles it again. */
-static inline void covariance_bwd(const ted4_projection *p, const ted4_vf sum[TED4_GRAD_SUMS], ted4_vf dp0[3], ted4_vf dp1[3])
+/* dL/dP from the sums. Forward: ln(alpha) = ln(o) - d^T K d / 2 with K = cov2d^-1 = U^T U, U d the
+ * whitened offsets. dL/dK = -1/2 sum g d d^T and dL/dcov = -K dL/dK K = 1/2 U^T (sum g (U d)(U
+ * d)^T) U; cov = P P^T + blur doubles it again. */
+static inline void covariance_bwd(const ted4_projection *p, const ted4_vf sum[TED4_GRAD_SUMS],
+                                  ted4_vf dp0[3], ted4_vf dp1[3])
 {
-    const float   unscale = 1.0f / (TED4_WHITEN * TED4_WHITEN * TED4_WHITEN * TED4_WHITEN);
+    const float unscale = 1.0f / (TED4_WHITEN * TED4_WHITEN * TED4_WHITEN * TED4_WHITEN);
     const ted4_vf c = unscale * ted4_vf_fma(p->a3, sum[TED4_SUM_N12], p->a2 * sum[TED4_SUM_N11]);
     const ted4_vf d = unscale * ted4_vf_fma(p->a2, sum[TED4_SUM_N12], p->a3 * sum[TED4_SUM_N22]);
     const ted4_vf v00 = unscale * p->a1 * p->a1 * sum[TED4_SUM_N11];
@@ -104,26 +112,29 @@ static inline void covariance_bwd(const ted4_projection *p, const ted4_vf sum[TE
     }
 }
 
-/* From this a c / det on, a slanting Gaussian being some 170 times as long as it is wide, covariance_bwd loses digits that
- * show: its error grows with a c / det, to a sixth of the gradient at 1e6. */
+/* From this a c / det on, a slanting Gaussian being some 170 times as long as it is wide,
+ * covariance_bwd loses digits that show: its error grows with a c / det, to a sixth of the gradient
+ * at 1e6. */
 #define THIN 3e4f
 
-/* dL/dP again, for the lanes of thin. Above, with U P of size 1, (U^T S U) P is a difference of numbers as large as the Gaussian is long; here
- * U P is made first. Its first row, a1 p0 + a2 p1 = a1 (p0 - b / c p1), is one too, but c p0 - b p1 = blur p0 + p1 x (p0 x p1). */
-static inline void thin_bwd(const ted4_projection *p, const ted4_vf sum[TED4_GRAD_SUMS], ted4_vi thin, ted4_vf dp0[3],
-                            ted4_vf dp1[3])
+/* dL/dP again, for the lanes of thin. Above, with U P of size 1, (U^T S U) P is a difference of
+ * numbers as large as the Gaussian is long; here U P is made first. Its first row, a1 p0 + a2 p1 =
+ * a1 (p0 - b / c p1), is one too, but c p0 - b p1 = blur p0 + p1 x (p0 x p1). */
+static inline void thin_bwd(const ted4_projection *p, const ted4_vf sum[TED4_GRAD_SUMS],
+                            ted4_vi thin, ted4_vf dp0[3], ted4_vf dp1[3])
 {
-    const float   unscale = 1.0f / (TED4_WHITEN * TED4_WHITEN * TED4_WHITEN * TED4_WHITEN);
+    const float unscale = 1.0f / (TED4_WHITEN * TED4_WHITEN * TED4_WHITEN * TED4_WHITEN);
     const ted4_vf ic = 1.0f / p->c;
-    ted4_vf       m[3], p1[3];
+    ted4_vf m[3], p1[3];
 
     for (int i = 0; i < 3; i++) {
-        m[i]  = ted4_cross(p->p0, p->p1, i);
+        m[i] = ted4_cross(p->p0, p->p1, i);
         p1[i] = p->p1[i] * ic;
     }
     for (int i = 0; i < 3; i++) {
         const ted4_vf blur = ted4_vf_all(TED4_RASTER_BLUR);
-        const ted4_vf w1 = p->a1 * ted4_vf_fma(blur, p->p0[i] * ic, ted4_cross(p1, m, i)), w2 = p->a3 * p->p1[i];
+        const ted4_vf w1 = p->a1 * ted4_vf_fma(blur, p->p0[i] * ic, ted4_cross(p1, m, i)),
+                      w2 = p->a3 * p->p1[i];
         const ted4_vf s1 = unscale * ted4_vf_fma(sum[TED4_SUM_N11], w1, sum[TED4_SUM_N12] * w2);
         const ted4_vf s2 = unscale * ted4_vf_fma(sum[TED4_SUM_N12], w1, sum[TED4_SUM_N22] * w2);
 
@@ -132,13 +143,13 @@ static inline void thin_bwd(const ted4_projection *p, const ted4_vf sum[TED4_GRA
     }
 }
 
-static void splats_bwd(const bwd_job *job, const ted4_splat_lanes *g, const ted4_vf sum[TED4_GRAD_SUMS], const ted4_vf *sum0,
-                       grad_lanes *out)
+static void splats_bwd(const bwd_job *job, const ted4_splat_lanes *g,
+                       const ted4_vf sum[TED4_GRAD_SUMS], const ted4_vf *sum0, grad_lanes *out)
 {
     const ted4_view *v = job->v;
-    const float      unscale = 1.0f / (TED4_WHITEN * TED4_WHITEN);
-    ted4_projection  p;
-    ted4_vf          dp0[3], dp1[3], d_r[9] = {{0}}, d_z = {0}, d_u = {0}, d_v = {0};
+    const float unscale = 1.0f / (TED4_WHITEN * TED4_WHITEN);
+    ted4_projection p;
+    ted4_vf dp0[3], dp1[3], d_r[9] = { { 0 } }, d_z = { 0 }, d_u = { 0 }, d_v = { 0 };
 
     ted4_project_lanes(&p, g, v, &job->guard);
     covariance_bwd(&p, sum, dp0, dp1);
@@ -147,8 +158,10 @@ static void splats_bwd(const bwd_job *job, const ted4_splat_lanes *g, const ted4
     if (ted4_vi_bits(thin) != 0)
         thin_bwd(&p, sum, thin, dp0, dp1);
     memset(out->scale, 0, sizeof out->scale);
-    axis_bwd(&p, g, v->fx, p.u, p.u_free, v->R, v->R + 6, p.j0, p.q0, dp0, out->scale, d_r, &d_u, &d_z);
-    axis_bwd(&p, g, v->fy, p.v, p.v_free, v->R + 3, v->R + 6, p.j1, p.q1, dp1, out->scale, d_r, &d_v, &d_z);
+    axis_bwd(&p, g, v->fx, p.u, p.u_free, v->R, v->R + 6, p.j0, p.q0, dp0, out->scale, d_r, &d_u,
+             &d_z);
+    axis_bwd(&p, g, v->fy, p.v, p.v_free, v->R + 3, v->R + 6, p.j1, p.q1, dp1, out->scale, d_r,
+             &d_v, &d_z);
     rotation_bwd(g->rot, d_r, out->rot);
 
     /* x = fx t[0] / t[2] + cx; d ln(alpha) / d centre = K d */
@@ -160,7 +173,7 @@ static void splats_bwd(const bwd_job *job, const ted4_splat_lanes *g, const ted4
     const ted4_vf dt0 = d_u * p.iz, dt1 = d_v * p.iz;
     d_z -= (dt0 * p.t[0] + dt1 * p.t[1]) * p.iz;
     for (int i = 0; i < 3; i++) {
-        out->mean[i]   = v->R[i] * dt0 + v->R[3 + i] * dt1 + v->R[6 + i] * d_z;
+        out->mean[i] = v->R[i] * dt0 + v->R[3 + i] * dt1 + v->R[6 + i] * d_z;
         out->colour[i] = sum[TED4_SUM_COLOUR + i];
     }
     out->opacity = *sum0 / g->opacity;
@@ -171,7 +184,8 @@ static void splats_bwd(const bwd_job *job, const ted4_splat_lanes *g, const ted4
 }
 
 /* ok: lanes with tiles; the others' numbers may be anything. */
-static void store_grads(const ted4_splat_grads *g, const grad_lanes *d, ted4_vi ok, size_t i, size_t n)
+static void store_grads(const ted4_splat_grads *g, const grad_lanes *d, ted4_vi ok, size_t i,
+                        size_t n)
 {
     for (int k = 0; k < 3; k++) {
         ted4_vf_store_n(g->mean[k] + i, ted4_vf_keep(ok, d->mean[k]), n);
@@ -187,14 +201,15 @@ static void store_grads(const ted4_splat_grads *g, const grad_lanes *d, ted4_vi 
 static void project_chunk_bwd(void *arg, size_t c)
 {
     const bwd_job *job = arg;
-    const size_t   begin = c * TED4_CHUNK, end = begin + TED4_CHUNK < job->s->n ? begin + TED4_CHUNK : job->s->n;
+    const size_t begin = c * TED4_CHUNK,
+                 end = begin + TED4_CHUNK < job->s->n ? begin + TED4_CHUNK : job->s->n;
 
     for (size_t i = begin; i < end; i += TED4_VEC) {
         const size_t n = end - i < TED4_VEC ? end - i : TED4_VEC;
-        ted4_vf        sum[TED4_GRAD_SUMS], sum0;
+        ted4_vf sum[TED4_GRAD_SUMS], sum0;
         const uint32_t visible = add_up(job->r, i, n, sum, &sum0);
-        grad_lanes        d;
-        ted4_vi        ok;
+        grad_lanes d;
+        ted4_vi ok;
 
         memset(&d, 0, sizeof d);
         for (size_t k = 0; k < TED4_VEC; k++)
@@ -211,8 +226,9 @@ static void project_chunk_bwd(void *arg, size_t c)
     }
 }
 
-void TED4_LEVELED(ted4_raster_project_bwd)(struct ted4_raster *r, const ted4_splats *s, const ted4_view *v, const ted4_parallel *p,
-                             const ted4_splat_grads *g)
+void TED4_LEVELED(ted4_raster_project_bwd)(struct ted4_raster *r, const ted4_splats *s,
+                                           const ted4_view *v, const ted4_parallel *p,
+                                           const ted4_splat_grads *g)
 {
     bwd_job job = { r, s, v, g, ted4_guard_make(v) };
 

@@ -1,14 +1,15 @@
-/* rate.c - the trainer's float model of Tier E (spec 7.3, 9.4, 10): bits of chosen anchors, and their gradients through rate_bwd.c.
- * Inputs, units and sums are the decoder's: positions in Q12 as spec 10.1 rounds them, mu in steps, s = log2(sigma / step), q = Q0 2^v,
- * contexts k q / Q0. Only roundings inside the networks are missing, and with TED4_QUANT_INTEGER (rate_integer.c) not even those.
+/* rate.c - the trainer's float model of Tier E (spec 7.3, 9.4, 10): bits of chosen anchors, and
+ * their gradients through rate_bwd.c. Inputs, units and sums are the decoder's: positions in Q12 as
+ * spec 10.1 rounds them, mu in steps, s = log2(sigma / step), q = Q0 2^v, contexts k q / Q0. Only
+ * roundings inside the networks are missing, and with TED4_QUANT_INTEGER (rate_integer.c) not even
+ * those.
  * SPDX-License-Identifier: BSD-2-Clause */
 #include "rate_parts.h"
 
 #include <stdlib.h>
 #include <string.h>
 
-
-enum { ALIGN = 16, REDUCE_PIECE = 4096 };       /* floats */
+enum { ALIGN = 16, REDUCE_PIECE = 4096 }; /* floats */
 
 static int net_init(ted4_rate_net *n, const ted4_net_shape *shape, int n_steps)
 {
@@ -49,8 +50,7 @@ ted4_rate *ted4_rate_new(const ted4_layout *l)
     int failed = net_init(&r->hyper, &shape->hyper, n_steps);
 
     if (!failed)
-        failed = ted4_dense_init(&r->step, r->hyper.dim[r->hyper.n - 1],
-                                 n_steps);
+        failed = ted4_dense_init(&r->step, r->hyper.dim[r->hyper.n - 1], n_steps);
     for (int m = 1; m < l->head.n_slices && !failed; m++)
         failed = net_init(&r->slice[m], &shape->slice[m], 0);
     if (failed) {
@@ -108,8 +108,7 @@ static float *take(arena *a, size_t n)
     return p;
 }
 
-static void take_acts(arena *a, const ted4_rate_net *n, int with_input,
-                      ted4_rate_acts *acts)
+static void take_acts(arena *a, const ted4_rate_net *n, int with_input, ted4_rate_acts *acts)
 {
     for (int i = 0; i <= n->n; i++) {
         const size_t size = ted4_row((size_t)n->dim[i] * TED4_RATE_CHUNK);
@@ -159,7 +158,7 @@ static int rooms(ted4_rate *r, size_t n)
             sums->d_net = malloc(r->layout.shape.n_nete * sizeof(float));
         if (room->storage == NULL || sums->d_net == NULL)
             return -1;
-        a = (arena){ room->storage, 0 };
+        a = (arena) { room->storage, 0 };
         take_room(&a, r, room);
     }
     return 0;
@@ -169,8 +168,7 @@ static int rooms(ted4_rate *r, size_t n)
 static size_t room_enter(ted4_rate *r)
 {
     for (size_t i = 0;; i = (i + 1) % r->n_rooms)
-        if (!atomic_flag_test_and_set_explicit(&r->busy[i],
-                                               memory_order_acquire))
+        if (!atomic_flag_test_and_set_explicit(&r->busy[i], memory_order_acquire))
             return i;
 }
 
@@ -190,7 +188,8 @@ static size_t whole_waves(size_t n_slots)
 
 static size_t count_chunks(size_t n_slots)
 {
-    const size_t most = (n_slots + TED4_RATE_LEAST - 1) / TED4_RATE_LEAST, whole = whole_waves(n_slots);
+    const size_t most = (n_slots + TED4_RATE_LEAST - 1) / TED4_RATE_LEAST,
+                 whole = whole_waves(n_slots);
 
     return whole < most ? whole : most;
 }
@@ -215,8 +214,8 @@ static void run_chunk(void *arg, size_t chunk)
 
 typedef struct {
     const ted4_rate *rate;
-    size_t           n_rooms;
-    float           *d_nete;
+    size_t n_rooms;
+    float *d_nete;
 } reduction;
 
 /* Adds the chunks' weight gradients, chunk by chunk. */
@@ -236,12 +235,11 @@ static void reduce_piece(void *arg, size_t piece)
 }
 
 /* Chunks from job->first on, and what they add to the sums. */
-static void run_wave(ted4_rate_job *job, size_t n, const ted4_parallel *p,
-                     float *d_net, double *bits)
+static void run_wave(ted4_rate_job *job, size_t n, const ted4_parallel *p, float *d_net,
+                     double *bits)
 {
     const ted4_layout *l = job->in->layout;
-    const size_t n_pieces = (l->shape.n_nete + REDUCE_PIECE - 1)
-                          / REDUCE_PIECE;
+    const size_t n_pieces = (l->shape.n_nete + REDUCE_PIECE - 1) / REDUCE_PIECE;
 
     ted4_parallel_for(p, n, run_chunk, job);
     if (job->steps_only)
@@ -257,8 +255,7 @@ static void run_wave(ted4_rate_job *job, size_t n, const ted4_parallel *p,
 }
 
 /* All but rate, input and where results go is filled in here. */
-static int evaluate(ted4_rate_job job, const ted4_parallel *p, float *d_net,
-                    double *bits)
+static int evaluate(ted4_rate_job job, const ted4_parallel *p, float *d_net, double *bits)
 {
     ted4_rate *r = job.rate;
     const ted4_rate_input *in = job.in;
@@ -278,32 +275,32 @@ static int evaluate(ted4_rate_job job, const ted4_parallel *p, float *d_net,
 
         job.first = c;
         job.n_chunks = n_chunks;
-        run_wave(&job, left < TED4_RATE_WAVE ? left : TED4_RATE_WAVE, p, d_net,
-                 bits);
+        run_wave(&job, left < TED4_RATE_WAVE ? left : TED4_RATE_WAVE, p, d_net, bits);
     }
     return 0;
 }
 
-int ted4_rate_evaluate(ted4_rate *r, const ted4_rate_input *in,
-                       const ted4_parallel *p, const float *const *d_value,
-                       float *const *d_attr, float *d_net, float *const *steps,
-                       double *bits)
+int ted4_rate_evaluate(ted4_rate *r, const ted4_rate_input *in, const ted4_parallel *p,
+                       const float *const *d_value, float *const *d_attr, float *d_net,
+                       float *const *steps, double *bits)
 {
-    return evaluate((ted4_rate_job){ .rate = r, .in = in, .d_value = d_value,
-                                     .d_attr = d_attr, .steps = steps,
-                                     .steps_only = bits == NULL },
+    return evaluate((ted4_rate_job) { .rate = r,
+                                      .in = in,
+                                      .d_value = d_value,
+                                      .d_attr = d_attr,
+                                      .steps = steps,
+                                      .steps_only = bits == NULL },
                     p, d_net, bits);
 }
 
-int ted4_rate_lanes(ted4_rate *r, const ted4_rate_input *in,
-                    const ted4_parallel *p, float *const *steps, float *lane_bits)
+int ted4_rate_lanes(ted4_rate *r, const ted4_rate_input *in, const ted4_parallel *p,
+                    float *const *steps, float *lane_bits)
 {
     double bits[TED4_TYPES];
 
-    memset(lane_bits, 0, in->n_slots * ted4_row(1u + in->layout->head.n_offsets)
-                             * sizeof *lane_bits);
-    return evaluate((ted4_rate_job){ .rate = r, .in = in, .steps = steps,
-                                     .lane_bits = lane_bits },
+    memset(lane_bits, 0,
+           in->n_slots * ted4_row(1u + in->layout->head.n_offsets) * sizeof *lane_bits);
+    return evaluate((ted4_rate_job) { .rate = r, .in = in, .steps = steps, .lane_bits = lane_bits },
                     p, NULL, bits);
 }
 
@@ -314,14 +311,14 @@ void ted4_rate_row(const float *u, const float *s, float *bits, float *d_u, floa
     TED4_IN_USE(ted4_rate_row)(u, s, bits, d_u, d_s);
 }
 
-void ted4_residuals(const ted4_layout *l, ted4_quant quant, const float *value, const float *steps, uint32_t block,
-                    uint64_t key, float *residual)
+void ted4_residuals(const ted4_layout *l, ted4_quant quant, const float *value, const float *steps,
+                    uint32_t block, uint64_t key, float *residual)
 {
     TED4_IN_USE(ted4_residuals)(l, quant, value, steps, block, key, residual);
 }
 
-void ted4_quantise(const ted4_layout *l, ted4_quant quant, const float *attr, const float *steps, uint32_t block,
-                   uint64_t key, float *out)
+void ted4_quantise(const ted4_layout *l, ted4_quant quant, const float *attr, const float *steps,
+                   uint32_t block, uint64_t key, float *out)
 {
     TED4_IN_USE(ted4_quantise)(l, quant, attr, steps, block, key, out);
 }

@@ -1,8 +1,8 @@
 /* rate_bwd.c - adjoint of rate.c, one slot at a time; weights once a chunk. spec 7.3, 9.4, 10.
  * Forward was, for a value x of a type with q = Q0 2^v:
  *     k = x / q + n,  bits(k - mu, s),  context = (x + q n) / Q0,  rendered value = x + q n
- * with the residual n held constant. So dk/dx = 1/q, dk/dv = -(x/q) ln 2, d(context)/dx = 1/Q0, d(x + q n)/dv = q n ln 2; and what reaches x from the rendered
- * value is the trainer's business.
+ * with the residual n held constant. So dk/dx = 1/q, dk/dv = -(x/q) ln 2, d(context)/dx = 1/Q0, d(x
+ * + q n)/dv = q n ln 2; and what reaches x from the rendered value is the trainer's business.
  * SPDX-License-Identifier: BSD-2-Clause */
 #include "rate_lanes.h"
 
@@ -16,14 +16,14 @@ static void relu_backward(const float *y, size_t n, float *d)
         d[j] = y[j] > 0.0f ? d[j] : 0.0f;
 }
 
-/* The slice networks share the gradients of mu and s with the hyperprior, to whose outputs they were added. */
+/* The slice networks share the gradients of mu and s with the hyperprior, to whose outputs they
+ * were added. */
 static void slices_backward(const ted4_rate *r, ted4_rate_room *room, size_t i)
 {
     const ted4_layout *l = &r->layout;
     const size_t f = l->shape.dim[TED4_FEATURE];
-    const float *d_out = room->hyper.d[r->hyper.n]
-                       + i * ted4_row(l->shape.n_outputs)
-                       + ted4_row(l->shape.first_output[TED4_FEATURE]);
+    const float *d_out = room->hyper.d[r->hyper.n] + i * ted4_row(l->shape.n_outputs) +
+                         ted4_row(l->shape.first_output[TED4_FEATURE]);
 
     memset(room->slot.d_context, 0, ted4_row(f) * sizeof(float));
     for (size_t m = 1, known = 0; m < l->head.n_slices; m++) {
@@ -42,11 +42,10 @@ static void slices_backward(const ted4_rate *r, ted4_rate_room *room, size_t i)
     }
 }
 
-/* dL/dx of one component, added to d_x, and dL/d(v ln 2), added to d_v. d_context and d_value may be NULL; d_value is read before d_x, which may be the
- * same row, is written. */
-static void value_backward(const ted4_rate_job *job, const ted4_rate_slot *s,
-                           int t, size_t channel, const float *q,
-                           const float *d_context, const float *d_value,
+/* dL/dx of one component, added to d_x, and dL/d(v ln 2), added to d_v. d_context and d_value may
+ * be NULL; d_value is read before d_x, which may be the same row, is written. */
+static void value_backward(const ted4_rate_job *job, const ted4_rate_slot *s, int t, size_t channel,
+                           const float *q, const float *d_context, const float *d_value,
                            const int32_t *on, float *d_x, float *d_v)
 {
     const size_t at = ted4_row(channel);
@@ -74,8 +73,8 @@ static void value_backward(const ted4_rate_job *job, const ted4_rate_slot *s,
     }
 }
 
-static void type_backward(const ted4_rate_job *job, ted4_rate_room *room,
-                          size_t slot, int t, const float *v, float *d_v)
+static void type_backward(const ted4_rate_job *job, ted4_rate_room *room, size_t slot, int t,
+                          const float *v, float *d_v)
 {
     const ted4_layout *l = job->in->layout;
     const float *q = job->steps[slot] + ted4_row((size_t)t);
@@ -87,8 +86,8 @@ static void type_backward(const ted4_rate_job *job, ted4_rate_room *room,
     for (size_t c = 0; c < l->shape.dim[t]; c++) {
         const size_t channel = (size_t)l->first[t] + c;
 
-        value_backward(job, &room->slot, t, channel, q, d_context, d_value,
-                       on, job->d_attr[slot] + ted4_row(channel), d_v);
+        value_backward(job, &room->slot, t, channel, q, d_context, d_value, on,
+                       job->d_attr[slot] + ted4_row(channel), d_v);
         d_context = d_context != NULL ? d_context + TED4_LANES : NULL;
     }
 #pragma omp simd
@@ -97,8 +96,8 @@ static void type_backward(const ted4_rate_job *job, ted4_rate_room *room,
 }
 
 /* Straight-through: bits count times the sigmoid of the logit. */
-static void mask_backward(float weight, const float *bits, const int32_t *on,
-                          const float *logit, float *d_logit)
+static void mask_backward(float weight, const float *bits, const int32_t *on, const float *logit,
+                          float *d_logit)
 {
 #pragma omp simd
     for (int j = 0; j < TED4_LANES; j++) {
@@ -108,8 +107,7 @@ static void mask_backward(float weight, const float *bits, const int32_t *on,
     }
 }
 
-static void logits_backward(const ted4_rate_job *job, const ted4_rate_slot *s,
-                            size_t slot)
+static void logits_backward(const ted4_rate_job *job, const ted4_rate_slot *s, size_t slot)
 {
     const ted4_layout *l = job->in->layout;
     const float weight = job->in->bit_weight;
@@ -124,8 +122,7 @@ static void logits_backward(const ted4_rate_job *job, const ted4_rate_slot *s,
     for (size_t k = 0; l->head.offset_mask && k < l->head.n_offsets; k++) {
         const size_t at = ted4_row((size_t)l->offset_logit + k);
 
-        mask_backward(weight, s->kept_bits + ted4_row(k), in_use, attr + at,
-                      d + at);
+        mask_backward(weight, s->kept_bits + ted4_row(k), in_use, attr + at, d + at);
     }
     if (l->head.temporal_mask)
         mask_backward(weight, s->phi_bits, used, attr + moves, d + moves);
@@ -135,24 +132,22 @@ static void hyper_backward(const ted4_rate *r, ted4_rate_room *room, size_t i)
 {
     const ted4_rate_net *h = &r->hyper;
     const ted4_rate_acts *a = &room->hyper;
-    const float *d_v = a->d[h->n] + i * ted4_row((size_t)h->dim[h->n])
-                     + ted4_row(r->layout.shape.first_step_output);
+    const float *d_v = a->d[h->n] + i * ted4_row((size_t)h->dim[h->n]) +
+                       ted4_row(r->layout.shape.first_step_output);
 
     for (int k = h->n - 1; k > 0; k--) {
         const size_t width = ted4_row((size_t)h->dim[k]);
         float *d = a->d[k] + i * width;
 
-        TED4_LEVELED(ted4_dense_backward_x)(&h->layer[k],
-                              a->d[k + 1] + i * ted4_row((size_t)h->dim[k + 1]),
-                              d, 0);
+        TED4_LEVELED(ted4_dense_backward_x)
+        (&h->layer[k], a->d[k + 1] + i * ted4_row((size_t)h->dim[k + 1]), d, 0);
         if (k == h->n - 1)
             TED4_LEVELED(ted4_dense_backward_x)(&r->step, d_v, d, 1);
         relu_backward(a->x[k] + i * width, width, d);
     }
 }
 
-void ted4_rate_slot_backward(const ted4_rate_job *job, ted4_rate_room *room,
-                             size_t i, size_t slot)
+void ted4_rate_slot_backward(const ted4_rate_job *job, ted4_rate_room *room, size_t i, size_t slot)
 {
     const ted4_rate *r = job->rate;
     const ted4_shape *shape = &r->layout.shape;
@@ -180,17 +175,15 @@ void ted4_rate_slot_backward(const ted4_rate_job *job, ted4_rate_room *room,
 }
 
 /* Layer k of a network over all slots. x: its inputs. */
-static void layer_weights(const ted4_rate_net *n, int k, const float *x,
-                          size_t x_stride, const float *d, size_t n_slots,
-                          float *d_net)
+static void layer_weights(const ted4_rate_net *n, int k, const float *x, size_t x_stride,
+                          const float *d, size_t n_slots, float *d_net)
 {
-    TED4_LEVELED(ted4_dense_backward_w)(n->dim[k], n->dim[k + 1], x, x_stride, d,
-                          ted4_row((size_t)n->dim[k + 1]), n_slots,
-                          d_net + n->w[k], d_net + n->b[k]);
+    TED4_LEVELED(ted4_dense_backward_w)
+    (n->dim[k], n->dim[k + 1], x, x_stride, d, ted4_row((size_t)n->dim[k + 1]), n_slots,
+     d_net + n->w[k], d_net + n->b[k]);
 }
 
-void ted4_rate_weights_backward(const ted4_rate *r, ted4_rate_room *room,
-                                size_t n_slots)
+void ted4_rate_weights_backward(const ted4_rate *r, ted4_rate_room *room, size_t n_slots)
 {
     const ted4_layout *l = &r->layout;
     const size_t context = ted4_row(l->shape.dim[TED4_FEATURE]);
@@ -198,15 +191,13 @@ void ted4_rate_weights_backward(const ted4_rate *r, ted4_rate_room *room,
 
     memset(d_net, 0, l->shape.n_nete * sizeof *d_net);
     for (int k = 0; k < r->hyper.n; k++)
-        layer_weights(&r->hyper, k, room->hyper.x[k],
-                      ted4_row((size_t)r->hyper.dim[k]), room->hyper.d[k + 1],
-                      n_slots, d_net);
+        layer_weights(&r->hyper, k, room->hyper.x[k], ted4_row((size_t)r->hyper.dim[k]),
+                      room->hyper.d[k + 1], n_slots, d_net);
     for (int m = 1; m < l->head.n_slices; m++) {
         const ted4_rate_net *n = &r->slice[m];
         const ted4_rate_acts *a = &room->slice[m];
 
         layer_weights(n, 0, room->context, context, a->d[1], n_slots, d_net);
-        layer_weights(n, 1, a->x[1], ted4_row((size_t)n->dim[1]), a->d[2],
-                      n_slots, d_net);
+        layer_weights(n, 1, a->x[1], ted4_row((size_t)n->dim[1]), a->d[2], n_slots, d_net);
     }
 }

@@ -9,29 +9,26 @@
 
 /* Hyperprior of a slot: its outputs stay in the room; v and the steps replace those of the float
  * network. */
-void ted4_rate_integer_steps(const ted4_rate_job *job, ted4_rate_room *room,
-                             size_t slot, float *v, float *q)
+void ted4_rate_integer_steps(const ted4_rate_job *job, ted4_rate_room *room, size_t slot, float *v,
+                             float *q)
 {
     const ted4_shape *shape = &job->in->layout->shape;
     const float *p = job->in->position[slot];
-    const int32_t *out = room->integer
-                       + shape->first_step_output * TED4_PRIOR_BLOCK;
+    const int32_t *out = room->integer + shape->first_step_output * TED4_PRIOR_BLOCK;
     uint16_t position[TED4_LANES][3];
 
     for (size_t j = 0; j < TED4_LANES; j++)
         for (size_t a = 0; a < 3; a++)
-            position[j][a] = job->in->lanes[slot] >> j & 1
-                           ? ted4_float_to_half(p[ted4_row(a) + j]) : 0;
-    ted4_prior_hyper(&job->integer->prior, position[0], TED4_LANES,
-                     room->integer);
+            position[j][a] = job->in->lanes[slot] >> j & 1 ? ted4_float_to_half(p[ted4_row(a) + j])
+                                                           : 0;
+    ted4_prior_hyper(&job->integer->prior, position[0], TED4_LANES, room->integer);
     for (int t = 0; t < TED4_TYPES; t++, q += TED4_LANES) {
         if (shape->dim[t] == 0)
             continue;
         for (int j = 0; j < TED4_LANES; j++) {
             const int index = ted4_step_index(out[j]);
 
-            q[j] = job->in->layout->head.step[t]
-                 * ted4_bits_float(ted4_step[index]);
+            q[j] = job->in->layout->head.step[t] * ted4_bits_float(ted4_step[index]);
             v[j] = (float)(index - 128) * (1.0f / 32.0f);
         }
         out += TED4_PRIOR_BLOCK;
@@ -41,8 +38,7 @@ void ted4_rate_integer_steps(const ted4_rate_job *job, ted4_rate_room *room,
 
 /* Adds what the slice networks say of the features, whose symbols are x / q + n. v: of the
  * features. */
-static void slices(const ted4_rate_job *job, ted4_rate_room *room,
-                   const float *q, const float *v)
+static void slices(const ted4_rate_job *job, ted4_rate_room *room, const float *q, const float *v)
 {
     const ted4_layout *l = job->in->layout;
     const size_t f = l->shape.dim[TED4_FEATURE];
@@ -55,9 +51,10 @@ static void slices(const ted4_rate_job *job, ted4_rate_room *room,
 
     for (size_t c = 0; c < f; c++)
         for (size_t j = 0, at = ted4_row(c); j < TED4_LANES; j++) {
-            /* Where x / q has no room for fractions the sum may round to just outside of the range of symbols. */
-            const float k = ted4_lane_round(ted4_lane_within(
-                x[at + j] / q[j] + n[at + j], -32767.0f, 32767.0f));
+            /* Where x / q has no room for fractions the sum may round to just outside of the range
+             * of symbols. */
+            const float k = ted4_lane_round(
+                ted4_lane_within(x[at + j] / q[j] + n[at + j], -32767.0f, 32767.0f));
             const int index = (int)(v[j] * 32.0f) + 128;
 
             context[c * TED4_PRIOR_BLOCK + j] =
@@ -69,8 +66,7 @@ static void slices(const ted4_rate_job *job, ted4_rate_room *room,
         known += l->head.slice[m - 1];
         ted4_prior_slice(&job->integer->prior, m, context, TED4_LANES, added);
         for (size_t c = 0; c < 2 * dim; c++) {
-            int32_t *to = mu + (known + (c < dim ? c : c - dim + f))
-                             * TED4_PRIOR_BLOCK;
+            int32_t *to = mu + (known + (c < dim ? c : c - dim + f)) * TED4_PRIOR_BLOCK;
 
             for (size_t j = 0; j < TED4_LANES; j++)
                 to[j] += added[c * TED4_PRIOR_BLOCK + j];
@@ -80,8 +76,8 @@ static void slices(const ted4_rate_job *job, ted4_rate_room *room,
 
 /* out: [P][32], of which mu and s are replaced by the decoder's mu / 256 and (sigma index - 64) /
  * 16. */
-void ted4_rate_integer_outputs(const ted4_rate_job *job, ted4_rate_room *room,
-                               const float *q, float *out)
+void ted4_rate_integer_outputs(const ted4_rate_job *job, ted4_rate_room *room, const float *q,
+                               float *out)
 {
     const ted4_shape *shape = &job->in->layout->shape;
 
@@ -94,6 +90,6 @@ void ted4_rate_integer_outputs(const ted4_rate_job *job, ted4_rate_room *room,
 
             for (int j = 0; j < TED4_LANES; j++)
                 to[j] = c < shape->dim[t] ? (float)from[j] * 0x1p-8f
-                      : (float)(ted4_sigma_index(from[j]) - 64) * 0x1p-4f;
+                                          : (float)(ted4_sigma_index(from[j]) - 64) * 0x1p-4f;
         }
 }

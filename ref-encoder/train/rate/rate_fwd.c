@@ -15,11 +15,10 @@ static void sine_row(const uint32_t *phase, uint32_t turn, int shift, float *row
 }
 
 /* spec 10.1: inputs of the hyperprior, the integers of the text divided by 4096. */
-static void encode_positions(const ted4_header *h, const float *position,
-                             uint32_t lanes, float *x)
+static void encode_positions(const ted4_header *h, const float *position, uint32_t lanes, float *x)
 {
     uint32_t phase[3][TED4_LANES];
-    int32_t  on[TED4_LANES];
+    int32_t on[TED4_LANES];
 
     if (h->prior == TED4_PRIOR_FACTORISED)
         return;
@@ -62,24 +61,22 @@ static void step_sizes(const ted4_layout *l, const float *v, float *q)
 }
 
 /* The hyperprior up to its rows v, and the steps q. The other outputs come in slot_forward. */
-static void steps_forward(const ted4_rate_job *job, ted4_rate_room *room,
-                          size_t i, size_t slot)
+static void steps_forward(const ted4_rate_job *job, ted4_rate_room *room, size_t i, size_t slot)
 {
     const ted4_rate *r = job->rate;
     const ted4_rate_net *h = &r->hyper;
     const ted4_layout *l = job->in->layout;
     float *x = room->hyper.x[0] + i * ted4_row((size_t)h->dim[0]);
 
-    encode_positions(&l->head, job->in->position[slot], job->in->lanes[slot],
-                     x);
+    encode_positions(&l->head, job->in->position[slot], job->in->lanes[slot], x);
     for (int k = 0; k < h->n - 1; k++) {
         float *y = room->hyper.x[k + 1] + i * ted4_row((size_t)h->dim[k + 1]);
 
         TED4_LEVELED(ted4_dense_forward)(&h->layer[k], x, y, 1);
         x = y;
     }
-    float *v = room->hyper.x[h->n] + i * ted4_row(l->shape.n_outputs)
-             + ted4_row(l->shape.first_step_output);
+    float *v = room->hyper.x[h->n] + i * ted4_row(l->shape.n_outputs) +
+               ted4_row(l->shape.first_step_output);
 
     TED4_LEVELED(ted4_dense_forward)(&r->step, x, v, 0);
     step_sizes(l, v, job->steps[slot]);
@@ -95,12 +92,12 @@ static void load_slot(const ted4_rate_job *job, ted4_rate_slot *s, size_t slot)
     const float *logit = attr + ted4_row((size_t)l->offset_logit);
     const float *moves = attr + ted4_row((size_t)l->temporal_logit);
     const int32_t all = l->head.offset_mask ? 0 : -1, all_move = l->head.temporal_mask ? 0 : -1;
-    int32_t on[TED4_LANES], any[TED4_LANES] = {0};
+    int32_t on[TED4_LANES], any[TED4_LANES] = { 0 };
 
     ted4_lane_set(job->in->lanes[slot], on);
     for (size_t c = 0; c < (size_t)l->offset_logit; c++) {
         const float *from = attr + ted4_row(c);
-        float       *to = s->value + ted4_row(c);
+        float *to = s->value + ted4_row(c);
 
 #pragma omp simd
         for (size_t j = 0; j < TED4_LANES; j++)
@@ -108,7 +105,7 @@ static void load_slot(const ted4_rate_job *job, ted4_rate_slot *s, size_t slot)
     }
     for (size_t k = 0; k < l->head.n_offsets; k++) {
         const float *x = logit + ted4_row(k);
-        float       *kept = s->kept + ted4_row(k);
+        float *kept = s->kept + ted4_row(k);
 
 #pragma omp simd
         for (size_t j = 0; j < TED4_LANES; j++) {
@@ -126,8 +123,7 @@ static void load_slot(const ted4_rate_job *job, ted4_rate_slot *s, size_t slot)
 }
 
 /* spec 10.3: contexts, and what each slice network adds to mu and s of its slice. */
-static void slices_forward(const ted4_rate_job *job, ted4_rate_room *room,
-                           size_t i, size_t slot)
+static void slices_forward(const ted4_rate_job *job, ted4_rate_room *room, size_t i, size_t slot)
 {
     const ted4_rate *r = job->rate;
     const ted4_layout *l = job->in->layout;
@@ -138,8 +134,8 @@ static void slices_forward(const ted4_rate_job *job, ted4_rate_room *room,
     const float *q = job->steps[slot] + ted4_row(TED4_FEATURE);
     const float unit = 1.0f / l->head.step[TED4_FEATURE];
     float *context = room->context + i * ted4_row(f);
-    float *out = room->hyper.x[r->hyper.n] + i * ted4_row(l->shape.n_outputs)
-               + ted4_row(l->shape.first_output[TED4_FEATURE]);
+    float *out = room->hyper.x[r->hyper.n] + i * ted4_row(l->shape.n_outputs) +
+                 ted4_row(l->shape.first_output[TED4_FEATURE]);
 
     for (size_t c = 0; c < f; c++) {
         const size_t at = ted4_row(c);
@@ -168,10 +164,10 @@ static void slices_forward(const ted4_rate_job *job, ted4_rate_room *room,
 /* ---- bits ---- */
 
 /* The lanes that count component c of type t, and where its bits are gathered. */
-static const float *component_mask(ted4_rate_slot *s, int t, size_t c,
-                                   float *type_bits, float **gathered)
+static const float *component_mask(ted4_rate_slot *s, int t, size_t c, float *type_bits,
+                                   float **gathered)
 {
-    const size_t k = ted4_row(c / 3);           /* offset 3k + j: spec 10.2 */
+    const size_t k = ted4_row(c / 3); /* offset 3k + j: spec 10.2 */
 
     if (t == TED4_OFFSET) {
         *gathered = s->kept_bits + k;
@@ -183,9 +179,8 @@ static const float *component_mask(ted4_rate_slot *s, int t, size_t c,
 
 /* Bits of one component, and dL/d(k, mu, s). A clamped s has a gradient only where it leads back
  * inside. */
-static void component_bits(float weight, const float *mask, const float *k_mu,
-                           const float *s, float *d_symbol, float *d_mu,
-                           float *d_s, float *gathered)
+static void component_bits(float weight, const float *mask, const float *k_mu, const float *s,
+                           float *d_symbol, float *d_mu, float *d_s, float *gathered)
 {
     float bits[TED4_LANES], d_u[TED4_LANES], d_raw[TED4_LANES];
 
@@ -212,28 +207,27 @@ static double masked_sum(const float *bits, const float *mask)
 
 /* Adds the bits of a type to those of the slot's anchors; offsets are apart. total: of a type that
  * is coded for every anchor in use. */
-static void tell_lanes(const ted4_rate_job *job, const ted4_rate_slot *s, size_t slot, int t, const float *total)
+static void tell_lanes(const ted4_rate_job *job, const ted4_rate_slot *s, size_t slot, int t,
+                       const float *total)
 {
     const size_t K = job->in->layout->head.n_offsets;
     const float *bits = t == TED4_OFFSET ? s->kept_bits : t == TED4_PHI ? s->phi_bits : total;
     const float *mask = t == TED4_OFFSET ? s->kept : t == TED4_PHI ? s->dynamic : s->used;
-    float       *to = job->lane_bits + slot * ted4_row(1 + K) + (t == TED4_OFFSET ? TED4_LANES : 0);
+    float *to = job->lane_bits + slot * ted4_row(1 + K) + (t == TED4_OFFSET ? TED4_LANES : 0);
 
     for (size_t j = 0; j < (t == TED4_OFFSET ? ted4_row(K) : TED4_LANES); j++)
         to[j] += mask[j] > 0.0f ? bits[j] : 0.0f;
 }
 
-static void type_bits(const ted4_rate_job *job, ted4_rate_room *room, size_t i,
-                      size_t slot, int t)
+static void type_bits(const ted4_rate_job *job, ted4_rate_room *room, size_t i, size_t slot, int t)
 {
     const ted4_shape *shape = &job->in->layout->shape;
-    const size_t out = i * ted4_row(shape->n_outputs)
-                     + ted4_row(shape->first_output[t]);
+    const size_t out = i * ted4_row(shape->n_outputs) + ted4_row(shape->first_output[t]);
     const size_t dim = shape->dim[t], s_rows = ted4_row(dim);
     const float *mu = room->hyper.x[job->rate->hyper.n] + out;
     float *d_mu = room->hyper.d[job->rate->hyper.n] + out;
     const float *q = job->steps[slot] + ted4_row((size_t)t);
-    float total[TED4_LANES] = {0};
+    float total[TED4_LANES] = { 0 };
     ted4_rate_slot *s = &room->slot;
 
     for (size_t c = 0; c < dim; c++, mu += TED4_LANES, d_mu += TED4_LANES) {
@@ -243,24 +237,21 @@ static void type_bits(const ted4_rate_job *job, ted4_rate_room *room, size_t i,
 
 #pragma omp simd
         for (int j = 0; j < TED4_LANES; j++)
-            k_mu[j] = (s->value[at + (size_t)j] / q[j]
-                       + s->residual[at + (size_t)j]) - mu[j];
-        component_bits(job->in->bit_weight, mask, k_mu, mu + s_rows,
-                       s->d_symbol + at, d_mu, d_mu + s_rows, gathered);
+            k_mu[j] = (s->value[at + (size_t)j] / q[j] + s->residual[at + (size_t)j]) - mu[j];
+        component_bits(job->in->bit_weight, mask, k_mu, mu + s_rows, s->d_symbol + at, d_mu,
+                       d_mu + s_rows, gathered);
     }
     if (job->lane_bits != NULL)
         tell_lanes(job, s, slot, t, total);
     if (t == TED4_OFFSET)
         for (size_t k = 0; k < dim / 3; k++)
-            room->sums->bits[t] += masked_sum(s->kept_bits + ted4_row(k),
-                                        s->kept + ted4_row(k));
+            room->sums->bits[t] += masked_sum(s->kept_bits + ted4_row(k), s->kept + ted4_row(k));
     else
         room->sums->bits[t] += t == TED4_PHI ? masked_sum(s->phi_bits, s->dynamic)
-                                       : masked_sum(total, s->used);
+                                             : masked_sum(total, s->used);
 }
 
-static void slot_forward(const ted4_rate_job *job, ted4_rate_room *room,
-                         size_t i, size_t slot)
+static void slot_forward(const ted4_rate_job *job, ted4_rate_room *room, size_t i, size_t slot)
 {
     const ted4_rate *r = job->rate;
     const ted4_rate_input *in = job->in;
@@ -272,20 +263,20 @@ static void slot_forward(const ted4_rate_job *job, ted4_rate_room *room,
 
     load_slot(job, s, slot);
     TED4_LEVELED(ted4_dense_forward)(&h->layer[last], hidden, out, 0);
-    TED4_LEVELED(ted4_residuals)(in->layout, in->quant, s->value, job->steps[slot],
-                   in->block[slot], in->key, s->residual);
+    TED4_LEVELED(ted4_residuals)
+    (in->layout, in->quant, s->value, job->steps[slot], in->block[slot], in->key, s->residual);
     slices_forward(job, room, i, slot);
     if (job->integer != NULL)
         ted4_rate_integer_outputs(job, room, job->steps[slot], out);
-    memset(s->kept_bits, 0,
-           ted4_row(in->layout->head.n_offsets) * sizeof *s->kept_bits);
+    memset(s->kept_bits, 0, ted4_row(in->layout->head.n_offsets) * sizeof *s->kept_bits);
     memset(s->phi_bits, 0, TED4_LANES * sizeof *s->phi_bits);
     for (int t = 0; t < TED4_TYPES; t++)
         if (ted4_rate_coded(job, t))
             type_bits(job, room, i, slot, t);
 }
 
-void TED4_LEVELED(ted4_rate_chunk)(const ted4_rate_job *job, ted4_rate_room *room, size_t first, size_t n)
+void TED4_LEVELED(ted4_rate_chunk)(const ted4_rate_job *job, ted4_rate_room *room, size_t first,
+                                   size_t n)
 {
     memset(room->sums->bits, 0, sizeof room->sums->bits);
     for (size_t i = 0; i < n; i++) {

@@ -1,4 +1,5 @@
-/* rate_integer.c - TED4_QUANT_INTEGER: the integer networks, made when they have changed. What they do to a slot is in rate_decoded.c.
+/* rate_integer.c - TED4_QUANT_INTEGER: the integer networks, made when they have changed. What they
+ * do to a slot is in rate_decoded.c.
  * SPDX-License-Identifier: BSD-2-Clause */
 #include "rate_parts.h"
 
@@ -7,19 +8,22 @@
 
 #include "kernel/int_kernel.h"
 
-static int is_made_of(const ted4_rate_integer *x, const ted4_layout *l, const float *net, const uint8_t *shift)
+static int is_made_of(const ted4_rate_integer *x, const ted4_layout *l, const float *net,
+                      const uint8_t *shift)
 {
     const ted4_shape *s = &l->shape;
 
-    return x->ready && x->prior.context_bits == l->head.context_bits && memcmp(x->net, net, s->n_nete * sizeof *net) == 0 && memcmp(x->shift, shift, s->n_units) == 0;
+    return x->ready && x->prior.context_bits == l->head.context_bits &&
+           memcmp(x->net, net, s->n_nete * sizeof *net) == 0 &&
+           memcmp(x->shift, shift, s->n_units) == 0;
 }
 
 int ted4_rate_integer_begin(ted4_rate *r, const ted4_rate_input *in)
 {
     const ted4_layout *l = in->layout;
 
-    const ted4_shape  *s = &l->shape;
-    const float       *net = in->net + l->nete;
+    const ted4_shape *s = &l->shape;
+    const float *net = in->net + l->nete;
     ted4_rate_integer *x = &r->integer;
 
     if (is_made_of(x, l, net, in->shift))
@@ -29,9 +33,9 @@ int ted4_rate_integer_begin(ted4_rate *r, const ted4_rate_input *in)
     x->ready = 1;
     x->net = malloc(s->n_nete * sizeof *x->net + 1);
     x->shift = malloc(s->n_units + 1);
-    if (x->net != NULL && x->shift != NULL
-        && ted4_prior_init(&x->prior, &l->head, s, &x->arena) == TED4_OK
-        && ted4_prior_load(&x->prior, net, in->shift, NULL) == TED4_OK) {
+    if (x->net != NULL && x->shift != NULL &&
+        ted4_prior_init(&x->prior, &l->head, s, &x->arena) == TED4_OK &&
+        ted4_prior_load(&x->prior, net, in->shift, NULL) == TED4_OK) {
         memcpy(x->net, net, s->n_nete * sizeof *x->net);
         memcpy(x->shift, in->shift, s->n_units);
         x->prior.dense = ted4_select_int_dense();

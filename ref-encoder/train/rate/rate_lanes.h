@@ -18,7 +18,9 @@ void ted4_rate_slot_backward(const ted4_rate_job *job, ted4_rate_room *room, siz
 void ted4_rate_weights_backward(const ted4_rate *r, ted4_rate_room *room, size_t n_slots);
 
 /* rate_decoded.c */
-void ted4_rate_integer_steps(const ted4_rate_job *job, ted4_rate_room *room, size_t slot, float *v, float *q);
-void ted4_rate_integer_outputs(const ted4_rate_job *job, ted4_rate_room *room, const float *q, float *out);
+void ted4_rate_integer_steps(const ted4_rate_job *job, ted4_rate_room *room, size_t slot, float *v,
+                             float *q);
+void ted4_rate_integer_outputs(const ted4_rate_job *job, ted4_rate_room *room, const float *q,
+                               float *out);
 
 #endif

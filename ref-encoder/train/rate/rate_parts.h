@@ -1,5 +1,5 @@
-/* rate_parts.h - what the files of the rate model share: packed networks, the workspace of a chunk of slots, and the steps between them.
- * Depends on model.h. For the rate model only.
+/* rate_parts.h - what the files of the rate model share: packed networks, the workspace of a chunk
+ * of slots, and the steps between them. Depends on model.h. For the rate model only.
  * SPDX-License-Identifier: BSD-2-Clause */
 #ifndef TED4_RATE_PARTS_H
 #define TED4_RATE_PARTS_H
@@ -10,9 +10,10 @@
 #include "train/model/model.h"
 #include "norm/prior.h"
 
-/* Slots are worked on in chunks of nearly equal size, each with its own sums; chunks of a wave run at the same time, and their sums are added in order. So results do not
- * depend on threads, and memory does not grow with the number of slots. Where slots are few, chunks are smaller rather than fewer than a wave, but never
- * below the least: each adds a whole set of gradients. */
+/* Slots are worked on in chunks of nearly equal size, each with its own sums; chunks of a wave run
+ * at the same time, and their sums are added in order. So results do not depend on threads, and
+ * memory does not grow with the number of slots. Where slots are few, chunks are smaller rather
+ * than fewer than a wave, but never below the least: each adds a whole set of gradients. */
 enum { TED4_RATE_CHUNK = 8, TED4_RATE_LEAST = 2, TED4_RATE_WAVE = 32 };
 
 /* spec 10.1: log2(sigma / step) and log2(q / Q0) that indices can express. */
@@ -22,84 +23,88 @@ enum { TED4_RATE_CHUNK = 8, TED4_RATE_LEAST = 2, TED4_RATE_WAVE = 32 };
 #define TED4_V_MAX (127.0f / 32.0f)
 
 typedef struct {
-    int        n;                               /* layers; 0: no such network */
-    int        dim[TED4_MAX_LAYERS + 1];
-    size_t     w[TED4_MAX_LAYERS], b[TED4_MAX_LAYERS];  /* index in NETE of a layer's weights, biases */
+    int n; /* layers; 0: no such network */
+    int dim[TED4_MAX_LAYERS + 1];
+    size_t w[TED4_MAX_LAYERS], b[TED4_MAX_LAYERS]; /* index in NETE of a layer's weights, biases */
     ted4_dense layer[TED4_MAX_LAYERS];
 } ted4_rate_net;
 
-/* Activations of the slots of a chunk, and the gradients of all but the inputs: x[i] is [CHUNK][dim[i]][32], d[i] likewise. */
+/* Activations of the slots of a chunk, and the gradients of all but the inputs: x[i] is
+ * [CHUNK][dim[i]][32], d[i] likewise. */
 typedef struct {
     float *x[TED4_MAX_LAYERS + 1], *d[TED4_MAX_LAYERS + 1];
 } ted4_rate_acts;
 
 /* One slot on its way forward and back. A: attribute channels, all those before the mask logits. */
 typedef struct {
-    float *value;               /* [A][32] raw values, 0 in unused lanes */
-    float *residual;            /* [A][32] n in k = x / q + n: noise, or what rounding adds; a constant for gradients */
-    float *d_symbol;            /* [A][32] dL/dk */
-    float *used;                /* [32] 1: the lane is used and some offset is kept */
-    float *dynamic;             /* [32] 1: used, and phi is coded */
-    float *kept;                /* [K][32] 1: used, and the offset is coded */
-    float *kept_bits;           /* [K][32] bits of an offset, masked or not */
-    float *phi_bits;            /* [32] */
-    float *d_context;           /* [F][32] */
+    float *value;     /* [A][32] raw values, 0 in unused lanes */
+    float *residual;  /* [A][32] n in k = x / q + n: noise, or what rounding adds; a constant for
+                         gradients */
+    float *d_symbol;  /* [A][32] dL/dk */
+    float *used;      /* [32] 1: the lane is used and some offset is kept */
+    float *dynamic;   /* [32] 1: used, and phi is coded */
+    float *kept;      /* [K][32] 1: used, and the offset is coded */
+    float *kept_bits; /* [K][32] bits of an offset, masked or not */
+    float *phi_bits;  /* [32] */
+    float *d_context; /* [F][32] */
 } ted4_rate_slot;
 
 /* What a chunk adds to the results. */
 typedef struct {
-    float *d_net;               /* owned: [n_nete] */
+    float *d_net; /* owned: [n_nete] */
     double bits[TED4_TYPES];
 } ted4_rate_sums;
 
 /* Workspace of one running chunk; whichever is free is taken. */
 typedef struct {
-    float         *storage;     /* owned: everything below */
+    float *storage; /* owned: everything below */
     ted4_rate_acts hyper, slice[TED4_MAX_SLICES];
-    float         *context;     /* [CHUNK][F][32]: inputs of all slice networks */
-    int32_t       *integer;     /* [P][64] outputs of the integer hyperprior */
+    float *context;   /* [CHUNK][F][32]: inputs of all slice networks */
+    int32_t *integer; /* [P][64] outputs of the integer hyperprior */
     ted4_rate_slot slot;
-    ted4_rate_sums *sums;       /* of the chunk that is being worked on */
+    ted4_rate_sums *sums; /* of the chunk that is being worked on */
 } ted4_rate_room;
 
-/* The integer networks, and what they were made of: it stands still from step to step, and making them is all done by one thread. */
+/* The integer networks, and what they were made of: it stands still from step to step, and making
+ * them is all done by one thread. */
 typedef struct {
     ted4_arena arena;
     ted4_prior prior;
-    int        ready;
-    float     *net;             /* owned: [n_nete] */
-    uint8_t   *shift;           /* owned: [n_units] */
+    int ready;
+    float *net;     /* owned: [n_nete] */
+    uint8_t *shift; /* owned: [n_units] */
 } ted4_rate_integer;
 
 struct ted4_rate {
-    ted4_layout    layout;
-    ted4_rate_net  hyper, slice[TED4_MAX_SLICES];
-    ted4_dense     step;        /* the rows v of the hyperprior's last layer; hyper.layer[n - 1] has the others */
-    size_t         n_rooms;     /* of all three arrays */
+    ted4_layout layout;
+    ted4_rate_net hyper, slice[TED4_MAX_SLICES];
+    ted4_dense
+        step; /* the rows v of the hyperprior's last layer; hyper.layer[n - 1] has the others */
+    size_t n_rooms; /* of all three arrays */
     ted4_rate_room room[TED4_RATE_WAVE];
-    atomic_flag    busy[TED4_RATE_WAVE];
+    atomic_flag busy[TED4_RATE_WAVE];
     ted4_rate_sums sums[TED4_RATE_WAVE];
     ted4_rate_integer integer;
 };
 
 /* What a chunk needs to know besides the input. */
 typedef struct {
-    ted4_rate             *rate;
+    ted4_rate *rate;
     const ted4_rate_input *in;
-    const float *const    *d_value;     /* may be NULL */
-    float *const          *d_attr;      /* NULL: no gradients */
-    float *const          *steps;       /* out: [TYPES][32] q of each slot */
-    size_t                 first, n_chunks;     /* the wave's first chunk; all there are */
-    int                    steps_only;
-    const ted4_rate_integer *integer;    /* NULL: the float networks alone */
-    float                 *lane_bits;   /* out: [slot][1 + K][32] bits of each anchor, then of each of its offsets; NULL: not wanted */
+    const float *const *d_value; /* may be NULL */
+    float *const *d_attr;        /* NULL: no gradients */
+    float *const *steps;         /* out: [TYPES][32] q of each slot */
+    size_t first, n_chunks;      /* the wave's first chunk; all there are */
+    int steps_only;
+    const ted4_rate_integer *integer; /* NULL: the float networks alone */
+    float *lane_bits; /* out: [slot][1 + K][32] bits of each anchor, then of each of its offsets;
+                         NULL: not wanted */
 } ted4_rate_job;
 
 /* Whether bits of this type count: tau is not there in the static phase. */
 static inline int ted4_rate_coded(const ted4_rate_job *job, int type)
 {
-    return job->in->layout->shape.dim[type] > 0
-        && (type != TED4_TAU || job->in->activation);
+    return job->in->layout->shape.dim[type] > 0 && (type != TED4_TAU || job->in->activation);
 }
 
 /* Floats of n rows of lanes. */
@@ -109,17 +114,20 @@ static inline size_t ted4_row(size_t n)
 }
 
 /* rate_fwd.c: n slots of a chunk from the first on. */
-TED4_EACH_LEVEL(void, ted4_rate_chunk, const ted4_rate_job *job, ted4_rate_room *room, size_t first, size_t n);
+TED4_EACH_LEVEL(void, ted4_rate_chunk, const ted4_rate_job *job, ted4_rate_room *room, size_t first,
+                size_t n);
 
 /* rate_row.c */
-TED4_EACH_LEVEL(void, ted4_rate_row, const float *u, const float *s, float *bits, float *d_u, float *d_s);
+TED4_EACH_LEVEL(void, ted4_rate_row, const float *u, const float *s, float *bits, float *d_u,
+                float *d_s);
 
 /* quantise.c. Residuals n of all attribute channels: [A][32]. */
 TED4_EACH_LEVEL(void, ted4_residuals, const ted4_layout *l, ted4_quant quant, const float *value,
                 const float *steps, uint32_t block, uint64_t key, float *residual);
 
-/* rate_integer.c. begin: r->integer is that of the input; 0, or -1: no memory, or weights that spec 7.3 refuses. */
-int  ted4_rate_integer_begin(ted4_rate *r, const ted4_rate_input *in);
+/* rate_integer.c. begin: r->integer is that of the input; 0, or -1: no memory, or weights that spec
+ * 7.3 refuses. */
+int ted4_rate_integer_begin(ted4_rate *r, const ted4_rate_input *in);
 void ted4_rate_integer_end(ted4_rate_integer *x);
 
 #endif

@@ -1,35 +1,42 @@
-/* rate_row.c - bits of 32 symbols of one component and their derivatives: a smooth model of the alphabet of spec 9.4.
+/* rate_row.c - bits of 32 symbols of one component and their derivatives: a smooth model of the
+ * alphabet of spec 9.4.
  *
- * With a = |k - mu| steps, sigma = 2^s steps, eps = 2^-16, and w = min(6 sigma, 4095) + 2 half the width of the window:
+ * With a = |k - mu| steps, sigma = 2^s steps, eps = 2^-16, and w = min(6 sigma, 4095) + 2 half the
+ * width of the window:
  *     bits = -log2 P,  P = (1 - 2 w eps) p + eps h
  *     for a < w: p = Phi((a + 1/2) / sigma) - Phi((a - 1/2) / sigma)    the symbol's share
- *                h = 1 / (1 + a / w)                                    the slot that every symbol has
- *     beyond:    p = h (1 - Phi((w - 3/2) / sigma))                     the tail, which the escape has, where 4095 narrows the window
- *                h = 1 / (2 (1 + a - w)^2)                              1 + 2 log2(1 + excess) bits after the escape
- * For a < w, h stands where a coder has the constant 1. It costs at most one bit, only where the floor rules, and it has a slope everywhere: an outlier is pulled
- * back, and its sigma pushed up, however far out it lies. A constant floor would leave it without gradient (annex D.1, traps).
+ *                h = 1 / (1 + a / w)                                    the slot that every symbol
+ *                    has
+ *     beyond:    p = h (1 - Phi((w - 3/2) / sigma))                     the tail, which the escape
+ *                has, where 4095 narrows the window
+ *                h = 1 / (2 (1 + a - w)^2)                              1 + 2 log2(1 + excess) bits
+ *                    after the escape
+ * For a < w, h stands where a coder has the constant 1. It costs at most one bit, only where the
+ * floor rules, and it has a slope everywhere: an outlier is pulled back, and its sigma pushed up,
+ * however far out it lies. A constant floor would leave it without gradient (annex D.1, traps).
  * SPDX-License-Identifier: BSD-2-Clause */
 #include "rate_lanes.h"
 
-#define SLOT            0x1p-16f        /* eps */
+#define SLOT            0x1p-16f /* eps */
 #define MAX_HALF_WINDOW 4095.0f
-#define NARROW          0.0625f         /* bins narrower than this many sigmas: both formulas are right to 1e-5 */
-#define MAX_DISTANCE    1e9f            /* keeps squares finite; the slope stays right */
+#define NARROW          0.0625f /* bins narrower than this many sigmas: both formulas are right to 1e-5 */
+#define MAX_DISTANCE    1e9f /* keeps squares finite; the slope stays right */
 
-/* Probability p of the bin [a - 1/2, a + 1/2] / sigma and its derivatives; no differences of nearly equal numbers anywhere. */
+/* Probability p of the bin [a - 1/2, a + 1/2] / sigma and its derivatives; no differences of nearly
+ * equal numbers anywhere. */
 typedef struct {
     float p, d_a, d_ln_sigma;
 } bin;
 
-/* Midpoint m and half width h of the bin in sigmas. With the densities at its ends, C is half their sum and S half their difference. */
+/* Midpoint m and half width h of the bin in sigmas. With the densities at its ends, C is half their
+ * sum and S half their difference. */
 static inline bin bin_make(float a, float inv_sigma)
 {
     const float m = a * inv_sigma, h = 0.5f * inv_sigma;
     const float low = m - h, high = m + h, width = 2.0f * h, mh = m * h;
     const float f_low = ted4_lane_normal(low), f_high = ted4_lane_normal(high);
     const float C = 0.5f * (f_low + f_high);
-    const float S = mh < 0.3f ? C * ted4_lane_tanh_small(mh)
-                              : 0.5f * (f_low - f_high);
+    const float S = mh < 0.3f ? C * ted4_lane_tanh_small(mh) : 0.5f * (f_low - f_high);
     const float y_low = 1.0f + 0.25f * (low < 0.0f ? -low : low);
     const float y_high = 1.0f + 0.25f * high, y = 1.0f / (y_low * y_high);
     const float q_low = f_low * ted4_lane_mills(y * y_high);
@@ -44,10 +51,10 @@ static inline bin bin_make(float a, float inv_sigma)
     return b;
 }
 
-/* The bins of a row. Its own loop, so that both vectors of it are under way at the same time: a row is bound by latency. */
-static void bins(const float *restrict a, const float *restrict sigma,
-                 float *restrict p, float *restrict d_a,
-                 float *restrict d_ln_sigma)
+/* The bins of a row. Its own loop, so that both vectors of it are under way at the same time: a row
+ * is bound by latency. */
+static void bins(const float *restrict a, const float *restrict sigma, float *restrict p,
+                 float *restrict d_a, float *restrict d_ln_sigma)
 {
 #pragma omp simd
     for (int j = 0; j < TED4_LANES; j++) {
@@ -59,7 +66,8 @@ static void bins(const float *restrict a, const float *restrict sigma,
     }
 }
 
-/* Share of one tail beyond a window's half width w, and its derivative by ln sigma: none where w goes with sigma. */
+/* Share of one tail beyond a window's half width w, and its derivative by ln sigma: none where w
+ * goes with sigma. */
 static inline float tail_make(float w, float sigma, int fixed, float *d_ln_sigma)
 {
     const float t = (w - 1.5f) / sigma, f = ted4_lane_normal(t);
@@ -70,34 +78,31 @@ static inline float tail_make(float w, float sigma, int fixed, float *d_ln_sigma
 
 /* spec 9.4; see the head of this file. u = k - mu. d_u and d_s are derivatives of bits. */
 void TED4_LEVELED(ted4_rate_row)(const float *restrict u, const float *restrict s,
-                   float *restrict bits, float *restrict d_u,
-                   float *restrict d_s)
+                                 float *restrict bits, float *restrict d_u, float *restrict d_s)
 {
-    float a[TED4_LANES], sigma[TED4_LANES], p[TED4_LANES], dp_da[TED4_LANES],
-          dp_ds[TED4_LANES];
+    float a[TED4_LANES], sigma[TED4_LANES], p[TED4_LANES], dp_da[TED4_LANES], dp_ds[TED4_LANES];
 
 #pragma omp simd
     for (int j = 0; j < TED4_LANES; j++) {
         const float abs_u = u[j] < 0.0f ? -u[j] : u[j];
 
         a[j] = abs_u < MAX_DISTANCE ? abs_u : MAX_DISTANCE;
-        sigma[j] = ted4_lane_pow2(ted4_lane_limit(s[j], TED4_S_MIN,
-                                                  TED4_S_MAX));
+        sigma[j] = ted4_lane_pow2(ted4_lane_limit(s[j], TED4_S_MIN, TED4_S_MAX));
     }
     bins(a, sigma, p, dp_da, dp_ds);
 #pragma omp simd
     for (int j = 0; j < TED4_LANES; j++) {
         const float six = 6.0f * sigma[j];
-        const int   fixed = six >= MAX_HALF_WINDOW;
+        const int fixed = six >= MAX_HALF_WINDOW;
         const float w = (fixed ? MAX_HALF_WINDOW : six) + 2.0f;
-        const float dw = fixed ? 0.0f : six;                /* by ln sigma */
+        const float dw = fixed ? 0.0f : six; /* by ln sigma */
         const float e = a[j] > w ? 1.0f + (a[j] - w) : 1.0f;
         const float y = a[j] < w ? w + a[j] : 2.0f * w; /* h = w / (y e^2) */
         const float r = 1.0f / (y * e);
         const float h = w * r * r * y;
         const float dh_da = a[j] < w ? -w * r * r : -2.0f * h * r * y;
         const float dh_dw = a[j] < w ? a[j] * r * r : 2.0f * h * r * y;
-        float       tail_ds;
+        float tail_ds;
         const float tail = tail_make(w, sigma[j], fixed, &tail_ds);
         const float share = a[j] < w ? p[j] : h * tail;
         const float share_da = a[j] < w ? dp_da[j] : dh_da * tail;
@@ -109,7 +114,6 @@ void TED4_LEVELED(ted4_rate_row)(const float *restrict u, const float *restrict 
 
         bits[j] = -ted4_lane_log2(P);
         d_u[j] = u[j] < 0.0f ? -d_a : d_a;
-        d_s[j] = g * TED4_LN2 * (scale * share_ds
-               + SLOT * dw * (dh_dw - 2.0f * share));
+        d_s[j] = g * TED4_LN2 * (scale * share_ds + SLOT * dw * (dh_dw - 2.0f * share));
     }
 }

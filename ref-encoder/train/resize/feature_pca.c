@@ -1,6 +1,8 @@
-/* feature_pca.c - see feature_pca.h. With S the covariance of the features f, m their mean, W the stacked first layers of the heads, S = L L^T and the eigenvectors
- * L^T W^T W L = Q D Q^T: the components z = K Q^T L^-1 (f - m) are uncorrelated, f = m + L Q K^-1 z, and what z_i does to the heads, W L Q e_i / K_i, is as
- * large for all i with K = D^(1/2) / s. s: root mean square of the columns of W.
+/* feature_pca.c - see feature_pca.h. With S the covariance of the features f, m their mean, W the
+ * stacked first layers of the heads, S = L L^T and the eigenvectors L^T W^T W L = Q D Q^T: the
+ * components z = K Q^T L^-1 (f - m) are uncorrelated, f = m + L Q K^-1 z, and what z_i does to the
+ * heads, W L Q e_i / K_i, is as large for all i with K = D^(1/2) / s. s: root mean square of the
+ * columns of W.
  * SPDX-License-Identifier: BSD-2-Clause */
 #include "feature_pca.h"
 
@@ -10,17 +12,19 @@
 
 #include "unit_stats.h"
 
-/* Share of the mean variance that each feature has at least; least D_i as a share of the largest. */
+/* Share of the mean variance that each feature has at least; least D_i as a share of the largest.
+ */
 #define RIDGE 1e-6
 #define LEAST 1e-8
 /* Sweeps of Jacobi's method: it ends by itself long before. */
 enum { MOST_SWEEPS = 60 };
 
 typedef struct {
-    size_t  n;
-    double *mean, *lower, *forms, *vectors;     /* [n], [n][n] each: L; L^T W^T W L, later D on its diagonal; Q by columns */
-    double *to, *from;          /* [n][n]: K Q^T L^-1, L Q K^-1 */
-    double *room;               /* owned: all of these */
+    size_t n;
+    double *mean, *lower, *forms,
+        *vectors;      /* [n], [n][n] each: L; L^T W^T W L, later D on its diagonal; Q by columns */
+    double *to, *from; /* [n][n]: K Q^T L^-1, L Q K^-1 */
+    double *room;      /* owned: all of these */
 } axes;
 
 static int take_room(axes *a, size_t n)
@@ -42,7 +46,7 @@ static int take_room(axes *a, size_t n)
 static void factor(axes *a, const double *moment)
 {
     const size_t n = a->n, side = n + 1;
-    double       mean = 0;
+    double mean = 0;
 
     for (size_t i = 0; i < n; i++)
         a->mean[i] = moment[i * side + n];
@@ -50,7 +54,8 @@ static void factor(axes *a, const double *moment)
         mean += (moment[i * side + i] - a->mean[i] * a->mean[i]) / (double)n;
     for (size_t i = 0; i < n; i++)
         for (size_t j = 0; j <= i; j++) {
-            double sum = moment[i * side + j] - a->mean[i] * a->mean[j] + (i == j ? RIDGE * mean + 1e-12 : 0.0);
+            double sum = moment[i * side + j] - a->mean[i] * a->mean[j] +
+                         (i == j ? RIDGE * mean + 1e-12 : 0.0);
 
             for (size_t k = 0; k < j; k++)
                 sum -= a->lower[i * n + k] * a->lower[j * n + k];
@@ -62,7 +67,7 @@ static void factor(axes *a, const double *moment)
 static double make_form(axes *a, const float *rows, size_t n_rows)
 {
     const size_t n = a->n;
-    double       square = 0;
+    double square = 0;
 
     for (size_t r = 0; r < n_rows; r++) {
         double seen[TED4_MAX_FEATURE] = { 0 };
@@ -110,7 +115,7 @@ static void turn(axes *a, size_t p, size_t q)
 static void diagonalise(axes *a)
 {
     const size_t n = a->n;
-    double       trace = 0;
+    double trace = 0;
 
     for (size_t i = 0; i < n; i++) {
         a->vectors[i * n + i] = 1.0;
@@ -143,7 +148,7 @@ static void sort_axes(const axes *a, size_t *order)
 static void make_ways(axes *a, double s)
 {
     const size_t n = a->n;
-    size_t       order[TED4_MAX_FEATURE];
+    size_t order[TED4_MAX_FEATURE];
 
     sort_axes(a, order);
 
@@ -152,7 +157,7 @@ static void make_ways(axes *a, double s)
     for (size_t i = 0; i < n; i++) {
         const size_t axis = order[i];
         const double k = sqrt(fmax(a->forms[axis * (n + 1)], LEAST * largest)) / s;
-        double       x[TED4_MAX_FEATURE];       /* L^-T q: the row of Q^T L^-1 */
+        double x[TED4_MAX_FEATURE]; /* L^-T q: the row of Q^T L^-1 */
 
         for (size_t r = n; r-- > 0;) {
             x[r] = a->vectors[r * n + axis];
@@ -218,8 +223,8 @@ static void turn_maker(float *w, size_t in, size_t out, const axes *a)
 {
     for (size_t i = 0; i <= in; i++) {
         const size_t stride = i < in ? in : 1;
-        float       *at = i < in ? w + 3 * in + i : w + in * out + 3;
-        double       x[TED4_MAX_FEATURE];
+        float *at = i < in ? w + 3 * in + i : w + in * out + 3;
+        double x[TED4_MAX_FEATURE];
 
         for (size_t c = 0; c < a->n; c++)
             x[c] = (double)at[c * stride];
@@ -236,7 +241,7 @@ static void turn_maker(float *w, size_t in, size_t out, const axes *a)
 static void turn_networks(ted4_trainer *t, const axes *a)
 {
     const ted4_net_shape *deform = &t->layout.shape.netr[TED4_NET_DEFORM];
-    float                *netr = t->net + t->layout.netr, *w = netr + deform->first;
+    float *netr = t->net + t->layout.netr, *w = netr + deform->first;
 
     for (int i = TED4_NET_OPACITY; i <= TED4_NET_COLOUR; i++) {
         const ted4_net_shape *s = &t->layout.shape.netr[i];
@@ -253,12 +258,12 @@ static void turn_networks(ted4_trainer *t, const axes *a)
 int ted4_rotate_features(ted4_trainer *t)
 {
     const ted4_site site = { TED4_SITE_FEATURE, 0, 0 };
-    const size_t    n = t->layout.head.feature_dim, side = n + 1;
-    double         *moment = malloc(side * side * sizeof *moment);
-    float          *rows = NULL;
-    const int       count = moment != NULL ? ted4_site_readers(t, site, &rows) : -1;
-    axes            a = { 0 };
-    int             bad = count < 0 || take_room(&a, n) != 0;
+    const size_t n = t->layout.head.feature_dim, side = n + 1;
+    double *moment = malloc(side * side * sizeof *moment);
+    float *rows = NULL;
+    const int count = moment != NULL ? ted4_site_readers(t, site, &rows) : -1;
+    axes a = { 0 };
+    int bad = count < 0 || take_room(&a, n) != 0;
 
     if (bad)
         ted4_trainer_fail(t, "no memory to turn features");

@@ -18,12 +18,15 @@ void ted4_surgery_begin(ted4_surgery *s, const ted4_trainer *t)
 }
 
 /* Which old channel each channel is: [n_channels of to]. */
-static void match_channels(const ted4_surgery *s, const ted4_layout *from, const ted4_layout *to, int *channel)
+static void match_channels(const ted4_surgery *s, const ted4_layout *from, const ted4_layout *to,
+                           int *channel)
 {
     for (int y = 0; y < TED4_TYPES; y++)
         for (int c = 0; c < (int)to->shape.dim[y]; c++) {
             const ted4_narrow *w = y == TED4_FEATURE ? s->feature : y == TED4_PHI ? s->phi : NULL;
-            const int old = y == TED4_OFFSET ? 3 * s->offset[c / 3] + c % 3 : w != NULL ? w->keep[c] : c;
+            const int old = y == TED4_OFFSET ? 3 * s->offset[c / 3] + c % 3
+                            : w != NULL      ? w->keep[c]
+                                             : c;
 
             channel[to->first[y] + c] = from->first[y] + old;
         }
@@ -33,10 +36,11 @@ static void match_channels(const ted4_surgery *s, const ted4_layout *from, const
 }
 
 /* Statistics of growth, which is over, are not taken along. */
-static int map_anchors(const ted4_trainer *t, const ted4_surgery *s, const ted4_layout *from, const ted4_anchors *old)
+static int map_anchors(const ted4_trainer *t, const ted4_surgery *s, const ted4_layout *from,
+                       const ted4_anchors *old)
 {
     const ted4_anchors *new = &t->anchors;
-    int                *channel = malloc((size_t)t->layout.n_channels * sizeof *channel);
+    int *channel = malloc((size_t)t->layout.n_channels * sizeof *channel);
 
     if (channel == NULL)
         return -1;
@@ -44,10 +48,11 @@ static int map_anchors(const ted4_trainer *t, const ted4_surgery *s, const ted4_
     for (ted4_row r = TED4_ROW_VALUE; r <= TED4_ROW_V; r++)
         for (size_t b = 0; b < old->n_blocks; b++)
             for (int c = 0; c < t->layout.n_channels; c++)
-                memcpy(ted4_block(new, r, b) + c * TED4_LANES, ted4_block(old, r, b) + channel[c] * TED4_LANES,
-                       TED4_LANES * sizeof(float));
+                memcpy(ted4_block(new, r, b) + c * TED4_LANES,
+                       ted4_block(old, r, b) + channel[c] * TED4_LANES, TED4_LANES * sizeof(float));
     for (ted4_row r = TED4_ROW_POSITION; r <= TED4_ROW_OPACITY; r++)
-        memcpy(new->data[r], old->data[r], old->n_blocks * (size_t)old->rows[r] * TED4_LANES * sizeof(float));
+        memcpy(new->data[r], old->data[r],
+               old->n_blocks * (size_t)old->rows[r] * TED4_LANES * sizeof(float));
     free(channel);
     return 0;
 }
@@ -60,15 +65,17 @@ static void mean_contexts(const ted4_layout *l, const ted4_anchors *a, float *co
 
         for (size_t i = 0; i < a->n; i++)
             sum += (double)*ted4_cell(a, TED4_ROW_VALUE, i, l->first[TED4_FEATURE] + c);
-        context[c] = (float)(sum / ((double)(a->n > 0 ? a->n : 1) * (double)l->head.step[TED4_FEATURE]));
+        context[c] =
+            (float)(sum / ((double)(a->n > 0 ? a->n : 1) * (double)l->head.step[TED4_FEATURE]));
     }
 }
 
-/* Scalings in the other domain. What the prior knew of them does not apply: it begins with their mean and spread. */
+/* Scalings in the other domain. What the prior knew of them does not apply: it begins with their
+ * mean and spread. */
 static void change_domain(ted4_trainer *t)
 {
-    ted4_layout  *l = &t->layout;
-    const int     first = l->first[TED4_SCALING], linear = l->head.scale_domain == TED4_SCALE_LINEAR;
+    ted4_layout *l = &t->layout;
+    const int first = l->first[TED4_SCALING], linear = l->head.scale_domain == TED4_SCALE_LINEAR;
     ted4_anchors *a = &t->anchors;
 
     for (size_t i = 0; i < a->n; i++) {
@@ -86,17 +93,22 @@ static void change_domain(ted4_trainer *t)
 int ted4_surgery_apply(ted4_trainer *t, const ted4_surgery *s)
 {
     const ted4_layout from = t->layout;
-    ted4_anchors      old = t->anchors;
-    float            *net[TED4_SURGERY_ARRAYS] = { t->net, t->net_m, t->net_v }, context[TED4_MAX_FEATURE];
-    int               bad;
+    ted4_anchors old = t->anchors;
+    float *net[TED4_SURGERY_ARRAYS] = { t->net, t->net_m, t->net_v }, context[TED4_MAX_FEATURE];
+    int bad;
 
     mean_contexts(&from, &old, context);
     ted4_layout_make(&t->layout, &s->head);
     t->net = t->net_m = t->net_v = NULL;
-    bad = ted4_anchors_init(&t->anchors, &t->layout) != 0 || ted4_anchors_resize(&t->anchors, old.n) != 0 ||
-          ted4_trainer_rebuild(t) != 0;
+    bad = ted4_anchors_init(&t->anchors, &t->layout) != 0 ||
+          ted4_anchors_resize(&t->anchors, old.n) != 0 || ted4_trainer_rebuild(t) != 0;
     if (!bad) {
-        const ted4_surgery_nets n = { s, &from, &t->layout, context, { net[0], net[1], net[2] }, { t->net, t->net_m, t->net_v } };
+        const ted4_surgery_nets n = { s,
+                                      &from,
+                                      &t->layout,
+                                      context,
+                                      { net[0], net[1], net[2] },
+                                      { t->net, t->net_m, t->net_v } };
 
         bad = map_anchors(t, s, &from, &old) != 0 || ted4_surgery_networks(&n) != 0;
     }

@@ -1,5 +1,6 @@
-/* resize_nets.c - see resize_nets.h. Each layer W x + b becomes R (W C) x' + R (b + W c): R chooses its outputs, x = C x' + c says what its old inputs are made
- * of now. Moments of Adam are those of the units that stay.
+/* resize_nets.c - see resize_nets.h. Each layer W x + b becomes R (W C) x' + R (b + W c): R chooses
+ * its outputs, x = C x' + c says what its old inputs are made of now. Moments of Adam are those of
+ * the units that stay.
  * SPDX-License-Identifier: BSD-2-Clause */
 #include "resize_nets.h"
 
@@ -11,12 +12,12 @@ enum { MOST_UNITS = 640 };
 /* One layer of a network, as it is put together. */
 typedef struct {
     const ted4_net_shape *from, *to;
-    size_t  blob_from, blob_to; /* where the networks' blob begins in the arrays */
-    int     layer;
-    int     row[MOST_UNITS];    /* [outputs]: which old output */
-    int     col[MOST_UNITS];    /* [inputs]: which old input */
-    int     n_rows, n_from, n_to;       /* so far: rows, old and new columns */
-    double *decode;             /* [old inputs][new inputs + 1] */
+    size_t blob_from, blob_to; /* where the networks' blob begins in the arrays */
+    int layer;
+    int row[MOST_UNITS];      /* [outputs]: which old output */
+    int col[MOST_UNITS];      /* [inputs]: which old input */
+    int n_rows, n_from, n_to; /* so far: rows, old and new columns */
+    double *decode;           /* [old inputs][new inputs + 1] */
 } layer_map;
 
 static size_t layer_at(const ted4_net_shape *s, int layer)
@@ -28,10 +29,12 @@ static size_t layer_at(const ted4_net_shape *s, int layer)
     return at;
 }
 
-static int begin_layer(layer_map *m, const ted4_net_shape *from, const ted4_net_shape *to, int layer,
-                       size_t blob_from, size_t blob_to)
+static int begin_layer(layer_map *m, const ted4_net_shape *from, const ted4_net_shape *to,
+                       int layer, size_t blob_from, size_t blob_to)
 {
-    *m = (layer_map){ .from = from, .to = to, .layer = layer, .blob_from = blob_from, .blob_to = blob_to };
+    *m = (layer_map) {
+        .from = from, .to = to, .layer = layer, .blob_from = blob_from, .blob_to = blob_to
+    };
     m->decode = calloc((size_t)from->dim[layer] * (to->dim[layer] + 1u) + 1, sizeof *m->decode);
     return m->decode != NULL ? 0 : -1;
 }
@@ -40,7 +43,7 @@ static int begin_layer(layer_map *m, const ted4_net_shape *from, const ted4_net_
 static void add_inputs(layer_map *m, int n, const ted4_narrow *w)
 {
     const size_t stride = m->to->dim[m->layer] + 1u;
-    const int    to = w != NULL ? w->to : n;
+    const int to = w != NULL ? w->to : n;
 
     for (int i = 0; i < n; i++) {
         double *row = m->decode + (size_t)(m->n_from + i) * stride;
@@ -78,19 +81,20 @@ static void end_layer(layer_map *m, const ted4_surgery_nets *n)
 
     for (size_t o = 0; o < rows; o++) {
         const float *w = n->old[0] + old + (size_t)m->row[o] * in;
-        float       *to = n->new[0] + new + o * fewer;
+        float *to = n->new[0] + new + o *fewer;
 
         for (size_t k = 0; k <= fewer; k++) {
             double sum = k < fewer ? 0.0 : (double)n->old[0][old + in * out + (size_t)m->row[o]];
 
             for (size_t i = 0; i < in; i++)
                 sum += (double)w[i] * m->decode[i * (fewer + 1) + k];
-            *(k < fewer ? to + k : n->new[0] + new + fewer * rows + o) = (float)sum;
+            *(k < fewer ? to + k : n->new[0] + new + fewer *rows + o) = (float)sum;
         }
         for (int a = 1; a < TED4_SURGERY_ARRAYS; a++) {
             for (size_t k = 0; k < fewer; k++)
-                n->new[a][new + o * fewer + k] = n->old[a][old + (size_t)m->row[o] * in + (size_t)m->col[k]];
-            n->new[a][new + fewer * rows + o] = n->old[a][old + in * out + (size_t)m->row[o]];
+                n->new[a][new + o *fewer + k] =
+                    n->old[a][old + (size_t)m->row[o] * in + (size_t)m->col[k]];
+            n->new[a][new + fewer *rows + o] = n->old[a][old + in * out + (size_t)m->row[o]];
         }
     }
     free(m->decode);
@@ -118,8 +122,8 @@ static void add_last_outputs(layer_map *m, const ted4_surgery_nets *n, int net)
 static void add_first_inputs(layer_map *m, const ted4_surgery_nets *n, int net)
 {
     const ted4_surgery *s = n->surgery;
-    const ted4_header  *h = &n->from->head;
-    const int           in = m->from->dim[0];
+    const ted4_header *h = &n->from->head;
+    const int in = m->from->dim[0];
 
     if (net == TED4_NET_PROJECT) {
         add_inputs(m, h->phi_dim, s->phi);
@@ -139,7 +143,7 @@ static void add_first_inputs(layer_map *m, const ted4_surgery_nets *n, int net)
 static int map_netr(const ted4_surgery_nets *n, int net)
 {
     const ted4_net_shape *from = &n->from->shape.netr[net], *to = &n->to->shape.netr[net];
-    layer_map             m;
+    layer_map m;
 
     for (int i = 0; i < to->n_layers; i++) {
         if (begin_layer(&m, from, to, i, n->from->netr, n->to->netr) != 0)
@@ -163,8 +167,8 @@ static int map_netr(const ted4_surgery_nets *n, int net)
 static void add_type_outputs(layer_map *m, const ted4_surgery_nets *n, int type)
 {
     const ted4_surgery *s = n->surgery;
-    const int           dim = (int)n->from->shape.dim[type], first = (int)n->from->shape.first_output[type];
-    const ted4_narrow  *w = type == TED4_FEATURE ? s->feature : type == TED4_PHI ? s->phi : NULL;
+    const int dim = (int)n->from->shape.dim[type], first = (int)n->from->shape.first_output[type];
+    const ted4_narrow *w = type == TED4_FEATURE ? s->feature : type == TED4_PHI ? s->phi : NULL;
 
     for (int half = 0; half < 2 && n->to->shape.dim[type] > 0; half++) {
         if (type != TED4_OFFSET)
@@ -176,9 +180,9 @@ static void add_type_outputs(layer_map *m, const ted4_surgery_nets *n, int type)
 
 static int map_hyper(const ted4_surgery_nets *n)
 {
-    const ted4_shape     *shape = &n->from->shape;
+    const ted4_shape *shape = &n->from->shape;
     const ted4_net_shape *from = &shape->hyper, *to = &n->to->shape.hyper;
-    layer_map             m;
+    layer_map m;
 
     for (int i = 0; i < to->n_layers; i++) {
         if (begin_layer(&m, from, to, i, n->from->nete, n->to->nete) != 0)
@@ -225,7 +229,8 @@ static void add_contexts(layer_map *map, const ted4_surgery_nets *n, int known)
 
         while (k < known && old_feature(n, k) != i)
             k++;
-        map->decode[(size_t)i * stride + (size_t)(k < known ? k : known)] = k < known ? 1.0 : (double)n->context[i];
+        map->decode[(size_t)i * stride + (size_t)(k < known ? k : known)] =
+            k < known ? 1.0 : (double)n->context[i];
         if (k < known)
             map->col[k] = i;
     }
@@ -234,16 +239,19 @@ static void add_contexts(layer_map *map, const ted4_surgery_nets *n, int known)
 /* Slice m of the new header, from the slice that its components were in. */
 static int map_slice(const ted4_surgery_nets *n, int m, int known)
 {
-    int       begin;
-    const int was = slice_of(&n->from->head, old_feature(n, known), &begin), size = n->from->head.slice[was];
+    int begin;
+    const int was = slice_of(&n->from->head, old_feature(n, known), &begin),
+              size = n->from->head.slice[was];
     layer_map first, second;
 
-    if (begin_layer(&first, &n->from->shape.slice[was], &n->to->shape.slice[m], 0, n->from->nete, n->to->nete) != 0)
+    if (begin_layer(&first, &n->from->shape.slice[was], &n->to->shape.slice[m], 0, n->from->nete,
+                    n->to->nete) != 0)
         return -1;
     add_contexts(&first, n, known);
     add_outputs(&first, 0, first.from->dim[1], n->surgery->slice[was]);
     end_layer(&first, n);
-    if (begin_layer(&second, &n->from->shape.slice[was], &n->to->shape.slice[m], 1, n->from->nete, n->to->nete) != 0)
+    if (begin_layer(&second, &n->from->shape.slice[was], &n->to->shape.slice[m], 1, n->from->nete,
+                    n->to->nete) != 0)
         return -1;
     add_inputs(&second, second.from->dim[1], n->surgery->slice[was]);
     for (int half = 0; half < 2; half++)
@@ -257,8 +265,8 @@ static int map_slice(const ted4_surgery_nets *n, int m, int known)
 static void say_at_mean(const ted4_surgery_nets *n, int m, float *said)
 {
     const ted4_net_shape *s = &n->from->shape.slice[m];
-    const float          *w = n->old[0] + n->from->nete + s->first, *b = w + (size_t)s->dim[0] * s->dim[1];
-    float                 hidden[TED4_MAX_WIDTH];
+    const float *w = n->old[0] + n->from->nete + s->first, *b = w + (size_t)s->dim[0] * s->dim[1];
+    float hidden[TED4_MAX_WIDTH];
 
     for (size_t o = 0; o < s->dim[1]; o++) {
         float sum = b[o];
@@ -276,18 +284,21 @@ static void say_at_mean(const ted4_surgery_nets *n, int m, float *said)
     }
 }
 
-/* Components of the first slice now, that had a slice network before: the hyperprior says what that said on average. */
+/* Components of the first slice now, that had a slice network before: the hyperprior says what that
+ * said on average. */
 static void keep_means(const ted4_surgery_nets *n)
 {
     const ted4_net_shape *h = &n->to->shape.hyper;
-    const int             last = h->n_layers - 1, F = n->to->head.feature_dim;
-    float *const          bias = n->new[0] + n->to->nete + layer_at(h, last) + (size_t)h->dim[last] * h->dim[last + 1]
-                               + n->to->shape.first_output[TED4_FEATURE];
+    const int last = h->n_layers - 1, F = n->to->head.feature_dim;
+    float *const bias = n->new[0] + n->to->nete + layer_at(h, last) +
+                        (size_t)h->dim[last] * h->dim[last + 1] +
+                        n->to->shape.first_output[TED4_FEATURE];
 
     for (int c = 0; c < n->to->head.slice[0]; c++) {
-        float     said[2 * TED4_MAX_FEATURE];
-        int       begin;
-        const int old = old_feature(n, c), was = slice_of(&n->from->head, old, &begin), size = n->from->head.slice[was];
+        float said[2 * TED4_MAX_FEATURE];
+        int begin;
+        const int old = old_feature(n, c), was = slice_of(&n->from->head, old, &begin),
+                  size = n->from->head.slice[was];
 
         if (was == 0)
             continue;
@@ -321,9 +332,10 @@ static void map_bank(const ted4_surgery_nets *n)
     const ted4_narrow *w = n->surgery->bank;
 
     for (uint64_t r = 0; n->to->shape.n_bank > 0 && r < to->bank_rows; r++) {
-        const uint64_t den = to->bank_rows > 1 ? to->bank_rows - 1 : 1, g = r * (from->bank_rows - 1);
-        const size_t   i = (size_t)(g / den), next = g % den > 0 ? i + 1 : i;
-        const float    mix = (float)(g % den) / (float)den;
+        const uint64_t den = to->bank_rows > 1 ? to->bank_rows - 1 : 1,
+                       g = r * (from->bank_rows - 1);
+        const size_t i = (size_t)(g / den), next = g % den > 0 ? i + 1 : i;
+        const float mix = (float)(g % den) / (float)den;
 
         for (int c = 0; c < to->bank_dim; c++) {
             const size_t col = (size_t)(w != NULL ? w->keep[c] : c);
@@ -332,7 +344,7 @@ static void map_bank(const ted4_surgery_nets *n)
                 const float x = n->old[a][n->from->bank + i * from->bank_dim + col];
                 const float y = n->old[a][n->from->bank + next * from->bank_dim + col];
 
-                n->new[a][n->to->bank + r * to->bank_dim + (size_t)c] = x + mix * (y - x);
+                n->new[a][n->to->bank + r * to->bank_dim + (size_t)c] = x + mix *(y - x);
             }
         }
     }

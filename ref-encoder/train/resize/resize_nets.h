@@ -1,4 +1,4 @@
-/* resize_nets.h - the networks' part of surgery.h.
+/* resize_nets.h - the networks' part of resize.h.
  * SPDX-License-Identifier: BSD-2-Clause */
 #ifndef TED4_SURGERY_NETS_H
 #define TED4_SURGERY_NETS_H
@@ -10,10 +10,10 @@ enum { TED4_SURGERY_ARRAYS = 3 };
 
 typedef struct {
     const ted4_surgery *surgery;
-    const ted4_layout  *from, *to;
-    const float        *context;        /* [feature_dim before]: mean context of each feature, spec 10.3 */
-    const float        *old[TED4_SURGERY_ARRAYS];
-    float              *new[TED4_SURGERY_ARRAYS];
+    const ted4_layout *from, *to;
+    const float *context; /* [feature_dim before]: mean context of each feature, spec 10.3 */
+    const float *old[TED4_SURGERY_ARRAYS];
+    float *new[TED4_SURGERY_ARRAYS];
 } ted4_surgery_nets;
 
 /* Fills new, which is zero. 0, or -1: no memory. */

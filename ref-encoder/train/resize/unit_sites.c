@@ -1,4 +1,5 @@
-/* unit_sites.c - where the sites of activity.h lie in the networks: how wide they are, and the weights that read them.
+/* unit_sites.c - where the sites of unit_stats.h lie in the networks: how wide they are, and the
+ * weights that read them.
  * SPDX-License-Identifier: BSD-2-Clause */
 #include "unit_stats.h"
 
@@ -18,18 +19,21 @@ static int hidden_width(const ted4_net_shape *s, int layer)
 int ted4_site_width(const ted4_layout *l, ted4_site site)
 {
     const ted4_header *h = &l->head;
-    const int          banked = h->motion == TED4_MOTION_BANK || h->motion == TED4_MOTION_CONCAT;
+    const int banked = h->motion == TED4_MOTION_BANK || h->motion == TED4_MOTION_CONCAT;
 
     switch (site.kind) {
-    case TED4_SITE_FEATURE:  return h->feature_dim;
-    case TED4_SITE_PHI:      return banked ? h->phi_dim : 0;
-    case TED4_SITE_BANK:     return h->motion == TED4_MOTION_BANK ? h->bank_dim : 0;
-    case TED4_SITE_INPUT:    return head_sees(h, site.net) ? h->feature_dim + 3 : 0;
+    case TED4_SITE_FEATURE: return h->feature_dim;
+    case TED4_SITE_PHI: return banked ? h->phi_dim : 0;
+    case TED4_SITE_BANK: return h->motion == TED4_MOTION_BANK ? h->bank_dim : 0;
+    case TED4_SITE_INPUT: return head_sees(h, site.net) ? h->feature_dim + 3 : 0;
     case TED4_SITE_HIDDEN:
-        return site.net == TED4_NET_DEFORM && !banked ? 0 : hidden_width(&l->shape.netr[site.net], site.layer);
+        return site.net == TED4_NET_DEFORM && !banked
+                   ? 0
+                   : hidden_width(&l->shape.netr[site.net], site.layer);
     case TED4_SITE_POSITION: return l->shape.hyper.dim[0];
-    case TED4_SITE_HYPER:    return hidden_width(&l->shape.hyper, site.layer);
-    case TED4_SITE_SLICE:    return site.layer < h->n_slices ? hidden_width(&l->shape.slice[site.layer], 1) : 0;
+    case TED4_SITE_HYPER: return hidden_width(&l->shape.hyper, site.layer);
+    case TED4_SITE_SLICE:
+        return site.layer < h->n_slices ? hidden_width(&l->shape.slice[site.layer], 1) : 0;
     }
     return 0;
 }
@@ -37,7 +41,7 @@ int ted4_site_width(const ted4_layout *l, ted4_site site)
 /* Rows of weights as they are gathered. */
 typedef struct {
     float *rows;
-    int    width, count;
+    int width, count;
 } reader_rows;
 
 /* The first width columns of a layer of a network. */
@@ -71,21 +75,23 @@ static int gather_heads(reader_rows *r, const float *netr, const ted4_shape *s)
 int ted4_site_readers(const ted4_trainer *t, ted4_site site, float **rows)
 {
     const ted4_layout *l = &t->layout;
-    const ted4_shape  *s = &l->shape;
-    const float       *netr = t->net + l->netr, *nete = t->net + l->nete;
-    const int          concat = l->head.motion == TED4_MOTION_CONCAT;
-    reader_rows        r = { NULL, ted4_site_width(l, site), 0 };
-    int                bad = 0;
+    const ted4_shape *s = &l->shape;
+    const float *netr = t->net + l->netr, *nete = t->net + l->nete;
+    const int concat = l->head.motion == TED4_MOTION_CONCAT;
+    reader_rows r = { NULL, ted4_site_width(l, site), 0 };
+    int bad = 0;
 
     switch (site.kind) {
-    case TED4_SITE_FEATURE:  bad = gather_heads(&r, netr, s); break;
-    case TED4_SITE_PHI:      bad = gather(&r, netr, &s->netr[concat ? TED4_NET_DEFORM : TED4_NET_PROJECT], 0); break;
-    case TED4_SITE_BANK:     bad = gather(&r, netr, &s->netr[TED4_NET_DEFORM], 0); break;
-    case TED4_SITE_INPUT:    bad = gather(&r, netr, &s->netr[site.net], 0); break;
-    case TED4_SITE_HIDDEN:   bad = gather(&r, netr, &s->netr[site.net], site.layer); break;
+    case TED4_SITE_FEATURE: bad = gather_heads(&r, netr, s); break;
+    case TED4_SITE_PHI:
+        bad = gather(&r, netr, &s->netr[concat ? TED4_NET_DEFORM : TED4_NET_PROJECT], 0);
+        break;
+    case TED4_SITE_BANK: bad = gather(&r, netr, &s->netr[TED4_NET_DEFORM], 0); break;
+    case TED4_SITE_INPUT: bad = gather(&r, netr, &s->netr[site.net], 0); break;
+    case TED4_SITE_HIDDEN: bad = gather(&r, netr, &s->netr[site.net], site.layer); break;
     case TED4_SITE_POSITION: bad = gather(&r, nete, &s->hyper, 0); break;
-    case TED4_SITE_HYPER:    bad = gather(&r, nete, &s->hyper, site.layer); break;
-    case TED4_SITE_SLICE:    bad = gather(&r, nete, &s->slice[site.layer], 1); break;
+    case TED4_SITE_HYPER: bad = gather(&r, nete, &s->hyper, site.layer); break;
+    case TED4_SITE_SLICE: bad = gather(&r, nete, &s->slice[site.layer], 1); break;
     }
     if (bad)
         free(r.rows);

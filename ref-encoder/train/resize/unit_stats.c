@@ -1,5 +1,5 @@
-/* unit_stats.c - see unit_stats.h. Plain loops over a few thousand samples; what they compute is spec 10.1, 10.3, 11.2, 11.3 and 11.5, but for the rounding inside the
- * prior's networks.
+/* unit_stats.c - see unit_stats.h. Plain loops over a few thousand samples; what they compute is
+ * spec 10.1, 10.3, 11.2, 11.3 and 11.5, but for the rounding inside the prior's networks.
  * SPDX-License-Identifier: BSD-2-Clause */
 #include "unit_stats.h"
 
@@ -19,13 +19,13 @@ enum { PICTURES = 32, DRAWS = 192, MOST = 640 };
 
 typedef struct {
     ted4_trainer *t;
-    ted4_site     site;
-    double       *moment;
-    size_t        width, n;
-    const float  *value;        /* [n_channels][32] of the anchor's block, quantised */
-    size_t        lane, anchor;
-    int           dynamic;
-    float         view[3], bank[TED4_MAX_WIDTH];
+    ted4_site site;
+    double *moment;
+    size_t width, n;
+    const float *value; /* [n_channels][32] of the anchor's block, quantised */
+    size_t lane, anchor;
+    int dynamic;
+    float view[3], bank[TED4_MAX_WIDTH];
 } sampling;
 
 static void take(sampling *s, const float *x)
@@ -59,7 +59,7 @@ static void dense(const float *w, size_t in, size_t out, const float *x, float *
 static void run(const float *blob, const ted4_net_shape *s, float *x, int last)
 {
     const float *w = blob + s->first;
-    float        y[MOST];
+    float y[MOST];
 
     for (int i = 0; i < last; i++) {
         dense(w, s->dim[i], s->dim[i + 1], x, y, i + 1 < s->n_layers);
@@ -76,10 +76,10 @@ static float value_of(const sampling *s, int type, int c)
 /* What F_deform reads, for motion bank and concat. */
 static void deform_input(const sampling *s, float *x)
 {
-    const ted4_layout    *l = &s->t->layout;
+    const ted4_layout *l = &s->t->layout;
     const ted4_net_shape *p = &l->shape.netr[TED4_NET_PROJECT];
-    const size_t          d = l->head.phi_dim, D = l->head.bank_dim;
-    float                 phi[TED4_MAX_PHI];
+    const size_t d = l->head.phi_dim, D = l->head.bank_dim;
+    float phi[TED4_MAX_PHI];
 
     for (int c = 0; c < l->head.phi_dim; c++)
         phi[c] = value_of(s, TED4_PHI, c);
@@ -102,12 +102,13 @@ static int has_deform(const ted4_layout *l)
 static void head_input(const sampling *s, int moved, float *x)
 {
     const ted4_layout *l = &s->t->layout;
-    const int          F = l->head.feature_dim;
-    float              y[MOST] = { 0 };
+    const int F = l->head.feature_dim;
+    float y[MOST] = { 0 };
 
     if (moved && s->dynamic && has_deform(l)) {
         deform_input(s, y);
-        run(s->t->net + l->netr, &l->shape.netr[TED4_NET_DEFORM], y, l->shape.netr[TED4_NET_DEFORM].n_layers);
+        run(s->t->net + l->netr, &l->shape.netr[TED4_NET_DEFORM], y,
+            l->shape.netr[TED4_NET_DEFORM].n_layers);
     } else {
         memset(y, 0, (size_t)(3 + F) * sizeof *y);
     }
@@ -119,7 +120,7 @@ static void head_input(const sampling *s, int moved, float *x)
 static void sample_motion(sampling *s)
 {
     const ted4_layout *l = &s->t->layout;
-    float              x[MOST];
+    float x[MOST];
 
     if (!s->dynamic)
         return;
@@ -137,8 +138,8 @@ static void sample_motion(sampling *s)
 static void sample_heads(sampling *s)
 {
     const ted4_layout *l = &s->t->layout;
-    const int          moved = s->site.kind == TED4_SITE_FEATURE || s->site.net == TED4_NET_COVARIANCE;
-    float              x[MOST];
+    const int moved = s->site.kind == TED4_SITE_FEATURE || s->site.net == TED4_NET_COVARIANCE;
+    float x[MOST];
 
     head_input(s, moved, x);
     if (s->site.kind == TED4_SITE_HIDDEN)
@@ -156,7 +157,7 @@ static void encode_position(const sampling *s, float *x)
     const int octaves = s->t->layout.head.pe_octaves;
 
     for (int a = 0; a < 3; a++) {
-        const float    p = *ted4_cell(&s->t->anchors, TED4_ROW_POSITION, s->anchor, a);
+        const float p = *ted4_cell(&s->t->anchors, TED4_ROW_POSITION, s->anchor, a);
         const uint32_t phase = (uint32_t)(int32_t)(p * 0x1p24f) << 7;
 
         x[a] = floorf(p * 0x1p12f) * 0x1p-12f;
@@ -170,8 +171,8 @@ static void encode_position(const sampling *s, float *x)
 static void sample_prior(sampling *s)
 {
     const ted4_layout *l = &s->t->layout;
-    const float       *nete = s->t->net + l->nete;
-    float              x[MOST] = { 0 };
+    const float *nete = s->t->net + l->nete;
+    float x[MOST] = { 0 };
 
     if (s->site.kind == TED4_SITE_SLICE) {
         for (int c = 0; c < l->head.feature_dim; c++)
@@ -190,13 +191,15 @@ static void sample(sampling *s)
 {
     switch (s->site.kind) {
     case TED4_SITE_PHI:
-    case TED4_SITE_BANK:     sample_motion(s); break;
-    case TED4_SITE_HIDDEN:   (s->site.net == TED4_NET_DEFORM ? sample_motion : sample_heads)(s); break;
+    case TED4_SITE_BANK: sample_motion(s); break;
+    case TED4_SITE_HIDDEN:
+        (s->site.net == TED4_NET_DEFORM ? sample_motion : sample_heads)(s);
+        break;
     case TED4_SITE_FEATURE:
-    case TED4_SITE_INPUT:    sample_heads(s); break;
+    case TED4_SITE_INPUT: sample_heads(s); break;
     case TED4_SITE_POSITION:
     case TED4_SITE_HYPER:
-    case TED4_SITE_SLICE:    sample_prior(s); break;
+    case TED4_SITE_SLICE: sample_prior(s); break;
     }
 }
 
@@ -204,15 +207,15 @@ static void sample(sampling *s)
 static void bank_at(sampling *s, uint32_t num)
 {
     const ted4_layout *l = &s->t->layout;
-    const uint32_t     den = s->t->data->n_frames > 1 ? s->t->data->n_frames - 1 : 1;
-    const size_t       D = l->head.bank_dim;
+    const uint32_t den = s->t->data->n_frames > 1 ? s->t->data->n_frames - 1 : 1;
+    const size_t D = l->head.bank_dim;
 
     if (!has_deform(l))
         return;
 
     const uint64_t g = num * (uint64_t)(l->head.bank_rows - 1);
-    const float   *z = s->t->net + l->bank + (size_t)(g / den) * D;
-    const float    mix = (float)(g % den) / (float)den;
+    const float *z = s->t->net + l->bank + (size_t)(g / den) * D;
+    const float mix = (float)(g % den) / (float)den;
 
     for (size_t c = 0; c < D; c++)
         s->bank[c] = mix > 0 ? z[c] + mix * (z[D + c] - z[c]) : z[c];
@@ -233,11 +236,11 @@ static void look_from(sampling *s, const float camera[3])
 /* value: room for a block. */
 static void sample_picture(sampling *s, size_t item, float *value)
 {
-    ted4_trainer       *t = s->t;
+    ted4_trainer *t = s->t;
     const ted4_picture *pic = &t->data->pictures[item];
-    const uint64_t      key = ted4_random(t->opt.seed ^ 0x6163746976u, item);
-    ted4_view           v;
-    float               camera[3];
+    const uint64_t key = ted4_random(t->opt.seed ^ 0x6163746976u, item);
+    ted4_view v;
+    float camera[3];
 
     ted4_space_view(&t->layout.head, &pic->camera, &v, camera);
     bank_at(s, t->data->n_frames > 1 ? pic->frame : 0);
@@ -249,7 +252,8 @@ static void sample_picture(sampling *s, size_t item, float *value)
             continue;
         s->value = t->stage2 ? value : ted4_block(&t->anchors, TED4_ROW_VALUE, block);
         if (t->stage2)
-            ted4_quantise(&t->layout, TED4_QUANT_ROUND, ted4_block(&t->anchors, TED4_ROW_VALUE, block),
+            ted4_quantise(&t->layout, TED4_QUANT_ROUND,
+                          ted4_block(&t->anchors, TED4_ROW_VALUE, block),
                           ted4_block(&t->anchors, TED4_ROW_STEP, block), (uint32_t)block, 0, value);
         s->dynamic = ted4_is_dynamic(t, s->anchor);
         look_from(s, camera);
@@ -271,10 +275,12 @@ static void mean_of(sampling *s)
 
 int ted4_site_moment(ted4_trainer *t, ted4_site site, double *moment)
 {
-    sampling s = { .t = t, .site = site, .moment = moment, .width = (size_t)ted4_site_width(&t->layout, site) };
+    sampling s = {
+        .t = t, .site = site, .moment = moment, .width = (size_t)ted4_site_width(&t->layout, site)
+    };
     const size_t n = t->order.n < PICTURES ? t->order.n : PICTURES;
     uint32_t item[PICTURES];
-    float   *value;
+    float *value;
 
     if (ted4_judges_choose(t, t->opt.seed ^ 0x6163746976u, n, item) != 0)
         return -1;

@@ -1,4 +1,4 @@
-/* candidates.c - the ways to a smaller model: see capacity.h.
+/* candidates.c - the ways to a smaller model: see model_search.h.
  * SPDX-License-Identifier: BSD-2-Clause */
 #include "model_search.h"
 
@@ -11,10 +11,26 @@
 #include "train/resize/resize.h"
 
 static const char *const names[TED4_MOVES] = {
-    "motion", "activation", "bits of the heads' weights", "bits of the motion networks' weights", "bits of the bank", "bits of the prior's weights",
-    "width of the hyperprior", "width of F_deform", "width of the slice networks",
-    "width of the heads", "width of the bank", "feature", "slices of the feature", "octaves of the hyperprior", "view direction",
-    "rows of the bank", "temporal feature", "scalings in log2", "Gaussians an anchor", "Gaussians in all",
+    "motion",
+    "activation",
+    "bits of the heads' weights",
+    "bits of the motion networks' weights",
+    "bits of the bank",
+    "bits of the prior's weights",
+    "width of the hyperprior",
+    "width of F_deform",
+    "width of the slice networks",
+    "width of the heads",
+    "width of the bank",
+    "feature",
+    "slices of the feature",
+    "octaves of the hyperprior",
+    "view direction",
+    "rows of the bank",
+    "temporal feature",
+    "scalings in log2",
+    "Gaussians an anchor",
+    "Gaussians in all",
 };
 
 const char *ted4_move_name(ted4_move m)
@@ -27,27 +43,30 @@ int ted4_move_now(const ted4_trainer *t, ted4_move m)
     const ted4_header *h = &t->layout.head;
 
     switch (m) {
-    case TED4_MOVE_MOTION:     return h->motion != TED4_MOTION_NONE;
+    case TED4_MOVE_MOTION: return h->motion != TED4_MOTION_NONE;
     case TED4_MOVE_ACTIVATION: return h->activation;
-    case TED4_MOVE_HEAD_BITS:  return t->bits[TED4_GRID_HEADS];
-    case TED4_MOVE_MOTION_BITS: return h->motion != TED4_MOTION_NONE ? t->bits[TED4_GRID_MOTION] : 0;
-    case TED4_MOVE_BANK_BITS:  return h->bank_dim > 0 ? t->bits[TED4_GRID_BANK] : 0;
+    case TED4_MOVE_HEAD_BITS: return t->bits[TED4_GRID_HEADS];
+    case TED4_MOVE_MOTION_BITS:
+        return h->motion != TED4_MOTION_NONE ? t->bits[TED4_GRID_MOTION] : 0;
+    case TED4_MOVE_BANK_BITS: return h->bank_dim > 0 ? t->bits[TED4_GRID_BANK] : 0;
     case TED4_MOVE_PRIOR_BITS: return t->bits[TED4_GRID_PRIOR];
-    case TED4_MOVE_HYPER:      return h->hyper_layers > 0 ? h->hyper_width : 0;
-    case TED4_MOVE_AR:         return h->ar_width;
-    case TED4_MOVE_SLICES:     return h->n_slices;
-    case TED4_MOVE_OCTAVES:    return h->pe_octaves;
-    case TED4_MOVE_OFFSETS:    return h->n_offsets;
-    case TED4_MOVE_FEATURE:    return h->feature_dim;
-    case TED4_MOVE_VIEW:       return h->view;
-    case TED4_MOVE_HEADS:      return h->head_layers > 0 ? h->head_width : 0;
-    case TED4_MOVE_DEFORM:     return h->motion == TED4_MOTION_BANK || h->motion == TED4_MOTION_CONCAT ? h->deform_width : 0;
-    case TED4_MOVE_BANK:       return h->motion == TED4_MOTION_BANK ? h->bank_dim : 0;
-    case TED4_MOVE_ROWS:       return (int)h->bank_rows;
-    case TED4_MOVE_PHI:        return h->phi_dim;
-    case TED4_MOVE_SCALE:      return h->scale_domain == TED4_SCALE_LOG2;
+    case TED4_MOVE_HYPER: return h->hyper_layers > 0 ? h->hyper_width : 0;
+    case TED4_MOVE_AR: return h->ar_width;
+    case TED4_MOVE_SLICES: return h->n_slices;
+    case TED4_MOVE_OCTAVES: return h->pe_octaves;
+    case TED4_MOVE_OFFSETS: return h->n_offsets;
+    case TED4_MOVE_FEATURE: return h->feature_dim;
+    case TED4_MOVE_VIEW: return h->view;
+    case TED4_MOVE_HEADS: return h->head_layers > 0 ? h->head_width : 0;
+    case TED4_MOVE_DEFORM:
+        return h->motion == TED4_MOTION_BANK || h->motion == TED4_MOTION_CONCAT ? h->deform_width
+                                                                                : 0;
+    case TED4_MOVE_BANK: return h->motion == TED4_MOTION_BANK ? h->bank_dim : 0;
+    case TED4_MOVE_ROWS: return (int)h->bank_rows;
+    case TED4_MOVE_PHI: return h->phi_dim;
+    case TED4_MOVE_SCALE: return h->scale_domain == TED4_SCALE_LOG2;
     case TED4_MOVE_ANCHORS:
-    case TED4_MOVES:           break;
+    case TED4_MOVES: break;
     }
     return 0;
 }
@@ -82,31 +101,32 @@ int ted4_move_next(const ted4_trainer *t, ted4_move m, int bold)
     case TED4_MOVE_MOTION:
     case TED4_MOVE_ACTIVATION:
     case TED4_MOVE_SCALE:
-    case TED4_MOVE_VIEW:    return now - 1;
-    case TED4_MOVE_SLICES:  return now > 1 ? 1 : -1;
+    case TED4_MOVE_VIEW: return now - 1;
+    case TED4_MOVE_SLICES: return now > 1 ? 1 : -1;
     case TED4_MOVE_OCTAVES: return now > 2 ? now - 2 : now > 0 ? 0 : -1;
     case TED4_MOVE_HYPER:
     case TED4_MOVE_AR:
     case TED4_MOVE_HEADS:
     case TED4_MOVE_DEFORM:
-    case TED4_MOVE_BANK:    return narrower(now, 4, 4, bold);
+    case TED4_MOVE_BANK: return narrower(now, 4, 4, bold);
     case TED4_MOVE_FEATURE: return narrower(now, 2, 4, bold);
     case TED4_MOVE_HEAD_BITS:
     case TED4_MOVE_MOTION_BITS:
     case TED4_MOVE_BANK_BITS:
     case TED4_MOVE_PRIOR_BITS: return coarser(now, bold);
     case TED4_MOVE_OFFSETS:
-    case TED4_MOVE_PHI:     return narrower(now, 1, 1, bold);
-    case TED4_MOVE_ROWS:    return now > 3 ? (now + 1) / 2 : -1;
+    case TED4_MOVE_PHI: return narrower(now, 1, 1, bold);
+    case TED4_MOVE_ROWS: return now > 3 ? (now + 1) / 2 : -1;
     case TED4_MOVE_ANCHORS:
-    case TED4_MOVES:        break;
+    case TED4_MOVES: break;
     }
     return -1;
 }
 
 int ted4_move_finer(const ted4_trainer *t, ted4_move m)
 {
-    const int now = ted4_move_now(t, m), full = TED4_GRID_FULL(m - TED4_MOVE_HEAD_BITS + TED4_GRID_HEADS);
+    const int now = ted4_move_now(t, m),
+              full = TED4_GRID_FULL(m - TED4_MOVE_HEAD_BITS + TED4_GRID_HEADS);
 
     if (m < TED4_MOVE_HEAD_BITS || m > TED4_MOVE_PRIOR_BITS || now == 0)
         return -1;
@@ -115,15 +135,16 @@ int ted4_move_finer(const ted4_trainer *t, ted4_move m)
 
 /* ---- making them ---- */
 
-/* *w: a site with to units, those that held says among them (NULL: it says none). 0, or -1 with t->message. */
+/* *w: a site with to units, those that held says among them (NULL: it says none). 0, or -1 with
+ * t->message. */
 static int narrow_site(ted4_trainer *t, ted4_site site, int to, const uint8_t *held, ted4_narrow *w)
 {
-    const int    width = ted4_site_width(&t->layout, site);
+    const int width = ted4_site_width(&t->layout, site);
     const size_t side = (size_t)width + 1;
-    double      *moment = malloc(side * side * sizeof *moment);
-    float       *rows = NULL;
-    const int    count = moment != NULL ? ted4_site_readers(t, site, &rows) : -1;
-    int          bad = count < 0 || ted4_site_moment(t, site, moment) != 0;
+    double *moment = malloc(side * side * sizeof *moment);
+    float *rows = NULL;
+    const int count = moment != NULL ? ted4_site_readers(t, site, &rows) : -1;
+    int bad = count < 0 || ted4_site_moment(t, site, moment) != 0;
 
     if (!bad) {
         const ted4_units u = { width, count, moment, rows, held };
@@ -140,9 +161,9 @@ enum { MOST_NARROWS = TED4_NETS_R * TED4_MAX_LAYERS };
 /* A surgery that is being planned, and the narrows that it borrows. */
 typedef struct {
     ted4_trainer *t;
-    ted4_surgery  s;
-    ted4_narrow   narrow[MOST_NARROWS];
-    int           n;
+    ted4_surgery s;
+    ted4_narrow narrow[MOST_NARROWS];
+    int n;
 } operation;
 
 static const ted4_narrow *narrow(operation *o, ted4_site site, int to, const uint8_t *held)
@@ -155,7 +176,8 @@ static const ted4_narrow *narrow(operation *o, ted4_site site, int to, const uin
 static int narrow_layers(operation *o, int net, int layers, int to)
 {
     for (int i = 1; i <= layers; i++)
-        if ((o->s.hidden[net][i] = narrow(o, (ted4_site){ TED4_SITE_HIDDEN, net, i }, to, NULL)) == NULL)
+        if ((o->s.hidden[net][i] = narrow(o, (ted4_site) { TED4_SITE_HIDDEN, net, i }, to, NULL)) ==
+            NULL)
             return -1;
     return 0;
 }
@@ -165,7 +187,8 @@ static int narrow_heads(operation *o, int to)
     const int layers = o->s.head.head_layers;
 
     o->s.head.head_width = (uint16_t)to;
-    return narrow_layers(o, TED4_NET_OPACITY, layers, to) != 0 || narrow_layers(o, TED4_NET_COVARIANCE, layers, to) != 0 ||
+    return narrow_layers(o, TED4_NET_OPACITY, layers, to) != 0 ||
+           narrow_layers(o, TED4_NET_COVARIANCE, layers, to) != 0 ||
            narrow_layers(o, TED4_NET_COLOUR, layers, to) != 0;
 }
 
@@ -173,7 +196,7 @@ static int narrow_hyper(operation *o, int to)
 {
     o->s.head.hyper_width = (uint16_t)to;
     for (int i = 1; i <= o->s.head.hyper_layers; i++)
-        if ((o->s.hyper[i] = narrow(o, (ted4_site){ TED4_SITE_HYPER, 0, i }, to, NULL)) == NULL)
+        if ((o->s.hyper[i] = narrow(o, (ted4_site) { TED4_SITE_HYPER, 0, i }, to, NULL)) == NULL)
             return -1;
     return 0;
 }
@@ -182,7 +205,7 @@ static int narrow_slices(operation *o, int to)
 {
     o->s.head.ar_width = (uint16_t)to;
     for (int m = 1; m < o->s.head.n_slices; m++)
-        if ((o->s.slice[m] = narrow(o, (ted4_site){ TED4_SITE_SLICE, 0, m }, to, NULL)) == NULL)
+        if ((o->s.slice[m] = narrow(o, (ted4_site) { TED4_SITE_SLICE, 0, m }, to, NULL)) == NULL)
             return -1;
     return 0;
 }
@@ -199,7 +222,7 @@ static void one_slice(ted4_header *h)
 static void narrow_slice_sizes(ted4_header *h, const ted4_narrow *w)
 {
     uint8_t size[TED4_MAX_SLICES] = { 0 };
-    int     m = 0, end = h->slice[0], n = 0;
+    int m = 0, end = h->slice[0], n = 0;
 
     for (int k = 0; k < w->to; k++) {
         while (w->keep[k] >= end)
@@ -217,24 +240,26 @@ static void narrow_slice_sizes(ted4_header *h, const ted4_narrow *w)
 
 static int narrow_feature(operation *o, int to)
 {
-    o->s.feature = narrow(o, (ted4_site){ TED4_SITE_FEATURE, 0, 0 }, to, NULL);
+    o->s.feature = narrow(o, (ted4_site) { TED4_SITE_FEATURE, 0, 0 }, to, NULL);
     if (o->s.feature == NULL)
         return -1;
     narrow_slice_sizes(&o->s.head, o->s.feature);
     return 0;
 }
 
-/* The three inputs that are the view direction go; the feature makes up for their mean and for what it knows of them. */
+/* The three inputs that are the view direction go; the feature makes up for their mean and for what
+ * it knows of them. */
 static int narrow_view(operation *o, int to)
 {
-    uint8_t   held[TED4_MAX_FEATURE + 3] = { 0 };
+    uint8_t held[TED4_MAX_FEATURE + 3] = { 0 };
     const int F = o->s.head.feature_dim, was = o->s.head.view;
 
     memset(held, 1, (size_t)F);
     for (int net = TED4_NET_OPACITY; net <= TED4_NET_COLOUR; net++) {
         const int goes = net == TED4_NET_COLOUR ? to == TED4_VIEW_NONE : was == TED4_VIEW_FULL;
 
-        if (goes && (o->s.input[net] = narrow(o, (ted4_site){ TED4_SITE_INPUT, net, 0 }, F, held)) == NULL)
+        if (goes &&
+            (o->s.input[net] = narrow(o, (ted4_site) { TED4_SITE_INPUT, net, 0 }, F, held)) == NULL)
             return -1;
     }
     o->s.head.view = (uint8_t)to;
@@ -244,11 +269,11 @@ static int narrow_view(operation *o, int to)
 /* Octaves go from the finest on. */
 static int narrow_octaves(operation *o, int to)
 {
-    uint8_t   held[3 + 6 * 16] = { 0 };
+    uint8_t held[3 + 6 * 16] = { 0 };
     const int n = 3 + 6 * to;
 
     memset(held, 1, (size_t)n);
-    o->s.position = narrow(o, (ted4_site){ TED4_SITE_POSITION, 0, 0 }, n, held);
+    o->s.position = narrow(o, (ted4_site) { TED4_SITE_POSITION, 0, 0 }, n, held);
     o->s.head.pe_octaves = (uint8_t)to;
     return o->s.position == NULL;
 }
@@ -257,10 +282,10 @@ static int narrow_octaves(operation *o, int to)
 static int fewer_offsets(operation *o, int to)
 {
     const size_t K = o->s.head.n_offsets, n = o->t->anchors.n;
-    float       *of_each = malloc((n * K + 1) * sizeof *of_each);
-    double       use[TED4_MAX_OFFSETS] = { 0 };
-    const int    bad = of_each == NULL || ted4_capacity_usage(o->t, of_each) != 0;
-    int          kept = 0;
+    float *of_each = malloc((n * K + 1) * sizeof *of_each);
+    double use[TED4_MAX_OFFSETS] = { 0 };
+    const int bad = of_each == NULL || ted4_capacity_usage(o->t, of_each) != 0;
+    int kept = 0;
 
     for (size_t i = 0; !bad && i < n * K; i++)
         use[i % K] += fmax((double)of_each[i], 0.0);
@@ -283,13 +308,15 @@ static int fewer_offsets(operation *o, int to)
 static void make_linear(operation *o)
 {
     const ted4_layout *l = &o->t->layout;
-    double             sum = 0;
-    const double       n = 6.0 * (double)o->t->anchors.n;
+    double sum = 0;
+    const double n = 6.0 * (double)o->t->anchors.n;
 
     for (size_t i = 0; i < o->t->anchors.n; i++)
         for (int c = 0; c < 6; c++)
-            sum += (double)(*ted4_cell(&o->t->anchors, TED4_ROW_VALUE, i, l->first[TED4_SCALING] + c)
-                            + ted4_math_log2f(*ted4_cell(&o->t->anchors, TED4_ROW_STEP, i, TED4_SCALING)));
+            sum +=
+                (double)(*ted4_cell(&o->t->anchors, TED4_ROW_VALUE, i, l->first[TED4_SCALING] + c) +
+                         ted4_math_log2f(
+                             *ted4_cell(&o->t->anchors, TED4_ROW_STEP, i, TED4_SCALING)));
     o->s.head.scale_domain = TED4_SCALE_LINEAR;
     o->s.head.step[TED4_SCALING] = (float)fmax(LN2 * ted4_math_exp2(sum / n), 1e-5);
 }
@@ -297,31 +324,37 @@ static void make_linear(operation *o)
 /* What a move changes, into o->s. 0, or not 0 with t->message. */
 static int plan(operation *o, ted4_move m, int to)
 {
-    ted4_header    *h = &o->s.head;
+    ted4_header *h = &o->s.head;
     const ted4_site bank = { TED4_SITE_BANK, 0, 0 }, phi = { TED4_SITE_PHI, 0, 0 };
 
     switch (m) {
-    case TED4_MOVE_MOTION:     ted4_header_without_motion(h); return 0;
+    case TED4_MOVE_MOTION: ted4_header_without_motion(h); return 0;
     case TED4_MOVE_ACTIVATION: h->activation = 0; return 0;
-    case TED4_MOVE_HYPER:      return narrow_hyper(o, to);
-    case TED4_MOVE_AR:         return narrow_slices(o, to);
-    case TED4_MOVE_SLICES:     one_slice(h); return 0;
-    case TED4_MOVE_OCTAVES:    return narrow_octaves(o, to);
-    case TED4_MOVE_OFFSETS:    return fewer_offsets(o, to);
-    case TED4_MOVE_FEATURE:    return narrow_feature(o, to);
-    case TED4_MOVE_VIEW:       return narrow_view(o, to);
-    case TED4_MOVE_HEADS:      return narrow_heads(o, to);
-    case TED4_MOVE_DEFORM:     h->deform_width = (uint16_t)to; return narrow_layers(o, TED4_NET_DEFORM, h->deform_layers, to);
-    case TED4_MOVE_BANK:       h->bank_dim = (uint16_t)to; return (o->s.bank = narrow(o, bank, to, NULL)) == NULL;
-    case TED4_MOVE_ROWS:       h->bank_rows = (uint32_t)to; return 0;
-    case TED4_MOVE_PHI:        h->phi_dim = (uint8_t)to; return (o->s.phi = narrow(o, phi, to, NULL)) == NULL;
-    case TED4_MOVE_SCALE:      make_linear(o); return 0;
+    case TED4_MOVE_HYPER: return narrow_hyper(o, to);
+    case TED4_MOVE_AR: return narrow_slices(o, to);
+    case TED4_MOVE_SLICES: one_slice(h); return 0;
+    case TED4_MOVE_OCTAVES: return narrow_octaves(o, to);
+    case TED4_MOVE_OFFSETS: return fewer_offsets(o, to);
+    case TED4_MOVE_FEATURE: return narrow_feature(o, to);
+    case TED4_MOVE_VIEW: return narrow_view(o, to);
+    case TED4_MOVE_HEADS: return narrow_heads(o, to);
+    case TED4_MOVE_DEFORM:
+        h->deform_width = (uint16_t)to;
+        return narrow_layers(o, TED4_NET_DEFORM, h->deform_layers, to);
+    case TED4_MOVE_BANK:
+        h->bank_dim = (uint16_t)to;
+        return (o->s.bank = narrow(o, bank, to, NULL)) == NULL;
+    case TED4_MOVE_ROWS: h->bank_rows = (uint32_t)to; return 0;
+    case TED4_MOVE_PHI:
+        h->phi_dim = (uint8_t)to;
+        return (o->s.phi = narrow(o, phi, to, NULL)) == NULL;
+    case TED4_MOVE_SCALE: make_linear(o); return 0;
     case TED4_MOVE_HEAD_BITS:
     case TED4_MOVE_MOTION_BITS:
     case TED4_MOVE_BANK_BITS:
     case TED4_MOVE_PRIOR_BITS:
     case TED4_MOVE_ANCHORS:
-    case TED4_MOVES:           break;
+    case TED4_MOVES: break;
     }
     return 0;
 }
@@ -329,7 +362,7 @@ static int plan(operation *o, ted4_move m, int to)
 int ted4_move_make(ted4_trainer *t, ted4_move m, int to)
 {
     operation o = { .t = t };
-    int       bad;
+    int bad;
 
     if (m >= TED4_MOVE_HEAD_BITS && m <= TED4_MOVE_PRIOR_BITS) {
         t->bits[m - TED4_MOVE_HEAD_BITS + TED4_GRID_HEADS] = to;

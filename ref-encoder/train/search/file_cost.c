@@ -1,4 +1,5 @@
-/* file_cost.c - the cost of a model, by making its file and drawing pictures from it: see capacity.h.
+/* file_cost.c - the cost of a model, by making its file and drawing pictures from it: see
+ * model_search.h.
  * SPDX-License-Identifier: BSD-2-Clause */
 #include "model_search.h"
 
@@ -9,18 +10,21 @@
 #include "train/step/export_scene.h"
 #include "write/encode.h"
 
-/* Training pictures that judge: one a frame, within these bounds; and what drawing one takes, and making the file, in training steps, as measured on
- * kitchen at a quarter of its size. */
+/* Training pictures that judge: one a frame, within these bounds; and what drawing one takes, and
+ * making the file, in training steps, as measured on kitchen at a quarter of its size. */
 enum { LEAST_PICTURES = 16, MOST_PICTURES = 24 };
 #define STEPS_A_PICTURE 0.4
 #define STEPS_A_FILE    4.0
-/* What the end of stage 2 decides is left undecided where the budget of all trials is not so many times what it takes. */
-#define ROOM 3.0
+/* What the end of stage 2 decides is left undecided where the budget of all trials is not so many
+ * times what it takes. */
+#define ROOM            3.0
 
 static size_t judges(const ted4_trainer *t)
 {
     const size_t frames = ted4_judges_frames(t);
-    const size_t n = frames < LEAST_PICTURES ? LEAST_PICTURES : frames > MOST_PICTURES ? MOST_PICTURES : frames;
+    const size_t n = frames < LEAST_PICTURES  ? LEAST_PICTURES
+                     : frames > MOST_PICTURES ? MOST_PICTURES
+                                              : frames;
 
     return n < t->order.n ? n : t->order.n;
 }
@@ -55,9 +59,9 @@ int ted4_capacity_note(ted4_trainer *t, const struct ted4_trial *x)
 static int count_bytes(ted4_trainer *t, double *bytes)
 {
     ted4_scene *scene;
-    uint8_t    *file;
-    size_t      size;
-    ted4_error  e = { TED4_OK, 0 };
+    uint8_t *file;
+    size_t size;
+    ted4_error e = { TED4_OK, 0 };
 
     if (ted4_make_scene(t, &scene) != 0)
         return -1;
@@ -75,15 +79,17 @@ static int count_bytes(ted4_trainer *t, double *bytes)
 /* lambda, in units of all values. */
 double ted4_capacity_charge(const ted4_trainer *t)
 {
-    return t->opt.lambda / (ted4_trainer_charged(t) * (double)(t->anchors.n > 0 ? t->anchors.n : 1));
+    return t->opt.lambda /
+           (ted4_trainer_charged(t) * (double)(t->anchors.n > 0 ? t->anchors.n : 1));
 }
 
 static int measure(ted4_trainer *t, ted4_cost *c)
 {
     const size_t n = judges(t);
-    uint32_t     item[MOST_PICTURES];
+    uint32_t item[MOST_PICTURES];
 
-    if (count_bytes(t, &c->bytes) != 0 || ted4_judges_choose(t, t->opt.seed ^ 0x6a75646765u, n, item) != 0)
+    if (count_bytes(t, &c->bytes) != 0 ||
+        ted4_judges_choose(t, t->opt.seed ^ 0x6a75646765u, n, item) != 0)
         return -1;
     c->distortion = 0;
     for (size_t i = 0; i < n; i++) {
@@ -100,7 +106,7 @@ static int measure(ted4_trainer *t, ted4_cost *c)
 int ted4_capacity_cost(ted4_trainer *t, ted4_cost *c)
 {
     ted4_snapshot before = { 0 };
-    int           bad = ted4_state_take(t, &before) != 0 || measure(t, c) != 0;
+    int bad = ted4_state_take(t, &before) != 0 || measure(t, c) != 0;
 
     bad = bad || ted4_state_restore(t, &before) != 0;
     ted4_snapshot_free(&before);

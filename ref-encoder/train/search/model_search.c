@@ -1,6 +1,7 @@
-/* model_search.c - which trials are made, and which smaller model is taken: see capacity.h. First every move is tried at sight, as far as it lowers the cost without
- * any training; what is left of the budget trains those next that cost least at sight, against the same training of the model at hand.
- * SPDX-License-Identifier: BSD-2-Clause */
+/* model_search.c - which trials are made, and which smaller model is taken: see model_search.h.
+ * First every move is tried at sight, as far as it lowers the cost without any training; what is
+ * left of the budget trains those next that cost least at sight, against the same training of the
+ * model at hand. SPDX-License-Identifier: BSD-2-Clause */
 #include "model_search.h"
 
 #include <math.h>
@@ -8,25 +9,30 @@
 
 #include "train/step/checkpoint.h"
 
-/* Share of stage 2 before: values have begun to be cheap, and the prior knows them. Measured on three small scenes, at 0.5 costs differ by 1 % either way. */
-#define DECIDE_AT 0.15
-/* Share of the budget for trials at sight; trained trials that the budget pays for if nothing is spent on those. */
+/* Share of stage 2 before: values have begun to be cheap, and the prior knows them. Measured on
+ * three small scenes, at 0.5 costs differ by 1 % either way. */
+#define DECIDE_AT   0.15
+/* Share of the budget for trials at sight; trained trials that the budget pays for if nothing is
+ * spent on those. */
 #define SIGHT_SHARE 0.7
 enum { TRIALS = 16, FEWEST_STEPS = 50 };
-/* Of the distortion that a move adds at sight, training will take this share back, as far as one may hope; a move that would not lower the cost by that share
- * even so is not worth training. */
+/* Of the distortion that a move adds at sight, training will take this share back, as far as one
+ * may hope; a move that would not lower the cost by that share even so is not worth training. */
 #define HOPE       0.8
 #define LEAST_GAIN 5e-4
 
 typedef struct {
-    ted4_trainer      *t;
-    ted4_snapshot      now, trained;    /* the model at hand: before training, after it */
-    ted4_cost          now_cost, trained_cost;
-    struct ted4_trial *trial;           /* owned */
-    size_t             n_trials;
-    double             budget, spent;   /* training steps */
-    int                steps;           /* of a trained trial */
-    struct { int from, to; ted4_cost cost; } sight[TED4_MOVES]; /* the next trial of each move, by its looks; to = -1: there is none */
+    ted4_trainer *t;
+    ted4_snapshot now, trained; /* the model at hand: before training, after it */
+    ted4_cost now_cost, trained_cost;
+    struct ted4_trial *trial; /* owned */
+    size_t n_trials;
+    double budget, spent; /* training steps */
+    int steps;            /* of a trained trial */
+    struct {
+        int from, to;
+        ted4_cost cost;
+    } sight[TED4_MOVES]; /* the next trial of each move, by its looks; to = -1: there is none */
 } search;
 
 /* Training steps that the search may take: what the end of stage 2 leaves it. */
@@ -48,17 +54,19 @@ static int trial_steps(const ted4_trainer *t)
 uint64_t ted4_capacity_step(const ted4_trainer *t)
 {
     return t->opt.capacity && t->opt.stage2 > 0
-               ? (uint64_t)t->opt.stage1 + (uint64_t)(DECIDE_AT * (double)t->opt.stage2) : UINT64_MAX;
+               ? (uint64_t)t->opt.stage1 + (uint64_t)(DECIDE_AT * (double)t->opt.stage2)
+               : UINT64_MAX;
 }
 
-static int note(search *s, ted4_move m, int from, int to, int taken, int steps, const ted4_cost *before, const ted4_cost *after)
+static int note(search *s, ted4_move m, int from, int to, int taken, int steps,
+                const ted4_cost *before, const ted4_cost *after)
 {
     struct ted4_trial *more = realloc(s->trial, (s->n_trials + 1) * sizeof *more);
 
     if (more == NULL)
         return ted4_trainer_fail(s->t, "no memory to note a trial");
     s->trial = more;
-    more[s->n_trials++] = (struct ted4_trial){ m, from, to, steps, taken, *before, *after };
+    more[s->n_trials++] = (struct ted4_trial) { m, from, to, steps, taken, *before, *after };
     return 0;
 }
 
@@ -76,7 +84,8 @@ static int measure(search *s, ted4_cost *c)
     return ted4_capacity_cost(s->t, c);
 }
 
-/* The model at hand, one move smaller: what it costs as it is. 1: there is no such move; -1: failed. */
+/* The model at hand, one move smaller: what it costs as it is. 1: there is no such move; -1:
+ * failed. */
 static int look(search *s, ted4_move m, int bold)
 {
     s->sight[m].to = -1;
@@ -95,13 +104,14 @@ static int look(search *s, ted4_move m, int bold)
     return 0;
 }
 
-/* What was looked at last is the model at hand from now on if it costs less; the trainer has the model at hand then. 1: taken; 0: not; -1: failed. */
+/* What was looked at last is the model at hand from now on if it costs less; the trainer has the
+ * model at hand then. 1: taken; 0: not; -1: failed. */
 static int take_if_cheaper(search *s, ted4_move m)
 {
     const ted4_cost before = s->now_cost, after = s->sight[m].cost;
-    const int       taken = after.cost < before.cost, to = s->sight[m].to;
-    ted4_snapshot   smaller = { 0 };
-    int             bad = (taken ? ted4_state_take(s->t, &smaller) : ted4_state_restore(s->t, &s->now)) != 0;
+    const int taken = after.cost < before.cost, to = s->sight[m].to;
+    ted4_snapshot smaller = { 0 };
+    int bad = (taken ? ted4_state_take(s->t, &smaller) : ted4_state_restore(s->t, &s->now)) != 0;
 
     bad = bad || note(s, m, s->sight[m].from, to, taken, 0, &before, &after) != 0;
     if (!bad && taken) {
@@ -113,14 +123,16 @@ static int take_if_cheaper(search *s, ted4_move m)
     return bad ? -1 : taken;
 }
 
-/* Half of what all Gaussians are made from is never free; and few bits of a weight may cost less than all of them, but more than some in between, which a bold
- * step would pass over. */
+/* Half of what all Gaussians are made from is never free; and few bits of a weight may cost less
+ * than all of them, but more than some in between, which a bold step would pass over. */
 static int may_be_bold(ted4_move m)
 {
-    return m != TED4_MOVE_HEADS && m != TED4_MOVE_FEATURE && m != TED4_MOVE_OFFSETS && m != TED4_MOVE_HEAD_BITS && m != TED4_MOVE_MOTION_BITS;
+    return m != TED4_MOVE_HEADS && m != TED4_MOVE_FEATURE && m != TED4_MOVE_OFFSETS &&
+           m != TED4_MOVE_HEAD_BITS && m != TED4_MOVE_MOTION_BITS;
 }
 
-/* Goes as far with a move as each step lowers the cost at sight: in bold steps, then in small ones. */
+/* Goes as far with a move as each step lowers the cost at sight: in bold steps, then in small ones.
+ */
 static int descend(search *s, ted4_move m)
 {
     int bold = may_be_bold(m);
@@ -160,12 +172,12 @@ static int train(search *s, ted4_snapshot *after, ted4_cost *cost, int *lost)
 static ted4_move choose(const search *s)
 {
     const ted4_cost *now = &s->now_cost;
-    ted4_move        best = TED4_MOVES;
-    double           least = (1.0 - LEAST_GAIN) * now->cost;
+    ted4_move best = TED4_MOVES;
+    double least = (1.0 - LEAST_GAIN) * now->cost;
 
     for (int m = 0; m < TED4_MOVES; m++) {
         const ted4_cost *c = &s->sight[m].cost;
-        const double     hoped = c->cost - HOPE * fmax(c->distortion - now->distortion, 0.0);
+        const double hoped = c->cost - HOPE * fmax(c->distortion - now->distortion, 0.0);
 
         if (s->sight[m].to >= 0 && hoped < least) {
             least = hoped;
@@ -178,14 +190,15 @@ static ted4_move choose(const search *s)
 /* One trained trial. */
 static int try_move(search *s, ted4_move m)
 {
-    ted4_snapshot   start = { 0 }, end = { 0 };
-    const int       to = s->sight[m].to;
+    ted4_snapshot start = { 0 }, end = { 0 };
+    const int to = s->sight[m].to;
     const ted4_cost before = s->trained_cost;
-    ted4_cost       after = { 0 };
-    int             lost = 0, bad = ted4_state_restore(s->t, &s->now) != 0;
-    const int       from = ted4_move_now(s->t, m);
+    ted4_cost after = { 0 };
+    int lost = 0, bad = ted4_state_restore(s->t, &s->now) != 0;
+    const int from = ted4_move_now(s->t, m);
 
-    bad = bad || ted4_move_make(s->t, m, to) != 0 || ted4_state_take(s->t, &start) != 0 || train(s, &end, &after, &lost) != 0;
+    bad = bad || ted4_move_make(s->t, m, to) != 0 || ted4_state_take(s->t, &start) != 0 ||
+          train(s, &end, &after, &lost) != 0;
     s->spent += s->steps;
 
     const int taken = !bad && !lost && after.cost < before.cost;
@@ -212,7 +225,8 @@ static int search_all(search *s)
         s->sight[m].to = -1;
     for (int m = 0; !bad && m < TED4_MOVES; m++)
         bad = ted4_state_restore(s->t, &s->now) != 0 || descend(s, (ted4_move)m) != 0;
-    bad = bad || ted4_state_restore(s->t, &s->now) != 0 || train(s, &s->trained, &s->trained_cost, &lost) != 0;
+    bad = bad || ted4_state_restore(s->t, &s->now) != 0 ||
+          train(s, &s->trained, &s->trained_cost, &lost) != 0;
     if (!bad && lost)
         return ted4_trainer_fail(s->t, "the model that trials chose could not be trained");
     while (!bad && s->spent + s->steps <= s->budget) {
@@ -228,9 +242,10 @@ static int search_all(search *s)
 int ted4_capacity_decide(ted4_trainer *t)
 {
     search s = { .t = t, .budget = search_budget(t), .steps = trial_steps(t) };
-    int    bad = 0;
+    int bad = 0;
 
-    t->decided = TED4_DECIDED_MODEL;    /* in every state that is kept from here on: trials make none of their own */
+    t->decided = TED4_DECIDED_MODEL; /* in every state that is kept from here on: trials make none
+                                        of their own */
     if (s.steps > 0)
         bad = search_all(&s) != 0;
     ted4_snapshot_free(&s.now);

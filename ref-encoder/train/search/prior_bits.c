@@ -1,10 +1,13 @@
-/* prior_bits.c - bits of the prior's weights that are given back: see capacity.h. Trials coarsen weights when stage 2 is young, and it trains fine ones to its
- * last stage. What the prior has learnt by then, of the spans of anchors above all, takes more bits than what it knew when they were counted: files of kitchen are 5 to
- * 11 % smaller. Finer weights of the networks that draw were worth one or two ten-thousandths of the cost, less than it takes to look at them.
+/* prior_bits.c - bits of the prior's weights that are given back: see model_search.h. Trials
+ * coarsen weights when stage 2 is young, and it trains fine ones to its last stage. What the prior
+ * has learnt by then, of the spans of anchors above all, takes more bits than what it knew when
+ * they were counted: files of kitchen are 5 to 11 % smaller. Finer weights of the networks that
+ * draw were worth one or two ten-thousandths of the cost, less than it takes to look at them.
  * SPDX-License-Identifier: BSD-2-Clause */
 #include "model_search.h"
 
-/* The next finer grids are looked at, so many: one may be worse than the one before it, and the one after it better than both. */
+/* The next finer grids are looked at, so many: one may be worse than the one before it, and the one
+ * after it better than both. */
 enum { MOST_LOOKS = 4 };
 
 double ted4_capacity_refine_steps(const ted4_trainer *t)
@@ -15,8 +18,8 @@ double ted4_capacity_refine_steps(const ted4_trainer *t)
 int ted4_capacity_refine(ted4_trainer *t)
 {
     const ted4_move m = TED4_MOVE_PRIOR_BITS;
-    int             best = ted4_move_now(t, m), to = ted4_move_finer(t, m), bad;
-    ted4_cost       least = { 0 };
+    int best = ted4_move_now(t, m), to = ted4_move_finer(t, m), bad;
+    ted4_cost least = { 0 };
 
     t->decided = TED4_DECIDED_BITS;
     if (to < 0 || !(ted4_capacity_refine_steps(t) > 0))

@@ -1,5 +1,6 @@
-/* rd_prune.c - anchors and Gaussians that are not worth their bits: see capacity.h. How much pictures would miss one is known to first order only, so several
- * prices of a bit are tried on all of them at once, and what the whole file then costs decides.
+/* rd_prune.c - anchors and Gaussians that are not worth their bits: see model_search.h. How much
+ * pictures would miss one is known to first order only, so several prices of a bit are tried on all
+ * of them at once, and what the whole file then costs decides.
  * SPDX-License-Identifier: BSD-2-Clause */
 #include "model_search.h"
 
@@ -15,17 +16,20 @@ enum { N_PRICES = (int)(sizeof prices / sizeof prices[0]) };
 /* Bits of an anchor's place and of its flag of motion. */
 #define ANCHOR_BITS 49.0
 /* A logit that leaves its offset out for good. */
-#define OUT (-10.0f)
+#define OUT         (-10.0f)
 
 double ted4_capacity_prune_steps(const ted4_trainer *t)
 {
-    const double steps = ted4_capacity_usage_steps(t) + (1 + N_PRICES) * ted4_capacity_cost_steps(t);
+    const double steps = ted4_capacity_usage_steps(t) +
+                         (1 + N_PRICES) * ted4_capacity_cost_steps(t);
 
     return t->layout.head.offset_mask ? ted4_capacity_afford(t, steps) : 0;
 }
 
 /* What is known of every anchor: use [n][K], bits [n_blocks][1 + K][32]. */
-typedef struct { float *use, *bits; } worth;
+typedef struct {
+    float *use, *bits;
+} worth;
 
 static int learn(ted4_trainer *t, worth *w)
 {
@@ -38,13 +42,23 @@ static int learn(ted4_trainer *t, worth *w)
     if (ted4_capacity_usage(t, w->use) != 0 || ted4_slots_fill(t, NULL) != 0)
         return -1;
 
-    const ted4_rate_input in = {
-        &t->layout, t->net, t->shift, t->slots.n, t->slots.raw, t->slots.position, t->slots.lanes, t->slots.block, 0,
-        TED4_QUANT_INTEGER, 0.0f, 0.0f, t->layout.head.activation
-    };
+    const ted4_rate_input in = { &t->layout,
+                                 t->net,
+                                 t->shift,
+                                 t->slots.n,
+                                 t->slots.raw,
+                                 t->slots.position,
+                                 t->slots.lanes,
+                                 t->slots.block,
+                                 0,
+                                 TED4_QUANT_INTEGER,
+                                 0.0f,
+                                 0.0f,
+                                 t->layout.head.activation };
 
     return ted4_rate_lanes(t->rate, &in, t->parallel, t->slots.steps, w->bits) != 0
-               ? ted4_trainer_fail(t, "no memory to weigh anchors") : 0;
+               ? ted4_trainer_fail(t, "no memory to weigh anchors")
+               : 0;
 }
 
 static float *logit(const ted4_trainer *t, size_t i, size_t k)
@@ -62,22 +76,24 @@ static int64_t count_kept(const ted4_trainer *t)
     return n;
 }
 
-/* Leaves out the offsets of one anchor that are not worth a price, or all of them with the anchor; one anchor at least stays. */
+/* Leaves out the offsets of one anchor that are not worth a price, or all of them with the anchor;
+ * one anchor at least stays. */
 static void prune_anchor(ted4_trainer *t, const worth *w, size_t i, double price)
 {
     const size_t K = t->layout.head.n_offsets;
     const float *bits = w->bits + i / TED4_LANES * (1 + K) * TED4_LANES + i % TED4_LANES;
-    double       left = 0, cost = price * (ANCHOR_BITS + (double)bits[0]);
+    double left = 0, cost = price * (ANCHOR_BITS + (double)bits[0]);
 
     for (size_t k = 0; k < K; k++) {
-        const double use = (double)w->use[i * K + k], paid = price * (double)bits[(1 + k) * TED4_LANES];
+        const double use = (double)w->use[i * K + k],
+                     paid = price * (double)bits[(1 + k) * TED4_LANES];
 
         if (!ted4_mask_on(*logit(t, i, k)))
             continue;
         if (use >= 0 && use < paid) {
             *logit(t, i, k) = OUT;
         } else {
-            left += use >= 0 ? use : INFINITY;      /* what was not looked at stays */
+            left += use >= 0 ? use : INFINITY; /* what was not looked at stays */
             cost += paid;
         }
     }
@@ -86,9 +102,10 @@ static void prune_anchor(ted4_trainer *t, const worth *w, size_t i, double price
 }
 
 /* Tries one price from the state at hand; keeps it in *best if the cost is lower than there. */
-static int try_price(ted4_trainer *t, const worth *w, const ted4_snapshot *start, double price, ted4_snapshot *best, struct ted4_trial *x)
+static int try_price(ted4_trainer *t, const worth *w, const ted4_snapshot *start, double price,
+                     ted4_snapshot *best, struct ted4_trial *x)
 {
-    ted4_cost     c;
+    ted4_cost c;
     ted4_snapshot mine = { 0 };
 
     if (ted4_state_restore(t, start) != 0)
@@ -117,16 +134,17 @@ static int try_price(ted4_trainer *t, const worth *w, const ted4_snapshot *start
 
 int ted4_capacity_prune(ted4_trainer *t)
 {
-    ted4_snapshot     start = { 0 }, best = { 0 };
-    worth             w = { NULL, NULL };
+    ted4_snapshot start = { 0 }, best = { 0 };
+    worth w = { NULL, NULL };
     struct ted4_trial x = { .move = TED4_MOVE_ANCHORS, .to = -1 };
-    int               bad;
+    int bad;
 
     t->decided = TED4_DECIDED_ALL;
     if (!(ted4_capacity_prune_steps(t) > 0))
         return 0;
     x.from = count_kept(t);
-    bad = ted4_state_take(t, &start) != 0 || ted4_capacity_cost(t, &x.before) != 0 || learn(t, &w) != 0;
+    bad = ted4_state_take(t, &start) != 0 || ted4_capacity_cost(t, &x.before) != 0 ||
+          learn(t, &w) != 0;
     for (int i = 0; !bad && i < N_PRICES; i++)
         bad = try_price(t, &w, &start, prices[i] * ted4_capacity_charge(t), &best, &x) != 0;
     x.taken = !bad && x.to >= 0 && x.after.cost < x.before.cost;

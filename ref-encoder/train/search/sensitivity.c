@@ -1,4 +1,4 @@
-/* sensitivity.c - what each Gaussian is worth to the pictures: see capacity.h.
+/* sensitivity.c - what each Gaussian is worth to the pictures: see model_search.h.
  * SPDX-License-Identifier: BSD-2-Clause */
 #include "model_search.h"
 
@@ -8,7 +8,8 @@
 
 #include "train/state/view_subset.h"
 
-/* Pictures looked at: for this share of all steps, but at least so many, and two a frame. Forward and most of the way back are this share of a step. */
+/* Pictures looked at: for this share of all steps, but at least so many, and two a frame. Forward
+ * and most of the way back are this share of a step. */
 #define SHARE 0.02
 enum { FEWEST = 32, A_FRAME = 2 };
 #define STEPS_A_PICTURE (2.0 / 3.0)
@@ -40,7 +41,8 @@ static void gather(const ted4_trainer *t, const ted4_splats *s, float weight, fl
                 if (!(t->slots.lanes[i] >> j & 1))
                     continue;
 
-                use[anchor * K + k] += weight * fabsf(s->opacity[at] * t->splat_gradient.opacity[at]);
+                use[anchor * K + k] += weight *
+                                       fabsf(s->opacity[at] * t->splat_gradient.opacity[at]);
             }
 }
 
@@ -55,8 +57,8 @@ static void mark_unseen(const ted4_trainer *t, size_t n, float *use)
 int ted4_capacity_usage(ted4_trainer *t, float *use)
 {
     const size_t n = pictures(t);
-    uint32_t    *item = malloc(n * sizeof *item);
-    int          bad = item == NULL;
+    uint32_t *item = malloc(n * sizeof *item);
+    int bad = item == NULL;
 
     if (bad)
         ted4_trainer_fail(t, "no memory to look at Gaussians");

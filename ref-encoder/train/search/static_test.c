@@ -1,15 +1,17 @@
-/* static_test.c - does the scene need time at all? Early in stage 1 the trainer goes on for a while as it is, then from the same point and through the same pictures
- * with the clock stopped: all networks keep their room, but every picture is drawn at time 0 and everything is always there. If that is as good, motion and
- * activation would only fit noise, and training begins again without them, so that the file is the one of an encoder that knows no time: what grew while things
- * could move is not what a still scene needs. See trainer.h.
+/* static_test.c - does the scene need time at all? Early in stage 1 the trainer goes on for a while
+ * as it is, then from the same point and through the same pictures with the clock stopped: all
+ * networks keep their room, but every picture is drawn at time 0 and everything is always there. If
+ * that is as good, motion and activation would only fit noise, and training begins again without
+ * them, so that the file is the one of an encoder that knows no time: what grew while things could
+ * move is not what a still scene needs. See trainer.h.
  * SPDX-License-Identifier: BSD-2-Clause */
 #include <math.h>
 
 #include "train/step/checkpoint.h"
 #include "train/state/trainer.h"
 
-/* Time stays when it lowers the mean loss by at least this share. Measured with 600 steps a branch: a still room with pictures of eight times -0.7 %, moving
- * scenes 10 to 17 %. */
+/* Time stays when it lowers the mean loss by at least this share. Measured with 600 steps a branch:
+ * a still room with pictures of eight times -0.7 %, moving scenes 10 to 17 %. */
 #define WORTH 0.01
 /* Fewer steps tell nothing; the first half of them lets both branches settle. */
 enum { FEWEST = 200 };
@@ -22,7 +24,7 @@ static int has_time(const ted4_trainer *t)
 int ted4_branch_run(ted4_trainer *t, int n, double *loss)
 {
     const uint64_t begin = t->iteration;
-    int            bad = 0;
+    int bad = 0;
 
     ted4_watch_forget(t);
     t->watch.pinned = 1;
@@ -50,10 +52,10 @@ int ted4_probe_steps(const ted4_trainer *t)
 
 int ted4_probe_time(ted4_trainer *t)
 {
-    const int     n = ted4_probe_steps(t);
+    const int n = ted4_probe_steps(t);
     ted4_snapshot start = { 0 }, with = { 0 };
-    ted4_header   h = t->layout.head;
-    double        timed = 0, still = 0;
+    ted4_header h = t->layout.head;
+    double timed = 0, still = 0;
 
     t->probed = 1;
     if (n == 0)

@@ -5,8 +5,9 @@
 void ted4_gen_chain_forward(const ted4_gen_chain *c, float *planes)
 {
     for (int i = 0; i < c->n; i++)
-        TED4_LEVELED(ted4_dense_forward)(&c->layer[i].dense, ted4_gen_plane(planes, c->layer[i].x),
-                           ted4_gen_plane(planes, c->layer[i].y), i + 1 < c->n);
+        TED4_LEVELED(ted4_dense_forward)
+    (&c->layer[i].dense, ted4_gen_plane(planes, c->layer[i].x),
+     ted4_gen_plane(planes, c->layer[i].y), i + 1 < c->n);
 }
 
 /* Forward was y = max(0, a): a is kept as y. */
@@ -17,8 +18,8 @@ static void relu_backward(int n, const float *y, float *d)
         d[i] = y[i] > 0.0f ? d[i] : 0.0f;
 }
 
-void ted4_gen_chain_backward(const ted4_generator *g, const ted4_gen_chain *c,
-                             float *planes, float *d, float *dx, int add)
+void ted4_gen_chain_backward(const ted4_generator *g, const ted4_gen_chain *c, float *planes,
+                             float *d, float *dx, int add)
 {
     for (int i = c->n - 1; i > 0; i--) {
         const ted4_gen_layer *layer = &c->layer[i];
@@ -29,20 +30,21 @@ void ted4_gen_chain_backward(const ted4_generator *g, const ted4_gen_chain *c,
         relu_backward(layer->dense.in, ted4_gen_plane(planes, layer->x), below);
     }
     if (dx != NULL)
-        TED4_LEVELED(ted4_dense_backward_x)(&c->layer[0].dense,
-                              ted4_gen_plane(d, c->layer[0].y - g->plane.outputs), dx, add);
+        TED4_LEVELED(ted4_dense_backward_x)
+    (&c->layer[0].dense, ted4_gen_plane(d, c->layer[0].y - g->plane.outputs), dx, add);
 }
 
-void ted4_gen_chain_weights(const ted4_generator *g, const ted4_gen_chain *c,
-                            float *planes, float *d, size_t n, float *grad)
+void ted4_gen_chain_weights(const ted4_generator *g, const ted4_gen_chain *c, float *planes,
+                            float *d, size_t n, float *grad)
 {
     for (int i = 0; i < c->n; i++) {
         const ted4_gen_layer *layer = &c->layer[i];
         const int in = layer->dense.in, out = layer->dense.out;
         float *dw = grad + layer->grad;
 
-        TED4_LEVELED(ted4_dense_backward_w)(in, out, ted4_gen_plane(planes, layer->x), ted4_gen_stride(g),
-                              ted4_gen_plane(d, layer->y - g->plane.outputs), g->d_slot, n,
-                              dw, dw + (size_t)in * (size_t)out);
+        TED4_LEVELED(ted4_dense_backward_w)
+        (in, out, ted4_gen_plane(planes, layer->x), ted4_gen_stride(g),
+         ted4_gen_plane(d, layer->y - g->plane.outputs), g->d_slot, n, dw,
+         dw + (size_t)in * (size_t)out);
     }
 }

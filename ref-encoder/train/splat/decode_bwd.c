@@ -1,4 +1,4 @@
-/* decode_bwd.c - adjoint of generate.c: gradients of Gaussians to those of anchors, networks and
+/* decode_bwd.c - adjoint of decode.c: gradients of Gaussians to those of anchors, networks and
  * bank. Masks are straight-through: their gradient is that of sigmoid(logit) in the place of the
  * hard 0 or 1, which has none. Positions get none.
  * SPDX-License-Identifier: BSD-2-Clause */
@@ -11,10 +11,10 @@
 /* One slot on its way back. */
 typedef struct {
     const ted4_generator *g;
-    float *planes;                      /* saved by forward */
-    float *d;                           /* gradients of layer outputs, planes */
-    float *d_attr;                      /* the slot's block */
-    float *d_feature, *d_moved;         /* F + 3 planes each: of the inputs of heads of f, f' */
+    float *planes;              /* saved by forward */
+    float *d;                   /* gradients of layer outputs, planes */
+    float *d_attr;              /* the slot's block */
+    float *d_feature, *d_moved; /* F + 3 planes each: of the inputs of heads of f, f' */
     int32_t on[TED4_LANES];
     float d_size[6 * TED4_LANES], d_position[3 * TED4_LANES], d_active[TED4_LANES];
 } slot_state;
@@ -190,13 +190,12 @@ static void move_backward(slot_state *s)
     const float *logit = ted4_gen_channel(g, s->planes, g->layout.temporal_logit);
     float *d_y = d_plane(s, g->plane.motion);
     float *d_logit = ted4_gen_plane(s->d_attr, g->layout.temporal_logit);
-    float *d_phi = g->layout.first[TED4_PHI] < 0 ? NULL
-                 : ted4_gen_plane(s->d_attr, g->layout.first[TED4_PHI]);
-    float d_m[TED4_LANES] = {0};
+    float *d_phi =
+        g->layout.first[TED4_PHI] < 0 ? NULL : ted4_gen_plane(s->d_attr, g->layout.first[TED4_PHI]);
+    float d_m[TED4_LANES] = { 0 };
 
     for (int c = 0; c < 3 + f; c++, y += TED4_LANES, d_y += TED4_LANES) {
-        const float *d = c < 3 ? s->d_position + c * TED4_LANES
-                               : ted4_gen_plane(s->d_moved, c - 3);
+        const float *d = c < 3 ? s->d_position + c * TED4_LANES : ted4_gen_plane(s->d_moved, c - 3);
 
 #pragma omp simd
         for (int j = 0; j < TED4_LANES; j++) {
@@ -237,7 +236,8 @@ static void sizes_backward(slot_state *s)
     for (int j = 0; j < 6 * TED4_LANES; j++) {
         const float slope = size[j] * TED4_LN2;
 
-        d[j] = linear ? ted4_inward(l[j], TED4_SHORT, INFINITY, s->d_size[j]) : s->d_size[j] * slope;
+        d[j] = linear ? ted4_inward(l[j], TED4_SHORT, INFINITY, s->d_size[j])
+                      : s->d_size[j] * slope;
     }
 }
 
@@ -308,11 +308,9 @@ void TED4_LEVELED(ted4_gen_backward)(void *arg, size_t chunk)
         const size_t to = first + n * (i + 1) / n_groups;
 
         for (size_t slot = from; slot < to; slot++)
-            backward_slot(t, slot, d + (slot - from) * g->d_slot,
-                          d + TED4_GEN_GROUP * g->d_slot);
+            backward_slot(t, slot, d + (slot - from) * g->d_slot, d + TED4_GEN_GROUP * g->d_slot);
         for (int net = 0; net < TED4_NETS_R; net++)
-            ted4_gen_chain_weights(g, &g->chain[net], ted4_gen_slot(g, from), d,
-                                   to - from, grad);
+            ted4_gen_chain_weights(g, &g->chain[net], ted4_gen_slot(g, from), d, to - from, grad);
     }
 }
 

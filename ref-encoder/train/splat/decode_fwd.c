@@ -1,5 +1,5 @@
 /* decode_fwd.c - anchors to Gaussians at a time and camera centre, a slot at a time (spec 11.1 to
- * 11.5, in normalised space), with the masks of training. The adjoint is generate_bwd.c.
+ * 11.5, in normalised space), with the masks of training. The adjoint is decode_bwd.c.
  * SPDX-License-Identifier: BSD-2-Clause */
 #include "decode_lanes.h"
 
@@ -158,8 +158,8 @@ static void emit_rotation(const float *q, float *const *out)
 }
 
 /* The Gaussians of offset k of a slot. position: of the moved anchors. */
-static void emit(const ted4_generator *g, float *planes, const float *position,
-                 const int32_t *on, int k, float *const *out)
+static void emit(const ted4_generator *g, float *planes, const float *position, const int32_t *on,
+                 int k, float *const *out)
 {
     const float *size = ted4_gen_plane(planes, g->plane.size);
     const float *offset = ted4_gen_channel(g, planes, g->layout.first[TED4_OFFSET] + 3 * k);

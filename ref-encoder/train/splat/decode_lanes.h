@@ -8,7 +8,7 @@
 #include "decode_state.h"
 #include "train/math/lane_math.h"
 
-/* generate_chain.c: a file calls the copy of its own level. */
+/* chain.c: a file calls the copy of its own level. */
 #define ted4_gen_chain_forward  TED4_LEVELED(ted4_gen_chain_forward)
 #define ted4_gen_chain_backward TED4_LEVELED(ted4_gen_chain_backward)
 #define ted4_gen_chain_weights  TED4_LEVELED(ted4_gen_chain_weights)

@@ -1,5 +1,5 @@
 /* effective.c - the first layer of F_deform with all that is the same for all anchors at
- * one time multiplied in, and its adjoint: generate_motion.c says what from.
+ * one time multiplied in, and its adjoint: motion.c says what from.
  * SPDX-License-Identifier: BSD-2-Clause */
 #include "decode_state.h"
 
@@ -48,8 +48,8 @@ static void make_from_constants(ted4_gen_motion *m, const float *w)
 /* Adjoint of make_from_bank: with E the effective weights, e the bias,
  *     r_oc = sum_i dE_oi P_ci + de_o p_c,  dW_oc = z_c r_oc,  dz_c = sum_o W_oc r_oc,
  *     dP_ci = z_c sum_o W_oc dE_oi,  dp_c = z_c sum_o W_oc de_o. */
-static void bank_backward(ted4_gen_motion *m, const float *w, const float *p,
-                          float *d_w, float *d_p)
+static void bank_backward(ted4_gen_motion *m, const float *w, const float *p, float *d_w,
+                          float *d_p)
 {
     const size_t in = (size_t)m->in, n_time = (size_t)m->n_time;
     const float *b_project = p + n_time * in, *d_b = m->d_w + (size_t)m->width * in;
@@ -87,7 +87,8 @@ static void constants_backward(ted4_gen_motion *m, const float *w, float *d_w)
     }
 }
 
-void TED4_LEVELED(ted4_gen_make_effective)(ted4_gen_motion *m, int is_bank, const float *w, const float *p)
+void TED4_LEVELED(ted4_gen_make_effective)(ted4_gen_motion *m, int is_bank, const float *w,
+                                           const float *p)
 {
     if (is_bank)
         make_from_bank(m, w, p);

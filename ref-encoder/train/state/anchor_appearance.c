@@ -1,4 +1,5 @@
-/* anchor_appearance.c - what all anchors look like now, one number each: for what is decided about an anchor apart from any one picture. See trainer.h.
+/* anchor_appearance.c - what all anchors look like now, one number each: for what is decided about
+ * an anchor apart from any one picture. See trainer.h.
  * SPDX-License-Identifier: BSD-2-Clause */
 #include <math.h>
 
@@ -11,7 +12,7 @@ enum { DIRECTIONS = 8 };
 /* All anchors at time 0, without activation, from the camera of that picture. */
 static int generate_all(ted4_trainer *t, uint32_t item, ted4_splats *s)
 {
-    ted4_view           v;
+    ted4_view v;
     ted4_generate_input in = { &t->layout, t->net, 0, NULL, NULL, NULL, 0, 1, { 0 }, 0 };
 
     if (ted4_slots_fill(t, NULL) != 0)
@@ -24,14 +25,16 @@ static int generate_all(ted4_trainer *t, uint32_t item, ted4_splats *s)
     in.lanes = t->slots.lanes;
     ted4_generator_pack(t->generator, t->net);
     return ted4_generate(t->generator, &in, t->parallel, s) != 0
-               ? ted4_trainer_fail(t, "no memory to look at anchors") : 0;
+               ? ted4_trainer_fail(t, "no memory to look at anchors")
+               : 0;
 }
 
-/* One look, which counts for an anchor that is more opaque in it than in those before; first: there are none before. */
+/* One look, which counts for an anchor that is more opaque in it than in those before; first: there
+ * are none before. */
 static int look(ted4_trainer *t, uint32_t item, int first, float *opacity, float *rgb)
 {
     const size_t K = t->layout.head.n_offsets;
-    ted4_splats  s;
+    ted4_splats s;
 
     if (generate_all(t, item, &s) != 0)
         return -1;
@@ -40,7 +43,7 @@ static int look(ted4_trainer *t, uint32_t item, int first, float *opacity, float
 
         for (size_t k = 0; k < K; k++) {
             const size_t at = (i / TED4_LANES * K + k) * TED4_LANES + i % TED4_LANES;
-            const float  o = fmaxf(s.opacity[at], 0.0f);
+            const float o = fmaxf(s.opacity[at], 0.0f);
 
             sum += o;
             for (int c = 0; c < 3; c++)

@@ -68,7 +68,7 @@ static int make_images(ted4_trainer *t)
 
     for (size_t i = 0; i < t->data->n_pictures; i++) {
         const ted4_camera *c = &t->data->pictures[i].camera;
-        const size_t       n = (size_t)c->width * (size_t)c->height;
+        const size_t n = (size_t)c->width * (size_t)c->height;
 
         pixels = n > pixels ? n : pixels;
     }
@@ -89,7 +89,9 @@ static int begin(ted4_trainer *t, const ted4_header *h)
     const char *wrong = ted4_header_wrong(h);
 
     if (wrong != NULL)
-        return ted4_trainer_fail(t, "no file can hold this scene with these options: %s is beyond its range in a header", wrong);
+        return ted4_trainer_fail(
+            t, "no file can hold this scene with these options: %s is beyond its range in a header",
+            wrong);
     ted4_layout_make(&t->layout, h);
     t->charged = t->layout.head;
     ted4_grid_full(t->bits);
@@ -123,10 +125,10 @@ int ted4_trainer_init(ted4_trainer *t, const ted4_train_options *o, ted4_dataset
 int ted4_trainer_restart(ted4_trainer *t, const ted4_header *h)
 {
     const ted4_train_options opt = t->opt;
-    ted4_dataset            *data = t->data;
-    const ted4_parallel     *parallel = t->parallel;
-    const double             seconds = t->seconds;
-    const ted4_onlooker      onlooker = t->onlooker;
+    ted4_dataset *data = t->data;
+    const ted4_parallel *parallel = t->parallel;
+    const double seconds = t->seconds;
+    const ted4_onlooker onlooker = t->onlooker;
 
     ted4_trainer_finish(t);
     t->opt = opt;
@@ -183,7 +185,7 @@ int ted4_trainer_told(ted4_trainer *t, double spent)
 double ted4_trainer_charged(const ted4_trainer *t)
 {
     ted4_shape s;
-    double     sum = 0;
+    double sum = 0;
 
     ted4_shape_make(&s, &t->charged);
     for (int y = 0; y < TED4_TYPES; y++)
@@ -213,11 +215,13 @@ int ted4_trainer_check(ted4_trainer *t, int anchors)
 
     if (!all_finite(t->net, t->layout.n_net))
         return ted4_trainer_fail(t, "a network weight is not finite at step %llu", now);
-    if (anchors &&
-        !all_finite(t->anchors.data[TED4_ROW_VALUE],
-                    t->anchors.n_blocks * (size_t)t->layout.n_channels * TED4_LANES))
+    if (anchors && !all_finite(t->anchors.data[TED4_ROW_VALUE],
+                               t->anchors.n_blocks * (size_t)t->layout.n_channels * TED4_LANES))
         return ted4_trainer_fail(t, "an anchor's value is not finite at step %llu", now);
-    if (anchors && !all_finite(t->anchors.data[TED4_ROW_POSITION], t->anchors.n_blocks * (size_t)3 * TED4_LANES))
+    if (anchors && !all_finite(t->anchors.data[TED4_ROW_POSITION],
+                               t->anchors.n_blocks * (size_t)3 * TED4_LANES))
         return ted4_trainer_fail(t, "an anchor's position is not finite at step %llu", now);
-    return ted4_colour_finite(&t->colour) ? 0 : ted4_trainer_fail(t, "a colour map is not finite at step %llu", now);
+    return ted4_colour_finite(&t->colour)
+               ? 0
+               : ted4_trainer_fail(t, "a colour map is not finite at step %llu", now);
 }

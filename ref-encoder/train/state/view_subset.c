@@ -8,10 +8,10 @@
 
 /* Training pictures by frame. */
 typedef struct {
-    size_t    frames;
-    uint32_t *first;            /* [frames + 1] of a frame's pictures in item */
-    uint32_t *item;             /* numbers in the data set */
-    uint32_t *turn;             /* [frames] frames in the order drawn */
+    size_t frames;
+    uint32_t *first; /* [frames + 1] of a frame's pictures in item */
+    uint32_t *item;  /* numbers in the data set */
+    uint32_t *turn;  /* [frames] frames in the order drawn */
 } by_frame;
 
 static void count_frames(const ted4_dataset *d, uint32_t *first, size_t frames)
@@ -48,10 +48,11 @@ size_t ted4_judges_frames(const ted4_trainer *t)
 int ted4_judges_choose(ted4_trainer *t, uint64_t key, size_t n, uint32_t *item)
 {
     const size_t frames = ted4_judges_frames(t);
-    by_frame     b = { frames, malloc((frames + 1) * sizeof *b.first), malloc((t->data->n_pictures + 1) * sizeof *b.item),
-                       malloc(frames * sizeof *b.turn) };
-    const int    bad = b.first == NULL || b.item == NULL || b.turn == NULL;
-    size_t       chosen = 0;
+    by_frame b = { frames, malloc((frames + 1) * sizeof *b.first),
+                   malloc((t->data->n_pictures + 1) * sizeof *b.item),
+                   malloc(frames * sizeof *b.turn) };
+    const int bad = b.first == NULL || b.item == NULL || b.turn == NULL;
+    size_t chosen = 0;
 
     if (!bad)
         sort_frames(t->data, key, &b);

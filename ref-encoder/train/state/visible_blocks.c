@@ -8,8 +8,9 @@
 #include "recon/strict.h"
 #include "trainer.h"
 
-/* An anchor counts as a ball of three of its offset scales, and as visible when the ball touches the guarded frustum. Where things move the canonical
- * place says little, so a tenth of the scene's half-size is added. */
+/* An anchor counts as a ball of three of its offset scales, and as visible when the ball touches
+ * the guarded frustum. Where things move the canonical place says little, so a tenth of the scene's
+ * half-size is added. */
 #define SCALES_OF_BALL  3.0f
 #define ROOM_FOR_MOTION 0.1f
 
@@ -19,14 +20,14 @@ uint32_t ted4_block_visible(const ted4_trainer *t, size_t block, const ted4_view
     const float *p = ted4_block(&t->anchors, TED4_ROW_POSITION, block);
     const float *s = ted4_block(&t->anchors, TED4_ROW_VALUE, block) +
                      l->first[TED4_SCALING] * TED4_LANES;
-    const int    is_log2 = l->head.scale_domain == TED4_SCALE_LOG2;
-    const float  room = l->head.motion != TED4_MOTION_NONE ? ROOM_FOR_MOTION : 0.0f;
-    const float  left = TED4_RASTER_GUARD * v->cx / v->fx;
-    const float  right = TED4_RASTER_GUARD * ((float)v->width - v->cx) / v->fx;
-    const float  up = TED4_RASTER_GUARD * v->cy / v->fy;
-    const float  down = TED4_RASTER_GUARD * ((float)v->height - v->cy) / v->fy;
-    float        widest[TED4_LANES];
-    uint32_t     seen = 0;
+    const int is_log2 = l->head.scale_domain == TED4_SCALE_LOG2;
+    const float room = l->head.motion != TED4_MOTION_NONE ? ROOM_FOR_MOTION : 0.0f;
+    const float left = TED4_RASTER_GUARD * v->cx / v->fx;
+    const float right = TED4_RASTER_GUARD * ((float)v->width - v->cx) / v->fx;
+    const float up = TED4_RASTER_GUARD * v->cy / v->fy;
+    const float down = TED4_RASTER_GUARD * ((float)v->height - v->cy) / v->fy;
+    float widest[TED4_LANES];
+    uint32_t seen = 0;
 
 #pragma omp simd
     for (int j = 0; j < TED4_LANES; j++) {
@@ -52,7 +53,7 @@ uint32_t ted4_block_visible(const ted4_trainer *t, size_t block, const ted4_view
 
 static int reserve(ted4_trainer *t, size_t n)
 {
-    ted4_slots  *s = &t->slots;
+    ted4_slots *s = &t->slots;
     const size_t floats = (size_t)t->layout.n_channels * TED4_LANES;
 
     if (n <= s->capacity)
@@ -70,8 +71,8 @@ static int reserve(ted4_trainer *t, size_t n)
     s->quantised = aligned_alloc(64, n * floats * sizeof(float));
     s->gradients = aligned_alloc(64, n * floats * sizeof(float));
     s->squares = malloc(n * (TED4_SLOT_TERMS + 1) * sizeof *s->squares);
-    if (s->block == NULL || s->lanes == NULL || s->drawn == NULL || s->position == NULL || s->raw == NULL ||
-        s->used == NULL || s->gradient == NULL || s->steps == NULL ||
+    if (s->block == NULL || s->lanes == NULL || s->drawn == NULL || s->position == NULL ||
+        s->raw == NULL || s->used == NULL || s->gradient == NULL || s->steps == NULL ||
         s->quantised == NULL || s->gradients == NULL || s->squares == NULL)
         return ted4_trainer_fail(t, "no memory for %zu blocks", n);
     s->capacity = n;
@@ -99,15 +100,15 @@ enum { LOOKED_AT = 8 };
 
 typedef struct {
     const ted4_trainer *t;
-    const ted4_view    *v;
-    uint32_t           *lanes;  /* [n_blocks] */
+    const ted4_view *v;
+    uint32_t *lanes; /* [n_blocks] */
 } visible_job;
 
 static void look_at_blocks(void *arg, size_t i)
 {
-    const visible_job  *j = arg;
+    const visible_job *j = arg;
     const ted4_anchors *a = &j->t->anchors;
-    const size_t        end = (i + 1) * LOOKED_AT < a->n_blocks ? (i + 1) * LOOKED_AT : a->n_blocks;
+    const size_t end = (i + 1) * LOOKED_AT < a->n_blocks ? (i + 1) * LOOKED_AT : a->n_blocks;
 
     for (size_t b = i * LOOKED_AT; b < end; b++)
         j->lanes[b] = j->v != NULL ? ted4_block_visible(j->t, b, j->v) : ted4_block_lanes(a, b);
@@ -116,7 +117,7 @@ static void look_at_blocks(void *arg, size_t i)
 /* v NULL: every block. */
 int ted4_slots_fill(ted4_trainer *t, const ted4_view *v)
 {
-    ted4_slots  *s = &t->slots;
+    ted4_slots *s = &t->slots;
     const size_t floats = (size_t)t->layout.n_channels * TED4_LANES;
 
     if (reserve(t, t->anchors.n_blocks) != 0)
@@ -131,7 +132,7 @@ int ted4_slots_fill(ted4_trainer *t, const ted4_view *v)
     s->n = 0;
     for (size_t b = 0; b < t->anchors.n_blocks; b++) {
         const uint32_t lanes = s->lanes[b];
-        const size_t   i = s->n;
+        const size_t i = s->n;
 
         if (lanes == 0)
             continue;
@@ -150,15 +151,15 @@ int ted4_slots_fill(ted4_trainer *t, const ted4_view *v)
 
 typedef struct {
     const ted4_trainer *t;
-    uint64_t            key;
-    ted4_quant          quant;
+    uint64_t key;
+    ted4_quant quant;
 } quantise_job;
 
 static void quantise_slot(void *arg, size_t i)
 {
     const quantise_job *j = arg;
-    const ted4_slots   *s = &j->t->slots;
-    const size_t        floats = (size_t)j->t->layout.n_channels * TED4_LANES;
+    const ted4_slots *s = &j->t->slots;
+    const size_t floats = (size_t)j->t->layout.n_channels * TED4_LANES;
 
     ted4_quantise(&j->t->layout, j->quant, s->raw[i], s->steps[i], s->block[i], j->key,
                   s->quantised + i * floats);

@@ -1,5 +1,5 @@
-/* apply_gradients.c - what is added to the gradients of a picture (volume, bank, masks, rate), and the optimiser's step. See trainer.h.
- * Source: paper, "Training Objectives"; annex D.1.
+/* apply_gradients.c - what is added to the gradients of a picture (volume, bank, masks, rate), and
+ * the optimiser's step. See trainer.h. Source: paper, "Training Objectives"; annex D.1.
  * SPDX-License-Identifier: BSD-2-Clause */
 #include <math.h>
 
@@ -16,10 +16,10 @@ enum { PARTS = 64, COLUMNS = 16 };
 
 typedef struct {
     const ted4_splat_grads *g;
-    const ted4_splats      *s;
-    float                   weight;     /* of the volume of one */
-    size_t                  visible[PARTS], drawn[PARTS];
-    double                  squares[PARTS];     /* of the gradients of centres */
+    const ted4_splats *s;
+    float weight; /* of the volume of one */
+    size_t visible[PARTS], drawn[PARTS];
+    double squares[PARTS]; /* of the gradients of centres */
 } screen_job;
 
 static size_t first_of(const screen_job *j, size_t part)
@@ -31,9 +31,9 @@ static size_t first_of(const screen_job *j, size_t part)
 
 static void count_part(void *arg, size_t part)
 {
-    screen_job  *j = arg;
+    screen_job *j = arg;
     const size_t first = first_of(j, part), n = first_of(j, part + 1) - first;
-    unsigned     visible = 0;
+    unsigned visible = 0;
 
 #pragma omp simd reduction(+ : visible)
     for (size_t i = first; i < first + n; i++)
@@ -46,11 +46,11 @@ static void count_part(void *arg, size_t part)
 
 static void volume_part(void *arg, size_t part)
 {
-    screen_job             *j = arg;
+    screen_job *j = arg;
     const ted4_splat_grads *g = j->g;
-    const ted4_splats      *s = j->s;
-    const size_t            end = first_of(j, part + 1);
-    unsigned                drawn = 0;
+    const ted4_splats *s = j->s;
+    const size_t end = first_of(j, part + 1);
+    unsigned drawn = 0;
 
 #pragma omp simd reduction(+ : drawn)
     for (size_t i = first_of(j, part); i < end; i++) {
@@ -60,8 +60,8 @@ static void volume_part(void *arg, size_t part)
         g->scale[0][i] += on * b * c;
         g->scale[1][i] += on * a * c;
         g->scale[2][i] += on * a * b;
-        drawn += a >= TED4_NO_EXTENT || b >= TED4_NO_EXTENT || c >= TED4_NO_EXTENT
-                     ? g->visible[i] : 0u;
+        drawn += a >= TED4_NO_EXTENT || b >= TED4_NO_EXTENT || c >= TED4_NO_EXTENT ? g->visible[i]
+                                                                                   : 0u;
     }
     j->drawn[part] = drawn;
 }
@@ -69,8 +69,8 @@ static void volume_part(void *arg, size_t part)
 size_t ted4_update_volume(ted4_trainer *t, const ted4_splats *s)
 {
     screen_job j = { .g = &t->splat_gradient, .s = s };
-    size_t     n = 0, drawn = 0;
-    double     squares = 0;
+    size_t n = 0, drawn = 0;
+    double squares = 0;
 
     ted4_parallel_for(t->parallel, PARTS, count_part, &j);
     for (int part = 0; part < PARTS; part++) {
@@ -89,9 +89,9 @@ size_t ted4_update_volume(ted4_trainer *t, const ted4_splats *s)
 void ted4_update_bank(ted4_trainer *t)
 {
     const ted4_header *h = &t->layout.head;
-    const size_t       D = h->bank_dim, M = h->bank_rows;
-    const float       *z = t->net + t->layout.bank;
-    float             *d = t->net_gradient + t->layout.bank;
+    const size_t D = h->bank_dim, M = h->bank_rows;
+    const float *z = t->net + t->layout.bank;
+    float *d = t->net_gradient + t->layout.bank;
 
     if (M < 3)
         return;
@@ -115,12 +115,12 @@ enum { MAX_CHANNELS = TED4_MAX_FEATURE + 6 + 4 * TED4_MAX_OFFSETS + TED4_MAX_PHI
 enum { NET_PIECE = 2048 };
 
 typedef struct {
-    ted4_trainer  *t;
-    float          rate[MAX_CHANNELS];
+    ted4_trainer *t;
+    float rate[MAX_CHANNELS];
     ted4_adam_bias bias;
-    float          mask_weight, temporal_weight;
+    float mask_weight, temporal_weight;
     ted4_net_range range[TED4_NET_RANGES];
-    size_t         n_pieces;    /* of all ranges; the first jobs, slots come after them */
+    size_t n_pieces; /* of all ranges; the first jobs, slots come after them */
 } update_job;
 
 /* d sigmoid(logit) times weight, for the anchors of the slot. */
@@ -129,8 +129,8 @@ static void add_mask_loss(const update_job *j, size_t i, int channel, int n, flo
     const ted4_slots *s = &j->t->slots;
 
     for (int c = channel; c < channel + n; c++) {
-        const float   *x = s->raw[i] + c * TED4_LANES;
-        float         *d = s->gradient[i] + c * TED4_LANES;
+        const float *x = s->raw[i] + c * TED4_LANES;
+        float *d = s->gradient[i] + c * TED4_LANES;
         const uint32_t lanes = s->lanes[i];
 
 #pragma omp simd
@@ -145,8 +145,8 @@ static void add_mask_loss(const update_job *j, size_t i, int channel, int n, flo
 
 static void update_slot(const update_job *j, size_t i)
 {
-    ted4_trainer      *t = j->t;
-    const ted4_slots  *s = &t->slots;
+    ted4_trainer *t = j->t;
+    const ted4_slots *s = &t->slots;
     const ted4_layout *l = &t->layout;
     float *x = ted4_block(&t->anchors, TED4_ROW_VALUE, s->block[i]);
     float *m = ted4_block(&t->anchors, TED4_ROW_M, s->block[i]);
@@ -161,8 +161,7 @@ static void update_slot(const update_job *j, size_t i)
         const size_t at = (size_t)c * TED4_LANES;
 
         if (j->rate[c] > 0)
-            ted4_adam(x + at, m + at, v + at, s->gradient[i] + at, TED4_LANES, j->rate[c],
-                      j->bias);
+            ted4_adam(x + at, m + at, v + at, s->gradient[i] + at, TED4_LANES, j->rate[c], j->bias);
     }
 }
 
@@ -173,7 +172,7 @@ static size_t pieces_of(const ted4_net_range *r)
 
 static void update_piece(const update_job *j, size_t piece)
 {
-    const ted4_trainer   *t = j->t;
+    const ted4_trainer *t = j->t;
     const ted4_net_range *r = j->range;
 
     for (; piece >= pieces_of(r); r++)
@@ -198,9 +197,9 @@ static void update_item(void *arg, size_t i)
 void ted4_update_parameters(ted4_trainer *t)
 {
     const ted4_header *h = &t->layout.head;
-    const uint64_t     count = t->iteration - (t->stage2 ? t->stage2_start : 0) + 1;
-    const double       n = (double)t->anchors.n;
-    update_job         j = { .t = t, .bias = ted4_adam_bias_make(count) };
+    const uint64_t count = t->iteration - (t->stage2 ? t->stage2_start : 0) + 1;
+    const double n = (double)t->anchors.n;
+    update_job j = { .t = t, .bias = ted4_adam_bias_make(count) };
 
     ted4_schedule_rates(t, j.rate);
     if (t->stage2 && h->offset_mask)
@@ -212,12 +211,13 @@ void ted4_update_parameters(ted4_trainer *t)
     ted4_parallel_for(t->parallel, j.n_pieces + t->slots.n, update_item, &j);
 }
 
-/* A partial shuffle: after m swaps the first m slots are a uniform choice; the order of the others does not matter. */
+/* A partial shuffle: after m swaps the first m slots are a uniform choice; the order of the others
+ * does not matter. */
 static void swap_slots(ted4_slots *s, size_t i, size_t k)
 {
     const uint32_t block = s->block[i], lanes = s->lanes[i], drawn = s->drawn[i];
-    const float   *position = s->position[i], *raw = s->raw[i], *used = s->used[i];
-    float         *gradient = s->gradient[i], *steps = s->steps[i];
+    const float *position = s->position[i], *raw = s->raw[i], *used = s->used[i];
+    float *gradient = s->gradient[i], *steps = s->steps[i];
 
     s->block[i] = s->block[k];
     s->lanes[i] = s->lanes[k];
@@ -239,11 +239,11 @@ static void swap_slots(ted4_slots *s, size_t i, size_t k)
 
 int ted4_update_rate(ted4_trainer *t, uint64_t key)
 {
-    ted4_slots  *s = &t->slots;
+    ted4_slots *s = &t->slots;
     const size_t want = (size_t)ceil(t->opt.rate_share * (double)s->n);
     const size_t m = want < s->n ? want : s->n;
     const double params = ted4_trainer_charged(t);
-    double       bits[TED4_TYPES], chosen = 0;
+    double bits[TED4_TYPES], chosen = 0;
 
     for (size_t i = 0; i < m; i++)
         swap_slots(s, i, i + ted4_below(key, i, (uint32_t)(s->n - i)));
@@ -251,12 +251,19 @@ int ted4_update_rate(ted4_trainer *t, uint64_t key)
         for (uint32_t x = s->lanes[i]; x != 0; x &= x - 1)
             chosen += 1;
 
-    ted4_rate_input in = {
-        &t->layout, t->net, t->shift, m, s->raw, s->position, s->lanes, s->block, key,
-        t->integer ? TED4_QUANT_INTEGER : TED4_QUANT_NOISE,
-        (float)(t->opt.lambda / (fmax(chosen, 1) * params)), (float)((double)s->n / (double)m),
-        t->layout.head.activation
-    };
+    ted4_rate_input in = { &t->layout,
+                           t->net,
+                           t->shift,
+                           m,
+                           s->raw,
+                           s->position,
+                           s->lanes,
+                           s->block,
+                           key,
+                           t->integer ? TED4_QUANT_INTEGER : TED4_QUANT_NOISE,
+                           (float)(t->opt.lambda / (fmax(chosen, 1) * params)),
+                           (float)((double)s->n / (double)m),
+                           t->layout.head.activation };
 
     if (!t->integer)
         ted4_rate_pack(t->rate, t->net);

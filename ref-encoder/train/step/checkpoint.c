@@ -1,4 +1,5 @@
-/* checkpoint.c - see checkpoint.h. Native byte order: a checkpoint stays on the machine that made it.
+/* checkpoint.c - see checkpoint.h. Native byte order: a checkpoint stays on the machine that made
+ * it.
  * SPDX-License-Identifier: BSD-2-Clause */
 #include "train/search/model_search.h"
 #include "train/math/voxel_set.h"
@@ -11,7 +12,7 @@
 #include <unistd.h>
 #include <xxhash.h>
 
-#define MAGIC 0x34444554u       /* "TED4" */
+#define MAGIC 0x34444554u /* "TED4" */
 enum { FORMAT = 8 };
 
 /* One walk for both directions: put() writes or reads the bytes at p. whole: with the watch's
@@ -19,12 +20,12 @@ enum { FORMAT = 8 };
  * only where these fill it. Snapshots are taken and restored by one thread, often, while all
  * others wait: these go to memory and come from there directly, without a FILE in between. */
 typedef struct {
-    FILE          *file;        /* NULL: memory */
+    FILE *file; /* NULL: memory */
     ted4_snapshot *memory;
-    size_t         at, room;    /* in memory: what is read next; when writing, room in bytes */
-    int            writing, whole, failed;
-    XXH3_state_t  *hash;
-    uint64_t       left;
+    size_t at, room; /* in memory: what is read next; when writing, room in bytes */
+    int writing, whole, failed;
+    XXH3_state_t *hash;
+    uint64_t left;
 } stream;
 
 /* 0, or -1: no memory. */
@@ -34,7 +35,7 @@ static int append(stream *s, const void *p, size_t size)
 
     if (size > s->room - m->size) {
         const size_t room = 2 * s->room > m->size + size ? 2 * s->room : m->size + size;
-        char        *bytes = realloc(m->bytes, room);
+        char *bytes = realloc(m->bytes, room);
 
         if (bytes == NULL)
             return -1;
@@ -87,10 +88,12 @@ static void expect_number(stream *s, ted4_trainer *t, uint64_t value, const char
 
     put(s, &x, sizeof x);
     if (!s->failed && x != value)
-        s->failed = ted4_trainer_fail(t, "it is of %llu %s, and there are %llu", (unsigned long long)x, what, (unsigned long long)value) != 0;
+        s->failed = ted4_trainer_fail(t, "it is of %llu %s, and there are %llu",
+                                      (unsigned long long)x, what, (unsigned long long)value) != 0;
 }
 
-/* Options themselves, with the seed as the first: the message names one that differs. Those that only stage 2 looks at may, before it begins. */
+/* Options themselves, with the seed as the first: the message names one that differs. Those that
+ * only stage 2 looks at may, before it begins. */
 static void walk_options(stream *s, ted4_trainer *t)
 {
     double value[1 + TED4_OPTIONS], mine[1 + TED4_OPTIONS];
@@ -102,14 +105,17 @@ static void walk_options(stream *s, ted4_trainer *t)
     put(s, value, sizeof value);
     for (int i = 0; !s->failed && i <= TED4_OPTIONS; i++)
         if (value[i] != mine[i] && (i == 0 || ted4_options_stage(i - 1) <= (t->stage2 ? 2 : 1)))
-            s->failed = ted4_trainer_fail(t, "its %s is %g, and %g is asked for", i == 0 ? "seed" : ted4_options_name(i - 1), value[i], mine[i]) != 0;
+            s->failed = ted4_trainer_fail(t, "its %s is %g, and %g is asked for",
+                                          i == 0 ? "seed" : ted4_options_name(i - 1), value[i],
+                                          mine[i]) != 0;
 }
 
-/* Positions of anchors never leave the cube (seed.h, densify.c, sprout.h), and the fixed-point inputs of networks are made from them without another look. */
+/* Positions of anchors never leave the cube (init.h, densify.c, mv_seed.h), and the fixed-point
+ * inputs of networks are made from them without another look. */
 static int inside_cube(const ted4_anchors *a)
 {
     const float *p = a->data[TED4_ROW_POSITION];
-    int          inside = 1;
+    int inside = 1;
 
     for (size_t i = 0; i < a->n_blocks * 3 * TED4_LANES; i++)
         inside &= p[i] >= -1.0f && p[i] <= 1.0f;
@@ -138,19 +144,21 @@ static void walk_anchors(stream *s, ted4_trainer *t)
         return;
     }
     for (int k = 0; k < TED4_ROWS; k++)
-        put(s, t->anchors.data[k], t->anchors.n_blocks * (size_t)t->anchors.rows[k] *
-                                       TED4_LANES * sizeof(float));
+        put(s, t->anchors.data[k],
+            t->anchors.n_blocks * (size_t)t->anchors.rows[k] * TED4_LANES * sizeof(float));
     s->failed |= !s->writing && !s->failed && !inside_cube(&t->anchors);
 }
 
-/* May trials of smaller models have made h of it (capacity.h)? Whatever they change is no more than it was, and valid. */
+/* May trials of smaller models have made h of it (model_search.h)? Whatever they change is no more
+ * than it was, and valid. */
 static void allow_smaller(ted4_header *want, const ted4_header *h)
 {
     want->n_offsets = h->n_offsets < want->n_offsets ? h->n_offsets : want->n_offsets;
     want->bank_rows = h->bank_rows < want->bank_rows ? h->bank_rows : want->bank_rows;
     want->bank_dim = h->bank_dim < want->bank_dim ? h->bank_dim : want->bank_dim;
     want->phi_dim = h->phi_dim < want->phi_dim ? h->phi_dim : want->phi_dim;
-    want->deform_width = h->deform_width < want->deform_width ? h->deform_width : want->deform_width;
+    want->deform_width = h->deform_width < want->deform_width ? h->deform_width
+                                                              : want->deform_width;
     want->view = h->view < want->view ? h->view : want->view;
     want->head_width = h->head_width < want->head_width ? h->head_width : want->head_width;
     want->pe_octaves = h->pe_octaves < want->pe_octaves ? h->pe_octaves : want->pe_octaves;
@@ -164,8 +172,9 @@ static void allow_smaller(ted4_header *want, const ted4_header *h)
     memcpy(want->slice, h->slice, sizeof want->slice);
 }
 
-/* Is h the header that this run began with, but for what stages change: motion and activation may have gone, scalings may be linear, and the
- * context bits are chosen? A hash finds damage, not this. */
+/* Is h the header that this run began with, but for what stages change: motion and activation may
+ * have gone, scalings may be linear, and the context bits are chosen? A hash finds damage, not
+ * this. */
 static int header_belongs(const ted4_header *began, const ted4_header *h, int decided)
 {
     ted4_header want = *began;
@@ -199,8 +208,8 @@ static int begin_layout(ted4_trainer *t, const ted4_header *h)
     return ted4_anchors_init(&t->anchors, &t->layout) != 0 || ted4_trainer_rebuild(t) != 0 ? -1 : 0;
 }
 
-/* The header tells the layout, which may have lost parts since the trainer was made. Within stage 1 what stage 2 alone looks at
- * is not taken from the file. */
+/* The header tells the layout, which may have lost parts since the trainer was made. Within stage 1
+ * what stage 2 alone looks at is not taken from the file. */
 static void walk_layout(stream *s, ted4_trainer *t)
 {
     ted4_header h = t->layout.head, began;
@@ -219,7 +228,7 @@ static void walk_layout(stream *s, ted4_trainer *t)
 static void walk_networks(stream *s, ted4_trainer *t)
 {
     const size_t n = t->stage2 ? t->layout.n_net : t->layout.nete;
-    uint8_t      has_shift = t->shift != NULL;
+    uint8_t has_shift = t->shift != NULL;
 
     put(s, t->net, n * sizeof *t->net);
     put(s, t->net_m, n * sizeof *t->net_m);
@@ -239,8 +248,8 @@ static void walk_networks(stream *s, ted4_trainer *t)
 static int order_is_whole(const ted4_trainer *t)
 {
     const ted4_order *o = &t->order;
-    uint8_t          *seen = calloc(t->data->n_pictures + 1, 1);
-    int               whole = seen != NULL && o->next <= o->n;
+    uint8_t *seen = calloc(t->data->n_pictures + 1, 1);
+    int whole = seen != NULL && o->next <= o->n;
 
     for (uint32_t i = 0; whole && i < o->n; i++) {
         const uint32_t p = o->item[i];
@@ -256,19 +265,23 @@ static int order_is_whole(const ted4_trainer *t)
 /* Numbers that steer what happens next. */
 static int numbers_are_possible(const ted4_trainer *t)
 {
-    return (t->stage2 == 0 || t->stage2 == 1) && (t->integer == 0 || t->integer == 1) && t->integer <= t->stage2
-        && t->iteration <= ted4_trainer_total(t) && t->stage2_start <= t->iteration && t->cell >= TED4_FINEST_CELL && t->cell <= 1e30
-        && t->decided >= TED4_DECIDED_NOTHING && t->decided <= TED4_DECIDED_ALL && t->watch.state.factor > 0 && t->watch.state.factor <= 1 && t->watch.state.rollbacks <= TED4_ROLLBACKS;
+    return (t->stage2 == 0 || t->stage2 == 1) && (t->integer == 0 || t->integer == 1) &&
+           t->integer <= t->stage2 && t->iteration <= ted4_trainer_total(t) &&
+           t->stage2_start <= t->iteration && t->cell >= TED4_FINEST_CELL && t->cell <= 1e30 &&
+           t->decided >= TED4_DECIDED_NOTHING && t->decided <= TED4_DECIDED_ALL &&
+           t->watch.state.factor > 0 && t->watch.state.factor <= 1 &&
+           t->watch.state.rollbacks <= TED4_ROLLBACKS;
 }
 
-/* The last good state, itself a file of this kind, looked at when it is needed. None is written where the next step replaces it, or there is none. Room grows
- * with what is read: the size alone is not believed. */
+/* The last good state, itself a file of this kind, looked at when it is needed. None is written
+ * where the next step replaces it, or there is none. Room grows with what is read: the size alone
+ * is not believed. */
 static void walk_good(stream *s, ted4_trainer *t)
 {
     enum { PIECE = 1 << 20 };
-    ted4_watch   *w = &t->watch;
-    const int     none = w->good.bytes == NULL || ted4_watch_due(t);
-    uint64_t      size = s->writing && !none ? w->good.size : 0;
+    ted4_watch *w = &t->watch;
+    const int none = w->good.bytes == NULL || ted4_watch_due(t);
+    uint64_t size = s->writing && !none ? w->good.size : 0;
 
     put(s, &size, sizeof size);
     put(s, &w->good_at, sizeof w->good_at);
@@ -279,7 +292,7 @@ static void walk_good(stream *s, ted4_trainer *t)
     ted4_watch_forget(t);
     while (!s->failed && w->good.size < size) {
         const size_t n = size - w->good.size < PIECE ? (size_t)(size - w->good.size) : PIECE;
-        char        *bytes = realloc(w->good.bytes, w->good.size + n);
+        char *bytes = realloc(w->good.bytes, w->good.size + n);
 
         s->failed = bytes == NULL;
         if (s->failed)
@@ -292,11 +305,12 @@ static void walk_good(stream *s, ted4_trainer *t)
         ted4_watch_forget(t);
 }
 
-/* How the model came to be what it is. Before stage 2 there is nothing to tell; without trials the model is the one that stage 2 began with. */
+/* How the model came to be what it is. Before stage 2 there is nothing to tell; without trials the
+ * model is the one that stage 2 began with. */
 static void walk_capacity(stream *s, ted4_trainer *t)
 {
     enum { MOST = 4096 };
-    uint64_t    n = t->n_trials;
+    uint64_t n = t->n_trials;
     ted4_header began;
 
     if (!s->writing) {
@@ -344,7 +358,8 @@ static void expect_digest(stream *s, ted4_trainer *t)
 
     expect(s, ted4_dataset_digest(t->data));
     if (s->failed && !before)
-        ted4_trainer_fail(t, "it is of other pictures, cameras, points or background (--downscale, --black, another scene)");
+        ted4_trainer_fail(t, "it is of other pictures, cameras, points or background (--downscale, "
+                             "--black, another scene)");
 }
 
 static void walk(stream *s, ted4_trainer *t)
@@ -385,7 +400,7 @@ static void walk(stream *s, ted4_trainer *t)
 static int intact_memory(stream *s)
 {
     const ted4_snapshot *m = s->memory;
-    uint64_t             want;
+    uint64_t want;
 
     if (m->size < sizeof want)
         return 0;
@@ -399,9 +414,9 @@ static int intact_memory(stream *s)
  * believed. The file is at its start again afterwards. */
 static int intact_file(stream *s)
 {
-    uint8_t  bytes[1 << 14];
+    uint8_t bytes[1 << 14];
     uint64_t want;
-    long     left = fseek(s->file, 0, SEEK_END) == 0 ? ftell(s->file) - (long)sizeof want : -1;
+    long left = fseek(s->file, 0, SEEK_END) == 0 ? ftell(s->file) - (long)sizeof want : -1;
 
     if (left < 0 || fseek(s->file, 0, SEEK_SET) != 0)
         return 0;
@@ -432,7 +447,11 @@ static void walk_hash(stream *s)
 static int run(ted4_trainer *t, FILE *file, ted4_snapshot *memory, size_t room, int writing,
                int whole)
 {
-    stream s = { .file = file, .memory = memory, .room = room, .writing = writing, .whole = whole,
+    stream s = { .file = file,
+                 .memory = memory,
+                 .room = room,
+                 .writing = writing,
+                 .whole = whole,
                  .hash = XXH3_createState() };
 
     if (s.hash == NULL)
@@ -448,7 +467,7 @@ static int run(ted4_trainer *t, FILE *file, ted4_snapshot *memory, size_t room, 
 
 int ted4_checkpoint_save(ted4_trainer *t, const char *path)
 {
-    char  name[4096];
+    char name[4096];
     FILE *f;
 
     if (ted4_trainer_check(t, 1) != 0)
@@ -459,11 +478,12 @@ int ted4_checkpoint_save(ted4_trainer *t, const char *path)
     if (f == NULL)
         return ted4_trainer_fail(t, "%s: %s", name, strerror(errno));
 
-    /* errno is the first failure's: closing what could not be written fails again, with another reason. A state that no checkpoint may hold sets none. */
+    /* errno is the first failure's: closing what could not be written fails again, with another
+     * reason. A state that no checkpoint may hold sets none. */
     errno = 0;
 
     const int bad = run(t, f, NULL, 0, 1, 1) != 0 || fflush(f) != 0 || fsync(fileno(f)) != 0;
-    int       why = !bad ? 0 : errno != 0 ? errno : EIO;
+    int why = !bad ? 0 : errno != 0 ? errno : EIO;
 
     if (fclose(f) != 0 && !bad)
         why = errno;
@@ -483,7 +503,8 @@ static int load(ted4_trainer *t, FILE *f, ted4_snapshot *memory, const char *nam
     if (run(t, f, memory, 0, 0, whole) != 0) {
         const ted4_message m = t->message;
 
-        return ted4_trainer_fail(t, "%s: not a checkpoint of this scene with these options%s%.500s", name, m.text[0] != 0 ? ": " : "", m.text);
+        return ted4_trainer_fail(t, "%s: not a checkpoint of this scene with these options%s%.500s",
+                                 name, m.text[0] != 0 ? ": " : "", m.text);
     }
     t->message = before;
     if (t->integer)

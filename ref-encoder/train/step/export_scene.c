@@ -15,7 +15,7 @@
 uint16_t ted4_offset_bits(const ted4_trainer *t, size_t i)
 {
     const ted4_layout *l = &t->layout;
-    unsigned           bits = 0;
+    unsigned bits = 0;
 
     for (int k = 0; k < l->head.n_offsets; k++)
         if (!l->head.offset_mask ||
@@ -73,10 +73,10 @@ static void fill_symbols(const ted4_trainer *t, const uint32_t *keep, ted4_scene
             for (size_t i = 0; i < n; i++)
                 s->symbol[y][c * n + i] =
                     (int16_t)(is_coded(s, y, c, i)
-                        ? round_symbol(*ted4_cell(&t->anchors, TED4_ROW_VALUE, keep[i],
-                                                  t->layout.first[y] + (int)c),
-                                       step_of(s, y, i))
-                        : 0);
+                                  ? round_symbol(*ted4_cell(&t->anchors, TED4_ROW_VALUE, keep[i],
+                                                            t->layout.first[y] + (int)c),
+                                                 step_of(s, y, i))
+                                  : 0);
     /* R-ATT-001: the end is not before the start. */
     for (size_t i = 0; s->shape.dim[TED4_TAU] > 0 && i < n; i++)
         if (s->symbol[TED4_TAU][2 * n + i] < s->symbol[TED4_TAU][i])
@@ -123,7 +123,7 @@ static int settle(ted4_trainer *t)
 static void drop_idle_masks(ted4_scene *s)
 {
     const uint16_t all = (uint16_t)((1u << s->head.n_offsets) - 1);
-    int            still = 0, dropped = 0;
+    int still = 0, dropped = 0;
 
     for (size_t i = 0; i < s->head.n_anchors; i++) {
         still |= !s->dynamic[i];
@@ -137,8 +137,8 @@ static void drop_idle_masks(ted4_scene *s)
 int ted4_make_scene(ted4_trainer *t, ted4_scene **scene)
 {
     ted4_header h;
-    ted4_error  e = { TED4_OK, 0 };
-    uint32_t   *keep;
+    ted4_error e = { TED4_OK, 0 };
+    uint32_t *keep;
 
     *scene = NULL;
     if (ted4_trainer_check(t, 1) != 0 || settle(t) != 0)

@@ -1,4 +1,5 @@
-/* grad_norm.c - see grad_norm.h. Sums over lanes and slots have one order, whatever the number of threads.
+/* grad_norm.c - see grad_norm.h. Sums over lanes and slots have one order, whatever the number of
+ * threads.
  * SPDX-License-Identifier: BSD-2-Clause */
 #include "grad_norm.h"
 
@@ -7,13 +8,15 @@
 #include "math/lane_sum.h"
 
 /* Channels of a term of anchors' values: first, and how many. */
-typedef struct { int first, n; } channels;
+typedef struct {
+    int first, n;
+} channels;
 
 static channels channels_of(const ted4_layout *l, int term)
 {
     if (term == TED4_TERM_MASK)
-        return (channels){ l->offset_logit, l->n_channels - l->offset_logit };
-    return (channels){ l->first[term], l->first[term] >= 0 ? (int)l->shape.dim[term] : 0 };
+        return (channels) { l->offset_logit, l->n_channels - l->offset_logit };
+    return (channels) { l->first[term], l->first[term] >= 0 ? (int)l->shape.dim[term] : 0 };
 }
 
 static float add_up(const float *x)
@@ -31,7 +34,7 @@ void ted4_gradients_slot(const ted4_layout *l, const float *rate, const float *v
     squares[TED4_SLOT_TERMS] = 0;
     for (int term = 0; term < TED4_SLOT_TERMS; term++) {
         const channels at = channels_of(l, term);
-        float          sum[TED4_LANES] = { 0 }, bad[TED4_LANES] = { 0 };
+        float sum[TED4_LANES] = { 0 }, bad[TED4_LANES] = { 0 };
 
         for (int c = at.first; c < at.first + at.n; c++) {
             const float *x = values + c * TED4_LANES, *g = gradient + c * TED4_LANES;
@@ -73,30 +76,32 @@ static size_t network_size(const ted4_net_shape *s)
 }
 
 /* A stretch of the network array. */
-typedef struct { size_t first, n; } range;
+typedef struct {
+    size_t first, n;
+} range;
 
 /* The parts of the network array that make up term: how many; at most TED4_NETS_R. */
 static int ranges_of(const ted4_layout *l, int term, range *r)
 {
     const ted4_net_shape *h = &l->shape.hyper;
-    int                   n = 0;
+    int n = 0;
 
     if (term == TED4_TERM_HEADS || term == TED4_TERM_MOTION)
         for (int i = 0; i < TED4_NETS_R; i++)
             if ((i == TED4_NET_PROJECT || i == TED4_NET_DEFORM) == (term == TED4_TERM_MOTION))
-                r[n++] = (range){ l->netr + l->shape.netr[i].first,
-                                  network_size(&l->shape.netr[i]) };
+                r[n++] =
+                    (range) { l->netr + l->shape.netr[i].first, network_size(&l->shape.netr[i]) };
     if (term == TED4_TERM_BANK)
-        r[n++] = (range){ l->bank, l->shape.n_bank };
+        r[n++] = (range) { l->bank, l->shape.n_bank };
     if (term == TED4_TERM_PRIOR)
-        r[n++] = (range){ l->nete, l->shape.n_nete };
+        r[n++] = (range) { l->nete, l->shape.n_nete };
     if (term == TED4_TERM_STEP) {
         /* Of the last layer: rows of weights, then biases, one a type. */
         const size_t in = h->dim[h->n_layers - 1], types = l->shape.n_types;
         const size_t end = l->nete + h->first + network_size(h);
 
-        r[n++] = (range){ end - l->shape.n_outputs - types * in, types * in };
-        r[n++] = (range){ end - types, types };
+        r[n++] = (range) { end - l->shape.n_outputs - types * in, types * in };
+        r[n++] = (range) { end - types, types };
     }
     return n;
 }
@@ -110,7 +115,7 @@ static int is_learnt(const ted4_trainer *t, int term)
 void ted4_gradients_gather(const ted4_trainer *t, double *norm)
 {
     const ted4_slots *s = &t->slots;
-    double            sum[TED4_SLOT_TERMS] = { 0 };
+    double sum[TED4_SLOT_TERMS] = { 0 };
 
     for (size_t i = 0; i < s->n; i++)
         for (int k = 0; k < TED4_SLOT_TERMS; k++)
@@ -118,9 +123,9 @@ void ted4_gradients_gather(const ted4_trainer *t, double *norm)
     for (int k = 0; k < TED4_SLOT_TERMS; k++)
         norm[k] = sqrt(sum[k]);
     for (int term = TED4_TERM_HEADS; term <= TED4_TERM_STEP; term++) {
-        range     r[TED4_NETS_R];
+        range r[TED4_NETS_R];
         const int n = is_learnt(t, term) ? ranges_of(&t->layout, term, r) : 0;
-        double    square = 0;
+        double square = 0;
 
         for (int k = 0; k < n; k++)
             square += squares_of(t->net_gradient + r[k].first, r[k].n);
@@ -130,22 +135,22 @@ void ted4_gradients_gather(const ted4_trainer *t, double *norm)
 
 /* The largest of some numbers so far, or the first that is not finite, and its place. */
 typedef struct {
-    float   most;
+    float most;
     int64_t at;
-    int     finite;
+    int finite;
 } largest;
 
 static void compare(largest *best, float x, int64_t at)
 {
     if (!best->finite || (isfinite(x) && !(fabsf(x) > best->most)))
         return;
-    *best = (largest){ fabsf(x), at, isfinite(x) };
+    *best = (largest) { fabsf(x), at, isfinite(x) };
 }
 
 static void search_values(const ted4_trainer *t, int term, largest *best)
 {
     const ted4_slots *s = &t->slots;
-    const channels    at = channels_of(&t->layout, term);
+    const channels at = channels_of(&t->layout, term);
 
     for (size_t i = 0; i < s->n; i++)
         for (int c = at.first; c < at.first + at.n; c++)
@@ -157,7 +162,7 @@ static void search_values(const ted4_trainer *t, int term, largest *best)
 static void search_centres(const ted4_trainer *t, largest *best)
 {
     const ted4_slots *s = &t->slots;
-    const size_t      K = t->layout.head.n_offsets;
+    const size_t K = t->layout.head.n_offsets;
 
     for (size_t i = 0; i < s->n; i++)
         for (size_t k = 0; k < K * TED4_LANES; k++)
@@ -169,7 +174,7 @@ static void search_centres(const ted4_trainer *t, largest *best)
 int64_t ted4_gradients_anchor(const ted4_trainer *t, int term, int *finite)
 {
     largest best = { 0, -1, 1 };
-    range   r[TED4_NETS_R];
+    range r[TED4_NETS_R];
 
     if (term < TED4_SLOT_TERMS)
         search_values(t, term, &best);
@@ -197,7 +202,7 @@ int64_t ted4_gradients_bad_seen(const ted4_trainer *t, int *term)
     const ted4_slots *s = &t->slots;
 
     for (size_t i = 0; i < s->n; i++) {
-        const int    first = (int)s->squares[i * (TED4_SLOT_TERMS + 1) + TED4_SLOT_TERMS] - 1;
+        const int first = (int)s->squares[i * (TED4_SLOT_TERMS + 1) + TED4_SLOT_TERMS] - 1;
         const size_t anchor = s->block[i] * (size_t)TED4_LANES;
 
         for (size_t j = 0; first >= 0 && j < TED4_LANES; j++)
@@ -217,7 +222,7 @@ int64_t ted4_gradients_bad_value(const ted4_trainer *t, int *term)
                 *term = k;
                 return (int64_t)i;
             }
-        if (is_bad(t, TED4_ROW_POSITION, i, (channels){ 0, 3 })) {
+        if (is_bad(t, TED4_ROW_POSITION, i, (channels) { 0, 3 })) {
             *term = TED4_TERM_CENTRE;
             return (int64_t)i;
         }
@@ -228,7 +233,7 @@ int64_t ted4_gradients_bad_value(const ted4_trainer *t, int *term)
 int ted4_gradients_bad_network(const ted4_trainer *t)
 {
     for (int term = TED4_TERM_HEADS; term < TED4_TERM_PRIOR; term++) {
-        range     r[TED4_NETS_R];
+        range r[TED4_NETS_R];
         const int n = ranges_of(&t->layout, term, r);
 
         for (int k = 0; k < n; k++)

@@ -1,6 +1,7 @@
-/* monitor.c - notices a training that goes wrong, says what and where, and takes it back to its last good state with a smaller step. See trainer.h and watch.h.
- * What is judged by its usual size is so coarse that no training that went well ever came near it (doc/training.md); what is not finite is found at once.
- * SPDX-License-Identifier: BSD-2-Clause */
+/* monitor.c - notices a training that goes wrong, says what and where, and takes it back to its
+ * last good state with a smaller step. See trainer.h and monitor.h. What is judged by its usual
+ * size is so coarse that no training that went well ever came near it (doc/training.md); what is
+ * not finite is found at once. SPDX-License-Identifier: BSD-2-Clause */
 #include "monitor.h"
 
 #include <math.h>
@@ -12,8 +13,9 @@
 #include "grad_norm.h"
 #include "math/elementary.h"
 
-/* Steps between looks at every anchor, also those that no picture shows, and between good states. Those lie halfway between events of the schedule, which come
- * at multiples of 100: an event that fails has steps before it that can be made smaller. */
+/* Steps between looks at every anchor, also those that no picture shows, and between good states.
+ * Those lie halfway between events of the schedule, which come at multiples of 100: an event that
+ * fails has steps before it that can be made smaller. */
 enum { LOOK_EVERY = 100, KEEP_EVERY = 500, KEEP_AT = 250 };
 
 /* Factor of all learning rates at each rollback. */
@@ -24,22 +26,27 @@ enum { LOOK_EVERY = 100, KEEP_EVERY = 500, KEEP_AT = 250 };
 #define SCALE_FIRST 0.5
 enum { SCALE_NEW = 100 };
 
-/* A gradient has exploded when it is so many times its usual size. Measured: single steps of trainings that go well reach 3 times (features, scalings, offsets),
- * 20 times (bank, networks) and 130 times (activations, whose edges may be as narrow as spec 11.4 lets them). Adam bounds what one such step does. */
-#define EXPLODED 1e5
-/* The loss diverges when in so many steps on end it is so many times its usual size, and so large at all. Pictures come in random order, so that a few that differ
- * from the others do not make such a row. */
+/* A gradient has exploded when it is so many times its usual size. Measured: single steps of
+ * trainings that go well reach 3 times (features, scalings, offsets), 20 times (bank, networks) and
+ * 130 times (activations, whose edges may be as narrow as spec 11.4 lets them). Adam bounds what
+ * one such step does. */
+#define EXPLODED  1e5
+/* The loss diverges when in so many steps on end it is so many times its usual size, and so large
+ * at all. Pictures come in random order, so that a few that differ from the others do not make such
+ * a row. */
 #define DIVERGED  3.0
 #define HIGH_LOSS 0.1
 enum { ROW = 32 };
-/* The screen is nearly empty with this share of the usual Gaussians on it. That alone is no failure: anchors in empty space are right to go, however many. They have
- * collapsed when pictures lose by it: when in a row of such steps the mean loss is so many times what was usual before the row. */
+/* The screen is nearly empty with this share of the usual Gaussians on it. That alone is no
+ * failure: anchors in empty space are right to go, however many. They have collapsed when pictures
+ * lose by it: when in a row of such steps the mean loss is so many times what was usual before the
+ * row. */
 #define NEARLY_EMPTY (1.0 / 8.0)
 #define LOST         1.25
 
 static const char *const names[TED4_TERMS] = {
-    "feature", "scaling", "offset", "phi", "tau", "masks", "centres",
-    "heads", "motion", "bank", "prior", "steps", "colour",
+    "feature", "scaling", "offset", "phi",   "tau",   "masks",  "centres",
+    "heads",   "motion",  "bank",   "prior", "steps", "colour",
 };
 
 const char *ted4_term_name(int term)
@@ -57,7 +64,8 @@ double ted4_scale_take(ted4_scale *s, double x)
     if (!(x > 0))
         return 0;
 
-    const double away = ted4_math_log2(x) - s->level, most = s->n < SCALE_NEW ? SCALE_FIRST : SCALE_STEP;
+    const double away = ted4_math_log2(x) - s->level,
+                 most = s->n < SCALE_NEW ? SCALE_FIRST : SCALE_STEP;
     const double times = s->n < SCALE_NEW ? 0.0 : ted4_math_exp2(away);
 
     s->level += s->n == 0 ? away : fmin(fmax(away, -most), most);
@@ -72,8 +80,8 @@ int ted4_watch_find(ted4_trainer *t, const char *cause, int64_t anchor, const ch
                     const char *term, const char *format, ...)
 {
     ted4_find *f = &t->watch.find;
-    char       where[64] = "", how[128];
-    va_list    arguments;
+    char where[64] = "", how[128];
+    va_list arguments;
 
     f->cause = cause;
     f->anchor = anchor;
@@ -97,7 +105,7 @@ static int bad_value(ted4_trainer *t, int64_t anchor, int term)
 
 static int bad_gradient(ted4_trainer *t, int term, double times)
 {
-    int           finite;
+    int finite;
     const int64_t anchor = ted4_gradients_anchor(t, term, &finite);
 
     if (!finite || !isfinite(times))
@@ -131,20 +139,18 @@ void ted4_watch_forget(ted4_trainer *t)
 int ted4_watch_begin(ted4_trainer *t)
 {
     ted4_watch *w = &t->watch;
-    const int   keep = w->good.bytes == NULL ||
-                       (ted4_watch_due(t) && w->good_at != t->iteration);
+    const int keep = w->good.bytes == NULL || (ted4_watch_due(t) && w->good_at != t->iteration);
 
     w->found = 0;
     if (ted4_trainer_check(t, keep || t->iteration % LOOK_EVERY == 0) != 0) {
-        int           term;
+        int term;
         const int64_t anchor = ted4_gradients_bad_value(t, &term);
 
         if (!ted4_colour_finite(&t->colour))
             return ted4_watch_find(t, "not finite", -1, "map of ", "colour", "is not finite");
-        return anchor >= 0
-                   ? bad_value(t, anchor, term)
-                   : ted4_watch_find(t, "not finite", -1, "weight of ",
-                                     names[ted4_gradients_bad_network(t)], "is not finite");
+        return anchor >= 0 ? bad_value(t, anchor, term)
+                           : ted4_watch_find(t, "not finite", -1, "weight of ",
+                                             names[ted4_gradients_bad_network(t)], "is not finite");
     }
     if (!keep)
         return 0;
@@ -154,11 +160,13 @@ int ted4_watch_begin(ted4_trainer *t)
 
 int ted4_watch_recover(ted4_trainer *t)
 {
-    ted4_watch    *w = &t->watch;
+    ted4_watch *w = &t->watch;
     const uint64_t rollbacks = w->state.rollbacks, failed = t->iteration;
-    const double   factor = w->state.factor, seconds = t->seconds;
-    const char    *why = w->good.bytes == NULL ? "there is no good state before it"
-                                               : "learning rates were made smaller three times; another --seed, or smaller ones from the start (--set lr_...), may help";
+    const double factor = w->state.factor, seconds = t->seconds;
+    const char *why = w->good.bytes == NULL
+                          ? "there is no good state before it"
+                          : "learning rates were made smaller three times; another --seed, or "
+                            "smaller ones from the start (--set lr_...), may help";
 
     if (!w->found)
         return -1;
@@ -184,18 +192,18 @@ int ted4_watch_recover(ted4_trainer *t)
 
 int ted4_watch_loss(ted4_trainer *t, double loss)
 {
-    return isfinite(loss) ? 0
-                          : ted4_watch_find(t, "not finite", -1, "loss", "", "is not finite");
+    return isfinite(loss) ? 0 : ted4_watch_find(t, "not finite", -1, "loss", "", "is not finite");
 }
 
-/* Which of what hides a Gaussian: activation at this time, no extent, no opacity; -1: it is not hidden. */
+/* Which of what hides a Gaussian: activation at this time, no extent, no opacity; -1: it is not
+ * hidden. */
 enum { BY_ACTIVATION, BY_SCALE, BY_OPACITY, REASONS };
 
 static int why_hidden(const ted4_slots *slots, const ted4_generate_input *in, const ted4_splats *s,
                       size_t slot, size_t lane)
 {
     const size_t K = in->layout->head.n_offsets;
-    float        opacity = 0, extent = 0;
+    float opacity = 0, extent = 0;
 
     for (size_t k = 0; k < K; k++) {
         const size_t at = (slots->drawn[slot] * K + k) * TED4_LANES + lane;
@@ -213,9 +221,9 @@ static int why_hidden(const ted4_slots *slots, const ted4_generate_input *in, co
 static int collapsed(ted4_trainer *t, const ted4_generate_input *in, const ted4_splats *s)
 {
     static const char *const reasons[REASONS] = { "activation", "scale", "opacity" };
-    size_t  count[REASONS] = { 0 }, n = 0;
+    size_t count[REASONS] = { 0 }, n = 0;
     int64_t first[REASONS] = { -1, -1, -1 };
-    int     most = BY_OPACITY;
+    int most = BY_OPACITY;
 
     for (size_t i = 0; i < in->n_slots; i++)
         for (size_t j = 0; j < TED4_LANES; j++) {
@@ -235,8 +243,8 @@ static int collapsed(ted4_trainer *t, const ted4_generate_input *in, const ted4_
 static void note_phase(ted4_trainer *t)
 {
     ted4_watch_state *w = &t->watch.state;
-    const uint64_t    phase = (uint64_t)t->stage2 | (uint64_t)t->integer << 1 |
-                              (uint64_t)t->clock_stopped << 2;
+    const uint64_t phase = (uint64_t)t->stage2 | (uint64_t)t->integer << 1 |
+                           (uint64_t)t->clock_stopped << 2;
 
     if (phase == w->phase)
         return;
@@ -250,8 +258,8 @@ static void note_phase(ted4_trainer *t)
 static int look_at_gradients(ted4_trainer *t)
 {
     ted4_watch *w = &t->watch;
-    double      times[TED4_TERMS];
-    int         worst = 0, term;
+    double times[TED4_TERMS];
+    int worst = 0, term;
 
     const int64_t anchor = ted4_gradients_bad_seen(t, &term);
 
@@ -268,7 +276,8 @@ static int look_at_gradients(ted4_trainer *t)
     return times[worst] > EXPLODED ? bad_gradient(t, worst, times[worst]) : 0;
 }
 
-/* Has the screen been nearly empty for a row of steps, and did pictures lose by it? If they did not, this much is usual from here on. */
+/* Has the screen been nearly empty for a row of steps, and did pictures lose by it? If they did
+ * not, this much is usual from here on. */
 static int is_lost(ted4_watch_state *w, double drawn, double usual, double loss)
 {
     const double share = ted4_scale_take(&w->screen, drawn + 1.0);

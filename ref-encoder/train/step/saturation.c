@@ -23,13 +23,14 @@ static int is_clamped(const ted4_header *h, int type, unsigned c, float x, float
 size_t ted4_clamped(const ted4_trainer *t)
 {
     const ted4_layout *l = &t->layout;
-    size_t             n = 0;
+    size_t n = 0;
 
     for (int y = 0; y < TED4_TYPES; y++)
         for (unsigned c = 0; c < l->shape.dim[y]; c++)
             for (size_t i = 0; i < t->anchors.n; i++)
                 n += (size_t)is_clamped(&l->head, y, c,
-                                        *ted4_cell(&t->anchors, TED4_ROW_VALUE, i, l->first[y] + (int)c),
+                                        *ted4_cell(&t->anchors, TED4_ROW_VALUE, i,
+                                                   l->first[y] + (int)c),
                                         *ted4_cell(&t->anchors, TED4_ROW_STEP, i, y));
     return n;
 }

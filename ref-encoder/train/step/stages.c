@@ -1,5 +1,6 @@
-/* stages.c - the steps between phases: activation starts, compression starts, the integer model takes over.
- * Source: paper ("Progressive 3D-to-4D Anchor Transformation", "Training Objectives"), annex D.1, D.2.
+/* stages.c - the steps between phases: activation starts, compression starts, the integer model
+ * takes over. Source: paper ("Progressive 3D-to-4D Anchor Transformation", "Training Objectives"),
+ * annex D.1, D.2.
  * SPDX-License-Identifier: BSD-2-Clause */
 #include <math.h>
 #include <stdlib.h>
@@ -21,19 +22,21 @@ static float frame_time(const ted4_trainer *t, uint32_t j)
     return t->data->n_frames > 1 ? (float)j / (float)(t->data->n_frames - 1) : 0.0f;
 }
 
-/* How far a first span stays inside the times seen: half a frame at most, and at most a tenth of b, so that it fades by 1 % only. */
+/* How far a first span stays inside the times seen: half a frame at most, and at most a tenth of b,
+ * so that it fades by 1 % only. */
 #define SPAN_INSIDE 0.01f
 
-/* First and last time at which a training view sees each anchor: span[2 i], span[2 i + 1]; left alone where none does. */
+/* First and last time at which a training view sees each anchor: span[2 i], span[2 i + 1]; left
+ * alone where none does. */
 static void widen_spans(const ted4_trainer *t, float *span)
 {
     const ted4_anchors *a = &t->anchors;
 
     for (size_t i = 0; i < t->data->n_pictures; i++) {
         const ted4_picture *pic = &t->data->pictures[i];
-        const float         now = frame_time(t, pic->frame);
-        ted4_view           v;
-        float               centre[3];
+        const float now = frame_time(t, pic->frame);
+        ted4_view v;
+        float centre[3];
 
         if (pic->is_test)
             continue;
@@ -53,15 +56,16 @@ static void widen_spans(const ted4_trainer *t, float *span)
     }
 }
 
-/* Each anchor's activation, transients aside, starts as the span between the first and the last time at which a training view sees it (without
- * the static phase: all times), less a little at each end: with the first frame of the sequence exactly at a_s no time would ever lie before it, and its
- * gradient would be zero for good (annex D.1, traps). */
+/* Each anchor's activation, transients aside, starts as the span between the first and the last
+ * time at which a training view sees it (without the static phase: all times), less a little at
+ * each end: with the first frame of the sequence exactly at a_s no time would ever lie before it,
+ * and its gradient would be zero for good (annex D.1, traps). */
 int ted4_activation_begin(ted4_trainer *t)
 {
     ted4_anchors *a = &t->anchors;
-    const int     first = t->layout.first[TED4_TAU];
-    const float   inside = fminf(SPAN_INSIDE, 0.5f / fmaxf((float)t->data->n_frames - 1.0f, 1.0f));
-    float        *span = malloc((a->n_blocks + 1) * 2 * TED4_LANES * sizeof *span);
+    const int first = t->layout.first[TED4_TAU];
+    const float inside = fminf(SPAN_INSIDE, 0.5f / fmaxf((float)t->data->n_frames - 1.0f, 1.0f));
+    float *span = malloc((a->n_blocks + 1) * 2 * TED4_LANES * sizeof *span);
 
     if (span == NULL)
         return ted4_trainer_fail(t, "no memory to start activation");
@@ -73,8 +77,8 @@ int ted4_activation_begin(ted4_trainer *t)
         widen_spans(t, span);
     for (size_t i = 0; i < a->n; i++) {
         const int never = span[2 * i] > span[2 * i + 1];
-        float     from = (never ? 0.0f : span[2 * i]) + inside;
-        float     to = (never ? 1.0f : span[2 * i + 1]) - inside;
+        float from = (never ? 0.0f : span[2 * i]) + inside;
+        float to = (never ? 1.0f : span[2 * i + 1]) - inside;
 
         if (from > to)
             from = to = 0.5f * (from + to);
@@ -87,11 +91,12 @@ int ted4_activation_begin(ted4_trainer *t)
     return 0;
 }
 
-/* Largest activation of anchor i over the frames of the sequence, in stage 2 as the file will hold it: from all slots (ted4_trainer_looks). */
+/* Largest activation of anchor i over the frames of the sequence, in stage 2 as the file will hold
+ * it: from all slots (ted4_trainer_looks). */
 static float peak_activation(const ted4_trainer *t, size_t i)
 {
     const int first = t->layout.first[TED4_TAU];
-    float     least = INFINITY;
+    float least = INFINITY;
 
     if (first < 0)
         return 1.0f;
@@ -105,7 +110,8 @@ static float peak_activation(const ted4_trainer *t, size_t i)
 int ted4_stage_rising(ted4_trainer *t, uint32_t *rising, size_t *n)
 {
     float *sum = malloc((t->anchors.n + 1) * sizeof *sum);
-    int    bad = sum == NULL ? ted4_trainer_fail(t, "no memory to look for idle anchors") : ted4_trainer_looks(t, sum, NULL);
+    int bad = sum == NULL ? ted4_trainer_fail(t, "no memory to look for idle anchors")
+                          : ted4_trainer_looks(t, sum, NULL);
 
     *n = 0;
     for (size_t i = 0; !bad && i < t->anchors.n; i++)
@@ -118,8 +124,9 @@ int ted4_stage_rising(ted4_trainer *t, uint32_t *rising, size_t *n)
 int ted4_stage_drop_idle(ted4_trainer *t)
 {
     uint32_t *order = malloc((t->anchors.n + 1) * sizeof *order);
-    size_t    n = 0;
-    int       bad = order == NULL ? ted4_trainer_fail(t, "no memory to drop idle anchors") : ted4_stage_rising(t, order, &n);
+    size_t n = 0;
+    int bad = order == NULL ? ted4_trainer_fail(t, "no memory to drop idle anchors")
+                            : ted4_stage_rising(t, order, &n);
 
     if (!bad && n == 0)
         bad = ted4_trainer_fail(t, "nothing is left to encode");
@@ -133,9 +140,9 @@ int ted4_stage_drop_idle(ted4_trainer *t)
 static int settle_positions(ted4_trainer *t)
 {
     ted4_anchors *a = &t->anchors;
-    uint32_t     *order = malloc((a->n + 1) * sizeof *order);
-    uint64_t      last = 0;
-    size_t        n = 0;
+    uint32_t *order = malloc((a->n + 1) * sizeof *order);
+    uint64_t last = 0;
+    size_t n = 0;
 
     for (size_t i = 0; i < a->n; i++)
         for (int j = 0; j < 3; j++) {
@@ -174,8 +181,7 @@ static void remap_row(const ted4_layout *from, const ted4_layout *to, const ted4
         for (int k = 0; k < to->head.n_offsets; k++)
             *ted4_cell(new, row, i, to->offset_logit + k) =
                 *ted4_cell(old, row, i, from->offset_logit + k);
-        *ted4_cell(new, row, i, to->temporal_logit) =
-            *ted4_cell(old, row, i, from->temporal_logit);
+        *ted4_cell(new, row, i, to->temporal_logit) = *ted4_cell(old, row, i, from->temporal_logit);
     }
 }
 
@@ -187,11 +193,12 @@ static void copy_row(const ted4_anchors *old, ted4_anchors *new, ted4_row row)
 }
 
 /* One of the arrays of network parameters, NETE left zero. */
-static void remap_networks(const ted4_layout *from, const ted4_layout *to, const float *old, float *new)
+static void remap_networks(const ted4_layout *from, const ted4_layout *to, const float *old,
+                           float *new)
 {
     for (int i = 0; i < TED4_NETS_R; i++) {
         const ted4_net_shape *s = &to->shape.netr[i];
-        size_t                n = 0;
+        size_t n = 0;
 
         for (int k = 0; k < s->n_layers; k++)
             n += ((size_t)s->dim[k] + 1) * s->dim[k + 1];
@@ -204,9 +211,9 @@ static void remap_networks(const ted4_layout *from, const ted4_layout *to, const
 int ted4_stage_relayout(ted4_trainer *t, const ted4_header *h)
 {
     const ted4_layout from = t->layout;
-    ted4_anchors      old = t->anchors;
-    float            *net[3] = { t->net, t->net_m, t->net_v };
-    int               bad;
+    ted4_anchors old = t->anchors;
+    float *net[3] = { t->net, t->net_m, t->net_v };
+    int bad;
 
     ted4_layout_make(&t->layout, h);
     t->net = t->net_m = t->net_v = NULL;
@@ -227,7 +234,8 @@ int ted4_stage_relayout(ted4_trainer *t, const ted4_header *h)
     return bad ? ted4_trainer_fail(t, "no memory to change the model") : 0;
 }
 
-/* A part is dropped when it does nothing anywhere: no anchor moves, or every anchor is there at every time. */
+/* A part is dropped when it does nothing anywhere: no anchor moves, or every anchor is there at
+ * every time. */
 #define MOVING_SHARE 0.002
 #define ALWAYS_THERE 0.98f
 
@@ -235,7 +243,8 @@ static float least_activation(const ted4_trainer *t, size_t i)
 {
     const float *tau = ted4_cell(&t->anchors, TED4_ROW_VALUE, i, t->layout.first[TED4_TAU]);
 
-    const float  first = ted4_find_edge(0, tau, ted4_pow2).u, last = ted4_find_edge(1, tau, ted4_pow2).u;
+    const float first = ted4_find_edge(0, tau, ted4_pow2).u,
+                last = ted4_find_edge(1, tau, ted4_pow2).u;
 
     return ted4_activation(fmaxf(fabsf(first), fabsf(last)), ted4_pow2);
 }
@@ -244,7 +253,7 @@ static float least_activation(const ted4_trainer *t, size_t i)
 static void simplify(const ted4_trainer *t, ted4_header *h)
 {
     const double few = MOVING_SHARE * (double)t->anchors.n;
-    size_t       moving = 0, absent = 0;
+    size_t moving = 0, absent = 0;
 
     for (size_t i = 0; i < t->anchors.n; i++) {
         const float logit = *ted4_cell(&t->anchors, TED4_ROW_VALUE, i, t->layout.temporal_logit);
@@ -262,7 +271,7 @@ static void simplify(const ted4_trainer *t, ted4_header *h)
 static int reshape(ted4_trainer *t)
 {
     ted4_header h = t->layout.head;
-    const int   linear = t->opt.linear_scale;
+    const int linear = t->opt.linear_scale;
 
     simplify(t, &h);
     h.scale_domain = linear ? TED4_SCALE_LINEAR : TED4_SCALE_LOG2;
@@ -280,8 +289,8 @@ static int reshape(ted4_trainer *t)
 static void clear_moments(ted4_trainer *t)
 {
     for (int r = TED4_ROW_M; r <= TED4_ROW_V; r++)
-        memset(t->anchors.data[r], 0, t->anchors.n_blocks * (size_t)t->layout.n_channels *
-                                          TED4_LANES * sizeof(float));
+        memset(t->anchors.data[r], 0,
+               t->anchors.n_blocks * (size_t)t->layout.n_channels * TED4_LANES * sizeof(float));
     memset(t->net_m, 0, t->layout.n_net * sizeof *t->net_m);
     memset(t->net_v, 0, t->layout.n_net * sizeof *t->net_v);
 }
@@ -307,8 +316,8 @@ int ted4_stage2_begin(ted4_trainer *t)
 static uint8_t context_bits(const ted4_trainer *t)
 {
     const int first = t->layout.first[TED4_FEATURE];
-    float     largest = 1.0f;
-    int       bits = 10;
+    float largest = 1.0f;
+    int bits = 10;
 
     for (size_t i = 0; i < t->anchors.n; i++)
         for (int c = 0; c < t->layout.head.feature_dim; c++)
@@ -319,7 +328,8 @@ static uint8_t context_bits(const ted4_trainer *t)
     return (uint8_t)bits;
 }
 
-/* From here on the prior is the one of the file: weights on the integer grid and fixed, steps fixed with them. So is what else lies on a coarse grid. */
+/* From here on the prior is the one of the file: weights on the integer grid and fixed, steps fixed
+ * with them. So is what else lies on a coarse grid. */
 int ted4_integer_begin(ted4_trainer *t)
 {
     t->layout.head.context_bits = context_bits(t);
@@ -328,7 +338,8 @@ int ted4_integer_begin(ted4_trainer *t)
     t->shift = malloc(t->layout.shape.n_units + 1);
     if (t->shift == NULL || t->rate == NULL || ted4_slots_fill(t, NULL) != 0)
         return ted4_trainer_fail(t, "no memory for the integer model");
-    ted4_snap_coarse(&t->layout.head, &t->layout.shape, t->bits[TED4_GRID_PRIOR], t->net + t->layout.nete, t->shift);
+    ted4_snap_coarse(&t->layout.head, &t->layout.shape, t->bits[TED4_GRID_PRIOR],
+                     t->net + t->layout.nete, t->shift);
     ted4_grid_scene(&t->layout.shape, t->bits, t->net + t->layout.netr, t->net + t->layout.bank);
     t->integer = 1;
     ted4_rate_pack(t->rate, t->net);
@@ -340,13 +351,22 @@ int ted4_integer_rate(ted4_trainer *t, double *bits)
     if (ted4_slots_fill(t, NULL) != 0)
         return -1;
 
-    const ted4_rate_input in = {
-        &t->layout, t->net, t->shift, t->slots.n, t->slots.raw, t->slots.position,
-        t->slots.lanes, t->slots.block, 0, TED4_QUANT_INTEGER, 0.0f, 0.0f,
-        t->layout.head.activation
-    };
+    const ted4_rate_input in = { &t->layout,
+                                 t->net,
+                                 t->shift,
+                                 t->slots.n,
+                                 t->slots.raw,
+                                 t->slots.position,
+                                 t->slots.lanes,
+                                 t->slots.block,
+                                 0,
+                                 TED4_QUANT_INTEGER,
+                                 0.0f,
+                                 0.0f,
+                                 t->layout.head.activation };
 
-    return ted4_rate_evaluate(t->rate, &in, t->parallel, NULL, NULL, NULL, t->slots.steps,
-                              bits) != 0
-               ? ted4_trainer_fail(t, "no memory for the integer model, or weights beyond it") : 0;
+    return ted4_rate_evaluate(t->rate, &in, t->parallel, NULL, NULL, NULL, t->slots.steps, bits) !=
+                   0
+               ? ted4_trainer_fail(t, "no memory for the integer model, or weights beyond it")
+               : 0;
 }

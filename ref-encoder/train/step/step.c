@@ -1,4 +1,5 @@
-/* step.c - one training step: a picture, its Gaussians forward and back, and the update. See trainer.h.
+/* step.c - one training step: a picture, its Gaussians forward and back, and the update. See
+ * trainer.h.
  * SPDX-License-Identifier: BSD-2-Clause */
 #include <math.h>
 #include <stdlib.h>
@@ -26,7 +27,8 @@ static uint32_t next_picture(ted4_order *o)
     return o->item[o->next++];
 }
 
-/* The pictures after this one may be decoded meanwhile; what comes after the next shuffle is not known yet. */
+/* The pictures after this one may be decoded meanwhile; what comes after the next shuffle is not
+ * known yet. */
 static void announce(const ted4_trainer *t)
 {
     const ted4_order *o = &t->order;
@@ -39,7 +41,7 @@ static void announce(const ted4_trainer *t)
 static int reserve_splats(ted4_trainer *t, size_t n)
 {
     ted4_splat_grads *g = &t->splat_gradient;
-    float            *at;
+    float *at;
 
     if (n > t->splat_capacity) {
         const size_t size = n + n / 2;
@@ -116,8 +118,8 @@ static int backward(ted4_trainer *t, const ted4_view *v, const ted4_generate_inp
         return ted4_trainer_fail(t, "no memory for gradients");
     *on_screen = ted4_update_volume(t, s);
     memset(t->net_gradient, 0, t->layout.n_net * sizeof *t->net_gradient);
-    if (ted4_generate_backward(t->generator, in, &t->splat_gradient, t->parallel,
-                               t->slots.gradient, t->net_gradient) != 0)
+    if (ted4_generate_backward(t->generator, in, &t->splat_gradient, t->parallel, t->slots.gradient,
+                               t->net_gradient) != 0)
         return ted4_trainer_fail(t, "no memory for gradients");
     ted4_update_bank(t);
     return 0;
@@ -126,7 +128,7 @@ static int backward(ted4_trainer *t, const ted4_view *v, const ted4_generate_inp
 int ted4_trainer_draw(ted4_trainer *t, const ted4_picture *pic, ted4_view *v, float centre[3])
 {
     ted4_generate_input in;
-    ted4_splats         s;
+    ted4_splats s;
 
     if (render(t, pic, 0, v, &in, &s) != 0)
         return -1;
@@ -134,11 +136,13 @@ int ted4_trainer_draw(ted4_trainer *t, const ted4_picture *pic, ted4_view *v, fl
     return 0;
 }
 
-/* Are colours of this picture's camera corrected by now? Where nothing is known about them, the scene first learns what most cameras agree about. */
+/* Are colours of this picture's camera corrected by now? Where nothing is known about them, the
+ * scene first learns what most cameras agree about. */
 static int is_corrected(const ted4_trainer *t, const ted4_picture *pic)
 {
     return ted4_colour_has(&t->colour, pic->camera_id) &&
-           (t->colour.matched || t->stage2 || (double)t->iteration >= t->opt.colour_start * (double)t->opt.stage1);
+           (t->colour.matched || t->stage2 ||
+            (double)t->iteration >= t->opt.colour_start * (double)t->opt.stage1);
 }
 
 /* t->image with the colours of the picture's camera. */
@@ -146,29 +150,31 @@ static const float *shown(ted4_trainer *t, const ted4_picture *pic)
 {
     const size_t pixels = (size_t)pic->camera.width * (size_t)pic->camera.height;
 
-    return is_corrected(t, pic) ? ted4_colour_apply(&t->colour, pic->camera_id, t->image, pixels,
-                                                    t->parallel)
-                                : t->image;
+    return is_corrected(t, pic)
+               ? ted4_colour_apply(&t->colour, pic->camera_id, t->image, pixels, t->parallel)
+               : t->image;
 }
 
 const uint8_t *ted4_trainer_seen(ted4_trainer *t, size_t item)
 {
     const ted4_picture *pic = &t->data->pictures[item];
-    const size_t        pixels = (size_t)pic->camera.width * (size_t)pic->camera.height;
-    const uint8_t      *truth = ted4_dataset_pixels(t->data, item, &t->message);
+    const size_t pixels = (size_t)pic->camera.width * (size_t)pic->camera.height;
+    const uint8_t *truth = ted4_dataset_pixels(t->data, item, &t->message);
 
     return truth != NULL && is_corrected(t, pic)
-               ? ted4_colour_undo(&t->colour, pic->camera_id, truth, pixels, t->parallel) : truth;
+               ? ted4_colour_undo(&t->colour, pic->camera_id, truth, pixels, t->parallel)
+               : truth;
 }
 
-/* Distortion of t->image against truth; its gradient is in t->d_image, and the camera's colours have made their step. As ted4_loss. */
+/* Distortion of t->image against truth; its gradient is in t->d_image, and the camera's colours
+ * have made their step. As ted4_loss. */
 static double distortion(ted4_trainer *t, const ted4_picture *pic, const ted4_view *v,
                          const uint8_t *truth, double *l1, double *ssim)
 {
-    const size_t    pixels = (size_t)v->width * (size_t)v->height;
+    const size_t pixels = (size_t)v->width * (size_t)v->height;
     ted4_colour_map gradient;
-    const double    loss = ted4_loss(t->loss, shown(t, pic), truth, v->width, v->height,
-                                     (float)t->opt.ssim, t->parallel, t->d_image, l1, ssim);
+    const double loss = ted4_loss(t->loss, shown(t, pic), truth, v->width, v->height,
+                                  (float)t->opt.ssim, t->parallel, t->d_image, l1, ssim);
 
     t->watch.norm[TED4_TERM_COLOUR] = 0;
     if (!is_corrected(t, pic) || !(loss >= 0))
@@ -176,29 +182,32 @@ static double distortion(ted4_trainer *t, const ted4_picture *pic, const ted4_vi
     ted4_colour_backward(&t->colour, pic->camera_id, t->image, pixels, t->parallel, t->d_image,
                          gradient);
     t->watch.norm[TED4_TERM_COLOUR] = ted4_gradients_norm(gradient, TED4_COLOUR_VALUES);
-    ted4_colour_update(&t->colour, pic->camera_id, gradient, t->opt.lr_colour * t->watch.state.factor,
-                       t->opt.colour_weight);
+    ted4_colour_update(&t->colour, pic->camera_id, gradient,
+                       t->opt.lr_colour * t->watch.state.factor, t->opt.colour_weight);
     return loss;
 }
 
-/* Draws training picture item and leaves its gradient in t->d_image; cameras' colours stay as they are. Loss, or negative with t->message. */
+/* Draws training picture item and leaves its gradient in t->d_image; cameras' colours stay as they
+ * are. Loss, or negative with t->message. */
 static double judge(ted4_trainer *t, size_t item, int keep, ted4_view *v, ted4_splats *s)
 {
     const ted4_picture *pic = &t->data->pictures[item];
-    const size_t        pixels = (size_t)pic->camera.width * (size_t)pic->camera.height;
-    const uint8_t      *truth = ted4_dataset_pixels(t->data, item, &t->message);
+    const size_t pixels = (size_t)pic->camera.width * (size_t)pic->camera.height;
+    const uint8_t *truth = ted4_dataset_pixels(t->data, item, &t->message);
     ted4_generate_input in;
-    ted4_colour_map     gradient;
-    double              loss = -1, l1, ssim;
+    ted4_colour_map gradient;
+    double loss = -1, l1, ssim;
 
     if (truth == NULL)
         return -1;
     if (render(t, pic, keep, v, &in, s) == 0) {
-        loss = ted4_loss(t->loss, shown(t, pic), truth, v->width, v->height, (float)t->opt.ssim, t->parallel, t->d_image, &l1, &ssim);
+        loss = ted4_loss(t->loss, shown(t, pic), truth, v->width, v->height, (float)t->opt.ssim,
+                         t->parallel, t->d_image, &l1, &ssim);
         if (!(loss >= 0))
             ted4_trainer_fail(t, loss < 0 ? "no memory for the loss" : "the loss is not finite");
         else if (keep && is_corrected(t, pic))
-            ted4_colour_backward(&t->colour, pic->camera_id, t->image, pixels, t->parallel, t->d_image, gradient);
+            ted4_colour_backward(&t->colour, pic->camera_id, t->image, pixels, t->parallel,
+                                 t->d_image, gradient);
     }
     ted4_dataset_release(t->data, item);
     return loss >= 0 ? loss : -1;
@@ -206,7 +215,7 @@ static double judge(ted4_trainer *t, size_t item, int keep, ted4_view *v, ted4_s
 
 double ted4_trainer_distortion(ted4_trainer *t, size_t item)
 {
-    ted4_view   v;
+    ted4_view v;
     ted4_splats s;
 
     return judge(t, item, 0, &v, &s);
@@ -219,7 +228,8 @@ int ted4_trainer_blame(ted4_trainer *t, size_t item, ted4_splats *s)
     if (judge(t, item, 1, &v, s) < 0 || reserve_splats(t, s->n) != 0)
         return -1;
     return ted4_raster_backward(t->raster, s, &v, t->parallel, t->d_image, &t->splat_gradient) != 0
-               ? ted4_trainer_fail(t, "no memory for gradients") : 0;
+               ? ted4_trainer_fail(t, "no memory for gradients")
+               : 0;
 }
 
 /* The probe begins when the first anchors stand. */
@@ -230,12 +240,14 @@ static int probe_due(const ted4_trainer *t)
     return !t->probed && t->iteration == (uint64_t)(PROBE_FROM * (double)t->opt.stage1);
 }
 
-/* One picture forward: in, s, v and the gradient in t->d_image. Loss, or negative with t->message. */
-static double forward(ted4_trainer *t, uint32_t item, ted4_view *v, ted4_generate_input *in, ted4_splats *s, double *l1, double *ssim)
+/* One picture forward: in, s, v and the gradient in t->d_image. Loss, or negative with t->message.
+ */
+static double forward(ted4_trainer *t, uint32_t item, ted4_view *v, ted4_generate_input *in,
+                      ted4_splats *s, double *l1, double *ssim)
 {
     const ted4_picture *pic = &t->data->pictures[item];
-    const uint8_t      *truth = ted4_dataset_pixels(t->data, item, &t->message);
-    double              loss = -1;
+    const uint8_t *truth = ted4_dataset_pixels(t->data, item, &t->message);
+    double loss = -1;
 
     if (truth == NULL)
         return -1;
@@ -253,17 +265,17 @@ static double forward(ted4_trainer *t, uint32_t item, ted4_view *v, ted4_generat
 
 static int one_step(ted4_trainer *t)
 {
-    ted4_view           v;
+    ted4_view v;
     ted4_generate_input in;
-    ted4_splats         s;
-    double              l1, ssim;
-    size_t              on_screen = 0;
+    ted4_splats s;
+    double l1, ssim;
+    size_t on_screen = 0;
 
     if (ted4_watch_begin(t) != 0 || ted4_schedule_event(t) != 0)
         return -1;
 
     const uint64_t key = ted4_random(t->opt.seed, t->iteration);
-    const double   loss = forward(t, next_picture(&t->order), &v, &in, &s, &l1, &ssim);
+    const double loss = forward(t, next_picture(&t->order), &v, &in, &s, &l1, &ssim);
 
     if (loss < 0 || backward(t, &v, &in, &s, &on_screen) != 0)
         return -1;
@@ -274,18 +286,20 @@ static int one_step(ted4_trainer *t)
     ted4_update_parameters(t);
     if (ted4_watch_look(t, loss, &in, &s) != 0)
         return -1;
-    follow(&t->progress, loss, l1, ssim, (double)on_screen,
-           (double)v.width * (double)v.height, t->iteration == 0);
+    follow(&t->progress, loss, l1, ssim, (double)on_screen, (double)v.width * (double)v.height,
+           t->iteration == 0);
     t->iteration++;
     return 0;
 }
 
-/* What is due now of deciding how much model there is; NULL: nothing. *budget: training steps that it takes at most. */
+/* What is due now of deciding how much model there is; NULL: nothing. *budget: training steps that
+ * it takes at most. */
 static int (*decision(const ted4_trainer *t, double *budget))(ted4_trainer *)
 {
     const double end = ted4_capacity_refine_steps(t) + ted4_capacity_prune_steps(t);
 
-    if (t->decided == TED4_DECIDED_NOTHING && t->stage2 && !t->integer && t->iteration == ted4_capacity_step(t)) {
+    if (t->decided == TED4_DECIDED_NOTHING && t->stage2 && !t->integer &&
+        t->iteration == ted4_capacity_step(t)) {
         *budget = ted4_capacity_budget(t) - end;
         return ted4_capacity_decide;
     }
@@ -300,7 +314,7 @@ static int (*decision(const ted4_trainer *t, double *budget))(ted4_trainer *)
 static int decide(ted4_trainer *t)
 {
     double budget;
-    int  (*const settle)(ted4_trainer *) = decision(t, &budget);
+    int (*const settle)(ted4_trainer *) = decision(t, &budget);
 
     if (settle == NULL)
         return 0;
@@ -316,7 +330,8 @@ int ted4_trainer_long_step(const ted4_trainer *t)
 {
     double budget;
 
-    return (probe_due(t) && ted4_probe_steps(t) > 0) || (decision(t, &budget) != NULL && budget > 0);
+    return (probe_due(t) && ted4_probe_steps(t) > 0) ||
+           (decision(t, &budget) != NULL && budget > 0);
 }
 
 int ted4_trainer_step(ted4_trainer *t)
@@ -332,16 +347,16 @@ int ted4_trainer_step(ted4_trainer *t)
 static double preview(ted4_trainer *t, size_t item)
 {
     const ted4_picture *pic = &t->data->pictures[item];
-    const uint8_t      *truth = ted4_dataset_pixels(t->data, item, &t->message);
-    ted4_view           v;
+    const uint8_t *truth = ted4_dataset_pixels(t->data, item, &t->message);
+    ted4_view v;
     ted4_generate_input in;
-    ted4_splats         s;
-    double              square = 0;
+    ted4_splats s;
+    double square = 0;
 
     if (truth == NULL)
         return -1;
 
-    const int    bad = render(t, pic, 0, &v, &in, &s) != 0;
+    const int bad = render(t, pic, 0, &v, &in, &s) != 0;
     const size_t pixels = bad ? 0 : (size_t)v.width * (size_t)v.height;
 
     for (int c = 0; c < 3; c++)
@@ -363,7 +378,8 @@ double ted4_trainer_preview(ted4_trainer *t, int n)
     for (size_t i = 0; i < t->data->n_pictures; i++)
         tests += t->data->pictures[i].is_test;
 
-    const size_t from = tests > 0 ? tests : t->data->n_pictures, most = (size_t)n < from ? (size_t)n : from;
+    const size_t from = tests > 0 ? tests : t->data->n_pictures,
+                 most = (size_t)n < from ? (size_t)n : from;
 
     for (size_t i = 0; i < t->data->n_pictures && done < most; i++) {
         if ((tests > 0 && !t->data->pictures[i].is_test) || seen++ != done * from / most)

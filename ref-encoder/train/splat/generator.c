@@ -1,4 +1,5 @@
-/* decode.c - the generator of model.h: its memory, and its two ways by the level in use (generate_fwd.c, generate_bwd.c).
+/* generator.c - the generator of model.h: its memory, and its two ways by the level in use
+ * (decode_fwd.c, decode_bwd.c).
  * SPDX-License-Identifier: BSD-2-Clause */
 #include "decode_state.h"
 
@@ -61,8 +62,8 @@ static int reserve(ted4_generator *g, size_t n)
     return g->capacity != 0 ? 0 : -1;
 }
 
-int ted4_generate(ted4_generator *g, const ted4_generate_input *in,
-                  const ted4_parallel *p, ted4_splats *out)
+int ted4_generate(ted4_generator *g, const ted4_generate_input *in, const ted4_parallel *p,
+                  ted4_splats *out)
 {
     ted4_gen_job t = { .g = g, .in = in };
 
@@ -83,8 +84,8 @@ int ted4_generate(ted4_generator *g, const ted4_generate_input *in,
 }
 
 int ted4_generate_backward(ted4_generator *g, const ted4_generate_input *in,
-                           const ted4_splat_grads *gr, const ted4_parallel *p,
-                           float *const *d_attr, float *d_net)
+                           const ted4_splat_grads *gr, const ted4_parallel *p, float *const *d_attr,
+                           float *d_net)
 {
     ted4_gen_job t = { g, in, gr, d_attr, d_net };
 

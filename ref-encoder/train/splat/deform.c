@@ -1,4 +1,4 @@
-/* motion.c - what depends on the time only: bank interpolation, encoded time, and the
+/* deform.c - what depends on the time only: bank interpolation, encoded time, and the
  * first layer of F_deform with all of it multiplied in. spec 11.2 and 11.3. With z the bank at a
  * time, P and p weights and bias of F_project, W and b those of the first layer of F_deform:
  *     bank    W (z * (P phi + p)) + b = (W diag(z) P) phi + (W diag(z) p + b)
@@ -31,8 +31,10 @@ int ted4_gen_motion_init(ted4_gen_motion *m, const ted4_layout *l)
     m->b = ted4_gen_alloc(width);
     m->d_w = ted4_gen_alloc(width * (in + 1));
     m->product = ted4_gen_alloc(n_time * (in + 1));
-    return m->time != NULL && m->d_time != NULL && m->w != NULL && m->b != NULL &&
-           m->d_w != NULL && m->product != NULL ? 0 : -1;
+    return m->time != NULL && m->d_time != NULL && m->w != NULL && m->b != NULL && m->d_w != NULL &&
+                   m->product != NULL
+               ? 0
+               : -1;
 }
 
 void ted4_gen_motion_finish(ted4_gen_motion *m)
@@ -85,8 +87,8 @@ static void encode_time(ted4_gen_motion *m, uint32_t num, uint32_t den)
 }
 
 /* spec 11.2. At the last row (num = den) mix is 0, and the row after it is not touched. */
-static void interpolate(ted4_gen_motion *m, const ted4_layout *l, const float *bank,
-                        uint32_t num, uint32_t den)
+static void interpolate(ted4_gen_motion *m, const ted4_layout *l, const float *bank, uint32_t num,
+                        uint32_t den)
 {
     const uint64_t g = num * (uint64_t)(l->head.bank_rows - 1), i = g / den;
     const float *z = bank + i * (size_t)m->n_time;
@@ -111,7 +113,8 @@ void ted4_gen_motion_make(ted4_generator *g, const ted4_generate_input *in)
     else
         interpolate(m, l, in->net + l->bank, in->num, in->den);
     memcpy(m->b, w + (size_t)deform->dim[0] * deform->dim[1], deform->dim[1] * sizeof *w);
-    TED4_IN_USE(ted4_gen_make_effective)(m, l->head.motion == TED4_MOTION_BANK, w,
-                                         in->net + l->netr + l->shape.netr[TED4_NET_PROJECT].first);
+    TED4_IN_USE(ted4_gen_make_effective)
+    (m, l->head.motion == TED4_MOTION_BANK, w,
+     in->net + l->netr + l->shape.netr[TED4_NET_PROJECT].first);
     ted4_dense_pack(&g->chain[TED4_NET_DEFORM].layer[0].dense, m->w, m->b);
 }
