@@ -28,7 +28,7 @@ FLAGS_v4 = $(FLAGS_v3) -mavx512f -mavx512bw -mavx512dq -mavx512vl -mprefer-vecto
 # Objects of the sources $(1), with all copies of leveled ones.
 OBJECTS = $(patsubst %.c,$B/%.o,$(filter-out $(LEVELED),$(1))) \
           $(foreach l,$(LEVELS),$(patsubst %.c,$B/%.$l.o,$(filter $(LEVELED),$(1))))
-CFLAGS_ALL = -std=c11 -D_POSIX_C_SOURCE=200809L $(OPT) -g $(WARN) -Iref-decoder -Iref-encoder -Itests \
+CFLAGS_ALL = -std=c11 -D_POSIX_C_SOURCE=200809L $(OPT) -g $(WARN) -Iref-decoder -Iref-encoder -Itests/support -I. \
         -fopenmp -MMD -MP $(CFLAGS)
 LIBS  = -lpng -ljpeg -ljansson -lxxhash -lz -lm
 
@@ -43,8 +43,9 @@ ENC_TOOL = $(filter-out ref-encoder/tool/ted4%.c,$(wildcard ref-encoder/tool/*.c
 DEC_PROG = $(patsubst ref-decoder/tool/%.c,%,$(wildcard ref-decoder/tool/ted4*.c))
 ENC_PROG = $(patsubst ref-encoder/tool/%.c,%,$(wildcard ref-encoder/tool/ted4*.c))
 PROGS    = $(addprefix $B/,$(DEC_PROG) $(ENC_PROG) ted4scene)
-TESTS    = $(patsubst tests/%.c,$B/tests/%,$(sort $(wildcard tests/test_*.c))) \
-           $(patsubst tests/%.sh,$B/tests/%,$(sort $(wildcard tests/test_*.sh)))
+SCENE_SRC = $(filter-out %/ted4scene.c,$(wildcard tools/scene/*.c))
+TESTS    = $(patsubst %.c,$B/%,$(sort $(wildcard tests/*/test_*.c))) \
+           $(patsubst %.sh,$B/%,$(sort $(wildcard tests/*/test_*.sh)))
 
 all: $(PROGS)
 
@@ -89,7 +90,7 @@ $(addprefix $B/,$(DEC_PROG)): $B/%: $B/ref-decoder/tool/%.o $(DEC_TOOL:%.c=$B/%.
 	$(CC) -fopenmp $(LDFLAGS) $^ -o $@ $(LIBS)
 $(addprefix $B/,$(ENC_PROG)): $B/%: $B/ref-encoder/tool/%.o $(ENC_TOOL:%.c=$B/%.o) $(DEC_TOOL:%.c=$B/%.o) $(ENC_LIB)
 	$(CC) -fopenmp $(LDFLAGS) $^ -o $@ $(LIBS)
-$B/ted4scene: $(patsubst %.c,$B/%.o,$(wildcard tests/scenes/*.c)) $(ENC_LIB)
+$B/ted4scene: $B/tools/scene/ted4scene.o $(SCENE_SRC:%.c=$B/%.o) $(ENC_LIB)
 	$(CC) -fopenmp $(LDFLAGS) $^ -o $@ $(LIBS)
 $B/tests/%: $B/tests/%.o $(DEC_TOOL:%.c=$B/%.o) $(ENC_LIB)
 	$(CC) -fopenmp $(LDFLAGS) $(filter %.o,$^) $(filter %.a,$^) -o $@ -lcmocka $(LIBS)
@@ -97,14 +98,17 @@ $B/tests/%: tests/%.sh
 	@mkdir -p $(@D)
 	install -m 755 $< $@
 
-$(addprefix $B/tests/test_,scene scene_sets failure_scenes layouts hold_out ways): $(patsubst %.c,$B/%.o,$(wildcard tests/scenes/ray_*.c))
-$B/tests/test_run_log: $(addprefix $B/ref-encoder/tool/,run_log.o teller.o)
-$B/tests/test_teller: $B/ref-encoder/tool/teller.o
-$B/tests/test_belongs: $(addprefix $B/ref-encoder/tool/,belongs.o sheet.o)
-$B/tests/test_estimate: $B/ref-encoder/tool/estimate.o
-$B/tests/test_install: | $(PROGS) $B/ted4conf $B/ted4tolerance
-$B/tests/test_verify: $B/ref-encoder/tool/verify.o
-$(addprefix $B/tests/test_starved_,trainer writer): override LDFLAGS += -Wl,--wrap=malloc,--wrap=calloc,--wrap=realloc,--wrap=aligned_alloc
+# Tests of the scene maker, or with its scenes.
+SCENE_TESTS = tools/test_scene tools/test_scene_sets tools/test_failure_scenes tools/test_ways \
+        encoder/test_layouts encoder/test_hold_out
+$(SCENE_TESTS:%=$B/tests/%): $(SCENE_SRC:%.c=$B/%.o)
+$B/tests/tools/test_run_log: $(addprefix $B/ref-encoder/tool/,run_log.o teller.o)
+$B/tests/tools/test_teller: $B/ref-encoder/tool/teller.o
+$B/tests/tools/test_belongs: $(addprefix $B/ref-encoder/tool/,belongs.o sheet.o)
+$B/tests/tools/test_estimate: $B/ref-encoder/tool/estimate.o
+$B/tests/tools/test_install: | $(PROGS) $B/ted4conf $B/ted4tolerance
+$B/tests/tools/test_verify: $B/ref-encoder/tool/verify.o
+$(addprefix $B/tests/encoder/test_starved_,trainer writer): override LDFLAGS += -Wl,--wrap=malloc,--wrap=calloc,--wrap=realloc,--wrap=aligned_alloc
 
 test-programs: all $(TESTS)
 
@@ -119,7 +123,7 @@ test: lint
 # Scene, training, file, decoder in a fresh process, held-out views, picture sheet: in out/demo.
 demo:
 	@$(MAKE) --no-print-directory $(JOBS) $(PROGS)
-	@TED4_BUILD=$(abspath $B) sh tests/demo.sh out/demo
+	@TED4_BUILD=$(abspath $B) sh tools/demo.sh out/demo
 
 lint:
 	@for l in tests/lint/*.sh; do sh $$l || exit 1; done

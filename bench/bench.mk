@@ -82,7 +82,7 @@ $B/bench/spans: $B/bench/spans_view.o $B/bench/spans_where.o
 LAB_FACTS = lab_facts lab_views lab_tracks lab_anchors lab_symbols lab_log
 $B/bench/lab_facts: $(LAB_FACTS:%=$B/bench/%.o) $B/ref-encoder/tool/sheet.o $(DEC_TOOL:%.c=$B/%.o) $(ENC_LIB)
 	$(CC) -fopenmp $(LDFLAGS) $(filter %.o,$^) $(filter %.a,$^) -o $@ $(LIBS)
-$B/tests/test_lab_facts: $B/tests/test_lab_facts.o $(patsubst %,$B/bench/%.o,$(filter-out lab_facts,$(LAB_FACTS))) $B/ref-encoder/tool/sheet.o \
+$B/tests/tools/test_lab_facts: $B/tests/tools/test_lab_facts.o $(patsubst %,$B/bench/%.o,$(filter-out lab_facts,$(LAB_FACTS))) $B/ref-encoder/tool/sheet.o \
         $(DEC_TOOL:%.c=$B/%.o) $(ENC_LIB)
 	$(CC) -fopenmp $(LDFLAGS) $^ -o $@ -lcmocka $(LIBS)
 
@@ -123,7 +123,7 @@ stability: all $B/bench/lab_facts
 $B/bench/zoo_masks: $B/bench/zoo_masks.o
 	$(CC) $(LDFLAGS) $^ -o $@ $(LIBS)
 
-$B/tests/test_zoo: | $(PROGS) $B/bench/zoo_masks
+$B/tests/tools/test_zoo: | $(PROGS) $B/bench/zoo_masks
 
 zoo: all $B/bench/zoo_masks
 	TED4_BUILD=$B TED4_DATA=$(TED4_DATA) bench/zoo.sh zoo long

@@ -50,7 +50,7 @@ enter() {
     aarch64="libpng-dev:arm64 libjpeg62-turbo-dev:arm64 libjansson-dev:arm64"
     aarch64="$aarch64 libxxhash-dev:arm64 zlib1g-dev:arm64"
     sources=$({
-        find ref-decoder ref-encoder tests/scenes -name '*.[ch]' -o -name '*.def' | sort |
+        find ref-decoder ref-encoder tools/scene -name '*.[ch]' -o -name '*.def' | sort |
             xargs awk -f bench/sources.awk
         sed -n '/^[A-Z_a-z0-9]* *[:?]*=/p' Makefile
         echo "$scene $model $whole $small $variants"

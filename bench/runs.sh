@@ -244,7 +244,7 @@ begin_runs() {
     mkdir -p "$work" "$results" || exit 3
     [ ! -f "$csv" ] || [ "$(head -n 1 "$csv")" = "$columns" ] || die "$csv has other columns than this script writes"
     version=$(sources)
-    own_version=$(sources tests/scenes/*.[ch])
+    own_version=$(sources tools/scene/*.[ch])
     measured=
     [ -z "$judges" ] || measured=.$(awk -f bench/sources.awk $judges | short_hash)
     chosen=$(each_chosen) || exit 3

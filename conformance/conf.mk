@@ -6,16 +6,16 @@ all: $B/ted4conf
 $B/ted4conf: $(CONF_OBJ) $(CLASS_T_OBJ) $(ENC_LIB)
 	$(CC) -fopenmp $(LDFLAGS) $^ -o $@ $(LIBS)
 # The runner's processes, tried by themselves.
-$B/tests/test_process: $(addprefix $B/conformance/tool/,process.o text.o)
-$B/tests/test_conformance: | $B/ted4conf $B/ted4dec
-$B/tests/test_mutants: | $B/ted4conf
-$B/tests/test_suite_schema: | $B/ted4conf $B/ted4dec
-$B/tests/test_encoder_program: | $B/ted4conf $B/ted4dec $B/ted4enc $B/ted4scene
+$B/tests/tools/test_process: $(addprefix $B/conformance/tool/,process.o text.o)
+$B/tests/tools/test_conformance: | $B/ted4conf $B/ted4dec
+$B/tests/tools/test_mutants: | $B/ted4conf
+$B/tests/tools/test_suite_schema: | $B/ted4conf $B/ted4dec
+$B/tests/tools/test_encoder_program: | $B/ted4conf $B/ted4dec $B/ted4enc $B/ted4scene
 
 # Our library behind the adapter for decoders that are libraries.
 $B/adapter: $(patsubst %.c,$B/%.o,conformance/adapters/adapter.c conformance/adapters/ours.c ref-decoder/tool/sha256.c ref-decoder/tool/tier_hash.c) $B/libted4dec.a
 	$(CC) -fopenmp $(LDFLAGS) $^ -o $@ $(LIBS)
-$B/tests/test_adapters: | $B/adapter $B/ted4conf $B/ted4dec
+$B/tests/tools/test_adapters: | $B/adapter $B/ted4conf $B/ted4dec
 
 # Our decoder against all vectors, those made on demand too; verdict page in out/.
 conformance: $B/ted4conf $B/ted4dec
@@ -34,7 +34,7 @@ conformance-cover: $B/ted4conf
 
 # Branches of norm/ and read/ that they take, in one process, and whether tests take those that only a failing allocation or a caller's mistake can take. Files made
 # on demand come from another build: what makes them takes branches too. Of the large ones one: but for its bytes a lower level would do.
-BRANCH_TEST = build-gcov/tests/test_starved
+BRANCH_TEST = build-gcov/tests/decoder/test_starved
 conformance-branches: $B/ted4conf
 	$(MAKE) B=build-gcov CC=gcc OPT=-O0 CFLAGS=--coverage LDFLAGS=--coverage build-gcov/ted4conf $(BRANCH_TEST)
 	$B/ted4conf gen --demand -o build-gcov/suite/vectors

@@ -38,7 +38,7 @@ $B/fuzz/all/fz_%.o: fuzz/fz_%.c
 	$(CC) $(CFLAGS_ALL) $(STRICT) -DLLVMFuzzerTestOneInput=fuzz_$* -c $< -o $@
 $B/fuzz/replay: $B/fuzz/main.o $(FUZZ_ALL)
 	$(CC) -fopenmp $(LDFLAGS) $(FUZZ_ALLOC) $(FUZZ_NO_VIDEO) $^ -o $@ $(LIBS)
-$B/tests/test_fuzz: $B/tests/test_fuzz.o $(FUZZ_MUTATE) $(FUZZ_ALL)
+$B/tests/tools/test_fuzz: $B/tests/tools/test_fuzz.o $(FUZZ_MUTATE) $(FUZZ_ALL)
 	$(CC) -fopenmp $(LDFLAGS) $(FUZZ_ALLOC) $(FUZZ_NO_VIDEO) $^ -o $@ -lcmocka $(LIBS)
 
 # One program a harness, with libFuzzer's main or AFL++'s.

@@ -1,5 +1,5 @@
 /* fz_cdf.c - the Gaussian model of a symbol: u8 sigma index, u8 fraction of mu, then 16-bit slots
- * and values. All sigma indices with all fractions are gone through by tests/test_gaussian.c; here
+ * and values. All sigma indices with all fractions are gone through by test_gaussian.c; here
  * they are sampled. Claims: the cumulative frequencies are those of spec 9.4 in wide integers,
  * strictly increasing from 0 to 2^16; every slot has its one symbol; any k becomes a symbol, with
  * an escape exactly when it lies outside the window, and comes back.

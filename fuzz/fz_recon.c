@@ -1,6 +1,6 @@
 /* fz_recon.c - the Gaussians of any file that the decoder accepts, at times and camera centres that
  * up to 32 bytes behind the chunk ENDS give. Claims: a query gives finite numbers or
- * rec.non-finite; they are those of class X by tests/recon_ref.h, bit for bit; what was queried
+ * rec.non-finite; they are those of class X by recon_ref.h, bit for bit; what was queried
  * before, the order of blocks and the kernel do not matter; there is a record for every kept
  * offset, its id increasing.
  * SPDX-License-Identifier: BSD-2-Clause */

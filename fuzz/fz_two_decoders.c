@@ -1,5 +1,5 @@
 /* fz_two_decoders.c - any bytes to the strict decoder and to the code that the specification prints
- * (spec 4.5, tests/spec_model.h), which shares nothing with it but the tables of annex A. Up to two
+ * (spec 4.5, spec_model.h), which shares nothing with it but the tables of annex A. Up to two
  * bytes behind the chunk ENDS are knobs of others. Claims: the same verdict, identifier and offset;
  * of what is valid the same tiers T0 to T4, byte by byte. (two_decoders.py asks the one in Python.)
  * SPDX-License-Identifier: BSD-2-Clause */

@@ -8,12 +8,12 @@ case " $(make -s fuzz-scenes) $name" in
 *" $name "*)     more='ref-encoder/data ref-decoder/tool' ;;
 *checkpoint)     more='ref-encoder/data ref-encoder/train ref-encoder/kernel ref-encoder/eval ref-decoder/render' ;;
 *decode_chunked) more=ref-decoder/tool/read_file.c ;;
-*two_decoders)   more="tests/spec_tiers.h tests/spec/names.h $build/inc" ;;
+*two_decoders)   more="tests/support/spec_tiers.h tests/spec/names.h $build/inc" ;;
 *)               more= ;;
 esac
 # shellcheck disable=SC2086 # several folders
 {
     find ref-decoder/base ref-decoder/norm ref-decoder/read ref-decoder/kernel ref-decoder/recon ref-encoder/write $more \
-        tests/random_scene.h tests/recon_ref.h tests/spec_model.h -name '*.[ch]' -o -name '*.def' -o -name '*.inc'
+        tests/support/random_scene.h tests/support/recon_ref.h tests/support/spec_model.h -name '*.[ch]' -o -name '*.def' -o -name '*.inc'
     find fuzz -name '*.[ch]' ! -name 'fz_*' -o -name "fz_$name.c"
 } | LC_ALL=C sort | xargs awk -f bench/sources.awk | sha256sum | cut -c1-12

@@ -7,7 +7,7 @@
 build=$1
 has=$(TED4_KERNEL=none "$build/ted4dec" - 2>&1 </dev/null | sed -n 's/.*this machine has plain//p')
 case $has in *v1*) all="v1 v3 v4" ;; *) all=$has ;; esac
-programs=$(ls tests/test_*.c tests/test_*.sh | sed "s|^tests|$build/tests|;s|\.[a-z]*$||")
+programs=$(ls tests/*/test_*.c tests/*/test_*.sh | sed "s|^|$build/|;s|\.[a-z]*$||")
 bad=0 levels=
 
 for level in ${TEST_LEVELS:-$all}; do

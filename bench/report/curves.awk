@@ -1,5 +1,5 @@
 # curves.awk - how far one rate-distortion curve lies from another. A curve is n points (x[i], y[i]), i from 1; for a rate at equal quality x is the PSNR
-# and y the logarithm of the bytes, for a quality at equal rate the other way round. Functions only; used by bench/report.sh and tests/test_report.sh.
+# and y the logarithm of the bytes, for a quality at equal rate the other way round. Functions only; used by bench/report.sh and tests/tools/test_report.sh.
 # Sources: G. Bjontegaard, VCEG-M33, 2001 (the mean); F. N. Fritsch and J. Butland, SIAM J. Sci. Stat. Comput. 5 (1984), the cubics, as JCT-VC uses them.
 # SPDX-License-Identifier: BSD-2-Clause
 

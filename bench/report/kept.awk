@@ -52,7 +52,7 @@ function raster_row(    line, n, i, here, both, faster, text, ok) {
             faster = number_after(line[i], "2 threads")
     }
     if (both != "" && faster != "") {
-        text = fixed(both, 1) " ms; " fixed(faster, 2) "x; bits equal: asserted by `tests/test_raster.c`, `tests/test_raster_grad.c` (`make test`); " \
+        text = fixed(both, 1) " ms; " fixed(faster, 2) "x; bits equal: asserted by `tests/decoder/test_raster.c`, `tests/encoder/test_raster_grad.c` (`make test`); " \
             page_machine(line, n)
         ok = both <= 20 && faster >= 1.8
     }

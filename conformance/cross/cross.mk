@@ -8,6 +8,6 @@ deps-cross: deps
 # All builds of conformance/cross/builds.txt that have no row; those whose tools are missing are skipped.
 cross: $B/ted4conf
 	TED4_BUILD=$(abspath $B) conformance/cross/cross.sh
-$B/tests/test_cross: | $B/ted4conf $B/ted4dec
+$B/tests/tools/test_cross: | $B/ted4conf $B/ted4dec
 
 .PHONY: deps-cross cross

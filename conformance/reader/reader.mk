@@ -1,5 +1,5 @@
 # The second decoder; included by the Makefile.
-$B/tests/test_reader: | $B/ted4conf $B/ted4dec
+$B/tests/tools/test_reader: | $B/ted4conf $B/ted4dec
 
 # Both decoders on streams drawn for the purpose, whole and broken: make reader-compare SEEDS=FIRST:END
 SEEDS ?= 0:200

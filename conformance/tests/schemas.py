@@ -2,7 +2,7 @@
 # SPDX-License-Identifier: BSD-2-Clause
 """What conformance/schema says, held against what is there: manifest, every descriptor, capabilities and answers of our decoders, and the results of
 `ted4conf run` for a decoder that conforms and one that does not, as JSON, JUnit and HTML; and what all files add up to. Speaks as cmocka programs do; run in
-the project's root, by tests/test_suite_schema.sh. TED4_BUILD: the build folder.
+the project's root, by tests/tools/test_suite_schema.sh. TED4_BUILD: the build folder.
 """
 
 import csv

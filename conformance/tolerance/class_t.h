@@ -1,6 +1,6 @@
 /* class_t.h - class T (spec E): thresholds for a query of a stream, by rule, and whether a
  * decoder's records keep them. Everything is computed from the code that the specification prints
- * (tests/spec_tolerance.h); nothing of ref-decoder but the tables of annex A takes part.
+ * (tests/support/spec_tolerance.h); nothing of ref-decoder but the tables of annex A takes part.
  * SPDX-License-Identifier: BSD-2-Clause */
 #ifndef CLASS_T_H
 #define CLASS_T_H

@@ -1,4 +1,4 @@
-/* tables.c - annex A. Made by tests/gen/gen_tables.c, checked by tests/test_tables.c; do not edit.
+/* tables.c - annex A. Made by tests/gen/gen_tables.c, checked by test_tables.c; do not edit.
  * SPDX-License-Identifier: BSD-2-Clause */
 #include "norm/tables.h"
 

@@ -1,5 +1,5 @@
 /* tables.h - annex A: the tables of Tier E. tables.c is made by tests/gen/gen_tables.c and checked
- * by tests/test_tables.c.
+ * by tests/decoder/test_tables.c.
  * SPDX-License-Identifier: BSD-2-Clause */
 #ifndef TED4_TABLES_H
 #define TED4_TABLES_H

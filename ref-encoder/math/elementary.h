@@ -2,7 +2,7 @@
  * file: those of libm differ between its versions and machines. Made of +, -, *, / and exact
  * steps (rounding to an integer, scaling by a power of two) in binary64, without contraction, so
  * that they have the same bits wherever binary64 is IEEE 754's. What is only reported (PSNR in a
- * log, eval/metrics.h) may use libm. Relative error, as tests/test_elementary.c bounds it:
+ * log, eval/metrics.h) may use libm. Relative error, as tests/encoder/test_elementary.c bounds it:
  * 4e-16, or as said below; results beyond binary64's range are infinite or 0, those of NaN are
  * NaN.
  * SPDX-License-Identifier: BSD-2-Clause */

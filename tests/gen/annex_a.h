@@ -5,7 +5,7 @@
 
 #include <inttypes.h>
 #include <stdio.h>
-#include "gen/table_math.h"
+#include "table_math.h"
 #include "tool/sha256.h"
 
 static inline void annex_a_hash(FILE *out, const struct table *t)

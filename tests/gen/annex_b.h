@@ -7,7 +7,7 @@
 #include <inttypes.h>
 #include <stdio.h>
 #include "spec_tiers.h"
-#include "gen/annex_b_files.h"
+#include "annex_b_files.h"
 #include "tool/sha256.h"
 
 enum { ANNEX_B_WIDTH = 16, ANNEX_B_NOTE = 96 };

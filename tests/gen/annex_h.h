@@ -8,7 +8,7 @@
 #include <inttypes.h>
 #include <stdio.h>
 #include "spec_model.h"
-#include "gen/annex_b_files.h"
+#include "annex_b_files.h"
 #include "norm/coder.h"
 #include "norm/gaussian.h"
 #include "norm/prior.h"

@@ -1,7 +1,7 @@
 /* attest.c - prints the table of annex J.9. Takes two minutes of one core: two functions over all
  * 2^32 binary32 numbers. `make attest` compares it with the text.
  * SPDX-License-Identifier: BSD-2-Clause */
-#include "gen/attest.h"
+#include "attest.h"
 
 static float pow2_of(float x)
 {

@@ -1,11 +1,11 @@
 /* gen_annex.c - prints an annex of the specification that is made by a program: gen_annex
  * a|b|c|h|b1|b2. b1 and b2: the files of annex B. Run by `make spec-annexes`;
- * tests/test_spec_annexes.c compares.
+ * tests/docs/test_spec_annexes.c compares.
  * SPDX-License-Identifier: BSD-2-Clause */
-#include "gen/annex_b.h"
-#include "gen/annex_a.h"
-#include "gen/annex_c.h"
-#include "gen/annex_h.h"
+#include "annex_b.h"
+#include "annex_a.h"
+#include "annex_c.h"
+#include "annex_h.h"
 
 static int print_file(ted4_scene *s)
 {

@@ -20,7 +20,7 @@ static void print_entries(const struct table *t, const char *indent, int hex, co
 static void print_c(void)
 {
     printf("/* tables.c - annex A. Made by tests/gen/gen_tables.c, checked by "
-           "tests/test_tables.c; do not edit.\n"
+           "test_tables.c; do not edit.\n"
            " * SPDX-License-Identifier: BSD-2-Clause */\n"
            "#include \"norm/tables.h\"\n");
     for (int i = 0; i < N_TABLES; i++) {

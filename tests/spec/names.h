@@ -1,5 +1,5 @@
 /* names.h - the tables of annex A under the names that the printed code gives them. For
- * tests/spec_model.h and eval.c.
+ * tests/support/spec_model.h and eval.c.
  * SPDX-License-Identifier: BSD-2-Clause */
 #ifndef TED4_SPEC_NAMES_H
 #define TED4_SPEC_NAMES_H

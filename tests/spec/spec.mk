@@ -1,4 +1,4 @@
-# What the specification prints, as C: spec/code.h and tables as *.inc, under the build folder, for tests/spec_model.h and spec_tiers.h.
+# What the specification prints, as C: spec/code.h and tables as *.inc, under the build folder, for tests/support/spec_model.h and spec_tiers.h.
 SPEC_ORDER = 04-notation annex-k-xxh3 annex-l-deflate 05-container 06-header 07-networks 08-positions 09-entropy 10-attributes 12-arithmetic 11-reconstruction 13-levels
 SPEC_CODE  = $(SPEC_ORDER:%=spec/%.md)
 SPEC_INC   = $(addprefix $B/inc/spec/,code.h head.inc levels.inc elements.inc)
@@ -15,7 +15,7 @@ $B/inc/spec/levels.inc: spec/13-levels.md tests/spec/levels.awk
 $B/inc/spec/elements.inc: spec/annex-j-dumps.md tests/spec/elements.awk
 	@mkdir -p $(@D)
 	awk -f tests/spec/elements.awk $< > $@.new && mv $@.new $@
-SPEC_USERS = $(addprefix $B/tests/,test_spec_code.o test_spec_annexes.o test_spec_resources.o test_spec_inflate.o test_spec_tolerance.o gen/gen_annex.o)
+SPEC_USERS = $(patsubst %.c,$B/%.o,$(wildcard tests/docs/test_*.c)) $B/tests/gen/gen_annex.o
 $(SPEC_USERS): $(SPEC_INC)
 $(SPEC_USERS): FPFLAGS = $(STRICT) -I$B/inc
 
@@ -28,12 +28,12 @@ $B/inc/spec/code_%.h: $B/inc/spec/code.h tests/spec/%.sed
 $B/tests/spec/eval_%.o: tests/spec/eval.c $B/inc/spec/code_%.h
 	@mkdir -p $(@D)
 	$(CC) $(CFLAGS_ALL) $(STRICT) -I$B/inc -DVARIANT='"spec/code_$*.h"' -DREAL=$(if $(filter wide,$*),double,float) -DRECORDS=tol_$* -c $< -o $@
-$B/tests/test_spec_tolerance: $(SPEC_EVALS:%=$B/tests/spec/eval_%.o)
+$B/tests/docs/test_spec_tolerance: $(SPEC_EVALS:%=$B/tests/spec/eval_%.o)
 
 $B/gen_annex: $B/tests/gen/gen_annex.o $(DEC_TOOL:%.c=$B/%.o) $(ENC_LIB)
 	$(CC) -fopenmp $(LDFLAGS) $^ -o $@ $(LIBS)
 
-# Annexes that programs make. tests/test_spec_annexes.c fails when they are not current.
+# Annexes that programs make. tests/docs/test_spec_annexes.c fails when they are not current.
 spec-annexes: $B/gen_annex
 	$B/gen_annex a > spec/annex-a-tables.md
 	$B/gen_annex b > spec/annex-b-examples.md

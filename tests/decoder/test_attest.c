@@ -1,0 +1,76 @@
+/* test_attest.c - a sample of the defined functions of class X over all binary32 numbers against
+ * conformance/attest/sample.txt; all of them: `make attest` (annex J.9). pow2 is what it is named
+ * for, to two units in the last place.
+ * SPDX-License-Identifier: BSD-2-Clause */
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdlib.h>
+#include <string.h>
+#include <cmocka.h>
+#include "tests/gen/attest.h"
+
+enum { STRIDE = 4093 }; /* a prime: every exponent with many fractions */
+
+static float pow2_of(float x)
+{
+    return ted4_pow2(x);
+}
+
+static float sigmoid_of(float x)
+{
+    return ted4_sigmoid(x);
+}
+
+/* Rows as in J.9, of the patterns 0, STRIDE, 2 STRIDE, ... */
+static void sample(float (*f)(float x), const char *name, FILE *out)
+{
+    attest_string *a = malloc(sizeof *a);
+
+    assert_non_null(a);
+    attest_begin(a);
+    for (uint64_t i = 0; i < (uint64_t)1 << 32; i += STRIDE)
+        attest_put(a, attest_bits(f(ted4_bits_float((uint32_t)i))));
+    attest_end(a, name, out);
+    free(a);
+}
+
+static void as_attested(void **state)
+{
+    char now[512] = "", kept[2048] = "";
+    FILE *f = tmpfile();
+
+    (void)state;
+    assert_non_null(f);
+    sample(pow2_of, "pow2", f);
+    sample(sigmoid_of, "sigmoid", f);
+    rewind(f);
+    now[fread(now, 1, sizeof now - 1, f)] = '\0';
+    fclose(f);
+    f = fopen("conformance/attest/sample.txt", "r");
+    assert_non_null(f);
+    kept[fread(kept, 1, sizeof kept - 1, f)] = '\0';
+    fclose(f);
+    if (strcmp(now, kept) != 0)
+        print_message("%s", now);
+    assert_string_equal(now, kept);
+}
+
+static void accurate(void **state)
+{
+    (void)state;
+    for (uint64_t i = 0; i < (uint64_t)1 << 32; i += STRIDE) {
+        const float x = ted4_bits_float((uint32_t)i);
+        const double exact = exp2(fmin(fmax((double)x, -126), 126));
+
+        if (x == x)
+            assert_true(fabs((double)ted4_pow2(x) - exact) <= 0x1p-22 * exact);
+    }
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = { cmocka_unit_test(as_attested), cmocka_unit_test(accurate) };
+
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}

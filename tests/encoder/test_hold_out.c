@@ -1,0 +1,190 @@
+/* test_hold_out.c - cameras that the caller names are held out, in every layout, in place of what
+ * the layout says; a name that there is not gives the names that there are. Links
+ * tools/scene/ray_*.o.
+ * SPDX-License-Identifier: BSD-2-Clause */
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <cmocka.h>
+
+#include "tools/scene/ray_set.h"
+#include "tiny_scene.h"
+
+enum { TRAIN = 3, TEST = 1, FRAMES = 4 };
+
+static tiny_folder write_scene(ted4_ray_layout layout)
+{
+    const ted4_ray_options o = { .scene = RAY_TURN,
+                                 .width = 16,
+                                 .height = 12,
+                                 .n_train = TRAIN,
+                                 .n_test = TEST,
+                                 .n_frames = FRAMES,
+                                 .seed = 3,
+                                 .layout = layout };
+    tiny_folder f = tiny_new();
+    ted4_ray_message m;
+
+    if (ted4_ray_write(&o, f.path, NULL, &m) != 0)
+        fail_msg("%s", m.text);
+    return f;
+}
+
+static const char *load(ted4_dataset *d, const tiny_folder *f, const char *const *names, size_t n)
+{
+    ted4_dataset_options o = tiny_options;
+
+    o.hold_out = names;
+    o.n_hold_out = n;
+    return tiny_load(d, f, &o);
+}
+
+/* All pictures whose path holds one of two texts are test, the others are not; of 16 pictures in 4
+ * cameras of 4 frames. */
+static void held(const tiny_folder *f, const char *const *names, size_t n, const char *first,
+                 const char *second)
+{
+    ted4_dataset d;
+    size_t tests = 0;
+
+    assert_string_equal(load(&d, f, names, n), "");
+    assert_int_equal(d.n_pictures, (TRAIN + TEST) * FRAMES);
+    for (size_t i = 0; i < d.n_pictures; i++) {
+        const char *path = d.pictures[i].path + strlen(f->path);
+        const int expected = strstr(path, first) != NULL ||
+                             (second != NULL && strstr(path, second) != NULL);
+        if (d.pictures[i].is_test != expected)
+            fail_msg("%s: is_test %d", path, d.pictures[i].is_test);
+        tests += d.pictures[i].is_test;
+    }
+    assert_int_equal(tests, FRAMES * (second != NULL ? 2 : 1));
+    ted4_dataset_free(&d);
+}
+
+static void refused(const tiny_folder *f, const char *name, const char *what)
+{
+    ted4_dataset d;
+    const char *text = load(&d, f, &name, 1);
+
+    if (*text == 0 || strstr(text, "--hold-out ") == NULL || strstr(text, what) == NULL ||
+        strchr(text, '\n') != NULL)
+        fail_msg("got \"%s\", expected \"%s\"", text, what);
+    assert_null(d.pictures);
+}
+
+/* Layouts whose cameras have names. */
+static void test_labels(void **state)
+{
+    /* What three cameras are called, and parts of their pictures' paths; then all names, as a
+     * refusal lists them. */
+    static const struct {
+        ted4_ray_layout layout;
+        const char *name[2], *path[2], *all;
+    } cases[] = {
+        { RAY_NERFSTUDIO,
+          { "0", "2" },
+          { "train_r_000", "train_r_002" },
+          "expected one of: 0, 1, 2, 3" },
+        { RAY_HYPERNERF,
+          { "0", "2" },
+          { "train_r_000", "train_r_002" },
+          "expected one of: 0, 1, 2, 3" },
+        { RAY_COLMAP, { "cam01", "cam03" }, { "cam01", "cam03" }, "cam00, cam01, cam02, cam03" },
+        { RAY_COLMAP_TEXT,
+          { "1/cam01/", "cam03" },
+          { "cam01", "cam03" },
+          "cam00, cam01, cam02, cam03" },
+        { RAY_NEU3D, { "cam02", "cam01" }, { "cam02", "cam01" }, "cam00, cam01, cam02, cam03" },
+        { RAY_CALIBRATION,
+          { "cam03", "cam01" },
+          { "cam03", "cam01" },
+          "cam00, cam01, cam02, cam03" },
+    };
+
+    (void)state;
+    for (size_t i = 0; i < sizeof cases / sizeof cases[0]; i++) {
+        tiny_folder f = write_scene(cases[i].layout);
+        held(&f, cases[i].name, 1, cases[i].path[0], NULL);
+        held(&f, cases[i].name, 2, cases[i].path[0], cases[i].path[1]);
+        refused(&f, "cam99", cases[i].all);
+        refused(&f, "", "no camera or picture of this name");
+        tiny_free(&f);
+    }
+}
+
+/* Cameras without a name go by the pictures they took. */
+static void test_pictures(void **state)
+{
+    static const char *const good[] = { "train/r_001_02.png", "r_001_02", "train/r_001_00" };
+    tiny_folder f = write_scene(RAY_BLENDER);
+
+    (void)state;
+    for (int i = 0; i < 3; i++)
+        held(&f, good + i, 1, "train/r_001", NULL);
+    held(&f, good, 3, "train/r_001", NULL);
+    refused(&f, "r_000_00", "pictures of several cameras are called so");
+    refused(&f, "001_02",
+            "expected one of: r_000_00.png, r_001_00.png, r_002_00.png, r_000_00.png");
+    tiny_free(&f);
+    f = write_scene(RAY_NEU3D);
+    held(&f, (const char *const[]) { "cam01/images/0000.png" }, 1, "cam01", NULL);
+    refused(&f, "0000.png", "pictures of several cameras are called so");
+    tiny_free(&f);
+}
+
+/* Pictures that the layout's own split leaves out come back; nothing is left when all cameras are
+ * named. */
+static void test_whole(void **state)
+{
+    tiny_folder f = write_scene(RAY_NERFSTUDIO);
+    ted4_dataset d;
+    const char *const all[] = { "0", "1", "2", "3" };
+
+    (void)state;
+    assert_non_null(strstr(load(&d, &f, all, 4), "all 16 pictures are held out"));
+    tiny_free(&f);
+    f = tiny_new();
+    tiny_string s = { "", 0 };
+    tiny_add(&s, "{\"fl_x\": 9, \"train_filenames\": [\"p0.png\"], \"frames\": [");
+    for (int i = 0; i < 300; i++) {
+        if (i < 3)
+            tiny_picture(&f, i == 0 ? "p0.png" : i == 1 ? "p1.png" : "p2.png", TINY_W, TINY_H, i);
+        tiny_add(&s,
+                 "%s{\"file_path\": \"p%d.png\", \"camera\": %d, \"transform_matrix\": " TINY_POSE
+                 "}",
+                 i > 0 ? "," : "", i % 3, i);
+    }
+    tiny_add(&s, "]}");
+    tiny_text(&f, "transforms.json", s.text);
+    assert_string_equal(load(&d, &f, all + 2, 1), "");
+    assert_int_equal(d.n_pictures, 300);
+    assert_int_equal(d.pictures[299].is_test, 1);
+    assert_int_equal(d.pictures[298].is_test, 0);
+    ted4_dataset_free(&d);
+    refused(&f, "x", ", ... (300 in all)");
+    tiny_free(&f);
+    /* Of HyperNeRF's ids without a split two in four are left out. */
+    f = write_scene(RAY_HYPERNERF);
+    s.n = 0;
+    tiny_add(&s, "{\"ids\": [");
+    for (int i = 0; i < TRAIN * FRAMES; i++)
+        tiny_add(&s, "%s\"train_r_%03d_%02d\"", i > 0 ? "," : "", i / FRAMES, i % FRAMES);
+    tiny_add(&s, "]}");
+    tiny_text(&f, "dataset.json", s.text);
+    assert_string_equal(load(&d, &f, NULL, 0), "");
+    assert_int_equal(d.n_pictures, 2 * TRAIN);
+    ted4_dataset_free(&d);
+    assert_string_equal(load(&d, &f, all + 1, 1), "");
+    assert_int_equal(d.n_pictures, TRAIN * FRAMES);
+    ted4_dataset_free(&d);
+    tiny_free(&f);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = { cmocka_unit_test(test_labels),
+                                        cmocka_unit_test(test_pictures),
+                                        cmocka_unit_test(test_whole) };
+
+    return cmocka_run_group_tests_name("hold out", tests, NULL, NULL);
+}

@@ -1,0 +1,74 @@
+#!/bin/sh
+# test_capacity_page.sh - bench/capacity_page.sh on a small table of rows whose answers can be worked out by hand. Speaks as cmocka programs do; run by
+# `make test` from the project's root.
+# SPDX-License-Identifier: BSD-2-Clause
+set -u
+. tests/support/speak.sh
+make_page() { TED4_RESULTS=$out TED4_TABLE=$out/table.txt bench/capacity_page.sh "$out/states"; }
+page=$out/capacity.md
+
+cat >"$out/table.txt" <<END
+seeds 1 2
+base  --preset fast
+scene still   own:still
+scene chair   own:turn
+scene moment  own:moment
+scene things0 own:things0
+scene things1 own:things1
+scene things2 own:things2
+scene things4 own:things4
+scene things8 own:things8
+run auto auto  still,chair,moment,things0,things1,things2,things4,things8 1 - --capacity auto
+run auto auto  moment,things2     2 - --capacity auto
+run grid whole still,chair,moment 1 - --capacity fixed
+run grid small still,chair,moment 1 - --capacity fixed --set offsets=4
+END
+# Tag, bytes, PSNR, L1, bytes of the bank, motion, CPU seconds. SSIM is 1, lambda 0.0019, and a whole model has 1900 values, so the cost is 0.8 L1 + bytes / 125000.
+# still: auto 0.016, whole 0.02, small 0.0168, but half a decibel below. chair: auto 0.016, small 0.014; seconds are 30 % more. moment: auto 0.016 and 0.01648,
+# small 0.01568 at hardly less PSNR.
+rows() {
+    cat <<END
+still-auto-1 1000 30 0.01 0 0 12
+still-whole-1 1500 30 0.01 40 1 10
+still-small-1 900 29.5 0.012 30 1 8
+chair-auto-1 1000 30 0.01 20 1 13
+chair-whole-1 2000 30 0.01 40 1 10
+chair-small-1 750 30 0.01 0 0 8
+moment-auto-1 1000 30 0.01 0 0 10
+moment-auto-2 1060 30 0.01 0 0 10
+moment-whole-1 2000 30 0.01 0 0 10
+moment-small-1 950 29.95 0.0101 0 0 8
+things0-auto-1 1000 30 0.01 0 0 10
+things1-auto-1 1100 30 0.01 100 0 10
+things2-auto-1 1200 30 0.01 200 0 10
+things2-auto-2 1300 30 0.01 240 0 10
+things4-auto-1 1150 30 0.01 $1 0 10
+things8-auto-1 1400 30 0.01 400 0 10
+END
+}
+table() {
+    echo tag,key,options,lambda,bytes,psnr,ssim,l1,b_netr,b_bank,b_phi,b_tau,n_offsets,feature_dim,motion,phi_dim,activation,anchors,cpu_s
+    awk '{ print $1 ",k,o,0.0019," $2 "," $3 ",1," $4 ",0," $5 ",0,0,1,10," $6 ",0,0,100," $7 }'
+}
+rows 150 | table >"$out/capacity.csv"
+sed '1d; s/\([^,]*\),.*/done \1/' "$out/capacity.csv" >"$out/states"
+make_page || { fail page "status $?"; exit 1; }
+check cost "$page" '| 2 of 3 scenes; not chair +14.3 %; most: chair +14.3 % | **missed** |' '| moment | small | 950 | 29.95 | 0.01568 | +0.0 % |' \
+    '| moment | auto | 1000 | 30.00 | 0.01600 | +2.0 % |' '| still | auto | 1000 | 30.00 | 0.01600 | -4.8 % |'
+check time "$page" '| most: chair +30 % | **missed** |'
+check still "$page" '| 0 bytes for time; 1000 bytes at 30.00 dB, whole 1500 at 30.00 dB | met |'
+check chair "$page" '| 20 bytes for time; 1000 bytes at 30.00 dB, small 750 at 30.00 dB | **missed** |'
+check moment "$page" '| 0 bytes for time; 1000 bytes at 30.00 dB, small 950 at 29.95 dB | **missed** |'
+check means "$page" '| things2 | 2 | 1250 | 220 |'
+check things "$page" '| 0, 100, 220, 150, 400 | **missed** |'
+[ "$(ls "$out/capacity" | tr '\n' ' ')" = "things.svg times.svg " ] && ok charts || fail charts "$(ls "$out/capacity")"
+
+rows 300 | table | grep -v '^chair-small\|^moment-small' >"$out/capacity.csv"
+make_page || fail page "status $?"
+check more_and_more "$page" '| 0, 100, 220, 300, 400 | met |'
+check part "$page" '| 1 of 3 scenes; most: still -4.8 % | not run yet |' 'whole 2000 at 30.00 dB | not run yet |'
+rm "$out/capacity.csv"
+: >"$out/states"
+make_page || fail empty "status $?"
+check empty "$page" 'Bars: 0 met, 0 missed, 6 not run yet.'
+exit $bad

@@ -1,0 +1,221 @@
+/* test_fuzz.c - every fuzzing harness of fuzz/list.def over its seeds and its regressions, the
+ * decoder's over changed copies of its seeds too, so that none of them can rot; and those seeds
+ * themselves. Runs in the project's root, as `make test` does.
+ * SPDX-License-Identifier: BSD-2-Clause */
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <cmocka.h>
+#include <dirent.h>
+#include <stdio.h>
+#include <sys/stat.h>
+
+#include "fuzz/inputs.h"
+#include "fuzz/mend.h"
+#include "fuzz/mutate.h"
+#include "norm/coder.h"
+#include "random_scene.h"
+
+#define CORPUS "fuzz/corpus/ted4"
+
+enum { MAX_FILES = 64, MAX_SIZE = 1 << 13, CHANGES = 400 };
+
+static struct {
+    uint8_t data[MAX_SIZE];
+    size_t size;
+} file[MAX_FILES];
+static int n_files;
+
+static int setup(void **state)
+{
+    DIR *const d = opendir(CORPUS);
+    struct dirent *e;
+    char path[512];
+
+    (void)state;
+    while (d != NULL && (e = readdir(d)) != NULL && n_files < MAX_FILES) {
+        FILE *f;
+
+        if (e->d_name[0] == '.')
+            continue;
+        (void)snprintf(path, sizeof path, CORPUS "/%s", e->d_name);
+        f = fopen(path, "rb");
+        if (f == NULL)
+            return -1;
+        file[n_files].size = fread(file[n_files].data, 1, MAX_SIZE, f);
+        n_files++;
+        fclose(f);
+    }
+    if (d != NULL)
+        closedir(d);
+    return n_files > 0 ? 0 : -1;
+}
+
+static void run_all(const uint8_t *data, size_t size)
+{
+    assert_int_equal(fuzz_find("decode")(data, size), 0);
+    assert_int_equal(fuzz_find("container")(data, size), 0);
+    assert_int_equal(fuzz_find("roundtrip")(data, size), 0);
+}
+
+static ted4_status decode(const uint8_t *data, size_t size, ted4_info *info)
+{
+    ted4_scene *s;
+    const ted4_status verdict = ted4_decode(data, size, NULL, &s, NULL);
+
+    if (verdict == TED4_OK)
+        ted4_scene_info(s, info);
+    ted4_scene_free(s);
+    return verdict;
+}
+
+/* The corpus is valid, small, and covers what a header can say. */
+static void test_corpus(void **state)
+{
+    unsigned motion = 0, view = 0, activation = 0, dynamic = 0;
+
+    (void)state;
+    assert_true(n_files >= 12);
+    for (int i = 0; i < n_files; i++) {
+        ted4_info info;
+
+        assert_true(file[i].size < 2048);
+        assert_int_equal(decode(file[i].data, file[i].size, &info), TED4_OK);
+        motion |= 1u << info.motion;
+        view |= 1u << info.view;
+        activation |= 1u << info.activation;
+        dynamic |= info.n_dynamic > 0 && info.n_dynamic < info.n_anchors;
+    }
+    assert_int_equal(motion, 15);
+    assert_int_equal(view, 7);
+    assert_int_equal(activation, 3);
+    assert_true(dynamic);
+}
+
+/* A claim that does not hold ends the process; what it says comes before the name of the harness
+ * here. */
+static void test_harnesses(void **state)
+{
+    char path[512];
+
+    (void)state;
+    for (const fuzz_harness *h = fuzz_list; h->name != NULL; h++) {
+        size_t n = 0;
+        struct stat s;
+
+        printf("%s\n", h->name);
+        fflush(stdout);
+        (void)snprintf(path, sizeof path, "fuzz/corpus/%s", h->seeds);
+        assert_int_equal(fuzz_replay(h->run, path, &n), 0);
+        assert_true(n > 0);
+        (void)snprintf(path, sizeof path, "fuzz/regressions/%s", h->name);
+        if (stat(path, &s) == 0)
+            assert_int_equal(fuzz_replay(h->run, path, &n), 0);
+        (void)h->run((const uint8_t *)"", 0);
+    }
+}
+
+/* Changed bytes behind mended hashes reach every part of the decoder; some of the files are valid.
+ */
+static void test_changes(void **state)
+{
+    random_source r = random_seed(4);
+    uint8_t *const data = malloc(MAX_SIZE);
+    ted4_info info;
+    int n_valid = 0, n_unmended = 0;
+
+    (void)state;
+    assert_non_null(data);
+    for (int i = 0; i < n_files; i++)
+        for (int j = 0; j < CHANGES; j++) {
+            const size_t size = file[i].size;
+
+            memcpy(data, file[i].data, size);
+            data[random_in(&r, 12, (uint32_t)size - 1)] ^= (uint8_t)(1u << random_in(&r, 0, 7));
+            n_unmended += decode(data, size, &info) == TED4_OK;
+            ted4_mend_chunks(data, size);
+            run_all(data, size);
+            ted4_mend_ends(data, size);
+            run_all(data, size);
+            n_valid += decode(data, size, &info) == TED4_OK;
+        }
+    assert_int_equal(n_unmended, 0);
+    assert_true(n_valid > n_files * CHANGES / 20);
+    free(data);
+}
+
+/* The mutator keeps to its room, gives the same for the same seed, and most of what it makes is
+ * refused for something else than a hash, or valid. The code that the specification prints says the
+ * same of it as the decoder. */
+static void test_mutator(void **state)
+{
+    enum { ROOM = 4 * MAX_SIZE, ROUNDS = 60 };
+    uint8_t *const a = malloc(ROOM), *const b = malloc(ROOM);
+    uint64_t met[TED4_N_STATUS] = { 0 };
+    size_t kinds = 0;
+    ted4_info info;
+
+    (void)state;
+    assert_true(a != NULL && b != NULL);
+    for (uint32_t i = 0; i < (uint32_t)(n_files * ROUNDS); i++) {
+        const int n = (int)i % n_files;
+        size_t size;
+
+        memcpy(a, file[n].data, file[n].size);
+        memcpy(b, file[n].data, file[n].size);
+        size = fuzz_mutate_file(a, file[n].size, ROOM, i, fuzz_flip_middle);
+        assert_true(size <= ROOM);
+        assert_int_equal(fuzz_mutate_file(b, file[n].size, ROOM, i, fuzz_flip_middle), size);
+        assert_memory_equal(a, b, size);
+        met[decode(a, ted4_without_tail(a, size, 32), &info)]++;
+        (void)fuzz_find("two_decoders")(a, size);
+        size = fuzz_cross_files(file[n].data, file[n].size, file[(n + 1) % n_files].data,
+                                file[(n + 1) % n_files].size, a, ROOM, i);
+        assert_true(size <= ROOM);
+        (void)decode(a, size, &info);
+    }
+    for (int i = 0; i < TED4_N_STATUS; i++)
+        kinds += met[i] > 0;
+    assert_true(met[TED4_OK] > (uint64_t)(n_files * ROUNDS / 4));
+    assert_true(met[TED4_E_CON_CHUNK_HASH] < (uint64_t)(n_files * ROUNDS / 8));
+    assert_true(kinds > 12);
+    free(a);
+    free(b);
+}
+
+/* Any bytes in the substreams become symbols of a valid file. */
+static void test_mend_ranges(void **state)
+{
+    random_source r = random_seed(9);
+    uint8_t *const data = malloc(2 * MAX_SIZE);
+    ted4_info info;
+
+    (void)state;
+    assert_non_null(data);
+    for (int i = 0; i < n_files; i++) {
+        size_t at = TED4_FILE_HEADER_SIZE, size = file[i].size;
+
+        memcpy(data, file[i].data, size);
+        while (memcmp(data + at, "TILE", 4) != 0)
+            at += ted4_chunk_size(data, size, at);
+        for (size_t j = TED4_FRAME_HEAD_SIZE;
+             j + TED4_FRAME_HASH_SIZE < ted4_chunk_size(data, size, at); j++)
+            data[at + j] = (uint8_t)random_u32(&r);
+        ted4_mend_chunks(data, size);
+        assert_true(decode(data, size, &info) != TED4_OK);
+        size = ted4_mend_ranges(data, size, 2 * MAX_SIZE);
+        assert_int_equal(decode(data, size, &info), TED4_OK);
+    }
+    free(data);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(test_corpus),      cmocka_unit_test(test_harnesses),
+        cmocka_unit_test(test_changes),     cmocka_unit_test(test_mutator),
+        cmocka_unit_test(test_mend_ranges),
+    };
+
+    return cmocka_run_group_tests_name("fuzz", tests, setup, NULL);
+}

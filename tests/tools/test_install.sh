@@ -1,0 +1,63 @@
+#!/bin/sh
+# test_install.sh - what `make install` leaves is enough for who writes a program: <ted4/ted4.h> in C and in C++, with no other folder of headers, libted4dec.a
+# with no library but zlib, xxHash and libm for all that is in it, and the programs that doc/programs.md names. Speaks as cmocka programs do; run by `make test` from
+# the project's root.
+# SPDX-License-Identifier: BSD-2-Clause
+set -u
+. tests/support/speak.sh
+need install ted4dec ted4conf ted4tolerance
+vector=conformance/vectors/content/CNT-pop-0.002.ted4
+
+# Nothing is built anew, with another compiler at worst.
+usr=$out/root/usr
+cp "$TED4_BUILD/how" "$out/how"
+if make install B="$TED4_BUILD" DESTDIR="$out/root" PREFIX=/usr >"$out/said" 2>&1; then ok installs; else fail installs "$(cat "$out/said")"; fi
+if cmp -s "$TED4_BUILD/how" "$out/how"; then ok as_built; else fail as_built "$(cat "$out/said")"; fi
+wanted=$(echo $(sed -n 's/^    \(ted4[a-z]*\) .*/\1/p' doc/programs.md) ted4scene | tr ' ' '\n' | sort -u)
+if [ "$(ls "$usr/bin")" = "$wanted" ]; then ok programs; else fail programs "$(ls "$usr/bin")"; fi
+if [ "$(ls "$usr/lib")" = libted4dec.a ]; then ok libraries; else fail libraries "$(ls "$usr/lib")"; fi
+
+cat >"$out/user.c" <<'C'
+#include <ted4/ted4.h>
+#include <stdio.h>
+
+int main(int argc, char **argv)
+{
+    static unsigned char data[1 << 20];
+    FILE *const f = fopen(argv[argc - 1], "rb");
+    const size_t size = f != NULL ? fread(data, 1, sizeof data, f) : 0;
+    ted4_error e = { TED4_OK, 0 };
+    ted4_scene *scene;
+    ted4_info info;
+
+    if (ted4_decode(data, size, NULL, &scene, &e) != TED4_OK) {
+        printf("%s %s\n", ted4_verdict_name(ted4_status_verdict(e.code)), ted4_status_id(e.code));
+        return 1;
+    }
+    ted4_scene_info(scene, &info);
+    printf("ends ");
+    for (int i = 0; i < 16; i++)
+        printf("%02x", info.hash[i]);
+    printf(info.motion == TED4_MOTION_BANK ? ", bank\n" : "\n");
+    ted4_scene_free(scene);
+    return 0;
+}
+C
+cp "$out/user.c" "$out/user.cc"
+wanted="$("$TED4_BUILD/ted4dec" --hash "$vector"), bank"
+
+# user NAME COMPILER SOURCE: a program of somebody else, made and asked. The flags are those of a build with sanitizers; nothing otherwise.
+user() {
+    # shellcheck disable=SC2086 # several flags
+    $2 ${CFLAGS:-} ${LDFLAGS:-} -Wall -Wextra -Wpedantic -Werror -I"$usr/include" "$out/$3" -L"$usr/lib" -Wl,--whole-archive -lted4dec \
+        -Wl,--no-whole-archive -lxxhash -lz -lm -o "$out/$1" 2>"$out/err" || { fail "$1" "$(cat "$out/err")"; return; }
+    expect "$1" 0 "$wanted" "$out/$1" "$vector"
+    expect "$1_refused" 1 'invalid con.magic' "$out/$1" README.md
+}
+user in_c "${CC:-cc} -std=c11" user.c
+if command -v "${CXX:-c++}" >/dev/null; then
+    user in_cxx "${CXX:-c++} -std=c++11" user.cc
+else
+    skip in_cxx "there is no C++ compiler"
+fi
+exit $bad

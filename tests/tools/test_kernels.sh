@@ -1,0 +1,45 @@
+#!/bin/sh
+# test_kernels.sh - one program for any machine of a kind: TED4_KERNEL names the kernels, what this
+# machine does not have is refused, every level decodes to the same scene, and what is compiled once
+# asks for no instruction that only some machines have. Speaks as cmocka programs do; run by
+# `make test` from the project's root.
+# SPDX-License-Identifier: BSD-2-Clause
+set -u
+export LC_ALL=C
+. tests/support/speak.sh
+need kernels ted4dec ted4enc ted4info
+stream=conformance/vectors/content/CNT-pop-0.002.ted4
+
+for program in ted4dec ted4enc ted4info; do
+    expect "unknown_level_$program" 3 'TED4_KERNEL=v9: this machine has plain' \
+        env TED4_KERNEL=v9 "$TED4_BUILD/$program" $stream
+done
+levels=$(TED4_KERNEL=v9 "$TED4_BUILD/ted4dec" $stream 2>&1 | sed -n 's/.*this machine has //p')
+for level in $levels; do
+    expect "named_$level" 0 "kernels $level" \
+        env TED4_KERNEL="$level" "$TED4_BUILD/ted4enc" --version
+    TED4_KERNEL=$level "$TED4_BUILD/ted4dec" $stream --hash --frames 0:4 >"$out/$level" 2>&1 ||
+        fail "hash_$level" "status $?"
+    if cmp -s "$out/plain" "$out/$level"; then
+        ok "hash_$level"
+    else
+        fail "hash_$level" "not that of plain"
+    fi
+done
+
+if [ "$(uname -m)" = x86_64 ] && command -v objdump >/dev/null; then
+    objdump -d --no-show-raw-insn "$TED4_BUILD"/libted4*.a | awk '
+        / file format / { member = $1 }
+        member ~ /\.v[34]\.o:$|_(avx2|avx512|vnni|avxvnni)\.o:$/ { next }
+        { seen++ }
+        /[ \t]v[a-z0-9]+ .*%[xyz]mm|[ \t](sar|shl|shr|ror)x / { found[member] = 1 }
+        END { for (m in found) print m; print seen > "/dev/stderr" }' >"$out/found" 2>"$out/once"
+    if [ "$(cat "$out/once")" -gt 10000 ] && [ ! -s "$out/found" ]; then
+        ok compiled_once
+    else
+        fail compiled_once "$(cat "$out/found")"
+    fi
+else
+    skip compiled_once "there is no objdump, or this is no x86-64"
+fi
+exit $bad

@@ -1,0 +1,125 @@
+#!/bin/sh
+# test_mutants.sh - ted4conf mutants: the lists fit the sources; results are believed only of a build whose unchanged program passes, and only for as long as what
+# they stand on is the same. A small tree stands in for the decoder, a script for the compiler: the program it "makes" fails at V-two where its source says so.
+# Speaks as cmocka programs do; run by `make test` from the project's root.
+# SPDX-License-Identifier: BSD-2-Clause
+set -u
+. tests/support/speak.sh
+need mutants ted4conf
+conf=$(cd "$TED4_BUILD" && pwd)/ted4conf
+expect lists_fit_the_sources 0 ' mutants, ' "$conf" mutants --check
+
+# What the "compiler" makes; $MOOD: how a machine or a build is broken.
+mkdir -p "$out/bin" "$out/bench"
+cat >"$out/bin/cc" <<'END'
+#!/bin/sh
+[ "${MOOD:-}" = no-build ] && exit 1
+while [ "$1" != -o ]; do shift; done
+cp bin/program "$2" && chmod +x "$2"
+END
+cat >"$out/bin/program" <<'END'
+#!/bin/sh
+source=$(cat "$(dirname "$0")"/ref-decoder/*/*.c)
+says() { printf '%s' "$source" | grep -qF "$1"; }
+[ "${MOOD:-}" = no-suite ] && { echo 'ted4conf: no memory' >&2; exit 3; }
+[ "${MOOD:-}" = no-vector ] && says 'x > 1' && exit 3
+echo 'at V-one'
+[ "${MOOD:-}" = slow ] && sleep 1
+says 'y = 3' && kill -SEGV $$
+echo 'at V-two'
+says 'x > 1' && { echo 'fail: V-two: should be valid'; exit 1; }
+[ "${MOOD:-}" = wrong ] && { echo 'fail: V-two: as ever'; exit 1; }
+echo '2 run, 0 failed'
+END
+chmod +x "$out/bin/cc"
+cp bench/sources.awk "$out/bench"
+export PATH="$out/bin:$PATH" TMPDIR="$out"            # folders of campaigns that end early stay
+
+fresh() {
+    rm -rf "$out/ref-decoder" "$out/suite"
+    for d in base norm read recon; do mkdir -p "$out/ref-decoder/$d"; echo "int $d;" >"$out/ref-decoder/$d/$d.h"; done
+    printf '/* a */\nint f(void)\n{\n    if (x > 0)\n        y = 2;\n    z = 1;\n}\n' >"$out/ref-decoder/norm/f.c"
+    printf 'int g(void)\n{\n    w = 1;\n}\n' >"$out/ref-decoder/read/g.c"
+    mkdir -p "$out/suite/vectors"
+    echo '{"id":"V-one"}' >"$out/suite/vectors/V-one.json"
+    echo '{"id":"V-two"}' >"$out/suite/vectors/V-two.json"
+    cat >"$out/suite/mutants.list" <<'END'
+mutant gt ref-decoder/norm/f.c
+< if (x > 0)
+> if (x > 1)
+mutant crash ref-decoder/norm/f.c
+< y = 2;
+> y = 3;
+mutant lives ref-decoder/read/g.c
+< w = 1;
+> w = 2;
+= nobody looks
+END
+    printf 'mutant same ref-decoder/norm/f.c\n< z = 1;\n> z = 0 + 1;\n= the same\n' >"$out/suite/mutants-equivalent.list"
+}
+mutants() { (cd "$out" && MOOD=${mood:-} "$conf" mutants -s suite -b . --compile true --libraries '' "$@"); }
+# holds NAME N: so many results hold.
+holds() { expect "$1" 0 "3 mutants, $2 with a result that holds" mutants --check; }
+ran() { fresh; mutants >/dev/null 2>&1; }
+rows() { if [ -f "$out/suite/mutants.csv" ]; then fail "$1" "there are rows"; else ok "$1"; fi; }
+
+fresh
+holds nothing_ran 0
+expect all_run 1 '3 mutants, 2 killed, 1 survived, 0 not judged: not enough' mutants
+check rows "$out/suite/mutants.csv" ',killed,V-two,should be valid' ',killed,V-one,crash' ',survived,,'
+check page "$out/suite/MUTANTS.md" '| killed | 2 (66.7 %) |' '| gt | V-two | should be valid |' '* lives (ref-decoder/read/g.c, survived): `w = 2;` for `w = 1;`: nobody looks'
+holds all_hold 3
+cp "$out/suite/mutants.csv" "$out/before"
+mutants >/dev/null 2>&1
+if cmp -s "$out/before" "$out/suite/mutants.csv"; then ok nothing_twice; else fail nothing_twice "rows were added"; fi
+
+# What results stand on.
+printf '/* b */\nint  f(void)\n{\n    if (x > 0)\n        y = 2;\n    z = 1;\n}\n' >"$out/ref-decoder/norm/f.c"
+holds comments_and_spacing 3
+echo 'int h;' >>"$out/ref-decoder/norm/f.c"
+holds code_of_its_file 0
+ran; echo 'int h;' >>"$out/ref-decoder/read/g.c"
+holds code_of_another_file 2
+ran; sed -i 's/x > 1/x > 2/' "$out/suite/mutants.list"
+holds text 2
+ran; echo '{"id":"V-three"}' >"$out/suite/vectors/V-three.json"
+holds suite_grows 2
+mutants --only none >/dev/null 2>&1
+check no_share_of_some "$out/suite/MUTANTS.md" '| killed | 2 |' '| not run | 1 |' '* ref-decoder/read/g.c: lives'
+fresh; mutants --only none >/dev/null 2>&1
+check all_wait "$out/suite/MUTANTS.md" 'none' '* ref-decoder/norm/f.c: gt crash' '* ref-decoder/read/g.c: lives'
+expect no_compiler 3 '--compile is missing' sh -c "cd '$out' && '$conf' mutants -s suite -b ."
+ran; echo '{"id":"V-two","rules":["R-CON-001"],"intent":"more"}' >"$out/suite/vectors/V-two.json"
+holds what_is_said_of_vectors 3
+ran; echo '{"id":"V-two","bytes":1}' >"$out/suite/vectors/V-two.json"
+holds killing_vector_changes 1
+ran; rm "$out/suite/vectors/V-two.json"
+holds killing_vector_goes 1
+mutants >/dev/null 2>&1
+holds stale_ones_run_again 2
+
+# A broken machine, build or suite kills nothing.
+for mood in no-build no-suite wrong; do
+    fresh
+    expect "unchanged_$mood" 3 'the unchanged program' mutants
+    rows "no_rows_$mood"
+done
+mood=slow; fresh
+expect unchanged_slow 3 'mutants need a time limit of 4 times that' mutants -t 3
+mood=no-vector; fresh
+expect came_to_no_vector 3 'gt: the runner was ended, or came to no vector' mutants --only gt
+rows no_rows_no_vector
+mood=
+
+# Lists that do not fit.
+fresh; sed -i 's/w = 1/w = 7/' "$out/ref-decoder/read/g.c"
+expect text_is_not_there 3 'lives: its line is in ref-decoder/read/g.c 0 times: w = 1;' mutants --check
+fresh; echo '    w = 1;' >>"$out/ref-decoder/read/g.c"
+expect text_is_there_twice 3 'lives: its line is in ref-decoder/read/g.c 2 times' mutants --check
+fresh; sed -i 's/z = 1/z = 2/' "$out/ref-decoder/norm/f.c"
+expect equivalent_is_not_there 3 'same: its line is in ref-decoder/norm/f.c 0 times' mutants --check
+fresh; sed -i '/^=/d' "$out/suite/mutants-equivalent.list"
+expect equivalent_says_why 3 'same: why?' mutants --check
+fresh; cat "$out/suite/mutants.list" >"$out/twice"; cat "$out/twice" >>"$out/suite/mutants.list"
+expect id_twice 3 'gt is there twice' mutants --check
+exit $bad

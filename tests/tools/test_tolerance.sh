@@ -1,0 +1,36 @@
+#!/bin/sh
+# test_tolerance.sh - ted4tolerance (annex E): thresholds.csv holds what the program computes, for a sample of its vectors; our decoder's own records keep the
+# thresholds, records that are a little off do not, and missing ones neither. Speaks as cmocka programs do; run by `make test` from the project's root.
+# SPDX-License-Identifier: BSD-2-Clause
+set -u
+export LC_ALL=C
+. tests/support/speak.sh
+need tolerance ted4tolerance ted4dec
+table=conformance/tolerance/thresholds.csv
+stream=conformance/vectors/content/CNT-pop-0.002
+sample='CNT-pop-0.002 WRK-smallest'
+
+# judge NAME WANTED-STATUS WANTED-TEXT
+judge() { expect "$1" "$2" "$3" "$TED4_BUILD/ted4tolerance" judge $stream.ted4 $stream.json "$out/dump"; }
+
+# shellcheck disable=SC2086
+sh conformance/tolerance/table.sh "$TED4_BUILD/ted4tolerance" $sample >"$out/now" || fail table "status $?"
+for id in vector $sample; do
+    grep "^$id," "$out/now" >"$out/a"
+    grep "^$id," $table >"$out/b"
+    if [ -s "$out/a" ] && cmp -s "$out/a" "$out/b"; then ok "current_$id"; else fail "current_$id" "make tolerance"; fi
+done
+
+mkdir "$out/dump"
+sed -n 's/^ "queries":\(.*\),$/\1/p' $stream.json >"$out/q.json"
+"$TED4_BUILD/ted4dec" --ted4-run $stream.ted4 --tiers T5 --queries "$out/q.json" --dump "$out/dump" >/dev/null || fail dump "status $?"
+judge ours 0 '{"class":"T","queries":["kept","kept","kept","kept"]}'
+# Byte 2 of the first colour of record 1, of 14 numbers each: its exponent and leading bits.
+cp "$out/dump/T5-1.bin" "$out/keep"
+printf '\377' | dd of="$out/dump/T5-1.bin" bs=1 seek=102 conv=notrunc 2>/dev/null
+judge off 1 '{"class":null,"queries":["kept","colour","kept","kept"]}'
+head -c 5600 "$out/keep" >"$out/dump/T5-1.bin"
+judge short 1 '"count"'
+rm "$out/dump/T5-1.bin"
+judge absent 1 '"missing"'
+exit $bad
