@@ -86,6 +86,10 @@ $B/tests/tools/test_lab_facts: $B/tests/tools/test_lab_facts.o $(patsubst %,$B/b
         $(DEC_TOOL:%.c=$B/%.o) $(ENC_LIB)
 	$(CC) -fopenmp $(LDFLAGS) $^ -o $@ -lcmocka $(LIBS)
 
+# Pictures that the pages keep.
+$B/bench/to_jpeg: $B/bench/to_jpeg.o
+	$(CC) $(LDFLAGS) $^ -o $@ $(LIBS)
+
 # make rate-check FILE=x.ted4
 rate-check: $B/bench/rate_check
 	$B/bench/rate_check $(FILE)
@@ -98,11 +102,11 @@ bench-decode: $B/bench/bench_decode
 
 # The evidence: all runs of bench/sweep.txt whose row in bench/sweep.csv is missing or stale (days; resumable: bench/sweep.sh does parts of it);
 # `make report` writes bench/report.md with its charts from the rows that are there.
-sweep: all $(BENCH_FILE:%=$B/bench/%)
+sweep: all $(BENCH_FILE:%=$B/bench/%) $B/bench/to_jpeg
 	TED4_BUILD=$B TED4_DATA=$(TED4_DATA) bench/sweep.sh
 
 # Only the runs that show real scenes.
-real: all $(BENCH_FILE:%=$B/bench/%)
+real: all $(BENCH_FILE:%=$B/bench/%) $B/bench/to_jpeg
 	TED4_BUILD=$B TED4_DATA=$(TED4_DATA) bench/sweep.sh real
 	bench/report.sh
 
@@ -113,7 +117,7 @@ report:
 
 # The stability lab: the runs of bench/stability.txt whose row in bench/stability.csv is missing or stale (hours; resumable), then bench/stability.md with its
 # charts.
-stability: all $B/bench/lab_facts
+stability: all $B/bench/lab_facts $B/bench/to_jpeg
 	TED4_BUILD=$B TED4_DATA=$(TED4_DATA) bench/stability.sh
 	bench/stability_page.sh
 

@@ -54,6 +54,12 @@ time_decoder() {
     done
 }
 
+# keep_picture FILE.png FOLDER NAME: as FOLDER/NAME.jpg among the results; FILE.png goes.
+keep_picture() {
+    mkdir -p "$results/$2"
+    "$programs/to_jpeg" "$1" "$results/$2/$3.jpg" && rm -f "$1"
+}
+
 # run COMMAND...: in the background and waited for, so that a signal reaches it at once.
 run() {
     "$@" & child=$!

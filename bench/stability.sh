@@ -27,14 +27,15 @@ facts="views exact refused_views psnr worst worst_frame worst_camera bytes ancho
 facts="$facts refused_times dead full thin huge symbols escapes escape_share symbol_ends sigma_ends step_ends context_ends width_ends"
 facts="$facts log_bad loss_first loss_last diverged gradient gradient_term peak peak_term rollbacks skipped clamped"
 columns=tag,key,scene,groups,options,status,$(echo "$facts" | tr ' ' ,),train_s,cpu_s,hash,why
-want="ted4enc ted4scene bench/lab_facts"
+want="ted4enc ted4scene bench/lab_facts bench/to_jpeg"
 jobs=$(getconf _NPROCESSORS_ONLN) threads=1 share= judges="$(echo bench/lab_*.[ch])"
 . bench/runs.sh
 
 measure() {
     set -- "$out.ted4" "$folder" "$out.jsonl"
-    case +$keep+ in *+strip+*) mkdir -p "$results/lab"; set -- "$@" "$results/lab/$tag.png" ;; esac
+    case +$keep+ in *+strip+*) strip=$out.strip.png; set -- "$@" "$strip" ;; *) strip= ;; esac
     run "$programs/lab_facts" "$@" >"$out.facts.json" || return 1
+    [ -z "$strip" ] || keep_picture "$strip" lab "$tag" || return 1
     times=$(awk -f bench/log.awk /dev/null "$out.jsonl") || return 1
     row=$tag,$key,$scene,$groups,$options,fine
     for f in $facts; do row=$row,$(value $f "$out.facts.json" | sed 's/^null$//'); done

@@ -27,7 +27,7 @@ columns=tag,key,scene,groups,options,lambda,psnr,ssim,ssim2,ms_ssim,bytes
 columns=$columns,b_header,b_nete,b_netr,b_bank,b_positions,b_masks,b_feature,b_scaling,b_offset,b_phi,b_tau,b_frame,motion,activation,temporal_mask
 columns=$columns,train_s,stage1_s,cpu_s,stage1_cpu_s,anchors,gaussians,dynamic,decode_ms,render_fps,estimated_bits,coded_bits
 columns=$columns,integer_bits,float32_bits,float64_bits,integer_ms,float32_ms,float64_ms,span_short,span_between,span_long,changed,short_changed,short_same,jobs,threads,hash
-want="ted4enc ted4dec ted4eval ted4info ted4scene bench/rate_check bench/spans"
+want="ted4enc ted4dec ted4eval ted4info ted4scene bench/rate_check bench/spans bench/to_jpeg"
 jobs=1 threads=0 share=1 judges=
 . bench/runs.sh
 
@@ -36,11 +36,14 @@ keep_pictures() {
     down=$(echo "$options" | sed -n 's/.*--downscale \([0-9]*\).*/\1/p')
     [ -z "$judge" ] || down=1
     sheet=
-    case +$keep+ in *+sheet+*) mkdir -p "$results/sheets"; sheet="--sheet $results/sheets/$tag.png" ;; esac
+    case +$keep+ in *+sheet+*) sheet="--sheet $out.sheet.png" ;; esac
     run "$programs/ted4eval" "$out.ted4" "${judge:-$folder}" --anyway --downscale "${down:-1}" --json $sheet -f -q -j "$threads" >"$out.eval.json" || return 1
+    [ -z "$sheet" ] || keep_picture "$out.sheet.png" sheets "$tag" || return 1
+    spans=
     set -- "$out.ted4"
-    case +$keep+ in *+spans+*) mkdir -p "$results/charts"; set -- "$@" "$folder" "${down:-1}" "$results/charts/spans-$tag.png" ;; esac
+    case +$keep+ in *+spans+*) spans=$out.spans.png; set -- "$@" "$folder" "${down:-1}" "$spans" ;; esac
     run "$programs/spans" "$@" >"$out.spans.json" || return 1
+    [ -z "$spans" ] || keep_picture "$spans" charts "spans-$tag" || return 1
     case +$keep+ in *+log+*)
         mkdir -p "$results/logs"
         awk -v most=100 -f bench/log.awk "$first_log" "$out.jsonl" >"$out.log" && mv "$out.log" "$results/logs/$tag.jsonl" || return 1 ;;

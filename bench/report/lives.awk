@@ -85,11 +85,11 @@ function span_pictures(    i, t, any) {
             say("white one half, red 1 (the strip is the scale), darker where the Gaussian is dark.")
         }
         say("")
-        say("![Spans, " t "](charts/spans-" t ".png)")
+        say("![Spans, " t "](charts/spans-" t ".jpg)")
     }
 }
 
-function span_picture(t) { return results "/charts/spans-" t ".png" }
+function span_picture(t) { return results "/charts/spans-" t ".jpg" }
 
 function exists(file,    unused, found) {
     found = (getline unused <file) >= 0

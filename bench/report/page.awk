@@ -84,7 +84,7 @@ function sheet_section(    i, t) {
         if (!keeps(t, "sheet"))
             continue
         if (has(t))
-            row("[" name_of(t) "](sheets/" t ".png)|" sheet_options(t) "|" values(t, "psnr:2 ssim:4 ms_ssim:4 bytes train_s:0 team anchors dynamic " \
+            row("[" name_of(t) "](sheets/" t ".jpg)|" sheet_options(t) "|" values(t, "psnr:2 ssim:4 ms_ssim:4 bytes train_s:0 team anchors dynamic " \
                 "decode_ms:0"))
         else
             row_missing(t "|" sheet_options(t))

@@ -174,7 +174,7 @@ function strip_section(    i, t) {
         if (!keeps(t, "strip"))
             continue
         if (has(t) && get(t, "worst") != "")
-            row(name_of(t) "|" values(t, "worst:2 worst_frame worst_camera") "|![" scene[t] "](lab/" t ".png)")
+            row(name_of(t) "|" values(t, "worst:2 worst_frame worst_camera") "|![" scene[t] "](lab/" t ".jpg)")
         else
             row_missing(t)
     }
