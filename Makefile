@@ -152,7 +152,7 @@ asan:
 	$(MAKE) test B=build-asan OPT='-O1' CFLAGS='-fsanitize=address,undefined -fno-sanitize-recover=all' \
 	    LDFLAGS='-fsanitize=address,undefined'
 
-include tests/spec/spec.mk tests/strict.mk bench/bench.mk fuzz/fuzz.mk conformance/conf.mk conformance/reader/reader.mk conformance/cross/cross.mk
+include tests/spec/spec.mk tests/strict.mk bench/bench.mk fuzz/fuzz.mk conformance/conf.mk conformance/reader/reader.mk conformance/cross/cross.mk player/player.mk
 
 DEPS     = gcc libc6-dev libcmocka-dev libjansson-dev libjpeg62-turbo-dev libpng-dev libxxhash-dev python3 zlib1g-dev
 DEPS_DEV = clang-14 clang-format-14 llvm-14 libclang-rt-14-dev libomp-14-dev afl++ ffmpeg pandoc lcov valgrind

@@ -2,7 +2,6 @@
  * SPDX-License-Identifier: BSD-2-Clause */
 #include "budget.h"
 
-#include <stdio.h>
 #include <string.h>
 
 /* Symbols of substreams are traced at the substream's first byte, which belongs to the substream.
@@ -25,15 +24,28 @@ static int ends_in(const char *text, const char *end)
     return n >= m && strcmp(text + n - m, end) == 0;
 }
 
+/* The element's name; that of a substream of features with the number of its slice behind it. */
+static void name_row(char name[TED4_BUDGET_NAME], const char *element, int64_t index)
+{
+    const size_t length = strlen(element);
+    size_t n = length < TED4_BUDGET_NAME - 4 ? length : TED4_BUDGET_NAME - 4;
+
+    memcpy(name, element, n);
+    if (strcmp(element, "feature_substream") == 0) {
+        name[n++] = ' ';
+        if (index >= 10)
+            name[n++] = (char)('0' + index / 10 % 10);
+        name[n++] = (char)('0' + index % 10);
+    }
+    name[n] = '\0';
+}
+
 static int row_of(ted4_budget *b, const char *element, int64_t index)
 {
     char name[TED4_BUDGET_NAME];
     int i = 0;
 
-    if (strcmp(element, "feature_substream") == 0)
-        snprintf(name, sizeof name, "%s %d", element, (int)index);
-    else
-        snprintf(name, sizeof name, "%s", element);
+    name_row(name, element, index);
     while (i < b->n_rows &&
            (strcmp(b->row[i].element, name) != 0 || strcmp(b->row[i].chunk, b->chunk) != 0))
         i++;
@@ -68,7 +80,7 @@ void ted4_budget_trace(void *user, size_t offset, const char *element, int64_t i
         for (int i = 0; i < 4; i++)
             b->chunk[i] = (char)(value >> 8 * i & 0x7f);
     else if (b->n_rows == 0)
-        strcpy(b->chunk, "file");
+        memcpy(b->chunk, "file", sizeof "file");
     b->disordered |= offset < b->offset || (b->n_rows == 0 && offset != 0);
     if (b->n_rows > 0)
         b->row[b->owner].bytes += offset - b->offset;

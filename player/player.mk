@@ -1,0 +1,35 @@
+# The decoder in WebAssembly, and the JavaScript around it. `make player-wasm` needs clang and lld of
+# LLVM 19 (make deps-player) and nothing from npm.
+W       = $B/player
+WASM_CC = clang-19 --target=wasm32 -nostdlib -ffreestanding -O3 -std=c11 -msimd128 -mbulk-memory \
+          -fvisibility=hidden -ffunction-sections -fdata-sections $(STRICT) -fno-math-errno
+# What the C library would give comes from wasm/include; xxHash is one header of the system.
+WASM_INC = -isystem player/wasm/include -I$W/inc -Iref-decoder -idirafter /usr/include
+WASM_DEC = $(sort $(filter-out %/inflate.c %/validate.c $(wildcard ref-decoder/read/advise*.c \
+           ref-decoder/read/collect*.c ref-decoder/kernel/*_avx2.c ref-decoder/kernel/*_avx512.c \
+           ref-decoder/kernel/*_vnni.c ref-decoder/kernel/*_neon.c), $(DEC_SRC)))
+WASM_SRC = $(WASM_DEC) ref-decoder/tool/budget.c $(sort $(wildcard player/wasm/*.c))
+WASM_OBJ = $(WASM_SRC:%.c=$W/%.o)
+
+player-wasm: $W/ted4.wasm
+$W/inc/spec/inflate.h: spec/annex-l-deflate.md tests/spec/code.awk
+	@mkdir -p $(@D)
+	awk -f tests/spec/code.awk $< > $@.new && mv $@.new $@
+$W/player/wasm/inflate.o: $W/inc/spec/inflate.h
+$W/%.o: %.c
+	@mkdir -p $(@D)
+	$(WASM_CC) $(WASM_INC) -DXXH_INLINE_ALL -MD -MP -c $< -o $@
+$W/ted4.wasm: $(WASM_OBJ)
+	wasm-ld-19 --no-entry --gc-sections --strip-all -z stack-size=1048576 -O2 $^ -o $@
+	@printf '%s: %s bytes, %s by gzip -9\n' $@ $$(wc -c <$@) $$(gzip -9c $@ | wc -c)
+
+# Through the JavaScript interface, in Node: its tests, and the conformance suite by the driver contract.
+# WebAssembly reserves address space, so the runs of the suite have no bound on it.
+player-test: $W/ted4.wasm
+	TED4_WASM=$(abspath $W/ted4.wasm) node --test player/test/*.test.mjs
+player-conformance: $W/ted4.wasm $B/ted4conf
+	TED4_WASM=$(abspath $W/ted4.wasm) $B/ted4conf run --decoder 'node player/test/driver.mjs' --memory 0 --once --timeout 60
+DEPS_PLAYER = clang-19 lld-19 nodejs
+deps-player: deps
+	@$(call INSTALL_DEBIAN,$(DEPS_PLAYER))
+.PHONY: player-wasm player-test player-conformance deps-player

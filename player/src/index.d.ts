@@ -1,0 +1,105 @@
+// Types of the package ted4. SPDX-License-Identifier: BSD-2-Clause
+
+export type Verdict = "valid" | "invalid" | "limit" | "unsupported" | "io";
+
+/** Why a file, or a query, is refused (specification, chapter 14). */
+export class Ted4Error extends Error {
+  readonly verdict: Verdict;
+  readonly id: string;
+  /** Byte offset in the file; undefined for verdicts without one. */
+  readonly offset?: number;
+  readonly section: string;
+  readonly text: string;
+}
+
+export interface OpenOptions {
+  /** Bytes of memory that the file may ask for; 2 GiB if it is missing. */
+  maxBytes?: number;
+  /** Steps of spec 13.4 that the file may ask for; 0, the default: any. */
+  maxWork?: number;
+  /** Attribute the file's bytes to its elements, too. */
+  budget?: boolean;
+}
+
+export interface SceneInfo {
+  anchors: number;
+  offsets: number;
+  gaussians: number;
+  moving: number;
+  frames: number;
+  /** Frames per second. */
+  rate: number;
+  level: number;
+  view: "none" | "colour" | "full";
+  motion: "none" | "bank" | "concat" | "inr";
+  activation: boolean;
+  origin: [number, number, number];
+  exponent: number;
+  /** Display-referred sRGB: red, green, blue. */
+  background: [number, number, number];
+  /** XXH3-128 of the decoded integers (spec 15.2), hexadecimal. */
+  hash: string;
+}
+
+/** Structure of arrays; world axes are right, down, forward; scales are standard deviations;
+ *  rotations are w, x, y, z; colours are display-referred sRGB from 0 to 1. */
+export interface Gaussians {
+  n: number;
+  id: Uint32Array;
+  mean: Float32Array[];
+  scale: Float32Array[];
+  rotation: Float32Array[];
+  opacity: Float32Array;
+  colour: Float32Array[];
+}
+
+export interface Element {
+  chunk: string;
+  element: string;
+  bytes: number;
+  symbols: number;
+}
+
+type Vector = [number, number, number];
+type Source = WebAssembly.Module | BufferSource | Response | Promise<Response> | string | URL;
+
+export class Scene {
+  readonly info: SceneInfo;
+  readonly isClassX: boolean;
+  /** Arrays lie in the decoder's memory and stay as they are until the next call. */
+  gaussians(num: number, den: number, camera?: Vector): Gaussians;
+  frame(j: number, camera?: Vector): Gaussians;
+  bytesByElement(): Element[];
+  /** Size and XXH3-128 of a tier of annex J, 0 to 4; null: no memory. */
+  tier(number: number): { bytes: number; xxh3: string } | null;
+  /** The same of the records of the last query (T5). */
+  records(): { bytes: number; xxh3: string };
+}
+
+export class Decoder {
+  static load(source: Source): Promise<Decoder>;
+  readonly module: WebAssembly.Module;
+  /** Throws Ted4Error. */
+  open(bytes: Uint8Array | ArrayBuffer, options?: OpenOptions): Scene;
+  salvage(bytes: Uint8Array | ArrayBuffer, options?: OpenOptions): {
+    error: Ted4Error | null;
+    salvage: { tiles: number; tilesDeclared: number; anchorsDeclared: number; stop: Ted4Error };
+    scene: Scene | null;
+  };
+}
+
+export interface ClientScene {
+  info: SceneInfo;
+  bytesByElement: Element[] | null;
+  milliseconds: number;
+  gaussians(num: number, den: number, camera?: Vector): Promise<Gaussians & { milliseconds: number }>;
+  frame(j: number, camera?: Vector): Promise<Gaussians & { milliseconds: number }>;
+  close(): Promise<void>;
+}
+
+export class Ted4Client {
+  constructor(worker?: Worker);
+  load(source: WebAssembly.Module | BufferSource | string | URL): Promise<void>;
+  open(bytes: Uint8Array | ArrayBuffer, options?: OpenOptions): Promise<ClientScene>;
+  terminate(): void;
+}
