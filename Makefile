@@ -50,14 +50,14 @@ TESTS    = $(patsubst %.c,$B/%,$(sort $(wildcard tests/*/test_*.c))) \
 all: $(PROGS)
 
 # Changes when compiler or flags do; then everything is compiled anew.
-HOW = $(CC) $(CFLAGS_ALL) $(STRICT) $(FREE) $(LANES) $(FLAGS_v3) $(FLAGS_v4)
+HOW = $(CC) $(CFLAGS_ALL) $(LIBRARY_FLAGS) $(STRICT) $(FREE) $(LANES) $(FLAGS_v3) $(FLAGS_v4)
 $B/how: always
 	@mkdir -p $(@D)
 	@echo '$(HOW)' | cmp -s - $@ || echo '$(HOW)' >$@
 
 $B/%.o: %.c $B/how
 	@mkdir -p $(@D)
-	$(CC) $(CFLAGS_ALL) $(FPFLAGS) -c $< -o $@
+	$(CC) $(CFLAGS_ALL) $(FPFLAGS) $(LIBRARY) -c $< -o $@
 $B/%.o: FPFLAGS = $(STRICT)
 $(FREE_OBJ): FPFLAGS = $(FREE)
 # Only files named for an instruction set may use it; the compiler enforces it.
@@ -106,7 +106,7 @@ $B/tests/tools/test_run_log: $(addprefix $B/ref-encoder/tool/,run_log.o teller.o
 $B/tests/tools/test_teller: $B/ref-encoder/tool/teller.o
 $B/tests/tools/test_belongs: $(addprefix $B/ref-encoder/tool/,belongs.o sheet.o)
 $B/tests/tools/test_estimate: $B/ref-encoder/tool/estimate.o
-$B/tests/tools/test_install: | $(PROGS) $B/ted4conf $B/ted4tolerance
+$B/tests/tools/test_install $B/tests/tools/test_library: | $(PROGS) $(SHARED) $B/ted4conf $B/ted4tolerance
 $B/tests/tools/test_verify: $B/ref-encoder/tool/verify.o
 $(addprefix $B/tests/encoder/test_starved_,trainer writer): override LDFLAGS += -Wl,--wrap=malloc,--wrap=calloc,--wrap=realloc,--wrap=aligned_alloc
 
@@ -152,10 +152,10 @@ asan:
 	$(MAKE) test B=build-asan OPT='-O1' CFLAGS='-fsanitize=address,undefined -fno-sanitize-recover=all' \
 	    LDFLAGS='-fsanitize=address,undefined'
 
-include tests/spec/spec.mk tests/strict.mk bench/bench.mk fuzz/fuzz.mk conformance/conf.mk conformance/reader/reader.mk conformance/cross/cross.mk player/player.mk
+include ref-decoder/library.mk tests/spec/spec.mk tests/strict.mk bench/bench.mk fuzz/fuzz.mk conformance/conf.mk conformance/reader/reader.mk conformance/cross/cross.mk player/player.mk
 
 DEPS     = gcc libc6-dev libcmocka-dev libjansson-dev libjpeg62-turbo-dev libpng-dev libxxhash-dev python3 zlib1g-dev
-DEPS_DEV = clang-14 clang-format-14 llvm-14 libclang-rt-14-dev libomp-14-dev afl++ ffmpeg pandoc lcov valgrind
+DEPS_DEV = clang-14 clang-format-14 llvm-14 libclang-rt-14-dev libomp-14-dev afl++ ffmpeg pandoc lcov valgrind cmake g++ pkg-config python3-numpy
 SUDO     = $(shell [ "$$(id -u)" = 0 ] || echo sudo)
 INSTALL_DEBIAN = missing=$$(for p in $(1); do \
 	dpkg-query -W -f='$${Status}' $$p 2>/dev/null | grep -q 'ok installed' || echo $$p; done); \
@@ -168,13 +168,9 @@ deps-dev: deps
 
 # The other libraries have no public header.
 PREFIX  ?= /usr/local
-install: all
-	install -d $(DESTDIR)$(PREFIX)/bin $(DESTDIR)$(PREFIX)/lib $(DESTDIR)$(PREFIX)/include/ted4/base
+install: all install-library
+	install -d $(DESTDIR)$(PREFIX)/bin
 	install $(PROGS) $B/ted4conf $B/ted4tolerance $(DESTDIR)$(PREFIX)/bin
-	install -m 644 $B/libted4dec.a $(DESTDIR)$(PREFIX)/lib
-	install -m 644 ref-decoder/ted4.h $(DESTDIR)$(PREFIX)/include/ted4
-	install -m 644 ref-decoder/base/parallel.h ref-decoder/base/status.h ref-decoder/base/status.def \
-	    $(DESTDIR)$(PREFIX)/include/ted4/base
 
 help:
 	@echo 'all demo test check test-machines lint asan deps deps-dev install clean; variables OPT ARCH CC B TED4_DATA PREFIX DESTDIR'

@@ -1,5 +1,5 @@
-# The decoder in WebAssembly, and the JavaScript around it. `make player-wasm` needs clang and lld of
-# LLVM 19 (make deps-player) and nothing from npm.
+# The decoder in WebAssembly, and the JavaScript around it. `make player-wasm` needs clang and lld
+# of LLVM 19 (make deps-player) and nothing from npm.
 W       = $B/player
 WASM_CC = clang-19 --target=wasm32 -nostdlib -ffreestanding -O3 -std=c11 -msimd128 -mbulk-memory \
           -fvisibility=hidden -ffunction-sections -fdata-sections $(STRICT) -fno-math-errno
@@ -23,12 +23,13 @@ $W/ted4.wasm: $(WASM_OBJ)
 	wasm-ld-19 --no-entry --gc-sections --strip-all -z stack-size=1048576 -O2 $^ -o $@
 	@printf '%s: %s bytes, %s by gzip -9\n' $@ $$(wc -c <$@) $$(gzip -9c $@ | wc -c)
 
-# Through the JavaScript interface, in Node: its tests, and the conformance suite by the driver contract.
-# WebAssembly reserves address space, so the runs of the suite have no bound on it.
+# Through the JavaScript interface, in Node: its tests, and the conformance suite by the driver
+# contract. WebAssembly reserves address space, so the runs of the suite have no bound on it.
 player-test: $W/ted4.wasm
 	TED4_WASM=$(abspath $W/ted4.wasm) node --test player/test/*.test.mjs
 player-conformance: $W/ted4.wasm $B/ted4conf
-	TED4_WASM=$(abspath $W/ted4.wasm) $B/ted4conf run --decoder 'node player/test/driver.mjs' --memory 0 --once --timeout 60
+	TED4_WASM=$(abspath $W/ted4.wasm) $B/ted4conf run --decoder 'node player/test/driver.mjs' \
+	    --memory 0 --once --timeout 60
 DEPS_PLAYER = clang-19 lld-19 nodejs
 deps-player: deps
 	@$(call INSTALL_DEBIAN,$(DEPS_PLAYER))

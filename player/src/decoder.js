@@ -1,5 +1,6 @@
-// decoder.js - TED4 files in JavaScript: the reference decoder as a WebAssembly module (wasm/api.c),
-// one instance per file. Works in browsers, in workers and in Node; depends on nothing.
+// decoder.js - TED4 files in JavaScript: the reference decoder as a WebAssembly module
+// (wasm/api.c), one instance per file. Works in browsers, in workers and in Node; depends on
+// nothing.
 // SPDX-License-Identifier: BSD-2-Clause
 
 // Members of ted4_info in units of 4 bytes (ted4.h, wasm32).
@@ -169,9 +170,9 @@ export class Scene {
     };
   }
 
-  // The Gaussians of time num / den from a camera centre in world coordinates: { n, id, mean: [x, y,
-  // z], scale: [3], rotation: [w, x, y, z], opacity, colour: [r, g, b] }, arrays of n values in the
-  // module's memory, which stay as they are until the next call. Throws Ted4Error.
+  // The Gaussians of time num / den from a camera centre in world coordinates: { n, id, mean:
+  // [x, y, z], scale: [3], rotation: [w, x, y, z], opacity, colour: [r, g, b] }, arrays of n values
+  // in the module's memory, which stay as they are until the next call. Throws Ted4Error.
   gaussians(num, den, camera = [0, 0, 0]) {
     const code = this.#wasm.ted4_wasm_query(num, den, ...camera, this.#options.maxBytes);
     if (code !== 0) throw this.#error(code);

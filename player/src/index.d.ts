@@ -88,12 +88,16 @@ export class Decoder {
   };
 }
 
+export interface TimedGaussians extends Gaussians {
+  milliseconds: number;
+}
+
 export interface ClientScene {
   info: SceneInfo;
   bytesByElement: Element[] | null;
   milliseconds: number;
-  gaussians(num: number, den: number, camera?: Vector): Promise<Gaussians & { milliseconds: number }>;
-  frame(j: number, camera?: Vector): Promise<Gaussians & { milliseconds: number }>;
+  gaussians(num: number, den: number, camera?: Vector): Promise<TimedGaussians>;
+  frame(j: number, camera?: Vector): Promise<TimedGaussians>;
   close(): Promise<void>;
 }
 

@@ -1,5 +1,6 @@
 // worker.js - a decoder in a worker: opens files and answers queries, so that a page stays smooth.
-// client.js speaks to it. Messages: { call, type, ... }; answers: { call, value } or { call, error }.
+// client.js speaks to it. Messages are { call, type, ... }, answers { call, value } or
+// { call, error }.
 // SPDX-License-Identifier: BSD-2-Clause
 import { Decoder } from "./decoder.js";
 

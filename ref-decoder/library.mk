@@ -1,0 +1,36 @@
+# libted4dec as a shared library, and what tells other builds about both libraries. Its symbols are
+# those of ref-decoder/libted4dec.symbols; when a function leaves this list, or changes, the number
+# behind .so changes.
+VERSION = $(shell sed -n 's/^\#define TED4_VERSION *"\(.*\)"$$/\1/p' ref-decoder/ted4.h)
+SONAME  = libted4dec.so.1
+SHARED  = $B/$(SONAME)
+LIBDIR ?= $(PREFIX)/lib
+# Inside the library, functions are called directly: nobody may put another one in their place.
+LIBRARY_FLAGS = -fPIC -fvisibility=protected
+$(call OBJECTS,$(DEC_SRC)): LIBRARY = $(LIBRARY_FLAGS)
+
+$B/libted4dec.map: ref-decoder/libted4dec.symbols
+	@mkdir -p $(@D)
+	{ echo 'TED4_1 {'; echo 'global:'; sed 's/$$/;/' $<; echo 'local: *;'; echo '};'; } >$@
+$(SHARED): $(call OBJECTS,$(DEC_SRC)) $B/libted4dec.map
+	$(CC) -shared $(LDFLAGS) -Wl,-soname,$(SONAME) -Wl,--version-script=$B/libted4dec.map \
+	    $(filter %.o,$^) -o $@ -lxxhash -lz -lm
+library: $(SHARED) $B/libted4dec.a
+
+# $(1): a template; its @NAME@ become what they are here.
+FILL = sed 's|@VERSION@|$(VERSION:-dev=)|; s|@PREFIX@|$(PREFIX)|; s|@SONAME@|$(SONAME)|; \
+    s|@LIBDIR@|$${prefix}$(LIBDIR:$(PREFIX)%=%)|'
+install-library: library
+	install -d $(DESTDIR)$(LIBDIR)/pkgconfig $(DESTDIR)$(LIBDIR)/cmake/ted4 \
+	    $(DESTDIR)$(PREFIX)/include/ted4/base
+	install -m 644 $B/libted4dec.a $(DESTDIR)$(LIBDIR)
+	install -m 755 $(SHARED) $(DESTDIR)$(LIBDIR)
+	ln -sf $(SONAME) $(DESTDIR)$(LIBDIR)/libted4dec.so
+	install -m 644 ref-decoder/ted4.h $(DESTDIR)$(PREFIX)/include/ted4
+	install -m 644 ref-decoder/base/parallel.h ref-decoder/base/status.h \
+	    ref-decoder/base/status.def $(DESTDIR)$(PREFIX)/include/ted4/base
+	$(FILL) ref-decoder/ted4.pc.in >$(DESTDIR)$(LIBDIR)/pkgconfig/ted4.pc
+	for f in ted4-config ted4-config-version; do \
+	    $(FILL) ref-decoder/$$f.cmake.in >$(DESTDIR)$(LIBDIR)/cmake/ted4/$$f.cmake || exit 1; done
+
+.PHONY: library install-library

@@ -1,0 +1,149 @@
+#!/bin/sh
+# test_library.sh - the decoder as a library for other people's builds: the symbols of the shared
+# library, headers in every dialect, the examples of doc/examples by pkg-config, a project by CMake,
+# and the Python module. What the machine lacks is skipped. Speaks as cmocka programs do; run by
+# `make test` from the project's root.
+# SPDX-License-Identifier: BSD-2-Clause
+set -u
+. tests/support/speak.sh
+need library ted4dec ted4conf ted4tolerance
+vector=conformance/vectors/content/CNT-pop-0.002.ted4
+usr=$out/root/usr
+has() { command -v "$1" >/dev/null; }
+
+# Sanitizers have run-time libraries of their own, which a shared library does not bring.
+case "${CFLAGS:-} $(cat "$TED4_BUILD/how")" in
+*-fsanitize*) skip library "this is a build with sanitizers"; exit 0 ;;
+esac
+make install-library B="$TED4_BUILD" DESTDIR="$out/root" PREFIX=/usr >"$out/said" 2>&1 ||
+    { fail installs "$(cat "$out/said")"; exit 1; }
+shared=$usr/lib/libted4dec.so.1
+LD_LIBRARY_PATH=$usr/lib
+export LD_LIBRARY_PATH
+
+if has nm; then
+    nm -D --defined-only "$shared" | awk '$2 != "A" { sub(/@.*/, "", $3); print $3 }' |
+        sort >"$out/symbols"
+    if cmp -s "$out/symbols" ref-decoder/libted4dec.symbols; then ok symbols
+    else fail symbols "$(diff "$out/symbols" ref-decoder/libted4dec.symbols)"; fi
+    readelf -d "$shared" >"$out/dynamic"
+    check soname "$out/dynamic" "Library soname: [libted4dec.so.1]"
+    if grep -q TEXTREL "$out/dynamic"; then fail position_independent TEXTREL
+    else ok position_independent; fi
+else
+    skip symbols "there is no nm"
+fi
+
+# Every function that the installed headers declare is there, and nothing else.
+sed 's|//.*||' "$usr/include/ted4/ted4.h" "$usr/include/ted4/base/status.h" | tr '\n' ' ' |
+    sed 's|/\*[^*]*\*\+\([^/*][^*]*\*\+\)*/| |g' | tr ';' '\n' |
+    sed -n '/typedef/!s/.*[ *]\(ted4_[a-z0-9_]*\)(.*/\1/p' | sort -u >"$out/declared"
+if cmp -s "$out/declared" ref-decoder/libted4dec.symbols; then ok declared
+else fail declared "$(diff "$out/declared" ref-decoder/libted4dec.symbols)"; fi
+
+echo '#include <ted4/ted4.h>' >"$out/header.c"
+cp "$out/header.c" "$out/header.cc"
+# dialect COMPILER STANDARD FILE
+dialect() {
+    if $1 -std="$2" -Wall -Wextra -Wpedantic -Wconversion -Werror -I"$usr/include" \
+        -fsyntax-only "$out/$3" 2>"$out/err"
+    then ok "header_$2"; else fail "header_$2" "$(cat "$out/err")"; fi
+}
+for standard in c99 c11 c17 c2x; do dialect "${CC:-cc}" $standard header.c; done
+if has "${CXX:-c++}"; then
+    for standard in c++11 c++17 c++20; do dialect "${CXX:-c++}" $standard header.cc; done
+else
+    skip header_cxx "there is no C++ compiler"
+fi
+
+hash=$("$TED4_BUILD/ted4dec" --hash "$vector" | cut -d' ' -f2)
+if has pkg-config; then
+    PKG_CONFIG_PATH=$usr/lib/pkgconfig
+    export PKG_CONFIG_PATH
+    flags="$(pkg-config --define-prefix --cflags ted4) -Wall -Wextra -Werror -fopenmp"
+    for example in attributes memory allocator threads; do
+        # shellcheck disable=SC2086 # several flags
+        ${CC:-cc} -std=c99 $flags doc/examples/$example.c \
+            $(pkg-config --define-prefix --libs ted4) -o "$out/$example" 2>"$out/err" || fail "$example" "$(cat "$out/err")"
+    done
+    expect memory 0 "$hash" "$out/memory" "$vector"
+    expect refused 1 "con.magic at byte 0: " "$out/memory" README.md
+    expect allocator 0 " blocks held, 0 after ted4_scene_free" "$out/allocator" "$vector"
+    expect attributes 0 "frame 0: " "$out/attributes" "$vector"
+    frames=$("$TED4_BUILD/ted4info" "$vector" |
+        sed -n 's/^frames *\([0-9]*\).*/\1/p')
+    "$out/attributes" "$vector" >"$out/lines"
+    if [ "$(wc -l <"$out/lines")" = "$frames" ]; then ok frames
+    else fail frames "not $frames lines"; fi
+    one=$(OMP_NUM_THREADS=1 "$out/threads" "$vector")
+    three=$(OMP_NUM_THREADS=3 "$out/threads" "$vector")
+    if [ -n "$one" ] && [ "$one" = "$three" ]; then ok threads
+    else fail threads "$one, $three"; fi
+else
+    skip pkg_config "there is no pkg-config"
+fi
+
+if has cmake; then
+    mkdir "$out/project"
+    cp doc/examples/memory.c doc/examples/read_file.h "$out/project"
+    cat >"$out/project/CMakeLists.txt" <<'CMAKE'
+cmake_minimum_required(VERSION 3.13)
+project(user C)
+find_package(ted4 0.2 REQUIRED)
+foreach(kind ted4dec ted4dec_static)
+  add_executable(with_${kind} memory.c)
+  target_link_libraries(with_${kind} ted4::${kind})
+endforeach()
+CMAKE
+    if cmake -S "$out/project" -B "$out/made" -DCMAKE_PREFIX_PATH="$usr" >"$out/said" 2>&1 &&
+        cmake --build "$out/made" >>"$out/said" 2>&1; then ok cmake
+    else fail cmake "$(cat "$out/said")"; fi
+    for kind in ted4dec ted4dec_static; do
+        expect "cmake_$kind" 0 "$hash" "$out/made/with_$kind" "$vector"
+    done
+else
+    skip cmake "there is no cmake"
+fi
+
+python=
+for p in python3 /usr/bin/python3; do
+    [ -n "$python" ] || ! $p -c 'import numpy' 2>/dev/null || python=$p
+done
+if [ -n "$python" ]; then
+    "$TED4_BUILD/ted4dec" "$vector" -o "$out/frame_%d.raw" --keep-all -q 2>"$out/err"
+    export TED4_LIBRARY=$shared PYTHONDONTWRITEBYTECODE=1 PYTHONPATH=python
+    if "$python" - "$vector" "$hash" "$out" >"$out/said" 2>&1 <<'PYTHON'
+import sys
+import numpy as np
+import ted4
+
+path, wanted, folder = sys.argv[1:]
+scene = ted4.Scene.open(path)
+assert scene.hash == wanted, scene.hash
+for j in range(scene.frames):
+    g = scene.frame(j)
+    raw = np.fromfile(f"{folder}/frame_{j}.raw", "<f4").reshape(-1, 14)
+    assert len(g) == scene.gaussian_count == len(raw), (len(g), len(raw))
+    assert np.array_equal(g.records().view(np.uint32), raw.view(np.uint32)), j
+for damage, error, offset in ((b"", "con.truncated", 0), (b"x" * 40, "con.magic", 0)):
+    try:
+        ted4.Scene(damage)
+        raise AssertionError("not refused")
+    except ted4.Ted4Error as e:
+        assert (e.id, e.offset, e.verdict) == (error, offset, "invalid"), str(e)
+try:
+    ted4.Scene.open(path, max_bytes=1000)
+    raise AssertionError("not refused")
+except ted4.Ted4Error as e:
+    assert e.id == "limit.memory" and e.offset is None, str(e)
+try:
+    scene.frame(scene.frames)
+    raise AssertionError("no such frame")
+except IndexError:
+    pass
+PYTHON
+    then ok python; else fail python "$(cat "$out/said")"; fi
+else
+    skip python "there is no numpy"
+fi
+exit $bad
