@@ -1,11 +1,9 @@
 /* test_advise.c - what a validator says of valid files: each kind of advice is given for a file
  * made to deserve it, and not for one that does not.
  * SPDX-License-Identifier: BSD-2-Clause */
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <cmocka.h>
 #include <xxhash.h>
+
+#include "test.h"
 #include "validate_case.h"
 
 /* Each identifier that some file below was given. */

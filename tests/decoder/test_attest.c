@@ -2,12 +2,10 @@
  * conformance/attest/sample.txt; all of them: `make attest` (annex J.9). pow2 is what it is named
  * for, to two units in the last place.
  * SPDX-License-Identifier: BSD-2-Clause */
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
 #include <stdlib.h>
 #include <string.h>
-#include <cmocka.h>
+
+#include "test.h"
 #include "tests/gen/attest.h"
 
 enum { STRIDE = 4093 }; /* a prime: every exponent with many fractions */

@@ -2,13 +2,11 @@
  * alone gets the file back from its elements (T0), ancillary chunks and minor version included; and
  * the encoder, which is given a decoded scene alone, writes the file without these, bit for bit.
  * SPDX-License-Identifier: BSD-2-Clause */
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-#include <cmocka.h>
+
+#include "test.h"
 #include "fuzz/mend.h"
 #include "base/bytes.h"
 #include "norm/syntax.h"

@@ -1,11 +1,9 @@
 /* test_codec.c - scenes to bytes and back: spec 5 to 10, 13 to 15 as a whole.
  * SPDX-License-Identifier: BSD-2-Clause */
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <cmocka.h>
 #include <stdlib.h>
 #include <xxhash.h>
+
+#include "test.h"
 #include "base/level.h"
 #include "norm/limits.h"
 #include "use_kernels.h"

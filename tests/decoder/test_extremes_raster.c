@@ -2,14 +2,10 @@
  * against the plain renderer where that has an answer, and what is left out is counted
  * (render/raster.h). test_raster.c has what scenes hold.
  * SPDX-License-Identifier: BSD-2-Clause */
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
 #include <float.h>
 #include <string.h>
 
-#include <cmocka.h>
-
+#include "test.h"
 #include "raster_scene.h"
 #include "render/raster_plain.h"
 #include "train/raster/raster_bwd.h"

@@ -2,15 +2,11 @@
  * can say: symbols, steps, exponents, FP16 positions, weights and durations at their rails; a query
  * that gives anything infinite is refused, and all others give the bits of the text (recon_ref.h).
  * SPDX-License-Identifier: BSD-2-Clause */
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
+#include <float.h>
 #include <stdlib.h>
 #include <string.h>
-#include <float.h>
-#include <cmocka.h>
 
+#include "test.h"
 #include "kernel/int_kernel.h"
 #include "norm/prior.h"
 #include "recon_ref.h"

@@ -1,11 +1,9 @@
 /* test_gaussian.c - norm/gaussian.h: cumulative frequencies of every model, and the way back from a
  * slot (spec 9.4).
  * SPDX-License-Identifier: BSD-2-Clause */
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <cmocka.h>
 #include <math.h>
+
+#include "test.h"
 #include "norm/gaussian.h"
 #include "random_scene.h"
 

@@ -1,10 +1,8 @@
 /* test_half.c - norm/half.h: conversions, exact integers, sort keys (spec 8).
  * SPDX-License-Identifier: BSD-2-Clause */
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <cmocka.h>
 #include <math.h>
+
+#include "test.h"
 #include "norm/half.h"
 #include "random_scene.h"
 

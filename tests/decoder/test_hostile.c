@@ -2,14 +2,12 @@
  * for them is bounded by their bytes. What takes seconds here would take hours or days if it grew
  * with the square of the file or with a number that the file only claims.
  * SPDX-License-Identifier: BSD-2-Clause */
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <unistd.h>
-#include <cmocka.h>
 #include <xxhash.h>
+
+#include "test.h"
 #include "fuzz/mend.h"
 #include "random_scene.h"
 

@@ -2,10 +2,7 @@
  * read/reader.c reads one symbol at a time: symbols, error, and where the words end; for every
  * number of lanes, calls of any size, escapes, symbols out of range, and damaged substreams.
  * SPDX-License-Identifier: BSD-2-Clause */
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <cmocka.h>
+#include "test.h"
 #include "base/level.h"
 #include "read/reader.h"
 #include "substream_case.h"

@@ -1,12 +1,9 @@
 /* test_kernel_int.c - kernel/int_dense_*.c give the bits of norm/int_dense.c, up to the ends of
  * what R-NET-006 allows.
  * SPDX-License-Identifier: BSD-2-Clause */
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
-#include <cmocka.h>
 #include <stdlib.h>
+
+#include "test.h"
 #include "base/level.h"
 #include "kernel/int_kernel.h"
 #include "use_kernels.h"

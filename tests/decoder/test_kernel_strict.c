@@ -2,13 +2,9 @@
  * the plain layer, for odd and even shapes, ordinary and special numbers. NaNs are equal whatever
  * their payload: R-REC-001 refuses them all.
  * SPDX-License-Identifier: BSD-2-Clause */
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
 #include <stdlib.h>
-#include <cmocka.h>
 
+#include "test.h"
 #include "base/level.h"
 #include "kernel/strict_dense.h"
 #include "use_kernels.h"

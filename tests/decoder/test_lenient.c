@@ -2,10 +2,7 @@
  * of the truth, whole tiles of it, and never more than stands before the first error; of a valid
  * file it is the same scene.
  * SPDX-License-Identifier: BSD-2-Clause */
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <cmocka.h>
+#include "test.h"
 #include "fuzz/mend.h"
 #include "random_scene.h"
 #include "run_json.h"

@@ -2,11 +2,7 @@
  * 13.3). The walk of POSN, the coder that reads, and the ratio of a zlib stream are compiled here
  * once more with such a size_t, and all that they call here. `make cross` runs all vectors on i686.
  * SPDX-License-Identifier: BSD-2-Clause */
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <cmocka.h>
-#include <stdint.h>
+#include "test.h"
 #include <stdlib.h>
 #include <string.h>
 #define ZLIB_CONST

@@ -4,12 +4,10 @@
  * allocator and goes back. Vectors of the suite, bombs among them, under bounds from nothing to
  * more than they need; what goes through numbers that a file only claims never ends.
  * SPDX-License-Identifier: BSD-2-Clause */
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
 #include <stdio.h>
 #include <unistd.h>
-#include <cmocka.h>
+
+#include "test.h"
 #include "fuzz/counting.h"
 #include "ted4.h"
 

@@ -1,12 +1,10 @@
 /* test_prior.c - norm/prior.c and write/snap.c: integers from binary32, evaluation, and the rules
  * of spec 7.3 and 10.1.
  * SPDX-License-Identifier: BSD-2-Clause */
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <cmocka.h>
 #include <math.h>
 #include <stdlib.h>
+
+#include "test.h"
 #include "random_scene.h"
 
 /* long double holds a binary32 times a power of two exactly, and rintl rounds to nearest, ties to

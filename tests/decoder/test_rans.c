@@ -1,10 +1,7 @@
 /* test_rans.c - substreams: write/coder_write.c into read/reader.c (spec 9.2 to 9.4), and damaged
  * ones.
  * SPDX-License-Identifier: BSD-2-Clause */
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <cmocka.h>
+#include "test.h"
 #include "read/reader.h"
 #include "substream_case.h"
 

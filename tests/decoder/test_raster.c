@@ -1,13 +1,9 @@
 /* test_raster.c - the tile rasteriser against its plain twin, and against itself with other
  * threads.
  * SPDX-License-Identifier: BSD-2-Clause */
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
 #include <string.h>
 
-#include <cmocka.h>
-
+#include "test.h"
 #include "tool/threads.h"
 #include "odd_threads.h"
 #include "raster_scene.h"

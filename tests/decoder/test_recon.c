@@ -1,15 +1,11 @@
 /* test_recon.c - spec 11, 12.2, 15.3: reconstruction against recon_ref.h, bit for bit, in every
  * variant of the header; against doubles; any threads, any order of queries, any memory.
  * SPDX-License-Identifier: BSD-2-Clause */
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
 #include <stdlib.h>
 #include <string.h>
-#include <cmocka.h>
-
 #include <xxhash.h>
+
+#include "test.h"
 #include "base/level.h"
 #include "tool/threads.h"
 #include "odd_threads.h"

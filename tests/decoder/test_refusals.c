@@ -1,12 +1,10 @@
 /* test_refusals.c - one broken rule at a time: identifier and offset of the verdict (spec 14).
  * SPDX-License-Identifier: BSD-2-Clause */
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <cmocka.h>
 #include <stdlib.h>
 #include <xxhash.h>
 #include <zlib.h>
+
+#include "test.h"
 #include "random_scene.h"
 #include "write/coder_write.h"
 #include "write/tiles.h"

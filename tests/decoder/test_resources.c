@@ -4,11 +4,9 @@
  * for queries W_R; and under max_work next to none before a file is refused, exactly when W_E is
  * larger (R-LVL-008). The functions that do the work are wrapped by the linker (strict.mk).
  * SPDX-License-Identifier: BSD-2-Clause */
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
 #include <stdio.h>
-#include <cmocka.h>
+
+#include "test.h"
 #include <xxhash.h>
 #define ZLIB_CONST
 #include <zlib.h>

@@ -1,14 +1,10 @@
 /* test_stack.c - how deep the library's calls go on their thread's stack, for every vector of the
  * suite: no deeper than SECURITY.md says.
  * SPDX-License-Identifier: BSD-2-Clause */
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
-#include <stdlib.h>
-#include <cmocka.h>
 #include <pthread.h>
+#include <stdlib.h>
 
+#include "test.h"
 #include "use_kernels.h"
 #include "ted4.h"
 #include "vector_files.h"

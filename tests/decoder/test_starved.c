@@ -3,11 +3,9 @@
  * given, nothing kept; and mistakes of callers who write scenes. conformance/branches-excluded.txt
  * lists them, and `make conformance-branches` sees that this takes each.
  * SPDX-License-Identifier: BSD-2-Clause */
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
 #include <stdio.h>
-#include <cmocka.h>
+
+#include "test.h"
 #include "fuzz/counting.h"
 #include "fuzz/mend.h"
 #include "random_scene.h"

@@ -1,13 +1,9 @@
 /* test_strict.c - spec 12.2: pow2 and its edges, the class X probe under each way of spoiling the
  * arithmetic.
  * SPDX-License-Identifier: BSD-2-Clause */
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
 #include <fenv.h>
-#include <cmocka.h>
 
+#include "test.h"
 #include "recon/strict.h"
 #include "ted4.h"
 #if defined(__SSE__)

@@ -1,9 +1,6 @@
 /* test_tables.c - norm/tables.c against its formulas (annex A).
  * SPDX-License-Identifier: BSD-2-Clause */
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <cmocka.h>
+#include "test.h"
 #include "tests/gen/table_math.h"
 #include "norm/tables.h"
 

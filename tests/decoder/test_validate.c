@@ -2,11 +2,9 @@
  * that decoder's error first, and finds it by itself too; it goes on behind an error, and its JSON
  * is what its schema says.
  * SPDX-License-Identifier: BSD-2-Clause */
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <cmocka.h>
 #include <stdio.h>
+
+#include "test.h"
 #include "fuzz/mutate.h"
 #include "run_json.h"
 #include "schema_check.h"

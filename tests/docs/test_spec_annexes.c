@@ -7,9 +7,7 @@
 #include "tests/gen/annex_c.h"
 #include "tests/gen/annex_h.h"
 #include "tests/gen/attest.h"
-#include <setjmp.h>
-#include <stdarg.h>
-#include <cmocka.h>
+#include "test.h"
 #include <jansson.h>
 
 /* The whole file; fails the test when it cannot be read. To be freed. */

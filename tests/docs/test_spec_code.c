@@ -3,11 +3,10 @@
  * of valid streams, the same verdict, identifier and offset of damaged ones.
  * SPDX-License-Identifier: BSD-2-Clause */
 #include "spec_tiers.h" /* first: its fail() is a function, that of cmocka a macro */
-#include <setjmp.h>
-#include <stdarg.h>
 #include <stdio.h>
-#include <cmocka.h>
 #include <xxhash.h>
+
+#include "test.h"
 #include "random_scene.h"
 #include "recon/strict.h"
 #include "vector_files.h"

@@ -3,11 +3,10 @@
  * many times.
  * SPDX-License-Identifier: BSD-2-Clause */
 #include "spec_model.h" /* first: fail() is a function there */
-#include <setjmp.h>
-#include <stdarg.h>
 #include <stdio.h>
-#include <cmocka.h>
 #include <zlib.h>
+
+#include "test.h"
 #include "random_scene.h"
 
 enum { N_STREAMS = 60, N_DAMAGES = 2000, MOST = 4096 };

@@ -4,10 +4,9 @@
  * name of the table of 6.1, all others under names of annex J.
  * SPDX-License-Identifier: BSD-2-Clause */
 #include "spec_model.h" /* first: fail() is a function there */
-#include <setjmp.h>
-#include <stdarg.h>
 #include <stdio.h>
-#include <cmocka.h>
+
+#include "test.h"
 #include "random_scene.h"
 #include "tool/threads.h"
 

@@ -2,10 +2,9 @@
  * what does not.
  * SPDX-License-Identifier: BSD-2-Clause */
 #include "spec_tolerance.h" /* first: fail() is a function there */
-#include <setjmp.h>
-#include <stdarg.h>
 #include <stdio.h>
-#include <cmocka.h>
+
+#include "test.h"
 #include "random_scene.h"
 
 enum { N_SCENES = 24 };

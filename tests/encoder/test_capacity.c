@@ -2,12 +2,7 @@
  * training: what they decide lowers the cost, within their budget, the same for any number of
  * threads and for a run that was interrupted; switched off they leave no trace.
  * SPDX-License-Identifier: BSD-2-Clause */
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
-#include <cmocka.h>
-
+#include "test.h"
 #include "ball_trainer.h"
 #include "odd_threads.h"
 #include "train/search/model_search.h"

@@ -3,11 +3,8 @@
  * that lie anywhere.
  * SPDX-License-Identifier: BSD-2-Clause */
 #include <math.h>
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <cmocka.h>
 
+#include "test.h"
 #include "refuse.h"
 #include "tiny_scene.h"
 

@@ -3,12 +3,7 @@
  * training: tints are found, and a view from elsewhere never gets a correction. That the state
  * survives in checkpoints is tested in test_trainer.c, whose cameras are all corrected.
  * SPDX-License-Identifier: BSD-2-Clause */
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
-#include <cmocka.h>
-
+#include "test.h"
 #include "ball_scene.h"
 #include "odd_threads.h"
 #include "train/math/random.h"

@@ -3,13 +3,9 @@
  * what all cameras have in common, from the points' own colours, if these agree with the pictures;
  * and what is not enough to tell leaves the identity.
  * SPDX-License-Identifier: BSD-2-Clause */
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
-#include <cmocka.h>
 #include <math.h>
 
+#include "test.h"
 #include "tiny_scene.h"
 #include "train/densify/camera_colour_init.h"
 #include "train/math/random.h"

@@ -1,11 +1,7 @@
 /* test_dataset_errors.c - everything a scene can get wrong gives one message that says where and
  * what, and an empty dataset.
  * SPDX-License-Identifier: BSD-2-Clause */
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <cmocka.h>
-
+#include "test.h"
 #include "data/point_cloud.h"
 #include "refuse.h"
 #include "tiny_scene.h"
@@ -27,64 +23,62 @@ static void transforms(const tiny_folder *f, const char *top, const char *frame)
 #define FILE_PATH "\"file_path\": \"p.png\", \"fl_x\": 9"
 #define GOOD      FILE_PATH ", \"transform_matrix\": " TINY_POSE
 
+static const struct {
+    const char *top, *frame, *where, *what;
+} transforms_cases[] = {
+    { "", "", "transforms.json: frames[1].file_path", "missing" },
+    { "", "\"file_path\": 3", "frames[1].file_path", "expected a string" },
+    { "", FILE_PATH, "frames[1].transform_matrix", "expected 4x4 numbers" },
+    { "", FILE_PATH ", \"transform_matrix\": [[1,0,0,0],[0,1,0],[0,0,1,0],[0,0,0,1]]",
+      "frames[1].transform_matrix", "expected 4x4 numbers" },
+    { "", FILE_PATH ", \"transform_matrix\": [[1,0,0,0],[0,1,\"a\",0],[0,0,1,0],[0,0,0,1]]",
+      "frames[1].transform_matrix", "expected 4x4 numbers" },
+    { "", FILE_PATH ", \"transform_matrix\": [[1,0,0,0],[0,1,0,0],[0,0,1,0],[0,0,1,1]]",
+      "frames[1].transform_matrix", "expected 0 0 0 1" },
+    { "", FILE_PATH ", \"transform_matrix\": [[1,0,0,0],[0,1,0,0],[0,1,0,0],[0,0,0,1]]",
+      "frames[1].transform_matrix", "singular" },
+    { "", FILE_PATH ", \"transform_matrix\": [[1,0,0,0],[0,1,0.1,0],[0,0,1,0],[0,0,0,1]]",
+      "frames[1].transform_matrix", "not orthonormal" },
+    { "", FILE_PATH ", \"transform_matrix\": [[1,0,0,0],[0,1,0,0],[0,0,-1,0],[0,0,0,1]]",
+      "frames[1].transform_matrix", "mirror" },
+    { "", FILE_PATH ", \"transform_matrix\": [[NaN,0,0,0],[0,1,0,0],[0,0,1,0],[0,0,0,1]]",
+      "transforms.json:3", "not valid JSON" },
+    { "", GOOD ", \"time\": 0.5", "frames[0].time", "missing" },
+    { "", GOOD ", \"time\": \"x\"", "frames[0].time", "missing" },
+    { "", GOOD ", \"fl_x\": 8", "transforms.json:3", "duplicate" },
+    { "", "\"file_path\": \"p.png\", \"transform_matrix\": " TINY_POSE, "frames[1]", "no fl_x" },
+    { "\"camera_angle_x\": 4,", "\"file_path\": \"p.png\"", "frames[1]", "camera_angle_x is 4" },
+    { "\"camera_model\": \"OPENCV_FISHEYE\",", GOOD, "camera_model", "OPENCV_FISHEYE" },
+    { "\"k4\": 0.1,", GOOD, ".k4", "only k1 k2 k3 p1 p2" },
+    { "", "\"file_path\": \"p.png\", \"K\": [[9,0,8],[0,9,6]]", "frames[1].K", "expected fx s cx" },
+    { "", "\"file_path\": \"p.png\", \"intrinsics\": [9]", "frames[1].intrinsics",
+      "expected 4 to 9 numbers" },
+    { "",
+      "\"file_path\": \"p.png\", \"K\": [[-9,0,8],[0,9,6],[0,0,1]], "
+      "\"transform_matrix\": " TINY_POSE,
+      "p.png", "focal lengths -9, 9" },
+    { "\"w\": 20, \"h\": 12,", GOOD, "p.png", "file is 16x12, its camera says 20x12" },
+    { "\"w\": 8, \"h\": 6,", GOOD, "p.png", "file is 16x12, its camera says 8x6" },
+    { "\"cx\": \"left\",", GOOD, "transforms.json.cx", "expected a number" },
+    { "\"fl_y\": -1,", GOOD, "p.png", "focal lengths 9, -1" },
+    { "\"ply_file_path\": \"no.ply\",", GOOD, "no.ply", "No such file" },
+    { "\"applied_transform\": [[1,0,0,0],[1,0,0,0],[0,0,1,0]],", GOOD, "applied_transform",
+      "singular" },
+    { "\"fps\": -3,", GOOD, "fps", "-3" },
+    { "\"fps\": 5.9e-8,", GOOD, "transforms.json.fps: 5.9e-08", "from 1/16777215" },
+    { "\"fps\": 16777216,", GOOD, "transforms.json.fps", "to 16777215" },
+    { "", GOOD ", \"camera\": [1]", "frames[1].camera", "string or an integer" },
+    { "oops", GOOD, "transforms.json:1", "not valid JSON" },
+};
+
 static void test_transforms(void **state)
 {
     (void)state;
-    static const struct {
-        const char *top, *frame, *where, *what;
-    } cases[] = {
-        { "", "", "transforms.json: frames[1].file_path", "missing" },
-        { "", "\"file_path\": 3", "frames[1].file_path", "expected a string" },
-        { "", FILE_PATH, "frames[1].transform_matrix", "expected 4x4 numbers" },
-        { "", FILE_PATH ", \"transform_matrix\": [[1,0,0,0],[0,1,0],[0,0,1,0],[0,0,0,1]]",
-          "frames[1].transform_matrix", "expected 4x4 numbers" },
-        { "", FILE_PATH ", \"transform_matrix\": [[1,0,0,0],[0,1,\"a\",0],[0,0,1,0],[0,0,0,1]]",
-          "frames[1].transform_matrix", "expected 4x4 numbers" },
-        { "", FILE_PATH ", \"transform_matrix\": [[1,0,0,0],[0,1,0,0],[0,0,1,0],[0,0,1,1]]",
-          "frames[1].transform_matrix", "expected 0 0 0 1" },
-        { "", FILE_PATH ", \"transform_matrix\": [[1,0,0,0],[0,1,0,0],[0,1,0,0],[0,0,0,1]]",
-          "frames[1].transform_matrix", "singular" },
-        { "", FILE_PATH ", \"transform_matrix\": [[1,0,0,0],[0,1,0.1,0],[0,0,1,0],[0,0,0,1]]",
-          "frames[1].transform_matrix", "not orthonormal" },
-        { "", FILE_PATH ", \"transform_matrix\": [[1,0,0,0],[0,1,0,0],[0,0,-1,0],[0,0,0,1]]",
-          "frames[1].transform_matrix", "mirror" },
-        { "", FILE_PATH ", \"transform_matrix\": [[NaN,0,0,0],[0,1,0,0],[0,0,1,0],[0,0,0,1]]",
-          "transforms.json:3", "not valid JSON" },
-        { "", GOOD ", \"time\": 0.5", "frames[0].time", "missing" },
-        { "", GOOD ", \"time\": \"x\"", "frames[0].time", "missing" },
-        { "", GOOD ", \"fl_x\": 8", "transforms.json:3", "duplicate" },
-        { "", "\"file_path\": \"p.png\", \"transform_matrix\": " TINY_POSE, "frames[1]",
-          "no fl_x" },
-        { "\"camera_angle_x\": 4,", "\"file_path\": \"p.png\"", "frames[1]",
-          "camera_angle_x is 4" },
-        { "\"camera_model\": \"OPENCV_FISHEYE\",", GOOD, "camera_model", "OPENCV_FISHEYE" },
-        { "\"k4\": 0.1,", GOOD, ".k4", "only k1 k2 k3 p1 p2" },
-        { "", "\"file_path\": \"p.png\", \"K\": [[9,0,8],[0,9,6]]", "frames[1].K",
-          "expected fx s cx" },
-        { "", "\"file_path\": \"p.png\", \"intrinsics\": [9]", "frames[1].intrinsics",
-          "expected 4 to 9 numbers" },
-        { "",
-          "\"file_path\": \"p.png\", \"K\": [[-9,0,8],[0,9,6],[0,0,1]], "
-          "\"transform_matrix\": " TINY_POSE,
-          "p.png", "focal lengths -9, 9" },
-        { "\"w\": 20, \"h\": 12,", GOOD, "p.png", "file is 16x12, its camera says 20x12" },
-        { "\"w\": 8, \"h\": 6,", GOOD, "p.png", "file is 16x12, its camera says 8x6" },
-        { "\"cx\": \"left\",", GOOD, "transforms.json.cx", "expected a number" },
-        { "\"fl_y\": -1,", GOOD, "p.png", "focal lengths 9, -1" },
-        { "\"ply_file_path\": \"no.ply\",", GOOD, "no.ply", "No such file" },
-        { "\"applied_transform\": [[1,0,0,0],[1,0,0,0],[0,0,1,0]],", GOOD, "applied_transform",
-          "singular" },
-        { "\"fps\": -3,", GOOD, "fps", "-3" },
-        { "\"fps\": 5.9e-8,", GOOD, "transforms.json.fps: 5.9e-08", "from 1/16777215" },
-        { "\"fps\": 16777216,", GOOD, "transforms.json.fps", "to 16777215" },
-        { "", GOOD ", \"camera\": [1]", "frames[1].camera", "string or an integer" },
-        { "oops", GOOD, "transforms.json:1", "not valid JSON" },
-    };
     tiny_folder f = tiny_new();
 
-    for (size_t i = 0; i < sizeof cases / sizeof cases[0]; i++) {
-        transforms(&f, cases[i].top, cases[i].frame);
-        refuse(&f, cases[i].where, cases[i].what);
+    for (size_t i = 0; i < sizeof transforms_cases / sizeof transforms_cases[0]; i++) {
+        transforms(&f, transforms_cases[i].top, transforms_cases[i].frame);
+        refuse(&f, transforms_cases[i].where, transforms_cases[i].what);
     }
     tiny_text(&f, "transforms.json", "{\"frames\": []}");
     refuse(&f, "transforms.json: frames", "at least one");

@@ -1,15 +1,11 @@
 /* test_dense.c - kernel/dense.h against plain double loops: odd and even shapes, strides, several
  * blocks.
  * SPDX-License-Identifier: BSD-2-Clause */
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
+#include <math.h>
 #include <stdlib.h>
 #include <string.h>
-#include <math.h>
-#include <cmocka.h>
 
+#include "test.h"
 #include "kernel/dense.h"
 
 enum { MAX_CH = 150, MAX_BLOCKS = 5, PAD = 3 };

@@ -1,219 +1,13 @@
-/* test_densify.c - voxel sets (train/math/voxel_set.h), blocks of anchors (train/model/anchors.h),
- * and growth and pruning (train/densify/densify.c) from planted statistics.
+/* test_densify.c - growth and pruning of anchors (train/densify/densify.c) from planted statistics.
  * SPDX-License-Identifier: BSD-2-Clause */
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
 #include <stdlib.h>
-#include <cmocka.h>
 
+#include "test.h"
+#include "anchor_checks.h"
 #include "cloud_case.h"
-#include "norm/half.h"
 #include "train/math/voxel_set.h"
 
 static cloud_case cloud;
-
-/* ---- cells ---- */
-
-static void test_cells(void **state)
-{
-    enum { N = 5000 };
-    ted4_cells c;
-
-    (void)state;
-    assert_int_equal(ted4_cells_init(&c, N), 0);
-    for (int round = 0; round < 2; round++) {
-        for (uint64_t i = 0; i < N; i++)
-            assert_int_equal(ted4_cells_add(&c, i * i + 1), 1);
-        for (uint64_t i = 0; i < N; i++)
-            assert_int_equal(ted4_cells_add(&c, i * i + 1), 0);
-        assert_int_equal(c.n, N);
-        ted4_cells_clear(&c);
-        assert_int_equal(c.n, 0);
-    }
-    ted4_cells_finish(&c);
-    assert_int_equal(ted4_cells_init(&c, 0), 0);
-    ted4_cells_finish(&c);
-}
-
-/* Points of one voxel share a key, neighbours never do, at the finest grid too. */
-static void test_cell_key(void **state)
-{
-    static const double sizes[] = { 2, 0.3, 0.01, 0x1p-19 };
-
-    (void)state;
-    for (size_t s = 0; s < sizeof sizes / sizeof sizes[0]; s++)
-        for (uint64_t i = 0; i < 500; i++) {
-            const double cell = sizes[s], most = floor(1 / cell) - 2;
-            double at[3];
-            float p[3], q[3];
-            uint64_t key;
-
-            for (uint64_t j = 0; j < 3; j++) {
-                at[j] = rint((2 * (double)ted4_uniform(i, j) - 1) * fmax(most, 0));
-                p[j] = (float)(at[j] * cell);
-                const double off = s < 3 ? 0.9 * ((double)ted4_uniform(i, 3 + j) - 0.5) : 0;
-
-                q[j] = (float)((at[j] + off) * cell);
-            }
-            key = ted4_cell_key(p, cell);
-            assert_true(key != 0 && key == ted4_cell_key(q, cell));
-            for (int j = 0; j < 6; j++) {
-                memcpy(q, p, sizeof q);
-                q[j / 2] = (float)((at[j / 2] + (j % 2 ? 1 : -1)) * cell);
-                assert_true(ted4_cell_key(q, cell) != key);
-            }
-        }
-}
-
-/* ---- blocks of anchors ---- */
-
-static void begin(ted4_trainer *t)
-{
-    if (ted4_trainer_init(t, &cloud.options, &cloud.data, NULL) != 0)
-        fail_msg("%s", t->message.text);
-}
-
-/* A number that tells which anchor, row kind and row it is. */
-static float mark(size_t i, int kind, int row)
-{
-    return (float)(1 + i) + 0.001f * (float)row + 10000.0f * (float)kind;
-}
-
-static void mark_all(ted4_anchors *a)
-{
-    for (int k = 0; k < TED4_ROWS; k++)
-        for (size_t i = 0; i < a->n; i++)
-            for (int r = 0; r < a->rows[k]; r++)
-                *ted4_cell(a, (ted4_row)k, i, r) = mark(i, k, r);
-}
-
-/* Anchor i holds the marks of anchor was. */
-static void check_marks(const ted4_anchors *a, size_t i, size_t was)
-{
-    for (int k = 0; k < TED4_ROWS; k++)
-        for (int r = 0; r < a->rows[k]; r++)
-            if (k != TED4_ROW_POSITION)
-                assert_true(*ted4_cell(a, (ted4_row)k, i, r) == mark(was, k, r));
-}
-
-/* Sizes agree, rows are aligned, unused lanes are zero. */
-static void check_blocks(const ted4_anchors *a)
-{
-    assert_int_equal(a->n_blocks, (a->n + TED4_LANES - 1) / TED4_LANES);
-    assert_true(a->n_blocks <= a->capacity);
-    for (int k = 0; k < TED4_ROWS; k++) {
-        assert_true((uintptr_t)a->data[k] % 64 == 0);
-        for (size_t i = a->n; i < a->n_blocks * TED4_LANES; i++)
-            for (int r = 0; r < a->rows[k]; r++)
-                assert_true(*ted4_cell(a, (ted4_row)k, i, r) == 0.0f);
-    }
-    for (size_t b = 0; b < a->n_blocks; b++) {
-        uint32_t want = 0;
-
-        for (size_t j = 0; j < TED4_LANES; j++)
-            want |= (uint32_t)(b * TED4_LANES + j < a->n) << j;
-        assert_true(ted4_block_lanes(a, b) == want);
-    }
-}
-
-static void test_resize(void **state)
-{
-    static const size_t sizes[] = { 1, 31, 32, 33, 64, 40, 400, 399, 65, 2, 0, 5, 1000 };
-    ted4_trainer t;
-    ted4_anchors a;
-
-    (void)state;
-    cloud_make(&cloud, 5);
-    begin(&t);
-    assert_int_equal(ted4_anchors_init(&a, &t.layout), 0);
-    check_blocks(&a);
-    for (size_t s = 0; s < sizeof sizes / sizeof sizes[0]; s++) {
-        const size_t before = a.n, kept = before < sizes[s] ? before : sizes[s];
-
-        mark_all(&a);
-        assert_int_equal(ted4_anchors_resize(&a, sizes[s]), 0);
-        assert_int_equal(a.n, sizes[s]);
-        check_blocks(&a);
-        for (size_t i = 0; i < kept; i++)
-            check_marks(&a, i, i);
-        for (size_t i = kept; i < a.n; i++)
-            for (int k = 0; k < TED4_ROWS; k++)
-                for (int r = 0; r < a.rows[k]; r++)
-                    assert_true(*ted4_cell(&a, (ted4_row)k, i, r) == 0.0f);
-    }
-    ted4_anchors_finish(&a);
-    ted4_trainer_finish(&t);
-}
-
-static void test_select(void **state)
-{
-    enum { N = 75, KEPT = 41 };
-    ted4_trainer t;
-    uint32_t order[N];
-
-    (void)state;
-    cloud_make(&cloud, 5);
-    begin(&t);
-    assert_int_equal(ted4_anchors_resize(&t.anchors, N), 0);
-    mark_all(&t.anchors);
-    for (uint32_t i = 0; i < N; i++)
-        order[i] = i * 7 % N; /* 7 and 75 have no common factor */
-    assert_int_equal(ted4_anchors_select(&t.anchors, order, KEPT), 0);
-    assert_int_equal(t.anchors.n, KEPT);
-    check_blocks(&t.anchors);
-    for (size_t i = 0; i < KEPT; i++)
-        check_marks(&t.anchors, i, order[i]);
-    assert_int_equal(ted4_anchors_select(&t.anchors, order, 0), 0);
-    check_blocks(&t.anchors);
-    ted4_trainer_finish(&t);
-}
-
-static uint64_t code_of(const ted4_anchors *a, size_t i)
-{
-    uint16_t p[3];
-
-    for (int j = 0; j < 3; j++)
-        p[j] = ted4_float_to_half(*ted4_cell(a, TED4_ROW_POSITION, i, j));
-    return ted4_morton(p);
-}
-
-/* Morton order of binary16 positions; anchors that coincide keep their order. */
-static void test_sort(void **state)
-{
-    enum { N = 200 };
-    ted4_trainer t;
-    ted4_anchors *a = &t.anchors;
-    int ties = 0;
-
-    (void)state;
-    cloud_make(&cloud, 5);
-    begin(&t);
-    assert_int_equal(ted4_anchors_resize(a, N), 0);
-    mark_all(a);
-    for (size_t i = 0; i < N; i++)
-        for (int j = 0; j < 3; j++) /* the last 50 repeat the first, a hair off */
-            *ted4_cell(a, TED4_ROW_POSITION, i, j) =
-                (2.0f * ted4_uniform((uint64_t)j, i % 150) - 1.0f) *
-                (i < 150 ? 1.0f : 1.0f + 0x1p-23f);
-    assert_int_equal(ted4_anchors_sort(a), 0);
-    check_blocks(a);
-    for (size_t i = 0; i < N; i++) {
-        const float was = *ted4_cell(a, TED4_ROW_VALUE, i, 0) - 1.0f;
-
-        check_marks(a, i, (size_t)was);
-        if (i == 0)
-            continue;
-        assert_true(code_of(a, i - 1) <= code_of(a, i));
-        if (code_of(a, i - 1) == code_of(a, i)) {
-            ties++;
-            assert_true(*ted4_cell(a, TED4_ROW_VALUE, i - 1, 0) < was + 1.0f);
-        }
-    }
-    assert_true(ties >= 45);
-    ted4_trainer_finish(&t);
-}
 
 /* ---- growth ---- */
 
@@ -304,7 +98,7 @@ static void test_growth(void **state)
 
     (void)state;
     cloud_make(&cloud, 5);
-    begin(&t);
+    cloud_begin(&cloud, &t);
     name_anchors(&t);
     give_moments(&t);
     for (size_t i = 0; i < CLOUD_POINTS; i++) {
@@ -315,11 +109,11 @@ static void test_growth(void **state)
         n_planted += i % 4 == 0;
     }
     assert_int_equal(ted4_densify_adjust(&t), 0);
-    check_blocks(&t.anchors);
+    anchors_check(&t.anchors);
     for (size_t i = 0; i < t.anchors.n; i++) {
         const size_t id = (size_t)*ted4_cell(&t.anchors, TED4_ROW_VALUE, i, 0) - 1;
 
-        assert_true(i == 0 || code_of(&t.anchors, i - 1) <= code_of(&t.anchors, i));
+        assert_true(i == 0 || anchors_morton(&t.anchors, i - 1) <= anchors_morton(&t.anchors, i));
         for (int j = 0; j < 3; j++)
             assert_true(fabsf(*ted4_cell(&t.anchors, TED4_ROW_POSITION, i, j)) <= 1.0f);
         if (!is_new(&t, i)) {
@@ -349,7 +143,7 @@ static void test_growth_depths(void **state)
         int n[3] = { 0 };
 
         cloud_make(&cloud, 5);
-        begin(&t);
+        cloud_begin(&cloud, &t);
         give_moments(&t);
         for (size_t i = 0; i < CLOUD_POINTS; i++) {
             aim(&t, i, K - 1, place[i]); /* nearer to the next cell than to its own, which is free
@@ -379,7 +173,7 @@ static void test_growth_limits(void **state)
 
     (void)state;
     cloud_make(&cloud, 5);
-    begin(&t);
+    cloud_begin(&cloud, &t);
     give_moments(&t);
     aim(&t, 50, 0, place);
     for (int k = 0; k < K; k++) /* offsets 1 and 2 are zero: there is an anchor already */
@@ -422,7 +216,7 @@ static void test_max_anchors(void **state)
 
         cloud_make(&cloud, 5);
         cloud.options.max_anchors = CLOUD_POINTS + (full ? -20 : ROOM);
-        begin(&t);
+        cloud_begin(&cloud, &t);
         give_moments(&t);
         for (size_t i = 0; i < CLOUD_POINTS; i++) {
             aim(&t, i, 0, place);
@@ -461,13 +255,13 @@ static void test_pruning(void **state)
 
     (void)state;
     cloud_make(&cloud, 5);
-    begin(&t);
+    cloud_begin(&cloud, &t);
     name_anchors(&t);
     for (size_t i = 0; i < CLOUD_POINTS; i++)
         if (i % 4 < 3)
             fade(&t, i, t.opt.prune_opacity * (i % 4 == 1 ? 1.01 : 0.99), i % 4 == 2 ? 8 : VISITS);
     assert_int_equal(ted4_densify_adjust(&t), 0);
-    check_blocks(&t.anchors);
+    anchors_check(&t.anchors);
     assert_int_equal(t.anchors.n, CLOUD_POINTS * 3 / 4);
     for (size_t i = 0; i < t.anchors.n; i++) {
         const int id = (int)*ted4_cell(&t.anchors, TED4_ROW_VALUE, i, 0) - 1;
@@ -496,7 +290,7 @@ static void test_pruning_short_lives(void **state)
 
     (void)state;
     cloud_make(&cloud, 5);
-    begin(&t);
+    cloud_begin(&cloud, &t);
     name_anchors(&t);
     for (size_t i = 0; i < CLOUD_POINTS; i++) {
         fade(&t, i, t.opt.prune_opacity * lives[i % 4].mean, lives[i % 4].there);
@@ -521,12 +315,12 @@ static void test_all_faded(void **state)
 
     (void)state;
     cloud_make(&cloud, 5);
-    begin(&t);
+    cloud_begin(&cloud, &t);
     name_anchors(&t);
     for (size_t i = 0; i < CLOUD_POINTS; i++)
         fade(&t, i, t.opt.prune_opacity * (0.1 + (double)(i * 7 % CLOUD_POINTS) / 1000), VISITS);
     assert_int_equal(ted4_densify_adjust(&t), 0);
-    check_blocks(&t.anchors);
+    anchors_check(&t.anchors);
     assert_int_equal(t.anchors.n, TED4_LANES);
     for (size_t i = 0; i < t.anchors.n; i++) {
         const size_t id = (size_t)*ted4_cell(&t.anchors, TED4_ROW_VALUE, i, 0) - 1;
@@ -549,7 +343,7 @@ static void test_gather(void **state)
 
     (void)state;
     cloud_make(&cloud, 5);
-    begin(&t);
+    cloud_begin(&cloud, &t);
     in.layout = &t.layout;
     in.num = 1;
     in.den = 4;
@@ -602,19 +396,10 @@ static void test_gather(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_cells),
-        cmocka_unit_test(test_cell_key),
-        cmocka_unit_test(test_resize),
-        cmocka_unit_test(test_select),
-        cmocka_unit_test(test_sort),
-        cmocka_unit_test(test_growth),
-        cmocka_unit_test(test_growth_depths),
-        cmocka_unit_test(test_growth_limits),
-        cmocka_unit_test(test_max_anchors),
-        cmocka_unit_test(test_pruning),
-        cmocka_unit_test(test_pruning_short_lives),
-        cmocka_unit_test(test_all_faded),
-        cmocka_unit_test(test_gather),
+        cmocka_unit_test(test_growth),        cmocka_unit_test(test_growth_depths),
+        cmocka_unit_test(test_growth_limits), cmocka_unit_test(test_max_anchors),
+        cmocka_unit_test(test_pruning),       cmocka_unit_test(test_pruning_short_lives),
+        cmocka_unit_test(test_all_faded),     cmocka_unit_test(test_gather),
     };
 
     return cmocka_run_group_tests_name("densify", tests, NULL, NULL);

@@ -1,17 +1,12 @@
 /* test_elementary.c - math/elementary.h: against libm's functions of long double where there is
  * one with more bits, over the whole range; awkward points; the bits.
  * SPDX-License-Identifier: BSD-2-Clause */
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
-
-#include <cmocka.h>
 #include <float.h>
 #include <math.h>
 #include <stdio.h>
 #include <string.h>
 
+#include "test.h"
 #include "math/elementary.h"
 #include "train/math/random.h"
 

@@ -1,10 +1,7 @@
 /* test_encoder_contract.c - spec 3.4 for scenes of random numbers, and levels that a caller asks
  * for.
  * SPDX-License-Identifier: BSD-2-Clause */
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <cmocka.h>
+#include "test.h"
 #include "encoder_contract.h"
 #include "random_scene.h"
 

@@ -1,10 +1,7 @@
 /* test_encoder_trained.c - spec 3.4 for files of short trainings, one for each variant of the
  * method.
  * SPDX-License-Identifier: BSD-2-Clause */
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <cmocka.h>
+#include "test.h"
 #include "ball_trainer.h"
 #include "encoder_contract.h"
 #include "tool/threads.h"

@@ -2,16 +2,12 @@
  * extremes, forward and backward: against spec 11 in double precision (generate_ref.h) where that
  * is a number, and finite everywhere.
  * SPDX-License-Identifier: BSD-2-Clause */
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
-#include <stdlib.h>
-#include <string.h>
 #include <float.h>
 #include <math.h>
-#include <cmocka.h>
+#include <stdlib.h>
+#include <string.h>
 
+#include "test.h"
 #include "generate_case.h"
 
 #define TOLERANCE 2e-5

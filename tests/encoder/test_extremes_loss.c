@@ -2,16 +2,12 @@
  * pictures of one colour, black, white, smaller than the window, far brighter than any screen; maps
  * without an inverse. Values and gradients are finite, and are those of loss_ref.h.
  * SPDX-License-Identifier: BSD-2-Clause */
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
-#include <stdlib.h>
-#include <string.h>
 #include <float.h>
 #include <math.h>
-#include <cmocka.h>
+#include <stdlib.h>
+#include <string.h>
 
+#include "test.h"
 #include "loss_ref.h"
 #include "train/loss/camera_colour.h"
 #include "train/loss/loss.h"

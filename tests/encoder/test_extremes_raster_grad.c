@@ -2,14 +2,10 @@
  * gradient is finite, and is the central difference of the image model in double precision
  * (raster_ref.h), whose parameters are double, too.
  * SPDX-License-Identifier: BSD-2-Clause */
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
 #include <float.h>
 #include <string.h>
 
-#include <cmocka.h>
-
+#include "test.h"
 #include "raster_ref.h"
 #include "raster_scene.h"
 #include "train/raster/raster_bwd.h"

@@ -2,13 +2,9 @@
  * floor and ceiling, FP16's ends in values and weights, noise and rounding of what no symbol holds;
  * and the coder's own tables at theirs. Against double precision (rate_ref.h); all finite.
  * SPDX-License-Identifier: BSD-2-Clause */
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
 #include <float.h>
-#include <cmocka.h>
 
+#include "test.h"
 #include "norm/gaussian.h"
 #include "norm/prior.h"
 #include "rate_ref.h"

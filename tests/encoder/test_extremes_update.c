@@ -2,14 +2,10 @@
  * learning rates at their extremes: gradients from nothing to the largest of binary32, no Gaussian
  * on screen and one, banks of FP16's ends. Against double precision; everything stays finite.
  * SPDX-License-Identifier: BSD-2-Clause */
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
-#include <stdlib.h>
 #include <float.h>
-#include <cmocka.h>
+#include <stdlib.h>
 
+#include "test.h"
 #include "cloud_case.h"
 #include "train/math/adam.h"
 #include "train/step/saturation.h"
@@ -109,8 +105,7 @@ static cloud_case cloud;
 static void begin(ted4_trainer *t, uint32_t frames)
 {
     cloud_make(&cloud, frames);
-    if (ted4_trainer_init(t, &cloud.options, &cloud.data, NULL) != 0)
-        fail_msg("%s", t->message.text);
+    cloud_begin(&cloud, t);
 }
 
 /* Sizes from nothing to what the rasteriser still draws, for all, one or none on screen: the

@@ -2,12 +2,8 @@
  * what follows from it.
  * SPDX-License-Identifier: BSD-2-Clause */
 #include <math.h>
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
-#include <cmocka.h>
 
+#include "test.h"
 #include "data/flicker.h"
 #include "data/source.h"
 #include "train/model/header_from_options.h"

@@ -1,15 +1,11 @@
 /* test_generate.c - train/splat/decode.c against the double-precision text of spec 11
  * (generate_ref.h), for every variant of the header.
  * SPDX-License-Identifier: BSD-2-Clause */
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
+#include <math.h>
 #include <stdlib.h>
 #include <string.h>
-#include <math.h>
-#include <cmocka.h>
 
+#include "test.h"
 #include "generate_case.h"
 #include "odd_threads.h"
 

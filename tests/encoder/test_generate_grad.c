@@ -1,15 +1,11 @@
 /* test_generate_grad.c - train/splat/decode_bwd.c against central differences of the
  * double-precision reference: every channel of anchors, every value of the networks and the bank.
  * SPDX-License-Identifier: BSD-2-Clause */
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
+#include <math.h>
 #include <stdlib.h>
 #include <string.h>
-#include <math.h>
-#include <cmocka.h>
 
+#include "test.h"
 #include "generate_case.h"
 #include "odd_threads.h"
 

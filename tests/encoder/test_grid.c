@@ -1,13 +1,9 @@
 /* test_grid.c - train/model/weight_grid.c: weights on coarse grids, each unit on its own.
  * SPDX-License-Identifier: BSD-2-Clause */
 #include <math.h>
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
 #include <string.h>
-#include <cmocka.h>
 
+#include "test.h"
 #include "train/model/weight_grid.h"
 #include "train/math/random.h"
 

@@ -1,12 +1,7 @@
 /* test_header.c - the header of the file to be, from the options and the scene: the frame rate as a
  * fraction, rows of the bank, and that no training begins whose header no file may have.
  * SPDX-License-Identifier: BSD-2-Clause */
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
-#include <cmocka.h>
-
+#include "test.h"
 #include "cloud_case.h"
 #include "data/frame_rate.h"
 

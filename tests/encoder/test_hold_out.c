@@ -2,11 +2,7 @@
  * the layout says; a name that there is not gives the names that there are. Links
  * tools/scene/ray_*.o.
  * SPDX-License-Identifier: BSD-2-Clause */
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <cmocka.h>
-
+#include "test.h"
 #include "tools/scene/ray_set.h"
 #include "tiny_scene.h"
 

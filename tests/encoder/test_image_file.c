@@ -3,13 +3,10 @@
  * SPDX-License-Identifier: BSD-2-Clause */
 #include <math.h>
 #include <pthread.h>
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
 #include <stdio.h>
 #include <time.h>
-#include <cmocka.h>
 
+#include "test.h"
 #include "jpeg_writer.h"
 #include "data/image_cache.h"
 #include "data/image_file.h"

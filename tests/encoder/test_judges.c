@@ -1,13 +1,9 @@
 /* test_judges.c - train/state/view_subset.c: pictures that stand for all show every frame before
  * any twice, whatever the numbers of cameras and frames.
  * SPDX-License-Identifier: BSD-2-Clause */
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
-#include <cmocka.h>
 #include <stdlib.h>
 
+#include "test.h"
 #include "train/state/view_subset.h"
 
 enum { MOST = 400 };

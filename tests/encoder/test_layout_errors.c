@@ -3,11 +3,8 @@
  * other layouts: test_dataset_errors.c.
  * SPDX-License-Identifier: BSD-2-Clause */
 #include <math.h>
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <cmocka.h>
 
+#include "test.h"
 #include "refuse.h"
 #include "tiny_scene.h"
 
@@ -36,67 +33,68 @@ static void hypernerf(const tiny_folder *f, const char *dataset, const char *met
     tiny_text(f, "camera/b.json", "{" EYE PLACE LENS "}");
 }
 
+#define GOOD "{" EYE PLACE LENS "}"
+
+static const struct {
+    const char *dataset, *metadata, *camera, *where, *what;
+} hypernerf_cases[] = {
+    { "{", WARPS, GOOD, "dataset.json:1", "not valid JSON" },
+    { "{\"ids\": 3}", WARPS, GOOD, "dataset.json.ids", "expected a list" },
+    { "{\"ids\": [3]}", WARPS, GOOD, "dataset.json.ids[0]", "expected a name" },
+    { "{\"ids\": []}", WARPS, GOOD, "layout hypernerf", "no pictures" },
+    { "{\"train_ids\": [\"a\"], \"val_ids\": [\"a\"]}", WARPS, GOOD, "dataset.json: \"a\"",
+      "twice" },
+    { "{\"train_ids\": [\"c\"], \"val_ids\": [\"a\"]}", WARPS, GOOD, "none is left to train on",
+      "1 of 2 entries have no picture, the first: " },
+    { "{\"train_ids\": [\"c\", \"d\"], \"val_ids\": []}", WARPS, GOOD, "no pictures", "" },
+    { "{\"val_ids\": [\"a\"]}", WARPS, GOOD, "held out", "none is left" },
+    { IDS, "{\"a\": {\"warp_id\": 0}}", GOOD, "metadata.json: \"b\"", "no such entry" },
+    { IDS, "{\"a\": {\"warp_id\": 0}, \"b\": {}}", GOOD, "metadata.json: \"b\".warp_id",
+      "missing" },
+    { IDS, "{\"a\": {\"warp_id\": \"0\"}}", GOOD, "metadata.json: \"a\".warp_id",
+      "expected a number" },
+    { IDS, WARPS, "[", "camera/a.json:1", "not valid JSON" },
+    { IDS, WARPS, "{" PLACE LENS "}", "camera/a.json.orientation", "missing" },
+    { IDS, WARPS, "{" EYE LENS "}", "camera/a.json.position", "missing" },
+    { IDS, WARPS, "{" EYE "\"position\": [1, 2]," LENS "}", "camera/a.json.position",
+      "expected 3 numbers" },
+    { IDS, WARPS, "{" EYE "\"position\": [1, 2, 3, 4]," LENS "}", "camera/a.json.position",
+      "expected 3 numbers" },
+    { IDS, WARPS, "{\"orientation\": [[1,0,0],[0,1,0],[0,0,-1]]," PLACE LENS "}",
+      "camera/a.json.orientation", "mirror" },
+    { IDS, WARPS, "{" EYE PLACE "\"principal_point\": [8, 6], \"image_size\": [16, 12]}",
+      "a.json.focal_length", "missing" },
+    { IDS, WARPS, "{" EYE PLACE "\"focal_length\": 9, \"principal_point\": [8, 6]}",
+      "a.json.image_size", "missing" },
+    { IDS, WARPS,
+      "{" EYE PLACE "\"focal_length\": 9, \"principal_point\": [8, 6], \"image_size\": [0, 12]}",
+      "a.json.image_size", "0, 12" },
+    { IDS, WARPS,
+      "{" EYE PLACE "\"focal_length\": 9, \"principal_point\": [8, 6], \"image_size\": [20, 12]}",
+      "a.png", "camera says 20x12" },
+    { IDS, WARPS, "{" EYE PLACE LENS ", \"radial_distortion\": [1, 2]}", "a.json.radial_distortion",
+      "expected 3 numbers" },
+    { IDS, WARPS, "{" EYE PLACE LENS ", \"pixel_aspect_ratio\": 0}", "a.png",
+      "focal lengths 9, 0" },
+};
+
 static void test_hypernerf(void **state)
 {
-    static const char good[] = "{" EYE PLACE LENS "}";
-    static const struct {
-        const char *dataset, *metadata, *camera, *where, *what;
-    } cases[] = {
-        { "{", WARPS, good, "dataset.json:1", "not valid JSON" },
-        { "{\"ids\": 3}", WARPS, good, "dataset.json.ids", "expected a list" },
-        { "{\"ids\": [3]}", WARPS, good, "dataset.json.ids[0]", "expected a name" },
-        { "{\"ids\": []}", WARPS, good, "layout hypernerf", "no pictures" },
-        { "{\"train_ids\": [\"a\"], \"val_ids\": [\"a\"]}", WARPS, good, "dataset.json: \"a\"",
-          "twice" },
-        { "{\"train_ids\": [\"c\"], \"val_ids\": [\"a\"]}", WARPS, good, "none is left to train on",
-          "1 of 2 entries have no picture, the first: " },
-        { "{\"train_ids\": [\"c\", \"d\"], \"val_ids\": []}", WARPS, good, "no pictures", "" },
-        { "{\"val_ids\": [\"a\"]}", WARPS, good, "held out", "none is left" },
-        { IDS, "{\"a\": {\"warp_id\": 0}}", good, "metadata.json: \"b\"", "no such entry" },
-        { IDS, "{\"a\": {\"warp_id\": 0}, \"b\": {}}", good, "metadata.json: \"b\".warp_id",
-          "missing" },
-        { IDS, "{\"a\": {\"warp_id\": \"0\"}}", good, "metadata.json: \"a\".warp_id",
-          "expected a number" },
-        { IDS, WARPS, "[", "camera/a.json:1", "not valid JSON" },
-        { IDS, WARPS, "{" PLACE LENS "}", "camera/a.json.orientation", "missing" },
-        { IDS, WARPS, "{" EYE LENS "}", "camera/a.json.position", "missing" },
-        { IDS, WARPS, "{" EYE "\"position\": [1, 2]," LENS "}", "camera/a.json.position",
-          "expected 3 numbers" },
-        { IDS, WARPS, "{" EYE "\"position\": [1, 2, 3, 4]," LENS "}", "camera/a.json.position",
-          "expected 3 numbers" },
-        { IDS, WARPS, "{\"orientation\": [[1,0,0],[0,1,0],[0,0,-1]]," PLACE LENS "}",
-          "camera/a.json.orientation", "mirror" },
-        { IDS, WARPS, "{" EYE PLACE "\"principal_point\": [8, 6], \"image_size\": [16, 12]}",
-          "a.json.focal_length", "missing" },
-        { IDS, WARPS, "{" EYE PLACE "\"focal_length\": 9, \"principal_point\": [8, 6]}",
-          "a.json.image_size", "missing" },
-        { IDS, WARPS,
-          "{" EYE PLACE
-          "\"focal_length\": 9, \"principal_point\": [8, 6], \"image_size\": [0, 12]}",
-          "a.json.image_size", "0, 12" },
-        { IDS, WARPS,
-          "{" EYE PLACE
-          "\"focal_length\": 9, \"principal_point\": [8, 6], \"image_size\": [20, 12]}",
-          "a.png", "camera says 20x12" },
-        { IDS, WARPS, "{" EYE PLACE LENS ", \"radial_distortion\": [1, 2]}",
-          "a.json.radial_distortion", "expected 3 numbers" },
-        { IDS, WARPS, "{" EYE PLACE LENS ", \"pixel_aspect_ratio\": 0}", "a.png",
-          "focal lengths 9, 0" },
-    };
     tiny_folder f = tiny_new();
 
     (void)state;
-    hypernerf(&f, IDS, WARPS, good);
+    hypernerf(&f, IDS, WARPS, GOOD);
     refuse(&f, "/rgb", "none of the folders");
     tiny_picture(&f, "rgb/1x/a.png", TINY_W, TINY_H, 0);
     assert_int_equal(warned(&f, "1 of 2 entries has no picture", "dataset.json: \"b\""), 1);
     tiny_picture(&f, "rgb/1x/b.png", TINY_W, TINY_H, 0);
     accept(&f);
-    for (size_t i = 0; i < sizeof cases / sizeof cases[0]; i++) {
-        hypernerf(&f, cases[i].dataset, cases[i].metadata, cases[i].camera);
-        refuse(&f, cases[i].where, cases[i].what);
+    for (size_t i = 0; i < sizeof hypernerf_cases / sizeof hypernerf_cases[0]; i++) {
+        hypernerf(&f, hypernerf_cases[i].dataset, hypernerf_cases[i].metadata,
+                  hypernerf_cases[i].camera);
+        refuse(&f, hypernerf_cases[i].where, hypernerf_cases[i].what);
     }
-    hypernerf(&f, IDS, WARPS, good);
+    hypernerf(&f, IDS, WARPS, GOOD);
     must(remove(tiny_path(&f, "camera/b.json")) == 0, "b.json");
     refuse(&f, "camera/b.json", "No such file");
     must(remove(tiny_path(&f, "metadata.json")) == 0, "metadata.json");

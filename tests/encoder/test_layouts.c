@@ -3,11 +3,8 @@
  * splits by position, arrays of numbers). Links tools/scene/ray_*.o.
  * SPDX-License-Identifier: BSD-2-Clause */
 #include <math.h>
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <cmocka.h>
 
+#include "test.h"
 #include "data/undistort.h"
 #include "tools/scene/ray_set.h"
 #include "tiny_scene.h"

@@ -3,11 +3,8 @@
  * by itself in test_image_file.c). The picture tells where it was sampled.
  * SPDX-License-Identifier: BSD-2-Clause */
 #include <math.h>
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <cmocka.h>
 
+#include "test.h"
 #include "tiny_scene.h"
 
 /* After OpenCV, but with the centre of the first pixel at 0.5. */

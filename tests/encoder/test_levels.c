@@ -2,15 +2,11 @@
  * (render/leveled.h): v3 and v4 give the same bytes, and the base, which fuses nothing, the same to
  * rounding.
  * SPDX-License-Identifier: BSD-2-Clause */
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-#include <cmocka.h>
 
+#include "test.h"
 #include "generate_case.h"
 #include "raster_scene.h"
 #include "rate_ref.h"

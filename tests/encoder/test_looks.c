@@ -1,12 +1,7 @@
 /* test_looks.c - train/state/anchor_appearance.c: how opaque anchors are counts from where they are
  * most opaque, when that depends on the direction, and as the file will hold them.
  * SPDX-License-Identifier: BSD-2-Clause */
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
-#include <cmocka.h>
-
+#include "test.h"
 #include "ball_group.h"
 
 enum { STEPS = 60, DIRECTIONS = 8 };

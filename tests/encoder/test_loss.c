@@ -1,15 +1,11 @@
 /* test_loss.c - train/loss/loss.h against an independent double implementation: values, central
  * differences, threads, sizes.
  * SPDX-License-Identifier: BSD-2-Clause */
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
+#include <math.h>
 #include <stdlib.h>
 #include <string.h>
-#include <math.h>
-#include <cmocka.h>
 
+#include "test.h"
 #include "loss_ref.h"
 #include "odd_threads.h"
 #include "train/loss/loss.h"

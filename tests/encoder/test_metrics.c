@@ -1,15 +1,11 @@
 /* test_metrics.c - eval/metrics.h: cases that can be worked out by hand, and slow implementations
  * straight from the definitions.
  * SPDX-License-Identifier: BSD-2-Clause */
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
+#include <math.h>
 #include <stdlib.h>
 #include <string.h>
-#include <math.h>
-#include <cmocka.h>
 
+#include "test.h"
 #include "eval/metrics.h"
 #include "odd_threads.h"
 

@@ -2,11 +2,7 @@
  * once; a picture that is there and broken is an error all the same. Of every layout that lists
  * pictures.
  * SPDX-License-Identifier: BSD-2-Clause */
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <cmocka.h>
-
+#include "test.h"
 #include "refuse.h"
 #include "tiny_scene.h"
 

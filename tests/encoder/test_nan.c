@@ -2,12 +2,7 @@
  * checkpoint still leads where it led. A loss that is not finite ends the training before it
  * reaches the model.
  * SPDX-License-Identifier: BSD-2-Clause */
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
-#include <cmocka.h>
-
+#include "test.h"
 #include "ball_trainer.h"
 #include "train/step/checkpoint.h"
 

@@ -2,12 +2,8 @@
  * may not go.
  * SPDX-License-Identifier: BSD-2-Clause */
 #include <math.h>
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
-#include <cmocka.h>
 
+#include "test.h"
 #include "train/math/prune_units.h"
 #include "train/math/random.h"
 

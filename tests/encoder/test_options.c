@@ -1,15 +1,11 @@
 /* test_options.c - train/model/options.h: presets, name=value with every way to get it wrong, the
  * hash that ties checkpoints to options, the help table.
  * SPDX-License-Identifier: BSD-2-Clause */
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-#include <cmocka.h>
 
+#include "test.h"
 #include "train/model/options.h"
 
 typedef struct {

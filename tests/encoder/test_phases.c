@@ -4,12 +4,7 @@
  * ever loses them, at its begin; pictures come in rounds, drawn from plain values, then from values
  * with noise, then from those that the file will hold. Single steps: test_densify.c, test_traps.c.
  * SPDX-License-Identifier: BSD-2-Clause */
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
-#include <cmocka.h>
-
+#include "test.h"
 #include "ball_group.h"
 #include "cloud_case.h"
 #include "train/densify/short_lived.h"

@@ -1,12 +1,9 @@
 /* test_pictures.c - pictures of every kind that PNG and JPEG have come out as bytes that are right,
  * or are refused; alpha that is straight, as PNG says, or premultiplied, as some programs write it.
  * SPDX-License-Identifier: BSD-2-Clause */
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
 #include <stdio.h>
-#include <cmocka.h>
 
+#include "test.h"
 #include "jpeg_writer.h"
 #include "data/image_file.h"
 #include "refuse.h"

@@ -1,13 +1,9 @@
 /* test_raster_grad.c - every gradient of the rasteriser against central differences of the plain
  * renderer in double precision.
  * SPDX-License-Identifier: BSD-2-Clause */
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
 #include <string.h>
 
-#include <cmocka.h>
-
+#include "test.h"
 #include "tool/threads.h"
 #include "raster_scene.h"
 #include "render/raster_plain.h"

@@ -2,12 +2,7 @@
  * quantiser, threads, lanes that are not there, the integer mode, and clamped outputs (annex D.1:
  * sigma clamped from below, steps near 0).
  * SPDX-License-Identifier: BSD-2-Clause */
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
-#include <cmocka.h>
-
+#include "test.h"
 #include "tool/threads.h"
 #include "norm/prior.h"
 #include "odd_threads.h"

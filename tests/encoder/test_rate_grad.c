@@ -2,12 +2,7 @@
  * model of rate_ref.h, residuals held fixed: values, mask logits, weights of hyperprior and slices;
  * at random points and at awkward ones.
  * SPDX-License-Identifier: BSD-2-Clause */
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
-#include <cmocka.h>
-
+#include "test.h"
 #include "rate_ref.h"
 
 enum { MAX_ANCHORS = 16 };

@@ -2,12 +2,7 @@
  * arithmetic and against the coder's own tables (spec 9.4), and the tails (annex D.1: outliers need
  * a gradient).
  * SPDX-License-Identifier: BSD-2-Clause */
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
-#include <cmocka.h>
-
+#include "test.h"
 #include "norm/gaussian.h"
 #include "rate_ref.h"
 #include "train/rate/rate_parts.h"

@@ -2,13 +2,9 @@
  * random share of the blocks, every block as often as any other, in mean worth the gradient of all
  * blocks; lambda weighs the mean bits of a parameter; the same bits for any number of threads.
  * SPDX-License-Identifier: BSD-2-Clause */
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
 #include <stdlib.h>
-#include <cmocka.h>
 
+#include "test.h"
 #include "cloud_case.h"
 #include "odd_threads.h"
 #include "tool/threads.h"

@@ -2,14 +2,11 @@
  * points lie where pictures show something, and at the depth at which they agree; points that help
  * stay.
  * SPDX-License-Identifier: BSD-2-Clause */
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
-#include <cmocka.h>
+
+#include "test.h"
 
 #define BALL_FRAMES 3
 #include "ball_group.h"

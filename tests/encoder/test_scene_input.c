@@ -2,13 +2,10 @@
  * colours, nerfstudio's own lists of the split, more times than wanted, pictures that change or go
  * away while they are in use, pictures that are damaged.
  * SPDX-License-Identifier: BSD-2-Clause */
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
 #include <stdio.h>
-#include <cmocka.h>
 #include <jpeglib.h>
 
+#include "test.h"
 #include "data/image_file.h"
 #include "tiny_scene.h"
 #include "tool/threads.h"

@@ -1,12 +1,7 @@
 /* test_seed.c - where training starts: normalised space and views in it (train/model/normalise.h),
  * anchors from points (train/model/init.h).
  * SPDX-License-Identifier: BSD-2-Clause */
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
-#include <cmocka.h>
-
+#include "test.h"
 #include "cloud_case.h"
 #include "train/math/voxel_set.h"
 #include "train/model/init.h"
@@ -134,12 +129,6 @@ static void test_space_view(void **state)
 
 /* ---- anchors ---- */
 
-static void begin(ted4_trainer *t)
-{
-    if (ted4_trainer_init(t, &cloud.options, &cloud.data, NULL) != 0)
-        fail_msg("%s", t->message.text);
-}
-
 static void check_values(const ted4_trainer *t, size_t i, float scale)
 {
     const ted4_layout *l = &t->layout;
@@ -169,7 +158,7 @@ static void test_lattice(void **state)
         uint8_t seen[CLOUD_POINTS] = { 0 };
 
         cloud_make(&cloud, single ? 1 : 5);
-        begin(&t);
+        cloud_begin(&cloud, &t);
         assert_int_equal(t.anchors.n, CLOUD_POINTS);
         assert_true(fabs(t.cell - 0.25) < 1e-6);
         assert_true((t.layout.first[TED4_TAU] >= 0) == !single);
@@ -201,7 +190,7 @@ static void test_voxels(void **state)
     cloud_make(&cloud, 1);
     cloud.options.cell = 1.0; /* scene units: half a unit of normalised space */
     cloud.point[0][0] = 100;
-    begin(&t);
+    cloud_begin(&cloud, &t);
     assert_true(fabs(t.cell - 0.5) < 1e-9);
     assert_true(t.anchors.n <= 4 * 4 * 4 && t.anchors.n >= 3 * 3 * 3);
     for (size_t i = 0; i < t.anchors.n; i++)
@@ -221,7 +210,7 @@ static void test_finest(void **state)
     (void)state;
     cloud_make(&cloud, 1);
     cloud.options.cell = 1e-300;
-    begin(&t);
+    cloud_begin(&cloud, &t);
     assert_true(t.cell == TED4_FINEST_CELL);
     assert_int_equal(t.anchors.n, CLOUD_POINTS);
     ted4_trainer_finish(&t);
@@ -235,7 +224,7 @@ static void test_bound(void **state)
 
         cloud_make(&cloud, 1);
         cloud.options.init_anchors = most;
-        begin(&t);
+        cloud_begin(&cloud, &t);
         assert_true(t.anchors.n >= 1 && t.anchors.n <= (size_t)most);
         assert_true(t.cell > 0.25);
         ted4_trainer_finish(&t);
@@ -250,7 +239,7 @@ static void test_few_points(void **state)
     (void)state;
     cloud_make(&cloud, 1);
     cloud.data.n_points = 1;
-    begin(&t);
+    cloud_begin(&cloud, &t);
     assert_int_equal(t.anchors.n, 1);
     ted4_trainer_finish(&t);
     cloud.data.n_points = 0;
@@ -268,12 +257,12 @@ static void test_networks(void **state)
 
     (void)state;
     cloud_make(&cloud, 5);
-    begin(&t);
-    begin(&other);
+    cloud_begin(&cloud, &t);
+    cloud_begin(&cloud, &other);
     assert_memory_equal(t.net, other.net, t.layout.n_net * sizeof *t.net);
     ted4_trainer_finish(&other);
     cloud.options.seed = 1;
-    begin(&other);
+    cloud_begin(&cloud, &other);
     for (size_t i = 0; i < t.layout.nete; i++)
         same += t.net[i] == other.net[i];
 
@@ -320,7 +309,7 @@ static void test_awake(void **state)
         double y[64];
 
         cloud.options.seed = seed;
-        begin(&t);
+        cloud_begin(&cloud, &t);
 
         const ted4_net_shape *const s = &t.layout.shape.netr[TED4_NET_OPACITY];
 

@@ -1,13 +1,9 @@
 /* test_sightings.c - train/densify/photo_votes.c: over which times a colour is there, from how many
  * cameras look and how many agree at each.
  * SPDX-License-Identifier: BSD-2-Clause */
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
 #include <string.h>
-#include <cmocka.h>
 
+#include "test.h"
 #include "train/densify/photo_votes.h"
 
 enum { FRAMES = 12, CAMERAS = 6 };

@@ -1,14 +1,10 @@
 /* test_sprout.c - train/densify/mv_seed.h: a fast ball that no initial point stands for is found
  * where and when it is, and gets anchors. That they matter is shown on scenes: bench/report.md.
  * SPDX-License-Identifier: BSD-2-Clause */
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
 #include <stdlib.h>
 #include <string.h>
-#include <cmocka.h>
 
+#include "test.h"
 #include "ball_group.h"
 #include "ball_missing.h"
 #include "train/densify/mv_seed.h"

@@ -1,12 +1,7 @@
 /* test_stage1.c - one end of stage 1 serves every lambda and every variant of stage 2: what comes
  * out is what a training of its own would have given.
  * SPDX-License-Identifier: BSD-2-Clause */
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
-#include <cmocka.h>
-
+#include "test.h"
 #include "ball_trainer.h"
 #include "train/step/checkpoint.h"
 

@@ -1,13 +1,9 @@
 /* test_starved_trainer.c - the trainer when memory runs out: each allocation in turn fails. It says
  * so, says nothing else, and gives back what it holds.
  * SPDX-License-Identifier: BSD-2-Clause */
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
 #include <stdlib.h>
-#include <cmocka.h>
 
+#include "test.h"
 #include "cloud_case.h"
 #include "data/image_cache.h"
 #include "starving.h"

@@ -2,13 +2,9 @@
  * verdict is limit.memory. It is compiled here as where size_t has 32 bits: no size is more than
  * UINT32_MAX there.
  * SPDX-License-Identifier: BSD-2-Clause */
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
 #include <stdlib.h>
-#include <cmocka.h>
 
+#include "test.h"
 #include "random_scene.h"
 #include "starving.h"
 

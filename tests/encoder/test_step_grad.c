@@ -4,12 +4,7 @@
  * differences of double-precision references. Quantisation residuals are held fixed, masks are
  * straight-through.
  * SPDX-License-Identifier: BSD-2-Clause */
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
-#include <cmocka.h>
-
+#include "test.h"
 #include "generate_ref.h"
 #include "loss_ref.h"
 #include "raster_ref.h"

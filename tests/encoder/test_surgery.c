@@ -2,12 +2,8 @@
  * does not use draws the same pictures, and one that loses nothing is the same.
  * SPDX-License-Identifier: BSD-2-Clause */
 #include <math.h>
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
-#include <cmocka.h>
 
+#include "test.h"
 #include "ball_trainer.h"
 #include "train/search/model_search.h"
 #include "train/step/checkpoint.h"

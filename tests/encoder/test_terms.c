@@ -3,12 +3,7 @@
  * sizes are learnt; and every part of the model moves when it is its turn, and only then. What each
  * is worth: test_update.c, test_rate_subset.c, test_step_grad.c.
  * SPDX-License-Identifier: BSD-2-Clause */
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
-#include <cmocka.h>
-
+#include "test.h"
 #include "ball_group.h"
 #include "train/step/checkpoint.h"
 

@@ -1,12 +1,7 @@
 /* test_time_probe.c - train/search/static_test.c: time is kept where things move and dropped where
  * nothing does, and trying it leaves no trace in what is kept.
  * SPDX-License-Identifier: BSD-2-Clause */
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
-#include <cmocka.h>
-
+#include "test.h"
 #include "ball_trainer.h"
 #include "train/step/checkpoint.h"
 

@@ -2,13 +2,9 @@
  * threads and any checkpoint give the same file, parts that a scene does not need are left out,
  * the rate it optimises is the rate of the file, and damage is refused with a message.
  * SPDX-License-Identifier: BSD-2-Clause */
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
-#include <cmocka.h>
 #include <errno.h>
 
+#include "test.h"
 #include "ball_decoded.h"
 #include "tool/threads.h"
 #include "train/step/checkpoint.h"

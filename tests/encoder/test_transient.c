@@ -1,14 +1,10 @@
 /* test_transient.c - train/densify/short_lived.c: which initial points are found to exist only for
  * a while, and when.
  * SPDX-License-Identifier: BSD-2-Clause */
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
 #include <stdlib.h>
 #include <string.h>
-#include <cmocka.h>
 
+#include "test.h"
 #include "ball_scene.h"
 #include "train/densify/short_lived.h"
 

@@ -11,12 +11,7 @@
  * file, 6 units of the world and small scalings, 8 anchors that are never there; and positions in
  * FP16: none beyond 1, no two alike.
  * SPDX-License-Identifier: BSD-2-Clause */
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
-#include <cmocka.h>
-
+#include "test.h"
 #include "ball_group.h"
 #include "base/bytes.h"
 #include "cloud_case.h"

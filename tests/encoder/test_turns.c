@@ -1,13 +1,10 @@
 /* test_turns.c - train/densify/turns.h: cameras that take turns, one picture a time. A ball that no
  * initial point stands for is found from the pictures of several times.
  * SPDX-License-Identifier: BSD-2-Clause */
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
 #include <stdlib.h>
 #include <string.h>
-#include <cmocka.h>
+
+#include "test.h"
 
 #define BALL_FRAMES 24
 #include "ball_group.h"

@@ -1,13 +1,9 @@
 /* test_update.c - the terms that train/step/apply_gradients.c adds to the picture's gradients,
  * against central differences of their losses in double precision; Adam against its formula.
  * SPDX-License-Identifier: BSD-2-Clause */
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
 #include <stdlib.h>
-#include <cmocka.h>
 
+#include "test.h"
 #include "cloud_case.h"
 #include "train/math/adam.h"
 
@@ -16,8 +12,7 @@ static cloud_case cloud;
 static void begin(ted4_trainer *t, uint32_t frames)
 {
     cloud_make(&cloud, frames);
-    if (ted4_trainer_init(t, &cloud.options, &cloud.data, NULL) != 0)
-        fail_msg("%s", t->message.text);
+    cloud_begin(&cloud, t);
 }
 
 static void expect_near(double got, double want, double scale)

@@ -2,15 +2,11 @@
  * help, also where it faces the cameras; points at random do not; pictures that agree everywhere,
  * or nowhere, tell nothing.
  * SPDX-License-Identifier: BSD-2-Clause */
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
-#include <cmocka.h>
 
+#include "test.h"
 #include "data/useful.h"
 #include "train/math/random.h"
 

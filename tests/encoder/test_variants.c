@@ -4,12 +4,7 @@
  * about right. Variants of stage 2 from one stage 1: test_stage1.c. What the gradients of each are
  * worth: test_generate_grad.c, test_rate_grad.c.
  * SPDX-License-Identifier: BSD-2-Clause */
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
-#include <cmocka.h>
-
+#include "test.h"
 #include "ball_decoded.h"
 #include "ball_group.h"
 #include "norm/scene.h"

@@ -3,12 +3,7 @@
  * training that goes well never notices. Files and logs of a program that went back:
  * test_run_log.c.
  * SPDX-License-Identifier: BSD-2-Clause */
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
-#include <cmocka.h>
-
+#include "test.h"
 #include "ball_trainer.h"
 #include "train/step/checkpoint.h"
 #include "train/step/grad_norm.h"

@@ -8,6 +8,7 @@
 #include "eval/metrics.h"
 #include "render/view.h"
 #include "ted4.h"
+#include "test.h"
 
 /* Mean PSNR of the decoded file over the training pictures. */
 static inline double ball_decoded_psnr(const ball_file *f, ted4_dataset *d, ted4_info *info)

@@ -5,6 +5,7 @@
 #define TED4_BALL_MISSING_H
 
 #include "ball_trainer.h"
+#include "test.h"
 #include "train/densify/short_lived.h"
 
 enum { BLUE = 2 };

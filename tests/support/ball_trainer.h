@@ -4,6 +4,7 @@
 #define TED4_BALL_TRAINER_H
 
 #include "ball_scene.h"
+#include "test.h"
 #include "train/step/export_scene.h"
 #include "train/state/trainer.h"
 #include "write/encode.h"

@@ -1,5 +1,5 @@
 /* cloud_case.h - a dataset in memory with points and one camera, no pictures on disc, and a small
- * trainer on it: for test_seed.c and test_densify.c.
+ * trainer on it.
  * SPDX-License-Identifier: BSD-2-Clause */
 #ifndef TED4_CLOUD_CASE_H
 #define TED4_CLOUD_CASE_H
@@ -7,6 +7,7 @@
 #include <math.h>
 #include <string.h>
 
+#include "test.h"
 #include "train/math/random.h"
 #include "train/state/trainer.h"
 
@@ -48,6 +49,13 @@ static inline void cloud_make(cloud_case *c, uint32_t frames)
     c->options.phi = 4;
     c->options.bank_dim = c->options.deform_width = c->options.head_width = 8;
     c->options.grow_every = 10;
+}
+
+/* A trainer on what cloud_make left in c, with options that may have been changed since. */
+static inline void cloud_begin(cloud_case *c, ted4_trainer *t)
+{
+    if (ted4_trainer_init(t, &c->options, &c->data, NULL) != 0)
+        fail_msg("%s", t->message.text);
 }
 
 #endif

@@ -10,6 +10,7 @@
 #include <stdlib.h>
 #include <string.h>
 #include "norm/limits.h"
+#include "test.h"
 #include "write/encode.h"
 
 enum { LEVEL_AT = 11 };

@@ -8,6 +8,8 @@
 #include <stdio.h>
 #include <jpeglib.h>
 
+#include "test.h"
+
 typedef struct {
     int w, h, n;         /* pixels, at most 64 wide; components, at most 4 */
     J_COLOR_SPACE space; /* of the components */

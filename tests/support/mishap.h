@@ -13,6 +13,7 @@
 #include <unistd.h>
 
 #include "ball_trainer.h"
+#include "test.h"
 #include "train/step/checkpoint.h"
 
 enum { MOST_WORDS = 64, MOST_BYTES = 1 << 20, MOST_LOG = 1 << 16, STAGE1 = 700, STEPS = 900 };

@@ -5,6 +5,7 @@
 #define TED4_REFUSE_H
 
 #include <string.h>
+#include "test.h"
 #include "tiny_scene.h"
 
 /* The load must fail, with a one-line message that holds both texts, and leave nothing behind. */

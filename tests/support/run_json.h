@@ -11,6 +11,7 @@
 #include <sys/wait.h>
 #include <unistd.h>
 #include "temporary.h"
+#include "test.h"
 
 /* program: one of the folder $TED4_BUILD, with options; the file's path is put behind. Gives the
  * exit code; *printed: the JSON on stdout, the caller's. */

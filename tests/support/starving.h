@@ -6,6 +6,8 @@
 
 #include <stddef.h>
 
+#include "test.h"
+
 void *__real_malloc(size_t size);
 void *__real_calloc(size_t n, size_t size);
 void *__real_realloc(void *block, size_t size);

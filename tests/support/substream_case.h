@@ -6,6 +6,7 @@
 
 #include <stdlib.h>
 #include "random_scene.h"
+#include "test.h"
 #include "write/coder_write.h"
 
 /* n symbols with their models: means in 1/256, indices of sigma. */

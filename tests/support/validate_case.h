@@ -9,6 +9,7 @@
 #include "norm/coder.h"
 #include "random_scene.h"
 #include "read/finding.h"
+#include "test.h"
 
 enum { MOST_FINDINGS = 400 };
 

@@ -8,6 +8,8 @@
 #include <stdio.h>
 #include <string.h>
 
+#include "test.h"
+
 enum { MAX_VECTOR = 1 << 20 };
 
 /* Calls visit(data, size, path) for each stream that find(1) finds with these further conditions;

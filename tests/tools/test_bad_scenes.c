@@ -3,12 +3,9 @@
  * few pixels that is fine shows that the others fail for their own reason. Looks for it in
  * $TED4_BUILD (set by tests/run.sh); skips when that is not set.
  * SPDX-License-Identifier: BSD-2-Clause */
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
 #include <sys/wait.h>
-#include <cmocka.h>
 
+#include "test.h"
 #include "tiny_scene.h"
 
 #define OUT    " -o out/x.ted4"

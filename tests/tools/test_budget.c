@@ -1,10 +1,8 @@
 /* test_budget.c - tool/budget.c: every byte of a file has one owner.
  * SPDX-License-Identifier: BSD-2-Clause */
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <cmocka.h>
 #include <stdlib.h>
+
+#include "test.h"
 #include "random_scene.h"
 #include "tool/budget.h"
 

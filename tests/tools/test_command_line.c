@@ -2,17 +2,12 @@
  * numbers, options from a table.
  * The programs' helpers are in no library, so their sources are part of this file.
  * SPDX-License-Identifier: BSD-2-Clause */
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
+#include <getopt.h>
+#include <math.h>
 #include <stdlib.h>
 #include <string.h>
-#include <math.h>
-#include <cmocka.h>
 
-#include <getopt.h>
-
+#include "test.h"
 #include "tool/arguments.h"
 #include "tool/output.h"
 #include "tool/times.h"

@@ -2,14 +2,12 @@
  * nothing out, our decoder passes all of them, and the runner sees through decoders that do not
  * (conformance/tests/bad_decoder.sh). Programs are run as a user would.
  * SPDX-License-Identifier: BSD-2-Clause */
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <cmocka.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 #include <sys/wait.h>
+
+#include "test.h"
 #include "base/level.h"
 #include "ted4.h"
 

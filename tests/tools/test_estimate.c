@@ -3,14 +3,10 @@
  * probe, trials and sprouts took on top.
  * SPDX-License-Identifier: BSD-2-Clause */
 #include <math.h>
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
 #include <stdio.h>
 #include <string.h>
-#include <cmocka.h>
 
+#include "test.h"
 #include "estimate_runs.h"
 #include "tool/estimate.h"
 

@@ -1,18 +1,14 @@
 /* test_export.c - the files ted4dec writes, read back field by field.
  * The programs' helpers are in no library, so their sources are part of this file.
  * SPDX-License-Identifier: BSD-2-Clause */
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
+#include <dirent.h>
+#include <jansson.h>
+#include <math.h>
 #include <stdlib.h>
 #include <string.h>
-#include <math.h>
-#include <dirent.h>
 #include <unistd.h>
-#include <cmocka.h>
-#include <jansson.h>
 
+#include "test.h"
 #include "base/bytes.h"
 #include "temporary.h"
 #include "tool/export.h"

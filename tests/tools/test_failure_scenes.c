@@ -2,15 +2,10 @@
  * what cameras see; and those for file sizes. Links tools/scene/ray_*.o.
  * SPDX-License-Identifier: BSD-2-Clause */
 #include <math.h>
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
-#include <cmocka.h>
-
 #include <stdlib.h>
 #include <string.h>
 
+#include "test.h"
 #include "tools/scene/ray_lab.h"
 #include "tools/scene/ray_rig.h"
 

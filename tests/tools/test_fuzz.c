@@ -2,14 +2,11 @@
  * decoder's over changed copies of its seeds too, so that none of them can rot; and those seeds
  * themselves. Runs in the project's root, as `make test` does.
  * SPDX-License-Identifier: BSD-2-Clause */
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <cmocka.h>
 #include <dirent.h>
 #include <stdio.h>
 #include <sys/stat.h>
 
+#include "test.h"
 #include "fuzz/inputs.h"
 #include "fuzz/mend.h"
 #include "fuzz/mutate.h"

@@ -2,12 +2,9 @@
  * gives one clear error with exit status 3, or one counted warning and what is left, and never
  * anything else. Looks for the program in $TED4_BUILD; skips when that is not set.
  * SPDX-License-Identifier: BSD-2-Clause */
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
 #include <sys/wait.h>
-#include <cmocka.h>
 
+#include "test.h"
 #include "tiny_scene.h"
 
 static const char *build;

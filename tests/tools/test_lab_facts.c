@@ -2,12 +2,7 @@
  * of every picture and how far they go, on tracks made by hand; pictures that are what the file
  * shows, but for one; symbols put at the ends of their ranges; a log of a few lines.
  * SPDX-License-Identifier: BSD-2-Clause */
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
-#include <cmocka.h>
-
+#include "test.h"
 #include "bench/lab_facts.h"
 #include "ball_scene.h"
 #include "random_scene.h"

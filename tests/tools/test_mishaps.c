@@ -2,12 +2,7 @@
  * standard error says why, exit status 3, nothing half-written stays, and the last checkpoint leads
  * to the bytes of a run that nothing disturbed. Pictures and values: test_mishaps_scene.c.
  * SPDX-License-Identifier: BSD-2-Clause */
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
-#include <cmocka.h>
-
+#include "test.h"
 #include "mishap.h"
 
 /* ---- kill -9 ---- */

@@ -2,12 +2,7 @@
  * when a checkpoint is of other pictures, or a value is not finite: one line on standard error says
  * why, exit status 3, and the last checkpoint leads to the bytes of a run that nothing disturbed.
  * SPDX-License-Identifier: BSD-2-Clause */
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
-#include <cmocka.h>
-
+#include "test.h"
 #include "mishap.h"
 #include "train/step/checkpoint.h"
 

@@ -1,15 +1,11 @@
 /* test_process.c - decoders as processes (conformance/tool/process.h): what they said is whole when
  * they have ended, whenever that was noticed.
  * SPDX-License-Identifier: BSD-2-Clause */
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
-#include <cmocka.h>
 #include <signal.h>
 #include <sys/time.h>
 #include <time.h>
 
+#include "test.h"
 #include "conformance/tool/process.h"
 
 static const char *const none[] = { NULL };

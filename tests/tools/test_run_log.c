@@ -1,13 +1,9 @@
 /* test_run_log.c - the log that ted4enc writes while it trains: what is in its lines, and that it
  * is one log after a run was resumed.
  * SPDX-License-Identifier: BSD-2-Clause */
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
-#include <cmocka.h>
 #include <jansson.h>
 
+#include "test.h"
 #include "mishap.h"
 #include "tool/run_log.h"
 #include "train/step/checkpoint.h"

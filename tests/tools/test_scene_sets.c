@@ -2,15 +2,11 @@
  * held-out times, stated cameras against true ones, truth.json; and that the first scenes keep
  * their bytes. Links tools/scene/ray_*.o.
  * SPDX-License-Identifier: BSD-2-Clause */
-#include <math.h>
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <cmocka.h>
-
 #include <jansson.h>
+#include <math.h>
 #include <xxhash.h>
 
+#include "test.h"
 #include "tools/scene/ray_rig.h"
 #include "tiny_scene.h"
 

@@ -2,15 +2,11 @@
  * coefficients.
  * The programs' helpers are in no library, so the source is part of this file.
  * SPDX-License-Identifier: BSD-2-Clause */
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
+#include <math.h>
 #include <stdlib.h>
 #include <string.h>
-#include <math.h>
-#include <cmocka.h>
 
+#include "test.h"
 #include "tool/sh.h"
 
 enum { N = 37 };

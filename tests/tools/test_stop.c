@@ -2,12 +2,7 @@
  * stopped and how to go on, writes no file, and the same command with --resume writes the bytes of
  * a run that nothing disturbs. A second signal ends it at once.
  * SPDX-License-Identifier: BSD-2-Clause */
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
-#include <cmocka.h>
-
+#include "test.h"
 #include "mishap.h"
 
 /* A probe at step 300, stage 2 from 1200 on, trials at 1305, the integer stage at 1760. */

@@ -2,14 +2,10 @@
  * from below, a second run begins where stage 1 ended. Looks for the program in $TED4_BUILD (set by
  * tests/run.sh); skips when that is not set.
  * SPDX-License-Identifier: BSD-2-Clause */
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
 #include <sys/wait.h>
 #include <unistd.h>
-#include <cmocka.h>
 
+#include "test.h"
 #include "ball_scene.h"
 
 static tiny_folder folder;

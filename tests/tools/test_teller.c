@@ -2,17 +2,13 @@
  * quiet. Standard error of this program is a file meanwhile.
  * SPDX-License-Identifier: BSD-2-Clause */
 #include <fcntl.h>
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 #include <time.h>
 #include <unistd.h>
-#include <cmocka.h>
 
+#include "test.h"
 #include "temporary.h"
 #include "tool/teller.h"
 

@@ -1,11 +1,6 @@
 /* test_threads.c - tool/threads.c: every index once, whatever the numbers of threads and indices
  * and however uneven the work; sleepers wake.
  * SPDX-License-Identifier: BSD-2-Clause */
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
-#include <cmocka.h>
 #include <sched.h>
 #include <stdatomic.h>
 #include <stdlib.h>
@@ -13,6 +8,7 @@
 #include <time.h>
 #include <unistd.h>
 
+#include "test.h"
 #include "tool/threads.h"
 
 enum { MOST = 3000, THREADS = 9 };

@@ -1,13 +1,9 @@
 /* test_told.c - tool/told.c: which lines of META come out, and that none of them can steer a
  * terminal.
  * SPDX-License-Identifier: BSD-2-Clause */
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
 #include <string.h>
-#include <cmocka.h>
 
+#include "test.h"
 #include "base/bytes.h"
 #include "tool/told.h"
 

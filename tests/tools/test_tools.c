@@ -2,18 +2,15 @@
  * pictures, quality of a scene that is known.
  * Looks for them in $TED4_BUILD (set by tests/run.sh); skips when that is not set.
  * SPDX-License-Identifier: BSD-2-Clause */
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
+#include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-#include <math.h>
 #include <sys/stat.h>
 #include <sys/wait.h>
 #include <unistd.h>
-#include <cmocka.h>
+
+#include "test.h"
 #include <jansson.h>
 #define XXH_INLINE_ALL
 #include <xxhash.h>

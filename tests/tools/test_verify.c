@@ -1,12 +1,7 @@
 /* test_verify.c - what the encoder compares when it has decoded its own file: whatever of the scene
  * is another, it is seen.
  * SPDX-License-Identifier: BSD-2-Clause */
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
-#include <cmocka.h>
-
+#include "test.h"
 #include "random_scene.h"
 #include "tool/verify.h"
 

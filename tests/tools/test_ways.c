@@ -3,17 +3,12 @@
  * Links tools/scene/ray_*.o.
  * SPDX-License-Identifier: BSD-2-Clause */
 #include <math.h>
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
-#include <cmocka.h>
-
 #include <png.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
+#include "test.h"
 #include "tools/scene/ray_palette.h"
 #include "tools/scene/ray_picture.h"
 #include "tools/scene/ray_shot.h"

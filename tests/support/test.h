@@ -1,0 +1,12 @@
+/* test.h - cmocka, after the headers that it needs. Every test in C includes it.
+ * SPDX-License-Identifier: BSD-2-Clause */
+#ifndef TED4_TEST_H
+#define TED4_TEST_H
+
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <cmocka.h>
+
+#endif
