@@ -14,6 +14,7 @@ esac
 # shellcheck disable=SC2086 # several folders
 {
     find ref-decoder/base ref-decoder/norm ref-decoder/read ref-decoder/kernel ref-decoder/recon ref-encoder/write $more \
-        tests/support/random_scene.h tests/support/recon_ref.h tests/support/spec_model.h -name '*.[ch]' -o -name '*.def' -o -name '*.inc'
+        tests/support/random_scene.h tests/support/random_source.h tests/support/recon_ref.h \
+        tests/support/spec_model.h -name '*.[ch]' -o -name '*.def' -o -name '*.inc'
     find fuzz -name '*.[ch]' ! -name 'fz_*' -o -name "fz_$name.c"
 } | LC_ALL=C sort | xargs awk -f bench/sources.awk | sha256sum | cut -c1-12

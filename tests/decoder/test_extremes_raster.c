@@ -336,7 +336,7 @@ static scene make_crowd(int equal)
             equal ? 2.0f : (float)scene_range(&seed, 1, 9), 0.01f,
             (float)scene_range(&seed, 0.004, 0.03));
         for (int k = 0; k < 3; k++)
-            *scene_param(&s, SCENE_COLOUR + k, i) = (float)scene_uniform(&seed);
+            *scene_param(&s, SCENE_COLOUR + k, i) = (float)ted4_split_uniform(&seed);
     }
     return s;
 }

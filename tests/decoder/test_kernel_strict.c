@@ -7,6 +7,7 @@
 #include "test.h"
 #include "base/level.h"
 #include "kernel/strict_dense.h"
+#include "random_source.h"
 #include "use_kernels.h"
 #include "recon/strict.h"
 
@@ -14,17 +15,11 @@ enum { MAX = 131 };
 
 static _Alignas(64) float x[MAX * TED4_ROW], want[MAX * TED4_ROW], got[(MAX + 1) * TED4_ROW];
 static float w[MAX * MAX], b[MAX];
-static uint64_t seed = 7;
-
-static uint32_t bits32(void)
-{
-    seed = seed * 6364136223846793005u + 1442695040888963407u;
-    return (uint32_t)(seed >> 32);
-}
+static random_source source = { 7 };
 
 static float ordinary(void)
 {
-    return (float)(int32_t)bits32() * 0x1p-31f;
+    return (float)(int32_t)random_u32(&source) * 0x1p-31f;
 }
 
 /* Zeros of both signs, subnormals, huge and non-finite numbers among ordinary ones. */
@@ -33,7 +28,7 @@ static float special(void)
     static const uint32_t list[] = { 0,          0x80000000, 1,          0x80000001, 0x007fffff,
                                      0x00800000, 0x7f7fffff, 0xff7fffff, 0x7f800000, 0xff800000,
                                      0x7fc00000, 0x3f800001, 0x33800000 };
-    const uint32_t pick = bits32() >> 8;
+    const uint32_t pick = random_u32(&source) >> 8;
 
     if (pick % 4 != 0)
         return ordinary();
@@ -43,7 +38,7 @@ static float special(void)
 /* Numbers of very different sizes, without NaN: sums depend on order and on fusing. */
 static float wide(void)
 {
-    return ldexpf(ordinary(), (int)(bits32() >> 8) % 40 - 20);
+    return ldexpf(ordinary(), (int)(random_u32(&source) >> 8) % 40 - 20);
 }
 
 static void fill(float *v, size_t n, float (*number)(void))
@@ -78,7 +73,7 @@ static void twin_is_plain(ted4_strict_dense_fn twin)
 
     for (int kind = 0; kind < 3; kind++)
         for (unsigned out = 1; out < 36; out++) {
-            const unsigned in = bits32() % 70;
+            const unsigned in = random_u32(&source) % 70;
 
             fill(w, (size_t)in * out, kinds[kind]);
             fill(b, out, kinds[kind]);

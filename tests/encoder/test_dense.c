@@ -7,16 +7,11 @@
 
 #include "test.h"
 #include "kernel/dense.h"
+#include "random_source.h"
 
 enum { MAX_CH = 150, MAX_BLOCKS = 5, PAD = 3 };
 
-static uint32_t seed = 1;
-
-static float uniform(void)
-{
-    seed = seed * 1664525u + 1013904223u;
-    return (float)(int32_t)seed * 0x1p-31f;
-}
+static random_source source = { 1 };
 
 static float *fill(size_t n)
 {
@@ -25,7 +20,7 @@ static float *fill(size_t n)
 
     assert_non_null(v);
     for (size_t i = 0; i < n; i++)
-        v[i] = uniform();
+        v[i] = random_float(&source, -1, 1);
     return v;
 }
 

@@ -319,7 +319,7 @@ static void test_integer(void **state)
             double bits[TED4_TYPES];
 
             h.step[TED4_FEATURE] = 0.01f;
-            ref_seed = 5; /* the same networks for every value */
+            ref_source = random_seed(5); /* the same networks for every value */
             ref_world_make(&w, &h);
             uint8_t *shift = calloc(w.layout.shape.n_units, 1);
 

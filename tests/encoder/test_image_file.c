@@ -11,6 +11,7 @@
 #include "data/image_cache.h"
 #include "data/image_file.h"
 #include "data/undistort.h"
+#include "random_source.h"
 #include "render/png_file.h"
 #include "tiny_scene.h"
 
@@ -443,11 +444,10 @@ static void *hammer(void *arg)
     ted4_image_cache *c = arg;
     ted4_message m;
     uintptr_t wrong = 0;
-    uint32_t x = (uint32_t)(uintptr_t)&m | 1;
+    random_source r = random_seed((uintptr_t)&m);
 
     for (int k = 0; k < 20000; k++) {
-        x = x * 1664525u + 1013904223u;
-        const size_t i = (x >> 16) % ITEMS;
+        const size_t i = random_in(&r, 0, ITEMS - 1);
         ted4_image_cache_ahead(c, (i + 5) % ITEMS, 3);
         const uint8_t *p = ted4_image_cache_pin(c, i, &m);
         wrong += (p == NULL) != (i == 11);

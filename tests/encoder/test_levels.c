@@ -188,7 +188,7 @@ static void rate(results *r)
     for (size_t q = 0; q < sizeof quant / sizeof quant[0]; q++) {
         double bits[TED4_TYPES];
 
-        ref_seed = 3;
+        ref_source = random_seed(3);
         ref_world_make(w, &h);
         uint8_t *shift = malloc(w->layout.shape.n_units);
 

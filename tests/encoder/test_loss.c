@@ -8,6 +8,7 @@
 #include "test.h"
 #include "loss_ref.h"
 #include "odd_threads.h"
+#include "random_source.h"
 #include "train/loss/loss.h"
 
 /* exact: the image in double, as the reference reads it. */
@@ -19,13 +20,7 @@ typedef struct {
     ref_picture reference;
 } picture;
 
-static uint32_t seed = 1;
-
-static uint32_t draw(void)
-{
-    seed = seed * 1664525u + 1013904223u;
-    return seed >> 8;
-}
+static random_source source = { 1 };
 
 /* The rendered image is near the truth in its left half, far from it in the right one, and may
  * leave [0, 1]. */
@@ -41,12 +36,12 @@ static picture make(int width, int height)
 
     assert_true(p.image != NULL && p.gradient != NULL && p.exact != NULL && p.truth != NULL);
     for (size_t i = 0; i < n; i++)
-        p.truth[i] = (uint8_t)((i / 40 * 16 + draw() % 64) & 255);
+        p.truth[i] = (uint8_t)((i / 40 * 16 + random_u32(&source) % 64) & 255);
     for (int c = 0; c < 3; c++) {
         for (int y = 0; y < height; y++) {
             for (int x = 0; x < width; x++) {
                 const float amount = x < width / 2 ? 0.05f : 1.2f;
-                const float noise = (float)(draw() % 1000) / 1000.0f - 0.5f;
+                const float noise = (float)(random_u32(&source) % 1000) / 1000.0f - 0.5f;
 
                 p.image[((size_t)c * (size_t)height + (size_t)y) * (size_t)width + (size_t)x] =
                     (float)p.truth[((size_t)y * (size_t)width + (size_t)x) * 3 + (size_t)c] /
@@ -110,8 +105,9 @@ static void test_reference(void **state)
 
         check_values(&p, (double)weight, loss, l1, ssim);
         for (int k = 0; k < 120; k++)
-            check_gradient(&p, (double)weight, k % 3, (int)draw() % p.height,
-                           (int)draw() % p.width);
+            check_gradient(&p, (double)weight, k % 3,
+                           (int)random_in(&source, 0, (uint32_t)p.height - 1),
+                           (int)random_in(&source, 0, (uint32_t)p.width - 1));
         for (int y = 60; y < 68 && y < p.height; y++)
             for (int x = 122; x < 134 && x < p.width; x += 3)
                 check_gradient(&p, (double)weight, 1, y, x);

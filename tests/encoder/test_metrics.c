@@ -8,14 +8,9 @@
 #include "test.h"
 #include "eval/metrics.h"
 #include "odd_threads.h"
+#include "random_source.h"
 
-static uint32_t seed = 7;
-
-static uint32_t draw(void)
-{
-    seed = seed * 1664525u + 1013904223u;
-    return seed >> 8;
-}
+static random_source source = { 7 };
 
 static uint8_t *constant(int width, int height, int value)
 {
@@ -36,7 +31,7 @@ static uint8_t *pattern(int width, int height, uint32_t noise)
             for (int c = 0; c < 3; c++)
                 v[(y * width + x) * 3 + c] =
                     (uint8_t)(90.0 + 60.0 * sin(0.1 * x * (c + 1)) * cos(0.07 * y) +
-                              draw() % noise);
+                              random_u32(&source) % noise);
     return v;
 }
 

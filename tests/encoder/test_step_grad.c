@@ -136,7 +136,7 @@ static void make(uint32_t seed, uint32_t num, int activation, int stage2)
     const ted4_header h = make_head();
 
     memset(&pr, 0, sizeof pr);
-    ref_seed = 77u * seed + 5u;
+    ref_source = random_seed(77u * seed + 5u);
     ted4_layout_make(&pr.layout, &h);
     pr.n_theta = pr.layout.n_net + channel_at(SLOTS, 0, 0);
     assert_true(pr.n_theta <= MAX_THETA && pr.layout.shape.n_nete <= REF_MAX_NET);

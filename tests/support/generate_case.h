@@ -8,6 +8,7 @@
 #include <stdlib.h>
 
 #include "generate_ref.h"
+#include "random_source.h"
 #include "train/model/model.h"
 
 /* More slots than the generator has chunks. The first has no unused lane, one has no other. */
@@ -29,14 +30,13 @@ typedef struct {
     _Alignas(64) float position[CASE_SLOTS][3 * TED4_LANES];
     const float *attr_list[CASE_SLOTS], *position_list[CASE_SLOTS];
     uint32_t lanes[CASE_SLOTS];
-    uint32_t seed;
+    random_source random;
 } test_case;
 
 /* Uniform in [-1, 1). */
 static inline float case_random(test_case *t)
 {
-    t->seed = t->seed * 1664525u + 1013904223u;
-    return (float)((int32_t)t->seed >> 8) * 0x1p-23f;
+    return random_float(&t->random, -1, 1);
 }
 
 /* The header that most tests start from. */
@@ -132,7 +132,7 @@ static inline void case_make(test_case *t, const ted4_header *h, uint32_t num, u
     size_t n_used;
 
     memset(t, 0, sizeof *t);
-    t->seed = seed;
+    t->random = random_seed(seed);
     ted4_layout_make(&t->layout, h);
     n_used = t->layout.nete;
     for (size_t i = 0; i < n_used; i++)

@@ -11,45 +11,9 @@
 #include "norm/half.h"
 #include "norm/prior.h"
 #include "norm/scene.h"
+#include "random_source.h"
 #include "write/encode.h"
 #include "write/snap.h"
-
-/* xorshift64*; the state is never 0. */
-typedef struct {
-    uint64_t state;
-} random_source;
-
-static inline random_source random_seed(uint64_t seed)
-{
-    return (random_source) { (seed + 1) * 0x9e3779b97f4a7c15u };
-}
-
-static inline uint32_t random_u32(random_source *r)
-{
-    r->state ^= r->state >> 12;
-    r->state ^= r->state << 25;
-    r->state ^= r->state >> 27;
-    return (uint32_t)(r->state * 0x2545f4914f6cdd1du >> 32);
-}
-
-/* low .. high, both included. */
-static inline uint32_t random_in(random_source *r, uint32_t low, uint32_t high)
-{
-    return low + random_u32(r) % (high - low + 1);
-}
-
-/* 0 <= x < 1 */
-static inline double random_unit(random_source *r)
-{
-    return random_u32(r) / 4294967296.0;
-}
-
-static inline double random_normal(random_source *r)
-{
-    const double length = sqrt(-2 * log(1 - random_unit(r)));
-
-    return length * cos(6.283185307179586 * random_unit(r));
-}
 
 /* The shape of the method of the paper: F = 50 in slices 5, 10, 15, 20, K = 10, hyperprior
  * 63-100-100. */

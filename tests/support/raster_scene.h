@@ -8,6 +8,7 @@
 #include <stdint.h>
 #include <stdlib.h>
 
+#include "data/data_util.h"
 #include "render/raster.h"
 
 /* Parameters of a Gaussian in the order of ted4_splats: mean 3, scale 3, rotation 4, opacity,
@@ -26,26 +27,16 @@ typedef struct {
     float *value; /* [SCENE_PARAMS][n] */
 } scene;
 
-/* Uniform in [0, 1); splitmix64. */
-static inline double scene_uniform(uint64_t *seed)
-{
-    uint64_t z = *seed += 0x9e3779b97f4a7c15u;
-
-    z = (z ^ z >> 30) * 0xbf58476d1ce4e5b9u;
-    z = (z ^ z >> 27) * 0x94d049bb133111ebu;
-    return (double)((z ^ z >> 31) >> 11) * 0x1p-53;
-}
-
 static inline double scene_range(uint64_t *seed, double lo, double hi)
 {
-    return lo + (hi - lo) * scene_uniform(seed);
+    return lo + (hi - lo) * ted4_split_uniform(seed);
 }
 
 static inline double scene_normal(uint64_t *seed)
 {
-    const double u = 1 - scene_uniform(seed);
+    const double u = 1 - ted4_split_uniform(seed);
 
-    return sqrt(-2 * log(u)) * cos(6.283185307179586 * scene_uniform(seed));
+    return sqrt(-2 * log(u)) * cos(6.283185307179586 * ted4_split_uniform(seed));
 }
 
 static inline float *scene_param(const scene *s, int param, size_t i)
@@ -121,7 +112,7 @@ static inline scene scene_random(size_t n, const ted4_view *v, double sigma, uin
         for (int k = 0; k < 3; k++) {
             *scene_param(&s, SCENE_SCALE + k, i) =
                 (float)(z / v->fx * sigma * exp(0.6 * scene_normal(&seed)));
-            *scene_param(&s, SCENE_COLOUR + k, i) = (float)scene_uniform(&seed);
+            *scene_param(&s, SCENE_COLOUR + k, i) = (float)ted4_split_uniform(&seed);
         }
         double q[4];
 

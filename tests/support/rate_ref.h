@@ -9,6 +9,7 @@
 #include <string.h>
 
 #include "norm/half.h"
+#include "random_source.h"
 #include "train/model/model.h"
 
 enum { REF_MAX_CHANNELS = 128, REF_MAX_OUTPUTS = 256, REF_MAX_NET = 4096, REF_SLOTS = 3 };
@@ -20,12 +21,12 @@ enum { REF_MAX_CHANNELS = 128, REF_MAX_OUTPUTS = 256, REF_MAX_NET = 4096, REF_SL
 
 /* ---- random numbers of the tests ---- */
 
-static uint32_t ref_seed = 1;
+static random_source ref_source = { 1 };
 
-static inline double ref_uniform(void) /* in [-1, 1) */
+/* Uniform in [-1, 1). */
+static inline double ref_uniform(void)
 {
-    ref_seed = ref_seed * 1664525u + 1013904223u;
-    return (double)(int32_t)(ref_seed ^ ref_seed >> 13) * 0x1p-31;
+    return 2 * random_unit(&ref_source) - 1;
 }
 
 /* ---- the model ---- */

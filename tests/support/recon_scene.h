@@ -10,21 +10,7 @@
 #include <string.h>
 #include "norm/half.h"
 #include "norm/syntax.h"
-
-typedef struct {
-    uint64_t state;
-} scene_random;
-
-static inline uint32_t scene_bits(scene_random *r)
-{
-    r->state = r->state * 6364136223846793005u + 1442695040888963407u;
-    return (uint32_t)(r->state >> 32);
-}
-
-static inline float scene_uniform(scene_random *r, float low, float high)
-{
-    return low + (high - low) * ((float)(scene_bits(r) >> 8) * 0x1p-24f);
-}
+#include "random_source.h"
 
 static inline void *scene_take(size_t n, size_t size)
 {
@@ -36,7 +22,7 @@ static inline void *scene_take(size_t n, size_t size)
 }
 
 /* Weights that keep values near 1 whatever the width. */
-static inline void scene_networks(struct ted4_scene *s, scene_random *r)
+static inline void scene_networks(struct ted4_scene *s, random_source *r)
 {
     s->netr.n = s->shape.n_netr;
     s->netr.values = scene_take(s->netr.n, sizeof(float));
@@ -48,17 +34,17 @@ static inline void scene_networks(struct ted4_scene *s, scene_random *r)
             const float size = 2.0f / sqrtf((float)n->dim[l]);
 
             for (size_t k = 0; k < (size_t)n->dim[l + 1] * (n->dim[l] + 1u); k++)
-                *w++ = scene_uniform(r, -size, size);
+                *w++ = random_float(r, -size, size);
         }
     }
     s->bank.n = s->shape.n_bank;
     s->bank.values = scene_take(s->bank.n, sizeof(float));
     for (size_t i = 0; i < s->bank.n; i++)
-        s->bank.values[i] = scene_uniform(r, -1, 1);
+        s->bank.values[i] = random_float(r, -1, 1);
 }
 
 /* Symbols of a type around a centre, in units of the step; steps of about Q0. */
-static inline void scene_symbols(struct ted4_scene *s, scene_random *r, ted4_type t, int low,
+static inline void scene_symbols(struct ted4_scene *s, random_source *r, ted4_type t, int low,
                                  int high)
 {
     const size_t n = s->head.n_anchors, dim = s->shape.dim[t];
@@ -68,20 +54,20 @@ static inline void scene_symbols(struct ted4_scene *s, scene_random *r, ted4_typ
     s->step_index[t] = scene_take(n, 1);
     s->symbol[t] = scene_take(n * dim, sizeof(int16_t));
     for (size_t i = 0; i < n; i++)
-        s->step_index[t][i] = (uint8_t)(108 + scene_bits(r) % 40);
+        s->step_index[t][i] = (uint8_t)(108 + random_u32(r) % 40);
     for (size_t i = 0; i < n * dim; i++)
-        s->symbol[t][i] = (int16_t)(low + (int)(scene_bits(r) % (uint32_t)(high - low + 1)));
+        s->symbol[t][i] = (int16_t)(low + (int)(random_u32(r) % (uint32_t)(high - low + 1)));
 }
 
 /* tau: a in about [0.2, 0.4] and [0.6, 0.8], log2 b in about [-4, -1]. */
-static inline void scene_tau(struct ted4_scene *s, scene_random *r)
+static inline void scene_tau(struct ted4_scene *s, random_source *r)
 {
     const size_t n = s->head.n_anchors;
 
     scene_symbols(s, r, TED4_TAU, -400, -100);
     for (size_t i = 0; s->symbol[TED4_TAU] != NULL && i < n; i++) {
-        s->symbol[TED4_TAU][i] = (int16_t)(20 + scene_bits(r) % 20);
-        s->symbol[TED4_TAU][2 * n + i] = (int16_t)(60 + scene_bits(r) % 20);
+        s->symbol[TED4_TAU][i] = (int16_t)(20 + random_u32(r) % 20);
+        s->symbol[TED4_TAU][2 * n + i] = (int16_t)(60 + random_u32(r) % 20);
     }
 }
 
@@ -89,7 +75,7 @@ static inline void scene_tau(struct ted4_scene *s, scene_random *r)
 static inline void scene_make(struct ted4_scene *s, const ted4_header *h, uint64_t seed)
 {
     static const float q0[TED4_TYPES] = { 0.05f, 0.03f, 0.04f, 0.05f, 0.01f };
-    scene_random r = { seed };
+    random_source r = random_seed(seed);
     const size_t n = h->n_anchors;
 
     memset(s, 0, sizeof *s);
@@ -102,10 +88,10 @@ static inline void scene_make(struct ted4_scene *s, const ted4_header *h, uint64
     s->offset_bits = scene_take(n, sizeof(uint16_t));
     for (size_t i = 0; i < n; i++) {
         for (size_t c = 0; c < 3; c++)
-            s->position[3 * i + c] = ted4_float_to_half(scene_uniform(&r, -1, 1));
-        s->dynamic[i] = h->temporal_mask ? scene_bits(&r) % 3 == 0 : h->phi_dim > 0;
+            s->position[3 * i + c] = ted4_float_to_half(random_float(&r, -1, 1));
+        s->dynamic[i] = h->temporal_mask ? random_u32(&r) % 3 == 0 : h->phi_dim > 0;
         s->offset_bits[i] =
-            (uint16_t)((h->offset_mask ? scene_bits(&r) >> 8 : ~0u) & ((1u << h->n_offsets) - 1));
+            (uint16_t)((h->offset_mask ? random_u32(&r) >> 8 : ~0u) & ((1u << h->n_offsets) - 1));
     }
     scene_symbols(s, &r, TED4_FEATURE, -30, 30);
     scene_symbols(s, &r, TED4_SCALING, h->scale_domain == TED4_SCALE_LOG2 ? -200 : -5, 40);

@@ -10,6 +10,7 @@
 
 #include "test.h"
 #include "base/bytes.h"
+#include "random_source.h"
 #include "temporary.h"
 #include "tool/export.h"
 #include "tool/output.h"
@@ -18,12 +19,11 @@
 enum { N = 37 };
 
 static char folder[TEMPORARY_SIZE];
-static uint32_t seed = 3;
+static random_source source = { 3 };
 
 static double uniform(double low, double high)
 {
-    seed = seed * 1664525u + 1013904223u;
-    return low + (high - low) * (double)(seed >> 8) / 16777216.0;
+    return low + (high - low) * random_unit(&source);
 }
 
 /* Random Gaussians with unit rotations. */

@@ -4,6 +4,7 @@
  * SPDX-License-Identifier: BSD-2-Clause */
 #include "test.h"
 #include "mishap.h"
+#include "random_source.h"
 
 /* ---- kill -9 ---- */
 
@@ -39,19 +40,19 @@ static void kill_again(const char *options, const outcome *want, int enough)
 {
     enum { MOST_LIVES = 200 };
     ball_file last = { calloc(1, 1), 0 };
-    uint32_t x = (uint32_t)time(NULL);
+    const uint64_t seed = (uint64_t)time(NULL);
+    random_source r = random_seed(seed);
     long longest = 400000;
     int killed = 0;
     char arguments[256];
 
-    print_message("seed %u\n", (unsigned)x);
+    print_message("seed %llu\n", (unsigned long long)seed);
     snprintf(arguments, sizeof arguments, "-o out/x --checkpoint out/c --log out/l --resume %s",
              options);
     for (int life = 0; killed < enough && life < MOST_LIVES; life++) {
         const pid_t child = start(arguments, 0);
 
-        x = x * 1664525u + 1013904223u;
-        pause_us((long)((double)longest * x / 4294967296.0));
+        pause_us((long)((double)longest * random_unit(&r)));
         kill(child, SIGKILL);
         const int status = finish(child);
         remove_leftovers(child);

@@ -4,19 +4,14 @@
 #include <string.h>
 
 #include "test.h"
+#include "random_source.h"
 #include "tools/scene/ray_set.h"
 
-static float uniform(uint32_t *state, float low, float high)
+static vec3 in_cube(random_source *r, float half)
 {
-    *state += 1;
-    return low + (high - low) * ray_random((int)*state, 0, 0, 2026);
-}
+    const float x = random_float(r, -half, half), y = random_float(r, -half, half);
 
-static vec3 in_cube(uint32_t *state, float half)
-{
-    const float x = uniform(state, -half, half), y = uniform(state, -half, half);
-
-    return v3(x, y, uniform(state, -half, half));
+    return v3(x, y, random_float(r, -half, half));
 }
 
 /* ---- arithmetic against libm ---- */
@@ -96,7 +91,7 @@ static float brute_meet(const ted4_ray_object *o, vec3 from, vec3 d, float far)
 /* Rays that pass within a step of an edge may be seen by one side only: a few in a thousand. */
 static void test_shapes(void **state)
 {
-    uint32_t seed = 1;
+    random_source source = random_seed(1);
 
     (void)state;
     for (int kind = RAY_SPHERE; kind <= RAY_BAR; kind++) {
@@ -104,8 +99,8 @@ static void test_shapes(void **state)
         int hits = 0, wrong = 0;
 
         for (int i = 0; i < 600; i++) {
-            const vec3 from = v3_add(o.centre, v3_scale(v3_unit(in_cube(&seed, 1)), 2));
-            const vec3 d = v3_unit(v3_sub(v3_add(o.centre, in_cube(&seed, 0.7f)), from));
+            const vec3 from = v3_add(o.centre, v3_scale(v3_unit(in_cube(&source, 1)), 2));
+            const vec3 d = v3_unit(v3_sub(v3_add(o.centre, in_cube(&source, 0.7f)), from));
             const float t = ted4_ray_meet(&o, from, d, 0, 4), b = brute_meet(&o, from, d, 4);
 
             hits += b < 4;
@@ -120,7 +115,7 @@ static void test_shapes(void **state)
  * sphere. */
 static void test_surfaces(void **state)
 {
-    uint32_t seed = 7;
+    random_source source = random_seed(7);
 
     (void)state;
     for (int kind = RAY_SPHERE; kind <= RAY_BAR; kind++) {
@@ -128,8 +123,8 @@ static void test_surfaces(void **state)
         int hits = 0, wrong = 0;
 
         for (int i = 0; i < 1000; i++) {
-            const vec3 from = v3_add(o.centre, v3_scale(v3_unit(in_cube(&seed, 1)), 2));
-            const vec3 d = v3_unit(v3_sub(v3_add(o.centre, in_cube(&seed, 0.6f)), from));
+            const vec3 from = v3_add(o.centre, v3_scale(v3_unit(in_cube(&source, 1)), 2));
+            const vec3 d = v3_unit(v3_sub(v3_add(o.centre, in_cube(&source, 0.6f)), from));
             const float t = ted4_ray_meet(&o, from, d, 0, 4);
             if (t == 4)
                 continue;
@@ -176,13 +171,13 @@ static void test_shape_values(void **state)
 static void test_bar(void **state)
 {
     const ted4_ray_object o = askew(RAY_BAR);
-    uint32_t seed = 3;
+    random_source source = random_seed(3);
     double length = 0;
 
     (void)state;
     for (int i = 0; i < 500; i++) {
-        const vec3 q =
-            v3(uniform(&seed, -.2f, .2f), uniform(&seed, -.2f, .2f), uniform(&seed, -.1f, 1.5f));
+        const vec3 q = v3(random_float(&source, -.2f, .2f), random_float(&source, -.2f, .2f),
+                          random_float(&source, -.1f, 1.5f));
         assert_true(v3_length(v3_sub(ted4_ray_unbend(&o, ted4_ray_rebend(&o, q)), q)) < 1e-5f);
     }
     for (int i = 0; i < 100; i++)

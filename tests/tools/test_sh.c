@@ -7,18 +7,12 @@
 #include <string.h>
 
 #include "test.h"
+#include "random_source.h"
 #include "tool/sh.h"
 
 enum { N = 37 };
 
-static uint32_t seed = 3;
-
-/* In [-0.6, 0.6). */
-static float uniform(void)
-{
-    seed = seed * 1664525u + 1013904223u;
-    return (float)(seed >> 8) * (1.2f / 16777216.0f) - 0.6f;
-}
+static random_source source = { 3 };
 
 /* Colours made from known coefficients. */
 typedef struct {
@@ -59,7 +53,7 @@ static void test_fit_exact(void **state)
         double rms;
 
         for (int i = 0; i < N * 3 * ted4_sh_count(degree); i++)
-            k.sh[i] = uniform();
+            k.sh[i] = random_float(&source, -0.6f, 0.6f);
         assert_int_equal(ted4_sh_fit(degree, N, sample_known, &k, sh, &rms), 0);
         assert_true(rms < 1e-5);
         for (int i = 0; i < N * 3 * ted4_sh_count(degree); i++)
@@ -127,7 +121,7 @@ static void test_constant(void **state)
     (void)state;
     for (int i = 0; i < N; i++)
         for (int c = 0; c < 3; c++)
-            block[c][i] = uniform();
+            block[c][i] = random_float(&source, -0.6f, 0.6f);
     ted4_sh_constant(1, N, colour, sh);
     for (size_t i = 0; i < N; i++) {
         for (size_t c = 0; c < 3; c++) {
