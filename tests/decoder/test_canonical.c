@@ -81,7 +81,9 @@ static void write_elements(void)
         const uint32_t value = ted4_load32(x.t0 + at + 2),
                        n = width_of[id % MAX_ID] > 0 ? width_of[id % MAX_ID] : value;
 
-        assert_true(id < MAX_ID && known[id] && n <= sizeof x.back - x.n_back);
+        assert_true(id < MAX_ID);
+        assert_true(known[id]);
+        assert_true(n <= sizeof x.back - x.n_back);
         at += 6;
         if (width_of[id] > 0) {
             for (uint32_t i = 0; i < n; i++)
@@ -137,7 +139,9 @@ static void valid_vectors(void **state)
 {
     (void)state;
     each_vector("! -path '*/invalid/*'", write_back);
-    assert_true(n_valid > FEW_FILES && n_ancillary > 10 && n_minor > 0);
+    assert_true(n_valid > FEW_FILES);
+    assert_true(n_ancillary > 10);
+    assert_true(n_minor > 0);
 }
 
 int main(void)

@@ -230,7 +230,8 @@ static void changes(void **state)
         free(f.data);
         ted4_scene_free(s);
     }
-    assert_true(accepted > 0 && accepted < CHANGES);
+    assert_true(accepted > 0);
+    assert_true(accepted < CHANGES);
 }
 
 /* Allocator that fails once, at call number fail_at, and knows what is out. */

@@ -351,7 +351,8 @@ static void check_weights(const ted4_splats *g, const ted4_view *v, double sum)
     assert_int_equal(ted4_raster_plain(g, v, plain), 0);
     for (int i = 0; i < v->width * v->height; i++)
         want += plain[i];
-    assert_true(want > 200 && fabs(sum - want) <= 1e-3 * want);
+    assert_true(want > 200);
+    assert_true(fabs(sum - want) <= 1e-3 * want);
 }
 
 /* One tile of 100,000: the picture, and gradients that are finite; those of colours are the
@@ -376,7 +377,9 @@ static void test_crowd(void **state)
         ted4_raster *r = ted4_raster_new();
         double square = 0, sum = 0;
 
-        assert_true(mean2d != NULL && visible != NULL && r != NULL);
+        assert_true(mean2d != NULL);
+        assert_true(visible != NULL);
+        assert_true(r != NULL);
         ted4_splat_grads grads = { .opacity = scene_param(&d, SCENE_OPACITY, 0),
                                    .mean2d = mean2d,
                                    .visible = visible };

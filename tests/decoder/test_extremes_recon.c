@@ -69,7 +69,8 @@ static void check(const ted4_query *q)
     ted4_recon *r;
     int finite = 1;
 
-    assert_true(n > 0 && n <= MAX_RECORDS);
+    assert_true(n > 0);
+    assert_true(n <= MAX_RECORDS);
     for (size_t i = 0; i < n * REF_VALUES; i++)
         finite &= isfinite(wanted[i]) != 0;
     assert_int_equal(ted4_recon_new(&r, &scene, NULL), TED4_OK);
@@ -278,7 +279,8 @@ static void test_sums(void **state)
                 for (int i = 0; i < IN; i++)
                     sum += (int64_t)w[o * IN + i] * x[i * BLOCK + a];
                 sum += o > 0 ? (int64_t)1 << (o - 1) : 0;
-                assert_true(sum >= INT32_MIN && sum <= INT32_MAX);
+                assert_true(sum >= INT32_MIN);
+                assert_true(sum <= INT32_MAX);
                 if (a % 4 == 2)
                     assert_true(sum > INT32_MAX - 32768 || sum < INT32_MIN + ((int64_t)1 << 25));
                 const int64_t shifted =

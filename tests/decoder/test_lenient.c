@@ -100,7 +100,8 @@ static void cut_at(const truth *f, size_t size, const ted4_options *o)
     assert_int_equal(ted4_decode_lenient(f->data, size, o, &s, &what), TED4_E_CON_TRUNCATED);
     assert_int_equal(ted4_decode(f->data, size, NULL, &(ted4_scene *) { NULL }, &e),
                      TED4_E_CON_TRUNCATED);
-    assert_true(what.verdict.code == e.code && what.verdict.offset == e.offset);
+    assert_true(what.verdict.code == e.code);
+    assert_true(what.verdict.offset == e.offset);
     assert_int_equal(what.n_tiles, n);
     assert_int_equal(what.stop.code, TED4_E_CON_TRUNCATED);
     assert_int_equal(what.stop.offset, size);
@@ -170,10 +171,12 @@ static void damage(void **state)
         (void)ted4_decode_lenient(copy, f->size, NULL, &s, &what);
         (void)ted4_decode(copy, f->size, NULL, &strict, &e);
         ted4_scene_free(strict);
-        assert_true(what.verdict.code == e.code && what.verdict.offset == e.offset);
+        assert_true(what.verdict.code == e.code);
+        assert_true(what.verdict.offset == e.offset);
         if (e.code != TED4_OK && s != NULL) {
             saved++;
-            assert_true(what.n_tiles > 0 && what.stop.code != TED4_OK);
+            assert_true(what.n_tiles > 0);
+            assert_true(what.stop.code != TED4_OK);
             assert_true(what.stop.offset >= f->tile_end[what.n_tiles - 1]);
             if (at >= f->tile_end[what.n_tiles - 1])
                 assert_beginning(f->scene, s);
@@ -213,7 +216,8 @@ static void queries(void **state)
     assert_int_equal(ted4_recon_new(&b, f->scene, NULL), TED4_OK);
     assert_int_equal(ted4_recon_query(a, &q, NULL, &part), TED4_OK);
     assert_int_equal(ted4_recon_query(b, &q, NULL, &whole), TED4_OK);
-    assert_true(part.n > 0 && part.n < whole.n);
+    assert_true(part.n > 0);
+    assert_true(part.n < whole.n);
     assert_memory_equal(part.id, whole.id, part.n * sizeof *part.id);
     assert_memory_equal(part.mean[1], whole.mean[1], part.n * sizeof(float));
     assert_memory_equal(part.opacity, whole.opacity, part.n * sizeof(float));

@@ -382,7 +382,10 @@ static void directions_and_rotations_of_no_length(void **state)
     assert_int_equal(ted4_recon_new(&r, &s, NULL), TED4_OK);
     assert_int_equal(ted4_recon_query(r, &q, NULL, &g), TED4_OK);
     assert_same_bits(&g, ref_query(&s, &q, 1, wanted));
-    assert_true(g.rot[0][0] == 1 && g.rot[1][0] == 0 && g.rot[2][0] == 0 && g.rot[3][0] == 0);
+    assert_true(g.rot[0][0] == 1);
+    assert_true(g.rot[1][0] == 0);
+    assert_true(g.rot[2][0] == 0);
+    assert_true(g.rot[3][0] == 0);
     ted4_recon_free(r);
     scene_finish(&s);
 }

@@ -58,7 +58,8 @@ static void take_apart(const uint8_t *d, size_t size)
         memcpy(c->type, d + at, 4);
         c->flags = ted4_load32(d + at + 4);
         c->size = ted4_load32(d + at + 8);
-        assert_true(f.n < MAX_CHUNKS && c->size < MAX_PAYLOAD);
+        assert_true(f.n < MAX_CHUNKS);
+        assert_true(c->size < MAX_PAYLOAD);
         memcpy(c->payload, d + at + 12, c->size);
         at += 20 + c->size;
     }

@@ -33,7 +33,8 @@ static void hashes(void **state)
         const XXH128_hash_t theirs = XXH3_128bits(bytes, n);
         const struct hash128 ours = xxh3_128(bytes, n);
 
-        assert_true(theirs.low64 == ours.low && theirs.high64 == ours.high);
+        assert_true(theirs.low64 == ours.low);
+        assert_true(theirs.high64 == ours.high);
     }
 }
 
@@ -401,8 +402,9 @@ static void edges_of_head(void **state)
         free(copy);
         free(data);
     }
-    assert_true(seen[TED4_E_HDR_RANGE] > 100 && seen[TED4_E_HDR_COMBINATION] > 50 &&
-                seen[TED4_E_LVL_EXCEEDED] > 5);
+    assert_true(seen[TED4_E_HDR_RANGE] > 100);
+    assert_true(seen[TED4_E_HDR_COMBINATION] > 50);
+    assert_true(seen[TED4_E_LVL_EXCEEDED] > 5);
 }
 
 int main(void)

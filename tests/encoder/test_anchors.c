@@ -54,7 +54,8 @@ static void test_cell_key(void **state)
                 q[j] = (float)((at[j] + off) * cell);
             }
             key = ted4_cell_key(p, cell);
-            assert_true(key != 0 && key == ted4_cell_key(q, cell));
+            assert_true(key != 0);
+            assert_true(key == ted4_cell_key(q, cell));
             for (int j = 0; j < 6; j++) {
                 memcpy(q, p, sizeof q);
                 q[j / 2] = (float)((at[j / 2] + (j % 2 ? 1 : -1)) * cell);

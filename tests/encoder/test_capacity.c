@@ -94,9 +94,11 @@ static int check_trials(const ted4_trainer *t)
         const struct ted4_trial *x = &t->trial[i];
 
         assert_in_range(x->move, 0, TED4_MOVES - 1);
-        assert_true((x->to < x->from || x->move == TED4_MOVE_PRIOR_BITS) && x->to != x->from &&
-                    x->before.cost > 0);
-        assert_true(x->before.cost > x->before.distortion && x->before.bytes > 100);
+        assert_true((x->to < x->from || x->move == TED4_MOVE_PRIOR_BITS));
+        assert_true(x->to != x->from);
+        assert_true(x->before.cost > 0);
+        assert_true(x->before.cost > x->before.distortion);
+        assert_true(x->before.bytes > 100);
         assert_int_equal(x->taken, x->after.cost < x->before.cost);
         taken += x->taken != 0;
         trained += x->steps > 0;
@@ -115,7 +117,8 @@ static void test_decides(void **state)
     (void)state;
     begin(&t, &o, NULL);
     ball_train(&t, ted4_capacity_step(&t));
-    assert_true(t.decided == TED4_DECIDED_NOTHING && t.n_trials == 0);
+    assert_true(t.decided == TED4_DECIDED_NOTHING);
+    assert_true(t.n_trials == 0);
     weights = t.layout.shape.n_netr + t.layout.shape.n_nete;
 
     /* What a bit weighs is what it weighed before. */
@@ -123,7 +126,8 @@ static void test_decides(void **state)
 
     assert_int_equal(ted4_trainer_step(&t), 0);
     assert_int_equal(t.decided, TED4_DECIDED_MODEL);
-    assert_true(t.n_trials > 3 && ted4_capacity_charge(&t) == charge);
+    assert_true(t.n_trials > 3);
+    assert_true(ted4_capacity_charge(&t) == charge);
     assert_int_equal(t.layout.head.motion, TED4_MOTION_NONE);
     assert_true(t.layout.shape.n_netr + t.layout.shape.n_nete < weights);
     assert_true(t.bits[TED4_GRID_HEADS] < TED4_GRID_FULL(TED4_GRID_HEADS));
@@ -145,13 +149,17 @@ static int refined(ted4_trainer *t, int bits)
     t->bits[TED4_GRID_PRIOR] = bits;
     assert_int_equal(ted4_capacity_cost(t, &before), 0);
     assert_int_equal(ted4_capacity_refine(t), 0);
-    assert_true(t->decided == TED4_DECIDED_BITS && t->n_trials > first && !t->integer);
+    assert_true(t->decided == TED4_DECIDED_BITS);
+    assert_true(t->n_trials > first);
+    assert_true(!t->integer);
     assert_int_equal(ted4_capacity_cost(t, &after), 0);
     for (size_t i = first; i < t->n_trials; i++) {
         const struct ted4_trial *x = &t->trial[i];
 
-        assert_true(x->move == TED4_MOVE_PRIOR_BITS && x->from == bits && x->to > x->from &&
-                    x->steps == 0);
+        assert_true(x->move == TED4_MOVE_PRIOR_BITS);
+        assert_true(x->from == bits);
+        assert_true(x->to > x->from);
+        assert_true(x->steps == 0);
         assert_int_equal(x->taken, x->after.cost < x->before.cost);
         bits = (int)(x->taken ? x->to : x->from);
     }
@@ -173,7 +181,8 @@ static void test_refined(void **state)
     begin(&t, &o, NULL);
     while (!ted4_integer_due(&t))
         assert_int_equal(ted4_trainer_step(&t), 0);
-    assert_true(t.decided == TED4_DECIDED_MODEL && ted4_capacity_refine_steps(&t) > 0);
+    assert_true(t.decided == TED4_DECIDED_MODEL);
+    assert_true(ted4_capacity_refine_steps(&t) > 0);
     for (int bits = 1; bits <= 6; bits++)
         raised += refined(&t, bits);
     assert_true(raised > 0);
@@ -278,7 +287,8 @@ static void check_coarse(const ted4_train_options *o, int coarse[TED4_GRIDS])
     const double drawn = ted4_trainer_distortion(&t, t.order.item[0]);
 
     assert_int_equal(ted4_make_scene(&t, &s), 0);
-    assert_true(drawn > 0 && ted4_trainer_distortion(&t, t.order.item[0]) == drawn);
+    assert_true(drawn > 0);
+    assert_true(ted4_trainer_distortion(&t, t.order.item[0]) == drawn);
     again = malloc(s->netr.n * sizeof *again);
     assert_non_null(again);
     memcpy(again, s->netr.values, s->netr.n * sizeof *again);
@@ -300,7 +310,8 @@ static void test_coarse(void **state)
     check_coarse(&cheap, at_cheap);
     check_coarse(&dear, at_dear);
     assert_true(at_cheap[TED4_GRID_HEADS] > 0);
-    assert_true(at_dear[TED4_GRID_HEADS] > 0 && at_dear[TED4_GRID_PRIOR] > 0);
+    assert_true(at_dear[TED4_GRID_HEADS] > 0);
+    assert_true(at_dear[TED4_GRID_PRIOR] > 0);
 }
 
 static void test_threads(void **state)
@@ -395,9 +406,11 @@ static void test_fixed(void **state)
     begin(&t, &o, NULL);
     assert_true(ted4_capacity_step(&t) == UINT64_MAX);
     a = ball_finish(&t);
-    assert_true(t.n_trials == 0 && t.decided == TED4_DECIDED_NOTHING);
-    assert_true(t.layout.head.n_offsets == o.offsets && t.layout.head.feature_dim == o.feature &&
-                t.layout.head.hyper_width == o.hyper_width);
+    assert_true(t.n_trials == 0);
+    assert_true(t.decided == TED4_DECIDED_NOTHING);
+    assert_true(t.layout.head.n_offsets == o.offsets);
+    assert_true(t.layout.head.feature_dim == o.feature);
+    assert_true(t.layout.head.hyper_width == o.hyper_width);
     ted4_trainer_finish(&t);
     ball_set(&plain, "capacity_share=0");
     b = whole(&plain, NULL);

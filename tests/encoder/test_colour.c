@@ -266,15 +266,18 @@ static void test_update(void **state)
     }
     /* Each camera counts its own steps: this is the first of camera 1, and brings both back. */
     ted4_colour_update(&c, 1, gradient, 0.01, 0);
-    for (int k = 0; k < N; k++)
-        assert_true(fabsf(c.value[0][k]) < 1e-6f && fabsf(c.value[1][k]) < 1e-6f);
+    for (int k = 0; k < N; k++) {
+        assert_true(fabsf(c.value[0][k]) < 1e-6f);
+        assert_true(fabsf(c.value[1][k]) < 1e-6f);
+    }
     for (uint64_t step = 0; step < 300; step++) {
         for (uint64_t k = 0; k < N; k++)
             gradient[k] = ted4_uniform(step, k) - 0.45f;
         ted4_colour_update(&c, (uint32_t)(step * 5 / 3 % 2), gradient, 0.01, 1e-3);
     }
     for (int k = 0; k < N; k++) {
-        assert_true(fabsf(c.value[0][k] + c.value[1][k]) < 1e-6f && c.value[2][k] == 0.0f);
+        assert_true(fabsf(c.value[0][k] + c.value[1][k]) < 1e-6f);
+        assert_true(c.value[2][k] == 0.0f);
         assert_true(fabsf(c.value[0][k]) > 1e-4f);
     }
     ted4_colour_finish(&c);
@@ -530,7 +533,8 @@ static void test_where(void **state)
     before = ted4_trainer_preview(&t, 4);
     for (uint32_t c = 0; c < CAMERAS; c++)
         t.colour.value[c][9] = 0.5f;
-    assert_true(before > 0 && ted4_trainer_preview(&t, 4) == before);
+    assert_true(before > 0);
+    assert_true(ted4_trainer_preview(&t, 4) == before);
     ted4_trainer_finish(&t);
     close_scene(&s);
 }

@@ -477,14 +477,17 @@ static void test_times(void **state)
     /* No common measure: nearest positions with the smallest gap as step. */
     const double odd[4] = { 0, 0.137, 0.5237, 1 };
     assert_int_equal(ted4_frame_times(odd, 4, frame, &n, &m), 0);
-    assert_true(n >= 8 && n <= 33);
+    assert_true(n >= 8);
+    assert_true(n <= 33);
     for (int i = 0; i < 4; i++)
         near(frame[i] / (n - 1.0), odd[i], 0.5 / (n - 1.0));
     /* Too fine a grid. */
     const double close[3] = { 0, 1e-5, 1 };
     assert_int_equal(ted4_frame_times(close, 3, frame, &n, &m), 0);
     assert_int_equal(n, TED4_MAX_FRAMES);
-    assert_true(frame[0] == 0 && frame[1] == 0 && frame[2] == TED4_MAX_FRAMES - 1);
+    assert_true(frame[0] == 0);
+    assert_true(frame[1] == 0);
+    assert_true(frame[2] == TED4_MAX_FRAMES - 1);
     const double one[2] = { 5, 5 };
     assert_int_equal(ted4_frame_times(one, 2, frame, &n, &m), 0);
     assert_int_equal(n, 1);

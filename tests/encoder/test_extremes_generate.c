@@ -250,7 +250,8 @@ static void test_size_floor(void **state)
             down += above[j] > 0;
         }
     }
-    assert_true(up > 100 && down > 100);
+    assert_true(up > 100);
+    assert_true(down > 100);
 }
 
 /* Offsets, features and phi at FP16's ends; products of sizes and offsets stay within binary32. */
@@ -356,8 +357,10 @@ static void test_longest_quaternions(void **state)
             for (int c = 0; c < 4; c++)
                 b[7 * k + 3 + c] = c % 2 ? length[i] : -length[i];
         run();
-        for (int j = 0; j < CASE_OFFSETS * TED4_LANES; j++)
-            assert_true(member[6][j] == 0 && member[7][j] == 0);
+        for (int j = 0; j < CASE_OFFSETS * TED4_LANES; j++) {
+            assert_true(member[6][j] == 0);
+            assert_true(member[7][j] == 0);
+        }
     }
 }
 

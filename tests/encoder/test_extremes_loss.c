@@ -45,7 +45,10 @@ static double run(float weight, double *l1, double *ssim)
     const double loss =
         ted4_loss(p.w, p.image, p.truth, p.width, p.height, weight, NULL, p.gradient, l1, ssim);
 
-    assert_true(isfinite(loss) && isfinite(*l1) && isfinite(*ssim) && loss >= -1e-6);
+    assert_true(isfinite(loss));
+    assert_true(isfinite(*l1));
+    assert_true(isfinite(*ssim));
+    assert_true(loss >= -1e-6);
     for (int i = 0; i < n; i++)
         if (!isfinite(p.gradient[i]))
             fail_msg("value %d of %d x %d: %g has gradient %g", i, p.width, p.height,
@@ -122,7 +125,11 @@ static void test_equal(void **state)
 
             const double loss = run(1.0f, &l1, &ssim);
 
-            assert_true(loss >= 0 && loss < 1e-5 && l1 < 1e-7 && ssim <= 1 && ssim > 1 - 1e-5);
+            assert_true(loss >= 0);
+            assert_true(loss < 1e-5);
+            assert_true(l1 < 1e-7);
+            assert_true(ssim <= 1);
+            assert_true(ssim > 1 - 1e-5);
             for (int i = 0; i < 3 * side * side; i++)
                 assert_true(fabs((double)p.gradient[i]) * 3 * side * side < 2e-3);
         }
@@ -166,7 +173,9 @@ static void test_bright(void **state)
             }
             const double loss = run(0.2f, &l1, &ssim);
 
-            assert_true(fabs(l1 - want) < 1e-4 * want && loss > 0.79 * want && fabs(ssim) < 2.1);
+            assert_true(fabs(l1 - want) < 1e-4 * want);
+            assert_true(loss > 0.79 * want);
+            assert_true(fabs(ssim) < 2.1);
         }
 }
 
@@ -299,7 +308,8 @@ static void test_steps(void **state)
         for (int step = 0; step < 20; step++)
             ted4_colour_update(&c, 1, gradient, 0.01, 0);
         for (int k = 0; k < TED4_COLOUR_VALUES; k++) {
-            assert_true(isfinite(c.value[1][k]) && fabsf(c.value[1][k]) < 0.11f);
+            assert_true(isfinite(c.value[1][k]));
+            assert_true(fabsf(c.value[1][k]) < 0.11f);
             if (gradient_of[i] >=
                 1e-10f) /* half of 20 steps: the other half is the other camera's */
                 assert_true(fabsf(fabsf(c.value[1][k]) - 0.1f) < 1e-4f);

@@ -106,8 +106,10 @@ static uint64_t run(void)
         if (!isfinite(p.d[i]))
             fail_msg("parameter %zu of Gaussian %zu: gradient %g", i / p.s.n, i % p.s.n,
                      (double)p.d[i]);
-    for (size_t i = 0; i < p.s.n; i++)
-        assert_true(isfinite(p.mean2d[i]) && p.mean2d[i] >= 0);
+    for (size_t i = 0; i < p.s.n; i++) {
+        assert_true(isfinite(p.mean2d[i]));
+        assert_true(p.mean2d[i] >= 0);
+    }
     const uint64_t skipped = ted4_raster_skipped(r);
 
     ted4_raster_free(r);
@@ -224,7 +226,9 @@ static void test_unseen(void **state)
         for (int k = 0; k < SCENE_PARAMS; k++)
             for (int g = 1; g < 3; g++)
                 assert_true(p.d[k * 3 + g] == 0);
-        assert_true(!p.visible[1] && !p.visible[2] && p.mean2d[1] == 0);
+        assert_true(!p.visible[1]);
+        assert_true(!p.visible[2]);
+        assert_true(p.mean2d[1] == 0);
         scene_free(&p.s);
     }
 }

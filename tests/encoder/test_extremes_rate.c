@@ -60,8 +60,10 @@ static void test_symbols(void **state)
             if (!close_to((double)bits[0], ref_bits(a, sigma), 2e-6, 3e-5))
                 fail_msg("distance %g, log2 sigma %g: %g bits, not %g", a, sigma, (double)bits[0],
                          ref_bits(a, sigma));
-            assert_true(bits[0] > 0 && bits[0] == bits[1] && d_s[0] == d_s[1] &&
-                        (a <= 0 || d_u[0] == -d_u[1]));
+            assert_true(bits[0] > 0);
+            assert_true(bits[0] == bits[1]);
+            assert_true(d_s[0] == d_s[1]);
+            assert_true((a <= 0 || d_u[0] == -d_u[1]));
             if (fabs(a - w) < 0.01 || a < 2 * h || a > 1e8)
                 continue; /* kinks, and where a step is lost in a */
             const double du = (ref_bits(a + h, sigma) - ref_bits(a - h, sigma)) / (2 * h);
@@ -91,11 +93,14 @@ static void test_coder(void **state)
                               fr = mu[m] - whole * 256;
                 ted4_slots found;
 
-                assert_true(s.slots.freq > 0 && s.slots.start + s.slots.freq <= 65536);
-                assert_true(s.escape >= -1 && s.escape < 1 << TED4_ESCAPE_BITS);
+                assert_true(s.slots.freq > 0);
+                assert_true(s.slots.start + s.slots.freq <= 65536);
+                assert_true(s.escape >= -1);
+                assert_true(s.escape < 1 << TED4_ESCAPE_BITS);
                 const uint32_t j = ted4_gauss_find(g, fr, s.slots.start + s.slots.freq - 1, &found);
 
-                assert_true(found.start == s.slots.start && found.freq == s.slots.freq);
+                assert_true(found.start == s.slots.start);
+                assert_true(found.freq == s.slots.freq);
                 assert_int_equal(symbol[k],
                                  whole + (s.escape < 0 ? ted4_gauss_offset(g, j)
                                                        : ted4_gauss_escaped(g, j, s.escape)));
@@ -139,15 +144,16 @@ static void test_quantiser(void **state)
                 for (size_t j = 0; j < (size_t)l->first[TED4_TAU] * TED4_LANES; j++) {
                     const double k_of = x / q + (double)residual[j];
 
-                    if (quant == TED4_QUANT_ROUND)
+                    if (quant == TED4_QUANT_ROUND) {
                         assert_true(close_to((double)out[j], symbol * q, 1e-6,
-                                             fabs(x / q - rint(x / q)) > 0.499 ? q : 0) &&
-                                    close_to(k_of, symbol, 1e-6,
+                                             fabs(x / q - rint(x / q)) > 0.499 ? q : 0));
+                        assert_true(close_to(k_of, symbol, 1e-6,
                                              1e-6 * (fabs(x / q) + 1) +
                                                  (fabs(x / q - rint(x / q)) > 0.499)));
-                    else
-                        assert_true(fabs((double)out[j] - x) <= 0.5 * q + 1e-6 * fabs(x) &&
-                                    fabs((double)residual[j]) < 0.5);
+                    } else {
+                        assert_true(fabs((double)out[j] - x) <= 0.5 * q + 1e-6 * fabs(x));
+                        assert_true(fabs((double)residual[j]) < 0.5);
+                    }
                 }
                 for (size_t j = 0; j < TED4_LANES; j++)
                     assert_true(out[(size_t)l->first[TED4_TAU] * TED4_LANES + j] <=
@@ -163,8 +169,10 @@ static void test_quantiser(void **state)
 static void run(ref_world *w, double *bits)
 {
     assert_int_equal(ref_run(w, NULL, bits), 0);
-    for (int t = 0; t < TED4_TYPES; t++)
-        assert_true(isfinite(bits[t]) && bits[t] >= 0);
+    for (int t = 0; t < TED4_TYPES; t++) {
+        assert_true(isfinite(bits[t]));
+        assert_true(bits[t] >= 0);
+    }
     for (int i = 0; i < REF_SLOTS; i++) {
         all_finite(w->d_attr[i], (size_t)w->layout.n_channels * TED4_LANES,
                    "gradient of an anchor");
@@ -348,8 +356,8 @@ static void test_integer(void **state)
                     for (int j = 0; j < TED4_LANES; j++) {
                         const double q = (double)w.steps[s][t * TED4_LANES + j] / (double)h.step[t];
 
-                        assert_true(q >= exp2(REF_V_MIN) * 0.999999 &&
-                                    q <= exp2(REF_V_MAX) * 1.000001);
+                        assert_true(q >= exp2(REF_V_MIN) * 0.999999);
+                        assert_true(q <= exp2(REF_V_MAX) * 1.000001);
                     }
             if (fabs((double)value[i]) == 5e5 &&
                 !close_to(bits[TED4_FEATURE], before[rail], 1e-3, 0))

@@ -45,7 +45,8 @@ static void test_adam_sizes(void **state)
             const float before = r.x[0];
 
             step(&r, k, 0.01f);
-            assert_true(r.x[0] <= before && r.x[1] == -r.x[0]);
+            assert_true(r.x[0] <= before);
+            assert_true(r.x[1] == -r.x[0]);
         }
         const double want = -1.0 * g / (g + 1e-15);
 
@@ -90,9 +91,13 @@ static void test_bias(void **state)
     for (uint64_t k = 1; k < (uint64_t)1 << 62; k *= 2) {
         const ted4_adam_bias b = ted4_adam_bias_make(k);
 
-        assert_true(b.m >= 1 && b.m <= 10.0001f && b.v >= 1 && b.v <= 1000.1f);
+        assert_true(b.m >= 1);
+        assert_true(b.m <= 10.0001f);
+        assert_true(b.v >= 1);
+        assert_true(b.v <= 1000.1f);
     }
-    assert_true(ted4_decay(1e-3, 0.01, -1e9) == 1e-3 && ted4_decay(0, 0.01, 0.5) == 0);
+    assert_true(ted4_decay(1e-3, 0.01, -1e9) == 1e-3);
+    assert_true(ted4_decay(0, 0.01, 0.5) == 0);
     assert_true(fabs(ted4_decay(1e-3, 0.01, 1e9) - 1e-5) < 1e-12);
 }
 
@@ -143,12 +148,15 @@ static void test_volume(void **state)
             }
             assert_int_equal(ted4_update_volume(&t, &s), n);
             for (int i = 0; i < SPLATS; i++) {
-                for (int j = 0; j < 3; j++)
-                    assert_true(isfinite(d[j][i]) && (seen[i] || d[j][i] == 0));
-                if (seen[i] && size[k] < 1e30f)
-                    assert_true(fabs((double)d[1][i] - want) <= 1e-6 * want + 1e-45 &&
-                                d[1][i] == d[2][i] &&
-                                fabs((double)d[0][i] - 0.5 / n * 0.0625) <= 1e-8);
+                for (int j = 0; j < 3; j++) {
+                    assert_true(isfinite(d[j][i]));
+                    assert_true((seen[i] || d[j][i] == 0));
+                }
+                if (seen[i] && size[k] < 1e30f) {
+                    assert_true(fabs((double)d[1][i] - want) <= 1e-6 * want + 1e-45);
+                    assert_true(d[1][i] == d[2][i]);
+                    assert_true(fabs((double)d[0][i] - 0.5 / n * 0.0625) <= 1e-8);
+                }
             }
         }
     ted4_trainer_finish(&t);

@@ -33,7 +33,8 @@ static void test_rounds(void **state)
         for (int i = 0; i < N; i++) {
             const float steps = x[i] / step;
 
-            assert_true(steps == rintf(steps) && fabsf(steps) <= ldexpf(1.0f, bits));
+            assert_true(steps == rintf(steps));
+            assert_true(fabsf(steps) <= ldexpf(1.0f, bits));
             assert_true(fabsf(x[i] - was[i]) <= 0.5f * step);
         }
     }
@@ -60,10 +61,13 @@ static void test_stays(void **state)
             assert_memory_equal(x, once, sizeof x);
         }
     ted4_grid_round(tiny, 2, 4);
-    assert_true(tiny[0] == 0x1p-100f && tiny[1] == -0x1p-149f);
+    assert_true(tiny[0] == 0x1p-100f);
+    assert_true(tiny[1] == -0x1p-149f);
     ted4_grid_round(none, 3, 4);
     ted4_grid_round(none, 0, 4);
-    assert_true(none[0] == 0 && none[1] == 0 && none[2] == 0);
+    assert_true(none[0] == 0);
+    assert_true(none[1] == 0);
+    assert_true(none[2] == 0);
 }
 
 static ted4_shape shape_of(unsigned in, unsigned hidden, unsigned out)

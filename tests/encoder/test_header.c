@@ -50,7 +50,10 @@ static void test_any_rate(void **state)
         if (rate < 1.0 / TED4_RATE_MOST || rate > TED4_RATE_MOST)
             continue;
         assert_int_equal(ted4_frame_rate(rate, &n, &d), 0);
-        assert_true(n >= 1 && n <= TED4_RATE_MOST && d >= 1 && d <= TED4_RATE_MOST);
+        assert_true(n >= 1);
+        assert_true(n <= TED4_RATE_MOST);
+        assert_true(d >= 1);
+        assert_true(d <= TED4_RATE_MOST);
         if (!(fabs((double)n / d - rate) <= 1e-7 * rate))
             fail_msg("%.17g: %u/%u", rate, (unsigned)n, (unsigned)d);
     }
@@ -66,11 +69,13 @@ static void test_begin(void **state)
     (void)state;
     cloud_make(&c, 5);
     assert_int_equal(ted4_trainer_init(&t, &c.options, &c.data, NULL), 0);
-    assert_true(t.layout.head.rate_num == 30 && t.layout.head.rate_den == 1);
+    assert_true(t.layout.head.rate_num == 30);
+    assert_true(t.layout.head.rate_den == 1);
     ted4_trainer_finish(&t);
     c.data.rate = 1.0 / 60;
     assert_int_equal(ted4_trainer_init(&t, &c.options, &c.data, NULL), 0);
-    assert_true(t.layout.head.rate_num == 1 && t.layout.head.rate_den == 60);
+    assert_true(t.layout.head.rate_num == 1);
+    assert_true(t.layout.head.rate_den == 60);
     ted4_trainer_finish(&t);
     /* Loaders let neither pass. */
     c.data.rate = 1e9;

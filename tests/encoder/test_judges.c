@@ -28,15 +28,17 @@ static void check(ted4_trainer *t, uint64_t key, size_t n, size_t frames)
 
     assert_int_equal(ted4_judges_choose(t, key, n, item), 0);
     for (size_t i = 0; i < n; i++) {
-        assert_true(item[i] < t->data->n_pictures && !t->data->pictures[item[i]].is_test &&
-                    chosen[item[i]]++ == 0);
+        assert_true(item[i] < t->data->n_pictures);
+        assert_true(!t->data->pictures[item[i]].is_test);
+        assert_true(chosen[item[i]]++ == 0);
         times[t->data->pictures[item[i]].frame]++;
     }
     for (size_t f = 1; f < frames; f++) { /* frame 0 has one picture less */
         least = times[f] < least ? times[f] : least;
         most = times[f] > most ? times[f] : most;
     }
-    assert_true(most - least <= 1 && times[0] <= least + 1);
+    assert_true(most - least <= 1);
+    assert_true(times[0] <= least + 1);
 }
 
 static void test_all_frames(void **state)
@@ -73,7 +75,9 @@ static void test_drawn(void **state)
         same += a[i] == b[i];
         odd += picture[a[i]].frame % 2;
     }
-    assert_true(same < 4 && odd > 2 && odd < 14);
+    assert_true(same < 4);
+    assert_true(odd > 2);
+    assert_true(odd < 14);
 }
 
 int main(void)

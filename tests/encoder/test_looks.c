@@ -16,7 +16,8 @@ static looks look(ted4_trainer *t)
     looks l = { t->anchors.n, malloc(t->anchors.n * sizeof(float)),
                 malloc(3 * t->anchors.n * sizeof(float)) };
 
-    assert_true(l.opacity != NULL && l.rgb != NULL);
+    assert_true(l.opacity != NULL);
+    assert_true(l.rgb != NULL);
     if (ted4_trainer_looks(t, l.opacity, l.rgb) != 0)
         fail_msg("%s", t->message.text);
     return l;

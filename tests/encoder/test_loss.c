@@ -34,7 +34,10 @@ static picture make(int width, int height)
                   .exact = malloc(n * sizeof(double)),
                   .truth = malloc(n) };
 
-    assert_true(p.image != NULL && p.gradient != NULL && p.exact != NULL && p.truth != NULL);
+    assert_true(p.image != NULL);
+    assert_true(p.gradient != NULL);
+    assert_true(p.exact != NULL);
+    assert_true(p.truth != NULL);
     for (size_t i = 0; i < n; i++)
         p.truth[i] = (uint8_t)((i / 40 * 16 + random_u32(&source) % 64) & 255);
     for (int c = 0; c < 3; c++) {
@@ -129,7 +132,8 @@ static void test_equal(void **state)
         for (int i = 0; i < 40 * 30; i++)
             p.image[c * 40 * 30 + i] = (float)p.truth[3 * i + c] * (1.0f / 255.0f);
     assert_true(ted4_loss(w, p.image, p.truth, 40, 30, 0.2f, NULL, p.gradient, &l1, &ssim) < 1e-6);
-    assert_true(l1 < 1e-7 && ssim > 1.0 - 1e-6);
+    assert_true(l1 < 1e-7);
+    assert_true(ssim > 1.0 - 1e-6);
     assert_true(ted4_loss(w, p.image, p.truth, 40, 30, 1.0f, NULL, p.gradient, &l1, &ssim) < 1e-6);
     for (int i = 0; i < 3 * 40 * 30; i++) /* SSIM is at its maximum */
         assert_true(fabsf(p.gradient[i]) * 3 * 40 * 30 < 1e-2f);
@@ -153,7 +157,8 @@ static void test_threads(void **state)
 
         assert_true(ted4_loss(w, p.image, p.truth, 200, 150, 0.2f, &how[i], p.gradient, &l1_again,
                               &ssim_again) == loss);
-        assert_true(l1 == l1_again && ssim == ssim_again);
+        assert_true(l1 == l1_again);
+        assert_true(ssim == ssim_again);
         assert_memory_equal(first, p.gradient, size);
     }
     free(first);

@@ -44,8 +44,11 @@ static void test_psnr(void **state)
     assert_int_equal(ted4_metrics_compare(a, b, 20, 10, NULL, &m), 0);
     assert_true(fabs(m.psnr - 20.0 * log10(255.0 / 5.0)) < 1e-12);
     assert_int_equal(ted4_metrics_compare(a, a, 20, 10, NULL, &m), 0);
-    assert_true(isinf(m.psnr) && fabs(m.ssim - 1.0) < 1e-12 && fabs(m.ssim2 - 1.0) < 1e-12);
-    assert_true(isnan(m.ms_ssim) && m.scales == 0); /* ten rows: the window does not fit */
+    assert_true(isinf(m.psnr));
+    assert_true(fabs(m.ssim - 1.0) < 1e-12);
+    assert_true(fabs(m.ssim2 - 1.0) < 1e-12);
+    assert_true(isnan(m.ms_ssim));
+    assert_true(m.scales == 0); /* ten rows: the window does not fit */
     memcpy(b, a, 20 * 10 * 3);
     b[300] = 115; /* one value of 600 off by 15 */
     assert_int_equal(ted4_metrics_compare(a, b, 20, 10, NULL, &m), 0);
@@ -69,7 +72,8 @@ static void test_constants(void **state)
     assert_int_equal(m.scales, 5);
     /* 200 x 190 halves to 100 x 95 -> 50 x 48: the odd 95 brings in a row of half values, so only
      * the first scales are flat. */
-    assert_true(m.ms_ssim < 1.0 && m.ms_ssim > 0.5);
+    assert_true(m.ms_ssim < 1.0);
+    assert_true(m.ms_ssim > 0.5);
     free(a);
     free(b);
 
@@ -155,7 +159,8 @@ static double *halved(double *v, int w, int h)
     double *padded = calloc((size_t)(2 * ow) * (size_t)(2 * oh), sizeof *padded);
     double *out = malloc((size_t)ow * (size_t)oh * sizeof *out);
 
-    assert_true(padded != NULL && out != NULL);
+    assert_true(padded != NULL);
+    assert_true(out != NULL);
     for (int y = 0; y < h; y++)
         for (int x = 0; x < w; x++)
             padded[(y + h % 2) * 2 * ow + x + w % 2] = v[y * w + x];
@@ -241,10 +246,13 @@ static void test_threads(void **state)
     assert_int_equal(ted4_metrics_compare(a, b, 90, 77, NULL, &one), 0);
     assert_int_equal(ted4_metrics_compare(a, b, 90, 77, &p, &three), 0);
     assert_int_equal(ted4_metrics_compare(b, a, 90, 77, &p, &swapped), 0);
-    assert_true(one.psnr == three.psnr && one.ssim == three.ssim && one.ssim2 == three.ssim2 &&
-                one.ms_ssim == three.ms_ssim);
-    assert_true(one.psnr == swapped.psnr && fabs(one.ssim - swapped.ssim) < 1e-12 &&
-                fabs(one.ms_ssim - swapped.ms_ssim) < 1e-12);
+    assert_true(one.psnr == three.psnr);
+    assert_true(one.ssim == three.ssim);
+    assert_true(one.ssim2 == three.ssim2);
+    assert_true(one.ms_ssim == three.ms_ssim);
+    assert_true(one.psnr == swapped.psnr);
+    assert_true(fabs(one.ssim - swapped.ssim) < 1e-12);
+    assert_true(fabs(one.ms_ssim - swapped.ms_ssim) < 1e-12);
     free(a);
     free(b);
 }

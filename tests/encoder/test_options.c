@@ -47,7 +47,8 @@ static void test_presets(void **state)
         assert_int_equal(ted4_options_preset(&o, presets[p]), 0);
         assert_int_equal(o.seed, 0);
 #define TED4_OPTION(kind, stage, name, lo, hi, a, b, c, d, e, help) \
-    assert_true((double)o.name >= (lo) && (double)o.name <= (hi));  \
+    assert_true((double)o.name >= (lo));                            \
+    assert_true((double)o.name <= (hi));                            \
     assert_true((double)o.name == ((const double[]) { a, b, c, d, e })[p]);
 #include "train/model/options.def"
 #undef TED4_OPTION

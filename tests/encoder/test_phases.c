@@ -53,8 +53,10 @@ static void make_halves(cloud_case *c, ted4_picture *pictures)
 
 static void check_span(const ted4_trainer *t, size_t i, float from, float to)
 {
-    assert_true(tau(t, i, 0) >= from && tau(t, i, 0) < from + 0.02f);
-    assert_true(tau(t, i, 2) <= to && tau(t, i, 2) > to - 0.02f);
+    assert_true(tau(t, i, 0) >= from);
+    assert_true(tau(t, i, 0) < from + 0.02f);
+    assert_true(tau(t, i, 2) <= to);
+    assert_true(tau(t, i, 2) > to - 0.02f);
 }
 
 static void test_spans(void **state)
@@ -140,13 +142,15 @@ static void test_static_phase(void **state)
     (void)state;
     ball_begin(&t, &o, &balls, NULL);
     n = t.anchors.n;
-    assert_true(n <= BALLS * BALL_POINTS && count_spans(&t).whole > 10 &&
-                count_spans(&t).transient > 10);
+    assert_true(n <= BALLS * BALL_POINTS);
+    assert_true(count_spans(&t).whole > 10);
+    assert_true(count_spans(&t).transient > 10);
     for (size_t i = 0; i < n; i++)
         for (int c = 0; c < 4; c++)
             seed[4 * i + (size_t)c] = tau(&t, i, c);
     ball_train(&t, SPROUTS);
-    assert_true(t.anchors.n > n && are_seeds(&t, seed, n));
+    assert_true(t.anchors.n > n);
+    assert_true(are_seeds(&t, seed, n));
     ted4_trainer_finish(&t);
 }
 
@@ -194,13 +198,15 @@ static void test_growth(void **state)
         if (step == STAGE1) {
             assert_true(t.anchors.n < before);
         } else {
-            assert_true(step > STAGE1 / GROW_EVERY && step <= GROWTH_ENDS);
+            assert_true(step > STAGE1 / GROW_EVERY);
+            assert_true(step <= GROWTH_ENDS);
             assert_true(step == SPROUTS || step % GROW_EVERY == 0);
             early += step < ACTIVATION;
             late += step > ACTIVATION;
         }
     }
-    assert_true(early > 0 && late > 0);
+    assert_true(early > 0);
+    assert_true(late > 0);
     ted4_trainer_finish(&t);
 }
 
@@ -216,15 +222,17 @@ static void test_order(void **state)
 
     (void)state;
     ball_begin(&t, &o, &balls, NULL);
-    assert_true(t.order.n > 10 && t.order.n <= MOST);
+    assert_true(t.order.n > 10);
+    assert_true(t.order.n <= MOST);
     for (int r = 0; r < ROUNDS; r++) {
         int seen[MOST] = { 0 };
 
         for (uint32_t i = 0; i < t.order.n; i++) {
             ball_train(&t, t.iteration + 1);
             item[r][i] = t.order.item[t.order.next - 1];
-            assert_true(item[r][i] < balls.n_pictures && item[r][i] < MOST &&
-                        !balls.pictures[item[r][i]].is_test);
+            assert_true(item[r][i] < balls.n_pictures);
+            assert_true(item[r][i] < MOST);
+            assert_true(!balls.pictures[item[r][i]].is_test);
             assert_int_equal(seen[item[r][i]]++, 0);
         }
         for (int k = 0; k < r; k++)
@@ -291,10 +299,12 @@ static void test_drawn(void **state)
             assert_true(*ted4_cell(&t.anchors, TED4_ROW_VALUE, i, t.layout.offset_logit + k) ==
                         1.0f);
     ball_train(&t, INTEGER);
-    assert_true(fabs(off_symbols(&t, &most) - 0.25) < 0.02 && most > 0.49);
+    assert_true(fabs(off_symbols(&t, &most) - 0.25) < 0.02);
+    assert_true(most > 0.49);
     assert_false(steps_are_tabled(&t));
     ball_train(&t, INTEGER + 2);
-    assert_true(off_symbols(&t, &most) < 1e-4 && most < 1e-2);
+    assert_true(off_symbols(&t, &most) < 1e-4);
+    assert_true(most < 1e-2);
     assert_true(steps_are_tabled(&t));
     ted4_trainer_finish(&t);
 }

@@ -146,7 +146,8 @@ static void test_noise(void **state)
             for (int j = 0; j < TED4_LANES; j++) {
                 const double u = (double)now[c * TED4_LANES + j];
 
-                assert_true(u > -0.5 && u < 0.5);
+                assert_true(u > -0.5);
+                assert_true(u < 0.5);
                 sum += u;
                 square += u * u;
                 bins[(int)((u + 0.5) * 16.0)] += 1.0;
@@ -514,7 +515,8 @@ static void test_integer(void **state)
         assert_true(close_to(bits[t], want[t], 1e-5, 1e-3));
         assert_true(close_to(bits[t], rounded[t], 0.02, 0.0));
     }
-    assert_true(inner > 0.99 * sqrt(a * b) && close_to(a, b, 0.1, 0.0));
+    assert_true(inner > 0.99 * sqrt(a * b));
+    assert_true(close_to(a, b, 0.1, 0.0));
     shift[0] = 21; /* R-NET-003 */
     assert_int_equal(ref_run(&w, NULL, bits), -1);
     ted4_arena_finish(&arena);

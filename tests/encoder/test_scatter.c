@@ -92,10 +92,14 @@ static void test_shown(void **state)
         n += !balls.pictures[i].is_test;
     assert_true(n < balls.n_pictures);
     assert_int_equal(ted4_shown_read(&s, &balls, &m), 0);
-    assert_true(s.plain && s.n == n);
-    assert_true(s.background[0] == 0 && s.background[1] == 0 && s.background[2] == 0);
+    assert_true(s.plain);
+    assert_true(s.n == n);
+    assert_true(s.background[0] == 0);
+    assert_true(s.background[1] == 0);
+    assert_true(s.background[2] == 0);
     ted4_shown_count(&s, b.centre, &seen, &shown);
-    assert_true(seen == shown && seen == (int)s.n);
+    assert_true(seen == shown);
+    assert_true(seen == (int)s.n);
     ted4_shown_count(&s, nowhere, &seen, &shown);
     assert_int_equal(shown, 0);
     ted4_shown_free(&s);
@@ -130,7 +134,8 @@ static void test_sweep(void **state)
         }
     }
     print_message("%zu pixels have a depth, %zu near a surface\n", found, near);
-    assert_true(found >= 100 && 4 * near >= 3 * found);
+    assert_true(found >= 100);
+    assert_true(4 * near >= 3 * found);
     ted4_shown_free(&s);
 }
 
@@ -150,7 +155,9 @@ static void test_useless(void **state)
     const ted4_scattered a = scatter(&one, NULL), b = scatter(&two, &p);
 
     assert_int_equal(a.given, BALLS * BALL_POINTS);
-    assert_true(a.scattered > 1000 && a.scattered == one.n_points && one.random_points);
+    assert_true(a.scattered > 1000);
+    assert_true(a.scattered == one.n_points);
+    assert_true(one.random_points);
     assert_true(b.scattered == a.scattered);
     assert_memory_equal(one.points, two.points, 3 * one.n_points * sizeof *one.points);
     print_message("%zu points, %zu near a surface\n", one.n_points, count_near(&one, 1.0));
@@ -172,7 +179,9 @@ static void test_useful(void **state)
     const uint64_t before = ted4_dataset_digest(&d);
     const ted4_scattered what = scatter(&d, NULL);
 
-    assert_true(what.given == 0 && what.scattered == 0 && !d.random_points);
+    assert_true(what.given == 0);
+    assert_true(what.scattered == 0);
+    assert_true(!d.random_points);
     assert_true(ted4_dataset_digest(&d) == before);
     unload(&d, &f);
 }
@@ -247,13 +256,16 @@ static void test_bounds(void **state)
         if (useful == 2)
             o.low[0] = o.high[0] = 1e5f;
         assert_int_equal(ted4_dataset_scatter(&d, &o, NULL, &what, &m), useful == 2 ? -1 : 0);
-        if (useful == 1)
-            assert_true(what.scattered == 0 && d.n_points >= BALL_POINTS &&
-                        d.n_points + what.outside == BALLS * BALL_POINTS);
-        else
+        if (useful == 1) {
+            assert_true(what.scattered == 0);
+            assert_true(d.n_points >= BALL_POINTS);
+            assert_true(d.n_points + what.outside == BALLS * BALL_POINTS);
+        } else
             assert_true((what.scattered > 0) == (useful == 0));
-        for (size_t i = 0; useful < 2 && i < 3 * d.n_points; i++)
-            assert_true(d.points[i] >= o.low[i % 3] && d.points[i] <= o.high[i % 3]);
+        for (size_t i = 0; useful < 2 && i < 3 * d.n_points; i++) {
+            assert_true(d.points[i] >= o.low[i % 3]);
+            assert_true(d.points[i] <= o.high[i % 3]);
+        }
         if (useful == 2)
             assert_non_null(strstr(m.text, "no initial point lies inside the bounds"));
         unload(&d, &f);

@@ -21,7 +21,9 @@ static void test_space_make(void **state)
     cloud_make(&cloud, 1);
     ted4_space_make(&h, &cloud.data);
     /* The lattice reaches 1.5 to either side; with a quarter of room that is between 1 and 2. */
-    assert_true(h.origin[0] == 10.0f && h.origin[1] == -4.0f && h.origin[2] == 2.0f);
+    assert_true(h.origin[0] == 10.0f);
+    assert_true(h.origin[1] == -4.0f);
+    assert_true(h.origin[2] == 2.0f);
     assert_int_equal(h.exponent, 1);
 
     /* Three of a thousand points far away are not let in. */
@@ -42,7 +44,8 @@ static void test_space_make(void **state)
     assert_true(h.origin[0] == many[0][0]);
     cloud.data.n_points = 0;
     ted4_space_make(&h, &cloud.data);
-    assert_true(h.exponent == 0 && h.origin[0] == 0.0f);
+    assert_true(h.exponent == 0);
+    assert_true(h.origin[0] == 0.0f);
 }
 
 /* A random rotation and place. */
@@ -122,8 +125,11 @@ static void test_space_view(void **state)
         }
         check_point(&h, &c, world);
         ted4_space_view(&h, &c, &v, centre);
-        assert_true(v.width == 640 && v.height == 480 && v.near_z == TED4_NEAR);
-        assert_true(v.background[0] == 0.0f && v.background[1] == 1.0f);
+        assert_true(v.width == 640);
+        assert_true(v.height == 480);
+        assert_true(v.near_z == TED4_NEAR);
+        assert_true(v.background[0] == 0.0f);
+        assert_true(v.background[1] == 1.0f);
     }
 }
 
@@ -192,12 +198,14 @@ static void test_voxels(void **state)
     cloud.point[0][0] = 100;
     cloud_begin(&cloud, &t);
     assert_true(fabs(t.cell - 0.5) < 1e-9);
-    assert_true(t.anchors.n <= 4 * 4 * 4 && t.anchors.n >= 3 * 3 * 3);
+    assert_true(t.anchors.n <= 4 * 4 * 4);
+    assert_true(t.anchors.n >= 3 * 3 * 3);
     for (size_t i = 0; i < t.anchors.n; i++)
         for (int j = 0; j < 3; j++) {
             const float x = *ted4_cell(&t.anchors, TED4_ROW_POSITION, i, j);
 
-            assert_true(x == rintf(2 * x) / 2 && fabsf(x) <= 1);
+            assert_true(x == rintf(2 * x) / 2);
+            assert_true(fabsf(x) <= 1);
         }
     ted4_trainer_finish(&t);
 }
@@ -225,7 +233,8 @@ static void test_bound(void **state)
         cloud_make(&cloud, 1);
         cloud.options.init_anchors = most;
         cloud_begin(&cloud, &t);
-        assert_true(t.anchors.n >= 1 && t.anchors.n <= (size_t)most);
+        assert_true(t.anchors.n >= 1);
+        assert_true(t.anchors.n <= (size_t)most);
         assert_true(t.cell > 0.25);
         ted4_trainer_finish(&t);
     }
@@ -287,7 +296,8 @@ static void answer(const float *w, const ted4_net_shape *s, double *y)
     for (int i = 0; i < s->n_layers; i++) {
         const unsigned in = s->dim[i], out = s->dim[i + 1];
 
-        assert_true(in <= 64 && out <= 64);
+        assert_true(in <= 64);
+        assert_true(out <= 64);
         for (unsigned k = 0; k < out; k++) {
             y[k] = (double)w[in * out + k];
             for (unsigned c = 0; c < in; c++)

@@ -44,7 +44,9 @@ static void test_search(void **state)
         for (size_t i = first; i < list.n; i++) {
             const double r = ball_radii(&t, list.item[i].point, SPEED, (double)f / (FRAMES - 1));
 
-            assert_true(list.item[i].frame == f && list.item[i].score > 0 && list.item[i].size > 0);
+            assert_true(list.item[i].frame == f);
+            assert_true(list.item[i].score > 0);
+            assert_true(list.item[i].size > 0);
             near += r > 0.5 && r < 1.5;
         }
         if (list.n < first + 10 || 2 * near < list.n - first)
@@ -63,8 +65,10 @@ static void test_long(void **state)
     ted4_trainer t;
 
     (void)state;
-    for (uint32_t n = 1; n <= 36000; n++)
-        assert_true(ted4_sprout_room(n) > 0 && ted4_sprout_room(n) * n <= (size_t)1 << 27);
+    for (uint32_t n = 1; n <= 36000; n++) {
+        assert_true(ted4_sprout_room(n) > 0);
+        assert_true(ted4_sprout_room(n) * n <= (size_t)1 << 27);
+    }
     ball_begin(&t, &o, &balls, NULL);
     ball_train(&t, STEPS);
     balls.n_frames = 20000;

@@ -139,7 +139,8 @@ static void make(uint32_t seed, uint32_t num, int activation, int stage2)
     ref_source = random_seed(77u * seed + 5u);
     ted4_layout_make(&pr.layout, &h);
     pr.n_theta = pr.layout.n_net + channel_at(SLOTS, 0, 0);
-    assert_true(pr.n_theta <= MAX_THETA && pr.layout.shape.n_nete <= REF_MAX_NET);
+    assert_true(pr.n_theta <= MAX_THETA);
+    assert_true(pr.layout.shape.n_nete <= REF_MAX_NET);
     pr.num = num;
     pr.den = h.frames - 1;
     pr.activation = activation;
@@ -252,7 +253,10 @@ static double analytic(void)
     ted4_splats s;
     double bits[TED4_TYPES], l1, ssim, loss;
 
-    assert_true(g != NULL && rate != NULL && raster != NULL && w != NULL);
+    assert_true(g != NULL);
+    assert_true(rate != NULL);
+    assert_true(raster != NULL);
+    assert_true(w != NULL);
     if (pr.stage2)
         quantise(rate, &l);
     ted4_generator_pack(g, pr.net);
@@ -301,7 +305,8 @@ static double reference_bits(const double *theta, int slot, int j, ref_result *r
         a.logit[c - l->offset_logit] = pr.theta[l->n_net + channel_at(slot, c, j)];
     ref_evaluate(&m, &a, NULL, r);
     for (unsigned i = 0; i < l->shape.n_outputs; i++) /* nothing is near a clamp */
-        assert_true(r->raw[i] > -3.9 && r->raw[i] < 3.9);
+        assert_true(r->raw[i] > -3.9);
+    assert_true(r->raw[i] < 3.9);
 
     double bits = r->loss;
 
@@ -359,7 +364,8 @@ static double reference(const double *theta)
     const size_t seen = ref_render(&pr.view, (const double(*)[REF_SPLAT])pr.splat, n, image);
     const ref_picture picture = { WIDTH, HEIGHT, image, pr.truth };
 
-    assert_true(n == ANCHORS * OFFSETS && seen > ANCHORS / 2);
+    assert_true(n == ANCHORS * OFFSETS);
+    assert_true(seen > ANCHORS / 2);
     return ref_distortion(&picture, (double)SSIM_WEIGHT, &l1, &ssim) + (double)pr.bit_weight * bits;
 }
 
@@ -461,7 +467,8 @@ static void check_all(void)
     const size_t n = list_parts(parts);
     const double loss = analytic(), want = reference(pr.theta);
 
-    assert_true(n <= MAX_PARTS && fabs(loss - want) < 1e-5 * (1.0 + want));
+    assert_true(n <= MAX_PARTS);
+    assert_true(fabs(loss - want) < 1e-5 * (1.0 + want));
     memset(all, 0, sizeof all);
     for (size_t i = 0; i < n; i++) {
         const int live = make_direction(&parts[i], ted4_mix(pr.key) + i, one);

@@ -146,8 +146,9 @@ static void test_nothing(void **state)
     ted4_surgery_begin(&s, &t);
     assert_int_equal(ted4_surgery_apply(&t, &s), 0);
     for (size_t i = 0; i < t.layout.n_net; i++) /* a zero may lose its sign */
-        assert_true(t.net[i] == twin.net[i] && t.net_m[i] == twin.net_m[i] &&
-                    t.net_v[i] == twin.net_v[i]);
+        assert_true(t.net[i] == twin.net[i]);
+    assert_true(t.net_m[i] == twin.net_m[i]);
+    assert_true(t.net_v[i] == twin.net_v[i]);
     a = ball_finish(&t);
     b = ball_finish(&twin);
     ball_check_same(&a, &b);
@@ -193,7 +194,8 @@ static void test_feature(void **state)
 
     const ted4_cost before = cost(&t);
 
-    assert_true(t.layout.head.n_slices == 2 && t.layout.head.slice[1] > 2);
+    assert_true(t.layout.head.n_slices == 2);
+    assert_true(t.layout.head.slice[1] > 2);
     make(&t, TED4_MOVE_FEATURE, F - 2);
     assert_int_equal(t.layout.head.n_slices, 2);
     assert_int_equal(t.layout.head.slice[0] + t.layout.head.slice[1], F - 2);
@@ -362,7 +364,8 @@ static void test_rotation(void **state)
         }
         spread[c] = square / (double)t.anchors.n - sum * sum / (double)(t.anchors.n * t.anchors.n);
     }
-    assert_true(spread[0] > 2 * spread[F / 2] && spread[F / 2] > 2 * spread[F - 1]);
+    assert_true(spread[0] > 2 * spread[F / 2]);
+    assert_true(spread[F / 2] > 2 * spread[F - 1]);
     ted4_trainer_finish(&t);
 }
 

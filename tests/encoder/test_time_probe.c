@@ -49,8 +49,12 @@ static void test_moving(void **state)
     ball_load(&folder, &d, FRAMES, 1);
     train(&a, &d, "probe=0.1");
     train(&b, &d, "probe=0");
-    assert_true(a.probed && a.probe_loss[0] > 0 && a.probe_loss[0] < 0.95 * a.probe_loss[1]);
-    assert_true(b.probed && b.probe_loss[0] == 0 && b.probe_loss[1] == 0);
+    assert_true(a.probed);
+    assert_true(a.probe_loss[0] > 0);
+    assert_true(a.probe_loss[0] < 0.95 * a.probe_loss[1]);
+    assert_true(b.probed);
+    assert_true(b.probe_loss[0] == 0);
+    assert_true(b.probe_loss[1] == 0);
     assert_int_equal(a.layout.head.motion, TED4_MOTION_BANK);
     assert_int_equal(a.layout.head.activation, 1);
 
@@ -111,7 +115,8 @@ static void test_still(void **state)
     ball_begin(&t, &o, &d, NULL);
     ball_train(&t, BEGIN);
     assert_int_equal(ted4_trainer_step(&t), 0);
-    assert_true(t.probed && t.probe_loss[0] > 0.99 * t.probe_loss[1]);
+    assert_true(t.probed);
+    assert_true(t.probe_loss[0] > 0.99 * t.probe_loss[1]);
     assert_int_equal(t.iteration, 1);
     assert_int_equal(t.layout.head.motion, TED4_MOTION_NONE);
     assert_int_equal(t.layout.head.temporal_mask, 0);
@@ -126,7 +131,8 @@ static void test_still(void **state)
     ball_begin(&twin, &o, &d, NULL);
     if (ted4_snapshot_restore(&twin, &early) != 0)
         fail_msg("%s", twin.message.text);
-    assert_true(twin.iteration == 1 && twin.layout.head.motion == TED4_MOTION_NONE);
+    assert_true(twin.iteration == 1);
+    assert_true(twin.layout.head.motion == TED4_MOTION_NONE);
     ball_train(&twin, BEGIN + BRANCH + 1);
     check_same(&t, &twin);
     ted4_trainer_finish(&twin);
@@ -154,7 +160,8 @@ static void test_short(void **state)
     (void)state;
     ball_load(&folder, &d, FRAMES, 0);
     train(&t, &d, "probe=0.09");
-    assert_true(t.probed && t.probe_loss[0] == 0);
+    assert_true(t.probed);
+    assert_true(t.probe_loss[0] == 0);
     assert_int_equal(t.layout.head.motion, TED4_MOTION_BANK);
     ted4_trainer_finish(&t);
     ted4_dataset_free(&d);

@@ -51,10 +51,15 @@ static void test_learns(void **state)
     ball_file f = ball_finish(&t);
     const double psnr = ball_decoded_psnr(&f, &moving_scene, &info);
 
-    assert_true(first > 0.15 && t.progress.loss < 0.25 * first);
+    assert_true(first > 0.15);
+    assert_true(t.progress.loss < 0.25 * first);
     assert_true(ted4_trainer_preview(&t, 4) > 18);
-    assert_true(psnr > 27 && info.n_anchors > 100 && info.n_anchors <= 260);
-    assert_true(info.motion == TED4_MOTION_BANK && info.activation && info.frames == FRAMES);
+    assert_true(psnr > 27);
+    assert_true(info.n_anchors > 100);
+    assert_true(info.n_anchors <= 260);
+    assert_true(info.motion == TED4_MOTION_BANK);
+    assert_true(info.activation);
+    assert_true(info.frames == FRAMES);
     ted4_trainer_finish(&t);
     free(f.bytes);
 }
@@ -166,7 +171,8 @@ static ball_file read_file(const char *path)
     FILE *in = fopen(path, "rb");
     ball_file f = { malloc(1 << 24), 0 };
 
-    assert_true(in != NULL && f.bytes != NULL);
+    assert_true(in != NULL);
+    assert_true(f.bytes != NULL);
     f.size = fread(f.bytes, 1, 1 << 24, in);
     fclose(in);
     return f;
@@ -366,7 +372,8 @@ static void test_rate(void **state)
         want += coded.type[y];
     }
     ted4_trainer_finish(&t);
-    assert_true(want > 1000 && fabs(sum - want) < 0.01 * want);
+    assert_true(want > 1000);
+    assert_true(fabs(sum - want) < 0.01 * want);
 }
 
 /* ---- not a number ---- */
@@ -398,8 +405,9 @@ static void check_nan(uint64_t iteration, int which)
                                : which < TED4_NETS_R  ? "weight of heads is not finite at step"
                                : which == TED4_NETS_R ? "weight of bank is not finite at step"
                                                       : "weight of prior is not finite at step"));
-    assert_true(t.iteration < iteration && t.watch.find.step == iteration &&
-                t.watch.state.rollbacks == 1);
+    assert_true(t.iteration < iteration);
+    assert_true(t.watch.find.step == iteration);
+    assert_true(t.watch.state.rollbacks == 1);
     ted4_trainer_finish(&t);
 }
 
@@ -428,8 +436,8 @@ static void test_nan_anchor(void **state)
     assert_int_equal(ted4_make_scene(&t, &s), -1);
     for (int i = 0; i < 100 && t.watch.state.rollbacks == 0; i++)
         assert_int_equal(ted4_trainer_step(&t), 0);
-    assert_true(t.watch.state.rollbacks == 1 &&
-                strstr(t.message.text, "value of feature of anchor 7 is not finite") != NULL);
+    assert_true(t.watch.state.rollbacks == 1);
+    assert_true(strstr(t.message.text, "value of feature of anchor 7 is not finite") != NULL);
     ted4_trainer_finish(&t);
 }
 

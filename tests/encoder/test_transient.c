@@ -73,13 +73,17 @@ static void test_moving(void **state)
     open_scene(&s, 1, 1, 1);
     for (size_t i = 0; i < s.trainer.anchors.n; i++) {
         if (!ted4_is_transient(&s.trainer, i)) {
-            assert_true(tau(&s.trainer, i, 0) == 0.0f && tau(&s.trainer, i, 2) == 1.0f);
+            assert_true(tau(&s.trainer, i, 0) == 0.0f);
+            assert_true(tau(&s.trainer, i, 2) == 1.0f);
             continue;
         }
         const double from = (double)tau(&s.trainer, i, 0), to = (double)tau(&s.trainer, i, 2);
 
         found++;
-        assert_true(-0.11 < from && from < to && to < 1.11 && to - from < 1);
+        assert_true(-0.11 < from);
+        assert_true(from < to);
+        assert_true(to < 1.11);
+        assert_true(to - from < 1);
         assert_true(fabs((double)tau(&s.trainer, i, 1) - log2(0.35 / (FRAMES - 1))) < 1e-6);
         assert_true(radii(&s.trainer, i, 1, 0) > 1.3);
         blue += radii(&s.trainer, i, 2, 0.5 * (from + to)) < 1.5;

@@ -44,7 +44,9 @@ static void opacity_gradients(ted4_trainer *t, uint32_t frame)
     float *zero = calloc(s.n, sizeof *zero), *one = malloc(s.n * sizeof *one);
     uint8_t *seen = malloc(s.n);
 
-    assert_true(zero != NULL && one != NULL && seen != NULL);
+    assert_true(zero != NULL);
+    assert_true(one != NULL);
+    assert_true(seen != NULL);
     for (size_t i = 0; i < s.n; i++) {
         one[i] = 1.0f;
         seen[i] = 1;
@@ -184,7 +186,9 @@ static void test_symbols(void **state)
         low += back->symbol[TED4_FEATURE][i] == -32767;
         high += back->symbol[TED4_FEATURE][i] == 32767;
     }
-    assert_true(low + high == n && low > n / 4 && high > n / 4);
+    assert_true(low + high == n);
+    assert_true(low > n / 4);
+    assert_true(high > n / 4);
     ted4_scene_free(s);
     ted4_scene_free(back);
     free(bytes);
@@ -210,7 +214,8 @@ static void test_units(void **state)
     assert_int_equal(ted4_trainer_init(&metre, &cloud.options, &cloud.data, NULL), 0);
     assert_int_equal(ted4_trainer_init(&league, &far.options, &far.data, NULL), 0);
     assert_int_equal(metre.layout.head.exponent, league.layout.head.exponent + 12);
-    assert_true(metre.cell == league.cell && metre.anchors.n == league.anchors.n);
+    assert_true(metre.cell == league.cell);
+    assert_true(metre.anchors.n == league.anchors.n);
     for (int row = 0; row < TED4_ROWS; row++)
         assert_memory_equal(metre.anchors.data[row], league.anchors.data[row],
                             metre.anchors.n_blocks * (size_t)metre.anchors.rows[row] * TED4_LANES *
@@ -271,8 +276,8 @@ static void test_scalings(void **state)
                     small_scaling(c);
         if (ted4_make_scene(&t, &s) != 0)
             fail_msg("%s", t.message.text);
-        assert_true(s->head.n_anchors > 10 &&
-                    s->head.scale_domain == (linear ? TED4_SCALE_LINEAR : TED4_SCALE_LOG2));
+        assert_true(s->head.n_anchors > 10);
+        assert_true(s->head.scale_domain == (linear ? TED4_SCALE_LINEAR : TED4_SCALE_LOG2));
         assert_int_equal(count_right(s, linear), linear ? 0 : 6 * s->head.n_anchors);
         ted4_scene_free(s);
         ted4_trainer_finish(&t);
@@ -322,7 +327,8 @@ static void test_absent(void **state)
         count(&t, &marked[absent], &others[absent]);
         ted4_trainer_finish(&t);
     }
-    assert_true(marked[0] > 10 && others[0] > 20);
+    assert_true(marked[0] > 10);
+    assert_true(others[0] > 20);
     assert_int_equal(marked[1], 0);
     assert_int_equal(others[1], others[0]);
 }
@@ -351,7 +357,8 @@ static void test_far_away(void **state)
             const float p = *ted4_cell(&t.anchors, TED4_ROW_POSITION, i, j);
             const float half = ted4_half_to_float(ted4_float_to_half(p));
 
-            assert_true(fabsf(p) <= 1.0f && fabsf(half) <= 1.0f);
+            assert_true(fabsf(p) <= 1.0f);
+            assert_true(fabsf(half) <= 1.0f);
             assert_true(ldexpf(fabsf(half - p), t.layout.head.exponent) <
                         0.002f * (float)CLOUD_STEP);
         }

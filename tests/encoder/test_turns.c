@@ -107,7 +107,9 @@ static void test_found(void **state)
 
     print_message("%zu new anchors, %zu with short lives, %zu on the ball\n", t.anchors.n - before,
                   n, near);
-    assert_true(t.anchors.n >= before + 20 && n >= t.anchors.n - before && 2 * near > n);
+    assert_true(t.anchors.n >= before + 20);
+    assert_true(n >= t.anchors.n - before);
+    assert_true(2 * near > n);
     ted4_trainer_finish(&t);
 }
 

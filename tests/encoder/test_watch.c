@@ -47,15 +47,21 @@ static void test_scale(void **state)
     ted4_scale s = { 0 };
 
     (void)state;
-    assert_true(ted4_scale_usual(&s) == 0 && ted4_scale_take(&s, 0) == 0 && s.n == 0);
+    assert_true(ted4_scale_usual(&s) == 0);
+    assert_true(ted4_scale_take(&s, 0) == 0);
+    assert_true(s.n == 0);
     for (int i = 0; i < 100; i++)
         assert_true(ted4_scale_take(&s, i % 2 ? 3.0 : 1.0) == 0);
-    assert_true(s.n == 100 && s.peak == 0 && ted4_scale_usual(&s) > 0.7 &&
-                ted4_scale_usual(&s) < 4.3);
+    assert_true(s.n == 100);
+    assert_true(s.peak == 0);
+    assert_true(ted4_scale_usual(&s) > 0.7);
+    assert_true(ted4_scale_usual(&s) < 4.3);
     for (int i = 0; i < 300; i++)
         (void)ted4_scale_take(&s, i % 20 ? 2.0 : 2e9);
-    assert_true(ted4_scale_usual(&s) > 1.9 && ted4_scale_usual(&s) < 2.1);
-    assert_true(fabs(ted4_scale_take(&s, 2e9) / 1e9 - 1) < 0.1 && s.peak > 9e8);
+    assert_true(ted4_scale_usual(&s) > 1.9);
+    assert_true(ted4_scale_usual(&s) < 2.1);
+    assert_true(fabs(ted4_scale_take(&s, 2e9) / 1e9 - 1) < 0.1);
+    assert_true(s.peak > 9e8);
     assert_true(ted4_scale_usual(&s) < 2.2);
 }
 
@@ -70,8 +76,9 @@ static void test_healthy(void **state)
     (void)state;
     begin_at(&t, 0);
     plain = ball_finish(&t);
-    assert_true(t.watch.state.rollbacks == 0 && t.watch.state.factor == 1 &&
-                t.watch.find.cause == NULL);
+    assert_true(t.watch.state.rollbacks == 0);
+    assert_true(t.watch.state.factor == 1);
+    assert_true(t.watch.find.cause == NULL);
     for (int k = 0; k < TED4_TERMS; k++) {
         assert_true(t.watch.state.gradient[k].peak < 100);
         assert_true((t.watch.norm[k] > 0) == (k != TED4_TERM_PRIOR && k != TED4_TERM_STEP));
@@ -110,15 +117,17 @@ static void expect_back(ted4_trainer *t, uint64_t to, const char *cause, const c
     assert_non_null(strstr(t->message.text, words));
     assert_non_null(strstr(t->message.text, term));
     assert_int_equal(t->iteration, to);
-    assert_true(t->watch.state.rollbacks == rollbacks + 1 &&
-                t->watch.state.factor == 0.5 * factor && !t->watch.found);
+    assert_true(t->watch.state.rollbacks == rollbacks + 1);
+    assert_true(t->watch.state.factor == 0.5 * factor);
+    assert_true(!t->watch.found);
 }
 
 static void finish(ted4_trainer *t)
 {
     ball_file f = ball_finish(t);
 
-    assert_true(f.size > 500 && t->progress.loss < 0.08);
+    assert_true(f.size > 500);
+    assert_true(t->progress.loss < 0.08);
     free(f.bytes);
     ted4_trainer_finish(t);
 }
@@ -164,7 +173,8 @@ static int look_again(ted4_trainer *t, size_t slot, int channel, size_t lane, fl
 
 static void expect_found(ted4_trainer *t, const char *cause, const char *term, size_t anchor)
 {
-    assert_true(t->watch.found && t->watch.find.anchor == (int64_t)anchor);
+    assert_true(t->watch.found);
+    assert_true(t->watch.find.anchor == (int64_t)anchor);
     assert_string_equal(t->watch.find.cause, cause);
     assert_string_equal(t->watch.find.term, term);
 }
@@ -183,8 +193,8 @@ static void test_gradients(void **state)
         const float usual = (float)ted4_scale_usual(&t.watch.state.gradient[TED4_OFFSET]);
 
         assert_int_equal(look_again(&t, 2, offset, 7, 100 * usual), 0);
-        assert_true(t.watch.state.gradient[TED4_OFFSET].peak > 90 &&
-                    t.watch.state.gradient[TED4_OFFSET].peak < 120);
+        assert_true(t.watch.state.gradient[TED4_OFFSET].peak > 90);
+        assert_true(t.watch.state.gradient[TED4_OFFSET].peak < 120);
         assert_int_equal(look_again(&t, 2, offset, 7, -2e5f * usual), -1);
         expect_found(&t, "exploded", "gradient of offset", anchor);
         assert_int_equal(look_again(&t, 2, offset, 7, 1e30f), -1);
@@ -262,7 +272,8 @@ static void test_collapse(void **state)
         if (steps != 32 || strcmp(t.watch.find.term, names[which]) != 0)
             fail_msg("%d steps: %s", steps, t.message.text);
         assert_string_equal(t.watch.find.cause, "collapsed");
-        assert_true(t.watch.find.anchor >= 0 && t.iteration == KEPT);
+        assert_true(t.watch.find.anchor >= 0);
+        assert_true(t.iteration == KEPT);
         assert_true(ted4_watch_calm(&t));
         finish(&t);
     }
@@ -295,9 +306,11 @@ static void test_empty_space(void **state)
     begin_at(&t, KEPT + 1);
     t.watch.state.screen.level += 6; /* as if 64 times as many had been usual */
     ball_train(&t, KEPT + 32);
-    assert_true(t.watch.state.bad_screen == 31 && !ted4_watch_calm(&t));
+    assert_true(t.watch.state.bad_screen == 31);
+    assert_true(!ted4_watch_calm(&t));
     ball_train(&t, KEPT + 34);
-    assert_true(t.watch.state.rollbacks == 0 && ted4_watch_calm(&t));
+    assert_true(t.watch.state.rollbacks == 0);
+    assert_true(ted4_watch_calm(&t));
     assert_true(t.watch.state.screen.n < 32);
     finish(&t);
 }
@@ -328,8 +341,8 @@ static void test_smaller(void **state)
     const float start = t.net[t.layout.netr];
 
     ball_train(&t, KEPT + 1);
-    assert_true(weight != start &&
-                fabsf((t.net[t.layout.netr] - start) / (weight - start) - 0.5f) < 0.01f);
+    assert_true(weight != start);
+    assert_true(fabsf((t.net[t.layout.netr] - start) / (weight - start) - 0.5f) < 0.01f);
     ted4_trainer_finish(&t);
 }
 
@@ -349,7 +362,8 @@ static void test_other_layout(void **state)
     assert_int_equal(t.layout.head.motion, TED4_MOTION_NONE);
     t.net[t.layout.netr] = NAN;
     expect_back(&t, STAGE1, "not finite", "weight of heads", -1);
-    assert_true(t.layout.head.motion == TED4_MOTION_BANK && !t.stage2);
+    assert_true(t.layout.head.motion == TED4_MOTION_BANK);
+    assert_true(!t.stage2);
     finish(&t);
 }
 
@@ -378,7 +392,8 @@ static void test_three_times(void **state)
     ball_train(&t, KEPT + 5);
     *ted4_cell(&t.anchors, TED4_ROW_VALUE, 9, 0) = NAN;
     assert_int_equal(ted4_trainer_step(&t), -1);
-    assert_true(t.watch.found && t.iteration == KEPT + 5);
+    assert_true(t.watch.found);
+    assert_true(t.iteration == KEPT + 5);
     assert_non_null(strstr(t.message.text, "value of feature of anchor 9 is not finite at step "
                                            "255; learning rates were made smaller three times"));
     ted4_trainer_finish(&t);
@@ -426,7 +441,9 @@ static void test_resumed(void **state)
     ball_begin(&t, &o, &scene, NULL);
     if (ted4_checkpoint_load(&t, path) != 0)
         fail_msg("%s", t.message.text);
-    assert_true(t.iteration == 320 && t.watch.state.rollbacks == 1 && t.watch.good.bytes != NULL);
+    assert_true(t.iteration == 320);
+    assert_true(t.watch.state.rollbacks == 1);
+    assert_true(t.watch.good.bytes != NULL);
     again = fail_again(&t);
     ted4_trainer_finish(&t);
     ball_check_same(&whole, &again);

@@ -61,7 +61,8 @@ static inline size_t ball_count_transients(const ted4_trainer *t, int speed, flo
         const float from = *ted4_cell(&t->anchors, TED4_ROW_VALUE, i, first);
         const float to = *ted4_cell(&t->anchors, TED4_ROW_VALUE, i, first + 2);
 
-        assert_true(from < to && to - from <= longest);
+        assert_true(from < to);
+        assert_true(to - from <= longest);
         *near += ball_radii(t, p, speed, 0.5 * (double)(from + to)) < 1.7;
         n++;
     }

@@ -101,7 +101,8 @@ static void test_pictures(void **state)
         drawn[i] = (uint8_t)(truth[i] + 30);
     }
     ted4_belongs_add(&s, truth, drawn, 100);
-    assert_true(s.drawn == 300.0 * 900 && s.mean == 300.0 * 2500);
+    assert_true(s.drawn == 300.0 * 900);
+    assert_true(s.mean == 300.0 * 2500);
     assert_int_equal(ted4_belongs_pictures(&s, why, sizeof why), 1);
     /* Pictures of one colour count for nothing, and those of others far from them for much. */
     memset(truth, 9, sizeof truth);

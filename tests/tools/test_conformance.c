@@ -92,7 +92,8 @@ static void truncation_at_every_byte(void **state)
         assert_non_null(f);
         size = fread(data, 1, sizeof data, f);
         fclose(f);
-        assert_true(size > 200 && size < sizeof data);
+        assert_true(size > 200);
+        assert_true(size < sizeof data);
         for (size_t n = 0; n < size; n++) {
             assert_int_equal(ted4_decode(data, n, NULL, &s, &e), TED4_E_CON_TRUNCATED);
             assert_int_equal(e.offset, n);

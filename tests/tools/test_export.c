@@ -131,7 +131,8 @@ static void check_ply_record(const float *v, const set *s, size_t i, int n_rest)
     const float *const sh = s->sh + i * 3 * (size_t)n_coefs, *const tail = v + 9 + n_rest;
 
     for (int c = 0; c < 3; c++) {
-        assert_true(v[c] == s->column[c][i] && v[3 + c] == 0.0f);
+        assert_true(v[c] == s->column[c][i]);
+        assert_true(v[3 + c] == 0.0f);
         assert_true(v[6 + c] == sh[c * n_coefs]);
         assert_true(fabsf(expf(tail[1 + c]) / s->column[3 + c][i] - 1.0f) < 1e-5f);
         for (int k = 1; k < n_coefs; k++) /* all of red, then green, then blue */
@@ -209,7 +210,8 @@ static void test_splat(void **state)
 
         while (i < N && float_at(p) != s.column[0][i])
             i++;
-        assert_true(i < N && seen[i]++ == 0);
+        assert_true(i < N);
+        assert_true(seen[i]++ == 0);
         const double weight = (double)s.column[3][i] * (double)s.column[4][i] *
                               (double)s.column[5][i] * (double)s.column[10][i];
 
@@ -326,12 +328,12 @@ static void check_glb_shape(const glb *g, const set *s)
 
             assert_true(fabs(got[c] - want[c]) < 1e-5);
             assert_true(p == (c == 0 ? s->column[c][i] : -s->column[c][i]));
-            assert_true(p >= (float)json_number_value(json_array_get(low, c)) &&
-                        p <= (float)json_number_value(json_array_get(high, c)));
+            assert_true(p >= (float)json_number_value(json_array_get(low, c)));
+            assert_true(p <= (float)json_number_value(json_array_get(high, c)));
             assert_true(float_at(scale + i * 12 + c * 4) == s->column[3 + c][i]);
         }
-        assert_true(float_at(opacity + i * 4) == s->column[10][i] &&
-                    near_byte(colour[i * 4 + 3], 255.0 * (double)s->column[10][i]));
+        assert_true(float_at(opacity + i * 4) == s->column[10][i]);
+        assert_true(near_byte(colour[i * 4 + 3], 255.0 * (double)s->column[10][i]));
     }
 }
 

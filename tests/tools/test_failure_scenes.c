@@ -171,7 +171,8 @@ static void test_change(void **state)
     (void)state;
     world_at(&first, &o, 0);
     world_at(&last, &o, o.n_frames - 1);
-    assert_true(first.n >= FURNITURE + 2 && last.n >= FURNITURE + 2);
+    assert_true(first.n >= FURNITURE + 2);
+    assert_true(last.n >= FURNITURE + 2);
     for (int i = FURNITURE; i < first.n; i++)
         for (int j = FURNITURE; j < last.n; j++)
             assert_false(same_solid(&first.object[i], &last.object[j]));
@@ -191,7 +192,8 @@ static void test_held_times(void **state)
             if (!ted4_ray_is_held(&o, frame))
                 continue;
             held++;
-            assert_true(frame > 0 && frame < o.n_frames - 1);
+            assert_true(frame > 0);
+            assert_true(frame < o.n_frames - 1);
             assert_false(ted4_ray_is_held(&o, frame + 1));
             world_at(&at, &o, frame);
             for (int side = -1; side <= 1; side += 2) {
@@ -456,8 +458,10 @@ static void test_empty(void **state)
     }
     for (int i = 0; i < 500; i++) {
         const ted4_ray_point p = ted4_ray_point_at(&o, i);
-        assert_true(p.camera != o.n_train - 1 && isfinite(p.point.x) && isfinite(p.point.y) &&
-                    isfinite(p.point.z));
+        assert_true(p.camera != o.n_train - 1);
+        assert_true(isfinite(p.point.x));
+        assert_true(isfinite(p.point.y));
+        assert_true(isfinite(p.point.z));
     }
 }
 

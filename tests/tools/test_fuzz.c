@@ -153,7 +153,8 @@ static void test_mutator(void **state)
     ted4_info info;
 
     (void)state;
-    assert_true(a != NULL && b != NULL);
+    assert_true(a != NULL);
+    assert_true(b != NULL);
     for (uint32_t i = 0; i < (uint32_t)(n_files * ROUNDS); i++) {
         const int n = (int)i % n_files;
         size_t size;

@@ -213,7 +213,9 @@ static void test_full_stdout(void **state)
     const int out = dup(STDOUT_FILENO), full = open("/dev/full", O_WRONLY);
 
     fflush(stdout);
-    assert_true(out >= 0 && full >= 0 && dup2(full, STDOUT_FILENO) >= 0);
+    assert_true(out >= 0);
+    assert_true(full >= 0);
+    assert_true(dup2(full, STDOUT_FILENO) >= 0);
     const int status = run("-o out/x --json", 0), checked = run("--check", 0);
     assert_true(dup2(out, STDOUT_FILENO) >= 0);
     close(out);

@@ -22,7 +22,8 @@ static gate close_gate(const char *path)
     must(mkfifo(path, 0600) == 0, path);
     g.read = open(path, O_RDONLY | O_NONBLOCK | O_CLOEXEC);
     g.write = open(path, O_WRONLY | O_NONBLOCK | O_CLOEXEC);
-    assert_true(g.read >= 0 && g.write >= 0);
+    assert_true(g.read >= 0);
+    assert_true(g.write >= 0);
     for (size_t size = sizeof bytes; size > 0; size /= 2)
         while (write(g.write, bytes, size) > 0)
             continue;

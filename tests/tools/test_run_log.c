@@ -44,17 +44,21 @@ static void check_line(const json_t *line, log_state *s, double size)
     for (size_t i = 0; i < sizeof types / sizeof types[0]; i++)
         sum += number(json_object_get(line, "bytes_by_type"), types[i]);
     for (size_t i = 0; i < sizeof learnt / sizeof learnt[0]; i++) {
-        assert_true(number(gradients, learnt[i]) > 0 && number(gradients, learnt[i]) < 1000);
-        assert_true(number(peaks, learnt[i]) >= (step == 500 ? 1 : 0) &&
-                    number(peaks, learnt[i]) < 100);
+        assert_true(number(gradients, learnt[i]) > 0);
+        assert_true(number(gradients, learnt[i]) < 1000);
+        assert_true(number(peaks, learnt[i]) >= (step == 500 ? 1 : 0));
+        assert_true(number(peaks, learnt[i]) < 100);
     }
-    assert_true((number(gradients, "prior") > 0) == (step == 750) &&
-                (number(gradients, "steps") > 0) == (step == 750));
-    assert_true(number(gradients, "tau") >= 0 && number(gradients, "colour") >= 0);
-    assert_true(json_object_size(gradients) == TED4_TERMS &&
-                json_object_size(peaks) == TED4_TERMS && number(line, "rollbacks") == 0);
+    assert_true((number(gradients, "prior") > 0) == (step == 750));
+    assert_true((number(gradients, "steps") > 0) == (step == 750));
+    assert_true(number(gradients, "tau") >= 0);
+    assert_true(number(gradients, "colour") >= 0);
+    assert_true(json_object_size(gradients) == TED4_TERMS);
+    assert_true(json_object_size(peaks) == TED4_TERMS);
+    assert_true(number(line, "rollbacks") == 0);
     assert_int_equal(json_array_size(json_object_get(line, "bits")), TED4_TYPES);
-    assert_true(fabs(sum - bytes) <= 5 && steps > 0);
+    assert_true(fabs(sum - bytes) <= 5);
+    assert_true(steps > 0);
     assert_non_null(stage);
     assert_string_equal(stage, step <= STAGE1 ? "1" : step < 860 ? "2" : "2i");
     /* At the last line it is the file's own. */
@@ -62,10 +66,12 @@ static void check_line(const json_t *line, log_state *s, double size)
                                : fabs(bytes - size) <= (step < STEPS ? 0.05 * size : 0));
     assert_string_equal(json_string_value(json_object_get(line, "split")), "test");
     assert_true(step == STEPS ? number(line, "left") < 60 : number(line, "left") >= 0);
-    assert_true(number(line, "anchors") > 50 && number(line, "moving") > 0 &&
-                number(line, "moving") <= number(line, "anchors"));
-    assert_true(number(line, "psnr") > 10 && number(line, "splats") > 0 &&
-                number(line, "skipped") == 0);
+    assert_true(number(line, "anchors") > 50);
+    assert_true(number(line, "moving") > 0);
+    assert_true(number(line, "moving") <= number(line, "anchors"));
+    assert_true(number(line, "psnr") > 10);
+    assert_true(number(line, "splats") > 0);
+    assert_true(number(line, "skipped") == 0);
     /* seconds are rounded to hundredths, milliseconds to thousandths. */
     assert_true(fabs(number(line, "seconds") - s->seconds - 1e-3 * steps * number(line, "ms")) <
                 0.011 + 1e-6 * steps);
@@ -90,7 +96,8 @@ static void test_log(void **state)
         check_line(line, &s, (double)reference.file.size);
         json_decref(line);
     }
-    assert_true(s.step == STEPS && s.cpu > 0);
+    assert_true(s.step == STEPS);
+    assert_true(s.cpu > 0);
 }
 
 /* A checkpoint of the end of stage 1 in out/c, and the log of the same run to its end: the clocks
@@ -264,7 +271,10 @@ static void test_thrown_away(void **state)
     assert_int_equal(ted4_run_log_cut(&l, &t, why, sizeof why), 0);
     work(&l, &t, 0.1);
     put(&l, &t, 100, &cpu, &ms);
-    assert_true(cpu >= 0.299 && t.seconds >= 0.299 && ms > 0 && ms < 10 * 0.7 * t.seconds);
+    assert_true(cpu >= 0.299);
+    assert_true(t.seconds >= 0.299);
+    assert_true(ms > 0);
+    assert_true(ms < 10 * 0.7 * t.seconds);
     assert_int_equal(ted4_run_log_close(&l, why, sizeof why), 0);
 
     assert_int_equal(ted4_run_log_open(&l, path, &t, 1, NULL, why, sizeof why), 0);

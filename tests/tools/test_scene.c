@@ -62,7 +62,8 @@ static void test_cameras(void **state)
             else
                 above = fmin(above, a);
         }
-        assert_true(above - below > 0.05 && above - below < 0.2);
+        assert_true(above - below > 0.05);
+        assert_true(above - below < 0.2);
         assert_true(fabs(azimuth_of(&c) - (above + below) / 2) < 1e-9);
     }
     ted4_ray_camera_train(&c, 0, 1, 64, 200);
@@ -203,7 +204,10 @@ static void test_points_on_surfaces(void **state)
             ted4_ray_camera c;
             ted4_ray_world w;
 
-            assert_true(p.camera >= 0 && p.camera < 3 && p.frame >= 0 && p.frame < 5);
+            assert_true(p.camera >= 0);
+            assert_true(p.camera < 3);
+            assert_true(p.frame >= 0);
+            assert_true(p.frame < 5);
             ted4_ray_camera_train(&c, p.camera, 3, W, H);
             ted4_ray_world_at(&w, o.scene, o.seed, p.frame, o.n_frames);
             assert_true(ted4_ray_project(&c, world, pixel) > 0);
@@ -276,7 +280,8 @@ static char *slurp(const char *folder, const char *name, size_t *size)
     assert_non_null(bytes);
     assert_non_null(f);
     *size = fread(bytes, 1, 1 << 18, f);
-    assert_true(*size > 0 && *size < 1 << 18);
+    assert_true(*size > 0);
+    assert_true(*size < 1 << 18);
     fclose(f);
     return bytes;
 }

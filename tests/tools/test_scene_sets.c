@@ -172,7 +172,8 @@ static void check_points(const ted4_ray_options *o, const ted4_ray_options *plai
         assert_true(
             fabs(depth / (ted4_ray_plan_of(o->scene)->scale * ted4_ray_project(&c, q, expected)) -
                  1) < 1e-4);
-        assert_true(fabs(at[0] - expected[0]) < 0.01 && fabs(at[1] - expected[1]) < 0.01);
+        assert_true(fabs(at[0] - expected[0]) < 0.01);
+        assert_true(fabs(at[1] - expected[1]) < 0.01);
         assert_memory_equal(a.rgb, b.rgb, 3);
     }
 }
@@ -204,13 +205,16 @@ static void test_shaken(void **state)
         const double angle = acos((trace - 1) / 2) * 180 / RAY_PI;
         centre_of(&is, a);
         centre_of(&stated, b);
-        assert_true(angle > 0.1 && angle < 0.9);
-        assert_true(distance(a, b) > 0.005 && distance(a, b) < 0.06);
+        assert_true(angle > 0.1);
+        assert_true(angle < 0.9);
+        assert_true(distance(a, b) > 0.005);
+        assert_true(distance(a, b) < 0.06);
         assert_true(fabs(angle * RAY_PI / 180 -
                          sqrt(turn[0] * turn[0] + turn[1] * turn[1] + turn[2] * turn[2])) < 1e-8);
         size += angle / o.n_train;
     }
-    assert_true(size > 0.25 && size < 0.55);
+    assert_true(size > 0.25);
+    assert_true(size < 0.55);
     for (int k = 0; k < 6; k++)
         assert_true(fabs(mean[k]) < 1e-12);
     check_points(&o, &plain);
@@ -247,7 +251,8 @@ static void test_far_and_wide(void **state)
         low = fmin(low, x);
         high = fmax(high, x);
     }
-    assert_true(high - low > 950 && high - low < 1010);
+    assert_true(high - low > 950);
+    assert_true(high - low < 1010);
     ted4_ray_options turn = plain;
     turn.scene = RAY_TURN;
     check_points(&far, &turn);
@@ -268,8 +273,8 @@ static void test_pair(void **state)
     const ted4_ray_options o = plan(RAY_PAIR);
 
     (void)state;
-    assert_true(azimuth_of(&o, 1) - azimuth_of(&o, 0) > 10 &&
-                azimuth_of(&o, 1) - azimuth_of(&o, 0) < 20);
+    assert_true(azimuth_of(&o, 1) - azimuth_of(&o, 0) > 10);
+    assert_true(azimuth_of(&o, 1) - azimuth_of(&o, 0) < 20);
     assert_true(fabs(azimuth_of(&o, 2) - (azimuth_of(&o, 0) + azimuth_of(&o, 1)) / 2) < 1e-6);
 }
 

@@ -106,7 +106,8 @@ static void test_shapes(void **state)
             hits += b < 4;
             wrong += fabsf(t - b) > 0.004f;
         }
-        assert_true(hits > 100 && hits < 590);
+        assert_true(hits > 100);
+        assert_true(hits < 590);
         assert_true(wrong <= 4);
     }
 }

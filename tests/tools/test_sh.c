@@ -126,7 +126,8 @@ static void test_constant(void **state)
     for (size_t i = 0; i < N; i++) {
         for (size_t c = 0; c < 3; c++) {
             assert_true(fabsf(0.5f + 0.28209479f * sh[(i * 3 + c) * 4] - block[c][i]) < 1e-6f);
-            assert_true(sh[(i * 3 + c) * 4 + 1] == 0.0f && sh[(i * 3 + c) * 4 + 3] == 0.0f);
+            assert_true(sh[(i * 3 + c) * 4 + 1] == 0.0f);
+            assert_true(sh[(i * 3 + c) * 4 + 3] == 0.0f);
         }
     }
 }

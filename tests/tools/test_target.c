@@ -121,7 +121,8 @@ static void test_not_met(void **state)
     (void)state;
     assert_int_equal(encode("-o small.ted4 --target-size 500"), 2);
     assert_true(contains("err", "warning"));
-    assert_true(size_of("small.ted4") > 500 && size_of("small.ted4") < size_of("end0.ted4"));
+    assert_true(size_of("small.ted4") > 500);
+    assert_true(size_of("small.ted4") < size_of("end0.ted4"));
 }
 
 /* The same file from a shared end of stage 1, which the run does not write again; another scene's
@@ -132,7 +133,8 @@ static void test_stage1(void **state)
     assert_int_equal(encode("-o whole.ted4 --lambda 0.01"), 0);
     assert_int_equal(encode("-o first.ted4 --stage1 s2"), 0);
     assert_int_equal(encode("-o shared.ted4 --lambda 0.01 --stage1 s2"), 0);
-    assert_true(same("whole.ted4", "shared.ted4") && !same("whole.ted4", "first.ted4"));
+    assert_true(same("whole.ted4", "shared.ted4"));
+    assert_true(!same("whole.ted4", "first.ted4"));
     assert_int_equal(encode("-o other.ted4 --set view=0 --stage1 s2"), 3);
     assert_true(contains("err", "s2: not a checkpoint"));
     assert_int_equal(access(tiny_path(&folder, "other.ted4"), F_OK), -1);
@@ -154,7 +156,8 @@ static void test_resumed(void **state)
         assert_int_equal(encode(arguments), 0);
     }
     assert_true(same("searched0.ted4", "searched1.ted4"));
-    assert_true(contains("searched0.jsonl", stage1) && !contains("searched1.jsonl", stage1));
+    assert_true(contains("searched0.jsonl", stage1));
+    assert_true(!contains("searched1.jsonl", stage1));
 }
 
 /* A checkpoint of stage 2 knows only the lambda that made it: no search can begin there. */

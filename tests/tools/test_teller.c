@@ -24,7 +24,9 @@ static capture begin_capture(void)
     capture c = { .usual = dup(STDERR_FILENO) };
     const int file = temporary_file(c.name, "test_teller");
 
-    assert_true(file >= 0 && c.usual >= 0 && dup2(file, STDERR_FILENO) >= 0);
+    assert_true(file >= 0);
+    assert_true(c.usual >= 0);
+    assert_true(dup2(file, STDERR_FILENO) >= 0);
     close(file);
     return c;
 }
@@ -134,7 +136,8 @@ static void test_thread(void **state)
 
     (void)state;
     ted4_teller_begin(&t, "tool", 0);
-    assert_true(t.pause[0] == 3 && t.pause[1] == 30);
+    assert_true(t.pause[0] == 3);
+    assert_true(t.pause[1] == 30);
     t.pause[0] = 0.6;
     t.pause[1] = 60;
     ted4_teller_say(&t, "first %d", 1);
@@ -145,7 +148,8 @@ static void test_thread(void **state)
     ted4_teller_end(&t);
     end_capture(c);
     assert_memory_equal(said, "tool: first 1\n", 14);
-    assert_true(count("tool: unpacking x.mp4: 3 frames\n") >= 2 && count("unpacking") <= 4);
+    assert_true(count("tool: unpacking x.mp4: 3 frames\n") >= 2);
+    assert_true(count("unpacking") <= 4);
     assert_int_equal(count("stage"), 0);
     assert_int_equal(count("\r"), 0);
 }
@@ -169,9 +173,11 @@ static void test_show_and_quiet(void **state)
         end_capture(c);
         if (quiet)
             assert_string_equal(said, "tool: trouble\n");
-        else
-            assert_true(count("tool: words\n") == 1 && count("tool: coding") >= 2 &&
-                        count("tool: trouble\n") == 1);
+        else {
+            assert_true(count("tool: words\n") == 1);
+            assert_true(count("tool: coding") >= 2);
+            assert_true(count("tool: trouble\n") == 1);
+        }
     }
 }
 

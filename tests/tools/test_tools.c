@@ -67,7 +67,8 @@ static uint8_t *contents(const char *name, size_t *size)
 
     path_of(path, name);
     FILE *const f = fopen(path, "rb");
-    assert_true(f != NULL && data != NULL);
+    assert_true(f != NULL);
+    assert_true(data != NULL);
     *size = fread(data, 1, 1 << 22, f);
     fclose(f);
     return data;
@@ -278,7 +279,9 @@ static void test_frames(void **state)
     (void)state;
     need_programs();
     assert_int_equal(run("ted4dec v1.ted4 -o f_%%03d.splat --frames 0:3:2"), 0);
-    assert_true(exists("f_000.splat") && exists("f_002.splat") && !exists("f_001.splat"));
+    assert_true(exists("f_000.splat"));
+    assert_true(exists("f_002.splat"));
+    assert_true(!exists("f_001.splat"));
     assert_int_equal(run("ted4dec v1.ted4 -o f_%%03d.splat --frames 1:3"), 3); /* 2 is there */
     assert_false(exists("f_001.splat"));
     assert_int_equal(run("ted4dec v1.ted4 -o f_%%03d.splat --frames 1:3 -f"), 0);
@@ -388,7 +391,8 @@ static uint8_t *drawn(int i)
     double centre[3];
     ted4_view v;
 
-    assert_true(rgb != NULL && viewer != NULL);
+    assert_true(rgb != NULL);
+    assert_true(viewer != NULL);
     camera_make(&file[1].info, i, &v, centre);
     assert_int_equal(ted4_render_query(viewer, file[1].recon, &file[1].info, (uint32_t)i, VIEWS - 1,
                                        &v, NULL, rgb),
@@ -429,7 +433,9 @@ static void test_render(void **state)
         snprintf(name, sizeof name, "view_%d.png", i);
         path_of(path, name);
         assert_int_equal(ted4_image_read(path, &image, &m), 0);
-        assert_true(image.width == WIDTH && image.height == HEIGHT && image.channels == 3);
+        assert_true(image.width == WIDTH);
+        assert_true(image.height == HEIGHT);
+        assert_true(image.channels == 3);
         assert_memory_equal(image.bytes, want, WIDTH * HEIGHT * 3);
         for (int k = 3; k < WIDTH * HEIGHT * 3; k++)
             colours += want[k] != want[k - 3];
@@ -508,16 +514,22 @@ static void test_eval(void **state)
         run("ted4eval v1.ted4 scene --anyway --json --images pictures --sheet sheet.png"), 0);
     free(contents("v1.ted4", &size));
     assert_true(fabs(result("psnr") - 20.0 * log10(255.0)) < 1e-3);
-    assert_true(result("ssim") > 0.99 && result("ssim") < 1.0);
-    assert_true(result("ssim2") > 0.99 && result("ms_ssim") > 0.99);
+    assert_true(result("ssim") > 0.99);
+    assert_true(result("ssim") < 1.0);
+    assert_true(result("ssim2") > 0.99);
+    assert_true(result("ms_ssim") > 0.99);
     assert_true(fabs(result("l1") - 1.0 / 255.0) < 1e-6);
-    assert_true(result("bytes") == (double)size && result("views") == VIEWS);
-    assert_true(result("decode_ms") > 0.0 && result("render_fps") > 0.0);
+    assert_true(result("bytes") == (double)size);
+    assert_true(result("views") == VIEWS);
+    assert_true(result("decode_ms") > 0.0);
+    assert_true(result("render_fps") > 0.0);
     path_of(path, "sheet.png");
     assert_int_equal(ted4_image_probe(path, &sheet, &m), 0);
-    assert_true(sheet.width == 3 * WIDTH && sheet.height == 3 * HEIGHT);
-    assert_true(exists("pictures/truth/00002.png") && exists("pictures/ours/00002.png") &&
-                exists("pictures/error/00002.png"));
+    assert_true(sheet.width == 3 * WIDTH);
+    assert_true(sheet.height == 3 * HEIGHT);
+    assert_true(exists("pictures/truth/00002.png"));
+    assert_true(exists("pictures/ours/00002.png"));
+    assert_true(exists("pictures/error/00002.png"));
     /* The sheet is there by now. */
     assert_int_equal(run("ted4eval v1.ted4 scene --anyway --split train --sheet sheet.png"), 3);
     assert_int_equal(run("ted4eval v1.ted4 scene --anyway --split train --sheet sheet.png -f"), 0);

@@ -75,7 +75,10 @@ static void test_arrays(void **state)
     ted4_scene *s = scene;
 
     (void)state;
-    assert_true(s->nete.n > 1 && s->netr.n > 1 && s->bank.n > 1 && s->shape.n_units > 1);
+    assert_true(s->nete.n > 1);
+    assert_true(s->netr.n > 1);
+    assert_true(s->bank.n > 1);
+    assert_true(s->shape.n_units > 1);
     tamper(&s->nete.values[1], 4);
     tamper(&s->netr.values[s->netr.n - 1], 4);
     tamper(&s->bank.values[0], 4);

@@ -204,7 +204,10 @@ static void test_masks(void **state)
         m += b[i] > 0;
         both += a[i] & b[i] & 1;
     }
-    assert_true(n > 10 && m > 10 && n < AREA / 8 && m < AREA / 8);
+    assert_true(n > 10);
+    assert_true(m > 10);
+    assert_true(n < AREA / 8);
+    assert_true(m < AREA / 8);
     assert_true(both < n / 2);
     o.scene = RAY_THINGS0;
     assert_int_equal(ted4_ray_mask(&o, 0, 2, b), 0);
@@ -273,12 +276,15 @@ static void test_missing(void **state)
     for (int number = 0; number < 4; number++)
         for (int frame = 0; frame < 16; frame++)
             if (ted4_ray_is_missing(&o, number, frame)) {
-                assert_true(number < 3 && ted4_ray_is_taken(&o, number, frame));
+                assert_true(number < 3);
+                assert_true(ted4_ray_is_taken(&o, number, frame));
                 of_camera[number]++;
                 n++;
             }
     assert_int_equal(n, 11);
-    assert_true(of_camera[0] > 0 && of_camera[1] > 0 && of_camera[2] > 0);
+    assert_true(of_camera[0] > 0);
+    assert_true(of_camera[1] > 0);
+    assert_true(of_camera[2] > 0);
 }
 
 /* Times of the test are none of training; without a test file there are none at all. */
@@ -325,7 +331,8 @@ static void test_coordinates(void **state)
         ted4_ray_camera_stated(&usual, i % 3, &a);
         ted4_ray_camera_stated(&o, i % 3, &b);
         ted4_ray_mapped(&o, at, there);
-        assert_true(fabs(there[1] - 100 * at[2]) < 1e-9 && fabs(there[2] + 100 * at[1]) < 1e-9);
+        assert_true(fabs(there[1] - 100 * at[2]) < 1e-9);
+        assert_true(fabs(there[2] + 100 * at[1]) < 1e-9);
         const double depth = ted4_ray_project(&a, at, pixel),
                      far = ted4_ray_project(&b, there, other);
         assert_true(fabs(far / depth - 100) < 1e-6);
@@ -351,7 +358,8 @@ static void test_points(void **state)
         assert_true(far < 9.001f);
         inside += far < .9f;
     }
-    assert_true(inside > 60 && inside < 140);
+    assert_true(inside > 60);
+    assert_true(inside < 140);
     o.ways.points = RAY_ANYWHERE;
     for (int i = 0; i < ted4_ray_n_points(&o); i++)
         assert_true(fabsf(ted4_ray_point_at(&o, i).point.x) < .901f);
