@@ -304,9 +304,10 @@ static double reference_bits(const double *theta, int slot, int j, ref_result *r
     for (int c = l->offset_logit; c < l->n_channels; c++)
         a.logit[c - l->offset_logit] = pr.theta[l->n_net + channel_at(slot, c, j)];
     ref_evaluate(&m, &a, NULL, r);
-    for (unsigned i = 0; i < l->shape.n_outputs; i++) /* nothing is near a clamp */
+    for (unsigned i = 0; i < l->shape.n_outputs; i++) { /* nothing is near a clamp */
         assert_true(r->raw[i] > -3.9);
-    assert_true(r->raw[i] < 3.9);
+        assert_true(r->raw[i] < 3.9);
+    }
 
     double bits = r->loss;
 

@@ -145,10 +145,11 @@ static void test_nothing(void **state)
     go_there(&twin);
     ted4_surgery_begin(&s, &t);
     assert_int_equal(ted4_surgery_apply(&t, &s), 0);
-    for (size_t i = 0; i < t.layout.n_net; i++) /* a zero may lose its sign */
+    for (size_t i = 0; i < t.layout.n_net; i++) { /* a zero may lose its sign */
         assert_true(t.net[i] == twin.net[i]);
-    assert_true(t.net_m[i] == twin.net_m[i]);
-    assert_true(t.net_v[i] == twin.net_v[i]);
+        assert_true(t.net_m[i] == twin.net_m[i]);
+        assert_true(t.net_v[i] == twin.net_v[i]);
+    }
     a = ball_finish(&t);
     b = ball_finish(&twin);
     ball_check_same(&a, &b);
