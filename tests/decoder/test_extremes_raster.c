@@ -377,9 +377,9 @@ static void test_crowd(void **state)
         ted4_raster *r = ted4_raster_new();
         double square = 0, sum = 0;
 
-        assert_true(mean2d != NULL);
-        assert_true(visible != NULL);
-        assert_true(r != NULL);
+        assert_non_null(mean2d);
+        assert_non_null(visible);
+        assert_non_null(r);
         ted4_splat_grads grads = { .opacity = scene_param(&d, SCENE_OPACITY, 0),
                                    .mean2d = mean2d,
                                    .visible = visible };

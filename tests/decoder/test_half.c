@@ -81,7 +81,7 @@ static void morton(void **state)
         for (unsigned i = 0; i < 16; i++)
             for (unsigned j = 0; j < 3; j++)
                 code |= (uint64_t)(ted4_half_order(p[j]) >> i & 1) << (3 * i + 2 - j);
-        assert_true(ted4_morton(p) == code);
+        assert_int_equal(ted4_morton(p), code);
     }
 }
 

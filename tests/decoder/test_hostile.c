@@ -165,7 +165,7 @@ static void claims(void **state)
         (void)alarm(0);
         assert_true(calls > 0);
         assert_true(calls <= size);
-        assert_true(s == NULL);
+        assert_null(s);
     }
 }
 

@@ -198,9 +198,9 @@ static void test_selected(void **state)
     if (v->level > ted4_level_of_machine())
         skip();
     use_kernels(ted4_level_name(v->level));
-    assert_true(ted4_select_gauss_many() == v->many);
+    assert_ptr_equal(ted4_select_gauss_many(), v->many);
     use_kernels("plain");
-    assert_true(ted4_select_gauss_many() == NULL);
+    assert_null(ted4_select_gauss_many());
     use_kernels(NULL);
 }
 

@@ -134,17 +134,17 @@ static void environment_chooses(void **state)
 {
     (void)state;
     use_kernels("plain");
-    assert_true(ted4_select_strict_dense() == NULL);
+    assert_null(ted4_select_strict_dense());
 #if defined(__x86_64__)
     use_kernels("v1");
-    assert_true(ted4_select_strict_dense() == NULL);
+    assert_null(ted4_select_strict_dense());
     use_kernels("v3");
-    assert_true(ted4_select_strict_dense() ==
-                (ted4_level_of_machine() >= TED4_LEVEL_V3 ? ted4_strict_dense_avx2 : NULL));
+    assert_ptr_equal(ted4_select_strict_dense(),
+                     (ted4_level_of_machine() >= TED4_LEVEL_V3 ? ted4_strict_dense_avx2 : NULL));
 #endif
     use_kernels(NULL);
     if (ted4_level_wanted() >= TED4_LEVEL_V3)
-        assert_true(ted4_select_strict_dense() != NULL);
+        assert_non_null(ted4_select_strict_dense());
 }
 
 int main(void)

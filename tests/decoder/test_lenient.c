@@ -100,8 +100,8 @@ static void cut_at(const truth *f, size_t size, const ted4_options *o)
     assert_int_equal(ted4_decode_lenient(f->data, size, o, &s, &what), TED4_E_CON_TRUNCATED);
     assert_int_equal(ted4_decode(f->data, size, NULL, &(ted4_scene *) { NULL }, &e),
                      TED4_E_CON_TRUNCATED);
-    assert_true(what.verdict.code == e.code);
-    assert_true(what.verdict.offset == e.offset);
+    assert_int_equal(what.verdict.code, e.code);
+    assert_int_equal(what.verdict.offset, e.offset);
     assert_int_equal(what.n_tiles, n);
     assert_int_equal(what.stop.code, TED4_E_CON_TRUNCATED);
     assert_int_equal(what.stop.offset, size);
@@ -171,12 +171,12 @@ static void damage(void **state)
         (void)ted4_decode_lenient(copy, f->size, NULL, &s, &what);
         (void)ted4_decode(copy, f->size, NULL, &strict, &e);
         ted4_scene_free(strict);
-        assert_true(what.verdict.code == e.code);
-        assert_true(what.verdict.offset == e.offset);
+        assert_int_equal(what.verdict.code, e.code);
+        assert_int_equal(what.verdict.offset, e.offset);
         if (e.code != TED4_OK && s != NULL) {
             saved++;
             assert_true(what.n_tiles > 0);
-            assert_true(what.stop.code != TED4_OK);
+            assert_int_not_equal(what.stop.code, TED4_OK);
             assert_true(what.stop.offset >= f->tile_end[what.n_tiles - 1]);
             if (at >= f->tile_end[what.n_tiles - 1])
                 assert_beginning(f->scene, s);

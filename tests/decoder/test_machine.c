@@ -81,7 +81,7 @@ static void shape_of_bank(void **state)
     h.bank_rows = UINT32_MAX;
     h.bank_dim = 512;
     ted4_shape_make(&s, &h);
-    assert_true(s.n_bank == (uint64_t)UINT32_MAX * 512);
+    assert_int_equal(s.n_bank, (uint64_t)UINT32_MAX * 512);
 }
 
 int main(void)

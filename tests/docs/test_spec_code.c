@@ -28,13 +28,13 @@ static void hashes(void **state)
     for (size_t i = 0; i < N_HASHED; i++)
         bytes[i] = (uint8_t)(i * 2654435761u >> 13);
     for (size_t n = 9; n < N_HASHED; n++)
-        assert_true(xxh3_64(bytes, n) == XXH3_64bits(bytes, n));
+        assert_int_equal(xxh3_64(bytes, n), XXH3_64bits(bytes, n));
     for (size_t n = 0; n<N_HASHED; n += n> 0 ? 1 : 9) {
         const XXH128_hash_t theirs = XXH3_128bits(bytes, n);
         const struct hash128 ours = xxh3_128(bytes, n);
 
-        assert_true(theirs.low64 == ours.low);
-        assert_true(theirs.high64 == ours.high);
+        assert_int_equal(theirs.low64, ours.low);
+        assert_int_equal(theirs.high64, ours.high);
     }
 }
 

@@ -54,12 +54,12 @@ static void test_cell_key(void **state)
                 q[j] = (float)((at[j] + off) * cell);
             }
             key = ted4_cell_key(p, cell);
-            assert_true(key != 0);
-            assert_true(key == ted4_cell_key(q, cell));
+            assert_int_not_equal(key, 0);
+            assert_int_equal(key, ted4_cell_key(q, cell));
             for (int j = 0; j < 6; j++) {
                 memcpy(q, p, sizeof q);
                 q[j / 2] = (float)((at[j / 2] + (j % 2 ? 1 : -1)) * cell);
-                assert_true(ted4_cell_key(q, cell) != key);
+                assert_int_not_equal(ted4_cell_key(q, cell), key);
             }
         }
 }

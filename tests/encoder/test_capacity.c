@@ -95,7 +95,7 @@ static int check_trials(const ted4_trainer *t)
 
         assert_in_range(x->move, 0, TED4_MOVES - 1);
         assert_true((x->to < x->from || x->move == TED4_MOVE_PRIOR_BITS));
-        assert_true(x->to != x->from);
+        assert_int_not_equal(x->to, x->from);
         assert_true(x->before.cost > 0);
         assert_true(x->before.cost > x->before.distortion);
         assert_true(x->before.bytes > 100);
@@ -117,8 +117,8 @@ static void test_decides(void **state)
     (void)state;
     begin(&t, &o, NULL);
     ball_train(&t, ted4_capacity_step(&t));
-    assert_true(t.decided == TED4_DECIDED_NOTHING);
-    assert_true(t.n_trials == 0);
+    assert_int_equal(t.decided, TED4_DECIDED_NOTHING);
+    assert_int_equal(t.n_trials, 0);
     weights = t.layout.shape.n_netr + t.layout.shape.n_nete;
 
     /* What a bit weighs is what it weighed before. */
@@ -149,17 +149,17 @@ static int refined(ted4_trainer *t, int bits)
     t->bits[TED4_GRID_PRIOR] = bits;
     assert_int_equal(ted4_capacity_cost(t, &before), 0);
     assert_int_equal(ted4_capacity_refine(t), 0);
-    assert_true(t->decided == TED4_DECIDED_BITS);
+    assert_int_equal(t->decided, TED4_DECIDED_BITS);
     assert_true(t->n_trials > first);
     assert_true(!t->integer);
     assert_int_equal(ted4_capacity_cost(t, &after), 0);
     for (size_t i = first; i < t->n_trials; i++) {
         const struct ted4_trial *x = &t->trial[i];
 
-        assert_true(x->move == TED4_MOVE_PRIOR_BITS);
-        assert_true(x->from == bits);
+        assert_int_equal(x->move, TED4_MOVE_PRIOR_BITS);
+        assert_int_equal(x->from, bits);
         assert_true(x->to > x->from);
-        assert_true(x->steps == 0);
+        assert_int_equal(x->steps, 0);
         assert_int_equal(x->taken, x->after.cost < x->before.cost);
         bits = (int)(x->taken ? x->to : x->from);
     }
@@ -181,7 +181,7 @@ static void test_refined(void **state)
     begin(&t, &o, NULL);
     while (!ted4_integer_due(&t))
         assert_int_equal(ted4_trainer_step(&t), 0);
-    assert_true(t.decided == TED4_DECIDED_MODEL);
+    assert_int_equal(t.decided, TED4_DECIDED_MODEL);
     assert_true(ted4_capacity_refine_steps(&t) > 0);
     for (int bits = 1; bits <= 6; bits++)
         raised += refined(&t, bits);
@@ -201,7 +201,7 @@ static void test_cheap_first(void **state)
     begin(&t, &o, NULL);
     ball_train(&t, TOTAL);
     for (size_t i = 0; i < t.n_trials; i++) {
-        assert_true(t.trial[i].move != TED4_MOVE_OFFSETS);
+        assert_int_not_equal(t.trial[i].move, TED4_MOVE_OFFSETS);
         coarse += t.trial[i].move == TED4_MOVE_HEAD_BITS && t.trial[i].taken;
     }
     assert_true(coarse > 0);
@@ -404,13 +404,13 @@ static void test_fixed(void **state)
 
     (void)state;
     begin(&t, &o, NULL);
-    assert_true(ted4_capacity_step(&t) == UINT64_MAX);
+    assert_int_equal(ted4_capacity_step(&t), UINT64_MAX);
     a = ball_finish(&t);
-    assert_true(t.n_trials == 0);
-    assert_true(t.decided == TED4_DECIDED_NOTHING);
-    assert_true(t.layout.head.n_offsets == o.offsets);
-    assert_true(t.layout.head.feature_dim == o.feature);
-    assert_true(t.layout.head.hyper_width == o.hyper_width);
+    assert_int_equal(t.n_trials, 0);
+    assert_int_equal(t.decided, TED4_DECIDED_NOTHING);
+    assert_int_equal(t.layout.head.n_offsets, o.offsets);
+    assert_int_equal(t.layout.head.feature_dim, o.feature);
+    assert_int_equal(t.layout.head.hyper_width, o.hyper_width);
     ted4_trainer_finish(&t);
     ball_set(&plain, "capacity_share=0");
     b = whole(&plain, NULL);
@@ -430,7 +430,7 @@ static void test_short(void **state)
     ball_set(&o, "stage2=30");
     begin(&t, &o, NULL);
     f = ball_finish(&t);
-    assert_true(t.n_trials == 0);
+    assert_int_equal(t.n_trials, 0);
     assert_int_equal(t.layout.head.n_offsets, o.offsets);
     free(f.bytes);
     ted4_trainer_finish(&t);

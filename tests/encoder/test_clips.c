@@ -59,7 +59,7 @@ static void check_stills(ted4_dataset *d, const char *folder, int w, double foca
     assert_int_equal(d->n_frames, 1);
     assert_int_equal(d->n_cameras, 18);
     assert_true(d->rate == 0);
-    assert_true(d->n_warnings == 0);
+    assert_int_equal(d->n_warnings, 0);
     for (size_t i = 0; i < d->n_pictures; i++) {
         const int row = row_of(d, i);
         char name[64];

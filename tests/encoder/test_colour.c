@@ -39,7 +39,7 @@ static void check_choice(const char *pictures, const char *want)
     assert_int_equal(ted4_colour_has(&c, d.n_cameras), 0);
     assert_int_equal(c.n_corrected, n);
     assert_int_equal(c.n_cameras, n > 0 ? d.n_cameras : 0);
-    assert_true((c.image == NULL) == (n == 0));
+    assert_int_equal((c.image == NULL), (n == 0));
     ted4_colour_finish(&c);
 }
 
@@ -361,7 +361,7 @@ static void test_penalty(void **state)
         }
         ted4_colour_update(&c, 1, gradient, 1e-3, 0.3);
         for (int k = 0; k < N; k++)
-            assert_true((fabsf(c.value[1][k]) > fabsf(before[k])) == side);
+            assert_int_equal((fabsf(c.value[1][k]) > fabsf(before[k])), side);
         ted4_colour_finish(&c);
     }
 }

@@ -485,9 +485,9 @@ static void test_times(void **state)
     const double close[3] = { 0, 1e-5, 1 };
     assert_int_equal(ted4_frame_times(close, 3, frame, &n, &m), 0);
     assert_int_equal(n, TED4_MAX_FRAMES);
-    assert_true(frame[0] == 0);
-    assert_true(frame[1] == 0);
-    assert_true(frame[2] == TED4_MAX_FRAMES - 1);
+    assert_int_equal(frame[0], 0);
+    assert_int_equal(frame[1], 0);
+    assert_int_equal(frame[2], TED4_MAX_FRAMES - 1);
     const double one[2] = { 5, 5 };
     assert_int_equal(ted4_frame_times(one, 2, frame, &n, &m), 0);
     assert_int_equal(n, 1);

@@ -268,7 +268,7 @@ static void test_damaged_pictures(void **state)
     FILE *in = fopen(tiny_path(&f, "p.png"), "rb");
     assert_non_null(in);
     assert_true(n < sizeof bytes);
-    assert_true(fread(bytes, 1, n, in) == n);
+    assert_int_equal(fread(bytes, 1, n, in), n);
     fclose(in);
     assert_string_equal(tiny_load(&d, &f, &tiny_options), "");
     assert_int_equal(ted4_dataset_verify(&d, NULL, &m), 0);

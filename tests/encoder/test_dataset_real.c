@@ -88,8 +88,8 @@ static void test_real_videos(void **state)
     for (size_t i = 0; i < d.n_pictures; i++) {
         const ted4_camera *c = &d.pictures[i].camera;
         assert_int_equal(d.pictures[i].is_test, d.pictures[i].frame == 4);
-        assert_true(c->width == 1088);
-        assert_true(c->height == 1920);
+        assert_int_equal(c->width, 1088);
+        assert_int_equal(c->height, 1920);
         assert_true(fabs(c->fx - 1677) < 6);
         assert_true(fabs(c->fy - 1677) < 6);
     }

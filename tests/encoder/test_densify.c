@@ -120,7 +120,7 @@ static void test_growth(void **state)
             old++;
             continue;
         }
-        assert_true(id % 4 == 0);
+        assert_int_equal(id % 4, 0);
         check_child(&t, i, place[id]);
         n_parents += children[id]++ == 0;
         assert_true(children[id] <= 3);
@@ -266,7 +266,7 @@ static void test_pruning(void **state)
     for (size_t i = 0; i < t.anchors.n; i++) {
         const int id = (int)*ted4_cell(&t.anchors, TED4_ROW_VALUE, i, 0) - 1;
 
-        assert_true(id % 4 != 0);
+        assert_int_not_equal(id % 4, 0);
         assert_true(*ted4_cell(&t.anchors, TED4_ROW_OPACITY, i, 1) == (id % 4 == 2 ? 8.0f : 0.0f));
     }
     ted4_trainer_finish(&t);

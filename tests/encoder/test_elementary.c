@@ -185,7 +185,7 @@ static void test_bits(void **state)
         hash = ted4_mix(hash ^ bits);
     }
     print_message("hash of results %016llx\n", (unsigned long long)hash);
-    assert_true(hash == 0xd661afac48b9d642u);
+    assert_int_equal(hash, 0xd661afac48b9d642u);
 }
 
 int main(void)

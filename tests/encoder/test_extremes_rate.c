@@ -99,8 +99,8 @@ static void test_coder(void **state)
                 assert_true(s.escape < 1 << TED4_ESCAPE_BITS);
                 const uint32_t j = ted4_gauss_find(g, fr, s.slots.start + s.slots.freq - 1, &found);
 
-                assert_true(found.start == s.slots.start);
-                assert_true(found.freq == s.slots.freq);
+                assert_int_equal(found.start, s.slots.start);
+                assert_int_equal(found.freq, s.slots.freq);
                 assert_int_equal(symbol[k],
                                  whole + (s.escape < 0 ? ted4_gauss_offset(g, j)
                                                        : ted4_gauss_escaped(g, j, s.escape)));

@@ -69,13 +69,13 @@ static void test_begin(void **state)
     (void)state;
     cloud_make(&c, 5);
     assert_int_equal(ted4_trainer_init(&t, &c.options, &c.data, NULL), 0);
-    assert_true(t.layout.head.rate_num == 30);
-    assert_true(t.layout.head.rate_den == 1);
+    assert_int_equal(t.layout.head.rate_num, 30);
+    assert_int_equal(t.layout.head.rate_den, 1);
     ted4_trainer_finish(&t);
     c.data.rate = 1.0 / 60;
     assert_int_equal(ted4_trainer_init(&t, &c.options, &c.data, NULL), 0);
-    assert_true(t.layout.head.rate_num == 1);
-    assert_true(t.layout.head.rate_den == 60);
+    assert_int_equal(t.layout.head.rate_num, 1);
+    assert_int_equal(t.layout.head.rate_den, 60);
     ted4_trainer_finish(&t);
     /* Loaders let neither pass. */
     c.data.rate = 1e9;

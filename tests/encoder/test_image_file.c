@@ -151,7 +151,7 @@ static void test_jpeg(void **state)
     FILE *in = fopen(path, "rb");
     assert_non_null(in);
     assert_true(n < sizeof bytes);
-    assert_true(fread(bytes, 1, n, in) == n);
+    assert_int_equal(fread(bytes, 1, n, in), n);
     fclose(in);
     for (size_t k = 0; k < n - 2; k += 7) {
         tiny_bytes(&f, "a.jpg", bytes, k);
@@ -209,8 +209,8 @@ static void test_undistort(void **state)
     };
     uint8_t *in = malloc(320 * 240 * 3), *out = malloc(320 * 240 * 3);
 
-    assert_true(in != NULL);
-    assert_true(out != NULL);
+    assert_non_null(in);
+    assert_non_null(out);
     for (size_t k = 0; k < sizeof lenses / sizeof lenses[0]; k++) {
         const ted4_lens *l = &lenses[k];
         for (int i = 0; i < 320 * 240; i++) {

@@ -30,7 +30,7 @@ static void check(ted4_trainer *t, uint64_t key, size_t n, size_t frames)
     for (size_t i = 0; i < n; i++) {
         assert_true(item[i] < t->data->n_pictures);
         assert_true(!t->data->pictures[item[i]].is_test);
-        assert_true(chosen[item[i]]++ == 0);
+        assert_int_equal(chosen[item[i]]++, 0);
         times[t->data->pictures[item[i]].frame]++;
     }
     for (size_t f = 1; f < frames; f++) { /* frame 0 has one picture less */

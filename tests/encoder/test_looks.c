@@ -16,8 +16,8 @@ static looks look(ted4_trainer *t)
     looks l = { t->anchors.n, malloc(t->anchors.n * sizeof(float)),
                 malloc(3 * t->anchors.n * sizeof(float)) };
 
-    assert_true(l.opacity != NULL);
-    assert_true(l.rgb != NULL);
+    assert_non_null(l.opacity);
+    assert_non_null(l.rgb);
     if (ted4_trainer_looks(t, l.opacity, l.rgb) != 0)
         fail_msg("%s", t->message.text);
     return l;

@@ -34,10 +34,10 @@ static picture make(int width, int height)
                   .exact = malloc(n * sizeof(double)),
                   .truth = malloc(n) };
 
-    assert_true(p.image != NULL);
-    assert_true(p.gradient != NULL);
-    assert_true(p.exact != NULL);
-    assert_true(p.truth != NULL);
+    assert_non_null(p.image);
+    assert_non_null(p.gradient);
+    assert_non_null(p.exact);
+    assert_non_null(p.truth);
     for (size_t i = 0; i < n; i++)
         p.truth[i] = (uint8_t)((i / 40 * 16 + random_u32(&source) % 64) & 255);
     for (int c = 0; c < 3; c++) {

@@ -48,7 +48,7 @@ static void test_psnr(void **state)
     assert_true(fabs(m.ssim - 1.0) < 1e-12);
     assert_true(fabs(m.ssim2 - 1.0) < 1e-12);
     assert_true(isnan(m.ms_ssim));
-    assert_true(m.scales == 0); /* ten rows: the window does not fit */
+    assert_int_equal(m.scales, 0); /* ten rows: the window does not fit */
     memcpy(b, a, 20 * 10 * 3);
     b[300] = 115; /* one value of 600 off by 15 */
     assert_int_equal(ted4_metrics_compare(a, b, 20, 10, NULL, &m), 0);
@@ -159,8 +159,8 @@ static double *halved(double *v, int w, int h)
     double *padded = calloc((size_t)(2 * ow) * (size_t)(2 * oh), sizeof *padded);
     double *out = malloc((size_t)ow * (size_t)oh * sizeof *out);
 
-    assert_true(padded != NULL);
-    assert_true(out != NULL);
+    assert_non_null(padded);
+    assert_non_null(out);
     for (int y = 0; y < h; y++)
         for (int x = 0; x < w; x++)
             padded[(y + h % 2) * 2 * ow + x + w % 2] = v[y * w + x];

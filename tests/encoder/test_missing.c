@@ -87,8 +87,8 @@ static void test_lists(void **state)
     assert_non_null(strstr(d.pictures[0].path, "r_01"));
     assert_non_null(strstr(d.pictures[1].path, "r_06"));
     assert_non_null(strstr(d.pictures[2].path, "r_05"));
-    assert_true(d.pictures[1].is_test == 0);
-    assert_true(d.pictures[2].is_test == 1);
+    assert_int_equal(d.pictures[1].is_test, 0);
+    assert_int_equal(d.pictures[2].is_test, 1);
     ted4_dataset_free(&d);
     tiny_free(&f);
 }

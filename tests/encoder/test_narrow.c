@@ -98,8 +98,8 @@ static void test_nothing_gone(void **state)
     (void)state;
     moments(m);
     assert_int_equal(ted4_narrow_make(&w, &u, N), 0);
-    assert_true(w.from == N);
-    assert_true(w.to == N);
+    assert_int_equal(w.from, N);
+    assert_int_equal(w.to, N);
     for (int a = 0; a < N; a++)
         for (int k = 0; k <= N; k++)
             assert_true(w.decode[a * (N + 1) + k] == (k == a ? 1.0 : 0.0));

@@ -33,7 +33,7 @@ static int set_to(ted4_train_options *o, const option *t, double value)
 
     snprintf(text, sizeof text, "%s=%.17g", t->name, value);
     result = ted4_options_set(o, text, why, sizeof why);
-    assert_true((result == 0) == (why[0] == '\0'));
+    assert_int_equal((result == 0), (why[0] == '\0'));
     return result;
 }
 
@@ -118,7 +118,7 @@ static void test_bad_text(void **state)
         assert_non_null(strstr(why, bad[i]));
         assert_non_null(strstr(why, "expected"));
         assert_int_equal(ted4_options_set(&o, bad[i], narrow, sizeof narrow), -1);
-        assert_true(memchr(narrow, '\0', sizeof narrow) != NULL);
+        assert_non_null(memchr(narrow, '\0', sizeof narrow));
     }
     assert_memory_equal(&o, &before, sizeof o);
 }
@@ -142,9 +142,9 @@ static void test_hash(void **state)
         if (ted4_options_hash(&o, 2) == hash[N_OPTIONS])
             assert_int_equal(set_to(&o, &table[i], table[i].hi), 0);
         hash[i] = ted4_options_hash(&o, 2);
-        assert_true(ted4_options_hash(&o, 2) == hash[i]);
-        assert_true((ted4_options_hash(&o, 1) == ted4_options_hash(&base, 1)) ==
-                    (table[i].stage == 2));
+        assert_int_equal(ted4_options_hash(&o, 2), hash[i]);
+        assert_int_equal((ted4_options_hash(&o, 1) == ted4_options_hash(&base, 1)),
+                         (table[i].stage == 2));
     }
     for (int i = 0; i < N_OPTIONS + 2; i++)
         for (int k = 0; k < i; k++)

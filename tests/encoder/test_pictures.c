@@ -64,8 +64,8 @@ static ted4_image decode(const char *path)
 
     if (ted4_image_probe(path, &header, &m) != 0 || ted4_image_read(path, &image, &m) != 0)
         fail_msg("%s", m.text);
-    assert_true(image.width == header.width);
-    assert_true(image.height == header.height);
+    assert_int_equal(image.width, header.width);
+    assert_int_equal(image.height, header.height);
     assert_int_equal(image.channels == 4, header.has_alpha);
     return image;
 }
@@ -82,8 +82,8 @@ static void test_png(void **state)
         const int kind = kinds[k % 4], depth = k & 4 ? 16 : 8;
         write_png(path, kind, depth, k & 8, NULL);
         ted4_image image = decode(path);
-        assert_true(image.width == W);
-        assert_true(image.height == H);
+        assert_int_equal(image.width, W);
+        assert_int_equal(image.height, H);
         assert_int_equal(image.channels, kind & PNG_COLOR_MASK_ALPHA ? 4 : 3);
         for (int i = 0; i < W * H * image.channels; i++) {
             const int c = i % image.channels, at = i / image.channels;
@@ -159,9 +159,9 @@ static void test_jpeg(void **state)
         const int n = k % 3 == 0 ? 1 : 3;
         write_jpeg(path, n == 1 ? JCS_GRAYSCALE : JCS_RGB, n, k >= 3, k % 3 == 2);
         image = decode(path);
-        assert_true(image.width == 48);
-        assert_true(image.height == 32);
-        assert_true(image.channels == 3);
+        assert_int_equal(image.width, 48);
+        assert_int_equal(image.height, 32);
+        assert_int_equal(image.channels, 3);
         for (int i = 0; i < 48 * 32 * 3; i++)
             assert_true(abs(image.bytes[i] - (2 * (i / 3 % 48) + 2 * (i / 3 / 48) +
                                               (n == 3 ? 20 * (i % 3) : 0))) <= 8);
@@ -211,7 +211,7 @@ static void test_alpha(void **state)
         ted4_dataset_release(&d, 0);
         ted4_dataset_free(&d);
     }
-    assert_true(digest[0] != digest[1]);
+    assert_int_not_equal(digest[0], digest[1]);
     tiny_free(&f);
 }
 

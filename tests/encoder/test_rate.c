@@ -311,7 +311,7 @@ static void test_threads(void **state)
     memcpy(bits, c.bits, sizeof bits);
     memcpy(d_net, c.d_net, net);
     for (int i = 0; i < 2; i++) {
-        assert_true(crowd_run(&c, &runs[i], 0, MANY) == sum);
+        assert_int_equal(crowd_run(&c, &runs[i], 0, MANY), sum);
         assert_memory_equal(bits, c.bits, sizeof bits);
         assert_memory_equal(d_net, c.d_net, net);
     }

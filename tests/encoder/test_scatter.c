@@ -93,13 +93,13 @@ static void test_shown(void **state)
     assert_true(n < balls.n_pictures);
     assert_int_equal(ted4_shown_read(&s, &balls, &m), 0);
     assert_true(s.plain);
-    assert_true(s.n == n);
-    assert_true(s.background[0] == 0);
-    assert_true(s.background[1] == 0);
-    assert_true(s.background[2] == 0);
+    assert_int_equal(s.n, n);
+    assert_int_equal(s.background[0], 0);
+    assert_int_equal(s.background[1], 0);
+    assert_int_equal(s.background[2], 0);
     ted4_shown_count(&s, b.centre, &seen, &shown);
-    assert_true(seen == shown);
-    assert_true(seen == (int)s.n);
+    assert_int_equal(seen, shown);
+    assert_int_equal(seen, (int)s.n);
     ted4_shown_count(&s, nowhere, &seen, &shown);
     assert_int_equal(shown, 0);
     ted4_shown_free(&s);
@@ -120,8 +120,8 @@ static void test_sweep(void **state)
     for (size_t i = 0; i < s.n; i++) {
         assert_in_range(w.n_helpers[i], 2, BALL_CAMERAS - 1);
         for (int h = 0; h < w.n_helpers[i]; h++)
-            assert_true(balls.pictures[s.picture[w.helper[i][h]]].frame ==
-                        balls.pictures[s.picture[i]].frame);
+            assert_int_equal(balls.pictures[s.picture[w.helper[i][h]]].frame,
+                             balls.pictures[s.picture[i]].frame);
         for (size_t pixel = 0; pixel < BALL_W * BALL_H; pixel++) {
             double world[3];
 
@@ -156,9 +156,9 @@ static void test_useless(void **state)
 
     assert_int_equal(a.given, BALLS * BALL_POINTS);
     assert_true(a.scattered > 1000);
-    assert_true(a.scattered == one.n_points);
+    assert_int_equal(a.scattered, one.n_points);
     assert_true(one.random_points);
-    assert_true(b.scattered == a.scattered);
+    assert_int_equal(b.scattered, a.scattered);
     assert_memory_equal(one.points, two.points, 3 * one.n_points * sizeof *one.points);
     print_message("%zu points, %zu near a surface\n", one.n_points, count_near(&one, 1.0));
     assert_true(2 * count_near(&one, 1.0) > one.n_points);
@@ -179,10 +179,10 @@ static void test_useful(void **state)
     const uint64_t before = ted4_dataset_digest(&d);
     const ted4_scattered what = scatter(&d, NULL);
 
-    assert_true(what.given == 0);
-    assert_true(what.scattered == 0);
+    assert_int_equal(what.given, 0);
+    assert_int_equal(what.scattered, 0);
     assert_true(!d.random_points);
-    assert_true(ted4_dataset_digest(&d) == before);
+    assert_int_equal(ted4_dataset_digest(&d), before);
     unload(&d, &f);
 }
 
@@ -198,8 +198,8 @@ static void test_one_picture(void **state)
     load(&d, &f, 10);
     for (size_t i = 1; i < d.n_pictures; i++)
         d.pictures[i].is_test = 1;
-    assert_true(scatter(&d, NULL).scattered == 2048);
-    assert_true(d.n_points == 2048);
+    assert_int_equal(scatter(&d, NULL).scattered, 2048);
+    assert_int_equal(d.n_points, 2048);
     assert_int_equal(ted4_shown_read(&s, &d, &m), 0);
     for (size_t i = 0; i < d.n_points; i++) {
         const float *p = d.points + 3 * i;
@@ -228,7 +228,7 @@ static void test_held_out(void **state)
         for (int k = 0; k < 3; k++)
             d.pictures[i].camera.t[k] += 5;
     }
-    assert_true(scatter(&d, NULL).scattered == scatter(&same, NULL).scattered);
+    assert_int_equal(scatter(&d, NULL).scattered, scatter(&same, NULL).scattered);
     assert_memory_equal(d.points, same.points, 3 * d.n_points * sizeof *d.points);
     unload(&d, &f);
     unload(&same, &g);
@@ -257,11 +257,11 @@ static void test_bounds(void **state)
             o.low[0] = o.high[0] = 1e5f;
         assert_int_equal(ted4_dataset_scatter(&d, &o, NULL, &what, &m), useful == 2 ? -1 : 0);
         if (useful == 1) {
-            assert_true(what.scattered == 0);
+            assert_int_equal(what.scattered, 0);
             assert_true(d.n_points >= BALL_POINTS);
-            assert_true(d.n_points + what.outside == BALLS * BALL_POINTS);
+            assert_int_equal(d.n_points + what.outside, BALLS * BALL_POINTS);
         } else
-            assert_true((what.scattered > 0) == (useful == 0));
+            assert_int_equal((what.scattered > 0), (useful == 0));
         for (size_t i = 0; useful < 2 && i < 3 * d.n_points; i++) {
             assert_true(d.points[i] >= o.low[i % 3]);
             assert_true(d.points[i] <= o.high[i % 3]);

@@ -352,19 +352,19 @@ static void test_digest(void **state)
     write_scene(&a, "");
     write_scene(&b, "");
     const uint64_t plain = digest(&a, 1, 0), whole = digest(&a, 1, 1);
-    assert_true(plain != whole);
-    assert_true(digest(&b, 1, 0) == plain); /* another place */
-    assert_true(digest(&b, 1, 1) == whole);
-    assert_true(digest(&b, 2, 1) != whole);
+    assert_int_not_equal(plain, whole);
+    assert_int_equal(digest(&b, 1, 0), plain); /* another place */
+    assert_int_equal(digest(&b, 1, 1), whole);
+    assert_int_not_equal(digest(&b, 2, 1), whole);
     tiny_picture(&b, "3.png", TINY_W, TINY_H, 31);
-    assert_true(digest(&b, 1, 0) == plain); /* nobody has looked at the pixels */
-    assert_true(digest(&b, 1, 1) != whole);
+    assert_int_equal(digest(&b, 1, 0), plain); /* nobody has looked at the pixels */
+    assert_int_not_equal(digest(&b, 1, 1), whole);
     write_scene(&b, "\"fl_y\": 10,");
-    assert_true(digest(&b, 1, 0) != plain);
+    assert_int_not_equal(digest(&b, 1, 0), plain);
     write_scene(&b, "\"train_filenames\": "
                     "[\"0.png\",\"1.png\",\"2.png\",\"3.png\",\"4.png\",\"5.png\",\"6.png\"], "
                     "\"test_filenames\": [\"7.png\"],");
-    assert_true(digest(&b, 1, 0) != plain);
+    assert_int_not_equal(digest(&b, 1, 0), plain);
     tiny_free(&a);
     tiny_free(&b);
 }

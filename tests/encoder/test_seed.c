@@ -44,7 +44,7 @@ static void test_space_make(void **state)
     assert_true(h.origin[0] == many[0][0]);
     cloud.data.n_points = 0;
     ted4_space_make(&h, &cloud.data);
-    assert_true(h.exponent == 0);
+    assert_int_equal(h.exponent, 0);
     assert_true(h.origin[0] == 0.0f);
 }
 
@@ -125,8 +125,8 @@ static void test_space_view(void **state)
         }
         check_point(&h, &c, world);
         ted4_space_view(&h, &c, &v, centre);
-        assert_true(v.width == 640);
-        assert_true(v.height == 480);
+        assert_int_equal(v.width, 640);
+        assert_int_equal(v.height, 480);
         assert_true(v.near_z == TED4_NEAR);
         assert_true(v.background[0] == 0.0f);
         assert_true(v.background[1] == 1.0f);
@@ -167,7 +167,7 @@ static void test_lattice(void **state)
         cloud_begin(&cloud, &t);
         assert_int_equal(t.anchors.n, CLOUD_POINTS);
         assert_true(fabs(t.cell - 0.25) < 1e-6);
-        assert_true((t.layout.first[TED4_TAU] >= 0) == !single);
+        assert_int_equal((t.layout.first[TED4_TAU] >= 0), !single);
         for (size_t i = 0; i < t.anchors.n; i++) {
             size_t found = 0;
 

@@ -44,7 +44,7 @@ static void test_search(void **state)
         for (size_t i = first; i < list.n; i++) {
             const double r = ball_radii(&t, list.item[i].point, SPEED, (double)f / (FRAMES - 1));
 
-            assert_true(list.item[i].frame == f);
+            assert_int_equal(list.item[i].frame, f);
             assert_true(list.item[i].score > 0);
             assert_true(list.item[i].size > 0);
             near += r > 0.5 && r < 1.5;

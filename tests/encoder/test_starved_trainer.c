@@ -50,7 +50,7 @@ static int preview(size_t n, int fail_on)
     const double psnr = ted4_trainer_preview(&trainer, 4);
     const int failed = feed();
 
-    assert_true((psnr < 0) == failed);
+    assert_int_equal((psnr < 0), failed);
     assert_int_equal(ted4_image_cache_held(cloud.data.cache), 0);
     if (failed && strstr(trainer.message.text, "no memory") == NULL)
         fail_msg("allocation %zu: \"%s\"", n, trainer.message.text);

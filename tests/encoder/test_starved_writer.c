@@ -24,8 +24,8 @@ static int write_scene(size_t n, int fail_on)
     const int failed = feed();
 
     assert_int_equal(verdict, failed ? TED4_E_LIMIT_MEMORY : TED4_OK);
-    assert_true((out == NULL) == failed);
-    assert_true((size == 0) == failed);
+    assert_int_equal((out == NULL), failed);
+    assert_int_equal((size == 0), failed);
     free(out);
     ted4_scene_free(s);
     return failed;

@@ -253,10 +253,10 @@ static double analytic(void)
     ted4_splats s;
     double bits[TED4_TYPES], l1, ssim, loss;
 
-    assert_true(g != NULL);
-    assert_true(rate != NULL);
-    assert_true(raster != NULL);
-    assert_true(w != NULL);
+    assert_non_null(g);
+    assert_non_null(rate);
+    assert_non_null(raster);
+    assert_non_null(w);
     if (pr.stage2)
         quantise(rate, &l);
     ted4_generator_pack(g, pr.net);
@@ -365,7 +365,7 @@ static double reference(const double *theta)
     const size_t seen = ref_render(&pr.view, (const double(*)[REF_SPLAT])pr.splat, n, image);
     const ref_picture picture = { WIDTH, HEIGHT, image, pr.truth };
 
-    assert_true(n == ANCHORS * OFFSETS);
+    assert_int_equal(n, ANCHORS * OFFSETS);
     assert_true(seen > ANCHORS / 2);
     return ref_distortion(&picture, (double)SSIM_WEIGHT, &l1, &ssim) + (double)pr.bit_weight * bits;
 }

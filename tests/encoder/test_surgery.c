@@ -195,7 +195,7 @@ static void test_feature(void **state)
 
     const ted4_cost before = cost(&t);
 
-    assert_true(t.layout.head.n_slices == 2);
+    assert_int_equal(t.layout.head.n_slices, 2);
     assert_true(t.layout.head.slice[1] > 2);
     make(&t, TED4_MOVE_FEATURE, F - 2);
     assert_int_equal(t.layout.head.n_slices, 2);

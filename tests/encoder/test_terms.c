@@ -198,8 +198,8 @@ static int moved(ted4_trainer *t)
     float *net = malloc(l->n_net * sizeof *net), *value = malloc(values * sizeof *value);
     int parts = 0;
 
-    assert_true(net != NULL);
-    assert_true(value != NULL);
+    assert_non_null(net);
+    assert_non_null(value);
     memcpy(net, t->net, l->n_net * sizeof *net);
     memcpy(value, t->anchors.data[TED4_ROW_VALUE], values * sizeof *value);
     ball_train(t, t->iteration + STEPS);

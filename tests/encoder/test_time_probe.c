@@ -131,8 +131,8 @@ static void test_still(void **state)
     ball_begin(&twin, &o, &d, NULL);
     if (ted4_snapshot_restore(&twin, &early) != 0)
         fail_msg("%s", twin.message.text);
-    assert_true(twin.iteration == 1);
-    assert_true(twin.layout.head.motion == TED4_MOTION_NONE);
+    assert_int_equal(twin.iteration, 1);
+    assert_int_equal(twin.layout.head.motion, TED4_MOTION_NONE);
     ball_train(&twin, BEGIN + BRANCH + 1);
     check_same(&t, &twin);
     ted4_trainer_finish(&twin);

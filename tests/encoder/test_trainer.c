@@ -57,9 +57,9 @@ static void test_learns(void **state)
     assert_true(psnr > 27);
     assert_true(info.n_anchors > 100);
     assert_true(info.n_anchors <= 260);
-    assert_true(info.motion == TED4_MOTION_BANK);
+    assert_int_equal(info.motion, TED4_MOTION_BANK);
     assert_true(info.activation);
-    assert_true(info.frames == FRAMES);
+    assert_int_equal(info.frames, FRAMES);
     ted4_trainer_finish(&t);
     free(f.bytes);
 }
@@ -145,7 +145,7 @@ static void test_checkpoints(void **state)
         ball_begin(&t, &o, &moving_scene, NULL);
         if (ted4_checkpoint_load(&t, stop_path(i)) != 0)
             fail_msg("%s", t.message.text);
-        assert_true(t.iteration == stops[i]);
+        assert_int_equal(t.iteration, stops[i]);
         f = ball_finish(&t);
         ted4_trainer_finish(&t);
         ball_check_same(&whole, &f);
@@ -171,8 +171,8 @@ static ball_file read_file(const char *path)
     FILE *in = fopen(path, "rb");
     ball_file f = { malloc(1 << 24), 0 };
 
-    assert_true(in != NULL);
-    assert_true(f.bytes != NULL);
+    assert_non_null(in);
+    assert_non_null(f.bytes);
     f.size = fread(f.bytes, 1, 1 << 24, in);
     fclose(in);
     return f;
@@ -406,8 +406,8 @@ static void check_nan(uint64_t iteration, int which)
                                : which == TED4_NETS_R ? "weight of bank is not finite at step"
                                                       : "weight of prior is not finite at step"));
     assert_true(t.iteration < iteration);
-    assert_true(t.watch.find.step == iteration);
-    assert_true(t.watch.state.rollbacks == 1);
+    assert_int_equal(t.watch.find.step, iteration);
+    assert_int_equal(t.watch.state.rollbacks, 1);
     ted4_trainer_finish(&t);
 }
 
@@ -436,8 +436,8 @@ static void test_nan_anchor(void **state)
     assert_int_equal(ted4_make_scene(&t, &s), -1);
     for (int i = 0; i < 100 && t.watch.state.rollbacks == 0; i++)
         assert_int_equal(ted4_trainer_step(&t), 0);
-    assert_true(t.watch.state.rollbacks == 1);
-    assert_true(strstr(t.message.text, "value of feature of anchor 7 is not finite") != NULL);
+    assert_int_equal(t.watch.state.rollbacks, 1);
+    assert_non_null(strstr(t.message.text, "value of feature of anchor 7 is not finite"));
     ted4_trainer_finish(&t);
 }
 

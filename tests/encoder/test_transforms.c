@@ -50,8 +50,8 @@ static void check_lenses(const tiny_folder *f, const char *top, const lens_case 
     for (size_t i = 0; i < d.n_pictures; i++) {
         const lens_case *k = &cases[atoi(strrchr(d.pictures[i].path, '/') + 1)];
         const ted4_camera *c = &d.pictures[i].camera;
-        assert_true(c->width == k->w);
-        assert_true(c->height == k->h);
+        assert_int_equal(c->width, k->w);
+        assert_int_equal(c->height, k->h);
         near(c->fx, k->fx);
         near(c->fy, k->fy);
         near(c->cx, k->cx);

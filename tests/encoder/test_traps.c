@@ -44,9 +44,9 @@ static void opacity_gradients(ted4_trainer *t, uint32_t frame)
     float *zero = calloc(s.n, sizeof *zero), *one = malloc(s.n * sizeof *one);
     uint8_t *seen = malloc(s.n);
 
-    assert_true(zero != NULL);
-    assert_true(one != NULL);
-    assert_true(seen != NULL);
+    assert_non_null(zero);
+    assert_non_null(one);
+    assert_non_null(seen);
     for (size_t i = 0; i < s.n; i++) {
         one[i] = 1.0f;
         seen[i] = 1;
@@ -186,7 +186,7 @@ static void test_symbols(void **state)
         low += back->symbol[TED4_FEATURE][i] == -32767;
         high += back->symbol[TED4_FEATURE][i] == 32767;
     }
-    assert_true(low + high == n);
+    assert_int_equal(low + high, n);
     assert_true(low > n / 4);
     assert_true(high > n / 4);
     ted4_scene_free(s);
@@ -215,7 +215,7 @@ static void test_units(void **state)
     assert_int_equal(ted4_trainer_init(&league, &far.options, &far.data, NULL), 0);
     assert_int_equal(metre.layout.head.exponent, league.layout.head.exponent + 12);
     assert_true(metre.cell == league.cell);
-    assert_true(metre.anchors.n == league.anchors.n);
+    assert_int_equal(metre.anchors.n, league.anchors.n);
     for (int row = 0; row < TED4_ROWS; row++)
         assert_memory_equal(metre.anchors.data[row], league.anchors.data[row],
                             metre.anchors.n_blocks * (size_t)metre.anchors.rows[row] * TED4_LANES *
@@ -277,7 +277,7 @@ static void test_scalings(void **state)
         if (ted4_make_scene(&t, &s) != 0)
             fail_msg("%s", t.message.text);
         assert_true(s->head.n_anchors > 10);
-        assert_true(s->head.scale_domain == (linear ? TED4_SCALE_LINEAR : TED4_SCALE_LOG2));
+        assert_int_equal(s->head.scale_domain, (linear ? TED4_SCALE_LINEAR : TED4_SCALE_LOG2));
         assert_int_equal(count_right(s, linear), linear ? 0 : 6 * s->head.n_anchors);
         ted4_scene_free(s);
         ted4_trainer_finish(&t);

@@ -49,10 +49,10 @@ static void test_scale(void **state)
     (void)state;
     assert_true(ted4_scale_usual(&s) == 0);
     assert_true(ted4_scale_take(&s, 0) == 0);
-    assert_true(s.n == 0);
+    assert_int_equal(s.n, 0);
     for (int i = 0; i < 100; i++)
         assert_true(ted4_scale_take(&s, i % 2 ? 3.0 : 1.0) == 0);
-    assert_true(s.n == 100);
+    assert_int_equal(s.n, 100);
     assert_true(s.peak == 0);
     assert_true(ted4_scale_usual(&s) > 0.7);
     assert_true(ted4_scale_usual(&s) < 4.3);
@@ -76,12 +76,12 @@ static void test_healthy(void **state)
     (void)state;
     begin_at(&t, 0);
     plain = ball_finish(&t);
-    assert_true(t.watch.state.rollbacks == 0);
+    assert_int_equal(t.watch.state.rollbacks, 0);
     assert_true(t.watch.state.factor == 1);
-    assert_true(t.watch.find.cause == NULL);
+    assert_null(t.watch.find.cause);
     for (int k = 0; k < TED4_TERMS; k++) {
         assert_true(t.watch.state.gradient[k].peak < 100);
-        assert_true((t.watch.norm[k] > 0) == (k != TED4_TERM_PRIOR && k != TED4_TERM_STEP));
+        assert_int_equal((t.watch.norm[k] > 0), (k != TED4_TERM_PRIOR && k != TED4_TERM_STEP));
     }
     ted4_trainer_finish(&t);
     begin_at(&t, 0);
@@ -117,7 +117,7 @@ static void expect_back(ted4_trainer *t, uint64_t to, const char *cause, const c
     assert_non_null(strstr(t->message.text, words));
     assert_non_null(strstr(t->message.text, term));
     assert_int_equal(t->iteration, to);
-    assert_true(t->watch.state.rollbacks == rollbacks + 1);
+    assert_int_equal(t->watch.state.rollbacks, rollbacks + 1);
     assert_true(t->watch.state.factor == 0.5 * factor);
     assert_true(!t->watch.found);
 }
@@ -174,7 +174,7 @@ static int look_again(ted4_trainer *t, size_t slot, int channel, size_t lane, fl
 static void expect_found(ted4_trainer *t, const char *cause, const char *term, size_t anchor)
 {
     assert_true(t->watch.found);
-    assert_true(t->watch.find.anchor == (int64_t)anchor);
+    assert_int_equal(t->watch.find.anchor, (int64_t)anchor);
     assert_string_equal(t->watch.find.cause, cause);
     assert_string_equal(t->watch.find.term, term);
 }
@@ -273,7 +273,7 @@ static void test_collapse(void **state)
             fail_msg("%d steps: %s", steps, t.message.text);
         assert_string_equal(t.watch.find.cause, "collapsed");
         assert_true(t.watch.find.anchor >= 0);
-        assert_true(t.iteration == KEPT);
+        assert_int_equal(t.iteration, KEPT);
         assert_true(ted4_watch_calm(&t));
         finish(&t);
     }
@@ -306,10 +306,10 @@ static void test_empty_space(void **state)
     begin_at(&t, KEPT + 1);
     t.watch.state.screen.level += 6; /* as if 64 times as many had been usual */
     ball_train(&t, KEPT + 32);
-    assert_true(t.watch.state.bad_screen == 31);
+    assert_int_equal(t.watch.state.bad_screen, 31);
     assert_true(!ted4_watch_calm(&t));
     ball_train(&t, KEPT + 34);
-    assert_true(t.watch.state.rollbacks == 0);
+    assert_int_equal(t.watch.state.rollbacks, 0);
     assert_true(ted4_watch_calm(&t));
     assert_true(t.watch.state.screen.n < 32);
     finish(&t);
@@ -362,7 +362,7 @@ static void test_other_layout(void **state)
     assert_int_equal(t.layout.head.motion, TED4_MOTION_NONE);
     t.net[t.layout.netr] = NAN;
     expect_back(&t, STAGE1, "not finite", "weight of heads", -1);
-    assert_true(t.layout.head.motion == TED4_MOTION_BANK);
+    assert_int_equal(t.layout.head.motion, TED4_MOTION_BANK);
     assert_true(!t.stage2);
     finish(&t);
 }
@@ -393,7 +393,7 @@ static void test_three_times(void **state)
     *ted4_cell(&t.anchors, TED4_ROW_VALUE, 9, 0) = NAN;
     assert_int_equal(ted4_trainer_step(&t), -1);
     assert_true(t.watch.found);
-    assert_true(t.iteration == KEPT + 5);
+    assert_int_equal(t.iteration, KEPT + 5);
     assert_non_null(strstr(t.message.text, "value of feature of anchor 9 is not finite at step "
                                            "255; learning rates were made smaller three times"));
     ted4_trainer_finish(&t);
@@ -441,9 +441,9 @@ static void test_resumed(void **state)
     ball_begin(&t, &o, &scene, NULL);
     if (ted4_checkpoint_load(&t, path) != 0)
         fail_msg("%s", t.message.text);
-    assert_true(t.iteration == 320);
-    assert_true(t.watch.state.rollbacks == 1);
-    assert_true(t.watch.good.bytes != NULL);
+    assert_int_equal(t.iteration, 320);
+    assert_int_equal(t.watch.state.rollbacks, 1);
+    assert_non_null(t.watch.good.bytes);
     again = fail_again(&t);
     ted4_trainer_finish(&t);
     ball_check_same(&whole, &again);

@@ -13,7 +13,7 @@ static inline void anchors_check(const ted4_anchors *a)
     assert_int_equal(a->n_blocks, (a->n + TED4_LANES - 1) / TED4_LANES);
     assert_true(a->n_blocks <= a->capacity);
     for (int k = 0; k < TED4_ROWS; k++) {
-        assert_true((uintptr_t)a->data[k] % 64 == 0);
+        assert_int_equal((uintptr_t)a->data[k] % 64, 0);
         for (size_t i = a->n; i < a->n_blocks * TED4_LANES; i++)
             for (int r = 0; r < a->rows[k]; r++)
                 assert_true(*ted4_cell(a, (ted4_row)k, i, r) == 0.0f);
@@ -23,7 +23,7 @@ static inline void anchors_check(const ted4_anchors *a)
 
         for (size_t j = 0; j < TED4_LANES; j++)
             want |= (uint32_t)(b * TED4_LANES + j < a->n) << j;
-        assert_true(ted4_block_lanes(a, b) == want);
+        assert_int_equal(ted4_block_lanes(a, b), want);
     }
 }
 

@@ -218,9 +218,9 @@ static inline void expect_log(const char *name, const char *want)
         const char *times = strstr(want, "\"ms\":"), *seconds = strstr(got, "\"seconds\":"),
                    *cpu = strstr(got, "\"cpu_seconds\":");
 
-        assert_true(times != NULL);
-        assert_true(seconds != NULL);
-        assert_true(cpu != NULL);
+        assert_non_null(times);
+        assert_non_null(seconds);
+        assert_non_null(cpu);
         assert_int_equal(strncmp(got, want, (size_t)(times - want)), 0);
         assert_true(strtod(seconds + 10, NULL) >= before);
         assert_true(strtod(cpu + 14, NULL) >= worked);

@@ -22,7 +22,7 @@ static inline int run_json(const char *program, const uint8_t *data, size_t size
     FILE *pipe;
     int status;
 
-    assert_true(write(fd, data, size) == (ssize_t)size);
+    assert_int_equal(write(fd, data, size), (ssize_t)size);
     close(fd);
     snprintf(command, sizeof command, "%s/%s %s 2>/dev/null", getenv("TED4_BUILD"), program, path);
     pipe = popen(command, "r");

@@ -26,9 +26,9 @@ static inline void keep(void *user, const ted4_finding *f)
     assert_true(all->n < MOST_FINDINGS);
     assert_non_null(f->id);
     assert_non_null(f->text);
-    assert_true(f->rule != NULL);
-    assert_true(strncmp(f->rule, "R-", 2) == 0);
-    assert_true(strlen(f->rule) == 9);
+    assert_non_null(f->rule);
+    assert_int_equal(strncmp(f->rule, "R-", 2), 0);
+    assert_int_equal(strlen(f->rule), 9);
     all->errors += f->severity == TED4_ERROR;
     assert_int_equal(f->severity == TED4_ERROR, strncmp(f->id, "adv.", 4) != 0);
     all->list[all->n++] = *f;

@@ -41,9 +41,9 @@ static void expect_range(const char *text, uint32_t first, uint32_t end, uint32_
     ted4_range r;
 
     assert_int_equal(ted4_range_parse(text, &r), 0);
-    assert_true(r.first == first);
-    assert_true(r.end == end);
-    assert_true(r.step == step);
+    assert_int_equal(r.first, first);
+    assert_int_equal(r.end, end);
+    assert_int_equal(r.step, step);
 }
 
 static void expect_time(const char *text, uint32_t num, uint32_t den)
@@ -51,8 +51,8 @@ static void expect_time(const char *text, uint32_t num, uint32_t den)
     ted4_time t;
 
     assert_int_equal(ted4_time_parse(text, &t), 0);
-    assert_true(t.num == num);
-    assert_true(t.den == den);
+    assert_int_equal(t.num, num);
+    assert_int_equal(t.den, den);
 }
 
 static void test_times(void **state)
@@ -83,33 +83,33 @@ static void test_times(void **state)
     for (size_t i = 0; i < sizeof bad_time / sizeof *bad_time; i++)
         assert_int_equal(ted4_time_parse(bad_time[i], &t), -1);
     t = ted4_time_of_frame(3, 10);
-    assert_true(t.num == 3);
-    assert_true(t.den == 9);
+    assert_int_equal(t.num, 3);
+    assert_int_equal(t.den, 9);
     t = ted4_time_of_frame(0, 1);
-    assert_true(t.num == 0);
-    assert_true(t.den == 1);
+    assert_int_equal(t.num, 0);
+    assert_int_equal(t.den, 1);
     t = ted4_time_of_frame(5, 1u << 24);
-    assert_true(t.num == 5);
-    assert_true(t.den == (1u << 24) - 1);
+    assert_int_equal(t.num, 5);
+    assert_int_equal(t.den, (1u << 24) - 1);
     t = ted4_time_of_frame(3u << 23, (1u << 25) + 1); /* 3 2^23 / 2^25 = 3 / 4 */
-    assert_true(t.num == 3);
-    assert_true(t.den == 4);
+    assert_int_equal(t.num, 3);
+    assert_int_equal(t.den, 4);
     t = ted4_time_of_frame(UINT32_MAX / 2, UINT32_MAX); /* (2^31 - 1) / (2^32 - 2) = 1 / 2 */
-    assert_true(t.num == 1);
-    assert_true(t.den == 2);
+    assert_int_equal(t.num, 1);
+    assert_int_equal(t.den, 2);
     t = ted4_time_of_frame(UINT32_MAX - 2,
                            UINT32_MAX); /* (2^32 - 3) / (2^32 - 2): 16777214.996 of 2^24 - 1 */
-    assert_true(t.num == (1u << 24) - 1);
-    assert_true(t.den == (1u << 24) - 1);
+    assert_int_equal(t.num, (1u << 24) - 1);
+    assert_int_equal(t.den, (1u << 24) - 1);
     t = ted4_time_of_frame(1000000001, UINT32_MAX); /* 3906249.77 of 2^24 - 1 */
-    assert_true(t.num == 3906250);
-    assert_true(t.den == (1u << 24) - 1);
+    assert_int_equal(t.num, 3906250);
+    assert_int_equal(t.den, (1u << 24) - 1);
     t = ted4_time_of_frame(29, (1u << 25) - 1); /* 14.5 and 5.5 of 2^24 - 1: to even */
-    assert_true(t.num == 14);
-    assert_true(t.den == (1u << 24) - 1);
+    assert_int_equal(t.num, 14);
+    assert_int_equal(t.den, (1u << 24) - 1);
     t = ted4_time_of_frame(11, (1u << 25) - 1);
-    assert_true(t.num == 6);
-    assert_true(t.den == (1u << 24) - 1);
+    assert_int_equal(t.num, 6);
+    assert_int_equal(t.den, (1u << 24) - 1);
 }
 
 static void test_numbers(void **state)
@@ -120,7 +120,7 @@ static void test_numbers(void **state)
 
     (void)state;
     assert_int_equal(ted4_arguments_number("9223372036854775807", 1, INT64_MAX, &n), 0);
-    assert_true(n == INT64_MAX);
+    assert_int_equal(n, INT64_MAX);
     assert_int_equal(ted4_arguments_number("10", 0, 10, &n), 0);
     assert_int_equal(n, 10);
     for (size_t i = 0; i < sizeof bad / sizeof *bad; i++)
@@ -159,8 +159,8 @@ static void test_table(void **state)
     assert_int_equal(ted4_arguments_next(&c, 7, argv, &value), 0);
     assert_string_equal(value, "y");
     assert_int_equal(ted4_arguments_next(&c, 7, argv, &value), TED4_ARGUMENTS_END);
-    assert_true(optind == 6);
-    assert_true(strcmp(argv[optind], "file") == 0);
+    assert_int_equal(optind, 6);
+    assert_int_equal(strcmp(argv[optind], "file"), 0);
 
     FILE *const f = tmpfile();
     assert_non_null(f);

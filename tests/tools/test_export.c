@@ -211,7 +211,7 @@ static void test_splat(void **state)
         while (i < N && float_at(p) != s.column[0][i])
             i++;
         assert_true(i < N);
-        assert_true(seen[i]++ == 0);
+        assert_int_equal(seen[i]++, 0);
         const double weight = (double)s.column[3][i] * (double)s.column[4][i] *
                               (double)s.column[5][i] * (double)s.column[10][i];
 

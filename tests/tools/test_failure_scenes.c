@@ -458,7 +458,7 @@ static void test_empty(void **state)
     }
     for (int i = 0; i < 500; i++) {
         const ted4_ray_point p = ted4_ray_point_at(&o, i);
-        assert_true(p.camera != o.n_train - 1);
+        assert_int_not_equal(p.camera, o.n_train - 1);
         assert_true(isfinite(p.point.x));
         assert_true(isfinite(p.point.y));
         assert_true(isfinite(p.point.z));

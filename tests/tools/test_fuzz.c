@@ -153,8 +153,8 @@ static void test_mutator(void **state)
     ted4_info info;
 
     (void)state;
-    assert_true(a != NULL);
-    assert_true(b != NULL);
+    assert_non_null(a);
+    assert_non_null(b);
     for (uint32_t i = 0; i < (uint32_t)(n_files * ROUNDS); i++) {
         const int n = (int)i % n_files;
         size_t size;
@@ -200,7 +200,7 @@ static void test_mend_ranges(void **state)
              j + TED4_FRAME_HASH_SIZE < ted4_chunk_size(data, size, at); j++)
             data[at + j] = (uint8_t)random_u32(&r);
         ted4_mend_chunks(data, size);
-        assert_true(decode(data, size, &info) != TED4_OK);
+        assert_int_not_equal(decode(data, size, &info), TED4_OK);
         size = ted4_mend_ranges(data, size, 2 * MAX_SIZE);
         assert_int_equal(decode(data, size, &info), TED4_OK);
     }

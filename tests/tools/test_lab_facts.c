@@ -178,11 +178,11 @@ static void test_views(void **state)
     assert_string_equal(tiny_load(&s.data, &f, &options), "");
     assert_int_equal(lab_measure_views(&s, tiny_path(&f, "strip.png"), &v), 0);
     assert_true(n > 1);
-    assert_true(v.views == n);
-    assert_true(v.exact == n - 1);
-    assert_true(v.refused == 0);
-    assert_true(v.worst_frame == frame);
-    assert_true(v.worst_camera == camera);
+    assert_int_equal(v.views, n);
+    assert_int_equal(v.exact, n - 1);
+    assert_int_equal(v.refused, 0);
+    assert_int_equal(v.worst_frame, frame);
+    assert_int_equal(v.worst_camera, camera);
     assert_true(fabs(v.worst - all_wrong) < 1e-9);
     assert_true(fabs(v.mean - (right * (double)(n - 1) + all_wrong) / (double)n) < 1e-9);
     assert_true(tiny_size(&f, "strip.png") > 100);
@@ -210,10 +210,10 @@ static void test_tracks(void **state)
     open_random(&s, NULL);
     assert_string_equal(tiny_load(&s.data, &f, &tiny_options), "");
     assert_int_equal(lab_make_tracks(&s, &t, &count), 0);
-    assert_true(t.n == 300);
-    assert_true(t.n_times == 5);
-    assert_true(count.gaussians == s.info.n_gaussians);
-    assert_true(count.refused == 0);
+    assert_int_equal(t.n, 300);
+    assert_int_equal(t.n_times, 5);
+    assert_int_equal(count.gaussians, s.info.n_gaussians);
+    assert_int_equal(count.refused, 0);
     first = malloc(s.info.n_gaussians * sizeof *first);
     assert_int_equal(ted4_recon_query(s.recon, &(ted4_query) { .num = 0, .den = 1 }, NULL, &g),
                      TED4_OK);
@@ -266,10 +266,10 @@ static void test_symbols(void **state)
     open_random(&s, push);
     assert_int_equal(lab_count_symbols(&s, &pushed), 0);
     close_session(&s);
-    assert_true(plain.symbols == pushed.symbols);
+    assert_int_equal(plain.symbols, pushed.symbols);
     assert_true(plain.symbols > 300 * (8 + 6 + 4));
-    assert_true(plain.contexts == 300 * 3);
-    assert_true(plain.steps == 300 * 5);
+    assert_int_equal(plain.contexts, 300 * 3);
+    assert_int_equal(plain.steps, 300 * 5);
     assert_int_equal(plain.symbol_ends, 0);
     assert_int_equal(pushed.symbol_ends, 2);
     assert_int_equal(pushed.escapes, plain.escapes + 5);
@@ -298,23 +298,23 @@ static void test_log(void **state)
     (void)state;
     tiny_text(&f, "a.jsonl", lines);
     assert_int_equal(lab_read_log(tiny_path(&f, "a.jsonl"), &l), 0);
-    assert_true(l.lines == 3);
-    assert_true(l.bad == 1);
+    assert_int_equal(l.lines, 3);
+    assert_int_equal(l.bad, 1);
     assert_true(l.loss_first == 0.5);
     assert_true(l.loss_last == 0.75);
-    assert_true(l.rollbacks == 2);
+    assert_int_equal(l.rollbacks, 2);
     assert_true(l.gradient == 8);
     assert_true(l.peak == 12);
-    assert_true(l.skipped == 4);
-    assert_true(l.clamped == 7);
+    assert_int_equal(l.skipped, 4);
+    assert_int_equal(l.clamped, 7);
     assert_string_equal(l.gradient_term, "heads");
     assert_string_equal(l.peak_term, "prior");
     tiny_text(&f, "b.jsonl", "{\"step\":250,\"loss\":0.5}\n");
     assert_int_equal(lab_read_log(tiny_path(&f, "b.jsonl"), &l), 0);
-    assert_true(l.lines == 1);
+    assert_int_equal(l.lines, 1);
     assert_true(l.gradient < 0);
     assert_true(l.peak < 0);
-    assert_true(l.rollbacks == 0);
+    assert_int_equal(l.rollbacks, 0);
     tiny_free(&f);
 }
 

@@ -101,7 +101,7 @@ static void test_sets(void **state)
         for (size_t k = 0; k < d.n_pictures; k++) {
             test += d.pictures[k].is_test;
             if (!d.pictures[k].is_test && sets[i].held > 0)
-                assert_true(d.pictures[k].frame % 8 != 4);
+                assert_int_not_equal(d.pictures[k].frame % 8, 4);
         }
         assert_int_equal(test, sets[i].n_test * sets[i].n_frames);
         assert_int_equal(d.n_pictures - test, sets[i].n_train * (sets[i].n_frames - sets[i].held));

@@ -129,8 +129,8 @@ static void stop_at(const moment *m, int signal, const ball_file *want)
     const char *words;
 
     if (status == 1000 + signal) { /* before training */
-        assert_true(m->written == 0);
-        assert_true(m->logged == NULL);
+        assert_int_equal(m->written, 0);
+        assert_null(m->logged);
         return;
     }
     assert_int_equal(status, 128 + signal);

@@ -174,9 +174,9 @@ static void test_show_and_quiet(void **state)
         if (quiet)
             assert_string_equal(said, "tool: trouble\n");
         else {
-            assert_true(count("tool: words\n") == 1);
+            assert_int_equal(count("tool: words\n"), 1);
             assert_true(count("tool: coding") >= 2);
-            assert_true(count("tool: trouble\n") == 1);
+            assert_int_equal(count("tool: trouble\n"), 1);
         }
     }
 }

@@ -67,8 +67,8 @@ static uint8_t *contents(const char *name, size_t *size)
 
     path_of(path, name);
     FILE *const f = fopen(path, "rb");
-    assert_true(f != NULL);
-    assert_true(data != NULL);
+    assert_non_null(f);
+    assert_non_null(data);
     *size = fread(data, 1, 1 << 22, f);
     fclose(f);
     return data;
@@ -391,8 +391,8 @@ static uint8_t *drawn(int i)
     double centre[3];
     ted4_view v;
 
-    assert_true(rgb != NULL);
-    assert_true(viewer != NULL);
+    assert_non_null(rgb);
+    assert_non_null(viewer);
     camera_make(&file[1].info, i, &v, centre);
     assert_int_equal(ted4_render_query(viewer, file[1].recon, &file[1].info, (uint32_t)i, VIEWS - 1,
                                        &v, NULL, rgb),
@@ -433,9 +433,9 @@ static void test_render(void **state)
         snprintf(name, sizeof name, "view_%d.png", i);
         path_of(path, name);
         assert_int_equal(ted4_image_read(path, &image, &m), 0);
-        assert_true(image.width == WIDTH);
-        assert_true(image.height == HEIGHT);
-        assert_true(image.channels == 3);
+        assert_int_equal(image.width, WIDTH);
+        assert_int_equal(image.height, HEIGHT);
+        assert_int_equal(image.channels, 3);
         assert_memory_equal(image.bytes, want, WIDTH * HEIGHT * 3);
         for (int k = 3; k < WIDTH * HEIGHT * 3; k++)
             colours += want[k] != want[k - 3];
@@ -525,8 +525,8 @@ static void test_eval(void **state)
     assert_true(result("render_fps") > 0.0);
     path_of(path, "sheet.png");
     assert_int_equal(ted4_image_probe(path, &sheet, &m), 0);
-    assert_true(sheet.width == 3 * WIDTH);
-    assert_true(sheet.height == 3 * HEIGHT);
+    assert_int_equal(sheet.width, 3 * WIDTH);
+    assert_int_equal(sheet.height, 3 * HEIGHT);
     assert_true(exists("pictures/truth/00002.png"));
     assert_true(exists("pictures/ours/00002.png"));
     assert_true(exists("pictures/error/00002.png"));
