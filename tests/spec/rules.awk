@@ -14,7 +14,8 @@ BEGIN {
 function heading() {
     print "# Annex G (informative): index of rules"
     print ""
-    print "Made from the text by `make spec-annexes`. \"stream\" rules are those that a byte string can break; the others bind whom the column names. The word is the strongest of BCP 14 in the rule."
+    print "Made from the text by `make spec-annexes`. \"stream\" rules are those that a byte string can"
+    print "break; the others bind whom the column names. The word is the strongest of BCP 14 in the rule."
     print ""
     print "| rule | section | binds | word | errors |"
     print "|---|---|---|---|---|"
