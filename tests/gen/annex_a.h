@@ -28,10 +28,11 @@ static inline void annex_a_hash(FILE *out, const struct table *t)
 
 static inline void annex_a(FILE *out)
 {
-    fprintf(out, "# Annex A (normative): tables\n\nIn row order; i counts from 0. sigma = 2^((g - "
-                 "64) / 16). `rne` is taken of the exact real number. The SHA-256 is "
-                 "that of the entries as 32-bit little-endian integers, two's complement.\n\nWhere "
-                 "a formula and a printed entry differ, the entry counts.\n");
+    fprintf(out, "# Annex A (normative): tables\n\n"
+                 "The entries are printed in row order; i counts from 0.\n"
+                 "sigma = 2^((g - 64) / 16). `rne` is taken of the exact real number. The SHA-256\n"
+                 "is that of the entries as 32-bit little-endian integers in two's complement.\n\n"
+                 "Where a formula and a printed entry differ, the entry counts.\n");
     for (int i = 0; i < N_ANNEX; i++) {
         const struct table *t = &table_list[i];
         const int hex = t->entry == table_step;

@@ -118,9 +118,9 @@ static inline void annex_b_bytes(FILE *out, const uint8_t *data, size_t size)
     const ted4_options o = { .trace = annex_b_element, .trace_user = &d };
     ted4_scene *s;
 
-    fprintf(out, "Offsets are decimal, bytes hexadecimal; \"n x\" stands for n entries that are "
-                 "the same.\n\n"
-                 "| offset | bytes | element | value | note |\n|---|---|---|---|---|\n");
+    fprintf(out,
+            "Offsets are decimal and bytes hexadecimal; \"n x\" stands for n equal entries.\n\n"
+            "| offset | bytes | element | value | note |\n|---|---|---|---|---|\n");
     if (ted4_decode(data, size, &o, &s, NULL) != TED4_OK)
         abort();
     annex_b_row(&d, size);
@@ -344,9 +344,11 @@ static inline void annex_b_file(FILE *out, int section, const uint8_t *data, siz
     b.t.model.tile_done = annex_b_tile_done;
     b.t.model.user = &b;
     fprintf(out,
-            "\n### B.%d.2 Substreams\n\nEach has one lane. States are hexadecimal; a state below "
-            "10000 takes the next word. The last state is 00010000 in each. The row of an escape "
-            "covers all its bits.\n",
+            "\n"
+            "### B.%d.2 Substreams\n\n"
+            "Each substream has one lane. States are hexadecimal; a state below 10000 takes\n"
+            "the next word. The last state of each substream is 00010000. The row of an\n"
+            "escape covers all its bits.\n",
             section);
     spec_model_decode(&b.t.model, data, size);
     if (b.t.model.v.id != NULL)
@@ -381,31 +383,36 @@ static inline void annex_b(FILE *out)
     uint8_t *data = annex_b_encode(annex_b_smallest(), &size);
 
     fprintf(out,
-            "# Annex B (informative): worked examples\n\nMade by `make spec-annexes`: the bytes by "
-            "the reference encoder, everything else by the code that this specification prints. A "
-            "test proves that this text is "
-            "what they give.\n\n## B.1 The smallest file\n\nOne anchor, one Gaussian, a feature of "
-            "one component, no motion, no masks, all weights and biases 0. %zu bytes; no valid "
-            "file has fewer: HEAD cannot "
-            "be shorter than with one slice; 92 and 88 bytes of values cannot be coded in fewer "
-            "than 11 each (a zlib stream has 6 bytes around its blocks, and a literal, a match and "
-            "an end take 34 bits); three "
-            "substreams need a state each.\n\nWith all outputs of the hyperprior 0, every mu is 0, "
-            "every sigma index 64 (sigma is one step), every step index 128 (q = Q0). The Gaussian "
-            "has opacity 0, as the heads are 0 too: smallest is not prettiest.\n",
+            "# Annex B (informative): worked examples\n\n"
+            "This annex is made by `make spec-annexes`: the bytes come from the reference\n"
+            "encoder, and everything else from the code that this specification prints. A\n"
+            "test proves that this text is what they give.\n\n"
+            "## B.1 The smallest file\n\n"
+            "The file has one anchor, one Gaussian, a feature of one component, no motion\n"
+            "and no masks, and all its weights and biases are 0. It has %zu bytes, and no\n"
+            "valid file has fewer: HEAD is shortest with one slice; 92 and 88 bytes of\n"
+            "values cannot be coded in fewer than 11 bytes each (a zlib stream has 6 bytes\n"
+            "around its blocks, and a literal, a match and an end take 34 bits); three\n"
+            "substreams need a state each.\n\n"
+            "As all outputs of the hyperprior are 0, every mu is 0, every sigma index is 64\n"
+            "(sigma is one step), and every step index is 128 (q = Q0). The Gaussian has\n"
+            "opacity 0, as the heads are 0 too: the smallest file shows nothing.\n",
             size);
     annex_b_file(out, 1, data, size, 1);
     free(data);
     data = annex_b_encode(annex_b_dynamic(), &size);
     fprintf(out,
-            "\n## B.2 A dynamic anchor\n\nTwo anchors with two offsets each. Anchor 0 stands still "
-            "and keeps one offset; anchor 1 moves, keeps both, and comes and goes (tau in B.2.3: "
-            "a_s, log2 b_s, a_f, log2 b_f). The second slice of the feature "
-            "is predicted from the first; feature 1 of anchor 0 is far from its mean and needs an "
-            "escape. %zu bytes, most of them weights that are 0.\n\nAt t = 1/2 the bank gives z = "
-            "-1 + 1/2 (1 - (-1)) = 0 (11.2), so F_deform sees "
-            "w z = 0 and nothing moves; at t = 1 it gives z = 1, w = F_project(phi) = 0.5 + 0.5 = "
-            "1 and F_deform adds 0.25 to x in normalised space, 0.5 in the world, as 2^e = 2.\n",
+            "\n"
+            "## B.2 A dynamic anchor\n\n"
+            "The file has two anchors with two offsets each. Anchor 0 stands still and\n"
+            "keeps one offset; anchor 1 moves, keeps both, and comes and goes (tau in B.2.3\n"
+            "holds a_s, log2 b_s, a_f, log2 b_f). The second slice of the feature is\n"
+            "predicted from the first; feature 1 of anchor 0 is far from its mean and needs\n"
+            "an escape. The file has %zu bytes, most of them weights that are 0.\n\n"
+            "At t = 1/2 the bank gives z = -1 + 1/2 (1 - (-1)) = 0 (11.2), so F_deform sees\n"
+            "w z = 0 and nothing moves; at t = 1 it gives z = 1, so w = F_project(phi) =\n"
+            "0.5 + 0.5 = 1, and F_deform adds 0.25 to x in normalised space, which is 0.5\n"
+            "in the world, as 2^e = 2.\n",
             size);
     annex_b_file(out, 2, data, size, 5);
     free(data);

@@ -194,19 +194,20 @@ static inline void annex_h_rest(FILE *out)
 
 static inline void annex_h(FILE *out)
 {
-    fprintf(
-        out,
-        "# Annex H (normative): limits in one place\n\nEvery number that is bounded, and where. "
-        "\"Level\" means that the level bounds it further (13.1). "
-        "Made by `make spec-annexes`.\n\n| quantity | least | most | rule |\n|---|---|---|---|\n");
+    fprintf(out, "# Annex H (normative): limits in one place\n\n"
+                 "This annex lists every number that is bounded, and where it is bounded.\n"
+                 "\"Level\" means that the level bounds the number further (13.1). The annex is\n"
+                 "made by `make spec-annexes`.\n\n"
+                 "| quantity | least | most | rule |\n|---|---|---|---|\n");
     annex_h_file(out);
     annex_h_scene(out);
     annex_h_networks(out);
     annex_h_symbols(out);
     annex_h_rest(out);
-    fprintf(out, "\nLimits that a decoder may set for itself are those on memory (`limit.memory`) "
-                 "and work (`limit.work`); anything else it must take up to its level "
-                 "(R-DEC-007).\n");
+    fprintf(out, "\n"
+                 "The limits that a decoder may set for itself are those on memory\n"
+                 "(`limit.memory`) and on work (`limit.work`); anything else it must take up to\n"
+                 "its level (R-DEC-007).\n");
 }
 
 #endif
