@@ -10,11 +10,20 @@
 #include "tool/run_log.h"
 #include "tool/threads.h"
 #include "tool/verify.h"
+#include "train/densify/densify.h"
+#include "train/model/header_from_options.h"
+#include "train/search/branch.h"
 #include "train/search/model_search.h"
+#include "train/search/prior_bits.h"
+#include "train/search/rd_prune.h"
+#include "train/state/picture.h"
 #include "train/step/checkpoint.h"
 #include "train/step/export_scene.h"
 #include "train/raster/adjoint.h"
 #include "train/densify/mv_seed.h"
+#include "train/step/stages.h"
+#include "train/step/trainer_init.h"
+#include "train/step/step.h"
 #include "write/encode.h"
 
 /* In about the order in which a run comes to them. */
@@ -106,7 +115,7 @@ BETWEEN(PHASE_SEED, int, ted4_trainer_init,
         (ted4_trainer * t, const ted4_train_options *o, ted4_dataset *d, const ted4_parallel *p),
         (t, o, d, p))
 BETWEEN(PHASE_SEED, int, ted4_trainer_restart, (ted4_trainer * t, const ted4_header *h), (t, h))
-BETWEEN(current == PHASE_PROBE ? PHASE_PROBE : PHASE_STEPS, int, ted4_trainer_step,
+BETWEEN(current == PHASE_PROBE ? PHASE_PROBE : PHASE_STEPS, int, ted4_gradient_step,
         (ted4_trainer * t), (t))
 BETWEEN(PHASE_PROBE, int, ted4_branch_run, (ted4_trainer * t, int n, double *loss), (t, n, loss))
 BETWEEN(PHASE_STATES, int, ted4_snapshot_take, (ted4_trainer * t, ted4_snapshot *s), (t, s))
@@ -114,7 +123,7 @@ BETWEEN(PHASE_STATES, int, ted4_snapshot_restore, (ted4_trainer * t, const ted4_
         (t, s))
 BETWEEN(PHASE_STATES, int, ted4_state_take, (ted4_trainer * t, ted4_snapshot *s), (t, s))
 BETWEEN(PHASE_STATES, int, ted4_state_restore, (ted4_trainer * t, const ted4_snapshot *s), (t, s))
-BETWEEN(PHASE_ADJUST, int, ted4_densify_adjust, (ted4_trainer * t), (t))
+BETWEEN(PHASE_ADJUST, int, ted4_densify_adjust, (ted4_trainer * t, size_t room), (t, room))
 BETWEEN(PHASE_SPROUT, int, ted4_sprout, (ted4_trainer * t), (t))
 BETWEEN(PHASE_STAGE, int, ted4_activation_begin, (ted4_trainer * t), (t))
 BETWEEN(PHASE_STAGE, int, ted4_stage2_begin, (ted4_trainer * t), (t))

@@ -3,7 +3,13 @@
 #include "train_parts.h"
 
 #include "measure.h"
+#include "train/densify/densify.h"
 #include "train/raster/adjoint.h"
+#include "train/state/visible_blocks.h"
+#include "train/step/apply_gradients.h"
+#include "train/step/events.h"
+#include "train/step/loss_terms.h"
+#include "train/train.h"
 
 #define AS_TEXT(name, text) text,
 const char *const part_name[N_PARTS] = { PARTS(AS_TEXT) };

@@ -3,6 +3,7 @@
 #include "train_record.h"
 
 #include "measure.h"
+#include "train/step/trainer_init.h"
 
 void record_init(train_record *r, int steps, size_t members)
 {

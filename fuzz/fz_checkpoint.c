@@ -11,6 +11,8 @@
 #include "harness.h"
 #include "scene_folder.h"
 #include "train/step/checkpoint.h"
+#include "train/step/trainer_init.h"
+#include "train/train.h"
 #include "write/coder_count.h"
 
 enum { BASES = 2, CUT = 255, STEPS_1 = 2, STEPS_2 = 4 };

@@ -4,7 +4,12 @@
 #include <math.h>
 
 #include "stop.h"
+#include "train/search/file_cost.h"
 #include "train/search/model_search.h"
+#include "train/search/prior_bits.h"
+#include "train/search/rd_prune.h"
+#include "train/search/static_test.h"
+#include "train/step/events.h"
 #include "training.h"
 
 /* The search for smaller models looks at so many and trains with this share of its budget at least,
@@ -15,9 +20,7 @@
 
 static double search_steps(const ted4_trainer *t)
 {
-    const double budget =
-        fmax(ted4_capacity_budget(t) - ted4_capacity_refine_steps(t) - ted4_capacity_prune_steps(t),
-             0.0);
+    const double budget = fmax(ted4_capacity_search_steps(t), 0.0);
     const double least = fmin(LOOKS * ted4_capacity_cost_steps(t) + TRAINED * budget, budget);
 
     return least + OFTEN * (budget - least);

@@ -5,6 +5,7 @@
 
 #include <stdlib.h>
 
+#include "train/state/picture.h"
 #include "train/step/checkpoint.h"
 #include "train/step/export_scene.h"
 #include "write/deflate.h"

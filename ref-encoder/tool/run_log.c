@@ -12,9 +12,11 @@
 #include <time.h>
 #include <unistd.h>
 
-#include "train/search/model_search.h"
+#include "train/search/candidates.h"
+#include "train/state/anchor_masks.h"
+#include "train/step/monitor.h"
 #include "train/step/saturation.h"
-#include "train/step/export_scene.h"
+#include "train/step/scale.h"
 
 /* Written and read again. */
 #define CPU_SECONDS "\"cpu_seconds\":"

@@ -15,6 +15,8 @@
 #include "stop.h"
 #include "ted4.h"
 #include "tool/cli.h"
+#include "train/model/header_from_options.h"
+#include "train/step/trainer_init.h"
 #include "training.h"
 
 static int complain(ted4_teller *teller, const char *text)

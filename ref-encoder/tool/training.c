@@ -10,6 +10,9 @@
 #include "stop.h"
 #include "train/step/checkpoint.h"
 #include "train/step/export_scene.h"
+#include "train/step/monitor.h"
+#include "train/step/stages.h"
+#include "train/train.h"
 #include "why.h"
 #include "write/encode.h"
 

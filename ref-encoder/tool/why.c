@@ -6,8 +6,8 @@
 #include <stdlib.h>
 
 #include "data/flicker.h"
-#include "train/search/model_search.h"
-#include "train/step/export_scene.h"
+#include "train/search/candidates.h"
+#include "train/state/anchor_masks.h"
 
 static void put_time(FILE *f, const ted4_trainer *t)
 {

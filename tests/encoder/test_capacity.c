@@ -5,8 +5,15 @@
 #include "test.h"
 #include "ball_trainer.h"
 #include "odd_threads.h"
+#include "train/search/file_cost.h"
 #include "train/search/model_search.h"
+#include "train/search/prior_bits.h"
+#include "train/search/rd_prune.h"
+#include "train/state/picture.h"
 #include "train/step/checkpoint.h"
+#include "train/step/events.h"
+#include "train/step/export_scene.h"
+#include "train/train.h"
 
 enum { STAGE1 = 400, STAGE2 = 1400, TOTAL = STAGE1 + STAGE2, FRAMES = 5 };
 

@@ -7,7 +7,11 @@
 #include "ball_scene.h"
 #include "odd_threads.h"
 #include "train/math/random.h"
+#include "train/state/picture.h"
 #include "train/state/trainer.h"
+#include "train/step/apply_gradients.h"
+#include "train/step/trainer_init.h"
+#include "train/train.h"
 
 enum { N = TED4_COLOUR_VALUES, MOST = 40000, CAMERAS = 4 };
 

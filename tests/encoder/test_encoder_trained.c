@@ -5,6 +5,7 @@
 #include "ball_trainer.h"
 #include "encoder_contract.h"
 #include "tool/threads.h"
+#include "train/step/export_scene.h"
 
 static void trained(void **state)
 {

@@ -11,6 +11,7 @@
 #include "loss_ref.h"
 #include "train/loss/camera_colour.h"
 #include "train/loss/loss.h"
+#include "train/step/apply_gradients.h"
 
 enum { MOST = 64 * 64 };
 

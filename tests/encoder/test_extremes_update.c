@@ -8,7 +8,11 @@
 #include "test.h"
 #include "cloud_case.h"
 #include "train/math/adam.h"
+#include "train/state/visible_blocks.h"
+#include "train/step/apply_gradients.h"
+#include "train/step/loss_terms.h"
 #include "train/step/saturation.h"
+#include "train/step/trainer_init.h"
 
 /* ---- Adam ---- */
 

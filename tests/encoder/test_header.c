@@ -4,6 +4,8 @@
 #include "test.h"
 #include "cloud_case.h"
 #include "data/frame_rate.h"
+#include "train/model/header_from_options.h"
+#include "train/step/trainer_init.h"
 
 /* ---- frames a second ---- */
 

@@ -3,6 +3,7 @@
  * SPDX-License-Identifier: BSD-2-Clause */
 #include "test.h"
 #include "ball_group.h"
+#include "train/state/anchor_appearance.h"
 
 enum { STEPS = 60, DIRECTIONS = 8 };
 

@@ -5,6 +5,8 @@
 #include "test.h"
 #include "ball_trainer.h"
 #include "train/step/checkpoint.h"
+#include "train/step/monitor.h"
+#include "train/train.h"
 
 /* A value goes bad between two checks: no checkpoint is made of it, the last one is untouched and
  * leads where it led. */

@@ -8,6 +8,8 @@
 #include "ball_group.h"
 #include "cloud_case.h"
 #include "train/densify/short_lived.h"
+#include "train/step/stages.h"
+#include "train/step/trainer_init.h"
 
 enum {
     STAGE1 = 400,

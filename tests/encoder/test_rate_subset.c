@@ -8,6 +8,10 @@
 #include "cloud_case.h"
 #include "odd_threads.h"
 #include "tool/threads.h"
+#include "train/state/visible_blocks.h"
+#include "train/step/loss_terms.h"
+#include "train/step/stages.h"
+#include "train/step/trainer_init.h"
 
 /* 216 anchors in 7 blocks, of which a share of 0.15 is 2. */
 enum { BLOCKS = (CLOUD_POINTS + TED4_LANES - 1) / TED4_LANES, CHOSEN = 2, KEYS = 700 };

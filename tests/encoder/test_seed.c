@@ -6,6 +6,7 @@
 #include "train/math/voxel_set.h"
 #include "train/model/init.h"
 #include "train/model/normalise.h"
+#include "train/step/trainer_init.h"
 
 static cloud_case cloud;
 

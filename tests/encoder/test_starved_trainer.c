@@ -7,6 +7,9 @@
 #include "cloud_case.h"
 #include "data/image_cache.h"
 #include "starving.h"
+#include "train/state/picture.h"
+#include "train/step/stages.h"
+#include "train/step/trainer_init.h"
 
 static cloud_case cloud;
 static ted4_trainer trainer;

@@ -5,7 +5,9 @@
 
 #include "test.h"
 #include "ball_trainer.h"
-#include "train/search/model_search.h"
+#include "train/search/candidates.h"
+#include "train/search/file_cost.h"
+#include "train/state/picture.h"
 #include "train/step/checkpoint.h"
 #include "train/resize/feature_pca.h"
 #include "train/resize/resize.h"

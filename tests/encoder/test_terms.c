@@ -6,6 +6,7 @@
 #include "test.h"
 #include "ball_group.h"
 #include "train/step/checkpoint.h"
+#include "train/step/stages.h"
 
 enum { STAGE1 = 150, STAGE2 = 200 };
 

@@ -4,6 +4,7 @@
 #include "test.h"
 #include "ball_trainer.h"
 #include "train/step/checkpoint.h"
+#include "train/train.h"
 
 /* A branch of 200 steps, from a quarter of stage 1 on. */
 enum { STAGE1 = 2000, BEGIN = STAGE1 / 4, BRANCH = 200, FRAMES = 5 };

@@ -7,7 +7,11 @@
 #include "test.h"
 #include "ball_decoded.h"
 #include "tool/threads.h"
+#include "train/state/picture.h"
+#include "train/state/visible_blocks.h"
 #include "train/step/checkpoint.h"
+#include "train/step/export_scene.h"
+#include "train/train.h"
 
 enum { STAGE1 = 400, STAGE2 = 250, INTEGER_FROM = STAGE1 + 200, FRAMES = 5 };
 

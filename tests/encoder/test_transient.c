@@ -7,6 +7,7 @@
 #include "test.h"
 #include "ball_scene.h"
 #include "train/densify/short_lived.h"
+#include "train/step/trainer_init.h"
 
 enum { FRAMES = 5 };
 

@@ -18,6 +18,10 @@
 #include "norm/half.h"
 #include "norm/scene.h"
 #include "norm/tables.h"
+#include "train/state/visible_blocks.h"
+#include "train/step/export_scene.h"
+#include "train/step/stages.h"
+#include "train/step/trainer_init.h"
 
 static cloud_case cloud;
 

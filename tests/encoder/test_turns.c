@@ -11,6 +11,7 @@
 #include "ball_missing.h"
 #include "train/densify/mv_seed.h"
 #include "train/densify/turns.h"
+#include "train/step/events.h"
 
 /* The blue ball moves by 0.3 of its radius a frame. */
 enum { SPEED = 2, STEPS = 80 };

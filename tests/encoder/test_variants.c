@@ -8,6 +8,8 @@
 #include "ball_decoded.h"
 #include "ball_group.h"
 #include "norm/scene.h"
+#include "train/step/export_scene.h"
+#include "train/step/stages.h"
 
 enum { MOST_OPTIONS = 2 };
 

@@ -7,6 +7,11 @@
 #include "ball_trainer.h"
 #include "train/step/checkpoint.h"
 #include "train/step/grad_norm.h"
+#include "train/step/monitor.h"
+#include "train/step/rollback.h"
+#include "train/step/scale.h"
+#include "train/step/schedule.h"
+#include "train/train.h"
 
 /* States are kept at the beginning, at 250 and at the end of stage 1. */
 enum { STAGE1 = 400, INTEGER_FROM = 600, KEPT = 250, FRAMES = 5 };

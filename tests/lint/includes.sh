@@ -1,6 +1,15 @@
 #!/bin/sh
-# Who may include whom (a folder may always include itself). System headers are not looked at.
-allow='
+# Who may include whom (a folder may always include itself, and what lies in itself by its bare
+# name). Folders are named from ref-decoder or ref-encoder. System headers are not looked at.
+rooms_1="train/math"
+rooms_2="$rooms_1 train/model"
+rooms_3="$rooms_2 train/splat train/raster train/loss train/rate"
+rooms_4="$rooms_3 train/state"
+rooms_5="$rooms_4 train/densify train/resize"
+rooms_6="$rooms_5 train/step"
+rooms_7="$rooms_6 train/search"
+training="$rooms_7 train/train.h"
+allow="
 ref-decoder                 base
 ref-decoder/base            base ted4.h
 ref-decoder/norm            base norm ted4.h
@@ -14,15 +23,28 @@ ref-encoder/kernel          base render kernel
 ref-encoder/data            base math data
 ref-encoder/eval            base eval
 ref-encoder/write           base norm math write kernel ted4.h
-ref-encoder/train           base norm recon render math data kernel train write ted4.h
-ref-encoder/tool            base norm render math data eval kernel train write tool ted4.h
-'
+ref-encoder/train/math      base norm recon render math
+ref-encoder/train/model     base norm recon render math data kernel write $rooms_1 ted4.h
+ref-encoder/train/splat     base norm recon render math kernel $rooms_2
+ref-encoder/train/raster    base norm recon render math $rooms_2
+ref-encoder/train/loss      base norm recon render math data $rooms_2
+ref-encoder/train/rate      base norm recon render math kernel $rooms_2
+ref-encoder/train/state     base norm recon data $rooms_3
+ref-encoder/train/densify   math $rooms_4
+ref-encoder/train/resize    norm math $rooms_4
+ref-encoder/train/step      base norm recon math write $rooms_5
+ref-encoder/train/search    math write $rooms_6
+ref-encoder/train           $training
+ref-encoder/tool            base norm render math data eval kernel write tool $training ted4.h
+"
 bad=0
 for f in $(find ref-decoder ref-encoder -name '*.[ch]'); do
     folder=$(dirname "$f")
     may=$(echo "$allow" | awk -v d="$folder" '$1 == d { $1 = ""; print }')
     for i in $(sed -n 's/^#include "\(.*\)"/\1/p' "$f"); do
         case $i in
+        train/*/*) to=${i%/*} ;;
+        train/*) to=$i ;;
         */*) to=${i%%/*} ;;
         *) [ -f "$folder/$i" ] && continue; to=$i ;;
         esac

@@ -7,6 +7,8 @@
 #include "test.h"
 #include "train/step/export_scene.h"
 #include "train/state/trainer.h"
+#include "train/step/trainer_init.h"
+#include "train/train.h"
 #include "write/encode.h"
 
 typedef struct {

@@ -7,6 +7,7 @@
 #include "mishap.h"
 #include "tool/run_log.h"
 #include "train/step/checkpoint.h"
+#include "train/step/monitor.h"
 
 static double number(const json_t *line, const char *name)
 {

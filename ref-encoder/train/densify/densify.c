@@ -1,7 +1,7 @@
-/* densify.c - where anchors are missing and where they are not needed. Source: paper, "Preliminary:
- * ScaffoldGS", with the opacity taken after activation ("Progressive 3D-to-4D Anchor
- * Transformation"); annex D.1. Candidates in canonical space.
+/* densify.c - see densify.h. Candidates in canonical space.
  * SPDX-License-Identifier: BSD-2-Clause */
+#include "densify.h"
+
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -10,7 +10,6 @@
 #include "train/model/formulas.h"
 #include "math/elementary.h"
 #include "train/math/random.h"
-#include "train/state/trainer.h"
 
 enum { DEPTHS = 3 };
 #define CELL_RATIO     0.25 /* voxel of depth i: cell 4^-i */
@@ -184,10 +183,9 @@ static int add_anchor(ted4_trainer *t, const candidate *c)
     return 0;
 }
 
-static int grow(ted4_trainer *t)
+static int grow(ted4_trainer *t, size_t room)
 {
     const size_t n = t->anchors.n, K = t->layout.head.n_offsets;
-    const size_t room = ted4_schedule_room(t);
     candidate *c = malloc((DEPTHS * n * K + 1) * sizeof *c);
     ted4_cells set;
     size_t found = 0;
@@ -280,11 +278,11 @@ static int prune(ted4_trainer *t, size_t n_old)
     return bad ? ted4_trainer_fail(t, "no memory to prune anchors") : 0;
 }
 
-int ted4_densify_adjust(ted4_trainer *t)
+int ted4_densify_adjust(ted4_trainer *t, size_t room)
 {
     const size_t n = t->anchors.n;
 
-    if (grow(t) != 0 || prune(t, n) != 0)
+    if (grow(t, room) != 0 || prune(t, n) != 0)
         return -1;
     return ted4_anchors_sort(&t->anchors) != 0 ? ted4_trainer_fail(t, "no memory to sort anchors")
                                                : 0;

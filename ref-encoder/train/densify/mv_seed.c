@@ -11,6 +11,7 @@
 #include "train/math/random.h"
 #include "photo_votes.h"
 #include "train/model/normalise.h"
+#include "train/state/anchor_appearance.h"
 
 int ted4_sprout_reach(const ted4_trainer *t)
 {

@@ -8,6 +8,7 @@
 
 #include "math/elementary.h"
 #include "train/model/normalise.h"
+#include "train/state/picture.h"
 
 /* Share of the cameras that must agree, and how far from the best a time may be to count. */
 #define MUST_AGREE    0.5f

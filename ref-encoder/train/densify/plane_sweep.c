@@ -9,6 +9,7 @@
 #include "photo_votes.h"
 #include "train/model/normalise.h"
 #include "mv_seed.h"
+#include "train/state/picture.h"
 
 /* A pixel misses something when its error, averaged over the channels, is this many of 255; one
  * that confirms it needs half of that. */

@@ -6,7 +6,6 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "train/math/adam.h"
 #include "camera_colour_job.h"
 
 enum { BAND = TED4_COLOUR_BAND };
@@ -249,17 +248,4 @@ void ted4_colour_regauge(ted4_colour *c, const double *gain)
         }
     for (int k = 0; k < N; k++)
         c->middle[k] = (float)middle_of(c, k);
-}
-
-void ted4_colour_update(ted4_colour *c, uint32_t camera, const ted4_colour_map gradient,
-                        double rate, double penalty)
-{
-    float *x = c->value[camera];
-    float g[N];
-
-    for (int k = 0; k < N; k++)
-        g[k] = gradient[k] + (float)(2.0 * penalty) * x[k];
-    ted4_adam(x, c->m[camera], c->v[camera], g, N, (float)rate,
-              ted4_adam_bias_make(++c->steps[camera]));
-    ted4_colour_centre(c);
 }

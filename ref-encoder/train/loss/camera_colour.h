@@ -76,8 +76,4 @@ const uint8_t *ted4_colour_undo(ted4_colour *c, uint32_t camera, const uint8_t *
 void ted4_colour_backward(ted4_colour *c, uint32_t camera, const float *image, size_t pixels,
                           const ted4_parallel *p, float *d_image, ted4_colour_map gradient);
 
-/* One step of Adam for this camera on L + penalty (sum of A^2 and v^2), then ted4_colour_centre. */
-void ted4_colour_update(ted4_colour *c, uint32_t camera, const ted4_colour_map gradient,
-                        double rate, double penalty);
-
 #endif

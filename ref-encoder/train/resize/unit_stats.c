@@ -7,12 +7,13 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "train/state/anchor_masks.h"
 #include "train/state/view_subset.h"
-#include "train/step/export_scene.h"
 #include "math/lane_sum.h"
 #include "norm/sine.h"
 #include "train/math/random.h"
 #include "train/model/normalise.h"
+#include "train/state/visible_blocks.h"
 
 /* Training pictures looked at; anchors drawn for each, of which those in view count. */
 enum { PICTURES = 32, DRAWS = 192, MOST = 640 };

@@ -1,11 +1,13 @@
-/* candidates.c - the ways to a smaller model: see model_search.h.
+/* candidates.c - the ways to a smaller model: see candidates.h.
  * SPDX-License-Identifier: BSD-2-Clause */
-#include "model_search.h"
+#include "candidates.h"
 
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
+#include "sensitivity.h"
+#include "train/model/header_from_options.h"
 #include "train/resize/unit_stats.h"
 #include "math/elementary.h"
 #include "train/resize/resize.h"

@@ -1,10 +1,11 @@
 /* file_cost.c - the cost of a model, by making its file and drawing pictures from it: see
- * model_search.h.
+ * file_cost.h.
  * SPDX-License-Identifier: BSD-2-Clause */
-#include "model_search.h"
+#include "file_cost.h"
 
 #include <stdlib.h>
 
+#include "train/state/picture.h"
 #include "train/step/checkpoint.h"
 #include "train/state/view_subset.h"
 #include "train/step/export_scene.h"

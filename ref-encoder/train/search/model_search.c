@@ -7,6 +7,12 @@
 #include <math.h>
 #include <stdlib.h>
 
+#include "branch.h"
+#include "candidates.h"
+#include "file_cost.h"
+#include "prior_bits.h"
+#include "rd_prune.h"
+#include "sensitivity.h"
 #include "train/step/checkpoint.h"
 
 /* Share of stage 2 before: values have begun to be cheap, and the prior knows them. Measured on
@@ -35,8 +41,7 @@ typedef struct {
     } sight[TED4_MOVES]; /* the next trial of each move, by its looks; to = -1: there is none */
 } search;
 
-/* Training steps that the search may take: what the end of stage 2 leaves it. */
-static double search_budget(const ted4_trainer *t)
+double ted4_capacity_search_steps(const ted4_trainer *t)
 {
     return ted4_capacity_budget(t) - ted4_capacity_refine_steps(t) - ted4_capacity_prune_steps(t);
 }
@@ -44,7 +49,7 @@ static double search_budget(const ted4_trainer *t)
 /* Steps that a trained trial has; 0: too few to tell anything. */
 static int trial_steps(const ted4_trainer *t)
 {
-    const double budget = search_budget(t);
+    const double budget = ted4_capacity_search_steps(t);
     const double room = (1.0 - t->opt.integer_share - DECIDE_AT) * (double)t->opt.stage2 - 1.0;
     const double n = fmin(fmax(budget / TRIALS, FEWEST_STEPS), room);
 
@@ -241,7 +246,7 @@ static int search_all(search *s)
 
 int ted4_capacity_decide(ted4_trainer *t)
 {
-    search s = { .t = t, .budget = search_budget(t), .steps = trial_steps(t) };
+    search s = { .t = t, .budget = ted4_capacity_search_steps(t), .steps = trial_steps(t) };
     int bad = 0;
 
     t->decided = TED4_DECIDED_MODEL; /* in every state that is kept from here on: trials make none

@@ -1,10 +1,13 @@
-/* prior_bits.c - bits of the prior's weights that are given back: see model_search.h. Trials
+/* prior_bits.c - bits of the prior's weights that are given back: see prior_bits.h. Trials
  * coarsen weights when stage 2 is young, and it trains fine ones to its last stage. What the prior
  * has learnt by then, of the spans of anchors above all, takes more bits than what it knew when
  * they were counted: files of kitchen are 5 to 11 % smaller. Finer weights of the networks that
  * draw were worth one or two ten-thousandths of the cost, less than it takes to look at them.
  * SPDX-License-Identifier: BSD-2-Clause */
-#include "model_search.h"
+#include "prior_bits.h"
+
+#include "candidates.h"
+#include "file_cost.h"
 
 /* The next finer grids are looked at, so many: one may be worse than the one before it, and the one
  * after it better than both. */

@@ -1,12 +1,15 @@
-/* rd_prune.c - anchors and Gaussians that are not worth their bits: see model_search.h. How much
+/* rd_prune.c - anchors and Gaussians that are not worth their bits: see rd_prune.h. How much
  * pictures would miss one is known to first order only, so several prices of a bit are tried on all
  * of them at once, and what the whole file then costs decides.
  * SPDX-License-Identifier: BSD-2-Clause */
-#include "model_search.h"
+#include "rd_prune.h"
 
 #include <math.h>
 #include <stdlib.h>
 
+#include "file_cost.h"
+#include "sensitivity.h"
+#include "train/state/visible_blocks.h"
 #include "train/step/checkpoint.h"
 
 /* Prices tried, as multiples of what a bit weighs. */

@@ -1,11 +1,12 @@
-/* sensitivity.c - what each Gaussian is worth to the pictures: see model_search.h.
+/* sensitivity.c - what each Gaussian is worth to the pictures: see sensitivity.h.
  * SPDX-License-Identifier: BSD-2-Clause */
-#include "model_search.h"
+#include "sensitivity.h"
 
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
+#include "train/state/picture.h"
 #include "train/state/view_subset.h"
 
 /* Pictures looked at: for this share of all steps, but at least so many, and two a frame. Forward

@@ -3,12 +3,14 @@
  * networks keep their room, but every picture is drawn at time 0 and everything is always there. If
  * that is as good, motion and activation would only fit noise, and training begins again without
  * them, so that the file is the one of an encoder that knows no time: what grew while things could
- * move is not what a still scene needs. See trainer.h.
+ * move is not what a still scene needs. See static_test.h.
  * SPDX-License-Identifier: BSD-2-Clause */
-#include <math.h>
+#include "static_test.h"
 
+#include "branch.h"
+#include "train/model/header_from_options.h"
 #include "train/step/checkpoint.h"
-#include "train/state/trainer.h"
+#include "train/step/trainer_init.h"
 
 /* Time stays when it lowers the mean loss by at least this share. Measured with 600 steps a branch:
  * a still room with pictures of eight times -0.7 %, moving scenes 10 to 17 %. */
@@ -16,31 +18,17 @@
 /* Fewer steps tell nothing; the first half of them lets both branches settle. */
 enum { FEWEST = 200 };
 
+/* It begins when the first anchors stand. */
+#define PROBE_FROM 0.25
+
+int ted4_probe_due(const ted4_trainer *t)
+{
+    return !t->probed && t->iteration == (uint64_t)(PROBE_FROM * (double)t->opt.stage1);
+}
+
 static int has_time(const ted4_trainer *t)
 {
     return t->layout.head.motion != TED4_MOTION_NONE || t->layout.head.activation;
-}
-
-int ted4_branch_run(ted4_trainer *t, int n, double *loss)
-{
-    const uint64_t begin = t->iteration;
-    int bad = 0;
-
-    ted4_watch_forget(t);
-    t->watch.pinned = 1;
-    *loss = 0;
-    while (!bad && t->iteration < begin + (uint64_t)n) {
-        const uint64_t i = t->iteration - begin, rollbacks = t->watch.state.rollbacks;
-
-        bad = ted4_trainer_step(t) != 0;
-        if (t->watch.state.rollbacks > rollbacks)
-            *loss = 0;
-        else if (i >= (uint64_t)n / 2)
-            *loss += t->progress.last_loss / (n - n / 2);
-    }
-    t->watch.pinned = 0;
-    ted4_watch_forget(t);
-    return bad;
 }
 
 int ted4_probe_steps(const ted4_trainer *t)
@@ -62,7 +50,6 @@ int ted4_probe_time(ted4_trainer *t)
         return 0;
     ted4_header_without_motion(&h);
     h.activation = 0;
-    ted4_trainer_busy(t, TED4_BUSY_PROBE, 2.0 * n);
 
     int bad = ted4_snapshot_take(t, &start) != 0 || ted4_branch_run(t, n, &timed) != 0 ||
               ted4_snapshot_take(t, &with) != 0 || ted4_snapshot_restore(t, &start) != 0;
@@ -70,7 +57,6 @@ int ted4_probe_time(ted4_trainer *t)
     t->clock_stopped = 1;
     bad = bad || ted4_branch_run(t, n, &still) != 0;
     t->clock_stopped = 0;
-    ted4_trainer_busy(t, TED4_BUSY_TRAINING, 0);
     if (!bad && timed < (1.0 - WORTH) * still)
         bad = ted4_snapshot_restore(t, &with) != 0;
     else if (!bad)

@@ -1,10 +1,11 @@
-/* anchor_appearance.c - what all anchors look like now, one number each: for what is decided about
- * an anchor apart from any one picture. See trainer.h.
+/* anchor_appearance.c - see anchor_appearance.h.
  * SPDX-License-Identifier: BSD-2-Clause */
+#include "anchor_appearance.h"
+
 #include <math.h>
 
 #include "train/model/normalise.h"
-#include "trainer.h"
+#include "visible_blocks.h"
 
 /* From so many training pictures anchors are looked at whose opacity depends on the direction. */
 enum { DIRECTIONS = 8 };

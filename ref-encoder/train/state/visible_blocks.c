@@ -1,12 +1,13 @@
-/* visible_blocks.c - which blocks a view sees, and the buffers of a step.
+/* visible_blocks.c - see visible_blocks.h.
  * SPDX-License-Identifier: BSD-2-Clause */
+#include "visible_blocks.h"
+
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
 #include "train/math/random.h"
 #include "recon/strict.h"
-#include "trainer.h"
 
 /* An anchor counts as a ball of three of its offset scales, and as visible when the ball touches
  * the guarded frustum. Where things move the canonical place says little, so a tenth of the scene's

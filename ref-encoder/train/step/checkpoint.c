@@ -1,8 +1,6 @@
 /* checkpoint.c - see checkpoint.h. Native byte order: a checkpoint stays on the machine that made
  * it.
  * SPDX-License-Identifier: BSD-2-Clause */
-#include "train/search/model_search.h"
-#include "train/math/voxel_set.h"
 #include "checkpoint.h"
 
 #include <errno.h>
@@ -11,6 +9,10 @@
 #include <string.h>
 #include <unistd.h>
 #include <xxhash.h>
+
+#include "monitor.h"
+#include "train/math/voxel_set.h"
+#include "train/model/header_from_options.h"
 
 #define MAGIC 0x34444554u /* "TED4" */
 enum { FORMAT = 8 };
@@ -561,11 +563,4 @@ int ted4_state_take(ted4_trainer *t, ted4_snapshot *s)
 int ted4_state_restore(ted4_trainer *t, const ted4_snapshot *s)
 {
     return restore(t, s, 0);
-}
-
-void ted4_snapshot_free(ted4_snapshot *s)
-{
-    free(s->bytes);
-    s->bytes = NULL;
-    s->size = 0;
 }

@@ -22,6 +22,5 @@ int ted4_snapshot_restore(ted4_trainer *t, const ted4_snapshot *s);
  * snapshot. */
 int ted4_state_take(ted4_trainer *t, ted4_snapshot *s);
 int ted4_state_restore(ted4_trainer *t, const ted4_snapshot *s);
-void ted4_snapshot_free(ted4_snapshot *s);
 
 #endif

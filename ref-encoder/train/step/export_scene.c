@@ -10,37 +10,9 @@
 #include "norm/half.h"
 #include "norm/scene.h"
 #include "norm/tables.h"
+#include "stages.h"
+#include "train/state/anchor_masks.h"
 #include "write/encode.h"
-
-uint16_t ted4_offset_bits(const ted4_trainer *t, size_t i)
-{
-    const ted4_layout *l = &t->layout;
-    unsigned bits = 0;
-
-    for (int k = 0; k < l->head.n_offsets; k++)
-        if (!l->head.offset_mask ||
-            ted4_mask_on(*ted4_cell(&t->anchors, TED4_ROW_VALUE, i, l->offset_logit + k)))
-            bits |= 1u << k;
-    return (uint16_t)bits;
-}
-
-int ted4_is_dynamic(const ted4_trainer *t, size_t i)
-{
-    const ted4_header *h = &t->layout.head;
-
-    return h->motion != TED4_MOTION_NONE &&
-           (!h->temporal_mask ||
-            ted4_mask_on(*ted4_cell(&t->anchors, TED4_ROW_VALUE, i, t->layout.temporal_logit)));
-}
-
-size_t ted4_count_dynamic(const ted4_trainer *t)
-{
-    size_t n = 0;
-
-    for (size_t i = 0; i < t->anchors.n; i++)
-        n += ted4_is_dynamic(t, i) != 0;
-    return n;
-}
 
 static int16_t round_symbol(float value, float q)
 {

@@ -1,30 +1,19 @@
-/* monitor.c - notices a training that goes wrong, says what and where, and takes it back to its
- * last good state with a smaller step. See trainer.h and monitor.h. What is judged by its usual
- * size is so coarse that no training that went well ever came near it (doc/training.md); what is
- * not finite is found at once. SPDX-License-Identifier: BSD-2-Clause */
+/* monitor.c - see monitor.h. What is judged by its usual size is so coarse that no training that
+ * went well ever came near it (doc/training.md); what is not finite is found at once.
+ * SPDX-License-Identifier: BSD-2-Clause */
 #include "monitor.h"
 
 #include <math.h>
 #include <stdarg.h>
-#include <stdlib.h>
 #include <string.h>
 
-#include "checkpoint.h"
 #include "grad_norm.h"
-#include "math/elementary.h"
+#include "scale.h"
+#include "train/densify/densify.h"
 
-/* Steps between looks at every anchor, also those that no picture shows, and between good states.
- * Those lie halfway between events of the schedule, which come at multiples of 100: an event that
- * fails has steps before it that can be made smaller. */
-enum { LOOK_EVERY = 100, KEEP_EVERY = 500, KEEP_AT = 250 };
-
-/* Factor of all learning rates at each rollback. */
-#define SMALLER 0.5
-
-/* A scale moves by at most this factor (log2) a step; first faster, and nothing is judged by it. */
-#define SCALE_STEP  0.05
-#define SCALE_FIRST 0.5
-enum { SCALE_NEW = 100 };
+/* Steps between good states. They lie halfway between events of the schedule, which come at
+ * multiples of 100: an event that fails has steps before it that can be made smaller. */
+enum { KEEP_EVERY = 500, KEEP_AT = 250 };
 
 /* A gradient has exploded when it is so many times its usual size. Measured: single steps of
  * trainings that go well reach 3 times (features, scalings, offsets), 20 times (bank, networks) and
@@ -53,28 +42,6 @@ const char *ted4_term_name(int term)
 {
     return names[term];
 }
-
-double ted4_scale_usual(const ted4_scale *s)
-{
-    return s->n > 0 ? ted4_math_exp2(s->level) : 0.0;
-}
-
-double ted4_scale_take(ted4_scale *s, double x)
-{
-    if (!(x > 0))
-        return 0;
-
-    const double away = ted4_math_log2(x) - s->level,
-                 most = s->n < SCALE_NEW ? SCALE_FIRST : SCALE_STEP;
-    const double times = s->n < SCALE_NEW ? 0.0 : ted4_math_exp2(away);
-
-    s->level += s->n == 0 ? away : fmin(fmax(away, -most), most);
-    s->n++;
-    s->peak = fmax(s->peak, times);
-    return times;
-}
-
-/* ---- what was found ---- */
 
 int ted4_watch_find(ted4_trainer *t, const char *cause, int64_t anchor, const char *what,
                     const char *term, const char *format, ...)
@@ -115,8 +82,6 @@ static int bad_gradient(ted4_trainer *t, int term, double times)
                            "is %.3g times what is usual", times);
 }
 
-/* ---- the last good state ---- */
-
 static int is_calm(const ted4_watch_state *w)
 {
     return w->bad_loss == 0 && w->bad_screen == 0;
@@ -136,59 +101,21 @@ void ted4_watch_forget(ted4_trainer *t)
     ted4_snapshot_free(&t->watch.good);
 }
 
-int ted4_watch_begin(ted4_trainer *t)
+int ted4_watch_values(ted4_trainer *t, int anchors)
 {
-    ted4_watch *w = &t->watch;
-    const int keep = w->good.bytes == NULL || (ted4_watch_due(t) && w->good_at != t->iteration);
+    int term;
 
-    w->found = 0;
-    if (ted4_trainer_check(t, keep || t->iteration % LOOK_EVERY == 0) != 0) {
-        int term;
-        const int64_t anchor = ted4_gradients_bad_value(t, &term);
-
-        if (!ted4_colour_finite(&t->colour))
-            return ted4_watch_find(t, "not finite", -1, "map of ", "colour", "is not finite");
-        return anchor >= 0 ? bad_value(t, anchor, term)
-                           : ted4_watch_find(t, "not finite", -1, "weight of ",
-                                             names[ted4_gradients_bad_network(t)], "is not finite");
-    }
-    if (!keep)
+    if (ted4_trainer_check(t, anchors) == 0)
         return 0;
-    w->good_at = t->iteration;
-    return ted4_state_take(t, &w->good);
+    if (!ted4_colour_finite(&t->colour))
+        return ted4_watch_find(t, "not finite", -1, "map of ", "colour", "is not finite");
+
+    const int64_t anchor = ted4_gradients_bad_value(t, &term);
+
+    return anchor >= 0 ? bad_value(t, anchor, term)
+                       : ted4_watch_find(t, "not finite", -1, "weight of ",
+                                         names[ted4_gradients_bad_network(t)], "is not finite");
 }
-
-int ted4_watch_recover(ted4_trainer *t)
-{
-    ted4_watch *w = &t->watch;
-    const uint64_t rollbacks = w->state.rollbacks, failed = t->iteration;
-    const double factor = w->state.factor, seconds = t->seconds;
-    const char *why = w->good.bytes == NULL
-                          ? "there is no good state before it"
-                          : "learning rates were made smaller three times; another --seed, or "
-                            "smaller ones from the start (--set lr_...), may help";
-
-    if (!w->found)
-        return -1;
-    if (w->good.bytes == NULL || rollbacks == TED4_ROLLBACKS) {
-        const ted4_message m = t->message;
-
-        return ted4_trainer_fail(t, "%.512s; %s", m.text, why);
-    }
-    if (ted4_state_restore(t, &w->good) != 0)
-        return -1;
-    w->found = 0;
-    w->state.factor = SMALLER * factor;
-    w->state.rollbacks = rollbacks + 1;
-    t->seconds = seconds;
-    /* Where no step lies between, smaller ones change nothing: that picture is passed over. */
-    if (failed == t->iteration && t->order.next < t->order.n)
-        t->order.next++;
-    ted4_watch_forget(t);
-    return 0;
-}
-
-/* ---- a step ---- */
 
 int ted4_watch_loss(ted4_trainer *t, double loss)
 {

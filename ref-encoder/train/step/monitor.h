@@ -1,78 +1,10 @@
-/* monitor.h - what is kept to notice a training that goes wrong: the usual size of each gradient,
- * of the loss and of what is drawn, the last good state, and what was found. The functions that
- * work with it are declared in trainer.h. Depends on norm/syntax.h.
+/* monitor.h - notices a training that goes wrong, and says what and where; rollback.h takes it back
+ * to its last good state. Depends on trainer.h.
  * SPDX-License-Identifier: BSD-2-Clause */
 #ifndef TED4_WATCH_H
 #define TED4_WATCH_H
 
-#include <stddef.h>
-#include <stdint.h>
-
-#include "norm/syntax.h"
-
-/* What gradients are told apart by. The first ones are values of anchors, by attribute:
- * TED4_FEATURE to TED4_TAU. */
-typedef enum {
-    TED4_TERM_MASK = TED4_TYPES, /* logits of both masks */
-    TED4_TERM_CENTRE, /* centres of Gaussians in space; positions of anchors themselves are not
-                         learnt */
-    TED4_TERM_HEADS,
-    TED4_TERM_MOTION, /* networks: opacity, covariance, colour; F_project, F_deform */
-    TED4_TERM_BANK,
-    TED4_TERM_PRIOR,  /* the networks of the entropy model */
-    TED4_TERM_STEP,   /* step sizes: those weights of the hyperprior that make them, a part of PRIOR
-                       */
-    TED4_TERM_COLOUR, /* colour map of the picture's camera */
-    TED4_TERMS
-} ted4_term;
-
-enum { TED4_SLOT_TERMS = TED4_TYPES + 1 };
-
-/* The usual size of a positive number that comes once a step: near its median, as one step moves it
- * by a bounded factor, however far off the number is. */
-typedef struct {
-    double level; /* log2 of it */
-    double peak;  /* largest number so far, as a multiple of the usual size before it: since the
-                     log's last line */
-    uint64_t n;   /* numbers seen */
-} ted4_scale;
-
-/* The part that checkpoints keep. */
-typedef struct {
-    double factor;      /* of all learning rates: 1, halved by each rollback */
-    uint64_t rollbacks; /* so far */
-    uint64_t phase;     /* of training; another one begins with new scales */
-    uint64_t bad_loss,
-        bad_screen; /* steps up to now in which the loss was too high, too little was on screen */
-    double usual_loss, lost; /* loss before that row of little on screen, share of the row's mean
-                                loss that is summed up */
-    ted4_scale gradient[TED4_TERMS], loss, screen;
-} ted4_watch_state;
-
-/* What went wrong. */
-typedef struct {
-    const char *cause; /* "not finite", "exploded", "diverged" or "collapsed" */
-    char term[64];     /* e.g. "gradient of offset", "value of feature", "loss", "opacity" */
-    int64_t anchor;    /* -1: it is none's */
-    uint64_t step;     /* steps done before the one that failed */
-} ted4_find;
-
-/* The whole state of a trainer in memory (checkpoint.h); bytes is owned, NULL when empty. */
-typedef struct {
-    char *bytes;
-    size_t size;
-} ted4_snapshot;
-
-typedef struct {
-    ted4_watch_state state;
-    double norm[TED4_TERMS]; /* of this step's gradients; 0: not learnt */
-    double drawn;            /* Gaussians on screen in this step, less those without extent */
-    ted4_snapshot good;      /* the last good state, without a good state of its own */
-    uint64_t good_at;        /* its step */
-    int pinned;              /* it is not replaced: a probe goes back to its own beginning */
-    int found;               /* find is of a failure that nothing has been done about */
-    ted4_find find;          /* the last one */
-} ted4_watch;
+#include "train/state/trainer.h"
 
 /* A Gaussian all of whose scales are below this (normalised space: times half the scene) has no
  * extent. */
@@ -83,10 +15,25 @@ enum { TED4_ROLLBACKS = 3 };
 
 const char *ted4_term_name(int term);
 
-/* x > 0: of the scale's numbers. Returns x as a multiple of the usual size before it; 0 while that
- * is not known yet, and for x = 0, which is passed over. */
-double ted4_scale_take(ted4_scale *s, double x);
-/* 0 where there were no numbers. */
-double ted4_scale_usual(const ted4_scale *s);
+/* All that return int return 0, or -1 with t->message, and with watch.found when it is a find.
+ * values: of the networks and colour maps, with anchors of all anchors, too. loss: of the picture.
+ * look: after the update; gradients, values, loss, and how much was drawn of in and s. */
+int ted4_watch_values(ted4_trainer *t, int anchors);
+int ted4_watch_loss(ted4_trainer *t, double loss);
+int ted4_watch_look(ted4_trainer *t, double loss, const ted4_generate_input *in,
+                    const ted4_splats *s);
+/* A find: its message is what, term, the anchor and what has happened to it (format). Returns -1.
+ */
+int ted4_watch_find(ted4_trainer *t, const char *cause, int64_t anchor, const char *what,
+                    const char *term, const char *format, ...);
+
+/* Will the next step begin with keeping the state? Then the last good state matters no more. */
+int ted4_watch_due(const ted4_trainer *t);
+/* No good state is kept: the next step keeps its own beginning. */
+void ted4_watch_forget(ted4_trainer *t);
+/* Nothing looks suspicious: this state may replace an older one on the disk. */
+int ted4_watch_calm(const ted4_trainer *t);
+/* A line of the log was written: peaks begin anew. */
+void ted4_watch_line(ted4_trainer *t);
 
 #endif

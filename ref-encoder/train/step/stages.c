@@ -1,7 +1,7 @@
-/* stages.c - the steps between phases: activation starts, compression starts, the integer model
- * takes over. Source: paper ("Progressive 3D-to-4D Anchor Transformation", "Training Objectives"),
- * annex D.1, D.2.
+/* stages.c - see stages.h.
  * SPDX-License-Identifier: BSD-2-Clause */
+#include "stages.h"
+
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -9,11 +9,13 @@
 #include "train/model/formulas.h"
 #include "math/elementary.h"
 #include "norm/half.h"
+#include "train/model/header_from_options.h"
 #include "train/resize/feature_pca.h"
 #include "train/model/init.h"
 #include "train/model/normalise.h"
-#include "train/state/trainer.h"
 #include "train/densify/short_lived.h"
+#include "train/state/anchor_appearance.h"
+#include "train/state/visible_blocks.h"
 #include "write/snap.h"
 
 /* spec 11: time of frame j. */

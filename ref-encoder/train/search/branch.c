@@ -1,0 +1,28 @@
+/* branch.c - see branch.h.
+ * SPDX-License-Identifier: BSD-2-Clause */
+#include "branch.h"
+
+#include "train/step/monitor.h"
+#include "train/step/step.h"
+
+int ted4_branch_run(ted4_trainer *t, int n, double *loss)
+{
+    const uint64_t begin = t->iteration;
+    int bad = 0;
+
+    ted4_watch_forget(t);
+    t->watch.pinned = 1;
+    *loss = 0;
+    while (!bad && t->iteration < begin + (uint64_t)n) {
+        const uint64_t i = t->iteration - begin, rollbacks = t->watch.state.rollbacks;
+
+        bad = ted4_gradient_step(t) != 0;
+        if (t->watch.state.rollbacks > rollbacks)
+            *loss = 0;
+        else if (i >= (uint64_t)n / 2)
+            *loss += t->progress.last_loss / (n - n / 2);
+    }
+    t->watch.pinned = 0;
+    ted4_watch_forget(t);
+    return bad;
+}

@@ -1,0 +1,21 @@
+/* candidates.h - the ways to a smaller model. Depends on trainer.h.
+ * SPDX-License-Identifier: BSD-2-Clause */
+#ifndef TED4_CANDIDATES_H
+#define TED4_CANDIDATES_H
+
+#include "train/state/trainer.h"
+
+/* What a move is called, e.g. "hidden width of the hyperprior". */
+const char *ted4_move_name(ted4_move m);
+
+/* How much of a move's matter there is now, and the next smaller amount to try, or with bold a much
+ * smaller one; -1: there is none. */
+int ted4_move_now(const ted4_trainer *t, ted4_move m);
+int ted4_move_next(const ted4_trainer *t, ted4_move m, int bold);
+/* The way back: the next larger number of bits of weights; -1: there is none, or the move has no
+ * such way. */
+int ted4_move_finer(const ted4_trainer *t, ted4_move m);
+/* Makes it so. 0, or -1 with t->message. */
+int ted4_move_make(ted4_trainer *t, ted4_move m, int to);
+
+#endif

@@ -1,0 +1,15 @@
+/* prior_bits.h - bits of the prior's weights that are given back. Depends on trainer.h.
+ * SPDX-License-Identifier: BSD-2-Clause */
+#ifndef TED4_PRIOR_BITS_H
+#define TED4_PRIOR_BITS_H
+
+#include "train/state/trainer.h"
+
+/* Training steps that ted4_capacity_refine takes at most; 0: the budget is too small for it. */
+double ted4_capacity_refine_steps(const ted4_trainer *t);
+/* When the integer stage is about to begin, which is when weights become as coarse as they will be
+ * in the file: bits of the prior's that it has come to need since trials coarsened them are given
+ * back. 0, or -1 with t->message. */
+int ted4_capacity_refine(ted4_trainer *t);
+
+#endif

@@ -1,0 +1,56 @@
+/* search_state.h - what the search for a smaller model has come to: a part of the trainer's state,
+ * kept in checkpoints. search/model_search.h makes it.
+ * SPDX-License-Identifier: BSD-2-Clause */
+#ifndef TED4_SEARCH_STATE_H
+#define TED4_SEARCH_STATE_H
+
+#include <stdint.h>
+
+/* Nothing yet; how much model there is; how coarse its weights are in the end; which anchors pay,
+ * too. */
+enum { TED4_DECIDED_NOTHING, TED4_DECIDED_MODEL, TED4_DECIDED_BITS, TED4_DECIDED_ALL };
+
+/* What a model costs: distortion of training pictures plus lambda times the bits of the file, these
+ * in units of the values of all anchors as they were before anything was decided, so that a bit
+ * weighs the same in every trial. */
+typedef struct {
+    double cost, distortion;
+    double bytes;
+} ted4_cost;
+
+/* What may become less, in the order of trials: which Gaussians an anchor has fewer of takes a look
+ * at many pictures, so that comes last. */
+typedef enum {
+    TED4_MOVE_MOTION,
+    TED4_MOVE_ACTIVATION,
+    TED4_MOVE_HEAD_BITS,
+    TED4_MOVE_MOTION_BITS,
+    TED4_MOVE_BANK_BITS,
+    TED4_MOVE_PRIOR_BITS, /* as ted4_grid */
+    TED4_MOVE_HYPER,
+    TED4_MOVE_DEFORM,
+    TED4_MOVE_AR,
+    TED4_MOVE_HEADS,
+    TED4_MOVE_BANK,
+    TED4_MOVE_FEATURE,
+    TED4_MOVE_SLICES,
+    TED4_MOVE_OCTAVES,
+    TED4_MOVE_VIEW,
+    TED4_MOVE_ROWS,
+    TED4_MOVE_PHI,
+    TED4_MOVE_SCALE,
+    TED4_MOVE_OFFSETS,
+    TED4_MOVE_ANCHORS,
+    TED4_MOVES
+} ted4_move;
+
+/* One trial; kept in checkpoints as it stands in memory. */
+struct ted4_trial {
+    int64_t move, from,
+        to; /* what was tried: from so many to so many; more only of bits of the prior's weights */
+    int64_t steps; /* training of either side before they were compared; 0: compared at sight */
+    int64_t taken; /* 1: the smaller model stays */
+    ted4_cost before, after;
+};
+
+#endif

@@ -1,0 +1,89 @@
+/* events.c - see events.h. Source: paper, "Progressive 3D-to-4D Anchor Transformation"; annex D.1.
+ * SPDX-License-Identifier: BSD-2-Clause */
+#include "events.h"
+
+#include "schedule.h"
+#include "stages.h"
+#include "train/densify/densify.h"
+#include "train/densify/mv_seed.h"
+
+/* Growth begins after a twentieth of stage 1; statistics as soon as the last adjustment is done. */
+#define GROW_FROM 0.05
+
+/* Sprouts come when what stays is drawn well enough for what does not to stand out, and before
+ * activation is learnt. Where cameras take turns nothing else finds what moves, so they come before
+ * the probe asks whether time is needed. */
+#define SPROUT_AT       0.3
+#define SPROUT_AT_TURNS 0.2
+
+static uint64_t sprout_step(const ted4_trainer *t, int reach)
+{
+    return (uint64_t)((reach > 0 ? SPROUT_AT_TURNS : SPROUT_AT) * (double)t->opt.stage1);
+}
+
+/* Are anchors kept for sprouts that are still to come? */
+static int sprouts_ahead(const ted4_trainer *t)
+{
+    if (t->stage2 || t->opt.sprouts <= 0 || t->iteration >= sprout_step(t, 0))
+        return 0;
+
+    const int reach = ted4_sprout_reach(t);
+
+    return reach >= 0 && t->iteration < sprout_step(t, reach);
+}
+
+static int sprouts_due(const ted4_trainer *t)
+{
+    if (t->stage2 || t->opt.sprouts <= 0 ||
+        (t->iteration != sprout_step(t, 0) && t->iteration != sprout_step(t, 1)))
+        return 0;
+
+    const int reach = ted4_sprout_reach(t);
+
+    return reach >= 0 && t->iteration == sprout_step(t, reach);
+}
+
+void ted4_schedule_growth(const ted4_trainer *t, double *from, double *sprout_at, double *sprouts)
+{
+    const int reach = ted4_sprout_reach(t);
+
+    *from = GROW_FROM;
+    *sprout_at = reach > 0 ? SPROUT_AT_TURNS : SPROUT_AT;
+    *sprouts = reach >= 0 ? t->opt.sprouts : 0.0;
+}
+
+size_t ted4_schedule_room(const ted4_trainer *t)
+{
+    const size_t most =
+        (size_t)((sprouts_ahead(t) ? 1.0 - t->opt.sprouts : 1.0) * (double)t->opt.max_anchors);
+
+    return t->anchors.n < most ? most - t->anchors.n : 0;
+}
+
+int ted4_integer_due(const ted4_trainer *t)
+{
+    const double first = (1.0 - t->opt.integer_share) * (double)t->opt.stage2;
+
+    return t->stage2 && !t->integer && t->iteration >= (uint64_t)t->opt.stage1 + (uint64_t)first;
+}
+
+int ted4_schedule_event(ted4_trainer *t)
+{
+    const ted4_train_options *o = &t->opt;
+    const uint64_t i = t->iteration, stage1 = (uint64_t)o->stage1;
+
+    if (t->layout.first[TED4_TAU] >= 0 && !t->stage2 && i == ted4_activation_step(o) &&
+        ted4_activation_begin(t) != 0)
+        return -1;
+    if (sprouts_due(t) && ted4_sprout(t) != 0)
+        return -1;
+    if (!t->stage2 && i > (uint64_t)(GROW_FROM * (double)stage1) &&
+        i <= (uint64_t)(o->grow_until * (double)stage1) && i % (uint64_t)o->grow_every == 0 &&
+        ted4_densify_adjust(t, ted4_schedule_room(t)) != 0)
+        return -1;
+    if (i == stage1 && !t->stage2 && o->stage2 > 0 && ted4_stage2_begin(t) != 0)
+        return -1;
+    if (ted4_integer_due(t) && ted4_integer_begin(t) != 0)
+        return -1;
+    return 0;
+}

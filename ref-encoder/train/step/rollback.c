@@ -1,0 +1,56 @@
+/* rollback.c - see rollback.h.
+ * SPDX-License-Identifier: BSD-2-Clause */
+#include "rollback.h"
+
+#include "checkpoint.h"
+#include "monitor.h"
+
+/* Steps between looks at every anchor, also those that no picture shows. */
+enum { LOOK_EVERY = 100 };
+
+/* Factor of all learning rates at each rollback. */
+#define SMALLER 0.5
+
+int ted4_watch_begin(ted4_trainer *t)
+{
+    ted4_watch *w = &t->watch;
+    const int keep = w->good.bytes == NULL || (ted4_watch_due(t) && w->good_at != t->iteration);
+
+    w->found = 0;
+    if (ted4_watch_values(t, keep || t->iteration % LOOK_EVERY == 0) != 0)
+        return -1;
+    if (!keep)
+        return 0;
+    w->good_at = t->iteration;
+    return ted4_state_take(t, &w->good);
+}
+
+int ted4_watch_recover(ted4_trainer *t)
+{
+    ted4_watch *w = &t->watch;
+    const uint64_t rollbacks = w->state.rollbacks, failed = t->iteration;
+    const double factor = w->state.factor, seconds = t->seconds;
+    const char *why = w->good.bytes == NULL
+                          ? "there is no good state before it"
+                          : "learning rates were made smaller three times; another --seed, or "
+                            "smaller ones from the start (--set lr_...), may help";
+
+    if (!w->found)
+        return -1;
+    if (w->good.bytes == NULL || rollbacks == TED4_ROLLBACKS) {
+        const ted4_message m = t->message;
+
+        return ted4_trainer_fail(t, "%.512s; %s", m.text, why);
+    }
+    if (ted4_state_restore(t, &w->good) != 0)
+        return -1;
+    w->found = 0;
+    w->state.factor = SMALLER * factor;
+    w->state.rollbacks = rollbacks + 1;
+    t->seconds = seconds;
+    /* Where no step lies between, smaller ones change nothing: that picture is passed over. */
+    if (failed == t->iteration && t->order.next < t->order.n)
+        t->order.next++;
+    ted4_watch_forget(t);
+    return 0;
+}

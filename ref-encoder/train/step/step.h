@@ -1,0 +1,15 @@
+/* step.h - one training step: a picture, its Gaussians forward and back, and the update. Depends on
+ * trainer.h.
+ * SPDX-License-Identifier: BSD-2-Clause */
+#ifndef TED4_STEP_H
+#define TED4_STEP_H
+
+#include "train/state/trainer.h"
+
+/* One step, after what is due before it (events.h). Or, where the monitor finds that training goes
+ * wrong, the way back to the last good state: iteration is then smaller or the same,
+ * watch.state.rollbacks larger, and watch.find and message say why. 0, or -1 with t->message;
+ * watch.found then tells whether it is a find that nothing more was done about. */
+int ted4_gradient_step(ted4_trainer *t);
+
+#endif

@@ -1,0 +1,105 @@
+/* trainer_init.c - see trainer_init.h.
+ * SPDX-License-Identifier: BSD-2-Clause */
+#include "trainer_init.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+#include "train/densify/camera_colour_init.h"
+#include "train/densify/short_lived.h"
+#include "train/math/random.h"
+#include "train/model/header_from_options.h"
+#include "train/model/init.h"
+
+static int make_order(ted4_trainer *t)
+{
+    t->order.item = malloc((t->data->n_pictures + 1) * sizeof *t->order.item);
+    if (t->order.item == NULL)
+        return ted4_trainer_fail(t, "no memory for the order of pictures");
+    for (uint32_t i = 0; i < t->data->n_pictures; i++)
+        if (!t->data->pictures[i].is_test)
+            t->order.item[t->order.n++] = i;
+    if (t->order.n == 0)
+        return ted4_trainer_fail(t, "no training pictures");
+    t->order.key = ted4_mix(t->opt.seed ^ 0x6f72646572u);
+    t->order.next = t->order.n;
+    return 0;
+}
+
+static int make_images(ted4_trainer *t)
+{
+    size_t pixels = 0;
+
+    for (size_t i = 0; i < t->data->n_pictures; i++) {
+        const ted4_camera *c = &t->data->pictures[i].camera;
+        const size_t n = (size_t)c->width * (size_t)c->height;
+
+        pixels = n > pixels ? n : pixels;
+    }
+    t->image = malloc(3 * pixels * sizeof *t->image + 64);
+    t->d_image = malloc(3 * pixels * sizeof *t->d_image + 64);
+    t->raster = ted4_raster_new();
+    t->loss = ted4_loss_workspace_new();
+    if (t->image == NULL || t->d_image == NULL || t->raster == NULL || t->loss == NULL)
+        return ted4_trainer_fail(t, "no memory for images of %zu pixels", pixels);
+    if (t->opt.colour && ted4_colour_init(&t->colour, t->data) != 0)
+        return ted4_trainer_fail(t, "no memory for colour correction");
+    return 0;
+}
+
+/* Everything at its start, in the layout of h. */
+static int begin(ted4_trainer *t, const ted4_header *h)
+{
+    const char *wrong = ted4_header_wrong(h);
+
+    if (wrong != NULL)
+        return ted4_trainer_fail(
+            t, "no file can hold this scene with these options: %s is beyond its range in a header",
+            wrong);
+    ted4_layout_make(&t->layout, h);
+    t->charged = t->layout.head;
+    ted4_grid_full(t->bits);
+    t->watch.state.factor = 1;
+    if (ted4_trainer_rebuild(t) != 0 || make_order(t) != 0 || make_images(t) != 0)
+        return -1;
+    if (ted4_anchors_init(&t->anchors, &t->layout) != 0 ||
+        ted4_seed_anchors(&t->anchors, &t->layout, t->data, &t->opt, &t->cell) != 0)
+        return ted4_trainer_fail(t, "no memory for the anchors");
+    if (t->anchors.n == 0)
+        return ted4_trainer_fail(t, "no initial point lies inside the scene's bounds");
+    ted4_seed_networks(t->net, &t->layout, t->opt.seed);
+    if (ted4_colour_match(t) != 0)
+        return -1;
+    return t->opt.transients ? ted4_seed_transients(t) : 0;
+}
+
+int ted4_trainer_init(ted4_trainer *t, const ted4_train_options *o, ted4_dataset *d,
+                      const ted4_parallel *p)
+{
+    ted4_header h;
+
+    memset(t, 0, sizeof *t);
+    t->opt = *o;
+    t->data = d;
+    t->parallel = p;
+    ted4_header_make(&h, o, d);
+    return begin(t, &h);
+}
+
+int ted4_trainer_restart(ted4_trainer *t, const ted4_header *h)
+{
+    const ted4_train_options opt = t->opt;
+    ted4_dataset *data = t->data;
+    const ted4_parallel *parallel = t->parallel;
+    const double seconds = t->seconds;
+    const ted4_onlooker onlooker = t->onlooker;
+
+    ted4_trainer_finish(t);
+    t->opt = opt;
+    t->data = data;
+    t->parallel = parallel;
+    t->seconds = seconds;
+    t->onlooker = onlooker;
+    t->probed = 1;
+    return begin(t, h);
+}
