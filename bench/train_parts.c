@@ -135,7 +135,7 @@ double parts_step(ted4_trainer *t)
 
 int parts_stage(const ted4_trainer *t)
 {
-    return t->integer ? STAGE_INTEGER : t->stage2 ? STAGE_2 : STAGE_1;
+    return t->phase.integer ? STAGE_INTEGER : t->phase.stage2 ? STAGE_2 : STAGE_1;
 }
 
 void parts_options(ted4_train_options *o, int steps)

@@ -31,17 +31,17 @@ static double trials_left(const ted4_trainer *t)
 {
     const double refine = ted4_capacity_refine_steps(t), prune = ted4_capacity_prune_steps(t);
 
-    if (!t->opt.capacity || t->opt.stage2 == 0 || t->decided == TED4_DECIDED_ALL)
+    if (!t->opt.capacity || t->opt.stage2 == 0 || t->search.decided == TED4_DECIDED_ALL)
         return 0;
-    if (t->decided == TED4_DECIDED_NOTHING)
+    if (t->search.decided == TED4_DECIDED_NOTHING)
         return search_steps(t) + refine + prune;
-    return t->decided == TED4_DECIDED_MODEL ? refine + prune : prune;
+    return t->search.decided == TED4_DECIDED_MODEL ? refine + prune : prune;
 }
 
 /* Of the trials at hand, in the end. */
 static double trials_now(const ted4_trainer *t)
 {
-    return t->decided == TED4_DECIDED_MODEL ? search_steps(t) : t->onlooker.budget;
+    return t->search.decided == TED4_DECIDED_MODEL ? search_steps(t) : t->onlooker.budget;
 }
 
 /* Steps between two looks at whether sprouts will come, which takes a look at all pictures. */

@@ -64,7 +64,7 @@ int ted4_preview_make(ted4_trainer *t, int n, ted4_preview *p)
     ted4_snapshot before = { 0 };
     ted4_scene *scene;
 
-    if (!t->stage2)
+    if (!t->phase.stage2)
         return draw(t, n, p);
     if (ted4_state_take(t, &before) != 0)
         return -1;

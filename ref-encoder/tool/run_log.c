@@ -193,7 +193,7 @@ static int print_line(char *line, size_t size, const ted4_run_log *l, const ted4
         t->anchors.n, ted4_count_dynamic(t), p->splats, v->bytes, v->positions, v->masks,
         y[TED4_FEATURE], y[TED4_SCALING], y[TED4_OFFSET], y[TED4_PHI], y[TED4_TAU], v->networks,
         v->frame, b[TED4_FEATURE], b[TED4_SCALING], b[TED4_OFFSET], b[TED4_PHI], b[TED4_TAU],
-        (unsigned long long)ted4_raster_skipped(t->raster), ted4_clamped(t),
+        (unsigned long long)ted4_raster_skipped(t->work.raster), ted4_clamped(t),
         print_terms(gradients, sizeof gradients, usual), print_terms(peaks, sizeof peaks, peak),
         (unsigned long long)t->watch.state.rollbacks, v->train ? "train" : "test", f->ms, f->cpu_ms,
         f->rate, t->seconds, l->cpu_seconds, l->left);
@@ -217,7 +217,7 @@ static int put_line(const ted4_run_log *l, const char *line, size_t size, char *
 
 const char *ted4_run_log_stage(const ted4_trainer *t)
 {
-    return !t->stage2 ? "1" : t->integer ? "2i" : "2";
+    return !t->phase.stage2 ? "1" : t->phase.integer ? "2i" : "2";
 }
 
 int ted4_run_log_step(ted4_run_log *l, const ted4_trainer *t, char *why, size_t why_size)
@@ -264,8 +264,8 @@ int ted4_run_log_trials(ted4_run_log *l, const ted4_trainer *t, size_t first, ch
 {
     char line[600];
 
-    for (size_t i = first; i < t->n_trials; i++) {
-        const struct ted4_trial *x = &t->trial[i];
+    for (size_t i = first; i < t->search.n_trials; i++) {
+        const struct ted4_trial *x = &t->search.trial[i];
 
         if (l->teller != NULL)
             ted4_teller_say(l->teller,

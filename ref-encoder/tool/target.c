@@ -107,7 +107,7 @@ int ted4_training_target(ted4_training *t, ted4_coded *c)
     int bad;
 
     c->bytes = NULL;
-    if (t->trainer->stage2) {
+    if (t->trainer->phase.stage2) {
         snprintf(t->why, sizeof t->why,
                  "%s: inside stage 2; a search for a size begins at the end of stage 1",
                  t->checkpoint);

@@ -52,8 +52,9 @@ static void report(const ted4_request *r, const ted4_trainer *t, ted4_teller *te
                "0f,\"hash\":\"%s\"}\n",
                c->size, c->lambda, s.setup, s.train, (unsigned long long)t->iteration,
                1e3 * s.train / (double)(t->iteration > 0 ? t->iteration : 1), v->anchors,
-               v->gaussians, v->dynamic, v->estimated_bits, v->coded_bits, t->probe_loss[0],
-               t->probe_loss[1], (unsigned long long)t->watch.state.rollbacks, peak_mib(), v->hash);
+               v->gaussians, v->dynamic, v->estimated_bits, v->coded_bits, t->search.probe_loss[0],
+               t->search.probe_loss[1], (unsigned long long)t->watch.state.rollbacks, peak_mib(),
+               v->hash);
     else
         ted4_teller_say(
             teller,

@@ -47,7 +47,7 @@ static int find_start(ted4_training *t)
     } else if (exists(r->stage1)) {
         if (ted4_checkpoint_load(trainer, r->stage1) != 0)
             return fail(t);
-        if (trainer->stage2 || trainer->iteration != (uint64_t)trainer->opt.stage1) {
+        if (trainer->phase.stage2 || trainer->iteration != (uint64_t)trainer->opt.stage1) {
             snprintf(t->why, sizeof t->why, "%s: not the end of stage 1", r->stage1);
             return -1;
         }
@@ -161,7 +161,8 @@ static int keep_stage1(ted4_training *t)
     ted4_trainer *tr = t->trainer;
     const char *path = t->request->stage1;
 
-    if (path == NULL || tr->stage2 || tr->iteration != (uint64_t)tr->opt.stage1 || exists(path))
+    if (path == NULL || tr->phase.stage2 || tr->iteration != (uint64_t)tr->opt.stage1 ||
+        exists(path))
         return 0;
     ted4_run_log_tick(&t->log, tr);
     return ted4_checkpoint_save(tr, path) != 0 ? fail(t) : 0;
@@ -201,14 +202,14 @@ static int step(ted4_training *t)
 {
     ted4_trainer *tr = t->trainer;
     const uint64_t before = tr->iteration, rollbacks = tr->watch.state.rollbacks;
-    const size_t trials = tr->n_trials;
+    const size_t trials = tr->search.n_trials;
 
     if (ted4_trainer_step(tr) != 0)
         return fail_step(t);
     /* A step may be many: what a probe has done counts. Or it began again, or went back. */
     if (tr->iteration <= before && start_over(t) != 0)
         return -1;
-    if (tr->n_trials > trials &&
+    if (tr->search.n_trials > trials &&
         ted4_run_log_trials(&t->log, tr, trials, t->why, sizeof t->why) != 0)
         return -1;
     return tr->watch.state.rollbacks > rollbacks ? tell_rollback(t) : 0;

@@ -11,7 +11,7 @@
 
 static void put_time(FILE *f, const ted4_trainer *t)
 {
-    const double *loss = t->probe_loss;
+    const double *loss = t->search.probe_loss;
     const int timed = t->layout.head.motion != TED4_MOTION_NONE || t->layout.head.activation;
 
     if (loss[0] > 0)
@@ -67,8 +67,8 @@ char *ted4_why_text(const ted4_trainer *t)
     put_time(f, t);
     put_light(f, t);
     put_moving(f, t);
-    for (size_t i = 0; i < t->n_trials; i++)
-        put_trial(f, i + 1, &t->trial[i]);
+    for (size_t i = 0; i < t->search.n_trials; i++)
+        put_trial(f, i + 1, &t->search.trial[i]);
     if (fclose(f) == 0)
         return text;
     free(text);

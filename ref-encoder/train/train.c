@@ -32,9 +32,9 @@ static question in_stage1(const ted4_trainer *t)
  * the integer stage is about to begin: how fine do the weights of the prior have to be? */
 static question in_stage2(const ted4_trainer *t)
 {
-    if (t->decided == TED4_DECIDED_NOTHING && t->iteration == ted4_capacity_step(t))
+    if (t->search.decided == TED4_DECIDED_NOTHING && t->iteration == ted4_capacity_step(t))
         return (question) { ted4_capacity_decide, TED4_BUSY_TRIALS, ted4_capacity_search_steps(t) };
-    if (t->decided == TED4_DECIDED_MODEL && ted4_integer_due(t))
+    if (t->search.decided == TED4_DECIDED_MODEL && ted4_integer_due(t))
         return (question) { ted4_capacity_refine, TED4_BUSY_TRIALS, ted4_capacity_refine_steps(t) };
     return nothing;
 }
@@ -43,14 +43,14 @@ static question in_stage2(const ted4_trainer *t)
  * rest goes on learning with it. Which anchors and Gaussians are worth their bits? */
 static question in_integer_stage(const ted4_trainer *t)
 {
-    return t->decided == TED4_DECIDED_BITS
+    return t->search.decided == TED4_DECIDED_BITS
                ? (question) { ted4_capacity_prune, TED4_BUSY_TRIALS, ted4_capacity_prune_steps(t) }
                : nothing;
 }
 
 static question next_question(const ted4_trainer *t)
 {
-    return t->integer ? in_integer_stage(t) : t->stage2 ? in_stage2(t) : in_stage1(t);
+    return t->phase.integer ? in_integer_stage(t) : t->phase.stage2 ? in_stage2(t) : in_stage1(t);
 }
 
 int ted4_trainer_long_step(const ted4_trainer *t)

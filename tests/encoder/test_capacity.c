@@ -97,8 +97,8 @@ static int check_trials(const ted4_trainer *t)
 {
     int taken = 0, trained = 0;
 
-    for (size_t i = 0; i < t->n_trials; i++) {
-        const struct ted4_trial *x = &t->trial[i];
+    for (size_t i = 0; i < t->search.n_trials; i++) {
+        const struct ted4_trial *x = &t->search.trial[i];
 
         assert_in_range(x->move, 0, TED4_MOVES - 1);
         assert_true((x->to < x->from || x->move == TED4_MOVE_PRIOR_BITS));
@@ -109,7 +109,7 @@ static int check_trials(const ted4_trainer *t)
         assert_int_equal(x->taken, x->after.cost < x->before.cost);
         taken += x->taken != 0;
         trained += x->steps > 0;
-        assert_true(x->move != TED4_MOVE_ANCHORS || i + 1 == t->n_trials);
+        assert_true(x->move != TED4_MOVE_ANCHORS || i + 1 == t->search.n_trials);
     }
     assert_true(taken > 0);
     return trained;
@@ -124,24 +124,24 @@ static void test_decides(void **state)
     (void)state;
     begin(&t, &o, NULL);
     ball_train(&t, ted4_capacity_step(&t));
-    assert_int_equal(t.decided, TED4_DECIDED_NOTHING);
-    assert_int_equal(t.n_trials, 0);
+    assert_int_equal(t.search.decided, TED4_DECIDED_NOTHING);
+    assert_int_equal(t.search.n_trials, 0);
     weights = t.layout.shape.n_netr + t.layout.shape.n_nete;
 
     /* What a bit weighs is what it weighed before. */
     const double charge = ted4_capacity_charge(&t);
 
     assert_int_equal(ted4_trainer_step(&t), 0);
-    assert_int_equal(t.decided, TED4_DECIDED_MODEL);
-    assert_true(t.n_trials > 3);
+    assert_int_equal(t.search.decided, TED4_DECIDED_MODEL);
+    assert_true(t.search.n_trials > 3);
     assert_true(ted4_capacity_charge(&t) == charge);
     assert_int_equal(t.layout.head.motion, TED4_MOTION_NONE);
     assert_true(t.layout.shape.n_netr + t.layout.shape.n_nete < weights);
-    assert_true(t.bits[TED4_GRID_HEADS] < TED4_GRID_FULL(TED4_GRID_HEADS));
-    assert_true(t.bits[TED4_GRID_PRIOR] < TED4_GRID_FULL(TED4_GRID_PRIOR));
+    assert_true(t.net.bits[TED4_GRID_HEADS] < TED4_GRID_FULL(TED4_GRID_HEADS));
+    assert_true(t.net.bits[TED4_GRID_PRIOR] < TED4_GRID_FULL(TED4_GRID_PRIOR));
     check_trials(&t);
     ball_train(&t, TOTAL);
-    assert_int_equal(t.decided, TED4_DECIDED_ALL);
+    assert_int_equal(t.search.decided, TED4_DECIDED_ALL);
     check_trials(&t);
     ted4_trainer_finish(&t);
 }
@@ -150,18 +150,18 @@ static void test_decides(void **state)
  * was. */
 static int refined(ted4_trainer *t, int bits)
 {
-    const size_t first = t->n_trials;
+    const size_t first = t->search.n_trials;
     ted4_cost before, after;
 
-    t->bits[TED4_GRID_PRIOR] = bits;
+    t->net.bits[TED4_GRID_PRIOR] = bits;
     assert_int_equal(ted4_capacity_cost(t, &before), 0);
     assert_int_equal(ted4_capacity_refine(t), 0);
-    assert_int_equal(t->decided, TED4_DECIDED_BITS);
-    assert_true(t->n_trials > first);
-    assert_true(!t->integer);
+    assert_int_equal(t->search.decided, TED4_DECIDED_BITS);
+    assert_true(t->search.n_trials > first);
+    assert_true(!t->phase.integer);
     assert_int_equal(ted4_capacity_cost(t, &after), 0);
-    for (size_t i = first; i < t->n_trials; i++) {
-        const struct ted4_trial *x = &t->trial[i];
+    for (size_t i = first; i < t->search.n_trials; i++) {
+        const struct ted4_trial *x = &t->search.trial[i];
 
         assert_int_equal(x->move, TED4_MOVE_PRIOR_BITS);
         assert_int_equal(x->from, bits);
@@ -170,10 +170,10 @@ static int refined(ted4_trainer *t, int bits)
         assert_int_equal(x->taken, x->after.cost < x->before.cost);
         bits = (int)(x->taken ? x->to : x->from);
     }
-    assert_int_equal(t->bits[TED4_GRID_PRIOR], bits);
-    assert_true(bits == t->trial[first].from ? after.cost == before.cost
-                                             : after.cost < before.cost);
-    return bits > t->trial[first].from;
+    assert_int_equal(t->net.bits[TED4_GRID_PRIOR], bits);
+    assert_true(bits == t->search.trial[first].from ? after.cost == before.cost
+                                                    : after.cost < before.cost);
+    return bits > t->search.trial[first].from;
 }
 
 /* Bits of the prior that are too few when the integer stage begins are given back. How many are is
@@ -188,7 +188,7 @@ static void test_refined(void **state)
     begin(&t, &o, NULL);
     while (!ted4_integer_due(&t))
         assert_int_equal(ted4_trainer_step(&t), 0);
-    assert_int_equal(t.decided, TED4_DECIDED_MODEL);
+    assert_int_equal(t.search.decided, TED4_DECIDED_MODEL);
     assert_true(ted4_capacity_refine_steps(&t) > 0);
     for (int bits = 1; bits <= 6; bits++)
         raised += refined(&t, bits);
@@ -207,9 +207,9 @@ static void test_cheap_first(void **state)
     ball_set(&o, "capacity_share=0.16");
     begin(&t, &o, NULL);
     ball_train(&t, TOTAL);
-    for (size_t i = 0; i < t.n_trials; i++) {
-        assert_int_not_equal(t.trial[i].move, TED4_MOVE_OFFSETS);
-        coarse += t.trial[i].move == TED4_MOVE_HEAD_BITS && t.trial[i].taken;
+    for (size_t i = 0; i < t.search.n_trials; i++) {
+        assert_int_not_equal(t.search.trial[i].move, TED4_MOVE_OFFSETS);
+        coarse += t.search.trial[i].move == TED4_MOVE_HEAD_BITS && t.search.trial[i].taken;
     }
     assert_true(coarse > 0);
     ted4_trainer_finish(&t);
@@ -262,8 +262,8 @@ static void test_budget(void **state)
     begin(&t, &o, NULL);
     ball_train(&t, TOTAL);
     spent = ted4_capacity_prune_steps(&t) + 3 * ted4_capacity_cost_steps(&t);
-    for (size_t i = 0; i < t.n_trials; i++) {
-        const struct ted4_trial *x = &t.trial[i];
+    for (size_t i = 0; i < t.search.n_trials; i++) {
+        const struct ted4_trial *x = &t.search.trial[i];
 
         if (x->move == TED4_MOVE_ANCHORS)
             continue;
@@ -285,11 +285,11 @@ static void check_coarse(const ted4_train_options *o, int coarse[TED4_GRIDS])
 
     begin(&t, o, NULL);
     ball_train(&t, TOTAL);
-    for (size_t i = 0; i < t.n_trials; i++)
-        if (is_of_bits(&t.trial[i]) && t.trial[i].taken)
-            coarse[t.trial[i].move - TED4_MOVE_HEAD_BITS] = (int)t.trial[i].to;
+    for (size_t i = 0; i < t.search.n_trials; i++)
+        if (is_of_bits(&t.search.trial[i]) && t.search.trial[i].taken)
+            coarse[t.search.trial[i].move - TED4_MOVE_HEAD_BITS] = (int)t.search.trial[i].to;
     for (int i = 0; i < TED4_GRIDS; i++)
-        assert_int_equal(coarse[i] > 0 ? coarse[i] : TED4_GRID_FULL(i), t.bits[i]);
+        assert_int_equal(coarse[i] > 0 ? coarse[i] : TED4_GRID_FULL(i), t.net.bits[i]);
 
     const double drawn = ted4_trainer_distortion(&t, t.order.item[0]);
 
@@ -299,7 +299,7 @@ static void check_coarse(const ted4_train_options *o, int coarse[TED4_GRIDS])
     again = malloc(s->netr.n * sizeof *again);
     assert_non_null(again);
     memcpy(again, s->netr.values, s->netr.n * sizeof *again);
-    ted4_grid_scene(&s->shape, t.bits, again, s->bank.values);
+    ted4_grid_scene(&s->shape, t.net.bits, again, s->bank.values);
     assert_memory_equal(again, s->netr.values, s->netr.n * sizeof *again);
     free(again);
     ted4_scene_free(s);
@@ -353,14 +353,14 @@ static void test_resumed(void **state)
     assert_int_equal(ted4_snapshot_take(&t, &kept[n++]), 0);
     assert_int_equal(ted4_trainer_step(&t), 0);
     assert_int_equal(ted4_snapshot_take(&t, &kept[n++]), 0);
-    while (!t.integer)
+    while (!t.phase.integer)
         assert_int_equal(ted4_trainer_step(&t), 0);
     assert_int_equal(ted4_snapshot_take(&t, &kept[n++]), 0);
     assert_int_equal(ted4_trainer_step(&t), 0);
-    assert_int_equal(t.decided, TED4_DECIDED_ALL);
+    assert_int_equal(t.search.decided, TED4_DECIDED_ALL);
     assert_int_equal(ted4_snapshot_take(&t, &kept[n++]), 0);
 
-    const size_t trials = t.n_trials;
+    const size_t trials = t.search.n_trials;
 
     one = ball_finish(&t);
     ted4_trainer_finish(&t);
@@ -371,7 +371,7 @@ static void test_resumed(void **state)
         if (ted4_snapshot_restore(&t, &kept[i]) != 0)
             fail_msg("%d: %s", i, t.message.text);
         f = ball_finish(&t);
-        assert_int_equal(t.n_trials, trials);
+        assert_int_equal(t.search.n_trials, trials);
         ball_check_same(&one, &f);
         free(f.bytes);
         ted4_trainer_finish(&t);
@@ -413,8 +413,8 @@ static void test_fixed(void **state)
     begin(&t, &o, NULL);
     assert_int_equal(ted4_capacity_step(&t), UINT64_MAX);
     a = ball_finish(&t);
-    assert_int_equal(t.n_trials, 0);
-    assert_int_equal(t.decided, TED4_DECIDED_NOTHING);
+    assert_int_equal(t.search.n_trials, 0);
+    assert_int_equal(t.search.decided, TED4_DECIDED_NOTHING);
     assert_int_equal(t.layout.head.n_offsets, o.offsets);
     assert_int_equal(t.layout.head.feature_dim, o.feature);
     assert_int_equal(t.layout.head.hyper_width, o.hyper_width);
@@ -437,7 +437,7 @@ static void test_short(void **state)
     ball_set(&o, "stage2=30");
     begin(&t, &o, NULL);
     f = ball_finish(&t);
-    assert_int_equal(t.n_trials, 0);
+    assert_int_equal(t.search.n_trials, 0);
     assert_int_equal(t.layout.head.n_offsets, o.offsets);
     free(f.bytes);
     ted4_trainer_finish(&t);

@@ -368,8 +368,8 @@ static void test_gather(void **state)
     t.slots.block[0] = 1;
     t.slots.block[1] = 3;
     t.slots.lanes[1] = 0xffffu;
-    t.splat_gradient.mean2d = moved;
-    t.splat_gradient.visible = visible;
+    t.work.splat_gradient.mean2d = moved;
+    t.work.splat_gradient.visible = visible;
     in.n_slots = t.slots.n;
     in.attr = t.slots.raw;
     in.lanes = t.slots.lanes;

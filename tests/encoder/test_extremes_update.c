@@ -132,10 +132,10 @@ static void test_volume(void **state)
     begin(&t, 1);
     t.opt.volume_weight = 0.5;
     for (int j = 0; j < 3; j++) {
-        t.splat_gradient.scale[j] = d[j];
-        t.splat_gradient.mean[j] = centre[j];
+        t.work.splat_gradient.scale[j] = d[j];
+        t.work.splat_gradient.mean[j] = centre[j];
     }
-    t.splat_gradient.visible = seen;
+    t.work.splat_gradient.visible = seen;
     for (size_t k = 0; k < sizeof size / sizeof *size; k++)
         for (int who = 0; who < 3; who++) {
             const int n = who == 0 ? 0 : who == 1 ? 1 : SPLATS;
@@ -178,7 +178,7 @@ static void test_bank(void **state)
     (void)state;
     begin(&t, 9);
     const size_t rows = t.layout.head.bank_rows, width = t.layout.head.bank_dim;
-    float *const z = t.net + t.layout.bank, *const d = t.net_gradient + t.layout.bank;
+    float *const z = t.net.value + t.layout.bank, *const d = t.net.gradient + t.layout.bank;
 
     t.opt.tv_weight = 2;
     for (size_t k = 0; k < sizeof size / sizeof *size; k++) {

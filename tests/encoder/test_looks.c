@@ -48,7 +48,7 @@ static void forget(looks *l)
 static void soften_opacity(ted4_trainer *t)
 {
     const ted4_net_shape *s = &t->layout.shape.netr[TED4_NET_OPACITY];
-    float *w = t->net + t->layout.netr + s->first;
+    float *w = t->net.value + t->layout.netr + s->first;
 
     for (int i = 0; i + 1 < s->n_layers; i++)
         w += ((size_t)s->dim[i] + 1) * s->dim[i + 1];

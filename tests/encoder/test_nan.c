@@ -33,7 +33,7 @@ static void test_nan(void **state)
         ball_begin(&t, &o, &d, NULL);
         assert_int_equal(ted4_checkpoint_load(&t, path), 0);
         if (which == 0)
-            t.net[t.layout.netr + 1] = NAN;
+            t.net.value[t.layout.netr + 1] = NAN;
         else
             *ted4_cell(&t.anchors, TED4_ROW_VALUE, 3, 0) = INFINITY;
         assert_int_equal(ted4_checkpoint_save(&t, path), -1);
@@ -78,14 +78,14 @@ static void test_colour(void **state)
         t.colour.value[c][0] = NAN;
     net = malloc(t.layout.n_net * sizeof *net);
     assert_non_null(net);
-    memcpy(net, t.net, t.layout.n_net * sizeof *net);
+    memcpy(net, t.net.value, t.layout.n_net * sizeof *net);
     ted4_watch_forget(&t);
     assert_int_equal(ted4_trainer_step(&t), -1);
     assert_non_null(strstr(t.message.text, "map of colour"));
     assert_non_null(
         strstr(t.message.text, "not finite at step 130; there is no good state before it"));
     assert_int_equal(t.iteration, 130);
-    assert_memory_equal(net, t.net, t.layout.n_net * sizeof *net);
+    assert_memory_equal(net, t.net.value, t.layout.n_net * sizeof *net);
     assert_int_equal(ted4_trainer_check(&t, 1), -1);
     free(net);
     ted4_trainer_finish(&t);

@@ -43,7 +43,7 @@ static void run(ted4_trainer *t, uint64_t key, double share, float d_value)
     assert_int_equal(t->slots.n, BLOCKS);
     for (size_t i = 0; i < t->slots.n * floats; i++)
         t->slots.gradients[i] = d_value;
-    memset(t->net_gradient, 0, t->layout.n_net * sizeof *t->net_gradient);
+    memset(t->net.gradient, 0, t->layout.n_net * sizeof *t->net.gradient);
     if (ted4_update_rate(t, key) != 0)
         fail_msg("%s", t->message.text);
 }
@@ -130,11 +130,11 @@ static void test_lambda(void **state)
 
     assert_non_null(once);
     run(&t, 9, SHARE, 0);
-    memcpy(once, t.net_gradient, n * sizeof *once);
+    memcpy(once, t.net.gradient, n * sizeof *once);
     t.opt.lambda *= 2;
     run(&t, 9, SHARE, 0);
     for (size_t i = 0; i < n; i++)
-        assert_true(t.net_gradient[i] == 2 * once[i]);
+        assert_true(t.net.gradient[i] == 2 * once[i]);
     free(once);
     ted4_trainer_finish(&t);
 }
@@ -154,10 +154,10 @@ static double factor(ted4_trainer *t, float d_value)
     at += (size_t)s->hyper.dim[last] * s->n_outputs + s->first_step_output;
     for (uint64_t key = 0; key < KEYS; key++) {
         run(t, ted4_mix(key), 1, d_value);
-        memcpy(all, t->net_gradient + at, s->n_types * sizeof *all);
+        memcpy(all, t->net.gradient + at, s->n_types * sizeof *all);
         run(t, ted4_mix(key), SHARE, d_value);
         for (size_t y = 0; y < s->n_types; y++) {
-            product += (double)all[y] * (double)t->net_gradient[at + y];
+            product += (double)all[y] * (double)t->net.gradient[at + y];
             square += (double)all[y] * (double)all[y];
         }
     }
@@ -198,8 +198,8 @@ static void test_threads(void **state)
 
         begin(&t, &how[i]);
         run(&t, 3, 0.6, 0.5f);
-        assert_memory_equal(t.net_gradient, alone.net_gradient,
-                            t.layout.n_net * sizeof *t.net_gradient);
+        assert_memory_equal(t.net.gradient, alone.net.gradient,
+                            t.layout.n_net * sizeof *t.net.gradient);
         assert_memory_equal(t.slots.gradients, alone.slots.gradients,
                             BLOCKS * floats * sizeof(float));
         assert_memory_equal(t.slots.block, alone.slots.block, BLOCKS * sizeof *t.slots.block);

@@ -269,12 +269,12 @@ static void test_networks(void **state)
     cloud_make(&cloud, 5);
     cloud_begin(&cloud, &t);
     cloud_begin(&cloud, &other);
-    assert_memory_equal(t.net, other.net, t.layout.n_net * sizeof *t.net);
+    assert_memory_equal(t.net.value, other.net.value, t.layout.n_net * sizeof *t.net.value);
     ted4_trainer_finish(&other);
     cloud.options.seed = 1;
     cloud_begin(&cloud, &other);
     for (size_t i = 0; i < t.layout.nete; i++)
-        same += t.net[i] == other.net[i];
+        same += t.net.value[i] == other.net.value[i];
 
     const ted4_net_shape *deform = &t.layout.shape.netr[TED4_NET_DEFORM];
     const int last = deform->n_layers - 1;
@@ -282,8 +282,8 @@ static void test_networks(void **state)
     const size_t end = t.layout.shape.netr[TED4_NET_OPACITY].first;
 
     for (size_t i = end - n; i < end; i++)
-        assert_true(t.net[i] == 0.0f);
-    assert_true(t.net[end - n - deform->dim[last] - 1] != 0.0f);
+        assert_true(t.net.value[i] == 0.0f);
+    assert_true(t.net.value[end - n - deform->dim[last] - 1] != 0.0f);
     assert_true(same < n + 10);
     ted4_trainer_finish(&t);
     ted4_trainer_finish(&other);
@@ -324,7 +324,7 @@ static void test_awake(void **state)
 
         const ted4_net_shape *const s = &t.layout.shape.netr[TED4_NET_OPACITY];
 
-        answer(t.net + t.layout.netr + s->first, s, y);
+        answer(t.net.value + t.layout.netr + s->first, s, y);
         for (int k = 0; k < t.layout.head.n_offsets; k++)
             if (!(y[k] > 0))
                 fail_msg("seed %u: opacity %d begins at %g", seed, k, y[k]);

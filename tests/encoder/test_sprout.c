@@ -8,6 +8,7 @@
 #include "ball_group.h"
 #include "ball_missing.h"
 #include "train/densify/mv_seed.h"
+#include "train/densify/plane_sweep.h"
 #include "train/step/events.h"
 
 enum { SPEED = 2, STEPS = 120 }; /* the blue ball moves 0.5 a frame; its radius is 0.3 */

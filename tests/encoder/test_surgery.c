@@ -77,9 +77,9 @@ static double look(ted4_trainer *t, int keep)
             fail_msg("%s", t->message.text);
         for (size_t k = 0; k < PIXELS; k++)
             if (keep)
-                shot[i][k] = t->image[k];
+                shot[i][k] = t->work.image[k];
             else
-                most = fmax(most, fabs((double)(t->image[k] - shot[i][k])));
+                most = fmax(most, fabs((double)(t->work.image[k] - shot[i][k])));
     }
     return most;
 }
@@ -87,7 +87,7 @@ static double look(ted4_trainer *t, int keep)
 static float *weight(ted4_trainer *t, int net, int layer, size_t *in, size_t *out)
 {
     const ted4_net_shape *s = &t->layout.shape.netr[net];
-    float *w = t->net + t->layout.netr + s->first;
+    float *w = t->net.value + t->layout.netr + s->first;
 
     for (int i = 0; i < layer; i++)
         w += ((size_t)s->dim[i] + 1) * s->dim[i + 1];
@@ -148,9 +148,9 @@ static void test_nothing(void **state)
     ted4_surgery_begin(&s, &t);
     assert_int_equal(ted4_surgery_apply(&t, &s), 0);
     for (size_t i = 0; i < t.layout.n_net; i++) { /* a zero may lose its sign */
-        assert_true(t.net[i] == twin.net[i]);
-        assert_true(t.net_m[i] == twin.net_m[i]);
-        assert_true(t.net_v[i] == twin.net_v[i]);
+        assert_true(t.net.value[i] == twin.net[i]);
+        assert_true(t.net.m[i] == twin.net_m[i]);
+        assert_true(t.net.v[i] == twin.net_v[i]);
     }
     a = ball_finish(&t);
     b = ball_finish(&twin);
@@ -281,7 +281,7 @@ static void test_rows(void **state)
     go_there(&t);
 
     const size_t D = t.layout.head.bank_dim;
-    float *z = t.net + t.layout.bank;
+    float *z = t.net.value + t.layout.bank;
 
     assert_int_equal(t.layout.head.bank_rows, 3);
     for (size_t c = 0; c < D; c++)

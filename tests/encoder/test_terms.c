@@ -41,7 +41,7 @@ static double log_size(const ted4_trainer *t)
 static double roughness(const ted4_trainer *t)
 {
     const size_t D = t->layout.head.bank_dim, M = t->layout.head.bank_rows;
-    const float *z = t->net + t->layout.bank;
+    const float *z = t->net.value + t->layout.bank;
     double sum = 0;
 
     for (size_t i = 0; i + 2 < M; i++)
@@ -201,17 +201,18 @@ static int moved(ted4_trainer *t)
 
     assert_non_null(net);
     assert_non_null(value);
-    memcpy(net, t->net, l->n_net * sizeof *net);
+    memcpy(net, t->net.value, l->n_net * sizeof *net);
     memcpy(value, t->anchors.data[TED4_ROW_VALUE], values * sizeof *value);
     ball_train(t, t->iteration + STEPS);
     assert_int_equal(t->anchors.n, anchors);
     for (int i = 0; i < TED4_NETS_R; i++) {
         const size_t end = i + 1 < TED4_NETS_R ? s->netr[i + 1].first : s->n_netr;
 
-        parts |= differs(t->net, net, l->netr + s->netr[i].first, end - s->netr[i].first) << i;
+        parts |= differs(t->net.value, net, l->netr + s->netr[i].first, end - s->netr[i].first)
+                 << i;
     }
-    parts |= differs(t->net, net, l->bank, s->n_bank) ? BANK : 0;
-    parts |= differs(t->net, net, l->nete, s->n_nete) ? PRIOR : 0;
+    parts |= differs(t->net.value, net, l->bank, s->n_bank) ? BANK : 0;
+    parts |= differs(t->net.value, net, l->nete, s->n_nete) ? PRIOR : 0;
     for (int y = 0; y < TED4_TYPES; y++)
         parts |= channels_differ(t, value, l->first[y], (int)s->dim[y]) ? TYPES << y : 0;
     parts |= channels_differ(t, value, l->offset_logit, l->head.n_offsets) ? OFFSET_MASK : 0;

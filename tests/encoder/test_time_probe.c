@@ -34,8 +34,8 @@ static void check_same(const ted4_trainer *a, const ted4_trainer *b)
         assert_memory_equal(a->anchors.data[k], b->anchors.data[k],
                             a->anchors.n_blocks * (size_t)a->anchors.rows[k] * TED4_LANES *
                                 sizeof(float));
-    assert_memory_equal(a->net, b->net, a->layout.n_net * sizeof *a->net);
-    assert_memory_equal(a->net_v, b->net_v, a->layout.n_net * sizeof *a->net_v);
+    assert_memory_equal(a->net.value, b->net.value, a->layout.n_net * sizeof *a->net.value);
+    assert_memory_equal(a->net.v, b->net.v, a->layout.n_net * sizeof *a->net.v);
     assert_memory_equal(a->order.item, b->order.item, a->order.n * sizeof *a->order.item);
     assert_int_equal(a->order.next, b->order.next);
 }
@@ -50,12 +50,12 @@ static void test_moving(void **state)
     ball_load(&folder, &d, FRAMES, 1);
     train(&a, &d, "probe=0.1");
     train(&b, &d, "probe=0");
-    assert_true(a.probed);
-    assert_true(a.probe_loss[0] > 0);
-    assert_true(a.probe_loss[0] < 0.95 * a.probe_loss[1]);
-    assert_true(b.probed);
-    assert_true(b.probe_loss[0] == 0);
-    assert_true(b.probe_loss[1] == 0);
+    assert_true(a.search.probed);
+    assert_true(a.search.probe_loss[0] > 0);
+    assert_true(a.search.probe_loss[0] < 0.95 * a.search.probe_loss[1]);
+    assert_true(b.search.probed);
+    assert_true(b.search.probe_loss[0] == 0);
+    assert_true(b.search.probe_loss[1] == 0);
     assert_int_equal(a.layout.head.motion, TED4_MOTION_BANK);
     assert_int_equal(a.layout.head.activation, 1);
 
@@ -87,8 +87,9 @@ static void test_parts(void **state)
         ball_begin(&t, &o, &d, NULL);
         ball_train(&t, BEGIN + BRANCH + 1);
         /* The rule; a fifth is usual. */
-        if (!(t.probe_loss[0] > 0 && t.probe_loss[0] < 0.99 * t.probe_loss[1]))
-            fail_msg("%s: %g with time, %g without", without[i], t.probe_loss[0], t.probe_loss[1]);
+        if (!(t.search.probe_loss[0] > 0 && t.search.probe_loss[0] < 0.99 * t.search.probe_loss[1]))
+            fail_msg("%s: %g with time, %g without", without[i], t.search.probe_loss[0],
+                     t.search.probe_loss[1]);
         assert_int_equal(t.layout.head.motion, i == 0 ? TED4_MOTION_BANK : TED4_MOTION_NONE);
         assert_int_equal(t.layout.head.activation, i);
         ted4_trainer_finish(&t);
@@ -116,14 +117,14 @@ static void test_still(void **state)
     ball_begin(&t, &o, &d, NULL);
     ball_train(&t, BEGIN);
     assert_int_equal(ted4_trainer_step(&t), 0);
-    assert_true(t.probed);
-    assert_true(t.probe_loss[0] > 0.99 * t.probe_loss[1]);
+    assert_true(t.search.probed);
+    assert_true(t.search.probe_loss[0] > 0.99 * t.search.probe_loss[1]);
     assert_int_equal(t.iteration, 1);
     assert_int_equal(t.layout.head.motion, TED4_MOTION_NONE);
     assert_int_equal(t.layout.head.temporal_mask, 0);
     assert_int_equal(t.layout.head.activation, 0);
     assert_int_equal(t.layout.shape.n_bank, 0);
-    assert_int_equal(t.clock_stopped, 0);
+    assert_int_equal(t.phase.clock_stopped, 0);
     assert_int_equal(ted4_snapshot_take(&t, &early), 0);
     ball_train(&t, BEGIN + BRANCH + 1);
 
@@ -161,8 +162,8 @@ static void test_short(void **state)
     (void)state;
     ball_load(&folder, &d, FRAMES, 0);
     train(&t, &d, "probe=0.09");
-    assert_true(t.probed);
-    assert_true(t.probe_loss[0] == 0);
+    assert_true(t.search.probed);
+    assert_true(t.search.probe_loss[0] == 0);
     assert_int_equal(t.layout.head.motion, TED4_MOTION_BANK);
     ted4_trainer_finish(&t);
     ted4_dataset_free(&d);

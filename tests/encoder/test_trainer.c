@@ -247,7 +247,7 @@ static void test_impossible_state(void **state)
     ball_begin(&t, &o, &moving_scene, NULL);
     assert_int_equal(ted4_checkpoint_save(&t, stop_path(0)), 0);
     before = read_file(stop_path(0));
-    t.bits[0] = 0;
+    t.net.bits[0] = 0;
     errno = 0;
     assert_int_equal(ted4_checkpoint_save(&t, stop_path(0)), -1);
     assert_non_null(strstr(t.message.text, stop_path(0)));
@@ -354,8 +354,8 @@ static void test_rate(void **state)
     assert_int_equal(ted4_slots_fill(&t, NULL), 0);
 
     const ted4_rate_input in = { &t.layout,
-                                 t.net,
-                                 t.shift,
+                                 t.net.value,
+                                 t.net.shift,
                                  t.slots.n,
                                  t.slots.raw,
                                  t.slots.position,
@@ -367,9 +367,9 @@ static void test_rate(void **state)
                                  0.0f,
                                  1 };
 
-    ted4_rate_pack(t.rate, t.net);
-    assert_int_equal(ted4_rate_evaluate(t.rate, &in, NULL, NULL, NULL, NULL, t.slots.steps, bits),
-                     0);
+    ted4_rate_pack(t.work.rate, t.net.value);
+    assert_int_equal(
+        ted4_rate_evaluate(t.work.rate, &in, NULL, NULL, NULL, NULL, t.slots.steps, bits), 0);
     for (int y = 0; y < TED4_TYPES; y++) {
         assert_true(fabs(bits[y] - coded.type[y]) < 0.02 * coded.type[y]);
         sum += bits[y];
@@ -398,7 +398,7 @@ static void check_nan(uint64_t iteration, int which)
                       : which == TED4_NETS_R ? l->bank + 1
                                              : l->nete + 1;
 
-    t.net[at] = which % 2 ? NAN : INFINITY;
+    t.net.value[at] = which % 2 ? NAN : INFINITY;
     assert_int_equal(ted4_make_scene(&t, &s), -1);
     assert_null(s);
     assert_non_null(strstr(t.message.text, "network weight is not finite at step"));

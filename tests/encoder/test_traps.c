@@ -30,9 +30,8 @@ static cloud_case cloud;
 /* Gradients of the sum of all opacities at a frame, in t->slots.gradient. */
 static void opacity_gradients(ted4_trainer *t, uint32_t frame)
 {
-    ted4_generate_input in = {
-        &t->layout, t->net, 0, NULL, NULL, NULL, frame, FRAMES - 1, { 0 }, 1
-    };
+    ted4_generate_input in = { &t->layout, t->net.value, 0,          NULL,  NULL,
+                               NULL,       frame,        FRAMES - 1, { 0 }, 1 };
     ted4_splats s;
     ted4_splat_grads g;
 
@@ -42,8 +41,8 @@ static void opacity_gradients(ted4_trainer *t, uint32_t frame)
     in.attr = t->slots.raw;
     in.position = t->slots.position;
     in.lanes = t->slots.lanes;
-    ted4_generator_pack(t->generator, t->net);
-    assert_int_equal(ted4_generate(t->generator, &in, NULL, &s), 0);
+    ted4_generator_pack(t->work.generator, t->net.value);
+    assert_int_equal(ted4_generate(t->work.generator, &in, NULL, &s), 0);
 
     float *zero = calloc(s.n, sizeof *zero), *one = malloc(s.n * sizeof *one);
     uint8_t *seen = malloc(s.n);
@@ -62,8 +61,9 @@ static void opacity_gradients(ted4_trainer *t, uint32_t frame)
     g.opacity = one;
     g.mean2d = zero;
     g.visible = seen;
-    assert_int_equal(
-        ted4_generate_backward(t->generator, &in, &g, NULL, t->slots.gradient, t->net_gradient), 0);
+    assert_int_equal(ted4_generate_backward(t->work.generator, &in, &g, NULL, t->slots.gradient,
+                                            t->net.gradient),
+                     0);
     free(zero);
     free(one);
     free(seen);
@@ -138,7 +138,7 @@ static void test_saddle(void **state)
     assert_int_equal(t.layout.head.phi_dim, 4);
 
     const ted4_shape *s = &t.layout.shape;
-    const float *d = t.net_gradient + t.layout.netr;
+    const float *d = t.net.gradient + t.layout.netr;
     const ted4_net_shape *project = &s->netr[TED4_NET_PROJECT], *deform = &s->netr[TED4_NET_DEFORM];
 
     for (size_t i = 0; i < t.slots.n; i++)
@@ -146,7 +146,7 @@ static void test_saddle(void **state)
     assert_true(on_phi > 0);
     assert_true(magnitude(d + project->first, first_layer(project)) > 0);
     assert_true(magnitude(d + deform->first, first_layer(deform)) > 0);
-    assert_true(magnitude(t.net_gradient + t.layout.bank, s->n_bank) > 0);
+    assert_true(magnitude(t.net.gradient + t.layout.bank, s->n_bank) > 0);
     ted4_trainer_finish(&t);
 }
 
@@ -159,7 +159,7 @@ static void blind_opacity(ted4_trainer *t)
     const ted4_net_shape *s = &t->layout.shape.netr[TED4_NET_OPACITY];
 
     for (size_t o = 0; o < s->dim[1]; o++)
-        t->net[t->layout.netr + s->first + o * s->dim[0]] = 0.0f;
+        t->net.value[t->layout.netr + s->first + o * s->dim[0]] = 0.0f;
 }
 
 /* Runaway values come out as the largest symbols, with their sign, in a file that decodes. */

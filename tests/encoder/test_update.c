@@ -64,10 +64,10 @@ static void check_volume(ted4_trainer *t, unsigned share)
         }
     }
     for (int j = 0; j < 3; j++) {
-        t->splat_gradient.scale[j] = d[j];
-        t->splat_gradient.mean[j] = centre[j];
+        t->work.splat_gradient.scale[j] = d[j];
+        t->work.splat_gradient.mean[j] = centre[j];
     }
-    t->splat_gradient.visible = seen;
+    t->work.splat_gradient.visible = seen;
     assert_int_equal(ted4_update_volume(t, &s), n);
     assert_true(t->watch.drawn == (double)n);
     assert_true(fabs(t->watch.norm[TED4_TERM_CENTRE] - sqrt(squares)) < 1e-6 * sqrt(squares));
@@ -125,13 +125,13 @@ static void test_bank(void **state)
         begin(&t, frames[k]);
         t.opt.tv_weight = 2;
         const size_t rows = t.layout.head.bank_rows, width = t.layout.head.bank_dim;
-        const float *d = t.net_gradient + t.layout.bank;
+        const float *d = t.net.gradient + t.layout.bank;
         double *z = malloc(rows * width * sizeof *z);
 
         assert_non_null(z);
         assert_int_equal(rows, (frames[k] + 1) / 2);
         for (size_t i = 0; i < rows * width; i++)
-            z[i] = (double)t.net[t.layout.bank + i];
+            z[i] = (double)t.net.value[t.layout.bank + i];
         ted4_update_bank(&t);
         for (size_t i = 0; i < rows * width; i++) {
             const double h = 1e-4, at = z[i];
@@ -185,7 +185,7 @@ static void test_masks(void **state)
         const size_t floats = (size_t)t.layout.n_channels * TED4_LANES;
         const int K = t.layout.head.n_offsets;
 
-        t.stage2 = stage2;
+        t.phase.stage2 = stage2;
         t.opt.lambda = 5;
         t.opt.temporal_weight = 0.7;
         for (size_t i = 0; i < t.anchors.n; i++)

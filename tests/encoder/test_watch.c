@@ -221,14 +221,14 @@ static void test_networks(void **state)
 
     (void)state;
     begin_at(&t, KEPT + 20);
-    t.net[t.layout.bank + 2] = 1e12f;
+    t.net.value[t.layout.bank + 2] = 1e12f;
     assert_int_equal(ted4_trainer_step(&t), 0);
     assert_string_equal(t.watch.find.cause, "exploded");
     assert_int_equal(t.iteration, KEPT);
     for (int which = 0; which < 2; which++) {
         ball_train(&t, KEPT + 20);
-        t.net[which ? t.layout.bank + 2
-                    : t.layout.netr + t.layout.shape.netr[TED4_NET_COLOUR].first] = NAN;
+        t.net.value[which ? t.layout.bank + 2
+                          : t.layout.netr + t.layout.shape.netr[TED4_NET_COLOUR].first] = NAN;
         expect_back(&t, KEPT, "not finite", which ? "weight of bank" : "weight of heads", -1);
     }
     finish(&t);
@@ -333,21 +333,21 @@ static void test_smaller(void **state)
     ted4_schedule_rates(&t, before);
     ball_train(&t, KEPT + 1);
 
-    const float weight = t.net[t.layout.netr];
+    const float weight = t.net.value[t.layout.netr];
 
     ted4_trainer_finish(&t);
     begin_at(&t, KEPT + 30);
-    t.net[t.layout.netr] = NAN;
+    t.net.value[t.layout.netr] = NAN;
     expect_back(&t, KEPT, "not finite", "weight of motion", -1);
     ted4_schedule_rates(&t, after);
     for (int c = 0; c < t.layout.n_channels; c++)
         assert_true(after[c] == 0.5f * before[c]);
 
-    const float start = t.net[t.layout.netr];
+    const float start = t.net.value[t.layout.netr];
 
     ball_train(&t, KEPT + 1);
     assert_true(weight != start);
-    assert_true(fabsf((t.net[t.layout.netr] - start) / (weight - start) - 0.5f) < 0.01f);
+    assert_true(fabsf((t.net.value[t.layout.netr] - start) / (weight - start) - 0.5f) < 0.01f);
     ted4_trainer_finish(&t);
 }
 
@@ -365,10 +365,10 @@ static void test_other_layout(void **state)
         *ted4_cell(&t.anchors, TED4_ROW_VALUE, i, t.layout.temporal_logit) = -10.0f;
     ball_train(&t, STAGE1 + 5);
     assert_int_equal(t.layout.head.motion, TED4_MOTION_NONE);
-    t.net[t.layout.netr] = NAN;
+    t.net.value[t.layout.netr] = NAN;
     expect_back(&t, STAGE1, "not finite", "weight of heads", -1);
     assert_int_equal(t.layout.head.motion, TED4_MOTION_BANK);
-    assert_true(!t.stage2);
+    assert_true(!t.phase.stage2);
     finish(&t);
 }
 
@@ -416,7 +416,7 @@ static void test_three_times(void **state)
 static ball_file fail_again(ted4_trainer *t)
 {
     ball_train(t, 340);
-    t->net[t->layout.bank] = NAN;
+    t->net.value[t->layout.bank] = NAN;
     expect_back(t, KEPT, "not finite", "weight of bank", -1);
     assert_true(t->watch.state.factor == 0.25);
     return ball_finish(t);
@@ -436,7 +436,7 @@ static void test_resumed(void **state)
     calm = ball_finish(&t);
     ted4_trainer_finish(&t);
     begin_at(&t, 300);
-    t.net[t.layout.bank] = NAN;
+    t.net.value[t.layout.bank] = NAN;
     expect_back(&t, KEPT, "not finite", "weight of bank", -1);
     ball_train(&t, 320);
     assert_int_equal(ted4_checkpoint_save(&t, path), 0);

@@ -78,7 +78,7 @@ static inline void ball_set_biases(ted4_trainer *t, int net, size_t n, float val
     for (int i = 0; i < s->n_layers; i++)
         end += ((size_t)s->dim[i] + 1) * s->dim[i + 1];
     for (size_t i = 1; i <= n; i++)
-        t->net[end - i] = value;
+        t->net.value[end - i] = value;
 }
 
 /* Ends training and makes the file. */

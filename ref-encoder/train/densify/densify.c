@@ -61,8 +61,8 @@ static void gather_slot(void *arg, size_t i)
     }
     for (int k = 0; k < K; k++) {
         const size_t at = (i * (size_t)K + (size_t)k) * TED4_LANES;
-        const float *d = t->splat_gradient.mean2d + at, *shown = g->s->opacity + at;
-        const uint8_t *seen = t->splat_gradient.visible + at;
+        const float *d = t->work.splat_gradient.mean2d + at, *shown = g->s->opacity + at;
+        const uint8_t *seen = t->work.splat_gradient.visible + at;
         float *sum = gradient + k * TED4_LANES;
         float *count = gradient + (K + k) * TED4_LANES;
 

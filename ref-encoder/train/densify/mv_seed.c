@@ -10,6 +10,7 @@
 #include "math/elementary.h"
 #include "train/math/random.h"
 #include "photo_votes.h"
+#include "plane_sweep.h"
 #include "train/model/normalise.h"
 #include "train/state/anchor_appearance.h"
 
@@ -104,22 +105,6 @@ static int mark(ted4_cells *taken, const ted4_place *p, const ted4_span *span)
         if (f != p->frame)
             ted4_cells_add(taken, ted4_mix(key + f) | 1);
     return 1;
-}
-
-int ted4_place_compare(const void *x, const void *y)
-{
-    const ted4_place *a = x, *b = y;
-
-    if (a->score != b->score)
-        return a->score > b->score ? -1 : 1;
-    if (a->frame != b->frame)
-        return a->frame < b->frame ? -1 : 1;
-    for (int k = 0; k < 3; k++)
-        if (a->point[k] != b->point[k])
-            return a->point[k] < b->point[k] ? -1 : 1;
-    if (a->size != b->size)
-        return a->size < b->size ? -1 : 1;
-    return memcmp(a->colour, b->colour, sizeof a->colour);
 }
 
 static int plant(ted4_trainer *t, const ted4_places *list, const ted4_sightings *s, const looks *l)

@@ -1,5 +1,7 @@
-/* plane_sweep.c - see mv_seed.h: the places of one frame.
+/* plane_sweep.c - see plane_sweep.h.
  * SPDX-License-Identifier: BSD-2-Clause */
+#include "plane_sweep.h"
+
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -8,7 +10,6 @@
 #include "math/elementary.h"
 #include "photo_votes.h"
 #include "train/model/normalise.h"
-#include "mv_seed.h"
 #include "train/state/picture.h"
 
 /* A pixel misses something when its error, averaged over the channels, is this many of 255; one
@@ -199,7 +200,7 @@ static int open_eye(ted4_trainer *t, size_t item, eye *e)
         float sum = 0;
 
         for (size_t k = 0; k < 3; k++) {
-            const float x = fminf(fmaxf(t->image[k * n + i], 0.0f), 1.0f);
+            const float x = fminf(fmaxf(t->work.image[k * n + i], 0.0f), 1.0f);
 
             sum += fabsf(255.0f * x - (float)truth[3 * i + k]);
         }
@@ -252,6 +253,22 @@ static int search_eye(const ted4_trainer *t, eye *eyes, size_t n, size_t self, u
         }
     free(j.found);
     return bad ? -1 : 0;
+}
+
+int ted4_place_compare(const void *x, const void *y)
+{
+    const ted4_place *a = x, *b = y;
+
+    if (a->score != b->score)
+        return a->score > b->score ? -1 : 1;
+    if (a->frame != b->frame)
+        return a->frame < b->frame ? -1 : 1;
+    for (int k = 0; k < 3; k++)
+        if (a->point[k] != b->point[k])
+            return a->point[k] < b->point[k] ? -1 : 1;
+    if (a->size != b->size)
+        return a->size < b->size ? -1 : 1;
+    return memcmp(a->colour, b->colour, sizeof a->colour);
 }
 
 /* The surest place of each cell from the first on, and of these the surest, most at most. 0, or -1:

@@ -241,7 +241,7 @@ static void turn_maker(float *w, size_t in, size_t out, const axes *a)
 static void turn_networks(ted4_trainer *t, const axes *a)
 {
     const ted4_net_shape *deform = &t->layout.shape.netr[TED4_NET_DEFORM];
-    float *netr = t->net + t->layout.netr, *w = netr + deform->first;
+    float *netr = t->net.value + t->layout.netr, *w = netr + deform->first;
 
     for (int i = TED4_NET_OPACITY; i <= TED4_NET_COLOUR; i++) {
         const ted4_net_shape *s = &t->layout.shape.netr[i];

@@ -87,19 +87,20 @@ static void change_domain(ted4_trainer *t)
         }
         *ted4_cell(a, TED4_ROW_STEP, i, TED4_SCALING) = l->head.step[TED4_SCALING];
     }
-    ted4_seed_prior_type(t->net, l, a, TED4_SCALING);
+    ted4_seed_prior_type(t->net.value, l, a, TED4_SCALING);
 }
 
 int ted4_surgery_apply(ted4_trainer *t, const ted4_surgery *s)
 {
     const ted4_layout from = t->layout;
     ted4_anchors old = t->anchors;
-    float *net[TED4_SURGERY_ARRAYS] = { t->net, t->net_m, t->net_v }, context[TED4_MAX_FEATURE];
+    float *net[TED4_SURGERY_ARRAYS] = { t->net.value, t->net.m, t->net.v },
+          context[TED4_MAX_FEATURE];
     int bad;
 
     mean_contexts(&from, &old, context);
     ted4_layout_make(&t->layout, &s->head);
-    t->net = t->net_m = t->net_v = NULL;
+    t->net.value = t->net.m = t->net.v = NULL;
     bad = ted4_anchors_init(&t->anchors, &t->layout) != 0 ||
           ted4_anchors_resize(&t->anchors, old.n) != 0 || ted4_trainer_rebuild(t) != 0;
     if (!bad) {
@@ -108,7 +109,7 @@ int ted4_surgery_apply(ted4_trainer *t, const ted4_surgery *s)
                                       &t->layout,
                                       context,
                                       { net[0], net[1], net[2] },
-                                      { t->net, t->net_m, t->net_v } };
+                                      { t->net.value, t->net.m, t->net.v } };
 
         bad = map_anchors(t, s, &from, &old) != 0 || ted4_surgery_networks(&n) != 0;
     }

@@ -76,7 +76,7 @@ int ted4_site_readers(const ted4_trainer *t, ted4_site site, float **rows)
 {
     const ted4_layout *l = &t->layout;
     const ted4_shape *s = &l->shape;
-    const float *netr = t->net + l->netr, *nete = t->net + l->nete;
+    const float *netr = t->net.value + l->netr, *nete = t->net.value + l->nete;
     const int concat = l->head.motion == TED4_MOTION_CONCAT;
     reader_rows r = { NULL, ted4_site_width(l, site), 0 };
     int bad = 0;

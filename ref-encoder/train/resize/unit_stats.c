@@ -89,7 +89,7 @@ static void deform_input(const sampling *s, float *x)
         memcpy(x + d, s->bank, D * sizeof *x);
         return;
     }
-    dense(s->t->net + l->netr + p->first, d, D, phi, x, 0);
+    dense(s->t->net.value + l->netr + p->first, d, D, phi, x, 0);
     for (size_t c = 0; c < D; c++)
         x[c] *= s->bank[c];
 }
@@ -108,7 +108,7 @@ static void head_input(const sampling *s, int moved, float *x)
 
     if (moved && s->dynamic && has_deform(l)) {
         deform_input(s, y);
-        run(s->t->net + l->netr, &l->shape.netr[TED4_NET_DEFORM], y,
+        run(s->t->net.value + l->netr, &l->shape.netr[TED4_NET_DEFORM], y,
             l->shape.netr[TED4_NET_DEFORM].n_layers);
     } else {
         memset(y, 0, (size_t)(3 + F) * sizeof *y);
@@ -131,7 +131,7 @@ static void sample_motion(sampling *s)
     } else {
         deform_input(s, x);
         if (s->site.kind == TED4_SITE_HIDDEN)
-            run(s->t->net + l->netr, &l->shape.netr[TED4_NET_DEFORM], x, s->site.layer);
+            run(s->t->net.value + l->netr, &l->shape.netr[TED4_NET_DEFORM], x, s->site.layer);
     }
     take(s, x);
 }
@@ -144,7 +144,7 @@ static void sample_heads(sampling *s)
 
     head_input(s, moved, x);
     if (s->site.kind == TED4_SITE_HIDDEN)
-        run(s->t->net + l->netr, &l->shape.netr[s->site.net], x, s->site.layer);
+        run(s->t->net.value + l->netr, &l->shape.netr[s->site.net], x, s->site.layer);
     take(s, x);
     if (s->site.kind == TED4_SITE_FEATURE && s->dynamic && has_deform(l)) {
         head_input(s, 0, x);
@@ -172,7 +172,7 @@ static void encode_position(const sampling *s, float *x)
 static void sample_prior(sampling *s)
 {
     const ted4_layout *l = &s->t->layout;
-    const float *nete = s->t->net + l->nete;
+    const float *nete = s->t->net.value + l->nete;
     float x[MOST] = { 0 };
 
     if (s->site.kind == TED4_SITE_SLICE) {
@@ -215,7 +215,7 @@ static void bank_at(sampling *s, uint32_t num)
         return;
 
     const uint64_t g = num * (uint64_t)(l->head.bank_rows - 1);
-    const float *z = s->t->net + l->bank + (size_t)(g / den) * D;
+    const float *z = s->t->net.value + l->bank + (size_t)(g / den) * D;
     const float mix = (float)(g % den) / (float)den;
 
     for (size_t c = 0; c < D; c++)
@@ -251,8 +251,8 @@ static void sample_picture(sampling *s, size_t item, float *value)
         s->lane = s->anchor % TED4_LANES;
         if (!(ted4_block_visible(t, block, &v) >> s->lane & 1))
             continue;
-        s->value = t->stage2 ? value : ted4_block(&t->anchors, TED4_ROW_VALUE, block);
-        if (t->stage2)
+        s->value = t->phase.stage2 ? value : ted4_block(&t->anchors, TED4_ROW_VALUE, block);
+        if (t->phase.stage2)
             ted4_quantise(&t->layout, TED4_QUANT_ROUND,
                           ted4_block(&t->anchors, TED4_ROW_VALUE, block),
                           ted4_block(&t->anchors, TED4_ROW_STEP, block), (uint32_t)block, 0, value);

@@ -47,11 +47,11 @@ int ted4_move_now(const ted4_trainer *t, ted4_move m)
     switch (m) {
     case TED4_MOVE_MOTION: return h->motion != TED4_MOTION_NONE;
     case TED4_MOVE_ACTIVATION: return h->activation;
-    case TED4_MOVE_HEAD_BITS: return t->bits[TED4_GRID_HEADS];
+    case TED4_MOVE_HEAD_BITS: return t->net.bits[TED4_GRID_HEADS];
     case TED4_MOVE_MOTION_BITS:
-        return h->motion != TED4_MOTION_NONE ? t->bits[TED4_GRID_MOTION] : 0;
-    case TED4_MOVE_BANK_BITS: return h->bank_dim > 0 ? t->bits[TED4_GRID_BANK] : 0;
-    case TED4_MOVE_PRIOR_BITS: return t->bits[TED4_GRID_PRIOR];
+        return h->motion != TED4_MOTION_NONE ? t->net.bits[TED4_GRID_MOTION] : 0;
+    case TED4_MOVE_BANK_BITS: return h->bank_dim > 0 ? t->net.bits[TED4_GRID_BANK] : 0;
+    case TED4_MOVE_PRIOR_BITS: return t->net.bits[TED4_GRID_PRIOR];
     case TED4_MOVE_HYPER: return h->hyper_layers > 0 ? h->hyper_width : 0;
     case TED4_MOVE_AR: return h->ar_width;
     case TED4_MOVE_SLICES: return h->n_slices;
@@ -367,7 +367,7 @@ int ted4_move_make(ted4_trainer *t, ted4_move m, int to)
     int bad;
 
     if (m >= TED4_MOVE_HEAD_BITS && m <= TED4_MOVE_PRIOR_BITS) {
-        t->bits[m - TED4_MOVE_HEAD_BITS + TED4_GRID_HEADS] = to;
+        t->net.bits[m - TED4_MOVE_HEAD_BITS + TED4_GRID_HEADS] = to;
         return 0;
     }
     ted4_surgery_begin(&o.s, t);

@@ -47,12 +47,12 @@ double ted4_capacity_afford(const ted4_trainer *t, double steps)
 
 int ted4_capacity_note(ted4_trainer *t, const struct ted4_trial *x)
 {
-    struct ted4_trial *more = realloc(t->trial, (t->n_trials + 1) * sizeof *more);
+    struct ted4_trial *more = realloc(t->search.trial, (t->search.n_trials + 1) * sizeof *more);
 
     if (more == NULL)
         return ted4_trainer_fail(t, "no memory to note a trial");
-    t->trial = more;
-    more[t->n_trials++] = *x;
+    t->search.trial = more;
+    more[t->search.n_trials++] = *x;
     return 0;
 }
 

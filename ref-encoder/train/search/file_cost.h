@@ -18,7 +18,7 @@ double ted4_capacity_budget(const ted4_trainer *t);
 /* The same number of steps, or 0: too large a part of that budget for one decision. */
 double ted4_capacity_afford(const ted4_trainer *t, double steps);
 
-/* Appends to t->trial. 0, or -1 with t->message. */
+/* Appends to t->search.trial. 0, or -1 with t->message. */
 int ted4_capacity_note(ted4_trainer *t, const struct ted4_trial *x);
 
 #endif

@@ -249,8 +249,8 @@ int ted4_capacity_decide(ted4_trainer *t)
     search s = { .t = t, .budget = ted4_capacity_search_steps(t), .steps = trial_steps(t) };
     int bad = 0;
 
-    t->decided = TED4_DECIDED_MODEL; /* in every state that is kept from here on: trials make none
-                                        of their own */
+    t->search.decided = TED4_DECIDED_MODEL; /* in every state that is kept from here on: trials make
+                                        none of their own */
     if (s.steps > 0)
         bad = search_all(&s) != 0;
     ted4_snapshot_free(&s.now);

@@ -24,7 +24,7 @@ int ted4_capacity_refine(ted4_trainer *t)
     int best = ted4_move_now(t, m), to = ted4_move_finer(t, m), bad;
     ted4_cost least = { 0 };
 
-    t->decided = TED4_DECIDED_BITS;
+    t->search.decided = TED4_DECIDED_BITS;
     if (to < 0 || !(ted4_capacity_refine_steps(t) > 0))
         return 0;
     bad = ted4_capacity_cost(t, &least) != 0;

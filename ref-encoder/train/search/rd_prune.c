@@ -46,8 +46,8 @@ static int learn(ted4_trainer *t, worth *w)
         return -1;
 
     const ted4_rate_input in = { &t->layout,
-                                 t->net,
-                                 t->shift,
+                                 t->net.value,
+                                 t->net.shift,
                                  t->slots.n,
                                  t->slots.raw,
                                  t->slots.position,
@@ -59,7 +59,7 @@ static int learn(ted4_trainer *t, worth *w)
                                  0.0f,
                                  t->layout.head.activation };
 
-    return ted4_rate_lanes(t->rate, &in, t->parallel, t->slots.steps, w->bits) != 0
+    return ted4_rate_lanes(t->work.rate, &in, t->parallel, t->slots.steps, w->bits) != 0
                ? ted4_trainer_fail(t, "no memory to weigh anchors")
                : 0;
 }
@@ -142,7 +142,7 @@ int ted4_capacity_prune(ted4_trainer *t)
     struct ted4_trial x = { .move = TED4_MOVE_ANCHORS, .to = -1 };
     int bad;
 
-    t->decided = TED4_DECIDED_ALL;
+    t->search.decided = TED4_DECIDED_ALL;
     if (!(ted4_capacity_prune_steps(t) > 0))
         return 0;
     x.from = count_kept(t);

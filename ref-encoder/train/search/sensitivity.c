@@ -43,7 +43,7 @@ static void gather(const ted4_trainer *t, const ted4_splats *s, float weight, fl
                     continue;
 
                 use[anchor * K + k] += weight *
-                                       fabsf(s->opacity[at] * t->splat_gradient.opacity[at]);
+                                       fabsf(s->opacity[at] * t->work.splat_gradient.opacity[at]);
             }
 }
 

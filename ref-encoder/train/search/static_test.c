@@ -23,7 +23,7 @@ enum { FEWEST = 200 };
 
 int ted4_probe_due(const ted4_trainer *t)
 {
-    return !t->probed && t->iteration == (uint64_t)(PROBE_FROM * (double)t->opt.stage1);
+    return !t->search.probed && t->iteration == (uint64_t)(PROBE_FROM * (double)t->opt.stage1);
 }
 
 static int has_time(const ted4_trainer *t)
@@ -35,7 +35,7 @@ int ted4_probe_steps(const ted4_trainer *t)
 {
     const int n = (int)(t->opt.probe * (double)t->opt.stage1);
 
-    return t->probed || n < FEWEST || !has_time(t) ? 0 : n;
+    return t->search.probed || n < FEWEST || !has_time(t) ? 0 : n;
 }
 
 int ted4_probe_time(ted4_trainer *t)
@@ -45,7 +45,7 @@ int ted4_probe_time(ted4_trainer *t)
     ted4_header h = t->layout.head;
     double timed = 0, still = 0;
 
-    t->probed = 1;
+    t->search.probed = 1;
     if (n == 0)
         return 0;
     ted4_header_without_motion(&h);
@@ -54,15 +54,15 @@ int ted4_probe_time(ted4_trainer *t)
     int bad = ted4_snapshot_take(t, &start) != 0 || ted4_branch_run(t, n, &timed) != 0 ||
               ted4_snapshot_take(t, &with) != 0 || ted4_snapshot_restore(t, &start) != 0;
 
-    t->clock_stopped = 1;
+    t->phase.clock_stopped = 1;
     bad = bad || ted4_branch_run(t, n, &still) != 0;
-    t->clock_stopped = 0;
+    t->phase.clock_stopped = 0;
     if (!bad && timed < (1.0 - WORTH) * still)
         bad = ted4_snapshot_restore(t, &with) != 0;
     else if (!bad)
         bad = ted4_trainer_restart(t, &h) != 0;
-    t->probe_loss[0] = timed;
-    t->probe_loss[1] = still;
+    t->search.probe_loss[0] = timed;
+    t->search.probe_loss[1] = still;
     ted4_snapshot_free(&start);
     ted4_snapshot_free(&with);
     return bad ? -1 : 0;

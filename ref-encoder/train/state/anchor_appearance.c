@@ -14,7 +14,7 @@ enum { DIRECTIONS = 8 };
 static int generate_all(ted4_trainer *t, uint32_t item, ted4_splats *s)
 {
     ted4_view v;
-    ted4_generate_input in = { &t->layout, t->net, 0, NULL, NULL, NULL, 0, 1, { 0 }, 0 };
+    ted4_generate_input in = { &t->layout, t->net.value, 0, NULL, NULL, NULL, 0, 1, { 0 }, 0 };
 
     if (ted4_slots_fill(t, NULL) != 0)
         return -1;
@@ -24,8 +24,8 @@ static int generate_all(ted4_trainer *t, uint32_t item, ted4_splats *s)
     in.attr = t->slots.used;
     in.position = t->slots.position;
     in.lanes = t->slots.lanes;
-    ted4_generator_pack(t->generator, t->net);
-    return ted4_generate(t->generator, &in, t->parallel, s) != 0
+    ted4_generator_pack(t->work.generator, t->net.value);
+    return ted4_generate(t->work.generator, &in, t->parallel, s) != 0
                ? ted4_trainer_fail(t, "no memory to look at anchors")
                : 0;
 }

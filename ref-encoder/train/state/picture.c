@@ -17,18 +17,18 @@ int ted4_trainer_render(ted4_trainer *t, const ted4_picture *pic, int training, 
     if (ted4_slots_fill(t, v) != 0)
         return -1;
     in->layout = &t->layout;
-    in->net = t->net;
+    in->net = t->net.value;
     in->n_slots = t->slots.n;
     in->attr = t->slots.used;
     in->position = t->slots.position;
     in->lanes = t->slots.lanes;
-    in->num = t->data->n_frames > 1 && !t->clock_stopped ? pic->frame : 0;
+    in->num = t->data->n_frames > 1 && !t->phase.clock_stopped ? pic->frame : 0;
     in->den = t->data->n_frames > 1 ? t->data->n_frames - 1 : 1;
-    in->activation = t->layout.head.activation && !t->clock_stopped;
-    ted4_slots_quantise(t, training && !t->integer ? TED4_QUANT_NOISE : TED4_QUANT_ROUND);
-    ted4_generator_pack(t->generator, t->net);
-    if (ted4_generate(t->generator, in, t->parallel, s) != 0 ||
-        ted4_raster_forward(t->raster, s, v, t->parallel, training, t->image) != 0)
+    in->activation = t->layout.head.activation && !t->phase.clock_stopped;
+    ted4_slots_quantise(t, training && !t->phase.integer ? TED4_QUANT_NOISE : TED4_QUANT_ROUND);
+    ted4_generator_pack(t->work.generator, t->net.value);
+    if (ted4_generate(t->work.generator, in, t->parallel, s) != 0 ||
+        ted4_raster_forward(t->work.raster, s, v, t->parallel, training, t->work.image) != 0)
         return ted4_trainer_fail(t, "no memory to render");
     return 0;
 }
@@ -36,34 +36,34 @@ int ted4_trainer_render(ted4_trainer *t, const ted4_picture *pic, int training, 
 /* Room for the gradients of n splats. */
 static int reserve_splats(ted4_trainer *t, size_t n)
 {
-    ted4_splat_grads *g = &t->splat_gradient;
+    ted4_splat_grads *g = &t->work.splat_gradient;
     float *at;
 
-    if (n > t->splat_capacity) {
+    if (n > t->work.splat_capacity) {
         const size_t size = n + n / 2;
 
-        free(t->splat_storage);
-        free(t->splat_visible);
-        t->splat_storage = aligned_alloc(64, (size * 15 * sizeof(float) + 63) / 64 * 64);
-        t->splat_visible = malloc(size);
-        t->splat_capacity = size;
-        if (t->splat_storage == NULL || t->splat_visible == NULL) {
-            t->splat_capacity = 0;
+        free(t->work.splat_storage);
+        free(t->work.splat_visible);
+        t->work.splat_storage = aligned_alloc(64, (size * 15 * sizeof(float) + 63) / 64 * 64);
+        t->work.splat_visible = malloc(size);
+        t->work.splat_capacity = size;
+        if (t->work.splat_storage == NULL || t->work.splat_visible == NULL) {
+            t->work.splat_capacity = 0;
             return ted4_trainer_fail(t, "no memory for %zu Gaussians", n);
         }
     }
-    at = t->splat_storage;
-    for (int j = 0; j < 3; j++, at += t->splat_capacity)
+    at = t->work.splat_storage;
+    for (int j = 0; j < 3; j++, at += t->work.splat_capacity)
         g->mean[j] = at;
-    for (int j = 0; j < 3; j++, at += t->splat_capacity)
+    for (int j = 0; j < 3; j++, at += t->work.splat_capacity)
         g->scale[j] = at;
-    for (int j = 0; j < 4; j++, at += t->splat_capacity)
+    for (int j = 0; j < 4; j++, at += t->work.splat_capacity)
         g->rot[j] = at;
-    for (int j = 0; j < 3; j++, at += t->splat_capacity)
+    for (int j = 0; j < 3; j++, at += t->work.splat_capacity)
         g->colour[j] = at;
     g->opacity = at;
-    g->mean2d = at + t->splat_capacity;
-    g->visible = t->splat_visible;
+    g->mean2d = at + t->work.splat_capacity;
+    g->visible = t->work.splat_visible;
     return 0;
 }
 
@@ -71,7 +71,8 @@ int ted4_trainer_render_backward(ted4_trainer *t, const ted4_view *v, const ted4
 {
     if (reserve_splats(t, s->n) != 0)
         return -1;
-    return ted4_raster_backward(t->raster, s, v, t->parallel, t->d_image, &t->splat_gradient) != 0
+    return ted4_raster_backward(t->work.raster, s, v, t->parallel, t->work.d_image,
+                                &t->work.splat_gradient) != 0
                ? ted4_trainer_fail(t, "no memory for gradients")
                : 0;
 }
@@ -90,18 +91,18 @@ int ted4_trainer_draw(ted4_trainer *t, const ted4_picture *pic, ted4_view *v, fl
 int ted4_trainer_corrected(const ted4_trainer *t, const ted4_picture *pic)
 {
     return ted4_colour_has(&t->colour, pic->camera_id) &&
-           (t->colour.matched || t->stage2 ||
+           (t->colour.matched || t->phase.stage2 ||
             (double)t->iteration >= t->opt.colour_start * (double)t->opt.stage1);
 }
 
-/* t->image with the colours of the picture's camera. */
+/* t->work.image with the colours of the picture's camera. */
 static const float *shown(ted4_trainer *t, const ted4_picture *pic)
 {
     const size_t pixels = (size_t)pic->camera.width * (size_t)pic->camera.height;
 
     return ted4_trainer_corrected(t, pic)
-               ? ted4_colour_apply(&t->colour, pic->camera_id, t->image, pixels, t->parallel)
-               : t->image;
+               ? ted4_colour_apply(&t->colour, pic->camera_id, t->work.image, pixels, t->parallel)
+               : t->work.image;
 }
 
 const uint8_t *ted4_trainer_seen(ted4_trainer *t, size_t item)
@@ -119,17 +120,17 @@ double ted4_trainer_loss(ted4_trainer *t, const ted4_picture *pic, const uint8_t
                          ted4_colour_map map, double *l1, double *ssim)
 {
     const int width = pic->camera.width, height = pic->camera.height;
-    const double loss = ted4_loss(t->loss, shown(t, pic), truth, width, height, (float)t->opt.ssim,
-                                  t->parallel, t->d_image, l1, ssim);
+    const double loss = ted4_loss(t->work.loss, shown(t, pic), truth, width, height,
+                                  (float)t->opt.ssim, t->parallel, t->work.d_image, l1, ssim);
 
     if (map != NULL && ted4_trainer_corrected(t, pic) && loss >= 0)
-        ted4_colour_backward(&t->colour, pic->camera_id, t->image, (size_t)width * (size_t)height,
-                             t->parallel, t->d_image, map);
+        ted4_colour_backward(&t->colour, pic->camera_id, t->work.image,
+                             (size_t)width * (size_t)height, t->parallel, t->work.d_image, map);
     return loss;
 }
 
-/* Draws training picture item and leaves its gradient in t->d_image; cameras' colours stay as they
- * are. Loss, or negative with t->message. */
+/* Draws training picture item and leaves its gradient in t->work.d_image; cameras' colours stay as
+ * they are. Loss, or negative with t->message. */
 static double judge(ted4_trainer *t, size_t item, int keep, ted4_view *v, ted4_splats *s)
 {
     const ted4_picture *pic = &t->data->pictures[item];
@@ -182,7 +183,7 @@ static double preview(ted4_trainer *t, size_t item)
 
     for (int c = 0; c < 3; c++)
         for (size_t k = 0; k < pixels; k++) {
-            const float x = t->image[(size_t)c * pixels + k];
+            const float x = t->work.image[(size_t)c * pixels + k];
             const float e = (x < 0 ? 0 : x > 1 ? 1 : x) - (float)truth[3 * k + (size_t)c] / 255.0f;
 
             square += (double)(e * e);

@@ -8,24 +8,25 @@
 #include "trainer.h"
 
 /* Forward pass of one picture over t->slots, which are filled for its view; the image is in
- * t->image, planar. training: with the noise of stage 2, and what the rasteriser's way back needs.
- * *in, *s: borrow from t, valid until the next pass. 0, or -1 with t->message. */
+ * t->work.image, planar. training: with the noise of stage 2, and what the rasteriser's way back
+ * needs. *in, *s: borrow from t, valid until the next pass. 0, or -1 with t->message. */
 int ted4_trainer_render(ted4_trainer *t, const ted4_picture *pic, int training, ted4_view *v,
                         ted4_generate_input *in, ted4_splats *s);
-/* From t->d_image to t->splat_gradient, after a pass with training. 0, or -1 with t->message. */
+/* From t->work.d_image to t->work.splat_gradient, after a pass with training. 0, or -1 with
+ * t->message. */
 int ted4_trainer_render_backward(ted4_trainer *t, const ted4_view *v, const ted4_splats *s);
 
-/* Draws the model as it is now into t->image, planar, and tells view and camera centre in
+/* Draws the model as it is now into t->work.image, planar, and tells view and camera centre in
  * normalised space. 0, or -1 with t->message. */
 int ted4_trainer_draw(ted4_trainer *t, const ted4_picture *pic, ted4_view *v, float centre[3]);
 
 /* Are colours of this picture's camera corrected by now? Where nothing is known about them, the
  * scene first learns what most cameras agree about. */
 int ted4_trainer_corrected(const ted4_trainer *t, const ted4_picture *pic);
-/* Loss of t->image, in the colours of the picture's camera, against truth; its gradient is in
- * t->d_image. map: where the camera is corrected, gradient of its colour map, and that of the
- * scene's colours in t->d_image; NULL: that of the camera's colours there. l1, ssim: as ted4_loss.
- * Negative: no memory. */
+/* Loss of t->work.image, in the colours of the picture's camera, against truth; its gradient is in
+ * t->work.d_image. map: where the camera is corrected, gradient of its colour map, and that of the
+ * scene's colours in t->work.d_image; NULL: that of the camera's colours there. l1, ssim: as
+ * ted4_loss. Negative: no memory. */
 double ted4_trainer_loss(ted4_trainer *t, const ted4_picture *pic, const uint8_t *truth,
                          ted4_colour_map map, double *l1, double *ssim);
 /* The true picture number item, interleaved bytes, in the scene's colours; valid until
@@ -35,7 +36,7 @@ const uint8_t *ted4_trainer_seen(ted4_trainer *t, size_t item);
 /* Distortion of training picture item, drawn from the model as it is now; nothing is learnt from
  * it. Negative: failed, with t->message. */
 double ted4_trainer_distortion(ted4_trainer *t, size_t item);
-/* The same picture's gradients of the distortion on Gaussians, in t->splat_gradient; *s and
+/* The same picture's gradients of the distortion on Gaussians, in t->work.splat_gradient; *s and
  * t->slots: which Gaussians. 0, or -1 with t->message. */
 int ted4_trainer_blame(ted4_trainer *t, size_t item, ted4_splats *s);
 

@@ -4,6 +4,7 @@
 #ifndef TED4_SEARCH_STATE_H
 #define TED4_SEARCH_STATE_H
 
+#include <stddef.h>
 #include <stdint.h>
 
 /* Nothing yet; how much model there is; how coarse its weights are in the end; which anchors pay,
@@ -52,5 +53,14 @@ struct ted4_trial {
     int64_t taken; /* 1: the smaller model stays */
     ted4_cost before, after;
 };
+
+typedef struct {
+    int probed; /* it is settled whether the scene needs time at all (static_test.h) */
+    double
+        probe_loss[2]; /* mean losses that settled it: with time, without; 0: nothing was tried */
+    int decided;       /* how much of what the search settles has been: TED4_DECIDED_... */
+    struct ted4_trial *trial; /* owned: what settled it */
+    size_t n_trials;
+} ted4_search;
 
 #endif

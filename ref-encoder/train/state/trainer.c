@@ -37,7 +37,7 @@ double ted4_trainer_charged(const ted4_trainer *t)
     ted4_shape s;
     double sum = 0;
 
-    ted4_shape_make(&s, &t->charged);
+    ted4_shape_make(&s, &t->phase.charged);
     for (int y = 0; y < TED4_TYPES; y++)
         sum += s.dim[y];
     return sum;
@@ -63,7 +63,7 @@ int ted4_trainer_check(ted4_trainer *t, int anchors)
 {
     const unsigned long long now = t->iteration;
 
-    if (!all_finite(t->net, t->layout.n_net))
+    if (!all_finite(t->net.value, t->layout.n_net))
         return ted4_trainer_fail(t, "a network weight is not finite at step %llu", now);
     if (anchors && !all_finite(t->anchors.data[TED4_ROW_VALUE],
                                t->anchors.n_blocks * (size_t)t->layout.n_channels * TED4_LANES))

@@ -59,45 +59,66 @@ typedef struct {
     double spent, budget; /* of a probe, or of trials: training steps, so far and at most */
 } ted4_onlooker;
 
+/* The networks, and Adam's moments of them. */
 typedef struct {
-    ted4_train_options opt;
-    ted4_dataset *data;            /* borrowed */
-    const ted4_parallel *parallel; /* borrowed */
-    ted4_layout layout;
-    ted4_anchors anchors;
-    float *net, *net_m, *net_v, *net_gradient; /* owned, [n_net] */
-    uint8_t *shift;     /* owned, [n_units]; set when the integer stage starts, else NULL */
-    double cell;        /* voxel of growth, normalised space */
-    uint64_t iteration; /* steps done */
-    double seconds; /* that they took, over all runs that shared checkpoints: kept for the program,
-                       decides nothing */
+    float *value, *m, *v, *gradient; /* owned, [n_net] */
+    int bits[TED4_GRIDS];            /* of weights in the file: weight_grid.h */
+    uint8_t *shift; /* owned, [n_units]; set when the integer stage starts, else NULL */
+} ted4_networks;
+
+/* Where in the recipe training stands. */
+typedef struct {
     int stage2, integer;
-    int probed; /* it is settled whether the scene needs time at all (static_test.c) */
-    double
-        probe_loss[2]; /* mean losses that settled it: with time, without; 0: nothing was tried */
-    int clock_stopped; /* draw everything at time 0 and without activation */
+    int clock_stopped;     /* draw everything at time 0 and without activation */
     uint64_t stage2_start; /* Adam's count restarts there */
     ted4_header charged;   /* the first header, in stage 2 that at its start: a bit and a mask go on
                               weighing what they weighed in that model */
-    int bits[TED4_GRIDS];  /* of weights in the file: weight_grid.h */
-    int decided;           /* how much of what model_search.h settles has been: TED4_DECIDED_... */
-    struct ted4_trial *trial; /* owned: what settled it */
-    size_t n_trials;
-    ted4_order order;
-    ted4_progress progress;
-    ted4_watch watch;
+} ted4_phase;
 
+/* Workspaces and pictures of a step. */
+typedef struct {
     ted4_generator *generator;
     ted4_rate *rate;
     ted4_raster *raster;
     ted4_loss_workspace *loss;
-    ted4_colour colour; /* no cameras when switched off */
-    ted4_slots slots;
-    float *image, *d_image; /* planar, of the largest picture */
-    float *splat_storage;   /* gradients of splats */
-    uint8_t *splat_visible;
+    float *image, *d_image; /* owned: planar, of the largest picture */
+    float *splat_storage;   /* owned: gradients of splats */
+    uint8_t *splat_visible; /* owned */
     size_t splat_capacity;
-    ted4_splat_grads splat_gradient;
+    ted4_splat_grads splat_gradient; /* borrows from these */
+} ted4_step_work;
+
+/* Everything. Each part says which folder writes it; those above read it. */
+typedef struct {
+    /* Given: step/trainer_init.h. */
+    ted4_train_options opt;
+    ted4_dataset *data;            /* borrowed */
+    const ted4_parallel *parallel; /* borrowed */
+
+    /* What is learnt: by step/; densify/ adds and removes anchors, resize/ and search/ change the
+     * layout. */
+    ted4_layout layout;
+    ted4_anchors anchors;
+    ted4_networks net;
+    ted4_colour colour; /* no cameras when switched off */
+    double cell;        /* voxel of growth, normalised space */
+
+    /* How far training has come: step/. */
+    uint64_t iteration; /* steps done */
+    double seconds; /* that they took, over all runs that shared checkpoints: kept for the program,
+                       decides nothing */
+    ted4_phase phase;
+    ted4_order order;
+    ted4_progress progress;
+    ted4_watch watch;
+
+    /* What has been found out about the size of the model: search/. */
+    ted4_search search;
+
+    /* Buffers, of no meaning between steps: state/. */
+    ted4_slots slots;
+    ted4_step_work work;
+
     ted4_onlooker onlooker;
     ted4_message message; /* why the last call failed */
 } ted4_trainer;

@@ -142,7 +142,7 @@ int ted4_slots_fill(ted4_trainer *t, const ted4_view *v)
         s->drawn[i] = (uint32_t)i;
         s->position[i] = ted4_block(&t->anchors, TED4_ROW_POSITION, b);
         s->raw[i] = ted4_block(&t->anchors, TED4_ROW_VALUE, b);
-        s->used[i] = t->stage2 ? s->quantised + i * floats : s->raw[i];
+        s->used[i] = t->phase.stage2 ? s->quantised + i * floats : s->raw[i];
         s->gradient[i] = s->gradients + i * floats;
         s->steps[i] = ted4_block(&t->anchors, TED4_ROW_STEP, b);
         s->n++;
@@ -170,6 +170,6 @@ void ted4_slots_quantise(ted4_trainer *t, ted4_quant quant)
 {
     quantise_job j = { t, ted4_random(t->opt.seed, t->iteration), quant };
 
-    if (t->stage2)
+    if (t->phase.stage2)
         ted4_parallel_for(t->parallel, t->slots.n, quantise_slot, &j);
 }

@@ -79,7 +79,7 @@ static void update_piece(const update_job *j, size_t piece)
 
     const size_t left = r->n - piece * NET_PIECE, at = r->first + piece * NET_PIECE;
 
-    ted4_adam(t->net + at, t->net_m + at, t->net_v + at, t->net_gradient + at,
+    ted4_adam(t->net.value + at, t->net.m + at, t->net.v + at, t->net.gradient + at,
               left < NET_PIECE ? left : NET_PIECE, r->rate, j->bias);
 }
 
@@ -96,13 +96,14 @@ static void update_item(void *arg, size_t i)
 void ted4_update_parameters(ted4_trainer *t)
 {
     const ted4_header *h = &t->layout.head;
-    const uint64_t count = t->iteration - (t->stage2 ? t->stage2_start : 0) + 1;
+    const uint64_t count = t->iteration - (t->phase.stage2 ? t->phase.stage2_start : 0) + 1;
     const double n = (double)t->anchors.n;
     update_job j = { .t = t, .bias = ted4_adam_bias_make(count) };
 
     ted4_schedule_rates(t, j.rate);
-    if (t->stage2 && h->offset_mask)
-        j.mask_weight = (float)(t->opt.lambda * t->opt.mask_weight / (n * t->charged.n_offsets));
+    if (t->phase.stage2 && h->offset_mask)
+        j.mask_weight =
+            (float)(t->opt.lambda * t->opt.mask_weight / (n * t->phase.charged.n_offsets));
     if (h->motion != TED4_MOTION_NONE && h->temporal_mask)
         j.temporal_weight = (float)(t->opt.temporal_weight / n);
     for (int i = ted4_schedule_network(t, j.range) - 1; i >= 0; i--)

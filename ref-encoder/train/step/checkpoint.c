@@ -106,7 +106,8 @@ static void walk_options(stream *s, ted4_trainer *t)
     memcpy(value, mine, sizeof value);
     put(s, value, sizeof value);
     for (int i = 0; !s->failed && i <= TED4_OPTIONS; i++)
-        if (value[i] != mine[i] && (i == 0 || ted4_options_stage(i - 1) <= (t->stage2 ? 2 : 1)))
+        if (value[i] != mine[i] &&
+            (i == 0 || ted4_options_stage(i - 1) <= (t->phase.stage2 ? 2 : 1)))
             s->failed = ted4_trainer_fail(t, "its %s is %g, and %g is asked for",
                                           i == 0 ? "seed" : ted4_options_name(i - 1), value[i],
                                           mine[i]) != 0;
@@ -199,10 +200,10 @@ static int begin_layout(ted4_trainer *t, const ted4_header *h)
 {
     const size_t n = t->layout.n_net;
 
-    if (ted4_header_same(&t->layout.head, h) && t->generator != NULL && t->rate != NULL) {
-        memset(t->net, 0, n * sizeof *t->net);
-        memset(t->net_m, 0, n * sizeof *t->net_m);
-        memset(t->net_v, 0, n * sizeof *t->net_v);
+    if (ted4_header_same(&t->layout.head, h) && t->work.generator != NULL && t->work.rate != NULL) {
+        memset(t->net.value, 0, n * sizeof *t->net.value);
+        memset(t->net.m, 0, n * sizeof *t->net.m);
+        memset(t->net.v, 0, n * sizeof *t->net.v);
         return 0;
     }
     ted4_layout_make(&t->layout, h);
@@ -219,31 +220,31 @@ static void walk_layout(stream *s, ted4_trainer *t)
     put(s, &h, sizeof h);
     if (s->writing || s->failed)
         return;
-    if (!t->stage2)
+    if (!t->phase.stage2)
         ted4_header_stage2(&h, &t->opt);
     ted4_header_make(&began, &t->opt, t->data);
-    s->failed = !header_belongs(&began, &h, t->stage2 && t->opt.capacity) ||
+    s->failed = !header_belongs(&began, &h, t->phase.stage2 && t->opt.capacity) ||
                 begin_layout(t, &h) != 0;
 }
 
 /* Prior networks begin with stage 2, and their sizes are options of stage 2. */
 static void walk_networks(stream *s, ted4_trainer *t)
 {
-    const size_t n = t->stage2 ? t->layout.n_net : t->layout.nete;
-    uint8_t has_shift = t->shift != NULL;
+    const size_t n = t->phase.stage2 ? t->layout.n_net : t->layout.nete;
+    uint8_t has_shift = t->net.shift != NULL;
 
-    put(s, t->net, n * sizeof *t->net);
-    put(s, t->net_m, n * sizeof *t->net_m);
-    put(s, t->net_v, n * sizeof *t->net_v);
+    put(s, t->net.value, n * sizeof *t->net.value);
+    put(s, t->net.m, n * sizeof *t->net.m);
+    put(s, t->net.v, n * sizeof *t->net.v);
     put(s, &has_shift, 1);
     if (!s->writing) {
-        free(t->shift);
-        t->shift = has_shift && !s->failed ? malloc(t->layout.shape.n_units + 1) : NULL;
-        s->failed |= has_shift && t->shift == NULL;
+        free(t->net.shift);
+        t->net.shift = has_shift && !s->failed ? malloc(t->layout.shape.n_units + 1) : NULL;
+        s->failed |= has_shift && t->net.shift == NULL;
     }
     if (has_shift && !s->failed)
-        put(s, t->shift, t->layout.shape.n_units);
-    s->failed |= !s->writing && t->integer && t->shift == NULL;
+        put(s, t->net.shift, t->layout.shape.n_units);
+    s->failed |= !s->writing && t->phase.integer && t->net.shift == NULL;
 }
 
 /* Each training picture once. */
@@ -267,12 +268,13 @@ static int order_is_whole(const ted4_trainer *t)
 /* Numbers that steer what happens next. */
 static int numbers_are_possible(const ted4_trainer *t)
 {
-    return (t->stage2 == 0 || t->stage2 == 1) && (t->integer == 0 || t->integer == 1) &&
-           t->integer <= t->stage2 && t->iteration <= ted4_trainer_total(t) &&
-           t->stage2_start <= t->iteration && t->cell >= TED4_FINEST_CELL && t->cell <= 1e30 &&
-           t->decided >= TED4_DECIDED_NOTHING && t->decided <= TED4_DECIDED_ALL &&
-           t->watch.state.factor > 0 && t->watch.state.factor <= 1 &&
-           t->watch.state.rollbacks <= TED4_ROLLBACKS;
+    return (t->phase.stage2 == 0 || t->phase.stage2 == 1) &&
+           (t->phase.integer == 0 || t->phase.integer == 1) &&
+           t->phase.integer <= t->phase.stage2 && t->iteration <= ted4_trainer_total(t) &&
+           t->phase.stage2_start <= t->iteration && t->cell >= TED4_FINEST_CELL &&
+           t->cell <= 1e30 && t->search.decided >= TED4_DECIDED_NOTHING &&
+           t->search.decided <= TED4_DECIDED_ALL && t->watch.state.factor > 0 &&
+           t->watch.state.factor <= 1 && t->watch.state.rollbacks <= TED4_ROLLBACKS;
 }
 
 /* The last good state, itself a file of this kind, looked at when it is needed. None is written
@@ -312,35 +314,35 @@ static void walk_good(stream *s, ted4_trainer *t)
 static void walk_capacity(stream *s, ted4_trainer *t)
 {
     enum { MOST = 4096 };
-    uint64_t n = t->n_trials;
+    uint64_t n = t->search.n_trials;
     ted4_header began;
 
     if (!s->writing) {
-        t->decided = 0;
-        ted4_grid_full(t->bits);
+        t->search.decided = 0;
+        ted4_grid_full(t->net.bits);
     }
-    if (t->stage2 && t->opt.capacity) {
-        put(s, &t->charged, sizeof t->charged);
-        put(s, &t->decided, sizeof t->decided);
-        put(s, t->bits, sizeof t->bits);
+    if (t->phase.stage2 && t->opt.capacity) {
+        put(s, &t->phase.charged, sizeof t->phase.charged);
+        put(s, &t->search.decided, sizeof t->search.decided);
+        put(s, t->net.bits, sizeof t->net.bits);
         put(s, &n, sizeof n);
     } else {
-        t->charged = t->layout.head;
+        t->phase.charged = t->layout.head;
         n = 0;
     }
     if (!s->writing && !s->failed) {
         ted4_header_make(&began, &t->opt, t->data);
-        free(t->trial);
-        t->trial = n <= MOST ? malloc((size_t)(n + 1) * sizeof *t->trial) : NULL;
-        t->n_trials = t->trial != NULL ? (size_t)n : 0;
-        s->failed = t->trial == NULL || !header_belongs(&began, &t->charged, 0);
+        free(t->search.trial);
+        t->search.trial = n <= MOST ? malloc((size_t)(n + 1) * sizeof *t->search.trial) : NULL;
+        t->search.n_trials = t->search.trial != NULL ? (size_t)n : 0;
+        s->failed = t->search.trial == NULL || !header_belongs(&began, &t->phase.charged, 0);
     }
     if (!s->failed)
-        put(s, t->trial, (size_t)n * sizeof *t->trial);
+        put(s, t->search.trial, (size_t)n * sizeof *t->search.trial);
     for (int i = 0; !s->failed && i < TED4_GRIDS; i++)
-        s->failed = t->bits[i] < 1 || t->bits[i] > TED4_GRID_FULL(i);
+        s->failed = t->net.bits[i] < 1 || t->net.bits[i] > TED4_GRID_FULL(i);
     for (size_t i = 0; !s->failed && i < n; i++)
-        s->failed = t->trial[i].move < 0 || t->trial[i].move >= TED4_MOVES;
+        s->failed = t->search.trial[i].move < 0 || t->search.trial[i].move >= TED4_MOVES;
 }
 
 static void walk_colour(stream *s, ted4_trainer *t)
@@ -371,19 +373,19 @@ static void walk(stream *s, ted4_trainer *t)
     expect_number(s, t, t->data->n_pictures, "pictures");
     expect_number(s, t, t->data->n_frames, "times");
     expect_digest(s, t);
-    put(s, &t->stage2, sizeof t->stage2);
+    put(s, &t->phase.stage2, sizeof t->phase.stage2);
     walk_options(s, t);
-    expect(s, ted4_options_hash(&t->opt, t->stage2 ? 2 : 1));
+    expect(s, ted4_options_hash(&t->opt, t->phase.stage2 ? 2 : 1));
     walk_layout(s, t);
     if (!s->failed)
         walk_capacity(s, t);
     put(s, &t->cell, sizeof t->cell);
     put(s, &t->iteration, sizeof t->iteration);
     put(s, &t->seconds, sizeof t->seconds);
-    put(s, &t->integer, sizeof t->integer);
-    put(s, &t->stage2_start, sizeof t->stage2_start);
-    put(s, &t->probed, sizeof t->probed);
-    put(s, t->probe_loss, sizeof t->probe_loss);
+    put(s, &t->phase.integer, sizeof t->phase.integer);
+    put(s, &t->phase.stage2_start, sizeof t->phase.stage2_start);
+    put(s, &t->search.probed, sizeof t->search.probed);
+    put(s, t->search.probe_loss, sizeof t->search.probe_loss);
     put(s, &t->progress, sizeof t->progress);
     put(s, &t->watch.state, sizeof t->watch.state);
     expect(s, t->order.n);
@@ -509,8 +511,8 @@ static int load(ted4_trainer *t, FILE *f, ted4_snapshot *memory, const char *nam
                                  name, m.text[0] != 0 ? ": " : "", m.text);
     }
     t->message = before;
-    if (t->integer)
-        ted4_rate_pack(t->rate, t->net);
+    if (t->phase.integer)
+        ted4_rate_pack(t->work.rate, t->net.value);
     return 0;
 }
 

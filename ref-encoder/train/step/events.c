@@ -24,7 +24,7 @@ static uint64_t sprout_step(const ted4_trainer *t, int reach)
 /* Are anchors kept for sprouts that are still to come? */
 static int sprouts_ahead(const ted4_trainer *t)
 {
-    if (t->stage2 || t->opt.sprouts <= 0 || t->iteration >= sprout_step(t, 0))
+    if (t->phase.stage2 || t->opt.sprouts <= 0 || t->iteration >= sprout_step(t, 0))
         return 0;
 
     const int reach = ted4_sprout_reach(t);
@@ -34,7 +34,7 @@ static int sprouts_ahead(const ted4_trainer *t)
 
 static int sprouts_due(const ted4_trainer *t)
 {
-    if (t->stage2 || t->opt.sprouts <= 0 ||
+    if (t->phase.stage2 || t->opt.sprouts <= 0 ||
         (t->iteration != sprout_step(t, 0) && t->iteration != sprout_step(t, 1)))
         return 0;
 
@@ -64,7 +64,8 @@ int ted4_integer_due(const ted4_trainer *t)
 {
     const double first = (1.0 - t->opt.integer_share) * (double)t->opt.stage2;
 
-    return t->stage2 && !t->integer && t->iteration >= (uint64_t)t->opt.stage1 + (uint64_t)first;
+    return t->phase.stage2 && !t->phase.integer &&
+           t->iteration >= (uint64_t)t->opt.stage1 + (uint64_t)first;
 }
 
 int ted4_schedule_event(ted4_trainer *t)
@@ -72,16 +73,16 @@ int ted4_schedule_event(ted4_trainer *t)
     const ted4_train_options *o = &t->opt;
     const uint64_t i = t->iteration, stage1 = (uint64_t)o->stage1;
 
-    if (t->layout.first[TED4_TAU] >= 0 && !t->stage2 && i == ted4_activation_step(o) &&
+    if (t->layout.first[TED4_TAU] >= 0 && !t->phase.stage2 && i == ted4_activation_step(o) &&
         ted4_activation_begin(t) != 0)
         return -1;
     if (sprouts_due(t) && ted4_sprout(t) != 0)
         return -1;
-    if (!t->stage2 && i > (uint64_t)(GROW_FROM * (double)stage1) &&
+    if (!t->phase.stage2 && i > (uint64_t)(GROW_FROM * (double)stage1) &&
         i <= (uint64_t)(o->grow_until * (double)stage1) && i % (uint64_t)o->grow_every == 0 &&
         ted4_densify_adjust(t, ted4_schedule_room(t)) != 0)
         return -1;
-    if (i == stage1 && !t->stage2 && o->stage2 > 0 && ted4_stage2_begin(t) != 0)
+    if (i == stage1 && !t->phase.stage2 && o->stage2 > 0 && ted4_stage2_begin(t) != 0)
         return -1;
     if (ted4_integer_due(t) && ted4_integer_begin(t) != 0)
         return -1;

@@ -86,9 +86,9 @@ static size_t keep_anchors(const ted4_trainer *t, uint32_t *keep)
 /* Stage 2 is entered and ended even when it has no steps. */
 static int settle(ted4_trainer *t)
 {
-    if (!t->stage2 && ted4_stage2_begin(t) != 0)
+    if (!t->phase.stage2 && ted4_stage2_begin(t) != 0)
         return -1;
-    return !t->integer ? ted4_integer_begin(t) : 0;
+    return !t->phase.integer ? ted4_integer_begin(t) : 0;
 }
 
 /* R-ENC-004: a mask all of whose bits are 1 is not coded. */
@@ -128,10 +128,10 @@ int ted4_make_scene(ted4_trainer *t, ted4_scene **scene)
 
     ted4_scene *s = *scene;
 
-    memcpy(s->shift, t->shift, s->shape.n_units);
-    copy_values(&s->netr, t->net + t->layout.netr);
-    copy_values(&s->bank, t->net + t->layout.bank);
-    copy_values(&s->nete, t->net + t->layout.nete);
+    memcpy(s->shift, t->net.shift, s->shape.n_units);
+    copy_values(&s->netr, t->net.value + t->layout.netr);
+    copy_values(&s->bank, t->net.value + t->layout.bank);
+    copy_values(&s->nete, t->net.value + t->layout.nete);
     fill_masks(t, keep, s);
     drop_idle_masks(s);
     if (ted4_scene_steps(s, t->parallel, &e) != TED4_OK) {

@@ -109,7 +109,8 @@ static int ranges_of(const ted4_layout *l, int term, range *r)
 /* Weights of the entropy model stand still before stage 2 and when they are integers. */
 static int is_learnt(const ted4_trainer *t, int term)
 {
-    return (term != TED4_TERM_PRIOR && term != TED4_TERM_STEP) || (t->stage2 && !t->integer);
+    return (term != TED4_TERM_PRIOR && term != TED4_TERM_STEP) ||
+           (t->phase.stage2 && !t->phase.integer);
 }
 
 void ted4_gradients_gather(const ted4_trainer *t, double *norm)
@@ -128,7 +129,7 @@ void ted4_gradients_gather(const ted4_trainer *t, double *norm)
         double square = 0;
 
         for (int k = 0; k < n; k++)
-            square += squares_of(t->net_gradient + r[k].first, r[k].n);
+            square += squares_of(t->net.gradient + r[k].first, r[k].n);
         norm[term] = sqrt(square);
     }
 }
@@ -167,7 +168,7 @@ static void search_centres(const ted4_trainer *t, largest *best)
     for (size_t i = 0; i < s->n; i++)
         for (size_t k = 0; k < K * TED4_LANES; k++)
             for (int c = 0; c < 3; c++)
-                compare(best, t->splat_gradient.mean[c][s->drawn[i] * K * TED4_LANES + k],
+                compare(best, t->work.splat_gradient.mean[c][s->drawn[i] * K * TED4_LANES + k],
                         (int64_t)(s->block[i] * (size_t)TED4_LANES + k % TED4_LANES));
 }
 
@@ -183,7 +184,7 @@ int64_t ted4_gradients_anchor(const ted4_trainer *t, int term, int *finite)
     else if (term != TED4_TERM_COLOUR)
         for (int k = ranges_of(&t->layout, term, r) - 1; k >= 0; k--)
             for (size_t i = 0; i < r[k].n; i++)
-                compare(&best, t->net_gradient[r[k].first + i], -1);
+                compare(&best, t->net.gradient[r[k].first + i], -1);
     *finite = best.finite;
     return best.at;
 }
@@ -238,7 +239,7 @@ int ted4_gradients_bad_network(const ted4_trainer *t)
 
         for (int k = 0; k < n; k++)
             for (size_t i = 0; i < r[k].n; i++)
-                if (!isfinite(t->net[r[k].first + i]))
+                if (!isfinite(t->net.value[r[k].first + i]))
                     return term;
     }
     return TED4_TERM_PRIOR;

@@ -66,7 +66,7 @@ static void volume_part(void *arg, size_t part)
 
 size_t ted4_update_volume(ted4_trainer *t, const ted4_splats *s)
 {
-    screen_job j = { .g = &t->splat_gradient, .s = s };
+    screen_job j = { .g = &t->work.splat_gradient, .s = s };
     size_t n = 0, drawn = 0;
     double squares = 0;
 
@@ -88,8 +88,8 @@ void ted4_update_bank(ted4_trainer *t)
 {
     const ted4_header *h = &t->layout.head;
     const size_t D = h->bank_dim, M = h->bank_rows;
-    const float *z = t->net + t->layout.bank;
-    float *d = t->net_gradient + t->layout.bank;
+    const float *z = t->net.value + t->layout.bank;
+    float *d = t->net.gradient + t->layout.bank;
 
     if (M < 3)
         return;
@@ -147,23 +147,24 @@ int ted4_update_rate(ted4_trainer *t, uint64_t key)
             chosen += 1;
 
     ted4_rate_input in = { &t->layout,
-                           t->net,
-                           t->shift,
+                           t->net.value,
+                           t->net.shift,
                            m,
                            s->raw,
                            s->position,
                            s->lanes,
                            s->block,
                            key,
-                           t->integer ? TED4_QUANT_INTEGER : TED4_QUANT_NOISE,
+                           t->phase.integer ? TED4_QUANT_INTEGER : TED4_QUANT_NOISE,
                            (float)(t->opt.lambda / (fmax(chosen, 1) * params)),
                            (float)((double)s->n / (double)m),
                            t->layout.head.activation };
 
-    if (!t->integer)
-        ted4_rate_pack(t->rate, t->net);
-    if (m > 0 && ted4_rate_evaluate(t->rate, &in, t->parallel, (const float *const *)s->gradient,
-                                    s->gradient, t->net_gradient, s->steps, bits) != 0)
+    if (!t->phase.integer)
+        ted4_rate_pack(t->work.rate, t->net.value);
+    if (m > 0 &&
+        ted4_rate_evaluate(t->work.rate, &in, t->parallel, (const float *const *)s->gradient,
+                           s->gradient, t->net.gradient, s->steps, bits) != 0)
         return ted4_trainer_fail(t, "no memory for the rate model");
     for (int y = 0; y < TED4_TYPES && chosen > 0; y++)
         t->progress.bits[y] += 0.02 * (bits[y] / chosen - t->progress.bits[y]);

@@ -170,8 +170,8 @@ static int collapsed(ted4_trainer *t, const ted4_generate_input *in, const ted4_
 static void note_phase(ted4_trainer *t)
 {
     ted4_watch_state *w = &t->watch.state;
-    const uint64_t phase = (uint64_t)t->stage2 | (uint64_t)t->integer << 1 |
-                           (uint64_t)t->clock_stopped << 2;
+    const uint64_t phase = (uint64_t)t->phase.stage2 | (uint64_t)t->phase.integer << 1 |
+                           (uint64_t)t->phase.clock_stopped << 2;
 
     if (phase == w->phase)
         return;

@@ -32,9 +32,9 @@
 
 static double stage_progress(const ted4_trainer *t)
 {
-    const double done = (double)(t->iteration - (t->stage2 ? t->stage2_start : 0));
+    const double done = (double)(t->iteration - (t->phase.stage2 ? t->phase.stage2_start : 0));
 
-    return done / fmax(1.0, t->stage2 ? t->opt.stage2 : t->opt.stage1);
+    return done / fmax(1.0, t->phase.stage2 ? t->opt.stage2 : t->opt.stage1);
 }
 
 uint64_t ted4_activation_step(const ted4_train_options *o)
@@ -46,7 +46,7 @@ uint64_t ted4_activation_step(const ted4_train_options *o)
 static int activation_learnt(const ted4_trainer *t)
 {
     return t->layout.first[TED4_TAU] >= 0 &&
-           (t->stage2 || t->iteration >= ted4_activation_step(&t->opt));
+           (t->phase.stage2 || t->iteration >= ted4_activation_step(&t->opt));
 }
 
 static void fill(float *rate, int first, int n, double value)
@@ -57,8 +57,8 @@ static void fill(float *rate, int first, int n, double value)
 
 static double mask_rate(const ted4_trainer *t)
 {
-    const double pace = t->stage2 ? MASK_STEPS2 / fmax(1.0, t->opt.stage2)
-                                  : MASK_STEPS1 / fmax(1.0, t->opt.stage1);
+    const double pace = t->phase.stage2 ? MASK_STEPS2 / fmax(1.0, t->opt.stage2)
+                                        : MASK_STEPS1 / fmax(1.0, t->opt.stage1);
 
     return ted4_decay(t->opt.lr_mask * fmin(pace, MASK_FASTEST), LAST_MASK, stage_progress(t));
 }
@@ -68,8 +68,8 @@ void ted4_schedule_rates(const ted4_trainer *t, float *rate)
     const ted4_train_options *o = &t->opt;
     const ted4_layout *l = &t->layout;
     const double p = stage_progress(t);
-    const double restart = t->stage2 ? RESTART : 1.0;
-    const double values = t->stage2 ? ted4_decay(restart, LAST_VALUES, p) : 1.0;
+    const double restart = t->phase.stage2 ? RESTART : 1.0;
+    const double values = t->phase.stage2 ? ted4_decay(restart, LAST_VALUES, p) : 1.0;
     const double tau = ted4_decay(o->lr_tau * restart, LAST_TAU, p);
     const double scale_step =
         o->linear_scale ? o->step_scaling
@@ -80,8 +80,8 @@ void ted4_schedule_rates(const ted4_trainer *t, float *rate)
          (l->head.scale_domain == TED4_SCALE_LOG2 ? o->lr_scaling : LINEAR_SCALING * scale_step) *
              values);
     fill(rate, l->first[TED4_OFFSET], 3 * l->head.n_offsets,
-         t->stage2 ? ted4_decay(o->lr_offset * 0.1, 0.1, p)
-                   : ted4_decay(o->lr_offset, LAST_OFFSET, p));
+         t->phase.stage2 ? ted4_decay(o->lr_offset * 0.1, 0.1, p)
+                         : ted4_decay(o->lr_offset, LAST_OFFSET, p));
     fill(rate, l->first[TED4_PHI], l->head.phi_dim, o->lr_phi * values);
     if (l->first[TED4_TAU] >= 0) {
         const int on = activation_learnt(t);
@@ -89,7 +89,7 @@ void ted4_schedule_rates(const ted4_trainer *t, float *rate)
         for (int c = 0; c < 4; c++)
             rate[l->first[TED4_TAU] + c] = (float)(on ? tau * (c % 2 == 1 ? TAU_WIDTH : 1.0) : 0.0);
     }
-    fill(rate, l->offset_logit, l->head.n_offsets, t->stage2 ? mask_rate(t) : 0.0);
+    fill(rate, l->offset_logit, l->head.n_offsets, t->phase.stage2 ? mask_rate(t) : 0.0);
     fill(rate, l->temporal_logit, 1, MASK_CAUTION * mask_rate(t));
     for (int c = 0; c < l->n_channels; c++)
         rate[c] *= (float)t->watch.state.factor;
@@ -99,7 +99,7 @@ void ted4_schedule_rates(const ted4_trainer *t, float *rate)
  * end. */
 static double rate_on_grid(const ted4_trainer *t, ted4_grid grid, double rate)
 {
-    return t->integer && t->bits[grid] < TED4_GRID_FULL(grid) ? 0 : rate;
+    return t->phase.integer && t->net.bits[grid] < TED4_GRID_FULL(grid) ? 0 : rate;
 }
 
 static size_t network_size(const ted4_net_shape *s)
@@ -121,7 +121,7 @@ int ted4_schedule_network(const ted4_trainer *t, ted4_net_range *range)
     const ted4_train_options *o = &t->opt;
     const ted4_layout *l = &t->layout;
     const double p = stage_progress(t);
-    const double restart = t->stage2 ? RESTART : 1.0;
+    const double restart = t->phase.stage2 ? RESTART : 1.0;
     const double heads =
         rate_on_grid(t, TED4_GRID_HEADS, ted4_decay(o->lr_heads * restart, LAST_HEADS, p));
     const double motion = ted4_decay(o->lr_motion * restart, LAST_MOTION, p);
@@ -136,7 +136,7 @@ int ted4_schedule_network(const ted4_trainer *t, ted4_net_range *range)
                                 is_motion ? rate_on_grid(t, TED4_GRID_MOTION, motion) : heads);
     }
     range[n++] = make_range(t, l->bank, l->shape.n_bank, rate_on_grid(t, TED4_GRID_BANK, motion));
-    if (t->stage2 && !t->integer)
+    if (t->phase.stage2 && !t->phase.integer)
         range[n++] =
             make_range(t, l->nete, l->shape.n_nete, ted4_decay(o->lr_prior, LAST_PRIOR, p));
     return n;

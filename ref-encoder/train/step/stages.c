@@ -214,11 +214,11 @@ int ted4_stage_relayout(ted4_trainer *t, const ted4_header *h)
 {
     const ted4_layout from = t->layout;
     ted4_anchors old = t->anchors;
-    float *net[3] = { t->net, t->net_m, t->net_v };
+    float *net[3] = { t->net.value, t->net.m, t->net.v };
     int bad;
 
     ted4_layout_make(&t->layout, h);
-    t->net = t->net_m = t->net_v = NULL;
+    t->net.value = t->net.m = t->net.v = NULL;
     bad = ted4_anchors_init(&t->anchors, &t->layout) != 0 ||
           ted4_anchors_resize(&t->anchors, old.n) != 0 || ted4_trainer_rebuild(t) != 0;
     if (!bad) {
@@ -226,9 +226,9 @@ int ted4_stage_relayout(ted4_trainer *t, const ted4_header *h)
             remap_row(&from, &t->layout, &old, &t->anchors, r);
         for (ted4_row r = TED4_ROW_POSITION; r <= TED4_ROW_GRADIENT; r++)
             copy_row(&old, &t->anchors, r);
-        remap_networks(&from, &t->layout, net[0], t->net);
-        remap_networks(&from, &t->layout, net[1], t->net_m);
-        remap_networks(&from, &t->layout, net[2], t->net_v);
+        remap_networks(&from, &t->layout, net[0], t->net.value);
+        remap_networks(&from, &t->layout, net[1], t->net.m);
+        remap_networks(&from, &t->layout, net[2], t->net.v);
     }
     ted4_anchors_finish(&old);
     for (int i = 0; i < 3; i++)
@@ -293,8 +293,8 @@ static void clear_moments(ted4_trainer *t)
     for (int r = TED4_ROW_M; r <= TED4_ROW_V; r++)
         memset(t->anchors.data[r], 0,
                t->anchors.n_blocks * (size_t)t->layout.n_channels * TED4_LANES * sizeof(float));
-    memset(t->net_m, 0, t->layout.n_net * sizeof *t->net_m);
-    memset(t->net_v, 0, t->layout.n_net * sizeof *t->net_v);
+    memset(t->net.m, 0, t->layout.n_net * sizeof *t->net.m);
+    memset(t->net.v, 0, t->layout.n_net * sizeof *t->net.v);
 }
 
 int ted4_stage2_begin(ted4_trainer *t)
@@ -303,14 +303,14 @@ int ted4_stage2_begin(ted4_trainer *t)
         return -1;
     if (t->opt.capacity && ted4_rotate_features(t) != 0)
         return -1;
-    ted4_seed_prior(t->net, &t->layout, &t->anchors, t->opt.seed);
+    ted4_seed_prior(t->net.value, &t->layout, &t->anchors, t->opt.seed);
     clear_moments(t);
     for (size_t i = 0; i < t->anchors.n; i++)
         for (int y = 0; y < TED4_TYPES; y++)
             *ted4_cell(&t->anchors, TED4_ROW_STEP, i, y) = t->layout.head.step[y];
-    t->stage2 = 1;
-    t->charged = t->layout.head;
-    t->stage2_start = t->iteration;
+    t->phase.stage2 = 1;
+    t->phase.charged = t->layout.head;
+    t->phase.stage2_start = t->iteration;
     return 0;
 }
 
@@ -335,16 +335,17 @@ static uint8_t context_bits(const ted4_trainer *t)
 int ted4_integer_begin(ted4_trainer *t)
 {
     t->layout.head.context_bits = context_bits(t);
-    ted4_rate_free(t->rate);
-    t->rate = ted4_rate_new(&t->layout);
-    t->shift = malloc(t->layout.shape.n_units + 1);
-    if (t->shift == NULL || t->rate == NULL || ted4_slots_fill(t, NULL) != 0)
+    ted4_rate_free(t->work.rate);
+    t->work.rate = ted4_rate_new(&t->layout);
+    t->net.shift = malloc(t->layout.shape.n_units + 1);
+    if (t->net.shift == NULL || t->work.rate == NULL || ted4_slots_fill(t, NULL) != 0)
         return ted4_trainer_fail(t, "no memory for the integer model");
-    ted4_snap_coarse(&t->layout.head, &t->layout.shape, t->bits[TED4_GRID_PRIOR],
-                     t->net + t->layout.nete, t->shift);
-    ted4_grid_scene(&t->layout.shape, t->bits, t->net + t->layout.netr, t->net + t->layout.bank);
-    t->integer = 1;
-    ted4_rate_pack(t->rate, t->net);
+    ted4_snap_coarse(&t->layout.head, &t->layout.shape, t->net.bits[TED4_GRID_PRIOR],
+                     t->net.value + t->layout.nete, t->net.shift);
+    ted4_grid_scene(&t->layout.shape, t->net.bits, t->net.value + t->layout.netr,
+                    t->net.value + t->layout.bank);
+    t->phase.integer = 1;
+    ted4_rate_pack(t->work.rate, t->net.value);
     return ted4_integer_rate(t, NULL);
 }
 
@@ -354,8 +355,8 @@ int ted4_integer_rate(ted4_trainer *t, double *bits)
         return -1;
 
     const ted4_rate_input in = { &t->layout,
-                                 t->net,
-                                 t->shift,
+                                 t->net.value,
+                                 t->net.shift,
                                  t->slots.n,
                                  t->slots.raw,
                                  t->slots.position,
@@ -367,8 +368,8 @@ int ted4_integer_rate(ted4_trainer *t, double *bits)
                                  0.0f,
                                  t->layout.head.activation };
 
-    return ted4_rate_evaluate(t->rate, &in, t->parallel, NULL, NULL, NULL, t->slots.steps, bits) !=
-                   0
+    return ted4_rate_evaluate(t->work.rate, &in, t->parallel, NULL, NULL, NULL, t->slots.steps,
+                              bits) != 0
                ? ted4_trainer_fail(t, "no memory for the integer model, or weights beyond it")
                : 0;
 }

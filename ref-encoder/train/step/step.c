@@ -65,7 +65,8 @@ typedef struct {
     ted4_colour_map map;
 } pass;
 
-/* The next picture forward, and the gradient of its loss in t->d_image. 0, or -1 with t->message.
+/* The next picture forward, and the gradient of its loss in t->work.d_image. 0, or -1 with
+ * t->message.
  */
 static int forward(ted4_trainer *t, pass *p)
 {
@@ -96,12 +97,12 @@ static int backward(ted4_trainer *t, pass *p, uint64_t key)
     if (ted4_trainer_render_backward(t, &p->v, &p->s) != 0)
         return -1;
     p->on_screen = ted4_update_volume(t, &p->s);
-    memset(t->net_gradient, 0, t->layout.n_net * sizeof *t->net_gradient);
-    if (ted4_generate_backward(t->generator, &p->in, &t->splat_gradient, t->parallel,
-                               t->slots.gradient, t->net_gradient) != 0)
+    memset(t->net.gradient, 0, t->layout.n_net * sizeof *t->net.gradient);
+    if (ted4_generate_backward(t->work.generator, &p->in, &t->work.splat_gradient, t->parallel,
+                               t->slots.gradient, t->net.gradient) != 0)
         return ted4_trainer_fail(t, "no memory for gradients");
     ted4_update_bank(t);
-    if (!t->stage2) {
+    if (!t->phase.stage2) {
         ted4_densify_gather(t, &p->in, &p->s);
         return 0;
     }

@@ -36,11 +36,12 @@ static int make_images(ted4_trainer *t)
 
         pixels = n > pixels ? n : pixels;
     }
-    t->image = malloc(3 * pixels * sizeof *t->image + 64);
-    t->d_image = malloc(3 * pixels * sizeof *t->d_image + 64);
-    t->raster = ted4_raster_new();
-    t->loss = ted4_loss_workspace_new();
-    if (t->image == NULL || t->d_image == NULL || t->raster == NULL || t->loss == NULL)
+    t->work.image = malloc(3 * pixels * sizeof *t->work.image + 64);
+    t->work.d_image = malloc(3 * pixels * sizeof *t->work.d_image + 64);
+    t->work.raster = ted4_raster_new();
+    t->work.loss = ted4_loss_workspace_new();
+    if (t->work.image == NULL || t->work.d_image == NULL || t->work.raster == NULL ||
+        t->work.loss == NULL)
         return ted4_trainer_fail(t, "no memory for images of %zu pixels", pixels);
     if (t->opt.colour && ted4_colour_init(&t->colour, t->data) != 0)
         return ted4_trainer_fail(t, "no memory for colour correction");
@@ -57,8 +58,8 @@ static int begin(ted4_trainer *t, const ted4_header *h)
             t, "no file can hold this scene with these options: %s is beyond its range in a header",
             wrong);
     ted4_layout_make(&t->layout, h);
-    t->charged = t->layout.head;
-    ted4_grid_full(t->bits);
+    t->phase.charged = t->layout.head;
+    ted4_grid_full(t->net.bits);
     t->watch.state.factor = 1;
     if (ted4_trainer_rebuild(t) != 0 || make_order(t) != 0 || make_images(t) != 0)
         return -1;
@@ -67,7 +68,7 @@ static int begin(ted4_trainer *t, const ted4_header *h)
         return ted4_trainer_fail(t, "no memory for the anchors");
     if (t->anchors.n == 0)
         return ted4_trainer_fail(t, "no initial point lies inside the scene's bounds");
-    ted4_seed_networks(t->net, &t->layout, t->opt.seed);
+    ted4_seed_networks(t->net.value, &t->layout, t->opt.seed);
     if (ted4_colour_match(t) != 0)
         return -1;
     return t->opt.transients ? ted4_seed_transients(t) : 0;
@@ -100,6 +101,6 @@ int ted4_trainer_restart(ted4_trainer *t, const ted4_header *h)
     t->parallel = parallel;
     t->seconds = seconds;
     t->onlooker = onlooker;
-    t->probed = 1;
+    t->search.probed = 1;
     return begin(t, h);
 }
