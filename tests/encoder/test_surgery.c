@@ -148,9 +148,9 @@ static void test_nothing(void **state)
     ted4_surgery_begin(&s, &t);
     assert_int_equal(ted4_surgery_apply(&t, &s), 0);
     for (size_t i = 0; i < t.layout.n_net; i++) { /* a zero may lose its sign */
-        assert_true(t.net.value[i] == twin.net[i]);
-        assert_true(t.net.m[i] == twin.net_m[i]);
-        assert_true(t.net.v[i] == twin.net_v[i]);
+        assert_true(t.net.value[i] == twin.net.value[i]);
+        assert_true(t.net.m[i] == twin.net.m[i]);
+        assert_true(t.net.v[i] == twin.net.v[i]);
     }
     a = ball_finish(&t);
     b = ball_finish(&twin);
