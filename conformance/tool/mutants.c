@@ -285,14 +285,24 @@ static void print_mutants(const conf_mutant_list *l, conf_bytes *b)
             conf_print(b, "* %s (%s, %s): `%s` for `%s`%s%s\n", l->m[i].id, l->m[i].file,
                        l->m[i].verdict, l->m[i].to, l->m[i].from,
                        l->m[i].why[0] != '\0' ? ": " : "", l->m[i].why);
-    conf_print(b, "\n## Not run since what their results stood on has changed\n\n");
+    conf_print(b, "\n## Not run since what their results depend on has changed\n\n");
     print_waiting(l, b);
-    conf_print(b, "\n## Killed, and by what first\n\n`mutants.list` says what each changes.\n\n| "
-                  "mutant | vector | what was wrong |\n|---|---|---|\n");
+    conf_print(b, "\n## Killed, and by what\n\n"
+                  "`mutants.list` says what each mutant changes. The table shows the first vector "
+                  "that killed it.\n\n| mutant | vector | what was wrong |\n|---|---|---|\n");
     for (size_t i = 0; i < l->n; i++)
         if (strcmp(l->m[i].verdict, "killed") == 0)
             conf_print(b, "| %s | %s | %s |\n", l->m[i].id, l->m[i].vector, l->m[i].by);
 }
+
+static const char introduction[] =
+    "# Mutants\n\n"
+    "`make conformance-mutants` seeds the faults of `mutants.list` into the reference decoder,\n"
+    "one at a time, and runs each changed decoder over the published vectors. It first checks\n"
+    "that the unchanged program, built and run in the same way, passes. The plain kernels are\n"
+    "used, so that `norm/` is what is tested. Results are kept in `mutants.csv` for as long as\n"
+    "what they depend on is the same ([README](README.md#mutants)); `ted4conf mutants --check`\n"
+    "says how many still hold.\n";
 
 static int write_report(const campaign *c)
 {
@@ -308,18 +318,10 @@ static int write_report(const campaign *c)
     if (judged == l->n && judged > 0)
         snprintf(share, sizeof share, " (%.1f %%)", 100.0 * (double)killed / (double)judged);
     conf_print(&b,
-               "# Mutants\n\nFaults seeded into the reference decoder, one at a time "
-               "(`mutants.list`), against the published vectors alone: `make "
-               "conformance-mutants`, which first sees that\nthe unchanged program, built and run "
-               "in the same way, passes. The plain kernels are used, so that "
-               "`norm/` is what is tested. Results are kept in `mutants.csv` for as long as what "
-               "they\nstand on is the same "
-               "([README](README.md#mutants)); `ted4conf mutants --check` says how many still "
-               "hold.\n\n| | |\n|---|---|\n| mutants | %zu |\n| judged | %zu "
-               "|\n| killed | %zu%s |\n| survived | %zu |\n| do not compile | %zu |\n| not run | "
-               "%zu |\n\n",
-               l->n, judged, killed, share, survived, conf_mutant_count(l, "no compile"),
-               conf_mutant_count(l, ""));
+               "%s\n| | |\n|---|---|\n| mutants | %zu |\n| judged | %zu |\n| killed | %zu%s |\n"
+               "| survived | %zu |\n| do not compile | %zu |\n| not run | %zu |\n\n",
+               introduction, l->n, judged, killed, share, survived,
+               conf_mutant_count(l, "no compile"), conf_mutant_count(l, ""));
     print_mutants(l, &b);
     conf_path(path, "%s/MUTANTS.md", c->o->suite);
     conf_write(path, b.data, b.size);
