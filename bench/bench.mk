@@ -108,10 +108,10 @@ sweep: all $(BENCH_FILE:%=$B/bench/%) $B/bench/to_jpeg
 # Only the runs that show real scenes.
 real: all $(BENCH_FILE:%=$B/bench/%) $B/bench/to_jpeg
 	TED4_BUILD=$B TED4_DATA=$(TED4_DATA) bench/sweep.sh real
-	bench/report.sh
+	python3 -m bench.pages report
 
 report:
-	bench/report.sh
+	python3 -m bench.pages report
 
 .PHONY: sweep real report
 
@@ -119,7 +119,7 @@ report:
 # charts.
 stability: all $B/bench/lab_facts $B/bench/to_jpeg
 	TED4_BUILD=$B TED4_DATA=$(TED4_DATA) bench/stability.sh
-	bench/stability_page.sh
+	python3 -m bench.pages stability
 
 .PHONY: stability
 
@@ -132,14 +132,14 @@ $B/tests/tools/test_zoo: | $(PROGS) $B/bench/zoo_masks
 zoo: all $B/bench/zoo_masks
 	TED4_BUILD=$B TED4_DATA=$(TED4_DATA) bench/zoo.sh zoo long
 	TED4_BUILD=$B TED4_DATA=$(TED4_DATA) bench/zoo.sh --jobs 1 --threads 0 alone
-	bench/zoo_page.sh
+	python3 -m bench.pages zoo
 
 .PHONY: zoo
 
 # How much model is chosen: the runs of bench/capacity.txt whose row in bench/capacity.csv is missing or stale (hours; resumable), then bench/capacity.md.
 capacity: all
 	TED4_BUILD=$B TED4_DATA=$(TED4_DATA) bench/capacity.sh
-	bench/capacity_page.sh
+	python3 -m bench.pages capacity
 
 .PHONY: capacity
 

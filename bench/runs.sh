@@ -179,7 +179,7 @@ make_row() {
 # The runs that the command line asks for, a line each. Patterns are not file names: set -f.
 each_chosen() {
     set -f
-    awk -f bench/expand.awk ref-encoder/train/model/options.def "$table" >"$work/table.$$" || die "$table"
+    python3 -m bench.pages runs "$table" >"$work/table.$$" || die "$table"
     while IFS='|' read -r groups tag scene where variant place lambda keep stage1 options; do
         wanted=
         for p in $patterns; do

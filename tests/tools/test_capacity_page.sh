@@ -1,10 +1,11 @@
 #!/bin/sh
-# test_capacity_page.sh - bench/capacity_page.sh on a small table of rows whose answers can be worked out by hand. Speaks as cmocka programs do; run by
+# test_capacity_page.sh - the page of capacities on a small table of rows whose answers can be worked out by hand. Speaks as cmocka programs do; run by
 # `make test` from the project's root.
 # SPDX-License-Identifier: BSD-2-Clause
 set -u
 . tests/support/speak.sh
-make_page() { TED4_RESULTS=$out TED4_TABLE=$out/table.txt bench/capacity_page.sh "$out/states"; }
+need capacity_page python3
+make_page() { TED4_RESULTS=$out TED4_TABLE=$out/table.txt python3 -m bench.pages capacity "$out/states"; }
 page=$out/capacity.md
 
 cat >"$out/table.txt" <<END

@@ -1,10 +1,11 @@
 #!/bin/sh
-# test_report.sh - bench/report.sh on small tables of rows whose answers can be worked out by hand. Speaks as cmocka programs do; run by `make test` from the
+# test_report.sh - the report (bench/pages) on small tables of rows whose answers can be worked out by hand. Speaks as cmocka programs do; run by `make test` from the
 # project's root.
 # SPDX-License-Identifier: BSD-2-Clause
 set -u
 . tests/support/speak.sh
-make_report() { TED4_RESULTS=$out TED4_PAGES=$out/pages TED4_TABLE=$out/table.txt bench/report.sh "$out/states"; }
+need report python3
+make_report() { TED4_RESULTS=$out TED4_PAGES=$out/pages TED4_TABLE=$out/table.txt python3 -m bench.pages report "$out/states"; }
 
 cat >"$out/table.txt" <<END
 lambdas 0.001 0.002 0.004 0.008
@@ -144,7 +145,7 @@ printf '%s\n' '| run | options | anchors | Gaussians in the file | peak MiB |' '
 echo "a note by hand" >"$out/pages/report-notes.md"
 
 make_report || { fail run "status $?"; exit 1; }
-page=$out/report.md
+page=$out/report-tables.md
 check straight_lines "$page" '| **concat** | | | | | +50.0 % | -0.58 dB |' '| +50.0 % (lines) |' \
     '| kitchen: bank against concat | bank better | `--set motion=2`: rate at equal PSNR +50.0 %, PSNR at equal bytes -0.58 dB'
 check same_lambda "$page" '| **concat** | | | | | +0.0 % | +0.00 dB | +0.00 dB, +0.0 % | +0.0 % (lines)'
@@ -179,9 +180,10 @@ rows_are recipe_rows "The paper's recipe alone" 'inr concat'
 check kept "$page" '15.0 ms; 1.90x;' '(`make test`); A machine | met |' \
     '| preset fast: 31.0 frames/s (best 33.9); preset paper: 29.5 frames/s (best 39.9); A machine | **missed** |' \
     '| [train.md](train.md) | a training step by its parts, 2 threads | not run yet |' '| peak 5400 MiB in 2 trainings |'
-check notes "$page" 'a note by hand'
+check notes "$out/report.md" 'a note by hand'
 check commands "$page" '`ted4enc $TED4_DATA/kitchen --own 1`' \
     '| kitchen-factorised-3 | `ted4enc $TED4_DATA/kitchen --preset fast --seed 1 --downscale 2 --lambda 0.004 --set factorised=1` | not run yet |'
+check findings "$out/report.md" "1. **Rate and distortion.**" "800 kB" "30.00 dB" "100 kB" "Not on every scene" "7. **Cameras.** Not run yet."
 check no_chart "$page" '*PSNR over training time for every preset' '5 | speed against accuracy'
 
 # Within the panel. One dB apart each: equal steps up the picture. Twice the bytes each: every step to the right is half the one before, as the

@@ -1,10 +1,11 @@
 #!/bin/sh
-# test_stability.sh - bench/stability.sh (and with it bench/runs.sh) with programs that only pretend, and bench/stability_page.sh on rows whose answers can be
+# test_stability.sh - bench/stability.sh (and with it bench/runs.sh) with programs that only pretend, and its page on rows whose answers can be
 # worked out by hand. Speaks as cmocka programs do; run by `make test` from the project's root.
 # SPDX-License-Identifier: BSD-2-Clause
 set -u
 unset TED4_WORK TED4_DATA TED4_PAGES
 . tests/support/speak.sh
+need stability python3
 
 cat >"$out/table.txt" <<END
 seeds 7 8 9
@@ -116,7 +117,7 @@ is so.
 ## wall inr
 Never shown.
 END
-make_page() { TED4_RESULTS=$out/page TED4_TABLE=$out/table.txt TED4_NOTES=$out/notes.md bench/stability_page.sh "$out/states"; }
+make_page() { TED4_RESULTS=$out/page TED4_TABLE=$out/table.txt TED4_NOTES=$out/notes.md python3 -m bench.pages stability "$out/states"; }
 make_page || { fail page "status $?"; exit 1; }
 page=$out/page/stability.md
 check cells "$page" '| wall | 30.50 / 27.00 ±0.50 **W1 P1** | 28.00 / 25.50 ±0.00 **O2 X1 R1** |' '| calm | 33.10 / 32.00 ±0.10 | 33.00 / 24.50 ±0.00 **E1 N1 D1 B1 W1 F1 P1** |'

@@ -8,7 +8,7 @@ set -u
 need zoo ted4enc ted4eval ted4scene bench/zoo_masks python3
 XDG_CACHE_HOME=$out/cache; export XDG_CACHE_HOME
 
-awk -f bench/expand.awk ref-encoder/train/model/options.def bench/zoo.txt >"$out/all" || { fail table "not read"; exit 1; }
+python3 -m bench.pages runs bench/zoo.txt >"$out/all" || { fail table "not read"; exit 1; }
 grep '^zoo|' "$out/all" >"$out/runs"
 awk '$1 == "case" { n++; twin[$2] = $3 }
      END { for (s in twin) if (twin[s] != "-" && !(twin[s] in twin)) { print s ": no twin " twin[s]; bad = 1 }

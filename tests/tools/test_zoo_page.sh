@@ -1,11 +1,12 @@
 #!/bin/sh
-# test_zoo_page.sh - bench/zoo.sh with programs that only pretend, and bench/zoo_page.sh on rows whose
+# test_zoo_page.sh - bench/zoo.sh with programs that only pretend, and the zoo page on rows whose
 # answers can be worked out by hand. Speaks as cmocka programs do; run by `make test` from the
 # project's root.
 # SPDX-License-Identifier: BSD-2-Clause
 set -u
 unset TED4_WORK TED4_DATA
 . tests/support/speak.sh
+need zoo_page python3
 
 cat >"$out/table.txt" <<END
 seeds 1
@@ -91,7 +92,7 @@ END
 { head -n 1 "$out/res/zoo.csv"; cat "$out/rows"; } >"$out/page/zoo.csv"
 sed 's/\([^,]*\),.*/done \1/; s/^done odd/older odd/' "$out/rows" >"$out/states"
 printf '%s\n' "first line" "## odd" "Because it" "is odd." "## broken" "It has no points." >"$out/notes.md"
-make_page() { TED4_RESULTS=$out/page TED4_TABLE=$out/table.txt TED4_NOTES=$out/notes.md bench/zoo_page.sh "$out/states"; }
+make_page() { TED4_RESULTS=$out/page TED4_TABLE=$out/table.txt TED4_NOTES=$out/notes.md python3 -m bench.pages zoo "$out/states"; }
 page=$out/page/zoo.md
 make_page || { fail page "status $?"; exit 1; }
 check cells "$page" '| kind | `ted4scene toys --masks` | - | 30.00 | - | 31.00 | 25.00 | 100 | 5 | 14000 | 49 | 0 | 0 | met |' \

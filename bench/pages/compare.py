@@ -1,0 +1,211 @@
+"""A variant against the whole method on the same scene.
+SPDX-License-Identifier: BSD-2-Clause"""
+import math
+
+from . import curves
+from .rows import mark
+from .words import fixed, signed
+
+# Student's t of which 95 % lie below, for 1 to 9 degrees of freedom.
+STUDENT = (6.31, 2.92, 2.35, 2.13, 2.02, 1.94, 1.89, 1.86, 1.83)
+
+
+def base_of(variant):
+    """What a variant is compared with: the whole method; with the choice of capacity
+    (VARIANT_auto), at the preset's full length (VARIANT_long), or with a heavier offset mask
+    (VARIANT_moremask), that with the same."""
+    if variant.endswith("_auto"):
+        return "whole_auto"
+    if variant.endswith("_long"):
+        return "whole_long"
+    return "moremask" if variant.endswith("_moremask") else "whole"
+
+
+def curve_of(runs, scene, variant, like=None):
+    """Points (PSNR in dB, natural logarithm of bytes) in order of PSNR. like: a variant at whose
+    lambdas alone."""
+    wanted = {run.weight for run in runs.present(scene, like)} if like else None
+    points = [(run.count("psnr"), math.log(run.count("bytes")))
+              for run in runs.present(scene, variant) if wanted is None or run.weight in wanted]
+    return sorted(points, key=lambda point: point[0])
+
+
+def rate_change(runs, run, against=None):
+    """Bytes at the same PSNR against the curve of its base, percent; None where that does not
+    reach."""
+    curve = curve_of(runs, run.scene, against or base_of(run.variant))
+    at = curves.value_at(curve, run.count("psnr"))
+    return None if at is None else curves.as_percent(math.log(run.count("bytes")) - at)
+
+
+def psnr_change(runs, run, against=None):
+    """PSNR at the same bytes, dB, likewise."""
+    curve = curves.swapped(curve_of(runs, run.scene, against or base_of(run.variant)))
+    at = curves.value_at(curve, math.log(run.count("bytes")))
+    return None if at is None else run.count("psnr") - at
+
+
+def nearest(runs, run, against=None):
+    """The run of its base that is nearest in quality; None when there is none."""
+    base = runs.present(run.scene, against or base_of(run.variant))
+    return min(base, key=lambda other: abs(other.count("psnr") - run.count("psnr")), default=None)
+
+
+def mean(values):
+    """Of those that are not None; None without any."""
+    known = [value for value in values if value is not None]
+    return sum(known) / len(known) if known else None
+
+
+class Change:
+    """Of a variant on a scene, from those of its runs that are there:
+
+    runs                  how many
+    rate, psnr            means of rate_change and psnr_change over the runs that the curve reaches
+    near_psnr, near_rate  mean differences to the nearest points, dB and percent
+    gap, cubic            rate between the two curves at the same lambdas, percent: straight lines;
+                          Bjontegaard's cubics (None with fewer than four points)
+    worse                 than the base: True, False, or None: it cannot be said"""
+
+    def __init__(self, runs, scene, variant, against=None):
+        base = against or base_of(variant)
+        near = [(run, nearest(runs, run, base)) for run in runs.present(scene, variant)]
+        near = [(run, other) for run, other in near if other is not None]
+        self.runs = len(near)
+        self.rate = mean([rate_change(runs, run, base) for run, _ in near])
+        self.psnr = mean([psnr_change(runs, run, base) for run, _ in near])
+        self.near_psnr = mean([run.count("psnr") - other.count("psnr") for run, other in near])
+        self.near_rate = curves.as_percent(mean([
+            math.log(run.count("bytes") / other.count("bytes")) for run, other in near]))
+        a, b = curve_of(runs, scene, base, like=variant), curve_of(runs, scene, variant)
+        self.gap = curves.as_percent(curves.mean_gap(a, b))
+        self.cubic = curves.as_percent(curves.bjontegaard(a, b))
+        self.worse = self.is_worse() if self.runs else None
+
+    def is_worse(self):
+        """At equal bytes, else at equal PSNR, else when one of them is better on both counts than
+        the other's nearest points."""
+        if self.psnr is not None:
+            return self.psnr < 0
+        if self.rate is not None:
+            return self.rate > 0
+        if self.near_psnr <= 0 <= self.near_rate:
+            return True
+        return False if self.near_psnr >= 0 >= self.near_rate else None
+
+    def one_rate(self):
+        """The rate in one number: by cubics where there are points enough, else at equal PSNR,
+        else between straight lines."""
+        for rate in (self.cubic, self.rate, self.gap):
+            if rate is not None:
+                return rate
+        return None
+
+    def bd_rate(self):
+        """BD-rate, and how it was found."""
+        if self.cubic is not None:
+            return signed(self.cubic, 1, " %") + " (cubic)"
+        return signed(self.gap, 1, " %") + ("" if self.gap is None else " (lines)")
+
+    def near_words(self):
+        return near_words(self.near_psnr, self.near_rate)
+
+
+def near_words(psnr, rate):
+    return signed(psnr, 2, " dB") + ", " + signed(rate, 1, " %")
+
+
+def whole_run(runs, scene, seed):
+    """The whole method's run with that seed."""
+    return runs.find(f"{scene}-{'whole' if seed == 1 else f'seed{seed}'}-2")
+
+
+def seed_spread(runs, scene):
+    """Greatest less least of seeds 1 to 3, by column, so that scenes with more of them compare;
+    share: of the bytes, percent of the least. None when one is missing."""
+    three = [whole_run(runs, scene, seed) for seed in (1, 2, 3)]
+    if not all(run.has() for run in three):
+        return None
+    spread = {}
+    for column in ("psnr", "ssim", "bytes", "anchors"):
+        values = [run.count(column) for run in three]
+        spread[column] = max(values) - min(values)
+    least = min(run.count("bytes") for run in three)
+    spread["share"] = 100 * spread["bytes"] / least
+    return spread
+
+
+def within_seeds(runs, scene, change):
+    """Is the difference to the whole method no more than what seeds alone make? Not where the
+    seeds were not run, or the curve does not reach."""
+    spread = seed_spread(runs, scene)
+    return change.psnr is not None and spread is not None and abs(change.psnr) < spread["psnr"]
+
+
+class Seeded:
+    """A variant against its base, seed by seed, at equal bytes: runs SCENE-VARIANT-2,
+    SCENE-VARIANT_seed2-2, ... of the group "seeded" against the whole method's; those of the group
+    "recipe" against SCENE-recipe-2, SCENE-recipe_seed2-2, ...
+
+    changes: by seed, dB; None when one is missing, or there is one seed alone."""
+
+    def __init__(self, runs, scene, variant):
+        self.is_recipe = variant.startswith("recipe_")
+        group = "recipe" if self.is_recipe else "seeded"
+        self.pairs = []
+        for seed in range(1, 11):
+            run = seeded_run(runs, scene, variant, seed)
+            if not run.in_group(group):
+                break
+            self.pairs.append((run, seeded_run(runs, scene, "recipe", seed) if self.is_recipe
+                               else whole_run(runs, scene, seed)))
+        self.base = "recipe" if self.is_recipe else "whole"
+        self.curve = runs.of(scene, self.base)
+        self.changes = [self.change(runs, *pair) for pair in self.pairs]
+        if len(self.changes) < 2 or None in self.changes:
+            self.changes = None
+            return
+        n = len(self.changes)
+        total, square = sum(self.changes), sum(c * c for c in self.changes)
+        self.mean = total / n
+        self.error = (math.sqrt((square - total * total / n) / (n - 1) / n)
+                      if square * n > total * total else 0)
+
+    def change(self, runs, run, other):
+        """PSNR of a run less that of another, had both as many bytes: along the curve of the base
+        at seed 1. None where one is missing or the curve does not reach."""
+        if not run.has() or not other.has():
+            return None
+        of_run, of_other = (psnr_change(runs, one, self.base) for one in (run, other))
+        return None if of_run is None or of_other is None else of_run - of_other
+
+    def is_worse(self):
+        """Whether the mean lies farther from zero than chance puts it once in twenty on that side:
+        True worse, False better, "?" there is no saying, as without changes."""
+        if self.changes is None:
+            return "?"
+        limit = STUDENT[len(self.changes) - 2] * self.error
+        return True if self.mean < -limit else False if self.mean > limit else "?"
+
+    def verdict(self):
+        return {True: "worse", False: "better", "?": "no saying"}[self.is_worse()]
+
+    def by_seed(self):
+        return ", ".join(signed(change, 2) for change in self.changes)
+
+    def mean_text(self):
+        return signed(self.mean, 2) + " ± " + fixed(self.error, 2)
+
+    def mark(self):
+        """Of all rows that the changes come from."""
+        return mark(self.curve + [run for pair in self.pairs for run in pair])
+
+
+def seeded_run(runs, scene, variant, seed):
+    return runs.find(f"{scene}-{variant}{'' if seed == 1 else f'_seed{seed}'}-2")
+
+
+def seeded_variants(runs, group):
+    """(scene, variant) of the runs with a seed 1 of a group."""
+    return [(scene, variant) for scene in runs.scenes for variant in runs.variants
+            if "_seed" not in variant and seeded_run(runs, scene, variant, 1).in_group(group)]

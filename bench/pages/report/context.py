@@ -1,0 +1,25 @@
+"""What all sections of the report share.
+SPDX-License-Identifier: BSD-2-Clause"""
+from ..plot import Looks
+from ..words import Bars, Page
+
+
+class Report:
+    """runs: wanted runs and rows. results: folder of sweep.csv, logs and pictures. pages: folder
+    of raster.md and the other pages that it takes numbers from. tables: the page of all tables."""
+
+    def __init__(self, runs, charts, results, pages):
+        self.runs, self.charts, self.results, self.pages = runs, charts, results, pages
+        self.tables, self.bars = Page(), Bars()
+        self.scenes = runs.curve_scenes()
+        self.looks = Looks(self.scenes)
+
+    def wanting(self, group):
+        """(scene, variant) of all variants of a group."""
+        return [(scene, variant) for scene in self.runs.scenes for variant in self.runs.variants
+                if self.runs.wants(scene, variant, group)]
+
+
+def sweep(patterns=""):
+    """How the rows that match shell patterns are made."""
+    return f"`bench/sweep.sh {patterns}`" if patterns else "`bench/sweep.sh`"

@@ -1,0 +1,123 @@
+"""Puts the report together: a page to read, and one of all tables behind it.
+SPDX-License-Identifier: BSD-2-Clause"""
+from ..rows import mark
+from ..words import Page, cells, fixed
+from . import (bytes, estimate, findings, kept, lives, pictures, precision, progress, rate, seeds,
+               singles, speed, variant_bars, variants)
+from .context import Report
+
+SHOWN = "kitchen-whole-2"   # the run of the headline and of the picture
+
+
+def write(runs, charts, results, pages):
+    """{name of a file: text}, with charts drawn."""
+    report = Report(runs, charts, results, pages)
+    rate.section(report)
+    variants.section(report)
+    variant_bars.add_bars(report, "kitchen")
+    singles.medium_section(report)
+    singles.tint_section(report)
+    singles.still_section(report)
+    speed.section(report)
+    bytes.section(report)
+    lives.section(report)
+    estimate.section(report)
+    kept.section(report)
+    precision.section(report)
+    seeds.section(report)
+    seeds.seeded_section(report)
+    seeds.recipe_section(report)
+    progress.section(report)
+    pictures.sheet_section(report)
+    pictures.command_section(report)
+    return {"report.md": report_text(report), "report-tables.md": tables_text(report)}
+
+
+def tables_text(report):
+    head = Page()
+    head.heading("All tables of the report", 1)
+    head.prose("""`make report` writes this page from [sweep.csv](sweep.csv) and the pages that it
+        names; `make sweep` makes the rows. [report.md](report.md) tells what the tables show.""")
+    head.prose(report.runs.summary() + ".")
+    head.heading("Bars")
+    head.prose("""The bars are those of the method, by number; "not run yet" stands wherever a run is
+        missing.""")
+    head.prose(report.bars.summary())
+    report.bars.show(head, "command, then `make report`")
+    head.say()
+    return head.text() + report.tables.text()
+
+
+# ---- the page to read ----
+
+def report_text(report):
+    page = Page()
+    page.heading("What the method shows", 1)
+    headline(report, page)
+    findings.section(report, page)
+    findings.open_section(report, page)
+    page.heading("Rate and distortion")
+    page.prose("""The whole method at four λ, measured on decoded files, on pictures that training
+        never saw ([tables](report-tables.md#rate-and-distortion),
+        [bytes by syntax element](report-tables.md#bytes-by-syntax-element)).""")
+    rate.show(report, page)
+    speed_section(report, page)
+    picture_section(report, page)
+    page.heading("What each part is worth")
+    page.prose("""Each variant is the whole method with one thing changed, trained by itself
+        ([tables](report-tables.md#one-thing-changed)).""")
+    variants.show_overview(report, page)
+    notes_section(report, page)
+    return page.text()
+
+
+def headline(report, page):
+    run = report.runs.find(SHOWN)
+    if run.has():
+        speeds = kept.render_speeds(report)
+        page.prose(f"""A file of {run.count('bytes') / 1000:.0f} kB shows the moving scene `kitchen`
+            to cameras that training never saw with {fixed(run.number('psnr'), 2)} dB (PSNR) and
+            decodes on one thread in {fixed(run.number('decode_ms'), 0)} ms{mark([run])}."""
+            + (f" Two threads draw 100,000 moving Gaussians at 960x536 with {speeds[0][1]:.1f} "
+               "frames/s ([render.md](render.md))." if speeds else ""))
+    page.prose("""`make report` writes this page from the rows of [sweep.csv](sweep.csv), which `make
+        sweep` makes; [report-tables.md](report-tables.md) holds all tables and the commands behind
+        them.""")
+    page.prose(report.runs.summary() + ".")
+
+
+def speed_section(report, page):
+    page.heading("Speed against accuracy")
+    page.prose("""Every preset at its λ, with its own capacity (`--capacity fixed`). Core minutes are
+        those of all threads together. A picture takes decoding the whole file on one thread and
+        drawing it with the run's threads
+        ([all columns and a chart](report-tables.md#speed-against-accuracy)).""")
+    speed.show_training(report, page)
+    page.table("run", "PSNR dB", "bytes", "core minutes", "decode + picture ms")
+    for _, run in speed.preset_runs(report.runs):
+        if run.has():
+            page.row(run.name(), *cells(run, "psnr:2 bytes"), fixed(run.count("cpu_s") / 60, 1),
+                     fixed(run.picture_ms(), 1))
+        else:
+            page.row_missing(run.tag)
+
+
+def picture_section(report, page):
+    page.heading("Pictures")
+    page.prose("""Each sheet shows the truth, ours and the error (5 times) at three times, of pictures
+        that training never saw, drawn from the decoded file
+        ([all columns](report-tables.md#pictures)).""")
+    if report.runs.find(SHOWN).has():
+        page.say()
+        page.say(f"![Truth, ours and error of {SHOWN}](sheets/{SHOWN}.jpg)")
+    page.table("sheet", "changed", "PSNR dB", "SSIM", "bytes")
+    pictures.sheet_rows(report.runs, page, "psnr:2 ssim:4 bytes")
+
+
+def notes_section(report, page):
+    """What is written by hand."""
+    page.heading("Notes")
+    page.say()
+    notes = kept.page_lines(report, "report-notes.md")
+    for line in notes or ["None yet."]:
+        page.say(line)

@@ -1,0 +1,155 @@
+"""bench/stability.md: where the method and its variants fail. Judges bars 1 to 3 of the lab.
+SPDX-License-Identifier: BSD-2-Clause"""
+import os
+
+from . import stability_tables as tables
+from .notes import read_notes
+from .rows import mark
+from .stability_marks import draw
+from .stability_rules import Cell
+from .words import Bars, Page, signed
+
+MOST_SEED_SPREAD = 0.3  # dB, on easy scenes
+LEAST_GAIN = 1          # dB of the worst frame, where things come, go or hide
+SCENES, VARIANTS = 16, 6
+
+
+class Lab:
+    """variants: those of the lab, in the order of the table."""
+
+    def __init__(self, runs, charts, notes):
+        self.runs, self.charts, self.notes = runs, charts, notes
+        self.unread = dict(notes)
+        self.variants = [variant for variant in runs.variants
+                         if any(runs.wants(scene, variant, "lab") for scene in runs.scenes)]
+        self.page, self.bars = Page(), Bars()
+        self.failures = self.unexplained = 0
+
+    def cell(self, scene, variant):
+        return Cell(self, scene, variant)
+
+    def cells(self, scene):
+        return [self.cell(scene, variant) for variant in self.variants]
+
+    def in_group(self, group):
+        """Scenes whose whole method belongs to a group."""
+        return [scene for scene in self.runs.scenes if self.runs.wants(scene, "whole", group)]
+
+    def note(self, scene, variant):
+        """"" when there is none."""
+        key = f"{scene} {variant}"
+        key = key if key in self.notes else f"{scene} *"
+        self.unread.pop(key, None)
+        return self.notes.get(key, "")
+
+
+def write(runs, charts, *_):
+    """{name of the file: text}, with charts drawn."""
+    lab = Lab(runs, charts, read_notes(os.environ.get("TED4_NOTES", "bench/stability-notes.md")))
+    draw(lab, "worst", "Worst held-out frame", "PSNR dB", "worst")
+    draw(lab, "mean", "Mean of held-out frames", "PSNR dB", "psnr")
+    draw(lab, "out", "Anchors thrown out of every picture", "% of drawn anchors", "out_share",
+         factor=100, zero=True)
+    tables.quality_section(lab)
+    tables.failure_section(lab)
+    tables.out_section(lab)
+    tables.numbers_section(lab)
+    tables.strip_section(lab)
+    tables.command_section(lab)
+    run_bars(lab)
+    come_bars(lab)
+    seed_bars(lab)
+    head = Page()
+    head.heading("The stability lab", 1)
+    head.prose("""`make stability` writes this page from [stability.csv](stability.csv). The bars are
+        those of the lab, by number; "not run yet" stands wherever a run is missing.""")
+    head.prose(runs.summary() + ".")
+    head.prose(lab.bars.summary())
+    lab.bars.show(head, "command, then `python3 -m bench.pages stability`")
+    head.say()
+    return {"stability.md": head.text() + lab.page.text()}
+
+
+def command(patterns=""):
+    return f"`bench/stability.sh {patterns}`" if patterns else "`bench/stability.sh`"
+
+
+def has_three(cell):
+    return len(cell.there) >= 3
+
+
+def run_bars(lab):
+    """1: enough of it ran; the whole method does not break; what is weak is explained."""
+    all_cells = [lab.cells(scene) for scene in lab.runs.scenes]
+    complete = sum(all(map(has_three, cells)) for cells in all_cells)
+    rows = sum(len(cell.there) for cells in all_cells for cell in cells)
+    wanted = sum(len(cell.wanted) for cells in all_cells for cell in cells)
+    enough = complete >= SCENES
+    lab.bars.add(1, "what ran", "at least 16 scenes x 3 seeds x 6 variants",
+                 f"{complete} scenes whole, with {len(lab.variants)} variants; {rows} of {wanted} "
+                 "rows", True if enough and len(lab.variants) >= VARIANTS else None, command())
+    whole = [lab.cell(scene, "whole") for scene in lab.runs.scenes]
+    broken = sum(cell.breaks(rule) for cell in whole
+                 for rule in ("crash", "error", "nan", "diverges"))
+    lab.bars.add(1, "whole method: crash, error, NaN, divergence", "none",
+                 f"{broken} in {sum(len(cell.there) for cell in whole)} runs",
+                 False if broken else True if enough else None, command("'*-whole-*'"))
+    lab.bars.add(1, "weak spots of the whole method", "every one explained",
+                 f"{lab.failures} scenes, {lab.unexplained} of them unexplained",
+                 False if lab.unexplained else True if enough else None,
+                 "[notes](stability-notes.md)")
+
+
+def come_bars(lab):
+    """2: where things come, go or hide."""
+    for scene in lab.in_group("come"):
+        whole, without = lab.cell(scene, "whole"), lab.cell(scene, "noactive")
+        gain = None
+        if whole.mean("worst") is not None and without.mean("worst") is not None:
+            gain = whole.mean("worst") - without.mean("worst")
+        complete = has_three(whole) and has_three(without)
+        lab.bars.add(2, f"{scene}: worst frame, whole method above no activation", "at least 1 dB",
+                     signed(gain, 2, " dB") + mark(whole.wanted),
+                     gain >= LEAST_GAIN if complete and gain is not None else None,
+                     command(f"'{scene}-whole-*' '{scene}-noactive-*'"))
+    thrown_bar(lab)
+
+
+def thrown_bar(lab):
+    """2: anchors that leave every picture, in these scenes together; where none does either way
+    there is nothing to be fewer than."""
+    pairs = [(lab.cell(scene, "whole"), lab.cell(scene, "noactive"))
+             for scene in lab.in_group("come")]
+    complete = all(has_three(a) and has_three(b) for a, b in pairs)
+    out = {a.scene: (a.mean("out") or 0, b.mean("out") or 0) for a, b in pairs
+           if a.there and b.there}
+    ok = None
+    if complete and out:
+        with_it, without = (sum(both[i] for both in out.values()) for i in (0, 1))
+        more = any(a > b for a, b in out.values())
+        ok = "?" if with_it + without == 0 else with_it < without and not more
+    lab.bars.add(2, "anchors thrown out of view where things come, go or hide, means over seeds",
+                 "fewer than without activation, and in no scene more",
+                 ", ".join(f"{scene} {a:.1f} against {b:.1f}" for scene, (a, b) in out.items()),
+                 ok, command("'*-whole-*' '*-noactive-*'"))
+
+
+def seed_bars(lab):
+    """3: seeds."""
+    easy = [lab.cell(scene, "whole") for scene in lab.in_group("easy")]
+    spreads = {cell.scene: cell.spread() for cell in easy if cell.spread() is not None}
+    worst = max(spreads.values(), default=None)
+    lab.bars.add(3, "spread of mean PSNR between seeds, easy scenes", "below 0.3 dB",
+                 "; ".join(f"{scene} {spread:.2f} dB" for scene, spread in spreads.items()),
+                 None if worst is None else False if worst >= MOST_SEED_SPREAD
+                 else True if all(map(has_three, easy)) else None, command("easy"))
+    again = [(lab.runs.first(scene, "again"), lab.runs.first(scene, "whole"))
+             for scene in lab.runs.scenes if lab.runs.of(scene, "again")]
+    told = [(a, b) for a, b in again
+            if a.has() and b.has() and not a.is_old() and not b.is_old()]
+    same = sum(a.text("hash") == b.text("hash") and a.text("bytes") == b.text("bytes")
+               for a, b in told)
+    lab.bars.add(3, "the same seed trained twice", "the same bytes",
+                 f"{len(told)} of {len(again)} scenes told, {same} equal in size and hash",
+                 False if len(told) > same else True if again and len(told) == len(again)
+                 else None, command("again '*-whole-1'"))

@@ -1,0 +1,174 @@
+"""Tables of the stability lab: quality of every scene and variant, anchors thrown out, what the
+whole method's runs measured, failures with their causes, strips, commands.
+SPDX-License-Identifier: BSD-2-Clause"""
+from .rows import mark, own_options
+from .stability_rules import RULES
+from .words import cells, fixed, percent
+
+
+def quality_cell(cell):
+    """Mean and worst: means over seeds, and the spread between seeds of the mean."""
+    if not cell.there:
+        return "-"
+    n, wanted, spread, marks = len(cell.there), len(cell.wanted), cell.spread(), cell.marks()
+    return (f"{fixed(cell.mean('psnr'), 2)} / {fixed(cell.mean('worst'), 2)}"
+            + ("" if spread is None else f" ±{spread / 2:.2f}")
+            + (f" ({n} of {wanted})" if n < wanted else "") + mark(cell.wanted)
+            + (marks and f" **{marks}**"))
+
+
+def quality_section(lab):
+    page = lab.page
+    page.heading("Every scene and variant")
+    page.prose("""The table shows PSNR in dB on held-out pictures that training never saw, drawn from
+        the decoded file: mean of all / worst of all, both as means over seeds; ± half the span of
+        the mean over seeds. Bold letters mark failures, with the number of seeds where not all
+        fail:""")
+    page.say()
+    for letter, meaning in RULES.values():
+        page.item(f"**{letter}**: {meaning}")
+    page.table("scene", *lab.variants)
+    for scene in lab.runs.scenes:
+        page.row(scene, *map(quality_cell, lab.cells(scene)))
+    page.chart(lab.charts, "worst",
+               "Worst held-out frame by scene and variant, mean and span over seeds")
+    page.chart(lab.charts, "mean", "Mean PSNR by scene and variant, mean and span over seeds")
+
+
+def out_section(lab):
+    page = lab.page
+    page.heading("Anchors thrown out of view")
+    page.prose("""An anchor is *thrown out* when, at a time at which something trains it, it is drawn
+        (one of its Gaussians is at least as opaque as the rasteriser asks, 1/255) while its centre
+        (the mean of those of its Gaussians) lies in the picture of none of that time's training
+        cameras, although at another such time its centre lies where one of these same cameras sees
+        it: so the anchor was moved, not the camera. The table shows the share of the anchors that
+        are drawn at all, and the largest displacement while drawn, in sizes of the scene (the
+        longest side of the box between the 1st and the 99th percentile of its initial points). Both
+        are means over seeds.""")
+    page.table("scene", *lab.variants)
+    for scene in lab.runs.scenes:
+        page.row(scene, *("-" if not cell.there else
+                          f"{percent(cell.mean('out_share'), 2)}; "
+                          f"{fixed(cell.mean('displacement'), 3)}{mark(cell.wanted)}"
+                          for cell in lab.cells(scene)))
+    page.chart(lab.charts, "out",
+               "Share of drawn anchors thrown out of every picture, by scene and variant")
+
+
+def term_cell(cell, column):
+    """The largest of a number, with the term that a second column names."""
+    known = [run for run in cell.wanted if run.text(column)]
+    if not known:
+        return "-"
+    run = max(known, key=lambda one: one.number(column))
+    return f"{run.number(column):.3g} ({run.text(column + '_term')})"
+
+
+def numbers_section(lab):
+    page = lab.page
+    page.heading("What the whole method's runs measured")
+    page.prose("""All numbers are means over seeds, but for gradients and rollbacks, which are the
+        most of them. *Dead* is the share of Gaussians whose opacity is 0 at all times. *Ends* are
+        shares of symbols, steps, contexts, sigma indices and activation widths at the ends of their
+        ranges. *Loss* is the distortion at the first line of the log and at the last, as running
+        means over about 100 steps. *Clamped* counts values of anchors at an end of their range when
+        training ended. *Not finite* counts pictures and times that the decoder refused, Gaussians
+        that training left out, and lines of the log. *Peak* is the largest norm of a gradient as a
+        multiple of its term's usual one.""")
+    page.table("scene", "bytes", "anchors", "moving", "dead", "escapes", "ends: symbols", "steps",
+               "contexts", "sigma", "widths", "clamped", "not finite", "loss", "largest gradient",
+               "peak", "rollbacks", "training s of CPU")
+    for scene in lab.runs.scenes:
+        cell = lab.cell(scene, "whole")
+        if cell.there:
+            numbers_row(page, cell)
+        else:
+            page.row_missing(scene)
+
+
+def numbers_row(page, cell):
+    shares = [percent(cell.mean(name), digits) for name, digits in (
+        ("dead", 1), ("escape_share", 3), ("symbol_ends", 3), ("step_ends", 3),
+        ("context_ends", 3), ("sigma_ends", 2), ("width_ends", 2))]
+    not_finite = cell.sum("refused_views", "refused_times", "log_bad", "skipped")
+    page.row(cell.scene + mark(cell.wanted),
+             *(fixed(cell.mean(name), 0) for name in ("bytes", "anchors", "dynamic")), *shares,
+             fixed(cell.mean("clamped"), 0), f"{not_finite:.0f}",
+             f"{fixed(cell.mean('loss_first'), 4)} to {fixed(cell.mean('loss_last'), 4)}",
+             term_cell(cell, "gradient"), term_cell(cell, "peak"),
+             fixed(cell.most("rollbacks"), 0), fixed(cell.mean("cpu_s"), 1))
+
+
+def failure_words(cell):
+    """What fails, and what ended the runs that have no file."""
+    said = []
+    for run in cell.wanted:
+        why = run.text("why")
+        if why and not any(why in other for other in said):
+            said.append(why)
+    return ("; ".join(f"{meaning} ({n} of {len(cell.there)})" for _, meaning, n in cell.broken())
+            + (": " + "; ".join(said) if said else ""))
+
+
+def failure_section(lab):
+    """The whole method's failures first, then the variants'. Counts those of the whole method."""
+    page = lab.page
+    page.heading("Failures and their causes")
+    page.prose("""Causes and what mends them are written by hand in
+        [stability-notes.md](stability-notes.md).""")
+    page.table("scene", "variant", "what fails", "cause and mend")
+    for variant in lab.variants:
+        for scene in lab.runs.scenes:
+            cell = lab.cell(scene, variant)
+            if not cell.marks():
+                continue
+            cause, is_whole = lab.note(scene, variant), variant == "whole"
+            lab.failures += is_whole
+            lab.unexplained += is_whole and not cause
+            page.row(scene, variant, failure_words(cell),
+                     cause or ("**unexplained**" if is_whole else "-"))
+    for scene in lab.runs.scenes:
+        for i, variant in enumerate(lab.variants):
+            if f"{scene} {variant}" in lab.unread or (i == 0 and f"{scene} *" in lab.unread):
+                page.prose(f"Of what no longer fails, on {scene}: {lab.note(scene, variant)}")
+
+
+def strip_section(lab):
+    page = lab.page
+    page.heading("Worst frames")
+    page.prose("""Each strip shows the truth, ours and the error (5 times) of the worst held-out
+        picture of the whole method's first seed.""")
+    page.table("scene", "worst dB", "frame", "camera", "strip")
+    for run in lab.runs.all:
+        if not run.keeps("strip"):
+            continue
+        if run.text("worst"):
+            page.row(run.name(), *cells(run, "worst:2 worst_frame worst_camera"),
+                     f"![{run.scene}](lab/{run.tag}.jpg)")
+        else:
+            page.row_missing(run.tag)
+
+
+def command_section(lab):
+    page, runs = lab.page, lab.runs
+    page.heading("Commands")
+    page.prose("""`make stability` runs what is missing and writes this page; `bench/stability.sh
+        PATTERN...` runs parts, `bench/stability.sh --only TAG` one (for a cluster's job array), and
+        `python3 -m bench.pages stability` writes the page. Scenes `own:NAME+size=96x64` are made by
+        `ted4scene NAME --size 96x64 -o FOLDER`. † marks what older sources or other options made.
+        [stability.csv](stability.csv) has all columns.""")
+    if runs.strangers:
+        page.prose(f"It holds {runs.strangers} rows that stability.txt does not want; they are not "
+                   "shown.")
+    page.table("run", "command", "key")
+    for run in runs.all:
+        if run.place == "1" and run.variant == "whole":
+            options = run.text("options") if run.has() else run.options
+            page.row(run.name(), f"`ted4enc {run.where} {options}`",
+                     run.text("key") if run.has() else "not run yet")
+    page.prose("Other seeds and variants differ by:")
+    page.table("variant", "options")
+    for variant in lab.variants:
+        options = own_options(runs, runs.first(runs.scenes[0], variant), ("set",))
+        page.row(variant, options and f"`{options}`")

@@ -1,0 +1,234 @@
+"""bench/zoo.md: scenes as other people write them, each against a friendly twin.
+SPDX-License-Identifier: BSD-2-Clause"""
+import os
+import re
+
+from .notes import read_notes
+from .rows import mark
+from .words import Bars, Page, cells, fixed, signed
+
+MOST_BELOW = 1      # dB below the twin
+LEAST_MOVING = 22   # dB inside the masks of what moves, where cameras take turns
+LEAST_CASES = 24
+# What is foretold: parts of the time, decibels, parts of the bytes.
+MOST_TIME, MOST_PSNR, MOST_BYTES = 0.25, 0.5, 0.05
+
+
+class Case:
+    """A scene of the table: its run, and that of its friendly twin (None without)."""
+
+    def __init__(self, runs, scene, twins):
+        self.scene, self.twin = scene, twins.get(scene, "")
+        self.run = runs.first(scene, runs.variants[0])
+        self.twin_run = runs.first(self.twin, runs.variants[0]) if self.twin else None
+
+    def is_fine(self):
+        return self.run.text("status") == "fine"
+
+    def takes_turns(self):
+        return "+turns" in re.findall(r"\+[^+=]*", self.run.where)
+
+    def is_gone(self):
+        """Is what moves not shown, although cameras take turns?"""
+        return self.takes_turns() and self.run.count("moving_psnr") < LEAST_MOVING
+
+    def above(self):
+        """Decibels above the twin; None where one of the two is not known."""
+        both = (self.run, self.twin_run)
+        if self.twin_run is None or not all(run.text("status") == "fine" and run.text("psnr")
+                                            for run in both):
+            return None
+        return self.run.number("psnr") - self.twin_run.number("psnr")
+
+    def is_below(self):
+        return self.above() is not None and self.above() < -MOST_BELOW
+
+    def missed(self):
+        """What is missed; "" when all is met."""
+        if not self.is_fine():
+            return " ".join((self.run.text("status"), self.run.text("exit") + ":",
+                             self.run.text("why")))
+        why = (["below its twin"] if self.is_below() else [])
+        return ", ".join(why + (["what moves"] if self.is_gone() else []))
+
+    def commands(self):
+        """Of ted4scene, and the options of ted4enc that not all runs have alike."""
+        text = re.sub("^own:", "ted4scene ", self.run.where)
+        text = "`" + text.replace("+", " --").replace("=", " ") + "`"
+        options = re.sub(r"--(seed|preset) [^ ]+ ?", "", self.run.options).rstrip(" ")
+        return text + (options and f", `{options}`")
+
+
+class Foretold:
+    """How far off the log's last lines were, at most. The run has the machine for itself."""
+
+    def __init__(self, run):
+        self.time = max(1 - run.count("estimate_low"), run.count("estimate_high") - 1)
+        self.psnr = abs(run.count("last_psnr") - run.count("psnr"))
+        self.bytes = abs(run.count("last_bytes") / run.count("bytes") - 1)
+
+
+def read_twins(table):
+    """{case: its twin, "" without}, from the lines "case NAME TWIN WHERE ..." of the table."""
+    with open(table, encoding="utf-8") as file:
+        lines = [line.split() for line in file]
+    return {word[1]: "" if word[2] == "-" else word[2] for word in lines
+            if len(word) >= 4 and word[0] == "case"}
+
+
+class Zoo:
+    def __init__(self, runs, table, notes):
+        self.runs, self.notes = runs, notes
+        twins = read_twins(table)
+        self.cases = [Case(runs, scene, twins) for scene in runs.scenes]
+        self.there = [case for case in self.cases if case.run.has()]
+        self.alone = self.of("alone")
+        self.long = self.of("medium")
+        self.foretold = {run.tag: Foretold(run) for run in self.alone
+                         if run.text("status") == "fine"}
+
+    def of(self, variant):
+        return [self.runs.first(scene, variant) for scene in self.runs.scenes
+                if self.runs.of(scene, variant)]
+
+    def so_far(self, bad):
+        """Whether all is met; None while rows are missing and nothing is missed yet."""
+        return False if bad else None if len(self.there) < len(self.cases) else True
+
+
+def write(runs, _charts, _results, _pages):
+    """{name of the file: text}."""
+    zoo = Zoo(runs, os.environ.get("TED4_TABLE", "bench/zoo.txt"),
+              read_notes(os.environ.get("TED4_NOTES", "bench/zoo-notes.md")))
+    page = Page()
+    page.heading("The zoo: scenes as other people write them", 1)
+    old = sum(case.run.is_old() for case in zoo.cases)
+    page.prose(f"""`make zoo` writes this page from [zoo.csv](zoo.csv): {len(zoo.there)} of
+        {len(zoo.cases)} wanted runs are there, {old} of them older than the sources (†). Each case
+        shows the content of its twin, which is friendly, in a way in which others write scenes;
+        [zoo.txt](zoo.txt) is the table. The command makes the scene; then `ted4enc SCENE -o
+        FILE.ted4 --preset draft --seed 1` trains it, with the options that stand behind the
+        command. The preset is draft, because the default's 60,000 steps take ten minutes per case
+        on one core even for pictures of 96x64.""")
+    bars = Bars()
+    case_bars(zoo, bars)
+    long_bar(zoo, bars)
+    foretold_bars(zoo, bars)
+    bars.show(page, "command; then `python3 -m bench.pages zoo`")
+    show_cases(zoo, page)
+    show_long(zoo, page)
+    show_alone(zoo, page)
+    show_misses(zoo, page)
+    return {"zoo.md": page.text()}
+
+
+def case_bars(zoo, bars):
+    there = zoo.there
+    fine = sum(case.is_fine() for case in there)
+    bars.add(1, "cases that end with exit status 0", "all of at least 24",
+             f"{fine} of {len(there)}",
+             False if len(zoo.cases) < LEAST_CASES else zoo.so_far(len(there) - fine),
+             "`bench/zoo.sh`")
+    held = sum(case.above() is not None for case in there)
+    below = sum(case.is_below() for case in there)
+    bars.add(1, "held-out pictures against the twin", f"at most {MOST_BELOW} dB below",
+             f"{held - below} of {held}", zoo.so_far(below), "`bench/zoo.sh`")
+    turns = sum(case.takes_turns() for case in there)
+    gone = sum(case.is_gone() for case in there)
+    bars.add(2, "cameras that take turns: what moves, in training pictures",
+             f"at least {LEAST_MOVING} dB", f"{turns - gone} of {turns}", zoo.so_far(gone),
+             "`bench/zoo.sh 'turns*'`")
+    back = sum(case.run.count("rollbacks") for case in there)
+    bars.add(3, "the watch goes back to a checkpoint", "never", f"{back:.0f} times",
+             zoo.so_far(back), "`bench/zoo.sh`")
+
+
+def long_bar(zoo, bars):
+    there = [run for run in zoo.long if run.has()]
+    back = sum(run.count("rollbacks") + (run.text("status") != "fine") for run in there)
+    bars.add(3, "the same in long trainings, and that they end well", "never",
+             f"{len(there)} trainings, {back:.0f} times",
+             False if back else None if len(there) < len(zoo.long) else True,
+             "`bench/zoo.sh long`")
+
+
+def foretold_bars(zoo, bars):
+    how = "`bench/zoo.sh --jobs 1 --threads 0 alone`"
+    count = len(zoo.foretold)
+
+    def add(what, limit, measure, most, text):
+        worst = max(map(measure, zoo.foretold.values()), default=0)
+        bars.add(4, what, limit, text(worst) if count else "-",
+                 False if worst > most else None if count < len(zoo.alone) else True, how)
+
+    add("estimate of the whole time, from a tenth of it on; alone on the machine", "within 25 %",
+        lambda one: one.time, MOST_TIME,
+        lambda worst: f"at worst {100 * worst:.1f} %, {count} runs")
+    add("`psnr` of the last line", "within 0.5 dB", lambda one: one.psnr, MOST_PSNR,
+        lambda worst: f"at worst {worst:.2f} dB")
+    add("`bytes` of the last line", "within 5 %", lambda one: one.bytes, MOST_BYTES,
+        lambda worst: f"at worst {100 * worst:.2f} %")
+
+
+def show_cases(zoo, page):
+    page.heading("Every case")
+    page.prose("""PSNR is in dB: of held-out pictures, the same against the twin's, of training
+        pictures, and of these inside the masks of what moves and of its shadow, over all pixels.
+        Seconds are of one core; warnings are those of ted4enc; *back* is how often the watch went
+        back to a checkpoint.""")
+    page.table("case", "command", "twin", "held out", "against twin", "training", "what moves",
+               "bytes", "anchors", "steps", "seconds", "warnings", "back", "verdict")
+    for case in zoo.cases:
+        if not case.run.has():
+            page.row_missing(case.scene, case.commands(), case.twin)
+            continue
+        run, why = case.run, case.missed()
+        page.row(case.scene + mark([run]), case.commands(), case.twin or "-",
+                 fixed(run.number("psnr"), 2), signed(case.above(), 2),
+                 *cells(run, "train_psnr:2 moving_psnr:2 bytes anchors steps cpu_s:0 warnings "
+                             "rollbacks"), f"**{why}**" if why else "met")
+
+
+def show_long(zoo, page):
+    if not zoo.long:
+        return
+    page.heading("Long trainings")
+    page.prose("These are trainings with the default preset.")
+    page.table("case", "held out", "training", "what moves", "bytes", "steps", "seconds", "back")
+    for run in zoo.long:
+        if run.has():
+            page.row(run.scene + mark([run]), *cells(
+                run, "psnr:2 train_psnr:2 moving_psnr:2 bytes steps cpu_s:0 rollbacks"))
+        else:
+            page.row_missing(run.scene)
+
+
+def show_alone(zoo, page):
+    if not zoo.alone:
+        return
+    page.heading("What is foretold")
+    page.prose("""The table shows the largest difference between the time that `ted4enc` says and the
+        time that the whole training takes, from a tenth of it on, in hundredths; and the
+        differences between the last line's `psnr` and `bytes` and those of the file. Each run has
+        the machine for itself.""")
+    page.table("case", "seconds", "time", "psnr", "bytes")
+    for run in zoo.alone:
+        if not run.has():
+            page.row_missing(run.scene)
+            continue
+        one = zoo.foretold.get(run.tag)
+        page.row(run.scene + mark([run]), fixed(run.number("train_s"), 0), *(
+            (f"{100 * one.time:.1f} %", f"{one.psnr:.2f} dB", f"{100 * one.bytes:.2f} %")
+            if one else ("-", "-", "-")))
+
+
+def show_misses(zoo, page):
+    page.heading("What misses")
+    missed = [case for case in zoo.there if case.missed()]
+    if not missed:
+        page.prose("Nothing." if zoo.there else "Not run yet.")
+        return
+    page.say()
+    for case in missed:
+        page.item(f"{case.scene} ({case.missed()}): "
+                  + zoo.notes.get(case.scene, "**not explained yet**"))
