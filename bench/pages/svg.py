@@ -15,7 +15,7 @@ CORNERS = {
 
 
 def px(value):
-    return f"{value:.2f}"
+    return f"{value:.2f}".rstrip("0").rstrip(".")
 
 
 def escape(text):
@@ -46,7 +46,8 @@ class Svg:
         self.parts = [
             f'<svg xmlns="http://www.w3.org/2000/svg" width="{width}" height="{height}"'
             f' viewBox="0 0 {width} {height}"'
-            ' font-family="DejaVu Sans, Verdana, Helvetica, Arial, sans-serif" role="img">',
+            ' font-family="DejaVu Sans, Verdana, Helvetica, Arial, sans-serif" font-size="12"'
+            ' role="img">',
             f"<title>{escape(title)}</title>",
             f'<rect width="{width}" height="{height}" fill="#ffffff"/>']
 
@@ -63,18 +64,20 @@ class Svg:
 
     def line(self, x1, y1, x2, y2, colour, width=1, dash=""):
         self.put(f'<line x1="{px(x1)}" y1="{px(y1)}" x2="{px(x2)}" y2="{px(y2)}"'
-                 f' stroke="{colour}" stroke-width="{width:g}"{dashes(dash)}/>')
+                 f' stroke="{colour}"' + ("" if width == 1 else f' stroke-width="{width:g}"')
+                 + f"{dashes(dash)}/>")
 
     def write(self, x, y, text, place="start", size=12, colour="#222222", bold=False, up=False):
         """place: start, middle or end. up: words that run upwards."""
-        self.put(f'<text x="{px(x)}" y="{px(y)}" text-anchor="{place}" font-size="{size:g}"'
-                 f' fill="{colour}"' + (' font-weight="bold"' if bold else "")
+        self.put(f'<text x="{px(x)}" y="{px(y)}"{anchored(place)}'
+                 + ("" if size == 12 else f' font-size="{size:g}"')
+                 + f' fill="{colour}"' + (' font-weight="bold"' if bold else "")
                  + (f' transform="rotate(-90 {px(x)} {px(y)})"' if up else "")
                  + f">{escape(text)}</text>")
 
     def note(self, x, y, text, place, colour):
         """Words on a white halo, for those that stand among data."""
-        self.put(f'<text x="{px(x)}" y="{px(y)}" text-anchor="{place}" font-size="11"'
+        self.put(f'<text x="{px(x)}" y="{px(y)}"{anchored(place)} font-size="11"'
                  f' fill="{colour}" stroke="#ffffff" stroke-width="3" stroke-linejoin="round"'
                  f' paint-order="stroke">{escape(text)}</text>')
 
@@ -90,7 +93,7 @@ class Svg:
 
     def marker(self, kind, x, y, radius, colour):
         """Of about that radius around its centre; a white edge keeps neighbours apart."""
-        edge = ' stroke="#ffffff" stroke-width="1"/>'
+        edge = ' stroke="#ffffff"/>'
         if kind == "circle":
             self.put(f'<circle cx="{px(x)}" cy="{px(y)}" r="{px(radius)}" fill="{colour}"{edge}')
         elif kind == "ring":
@@ -105,6 +108,10 @@ class Svg:
             places = " ".join(f"{px(x + scale * radius * a)},{px(y + scale * radius * b)}"
                               for a, b in zip(corners[::2], corners[1::2]))
             self.put(f'<polygon points="{places}" fill="{colour}"{edge}')
+
+
+def anchored(place):
+    return "" if place == "start" else f' text-anchor="{place}"'
 
 
 def dashes(lengths):
