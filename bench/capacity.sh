@@ -35,7 +35,7 @@ measure() {
     down=$(echo "$options" | sed -n 's/.*--downscale \([0-9]*\).*/\1/p')
     run "$programs/ted4eval" "$out.ted4" "$folder" --anyway --downscale "${down:-1}" --json -q -j "$threads" >"$out.eval.json" || return 1
     "$programs/ted4info" "$out.ted4" --budget --json >"$out.info.json" && time_decoder "$out.ted4" || return 1
-    parts=$(awk -f bench/budget.awk "$out.info.json") && times=$(awk -f bench/log.awk /dev/null "$out.jsonl") || return 1
+    parts=$(python3 -m bench.pages budget "$out.info.json") && times=$(python3 -m bench.pages times "$out.jsonl") || return 1
     row=$tag,$key,$scene,$groups,$options,$lambda
     for f in bytes psnr ssim l1; do row=$row,$(value $f "$out.eval.json"); done
     row=$row,$parts

@@ -36,7 +36,7 @@ measure() {
     case +$keep+ in *+strip+*) strip=$out.strip.png; set -- "$@" "$strip" ;; *) strip= ;; esac
     run "$programs/lab_facts" "$@" >"$out.facts.json" || return 1
     [ -z "$strip" ] || keep_picture "$strip" lab "$tag" || return 1
-    times=$(awk -f bench/log.awk /dev/null "$out.jsonl") || return 1
+    times=$(python3 -m bench.pages times "$out.jsonl") || return 1
     row=$tag,$key,$scene,$groups,$options,fine
     for f in $facts; do row=$row,$(value $f "$out.facts.json" | sed 's/^null$//'); done
     row=$row,$(echo "$times" | cut -d, -f1,3),$(value hash "$out.json"),

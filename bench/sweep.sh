@@ -46,7 +46,7 @@ keep_pictures() {
     [ -z "$spans" ] || keep_picture "$spans" charts "spans-$tag" || return 1
     case +$keep+ in *+log+*)
         mkdir -p "$results/logs"
-        awk -v most=100 -f bench/log.awk "$first_log" "$out.jsonl" >"$out.log" && mv "$out.log" "$results/logs/$tag.jsonl" || return 1 ;;
+        python3 -m bench.pages thin 100 "$first_log" "$out.jsonl" >"$out.log" && mv "$out.log" "$results/logs/$tag.jsonl" || return 1 ;;
     esac
 }
 
@@ -54,7 +54,7 @@ measure() {
     first_log=${stage1_file%.stage1}.jsonl
     keep_pictures && time_decoder "$out.ted4" || return 1
     "$programs/ted4info" "$out.ted4" --budget --json >"$out.info.json" && "$programs/rate_check" "$out.ted4" >"$out.rate.json" || return 1
-    parts=$(awk -f bench/budget.awk "$out.info.json") && times=$(awk -f bench/log.awk "$first_log" "$out.jsonl") || return 1
+    parts=$(python3 -m bench.pages budget "$out.info.json") && times=$(python3 -m bench.pages times "$first_log" "$out.jsonl") || return 1
     row=$tag,$key,$scene,$groups,$options,$lambda
     for f in psnr ssim ssim2 ms_ssim bytes; do row=$row,$(value $f "$out.eval.json"); done
     row=$row,$parts

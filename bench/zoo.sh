@@ -39,8 +39,8 @@ measure() {
         2>"$out.views" || return 1
     "$programs/zoo_masks" "$folder" "$out.pictures" <"$out.views" >"$out.masks.json" || return 1
     rm -rf "$out.pictures"
-    times=$(awk -f bench/log.awk /dev/null "$out.jsonl") || return 1
-    told=$(awk -v whole="$(value train_s "$out.json")" -f bench/told.awk "$out.jsonl") || return 1
+    times=$(python3 -m bench.pages times "$out.jsonl") || return 1
+    told=$(python3 -m bench.pages foretold "$(value train_s "$out.json")" "$out.jsonl") || return 1
     warnings=$(grep -c 'warning:' "$out.err")
     row=$tag,$key,$scene,$groups,$options,fine,0,$(value psnr "$out.eval.json"),$(value psnr "$out.train.json")
     row=$row,$(value moving_psnr "$out.masks.json" | sed 's/^null$//'),$(value moving_pixels "$out.masks.json")

@@ -1,7 +1,12 @@
-"""Writes a page of bench/ and its charts; prints the runs that a table wants.
+"""Writes a page of bench/ and its charts; answers what the scripts that make the rows ask.
 
-    python3 -m bench.pages runs TABLE
     python3 -m bench.pages report|capacity|stability|zoo [STATES]
+    python3 -m bench.pages runs TABLE          the runs that a table wants, a line each:
+        GROUPS|TAG|SCENE|WHERE|VARIANT|PLACE|LAMBDA|KEEP|STAGE1|OPTIONS
+    python3 -m bench.pages times LOG...        training_times of logs.py, divided by commas
+    python3 -m bench.pages thin MOST LOG...    thinned
+    python3 -m bench.pages foretold SECONDS LOG
+    python3 -m bench.pages budget FILE         bytes by syntax element, divided by commas
 
 STATES: a file of lines "STATE TAG", which the script that makes the rows prints with --list; that
 script is asked without it. Environment: TED4_RESULTS (bench: where the rows lie and the pages go),
@@ -18,7 +23,7 @@ import subprocess
 import sys
 import tempfile
 
-from . import wanted
+from . import budget, logs, wanted
 from .rows import Runs
 from .svg import Charts
 
@@ -54,7 +59,7 @@ def replace_charts(scratch, folder):
         shutil.move(chart, folder)
 
 
-def write_page(page, states):
+def write_page(page, states=None):
     name, folder, module = PAGES[page]
     results = os.environ.get("TED4_RESULTS", "bench")
     table = os.environ.get("TED4_TABLE", f"bench/{name}.txt")
@@ -72,15 +77,39 @@ def write_page(page, states):
             file.write(text)
 
 
-def main(arguments):
-    if len(arguments) == 2 and arguments[0] == "runs":
-        for run in wanted.read_table(arguments[1]):
-            print(run.line())
-    elif len(arguments) in (1, 2) and arguments[0] in PAGES:
-        write_page(arguments[0], arguments[1] if len(arguments) == 2 else None)
+def wanted_lines(table):
+    return [run.line() for run in wanted.read_table(table)]
+
+
+def times_lines(*paths):
+    return [",".join(f"{seconds:.1f}" for seconds in logs.training_times(paths))]
+
+
+def thin_lines(most, *paths):
+    return logs.thinned(paths, int(most))
+
+
+def foretold_lines(seconds, path):
+    return [",".join(logs.foretold(path, float(seconds)))]
+
+
+def budget_lines(path):
+    return [",".join(map(str, budget.read_budget(path)))]
+
+
+ANSWERS = {"runs": wanted_lines, "times": times_lines, "thin": thin_lines,
+           "foretold": foretold_lines, "budget": budget_lines}
+
+
+def main(name="", *arguments):
+    if name in PAGES and len(arguments) <= 1:
+        write_page(name, *arguments)
+    elif name in ANSWERS and arguments:
+        for line in ANSWERS[name](*arguments):
+            print(line)
     else:
-        sys.exit("usage: python3 -m bench.pages runs TABLE | " + "|".join(PAGES) + " [STATES]")
+        sys.exit(__doc__)
 
 
 if __name__ == "__main__":
-    main(sys.argv[1:])
+    main(*sys.argv[1:])

@@ -218,12 +218,12 @@ check empty "$page" '0 of 58 wanted runs' \
 line() { echo '{"step":'$1',"stage":"'$2'","loss":0.5,"psnr":20,"anchors":5,"bytes":0,"ms":4,"seconds":'$3',"cpu_seconds":'$4'}'; }
 { line 250 1 1.5 3; echo '{"step":250,"event":"rollback","rollbacks":1}'; line 500 1 3 6; } >"$out/one.log"
 { line 750 2 4 2; line 1000 2i 5 4; } >"$out/two.log"
-said=$(awk -f bench/log.awk "$out/one.log" "$out/two.log")
+said=$(python3 -m bench.pages times "$out/one.log" "$out/two.log")
 [ "$said" = 5.0,3.0,10.0,6.0 ] && ok log_times || fail log_times "$said"
 for l in '500,"stage":"1",@3.0' '1000,"stage":"2i",@5.0'; do
     echo '{"step":'"${l%@*}"'"loss":0.5,"psnr":20,"anchors":5,"bytes":0,"seconds":'"${l#*@}}"
 done >"$out/want.log"
-awk -v most=2 -f bench/log.awk "$out/one.log" "$out/two.log" | cmp -s - "$out/want.log" && ok thinned_log || fail thinned_log "not $(cat "$out/want.log")"
+python3 -m bench.pages thin 2 "$out/one.log" "$out/two.log" | cmp -s - "$out/want.log" && ok thinned_log || fail thinned_log "not $(cat "$out/want.log")"
 
 if grep -q '^| [0-9]* |.*| met |' "$page" || [ -n "$(ls "$out/charts")" ]; then fail nothing_met "something is met or drawn"; else ok nothing_met; fi
 exit $bad

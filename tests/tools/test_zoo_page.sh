@@ -75,6 +75,12 @@ cp "$out/calls" "$out/before"
 runs held-default-1 broken-default-1 >"$out/said" 2>&1
 cmp -s "$out/calls" "$out/before" && ok nothing_twice || fail nothing_twice "$(cat "$out/said")"
 
+# Of a training of 50 s: what is said after 4 s does not count, after 12 s 60 s in all, after 40 s 45 s.
+step() { echo '{"step":1,"stage":"1","psnr":'$3',"bytes":9,"seconds":'$1',"left":'$2'}'; }
+{ step 4 100 10; step 12 48 20; step 40 5 21.50; } >"$out/steps"
+told=$(python3 -m bench.pages foretold 50.00 "$out/steps")
+[ "$told" = 0.900,1.200,21.50,9 ] && ok from_a_tenth_on || fail from_a_tenth_on "$told"
+
 # ---- the page ----
 
 # odd lies 1.5 dB below, held 0.5; turns shows what moves with 21 dB; broken ended with an error.
