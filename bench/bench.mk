@@ -7,7 +7,8 @@ $B/bench/bench_raster: $B/bench/bench_raster.o $B/ref-decoder/tool/threads.o $(E
 
 KEEP = MAKE_TARGET=$@ CC='$(CC)' sh bench/keep.sh
 
-# These three print their tables and keep them in bench/raster.md, bench/render.md and bench/train.md.
+# These three print their tables and keep them in bench/raster.md, bench/render.md and
+# bench/train.md.
 bench-raster: $B/bench/bench_raster
 	$(KEEP) bench/raster.md $B/bench/bench_raster
 
@@ -20,9 +21,11 @@ bench-render: $B/bench/bench_render
 
 # Parts of a step are told apart by functions that train_parts.c puts in between.
 LEVELED_PARTS = ted4_raster_project ted4_raster_blend ted4_raster_blend_bwd ted4_raster_project_bwd
-TRAIN_PARTS = ted4_dataset_pixels ted4_trainer_check ted4_schedule_event ted4_slots_fill ted4_generator_pack ted4_generate \
+TRAIN_PARTS = ted4_dataset_pixels ted4_trainer_check ted4_schedule_event ted4_slots_fill \
+        ted4_generator_pack ted4_generate \
         ted4_raster_bin ted4_loss $(foreach l,base v3 v4,$(LEVELED_PARTS:%=%_$l)) \
-        ted4_generate_backward ted4_update_volume ted4_update_bank ted4_densify_gather ted4_update_rate ted4_update_parameters
+        ted4_generate_backward ted4_update_volume ted4_update_bank ted4_densify_gather \
+        ted4_update_rate ted4_update_parameters
 BETWEEN = $(TRAIN_PARTS:%=-Wl,--wrap=%)
 
 TRAIN_RECORD = $B/bench/train_parts.o $B/bench/train_record.o
@@ -63,26 +66,32 @@ $B/bench/phases: $B/bench/phases.o $B/bench/recorder.o $B/ref-encoder/tool/ted4e
 bench-scale: $B/bench/bench_scale $B/bench/phases $B/ted4scene $(if $(KITCHEN),,$B/bench/occluder)
 	$(KEEP) bench/scale.md sh bench/scale.sh $B $(firstword $(TRAIN_SCENE))
 
-# Peak memory of training a large scene, in bench/memory.md: hours. MEMORY_RUNS names some of its runs.
+# Peak memory of training a large scene, in bench/memory.md: hours. MEMORY_RUNS names some of its
+# runs.
 bench-memory: $B/ted4enc $B/ted4scene
 	TED4_BUILD=$B bench/memory.sh $(MEMORY_RUNS)
 
 .PHONY: bench-raster bench-render bench-train bench-scale bench-memory
 
-# Programs on the decoded file: what the integer entropy model and the range coder cost; how long anchors live. rate_check is compiled as freely as it may be, for it
-# measures the speed of floating-point networks beside the integer kernels.
+# Programs on the decoded file: what the integer entropy model and the range coder cost; how long
+# anchors live. rate_check is compiled as freely as it may be, for it measures the speed of
+# floating-point networks beside the integer kernels.
 BENCH_FILE = rate_check spans
 $B/bench/bench_decode.o: FPFLAGS = $(BENCH_FREE)
 $B/bench/rate_check.o: FPFLAGS = $(FREE) -ffp-contract=fast -march=native
-$(BENCH_FILE:%=$B/bench/%) $B/bench/bench_decode: $B/bench/%: $B/bench/%.o $(DEC_TOOL:%.c=$B/%.o) $(ENC_LIB)
+$(BENCH_FILE:%=$B/bench/%) $B/bench/bench_decode: $B/bench/%: $B/bench/%.o \
+        $(DEC_TOOL:%.c=$B/%.o) $(ENC_LIB)
 	$(CC) -fopenmp $(LDFLAGS) $(filter %.o,$^) $(filter %.a,$^) -o $@ $(LIBS)
 $B/bench/spans: $B/bench/spans_view.o $B/bench/spans_where.o
 
 # What the stability lab measures on a file.
 LAB_FACTS = lab_facts lab_views lab_tracks lab_anchors lab_symbols lab_log
-$B/bench/lab_facts: $(LAB_FACTS:%=$B/bench/%.o) $B/ref-encoder/tool/sheet.o $(DEC_TOOL:%.c=$B/%.o) $(ENC_LIB)
+$B/bench/lab_facts: $(LAB_FACTS:%=$B/bench/%.o) $B/ref-encoder/tool/sheet.o \
+        $(DEC_TOOL:%.c=$B/%.o) $(ENC_LIB)
 	$(CC) -fopenmp $(LDFLAGS) $(filter %.o,$^) $(filter %.a,$^) -o $@ $(LIBS)
-$B/tests/tools/test_lab_facts: $B/tests/tools/test_lab_facts.o $(patsubst %,$B/bench/%.o,$(filter-out lab_facts,$(LAB_FACTS))) $B/ref-encoder/tool/sheet.o \
+$B/tests/tools/test_lab_facts: $B/tests/tools/test_lab_facts.o \
+        $(patsubst %,$B/bench/%.o,$(filter-out lab_facts,$(LAB_FACTS))) \
+        $B/ref-encoder/tool/sheet.o \
         $(DEC_TOOL:%.c=$B/%.o) $(ENC_LIB)
 	$(CC) -fopenmp $(LDFLAGS) $^ -o $@ -lcmocka $(LIBS)
 
@@ -100,8 +109,9 @@ bench-decode: $B/bench/bench_decode
 
 .PHONY: rate-check bench-decode
 
-# The evidence: all runs of bench/sweep.txt whose row in bench/sweep.csv is missing or stale (days; resumable: bench/sweep.sh does parts of it);
-# `make report` writes bench/report.md with its charts from the rows that are there.
+# The evidence: all runs of bench/sweep.txt whose row in bench/sweep.csv is missing or stale (days;
+# resumable: bench/sweep.sh does parts of it); `make report` writes bench/report.md with its charts
+# from the rows that are there.
 sweep: all $(BENCH_FILE:%=$B/bench/%) $B/bench/to_jpeg
 	TED4_BUILD=$B TED4_DATA=$(TED4_DATA) bench/sweep.sh
 
@@ -115,15 +125,16 @@ report:
 
 .PHONY: sweep real report
 
-# The stability lab: the runs of bench/stability.txt whose row in bench/stability.csv is missing or stale (hours; resumable), then bench/stability.md with its
-# charts.
+# The stability lab: the runs of bench/stability.txt whose row in bench/stability.csv is missing or
+# stale (hours; resumable), then bench/stability.md with its charts.
 stability: all $B/bench/lab_facts $B/bench/to_jpeg
 	TED4_BUILD=$B TED4_DATA=$(TED4_DATA) bench/stability.sh
 	python3 -m bench.pages stability
 
 .PHONY: stability
 
-# Scenes as other people write them: the runs of bench/zoo.txt whose row in bench/zoo.csv is missing or stale (an hour; resumable), then bench/zoo.md.
+# Scenes as other people write them: the runs of bench/zoo.txt whose row in bench/zoo.csv is missing
+# or stale (an hour; resumable), then bench/zoo.md.
 $B/bench/zoo_masks: $B/bench/zoo_masks.o
 	$(CC) $(LDFLAGS) $^ -o $@ $(LIBS)
 
@@ -136,7 +147,8 @@ zoo: all $B/bench/zoo_masks
 
 .PHONY: zoo
 
-# How much model is chosen: the runs of bench/capacity.txt whose row in bench/capacity.csv is missing or stale (hours; resumable), then bench/capacity.md.
+# How much model is chosen: the runs of bench/capacity.txt whose row in bench/capacity.csv is
+# missing or stale (hours; resumable), then bench/capacity.md.
 capacity: all
 	TED4_BUILD=$B TED4_DATA=$(TED4_DATA) bench/capacity.sh
 	python3 -m bench.pages capacity

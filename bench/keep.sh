@@ -1,6 +1,7 @@
 #!/bin/sh
-# keep.sh FILE.md COMMAND...: shows what the command prints and puts it, with the machine and the command's name in make, between the first two fences of
-# FILE.md, in the place of what was there. MAKE_TARGET: that name. CC: the compiler.
+# keep.sh FILE.md COMMAND...: shows what the command prints and puts it, with the machine and the
+# command's name in make, between the first two fences of FILE.md, in the place of what was there.
+# MAKE_TARGET: that name. CC: the compiler.
 set -e
 file=$1
 shift
@@ -8,7 +9,8 @@ out=$(mktemp)
 trap 'rm -f "$out"' EXIT
 {
     echo "\$ make $MAKE_TARGET"
-    echo "$(sed -n 's/^model name[^:]*: //p' /proc/cpuinfo | head -n 1), $(nproc) cores; $("${CC:-cc}" --version | head -n 1)"
+    processor=$(sed -n 's/^model name[^:]*: //p' /proc/cpuinfo | head -n 1)
+    echo "$processor, $(nproc) cores; $("${CC:-cc}" --version | head -n 1)"
 } >"$out"
 if ! "$@" >>"$out"; then
     cat "$out"
@@ -16,6 +18,12 @@ if ! "$@" >>"$out"; then
 fi
 cat "$out"
 awk -v out="$out" '
-    /^```/ && fence < 2 { fence++; if (fence == 1) { print; while ((getline line < out) > 0) print line } }
+    /^```/ && fence < 2 {
+        if (++fence == 1) {
+            print
+            while ((getline line < out) > 0)
+                print line
+        }
+    }
     fence != 1' "$file" >"$file.new"
 mv "$file.new" "$file"

@@ -1,9 +1,11 @@
 #!/bin/sh
-# Memory of training 300 frames of 20 cameras at 1352x1014, which do not fit in memory at once: bench/memory.md. Usage: bench/memory.sh [RUN...]
-# The pictures are ray traced at three times; the other names are hard links to them, so that making the scene takes minutes and 60 MB, while
-# to the encoder they are 6000 files, each read and decoded by itself. A limit of 8 GB on the address space, which is more than what is resident, is enforced.
-# Growth is forced, from a fine grid on, so that the model soon has many anchors. Runs: see the end; rows of those made earlier stay. A run takes an hour or two of
-# two cores.
+# Memory of training 300 frames of 20 cameras at 1352x1014, which do not fit in memory at once:
+# bench/memory.md. Usage: bench/memory.sh [RUN...] The pictures are ray traced at three times; the
+# other names are hard links to them, so that making the scene takes minutes and 60 MB, while to the
+# encoder they are 6000 files, each read and decoded by itself. A limit of 8 GB on the address
+# space, which is more than what is resident, is enforced. Growth is forced, from a fine grid on, so
+# that the model soon has many anchors. Runs: see the end; rows of those made earlier stay. A run
+# takes an hour or two of two cores.
 set -e
 cd "$(dirname "$0")/.."
 bin=${TED4_BUILD:-build}
@@ -12,11 +14,13 @@ page=${TED4_PAGE:-bench/memory.md}
 threads=${TED4_THREADS:-2}
 frames=${FRAMES:-300} cameras=${CAMERAS:-20} width=${WIDTH:-1352} height=${HEIGHT:-1014}
 limit_kib=7812500 distinct=3
+forced="--set cell=0.002 --set grow_gradient=0 --set grow_every=10 --set grow_until=1 --set probe=0"
 mkdir -p "$out"
 
 if [ ! -e "$out/scene.done" ]; then
     rm -rf "$out/scene"
-    "$bin/ted4scene" bend -o "$out/scene" --layout neu3d --size "${width}x$height" --cameras $((cameras - 1)) --test-cameras 1 --frames $distinct -j "$threads"
+    "$bin/ted4scene" bend -o "$out/scene" --layout neu3d --size "${width}x$height" \
+        --cameras $((cameras - 1)) --test-cameras 1 --frames $distinct -j "$threads"
     for folder in "$out"/scene/cam*/images; do
         i=$distinct
         while [ $i -lt "$frames" ]; do
@@ -34,11 +38,13 @@ run() {    # name iterations options: $out/NAME.row, when NAME or nothing was as
     case "$asked" in ''|*" $name "*) ;; *) return 0 ;; esac
     (
         ulimit -v $limit_kib
-        "$bin/ted4enc" "$out/scene" -o "$out/$name.ted4" -f -q -j "$threads" --iterations "$iterations" --seed 1 --set cell=0.002 --set grow_gradient=0 \
-            --set grow_every=10 --set grow_until=1 --set probe=0 --json --log "$out/$name.jsonl" "$@" >"$out/$name.json"
+        "$bin/ted4enc" "$out/scene" -o "$out/$name.ted4" -f -q -j "$threads" \
+            --iterations "$iterations" --seed 1 $forced --json --log "$out/$name.jsonl" "$@" \
+            >"$out/$name.json"
     )
     tail -1 "$out/$name.jsonl" >"$out/line"
-    echo "| $name | \`--iterations $iterations $*\` | $(value anchors "$out/line") | $(value gaussians "$out/$name.json") | $(value peak_mib "$out/$name.json") |" \
+    echo "| $name | \`--iterations $iterations $*\` | $(value anchors "$out/line") |" \
+        "$(value gaussians "$out/$name.json") | $(value peak_mib "$out/$name.json") |" \
         >"$out/$name.row"
 }
 
@@ -50,12 +56,18 @@ run little-cache 150,60 --preset medium --cache 256
 {
     echo "# Memory"
     echo
-    echo "Made by \`bench/memory.sh\` (\`make bench-memory\`): a scene of $frames frames of $cameras cameras at ${width}x$height, in all" \
-        "$(awk "BEGIN { printf \"%.1f\", $frames * $cameras * $width * $height * 3e-9 }") GB of pixels, trained by"
-    echo "\`ted4enc SCENE -o FILE -j $threads --seed 1 --set cell=0.002 --set grow_gradient=0 --set grow_every=10 --set grow_until=1 --set probe=0\` and the options"
-    echo "of the row, with \`ulimit -v $limit_kib\` (8 GB of address space): more would have failed. Growth is forced. Anchors: of the file; those"
-    echo "that no picture would miss went before stage 2. So short a training makes no trials of smaller models, which keep up to five copies of all anchors, 55 MB each at 40,000."
-    echo "Peak: resident memory of the process, from the scene's first picture to the checked file (\`peak_mib\` of \`--json\`, from getrusage)."
+    gigabytes=$(awk "BEGIN { printf \"%.1f\", $frames * $cameras * $width * $height * 3e-9 }")
+    cat <<END
+\`make bench-memory\` (\`bench/memory.sh\`) writes this page. The scene has $frames frames of
+$cameras cameras at ${width}x$height, in all $gigabytes GB of pixels. It is trained by
+\`ted4enc SCENE -o FILE -j $threads --seed 1\` with
+\`$forced\`
+and the options of the row, with \`ulimit -v $limit_kib\` (8 GB of address space): more would have
+failed. Growth is forced. Anchors are those of the file; those that no picture would miss went
+before stage 2. So short a training makes no trials of smaller models, which keep up to five copies
+of all anchors, 55 MB each at 40,000. Peak is the resident memory of the process, from the scene's
+first picture to the checked file (\`peak_mib\` of \`--json\`, from getrusage).
+END
     echo
     echo "| run | options | anchors | Gaussians in the file | peak MiB |"
     echo "|---|---|---|---|---|"

@@ -1,17 +1,25 @@
-# runs.sh - what bench/sweep.sh, bench/stability.sh, bench/capacity.sh and bench/zoo.sh share: the runs of a table, one process each, and a row of a CSV for each result. Sourced, from the
-# project's root.
-# A row's key tells its options and the sources that decide its bytes and numbers; comments and spacing do not count. It is stale when either differs now. May be
-# killed at any moment and called again, also several times at once: programs are copied before use, each stage 1 that runs share and each own scene is made once,
-# trainings go on from their last checkpoint, and rows go into the table whole.
-# The script sets beforehand:
-#     program   its name               build data work results table   folders and the table of runs
-#     csv       the rows               columns   their names, divided by commas; the first two are tag and key
-#     want      programs to build      jobs threads   defaults of --jobs and --threads
-#     share     1: runs whose options of stage 1 agree share one stage 1
-#     judges    sources that decide what is measured on a file, but not the file itself: rows are stale when these change, trainings stay
+# runs.sh - what bench/sweep.sh, bench/stability.sh, bench/capacity.sh and bench/zoo.sh share: the
+# runs of a table, one process each, and a row of a CSV for each result. Sourced, from the project's
+# root. A row's key tells its options and the sources that decide its bytes and numbers; comments
+# and spacing do not count. The row is stale when either differs from the present ones. The script
+# may be killed at any moment and called again, also several times at once: programs are copied
+# before use, each stage 1 that runs share and each own scene is made once, trainings go on from
+# their last checkpoint, and rows go into the table whole. The script sets beforehand:
+#     program                   its name
+#     build data work results   folders
+#     table                     the table of runs
+#     csv columns               the rows, and the names of their columns, divided by commas; the
+#                               first two are tag and key
+#     want                      programs to build
+#     jobs threads              defaults of --jobs and --threads
+#     share                     1: runs whose options of stage 1 agree share one stage 1
+#     judges                    sources that decide what is measured on a file, but not the file
+#                               itself: rows are stale when these change, trainings stay
 # and then defines
-#     measure               of the run that was trained to $out.ted4, $out.json and $out.jsonl: its $row, and in $said what to say of it; or fails
-#     measure_failure CODE  the same for a training that ended with that status; may be left out: no row then
+#     measure                   of the run that was trained to $out.ted4, $out.json and $out.jsonl:
+#                               its $row, and in $said what to say of it; or fails
+#     measure_failure CODE      the same for a training that ended with that status; may be left
+#                               out: there is no row then
 # and calls begin_runs "$@".
 # SPDX-License-Identifier: BSD-2-Clause
 only= list= missing= patterns= child=
@@ -21,8 +29,8 @@ value() { sed -n "s/.*\"$1\":\"\{0,1\}\([-0-9a-z.+]*\).*/\1/p" "$2"; }
 short_hash() { sha1sum | cut -c1-10; }
 measure_failure() { return 1; }
 
-# What a training that ended by itself without a file ended with; fails for one that was ended from outside. Signals that a program gets for what it does itself:
-# ILL TRAP ABRT BUS FPE SEGV.
+# What a training that ended by itself without a file ended with; fails for one that was ended from
+# outside. Signals that a program gets for what it does itself: ILL TRAP ABRT BUS FPE SEGV.
 status_word() {
     case $1 in
     132|133|134|135|136|139) echo crash ;;
@@ -40,8 +48,8 @@ sources() {
         grep -E '^(OPT|STRICT|FREE|FLAGS_v3|FLAGS_v4|CFLAGS_ALL) ' Makefile
         awk -f bench/sources.awk ref-encoder/train/*.[ch] ref-encoder/train/*/*.[ch] ref-encoder/train/*/*.def \
             ref-encoder/math/*.[ch] ref-encoder/write/*.[ch] ref-encoder/kernel/*.[ch] \
-            ref-encoder/data/*.[ch] ref-encoder/eval/*.[ch] ref-decoder/base/*.[ch] ref-decoder/norm/*.[ch] ref-decoder/recon/*.[ch] \
-            ref-decoder/render/*.[ch] "$@"
+            ref-encoder/data/*.[ch] ref-encoder/eval/*.[ch] ref-decoder/base/*.[ch] \
+            ref-decoder/norm/*.[ch] ref-decoder/recon/*.[ch] ref-decoder/render/*.[ch] "$@"
     } | short_hash
 }
 
@@ -50,7 +58,8 @@ time_decoder() {
     decode_ms=
     for i in 1 2 3 4 5; do
         "$programs/ted4dec" "$1" --test --json -j 1 -q >"$out.decode.json" || return 1
-        decode_ms=$(echo "$decode_ms $(value decode_ms "$out.decode.json")" | awk '{ print NF < 2 || $2 < $1 ? $NF : $1 }')
+        decode_ms=$(echo "$decode_ms $(value decode_ms "$out.decode.json")" |
+            awk '{ print NF < 2 || $2 < $1 ? $NF : $1 }')
     done
 }
 
@@ -69,7 +78,8 @@ run() {
     return $status
 }
 
-# The programs as they are now, built and copied once for each state of the sources, so that a later build changes no run under way.
+# The programs as the sources make them, built and copied once for each state of the sources, so
+# that a later build changes no run under way.
 copy_programs() {
     programs=$work/programs-$version$measured
     mkdir -p "$work"
@@ -77,15 +87,16 @@ copy_programs() {
         flock 9
         [ -d "$programs" ] && exit 0
         make -s B="$build" $(for p in $want; do echo "$build/$p"; done) || exit 1
-        [ "$(sources)" = "$version" ] || { echo "$program: sources changed while they were built" >&2; exit 1; }
+        [ "$(sources)" = "$version" ] ||
+            { echo "$program: sources changed while they were built" >&2; exit 1; }
         rm -rf "$programs.part" && mkdir "$programs.part" || exit 1
         for p in $want; do cp "$build/$p" "$programs.part" || exit 1; done
         mv "$programs.part" "$programs"
     ) 9>"$work/programs.lock" || die "no programs"
 }
 
-# Where the scene lies, in $folder; own ones are made: own:NAME+size=96x64 by ted4scene NAME --size 96x64. $judge: the scene whose pictures judge, if it is another.
-# 2: another run is making it.
+# Where the scene lies, in $folder; own ones are made: own:NAME+size=96x64 by ted4scene NAME --size
+# 96x64. $judge: the scene whose pictures judge, if it is another. 2: another run is making it.
 find_scene() {
     judge=
     case $where in *@*) judge=$data/${where#*@} ;; esac
@@ -97,18 +108,20 @@ find_scene() {
             flock -n 7 || return 2
             [ -d "$folder" ] && return 0
             rm -rf "$folder.part"
-            run "$programs/ted4scene" $(echo "${where#own:}" | sed 's/+/ --/g; s/=/ /g') -o "$folder.part" && mv "$folder.part" "$folder" ;;
+            run "$programs/ted4scene" $(echo "${where#own:}" | sed 's/+/ --/g; s/=/ /g') \
+                -o "$folder.part" && mv "$folder.part" "$folder" ;;
     *)      folder=$data/${where%@*} ;;
     esac
 }
 
-# train OUT OPTIONS...: to OUT.ted4, OUT.json and OUT.jsonl, once; goes on where it was killed. What ted4enc says: OUT.err.
+# train OUT OPTIONS...: to OUT.ted4, OUT.json and OUT.jsonl, once; goes on where it was killed. What
+# ted4enc says: OUT.err.
 train() {
     out=$1; shift
     [ -s "$out.json" ] && return 0
     [ -z "$share" ] || set -- "$@" --stage1 "$stage1_file"
-    run "$programs/ted4enc" "$folder" -o "$out.ted4" "$@" --checkpoint "$out.checkpoint" --resume -j "$threads" -f -q --json \
-        --log "$out.jsonl" >"$out.json.part" 2>"$out.err"
+    run "$programs/ted4enc" "$folder" -o "$out.ted4" "$@" --checkpoint "$out.checkpoint" --resume \
+        -j "$threads" -f -q --json --log "$out.jsonl" >"$out.json.part" 2>"$out.err"
     trained=$?
     cat "$out.err" >&2
     [ $trained = 0 ] || return $trained
@@ -130,19 +143,26 @@ make_stage1() {
     train "${stage1_file%.stage1}" $stage1 --set stage2=0 && [ -s "$stage1_file" ]
 }
 
+count_cells() { echo "$1" | awk -F, '{ print NF }'; }
+
 # Into the table in place of the tag's older row; the table is sorted and never half-written.
 put_row() {
-    [ "$(echo "$row" | awk -F, '{ print NF }')" = "$(echo "$columns" | awk -F, '{ print NF }')" ] || { echo "$tag: malformed row: $row"; return 1; }
+    [ "$(count_cells "$row")" = "$(count_cells "$columns")" ] ||
+        { echo "$tag: malformed row: $row"; return 1; }
     (
         flock 9
         {
             echo "$columns"
-            { [ ! -f "$csv" ] || sed 1d "$csv" | awk -F, -v tag="$tag" '$1 != tag'; echo "$row"; } | sort
+            {
+                [ ! -f "$csv" ] || sed 1d "$csv" | awk -F, -v tag="$tag" '$1 != tag'
+                echo "$row"
+            } | sort
         } >"$csv.part" && mv "$csv.part" "$csv"
     ) 9<"$results"
 }
 
-# done, older (same options, other sources), stale or missing: $state; the row's key: $key; that of its training: $trained_key
+# done, older (same options, other sources), stale or missing: $state; the row's key: $key; that of
+# its training: $trained_key
 find_state() {
     sources_now=$version
     case $where in own:*) sources_now=$own_version ;; esac
@@ -172,7 +192,8 @@ make_row() {
     echo "$tag: ted4enc $where $options"
     train "$work/runs/$tag-$trained_key" $options
     trained=$?
-    if [ $trained = 0 ]; then measure; else measure_failure $trained; fi && put_row || { echo "$tag: FAILED"; return 1; }
+    if [ $trained = 0 ]; then measure; else measure_failure $trained; fi && put_row ||
+        { echo "$tag: FAILED"; return 1; }
     echo "$tag: $said"
 }
 
@@ -248,7 +269,8 @@ list_chosen() {
 begin_runs() {
     take_arguments "$@"
     mkdir -p "$work" "$results" || exit 3
-    [ ! -f "$csv" ] || [ "$(head -n 1 "$csv")" = "$columns" ] || die "$csv has other columns than this script writes"
+    [ ! -f "$csv" ] || [ "$(head -n 1 "$csv")" = "$columns" ] ||
+        die "$csv has other columns than this script writes"
     version=$(sources)
     own_version=$(sources tools/scene/*.[ch])
     measured=

@@ -1,5 +1,5 @@
-# sources.awk - C sources without comments and spacing, so that a hash of them changes only where the program may.
-# Comments are the block ones; quoted text is kept as it is.
+# sources.awk - C sources without comments and spacing, so that a hash of them changes only where
+# the program may. Comments are the block ones; quoted text is kept as it is.
 # SPDX-License-Identifier: BSD-2-Clause
 
 FNR == 1 { comment = 0 }

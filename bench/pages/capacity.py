@@ -196,9 +196,9 @@ def sections(runs, page, costs, charts):
         the file over the values of all anchors of the scene's `whole` run, so that a bit weighs the
         same in every run of a scene. *For time* are the bytes of the bank, of temporal features and
         of activations, and the networks' share. *CPU s* are seconds of training, trials included;
-        *trials* are the steps of trained ones. *Model* shows K/F/d, rows x width of the bank, widths
-        of F_deform/heads, hyperprior/slices, view. Fixed settings keep all bits of weights; how many
-        are worth theirs is among what auto decides.""")
+        *trials* are the steps of trained ones. *Model* shows K/F/d, rows x width of the bank,
+        widths of F_deform/heads, hyperprior/slices, view. Fixed settings keep all bits of weights;
+        how many are worth theirs is among what auto decides.""")
     page.table("scene", "setting", "bytes", "PSNR", "cost", "against the best fixed", "for time",
                "CPU s", "trials", "decode ms", "model")
     for scene in runs.scenes:

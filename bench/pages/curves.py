@@ -1,9 +1,9 @@
 """How far one rate-distortion curve lies from another.
 
 A curve is a list of points (x, y) in order of x. For a rate at equal quality x is the PSNR and y
-the logarithm of the bytes; for a quality at equal rate the other way round. Sources: G. Bjontegaard,
-VCEG-M33, 2001 (the mean); F. N. Fritsch and J. Butland, SIAM J. Sci. Stat. Comput. 5 (1984), the
-cubics, as JCT-VC uses them.
+the logarithm of the bytes; for a quality at equal rate the other way round. Sources:
+G. Bjontegaard, VCEG-M33, 2001 (the mean); F. N. Fritsch and J. Butland, SIAM J. Sci. Stat. Comput.
+5 (1984), the cubics, as JCT-VC uses them.
 SPDX-License-Identifier: BSD-2-Clause"""
 import math
 

@@ -1,5 +1,5 @@
-"""A chart of one column of the stability lab: a row for each scene, a marker for each variant at its
-mean over seeds, and a line from the least to the most of them.
+"""A chart of one column of the stability lab: a row for each scene, a marker for each variant at
+its mean over seeds, and a line from the least to the most of them.
 SPDX-License-Identifier: BSD-2-Clause"""
 from .axes import Axis
 from .svg import text_width

@@ -20,9 +20,9 @@ def quality_cell(cell):
 def quality_section(lab):
     page = lab.page
     page.heading("Every scene and variant")
-    page.prose("""The table shows PSNR in dB on held-out pictures that training never saw, drawn from
-        the decoded file: mean of all / worst of all, both as means over seeds; ± half the span of
-        the mean over seeds. Bold letters mark failures, with the number of seeds where not all
+    page.prose("""The table shows PSNR in dB on held-out pictures that training never saw, drawn
+        from the decoded file: mean of all / worst of all, both as means over seeds; ± half the span
+        of the mean over seeds. Bold letters mark failures, with the number of seeds where not all
         fail:""")
     page.say()
     for letter, meaning in RULES.values():
@@ -38,14 +38,14 @@ def quality_section(lab):
 def out_section(lab):
     page = lab.page
     page.heading("Anchors thrown out of view")
-    page.prose("""An anchor is *thrown out* when, at a time at which something trains it, it is drawn
-        (one of its Gaussians is at least as opaque as the rasteriser asks, 1/255) while its centre
-        (the mean of those of its Gaussians) lies in the picture of none of that time's training
-        cameras, although at another such time its centre lies where one of these same cameras sees
-        it: so the anchor was moved, not the camera. The table shows the share of the anchors that
-        are drawn at all, and the largest displacement while drawn, in sizes of the scene (the
-        longest side of the box between the 1st and the 99th percentile of its initial points). Both
-        are means over seeds.""")
+    page.prose("""An anchor is *thrown out* when, at a time at which something trains it, it is
+        drawn (one of its Gaussians is at least as opaque as the rasteriser asks, 1/255) while its
+        centre (the mean of those of its Gaussians) lies in the picture of none of that time's
+        training cameras, although at another such time its centre lies where one of these same
+        cameras sees it: so the anchor was moved, not the camera. The table shows the share of the
+        anchors that are drawn at all, and the largest displacement while drawn, in sizes of the
+        scene (the longest side of the box between the 1st and the 99th percentile of its initial
+        points). Both are means over seeds.""")
     page.table("scene", *lab.variants)
     for scene in lab.runs.scenes:
         page.row(scene, *("-" if not cell.there else

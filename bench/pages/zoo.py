@@ -207,8 +207,8 @@ def show_alone(zoo, page):
     if not zoo.alone:
         return
     page.heading("What is foretold")
-    page.prose("""The table shows the largest difference between the time that `ted4enc` says and the
-        time that the whole training takes, from a tenth of it on, in hundredths; and the
+    page.prose("""The table shows the largest difference between the time that `ted4enc` says and
+        the time that the whole training takes, from a tenth of it on, in hundredths; and the
         differences between the last line's `psnr` and `bytes` and those of the file. Each run has
         the machine for itself.""")
     page.table("case", "seconds", "time", "psnr", "bytes")

@@ -22,8 +22,8 @@ def worst_of(pairs):
 def section(report):
     page, runs = report.tables, report.runs
     page.heading("Rate estimated in training against the file")
-    page.prose("""`estimated_bits` of `ted4enc --json` is the trainer's formula on rounded symbols of
-        all anchors; it is compared with the bytes of the attributes' substreams in the file. The
+    page.prose("""`estimated_bits` of `ted4enc --json` is the trainer's formula on rounded symbols
+        of all anchors; it is compared with the bytes of the attributes' substreams in the file. The
         table shows of each variant's runs the one with the largest difference.""")
     page.table("variant", "runs", "estimated against file", "of run")
     dots, known, missing = Dots(report.looks, band=1), [], 0

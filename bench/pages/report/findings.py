@@ -56,9 +56,9 @@ def deformation(report):
     recipe = Seeded(report.runs, SCENE, "recipe_inr")
     if not seeded.changes or not recipe.changes:
         return None
-    return ("The bank of motions is better than a network of place and time as wide as F_deform. In "
-            f"the paper's recipe alone the network is {-recipe.mean:.2f} ± {recipe.error:.2f} dB "
-            f"worse on `{SCENE}` ({len(recipe.changes)} seeds); beside multi-view seeding, which "
+    return ("The bank of motions is better than a network of place and time as wide as F_deform. "
+            "In the paper's recipe alone the network is "
+            f"{-recipe.mean:.2f} ± {recipe.error:.2f} dB worse on `{SCENE}` ({len(recipe.changes)} seeds); beside multi-view seeding, which "
             f"does much of the same work, {-seeded.mean:.2f} ± {seeded.error:.2f} dB.",
             [run for one in (seeded, recipe) for pair in one.pairs for run in pair])
 
@@ -70,9 +70,9 @@ def prior(report):
     if by_default.one_rate() is None or as_fixed.one_rate() is None:
         return None
     return (f"With a factorised prior in the place of the hyperprior, files of `{SCENE}` take "
-            f"{by_default.one_rate():.1f} % more bytes at equal PSNR when each chooses its capacity, "
-            f"as by default, and {as_fixed.one_rate():.1f} % more when the capacity is fixed. The "
-            "paper's figure is 25 %.",
+            f"{by_default.one_rate():.1f} % more bytes at equal PSNR when each chooses its "
+            f"capacity, as by default, and {as_fixed.one_rate():.1f} % more when the capacity is fixed. "
+            "The paper's figure is 25 %.",
             [run for variant in ("factorised_flat_auto", "whole_auto", "factorised_flat", "whole")
              for run in runs.of(SCENE, variant)])
 
@@ -95,8 +95,8 @@ def medium(report):
     if not run.has():
         return None
     return (f"Preset `medium` trains `kitchen` at full size in "
-            f"{run.count('train_s') / 60:.1f} minutes of steps on {run.text('threads')} threads, to "
-            f"{db(run)} in {run.count('bytes') / 1e6:.2f} MB.", [run])
+            f"{run.count('train_s') / 60:.1f} minutes of steps on {run.text('threads')} threads, "
+            f"to {db(run)} in {run.count('bytes') / 1e6:.2f} MB.", [run])
 
 
 def colour(report):
@@ -114,8 +114,8 @@ def spans(report):
     run = report.runs.find(lives.FAST)
     if not run.text("short_changed"):
         return None
-    return (f"Short lives lie where things come and go: {100 * run.count('span_short'):.1f} % of the "
-            f"anchors of `kitchen` live for at most a fifth of the sequence, and they make "
+    return (f"Short lives lie where things come and go: {100 * run.count('span_short'):.1f} % of "
+            f"the anchors of `kitchen` live for at most a fifth of the sequence, and they make "
             f"{100 * run.count('short_changed'):.1f} % of the light where pixels change, "
             f"{100 * run.count('short_same'):.1f} % elsewhere.", [run])
 
@@ -137,9 +137,9 @@ def integers(report):
     if ideal is None:
         return None
     return (f"Entropy networks in integers, which decode alike on every machine, cost "
-            f"{100 * (run.count('bytes') / ideal - 1):.3f} % of the bytes of `{SCENE}`, and the file "
-            f"decodes on one thread in {precision.ms_with(run, 'integer'):.0f} ms, where float64 "
-            f"would take {precision.ms_with(run, 'float64'):.0f} ms.", [run])
+            f"{100 * (run.count('bytes') / ideal - 1):.3f} % of the bytes of `{SCENE}`, and the "
+            f"file decodes on one thread in {precision.ms_with(run, 'integer'):.0f} ms, where "
+            f"float64 would take {precision.ms_with(run, 'float64'):.0f} ms.", [run])
 
 
 # Each with its name, and the heading on the page of tables behind it.
@@ -160,8 +160,8 @@ ALL = (
 def section(report, page):
     page.heading("Ten findings")
     spread = seed_spread(report.runs, SCENE)
-    text = """Each finding links to the table behind it. † marks numbers that depend on rows of older
-        sources."""
+    text = """Each finding links to the table behind it. † marks numbers that depend on rows of
+        older sources."""
     if spread:
         text += (f" Three seeds of the whole method on `{SCENE}` lie {spread['psnr']:.2f} dB and "
                  f"{spread['share']:.2f} % of the bytes apart"

@@ -55,8 +55,8 @@ def raster_row(report):
     text, ok, short = "", None, "not run yet"
     if both is not None and faster is not None:
         short = f"{both:.1f} ms, {faster:.2f}x of one thread"
-        text = (f"{both:.1f} ms; {faster:.2f}x; bits equal: asserted by `tests/decoder/test_raster.c`, "
-                f"`tests/encoder/test_raster_grad.c` (`make test`); "
+        text = (f"{both:.1f} ms; {faster:.2f}x; bits equal: asserted by "
+                "`tests/decoder/test_raster.c`, `tests/encoder/test_raster_grad.c` (`make test`); "
                 + machine_of(page_lines(report, "raster.md")))
         ok = both <= 20 and faster >= 1.8
     report.bars.add(8, "forward plus backward, 100,000 Gaussians, 480x270, two cores",

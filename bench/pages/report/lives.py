@@ -75,9 +75,9 @@ def pictures(report, there):
     page = report.tables
     there = [run for run in there if os.path.exists(picture_path(report, run))]
     if there:
-        page.prose("""Each picture shows a held-out camera at the first, middle and last time. Below,
-            the same Gaussians have the colour of their anchor's span: blue 0, white one half, red 1
-            (the strip is the scale), and darker where the Gaussian is dark.""")
+        page.prose("""Each picture shows a held-out camera at the first, middle and last time.
+            Below, the same Gaussians have the colour of their anchor's span: blue 0, white one
+            half, red 1 (the strip is the scale), and darker where the Gaussian is dark.""")
     for run in there:
         page.say()
         page.say(f"![Spans, {run.tag}](charts/spans-{run.tag}.jpg)")

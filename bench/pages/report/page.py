@@ -40,8 +40,8 @@ def tables_text(report):
         names; `make sweep` makes the rows. [report.md](report.md) tells what the tables show.""")
     head.prose(report.runs.summary() + ".")
     head.heading("Bars")
-    head.prose("""The bars are those of the method, by number; "not run yet" stands wherever a run is
-        missing.""")
+    head.prose("""The bars are those of the method, by number; "not run yet" stands wherever a run
+        is missing.""")
     head.prose(report.bars.summary())
     report.bars.show(head, "command, then `make report`")
     head.say()
@@ -80,18 +80,18 @@ def headline(report, page):
             decodes on one thread in {fixed(run.number('decode_ms'), 0)} ms{mark([run])}."""
             + (f" Two threads draw 100,000 moving Gaussians at 960x536 with {speeds[0][1]:.1f} "
                "frames/s ([render.md](render.md))." if speeds else ""))
-    page.prose("""`make report` writes this page from the rows of [sweep.csv](sweep.csv), which `make
-        sweep` makes; [report-tables.md](report-tables.md) holds all tables and the commands behind
-        them.""")
+    page.prose("""`make report` writes this page from the rows of [sweep.csv](sweep.csv), which
+        `make sweep` makes; [report-tables.md](report-tables.md) holds all tables and the commands
+        behind them.""")
     page.prose(report.runs.summary() + ".")
 
 
 def speed_section(report, page):
     page.heading("Speed against accuracy")
-    page.prose("""Every preset at its λ, with its own capacity (`--capacity fixed`). Core minutes are
-        those of all threads together. A picture takes decoding the whole file on one thread and
-        drawing it with the run's threads
-        ([all columns and a chart](report-tables.md#speed-against-accuracy)).""")
+    page.prose("""Every preset at its λ, with its own capacity (`--capacity fixed`). Core minutes
+        are those of all threads together. A picture takes decoding the whole file on one thread and
+        drawing it with the run's threads ([all columns and a
+        chart](report-tables.md#speed-against-accuracy)).""")
     speed.show_training(report, page)
     page.table("run", "PSNR dB", "bytes", "core minutes", "decode + picture ms")
     for _, run in speed.preset_runs(report.runs):
@@ -104,9 +104,9 @@ def speed_section(report, page):
 
 def picture_section(report, page):
     page.heading("Pictures")
-    page.prose("""Each sheet shows the truth, ours and the error (5 times) at three times, of pictures
-        that training never saw, drawn from the decoded file
-        ([all columns](report-tables.md#pictures)).""")
+    page.prose("""Each sheet shows the truth, ours and the error (5 times) at three times, of
+        pictures that training never saw, drawn from the decoded file ([all
+        columns](report-tables.md#pictures)).""")
     if report.runs.find(SHOWN).has():
         page.say()
         page.say(f"![Truth, ours and error of {SHOWN}](sheets/{SHOWN}.jpg)")

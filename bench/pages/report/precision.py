@@ -31,13 +31,13 @@ def ms_with(run, precision):
 def section(report):
     page, runs = report.tables, report.runs
     page.heading("Precision")
-    page.prose("""The steps Q0 of features, scalings and offsets are multiplied by a factor, and each
-        model is trained so. The entropy model is evaluated in integers, as coded, or in floating
-        point (`bench/rate_check FILE.ted4`): the table shows the bytes that the file would have with
-        networks of that precision and the same coder, and the time to decode it, which is that of
-        the file on one thread, less the integer networks, plus those. Pictures do not depend on it.
-        Floating-point networks would not decode alike on another machine: that is what the integers
-        are for.""")
+    page.prose("""The steps Q0 of features, scalings and offsets are multiplied by a factor, and
+        each model is trained so. The entropy model is evaluated in integers, as coded, or in
+        floating point (`bench/rate_check FILE.ted4`): the table shows the bytes that the file would
+        have with networks of that precision and the same coder, and the time to decode it, which is
+        that of the file on one thread, less the integer networks, plus those. Pictures do not
+        depend on it. Floating-point networks would not decode alike on another machine: that is
+        what the integers are for.""")
     page.table("run", "Q0 times", "PSNR dB", "bytes: integer", "float32", "float64",
                "decode ms: integer", "float32", "float64", "of it networks: integer", "float32",
                "float64")
@@ -84,8 +84,8 @@ def chart(report):
     runs = report.runs
     scenes = [scene for scene in report.scenes if runs.wants(scene, "steps2", "precision")]
     if any(run.text("float64_bits") for scene in scenes for _, run in step_runs(runs, scene)):
-        with report.charts.open("precision", 900, 688, "Steps and precision of the networks against "
-                                "bytes, PSNR and decode time") as svg:
+        with report.charts.open("precision", 900, 688, "Steps and precision of the networks "
+                                "against bytes, PSNR and decode time") as svg:
             panel(report, svg, scenes, ("integer",), 0, 4,
                   "Quality (the same for every precision)", "PSNR, dB",
                   lambda run, _: run.number("psnr"))
@@ -96,8 +96,8 @@ def chart(report):
                   lambda run, p: 100 * (bytes_with(run, p) / bytes_with(run, "float64") - 1))
             panel(report, svg, scenes, PRECISIONS, 450, 346, "Time to decode, one thread", "ms",
                   ms_with)
-    report.tables.chart(report.charts, "precision", "Steps Q0 (times a factor) and precision of the "
-                        "entropy networks against PSNR, bytes and decode time")
+    report.tables.chart(report.charts, "precision", "Steps Q0 (times a factor) and precision of "
+                        "the entropy networks against PSNR, bytes and decode time")
 
 
 def panel(report, svg, scenes, precisions, left, top, title, label, value):

@@ -69,11 +69,11 @@ def chart(report, scenes):
 def seeded_section(report):
     page, runs = report.tables, report.runs
     page.heading("Small differences over seeds", 3)
-    page.prose("""Variants that differ from the whole method by no more than seeds do are trained with
-        several seeds, each against the whole method at the same seed, λ 0.002. The table shows PSNR
-        at equal bytes, along the curve of the whole method, and the mean with its standard error.
-        Negative numbers mean that the variant is worse. *No saying*: chance alone makes such a mean
-        more often than once in twenty (Student's t, one side).""")
+    page.prose("""Variants that differ from the whole method by no more than seeds do are trained
+        with several seeds, each against the whole method at the same seed, λ 0.002. The table shows
+        PSNR at equal bytes, along the curve of the whole method, and the mean with its standard
+        error. Negative numbers mean that the variant is worse. *No saying*: chance alone makes such
+        a mean more often than once in twenty (Student's t, one side).""")
     page.table("scene", "variant", "by seed", "mean dB", "verdict")
     for scene, variant in seeded_variants(runs, "seeded"):
         seeded = Seeded(runs, scene, variant)
@@ -90,9 +90,9 @@ def recipe_section(report):
     page, runs = report.tables, report.runs
     page.heading("The paper's recipe alone", 3)
     page.prose("""The same comparison without what the paper does not have: no multi-view seeding
-        (sprouts), transients or probe. Each seed is compared with the recipe at the same seed and λ,
-        as in the paper's table: PSNR, bytes; their means; and the mean of PSNR at equal bytes, along
-        the recipe's own curve of three λ, with its standard error.""")
+        (sprouts), transients or probe. Each seed is compared with the recipe at the same seed and
+        λ, as in the paper's table: PSNR, bytes; their means; and the mean of PSNR at equal bytes,
+        along the recipe's own curve of three λ, with its standard error.""")
     page.table("scene", "changed", "by seed", "mean", "at equal bytes", "verdict", "paper")
     for scene, variant in seeded_variants(runs, "recipe"):
         if variant != "recipe":

@@ -89,7 +89,8 @@ def still_section(report):
                     verdict([for_time(run) == 0 and not run.count("temporal_mask")
                              for _, run in spent if run.text("b_bank")]), sweep("still"))
     report.bars.add(4, "still and chair: rate against time compiled out", "within 2 %",
-                    "; ".join(f"{scene}: {signed(rate, 2, ' %')}{old}" for scene, rate, old in both),
+                    "; ".join(f"{scene}: {signed(rate, 2, ' %')}{old}"
+                              for scene, rate, old in both),
                     verdict([abs(rate) <= 2 for _, rate, _ in both]), sweep("still"))
 
 

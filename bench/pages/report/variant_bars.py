@@ -100,8 +100,9 @@ def recipe_bar(report, scene, changed, what, limit, least):
         return
     seeded, measured, ok = Seeded(runs, scene, "recipe_" + changed), "", None
     if seeded.changes:
-        measured = (f"`{own_options(runs, run)}`: PSNR at equal bytes, {len(seeded.changes)} seeds: "
-                    f"{seeded.by_seed()}, mean {seeded.mean_text()} dB{seeded.mark()}")
+        measured = (f"`{own_options(runs, run)}`: PSNR at equal bytes, "
+                    f"{len(seeded.changes)} seeds: {seeded.by_seed()}, "
+                    f"mean {seeded.mean_text()} dB{seeded.mark()}")
         ok = seeded.is_worse()
         if ok is True:
             ok = -seeded.mean >= least

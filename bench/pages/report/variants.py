@@ -55,8 +55,8 @@ def explain(page):
         its table of ablations: Neu3D at its highest rate, same λ. *Within seeds* means that the
         difference in PSNR at equal bytes is less than the spread of three seeds of the whole method
         on that scene.""")
-    page.prose("""*factorised_flat* is one Gaussian per component for all anchors, and *factorised* is
-        the same with the autoregression kept. *inr* has layers as wide as those of the whole
+    page.prose("""*factorised_flat* is one Gaussian per component for all anchors, and *factorised*
+        is the same with the autoregression kept. *inr* has layers as wide as those of the whole
         method's F_deform, *inr_paper* as many and as wide as the paper's. *hardmask* pushes the
         temporal mask ten times as hard, *moremask* the offset mask three times. *recipe* leaves out
         what the paper does not have: multi-view seeding (sprouts), seeded transients and the probe.
