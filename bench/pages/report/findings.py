@@ -58,7 +58,8 @@ def deformation(report):
         return None
     return ("The bank of motions is better than a network of place and time as wide as F_deform. "
             "In the paper's recipe alone the network is "
-            f"{-recipe.mean:.2f} ± {recipe.error:.2f} dB worse on `{SCENE}` ({len(recipe.changes)} seeds); beside multi-view seeding, which "
+            f"{-recipe.mean:.2f} ± {recipe.error:.2f} dB worse on `{SCENE}` "
+            f"({len(recipe.changes)} seeds); beside multi-view seeding, which "
             f"does much of the same work, {-seeded.mean:.2f} ± {seeded.error:.2f} dB.",
             [run for one in (seeded, recipe) for pair in one.pairs for run in pair])
 
@@ -71,8 +72,8 @@ def prior(report):
         return None
     return (f"With a factorised prior in the place of the hyperprior, files of `{SCENE}` take "
             f"{by_default.one_rate():.1f} % more bytes at equal PSNR when each chooses its "
-            f"capacity, as by default, and {as_fixed.one_rate():.1f} % more when the capacity is fixed. "
-            "The paper's figure is 25 %.",
+            f"capacity, as by default, and {as_fixed.one_rate():.1f} % more when the capacity is "
+            "fixed. The paper's figure is 25 %.",
             [run for variant in ("factorised_flat_auto", "whole_auto", "factorised_flat", "whole")
              for run in runs.of(SCENE, variant)])
 
