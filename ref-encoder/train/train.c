@@ -1,6 +1,7 @@
 /* train.c - the recipe, from top to bottom. A scene is trained by ted4_gradient_step again and
  * again; at four of these steps something is found out first, which takes as long as many. Source:
- * paper; annex D. SPDX-License-Identifier: BSD-2-Clause */
+ * paper; annex D.
+ * SPDX-License-Identifier: BSD-2-Clause */
 #include "train.h"
 
 #include "train/search/model_search.h"
@@ -10,62 +11,65 @@
 #include "train/step/events.h"
 #include "train/step/step.h"
 
-/* What is to be found out before the next step. */
+/* What is found out before the next step. */
 typedef struct {
-    int (*find)(ted4_trainer *t); /* NULL: nothing is */
+    int (*run)(ted4_trainer *t); /* NULL: nothing is */
     ted4_busy busy;
     double steps; /* training steps that it takes at most */
-} question;
+} experiment;
 
-static const question nothing = { NULL, TED4_BUSY_TRAINING, 0 };
+static const experiment nothing = { NULL, TED4_BUSY_TRAINING, 0 };
 
 /* Stage 1: the model learns to draw the pictures, and anchors grow where they are missing. Does the
  * scene need time at all? */
-static question in_stage1(const ted4_trainer *t)
+static experiment in_stage1(const ted4_trainer *t)
 {
     return ted4_probe_due(t)
-               ? (question) { ted4_probe_time, TED4_BUSY_PROBE, 2.0 * ted4_probe_steps(t) }
+               ? (experiment) { ted4_probe_time, TED4_BUSY_PROBE, 2.0 * ted4_probe_steps(t) }
                : nothing;
 }
 
 /* Stage 2: its bits count as well as the pictures. How much model does the scene need? And, when
  * the integer stage is about to begin: how fine do the weights of the prior have to be? */
-static question in_stage2(const ted4_trainer *t)
+static experiment in_stage2(const ted4_trainer *t)
 {
     if (t->search.decided == TED4_DECIDED_NOTHING && t->iteration == ted4_capacity_step(t))
-        return (question) { ted4_capacity_decide, TED4_BUSY_TRIALS, ted4_capacity_search_steps(t) };
+        return (experiment) { ted4_capacity_decide, TED4_BUSY_TRIALS,
+                              ted4_capacity_search_steps(t) };
     if (t->search.decided == TED4_DECIDED_MODEL && ted4_integer_due(t))
-        return (question) { ted4_capacity_refine, TED4_BUSY_TRIALS, ted4_capacity_refine_steps(t) };
+        return (experiment) { ted4_capacity_refine, TED4_BUSY_TRIALS,
+                              ted4_capacity_refine_steps(t) };
     return nothing;
 }
 
 /* The integer stage, the end of stage 2: the prior is that of the file and stands still, and the
  * rest goes on learning with it. Which anchors and Gaussians are worth their bits? */
-static question in_integer_stage(const ted4_trainer *t)
+static experiment in_integer_stage(const ted4_trainer *t)
 {
     return t->search.decided == TED4_DECIDED_BITS
-               ? (question) { ted4_capacity_prune, TED4_BUSY_TRIALS, ted4_capacity_prune_steps(t) }
+               ? (experiment) { ted4_capacity_prune, TED4_BUSY_TRIALS,
+                                ted4_capacity_prune_steps(t) }
                : nothing;
 }
 
-static question next_question(const ted4_trainer *t)
+static experiment next_experiment(const ted4_trainer *t)
 {
     return t->phase.integer ? in_integer_stage(t) : t->phase.stage2 ? in_stage2(t) : in_stage1(t);
 }
 
 int ted4_trainer_long_step(const ted4_trainer *t)
 {
-    return next_question(t).steps > 0;
+    return next_experiment(t).steps > 0;
 }
 
 int ted4_trainer_step(ted4_trainer *t)
 {
-    const question q = next_question(t);
+    const experiment e = next_experiment(t);
 
-    if (q.find != NULL) {
-        ted4_trainer_busy(t, q.busy, q.steps);
+    if (e.run != NULL) {
+        ted4_trainer_busy(t, e.busy, e.steps);
 
-        const int bad = q.find(t);
+        const int bad = e.run(t);
 
         ted4_trainer_busy(t, TED4_BUSY_TRAINING, 0);
         if (bad)

@@ -1,4 +1,4 @@
-/* test_step_grad.c - the gradient of a whole training step, chained as train/state/trainer.c does
+/* test_step_grad.c - the gradient of a whole training step, chained as train/step/step.c does
  * it: distortion of rasteriser of generation and, in stage 2, of the quantiser, plus the rate. Its
  * products with random directions, in each part of the model and in all at once, against central
  * differences of double-precision references. Quantisation residuals are held fixed, masks are

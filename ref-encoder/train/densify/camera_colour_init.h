@@ -4,8 +4,8 @@
  * colour with the direction of view, and what looks for things that come and go compares unlike
  * colours. Source: a robust fit of the model of camera_colour.h, ours. Depends on trainer.h.
  * SPDX-License-Identifier: BSD-2-Clause */
-#ifndef TED4_COLOUR_MATCH_H
-#define TED4_COLOUR_MATCH_H
+#ifndef TED4_CAMERA_COLOUR_INIT_H
+#define TED4_CAMERA_COLOUR_INIT_H
 
 #include "train/state/trainer.h"
 

@@ -7,8 +7,8 @@
  * paper; needs three training cameras at a time or around it, and activation. Depends on trainer.h,
  * photo_votes.h.
  * SPDX-License-Identifier: BSD-2-Clause */
-#ifndef TED4_SPROUT_H
-#define TED4_SPROUT_H
+#ifndef TED4_MV_SEED_H
+#define TED4_MV_SEED_H
 
 #include "train/state/trainer.h"
 

@@ -1,8 +1,8 @@
 /* photo_votes.h - at which times a colour is seen at a place: what tells things that come and go
  * from things that stay. Depends on trainer.h, turns.h.
  * SPDX-License-Identifier: BSD-2-Clause */
-#ifndef TED4_SIGHTINGS_H
-#define TED4_SIGHTINGS_H
+#ifndef TED4_PHOTO_VOTES_H
+#define TED4_PHOTO_VOTES_H
 
 #include "train/state/trainer.h"
 #include "turns.h"

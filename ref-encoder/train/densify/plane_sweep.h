@@ -1,5 +1,6 @@
 /* plane_sweep.h - places at which several cameras agree about something that the model does not
- * show: see mv_seed.h. Depends on trainer.h. SPDX-License-Identifier: BSD-2-Clause */
+ * show: see mv_seed.h. Depends on trainer.h.
+ * SPDX-License-Identifier: BSD-2-Clause */
 #ifndef TED4_PLANE_SWEEP_H
 #define TED4_PLANE_SWEEP_H
 

@@ -1,8 +1,8 @@
 /* short_lived.h - initial points that exist only for a while: found by colour before training
  * starts.
  * SPDX-License-Identifier: BSD-2-Clause */
-#ifndef TED4_TRANSIENT_H
-#define TED4_TRANSIENT_H
+#ifndef TED4_SHORT_LIVED_H
+#define TED4_SHORT_LIVED_H
 
 #include "train/state/trainer.h"
 

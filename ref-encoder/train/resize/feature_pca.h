@@ -1,8 +1,8 @@
 /* feature_pca.h - other axes for the feature: the same Gaussians from values of which the first say
  * most and the last least. Depends on trainer.h.
  * SPDX-License-Identifier: BSD-2-Clause */
-#ifndef TED4_ROTATE_H
-#define TED4_ROTATE_H
+#ifndef TED4_FEATURE_PCA_H
+#define TED4_FEATURE_PCA_H
 
 #include "train/state/trainer.h"
 

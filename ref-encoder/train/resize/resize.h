@@ -1,8 +1,8 @@
 /* resize.h - a trainer in stage 2 becomes one of another header, with as much of what its networks
  * compute as there is room for. Depends on trainer.h and prune_units.h.
  * SPDX-License-Identifier: BSD-2-Clause */
-#ifndef TED4_SURGERY_H
-#define TED4_SURGERY_H
+#ifndef TED4_RESIZE_H
+#define TED4_RESIZE_H
 
 #include "train/math/prune_units.h"
 #include "train/state/trainer.h"

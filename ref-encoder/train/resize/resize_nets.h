@@ -1,7 +1,7 @@
 /* resize_nets.h - the networks' part of resize.h.
  * SPDX-License-Identifier: BSD-2-Clause */
-#ifndef TED4_SURGERY_NETS_H
-#define TED4_SURGERY_NETS_H
+#ifndef TED4_RESIZE_NETS_H
+#define TED4_RESIZE_NETS_H
 
 #include "resize.h"
 

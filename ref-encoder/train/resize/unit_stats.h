@@ -1,8 +1,8 @@
 /* unit_stats.h - how the units of the model's networks move over anchors and training pictures:
  * means of products, and who reads them. For prune_units.h. Depends on trainer.h.
  * SPDX-License-Identifier: BSD-2-Clause */
-#ifndef TED4_ACTIVITY_H
-#define TED4_ACTIVITY_H
+#ifndef TED4_UNIT_STATS_H
+#define TED4_UNIT_STATS_H
 
 #include "train/state/trainer.h"
 

@@ -1,7 +1,8 @@
 /* model_search.c - which trials are made, and which smaller model is taken: see model_search.h.
  * First every move is tried at sight, as far as it lowers the cost without any training; what is
  * left of the budget trains those next that cost least at sight, against the same training of the
- * model at hand. SPDX-License-Identifier: BSD-2-Clause */
+ * model at hand.
+ * SPDX-License-Identifier: BSD-2-Clause */
 #include "model_search.h"
 
 #include <math.h>

@@ -1,5 +1,6 @@
 /* snapshot.h - the whole state of a trainer as bytes in memory; step/checkpoint.h takes and
- * restores it. SPDX-License-Identifier: BSD-2-Clause */
+ * restores it.
+ * SPDX-License-Identifier: BSD-2-Clause */
 #ifndef TED4_SNAPSHOT_H
 #define TED4_SNAPSHOT_H
 

@@ -3,8 +3,8 @@
  * show every other frame only, and what is there in the others alone would seem to be of no use.
  * Depends on trainer.h.
  * SPDX-License-Identifier: BSD-2-Clause */
-#ifndef TED4_JUDGES_H
-#define TED4_JUDGES_H
+#ifndef TED4_VIEW_SUBSET_H
+#define TED4_VIEW_SUBSET_H
 
 #include "trainer.h"
 

@@ -1,8 +1,8 @@
 /* export_scene.h - from a trained model to a scene of the file format (spec 6 to 10).
  * Depends on trainer.h, norm/.
  * SPDX-License-Identifier: BSD-2-Clause */
-#ifndef TED4_MAKE_SCENE_H
-#define TED4_MAKE_SCENE_H
+#ifndef TED4_EXPORT_SCENE_H
+#define TED4_EXPORT_SCENE_H
 
 #include "train/state/trainer.h"
 

@@ -1,8 +1,8 @@
 /* grad_norm.h - the sizes of a step's gradients by term, and whose fault one is.
  * Depends on trainer.h.
  * SPDX-License-Identifier: BSD-2-Clause */
-#ifndef TED4_GRADIENTS_H
-#define TED4_GRADIENTS_H
+#ifndef TED4_GRAD_NORM_H
+#define TED4_GRAD_NORM_H
 
 #include "train/state/trainer.h"
 

@@ -1,8 +1,8 @@
 /* monitor.h - notices a training that goes wrong, and says what and where; rollback.h takes it back
  * to its last good state. Depends on trainer.h.
  * SPDX-License-Identifier: BSD-2-Clause */
-#ifndef TED4_WATCH_H
-#define TED4_WATCH_H
+#ifndef TED4_MONITOR_H
+#define TED4_MONITOR_H
 
 #include "train/state/trainer.h"
 

@@ -1,8 +1,8 @@
 /* saturation.h - how many values of anchors stand at an end of their range, for the log: where many
  * do, the range is too narrow or training goes wrong. Depends on trainer.h.
  * SPDX-License-Identifier: BSD-2-Clause */
-#ifndef TED4_CLAMPED_H
-#define TED4_CLAMPED_H
+#ifndef TED4_SATURATION_H
+#define TED4_SATURATION_H
 
 #include "train/state/trainer.h"
 

@@ -1,5 +1,6 @@
 /* schedule.c - see schedule.h. Source: paper, "Progressive 3D-to-4D Anchor Transformation"; annex
- * D.1. SPDX-License-Identifier: BSD-2-Clause */
+ * D.1.
+ * SPDX-License-Identifier: BSD-2-Clause */
 #include "schedule.h"
 
 #include <math.h>
