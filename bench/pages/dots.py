@@ -7,10 +7,10 @@ ROW = 24    # pixels
 
 
 class Dots:
-    """looks: of scenes (plot.Looks). band: what is that near to 0 is set off; 0 none."""
+    """styles: of scenes (plot.SceneStyles). band: what is that near to 0 is set off; 0 none."""
 
-    def __init__(self, looks, band=0):
-        self.looks, self.band = looks, band
+    def __init__(self, styles, band=0):
+        self.styles, self.band = styles, band
         self.rows, self.values, self.words = [], {1: [], 2: []}, {}
 
     def row(self, name):
@@ -30,13 +30,13 @@ class Dots:
 
     def legend(self, svg, left, y):
         """Of scenes that occur anywhere, in a line; those without a curve share one look."""
-        found = {self.looks.marker(value[2]) for panel in self.values.values() for value in panel}
-        names = [(scene, scene) for scene in self.looks.scenes
-                 if self.looks.marker(scene) in found]
+        found = {self.styles.marker(value[2]) for panel in self.values.values() for value in panel}
+        names = [(scene, scene) for scene in self.styles.scenes
+                 if self.styles.marker(scene) in found]
         if "cross" in found:
             names.append(("", "other scenes"))
         for scene, text in names:
-            svg.marker(self.looks.marker(scene), left, y, 5, self.looks.colour(scene))
+            svg.marker(self.styles.marker(scene), left, y, 5, self.styles.colour(scene))
             svg.write(left + 11, y + 4, text)
             left += 44 + text_width(text, 12)
 
@@ -64,9 +64,9 @@ class Dots:
         svg.write(left + width / 2, top + height + 38, label, "middle", 12.5)
         for value, row, scene in self.values[panel]:
             y = top + 4 + (row - 0.5) * ROW + self.shift(scene)
-            svg.marker(self.looks.marker(scene), x.at(value), y, 5, self.looks.colour(scene))
+            svg.marker(self.styles.marker(scene), x.at(value), y, 5, self.styles.colour(scene))
 
     def shift(self, scene):
         """Scenes lie beside each other in a row, so that none hides another."""
-        scenes = self.looks.scenes
+        scenes = self.styles.scenes
         return (scenes.index(scene) - (len(scenes) - 1) / 2) * 2.6 if scene in scenes else 0

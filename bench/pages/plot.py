@@ -91,7 +91,7 @@ def put_mark(svg, series, x, y, note, right):
                  note, "end" if far else "start", "#333333")
 
 
-class Looks:
+class SceneStyles:
     """The look of each scene in all charts of a page; scenes without a curve share one."""
 
     def __init__(self, scenes):

@@ -145,11 +145,11 @@ def seed_bars(lab):
                  else True if all(map(has_three, easy)) else None, command("easy"))
     again = [(lab.runs.first(scene, "again"), lab.runs.first(scene, "whole"))
              for scene in lab.runs.scenes if lab.runs.of(scene, "again")]
-    told = [(a, b) for a, b in again
+    compared = [(a, b) for a, b in again
             if a.has() and b.has() and not a.is_old() and not b.is_old()]
     same = sum(a.text("hash") == b.text("hash") and a.text("bytes") == b.text("bytes")
-               for a, b in told)
+               for a, b in compared)
     lab.bars.add(3, "the same seed trained twice", "the same bytes",
-                 f"{len(told)} of {len(again)} scenes told, {same} equal in size and hash",
-                 False if len(told) > same else True if again and len(told) == len(again)
+                 f"{len(compared)} of {len(again)} scenes told, {same} equal in size and hash",
+                 False if len(compared) > same else True if again and len(compared) == len(again)
                  else None, command("again '*-whole-1'"))

@@ -1,6 +1,6 @@
 """What all sections of the report share.
 SPDX-License-Identifier: BSD-2-Clause"""
-from ..plot import Looks
+from ..plot import SceneStyles
 from ..words import Bars, Page
 
 
@@ -12,12 +12,7 @@ class Report:
         self.runs, self.charts, self.results, self.pages = runs, charts, results, pages
         self.tables, self.bars = Page(), Bars()
         self.scenes = runs.curve_scenes()
-        self.looks = Looks(self.scenes)
-
-    def wanting(self, group):
-        """(scene, variant) of all variants of a group."""
-        return [(scene, variant) for scene in self.runs.scenes for variant in self.runs.variants
-                if self.runs.wants(scene, variant, group)]
+        self.styles = SceneStyles(self.scenes)
 
 
 def sweep(patterns=""):

@@ -26,7 +26,7 @@ def section(report):
         of all anchors; it is compared with the bytes of the attributes' substreams in the file. The
         table shows of each variant's runs the one with the largest difference.""")
     page.table("variant", "runs", "estimated against file", "of run")
-    dots, known, missing = Dots(report.looks, band=1), [], 0
+    dots, known, missing = Dots(report.styles, band=1), [], 0
     for variant in runs.variants:
         dots.row(variant)
         pairs = [(error_of(run), run) for run in runs.all if run.variant == variant]

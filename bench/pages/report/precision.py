@@ -108,7 +108,7 @@ def panel(report, svg, scenes, precisions, left, top, title, label, value):
             is_integer = precision == "integer"
             series = plot.series(
                 scene if len(precisions) == 1 else f"{scene} {precision}",
-                report.looks.colour(scene), report.looks.marker(scene) if is_integer else "ring",
+                report.styles.colour(scene), report.styles.marker(scene) if is_integer else "ring",
                 PRECISIONS[precision])
             for factor, run in step_runs(report.runs, scene):
                 if run.text("float64_bits"):

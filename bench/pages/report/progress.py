@@ -39,7 +39,7 @@ def log_of(report, scene):
 def panel(report, svg, logs, name, left, top, title, label, unit):
     plot = Plot()
     for scene, lines in logs.items():
-        series = plot.series(scene, report.looks.colour(scene), "none",
+        series = plot.series(scene, report.styles.colour(scene), "none",
                              DASHES[min(report.scenes.index(scene), 3)])
         for line in lines:
             value = line[name]

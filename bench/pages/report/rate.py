@@ -60,8 +60,8 @@ def chart(report):
                                 "four λ, by scene") as svg:
             for scene, (left, top) in zip(scenes, places):
                 plot = Plot()
-                plot.curve(runs, scene, "whole", "the whole method", report.looks.colour(scene),
-                           report.looks.marker(scene), notes=True)
+                plot.curve(runs, scene, "whole", "the whole method", report.styles.colour(scene),
+                           report.styles.marker(scene), notes=True)
                 plot.draw(svg, left, top, 450, 316, scene, KB, "PSNR, dB")
     show(report, report.tables)
 

@@ -100,13 +100,13 @@ def picture_chart(report):
     """A series per scene for the λ of the whole method, another for its presets."""
     plot, runs = Plot(), report.runs
     for scene in report.scenes:
-        series = plot.series(f"{scene}, four λ", report.looks.colour(scene),
-                             report.looks.marker(scene))
+        series = plot.series(f"{scene}, four λ", report.styles.colour(scene),
+                             report.styles.marker(scene))
         for i, run in enumerate(runs.of(scene, "whole")):
             if run.has():
                 series.point(run.picture_ms(), run.number("psnr"), run.weight if i == 0 else "")
     for scene in report.scenes:
-        series = plot.series(f"{scene}, presets", report.looks.colour(scene), "ring", "-",
+        series = plot.series(f"{scene}, presets", report.styles.colour(scene), "ring", "-",
                              above=True)
         for preset in PRESETS:
             run = runs.first(scene, preset)

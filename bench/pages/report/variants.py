@@ -146,7 +146,7 @@ def scene_chart(report, scene):
 
 def overview(report):
     """All variants at a glance: rate at equal PSNR and PSNR at equal bytes."""
-    runs, dots = report.runs, Dots(report.looks)
+    runs, dots = report.runs, Dots(report.styles)
     variants = [variant for variant in runs.variants
                 if any(runs.wants(scene, variant, "variant") for scene in runs.scenes)]
     found = 0
