@@ -46,7 +46,8 @@ last_words() { tail -n 1 "$out.err" | tr ',"' ';' | cut -c1-200; }
 sources() {
     {
         grep -E '^(OPT|STRICT|FREE|FLAGS_v3|FLAGS_v4|CFLAGS_ALL) ' Makefile
-        awk -f bench/sources.awk ref-encoder/train/*.[ch] ref-encoder/train/*/*.[ch] ref-encoder/train/*/*.def \
+        awk -f bench/sources.awk ref-encoder/train/*.[ch] ref-encoder/train/*/*.[ch] \
+            ref-encoder/train/*/*.def \
             ref-encoder/math/*.[ch] ref-encoder/write/*.[ch] ref-encoder/kernel/*.[ch] \
             ref-encoder/data/*.[ch] ref-encoder/eval/*.[ch] ref-decoder/base/*.[ch] \
             ref-decoder/norm/*.[ch] ref-decoder/recon/*.[ch] ref-decoder/render/*.[ch] "$@"

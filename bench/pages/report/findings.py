@@ -19,6 +19,17 @@ def db(run):
     return fixed(run.number("psnr"), 2) + " dB"
 
 
+def loses(change):
+    """A change of PSNR, dB."""
+    return f"{'loses' if change < 0 else 'gains'} {abs(change):.2f} dB"
+
+
+def compared(seeded):
+    """The mean over seeds with its standard error."""
+    return (f"{abs(seeded.mean):.2f} ± {seeded.error:.2f} dB "
+            f"{'worse' if seeded.mean < 0 else 'better'}")
+
+
 def rate(report):
     rows = [run for scene in report.scenes for run in report.runs.of(scene, "whole")]
     whole = report.runs.of(SCENE, "whole")
@@ -43,10 +54,9 @@ def activation(report):
     recipe = Seeded(runs, SCENE, "recipe_noactive")
     more = ""
     if recipe.changes:
-        more = (" In the paper's recipe alone, which grows no short-lived anchors there, it is "
-                f"{-recipe.mean:.2f} ± {recipe.error:.2f} dB.")
-    return (f"Life spans of anchors are worth most: without them `{SCENE}` loses "
-            f"{-change.psnr:.2f} dB at equal bytes.{more}",
+        more = (" The paper's recipe alone, which grows no short-lived anchors there, is "
+                f"{compared(recipe)} without them.")
+    return (f"Without life spans of anchors `{SCENE}` {loses(change.psnr)} at equal bytes.{more}",
             runs.of(SCENE, "noactive") + runs.of(SCENE, "whole")
             + [run for pair in recipe.pairs for run in pair])
 
@@ -56,11 +66,10 @@ def deformation(report):
     recipe = Seeded(report.runs, SCENE, "recipe_inr")
     if not seeded.changes or not recipe.changes:
         return None
-    return ("The bank of motions is better than a network of place and time as wide as F_deform. "
-            "In the paper's recipe alone the network is "
-            f"{-recipe.mean:.2f} ± {recipe.error:.2f} dB worse on `{SCENE}` "
-            f"({len(recipe.changes)} seeds); beside multi-view seeding, which "
-            f"does much of the same work, {-seeded.mean:.2f} ± {seeded.error:.2f} dB.",
+    return ("In the paper's recipe alone, a network of place and time as wide as F_deform is "
+            f"{compared(recipe)} than the bank of motions on `{SCENE}` ({len(recipe.changes)} "
+            "seeds). Beside multi-view seeding, which does much of the same work, it is "
+            f"{compared(seeded)}.",
             [run for one in (seeded, recipe) for pair in one.pairs for run in pair])
 
 
@@ -86,7 +95,7 @@ def still(report):
         return None
     spent = sum(singles.for_time(whole) for _, whole, _ in pairs)
     most = max(abs(singles.rate_against(whole, static)) for _, whole, static in pairs)
-    return (f"Where nothing moves, nothing is spent on time: the files of `still` and `chair` hold "
+    return (f"Where nothing moves, the files (`still` and `chair`) hold "
             f"{spent:.0f} bytes of bank, temporal features and activations, and their sizes differ "
             f"by {most:.2f} % from those of an encoder without time.", rows)
 
@@ -106,8 +115,9 @@ def colour(report):
     gain, loss = singles.difference(with_it, without), singles.difference(plain, with_it)
     if gain is None or loss is None:
         return None
-    return (f"Correcting the colours of cameras gains {gain:.2f} dB where they differ "
-            f"(`kitchen_tint`) and comes to within {loss:.2f} dB of cameras that agree.",
+    return (f"Where the colours of cameras differ (`kitchen_tint`), correcting them {loses(gain)}; "
+            f"the result lies {abs(loss):.2f} dB {'below' if loss > 0 else 'above'} that of "
+            "cameras that agree.",
             [with_it, without, plain])
 
 
@@ -115,8 +125,8 @@ def spans(report):
     run = report.runs.find(lives.FAST)
     if not run.text("short_changed"):
         return None
-    return (f"Short lives lie where things come and go: {100 * run.count('span_short'):.1f} % of "
-            f"the anchors of `kitchen` live for at most a fifth of the sequence, and they make "
+    return (f"{100 * run.count('span_short'):.1f} % of the anchors of `kitchen` live for at most a "
+            "fifth of the sequence; they make "
             f"{100 * run.count('short_changed'):.1f} % of the light where pixels change, "
             f"{100 * run.count('short_same'):.1f} % elsewhere.", [run])
 
