@@ -1,0 +1,35 @@
+#!/bin/sh
+# columns.sh [FILE...] - lines have at most 100 columns, in everything that is written by hand: C,
+# tables of macros, shell, awk, sed, Python, build rules, and the prose of Markdown. Left aside in
+# Markdown: rows of tables, code blocks, and lines that are little else than one link or address.
+# Tables of the decoder that a program prints (norm/tables.c) stay as they are printed.
+export LC_ALL=C
+[ $# -gt 0 ] || set -- $(find Makefile .ci .clang-format ./*.md bench conformance doc fuzz \
+    ref-decoder ref-encoder spec tests tools -type f \( -name '*.[ch]' -o -name '*.def' \
+    -o -name '*.sh' -o -name run -o -name '*.awk' -o -name '*.sed' -o -name '*.py' \
+    -o -name '*.mk' -o -name Makefile -o -name '*.md' \) ! -path '*/corpus/*' \
+    ! -path 'conformance/vectors/*' ! -path '*/__pycache__/*' ! -path ref-decoder/norm/tables.c)
+awk '
+    FNR == 1 { block = 0; prose = FILENAME ~ /\.md$/ }
+    {
+        line = $0
+        gsub(/[\200-\277]/, "", line)
+        while ((at = index(line, "\t")) > 0)
+            line = substr(line, 1, at - 1) substr("        ", (at - 1) % 8 + 1) \
+                substr(line, at + 1)
+    }
+    prose && /^ *```/ { block = !block }
+    length(line) <= 100 { next }
+    prose && (block || /^    / || /^ *\|/) { next }
+    # What stays of the line without its longest word, an address or a link, says nothing.
+    prose && /:\/\/|\]\(/ {
+        longest = 0
+        n = split(line, word, / +/)
+        for (i = 1; i <= n; i++)
+            if (length(word[i]) > longest)
+                longest = length(word[i])
+        if (longest > 60)
+            next
+    }
+    { print FILENAME ":" FNR ": " length(line) " columns"; bad = 1 }
+    END { exit bad }' "$@"
