@@ -1,6 +1,7 @@
 #!/bin/sh
 # Runs test programs; prints each one's name, its failures, and totals. Exit status: did all pass?
-# cmocka's own report goes to a log beside the program, shown only when it failed or skipped something.
+# cmocka's own report goes to a log beside the program, shown only when it failed or skipped
+# something.
 passed=0 failed=0 skipped=0
 for t in "$@"; do
     printf '%s ... ' "$(basename "$t")"

@@ -12,7 +12,8 @@ all: $B/ted4tolerance
 $B/ted4tolerance: $B/conformance/tolerance/ted4tolerance.o $(CLASS_T_OBJ) $(DEC_TOOL:%.c=$B/%.o) $(DEC_LIB)
 	$(CC) -fopenmp $(LDFLAGS) $^ -o $@ $(LIBS)
 
-# thresholds.csv for vectors of several kinds; takes a minute. tests/tools/test_tolerance.sh says whether it is current.
+# thresholds.csv for vectors of several kinds; takes a minute. tests/tools/test_tolerance.sh says
+# whether it is current.
 tolerance: $B/ted4tolerance
 	sh conformance/tolerance/table.sh $B/ted4tolerance > conformance/tolerance/thresholds.new
 	mv conformance/tolerance/thresholds.new conformance/tolerance/thresholds.csv

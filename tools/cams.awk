@@ -1,5 +1,6 @@
-# cams.awk - from COLMAP's cameras.txt and images.txt (SIMPLE_RADIAL lenses) to cams.json, whose fields doc/layouts.md describes. First file: name of the picture, tab,
-# clip. The centre of the first pixel is at 0.5, 0.5 for COLMAP, and at 0, 0 in cams.json.
+# cams.awk - from COLMAP's cameras.txt and images.txt (SIMPLE_RADIAL lenses) to cams.json, whose
+# fields doc/layouts.md describes. First file: name of the picture, tab, clip. The centre of the
+# first pixel is at 0.5, 0.5 for COLMAP, and at 0, 0 in cams.json.
 # SPDX-License-Identifier: BSD-2-Clause
 function text(s) { gsub(/\\/, "\\\\", s); gsub(/"/, "\\\"", s); return "\"" s "\"" }
 function row(a, b, c, d) { return sprintf("[%.9f, %.9f, %.9f, %.9f]", a, b, c, d) }

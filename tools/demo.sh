@@ -1,6 +1,7 @@
 #!/bin/sh
-# The main job, whole: a scene of our own, images to .ted4, and back to Gaussians and pictures in fresh processes. $1: folder for everything made.
-# Last line: one JSON object with psnr, bytes, train_s, decode_ms.
+# The main job, whole: a scene of our own, images to .ted4, and back to Gaussians and pictures in
+# fresh processes. $1: folder for everything made. Last line: one JSON object with psnr, bytes,
+# train_s, decode_ms.
 set -e
 out=$1
 bin=${TED4_BUILD:-build}

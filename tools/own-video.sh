@@ -1,6 +1,8 @@
 #!/bin/sh
-# own-video.sh - from one's own footage to a SCENE for ted4enc; doc/own-video.md says how to film, and what goes wrong. One video: a camera that moves; FPS of its
-# frames a second are taken (6 unless the environment says). Several: cameras that stand still, one clip each, begun together. Needs ffmpeg and colmap (Debian).
+# own-video.sh - from one's own footage to a SCENE for ted4enc; doc/own-video.md says how to film,
+# and what goes wrong. One video: a camera that moves; FPS of its frames a second are taken (6
+# unless the environment says). Several: cameras that stand still, one clip each, begun together.
+# Needs ffmpeg and colmap (Debian).
 # SPDX-License-Identifier: BSD-2-Clause
 set -u
 export LC_ALL=C QT_QPA_PLATFORM=offscreen

@@ -1,6 +1,8 @@
 #!/bin/sh
-# test_spec_syntax.sh - the syntax tables of 5.1, 5.2 and 9.1, read out of the text, are what the decoder traces of small vectors with and without each mask, motion
-# and activation, but for those of a later minor version. (For the table of 6.1: test_spec_resources.c.) A table with an error is found out.
+# test_spec_syntax.sh - the syntax tables of 5.1, 5.2 and 9.1, read out of the text, are what the
+# decoder traces of small vectors with and without each mask, motion and activation, but for those
+# of a later minor version. (For the table of 6.1: test_spec_resources.c.) A table with an error is
+# found out.
 # SPDX-License-Identifier: BSD-2-Clause
 . tests/support/speak.sh
 need spec_syntax ted4dec

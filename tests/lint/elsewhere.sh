@@ -1,5 +1,6 @@
 #!/bin/sh
-# What conformance/rules-elsewhere.txt and branches-excluded.txt name as looking after rules and branches exists.
+# What conformance/rules-elsewhere.txt and branches-excluded.txt name as looking after rules and
+# branches exists.
 export LC_ALL=C
 bad=0
 for f in $(grep -ohE '\b(tests|fuzz|ref-decoder|ref-encoder)/[A-Za-z0-9_/-]+\.[a-z]+' conformance/rules-elsewhere.txt conformance/branches-excluded.txt | sort -u); do

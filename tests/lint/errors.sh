@@ -1,5 +1,6 @@
 #!/bin/sh
-# The table of identifiers in chapter 14 is status.def, line for line. `sh tests/lint/errors.sh print` prints the table to paste.
+# The table of identifiers in chapter 14 is status.def, line for line. `sh tests/lint/errors.sh
+# print` prints the table to paste.
 table() {
     sed -n 's/^TED4_STATUS(E_[A-Z_]*, *"\([^"]*\)", *"\([^"]*\)", *"\([^"]*\)")/| `\1` | \2 | \3 |/p' ref-decoder/base/status.def
 }

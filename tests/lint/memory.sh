@@ -1,7 +1,8 @@
 #!/bin/sh
-# The decoder library takes memory through the caller's allocator only (SECURITY.md): base/arena.c alone calls malloc, and zlib is given the arena. It prints
-# nothing, ends no process, and keeps nothing between calls: no variable of a file or function that can change. Its folders are those of DEC_SRC in the Makefile;
-# render/ draws for programs and is a library of its own.
+# The decoder library takes memory through the caller's allocator only (SECURITY.md): base/arena.c
+# alone calls malloc, and zlib is given the arena. It prints nothing, ends no process, and keeps
+# nothing between calls: no variable of a file or function that can change. Its folders are those of
+# DEC_SRC in the Makefile; render/ draws for programs and is a library of its own.
 bad=0
 folders=$(sed -n 's/^DEC_SRC.*addprefix ref-decoder\/,\([^)]*\)).*/\1/p' Makefile | tr ' ,' '\n\n' | sed 's/\/\*\.c$//')
 [ -n "$folders" ] || { echo "Makefile: no folders in DEC_SRC"; bad=1; }

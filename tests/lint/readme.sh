@@ -1,7 +1,8 @@
 #!/bin/sh
-# README.md is short: at most 6,000 bytes, with the commands of demo and tests in its first 25 lines, a picture and a chart. In it, in doc/ and in the READMEs of
-# folders that speak to readers of code, relative links lead to files that exist, those to a heading to one that is there, and lines have at most 100 columns,
-# but for rows of tables and lines with a URL.
+# README.md is short: at most 6,000 bytes, with the commands of demo and tests in its first 25
+# lines, a picture and a chart. In it, in doc/ and in the READMEs of folders that speak to readers
+# of code, relative links lead to files that exist, those to a heading to one that is there, and
+# lines have at most 100 columns, but for rows of tables and lines with a URL.
 export LC_ALL=C
 bad=0
 pages="README.md $(echo doc/*.md) ref-decoder/README.md ref-encoder/README.md tests/README.md bench/README.md"

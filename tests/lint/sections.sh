@@ -1,5 +1,6 @@
 #!/bin/sh
-# Every section and annex of the specification that anything here cites exists as a heading: "spec 9.2, 9.4", "spec 5 to 10", "spec J.1", "annex D.1", "chapter 14".
+# Every section and annex of the specification that anything here cites exists as a heading: "spec
+# 9.2, 9.4", "spec 5 to 10", "spec J.1", "annex D.1", "chapter 14".
 export LC_ALL=C
 bad=0
 headings=$(sed -nE 's/^#+ (Annex )?([0-9A-L][0-9.]*)( .*)?$/\2/p' spec/[0-9]*.md spec/annex-*.md)

@@ -1,6 +1,7 @@
 #!/bin/sh
-# spec/rules.json and spec/errors.json, for programs, are made of what annex G and the table of chapter 14 are made of, and say the same as these.
-# `sh tests/lint/spec_json.sh print rules|errors` prints one of them.
+# spec/rules.json and spec/errors.json, for programs, are made of what annex G and the table of
+# chapter 14 are made of, and say the same as these. `sh tests/lint/spec_json.sh print rules|errors`
+# prints one of them.
 export LC_ALL=C
 print_json() {
     case $1 in

@@ -1,6 +1,7 @@
 #!/bin/sh
-# Rules of the specification: each defined once, in words of BCP 14; each that anything quotes exists; every identifier of status.def is named by a rule, and the
-# other way round; annex G is current. `sh tests/lint/spec_rules.sh print` prints annex G.
+# Rules of the specification: each defined once, in words of BCP 14; each that anything quotes
+# exists; every identifier of status.def is named by a rule, and the other way round; annex G is
+# current. `sh tests/lint/spec_rules.sh print` prints annex G.
 export LC_ALL=C
 index() {
     awk -f tests/spec/rules.awk spec/[0-9]*.md spec/annex-[e-f]*.md spec/annex-[j-l]*.md

@@ -1,6 +1,6 @@
 #!/bin/sh
-# The text of the specification: links between its files lead somewhere, cited sections exist, chapters and annexes stand in the README's table, and no line names an
-# absolute path or a host.
+# The text of the specification: links between its files lead somewhere, cited sections exist,
+# chapters and annexes stand in the README's table, and no line names an absolute path or a host.
 export LC_ALL=C
 bad=0
 for l in $(grep -ohE '\]\([^)#]+' spec/*.md | sed 's/](//' | sort -u); do

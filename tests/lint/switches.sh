@@ -1,5 +1,6 @@
 #!/bin/sh
-# The table of all training options in doc/switches.md is options.def, line for line. `sh tests/lint/switches.sh print` prints the table to paste.
+# The table of all training options in doc/switches.md is options.def, line for line. `sh
+# tests/lint/switches.sh print` prints the table to paste.
 export LC_ALL=C
 table() {
     awk '/^TED4_OPTION\(/ {

@@ -1,7 +1,8 @@
 # head.awk - turns the table of spec 6.1 into C, one line a row:
 #     ELEMENT(name, count, width, signed, low, high, has_condition, condition, level bound)   integers
 #     REAL(name, count, bounded)                                                              f32: within 2^-20 .. 2^10, or any legal one
-# A condition of the table reads elements through the pointer h. A row that cannot be understood ends the run with status 1.
+# A condition of the table reads elements through the pointer h. A row that cannot be understood
+# ends the run with status 1.
 # SPDX-License-Identifier: BSD-2-Clause
 BEGIN { FS = " *\\| *" }
 /^\| element \| type \| range \| when/ { table = 1; next }

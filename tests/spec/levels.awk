@@ -1,4 +1,5 @@
-# levels.awk - turns the table of spec 13.1 into C: LEVEL(level, n_anchors, n_offsets, frames, values, products, file_bytes, symbols_a_byte)
+# levels.awk - turns the table of spec 13.1 into C: LEVEL(level, n_anchors, n_offsets, frames,
+# values, products, file_bytes, symbols_a_byte)
 # SPDX-License-Identifier: BSD-2-Clause
 BEGIN { FS = " *\\| *" }
 /^\| level \| n_anchors/ { table = 1; next }

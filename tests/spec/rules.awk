@@ -1,5 +1,6 @@
-# rules.awk - annex G: every rule of the chapters and annexes named, in order of appearance. A rule begins a paragraph with its identifier in bold and ends with it.
-# With -v json=1 spec/rules.json: the same, with file and text of each.
+# rules.awk - annex G: every rule of the chapters and annexes named, in order of appearance. A rule
+# begins a paragraph with its identifier in bold and ends with it. With -v json=1 spec/rules.json:
+# the same, with file and text of each.
 # SPDX-License-Identifier: BSD-2-Clause
 BEGIN {
     split("BIT bitstream DEC decoder LEN lenient-decoder ENC encoder EDT editor VAL validator EXT author DMP test TOL decoder SEC decoder MED player INT decoder ERR decoder ARI decoder REC decoder XXH decoder DEF stream", pair, " ")
@@ -21,7 +22,8 @@ function heading() {
     print "|---|---|---|---|---|"
 }
 
-# A text between quotes. Backslashes and quotes are all that needs care: there are no control characters in the chapters.
+# A text between quotes. Backslashes and quotes are all that needs care: there are no control
+# characters in the chapters.
 function quoted(text) {
     gsub(/\\/, "&&", text)
     gsub(/"/, "\\\"", text)

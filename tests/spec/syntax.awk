@@ -1,5 +1,6 @@
-# syntax.awk - do the syntax tables of spec 5.1, 5.2 and 9.1 say what a decoder traces? Reads those two chapters, then a trace of ted4dec (offset, element[index]
-# = value); -v bytes: size of the file that was traced. Says what differs and ends with status 1.
+# syntax.awk - do the syntax tables of spec 5.1, 5.2 and 9.1 say what a decoder traces? Reads those
+# two chapters, then a trace of ted4dec (offset, element[index] = value); -v bytes: size of the file
+# that was traced. Says what differs and ends with status 1.
 # SPDX-License-Identifier: BSD-2-Clause
 function bad(what) { print FILENAME ": " what; failed = 1; exit 1 }
 

@@ -1,6 +1,7 @@
 #!/bin/sh
-# test_branches.sh - conformance/branches.awk on small tables: what counts as taken, what stands apart, and which mistakes of the list it finds. Speaks as cmocka
-# programs do; run by `make test` from the project's root.
+# test_branches.sh - conformance/branches.awk on small tables: what counts as taken, what stands
+# apart, and which mistakes of the list it finds. Speaks as cmocka programs do; run by `make test`
+# from the project's root.
 # SPDX-License-Identifier: BSD-2-Clause
 set -u
 . tests/support/speak.sh

@@ -1,13 +1,16 @@
 #!/bin/sh
-# test_cross.sh - the bookkeeping of conformance/cross/cross.sh, with a compiler that compiles nothing and makes programs of several moods: what passes is not
-# run again, what lacks a tool is skipped and never passed, failures and crashes are named, wrong claims and hashes that differ fail, and so do fewer than 12
-# builds unless some are chosen. Speaks as cmocka programs do; run by `make test` from the project's root.
+# test_cross.sh - the bookkeeping of conformance/cross/cross.sh, with a compiler that compiles
+# nothing and makes programs of several moods: what passes is not run again, what lacks a tool is
+# skipped and never passed, failures and crashes are named, wrong claims and hashes that differ
+# fail, and so do fewer than 12 builds unless some are chosen. Speaks as cmocka programs do; run by
+# `make test` from the project's root.
 # SPDX-License-Identifier: BSD-2-Clause
 set -u
 export LC_ALL=C
 . tests/support/speak.sh
 need cross ted4conf ted4dec
-# cross NAME WANTED-STATUS WANTED-TEXT ['']: runs it on the table as it is, all builds chosen by a pattern; '': without a pattern
+# cross NAME WANTED-STATUS WANTED-TEXT ['']: runs it on the table as it is, all builds chosen by a
+# pattern; '': without a pattern
 cross() {
     expect "$1" "$2" "$3" env PATH="$out/bin:$PATH" TED4_BUILD="$out/build" TED4_RESULTS="$out" TED4_TABLE="$out/table" conformance/cross/cross.sh ${4-'*'}
 }

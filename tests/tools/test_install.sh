@@ -1,7 +1,8 @@
 #!/bin/sh
-# test_install.sh - what `make install` leaves is enough for who writes a program: <ted4/ted4.h> in C and in C++, with no other folder of headers, libted4dec.a
-# with no library but zlib, xxHash and libm for all that is in it, and the programs that doc/programs.md names. Speaks as cmocka programs do; run by `make test` from
-# the project's root.
+# test_install.sh - what `make install` leaves is enough for who writes a program: <ted4/ted4.h> in
+# C and in C++, with no other folder of headers, libted4dec.a with no library but zlib, xxHash and
+# libm for all that is in it, and the programs that doc/programs.md names. Speaks as cmocka programs
+# do; run by `make test` from the project's root.
 # SPDX-License-Identifier: BSD-2-Clause
 set -u
 . tests/support/speak.sh
@@ -46,7 +47,8 @@ C
 cp "$out/user.c" "$out/user.cc"
 wanted="$("$TED4_BUILD/ted4dec" --hash "$vector"), bank"
 
-# user NAME COMPILER SOURCE: a program of somebody else, made and asked. The flags are those of a build with sanitizers; nothing otherwise.
+# user NAME COMPILER SOURCE: a program of somebody else, made and asked. The flags are those of a
+# build with sanitizers; nothing otherwise.
 user() {
     # shellcheck disable=SC2086 # several flags
     $2 ${CFLAGS:-} ${LDFLAGS:-} -Wall -Wextra -Wpedantic -Werror -I"$usr/include" "$out/$3" -L"$usr/lib" -Wl,--whole-archive -l:libted4dec.a \

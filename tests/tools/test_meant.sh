@@ -1,6 +1,7 @@
 #!/bin/sh
-# test_meant.sh - who misspells a name is told which one may have been meant, and who goes on from a checkpoint with other options is told which one differs.
-# Speaks as cmocka programs do; run by `make test` from the project's root.
+# test_meant.sh - who misspells a name is told which one may have been meant, and who goes on from a
+# checkpoint with other options is told which one differs. Speaks as cmocka programs do; run by
+# `make test` from the project's root.
 # SPDX-License-Identifier: BSD-2-Clause
 set -u
 . tests/support/speak.sh

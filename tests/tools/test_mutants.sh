@@ -1,7 +1,9 @@
 #!/bin/sh
-# test_mutants.sh - ted4conf mutants: the lists fit the sources; results are believed only of a build whose unchanged program passes, and only for as long as what
-# they stand on is the same. A small tree stands in for the decoder, a script for the compiler: the program it "makes" fails at V-two where its source says so.
-# Speaks as cmocka programs do; run by `make test` from the project's root.
+# test_mutants.sh - ted4conf mutants: the lists fit the sources; results are believed only of a
+# build whose unchanged program passes, and only for as long as what they stand on is the same. A
+# small tree stands in for the decoder, a script for the compiler: the program it "makes" fails at
+# V-two where its source says so. Speaks as cmocka programs do; run by `make test` from the
+# project's root.
 # SPDX-License-Identifier: BSD-2-Clause
 set -u
 . tests/support/speak.sh

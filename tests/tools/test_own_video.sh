@@ -1,6 +1,8 @@
 #!/bin/sh
-# test_own_video.sh - tools/own-video.sh: from a video of a camera that moves, and from clips of cameras that stand still, comes a SCENE with the lens and the poses
-# that the footage was made with; and what it is given wrongly has one clear error. Speaks as cmocka programs do; run by `make test` from the project's root.
+# test_own_video.sh - tools/own-video.sh: from a video of a camera that moves, and from clips of
+# cameras that stand still, comes a SCENE with the lens and the poses that the footage was made
+# with; and what it is given wrongly has one clear error. Speaks as cmocka programs do; run by `make
+# test` from the project's root.
 # SPDX-License-Identifier: BSD-2-Clause
 set -u
 export LC_ALL=C
@@ -39,7 +41,8 @@ for c in 04 06 08 10 12; do
     mv "$out/clip" "$out/clip$c"
 done
 
-# looks NAME PICTURES LENSES: what --check says of the scene, whose lens is as long as pictures are wide.
+# looks NAME PICTURES LENSES: what --check says of the scene, whose lens is as long as pictures are
+# wide.
 looks() {
     "$TED4_BUILD/ted4enc" --check "$out/$1" >"$out/$1.says" 2>"$out/said" || { fail "$1" "$(cat "$out/said")"; return; }
     check "$1" "$out/$1.says" "$2" "$3"

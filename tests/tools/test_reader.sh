@@ -1,6 +1,7 @@
 #!/bin/sh
-# test_reader.sh - the second decoder: its unit tests, a few vectors of the suite through the runner, drawn and broken streams side by side with
-# ted4dec. Speaks as cmocka programs do; run by `make test` from the project's root. TED4_BUILD: the build folder.
+# test_reader.sh - the second decoder: its unit tests, a few vectors of the suite through the
+# runner, drawn and broken streams side by side with ted4dec. Speaks as cmocka programs do; run by
+# `make test` from the project's root. TED4_BUILD: the build folder.
 # SPDX-License-Identifier: BSD-2-Clause
 here=conformance/reader
 . tests/support/speak.sh

@@ -1,6 +1,7 @@
 #!/bin/sh
-# test_says.sh - ted4enc and ted4eval are not silent: a first word within a second, what was found, videos as they are unpacked, how long it will take, where training
-# goes on; and quiet is quiet. Speaks as cmocka programs do; run by `make test` from the project's root.
+# test_says.sh - ted4enc and ted4eval are not silent: a first word within a second, what was found,
+# videos as they are unpacked, how long it will take, where training goes on; and quiet is quiet.
+# Speaks as cmocka programs do; run by `make test` from the project's root.
 # SPDX-License-Identifier: BSD-2-Clause
 set -u
 export LC_ALL=C

@@ -1,6 +1,8 @@
 #!/bin/sh
-# test_tolerance.sh - ted4tolerance (annex E): thresholds.csv holds what the program computes, for a sample of its vectors; our decoder's own records keep the
-# thresholds, records that are a little off do not, and missing ones neither. Speaks as cmocka programs do; run by `make test` from the project's root.
+# test_tolerance.sh - ted4tolerance (annex E): thresholds.csv holds what the program computes, for a
+# sample of its vectors; our decoder's own records keep the thresholds, records that are a little
+# off do not, and missing ones neither. Speaks as cmocka programs do; run by `make test` from the
+# project's root.
 # SPDX-License-Identifier: BSD-2-Clause
 set -u
 export LC_ALL=C

@@ -1,6 +1,6 @@
 #!/bin/sh
-# test_zoo.sh - the cases of bench/zoo.txt, made small: all are read; those that differ from another in
-# files alone are trained to the same bytes; and some short trainings end well. Speaks as cmocka
+# test_zoo.sh - the cases of bench/zoo.txt, made small: all are read; those that differ from another
+# in files alone are trained to the same bytes; and some short trainings end well. Speaks as cmocka
 # programs do; run by `make test` from the project's root.
 # SPDX-License-Identifier: BSD-2-Clause
 set -u
@@ -14,8 +14,8 @@ awk '$1 == "case" { n++; twin[$2] = $3 }
      END { for (s in twin) if (twin[s] != "-" && !(twin[s] in twin)) { print s ": no twin " twin[s]; bad = 1 }
            if (n < 24) { print n " cases"; bad = 1 } exit bad }' bench/zoo.txt >"$out/said" && ok table || fail table "$(cat "$out/said")"
 
-# made NAME SIZE OPTIONS: the scene of a case, in $out/SIZE/NAME; $reading: the options with which it is
-# read.
+# made NAME SIZE OPTIONS: the scene of a case, in $out/SIZE/NAME; $reading: the options with which
+# it is read.
 made() {
     folder=$out/$2/$1
     where=$(awk -F'|' -v s="$1" '$3 == s { print $4 }' "$out/runs")
@@ -28,8 +28,8 @@ made() {
 
 tiny="24x16 --cameras 5 --test-cameras 1"
 
-# With the warning that is due, and no other. Looking for points takes seconds: of the cases in which
-# it is needed, those that are read like others are left out.
+# With the warning that is due, and no other. Looking for points takes seconds: of the cases in
+# which it is needed, those that are read like others are left out.
 for name in $(awk -F'|' '{ print $3 }' "$out/runs"); do
     case $name in random|white10|large10|turns10|room-box10|*-none) continue ;; esac
     if [ "$name" = videos ] && ! command -v ffmpeg >/dev/null; then
@@ -83,8 +83,8 @@ trained() {
     moving=$("$TED4_BUILD/bench/zoo_masks" "$folder" "$out/pictures" <"$out/views" | sed 's/.*"moving_psnr":\([0-9.]*\).*/\1/')
 }
 
-# Within how many decibels of the friendly one so short a training is; ten times as many steps: bench/zoo.md. A picture without
-# anything has 16 dB.
+# Within how many decibels of the friendly one so short a training is; ten times as many steps:
+# bench/zoo.md. A picture without anything has 16 dB.
 if trained toys; then
     friendly=$psnr
     awk "BEGIN { exit !($psnr > 27 && $moving > 16) }" && ok trains_toys || fail trains_toys "$psnr dB, what moves $moving"
@@ -94,7 +94,8 @@ fi
 
 # ---- what moves ----
 
-# Pictures of two pixels, of which the mask holds the second: errors of 3, 4 and 12 there, so a mean square of 169 / 3.
+# Pictures of two pixels, of which the mask holds the second: errors of 3, 4 and 12 there, so a mean
+# square of 169 / 3.
 python3 - "$out/hand" <<'END'
 import os, struct, sys, zlib
 def png(path, kind, row):
