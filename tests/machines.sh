@@ -20,7 +20,8 @@ done
 for level in $levels; do
     log=$build/machines-$level.log
     began=$(date +%s)
-    TED4_KERNEL=$level TED4_BUILD=$(cd "$build" && pwd) sh tests/run.sh $programs >"$log" 2>&1 || bad=1
+    TED4_KERNEL=$level TED4_BUILD=$(cd "$build" && pwd) sh tests/run.sh $programs >"$log" 2>&1 ||
+        bad=1
     grep FAILED "$log" | grep -v '^\['
     printf '%-12s %-5s %s, %d s, %s\n' "$build" "$level" "$(tail -n 1 "$log")" \
         $(($(date +%s) - began)) "$log"

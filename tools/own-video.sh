@@ -11,7 +11,9 @@ try() { "$@" </dev/null >>"$out/log" 2>&1 || die "$1 $2 failed: the end of $out/
 
 [ $# -ge 2 ] || die "usage: own-video.sh FOLDER VIDEO, or own-video.sh FOLDER CLIP CLIP..."
 out=$1; shift
-for p in ffmpeg ffprobe colmap; do command -v $p >/dev/null || die "there is no program $p (Debian: apt-get install --no-install-recommends ffmpeg colmap)"; done
+for p in ffmpeg ffprobe colmap; do command -v $p >/dev/null ||
+    die "there is no program $p (Debian: apt-get install --no-install-recommends ffmpeg colmap)";
+    done
 for v; do [ -f "$v" ] || die "$v: no such file"; done
 case ${FPS:=6} in *[!0-9./]*) die "FPS=$FPS: expected frames a second, as 6 or 2.5" ;; esac
 [ -z "$(ls -A "$out" 2>/dev/null)" ] || die "$out: not empty"
@@ -36,22 +38,29 @@ n=$(ls "$work/images" | wc -l)
 match=exhaustive_matcher
 [ "$n" -le 80 ] || match=sequential_matcher
 echo "own-video.sh: $n pictures; looking for their poses ($match; $out/log)"
-try colmap feature_extractor --database_path "$work/db" --image_path "$work/images" --ImageReader.single_camera $one --SiftExtraction.use_gpu 0
+try colmap feature_extractor --database_path "$work/db" --image_path "$work/images" \
+    --ImageReader.single_camera $one --SiftExtraction.use_gpu 0
 try colmap $match --database_path "$work/db" --SiftMatching.use_gpu 0
-colmap mapper --database_path "$work/db" --image_path "$work/images" --output_path "$work/models" --Mapper.min_model_size 3 </dev/null >>"$out/log" 2>&1
+colmap mapper --database_path "$work/db" --image_path "$work/images" --output_path "$work/models" \
+    --Mapper.min_model_size 3 </dev/null >>"$out/log" 2>&1
 largest=$(ls -S "$work/models"/*/images.bin 2>/dev/null | head -n 1)
-[ -n "$largest" ] || die "COLMAP found no poses: did the camera move, or do the clips see enough of the same? (doc/own-video.md)"
+[ -n "$largest" ] || die \
+    "COLMAP found no poses: did the camera move, or do the clips see enough of the same? (doc/own-video.md)"
 mv "${largest%/images.bin}" "$work/sparse/0"
 posed=$(od -An -tu4 -N4 "$work/sparse/0/images.bin" | tr -d ' ')
 echo "own-video.sh: $posed of $n pictures have poses"
 
 if [ $one = 0 ]; then
     [ "$posed" = "$n" ] || echo "own-video.sh: clips without a pose are left out of cams.json" >&2
-    try colmap model_converter --input_path "$work/sparse/0" --output_path "$work/sparse" --output_type TXT
-    try colmap model_converter --input_path "$work/sparse/0" --output_path "$out/points3d.ply" --output_type PLY
+    try colmap model_converter --input_path "$work/sparse/0" --output_path "$work/sparse" \
+        --output_type TXT
+    try colmap model_converter --input_path "$work/sparse/0" --output_path "$out/points3d.ply" \
+        --output_type PLY
     for v; do echo "$(basename "${v%.*}").png	$(basename "$v")"; done >"$work/clips"
-    rate=$(ffprobe -v error -select_streams v:0 -show_entries stream=avg_frame_rate -of csv=p=0 "$1" | awk -F/ 'NR == 1 { print $1 / ($2 ? $2 : 1) }')
-    awk -v rate="$rate" -f "$(dirname "$0")/cams.awk" "$work/clips" "$work/sparse/cameras.txt" "$work/sparse/images.txt" >"$out/cams.json"
+    rate=$(ffprobe -v error -select_streams v:0 -show_entries stream=avg_frame_rate -of csv=p=0 \
+        "$1" | awk -F/ 'NR == 1 { print $1 / ($2 ? $2 : 1) }')
+    awk -v rate="$rate" -f "$(dirname "$0")/cams.awk" "$work/clips" "$work/sparse/cameras.txt" \
+        "$work/sparse/images.txt" >"$out/cams.json"
 fi
 rm -rf "$work/models" "$work/db"
 echo "own-video.sh: $out is a SCENE: ted4enc --check $out"

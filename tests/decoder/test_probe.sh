@@ -20,11 +20,13 @@ claims() {
     expected=$1 name=$2
     shift 2
     # shellcheck disable=SC2086 # several flags
-    ${CC:-cc} -O2 $strict "$@" -Iref-decoder "$out/claim.c" ref-decoder/recon/probe.c -lm -o "$out/claim" 2>"$out/err" ||
+    ${CC:-cc} -O2 $strict "$@" -Iref-decoder "$out/claim.c" ref-decoder/recon/probe.c \
+        -lm -o "$out/claim" 2>"$out/err" ||
         { fail "$name" "$(cat "$out/err")"; return; }
     "$out/claim"
     claim=$?
-    if [ "$claim" -eq "$expected" ]; then ok "$name"; else fail "$name" "claim $claim, expected $expected"; fi
+    if [ "$claim" -eq "$expected" ]; then ok "$name";
+    else fail "$name" "claim $claim, expected $expected"; fi
 }
 
 claims 1 as_the_makefile_says -std=c11

@@ -10,13 +10,16 @@ need spec_syntax ted4dec
 # differs CHAPTERS FILE: does the trace of that vector differ from the tables in that folder?
 differs() {
     "$TED4_BUILD/ted4dec" "$2" --trace >"$out/trace" || { echo "$2: no trace"; return 0; }
-    awk -v bytes="$(wc -c <"$2")" -f tests/spec/syntax.awk "$1"/05-*.md "$1"/09-*.md "$out/trace" >"$out/said" && return 1
+    awk -v bytes="$(wc -c <"$2")" -f tests/spec/syntax.awk "$1"/05-*.md "$1"/09-*.md "$out/trace" \
+        >"$out/said" && return 1
     sed "s|^|$2: |" "$out/said"
 }
 
-find conformance/vectors/worked conformance/vectors/valid -name '*.ted4' -size -5 ! -name '*-minor-*' | LC_ALL=C sort >"$out/files"
+find conformance/vectors/worked conformance/vectors/valid -name '*.ted4' -size -5 \
+    ! -name '*-minor-*' | LC_ALL=C sort >"$out/files"
 sed 's/ted4$/json/' "$out/files" | xargs cat >"$out/descriptors"
-check features "$out/descriptors" '"motion.none"' '"motion.bank"' '"motion.concat"' '"motion.inr"' '"temporal-mask.on"' '"temporal-mask.off"' '"offset-mask.on"' \
+check features "$out/descriptors" '"motion.none"' '"motion.bank"' '"motion.concat"' '"motion.inr"' \
+    '"temporal-mask.on"' '"temporal-mask.off"' '"offset-mask.on"' \
     '"offset-mask.off"' '"activation.on"' '"activation.off"' '"slices.many"' '"tile.multi"'
 while read -r file; do
     ! differs spec "$file" || { echo "$file" >>"$out/different"; break; }
@@ -28,8 +31,10 @@ broken() {
     rm -rf "$out/spec"; mkdir "$out/spec"
     cp spec/05-*.md spec/09-*.md "$out/spec"
     sed -i "$3" "$out"/spec/"$2"-*.md
-    if cmp -s "$out"/spec/"$2"-*.md spec/"$2"-*.md; then fail "$1" "the sentence is not there"; return; fi
-    if differs "$out/spec" conformance/vectors/worked/WRK-masks.ted4 >/dev/null; then ok "$1"; else fail "$1" "not found out"; fi
+    if cmp -s "$out"/spec/"$2"-*.md spec/"$2"-*.md; then fail "$1" "the sentence is not there";
+        return; fi
+    if differs "$out/spec" conformance/vectors/worked/WRK-masks.ted4 >/dev/null; then ok "$1";
+    else fail "$1" "not found out"; fi
 }
 broken magic      05 '/^| magic/s/1A`/1B`/'
 broken major      05 '/^| major/s/| 1 |/| 2 |/'

@@ -10,4 +10,5 @@ for t in "$(table)"; do
         grep -qF "$line" spec/14-errors.md || { echo "spec/14-errors.md lacks: $line"; exit 1; }
     done || exit 1
 done
-[ "$(grep -c '^| `[a-z]*\.[a-z-]*` | [0-9]' spec/14-errors.md)" = "$(table | wc -l)" ] || { echo "spec/14-errors.md lists other identifiers than status.def"; exit 1; }
+[ "$(grep -c '^| `[a-z]*\.[a-z-]*` | [0-9]' spec/14-errors.md)" = "$(table | wc -l)" ] ||
+    { echo "spec/14-errors.md lists other identifiers than status.def"; exit 1; }

@@ -3,7 +3,8 @@
 # line: at most 400. Functions of at most 60 lines everywhere.
 bad=0
 folders='ref-decoder ref-encoder conformance tests fuzz bench tools'
-for f in $(find $folders .ci -type f \( -name '*.[ch]' -o -name '*.sh' -o -name '*.awk' -o -name '*.py' \)) .ci/run; do
+for f in $(find $folders .ci -type f \( -name '*.[ch]' -o -name '*.sh' -o -name '*.awk' \
+    -o -name '*.py' \)) .ci/run; do
     case $f in *.[ch]) most=600 ;; *) most=400 ;; esac
     awk -v f="$f" -v most=$most '
         function over(line, n) { if (n > 60) { print f ":" line ": function of " n " lines"; bad = 1 } }

@@ -5,14 +5,16 @@
 export LC_ALL=C
 print_json() {
     case $1 in
-    rules) awk -v json=1 -f tests/spec/rules.awk spec/[0-9]*.md spec/annex-[e-f]*.md spec/annex-[j-l]*.md ;;
+    rules) awk -v json=1 -f tests/spec/rules.awk spec/[0-9]*.md spec/annex-[e-f]*.md \
+        spec/annex-[j-l]*.md ;;
     errors) awk -f tests/spec/errors.awk spec/annex-g-rules.md ref-decoder/base/status.def ;;
     esac
 }
 if [ "$1" = print ]; then print_json "$2"; exit 0; fi
 bad=0
 for which in rules errors; do
-    print_json $which | cmp -s - spec/$which.json || { echo "spec/$which.json is not what its sources say: make spec-annexes"; bad=1; }
+    print_json $which | cmp -s - spec/$which.json ||
+        { echo "spec/$which.json is not what its sources say: make spec-annexes"; bad=1; }
 done
 # The rows of annex G, and of 14.3, again.
 rows_of_rules() {
@@ -22,6 +24,8 @@ rows_of_rules() {
 rows_of_errors() {
     sed -n 's/^,*{"id":"\([^"]*\)","result":"[a-z]*","section":"\([^"]*\)","text":"\([^"]*\)".*/| `\1` | \2 | \3 |/p' spec/errors.json
 }
-[ "$(rows_of_rules)" = "$(grep '^| R-' spec/annex-g-rules.md)" ] || { echo "spec/rules.json differs from annex G"; bad=1; }
-[ "$(rows_of_errors)" = "$(grep '^| `[a-z]*\.[a-z-]*` | [0-9]' spec/14-errors.md)" ] || { echo "spec/errors.json differs from the table of 14.3"; bad=1; }
+[ "$(rows_of_rules)" = "$(grep '^| R-' spec/annex-g-rules.md)" ] ||
+    { echo "spec/rules.json differs from annex G"; bad=1; }
+[ "$(rows_of_errors)" = "$(grep '^| `[a-z]*\.[a-z-]*` | [0-9]' spec/14-errors.md)" ] ||
+    { echo "spec/errors.json differs from the table of 14.3"; bad=1; }
 exit $bad

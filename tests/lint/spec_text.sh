@@ -7,14 +7,19 @@ for l in $(grep -ohE '\]\([^)#]+' spec/*.md | sed 's/](//' | sort -u); do
     [ -e "spec/$l" ] || { echo "spec: link to $l, which does not exist"; bad=1; }
 done
 for f in spec/[0-9]*.md spec/annex-*.md spec/errata.md; do
-    grep -q "($(basename "$f"))" spec/README.md || { echo "$f: not in the table of spec/README.md"; bad=1; }
+    grep -q "($(basename "$f"))" spec/README.md ||
+        { echo "$f: not in the table of spec/README.md"; bad=1; }
 done
 headings=$(sed -nE 's/^#+ (Annex )?([0-9A-L][0-9.]*)( .*)?$/\2/p' spec/[0-9]*.md spec/annex-*.md)
-for n in $(grep -ohE '\b([1-9][0-9]?\.[0-9]+|[A-L]\.[0-9]+)\)' spec/[0-9]*.md spec/annex-[c-l]*.md spec/README.md | tr -d ')' | sort -u); do
-    echo "$headings" | grep -qxF "$n" || { echo "spec: section $n is cited, but no such heading"; bad=1; }
+for n in $(grep -ohE '\b([1-9][0-9]?\.[0-9]+|[A-L]\.[0-9]+)\)' spec/[0-9]*.md spec/annex-[c-l]*.md \
+    spec/README.md | tr -d ')' | sort -u); do
+    echo "$headings" | grep -qxF "$n" ||
+        { echo "spec: section $n is cited, but no such heading"; bad=1; }
 done
-grep -nE '(^|[^][:alnum:]._)<])/[A-Za-z]|://' spec/*.md && { echo "spec: names an absolute path or a host"; bad=1; }
+grep -nE '(^|[^][:alnum:]._)<])/[A-Za-z]|://' spec/*.md &&
+    { echo "spec: names an absolute path or a host"; bad=1; }
 for f in spec/*.md; do
-    [ "$(grep -c '^```' "$f")" = "$(( $(grep -c '^```' "$f") / 2 * 2 ))" ] || { echo "$f: a code block is not closed"; bad=1; }
+    [ "$(grep -c '^```' "$f")" = "$(( $(grep -c '^```' "$f") / 2 * 2 ))" ] ||
+        { echo "$f: a code block is not closed"; bad=1; }
 done
 exit $bad

@@ -2,5 +2,6 @@
 # Tests make what they need below $TMPDIR (tests/support/temporary.h), so that they can run where
 # /tmp is small, or another's.
 export LC_ALL=C
-grep -rn '"/tmp/' tests fuzz bench conformance --include='*.[ch]' | sed 's/$/   (use temporary.h)/' | grep . && exit 1
+grep -rn '"/tmp/' tests fuzz bench conformance --include='*.[ch]' |
+    sed 's/$/   (use temporary.h)/' | grep . && exit 1
 exit 0

@@ -27,14 +27,17 @@ expect() {
     name=$1 wanted=$2 text=$3; shift 3
     "$@" >"$out/said" 2>&1
     status=$?
-    if [ $status -eq "$wanted" ] && grep -qF -e "$text" "$out/said"; then ok "$name"; else fail "$name" "status $status: $(cat "$out/said")"; fi
+    if [ $status -eq "$wanted" ] &&
+        grep -qF -e "$text" "$out/said"; then ok "$name";
+    else fail "$name" "status $status: $(cat "$out/said")"; fi
 }
 
 # check NAME FILE PATTERN...: each fixed string stands in the file.
 check() {
     name=$1 file=$2; shift 2
     for p; do
-        grep -qF -e "$p" "$file" || { fail "$name" "no \"$p\" in:"; grep -F -e "${p%%[|:]*}" "$file" | head -n 5; return; }
+        grep -qF -e "$p" "$file" ||
+            { fail "$name" "no \"$p\" in:"; grep -F -e "${p%%[|:]*}" "$file" | head -n 5; return; }
     done
     ok "$name"
 }

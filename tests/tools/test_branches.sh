@@ -12,7 +12,8 @@ list() { printf '# a comment\n\n' >"$out/list"; for row; do echo "$row" >>"$out/
 
 # 200 outcomes of one function that are taken, and what else is given.
 suite() {
-    awk 'BEGIN { for (i = 0; i < 200; i++) print "a.c\tmany\t" i "\t0\t1\tif (" i ")" }' >"$out/most"
+    awk 'BEGIN { for (i = 0; i < 200; i++) print "a.c\tmany\t" i "\t0\t1\tif (" i ")" }' \
+        >"$out/most"
     table suite "$@"
     cat "$out/most" >>"$out/suite"
 }
@@ -22,11 +23,14 @@ suite 'a.c f 7 0 1 if_(p)' 'a.c f 7 1 1 if_(p)'
 expect all_taken 0 '202 of 202 branch outcomes taken: 100.00 %' judge
 suite 'a.c f 7 0 1 if_(p)' 'a.c f 7 1 0 if_(p)'
 expect not_listed 0 'not taken: a.c:7: f: if (p) | 1' judge
-expect not_listed_counts 0 '201 of 202 branch outcomes taken: 99.50 %; not taken: 0 of other machines, 0 of larger files, 0 never, 1 others' judge
+expect not_listed_counts 0 \
+    '201 of 202 branch outcomes taken: 99.50 %; not taken: 0 of other machines, 0 of larger files, 0 never, 1 others' judge
 list 'a.c: f: if (p) | allocation 1 | memory'
 expect apart 0 '201 of 201 branch outcomes taken: 100.00 %; not taken: 0 of other machines, 0 of larger files, 0 never, 0 others; apart, for tests: 1 of failing' judge
 list 'a.c: f: if (p) | size 1 | large'
-expect other_reasons_count 0 '201 of 202 branch outcomes taken: 99.50 %; not taken: 0 of other machines, 1 of larger files' judge
+expect other_reasons_count 0 \
+    '201 of 202 branch outcomes taken: 99.50 %; not taken: 0 of other machines, 1 of larger files' \
+    judge
 suite 'a.c f 9 0 1 if_(q)' 'a.c f 9 1 0 if_(q)'
 list 'a.c: f: if (q) | caller 1 | a mistake'
 expect no_test_takes 1 'no test takes: a.c: f: if (q) | 1' judge

@@ -54,20 +54,26 @@ table() {
 rows 150 | table >"$out/capacity.csv"
 sed '1d; s/\([^,]*\),.*/done \1/' "$out/capacity.csv" >"$out/states"
 make_page || { fail page "status $?"; exit 1; }
-check cost "$page" '| 2 of 3 scenes; not chair +14.3 %; most: chair +14.3 % | **missed** |' '| moment | small | 950 | 29.95 | 0.01568 | +0.0 % |' \
-    '| moment | auto | 1000 | 30.00 | 0.01600 | +2.0 % |' '| still | auto | 1000 | 30.00 | 0.01600 | -4.8 % |'
+check cost "$page" '| 2 of 3 scenes; not chair +14.3 %; most: chair +14.3 % | **missed** |' \
+    '| moment | small | 950 | 29.95 | 0.01568 | +0.0 % |' \
+    '| moment | auto | 1000 | 30.00 | 0.01600 | +2.0 % |' \
+    '| still | auto | 1000 | 30.00 | 0.01600 | -4.8 % |'
 check time "$page" '| most: chair +30 % | **missed** |'
 check still "$page" '| 0 bytes for time; 1000 bytes at 30.00 dB, whole 1500 at 30.00 dB | met |'
-check chair "$page" '| 20 bytes for time; 1000 bytes at 30.00 dB, small 750 at 30.00 dB | **missed** |'
-check moment "$page" '| 0 bytes for time; 1000 bytes at 30.00 dB, small 950 at 29.95 dB | **missed** |'
+check chair "$page" \
+    '| 20 bytes for time; 1000 bytes at 30.00 dB, small 750 at 30.00 dB | **missed** |'
+check moment "$page" \
+    '| 0 bytes for time; 1000 bytes at 30.00 dB, small 950 at 29.95 dB | **missed** |'
 check means "$page" '| things2 | 2 | 1250 | 220 |'
 check things "$page" '| 0, 100, 220, 150, 400 | **missed** |'
-[ "$(ls "$out/capacity" | tr '\n' ' ')" = "things.svg times.svg " ] && ok charts || fail charts "$(ls "$out/capacity")"
+[ "$(ls "$out/capacity" | tr '\n' ' ')" = "things.svg times.svg " ] && ok charts ||
+    fail charts "$(ls "$out/capacity")"
 
 rows 300 | table | grep -v '^chair-small\|^moment-small' >"$out/capacity.csv"
 make_page || fail page "status $?"
 check more_and_more "$page" '| 0, 100, 220, 300, 400 | met |'
-check part "$page" '| 1 of 3 scenes; most: still -4.8 % | not run yet |' 'whole 2000 at 30.00 dB | not run yet |'
+check part "$page" '| 1 of 3 scenes; most: still -4.8 % | not run yet |' \
+    'whole 2000 at 30.00 dB | not run yet |'
 rm "$out/capacity.csv"
 : >"$out/states"
 make_page || fail empty "status $?"

@@ -12,7 +12,8 @@ need cross ted4conf ted4dec
 # cross NAME WANTED-STATUS WANTED-TEXT ['']: runs it on the table as it is, all builds chosen by a
 # pattern; '': without a pattern
 cross() {
-    expect "$1" "$2" "$3" env PATH="$out/bin:$PATH" TED4_BUILD="$out/build" TED4_RESULTS="$out" TED4_TABLE="$out/table" conformance/cross/cross.sh ${4-'*'}
+    expect "$1" "$2" "$3" env PATH="$out/bin:$PATH" TED4_BUILD="$out/build" TED4_RESULTS="$out" \
+        TED4_TABLE="$out/table" conformance/cross/cross.sh ${4-'*'}
 }
 # A decoder with sanitizers needs all of its address space, which programs with a runner have.
 runner=
@@ -21,7 +22,8 @@ runner=
 build() { echo "$1; $2; $3; $4; ; $runner; ; few; package-of-$1" >>"$out/table"; }
 
 # The mood of a program is the flag -Dmood=, which it gets with its first object.
-key=$({ cat conformance/SUITE.json; find conformance/vectors -name '*.json' | sort | tr '\n' '\0' | xargs -0 cat; } | sha256sum | cut -c1-16)
+key=$({ cat conformance/SUITE.json; find conformance/vectors -name '*.json' | sort |
+    tr '\n' '\0' | xargs -0 cat; } | sha256sum | cut -c1-16)
 mkdir -p "$out/bin" "$out/build/cross/libraries" "$out/build/cross/suite-$key"
 touch "$out/build/cross/libraries/ready"
 cp -R conformance/vectors conformance/SUITE.json "$out/build/cross/suite-$key/"
@@ -62,7 +64,8 @@ cross passes 0 'passed   one, '
 cross not_again 0 'passed   one (as results.csv says)'
 build two X no-such-cc -O3
 cross skipped 0 'skipped  two: no no-such-cc (needs package-of-two)'
-if grep -q '| two |.*skipped: no no-such-cc' "$out/CROSS.md" && ! grep -q '^two,' "$out/cross/results.csv"; then
+if grep -q '| two |.*skipped: no no-such-cc' "$out/CROSS.md" &&
+    ! grep -q '^two,' "$out/cross/results.csv"; then
     ok not_passed
 else
     fail not_passed "$(cat "$out/CROSS.md")"

@@ -13,8 +13,10 @@ short='--set stage1=60 --set stage2=40 --set max_anchors=300 --set init_anchors=
 short=$(echo $short)
 
 for scene in pop still; do
-    "$TED4_BUILD/ted4scene" $scene -o "$out/$scene" --size 32x24 --frames 4 --cameras 5 --test-cameras 1 -j 2 2>/dev/null
-    expect "conforms_$scene" 0 ': conforms' "$TED4_BUILD/ted4conf" encode -e "'$TED4_BUILD/ted4enc' $short" --preset draft "$out/$scene"
+    "$TED4_BUILD/ted4scene" $scene -o "$out/$scene" --size 32x24 --frames 4 --cameras 5 \
+        --test-cameras 1 -j 2 2>/dev/null
+    expect "conforms_$scene" 0 ': conforms' "$TED4_BUILD/ted4conf" encode \
+        -e "'$TED4_BUILD/ted4enc' $short" --preset draft "$out/$scene"
 done
 expect no_scene 1 'no answer' "$TED4_BUILD/ted4conf" encode -e "'$TED4_BUILD/ted4enc'" "$out/absent"
 
@@ -28,7 +30,8 @@ for file in "$MADE" "$WASTE"; do
     hash=$("$TED4_BUILD/ted4dec" "$file" --hash | sed -n "s/^ends //p")
     echo "{\"hash\":\"$hash\"}" >"$file.json"
 done
-bad() { expect "$1" "$2" "$3" "$TED4_BUILD/ted4conf" encode -t 5 -e 'sh conformance/tests/bad_encoder.sh '"$1" "$out/pop"; }
+bad() { expect "$1" "$2" "$3" "$TED4_BUILD/ted4conf" encode -t 5 \
+    -e 'sh conformance/tests/bad_encoder.sh '"$1" "$out/pop"; }
 bad good 0 ': conforms'
 bad no-file 1 'there is no file'
 bad broken 1 'con.truncated'

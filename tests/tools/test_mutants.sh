@@ -39,8 +39,10 @@ export PATH="$out/bin:$PATH" TMPDIR="$out"            # folders of campaigns tha
 
 fresh() {
     rm -rf "$out/ref-decoder" "$out/suite"
-    for d in base norm read recon; do mkdir -p "$out/ref-decoder/$d"; echo "int $d;" >"$out/ref-decoder/$d/$d.h"; done
-    printf '/* a */\nint f(void)\n{\n    if (x > 0)\n        y = 2;\n    z = 1;\n}\n' >"$out/ref-decoder/norm/f.c"
+    for d in base norm read recon; do mkdir -p "$out/ref-decoder/$d";
+        echo "int $d;" >"$out/ref-decoder/$d/$d.h"; done
+    printf '/* a */\nint f(void)\n{\n    if (x > 0)\n        y = 2;\n    z = 1;\n}\n' \
+        >"$out/ref-decoder/norm/f.c"
     printf 'int g(void)\n{\n    w = 1;\n}\n' >"$out/ref-decoder/read/g.c"
     mkdir -p "$out/suite/vectors"
     echo '{"id":"V-one"}' >"$out/suite/vectors/V-one.json"
@@ -57,9 +59,11 @@ mutant lives ref-decoder/read/g.c
 > w = 2;
 = nobody looks
 END
-    printf 'mutant same ref-decoder/norm/f.c\n< z = 1;\n> z = 0 + 1;\n= the same\n' >"$out/suite/mutants-equivalent.list"
+    printf 'mutant same ref-decoder/norm/f.c\n< z = 1;\n> z = 0 + 1;\n= the same\n' \
+        >"$out/suite/mutants-equivalent.list"
 }
-mutants() { (cd "$out" && MOOD=${mood:-} "$conf" mutants -s suite -b . --compile true --libraries '' "$@"); }
+mutants() { (cd "$out" && MOOD=${mood:-} "$conf" mutants -s suite -b . --compile true \
+    --libraries '' "$@"); }
 # holds NAME N: so many results hold.
 holds() { expect "$1" 0 "3 mutants, $2 with a result that holds" mutants --check; }
 ran() { fresh; mutants >/dev/null 2>&1; }
@@ -68,15 +72,19 @@ rows() { if [ -f "$out/suite/mutants.csv" ]; then fail "$1" "there are rows"; el
 fresh
 holds nothing_ran 0
 expect all_run 1 '3 mutants, 2 killed, 1 survived, 0 not judged: not enough' mutants
-check rows "$out/suite/mutants.csv" ',killed,V-two,should be valid' ',killed,V-one,crash' ',survived,,'
-check page "$out/suite/MUTANTS.md" '| killed | 2 (66.7 %) |' '| gt | V-two | should be valid |' '* lives (ref-decoder/read/g.c, survived): `w = 2;` for `w = 1;`: nobody looks'
+check rows "$out/suite/mutants.csv" ',killed,V-two,should be valid' ',killed,V-one,crash' \
+    ',survived,,'
+check page "$out/suite/MUTANTS.md" '| killed | 2 (66.7 %) |' '| gt | V-two | should be valid |' \
+    '* lives (ref-decoder/read/g.c, survived): `w = 2;` for `w = 1;`: nobody looks'
 holds all_hold 3
 cp "$out/suite/mutants.csv" "$out/before"
 mutants >/dev/null 2>&1
-if cmp -s "$out/before" "$out/suite/mutants.csv"; then ok nothing_twice; else fail nothing_twice "rows were added"; fi
+if cmp -s "$out/before" "$out/suite/mutants.csv"; then ok nothing_twice;
+else fail nothing_twice "rows were added"; fi
 
 # What results stand on.
-printf '/* b */\nint  f(void)\n{\n    if (x > 0)\n        y = 2;\n    z = 1;\n}\n' >"$out/ref-decoder/norm/f.c"
+printf '/* b */\nint  f(void)\n{\n    if (x > 0)\n        y = 2;\n    z = 1;\n}\n' \
+    >"$out/ref-decoder/norm/f.c"
 holds comments_and_spacing 3
 echo 'int h;' >>"$out/ref-decoder/norm/f.c"
 holds code_of_its_file 0
@@ -87,9 +95,11 @@ holds text 2
 ran; echo '{"id":"V-three"}' >"$out/suite/vectors/V-three.json"
 holds suite_grows 2
 mutants --only none >/dev/null 2>&1
-check no_share_of_some "$out/suite/MUTANTS.md" '| killed | 2 |' '| not run | 1 |' '* ref-decoder/read/g.c: lives'
+check no_share_of_some "$out/suite/MUTANTS.md" '| killed | 2 |' '| not run | 1 |' \
+    '* ref-decoder/read/g.c: lives'
 fresh; mutants --only none >/dev/null 2>&1
-check all_wait "$out/suite/MUTANTS.md" 'none' '* ref-decoder/norm/f.c: gt crash' '* ref-decoder/read/g.c: lives'
+check all_wait "$out/suite/MUTANTS.md" 'none' '* ref-decoder/norm/f.c: gt crash' \
+    '* ref-decoder/read/g.c: lives'
 expect no_compiler 3 '--compile is missing' sh -c "cd '$out' && '$conf' mutants -s suite -b ."
 ran; echo '{"id":"V-two","rules":["R-CON-001"],"intent":"more"}' >"$out/suite/vectors/V-two.json"
 holds what_is_said_of_vectors 3
@@ -115,7 +125,8 @@ mood=
 
 # Lists that do not fit.
 fresh; sed -i 's/w = 1/w = 7/' "$out/ref-decoder/read/g.c"
-expect text_is_not_there 3 'lives: its line is in ref-decoder/read/g.c 0 times: w = 1;' mutants --check
+expect text_is_not_there 3 'lives: its line is in ref-decoder/read/g.c 0 times: w = 1;' mutants \
+    --check
 fresh; echo '    w = 1;' >>"$out/ref-decoder/read/g.c"
 expect text_is_there_twice 3 'lives: its line is in ref-decoder/read/g.c 2 times' mutants --check
 fresh; sed -i 's/z = 1/z = 2/' "$out/ref-decoder/norm/f.c"

@@ -19,20 +19,27 @@ mkdir "$out/none" "$out/full"
 echo "no video" >"$out/text.mp4"
 echo here >"$out/full/file"
 refuse usage 3 "usage: own-video.sh FOLDER VIDEO" sh tools/own-video.sh "$out/s"
-refuse no_tools 3 "there is no program ffmpeg (Debian:" env PATH="$out/none" "$sh" tools/own-video.sh "$out/s" "$out/text.mp4"
-for p in ffmpeg ffprobe colmap; do command -v $p >/dev/null || { skip own_video "there is no $p"; exit $bad; }; done
+refuse no_tools 3 "there is no program ffmpeg (Debian:" env PATH="$out/none" "$sh" \
+    tools/own-video.sh "$out/s" "$out/text.mp4"
+for p in ffmpeg ffprobe colmap; do command -v $p >/dev/null ||
+    { skip own_video "there is no $p"; exit $bad; }; done
 refuse no_file 3 "$out/absent.mp4: no such file" sh tools/own-video.sh "$out/s" "$out/absent.mp4"
 refuse not_empty 3 "$out/full: not empty" sh tools/own-video.sh "$out/full" "$out/text.mp4"
-refuse rate 3 "FPS=fast: expected frames a second" env FPS=fast sh tools/own-video.sh "$out/s" "$out/text.mp4"
+refuse rate 3 "FPS=fast: expected frames a second" env FPS=fast sh tools/own-video.sh "$out/s" \
+    "$out/text.mp4"
 if [ -e "$out/s" ]; then fail nothing_made "$out/s"; else ok nothing_made; fi
-expect no_video 3 "ffmpeg -i failed: the end of $out/s/log says why" sh tools/own-video.sh "$out/s" "$out/text.mp4"
+expect no_video 3 "ffmpeg -i failed: the end of $out/s/log says why" sh tools/own-video.sh \
+    "$out/s" "$out/text.mp4"
 
 # Footage: 12 places on an arc, half a second each; five of them as clips of half a second.
-film() { ffmpeg -v error -framerate "$1" -i "$2" -c:v libx264 -threads 1 -crf 14 -pix_fmt yuv420p "$3" </dev/null || fail footage "$3"; }
-"$TED4_BUILD/ted4scene" still -o "$out/still" --layout llff --size 320x240 --frames 1 --cameras 24 --test-cameras 0 -j 1 2>/dev/null
+film() { ffmpeg -v error -framerate "$1" -i "$2" -c:v libx264 -threads 1 -crf 14 -pix_fmt yuv420p \
+    "$3" </dev/null || fail footage "$3"; }
+"$TED4_BUILD/ted4scene" still -o "$out/still" --layout llff --size 320x240 --frames 1 --cameras 24 \
+    --test-cameras 0 -j 1 2>/dev/null
 mkdir "$out/walk" "$out/clips"
 i=0
-for c in 00 02 04 06 08 10 12 14 16 18 20 22; do cp "$out/still/images/cam$c.png" "$out/walk/$(printf %02d $i).png"; i=$((i + 1)); done
+for c in 00 02 04 06 08 10 12 14 16 18 20 22; do cp "$out/still/images/cam$c.png" \
+    "$out/walk/$(printf %02d $i).png"; i=$((i + 1)); done
 film 2 "$out/walk/%02d.png" "$out/walk.mp4"
 for c in 04 06 08 10 12; do
     mkdir "$out/clip"
@@ -44,26 +51,35 @@ done
 # looks NAME PICTURES LENSES: what --check says of the scene, whose lens is as long as pictures are
 # wide.
 looks() {
-    "$TED4_BUILD/ted4enc" --check "$out/$1" >"$out/$1.says" 2>"$out/said" || { fail "$1" "$(cat "$out/said")"; return; }
+    "$TED4_BUILD/ted4enc" --check "$out/$1" >"$out/$1.says" 2>"$out/said" ||
+        { fail "$1" "$(cat "$out/said")"; return; }
     check "$1" "$out/$1.says" "$2" "$3"
-    awk '$1 == "focal" { split($2, f, "\\.\\."); exit !(f[1] > 300 && $4 < 340) }' "$out/$1.says" && ok "$1_lens" || fail "$1_lens" "$(grep focal "$out/$1.says")"
+    awk '$1 == "focal" { split($2, f, "\\.\\."); exit !(f[1] > 300 && $4 < 340) }' \
+        "$out/$1.says" && ok "$1_lens" || fail "$1_lens" "$(grep focal "$out/$1.says")"
 }
 XDG_CACHE_HOME=$out/cache
 export XDG_CACHE_HOME
-expect walk_made 0 "12 of 12 pictures have poses" env FPS=2 sh tools/own-video.sh "$out/walked" "$out/walk.mp4"
-refuse too_short 3 "$out/walk.mp4: 0 pictures at FPS=0.01" env FPS=0.01 sh tools/own-video.sh "$out/short" "$out/walk.mp4"
+expect walk_made 0 "12 of 12 pictures have poses" env FPS=2 sh tools/own-video.sh "$out/walked" \
+    "$out/walk.mp4"
+refuse too_short 3 "$out/walk.mp4: 0 pictures at FPS=0.01" env FPS=0.01 sh tools/own-video.sh \
+    "$out/short" "$out/walk.mp4"
 looks walked "11 train, 1 test" "frames      12"
 # A clip that its file says to turn has an empty line after its rate.
 mkdir "$out/bin"
 printf '#!/bin/sh\n%s "$@"; echo\n' "$(command -v ffprobe)" >"$out/bin/ffprobe"
 chmod +x "$out/bin/ffprobe"
-expect clips_made 0 "5 of 5 pictures have poses" env PATH="$out/bin:$PATH" sh tools/own-video.sh "$out/rig" "$out/clips"/*.mp4
+expect clips_made 0 "5 of 5 pictures have poses" env PATH="$out/bin:$PATH" sh tools/own-video.sh \
+    "$out/rig" "$out/clips"/*.mp4
 looks rig "25 train, 5 test" "12.5 frames/s"
 check in_order "$out/rig/cams.json" '"name": "cam 04", "video": "cam 04.mp4"' ', 0, 159.5000], [0, '
 # COLMAP's own files, and cams.json made of them, are the same cameras for their loaders.
 "$TED4_BUILD/ted4enc" --check "$out/rig/poses" >"$out/poses.says" 2>/dev/null
-same() { grep -E "^$1 " "$out/rig.says" >"$out/a"; grep -E "^$1 " "$out/poses.says" | cmp -s - "$out/a" && ok "same_$1" || fail "same_$1" "$(cat "$out/a"; grep "^$1" "$out/poses.says")"; }
+same() { grep -E "^$1 " "$out/rig.says" >"$out/a"; grep -E "^$1 " "$out/poses.says" |
+    cmp -s - "$out/a" && ok "same_$1" ||
+    fail "same_$1" "$(cat "$out/a"; grep "^$1" "$out/poses.says")"; }
 for what in focal centres points; do same $what; done
-refuse twice 3 "another clip is called cam 04, too" sh tools/own-video.sh "$out/twice" "$out/clips/cam 04.mp4" "$out/clips/cam 04.mp4"
-expect stands 3 "COLMAP found no poses: did the camera move" env FPS=12.5 sh tools/own-video.sh "$out/stands" "$out/clips/cam 04.mp4"
+refuse twice 3 "another clip is called cam 04, too" sh tools/own-video.sh "$out/twice" \
+    "$out/clips/cam 04.mp4" "$out/clips/cam 04.mp4"
+expect stands 3 "COLMAP found no poses: did the camera move" env FPS=12.5 sh tools/own-video.sh \
+    "$out/stands" "$out/clips/cam 04.mp4"
 exit $bad

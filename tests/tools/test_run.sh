@@ -6,16 +6,19 @@
 set -u
 . tests/support/speak.sh
 # program NAME STATUS LINE...
-program() { file=$out/$1 status=$2; shift 2; { echo '#!/bin/sh'; for l; do echo "echo '$l'"; done; echo "exit $status"; } >"$file"; chmod +x "$file"; }
+program() { file=$out/$1 status=$2; shift 2; { echo '#!/bin/sh'; for l; do echo "echo '$l'"; done;
+    echo "exit $status"; } >"$file"; chmod +x "$file"; }
 
 program good 0 '[       OK ] a' '[       OK ] b'
 program half 0 '[       OK ] a' 'skipped: no scene' '[  SKIPPED ] b'
 program wrong 1 '[       OK ] a' '[  FAILED  ] b: why'
 program broken 139
 program empty 0
-runs() { name=$1 status=$2 text=$3; shift 3; expect "$name" "$status" "$text" sh tests/run.sh "$@"; }
+runs() { name=$1 status=$2 text=$3; shift 3; expect "$name" "$status" "$text" sh tests/run.sh \
+    "$@"; }
 runs passes 0 '2 passed, 0 failed, 0 skipped' "$out/good"
-if [ "$(head -n 1 "$out/said")" = 'good ... 2 passed' ]; then ok none_skipped; else fail none_skipped "$(cat "$out/said")"; fi
+if [ "$(head -n 1 "$out/said")" = 'good ... 2 passed' ]; then ok none_skipped;
+else fail none_skipped "$(cat "$out/said")"; fi
 runs skips 0 'half ... 1 passed, 1 skipped' "$out/half"
 runs says_why_skipped 0 'skipped: no scene' "$out/half"
 runs fails 1 '3 passed, 1 failed, 0 skipped' "$out/good" "$out/wrong"

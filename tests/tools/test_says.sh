@@ -12,7 +12,8 @@ equal() { if [ "$2" = "$3" ]; then ok "$1"; else fail "$1" "$2, expected $3"; fi
 enc=$TED4_BUILD/ted4enc
 small="--preset draft --iterations 300,100 --seed 1 -j 1 --set init_anchors=150 --set max_anchors=260 --set offsets=4 --set feature=8 --set phi=4
     --set bank_dim=8 --set deform_width=8 --set head_width=12 --set hyper_width=16 --set ar_width=8 --set slices=2 --capacity fixed"
-"$TED4_BUILD/ted4scene" pop -o "$out/scene" --size 32x24 --frames 4 --cameras 5 --test-cameras 1 -j 1 2>/dev/null
+"$TED4_BUILD/ted4scene" pop -o "$out/scene" --size 32x24 --frames 4 --cameras 5 --test-cameras 1 \
+    -j 1 2>/dev/null
 mkdir -p "$out/cache"
 XDG_CACHE_HOME=$out/cache
 export XDG_CACHE_HOME
@@ -40,20 +41,28 @@ equal checked "$(cat "$out/status")" 0
 check unpacking "$out/err" "ted4enc: unpacking a.mp4: "
 if command -v script >/dev/null; then
     rm -rf "$out/cache/ted4"
-    PATH=$out/bin:$PATH script -qec "'$enc' '$out/clips' --check" "$out/typescript" >/dev/null 2>&1 </dev/null
+    PATH=$out/bin:$PATH script -qec "'$enc' '$out/clips' --check" "$out/typescript" >/dev/null \
+        2>&1 </dev/null
     check terminal "$out/typescript" "ted4enc: loading $out/clips" "unpacking a.mp4: 1 frames"
 else
     skip terminal "there is no program script"
 fi
 
-"$enc" "$out/scene" -o "$out/x.ted4" $small -v --checkpoint "$out/c" 2>"$out/err" || fail encode "$(cat "$out/err")"
-check says "$out/err" "ted4enc: D-NeRF: 20 training pictures, 4 held out, of 6 cameras and 4 times, 32 x 24 pixels" " until the file is written" \
+"$enc" "$out/scene" -o "$out/x.ted4" $small -v --checkpoint "$out/c" 2>"$out/err" ||
+    fail encode "$(cat "$out/err")"
+check says "$out/err" \
+    "ted4enc: D-NeRF: 20 training pictures, 4 held out, of 6 cameras and 4 times, 32 x 24 pixels" \
+    " until the file is written" \
     "ted4enc: 250/400 stage 1  loss " "ted4enc: 400/400 stage 2i  loss " "ted4enc: $out/x.ted4: "
 # The last line is true of the file.
 last=$(grep '^ted4enc: 400/400' "$out/err")
-equal bytes "$(echo "$last" | sed 's/.* bytes \([0-9]*\) .*/\1/')" "$(wc -c <"$out/x.ted4" | tr -d ' ')"
-psnr=$("$TED4_BUILD/ted4eval" "$out/x.ted4" "$out/scene" 2>/dev/null | sed -n 's/^psnr *\([0-9.]*\) dB/\1/p')
-echo "$last" | sed 's/.* psnr \([0-9.]*\) .*/\1/' | awk -v want="$psnr" '{ exit !(want > 5 && $1 - want < 0.5 && want - $1 < 0.5) }' && ok psnr || fail psnr "$last; $psnr"
+equal bytes "$(echo "$last" | sed 's/.* bytes \([0-9]*\) .*/\1/')" \
+    "$(wc -c <"$out/x.ted4" | tr -d ' ')"
+psnr=$("$TED4_BUILD/ted4eval" "$out/x.ted4" "$out/scene" 2>/dev/null |
+    sed -n 's/^psnr *\([0-9.]*\) dB/\1/p')
+echo "$last" | sed 's/.* psnr \([0-9.]*\) .*/\1/' |
+    awk -v want="$psnr" '{ exit !(want > 5 && $1 - want < 0.5 && want - $1 < 0.5) }' && ok psnr ||
+    fail psnr "$last; $psnr"
 
 "$enc" "$out/scene" -o "$out/x.ted4" -f $small --checkpoint "$out/c" --resume 2>"$out/err"
 check resumed "$out/err" "ted4enc: $out/c: going on from step 400 of 400"
@@ -63,14 +72,18 @@ check no_checkpoint "$out/err" "ted4enc: $out/d: not there yet; beginning at ste
 equal quiet "$(wc -c <"$out/err" | tr -d ' ')" 0
 
 # ted4eval says what it does, and refuses what does not belong together.
-expect eval 0 "ted4eval: comparing $out/x.ted4 with $out/scene" "$TED4_BUILD/ted4eval" "$out/x.ted4" "$out/scene"
-"$TED4_BUILD/ted4scene" pop -o "$out/longer" --size 32x24 --frames 5 --cameras 5 --test-cameras 1 -j 1 2>/dev/null
-expect eval_other 3 "x.ted4: cannot be of $out/longer: 4 times in the file, 5 in the scene" "$TED4_BUILD/ted4eval" "$out/x.ted4" "$out/longer" -q
+expect eval 0 "ted4eval: comparing $out/x.ted4 with $out/scene" "$TED4_BUILD/ted4eval" \
+    "$out/x.ted4" "$out/scene"
+"$TED4_BUILD/ted4scene" pop -o "$out/longer" --size 32x24 --frames 5 --cameras 5 --test-cameras 1 \
+    -j 1 2>/dev/null
+expect eval_other 3 "x.ted4: cannot be of $out/longer: 4 times in the file, 5 in the scene" \
+    "$TED4_BUILD/ted4eval" "$out/x.ted4" "$out/longer" -q
 expect eval_anyway 0 'psnr ' "$TED4_BUILD/ted4eval" "$out/x.ted4" "$out/longer" --anyway
 expect eval_first_times 0 'psnr ' "$TED4_BUILD/ted4eval" "$out/x.ted4" "$out/longer" --max-frames 4
 
 # Nothing held out: the line says that its pictures were trained on.
-"$TED4_BUILD/ted4scene" pop -o "$out/all" --layout calibration --size 32x24 --frames 4 --cameras 5 --test-cameras 0 -j 1 2>/dev/null
+"$TED4_BUILD/ted4scene" pop -o "$out/all" --layout calibration --size 32x24 --frames 4 --cameras 5 \
+    --test-cameras 0 -j 1 2>/dev/null
 "$enc" "$out/all" -o "$out/x.ted4" -f $small -v 2>"$out/err"
 check train_psnr "$out/err" ", 0 held out, " "  train psnr "
 exit $bad

@@ -13,19 +13,23 @@ stream=conformance/vectors/content/CNT-pop-0.002
 sample='CNT-pop-0.002 WRK-smallest'
 
 # judge NAME WANTED-STATUS WANTED-TEXT
-judge() { expect "$1" "$2" "$3" "$TED4_BUILD/ted4tolerance" judge $stream.ted4 $stream.json "$out/dump"; }
+judge() { expect "$1" "$2" "$3" "$TED4_BUILD/ted4tolerance" judge $stream.ted4 $stream.json \
+    "$out/dump"; }
 
 # shellcheck disable=SC2086
-sh conformance/tolerance/table.sh "$TED4_BUILD/ted4tolerance" $sample >"$out/now" || fail table "status $?"
+sh conformance/tolerance/table.sh "$TED4_BUILD/ted4tolerance" $sample >"$out/now" ||
+    fail table "status $?"
 for id in vector $sample; do
     grep "^$id," "$out/now" >"$out/a"
     grep "^$id," $table >"$out/b"
-    if [ -s "$out/a" ] && cmp -s "$out/a" "$out/b"; then ok "current_$id"; else fail "current_$id" "make tolerance"; fi
+    if [ -s "$out/a" ] && cmp -s "$out/a" "$out/b"; then ok "current_$id";
+    else fail "current_$id" "make tolerance"; fi
 done
 
 mkdir "$out/dump"
 sed -n 's/^ "queries":\(.*\),$/\1/p' $stream.json >"$out/q.json"
-"$TED4_BUILD/ted4dec" --ted4-run $stream.ted4 --tiers T5 --queries "$out/q.json" --dump "$out/dump" >/dev/null || fail dump "status $?"
+"$TED4_BUILD/ted4dec" --ted4-run $stream.ted4 --tiers T5 --queries "$out/q.json" \
+    --dump "$out/dump" >/dev/null || fail dump "status $?"
 judge ours 0 '{"class":"T","queries":["kept","kept","kept","kept"]}'
 # Byte 2 of the first colour of record 1, of 14 numbers each: its exponent and leading bits.
 cp "$out/dump/T5-1.bin" "$out/keep"

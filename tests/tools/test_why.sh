@@ -11,8 +11,10 @@ equal() { if [ "$2" = "$3" ]; then ok "$1"; else fail "$1" "$2, expected $3"; fi
 small="--preset draft --iterations 300,500 --seed 1 -j 1 -q --set init_anchors=150 --set max_anchors=260 --set offsets=4 --set feature=8 --set phi=4
     --set bank_dim=8 --set deform_width=8 --set head_width=12 --set hyper_width=16 --set ar_width=8 --set slices=2"
 
-"$TED4_BUILD/ted4scene" pop -o "$out/scene" --size 32x24 --frames 4 --cameras 5 --test-cameras 1 -j 1 2>/dev/null
-encode() { name=$1; shift; "$TED4_BUILD/ted4enc" "$out/scene" -o "$out/$name.ted4" $small "$@" 2>"$out/err" || fail "$name" "$(cat "$out/err")"; }
+"$TED4_BUILD/ted4scene" pop -o "$out/scene" --size 32x24 --frames 4 --cameras 5 --test-cameras 1 \
+    -j 1 2>/dev/null
+encode() { name=$1; shift; "$TED4_BUILD/ted4enc" "$out/scene" -o "$out/$name.ted4" $small "$@" \
+    2>"$out/err" || fail "$name" "$(cat "$out/err")"; }
 told() { "$TED4_BUILD/ted4info" "$out/$1.ted4" --why | grep -c '^capacity\.[0-9]'; }
 logged() { grep -c '"event":"capacity"' "$out/$1.jsonl"; }
 hash_of() { "$TED4_BUILD/ted4dec" "$out/$1.ted4" --hash | sed -n 's/^ends //p'; }
@@ -49,16 +51,20 @@ cmp -s "$out/told.ted4" "$out/first.ted4" && ok resumed_file || fail resumed_fil
 
 encode fixed --why --log "$out/fixed.jsonl" --capacity fixed
 equal fixed_log "$(logged fixed)" 0
-equal fixed_file "$("$TED4_BUILD/ted4info" "$out/fixed.ted4" --why | grep '^capacity')" "capacity=fixed; lambda 0.002"
+equal fixed_file "$("$TED4_BUILD/ted4info" "$out/fixed.ted4" --why | grep '^capacity')" \
+    "capacity=fixed; lambda 0.002"
 "$TED4_BUILD/ted4enc" "$out/scene" -o "$out/x.ted4" --capacity some 2>"$out/err"
 equal refused "$?:$(cat "$out/err")" '3:ted4enc: --capacity: bad value some'
 
 # Light that flickers gets a row of the bank for every time; other scenes for every second one.
-"$TED4_BUILD/ted4scene" flicker -o "$out/flicker" --size 32x24 --frames 6 --cameras 5 --test-cameras 1 -j 1 2>/dev/null
+"$TED4_BUILD/ted4scene" flicker -o "$out/flicker" --size 32x24 --frames 6 --cameras 5 \
+    --test-cameras 1 -j 1 2>/dev/null
 rows() { "$TED4_BUILD/ted4info" -v "$out/$1.ted4" | sed -n 's/^ *bank_rows *//p'; }
-"$TED4_BUILD/ted4enc" "$out/flicker" -o "$out/flicker.ted4" $small --capacity fixed --set probe=0 --why 2>"$out/err" || fail flicker "$(cat "$out/err")"
+"$TED4_BUILD/ted4enc" "$out/flicker" -o "$out/flicker.ted4" $small --capacity fixed --set probe=0 \
+    --why 2>"$out/err" || fail flicker "$(cat "$out/err")"
 encode steady --capacity fixed --set probe=0
 equal rows_of_flicker "$(rows flicker)" 6
 equal rows_of_pop "$(rows steady)" 2
-equal flicker_told "$("$TED4_BUILD/ted4info" "$out/flicker.ted4" --why | grep -c '^capacity.light=flickers by .*of 6 rows for 6 times')" 1
+equal flicker_told \
+    "$("$TED4_BUILD/ted4info" "$out/flicker.ted4" --why | grep -c '^capacity.light=flickers by .*of 6 rows for 6 times')" 1
 exit $bad
