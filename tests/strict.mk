@@ -9,7 +9,8 @@ CLASS_T_OBJ = $B/conformance/tolerance/class_t.o $(SPEC_EVALS:%=$B/tests/spec/ev
 $B/conformance/tolerance/class_t.o: $(SPEC_INC)
 $B/conformance/tolerance/class_t.o: FPFLAGS = $(STRICT) -I$B/inc
 all: $B/ted4tolerance
-$B/ted4tolerance: $B/conformance/tolerance/ted4tolerance.o $(CLASS_T_OBJ) $(DEC_TOOL:%.c=$B/%.o) $(DEC_LIB)
+$B/ted4tolerance: $B/conformance/tolerance/ted4tolerance.o $(CLASS_T_OBJ) \
+        $(DEC_TOOL:%.c=$B/%.o) $(DEC_LIB)
 	$(CC) -fopenmp $(LDFLAGS) $^ -o $@ $(LIBS)
 
 # thresholds.csv for vectors of several kinds; takes a minute. tests/tools/test_tolerance.sh says

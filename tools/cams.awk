@@ -7,22 +7,32 @@ function row(a, b, c, d) { return sprintf("[%.9f, %.9f, %.9f, %.9f]", a, b, c, d
 FNR == 1 { file++ }
 file == 1 { split($0, p, "\t"); picture[++n] = p[1]; clip[n] = p[2]; next }
 /^#/ { next }
-file == 2 { size[$1] = sprintf("\"w\": %d, \"h\": %d", $3, $4); f[$1] = $5; cx[$1] = $6 - 0.5; cy[$1] = $7 - 0.5; k[$1] = $8; next }
+file == 2 {
+    size[$1] = sprintf("\"w\": %d, \"h\": %d", $3, $4)
+    f[$1] = $5; cx[$1] = $6 - 0.5; cy[$1] = $7 - 0.5; k[$1] = $8
+    next
+}
 # Of each picture a line with its pose, then one with its points.
 ++line % 2 == 0 { next }
 {
     w = $2; x = $3; y = $4; z = $5; c = $9; name = $0
     for (i = 0; i < 9; i++) sub(/^[^ ]+ /, "", name)
-    camera[name] = size[c] sprintf(",\n     \"K\": [[%.4f, 0, %.4f], [0, %.4f, %.4f], [0, 0, 1]], \"dist\": [%.9f, 0, 0, 0],\n", f[c], cx[c], f[c], cy[c], k[c]) \
-        "     \"w2c\": [" row(1 - 2 * (y * y + z * z), 2 * (x * y - w * z), 2 * (x * z + w * y), $6) ",\n             " \
-        row(2 * (x * y + w * z), 1 - 2 * (x * x + z * z), 2 * (y * z - w * x), $7) ",\n             " \
-        row(2 * (x * z - w * y), 2 * (y * z + w * x), 1 - 2 * (x * x + y * y), $8) ",\n             [0, 0, 0, 1]]"
+    lens = sprintf("\"K\": [[%.4f, 0, %.4f], [0, %.4f, %.4f], [0, 0, 1]]", f[c], cx[c], f[c], cy[c])
+    lens = lens sprintf(", \"dist\": [%.9f, 0, 0, 0]", k[c])
+    a = row(1 - 2 * (y * y + z * z), 2 * (x * y - w * z), 2 * (x * z + w * y), $6)
+    b = row(2 * (x * y + w * z), 1 - 2 * (x * x + z * z), 2 * (y * z - w * x), $7)
+    d = row(2 * (x * z - w * y), 2 * (y * z + w * x), 1 - 2 * (x * x + y * y), $8)
+    next_row = ",\n             "
+    camera[name] = size[c] ",\n     " lens ",\n     \"w2c\": [" a next_row b next_row d \
+        next_row "[0, 0, 0, 1]]"
 }
 END {
     printf "{\n  \"fps\": %s,\n  \"cameras\": [", rate
     for (i = 1; i <= n; i++) {
         label = picture[i]; sub(/\.png$/, "", label)
-        if (picture[i] in camera) printf "%s\n    {\"name\": %s, \"video\": %s, %s}", many++ ? "," : "", text(label), text(clip[i]), camera[picture[i]]
+        if (picture[i] in camera)
+            printf "%s\n    {\"name\": %s, \"video\": %s, %s}", many++ ? "," : "", text(label), \
+                text(clip[i]), camera[picture[i]]
     }
     print "\n  ]\n}"
 }

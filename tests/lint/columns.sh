@@ -1,16 +1,18 @@
 #!/bin/sh
 # columns.sh [FILE...] - lines have at most 100 columns, in everything that is written by hand: C,
-# tables of macros, shell, awk, sed, Python, build rules, and the prose of Markdown. Left aside in
-# Markdown: rows of tables, code blocks, and lines that are little else than one link or address.
+# tables of macros, shell, awk, Python, build rules, and the prose of Markdown. Left aside in
+# Markdown: rows of tables, code blocks, and lines that are little else than one link or address;
+# in shell: here-documents, and a quoted text of more than 70 columns, which is what a program is
+# given or is expected to say.
 # Tables of the decoder that a program prints (norm/tables.c) stay as they are printed.
 export LC_ALL=C
 [ $# -gt 0 ] || set -- $(find Makefile .ci .clang-format ./*.md bench conformance doc fuzz \
     ref-decoder ref-encoder spec tests tools -type f \( -name '*.[ch]' -o -name '*.def' \
-    -o -name '*.sh' -o -name run -o -name '*.awk' -o -name '*.sed' -o -name '*.py' \
+    -o -name '*.sh' -o -name run -o -name '*.awk' -o -name '*.py' \
     -o -name '*.mk' -o -name Makefile -o -name '*.md' \) ! -path '*/corpus/*' \
     ! -path 'conformance/vectors/*' ! -path '*/__pycache__/*' ! -path ref-decoder/norm/tables.c)
 awk '
-    FNR == 1 { block = 0; prose = FILENAME ~ /\.md$/ }
+    FNR == 1 { block = 0; prose = FILENAME ~ /\.md$/; shell = FILENAME ~ /\.sh$/; document = "" }
     {
         line = $0
         gsub(/[\200-\277]/, "", line)
@@ -18,9 +20,15 @@ awk '
             line = substr(line, 1, at - 1) substr("        ", (at - 1) % 8 + 1) \
                 substr(line, at + 1)
     }
+    document != "" { if ($1 == document) document = ""; next }
+    shell && match(line, /<<-?'"'"'?[A-Z]+/) {
+        document = substr(line, RSTART, RLENGTH)
+        gsub(/[^A-Z]/, "", document)
+    }
     prose && /^ *```/ { block = !block }
     length(line) <= 100 { next }
     prose && (block || /^    / || /^ *\|/) { next }
+    shell && match(line, /'"'"'[^'"'"']*'"'"'|"([^"\\]|\\.)*"/) && RLENGTH > 70 { next }
     # What stays of the line without its longest word, an address or a link, says nothing.
     prose && /:\/\/|\]\(/ {
         longest = 0

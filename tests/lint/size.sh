@@ -7,7 +7,11 @@ for f in $(find $folders .ci -type f \( -name '*.[ch]' -o -name '*.sh' -o -name 
     -o -name '*.py' \)) .ci/run; do
     case $f in *.[ch]) most=600 ;; *) most=400 ;; esac
     awk -v f="$f" -v most=$most '
-        function over(line, n) { if (n > 60) { print f ":" line ": function of " n " lines"; bad = 1 } }
+        function over(line, n) {
+            if (n <= 60) return
+            print f ":" line ": function of " n " lines"
+            bad = 1
+        }
         f ~ /\.[ch]$/ ? /^{/ : f !~ /\.py$/ && /^[^ #}].*{$/ { start = NR }
         f !~ /\.py$/ && /^}/ { if (start) over(start, NR - start); start = 0 }
         f ~ /\.py$/ && NF {
@@ -16,7 +20,11 @@ for f in $(find $folders .ci -type f \( -name '*.[ch]' -o -name '*.sh' -o -name 
             if (!start && $1 == "def") { start = NR; depth = RLENGTH }
             last = NR
         }
-        END { if (start) over(start, last - start); if (NR > most) { print f ": " NR " lines"; bad = 1 } exit bad }' "$f" || bad=1
+        END {
+            if (start) over(start, last - start)
+            if (NR > most) { print f ": " NR " lines"; bad = 1 }
+            exit bad
+        }' "$f" || bad=1
 done
 twice=$(find $folders -name '*.[ch]' -exec basename {} \; | sort | uniq -d)
 [ -n "$twice" ] && { echo "file names used twice: $twice"; bad=1; }

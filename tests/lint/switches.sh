@@ -7,7 +7,9 @@ table() {
         help = $0; sub(/^[^"]*"/, "", help); sub(/"\)$/, "", help)
         values = $0; sub(/^TED4_OPTION\(/, "", values); sub(/, *".*$/, "", values)
         if (split(values, v, /, */) != 10) { print FILENAME ": " $0; exit 1 }
-        print "| `" v[3] "` | " v[4] " to " v[5] " | " v[6] " | " v[7] " | " v[8] " | " v[9] " | " v[10] " | " help " |"
+        row = "| `" v[3] "` | " v[4] " to " v[5]
+        for (i = 6; i <= 10; i++) row = row " | " v[i]
+        print row " | " help " |"
     }' ref-encoder/train/model/options.def
 }
 if [ "$1" = print ]; then table; exit 0; fi

@@ -22,7 +22,9 @@ function result(id) {
 
 /^TED4_STATUS\(/ {
     split($0, part, "\"")
-    printf "%s{\"id\":\"%s\",\"result\":\"%s\",\"section\":\"%s\",\"text\":\"%s\",\"rules\":[%s]}", next_line, part[2], result(part[2]), part[4], part[6], rules[part[2]]
+    printf "%s{\"id\":\"%s\",\"result\":\"%s\",\"section\":\"%s\",\"text\":\"%s\",", next_line, \
+        part[2], result(part[2]), part[4], part[6]
+    printf "\"rules\":[%s]}", rules[part[2]]
     next_line = ",\n"
 }
 

@@ -1,6 +1,7 @@
 # head.awk - turns the table of spec 6.1 into C, one line a row:
-#     ELEMENT(name, count, width, signed, low, high, has_condition, condition, level bound)   integers
-#     REAL(name, count, bounded)                                                              f32: within 2^-20 .. 2^10, or any legal one
+#     ELEMENT(name, count, width, signed, low, high, has_condition, condition, level bound)
+#     REAL(name, count, bounded)
+# for integers, and for binary32 numbers: within 2^-20 .. 2^10 where bounded, else any legal one.
 # A condition of the table reads elements through the pointer h. A row that cannot be understood
 # ends the run with status 1.
 # SPDX-License-Identifier: BSD-2-Clause
@@ -27,7 +28,8 @@ table && /^\| [a-z]/ {
         printf "REAL(%s, %s, %d)\n", name, count, range != "R-CNV-001"
     else if (type ~ /^[ui](8|16|32)$/ && range ~ /^-?[0-9]+ \.\. [0-9]+$/) {
         split(range, r, " \\.\\. ")
-        printf "ELEMENT(%s, %s, %d, %d, %s, %s, %d, %s, %s)\n", name, count, width, type ~ /^i/, r[1], r[2], has, has ? when : 1, bound
+        printf "ELEMENT(%s, %s, %d, %d, %s, %s, %d, %s, %s)\n", name, count, width, \
+            type ~ /^i/, r[1], r[2], has, has ? when : 1, bound
     } else {
         print "head.awk: cannot read: " $0 > "/dev/stderr"
         bad = 1

@@ -1,6 +1,7 @@
 # What the specification prints, as C: spec/code.h and tables as *.inc, under the build folder, for
 # tests/support/spec_model.h and spec_tiers.h.
-SPEC_ORDER = 04-notation annex-k-xxh3 annex-l-deflate 05-container 06-header 07-networks 08-positions 09-entropy 10-attributes 12-arithmetic 11-reconstruction 13-levels
+SPEC_ORDER = 04-notation annex-k-xxh3 annex-l-deflate 05-container 06-header 07-networks \
+        08-positions 09-entropy 10-attributes 12-arithmetic 11-reconstruction 13-levels
 SPEC_CODE  = $(SPEC_ORDER:%=spec/%.md)
 SPEC_INC   = $(addprefix $B/inc/spec/,code.h head.inc levels.inc elements.inc)
 
@@ -28,7 +29,8 @@ $B/inc/spec/code_%.h: $B/inc/spec/code.h tests/spec/%.sed
 	sed -f tests/spec/$*.sed $< > $@.new && ! cmp -s $@.new $< && mv $@.new $@
 $B/tests/spec/eval_%.o: tests/spec/eval.c $B/inc/spec/code_%.h
 	@mkdir -p $(@D)
-	$(CC) $(CFLAGS_ALL) $(STRICT) -I$B/inc -DVARIANT='"spec/code_$*.h"' -DREAL=$(if $(filter wide,$*),double,float) -DRECORDS=tol_$* -c $< -o $@
+	$(CC) $(CFLAGS_ALL) $(STRICT) -I$B/inc -DVARIANT='"spec/code_$*.h"' \
+	    -DREAL=$(if $(filter wide,$*),double,float) -DRECORDS=tol_$* -c $< -o $@
 $B/tests/docs/test_spec_tolerance: $(SPEC_EVALS:%=$B/tests/spec/eval_%.o)
 
 $B/gen_annex: $B/tests/gen/gen_annex.o $(DEC_TOOL:%.c=$B/%.o) $(ENC_LIB)
@@ -50,7 +52,9 @@ $B/attest: $B/tests/gen/attest.o $B/libted4dec.a
 
 # Functions over all their inputs against the hashes of annex J.9; takes two minutes of one core.
 attest: $B/attest
-	@$B/attest | while read -r row; do grep -qF "$$row" spec/annex-j-dumps.md && echo "as in J.9: $$row" || { echo "not in J.9: $$row"; exit 1; }; done
+	@$B/attest | while read -r row; do \
+	    grep -qF "$$row" spec/annex-j-dumps.md && echo "as in J.9: $$row" || \
+	        { echo "not in J.9: $$row"; exit 1; }; done
 .PHONY: attest
 
 # The specification as HTML, with an anchor for each rule; needs pandoc (deps-dev).

@@ -26,7 +26,8 @@ function width(of) { return substr(of, 2) / 8 }
 # One number of so many bytes here: its value.
 function number(what, index_, bytes_) {
     if (name[i] != what || item[i] != index_ || at[i] != place)
-        bad("at " place " " what "[" index_ "] is expected, the trace has " name[i] "[" item[i] "] at " at[i])
+        bad("at " place " " what "[" index_ "] is expected, the trace has " \
+            name[i] "[" item[i] "] at " at[i])
     place += bytes_
     return value[i++]
 }
@@ -61,7 +62,8 @@ function file_header(   k, j, byte, v, list) {
 
 # R-ENT-008.
 function substreams() {
-    return (head("temporal_mask") || head("offset_mask")) + head("n_slices") + 2 + (head("phi_dim") > 0) + (head("activation") > 0)
+    return (head("temporal_mask") || head("offset_mask")) + head("n_slices") + 2 + \
+        (head("phi_dim") > 0) + (head("activation") > 0)
 }
 
 function present(when) {
@@ -89,7 +91,8 @@ function tile(end,   k, j, what, count, size) {
             }
             continue
         }
-        count = what ~ /\[S\]/ ? substreams() : what ~ /\[/ ? substr(what, index(what, "[") + 1) + 0 : 1
+        count = what ~ /\[S\]/ ? substreams() : \
+            what ~ /\[/ ? substr(what, index(what, "[") + 1) + 0 : 1
         sub(/\[.*/, "", what)
         for (j = 0; j < count; j++)
             size[j] = number(what, j, width(type["9.1", k]))

@@ -48,7 +48,8 @@ things8-auto-1 1400 30 0.01 400 0 10
 END
 }
 table() {
-    echo tag,key,options,lambda,bytes,psnr,ssim,l1,b_netr,b_bank,b_phi,b_tau,n_offsets,feature_dim,motion,phi_dim,activation,anchors,cpu_s
+    echo "tag,key,options,lambda,bytes,psnr,ssim,l1,b_netr,b_bank,b_phi,b_tau,n_offsets,\
+feature_dim,motion,phi_dim,activation,anchors,cpu_s"
     awk '{ print $1 ",k,o,0.0019," $2 "," $3 ",1," $4 ",0," $5 ",0,0,1,10," $6 ",0,0,100," $7 }'
 }
 rows 150 | table >"$out/capacity.csv"

@@ -8,8 +8,9 @@ set -u
 export LC_ALL=C
 . tests/support/speak.sh
 need encoder_program ted4conf ted4enc ted4dec ted4scene
-short='--set stage1=60 --set stage2=40 --set max_anchors=300 --set init_anchors=200 --set feature=8 --set deform_width=16 --set head_width=16
-    --set hyper_width=16 --set ar_width=8 --set slices=2 -j 2 --seed 1'
+short='--set stage1=60 --set stage2=40 --set max_anchors=300 --set init_anchors=200
+    --set feature=8 --set deform_width=16 --set head_width=16 --set hyper_width=16
+    --set ar_width=8 --set slices=2 -j 2 --seed 1'
 short=$(echo $short)
 
 for scene in pop still; do

@@ -24,8 +24,9 @@ expect decoder 3 'did you mean --hash?' "$TED4_BUILD/ted4dec" x --hsah
 no_hint argument 3 'requires an argument' "$enc" x -o "$out/x" --checkpoint
 no_hint letter 3 'invalid option' "$enc" x -o "$out/x" -Z
 
-small="--preset draft --iterations 60,40 --seed 1 -j 1 -q --set init_anchors=100 --set max_anchors=150 --set offsets=4 --set feature=8 --set deform_width=8
-    --set head_width=12 --set hyper_width=16 --set ar_width=8 --set slices=2 --checkpoint $out/c -f"
+small="--preset draft --iterations 60,40 --seed 1 -j 1 -q --set init_anchors=100
+    --set max_anchors=150 --set offsets=4 --set feature=8 --set deform_width=8 --set head_width=12
+    --set hyper_width=16 --set ar_width=8 --set slices=2 --checkpoint $out/c -f"
 "$TED4_BUILD/ted4scene" pop -o "$out/scene" --size 32x24 --frames 4 --cameras 5 --test-cameras 1 \
     -j 1 2>/dev/null
 "$TED4_BUILD/ted4scene" pop -o "$out/other" --size 32x24 --frames 4 --cameras 5 --test-cameras 1 \

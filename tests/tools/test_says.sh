@@ -10,8 +10,10 @@ need says ted4enc ted4eval ted4scene
 # equal NAME VALUE WANTED
 equal() { if [ "$2" = "$3" ]; then ok "$1"; else fail "$1" "$2, expected $3"; fi; }
 enc=$TED4_BUILD/ted4enc
-small="--preset draft --iterations 300,100 --seed 1 -j 1 --set init_anchors=150 --set max_anchors=260 --set offsets=4 --set feature=8 --set phi=4
-    --set bank_dim=8 --set deform_width=8 --set head_width=12 --set hyper_width=16 --set ar_width=8 --set slices=2 --capacity fixed"
+small="--preset draft --iterations 300,100 --seed 1 -j 1 --set init_anchors=150
+    --set max_anchors=260 --set offsets=4 --set feature=8 --set phi=4 --set bank_dim=8
+    --set deform_width=8 --set head_width=12 --set hyper_width=16 --set ar_width=8 --set slices=2
+    --capacity fixed"
 "$TED4_BUILD/ted4scene" pop -o "$out/scene" --size 32x24 --frames 4 --cameras 5 --test-cameras 1 \
     -j 1 2>/dev/null
 mkdir -p "$out/cache"
@@ -28,7 +30,8 @@ chmod +x "$out/bin/ffmpeg"
 PICTURE=$(find "$out/scene" -name '*.png' | sort | head -n 1)
 export PICTURE
 printf '\000\000\000\030ftypmp42' >"$out/clips/a.mp4"
-echo '{"frames": 3, "cameras": [{"name": "a", "w": 32, "h": 24, "K": [[30, 0, 16], [0, 30, 12], [0, 0, 1]],
+echo '{"frames": 3, "cameras": [{"name": "a", "w": 32, "h": 24,
+    "K": [[30, 0, 16], [0, 30, 12], [0, 0, 1]],
     "w2c": [[1, 0, 0, 0], [0, 1, 0, 0], [0, 0, 1, 4], [0, 0, 0, 1]]}]}' >"$out/clips/cams.json"
 
 # From a pipe: what was said within a second, and what in the end.

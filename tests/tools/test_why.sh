@@ -8,8 +8,9 @@ set -u
 need why ted4enc ted4dec ted4info ted4scene
 # equal NAME VALUE WANTED
 equal() { if [ "$2" = "$3" ]; then ok "$1"; else fail "$1" "$2, expected $3"; fi; }
-small="--preset draft --iterations 300,500 --seed 1 -j 1 -q --set init_anchors=150 --set max_anchors=260 --set offsets=4 --set feature=8 --set phi=4
-    --set bank_dim=8 --set deform_width=8 --set head_width=12 --set hyper_width=16 --set ar_width=8 --set slices=2"
+small="--preset draft --iterations 300,500 --seed 1 -j 1 -q --set init_anchors=150
+    --set max_anchors=260 --set offsets=4 --set feature=8 --set phi=4 --set bank_dim=8
+    --set deform_width=8 --set head_width=12 --set hyper_width=16 --set ar_width=8 --set slices=2"
 
 "$TED4_BUILD/ted4scene" pop -o "$out/scene" --size 32x24 --frames 4 --cameras 5 --test-cameras 1 \
     -j 1 2>/dev/null
@@ -65,6 +66,7 @@ rows() { "$TED4_BUILD/ted4info" -v "$out/$1.ted4" | sed -n 's/^ *bank_rows *//p'
 encode steady --capacity fixed --set probe=0
 equal rows_of_flicker "$(rows flicker)" 6
 equal rows_of_pop "$(rows steady)" 2
-equal flicker_told \
-    "$("$TED4_BUILD/ted4info" "$out/flicker.ted4" --why | grep -c '^capacity.light=flickers by .*of 6 rows for 6 times')" 1
+flicker=$("$TED4_BUILD/ted4info" "$out/flicker.ted4" --why |
+    grep -c '^capacity.light=flickers by .*of 6 rows for 6 times')
+equal flicker_told "$flicker" 1
 exit $bad
