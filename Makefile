@@ -172,10 +172,9 @@ install: all install-library
 	install -d $(DESTDIR)$(PREFIX)/bin
 	install $(PROGS) $B/ted4conf $B/ted4tolerance $(DESTDIR)$(PREFIX)/bin
 
+# All targets, of the included files too; tests/lint/help.sh sees that none is missing.
 help:
-	@echo 'all demo test check test-machines lint asan deps deps-dev install clean; variables OPT ARCH CC B TED4_DATA PREFIX DESTDIR'
-	@echo 'test-machines: all tests with gcc and clang, at every level of instructions that this machine has: an hour or more on two cores'
-	@echo 'spec (HTML; pandoc) spec-annexes attest; bench/bench.mk, fuzz/fuzz.mk and conformance/conf.mk add their own targets'
+	@cat tools/make-help.txt
 
 clean:
 	rm -rf build build-* out
