@@ -4,8 +4,10 @@
 export LC_ALL=C
 bad=0
 page=tools/make-help.txt
-targets=$(make -npq 2>/dev/null | sed -n 's/^\.PHONY: //p' | tr ' ' '\n' | grep -vx always | sort -u)
-named=$(sed -n 's/^  \([a-z].*\)$/\1/p' $page | sed 's/   *.*//; s/(or nothing)//' | tr ', ' '\n\n' |
+targets=$(make -npq 2>/dev/null | sed -n 's/^\.PHONY: //p' | tr ' ' '\n' | grep -vx always |
+    sort -u)
+named=$(sed -n 's/^  \([a-z].*\)$/\1/p' $page | sed 's/   *.*//; s/(or nothing)//' |
+    tr ', ' '\n\n' |
     grep . | sort -u)
 [ -n "$targets" ] || { echo "make: tells no phony targets"; bad=1; }
 for t in $targets; do

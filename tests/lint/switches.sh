@@ -15,4 +15,5 @@ table() {
 if [ "$1" = print ]; then table; exit 0; fi
 there=$(sed -n '/^<!-- options -->$/,/^<!-- end of options -->$/p' doc/switches.md | grep '^| `')
 [ "$there" = "$(table)" ] ||
-    { echo "doc/switches.md is not what options.def says: sh tests/lint/switches.sh print"; exit 1; }
+    { echo "doc/switches.md is not what options.def says: sh tests/lint/switches.sh print";
+        exit 1; }

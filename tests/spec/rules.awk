@@ -3,7 +3,9 @@
 # the same, with file and text of each.
 # SPDX-License-Identifier: BSD-2-Clause
 BEGIN {
-    split("BIT bitstream DEC decoder LEN lenient-decoder ENC encoder EDT editor VAL validator EXT author DMP test TOL decoder SEC decoder MED player INT decoder ERR decoder ARI decoder REC decoder XXH decoder DEF stream", pair, " ")
+    split("BIT bitstream DEC decoder LEN lenient-decoder ENC encoder EDT editor VAL validator " \
+          "EXT author DMP test TOL decoder SEC decoder MED player INT decoder ERR decoder " \
+          "ARI decoder REC decoder XXH decoder DEF stream", pair, " ")
     for (i = 1; i in pair; i += 2)
         whom[pair[i]] = pair[i + 1]
     if (json)
@@ -15,8 +17,10 @@ BEGIN {
 function heading() {
     print "# Annex G (informative): index of rules"
     print ""
-    print "Made from the text by `make spec-annexes`. \"stream\" rules are those that a byte string can"
-    print "break; the others bind whom the column names. The word is the strongest of BCP 14 in the rule."
+    print "Made from the text by `make spec-annexes`. \"stream\" rules are those " \
+        "that a byte string can"
+    print "break; the others bind whom the column names. The word is the strongest of BCP 14 in " \
+        "the rule."
     print ""
     print "| rule | section | binds | word | errors |"
     print "|---|---|---|---|---|"
@@ -34,7 +38,9 @@ function print_json(kind, word, errors) {
     sub(/^\*\*R-[A-Z]*-[0-9]*\*\* */, "", text)
     gsub(/`/, "\"", errors)
     gsub(/ /, ",", errors)
-    printf "%s{\"id\":\"%s\",\"file\":\"%s\",\"section\":\"%s\",\"binds\":\"%s\",\"word\":\"%s\",\"errors\":[%s],\"text\":%s}", next_line, rule, file, section, kind, word, errors, quoted(text)
+    printf "%s{\"id\":\"%s\",\"file\":\"%s\",\"section\":\"%s\",\"binds\":\"%s\",", next_line, \
+        rule, file, section, kind
+    printf "\"word\":\"%s\",\"errors\":[%s],\"text\":%s}", word, errors, quoted(text)
     next_line = ",\n"
 }
 
@@ -45,7 +51,8 @@ function flush_rule(   word, errors, rest, id, kind) {
     rest = text
     while (match(rest, /`[a-z]+\.[a-z]+(-[a-z]+)*`/)) {
         id = substr(rest, RSTART + 1, RLENGTH - 2)
-        if (id ~ /^(con|hdr|net|pos|ent|att|rec|syn|lvl|limit|unsupported|query|io)\./ && index(errors, "`" id "`") == 0)
+        if (id ~ /^(con|hdr|net|pos|ent|att|rec|syn|lvl|limit|unsupported|query|io)\./ &&
+            index(errors, "`" id "`") == 0)
             errors = errors (errors == "" ? "" : " ") "`" id "`"
         rest = substr(rest, RSTART + RLENGTH)
     }
@@ -72,7 +79,12 @@ code { next }
     if (section == "Annex")
         section = $3
 }
-/^\*\*R-[A-Z][A-Z][A-Z]-[0-9][0-9][0-9]\*\*/ { flush_rule(); rule = substr($1, 3, 9); text = $0; next }
+/^\*\*R-[A-Z][A-Z][A-Z]-[0-9][0-9][0-9]\*\*/ {
+    flush_rule()
+    rule = substr($1, 3, 9)
+    text = $0
+    next
+}
 /^$/ { flush_rule() }
 rule != "" { text = text " " $0 }
 END { flush_rule(); if (json) print "\n]}" }

@@ -1,11 +1,12 @@
 #!/bin/sh
-# test_capacity_page.sh - the page of capacities on a small table of rows whose answers can be worked out by hand. Speaks as cmocka programs do; run by
-# `make test` from the project's root.
+# test_capacity_page.sh - the page of capacities on a small table of rows whose answers can be
+# worked out by hand. Speaks as cmocka programs do; run by `make test` from the project's root.
 # SPDX-License-Identifier: BSD-2-Clause
 set -u
 . tests/support/speak.sh
 need capacity_page python3
-make_page() { TED4_RESULTS=$out TED4_TABLE=$out/table.txt python3 -m bench.pages capacity "$out/states"; }
+make_page() { TED4_RESULTS=$out TED4_TABLE=$out/table.txt python3 -m bench.pages capacity \
+    "$out/states"; }
 page=$out/capacity.md
 
 cat >"$out/table.txt" <<END
@@ -24,9 +25,10 @@ run auto auto  moment,things2     2 - --capacity auto
 run grid whole still,chair,moment 1 - --capacity fixed
 run grid small still,chair,moment 1 - --capacity fixed --set offsets=4
 END
-# Tag, bytes, PSNR, L1, bytes of the bank, motion, CPU seconds. SSIM is 1, lambda 0.0019, and a whole model has 1900 values, so the cost is 0.8 L1 + bytes / 125000.
-# still: auto 0.016, whole 0.02, small 0.0168, but half a decibel below. chair: auto 0.016, small 0.014; seconds are 30 % more. moment: auto 0.016 and 0.01648,
-# small 0.01568 at hardly less PSNR.
+# Tag, bytes, PSNR, L1, bytes of the bank, motion, CPU seconds. SSIM is 1, lambda 0.0019, and a
+# whole model has 1900 values, so the cost is 0.8 L1 + bytes / 125000. still: auto 0.016, whole
+# 0.02, small 0.0168, but half a decibel below. chair: auto 0.016, small 0.014; seconds are 30 %
+# more. moment: auto 0.016 and 0.01648, small 0.01568 at hardly less PSNR.
 rows() {
     cat <<END
 still-auto-1 1000 30 0.01 0 0 12

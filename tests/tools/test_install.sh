@@ -12,11 +12,15 @@ vector=conformance/vectors/content/CNT-pop-0.002.ted4
 # Nothing is built anew, with another compiler at worst.
 usr=$out/root/usr
 cp "$TED4_BUILD/how" "$out/how"
-if make install B="$TED4_BUILD" DESTDIR="$out/root" PREFIX=/usr >"$out/said" 2>&1; then ok installs; else fail installs "$(cat "$out/said")"; fi
-if cmp -s "$TED4_BUILD/how" "$out/how"; then ok as_built; else fail as_built "$(cat "$out/said")"; fi
-wanted=$(echo $(sed -n 's/^    \(ted4[a-z]*\) .*/\1/p' doc/programs.md) ted4scene | tr ' ' '\n' | sort -u)
+if make install B="$TED4_BUILD" DESTDIR="$out/root" PREFIX=/usr >"$out/said" 2>&1; then ok \
+    installs; else fail installs "$(cat "$out/said")"; fi
+if cmp -s "$TED4_BUILD/how" "$out/how"; then ok as_built; else fail as_built "$(cat "$out/said")";
+    fi
+wanted=$(echo $(sed -n 's/^    \(ted4[a-z]*\) .*/\1/p' doc/programs.md) ted4scene | tr ' ' '\n' |
+    sort -u)
 if [ "$(ls "$usr/bin")" = "$wanted" ]; then ok programs; else fail programs "$(ls "$usr/bin")"; fi
-if [ "$(echo $(ls "$usr/lib"))" = "cmake libted4dec.a libted4dec.so libted4dec.so.1 pkgconfig" ]; then ok libraries; else fail libraries "$(ls "$usr/lib")"; fi
+if [ "$(echo $(ls "$usr/lib"))" = "cmake libted4dec.a libted4dec.so libted4dec.so.1 pkgconfig" ]; \
+    then ok libraries; else fail libraries "$(ls "$usr/lib")"; fi
 
 cat >"$out/user.c" <<'C'
 #include <ted4/ted4.h>
@@ -51,8 +55,10 @@ wanted="$("$TED4_BUILD/ted4dec" --hash "$vector"), bank"
 # build with sanitizers; nothing otherwise.
 user() {
     # shellcheck disable=SC2086 # several flags
-    $2 ${CFLAGS:-} ${LDFLAGS:-} -Wall -Wextra -Wpedantic -Werror -I"$usr/include" "$out/$3" -L"$usr/lib" -Wl,--whole-archive -l:libted4dec.a \
-        -Wl,--no-whole-archive -lxxhash -lz -lm -o "$out/$1" 2>"$out/err" || { fail "$1" "$(cat "$out/err")"; return; }
+    $2 ${CFLAGS:-} ${LDFLAGS:-} -Wall -Wextra -Wpedantic -Werror -I"$usr/include" "$out/$3" \
+        -L"$usr/lib" -Wl,--whole-archive -l:libted4dec.a \
+        -Wl,--no-whole-archive -lxxhash -lz -lm -o "$out/$1" 2>"$out/err" ||
+        { fail "$1" "$(cat "$out/err")"; return; }
     expect "$1" 0 "$wanted" "$out/$1" "$vector"
     expect "$1_refused" 1 'invalid con.magic' "$out/$1" README.md
 }

@@ -64,7 +64,8 @@ if has pkg-config; then
     for example in attributes memory allocator threads; do
         # shellcheck disable=SC2086 # several flags
         ${CC:-cc} -std=c99 $flags doc/examples/$example.c \
-            $(pkg-config --define-prefix --libs ted4) -o "$out/$example" 2>"$out/err" || fail "$example" "$(cat "$out/err")"
+            $(pkg-config --define-prefix --libs ted4) -o "$out/$example" 2>"$out/err" ||
+            fail "$example" "$(cat "$out/err")"
     done
     expect memory 0 "$hash" "$out/memory" "$vector"
     expect refused 1 "con.magic at byte 0: " "$out/memory" README.md

@@ -1,11 +1,12 @@
 #!/bin/sh
-# test_report.sh - the report (bench/pages) on small tables of rows whose answers can be worked out by hand. Speaks as cmocka programs do; run by `make test` from the
-# project's root.
+# test_report.sh - the report (bench/pages) on small tables of rows whose answers can be worked out
+# by hand. Speaks as cmocka programs do; run by `make test` from the project's root.
 # SPDX-License-Identifier: BSD-2-Clause
 set -u
 . tests/support/speak.sh
 need report python3
-make_report() { TED4_RESULTS=$out TED4_PAGES=$out/pages TED4_TABLE=$out/table.txt python3 -m bench.pages report "$out/states"; }
+make_report() { TED4_RESULTS=$out TED4_PAGES=$out/pages TED4_TABLE=$out/table.txt \
+    python3 -m bench.pages report "$out/states"; }
 
 cat >"$out/table.txt" <<END
 lambdas 0.001 0.002 0.004 0.008
@@ -46,15 +47,19 @@ run recipe   recipe_inr_seed3   kitchen 2 - --set sprouts=0 --set motion=3 --see
 run recipe   recipe_concat      kitchen 2 - --set sprouts=0 --set motion=2
 END
 
-# On kitchen the whole method doubles its bytes with each dB, so its curve is a straight line of the logarithm. concat costs half as much again
-# everywhere: +50 %. factorised_flat_auto and factorised_long cost 15 and 5 % more than whole_auto and whole_long. inr_paper costs nothing, but four times the bytes
-# of whole_long, and three times its training. inr costs nothing at 28 dB and twice the bytes at 30 dB: the mean of the logarithm is that of the square root of 2. noactive
-# costs 2^((p - 27)^3 / 27): the mean of the cubic over 27 to 30 dB is a quarter, 2^0.25 = 1.1892; on straight lines it would be 1.2123. fullview
-# ends in two points close to each other, where one cubic through all four would swing far out; piecewise cubics, integrated numerically by another program, give -1.36 %. nomotion
-# is 2 dB below at equal bytes. noautoreg and noprogress cost 2^0.1, a tenth of a dB, less than the seeds' 0.25 dB,
-# so that there is no saying. factorised lacks a run, and the row of linscale
-# was made with other options. On walk concat is the whole method itself, whose curve is bent there: 0 %.
-# At seed 3 concat needs twice the bytes, which is a dB. noview has half a dB more for twice the bytes, 0.2 dB more for the same, half a dB less for half of them.
+# On kitchen the whole method doubles its bytes with each dB, so its curve is a straight line of the
+# logarithm. concat costs half as much again everywhere: +50 %. factorised_flat_auto and
+# factorised_long cost 15 and 5 % more than whole_auto and whole_long. inr_paper costs nothing, but
+# four times the bytes of whole_long, and three times its training. inr costs nothing at 28 dB and
+# twice the bytes at 30 dB: the mean of the logarithm is that of the square root of 2. noactive
+# costs 2^((p - 27)^3 / 27): the mean of the cubic over 27 to 30 dB is a quarter, 2^0.25 = 1.1892;
+# on straight lines it would be 1.2123. fullview ends in two points close to each other, where one
+# cubic through all four would swing far out; piecewise cubics, integrated numerically by another
+# program, give -1.36 %. nomotion is 2 dB below at equal bytes. noautoreg and noprogress cost 2^0.1,
+# a tenth of a dB, less than the seeds' 0.25 dB, so that there is no saying. factorised lacks a run,
+# and the row of linscale was made with other options. On walk concat is the whole method itself,
+# whose curve is bent there: 0 %. At seed 3 concat needs twice the bytes, which is a dB. noview has
+# half a dB more for twice the bytes, 0.2 dB more for the same, half a dB less for half of them.
 cat >"$out/rows" <<END
 kitchen-whole-1,k,--own 1,30,800000,600000,4848000
 kitchen-whole-2,k,o,29,400000,300000,2400000
@@ -140,7 +145,8 @@ preset paper: 10100 moving anchors
   v4, 2 threads  deformation, heads   9.16 ms  picture  20.22 ms  best  29.47 ms =  39.9 frames/s  median  49.89 ms =  29.5 frames/s
   v3, 2 threads  deformation, heads   9.16 ms  picture  20.22 ms  best  29.47 ms =  19.9 frames/s  median  49.89 ms =  19.5 frames/s
 END
-printf '%s\n' '| run | options | anchors | Gaussians in the file | peak MiB |' '|---|---|---|---|---|' '| largest | `--preset paper` | 19582 | 195820 | 5400 |' \
+printf '%s\n' '| run | options | anchors | Gaussians in the file | peak MiB |' \
+    '|---|---|---|---|---|' '| largest | `--preset paper` | 19582 | 195820 | 5400 |' \
     '| smaller | | 100 | 1000 | 900 |' >"$out/pages/memory.md"
 echo "a note by hand" >"$out/pages/report-notes.md"
 
@@ -148,47 +154,65 @@ make_report || { fail run "status $?"; exit 1; }
 page=$out/report-tables.md
 check straight_lines "$page" '| **concat** | | | | | +50.0 % | -0.58 dB |' '| +50.0 % (lines) |' \
     '| kitchen: bank against concat | bank better | `--set motion=2`: rate at equal PSNR +50.0 %, PSNR at equal bytes -0.58 dB'
-check same_lambda "$page" '| **concat** | | | | | +0.0 % | +0.00 dB | +0.00 dB, +0.0 % | +0.0 % (lines)'
+check same_lambda "$page" \
+    '| **concat** | | | | | +0.0 % | +0.00 dB | +0.00 dB, +0.0 % | +0.0 % (lines)'
 check not_of_the_paper "$page" '+0.00 dB, +300.0 % | - | | worse |'
 check mean_of_logarithm "$page" '| +41.4 % (lines) |'
 check cubics "$page" '| +18.9 % (cubic) |' '| -1.4 % (cubic) |'
-check own_base "$page" '`--capacity auto --set factorised=1 --set slices=1`: rate at equal PSNR +15.0 %' '| kitchen-factorised_flat_auto-1 |' '| 460000 | +15.0 % |' \
+check own_base "$page" \
+    '`--capacity auto --set factorised=1 --set slices=1`: rate at equal PSNR +15.0 %' \
+    '| kitchen-factorised_flat_auto-1 |' '| 460000 | +15.0 % |' \
     '`--preset medium --set factorised=1`: rate at equal PSNR +5.0 %' '| 210000 | +5.0 % |'
 check less_time "$page" '`--set motion=3 --set deform_layers=8`: rate at equal PSNR +0.0 %' \
     'less time (10 against 30 core minutes) | bank better | `--set motion=3 --set deform_layers=8`: rate at equal PSNR +300.0 %, PSNR at equal bytes -; nearest -1.00 dB, +100.0 % | met |'
-check equal_bytes "$page" '`--set motion=0`: rate at equal PSNR +300.0 %, PSNR at equal bytes -2.00 dB; nearest +0.00 dB, +300.0 %† | met |'
+check equal_bytes "$page" \
+    '`--set motion=0`: rate at equal PSNR +300.0 %, PSNR at equal bytes -2.00 dB; nearest +0.00 dB, +300.0 %† | met |'
 check missing "$page" '| kitchen-factorised-3 | `--set factorised=1` | 0.004 | not run yet |' \
     '| kitchen: inr prior against factorised prior that keeps the autoregression (the paper has no such row) | factorised costs at least 10 % more rate | - | not run yet |' '54 of 58 wanted runs'
-check stale "$page" '| kitchen-whole-3† | 0.004 |' '| kitchen-whole-2 | 0.002 |' 'kitchen: yes, walk: no† | **missed** |' '1 of them older'
-check other_options "$page" '| kitchen-linscale-1 | `--set linear_scale=1` | 0.001 | not run yet |' 'It holds 1 rows that other options'
-check within_seeds "$page" '| +7.2 % | -0.10 dB | +0.00 dB, +7.2 % | +7.2 % (lines) | | worse; within seeds |' '| -2.00 dB | +0.00 dB, +300.0 % |' \
+check stale "$page" '| kitchen-whole-3† | 0.004 |' '| kitchen-whole-2 | 0.002 |' \
+    'kitchen: yes, walk: no† | **missed** |' '1 of them older'
+check other_options "$page" \
+    '| kitchen-linscale-1 | `--set linear_scale=1` | 0.001 | not run yet |' \
+    'It holds 1 rows that other options'
+check within_seeds "$page" \
+    '| +7.2 % | -0.10 dB | +0.00 dB, +7.2 % | +7.2 % (lines) | | worse; within seeds |' \
+    '| -2.00 dB | +0.00 dB, +300.0 % |' \
     'nearest +0.00 dB, +7.2 %†; within seeds | cannot be said |'
 check estimate "$page" '| whole | 8 | +1.00 % | kitchen-whole-1 |'
 check seeds "$page" 'kitchen: 0.250 dB, 1.00 % of bytes | met |'
-# Means and standard errors: -0.723 and 0.139, 0.067 and 0.296; of the recipe, -0.638, 0.250 and -0.678, -0.355 and 0.303. Student's t of two degrees of freedom is 2.92.
-check seeded "$page" '| kitchen | concat† | -0.58, -0.58, -1.00 | -0.72 ± 0.14 | worse |' '| kitchen | noview† | -0.50, +0.20, +0.50 | +0.07 ± 0.30 | no saying |' \
-    '| kitchen | nocolour | not run yet |' 'PSNR at equal bytes -0.58 dB; nearest +0.00 dB, +50.0 %†; at 3 seeds -0.58, -0.58, -1.00, mean -0.72 ± 0.14 dB'
-check recipe "$page" 'kitchen, the paper'"'"'s recipe alone: bank against inr' 'PSNR at equal bytes, 3 seeds: -0.64, +0.25, -0.68, mean -0.36 ± 0.30 dB | cannot be said |' \
+# Means and standard errors: -0.723 and 0.139, 0.067 and 0.296; of the recipe, -0.638, 0.250 and
+# -0.678, -0.355 and 0.303. Student's t of two degrees of freedom is 2.92.
+check seeded "$page" '| kitchen | concat† | -0.58, -0.58, -1.00 | -0.72 ± 0.14 | worse |' \
+    '| kitchen | noview† | -0.50, +0.20, +0.50 | +0.07 ± 0.30 | no saying |' \
+    '| kitchen | nocolour | not run yet |' \
+    'PSNR at equal bytes -0.58 dB; nearest +0.00 dB, +50.0 %†; at 3 seeds -0.58, -0.58, -1.00, mean -0.72 ± 0.14 dB'
+check recipe "$page" 'kitchen, the paper'"'"'s recipe alone: bank against inr' \
+    'PSNR at equal bytes, 3 seeds: -0.64, +0.25, -0.68, mean -0.36 ± 0.30 dB | cannot be said |' \
     '| kitchen | inr | -0.50 dB, +10.0 %; +0.25 dB, +0.0 %; -1.00 dB, -20.0 % | -0.42 dB, -3.3 % | -0.36 ± 0.30 dB | no saying |' '| kitchen | concat | not run yet |'
 # rows_are NAME HEADING VARIANTS: the second column of the table under that heading.
 rows_are() {
-    there=$(awk -F " *[|] *" -v heading="### $2" '/^#/ { on = $0 == heading } on && $2 == "kitchen" { sub("†", "", $3); printf "%s ", $3 }' "$page")
+    there=$(awk -F " *[|] *" -v heading="### $2" \
+        '/^#/ { on = $0 == heading } on && $2 == "kitchen" { sub("†", "", $3); printf "%s ", $3 }' \
+        "$page")
     if [ "$there" = "$3 " ]; then ok "$1"; else fail "$1" "rows of $there"; fi
 }
 rows_are seeded_rows 'Small differences over seeds' 'concat noview nocolour'
 rows_are recipe_rows "The paper's recipe alone" 'inr concat'
 check kept "$page" '15.0 ms; 1.90x;' '(`make test`); A machine | met |' \
     '| preset fast: 31.0 frames/s (best 33.9); preset paper: 29.5 frames/s (best 39.9); A machine | **missed** |' \
-    '| [train.md](train.md) | a training step by its parts, 2 threads | not run yet |' '| peak 5400 MiB in 2 trainings |'
+    '| [train.md](train.md) | a training step by its parts, 2 threads | not run yet |' \
+    '| peak 5400 MiB in 2 trainings |'
 check notes "$out/report.md" 'a note by hand'
 check commands "$page" '`ted4enc $TED4_DATA/kitchen --own 1`' \
     '| kitchen-factorised-3 | `ted4enc $TED4_DATA/kitchen --preset fast --seed 1 --downscale 2 --lambda 0.004 --set factorised=1` | not run yet |'
-check findings "$out/report.md" "1. **Rate and distortion.**" "800 kB" "30.00 dB" "100 kB" "Not on every scene" "7. **Cameras.** Not run yet."
+check findings "$out/report.md" "1. **Rate and distortion.**" "800 kB" "30.00 dB" "100 kB" \
+    "Not on every scene" "7. **Cameras.** Not run yet."
 check no_chart "$page" '*PSNR over training time for every preset' '5 | speed against accuracy'
 
-# Within the panel. One dB apart each: equal steps up the picture. Twice the bytes each: every step to the right is half the one before, as the
-# curve begins at its right end.
-steps=$(sed -n 's/.*<polyline points="\([^"]*\)".*/\1/p' "$out/charts/rate.svg" | head -n 1 | tr ' ,' '\n ' | awk '
+# Within the panel. One dB apart each: equal steps up the picture. Twice the bytes each: every step
+# to the right is half the one before, as the curve begins at its right end.
+steps=$(sed -n 's/.*<polyline points="\([^"]*\)".*/\1/p' "$out/charts/rate.svg" | head -n 1 |
+    tr ' ,' '\n ' | awk '
     function near(a, b) { return a - b < 0.03 && b - a < 0.03 }
     { x[NR] = $1; y[NR] = $2 }
     END {
@@ -196,18 +220,22 @@ steps=$(sed -n 's/.*<polyline points="\([^"]*\)".*/\1/p' "$out/charts/rate.svg" 
         for (i = 1; i <= 4; i++)
             right = right && x[i] > 62 && x[i] < 450 && y[i] > 28 && y[i] < 280
         for (i = 2; i < 4; i++)
-            right = right && near(y[i + 1] - y[i], y[i] - y[i - 1]) && near(2 * (x[i] - x[i + 1]), x[i - 1] - x[i])
+            right = right && near(y[i + 1] - y[i], y[i] - y[i - 1]) &&
+                near(2 * (x[i] - x[i + 1]), x[i - 1] - x[i])
         print right ? "right" : "wrong"
     }')
-[ "$steps" = right ] && ok chart_positions || fail chart_positions "$(grep polyline "$out/charts/rate.svg")"
+[ "$steps" = right ] && ok chart_positions ||
+    fail chart_positions "$(grep polyline "$out/charts/rate.svg")"
 
 cp "$page" "$out/first.md"
 cp -r "$out/charts" "$out/first-charts"
-make_report && cmp -s "$page" "$out/first.md" && diff -r "$out/charts" "$out/first-charts" >/dev/null && ok same_bytes ||
+make_report && cmp -s "$page" "$out/first.md" &&
+    diff -r "$out/charts" "$out/first-charts" >/dev/null && ok same_bytes ||
     fail same_bytes "the second page differs"
 
 echo kitchen-seed3-2,k >>"$out/sweep.csv"
-if make_report 2>/dev/null || ! cmp -s "$page" "$out/first.md"; then fail malformed "accepted"; else ok malformed; fi
+if make_report 2>/dev/null || ! cmp -s "$page" "$out/first.md"; then fail malformed "accepted";
+    else ok malformed; fi
 
 rm "$out/sweep.csv" "$out/pages/raster.md"
 : >"$out/states"
@@ -215,15 +243,22 @@ make_report || fail empty "status $?"
 check empty "$page" '0 of 58 wanted runs' \
     '| 8 | forward plus backward, 100,000 Gaussians, 480x270, two cores | at most 20 ms (aim 12); 1 to 2 threads at least 1.8x; bits equal | - | not run yet |'
 # Stage 1 with time thrown away by a probe and a rollback, then stage 2 in a log of its own.
-line() { echo '{"step":'$1',"stage":"'$2'","loss":0.5,"psnr":20,"anchors":5,"bytes":0,"ms":4,"seconds":'$3',"cpu_seconds":'$4'}'; }
-{ line 250 1 1.5 3; echo '{"step":250,"event":"rollback","rollbacks":1}'; line 500 1 3 6; } >"$out/one.log"
+line() {
+    printf '{"step":%s,"stage":"%s","loss":0.5,"psnr":20,"anchors":5,"bytes":0,"ms":4,' "$1" "$2"
+    printf '"seconds":%s,"cpu_seconds":%s}\n' "$3" "$4"
+}
+{ line 250 1 1.5 3; echo '{"step":250,"event":"rollback","rollbacks":1}';
+    line 500 1 3 6; } >"$out/one.log"
 { line 750 2 4 2; line 1000 2i 5 4; } >"$out/two.log"
 said=$(python3 -m bench.pages times "$out/one.log" "$out/two.log")
 [ "$said" = 5.0,3.0,10.0,6.0 ] && ok log_times || fail log_times "$said"
 for l in '500,"stage":"1",@3.0' '1000,"stage":"2i",@5.0'; do
     echo '{"step":'"${l%@*}"'"loss":0.5,"psnr":20,"anchors":5,"bytes":0,"seconds":'"${l#*@}}"
 done >"$out/want.log"
-python3 -m bench.pages thin 2 "$out/one.log" "$out/two.log" | cmp -s - "$out/want.log" && ok thinned_log || fail thinned_log "not $(cat "$out/want.log")"
+python3 -m bench.pages thin 2 "$out/one.log" "$out/two.log" | cmp -s - "$out/want.log" &&
+    ok thinned_log || fail thinned_log "not $(cat "$out/want.log")"
 
-if grep -q '^| [0-9]* |.*| met |' "$page" || [ -n "$(ls "$out/charts")" ]; then fail nothing_met "something is met or drawn"; else ok nothing_met; fi
+if grep -q '^| [0-9]* |.*| met |' "$page" ||
+    [ -n "$(ls "$out/charts")" ]; then fail nothing_met "something is met or drawn";
+    else ok nothing_met; fi
 exit $bad

@@ -1,6 +1,7 @@
 #!/bin/sh
-# test_stability.sh - bench/stability.sh (and with it bench/runs.sh) with programs that only pretend, and its page on rows whose answers can be
-# worked out by hand. Speaks as cmocka programs do; run by `make test` from the project's root.
+# test_stability.sh - bench/stability.sh (and with it bench/runs.sh) with programs that only
+# pretend, and its page on rows whose answers can be worked out by hand. Speaks as cmocka programs
+# do; run by `make test` from the project's root.
 # SPDX-License-Identifier: BSD-2-Clause
 set -u
 unset TED4_WORK TED4_DATA TED4_PAGES
@@ -22,7 +23,8 @@ END
 
 # ---- the runs, with programs that pretend ----
 
-# ted4enc: seed 8 gives up, seed 9 crashes, on calm seed 8 is killed from outside; other seeds are trained. A line of $out/calls each.
+# ted4enc: seed 8 gives up, seed 9 crashes, on calm seed 8 is killed from outside; other seeds are
+# trained. A line of $out/calls each.
 mkdir -p "$out/build/bench" "$out/bin"
 cat >"$out/bin/make" <<END
 #!/bin/sh
@@ -59,34 +61,48 @@ cat >"$out/build/bench/to_jpeg" <<END
 #!/bin/sh
 cp "\$1" "\$2"
 END
-chmod +x "$out/bin/make" "$out/build/ted4scene" "$out/build/ted4enc" "$out/build/bench/lab_facts" "$out/build/bench/to_jpeg"
-runs() { PATH=$out/bin:$PATH TED4_BUILD=$out/build TED4_RESULTS=$out/res TED4_TABLE=$out/table.txt bench/stability.sh "$@"; }
+chmod +x "$out/bin/make" "$out/build/ted4scene" "$out/build/ted4enc" "$out/build/bench/lab_facts" \
+    "$out/build/bench/to_jpeg"
+runs() { PATH=$out/bin:$PATH TED4_BUILD=$out/build TED4_RESULTS=$out/res TED4_TABLE=$out/table.txt \
+    bench/stability.sh "$@"; }
 # cell TAG COLUMN
-cell() { awk -F, -v tag="$1" -v name="$2" 'NR == 1 { for (i = 1; i <= NF; i++) if ($i == name) c = i } $1 == tag { print $c }' "$out/res/stability.csv"; }
+cell() { awk -F, -v tag="$1" -v name="$2" \
+    'NR == 1 { for (i = 1; i <= NF; i++) if ($i == name) c = i } $1 == tag { print $c }' \
+    "$out/res/stability.csv"; }
 
 runs --jobs 2 'wall-*' >"$out/said" 2>&1 && ok trains || fail trains "$(cat "$out/said")"
-[ "$(cat "$out/scenes")" = "hide --size 96x64 -o $out/build/stability/scenes/hide+size=96x64-$(ls "$out/build/stability/scenes" | sed -n 's/.*64-\([0-9a-f]*\)$/\1/p').part" ] &&
+[ "$(cat "$out/scenes")" = \
+    "hide --size 96x64 -o $out/build/stability/scenes/hide+size=96x64-$(ls "$out/build/stability/scenes" | sed -n 's/.*64-\([0-9a-f]*\)$/\1/p').part" ] &&
     ok scene_once || fail scene_once "$(cat "$out/scenes")"
-[ "$(sort "$out/calls" | awk '{ print $2 }' | tr '\n' ' ')" = "7 7 7 8 8 9 9 " ] && ok one_process_a_run || fail one_process_a_run "$(cat "$out/calls")"
+[ "$(sort "$out/calls" | awk '{ print $2 }' | tr '\n' ' ')" = "7 7 7 8 8 9 9 " ] &&
+    ok one_process_a_run || fail one_process_a_run "$(cat "$out/calls")"
 [ "$(cell wall-whole-1 status),$(cell wall-whole-1 worst),$(cell wall-whole-1 worst_frame),$(cell wall-whole-1 out_share),$(cell wall-whole-1 cpu_s),$(cell wall-whole-1 hash)" = \
-    fine,29.25,,1e-05,0.5,abc ] && ok fine_row || fail fine_row "$(grep '^wall-whole-1' "$out/res/stability.csv")"
-[ "$(cell wall-whole-2 status):$(cell wall-whole-2 why)" = 'error:ted4enc: anchor 5; ;scaling;: not finite' ] && ok error_row || fail error_row "$(cell wall-whole-2 why)"
-[ "$(cell wall-noactive-3 status)" = crash ] && ok crash_row || fail crash_row "$(grep '^wall-noactive-3' "$out/res/stability.csv")"
+    fine,29.25,,1e-05,0.5,abc ] && ok fine_row ||
+    fail fine_row "$(grep '^wall-whole-1' "$out/res/stability.csv")"
+[ "$(cell wall-whole-2 status):$(cell wall-whole-2 why)" = \
+    'error:ted4enc: anchor 5; ;scaling;: not finite' ] && ok error_row ||
+    fail error_row "$(cell wall-whole-2 why)"
+[ "$(cell wall-noactive-3 status)" = crash ] && ok crash_row ||
+    fail crash_row "$(grep '^wall-noactive-3' "$out/res/stability.csv")"
 [ "$(ls "$out/res/lab")" = wall-whole-1.jpg ] && ok strip || fail strip "$(ls "$out/res/lab")"
 [ "$(cell wall-whole-1 groups)" = lab+come ] && ok group || fail group "$(cell wall-whole-1 groups)"
 
 runs 'wall-*' >"$out/said" 2>&1
 [ "$(wc -l <"$out/calls")" = 7 ] && ok nothing_twice || fail nothing_twice "$(cat "$out/said")"
-if runs calm-whole-2 >"$out/said" 2>&1 || grep -q '^calm' "$out/res/stability.csv"; then fail killed_from_outside "$(cat "$out/said")"; else ok killed_from_outside; fi
+if runs calm-whole-2 >"$out/said" 2>&1 ||
+    grep -q '^calm' "$out/res/stability.csv"; then fail killed_from_outside "$(cat "$out/said")";
+    else ok killed_from_outside; fi
 sed -i 's/lambda 0.002/lambda 0.004/' "$out/table.txt"
 runs --list 'wall-whole-*' >"$out/said"
-[ "$(awk '{ print $1 }' "$out/said" | sort -u)" = stale ] && ok stale || fail stale "$(cat "$out/said")"
+[ "$(awk '{ print $1 }' "$out/said" | sort -u)" = stale ] && ok stale ||
+    fail stale "$(cat "$out/said")"
 sed -i 's/lambda 0.004/lambda 0.002/' "$out/table.txt"
 
 # ---- the page ----
 
-# wall: without activation 1.5 dB below in the worst frame, and 3 anchors thrown out against 1; seed 9 loses a frame. calm: seeds 0.2 dB apart; without
-# activation one seed diverges, one rolled back and is not finite, one gave up.
+# wall: without activation 1.5 dB below in the worst frame, and 3 anchors thrown out against 1; seed
+# 9 loses a frame. calm: seeds 0.2 dB apart; without activation one seed diverges, one rolled back
+# and is not finite, one gave up.
 mkdir -p "$out/page/lab"
 header=tag,key,options,status,psnr,worst,worst_frame,worst_camera,bytes,hash,out,out_share
 header=$header,displacement,refused_views,refused_times,log_bad,diverged
@@ -118,46 +134,58 @@ is so.
 ## wall inr
 Never shown.
 END
-make_page() { TED4_RESULTS=$out/page TED4_TABLE=$out/table.txt TED4_NOTES=$out/notes.md python3 -m bench.pages stability "$out/states"; }
+make_page() { TED4_RESULTS=$out/page TED4_TABLE=$out/table.txt TED4_NOTES=$out/notes.md python3 \
+    -m bench.pages stability "$out/states"; }
 make_page || { fail page "status $?"; exit 1; }
 page=$out/page/stability.md
-check cells "$page" '| wall | 30.50 / 27.00 ±0.50 **W1 P1** | 28.00 / 25.50 ±0.00 **O2 X1 R1** |' '| calm | 33.10 / 32.00 ±0.10 | 33.00 / 24.50 ±0.00 **E1 N1 D1 B1 W1 F1 P1** |'
-check unexplained "$page" '| wall | whole | the worst frame lies more than 2 dB below the whole method'"'"'s (1 of 3); the worst frame lies more than 5 dB below the mean of all frames (1 of 3) | **unexplained** |' \
+check cells "$page" '| wall | 30.50 / 27.00 ±0.50 **W1 P1** | 28.00 / 25.50 ±0.00 **O2 X1 R1** |' \
+    '| calm | 33.10 / 32.00 ±0.10 | 33.00 / 24.50 ±0.00 **E1 N1 D1 B1 W1 F1 P1** |'
+check unexplained "$page" \
+    '| wall | whole | the worst frame lies more than 2 dB below the whole method'"'"'s (1 of 3); the worst frame lies more than 5 dB below the mean of all frames (1 of 3) | **unexplained** |' \
     '| 1 | weak spots of the whole method | every one explained | 1 scenes, 1 of them unexplained | **missed** |'
 check explained "$page" '(1 of 3): anchor 5: not finite | Why calm is so. |'
-check bars "$page" '| 1 | what ran | at least 16 scenes x 3 seeds x 6 variants | 2 scenes whole, with 2 variants; 12 of 12 rows | not run yet |' \
+check bars "$page" \
+    '| 1 | what ran | at least 16 scenes x 3 seeds x 6 variants | 2 scenes whole, with 2 variants; 12 of 12 rows | not run yet |' \
     '| 2 | wall: worst frame, whole method above no activation | at least 1 dB | +1.50 dB | met |' \
     '| fewer than without activation, and in no scene more | wall 1.0 against 3.0 | met |' \
     '| 3 | spread of mean PSNR between seeds, easy scenes | below 0.3 dB | calm 0.20 dB | met |' \
     '| 3 | the same seed trained twice | the same bytes | 1 of 1 scenes told, 1 equal in size and hash | met |'
 check strips "$page" '| wall-whole-1 | 28.00 | 3 | 1 | ![wall](lab/wall-whole-1.jpg) |'
-[ "$(ls "$out/page/lab" | tr '\n' ' ')" = "mean.svg out.svg worst.svg " ] && ok charts || fail charts "$(ls "$out/page/lab")"
+[ "$(ls "$out/page/lab" | tr '\n' ' ')" = "mean.svg out.svg worst.svg " ] && ok charts ||
+    fail charts "$(ls "$out/page/lab")"
 cp "$page" "$out/first.md"
-make_page && cmp -s "$page" "$out/first.md" && ok same_bytes || fail same_bytes "the second page differs"
+make_page && cmp -s "$page" "$out/first.md" && ok same_bytes ||
+    fail same_bytes "the second page differs"
 
-# The same seed gives other bytes; a seed of an easy scene is far off; nothing fails on wall any more, and no anchor is thrown out there.
+# The same seed gives other bytes; a seed of an easy scene is far off; nothing fails on wall any
+# more, and no anchor is thrown out there.
 sed -i '/^wall/s/,1,0.001,0.5,/,0,0,0.5,/; /^wall/s/,3,0.0[0-9]*,0.5,/,0,0,0.5,/
 s/^wall-again-1,\(.*\),aa,/wall-again-1,\1,xx,/
 s/^calm-whole-2,k,o,fine,33.2/calm-whole-2,k,o,fine,33.4/
 s/^wall-whole-3,k,o,fine,30.5,24.5/wall-whole-3,k,o,fine,30.5,27.5/' "$out/page/stability.csv"
 make_page
-check missed "$page" '1 of 1 scenes told, 0 equal in size and hash | **missed** |' 'calm 0.40 dB | **missed** |' '0 scenes, 0 of them unexplained | not run yet |' \
+check missed "$page" '1 of 1 scenes told, 0 equal in size and hash | **missed** |' \
+    'calm 0.40 dB | **missed** |' '0 scenes, 0 of them unexplained | not run yet |' \
     'wall 0.0 against 0.0 | cannot be said |'
 
 # calm, the second scene, falls 2.3 dB below the first.
 sed -i 's/^calm-whole-\([0-9]\),k,o,fine,33/calm-whole-\1,k,o,fine,28/' "$out/page/stability.csv"
 make_page
-check weak "$page" "| calm | whole | the whole method's mean PSNR lies more than 2 dB below its own on the first scene (3 of 3) | Why calm is so. |"
+check weak "$page" \
+    "| calm | whole | the whole method's mean PSNR lies more than 2 dB below its own on the first scene (3 of 3) | Why calm is so. |"
 
 # Fewer anchors are thrown out in all, but more on calm.
 sed -i 's/^group come wall$/group come wall,calm/' "$out/table.txt"
-awk -F, -v OFS=, '/^calm-whole/ { $11 = 1 } /^wall-noactive/ { $11 = 3 } { print }' "$out/page/stability.csv" >"$out/more.csv" && mv "$out/more.csv" "$out/page/stability.csv"
+awk -F, -v OFS=, '/^calm-whole/ { $11 = 1 } /^wall-noactive/ { $11 = 3 } { print }' \
+    "$out/page/stability.csv" >"$out/more.csv" && mv "$out/more.csv" "$out/page/stability.csv"
 make_page
 check thrown_on_one "$page" 'wall 0.0 against 3.0, calm 1.0 against 0.0 | **missed** |'
 
 rm "$out/page/stability.csv"
 : >"$out/states"
 make_page || fail empty "status $?"
-check empty "$page" '0 of 13 wanted runs are there' '| 2 | wall: worst frame, whole method above no activation | at least 1 dB | - | not run yet |'
-if grep -q '^| [0-9]* |.*| met |' "$page" || ls "$out/page/lab" | grep -q svg; then fail nothing_met "something is met or drawn"; else ok nothing_met; fi
+check empty "$page" '0 of 13 wanted runs are there' \
+    '| 2 | wall: worst frame, whole method above no activation | at least 1 dB | - | not run yet |'
+if grep -q '^| [0-9]* |.*| met |' "$page" || ls "$out/page/lab" |
+    grep -q svg; then fail nothing_met "something is met or drawn"; else ok nothing_met; fi
 exit $bad

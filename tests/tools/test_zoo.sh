@@ -11,17 +11,23 @@ XDG_CACHE_HOME=$out/cache; export XDG_CACHE_HOME
 python3 -m bench.pages runs bench/zoo.txt >"$out/all" || { fail table "not read"; exit 1; }
 grep '^zoo|' "$out/all" >"$out/runs"
 awk '$1 == "case" { n++; twin[$2] = $3 }
-     END { for (s in twin) if (twin[s] != "-" && !(twin[s] in twin)) { print s ": no twin " twin[s]; bad = 1 }
-           if (n < 24) { print n " cases"; bad = 1 } exit bad }' bench/zoo.txt >"$out/said" && ok table || fail table "$(cat "$out/said")"
+     END {
+         for (s in twin)
+             if (twin[s] != "-" && !(twin[s] in twin)) { print s ": no twin " twin[s]; bad = 1 }
+         if (n < 24) { print n " cases"; bad = 1 }
+         exit bad
+     }' bench/zoo.txt >"$out/said" && ok table || fail table "$(cat "$out/said")"
 
 # made NAME SIZE OPTIONS: the scene of a case, in $out/SIZE/NAME; $reading: the options with which
 # it is read.
 made() {
     folder=$out/$2/$1
     where=$(awk -F'|' -v s="$1" '$3 == s { print $4 }' "$out/runs")
-    reading=$(awk -F'|' -v s="$1" '$3 == s { print " " $10 }' "$out/runs" | grep -o -E -- ' --(alpha|hold-out|black)( [^- ]+)?' | tr -d '\n')
+    reading=$(awk -F'|' -v s="$1" '$3 == s { print " " $10 }' "$out/runs" |
+        grep -o -E -- ' --(alpha|hold-out|black)( [^- ]+)?' | tr -d '\n')
     shift
-    [ -d "$folder" ] || "$TED4_BUILD/ted4scene" $(echo "${where#own:}" | sed 's/+/ --/g; s/=/ /g') --size "$@" -o "$folder" -j 2
+    [ -d "$folder" ] || "$TED4_BUILD/ted4scene" $(echo "${where#own:}" |
+        sed 's/+/ --/g; s/=/ /g') --size "$@" -o "$folder" -j 2
 }
 
 # ---- all are read ----
@@ -45,8 +51,11 @@ for name in $(awk -F'|' '{ print $3 }' "$out/runs"); do
     "$TED4_BUILD/ted4enc" "$folder" $reading --check >"$out/said" 2>&1
     status=$?
     others=$(grep 'warning:' "$out/said" | grep -v -e "${due:-nothing is due}")
-    if [ $status = 0 ] && [ -z "$others" ]; then ok "reads_$name"; else fail "reads_$name" "status $status: $(cat "$out/said")"; fi
-    if [ "$name" = missing ] && ! grep -q '^ted4enc: warning: 17 of 96 ' "$out/said"; then fail counts_missing "$(cat "$out/said")"; fi
+    if [ $status = 0 ] && [ -z "$others" ]; then ok "reads_$name";
+        else fail "reads_$name" "status $status: $(cat "$out/said")"; fi
+    if [ "$name" = missing ] &&
+        ! grep -q '^ted4enc: warning: 17 of 96 ' "$out/said"; then fail counts_missing \
+        "$(cat "$out/said")"; fi
 done
 
 # ---- the same pictures, written in another way ----
@@ -54,7 +63,8 @@ done
 # hash_of NAME: of the file that a few steps make.
 hash_of() {
     made "$1" $tiny
-    "$TED4_BUILD/ted4enc" "$folder" $reading -o "$out/$1.ted4" --preset draft --iterations 30,10 --seed 1 -j 1 -f -q --json 2>&1 |
+    "$TED4_BUILD/ted4enc" "$folder" $reading -o "$out/$1.ted4" --preset draft --iterations 30,10 \
+        --seed 1 -j 1 -f -q --json 2>&1 |
         sed 's/.*"hash":"\([0-9a-f]*\)".*/\1/'
 }
 
@@ -69,25 +79,30 @@ for name in png16 interlaced premult; do same $name clear; done
 same k-each room
 same hold-clips first
 same clear-dark toys
-[ "$(hash_of white)" != "$(hash_of toys)" ] && ok differs_white || fail differs_white "white and black give the same"
+[ "$(hash_of white)" != "$(hash_of toys)" ] && ok differs_white ||
+    fail differs_white "white and black give the same"
 
 # ---- short trainings ----
 
 # trained NAME: PSNR of training pictures in $psnr, of what moves in them in $moving.
 trained() {
     made "$1" 48x32
-    "$TED4_BUILD/ted4enc" "$folder" -o "$out/$1.ted4" --preset draft --iterations 1500,400 --seed 1 -j 2 -f -q >"$out/said" 2>&1 ||
+    "$TED4_BUILD/ted4enc" "$folder" -o "$out/$1.ted4" --preset draft --iterations 1500,400 \
+        --seed 1 -j 2 -f -q >"$out/said" 2>&1 ||
         { fail "trains_$1" "status $?: $(cat "$out/said")"; return 1; }
-    psnr=$("$TED4_BUILD/ted4eval" "$out/$1.ted4" "$folder" --split train -v --json --images "$out/pictures" -f 2>"$out/views" |
+    psnr=$("$TED4_BUILD/ted4eval" "$out/$1.ted4" "$folder" --split train \
+        -v --json --images "$out/pictures" -f 2>"$out/views" |
         sed 's/.*"psnr":\([0-9.]*\).*/\1/')
-    moving=$("$TED4_BUILD/bench/zoo_masks" "$folder" "$out/pictures" <"$out/views" | sed 's/.*"moving_psnr":\([0-9.]*\).*/\1/')
+    moving=$("$TED4_BUILD/bench/zoo_masks" "$folder" "$out/pictures" <"$out/views" |
+        sed 's/.*"moving_psnr":\([0-9.]*\).*/\1/')
 }
 
 # Within how many decibels of the friendly one so short a training is; ten times as many steps:
 # bench/zoo.md. A picture without anything has 16 dB.
 if trained toys; then
     friendly=$psnr
-    awk "BEGIN { exit !($psnr > 27 && $moving > 16) }" && ok trains_toys || fail trains_toys "$psnr dB, what moves $moving"
+    awk "BEGIN { exit !($psnr > 27 && $moving > 16) }" && ok trains_toys ||
+        fail trains_toys "$psnr dB, what moves $moving"
     trained turns10 && { awk "BEGIN { exit !($psnr > $friendly - 6) }" && ok trains_turns10 ||
         fail trains_turns10 "$psnr dB, friendly $friendly, what moves $moving"; }
 fi
@@ -110,7 +125,9 @@ for number in "00000", "00001":
     png(f"{out}/pictures/ours/{number}.png", 2, [9, 9, 9, 103, 96, 112])
 png(f"{out}/scene/truth/masks/train/b.png", 0, [0, 255])
 END
-printf '%s\n' "warning: no line of a picture" "$out/hand/scene/train/a.png frame 0: psnr 1" "$out/hand/scene/train/b.png frame 1: psnr 1" >"$out/views"
+printf '%s\n' "warning: no line of a picture" "$out/hand/scene/train/a.png frame 0: psnr 1" \
+    "$out/hand/scene/train/b.png frame 1: psnr 1" >"$out/views"
 "$TED4_BUILD/bench/zoo_masks" "$out/hand/scene" "$out/hand/pictures" <"$out/views" >"$out/said" 2>&1
-[ "$(cat "$out/said")" = '{"moving_psnr":30.6231,"moving_pixels":1,"pictures":1}' ] && ok masks || fail masks "$(cat "$out/said")"
+[ "$(cat "$out/said")" = '{"moving_psnr":30.6231,"moving_pixels":1,"pictures":1}' ] && ok masks ||
+    fail masks "$(cat "$out/said")"
 exit $bad

@@ -62,20 +62,26 @@ cat >"$out/build/bench/zoo_masks" <<END
 cat >"$out/views"
 echo '{"moving_psnr":23.5,"moving_pixels":77,"pictures":4}'
 END
-chmod +x "$out/bin/make" "$out/build/ted4scene" "$out/build/ted4enc" "$out/build/ted4eval" "$out/build/bench/zoo_masks"
-runs() { PATH=$out/bin:$PATH TED4_BUILD=$out/build TED4_RESULTS=$out/res TED4_TABLE=$out/table.txt bench/zoo.sh --jobs 1 "$@"; }
+chmod +x "$out/bin/make" "$out/build/ted4scene" "$out/build/ted4enc" "$out/build/ted4eval" \
+    "$out/build/bench/zoo_masks"
+runs() { PATH=$out/bin:$PATH TED4_BUILD=$out/build TED4_RESULTS=$out/res TED4_TABLE=$out/table.txt \
+    bench/zoo.sh --jobs 1 "$@"; }
 row_of() { grep "^$1-default-1," "$out/res/zoo.csv" | cut -d, -f6-; }
 
 runs held-default-1 broken-default-1 >"$out/said" 2>&1 && ok runs || fail runs "$(cat "$out/said")"
-[ "$(row_of held)" = "fine,0,30.25,31.5,23.5,77,123,5,250,1,2,1.2,0.5,0.750,0.750,20,0,abc," ] && ok fine_row || fail fine_row "$(row_of held)"
-[ "$(row_of broken)" = "error,3,,,,,,,,,,,,,,,,,ted4enc: no points; none at all" ] && ok error_row || fail error_row "$(row_of broken)"
+[ "$(row_of held)" = "fine,0,30.25,31.5,23.5,77,123,5,250,1,2,1.2,0.5,0.750,0.750,20,0,abc," ] &&
+    ok fine_row || fail fine_row "$(row_of held)"
+[ "$(row_of broken)" = "error,3,,,,,,,,,,,,,,,,,ted4enc: no points; none at all" ] &&
+    ok error_row || fail error_row "$(row_of broken)"
 [ "$(cat "$out/views")" = "a line of a view" ] && ok views || fail views "$(cat "$out/views")"
-check reading "$out/calls" 'eval --hold-out cam00 --alpha premultiplied --anyway --json -q -j 1' 'eval --hold-out cam00 --alpha premultiplied --anyway --split train --json -v -j 1'
+check reading "$out/calls" 'eval --hold-out cam00 --alpha premultiplied --anyway --json -q -j 1' \
+    'eval --hold-out cam00 --alpha premultiplied --anyway --split train --json -v -j 1'
 cp "$out/calls" "$out/before"
 runs held-default-1 broken-default-1 >"$out/said" 2>&1
 cmp -s "$out/calls" "$out/before" && ok nothing_twice || fail nothing_twice "$(cat "$out/said")"
 
-# Of a training of 50 s: what is said after 4 s does not count, after 12 s 60 s in all, after 40 s 45 s.
+# Of a training of 50 s: what is said after 4 s does not count, after 12 s 60 s in all, after 40 s
+# 45 s.
 step() { echo '{"step":1,"stage":"1","psnr":'$3',"bytes":9,"seconds":'$1',"left":'$2'}'; }
 { step 4 100 10; step 12 48 20; step 40 5 21.50; } >"$out/steps"
 told=$(python3 -m bench.pages foretold 50.00 "$out/steps")
@@ -97,27 +103,42 @@ kind-alone-1,k,kind,alone,o,fine,0,30,31,25,10,100,5,14000,0,0,50,49,0.9,1.2,30.
 END
 { head -n 1 "$out/res/zoo.csv"; cat "$out/rows"; } >"$out/page/zoo.csv"
 sed 's/\([^,]*\),.*/done \1/; s/^done odd/older odd/' "$out/rows" >"$out/states"
-printf '%s\n' "first line" "## odd" "Because it" "is odd." "## broken" "It has no points." >"$out/notes.md"
-make_page() { TED4_RESULTS=$out/page TED4_TABLE=$out/table.txt TED4_NOTES=$out/notes.md python3 -m bench.pages zoo "$out/states"; }
+printf '%s\n' "first line" "## odd" "Because it" "is odd." "## broken" "It has no points." \
+    >"$out/notes.md"
+make_page() { TED4_RESULTS=$out/page TED4_TABLE=$out/table.txt TED4_NOTES=$out/notes.md python3 \
+    -m bench.pages zoo "$out/states"; }
 page=$out/page/zoo.md
 make_page || { fail page "status $?"; exit 1; }
-check cells "$page" '| kind | `ted4scene toys --masks` | - | 30.00 | - | 31.00 | 25.00 | 100 | 5 | 14000 | 49 | 0 | 0 | met |' \
-    '| odd† | `ted4scene toys --unit 100 --masks` | kind | 28.50 | -1.50 |' '| **below its twin** |' \
-    '`, `--hold-out cam00 --alpha premultiplied` | kind | 29.50 | -0.50 | 31.00 | - |' '| **what moves** |' '| **error 3: no points** |'
-check bars "$page" '| 1 | cases that end with exit status 0 | all of at least 24 | 4 of 5 | **missed** |' \
-    '| at most 1 dB below | 2 of 3 | **missed** |' '| at least 22 dB | 0 of 1 | **missed** |' '| never | 0 times | met |'
-check long "$page" '| never | 1 trainings, 1 times | **missed** |' '| odd† | 29.25 | 32.00 | 25.50 | 200 | 60000 | 49 | 1 |'
-check foretold "$page" '| within 25 % | at worst 20.0 %, 1 runs | not run yet |' '| within 0.5 dB | at worst 0.10 dB | not run yet |' \
-    '| within 5 % | at worst 3.00 % | not run yet |' '| kind | 50 | 20.0 % | 0.10 dB | 3.00 % |' '| odd | not run yet |'
-check misses "$page" '* odd (below its twin): Because it is odd.' '* turns (what moves): **not explained yet**' '* broken (error 3: no points): It has no points.'
+check cells "$page" \
+    '| kind | `ted4scene toys --masks` | - | 30.00 | - | 31.00 | 25.00 | 100 | 5 | 14000 | 49 | 0 | 0 | met |' \
+    '| odd† | `ted4scene toys --unit 100 --masks` | kind | 28.50 | -1.50 |' \
+    '| **below its twin** |' \
+    '`, `--hold-out cam00 --alpha premultiplied` | kind | 29.50 | -0.50 | 31.00 | - |' \
+    '| **what moves** |' '| **error 3: no points** |'
+check bars "$page" \
+    '| 1 | cases that end with exit status 0 | all of at least 24 | 4 of 5 | **missed** |' \
+    '| at most 1 dB below | 2 of 3 | **missed** |' '| at least 22 dB | 0 of 1 | **missed** |' \
+    '| never | 0 times | met |'
+check long "$page" '| never | 1 trainings, 1 times | **missed** |' \
+    '| odd† | 29.25 | 32.00 | 25.50 | 200 | 60000 | 49 | 1 |'
+check foretold "$page" '| within 25 % | at worst 20.0 %, 1 runs | not run yet |' \
+    '| within 0.5 dB | at worst 0.10 dB | not run yet |' \
+    '| within 5 % | at worst 3.00 % | not run yet |' '| kind | 50 | 20.0 % | 0.10 dB | 3.00 % |' \
+    '| odd | not run yet |'
+check misses "$page" '* odd (below its twin): Because it is odd.' \
+    '* turns (what moves): **not explained yet**' '* broken (error 3: no points): It has no points.'
 cp "$page" "$out/first.md"
-make_page && cmp -s "$page" "$out/first.md" && ok same_bytes || fail same_bytes "the second page differs"
+make_page && cmp -s "$page" "$out/first.md" && ok same_bytes ||
+    fail same_bytes "the second page differs"
 
 sed -i '/^broken/d; s/^turns\(.*\),21,/turns\1,22,/; s/,28.5,/,29,/; s/^kind-d\(.*\),14000,0,/kind-d\1,14000,2,/' "$out/page/zoo.csv"
-sed 's/^kind-alone\(.*\)0.9,1.2,30.1,103,/odd-alone\10.7,1.1,30.6,94,/' "$out/rows" | grep odd-alone >>"$out/page/zoo.csv"
+sed 's/^kind-alone\(.*\)0.9,1.2,30.1,103,/odd-alone\10.7,1.1,30.6,94,/' "$out/rows" |
+    grep odd-alone >>"$out/page/zoo.csv"
 sed -i '/alone/d' "$out/states" && printf 'done %s\n' kind-alone-1 odd-alone-1 >>"$out/states"
 make_page
-check told_wrong "$page" '| at worst 30.0 %, 2 runs | **missed** |' '| at worst 0.60 dB | **missed** |' '| at worst 6.00 % | **missed** |'
-check met "$page" '| at most 1 dB below | 3 of 3 | not run yet |' '| at least 22 dB | 1 of 1 | not run yet |' '| never | 2 times | **missed** |' \
+check told_wrong "$page" '| at worst 30.0 %, 2 runs | **missed** |' \
+    '| at worst 0.60 dB | **missed** |' '| at worst 6.00 % | **missed** |'
+check met "$page" '| at most 1 dB below | 3 of 3 | not run yet |' \
+    '| at least 22 dB | 1 of 1 | not run yet |' '| never | 2 times | **missed** |' \
     '| broken | `ted4scene toys --points none` | kind | not run yet |'
 exit $bad
