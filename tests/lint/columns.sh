@@ -6,11 +6,11 @@
 # given or is expected to say.
 # Tables of the decoder that a program prints (norm/tables.c) stay as they are printed.
 export LC_ALL=C
-[ $# -gt 0 ] || set -- $(find Makefile .ci .clang-format ./*.md bench conformance doc fuzz \
-    ref-decoder ref-encoder spec tests tools -type f \( -name '*.[ch]' -o -name '*.def' \
-    -o -name '*.sh' -o -name run -o -name '*.awk' -o -name '*.py' \
-    -o -name '*.mk' -o -name Makefile -o -name '*.md' \) ! -path '*/corpus/*' \
-    ! -path 'conformance/vectors/*' ! -path '*/__pycache__/*' ! -path ref-decoder/norm/tables.c)
+[ $# -gt 0 ] || set -- $(find . \( -name .git -o -name 'build*' -o -name corpus -o -name out \
+    -o -name __pycache__ -o -path ./conformance/vectors -o -path ./conformance/generated \) -prune \
+    -o -type f \( -name '*.[ch]' -o -name '*.def' -o -name '*.sh' -o -name run -o -name '*.awk' \
+    -o -name '*.py' -o -name '*.mk' -o -name Makefile -o -name '*.md' \) \
+    ! -path ./ref-decoder/norm/tables.c -print | sed 's|^\./||' | sort)
 awk '
     FNR == 1 { block = 0; prose = FILENAME ~ /\.md$/; shell = FILENAME ~ /\.sh$/; document = "" }
     {
