@@ -14,12 +14,6 @@
 #include "lab_facts.h"
 #include "tool/cli.h"
 
-int lab_failed(const char *what, const char *why)
-{
-    fprintf(stderr, "lab_facts: %s: %s\n", what, why);
-    return TED4_EXIT_TOOL;
-}
-
 static int open_file(lab_session *s, const char *path)
 {
     ted4_error e = { TED4_OK, 0 };

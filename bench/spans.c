@@ -24,12 +24,6 @@
 #include "spans.h"
 #include "tool/cli.h"
 
-int failed(const char *what, const char *why)
-{
-    fprintf(stderr, "spans: %s: %s\n", what, why);
-    return TED4_EXIT_TOOL;
-}
-
 /* Component c of the activation of anchor i, as spec 10.4 decodes it. */
 static float tau(const ted4_scene *s, size_t i, size_t c)
 {

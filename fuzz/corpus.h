@@ -7,6 +7,8 @@
 #include <stddef.h>
 #include <stdint.h>
 
+/* FOLDER of make_corpus. */
+extern const char *corpus_folder;
 /* FOLDER/GROUP/NAME. What cannot be written ends the process with 3. */
 void corpus_write(const char *group, const char *name, const void *data, size_t size);
 

@@ -13,8 +13,6 @@
 
 enum { MAX_FILE = 1 << 14, KNOBS = 2, QUERIES = 32 };
 
-static const char *corpus;
-
 /* Nothing moves, no masks, one slice, no view: the least that a file holds. */
 static ted4_header smallest(void)
 {
@@ -145,21 +143,6 @@ static size_t add_meta(uint8_t *data, size_t size)
     return size + whole;
 }
 
-void corpus_write(const char *group, const char *file, const void *data, size_t size)
-{
-    char path[4096];
-    FILE *f;
-
-    (void)snprintf(path, sizeof path, "%s/%s", corpus, group);
-    (void)mkdir(path, 0777);
-    (void)snprintf(path, sizeof path, "%s/%s/%s", corpus, group, file);
-    f = fopen(path, "wb");
-    if (f == NULL || fwrite(data, 1, size, f) != size || fclose(f) != 0) {
-        perror(path);
-        exit(3);
-    }
-}
-
 static int write_file(int i)
 {
     random_source r = random_seed((uint64_t)i);
@@ -211,7 +194,7 @@ static void write_refused(void)
         FILE *f;
         size_t size;
 
-        (void)snprintf(path, sizeof path, "%s/ted4/%s.ted4", corpus, name[seed % N_FILES]);
+        (void)snprintf(path, sizeof path, "%s/ted4/%s.ted4", corpus_folder, name[seed % N_FILES]);
         f = fopen(path, "rb");
         size = f != NULL ? fread(data, 1, MAX_FILE, f) : 0;
         if (f != NULL)
@@ -264,7 +247,7 @@ int main(int argc, char **argv)
         fprintf(stderr, "make_corpus: usage: make_corpus FOLDER\n");
         return 3;
     }
-    corpus = argv[1];
+    corpus_folder = argv[1];
     for (int i = 0; i < N_FILES; i++)
         if (!write_file(i)) {
             fprintf(stderr, "make_corpus: %s failed\n", name[i]);

@@ -33,6 +33,8 @@ void conf_build_masks(conf_build *b);
 void conf_build_symbols(conf_build *b);
 void conf_build_pack(conf_build *b);
 
+/* ---- build_words.c ---- */
+
 /* 1: word i of the line is that text. */
 int conf_word_is(const conf_line *l, int i, const char *text);
 /* Word i: a binary32 in decimal, as C's hexadecimal floating constant, or as :7f800000, a pattern.

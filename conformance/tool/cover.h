@@ -19,7 +19,7 @@ typedef struct {
     json_t *orphans; /* texts: rules without vectors, vectors without rules */
 } conf_cover;
 
-/* A thing to be reached. */
+/* cover_goals.c: a thing to be reached. */
 void conf_goal(conf_cover *c, const char *group, const char *format, ...)
     __attribute__((format(printf, 3, 4)));
 /* A vector reaches it; one that is no goal is passed over. */

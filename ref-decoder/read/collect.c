@@ -11,18 +11,6 @@
 #include "norm/limits.h"
 #include "norm/scene.h"
 
-ted4_error ted4_collect_error(ted4_collector *c)
-{
-    const ted4_error e = c->d.file.base.error;
-
-    if (e.code != TED4_OK) {
-        ted4_find_error(c->f, e);
-        c->d.file.base.error.code = TED4_OK;
-        c->wrong = 1;
-    }
-    return e;
-}
-
 /* 1: go on. */
 static int judge_file_header(ted4_collector *c)
 {

@@ -9,6 +9,18 @@
 /* Elements of HEAD end before. */
 enum { HEAD_BYTES = 128 };
 
+ted4_error ted4_collect_error(ted4_collector *c)
+{
+    const ted4_error e = c->d.file.base.error;
+
+    if (e.code != TED4_OK) {
+        ted4_find_error(c->f, e);
+        c->d.file.base.error.code = TED4_OK;
+        c->wrong = 1;
+    }
+    return e;
+}
+
 /* One error more of a chunk of which n have been listed: may the search go on? */
 static int may_go_on(ted4_collector *c, const ted4_chunk_place *p, int n)
 {

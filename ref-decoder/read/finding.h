@@ -28,7 +28,9 @@ typedef struct {
     int starved;        /* memory has run out where more was looked for */
 } ted4_findings;
 
-/* Unless it is the verdict, which is noted, or says that memory has run out. */
+/* Gives an error to the sink, with its rule and its chunk. */
+void ted4_give_error(ted4_findings *f, ted4_error e);
+/* The same, unless it is the verdict, which is noted, or says that memory has run out. */
 void ted4_find_error(ted4_findings *f, ted4_error e);
 /* n_values of a, b count. where: as in ted4_finding. */
 void ted4_find_advice(ted4_findings *f, ted4_advice what, const char *where, size_t offset,

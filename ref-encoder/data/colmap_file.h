@@ -33,7 +33,7 @@ typedef struct {
 int ted4_colmap_read(ted4_colmap *c, const char *folder, ted4_message *m);
 void ted4_colmap_free(ted4_colmap *c);
 
-/* Shared by the two encodings, colmap_bin.c and colmap_txt.c. */
+/* ---- colmap_model.c: shared by the two encodings ---- */
 
 /* Camera model by COLMAP's number or name; -1 when unknown or with a lens that cannot be
  * undistorted here (*m is filled). where names the camera. n_parameters may be NULL. */
@@ -53,6 +53,8 @@ int ted4_colmap_set_pose(ted4_colmap_image *i, const double qt[7], const char *w
 
 /* Room for one more record at the end of an array of n; grows by doubling. 0, or -1: no memory. */
 int ted4_colmap_reserve(void **array, size_t n, size_t record_size);
+
+/* ---- colmap_bin.c, colmap_txt.c ---- */
 
 /* One file of the model each, in its two encodings. 0, or -1 with *m filled. */
 int ted4_colmap_bin_cameras(ted4_colmap *c, const char *path, ted4_message *m);

@@ -60,6 +60,8 @@ typedef struct {
     uint32_t seed;
 } ted4_ray_world;
 
+/* ---- ray_parts.c ---- */
+
 /* Room and lamp without objects; add objects with ted4_ray_add. */
 void ted4_ray_world_empty(ted4_ray_world *w, uint32_t seed);
 
@@ -75,10 +77,12 @@ void ted4_ray_dress(ted4_ray_object *o, ted4_ray_texture_kind texture, vec3 a, v
 /* A painted box with a ball on an arm, all turning together on a drum: four solids. */
 void ted4_ray_carousel(ted4_ray_world *w, double turns);
 
-/* The scene at frame j of n; time j / (n - 1). */
-void ted4_ray_world_at(ted4_ray_world *w, ted4_ray_scene s, uint32_t seed, int frame, int n_frames);
-
 /* Time of a frame, 0 when there is one frame only. */
 double ted4_ray_time(int frame, int n_frames);
+
+/* ---- ray_world.c ---- */
+
+/* The scene at frame j of n; time j / (n - 1). */
+void ted4_ray_world_at(ted4_ray_world *w, ted4_ray_scene s, uint32_t seed, int frame, int n_frames);
 
 #endif
