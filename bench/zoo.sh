@@ -40,6 +40,9 @@ jobs=$(getconf _NPROCESSORS_ONLN) threads=1 share= judges=bench/zoo_masks.c
 # Options that say what is read of the scene, as ted4enc and ted4eval both have them.
 reading() { echo " $options" | grep -o -E -- ' --(alpha|hold-out|downscale) [^ ]+' | tr -d '\n'; }
 
+# A number of a JSON file; nothing where it is not finite.
+known() { value "$@" | sed 's/^null$//'; }
+
 # Pictures of training are looked at where they show what moves, as far as the scene has masks.
 measure() {
     run "$programs/ted4eval" "$out.ted4" "$folder" $(reading) --anyway --json -q -j "$threads" \
@@ -53,8 +56,8 @@ measure() {
     told=$(python3 -m bench.pages foretold "$(value train_s "$out.json")" "$out.jsonl") || return 1
     warnings=$(grep -c 'warning:' "$out.err")
     row=$tag,$key,$scene,$groups,$options,fine,0
-    row=$row,$(value psnr "$out.eval.json"),$(value psnr "$out.train.json")
-    row=$row,$(value moving_psnr "$out.masks.json" | sed 's/^null$//')
+    row=$row,$(known psnr "$out.eval.json"),$(known psnr "$out.train.json")
+    row=$row,$(known moving_psnr "$out.masks.json")
     row=$row,$(value moving_pixels "$out.masks.json")
     for f in bytes anchors steps rollbacks; do row=$row,$(value $f "$out.json"); done
     row=$row,$warnings,$(echo "$times" | cut -d, -f1,3),$told,$(value hash "$out.json"),

@@ -80,10 +80,11 @@ class Zoo:
     def __init__(self, runs, table, notes):
         self.runs, self.notes = runs, notes
         twins = read_twins(table)
-        self.cases = [Case(runs, scene, twins) for scene in runs.scenes]
+        self.cases = [Case(runs, scene, twins) for scene in runs.scenes if scene in twins]
         self.there = [case for case in self.cases if case.run.has()]
         self.alone = self.of("alone")
         self.long = self.of("medium")
+        self.lab = self.of("lab")
         self.foretold = {run.tag: Foretold(run) for run in self.alone
                          if run.text("status") == "fine"}
 
@@ -112,11 +113,16 @@ def write(runs, _charts, _results, _pages):
         on one core even for pictures of 96x64.""")
     bars = Bars()
     case_bars(zoo, bars)
-    long_bar(zoo, bars)
+    back_bar(bars, zoo.lab, "the same on the scenes of the stability lab",
+             "`bench/zoo.sh lab`")
+    back_bar(bars, zoo.long, "the same in long trainings", "`bench/zoo.sh long`")
     foretold_bars(zoo, bars)
     bars.show(page, "command; then `python3 -m bench.pages zoo`")
     show_cases(zoo, page)
-    show_long(zoo, page)
+    show_back(page, zoo.long, "Long trainings", "These are trainings with the default preset.")
+    show_back(page, zoo.lab, "The stability lab", """These are the scenes of
+        [stability.md](stability.md), at one seed and with its options. They are here for the watch
+        alone.""")
     show_alone(zoo, page)
     show_misses(zoo, page)
     return {"zoo.md": page.text()}
@@ -143,13 +149,12 @@ def case_bars(zoo, bars):
              zoo.so_far(back), "`bench/zoo.sh`")
 
 
-def long_bar(zoo, bars):
-    there = [run for run in zoo.long if run.has()]
+def back_bar(bars, runs, what, how):
+    there = [run for run in runs if run.has()]
     back = sum(run.count("rollbacks") + (run.text("status") != "fine") for run in there)
-    bars.add(3, "the same in long trainings, and that they end well", "never",
+    bars.add(3, what + ", and that they end well", "never",
              f"{len(there)} trainings, {back:.0f} times",
-             False if back else None if len(there) < len(zoo.long) else True,
-             "`bench/zoo.sh long`")
+             False if back else None if len(there) < len(runs) else True, how)
 
 
 def foretold_bars(zoo, bars):
@@ -189,13 +194,13 @@ def show_cases(zoo, page):
                              "rollbacks"), f"**{why}**" if why else "met")
 
 
-def show_long(zoo, page):
-    if not zoo.long:
+def show_back(page, runs, title, text):
+    if not runs:
         return
-    page.heading("Long trainings")
-    page.prose("These are trainings with the default preset.")
+    page.heading(title)
+    page.prose(text)
     page.table("case", "held out", "training", "what moves", "bytes", "steps", "seconds", "back")
-    for run in zoo.long:
+    for run in runs:
         if run.has():
             page.row(run.scene + mark([run]), *cells(
                 run, "psnr:2 train_psnr:2 moving_psnr:2 bytes steps cpu_s:0 rollbacks"))
