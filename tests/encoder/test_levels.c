@@ -10,6 +10,7 @@
 #include "generate_case.h"
 #include "raster_scene.h"
 #include "rate_ref.h"
+#include "train/raster/raster_bwd.h"
 #include "train/math/adam.h"
 #include "train/loss/camera_colour_job.h"
 #include "train/loss/loss.h"

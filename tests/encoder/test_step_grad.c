@@ -9,6 +9,8 @@
 #include "loss_ref.h"
 #include "raster_ref.h"
 #include "rate_ref.h"
+#include "train/raster/raster_bwd.h"
+#include "train/splat/generator.h"
 #include "render/raster_plain.h"
 #include "train/loss/loss.h"
 #include "train/math/random.h"

@@ -23,7 +23,7 @@ ref-encoder/kernel          base render kernel
 ref-encoder/data            base math data
 ref-encoder/eval            base eval
 ref-encoder/write           base norm math write kernel ted4.h
-ref-encoder/train/math      base norm recon render math
+ref-encoder/train/math      base norm recon render math kernel
 ref-encoder/train/model     base norm recon render math data kernel write $rooms_1 ted4.h
 ref-encoder/train/splat     base norm recon render math kernel $rooms_2
 ref-encoder/train/raster    base norm recon render math $rooms_2

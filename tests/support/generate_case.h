@@ -10,6 +10,7 @@
 #include "generate_ref.h"
 #include "random_source.h"
 #include "train/model/model.h"
+#include "train/splat/generator.h"
 
 /* More slots than the generator has chunks. The first has no unused lane, one has no other. */
 enum {

@@ -10,7 +10,7 @@
 
 #include "norm/half.h"
 #include "random_source.h"
-#include "train/model/model.h"
+#include "train/rate/rate.h"
 
 enum { REF_MAX_CHANNELS = 128, REF_MAX_OUTPUTS = 256, REF_MAX_NET = 4096, REF_SLOTS = 3 };
 

@@ -7,7 +7,7 @@
 #include <stdint.h>
 #include <string.h>
 
-#include "train/model/model.h"
+#include "kernel/dense.h"
 #include "recon/strict.h"
 #include "render/leveled.h"
 

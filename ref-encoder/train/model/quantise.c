@@ -2,9 +2,10 @@
  * spec 10.4. Every value becomes k q with k = x / q + n; the residual n is all that noise and
  * rounding decide, so both callers take it from here.
  * SPDX-License-Identifier: BSD-2-Clause */
-#include "train/rate/rate_lanes.h"
-
 #include <string.h>
+
+#include "model.h"
+#include "train/math/lane_math.h"
 
 #define MAX_SYMBOL 32767.0f /* spec 9.4, R-ENT-007 */
 
@@ -75,15 +76,15 @@ void TED4_LEVELED(ted4_residuals)(const ted4_layout *l, ted4_quant quant, const 
             const uint32_t channel = (uint32_t)l->first[t] + c;
 
             if (quant == TED4_QUANT_NOISE)
-                noise_row(key, block, channel, residual + ted4_row(channel));
+                noise_row(key, block, channel, residual + ted4_row_floats(channel));
             else
-                rounding_row(value + ted4_row(channel), steps + ted4_row((size_t)t),
-                             residual + ted4_row(channel));
+                rounding_row(value + ted4_row_floats(channel), steps + ted4_row_floats((size_t)t),
+                             residual + ted4_row_floats(channel));
         }
     if (l->first[TED4_TAU] >= 0) {
-        const size_t tau = ted4_row((size_t)l->first[TED4_TAU]);
+        const size_t tau = ted4_row_floats((size_t)l->first[TED4_TAU]);
 
-        order_tau(value + tau, steps + ted4_row(TED4_TAU), residual + tau);
+        order_tau(value + tau, steps + ted4_row_floats(TED4_TAU), residual + tau);
     }
 }
 
@@ -107,15 +108,15 @@ void TED4_LEVELED(ted4_quantise)(const ted4_layout *l, ted4_quant quant, const f
     for (int t = 0; t < TED4_TYPES; t++)
         for (unsigned c = 0; c < l->shape.dim[t]; c++) {
             const uint32_t channel = (uint32_t)l->first[t] + c;
-            const size_t at = ted4_row(channel);
+            const size_t at = ted4_row_floats(channel);
             float noise[TED4_LANES];
 
             if (quant == TED4_QUANT_NOISE)
                 noise_row(key, block, channel, noise);
-            quantise_row(quant, attr + at, steps + ted4_row((size_t)t), noise, out + at);
+            quantise_row(quant, attr + at, steps + ted4_row_floats((size_t)t), noise, out + at);
         }
     if (l->first[TED4_TAU] >= 0) {
-        float *tau = out + ted4_row((size_t)l->first[TED4_TAU]);
+        float *tau = out + ted4_row_floats((size_t)l->first[TED4_TAU]);
 
         for (int j = 0; j < TED4_LANES; j++) {
             const float start = tau[TAU_START * TED4_LANES + j];
@@ -124,8 +125,8 @@ void TED4_LEVELED(ted4_quantise)(const ted4_layout *l, ted4_quant quant, const f
             *end = start > *end ? start : *end;
         }
     }
-    const size_t logits = ted4_row((size_t)l->offset_logit);
-    const size_t n = ted4_row((size_t)l->n_channels) - logits;
+    const size_t logits = ted4_row_floats((size_t)l->offset_logit);
+    const size_t n = ted4_row_floats((size_t)l->n_channels) - logits;
 
     memcpy(out + logits, attr + logits, n * sizeof *out);
 }

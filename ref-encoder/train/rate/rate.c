@@ -111,7 +111,7 @@ static float *take(arena *a, size_t n)
 static void take_acts(arena *a, const ted4_rate_net *n, int with_input, ted4_rate_acts *acts)
 {
     for (int i = 0; i <= n->n; i++) {
-        const size_t size = ted4_row((size_t)n->dim[i] * TED4_RATE_CHUNK);
+        const size_t size = ted4_row_floats((size_t)n->dim[i] * TED4_RATE_CHUNK);
 
         if (i > 0 || with_input)
             acts->x[i] = take(a, size);
@@ -123,9 +123,9 @@ static void take_acts(arena *a, const ted4_rate_net *n, int with_input, ted4_rat
 static void take_room(arena *a, const ted4_rate *r, ted4_rate_room *room)
 {
     const ted4_layout *l = &r->layout;
-    const size_t channels = ted4_row((size_t)l->offset_logit);
-    const size_t offsets = ted4_row(l->head.n_offsets);
-    const size_t context = ted4_row(l->shape.dim[TED4_FEATURE]);
+    const size_t channels = ted4_row_floats((size_t)l->offset_logit);
+    const size_t offsets = ted4_row_floats(l->head.n_offsets);
+    const size_t context = ted4_row_floats(l->shape.dim[TED4_FEATURE]);
     ted4_rate_slot *s = &room->slot;
 
     take_acts(a, &r->hyper, 1, &room->hyper);
@@ -299,7 +299,7 @@ int ted4_rate_lanes(ted4_rate *r, const ted4_rate_input *in, const ted4_parallel
     double bits[TED4_TYPES];
 
     memset(lane_bits, 0,
-           in->n_slots * ted4_row(1u + in->layout->head.n_offsets) * sizeof *lane_bits);
+           in->n_slots * ted4_row_floats(1u + in->layout->head.n_offsets) * sizeof *lane_bits);
     return evaluate((ted4_rate_job) { .rate = r, .in = in, .steps = steps, .lane_bits = lane_bits },
                     p, NULL, bits);
 }

@@ -22,20 +22,20 @@ static void slices_backward(const ted4_rate *r, ted4_rate_room *room, size_t i)
 {
     const ted4_layout *l = &r->layout;
     const size_t f = l->shape.dim[TED4_FEATURE];
-    const float *d_out = room->hyper.d[r->hyper.n] + i * ted4_row(l->shape.n_outputs) +
-                         ted4_row(l->shape.first_output[TED4_FEATURE]);
+    const float *d_out = room->hyper.d[r->hyper.n] + i * ted4_row_floats(l->shape.n_outputs) +
+                         ted4_row_floats(l->shape.first_output[TED4_FEATURE]);
 
-    memset(room->slot.d_context, 0, ted4_row(f) * sizeof(float));
+    memset(room->slot.d_context, 0, ted4_row_floats(f) * sizeof(float));
     for (size_t m = 1, known = 0; m < l->head.n_slices; m++) {
         const ted4_rate_net *n = &r->slice[m];
-        const size_t width = ted4_row((size_t)n->dim[1]);
-        const size_t half = ted4_row(l->head.slice[m]);
+        const size_t width = ted4_row_floats((size_t)n->dim[1]);
+        const size_t half = ted4_row_floats(l->head.slice[m]);
         float *d_hidden = room->slice[m].d[1] + i * width;
-        float *d_y = room->slice[m].d[2] + i * ted4_row((size_t)n->dim[2]);
+        float *d_y = room->slice[m].d[2] + i * ted4_row_floats((size_t)n->dim[2]);
 
         known += l->head.slice[m - 1];
-        memcpy(d_y, d_out + ted4_row(known), half * sizeof *d_y);
-        memcpy(d_y + half, d_out + ted4_row(known + f), half * sizeof *d_y);
+        memcpy(d_y, d_out + ted4_row_floats(known), half * sizeof *d_y);
+        memcpy(d_y + half, d_out + ted4_row_floats(known + f), half * sizeof *d_y);
         TED4_LEVELED(ted4_dense_backward_x)(&n->layer[1], d_y, d_hidden, 0);
         relu_backward(room->slice[m].x[1] + i * width, width, d_hidden);
         TED4_LEVELED(ted4_dense_backward_x)(&n->layer[0], d_hidden, room->slot.d_context, 1);
@@ -48,7 +48,7 @@ static void value_backward(const ted4_rate_job *job, const ted4_rate_slot *s, in
                            const float *q, const float *d_context, const float *d_value,
                            const int32_t *on, float *d_x, float *d_v)
 {
-    const size_t at = ted4_row(channel);
+    const size_t at = ted4_row_floats(channel);
     const float unit = 1.0f / job->in->layout->head.step[t];
     const float distortion = job->in->distortion_weight;
     const float *x = s->value + at, *n = s->residual + at;
@@ -77,7 +77,7 @@ static void type_backward(const ted4_rate_job *job, ted4_rate_room *room, size_t
                           const float *v, float *d_v)
 {
     const ted4_layout *l = job->in->layout;
-    const float *q = job->steps[slot] + ted4_row((size_t)t);
+    const float *q = job->steps[slot] + ted4_row_floats((size_t)t);
     const float *d_value = job->d_value != NULL ? job->d_value[slot] : NULL;
     const float *d_context = t == TED4_FEATURE ? room->slot.d_context : NULL;
     int32_t on[TED4_LANES];
@@ -87,7 +87,7 @@ static void type_backward(const ted4_rate_job *job, ted4_rate_room *room, size_t
         const size_t channel = (size_t)l->first[t] + c;
 
         value_backward(job, &room->slot, t, channel, q, d_context, d_value, on,
-                       job->d_attr[slot] + ted4_row(channel), d_v);
+                       job->d_attr[slot] + ted4_row_floats(channel), d_v);
         d_context = d_context != NULL ? d_context + TED4_LANES : NULL;
     }
 #pragma omp simd
@@ -114,15 +114,15 @@ static void logits_backward(const ted4_rate_job *job, const ted4_rate_slot *s, s
     const float *attr = job->in->attr[slot];
     float *d = job->d_attr[slot];
     int32_t in_use[TED4_LANES], used[TED4_LANES];
-    const size_t moves = ted4_row((size_t)l->temporal_logit);
+    const size_t moves = ted4_row_floats((size_t)l->temporal_logit);
 
     ted4_lane_set(job->in->lanes[slot], in_use);
     for (int j = 0; j < TED4_LANES; j++)
         used[j] = -(s->used[j] > 0.0f);
     for (size_t k = 0; l->head.offset_mask && k < l->head.n_offsets; k++) {
-        const size_t at = ted4_row((size_t)l->offset_logit + k);
+        const size_t at = ted4_row_floats((size_t)l->offset_logit + k);
 
-        mask_backward(weight, s->kept_bits + ted4_row(k), in_use, attr + at, d + at);
+        mask_backward(weight, s->kept_bits + ted4_row_floats(k), in_use, attr + at, d + at);
     }
     if (l->head.temporal_mask)
         mask_backward(weight, s->phi_bits, used, attr + moves, d + moves);
@@ -132,15 +132,15 @@ static void hyper_backward(const ted4_rate *r, ted4_rate_room *room, size_t i)
 {
     const ted4_rate_net *h = &r->hyper;
     const ted4_rate_acts *a = &room->hyper;
-    const float *d_v = a->d[h->n] + i * ted4_row((size_t)h->dim[h->n]) +
-                       ted4_row(r->layout.shape.first_step_output);
+    const float *d_v = a->d[h->n] + i * ted4_row_floats((size_t)h->dim[h->n]) +
+                       ted4_row_floats(r->layout.shape.first_step_output);
 
     for (int k = h->n - 1; k > 0; k--) {
-        const size_t width = ted4_row((size_t)h->dim[k]);
+        const size_t width = ted4_row_floats((size_t)h->dim[k]);
         float *d = a->d[k] + i * width;
 
         TED4_LEVELED(ted4_dense_backward_x)
-        (&h->layer[k], a->d[k + 1] + i * ted4_row((size_t)h->dim[k + 1]), d, 0);
+        (&h->layer[k], a->d[k + 1] + i * ted4_row_floats((size_t)h->dim[k + 1]), d, 0);
         if (k == h->n - 1)
             TED4_LEVELED(ted4_dense_backward_x)(&r->step, d_v, d, 1);
         relu_backward(a->x[k] + i * width, width, d);
@@ -151,13 +151,13 @@ void ted4_rate_slot_backward(const ted4_rate_job *job, ted4_rate_room *room, siz
 {
     const ted4_rate *r = job->rate;
     const ted4_shape *shape = &r->layout.shape;
-    const size_t out = i * ted4_row(shape->n_outputs);
-    const size_t steps = out + ted4_row(shape->first_step_output);
+    const size_t out = i * ted4_row_floats(shape->n_outputs);
+    const size_t steps = out + ted4_row_floats(shape->first_step_output);
     const float *v = room->hyper.x[r->hyper.n] + steps;
     float *d_out = room->hyper.d[r->hyper.n];
     float *d_v = d_out + steps;
 
-    memset(d_v, 0, ted4_row(shape->n_types) * sizeof *d_v);
+    memset(d_v, 0, ted4_row_floats(shape->n_types) * sizeof *d_v);
     slices_backward(r, room, i);
     for (int t = 0; t < TED4_TYPES; t++) {
         if (shape->dim[t] == 0)
@@ -165,8 +165,8 @@ void ted4_rate_slot_backward(const ted4_rate_job *job, ted4_rate_room *room, siz
         if (ted4_rate_coded(job, t))
             type_backward(job, room, slot, t, v, d_v);
         else
-            memset(d_out + out + ted4_row(shape->first_output[t]), 0,
-                   ted4_row(2 * (size_t)shape->dim[t]) * sizeof *d_out);
+            memset(d_out + out + ted4_row_floats(shape->first_output[t]), 0,
+                   ted4_row_floats(2 * (size_t)shape->dim[t]) * sizeof *d_out);
         v += TED4_LANES;
         d_v += TED4_LANES;
     }
@@ -179,25 +179,25 @@ static void layer_weights(const ted4_rate_net *n, int k, const float *x, size_t 
                           const float *d, size_t n_slots, float *d_net)
 {
     TED4_LEVELED(ted4_dense_backward_w)
-    (n->dim[k], n->dim[k + 1], x, x_stride, d, ted4_row((size_t)n->dim[k + 1]), n_slots,
+    (n->dim[k], n->dim[k + 1], x, x_stride, d, ted4_row_floats((size_t)n->dim[k + 1]), n_slots,
      d_net + n->w[k], d_net + n->b[k]);
 }
 
 void ted4_rate_weights_backward(const ted4_rate *r, ted4_rate_room *room, size_t n_slots)
 {
     const ted4_layout *l = &r->layout;
-    const size_t context = ted4_row(l->shape.dim[TED4_FEATURE]);
+    const size_t context = ted4_row_floats(l->shape.dim[TED4_FEATURE]);
     float *d_net = room->sums->d_net;
 
     memset(d_net, 0, l->shape.n_nete * sizeof *d_net);
     for (int k = 0; k < r->hyper.n; k++)
-        layer_weights(&r->hyper, k, room->hyper.x[k], ted4_row((size_t)r->hyper.dim[k]),
+        layer_weights(&r->hyper, k, room->hyper.x[k], ted4_row_floats((size_t)r->hyper.dim[k]),
                       room->hyper.d[k + 1], n_slots, d_net);
     for (int m = 1; m < l->head.n_slices; m++) {
         const ted4_rate_net *n = &r->slice[m];
         const ted4_rate_acts *a = &room->slice[m];
 
         layer_weights(n, 0, room->context, context, a->d[1], n_slots, d_net);
-        layer_weights(n, 1, a->x[1], ted4_row((size_t)n->dim[1]), a->d[2], n_slots, d_net);
+        layer_weights(n, 1, a->x[1], ted4_row_floats((size_t)n->dim[1]), a->d[2], n_slots, d_net);
     }
 }

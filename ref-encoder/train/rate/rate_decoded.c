@@ -19,8 +19,8 @@ void ted4_rate_integer_steps(const ted4_rate_job *job, ted4_rate_room *room, siz
 
     for (size_t j = 0; j < TED4_LANES; j++)
         for (size_t a = 0; a < 3; a++)
-            position[j][a] = job->in->lanes[slot] >> j & 1 ? ted4_float_to_half(p[ted4_row(a) + j])
-                                                           : 0;
+            position[j][a] =
+                job->in->lanes[slot] >> j & 1 ? ted4_float_to_half(p[ted4_row_floats(a) + j]) : 0;
     ted4_prior_hyper(&job->integer->prior, position[0], TED4_LANES, room->integer);
     for (int t = 0; t < TED4_TYPES; t++, q += TED4_LANES) {
         if (shape->dim[t] == 0)
@@ -42,7 +42,7 @@ static void slices(const ted4_rate_job *job, ted4_rate_room *room, const float *
 {
     const ted4_layout *l = job->in->layout;
     const size_t f = l->shape.dim[TED4_FEATURE];
-    const size_t first = ted4_row((size_t)l->first[TED4_FEATURE]);
+    const size_t first = ted4_row_floats((size_t)l->first[TED4_FEATURE]);
     const float *x = room->slot.value + first;
     const float *n = room->slot.residual + first;
     int32_t *mu = room->integer;
@@ -50,7 +50,7 @@ static void slices(const ted4_rate_job *job, ted4_rate_room *room, const float *
     int16_t context[TED4_MAX_FEATURE * TED4_PRIOR_BLOCK];
 
     for (size_t c = 0; c < f; c++)
-        for (size_t j = 0, at = ted4_row(c); j < TED4_LANES; j++) {
+        for (size_t j = 0, at = ted4_row_floats(c); j < TED4_LANES; j++) {
             /* Where x / q has no room for fractions the sum may round to just outside of the range
              * of symbols. */
             const float k = ted4_lane_round(
@@ -81,12 +81,12 @@ void ted4_rate_integer_outputs(const ted4_rate_job *job, ted4_rate_room *room, c
 {
     const ted4_shape *shape = &job->in->layout->shape;
 
-    slices(job, room, q, out + ted4_row(shape->first_step_output));
+    slices(job, room, q, out + ted4_row_floats(shape->first_step_output));
     for (int t = 0; t < TED4_TYPES; t++)
         for (size_t c = 0; c < 2 * (size_t)shape->dim[t]; c++) {
             const size_t row = shape->first_output[t] + c;
             const int32_t *from = room->integer + row * TED4_PRIOR_BLOCK;
-            float *to = out + ted4_row(row);
+            float *to = out + ted4_row_floats(row);
 
             for (int j = 0; j < TED4_LANES; j++)
                 to[j] = c < shape->dim[t] ? (float)from[j] * 0x1p-8f

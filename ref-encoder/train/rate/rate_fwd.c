@@ -24,7 +24,7 @@ static void encode_positions(const ted4_header *h, const float *position, uint32
         return;
     ted4_lane_set(lanes, on);
     for (int a = 0; a < 3; a++) {
-        const float *p = position + ted4_row((size_t)a);
+        const float *p = position + ted4_row_floats((size_t)a);
 
 #pragma omp simd
         for (int j = 0; j < TED4_LANES; j++) {
@@ -66,17 +66,17 @@ static void steps_forward(const ted4_rate_job *job, ted4_rate_room *room, size_t
     const ted4_rate *r = job->rate;
     const ted4_rate_net *h = &r->hyper;
     const ted4_layout *l = job->in->layout;
-    float *x = room->hyper.x[0] + i * ted4_row((size_t)h->dim[0]);
+    float *x = room->hyper.x[0] + i * ted4_row_floats((size_t)h->dim[0]);
 
     encode_positions(&l->head, job->in->position[slot], job->in->lanes[slot], x);
     for (int k = 0; k < h->n - 1; k++) {
-        float *y = room->hyper.x[k + 1] + i * ted4_row((size_t)h->dim[k + 1]);
+        float *y = room->hyper.x[k + 1] + i * ted4_row_floats((size_t)h->dim[k + 1]);
 
         TED4_LEVELED(ted4_dense_forward)(&h->layer[k], x, y, 1);
         x = y;
     }
-    float *v = room->hyper.x[h->n] + i * ted4_row(l->shape.n_outputs) +
-               ted4_row(l->shape.first_step_output);
+    float *v = room->hyper.x[h->n] + i * ted4_row_floats(l->shape.n_outputs) +
+               ted4_row_floats(l->shape.first_step_output);
 
     TED4_LEVELED(ted4_dense_forward)(&r->step, x, v, 0);
     step_sizes(l, v, job->steps[slot]);
@@ -89,23 +89,23 @@ static void load_slot(const ted4_rate_job *job, ted4_rate_slot *s, size_t slot)
 {
     const ted4_layout *l = job->in->layout;
     const float *attr = job->in->attr[slot];
-    const float *logit = attr + ted4_row((size_t)l->offset_logit);
-    const float *moves = attr + ted4_row((size_t)l->temporal_logit);
+    const float *logit = attr + ted4_row_floats((size_t)l->offset_logit);
+    const float *moves = attr + ted4_row_floats((size_t)l->temporal_logit);
     const int32_t all = l->head.offset_mask ? 0 : -1, all_move = l->head.temporal_mask ? 0 : -1;
     int32_t on[TED4_LANES], any[TED4_LANES] = { 0 };
 
     ted4_lane_set(job->in->lanes[slot], on);
     for (size_t c = 0; c < (size_t)l->offset_logit; c++) {
-        const float *from = attr + ted4_row(c);
-        float *to = s->value + ted4_row(c);
+        const float *from = attr + ted4_row_floats(c);
+        float *to = s->value + ted4_row_floats(c);
 
 #pragma omp simd
         for (size_t j = 0; j < TED4_LANES; j++)
             to[j] = ted4_lane_keep(on[j], from[j]);
     }
     for (size_t k = 0; k < l->head.n_offsets; k++) {
-        const float *x = logit + ted4_row(k);
-        float *kept = s->kept + ted4_row(k);
+        const float *x = logit + ted4_row_floats(k);
+        float *kept = s->kept + ted4_row_floats(k);
 
 #pragma omp simd
         for (size_t j = 0; j < TED4_LANES; j++) {
@@ -128,17 +128,17 @@ static void slices_forward(const ted4_rate_job *job, ted4_rate_room *room, size_
     const ted4_rate *r = job->rate;
     const ted4_layout *l = job->in->layout;
     const size_t f = l->shape.dim[TED4_FEATURE];
-    const size_t first = ted4_row((size_t)l->first[TED4_FEATURE]);
+    const size_t first = ted4_row_floats((size_t)l->first[TED4_FEATURE]);
     const float *value = room->slot.value + first;
     const float *residual = room->slot.residual + first;
-    const float *q = job->steps[slot] + ted4_row(TED4_FEATURE);
+    const float *q = job->steps[slot] + ted4_row_floats(TED4_FEATURE);
     const float unit = 1.0f / l->head.step[TED4_FEATURE];
-    float *context = room->context + i * ted4_row(f);
-    float *out = room->hyper.x[r->hyper.n] + i * ted4_row(l->shape.n_outputs) +
-                 ted4_row(l->shape.first_output[TED4_FEATURE]);
+    float *context = room->context + i * ted4_row_floats(f);
+    float *out = room->hyper.x[r->hyper.n] + i * ted4_row_floats(l->shape.n_outputs) +
+                 ted4_row_floats(l->shape.first_output[TED4_FEATURE]);
 
     for (size_t c = 0; c < f; c++) {
-        const size_t at = ted4_row(c);
+        const size_t at = ted4_row_floats(c);
 
 #pragma omp simd
         for (size_t j = 0; j < TED4_LANES; j++)
@@ -146,17 +146,17 @@ static void slices_forward(const ted4_rate_job *job, ted4_rate_room *room, size_
     }
     for (size_t m = 1, known = 0; m < l->head.n_slices; m++) {
         const ted4_rate_net *n = &r->slice[m];
-        float *hidden = room->slice[m].x[1] + i * ted4_row((size_t)n->dim[1]);
-        float *y = room->slice[m].x[2] + i * ted4_row((size_t)n->dim[2]);
-        const size_t half = ted4_row(l->head.slice[m]);
+        float *hidden = room->slice[m].x[1] + i * ted4_row_floats((size_t)n->dim[1]);
+        float *y = room->slice[m].x[2] + i * ted4_row_floats((size_t)n->dim[2]);
+        const size_t half = ted4_row_floats(l->head.slice[m]);
 
         known += l->head.slice[m - 1];
         TED4_LEVELED(ted4_dense_forward)(&n->layer[0], context, hidden, 1);
         TED4_LEVELED(ted4_dense_forward)(&n->layer[1], hidden, y, 0);
 #pragma omp simd
         for (size_t j = 0; j < half; j++) {
-            out[ted4_row(known) + j] += y[j];
-            out[ted4_row(known + f) + j] += y[half + j];
+            out[ted4_row_floats(known) + j] += y[j];
+            out[ted4_row_floats(known + f) + j] += y[half + j];
         }
     }
 }
@@ -167,7 +167,7 @@ static void slices_forward(const ted4_rate_job *job, ted4_rate_room *room, size_
 static const float *component_mask(ted4_rate_slot *s, int t, size_t c, float *type_bits,
                                    float **gathered)
 {
-    const size_t k = ted4_row(c / 3); /* offset 3k + j: spec 10.2 */
+    const size_t k = ted4_row_floats(c / 3); /* offset 3k + j: spec 10.2 */
 
     if (t == TED4_OFFSET) {
         *gathered = s->kept_bits + k;
@@ -213,25 +213,27 @@ static void tell_lanes(const ted4_rate_job *job, const ted4_rate_slot *s, size_t
     const size_t K = job->in->layout->head.n_offsets;
     const float *bits = t == TED4_OFFSET ? s->kept_bits : t == TED4_PHI ? s->phi_bits : total;
     const float *mask = t == TED4_OFFSET ? s->kept : t == TED4_PHI ? s->dynamic : s->used;
-    float *to = job->lane_bits + slot * ted4_row(1 + K) + (t == TED4_OFFSET ? TED4_LANES : 0);
+    float *to = job->lane_bits + slot * ted4_row_floats(1 + K) +
+                (t == TED4_OFFSET ? TED4_LANES : 0);
 
-    for (size_t j = 0; j < (t == TED4_OFFSET ? ted4_row(K) : TED4_LANES); j++)
+    for (size_t j = 0; j < (t == TED4_OFFSET ? ted4_row_floats(K) : TED4_LANES); j++)
         to[j] += mask[j] > 0.0f ? bits[j] : 0.0f;
 }
 
 static void type_bits(const ted4_rate_job *job, ted4_rate_room *room, size_t i, size_t slot, int t)
 {
     const ted4_shape *shape = &job->in->layout->shape;
-    const size_t out = i * ted4_row(shape->n_outputs) + ted4_row(shape->first_output[t]);
-    const size_t dim = shape->dim[t], s_rows = ted4_row(dim);
+    const size_t out = i * ted4_row_floats(shape->n_outputs) +
+                       ted4_row_floats(shape->first_output[t]);
+    const size_t dim = shape->dim[t], s_rows = ted4_row_floats(dim);
     const float *mu = room->hyper.x[job->rate->hyper.n] + out;
     float *d_mu = room->hyper.d[job->rate->hyper.n] + out;
-    const float *q = job->steps[slot] + ted4_row((size_t)t);
+    const float *q = job->steps[slot] + ted4_row_floats((size_t)t);
     float total[TED4_LANES] = { 0 };
     ted4_rate_slot *s = &room->slot;
 
     for (size_t c = 0; c < dim; c++, mu += TED4_LANES, d_mu += TED4_LANES) {
-        const size_t at = ted4_row((size_t)job->in->layout->first[t] + c);
+        const size_t at = ted4_row_floats((size_t)job->in->layout->first[t] + c);
         float k_mu[TED4_LANES], *gathered;
         const float *mask = component_mask(s, t, c, total, &gathered);
 
@@ -245,7 +247,8 @@ static void type_bits(const ted4_rate_job *job, ted4_rate_room *room, size_t i, 
         tell_lanes(job, s, slot, t, total);
     if (t == TED4_OFFSET)
         for (size_t k = 0; k < dim / 3; k++)
-            room->sums->bits[t] += masked_sum(s->kept_bits + ted4_row(k), s->kept + ted4_row(k));
+            room->sums->bits[t] +=
+                masked_sum(s->kept_bits + ted4_row_floats(k), s->kept + ted4_row_floats(k));
     else
         room->sums->bits[t] += t == TED4_PHI ? masked_sum(s->phi_bits, s->dynamic)
                                              : masked_sum(total, s->used);
@@ -257,8 +260,8 @@ static void slot_forward(const ted4_rate_job *job, ted4_rate_room *room, size_t 
     const ted4_rate_input *in = job->in;
     const ted4_rate_net *h = &r->hyper;
     const int last = h->n - 1;
-    const float *hidden = room->hyper.x[last] + i * ted4_row((size_t)h->dim[last]);
-    float *out = room->hyper.x[h->n] + i * ted4_row((size_t)h->dim[h->n]);
+    const float *hidden = room->hyper.x[last] + i * ted4_row_floats((size_t)h->dim[last]);
+    float *out = room->hyper.x[h->n] + i * ted4_row_floats((size_t)h->dim[h->n]);
     ted4_rate_slot *s = &room->slot;
 
     load_slot(job, s, slot);
@@ -268,7 +271,7 @@ static void slot_forward(const ted4_rate_job *job, ted4_rate_room *room, size_t 
     slices_forward(job, room, i, slot);
     if (job->integer != NULL)
         ted4_rate_integer_outputs(job, room, job->steps[slot], out);
-    memset(s->kept_bits, 0, ted4_row(in->layout->head.n_offsets) * sizeof *s->kept_bits);
+    memset(s->kept_bits, 0, ted4_row_floats(in->layout->head.n_offsets) * sizeof *s->kept_bits);
     memset(s->phi_bits, 0, TED4_LANES * sizeof *s->phi_bits);
     for (int t = 0; t < TED4_TYPES; t++)
         if (ted4_rate_coded(job, t))

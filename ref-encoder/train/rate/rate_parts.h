@@ -7,8 +7,8 @@
 #include <stdatomic.h>
 
 #include "base/arena.h"
-#include "train/model/model.h"
 #include "norm/prior.h"
+#include "rate.h"
 
 /* Slots are worked on in chunks of nearly equal size, each with its own sums; chunks of a wave run
  * at the same time, and their sums are added in order. So results do not depend on threads, and
@@ -107,12 +107,6 @@ static inline int ted4_rate_coded(const ted4_rate_job *job, int type)
     return job->in->layout->shape.dim[type] > 0 && (type != TED4_TAU || job->in->activation);
 }
 
-/* Floats of n rows of lanes. */
-static inline size_t ted4_row(size_t n)
-{
-    return n * TED4_LANES;
-}
-
 /* rate_fwd.c: n slots of a chunk from the first on. */
 TED4_EACH_LEVEL(void, ted4_rate_chunk, const ted4_rate_job *job, ted4_rate_room *room, size_t first,
                 size_t n);
@@ -120,10 +114,6 @@ TED4_EACH_LEVEL(void, ted4_rate_chunk, const ted4_rate_job *job, ted4_rate_room 
 /* rate_row.c */
 TED4_EACH_LEVEL(void, ted4_rate_row, const float *u, const float *s, float *bits, float *d_u,
                 float *d_s);
-
-/* quantise.c. Residuals n of all attribute channels: [A][32]. */
-TED4_EACH_LEVEL(void, ted4_residuals, const ted4_layout *l, ted4_quant quant, const float *value,
-                const float *steps, uint32_t block, uint64_t key, float *residual);
 
 /* rate_integer.c. begin: r->integer is that of the input; 0, or -1: no memory, or weights that spec
  * 7.3 refuses. */

@@ -6,7 +6,7 @@
 #ifndef TED4_GENERATE_STATE_H
 #define TED4_GENERATE_STATE_H
 
-#include "train/model/model.h"
+#include "generator.h"
 
 /* Below this a vector has no direction, and a linear scale stops (spec 11.1, 11.5). */
 #define TED4_SHORT 0x1p-20f

@@ -13,6 +13,8 @@
 #include "train/model/anchors.h"
 #include "train/model/options.h"
 #include "train/model/weight_grid.h"
+#include "train/rate/rate.h"
+#include "train/splat/generator.h"
 
 /* Pictures in random order without replacement, then reshuffled. */
 typedef struct {
