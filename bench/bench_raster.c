@@ -21,6 +21,7 @@ typedef struct {
     ted4_splats g;
     ted4_view v;
     ted4_raster *r;
+    ted4_adjoint *adjoint;
     ted4_splat_grads grads;
     scene d;
     float *image, *d_image;
@@ -50,6 +51,7 @@ static void bench_init(bench *b, size_t n)
     for (int k = 0; k < 4; k++)
         b->grads.rot[k] = scene_param(&b->d, SCENE_ROT + k, 0);
     b->r = must(ted4_raster_new());
+    b->adjoint = must(ted4_adjoint_new());
     b->image = must(malloc(3 * N_PIXELS * sizeof(float)));
     b->d_image = must(malloc(3 * N_PIXELS * sizeof(float)));
     for (size_t i = 0; i < 3 * N_PIXELS; i++)
@@ -58,6 +60,7 @@ static void bench_init(bench *b, size_t n)
 
 static void bench_free(bench *b)
 {
+    ted4_adjoint_free(b->adjoint);
     ted4_raster_free(b->r);
     scene_free(&b->s);
     scene_free(&b->d);
@@ -73,7 +76,7 @@ static times once(bench *b, const ted4_parallel *p)
     int bad = ted4_raster_forward(b->r, &b->g, &b->v, p, 1, b->image);
     const double t1 = now_ms();
 
-    bad |= ted4_raster_backward(b->r, &b->g, &b->v, p, b->d_image, &b->grads);
+    bad |= ted4_raster_backward(b->adjoint, b->r, &b->g, &b->v, p, b->d_image, &b->grads);
     if (bad)
         must(NULL);
     return (times) { t1 - t0, now_ms() - t1 };

@@ -22,8 +22,6 @@ enum {
     TED4_RADIX_BITS = 11, /* of a sorting pass, at most */
     TED4_SPARE = 16,      /* instances that a sorting part may write in vain: a cache line, which no
                              other part writes */
-    TED4_GRAD_SUMS = 8,   /* sums of an instance that travel as a vector; one more travels alone */
-    TED4_BWD_JOBS = 64 /* jobs that share the tiles in the adjoint: the most threads it can use */
 };
 
 /* Memory that is kept from call to call. */
@@ -90,10 +88,6 @@ struct ted4_raster {
     ted4_growing slot;  /* uint32_t; as many */
     /* per ted4_group_first group of instances */
     ted4_growing reach; /* ted4_reach (kept for the adjoint) */
-    /* per instance, by slot; made by the adjoint */
-    ted4_growing sums; /* float [TED4_GRAD_SUMS] */
-    ted4_growing sum0; /* float */
-    ted4_growing scratch[TED4_BWD_JOBS];
 
     size_t n_visible, n_instances;
     uint32_t tiles_x, tiles_y;

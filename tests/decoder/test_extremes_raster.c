@@ -375,6 +375,7 @@ static void test_crowd(void **state)
         float *mean2d = malloc(CROWD * sizeof *mean2d);
         uint8_t *visible = malloc(CROWD);
         ted4_raster *r = ted4_raster_new();
+        ted4_adjoint *adjoint = ted4_adjoint_new();
         double square = 0, sum = 0;
 
         assert_non_null(mean2d);
@@ -396,7 +397,7 @@ static void test_crowd(void **state)
         for (int i = 0; i < 3 * 256; i++)
             square += ((double)image[i] - plain[i]) * ((double)image[i] - plain[i]) / (3.0 * 256);
         assert_true(square <= 1e-8);
-        assert_int_equal(ted4_raster_backward(r, &g, &v, NULL, d_image, &grads), 0);
+        assert_int_equal(ted4_raster_backward(adjoint, r, &g, &v, NULL, d_image, &grads), 0);
         for (size_t i = 0; i < CROWD * SCENE_PARAMS; i++)
             assert_true(isfinite(d.value[i]));
         for (size_t i = 0; equal && i < CROWD; i++) {
@@ -406,6 +407,7 @@ static void test_crowd(void **state)
         }
         if (equal)
             check_weights(&g, &v, sum);
+        ted4_adjoint_free(adjoint);
         ted4_raster_free(r);
         free(mean2d);
         free(visible);

@@ -90,6 +90,7 @@ static uint64_t run(void)
                                .mean2d = p.mean2d,
                                .visible = p.visible };
     ted4_raster *r = ted4_raster_new();
+    ted4_adjoint *adjoint = ted4_adjoint_new();
 
     assert_non_null(r);
     for (int k = 0; k < 4; k++)
@@ -101,7 +102,7 @@ static uint64_t run(void)
     }
     memset(p.d, 0xff, sizeof p.d);
     assert_int_equal(ted4_raster_forward(r, &g, &p.v, NULL, 1, image), 0);
-    assert_int_equal(ted4_raster_backward(r, &g, &p.v, NULL, p.d_image, &grads), 0);
+    assert_int_equal(ted4_raster_backward(adjoint, r, &g, &p.v, NULL, p.d_image, &grads), 0);
     for (size_t i = 0; i < p.s.n * SCENE_PARAMS; i++)
         if (!isfinite(p.d[i]))
             fail_msg("parameter %zu of Gaussian %zu: gradient %g", i / p.s.n, i % p.s.n,
@@ -112,6 +113,7 @@ static uint64_t run(void)
     }
     const uint64_t skipped = ted4_raster_skipped(r);
 
+    ted4_adjoint_free(adjoint);
     ted4_raster_free(r);
     return skipped;
 }

@@ -104,6 +104,7 @@ static void raster(results *r)
     uint8_t *visible = calloc(s.n, 1);
     ted4_splat_grads grads = { .opacity = g, .mean2d = g + s.n, .visible = visible };
     ted4_raster *raster = ted4_raster_new();
+    ted4_adjoint *adjoint = ted4_adjoint_new();
 
     assert_non_null(s.value);
     assert_non_null(visible);
@@ -118,10 +119,11 @@ static void raster(results *r)
     const ted4_splats splats = scene_splats(&s);
 
     assert_int_equal(ted4_raster_forward(raster, &splats, &v, NULL, 1, image), 0);
-    assert_int_equal(ted4_raster_backward(raster, &splats, &v, NULL, d_image, &grads), 0);
+    assert_int_equal(ted4_raster_backward(adjoint, raster, &splats, &v, NULL, d_image, &grads), 0);
     keep(r, image, pixels);
     for (size_t k = 0; k < 15; k++)
         keep(r, g + k * s.n, s.n);
+    ted4_adjoint_free(adjoint);
     ted4_raster_free(raster);
     scene_free(&s);
     free(visible);

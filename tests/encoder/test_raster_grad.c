@@ -110,11 +110,13 @@ static void gradients(const problem *p, const ted4_parallel *threads, scene *d, 
     const ted4_splat_grads grads = grads_of(d, mean2d, visible);
     float *image = must(malloc(p->n_image * sizeof *image));
     ted4_raster *r = must(ted4_raster_new());
+    ted4_adjoint *adjoint = must(ted4_adjoint_new());
 
     memset(d->value, 0xff,
            p->s.n * SCENE_PARAMS * sizeof(float)); /* NaN: all must be overwritten */
     assert_int_equal(ted4_raster_forward(r, &g, &p->v, threads, 1, image), 0);
-    assert_int_equal(ted4_raster_backward(r, &g, &p->v, threads, p->d_image, &grads), 0);
+    assert_int_equal(ted4_raster_backward(adjoint, r, &g, &p->v, threads, p->d_image, &grads), 0);
+    ted4_adjoint_free(adjoint);
     ted4_raster_free(r);
     free(image);
 }

@@ -234,7 +234,10 @@ static void distortion_backward(ted4_raster *raster, ted4_generator *g,
     }
     for (int c = 0; c < 4; c++)
         gr.rot[c] = of_splat[6 + c];
-    assert_int_equal(ted4_raster_backward(raster, s, &pr.view, NULL, pr.d_image, &gr), 0);
+    ted4_adjoint *adjoint = ted4_adjoint_new();
+
+    assert_int_equal(ted4_raster_backward(adjoint, raster, s, &pr.view, NULL, pr.d_image, &gr), 0);
+    ted4_adjoint_free(adjoint);
     assert_int_equal(ted4_generate_backward(g, in, &gr, NULL, d_attr, pr.d_net), 0);
 }
 

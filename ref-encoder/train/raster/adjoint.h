@@ -8,15 +8,28 @@
 #include "render/raster_state.h"
 
 /* Sums over pixels, with g = dL / d ln(alpha), n1 and n2 the whitened offsets, w the blending
- * weight and D the pixel's dL / d colour: one slot of ted4_raster.sums. The sum of g itself is in
- * ted4_raster.sum0. */
+ * weight and D the pixel's dL / d colour: one instance's share of ted4_adjoint.sums. The sum of g
+ * itself is in ted4_adjoint.sum0. */
 enum { TED4_SUM_N1, TED4_SUM_N2, TED4_SUM_N11, TED4_SUM_N12, TED4_SUM_N22, TED4_SUM_COLOUR };
 
+enum {
+    TED4_GRAD_SUMS = 8, /* sums of an instance that travel as a vector; one more travels alone */
+    TED4_BWD_JOBS = 64  /* jobs that share the tiles: the most threads that the adjoint can use */
+};
+
+struct ted4_adjoint {
+    /* per instance, by slot */
+    ted4_growing sums; /* float [TED4_GRAD_SUMS] */
+    ted4_growing sum0; /* float */
+    ted4_growing scratch[TED4_BWD_JOBS];
+};
+
 /* Fills sums and sum0 of every instance. 0, or -1: no memory. */
-TED4_EACH_LEVEL(int, ted4_raster_blend_bwd, struct ted4_raster *r, const ted4_view *v,
-                const ted4_parallel *p, const float *d_image);
+TED4_EACH_LEVEL(int, ted4_raster_blend_bwd, ted4_adjoint *a, const ted4_raster *r,
+                const ted4_view *v, const ted4_parallel *p, const float *d_image);
 /* Adds each Gaussian's sums up and takes them through the projection. */
-TED4_EACH_LEVEL(void, ted4_raster_project_bwd, struct ted4_raster *r, const ted4_splats *s,
-                const ted4_view *v, const ted4_parallel *p, const ted4_splat_grads *g);
+TED4_EACH_LEVEL(void, ted4_raster_project_bwd, const ted4_adjoint *a, const ted4_raster *r,
+                const ted4_splats *s, const ted4_view *v, const ted4_parallel *p,
+                const ted4_splat_grads *g);
 
 #endif

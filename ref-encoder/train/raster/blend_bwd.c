@@ -19,7 +19,8 @@
 enum { AHEAD = 8 }; /* slots fetched before they are needed: they lie anywhere in memory */
 
 typedef struct {
-    struct ted4_raster *r;
+    ted4_adjoint *a;
+    const ted4_raster *r;
     const ted4_view *v;
     const float *d_image;
     atomic_size_t next_tile;
@@ -264,16 +265,16 @@ TED4_INLINE void sum_part(const ted4_splat2d *g, uint32_t mask, part_state *stat
 }
 
 /* Second walk, back to front. */
-static void sum_tile(tile_state *tile, const struct ted4_raster *r)
+static void sum_tile(tile_state *tile, const ted4_adjoint *a)
 {
     for (uint32_t i = tile->n; i-- > 0;) {
-        float *sums = (float *)r->sums.data + (size_t)tile->slot[i] * TED4_GRAD_SUMS,
-              *sum0 = (float *)r->sum0.data + tile->slot[i];
+        float *sums = (float *)a->sums.data + (size_t)tile->slot[i] * TED4_GRAD_SUMS,
+              *sum0 = (float *)a->sum0.data + tile->slot[i];
 
         if (i >= AHEAD) {
             __builtin_prefetch(
-                (float *)r->sums.data + (size_t)tile->slot[i - AHEAD] * TED4_GRAD_SUMS, 1);
-            __builtin_prefetch((float *)r->sum0.data + tile->slot[i - AHEAD], 1);
+                (float *)a->sums.data + (size_t)tile->slot[i - AHEAD] * TED4_GRAD_SUMS, 1);
+            __builtin_prefetch((float *)a->sum0.data + tile->slot[i - AHEAD], 1);
         }
         if (tile->mask[i] != 0) {
             part_sums part[TED4_VECS];
@@ -315,7 +316,7 @@ static int tile_bwd(bwd_job *job, size_t number, ted4_growing *scratch)
             walk_part(&tile, b, part, job->v);
         }
     }
-    sum_tile(&tile, r);
+    sum_tile(&tile, job->a);
     return 0;
 }
 
@@ -326,17 +327,17 @@ static void bwd_worker(void *arg, size_t worker)
     const size_t n_tiles = (size_t)job->r->tiles_x * job->r->tiles_y;
 
     for (size_t tile; (tile = atomic_fetch_add(&job->next_tile, 1)) < n_tiles;)
-        if (tile_bwd(job, tile, &job->r->scratch[worker]) != 0)
+        if (tile_bwd(job, tile, &job->a->scratch[worker]) != 0)
             atomic_store(&job->failed, 1);
 }
 
-int TED4_LEVELED(ted4_raster_blend_bwd)(struct ted4_raster *r, const ted4_view *v,
+int TED4_LEVELED(ted4_raster_blend_bwd)(ted4_adjoint *a, const ted4_raster *r, const ted4_view *v,
                                         const ted4_parallel *p, const float *d_image)
 {
-    bwd_job job = { .r = r, .v = v, .d_image = d_image };
+    bwd_job job = { .a = a, .r = r, .v = v, .d_image = d_image };
 
-    if (ted4_growing_grow(&r->sums, r->n_instances, TED4_GRAD_SUMS * sizeof(float)) != 0 ||
-        ted4_growing_grow(&r->sum0, r->n_instances, sizeof(float)) != 0)
+    if (ted4_growing_grow(&a->sums, r->n_instances, TED4_GRAD_SUMS * sizeof(float)) != 0 ||
+        ted4_growing_grow(&a->sum0, r->n_instances, sizeof(float)) != 0)
         return -1;
     atomic_init(&job.next_tile, 0);
     atomic_init(&job.failed, 0);

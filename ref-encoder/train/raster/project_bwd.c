@@ -7,7 +7,8 @@
 #include <float.h>
 
 typedef struct {
-    const struct ted4_raster *r;
+    const ted4_adjoint *a;
+    const ted4_raster *r;
     const ted4_splats *s;
     const ted4_view *v;
     const ted4_splat_grads *g;
@@ -21,12 +22,12 @@ typedef struct {
 
 /* Sums of a register of Gaussians, lane by lane, over their tiles in slot order. Returns which
  * Gaussians have tiles. */
-static uint32_t add_up(const struct ted4_raster *r, size_t i, size_t n, ted4_vf sum[TED4_GRAD_SUMS],
-                       ted4_vf *sum0)
+static uint32_t add_up(const ted4_adjoint *a, const ted4_raster *r, size_t i, size_t n,
+                       ted4_vf sum[TED4_GRAD_SUMS], ted4_vf *sum0)
 {
     typedef float row __attribute__((vector_size(32)));
     const uint32_t *first = (const uint32_t *)r->first_slot.data + i;
-    const float *sums = r->sums.data, *one = r->sum0.data;
+    const float *sums = a->sums.data, *one = a->sum0.data;
     float lane[TED4_GRAD_SUMS][TED4_VEC] = { { 0 } }, lane0[TED4_VEC] = { 0 };
     uint32_t visible = 0;
 
@@ -207,7 +208,7 @@ static void project_chunk_bwd(void *arg, size_t c)
     for (size_t i = begin; i < end; i += TED4_VEC) {
         const size_t n = end - i < TED4_VEC ? end - i : TED4_VEC;
         ted4_vf sum[TED4_GRAD_SUMS], sum0;
-        const uint32_t visible = add_up(job->r, i, n, sum, &sum0);
+        const uint32_t visible = add_up(job->a, job->r, i, n, sum, &sum0);
         grad_lanes d;
         ted4_vi ok;
 
@@ -226,11 +227,11 @@ static void project_chunk_bwd(void *arg, size_t c)
     }
 }
 
-void TED4_LEVELED(ted4_raster_project_bwd)(struct ted4_raster *r, const ted4_splats *s,
-                                           const ted4_view *v, const ted4_parallel *p,
-                                           const ted4_splat_grads *g)
+void TED4_LEVELED(ted4_raster_project_bwd)(const ted4_adjoint *a, const ted4_raster *r,
+                                           const ted4_splats *s, const ted4_view *v,
+                                           const ted4_parallel *p, const ted4_splat_grads *g)
 {
-    bwd_job job = { r, s, v, g, ted4_guard_make(v) };
+    bwd_job job = { a, r, s, v, g, ted4_guard_make(v) };
 
     ted4_parallel_for(p, (s->n + TED4_CHUNK - 1) / TED4_CHUNK, project_chunk_bwd, &job);
 }

@@ -6,9 +6,16 @@
 
 #include "train/model/splat_grads.h"
 
-/* After ted4_raster_forward(keep_state = 1) with the same s and v. d_image: planar, as image. Sums
- * in fixed order: same bits for any number of threads. 0, or -1 when memory ran out. */
-int ted4_raster_backward(ted4_raster *r, const ted4_splats *s, const ted4_view *v,
-                         const ted4_parallel *p, const float *d_image, const ted4_splat_grads *g);
+/* The workspace of the adjoint: memory that is kept from call to call. */
+typedef struct ted4_adjoint ted4_adjoint;
+
+ted4_adjoint *ted4_adjoint_new(void); /* NULL: no memory */
+void ted4_adjoint_free(ted4_adjoint *a);
+
+/* After ted4_raster_forward(r, keep_state = 1) with the same s and v. d_image: planar, as image.
+ * Sums in fixed order: same bits for any number of threads. 0, or -1 when memory ran out. */
+int ted4_raster_backward(ted4_adjoint *a, const ted4_raster *r, const ted4_splats *s,
+                         const ted4_view *v, const ted4_parallel *p, const float *d_image,
+                         const ted4_splat_grads *g);
 
 #endif

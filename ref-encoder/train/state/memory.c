@@ -43,6 +43,7 @@ void ted4_trainer_finish(ted4_trainer *t)
     ted4_generator_free(t->work.generator);
     ted4_rate_free(t->work.rate);
     ted4_raster_free(t->work.raster);
+    ted4_adjoint_free(t->work.adjoint);
     ted4_loss_workspace_free(t->work.loss);
     ted4_colour_finish(&t->colour);
     ted4_snapshot_free(&t->watch.good);

@@ -71,7 +71,7 @@ int ted4_trainer_render_backward(ted4_trainer *t, const ted4_view *v, const ted4
 {
     if (reserve_splats(t, s->n) != 0)
         return -1;
-    return ted4_raster_backward(t->work.raster, s, v, t->parallel, t->work.d_image,
+    return ted4_raster_backward(t->work.adjoint, t->work.raster, s, v, t->parallel, t->work.d_image,
                                 &t->work.splat_gradient) != 0
                ? ted4_trainer_fail(t, "no memory for gradients")
                : 0;

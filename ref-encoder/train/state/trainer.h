@@ -13,6 +13,7 @@
 #include "train/model/anchors.h"
 #include "train/model/options.h"
 #include "train/model/weight_grid.h"
+#include "train/raster/raster_bwd.h"
 #include "train/rate/rate.h"
 #include "train/splat/generator.h"
 
@@ -82,6 +83,7 @@ typedef struct {
     ted4_generator *generator;
     ted4_rate *rate;
     ted4_raster *raster;
+    ted4_adjoint *adjoint;
     ted4_loss_workspace *loss;
     float *image, *d_image; /* owned: planar, of the largest picture */
     float *splat_storage;   /* owned: gradients of splats */

@@ -39,9 +39,10 @@ static int make_images(ted4_trainer *t)
     t->work.image = malloc(3 * pixels * sizeof *t->work.image + 64);
     t->work.d_image = malloc(3 * pixels * sizeof *t->work.d_image + 64);
     t->work.raster = ted4_raster_new();
+    t->work.adjoint = ted4_adjoint_new();
     t->work.loss = ted4_loss_workspace_new();
     if (t->work.image == NULL || t->work.d_image == NULL || t->work.raster == NULL ||
-        t->work.loss == NULL)
+        t->work.adjoint == NULL || t->work.loss == NULL)
         return ted4_trainer_fail(t, "no memory for images of %zu pixels", pixels);
     if (t->opt.colour && ted4_colour_init(&t->colour, t->data) != 0)
         return ted4_trainer_fail(t, "no memory for colour correction");
