@@ -38,7 +38,7 @@ static void NAME(net)(const ted4_net_shape *n, const float *nete, REAL *const hi
         REAL *to = last ? y : hidden[i % 2];
 
         NAME(layer)(v, n->dim[i], n->dim[i + 1], last, x, to);
-        v += ((size_t)n->dim[i] + 1) * n->dim[i + 1];
+        v += ted4_layer_size(n, (unsigned)i);
         x = to;
     }
 }

@@ -34,7 +34,7 @@ static layer layer_of(const conf_build *b, unsigned m, unsigned number)
     layer l;
 
     for (unsigned i = 0; i < number; i++) {
-        at += ((size_t)n->dim[i] + 1) * n->dim[i + 1];
+        at += ted4_layer_size(n, (unsigned)i);
         unit += n->dim[i + 1];
     }
     l.in = n->dim[number];

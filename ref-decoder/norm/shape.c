@@ -17,7 +17,7 @@ static void chain(ted4_net_shape *n, unsigned in, unsigned hidden, unsigned widt
         n->dim[i] = (uint16_t)width;
     n->dim[hidden + 1] = (uint16_t)out;
     for (unsigned i = 0; i <= hidden; i++) {
-        *values += ((size_t)n->dim[i] + 1) * n->dim[i + 1];
+        *values += ted4_layer_size(n, i);
         *units += n->dim[i + 1];
     }
 }

@@ -58,6 +58,12 @@ typedef struct {
     size_t first_unit; /* index of its first shift (NETE) */
 } ted4_net_shape;
 
+/* Values of a layer: its weights and its biases (spec 7.1). */
+static inline size_t ted4_layer_size(const ted4_net_shape *n, unsigned layer)
+{
+    return ((size_t)n->dim[layer] + 1) * n->dim[layer + 1];
+}
+
 enum {
     TED4_NET_PROJECT,
     TED4_NET_DEFORM,

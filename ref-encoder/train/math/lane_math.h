@@ -68,6 +68,14 @@ static inline float ted4_lane_sigmoid(float x)
     return 1.0f / (1.0f + ted4_lane_pow2(-x * TED4_LOG2E));
 }
 
+/* Forward was y = max(0, x), of n values. */
+static inline void ted4_relu_backward(const float *y, size_t n, float *d)
+{
+#pragma omp simd
+    for (size_t i = 0; i < n; i++)
+        d[i] = y[i] > 0.0f ? d[i] : 0.0f;
+}
+
 /* Gradient d of a clamped x: outside, only what a descent step would use to come back. */
 static inline float ted4_inward(float x, float low, float high, float d)
 {

@@ -5,7 +5,10 @@
 #ifndef TED4_FORMULAS_H
 #define TED4_FORMULAS_H
 
+#include <stdint.h>
+
 #include "model.h"
+#include "norm/sine.h"
 #include "recon/strict.h"
 
 /* spec 11.4: least width of an edge of the activation. */
@@ -37,6 +40,39 @@ static inline ted4_edge ted4_find_edge(float t, const float *tau, float (*pow2)(
 static inline float ted4_activation(float u, float (*pow2)(float))
 {
     return pow2(-(u * u) * TED4_LOG2E);
+}
+
+/* spec 10.1: an integer of the text divided by 4096. */
+static inline float ted4_from_q12(int32_t x)
+{
+    return (float)x * 0x1p-12f;
+}
+
+/* spec 10.1: sine and cosine of the phase of an octave; cosines are sines a quarter turn on. */
+static inline float ted4_encode_sine(uint32_t phase)
+{
+    return ted4_from_q12(ted4_sine(phase));
+}
+
+static inline float ted4_encode_cosine(uint32_t phase)
+{
+    return ted4_from_q12(ted4_sine(phase + ((uint32_t)1 << 30)));
+}
+
+/* spec 11.2: the row of the bank at or before time num / den; *mix: how far on to the next one,
+ * below 1. At the last row (num = den) it is 0, and the row after it is not touched. */
+static inline size_t ted4_bank_row(const ted4_header *h, uint32_t num, uint32_t den, float *mix)
+{
+    const uint64_t g = num * (uint64_t)(h->bank_rows - 1);
+
+    *mix = (float)(g % den) / (float)den;
+    return (size_t)(g / den);
+}
+
+/* Channel c of the bank there; z: that row, of dim channels. */
+static inline float ted4_bank_value(const float *z, size_t dim, size_t c, float mix)
+{
+    return mix > 0.0f ? z[c] + mix * (z[dim + c] - z[c]) : z[c];
 }
 
 #endif

@@ -183,7 +183,7 @@ static void seed_network(float *blob, const ted4_net_shape *s, float last, uint6
 
     for (int i = 0; i < s->n_layers; i++) {
         seed_layer(w, s->dim[i], s->dim[i + 1], i + 1 < s->n_layers ? 1.0f : last, key, counter);
-        w += ((size_t)s->dim[i] + 1) * s->dim[i + 1];
+        w += ted4_layer_size(s, (unsigned)i);
     }
 }
 
@@ -265,7 +265,7 @@ static float *last_biases(float *net, const ted4_layout *l, float **weights, uns
     float *at = net + l->nete + s->first;
 
     for (int i = 0; i < last; i++)
-        at += ((size_t)s->dim[i] + 1) * s->dim[i + 1];
+        at += ted4_layer_size(s, (unsigned)i);
     *weights = at;
     *in = s->dim[last];
     return at + (size_t)s->dim[last] * l->shape.n_outputs;

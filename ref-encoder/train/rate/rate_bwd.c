@@ -8,14 +8,6 @@
 
 #include <string.h>
 
-/* Forward was y = max(0, x). */
-static void relu_backward(const float *y, size_t n, float *d)
-{
-#pragma omp simd
-    for (size_t j = 0; j < n; j++)
-        d[j] = y[j] > 0.0f ? d[j] : 0.0f;
-}
-
 /* The slice networks share the gradients of mu and s with the hyperprior, to whose outputs they
  * were added. */
 static void slices_backward(const ted4_rate *r, ted4_rate_room *room, size_t i)
@@ -37,7 +29,7 @@ static void slices_backward(const ted4_rate *r, ted4_rate_room *room, size_t i)
         memcpy(d_y, d_out + ted4_row_floats(known), half * sizeof *d_y);
         memcpy(d_y + half, d_out + ted4_row_floats(known + f), half * sizeof *d_y);
         TED4_LEVELED(ted4_dense_backward_x)(&n->layer[1], d_y, d_hidden, 0);
-        relu_backward(room->slice[m].x[1] + i * width, width, d_hidden);
+        ted4_relu_backward(room->slice[m].x[1] + i * width, width, d_hidden);
         TED4_LEVELED(ted4_dense_backward_x)(&n->layer[0], d_hidden, room->slot.d_context, 1);
     }
 }
@@ -143,7 +135,7 @@ static void hyper_backward(const ted4_rate *r, ted4_rate_room *room, size_t i)
         (&h->layer[k], a->d[k + 1] + i * ted4_row_floats((size_t)h->dim[k + 1]), d, 0);
         if (k == h->n - 1)
             TED4_LEVELED(ted4_dense_backward_x)(&r->step, d_v, d, 1);
-        relu_backward(a->x[k] + i * width, width, d);
+        ted4_relu_backward(a->x[k] + i * width, width, d);
     }
 }
 

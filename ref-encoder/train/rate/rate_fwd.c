@@ -5,13 +5,17 @@
 
 #include <string.h>
 
-#include "norm/sine.h"
+#include "train/model/formulas.h"
 
-static void sine_row(const uint32_t *phase, uint32_t turn, int shift, float *row)
+/* An octave's row of sines, and the row of cosines behind it. */
+static void sine_rows(const uint32_t *phase, int octave, float *row)
 {
 #pragma omp simd
     for (int j = 0; j < TED4_LANES; j++)
-        row[j] = (float)ted4_sine((phase[j] << shift) + turn) * 0x1p-12f;
+        row[j] = ted4_encode_sine(phase[j] << octave);
+#pragma omp simd
+    for (int j = 0; j < TED4_LANES; j++)
+        row[TED4_LANES + j] = ted4_encode_cosine(phase[j] << octave);
 }
 
 /* spec 10.1: inputs of the hyperprior, the integers of the text divided by 4096. */
@@ -36,10 +40,8 @@ static void encode_positions(const ted4_header *h, const float *position, uint32
         x += TED4_LANES;
     }
     for (int l = 0; l < h->pe_octaves; l++)
-        for (int a = 0; a < 3; a++, x += 2 * TED4_LANES) {
-            sine_row(phase[a], 0, l, x);
-            sine_row(phase[a], 0x40000000u, l, x + TED4_LANES);
-        }
+        for (int a = 0; a < 3; a++, x += 2 * TED4_LANES)
+            sine_rows(phase[a], l, x);
 }
 
 /* q = Q0 2^v, and 1 for absent types. v: rows of the present types. */

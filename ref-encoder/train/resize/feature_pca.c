@@ -251,7 +251,7 @@ static void turn_networks(ted4_trainer *t, const axes *a)
     if (deform->n_layers == 0)
         return;
     for (int i = 0; i + 1 < deform->n_layers; i++)
-        w += ((size_t)deform->dim[i] + 1) * deform->dim[i + 1];
+        w += ted4_layer_size(deform, (unsigned)i);
     turn_maker(w, deform->dim[deform->n_layers - 1], deform->dim[deform->n_layers], a);
 }
 

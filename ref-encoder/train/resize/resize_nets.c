@@ -25,7 +25,7 @@ static size_t layer_at(const ted4_net_shape *s, int layer)
     size_t at = s->first;
 
     for (int i = 0; i < layer; i++)
-        at += ((size_t)s->dim[i] + 1) * s->dim[i + 1];
+        at += ted4_layer_size(s, (unsigned)i);
     return at;
 }
 

@@ -50,7 +50,7 @@ static int gather(reader_rows *r, const float *blob, const ted4_net_shape *s, in
     const float *w = blob + s->first;
 
     for (int i = 0; i < layer; i++)
-        w += ((size_t)s->dim[i] + 1) * s->dim[i + 1];
+        w += ted4_layer_size(s, (unsigned)i);
 
     const size_t in = s->dim[layer], out = s->dim[layer + 1];
     const size_t width = (size_t)r->width;

@@ -10,7 +10,7 @@
 #include "train/state/anchor_masks.h"
 #include "train/state/view_subset.h"
 #include "math/lane_sum.h"
-#include "norm/sine.h"
+#include "train/model/formulas.h"
 #include "train/math/random.h"
 #include "train/model/normalise.h"
 #include "train/state/visible_blocks.h"
@@ -64,7 +64,7 @@ static void run(const float *blob, const ted4_net_shape *s, float *x, int last)
 
     for (int i = 0; i < last; i++) {
         dense(w, s->dim[i], s->dim[i + 1], x, y, i + 1 < s->n_layers);
-        w += ((size_t)s->dim[i] + 1) * s->dim[i + 1];
+        w += ted4_layer_size(s, (unsigned)i);
         memcpy(x, y, s->dim[i + 1] * sizeof *x);
     }
 }
@@ -163,8 +163,8 @@ static void encode_position(const sampling *s, float *x)
 
         x[a] = floorf(p * 0x1p12f) * 0x1p-12f;
         for (int o = 0; o < octaves; o++) {
-            x[3 + 6 * o + 2 * a] = (float)ted4_sine(phase << o) * 0x1p-12f;
-            x[3 + 6 * o + 2 * a + 1] = (float)ted4_sine((phase << o) + 0x40000000u) * 0x1p-12f;
+            x[3 + 6 * o + 2 * a] = ted4_encode_sine(phase << o);
+            x[3 + 6 * o + 2 * a + 1] = ted4_encode_cosine(phase << o);
         }
     }
 }
@@ -214,12 +214,11 @@ static void bank_at(sampling *s, uint32_t num)
     if (!has_deform(l))
         return;
 
-    const uint64_t g = num * (uint64_t)(l->head.bank_rows - 1);
-    const float *z = s->t->net.value + l->bank + (size_t)(g / den) * D;
-    const float mix = (float)(g % den) / (float)den;
+    float mix;
+    const float *z = s->t->net.value + l->bank + ted4_bank_row(&l->head, num, den, &mix) * D;
 
     for (size_t c = 0; c < D; c++)
-        s->bank[c] = mix > 0 ? z[c] + mix * (z[D + c] - z[c]) : z[c];
+        s->bank[c] = ted4_bank_value(z, D, c, mix);
 }
 
 static void look_from(sampling *s, const float camera[3])

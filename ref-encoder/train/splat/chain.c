@@ -10,14 +10,6 @@ void ted4_gen_chain_forward(const ted4_gen_chain *c, float *planes)
      ted4_gen_plane(planes, c->layer[i].y), i + 1 < c->n);
 }
 
-/* Forward was y = max(0, a): a is kept as y. */
-static void relu_backward(int n, const float *y, float *d)
-{
-#pragma omp simd
-    for (int i = 0; i < n * TED4_LANES; i++)
-        d[i] = y[i] > 0.0f ? d[i] : 0.0f;
-}
-
 void ted4_gen_chain_backward(const ted4_generator *g, const ted4_gen_chain *c, float *planes,
                              float *d, float *dx, int add)
 {
@@ -27,7 +19,8 @@ void ted4_gen_chain_backward(const ted4_generator *g, const ted4_gen_chain *c, f
         float *below = ted4_gen_plane(d, layer->x - g->plane.outputs);
 
         TED4_LEVELED(ted4_dense_backward_x)(&layer->dense, dy, below, 0);
-        relu_backward(layer->dense.in, ted4_gen_plane(planes, layer->x), below);
+        ted4_relu_backward(ted4_gen_plane(planes, layer->x), (size_t)layer->dense.in * TED4_LANES,
+                           below);
     }
     if (dx != NULL)
         TED4_LEVELED(ted4_dense_backward_x)

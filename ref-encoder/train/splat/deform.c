@@ -7,7 +7,7 @@
  * so each anchor pays for one narrow layer only.
  * SPDX-License-Identifier: BSD-2-Clause */
 #include "decode_state.h"
-#include "norm/sine.h"
+#include "train/model/formulas.h"
 
 #include <stdlib.h>
 #include <string.h>
@@ -47,22 +47,17 @@ void ted4_gen_motion_finish(ted4_gen_motion *m)
     free(m->product);
 }
 
-static inline float from_q12(int32_t x)
-{
-    return (float)x * 0x1p-12f;
-}
-
 /* spec 10.1 with 10 octaves: n coordinates in Q24 to 21 n values, stride apart. */
 static void encode(int n, const int32_t *x, size_t stride, float *to)
 {
     for (int c = 0; c < n; c++, to += stride)
-        *to = from_q12(ted4_floor_shift(x[c], 12));
+        *to = ted4_from_q12(ted4_floor_shift(x[c], 12));
     for (int octave = 0; octave < TED4_INR_OCTAVES; octave++)
         for (int c = 0; c < n; c++, to += 2 * stride) {
             const uint32_t u = (uint32_t)x[c] << (7 + octave);
 
-            to[0] = from_q12(ted4_sine(u));
-            to[stride] = from_q12(ted4_sine(u + ((uint32_t)1 << 30)));
+            to[0] = ted4_encode_sine(u);
+            to[stride] = ted4_encode_cosine(u);
         }
 }
 
@@ -86,17 +81,15 @@ static void encode_time(ted4_gen_motion *m, uint32_t num, uint32_t den)
     encode(1, &x, 1, m->time);
 }
 
-/* spec 11.2. At the last row (num = den) mix is 0, and the row after it is not touched. */
+/* spec 11.2. */
 static void interpolate(ted4_gen_motion *m, const ted4_layout *l, const float *bank, uint32_t num,
                         uint32_t den)
 {
-    const uint64_t g = num * (uint64_t)(l->head.bank_rows - 1), i = g / den;
-    const float *z = bank + i * (size_t)m->n_time;
+    const size_t dim = (size_t)m->n_time;
 
-    m->row = (size_t)i;
-    m->mix = (float)(g % den) / (float)den;
-    for (int c = 0; c < m->n_time; c++)
-        m->time[c] = m->mix > 0.0f ? z[c] + m->mix * (z[m->n_time + c] - z[c]) : z[c];
+    m->row = ted4_bank_row(&l->head, num, den, &m->mix);
+    for (size_t c = 0; c < dim; c++)
+        m->time[c] = ted4_bank_value(bank + m->row * dim, dim, c, m->mix);
 }
 
 void ted4_gen_motion_make(ted4_generator *g, const ted4_generate_input *in)

@@ -6,7 +6,7 @@
 
 #define LARGEST_LOG2_SIZE 126.0f
 #define LEAST_SIZE        0x1p-20f
-#define LEAST_LOG2_EDGE   -12.0f
+#define LEAST_LOG2_EDGE   -12.0f /* log2 of TED4_EDGE_MIN */
 #define BEYOND_SYMBOLS    32767.5f
 
 /* Component c of a type; q: its step size, 0 before there is one. */

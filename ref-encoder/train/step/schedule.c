@@ -108,7 +108,7 @@ static size_t network_size(const ted4_net_shape *s)
     size_t n = 0;
 
     for (int i = 0; i < s->n_layers; i++)
-        n += ((size_t)s->dim[i] + 1) * s->dim[i + 1];
+        n += ted4_layer_size(s, (unsigned)i);
     return n;
 }
 

@@ -203,7 +203,7 @@ static void remap_networks(const ted4_layout *from, const ted4_layout *to, const
         size_t n = 0;
 
         for (int k = 0; k < s->n_layers; k++)
-            n += ((size_t)s->dim[k] + 1) * s->dim[k + 1];
+            n += ted4_layer_size(s, (unsigned)k);
         memcpy(new + to->netr + s->first, old + from->netr + from->shape.netr[i].first,
                n * sizeof *new);
     }
