@@ -5,7 +5,8 @@ WASM_CC = clang-19 --target=wasm32 -nostdlib -ffreestanding -O3 -std=c11 -msimd1
           -fvisibility=hidden -ffunction-sections -fdata-sections $(STRICT) -fno-math-errno
 # What the C library would give comes from wasm/include; xxHash is one header of the system.
 WASM_INC = -isystem player/wasm/include -I$W/inc -Iref-decoder -idirafter /usr/include
-WASM_DEC = $(sort $(filter-out %/inflate.c %/validate.c %/finding.c $(wildcard ref-decoder/read/advise*.c \
+WASM_DEC = $(sort $(filter-out %/inflate.c %/validate.c %/finding.c \
+           $(wildcard ref-decoder/read/advise*.c \
            ref-decoder/read/collect*.c ref-decoder/kernel/*_avx2.c ref-decoder/kernel/*_avx512.c \
            ref-decoder/kernel/*_vnni.c ref-decoder/kernel/*_neon.c), $(DEC_SRC)))
 WASM_SRC = $(WASM_DEC) ref-decoder/tool/budget.c $(sort $(wildcard player/wasm/*.c))

@@ -31,6 +31,6 @@ install-library: library
 	    ref-decoder/base/status.def $(DESTDIR)$(PREFIX)/include/ted4/base
 	$(FILL) ref-decoder/ted4.pc.in >$(DESTDIR)$(LIBDIR)/pkgconfig/ted4.pc
 	for f in ted4-config ted4-config-version; do \
-	    $(FILL) ref-decoder/$$f.cmake.in >$(DESTDIR)$(LIBDIR)/cmake/ted4/$$f.cmake || exit 1; done
+	    $(FILL) ref-decoder/$$f.cmake.in >$(DESTDIR)$(LIBDIR)/cmake/ted4/$$f.cmake || exit; done
 
 .PHONY: library install-library

@@ -275,24 +275,35 @@ static void print_waiting(const conf_mutant_list *l, conf_bytes *b)
         conf_print(b, "none\n");
 }
 
+/* A cell of a table, in which a bar would end it. */
+static void print_cell(const char *text, conf_bytes *b)
+{
+    for (const char *c = text; *c != '\0'; c++)
+        conf_print(b, *c == '|' ? "\\|" : "%c", *c);
+}
+
+static void print_survivor(const conf_mutant *m, conf_bytes *b)
+{
+    conf_print(b, "| %s | %s | %s | `", m->id, m->file, m->verdict);
+    print_cell(m->from, b);
+    conf_print(b, "` | `");
+    print_cell(m->to, b);
+    conf_print(b, "` | ");
+    print_cell(m->why, b);
+    conf_print(b, " |\n");
+}
+
 static void print_mutants(const conf_mutant_list *l, conf_bytes *b)
 {
-    conf_print(b, "## Survivors\n\n");
-    if (conf_mutant_count(l, "survived") + conf_mutant_count(l, "no compile") == 0)
-        conf_print(b, "none\n");
+    conf_print(b, "## Survivors\n\n| mutant | file | result | line | becomes | why |\n"
+                  "|---|---|---|---|---|---|\n");
     for (size_t i = 0; i < l->n; i++)
         if (strcmp(l->m[i].verdict, "survived") == 0 || strcmp(l->m[i].verdict, "no compile") == 0)
-            conf_print(b, "* %s (%s, %s): `%s` for `%s`%s%s\n", l->m[i].id, l->m[i].file,
-                       l->m[i].verdict, l->m[i].to, l->m[i].from,
-                       l->m[i].why[0] != '\0' ? ": " : "", l->m[i].why);
+            print_survivor(&l->m[i], b);
     conf_print(b, "\n## Not run since what their results depend on has changed\n\n");
     print_waiting(l, b);
-    conf_print(b, "\n## Killed, and by what\n\n"
-                  "`mutants.list` says what each mutant changes. The table shows the first vector "
-                  "that killed it.\n\n| mutant | vector | what was wrong |\n|---|---|---|\n");
-    for (size_t i = 0; i < l->n; i++)
-        if (strcmp(l->m[i].verdict, "killed") == 0)
-            conf_print(b, "| %s | %s | %s |\n", l->m[i].id, l->m[i].vector, l->m[i].by);
+    conf_print(b, "\n## Killed\n\n`mutants.csv` names the first vector that killed each of the "
+                  "others, and says what was\nwrong with the answer.\n");
 }
 
 static const char introduction[] =

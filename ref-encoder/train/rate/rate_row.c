@@ -19,7 +19,8 @@
 
 #define SLOT            0x1p-16f /* eps */
 #define MAX_HALF_WINDOW 4095.0f
-#define NARROW          0.0625f /* bins narrower than this many sigmas: both formulas are right to 1e-5 */
+/* Bins narrower than this many sigmas: both formulas are right to 1e-5. */
+#define NARROW          0.0625f
 #define MAX_DISTANCE    1e9f /* keeps squares finite; the slope stays right */
 
 /* Probability p of the bin [a - 1/2, a + 1/2] / sigma and its derivatives; no differences of nearly
