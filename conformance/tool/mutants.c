@@ -295,8 +295,11 @@ static void print_survivor(const conf_mutant *m, conf_bytes *b)
 
 static void print_mutants(const conf_mutant_list *l, conf_bytes *b)
 {
-    conf_print(b, "## Survivors\n\n| mutant | file | result | line | becomes | why |\n"
-                  "|---|---|---|---|---|---|\n");
+    conf_print(
+        b, "## Survivors\n\n%s",
+        conf_mutant_count(l, "survived") + conf_mutant_count(l, "no compile") == 0
+            ? "none\n"
+            : "| mutant | file | result | line | becomes | why |\n|---|---|---|---|---|---|\n");
     for (size_t i = 0; i < l->n; i++)
         if (strcmp(l->m[i].verdict, "survived") == 0 || strcmp(l->m[i].verdict, "no compile") == 0)
             print_survivor(&l->m[i], b);

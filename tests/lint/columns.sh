@@ -1,10 +1,10 @@
 #!/bin/sh
 # columns.sh [FILE...] - lines have at most 100 columns: C and the prose of Markdown everywhere, and
-# shell, awk, Python and build rules in tests, tools, bench, player and python. Left aside in
-# Markdown: rows of tables, code blocks, pictures, and lines that are little else than one link or
-# address; in shell: here-documents, and a quoted text of more than 70 columns, which is what a program is
-# given or is expected to say. Tables of the decoder that a program prints (norm/tables.c) stay as
-# they are printed, and so does text between clang-format off and on.
+# shell, awk, Python, JavaScript and build rules in the folders named below. Left aside in Markdown:
+# rows of tables, code blocks, pictures, and lines that are little else than one link or address;
+# in shell: here-documents, and a quoted text of more than 70 columns, which a program is given
+# or has to say. Tables of the decoder that a program prints (norm/tables.c) stay as they are
+# printed, and so does text between clang-format off and on.
 export LC_ALL=C
 scripts='tests tools bench player python ref-decoder ref-encoder'
 [ $# -gt 0 ] || set -- $({
