@@ -10,7 +10,7 @@
 
 struct ted4_arena_block;
 
-/* May be moved by assignment; not safe for use from two threads at once. */
+/* It may be moved by assignment. Only one thread may use it at a time. */
 typedef struct ted4_arena {
     ted4_allocator allocator;
     uint64_t used, max;              /* bytes, headers included */
@@ -19,17 +19,18 @@ typedef struct ted4_arena {
 
 #define TED4_ARENA_DEFAULT ((uint64_t)1 << 32)
 
-/* o may be NULL: malloc, 4 GiB. */
+/* Initialises an arena with the allocator and max_bytes of o. If o is NULL: malloc, and at most 4
+ * GiB. */
 void ted4_arena_init(ted4_arena *a, const ted4_options *o);
-/* n elements of size bytes, zeroed, aligned to 64 bytes. n = 0 gives a pointer too. NULL: over
- * budget, or no memory. n may be a number that a file claims, more than this machine can address.
- */
+/* Returns n zeroed elements of size bytes, aligned to 64 bytes; n = 0 gives a pointer too. Returns
+ * NULL if the budget is exceeded or there is no memory. n may be a number that a file claims, more
+ * than this machine can address. */
 void *ted4_arena_alloc(ted4_arena *a, uint64_t n, size_t size);
-/* The same, with any contents. */
+/* The same, but the contents are undefined. */
 void *ted4_arena_alloc_raw(ted4_arena *a, uint64_t n, size_t size);
-/* Gives one block back; NULL is fine. */
+/* Frees one block; block may be NULL. */
 void ted4_arena_release(ted4_arena *a, void *block);
-/* Gives everything back. */
+/* Frees everything. */
 void ted4_arena_finish(ted4_arena *a);
 
 #endif

@@ -17,7 +17,8 @@ typedef struct {
     void *user;
 } ted4_parallel;
 
-/* p may be NULL: then the calling thread does everything, in order. */
+/* Calls body(arg, i) for each i in [0, n). p may be NULL: then the calling thread does everything,
+ * in order. */
 static inline void ted4_parallel_for(const ted4_parallel *p, size_t n,
                                      void (*body)(void *arg, size_t i), void *arg)
 {

@@ -12,24 +12,24 @@ enum {
     TED4_MU_BITS = 8
 };
 
-/* A range of slots: [start, start + freq) of 2^16. */
+/* A range of the 2^16 slots: [start, start + freq). */
 typedef struct {
     uint32_t start, freq;
 } ted4_slots;
 
-/* A symbol k as spec 9.4 codes it. escape: e, or -1. */
+/* A symbol k as spec 9.4 codes it. escape is e, or -1 if k is not an escape. */
 typedef struct {
     ted4_slots slots;
     int32_t escape;
 } ted4_gauss_symbol;
 
-/* R: symbols of the alphabet. */
+/* R: the number of symbols in the alphabet of sigma index g. */
 static inline uint32_t ted4_gauss_size(unsigned g)
 {
     return 2u * ted4_half[g] + 4;
 }
 
-/* cum(j) for 0 < j < R. fr: fraction of mu, 0 .. 255. */
+/* cum(j) for 0 < j < R. fr is the fraction of mu, 0 .. 255. */
 static inline uint32_t ted4_gauss_inner(unsigned g, int32_t fr, uint32_t j)
 {
     const int32_t d = 256 * ((int32_t)j - 1 - ted4_half[g]) - 128 - fr;
@@ -43,7 +43,7 @@ static inline uint32_t ted4_gauss_inner(unsigned g, int32_t fr, uint32_t j)
     return ((p >> 8) * ((1u << TED4_SLOT_BITS) - ted4_gauss_size(g)) >> TED4_SLOT_BITS) + j;
 }
 
-/* cum(j), 0 <= j <= R. */
+/* cum(j) for 0 <= j <= R. */
 static inline uint32_t ted4_gauss_cum(unsigned g, int32_t fr, uint32_t j)
 {
     if (j == 0 || j == ted4_gauss_size(g))
@@ -51,11 +51,11 @@ static inline uint32_t ted4_gauss_cum(unsigned g, int32_t fr, uint32_t j)
     return ted4_gauss_inner(g, fr, j);
 }
 
-/* The symbol of k. */
+/* Returns the symbol of k. */
 ted4_gauss_symbol ted4_gauss_of(int32_t mu, unsigned g, int32_t k);
-/* The symbol j whose slots hold slot, and those slots. */
+/* Returns the symbol j whose slots contain slot, and sets *slots to these slots. */
 uint32_t ted4_gauss_find(unsigned g, int32_t fr, uint32_t slot, ted4_slots *slots);
-/* k - m of symbol j when it is no escape; of an escape with e. */
+/* k - m for symbol j if it is no escape; and the same for an escape with value e. */
 static inline int32_t ted4_gauss_offset(unsigned g, uint32_t j)
 {
     return (int32_t)j - 1 - ted4_half[g];

@@ -17,7 +17,7 @@ static inline int32_t ted4_half_q24(uint16_t h)
     return h >> 15 ? -x : x;
 }
 
-/* Exact. */
+/* Converts binary16 to binary32, exactly. */
 static inline float ted4_half_to_float(uint16_t h)
 {
     const uint32_t sign = (uint32_t)(h >> 15) << 31;
@@ -35,7 +35,8 @@ static inline float ted4_half_to_float(uint16_t h)
     return ted4_bits_float(sign | (e + 112) << 23 | m << 13);
 }
 
-/* To nearest, ties to even; beyond the largest binary16: infinity. */
+/* Converts binary32 to binary16, to nearest with ties to even. Values beyond the largest binary16
+ * become infinity. */
 static inline uint16_t ted4_float_to_half(float x)
 {
     const uint32_t bits = ted4_float_bits(x);
@@ -60,13 +61,13 @@ static inline uint16_t ted4_float_to_half(float x)
     return (uint16_t)(sign | v);
 }
 
-/* spec 8: order-preserving image of a pattern. */
+/* spec 8: maps a pattern to an integer so that the order of values is kept. */
 static inline uint32_t ted4_half_order(uint16_t h)
 {
     return h < 0x8000 ? h + 0x8000u : 0xffffu - h;
 }
 
-/* Bit i of x goes to bit 3 i. x < 2^16. */
+/* Moves bit i of x to bit 3 i; x < 2^16. */
 static inline uint64_t ted4_spread3(uint64_t x)
 {
     x = (x | x << 16) & 0x0000ff0000ff;

@@ -1,4 +1,4 @@
-/* limits.h - spec 13: levels, and what they and the limits of a decoder count.
+/* limits.h - spec 13: the levels, and the quantities that they and the limits of a decoder bound.
  * SPDX-License-Identifier: BSD-2-Clause */
 #ifndef TED4_LIMITS_H
 #define TED4_LIMITS_H
@@ -8,7 +8,7 @@
 
 enum { TED4_LEVEL_UNBOUNDED = 31 };
 
-/* Largest values a level allows. */
+/* The largest values that a level allows. */
 typedef struct {
     uint8_t level;
     uint32_t n_anchors, n_offsets, frames;
@@ -18,23 +18,25 @@ typedef struct {
     uint64_t symbols_per_byte;
 } ted4_limits;
 
-/* NULL: no such level. */
+/* Returns the bounds of a level, or NULL if there is no such level. */
 const ted4_limits *ted4_limits_of(unsigned level);
 
-/* spec 13: N (F + 6 + 3K + d + 4), absent types left out, masks as if all kept. */
+/* spec 13: N (F + 6 + 3K + d + 4) symbols; types that are absent are left out, and masks count as
+ * if everything were kept. */
 uint64_t ted4_count_symbols(const ted4_header *h, const ted4_shape *s);
-/* Sum of inputs x outputs over the layers of Tier E. */
+/* The sum of inputs x outputs over the layers of Tier E, per anchor. */
 uint64_t ted4_count_products(const ted4_header *h, const ted4_shape *s);
-/* W_E of spec 13.4, which follows from HEAD and the size of the file. */
+/* W_E of spec 13.4, which follows from HEAD and from the size of the file in bytes. */
 uint64_t ted4_count_work(const ted4_header *h, const ted4_shape *s, uint64_t file_bytes);
-/* Steps of a query, spec 13.4: N A_R + 20 G, of a scene that keeps n_records offsets. */
+/* The steps of a query, spec 13.4: N A_R + 20 G, for a scene that keeps n_records offsets. */
 uint64_t ted4_count_query_work(const ted4_header *h, const ted4_shape *s, uint64_t n_records);
 
-/* The bounds that no single element breaks: 1 when a file of that size keeps them, else 0. */
+/* Returns 1 if a file of that size keeps the bounds that no single element can break, and 0 if
+ * not. */
 int ted4_limits_hold(const ted4_limits *l, const ted4_header *h, const ted4_shape *s,
                      uint64_t file_bytes);
 
-/* R-ENC-002: the lowest level all of whose bounds hold for a file of that size. */
+/* R-ENC-002: returns the lowest level all of whose bounds hold for a file of that size. */
 unsigned ted4_level_lowest(const ted4_header *h, const ted4_shape *s, uint64_t file_bytes);
 
 #endif

@@ -21,8 +21,8 @@ enum {
     TED4_MAX_SHIFT = 20
 };
 
-/* One dense layer: y_o = b_o + sum_i w_oi x_i, shifted right by r_o with rounding. in_pad: in
- * rounded up to even; the padding of w is 0. */
+/* One dense layer: y_o = b_o + sum_i w_oi x_i, shifted right by r_o with rounding. in_pad is in
+ * rounded up to an even number; the padding of w is 0. */
 typedef struct {
     unsigned in, in_pad, out;
     int16_t *w; /* [out][in_pad] */
@@ -30,8 +30,9 @@ typedef struct {
     uint8_t *r; /* [out] */
 } ted4_int_layer;
 
-/* n is a multiple of 32, at most 64; x is [in][64]. Columns from n on are neither read nor written.
- * hidden: max(0, sat16(y)) into [out][64]. last: clamped to +-TED4_OUTPUT_MAX into [out][64]. */
+/* Evaluates a layer for n columns; n is a multiple of 32 and at most 64. x is [in][64]; columns
+ * from n on are neither read nor written. hidden writes max(0, sat16(y)) to [out][64]; last writes
+ * y, clamped to +-TED4_OUTPUT_MAX, to [out][64]. */
 typedef struct {
     void (*hidden)(const ted4_int_layer *l, const int16_t *x, size_t n, int16_t *y);
     void (*last)(const ted4_int_layer *l, const int16_t *x, size_t n, int32_t *y);
@@ -53,30 +54,31 @@ typedef struct ted4_prior {
     ted4_net_shape hyper_shape, slice_shape[TED4_MAX_SLICES];
 } ted4_prior;
 
-/* Shapes and storage; weights are 0 until ted4_prior_load. TED4_OK or TED4_E_LIMIT_MEMORY. */
+/* Sets the shapes and allocates storage; the weights are 0 until ted4_prior_load. Returns TED4_OK
+ * or TED4_E_LIMIT_MEMORY. */
 ted4_status ted4_prior_init(ted4_prior *p, const ted4_header *h, const ted4_shape *s,
                             ted4_arena *arena);
 /* Integerises nete [n_nete] with shift [n_units], by bit operations, and checks R-NET-002 to
- * R-NET-006 in the order of the blob. TED4_OK; or the failure, e->offset then being an index into
- * nete, or into shift for TED4_E_NET_SHIFT. e may be NULL. */
+ * R-NET-006 in the order of the blob. Returns TED4_OK or the failure; e->offset is then an index
+ * into nete, or into shift for TED4_E_NET_SHIFT. e may be NULL. */
 ted4_status ted4_prior_load(ted4_prior *p, const float *nete, const uint8_t *shift, ted4_error *e);
 
-/* What R-NET-003 to R-NET-006 ask of one output unit. f: fraction bits of its inputs; g: of its
- * output. */
+/* What R-NET-003 to R-NET-006 require of one output unit. f: fraction bits of its inputs; g:
+ * fraction bits of its output. */
 typedef struct {
     int f, g;
     int32_t amplitude; /* A: bound of its inputs */
 } ted4_unit_rule;
 
-/* Layer i of net n; hyper: it is the hyperprior. */
+/* Returns the rule for layer i of network n; hyper says whether it is the hyperprior. */
 ted4_unit_rule ted4_prior_rule(const ted4_net_shape *n, unsigned i, int hyper,
                                unsigned context_bits);
-/* R-NET-003, R-NET-005 */
+/* R-NET-003, R-NET-005: is this shift legal? */
 static inline int ted4_shift_legal(const ted4_unit_rule *u, int shift)
 {
     return shift <= TED4_MAX_SHIFT && shift + u->f - u->g >= 0;
 }
-/* R-NET-006. sum_w: sum of |W|, below 2^31. */
+/* R-NET-006: does the accumulator stay in 32 bits? sum_w is the sum of |W|, below 2^31. */
 static inline int ted4_accumulator_legal(const ted4_unit_rule *u, int shift, int64_t sum_w,
                                          int64_t b)
 {
@@ -86,39 +88,39 @@ static inline int ted4_accumulator_legal(const ted4_unit_rule *u, int shift, int
     return sum_w * u->amplitude + (b < 0 ? -b : b) + half <= INT32_MAX;
 }
 
-/* spec 10.1 for n <= 64 anchors: out [P][64], all of Q8. position: [n][3] binary16 patterns, |p| <=
- * 1. Columns from n on are undefined. */
+/* spec 10.1 for n <= 64 anchors: out is [P][64], all of it in Q8. position: [n][3] binary16
+ * patterns with |p| <= 1. Columns from n on are undefined. */
 void ted4_prior_hyper(const ted4_prior *p, const uint16_t *position, size_t n, int32_t *out);
-/* The same in two steps, for who wants outputs a few at a time. hidden: [in][64] inputs of the last
- * layer, perhaps none, in being that of ted4_prior_last(p). some: a layer for a part of the
+/* The same in two steps, for callers that want a few outputs at a time. hidden: [in][64] inputs of
+ * the last layer; in is that of ted4_prior_last(p) and may be 0. some: a layer for a part of the
  * outputs, made by ted4_prior_some. */
 const ted4_int_layer *ted4_prior_last(const ted4_prior *p);
 void ted4_prior_hyper_hidden(const ted4_prior *p, const uint16_t *position, size_t n,
                              int16_t *hidden);
 void ted4_prior_hyper_some(const ted4_prior *p, const ted4_int_layer *some, const int16_t *hidden,
                            size_t n, int32_t *out);
-/* n outputs from first on, and behind them n from second on. The arrays of some have room for 2 n
- * of them. */
+/* Makes a layer of n outputs from first on, followed by n outputs from second on. The arrays of
+ * some have room for 2 n outputs. */
 void ted4_prior_some(const ted4_prior *p, unsigned first, unsigned second, unsigned n,
                      ted4_int_layer *some);
-/* spec 10.3, slice network m = 1 .. n_slices - 1: ctx [slice[0] + .. + slice[m-1]][64] of
- * ted4_context(), any value of that range (0, say) in the columns from n to the next multiple of
- * 32; out [2 slice[m]][64]: values added to mu, then values added to s. */
+/* spec 10.3: slice network m = 1 .. n_slices - 1. ctx: [slice[0] + .. + slice[m-1]][64] values of
+ * ted4_context(); the columns from n to the next multiple of 32 may have any value of that range,
+ * for example 0. out: [2 slice[m]][64], first what is added to mu, then what is added to s. */
 void ted4_prior_slice(const ted4_prior *p, unsigned m, const int16_t *ctx, size_t n, int32_t *out);
 
-/* spec 10.1: index into the step tables from an output v. */
+/* spec 10.1: the index into the step tables for an output v. */
 static inline uint8_t ted4_step_index(int32_t v)
 {
     return (uint8_t)ted4_clamp(128 + ted4_round_shift(v, 3), 0, 255);
 }
 
-/* spec 10.1: sigma index from an output s (with what the slice network adds). */
+/* spec 10.1: the sigma index for an output s, to which the slice network has added its own. */
 static inline uint8_t ted4_sigma_index(int32_t s)
 {
     return (uint8_t)ted4_clamp(64 + ted4_round_shift(s, 4), 0, TED4_N_SIGMA - 1);
 }
 
-/* spec 10.3: what the slice networks see of symbol k. */
+/* spec 10.3: what the slice networks are given of symbol k. */
 static inline int16_t ted4_context(int16_t k, uint8_t step_index, unsigned context_bits)
 {
     return (int16_t)ted4_sat16(ted4_round_shift(k * ted4_stepi[step_index], 12 - context_bits));

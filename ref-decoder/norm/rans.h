@@ -13,8 +13,8 @@ enum { TED4_MAX_LANES = 64, TED4_SYMBOLS_PER_LANE = 4096 };
     ((uint32_t)1      \
      << 16) /* least legal state; the state before the first and after the last symbol */
 
-/* Lanes of a substream of n > 0 symbols: the largest power of two not above n / 4096, between 1 and
- * 64. */
+/* The number of lanes of a substream of n > 0 symbols: the largest power of two that is not above n
+ * / 4096, and at least 1 and at most 64. */
 static inline unsigned ted4_rans_lanes(size_t n)
 {
     unsigned lanes = 1;

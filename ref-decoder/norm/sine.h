@@ -1,4 +1,4 @@
-/* sine.h - spec 10.1, 11.3 (E(p), E(t)): the sine of the positional encodings, from its table.
+/* sine.h - spec 10.1, 11.3 (E(p), E(t)): the sine of the positional encodings, by table.
  * SPDX-License-Identifier: BSD-2-Clause */
 #ifndef TED4_SINE_H
 #define TED4_SINE_H
@@ -6,13 +6,14 @@
 #include "base/fixed.h"
 #include "norm/tables.h"
 
-/* From an entry of the table towards the next one, which is so much higher; b: how far, Q12. */
+/* Interpolates from an entry of the table towards the next one, which is higher by rise. b says how
+ * far, in Q12. */
 static inline int16_t ted4_sine_beyond(int16_t entry, int16_t rise, int16_t b)
 {
     return (int16_t)(entry + ted4_round_shift(rise * b, 12));
 }
 
-/* Q12; u in turns of 2^32. The cosine is the sine of u + 2^30. */
+/* The sine of u in Q12; u is in turns of 2^32. The cosine is the sine of u + 2^30. */
 static inline int16_t ted4_sine(uint32_t u)
 {
     const uint32_t i = u >> 22;

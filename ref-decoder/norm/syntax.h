@@ -1,4 +1,4 @@
-/* syntax.h - spec 6 to 10: what a parsed file holds, one member per syntax element.
+/* syntax.h - spec 6 to 10: what a parsed file holds, with one member per syntax element.
  * SPDX-License-Identifier: BSD-2-Clause */
 #ifndef TED4_SYNTAX_H
 #define TED4_SYNTAX_H
@@ -21,11 +21,11 @@ enum {
 /* spec 6.2: attribute types in stream order. */
 typedef enum { TED4_FEATURE, TED4_SCALING, TED4_OFFSET, TED4_PHI, TED4_TAU, TED4_TYPES } ted4_type;
 
-/* spec 6.1; those of motion and view are in ted4.h. */
+/* spec 6.1; the values of motion and view are in ted4.h. */
 enum { TED4_SCALE_LOG2, TED4_SCALE_LINEAR };
 enum { TED4_PRIOR_INR, TED4_PRIOR_FACTORISED };
 
-/* spec 6.1, in file order; names as in the text. */
+/* spec 6.1: the header, in the order of the file and with the names of the text. */
 typedef struct {
     uint32_t n_anchors, tile_size;
     uint8_t n_offsets, feature_dim;
@@ -49,8 +49,8 @@ typedef struct {
     uint8_t background[3];
 } ted4_header;
 
-/* Shapes that follow from a header (spec 7). Layer i of a network maps dim[i] values to dim[i + 1].
- */
+/* The shape of a network, which follows from the header (spec 7). Layer i maps dim[i] values to
+ * dim[i + 1]. */
 typedef struct {
     uint8_t n_layers; /* 0: the network does not exist */
     uint16_t dim[TED4_MAX_LAYERS + 1];
@@ -87,14 +87,14 @@ typedef struct {
     uint64_t n_bank; /* up to 2^41 */
 } ted4_shape;
 
-/* Fills *s from a header whose values are in range. Never fails. shape.c */
+/* shape.c: fills *s from a header whose values are in range. It never fails. */
 void ted4_shape_make(ted4_shape *s, const ted4_header *h);
 
 enum { TED4_BLOB_RAW, TED4_BLOB_DEFLATED, TED4_BLOB_AUTO = 255 };
 
-/* spec 7.2. values: n binary32 numbers, owned by the scene; NULL: not there, and n is what the
- * header claims. deflated: the opaque zlib bytes when mode is 1. mode AUTO: no file has said; the
- * writer takes the smaller one. */
+/* spec 7.2. values: n binary32 numbers, owned by the scene; if it is NULL, they are not there and n
+ * is what the header claims. deflated: the opaque zlib bytes if mode is 1. Mode AUTO: no file has
+ * chosen, and the writer takes the smaller form. */
 typedef struct {
     float *values;
     uint64_t n;
@@ -105,7 +105,7 @@ typedef struct {
 
 enum { TED4_PROBS = 7 }; /* dynamic_prob, offset_prob[6] */
 
-/* Everything Tier E decodes. Arrays of the scene belong to its arena (see scene.h). */
+/* Everything that Tier E decodes. The arrays belong to the arena of the scene (scene.h). */
 struct ted4_scene {
     ted4_arena arena;
     uint8_t level; /* 0: not from a file */

@@ -1,5 +1,5 @@
-/* tables.h - annex A: the tables of Tier E. tables.c is made by tests/gen/gen_tables.c and checked
- * by tests/decoder/test_tables.c.
+/* tables.h - annex A: the tables of Tier E. tests/gen/gen_tables.c makes tables.c, and
+ * tests/decoder/test_tables.c checks it.
  * SPDX-License-Identifier: BSD-2-Clause */
 #ifndef TED4_TABLES_H
 #define TED4_TABLES_H
@@ -21,7 +21,8 @@ extern const int16_t ted4_sin[TED4_N_SIN];     /* SIN: 4096 sin(2 pi i / 1024), 
 extern const uint32_t ted4_step[TED4_N_STEP];  /* STEP: binary32 patterns of 2^((i - 128) / 32) */
 extern const int32_t ted4_stepi[TED4_N_STEP];  /* STEPI: 4096 STEP */
 
-/* Not of the specification: where gaussian.c begins to search. 2^14 Phi^-1((i + 1/2) / 256). */
+/* Not in the specification: the places at which gaussian.c begins to search, 2^14 Phi^-1((i + 1/2)
+ * / 256). */
 extern const int32_t ted4_where[TED4_N_WHERE];
 
 #endif
