@@ -1,6 +1,8 @@
 /* advise.c - what is doubtful in a valid file: level, chunks, and parts that the scene does not
  * need (spec 3.4, R-ENC-004). Symbols are looked at in advise_symbols.c, META in advise_meta.c.
  * SPDX-License-Identifier: BSD-2-Clause */
+#include "read/advise.h"
+
 #include <string.h>
 #define ZLIB_CONST
 #include <zlib.h>
@@ -8,7 +10,7 @@
 #include "norm/limits.h"
 #include "norm/scene.h"
 #include "norm/tables.h"
-#include "read/finding.h"
+#include "read/advise_parts.h"
 #include "read/inflate.h"
 
 enum { MINOR_AT = 9, LEVEL_AT = 11, HEAD_AT = 12 };

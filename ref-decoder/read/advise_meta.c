@@ -1,9 +1,10 @@
 /* advise_meta.c - ancillary chunks: is the type registered (spec 16.3), and is META what spec 5.2
  * says?
  * SPDX-License-Identifier: BSD-2-Clause */
+#include "read/advise_parts.h"
+
 #include <string.h>
 #include "base/bytes.h"
-#include "read/finding.h"
 
 enum { META_FLAGS = 2 };
 

@@ -2,10 +2,11 @@
  * indices and contexts at the ends of their ranges. The tiles are walked once more with a coder
  * that only counts.
  * SPDX-License-Identifier: BSD-2-Clause */
+#include "read/advise_parts.h"
+
 #include <string.h>
 #include "norm/gaussian.h"
 #include "norm/scene.h"
-#include "read/finding.h"
 #include "read/listen.h"
 
 /* Findings begin where more than 1 of these is so; small counts say nothing. */

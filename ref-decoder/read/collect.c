@@ -10,6 +10,7 @@
 #include "base/bytes.h"
 #include "norm/limits.h"
 #include "norm/scene.h"
+#include "read/collect_payload.h"
 
 /* 1: go on. */
 static int judge_file_header(ted4_collector *c)

@@ -1,6 +1,6 @@
-/* collect_payload.c - the errors of one payload, all that can be told apart; see collect.h.
+/* collect_payload.c - the errors of one payload, all that can be told apart.
  * SPDX-License-Identifier: BSD-2-Clause */
-#include "read/collect.h"
+#include "read/collect_payload.h"
 
 #include <string.h>
 #include "base/bytes.h"

@@ -1,4 +1,5 @@
-/* finding.c - see finding.h: the rule that an error breaks, and the chunk in which it lies.
+/* finding.c - what the validator says of an error or of something doubtful: its place, its rule and
+ * its text.
  * SPDX-License-Identifier: BSD-2-Clause */
 #include "read/finding.h"
 
@@ -7,6 +8,8 @@
 #include "norm/coder.h"
 #include "norm/limits.h"
 #include "norm/prior.h"
+#include "norm/syntax.h"
+#include "read/reader.h"
 
 /* Of most errors there is one; which_rule() numbers the others. */
 static const char *const rules_of[TED4_N_STATUS][3] = {

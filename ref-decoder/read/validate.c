@@ -1,8 +1,9 @@
-/* validate.c - spec 3.6: ted4_validate(): the strict decoder's verdict, then what collect.c or
- * advise.c find.
+/* validate.c - spec 3.6: ted4_validate() gives the strict decoder's verdict, then what collect.c
+ * finds in an invalid file or advise.c in a valid one.
  * SPDX-License-Identifier: BSD-2-Clause */
 #include <string.h>
-#include "read/finding.h"
+#include "read/advise.h"
+#include "read/collect.h"
 
 ted4_status ted4_validate(const void *data, size_t size, const ted4_options *o,
                           ted4_finding_sink *sink, void *user)

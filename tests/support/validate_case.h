@@ -8,6 +8,7 @@
 #include "fuzz/mend.h"
 #include "norm/coder.h"
 #include "random_scene.h"
+#include "read/collect.h"
 #include "read/finding.h"
 #include "test.h"
 
