@@ -51,7 +51,7 @@ $B/bench/bench_scale: $B/bench/bench_scale.o $(TRAIN_RECORD) $B/bench/recorder.o
 # ted4enc with its phases told apart by functions that phases.c puts in between.
 PHASES = ted4_dataset_load ted4_dataset_verify ted4_header_settle ted4_trainer_init \
         ted4_trainer_restart ted4_gradient_step ted4_branch_run ted4_snapshot_take \
-        ted4_snapshot_restore ted4_state_take ted4_state_restore ted4_densify_adjust ted4_sprout \
+        ted4_snapshot_restore ted4_state_take ted4_state_restore ted4_densify_adjust ted4_mv_seed \
         ted4_activation_begin ted4_stage2_begin ted4_integer_begin ted4_capacity_decide \
         ted4_capacity_refine ted4_capacity_prune ted4_trainer_distortion ted4_trainer_blame \
         ted4_make_scene ted4_encode ted4_encode_told ted4_trainer_preview ted4_run_log_step \

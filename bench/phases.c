@@ -36,7 +36,7 @@
     P(STATES, "states kept and restored")         \
     P(PROBE, "steps of probe and trials")         \
     P(ADJUST, "growing and pruning")              \
-    P(SPROUT, "sprouts")                          \
+    P(MV_SEED, "sprouts")                         \
     P(STAGE, "changes of stage")                  \
     P(CAPACITY, "trials: moves")                  \
     P(DRAW, "trials: pictures")                   \
@@ -124,7 +124,7 @@ BETWEEN(PHASE_STATES, int, ted4_snapshot_restore, (ted4_trainer * t, const ted4_
 BETWEEN(PHASE_STATES, int, ted4_state_take, (ted4_trainer * t, ted4_snapshot *s), (t, s))
 BETWEEN(PHASE_STATES, int, ted4_state_restore, (ted4_trainer * t, const ted4_snapshot *s), (t, s))
 BETWEEN(PHASE_ADJUST, int, ted4_densify_adjust, (ted4_trainer * t, size_t room), (t, room))
-BETWEEN(PHASE_SPROUT, int, ted4_sprout, (ted4_trainer * t), (t))
+BETWEEN(PHASE_MV_SEED, int, ted4_mv_seed, (ted4_trainer * t), (t))
 BETWEEN(PHASE_STAGE, int, ted4_activation_begin, (ted4_trainer * t), (t))
 BETWEEN(PHASE_STAGE, int, ted4_stage2_begin, (ted4_trainer * t), (t))
 BETWEEN(PHASE_STAGE, int, ted4_integer_begin, (ted4_trainer * t), (t))

@@ -149,7 +149,7 @@ void parts_options(ted4_train_options *o, int steps)
     snprintf(text[4], sizeof text[4], "activation_start=0");
     snprintf(text[5], sizeof text[5], "probe=0");
     snprintf(text[6], sizeof text[6], "capacity=0");
-    /* The search for sprouts is an event of a minute at full size, and no step. */
+    /* Multi-view seeding is an event of a minute at full size, and no step. */
     snprintf(text[7], sizeof text[7], "sprouts=0");
     must(ted4_options_preset(o, "fast") == 0 ? o : NULL);
     for (int i = 0; i < 8; i++)

@@ -22,7 +22,7 @@
 /* Units that the latest speed is averaged over; steps after which the first estimate is said, and
  * of which the first few do not count. */
 #define MEMORY      300.0
-/* A step that takes so many times its share was something else, too: the search for sprouts, say,
+/* A step that takes so many times its share was something else, too: multi-view seeding, say,
  * which does not come again. */
 #define UNUSUAL     15.0
 enum { READY = 100, WARMING = 5 };
@@ -38,24 +38,24 @@ static double weight(const ted4_work *w, double anchors)
     return (anchors / fmax(w->most_anchors, 1.0) + FIXED) / (1.0 + FIXED);
 }
 
-/* Anchors once growth is done, before sprouts come. */
+/* Anchors once growth is done, before multi-view seeding. */
 static double grown(const ted4_work *w)
 {
-    const double cap = (1.0 - w->sprouts) * w->most_anchors;
+    const double cap = (1.0 - w->mv_seed_share) * w->most_anchors;
 
-    if (w->step > w->sprout_at * w->stage1)
+    if (w->step > w->mv_seed_at * w->stage1)
         return w->anchors;
     if (w->step < (w->first_growth + GROWN) * w->stage1)
         return fmax(w->anchors, cap);
     return fmax(w->anchors, fmin(cap, STILL_GROWS * w->anchors));
 }
 
-/* Anchors from sprouting on. */
-static double sprouted(const ted4_work *w)
+/* Anchors from multi-view seeding on. */
+static double after_mv_seed(const ted4_work *w)
 {
-    return w->step > w->sprout_at * w->stage1
+    return w->step > w->mv_seed_at * w->stage1
                ? w->anchors
-               : fmin(w->most_anchors, grown(w) / (1.0 - w->sprouts));
+               : fmin(w->most_anchors, grown(w) / (1.0 - w->mv_seed_share));
 }
 
 /* Steps from one to another, from where training stands on. */
@@ -68,14 +68,16 @@ static double steps(const ted4_work *w, double from, double to)
 static double units_left(const ted4_work *w)
 {
     const double grows = w->first_growth * w->stage1,
-                 sprouts = fmax(w->sprout_at * w->stage1, grows);
+                 mv_seed_begin = fmax(w->mv_seed_at * w->stage1, grows);
     /* Of the probe's two branches one counts as training. */
     const double probe = w->probing && w->spent >= w->probe ? 0.0 : w->probe;
 
     return steps(w, 0, grows) * weight(w, w->anchors) +
-           steps(w, grows, sprouts) * weight(w, grown(w)) +
-           steps(w, sprouts, w->stage1) * weight(w, sprouted(w)) + probe * weight(w, grown(w)) +
-           (STAGE2 * steps(w, w->stage1, w->stage1 + w->stage2) + CODING) * weight(w, sprouted(w));
+           steps(w, grows, mv_seed_begin) * weight(w, grown(w)) +
+           steps(w, mv_seed_begin, w->stage1) * weight(w, after_mv_seed(w)) +
+           probe * weight(w, grown(w)) +
+           (STAGE2 * steps(w, w->stage1, w->stage1 + w->stage2) + CODING) *
+               weight(w, after_mv_seed(w));
 }
 
 /* Units of steps between two looks. */
@@ -127,7 +129,7 @@ void ted4_estimate_move(ted4_estimate *e, double clock)
 static double trial_pace(const ted4_estimate *e, double pace)
 {
     const double believed = BELIEF * (e->last.trials + e->last.budget) + 1.0;
-    const double step = TRIALS * STAGE2 * pace * weight(&e->last, sprouted(&e->last));
+    const double step = TRIALS * STAGE2 * pace * weight(&e->last, after_mv_seed(&e->last));
 
     return (step * believed + e->trial_clock) / (believed + e->trial_units);
 }

@@ -10,9 +10,9 @@
 /* Schedule, and where training stands in it. */
 typedef struct {
     double stage1, stage2; /* steps */
-    /* Shares of stage 1: where growth begins, and where sprouts come. */
-    double first_growth, sprout_at;
-    double sprouts; /* share of anchors that is kept for them; 0: none will come */
+    /* Shares of stage 1: where growth begins, and where multi-view seeding adds anchors. */
+    double first_growth, mv_seed_at;
+    double mv_seed_share; /* share of anchors that is kept for them; 0: none will come */
     double most_anchors;
     /* Steps of each of the two branches of the time probe; 0: there is none any more. */
     double probe;

@@ -44,18 +44,19 @@ static double trials_now(const ted4_trainer *t)
     return t->search.decided == TED4_DECIDED_MODEL ? search_steps(t) : t->onlooker.budget;
 }
 
-/* Steps between two looks at whether sprouts will come, which takes a look at all pictures. */
+/* Steps between two looks at whether multi-view seeding will take place, which takes a look at all
+ * pictures. */
 enum { ASK_EVERY = 500 };
 
 static ted4_work work_of(ted4_training *t)
 {
     const ted4_trainer *tr = t->trainer;
     const ted4_onlooker *o = &tr->onlooker;
-    const double before = t->sprouts;
+    const double before = t->mv_seed_share;
     ted4_work w = { .stage1 = tr->opt.stage1,
                     .stage2 = tr->opt.stage2,
                     .first_growth = 0.05,
-                    .sprout_at = 0.3,
+                    .mv_seed_at = 0.3,
                     .most_anchors = tr->opt.max_anchors,
                     .trials = trials_left(tr),
                     .step = (double)tr->iteration,
@@ -63,8 +64,8 @@ static ted4_work work_of(ted4_training *t)
                     .probing = o->busy == TED4_BUSY_PROBE };
 
     if (before < 0 || tr->iteration % ASK_EVERY == 0)
-        ted4_schedule_growth(tr, &w.first_growth, &w.sprout_at, &t->sprouts);
-    w.sprouts = t->sprouts;
+        ted4_schedule_growth(tr, &w.first_growth, &w.mv_seed_at, &t->mv_seed_share);
+    w.mv_seed_share = t->mv_seed_share;
     w.probe = w.probing ? 0.5 * o->budget : ted4_probe_steps(tr);
     w.spent = o->busy != TED4_BUSY_TRAINING ? o->spent : 0;
     w.budget = o->busy == TED4_BUSY_PROBE    ? o->budget

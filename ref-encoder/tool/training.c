@@ -69,7 +69,7 @@ int ted4_training_begin(ted4_training *t, const ted4_request *r, ted4_trainer *t
     t->teller = teller;
     t->log.file = -1;
     t->checkpoint = r->checkpoint;
-    t->sprouts = -1;
+    t->mv_seed_share = -1;
     t->saved = -1;
     t->facts.psnr = t->facts.bytes = -1;
     ted4_estimate_begin(&t->estimate);

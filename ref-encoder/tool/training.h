@@ -18,11 +18,11 @@ typedef struct {
     ted4_teller *teller;    /* borrowed */
     ted4_facts facts;       /* what the teller knows */
     ted4_estimate estimate;
-    double sprouts; /* share of anchors kept for them, as it was when last asked for */
-    int estimated;  /* how long the whole takes has been said */
-    int64_t saved;  /* the step that the checkpoint holds; negative: there is none */
-    int stopped;    /* the signal that ended training; 0: none has */
-    char why[1024]; /* set by whatever fails */
+    double mv_seed_share; /* share of anchors kept for them, as it was when last asked for */
+    int estimated;        /* how long the whole takes has been said */
+    int64_t saved;        /* the step that the checkpoint holds; negative: there is none */
+    int stopped;          /* the signal that ended training; 0: none has */
+    char why[1024];       /* set by whatever fails */
 } ted4_training;
 
 /* A coded scene that was decoded again and found equal. */

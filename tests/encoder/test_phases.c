@@ -15,7 +15,7 @@ enum {
     STAGE1 = 400,
     INTEGER = 600,
     ACTIVATION = 134,
-    SPROUTS = 120,
+    MV_SEED_STEP = 120,
     GROWTH_ENDS = 240,
     GROW_EVERY = 20
 };
@@ -150,7 +150,7 @@ static void test_static_phase(void **state)
     for (size_t i = 0; i < n; i++)
         for (int c = 0; c < 4; c++)
             seed[4 * i + (size_t)c] = tau(&t, i, c);
-    ball_train(&t, SPROUTS);
+    ball_train(&t, MV_SEED_STEP);
     assert_true(t.anchors.n > n);
     assert_true(are_seeds(&t, seed, n));
     ted4_trainer_finish(&t);
@@ -202,7 +202,7 @@ static void test_growth(void **state)
         } else {
             assert_true(step > STAGE1 / GROW_EVERY);
             assert_true(step <= GROWTH_ENDS);
-            assert_true(step == SPROUTS || step % GROW_EVERY == 0);
+            assert_true(step == MV_SEED_STEP || step % GROW_EVERY == 0);
             early += step < ACTIVATION;
             late += step > ACTIVATION;
         }

@@ -101,7 +101,7 @@ static void test_found(void **state)
 
     const size_t before = t.anchors.n;
 
-    if (ted4_sprout(&t) != 0)
+    if (ted4_mv_seed(&t) != 0)
         fail_msg("%s", t.message.text);
 
     const size_t n = ball_count_transients(&t, SPEED, 1.0f, &near);

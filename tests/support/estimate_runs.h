@@ -12,7 +12,7 @@ typedef struct {
  * that the first trials took. */
 typedef struct {
     const char *name;
-    double stage1, stage2, most_anchors, probe, sprouts, search;
+    double stage1, stage2, most_anchors, probe, mv_seed_share, search;
     int n;
     run_line line[60];
 } recorded_run;

@@ -1,6 +1,6 @@
 /* test_estimate.c - how long a training is said to take, on recorded runs: their logs have a line
  * for many steps, and the steps between two lines are taken to last equally long, but for what a
- * probe, trials and sprouts took on top.
+ * probe, trials and multi-view seeding took on top.
  * SPDX-License-Identifier: BSD-2-Clause */
 #include <math.h>
 #include <stdio.h>
@@ -13,7 +13,7 @@
 /* As the schedule has it; trials at these shares of stage 2, which are believed to take so many
  * steps. */
 #define PROBE_AT   0.25
-#define SPROUT_AT  0.3
+#define MV_SEED_AT 0.3
 #define DECIDE_AT  0.15
 #define INTEGER_AT 0.8
 #define SEARCH     1120.0
@@ -87,7 +87,7 @@ static double go(replay *p, const run_line *to, double pace)
     const double probe_at = PROBE_AT * r->stage1, decide_at = r->stage1 + DECIDE_AT * r->stage2,
                  integer_at = r->stage1 + INTEGER_AT * r->stage2;
     const int probes = r->probe > 0 && between(probe_at + r->probe, from, to->step),
-              sprouts = between(SPROUT_AT * r->stage1 + 1, from, to->step);
+              is_mv_seed = between(MV_SEED_AT * r->stage1 + 1, from, to->step);
     const int decides = between(decide_at + 1, from, to->step),
               prunes = between(integer_at + 1, from, to->step);
     const double extra = probes ? fmin((n + r->probe) * pace, seconds) : n * pace,
@@ -102,15 +102,16 @@ static double go(replay *p, const run_line *to, double pace)
         long_step(p, 0, decides ? SEARCH : LAST, decides ? r->search : LAST, more);
     }
 
-    /* The step that sprouts come with takes what is left over, and more anchors are there from then
-     * on. */
+    /* The step with multi-view seeding takes what is left over, and more anchors are there from
+     * then on. */
     const double left = to->seconds - p->clock, steps = to->step - p->w.step,
-                 rest = sprouts ? fmax(left - steps * pace, 0.0) : 0.0;
+                 rest = is_mv_seed ? fmax(left - steps * pace, 0.0) : 0.0;
 
     while (p->w.step < to->step) {
-        const int here = sprouts && p->w.step == SPROUT_AT * r->stage1;
+        const int here = is_mv_seed && p->w.step == MV_SEED_AT * r->stage1;
 
-        p->w.anchors = !sprouts || p->w.step >= SPROUT_AT * r->stage1 ? to->anchors : p->w.anchors;
+        p->w.anchors = !is_mv_seed || p->w.step >= MV_SEED_AT * r->stage1 ? to->anchors
+                                                                          : p->w.anchors;
         p->w.step++;
         look(p, (left - rest) / steps + (here ? rest : 0.0));
     }
@@ -129,8 +130,8 @@ static void test_runs(void **state)
         p.w = (ted4_work) { .stage1 = r->stage1,
                             .stage2 = r->stage2,
                             .first_growth = 0.05,
-                            .sprout_at = SPROUT_AT,
-                            .sprouts = r->sprouts,
+                            .mv_seed_at = MV_SEED_AT,
+                            .mv_seed_share = r->mv_seed_share,
                             .most_anchors = r->most_anchors,
                             .probe = r->probe,
                             .trials = SEARCH + LAST,
@@ -147,7 +148,7 @@ static ted4_work plain(void)
     return (ted4_work) { .stage1 = 1000,
                          .stage2 = 0,
                          .first_growth = 0.05,
-                         .sprout_at = 0.3,
+                         .mv_seed_at = 0.3,
                          .most_anchors = 100,
                          .anchors = 100 };
 }

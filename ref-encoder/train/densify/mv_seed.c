@@ -14,7 +14,7 @@
 #include "train/model/normalise.h"
 #include "train/state/anchor_appearance.h"
 
-int ted4_sprout_reach(const ted4_trainer *t)
+int ted4_mv_seed_reach(const ted4_trainer *t)
 {
     return t->layout.first[TED4_TAU] < 0 || t->data->n_frames < 2 ? -1 : ted4_turns_reach(t);
 }
@@ -145,21 +145,21 @@ static int arrange(ted4_places *list, size_t most, float **point, uint8_t **colo
     return 0;
 }
 
-int ted4_sprout(ted4_trainer *t)
+int ted4_mv_seed(ted4_trainer *t)
 {
     ted4_places list = { 0 };
     ted4_sightings s = { 0 };
     looks l = { 0 };
     float *point = NULL;
     uint8_t *colour = NULL;
-    const int reach = ted4_sprout_reach(t);
+    const int reach = ted4_mv_seed_reach(t);
     int bad = 0;
 
     if (reach < 0)
         return 0;
     for (uint32_t f = 0; !bad && f < t->data->n_frames; f++)
-        bad = ted4_sprout_search(t, f, (uint32_t)reach, &list) != 0;
-    if (!bad && arrange(&list, ted4_sprout_room(t->data->n_frames), &point, &colour) != 0)
+        bad = ted4_mv_seed_search(t, f, (uint32_t)reach, &list) != 0;
+    if (!bad && arrange(&list, ted4_mv_seed_capacity(t->data->n_frames), &point, &colour) != 0)
         bad = ted4_trainer_fail(t, "no memory for new anchors");
     bad = bad || ted4_sightings_count(&s, t, point, colour, list.n, (uint32_t)reach) != 0 ||
           look_at_anchors(t, &l) != 0 || plant(t, &list, &s, &l) != 0;

@@ -14,11 +14,11 @@
 
 /* How many frames around a frame are searched with it (ted4_turns_reach); -1: there is no
  * activation, or there are not enough cameras. */
-int ted4_sprout_reach(const ted4_trainer *t);
+int ted4_mv_seed_reach(const ted4_trainer *t);
 
 /* All frames are searched, and anchors added at the surest places until max_anchors is reached,
  * each with the activation of the times at which its colour is seen there, and the features of the
  * anchor whose colour comes nearest. 0, or -1 with t->message. */
-int ted4_sprout(ted4_trainer *t);
+int ted4_mv_seed(ted4_trainer *t);
 
 #endif

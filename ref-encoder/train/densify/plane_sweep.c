@@ -320,7 +320,7 @@ static size_t open_eyes(ted4_trainer *t, uint32_t frame, uint32_t reach, eye *ey
     return n;
 }
 
-int ted4_sprout_search(ted4_trainer *t, uint32_t frame, uint32_t reach, ted4_places *list)
+int ted4_mv_seed_search(ted4_trainer *t, uint32_t frame, uint32_t reach, ted4_places *list)
 {
     const size_t first = list->n;
     int bad = 0;
@@ -340,7 +340,7 @@ int ted4_sprout_search(ted4_trainer *t, uint32_t frame, uint32_t reach, ted4_pla
         if (eyes[i].is_own && search_eye(t, eyes, n, i, frame, list) != 0)
             bad = ted4_trainer_fail(t, "no memory to look for what is missing");
 
-    const size_t share = ted4_sprout_room(t->data->n_frames) / t->data->n_frames;
+    const size_t share = ted4_mv_seed_capacity(t->data->n_frames) / t->data->n_frames;
 
     if (!bad && thin(list, first, share > 0 ? share : 1) != 0)
         bad = ted4_trainer_fail(t, "no memory to look for what is missing");

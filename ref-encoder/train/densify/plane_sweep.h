@@ -26,7 +26,7 @@ typedef struct {
 
 /* So many places a sequence may have: each is looked for in all frames, and places times frames are
  * at most 2^27, four bytes each (photo_votes.h). Only long sequences come near. */
-static inline size_t ted4_sprout_room(uint32_t n_frames)
+static inline size_t ted4_mv_seed_capacity(uint32_t n_frames)
 {
     return ((size_t)1 << 27) / n_frames;
 }
@@ -34,6 +34,6 @@ static inline size_t ted4_sprout_room(uint32_t n_frames)
 /* Adds places missing at a frame to the list, at most one a cell of the place's size, and of long
  * sequences only the surest, its share of the room or one; in a fixed order. reach: how many frames
  * before and after it have pictures that help. 0, or -1 with t->message. */
-int ted4_sprout_search(ted4_trainer *t, uint32_t frame, uint32_t reach, ted4_places *list);
+int ted4_mv_seed_search(ted4_trainer *t, uint32_t frame, uint32_t reach, ted4_places *list);
 
 #endif

@@ -10,52 +10,53 @@
 /* Growth begins after a twentieth of stage 1; statistics as soon as the last adjustment is done. */
 #define GROW_FROM 0.05
 
-/* Sprouts come when what stays is drawn well enough for what does not to stand out, and before
- * activation is learnt. Where cameras take turns nothing else finds what moves, so they come before
- * the probe asks whether time is needed. */
-#define SPROUT_AT       0.3
-#define SPROUT_AT_TURNS 0.2
+/* Multi-view seeding takes place when what stays is drawn well enough for what does not to stand
+ * out, and before activation is learnt. Where cameras take turns nothing else finds what moves, so
+ * it comes before the probe asks whether time is needed. */
+#define MV_SEED_AT       0.3
+#define MV_SEED_AT_TURNS 0.2
 
-static uint64_t sprout_step(const ted4_trainer *t, int reach)
+static uint64_t mv_seed_step(const ted4_trainer *t, int reach)
 {
-    return (uint64_t)((reach > 0 ? SPROUT_AT_TURNS : SPROUT_AT) * (double)t->opt.stage1);
+    return (uint64_t)((reach > 0 ? MV_SEED_AT_TURNS : MV_SEED_AT) * (double)t->opt.stage1);
 }
 
-/* Are anchors kept for sprouts that are still to come? */
-static int sprouts_ahead(const ted4_trainer *t)
+/* Are anchors kept for multi-view seeding that is still to come? */
+static int mv_seed_ahead(const ted4_trainer *t)
 {
-    if (t->phase.stage2 || t->opt.sprouts <= 0 || t->iteration >= sprout_step(t, 0))
+    if (t->phase.stage2 || t->opt.sprouts <= 0 || t->iteration >= mv_seed_step(t, 0))
         return 0;
 
-    const int reach = ted4_sprout_reach(t);
+    const int reach = ted4_mv_seed_reach(t);
 
-    return reach >= 0 && t->iteration < sprout_step(t, reach);
+    return reach >= 0 && t->iteration < mv_seed_step(t, reach);
 }
 
-static int sprouts_due(const ted4_trainer *t)
+static int mv_seed_due(const ted4_trainer *t)
 {
     if (t->phase.stage2 || t->opt.sprouts <= 0 ||
-        (t->iteration != sprout_step(t, 0) && t->iteration != sprout_step(t, 1)))
+        (t->iteration != mv_seed_step(t, 0) && t->iteration != mv_seed_step(t, 1)))
         return 0;
 
-    const int reach = ted4_sprout_reach(t);
+    const int reach = ted4_mv_seed_reach(t);
 
-    return reach >= 0 && t->iteration == sprout_step(t, reach);
+    return reach >= 0 && t->iteration == mv_seed_step(t, reach);
 }
 
-void ted4_schedule_growth(const ted4_trainer *t, double *from, double *sprout_at, double *sprouts)
+void ted4_schedule_growth(const ted4_trainer *t, double *from, double *mv_seed_at,
+                          double *mv_seed_share)
 {
-    const int reach = ted4_sprout_reach(t);
+    const int reach = ted4_mv_seed_reach(t);
 
     *from = GROW_FROM;
-    *sprout_at = reach > 0 ? SPROUT_AT_TURNS : SPROUT_AT;
-    *sprouts = reach >= 0 ? t->opt.sprouts : 0.0;
+    *mv_seed_at = reach > 0 ? MV_SEED_AT_TURNS : MV_SEED_AT;
+    *mv_seed_share = reach >= 0 ? t->opt.sprouts : 0.0;
 }
 
 size_t ted4_schedule_room(const ted4_trainer *t)
 {
     const size_t most =
-        (size_t)((sprouts_ahead(t) ? 1.0 - t->opt.sprouts : 1.0) * (double)t->opt.max_anchors);
+        (size_t)((mv_seed_ahead(t) ? 1.0 - t->opt.sprouts : 1.0) * (double)t->opt.max_anchors);
 
     return t->anchors.n < most ? most - t->anchors.n : 0;
 }
@@ -76,7 +77,7 @@ int ted4_schedule_event(ted4_trainer *t)
     if (t->layout.first[TED4_TAU] >= 0 && !t->phase.stage2 && i == ted4_activation_step(o) &&
         ted4_activation_begin(t) != 0)
         return -1;
-    if (sprouts_due(t) && ted4_sprout(t) != 0)
+    if (mv_seed_due(t) && ted4_mv_seed(t) != 0)
         return -1;
     if (!t->phase.stage2 && i > (uint64_t)(GROW_FROM * (double)stage1) &&
         i <= (uint64_t)(o->grow_until * (double)stage1) && i % (uint64_t)o->grow_every == 0 &&

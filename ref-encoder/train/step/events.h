@@ -10,9 +10,10 @@
 int ted4_schedule_event(ted4_trainer *t);
 /* Does the integer stage begin with the next step? */
 int ted4_integer_due(const ted4_trainer *t);
-/* Shares of stage 1 at which growth begins and sprouts come, and the share of anchors that is kept
- * for these; 0: none will come. For estimates of time. */
-void ted4_schedule_growth(const ted4_trainer *t, double *from, double *sprout_at, double *sprouts);
+/* Shares of stage 1 at which growth begins and multi-view seeding takes place, and the share of
+ * anchors that is kept for these; 0: none will come. For estimates of time. */
+void ted4_schedule_growth(const ted4_trainer *t, double *from, double *mv_seed_at,
+                          double *mv_seed_share);
 /* By how many anchors growth may still add. */
 size_t ted4_schedule_room(const ted4_trainer *t);
 

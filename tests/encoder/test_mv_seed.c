@@ -1,4 +1,4 @@
-/* test_sprout.c - train/densify/mv_seed.h: a fast ball that no initial point stands for is found
+/* test_mv_seed.c - train/densify/mv_seed.h: a fast ball that no initial point stands for is found
  * where and when it is, and gets anchors. That they matter is shown on scenes: bench/report.md.
  * SPDX-License-Identifier: BSD-2-Clause */
 #include <stdlib.h>
@@ -20,11 +20,11 @@ static int set_up_without_blue(void **state)
     return 0;
 }
 
-static ted4_train_options options(double sprouts)
+static ted4_train_options options(double mv_seed_share)
 {
     ted4_train_options o = ball_options();
 
-    o.sprouts = sprouts;
+    o.sprouts = mv_seed_share;
     o.max_anchors = 320;
     return o;
 }
@@ -42,7 +42,7 @@ static void test_search(void **state)
         const size_t first = list.n;
         size_t near = 0;
 
-        assert_int_equal(ted4_sprout_search(&t, f, 0, &list), 0);
+        assert_int_equal(ted4_mv_seed_search(&t, f, 0, &list), 0);
         for (size_t i = first; i < list.n; i++) {
             const double r = ball_radii(&t, list.item[i].point, SPEED, (double)f / (FRAMES - 1));
 
@@ -68,14 +68,14 @@ static void test_long(void **state)
 
     (void)state;
     for (uint32_t n = 1; n <= 36000; n++) {
-        assert_true(ted4_sprout_room(n) > 0);
-        assert_true(ted4_sprout_room(n) * n <= (size_t)1 << 27);
+        assert_true(ted4_mv_seed_capacity(n) > 0);
+        assert_true(ted4_mv_seed_capacity(n) * n <= (size_t)1 << 27);
     }
     ball_begin(&t, &o, &balls, NULL);
     ball_train(&t, STEPS);
     balls.n_frames = 20000;
     for (uint32_t f = 0; f < 3; f++) {
-        assert_int_equal(ted4_sprout_search(&t, f, 0, &list), 0);
+        assert_int_equal(ted4_mv_seed_search(&t, f, 0, &list), 0);
         assert_int_equal(list.n, f + 1);
     }
     free(list.item);
@@ -83,8 +83,8 @@ static void test_long(void **state)
     balls.n_frames = frames;
 }
 
-/* Growth leaves room, sprouts take it: short lives, at the ball, at its time. */
-static void test_sprout(void **state)
+/* Growth leaves room, multi-view seeding takes it: short lives, at the ball, at its time. */
+static void test_mv_seed(void **state)
 {
     const ted4_train_options o = options(0.3);
     ted4_trainer t;
@@ -119,14 +119,14 @@ static void test_impossible(void **state)
     (void)state;
     o.activation = 0;
     ball_begin(&t, &o, &balls, NULL);
-    assert_int_equal(ted4_sprout_reach(&t), -1);
+    assert_int_equal(ted4_mv_seed_reach(&t), -1);
     assert_int_equal(t.anchors.n + ted4_schedule_room(&t), 320);
     ted4_trainer_finish(&t);
     o.activation = 1;
     for (size_t i = 0; i < balls.n_pictures; i++) /* two cameras a time */
         balls.pictures[i].is_test = balls.pictures[i].camera_id >= 2;
     ball_begin(&t, &o, &balls, NULL);
-    assert_int_equal(ted4_sprout_reach(&t), -1);
+    assert_int_equal(ted4_mv_seed_reach(&t), -1);
     ted4_trainer_finish(&t);
     for (size_t i = 0; i < balls.n_pictures; i++)
         balls.pictures[i].is_test = 0;
@@ -137,9 +137,9 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_search),
         cmocka_unit_test(test_long),
-        cmocka_unit_test(test_sprout),
+        cmocka_unit_test(test_mv_seed),
         cmocka_unit_test(test_impossible),
     };
 
-    return cmocka_run_group_tests_name("sprout", tests, set_up_without_blue, tear_down);
+    return cmocka_run_group_tests_name("mv_seed", tests, set_up_without_blue, tear_down);
 }
