@@ -93,7 +93,7 @@ static void test_mv_seed(void **state)
     (void)state;
     ball_begin(&t, &o, &balls, NULL);
     for (size_t i = 0; i < t.anchors.n; i++)
-        assert_false(ted4_is_transient(&t, i));
+        assert_false(ted4_is_short_lived(&t, i));
     ball_train(&t, STEPS - 1);
     assert_int_equal(t.anchors.n + ted4_schedule_room(&t), 224); /* 0.7 of 320 */
     ball_train(&t, STEPS);
@@ -103,7 +103,7 @@ static void test_mv_seed(void **state)
     ball_train(&t, STEPS + 1);
     assert_int_equal(t.anchors.n + ted4_schedule_room(&t), 320);
 
-    const size_t n = ball_count_transients(&t, SPEED, 0.71f, &near);
+    const size_t n = ball_count_short_lived(&t, SPEED, 0.71f, &near);
 
     if (t.anchors.n < before + 20 || n < t.anchors.n - before || 2 * near < n)
         fail_msg("%zu new anchors, %zu with short lives, %zu on the ball", t.anchors.n - before, n,

@@ -95,11 +95,11 @@ static void test_spans(void **state)
 
 /* ---- when activation is learnt ---- */
 
-/* Anchors that are not transient: those whose span is all times, as it was before activation; those
- * whose span lies inside and has moved since it began. A transient is there at three of the five
- * times at most: 0.625 with what its span goes beyond them. */
+/* Anchors that are not short-lived: those whose span is all times, as it was before activation;
+ * those whose span lies inside and has moved since it began. A short-lived one is there at three of
+ * the five times at most: 0.625 with what its span goes beyond them. */
 typedef struct {
-    size_t whole, learnt, transient;
+    size_t whole, learnt, short_lived;
 } spans;
 
 static spans count_spans(const ted4_trainer *t)
@@ -114,7 +114,7 @@ static spans count_spans(const ted4_trainer *t)
                  tau(t, i, 2) - tau(t, i, 0) > 0.65f)
             n.learnt++;
         else
-            n.transient++;
+            n.short_lived++;
     return n;
 }
 
@@ -133,7 +133,8 @@ static int are_seeds(const ted4_trainer *t, const float *seed, size_t n)
     return 1;
 }
 
-/* In the static phase nothing is learnt, not even by transients, which fade in and out already. */
+/* In the static phase nothing is learnt, not even by short-lived anchors, which fade in and out
+ * already. */
 static void test_static_phase(void **state)
 {
     const ted4_train_options o = ball_options();
@@ -146,7 +147,7 @@ static void test_static_phase(void **state)
     n = t.anchors.n;
     assert_true(n <= BALLS * BALL_POINTS);
     assert_true(count_spans(&t).whole > 10);
-    assert_true(count_spans(&t).transient > 10);
+    assert_true(count_spans(&t).short_lived > 10);
     for (size_t i = 0; i < n; i++)
         for (int c = 0; c < 4; c++)
             seed[4 * i + (size_t)c] = tau(&t, i, c);

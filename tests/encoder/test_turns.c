@@ -104,7 +104,7 @@ static void test_found(void **state)
     if (ted4_mv_seed(&t) != 0)
         fail_msg("%s", t.message.text);
 
-    const size_t n = ball_count_transients(&t, SPEED, 1.0f, &near);
+    const size_t n = ball_count_short_lived(&t, SPEED, 1.0f, &near);
 
     print_message("%zu new anchors, %zu with short lives, %zu on the ball\n", t.anchors.n - before,
                   n, near);

@@ -43,8 +43,8 @@ static inline double ball_radii(const ted4_trainer *t, const float *p, int speed
 
 /* Anchors with short lives, none longer than a share of all times; *near: those that lie on the
  * ball in the middle of theirs. */
-static inline size_t ball_count_transients(const ted4_trainer *t, int speed, float longest,
-                                           size_t *near)
+static inline size_t ball_count_short_lived(const ted4_trainer *t, int speed, float longest,
+                                            size_t *near)
 {
     const int first = t->layout.first[TED4_TAU];
     size_t n = 0;
@@ -53,7 +53,7 @@ static inline size_t ball_count_transients(const ted4_trainer *t, int speed, flo
     for (size_t i = 0; i < t->anchors.n; i++) {
         float p[3];
 
-        if (!ted4_is_transient(t, i))
+        if (!ted4_is_short_lived(t, i))
             continue;
         for (int k = 0; k < 3; k++)
             p[k] = *ted4_cell(&t->anchors, TED4_ROW_POSITION, i, k);

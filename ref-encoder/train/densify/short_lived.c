@@ -32,7 +32,7 @@ static void describe(const ted4_trainer *t, const float *points, float *place, u
     }
 }
 
-int ted4_is_transient(const ted4_trainer *t, size_t i)
+int ted4_is_short_lived(const ted4_trainer *t, size_t i)
 {
     const int first = t->layout.first[TED4_TAU];
 
@@ -41,7 +41,7 @@ int ted4_is_transient(const ted4_trainer *t, size_t i)
                              1.0f;
 }
 
-int ted4_seed_transients(ted4_trainer *t)
+int ted4_init_short_lived(ted4_trainer *t)
 {
     const size_t n = t->anchors.n;
     ted4_sightings s = { 0 };

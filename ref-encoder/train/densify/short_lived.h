@@ -13,9 +13,9 @@
  * (ted4_sightings_span), starts with its activation around those times. Needs three cameras or more
  * at a time: with fewer, chance matches decide. Does nothing without activation. 0, or -1 with
  * t->message. */
-int ted4_seed_transients(ted4_trainer *t);
+int ted4_init_short_lived(ted4_trainer *t);
 
 /* Was this anchor given such a span? */
-int ted4_is_transient(const ted4_trainer *t, size_t i);
+int ted4_is_short_lived(const ted4_trainer *t, size_t i);
 
 #endif

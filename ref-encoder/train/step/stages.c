@@ -58,10 +58,10 @@ static void widen_spans(const ted4_trainer *t, float *span)
     }
 }
 
-/* Each anchor's activation, transients aside, starts as the span between the first and the last
- * time at which a training view sees it (without the static phase: all times), less a little at
- * each end: with the first frame of the sequence exactly at a_s no time would ever lie before it,
- * and its gradient would be zero for good (annex D.1, traps). */
+/* Each anchor's activation, short-lived anchors aside, starts as the span between the first and the
+ * last time at which a training view sees it (without the static phase: all times), less a little
+ * at each end: with the first frame of the sequence exactly at a_s no time would ever lie before
+ * it, and its gradient would be zero for good (annex D.1, traps). */
 int ted4_activation_begin(ted4_trainer *t)
 {
     ted4_anchors *a = &t->anchors;
@@ -84,7 +84,7 @@ int ted4_activation_begin(ted4_trainer *t)
 
         if (from > to)
             from = to = 0.5f * (from + to);
-        if (ted4_is_transient(t, i))
+        if (ted4_is_short_lived(t, i))
             continue;
         *ted4_cell(a, TED4_ROW_VALUE, i, first) = from;
         *ted4_cell(a, TED4_ROW_VALUE, i, first + 2) = to;

@@ -72,7 +72,7 @@ static int begin(ted4_trainer *t, const ted4_header *h)
     ted4_seed_networks(t->net.value, &t->layout, t->opt.seed);
     if (ted4_colour_match(t) != 0)
         return -1;
-    return t->opt.transients ? ted4_seed_transients(t) : 0;
+    return t->opt.transients ? ted4_init_short_lived(t) : 0;
 }
 
 int ted4_trainer_init(ted4_trainer *t, const ted4_train_options *o, ted4_dataset *d,

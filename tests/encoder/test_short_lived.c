@@ -1,5 +1,5 @@
-/* test_transient.c - train/densify/short_lived.c: which initial points are found to exist only for
- * a while, and when.
+/* test_short_lived.c - train/densify/short_lived.c: which initial points are found to exist only
+ * for a while, and when.
  * SPDX-License-Identifier: BSD-2-Clause */
 #include <stdlib.h>
 #include <string.h>
@@ -17,7 +17,7 @@ typedef struct {
     ted4_trainer trainer;
 } scene;
 
-static void open_scene(scene *s, int moving, int activation, int transients)
+static void open_scene(scene *s, int moving, int activation, int short_lived)
 {
     const ted4_dataset_options o = { .downscale = 1, .seed = 3, .cache_bytes = 1 << 20 };
     ted4_train_options train;
@@ -29,7 +29,7 @@ static void open_scene(scene *s, int moving, int activation, int transients)
         fail_msg("%s", m.text);
     assert_int_equal(ted4_options_preset(&train, "draft"), 0);
     train.activation = activation;
-    train.transients = transients;
+    train.transients = short_lived;
     if (ted4_trainer_init(&s->trainer, &train, &s->data, NULL) != 0)
         fail_msg("%s", s->trainer.message.text);
 }
@@ -73,7 +73,7 @@ static void test_moving(void **state)
     (void)state;
     open_scene(&s, 1, 1, 1);
     for (size_t i = 0; i < s.trainer.anchors.n; i++) {
-        if (!ted4_is_transient(&s.trainer, i)) {
+        if (!ted4_is_short_lived(&s.trainer, i)) {
             assert_true(tau(&s.trainer, i, 0) == 0.0f);
             assert_true(tau(&s.trainer, i, 2) == 1.0f);
             continue;
@@ -95,13 +95,13 @@ static void test_moving(void **state)
     close_scene(&s);
 }
 
-static void expect_none(int moving, int activation, int transients)
+static void expect_none(int moving, int activation, int short_lived)
 {
     scene s;
 
-    open_scene(&s, moving, activation, transients);
+    open_scene(&s, moving, activation, short_lived);
     for (size_t i = 0; i < s.trainer.anchors.n; i++)
-        assert_false(ted4_is_transient(&s.trainer, i));
+        assert_false(ted4_is_short_lived(&s.trainer, i));
     close_scene(&s);
 }
 
