@@ -12,7 +12,7 @@ typedef struct {
     double level;
 } look;
 
-static int compare_looks(const void *x, const void *y)
+static int compare_appearance(const void *x, const void *y)
 {
     const look *a = x, *b = y;
 
@@ -38,7 +38,7 @@ double ted4_dataset_flicker(const ted4_dataset *d)
         if (!d->pictures[i].is_test)
             l[n++] = (look) { d->pictures[i].camera_id, d->pictures[i].frame, d->sources[i].level };
     if (l != NULL)
-        qsort(l, n, sizeof *l, compare_looks);
+        qsort(l, n, sizeof *l, compare_appearance);
     for (size_t i = 1; off != NULL && i + 1 < n; i++)
         if (l[i - 1].camera == l[i + 1].camera && l[i - 1].frame + 1 == l[i].frame &&
             l[i].frame + 1 == l[i + 1].frame)

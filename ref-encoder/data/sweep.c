@@ -143,7 +143,7 @@ static double cost(const ted4_sweep *w, size_t i, const patch *mine, const doubl
 {
     double each[TED4_SWEEP_HELPERS];
     size_t at[TED4_SWEEP_HELPERS];
-    int n = 0, looks[TED4_SWEEP_HELPERS];
+    int n = 0, helpers[TED4_SWEEP_HELPERS];
 
     for (int h = 0; h < w->n_helpers[i]; h++) {
         const size_t k = w->helper[i][h];
@@ -151,12 +151,12 @@ static double cost(const ted4_sweep *w, size_t i, const patch *mine, const doubl
         if (!ted4_shown_pixel(w->shown, k, world, &at[n]))
             continue;
         each[n] = off(mine->rgb[0], w->shown->rgb[k] + 3 * at[n]) / 3.0;
-        looks[n++] = (int)k;
+        helpers[n++] = (int)k;
     }
     if (n < FEWEST || better_half(each, n) > HOPELESS * w->agreed)
         return INFINITY;
     for (int h = 0; h < n; h++) {
-        const size_t k = (size_t)looks[h];
+        const size_t k = (size_t)helpers[h];
         patch other;
 
         take_patch(&picture(w->shown, k)->camera, w->shown->rgb[k], at[h], &other);

@@ -14,14 +14,14 @@
 
 /* The search for smaller models looks at so many and trains with this share of its budget at least,
  * unless that ends it; some searches use all of it, and which ones is not known before. */
-#define LOOKS   40.0
-#define TRAINED 0.08
-#define OFTEN   0.25
+#define UNTRAINED 40.0
+#define TRAINED   0.08
+#define OFTEN     0.25
 
 static double search_steps(const ted4_trainer *t)
 {
     const double budget = fmax(ted4_capacity_search_steps(t), 0.0);
-    const double least = fmin(LOOKS * ted4_capacity_cost_steps(t) + TRAINED * budget, budget);
+    const double least = fmin(UNTRAINED * ted4_capacity_cost_steps(t) + TRAINED * budget, budget);
 
     return least + OFTEN * (budget - least);
 }

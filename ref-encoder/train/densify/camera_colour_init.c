@@ -16,7 +16,7 @@
 
 /* Pictures of a camera that are looked at: what a point looks like to it is their median, by
  * channel. Odd. */
-enum { LOOKS = 5 };
+enum { MOST_SAMPLES = 5 };
 /* Points times cameras, at most; more points are thinned out evenly. */
 enum { MOST = 4 << 20 };
 /* Rounds, and the widths at which a difference weighs nothing, of 255: tints of the size of the
@@ -67,24 +67,24 @@ enum { MOST_CELLS = 64 };
 #define POINTS_A_CELL 8.0
 #define HIDDEN        0.1f
 
-/* Looks of one camera: colours [n][LOOKS][3], and how many there are [n]. Of the picture at hand:
- * each point's pixel and depth, 0 where it is not in the picture [n], and the nearest depth of each
- * of cells times cells. */
+/* Samples of one camera: colours [n][MOST_SAMPLES][3], and how many there are [n]. Of the picture
+ * at hand: each point's pixel and depth, 0 where it is not in the picture [n], and the nearest
+ * depth of each of cells times cells. */
 typedef struct {
     uint8_t *rgb, *count;
     size_t *pixel;
     float *depth, nearest[MOST_CELLS * MOST_CELLS];
     size_t cells;
-} looks;
+} samples;
 
-static float *nearest_at(looks *l, const ted4_view *v, size_t pixel)
+static float *nearest_at(samples *l, const ted4_view *v, size_t pixel)
 {
     const size_t w = (size_t)v->width, h = (size_t)v->height;
 
     return &l->nearest[pixel / w * l->cells / h * l->cells + pixel % w * l->cells / w];
 }
 
-static void project(const match *m, const ted4_view *v, looks *l)
+static void project(const match *m, const ted4_view *v, samples *l)
 {
     for (size_t c = 0; c < l->cells * l->cells; c++)
         l->nearest[c] = INFINITY;
@@ -100,7 +100,7 @@ static void project(const match *m, const ted4_view *v, looks *l)
     }
 }
 
-static int look(match *m, size_t item, looks *l)
+static int look(match *m, size_t item, samples *l)
 {
     ted4_trainer *t = m->t;
     const ted4_picture *pic = &t->data->pictures[item];
@@ -114,20 +114,20 @@ static int look(match *m, size_t item, looks *l)
     project(m, &v, l);
     for (size_t i = 0; i < m->n; i++)
         if (l->depth[i] > 0 && l->depth[i] <= (1.0f + HIDDEN) * *nearest_at(l, &v, l->pixel[i]))
-            memcpy(l->rgb + 3 * (i * LOOKS + l->count[i]++), pixels + 3 * l->pixel[i], 3);
+            memcpy(l->rgb + 3 * (i * MOST_SAMPLES + l->count[i]++), pixels + 3 * l->pixel[i], 3);
     ted4_dataset_release(t->data, item);
     return 0;
 }
 
-static void settle(match *m, size_t camera, const looks *l)
+static void settle(match *m, size_t camera, const samples *l)
 {
     for (size_t i = 0; i < m->n; i++) {
-        float x[LOOKS];
+        float x[MOST_SAMPLES];
 
         m->seen[camera * m->n + i] = l->count[i] > 0;
         for (size_t c = 0; c < 3 && l->count[i] > 0; c++) {
             for (size_t k = 0; k < l->count[i]; k++)
-                x[k] = l->rgb[3 * (i * LOOKS + k) + c];
+                x[k] = l->rgb[3 * (i * MOST_SAMPLES + k) + c];
             m->rgb[3 * (camera * m->n + i) + c] = (uint8_t)median(x, l->count[i]);
         }
     }
@@ -143,10 +143,11 @@ static size_t count_pictures(const ted4_dataset *d, size_t camera)
     return n;
 }
 
-static int look_from(match *m, size_t camera, looks *l)
+static int look_from(match *m, size_t camera, samples *l)
 {
     const ted4_dataset *d = m->t->data;
-    const size_t pictures = count_pictures(d, camera), wanted = pictures < LOOKS ? pictures : LOOKS;
+    const size_t pictures = count_pictures(d, camera),
+                 wanted = pictures < MOST_SAMPLES ? pictures : MOST_SAMPLES;
     size_t at = 0, taken = 0;
 
     memset(l->count, 0, m->n);
@@ -165,12 +166,12 @@ static int look_from(match *m, size_t camera, looks *l)
 
 static int look_around(match *m)
 {
-    looks l = { malloc(3 * LOOKS * m->n),
-                malloc(m->n),
-                malloc(m->n * sizeof *l.pixel),
-                malloc(m->n * sizeof *l.depth),
-                { 0 },
-                (size_t)fmin(ceil(sqrt((double)m->n / POINTS_A_CELL)), MOST_CELLS) };
+    samples l = { malloc(3 * MOST_SAMPLES * m->n),
+                  malloc(m->n),
+                  malloc(m->n * sizeof *l.pixel),
+                  malloc(m->n * sizeof *l.depth),
+                  { 0 },
+                  (size_t)fmin(ceil(sqrt((double)m->n / POINTS_A_CELL)), MOST_CELLS) };
     int bad = 0;
 
     if (l.rgb == NULL || l.count == NULL || l.pixel == NULL || l.depth == NULL)

@@ -19,26 +19,26 @@ int ted4_mv_seed_reach(const ted4_trainer *t)
     return t->layout.first[TED4_TAU] < 0 || t->data->n_frames < 2 ? -1 : ted4_turns_reach(t);
 }
 
-/* What anchors look like now (ted4_trainer_looks). */
+/* What anchors look like now (ted4_anchor_appearance). */
 typedef struct {
     float *rgb, *opacity; /* owned: [n][3], [n] */
-} looks;
+} appearance;
 
 /* 0, or -1 with t->message. */
-static int look_at_anchors(ted4_trainer *t, looks *l)
+static int measure_appearance(ted4_trainer *t, appearance *l)
 {
     l->rgb = malloc(3 * t->anchors.n * sizeof *l->rgb);
     l->opacity = malloc(t->anchors.n * sizeof *l->opacity);
     if (l->rgb == NULL || l->opacity == NULL)
         return ted4_trainer_fail(t, "no memory to look at anchors");
-    return ted4_trainer_looks(t, l->opacity, l->rgb);
+    return ted4_anchor_appearance(t, l->opacity, l->rgb);
 }
 
 /* Anchors less opaque than this lend no features. */
 #define OPAQUE 0.5f
 
 /* Among the first n anchors: the one whose colour comes nearest, and the one that lies nearest. */
-static void find_parents(const ted4_trainer *t, const looks *l, size_t n, const ted4_place *p,
+static void find_parents(const ted4_trainer *t, const appearance *l, size_t n, const ted4_place *p,
                          size_t *alike, size_t *near)
 {
     float best_colour = INFINITY, best_place = INFINITY;
@@ -66,7 +66,7 @@ static void find_parents(const ted4_trainer *t, const looks *l, size_t n, const 
 }
 
 /* Its features are those of an anchor of its colour, its motion that of what is near. */
-static int add(ted4_trainer *t, const looks *l, size_t n_old, const ted4_place *p,
+static int add(ted4_trainer *t, const appearance *l, size_t n_old, const ted4_place *p,
                const ted4_span *span)
 {
     const ted4_layout *y = &t->layout;
@@ -107,7 +107,8 @@ static int mark(ted4_cells *taken, const ted4_place *p, const ted4_span *span)
     return 1;
 }
 
-static int plant(ted4_trainer *t, const ted4_places *list, const ted4_sightings *s, const looks *l)
+static int plant(ted4_trainer *t, const ted4_places *list, const ted4_sightings *s,
+                 const appearance *l)
 {
     const size_t n_old = t->anchors.n, most = (size_t)t->opt.max_anchors;
     const size_t room = n_old < most ? most - n_old : 0;
@@ -149,7 +150,7 @@ int ted4_mv_seed(ted4_trainer *t)
 {
     ted4_places list = { 0 };
     ted4_sightings s = { 0 };
-    looks l = { 0 };
+    appearance l = { 0 };
     float *point = NULL;
     uint8_t *colour = NULL;
     const int reach = ted4_mv_seed_reach(t);
@@ -162,7 +163,7 @@ int ted4_mv_seed(ted4_trainer *t)
     if (!bad && arrange(&list, ted4_mv_seed_capacity(t->data->n_frames), &point, &colour) != 0)
         bad = ted4_trainer_fail(t, "no memory for new anchors");
     bad = bad || ted4_sightings_count(&s, t, point, colour, list.n, (uint32_t)reach) != 0 ||
-          look_at_anchors(t, &l) != 0 || plant(t, &list, &s, &l) != 0;
+          measure_appearance(t, &l) != 0 || plant(t, &list, &s, &l) != 0;
     if (!bad && ted4_anchors_sort(&t->anchors) != 0)
         bad = ted4_trainer_fail(t, "no memory to sort anchors");
     ted4_sightings_free(&s);

@@ -70,13 +70,14 @@ static void count_depths(eye *eyes, size_t n, size_t self)
 }
 
 /* Does the other picture look at the point, and does it confirm it: 0 no, above: how well. */
-static float confirm(const eye *e, const float p[3], const uint8_t colour[3], int *looks)
+static float confirm(const eye *e, const float p[3], const uint8_t colour[3], int *observed)
 {
     size_t pixel;
     float depth;
 
-    *looks = ted4_view_pixel(&e->view, p, &pixel, &depth);
-    if (!*looks || e->error[pixel] < MISSING / 2 || !ted4_colour_agrees(e->rgb + 3 * pixel, colour))
+    *observed = ted4_view_pixel(&e->view, p, &pixel, &depth);
+    if (!*observed || e->error[pixel] < MISSING / 2 ||
+        !ted4_colour_agrees(e->rgb + 3 * pixel, colour))
         return 0.0f;
     return 1.0f -
            (float)ted4_colour_far(e->rgb + 3 * pixel, colour) / (3.0f * TED4_COLOUR_NEAR + 1.0f);
@@ -109,13 +110,13 @@ static void sweep(const search_job *j, int column, int row, ted4_place *best)
         if (fabsf(p[0]) > 1.0f || fabsf(p[1]) > 1.0f || fabsf(p[2]) > 1.0f)
             continue;
         for (size_t i = 0; i < j->n; i++) {
-            int looks;
+            int observed;
 
             if (!j->eyes[i].helps)
                 continue;
-            const float s = confirm(&j->eyes[i], p, colour, &looks);
+            const float s = confirm(&j->eyes[i], p, colour, &observed);
 
-            seen += looks;
+            seen += observed;
             agree += s > 0;
             score += s;
         }

@@ -39,7 +39,8 @@ typedef struct {
     struct {
         int from, to;
         ted4_cost cost;
-    } sight[TED4_MOVES]; /* the next trial of each move, by its looks; to = -1: there is none */
+    } sight[TED4_MOVES]; /* the next trial of each move, by what it costs untrained; to = -1: there
+                            is none */
 } search;
 
 double ted4_capacity_search_steps(const ted4_trainer *t)

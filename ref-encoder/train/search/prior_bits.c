@@ -11,11 +11,11 @@
 
 /* The next finer grids are looked at, so many: one may be worse than the one before it, and the one
  * after it better than both. */
-enum { MOST_LOOKS = 4 };
+enum { MOST_TRIALS = 4 };
 
 double ted4_capacity_refine_steps(const ted4_trainer *t)
 {
-    return ted4_capacity_afford(t, (1 + MOST_LOOKS) * ted4_capacity_cost_steps(t));
+    return ted4_capacity_afford(t, (1 + MOST_TRIALS) * ted4_capacity_cost_steps(t));
 }
 
 int ted4_capacity_refine(ted4_trainer *t)
@@ -28,7 +28,7 @@ int ted4_capacity_refine(ted4_trainer *t)
     if (to < 0 || !(ted4_capacity_refine_steps(t) > 0))
         return 0;
     bad = ted4_capacity_cost(t, &least) != 0;
-    for (int i = 0; !bad && i < MOST_LOOKS && to > 0; i++) {
+    for (int i = 0; !bad && i < MOST_TRIALS && to > 0; i++) {
         struct ted4_trial x = { .move = m, .from = best, .to = to, .before = least };
 
         bad = ted4_move_make(t, m, to) != 0 || ted4_capacity_cost(t, &x.after) != 0;

@@ -59,7 +59,7 @@ static int look(ted4_trainer *t, uint32_t item, int first, float *opacity, float
     return 0;
 }
 
-int ted4_trainer_looks(ted4_trainer *t, float *opacity, float *rgb)
+int ted4_anchor_appearance(ted4_trainer *t, float *opacity, float *rgb)
 {
     const size_t most = t->layout.head.view == TED4_VIEW_FULL ? DIRECTIONS : 1;
     const size_t n = t->order.n < most ? t->order.n : most;

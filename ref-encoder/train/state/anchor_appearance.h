@@ -11,6 +11,6 @@
  * several at which it is most opaque: summed opacity of its offsets [n], and their mean colour by
  * opacity [n][3] (NULL: not wanted; 0 where nothing is opaque). t->slots are all blocks afterwards.
  * 0, or -1 with t->message. */
-int ted4_trainer_looks(ted4_trainer *t, float *opacity, float *rgb);
+int ted4_anchor_appearance(ted4_trainer *t, float *opacity, float *rgb);
 
 #endif

@@ -94,7 +94,7 @@ int ted4_activation_begin(ted4_trainer *t)
 }
 
 /* Largest activation of anchor i over the frames of the sequence, in stage 2 as the file will hold
- * it: from all slots (ted4_trainer_looks). */
+ * it: from all slots (ted4_anchor_appearance). */
 static float peak_activation(const ted4_trainer *t, size_t i)
 {
     const int first = t->layout.first[TED4_TAU];
@@ -113,7 +113,7 @@ int ted4_stage_rising(ted4_trainer *t, uint32_t *rising, size_t *n)
 {
     float *sum = malloc((t->anchors.n + 1) * sizeof *sum);
     int bad = sum == NULL ? ted4_trainer_fail(t, "no memory to look for idle anchors")
-                          : ted4_trainer_looks(t, sum, NULL);
+                          : ted4_anchor_appearance(t, sum, NULL);
 
     *n = 0;
     for (size_t i = 0; !bad && i < t->anchors.n; i++)

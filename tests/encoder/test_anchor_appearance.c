@@ -1,5 +1,5 @@
-/* test_looks.c - train/state/anchor_appearance.c: how opaque anchors are counts from where they are
- * most opaque, when that depends on the direction, and as the file will hold them.
+/* test_anchor_appearance.c - train/state/anchor_appearance.c: how opaque anchors are counts from
+ * where they are most opaque, when that depends on the direction, and as the file will hold them.
  * SPDX-License-Identifier: BSD-2-Clause */
 #include "test.h"
 #include "ball_group.h"
@@ -10,25 +10,25 @@ enum { STEPS = 60, DIRECTIONS = 8 };
 typedef struct {
     size_t n;
     float *opacity, *rgb; /* [n], [n][3] */
-} looks;
+} appearance;
 
-static looks look(ted4_trainer *t)
+static appearance look(ted4_trainer *t)
 {
-    looks l = { t->anchors.n, malloc(t->anchors.n * sizeof(float)),
-                malloc(3 * t->anchors.n * sizeof(float)) };
+    appearance l = { t->anchors.n, malloc(t->anchors.n * sizeof(float)),
+                     malloc(3 * t->anchors.n * sizeof(float)) };
 
     assert_non_null(l.opacity);
     assert_non_null(l.rgb);
-    if (ted4_trainer_looks(t, l.opacity, l.rgb) != 0)
+    if (ted4_anchor_appearance(t, l.opacity, l.rgb) != 0)
         fail_msg("%s", t->message.text);
     return l;
 }
 
 /* As if item were the only training picture. */
-static looks look_from(ted4_trainer *t, uint32_t item)
+static appearance look_from(ted4_trainer *t, uint32_t item)
 {
     const ted4_order whole = t->order;
-    looks l;
+    appearance l;
 
     t->order.item = &item;
     t->order.n = 1;
@@ -37,7 +37,7 @@ static looks look_from(ted4_trainer *t, uint32_t item)
     return l;
 }
 
-static void forget(looks *l)
+static void forget(appearance *l)
 {
     free(l->opacity);
     free(l->rgb);
@@ -68,7 +68,7 @@ static void begin(ted4_trainer *t, int view)
     assert_true(t->order.n > DIRECTIONS);
 }
 
-static double sum_of(const looks *l)
+static double sum_of(const appearance *l)
 {
     double sum = 0;
 
@@ -79,7 +79,7 @@ static double sum_of(const looks *l)
 
 /* Looks from all directions, of which the first is the one that shows least: one look would not
  * do. */
-static void look_from_all(ted4_trainer *t, looks one[DIRECTIONS])
+static void look_from_all(ted4_trainer *t, appearance one[DIRECTIONS])
 {
     uint32_t *const item = t->order.item;
     uint32_t least = 0;
@@ -91,7 +91,7 @@ static void look_from_all(ted4_trainer *t, looks one[DIRECTIONS])
     }
 
     const uint32_t at = least * t->order.n / DIRECTIONS, first = item[0];
-    const looks shows_least = one[least];
+    const appearance shows_least = one[least];
 
     one[least] = one[0];
     one[0] = shows_least;
@@ -102,7 +102,7 @@ static void look_from_all(ted4_trainer *t, looks one[DIRECTIONS])
 static void test_all_directions(void **state)
 {
     ted4_trainer t;
-    looks got, one[DIRECTIONS];
+    appearance got, one[DIRECTIONS];
     size_t more = 0;
 
     (void)state;
@@ -130,7 +130,7 @@ static void test_all_directions(void **state)
 static void test_one_direction(void **state)
 {
     ted4_trainer t;
-    looks got, first;
+    appearance got, first;
 
     (void)state;
     begin(&t, TED4_VIEW_COLOUR);
@@ -150,7 +150,7 @@ static void test_rounded(void **state)
     const ted4_train_options o = ball_options();
     const ted4_layout *l;
     ted4_trainer t;
-    looks before, after;
+    appearance before, after;
     size_t moved = 0;
 
     (void)state;
@@ -183,5 +183,5 @@ int main(void)
         cmocka_unit_test(test_rounded),
     };
 
-    return cmocka_run_group_tests_name("looks", tests, set_up, tear_down);
+    return cmocka_run_group_tests_name("anchor_appearance", tests, set_up, tear_down);
 }
