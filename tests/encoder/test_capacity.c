@@ -129,12 +129,12 @@ static void test_decides(void **state)
     weights = t.layout.shape.n_netr + t.layout.shape.n_nete;
 
     /* What a bit weighs is what it weighed before. */
-    const double charge = ted4_capacity_charge(&t);
+    const double charge = ted4_lambda_per_bit(&t);
 
     assert_int_equal(ted4_trainer_step(&t), 0);
     assert_int_equal(t.search.decided, TED4_DECIDED_MODEL);
     assert_true(t.search.n_trials > 3);
-    assert_true(ted4_capacity_charge(&t) == charge);
+    assert_true(ted4_lambda_per_bit(&t) == charge);
     assert_int_equal(t.layout.head.motion, TED4_MOTION_NONE);
     assert_true(t.layout.shape.n_netr + t.layout.shape.n_nete < weights);
     assert_true(t.net.bits[TED4_GRID_HEADS] < TED4_GRID_FULL(TED4_GRID_HEADS));

@@ -78,10 +78,9 @@ static int count_bytes(ted4_trainer *t, double *bytes)
 }
 
 /* lambda, in units of all values. */
-double ted4_capacity_charge(const ted4_trainer *t)
+double ted4_lambda_per_bit(const ted4_trainer *t)
 {
-    return t->opt.lambda /
-           (ted4_trainer_charged(t) * (double)(t->anchors.n > 0 ? t->anchors.n : 1));
+    return t->opt.lambda / (ted4_rate_norm(t) * (double)(t->anchors.n > 0 ? t->anchors.n : 1));
 }
 
 static int measure(ted4_trainer *t, ted4_cost *c)
@@ -100,7 +99,7 @@ static int measure(ted4_trainer *t, ted4_cost *c)
             return -1;
         c->distortion += d / (double)n;
     }
-    c->cost = c->distortion + 8.0 * ted4_capacity_charge(t) * c->bytes;
+    c->cost = c->distortion + 8.0 * ted4_lambda_per_bit(t) * c->bytes;
     return 0;
 }
 

@@ -10,7 +10,7 @@
  * it. 0, or -1 with t->message. */
 int ted4_capacity_cost(ted4_trainer *t, ted4_cost *c);
 /* What a bit of the file weighs. */
-double ted4_capacity_charge(const ted4_trainer *t);
+double ted4_lambda_per_bit(const ted4_trainer *t);
 
 /* In training steps: what one such cost takes; what trials may take altogether. */
 double ted4_capacity_cost_steps(const ted4_trainer *t);

@@ -149,7 +149,7 @@ int ted4_capacity_prune(ted4_trainer *t)
     bad = ted4_state_take(t, &start) != 0 || ted4_capacity_cost(t, &x.before) != 0 ||
           learn(t, &w) != 0;
     for (int i = 0; !bad && i < N_PRICES; i++)
-        bad = try_price(t, &w, &start, prices[i] * ted4_capacity_charge(t), &best, &x) != 0;
+        bad = try_price(t, &w, &start, prices[i] * ted4_lambda_per_bit(t), &best, &x) != 0;
     x.taken = !bad && x.to >= 0 && x.after.cost < x.before.cost;
     bad = bad || ted4_state_restore(t, x.taken ? &best : &start) != 0;
     if (!bad && x.to >= 0)

@@ -32,12 +32,12 @@ int ted4_trainer_told(ted4_trainer *t, double spent)
     return ted4_trainer_fail(t, "stopped");
 }
 
-double ted4_trainer_charged(const ted4_trainer *t)
+double ted4_rate_norm(const ted4_trainer *t)
 {
     ted4_shape s;
     double sum = 0;
 
-    ted4_shape_make(&s, &t->phase.charged);
+    ted4_shape_make(&s, &t->phase.rate_norm_header);
     for (int y = 0; y < TED4_TYPES; y++)
         sum += s.dim[y];
     return sum;

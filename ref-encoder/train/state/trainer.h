@@ -72,10 +72,10 @@ typedef struct {
 /* Where in the recipe training stands. */
 typedef struct {
     int stage2, integer;
-    int clock_stopped;     /* draw everything at time 0 and without activation */
-    uint64_t stage2_start; /* Adam's count restarts there */
-    ted4_header charged;   /* the first header, in stage 2 that at its start: a bit and a mask go on
-                              weighing what they weighed in that model */
+    int clock_stopped;            /* draw everything at time 0 and without activation */
+    uint64_t stage2_start;        /* Adam's count restarts there */
+    ted4_header rate_norm_header; /* the first header, in stage 2 that at its start: a bit and a
+                            mask go on weighing what they weighed in that model */
 } ted4_phase;
 
 /* Workspaces and pictures of a step. */
@@ -151,7 +151,7 @@ void ted4_trainer_busy(ted4_trainer *t, ted4_busy busy, double budget);
 int ted4_trainer_told(ted4_trainer *t, double spent);
 
 /* Values an anchor that a bit's weight is spread over: of the model at the start of stage 2. */
-double ted4_trainer_charged(const ted4_trainer *t);
+double ted4_rate_norm(const ted4_trainer *t);
 /* Total steps of both stages. */
 uint64_t ted4_trainer_total(const ted4_trainer *t);
 

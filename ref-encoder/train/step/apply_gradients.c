@@ -103,7 +103,7 @@ void ted4_update_parameters(ted4_trainer *t)
     ted4_schedule_rates(t, j.rate);
     if (t->phase.stage2 && h->offset_mask)
         j.mask_weight =
-            (float)(t->opt.lambda * t->opt.mask_weight / (n * t->phase.charged.n_offsets));
+            (float)(t->opt.lambda * t->opt.mask_weight / (n * t->phase.rate_norm_header.n_offsets));
     if (h->motion != TED4_MOTION_NONE && h->temporal_mask)
         j.temporal_weight = (float)(t->opt.temporal_weight / n);
     for (int i = ted4_schedule_network(t, j.range) - 1; i >= 0; i--)

@@ -322,12 +322,12 @@ static void walk_capacity(stream *s, ted4_trainer *t)
         ted4_grid_full(t->net.bits);
     }
     if (t->phase.stage2 && t->opt.capacity) {
-        put(s, &t->phase.charged, sizeof t->phase.charged);
+        put(s, &t->phase.rate_norm_header, sizeof t->phase.rate_norm_header);
         put(s, &t->search.decided, sizeof t->search.decided);
         put(s, t->net.bits, sizeof t->net.bits);
         put(s, &n, sizeof n);
     } else {
-        t->phase.charged = t->layout.head;
+        t->phase.rate_norm_header = t->layout.head;
         n = 0;
     }
     if (!s->writing && !s->failed) {
@@ -335,7 +335,8 @@ static void walk_capacity(stream *s, ted4_trainer *t)
         free(t->search.trial);
         t->search.trial = n <= MOST ? malloc((size_t)(n + 1) * sizeof *t->search.trial) : NULL;
         t->search.n_trials = t->search.trial != NULL ? (size_t)n : 0;
-        s->failed = t->search.trial == NULL || !header_belongs(&began, &t->phase.charged, 0);
+        s->failed = t->search.trial == NULL ||
+                    !header_belongs(&began, &t->phase.rate_norm_header, 0);
     }
     if (!s->failed)
         put(s, t->search.trial, (size_t)n * sizeof *t->search.trial);

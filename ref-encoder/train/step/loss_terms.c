@@ -137,7 +137,7 @@ int ted4_update_rate(ted4_trainer *t, uint64_t key)
     ted4_slots *s = &t->slots;
     const size_t want = (size_t)ceil(t->opt.rate_share * (double)s->n);
     const size_t m = want < s->n ? want : s->n;
-    const double params = ted4_trainer_charged(t);
+    const double params = ted4_rate_norm(t);
     double bits[TED4_TYPES], chosen = 0;
 
     for (size_t i = 0; i < m; i++)

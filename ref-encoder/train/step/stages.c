@@ -309,7 +309,7 @@ int ted4_stage2_begin(ted4_trainer *t)
         for (int y = 0; y < TED4_TYPES; y++)
             *ted4_cell(&t->anchors, TED4_ROW_STEP, i, y) = t->layout.head.step[y];
     t->phase.stage2 = 1;
-    t->phase.charged = t->layout.head;
+    t->phase.rate_norm_header = t->layout.head;
     t->phase.stage2_start = t->iteration;
     return 0;
 }

@@ -59,7 +59,7 @@ static int begin(ted4_trainer *t, const ted4_header *h)
             t, "no file can hold this scene with these options: %s is beyond its range in a header",
             wrong);
     ted4_layout_make(&t->layout, h);
-    t->phase.charged = t->layout.head;
+    t->phase.rate_norm_header = t->layout.head;
     ted4_grid_full(t->net.bits);
     t->watch.state.factor = 1;
     if (ted4_trainer_rebuild(t) != 0 || make_order(t) != 0 || make_images(t) != 0)
