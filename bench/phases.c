@@ -132,7 +132,7 @@ BETWEEN(PHASE_CAPACITY, int, ted4_capacity_decide, (ted4_trainer * t), (t))
 BETWEEN(PHASE_CAPACITY, int, ted4_capacity_refine, (ted4_trainer * t), (t))
 BETWEEN(PHASE_CAPACITY, int, ted4_capacity_prune, (ted4_trainer * t), (t))
 BETWEEN(PHASE_DRAW, double, ted4_trainer_distortion, (ted4_trainer * t, size_t item), (t, item))
-BETWEEN(PHASE_DRAW, int, ted4_trainer_blame, (ted4_trainer * t, size_t item, ted4_splats *s),
+BETWEEN(PHASE_DRAW, int, ted4_distortion_gradient, (ted4_trainer * t, size_t item, ted4_splats *s),
         (t, item, s))
 BETWEEN(PHASE_SCENE, int, ted4_make_scene, (ted4_trainer * t, ted4_scene **s), (t, s))
 BETWEEN(PHASE_CODE, ted4_status, ted4_encode,

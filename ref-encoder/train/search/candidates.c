@@ -286,7 +286,7 @@ static int fewer_offsets(operation *o, int to)
     const size_t K = o->s.head.n_offsets, n = o->t->anchors.n;
     float *of_each = malloc((n * K + 1) * sizeof *of_each);
     double use[TED4_MAX_OFFSETS] = { 0 };
-    const int bad = of_each == NULL || ted4_capacity_usage(o->t, of_each) != 0;
+    const int bad = of_each == NULL || ted4_opacity_sensitivity(o->t, of_each) != 0;
     int kept = 0;
 
     for (size_t i = 0; !bad && i < n * K; i++)

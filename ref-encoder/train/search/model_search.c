@@ -104,7 +104,7 @@ static int look(search *s, ted4_move m, int bold)
     if (to < 0)
         return 1;
     s->sight[m].from = ted4_move_now(s->t, m);
-    s->spent += m == TED4_MOVE_OFFSETS ? ted4_capacity_usage_steps(s->t) : 0.0;
+    s->spent += m == TED4_MOVE_OFFSETS ? ted4_opacity_sensitivity_steps(s->t) : 0.0;
     if (ted4_move_make(s->t, m, to) != 0 || measure(s, &s->sight[m].cost) != 0)
         return -1;
     s->sight[m].to = to;

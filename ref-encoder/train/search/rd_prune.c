@@ -23,7 +23,7 @@ enum { N_PRICES = (int)(sizeof prices / sizeof prices[0]) };
 
 double ted4_capacity_prune_steps(const ted4_trainer *t)
 {
-    const double steps = ted4_capacity_usage_steps(t) +
+    const double steps = ted4_opacity_sensitivity_steps(t) +
                          (1 + N_PRICES) * ted4_capacity_cost_steps(t);
 
     return t->layout.head.offset_mask ? ted4_capacity_afford(t, steps) : 0;
@@ -42,7 +42,7 @@ static int learn(ted4_trainer *t, worth *w)
     w->bits = malloc(t->anchors.n_blocks * (1 + K) * TED4_LANES * sizeof *w->bits);
     if (w->use == NULL || w->bits == NULL)
         return ted4_trainer_fail(t, "no memory to weigh anchors");
-    if (ted4_capacity_usage(t, w->use) != 0 || ted4_slots_fill(t, NULL) != 0)
+    if (ted4_opacity_sensitivity(t, w->use) != 0 || ted4_slots_fill(t, NULL) != 0)
         return -1;
 
     const ted4_rate_input in = { &t->layout,

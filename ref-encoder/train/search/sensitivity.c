@@ -23,7 +23,7 @@ static size_t pictures(const ted4_trainer *t)
     return n < (double)t->order.n ? (size_t)n : t->order.n;
 }
 
-double ted4_capacity_usage_steps(const ted4_trainer *t)
+double ted4_opacity_sensitivity_steps(const ted4_trainer *t)
 {
     return STEPS_A_PICTURE * (double)pictures(t);
 }
@@ -55,7 +55,7 @@ static void mark_unseen(const ted4_trainer *t, size_t n, float *use)
             use[i] = TED4_UNSEEN;
 }
 
-int ted4_capacity_usage(ted4_trainer *t, float *use)
+int ted4_opacity_sensitivity(ted4_trainer *t, float *use)
 {
     const size_t n = pictures(t);
     uint32_t *item = malloc(n * sizeof *item);
@@ -68,12 +68,12 @@ int ted4_capacity_usage(ted4_trainer *t, float *use)
     for (size_t i = 0; !bad && i < n; i++) {
         ted4_splats s;
 
-        bad = ted4_trainer_blame(t, item[i], &s) != 0;
+        bad = ted4_distortion_gradient(t, item[i], &s) != 0;
         if (!bad)
             gather(t, &s, 1.0f / (float)n, use);
     }
     free(item);
     if (!bad)
         mark_unseen(t, n, use);
-    return bad || ted4_trainer_told(t, ted4_capacity_usage_steps(t)) != 0 ? -1 : 0;
+    return bad || ted4_trainer_told(t, ted4_opacity_sensitivity_steps(t)) != 0 ? -1 : 0;
 }

@@ -9,8 +9,8 @@
 /* What each Gaussian does to training pictures, all of them if there is time: mean over them of
  * |dL / d(log opacity)|: use[n][K]; TED4_UNSEEN where none that was looked at shows it, but others
  * may. At rest the signed sum is near zero, and says nothing. 0, or -1 with t->message. */
-int ted4_capacity_usage(ted4_trainer *t, float *use);
+int ted4_opacity_sensitivity(ted4_trainer *t, float *use);
 /* What that takes, in training steps. */
-double ted4_capacity_usage_steps(const ted4_trainer *t);
+double ted4_opacity_sensitivity_steps(const ted4_trainer *t);
 
 #endif

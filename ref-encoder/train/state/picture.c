@@ -158,7 +158,7 @@ double ted4_trainer_distortion(ted4_trainer *t, size_t item)
     return judge(t, item, 0, &v, &s);
 }
 
-int ted4_trainer_blame(ted4_trainer *t, size_t item, ted4_splats *s)
+int ted4_distortion_gradient(ted4_trainer *t, size_t item, ted4_splats *s)
 {
     ted4_view v;
 

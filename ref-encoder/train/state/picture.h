@@ -38,7 +38,7 @@ const uint8_t *ted4_trainer_seen(ted4_trainer *t, size_t item);
 double ted4_trainer_distortion(ted4_trainer *t, size_t item);
 /* The same picture's gradients of the distortion on Gaussians, in t->work.splat_gradient; *s and
  * t->slots: which Gaussians. 0, or -1 with t->message. */
-int ted4_trainer_blame(ted4_trainer *t, size_t item, ted4_splats *s);
+int ted4_distortion_gradient(ted4_trainer *t, size_t item, ted4_splats *s);
 
 /* Mean PSNR of the current model on up to n held-out pictures (training pictures when there are
  * none), spread evenly over them, from its own floats: for the progress line only. Negative:
