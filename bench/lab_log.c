@@ -62,12 +62,12 @@ int lab_read_log(const char *path, lab_log *l)
 {
     FILE *const f = fopen(path, "r");
     char *line = NULL;
-    size_t room = 0;
+    size_t capacity = 0;
 
     *l = (lab_log) { .gradient = -1, .peak = -1 };
     if (f == NULL)
         return lab_failed(path, strerror(errno));
-    while (getline(&line, &room, f) > 0) {
+    while (getline(&line, &capacity, f) > 0) {
         json_t *const o = json_loads(line, 0, NULL);
 
         if (o == NULL)

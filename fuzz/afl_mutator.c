@@ -8,11 +8,11 @@
 #include "mutate.h"
 #include "random_scene.h"
 
-enum { ROOM = 1 << 16, ONE_STALE_OF = 16, MAX_TAIL = 32 };
+enum { CAPACITY = 1 << 16, ONE_STALE_OF = 16, MAX_TAIL = 32 };
 
 typedef struct {
     random_source r;
-    uint8_t fuzzed[ROOM], mended[ROOM];
+    uint8_t fuzzed[CAPACITY], mended[CAPACITY];
 } state;
 
 static random_source bytes_source;
@@ -52,19 +52,19 @@ size_t afl_custom_fuzz(void *data, uint8_t *buf, size_t buf_size, uint8_t **out,
                        size_t add_size, size_t max_size)
 {
     state *s = data;
-    const size_t room = max_size < ROOM ? max_size : ROOM;
-    size_t n = buf_size < room ? buf_size : room;
+    const size_t capacity = max_size < CAPACITY ? max_size : CAPACITY;
+    size_t n = buf_size < capacity ? buf_size : capacity;
 
     *out = s->fuzzed;
     if (add != NULL && add_size > 0 && random_in(&s->r, 0, 7) == 0) {
         const size_t crossed =
-            fuzz_cross_files(buf, n, add, add_size, s->fuzzed, room, random_u32(&s->r));
+            fuzz_cross_files(buf, n, add, add_size, s->fuzzed, capacity, random_u32(&s->r));
 
         if (crossed > 0)
             return crossed;
     }
     memcpy(s->fuzzed, buf, n);
-    return fuzz_mutate_file(s->fuzzed, n, room, random_u32(&s->r), some_bytes);
+    return fuzz_mutate_file(s->fuzzed, n, capacity, random_u32(&s->r), some_bytes);
 }
 
 size_t afl_custom_post_process(void *data, uint8_t *buf, size_t buf_size, uint8_t **out)
@@ -72,7 +72,7 @@ size_t afl_custom_post_process(void *data, uint8_t *buf, size_t buf_size, uint8_
     state *s = data;
 
     *out = buf;
-    if (buf_size > ROOM || random_in(&s->r, 1, ONE_STALE_OF) == 1)
+    if (buf_size > CAPACITY || random_in(&s->r, 1, ONE_STALE_OF) == 1)
         return buf_size;
     memcpy(s->mended, buf, buf_size);
     ted4_mend_chunks(s->mended, ted4_without_tail(s->mended, buf_size, MAX_TAIL));

@@ -1,5 +1,6 @@
 /* corpus_scenes.c - see corpus.h. One byte in front says which file of a scene it is, where the
- * harness takes several. SPDX-License-Identifier: BSD-2-Clause */
+ * harness takes several.
+ * SPDX-License-Identifier: BSD-2-Clause */
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -19,7 +20,7 @@
     "\"width\":4,\"height\":3,\"fx\":2,\"fy\":2,\"cx\":2,\"cy\":1.5,\"R\":[1,0,0,0,1,0,0,0,1]," \
     "\"t\":[0,0,4],"
 
-enum { PLAIN = -1, ROOM = 1 << 12 };
+enum { PLAIN = -1, CAPACITY = 1 << 12 };
 
 typedef struct {
     const char *group, *name;
@@ -117,7 +118,7 @@ static const text_seed other_json[] = {
 
 static void write_text(const text_seed *s)
 {
-    uint8_t data[ROOM];
+    uint8_t data[CAPACITY];
     const size_t front = s->kind >= 0, n = strlen(s->text);
 
     data[0] = (uint8_t)s->kind;
@@ -127,7 +128,7 @@ static void write_text(const text_seed *s)
 
 /* Little-endian records. */
 typedef struct {
-    uint8_t bytes[ROOM];
+    uint8_t bytes[CAPACITY];
     size_t n;
 } record;
 
@@ -248,7 +249,7 @@ static void binary_ply(void)
 
 static void png(const char *name, uint32_t format)
 {
-    uint8_t pixels[6 * 6 * 8], map[4 * 256], file[ROOM];
+    uint8_t pixels[6 * 6 * 8], map[4 * 256], file[CAPACITY];
     png_alloc_size_t n = sizeof file;
     png_image p;
 
@@ -341,10 +342,10 @@ void corpus_scenes(void)
     png("deep.png", PNG_FORMAT_LINEAR_RGB_ALPHA);
     png("palette.png", PNG_FORMAT_RGBA_COLORMAP);
     cut_png();
-    jpeg("rgb.jpg", 3, 0, ROOM);
-    jpeg("grey.jpg", 1, 0, ROOM);
-    jpeg("progressive.jpg", 3, 1, ROOM);
-    jpeg("inks.jpg", 4, 0, ROOM);
+    jpeg("rgb.jpg", 3, 0, CAPACITY);
+    jpeg("grey.jpg", 1, 0, CAPACITY);
+    jpeg("progressive.jpg", 3, 1, CAPACITY);
+    jpeg("inks.jpg", 4, 0, CAPACITY);
     jpeg("short.jpg", 1, 0, 340);
     jpeg("shorter.jpg", 1, 0, 40);
     checkpoints();

@@ -140,8 +140,9 @@ static void check_positions(const ted4_trainer *t)
                          "anchors in the cube");
 }
 
-/* A position is 12 of an anchor's bytes in the file; rooms grow by half, and by a few blocks. */
-static void check_room(const ted4_trainer *t, size_t size)
+/* A position is 12 of an anchor's bytes in the file; capacities grow by half, and by a few blocks.
+ */
+static void check_capacity(const ted4_trainer *t, size_t size)
 {
     fuzz_require(t->anchors.capacity * TED4_LANES * 12 <= 2 * size + 16 * TED4_LANES * 12,
                  "no more room than the file fills");
@@ -168,7 +169,7 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
     } else {
         fuzz_require(!good, "a good one is accepted");
         fuzz_check_message(&t.message);
-        check_room(&t, s.size);
+        check_capacity(&t, s.size);
     }
     ted4_trainer_finish(&t);
     ted4_snapshot_free(&s);

@@ -35,14 +35,14 @@ static size_t next_piece(pieces *p)
     return n < left ? n : left;
 }
 
-static ssize_t hand_over(void *cookie, char *to, size_t room)
+static ssize_t hand_over(void *cookie, char *to, size_t capacity)
 {
     pieces *const p = cookie;
     size_t n = next_piece(p);
 
     if (p->at >= p->breaks_at)
         return -1;
-    n = n < room ? n : room;
+    n = n < capacity ? n : capacity;
     memcpy(to, p->data + p->at, n);
     p->at += n;
     return (ssize_t)n;

@@ -12,12 +12,12 @@
 #include "harness.h"
 #include "read/inflate.h"
 
-enum { ROOM = 1 << 19 };
+enum { CAPACITY = 1 << 19 };
 
 /* What zlib itself makes of the bytes: 4 n bytes of them, and all of the input used. */
 static int zlib_accepts(const uint8_t *data, size_t size, size_t n, uint8_t *out)
 {
-    uLongf n_out = ROOM;
+    uLongf n_out = CAPACITY;
     uLong n_in = size;
 
     if (size == 0 || size >= 4 * n)
@@ -27,7 +27,7 @@ static int zlib_accepts(const uint8_t *data, size_t size, size_t n, uint8_t *out
 
 static void check(const uint8_t *data, size_t size, size_t n, uint64_t bound)
 {
-    static uint8_t out[ROOM];
+    static uint8_t out[CAPACITY];
     counting_memory memory = { 0 };
     const ted4_options o = { .max_bytes = bound, .allocator = counting_allocator(&memory) };
     float *const values = calloc(n + 1, sizeof *values);
@@ -57,13 +57,13 @@ static void check(const uint8_t *data, size_t size, size_t n, uint64_t bound)
 
 int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
 {
-    static uint8_t packed[ROOM];
+    static uint8_t packed[CAPACITY];
     fuzz_source in = { data, data + size };
     const int kind = fuzz_u8(&in);
     size_t n = fuzz_u16(&in);
     const uint16_t knob = fuzz_u16(&in);
     const uint64_t bound = knob == 0 ? 1 << 24 : 64 + (uint64_t)knob * 16;
-    uLongf n_packed = ROOM;
+    uLongf n_packed = CAPACITY;
 
     if (kind & 1) {
         n = kind & 2 ? n : (size_t)(in.end - in.at) / 4;

@@ -232,19 +232,19 @@ static void change_chunks(file *f)
 static void change_payload(file *f, fuzz_bytes_fn *bytes)
 {
     const size_t at = any_chunk(f);
-    size_t old, room, n;
+    size_t old, capacity, n;
     uint8_t *payload;
 
     if (at >= f->size)
         return;
     f->coded = memcmp(f->data + at, ted4_chunk_type[TED4_TILE], 4) == 0;
     old = ted4_load32(f->data + at + 8);
-    room = old + (f->max_size - f->size);
-    payload = malloc(room > 0 ? room : 1);
+    capacity = old + (f->max_size - f->size);
+    payload = malloc(capacity > 0 ? capacity : 1);
     if (payload == NULL)
         return;
     memcpy(payload, f->data + at + TED4_FRAME_HEAD_SIZE, old);
-    n = bytes(payload, old, room);
+    n = bytes(payload, old, capacity);
     if (splice(f, at + TED4_FRAME_HEAD_SIZE, old, payload, n))
         ted4_store32(f->data + at + 8, (uint32_t)n);
     free(payload);

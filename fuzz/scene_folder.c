@@ -11,13 +11,13 @@
 #include "data/video.h"
 #include "harness.h"
 
-enum { MOST = 64, ROOM = 512 };
+enum { MOST = 64, CAPACITY = 512 };
 
 /* What was written, so that it can be removed. */
 static struct {
-    char base[ROOM];  /* empty: not made yet */
-    char scene[ROOM]; /* the folder chosen */
-    char made[MOST][ROOM];
+    char base[CAPACITY];  /* empty: not made yet */
+    char scene[CAPACITY]; /* the folder chosen */
+    char made[MOST][CAPACITY];
     int n;
 } folder;
 
@@ -47,7 +47,7 @@ static void note(const char *path)
         if (strcmp(folder.made[i], path) == 0)
             return;
     fuzz_require(folder.n < MOST, "room for names");
-    (void)snprintf(folder.made[folder.n++], ROOM, "%.500s", path);
+    (void)snprintf(folder.made[folder.n++], CAPACITY, "%.500s", path);
 }
 
 const char *fuzz_scene(const char *name)
@@ -68,7 +68,7 @@ const char *fuzz_scene(const char *name)
 
 static const char *path_of(const char *name)
 {
-    static char path[ROOM];
+    static char path[CAPACITY];
 
     (void)snprintf(path, sizeof path, "%.400s/%.100s", folder.scene, name);
     for (char *s = path + strlen(folder.scene) + 1; (s = strchr(s, '/')) != NULL; *s++ = '/') {

@@ -42,20 +42,20 @@ static int capabilities(const ted4_adapter *a)
 static int read_file(file *f, const char *path)
 {
     FILE *in = fopen(path, "rb");
-    size_t room = 1 << 16, n = 1;
+    size_t capacity = 1 << 16, n = 1;
 
     f->size = 0;
-    f->data = in != NULL ? malloc(room + 1) : NULL;
+    f->data = in != NULL ? malloc(capacity + 1) : NULL;
     while (f->data != NULL && n > 0) {
-        if (f->size == room) {
-            uint8_t *const more = realloc(f->data, 2 * room + 1);
+        if (f->size == capacity) {
+            uint8_t *const more = realloc(f->data, 2 * capacity + 1);
 
             if (more == NULL)
                 free(f->data);
             f->data = more;
-            room *= 2;
+            capacity *= 2;
         }
-        n = f->data != NULL ? fread(f->data + f->size, 1, room - f->size, in) : 0;
+        n = f->data != NULL ? fread(f->data + f->size, 1, capacity - f->size, in) : 0;
         f->size += n;
     }
     if (in != NULL)

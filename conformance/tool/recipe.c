@@ -116,18 +116,19 @@ static void free_source(source *s)
     free(s);
 }
 
-static int split(char *text, char **word, int room)
+static int split(char *text, char **word, int capacity)
 {
     int n = 0;
 
-    for (char *p = strtok(text, " \t"); p != NULL && n < room; p = strtok(NULL, " \t"))
+    for (char *p = strtok(text, " \t"); p != NULL && n < capacity; p = strtok(NULL, " \t"))
         word[n++] = p;
     return n;
 }
 
 /* Value of a name under `each`, as part of the value taken now; NULL: no such name. to: room for
  * it. */
-static const char *value_of(const reader *r, const char *name, size_t length, char *to, size_t room)
+static const char *value_of(const reader *r, const char *name, size_t length, char *to,
+                            size_t capacity)
 {
     for (int i = 0; i < r->n_each; i++) {
         const each *e = &r->each[i];
@@ -137,7 +138,7 @@ static const char *value_of(const reader *r, const char *name, size_t length, ch
             const char *const end = v + strcspn(v, ":");
 
             if (strlen(e->name[j]) == length && memcmp(e->name[j], name, length) == 0) {
-                snprintf(to, room, "%.*s", (int)(end - v), v);
+                snprintf(to, capacity, "%.*s", (int)(end - v), v);
                 return to;
             }
             v = *end == ':' ? end + 1 : end;

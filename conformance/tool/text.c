@@ -43,9 +43,9 @@ char *conf_copy(const char *text)
 
 static void reserve(conf_bytes *b, size_t size)
 {
-    if (b->size + size + 1 > b->room) {
-        b->room = 2 * (b->size + size) + 64;
-        b->data = realloc(b->data, b->room);
+    if (b->size + size + 1 > b->capacity) {
+        b->capacity = 2 * (b->size + size) + 64;
+        b->data = realloc(b->data, b->capacity);
         if (b->data == NULL)
             conf_die("no memory");
     }

@@ -20,7 +20,7 @@ char *conf_copy(const char *text);
 /* All zero is an empty one. data is owned and followed by a 0 that size does not count. */
 typedef struct {
     uint8_t *data;
-    size_t size, room;
+    size_t size, capacity;
 } conf_bytes;
 
 void conf_add(conf_bytes *b, const void *data, size_t size);

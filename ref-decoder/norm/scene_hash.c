@@ -30,11 +30,11 @@ static void put_bytes(hasher *h, const uint8_t *v, size_t n)
 /* Numbers of 16 bits, of which as many as the buffer has room for are made bytes at a time. */
 static void put_numbers(hasher *h, const uint16_t *v, size_t n)
 {
-    const size_t room = BUFFER / 2;
+    const size_t per_batch = BUFFER / 2;
 
     flush(h);
-    for (size_t from = 0; from < n; from += room) {
-        const size_t m = n - from < room ? n - from : room;
+    for (size_t from = 0; from < n; from += per_batch) {
+        const size_t m = n - from < per_batch ? n - from : per_batch;
 
         for (size_t i = 0; i < m; i++)
             ted4_store16(h->bytes + 2 * i, v[from + i]);

@@ -122,13 +122,13 @@ static void prepare_jobs(decoder *d, size_t at)
         no_memory(d, at);
         return;
     }
-    for (; d->n_room < want; d->n_room++) {
-        d->jobs[d->n_room].work = ted4_arena_alloc_raw(a, 1, size);
-        if (d->jobs[d->n_room].work == NULL)
+    for (; d->n_workspaces < want; d->n_workspaces++) {
+        d->jobs[d->n_workspaces].work = ted4_arena_alloc_raw(a, 1, size);
+        if (d->jobs[d->n_workspaces].work == NULL)
             break;
-        atomic_flag_clear(&d->jobs[d->n_room].busy);
+        atomic_flag_clear(&d->jobs[d->n_workspaces].busy);
     }
-    if (d->n_room == 0)
+    if (d->n_workspaces == 0)
         no_memory(d, at);
 }
 
@@ -182,7 +182,7 @@ static void read_tile(decoder *d, const ted4_chunk_place *p)
     j = &d->jobs[d->n_queued++];
     j->reader = ted4_decoder_reader(d, p);
     j->number = d->n_tiles++;
-    if (d->n_queued == d->n_room)
+    if (d->n_queued == d->n_workspaces)
         run_batch(d);
 }
 
@@ -259,11 +259,11 @@ int ted4_decoder_init(decoder *d, const void *data, size_t size, const ted4_opti
 void ted4_decoder_finish(decoder *d)
 {
     run_batch(d);
-    for (unsigned i = 0; i < d->n_room; i++)
+    for (unsigned i = 0; i < d->n_workspaces; i++)
         ted4_arena_release(&d->s->arena, d->jobs[i].work);
     ted4_arena_release(&d->s->arena, d->jobs);
     d->jobs = NULL;
-    d->n_room = 0;
+    d->n_workspaces = 0;
 }
 
 ted4_status ted4_decode(const void *data, size_t size, const ted4_options *o, ted4_scene **scene,

@@ -17,9 +17,9 @@ typedef struct {
     ted4_prior prior;
     ted4_gauss_many many; /* for readers of tiles */
     struct ted4_tile_job *jobs;
-    unsigned n_room, n_queued; /* tiles that run at once; tiles that wait to run */
-    unsigned n_tiles;          /* seen so far */
-    unsigned n_good;           /* decoded without an error here or before */
+    unsigned n_workspaces, n_queued; /* tiles that run at once; tiles that wait to run */
+    unsigned n_tiles;                /* seen so far */
+    unsigned n_good;                 /* decoded without an error here or before */
 } ted4_decoder;
 
 /* data and o are borrowed; o may be NULL. file stands at the first byte. 1, or 0: no memory, s is

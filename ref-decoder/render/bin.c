@@ -11,7 +11,7 @@
 enum { SPARE_TILES = 3 };
 
 /* Instances after the last: what blend.c fetches ahead, then what each part writes in vain. */
-enum { ROOM = TED4_AHEAD + TED4_SPARE * (TED4_SORT_PARTS + 1) };
+enum { CAPACITY = TED4_AHEAD + TED4_SPARE * (TED4_SORT_PARTS + 1) };
 
 typedef struct {
     struct ted4_raster *r;
@@ -72,7 +72,7 @@ static int add_up_chunks(bin_job *job, size_t n_chunks)
     for (size_t c = 0; c <= n_chunks; c++) {
         const ted4_chunk count = c < n_chunks ? chunk[c] : (ted4_chunk) { .nearest = UINT32_MAX };
 
-        if (n_instances > UINT32_MAX - ROOM)
+        if (n_instances > UINT32_MAX - CAPACITY)
             return -1;
         chunk[c] =
             (ted4_chunk) { .n_visible = (uint32_t)n_visible, .n_instances = (uint32_t)n_instances };
@@ -241,8 +241,8 @@ int ted4_raster_bin(struct ted4_raster *r, const ted4_splats *s, const ted4_para
         ted4_growing_grow(&r->hist, TED4_SORT_PARTS * (n_counted > n_digits ? n_counted : n_digits),
                           sizeof(uint32_t)) != 0 ||
         ted4_growing_grow(&r->tile_first, n_counted, sizeof(uint32_t)) != 0 ||
-        ted4_growing_grow(&r->owner, r->n_instances + ROOM, sizeof(uint32_t)) != 0 ||
-        ted4_growing_grow(&r->slot, r->n_instances + ROOM, sizeof(uint32_t)) != 0)
+        ted4_growing_grow(&r->owner, r->n_instances + CAPACITY, sizeof(uint32_t)) != 0 ||
+        ted4_growing_grow(&r->slot, r->n_instances + CAPACITY, sizeof(uint32_t)) != 0)
         return -1;
     ((uint32_t *)r->first_slot.data)[s->n] = (uint32_t)r->n_instances;
     memset((uint32_t *)r->owner.data + r->n_instances, 0, TED4_AHEAD * sizeof(uint32_t));

@@ -28,14 +28,14 @@ static int write_png(FILE *f, int width, int height, const uint8_t *rgb, char *w
 int ted4_png_write(const char *path, int width, int height, const uint8_t *rgb, char *why,
                    size_t why_size)
 {
-    const size_t room = strlen(path) + 32;
-    char *temporary = malloc(room);
+    const size_t capacity = strlen(path) + 32;
+    char *temporary = malloc(capacity);
 
     if (temporary == NULL) {
         snprintf(why, why_size, "out of memory");
         return -1;
     }
-    snprintf(temporary, room, "%s.%ld.tmp", path, (long)getpid());
+    snprintf(temporary, capacity, "%s.%ld.tmp", path, (long)getpid());
     FILE *f = fopen(temporary, "wb");
     int result = -1;
     if (f == NULL) {

@@ -61,7 +61,8 @@ void ted4_sha256_add(ted4_sha256 *h, const void *bytes, size_t size)
     const uint8_t *p = bytes;
 
     while (size > 0) {
-        const size_t at = h->size % 64, room = 64 - at, n = size < room ? size : room;
+        const size_t at = h->size % 64, bytes_left = 64 - at,
+                     n = size < bytes_left ? size : bytes_left;
 
         memcpy(h->block + at, p, n);
         h->size += n;

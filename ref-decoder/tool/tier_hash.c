@@ -52,7 +52,7 @@ void ted4_tier_hash_add(void *hash, const void *bytes, size_t size)
     const uint8_t *p = bytes;
 
     while (size > 0) {
-        const size_t room = BUFFER - h->n, n = size < room ? size : room;
+        const size_t bytes_left = BUFFER - h->n, n = size < bytes_left ? size : bytes_left;
 
         memcpy(h->bytes + h->n, p, n);
         h->n += n;

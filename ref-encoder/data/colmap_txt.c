@@ -189,7 +189,7 @@ static int read_point(text_reader *r, char *line, float *xyz, uint8_t *rgb, ted4
     return 0;
 }
 
-/* Number of lines, comments included: enough room for the points. */
+/* Number of lines, comments included: enough capacity for the points. */
 static size_t count_lines(const char *text)
 {
     size_t n = 1;

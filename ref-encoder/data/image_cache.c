@@ -111,7 +111,7 @@ static void not_early(ted4_image_cache *c, size_t i)
 
 /* With the lock held: drops idle pictures, oldest first, until extra more bytes fit or none is
  * left. */
-static void make_room(ted4_image_cache *c, size_t extra)
+static void evict(ted4_image_cache *c, size_t extra)
 {
     for (;;) {
         const size_t i = c->entries[c->n].after;
@@ -137,7 +137,7 @@ static void load(ted4_image_cache *c, size_t i, ted4_message *m)
     pthread_mutex_lock(&c->lock);
     e->loading = 0;
     if (bytes != NULL) {
-        make_room(c, size);
+        evict(c, size);
         e->bytes = bytes;
         e->size = size;
         c->held += size;
@@ -172,7 +172,7 @@ void ted4_image_cache_unpin(ted4_image_cache *c, size_t i)
     pthread_mutex_lock(&c->lock);
     if (--c->entries[i].pins == 0) {
         join_idle(c, i);
-        make_room(c, 0);
+        evict(c, 0);
     }
     pthread_mutex_unlock(&c->lock);
 }
@@ -217,7 +217,7 @@ static int is_queued(const ahead *a, size_t i)
 }
 
 /* Pictures that may wait, decoded or queued or on their way. */
-static size_t room_ahead(const ted4_image_cache *c)
+static size_t prefetch_limit(const ted4_image_cache *c)
 {
     const size_t fit = c->largest > 0 ? c->bound / c->largest / 2 : TED4_DATASET_AHEAD;
 
@@ -232,7 +232,7 @@ void ted4_image_cache_ahead(ted4_image_cache *c, size_t i, int n_threads)
     pthread_mutex_lock(&c->lock);
     const size_t waiting = a->n_early + (size_t)(a->n_queued + a->n_loading);
     if (most > 0 && i < c->n && c->entries[i].bytes == NULL && !c->entries[i].loading &&
-        !is_queued(a, i) && waiting < room_ahead(c)) {
+        !is_queued(a, i) && waiting < prefetch_limit(c)) {
         a->queue[a->n_queued++] = i;
         if (a->n_queued > a->n_waiting && a->n_threads < most &&
             pthread_create(&a->threads[a->n_threads], NULL, decode_ahead, c) == 0)

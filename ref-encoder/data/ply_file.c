@@ -43,14 +43,14 @@ typedef struct {
 } ply;
 
 /* The next header line without its end, cut to the buffer. 0 at the end of the file. */
-static int next_line(ply *p, char *text, size_t room)
+static int next_line(ply *p, char *text, size_t capacity)
 {
     size_t n = 0;
 
     if (p->at >= p->size)
         return 0;
     while (p->at < p->size && p->bytes[p->at] != '\n') {
-        if (n + 1 < room && p->bytes[p->at] != '\r')
+        if (n + 1 < capacity && p->bytes[p->at] != '\r')
             text[n++] = (char)p->bytes[p->at];
         p->at++;
     }

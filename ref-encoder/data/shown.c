@@ -133,7 +133,7 @@ static size_t n_words(const ted4_shown *s, size_t k)
     return n_pixels(&s->data->pictures[s->picture[k]].camera) / 64 + 1;
 }
 
-static int make_room(ted4_shown *s)
+static int allocate(ted4_shown *s)
 {
     for (size_t k = 0; k < s->n; k++) {
         s->bits[k] = calloc(n_words(s, k), sizeof *s->bits[k]);
@@ -151,7 +151,7 @@ int ted4_shown_read(ted4_shown *s, ted4_dataset *d, ted4_message *m)
     memset(s, 0, sizeof *s);
     s->data = d;
     choose_pictures(s);
-    if (count == NULL || make_room(s) != 0 || read_all(s, m) != 0) {
+    if (count == NULL || allocate(s) != 0 || read_all(s, m) != 0) {
         const int read = count == NULL || s->n == 0 || s->bits[s->n - 1] == NULL;
 
         free(count);

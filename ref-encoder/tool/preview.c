@@ -14,8 +14,8 @@
 /* What a blob's weights take, as the writer deflates them. */
 static double blob_bytes(const ted4_blob *b)
 {
-    const size_t room = ted4_deflate_room(b->n);
-    uint8_t *const memory = malloc(4 * b->n + room);
+    const size_t capacity = ted4_deflate_bound(b->n);
+    uint8_t *const memory = malloc(4 * b->n + capacity);
     size_t size = 4 * b->n;
 
     if (memory != NULL && !ted4_deflate(b->values, b->n, memory, memory + 4 * b->n, &size))

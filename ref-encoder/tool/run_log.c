@@ -48,12 +48,12 @@ static int is_regular(int file)
 static off_t find_end(FILE *f, uint64_t step, uint64_t rollbacks, double *cpu)
 {
     char *line = NULL;
-    size_t room = 0;
+    size_t capacity = 0;
     ssize_t n;
     off_t end = 0;
     unsigned long long at, count;
 
-    while (end >= 0 && (n = getline(&line, &room, f)) > 0 && line[n - 1] == '\n') {
+    while (end >= 0 && (n = getline(&line, &capacity, f)) > 0 && line[n - 1] == '\n') {
         if (sscanf(line, "{\"step\":%llu,", &at) != 1)
             end = -1;
         else if (at > step ||

@@ -12,16 +12,16 @@ uint8_t *ted4_buffer_add(ted4_buffer *b, size_t size)
         b->failed = 1;
         return NULL;
     }
-    if (b->size + size > b->room) {
-        const size_t room = 2 * b->size + size + 256;
+    if (b->size + size > b->capacity) {
+        const size_t capacity = 2 * b->size + size + 256;
 
-        p = realloc(b->data, room);
+        p = realloc(b->data, capacity);
         if (p == NULL) {
             b->failed = 1;
             return NULL;
         }
         b->data = p;
-        b->room = room;
+        b->capacity = capacity;
     }
     p = b->data + b->size;
     b->size += size;
@@ -32,5 +32,5 @@ void ted4_buffer_free(ted4_buffer *b)
 {
     free(b->data);
     b->data = NULL;
-    b->size = b->room = 0;
+    b->size = b->capacity = 0;
 }

@@ -8,7 +8,7 @@
 
 typedef struct {
     uint8_t *data; /* owned, malloc */
-    size_t size, room;
+    size_t size, capacity;
     int failed; /* memory ran out: nothing more is added */
 } ted4_buffer;
 

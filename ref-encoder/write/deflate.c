@@ -16,7 +16,7 @@ static void shuffle(uint8_t *bytes, const float *values, size_t n)
     }
 }
 
-size_t ted4_deflate_room(size_t n)
+size_t ted4_deflate_bound(size_t n)
 {
     return compressBound((uLong)(4 * n));
 }

@@ -8,9 +8,9 @@
 #include <stdint.h>
 
 /* Bytes that packed must have room for. */
-size_t ted4_deflate_room(size_t n);
+size_t ted4_deflate_bound(size_t n);
 
-/* values [n] into packed [ted4_deflate_room(n)], by way of work [4 n]; *size: what that took. 0:
+/* values [n] into packed [ted4_deflate_bound(n)], by way of work [4 n]; *size: what that took. 0:
  * not smaller than the values themselves, or zlib has no memory. */
 int ted4_deflate(const float *values, size_t n, uint8_t *work, uint8_t *packed, size_t *size);
 

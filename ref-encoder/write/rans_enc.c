@@ -10,7 +10,7 @@ void ted4_rans_enc_free(ted4_rans_enc *e)
 {
     free(e->record);
     e->record = NULL;
-    e->n = e->room = 0;
+    e->n = e->capacity = 0;
 }
 
 void ted4_rans_enc_init(ted4_rans_enc *e, size_t n)
@@ -22,16 +22,16 @@ void ted4_rans_enc_init(ted4_rans_enc *e, size_t n)
 
 void ted4_rans_enc_put(ted4_rans_enc *e, ted4_slots s)
 {
-    if (e->n == e->room) {
-        const size_t room = 2 * e->room + 4096;
-        ted4_rans_record *r = realloc(e->record, room * sizeof *r);
+    if (e->n == e->capacity) {
+        const size_t capacity = 2 * e->capacity + 4096;
+        ted4_rans_record *r = realloc(e->record, capacity * sizeof *r);
 
         if (r == NULL) {
             e->failed = 1;
             return;
         }
         e->record = r;
-        e->room = room;
+        e->capacity = capacity;
     }
     e->record[e->n++] =
         (ted4_rans_record) { (uint16_t)s.start, (uint16_t)s.freq, (uint8_t)e->lane };

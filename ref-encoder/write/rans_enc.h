@@ -17,7 +17,7 @@ typedef struct {
 /* All zero is a good start; reused from substream to substream. */
 typedef struct {
     ted4_rans_record *record; /* owned */
-    size_t n, room;
+    size_t n, capacity;
     unsigned n_lanes, lane; /* lane: of the next symbol */
     int failed;             /* memory ran out */
 } ted4_rans_enc;

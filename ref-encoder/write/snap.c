@@ -44,17 +44,17 @@ static int integerise(unit *u, const ted4_unit_rule *rule, int shift)
 static void pull_in(unit *u, const ted4_unit_rule *rule, int shift)
 {
     const int64_t half = INT32_MAX / 2;
-    int64_t room;
+    int64_t limit;
 
     if (ted4_accumulator_legal(rule, shift, u->sum, u->B))
         return;
     /* 2^24 grid: what is left of B has to be a binary32. */
     u->B = u->B > half ? half & ~(int64_t)127 : u->B < -half ? -(half & ~(int64_t)127) : u->B;
-    room = (half - ((int64_t)1 << 24)) / rule->amplitude;
-    if (u->sum <= room)
+    limit = (half - ((int64_t)1 << 24)) / rule->amplitude;
+    if (u->sum <= limit)
         return;
     for (unsigned i = 0; i < u->in; i++)
-        u->W[i] = (int32_t)(u->W[i] * room / u->sum);
+        u->W[i] = (int32_t)(u->W[i] * limit / u->sum);
 }
 
 static void snap_unit(unit *u, const ted4_unit_rule *rule, int finest, uint8_t *shift)

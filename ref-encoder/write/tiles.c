@@ -98,21 +98,21 @@ static void walk_one(void *arg, size_t i)
 ted4_error ted4_draft_tiles(ted4_draft *d, void *coders, size_t stride, const ted4_parallel *p)
 {
     const size_t n_tiles = d->s.shape.n_tiles;
-    size_t room = p == NULL ? 1 : n_tiles < BATCH ? n_tiles : BATCH;
+    size_t per_batch = p == NULL ? 1 : n_tiles < BATCH ? n_tiles : BATCH;
     ted4_error e = { TED4_OK, 0 };
     batch b = { .d = d, .coders = coders, .stride = stride };
 
     b.work_size = (ted4_tile_work_size(&d->s) + 63) / 64 * 64;
-    if (room > BATCH_BYTES / b.work_size)
-        room = BATCH_BYTES / b.work_size > 0 ? BATCH_BYTES / b.work_size : 1;
-    b.work = ted4_arena_alloc(&d->arena, room, b.work_size);
+    if (per_batch > BATCH_BYTES / b.work_size)
+        per_batch = BATCH_BYTES / b.work_size > 0 ? BATCH_BYTES / b.work_size : 1;
+    b.work = ted4_arena_alloc(&d->arena, per_batch, b.work_size);
     if (b.work == NULL)
         ted4_fail(&e, TED4_E_LIMIT_MEMORY, 0);
-    for (; b.first < n_tiles && e.code == TED4_OK; b.first += room) {
+    for (; b.first < n_tiles && e.code == TED4_OK; b.first += per_batch) {
         const size_t left = n_tiles - b.first;
 
-        ted4_parallel_for(p, left < room ? left : room, walk_one, &b);
-        for (size_t i = 0; i < left && i < room; i++) {
+        ted4_parallel_for(p, left < per_batch ? left : per_batch, walk_one, &b);
+        for (size_t i = 0; i < left && i < per_batch; i++) {
             const ted4_coder *c =
                 (const ted4_coder *)(const void *)(b.coders + (b.first + i) * stride);
 

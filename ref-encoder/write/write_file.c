@@ -53,7 +53,7 @@ static void choose_mode(ted4_blob *b, ted4_arena *arena, ted4_error *e)
         return;
     b->mode = TED4_BLOB_RAW;
     bytes = ted4_arena_alloc(arena, b->n, 4);
-    packed = ted4_arena_alloc(arena, ted4_deflate_room(b->n), 1);
+    packed = ted4_arena_alloc(arena, ted4_deflate_bound(b->n), 1);
     if (bytes == NULL || packed == NULL) {
         ted4_fail(e, TED4_E_LIMIT_MEMORY, 0);
         return;

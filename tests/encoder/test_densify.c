@@ -112,7 +112,7 @@ static void test_growth(void **state)
         plant(&t, i, k, (i % 4 == 1 ? 0.9f : 20.0f) * THRESHOLD, i % 4 < 2 ? SEEN : SEEN - 1);
         n_planted += i % 4 == 0;
     }
-    assert_int_equal(ted4_densify_adjust(&t, ted4_schedule_room(&t)), 0);
+    assert_int_equal(ted4_densify_adjust(&t, ted4_growth_allowance(&t)), 0);
     anchors_check(&t.anchors);
     for (size_t i = 0; i < t.anchors.n; i++) {
         const size_t id = (size_t)*ted4_cell(&t.anchors, TED4_ROW_VALUE, i, 0) - 1;
@@ -154,7 +154,7 @@ static void test_growth_depths(void **state)
                                             at the lattice's faces */
             plant(&t, i, K - 1, 1.5f * (float)(1 << most) * THRESHOLD, SEEN);
         }
-        assert_int_equal(ted4_densify_adjust(&t, ted4_schedule_room(&t)), 0);
+        assert_int_equal(ted4_densify_adjust(&t, ted4_growth_allowance(&t)), 0);
         for (size_t i = 0; i < t.anchors.n; i++)
             if (is_new(&t, i))
                 n[(int)lrint(0.5 *
@@ -188,7 +188,7 @@ static void test_growth_limits(void **state)
     *ted4_cell(&t.anchors, TED4_ROW_OPACITY, 51, 0) = 0.75f;
     *ted4_cell(&t.anchors, TED4_ROW_OPACITY, 51, 1) = 3.0f;
     name_anchors(&t);
-    assert_int_equal(ted4_densify_adjust(&t, ted4_schedule_room(&t)), 0);
+    assert_int_equal(ted4_densify_adjust(&t, ted4_growth_allowance(&t)), 0);
     assert_true(t.anchors.n <= CLOUD_POINTS + 3);
     for (size_t i = 0; i < t.anchors.n; i++) {
         const float id = *ted4_cell(&t.anchors, TED4_ROW_VALUE, i, 0) - 1.0f;
@@ -210,7 +210,7 @@ static void test_growth_limits(void **state)
 /* With room for some only, those with the largest gradients come. */
 static void test_max_anchors(void **state)
 {
-    enum { ROOM = 7 };
+    enum { CAPACITY = 7 };
 
     (void)state;
     for (int full = 0; full < 2; full++) {
@@ -219,7 +219,7 @@ static void test_max_anchors(void **state)
         size_t n = 0;
 
         cloud_make(&cloud, 5);
-        cloud.options.max_anchors = CLOUD_POINTS + (full ? -20 : ROOM);
+        cloud.options.max_anchors = CLOUD_POINTS + (full ? -20 : CAPACITY);
         cloud_begin(&cloud, &t);
         give_moments(&t);
         for (size_t i = 0; i < CLOUD_POINTS; i++) {
@@ -227,14 +227,14 @@ static void test_max_anchors(void **state)
             plant(&t, i, 0, (1.0f + (float)i) * THRESHOLD, SEEN);
         }
         name_anchors(&t);
-        assert_int_equal(ted4_densify_adjust(&t, ted4_schedule_room(&t)), 0);
-        assert_int_equal(t.anchors.n, CLOUD_POINTS + (full ? 0 : ROOM));
+        assert_int_equal(ted4_densify_adjust(&t, ted4_growth_allowance(&t)), 0);
+        assert_int_equal(t.anchors.n, CLOUD_POINTS + (full ? 0 : CAPACITY));
         for (size_t i = 0; i < t.anchors.n; i++)
             if (is_new(&t, i)) {
                 least = fminf(least, *ted4_cell(&t.anchors, TED4_ROW_VALUE, i, 0));
                 n++;
             }
-        assert_int_equal(n, full ? 0 : ROOM);
+        assert_int_equal(n, full ? 0 : CAPACITY);
         /* Chance and the cube's faces drop some of the strongest; the weakest never come. */
         assert_true(full || least > CLOUD_POINTS - 60);
         ted4_trainer_finish(&t);
@@ -264,7 +264,7 @@ static void test_pruning(void **state)
     for (size_t i = 0; i < CLOUD_POINTS; i++)
         if (i % 4 < 3)
             fade(&t, i, t.opt.prune_opacity * (i % 4 == 1 ? 1.01 : 0.99), i % 4 == 2 ? 8 : VISITS);
-    assert_int_equal(ted4_densify_adjust(&t, ted4_schedule_room(&t)), 0);
+    assert_int_equal(ted4_densify_adjust(&t, ted4_growth_allowance(&t)), 0);
     anchors_check(&t.anchors);
     assert_int_equal(t.anchors.n, CLOUD_POINTS * 3 / 4);
     for (size_t i = 0; i < t.anchors.n; i++) {
@@ -300,7 +300,7 @@ static void test_pruning_short_lives(void **state)
         fade(&t, i, t.opt.prune_opacity * lives[i % 4].mean, lives[i % 4].there);
         *ted4_cell(&t.anchors, TED4_ROW_OPACITY, i, 1) = VISITS;
     }
-    assert_int_equal(ted4_densify_adjust(&t, ted4_schedule_room(&t)), 0);
+    assert_int_equal(ted4_densify_adjust(&t, ted4_growth_allowance(&t)), 0);
     assert_int_equal(t.anchors.n, CLOUD_POINTS * 3 / 4);
     for (size_t i = 0; i < t.anchors.n; i++) {
         const int id = (int)*ted4_cell(&t.anchors, TED4_ROW_VALUE, i, 0) - 1;
@@ -323,7 +323,7 @@ static void test_all_faded(void **state)
     name_anchors(&t);
     for (size_t i = 0; i < CLOUD_POINTS; i++)
         fade(&t, i, t.opt.prune_opacity * (0.1 + (double)(i * 7 % CLOUD_POINTS) / 1000), VISITS);
-    assert_int_equal(ted4_densify_adjust(&t, ted4_schedule_room(&t)), 0);
+    assert_int_equal(ted4_densify_adjust(&t, ted4_growth_allowance(&t)), 0);
     anchors_check(&t.anchors);
     assert_int_equal(t.anchors.n, TED4_LANES);
     for (size_t i = 0; i < t.anchors.n; i++) {

@@ -83,7 +83,8 @@ static void test_long(void **state)
     balls.n_frames = frames;
 }
 
-/* Growth leaves room, multi-view seeding takes it: short lives, at the ball, at its time. */
+/* Growth leaves anchors unused, multi-view seeding takes it: short lives, at the ball, at its time.
+ */
 static void test_mv_seed(void **state)
 {
     const ted4_train_options o = options(0.3);
@@ -95,13 +96,13 @@ static void test_mv_seed(void **state)
     for (size_t i = 0; i < t.anchors.n; i++)
         assert_false(ted4_is_short_lived(&t, i));
     ball_train(&t, STEPS - 1);
-    assert_int_equal(t.anchors.n + ted4_schedule_room(&t), 224); /* 0.7 of 320 */
+    assert_int_equal(t.anchors.n + ted4_growth_allowance(&t), 224); /* 0.7 of 320 */
     ball_train(&t, STEPS);
 
     const size_t before = t.anchors.n;
 
     ball_train(&t, STEPS + 1);
-    assert_int_equal(t.anchors.n + ted4_schedule_room(&t), 320);
+    assert_int_equal(t.anchors.n + ted4_growth_allowance(&t), 320);
 
     const size_t n = ball_count_short_lived(&t, SPEED, 0.71f, &near);
 
@@ -120,7 +121,7 @@ static void test_impossible(void **state)
     o.activation = 0;
     ball_begin(&t, &o, &balls, NULL);
     assert_int_equal(ted4_mv_seed_reach(&t), -1);
-    assert_int_equal(t.anchors.n + ted4_schedule_room(&t), 320);
+    assert_int_equal(t.anchors.n + ted4_growth_allowance(&t), 320);
     ted4_trainer_finish(&t);
     o.activation = 1;
     for (size_t i = 0; i < balls.n_pictures; i++) /* two cameras a time */

@@ -21,7 +21,8 @@ static void test_space_make(void **state)
     memset(&h, 0, sizeof h);
     cloud_make(&cloud, 1);
     ted4_space_make(&h, &cloud.data);
-    /* The lattice reaches 1.5 to either side; with a quarter of room that is between 1 and 2. */
+    /* The lattice reaches 1.5 to either side; with a margin of a quarter that is between 1 and 2.
+     */
     assert_true(h.origin[0] == 10.0f);
     assert_true(h.origin[1] == -4.0f);
     assert_true(h.origin[2] == 2.0f);

@@ -131,9 +131,9 @@ static void test_schedule(void **state)
             take_turns(4, 1);
         ball_begin(&t, &o, &balls, NULL);
         ball_train(&t, at - 1);
-        assert_int_equal(t.anchors.n + ted4_schedule_room(&t), 200);
+        assert_int_equal(t.anchors.n + ted4_growth_allowance(&t), 200);
         ball_train(&t, at + 1);
-        assert_int_equal(t.anchors.n + ted4_schedule_room(&t), 400);
+        assert_int_equal(t.anchors.n + ted4_growth_allowance(&t), 400);
         ted4_trainer_finish(&t);
     }
 }

@@ -300,14 +300,14 @@ static inline void spec_read_positions(spec_model *m, spec_reader *r)
 /* A byte string that grows. */
 typedef struct {
     uint8_t *data;
-    size_t size, room;
+    size_t size, capacity;
 } spec_bytes;
 
 static inline void spec_put(spec_bytes *b, uint64_t x, int width)
 {
-    if (b->room - b->size < 8) {
-        b->room = 2 * b->room + 64;
-        b->data = realloc(b->data, b->room);
+    if (b->capacity - b->size < 8) {
+        b->capacity = 2 * b->capacity + 64;
+        b->data = realloc(b->data, b->capacity);
         if (b->data == NULL)
             abort();
     }

@@ -146,8 +146,8 @@ static void test_changes(void **state)
  * same of it as the decoder. */
 static void test_mutator(void **state)
 {
-    enum { ROOM = 4 * MAX_SIZE, ROUNDS = 60 };
-    uint8_t *const a = malloc(ROOM), *const b = malloc(ROOM);
+    enum { CAPACITY = 4 * MAX_SIZE, ROUNDS = 60 };
+    uint8_t *const a = malloc(CAPACITY), *const b = malloc(CAPACITY);
     uint64_t met[TED4_N_STATUS] = { 0 };
     size_t kinds = 0;
     ted4_info info;
@@ -161,15 +161,15 @@ static void test_mutator(void **state)
 
         memcpy(a, file[n].data, file[n].size);
         memcpy(b, file[n].data, file[n].size);
-        size = fuzz_mutate_file(a, file[n].size, ROOM, i, fuzz_flip_middle);
-        assert_true(size <= ROOM);
-        assert_int_equal(fuzz_mutate_file(b, file[n].size, ROOM, i, fuzz_flip_middle), size);
+        size = fuzz_mutate_file(a, file[n].size, CAPACITY, i, fuzz_flip_middle);
+        assert_true(size <= CAPACITY);
+        assert_int_equal(fuzz_mutate_file(b, file[n].size, CAPACITY, i, fuzz_flip_middle), size);
         assert_memory_equal(a, b, size);
         met[decode(a, ted4_without_tail(a, size, 32), &info)]++;
         (void)fuzz_find("two_decoders")(a, size);
         size = fuzz_cross_files(file[n].data, file[n].size, file[(n + 1) % n_files].data,
-                                file[(n + 1) % n_files].size, a, ROOM, i);
-        assert_true(size <= ROOM);
+                                file[(n + 1) % n_files].size, a, CAPACITY, i);
+        assert_true(size <= CAPACITY);
         (void)decode(a, size, &info);
     }
     for (int i = 0; i < TED4_N_STATUS; i++)

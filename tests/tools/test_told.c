@@ -7,9 +7,9 @@
 #include "base/bytes.h"
 #include "tool/told.h"
 
-enum { ROOM = 4096 };
+enum { CAPACITY = 4096 };
 
-static uint8_t file[ROOM];
+static uint8_t file[CAPACITY];
 static size_t size;
 
 /* What told.c looks at: types and sizes. */

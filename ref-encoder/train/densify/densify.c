@@ -183,7 +183,7 @@ static int add_anchor(ted4_trainer *t, const candidate *c)
     return 0;
 }
 
-static int grow(ted4_trainer *t, size_t room)
+static int grow(ted4_trainer *t, size_t allowance)
 {
     const size_t n = t->anchors.n, K = t->layout.head.n_offsets;
     candidate *c = malloc((DEPTHS * n * K + 1) * sizeof *c);
@@ -198,7 +198,7 @@ static int grow(ted4_trainer *t, size_t room)
     for (int depth = 0; depth < DEPTHS; depth++)
         found = collect(t, depth, &set, c, found);
     qsort(c, found, sizeof *c, compare_candidates);
-    for (size_t i = 0; i < found && i < room && !bad; i++)
+    for (size_t i = 0; i < found && i < allowance && !bad; i++)
         bad = add_anchor(t, &c[i]) != 0;
     ted4_cells_finish(&set);
     free(c);
@@ -278,11 +278,11 @@ static int prune(ted4_trainer *t, size_t n_old)
     return bad ? ted4_trainer_fail(t, "no memory to prune anchors") : 0;
 }
 
-int ted4_densify_adjust(ted4_trainer *t, size_t room)
+int ted4_densify_adjust(ted4_trainer *t, size_t allowance)
 {
     const size_t n = t->anchors.n;
 
-    if (grow(t, room) != 0 || prune(t, n) != 0)
+    if (grow(t, allowance) != 0 || prune(t, n) != 0)
         return -1;
     return ted4_anchors_sort(&t->anchors) != 0 ? ted4_trainer_fail(t, "no memory to sort anchors")
                                                : 0;

@@ -111,11 +111,12 @@ static int plant(ted4_trainer *t, const ted4_places *list, const ted4_sightings 
                  const appearance *l)
 {
     const size_t n_old = t->anchors.n, most = (size_t)t->opt.max_anchors;
-    const size_t room = n_old < most ? most - n_old : 0;
+    const size_t allowance = n_old < most ? most - n_old : 0;
     ted4_cells taken;
     int bad = 0;
 
-    if (ted4_cells_init(&taken, (list->n < room ? list->n : room) * t->data->n_frames) != 0)
+    if (ted4_cells_init(&taken, (list->n < allowance ? list->n : allowance) * t->data->n_frames) !=
+        0)
         return ted4_trainer_fail(t, "no memory for new anchors");
     for (size_t i = 0; !bad && i < list->n && t->anchors.n < most; i++) {
         const ted4_place *p = &list->item[i];

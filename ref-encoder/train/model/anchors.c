@@ -12,7 +12,7 @@ static size_t row_floats(const ted4_anchors *a, int k)
     return (size_t)a->rows[k] * TED4_LANES;
 }
 
-/* Not cleared: blocks are when they come into use, and most of the room never does. */
+/* Not cleared: blocks are when they come into use, and most of the memory never does. */
 static float *new_blocks(size_t floats)
 {
     /* aligned_alloc wants a multiple of the alignment; a block row is 128 bytes. */

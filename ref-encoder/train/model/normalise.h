@@ -9,7 +9,7 @@
 #include "render/raster.h"
 
 /* Origin: component-wise median of the initial points (FP16 is finest there). Exponent: the
- * smallest that puts 99.5 % of the points, with a quarter of room, inside [-1, 1]. Fills those
+ * smallest that puts 99.5 % of the points, with a margin of a quarter, inside [-1, 1]. Fills those
  * members of *h. */
 void ted4_space_make(ted4_header *h, const ted4_dataset *d);
 

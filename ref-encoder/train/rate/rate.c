@@ -65,7 +65,7 @@ void ted4_rate_free(ted4_rate *r)
     if (r == NULL)
         return;
     for (size_t i = 0; i < TED4_RATE_WAVE; i++) {
-        free(r->room[i].storage);
+        free(r->workspace[i].storage);
         free(r->sums[i].d_net);
     }
     ted4_rate_integer_end(&r->integer);
@@ -120,19 +120,19 @@ static void take_acts(arena *a, const ted4_rate_net *n, int with_input, ted4_rat
     }
 }
 
-static void take_room(arena *a, const ted4_rate *r, ted4_rate_room *room)
+static void lay_out_workspace(arena *a, const ted4_rate *r, ted4_rate_workspace *workspace)
 {
     const ted4_layout *l = &r->layout;
     const size_t channels = ted4_row_floats((size_t)l->offset_logit);
     const size_t offsets = ted4_row_floats(l->head.n_offsets);
     const size_t context = ted4_row_floats(l->shape.dim[TED4_FEATURE]);
-    ted4_rate_slot *s = &room->slot;
+    ted4_rate_slot *s = &workspace->slot;
 
-    take_acts(a, &r->hyper, 1, &room->hyper);
-    room->context = take(a, context * TED4_RATE_CHUNK);
-    room->integer = (int32_t *)take(a, l->shape.n_outputs * TED4_PRIOR_BLOCK);
+    take_acts(a, &r->hyper, 1, &workspace->hyper);
+    workspace->context = take(a, context * TED4_RATE_CHUNK);
+    workspace->integer = (int32_t *)take(a, l->shape.n_outputs * TED4_PRIOR_BLOCK);
     for (int m = 1; m < l->head.n_slices; m++)
-        take_acts(a, &r->slice[m], 0, &room->slice[m]);
+        take_acts(a, &r->slice[m], 0, &workspace->slice[m]);
     s->value = take(a, channels);
     s->residual = take(a, channels);
     s->d_symbol = take(a, channels);
@@ -144,35 +144,35 @@ static void take_room(arena *a, const ted4_rate *r, ted4_rate_room *room)
     s->d_context = take(a, context);
 }
 
-static int rooms(ted4_rate *r, size_t n)
+static int make_workspaces(ted4_rate *r, size_t n)
 {
-    for (; r->n_rooms < n; r->n_rooms++) {
-        ted4_rate_room *room = &r->room[r->n_rooms];
-        ted4_rate_sums *sums = &r->sums[r->n_rooms];
+    for (; r->n_workspaces < n; r->n_workspaces++) {
+        ted4_rate_workspace *workspace = &r->workspace[r->n_workspaces];
+        ted4_rate_sums *sums = &r->sums[r->n_workspaces];
         arena a = { NULL, 0 };
 
-        take_room(&a, r, room);
-        if (room->storage == NULL)
-            room->storage = aligned_alloc(64, a.n * sizeof(float));
+        lay_out_workspace(&a, r, workspace);
+        if (workspace->storage == NULL)
+            workspace->storage = aligned_alloc(64, a.n * sizeof(float));
         if (sums->d_net == NULL)
             sums->d_net = malloc(r->layout.shape.n_nete * sizeof(float));
-        if (room->storage == NULL || sums->d_net == NULL)
+        if (workspace->storage == NULL || sums->d_net == NULL)
             return -1;
-        a = (arena) { room->storage, 0 };
-        take_room(&a, r, room);
+        a = (arena) { workspace->storage, 0 };
+        lay_out_workspace(&a, r, workspace);
     }
     return 0;
 }
 
-/* The first free room: few are ever touched, so they stay in the caches. */
-static size_t room_enter(ted4_rate *r)
+/* The first free workspace: few are ever touched, so they stay in the caches. */
+static size_t workspace_acquire(ted4_rate *r)
 {
-    for (size_t i = 0;; i = (i + 1) % r->n_rooms)
+    for (size_t i = 0;; i = (i + 1) % r->n_workspaces)
         if (!atomic_flag_test_and_set_explicit(&r->busy[i], memory_order_acquire))
             return i;
 }
 
-static void room_leave(ted4_rate *r, size_t i)
+static void workspace_release(ted4_rate *r, size_t i)
 {
     atomic_flag_clear_explicit(&r->busy[i], memory_order_release);
 }
@@ -202,19 +202,19 @@ static size_t chunk_first(const ted4_rate_job *job, size_t chunk)
 static void run_chunk(void *arg, size_t chunk)
 {
     const ted4_rate_job *job = arg;
-    const size_t entered = room_enter(job->rate);
-    ted4_rate_room *room = &job->rate->room[entered];
+    const size_t entered = workspace_acquire(job->rate);
+    ted4_rate_workspace *workspace = &job->rate->workspace[entered];
     const size_t first = chunk_first(job, job->first + chunk);
     const size_t n = chunk_first(job, job->first + chunk + 1) - first;
 
-    room->sums = &job->rate->sums[chunk];
-    TED4_IN_USE(ted4_rate_chunk)(job, room, first, n);
-    room_leave(job->rate, entered);
+    workspace->sums = &job->rate->sums[chunk];
+    TED4_IN_USE(ted4_rate_chunk)(job, workspace, first, n);
+    workspace_release(job->rate, entered);
 }
 
 typedef struct {
     const ted4_rate *rate;
-    size_t n_rooms;
+    size_t n_workspaces;
     float *d_nete;
 } reduction;
 
@@ -226,7 +226,7 @@ static void reduce_piece(void *arg, size_t piece)
     const size_t first = piece * REDUCE_PIECE;
     const size_t end = n - first < REDUCE_PIECE ? n : first + REDUCE_PIECE;
 
-    for (size_t k = 0; k < r->n_rooms; k++) {
+    for (size_t k = 0; k < r->n_workspaces; k++) {
         const float *from = r->rate->sums[k].d_net;
 
         for (size_t i = first; i < end; i++)
@@ -263,7 +263,7 @@ static int evaluate(ted4_rate_job job, const ted4_parallel *p, float *d_net, dou
 
     for (int t = 0; t < TED4_TYPES && bits != NULL; t++)
         bits[t] = 0.0;
-    if (rooms(r, n_chunks < TED4_RATE_WAVE ? n_chunks : TED4_RATE_WAVE) != 0)
+    if (make_workspaces(r, n_chunks < TED4_RATE_WAVE ? n_chunks : TED4_RATE_WAVE) != 0)
         return -1;
     if (in->quant == TED4_QUANT_INTEGER) {
         if (ted4_rate_integer_begin(r, in) != 0)

@@ -10,27 +10,27 @@
 
 /* The slice networks share the gradients of mu and s with the hyperprior, to whose outputs they
  * were added. */
-static void slices_backward(const ted4_rate *r, ted4_rate_room *room, size_t i)
+static void slices_backward(const ted4_rate *r, ted4_rate_workspace *workspace, size_t i)
 {
     const ted4_layout *l = &r->layout;
     const size_t f = l->shape.dim[TED4_FEATURE];
-    const float *d_out = room->hyper.d[r->hyper.n] + i * ted4_row_floats(l->shape.n_outputs) +
+    const float *d_out = workspace->hyper.d[r->hyper.n] + i * ted4_row_floats(l->shape.n_outputs) +
                          ted4_row_floats(l->shape.first_output[TED4_FEATURE]);
 
-    memset(room->slot.d_context, 0, ted4_row_floats(f) * sizeof(float));
+    memset(workspace->slot.d_context, 0, ted4_row_floats(f) * sizeof(float));
     for (size_t m = 1, known = 0; m < l->head.n_slices; m++) {
         const ted4_rate_net *n = &r->slice[m];
         const size_t width = ted4_row_floats((size_t)n->dim[1]);
         const size_t half = ted4_row_floats(l->head.slice[m]);
-        float *d_hidden = room->slice[m].d[1] + i * width;
-        float *d_y = room->slice[m].d[2] + i * ted4_row_floats((size_t)n->dim[2]);
+        float *d_hidden = workspace->slice[m].d[1] + i * width;
+        float *d_y = workspace->slice[m].d[2] + i * ted4_row_floats((size_t)n->dim[2]);
 
         known += l->head.slice[m - 1];
         memcpy(d_y, d_out + ted4_row_floats(known), half * sizeof *d_y);
         memcpy(d_y + half, d_out + ted4_row_floats(known + f), half * sizeof *d_y);
         TED4_LEVELED(ted4_dense_backward_x)(&n->layer[1], d_y, d_hidden, 0);
-        ted4_relu_backward(room->slice[m].x[1] + i * width, width, d_hidden);
-        TED4_LEVELED(ted4_dense_backward_x)(&n->layer[0], d_hidden, room->slot.d_context, 1);
+        ted4_relu_backward(workspace->slice[m].x[1] + i * width, width, d_hidden);
+        TED4_LEVELED(ted4_dense_backward_x)(&n->layer[0], d_hidden, workspace->slot.d_context, 1);
     }
 }
 
@@ -65,20 +65,20 @@ static void value_backward(const ted4_rate_job *job, const ted4_rate_slot *s, in
     }
 }
 
-static void type_backward(const ted4_rate_job *job, ted4_rate_room *room, size_t slot, int t,
-                          const float *v, float *d_v)
+static void type_backward(const ted4_rate_job *job, ted4_rate_workspace *workspace, size_t slot,
+                          int t, const float *v, float *d_v)
 {
     const ted4_layout *l = job->in->layout;
     const float *q = job->steps[slot] + ted4_row_floats((size_t)t);
     const float *d_value = job->d_value != NULL ? job->d_value[slot] : NULL;
-    const float *d_context = t == TED4_FEATURE ? room->slot.d_context : NULL;
+    const float *d_context = t == TED4_FEATURE ? workspace->slot.d_context : NULL;
     int32_t on[TED4_LANES];
 
     ted4_lane_set(job->in->lanes[slot], on);
     for (size_t c = 0; c < l->shape.dim[t]; c++) {
         const size_t channel = (size_t)l->first[t] + c;
 
-        value_backward(job, &room->slot, t, channel, q, d_context, d_value, on,
+        value_backward(job, &workspace->slot, t, channel, q, d_context, d_value, on,
                        job->d_attr[slot] + ted4_row_floats(channel), d_v);
         d_context = d_context != NULL ? d_context + TED4_LANES : NULL;
     }
@@ -120,10 +120,10 @@ static void logits_backward(const ted4_rate_job *job, const ted4_rate_slot *s, s
         mask_backward(weight, s->phi_bits, used, attr + moves, d + moves);
 }
 
-static void hyper_backward(const ted4_rate *r, ted4_rate_room *room, size_t i)
+static void hyper_backward(const ted4_rate *r, ted4_rate_workspace *workspace, size_t i)
 {
     const ted4_rate_net *h = &r->hyper;
-    const ted4_rate_acts *a = &room->hyper;
+    const ted4_rate_acts *a = &workspace->hyper;
     const float *d_v = a->d[h->n] + i * ted4_row_floats((size_t)h->dim[h->n]) +
                        ted4_row_floats(r->layout.shape.first_step_output);
 
@@ -139,31 +139,32 @@ static void hyper_backward(const ted4_rate *r, ted4_rate_room *room, size_t i)
     }
 }
 
-void ted4_rate_slot_backward(const ted4_rate_job *job, ted4_rate_room *room, size_t i, size_t slot)
+void ted4_rate_slot_backward(const ted4_rate_job *job, ted4_rate_workspace *workspace, size_t i,
+                             size_t slot)
 {
     const ted4_rate *r = job->rate;
     const ted4_shape *shape = &r->layout.shape;
     const size_t out = i * ted4_row_floats(shape->n_outputs);
     const size_t steps = out + ted4_row_floats(shape->first_step_output);
-    const float *v = room->hyper.x[r->hyper.n] + steps;
-    float *d_out = room->hyper.d[r->hyper.n];
+    const float *v = workspace->hyper.x[r->hyper.n] + steps;
+    float *d_out = workspace->hyper.d[r->hyper.n];
     float *d_v = d_out + steps;
 
     memset(d_v, 0, ted4_row_floats(shape->n_types) * sizeof *d_v);
-    slices_backward(r, room, i);
+    slices_backward(r, workspace, i);
     for (int t = 0; t < TED4_TYPES; t++) {
         if (shape->dim[t] == 0)
             continue;
         if (ted4_rate_coded(job, t))
-            type_backward(job, room, slot, t, v, d_v);
+            type_backward(job, workspace, slot, t, v, d_v);
         else
             memset(d_out + out + ted4_row_floats(shape->first_output[t]), 0,
                    ted4_row_floats(2 * (size_t)shape->dim[t]) * sizeof *d_out);
         v += TED4_LANES;
         d_v += TED4_LANES;
     }
-    logits_backward(job, &room->slot, slot);
-    hyper_backward(r, room, i);
+    logits_backward(job, &workspace->slot, slot);
+    hyper_backward(r, workspace, i);
 }
 
 /* Layer k of a network over all slots. x: its inputs. */
@@ -175,21 +176,21 @@ static void layer_weights(const ted4_rate_net *n, int k, const float *x, size_t 
      d_net + n->w[k], d_net + n->b[k]);
 }
 
-void ted4_rate_weights_backward(const ted4_rate *r, ted4_rate_room *room, size_t n_slots)
+void ted4_rate_weights_backward(const ted4_rate *r, ted4_rate_workspace *workspace, size_t n_slots)
 {
     const ted4_layout *l = &r->layout;
     const size_t context = ted4_row_floats(l->shape.dim[TED4_FEATURE]);
-    float *d_net = room->sums->d_net;
+    float *d_net = workspace->sums->d_net;
 
     memset(d_net, 0, l->shape.n_nete * sizeof *d_net);
     for (int k = 0; k < r->hyper.n; k++)
-        layer_weights(&r->hyper, k, room->hyper.x[k], ted4_row_floats((size_t)r->hyper.dim[k]),
-                      room->hyper.d[k + 1], n_slots, d_net);
+        layer_weights(&r->hyper, k, workspace->hyper.x[k], ted4_row_floats((size_t)r->hyper.dim[k]),
+                      workspace->hyper.d[k + 1], n_slots, d_net);
     for (int m = 1; m < l->head.n_slices; m++) {
         const ted4_rate_net *n = &r->slice[m];
-        const ted4_rate_acts *a = &room->slice[m];
+        const ted4_rate_acts *a = &workspace->slice[m];
 
-        layer_weights(n, 0, room->context, context, a->d[1], n_slots, d_net);
+        layer_weights(n, 0, workspace->context, context, a->d[1], n_slots, d_net);
         layer_weights(n, 1, a->x[1], ted4_row_floats((size_t)n->dim[1]), a->d[2], n_slots, d_net);
     }
 }

@@ -7,21 +7,21 @@
 #include "base/bytes.h"
 #include "norm/half.h"
 
-/* Hyperprior of a slot: its outputs stay in the room; v and the steps replace those of the float
- * network. */
-void ted4_rate_integer_steps(const ted4_rate_job *job, ted4_rate_room *room, size_t slot, float *v,
-                             float *q)
+/* Hyperprior of a slot: its outputs stay in the workspace; v and the steps replace those of the
+ * float network. */
+void ted4_rate_integer_steps(const ted4_rate_job *job, ted4_rate_workspace *workspace, size_t slot,
+                             float *v, float *q)
 {
     const ted4_shape *shape = &job->in->layout->shape;
     const float *p = job->in->position[slot];
-    const int32_t *out = room->integer + shape->first_step_output * TED4_PRIOR_BLOCK;
+    const int32_t *out = workspace->integer + shape->first_step_output * TED4_PRIOR_BLOCK;
     uint16_t position[TED4_LANES][3];
 
     for (size_t j = 0; j < TED4_LANES; j++)
         for (size_t a = 0; a < 3; a++)
             position[j][a] =
                 job->in->lanes[slot] >> j & 1 ? ted4_float_to_half(p[ted4_row_floats(a) + j]) : 0;
-    ted4_prior_hyper(&job->integer->prior, position[0], TED4_LANES, room->integer);
+    ted4_prior_hyper(&job->integer->prior, position[0], TED4_LANES, workspace->integer);
     for (int t = 0; t < TED4_TYPES; t++, q += TED4_LANES) {
         if (shape->dim[t] == 0)
             continue;
@@ -38,14 +38,15 @@ void ted4_rate_integer_steps(const ted4_rate_job *job, ted4_rate_room *room, siz
 
 /* Adds what the slice networks say of the features, whose symbols are x / q + n. v: of the
  * features. */
-static void slices(const ted4_rate_job *job, ted4_rate_room *room, const float *q, const float *v)
+static void slices(const ted4_rate_job *job, ted4_rate_workspace *workspace, const float *q,
+                   const float *v)
 {
     const ted4_layout *l = job->in->layout;
     const size_t f = l->shape.dim[TED4_FEATURE];
     const size_t first = ted4_row_floats((size_t)l->first[TED4_FEATURE]);
-    const float *x = room->slot.value + first;
-    const float *n = room->slot.residual + first;
-    int32_t *mu = room->integer;
+    const float *x = workspace->slot.value + first;
+    const float *n = workspace->slot.residual + first;
+    int32_t *mu = workspace->integer;
     int32_t added[2 * TED4_MAX_FEATURE * TED4_PRIOR_BLOCK];
     int16_t context[TED4_MAX_FEATURE * TED4_PRIOR_BLOCK];
 
@@ -76,16 +77,16 @@ static void slices(const ted4_rate_job *job, ted4_rate_room *room, const float *
 
 /* out: [P][32], of which mu and s are replaced by the decoder's mu / 256 and (sigma index - 64) /
  * 16. */
-void ted4_rate_integer_outputs(const ted4_rate_job *job, ted4_rate_room *room, const float *q,
-                               float *out)
+void ted4_rate_integer_outputs(const ted4_rate_job *job, ted4_rate_workspace *workspace,
+                               const float *q, float *out)
 {
     const ted4_shape *shape = &job->in->layout->shape;
 
-    slices(job, room, q, out + ted4_row_floats(shape->first_step_output));
+    slices(job, workspace, q, out + ted4_row_floats(shape->first_step_output));
     for (int t = 0; t < TED4_TYPES; t++)
         for (size_t c = 0; c < 2 * (size_t)shape->dim[t]; c++) {
             const size_t row = shape->first_output[t] + c;
-            const int32_t *from = room->integer + row * TED4_PRIOR_BLOCK;
+            const int32_t *from = workspace->integer + row * TED4_PRIOR_BLOCK;
             float *to = out + ted4_row_floats(row);
 
             for (int j = 0; j < TED4_LANES; j++)

@@ -63,27 +63,28 @@ static void step_sizes(const ted4_layout *l, const float *v, float *q)
 }
 
 /* The hyperprior up to its rows v, and the steps q. The other outputs come in slot_forward. */
-static void steps_forward(const ted4_rate_job *job, ted4_rate_room *room, size_t i, size_t slot)
+static void steps_forward(const ted4_rate_job *job, ted4_rate_workspace *workspace, size_t i,
+                          size_t slot)
 {
     const ted4_rate *r = job->rate;
     const ted4_rate_net *h = &r->hyper;
     const ted4_layout *l = job->in->layout;
-    float *x = room->hyper.x[0] + i * ted4_row_floats((size_t)h->dim[0]);
+    float *x = workspace->hyper.x[0] + i * ted4_row_floats((size_t)h->dim[0]);
 
     encode_positions(&l->head, job->in->position[slot], job->in->lanes[slot], x);
     for (int k = 0; k < h->n - 1; k++) {
-        float *y = room->hyper.x[k + 1] + i * ted4_row_floats((size_t)h->dim[k + 1]);
+        float *y = workspace->hyper.x[k + 1] + i * ted4_row_floats((size_t)h->dim[k + 1]);
 
         TED4_LEVELED(ted4_dense_forward)(&h->layer[k], x, y, 1);
         x = y;
     }
-    float *v = room->hyper.x[h->n] + i * ted4_row_floats(l->shape.n_outputs) +
+    float *v = workspace->hyper.x[h->n] + i * ted4_row_floats(l->shape.n_outputs) +
                ted4_row_floats(l->shape.first_step_output);
 
     TED4_LEVELED(ted4_dense_forward)(&r->step, x, v, 0);
     step_sizes(l, v, job->steps[slot]);
     if (job->integer != NULL)
-        ted4_rate_integer_steps(job, room, slot, v, job->steps[slot]);
+        ted4_rate_integer_steps(job, workspace, slot, v, job->steps[slot]);
 }
 
 /* Values and masks of the lanes in use. */
@@ -125,18 +126,19 @@ static void load_slot(const ted4_rate_job *job, ted4_rate_slot *s, size_t slot)
 }
 
 /* spec 10.3: contexts, and what each slice network adds to mu and s of its slice. */
-static void slices_forward(const ted4_rate_job *job, ted4_rate_room *room, size_t i, size_t slot)
+static void slices_forward(const ted4_rate_job *job, ted4_rate_workspace *workspace, size_t i,
+                           size_t slot)
 {
     const ted4_rate *r = job->rate;
     const ted4_layout *l = job->in->layout;
     const size_t f = l->shape.dim[TED4_FEATURE];
     const size_t first = ted4_row_floats((size_t)l->first[TED4_FEATURE]);
-    const float *value = room->slot.value + first;
-    const float *residual = room->slot.residual + first;
+    const float *value = workspace->slot.value + first;
+    const float *residual = workspace->slot.residual + first;
     const float *q = job->steps[slot] + ted4_row_floats(TED4_FEATURE);
     const float unit = 1.0f / l->head.step[TED4_FEATURE];
-    float *context = room->context + i * ted4_row_floats(f);
-    float *out = room->hyper.x[r->hyper.n] + i * ted4_row_floats(l->shape.n_outputs) +
+    float *context = workspace->context + i * ted4_row_floats(f);
+    float *out = workspace->hyper.x[r->hyper.n] + i * ted4_row_floats(l->shape.n_outputs) +
                  ted4_row_floats(l->shape.first_output[TED4_FEATURE]);
 
     for (size_t c = 0; c < f; c++) {
@@ -148,8 +150,8 @@ static void slices_forward(const ted4_rate_job *job, ted4_rate_room *room, size_
     }
     for (size_t m = 1, known = 0; m < l->head.n_slices; m++) {
         const ted4_rate_net *n = &r->slice[m];
-        float *hidden = room->slice[m].x[1] + i * ted4_row_floats((size_t)n->dim[1]);
-        float *y = room->slice[m].x[2] + i * ted4_row_floats((size_t)n->dim[2]);
+        float *hidden = workspace->slice[m].x[1] + i * ted4_row_floats((size_t)n->dim[1]);
+        float *y = workspace->slice[m].x[2] + i * ted4_row_floats((size_t)n->dim[2]);
         const size_t half = ted4_row_floats(l->head.slice[m]);
 
         known += l->head.slice[m - 1];
@@ -222,17 +224,18 @@ static void tell_lanes(const ted4_rate_job *job, const ted4_rate_slot *s, size_t
         to[j] += mask[j] > 0.0f ? bits[j] : 0.0f;
 }
 
-static void type_bits(const ted4_rate_job *job, ted4_rate_room *room, size_t i, size_t slot, int t)
+static void type_bits(const ted4_rate_job *job, ted4_rate_workspace *workspace, size_t i,
+                      size_t slot, int t)
 {
     const ted4_shape *shape = &job->in->layout->shape;
     const size_t out = i * ted4_row_floats(shape->n_outputs) +
                        ted4_row_floats(shape->first_output[t]);
     const size_t dim = shape->dim[t], s_rows = ted4_row_floats(dim);
-    const float *mu = room->hyper.x[job->rate->hyper.n] + out;
-    float *d_mu = room->hyper.d[job->rate->hyper.n] + out;
+    const float *mu = workspace->hyper.x[job->rate->hyper.n] + out;
+    float *d_mu = workspace->hyper.d[job->rate->hyper.n] + out;
     const float *q = job->steps[slot] + ted4_row_floats((size_t)t);
     float total[TED4_LANES] = { 0 };
-    ted4_rate_slot *s = &room->slot;
+    ted4_rate_slot *s = &workspace->slot;
 
     for (size_t c = 0; c < dim; c++, mu += TED4_LANES, d_mu += TED4_LANES) {
         const size_t at = ted4_row_floats((size_t)job->in->layout->first[t] + c);
@@ -249,49 +252,50 @@ static void type_bits(const ted4_rate_job *job, ted4_rate_room *room, size_t i, 
         tell_lanes(job, s, slot, t, total);
     if (t == TED4_OFFSET)
         for (size_t k = 0; k < dim / 3; k++)
-            room->sums->bits[t] +=
+            workspace->sums->bits[t] +=
                 masked_sum(s->kept_bits + ted4_row_floats(k), s->kept + ted4_row_floats(k));
     else
-        room->sums->bits[t] += t == TED4_PHI ? masked_sum(s->phi_bits, s->dynamic)
-                                             : masked_sum(total, s->used);
+        workspace->sums->bits[t] += t == TED4_PHI ? masked_sum(s->phi_bits, s->dynamic)
+                                                  : masked_sum(total, s->used);
 }
 
-static void slot_forward(const ted4_rate_job *job, ted4_rate_room *room, size_t i, size_t slot)
+static void slot_forward(const ted4_rate_job *job, ted4_rate_workspace *workspace, size_t i,
+                         size_t slot)
 {
     const ted4_rate *r = job->rate;
     const ted4_rate_input *in = job->in;
     const ted4_rate_net *h = &r->hyper;
     const int last = h->n - 1;
-    const float *hidden = room->hyper.x[last] + i * ted4_row_floats((size_t)h->dim[last]);
-    float *out = room->hyper.x[h->n] + i * ted4_row_floats((size_t)h->dim[h->n]);
-    ted4_rate_slot *s = &room->slot;
+    const float *hidden = workspace->hyper.x[last] + i * ted4_row_floats((size_t)h->dim[last]);
+    float *out = workspace->hyper.x[h->n] + i * ted4_row_floats((size_t)h->dim[h->n]);
+    ted4_rate_slot *s = &workspace->slot;
 
     load_slot(job, s, slot);
     TED4_LEVELED(ted4_dense_forward)(&h->layer[last], hidden, out, 0);
     TED4_LEVELED(ted4_residuals)
     (in->layout, in->quant, s->value, job->steps[slot], in->block[slot], in->key, s->residual);
-    slices_forward(job, room, i, slot);
+    slices_forward(job, workspace, i, slot);
     if (job->integer != NULL)
-        ted4_rate_integer_outputs(job, room, job->steps[slot], out);
+        ted4_rate_integer_outputs(job, workspace, job->steps[slot], out);
     memset(s->kept_bits, 0, ted4_row_floats(in->layout->head.n_offsets) * sizeof *s->kept_bits);
     memset(s->phi_bits, 0, TED4_LANES * sizeof *s->phi_bits);
     for (int t = 0; t < TED4_TYPES; t++)
         if (ted4_rate_coded(job, t))
-            type_bits(job, room, i, slot, t);
+            type_bits(job, workspace, i, slot, t);
 }
 
-void TED4_LEVELED(ted4_rate_chunk)(const ted4_rate_job *job, ted4_rate_room *room, size_t first,
-                                   size_t n)
+void TED4_LEVELED(ted4_rate_chunk)(const ted4_rate_job *job, ted4_rate_workspace *workspace,
+                                   size_t first, size_t n)
 {
-    memset(room->sums->bits, 0, sizeof room->sums->bits);
+    memset(workspace->sums->bits, 0, sizeof workspace->sums->bits);
     for (size_t i = 0; i < n; i++) {
-        steps_forward(job, room, i, first + i);
+        steps_forward(job, workspace, i, first + i);
         if (job->steps_only)
             continue;
-        slot_forward(job, room, i, first + i);
+        slot_forward(job, workspace, i, first + i);
         if (job->d_attr != NULL)
-            ted4_rate_slot_backward(job, room, i, first + i);
+            ted4_rate_slot_backward(job, workspace, i, first + i);
     }
     if (job->d_attr != NULL && !job->steps_only)
-        ted4_rate_weights_backward(job->rate, room, n);
+        ted4_rate_weights_backward(job->rate, workspace, n);
 }

@@ -12,15 +12,16 @@
 #define ted4_rate_integer_steps    TED4_LEVELED(ted4_rate_integer_steps)
 #define ted4_rate_integer_outputs  TED4_LEVELED(ted4_rate_integer_outputs)
 
-/* rate_bwd.c. Gradients of slot i of the room's chunk, after its bits; then, when all slots are
- * done, those of the weights. */
-void ted4_rate_slot_backward(const ted4_rate_job *job, ted4_rate_room *room, size_t i, size_t slot);
-void ted4_rate_weights_backward(const ted4_rate *r, ted4_rate_room *room, size_t n_slots);
+/* rate_bwd.c. Gradients of slot i of the workspace's chunk, after its bits; then, when all slots
+ * are done, those of the weights. */
+void ted4_rate_slot_backward(const ted4_rate_job *job, ted4_rate_workspace *workspace, size_t i,
+                             size_t slot);
+void ted4_rate_weights_backward(const ted4_rate *r, ted4_rate_workspace *workspace, size_t n_slots);
 
 /* rate_decoded.c */
-void ted4_rate_integer_steps(const ted4_rate_job *job, ted4_rate_room *room, size_t slot, float *v,
-                             float *q);
-void ted4_rate_integer_outputs(const ted4_rate_job *job, ted4_rate_room *room, const float *q,
-                               float *out);
+void ted4_rate_integer_steps(const ted4_rate_job *job, ted4_rate_workspace *workspace, size_t slot,
+                             float *v, float *q);
+void ted4_rate_integer_outputs(const ted4_rate_job *job, ted4_rate_workspace *workspace,
+                               const float *q, float *out);
 
 #endif

@@ -63,7 +63,7 @@ typedef struct {
     int32_t *integer; /* [P][64] outputs of the integer hyperprior */
     ted4_rate_slot slot;
     ted4_rate_sums *sums; /* of the chunk that is being worked on */
-} ted4_rate_room;
+} ted4_rate_workspace;
 
 /* The integer networks, and what they were made of: it stands still from step to step, and making
  * them is all done by one thread. */
@@ -80,8 +80,8 @@ struct ted4_rate {
     ted4_rate_net hyper, slice[TED4_MAX_SLICES];
     ted4_dense
         step; /* the rows v of the hyperprior's last layer; hyper.layer[n - 1] has the others */
-    size_t n_rooms; /* of all three arrays */
-    ted4_rate_room room[TED4_RATE_WAVE];
+    size_t n_workspaces; /* of all three arrays */
+    ted4_rate_workspace workspace[TED4_RATE_WAVE];
     atomic_flag busy[TED4_RATE_WAVE];
     ted4_rate_sums sums[TED4_RATE_WAVE];
     ted4_rate_integer integer;
@@ -108,8 +108,8 @@ static inline int ted4_rate_coded(const ted4_rate_job *job, int type)
 }
 
 /* rate_fwd.c: n slots of a chunk from the first on. */
-TED4_EACH_LEVEL(void, ted4_rate_chunk, const ted4_rate_job *job, ted4_rate_room *room, size_t first,
-                size_t n);
+TED4_EACH_LEVEL(void, ted4_rate_chunk, const ted4_rate_job *job, ted4_rate_workspace *workspace,
+                size_t first, size_t n);
 
 /* rate_row.c */
 TED4_EACH_LEVEL(void, ted4_rate_row, const float *u, const float *s, float *bits, float *d_u,

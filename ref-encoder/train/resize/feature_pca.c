@@ -24,16 +24,16 @@ typedef struct {
     double *mean, *lower, *forms,
         *vectors;      /* [n], [n][n] each: L; L^T W^T W L, later D on its diagonal; Q by columns */
     double *to, *from; /* [n][n]: K Q^T L^-1, L Q K^-1 */
-    double *room;      /* owned: all of these */
+    double *storage;   /* owned: all of these */
 } axes;
 
-static int take_room(axes *a, size_t n)
+static int allocate(axes *a, size_t n)
 {
     a->n = n;
-    a->room = calloc(n + 5 * n * n, sizeof *a->room);
-    if (a->room == NULL)
+    a->storage = calloc(n + 5 * n * n, sizeof *a->storage);
+    if (a->storage == NULL)
         return -1;
-    a->mean = a->room;
+    a->mean = a->storage;
     a->lower = a->mean + n;
     a->forms = a->lower + n * n;
     a->vectors = a->forms + n * n;
@@ -263,7 +263,7 @@ int ted4_rotate_features(ted4_trainer *t)
     float *rows = NULL;
     const int count = moment != NULL ? ted4_site_readers(t, site, &rows) : -1;
     axes a = { 0 };
-    int bad = count < 0 || take_room(&a, n) != 0;
+    int bad = count < 0 || allocate(&a, n) != 0;
 
     if (bad)
         ted4_trainer_fail(t, "no memory to turn features");
@@ -282,6 +282,6 @@ int ted4_rotate_features(ted4_trainer *t)
     }
     free(moment);
     free(rows);
-    free(a.room);
+    free(a.storage);
     return bad ? -1 : 0;
 }

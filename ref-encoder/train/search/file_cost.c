@@ -18,7 +18,7 @@ enum { LEAST_PICTURES = 16, MOST_PICTURES = 24 };
 #define STEPS_A_FILE    4.0
 /* What the end of stage 2 decides is left undecided where the budget of all trials is not so many
  * times what it takes. */
-#define ROOM            3.0
+#define SAFETY_FACTOR   3.0
 
 static size_t judges(const ted4_trainer *t)
 {
@@ -42,7 +42,7 @@ double ted4_capacity_budget(const ted4_trainer *t)
 
 double ted4_capacity_afford(const ted4_trainer *t, double steps)
 {
-    return ROOM * steps <= ted4_capacity_budget(t) ? steps : 0;
+    return SAFETY_FACTOR * steps <= ted4_capacity_budget(t) ? steps : 0;
 }
 
 int ted4_capacity_note(ted4_trainer *t, const struct ted4_trial *x)

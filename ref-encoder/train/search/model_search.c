@@ -52,8 +52,9 @@ double ted4_capacity_search_steps(const ted4_trainer *t)
 static int trial_steps(const ted4_trainer *t)
 {
     const double budget = ted4_capacity_search_steps(t);
-    const double room = (1.0 - t->opt.integer_share - DECIDE_AT) * (double)t->opt.stage2 - 1.0;
-    const double n = fmin(fmax(budget / TRIALS, FEWEST_STEPS), room);
+    const double steps_left = (1.0 - t->opt.integer_share - DECIDE_AT) * (double)t->opt.stage2 -
+                              1.0;
+    const double n = fmin(fmax(budget / TRIALS, FEWEST_STEPS), steps_left);
 
     return n >= FEWEST_STEPS && n <= budget ? (int)n : 0;
 }

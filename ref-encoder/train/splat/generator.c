@@ -49,16 +49,16 @@ void ted4_generator_pack(ted4_generator *g, const float *net)
 static int reserve(ted4_generator *g, size_t n)
 {
     const size_t row = (size_t)g->layout.head.n_offsets * TED4_LANES;
-    size_t room;
+    size_t capacity;
 
     if (n <= g->capacity && g->capacity > 0)
         return 0;
-    room = n + n / 4 + 1;
+    capacity = n + n / 4 + 1;
     free(g->saved);
     free(g->splats);
-    g->saved = ted4_gen_alloc(room * ted4_gen_stride(g));
-    g->splats = ted4_gen_alloc(TED4_GEN_ARRAYS * room * row);
-    g->capacity = g->saved != NULL && g->splats != NULL ? room : 0;
+    g->saved = ted4_gen_alloc(capacity * ted4_gen_stride(g));
+    g->splats = ted4_gen_alloc(TED4_GEN_ARRAYS * capacity * row);
+    g->capacity = g->saved != NULL && g->splats != NULL ? capacity : 0;
     return g->capacity != 0 ? 0 : -1;
 }
 

@@ -12,8 +12,8 @@
 /* An anchor counts as a ball of three of its offset scales, and as visible when the ball touches
  * the guarded frustum. Where things move the canonical place says little, so a tenth of the scene's
  * half-size is added. */
-#define SCALES_OF_BALL  3.0f
-#define ROOM_FOR_MOTION 0.1f
+#define SCALES_OF_BALL 3.0f
+#define MOTION_MARGIN  0.1f
 
 uint32_t ted4_block_visible(const ted4_trainer *t, size_t block, const ted4_view *v)
 {
@@ -22,7 +22,7 @@ uint32_t ted4_block_visible(const ted4_trainer *t, size_t block, const ted4_view
     const float *s = ted4_block(&t->anchors, TED4_ROW_VALUE, block) +
                      l->first[TED4_SCALING] * TED4_LANES;
     const int is_log2 = l->head.scale_domain == TED4_SCALE_LOG2;
-    const float room = l->head.motion != TED4_MOTION_NONE ? ROOM_FOR_MOTION : 0.0f;
+    const float margin = l->head.motion != TED4_MOTION_NONE ? MOTION_MARGIN : 0.0f;
     const float left = TED4_RASTER_GUARD * v->cx / v->fx;
     const float right = TED4_RASTER_GUARD * ((float)v->width - v->cx) / v->fx;
     const float up = TED4_RASTER_GUARD * v->cy / v->fy;
@@ -42,7 +42,7 @@ uint32_t ted4_block_visible(const ted4_trainer *t, size_t block, const ted4_view
         const float cx = v->R[0] * x + v->R[1] * y + v->R[2] * z + v->t[0];
         const float cy = v->R[3] * x + v->R[4] * y + v->R[5] * z + v->t[1];
         const float cz = v->R[6] * x + v->R[7] * y + v->R[8] * z + v->t[2];
-        const float ball = SCALES_OF_BALL * widest[j] + room;
+        const float ball = SCALES_OF_BALL * widest[j] + margin;
         const float depth = fmaxf(cz, v->near_z);
 
         if (cz + ball > v->near_z && cx < right * depth + ball && -cx < left * depth + ball &&

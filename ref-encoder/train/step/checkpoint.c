@@ -24,7 +24,7 @@ enum { FORMAT = 8 };
 typedef struct {
     FILE *file; /* NULL: memory */
     ted4_snapshot *memory;
-    size_t at, room; /* in memory: what is read next; when writing, room in bytes */
+    size_t at, capacity; /* in memory: what is read next; when writing, room in bytes */
     int writing, whole, failed;
     XXH3_state_t *hash;
     uint64_t left;
@@ -35,14 +35,14 @@ static int append(stream *s, const void *p, size_t size)
 {
     ted4_snapshot *m = s->memory;
 
-    if (size > s->room - m->size) {
-        const size_t room = 2 * s->room > m->size + size ? 2 * s->room : m->size + size;
-        char *bytes = realloc(m->bytes, room);
+    if (size > s->capacity - m->size) {
+        const size_t capacity = 2 * s->capacity > m->size + size ? 2 * s->capacity : m->size + size;
+        char *bytes = realloc(m->bytes, capacity);
 
         if (bytes == NULL)
             return -1;
         m->bytes = bytes;
-        s->room = room;
+        s->capacity = capacity;
     }
     memcpy(m->bytes + m->size, p, size);
     m->size += size;
@@ -126,7 +126,7 @@ static int inside_cube(const ted4_anchors *a)
 }
 
 /* Room for n anchors, if the file holds so many. */
-static int make_room(const stream *s, ted4_anchors *a, uint64_t n)
+static int resize_anchors(const stream *s, ted4_anchors *a, uint64_t n)
 {
     uint64_t cells = 0;
 
@@ -142,7 +142,7 @@ static void walk_anchors(stream *s, ted4_trainer *t)
     put(s, &n, sizeof n);
     if (s->failed)
         return;
-    if (!s->writing && make_room(s, &t->anchors, n) != 0) {
+    if (!s->writing && resize_anchors(s, &t->anchors, n) != 0) {
         s->failed = 1;
         return;
     }
@@ -449,12 +449,12 @@ static void walk_hash(stream *s)
 }
 
 /* In file, or, where that is NULL, in memory, which when writing is empty but may have room. */
-static int run(ted4_trainer *t, FILE *file, ted4_snapshot *memory, size_t room, int writing,
+static int run(ted4_trainer *t, FILE *file, ted4_snapshot *memory, size_t capacity, int writing,
                int whole)
 {
     stream s = { .file = file,
                  .memory = memory,
-                 .room = room,
+                 .capacity = capacity,
                  .writing = writing,
                  .whole = whole,
                  .hash = XXH3_createState() };
@@ -532,10 +532,10 @@ int ted4_checkpoint_load(ted4_trainer *t, const char *path)
 
 static int take(ted4_trainer *t, ted4_snapshot *s, int whole)
 {
-    const size_t room = s->bytes != NULL ? s->size : 0;
+    const size_t capacity = s->bytes != NULL ? s->size : 0;
 
     s->size = 0;
-    if (run(t, NULL, s, room, 1, whole) == 0)
+    if (run(t, NULL, s, capacity, 1, whole) == 0)
         return 0;
     ted4_snapshot_free(s);
     return ted4_trainer_fail(t, "no memory for a snapshot");

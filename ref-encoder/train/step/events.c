@@ -53,7 +53,7 @@ void ted4_schedule_growth(const ted4_trainer *t, double *from, double *mv_seed_a
     *mv_seed_share = reach >= 0 ? t->opt.sprouts : 0.0;
 }
 
-size_t ted4_schedule_room(const ted4_trainer *t)
+size_t ted4_growth_allowance(const ted4_trainer *t)
 {
     const size_t most =
         (size_t)((mv_seed_ahead(t) ? 1.0 - t->opt.sprouts : 1.0) * (double)t->opt.max_anchors);
@@ -81,7 +81,7 @@ int ted4_schedule_event(ted4_trainer *t)
         return -1;
     if (!t->phase.stage2 && i > (uint64_t)(GROW_FROM * (double)stage1) &&
         i <= (uint64_t)(o->grow_until * (double)stage1) && i % (uint64_t)o->grow_every == 0 &&
-        ted4_densify_adjust(t, ted4_schedule_room(t)) != 0)
+        ted4_densify_adjust(t, ted4_growth_allowance(t)) != 0)
         return -1;
     if (i == stage1 && !t->phase.stage2 && o->stage2 > 0 && ted4_stage2_begin(t) != 0)
         return -1;

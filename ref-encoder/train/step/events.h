@@ -15,6 +15,6 @@ int ted4_integer_due(const ted4_trainer *t);
 void ted4_schedule_growth(const ted4_trainer *t, double *from, double *mv_seed_at,
                           double *mv_seed_share);
 /* By how many anchors growth may still add. */
-size_t ted4_schedule_room(const ted4_trainer *t);
+size_t ted4_growth_allowance(const ted4_trainer *t);
 
 #endif
