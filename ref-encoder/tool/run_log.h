@@ -83,7 +83,7 @@ int ted4_run_log_event(ted4_run_log *l, const ted4_trainer *t, char *why, size_t
  *   event                  "capacity"
  *   rollbacks              so far
  *   what from to           what was tried: from so many to so many
- *   trained                steps of either side before they were compared; 0: at sight
+ *   trained                steps of either side before they were compared; 0: untrained
  *   taken                  does the smaller model stay?
  *   cost distortion bytes  of the model at hand, of the smaller one; cost is distortion plus what
  *                          the bytes weigh

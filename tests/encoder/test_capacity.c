@@ -216,9 +216,9 @@ static void test_cheap_first(void **state)
 }
 
 /* A model of few moves, of which features come last but one. What a feature less saves and what
- * pictures miss of it at sight are up to training; but trials are trained wherever a bit's weight
- * is between a fifth of their ratio and all of it (HOPE in model_search.c), and each of these rates
- * is half as much again as the one before. */
+ * pictures miss of it without training are up to training; but trials are trained wherever a bit's
+ * weight is between a fifth of their ratio and all of it (HOPE in model_search.c), and each of
+ * these rates is half as much again as the one before. */
 static void test_trained(void **state)
 {
     static const char *const few[] = { "motion=0",  "activation=0", "view=0",

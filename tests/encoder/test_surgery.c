@@ -372,8 +372,8 @@ static void test_rotation(void **state)
     ted4_trainer_finish(&t);
 }
 
-/* Moves that cannot be exact cost little when they are small: the cost at sight stays within a
- * share of what it was. */
+/* Moves that cannot be exact cost little when they are small: the cost without training stays
+ * within a share of what it was. */
 static void test_little(void **state)
 {
     static const struct {

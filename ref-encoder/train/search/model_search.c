@@ -1,6 +1,6 @@
 /* model_search.c - which trials are made, and which smaller model is taken: see model_search.h.
- * First every move is tried at sight, as far as it lowers the cost without any training; what is
- * left of the budget trains those next that cost least at sight, against the same training of the
+ * First every move is tried untrained, as far as it lowers the cost without any training; what is
+ * left of the budget trains those next that cost least untrained, against the same training of the
  * model at hand.
  * SPDX-License-Identifier: BSD-2-Clause */
 #include "model_search.h"
@@ -19,11 +19,11 @@
 /* Share of stage 2 before: values have begun to be cheap, and the prior knows them. Measured on
  * three small scenes, at 0.5 costs differ by 1 % either way. */
 #define DECIDE_AT   0.15
-/* Share of the budget for trials at sight; trained trials that the budget pays for if nothing is
+/* Share of the budget for untrained trials; trained trials that the budget pays for if nothing is
  * spent on those. */
 #define SIGHT_SHARE 0.7
 enum { TRIALS = 16, FEWEST_STEPS = 50 };
-/* Of the distortion that a move adds at sight, training will take this share back, as far as one
+/* Of the distortion that a move adds untrained, training will take this share back, as far as one
  * may hope; a move that would not lower the cost by that share even so is not worth training. */
 #define HOPE       0.8
 #define LEAST_GAIN 5e-4
@@ -39,8 +39,8 @@ typedef struct {
     struct {
         int from, to;
         ted4_cost cost;
-    } sight[TED4_MOVES]; /* the next trial of each move, by what it costs untrained; to = -1: there
-                            is none */
+    } untrained[TED4_MOVES]; /* the next trial of each move, by what it costs untrained; to = -1:
+                            there is none */
 } search;
 
 double ted4_capacity_search_steps(const ted4_trainer *t)
@@ -96,7 +96,7 @@ static int measure(search *s, ted4_cost *c)
  * failed. */
 static int look(search *s, ted4_move m, int bold)
 {
-    s->sight[m].to = -1;
+    s->untrained[m].to = -1;
     if (ted4_state_restore(s->t, &s->now) != 0)
         return -1;
 
@@ -104,11 +104,11 @@ static int look(search *s, ted4_move m, int bold)
 
     if (to < 0)
         return 1;
-    s->sight[m].from = ted4_move_now(s->t, m);
+    s->untrained[m].from = ted4_move_now(s->t, m);
     s->spent += m == TED4_MOVE_OFFSETS ? ted4_opacity_sensitivity_steps(s->t) : 0.0;
-    if (ted4_move_make(s->t, m, to) != 0 || measure(s, &s->sight[m].cost) != 0)
+    if (ted4_move_make(s->t, m, to) != 0 || measure(s, &s->untrained[m].cost) != 0)
         return -1;
-    s->sight[m].to = to;
+    s->untrained[m].to = to;
     return 0;
 }
 
@@ -116,16 +116,16 @@ static int look(search *s, ted4_move m, int bold)
  * model at hand then. 1: taken; 0: not; -1: failed. */
 static int take_if_cheaper(search *s, ted4_move m)
 {
-    const ted4_cost before = s->now_cost, after = s->sight[m].cost;
-    const int taken = after.cost < before.cost, to = s->sight[m].to;
+    const ted4_cost before = s->now_cost, after = s->untrained[m].cost;
+    const int taken = after.cost < before.cost, to = s->untrained[m].to;
     ted4_snapshot smaller = { 0 };
     int bad = (taken ? ted4_state_take(s->t, &smaller) : ted4_state_restore(s->t, &s->now)) != 0;
 
-    bad = bad || note(s, m, s->sight[m].from, to, taken, 0, &before, &after) != 0;
+    bad = bad || note(s, m, s->untrained[m].from, to, taken, 0, &before, &after) != 0;
     if (!bad && taken) {
         swap(&s->now, &smaller);
         s->now_cost = after;
-        s->sight[m].to = -1;
+        s->untrained[m].to = -1;
     }
     ted4_snapshot_free(&smaller);
     return bad ? -1 : taken;
@@ -139,7 +139,8 @@ static int may_be_bold(ted4_move m)
            m != TED4_MOVE_HEAD_BITS && m != TED4_MOVE_MOTION_BITS;
 }
 
-/* Goes as far with a move as each step lowers the cost at sight: in bold steps, then in small ones.
+/* Goes as far with a move as each step lowers the cost untrained: in bold steps, then in small
+ * ones.
  */
 static int descend(search *s, ted4_move m)
 {
@@ -184,10 +185,10 @@ static ted4_move choose(const search *s)
     double least = (1.0 - LEAST_GAIN) * now->cost;
 
     for (int m = 0; m < TED4_MOVES; m++) {
-        const ted4_cost *c = &s->sight[m].cost;
+        const ted4_cost *c = &s->untrained[m].cost;
         const double hoped = c->cost - HOPE * fmax(c->distortion - now->distortion, 0.0);
 
-        if (s->sight[m].to >= 0 && hoped < least) {
+        if (s->untrained[m].to >= 0 && hoped < least) {
             least = hoped;
             best = (ted4_move)m;
         }
@@ -199,7 +200,7 @@ static ted4_move choose(const search *s)
 static int try_move(search *s, ted4_move m)
 {
     ted4_snapshot start = { 0 }, end = { 0 };
-    const int to = s->sight[m].to;
+    const int to = s->untrained[m].to;
     const ted4_cost before = s->trained_cost;
     ted4_cost after = { 0 };
     int lost = 0, bad = ted4_state_restore(s->t, &s->now) != 0;
@@ -212,11 +213,11 @@ static int try_move(search *s, ted4_move m)
     const int taken = !bad && !lost && after.cost < before.cost;
 
     bad = bad || note(s, m, from, to, taken, s->steps, &before, &after) != 0;
-    s->sight[m].to = -1;
+    s->untrained[m].to = -1;
     if (!bad && taken) {
         swap(&s->now, &start);
         swap(&s->trained, &end);
-        s->now_cost = s->sight[m].cost;
+        s->now_cost = s->untrained[m].cost;
         s->trained_cost = after;
         bad = look(s, m, 0) < 0;
     }
@@ -230,7 +231,7 @@ static int search_all(search *s)
     int lost, bad = ted4_state_take(s->t, &s->now) != 0 || measure(s, &s->now_cost) != 0;
 
     for (int m = 0; m < TED4_MOVES; m++)
-        s->sight[m].to = -1;
+        s->untrained[m].to = -1;
     for (int m = 0; !bad && m < TED4_MOVES; m++)
         bad = ted4_state_restore(s->t, &s->now) != 0 || descend(s, (ted4_move)m) != 0;
     bad = bad || ted4_state_restore(s->t, &s->now) != 0 ||

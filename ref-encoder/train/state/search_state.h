@@ -49,7 +49,7 @@ typedef enum {
 struct ted4_trial {
     int64_t move, from,
         to; /* what was tried: from so many to so many; more only of bits of the prior's weights */
-    int64_t steps; /* training of either side before they were compared; 0: compared at sight */
+    int64_t steps; /* training of either side before they were compared; 0: compared untrained */
     int64_t taken; /* 1: the smaller model stays */
     ted4_cost before, after;
 };
