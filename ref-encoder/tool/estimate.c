@@ -119,7 +119,7 @@ void ted4_estimate_see(ted4_estimate *e, const ted4_work *w, double clock)
     e->last = *w;
 }
 
-void ted4_estimate_move(ted4_estimate *e, double clock)
+void ted4_estimate_rewind(ted4_estimate *e, double clock)
 {
     if (e->when >= 0)
         e->when = clock;

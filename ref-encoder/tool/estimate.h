@@ -36,7 +36,7 @@ void ted4_estimate_begin(ted4_estimate *e);
 /* Training stands here at this time. */
 void ted4_estimate_see(ted4_estimate *e, const ted4_work *w, double clock);
 /* Training stands elsewhere: what has passed since the last look is not known to be work. */
-void ted4_estimate_move(ted4_estimate *e, double clock);
+void ted4_estimate_rewind(ted4_estimate *e, double clock);
 /* Seconds until the file is written, from the last look on; negative: not known yet. */
 double ted4_estimate_left(const ted4_estimate *e);
 /* Enough has been seen to say a first time how long the whole will take. */

@@ -118,7 +118,7 @@ int ted4_training_look(void *training)
     return ted4_stop_asked();
 }
 
-void ted4_training_moved(ted4_training *t)
+void ted4_training_rewound(ted4_training *t)
 {
-    ted4_estimate_move(&t->estimate, ted4_seconds());
+    ted4_estimate_rewind(&t->estimate, ted4_seconds());
 }

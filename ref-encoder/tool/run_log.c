@@ -100,7 +100,7 @@ int ted4_run_log_open(ted4_run_log *l, const char *path, const ted4_trainer *t, 
     l->teller = teller;
     l->left = l->ms = -1;
     ted4_run_log_skip(l);
-    ted4_run_log_move(l, t);
+    ted4_run_log_rewind(l, t);
     if (path == NULL)
         return 0;
     l->file = open(path, O_WRONLY | O_CREAT | O_APPEND | (keep ? 0 : O_TRUNC), 0666);
@@ -111,7 +111,7 @@ int ted4_run_log_open(ted4_run_log *l, const char *path, const ted4_trainer *t, 
         l->file = -1;
         return -1;
     }
-    ted4_run_log_move(l, t);
+    ted4_run_log_rewind(l, t);
     return 0;
 }
 
@@ -119,7 +119,7 @@ int ted4_run_log_cut(ted4_run_log *l, const ted4_trainer *t, char *why, size_t w
 {
     double said; /* before what goes: it was work, and stays counted */
 
-    ted4_run_log_move(l, t);
+    ted4_run_log_rewind(l, t);
     return is_regular(l->file) ? cut(l->path, l->file, t, &said, why, why_size) : 0;
 }
 
@@ -138,7 +138,7 @@ void ted4_run_log_tick(ted4_run_log *l, ted4_trainer *t)
     l->cpu_seconds += l->cpu - cpu;
 }
 
-void ted4_run_log_move(ted4_run_log *l, const ted4_trainer *t)
+void ted4_run_log_rewind(ted4_run_log *l, const ted4_trainer *t)
 {
     l->last_step = t->iteration;
     l->last_seconds = t->seconds;
@@ -232,7 +232,7 @@ int ted4_run_log_step(ted4_run_log *l, const ted4_trainer *t, char *why, size_t 
     }
     f.rate = f.ms > 0 ? 1e3 * t->progress.splat_pixels / f.ms : 0;
     l->ms = f.ms;
-    ted4_run_log_move(l, t);
+    ted4_run_log_rewind(l, t);
     if (l->file < 0)
         return 0;
     return put_line(l, line, (size_t)print_line(line, sizeof line, l, t, &f), why, why_size);
@@ -271,24 +271,23 @@ int ted4_run_log_trials(ted4_run_log *l, const ted4_trainer *t, size_t first, ch
             ted4_teller_say(l->teller,
                             "capacity: %s %lld to %lld %s: cost %.6f to %.6f (distortion %.6f to "
                             "%.6f, bytes %.0f to %.0f), after %lld steps each",
-                            ted4_move_name((ted4_move)x->move), (long long)x->from,
+                            ted4_candidate_name((ted4_candidate)x->candidate), (long long)x->from,
                             (long long)x->to, x->taken ? "taken" : "left", x->before.cost,
                             x->after.cost, x->before.distortion, x->after.distortion,
                             x->before.bytes, x->after.bytes, (long long)x->steps);
         if (l->file < 0)
             continue;
 
-        const int n = snprintf(line, sizeof line,
-                               "{\"step\":%llu,\"event\":\"capacity\",\"rollbacks\":%llu,\"what\":"
-                               "\"%s\",\"from\":%lld,\"to\":%lld,"
-                               "\"trained\":%lld,\"taken\":%s,\"cost\":[%.8f,%.8f],\"distortion\":["
-                               "%.8f,%.8f],\"bytes\":[%.0f,%.0f]}\n",
-                               (unsigned long long)t->iteration,
-                               (unsigned long long)t->watch.state.rollbacks,
-                               ted4_move_name((ted4_move)x->move), (long long)x->from,
-                               (long long)x->to, (long long)x->steps, x->taken ? "true" : "false",
-                               x->before.cost, x->after.cost, x->before.distortion,
-                               x->after.distortion, x->before.bytes, x->after.bytes);
+        const int n = snprintf(
+            line, sizeof line,
+            "{\"step\":%llu,\"event\":\"capacity\",\"rollbacks\":%llu,\"what\":"
+            "\"%s\",\"from\":%lld,\"to\":%lld,"
+            "\"trained\":%lld,\"taken\":%s,\"cost\":[%.8f,%.8f],\"distortion\":["
+            "%.8f,%.8f],\"bytes\":[%.0f,%.0f]}\n",
+            (unsigned long long)t->iteration, (unsigned long long)t->watch.state.rollbacks,
+            ted4_candidate_name((ted4_candidate)x->candidate), (long long)x->from, (long long)x->to,
+            (long long)x->steps, x->taken ? "true" : "false", x->before.cost, x->after.cost,
+            x->before.distortion, x->after.distortion, x->before.bytes, x->after.bytes);
 
         if (put_line(l, line, (size_t)n, why, why_size) != 0)
             return -1;

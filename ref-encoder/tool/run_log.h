@@ -35,7 +35,7 @@ int ted4_run_log_open(ted4_run_log *l, const char *path, const ted4_trainer *t, 
 void ted4_run_log_tick(ted4_run_log *l, ted4_trainer *t);
 void ted4_run_log_skip(ted4_run_log *l);
 /* The trainer has been moved to another step: milliseconds count from there. */
-void ted4_run_log_move(ted4_run_log *l, const ted4_trainer *t);
+void ted4_run_log_rewind(ted4_run_log *l, const ted4_trainer *t);
 /* The same, and lines of later steps or rollbacks go from the file. 0, or -1 with why filled: a
  * file that is no log stays as it is. */
 int ted4_run_log_cut(ted4_run_log *l, const ted4_trainer *t, char *why, size_t why_size);

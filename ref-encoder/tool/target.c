@@ -50,8 +50,8 @@ static int one_trial(ted4_training *t, const ted4_snapshot *start, double lambda
         snprintf(t->why, sizeof t->why, "%s", t->trainer->message.text);
         return -1;
     }
-    ted4_run_log_move(&t->log, t->trainer);
-    ted4_training_moved(t);
+    ted4_run_log_rewind(&t->log, t->trainer);
+    ted4_training_rewound(t);
     if (ted4_training_go(t, ted4_trainer_total(t->trainer)) != 0 || ted4_training_code(t, c) != 0)
         return -1;
     ted4_teller_say(t->teller, "lambda %.5g: %zu bytes", lambda, c->size);

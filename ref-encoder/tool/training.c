@@ -172,7 +172,7 @@ static int keep_stage1(ted4_training *t)
 static int start_over(ted4_training *t)
 {
     ted4_run_log_tick(&t->log, t->trainer);
-    ted4_training_moved(t);
+    ted4_training_rewound(t);
     return ted4_run_log_cut(&t->log, t->trainer, t->why, sizeof t->why);
 }
 

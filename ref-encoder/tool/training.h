@@ -58,6 +58,6 @@ int ted4_training_target(ted4_training *t, ted4_coded *c);
 /* What the teller hears of each step, and how much time is left; the trainer's onlooker. look.c */
 int ted4_training_look(void *training);
 /* Training stands elsewhere, or was held up. */
-void ted4_training_moved(ted4_training *t);
+void ted4_training_rewound(ted4_training *t);
 
 #endif

@@ -46,9 +46,9 @@ static void put_trial(FILE *f, size_t number, const struct ted4_trial *x)
     fprintf(f,
             "capacity.%03zu=%s, %lld to %lld: %s; cost %.6f to %.6f, distortion %.6f to %.6f, %.0f "
             "to %.0f bytes; ",
-            number, ted4_move_name((ted4_move)x->move), (long long)x->from, (long long)x->to,
-            x->taken ? "taken" : "left", x->before.cost, x->after.cost, x->before.distortion,
-            x->after.distortion, x->before.bytes, x->after.bytes);
+            number, ted4_candidate_name((ted4_candidate)x->candidate), (long long)x->from,
+            (long long)x->to, x->taken ? "taken" : "left", x->before.cost, x->after.cost,
+            x->before.distortion, x->after.distortion, x->before.bytes, x->after.bytes);
     if (x->steps > 0)
         fprintf(f, "after %lld steps each\n", (long long)x->steps);
     else

@@ -87,7 +87,7 @@ static ball_file whole(const ted4_train_options *o, const ted4_parallel *p)
 
 static int is_of_bits(const struct ted4_trial *x)
 {
-    return x->move >= TED4_MOVE_HEAD_BITS && x->move <= TED4_MOVE_PRIOR_BITS;
+    return x->candidate >= TED4_CANDIDATE_HEAD_BITS && x->candidate <= TED4_CANDIDATE_PRIOR_BITS;
 }
 
 /* Each trial that was taken lowers the cost, each one that was left does not. The first moves from
@@ -100,8 +100,8 @@ static int check_trials(const ted4_trainer *t)
     for (size_t i = 0; i < t->search.n_trials; i++) {
         const struct ted4_trial *x = &t->search.trial[i];
 
-        assert_in_range(x->move, 0, TED4_MOVES - 1);
-        assert_true((x->to < x->from || x->move == TED4_MOVE_PRIOR_BITS));
+        assert_in_range(x->candidate, 0, TED4_CANDIDATES - 1);
+        assert_true((x->to < x->from || x->candidate == TED4_CANDIDATE_PRIOR_BITS));
         assert_int_not_equal(x->to, x->from);
         assert_true(x->before.cost > 0);
         assert_true(x->before.cost > x->before.distortion);
@@ -109,7 +109,7 @@ static int check_trials(const ted4_trainer *t)
         assert_int_equal(x->taken, x->after.cost < x->before.cost);
         taken += x->taken != 0;
         trained += x->steps > 0;
-        assert_true(x->move != TED4_MOVE_ANCHORS || i + 1 == t->search.n_trials);
+        assert_true(x->candidate != TED4_CANDIDATE_ANCHORS || i + 1 == t->search.n_trials);
     }
     assert_true(taken > 0);
     return trained;
@@ -163,7 +163,7 @@ static int refined(ted4_trainer *t, int bits)
     for (size_t i = first; i < t->search.n_trials; i++) {
         const struct ted4_trial *x = &t->search.trial[i];
 
-        assert_int_equal(x->move, TED4_MOVE_PRIOR_BITS);
+        assert_int_equal(x->candidate, TED4_CANDIDATE_PRIOR_BITS);
         assert_int_equal(x->from, bits);
         assert_true(x->to > x->from);
         assert_int_equal(x->steps, 0);
@@ -208,8 +208,9 @@ static void test_cheap_first(void **state)
     begin(&t, &o, NULL);
     ball_train(&t, TOTAL);
     for (size_t i = 0; i < t.search.n_trials; i++) {
-        assert_int_not_equal(t.search.trial[i].move, TED4_MOVE_OFFSETS);
-        coarse += t.search.trial[i].move == TED4_MOVE_HEAD_BITS && t.search.trial[i].taken;
+        assert_int_not_equal(t.search.trial[i].candidate, TED4_CANDIDATE_OFFSETS);
+        coarse += t.search.trial[i].candidate == TED4_CANDIDATE_HEAD_BITS &&
+                  t.search.trial[i].taken;
     }
     assert_true(coarse > 0);
     ted4_trainer_finish(&t);
@@ -265,7 +266,7 @@ static void test_budget(void **state)
     for (size_t i = 0; i < t.search.n_trials; i++) {
         const struct ted4_trial *x = &t.search.trial[i];
 
-        if (x->move == TED4_MOVE_ANCHORS)
+        if (x->candidate == TED4_CANDIDATE_ANCHORS)
             continue;
         spent += (double)x->steps + ted4_capacity_cost_steps(&t);
         taken_trained += x->steps > 0 && x->taken;
@@ -287,7 +288,8 @@ static void check_coarse(const ted4_train_options *o, int coarse[TED4_GRIDS])
     ball_train(&t, TOTAL);
     for (size_t i = 0; i < t.search.n_trials; i++)
         if (is_of_bits(&t.search.trial[i]) && t.search.trial[i].taken)
-            coarse[t.search.trial[i].move - TED4_MOVE_HEAD_BITS] = (int)t.search.trial[i].to;
+            coarse[t.search.trial[i].candidate - TED4_CANDIDATE_HEAD_BITS] =
+                (int)t.search.trial[i].to;
     for (int i = 0; i < TED4_GRIDS; i++)
         assert_int_equal(coarse[i] > 0 ? coarse[i] : TED4_GRID_FULL(i), t.net.bits[i]);
 

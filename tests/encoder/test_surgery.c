@@ -1,5 +1,5 @@
-/* test_surgery.c - train/resize/resize.c and the moves made with it: a model that loses what it
- * does not use draws the same pictures, and one that loses nothing is the same.
+/* test_surgery.c - train/resize/resize.c and the candidates made with it: a model that loses what
+ * it does not use draws the same pictures, and one that loses nothing is the same.
  * SPDX-License-Identifier: BSD-2-Clause */
 #include <math.h>
 
@@ -105,11 +105,11 @@ static ted4_cost cost(ted4_trainer *t)
     return c;
 }
 
-static void make(ted4_trainer *t, ted4_move m, int to)
+static void make(ted4_trainer *t, ted4_candidate m, int to)
 {
-    if (ted4_move_make(t, m, to) != 0)
+    if (ted4_candidate_make(t, m, to) != 0)
         fail_msg("%s", t->message.text);
-    assert_int_equal(ted4_move_now(t, m), to);
+    assert_int_equal(ted4_candidate_now(t, m), to);
 }
 
 /* Pictures as before, and a smaller file that says nearly the same in as many bits or fewer. */
@@ -126,7 +126,7 @@ static void expect_same(ted4_trainer *t, const ted4_cost *before, double toleran
 }
 
 /* The same of one move from where the trainer stands. */
-static void expect_free(ted4_trainer *t, ted4_move m, int to, double tolerance)
+static void expect_free(ted4_trainer *t, ted4_candidate m, int to, double tolerance)
 {
     look(t, 1);
 
@@ -169,7 +169,7 @@ static void test_offset(void **state)
     go_there(&t);
     for (size_t i = 0; i < t.anchors.n; i++)
         *ted4_cell(&t.anchors, TED4_ROW_VALUE, i, t.layout.offset_logit + 1) = -10;
-    expect_free(&t, TED4_MOVE_OFFSETS, K - 1, 0.0);
+    expect_free(&t, TED4_CANDIDATE_OFFSETS, K - 1, 0.0);
     ted4_trainer_finish(&t);
 }
 
@@ -199,7 +199,7 @@ static void test_feature(void **state)
 
     assert_int_equal(t.layout.head.n_slices, 2);
     assert_true(t.layout.head.slice[1] > 2);
-    make(&t, TED4_MOVE_FEATURE, F - 2);
+    make(&t, TED4_CANDIDATE_FEATURE, F - 2);
     assert_int_equal(t.layout.head.n_slices, 2);
     assert_int_equal(t.layout.head.slice[0] + t.layout.head.slice[1], F - 2);
     expect_same(&t, &before, 1e-5);
@@ -227,7 +227,7 @@ static void test_heads(void **state)
 
     const ted4_cost before = cost(&t);
 
-    make(&t, TED4_MOVE_HEADS, 8);
+    make(&t, TED4_CANDIDATE_HEADS, 8);
     expect_same(&t, &before, 1e-4); /* what stays is estimated anew, by moments with a ridge */
     ted4_trainer_finish(&t);
 }
@@ -250,7 +250,7 @@ static void test_double(void **state)
         for (size_t o = 8; o < 12; o++)
             w[in * out + o] = 2 * w[in * out + o - 8];
     }
-    expect_free(&t, TED4_MOVE_HEADS, 8, 1e-3);
+    expect_free(&t, TED4_CANDIDATE_HEADS, 8, 1e-3);
     ted4_trainer_finish(&t);
 }
 
@@ -268,7 +268,7 @@ static void test_view(void **state)
     for (size_t o = 0; o < out; o++)
         for (size_t i = F; i < F + 3; i++)
             w[o * in + i] = 0;
-    expect_free(&t, TED4_MOVE_VIEW, TED4_VIEW_NONE, 1e-6);
+    expect_free(&t, TED4_CANDIDATE_VIEW, TED4_VIEW_NONE, 1e-6);
     ted4_trainer_finish(&t);
 }
 
@@ -308,7 +308,7 @@ static void test_activation(void **state)
     for (size_t i = 0; i < t.anchors.n; i++)
         for (int c = 0; c < 4; c++)
             *ted4_cell(&t.anchors, TED4_ROW_VALUE, i, t.layout.first[TED4_TAU] + c) = always[c];
-    expect_free(&t, TED4_MOVE_ACTIVATION, 0, 0.0);
+    expect_free(&t, TED4_CANDIDATE_ACTIVATION, 0, 0.0);
     ted4_trainer_finish(&t);
 }
 
@@ -330,7 +330,7 @@ static void test_motion(void **state)
 
     const ted4_cost before = cost(&t);
 
-    make(&t, TED4_MOVE_MOTION, 0);
+    make(&t, TED4_CANDIDATE_MOTION, 0);
     assert_int_equal(t.layout.shape.n_bank, 0);
     expect_same(&t, &before, 0.0);
     ted4_trainer_finish(&t);
@@ -372,17 +372,17 @@ static void test_rotation(void **state)
     ted4_trainer_finish(&t);
 }
 
-/* Moves that cannot be exact cost little when they are small: the cost without training stays
+/* Candidates that cannot be exact cost little when they are small: the cost without training stays
  * within a share of what it was. */
 static void test_little(void **state)
 {
     static const struct {
-        ted4_move m;
+        ted4_candidate m;
         int to;
     } all[] = {
-        { TED4_MOVE_HYPER, 6 },   { TED4_MOVE_AR, 6 },    { TED4_MOVE_DEFORM, 6 },
-        { TED4_MOVE_BANK, 6 },    { TED4_MOVE_PHI, 3 },   { TED4_MOVE_SLICES, 1 },
-        { TED4_MOVE_OCTAVES, 3 }, { TED4_MOVE_SCALE, 0 },
+        { TED4_CANDIDATE_HYPER, 6 },   { TED4_CANDIDATE_AR, 6 },    { TED4_CANDIDATE_DEFORM, 6 },
+        { TED4_CANDIDATE_BANK, 6 },    { TED4_CANDIDATE_PHI, 3 },   { TED4_CANDIDATE_SLICES, 1 },
+        { TED4_CANDIDATE_OCTAVES, 3 }, { TED4_CANDIDATE_SCALE, 0 },
     };
 
     (void)state;
@@ -398,7 +398,7 @@ static void test_little(void **state)
         const ted4_cost after = cost(&t);
 
         if (!(after.distortion < 1.25 * before.distortion && after.bytes < 1.05 * before.bytes))
-            fail_msg("%s: distortion %g to %g, bytes %g to %g", ted4_move_name(all[i].m),
+            fail_msg("%s: distortion %g to %g, bytes %g to %g", ted4_candidate_name(all[i].m),
                      before.distortion, after.distortion, before.bytes, after.bytes);
         ball_train(&t, STEPS + 3);
         ted4_trainer_finish(&t);

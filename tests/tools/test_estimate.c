@@ -188,7 +188,7 @@ static void test_disturbed(void **state)
     assert_true(ted4_estimate_left(&e) < 1.25 * 5.0);
     assert_true(ted4_estimate_left(&e) > 4.9);
     clock += 100;
-    ted4_estimate_move(&e, clock);
+    ted4_estimate_rewind(&e, clock);
     w.step = 400;
     clock += 0.01;
     ted4_estimate_see(&e, &w, clock);

@@ -12,7 +12,7 @@
 #include "math/elementary.h"
 #include "train/resize/resize.h"
 
-static const char *const names[TED4_MOVES] = {
+static const char *const names[TED4_CANDIDATES] = {
     "motion",
     "activation",
     "bits of the heads' weights",
@@ -35,40 +35,40 @@ static const char *const names[TED4_MOVES] = {
     "Gaussians in all",
 };
 
-const char *ted4_move_name(ted4_move m)
+const char *ted4_candidate_name(ted4_candidate m)
 {
     return names[m];
 }
 
-int ted4_move_now(const ted4_trainer *t, ted4_move m)
+int ted4_candidate_now(const ted4_trainer *t, ted4_candidate m)
 {
     const ted4_header *h = &t->layout.head;
 
     switch (m) {
-    case TED4_MOVE_MOTION: return h->motion != TED4_MOTION_NONE;
-    case TED4_MOVE_ACTIVATION: return h->activation;
-    case TED4_MOVE_HEAD_BITS: return t->net.bits[TED4_GRID_HEADS];
-    case TED4_MOVE_MOTION_BITS:
+    case TED4_CANDIDATE_MOTION: return h->motion != TED4_MOTION_NONE;
+    case TED4_CANDIDATE_ACTIVATION: return h->activation;
+    case TED4_CANDIDATE_HEAD_BITS: return t->net.bits[TED4_GRID_HEADS];
+    case TED4_CANDIDATE_MOTION_BITS:
         return h->motion != TED4_MOTION_NONE ? t->net.bits[TED4_GRID_MOTION] : 0;
-    case TED4_MOVE_BANK_BITS: return h->bank_dim > 0 ? t->net.bits[TED4_GRID_BANK] : 0;
-    case TED4_MOVE_PRIOR_BITS: return t->net.bits[TED4_GRID_PRIOR];
-    case TED4_MOVE_HYPER: return h->hyper_layers > 0 ? h->hyper_width : 0;
-    case TED4_MOVE_AR: return h->ar_width;
-    case TED4_MOVE_SLICES: return h->n_slices;
-    case TED4_MOVE_OCTAVES: return h->pe_octaves;
-    case TED4_MOVE_OFFSETS: return h->n_offsets;
-    case TED4_MOVE_FEATURE: return h->feature_dim;
-    case TED4_MOVE_VIEW: return h->view;
-    case TED4_MOVE_HEADS: return h->head_layers > 0 ? h->head_width : 0;
-    case TED4_MOVE_DEFORM:
+    case TED4_CANDIDATE_BANK_BITS: return h->bank_dim > 0 ? t->net.bits[TED4_GRID_BANK] : 0;
+    case TED4_CANDIDATE_PRIOR_BITS: return t->net.bits[TED4_GRID_PRIOR];
+    case TED4_CANDIDATE_HYPER: return h->hyper_layers > 0 ? h->hyper_width : 0;
+    case TED4_CANDIDATE_AR: return h->ar_width;
+    case TED4_CANDIDATE_SLICES: return h->n_slices;
+    case TED4_CANDIDATE_OCTAVES: return h->pe_octaves;
+    case TED4_CANDIDATE_OFFSETS: return h->n_offsets;
+    case TED4_CANDIDATE_FEATURE: return h->feature_dim;
+    case TED4_CANDIDATE_VIEW: return h->view;
+    case TED4_CANDIDATE_HEADS: return h->head_layers > 0 ? h->head_width : 0;
+    case TED4_CANDIDATE_DEFORM:
         return h->motion == TED4_MOTION_BANK || h->motion == TED4_MOTION_CONCAT ? h->deform_width
                                                                                 : 0;
-    case TED4_MOVE_BANK: return h->motion == TED4_MOTION_BANK ? h->bank_dim : 0;
-    case TED4_MOVE_ROWS: return (int)h->bank_rows;
-    case TED4_MOVE_PHI: return h->phi_dim;
-    case TED4_MOVE_SCALE: return h->scale_domain == TED4_SCALE_LOG2;
-    case TED4_MOVE_ANCHORS:
-    case TED4_MOVES: break;
+    case TED4_CANDIDATE_BANK: return h->motion == TED4_MOTION_BANK ? h->bank_dim : 0;
+    case TED4_CANDIDATE_ROWS: return (int)h->bank_rows;
+    case TED4_CANDIDATE_PHI: return h->phi_dim;
+    case TED4_CANDIDATE_SCALE: return h->scale_domain == TED4_SCALE_LOG2;
+    case TED4_CANDIDATE_ANCHORS:
+    case TED4_CANDIDATES: break;
     }
     return 0;
 }
@@ -95,42 +95,42 @@ static int coarser(int now, int bold)
     return now > COARSE ? now - 2 : now > 1 ? now - 1 : -1;
 }
 
-int ted4_move_next(const ted4_trainer *t, ted4_move m, int bold)
+int ted4_candidate_next(const ted4_trainer *t, ted4_candidate m, int bold)
 {
-    const int now = ted4_move_now(t, m);
+    const int now = ted4_candidate_now(t, m);
 
     switch (m) {
-    case TED4_MOVE_MOTION:
-    case TED4_MOVE_ACTIVATION:
-    case TED4_MOVE_SCALE:
-    case TED4_MOVE_VIEW: return now - 1;
-    case TED4_MOVE_SLICES: return now > 1 ? 1 : -1;
-    case TED4_MOVE_OCTAVES: return now > 2 ? now - 2 : now > 0 ? 0 : -1;
-    case TED4_MOVE_HYPER:
-    case TED4_MOVE_AR:
-    case TED4_MOVE_HEADS:
-    case TED4_MOVE_DEFORM:
-    case TED4_MOVE_BANK: return narrower(now, 4, 4, bold);
-    case TED4_MOVE_FEATURE: return narrower(now, 2, 4, bold);
-    case TED4_MOVE_HEAD_BITS:
-    case TED4_MOVE_MOTION_BITS:
-    case TED4_MOVE_BANK_BITS:
-    case TED4_MOVE_PRIOR_BITS: return coarser(now, bold);
-    case TED4_MOVE_OFFSETS:
-    case TED4_MOVE_PHI: return narrower(now, 1, 1, bold);
-    case TED4_MOVE_ROWS: return now > 3 ? (now + 1) / 2 : -1;
-    case TED4_MOVE_ANCHORS:
-    case TED4_MOVES: break;
+    case TED4_CANDIDATE_MOTION:
+    case TED4_CANDIDATE_ACTIVATION:
+    case TED4_CANDIDATE_SCALE:
+    case TED4_CANDIDATE_VIEW: return now - 1;
+    case TED4_CANDIDATE_SLICES: return now > 1 ? 1 : -1;
+    case TED4_CANDIDATE_OCTAVES: return now > 2 ? now - 2 : now > 0 ? 0 : -1;
+    case TED4_CANDIDATE_HYPER:
+    case TED4_CANDIDATE_AR:
+    case TED4_CANDIDATE_HEADS:
+    case TED4_CANDIDATE_DEFORM:
+    case TED4_CANDIDATE_BANK: return narrower(now, 4, 4, bold);
+    case TED4_CANDIDATE_FEATURE: return narrower(now, 2, 4, bold);
+    case TED4_CANDIDATE_HEAD_BITS:
+    case TED4_CANDIDATE_MOTION_BITS:
+    case TED4_CANDIDATE_BANK_BITS:
+    case TED4_CANDIDATE_PRIOR_BITS: return coarser(now, bold);
+    case TED4_CANDIDATE_OFFSETS:
+    case TED4_CANDIDATE_PHI: return narrower(now, 1, 1, bold);
+    case TED4_CANDIDATE_ROWS: return now > 3 ? (now + 1) / 2 : -1;
+    case TED4_CANDIDATE_ANCHORS:
+    case TED4_CANDIDATES: break;
     }
     return -1;
 }
 
-int ted4_move_finer(const ted4_trainer *t, ted4_move m)
+int ted4_candidate_finer(const ted4_trainer *t, ted4_candidate m)
 {
-    const int now = ted4_move_now(t, m),
-              full = TED4_GRID_FULL(m - TED4_MOVE_HEAD_BITS + TED4_GRID_HEADS);
+    const int now = ted4_candidate_now(t, m),
+              full = TED4_GRID_FULL(m - TED4_CANDIDATE_HEAD_BITS + TED4_GRID_HEADS);
 
-    if (m < TED4_MOVE_HEAD_BITS || m > TED4_MOVE_PRIOR_BITS || now == 0)
+    if (m < TED4_CANDIDATE_HEAD_BITS || m > TED4_CANDIDATE_PRIOR_BITS || now == 0)
         return -1;
     return now < COARSE ? now + 1 : now < FINE ? now + 2 : now < full ? full : -1;
 }
@@ -323,51 +323,51 @@ static void make_linear(operation *o)
     o->s.head.step[TED4_SCALING] = (float)fmax(LN2 * ted4_math_exp2(sum / n), 1e-5);
 }
 
-/* What a move changes, into o->s. 0, or not 0 with t->message. */
-static int plan(operation *o, ted4_move m, int to)
+/* What a candidate changes, into o->s. 0, or not 0 with t->message. */
+static int plan(operation *o, ted4_candidate m, int to)
 {
     ted4_header *h = &o->s.head;
     const ted4_site bank = { TED4_SITE_BANK, 0, 0 }, phi = { TED4_SITE_PHI, 0, 0 };
 
     switch (m) {
-    case TED4_MOVE_MOTION: ted4_header_without_motion(h); return 0;
-    case TED4_MOVE_ACTIVATION: h->activation = 0; return 0;
-    case TED4_MOVE_HYPER: return narrow_hyper(o, to);
-    case TED4_MOVE_AR: return narrow_slices(o, to);
-    case TED4_MOVE_SLICES: one_slice(h); return 0;
-    case TED4_MOVE_OCTAVES: return narrow_octaves(o, to);
-    case TED4_MOVE_OFFSETS: return fewer_offsets(o, to);
-    case TED4_MOVE_FEATURE: return narrow_feature(o, to);
-    case TED4_MOVE_VIEW: return narrow_view(o, to);
-    case TED4_MOVE_HEADS: return narrow_heads(o, to);
-    case TED4_MOVE_DEFORM:
+    case TED4_CANDIDATE_MOTION: ted4_header_without_motion(h); return 0;
+    case TED4_CANDIDATE_ACTIVATION: h->activation = 0; return 0;
+    case TED4_CANDIDATE_HYPER: return narrow_hyper(o, to);
+    case TED4_CANDIDATE_AR: return narrow_slices(o, to);
+    case TED4_CANDIDATE_SLICES: one_slice(h); return 0;
+    case TED4_CANDIDATE_OCTAVES: return narrow_octaves(o, to);
+    case TED4_CANDIDATE_OFFSETS: return fewer_offsets(o, to);
+    case TED4_CANDIDATE_FEATURE: return narrow_feature(o, to);
+    case TED4_CANDIDATE_VIEW: return narrow_view(o, to);
+    case TED4_CANDIDATE_HEADS: return narrow_heads(o, to);
+    case TED4_CANDIDATE_DEFORM:
         h->deform_width = (uint16_t)to;
         return narrow_layers(o, TED4_NET_DEFORM, h->deform_layers, to);
-    case TED4_MOVE_BANK:
+    case TED4_CANDIDATE_BANK:
         h->bank_dim = (uint16_t)to;
         return (o->s.bank = narrow(o, bank, to, NULL)) == NULL;
-    case TED4_MOVE_ROWS: h->bank_rows = (uint32_t)to; return 0;
-    case TED4_MOVE_PHI:
+    case TED4_CANDIDATE_ROWS: h->bank_rows = (uint32_t)to; return 0;
+    case TED4_CANDIDATE_PHI:
         h->phi_dim = (uint8_t)to;
         return (o->s.phi = narrow(o, phi, to, NULL)) == NULL;
-    case TED4_MOVE_SCALE: make_linear(o); return 0;
-    case TED4_MOVE_HEAD_BITS:
-    case TED4_MOVE_MOTION_BITS:
-    case TED4_MOVE_BANK_BITS:
-    case TED4_MOVE_PRIOR_BITS:
-    case TED4_MOVE_ANCHORS:
-    case TED4_MOVES: break;
+    case TED4_CANDIDATE_SCALE: make_linear(o); return 0;
+    case TED4_CANDIDATE_HEAD_BITS:
+    case TED4_CANDIDATE_MOTION_BITS:
+    case TED4_CANDIDATE_BANK_BITS:
+    case TED4_CANDIDATE_PRIOR_BITS:
+    case TED4_CANDIDATE_ANCHORS:
+    case TED4_CANDIDATES: break;
     }
     return 0;
 }
 
-int ted4_move_make(ted4_trainer *t, ted4_move m, int to)
+int ted4_candidate_make(ted4_trainer *t, ted4_candidate m, int to)
 {
     operation o = { .t = t };
     int bad;
 
-    if (m >= TED4_MOVE_HEAD_BITS && m <= TED4_MOVE_PRIOR_BITS) {
-        t->net.bits[m - TED4_MOVE_HEAD_BITS + TED4_GRID_HEADS] = to;
+    if (m >= TED4_CANDIDATE_HEAD_BITS && m <= TED4_CANDIDATE_PRIOR_BITS) {
+        t->net.bits[m - TED4_CANDIDATE_HEAD_BITS + TED4_GRID_HEADS] = to;
         return 0;
     }
     ted4_surgery_begin(&o.s, t);

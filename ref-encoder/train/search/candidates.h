@@ -5,17 +5,17 @@
 
 #include "train/state/trainer.h"
 
-/* What a move is called, e.g. "hidden width of the hyperprior". */
-const char *ted4_move_name(ted4_move m);
+/* What a candidate is called, e.g. "hidden width of the hyperprior". */
+const char *ted4_candidate_name(ted4_candidate m);
 
-/* How much of a move's matter there is now, and the next smaller amount to try, or with bold a much
- * smaller one; -1: there is none. */
-int ted4_move_now(const ted4_trainer *t, ted4_move m);
-int ted4_move_next(const ted4_trainer *t, ted4_move m, int bold);
-/* The way back: the next larger number of bits of weights; -1: there is none, or the move has no
- * such way. */
-int ted4_move_finer(const ted4_trainer *t, ted4_move m);
+/* How much of a candidate's matter there is now, and the next smaller amount to try, or with bold a
+ * much smaller one; -1: there is none. */
+int ted4_candidate_now(const ted4_trainer *t, ted4_candidate m);
+int ted4_candidate_next(const ted4_trainer *t, ted4_candidate m, int bold);
+/* The way back: the next larger number of bits of weights; -1: there is none, or the candidate has
+ * no such way. */
+int ted4_candidate_finer(const ted4_trainer *t, ted4_candidate m);
 /* Makes it so. 0, or -1 with t->message. */
-int ted4_move_make(ted4_trainer *t, ted4_move m, int to);
+int ted4_candidate_make(ted4_trainer *t, ted4_candidate m, int to);
 
 #endif

@@ -1,7 +1,7 @@
 /* model_search.c - which trials are made, and which smaller model is taken: see model_search.h.
- * First every move is tried untrained, as far as it lowers the cost without any training; what is
- * left of the budget trains those next that cost least untrained, against the same training of the
- * model at hand.
+ * First every candidate is tried untrained, as far as it lowers the cost without any training; what
+ * is left of the budget trains those next that cost least untrained, against the same training of
+ * the model at hand.
  * SPDX-License-Identifier: BSD-2-Clause */
 #include "model_search.h"
 
@@ -23,8 +23,9 @@
  * spent on those. */
 #define SIGHT_SHARE 0.7
 enum { TRIALS = 16, FEWEST_STEPS = 50 };
-/* Of the distortion that a move adds untrained, training will take this share back, as far as one
- * may hope; a move that would not lower the cost by that share even so is not worth training. */
+/* Of the distortion that a candidate adds untrained, training will take this share back, as far as
+ * one may hope; a candidate that would not lower the cost by that share even so is not worth
+ * training. */
 #define HOPE       0.8
 #define LEAST_GAIN 5e-4
 
@@ -39,8 +40,8 @@ typedef struct {
     struct {
         int from, to;
         ted4_cost cost;
-    } untrained[TED4_MOVES]; /* the next trial of each move, by what it costs untrained; to = -1:
-                            there is none */
+    } untrained[TED4_CANDIDATES]; /* the next trial of each candidate, by what it costs untrained;
+                            to = -1: there is none */
 } search;
 
 double ted4_capacity_search_steps(const ted4_trainer *t)
@@ -66,7 +67,7 @@ uint64_t ted4_capacity_step(const ted4_trainer *t)
                : UINT64_MAX;
 }
 
-static int note(search *s, ted4_move m, int from, int to, int taken, int steps,
+static int note(search *s, ted4_candidate m, int from, int to, int taken, int steps,
                 const ted4_cost *before, const ted4_cost *after)
 {
     struct ted4_trial *more = realloc(s->trial, (s->n_trials + 1) * sizeof *more);
@@ -92,21 +93,21 @@ static int measure(search *s, ted4_cost *c)
     return ted4_capacity_cost(s->t, c);
 }
 
-/* The model at hand, one move smaller: what it costs as it is. 1: there is no such move; -1:
- * failed. */
-static int look(search *s, ted4_move m, int bold)
+/* The model at hand, one candidate smaller: what it costs as it is. 1: there is no such candidate;
+ * -1: failed. */
+static int look(search *s, ted4_candidate m, int bold)
 {
     s->untrained[m].to = -1;
     if (ted4_state_restore(s->t, &s->now) != 0)
         return -1;
 
-    const int to = ted4_move_next(s->t, m, bold);
+    const int to = ted4_candidate_next(s->t, m, bold);
 
     if (to < 0)
         return 1;
-    s->untrained[m].from = ted4_move_now(s->t, m);
-    s->spent += m == TED4_MOVE_OFFSETS ? ted4_opacity_sensitivity_steps(s->t) : 0.0;
-    if (ted4_move_make(s->t, m, to) != 0 || measure(s, &s->untrained[m].cost) != 0)
+    s->untrained[m].from = ted4_candidate_now(s->t, m);
+    s->spent += m == TED4_CANDIDATE_OFFSETS ? ted4_opacity_sensitivity_steps(s->t) : 0.0;
+    if (ted4_candidate_make(s->t, m, to) != 0 || measure(s, &s->untrained[m].cost) != 0)
         return -1;
     s->untrained[m].to = to;
     return 0;
@@ -114,7 +115,7 @@ static int look(search *s, ted4_move m, int bold)
 
 /* What was looked at last is the model at hand from now on if it costs less; the trainer has the
  * model at hand then. 1: taken; 0: not; -1: failed. */
-static int take_if_cheaper(search *s, ted4_move m)
+static int take_if_cheaper(search *s, ted4_candidate m)
 {
     const ted4_cost before = s->now_cost, after = s->untrained[m].cost;
     const int taken = after.cost < before.cost, to = s->untrained[m].to;
@@ -133,21 +134,22 @@ static int take_if_cheaper(search *s, ted4_move m)
 
 /* Half of what all Gaussians are made from is never free; and few bits of a weight may cost less
  * than all of them, but more than some in between, which a bold step would pass over. */
-static int may_be_bold(ted4_move m)
+static int may_be_bold(ted4_candidate m)
 {
-    return m != TED4_MOVE_HEADS && m != TED4_MOVE_FEATURE && m != TED4_MOVE_OFFSETS &&
-           m != TED4_MOVE_HEAD_BITS && m != TED4_MOVE_MOTION_BITS;
+    return m != TED4_CANDIDATE_HEADS && m != TED4_CANDIDATE_FEATURE &&
+           m != TED4_CANDIDATE_OFFSETS && m != TED4_CANDIDATE_HEAD_BITS &&
+           m != TED4_CANDIDATE_MOTION_BITS;
 }
 
-/* Goes as far with a move as each step lowers the cost untrained: in bold steps, then in small
+/* Goes as far with a candidate as each step lowers the cost untrained: in bold steps, then in small
  * ones.
  */
-static int descend(search *s, ted4_move m)
+static int descend(search *s, ted4_candidate m)
 {
     int bold = may_be_bold(m);
 
     while (s->spent < SIGHT_SHARE * s->budget) {
-        const int bolder = ted4_move_next(s->t, m, 1), next = ted4_move_next(s->t, m, 0);
+        const int bolder = ted4_candidate_next(s->t, m, 1), next = ted4_candidate_next(s->t, m, 0);
 
         bold = bold && bolder != next;
 
@@ -177,36 +179,36 @@ static int train(search *s, ted4_snapshot *after, ted4_cost *cost, int *lost)
     return ted4_state_take(s->t, after) != 0 || measure(s, cost) != 0;
 }
 
-/* The move that one may hope most of; TED4_MOVES: there is none worth training. */
-static ted4_move choose(const search *s)
+/* The candidate that one may hope most of; TED4_CANDIDATES: there is none worth training. */
+static ted4_candidate choose(const search *s)
 {
     const ted4_cost *now = &s->now_cost;
-    ted4_move best = TED4_MOVES;
+    ted4_candidate best = TED4_CANDIDATES;
     double least = (1.0 - LEAST_GAIN) * now->cost;
 
-    for (int m = 0; m < TED4_MOVES; m++) {
+    for (int m = 0; m < TED4_CANDIDATES; m++) {
         const ted4_cost *c = &s->untrained[m].cost;
         const double hoped = c->cost - HOPE * fmax(c->distortion - now->distortion, 0.0);
 
         if (s->untrained[m].to >= 0 && hoped < least) {
             least = hoped;
-            best = (ted4_move)m;
+            best = (ted4_candidate)m;
         }
     }
     return best;
 }
 
 /* One trained trial. */
-static int try_move(search *s, ted4_move m)
+static int try_candidate(search *s, ted4_candidate m)
 {
     ted4_snapshot start = { 0 }, end = { 0 };
     const int to = s->untrained[m].to;
     const ted4_cost before = s->trained_cost;
     ted4_cost after = { 0 };
     int lost = 0, bad = ted4_state_restore(s->t, &s->now) != 0;
-    const int from = ted4_move_now(s->t, m);
+    const int from = ted4_candidate_now(s->t, m);
 
-    bad = bad || ted4_move_make(s->t, m, to) != 0 || ted4_state_take(s->t, &start) != 0 ||
+    bad = bad || ted4_candidate_make(s->t, m, to) != 0 || ted4_state_take(s->t, &start) != 0 ||
           train(s, &end, &after, &lost) != 0;
     s->spent += s->steps;
 
@@ -230,20 +232,20 @@ static int search_all(search *s)
 {
     int lost, bad = ted4_state_take(s->t, &s->now) != 0 || measure(s, &s->now_cost) != 0;
 
-    for (int m = 0; m < TED4_MOVES; m++)
+    for (int m = 0; m < TED4_CANDIDATES; m++)
         s->untrained[m].to = -1;
-    for (int m = 0; !bad && m < TED4_MOVES; m++)
-        bad = ted4_state_restore(s->t, &s->now) != 0 || descend(s, (ted4_move)m) != 0;
+    for (int m = 0; !bad && m < TED4_CANDIDATES; m++)
+        bad = ted4_state_restore(s->t, &s->now) != 0 || descend(s, (ted4_candidate)m) != 0;
     bad = bad || ted4_state_restore(s->t, &s->now) != 0 ||
           train(s, &s->trained, &s->trained_cost, &lost) != 0;
     if (!bad && lost)
         return ted4_trainer_fail(s->t, "the model that trials chose could not be trained");
     while (!bad && s->spent + s->steps <= s->budget) {
-        const ted4_move m = choose(s);
+        const ted4_candidate m = choose(s);
 
-        if (m == TED4_MOVES)
+        if (m == TED4_CANDIDATES)
             break;
-        bad = try_move(s, m) != 0;
+        bad = try_candidate(s, m) != 0;
     }
     return bad || ted4_state_restore(s->t, &s->trained) != 0 ? -1 : 0;
 }

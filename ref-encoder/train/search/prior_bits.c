@@ -20,8 +20,8 @@ double ted4_capacity_refine_steps(const ted4_trainer *t)
 
 int ted4_capacity_refine(ted4_trainer *t)
 {
-    const ted4_move m = TED4_MOVE_PRIOR_BITS;
-    int best = ted4_move_now(t, m), to = ted4_move_finer(t, m), bad;
+    const ted4_candidate m = TED4_CANDIDATE_PRIOR_BITS;
+    int best = ted4_candidate_now(t, m), to = ted4_candidate_finer(t, m), bad;
     ted4_cost least = { 0 };
 
     t->search.decided = TED4_DECIDED_BITS;
@@ -29,16 +29,16 @@ int ted4_capacity_refine(ted4_trainer *t)
         return 0;
     bad = ted4_capacity_cost(t, &least) != 0;
     for (int i = 0; !bad && i < MOST_TRIALS && to > 0; i++) {
-        struct ted4_trial x = { .move = m, .from = best, .to = to, .before = least };
+        struct ted4_trial x = { .candidate = m, .from = best, .to = to, .before = least };
 
-        bad = ted4_move_make(t, m, to) != 0 || ted4_capacity_cost(t, &x.after) != 0;
+        bad = ted4_candidate_make(t, m, to) != 0 || ted4_capacity_cost(t, &x.after) != 0;
         x.taken = !bad && x.after.cost < least.cost;
         if (x.taken) {
             best = to;
             least = x.after;
         }
         bad = bad || ted4_capacity_note(t, &x) != 0;
-        to = ted4_move_finer(t, m);
+        to = ted4_candidate_finer(t, m);
     }
-    return bad || ted4_move_make(t, m, best) != 0 ? -1 : 0;
+    return bad || ted4_candidate_make(t, m, best) != 0 ? -1 : 0;
 }

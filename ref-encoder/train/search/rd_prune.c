@@ -139,7 +139,7 @@ int ted4_capacity_prune(ted4_trainer *t)
 {
     ted4_snapshot start = { 0 }, best = { 0 };
     worth w = { NULL, NULL };
-    struct ted4_trial x = { .move = TED4_MOVE_ANCHORS, .to = -1 };
+    struct ted4_trial x = { .candidate = TED4_CANDIDATE_ANCHORS, .to = -1 };
     int bad;
 
     t->search.decided = TED4_DECIDED_ALL;

@@ -181,7 +181,7 @@ static void heads_backward(slot_state *s)
 }
 
 /* Forward was p' = p + m y, f' = f + m y'. d_y: the gradient of y times m. */
-static void move_backward(slot_state *s)
+static void deform_backward(slot_state *s)
 {
     const ted4_generator *g = s->g;
     const int f = g->layout.head.feature_dim;
@@ -287,7 +287,7 @@ static void backward_slot(const ted4_gen_job *t, size_t slot, float *d, float *d
     splats_backward(&s, t->gr, slot);
     heads_backward(&s);
     if (t->g->chain[TED4_NET_DEFORM].n > 0)
-        move_backward(&s);
+        deform_backward(&s);
     feature_backward(&s);
     sizes_backward(&s);
     activation_backward(&s, t->in);

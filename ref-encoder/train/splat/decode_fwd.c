@@ -69,7 +69,7 @@ static void sizes(const ted4_generator *g, float *planes)
 }
 
 /* spec 11.3: f' = f + m df; moved position = p + m dx, left in position. */
-static void move(ted4_generator *g, float *planes, float *position)
+static void deform(ted4_generator *g, float *planes, float *position)
 {
     const int f = g->layout.head.feature_dim;
     const float *logit = ted4_gen_channel(g, planes, g->layout.temporal_logit);
@@ -205,7 +205,7 @@ void TED4_LEVELED(ted4_gen_forward)(void *job, size_t slot)
     load_slot(g, t->in, slot, position, on);
     sizes(g, planes);
     if (g->chain[TED4_NET_DEFORM].n > 0)
-        move(g, planes, position);
+        deform(g, planes, position);
     ted4_gen_chain_forward(&g->chain[TED4_NET_OPACITY], planes);
     ted4_gen_chain_forward(&g->chain[TED4_NET_COVARIANCE], planes);
     ted4_gen_chain_forward(&g->chain[TED4_NET_COLOUR], planes);

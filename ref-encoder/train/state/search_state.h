@@ -22,32 +22,32 @@ typedef struct {
 /* What may become less, in the order of trials: which Gaussians an anchor has fewer of takes a look
  * at many pictures, so that comes last. */
 typedef enum {
-    TED4_MOVE_MOTION,
-    TED4_MOVE_ACTIVATION,
-    TED4_MOVE_HEAD_BITS,
-    TED4_MOVE_MOTION_BITS,
-    TED4_MOVE_BANK_BITS,
-    TED4_MOVE_PRIOR_BITS, /* as ted4_grid */
-    TED4_MOVE_HYPER,
-    TED4_MOVE_DEFORM,
-    TED4_MOVE_AR,
-    TED4_MOVE_HEADS,
-    TED4_MOVE_BANK,
-    TED4_MOVE_FEATURE,
-    TED4_MOVE_SLICES,
-    TED4_MOVE_OCTAVES,
-    TED4_MOVE_VIEW,
-    TED4_MOVE_ROWS,
-    TED4_MOVE_PHI,
-    TED4_MOVE_SCALE,
-    TED4_MOVE_OFFSETS,
-    TED4_MOVE_ANCHORS,
-    TED4_MOVES
-} ted4_move;
+    TED4_CANDIDATE_MOTION,
+    TED4_CANDIDATE_ACTIVATION,
+    TED4_CANDIDATE_HEAD_BITS,
+    TED4_CANDIDATE_MOTION_BITS,
+    TED4_CANDIDATE_BANK_BITS,
+    TED4_CANDIDATE_PRIOR_BITS, /* as ted4_grid */
+    TED4_CANDIDATE_HYPER,
+    TED4_CANDIDATE_DEFORM,
+    TED4_CANDIDATE_AR,
+    TED4_CANDIDATE_HEADS,
+    TED4_CANDIDATE_BANK,
+    TED4_CANDIDATE_FEATURE,
+    TED4_CANDIDATE_SLICES,
+    TED4_CANDIDATE_OCTAVES,
+    TED4_CANDIDATE_VIEW,
+    TED4_CANDIDATE_ROWS,
+    TED4_CANDIDATE_PHI,
+    TED4_CANDIDATE_SCALE,
+    TED4_CANDIDATE_OFFSETS,
+    TED4_CANDIDATE_ANCHORS,
+    TED4_CANDIDATES
+} ted4_candidate;
 
 /* One trial; kept in checkpoints as it stands in memory. */
 struct ted4_trial {
-    int64_t move, from,
+    int64_t candidate, from,
         to; /* what was tried: from so many to so many; more only of bits of the prior's weights */
     int64_t steps; /* training of either side before they were compared; 0: compared untrained */
     int64_t taken; /* 1: the smaller model stays */

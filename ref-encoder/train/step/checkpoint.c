@@ -343,7 +343,8 @@ static void walk_capacity(stream *s, ted4_trainer *t)
     for (int i = 0; !s->failed && i < TED4_GRIDS; i++)
         s->failed = t->net.bits[i] < 1 || t->net.bits[i] > TED4_GRID_FULL(i);
     for (size_t i = 0; !s->failed && i < n; i++)
-        s->failed = t->search.trial[i].move < 0 || t->search.trial[i].move >= TED4_MOVES;
+        s->failed = t->search.trial[i].candidate < 0 ||
+                    t->search.trial[i].candidate >= TED4_CANDIDATES;
 }
 
 static void walk_colour(stream *s, ted4_trainer *t)
