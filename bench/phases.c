@@ -139,7 +139,7 @@ BETWEEN(PHASE_CODE, ted4_status, ted4_encode,
         (const ted4_scene *s, int level, const ted4_parallel *p, uint8_t **out, size_t *size,
          ted4_error *e),
         (s, level, p, out, size, e))
-BETWEEN(PHASE_CODE, ted4_status, ted4_encode_told,
+BETWEEN(PHASE_CODE, ted4_status, ted4_encode_with_text,
         (const ted4_scene *s, int level, char *text, const ted4_parallel *p, uint8_t **out,
          size_t *size, ted4_error *e),
         (s, level, text, p, out, size, e))

@@ -15,7 +15,7 @@
 #include "findings.h"
 #include "ted4.h"
 #include "threads.h"
-#include "told.h"
+#include "meta_lines.h"
 
 enum {
     OPT_BUDGET,
@@ -243,7 +243,7 @@ static void print_json(const settings *s, const ted4_info *info, const ted4_budg
     if (s->on[OPT_BUDGET])
         json_object_set_new(o, "budget", budget_json(b));
     if (s->on[OPT_WHY])
-        json_object_set_new(o, "why", ted4_told_json(data, size, "capacity"));
+        json_object_set_new(o, "why", ted4_meta_lines_json(data, size, "capacity"));
     json_dumpf(o, stdout, JSON_COMPACT | JSON_REAL_PRECISION(9));
     putchar('\n');
     json_decref(o);
@@ -261,7 +261,7 @@ static int show(const settings *s, const ted4_info *info, const ted4_budget *b, 
         if (s->on[OPT_BUDGET])
             print_budget(b, size);
         if (s->on[OPT_WHY])
-            ted4_told_print(data, size, "capacity");
+            ted4_meta_lines_print(data, size, "capacity");
     }
     return TED4_EXIT_FINE;
 }

@@ -103,7 +103,7 @@ static int run(const ted4_request *r, ted4_trainer *t, ted4_teller *teller, doub
 }
 
 /* What goes on until training does. */
-static void now(ted4_teller *teller, ted4_told_kind kind, const char *name)
+static void now(ted4_teller *teller, ted4_teller_kind kind, const char *name)
 {
     ted4_facts f = { .kind = kind };
 

@@ -19,11 +19,11 @@ typedef enum {
     TED4_TELL_TRAINING,
     TED4_TELL_CODING,
     TED4_TELL_DRAWING
-} ted4_told_kind;
+} ted4_teller_kind;
 
 /* What goes on. Numbers that are negative are not known. */
 typedef struct {
-    ted4_told_kind kind;
+    ted4_teller_kind kind;
     char name[200];       /* of what is loaded, unpacked, drawn */
     uint64_t step, total; /* steps done of all; frames; pictures done of all */
     const char *stage;    /* "1", "2", "2i", or what a probe or trial is for */

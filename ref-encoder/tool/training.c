@@ -278,7 +278,7 @@ int ted4_training_code(ted4_training *t, ted4_coded *c)
     bad = t->request->why && text == NULL;
     if (bad)
         snprintf(t->why, sizeof t->why, "no memory to say why");
-    else if ((bad = ted4_encode_told(scene, 0, text, tr->parallel, &c->bytes, &c->size, &e) !=
+    else if ((bad = ted4_encode_with_text(scene, 0, text, tr->parallel, &c->bytes, &c->size, &e) !=
                     TED4_OK))
         snprintf(t->why, sizeof t->why, "encoder refused its own scene: %s",
                  ted4_status_id(e.code));

@@ -26,8 +26,9 @@ ted4_status ted4_encode(const ted4_scene *s, int level, const ted4_parallel *p, 
 
 /* The same with a chunk META before ENDS (spec 5.2): text, lines key=value for people, each ended
  * by LF; no key twice. NULL: without. */
-ted4_status ted4_encode_told(const ted4_scene *s, int level, char *text, const ted4_parallel *p,
-                             uint8_t **out, size_t *size, ted4_error *e);
+ted4_status ted4_encode_with_text(const ted4_scene *s, int level, char *text,
+                                  const ted4_parallel *p, uint8_t **out, size_t *size,
+                                  ted4_error *e);
 
 /* Ideal code lengths, -log2 of the coded frequencies, in bits. */
 typedef struct {

@@ -192,11 +192,12 @@ static void write_file(ted4_writer *w, const ted4_scene *s, int level, char *tex
 ted4_status ted4_encode(const ted4_scene *s, int level, const ted4_parallel *p, uint8_t **out,
                         size_t *size, ted4_error *e)
 {
-    return ted4_encode_told(s, level, NULL, p, out, size, e);
+    return ted4_encode_with_text(s, level, NULL, p, out, size, e);
 }
 
-ted4_status ted4_encode_told(const ted4_scene *s, int level, char *text, const ted4_parallel *p,
-                             uint8_t **out, size_t *size, ted4_error *e)
+ted4_status ted4_encode_with_text(const ted4_scene *s, int level, char *text,
+                                  const ted4_parallel *p, uint8_t **out, size_t *size,
+                                  ted4_error *e)
 {
     ted4_writer w;
     ted4_status verdict;

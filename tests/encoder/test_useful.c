@@ -123,7 +123,7 @@ static void test_random(void **state)
 }
 
 /* Whatever the points are. */
-static void test_nothing_told(void **state)
+static void test_no_meta_lines(void **state)
 {
     (void)state;
     for (uint32_t random = 0; random <= 10; random += 10) {
@@ -137,7 +137,7 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_surface),
         cmocka_unit_test(test_random),
-        cmocka_unit_test(test_nothing_told),
+        cmocka_unit_test(test_no_meta_lines),
     };
 
     return cmocka_run_group_tests_name("useful", tests, NULL, NULL);

@@ -110,5 +110,5 @@ int ted4_capacity_cost(ted4_trainer *t, ted4_cost *c)
 
     bad = bad || ted4_state_restore(t, &before) != 0;
     ted4_snapshot_free(&before);
-    return bad || ted4_trainer_told(t, ted4_capacity_cost_steps(t)) != 0 ? -1 : 0;
+    return bad || ted4_trainer_report(t, ted4_capacity_cost_steps(t)) != 0 ? -1 : 0;
 }

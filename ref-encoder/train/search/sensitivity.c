@@ -75,5 +75,5 @@ int ted4_opacity_sensitivity(ted4_trainer *t, float *use)
     free(item);
     if (!bad)
         mark_unseen(t, n, use);
-    return bad || ted4_trainer_told(t, ted4_opacity_sensitivity_steps(t)) != 0 ? -1 : 0;
+    return bad || ted4_trainer_report(t, ted4_opacity_sensitivity_steps(t)) != 0 ? -1 : 0;
 }

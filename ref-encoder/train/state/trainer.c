@@ -21,7 +21,7 @@ void ted4_trainer_busy(ted4_trainer *t, ted4_busy busy, double budget)
     t->onlooker.budget = budget;
 }
 
-int ted4_trainer_told(ted4_trainer *t, double spent)
+int ted4_trainer_report(ted4_trainer *t, double spent)
 {
     ted4_onlooker *o = &t->onlooker;
 

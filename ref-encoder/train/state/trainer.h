@@ -148,7 +148,7 @@ int ted4_trainer_check(ted4_trainer *t, int anchors);
 void ted4_trainer_busy(ted4_trainer *t, ted4_busy busy, double budget);
 /* The onlooker's turn; so many steps were spent. 0, or -1 with t->message: it wants the work to
  * end. */
-int ted4_trainer_told(ted4_trainer *t, double spent);
+int ted4_trainer_report(ted4_trainer *t, double spent);
 
 /* Values an anchor that a bit's weight is spread over: of the model at the start of stage 2. */
 double ted4_rate_norm(const ted4_trainer *t);

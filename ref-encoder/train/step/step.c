@@ -142,5 +142,5 @@ static int one_step(ted4_trainer *t)
 
 int ted4_gradient_step(ted4_trainer *t)
 {
-    return one_step(t) == 0 ? ted4_trainer_told(t, 1) : ted4_watch_recover(t);
+    return one_step(t) == 0 ? ted4_trainer_report(t, 1) : ted4_watch_recover(t);
 }

@@ -1,18 +1,18 @@
-/* test_told.c - tool/told.c: which lines of META come out, and that none of them can steer a
- * terminal.
+/* test_meta_lines.c - tool/meta_lines.c: which lines of META come out, and that none of them can
+ * steer a terminal.
  * SPDX-License-Identifier: BSD-2-Clause */
 #include <string.h>
 
 #include "test.h"
 #include "base/bytes.h"
-#include "tool/told.h"
+#include "tool/meta_lines.h"
 
 enum { CAPACITY = 4096 };
 
 static uint8_t file[CAPACITY];
 static size_t size;
 
-/* What told.c looks at: types and sizes. */
+/* What meta_lines.c looks at: types and sizes. */
 static void add_chunk(const char *type, const char *text, size_t n)
 {
     memcpy(file + size, type, 4);
@@ -32,7 +32,7 @@ static void begin(void)
 
 static void expect(const char *const *lines, size_t n)
 {
-    json_t *list = ted4_told_json(file, size, "capacity");
+    json_t *list = ted4_meta_lines_json(file, size, "capacity");
 
     assert_int_equal(json_array_size(list), n);
     for (size_t i = 0; i < n; i++)
@@ -80,7 +80,7 @@ static void test_none(void **state)
     memcpy(long_line, "capacity=", 9);
     add_chunk("META", long_line, sizeof long_line);
 
-    json_t *list = ted4_told_json(file, size, "capacity");
+    json_t *list = ted4_meta_lines_json(file, size, "capacity");
 
     assert_int_equal(json_array_size(list), 1);
     assert_int_equal(strlen(json_string_value(json_array_get(list, 0))), 1000);

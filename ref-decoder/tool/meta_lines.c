@@ -1,6 +1,7 @@
-/* told.c - see told.h. R-SEC-002: nothing of a file reaches a terminal that could steer it.
+/* meta_lines.c - see meta_lines.h. R-SEC-002: nothing of a file reaches a terminal that could steer
+ * it.
  * SPDX-License-Identifier: BSD-2-Clause */
-#include "told.h"
+#include "meta_lines.h"
 
 #include <stdio.h>
 #include <string.h>
@@ -48,14 +49,14 @@ static void tell(const sink *to, const uint8_t *data, size_t size)
     }
 }
 
-void ted4_told_print(const uint8_t *data, size_t size, const char *word)
+void ted4_meta_lines_print(const uint8_t *data, size_t size, const char *word)
 {
     const sink to = { word, NULL };
 
     tell(&to, data, size);
 }
 
-json_t *ted4_told_json(const uint8_t *data, size_t size, const char *word)
+json_t *ted4_meta_lines_json(const uint8_t *data, size_t size, const char *word)
 {
     const sink to = { word, json_array() };
 
