@@ -172,7 +172,7 @@ static int take(ted4_request *r, pending *p, int option, const char *value)
     case OPT_LAMBDA: p->lambda = value; break;
     case OPT_ITERATIONS: p->iterations = value; break;
     case OPT_CAPACITY: p->capacity = value; break;
-    case OPT_WHY: r->why = 1; break;
+    case OPT_WHY: r->search_report = 1; break;
     case OPT_CHECKPOINT: r->checkpoint = value; break;
     case OPT_STAGE1: r->stage1 = value; break;
     case OPT_LOG: r->log = value; break;

@@ -14,7 +14,7 @@ typedef struct {
     const char *scene, *out, *checkpoint, *stage1,
         *log; /* borrowed from argv; NULL: not asked for */
     int downscale, max_frames, cache_mib, checkpoint_every, threads, resume, check, json, force,
-        quiet, verbose, black, why;
+        quiet, verbose, black, search_report;
     int premultiplied;
     const char *hold_out[TED4_REQUEST_HOLD_OUT]; /* borrowed from argv */
     size_t n_hold_out;

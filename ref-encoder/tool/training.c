@@ -13,7 +13,7 @@
 #include "train/step/monitor.h"
 #include "train/step/stages.h"
 #include "train/train.h"
-#include "why.h"
+#include "search_report.h"
 #include "write/encode.h"
 
 /* Steps between reports; pictures of the preview, and of the last one. */
@@ -273,9 +273,9 @@ int ted4_training_code(ted4_training *t, ted4_coded *c)
     }
     for (int y = 0; y < TED4_TYPES; y++)
         c->verified.estimated_bits += bits[y];
-    char *text = t->request->why ? ted4_why_text(tr) : NULL;
+    char *text = t->request->search_report ? ted4_search_report(tr) : NULL;
 
-    bad = t->request->why && text == NULL;
+    bad = t->request->search_report && text == NULL;
     if (bad)
         snprintf(t->why, sizeof t->why, "no memory to say why");
     else if ((bad = ted4_encode_with_text(scene, 0, text, tr->parallel, &c->bytes, &c->size, &e) !=

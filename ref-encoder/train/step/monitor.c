@@ -126,8 +126,8 @@ int ted4_watch_loss(ted4_trainer *t, double loss)
  * hidden. */
 enum { BY_ACTIVATION, BY_SCALE, BY_OPACITY, REASONS };
 
-static int why_hidden(const ted4_slots *slots, const ted4_generate_input *in, const ted4_splats *s,
-                      size_t slot, size_t lane)
+static int hidden_reason(const ted4_slots *slots, const ted4_generate_input *in,
+                         const ted4_splats *s, size_t slot, size_t lane)
 {
     const size_t K = in->layout->head.n_offsets;
     float opacity = 0, extent = 0;
@@ -154,7 +154,7 @@ static int collapsed(ted4_trainer *t, const ted4_generate_input *in, const ted4_
 
     for (size_t i = 0; i < in->n_slots; i++)
         for (size_t j = 0; j < TED4_LANES; j++) {
-            const int why = in->lanes[i] >> j & 1 ? why_hidden(&t->slots, in, s, i, j) : -1;
+            const int why = in->lanes[i] >> j & 1 ? hidden_reason(&t->slots, in, s, i, j) : -1;
 
             n += in->lanes[i] >> j & 1;
             if (why >= 0 && count[why]++ == 0)

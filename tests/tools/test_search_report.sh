@@ -1,5 +1,5 @@
 #!/bin/sh
-# test_why.sh - what ted4enc decides about the size of the model is told: in the log always, in the
+# test_search_report.sh - what ted4enc decides about the size of the model is told: in the log always, in the
 # file on request, once, and by ted4info. Speaks as cmocka programs do; run by `make test` from the
 # project's root.
 # SPDX-License-Identifier: BSD-2-Clause

@@ -1,6 +1,6 @@
-/* why.c - see why.h.
+/* search_report.c - see search_report.h.
  * SPDX-License-Identifier: BSD-2-Clause */
-#include "why.h"
+#include "search_report.h"
 
 #include <stdio.h>
 #include <stdlib.h>
@@ -55,7 +55,7 @@ static void put_trial(FILE *f, size_t number, const struct ted4_trial *x)
         fprintf(f, "at sight\n");
 }
 
-char *ted4_why_text(const ted4_trainer *t)
+char *ted4_search_report(const ted4_trainer *t)
 {
     char *text = NULL;
     size_t size;
