@@ -6,7 +6,7 @@
 #include "lab_facts.h"
 #include "norm/gaussian.h"
 #include "norm/scene.h"
-#include "read/listen.h"
+#include "read/observe.h"
 #include "tool/cli.h"
 
 typedef struct {
@@ -79,9 +79,9 @@ static void count_widths(const ted4_scene *s, lab_symbols *y)
 
 int lab_count_symbols(const lab_session *s, lab_symbols *y)
 {
-    ted4_coder_ops ops = ted4_listen_ops;
-    ted4_listening it;
-    ted4_status verdict = ted4_listen_init(&it, s->scene, NULL);
+    ted4_coder_ops ops = ted4_observe_ops;
+    ted4_observation it;
+    ted4_status verdict = ted4_observe_init(&it, s->scene, NULL);
     census c = { .count = y };
 
     memset(y, 0, sizeof *y);
@@ -92,7 +92,7 @@ int lab_count_symbols(const lab_session *s, lab_symbols *y)
         ted4_walk_tile(&c.base, &it.scene, &it.prior, tile, it.work);
         verdict = c.base.error.code;
     }
-    ted4_listen_finish(&it);
+    ted4_observe_finish(&it);
     if (verdict != TED4_OK)
         return lab_failed("symbols", ted4_status_id(verdict));
     count_contexts(s->scene, y);

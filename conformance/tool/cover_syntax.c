@@ -134,14 +134,14 @@ typedef struct {
     const char *id;
     uint32_t chunk_flags;
     int ancillary; /* type of the chunk is not a known one */
-} listener;
+} observer;
 
-static void reach(const listener *l, const char *what)
+static void reach(const observer *l, const char *what)
 {
     conf_reach(l->c, group, l->id, "%s", what);
 }
 
-static void reach_position(const listener *l, unsigned h)
+static void reach_position(const observer *l, unsigned h)
 {
     reach(l, h == 0                  ? "position zero"
              : h == 0x3c00           ? "position one"
@@ -151,7 +151,7 @@ static void reach_position(const listener *l, unsigned h)
                                      : "position between");
 }
 
-static void reach_float(const listener *l, const char *name, uint32_t u)
+static void reach_float(const observer *l, const char *name, uint32_t u)
 {
     char text[64];
 
@@ -178,7 +178,7 @@ static int known_type(uint32_t type)
     return 0;
 }
 
-static void note_special(listener *l, const char *name, int64_t value)
+static void note_special(observer *l, const char *name, int64_t value)
 {
     if (strcmp(name, "exponent") == 0)
         conf_reach(l->c, group, l->id, "exponent = %d", (int)(int8_t)value);
@@ -207,7 +207,7 @@ static void note_special(listener *l, const char *name, int64_t value)
 
 static void note(void *user, size_t offset, const char *name, int64_t index, int64_t value)
 {
-    listener *l = user;
+    observer *l = user;
 
     (void)offset;
     for (int i = 0; i < N_TABLE; i++)
@@ -271,7 +271,7 @@ void conf_cover_syntax(conf_cover *c, const conf_entry *e, const conf_bytes *fil
 {
     const char *const error =
         json_string_value(json_object_get(json_object_get(e->descriptor, "expect"), "error"));
-    listener l = { .c = c, .id = e->id };
+    observer l = { .c = c, .id = e->id };
     const ted4_options o = { .trace = note, .trace_user = &l };
     ted4_scene *s;
     ted4_error why;

@@ -19,7 +19,7 @@ static void backwards(void *user, size_t n, void (*body)(void *arg, size_t i), v
         body(arg, n);
 }
 
-static void listen(void *user, size_t offset, const char *element, int64_t index, int64_t value)
+static void on_element(void *user, size_t offset, const char *element, int64_t index, int64_t value)
 {
     (void)user, (void)offset, (void)element, (void)index, (void)value;
 }
@@ -121,7 +121,7 @@ const char *conf_ways_differ(const conf_bytes *file, conf_knobs knobs)
 
     if (memcmp(plain.scene, plain.copy, sizeof plain.scene) != 0)
         return "of a copy";
-    o.trace = listen;
+    o.trace = on_element;
     other = decode(file, &o);
     if (!same(&plain, &other))
         return "with a trace";

@@ -7,7 +7,7 @@
 #include <string.h>
 #include "norm/gaussian.h"
 #include "norm/scene.h"
-#include "read/listen.h"
+#include "read/observe.h"
 
 /* Findings begin where more than 1 of these is so; small counts say nothing. */
 enum { ESCAPES_ONE_OF = 256, SIGMA_ONE_OF = 64, FEW = 256, PROB_FAR = 2048 };
@@ -123,7 +123,7 @@ static void advise_contexts(ted4_findings *f, const ted4_scene *s, size_t at)
 
 /* All tiles of a valid file, with probabilities of their own. *first_at: offset of the first one.
  */
-static void walk_tiles(ted4_findings *f, const ted4_scene *given, census *n, ted4_listening *it,
+static void walk_tiles(ted4_findings *f, const ted4_scene *given, census *n, ted4_observation *it,
                        size_t *first_at)
 {
     ted4_reader r;
@@ -146,7 +146,7 @@ static void walk_tiles(ted4_findings *f, const ted4_scene *given, census *n, ted
 }
 
 /* Gives the scene probabilities that say which one a bit was coded with; see census. */
-static ted4_status number_probs(ted4_listening *it)
+static ted4_status number_probs(ted4_observation *it)
 {
     const size_t n = (size_t)it->scene.shape.n_tiles * TED4_PROBS;
 
@@ -160,9 +160,9 @@ static ted4_status number_probs(ted4_listening *it)
 
 void ted4_advise_symbols(ted4_findings *f, const ted4_scene *given, const ted4_options *o)
 {
-    ted4_coder_ops ops = ted4_listen_ops;
-    ted4_listening it;
-    ted4_status verdict = ted4_listen_init(&it, given, o);
+    ted4_coder_ops ops = ted4_observe_ops;
+    ted4_observation it;
+    ted4_status verdict = ted4_observe_init(&it, given, o);
     census n;
     size_t at = 0;
 
@@ -182,5 +182,5 @@ void ted4_advise_symbols(ted4_findings *f, const ted4_scene *given, const ted4_o
     } else {
         f->starved = 1;
     }
-    ted4_listen_finish(&it);
+    ted4_observe_finish(&it);
 }

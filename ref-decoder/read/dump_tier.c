@@ -1,5 +1,5 @@
 /* dump_tier.c - spec J.3 to J.6: tiers T1 to T4 of a decoded scene. T2 and T3 walk the tiles once
- * more, with a coder that only listens.
+ * more, with a coder that only observes.
  * SPDX-License-Identifier: BSD-2-Clause */
 #include <string.h>
 #include "base/bytes.h"
@@ -7,7 +7,7 @@
 #include "norm/rans.h"
 #include "norm/scene.h"
 #include "norm/tables.h"
-#include "read/listen.h"
+#include "read/observe.h"
 
 typedef struct {
     ted4_coder base; /* must be first */
@@ -15,14 +15,14 @@ typedef struct {
     void *user;
     int tier;
     size_t n; /* symbols of the open substream */
-} listener;
+} observer;
 
-static void put8(listener *l, uint8_t v)
+static void put8(observer *l, uint8_t v)
 {
     l->sink(l->user, &v, 1);
 }
 
-static void put16(listener *l, uint16_t v)
+static void put16(observer *l, uint16_t v)
 {
     uint8_t bytes[2];
 
@@ -30,7 +30,7 @@ static void put16(listener *l, uint16_t v)
     l->sink(l->user, bytes, sizeof bytes);
 }
 
-static void put32(listener *l, uint32_t v)
+static void put32(observer *l, uint32_t v)
 {
     uint8_t bytes[4];
 
@@ -38,14 +38,14 @@ static void put32(listener *l, uint32_t v)
     l->sink(l->user, bytes, sizeof bytes);
 }
 
-static listener *listener_of(ted4_coder *c)
+static observer *observer_of(ted4_coder *c)
 {
-    return (listener *)c;
+    return (observer *)c;
 }
 
 static void open_substream(ted4_coder *c, size_t n)
 {
-    listener *l = listener_of(c);
+    observer *l = observer_of(c);
 
     l->n = n;
     if (l->tier == 3)
@@ -55,7 +55,7 @@ static void open_substream(ted4_coder *c, size_t n)
 /* The decoder has seen each lane end in its final state. */
 static void close_substream(ted4_coder *c)
 {
-    listener *l = listener_of(c);
+    observer *l = observer_of(c);
     const unsigned lanes = l->n > 0 ? ted4_rans_lanes(l->n) : 0;
 
     if (l->tier != 3)
@@ -68,14 +68,14 @@ static void close_substream(ted4_coder *c)
 static int bit(ted4_coder *c, uint32_t prob, int value)
 {
     (void)prob;
-    if (listener_of(c)->tier == 3)
-        put8(listener_of(c), (uint8_t)value);
+    if (observer_of(c)->tier == 3)
+        put8(observer_of(c), (uint8_t)value);
     return value;
 }
 
 static void gauss(ted4_coder *c, size_t n, const int32_t *mu, const uint8_t *sigma, int16_t *k)
 {
-    listener *l = listener_of(c);
+    observer *l = observer_of(c);
 
     for (size_t i = 0; i < n; i++)
         if (l->tier == 3) {
@@ -94,7 +94,7 @@ static size_t tile_end(const ted4_scene *s, size_t first)
 }
 
 /* J.3 */
-static void dump_masks(listener *l, const ted4_scene *s)
+static void dump_masks(observer *l, const ted4_scene *s)
 {
     const size_t n = s->head.n_anchors;
 
@@ -106,7 +106,7 @@ static void dump_masks(listener *l, const ted4_scene *s)
     }
 }
 
-static void dump_steps(listener *l, const ted4_scene *s, size_t first)
+static void dump_steps(observer *l, const ted4_scene *s, size_t first)
 {
     for (int t = 0; t < TED4_TYPES; t++)
         for (size_t a = first; s->shape.dim[t] > 0 && a < tile_end(s, first); a++)
@@ -122,7 +122,7 @@ static int has(const ted4_scene *s, int type, unsigned comp, size_t a)
 
 /* J.6; spec 10.4. T4 is exact whatever the build's class (R-TOL-007): q is volatile, so that no
  * compiler multiplies in another order or keeps it wider. */
-static void dump_values(listener *l, const ted4_scene *s, int type, unsigned comp, size_t first)
+static void dump_values(observer *l, const ted4_scene *s, int type, unsigned comp, size_t first)
 {
     const int16_t *k = s->symbol[type] + (size_t)comp * s->head.n_anchors;
 
@@ -139,11 +139,11 @@ static void dump_values(listener *l, const ted4_scene *s, int type, unsigned com
 }
 
 /* J.4, J.5 */
-static ted4_status dump_walk(listener *l, const ted4_scene *given, const ted4_options *o)
+static ted4_status dump_walk(observer *l, const ted4_scene *given, const ted4_options *o)
 {
-    ted4_coder_ops ops = ted4_listen_ops;
-    ted4_listening it;
-    ted4_status verdict = ted4_listen_init(&it, given, o);
+    ted4_coder_ops ops = ted4_observe_ops;
+    ted4_observation it;
+    ted4_status verdict = ted4_observe_init(&it, given, o);
 
     ops.open = open_substream;
     ops.close = close_substream;
@@ -156,14 +156,14 @@ static ted4_status dump_walk(listener *l, const ted4_scene *given, const ted4_op
         ted4_walk_tile(&l->base, &it.scene, &it.prior, t, it.work);
         verdict = l->base.error.code;
     }
-    ted4_listen_finish(&it);
+    ted4_observe_finish(&it);
     return verdict;
 }
 
 ted4_status ted4_dump_tier(const ted4_scene *s, int tier, const ted4_options *o, ted4_sink *sink,
                            void *user)
 {
-    listener l;
+    observer l;
 
     memset(&l, 0, sizeof l);
     l.sink = sink;

@@ -61,7 +61,7 @@ typedef struct {
                                   * the name of a picture of it; borrowed */
     size_t n_hold_out;           /* 0: the layout's split */
     /* Told about once a second while a video is unpacked: its file, and how many frames there are
-     * by then. NULL: nobody listens. */
+     * by then. NULL: nobody is told. */
     void (*unpacking)(void *user, const char *video, size_t frames);
     void *user;
 } ted4_dataset_options;

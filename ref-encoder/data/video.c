@@ -170,7 +170,7 @@ static void await(int from, const audience *a)
 }
 
 /* Reads to the end; keeps what came last, as text. */
-static void listen(int from, const audience *a, char tail[TAIL])
+static void read_messages(int from, const audience *a, char tail[TAIL])
 {
     size_t n = 0;
 
@@ -204,7 +204,7 @@ static int run_ffmpeg(const audience *a, size_t most, char tail[TAIL])
         become_ffmpeg(input, limit, a->folder, ends[1]);
     close(ends[1]);
     if (child > 0)
-        listen(ends[0], a, tail);
+        read_messages(ends[0], a, tail);
     close(ends[0]);
     while (child > 0 && waitpid(child, &status, 0) < 0)
         if (errno != EINTR)

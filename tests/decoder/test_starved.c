@@ -215,7 +215,7 @@ static void vectors(void **state)
     }
 }
 
-/* Of a scene that is to be written, or listened to. */
+/* Of a scene that is to be written, or observed. */
 static void expect_refused(const ted4_scene *s)
 {
     uint8_t *data;

@@ -1,6 +1,6 @@
-/* listen.c - see listen.h.
+/* observe.c - see observe.h.
  * SPDX-License-Identifier: BSD-2-Clause */
-#include "read/listen.h"
+#include "read/observe.h"
 
 #include <string.h>
 #include "kernel/int_kernel.h"
@@ -29,11 +29,11 @@ static void close_substream(ted4_coder *c)
     (void)c;
 }
 
-const ted4_coder_ops ted4_listen_ops = {
+const ted4_coder_ops ted4_observe_ops = {
     .number = number, .sizes = sizes, .open = open_substream, .close = close_substream
 };
 
-ted4_status ted4_listen_init(ted4_listening *l, const ted4_scene *given, const ted4_options *o)
+ted4_status ted4_observe_init(ted4_observation *l, const ted4_scene *given, const ted4_options *o)
 {
     ted4_status verdict;
 
@@ -50,7 +50,7 @@ ted4_status ted4_listen_init(ted4_listening *l, const ted4_scene *given, const t
     return verdict;
 }
 
-void ted4_listen_finish(ted4_listening *l)
+void ted4_observe_finish(ted4_observation *l)
 {
     ted4_arena_finish(&l->arena);
 }
