@@ -11,7 +11,7 @@
 #include <stdlib.h>
 #include <string.h>
 #include <xxhash.h>
-#include "../fuzz/mend.h"
+#include "../fuzz/fix_hashes.h"
 #include "base/bytes.h"
 #include "norm/coder.h"
 
@@ -33,7 +33,7 @@ typedef struct {
     uint64_t refused[PASSES][TED4_N_STATUS];
     uint64_t valid[PASSES][TED4_CHUNKS + 2]; /* by chunk: known ones, ancillary, file header */
     uint64_t tried[PASSES];
-    uint64_t undone, bad; /* undone: the byte was one of a hash, and mending put it back */
+    uint64_t undone, bad; /* undone: the byte was one of a hash, and fixing hashes put it back */
     uint64_t random;      /* xorshift64* */
 } report;
 
@@ -125,10 +125,10 @@ static void change_one(report *r, int pass)
     free(data);
 }
 
-static void print_row(const char *name, uint64_t cut, uint64_t changed, uint64_t mended)
+static void print_row(const char *name, uint64_t cut, uint64_t changed, uint64_t fixed)
 {
-    if (cut + changed + mended > 0)
-        printf("| %s | %" PRIu64 " | %" PRIu64 " | %" PRIu64 " |\n", name, cut, changed, mended);
+    if (cut + changed + fixed > 0)
+        printf("| %s | %" PRIu64 " | %" PRIu64 " | %" PRIu64 " |\n", name, cut, changed, fixed);
 }
 
 static void print_report(const report *r)

@@ -4,7 +4,7 @@
  * SPDX-License-Identifier: BSD-2-Clause */
 #include <stdlib.h>
 #include <string.h>
-#include "mend.h"
+#include "fix_hashes.h"
 #include "mutate.h"
 #include "random_scene.h"
 
@@ -12,7 +12,7 @@ enum { CAPACITY = 1 << 16, ONE_STALE_OF = 16, MAX_TAIL = 32 };
 
 typedef struct {
     random_source r;
-    uint8_t fuzzed[CAPACITY], mended[CAPACITY];
+    uint8_t fuzzed[CAPACITY], fixed[CAPACITY];
 } state;
 
 static random_source bytes_source;
@@ -74,9 +74,9 @@ size_t afl_custom_post_process(void *data, uint8_t *buf, size_t buf_size, uint8_
     *out = buf;
     if (buf_size > CAPACITY || random_in(&s->r, 1, ONE_STALE_OF) == 1)
         return buf_size;
-    memcpy(s->mended, buf, buf_size);
-    ted4_mend_chunks(s->mended, ted4_without_tail(s->mended, buf_size, MAX_TAIL));
-    *out = s->mended;
+    memcpy(s->fixed, buf, buf_size);
+    ted4_fix_hashes(s->fixed, ted4_without_tail(s->fixed, buf_size, MAX_TAIL));
+    *out = s->fixed;
     return buf_size;
 }
 

@@ -15,7 +15,7 @@ FUZZ_ALLOC    = -Wl,--wrap=malloc,--wrap=calloc,--wrap=realloc,--wrap=free
 FUZZ_NO_VIDEO = -Wl,--wrap=ted4_video_unpack
 FUZZ_SEEN     = -Wl,--wrap=inflate,--wrap=compress2,--wrap=uncompress2
 
-FUZZ_OBJ      = $(patsubst %.c,$B/%.o,fuzz/mend.c fuzz/parse.c)
+FUZZ_OBJ      = $(patsubst %.c,$B/%.o,fuzz/fix_hashes.c fuzz/parse.c)
 # A harness links what it looks at, so that a build for one kind of instrumentation stays small: decoder and writer; readers of scenes too; or all.
 FUZZ_CODEC    = $(patsubst %.c,$B/%.o,$(DEC_SRC) \
                 $(wildcard ref-encoder/math/*.c ref-encoder/write/*.c)) $(FUZZ_OBJ)

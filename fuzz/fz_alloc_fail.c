@@ -7,7 +7,7 @@
 #include <string.h>
 #include "counting.h"
 #include "harness.h"
-#include "mend.h"
+#include "fix_hashes.h"
 #include "write/encode.h"
 
 enum { TAIL = 3 };

@@ -10,7 +10,7 @@
 #include "base/bytes.h"
 #include "counting.h"
 #include "harness.h"
-#include "mend.h"
+#include "fix_hashes.h"
 #include "norm/limits.h"
 #include "order.h"
 #include "read/container.h"

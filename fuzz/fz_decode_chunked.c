@@ -9,7 +9,7 @@
 #include <stdio.h>
 #include <string.h>
 #include "harness.h"
-#include "mend.h"
+#include "fix_hashes.h"
 #include "read/container.h"
 #include "tool/cli.h"
 

@@ -9,7 +9,7 @@
 #include "base/bytes.h"
 #include "counting.h"
 #include "harness.h"
-#include "mend.h"
+#include "fix_hashes.h"
 
 enum { TAIL = 3, TIERS = 5, RECORD = 6, PER_ANCHOR = 15 };
 

@@ -8,7 +8,7 @@
 #include <xxhash.h>
 #include "base/bytes.h"
 #include "harness.h"
-#include "mend.h"
+#include "fix_hashes.h"
 #include "norm/limits.h"
 #include "read/container.h"
 
@@ -87,7 +87,7 @@ static edited edit(const uint8_t *data, size_t size, int way, unsigned place, ui
             add(&e, data + p.at, whole);
         *changed |= mine;
     }
-    ted4_mend_chunks(e.data, e.size);
+    ted4_fix_hashes(e.data, e.size);
     return e;
 }
 
@@ -181,7 +181,7 @@ static void misplace(const uint8_t *data, size_t size, uint8_t what)
     put_in(&e, what);
     if (!behind)
         add(&e, data + TED4_FILE_HEADER_SIZE, size - TED4_FILE_HEADER_SIZE);
-    ted4_mend_chunks(e.data, e.size);
+    ted4_fix_hashes(e.data, e.size);
     fuzz_require(decode(e.data, e.size, &p, &verdict) == NULL, "refused");
     if (e.size <= ted4_limits_of(data[11])->file_bytes)
         fuzz_require(behind ? verdict.code == TED4_E_CON_TRAILING && verdict.offset == size

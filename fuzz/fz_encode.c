@@ -5,7 +5,7 @@
  * count of ideal bits is not above the bits written.
  * SPDX-License-Identifier: BSD-2-Clause */
 #include "harness.h"
-#include "mend.h"
+#include "fix_hashes.h"
 #include "norm/coder.h"
 #include "random_scene.h"
 

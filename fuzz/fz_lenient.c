@@ -6,7 +6,7 @@
  * SPDX-License-Identifier: BSD-2-Clause */
 #include <string.h>
 #include "harness.h"
-#include "mend.h"
+#include "fix_hashes.h"
 #include "write/encode.h"
 
 enum { TAIL = 3 };

@@ -5,7 +5,7 @@
  * is refused, or gives a file that is written as the same bytes.
  * SPDX-License-Identifier: BSD-2-Clause */
 #include "harness.h"
-#include "mend.h"
+#include "fix_hashes.h"
 #include "norm/coder.h"
 #include "random_scene.h"
 
@@ -65,8 +65,8 @@ static void damage(fuzz_source *in, uint8_t *data, size_t size)
         at += ted4_chunk_size(data, size, at);
     for (size_t i = 40; i < ted4_load32(data + at + 8) && in->at < in->end; i++)
         data[at + TED4_FRAME_HEAD_SIZE + i] ^= fuzz_u8(in);
-    ted4_mend_chunks(data, size);
-    ted4_mend_ends(data, size);
+    ted4_fix_hashes(data, size);
+    ted4_fix_rans_ends(data, size);
 }
 
 static void check_file(fuzz_source *in, const ted4_scene *s, uint8_t *data, size_t size)

@@ -7,7 +7,7 @@
 #include <math.h>
 #include <string.h>
 #include "harness.h"
-#include "mend.h"
+#include "fix_hashes.h"
 #include "norm/syntax.h"
 #include "order.h"
 #include "recon_ref.h"

@@ -5,7 +5,7 @@
  * SPDX-License-Identifier: BSD-2-Clause */
 #include "spec_tiers.h" /* first: its names are common ones */
 #include "harness.h"
-#include "mend.h"
+#include "fix_hashes.h"
 #include "norm/limits.h"
 #include "read/container.h"
 

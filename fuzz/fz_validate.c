@@ -8,7 +8,7 @@
 #include <xxhash.h>
 #include "counting.h"
 #include "harness.h"
-#include "mend.h"
+#include "fix_hashes.h"
 
 enum { TAIL = 3 };
 

@@ -6,7 +6,7 @@
 #include <stdio.h>
 #include <sys/stat.h>
 #include "corpus.h"
-#include "mend.h"
+#include "fix_hashes.h"
 #include "mutate.h"
 #include "norm/coder.h"
 #include "random_scene.h"
@@ -139,7 +139,7 @@ static size_t add_meta(uint8_t *data, size_t size)
     ted4_store32(data + at + 8, (uint32_t)n);
     memcpy(data + at + TED4_FRAME_HEAD_SIZE, text, n);
     data[9] = 1;
-    ted4_mend_chunks(data, size + whole);
+    ted4_fix_hashes(data, size + whole);
     return size + whole;
 }
 
@@ -233,7 +233,7 @@ static void write_two_tiles(void)
     for (size_t at = TED4_FILE_HEADER_SIZE; at < size; at += ted4_chunk_size(data, size, at))
         if (memcmp(data + at, "TILE", 4) == 0)
             data[at + ted4_chunk_size(data, size, at) - TED4_FRAME_HASH_SIZE - 1] ^= 1;
-    ted4_mend_chunks(data, size);
+    ted4_fix_hashes(data, size);
     data[size] = BACKWARDS;
     data[size + 1] = 0;
     corpus_write("knobs", "both_tiles.ted4", data, size + KNOBS);

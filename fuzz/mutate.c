@@ -3,7 +3,7 @@
 #include "mutate.h"
 
 #include "fields.h"
-#include "mend.h"
+#include "fix_hashes.h"
 #include "norm/coder.h"
 #include "parse.h"
 #include "random_scene.h"
@@ -250,7 +250,7 @@ static void change_payload(file *f, fuzz_bytes_fn *bytes)
     free(payload);
 }
 
-/* One of the things that mending makes right is wrong again. */
+/* One of the things that fixing hashes makes right is wrong again. */
 static void leave_stale(file *f)
 {
     const size_t at = any_chunk(f);
@@ -264,17 +264,17 @@ static void leave_stale(file *f)
     else {
         f->data[at + n - 9] ^=
             (uint8_t)random_in(&f->r, 1, 255); /* of the last word, or of the hash in ENDS */
-        ted4_mend_chunks(f->data, f->size);
+        ted4_fix_hashes(f->data, f->size);
     }
 }
 
 static void make_right(file *f)
 {
-    ted4_mend_chunks(f->data, f->size);
+    ted4_fix_hashes(f->data, f->size);
     if (f->coded && random_in(&f->r, 0, 2))
-        f->size = ted4_mend_ranges(f->data, f->size, f->max_size);
+        f->size = ted4_fix_range_codes(f->data, f->size, f->max_size);
     if (random_in(&f->r, 0, 3))
-        ted4_mend_ends(f->data, f->size);
+        ted4_fix_rans_ends(f->data, f->size);
     if (random_in(&f->r, 1, ONE_STALE_OF) == 1)
         leave_stale(f);
 }
@@ -341,7 +341,7 @@ size_t fuzz_mutate_frames(uint8_t *data, size_t size, size_t max_size, uint32_t 
     default: change_chunks(&f); break;
     }
     if (random_in(&f.r, 1, ONE_STALE_OF) > 1)
-        ted4_mend_chunks(f.data, f.size);
+        ted4_fix_hashes(f.data, f.size);
     return f.size;
 }
 

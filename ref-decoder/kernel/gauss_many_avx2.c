@@ -59,7 +59,7 @@ static inline vi choose(mask m, vi yes, vi no)
 }
 
 /* Tables are looked up by loads, one an element: gather instructions take several times as long
- * where processors are mended against leaks through them. */
+ * where processors are patched against leaks through them. */
 static inline __m128i two_pairs(const int32_t *table, uint32_t i, uint32_t j)
 {
     const __m128 first = _mm_castsi128_ps(_mm_loadl_epi64((const void *)(table + i)));

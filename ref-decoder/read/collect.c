@@ -1,5 +1,5 @@
 /* collect.c - every error of an invalid file as far as parsing can go on. The strict decoder's own
- * parts judge; what they refuse is mended in a copy, and they are asked again. Nothing is judged
+ * parts judge; what they refuse is repaired in a copy, and they are asked again. Nothing is judged
  * that depends on a value that was wrong (R-ERR-003): with a wrong HEAD no other payload, with
  * wrong networks or positions no tile, with anything wrong no hash in ENDS.
  * SPDX-License-Identifier: BSD-2-Clause */
@@ -50,8 +50,8 @@ static int order_that_fits(ted4_reader r, size_t at)
 
 /* Mends an error of a frame, so that the chunk can be judged again after *before. 1, or 0: that is
  * all there is to say about it. */
-static int mend_frame(ted4_collector *c, const ted4_reader *r, const ted4_chunk_place *p,
-                      ted4_error e, int *before)
+static int repair_frame(ted4_collector *c, const ted4_reader *r, const ted4_chunk_place *p,
+                        ted4_error e, int *before)
 {
     switch (e.code) {
     case TED4_E_CON_CHUNK_HASH: break;
@@ -86,7 +86,7 @@ static int judge_frame(ted4_collector *c, ted4_reader *r, int *before)
             return 0;
         c->wrong |= r->base.error.code == TED4_E_CON_CHUNK_HASH;
         c->disordered |= r->base.error.code == TED4_E_CON_CHUNK_ORDER;
-        again = r->base.error.code != TED4_OK && mend_frame(c, r, &p, r->base.error, &b);
+        again = r->base.error.code != TED4_OK && repair_frame(c, r, &p, r->base.error, &b);
         if (p.type < TED4_CHUNKS)
             *before = p.type;
     }

@@ -68,7 +68,7 @@ static ted4_error walk_head(ted4_collector *c, const ted4_chunk_place *p, const 
 
 /* Puts a number in the element at an offset with which there is no error there any more. 0: none
  * was found. */
-static int mend_head(ted4_collector *c, const ted4_chunk_place *p, size_t at)
+static int repair_head(ted4_collector *c, const ted4_chunk_place *p, size_t at)
 {
     static const uint32_t wide[] = { 0, 1, 64, 0x3f800000 };
 
@@ -111,7 +111,7 @@ void ted4_collect_head(ted4_collector *c, const ted4_chunk_place *p)
         c->head &= *last == '\0' || e.code == TED4_E_LVL_EXCEEDED;
         /* Without n_slices it is not known where the elements behind it are. */
         more = *last != '\0' && e.code != TED4_E_CON_PAYLOAD_SIZE &&
-               strcmp(last, "n_slices") != 0 && mend_head(c, p, e.offset);
+               strcmp(last, "n_slices") != 0 && repair_head(c, p, e.offset);
     }
     memcpy(c->copy + p->payload, keep, kept);
     if (!c->head)
@@ -154,7 +154,7 @@ static ted4_error walk_nete(ted4_collector *c, const ted4_chunk_place *p)
 
 /* The value with that error becomes 0, if the blob, whose values begin at values_at, is raw. 0: it
  * is not. */
-static int mend_value(ted4_collector *c, size_t values_at, ted4_error e)
+static int repair_value(ted4_collector *c, size_t values_at, ted4_error e)
 {
     if (c->copy[values_at - 1] != TED4_BLOB_RAW)
         return 0;
@@ -162,7 +162,7 @@ static int mend_value(ted4_collector *c, size_t values_at, ted4_error e)
     return 1;
 }
 
-static int mend_nete(ted4_collector *c, const ted4_chunk_place *p, ted4_error e)
+static int repair_nete(ted4_collector *c, const ted4_chunk_place *p, ted4_error e)
 {
     const size_t values_at = p->payload + c->d.s->shape.n_units + 1;
 
@@ -176,7 +176,7 @@ static int mend_nete(ted4_collector *c, const ted4_chunk_place *p, ted4_error e)
     if (e.code != TED4_E_NET_VALUE && e.code != TED4_E_NET_WEIGHT_RANGE &&
         e.code != TED4_E_NET_ACCUMULATOR)
         return 0;
-    if (!mend_value(c, values_at, e))
+    if (!repair_value(c, values_at, e))
         return 0;
     if (e.code == TED4_E_NET_ACCUMULATOR)
         clear_unit(c, values_at, (e.offset - values_at) / 4);
@@ -190,7 +190,7 @@ void ted4_collect_nete(ted4_collector *c, const ted4_chunk_place *p)
     ted4_decoder_chunk(&c->d, p);
     e = ted4_collect_error(c);
     c->nete = e.code == TED4_OK;
-    for (int n = 1; e.code != TED4_OK && mend_nete(c, p, e) && may_go_on(c, p, n); n++) {
+    for (int n = 1; e.code != TED4_OK && repair_nete(c, p, e) && may_go_on(c, p, n); n++) {
         c->d.file.base.error = walk_nete(c, p);
         e = ted4_collect_error(c);
     }
@@ -204,7 +204,7 @@ void ted4_collect_blob(ted4_collector *c, const ted4_chunk_place *p, const char 
     ted4_decoder_chunk(&c->d, p);
     e = ted4_collect_error(c);
     for (int n = 1;
-         e.code == TED4_E_NET_VALUE && mend_value(c, p->payload + 1, e) && may_go_on(c, p, n);
+         e.code == TED4_E_NET_VALUE && repair_value(c, p->payload + 1, e) && may_go_on(c, p, n);
          n++) {
         ted4_reader r = ted4_decoder_reader(&c->d, p);
 

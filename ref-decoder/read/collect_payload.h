@@ -11,7 +11,7 @@ enum { TED4_COLLECT_MOST = 100 };
 
 typedef struct {
     ted4_findings *f;
-    uint8_t *copy;  /* of the file; each error that has been found is mended in it, so that what
+    uint8_t *copy;  /* of the file; each error that has been found is repaired in it, so that what
                        follows can be judged */
     uint8_t level;  /* the declared level; 31: it cannot be used */
     ted4_decoder d; /* reads the copy */

@@ -7,7 +7,7 @@
 #include <string.h>
 
 #include "test.h"
-#include "fuzz/mend.h"
+#include "fuzz/fix_hashes.h"
 #include "base/bytes.h"
 #include "norm/syntax.h"
 #include "vector_files.h"

@@ -181,7 +181,7 @@ static void truncations(void **state)
 }
 
 /* Makes the hash of the chunk that holds byte at right again, as far as the chunk can be found. */
-static void mend_hash(file f, size_t at)
+static void fix_hash(file f, size_t at)
 {
     size_t p = 12;
 
@@ -198,7 +198,7 @@ static void mend_hash(file f, size_t at)
     }
 }
 
-/* Random bytes in place of right ones, the chunk's hash mended in most cases: refused, or the same
+/* Random bytes in place of right ones, the chunk's hash fixed in most cases: refused, or the same
  * integers. */
 static void changes(void **state)
 {
@@ -219,7 +219,7 @@ static void changes(void **state)
             memcpy(g.data, f.data, f.size);
             g.data[at] ^= (uint8_t)random_in(&r, 1, 255);
             if (n % 4 > 0)
-                mend_hash(g, at);
+                fix_hash(g, at);
             if (ted4_decode(g.data, g.size, NULL, &t, NULL) != TED4_OK)
                 continue;
             assert_memory_equal(t->hash, hash, 16);

@@ -8,7 +8,7 @@
 #include <xxhash.h>
 
 #include "test.h"
-#include "fuzz/mend.h"
+#include "fuzz/fix_hashes.h"
 #include "random_scene.h"
 
 enum {

@@ -117,7 +117,7 @@ static void test_outside(void **state)
     }
 }
 
-/* A word changed, and words cut off with the size mended: the same verdict. */
+/* A word changed, and words cut off with the size adjusted: the same verdict. */
 static void test_damaged(void **state)
 {
     const ted4_gauss_many many = variant_of(state);

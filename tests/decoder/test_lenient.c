@@ -3,7 +3,7 @@
  * file it is the same scene.
  * SPDX-License-Identifier: BSD-2-Clause */
 #include "test.h"
-#include "fuzz/mend.h"
+#include "fuzz/fix_hashes.h"
 #include "random_scene.h"
 #include "run_json.h"
 #include "tool/threads.h"
@@ -167,7 +167,7 @@ static void damage(void **state)
         memcpy(copy, f->data, f->size);
         copy[at] ^= (uint8_t)random_in(&r, 1, 255);
         if (i % 2 == 1)
-            ted4_mend_chunks(copy, f->size);
+            ted4_fix_hashes(copy, f->size);
         (void)ted4_decode_lenient(copy, f->size, NULL, &s, &what);
         (void)ted4_decode(copy, f->size, NULL, &strict, &e);
         ted4_scene_free(strict);

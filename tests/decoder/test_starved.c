@@ -7,7 +7,7 @@
 
 #include "test.h"
 #include "fuzz/counting.h"
-#include "fuzz/mend.h"
+#include "fuzz/fix_hashes.h"
 #include "random_scene.h"
 
 typedef struct {
@@ -191,7 +191,7 @@ static void damaged_files(void **state)
     starve_all(&f);
     f.size += 100;
     f.data[f.size - 200] ^= 1;
-    ted4_mend_chunks(f.data, f.size);
+    ted4_fix_hashes(f.data, f.size);
     starve_all(&f);
     g = read_vector("invalid/positions/NEG-position-equal");
     starve_all(&g);

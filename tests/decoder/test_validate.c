@@ -83,7 +83,7 @@ static void many_errors(void **state)
     ted4_store16(data + posn + 6 * 10, 0x8000); /* positions */
     memcpy(data + posn + 6 * 50, data + posn + 6 * 49, 6);
     data[ends + 4] = 0; /* flags */
-    ted4_mend_chunks(data, size);
+    ted4_fix_hashes(data, size);
     data[tile + 20] ^= 1; /* its hash */
     all = validate(data, size);
     assert_int_equal(has(all, "con.reserved", ends + 4), 1);
@@ -103,7 +103,7 @@ static void many_errors(void **state)
     data[24 + HEAD_VIEW] = 3;
     ted4_store32(data + 24 + HEAD_RATE, 0); /* step[0] */
     data[posn + 1] = 0x7f;
-    ted4_mend_chunks(data, size);
+    ted4_fix_hashes(data, size);
     all = validate(data, size);
     assert_int_equal(has(all, "hdr.range", 24 + 4), 1);
     assert_int_equal(has(all, "hdr.range", 24 + HEAD_VIEW), 1);
@@ -127,7 +127,7 @@ static void too_many(void **state)
     posn = chunk_at(data, size, "POSN", 0) + 12;
     for (int i = 0; i < 150; i++)
         ted4_store16(data + posn + 6 * i, 0x7c00);
-    ted4_mend_chunks(data, size);
+    ted4_fix_hashes(data, size);
     all = validate(data, size);
     assert_int_equal(all->errors, 100);
     assert_int_equal(has(all, "adv.more", ANYWHERE), 1);
@@ -246,7 +246,7 @@ static void no_memory(void **state)
     starve(data, size);
     starve(data, size - 100);
     data[chunk_at(data, size, "TILE", 2) + 30] ^= 1;
-    ted4_mend_chunks(data, size);
+    ted4_fix_hashes(data, size);
     starve(data, size);
     free(data);
     ted4_scene_free(s);

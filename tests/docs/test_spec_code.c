@@ -202,7 +202,7 @@ static size_t chunks_of(const uint8_t *data, size_t size, size_t at[MAX_CHUNKS +
     return n;
 }
 
-static void mend_hash(uint8_t *chunk)
+static void fix_hash(uint8_t *chunk)
 {
     const size_t n = 12 + (size_t)ted4_load32(chunk + 8);
     const uint64_t h = XXH3_64bits(chunk, n);
@@ -243,38 +243,38 @@ static size_t damage(random_source *r, uint8_t *data, size_t size)
     case 3: /* a chunk less */
         memmove(data + at[c], data + at[c + 1], size - at[c + 1]);
         return size - length;
-    case 4: /* type, flags, hash mended */
+    case 4: /* type, flags, hash fixed */
         change_byte(r, data + at[c] + random_in(r, 0, 7));
-        mend_hash(data + at[c]);
+        fix_hash(data + at[c]);
         return size;
     case 5: /* a byte more at the end of a payload */
         memmove(data + at[c + 1] + 1, data + at[c + 1], size - at[c + 1]);
         data[at[c + 1]] = 0;
         ted4_store32(data + at[c] + 8, (uint32_t)length - 20 + 1);
-        mend_hash(data + at[c]);
+        fix_hash(data + at[c]);
         return size + 1;
     case 6: /* a byte less */
         if (length == 20)
             return size;
         memmove(data + at[c + 1] - 1, data + at[c + 1], size - at[c + 1]);
         ted4_store32(data + at[c] + 8, (uint32_t)length - 20 - 1);
-        mend_hash(data + at[c]);
+        fix_hash(data + at[c]);
         return size - 1;
     case 7: /* the file header */ change_byte(r, data + random_in(r, 0, 11)); return size;
     case 8: /* HEAD */
         change_byte(r, data + at[0] + 12 + random_in(r, 0, (uint32_t)(at[1] - at[0]) - 21));
-        mend_hash(data + at[0]);
+        fix_hash(data + at[0]);
         return size;
     case 9: /* the first bytes of a payload */
         if (length > 20)
             change_byte(r, data + at[c] + 12 +
                                random_in(r, 0, (uint32_t)(length < 60 ? length : 60) - 21));
-        mend_hash(data + at[c]);
+        fix_hash(data + at[c]);
         return size;
-    default: /* some bytes of a payload, hash mended */
+    default: /* some bytes of a payload, hash fixed */
         for (uint32_t i = random_in(r, 1, 3); i > 0 && length > 20; i--)
             change_byte(r, data + at[c] + 12 + random_in(r, 0, (uint32_t)length - 21));
-        mend_hash(data + at[c]);
+        fix_hash(data + at[c]);
         return size;
     }
 }
@@ -394,7 +394,7 @@ static void edges_of_head(void **state)
                 memcpy(copy, data, size);
                 for (size_t b = 0; b < e[i].width; b++)
                     copy[24 + e[i].at + b] = (uint8_t)(e[i].value[k] >> 8 * b);
-                mend_hash(copy + 12);
+                fix_hash(copy + 12);
                 same_verdict(copy, size, seen);
             }
         spec_model_free(&m);

@@ -95,7 +95,7 @@ static void damaged(void **state)
 
 /* A checksum that fits hides damage from the check at the end: only the rules on blocks are left.
  */
-static void damaged_and_mended(void **state)
+static void damaged_and_fixed(void **state)
 {
     static uint8_t text[MOST], stream[2 * MOST], out[MOST];
     random_source r = random_seed(12);
@@ -282,7 +282,7 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(damaged),
-        cmocka_unit_test(damaged_and_mended),
+        cmocka_unit_test(damaged_and_fixed),
         cmocka_unit_test(codes),
         cmocka_unit_test(narrow_window),
     };

@@ -5,7 +5,7 @@
 #define TED4_VALIDATE_CASE_H
 
 #include "fuzz/counting.h"
-#include "fuzz/mend.h"
+#include "fuzz/fix_hashes.h"
 #include "norm/coder.h"
 #include "random_scene.h"
 #include "read/collect.h"

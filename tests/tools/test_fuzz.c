@@ -8,7 +8,7 @@
 
 #include "test.h"
 #include "fuzz/inputs.h"
-#include "fuzz/mend.h"
+#include "fuzz/fix_hashes.h"
 #include "fuzz/mutate.h"
 #include "norm/coder.h"
 #include "random_scene.h"
@@ -112,14 +112,14 @@ static void test_harnesses(void **state)
     }
 }
 
-/* Changed bytes behind mended hashes reach every part of the decoder; some of the files are valid.
+/* Changed bytes behind correct hashes reach every part of the decoder; some of the files are valid.
  */
 static void test_changes(void **state)
 {
     random_source r = random_seed(4);
     uint8_t *const data = malloc(MAX_SIZE);
     ted4_info info;
-    int n_valid = 0, n_unmended = 0;
+    int n_valid = 0, n_unfixed = 0;
 
     (void)state;
     assert_non_null(data);
@@ -129,14 +129,14 @@ static void test_changes(void **state)
 
             memcpy(data, file[i].data, size);
             data[random_in(&r, 12, (uint32_t)size - 1)] ^= (uint8_t)(1u << random_in(&r, 0, 7));
-            n_unmended += decode(data, size, &info) == TED4_OK;
-            ted4_mend_chunks(data, size);
+            n_unfixed += decode(data, size, &info) == TED4_OK;
+            ted4_fix_hashes(data, size);
             run_all(data, size);
-            ted4_mend_ends(data, size);
+            ted4_fix_rans_ends(data, size);
             run_all(data, size);
             n_valid += decode(data, size, &info) == TED4_OK;
         }
-    assert_int_equal(n_unmended, 0);
+    assert_int_equal(n_unfixed, 0);
     assert_true(n_valid > n_files * CHANGES / 20);
     free(data);
 }
@@ -182,7 +182,7 @@ static void test_mutator(void **state)
 }
 
 /* Any bytes in the substreams become symbols of a valid file. */
-static void test_mend_ranges(void **state)
+static void test_fix_range_codes(void **state)
 {
     random_source r = random_seed(9);
     uint8_t *const data = malloc(2 * MAX_SIZE);
@@ -199,9 +199,9 @@ static void test_mend_ranges(void **state)
         for (size_t j = TED4_FRAME_HEAD_SIZE;
              j + TED4_FRAME_HASH_SIZE < ted4_chunk_size(data, size, at); j++)
             data[at + j] = (uint8_t)random_u32(&r);
-        ted4_mend_chunks(data, size);
+        ted4_fix_hashes(data, size);
         assert_int_not_equal(decode(data, size, &info), TED4_OK);
-        size = ted4_mend_ranges(data, size, 2 * MAX_SIZE);
+        size = ted4_fix_range_codes(data, size, 2 * MAX_SIZE);
         assert_int_equal(decode(data, size, &info), TED4_OK);
     }
     free(data);
@@ -210,9 +210,9 @@ static void test_mend_ranges(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_corpus),      cmocka_unit_test(test_harnesses),
-        cmocka_unit_test(test_changes),     cmocka_unit_test(test_mutator),
-        cmocka_unit_test(test_mend_ranges),
+        cmocka_unit_test(test_corpus),          cmocka_unit_test(test_harnesses),
+        cmocka_unit_test(test_changes),         cmocka_unit_test(test_mutator),
+        cmocka_unit_test(test_fix_range_codes),
     };
 
     return cmocka_run_group_tests_name("fuzz", tests, setup, NULL);

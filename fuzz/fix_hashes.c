@@ -1,6 +1,6 @@
-/* mend.c - see mend.h.
+/* fix_hashes.c - see fix_hashes.h.
  * SPDX-License-Identifier: BSD-2-Clause */
-#include "mend.h"
+#include "fix_hashes.h"
 
 #include <stdlib.h>
 #include <string.h>
@@ -20,7 +20,7 @@ size_t ted4_chunk_size(const uint8_t *data, size_t size, size_t at)
     return size - at < whole ? 0 : (size_t)whole;
 }
 
-void ted4_mend_chunks(uint8_t *data, size_t size)
+void ted4_fix_hashes(uint8_t *data, size_t size)
 {
     for (size_t at = TED4_FILE_HEADER_SIZE, whole; at < size; at += whole) {
         whole = ted4_chunk_size(data, size, at);
@@ -33,7 +33,7 @@ void ted4_mend_chunks(uint8_t *data, size_t size)
     }
 }
 
-void ted4_mend_ends(uint8_t *data, size_t size)
+void ted4_fix_rans_ends(uint8_t *data, size_t size)
 {
     size_t ends;
     ted4_scene *const s = fuzz_parse(data, size, 0, &ends);
@@ -42,12 +42,12 @@ void ted4_mend_ends(uint8_t *data, size_t size)
         return;
     if (ends + sizeof s->hash + TED4_FRAME_HASH_SIZE == size) {
         memcpy(data + ends, s->hash, sizeof s->hash);
-        ted4_mend_chunks(data, size);
+        ted4_fix_hashes(data, size);
     }
     ted4_scene_free(s);
 }
 
-size_t ted4_mend_ranges(uint8_t *data, size_t size, size_t max_size)
+size_t ted4_fix_range_codes(uint8_t *data, size_t size, size_t max_size)
 {
     size_t ends, n = 0;
     ted4_scene *const s = fuzz_parse(data, size, 1, &ends);
