@@ -35,10 +35,10 @@ typedef struct {
     int helps;  /* in the search for what one of them misses: it is another one, far enough from it
                  */
     uint8_t *rgb, *error; /* owned: [pixels][3], [pixels] */
-} eye;
+} sweep_view;
 
 typedef struct {
-    const eye *eyes;
+    const sweep_view *views;
     size_t n, self;
     int step;          /* pixels between those looked at */
     ted4_place *found; /* [rows][columns], score 0: nothing */
@@ -47,7 +47,7 @@ typedef struct {
 
 /* Distance by which the point at 1/z is off in the other picture when 1/z is off by one, roughly.
  */
-static float parallax(const eye *a, const eye *b)
+static float parallax(const sweep_view *a, const sweep_view *b)
 {
     float square = 0;
 
@@ -56,21 +56,21 @@ static float parallax(const eye *a, const eye *b)
     return sqrtf(square) * fmaxf(b->view.fx, b->view.fy);
 }
 
-static void count_depths(eye *eyes, size_t n, size_t self)
+static void count_depths(sweep_view *views, size_t n, size_t self)
 {
     float farthest = 0;
 
     for (size_t i = 0; i < n; i++)
-        farthest = fmaxf(farthest, parallax(&eyes[self], &eyes[i]));
+        farthest = fmaxf(farthest, parallax(&views[self], &views[i]));
 
-    const float range = 1.0f / eyes[self].nearest - 1.0f / eyes[self].farthest;
+    const float range = 1.0f / views[self].nearest - 1.0f / views[self].farthest;
     const float wanted = ceilf(range * farthest / PIXELS_APART);
 
-    eyes[self].depths = (int)fmaxf(FEWEST_DEPTHS, fminf(wanted, MOST_DEPTHS));
+    views[self].depths = (int)fmaxf(FEWEST_DEPTHS, fminf(wanted, MOST_DEPTHS));
 }
 
 /* Does the other picture look at the point, and does it confirm it: 0 no, above: how well. */
-static float confirm(const eye *e, const float p[3], const uint8_t colour[3], int *observed)
+static float confirm(const sweep_view *e, const float p[3], const uint8_t colour[3], int *observed)
 {
     size_t pixel;
     float depth;
@@ -96,35 +96,35 @@ static void point_at(const ted4_view *v, int column, int row, float z, float p[3
 /* The depth of a pixel that most of the other cameras confirm. */
 static void sweep(const search_job *j, int column, int row, ted4_place *best)
 {
-    const eye *me = &j->eyes[j->self];
-    const size_t pixel = (size_t)row * (size_t)me->view.width + (size_t)column;
-    const uint8_t *colour = me->rgb + 3 * pixel;
+    const sweep_view *own = &j->views[j->self];
+    const size_t pixel = (size_t)row * (size_t)own->view.width + (size_t)column;
+    const uint8_t *colour = own->rgb + 3 * pixel;
 
-    for (int k = 0; k < me->depths; k++) {
-        const float part = (float)k / (float)(me->depths - 1);
-        const float z = 1.0f / ((1.0f - part) / me->nearest + part / me->farthest);
+    for (int k = 0; k < own->depths; k++) {
+        const float part = (float)k / (float)(own->depths - 1);
+        const float z = 1.0f / ((1.0f - part) / own->nearest + part / own->farthest);
         float p[3], score = 0;
         int seen = 0, agree = 0;
 
-        point_at(&me->view, column, row, z, p);
+        point_at(&own->view, column, row, z, p);
         if (fabsf(p[0]) > 1.0f || fabsf(p[1]) > 1.0f || fabsf(p[2]) > 1.0f)
             continue;
         for (size_t i = 0; i < j->n; i++) {
             int observed;
 
-            if (!j->eyes[i].helps)
+            if (!j->views[i].helps)
                 continue;
-            const float s = confirm(&j->eyes[i], p, colour, &observed);
+            const float s = confirm(&j->views[i], p, colour, &observed);
 
             seen += observed;
             agree += s > 0;
             score += s;
         }
-        score *= (float)me->error[pixel] / 255.0f;
+        score *= (float)own->error[pixel] / 255.0f;
         if (agree + 1 < TED4_CAMERAS_NEEDED || 2 * agree < seen || score <= best->score)
             continue;
         memcpy(best->point, p, sizeof p);
-        best->size = z * (float)j->step / me->view.fx;
+        best->size = z * (float)j->step / own->view.fx;
         best->score = score;
     }
     memcpy(best->colour, colour, 3);
@@ -133,7 +133,7 @@ static void sweep(const search_job *j, int column, int row, ted4_place *best)
 static void search_row(void *arg, size_t r)
 {
     const search_job *j = arg;
-    const eye *me = &j->eyes[j->self];
+    const sweep_view *own = &j->views[j->self];
     const int row = (int)r * j->step + j->step / 2;
 
     for (int c = 0; c < j->columns; c++) {
@@ -141,8 +141,8 @@ static void search_row(void *arg, size_t r)
         const int column = c * j->step + j->step / 2;
 
         memset(place, 0, sizeof *place);
-        if (row < me->view.height && column < me->view.width &&
-            me->error[(size_t)row * (size_t)me->view.width + (size_t)column] >= MISSING)
+        if (row < own->view.height && column < own->view.width &&
+            own->error[(size_t)row * (size_t)own->view.width + (size_t)column] >= MISSING)
             sweep(j, column, row, place);
     }
 }
@@ -155,7 +155,7 @@ static int compare_floats(const void *x, const void *y)
 }
 
 /* Between which depths anchors lie in a view. 0, or -1: no memory. */
-static int depth_range(const ted4_trainer *t, eye *e)
+static int depth_range(const ted4_trainer *t, sweep_view *e)
 {
     float *z = malloc((t->anchors.n + 1) * sizeof *z);
     size_t n = 0;
@@ -182,7 +182,7 @@ static int depth_range(const ted4_trainer *t, eye *e)
 }
 
 /* What the picture shows and what the model draws instead, both in the scene's colours. */
-static int open_eye(ted4_trainer *t, size_t item, eye *e)
+static int open_view(ted4_trainer *t, size_t item, sweep_view *e)
 {
     const ted4_picture *pic = &t->data->pictures[item];
     const uint8_t *truth = ted4_trainer_seen(t, item);
@@ -232,19 +232,19 @@ static int put(ted4_places *l, const ted4_place *p)
 
 /* What one camera of the frame misses. Those of other frames may be the same camera again, which
  * agrees with itself about any depth. 0, or -1: no memory. */
-static int search_eye(const ted4_trainer *t, eye *eyes, size_t n, size_t self, uint32_t frame,
-                      ted4_places *list)
+static int search_view(const ted4_trainer *t, sweep_view *views, size_t n, size_t self,
+                       uint32_t frame, ted4_places *list)
 {
-    const int width = eyes[self].view.width, height = eyes[self].view.height;
+    const int width = views[self].view.width, height = views[self].view.height;
     const int step = (int)fmaxf(1.0f, roundf(SPACING * (float)width));
     const size_t columns = (size_t)((width + step - 1) / step),
                  rows = (size_t)((height + step - 1) / step);
-    search_job j = { eyes, n, self, step, malloc(rows * columns * sizeof *j.found), (int)columns };
+    search_job j = { views, n, self, step, malloc(rows * columns * sizeof *j.found), (int)columns };
     int bad = j.found == NULL;
 
     for (size_t i = 0; i < n; i++)
-        eyes[i].helps = i != self &&
-                        (eyes[i].is_own || ted4_turns_apart(eyes[self].centre, eyes[i].centre));
+        views[i].helps = i != self &&
+                         (views[i].is_own || ted4_turns_apart(views[self].centre, views[i].centre));
     if (!bad)
         ted4_parallel_for(t->parallel, rows, search_row, &j);
     for (size_t i = 0; !bad && i < rows * columns; i++)
@@ -301,9 +301,10 @@ static int is_near(const ted4_picture *p, uint32_t frame, uint32_t reach)
     return !p->is_test && p->frame + reach >= frame && p->frame <= frame + reach;
 }
 
-/* The pictures that look at a frame, in eyes[] if there is room for them; how many. 0, or -1 with
+/* The pictures that look at a frame, in views[] if there is room for them; how many. 0, or -1 with
  * t->message, in *bad. */
-static size_t open_eyes(ted4_trainer *t, uint32_t frame, uint32_t reach, eye *eyes, int *bad)
+static size_t open_views(ted4_trainer *t, uint32_t frame, uint32_t reach, sweep_view *views,
+                         int *bad)
 {
     size_t n = 0;
 
@@ -312,9 +313,9 @@ static size_t open_eyes(ted4_trainer *t, uint32_t frame, uint32_t reach, eye *ey
 
         if (!is_near(p, frame, reach))
             continue;
-        if (eyes != NULL) {
-            eyes[n].is_own = p->frame == frame;
-            *bad = open_eye(t, i, &eyes[n]) != 0;
+        if (views != NULL) {
+            views[n].is_own = p->frame == frame;
+            *bad = open_view(t, i, &views[n]) != 0;
         }
         n++;
     }
@@ -325,20 +326,20 @@ int ted4_mv_seed_search(ted4_trainer *t, uint32_t frame, uint32_t reach, ted4_pl
 {
     const size_t first = list->n;
     int bad = 0;
-    const size_t n = open_eyes(t, frame, reach, NULL, &bad);
+    const size_t n = open_views(t, frame, reach, NULL, &bad);
 
     if (n < TED4_CAMERAS_NEEDED)
         return 0;
 
-    eye *eyes = calloc(n, sizeof *eyes);
+    sweep_view *views = calloc(n, sizeof *views);
 
-    if (eyes == NULL)
+    if (views == NULL)
         return ted4_trainer_fail(t, "no memory to look for what is missing");
-    open_eyes(t, frame, reach, eyes, &bad);
+    open_views(t, frame, reach, views, &bad);
     for (size_t i = 0; !bad && i < n; i++)
-        count_depths(eyes, n, i);
+        count_depths(views, n, i);
     for (size_t i = 0; !bad && i < n; i++)
-        if (eyes[i].is_own && search_eye(t, eyes, n, i, frame, list) != 0)
+        if (views[i].is_own && search_view(t, views, n, i, frame, list) != 0)
             bad = ted4_trainer_fail(t, "no memory to look for what is missing");
 
     const size_t share = ted4_mv_seed_capacity(t->data->n_frames) / t->data->n_frames;
@@ -346,9 +347,9 @@ int ted4_mv_seed_search(ted4_trainer *t, uint32_t frame, uint32_t reach, ted4_pl
     if (!bad && thin(list, first, share > 0 ? share : 1) != 0)
         bad = ted4_trainer_fail(t, "no memory to look for what is missing");
     for (size_t i = 0; i < n; i++) {
-        free(eyes[i].rgb);
-        free(eyes[i].error);
+        free(views[i].rgb);
+        free(views[i].error);
     }
-    free(eyes);
+    free(views);
     return bad ? -1 : 0;
 }
