@@ -15,8 +15,9 @@ typedef struct {
     size_t size;
     size_t pins;
     int loading;
-    int early;            /* decoded ahead, and not asked for since */
-    size_t before, after; /* neighbours in the idle list, when full and not pinned */
+    int early; /* decoded ahead, and not asked for since */
+    size_t before,
+        after; /* neighbours in the list of unpinned pictures, when full and not pinned */
 } entry;
 
 /* As many pictures may wait as half the bound holds of the largest, or those that wait, and as
@@ -35,8 +36,8 @@ struct ted4_image_cache {
     pthread_mutex_t lock;
     pthread_cond_t loaded, wanted;
     ahead ahead;
-    entry *entries; /* owned, [n + 1]; the last is the head of the idle list: after = oldest, before
-                       = newest */
+    entry *entries; /* owned, [n + 1]; the last is the head of the list of unpinned pictures: after
+                       = oldest, before = newest */
     size_t n, bound, held;
     size_t largest; /* size of a picture seen so far */
     ted4_image_decoder *decode;
@@ -85,7 +86,7 @@ void ted4_image_cache_free(ted4_image_cache *c)
     free(c);
 }
 
-static void leave_idle(ted4_image_cache *c, size_t i)
+static void unlink_unpinned(ted4_image_cache *c, size_t i)
 {
     entry *e = c->entries;
 
@@ -93,7 +94,7 @@ static void leave_idle(ted4_image_cache *c, size_t i)
     e[e[i].after].before = e[i].before;
 }
 
-static void join_idle(ted4_image_cache *c, size_t i)
+static void link_unpinned(ted4_image_cache *c, size_t i)
 {
     entry *e = c->entries;
 
@@ -109,7 +110,7 @@ static void not_early(ted4_image_cache *c, size_t i)
     c->entries[i].early = 0;
 }
 
-/* With the lock held: drops idle pictures, oldest first, until extra more bytes fit or none is
+/* With the lock held: drops unpinned pictures, oldest first, until extra more bytes fit or none is
  * left. */
 static void evict(ted4_image_cache *c, size_t extra)
 {
@@ -117,7 +118,7 @@ static void evict(ted4_image_cache *c, size_t extra)
         const size_t i = c->entries[c->n].after;
         if (i == c->n || (extra <= c->bound && c->held <= c->bound - extra))
             return;
-        leave_idle(c, i);
+        unlink_unpinned(c, i);
         not_early(c, i);
         c->held -= c->entries[i].size;
         free(c->entries[i].bytes);
@@ -142,7 +143,7 @@ static void load(ted4_image_cache *c, size_t i, ted4_message *m)
         e->size = size;
         c->held += size;
         c->largest = size > c->largest ? size : c->largest;
-        join_idle(c, i);
+        link_unpinned(c, i);
     }
     pthread_cond_broadcast(&c->loaded);
 }
@@ -162,7 +163,7 @@ const uint8_t *ted4_image_cache_pin(ted4_image_cache *c, size_t i, ted4_message 
     const uint8_t *bytes = e->bytes;
     not_early(c, i);
     if (bytes != NULL && e->pins++ == 0)
-        leave_idle(c, i);
+        unlink_unpinned(c, i);
     pthread_mutex_unlock(&c->lock);
     return bytes;
 }
@@ -171,7 +172,7 @@ void ted4_image_cache_unpin(ted4_image_cache *c, size_t i)
 {
     pthread_mutex_lock(&c->lock);
     if (--c->entries[i].pins == 0) {
-        join_idle(c, i);
+        link_unpinned(c, i);
         evict(c, 0);
     }
     pthread_mutex_unlock(&c->lock);

@@ -324,7 +324,7 @@ static void test_cache(void **state)
         assert_int_equal(ted4_image_cache_pin(c, i, &m)[7], i);
         ted4_image_cache_unpin(c, i);
     }
-    ted4_image_cache_pin(c, 0, &m); /* now 1 is the oldest idle one */
+    ted4_image_cache_pin(c, 0, &m); /* now 1 is the oldest unpinned one */
     ted4_image_cache_unpin(c, 0);
     ted4_image_cache_pin(c, 3, &m);
     ted4_image_cache_unpin(c, 3);

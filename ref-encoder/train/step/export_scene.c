@@ -92,7 +92,7 @@ static int settle(ted4_trainer *t)
 }
 
 /* R-ENC-004: a mask all of whose bits are 1 is not coded. */
-static void drop_idle_masks(ted4_scene *s)
+static void drop_constant_masks(ted4_scene *s)
 {
     const uint16_t all = (uint16_t)((1u << s->head.n_offsets) - 1);
     int still = 0, dropped = 0;
@@ -133,7 +133,7 @@ int ted4_make_scene(ted4_trainer *t, ted4_scene **scene)
     copy_values(&s->bank, t->net.value + t->layout.bank);
     copy_values(&s->nete, t->net.value + t->layout.nete);
     fill_masks(t, keep, s);
-    drop_idle_masks(s);
+    drop_constant_masks(s);
     if (ted4_scene_steps(s, t->parallel, &e) != TED4_OK) {
         ted4_scene_free(s);
         *scene = NULL;

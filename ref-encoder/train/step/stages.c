@@ -109,7 +109,7 @@ static float peak_activation(const ted4_trainer *t, size_t i)
     return ted4_activation(least, ted4_pow2);
 }
 
-int ted4_stage_rising(ted4_trainer *t, uint32_t *rising, size_t *n)
+int ted4_stage_live(ted4_trainer *t, uint32_t *live, size_t *n)
 {
     float *sum = malloc((t->anchors.n + 1) * sizeof *sum);
     int bad = sum == NULL ? ted4_trainer_fail(t, "no memory to look for idle anchors")
@@ -118,17 +118,17 @@ int ted4_stage_rising(ted4_trainer *t, uint32_t *rising, size_t *n)
     *n = 0;
     for (size_t i = 0; !bad && i < t->anchors.n; i++)
         if ((double)(sum[i] * peak_activation(t, i)) >= t->opt.prune_opacity)
-            rising[(*n)++] = (uint32_t)i;
+            live[(*n)++] = (uint32_t)i;
     free(sum);
     return bad;
 }
 
-int ted4_stage_drop_idle(ted4_trainer *t)
+int ted4_stage_drop_dead(ted4_trainer *t)
 {
     uint32_t *order = malloc((t->anchors.n + 1) * sizeof *order);
     size_t n = 0;
     int bad = order == NULL ? ted4_trainer_fail(t, "no memory to drop idle anchors")
-                            : ted4_stage_rising(t, order, &n);
+                            : ted4_stage_live(t, order, &n);
 
     if (!bad && n == 0)
         bad = ted4_trainer_fail(t, "nothing is left to encode");
@@ -299,7 +299,7 @@ static void clear_moments(ted4_trainer *t)
 
 int ted4_stage2_begin(ted4_trainer *t)
 {
-    if (settle_positions(t) != 0 || ted4_stage_drop_idle(t) != 0 || reshape(t) != 0)
+    if (settle_positions(t) != 0 || ted4_stage_drop_dead(t) != 0 || reshape(t) != 0)
         return -1;
     if (t->opt.capacity && ted4_rotate_features(t) != 0)
         return -1;

@@ -12,12 +12,11 @@ int ted4_activation_begin(ted4_trainer *t);
 int ted4_stage2_begin(ted4_trainer *t);
 int ted4_integer_begin(ted4_trainer *t);
 
-/* Anchors that rise: the numbers of those that are not idle, rising[n], in order. The opacity of an
- * idle one is below prune_opacity even when it is there most, so that no picture would miss it.
- * And: idle anchors are dropped, before stage 2, which would pay for them; it is an error if all
- * are. */
-int ted4_stage_rising(ted4_trainer *t, uint32_t *rising, size_t *n);
-int ted4_stage_drop_idle(ted4_trainer *t);
+/* Live anchors: the numbers of those that are not dead, live[n], in order. The opacity of a dead
+ * one is below prune_opacity even when it is there most, so that no picture would miss it. And:
+ * dead anchors are dropped, before stage 2, which would pay for them; it is an error if all are. */
+int ted4_stage_live(ted4_trainer *t, uint32_t *live, size_t *n);
+int ted4_stage_drop_dead(ted4_trainer *t);
 /* Once the integer stage has begun: steps of all anchors, and their bits [TED4_TYPES] by the float
  * formula on rounded symbols (NULL: steps only). */
 int ted4_integer_rate(ted4_trainer *t, double *bits);
