@@ -68,7 +68,7 @@ BETWEEN(PICTURE, pixels, ted4_dataset_pixels, (ted4_dataset * d, size_t i, ted4_
         (d, i, m))
 BETWEEN(SCHEDULE, int, ted4_trainer_check, (ted4_trainer * t, int anchors), (t, anchors))
 BETWEEN(SCHEDULE, int, ted4_schedule_event, (ted4_trainer * t), (t))
-BETWEEN(VISIBLE, int, ted4_slots_fill, (ted4_trainer * t, const ted4_view *v), (t, v))
+BETWEEN(VISIBLE, int, ted4_visible_blocks_fill, (ted4_trainer * t, const ted4_view *v), (t, v))
 BETWEEN_VOID(GENERATE, ted4_generator_pack, (ted4_generator * g, const float *net), (g, net))
 BETWEEN(GENERATE, int, ted4_generate,
         (ted4_generator * g, const ted4_generate_input *in, const ted4_parallel *p,

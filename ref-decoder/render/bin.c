@@ -44,8 +44,8 @@ static void counts_to_places(uint32_t *hist, size_t n_buckets, uint32_t *bucket_
     }
 }
 
-/* Moves a chunk's keys to their common array, depths from the nearest on, and makes its slots count
- * from the beginning of the scene. */
+/* Moves a chunk's keys to their common array, depths from the nearest on, and makes its instances
+ * count from the beginning of the scene. */
 static void gather_chunk(void *arg, size_t c)
 {
     const bin_job *job = arg;
@@ -53,12 +53,12 @@ static void gather_chunk(void *arg, size_t c)
     const uint32_t n_after = ((const ted4_chunk *)job->r->chunk.data)[c + 1].n_visible;
     const size_t begin = c * TED4_CHUNK,
                  end = begin + TED4_CHUNK < job->n_splats ? begin + TED4_CHUNK : job->n_splats;
-    uint32_t *first_slot = job->r->first_slot.data;
+    uint32_t *first_instance = job->r->first_instance.data;
 
     for (size_t i = 0; i < n_after - before.n_visible; i++)
         job->to[before.n_visible + i] = job->from[begin + i] - ((uint64_t)job->nearest << 32);
     for (size_t i = begin; i < end; i++)
-        first_slot[i] += before.n_instances;
+        first_instance[i] += before.n_instances;
 }
 
 /* The chunks' counts become the totals before them, with one entry more for all. -1: more instances
@@ -192,21 +192,21 @@ static void place_instances(void *arg, size_t part)
 {
     const bin_job *job = arg;
     const ted4_tile_box *box = job->r->box.data;
-    const uint32_t *first_slot = job->r->first_slot.data;
+    const uint32_t *first_instance = job->r->first_instance.data;
     const uint32_t tiles_x = job->r->tiles_x, n_tiles = tiles_x * job->r->tiles_y;
     uint32_t *place = (uint32_t *)job->r->hist.data + part * (n_tiles + SPARE_TILES);
-    uint32_t *owner = job->r->owner.data, *slot = job->r->slot.data;
+    uint32_t *owner = job->r->owner.data, *instance = job->r->instance.data;
 
     for (int k = 0; k < SPARE_TILES; k++)
         place[n_tiles + k] = (uint32_t)(job->r->n_instances + TED4_AHEAD + TED4_SPARE * (part + 1));
     for (size_t i = part_begin(job, part), end = part_begin(job, part + 1); i < end; i++) {
         const uint32_t g = (uint32_t)job->from[i];
         const ted4_tile_box b = box[g];
-        uint32_t s = first_slot[g];
+        uint32_t s = first_instance[g];
 
         if (i + TED4_AHEAD < end) {
             __builtin_prefetch(&box[(uint32_t)job->from[i + TED4_AHEAD]]);
-            __builtin_prefetch(&first_slot[(uint32_t)job->from[i + TED4_AHEAD]]);
+            __builtin_prefetch(&first_instance[(uint32_t)job->from[i + TED4_AHEAD]]);
         }
         if (is_small(b)) {
             const tile_four f = small_box(b, tiles_x, n_tiles);
@@ -215,7 +215,7 @@ static void place_instances(void *arg, size_t part)
                 const uint32_t at = place[f.tile[k]];
 
                 owner[at] = g;
-                slot[at] = s;
+                instance[at] = s;
                 place[f.tile[k]] = at + f.there[k];
             }
             continue;
@@ -225,7 +225,7 @@ static void place_instances(void *arg, size_t part)
                 const uint32_t at = place[y * tiles_x + x]++;
 
                 owner[at] = g;
-                slot[at] = s++;
+                instance[at] = s++;
             }
     }
 }
@@ -242,9 +242,9 @@ int ted4_raster_bin(struct ted4_raster *r, const ted4_splats *s, const ted4_para
                           sizeof(uint32_t)) != 0 ||
         ted4_growing_grow(&r->tile_first, n_counted, sizeof(uint32_t)) != 0 ||
         ted4_growing_grow(&r->owner, r->n_instances + CAPACITY, sizeof(uint32_t)) != 0 ||
-        ted4_growing_grow(&r->slot, r->n_instances + CAPACITY, sizeof(uint32_t)) != 0)
+        ted4_growing_grow(&r->instance, r->n_instances + CAPACITY, sizeof(uint32_t)) != 0)
         return -1;
-    ((uint32_t *)r->first_slot.data)[s->n] = (uint32_t)r->n_instances;
+    ((uint32_t *)r->first_instance.data)[s->n] = (uint32_t)r->n_instances;
     memset((uint32_t *)r->owner.data + r->n_instances, 0, TED4_AHEAD * sizeof(uint32_t));
 
     ted4_parallel_for(p, n_chunks, gather_chunk, &job);

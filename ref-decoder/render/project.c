@@ -81,14 +81,14 @@ static uint32_t make_boxes(const project_job *job, const ted4_projection *p, ted
 }
 
 /* One job: TED4_CHUNK Gaussians. Keys of visible ones go to the front of the chunk's share of
- * key[1]; first_slot counts from the chunk's beginning until bin.c adds what came before. */
+ * key[1]; first_instance counts from the chunk's beginning until bin.c adds what came before. */
 static void project_chunk(void *arg, size_t c)
 {
     const project_job *job = arg;
     const size_t begin = c * TED4_CHUNK,
                  end = begin + TED4_CHUNK < job->s->n ? begin + TED4_CHUNK : job->s->n;
     ted4_tile_box *box = job->r->box.data;
-    uint32_t *first_slot = job->r->first_slot.data;
+    uint32_t *first_instance = job->r->first_instance.data;
     uint64_t *key = (uint64_t *)job->r->key[1].data + begin;
     ted4_chunk count = { .nearest = UINT32_MAX };
     ted4_vi skipped = { 0 };
@@ -107,7 +107,7 @@ static void project_chunk(void *arg, size_t c)
 
         store_splats(job, i, &p, level, visible);
         for (size_t k = 0; k < n; k++) {
-            first_slot[i + k] = count.n_instances;
+            first_instance[i + k] = count.n_instances;
             count.n_instances += ted4_tile_box_area(box[i + k]);
             key[count.n_visible] = (uint64_t)(uint32_t)depth[k] << 32 | (uint32_t)(i + k);
             count.n_visible += visible >> k & 1;
@@ -133,7 +133,7 @@ int TED4_LEVELED(ted4_raster_project)(struct ted4_raster *r, const ted4_splats *
     if (s->n > UINT32_MAX - TED4_CHUNK ||
         ted4_growing_grow(&r->splat2d, s->n, sizeof(ted4_splat2d)) != 0 ||
         ted4_growing_grow(&r->box, s->n, sizeof(ted4_tile_box)) != 0 ||
-        ted4_growing_grow(&r->first_slot, s->n + 1, sizeof(uint32_t)) != 0 ||
+        ted4_growing_grow(&r->first_instance, s->n + 1, sizeof(uint32_t)) != 0 ||
         ted4_growing_grow(&r->key[0], s->n, sizeof(uint64_t)) != 0 ||
         ted4_growing_grow(&r->key[1], s->n, sizeof(uint64_t)) != 0 ||
         ted4_growing_grow(&r->chunk, n_chunks + 1, sizeof(ted4_chunk)) != 0)

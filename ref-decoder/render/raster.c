@@ -39,9 +39,9 @@ void ted4_raster_free(ted4_raster *r)
     if (r == NULL)
         return;
 
-    ted4_growing *const all[] = { &r->splat2d, &r->box,   &r->first_slot, &r->key[0],
-                                  &r->key[1],  &r->chunk, &r->hist,       &r->tile_first,
-                                  &r->owner,   &r->slot,  &r->reach };
+    ted4_growing *const all[] = { &r->splat2d, &r->box,      &r->first_instance, &r->key[0],
+                                  &r->key[1],  &r->chunk,    &r->hist,           &r->tile_first,
+                                  &r->owner,   &r->instance, &r->reach };
     for (size_t i = 0; i < sizeof all / sizeof all[0]; i++)
         ted4_growing_free(all[i]);
     free(r);

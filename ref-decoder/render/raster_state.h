@@ -2,7 +2,7 @@
  * adjoint. Depends on raster.h, leveled.h. For render/ and its adjoint in ref-encoder/train/ only.
  *
  * Terms: an instance is a (Gaussian, tile) pair. Instances have two orders: by tile and depth
- * ("position"), in which they are blended, and by Gaussian and tile ("slot"), in which their
+ * ("position"), in which they are blended, and by Gaussian and tile ("instance"), in which their
  * gradients are added up.
  * SPDX-License-Identifier: BSD-2-Clause */
 #ifndef TED4_RASTER_STATE_H
@@ -72,9 +72,9 @@ static inline size_t ted4_group_first(size_t tile, uint32_t position)
 
 struct ted4_raster {
     /* per Gaussian */
-    ted4_growing splat2d;    /* ted4_splat2d; only visible ones are set */
-    ted4_growing box;        /* ted4_tile_box */
-    ted4_growing first_slot; /* uint32_t [n + 1] */
+    ted4_growing splat2d;        /* ted4_splat2d; only visible ones are set */
+    ted4_growing box;            /* ted4_tile_box */
+    ted4_growing first_instance; /* uint32_t [n + 1] */
     /* per visible Gaussian: depth bits << 32 | index; sorting goes to and fro between the two */
     ted4_growing key[2];
     /* per projection job */
@@ -83,9 +83,9 @@ struct ted4_raster {
     ted4_growing hist;       /* uint32_t [TED4_SORT_PARTS][n_tiles + 3 or 1 << TED4_RADIX_BITS] */
     ted4_growing tile_first; /* uint32_t [n_tiles + 1]: first position of each tile */
     /* per instance, by position */
-    ted4_growing owner; /* uint32_t: Gaussian; TED4_AHEAD more at the end, of Gaussian 0; then
-                           bin.c's spare ones */
-    ted4_growing slot;  /* uint32_t; as many */
+    ted4_growing owner;    /* uint32_t: Gaussian; TED4_AHEAD more at the end, of Gaussian 0; then
+                              bin.c's spare ones */
+    ted4_growing instance; /* uint32_t; as many */
     /* per ted4_group_first group of instances */
     ted4_growing reach; /* ted4_reach (kept for the adjoint) */
 

@@ -363,25 +363,25 @@ static void test_gather(void **state)
         moved[i] = (float)i;
         visible[i] = i % 2;
     }
-    assert_int_equal(ted4_slots_fill(&t, NULL), 0);
-    t.slots.n = 2; /* the second block is seen, and half of the fourth */
-    t.slots.block[0] = 1;
-    t.slots.block[1] = 3;
-    t.slots.lanes[1] = 0xffffu;
+    assert_int_equal(ted4_visible_blocks_fill(&t, NULL), 0);
+    t.visible_blocks.n = 2; /* the second block is seen, and half of the fourth */
+    t.visible_blocks.block[0] = 1;
+    t.visible_blocks.block[1] = 3;
+    t.visible_blocks.lanes[1] = 0xffffu;
     t.work.splat_gradient.mean2d = moved;
     t.work.splat_gradient.visible = visible;
-    in.n_slots = t.slots.n;
-    in.attr = t.slots.raw;
-    in.lanes = t.slots.lanes;
+    in.n_visible = t.visible_blocks.n;
+    in.attr = t.visible_blocks.raw;
+    in.lanes = t.visible_blocks.lanes;
     ted4_densify_gather(&t, &in, &s);
     ted4_densify_gather(&t, &in, &s);
     for (size_t i = 0; i < t.anchors.n; i++) {
-        const size_t slot = i / TED4_LANES == 1 ? 0 : 1, j = i % TED4_LANES;
+        const size_t block_index = i / TED4_LANES == 1 ? 0 : 1, j = i % TED4_LANES;
         const int seen = i / TED4_LANES == 1 || i / TED4_LANES == 3;
         float sum = 0;
 
         for (int k = 0; k < K; k++) {
-            const size_t at = (slot * K + (size_t)k) * TED4_LANES + j;
+            const size_t at = (block_index * K + (size_t)k) * TED4_LANES + j;
             const float on = seen && at % 2 ? 2.0f : 0.0f;
 
             sum += seen ? 2 * opacity[at] : 0;
@@ -390,9 +390,9 @@ static void test_gather(void **state)
         }
         assert_true(*ted4_cell(&t.anchors, TED4_ROW_OPACITY, i, 0) == sum);
         assert_true(*ted4_cell(&t.anchors, TED4_ROW_OPACITY, i, 1) ==
-                    (seen && (slot == 0 || j < 16) ? 2.0f : 0.0f));
+                    (seen && (block_index == 0 || j < 16) ? 2.0f : 0.0f));
         assert_true(*ted4_cell(&t.anchors, TED4_ROW_OPACITY, i, 2) ==
-                    (seen && i % 2 && (slot == 0 || j < 16) ? 2.0f : 0.0f));
+                    (seen && i % 2 && (block_index == 0 || j < 16) ? 2.0f : 0.0f));
     }
     ted4_trainer_finish(&t);
 }

@@ -14,10 +14,11 @@
 
 static test_case scene;
 static float gradient[REF_OUT][CASE_SPLATS], d_net[CASE_NET];
-static _Alignas(64) float d_attr[CASE_SLOTS][CASE_CHANNELS * TED4_LANES];
+static _Alignas(64) float d_attr[CASE_BLOCKS][CASE_CHANNELS * TED4_LANES];
 static float member[REF_OUT][CASE_SPLATS];
 
-/* Scene of random anchors; slot 0 is the test's. Gradients of splats are random, of the size given.
+/* Scene of random anchors; visible block 0 is the test's. Gradients of splats are random, of the
+ * size given.
  */
 static void begin(const ted4_header *h, float size)
 {
@@ -59,11 +60,11 @@ static void run(void)
 {
     const ted4_splat_grads gr = splat_gradients();
     ted4_generator *g = ted4_generator_new(&scene.layout);
-    float *list[CASE_SLOTS];
+    float *list[CASE_BLOCKS];
     ted4_splats s;
 
     assert_non_null(g);
-    for (int i = 0; i < CASE_SLOTS; i++)
+    for (int i = 0; i < CASE_BLOCKS; i++)
         list[i] = d_attr[i];
     memset(d_net, 0, sizeof d_net);
     ted4_generator_pack(g, scene.net);
@@ -73,7 +74,7 @@ static void run(void)
         memcpy(member[c], case_member(&s, c), sizeof member[c]);
         all_finite(member[c], CASE_SPLATS, "value");
     }
-    for (int i = 0; i < CASE_SLOTS; i++)
+    for (int i = 0; i < CASE_BLOCKS; i++)
         all_finite(d_attr[i], (size_t)scene.layout.n_channels * TED4_LANES,
                    "gradient of an anchor");
     all_finite(d_net, CASE_NET, "gradient of a network");
@@ -88,8 +89,8 @@ static void reference(int lane, const double *channel, const double *base, doubl
     ref_generate(&scene.query, channel, base, position, out);
 }
 
-/* Members of slot 0 against double arithmetic. A sum of terms of that size may be small, and has
- * the rounding of its terms. */
+/* Members of visible block 0 against double arithmetic. A sum of terms of that size may be small,
+ * and has the rounding of its terms. */
 static void check_sums(double terms)
 {
     for (int i = 0; i < CASE_NET; i++)
@@ -116,8 +117,8 @@ static void check_values(void)
     check_sums(0);
 }
 
-/* The gradient of a channel of slot 0 against central differences of step h, or of a hundredth of
- * it where the two differ (a kink). */
+/* The gradient of a channel of visible block 0 against central differences of step h, or of a
+ * hundredth of it where the two differ (a kink). */
 static void check_channel(int c, double h)
 {
     for (int lane = 0; lane < TED4_LANES; lane++) {
@@ -321,7 +322,7 @@ static void test_quaternions(void **state)
                     double want = 0, size = 0;
                     const double n = (double)length[i];
 
-                    for (int s = 0; s < CASE_SLOTS * TED4_LANES; s++) {
+                    for (int s = 0; s < CASE_BLOCKS * TED4_LANES; s++) {
                         const int at = (s / TED4_LANES * K + k) * TED4_LANES + s % TED4_LANES;
                         double along = 0;
 
@@ -412,7 +413,7 @@ static void test_weights(void **state)
             begin(&h, 1e-6f);
             for (size_t k = 0; k < scene.layout.nete; k++)
                 scene.net[k] = case_random(&scene) < 0 ? -size[i] : size[i];
-            for (int s = 0; s < CASE_SLOTS; s++)
+            for (int s = 0; s < CASE_BLOCKS; s++)
                 for (int j = 0; j < TED4_LANES; j++)
                     for (int c = 0; c < h.feature_dim; c++)
                         scene.attr[s][c * TED4_LANES + j] *= 100;

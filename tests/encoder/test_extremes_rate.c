@@ -173,7 +173,7 @@ static void run(ref_world *w, double *bits)
         assert_true(isfinite(bits[t]));
         assert_true(bits[t] >= 0);
     }
-    for (int i = 0; i < REF_SLOTS; i++) {
+    for (int i = 0; i < REF_BLOCKS; i++) {
         all_finite(w->d_attr[i], (size_t)w->layout.n_channels * TED4_LANES,
                    "gradient of an anchor");
         all_finite(w->steps[i], TED4_TYPES * TED4_LANES, "step");
@@ -188,7 +188,7 @@ static void compare(ref_world *w, const double *bits, double relative)
     double want[TED4_TYPES] = { 0 };
     float *noise = ref_floats((size_t)w->layout.n_channels * TED4_LANES);
 
-    for (int i = 0; i < REF_SLOTS; i++) {
+    for (int i = 0; i < REF_BLOCKS; i++) {
         ref_noise(w, i, noise);
         for (int j = 0; j < TED4_LANES; j++) {
             ref_anchor a;
@@ -220,7 +220,7 @@ static void test_values(void **state)
 
             ref_world_make(&w, &h);
             w.in.quant = (ted4_quant)quant;
-            for (int s = 0; s < REF_SLOTS; s++)
+            for (int s = 0; s < REF_BLOCKS; s++)
                 for (int c = 0; c < w.layout.offset_logit; c++)
                     for (int j = 0; j < TED4_LANES; j++)
                         w.attr[s][c * TED4_LANES + j] = value[i];
@@ -298,7 +298,7 @@ static void test_gradient_sizes(void **state)
 
         ref_world_make(&w, &h);
         w.in.bit_weight = factor[i];
-        for (int s = 0; s < REF_SLOTS; s++)
+        for (int s = 0; s < REF_BLOCKS; s++)
             for (int k = 0; k < w.layout.offset_logit * TED4_LANES; k++)
                 w.d_value[s][k] *= factor[i];
         run(&w, bits);
@@ -339,10 +339,10 @@ static void test_integer(void **state)
 
                 w.net[k] = rintf(x * 256.0f) / 256.0f + 0.0f; /* no -0 */
             }
-            for (int s = 0; s < REF_SLOTS; s++)
+            for (int s = 0; s < REF_BLOCKS; s++)
                 for (int k = 0; k < w.layout.offset_logit * TED4_LANES; k++)
                     w.attr[s][k] = k % 3 == 1 ? -value[i] : value[i];
-            for (int s = 0; s < REF_SLOTS; s++)
+            for (int s = 0; s < REF_BLOCKS; s++)
                 for (int k = 0; k < 3 * TED4_LANES; k++)
                     w.position[s][k] = k % 4 == 0   ? 1
                                        : k % 4 == 1 ? -1
@@ -351,7 +351,7 @@ static void test_integer(void **state)
             w.in.quant = TED4_QUANT_INTEGER;
             w.in.shift = shift;
             run(&w, bits);
-            for (int s = 0; s < REF_SLOTS; s++)
+            for (int s = 0; s < REF_BLOCKS; s++)
                 for (int t = 0; t < TED4_TYPES; t++)
                     for (int j = 0; j < TED4_LANES; j++) {
                         const double q = (double)w.steps[s][t * TED4_LANES + j] / (double)h.step[t];

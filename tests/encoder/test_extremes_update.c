@@ -228,15 +228,16 @@ static void test_masks(void **state)
 
         for (size_t i = 0; i < t.anchors.n; i++)
             *ted4_cell(&t.anchors, TED4_ROW_VALUE, i, t.layout.temporal_logit) = logit[k];
-        assert_int_equal(ted4_slots_fill(&t, NULL), 0);
-        memset(t.slots.gradients, 0, t.slots.n * floats * sizeof(float));
+        assert_int_equal(ted4_visible_blocks_fill(&t, NULL), 0);
+        memset(t.visible_blocks.gradients, 0, t.visible_blocks.n * floats * sizeof(float));
         ted4_update_parameters(&t);
-        for (size_t b = 0; b < t.slots.n; b++)
+        for (size_t b = 0; b < t.visible_blocks.n; b++)
             for (size_t j = 0; j < TED4_LANES; j++) {
                 const double got =
-                    (double)t.slots.gradient[b][(size_t)t.layout.temporal_logit * TED4_LANES + j];
+                    (double)t.visible_blocks
+                        .gradient[b][(size_t)t.layout.temporal_logit * TED4_LANES + j];
 
-                if (t.slots.lanes[b] >> j & 1 && !(fabs(got - want) <= 1e-5 * want + 1e-9))
+                if (t.visible_blocks.lanes[b] >> j & 1 && !(fabs(got - want) <= 1e-5 * want + 1e-9))
                     fail_msg("logit %g: gradient %g, not %g", x, got, want);
             }
         assert_int_equal(ted4_trainer_check(&t, 1), 0);

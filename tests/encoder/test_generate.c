@@ -24,16 +24,16 @@ static ted4_splats run(ted4_generator *g, const ted4_parallel *p)
     return s;
 }
 
-static void check_anchor(const ted4_splats *s, int slot, int lane)
+static void check_anchor(const ted4_splats *s, int visible, int lane)
 {
     double channel[CASE_CHANNELS], position[3], want[CASE_OFFSETS][REF_OUT];
-    const int used = scene.lanes[slot] >> lane & 1;
+    const int used = scene.lanes[visible] >> lane & 1;
 
-    case_channels(&scene, slot, lane, channel, position);
+    case_channels(&scene, visible, lane, channel, position);
     if (used)
         ref_generate(&scene.query, channel, channel, position, want);
     for (int k = 0; k < CASE_OFFSETS; k++) {
-        const size_t i = (size_t)((slot * CASE_OFFSETS + k) * TED4_LANES + lane);
+        const size_t i = (size_t)((visible * CASE_OFFSETS + k) * TED4_LANES + lane);
 
         for (int c = 0; c < REF_OUT; c++) {
             const double got = case_member(s, c)[i];
@@ -41,8 +41,8 @@ static void check_anchor(const ted4_splats *s, int slot, int lane)
             if (!used)
                 assert_true(isfinite(got));
             else if (fabs(got - want[k][c]) > TOLERANCE * (1.0 + fabs(want[k][c])))
-                fail_msg("slot %d lane %d offset %d member %d: %g, not %g", slot, lane, k, c, got,
-                         want[k][c]);
+                fail_msg("slot %d lane %d offset %d member %d: %g, not %g", visible, lane, k, c,
+                         got, want[k][c]);
         }
         if (!used || want[k][10] == 0.0)
             assert_true(s->opacity[i] == 0.0f);
@@ -58,7 +58,7 @@ static void check_header(const ted4_header *h, uint32_t num, uint32_t den)
     g = ted4_generator_new(&scene.layout);
     assert_non_null(g);
     s = run(g, NULL);
-    for (int i = 0; i < CASE_SLOTS; i++)
+    for (int i = 0; i < CASE_BLOCKS; i++)
         for (int lane = 0; lane < TED4_LANES; lane++)
             check_anchor(&s, i, lane);
     ted4_generator_free(g);
@@ -123,7 +123,7 @@ static void test_activation_off(void **state)
     g = ted4_generator_new(&scene.layout);
     assert_non_null(g);
     s = run(g, NULL);
-    for (int i = 0; i < CASE_SLOTS; i++)
+    for (int i = 0; i < CASE_BLOCKS; i++)
         for (int lane = 0; lane < TED4_LANES; lane++)
             check_anchor(&s, i, lane);
     ted4_generator_free(g);
@@ -157,8 +157,8 @@ static void test_threads(void **state)
     ted4_generator_free(g);
 }
 
-/* Fewer slots, none, and more than at first. */
-static void test_slots(void **state)
+/* Fewer visible blocks, none, and more than at first. */
+static void test_blocks(void **state)
 {
     ted4_header h = case_header(TED4_MOTION_CONCAT, TED4_VIEW_COLOUR);
     ted4_generator *g;
@@ -169,8 +169,8 @@ static void test_slots(void **state)
     g = ted4_generator_new(&scene.layout);
     assert_non_null(g);
     ted4_generator_pack(g, scene.net);
-    for (size_t n = 0; n <= CASE_SLOTS; n += 3) {
-        scene.in.n_slots = n;
+    for (size_t n = 0; n <= CASE_BLOCKS; n += 3) {
+        scene.in.n_visible = n;
         assert_int_equal(ted4_generate(g, &scene.in, NULL, &s), 0);
         assert_int_equal(s.n, n * CASE_OFFSETS * TED4_LANES);
         for (int i = 0; i < (int)n; i++)
@@ -186,7 +186,7 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_variants), cmocka_unit_test(test_depths),
         cmocka_unit_test(test_times),    cmocka_unit_test(test_activation_off),
-        cmocka_unit_test(test_threads),  cmocka_unit_test(test_slots),
+        cmocka_unit_test(test_threads),  cmocka_unit_test(test_blocks),
     };
 
     return cmocka_run_group_tests(tests, NULL, NULL);

@@ -19,9 +19,10 @@
 
 static test_case scene;
 static float gradient[REF_OUT][CASE_SPLATS];
-static _Alignas(64) float d_attr[CASE_SLOTS][CASE_CHANNELS * TED4_LANES];
+static _Alignas(64) float d_attr[CASE_BLOCKS][CASE_CHANNELS * TED4_LANES];
 static float d_net[CASE_NET], first_net[CASE_NET];
-static double channels[CASE_SLOTS][TED4_LANES][CASE_CHANNELS], positions[CASE_SLOTS][TED4_LANES][3];
+static double channels[CASE_BLOCKS][TED4_LANES][CASE_CHANNELS],
+    positions[CASE_BLOCKS][TED4_LANES][3];
 
 /* from: REF_OUT arrays of n. */
 static ted4_splat_grads splat_gradients(float *from, size_t n)
@@ -43,11 +44,11 @@ static ted4_splat_grads splat_gradients(float *from, size_t n)
 /* Runs forward and backward of the scene from random gradients of the splats; d_net starts at 1. */
 static void run(ted4_generator *g, const ted4_parallel *p)
 {
-    float *list[CASE_SLOTS];
+    float *list[CASE_BLOCKS];
     const ted4_splat_grads gr = splat_gradients(gradient[0], CASE_SPLATS);
     ted4_splats s;
 
-    for (int i = 0; i < CASE_SLOTS; i++)
+    for (int i = 0; i < CASE_BLOCKS; i++)
         list[i] = d_attr[i];
     memset(d_attr, 0xff, sizeof d_attr);
     for (size_t i = 0; i < CASE_NET; i++)
@@ -65,7 +66,7 @@ static ted4_generator *make(const ted4_header *h, uint32_t num, uint32_t den)
     for (int c = 0; c < REF_OUT; c++)
         for (int i = 0; i < CASE_SPLATS; i++)
             gradient[c][i] = case_random(&scene);
-    for (int i = 0; i < CASE_SLOTS; i++)
+    for (int i = 0; i < CASE_BLOCKS; i++)
         for (int lane = 0; lane < TED4_LANES; lane++)
             case_channels(&scene, i, lane, channels[i][lane], positions[i][lane]);
     g = ted4_generator_new(&scene.layout);
@@ -74,14 +75,14 @@ static ted4_generator *make(const ted4_header *h, uint32_t num, uint32_t den)
 }
 
 /* The loss of one anchor: its splats times their gradients. */
-static double loss(int slot, int lane, const double *channel)
+static double loss(int visible, int lane, const double *channel)
 {
     double out[CASE_OFFSETS][REF_OUT], sum = 0.0;
 
-    ref_generate(&scene.query, channel, channels[slot][lane], positions[slot][lane], out);
+    ref_generate(&scene.query, channel, channels[visible][lane], positions[visible][lane], out);
     for (int k = 0; k < CASE_OFFSETS; k++)
         for (int c = 0; c < REF_OUT; c++)
-            sum += out[k][c] * gradient[c][(slot * CASE_OFFSETS + k) * TED4_LANES + lane];
+            sum += out[k][c] * gradient[c][(visible * CASE_OFFSETS + k) * TED4_LANES + lane];
     return sum;
 }
 
@@ -95,29 +96,29 @@ static int is_floored(int c, double value)
            value <= SIZE_FLOOR;
 }
 
-static void check_anchor(int slot, int lane)
+static void check_anchor(int visible, int lane)
 {
     double channel[CASE_CHANNELS];
 
-    memcpy(channel, channels[slot][lane], sizeof channel);
+    memcpy(channel, channels[visible][lane], sizeof channel);
     for (int c = 0; c < scene.layout.n_channels; c++) {
-        const double got = d_attr[slot][c * TED4_LANES + lane], old = channel[c];
+        const double got = d_attr[visible][c * TED4_LANES + lane], old = channel[c];
         const int floored = is_floored(c, old);
         const double at = floored ? SIZE_FLOOR + 2 * STEP : old;
         double want;
 
-        if ((scene.lanes[slot] >> lane & 1) == 0) {
+        if ((scene.lanes[visible] >> lane & 1) == 0) {
             assert_true(got == 0.0);
             continue;
         }
         channel[c] = at + STEP;
-        want = loss(slot, lane, channel);
+        want = loss(visible, lane, channel);
         channel[c] = at - STEP;
-        want = (want - loss(slot, lane, channel)) / (2.0 * STEP);
+        want = (want - loss(visible, lane, channel)) / (2.0 * STEP);
         want = floored && want > 0 ? 0 : want;
         channel[c] = old;
         if (!(fabs(got - want) <= TOLERANCE * (1.0 + fabs(want))))
-            fail_msg("slot %d lane %d channel %d: %g, not %g", slot, lane, c, got, want);
+            fail_msg("slot %d lane %d channel %d: %g, not %g", visible, lane, c, got, want);
     }
 }
 
@@ -128,16 +129,16 @@ static double net_difference(size_t i, double *size)
     double sum = 0.0;
 
     *size = 0.0;
-    for (int slot = 0; slot < CASE_SLOTS; slot++)
+    for (int visible = 0; visible < CASE_BLOCKS; visible++)
         for (int lane = 0; lane < TED4_LANES; lane++) {
             double rise;
 
-            if ((scene.lanes[slot] >> lane & 1) == 0)
+            if ((scene.lanes[visible] >> lane & 1) == 0)
                 continue;
             scene.exact_net[i] = old + STEP;
-            rise = loss(slot, lane, channels[slot][lane]);
+            rise = loss(visible, lane, channels[visible][lane]);
             scene.exact_net[i] = old - STEP;
-            rise = (rise - loss(slot, lane, channels[slot][lane])) / (2.0 * STEP);
+            rise = (rise - loss(visible, lane, channels[visible][lane])) / (2.0 * STEP);
             sum += rise;
             *size += fabs(rise);
         }
@@ -164,7 +165,7 @@ static void check_header(const ted4_header *h, uint32_t num, uint32_t den, size_
     ted4_generator *g = make(h, num, den);
 
     run(g, NULL);
-    for (int i = 0; i<CASE_SLOTS; i += step> 1 ? 5 : 1)
+    for (int i = 0; i<CASE_BLOCKS; i += step> 1 ? 5 : 1)
         for (int lane = 0; lane < TED4_LANES; lane++)
             check_anchor(i, lane);
     check_net(step);
@@ -258,23 +259,23 @@ static void test_dead(void **state)
     run(g, NULL);
     for (size_t i = net->first; i < end; i++)
         assert_true(d_net[i] == 1.0f);
-    for (int slot = 0; slot < CASE_SLOTS; slot++)
+    for (int visible = 0; visible < CASE_BLOCKS; visible++)
         for (int j = 0; j < TED4_LANES; j++)
             for (int k = 0; k < CASE_OFFSETS; k++)
-                assert_true(d_attr[slot][(at.offset_logit + k) * TED4_LANES + j] == 0.0f);
+                assert_true(d_attr[visible][(at.offset_logit + k) * TED4_LANES + j] == 0.0f);
     ted4_generator_free(g);
 }
 
-/* The same slots many times, so that chunks have several groups: gradients of the networks are that
- * many times as large. */
-static void test_many_slots(void **state)
+/* The same visible blocks many times, so that chunks have several groups: gradients of the networks
+ * are that many times as large. */
+static void test_many_blocks(void **state)
 {
-    enum { TIMES = 9, SLOTS = TIMES * CASE_SLOTS };
+    enum { TIMES = 9, N_BLOCKS = TIMES * CASE_BLOCKS };
     static float many[REF_OUT][TIMES * CASE_SPLATS];
-    static _Alignas(64) float many_attr[SLOTS][CASE_CHANNELS * TED4_LANES];
-    static const float *attr[SLOTS], *position[SLOTS];
-    static float *d_list[SLOTS];
-    static uint32_t lanes[SLOTS];
+    static _Alignas(64) float many_attr[N_BLOCKS][CASE_CHANNELS * TED4_LANES];
+    static const float *attr[N_BLOCKS], *position[N_BLOCKS];
+    static float *d_list[N_BLOCKS];
+    static uint32_t lanes[N_BLOCKS];
     const ted4_header h = case_header(TED4_MOTION_BANK, TED4_VIEW_COLOUR);
     ted4_generator *g = make(&h, 3, 16);
     const size_t used = (size_t)scene.layout.n_channels * TED4_LANES * sizeof **many_attr;
@@ -284,10 +285,10 @@ static void test_many_slots(void **state)
     (void)state;
     run(g, NULL);
     memcpy(first_net, d_net, sizeof d_net);
-    for (int i = 0; i < SLOTS; i++) {
-        attr[i] = scene.attr[i % CASE_SLOTS];
-        position[i] = scene.position[i % CASE_SLOTS];
-        lanes[i] = scene.lanes[i % CASE_SLOTS];
+    for (int i = 0; i < N_BLOCKS; i++) {
+        attr[i] = scene.attr[i % CASE_BLOCKS];
+        position[i] = scene.position[i % CASE_BLOCKS];
+        lanes[i] = scene.lanes[i % CASE_BLOCKS];
         d_list[i] = many_attr[i];
     }
     for (int c = 0; c < REF_OUT; c++)
@@ -297,11 +298,11 @@ static void test_many_slots(void **state)
     scene.in.attr = attr;
     scene.in.position = position;
     scene.in.lanes = lanes;
-    scene.in.n_slots = SLOTS;
+    scene.in.n_visible = N_BLOCKS;
     assert_int_equal(ted4_generate(g, &scene.in, NULL, &s), 0);
     assert_int_equal(ted4_generate_backward(g, &scene.in, &gr, NULL, d_list, d_net), 0);
-    for (int i = 0; i < SLOTS; i++)
-        assert_memory_equal(many_attr[i], d_attr[i % CASE_SLOTS], used);
+    for (int i = 0; i < N_BLOCKS; i++)
+        assert_memory_equal(many_attr[i], d_attr[i % CASE_BLOCKS], used);
     for (size_t i = 0; i < scene.layout.nete; i++) {
         const float once = first_net[i] - 1.0f, all = d_net[i] - first_net[i];
 
@@ -313,7 +314,7 @@ static void test_many_slots(void **state)
 static void test_threads(void **state)
 {
     static const ted4_parallel runs[] = { { odd_backwards, NULL }, { odd_threads, NULL } };
-    static float first_attr[CASE_SLOTS][CASE_CHANNELS * TED4_LANES];
+    static float first_attr[CASE_BLOCKS][CASE_CHANNELS * TED4_LANES];
 
     (void)state;
     for (int motion = 0; motion < 4; motion++) {
@@ -338,7 +339,7 @@ int main(void)
         cmocka_unit_test(test_everything),     cmocka_unit_test(test_variants),
         cmocka_unit_test(test_depths),         cmocka_unit_test(test_times),
         cmocka_unit_test(test_activation_off), cmocka_unit_test(test_dead),
-        cmocka_unit_test(test_many_slots),     cmocka_unit_test(test_threads),
+        cmocka_unit_test(test_many_blocks),    cmocka_unit_test(test_threads),
     };
 
     return cmocka_run_group_tests(tests, NULL, NULL);

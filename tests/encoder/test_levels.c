@@ -137,13 +137,13 @@ static void generate_case(results *r, const ted4_header *h)
     test_case *t = malloc(sizeof *t);
     float *gradient = fill(SCENE_PARAMS * CASE_SPLATS, -1, 1);
     float *d_net = fill(CASE_NET, 0, 0);
-    float *d = fill(CASE_SLOTS * CASE_CHANNELS * TED4_LANES, 0, 1), *d_attr[CASE_SLOTS];
+    float *d = fill(CASE_BLOCKS * CASE_CHANNELS * TED4_LANES, 0, 1), *d_attr[CASE_BLOCKS];
     ted4_splat_grads grads = { .opacity = gradient + SCENE_OPACITY * CASE_SPLATS };
     ted4_splats s;
 
     assert_non_null(t);
     case_make(t, h, 2, 7, 5);
-    for (size_t i = 0; i < CASE_SLOTS; i++)
+    for (size_t i = 0; i < CASE_BLOCKS; i++)
         d_attr[i] = d + i * CASE_CHANNELS * TED4_LANES;
     for (size_t k = 0; k < 4; k++)
         grads.rot[k] = gradient + (SCENE_ROT + k) * CASE_SPLATS;
@@ -160,7 +160,7 @@ static void generate_case(results *r, const ted4_header *h)
     for (int c = 0; c < SCENE_PARAMS; c++)
         keep(r, case_member(&s, c), s.n);
     assert_int_equal(ted4_generate_backward(g, &t->in, &grads, NULL, d_attr, d_net), 0);
-    for (size_t i = 0; i < CASE_SLOTS; i++)
+    for (size_t i = 0; i < CASE_BLOCKS; i++)
         keep(r, d_attr[i], (size_t)t->layout.n_channels * TED4_LANES);
     keep(r, d_net, t->layout.n_net);
     ted4_generator_free(g);
@@ -202,7 +202,7 @@ static void rate(results *r)
         assert_int_equal(ref_run(w, NULL, bits), 0);
         for (int t = 0; t < TED4_TYPES; t++)
             keep_double(r, bits[t]);
-        for (int i = 0; i < REF_SLOTS; i++) {
+        for (int i = 0; i < REF_BLOCKS; i++) {
             keep(r, w->steps[i], (size_t)TED4_TYPES * TED4_LANES);
             keep(r, w->d_attr[i], (size_t)w->layout.n_channels * TED4_LANES);
         }

@@ -253,16 +253,18 @@ static double off_symbols(const ted4_trainer *t, double *most)
     double sum = 0, n = 0;
 
     *most = 0;
-    for (size_t i = 0; i < t->slots.n; i++)
+    for (size_t i = 0; i < t->visible_blocks.n; i++)
         for (int y = 0; y < TED4_TYPES; y++)
             for (size_t at = 0; at < (size_t)t->layout.shape.dim[y] * TED4_LANES; at++) {
-                const float q = t->slots.steps[i][(size_t)y * TED4_LANES + at % TED4_LANES];
+                const float q =
+                    t->visible_blocks.steps[i][(size_t)y * TED4_LANES + at % TED4_LANES];
                 const double
-                    k = (double)(t->slots.used[i][(size_t)t->layout.first[y] * TED4_LANES + at] /
+                    k = (double)(t->visible_blocks
+                                     .used[i][(size_t)t->layout.first[y] * TED4_LANES + at] /
                                  q),
                     off = fabs(k - rint(k));
 
-                if (!(t->slots.lanes[i] >> at % TED4_LANES & 1))
+                if (!(t->visible_blocks.lanes[i] >> at % TED4_LANES & 1))
                     continue;
                 sum += off;
                 n++;
@@ -295,8 +297,8 @@ static void test_drawn(void **state)
     (void)state;
     ball_begin(&t, &o, &balls, NULL);
     ball_train(&t, STAGE1);
-    for (size_t i = 0; i < t.slots.n; i++)
-        assert_ptr_equal(t.slots.used[i], t.slots.raw[i]);
+    for (size_t i = 0; i < t.visible_blocks.n; i++)
+        assert_ptr_equal(t.visible_blocks.used[i], t.visible_blocks.raw[i]);
     for (size_t i = 0; i < t.anchors.n; i++) /* offset masks wait for the rate */
         for (int k = 0; k < t.layout.head.n_offsets; k++)
             assert_true(*ted4_cell(&t.anchors, TED4_ROW_VALUE, i, t.layout.offset_logit + k) ==

@@ -14,9 +14,9 @@ static int close_to(double got, double want, double relative, double absolute)
     return fabs(got - want) <= absolute + relative * fabs(want);
 }
 
-static void fill_noise(ref_world *w, float *noise[REF_SLOTS])
+static void fill_noise(ref_world *w, float *noise[REF_BLOCKS])
 {
-    for (int i = 0; i < REF_SLOTS; i++) {
+    for (int i = 0; i < REF_BLOCKS; i++) {
         noise[i] = ref_floats((size_t)w->layout.n_channels * TED4_LANES);
         ref_noise(w, i, noise[i]);
     }
@@ -26,14 +26,14 @@ static void fill_noise(ref_world *w, float *noise[REF_SLOTS])
 static void check_world(ref_world *w)
 {
     double bits[TED4_TYPES], want[TED4_TYPES] = { 0 }, total = 0.0;
-    float *noise[REF_SLOTS];
+    float *noise[REF_BLOCKS];
 
     w->lanes[1] = 0x80f00f05u;
     fill_noise(w, noise);
     assert_int_equal(ref_run(w, NULL, bits), 0);
     const ref_model m = ref_model_make(w);
 
-    for (int i = 0; i < REF_SLOTS; i++)
+    for (int i = 0; i < REF_BLOCKS; i++)
         for (int j = 0; j < TED4_LANES; j++) {
             ref_anchor a;
             ref_result r;
@@ -52,7 +52,7 @@ static void check_world(ref_world *w)
     assert_true(total > 100.0);
     for (int t = 0; t < TED4_TYPES; t++)
         assert_true(close_to(bits[t], want[t], 1e-5, 1e-3));
-    for (int i = 0; i < REF_SLOTS; i++)
+    for (int i = 0; i < REF_BLOCKS; i++)
         free(noise[i]);
 }
 
@@ -227,7 +227,7 @@ static void test_quantise(void **state)
     ref_world_finish(&w);
 }
 
-/* More slots than a wave takes. */
+/* More visible blocks than a wave takes. */
 enum { MANY = TED4_RATE_CHUNK * TED4_RATE_WAVE + 21 };
 
 typedef struct {
@@ -245,8 +245,8 @@ static void crowd_make(crowd *c)
 
     ref_world_make(&c->w, &h);
     for (uint32_t i = 0; i < MANY; i++) {
-        c->attr[i] = c->w.attr[i % REF_SLOTS];
-        c->position[i] = c->w.position[i % REF_SLOTS];
+        c->attr[i] = c->w.attr[i % REF_BLOCKS];
+        c->position[i] = c->w.position[i % REF_BLOCKS];
         c->d_attr[i] = ref_floats((size_t)c->w.layout.n_channels * TED4_LANES);
         c->steps[i] = ref_floats(TED4_TYPES * TED4_LANES);
         c->lanes[i] = ~i;
@@ -271,13 +271,13 @@ static void crowd_finish(crowd *c)
     ref_world_finish(&c->w);
 }
 
-/* n slots from first on, gradients from zero; a hash of those of the values. */
+/* n visible blocks from first on, gradients from zero; a hash of those of the values. */
 static uint64_t crowd_run(crowd *c, const ted4_parallel *p, size_t first, size_t n)
 {
     const size_t size = (size_t)c->w.layout.n_channels * TED4_LANES;
     uint64_t sum = 0;
 
-    c->in.n_slots = n;
+    c->in.n_visible = n;
     c->in.attr = c->attr + first;
     c->in.position = c->position + first;
     c->in.lanes = c->lanes + first;
@@ -319,7 +319,8 @@ static void test_threads(void **state)
     crowd_finish(&c);
 }
 
-/* Chunks and waves lose nothing: all slots at once are the sum of slots one by one. */
+/* Chunks and waves lose nothing: all visible blocks at once are the sum of visible blocks one by
+ * one. */
 static void test_sums(void **state)
 {
     static crowd c;
@@ -355,17 +356,17 @@ static void test_partial(void **state)
     static ref_world w;
     const ted4_header h = ref_header();
     double bits[TED4_TYPES], again[TED4_TYPES];
-    float steps[REF_SLOTS][TED4_TYPES * TED4_LANES];
+    float steps[REF_BLOCKS][TED4_TYPES * TED4_LANES];
 
     (void)state;
     ref_world_make(&w, &h);
     assert_int_equal(ref_run(&w, NULL, bits), 0);
-    for (int i = 0; i < REF_SLOTS; i++) {
+    for (int i = 0; i < REF_BLOCKS; i++) {
         memcpy(steps[i], w.steps[i], sizeof steps[i]);
         memset(w.steps[i], 0, sizeof steps[i]);
     }
     assert_int_equal(ted4_rate_evaluate(w.rate, &w.in, NULL, NULL, NULL, NULL, w.steps, NULL), 0);
-    for (int i = 0; i < REF_SLOTS; i++)
+    for (int i = 0; i < REF_BLOCKS; i++)
         assert_memory_equal(steps[i], w.steps[i], sizeof steps[i]);
     assert_int_equal(ted4_rate_evaluate(w.rate, &w.in, NULL, NULL, NULL, NULL, w.steps, again), 0);
     assert_memory_equal(bits, again, sizeof bits);
@@ -428,7 +429,7 @@ static void test_clamped_outputs_recover(void **state)
 
 /* TED4_QUANT_INTEGER is the decoder: bits from mu, sigma index, step index of norm/prior.h, k an
  * integer. */
-static double integer_bits(const ref_world *w, const ted4_prior *p, int slot, double *bits)
+static double integer_bits(const ref_world *w, const ted4_prior *p, int visible, double *bits)
 {
     const ted4_layout *l = &w->layout;
     const ted4_shape *s = &l->shape;
@@ -439,7 +440,7 @@ static double integer_bits(const ref_world *w, const ted4_prior *p, int slot, do
 
     for (int j = 0; j < TED4_LANES; j++)
         for (int a = 0; a < 3; a++)
-            position[j][a] = ted4_float_to_half(w->position[slot][a * TED4_LANES + j]);
+            position[j][a] = ted4_float_to_half(w->position[visible][a * TED4_LANES + j]);
     ted4_prior_hyper(p, position[0], TED4_LANES, out);
     for (unsigned t = 0; t < TED4_TYPES; t++)
         for (unsigned c = 0; c < s->dim[t]; c++) {
@@ -455,13 +456,13 @@ static double integer_bits(const ref_world *w, const ted4_prior *p, int slot, do
                 const uint8_t i =
                     ted4_step_index(out[(s->first_step_output + t) * 64 + (unsigned)j]);
                 const float q = l->head.step[t] * ted4_bits_float(ted4_step[i]);
-                const float x = w->attr[slot][((unsigned)l->first[t] + c) * 32 + (unsigned)j];
+                const float x = w->attr[visible][((unsigned)l->first[t] + c) * 32 + (unsigned)j];
                 const int16_t k = (int16_t)rintf(x / q);
                 const unsigned at = s->first_output[t] + c;
                 const uint8_t g = ted4_sigma_index(out[(at + s->dim[t]) * 64 + (unsigned)j]);
                 const double b = ref_bits(k - out[at * 64 + (unsigned)j] / 256.0, (g - 64) / 16.0);
 
-                assert_true(w->steps[slot][t * TED4_LANES + (unsigned)j] == q);
+                assert_true(w->steps[visible][t * TED4_LANES + (unsigned)j] == q);
                 if (t == TED4_FEATURE)
                     context[c * 64 + (unsigned)j] = ted4_context(k, i, l->head.context_bits);
                 if (t == TED4_TAU && c == 2)
@@ -502,7 +503,7 @@ static void test_integer(void **state)
     ted4_arena_init(&arena, NULL);
     assert_int_equal(ted4_prior_init(&prior, &h, &w.layout.shape, &arena), TED4_OK);
     assert_int_equal(ted4_prior_load(&prior, w.net + w.layout.nete, shift, NULL), TED4_OK);
-    for (int i = 0; i < REF_SLOTS; i++)
+    for (int i = 0; i < REF_BLOCKS; i++)
         integer_bits(&w, &prior, i, want);
     double inner = 0.0, a = 0.0, b = 0.0;
 

@@ -12,7 +12,7 @@ typedef struct {
     ref_model model;
     ref_anchor anchor[MAX_ANCHORS];
     ref_clamps clamps[MAX_ANCHORS];
-    int slot[MAX_ANCHORS], lane[MAX_ANCHORS], n, n_clamped, n_open;
+    int visible[MAX_ANCHORS], lane[MAX_ANCHORS], n, n_clamped, n_open;
 } points;
 
 static points pts;
@@ -23,7 +23,7 @@ static void gather(ref_world *w)
 
     memset(&pts, 0, sizeof pts);
     pts.model = ref_model_make(w);
-    for (int i = 0; i < REF_SLOTS; i++) {
+    for (int i = 0; i < REF_BLOCKS; i++) {
         ref_noise(w, i, noise);
         for (int j = 0; j < TED4_LANES; j++) {
             if (!(w->lanes[i] >> j & 1))
@@ -31,7 +31,7 @@ static void gather(ref_world *w)
             assert_true(pts.n < MAX_ANCHORS);
             ref_anchor_make(w, &pts.model, i, j, noise, &pts.anchor[pts.n]);
             ref_find_clamps(&pts.model, &pts.anchor[pts.n], &pts.clamps[pts.n]);
-            pts.slot[pts.n] = i;
+            pts.visible[pts.n] = i;
             pts.lane[pts.n++] = j;
         }
     }
@@ -82,11 +82,11 @@ static void check_values(const ref_world *w)
         for (unsigned c = 0; c < l->shape.dim[t]; c++)
             for (int i = 0; i < pts.n; i++) {
                 const int ch = l->first[t] + (int)c;
-                const double q = (double)w->steps[pts.slot[i]][t * TED4_LANES + pts.lane[i]];
+                const double q = (double)w->steps[pts.visible[i]][t * TED4_LANES + pts.lane[i]];
                 double *x = &pts.anchor[i].x[ch];
                 const double h = fmax(1e-5 * q, 1e-9 * fabs(*x));
                 const double rate = slope(x, h, i, i + 1);
-                const double got = (double)w->d_attr[pts.slot[i]][ch * TED4_LANES + pts.lane[i]];
+                const double got = (double)w->d_attr[pts.visible[i]][ch * TED4_LANES + pts.lane[i]];
 
                 check(got * q, rate * q, 1.0);
             }
@@ -107,7 +107,7 @@ static void check_logits(const ref_world *w)
             const double bits = k < K ? r.offset_bits[k] : r.phi_bits;
             const int row = l->offset_logit + k;
 
-            check((double)w->d_attr[pts.slot[i]][row * TED4_LANES + pts.lane[i]],
+            check((double)w->d_attr[pts.visible[i]][row * TED4_LANES + pts.lane[i]],
                   used ? pts.model.bit_weight * bits * m * (1.0 - m) : 0.0, 0.1);
         }
     }
@@ -225,7 +225,7 @@ static void test_outliers(void **state)
         for (unsigned c = 0; c < l->shape.dim[t]; c++) {
             *ref_bias(&w, l->shape.first_output[t] + l->shape.dim[t] + c) = -2.0f - (float)(c % 3);
             for (int j = 0; j < TED4_LANES; j++)
-                for (int i = 0; i < REF_SLOTS; i++)
+                for (int i = 0; i < REF_BLOCKS; i++)
                     w.attr[i][((size_t)l->first[t] + c) * TED4_LANES + (size_t)j] *=
                         t == TED4_FEATURE ? 4.0f
                         : j % 2           ? 5.0f
@@ -246,7 +246,7 @@ static void test_all_masked(void **state)
     ref_world_make(&w, &h);
     for (int k = 0; k < h.n_offsets; k++)
         for (int j = 0; j < TED4_LANES; j++)
-            for (int i = 0; i < REF_SLOTS; i++)
+            for (int i = 0; i < REF_BLOCKS; i++)
                 w.attr[i][(w.layout.offset_logit + k) * TED4_LANES + j] = -5.0f;
     w.in.distortion_weight = 0.0f;
     check_all(&w, 7);

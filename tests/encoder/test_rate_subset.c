@@ -39,10 +39,10 @@ static void run(ted4_trainer *t, uint64_t key, double share, float d_value)
 
     t->opt.rate_share = share;
     memset(t->progress.bits, 0, sizeof t->progress.bits);
-    assert_int_equal(ted4_slots_fill(t, NULL), 0);
-    assert_int_equal(t->slots.n, BLOCKS);
-    for (size_t i = 0; i < t->slots.n * floats; i++)
-        t->slots.gradients[i] = d_value;
+    assert_int_equal(ted4_visible_blocks_fill(t, NULL), 0);
+    assert_int_equal(t->visible_blocks.n, BLOCKS);
+    for (size_t i = 0; i < t->visible_blocks.n * floats; i++)
+        t->visible_blocks.gradients[i] = d_value;
     memset(t->net.gradient, 0, t->layout.n_net * sizeof *t->net.gradient);
     if (ted4_update_rate(t, key) != 0)
         fail_msg("%s", t->message.text);
@@ -50,13 +50,13 @@ static void run(ted4_trainer *t, uint64_t key, double share, float d_value)
 
 /* Sum of the gradients of a block's offset masks: bits of offsets times the slope of the sigmoid, 0
  * for blocks that were not chosen. */
-static double of_masks(const ted4_trainer *t, size_t slot)
+static double of_masks(const ted4_trainer *t, size_t visible)
 {
     double sum = 0;
 
     for (int c = t->layout.offset_logit; c < t->layout.temporal_logit; c++)
         for (int j = 0; j < TED4_LANES; j++)
-            sum += (double)t->slots.gradient[slot][c * TED4_LANES + j];
+            sum += (double)t->visible_blocks.gradient[visible][c * TED4_LANES + j];
     return sum;
 }
 
@@ -76,8 +76,8 @@ static void test_choice(void **state)
         for (size_t i = 0; i < BLOCKS; i++) {
             const int chosen = of_masks(&t, i) > 0;
 
-            assert_int_equal(seen[t.slots.block[i]]++, 0);
-            often[t.slots.block[i]] += chosen;
+            assert_int_equal(seen[t.visible_blocks.block[i]]++, 0);
+            often[t.visible_blocks.block[i]] += chosen;
             n += chosen;
         }
         assert_int_equal(n, CHOSEN);
@@ -200,9 +200,10 @@ static void test_threads(void **state)
         run(&t, 3, 0.6, 0.5f);
         assert_memory_equal(t.net.gradient, alone.net.gradient,
                             t.layout.n_net * sizeof *t.net.gradient);
-        assert_memory_equal(t.slots.gradients, alone.slots.gradients,
+        assert_memory_equal(t.visible_blocks.gradients, alone.visible_blocks.gradients,
                             BLOCKS * floats * sizeof(float));
-        assert_memory_equal(t.slots.block, alone.slots.block, BLOCKS * sizeof *t.slots.block);
+        assert_memory_equal(t.visible_blocks.block, alone.visible_blocks.block,
+                            BLOCKS * sizeof *t.visible_blocks.block);
         assert_memory_equal(t.anchors.data[TED4_ROW_STEP], alone.anchors.data[TED4_ROW_STEP],
                             BLOCKS * TED4_TYPES * TED4_LANES * sizeof(float));
         assert_memory_equal(&t.progress, &alone.progress, sizeof t.progress);

@@ -19,10 +19,10 @@ enum {
     WIDTH = 32,
     HEIGHT = 24,
     PIXELS = WIDTH * HEIGHT,
-    SLOTS = 2,
+    N_BLOCKS = 2,
     OFFSETS = 3,
     ANCHORS = 40,
-    SPLATS = SLOTS * OFFSETS * TED4_LANES,
+    SPLATS = N_BLOCKS * OFFSETS * TED4_LANES,
     MAX_THETA = 12000
 };
 
@@ -44,10 +44,10 @@ typedef struct {
     float bit_weight;
     uint64_t key;
     size_t n_theta;
-    uint32_t lanes[SLOTS], block[SLOTS];
+    uint32_t lanes[N_BLOCKS], block[N_BLOCKS];
     uint8_t truth[3 * PIXELS];
-    _Alignas(64) float position[SLOTS][3 * TED4_LANES];
-    _Alignas(64) float steps[SLOTS][TED4_TYPES * TED4_LANES];
+    _Alignas(64) float position[N_BLOCKS][3 * TED4_LANES];
+    _Alignas(64) float steps[N_BLOCKS][TED4_TYPES * TED4_LANES];
     _Alignas(64) float net[MAX_THETA], attr[MAX_THETA], used[MAX_THETA];
     _Alignas(64) float d_net[MAX_THETA], d_attr[MAX_THETA];
     double theta[MAX_THETA], moved[MAX_THETA], gradient[MAX_THETA], residual[MAX_THETA];
@@ -57,15 +57,15 @@ typedef struct {
 
 static problem pr;
 
-static size_t channel_at(int slot, int channel, int lane)
+static size_t channel_at(int visible, int channel, int lane)
 {
-    return ((size_t)slot * (size_t)pr.layout.n_channels + (size_t)channel) * TED4_LANES +
+    return ((size_t)visible * (size_t)pr.layout.n_channels + (size_t)channel) * TED4_LANES +
            (size_t)lane;
 }
 
-static int is_used(int slot, int lane)
+static int is_used(int visible, int lane)
 {
-    return pr.lanes[slot] >> lane & 1;
+    return pr.lanes[visible] >> lane & 1;
 }
 
 /* ---- a random model ---- */
@@ -90,10 +90,10 @@ static ted4_header make_head(void)
     return h;
 }
 
-static void make_anchor(int slot, int j)
+static void make_anchor(int visible, int j)
 {
     const ted4_layout *l = &pr.layout;
-    float *a = pr.attr + channel_at(slot, 0, j);
+    float *a = pr.attr + channel_at(visible, 0, j);
     const int tau = l->first[TED4_TAU], scaling = l->first[TED4_SCALING];
 
     for (int c = 0; c < l->n_channels; c++)
@@ -108,7 +108,7 @@ static void make_anchor(int slot, int j)
     for (int c = l->offset_logit; c < l->n_channels; c++)
         a[c * TED4_LANES] = (float)(-3.0 + 3.0 * ref_uniform());
     for (int c = 0; c < 3; c++)
-        pr.position[slot][c * TED4_LANES + j] =
+        pr.position[visible][c * TED4_LANES + j] =
             ted4_half_to_float(ted4_float_to_half((float)ref_uniform()));
 }
 
@@ -140,7 +140,7 @@ static void make(uint32_t seed, uint32_t num, int activation, int stage2)
     memset(&pr, 0, sizeof pr);
     ref_source = random_seed(77u * seed + 5u);
     ted4_layout_make(&pr.layout, &h);
-    pr.n_theta = pr.layout.n_net + channel_at(SLOTS, 0, 0);
+    pr.n_theta = pr.layout.n_net + channel_at(N_BLOCKS, 0, 0);
     assert_true(pr.n_theta <= MAX_THETA);
     assert_true(pr.layout.shape.n_nete <= REF_MAX_NET);
     pr.num = num;
@@ -151,14 +151,14 @@ static void make(uint32_t seed, uint32_t num, int activation, int stage2)
     pr.key = seed;
     pr.lanes[0] = 0xdb6db7dfu;
     pr.lanes[1] = 0x00f3cf3cu;
-    for (int i = 0; i < SLOTS; i++)
+    for (int i = 0; i < N_BLOCKS; i++)
         pr.block[i] = 11u + 7u * (uint32_t)i;
     for (size_t i = 0; i < pr.layout.n_net; i++)
         pr.net[i] = (float)((i < pr.layout.nete ? 0.7 : 0.4) * ref_uniform());
     /* Biases of the opacity head: enough Gaussians to see. */
     for (size_t i = 1; i <= OFFSETS; i++)
         pr.net[pr.layout.shape.netr[TED4_NET_COVARIANCE].first - i] = 0.5f;
-    for (int i = 0; i < SLOTS; i++)
+    for (int i = 0; i < N_BLOCKS; i++)
         for (int j = 0; j < TED4_LANES; j++)
             make_anchor(i, j);
     for (size_t i = 0; i < 3 * PIXELS; i++)
@@ -172,15 +172,15 @@ static void make(uint32_t seed, uint32_t num, int activation, int stage2)
 /* ---- the analytic gradient ---- */
 
 typedef struct {
-    const float *attr[SLOTS], *used[SLOTS], *position[SLOTS];
-    float *d_attr[SLOTS], *steps[SLOTS];
+    const float *attr[N_BLOCKS], *used[N_BLOCKS], *position[N_BLOCKS];
+    float *d_attr[N_BLOCKS], *steps[N_BLOCKS];
 } lists;
 
 static lists make_lists(void)
 {
     lists l;
 
-    for (int i = 0; i < SLOTS; i++) {
+    for (int i = 0; i < N_BLOCKS; i++) {
         l.attr[i] = pr.attr + channel_at(i, 0, 0);
         l.used[i] = (pr.stage2 ? pr.used : pr.attr) + channel_at(i, 0, 0);
         l.position[i] = pr.position[i];
@@ -192,8 +192,8 @@ static lists make_lists(void)
 
 static ted4_rate_input rate_input(const lists *l)
 {
-    return (ted4_rate_input) { &pr.layout,    pr.net,   NULL,     SLOTS,  l->attr,
-                               l->position,   pr.lanes, pr.block, pr.key, TED4_QUANT_NOISE,
+    return (ted4_rate_input) { &pr.layout,    pr.net,   NULL,     N_BLOCKS, l->attr,
+                               l->position,   pr.lanes, pr.block, pr.key,   TED4_QUANT_NOISE,
                                pr.bit_weight, 1.0f,     1 };
 }
 
@@ -204,7 +204,7 @@ static void quantise(ted4_rate *rate, const lists *l)
 
     ted4_rate_pack(rate, pr.net);
     assert_int_equal(ted4_rate_evaluate(rate, &in, NULL, NULL, NULL, NULL, l->steps, NULL), 0);
-    for (int i = 0; i < SLOTS; i++) {
+    for (int i = 0; i < N_BLOCKS; i++) {
         ted4_quantise(&pr.layout, TED4_QUANT_NOISE, l->attr[i], l->steps[i], pr.block[i], pr.key,
                       pr.used + channel_at(i, 0, 0));
         for (int t = 0; t < TED4_TYPES; t++)
@@ -250,7 +250,7 @@ static double analytic(void)
     ted4_raster *raster = ted4_raster_new();
     ted4_loss_workspace *w = ted4_loss_workspace_new();
     const ted4_generate_input in = {
-        &pr.layout,   pr.net,     SLOTS,
+        &pr.layout,   pr.net,     N_BLOCKS,
         l.used,       l.position, pr.lanes,
         pr.num,       pr.den,     { pr.camera[0], pr.camera[1], pr.camera[2] },
         pr.activation
@@ -293,7 +293,7 @@ static double analytic(void)
 /* ---- the reference ---- */
 
 /* Bits with straight-through masks. Leaves the steps in *r. */
-static double reference_bits(const double *theta, int slot, int j, ref_result *r)
+static double reference_bits(const double *theta, int visible, int j, ref_result *r)
 {
     const ted4_layout *l = &pr.layout;
     const ref_model m = { l, theta + l->nete, 1.0, 0.0, 1 };
@@ -301,13 +301,13 @@ static double reference_bits(const double *theta, int slot, int j, ref_result *r
 
     memset(&a, 0, sizeof a);
     for (int c = 0; c < 3; c++)
-        a.position[c] = (double)pr.position[slot][c * TED4_LANES + j];
+        a.position[c] = (double)pr.position[visible][c * TED4_LANES + j];
     for (int c = 0; c < l->offset_logit; c++) {
-        a.x[c] = theta[l->n_net + channel_at(slot, c, j)];
-        a.n[c] = pr.residual[channel_at(slot, c, j)];
+        a.x[c] = theta[l->n_net + channel_at(visible, c, j)];
+        a.n[c] = pr.residual[channel_at(visible, c, j)];
     }
     for (int c = l->offset_logit; c < l->n_channels; c++)
-        a.logit[c - l->offset_logit] = pr.theta[l->n_net + channel_at(slot, c, j)];
+        a.logit[c - l->offset_logit] = pr.theta[l->n_net + channel_at(visible, c, j)];
     ref_evaluate(&m, &a, NULL, r);
     for (unsigned i = 0; i < l->shape.n_outputs; i++) { /* nothing is near a clamp */
         assert_true(r->raw[i] > -3.9);
@@ -317,7 +317,7 @@ static double reference_bits(const double *theta, int slot, int j, ref_result *r
     double bits = r->loss;
 
     for (int k = 0; k <= OFFSETS; k++) {
-        const size_t at = l->n_net + channel_at(slot, l->offset_logit + k, j);
+        const size_t at = l->n_net + channel_at(visible, l->offset_logit + k, j);
 
         bits += (ref_sigmoid(theta[at]) - ref_sigmoid(pr.theta[at])) *
                 (k < OFFSETS ? r->offset_bits[k] : r->phi_bits);
@@ -326,15 +326,16 @@ static double reference_bits(const double *theta, int slot, int j, ref_result *r
 }
 
 /* Channels as the generator gets them. */
-static void reference_values(const double *theta, const ref_result *r, int slot, int j, double *x)
+static void reference_values(const double *theta, const ref_result *r, int visible, int j,
+                             double *x)
 {
     const ted4_layout *l = &pr.layout;
 
     for (int c = 0; c < l->n_channels; c++)
-        x[c] = theta[l->n_net + channel_at(slot, c, j)];
+        x[c] = theta[l->n_net + channel_at(visible, c, j)];
     for (int t = 0; t < TED4_TYPES && pr.stage2; t++)
         for (int c = l->first[t]; c < l->first[t] + (int)l->shape.dim[t]; c++)
-            x[c] += r->steps[t] * pr.residual[channel_at(slot, c, j)];
+            x[c] += r->steps[t] * pr.residual[channel_at(visible, c, j)];
 }
 
 static double reference(const double *theta)
@@ -350,7 +351,7 @@ static double reference(const double *theta)
     double bits = 0, l1, ssim;
     size_t n = 0;
 
-    for (int i = 0; i < SLOTS; i++)
+    for (int i = 0; i < N_BLOCKS; i++)
         for (int j = 0; j < TED4_LANES; j++) {
             double p[3], x[REF_MAX_CHANNELS], base[REF_MAX_CHANNELS];
             ref_result r;
@@ -421,12 +422,12 @@ static int make_direction(const part *p, uint64_t key, double *own)
     for (size_t i = 0; i < p->n && !p->is_channels; i++)
         own[p->first + i] = 2.0 * (double)ted4_uniform(key, i) - 1.0;
     for (size_t i = 0; i < p->n && p->is_channels; i++)
-        for (int slot = 0; slot < SLOTS; slot++)
+        for (int visible = 0; visible < N_BLOCKS; visible++)
             for (int j = 0; j < TED4_LANES; j++) {
-                const size_t at = channel_at(slot, (int)(p->first + i), j);
+                const size_t at = channel_at(visible, (int)(p->first + i), j);
 
                 own[pr.layout.n_net + at] =
-                    is_used(slot, j) ? 2.0 * (double)ted4_uniform(key, at) - 1.0 : 0.0;
+                    is_used(visible, j) ? 2.0 * (double)ted4_uniform(key, at) - 1.0 : 0.0;
             }
     for (size_t i = 0; i < pr.n_theta; i++)
         size += own[i] * own[i] * pr.gradient[i] * pr.gradient[i];

@@ -351,16 +351,16 @@ static void test_rate(void **state)
     assert_int_equal(ted4_make_scene(&t, &s), 0);
     assert_int_equal(ted4_count(s, NULL, &coded, NULL), TED4_OK);
     ted4_scene_free(s);
-    assert_int_equal(ted4_slots_fill(&t, NULL), 0);
+    assert_int_equal(ted4_visible_blocks_fill(&t, NULL), 0);
 
     const ted4_rate_input in = { &t.layout,
                                  t.net.value,
                                  t.net.shift,
-                                 t.slots.n,
-                                 t.slots.raw,
-                                 t.slots.position,
-                                 t.slots.lanes,
-                                 t.slots.block,
+                                 t.visible_blocks.n,
+                                 t.visible_blocks.raw,
+                                 t.visible_blocks.position,
+                                 t.visible_blocks.lanes,
+                                 t.visible_blocks.block,
                                  0,
                                  TED4_QUANT_INTEGER,
                                  0.0f,
@@ -368,8 +368,9 @@ static void test_rate(void **state)
                                  1 };
 
     ted4_rate_pack(t.work.rate, t.net.value);
-    assert_int_equal(
-        ted4_rate_evaluate(t.work.rate, &in, NULL, NULL, NULL, NULL, t.slots.steps, bits), 0);
+    assert_int_equal(ted4_rate_evaluate(t.work.rate, &in, NULL, NULL, NULL, NULL,
+                                        t.visible_blocks.steps, bits),
+                     0);
     for (int y = 0; y < TED4_TYPES; y++) {
         assert_true(fabs(bits[y] - coded.type[y]) < 0.02 * coded.type[y]);
         sum += bits[y];

@@ -27,7 +27,7 @@ static cloud_case cloud;
 
 /* ---- 1: a span that begins at the first time of all, or ends at the last ---- */
 
-/* Gradients of the sum of all opacities at a frame, in t->slots.gradient. */
+/* Gradients of the sum of all opacities at a frame, in t->visible blocks.gradient. */
 static void opacity_gradients(ted4_trainer *t, uint32_t frame)
 {
     ted4_generate_input in = { &t->layout, t->net.value, 0,          NULL,  NULL,
@@ -36,11 +36,11 @@ static void opacity_gradients(ted4_trainer *t, uint32_t frame)
     ted4_splat_grads g;
 
     in.camera[2] = 4.0f;
-    assert_int_equal(ted4_slots_fill(t, NULL), 0);
-    in.n_slots = t->slots.n;
-    in.attr = t->slots.raw;
-    in.position = t->slots.position;
-    in.lanes = t->slots.lanes;
+    assert_int_equal(ted4_visible_blocks_fill(t, NULL), 0);
+    in.n_visible = t->visible_blocks.n;
+    in.attr = t->visible_blocks.raw;
+    in.position = t->visible_blocks.position;
+    in.lanes = t->visible_blocks.lanes;
     ted4_generator_pack(t->work.generator, t->net.value);
     assert_int_equal(ted4_generate(t->work.generator, &in, NULL, &s), 0);
 
@@ -61,8 +61,8 @@ static void opacity_gradients(ted4_trainer *t, uint32_t frame)
     g.opacity = one;
     g.mean2d = zero;
     g.visible = seen;
-    assert_int_equal(ted4_generate_backward(t->work.generator, &in, &g, NULL, t->slots.gradient,
-                                            t->net.gradient),
+    assert_int_equal(ted4_generate_backward(t->work.generator, &in, &g, NULL,
+                                            t->visible_blocks.gradient, t->net.gradient),
                      0);
     free(zero);
     free(one);
@@ -74,12 +74,12 @@ static size_t pulled(const ted4_trainer *t, int c)
 {
     size_t n = 0;
 
-    for (size_t i = 0; i < t->slots.n; i++)
+    for (size_t i = 0; i < t->visible_blocks.n; i++)
         for (size_t j = 0; j < TED4_LANES; j++) {
             const size_t channel = (size_t)(t->layout.first[TED4_TAU] + c);
 
-            n += (t->slots.lanes[i] >> j & 1) &&
-                 t->slots.gradient[i][channel * TED4_LANES + j] != 0.0f;
+            n += (t->visible_blocks.lanes[i] >> j & 1) &&
+                 t->visible_blocks.gradient[i][channel * TED4_LANES + j] != 0.0f;
         }
     return n;
 }
@@ -141,8 +141,9 @@ static void test_saddle(void **state)
     const float *d = t.net.gradient + t.layout.netr;
     const ted4_net_shape *project = &s->netr[TED4_NET_PROJECT], *deform = &s->netr[TED4_NET_DEFORM];
 
-    for (size_t i = 0; i < t.slots.n; i++)
-        on_phi += magnitude(t.slots.gradient[i] + t.layout.first[TED4_PHI] * TED4_LANES, phi);
+    for (size_t i = 0; i < t.visible_blocks.n; i++)
+        on_phi +=
+            magnitude(t.visible_blocks.gradient[i] + t.layout.first[TED4_PHI] * TED4_LANES, phi);
     assert_true(on_phi > 0);
     assert_true(magnitude(d + project->first, first_layer(project)) > 0);
     assert_true(magnitude(d + deform->first, first_layer(deform)) > 0);

@@ -163,15 +163,15 @@ static void check_logits(const ted4_trainer *t, const float *before, int channel
 {
     const double n = (double)t->anchors.n;
 
-    for (size_t b = 0; b < t->slots.n; b++)
+    for (size_t b = 0; b < t->visible_blocks.n; b++)
         for (size_t j = 0; j < TED4_LANES; j++) {
             const size_t at = (size_t)channel * TED4_LANES + j;
             const double x = (double)before[b * (size_t)t->layout.n_channels * TED4_LANES + at];
-            const double want = t->slots.lanes[b] >> j & 1
+            const double want = t->visible_blocks.lanes[b] >> j & 1
                                     ? weight / n * (sigmoid(x + 1e-4) - sigmoid(x - 1e-4)) / 2e-4
                                     : 0;
 
-            expect_near((double)t->slots.gradient[b][at], want, weight / n);
+            expect_near((double)t->visible_blocks.gradient[b][at], want, weight / n);
         }
 }
 
@@ -192,13 +192,14 @@ static void test_masks(void **state)
             for (int c = t.layout.offset_logit; c < t.layout.n_channels; c++)
                 *ted4_cell(&t.anchors, TED4_ROW_VALUE, i, c) =
                     12.0f * ted4_uniform(3, i * 32 + (uint64_t)c) - 6.0f;
-        assert_int_equal(ted4_slots_fill(&t, NULL), 0);
-        memset(t.slots.gradients, 0, t.slots.n * floats * sizeof(float));
+        assert_int_equal(ted4_visible_blocks_fill(&t, NULL), 0);
+        memset(t.visible_blocks.gradients, 0, t.visible_blocks.n * floats * sizeof(float));
 
-        float *before = malloc(t.slots.n * floats * sizeof *before);
+        float *before = malloc(t.visible_blocks.n * floats * sizeof *before);
 
         assert_non_null(before);
-        memcpy(before, t.anchors.data[TED4_ROW_VALUE], t.slots.n * floats * sizeof *before);
+        memcpy(before, t.anchors.data[TED4_ROW_VALUE],
+               t.visible_blocks.n * floats * sizeof *before);
         ted4_update_parameters(&t);
         check_logits(&t, before, t.layout.temporal_logit, 0.7);
         for (int k = 0; k < K; k++)

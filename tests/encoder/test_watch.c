@@ -165,14 +165,15 @@ static void test_values(void **state)
 }
 
 /* Changes a gradient after a step, and has the watch look at it again. */
-static int look_again(ted4_trainer *t, size_t slot, int channel, size_t lane, float gradient)
+static int look_again(ted4_trainer *t, size_t visible, int channel, size_t lane, float gradient)
 {
     float rate[256] = { 0 };
 
     ted4_schedule_rates(t, rate);
-    t->slots.gradient[slot][(size_t)channel * TED4_LANES + lane] = gradient;
-    ted4_gradients_slot(&t->layout, rate, t->slots.raw[slot], t->slots.gradient[slot],
-                        t->slots.squares + slot * (TED4_SLOT_TERMS + 1));
+    t->visible_blocks.gradient[visible][(size_t)channel * TED4_LANES + lane] = gradient;
+    ted4_gradients_block(&t->layout, rate, t->visible_blocks.raw[visible],
+                         t->visible_blocks.gradient[visible],
+                         t->visible_blocks.squares + visible * (TED4_BLOCK_TERMS + 1));
     return ted4_watch_look(t, t->progress.last_loss, NULL, NULL);
 }
 
@@ -193,8 +194,8 @@ static void test_gradients(void **state)
         begin_at(&t, stage2 ? STAGE1 + 110 : KEPT + 20);
 
         const int offset = t.layout.first[TED4_OFFSET] + 5, phi = t.layout.first[TED4_PHI];
-        const size_t anchor = t.slots.block[2] * (size_t)TED4_LANES + 7,
-                     first = t.slots.block[0] * (size_t)TED4_LANES;
+        const size_t anchor = t.visible_blocks.block[2] * (size_t)TED4_LANES + 7,
+                     first = t.visible_blocks.block[0] * (size_t)TED4_LANES;
         const float usual = (float)ted4_scale_usual(&t.watch.state.gradient[TED4_OFFSET]);
 
         assert_int_equal(look_again(&t, 2, offset, 7, 100 * usual), 0);

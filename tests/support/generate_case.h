@@ -12,13 +12,14 @@
 #include "train/model/model.h"
 #include "train/splat/generator.h"
 
-/* More slots than the generator has chunks. The first has no unused lane, one has no other. */
+/* More visible blocks than the generator has chunks. The first has no unused lane, one has no
+ * other. */
 enum {
-    CASE_SLOTS = 18,
+    CASE_BLOCKS = 18,
     CASE_CHANNELS = 48,
     CASE_NET = 6000,
     CASE_OFFSETS = 3,
-    CASE_SPLATS = CASE_SLOTS * CASE_OFFSETS * TED4_LANES
+    CASE_SPLATS = CASE_BLOCKS * CASE_OFFSETS * TED4_LANES
 };
 
 typedef struct {
@@ -27,10 +28,10 @@ typedef struct {
     ref_query query;
     float net[CASE_NET];
     double exact_net[CASE_NET];
-    _Alignas(64) float attr[CASE_SLOTS][CASE_CHANNELS * TED4_LANES];
-    _Alignas(64) float position[CASE_SLOTS][3 * TED4_LANES];
-    const float *attr_list[CASE_SLOTS], *position_list[CASE_SLOTS];
-    uint32_t lanes[CASE_SLOTS];
+    _Alignas(64) float attr[CASE_BLOCKS][CASE_CHANNELS * TED4_LANES];
+    _Alignas(64) float position[CASE_BLOCKS][3 * TED4_LANES];
+    const float *attr_list[CASE_BLOCKS], *position_list[CASE_BLOCKS];
+    uint32_t lanes[CASE_BLOCKS];
     random_source random;
 } test_case;
 
@@ -46,7 +47,7 @@ static inline ted4_header case_header(int motion, int view)
     ted4_header h;
 
     memset(&h, 0, sizeof h);
-    h.n_anchors = CASE_SLOTS * TED4_LANES;
+    h.n_anchors = CASE_BLOCKS * TED4_LANES;
     h.tile_size = 64;
     h.n_offsets = CASE_OFFSETS;
     h.feature_dim = 5;
@@ -77,7 +78,7 @@ static inline void case_set(test_case *t, int lane, int channel, float value)
     t->attr[0][channel * TED4_LANES + lane] = value;
 }
 
-/* Anchors of slot 0 at the edges of the definitions; time is that of the query. */
+/* Anchors of visible block 0 at the edges of the definitions; time is that of the query. */
 static inline void case_awkward(test_case *t)
 {
     const ref_channels at = ref_channels_of(&t->layout.head);
@@ -109,10 +110,10 @@ static inline void case_awkward(test_case *t)
     case_set(t, 15, at.temporal_logit, -4.4f);
 }
 
-static inline void case_anchor(test_case *t, int slot, int lane)
+static inline void case_anchor(test_case *t, int visible, int lane)
 {
     const ref_channels at = ref_channels_of(&t->layout.head);
-    float *a = t->attr[slot] + lane;
+    float *a = t->attr[visible] + lane;
 
     for (int c = 0; c < at.n; c++)
         a[c * TED4_LANES] = case_random(t);
@@ -123,7 +124,7 @@ static inline void case_anchor(test_case *t, int slot, int lane)
     for (int c = at.offset_logit; c < at.n; c++)
         a[c * TED4_LANES] *= 7.0f;
     for (int c = 0; c < 3; c++)
-        t->position[slot][c * TED4_LANES + lane] = rintf(case_random(t) * 1024.0f) / 1024.0f;
+        t->position[visible][c * TED4_LANES + lane] = rintf(case_random(t) * 1024.0f) / 1024.0f;
 }
 
 /* Fills *t: time num / den, anchors and networks from the seed. */
@@ -139,10 +140,10 @@ static inline void case_make(test_case *t, const ted4_header *h, uint32_t num, u
     for (size_t i = 0; i < n_used; i++)
         t->exact_net[i] = t->net[i] = 0.7f * case_random(t);
     t->in = (ted4_generate_input) {
-        &t->layout, t->net, CASE_SLOTS, t->attr_list,           t->position_list,
-        t->lanes,   num,    den,        { 0.25f, -0.5f, 2.0f }, 1
+        &t->layout, t->net, CASE_BLOCKS, t->attr_list,           t->position_list,
+        t->lanes,   num,    den,         { 0.25f, -0.5f, 2.0f }, 1
     };
-    for (int i = 0; i < CASE_SLOTS; i++) {
+    for (int i = 0; i < CASE_BLOCKS; i++) {
         t->attr_list[i] = t->attr[i];
         t->position_list[i] = t->position[i];
         t->lanes[i] = i == 0 ? 0xffffffffu : i == 5 ? 0 : 0x9e3779b9u * (uint32_t)i >> (i & 3);
@@ -150,7 +151,7 @@ static inline void case_make(test_case *t, const ted4_header *h, uint32_t num, u
             case_anchor(t, i, lane);
     }
     case_awkward(t);
-    for (int i = 0; i < CASE_SLOTS; i++)
+    for (int i = 0; i < CASE_BLOCKS; i++)
         for (int lane = 0; lane < TED4_LANES; lane++)
             if ((t->lanes[i] >> lane & 1) == 0) {
                 for (int c = 0; c < t->layout.n_channels; c++)
@@ -166,13 +167,13 @@ static inline void case_make(test_case *t, const ted4_header *h, uint32_t num, u
         t->query.camera[c] = t->in.camera[c];
 }
 
-static inline void case_channels(const test_case *t, int slot, int lane, double *channel,
+static inline void case_channels(const test_case *t, int visible, int lane, double *channel,
                                  double *position)
 {
     for (int c = 0; c < t->layout.n_channels; c++)
-        channel[c] = t->attr[slot][c * TED4_LANES + lane];
+        channel[c] = t->attr[visible][c * TED4_LANES + lane];
     for (int c = 0; c < 3; c++)
-        position[c] = t->position[slot][c * TED4_LANES + lane];
+        position[c] = t->position[visible][c * TED4_LANES + lane];
 }
 
 /* Member c, in the order of the reference, of the splats. */

@@ -12,7 +12,7 @@
 #include "random_source.h"
 #include "train/rate/rate.h"
 
-enum { REF_MAX_CHANNELS = 128, REF_MAX_OUTPUTS = 256, REF_MAX_NET = 4096, REF_SLOTS = 3 };
+enum { REF_MAX_CHANNELS = 128, REF_MAX_OUTPUTS = 256, REF_MAX_NET = 4096, REF_BLOCKS = 3 };
 
 #define REF_S_MIN (-4.0)
 #define REF_S_MAX (175.0 / 16.0)
@@ -248,10 +248,10 @@ typedef struct {
     ted4_layout layout;
     float *net;
     double nete[REF_MAX_NET];
-    float *attr[REF_SLOTS], *position[REF_SLOTS], *d_value[REF_SLOTS];
-    float *d_attr[REF_SLOTS], *steps[REF_SLOTS];
+    float *attr[REF_BLOCKS], *position[REF_BLOCKS], *d_value[REF_BLOCKS];
+    float *d_attr[REF_BLOCKS], *steps[REF_BLOCKS];
     float *d_net;
-    uint32_t lanes[REF_SLOTS], block[REF_SLOTS];
+    uint32_t lanes[REF_BLOCKS], block[REF_BLOCKS];
     ted4_rate *rate;
     ted4_rate_input in;
 } ref_world;
@@ -315,26 +315,26 @@ static inline void ref_random_net(ref_world *w)
 }
 
 /* Values around a few steps; logits on both sides of the threshold, -4.6. */
-static inline void ref_random_slot(ref_world *w, int slot)
+static inline void ref_random_block(ref_world *w, int visible)
 {
     const ted4_layout *l = &w->layout;
 
     for (int j = 0; j < TED4_LANES; j++) {
         for (int a = 0; a < 3; a++)
-            w->position[slot][a * TED4_LANES + j] =
+            w->position[visible][a * TED4_LANES + j] =
                 ted4_half_to_float(ted4_float_to_half((float)ref_uniform()));
         for (int t = 0; t < TED4_TYPES; t++)
             for (unsigned c = 0; c < l->shape.dim[t]; c++) {
                 const size_t at = ((size_t)l->first[t] + c) * TED4_LANES + (size_t)j;
 
-                w->attr[slot][at] = (float)(3.0 * ref_uniform()) * l->head.step[t];
-                w->d_value[slot][at] = (float)ref_uniform() / l->head.step[t];
+                w->attr[visible][at] = (float)(3.0 * ref_uniform()) * l->head.step[t];
+                w->d_value[visible][at] = (float)ref_uniform() / l->head.step[t];
             }
         for (int c = l->offset_logit; c < l->n_channels; c++)
-            w->attr[slot][c * TED4_LANES + j] = (float)(-3.6 + 3.0 * ref_uniform());
+            w->attr[visible][c * TED4_LANES + j] = (float)(-3.6 + 3.0 * ref_uniform());
     }
-    w->lanes[slot] = 0xffffffffu;
-    w->block[slot] = 17u + 1000u * (uint32_t)slot;
+    w->lanes[visible] = 0xffffffffu;
+    w->block[visible] = 17u + 1000u * (uint32_t)visible;
 }
 
 static inline void ref_world_make(ref_world *w, const ted4_header *h)
@@ -344,7 +344,7 @@ static inline void ref_world_make(ref_world *w, const ted4_header *h)
     w->net = ref_floats(w->layout.n_net);
     w->d_net = ref_floats(w->layout.n_net);
     ref_random_net(w);
-    for (int i = 0; i < REF_SLOTS; i++) {
+    for (int i = 0; i < REF_BLOCKS; i++) {
         const size_t block = (size_t)w->layout.n_channels * TED4_LANES;
 
         w->attr[i] = ref_floats(block);
@@ -352,12 +352,12 @@ static inline void ref_world_make(ref_world *w, const ted4_header *h)
         w->d_value[i] = ref_floats(block);
         w->position[i] = ref_floats(3 * TED4_LANES);
         w->steps[i] = ref_floats(TED4_TYPES * TED4_LANES);
-        ref_random_slot(w, i);
+        ref_random_block(w, i);
     }
     w->rate = ted4_rate_new(&w->layout);
     w->in = (ted4_rate_input) { .layout = &w->layout,
                                 .net = w->net,
-                                .n_slots = REF_SLOTS,
+                                .n_visible = REF_BLOCKS,
                                 .attr = (const float *const *)w->attr,
                                 .position = (const float *const *)w->position,
                                 .lanes = w->lanes,
@@ -371,7 +371,7 @@ static inline void ref_world_make(ref_world *w, const ted4_header *h)
 
 static inline void ref_world_finish(ref_world *w)
 {
-    for (int i = 0; i < REF_SLOTS; i++) {
+    for (int i = 0; i < REF_BLOCKS; i++) {
         free(w->attr[i]);
         free(w->d_attr[i]);
         free(w->d_value[i]);
@@ -388,7 +388,7 @@ static inline int ref_run(ref_world *w, const ted4_parallel *p, double *bits)
 {
     const size_t block = (size_t)w->layout.n_channels * TED4_LANES;
 
-    for (int i = 0; i < REF_SLOTS; i++)
+    for (int i = 0; i < REF_BLOCKS; i++)
         memset(w->d_attr[i], 0, block * sizeof(float));
     memset(w->d_net, 0, w->layout.n_net * sizeof(float));
     ted4_rate_pack(w->rate, w->net);
@@ -406,7 +406,7 @@ static inline ref_model ref_model_make(ref_world *w)
 
 /* The noise of a block, seen through ted4_quantise: values 0 and steps 1 (a_s and a_f are kept
  * apart, so that their order does not matter). */
-static inline void ref_noise(const ref_world *w, int slot, float *noise)
+static inline void ref_noise(const ref_world *w, int visible, float *noise)
 {
     const ted4_layout *l = &w->layout;
     const size_t block = (size_t)l->n_channels * TED4_LANES;
@@ -418,15 +418,15 @@ static inline void ref_noise(const ref_world *w, int slot, float *noise)
         zero[(l->first[TED4_TAU] + 0) * TED4_LANES + j] = -2.0f;
         zero[(l->first[TED4_TAU] + 2) * TED4_LANES + j] = 2.0f;
     }
-    ted4_quantise(l, TED4_QUANT_NOISE, zero, one, w->block[slot], w->in.key, noise);
+    ted4_quantise(l, TED4_QUANT_NOISE, zero, one, w->block[visible], w->in.key, noise);
     for (size_t i = 0; i < (size_t)l->offset_logit * TED4_LANES; i++)
         noise[i] -= zero[i];
     free(zero);
     free(one);
 }
 
-/* Anchor of a slot and lane after ref_run, with its residuals. */
-static inline void ref_anchor_make(const ref_world *w, const ref_model *m, int slot, int lane,
+/* Anchor of a visible block and lane after ref_run, with its residuals. */
+static inline void ref_anchor_make(const ref_world *w, const ref_model *m, int visible, int lane,
                                    const float *noise, ref_anchor *a)
 {
     const ted4_layout *l = &w->layout;
@@ -434,14 +434,14 @@ static inline void ref_anchor_make(const ref_world *w, const ref_model *m, int s
 
     memset(a, 0, sizeof *a);
     for (int i = 0; i < 3; i++)
-        a->position[i] = (double)w->position[slot][i * TED4_LANES + lane];
+        a->position[i] = (double)w->position[visible][i * TED4_LANES + lane];
     for (int c = 0; c < l->offset_logit; c++) {
-        a->x[c] = (double)w->attr[slot][c * TED4_LANES + lane];
-        a->d_value[c] = (double)w->d_value[slot][c * TED4_LANES + lane];
+        a->x[c] = (double)w->attr[visible][c * TED4_LANES + lane];
+        a->d_value[c] = (double)w->d_value[visible][c * TED4_LANES + lane];
         a->n[c] = (double)noise[c * TED4_LANES + lane];
     }
     for (int c = l->offset_logit; c < l->n_channels; c++)
-        a->logit[c - l->offset_logit] = (double)w->attr[slot][c * TED4_LANES + lane];
+        a->logit[c - l->offset_logit] = (double)w->attr[visible][c * TED4_LANES + lane];
     ref_outputs(m, a, NULL, &r); /* steps do not depend on residuals */
     for (int t = 0; t < TED4_TYPES && w->in.quant == TED4_QUANT_ROUND; t++)
         for (unsigned c = 0; c < l->shape.dim[t]; c++) {

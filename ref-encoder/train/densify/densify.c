@@ -23,14 +23,14 @@ enum { DEPTHS = 3 };
  * would go, however right it is at its time. */
 enum { SEEN_THERE = 8 };
 
-uint32_t ted4_lanes_there(const ted4_generate_input *in, size_t slot)
+uint32_t ted4_lanes_there(const ted4_generate_input *in, size_t visible)
 {
     const int first = in->layout->first[TED4_TAU];
     const float now = (float)in->num / (float)in->den;
-    uint32_t there = in->lanes[slot];
+    uint32_t there = in->lanes[visible];
 
     for (int j = 0; in->activation && j < TED4_LANES; j++) {
-        const float *tau = in->attr[slot] + first * TED4_LANES + j;
+        const float *tau = in->attr[visible] + first * TED4_LANES + j;
         const float u = ted4_find_edge(now, tau, ted4_pow2).u;
 
         if (!(u * u < 0.6931472f))
@@ -46,14 +46,14 @@ typedef struct {
 } gather_job;
 
 /* Adds one row of statistics per splat and per anchor. */
-static void gather_slot(void *arg, size_t i)
+static void gather_block(void *arg, size_t i)
 {
     const gather_job *g = arg;
     ted4_trainer *t = g->t;
     const int K = t->layout.head.n_offsets;
-    const uint32_t lanes = t->slots.lanes[i], there = ted4_lanes_there(g->in, i);
-    float *opacity = ted4_block(&t->anchors, TED4_ROW_OPACITY, t->slots.block[i]);
-    float *gradient = ted4_block(&t->anchors, TED4_ROW_GRADIENT, t->slots.block[i]);
+    const uint32_t lanes = t->visible_blocks.lanes[i], there = ted4_lanes_there(g->in, i);
+    float *opacity = ted4_block(&t->anchors, TED4_ROW_OPACITY, t->visible_blocks.block[i]);
+    float *gradient = ted4_block(&t->anchors, TED4_ROW_GRADIENT, t->visible_blocks.block[i]);
 
     for (int j = 0; j < TED4_LANES; j++) {
         opacity[TED4_LANES + j] += (float)(lanes >> j & 1);
@@ -80,7 +80,7 @@ void ted4_densify_gather(ted4_trainer *t, const ted4_generate_input *in, const t
 {
     gather_job j = { t, in, s };
 
-    ted4_parallel_for(t->parallel, t->slots.n, gather_slot, &j);
+    ted4_parallel_for(t->parallel, t->visible_blocks.n, gather_block, &j);
 }
 
 typedef struct {

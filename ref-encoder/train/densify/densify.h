@@ -11,7 +11,7 @@
 void ted4_densify_gather(ted4_trainer *t, const ted4_generate_input *in, const ted4_splats *s);
 /* Grows by at most room anchors, and prunes. 0, or -1 with t->message. */
 int ted4_densify_adjust(ted4_trainer *t, size_t room);
-/* Lanes of a slot whose activation is at least a half now. */
-uint32_t ted4_lanes_there(const ted4_generate_input *in, size_t slot);
+/* Lanes of a visible block whose activation is at least a half now. */
+uint32_t ted4_lanes_there(const ted4_generate_input *in, size_t visible);
 
 #endif

@@ -216,11 +216,12 @@ static double similarity_row(ring4 ring, int oldest, const piece *p, float *cons
             m[c] = ted4_vf_all(0.0f);
         TED4_UNROLL
         for (int k = 0; k < TAPS; k++) {
-            const int slot = oldest + k < TAPS ? oldest + k : oldest + k - TAPS;
+            const int ring_row = oldest + k < TAPS ? oldest + k : oldest + k - TAPS;
 
             TED4_UNROLL
             for (int c = 0; c < 4; c++)
-                m[c] = ted4_vf_fma(ted4_vf_load(ring[slot][c] + at), ted4_vf_all(GAUSS[k]), m[c]);
+                m[c] =
+                    ted4_vf_fma(ted4_vf_load(ring[ring_row][c] + at), ted4_vf_all(GAUSS[k]), m[c]);
         }
         s = similarity(m, d);
         sum[i] += p->valid - at >= TED4_VEC ? s : keep_first(s, p->valid - at);
@@ -236,20 +237,20 @@ static double similarity_row(ring4 ring, int oldest, const piece *p, float *cons
 static double similarity_piece(const ted4_loss_job *j, const piece *p)
 {
     ring4 ring;
-    int slot = 0;
+    int ring_row = 0;
     double sum = 0.0;
 
     for (int r = p->first - HALF; r < p->last + HALF; r++) {
         if (r < 0 || r >= j->height)
-            memset(ring[slot], 0, sizeof ring[slot]);
+            memset(ring[ring_row], 0, sizeof ring[ring_row]);
         else
-            filter_squares(j->u + row_of(j, p, r), j->v + row_of(j, p, r), p->n, ring[slot]);
-        slot = slot + 1 < TAPS ? slot + 1 : 0;
+            filter_squares(j->u + row_of(j, p, r), j->v + row_of(j, p, r), p->n, ring[ring_row]);
+        ring_row = ring_row + 1 < TAPS ? ring_row + 1 : 0;
         if (r >= p->first + HALF) {
             const size_t to = row_of(j, p, r - HALF);
             float *const d[3] = { j->d[0] + to, j->d[1] + to, j->d[2] + to };
 
-            sum += similarity_row(ring, slot, p, d);
+            sum += similarity_row(ring, ring_row, p, d);
         }
     }
     return sum;
@@ -301,11 +302,12 @@ static void gradient_row(const ted4_loss_job *j, ring3 ring, int oldest, size_t 
             m[i] = ted4_vf_all(0.0f);
         TED4_UNROLL
         for (int k = 0; k < TAPS; k++) {
-            const int slot = oldest + k < TAPS ? oldest + k : oldest + k - TAPS;
+            const int ring_row = oldest + k < TAPS ? oldest + k : oldest + k - TAPS;
 
             TED4_UNROLL
             for (int i = 0; i < 3; i++)
-                m[i] = ted4_vf_fma(ted4_vf_load(ring[slot][i] + x), ted4_vf_all(GAUSS[k]), m[i]);
+                m[i] =
+                    ted4_vf_fma(ted4_vf_load(ring[ring_row][i] + x), ted4_vf_all(GAUSS[k]), m[i]);
         }
         ssim = m[0] + 2.0f * (a * m[1] + b * m[2]);
         ted4_vf_store_n(out + x,
@@ -319,23 +321,23 @@ void TED4_LEVELED(ted4_loss_gradient)(void *job, size_t i)
     const ted4_loss_job *j = job;
     const piece p = piece_of(j, i);
     ring3 ring;
-    int slot = 0;
+    int ring_row = 0;
 
     for (int r = p.first - HALF; r < p.last + HALF; r++) {
         const size_t at = row_of(j, &p, r < 0 ? 0 : r);
         const float *const d[3] = { j->d[0] + at, j->d[1] + at, j->d[2] + at };
 
         if (r < 0 || r >= j->height)
-            memset(ring[slot], 0, sizeof ring[slot]);
+            memset(ring[ring_row], 0, sizeof ring[ring_row]);
         else
-            filter_derivatives(d, p.n, ring[slot]);
-        slot = slot + 1 < TAPS ? slot + 1 : 0;
+            filter_derivatives(d, p.n, ring[ring_row]);
+        ring_row = ring_row + 1 < TAPS ? ring_row + 1 : 0;
         if (r >= p.first + HALF) {
             const int row = r - HALF;
             const size_t to = (p.channel * (size_t)j->height + (size_t)row) * (size_t)j->width +
                               (size_t)p.x0;
 
-            gradient_row(j, ring, slot, row_of(j, &p, row), p.valid, j->d_image + to);
+            gradient_row(j, ring, ring_row, row_of(j, &p, row), p.valid, j->d_image + to);
         }
     }
 }

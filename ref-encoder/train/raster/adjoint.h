@@ -18,7 +18,7 @@ enum {
 };
 
 struct ted4_adjoint {
-    /* per instance, by slot */
+    /* per instance, by instance */
     ted4_growing sums; /* float [TED4_GRAD_SUMS] */
     ted4_growing sum0; /* float */
     ted4_growing scratch[TED4_BWD_JOBS];

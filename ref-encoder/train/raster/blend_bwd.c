@@ -16,7 +16,7 @@
 
 #include <stdatomic.h>
 
-enum { AHEAD = 8 }; /* slots fetched before they are needed: they lie anywhere in memory */
+enum { AHEAD = 8 }; /* instances fetched before they are needed: they lie anywhere in memory */
 
 typedef struct {
     ted4_adjoint *a;
@@ -44,8 +44,8 @@ typedef struct {
 typedef struct {
     ted4_splat2d
         *splat; /* [n] copies, back to back: the originals lie on as many pages as they are */
-    const uint32_t *slot;    /* [n] */
-    const ted4_reach *reach; /* [n_groups] */
+    const uint32_t *instance; /* [n] */
+    const ted4_reach *reach;  /* [n_groups] */
     uint32_t n, n_groups;
     blended *pair;  /* all pairs, block after block, part after part */
     uint16_t *mask; /* [n] bit b: has a pair in block b */
@@ -268,13 +268,13 @@ TED4_INLINE void sum_part(const ted4_splat2d *g, uint32_t mask, part_state *stat
 static void sum_tile(tile_state *tile, const ted4_adjoint *a)
 {
     for (uint32_t i = tile->n; i-- > 0;) {
-        float *sums = (float *)a->sums.data + (size_t)tile->slot[i] * TED4_GRAD_SUMS,
-              *sum0 = (float *)a->sum0.data + tile->slot[i];
+        float *sums = (float *)a->sums.data + (size_t)tile->instance[i] * TED4_GRAD_SUMS,
+              *sum0 = (float *)a->sum0.data + tile->instance[i];
 
         if (i >= AHEAD) {
             __builtin_prefetch(
-                (float *)a->sums.data + (size_t)tile->slot[i - AHEAD] * TED4_GRAD_SUMS, 1);
-            __builtin_prefetch((float *)a->sum0.data + tile->slot[i - AHEAD], 1);
+                (float *)a->sums.data + (size_t)tile->instance[i - AHEAD] * TED4_GRAD_SUMS, 1);
+            __builtin_prefetch((float *)a->sum0.data + tile->instance[i - AHEAD], 1);
         }
         if (tile->mask[i] != 0) {
             part_sums part[TED4_VECS];
@@ -298,7 +298,7 @@ static int tile_bwd(bwd_job *job, size_t number, ted4_growing *scratch)
     const uint32_t tx = (uint32_t)number % r->tiles_x, ty = (uint32_t)number / r->tiles_x;
     tile_state tile;
 
-    tile.slot = (const uint32_t *)r->slot.data + begin;
+    tile.instance = (const uint32_t *)r->instance.data + begin;
     tile.reach = (const ted4_reach *)r->reach.data + ted4_group_first(number, begin);
     tile.n = n;
     tile.n_groups = (n + TED4_GROUP - 1) / TED4_GROUP;

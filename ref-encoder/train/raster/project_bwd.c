@@ -20,13 +20,13 @@ typedef struct {
     ted4_vf mean[3], scale[3], rot[4], opacity, colour[3], mean2d;
 } grad_lanes;
 
-/* Sums of a register of Gaussians, lane by lane, over their tiles in slot order. Returns which
+/* Sums of a register of Gaussians, lane by lane, over their tiles in instance order. Returns which
  * Gaussians have tiles. */
 static uint32_t add_up(const ted4_adjoint *a, const ted4_raster *r, size_t i, size_t n,
                        ted4_vf sum[TED4_GRAD_SUMS], ted4_vf *sum0)
 {
     typedef float row __attribute__((vector_size(32)));
-    const uint32_t *first = (const uint32_t *)r->first_slot.data + i;
+    const uint32_t *first = (const uint32_t *)r->first_instance.data + i;
     const float *sums = a->sums.data, *one = a->sum0.data;
     float lane[TED4_GRAD_SUMS][TED4_VEC] = { { 0 } }, lane0[TED4_VEC] = { 0 };
     uint32_t visible = 0;

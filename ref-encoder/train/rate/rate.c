@@ -126,7 +126,7 @@ static void lay_out_workspace(arena *a, const ted4_rate *r, ted4_rate_workspace 
     const size_t channels = ted4_row_floats((size_t)l->offset_logit);
     const size_t offsets = ted4_row_floats(l->head.n_offsets);
     const size_t context = ted4_row_floats(l->shape.dim[TED4_FEATURE]);
-    ted4_rate_slot *s = &workspace->slot;
+    ted4_rate_block *s = &workspace->current;
 
     take_acts(a, &r->hyper, 1, &workspace->hyper);
     workspace->context = take(a, context * TED4_RATE_CHUNK);
@@ -179,24 +179,24 @@ static void workspace_release(ted4_rate *r, size_t i)
 
 /* ---- chunks ---- */
 
-static size_t whole_waves(size_t n_slots)
+static size_t whole_waves(size_t n_visible)
 {
     const size_t wave = (size_t)TED4_RATE_CHUNK * TED4_RATE_WAVE;
 
-    return (n_slots + wave - 1) / wave * TED4_RATE_WAVE;
+    return (n_visible + wave - 1) / wave * TED4_RATE_WAVE;
 }
 
-static size_t count_chunks(size_t n_slots)
+static size_t count_chunks(size_t n_visible)
 {
-    const size_t most = (n_slots + TED4_RATE_LEAST - 1) / TED4_RATE_LEAST,
-                 whole = whole_waves(n_slots);
+    const size_t most = (n_visible + TED4_RATE_LEAST - 1) / TED4_RATE_LEAST,
+                 whole = whole_waves(n_visible);
 
     return whole < most ? whole : most;
 }
 
 static size_t chunk_first(const ted4_rate_job *job, size_t chunk)
 {
-    return job->in->n_slots * chunk / job->n_chunks;
+    return job->in->n_visible * chunk / job->n_chunks;
 }
 
 static void run_chunk(void *arg, size_t chunk)
@@ -259,7 +259,7 @@ static int evaluate(ted4_rate_job job, const ted4_parallel *p, float *d_net, dou
 {
     ted4_rate *r = job.rate;
     const ted4_rate_input *in = job.in;
-    const size_t n_chunks = count_chunks(in->n_slots);
+    const size_t n_chunks = count_chunks(in->n_visible);
 
     for (int t = 0; t < TED4_TYPES && bits != NULL; t++)
         bits[t] = 0.0;
@@ -299,7 +299,7 @@ int ted4_rate_lanes(ted4_rate *r, const ted4_rate_input *in, const ted4_parallel
     double bits[TED4_TYPES];
 
     memset(lane_bits, 0,
-           in->n_slots * ted4_row_floats(1u + in->layout->head.n_offsets) * sizeof *lane_bits);
+           in->n_visible * ted4_row_floats(1u + in->layout->head.n_offsets) * sizeof *lane_bits);
     return evaluate((ted4_rate_job) { .rate = r, .in = in, .steps = steps, .lane_bits = lane_bits },
                     p, NULL, bits);
 }

@@ -1,5 +1,5 @@
-/* rate_bwd.c - adjoint of rate.c, one slot at a time; weights once a chunk. spec 7.3, 9.4, 10.
- * Forward was, for a value x of a type with q = Q0 2^v:
+/* rate_bwd.c - adjoint of rate.c, one visible block at a time; weights once a chunk. spec 7.3, 9.4,
+ * 10. Forward was, for a value x of a type with q = Q0 2^v:
  *     k = x / q + n,  bits(k - mu, s),  context = (x + q n) / Q0,  rendered value = x + q n
  * with the residual n held constant. So dk/dx = 1/q, dk/dv = -(x/q) ln 2, d(context)/dx = 1/Q0, d(x
  * + q n)/dv = q n ln 2; and what reaches x from the rendered value is the trainer's business.
@@ -17,7 +17,7 @@ static void slices_backward(const ted4_rate *r, ted4_rate_workspace *workspace, 
     const float *d_out = workspace->hyper.d[r->hyper.n] + i * ted4_row_floats(l->shape.n_outputs) +
                          ted4_row_floats(l->shape.first_output[TED4_FEATURE]);
 
-    memset(workspace->slot.d_context, 0, ted4_row_floats(f) * sizeof(float));
+    memset(workspace->current.d_context, 0, ted4_row_floats(f) * sizeof(float));
     for (size_t m = 1, known = 0; m < l->head.n_slices; m++) {
         const ted4_rate_net *n = &r->slice[m];
         const size_t width = ted4_row_floats((size_t)n->dim[1]);
@@ -30,15 +30,16 @@ static void slices_backward(const ted4_rate *r, ted4_rate_workspace *workspace, 
         memcpy(d_y + half, d_out + ted4_row_floats(known + f), half * sizeof *d_y);
         TED4_LEVELED(ted4_dense_backward_x)(&n->layer[1], d_y, d_hidden, 0);
         ted4_relu_backward(workspace->slice[m].x[1] + i * width, width, d_hidden);
-        TED4_LEVELED(ted4_dense_backward_x)(&n->layer[0], d_hidden, workspace->slot.d_context, 1);
+        TED4_LEVELED(ted4_dense_backward_x)
+        (&n->layer[0], d_hidden, workspace->current.d_context, 1);
     }
 }
 
 /* dL/dx of one component, added to d_x, and dL/d(v ln 2), added to d_v. d_context and d_value may
  * be NULL; d_value is read before d_x, which may be the same row, is written. */
-static void value_backward(const ted4_rate_job *job, const ted4_rate_slot *s, int t, size_t channel,
-                           const float *q, const float *d_context, const float *d_value,
-                           const int32_t *on, float *d_x, float *d_v)
+static void value_backward(const ted4_rate_job *job, const ted4_rate_block *s, int t,
+                           size_t channel, const float *q, const float *d_context,
+                           const float *d_value, const int32_t *on, float *d_x, float *d_v)
 {
     const size_t at = ted4_row_floats(channel);
     const float unit = 1.0f / job->in->layout->head.step[t];
@@ -65,21 +66,21 @@ static void value_backward(const ted4_rate_job *job, const ted4_rate_slot *s, in
     }
 }
 
-static void type_backward(const ted4_rate_job *job, ted4_rate_workspace *workspace, size_t slot,
+static void type_backward(const ted4_rate_job *job, ted4_rate_workspace *workspace, size_t visible,
                           int t, const float *v, float *d_v)
 {
     const ted4_layout *l = job->in->layout;
-    const float *q = job->steps[slot] + ted4_row_floats((size_t)t);
-    const float *d_value = job->d_value != NULL ? job->d_value[slot] : NULL;
-    const float *d_context = t == TED4_FEATURE ? workspace->slot.d_context : NULL;
+    const float *q = job->steps[visible] + ted4_row_floats((size_t)t);
+    const float *d_value = job->d_value != NULL ? job->d_value[visible] : NULL;
+    const float *d_context = t == TED4_FEATURE ? workspace->current.d_context : NULL;
     int32_t on[TED4_LANES];
 
-    ted4_lane_set(job->in->lanes[slot], on);
+    ted4_lane_set(job->in->lanes[visible], on);
     for (size_t c = 0; c < l->shape.dim[t]; c++) {
         const size_t channel = (size_t)l->first[t] + c;
 
-        value_backward(job, &workspace->slot, t, channel, q, d_context, d_value, on,
-                       job->d_attr[slot] + ted4_row_floats(channel), d_v);
+        value_backward(job, &workspace->current, t, channel, q, d_context, d_value, on,
+                       job->d_attr[visible] + ted4_row_floats(channel), d_v);
         d_context = d_context != NULL ? d_context + TED4_LANES : NULL;
     }
 #pragma omp simd
@@ -99,16 +100,16 @@ static void mask_backward(float weight, const float *bits, const int32_t *on, co
     }
 }
 
-static void logits_backward(const ted4_rate_job *job, const ted4_rate_slot *s, size_t slot)
+static void logits_backward(const ted4_rate_job *job, const ted4_rate_block *s, size_t visible)
 {
     const ted4_layout *l = job->in->layout;
     const float weight = job->in->bit_weight;
-    const float *attr = job->in->attr[slot];
-    float *d = job->d_attr[slot];
+    const float *attr = job->in->attr[visible];
+    float *d = job->d_attr[visible];
     int32_t in_use[TED4_LANES], used[TED4_LANES];
     const size_t moves = ted4_row_floats((size_t)l->temporal_logit);
 
-    ted4_lane_set(job->in->lanes[slot], in_use);
+    ted4_lane_set(job->in->lanes[visible], in_use);
     for (int j = 0; j < TED4_LANES; j++)
         used[j] = -(s->used[j] > 0.0f);
     for (size_t k = 0; l->head.offset_mask && k < l->head.n_offsets; k++) {
@@ -139,8 +140,8 @@ static void hyper_backward(const ted4_rate *r, ted4_rate_workspace *workspace, s
     }
 }
 
-void ted4_rate_slot_backward(const ted4_rate_job *job, ted4_rate_workspace *workspace, size_t i,
-                             size_t slot)
+void ted4_rate_block_backward(const ted4_rate_job *job, ted4_rate_workspace *workspace, size_t i,
+                              size_t visible)
 {
     const ted4_rate *r = job->rate;
     const ted4_shape *shape = &r->layout.shape;
@@ -156,27 +157,28 @@ void ted4_rate_slot_backward(const ted4_rate_job *job, ted4_rate_workspace *work
         if (shape->dim[t] == 0)
             continue;
         if (ted4_rate_coded(job, t))
-            type_backward(job, workspace, slot, t, v, d_v);
+            type_backward(job, workspace, visible, t, v, d_v);
         else
             memset(d_out + out + ted4_row_floats(shape->first_output[t]), 0,
                    ted4_row_floats(2 * (size_t)shape->dim[t]) * sizeof *d_out);
         v += TED4_LANES;
         d_v += TED4_LANES;
     }
-    logits_backward(job, &workspace->slot, slot);
+    logits_backward(job, &workspace->current, visible);
     hyper_backward(r, workspace, i);
 }
 
-/* Layer k of a network over all slots. x: its inputs. */
+/* Layer k of a network over all visible blocks. x: its inputs. */
 static void layer_weights(const ted4_rate_net *n, int k, const float *x, size_t x_stride,
-                          const float *d, size_t n_slots, float *d_net)
+                          const float *d, size_t n_visible, float *d_net)
 {
     TED4_LEVELED(ted4_dense_backward_w)
-    (n->dim[k], n->dim[k + 1], x, x_stride, d, ted4_row_floats((size_t)n->dim[k + 1]), n_slots,
+    (n->dim[k], n->dim[k + 1], x, x_stride, d, ted4_row_floats((size_t)n->dim[k + 1]), n_visible,
      d_net + n->w[k], d_net + n->b[k]);
 }
 
-void ted4_rate_weights_backward(const ted4_rate *r, ted4_rate_workspace *workspace, size_t n_slots)
+void ted4_rate_weights_backward(const ted4_rate *r, ted4_rate_workspace *workspace,
+                                size_t n_visible)
 {
     const ted4_layout *l = &r->layout;
     const size_t context = ted4_row_floats(l->shape.dim[TED4_FEATURE]);
@@ -185,12 +187,12 @@ void ted4_rate_weights_backward(const ted4_rate *r, ted4_rate_workspace *workspa
     memset(d_net, 0, l->shape.n_nete * sizeof *d_net);
     for (int k = 0; k < r->hyper.n; k++)
         layer_weights(&r->hyper, k, workspace->hyper.x[k], ted4_row_floats((size_t)r->hyper.dim[k]),
-                      workspace->hyper.d[k + 1], n_slots, d_net);
+                      workspace->hyper.d[k + 1], n_visible, d_net);
     for (int m = 1; m < l->head.n_slices; m++) {
         const ted4_rate_net *n = &r->slice[m];
         const ted4_rate_acts *a = &workspace->slice[m];
 
-        layer_weights(n, 0, workspace->context, context, a->d[1], n_slots, d_net);
-        layer_weights(n, 1, a->x[1], ted4_row_floats((size_t)n->dim[1]), a->d[2], n_slots, d_net);
+        layer_weights(n, 0, workspace->context, context, a->d[1], n_visible, d_net);
+        layer_weights(n, 1, a->x[1], ted4_row_floats((size_t)n->dim[1]), a->d[2], n_visible, d_net);
     }
 }

@@ -1,26 +1,27 @@
-/* rate_decoded.c - TED4_QUANT_INTEGER: mu, sigma and steps of a slot exactly as a decoder has them,
- * from norm/prior.h. spec 7.3, 10.1, 10.3. The float networks still run, for their ReLUs decide
- * where gradients go; here their outputs are replaced by what the integers say.
+/* rate_decoded.c - TED4_QUANT_INTEGER: mu, sigma and steps of a visible block exactly as a decoder
+ * has them, from norm/prior.h. spec 7.3, 10.1, 10.3. The float networks still run, for their ReLUs
+ * decide where gradients go; here their outputs are replaced by what the integers say.
  * SPDX-License-Identifier: BSD-2-Clause */
 #include "rate_lanes.h"
 
 #include "base/bytes.h"
 #include "norm/half.h"
 
-/* Hyperprior of a slot: its outputs stay in the workspace; v and the steps replace those of the
- * float network. */
-void ted4_rate_integer_steps(const ted4_rate_job *job, ted4_rate_workspace *workspace, size_t slot,
-                             float *v, float *q)
+/* Hyperprior of a visible block: its outputs stay in the workspace; v and the steps replace those
+ * of the float network. */
+void ted4_rate_integer_steps(const ted4_rate_job *job, ted4_rate_workspace *workspace,
+                             size_t visible, float *v, float *q)
 {
     const ted4_shape *shape = &job->in->layout->shape;
-    const float *p = job->in->position[slot];
+    const float *p = job->in->position[visible];
     const int32_t *out = workspace->integer + shape->first_step_output * TED4_PRIOR_BLOCK;
     uint16_t position[TED4_LANES][3];
 
     for (size_t j = 0; j < TED4_LANES; j++)
         for (size_t a = 0; a < 3; a++)
-            position[j][a] =
-                job->in->lanes[slot] >> j & 1 ? ted4_float_to_half(p[ted4_row_floats(a) + j]) : 0;
+            position[j][a] = job->in->lanes[visible] >> j & 1
+                                 ? ted4_float_to_half(p[ted4_row_floats(a) + j])
+                                 : 0;
     ted4_prior_hyper(&job->integer->prior, position[0], TED4_LANES, workspace->integer);
     for (int t = 0; t < TED4_TYPES; t++, q += TED4_LANES) {
         if (shape->dim[t] == 0)
@@ -44,8 +45,8 @@ static void slices(const ted4_rate_job *job, ted4_rate_workspace *workspace, con
     const ted4_layout *l = job->in->layout;
     const size_t f = l->shape.dim[TED4_FEATURE];
     const size_t first = ted4_row_floats((size_t)l->first[TED4_FEATURE]);
-    const float *x = workspace->slot.value + first;
-    const float *n = workspace->slot.residual + first;
+    const float *x = workspace->current.value + first;
+    const float *n = workspace->current.residual + first;
     int32_t *mu = workspace->integer;
     int32_t added[2 * TED4_MAX_FEATURE * TED4_PRIOR_BLOCK];
     int16_t context[TED4_MAX_FEATURE * TED4_PRIOR_BLOCK];

@@ -1,5 +1,5 @@
-/* rate_fwd.c - the rate model of a chunk of slots (rate.c says what of): hyperprior, steps,
- * contexts, bits; gradients through rate_bwd.c. spec 7.3, 9.4, 10.
+/* rate_fwd.c - the rate model of a chunk of visible blocks (rate.c says what of): hyperprior,
+ * steps, contexts, bits; gradients through rate_bwd.c. spec 7.3, 9.4, 10.
  * SPDX-License-Identifier: BSD-2-Clause */
 #include "rate_lanes.h"
 
@@ -62,16 +62,16 @@ static void step_sizes(const ted4_layout *l, const float *v, float *q)
     }
 }
 
-/* The hyperprior up to its rows v, and the steps q. The other outputs come in slot_forward. */
+/* The hyperprior up to its rows v, and the steps q. The other outputs come in block_forward. */
 static void steps_forward(const ted4_rate_job *job, ted4_rate_workspace *workspace, size_t i,
-                          size_t slot)
+                          size_t visible)
 {
     const ted4_rate *r = job->rate;
     const ted4_rate_net *h = &r->hyper;
     const ted4_layout *l = job->in->layout;
     float *x = workspace->hyper.x[0] + i * ted4_row_floats((size_t)h->dim[0]);
 
-    encode_positions(&l->head, job->in->position[slot], job->in->lanes[slot], x);
+    encode_positions(&l->head, job->in->position[visible], job->in->lanes[visible], x);
     for (int k = 0; k < h->n - 1; k++) {
         float *y = workspace->hyper.x[k + 1] + i * ted4_row_floats((size_t)h->dim[k + 1]);
 
@@ -82,22 +82,22 @@ static void steps_forward(const ted4_rate_job *job, ted4_rate_workspace *workspa
                ted4_row_floats(l->shape.first_step_output);
 
     TED4_LEVELED(ted4_dense_forward)(&r->step, x, v, 0);
-    step_sizes(l, v, job->steps[slot]);
+    step_sizes(l, v, job->steps[visible]);
     if (job->integer != NULL)
-        ted4_rate_integer_steps(job, workspace, slot, v, job->steps[slot]);
+        ted4_rate_integer_steps(job, workspace, visible, v, job->steps[visible]);
 }
 
 /* Values and masks of the lanes in use. */
-static void load_slot(const ted4_rate_job *job, ted4_rate_slot *s, size_t slot)
+static void load_block(const ted4_rate_job *job, ted4_rate_block *s, size_t visible)
 {
     const ted4_layout *l = job->in->layout;
-    const float *attr = job->in->attr[slot];
+    const float *attr = job->in->attr[visible];
     const float *logit = attr + ted4_row_floats((size_t)l->offset_logit);
     const float *moves = attr + ted4_row_floats((size_t)l->temporal_logit);
     const int32_t all = l->head.offset_mask ? 0 : -1, all_move = l->head.temporal_mask ? 0 : -1;
     int32_t on[TED4_LANES], any[TED4_LANES] = { 0 };
 
-    ted4_lane_set(job->in->lanes[slot], on);
+    ted4_lane_set(job->in->lanes[visible], on);
     for (size_t c = 0; c < (size_t)l->offset_logit; c++) {
         const float *from = attr + ted4_row_floats(c);
         float *to = s->value + ted4_row_floats(c);
@@ -127,15 +127,15 @@ static void load_slot(const ted4_rate_job *job, ted4_rate_slot *s, size_t slot)
 
 /* spec 10.3: contexts, and what each slice network adds to mu and s of its slice. */
 static void slices_forward(const ted4_rate_job *job, ted4_rate_workspace *workspace, size_t i,
-                           size_t slot)
+                           size_t visible)
 {
     const ted4_rate *r = job->rate;
     const ted4_layout *l = job->in->layout;
     const size_t f = l->shape.dim[TED4_FEATURE];
     const size_t first = ted4_row_floats((size_t)l->first[TED4_FEATURE]);
-    const float *value = workspace->slot.value + first;
-    const float *residual = workspace->slot.residual + first;
-    const float *q = job->steps[slot] + ted4_row_floats(TED4_FEATURE);
+    const float *value = workspace->current.value + first;
+    const float *residual = workspace->current.residual + first;
+    const float *q = job->steps[visible] + ted4_row_floats(TED4_FEATURE);
     const float unit = 1.0f / l->head.step[TED4_FEATURE];
     float *context = workspace->context + i * ted4_row_floats(f);
     float *out = workspace->hyper.x[r->hyper.n] + i * ted4_row_floats(l->shape.n_outputs) +
@@ -168,7 +168,7 @@ static void slices_forward(const ted4_rate_job *job, ted4_rate_workspace *worksp
 /* ---- bits ---- */
 
 /* The lanes that count component c of type t, and where its bits are gathered. */
-static const float *component_mask(ted4_rate_slot *s, int t, size_t c, float *type_bits,
+static const float *component_mask(ted4_rate_block *s, int t, size_t c, float *type_bits,
                                    float **gathered)
 {
     const size_t k = ted4_row_floats(c / 3); /* offset 3k + j: spec 10.2 */
@@ -209,15 +209,15 @@ static double masked_sum(const float *bits, const float *mask)
     return sum;
 }
 
-/* Adds the bits of a type to those of the slot's anchors; offsets are apart. total: of a type that
- * is coded for every anchor in use. */
-static void tell_lanes(const ted4_rate_job *job, const ted4_rate_slot *s, size_t slot, int t,
+/* Adds the bits of a type to those of the visible block's anchors; offsets are apart. total: of a
+ * type that is coded for every anchor in use. */
+static void tell_lanes(const ted4_rate_job *job, const ted4_rate_block *s, size_t visible, int t,
                        const float *total)
 {
     const size_t K = job->in->layout->head.n_offsets;
     const float *bits = t == TED4_OFFSET ? s->kept_bits : t == TED4_PHI ? s->phi_bits : total;
     const float *mask = t == TED4_OFFSET ? s->kept : t == TED4_PHI ? s->dynamic : s->used;
-    float *to = job->lane_bits + slot * ted4_row_floats(1 + K) +
+    float *to = job->lane_bits + visible * ted4_row_floats(1 + K) +
                 (t == TED4_OFFSET ? TED4_LANES : 0);
 
     for (size_t j = 0; j < (t == TED4_OFFSET ? ted4_row_floats(K) : TED4_LANES); j++)
@@ -225,7 +225,7 @@ static void tell_lanes(const ted4_rate_job *job, const ted4_rate_slot *s, size_t
 }
 
 static void type_bits(const ted4_rate_job *job, ted4_rate_workspace *workspace, size_t i,
-                      size_t slot, int t)
+                      size_t visible, int t)
 {
     const ted4_shape *shape = &job->in->layout->shape;
     const size_t out = i * ted4_row_floats(shape->n_outputs) +
@@ -233,9 +233,9 @@ static void type_bits(const ted4_rate_job *job, ted4_rate_workspace *workspace, 
     const size_t dim = shape->dim[t], s_rows = ted4_row_floats(dim);
     const float *mu = workspace->hyper.x[job->rate->hyper.n] + out;
     float *d_mu = workspace->hyper.d[job->rate->hyper.n] + out;
-    const float *q = job->steps[slot] + ted4_row_floats((size_t)t);
+    const float *q = job->steps[visible] + ted4_row_floats((size_t)t);
     float total[TED4_LANES] = { 0 };
-    ted4_rate_slot *s = &workspace->slot;
+    ted4_rate_block *s = &workspace->current;
 
     for (size_t c = 0; c < dim; c++, mu += TED4_LANES, d_mu += TED4_LANES) {
         const size_t at = ted4_row_floats((size_t)job->in->layout->first[t] + c);
@@ -249,7 +249,7 @@ static void type_bits(const ted4_rate_job *job, ted4_rate_workspace *workspace, 
                        d_mu + s_rows, gathered);
     }
     if (job->lane_bits != NULL)
-        tell_lanes(job, s, slot, t, total);
+        tell_lanes(job, s, visible, t, total);
     if (t == TED4_OFFSET)
         for (size_t k = 0; k < dim / 3; k++)
             workspace->sums->bits[t] +=
@@ -259,8 +259,8 @@ static void type_bits(const ted4_rate_job *job, ted4_rate_workspace *workspace, 
                                                   : masked_sum(total, s->used);
 }
 
-static void slot_forward(const ted4_rate_job *job, ted4_rate_workspace *workspace, size_t i,
-                         size_t slot)
+static void block_forward(const ted4_rate_job *job, ted4_rate_workspace *workspace, size_t i,
+                          size_t visible)
 {
     const ted4_rate *r = job->rate;
     const ted4_rate_input *in = job->in;
@@ -268,20 +268,21 @@ static void slot_forward(const ted4_rate_job *job, ted4_rate_workspace *workspac
     const int last = h->n - 1;
     const float *hidden = workspace->hyper.x[last] + i * ted4_row_floats((size_t)h->dim[last]);
     float *out = workspace->hyper.x[h->n] + i * ted4_row_floats((size_t)h->dim[h->n]);
-    ted4_rate_slot *s = &workspace->slot;
+    ted4_rate_block *s = &workspace->current;
 
-    load_slot(job, s, slot);
+    load_block(job, s, visible);
     TED4_LEVELED(ted4_dense_forward)(&h->layer[last], hidden, out, 0);
     TED4_LEVELED(ted4_residuals)
-    (in->layout, in->quant, s->value, job->steps[slot], in->block[slot], in->key, s->residual);
-    slices_forward(job, workspace, i, slot);
+    (in->layout, in->quant, s->value, job->steps[visible], in->block[visible], in->key,
+     s->residual);
+    slices_forward(job, workspace, i, visible);
     if (job->integer != NULL)
-        ted4_rate_integer_outputs(job, workspace, job->steps[slot], out);
+        ted4_rate_integer_outputs(job, workspace, job->steps[visible], out);
     memset(s->kept_bits, 0, ted4_row_floats(in->layout->head.n_offsets) * sizeof *s->kept_bits);
     memset(s->phi_bits, 0, TED4_LANES * sizeof *s->phi_bits);
     for (int t = 0; t < TED4_TYPES; t++)
         if (ted4_rate_coded(job, t))
-            type_bits(job, workspace, i, slot, t);
+            type_bits(job, workspace, i, visible, t);
 }
 
 void TED4_LEVELED(ted4_rate_chunk)(const ted4_rate_job *job, ted4_rate_workspace *workspace,
@@ -292,9 +293,9 @@ void TED4_LEVELED(ted4_rate_chunk)(const ted4_rate_job *job, ted4_rate_workspace
         steps_forward(job, workspace, i, first + i);
         if (job->steps_only)
             continue;
-        slot_forward(job, workspace, i, first + i);
+        block_forward(job, workspace, i, first + i);
         if (job->d_attr != NULL)
-            ted4_rate_slot_backward(job, workspace, i, first + i);
+            ted4_rate_block_backward(job, workspace, i, first + i);
     }
     if (job->d_attr != NULL && !job->steps_only)
         ted4_rate_weights_backward(job->rate, workspace, n);

@@ -1,5 +1,5 @@
 /* rate_integer.c - TED4_QUANT_INTEGER: the integer networks, made when they have changed. What they
- * do to a slot is in rate_decoded.c.
+ * do to a visible block is in rate_decoded.c.
  * SPDX-License-Identifier: BSD-2-Clause */
 #include "rate_parts.h"
 

@@ -7,20 +7,21 @@
 #include "rate_parts.h"
 
 /* A file calls the copy of its own level. */
-#define ted4_rate_slot_backward    TED4_LEVELED(ted4_rate_slot_backward)
+#define ted4_rate_block_backward   TED4_LEVELED(ted4_rate_block_backward)
 #define ted4_rate_weights_backward TED4_LEVELED(ted4_rate_weights_backward)
 #define ted4_rate_integer_steps    TED4_LEVELED(ted4_rate_integer_steps)
 #define ted4_rate_integer_outputs  TED4_LEVELED(ted4_rate_integer_outputs)
 
-/* rate_bwd.c. Gradients of slot i of the workspace's chunk, after its bits; then, when all slots
- * are done, those of the weights. */
-void ted4_rate_slot_backward(const ted4_rate_job *job, ted4_rate_workspace *workspace, size_t i,
-                             size_t slot);
-void ted4_rate_weights_backward(const ted4_rate *r, ted4_rate_workspace *workspace, size_t n_slots);
+/* rate_bwd.c. Gradients of visible block i of the workspace's chunk, after its bits; then, when all
+ * visible blocks are done, those of the weights. */
+void ted4_rate_block_backward(const ted4_rate_job *job, ted4_rate_workspace *workspace, size_t i,
+                              size_t visible);
+void ted4_rate_weights_backward(const ted4_rate *r, ted4_rate_workspace *workspace,
+                                size_t n_visible);
 
 /* rate_decoded.c */
-void ted4_rate_integer_steps(const ted4_rate_job *job, ted4_rate_workspace *workspace, size_t slot,
-                             float *v, float *q);
+void ted4_rate_integer_steps(const ted4_rate_job *job, ted4_rate_workspace *workspace,
+                             size_t visible, float *v, float *q);
 void ted4_rate_integer_outputs(const ted4_rate_job *job, ted4_rate_workspace *workspace,
                                const float *q, float *out);
 

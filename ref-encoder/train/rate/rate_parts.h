@@ -1,5 +1,5 @@
 /* rate_parts.h - what the files of the rate model share: packed networks, the workspace of a chunk
- * of slots, and the steps between them. Depends on model.h. For the rate model only.
+ * of visible blocks, and the steps between them. Depends on model.h. For the rate model only.
  * SPDX-License-Identifier: BSD-2-Clause */
 #ifndef TED4_RATE_PARTS_H
 #define TED4_RATE_PARTS_H
@@ -10,10 +10,11 @@
 #include "norm/prior.h"
 #include "rate.h"
 
-/* Slots are worked on in chunks of nearly equal size, each with its own sums; chunks of a wave run
- * at the same time, and their sums are added in order. So results do not depend on threads, and
- * memory does not grow with the number of slots. Where slots are few, chunks are smaller rather
- * than fewer than a wave, but never below the least: each adds a whole set of gradients. */
+/* Visible blocks are worked on in chunks of nearly equal size, each with its own sums; chunks of a
+ * wave run at the same time, and their sums are added in order. So results do not depend on
+ * threads, and memory does not grow with the number of visible blocks. Where visible blocks are
+ * few, chunks are smaller rather than fewer than a wave, but never below the least: each adds a
+ * whole set of gradients. */
 enum { TED4_RATE_CHUNK = 8, TED4_RATE_LEAST = 2, TED4_RATE_WAVE = 32 };
 
 /* spec 10.1: log2(sigma / step) and log2(q / Q0) that indices can express. */
@@ -29,13 +30,14 @@ typedef struct {
     ted4_dense layer[TED4_MAX_LAYERS];
 } ted4_rate_net;
 
-/* Activations of the slots of a chunk, and the gradients of all but the inputs: x[i] is
+/* Activations of the visible blocks of a chunk, and the gradients of all but the inputs: x[i] is
  * [CHUNK][dim[i]][32], d[i] likewise. */
 typedef struct {
     float *x[TED4_MAX_LAYERS + 1], *d[TED4_MAX_LAYERS + 1];
 } ted4_rate_acts;
 
-/* One slot on its way forward and back. A: attribute channels, all those before the mask logits. */
+/* One visible block on its way forward and back. A: attribute channels, all those before the mask
+ * logits. */
 typedef struct {
     float *value;     /* [A][32] raw values, 0 in unused lanes */
     float *residual;  /* [A][32] n in k = x / q + n: noise, or what rounding adds; a constant for
@@ -47,7 +49,7 @@ typedef struct {
     float *kept_bits; /* [K][32] bits of an offset, masked or not */
     float *phi_bits;  /* [32] */
     float *d_context; /* [F][32] */
-} ted4_rate_slot;
+} ted4_rate_block;
 
 /* What a chunk adds to the results. */
 typedef struct {
@@ -61,7 +63,7 @@ typedef struct {
     ted4_rate_acts hyper, slice[TED4_MAX_SLICES];
     float *context;   /* [CHUNK][F][32]: inputs of all slice networks */
     int32_t *integer; /* [P][64] outputs of the integer hyperprior */
-    ted4_rate_slot slot;
+    ted4_rate_block current;
     ted4_rate_sums *sums; /* of the chunk that is being worked on */
 } ted4_rate_workspace;
 
@@ -93,12 +95,12 @@ typedef struct {
     const ted4_rate_input *in;
     const float *const *d_value; /* may be NULL */
     float *const *d_attr;        /* NULL: no gradients */
-    float *const *steps;         /* out: [TYPES][32] q of each slot */
+    float *const *steps;         /* out: [TYPES][32] q of each visible block */
     size_t first, n_chunks;      /* the wave's first chunk; all there are */
     int steps_only;
     const ted4_rate_integer *integer; /* NULL: the float networks alone */
-    float *lane_bits; /* out: [slot][1 + K][32] bits of each anchor, then of each of its offsets;
-                         NULL: not wanted */
+    float *lane_bits; /* out: [visible block][1 + K][32] bits of each anchor, then of each of its
+                         offsets; NULL: not wanted */
 } ted4_rate_job;
 
 /* Whether bits of this type count: tau is not there in the static phase. */
@@ -107,7 +109,7 @@ static inline int ted4_rate_coded(const ted4_rate_job *job, int type)
     return job->in->layout->shape.dim[type] > 0 && (type != TED4_TAU || job->in->activation);
 }
 
-/* rate_fwd.c: n slots of a chunk from the first on. */
+/* rate_fwd.c: n visible blocks of a chunk from the first on. */
 TED4_EACH_LEVEL(void, ted4_rate_chunk, const ted4_rate_job *job, ted4_rate_workspace *workspace,
                 size_t first, size_t n);
 

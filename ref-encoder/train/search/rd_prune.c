@@ -42,24 +42,24 @@ static int learn(ted4_trainer *t, worth *w)
     w->bits = malloc(t->anchors.n_blocks * (1 + K) * TED4_LANES * sizeof *w->bits);
     if (w->use == NULL || w->bits == NULL)
         return ted4_trainer_fail(t, "no memory to weigh anchors");
-    if (ted4_opacity_sensitivity(t, w->use) != 0 || ted4_slots_fill(t, NULL) != 0)
+    if (ted4_opacity_sensitivity(t, w->use) != 0 || ted4_visible_blocks_fill(t, NULL) != 0)
         return -1;
 
     const ted4_rate_input in = { &t->layout,
                                  t->net.value,
                                  t->net.shift,
-                                 t->slots.n,
-                                 t->slots.raw,
-                                 t->slots.position,
-                                 t->slots.lanes,
-                                 t->slots.block,
+                                 t->visible_blocks.n,
+                                 t->visible_blocks.raw,
+                                 t->visible_blocks.position,
+                                 t->visible_blocks.lanes,
+                                 t->visible_blocks.block,
                                  0,
                                  TED4_QUANT_INTEGER,
                                  0.0f,
                                  0.0f,
                                  t->layout.head.activation };
 
-    return ted4_rate_lanes(t->work.rate, &in, t->parallel, t->slots.steps, w->bits) != 0
+    return ted4_rate_lanes(t->work.rate, &in, t->parallel, t->visible_blocks.steps, w->bits) != 0
                ? ted4_trainer_fail(t, "no memory to weigh anchors")
                : 0;
 }

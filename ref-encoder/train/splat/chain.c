@@ -37,7 +37,7 @@ void ted4_gen_chain_weights(const ted4_generator *g, const ted4_gen_chain *c, fl
 
         TED4_LEVELED(ted4_dense_backward_w)
         (in, out, ted4_gen_plane(planes, layer->x), ted4_gen_stride(g),
-         ted4_gen_plane(d, layer->y - g->plane.outputs), g->d_slot, n, dw,
+         ted4_gen_plane(d, layer->y - g->plane.outputs), g->d_size, n, dw,
          dw + (size_t)in * (size_t)out);
     }
 }

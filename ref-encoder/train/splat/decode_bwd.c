@@ -8,18 +8,18 @@
 #include <math.h>
 #include <string.h>
 
-/* One slot on its way back. */
+/* One visible block on its way back. */
 typedef struct {
     const ted4_generator *g;
     float *planes;              /* saved by forward */
     float *d;                   /* gradients of layer outputs, planes */
-    float *d_attr;              /* the slot's block */
+    float *d_attr;              /* gradients of its values */
     float *d_feature, *d_moved; /* F + 3 planes each: of the inputs of heads of f, f' */
     int32_t on[TED4_LANES];
     float d_size[6 * TED4_LANES], d_position[3 * TED4_LANES], d_active[TED4_LANES];
-} slot_state;
+} block_state;
 
-static float *d_plane(const slot_state *s, int plane)
+static float *d_plane(const block_state *s, int plane)
 {
     return ted4_gen_plane(s->d, plane - s->g->plane.outputs);
 }
@@ -34,7 +34,7 @@ static inline float mask_slope(float logit)
 
 /* Forward was, with s the sigmoid of the scale outputs:
  *     mean = position + offset size, scale = size' s. */
-static void geometry_backward(slot_state *s, int k, const float *const *gr)
+static void geometry_backward(block_state *s, int k, const float *const *gr)
 {
     const ted4_generator *g = s->g;
     const int first = g->layout.first[TED4_OFFSET] + 3 * k;
@@ -64,7 +64,7 @@ static void geometry_backward(slot_state *s, int k, const float *const *gr)
 }
 
 /* Forward was r = q / |q|, or (1, 0, 0, 0) where q is too short: dq = (dr - (dr r) r) / |q|. */
-static void rotation_backward(slot_state *s, int k, const float *const *gr)
+static void rotation_backward(block_state *s, int k, const float *const *gr)
 {
     const int first = s->g->plane.covariance + 7 * k + 3;
     const float *q = ted4_gen_plane(s->planes, first);
@@ -91,7 +91,7 @@ static void rotation_backward(slot_state *s, int k, const float *const *gr)
 }
 
 /* Where squares of q overflow, forward was r = 0 whatever q: no gradient. */
-static void endless_rotation_backward(slot_state *s, int k)
+static void endless_rotation_backward(block_state *s, int k)
 {
     const int first = s->g->plane.covariance + 7 * k + 3;
     const float *q = ted4_gen_plane(s->planes, first);
@@ -108,7 +108,7 @@ static void endless_rotation_backward(slot_state *s, int k)
     }
 }
 
-static void colour_backward(slot_state *s, int k, const float *const *gr)
+static void colour_backward(block_state *s, int k, const float *const *gr)
 {
     const float *v = ted4_gen_plane(s->planes, s->g->plane.colour + 3 * k);
     float *d_y = d_plane(s, s->g->plane.colour + 3 * k);
@@ -123,7 +123,7 @@ static void colour_backward(slot_state *s, int k, const float *const *gr)
 }
 
 /* Forward was o = 2 sigmoid(2 y) - 1, opacity = mask max(o, 0) A; do/dy = 1 - o o. */
-static void opacity_backward(slot_state *s, int k, const float *const *gr)
+static void opacity_backward(block_state *s, int k, const float *const *gr)
 {
     const ted4_generator *g = s->g;
     const float *o = ted4_gen_plane(s->planes, g->plane.opacity + k);
@@ -145,12 +145,12 @@ static void opacity_backward(slot_state *s, int k, const float *const *gr)
     }
 }
 
-static void splats_backward(slot_state *s, const ted4_splat_grads *gr, size_t slot)
+static void splats_backward(block_state *s, const ted4_splat_grads *gr, size_t visible)
 {
     const int n = s->g->layout.head.n_offsets;
 
     for (int k = 0; k < n; k++) {
-        const size_t at = (slot * (size_t)n + (size_t)k) * TED4_LANES;
+        const size_t at = (visible * (size_t)n + (size_t)k) * TED4_LANES;
         const float *d[TED4_GEN_ARRAYS];
 
         for (int c = 0; c < 3; c++) {
@@ -169,7 +169,7 @@ static void splats_backward(slot_state *s, const ted4_splat_grads *gr, size_t sl
     }
 }
 
-static void heads_backward(slot_state *s)
+static void heads_backward(block_state *s)
 {
     const ted4_generator *g = s->g;
     const int moves = g->chain[TED4_NET_DEFORM].n > 0;
@@ -181,7 +181,7 @@ static void heads_backward(slot_state *s)
 }
 
 /* Forward was p' = p + m y, f' = f + m y'. d_y: the gradient of y times m. */
-static void deform_backward(slot_state *s)
+static void deform_backward(block_state *s)
 {
     const ted4_generator *g = s->g;
     const int f = g->layout.head.feature_dim;
@@ -211,7 +211,7 @@ static void deform_backward(slot_state *s)
     ted4_gen_chain_backward(g, &g->chain[TED4_NET_DEFORM], s->planes, s->d, d_phi, 0);
 }
 
-static void feature_backward(slot_state *s)
+static void feature_backward(block_state *s)
 {
     const ted4_generator *g = s->g;
     const int n = g->layout.head.feature_dim * TED4_LANES;
@@ -224,7 +224,7 @@ static void feature_backward(slot_state *s)
 }
 
 /* Forward was S = 2^l or max(l, 2^-20), where what lies below can come back. */
-static void sizes_backward(slot_state *s)
+static void sizes_backward(block_state *s)
 {
     const ted4_generator *g = s->g;
     const float *size = ted4_gen_plane(s->planes, g->plane.size);
@@ -243,7 +243,7 @@ static void sizes_backward(slot_state *s)
 
 /* Forward was u = (t - a) / b, b = max(2^tau, TED4_EDGE_MIN), A = exp(-u u): dA/da = 2 u A / b,
  * dA/db = 2 u u A / b. */
-static void activation_backward(slot_state *s, const ted4_generate_input *in)
+static void activation_backward(block_state *s, const ted4_generate_input *in)
 {
     const ted4_generator *g = s->g;
     const float t = (float)in->num / (float)in->den;
@@ -269,22 +269,22 @@ static void activation_backward(slot_state *s, const ted4_generate_input *in)
     }
 }
 
-/* d: the slot's planes of layer outputs; d_inputs: scratch for the inputs of the heads. */
-static void backward_slot(const ted4_gen_job *t, size_t slot, float *d, float *d_inputs)
+/* d: the visible block's planes of layer outputs; d_inputs: scratch for the inputs of the heads. */
+static void backward_block(const ted4_gen_job *t, size_t visible, float *d, float *d_inputs)
 {
     const ted4_layout *l = &t->g->layout;
-    slot_state s;
+    block_state s;
 
     memset(&s, 0, sizeof s);
     s.g = t->g;
-    s.planes = ted4_gen_slot(t->g, slot);
+    s.planes = ted4_gen_saved(t->g, visible);
     s.d = d;
-    s.d_attr = t->d_attr[slot];
+    s.d_attr = t->d_attr[visible];
     s.d_feature = d_inputs;
     s.d_moved = ted4_gen_plane(d_inputs, l->head.feature_dim + 3);
-    ted4_lane_set(t->in->lanes[slot], s.on);
+    ted4_lane_set(t->in->lanes[visible], s.on);
     memset(s.d_attr, 0, (size_t)l->n_channels * TED4_LANES * sizeof *s.d_attr);
-    splats_backward(&s, t->gr, slot);
+    splats_backward(&s, t->gr, visible);
     heads_backward(&s);
     if (t->g->chain[TED4_NET_DEFORM].n > 0)
         deform_backward(&s);
@@ -297,8 +297,8 @@ void TED4_LEVELED(ted4_gen_backward)(void *arg, size_t chunk)
 {
     const ted4_gen_job *t = arg;
     ted4_generator *g = t->g;
-    const size_t first = ted4_gen_first(t->in->n_slots, chunk);
-    const size_t n = ted4_gen_first(t->in->n_slots, chunk + 1) - first;
+    const size_t first = ted4_gen_first(t->in->n_visible, chunk);
+    const size_t n = ted4_gen_first(t->in->n_visible, chunk + 1) - first;
     const size_t n_groups = (n + TED4_GEN_GROUP - 1) / TED4_GEN_GROUP;
     float *d = g->d_planes + chunk * g->d_chunk, *grad = g->grad + chunk * g->n_grad;
 
@@ -307,10 +307,11 @@ void TED4_LEVELED(ted4_gen_backward)(void *arg, size_t chunk)
         const size_t from = first + n * i / n_groups;
         const size_t to = first + n * (i + 1) / n_groups;
 
-        for (size_t slot = from; slot < to; slot++)
-            backward_slot(t, slot, d + (slot - from) * g->d_slot, d + TED4_GEN_GROUP * g->d_slot);
+        for (size_t visible = from; visible < to; visible++)
+            backward_block(t, visible, d + (visible - from) * g->d_size,
+                           d + TED4_GEN_GROUP * g->d_size);
         for (int net = 0; net < TED4_NETS_R; net++)
-            ted4_gen_chain_weights(g, &g->chain[net], ted4_gen_slot(g, from), d, to - from, grad);
+            ted4_gen_chain_weights(g, &g->chain[net], ted4_gen_saved(g, from), d, to - from, grad);
     }
 }
 

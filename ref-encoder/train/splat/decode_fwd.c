@@ -1,4 +1,5 @@
-/* decode_fwd.c - anchors to Gaussians at a time and camera centre, a slot at a time (spec 11.1 to
+/* decode_fwd.c - anchors to Gaussians at a time and camera centre, a visible block at a time (spec
+ * 11.1 to
  * 11.5, in normalised space), with the masks of training. The adjoint is decode_bwd.c.
  * SPDX-License-Identifier: BSD-2-Clause */
 #include "decode_lanes.h"
@@ -34,12 +35,12 @@ static void view_directions(const float *camera, const float *position, float *t
     }
 }
 
-static void load_slot(ted4_generator *g, const ted4_generate_input *in, size_t slot,
-                      const float *position, const int32_t *on)
+static void load_block(ted4_generator *g, const ted4_generate_input *in, size_t visible,
+                       const float *position, const int32_t *on)
 {
     const int f = g->layout.head.feature_dim;
-    const float *attr = in->attr[slot];
-    float *planes = ted4_gen_slot(g, slot);
+    const float *attr = in->attr[visible];
+    float *planes = ted4_gen_saved(g, visible);
 
     copy_lanes(f, on, attr, ted4_gen_plane(planes, g->plane.feature));
     copy_lanes(g->layout.n_channels - f, on, attr + (size_t)f * TED4_LANES,
@@ -157,7 +158,7 @@ static void emit_rotation(const float *q, float *const *out)
     }
 }
 
-/* The Gaussians of offset k of a slot. position: of the moved anchors. */
+/* The Gaussians of offset k of a visible block. position: of the moved anchors. */
 static void emit(const ted4_generator *g, float *planes, const float *position, const int32_t *on,
                  int k, float *const *out)
 {
@@ -191,18 +192,18 @@ static void emit(const ted4_generator *g, float *planes, const float *position, 
     }
 }
 
-void TED4_LEVELED(ted4_gen_forward)(void *job, size_t slot)
+void TED4_LEVELED(ted4_gen_forward)(void *job, size_t visible)
 {
     const ted4_gen_job *t = job;
     ted4_generator *g = t->g;
     const int k = g->layout.head.n_offsets;
-    float *planes = ted4_gen_slot(g, slot);
+    float *planes = ted4_gen_saved(g, visible);
     _Alignas(64) float position[3 * TED4_LANES];
     int32_t on[TED4_LANES];
 
-    ted4_lane_set(t->in->lanes[slot], on);
-    copy_lanes(3, on, t->in->position[slot], position);
-    load_slot(g, t->in, slot, position, on);
+    ted4_lane_set(t->in->lanes[visible], on);
+    copy_lanes(3, on, t->in->position[visible], position);
+    load_block(g, t->in, visible, position, on);
     sizes(g, planes);
     if (g->chain[TED4_NET_DEFORM].n > 0)
         deform(g, planes, position);
@@ -215,7 +216,7 @@ void TED4_LEVELED(ted4_gen_forward)(void *job, size_t slot)
         float *out[TED4_GEN_ARRAYS];
 
         for (int a = 0; a < TED4_GEN_ARRAYS; a++)
-            out[a] = ted4_gen_splats(g, a, slot) + (size_t)i * TED4_LANES;
+            out[a] = ted4_gen_splats(g, a, visible) + (size_t)i * TED4_LANES;
         emit(g, planes, position, on, i, out);
     }
 }

@@ -1,5 +1,5 @@
 /* decode_lanes.h - what the generator's files that are compiled once a level share: loops over
- * lanes, and layers of one slot.
+ * lanes, and layers of one visible block.
  * SPDX-License-Identifier: BSD-2-Clause */
 #ifndef TED4_GENERATE_LANES_H
 #define TED4_GENERATE_LANES_H
@@ -18,7 +18,7 @@ void ted4_gen_chain_forward(const ted4_gen_chain *c, float *planes);
  * ([in][32], NULL: not wanted). */
 void ted4_gen_chain_backward(const ted4_generator *g, const ted4_gen_chain *c, float *planes,
                              float *d, float *dx, int add);
-/* Adds the weight gradients of n slots to grad. */
+/* Adds the weight gradients of n visible blocks to grad. */
 void ted4_gen_chain_weights(const ted4_generator *g, const ted4_gen_chain *c, float *planes,
                             float *d, size_t n, float *grad);
 

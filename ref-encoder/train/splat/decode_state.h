@@ -11,9 +11,9 @@
 /* Below this a vector has no direction, and a linear scale stops (spec 11.1, 11.5). */
 #define TED4_SHORT 0x1p-20f
 
-/* Work is cut into this many chunks of slots whatever the number of threads, so that sums over
- * slots have one order. Within a chunk, weight gradients are taken over groups of slots, few enough
- * to stay in the second-level cache. */
+/* Work is cut into this many chunks of visible blocks whatever the number of threads, so that sums
+ * over visible blocks have one order. Within a chunk, weight gradients are taken over groups of
+ * visible blocks, few enough to stay in the second-level cache. */
 enum { TED4_GEN_CHUNKS = 32, TED4_GEN_GROUP = 8 };
 
 /* Motion inr, spec 11.3: inputs made of the position and of the time. */
@@ -33,8 +33,8 @@ enum {
     TED4_GEN_ARRAYS = 14
 };
 
-/* One dense layer: input and output planes of a slot, where W and then b lie in NETR, where their
- * gradients lie in a chunk's gradient array. */
+/* One dense layer: input and output planes of a visible block, where W and then b lie in NETR,
+ * where their gradients lie in a chunk's gradient array. */
 typedef struct {
     ted4_dense dense;
     int x, y;
@@ -46,8 +46,8 @@ typedef struct {
     ted4_gen_layer layer[TED4_MAX_LAYERS];
 } ted4_gen_chain;
 
-/* Planes of a slot. Members are first planes; -1: absent. The attribute block is copied, feature
- * apart, with 0 in unused lanes. */
+/* Planes of a visible block. Members are first planes; -1: absent. The attribute block is copied,
+ * feature apart, with 0 in unused lanes. */
 typedef struct {
     int feature, view; /* F, then 3: the input of heads that see f (and the direction) */
     int rest;          /* channels F .. of the block */
@@ -88,16 +88,16 @@ struct ted4_generator {
     size_t n_grad;      /* floats of a chunk's gradients: effective layer, then
                          * NETR from net_tail on */
     float *grad;        /* [TED4_GEN_CHUNKS][n_grad] owned */
-    size_t d_slot;      /* floats of the gradients of one slot's layer outputs */
+    size_t d_size;      /* floats of the gradients of one visible block's layer outputs */
     size_t d_chunk;     /* floats of one chunk's scratch: TED4_GEN_GROUP of those,
                          * then d_feature, d_moved (F + 3 planes each) */
     float *d_planes;    /* [TED4_GEN_CHUNKS][d_chunk] owned */
-    size_t capacity;    /* slots there is room for */
+    size_t capacity;    /* visible blocks there is room for */
     float *saved;       /* [capacity][plane.n][32] owned */
     float *splats;      /* [TED4_GEN_ARRAYS][capacity K 32] owned */
 };
 
-/* What both ways over the slots are told. */
+/* What both ways over the visible blocks are told. */
 typedef struct {
     ted4_generator *g;
     const ted4_generate_input *in;
@@ -110,7 +110,7 @@ typedef struct {
 float *ted4_gen_alloc(size_t n);
 
 /* net.c: makes the plan, the layers and everything whose size does not depend on the
- * number of slots. 0 or -1. */
+ * number of visible blocks. 0 or -1. */
 int ted4_gen_plan(ted4_generator *g);
 
 /* motion.c. 0, or -1: no memory. */
@@ -121,9 +121,9 @@ void ted4_gen_motion_make(ted4_generator *g, const ted4_generate_input *in);
 /* motion inr: E(p) of 32 points, [3][32] to [63][32]. */
 void ted4_gen_encode_points(const float *position, float *to);
 
-/* decode_fwd.c: a ted4_gen_job for one slot. decode_bwd.c: for the slots of a chunk; after all
- * chunks, the sums of a range of gradients. */
-TED4_EACH_LEVEL(void, ted4_gen_forward, void *job, size_t slot);
+/* decode_fwd.c: a ted4_gen_job for one visible block. decode_bwd.c: for the visible blocks of a
+ * chunk; after all chunks, the sums of a range of gradients. */
+TED4_EACH_LEVEL(void, ted4_gen_forward, void *job, size_t visible);
 TED4_EACH_LEVEL(void, ted4_gen_backward, void *job, size_t chunk);
 TED4_EACH_LEVEL(void, ted4_gen_sum_range, void *job, size_t range);
 
@@ -139,9 +139,9 @@ static inline size_t ted4_gen_stride(const ted4_generator *g)
     return (size_t)g->plane.n * TED4_LANES;
 }
 
-static inline float *ted4_gen_slot(const ted4_generator *g, size_t slot)
+static inline float *ted4_gen_saved(const ted4_generator *g, size_t visible)
 {
-    return g->saved + slot * ted4_gen_stride(g);
+    return g->saved + visible * ted4_gen_stride(g);
 }
 
 static inline float *ted4_gen_plane(float *planes, int plane)
@@ -157,18 +157,19 @@ static inline float *ted4_gen_channel(const ted4_generator *g, float *planes, in
     return ted4_gen_plane(planes, c < f ? g->plane.feature + c : g->plane.rest + c - f);
 }
 
-/* Splat array a (mean 3, scale 3, rotation 4, opacity, colour 3) from offset 0 of a slot on. */
-static inline float *ted4_gen_splats(const ted4_generator *g, int a, size_t slot)
+/* Splat array a (mean 3, scale 3, rotation 4, opacity, colour 3) from offset 0 of a visible block
+ * on. */
+static inline float *ted4_gen_splats(const ted4_generator *g, int a, size_t visible)
 {
     const size_t row = (size_t)g->layout.head.n_offsets * TED4_LANES;
 
-    return g->splats + ((size_t)a * g->capacity + slot) * row;
+    return g->splats + ((size_t)a * g->capacity + visible) * row;
 }
 
-/* First slot of a chunk. */
-static inline size_t ted4_gen_first(size_t n_slots, size_t chunk)
+/* First visible block of a chunk. */
+static inline size_t ted4_gen_first(size_t n_visible, size_t chunk)
 {
-    return n_slots * chunk / TED4_GEN_CHUNKS;
+    return n_visible * chunk / TED4_GEN_CHUNKS;
 }
 
 static inline int ted4_gen_activated(const ted4_generator *g, const ted4_generate_input *in)

@@ -67,11 +67,11 @@ int ted4_generate(ted4_generator *g, const ted4_generate_input *in, const ted4_p
 {
     ted4_gen_job t = { .g = g, .in = in };
 
-    if (reserve(g, in->n_slots) != 0)
+    if (reserve(g, in->n_visible) != 0)
         return -1;
     ted4_gen_motion_make(g, in);
-    ted4_parallel_for(p, in->n_slots, TED4_IN_USE(ted4_gen_forward), &t);
-    out->n = in->n_slots * (size_t)g->layout.head.n_offsets * TED4_LANES;
+    ted4_parallel_for(p, in->n_visible, TED4_IN_USE(ted4_gen_forward), &t);
+    out->n = in->n_visible * (size_t)g->layout.head.n_offsets * TED4_LANES;
     for (int c = 0; c < 3; c++) {
         out->mean[c] = ted4_gen_splats(g, TED4_GEN_MEAN + c, 0);
         out->scale[c] = ted4_gen_splats(g, TED4_GEN_SCALE + c, 0);

@@ -7,19 +7,20 @@
 #include "train/model/model.h"
 #include "train/model/splat_grads.h"
 
-/* One query over chosen blocks ("slots"). Slot i, offset k, lane j is splat (i K + k) 32 + j. */
+/* One query over chosen blocks, usually those that are visible. Visible block i, offset k, lane j
+ * is splat (i K + k) 32 + j. */
 typedef struct {
     const ted4_layout *layout;
     const float *net; /* [n_net] */
-    size_t n_slots;
+    size_t n_visible;
     const float *const
-        *attr; /* [n_slots] blocks; values as they are to be used (quantised, noisy or plain) */
-    const float *const *position; /* [n_slots] [3][32] */
-    const uint32_t *lanes;        /* [n_slots] bit j: lane j holds an anchor to be used; others give
-                                     opacity 0, gradient 0 */
-    uint32_t num, den;            /* time, spec 11 */
-    float camera[3];              /* normalised space: (c - origin) 2^-e */
-    int activation; /* 0: activation is taken as 1 (static phase), even if tau is present */
+        *attr; /* [n_visible] blocks; values as they are to be used (quantised, noisy or plain) */
+    const float *const *position; /* [n_visible] [3][32] */
+    const uint32_t *lanes; /* [n_visible] bit j: lane j holds an anchor to be used; others give
+                              opacity 0, gradient 0 */
+    uint32_t num, den;     /* time, spec 11 */
+    float camera[3];       /* normalised space: (c - origin) 2^-e */
+    int activation;        /* 0: activation is taken as 1 (static phase), even if tau is present */
 } ted4_generate_input;
 
 typedef struct ted4_generator ted4_generator; /* saved activations, packed weights */
@@ -33,7 +34,7 @@ void ted4_generator_pack(ted4_generator *g, const float *net);
  * offsets and heads <= 0. Also keeps what backward needs. 0, or -1: no memory. */
 int ted4_generate(ted4_generator *g, const ted4_generate_input *in, const ted4_parallel *p,
                   ted4_splats *out);
-/* After ted4_generate with the same input. gr: gradients of the splats. d_attr: [n_slots] blocks,
+/* After ted4_generate with the same input. gr: gradients of the splats. d_attr: [n_visible] blocks,
  * overwritten. d_net: NETR and BANK parts are added to. Fixed order of sums. */
 int ted4_generate_backward(ted4_generator *g, const ted4_generate_input *in,
                            const ted4_splat_grads *gr, const ted4_parallel *p, float *const *d_attr,

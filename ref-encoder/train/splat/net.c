@@ -109,9 +109,9 @@ int ted4_gen_plan(ted4_generator *g)
     plan_inputs(g);
     if (ted4_gen_motion_init(&g->motion, &g->layout) != 0 || plan_layers(g) != 0)
         return -1;
-    g->d_slot = (size_t)odd(g->plane.n - g->plane.outputs) * TED4_LANES;
+    g->d_size = (size_t)odd(g->plane.n - g->plane.outputs) * TED4_LANES;
     g->plane.n = odd(g->plane.n);
-    g->d_chunk = TED4_GEN_GROUP * g->d_slot + d_inputs * TED4_LANES;
+    g->d_chunk = TED4_GEN_GROUP * g->d_size + d_inputs * TED4_LANES;
     g->d_planes = ted4_gen_alloc(TED4_GEN_CHUNKS * g->d_chunk);
     g->grad = ted4_gen_alloc(TED4_GEN_CHUNKS * g->n_grad);
     return g->d_planes != NULL && g->grad != NULL ? 0 : -1;

@@ -16,14 +16,14 @@ static int generate_all(ted4_trainer *t, uint32_t item, ted4_splats *s)
     ted4_view v;
     ted4_generate_input in = { &t->layout, t->net.value, 0, NULL, NULL, NULL, 0, 1, { 0 }, 0 };
 
-    if (ted4_slots_fill(t, NULL) != 0)
+    if (ted4_visible_blocks_fill(t, NULL) != 0)
         return -1;
     ted4_space_view(&t->layout.head, &t->data->pictures[item].camera, &v, in.camera);
-    ted4_slots_quantise(t, TED4_QUANT_ROUND);
-    in.n_slots = t->slots.n;
-    in.attr = t->slots.used;
-    in.position = t->slots.position;
-    in.lanes = t->slots.lanes;
+    ted4_visible_blocks_quantise(t, TED4_QUANT_ROUND);
+    in.n_visible = t->visible_blocks.n;
+    in.attr = t->visible_blocks.used;
+    in.position = t->visible_blocks.position;
+    in.lanes = t->visible_blocks.lanes;
     ted4_generator_pack(t->work.generator, t->net.value);
     return ted4_generate(t->work.generator, &in, t->parallel, s) != 0
                ? ted4_trainer_fail(t, "no memory to look at anchors")

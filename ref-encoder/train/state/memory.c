@@ -22,7 +22,7 @@ int ted4_trainer_rebuild(ted4_trainer *t)
     t->work.generator = ted4_generator_new(&t->layout);
     ted4_rate_free(t->work.rate);
     t->work.rate = ted4_rate_new(&t->layout);
-    ted4_slots_finish(&t->slots);
+    ted4_visible_blocks_finish(&t->visible_blocks);
     if (t->net.value == NULL || t->net.m == NULL || t->net.v == NULL || t->net.gradient == NULL ||
         t->work.generator == NULL || t->work.rate == NULL)
         return ted4_trainer_fail(t, "no memory for the networks");
@@ -32,7 +32,7 @@ int ted4_trainer_rebuild(ted4_trainer *t)
 void ted4_trainer_finish(ted4_trainer *t)
 {
     ted4_anchors_finish(&t->anchors);
-    ted4_slots_finish(&t->slots);
+    ted4_visible_blocks_finish(&t->visible_blocks);
     free(t->net.value);
     free(t->net.m);
     free(t->net.v);

@@ -26,7 +26,7 @@ typedef enum {
     TED4_TERMS
 } ted4_term;
 
-enum { TED4_SLOT_TERMS = TED4_TYPES + 1 };
+enum { TED4_BLOCK_TERMS = TED4_TYPES + 1 };
 
 /* The usual size of a positive number that comes once a step: near its median, as one step moves it
  * by a bounded factor, however far off the number is. */

@@ -14,18 +14,19 @@ int ted4_trainer_render(ted4_trainer *t, const ted4_picture *pic, int training, 
 {
     memset(in, 0, sizeof *in);
     ted4_space_view(&t->layout.head, &pic->camera, v, in->camera);
-    if (ted4_slots_fill(t, v) != 0)
+    if (ted4_visible_blocks_fill(t, v) != 0)
         return -1;
     in->layout = &t->layout;
     in->net = t->net.value;
-    in->n_slots = t->slots.n;
-    in->attr = t->slots.used;
-    in->position = t->slots.position;
-    in->lanes = t->slots.lanes;
+    in->n_visible = t->visible_blocks.n;
+    in->attr = t->visible_blocks.used;
+    in->position = t->visible_blocks.position;
+    in->lanes = t->visible_blocks.lanes;
     in->num = t->data->n_frames > 1 && !t->phase.clock_stopped ? pic->frame : 0;
     in->den = t->data->n_frames > 1 ? t->data->n_frames - 1 : 1;
     in->activation = t->layout.head.activation && !t->phase.clock_stopped;
-    ted4_slots_quantise(t, training && !t->phase.integer ? TED4_QUANT_NOISE : TED4_QUANT_ROUND);
+    ted4_visible_blocks_quantise(t, training && !t->phase.integer ? TED4_QUANT_NOISE
+                                                                  : TED4_QUANT_ROUND);
     ted4_generator_pack(t->work.generator, t->net.value);
     if (ted4_generate(t->work.generator, in, t->parallel, s) != 0 ||
         ted4_raster_forward(t->work.raster, s, v, t->parallel, training, t->work.image) != 0)

@@ -7,8 +7,8 @@
 
 #include "trainer.h"
 
-/* Forward pass of one picture over t->slots, which are filled for its view; the image is in
- * t->work.image, planar. training: with the noise of stage 2, and what the rasteriser's way back
+/* Forward pass of one picture over t->visible blocks, which are filled for its view; the image is
+ * in t->work.image, planar. training: with the noise of stage 2, and what the rasteriser's way back
  * needs. *in, *s: borrow from t, valid until the next pass. 0, or -1 with t->message. */
 int ted4_trainer_render(ted4_trainer *t, const ted4_picture *pic, int training, ted4_view *v,
                         ted4_generate_input *in, ted4_splats *s);
@@ -37,7 +37,7 @@ const uint8_t *ted4_trainer_seen(ted4_trainer *t, size_t item);
  * it. Negative: failed, with t->message. */
 double ted4_trainer_distortion(ted4_trainer *t, size_t item);
 /* The same picture's gradients of the distortion on Gaussians, in t->work.splat_gradient; *s and
- * t->slots: which Gaussians. 0, or -1 with t->message. */
+ * t->visible blocks: which Gaussians. 0, or -1 with t->message. */
 int ted4_distortion_gradient(ted4_trainer *t, size_t item, ted4_splats *s);
 
 /* Mean PSNR of the current model on up to n held-out pictures (training pictures when there are

@@ -33,20 +33,20 @@ typedef struct {
     double splat_pixels;     /* times the pixels of the picture */
 } ted4_progress;
 
-/* Buffers of one step, by slot (visible block). */
+/* Buffers of one step, by visible block. */
 typedef struct {
     size_t n, capacity;
     uint32_t *block;              /* [n] */
     uint32_t *lanes;              /* [n] */
     uint32_t *drawn;              /* [n] place of its Gaussians among those drawn: its own, until
-                                     ted4_update_rate puts slots in another order */
+                                     ted4_update_rate puts visible blocks in another order */
     const float **position;       /* [n] */
     const float **raw, **used;    /* [n] values as stored, as rendered (quantised in stage 2) */
     float **gradient;             /* [n] blocks of n_channels */
     float **steps;                /* [n] */
     float *quantised, *gradients; /* storage behind used and gradient */
-    float *squares;               /* [n][TED4_SLOT_TERMS + 1]: grad_norm.h */
-} ted4_slots;
+    float *squares;               /* [n][TED4_BLOCK_TERMS + 1]: grad_norm.h */
+} ted4_visible_blocks;
 
 /* What steps are for: training, or finding something out. */
 typedef enum { TED4_BUSY_TRAINING, TED4_BUSY_PROBE, TED4_BUSY_TRIALS } ted4_busy;
@@ -120,7 +120,7 @@ typedef struct {
     ted4_search search;
 
     /* Buffers, of no meaning between steps: state/. */
-    ted4_slots slots;
+    ted4_visible_blocks visible_blocks;
     ted4_step_work work;
 
     ted4_onlooker onlooker;

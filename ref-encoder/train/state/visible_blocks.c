@@ -54,12 +54,12 @@ uint32_t ted4_block_visible(const ted4_trainer *t, size_t block, const ted4_view
 
 static int reserve(ted4_trainer *t, size_t n)
 {
-    ted4_slots *s = &t->slots;
+    ted4_visible_blocks *s = &t->visible_blocks;
     const size_t floats = (size_t)t->layout.n_channels * TED4_LANES;
 
     if (n <= s->capacity)
         return 0;
-    ted4_slots_finish(s);
+    ted4_visible_blocks_finish(s);
     n += n / 2 + 8;
     s->block = malloc(n * sizeof *s->block);
     s->lanes = malloc(n * sizeof *s->lanes);
@@ -71,7 +71,7 @@ static int reserve(ted4_trainer *t, size_t n)
     s->steps = malloc(n * sizeof *s->steps);
     s->quantised = aligned_alloc(64, n * floats * sizeof(float));
     s->gradients = aligned_alloc(64, n * floats * sizeof(float));
-    s->squares = malloc(n * (TED4_SLOT_TERMS + 1) * sizeof *s->squares);
+    s->squares = malloc(n * (TED4_BLOCK_TERMS + 1) * sizeof *s->squares);
     if (s->block == NULL || s->lanes == NULL || s->drawn == NULL || s->position == NULL ||
         s->raw == NULL || s->used == NULL || s->gradient == NULL || s->steps == NULL ||
         s->quantised == NULL || s->gradients == NULL || s->squares == NULL)
@@ -80,7 +80,7 @@ static int reserve(ted4_trainer *t, size_t n)
     return 0;
 }
 
-void ted4_slots_finish(ted4_slots *s)
+void ted4_visible_blocks_finish(ted4_visible_blocks *s)
 {
     free(s->block);
     free(s->lanes);
@@ -116,16 +116,16 @@ static void look_at_blocks(void *arg, size_t i)
 }
 
 /* v NULL: every block. */
-int ted4_slots_fill(ted4_trainer *t, const ted4_view *v)
+int ted4_visible_blocks_fill(ted4_trainer *t, const ted4_view *v)
 {
-    ted4_slots *s = &t->slots;
+    ted4_visible_blocks *s = &t->visible_blocks;
     const size_t floats = (size_t)t->layout.n_channels * TED4_LANES;
 
     if (reserve(t, t->anchors.n_blocks) != 0)
         return -1;
 
-    /* Lanes of every block first: a slot's place, which is its block's or an earlier one, is
-     * known only then. */
+    /* Lanes of every block first: a visible block's place, which is its block's or an earlier one,
+     * is known only then. */
     visible_job j = { t, v, s->lanes };
 
     ted4_parallel_for(t->parallel, (t->anchors.n_blocks + LOOKED_AT - 1) / LOOKED_AT,
@@ -156,20 +156,20 @@ typedef struct {
     ted4_quant quant;
 } quantise_job;
 
-static void quantise_slot(void *arg, size_t i)
+static void quantise_block(void *arg, size_t i)
 {
     const quantise_job *j = arg;
-    const ted4_slots *s = &j->t->slots;
+    const ted4_visible_blocks *s = &j->t->visible_blocks;
     const size_t floats = (size_t)j->t->layout.n_channels * TED4_LANES;
 
     ted4_quantise(&j->t->layout, j->quant, s->raw[i], s->steps[i], s->block[i], j->key,
                   s->quantised + i * floats);
 }
 
-void ted4_slots_quantise(ted4_trainer *t, ted4_quant quant)
+void ted4_visible_blocks_quantise(ted4_trainer *t, ted4_quant quant)
 {
     quantise_job j = { t, ted4_random(t->opt.seed, t->iteration), quant };
 
     if (t->phase.stage2)
-        ted4_parallel_for(t->parallel, t->slots.n, quantise_slot, &j);
+        ted4_parallel_for(t->parallel, t->visible_blocks.n, quantise_block, &j);
 }

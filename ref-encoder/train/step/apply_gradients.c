@@ -19,13 +19,13 @@ typedef struct {
     ted4_adam_bias bias;
     float mask_weight, temporal_weight;
     ted4_net_range range[TED4_NET_RANGES];
-    size_t n_pieces; /* of all ranges; the first jobs, slots come after them */
+    size_t n_pieces; /* of all ranges; the first jobs, visible blocks come after them */
 } update_job;
 
-/* d sigmoid(logit) times weight, for the anchors of the slot. */
+/* d sigmoid(logit) times weight, for the anchors of the visible block. */
 static void add_mask_loss(const update_job *j, size_t i, int channel, int n, float weight)
 {
-    const ted4_slots *s = &j->t->slots;
+    const ted4_visible_blocks *s = &j->t->visible_blocks;
 
     for (int c = channel; c < channel + n; c++) {
         const float *x = s->raw[i] + c * TED4_LANES;
@@ -42,10 +42,10 @@ static void add_mask_loss(const update_job *j, size_t i, int channel, int n, flo
     }
 }
 
-static void update_slot(const update_job *j, size_t i)
+static void update_block(const update_job *j, size_t i)
 {
     ted4_trainer *t = j->t;
-    const ted4_slots *s = &t->slots;
+    const ted4_visible_blocks *s = &t->visible_blocks;
     const ted4_layout *l = &t->layout;
     float *x = ted4_block(&t->anchors, TED4_ROW_VALUE, s->block[i]);
     float *m = ted4_block(&t->anchors, TED4_ROW_M, s->block[i]);
@@ -55,7 +55,7 @@ static void update_slot(const update_job *j, size_t i)
         add_mask_loss(j, i, l->offset_logit, l->head.n_offsets, j->mask_weight);
     if (j->temporal_weight > 0)
         add_mask_loss(j, i, l->temporal_logit, 1, j->temporal_weight);
-    ted4_gradients_slot(l, j->rate, x, s->gradient[i], s->squares + i * (TED4_SLOT_TERMS + 1));
+    ted4_gradients_block(l, j->rate, x, s->gradient[i], s->squares + i * (TED4_BLOCK_TERMS + 1));
     for (int c = 0; c < l->n_channels; c++) {
         const size_t at = (size_t)c * TED4_LANES;
 
@@ -90,7 +90,7 @@ static void update_item(void *arg, size_t i)
     if (i < j->n_pieces)
         update_piece(j, i);
     else
-        update_slot(j, i - j->n_pieces);
+        update_block(j, i - j->n_pieces);
 }
 
 void ted4_update_parameters(ted4_trainer *t)
@@ -108,7 +108,7 @@ void ted4_update_parameters(ted4_trainer *t)
         j.temporal_weight = (float)(t->opt.temporal_weight / n);
     for (int i = ted4_schedule_network(t, j.range) - 1; i >= 0; i--)
         j.n_pieces += pieces_of(&j.range[i]);
-    ted4_parallel_for(t->parallel, j.n_pieces + t->slots.n, update_item, &j);
+    ted4_parallel_for(t->parallel, j.n_pieces + t->visible_blocks.n, update_item, &j);
 }
 
 void ted4_colour_update(ted4_colour *c, uint32_t camera, const ted4_colour_map gradient,

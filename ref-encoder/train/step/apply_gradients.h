@@ -6,8 +6,9 @@
 
 #include "train/state/trainer.h"
 
-/* Adds the gradients of the mask losses to those of t->slots, then one step of Adam for the anchors
- * of t->slots and for the networks; the sizes of the gradients are in t->slots.squares. */
+/* Adds the gradients of the mask losses to those of t->visible blocks, then one step of Adam for
+ * the anchors of t->visible blocks and for the networks; the sizes of the gradients are in
+ * t->visible blocks.squares. */
 void ted4_update_parameters(ted4_trainer *t);
 
 /* One step of Adam for this camera on L + penalty (sum of A^2 and v^2), gradient being dL/d(map),

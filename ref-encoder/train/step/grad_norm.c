@@ -1,5 +1,5 @@
-/* grad_norm.c - see grad_norm.h. Sums over lanes and slots have one order, whatever the number of
- * threads.
+/* grad_norm.c - see grad_norm.h. Sums over lanes and visible blocks have one order, whatever the
+ * number of threads.
  * SPDX-License-Identifier: BSD-2-Clause */
 #include "grad_norm.h"
 
@@ -28,11 +28,11 @@ static float add_up(const float *x)
     return sum;
 }
 
-void ted4_gradients_slot(const ted4_layout *l, const float *rate, const float *values,
-                         const float *gradient, float *squares)
+void ted4_gradients_block(const ted4_layout *l, const float *rate, const float *values,
+                          const float *gradient, float *squares)
 {
-    squares[TED4_SLOT_TERMS] = 0;
-    for (int term = 0; term < TED4_SLOT_TERMS; term++) {
+    squares[TED4_BLOCK_TERMS] = 0;
+    for (int term = 0; term < TED4_BLOCK_TERMS; term++) {
         const channels at = channels_of(l, term);
         float sum[TED4_LANES] = { 0 }, bad[TED4_LANES] = { 0 };
 
@@ -50,8 +50,8 @@ void ted4_gradients_slot(const ted4_layout *l, const float *rate, const float *v
                 sum[j] += g[j] * g[j];
         }
         squares[term] = add_up(sum);
-        if (add_up(bad) != 0 && squares[TED4_SLOT_TERMS] == 0)
-            squares[TED4_SLOT_TERMS] = (float)(1 + term);
+        if (add_up(bad) != 0 && squares[TED4_BLOCK_TERMS] == 0)
+            squares[TED4_BLOCK_TERMS] = (float)(1 + term);
     }
 }
 
@@ -115,13 +115,13 @@ static int is_learnt(const ted4_trainer *t, int term)
 
 void ted4_gradients_gather(const ted4_trainer *t, double *norm)
 {
-    const ted4_slots *s = &t->slots;
-    double sum[TED4_SLOT_TERMS] = { 0 };
+    const ted4_visible_blocks *s = &t->visible_blocks;
+    double sum[TED4_BLOCK_TERMS] = { 0 };
 
     for (size_t i = 0; i < s->n; i++)
-        for (int k = 0; k < TED4_SLOT_TERMS; k++)
-            sum[k] += (double)s->squares[i * (TED4_SLOT_TERMS + 1) + (size_t)k];
-    for (int k = 0; k < TED4_SLOT_TERMS; k++)
+        for (int k = 0; k < TED4_BLOCK_TERMS; k++)
+            sum[k] += (double)s->squares[i * (TED4_BLOCK_TERMS + 1) + (size_t)k];
+    for (int k = 0; k < TED4_BLOCK_TERMS; k++)
         norm[k] = sqrt(sum[k]);
     for (int term = TED4_TERM_HEADS; term <= TED4_TERM_STEP; term++) {
         range r[TED4_NETS_R];
@@ -150,7 +150,7 @@ static void compare(largest *best, float x, int64_t at)
 
 static void search_values(const ted4_trainer *t, int term, largest *best)
 {
-    const ted4_slots *s = &t->slots;
+    const ted4_visible_blocks *s = &t->visible_blocks;
     const channels at = channels_of(&t->layout, term);
 
     for (size_t i = 0; i < s->n; i++)
@@ -162,7 +162,7 @@ static void search_values(const ted4_trainer *t, int term, largest *best)
 
 static void search_centres(const ted4_trainer *t, largest *best)
 {
-    const ted4_slots *s = &t->slots;
+    const ted4_visible_blocks *s = &t->visible_blocks;
     const size_t K = t->layout.head.n_offsets;
 
     for (size_t i = 0; i < s->n; i++)
@@ -177,7 +177,7 @@ int64_t ted4_gradients_anchor(const ted4_trainer *t, int term, int *finite)
     largest best = { 0, -1, 1 };
     range r[TED4_NETS_R];
 
-    if (term < TED4_SLOT_TERMS)
+    if (term < TED4_BLOCK_TERMS)
         search_values(t, term, &best);
     else if (term == TED4_TERM_CENTRE)
         search_centres(t, &best);
@@ -200,10 +200,10 @@ static int is_bad(const ted4_trainer *t, ted4_row row, size_t i, channels at)
 
 int64_t ted4_gradients_bad_seen(const ted4_trainer *t, int *term)
 {
-    const ted4_slots *s = &t->slots;
+    const ted4_visible_blocks *s = &t->visible_blocks;
 
     for (size_t i = 0; i < s->n; i++) {
-        const int first = (int)s->squares[i * (TED4_SLOT_TERMS + 1) + TED4_SLOT_TERMS] - 1;
+        const int first = (int)s->squares[i * (TED4_BLOCK_TERMS + 1) + TED4_BLOCK_TERMS] - 1;
         const size_t anchor = s->block[i] * (size_t)TED4_LANES;
 
         for (size_t j = 0; first >= 0 && j < TED4_LANES; j++)
@@ -218,7 +218,7 @@ int64_t ted4_gradients_bad_seen(const ted4_trainer *t, int *term)
 int64_t ted4_gradients_bad_value(const ted4_trainer *t, int *term)
 {
     for (size_t i = 0; i < t->anchors.n; i++) {
-        for (int k = 0; k < TED4_SLOT_TERMS; k++)
+        for (int k = 0; k < TED4_BLOCK_TERMS; k++)
             if (is_bad(t, TED4_ROW_VALUE, i, channels_of(&t->layout, k))) {
                 *term = k;
                 return (int64_t)i;

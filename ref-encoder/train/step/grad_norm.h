@@ -6,11 +6,11 @@
 
 #include "train/state/trainer.h"
 
-/* Of one slot, in one pass over numbers that the optimiser reads next: squares[TED4_SLOT_TERMS]
- * sums of squared gradients over the channels with a rate > 0, then 0, or 1 + the first term with a
- * value that is not finite. values, gradient: [n_channels][32]. */
-void ted4_gradients_slot(const ted4_layout *l, const float *rate, const float *values,
-                         const float *gradient, float *squares);
+/* Of one visible block, in one pass over numbers that the optimiser reads next:
+ * squares[TED4_BLOCK_TERMS] sums of squared gradients over the channels with a rate > 0, then 0, or
+ * 1 + the first term with a value that is not finite. values, gradient: [n_channels][32]. */
+void ted4_gradients_block(const ted4_layout *l, const float *rate, const float *values,
+                          const float *gradient, float *squares);
 
 /* Norm of n numbers. */
 double ted4_gradients_norm(const float *x, size_t n);

@@ -106,9 +106,9 @@ void ted4_update_bank(ted4_trainer *t)
         }
 }
 
-/* A partial shuffle: after m swaps the first m slots are a uniform choice; the order of the others
- * does not matter. */
-static void swap_slots(ted4_slots *s, size_t i, size_t k)
+/* A partial shuffle: after m swaps the first m visible blocks are a uniform choice; the order of
+ * the others does not matter. */
+static void swap_blocks(ted4_visible_blocks *s, size_t i, size_t k)
 {
     const uint32_t block = s->block[i], lanes = s->lanes[i], drawn = s->drawn[i];
     const float *position = s->position[i], *raw = s->raw[i], *used = s->used[i];
@@ -134,14 +134,14 @@ static void swap_slots(ted4_slots *s, size_t i, size_t k)
 
 int ted4_update_rate(ted4_trainer *t, uint64_t key)
 {
-    ted4_slots *s = &t->slots;
+    ted4_visible_blocks *s = &t->visible_blocks;
     const size_t want = (size_t)ceil(t->opt.rate_share * (double)s->n);
     const size_t m = want < s->n ? want : s->n;
     const double params = ted4_rate_norm(t);
     double bits[TED4_TYPES], chosen = 0;
 
     for (size_t i = 0; i < m; i++)
-        swap_slots(s, i, i + ted4_below(key, i, (uint32_t)(s->n - i)));
+        swap_blocks(s, i, i + ted4_below(key, i, (uint32_t)(s->n - i)));
     for (size_t i = 0; i < m; i++)
         for (uint32_t x = s->lanes[i]; x != 0; x &= x - 1)
             chosen += 1;

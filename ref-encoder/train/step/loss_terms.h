@@ -13,7 +13,7 @@ size_t ted4_update_volume(ted4_trainer *t, const ted4_splats *s);
 /* Bank: mean squared second difference of its rows, into t->net.gradient. */
 void ted4_update_bank(ted4_trainer *t);
 /* Rate of a random share of the visible blocks: gradients of bits on values, masks and NETE, and of
- * the distortion on step sizes. Puts slots in another order. 0, or -1 with t->message. */
+ * the distortion on step sizes. Puts visible blocks in another order. 0, or -1 with t->message. */
 int ted4_update_rate(ted4_trainer *t, uint64_t key);
 
 #endif

@@ -126,20 +126,20 @@ int ted4_watch_loss(ted4_trainer *t, double loss)
  * hidden. */
 enum { BY_ACTIVATION, BY_SCALE, BY_OPACITY, REASONS };
 
-static int hidden_reason(const ted4_slots *slots, const ted4_generate_input *in,
-                         const ted4_splats *s, size_t slot, size_t lane)
+static int hidden_reason(const ted4_visible_blocks *visible_blocks, const ted4_generate_input *in,
+                         const ted4_splats *s, size_t visible, size_t lane)
 {
     const size_t K = in->layout->head.n_offsets;
     float opacity = 0, extent = 0;
 
     for (size_t k = 0; k < K; k++) {
-        const size_t at = (slots->drawn[slot] * K + k) * TED4_LANES + lane;
+        const size_t at = (visible_blocks->drawn[visible] * K + k) * TED4_LANES + lane;
 
         opacity = fmaxf(opacity, s->opacity[at]);
         for (int c = 0; c < 3; c++)
             extent = fmaxf(extent, s->scale[c][at]);
     }
-    if (!(ted4_lanes_there(in, slot) >> lane & 1))
+    if (!(ted4_lanes_there(in, visible) >> lane & 1))
         return BY_ACTIVATION;
     return extent < TED4_NO_EXTENT ? BY_SCALE : opacity <= 0 ? BY_OPACITY : -1;
 }
@@ -152,13 +152,14 @@ static int collapsed(ted4_trainer *t, const ted4_generate_input *in, const ted4_
     int64_t first[REASONS] = { -1, -1, -1 };
     int most = BY_OPACITY;
 
-    for (size_t i = 0; i < in->n_slots; i++)
+    for (size_t i = 0; i < in->n_visible; i++)
         for (size_t j = 0; j < TED4_LANES; j++) {
-            const int why = in->lanes[i] >> j & 1 ? hidden_reason(&t->slots, in, s, i, j) : -1;
+            const int why = in->lanes[i] >> j & 1 ? hidden_reason(&t->visible_blocks, in, s, i, j)
+                                                  : -1;
 
             n += in->lanes[i] >> j & 1;
             if (why >= 0 && count[why]++ == 0)
-                first[why] = (int64_t)(t->slots.block[i] * (size_t)TED4_LANES + j);
+                first[why] = (int64_t)(t->visible_blocks.block[i] * (size_t)TED4_LANES + j);
         }
     for (int k = 0; k < REASONS; k++)
         most = count[k] > count[most] ? k : most;

@@ -94,7 +94,7 @@ int ted4_activation_begin(ted4_trainer *t)
 }
 
 /* Largest activation of anchor i over the frames of the sequence, in stage 2 as the file will hold
- * it: from all slots (ted4_anchor_appearance). */
+ * it: from all visible blocks (ted4_anchor_appearance). */
 static float peak_activation(const ted4_trainer *t, size_t i)
 {
     const int first = t->layout.first[TED4_TAU];
@@ -102,7 +102,8 @@ static float peak_activation(const ted4_trainer *t, size_t i)
 
     if (first < 0)
         return 1.0f;
-    const float *tau = t->slots.used[i / TED4_LANES] + (size_t)first * TED4_LANES + i % TED4_LANES;
+    const float *tau = t->visible_blocks.used[i / TED4_LANES] + (size_t)first * TED4_LANES +
+                       i % TED4_LANES;
 
     for (uint32_t j = 0; j < t->data->n_frames; j++)
         least = fminf(least, fabsf(ted4_find_edge(frame_time(t, j), tau, ted4_pow2).u));
@@ -338,7 +339,7 @@ int ted4_integer_begin(ted4_trainer *t)
     ted4_rate_free(t->work.rate);
     t->work.rate = ted4_rate_new(&t->layout);
     t->net.shift = malloc(t->layout.shape.n_units + 1);
-    if (t->net.shift == NULL || t->work.rate == NULL || ted4_slots_fill(t, NULL) != 0)
+    if (t->net.shift == NULL || t->work.rate == NULL || ted4_visible_blocks_fill(t, NULL) != 0)
         return ted4_trainer_fail(t, "no memory for the integer model");
     ted4_snap_coarse(&t->layout.head, &t->layout.shape, t->net.bits[TED4_GRID_PRIOR],
                      t->net.value + t->layout.nete, t->net.shift);
@@ -351,25 +352,25 @@ int ted4_integer_begin(ted4_trainer *t)
 
 int ted4_integer_rate(ted4_trainer *t, double *bits)
 {
-    if (ted4_slots_fill(t, NULL) != 0)
+    if (ted4_visible_blocks_fill(t, NULL) != 0)
         return -1;
 
     const ted4_rate_input in = { &t->layout,
                                  t->net.value,
                                  t->net.shift,
-                                 t->slots.n,
-                                 t->slots.raw,
-                                 t->slots.position,
-                                 t->slots.lanes,
-                                 t->slots.block,
+                                 t->visible_blocks.n,
+                                 t->visible_blocks.raw,
+                                 t->visible_blocks.position,
+                                 t->visible_blocks.lanes,
+                                 t->visible_blocks.block,
                                  0,
                                  TED4_QUANT_INTEGER,
                                  0.0f,
                                  0.0f,
                                  t->layout.head.activation };
 
-    return ted4_rate_evaluate(t->work.rate, &in, t->parallel, NULL, NULL, NULL, t->slots.steps,
-                              bits) != 0
+    return ted4_rate_evaluate(t->work.rate, &in, t->parallel, NULL, NULL, NULL,
+                              t->visible_blocks.steps, bits) != 0
                ? ted4_trainer_fail(t, "no memory for the integer model, or weights beyond it")
                : 0;
 }

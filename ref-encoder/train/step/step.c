@@ -99,7 +99,7 @@ static int backward(ted4_trainer *t, pass *p, uint64_t key)
     p->on_screen = ted4_update_volume(t, &p->s);
     memset(t->net.gradient, 0, t->layout.n_net * sizeof *t->net.gradient);
     if (ted4_generate_backward(t->work.generator, &p->in, &t->work.splat_gradient, t->parallel,
-                               t->slots.gradient, t->net.gradient) != 0)
+                               t->visible_blocks.gradient, t->net.gradient) != 0)
         return ted4_trainer_fail(t, "no memory for gradients");
     ted4_update_bank(t);
     if (!t->phase.stage2) {
