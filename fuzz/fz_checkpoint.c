@@ -136,7 +136,7 @@ static void check_positions(const ted4_trainer *t)
 {
     for (size_t i = 0; i < t->anchors.n; i++)
         for (int j = 0; j < 3; j++)
-            fuzz_require(fabsf(*ted4_cell(&t->anchors, TED4_ROW_POSITION, i, j)) <= 1,
+            fuzz_require(fabsf(*ted4_anchor_value(&t->anchors, TED4_ROW_POSITION, i, j)) <= 1,
                          "anchors in the cube");
 }
 

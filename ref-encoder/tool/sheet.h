@@ -13,9 +13,9 @@ enum { TED4_SHEET_COLUMNS = 3, TED4_ERROR_GAIN = 5 };
 /* out = 5 |a - b|, at most 255; n bytes. */
 void ted4_sheet_error(const uint8_t *a, const uint8_t *b, size_t n, uint8_t *out);
 
-/* Rows of truth, ours, error in cells of one size. */
+/* Rows of truth, ours, error in tiles of one size. */
 typedef struct {
-    int width, height, rows; /* of a cell; number of rows */
+    int width, height, rows; /* of one picture; number of rows */
     uint8_t *rgb;            /* owned: [rows height][3 width][3], black at first */
 } ted4_sheet;
 

@@ -160,7 +160,7 @@ static void test_rounded(void **state)
     before = look(&t);
     for (size_t i = 0; i < t.anchors.n; i++)
         for (int c = 0; c < l->offset_logit; c++) {
-            float *const x = ted4_cell(&t.anchors, TED4_ROW_VALUE, i, c);
+            float *const x = ted4_anchor_value(&t.anchors, TED4_ROW_VALUE, i, c);
             const float q =
                 t.visible_blocks.used[i / TED4_LANES][(size_t)c * TED4_LANES + i % TED4_LANES];
 

@@ -10,56 +10,56 @@
 
 static cloud_case cloud;
 
-/* ---- cells ---- */
+/* ---- voxels ---- */
 
-static void test_cells(void **state)
+static void test_voxel_set(void **state)
 {
     enum { N = 5000 };
-    ted4_cells c;
+    ted4_voxel_set c;
 
     (void)state;
-    assert_int_equal(ted4_cells_init(&c, N), 0);
+    assert_int_equal(ted4_voxel_set_init(&c, N), 0);
     for (int round = 0; round < 2; round++) {
         for (uint64_t i = 0; i < N; i++)
-            assert_int_equal(ted4_cells_add(&c, i * i + 1), 1);
+            assert_int_equal(ted4_voxel_set_add(&c, i * i + 1), 1);
         for (uint64_t i = 0; i < N; i++)
-            assert_int_equal(ted4_cells_add(&c, i * i + 1), 0);
+            assert_int_equal(ted4_voxel_set_add(&c, i * i + 1), 0);
         assert_int_equal(c.n, N);
-        ted4_cells_clear(&c);
+        ted4_voxel_set_clear(&c);
         assert_int_equal(c.n, 0);
     }
-    ted4_cells_finish(&c);
-    assert_int_equal(ted4_cells_init(&c, 0), 0);
-    ted4_cells_finish(&c);
+    ted4_voxel_set_finish(&c);
+    assert_int_equal(ted4_voxel_set_init(&c, 0), 0);
+    ted4_voxel_set_finish(&c);
 }
 
 /* Points of one voxel share a key, neighbours never do, at the finest grid too. */
-static void test_cell_key(void **state)
+static void test_voxel_key(void **state)
 {
     static const double sizes[] = { 2, 0.3, 0.01, 0x1p-19 };
 
     (void)state;
     for (size_t s = 0; s < sizeof sizes / sizeof sizes[0]; s++)
         for (uint64_t i = 0; i < 500; i++) {
-            const double cell = sizes[s], most = floor(1 / cell) - 2;
+            const double voxel = sizes[s], most = floor(1 / voxel) - 2;
             double at[3];
             float p[3], q[3];
             uint64_t key;
 
             for (uint64_t j = 0; j < 3; j++) {
                 at[j] = rint((2 * (double)ted4_uniform(i, j) - 1) * fmax(most, 0));
-                p[j] = (float)(at[j] * cell);
+                p[j] = (float)(at[j] * voxel);
                 const double off = s < 3 ? 0.9 * ((double)ted4_uniform(i, 3 + j) - 0.5) : 0;
 
-                q[j] = (float)((at[j] + off) * cell);
+                q[j] = (float)((at[j] + off) * voxel);
             }
-            key = ted4_cell_key(p, cell);
+            key = ted4_voxel_key(p, voxel);
             assert_int_not_equal(key, 0);
-            assert_int_equal(key, ted4_cell_key(q, cell));
+            assert_int_equal(key, ted4_voxel_key(q, voxel));
             for (int j = 0; j < 6; j++) {
                 memcpy(q, p, sizeof q);
-                q[j / 2] = (float)((at[j / 2] + (j % 2 ? 1 : -1)) * cell);
-                assert_int_not_equal(ted4_cell_key(q, cell), key);
+                q[j / 2] = (float)((at[j / 2] + (j % 2 ? 1 : -1)) * voxel);
+                assert_int_not_equal(ted4_voxel_key(q, voxel), key);
             }
         }
 }
@@ -77,7 +77,7 @@ static void mark_all(ted4_anchors *a)
     for (int k = 0; k < TED4_ROWS; k++)
         for (size_t i = 0; i < a->n; i++)
             for (int r = 0; r < a->rows[k]; r++)
-                *ted4_cell(a, (ted4_row)k, i, r) = mark(i, k, r);
+                *ted4_anchor_value(a, (ted4_row)k, i, r) = mark(i, k, r);
 }
 
 /* Anchor i holds the marks of anchor was. */
@@ -86,7 +86,7 @@ static void check_marks(const ted4_anchors *a, size_t i, size_t was)
     for (int k = 0; k < TED4_ROWS; k++)
         for (int r = 0; r < a->rows[k]; r++)
             if (k != TED4_ROW_POSITION)
-                assert_true(*ted4_cell(a, (ted4_row)k, i, r) == mark(was, k, r));
+                assert_true(*ted4_anchor_value(a, (ted4_row)k, i, r) == mark(was, k, r));
 }
 
 static void test_resize(void **state)
@@ -112,7 +112,7 @@ static void test_resize(void **state)
         for (size_t i = kept; i < a.n; i++)
             for (int k = 0; k < TED4_ROWS; k++)
                 for (int r = 0; r < a.rows[k]; r++)
-                    assert_true(*ted4_cell(&a, (ted4_row)k, i, r) == 0.0f);
+                    assert_true(*ted4_anchor_value(&a, (ted4_row)k, i, r) == 0.0f);
     }
     ted4_anchors_finish(&a);
     ted4_trainer_finish(&t);
@@ -156,13 +156,13 @@ static void test_sort(void **state)
     mark_all(a);
     for (size_t i = 0; i < N; i++)
         for (int j = 0; j < 3; j++) /* the last 50 repeat the first, a hair off */
-            *ted4_cell(a, TED4_ROW_POSITION, i, j) =
+            *ted4_anchor_value(a, TED4_ROW_POSITION, i, j) =
                 (2.0f * ted4_uniform((uint64_t)j, i % 150) - 1.0f) *
                 (i < 150 ? 1.0f : 1.0f + 0x1p-23f);
     assert_int_equal(ted4_anchors_sort(a), 0);
     anchors_check(a);
     for (size_t i = 0; i < N; i++) {
-        const float was = *ted4_cell(a, TED4_ROW_VALUE, i, 0) - 1.0f;
+        const float was = *ted4_anchor_value(a, TED4_ROW_VALUE, i, 0) - 1.0f;
 
         check_marks(a, i, (size_t)was);
         if (i == 0)
@@ -170,7 +170,7 @@ static void test_sort(void **state)
         assert_true(anchors_morton(a, i - 1) <= anchors_morton(a, i));
         if (anchors_morton(a, i - 1) == anchors_morton(a, i)) {
             ties++;
-            assert_true(*ted4_cell(a, TED4_ROW_VALUE, i - 1, 0) < was + 1.0f);
+            assert_true(*ted4_anchor_value(a, TED4_ROW_VALUE, i - 1, 0) < was + 1.0f);
         }
     }
     assert_true(ties >= 45);
@@ -180,8 +180,8 @@ static void test_sort(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_cells),  cmocka_unit_test(test_cell_key),
-        cmocka_unit_test(test_resize), cmocka_unit_test(test_select),
+        cmocka_unit_test(test_voxel_set), cmocka_unit_test(test_voxel_key),
+        cmocka_unit_test(test_resize),    cmocka_unit_test(test_select),
         cmocka_unit_test(test_sort),
     };
 

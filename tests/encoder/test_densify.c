@@ -21,8 +21,8 @@ enum { K = 3, SEEN = 5 }; /* an offset counts from more than 0.4 grow_every = 4 
 
 static void plant(ted4_trainer *t, size_t i, int k, float gradient, float views)
 {
-    *ted4_cell(&t->anchors, TED4_ROW_GRADIENT, i, k) = gradient * views;
-    *ted4_cell(&t->anchors, TED4_ROW_GRADIENT, i, K + k) = views;
+    *ted4_anchor_value(&t->anchors, TED4_ROW_GRADIENT, i, k) = gradient * views;
+    *ted4_anchor_value(&t->anchors, TED4_ROW_GRADIENT, i, K + k) = views;
 }
 
 /* Anchor i's offset k points half-way between lattice points, at a place of its own. */
@@ -32,11 +32,11 @@ static void aim(ted4_trainer *t, size_t i, int k, float place[3])
 
     for (int j = 0; j < 3; j++) {
         const float o = 0.5f + 0.1f * (float)(k - 1),
-                    s = exp2f(
-                        *ted4_cell(&t->anchors, TED4_ROW_VALUE, i, l->first[TED4_SCALING] + j));
+                    s = exp2f(*ted4_anchor_value(&t->anchors, TED4_ROW_VALUE, i,
+                                                 l->first[TED4_SCALING] + j));
 
-        *ted4_cell(&t->anchors, TED4_ROW_VALUE, i, l->first[TED4_OFFSET] + 3 * k + j) = o;
-        place[j] = *ted4_cell(&t->anchors, TED4_ROW_POSITION, i, j) + o * s;
+        *ted4_anchor_value(&t->anchors, TED4_ROW_VALUE, i, l->first[TED4_OFFSET] + 3 * k + j) = o;
+        place[j] = *ted4_anchor_value(&t->anchors, TED4_ROW_POSITION, i, j) + o * s;
     }
 }
 
@@ -44,7 +44,7 @@ static void aim(ted4_trainer *t, size_t i, int k, float place[3])
 static void name_anchors(ted4_trainer *t)
 {
     for (size_t i = 0; i < t->anchors.n; i++)
-        *ted4_cell(&t->anchors, TED4_ROW_VALUE, i, 0) = (float)(i + 1);
+        *ted4_anchor_value(&t->anchors, TED4_ROW_VALUE, i, 0) = (float)(i + 1);
 }
 
 /* New anchors have fresh moments and zero offsets; old ones have moments here. */
@@ -52,12 +52,12 @@ static void give_moments(ted4_trainer *t)
 {
     for (size_t i = 0; i < t->anchors.n; i++)
         for (int c = 0; c < t->layout.n_channels; c++)
-            *ted4_cell(&t->anchors, TED4_ROW_V, i, c) = 1.0f;
+            *ted4_anchor_value(&t->anchors, TED4_ROW_V, i, c) = 1.0f;
 }
 
 static int is_new(const ted4_trainer *t, size_t i)
 {
-    return *ted4_cell(&t->anchors, TED4_ROW_V, i, 0) == 0.0f;
+    return *ted4_anchor_value(&t->anchors, TED4_ROW_V, i, 0) == 0.0f;
 }
 
 /* A new anchor: on the grid of one of three depths, half a voxel at most from the place; its
@@ -66,20 +66,20 @@ static void check_child(const ted4_trainer *t, size_t i, const float place[3])
 {
     const ted4_layout *l = &t->layout;
     const int scaling = l->first[TED4_SCALING];
-    const double s = exp2((double)*ted4_cell(&t->anchors, TED4_ROW_VALUE, i, scaling));
+    const double s = exp2((double)*ted4_anchor_value(&t->anchors, TED4_ROW_VALUE, i, scaling));
     int depth = 0;
 
-    while (depth < 3 && fabs(s - t->cell * pow(0.25, depth)) > 1e-5 * s)
+    while (depth < 3 && fabs(s - t->voxel * pow(0.25, depth)) > 1e-5 * s)
         depth++;
     assert_true(depth < 3);
     for (int j = 0; j < 3; j++) {
-        const double x = (double)*ted4_cell(&t->anchors, TED4_ROW_POSITION, i, j);
+        const double x = (double)*ted4_anchor_value(&t->anchors, TED4_ROW_POSITION, i, j);
 
         assert_true(fabs(x - (double)place[j]) <= 0.5 * s + 1e-6);
         assert_true(fabs(x / s - rint(x / s)) < 1e-4);
     }
     for (int c = 0; c < l->n_channels; c++) {
-        const float x = *ted4_cell(&t->anchors, TED4_ROW_VALUE, i, c);
+        const float x = *ted4_anchor_value(&t->anchors, TED4_ROW_VALUE, i, c);
 
         if (c >= l->first[TED4_OFFSET] && c < l->first[TED4_OFFSET] + 3 * K)
             assert_true(x == 0.0f);
@@ -87,10 +87,10 @@ static void check_child(const ted4_trainer *t, size_t i, const float place[3])
             assert_true(fabs((double)x - log2(s)) < 1e-5);
         if (c >= l->offset_logit)
             assert_true(x == 1.0f);
-        assert_true(*ted4_cell(&t->anchors, TED4_ROW_V, i, c) == 0.0f);
+        assert_true(*ted4_anchor_value(&t->anchors, TED4_ROW_V, i, c) == 0.0f);
     }
     for (int r = 0; r < 2 * K; r++)
-        assert_true(*ted4_cell(&t->anchors, TED4_ROW_GRADIENT, i, r) == 0.0f);
+        assert_true(*ted4_anchor_value(&t->anchors, TED4_ROW_GRADIENT, i, r) == 0.0f);
 }
 
 /* Every fourth anchor gets a strong gradient on one offset; others a weak one, or too few views. */
@@ -115,11 +115,11 @@ static void test_growth(void **state)
     assert_int_equal(ted4_densify_adjust(&t, ted4_growth_allowance(&t)), 0);
     anchors_check(&t.anchors);
     for (size_t i = 0; i < t.anchors.n; i++) {
-        const size_t id = (size_t)*ted4_cell(&t.anchors, TED4_ROW_VALUE, i, 0) - 1;
+        const size_t id = (size_t)*ted4_anchor_value(&t.anchors, TED4_ROW_VALUE, i, 0) - 1;
 
         assert_true(i == 0 || anchors_morton(&t.anchors, i - 1) <= anchors_morton(&t.anchors, i));
         for (int j = 0; j < 3; j++)
-            assert_true(fabsf(*ted4_cell(&t.anchors, TED4_ROW_POSITION, i, j)) <= 1.0f);
+            assert_true(fabsf(*ted4_anchor_value(&t.anchors, TED4_ROW_POSITION, i, j)) <= 1.0f);
         if (!is_new(&t, i)) {
             old++;
             continue;
@@ -150,16 +150,16 @@ static void test_growth_depths(void **state)
         cloud_begin(&cloud, &t);
         give_moments(&t);
         for (size_t i = 0; i < CLOUD_POINTS; i++) {
-            aim(&t, i, K - 1, place[i]); /* nearer to the next cell than to its own, which is free
+            aim(&t, i, K - 1, place[i]); /* nearer to the next voxel than to its own, which is free
                                             at the lattice's faces */
             plant(&t, i, K - 1, 1.5f * (float)(1 << most) * THRESHOLD, SEEN);
         }
         assert_int_equal(ted4_densify_adjust(&t, ted4_growth_allowance(&t)), 0);
         for (size_t i = 0; i < t.anchors.n; i++)
             if (is_new(&t, i))
-                n[(int)lrint(0.5 *
-                             (log2(t.cell) - (double)*ted4_cell(&t.anchors, TED4_ROW_VALUE, i,
-                                                                t.layout.first[TED4_SCALING])))]++;
+                n[(int)lrint(0.5 * (log2(t.voxel) -
+                                    (double)*ted4_anchor_value(&t.anchors, TED4_ROW_VALUE, i,
+                                                               t.layout.first[TED4_SCALING])))]++;
         for (int depth = 0; depth < 3; depth++)
             if ((n[depth] > 10) != (depth <= most) || (n[depth] > 0) != (depth <= most))
                 fail_msg("%d at depth %d, gradients of %g thresholds", n[depth], depth,
@@ -183,25 +183,25 @@ static void test_growth_limits(void **state)
     for (int k = 0; k < K; k++) /* offsets 1 and 2 are zero: there is an anchor already */
         plant(&t, 50, k, 1.0f, SEEN);
     plant(&t, 51, 0, 1.0f, SEEN - 1);
-    *ted4_cell(&t.anchors, TED4_ROW_VALUE, 52, t.layout.first[TED4_OFFSET]) = 30.0f;
+    *ted4_anchor_value(&t.anchors, TED4_ROW_VALUE, 52, t.layout.first[TED4_OFFSET]) = 30.0f;
     plant(&t, 52, 0, 1.0f, SEEN);
-    *ted4_cell(&t.anchors, TED4_ROW_OPACITY, 51, 0) = 0.75f;
-    *ted4_cell(&t.anchors, TED4_ROW_OPACITY, 51, 1) = 3.0f;
+    *ted4_anchor_value(&t.anchors, TED4_ROW_OPACITY, 51, 0) = 0.75f;
+    *ted4_anchor_value(&t.anchors, TED4_ROW_OPACITY, 51, 1) = 3.0f;
     name_anchors(&t);
     assert_int_equal(ted4_densify_adjust(&t, ted4_growth_allowance(&t)), 0);
     assert_true(t.anchors.n <= CLOUD_POINTS + 3);
     for (size_t i = 0; i < t.anchors.n; i++) {
-        const float id = *ted4_cell(&t.anchors, TED4_ROW_VALUE, i, 0) - 1.0f;
+        const float id = *ted4_anchor_value(&t.anchors, TED4_ROW_VALUE, i, 0) - 1.0f;
 
         if (is_new(&t, i)) {
             assert_true(id == 50.0f);
             check_child(&t, i, place);
         } else if (id == 51.0f) {
-            assert_true(*ted4_cell(&t.anchors, TED4_ROW_GRADIENT, i, K) == SEEN - 1);
-            assert_true(*ted4_cell(&t.anchors, TED4_ROW_OPACITY, i, 0) == 0.75f);
+            assert_true(*ted4_anchor_value(&t.anchors, TED4_ROW_GRADIENT, i, K) == SEEN - 1);
+            assert_true(*ted4_anchor_value(&t.anchors, TED4_ROW_OPACITY, i, 0) == 0.75f);
         } else {
             for (int r = 0; r < 2 * K; r++)
-                assert_true(*ted4_cell(&t.anchors, TED4_ROW_GRADIENT, i, r) == 0.0f);
+                assert_true(*ted4_anchor_value(&t.anchors, TED4_ROW_GRADIENT, i, r) == 0.0f);
         }
     }
     ted4_trainer_finish(&t);
@@ -231,7 +231,7 @@ static void test_max_anchors(void **state)
         assert_int_equal(t.anchors.n, CLOUD_POINTS + (full ? 0 : CAPACITY));
         for (size_t i = 0; i < t.anchors.n; i++)
             if (is_new(&t, i)) {
-                least = fminf(least, *ted4_cell(&t.anchors, TED4_ROW_VALUE, i, 0));
+                least = fminf(least, *ted4_anchor_value(&t.anchors, TED4_ROW_VALUE, i, 0));
                 n++;
             }
         assert_int_equal(n, full ? 0 : CAPACITY);
@@ -247,9 +247,9 @@ enum { VISITS = 9 }; /* more than 0.8 grow_every */
 
 static void fade(ted4_trainer *t, size_t i, double mean, float visits)
 {
-    *ted4_cell(&t->anchors, TED4_ROW_OPACITY, i, 0) = (float)mean * visits;
-    *ted4_cell(&t->anchors, TED4_ROW_OPACITY, i, 1) = visits;
-    *ted4_cell(&t->anchors, TED4_ROW_OPACITY, i, 2) = visits;
+    *ted4_anchor_value(&t->anchors, TED4_ROW_OPACITY, i, 0) = (float)mean * visits;
+    *ted4_anchor_value(&t->anchors, TED4_ROW_OPACITY, i, 1) = visits;
+    *ted4_anchor_value(&t->anchors, TED4_ROW_OPACITY, i, 2) = visits;
 }
 
 /* Anchor 4 i: faded; 4 i + 1: just not; 4 i + 2: faded but not seen enough; 4 i + 3: never seen. */
@@ -268,10 +268,11 @@ static void test_pruning(void **state)
     anchors_check(&t.anchors);
     assert_int_equal(t.anchors.n, CLOUD_POINTS * 3 / 4);
     for (size_t i = 0; i < t.anchors.n; i++) {
-        const int id = (int)*ted4_cell(&t.anchors, TED4_ROW_VALUE, i, 0) - 1;
+        const int id = (int)*ted4_anchor_value(&t.anchors, TED4_ROW_VALUE, i, 0) - 1;
 
         assert_int_not_equal(id % 4, 0);
-        assert_true(*ted4_cell(&t.anchors, TED4_ROW_OPACITY, i, 1) == (id % 4 == 2 ? 8.0f : 0.0f));
+        assert_true(*ted4_anchor_value(&t.anchors, TED4_ROW_OPACITY, i, 1) ==
+                    (id % 4 == 2 ? 8.0f : 0.0f));
     }
     ted4_trainer_finish(&t);
 }
@@ -298,15 +299,15 @@ static void test_pruning_short_lives(void **state)
     name_anchors(&t);
     for (size_t i = 0; i < CLOUD_POINTS; i++) {
         fade(&t, i, t.opt.prune_opacity * lives[i % 4].mean, lives[i % 4].there);
-        *ted4_cell(&t.anchors, TED4_ROW_OPACITY, i, 1) = VISITS;
+        *ted4_anchor_value(&t.anchors, TED4_ROW_OPACITY, i, 1) = VISITS;
     }
     assert_int_equal(ted4_densify_adjust(&t, ted4_growth_allowance(&t)), 0);
     assert_int_equal(t.anchors.n, CLOUD_POINTS * 3 / 4);
     for (size_t i = 0; i < t.anchors.n; i++) {
-        const int id = (int)*ted4_cell(&t.anchors, TED4_ROW_VALUE, i, 0) - 1;
+        const int id = (int)*ted4_anchor_value(&t.anchors, TED4_ROW_VALUE, i, 0) - 1;
 
         assert_false(lives[id % 4].goes);
-        assert_true(*ted4_cell(&t.anchors, TED4_ROW_OPACITY, i, 1) ==
+        assert_true(*ted4_anchor_value(&t.anchors, TED4_ROW_OPACITY, i, 1) ==
                     (lives[id % 4].there < 8 ? VISITS : 0));
     }
     ted4_trainer_finish(&t);
@@ -327,7 +328,7 @@ static void test_all_faded(void **state)
     anchors_check(&t.anchors);
     assert_int_equal(t.anchors.n, TED4_LANES);
     for (size_t i = 0; i < t.anchors.n; i++) {
-        const size_t id = (size_t)*ted4_cell(&t.anchors, TED4_ROW_VALUE, i, 0) - 1;
+        const size_t id = (size_t)*ted4_anchor_value(&t.anchors, TED4_ROW_VALUE, i, 0) - 1;
 
         assert_true(id * 7 % CLOUD_POINTS >= CLOUD_POINTS - TED4_LANES);
     }
@@ -354,10 +355,10 @@ static void test_gather(void **state)
     in.activation = 1;
     for (size_t i = 0; i < CLOUD_POINTS; i++) /* odd ones come at 1/4 exactly, even ones at 1/2 */
         for (int c = 0; c < 4; c++)
-            *ted4_cell(&t.anchors, TED4_ROW_VALUE, i, t.layout.first[TED4_TAU] + c) = c % 2 ? -4.0f
-                                                                                      : i % 2
-                                                                                          ? 0.25f
-                                                                                          : 0.5f;
+            *ted4_anchor_value(&t.anchors, TED4_ROW_VALUE, i, t.layout.first[TED4_TAU] + c) =
+                c % 2   ? -4.0f
+                : i % 2 ? 0.25f
+                        : 0.5f;
     for (size_t i = 0; i < SPLATS; i++) {
         opacity[i] = 0.25f * (float)(i % 3);
         moved[i] = (float)i;
@@ -385,13 +386,13 @@ static void test_gather(void **state)
             const float on = seen && at % 2 ? 2.0f : 0.0f;
 
             sum += seen ? 2 * opacity[at] : 0;
-            assert_true(*ted4_cell(&t.anchors, TED4_ROW_GRADIENT, i, k) == on * moved[at]);
-            assert_true(*ted4_cell(&t.anchors, TED4_ROW_GRADIENT, i, K + k) == on);
+            assert_true(*ted4_anchor_value(&t.anchors, TED4_ROW_GRADIENT, i, k) == on * moved[at]);
+            assert_true(*ted4_anchor_value(&t.anchors, TED4_ROW_GRADIENT, i, K + k) == on);
         }
-        assert_true(*ted4_cell(&t.anchors, TED4_ROW_OPACITY, i, 0) == sum);
-        assert_true(*ted4_cell(&t.anchors, TED4_ROW_OPACITY, i, 1) ==
+        assert_true(*ted4_anchor_value(&t.anchors, TED4_ROW_OPACITY, i, 0) == sum);
+        assert_true(*ted4_anchor_value(&t.anchors, TED4_ROW_OPACITY, i, 1) ==
                     (seen && (block_index == 0 || j < 16) ? 2.0f : 0.0f));
-        assert_true(*ted4_cell(&t.anchors, TED4_ROW_OPACITY, i, 2) ==
+        assert_true(*ted4_anchor_value(&t.anchors, TED4_ROW_OPACITY, i, 2) ==
                     (seen && i % 2 && (block_index == 0 || j < 16) ? 2.0f : 0.0f));
     }
     ted4_trainer_finish(&t);

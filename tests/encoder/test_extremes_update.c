@@ -227,7 +227,7 @@ static void test_masks(void **state)
                      want = 0.7 / n * (fabs(x) > 700 ? 0 : 1 / (2 + exp(x) + exp(-x)));
 
         for (size_t i = 0; i < t.anchors.n; i++)
-            *ted4_cell(&t.anchors, TED4_ROW_VALUE, i, t.layout.temporal_logit) = logit[k];
+            *ted4_anchor_value(&t.anchors, TED4_ROW_VALUE, i, t.layout.temporal_logit) = logit[k];
         assert_int_equal(ted4_visible_blocks_fill(&t, NULL), 0);
         memset(t.visible_blocks.gradients, 0, t.visible_blocks.n * floats * sizeof(float));
         ted4_update_parameters(&t);
@@ -267,9 +267,9 @@ static void test_clamped(void **state)
 
     assert_int_equal(ted4_clamped(&t), 0);
     for (size_t k = 0; k < sizeof at / sizeof *at; k++) {
-        float *x = ted4_cell(&t.anchors, TED4_ROW_VALUE, last,
-                             t.layout.first[at[k].type] + at[k].component);
-        float *q = ted4_cell(&t.anchors, TED4_ROW_STEP, last, at[k].type);
+        float *x = ted4_anchor_value(&t.anchors, TED4_ROW_VALUE, last,
+                                     t.layout.first[at[k].type] + at[k].component);
+        float *q = ted4_anchor_value(&t.anchors, TED4_ROW_STEP, last, at[k].type);
         const float before = *x;
 
         *q = at[k].step;
@@ -283,7 +283,7 @@ static void test_clamped(void **state)
     t.layout.head.scale_domain = TED4_SCALE_LINEAR;
     for (size_t i = 0; i < t.anchors.n; i++)
         for (int c = 0; c < 6; c++)
-            *ted4_cell(&t.anchors, TED4_ROW_VALUE, i, t.layout.first[TED4_SCALING] + c) =
+            *ted4_anchor_value(&t.anchors, TED4_ROW_VALUE, i, t.layout.first[TED4_SCALING] + c) =
                 i < 3 && c == 1 ? 0x1p-20f : 0x1p-19f;
     assert_int_equal(ted4_clamped(&t), 3);
     ted4_trainer_finish(&t);

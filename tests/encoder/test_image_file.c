@@ -307,7 +307,7 @@ static uint8_t *make_item(void *user, size_t i, size_t *size, ted4_message *m)
         return NULL;
     }
     memset(p, (int)i, ITEM_BYTES);
-    ((size_t *)user)[i]++; /* each cell by one thread at a time, as promised */
+    ((size_t *)user)[i]++; /* each entry by one thread at a time, as promised */
     *size = ITEM_BYTES;
     return p;
 }

@@ -35,7 +35,7 @@ static void test_nan(void **state)
         if (which == 0)
             t.net.value[t.layout.netr + 1] = NAN;
         else
-            *ted4_cell(&t.anchors, TED4_ROW_VALUE, 3, 0) = INFINITY;
+            *ted4_anchor_value(&t.anchors, TED4_ROW_VALUE, 3, 0) = INFINITY;
         assert_int_equal(ted4_checkpoint_save(&t, path), -1);
         assert_non_null(strstr(t.message.text, "not finite at step 130"));
         ted4_watch_forget(&t); /* else the step would go back: test_watch.c */

@@ -22,7 +22,7 @@ enum {
 
 static float tau(const ted4_trainer *t, size_t i, int c)
 {
-    return *ted4_cell(&t->anchors, TED4_ROW_VALUE, i, t->layout.first[TED4_TAU] + c);
+    return *ted4_anchor_value(&t->anchors, TED4_ROW_VALUE, i, t->layout.first[TED4_TAU] + c);
 }
 
 /* ---- first and last visible time ---- */
@@ -78,7 +78,7 @@ static void test_spans(void **state)
         assert_int_equal(t.anchors.n, CLOUD_POINTS);
         for (size_t i = 0; i < t.anchors.n; i++) {
             const double x = (double)t.layout.head.origin[0] +
-                             ldexp((double)*ted4_cell(&t.anchors, TED4_ROW_POSITION, i, 0),
+                             ldexp((double)*ted4_anchor_value(&t.anchors, TED4_ROW_POSITION, i, 0),
                                    t.layout.head.exponent);
 
             right += x > 30;
@@ -279,7 +279,7 @@ static int steps_are_tabled(const ted4_trainer *t)
 {
     for (size_t i = 0; i < t->anchors.n; i++)
         for (int y = 0; y < TED4_TYPES; y++) {
-            const double q = (double)*ted4_cell(&t->anchors, TED4_ROW_STEP, i, y);
+            const double q = (double)*ted4_anchor_value(&t->anchors, TED4_ROW_STEP, i, y);
             const double octaves = log2(q / (double)t->layout.head.step[y]);
 
             if (t->layout.shape.dim[y] > 0 && fabs(32 * octaves - rint(32 * octaves)) > 1e-3)
@@ -301,8 +301,8 @@ static void test_drawn(void **state)
         assert_ptr_equal(t.visible_blocks.used[i], t.visible_blocks.raw[i]);
     for (size_t i = 0; i < t.anchors.n; i++) /* offset masks wait for the rate */
         for (int k = 0; k < t.layout.head.n_offsets; k++)
-            assert_true(*ted4_cell(&t.anchors, TED4_ROW_VALUE, i, t.layout.offset_logit + k) ==
-                        1.0f);
+            assert_true(*ted4_anchor_value(&t.anchors, TED4_ROW_VALUE, i,
+                                           t.layout.offset_logit + k) == 1.0f);
     ball_train(&t, INTEGER);
     assert_true(fabs(off_symbols(&t, &most) - 0.25) < 0.02);
     assert_true(most > 0.49);

@@ -143,7 +143,7 @@ static void check_values(const ted4_trainer *t, size_t i, float scale)
     const float tau[4] = { 0.0f, -3.3f, 1.0f, -3.3f };
 
     for (int c = 0; c < l->n_channels; c++) {
-        const float x = *ted4_cell(&t->anchors, TED4_ROW_VALUE, i, c);
+        const float x = *ted4_anchor_value(&t->anchors, TED4_ROW_VALUE, i, c);
         const int s = c - l->first[TED4_SCALING], a = c - l->first[TED4_TAU];
 
         if (s >= 0 && s < 6)
@@ -168,7 +168,7 @@ static void test_lattice(void **state)
         cloud_make(&cloud, single ? 1 : 5);
         cloud_begin(&cloud, &t);
         assert_int_equal(t.anchors.n, CLOUD_POINTS);
-        assert_true(fabs(t.cell - 0.25) < 1e-6);
+        assert_true(fabs(t.voxel - 0.25) < 1e-6);
         assert_int_equal((t.layout.first[TED4_TAU] >= 0), !single);
         for (size_t i = 0; i < t.anchors.n; i++) {
             size_t found = 0;
@@ -178,7 +178,8 @@ static void test_lattice(void **state)
 
                 ted4_space_point(&t.layout.head, cloud.point[k], p);
                 for (int j = 0; j < 3; j++)
-                    far = fmaxf(far, fabsf(p[j] - *ted4_cell(&t.anchors, TED4_ROW_POSITION, i, j)));
+                    far = fmaxf(
+                        far, fabsf(p[j] - *ted4_anchor_value(&t.anchors, TED4_ROW_POSITION, i, j)));
                 found += far < 1e-6f && !seen[k]++;
             }
             assert_int_equal(found, 1);
@@ -199,12 +200,12 @@ static void test_voxels(void **state)
     cloud.options.cell = 1.0; /* scene units: half a unit of normalised space */
     cloud.point[0][0] = 100;
     cloud_begin(&cloud, &t);
-    assert_true(fabs(t.cell - 0.5) < 1e-9);
+    assert_true(fabs(t.voxel - 0.5) < 1e-9);
     assert_true(t.anchors.n <= 4 * 4 * 4);
     assert_true(t.anchors.n >= 3 * 3 * 3);
     for (size_t i = 0; i < t.anchors.n; i++)
         for (int j = 0; j < 3; j++) {
-            const float x = *ted4_cell(&t.anchors, TED4_ROW_POSITION, i, j);
+            const float x = *ted4_anchor_value(&t.anchors, TED4_ROW_POSITION, i, j);
 
             assert_true(x == rintf(2 * x) / 2);
             assert_true(fabsf(x) <= 1);
@@ -221,7 +222,7 @@ static void test_finest(void **state)
     cloud_make(&cloud, 1);
     cloud.options.cell = 1e-300;
     cloud_begin(&cloud, &t);
-    assert_true(t.cell == TED4_FINEST_CELL);
+    assert_true(t.voxel == TED4_FINEST_VOXEL);
     assert_int_equal(t.anchors.n, CLOUD_POINTS);
     ted4_trainer_finish(&t);
 }
@@ -237,7 +238,7 @@ static void test_bound(void **state)
         cloud_begin(&cloud, &t);
         assert_true(t.anchors.n >= 1);
         assert_true(t.anchors.n <= (size_t)most);
-        assert_true(t.cell > 0.25);
+        assert_true(t.voxel > 0.25);
         ted4_trainer_finish(&t);
     }
 }

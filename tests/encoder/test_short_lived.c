@@ -51,7 +51,7 @@ static double radii(const ted4_trainer *t, size_t i, int which, double time)
     for (int k = 0; k < 3; k++) {
         const double x =
             (double)h->origin[k] +
-            ldexp((double)*ted4_cell(&t->anchors, TED4_ROW_POSITION, i, k), h->exponent);
+            ldexp((double)*ted4_anchor_value(&t->anchors, TED4_ROW_POSITION, i, k), h->exponent);
 
         square += (x - b.centre[k]) * (x - b.centre[k]);
     }
@@ -60,7 +60,7 @@ static double radii(const ted4_trainer *t, size_t i, int which, double time)
 
 static float tau(const ted4_trainer *t, size_t i, int c)
 {
-    return *ted4_cell(&t->anchors, TED4_ROW_VALUE, i, t->layout.first[TED4_TAU] + c);
+    return *ted4_anchor_value(&t->anchors, TED4_ROW_VALUE, i, t->layout.first[TED4_TAU] + c);
 }
 
 /* The blue ball's points get spans around the time at which it was there; the green ball, far from

@@ -168,7 +168,7 @@ static void test_offset(void **state)
     (void)state;
     go_there(&t);
     for (size_t i = 0; i < t.anchors.n; i++)
-        *ted4_cell(&t.anchors, TED4_ROW_VALUE, i, t.layout.offset_logit + 1) = -10;
+        *ted4_anchor_value(&t.anchors, TED4_ROW_VALUE, i, t.layout.offset_logit + 1) = -10;
     expect_free(&t, TED4_CANDIDATE_OFFSETS, K - 1, 0.0);
     ted4_trainer_finish(&t);
 }
@@ -188,7 +188,8 @@ static void test_feature(void **state)
 
     for (size_t c = F - 2; c < F; c++) {
         for (size_t i = 0; i < t.anchors.n; i++)
-            *ted4_cell(&t.anchors, TED4_ROW_VALUE, i, t.layout.first[TED4_FEATURE] + (int)c) = 0;
+            *ted4_anchor_value(&t.anchors, TED4_ROW_VALUE, i,
+                               t.layout.first[TED4_FEATURE] + (int)c) = 0;
         for (size_t i = 0; i < in; i++)
             last[(3 + c) * in + i] = 0;
         last[in * out + 3 + c] = 0;
@@ -307,7 +308,8 @@ static void test_activation(void **state)
     go_there(&t);
     for (size_t i = 0; i < t.anchors.n; i++)
         for (int c = 0; c < 4; c++)
-            *ted4_cell(&t.anchors, TED4_ROW_VALUE, i, t.layout.first[TED4_TAU] + c) = always[c];
+            *ted4_anchor_value(&t.anchors, TED4_ROW_VALUE, i, t.layout.first[TED4_TAU] + c) =
+                always[c];
     expect_free(&t, TED4_CANDIDATE_ACTIVATION, 0, 0.0);
     ted4_trainer_finish(&t);
 }
@@ -348,19 +350,21 @@ static void test_rotation(void **state)
     ball_train(&t, STAGE1);
     look(&t, 1);
 
-    const float was = *ted4_cell(&t.anchors, TED4_ROW_VALUE, 7, t.layout.first[TED4_FEATURE]);
+    const float was =
+        *ted4_anchor_value(&t.anchors, TED4_ROW_VALUE, 7, t.layout.first[TED4_FEATURE]);
 
     assert_int_equal(ted4_rotate_features(&t), 0);
-    assert_true(fabsf(*ted4_cell(&t.anchors, TED4_ROW_VALUE, 7, t.layout.first[TED4_FEATURE]) -
-                      was) > 1e-3f);
+    assert_true(
+        fabsf(*ted4_anchor_value(&t.anchors, TED4_ROW_VALUE, 7, t.layout.first[TED4_FEATURE]) -
+              was) > 1e-3f);
     if (look(&t, 0) > 1e-3)
         fail_msg("a picture changed by %g", look(&t, 0));
     for (int c = 0; c < F; c++) {
         double sum = 0, square = 0;
 
         for (size_t i = 0; i < t.anchors.n; i++) {
-            const double x =
-                (double)*ted4_cell(&t.anchors, TED4_ROW_VALUE, i, t.layout.first[TED4_FEATURE] + c);
+            const double x = (double)*ted4_anchor_value(&t.anchors, TED4_ROW_VALUE, i,
+                                                        t.layout.first[TED4_FEATURE] + c);
 
             sum += x;
             square += x * x;

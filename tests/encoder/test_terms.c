@@ -28,7 +28,7 @@ static double mean_of(const ted4_trainer *t, int first, int n)
 
     for (size_t i = 0; i < t->anchors.n; i++)
         for (int c = first; c < first + n; c++)
-            sum += (double)*ted4_cell(&t->anchors, TED4_ROW_VALUE, i, c);
+            sum += (double)*ted4_anchor_value(&t->anchors, TED4_ROW_VALUE, i, c);
     return sum / ((double)t->anchors.n * n);
 }
 
@@ -84,7 +84,8 @@ static double sameness(const ted4_trainer *t)
     double sum = 0;
 
     for (size_t i = 0; i < t->anchors.n; i++)
-        sum -= fabs(log2((double)*ted4_cell(&t->anchors, TED4_ROW_STEP, i, TED4_FEATURE) / q0));
+        sum -= fabs(
+            log2((double)*ted4_anchor_value(&t->anchors, TED4_ROW_STEP, i, TED4_FEATURE) / q0));
     return sum / (double)t->anchors.n;
 }
 

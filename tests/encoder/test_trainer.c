@@ -437,7 +437,7 @@ static void test_nan_anchor(void **state)
     (void)state;
     ball_begin(&t, &o, &moving_scene, NULL);
     ball_train(&t, 30);
-    *ted4_cell(&t.anchors, TED4_ROW_VALUE, 7, 2) = NAN;
+    *ted4_anchor_value(&t.anchors, TED4_ROW_VALUE, 7, 2) = NAN;
     assert_int_equal(ted4_make_scene(&t, &s), -1);
     for (int i = 0; i < 100 && t.watch.state.rollbacks == 0; i++)
         assert_int_equal(ted4_trainer_step(&t), 0);

@@ -179,8 +179,8 @@ static void test_symbols(void **state)
     ball_begin(&t, &o, &balls, NULL);
     ball_train(&t, 30);
     for (size_t i = 0; i < t.anchors.n; i++)
-        *ted4_cell(&t.anchors, TED4_ROW_VALUE, i, t.layout.first[TED4_FEATURE]) = i % 2 ? 3e6f
-                                                                                        : -3e6f;
+        *ted4_anchor_value(&t.anchors, TED4_ROW_VALUE, i, t.layout.first[TED4_FEATURE]) =
+            i % 2 ? 3e6f : -3e6f;
     blind_opacity(&t);
     if (ted4_make_scene(&t, &s) != 0)
         fail_msg("%s", t.message.text);
@@ -219,7 +219,7 @@ static void test_units(void **state)
     assert_int_equal(ted4_trainer_init(&metre, &cloud.options, &cloud.data, NULL), 0);
     assert_int_equal(ted4_trainer_init(&league, &far.options, &far.data, NULL), 0);
     assert_int_equal(metre.layout.head.exponent, league.layout.head.exponent + 12);
-    assert_true(metre.cell == league.cell);
+    assert_true(metre.voxel == league.voxel);
     assert_int_equal(metre.anchors.n, league.anchors.n);
     for (int row = 0; row < TED4_ROWS; row++)
         assert_memory_equal(metre.anchors.data[row], league.anchors.data[row],
@@ -277,8 +277,8 @@ static void test_scalings(void **state)
         ball_train(&t, 30);
         for (size_t i = 0; i < t.anchors.n; i++)
             for (unsigned c = 0; c < 6; c++)
-                *ted4_cell(&t.anchors, TED4_ROW_VALUE, i, t.layout.first[TED4_SCALING] + (int)c) =
-                    small_scaling(c);
+                *ted4_anchor_value(&t.anchors, TED4_ROW_VALUE, i,
+                                   t.layout.first[TED4_SCALING] + (int)c) = small_scaling(c);
         if (ted4_make_scene(&t, &s) != 0)
             fail_msg("%s", t.message.text);
         assert_true(s->head.n_anchors > 10);
@@ -298,10 +298,10 @@ static void mark(ted4_trainer *t, int absent)
     const int tau = t->layout.first[TED4_TAU];
 
     for (size_t i = 0; i < t->anchors.n; i += 3) {
-        *ted4_cell(&t->anchors, TED4_ROW_VALUE, i, t->layout.first[TED4_OFFSET]) = 1000.0f;
+        *ted4_anchor_value(&t->anchors, TED4_ROW_VALUE, i, t->layout.first[TED4_OFFSET]) = 1000.0f;
         for (int c = 0; c < 4 && absent; c++)
-            *ted4_cell(&t->anchors, TED4_ROW_VALUE, i, tau + c) = c % 2 ? -10.0f
-                                                                        : 0.5f / (FRAMES - 1);
+            *ted4_anchor_value(&t->anchors, TED4_ROW_VALUE, i, tau + c) =
+                c % 2 ? -10.0f : 0.5f / (FRAMES - 1);
     }
 }
 
@@ -310,8 +310,8 @@ static void count(const ted4_trainer *t, size_t *marked, size_t *others)
 {
     *marked = 0;
     for (size_t i = 0; i < t->anchors.n; i++)
-        *marked += *ted4_cell(&t->anchors, TED4_ROW_VALUE, i, t->layout.first[TED4_OFFSET]) ==
-                   1000.0f;
+        *marked += *ted4_anchor_value(&t->anchors, TED4_ROW_VALUE, i,
+                                      t->layout.first[TED4_OFFSET]) == 1000.0f;
     *others = t->anchors.n - *marked;
 }
 
@@ -359,7 +359,7 @@ static void test_far_away(void **state)
     assert_int_equal(t.anchors.n, CLOUD_POINTS - 1);
     for (size_t i = 0; i < t.anchors.n; i++)
         for (int j = 0; j < 3; j++) {
-            const float p = *ted4_cell(&t.anchors, TED4_ROW_POSITION, i, j);
+            const float p = *ted4_anchor_value(&t.anchors, TED4_ROW_POSITION, i, j);
             const float half = ted4_half_to_float(ted4_float_to_half(p));
 
             assert_true(fabsf(p) <= 1.0f);
@@ -385,19 +385,19 @@ static void test_twins(void **state)
         ball_train(&t, 60);
         for (size_t i = 0; i + 1 < t.anchors.n && twins; i += 20)
             for (int j = 0; j < 3; j++)
-                *ted4_cell(&t.anchors, TED4_ROW_POSITION, i + 1, j) =
-                    *ted4_cell(&t.anchors, TED4_ROW_POSITION, i, j) * (1.0f + 0x1p-20f);
+                *ted4_anchor_value(&t.anchors, TED4_ROW_POSITION, i + 1, j) =
+                    *ted4_anchor_value(&t.anchors, TED4_ROW_POSITION, i, j) * (1.0f + 0x1p-20f);
         assert_int_equal(ted4_stage2_begin(&t), 0);
         n[twins] = t.anchors.n;
         for (size_t i = 0; i < t.anchors.n; i++) {
             uint16_t p[2][3];
 
             for (int j = 0; j < 3; j++) {
-                const float x = *ted4_cell(&t.anchors, TED4_ROW_POSITION, i, j);
+                const float x = *ted4_anchor_value(&t.anchors, TED4_ROW_POSITION, i, j);
 
                 p[1][j] = ted4_float_to_half(x);
                 p[0][j] = ted4_float_to_half(
-                    *ted4_cell(&t.anchors, TED4_ROW_POSITION, i > 0 ? i - 1 : 0, j));
+                    *ted4_anchor_value(&t.anchors, TED4_ROW_POSITION, i > 0 ? i - 1 : 0, j));
                 assert_true(ted4_half_to_float(p[1][j]) == x);
             }
             assert_true(i == 0 || ted4_morton(p[0]) < ted4_morton(p[1]));

@@ -190,7 +190,7 @@ static void test_masks(void **state)
         t.opt.temporal_weight = 0.7;
         for (size_t i = 0; i < t.anchors.n; i++)
             for (int c = t.layout.offset_logit; c < t.layout.n_channels; c++)
-                *ted4_cell(&t.anchors, TED4_ROW_VALUE, i, c) =
+                *ted4_anchor_value(&t.anchors, TED4_ROW_VALUE, i, c) =
                     12.0f * ted4_uniform(3, i * 32 + (uint64_t)c) - 6.0f;
         assert_int_equal(ted4_visible_blocks_fill(&t, NULL), 0);
         memset(t.visible_blocks.gradients, 0, t.visible_blocks.n * floats * sizeof(float));

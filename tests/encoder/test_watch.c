@@ -148,16 +148,16 @@ static void test_values(void **state)
         begin_at(&t, y == TED4_FEATURE   ? INTEGER_FROM + 5
                      : y == TED4_SCALING ? STAGE1 + 5
                                          : KEPT + 3);
-        *ted4_cell(&t.anchors, TED4_ROW_VALUE, 40 + (size_t)y, t.layout.first[y] + 1) =
+        *ted4_anchor_value(&t.anchors, TED4_ROW_VALUE, 40 + (size_t)y, t.layout.first[y] + 1) =
             y % 2 ? NAN : -INFINITY;
         expect_back(&t, y < TED4_OFFSET ? STAGE1 : KEPT, "not finite", names[y], 40 + y);
         finish(&t);
     }
     begin_at(&t, 90);
-    *ted4_cell(&t.anchors, TED4_ROW_VALUE, 3, t.layout.temporal_logit) = NAN;
+    *ted4_anchor_value(&t.anchors, TED4_ROW_VALUE, 3, t.layout.temporal_logit) = NAN;
     expect_back(&t, 0, "not finite", "value of masks", 3);
     ball_train(&t, 299);
-    *ted4_cell(&t.anchors, TED4_ROW_POSITION, 64, 1) = NAN;
+    *ted4_anchor_value(&t.anchors, TED4_ROW_POSITION, 64, 1) = NAN;
     ball_train(&t, 300);
     expect_back(&t, KEPT, "not finite", "value of position", 64);
     assert_true(t.watch.state.factor == 0.25);
@@ -266,9 +266,10 @@ static void test_collapse(void **state)
             const int tau = t.layout.first[TED4_TAU], scaling = t.layout.first[TED4_SCALING];
 
             for (int c = 0; c < 4; c++)
-                *ted4_cell(&t.anchors, TED4_ROW_VALUE, i, tau + c) = which == 1 ? -9.0f : always[c];
+                *ted4_anchor_value(&t.anchors, TED4_ROW_VALUE, i, tau + c) = which == 1 ? -9.0f
+                                                                                        : always[c];
             for (int c = 0; c < 6 && which == 2; c++)
-                *ted4_cell(&t.anchors, TED4_ROW_VALUE, i, scaling + c) = -60.0f;
+                *ted4_anchor_value(&t.anchors, TED4_ROW_VALUE, i, scaling + c) = -60.0f;
         }
         if (which == 0)
             ball_set_biases(&t, TED4_NET_OPACITY, t.layout.head.n_offsets, -1000.0f);
@@ -363,7 +364,7 @@ static void test_other_layout(void **state)
     ball_begin(&t, &o, &still, NULL);
     ball_train(&t, STAGE1 - 1);
     for (size_t i = 0; i < t.anchors.n; i++)
-        *ted4_cell(&t.anchors, TED4_ROW_VALUE, i, t.layout.temporal_logit) = -10.0f;
+        *ted4_anchor_value(&t.anchors, TED4_ROW_VALUE, i, t.layout.temporal_logit) = -10.0f;
     ball_train(&t, STAGE1 + 5);
     assert_int_equal(t.layout.head.motion, TED4_MOTION_NONE);
     t.net.value[t.layout.netr] = NAN;
@@ -391,12 +392,12 @@ static void test_three_times(void **state)
     begin_at(&t, KEPT + 10);
     for (int i = 0; i < TED4_ROLLBACKS; i++) {
         ball_train(&t, KEPT + 10 + (uint64_t)i);
-        *ted4_cell(&t.anchors, TED4_ROW_VALUE, 9, 0) = NAN;
+        *ted4_anchor_value(&t.anchors, TED4_ROW_VALUE, 9, 0) = NAN;
         assert_int_equal(ted4_checkpoint_save(&t, path), -1);
         expect_back(&t, KEPT, "not finite", "value of feature", 9);
     }
     ball_train(&t, KEPT + 5);
-    *ted4_cell(&t.anchors, TED4_ROW_VALUE, 9, 0) = NAN;
+    *ted4_anchor_value(&t.anchors, TED4_ROW_VALUE, 9, 0) = NAN;
     assert_int_equal(ted4_trainer_step(&t), -1);
     assert_true(t.watch.found);
     assert_int_equal(t.iteration, KEPT + 5);

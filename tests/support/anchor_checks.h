@@ -16,7 +16,7 @@ static inline void anchors_check(const ted4_anchors *a)
         assert_int_equal((uintptr_t)a->data[k] % 64, 0);
         for (size_t i = a->n; i < a->n_blocks * TED4_LANES; i++)
             for (int r = 0; r < a->rows[k]; r++)
-                assert_true(*ted4_cell(a, (ted4_row)k, i, r) == 0.0f);
+                assert_true(*ted4_anchor_value(a, (ted4_row)k, i, r) == 0.0f);
     }
     for (size_t b = 0; b < a->n_blocks; b++) {
         uint32_t want = 0;
@@ -33,7 +33,7 @@ static inline uint64_t anchors_morton(const ted4_anchors *a, size_t i)
     uint16_t p[3];
 
     for (int j = 0; j < 3; j++)
-        p[j] = ted4_float_to_half(*ted4_cell(a, TED4_ROW_POSITION, i, j));
+        p[j] = ted4_float_to_half(*ted4_anchor_value(a, TED4_ROW_POSITION, i, j));
     return ted4_morton(p);
 }
 

@@ -56,10 +56,10 @@ static inline size_t ball_count_short_lived(const ted4_trainer *t, int speed, fl
         if (!ted4_is_short_lived(t, i))
             continue;
         for (int k = 0; k < 3; k++)
-            p[k] = *ted4_cell(&t->anchors, TED4_ROW_POSITION, i, k);
+            p[k] = *ted4_anchor_value(&t->anchors, TED4_ROW_POSITION, i, k);
 
-        const float from = *ted4_cell(&t->anchors, TED4_ROW_VALUE, i, first);
-        const float to = *ted4_cell(&t->anchors, TED4_ROW_VALUE, i, first + 2);
+        const float from = *ted4_anchor_value(&t->anchors, TED4_ROW_VALUE, i, first);
+        const float to = *ted4_anchor_value(&t->anchors, TED4_ROW_VALUE, i, first + 2);
 
         assert_true(from < to);
         assert_true(to - from <= longest);

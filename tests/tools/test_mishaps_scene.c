@@ -132,7 +132,7 @@ static void poison(const char *name)
     begin_usual(&t, &d);
     if (ted4_checkpoint_load(&t, tiny_path(&folder, name)) != 0)
         fail_msg("%s", t.message.text);
-    *ted4_cell(&t.anchors, TED4_ROW_VALUE, 5, t.layout.first[TED4_FEATURE]) = NAN;
+    *ted4_anchor_value(&t.anchors, TED4_ROW_VALUE, 5, t.layout.first[TED4_FEATURE]) = NAN;
     end_usual(&t, &d, name);
 }
 

@@ -159,7 +159,7 @@ static void poison(int good)
 
     begin_usual(&t, &d);
     ball_train(&t, 300);
-    *ted4_cell(&t.anchors, TED4_ROW_VALUE, 5, t.layout.first[TED4_OFFSET]) = NAN;
+    *ted4_anchor_value(&t.anchors, TED4_ROW_VALUE, 5, t.layout.first[TED4_OFFSET]) = NAN;
     if (!good)
         ted4_watch_forget(&t);
     end_usual(&t, &d, "out/c");

@@ -61,32 +61,33 @@ static float median(float *x, size_t n)
 
 /* ---- what is seen ---- */
 
-/* A picture is cut into cells by cells, one for so many points: what lies deeper than the nearest
- * point of a cell by more than this share is taken to be hidden. */
-enum { MOST_CELLS = 64 };
-#define POINTS_A_CELL 8.0
-#define HIDDEN        0.1f
+/* A picture is cut into depth_tiles by depth_tiles, one for so many points: what lies deeper than
+ * the nearest point of a tile by more than this share is taken to be hidden. */
+enum { MOST_DEPTH_TILES = 64 };
+#define POINTS_PER_DEPTH_TILE 8.0
+#define HIDDEN                0.1f
 
 /* Samples of one camera: colours [n][MOST_SAMPLES][3], and how many there are [n]. Of the picture
  * at hand: each point's pixel and depth, 0 where it is not in the picture [n], and the nearest
- * depth of each of cells times cells. */
+ * depth of each of depth_tiles times depth_tiles. */
 typedef struct {
     uint8_t *rgb, *count;
     size_t *pixel;
-    float *depth, nearest[MOST_CELLS * MOST_CELLS];
-    size_t cells;
+    float *depth, nearest[MOST_DEPTH_TILES * MOST_DEPTH_TILES];
+    size_t depth_tiles;
 } samples;
 
 static float *nearest_at(samples *l, const ted4_view *v, size_t pixel)
 {
     const size_t w = (size_t)v->width, h = (size_t)v->height;
 
-    return &l->nearest[pixel / w * l->cells / h * l->cells + pixel % w * l->cells / w];
+    return &l->nearest[pixel / w * l->depth_tiles / h * l->depth_tiles +
+                       pixel % w * l->depth_tiles / w];
 }
 
 static void project(const match *m, const ted4_view *v, samples *l)
 {
-    for (size_t c = 0; c < l->cells * l->cells; c++)
+    for (size_t c = 0; c < l->depth_tiles * l->depth_tiles; c++)
         l->nearest[c] = INFINITY;
     for (size_t i = 0; i < m->n; i++) {
         float p[3], *nearest;
@@ -171,7 +172,8 @@ static int look_around(match *m)
                   malloc(m->n * sizeof *l.pixel),
                   malloc(m->n * sizeof *l.depth),
                   { 0 },
-                  (size_t)fmin(ceil(sqrt((double)m->n / POINTS_A_CELL)), MOST_CELLS) };
+                  (size_t)fmin(ceil(sqrt((double)m->n / POINTS_PER_DEPTH_TILE)),
+                               MOST_DEPTH_TILES) };
     int bad = 0;
 
     if (l.rgb == NULL || l.count == NULL || l.pixel == NULL || l.depth == NULL)

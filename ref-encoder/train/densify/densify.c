@@ -12,7 +12,7 @@
 #include "train/math/random.h"
 
 enum { DEPTHS = 3 };
-#define CELL_RATIO     0.25 /* voxel of depth i: cell 4^-i */
+#define VOXEL_RATIO    0.25 /* voxel of depth i: edge 4^-i */
 #define GRADIENT_RATIO 2.0  /* threshold of depth i: times 2^i */
 /* An offset may grow, and an anchor may go, once it was seen in this share of the steps since the
  * last adjustment. */
@@ -88,7 +88,7 @@ typedef struct {
     uint32_t parent; /* anchor */
     uint64_t found;  /* after so many others */
     float position[3];
-    float cell;
+    float voxel;
 } candidate;
 
 static int compare_candidates(const void *x, const void *y)
@@ -108,45 +108,47 @@ static void place(const ted4_trainer *t, size_t i, int k, float p[3])
     const ted4_layout *l = &t->layout;
 
     for (int j = 0; j < 3; j++)
-        p[j] = *ted4_cell(&t->anchors, TED4_ROW_POSITION, i, j) +
-               *ted4_cell(&t->anchors, TED4_ROW_VALUE, i, l->first[TED4_OFFSET] + 3 * k + j) *
-                   ted4_math_exp2f(
-                       *ted4_cell(&t->anchors, TED4_ROW_VALUE, i, l->first[TED4_SCALING] + j));
+        p[j] =
+            *ted4_anchor_value(&t->anchors, TED4_ROW_POSITION, i, j) +
+            *ted4_anchor_value(&t->anchors, TED4_ROW_VALUE, i, l->first[TED4_OFFSET] + 3 * k + j) *
+                ted4_math_exp2f(
+                    *ted4_anchor_value(&t->anchors, TED4_ROW_VALUE, i, l->first[TED4_SCALING] + j));
 }
 
 /* Mean screen gradient of offset k, negative where it was not seen enough. */
 static float mean_gradient(const ted4_trainer *t, size_t i, int k)
 {
     const int K = t->layout.head.n_offsets;
-    const float count = *ted4_cell(&t->anchors, TED4_ROW_GRADIENT, i, K + k);
-    const float sum = *ted4_cell(&t->anchors, TED4_ROW_GRADIENT, i, k);
+    const float count = *ted4_anchor_value(&t->anchors, TED4_ROW_GRADIENT, i, K + k);
+    const float sum = *ted4_anchor_value(&t->anchors, TED4_ROW_GRADIENT, i, k);
 
     if ((double)count <= GROW_SEEN * (double)t->opt.grow_every)
         return -1.0f;
     return sum / count;
 }
 
-/* Candidates of one depth, at most one a free cell; appended to out. */
-static size_t collect(const ted4_trainer *t, int depth, ted4_cells *set, candidate *out, size_t n)
+/* Candidates of one depth, at most one a free voxel; appended to out. */
+static size_t collect(const ted4_trainer *t, int depth, ted4_voxel_set *set, candidate *out,
+                      size_t n)
 {
-    const double cell = t->cell * ted4_math_pow(CELL_RATIO, depth);
+    const double voxel = t->voxel * ted4_math_pow(VOXEL_RATIO, depth);
     const double threshold = t->opt.grow_gradient * ted4_math_pow(GRADIENT_RATIO, depth);
     const double keep = 1.0 - ted4_math_pow(0.5, depth + 1);
     const uint64_t key = ted4_mix(t->opt.seed ^ (t->iteration << 8) ^ (uint64_t)depth);
     const int K = t->layout.head.n_offsets;
 
-    ted4_cells_clear(set);
+    ted4_voxel_set_clear(set);
     for (size_t i = 0; i < t->anchors.n; i++) {
         float p[3];
 
         for (int j = 0; j < 3; j++)
-            p[j] = *ted4_cell(&t->anchors, TED4_ROW_POSITION, i, j);
-        ted4_cells_add(set, ted4_cell_key(p, cell));
+            p[j] = *ted4_anchor_value(&t->anchors, TED4_ROW_POSITION, i, j);
+        ted4_voxel_set_add(set, ted4_voxel_key(p, voxel));
     }
     for (size_t i = 0; i < t->anchors.n; i++) {
         for (int k = 0; k < K; k++) {
             const float g = mean_gradient(t, i, k);
-            candidate c = { g, (uint32_t)i, n, { 0 }, (float)cell };
+            candidate c = { g, (uint32_t)i, n, { 0 }, (float)voxel };
             int inside = 1;
 
             if ((double)g < threshold ||
@@ -154,10 +156,10 @@ static size_t collect(const ted4_trainer *t, int depth, ted4_cells *set, candida
                 continue;
             place(t, i, k, c.position);
             for (int j = 0; j < 3; j++) {
-                c.position[j] = (float)(rint((double)c.position[j] / cell) * cell);
+                c.position[j] = (float)(rint((double)c.position[j] / voxel) * voxel);
                 inside &= fabsf(c.position[j]) <= 1.0f;
             }
-            if (inside && ted4_cells_add(set, ted4_cell_key(c.position, cell)))
+            if (inside && ted4_voxel_set_add(set, ted4_voxel_key(c.position, voxel)))
                 out[n++] = c;
         }
     }
@@ -173,13 +175,15 @@ static int add_anchor(ted4_trainer *t, const candidate *c)
     if (ted4_anchors_resize(a, i + 1) != 0)
         return ted4_trainer_fail(t, "no memory for %zu anchors", i + 1);
     for (int r = 0; r < l->n_channels; r++)
-        *ted4_cell(a, TED4_ROW_VALUE, i, r) = *ted4_cell(a, TED4_ROW_VALUE, c->parent, r);
+        *ted4_anchor_value(a, TED4_ROW_VALUE, i, r) =
+            *ted4_anchor_value(a, TED4_ROW_VALUE, c->parent, r);
     for (int j = 0; j < 3; j++)
-        *ted4_cell(a, TED4_ROW_POSITION, i, j) = c->position[j];
+        *ted4_anchor_value(a, TED4_ROW_POSITION, i, j) = c->position[j];
     for (int j = 0; j < 3 * l->head.n_offsets; j++)
-        *ted4_cell(a, TED4_ROW_VALUE, i, l->first[TED4_OFFSET] + j) = 0.0f;
+        *ted4_anchor_value(a, TED4_ROW_VALUE, i, l->first[TED4_OFFSET] + j) = 0.0f;
     for (int j = 0; j < 6; j++)
-        *ted4_cell(a, TED4_ROW_VALUE, i, l->first[TED4_SCALING] + j) = ted4_math_log2f(c->cell);
+        *ted4_anchor_value(a, TED4_ROW_VALUE, i, l->first[TED4_SCALING] + j) =
+            ted4_math_log2f(c->voxel);
     return 0;
 }
 
@@ -187,11 +191,11 @@ static int grow(ted4_trainer *t, size_t allowance)
 {
     const size_t n = t->anchors.n, K = t->layout.head.n_offsets;
     candidate *c = malloc((DEPTHS * n * K + 1) * sizeof *c);
-    ted4_cells set;
+    ted4_voxel_set set;
     size_t found = 0;
     int bad = 0;
 
-    if (c == NULL || ted4_cells_init(&set, n * (K + 1)) != 0) {
+    if (c == NULL || ted4_voxel_set_init(&set, n * (K + 1)) != 0) {
         free(c);
         return ted4_trainer_fail(t, "no memory to grow anchors");
     }
@@ -200,7 +204,7 @@ static int grow(ted4_trainer *t, size_t allowance)
     qsort(c, found, sizeof *c, compare_candidates);
     for (size_t i = 0; i < found && i < allowance && !bad; i++)
         bad = add_anchor(t, &c[i]) != 0;
-    ted4_cells_finish(&set);
+    ted4_voxel_set_finish(&set);
     free(c);
     return bad ? -1 : 0;
 }
@@ -211,15 +215,15 @@ static void reset_statistics(ted4_trainer *t, size_t i, int opacity)
     const int K = t->layout.head.n_offsets;
 
     for (int k = 0; k < K; k++) {
-        float *count = ted4_cell(&t->anchors, TED4_ROW_GRADIENT, i, K + k);
+        float *count = ted4_anchor_value(&t->anchors, TED4_ROW_GRADIENT, i, K + k);
 
         if ((double)*count > GROW_SEEN * (double)t->opt.grow_every) {
             *count = 0.0f;
-            *ted4_cell(&t->anchors, TED4_ROW_GRADIENT, i, k) = 0.0f;
+            *ted4_anchor_value(&t->anchors, TED4_ROW_GRADIENT, i, k) = 0.0f;
         }
     }
     for (int r = 0; opacity && r < 3; r++)
-        *ted4_cell(&t->anchors, TED4_ROW_OPACITY, i, r) = 0.0f;
+        *ted4_anchor_value(&t->anchors, TED4_ROW_OPACITY, i, r) = 0.0f;
 }
 
 /* An anchor that is to go, and its mean opacity. */
@@ -260,9 +264,9 @@ static int prune(ted4_trainer *t, size_t n_old)
     int bad = order == NULL || gone == NULL;
 
     for (size_t i = 0; !bad && i < a->n; i++) {
-        const double visits = (double)*ted4_cell(a, TED4_ROW_OPACITY, i, 1);
-        const double there = (double)*ted4_cell(a, TED4_ROW_OPACITY, i, 2);
-        const double opacity = (double)*ted4_cell(a, TED4_ROW_OPACITY, i, 0);
+        const double visits = (double)*ted4_anchor_value(a, TED4_ROW_OPACITY, i, 1);
+        const double there = (double)*ted4_anchor_value(a, TED4_ROW_OPACITY, i, 2);
+        const double opacity = (double)*ted4_anchor_value(a, TED4_ROW_OPACITY, i, 0);
         const int ripe = visits > PRUNE_SEEN * (double)t->opt.grow_every && there >= SEEN_THERE;
 
         if (i < n_old)

@@ -49,7 +49,7 @@ static void find_parents(const ted4_trainer *t, const appearance *l, size_t n, c
 
         for (int k = 0; k < 3; k++) {
             const float c = l->rgb[3 * i + (size_t)k] - (float)p->colour[k] / 255.0f;
-            const float d = *ted4_cell(&t->anchors, TED4_ROW_POSITION, i, k) - p->point[k];
+            const float d = *ted4_anchor_value(&t->anchors, TED4_ROW_POSITION, i, k) - p->point[k];
 
             colour += c * c;
             place += d * d;
@@ -78,32 +78,34 @@ static int add(ted4_trainer *t, const appearance *l, size_t n_old, const ted4_pl
         return ted4_trainer_fail(t, "no memory for %zu anchors", i + 1);
     find_parents(t, l, n_old, p, &alike, &near);
     for (int r = 0; r < y->n_channels; r++)
-        *ted4_cell(a, TED4_ROW_VALUE, i, r) = *ted4_cell(a, TED4_ROW_VALUE, near, r);
+        *ted4_anchor_value(a, TED4_ROW_VALUE, i, r) =
+            *ted4_anchor_value(a, TED4_ROW_VALUE, near, r);
     for (int r = 0; r < y->head.feature_dim; r++)
-        *ted4_cell(a, TED4_ROW_VALUE, i, y->first[TED4_FEATURE] + r) =
-            *ted4_cell(a, TED4_ROW_VALUE, alike, y->first[TED4_FEATURE] + r);
+        *ted4_anchor_value(a, TED4_ROW_VALUE, i, y->first[TED4_FEATURE] + r) =
+            *ted4_anchor_value(a, TED4_ROW_VALUE, alike, y->first[TED4_FEATURE] + r);
     for (int j = 0; j < 3; j++)
-        *ted4_cell(a, TED4_ROW_POSITION, i, j) = p->point[j];
+        *ted4_anchor_value(a, TED4_ROW_POSITION, i, j) = p->point[j];
     for (int j = 0; j < 3 * y->head.n_offsets; j++)
-        *ted4_cell(a, TED4_ROW_VALUE, i, y->first[TED4_OFFSET] + j) = 0.0f;
+        *ted4_anchor_value(a, TED4_ROW_VALUE, i, y->first[TED4_OFFSET] + j) = 0.0f;
     for (int j = 0; j < 6; j++)
-        *ted4_cell(a, TED4_ROW_VALUE, i, y->first[TED4_SCALING] + j) = ted4_math_log2f(p->size);
+        *ted4_anchor_value(a, TED4_ROW_VALUE, i, y->first[TED4_SCALING] + j) =
+            ted4_math_log2f(p->size);
     ted4_span_set(t, i, span);
     return 0;
 }
 
-/* Marks the cell of a place at the frames of its span; 0: it was marked at its own frame already.
+/* Marks the voxel of a place at the frames of its span; 0: it was marked at its own frame already.
  */
-static int mark(ted4_cells *taken, const ted4_place *p, const ted4_span *span)
+static int mark(ted4_voxel_set *taken, const ted4_place *p, const ted4_span *span)
 {
-    const double cell = ted4_math_exp2(ceil(ted4_math_log2((double)p->size)));
-    const uint64_t key = ted4_cell_key(p->point, cell);
+    const double voxel = ted4_math_exp2(ceil(ted4_math_log2((double)p->size)));
+    const uint64_t key = ted4_voxel_key(p->point, voxel);
 
-    if (!ted4_cells_add(taken, ted4_mix(key + p->frame) | 1))
+    if (!ted4_voxel_set_add(taken, ted4_mix(key + p->frame) | 1))
         return 0;
     for (uint32_t f = span->from; f <= span->to; f++)
         if (f != p->frame)
-            ted4_cells_add(taken, ted4_mix(key + f) | 1);
+            ted4_voxel_set_add(taken, ted4_mix(key + f) | 1);
     return 1;
 }
 
@@ -112,11 +114,11 @@ static int plant(ted4_trainer *t, const ted4_places *list, const ted4_sightings 
 {
     const size_t n_old = t->anchors.n, most = (size_t)t->opt.max_anchors;
     const size_t allowance = n_old < most ? most - n_old : 0;
-    ted4_cells taken;
+    ted4_voxel_set taken;
     int bad = 0;
 
-    if (ted4_cells_init(&taken, (list->n < allowance ? list->n : allowance) * t->data->n_frames) !=
-        0)
+    if (ted4_voxel_set_init(&taken,
+                            (list->n < allowance ? list->n : allowance) * t->data->n_frames) != 0)
         return ted4_trainer_fail(t, "no memory for new anchors");
     for (size_t i = 0; !bad && i < list->n && t->anchors.n < most; i++) {
         const ted4_place *p = &list->item[i];
@@ -125,7 +127,7 @@ static int plant(ted4_trainer *t, const ted4_places *list, const ted4_sightings 
         if (ted4_sightings_span(s, i, p->frame, &span) && mark(&taken, p, &span))
             bad = add(t, l, n_old, p, &span) != 0;
     }
-    ted4_cells_finish(&taken);
+    ted4_voxel_set_finish(&taken);
     return bad ? -1 : 0;
 }
 

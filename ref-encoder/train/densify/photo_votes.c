@@ -216,12 +216,12 @@ void ted4_span_set(ted4_trainer *t, size_t i, const ted4_span *span)
     const float frame = 1.0f / (float)(t->data->n_frames - 1);
     const float before = (float)span->before, after = (float)span->after;
 
-    *ted4_cell(&t->anchors, TED4_ROW_VALUE, i, first) = ((float)span->from - SPAN_BEYOND * before) *
-                                                        frame;
-    *ted4_cell(&t->anchors, TED4_ROW_VALUE, i, first + 1) =
+    *ted4_anchor_value(&t->anchors, TED4_ROW_VALUE, i, first) =
+        ((float)span->from - SPAN_BEYOND * before) * frame;
+    *ted4_anchor_value(&t->anchors, TED4_ROW_VALUE, i, first + 1) =
         ted4_math_log2f(SPAN_FADES * before * frame);
-    *ted4_cell(&t->anchors, TED4_ROW_VALUE, i, first + 2) =
+    *ted4_anchor_value(&t->anchors, TED4_ROW_VALUE, i, first + 2) =
         ((float)span->to + SPAN_BEYOND * after) * frame;
-    *ted4_cell(&t->anchors, TED4_ROW_VALUE, i, first + 3) =
+    *ted4_anchor_value(&t->anchors, TED4_ROW_VALUE, i, first + 3) =
         ted4_math_log2f(SPAN_FADES * after * frame);
 }

@@ -167,7 +167,7 @@ static int depth_range(const ted4_trainer *t, sweep_view *e)
         size_t pixel;
 
         for (int k = 0; k < 3; k++)
-            p[k] = *ted4_cell(&t->anchors, TED4_ROW_POSITION, i, k);
+            p[k] = *ted4_anchor_value(&t->anchors, TED4_ROW_POSITION, i, k);
         if (ted4_view_pixel(&e->view, p, &pixel, &z[n]))
             n++;
     }
@@ -272,26 +272,26 @@ int ted4_place_compare(const void *x, const void *y)
     return memcmp(a->colour, b->colour, sizeof a->colour);
 }
 
-/* The surest place of each cell from the first on, and of these the surest, most at most. 0, or -1:
- * no memory. */
+/* The surest place of each voxel from the first on, and of these the surest, most at most. 0, or
+ * -1: no memory. */
 static int thin(ted4_places *l, size_t first, size_t most)
 {
-    ted4_cells taken;
+    ted4_voxel_set taken;
     size_t n = first;
 
     if (l->n == first)
         return 0;
-    if (ted4_cells_init(&taken, l->n - first) != 0)
+    if (ted4_voxel_set_init(&taken, l->n - first) != 0)
         return -1;
     qsort(l->item + first, l->n - first, sizeof *l->item, ted4_place_compare);
     for (size_t i = first; i < l->n && n < first + most; i++) {
-        const double cell = ted4_math_exp2(ceil(ted4_math_log2((double)l->item[i].size)));
+        const double voxel = ted4_math_exp2(ceil(ted4_math_log2((double)l->item[i].size)));
 
-        if (ted4_cells_add(&taken, ted4_cell_key(l->item[i].point, cell)))
+        if (ted4_voxel_set_add(&taken, ted4_voxel_key(l->item[i].point, voxel)))
             l->item[n++] = l->item[i];
     }
     l->n = n;
-    ted4_cells_finish(&taken);
+    ted4_voxel_set_finish(&taken);
     return 0;
 }
 

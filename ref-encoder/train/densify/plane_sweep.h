@@ -31,7 +31,7 @@ static inline size_t ted4_mv_seed_capacity(uint32_t n_frames)
     return ((size_t)1 << 27) / n_frames;
 }
 
-/* Adds places missing at a frame to the list, at most one a cell of the place's size, and of long
+/* Adds places missing at a frame to the list, at most one a voxel of the place's size, and of long
  * sequences only the surest, its share of that number or one; in a fixed order. reach: how many
  * frames before and after it have pictures that help. 0, or -1 with t->message. */
 int ted4_mv_seed_search(ted4_trainer *t, uint32_t frame, uint32_t reach, ted4_places *list);

@@ -17,7 +17,7 @@ static void describe(const ted4_trainer *t, const float *points, float *place, u
         size_t at = 0;
 
         for (int k = 0; k < 3; k++)
-            p[k] = *ted4_cell(&t->anchors, TED4_ROW_POSITION, i, k);
+            p[k] = *ted4_anchor_value(&t->anchors, TED4_ROW_POSITION, i, k);
         for (size_t n = 0; n < t->data->n_points; n++) {
             const float x = points[3 * n] - p[0], y = points[3 * n + 1] - p[1],
                         z = points[3 * n + 2] - p[2];
@@ -36,8 +36,8 @@ int ted4_is_short_lived(const ted4_trainer *t, size_t i)
 {
     const int first = t->layout.first[TED4_TAU];
 
-    return first >= 0 && *ted4_cell(&t->anchors, TED4_ROW_VALUE, i, first + 2) -
-                                 *ted4_cell(&t->anchors, TED4_ROW_VALUE, i, first) <
+    return first >= 0 && *ted4_anchor_value(&t->anchors, TED4_ROW_VALUE, i, first + 2) -
+                                 *ted4_anchor_value(&t->anchors, TED4_ROW_VALUE, i, first) <
                              1.0f;
 }
 

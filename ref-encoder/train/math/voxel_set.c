@@ -8,7 +8,7 @@
 
 #include "random.h"
 
-int ted4_cells_init(ted4_cells *c, size_t n)
+int ted4_voxel_set_init(ted4_voxel_set *c, size_t n)
 {
     size_t size = 64;
 
@@ -20,19 +20,19 @@ int ted4_cells_init(ted4_cells *c, size_t n)
     return c->key == NULL ? -1 : 0;
 }
 
-void ted4_cells_finish(ted4_cells *c)
+void ted4_voxel_set_finish(ted4_voxel_set *c)
 {
     free(c->key);
     c->key = NULL;
 }
 
-void ted4_cells_clear(ted4_cells *c)
+void ted4_voxel_set_clear(ted4_voxel_set *c)
 {
     memset(c->key, 0, (c->mask + 1) * sizeof *c->key);
     c->n = 0;
 }
 
-int ted4_cells_add(ted4_cells *c, uint64_t key)
+int ted4_voxel_set_add(ted4_voxel_set *c, uint64_t key)
 {
     size_t i = (size_t)ted4_mix(key) & c->mask;
 
@@ -46,12 +46,12 @@ int ted4_cells_add(ted4_cells *c, uint64_t key)
     return 1;
 }
 
-uint64_t ted4_cell_key(const float p[3], double cell)
+uint64_t ted4_voxel_key(const float p[3], double voxel)
 {
     uint64_t key = 1;
 
     for (int j = 0; j < 3; j++) {
-        const int64_t i = (int64_t)rint((double)p[j] / cell) + (1 << 20);
+        const int64_t i = (int64_t)rint((double)p[j] / voxel) + (1 << 20);
 
         key = key << 21 | ((uint64_t)i & 0x1fffff);
     }

@@ -64,7 +64,7 @@ static void clear_anchor(ted4_anchors *a, size_t i)
 {
     for (int k = 0; k < TED4_ROWS; k++)
         for (int r = 0; r < a->rows[k]; r++)
-            *ted4_cell(a, (ted4_row)k, i, r) = 0.0f;
+            *ted4_anchor_value(a, (ted4_row)k, i, r) = 0.0f;
 }
 
 int ted4_anchors_resize(ted4_anchors *a, size_t n)
@@ -96,7 +96,7 @@ int ted4_anchors_select(ted4_anchors *a, const uint32_t *order, size_t n)
         if (blocks > 0)
             memset(p + (blocks - 1) * row_floats(a, k), 0, row_floats(a, k) * sizeof *p);
         for (size_t i = 0; i < n; i++) {
-            const float *from = ted4_cell(a, (ted4_row)k, order[i], 0);
+            const float *from = ted4_anchor_value(a, (ted4_row)k, order[i], 0);
             float *to = p + i / TED4_LANES * row_floats(a, k) + i % TED4_LANES;
 
             for (int r = 0; r < a->rows[k]; r++)
@@ -134,7 +134,7 @@ int ted4_anchors_sort(ted4_anchors *a)
         uint16_t p[3];
 
         for (int j = 0; j < 3; j++)
-            p[j] = ted4_float_to_half(*ted4_cell(a, TED4_ROW_POSITION, i, j));
+            p[j] = ted4_float_to_half(*ted4_anchor_value(a, TED4_ROW_POSITION, i, j));
         key[i] = (keyed) { ted4_morton(p), (uint32_t)i };
     }
     if (!bad) {

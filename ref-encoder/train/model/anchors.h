@@ -45,7 +45,7 @@ static inline float *ted4_block(const ted4_anchors *a, ted4_row k, size_t block)
 }
 
 /* The value of row r of anchor i. */
-static inline float *ted4_cell(const ted4_anchors *a, ted4_row k, size_t i, int r)
+static inline float *ted4_anchor_value(const ted4_anchors *a, ted4_row k, size_t i, int r)
 {
     return ted4_block(a, k, i / TED4_LANES) + (size_t)r * TED4_LANES + i % TED4_LANES;
 }

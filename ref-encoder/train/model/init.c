@@ -62,20 +62,20 @@ static double typical_distance(const float *p, size_t n)
 
 /* Points inside [-1, 1], one a voxel, at the voxel's multiple. Returns how many; out has room for
  * n. */
-static size_t voxelise(const float *p, size_t n, double cell, float *out, ted4_cells *set)
+static size_t voxelise(const float *p, size_t n, double voxel, float *out, ted4_voxel_set *set)
 {
     size_t m = 0;
 
-    ted4_cells_clear(set);
+    ted4_voxel_set_clear(set);
     for (size_t i = 0; i < n; i++) {
         float q[3];
         int inside = 1;
 
         for (int j = 0; j < 3; j++) {
-            q[j] = (float)(rint((double)p[3 * i + (size_t)j] / cell) * cell);
+            q[j] = (float)(rint((double)p[3 * i + (size_t)j] / voxel) * voxel);
             inside &= fabsf(q[j]) <= 1.0f;
         }
-        if (!inside || !ted4_cells_add(set, ted4_cell_key(q, cell)))
+        if (!inside || !ted4_voxel_set_add(set, ted4_voxel_key(q, voxel)))
             continue;
         memcpy(out + 3 * m++, q, sizeof q);
     }
@@ -108,8 +108,9 @@ static void fill_phi(fill_job *f, size_t i)
             norm += w[j] * w[j];
         }
         for (int j = 0; j < 3; j++)
-            phase += 0.5f * turns * w[j] / sqrtf(norm) * *ted4_cell(f->a, TED4_ROW_POSITION, i, j);
-        *ted4_cell(f->a, TED4_ROW_VALUE, i, l->first[TED4_PHI] + c) =
+            phase += 0.5f * turns * w[j] / sqrtf(norm) *
+                     *ted4_anchor_value(f->a, TED4_ROW_POSITION, i, j);
+        *ted4_anchor_value(f->a, TED4_ROW_VALUE, i, l->first[TED4_PHI] + c) =
             PHI_AMPLITUDE * ted4_math_sinf(6.2831853f * phase);
     }
 }
@@ -120,38 +121,39 @@ static void fill_anchor(fill_job *f, size_t i)
     const float d = fmaxf(neighbour_distance(f->p, f->n, i), 1e-5f);
 
     for (int j = 0; j < 3; j++)
-        *ted4_cell(f->a, TED4_ROW_POSITION, i, j) = f->p[3 * i + (size_t)j];
+        *ted4_anchor_value(f->a, TED4_ROW_POSITION, i, j) = f->p[3 * i + (size_t)j];
     for (int j = 0; j < 6; j++)
-        *ted4_cell(f->a, TED4_ROW_VALUE, i, l->first[TED4_SCALING] + j) = ted4_math_log2f(d);
+        *ted4_anchor_value(f->a, TED4_ROW_VALUE, i, l->first[TED4_SCALING] + j) =
+            ted4_math_log2f(d);
     fill_phi(f, i);
     if (l->first[TED4_TAU] >= 0) {
         const float tau[4] = { 0.0f, -3.3f, 1.0f, -3.3f }; /* b = 0.1 */
 
         for (int j = 0; j < 4; j++)
-            *ted4_cell(f->a, TED4_ROW_VALUE, i, l->first[TED4_TAU] + j) = tau[j];
+            *ted4_anchor_value(f->a, TED4_ROW_VALUE, i, l->first[TED4_TAU] + j) = tau[j];
     }
     for (int k = 0; k < l->head.n_offsets; k++)
-        *ted4_cell(f->a, TED4_ROW_VALUE, i, l->offset_logit + k) = 1.0f;
-    *ted4_cell(f->a, TED4_ROW_VALUE, i, l->temporal_logit) = 1.0f;
+        *ted4_anchor_value(f->a, TED4_ROW_VALUE, i, l->offset_logit + k) = 1.0f;
+    *ted4_anchor_value(f->a, TED4_ROW_VALUE, i, l->temporal_logit) = 1.0f;
 }
 
 int ted4_seed_anchors(ted4_anchors *a, const ted4_layout *l, const ted4_dataset *d,
-                      const ted4_train_options *o, double *cell)
+                      const ted4_train_options *o, double *voxel)
 {
     float *p = malloc((d->n_points + 1) * 3 * sizeof *p);
     float *out = malloc((d->n_points + 1) * 3 * sizeof *out);
-    ted4_cells set;
-    int bad = p == NULL || out == NULL || ted4_cells_init(&set, d->n_points) != 0;
+    ted4_voxel_set set;
+    int bad = p == NULL || out == NULL || ted4_voxel_set_init(&set, d->n_points) != 0;
     size_t n = 0;
 
     if (!bad) {
         for (size_t i = 0; i < d->n_points; i++)
             ted4_space_point(&l->head, d->points + 3 * i, p + 3 * i);
-        *cell = o->cell > 0 ? fmax(ldexp(o->cell, -l->head.exponent), TED4_FINEST_CELL)
-                            : typical_distance(p, d->n_points);
-        while ((n = voxelise(p, d->n_points, *cell, out, &set)) > (size_t)o->init_anchors)
-            *cell *= 1.1;
-        ted4_cells_finish(&set);
+        *voxel = o->cell > 0 ? fmax(ldexp(o->cell, -l->head.exponent), TED4_FINEST_VOXEL)
+                             : typical_distance(p, d->n_points);
+        while ((n = voxelise(p, d->n_points, *voxel, out, &set)) > (size_t)o->init_anchors)
+            *voxel *= 1.1;
+        ted4_voxel_set_finish(&set);
         bad = ted4_anchors_resize(a, n) != 0;
     }
 
@@ -246,7 +248,7 @@ static void component_moments(const ted4_anchors *a, int channel, double *mean, 
     double sum = 0, square = 0;
 
     for (size_t i = 0; i < a->n; i++) {
-        const double x = (double)*ted4_cell(a, TED4_ROW_VALUE, i, channel);
+        const double x = (double)*ted4_anchor_value(a, TED4_ROW_VALUE, i, channel);
 
         sum += x;
         square += x * x;

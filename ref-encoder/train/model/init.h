@@ -9,10 +9,10 @@
 #include "options.h"
 
 /* Anchors on the voxel grid of the points, at most init_anchors of them (the voxel grows until they
- * fit); *cell: that voxel, in normalised space. 0, or -1: no memory. Source: paper, "Preliminary:
+ * fit); *voxel: its edge, in normalised space. 0, or -1: no memory. Source: paper, "Preliminary:
  * ScaffoldGS". */
 int ted4_seed_anchors(ted4_anchors *a, const ted4_layout *l, const ted4_dataset *d,
-                      const ted4_train_options *o, double *cell);
+                      const ted4_train_options *o, double *voxel);
 
 /* Weights uniform in +-1/sqrt(inputs), the last layer of F_deform zero, the bank N(0, 0.1), so that
  * neither of phi and bank is a saddle (annex D.1, traps). Every Gaussian begins with an opacity

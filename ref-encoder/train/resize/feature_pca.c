@@ -184,13 +184,14 @@ static void turn_anchors(ted4_trainer *t, const axes *a)
         double x[TED4_MAX_FEATURE];
 
         for (size_t c = 0; c < a->n; c++)
-            x[c] = (double)*ted4_cell(&t->anchors, TED4_ROW_VALUE, i, first + (int)c) - a->mean[c];
+            x[c] = (double)*ted4_anchor_value(&t->anchors, TED4_ROW_VALUE, i, first + (int)c) -
+                   a->mean[c];
         for (size_t c = 0; c < a->n; c++) {
             double sum = 0;
 
             for (size_t k = 0; k < a->n; k++)
                 sum += a->to[c * a->n + k] * x[k];
-            *ted4_cell(&t->anchors, TED4_ROW_VALUE, i, first + (int)c) = (float)sum;
+            *ted4_anchor_value(&t->anchors, TED4_ROW_VALUE, i, first + (int)c) = (float)sum;
         }
     }
 }

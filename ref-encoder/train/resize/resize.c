@@ -64,7 +64,7 @@ static void mean_contexts(const ted4_layout *l, const ted4_anchors *a, float *co
         double sum = 0;
 
         for (size_t i = 0; i < a->n; i++)
-            sum += (double)*ted4_cell(a, TED4_ROW_VALUE, i, l->first[TED4_FEATURE] + c);
+            sum += (double)*ted4_anchor_value(a, TED4_ROW_VALUE, i, l->first[TED4_FEATURE] + c);
         context[c] =
             (float)(sum / ((double)(a->n > 0 ? a->n : 1) * (double)l->head.step[TED4_FEATURE]));
     }
@@ -80,12 +80,13 @@ static void change_domain(ted4_trainer *t)
 
     for (size_t i = 0; i < a->n; i++) {
         for (int c = 0; c < 6; c++) {
-            float *x = ted4_cell(a, TED4_ROW_VALUE, i, first + c);
+            float *x = ted4_anchor_value(a, TED4_ROW_VALUE, i, first + c);
 
             *x = linear ? ted4_math_exp2f(*x) : ted4_math_log2f(fmaxf(*x, 1e-6f));
-            *ted4_cell(a, TED4_ROW_M, i, first + c) = *ted4_cell(a, TED4_ROW_V, i, first + c) = 0;
+            *ted4_anchor_value(a, TED4_ROW_M, i, first + c) =
+                *ted4_anchor_value(a, TED4_ROW_V, i, first + c) = 0;
         }
-        *ted4_cell(a, TED4_ROW_STEP, i, TED4_SCALING) = l->head.step[TED4_SCALING];
+        *ted4_anchor_value(a, TED4_ROW_STEP, i, TED4_SCALING) = l->head.step[TED4_SCALING];
     }
     ted4_seed_prior_type(t->net.value, l, a, TED4_SCALING);
 }

@@ -158,7 +158,7 @@ static void encode_position(const sampling *s, float *x)
     const int octaves = s->t->layout.head.pe_octaves;
 
     for (int a = 0; a < 3; a++) {
-        const float p = *ted4_cell(&s->t->anchors, TED4_ROW_POSITION, s->anchor, a);
+        const float p = *ted4_anchor_value(&s->t->anchors, TED4_ROW_POSITION, s->anchor, a);
         const uint32_t phase = (uint32_t)(int32_t)(p * 0x1p24f) << 7;
 
         x[a] = floorf(p * 0x1p12f) * 0x1p-12f;
@@ -226,7 +226,8 @@ static void look_from(sampling *s, const float camera[3])
     float square = 0;
 
     for (int a = 0; a < 3; a++) {
-        s->view[a] = *ted4_cell(&s->t->anchors, TED4_ROW_POSITION, s->anchor, a) - camera[a];
+        s->view[a] = *ted4_anchor_value(&s->t->anchors, TED4_ROW_POSITION, s->anchor, a) -
+                     camera[a];
         square += s->view[a] * s->view[a];
     }
     for (int a = 0; a < 3; a++)

@@ -315,10 +315,10 @@ static void make_linear(operation *o)
 
     for (size_t i = 0; i < o->t->anchors.n; i++)
         for (int c = 0; c < 6; c++)
-            sum +=
-                (double)(*ted4_cell(&o->t->anchors, TED4_ROW_VALUE, i, l->first[TED4_SCALING] + c) +
-                         ted4_math_log2f(
-                             *ted4_cell(&o->t->anchors, TED4_ROW_STEP, i, TED4_SCALING)));
+            sum += (double)(*ted4_anchor_value(&o->t->anchors, TED4_ROW_VALUE, i,
+                                               l->first[TED4_SCALING] + c) +
+                            ted4_math_log2f(*ted4_anchor_value(&o->t->anchors, TED4_ROW_STEP, i,
+                                                               TED4_SCALING)));
     o->s.head.scale_domain = TED4_SCALE_LINEAR;
     o->s.head.step[TED4_SCALING] = (float)fmax(LN2 * ted4_math_exp2(sum / n), 1e-5);
 }

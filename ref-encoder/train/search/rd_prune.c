@@ -66,7 +66,7 @@ static int learn(ted4_trainer *t, worth *w)
 
 static float *logit(const ted4_trainer *t, size_t i, size_t k)
 {
-    return ted4_cell(&t->anchors, TED4_ROW_VALUE, i, t->layout.offset_logit + (int)k);
+    return ted4_anchor_value(&t->anchors, TED4_ROW_VALUE, i, t->layout.offset_logit + (int)k);
 }
 
 static int64_t count_kept(const ted4_trainer *t)

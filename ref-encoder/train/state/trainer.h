@@ -105,7 +105,7 @@ typedef struct {
     ted4_anchors anchors;
     ted4_networks net;
     ted4_colour colour; /* no cameras when switched off */
-    double cell;        /* voxel of growth, normalised space */
+    double voxel;       /* voxel of growth, normalised space */
 
     /* How far training has come: step/. */
     uint64_t iteration; /* steps done */

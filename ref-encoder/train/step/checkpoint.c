@@ -128,11 +128,11 @@ static int inside_cube(const ted4_anchors *a)
 /* Room for n anchors, if the file holds so many. */
 static int resize_anchors(const stream *s, ted4_anchors *a, uint64_t n)
 {
-    uint64_t cells = 0;
+    uint64_t values = 0;
 
     for (int k = 0; k < TED4_ROWS; k++)
-        cells += (uint64_t)a->rows[k];
-    return n > s->left / (cells * sizeof(float)) ? -1 : ted4_anchors_resize(a, (size_t)n);
+        values += (uint64_t)a->rows[k];
+    return n > s->left / (values * sizeof(float)) ? -1 : ted4_anchors_resize(a, (size_t)n);
 }
 
 static void walk_anchors(stream *s, ted4_trainer *t)
@@ -271,8 +271,8 @@ static int numbers_are_possible(const ted4_trainer *t)
     return (t->phase.stage2 == 0 || t->phase.stage2 == 1) &&
            (t->phase.integer == 0 || t->phase.integer == 1) &&
            t->phase.integer <= t->phase.stage2 && t->iteration <= ted4_trainer_total(t) &&
-           t->phase.stage2_start <= t->iteration && t->cell >= TED4_FINEST_CELL &&
-           t->cell <= 1e30 && t->search.decided >= TED4_DECIDED_NOTHING &&
+           t->phase.stage2_start <= t->iteration && t->voxel >= TED4_FINEST_VOXEL &&
+           t->voxel <= 1e30 && t->search.decided >= TED4_DECIDED_NOTHING &&
            t->search.decided <= TED4_DECIDED_ALL && t->watch.state.factor > 0 &&
            t->watch.state.factor <= 1 && t->watch.state.rollbacks <= TED4_ROLLBACKS;
 }
@@ -381,7 +381,7 @@ static void walk(stream *s, ted4_trainer *t)
     walk_layout(s, t);
     if (!s->failed)
         walk_capacity(s, t);
-    put(s, &t->cell, sizeof t->cell);
+    put(s, &t->voxel, sizeof t->voxel);
     put(s, &t->iteration, sizeof t->iteration);
     put(s, &t->seconds, sizeof t->seconds);
     put(s, &t->phase.integer, sizeof t->phase.integer);

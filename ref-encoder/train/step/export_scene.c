@@ -45,8 +45,9 @@ static void fill_symbols(const ted4_trainer *t, const uint32_t *keep, ted4_scene
             for (size_t i = 0; i < n; i++)
                 s->symbol[y][c * n + i] =
                     (int16_t)(is_coded(s, y, c, i)
-                                  ? round_symbol(*ted4_cell(&t->anchors, TED4_ROW_VALUE, keep[i],
-                                                            t->layout.first[y] + (int)c),
+                                  ? round_symbol(*ted4_anchor_value(&t->anchors, TED4_ROW_VALUE,
+                                                                    keep[i],
+                                                                    t->layout.first[y] + (int)c),
                                                  step_of(s, y, i))
                                   : 0);
     /* R-ATT-001: the end is not before the start. */
@@ -60,7 +61,7 @@ static void fill_masks(const ted4_trainer *t, const uint32_t *keep, ted4_scene *
     for (size_t i = 0; i < s->head.n_anchors; i++) {
         for (int j = 0; j < 3; j++)
             s->position[3 * i + (size_t)j] =
-                ted4_float_to_half(*ted4_cell(&t->anchors, TED4_ROW_POSITION, keep[i], j));
+                ted4_float_to_half(*ted4_anchor_value(&t->anchors, TED4_ROW_POSITION, keep[i], j));
         s->dynamic[i] = (uint8_t)ted4_is_dynamic(t, keep[i]);
         s->offset_bits[i] = ted4_offset_bits(t, keep[i]);
     }

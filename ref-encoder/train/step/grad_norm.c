@@ -193,7 +193,7 @@ int64_t ted4_gradients_anchor(const ted4_trainer *t, int term, int *finite)
 static int is_bad(const ted4_trainer *t, ted4_row row, size_t i, channels at)
 {
     for (int c = at.first; c < at.first + at.n; c++)
-        if (!isfinite(*ted4_cell(&t->anchors, row, i, c)))
+        if (!isfinite(*ted4_anchor_value(&t->anchors, row, i, c)))
             return 1;
     return 0;
 }

@@ -29,8 +29,8 @@ size_t ted4_clamped(const ted4_trainer *t)
         for (unsigned c = 0; c < l->shape.dim[y]; c++)
             for (size_t i = 0; i < t->anchors.n; i++)
                 n += (size_t)is_clamped(&l->head, y, c,
-                                        *ted4_cell(&t->anchors, TED4_ROW_VALUE, i,
-                                                   l->first[y] + (int)c),
-                                        *ted4_cell(&t->anchors, TED4_ROW_STEP, i, y));
+                                        *ted4_anchor_value(&t->anchors, TED4_ROW_VALUE, i,
+                                                           l->first[y] + (int)c),
+                                        *ted4_anchor_value(&t->anchors, TED4_ROW_STEP, i, y));
     return n;
 }

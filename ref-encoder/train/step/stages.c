@@ -86,8 +86,8 @@ int ted4_activation_begin(ted4_trainer *t)
             from = to = 0.5f * (from + to);
         if (ted4_is_short_lived(t, i))
             continue;
-        *ted4_cell(a, TED4_ROW_VALUE, i, first) = from;
-        *ted4_cell(a, TED4_ROW_VALUE, i, first + 2) = to;
+        *ted4_anchor_value(a, TED4_ROW_VALUE, i, first) = from;
+        *ted4_anchor_value(a, TED4_ROW_VALUE, i, first + 2) = to;
     }
     free(span);
     return 0;
@@ -149,7 +149,7 @@ static int settle_positions(ted4_trainer *t)
 
     for (size_t i = 0; i < a->n; i++)
         for (int j = 0; j < 3; j++) {
-            float *p = ted4_cell(a, TED4_ROW_POSITION, i, j);
+            float *p = ted4_anchor_value(a, TED4_ROW_POSITION, i, j);
 
             *p = ted4_half_to_float(ted4_float_to_half(*p)) + 0.0f;
         }
@@ -160,7 +160,7 @@ static int settle_positions(ted4_trainer *t)
         uint16_t p[3];
 
         for (int j = 0; j < 3; j++)
-            p[j] = ted4_float_to_half(*ted4_cell(a, TED4_ROW_POSITION, i, j));
+            p[j] = ted4_float_to_half(*ted4_anchor_value(a, TED4_ROW_POSITION, i, j));
         const uint64_t code = ted4_morton(p);
 
         if (i == 0 || code != last)
@@ -179,12 +179,13 @@ static void remap_row(const ted4_layout *from, const ted4_layout *to, const ted4
     for (size_t i = 0; i < old->n; i++) {
         for (int y = 0; y < TED4_TYPES; y++)
             for (unsigned c = 0; c < to->shape.dim[y]; c++)
-                *ted4_cell(new, row, i, to->first[y] + (int)c) =
-                    *ted4_cell(old, row, i, from->first[y] + (int)c);
+                *ted4_anchor_value(new, row, i, to->first[y] + (int)c) =
+                    *ted4_anchor_value(old, row, i, from->first[y] + (int)c);
         for (int k = 0; k < to->head.n_offsets; k++)
-            *ted4_cell(new, row, i, to->offset_logit + k) =
-                *ted4_cell(old, row, i, from->offset_logit + k);
-        *ted4_cell(new, row, i, to->temporal_logit) = *ted4_cell(old, row, i, from->temporal_logit);
+            *ted4_anchor_value(new, row, i, to->offset_logit + k) =
+                *ted4_anchor_value(old, row, i, from->offset_logit + k);
+        *ted4_anchor_value(new, row, i, to->temporal_logit) =
+            *ted4_anchor_value(old, row, i, from->temporal_logit);
     }
 }
 
@@ -244,7 +245,7 @@ int ted4_stage_relayout(ted4_trainer *t, const ted4_header *h)
 
 static float least_activation(const ted4_trainer *t, size_t i)
 {
-    const float *tau = ted4_cell(&t->anchors, TED4_ROW_VALUE, i, t->layout.first[TED4_TAU]);
+    const float *tau = ted4_anchor_value(&t->anchors, TED4_ROW_VALUE, i, t->layout.first[TED4_TAU]);
 
     const float first = ted4_find_edge(0, tau, ted4_pow2).u,
                 last = ted4_find_edge(1, tau, ted4_pow2).u;
@@ -259,7 +260,8 @@ static void simplify(const ted4_trainer *t, ted4_header *h)
     size_t moving = 0, absent = 0;
 
     for (size_t i = 0; i < t->anchors.n; i++) {
-        const float logit = *ted4_cell(&t->anchors, TED4_ROW_VALUE, i, t->layout.temporal_logit);
+        const float logit =
+            *ted4_anchor_value(&t->anchors, TED4_ROW_VALUE, i, t->layout.temporal_logit);
 
         moving += ted4_mask_on(logit);
         absent += h->activation && least_activation(t, i) < ALWAYS_THERE;
@@ -282,7 +284,8 @@ static int reshape(ted4_trainer *t)
         return -1;
     for (size_t i = 0; linear && i < t->anchors.n; i++)
         for (int c = 0; c < 6; c++) {
-            float *x = ted4_cell(&t->anchors, TED4_ROW_VALUE, i, t->layout.first[TED4_SCALING] + c);
+            float *x = ted4_anchor_value(&t->anchors, TED4_ROW_VALUE, i,
+                                         t->layout.first[TED4_SCALING] + c);
 
             *x = ted4_math_exp2f(*x);
         }
@@ -308,7 +311,7 @@ int ted4_stage2_begin(ted4_trainer *t)
     clear_moments(t);
     for (size_t i = 0; i < t->anchors.n; i++)
         for (int y = 0; y < TED4_TYPES; y++)
-            *ted4_cell(&t->anchors, TED4_ROW_STEP, i, y) = t->layout.head.step[y];
+            *ted4_anchor_value(&t->anchors, TED4_ROW_STEP, i, y) = t->layout.head.step[y];
     t->phase.stage2 = 1;
     t->phase.rate_norm_header = t->layout.head;
     t->phase.stage2_start = t->iteration;
@@ -324,8 +327,9 @@ static uint8_t context_bits(const ted4_trainer *t)
 
     for (size_t i = 0; i < t->anchors.n; i++)
         for (int c = 0; c < t->layout.head.feature_dim; c++)
-            largest = fmaxf(largest, fabsf(*ted4_cell(&t->anchors, TED4_ROW_VALUE, i, first + c)) /
-                                         t->layout.head.step[TED4_FEATURE]);
+            largest = fmaxf(largest,
+                            fabsf(*ted4_anchor_value(&t->anchors, TED4_ROW_VALUE, i, first + c)) /
+                                t->layout.head.step[TED4_FEATURE]);
     while (bits > 0 && ldexpf(largest, bits) > 16383.0f)
         bits--;
     return (uint8_t)bits;

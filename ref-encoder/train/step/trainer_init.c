@@ -65,7 +65,7 @@ static int begin(ted4_trainer *t, const ted4_header *h)
     if (ted4_trainer_rebuild(t) != 0 || make_order(t) != 0 || make_images(t) != 0)
         return -1;
     if (ted4_anchors_init(&t->anchors, &t->layout) != 0 ||
-        ted4_seed_anchors(&t->anchors, &t->layout, t->data, &t->opt, &t->cell) != 0)
+        ted4_seed_anchors(&t->anchors, &t->layout, t->data, &t->opt, &t->voxel) != 0)
         return ted4_trainer_fail(t, "no memory for the anchors");
     if (t->anchors.n == 0)
         return ted4_trainer_fail(t, "no initial point lies inside the scene's bounds");
