@@ -283,7 +283,7 @@ int ted4_site_moment(ted4_trainer *t, ted4_site site, double *moment)
     uint32_t item[PICTURES];
     float *value;
 
-    if (ted4_judges_choose(t, t->opt.seed ^ 0x6163746976u, n, item) != 0)
+    if (ted4_view_subset_choose(t, t->opt.seed ^ 0x6163746976u, n, item) != 0)
         return -1;
     value = malloc((size_t)t->layout.n_channels * TED4_LANES * sizeof *value);
     if (value == NULL)

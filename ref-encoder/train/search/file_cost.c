@@ -20,9 +20,9 @@ enum { LEAST_PICTURES = 16, MOST_PICTURES = 24 };
  * times what it takes. */
 #define SAFETY_FACTOR   3.0
 
-static size_t judges(const ted4_trainer *t)
+static size_t subset_size(const ted4_trainer *t)
 {
-    const size_t frames = ted4_judges_frames(t);
+    const size_t frames = ted4_view_subset_frames(t);
     const size_t n = frames < LEAST_PICTURES  ? LEAST_PICTURES
                      : frames > MOST_PICTURES ? MOST_PICTURES
                                               : frames;
@@ -32,7 +32,7 @@ static size_t judges(const ted4_trainer *t)
 
 double ted4_capacity_cost_steps(const ted4_trainer *t)
 {
-    return STEPS_A_FILE + STEPS_A_PICTURE * (double)judges(t);
+    return STEPS_A_FILE + STEPS_A_PICTURE * (double)subset_size(t);
 }
 
 double ted4_capacity_budget(const ted4_trainer *t)
@@ -85,11 +85,11 @@ double ted4_lambda_per_bit(const ted4_trainer *t)
 
 static int measure(ted4_trainer *t, ted4_cost *c)
 {
-    const size_t n = judges(t);
+    const size_t n = subset_size(t);
     uint32_t item[MOST_PICTURES];
 
     if (count_bytes(t, &c->bytes) != 0 ||
-        ted4_judges_choose(t, t->opt.seed ^ 0x6a75646765u, n, item) != 0)
+        ted4_view_subset_choose(t, t->opt.seed ^ 0x6a75646765u, n, item) != 0)
         return -1;
     c->distortion = 0;
     for (size_t i = 0; i < n; i++) {

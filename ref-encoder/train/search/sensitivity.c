@@ -17,7 +17,7 @@ enum { FEWEST = 32, A_FRAME = 2 };
 
 static size_t pictures(const ted4_trainer *t)
 {
-    const double least = fmax(FEWEST, A_FRAME * (double)ted4_judges_frames(t));
+    const double least = fmax(FEWEST, A_FRAME * (double)ted4_view_subset_frames(t));
     const double n = fmax(SHARE / STEPS_A_PICTURE * (double)ted4_trainer_total(t), least);
 
     return n < (double)t->order.n ? (size_t)n : t->order.n;
@@ -63,7 +63,7 @@ int ted4_opacity_sensitivity(ted4_trainer *t, float *use)
 
     if (bad)
         ted4_trainer_fail(t, "no memory to look at Gaussians");
-    bad = bad || ted4_judges_choose(t, t->opt.seed ^ 0x7573616765u, n, item) != 0;
+    bad = bad || ted4_view_subset_choose(t, t->opt.seed ^ 0x7573616765u, n, item) != 0;
     memset(use, 0, t->anchors.n * t->layout.head.n_offsets * sizeof *use);
     for (size_t i = 0; !bad && i < n; i++) {
         ted4_splats s;

@@ -40,14 +40,14 @@ static void sort_frames(const ted4_dataset *d, uint64_t key, by_frame *b)
     }
 }
 
-size_t ted4_judges_frames(const ted4_trainer *t)
+size_t ted4_view_subset_frames(const ted4_trainer *t)
 {
     return t->data->n_frames > 0 ? t->data->n_frames : 1;
 }
 
-int ted4_judges_choose(ted4_trainer *t, uint64_t key, size_t n, uint32_t *item)
+int ted4_view_subset_choose(ted4_trainer *t, uint64_t key, size_t n, uint32_t *item)
 {
-    const size_t frames = ted4_judges_frames(t);
+    const size_t frames = ted4_view_subset_frames(t);
     by_frame b = { frames, malloc((frames + 1) * sizeof *b.first),
                    malloc((t->data->n_pictures + 1) * sizeof *b.item),
                    malloc(frames * sizeof *b.turn) };

@@ -9,11 +9,11 @@
 #include "trainer.h"
 
 /* Frames that training pictures show; at least 1. */
-size_t ted4_judges_frames(const ted4_trainer *t);
+size_t ted4_view_subset_frames(const ted4_trainer *t);
 
 /* item[n]: n different training pictures (n at most as many as there are), as numbers in the data
  * set. Every frame comes once before any comes twice, and of a frame its pictures come in turn;
  * which ones is drawn with key. 0, or -1 with t->message. */
-int ted4_judges_choose(ted4_trainer *t, uint64_t key, size_t n, uint32_t *item);
+int ted4_view_subset_choose(ted4_trainer *t, uint64_t key, size_t n, uint32_t *item);
 
 #endif

@@ -1,5 +1,5 @@
-/* test_judges.c - train/state/view_subset.c: pictures that stand for all show every frame before
- * any twice, whatever the numbers of cameras and frames.
+/* test_view_subset.c - train/state/view_subset.c: pictures that stand for all show every frame
+ * before any twice, whatever the numbers of cameras and frames.
  * SPDX-License-Identifier: BSD-2-Clause */
 #include <stdlib.h>
 
@@ -26,7 +26,7 @@ static void check(ted4_trainer *t, uint64_t key, size_t n, size_t frames)
     uint32_t item[MOST];
     unsigned times[MOST] = { 0 }, chosen[MOST] = { 0 }, least = MOST, most = 0;
 
-    assert_int_equal(ted4_judges_choose(t, key, n, item), 0);
+    assert_int_equal(ted4_view_subset_choose(t, key, n, item), 0);
     for (size_t i = 0; i < n; i++) {
         assert_true(item[i] < t->data->n_pictures);
         assert_true(!t->data->pictures[item[i]].is_test);
@@ -51,7 +51,7 @@ static void test_all_frames(void **state)
     for (uint32_t frames = 2; frames <= 40; frames += 2)
         for (uint32_t cameras = 3; cameras <= 9; cameras += 3) {
             make(&d, picture, frames, cameras);
-            assert_int_equal(ted4_judges_frames(&t), frames);
+            assert_int_equal(ted4_view_subset_frames(&t), frames);
             for (size_t n = 1; n <= (size_t)frames * (cameras - 1) - 1; n += 7)
                 check(&t, n + cameras, n, frames);
             check(&t, 5, (size_t)frames * (cameras - 1) - 1, frames);
@@ -69,8 +69,8 @@ static void test_drawn(void **state)
 
     (void)state;
     make(&d, picture, 80, 5);
-    assert_int_equal(ted4_judges_choose(&t, 1, 16, a), 0);
-    assert_int_equal(ted4_judges_choose(&t, 2, 16, b), 0);
+    assert_int_equal(ted4_view_subset_choose(&t, 1, 16, a), 0);
+    assert_int_equal(ted4_view_subset_choose(&t, 2, 16, b), 0);
     for (int i = 0; i < 16; i++) {
         same += a[i] == b[i];
         odd += picture[a[i]].frame % 2;
@@ -87,5 +87,5 @@ int main(void)
         cmocka_unit_test(test_drawn),
     };
 
-    return cmocka_run_group_tests_name("judges", tests, NULL, NULL);
+    return cmocka_run_group_tests_name("view_subset", tests, NULL, NULL);
 }
