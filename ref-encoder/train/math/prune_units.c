@@ -119,7 +119,7 @@ static void take_away(elimination *e, size_t j)
         e->inverse[i * side + j] = e->inverse[j * side + i] = 0.0;
 }
 
-static int finish(ted4_narrow *w, const elimination *e)
+static int finish(ted4_pruned_units *w, const elimination *e)
 {
     const size_t n = e->side - 1;
     int to = 0;
@@ -146,7 +146,7 @@ static int finish(ted4_narrow *w, const elimination *e)
     return 0;
 }
 
-int ted4_narrow_make(ted4_narrow *w, const ted4_units *u, int to)
+int ted4_prune_units(ted4_pruned_units *w, const ted4_units *u, int to)
 {
     elimination e = { 0 };
     int bad = begin(&e, u) != 0;
@@ -164,11 +164,11 @@ int ted4_narrow_make(ted4_narrow *w, const ted4_units *u, int to)
     free(e.weight);
     free(e.gone);
     if (bad)
-        ted4_narrow_finish(w);
+        ted4_pruned_units_finish(w);
     return bad ? -1 : 0;
 }
 
-void ted4_narrow_finish(ted4_narrow *w)
+void ted4_pruned_units_finish(ted4_pruned_units *w)
 {
     free(w->keep);
     free(w->decode);

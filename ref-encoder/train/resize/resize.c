@@ -23,7 +23,9 @@ static void match_channels(const ted4_surgery *s, const ted4_layout *from, const
 {
     for (int y = 0; y < TED4_TYPES; y++)
         for (int c = 0; c < (int)to->shape.dim[y]; c++) {
-            const ted4_narrow *w = y == TED4_FEATURE ? s->feature : y == TED4_PHI ? s->phi : NULL;
+            const ted4_pruned_units *w = y == TED4_FEATURE ? s->feature
+                                         : y == TED4_PHI   ? s->phi
+                                                           : NULL;
             const int old = y == TED4_OFFSET ? 3 * s->offset[c / 3] + c % 3
                             : w != NULL      ? w->keep[c]
                                              : c;

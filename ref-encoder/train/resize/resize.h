@@ -8,17 +8,17 @@
 #include "train/state/trainer.h"
 
 /* What becomes fewer. NULL: as it was. A header that asks for fewer units than before has the
- * narrow here that says which; what else it may change: motion and activation may go, n_slices and
+ * pruning here that says which; what else it may change: motion and activation may go, n_slices and
  * slices with features or as ted4_slices_merge left them, view with input, bank_rows, scale_domain.
  */
 typedef struct {
     ted4_header head;
     int offset[TED4_MAX_OFFSETS]; /* [head.n_offsets] old offset of each */
-    const ted4_narrow *feature, *phi, *bank, *position;
-    const ted4_narrow *input[TED4_NETS_R]; /* of heads, feature and view direction */
-    const ted4_narrow *hidden[TED4_NETS_R][TED4_MAX_LAYERS],
+    const ted4_pruned_units *feature, *phi, *bank, *position;
+    const ted4_pruned_units *input[TED4_NETS_R]; /* of heads, feature and view direction */
+    const ted4_pruned_units *hidden[TED4_NETS_R][TED4_MAX_LAYERS],
         *hyper[TED4_MAX_LAYERS]; /* by layer, 1 .. hidden layers */
-    const ted4_narrow *slice[TED4_MAX_SLICES];
+    const ted4_pruned_units *slice[TED4_MAX_SLICES];
 } ted4_surgery;
 
 /* Changes nothing yet: the trainer's header, all offsets. */

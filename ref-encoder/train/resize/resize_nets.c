@@ -40,7 +40,7 @@ static int begin_layer(layer_map *m, const ted4_net_shape *from, const ted4_net_
 }
 
 /* The next n old inputs, through w; NULL: as they are. */
-static void add_inputs(layer_map *m, int n, const ted4_narrow *w)
+static void add_inputs(layer_map *m, int n, const ted4_pruned_units *w)
 {
     const size_t stride = m->to->dim[m->layer] + 1u;
     const int to = w != NULL ? w->to : n;
@@ -63,7 +63,7 @@ static void add_inputs(layer_map *m, int n, const ted4_narrow *w)
 }
 
 /* The next n old outputs from old row first on, of which w keeps some. */
-static void add_outputs(layer_map *m, int first, int n, const ted4_narrow *w)
+static void add_outputs(layer_map *m, int first, int n, const ted4_pruned_units *w)
 {
     const int to = w != NULL ? w->to : n;
 
@@ -168,7 +168,9 @@ static void add_type_outputs(layer_map *m, const ted4_surgery_nets *n, int type)
 {
     const ted4_surgery *s = n->surgery;
     const int dim = (int)n->from->shape.dim[type], first = (int)n->from->shape.first_output[type];
-    const ted4_narrow *w = type == TED4_FEATURE ? s->feature : type == TED4_PHI ? s->phi : NULL;
+    const ted4_pruned_units *w = type == TED4_FEATURE ? s->feature
+                                 : type == TED4_PHI   ? s->phi
+                                                      : NULL;
 
     for (int half = 0; half < 2 && n->to->shape.dim[type] > 0; half++) {
         if (type != TED4_OFFSET)
@@ -329,7 +331,7 @@ static int map_nete(const ted4_surgery_nets *n)
 static void map_bank(const ted4_surgery_nets *n)
 {
     const ted4_header *from = &n->from->head, *to = &n->to->head;
-    const ted4_narrow *w = n->surgery->bank;
+    const ted4_pruned_units *w = n->surgery->bank;
 
     for (uint64_t r = 0; n->to->shape.n_bank > 0 && r < to->bank_rows; r++) {
         const uint64_t den = to->bank_rows > 1 ? to->bank_rows - 1 : 1,

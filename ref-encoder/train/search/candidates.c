@@ -74,7 +74,7 @@ int ted4_candidate_now(const ted4_trainer *t, ted4_candidate m)
 }
 
 /* Widths shrink by a quarter, or by half, in whole vectors. */
-static int narrower(int now, int multiple, int least, int bold)
+static int fewer(int now, int multiple, int least, int bold)
 {
     int to = bold ? now / 2 : now * 3 / 4;
 
@@ -110,14 +110,14 @@ int ted4_candidate_next(const ted4_trainer *t, ted4_candidate m, int bold)
     case TED4_CANDIDATE_AR:
     case TED4_CANDIDATE_HEADS:
     case TED4_CANDIDATE_DEFORM:
-    case TED4_CANDIDATE_BANK: return narrower(now, 4, 4, bold);
-    case TED4_CANDIDATE_FEATURE: return narrower(now, 2, 4, bold);
+    case TED4_CANDIDATE_BANK: return fewer(now, 4, 4, bold);
+    case TED4_CANDIDATE_FEATURE: return fewer(now, 2, 4, bold);
     case TED4_CANDIDATE_HEAD_BITS:
     case TED4_CANDIDATE_MOTION_BITS:
     case TED4_CANDIDATE_BANK_BITS:
     case TED4_CANDIDATE_PRIOR_BITS: return coarser(now, bold);
     case TED4_CANDIDATE_OFFSETS:
-    case TED4_CANDIDATE_PHI: return narrower(now, 1, 1, bold);
+    case TED4_CANDIDATE_PHI: return fewer(now, 1, 1, bold);
     case TED4_CANDIDATE_ROWS: return now > 3 ? (now + 1) / 2 : -1;
     case TED4_CANDIDATE_ANCHORS:
     case TED4_CANDIDATES: break;
@@ -139,7 +139,8 @@ int ted4_candidate_finer(const ted4_trainer *t, ted4_candidate m)
 
 /* *w: a site with to units, those that held says among them (NULL: it says none). 0, or -1 with
  * t->message. */
-static int narrow_site(ted4_trainer *t, ted4_site site, int to, const uint8_t *held, ted4_narrow *w)
+static int prune_site(ted4_trainer *t, ted4_site site, int to, const uint8_t *held,
+                      ted4_pruned_units *w)
 {
     const int width = ted4_site_width(&t->layout, site);
     const size_t side = (size_t)width + 1;
@@ -151,63 +152,63 @@ static int narrow_site(ted4_trainer *t, ted4_site site, int to, const uint8_t *h
     if (!bad) {
         const ted4_units u = { width, count, moment, rows, held };
 
-        bad = ted4_narrow_make(w, &u, to) != 0;
+        bad = ted4_prune_units(w, &u, to) != 0;
     }
     free(moment);
     free(rows);
     return bad ? ted4_trainer_fail(t, "no memory to change the model") : 0;
 }
 
-enum { MOST_NARROWS = TED4_NETS_R * TED4_MAX_LAYERS };
+enum { MOST_PRUNED = TED4_NETS_R * TED4_MAX_LAYERS };
 
-/* A surgery that is being planned, and the narrows that it borrows. */
+/* A surgery that is being planned, and the prunings that it borrows. */
 typedef struct {
     ted4_trainer *t;
     ted4_surgery s;
-    ted4_narrow narrow[MOST_NARROWS];
+    ted4_pruned_units pruned[MOST_PRUNED];
     int n;
 } operation;
 
-static const ted4_narrow *narrow(operation *o, ted4_site site, int to, const uint8_t *held)
+static const ted4_pruned_units *prune(operation *o, ted4_site site, int to, const uint8_t *held)
 {
-    if (narrow_site(o->t, site, to, held, &o->narrow[o->n]) != 0)
+    if (prune_site(o->t, site, to, held, &o->pruned[o->n]) != 0)
         return NULL;
-    return &o->narrow[o->n++];
+    return &o->pruned[o->n++];
 }
 
-static int narrow_layers(operation *o, int net, int layers, int to)
+static int prune_layers(operation *o, int net, int layers, int to)
 {
     for (int i = 1; i <= layers; i++)
-        if ((o->s.hidden[net][i] = narrow(o, (ted4_site) { TED4_SITE_HIDDEN, net, i }, to, NULL)) ==
+        if ((o->s.hidden[net][i] = prune(o, (ted4_site) { TED4_SITE_HIDDEN, net, i }, to, NULL)) ==
             NULL)
             return -1;
     return 0;
 }
 
-static int narrow_heads(operation *o, int to)
+static int prune_heads(operation *o, int to)
 {
     const int layers = o->s.head.head_layers;
 
     o->s.head.head_width = (uint16_t)to;
-    return narrow_layers(o, TED4_NET_OPACITY, layers, to) != 0 ||
-           narrow_layers(o, TED4_NET_COVARIANCE, layers, to) != 0 ||
-           narrow_layers(o, TED4_NET_COLOUR, layers, to) != 0;
+    return prune_layers(o, TED4_NET_OPACITY, layers, to) != 0 ||
+           prune_layers(o, TED4_NET_COVARIANCE, layers, to) != 0 ||
+           prune_layers(o, TED4_NET_COLOUR, layers, to) != 0;
 }
 
-static int narrow_hyper(operation *o, int to)
+static int prune_hyper(operation *o, int to)
 {
     o->s.head.hyper_width = (uint16_t)to;
     for (int i = 1; i <= o->s.head.hyper_layers; i++)
-        if ((o->s.hyper[i] = narrow(o, (ted4_site) { TED4_SITE_HYPER, 0, i }, to, NULL)) == NULL)
+        if ((o->s.hyper[i] = prune(o, (ted4_site) { TED4_SITE_HYPER, 0, i }, to, NULL)) == NULL)
             return -1;
     return 0;
 }
 
-static int narrow_slices(operation *o, int to)
+static int prune_slices(operation *o, int to)
 {
     o->s.head.ar_width = (uint16_t)to;
     for (int m = 1; m < o->s.head.n_slices; m++)
-        if ((o->s.slice[m] = narrow(o, (ted4_site) { TED4_SITE_SLICE, 0, m }, to, NULL)) == NULL)
+        if ((o->s.slice[m] = prune(o, (ted4_site) { TED4_SITE_SLICE, 0, m }, to, NULL)) == NULL)
             return -1;
     return 0;
 }
@@ -221,7 +222,7 @@ static void one_slice(ted4_header *h)
 }
 
 /* Slices of what stays of the feature: those of which nothing does are gone. */
-static void narrow_slice_sizes(ted4_header *h, const ted4_narrow *w)
+static void shrink_slices(ted4_header *h, const ted4_pruned_units *w)
 {
     uint8_t size[TED4_MAX_SLICES] = { 0 };
     int m = 0, end = h->slice[0], n = 0;
@@ -240,18 +241,18 @@ static void narrow_slice_sizes(ted4_header *h, const ted4_narrow *w)
         one_slice(h);
 }
 
-static int narrow_feature(operation *o, int to)
+static int prune_feature(operation *o, int to)
 {
-    o->s.feature = narrow(o, (ted4_site) { TED4_SITE_FEATURE, 0, 0 }, to, NULL);
+    o->s.feature = prune(o, (ted4_site) { TED4_SITE_FEATURE, 0, 0 }, to, NULL);
     if (o->s.feature == NULL)
         return -1;
-    narrow_slice_sizes(&o->s.head, o->s.feature);
+    shrink_slices(&o->s.head, o->s.feature);
     return 0;
 }
 
 /* The three inputs that are the view direction go; the feature makes up for their mean and for what
  * it knows of them. */
-static int narrow_view(operation *o, int to)
+static int prune_view(operation *o, int to)
 {
     uint8_t held[TED4_MAX_FEATURE + 3] = { 0 };
     const int F = o->s.head.feature_dim, was = o->s.head.view;
@@ -261,7 +262,7 @@ static int narrow_view(operation *o, int to)
         const int goes = net == TED4_NET_COLOUR ? to == TED4_VIEW_NONE : was == TED4_VIEW_FULL;
 
         if (goes &&
-            (o->s.input[net] = narrow(o, (ted4_site) { TED4_SITE_INPUT, net, 0 }, F, held)) == NULL)
+            (o->s.input[net] = prune(o, (ted4_site) { TED4_SITE_INPUT, net, 0 }, F, held)) == NULL)
             return -1;
     }
     o->s.head.view = (uint8_t)to;
@@ -269,13 +270,13 @@ static int narrow_view(operation *o, int to)
 }
 
 /* Octaves go from the finest on. */
-static int narrow_octaves(operation *o, int to)
+static int prune_octaves(operation *o, int to)
 {
     uint8_t held[3 + 6 * 16] = { 0 };
     const int n = 3 + 6 * to;
 
     memset(held, 1, (size_t)n);
-    o->s.position = narrow(o, (ted4_site) { TED4_SITE_POSITION, 0, 0 }, n, held);
+    o->s.position = prune(o, (ted4_site) { TED4_SITE_POSITION, 0, 0 }, n, held);
     o->s.head.pe_octaves = (uint8_t)to;
     return o->s.position == NULL;
 }
@@ -332,24 +333,24 @@ static int plan(operation *o, ted4_candidate m, int to)
     switch (m) {
     case TED4_CANDIDATE_MOTION: ted4_header_without_motion(h); return 0;
     case TED4_CANDIDATE_ACTIVATION: h->activation = 0; return 0;
-    case TED4_CANDIDATE_HYPER: return narrow_hyper(o, to);
-    case TED4_CANDIDATE_AR: return narrow_slices(o, to);
+    case TED4_CANDIDATE_HYPER: return prune_hyper(o, to);
+    case TED4_CANDIDATE_AR: return prune_slices(o, to);
     case TED4_CANDIDATE_SLICES: one_slice(h); return 0;
-    case TED4_CANDIDATE_OCTAVES: return narrow_octaves(o, to);
+    case TED4_CANDIDATE_OCTAVES: return prune_octaves(o, to);
     case TED4_CANDIDATE_OFFSETS: return fewer_offsets(o, to);
-    case TED4_CANDIDATE_FEATURE: return narrow_feature(o, to);
-    case TED4_CANDIDATE_VIEW: return narrow_view(o, to);
-    case TED4_CANDIDATE_HEADS: return narrow_heads(o, to);
+    case TED4_CANDIDATE_FEATURE: return prune_feature(o, to);
+    case TED4_CANDIDATE_VIEW: return prune_view(o, to);
+    case TED4_CANDIDATE_HEADS: return prune_heads(o, to);
     case TED4_CANDIDATE_DEFORM:
         h->deform_width = (uint16_t)to;
-        return narrow_layers(o, TED4_NET_DEFORM, h->deform_layers, to);
+        return prune_layers(o, TED4_NET_DEFORM, h->deform_layers, to);
     case TED4_CANDIDATE_BANK:
         h->bank_dim = (uint16_t)to;
-        return (o->s.bank = narrow(o, bank, to, NULL)) == NULL;
+        return (o->s.bank = prune(o, bank, to, NULL)) == NULL;
     case TED4_CANDIDATE_ROWS: h->bank_rows = (uint32_t)to; return 0;
     case TED4_CANDIDATE_PHI:
         h->phi_dim = (uint8_t)to;
-        return (o->s.phi = narrow(o, phi, to, NULL)) == NULL;
+        return (o->s.phi = prune(o, phi, to, NULL)) == NULL;
     case TED4_CANDIDATE_SCALE: make_linear(o); return 0;
     case TED4_CANDIDATE_HEAD_BITS:
     case TED4_CANDIDATE_MOTION_BITS:
@@ -373,6 +374,6 @@ int ted4_candidate_make(ted4_trainer *t, ted4_candidate m, int to)
     ted4_surgery_begin(&o.s, t);
     bad = plan(&o, m, to) != 0 || ted4_surgery_apply(t, &o.s) != 0;
     for (int i = 0; i < o.n; i++)
-        ted4_narrow_finish(&o.narrow[i]);
+        ted4_pruned_units_finish(&o.pruned[i]);
     return bad ? -1 : 0;
 }

@@ -1,5 +1,5 @@
-/* test_narrow.c - train/math/prune_units.c: which unit goes first, what makes up for it, and what
- * may not go.
+/* test_prune_units.c - train/math/prune_units.c: which unit goes first, what makes up for it, and
+ * what may not go.
  * SPDX-License-Identifier: BSD-2-Clause */
 #include <math.h>
 
@@ -33,7 +33,7 @@ static void moments(double m[SIDE * SIDE])
     }
 }
 
-static int keeps(const ted4_narrow *w, int unit)
+static int keeps(const ted4_pruned_units *w, int unit)
 {
     for (int k = 0; k < w->to; k++)
         if (w->keep[k] == unit)
@@ -42,7 +42,7 @@ static int keeps(const ted4_narrow *w, int unit)
 }
 
 /* Largest difference between what readers read before and after. */
-static double worst(const ted4_narrow *w, const float *readers)
+static double worst(const ted4_pruned_units *w, const float *readers)
 {
     double most = 0;
 
@@ -73,19 +73,19 @@ static void test_dependent(void **state)
     static const float readers[ROWS * N] = { 1, 2, 3, 4, -1, 1, 2, 0.5f };
     double m[SIDE * SIDE];
     ted4_units u = { N, ROWS, m, readers, NULL };
-    ted4_narrow w;
+    ted4_pruned_units w;
 
     (void)state;
     moments(m);
-    assert_int_equal(ted4_narrow_make(&w, &u, N - 1), 0);
+    assert_int_equal(ted4_prune_units(&w, &u, N - 1), 0);
     assert_int_equal(w.to, N - 1);
     assert_true(keeps(&w, 3)); /* the one that none of the others knows */
     if (worst(&w, readers) > 1e-3)
         fail_msg("%g is missed", worst(&w, readers));
-    ted4_narrow_finish(&w);
-    assert_int_equal(ted4_narrow_make(&w, &u, N - 2), 0);
+    ted4_pruned_units_finish(&w);
+    assert_int_equal(ted4_prune_units(&w, &u, N - 2), 0);
     assert_true(worst(&w, readers) > 0.1);
-    ted4_narrow_finish(&w);
+    ted4_pruned_units_finish(&w);
 }
 
 static void test_nothing_gone(void **state)
@@ -93,17 +93,17 @@ static void test_nothing_gone(void **state)
     static const float readers[ROWS * N] = { 1, 2, 3, 4, -1, 1, 2, 0.5f };
     double m[SIDE * SIDE];
     ted4_units u = { N, ROWS, m, readers, NULL };
-    ted4_narrow w;
+    ted4_pruned_units w;
 
     (void)state;
     moments(m);
-    assert_int_equal(ted4_narrow_make(&w, &u, N), 0);
+    assert_int_equal(ted4_prune_units(&w, &u, N), 0);
     assert_int_equal(w.from, N);
     assert_int_equal(w.to, N);
     for (int a = 0; a < N; a++)
         for (int k = 0; k <= N; k++)
             assert_true(w.decode[a * (N + 1) + k] == (k == a ? 1.0 : 0.0));
-    ted4_narrow_finish(&w);
+    ted4_pruned_units_finish(&w);
 }
 
 /* A unit that nobody reads goes before any other. */
@@ -112,14 +112,14 @@ static void test_unread(void **state)
     static const float readers[ROWS * N] = { 1, 0, 3, 4, -1, 0, 2, 0.5f };
     double m[SIDE * SIDE];
     ted4_units u = { N, ROWS, m, readers, NULL };
-    ted4_narrow w;
+    ted4_pruned_units w;
 
     (void)state;
     moments(m);
-    assert_int_equal(ted4_narrow_make(&w, &u, N - 1), 0);
+    assert_int_equal(ted4_prune_units(&w, &u, N - 1), 0);
     assert_true(!keeps(&w, 1));
     assert_true(worst(&w, readers) < 1e-9);
-    ted4_narrow_finish(&w);
+    ted4_pruned_units_finish(&w);
 }
 
 static void test_held(void **state)
@@ -128,14 +128,14 @@ static void test_held(void **state)
     static const uint8_t held[N] = { 1, 1, 1, 0 };
     double m[SIDE * SIDE];
     ted4_units u = { N, ROWS, m, readers, held };
-    ted4_narrow w;
+    ted4_pruned_units w;
 
     (void)state;
     moments(m);
-    assert_int_equal(ted4_narrow_make(&w, &u, 1), 0);
+    assert_int_equal(ted4_prune_units(&w, &u, 1), 0);
     assert_int_equal(w.to, 3);
     assert_true(!keeps(&w, 3));
-    ted4_narrow_finish(&w);
+    ted4_pruned_units_finish(&w);
 }
 
 int main(void)
