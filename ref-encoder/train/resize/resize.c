@@ -9,7 +9,7 @@
 #include "math/elementary.h"
 #include "train/model/init.h"
 
-void ted4_surgery_begin(ted4_surgery *s, const ted4_trainer *t)
+void ted4_resize_begin(ted4_resize *s, const ted4_trainer *t)
 {
     memset(s, 0, sizeof *s);
     s->head = t->layout.head;
@@ -18,7 +18,7 @@ void ted4_surgery_begin(ted4_surgery *s, const ted4_trainer *t)
 }
 
 /* Which old channel each channel is: [n_channels of to]. */
-static void match_channels(const ted4_surgery *s, const ted4_layout *from, const ted4_layout *to,
+static void match_channels(const ted4_resize *s, const ted4_layout *from, const ted4_layout *to,
                            int *channel)
 {
     for (int y = 0; y < TED4_TYPES; y++)
@@ -38,7 +38,7 @@ static void match_channels(const ted4_surgery *s, const ted4_layout *from, const
 }
 
 /* Statistics of growth, which is over, are not taken along. */
-static int map_anchors(const ted4_trainer *t, const ted4_surgery *s, const ted4_layout *from,
+static int map_anchors(const ted4_trainer *t, const ted4_resize *s, const ted4_layout *from,
                        const ted4_anchors *old)
 {
     const ted4_anchors *new = &t->anchors;
@@ -93,11 +93,11 @@ static void change_domain(ted4_trainer *t)
     ted4_seed_prior_type(t->net.value, l, a, TED4_SCALING);
 }
 
-int ted4_surgery_apply(ted4_trainer *t, const ted4_surgery *s)
+int ted4_resize_apply(ted4_trainer *t, const ted4_resize *s)
 {
     const ted4_layout from = t->layout;
     ted4_anchors old = t->anchors;
-    float *net[TED4_SURGERY_ARRAYS] = { t->net.value, t->net.m, t->net.v },
+    float *net[TED4_RESIZE_ARRAYS] = { t->net.value, t->net.m, t->net.v },
           context[TED4_MAX_FEATURE];
     int bad;
 
@@ -107,19 +107,19 @@ int ted4_surgery_apply(ted4_trainer *t, const ted4_surgery *s)
     bad = ted4_anchors_init(&t->anchors, &t->layout) != 0 ||
           ted4_anchors_resize(&t->anchors, old.n) != 0 || ted4_trainer_rebuild(t) != 0;
     if (!bad) {
-        const ted4_surgery_nets n = { s,
-                                      &from,
-                                      &t->layout,
-                                      context,
-                                      { net[0], net[1], net[2] },
-                                      { t->net.value, t->net.m, t->net.v } };
+        const ted4_resize_nets n = { s,
+                                     &from,
+                                     &t->layout,
+                                     context,
+                                     { net[0], net[1], net[2] },
+                                     { t->net.value, t->net.m, t->net.v } };
 
-        bad = map_anchors(t, s, &from, &old) != 0 || ted4_surgery_networks(&n) != 0;
+        bad = map_anchors(t, s, &from, &old) != 0 || ted4_resize_networks(&n) != 0;
     }
     if (!bad && s->head.scale_domain != from.head.scale_domain)
         change_domain(t);
     ted4_anchors_finish(&old);
-    for (int i = 0; i < TED4_SURGERY_ARRAYS; i++)
+    for (int i = 0; i < TED4_RESIZE_ARRAYS; i++)
         free(net[i]);
     return bad ? ted4_trainer_fail(t, "no memory to change the model") : 0;
 }

@@ -19,12 +19,12 @@ typedef struct {
     const ted4_pruned_units *hidden[TED4_NETS_R][TED4_MAX_LAYERS],
         *hyper[TED4_MAX_LAYERS]; /* by layer, 1 .. hidden layers */
     const ted4_pruned_units *slice[TED4_MAX_SLICES];
-} ted4_surgery;
+} ted4_resize;
 
 /* Changes nothing yet: the trainer's header, all offsets. */
-void ted4_surgery_begin(ted4_surgery *s, const ted4_trainer *t);
+void ted4_resize_begin(ted4_resize *s, const ted4_trainer *t);
 /* Networks, anchors and moments of Adam go along; between integer stage and stage 1 only. 0, or -1
  * with t->message. */
-int ted4_surgery_apply(ted4_trainer *t, const ted4_surgery *s);
+int ted4_resize_apply(ted4_trainer *t, const ted4_resize *s);
 
 #endif

@@ -72,7 +72,7 @@ static void add_outputs(layer_map *m, int first, int n, const ted4_pruned_units 
 }
 
 /* The layer as it is put together, into the new arrays; frees what it took. */
-static void end_layer(layer_map *m, const ted4_surgery_nets *n)
+static void end_layer(layer_map *m, const ted4_resize_nets *n)
 {
     const size_t in = m->from->dim[m->layer], out = m->from->dim[m->layer + 1];
     const size_t fewer = m->to->dim[m->layer], rows = m->to->dim[m->layer + 1];
@@ -90,7 +90,7 @@ static void end_layer(layer_map *m, const ted4_surgery_nets *n)
                 sum += (double)w[i] * m->decode[i * (fewer + 1) + k];
             *(k < fewer ? to + k : n->new[0] + new + fewer *rows + o) = (float)sum;
         }
-        for (int a = 1; a < TED4_SURGERY_ARRAYS; a++) {
+        for (int a = 1; a < TED4_RESIZE_ARRAYS; a++) {
             for (size_t k = 0; k < fewer; k++)
                 n->new[a][new + o *fewer + k] =
                     n->old[a][old + (size_t)m->row[o] * in + (size_t)m->col[k]];
@@ -103,10 +103,10 @@ static void end_layer(layer_map *m, const ted4_surgery_nets *n)
 /* ---- reconstruction networks ---- */
 
 /* Outputs of the last layer. */
-static void add_last_outputs(layer_map *m, const ted4_surgery_nets *n, int net)
+static void add_last_outputs(layer_map *m, const ted4_resize_nets *n, int net)
 {
     static const int each[TED4_NETS_R] = { 0, 0, 1, 7, 3 };
-    const ted4_surgery *s = n->surgery;
+    const ted4_resize *s = n->resize;
 
     if (net == TED4_NET_PROJECT) {
         add_outputs(m, 0, n->from->head.bank_dim, s->bank);
@@ -119,9 +119,9 @@ static void add_last_outputs(layer_map *m, const ted4_surgery_nets *n, int net)
     }
 }
 
-static void add_first_inputs(layer_map *m, const ted4_surgery_nets *n, int net)
+static void add_first_inputs(layer_map *m, const ted4_resize_nets *n, int net)
 {
-    const ted4_surgery *s = n->surgery;
+    const ted4_resize *s = n->resize;
     const ted4_header *h = &n->from->head;
     const int in = m->from->dim[0];
 
@@ -140,7 +140,7 @@ static void add_first_inputs(layer_map *m, const ted4_surgery_nets *n, int net)
     }
 }
 
-static int map_netr(const ted4_surgery_nets *n, int net)
+static int map_netr(const ted4_resize_nets *n, int net)
 {
     const ted4_net_shape *from = &n->from->shape.netr[net], *to = &n->to->shape.netr[net];
     layer_map m;
@@ -151,11 +151,11 @@ static int map_netr(const ted4_surgery_nets *n, int net)
         if (i == 0)
             add_first_inputs(&m, n, net);
         else
-            add_inputs(&m, from->dim[i], n->surgery->hidden[net][i]);
+            add_inputs(&m, from->dim[i], n->resize->hidden[net][i]);
         if (i + 1 == to->n_layers)
             add_last_outputs(&m, n, net);
         else
-            add_outputs(&m, 0, from->dim[i + 1], n->surgery->hidden[net][i + 1]);
+            add_outputs(&m, 0, from->dim[i + 1], n->resize->hidden[net][i + 1]);
         end_layer(&m, n);
     }
     return 0;
@@ -164,9 +164,9 @@ static int map_netr(const ted4_surgery_nets *n, int net)
 /* ---- prior networks ---- */
 
 /* mu, then s, of the components that stay. */
-static void add_type_outputs(layer_map *m, const ted4_surgery_nets *n, int type)
+static void add_type_outputs(layer_map *m, const ted4_resize_nets *n, int type)
 {
-    const ted4_surgery *s = n->surgery;
+    const ted4_resize *s = n->resize;
     const int dim = (int)n->from->shape.dim[type], first = (int)n->from->shape.first_output[type];
     const ted4_pruned_units *w = type == TED4_FEATURE ? s->feature
                                  : type == TED4_PHI   ? s->phi
@@ -180,7 +180,7 @@ static void add_type_outputs(layer_map *m, const ted4_surgery_nets *n, int type)
     }
 }
 
-static int map_hyper(const ted4_surgery_nets *n)
+static int map_hyper(const ted4_resize_nets *n)
 {
     const ted4_shape *shape = &n->from->shape;
     const ted4_net_shape *from = &shape->hyper, *to = &n->to->shape.hyper;
@@ -189,9 +189,9 @@ static int map_hyper(const ted4_surgery_nets *n)
     for (int i = 0; i < to->n_layers; i++) {
         if (begin_layer(&m, from, to, i, n->from->nete, n->to->nete) != 0)
             return -1;
-        add_inputs(&m, from->dim[i], i == 0 ? n->surgery->position : n->surgery->hyper[i]);
+        add_inputs(&m, from->dim[i], i == 0 ? n->resize->position : n->resize->hyper[i]);
         if (i + 1 < to->n_layers) {
-            add_outputs(&m, 0, from->dim[i + 1], n->surgery->hyper[i + 1]);
+            add_outputs(&m, 0, from->dim[i + 1], n->resize->hyper[i + 1]);
         } else {
             for (int y = 0; y < TED4_TYPES; y++)
                 add_type_outputs(&m, n, y);
@@ -216,13 +216,13 @@ static int slice_of(const ted4_header *h, int c, int *begin)
     return m;
 }
 
-static int old_feature(const ted4_surgery_nets *n, int c)
+static int old_feature(const ted4_resize_nets *n, int c)
 {
-    return n->surgery->feature != NULL ? n->surgery->feature->keep[c] : c;
+    return n->resize->feature != NULL ? n->resize->feature->keep[c] : c;
 }
 
 /* Contexts of slice network m before, of which those that are gone are taken for their means. */
-static void add_contexts(layer_map *map, const ted4_surgery_nets *n, int known)
+static void add_contexts(layer_map *map, const ted4_resize_nets *n, int known)
 {
     const size_t stride = map->to->dim[0] + 1u;
 
@@ -239,7 +239,7 @@ static void add_contexts(layer_map *map, const ted4_surgery_nets *n, int known)
 }
 
 /* Slice m of the new header, from the slice that its components were in. */
-static int map_slice(const ted4_surgery_nets *n, int m, int known)
+static int map_slice(const ted4_resize_nets *n, int m, int known)
 {
     int begin;
     const int was = slice_of(&n->from->head, old_feature(n, known), &begin),
@@ -250,12 +250,12 @@ static int map_slice(const ted4_surgery_nets *n, int m, int known)
                     n->to->nete) != 0)
         return -1;
     add_contexts(&first, n, known);
-    add_outputs(&first, 0, first.from->dim[1], n->surgery->slice[was]);
+    add_outputs(&first, 0, first.from->dim[1], n->resize->slice[was]);
     end_layer(&first, n);
     if (begin_layer(&second, &n->from->shape.slice[was], &n->to->shape.slice[m], 1, n->from->nete,
                     n->to->nete) != 0)
         return -1;
-    add_inputs(&second, second.from->dim[1], n->surgery->slice[was]);
+    add_inputs(&second, second.from->dim[1], n->resize->slice[was]);
     for (int half = 0; half < 2; half++)
         for (int c = 0; c < n->to->head.slice[m]; c++)
             add_outputs(&second, half * size + old_feature(n, known + c) - begin, 1, NULL);
@@ -264,7 +264,7 @@ static int map_slice(const ted4_surgery_nets *n, int m, int known)
 }
 
 /* What slice network m said at the mean context: of mu and s of its components [2 slice]. */
-static void say_at_mean(const ted4_surgery_nets *n, int m, float *said)
+static void say_at_mean(const ted4_resize_nets *n, int m, float *said)
 {
     const ted4_net_shape *s = &n->from->shape.slice[m];
     const float *w = n->old[0] + n->from->nete + s->first, *b = w + (size_t)s->dim[0] * s->dim[1];
@@ -288,7 +288,7 @@ static void say_at_mean(const ted4_surgery_nets *n, int m, float *said)
 
 /* Components of the first slice now, that had a slice network before: the hyperprior says what that
  * said on average. */
-static void keep_means(const ted4_surgery_nets *n)
+static void keep_means(const ted4_resize_nets *n)
 {
     const ted4_net_shape *h = &n->to->shape.hyper;
     const int last = h->n_layers - 1, F = n->to->head.feature_dim;
@@ -310,7 +310,7 @@ static void keep_means(const ted4_surgery_nets *n)
     }
 }
 
-static int map_nete(const ted4_surgery_nets *n)
+static int map_nete(const ted4_resize_nets *n)
 {
     int known = 0;
 
@@ -328,10 +328,10 @@ static int map_nete(const ted4_surgery_nets *n)
 /* ---- bank ---- */
 
 /* Rows at other times are interpolated as spec 11.2 does it. */
-static void map_bank(const ted4_surgery_nets *n)
+static void map_bank(const ted4_resize_nets *n)
 {
     const ted4_header *from = &n->from->head, *to = &n->to->head;
-    const ted4_pruned_units *w = n->surgery->bank;
+    const ted4_pruned_units *w = n->resize->bank;
 
     for (uint64_t r = 0; n->to->shape.n_bank > 0 && r < to->bank_rows; r++) {
         const uint64_t den = to->bank_rows > 1 ? to->bank_rows - 1 : 1,
@@ -342,7 +342,7 @@ static void map_bank(const ted4_surgery_nets *n)
         for (int c = 0; c < to->bank_dim; c++) {
             const size_t col = (size_t)(w != NULL ? w->keep[c] : c);
 
-            for (int a = 0; a < TED4_SURGERY_ARRAYS; a++) {
+            for (int a = 0; a < TED4_RESIZE_ARRAYS; a++) {
                 const float x = n->old[a][n->from->bank + i * from->bank_dim + col];
                 const float y = n->old[a][n->from->bank + next * from->bank_dim + col];
 
@@ -352,7 +352,7 @@ static void map_bank(const ted4_surgery_nets *n)
     }
 }
 
-int ted4_surgery_networks(const ted4_surgery_nets *n)
+int ted4_resize_networks(const ted4_resize_nets *n)
 {
     for (int i = 0; i < TED4_NETS_R; i++)
         if (map_netr(n, i) != 0)

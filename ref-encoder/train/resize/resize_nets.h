@@ -6,17 +6,17 @@
 #include "resize.h"
 
 /* Parameters, then both moments of Adam, each [n_net]. */
-enum { TED4_SURGERY_ARRAYS = 3 };
+enum { TED4_RESIZE_ARRAYS = 3 };
 
 typedef struct {
-    const ted4_surgery *surgery;
+    const ted4_resize *resize;
     const ted4_layout *from, *to;
     const float *context; /* [feature_dim before]: mean context of each feature, spec 10.3 */
-    const float *old[TED4_SURGERY_ARRAYS];
-    float *new[TED4_SURGERY_ARRAYS];
-} ted4_surgery_nets;
+    const float *old[TED4_RESIZE_ARRAYS];
+    float *new[TED4_RESIZE_ARRAYS];
+} ted4_resize_nets;
 
 /* Fills new, which is zero. 0, or -1: no memory. */
-int ted4_surgery_networks(const ted4_surgery_nets *n);
+int ted4_resize_networks(const ted4_resize_nets *n);
 
 #endif

@@ -161,10 +161,10 @@ static int prune_site(ted4_trainer *t, ted4_site site, int to, const uint8_t *he
 
 enum { MOST_PRUNED = TED4_NETS_R * TED4_MAX_LAYERS };
 
-/* A surgery that is being planned, and the prunings that it borrows. */
+/* A resizing that is being planned, and the prunings that it borrows. */
 typedef struct {
     ted4_trainer *t;
-    ted4_surgery s;
+    ted4_resize s;
     ted4_pruned_units pruned[MOST_PRUNED];
     int n;
 } operation;
@@ -371,8 +371,8 @@ int ted4_candidate_make(ted4_trainer *t, ted4_candidate m, int to)
         t->net.bits[m - TED4_CANDIDATE_HEAD_BITS + TED4_GRID_HEADS] = to;
         return 0;
     }
-    ted4_surgery_begin(&o.s, t);
-    bad = plan(&o, m, to) != 0 || ted4_surgery_apply(t, &o.s) != 0;
+    ted4_resize_begin(&o.s, t);
+    bad = plan(&o, m, to) != 0 || ted4_resize_apply(t, &o.s) != 0;
     for (int i = 0; i < o.n; i++)
         ted4_pruned_units_finish(&o.pruned[i]);
     return bad ? -1 : 0;

@@ -1,4 +1,4 @@
-/* test_surgery.c - train/resize/resize.c and the candidates made with it: a model that loses what
+/* test_resize.c - train/resize/resize.c and the candidates made with it: a model that loses what
  * it does not use draws the same pictures, and one that loses nothing is the same.
  * SPDX-License-Identifier: BSD-2-Clause */
 #include <math.h>
@@ -139,14 +139,14 @@ static void expect_free(ted4_trainer *t, ted4_candidate m, int to, double tolera
 static void test_nothing(void **state)
 {
     ted4_trainer t, twin;
-    ted4_surgery s;
+    ted4_resize s;
     ball_file a, b;
 
     (void)state;
     go_there(&t);
     go_there(&twin);
-    ted4_surgery_begin(&s, &t);
-    assert_int_equal(ted4_surgery_apply(&t, &s), 0);
+    ted4_resize_begin(&s, &t);
+    assert_int_equal(ted4_resize_apply(&t, &s), 0);
     for (size_t i = 0; i < t.layout.n_net; i++) { /* a zero may lose its sign */
         assert_true(t.net.value[i] == twin.net.value[i]);
         assert_true(t.net.m[i] == twin.net.m[i]);
@@ -290,11 +290,11 @@ static void test_rows(void **state)
     look(&t, 1);
 
     const ted4_cost before = cost(&t);
-    ted4_surgery s;
+    ted4_resize s;
 
-    ted4_surgery_begin(&s, &t);
+    ted4_resize_begin(&s, &t);
     s.head.bank_rows = 2;
-    assert_int_equal(ted4_surgery_apply(&t, &s), 0);
+    assert_int_equal(ted4_resize_apply(&t, &s), 0);
     expect_same(&t, &before, 1e-5);
     ted4_trainer_finish(&t);
 }
