@@ -114,7 +114,7 @@ static int take_query(lab_session *s, size_t time, lab_tracks *t, lab_gaussians 
     ted4_view view;
 
     if (t->rig[time].n > 0)
-        ted4_space_view(&world, t->rig[time].camera[0], &view, q.camera);
+        ted4_normalise_view(&world, t->rig[time].camera[0], &view, q.camera);
 
     const ted4_status status = ted4_recon_query(s->recon, &q, NULL, &records);
 

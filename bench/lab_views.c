@@ -34,7 +34,7 @@ static ted4_status draw_picture(lab_session *s, size_t i, view_work *w)
     ted4_view view;
     float centre[3];
 
-    ted4_space_view(&world, &p->camera, &view, centre);
+    ted4_normalise_view(&world, &p->camera, &view, centre);
     return ted4_render_query(w->viewer, s->recon, &s->info, p->frame, last, &view, NULL, w->ours);
 }
 

@@ -52,7 +52,7 @@ int draw_view(session *s, const ted4_picture *p, void (*paint)(float span, float
 
     if (p->camera.width != s->width || p->camera.height != s->height)
         return failed(p->path, "size differs from the first held-out picture");
-    ted4_space_view(&world, &p->camera, &view, centre);
+    ted4_normalise_view(&world, &p->camera, &view, centre);
     status = ted4_query_for_view(s->recon, p->frame, last, &view, NULL, &g);
     if (status == TED4_OK && paint != NULL) {
         memset(info.background, 0, sizeof info.background);

@@ -145,7 +145,7 @@ static void matched(int n_points, const double *gain, double hidden, float tint,
     assert_int_equal(d->n_cameras, CAMERAS);
     memset(t, 0, sizeof *t);
     t->data = d;
-    ted4_space_make(&t->layout.head, d);
+    ted4_normalise_scene(&t->layout.head, d);
     assert_int_equal(ted4_colour_init(&t->colour, d), 0);
     assert_int_equal(ted4_colour_match(t), 0);
 }

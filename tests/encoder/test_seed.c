@@ -12,7 +12,7 @@ static cloud_case cloud;
 
 /* ---- space ---- */
 
-static void test_space_make(void **state)
+static void test_normalise_make(void **state)
 {
     static float many[1000][3];
     ted4_header h;
@@ -20,7 +20,7 @@ static void test_space_make(void **state)
     (void)state;
     memset(&h, 0, sizeof h);
     cloud_make(&cloud, 1);
-    ted4_space_make(&h, &cloud.data);
+    ted4_normalise_scene(&h, &cloud.data);
     /* The lattice reaches 1.5 to either side; with a margin of a quarter that is between 1 and 2.
      */
     assert_true(h.origin[0] == 10.0f);
@@ -34,18 +34,18 @@ static void test_space_make(void **state)
             many[i][j] = i % 400 == 7 ? 1e5f : 80.0f * ted4_uniform(3, 3 * i + j);
     cloud.data.points = many[0];
     cloud.data.n_points = 1000;
-    ted4_space_make(&h, &cloud.data);
+    ted4_normalise_scene(&h, &cloud.data);
     assert_int_equal(h.exponent, 6);
     for (int j = 0; j < 3; j++)
         assert_true(fabsf(h.origin[j] - 40.0f) < 4.0f);
 
     /* Degenerate clouds. */
     cloud.data.n_points = 1;
-    ted4_space_make(&h, &cloud.data);
+    ted4_normalise_scene(&h, &cloud.data);
     assert_int_equal(h.exponent, 0);
     assert_true(h.origin[0] == many[0][0]);
     cloud.data.n_points = 0;
-    ted4_space_make(&h, &cloud.data);
+    ted4_normalise_scene(&h, &cloud.data);
     assert_int_equal(h.exponent, 0);
     assert_true(h.origin[0] == 0.0f);
 }
@@ -83,8 +83,8 @@ static void check_point(const ted4_header *h, const ted4_camera *c, const float 
     float centre[3], p[3];
     double far[3], near[3];
 
-    ted4_space_view(h, c, &v, centre);
-    ted4_space_point(h, world, p);
+    ted4_normalise_view(h, c, &v, centre);
+    ted4_normalise_point(h, world, p);
     for (int i = 0; i < 3; i++) {
         far[i] = c->t[i];
         near[i] = (double)v.t[i];
@@ -109,7 +109,7 @@ static void check_point(const ted4_header *h, const ted4_camera *c, const float 
                      ((double)v.fy * near[1] / near[2] + (double)v.cy)) < 0.02);
 }
 
-static void test_space_view(void **state)
+static void test_normalise_view(void **state)
 {
     (void)state;
     for (uint64_t i = 0; i < 60; i++) {
@@ -126,7 +126,7 @@ static void test_space_view(void **state)
             world[j] = 10.0f * ted4_uniform(i, 30 + j) - 5.0f;
         }
         check_point(&h, &c, world);
-        ted4_space_view(&h, &c, &v, centre);
+        ted4_normalise_view(&h, &c, &v, centre);
         assert_int_equal(v.width, 640);
         assert_int_equal(v.height, 480);
         assert_true(v.near_z == TED4_NEAR);
@@ -176,7 +176,7 @@ static void test_lattice(void **state)
             for (size_t k = 0; k < CLOUD_POINTS; k++) {
                 float p[3], far = 0;
 
-                ted4_space_point(&t.layout.head, cloud.point[k], p);
+                ted4_normalise_point(&t.layout.head, cloud.point[k], p);
                 for (int j = 0; j < 3; j++)
                     far = fmaxf(
                         far, fabsf(p[j] - *ted4_anchor_value(&t.anchors, TED4_ROW_POSITION, i, j)));
@@ -337,10 +337,10 @@ static void test_awake(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_space_make), cmocka_unit_test(test_space_view),
-        cmocka_unit_test(test_lattice),    cmocka_unit_test(test_voxels),
-        cmocka_unit_test(test_finest),     cmocka_unit_test(test_bound),
-        cmocka_unit_test(test_few_points), cmocka_unit_test(test_networks),
+        cmocka_unit_test(test_normalise_make), cmocka_unit_test(test_normalise_view),
+        cmocka_unit_test(test_lattice),        cmocka_unit_test(test_voxels),
+        cmocka_unit_test(test_finest),         cmocka_unit_test(test_bound),
+        cmocka_unit_test(test_few_points),     cmocka_unit_test(test_networks),
         cmocka_unit_test(test_awake),
     };
 

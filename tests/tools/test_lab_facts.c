@@ -134,7 +134,7 @@ static size_t show(lab_session *s, const ted4_picture *p, ted4_viewer *viewer, i
     char why[256];
     size_t edges = 0;
 
-    ted4_space_view(&world, &p->camera, &view, centre);
+    ted4_normalise_view(&world, &p->camera, &view, centre);
     assert_int_equal(ted4_render_query(viewer, s->recon, &s->info, p->frame, s->data.n_frames - 1,
                                        &view, NULL, rgb),
                      TED4_OK);

@@ -93,7 +93,7 @@ static void project(const match *m, const ted4_view *v, samples *l)
         float p[3], *nearest;
 
         l->depth[i] = 0;
-        ted4_space_point(&m->t->layout.head, m->t->data->points + 3 * i * m->stride, p);
+        ted4_normalise_point(&m->t->layout.head, m->t->data->points + 3 * i * m->stride, p);
         if (!ted4_view_pixel(v, p, &l->pixel[i], &l->depth[i]))
             continue;
         nearest = nearest_at(l, v, l->pixel[i]);
@@ -111,7 +111,7 @@ static int look(match *m, size_t item, samples *l)
 
     if (pixels == NULL)
         return -1;
-    ted4_space_view(&t->layout.head, &pic->camera, &v, centre);
+    ted4_normalise_view(&t->layout.head, &pic->camera, &v, centre);
     project(m, &v, l);
     for (size_t i = 0; i < m->n; i++)
         if (l->depth[i] > 0 && l->depth[i] <= (1.0f + HIDDEN) * *nearest_at(l, &v, l->pixel[i]))

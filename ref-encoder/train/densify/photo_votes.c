@@ -65,7 +65,7 @@ static int match_pictures(ted4_sightings *s, ted4_trainer *t)
         j.pixels = ted4_trainer_seen(t, i);
         if (j.pixels == NULL)
             return -1;
-        ted4_space_view(&t->layout.head, &pic->camera, &j.view, centre);
+        ted4_normalise_view(&t->layout.head, &pic->camera, &j.view, centre);
         j.frame = pic->frame;
         ted4_parallel_for(t->parallel, (s->n + RUN - 1) / RUN, match_run, &j);
         ted4_dataset_release(t->data, i);

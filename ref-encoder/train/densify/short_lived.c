@@ -59,7 +59,7 @@ int ted4_init_short_lived(ted4_trainer *t)
         ted4_trainer_fail(t, "no memory to look for transients");
     } else {
         for (size_t i = 0; i < t->data->n_points; i++)
-            ted4_space_point(&t->layout.head, t->data->points + 3 * i, points + 3 * i);
+            ted4_normalise_point(&t->layout.head, t->data->points + 3 * i, points + 3 * i);
         describe(t, points, place, colour);
         bad = ted4_sightings_count(&s, t, place, colour, n, 0) != 0;
     }

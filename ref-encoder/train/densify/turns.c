@@ -60,7 +60,7 @@ static int list_frames(frames *f, const ted4_trainer *t)
     for (size_t i = 0; i < d->n_pictures; i++) {
         ted4_view v;
 
-        ted4_space_view(&t->layout.head, &d->pictures[i].camera, &v, f->centre + 3 * i);
+        ted4_normalise_view(&t->layout.head, &d->pictures[i].camera, &v, f->centre + 3 * i);
         f->first[d->pictures[i].frame + 2] += !d->pictures[i].is_test;
     }
     for (uint32_t k = 0; k < d->n_frames; k++)

@@ -101,7 +101,7 @@ void ted4_header_make(ted4_header *h, const ted4_train_options *o, const ted4_da
     h->scale_domain = TED4_SCALE_LOG2;
     ted4_header_stage2(h, o);
     memcpy(h->background, d->background, sizeof h->background);
-    ted4_space_make(h, d);
+    ted4_normalise_scene(h, d);
 }
 
 void ted4_header_without_motion(ted4_header *h)

@@ -148,7 +148,7 @@ int ted4_seed_anchors(ted4_anchors *a, const ted4_layout *l, const ted4_dataset 
 
     if (!bad) {
         for (size_t i = 0; i < d->n_points; i++)
-            ted4_space_point(&l->head, d->points + 3 * i, p + 3 * i);
+            ted4_normalise_point(&l->head, d->points + 3 * i, p + 3 * i);
         *voxel = o->cell > 0 ? fmax(ldexp(o->cell, -l->head.exponent), TED4_FINEST_VOXEL)
                              : typical_distance(p, d->n_points);
         while ((n = voxelise(p, d->n_points, *voxel, out, &set)) > (size_t)o->init_anchors)

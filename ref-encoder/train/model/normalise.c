@@ -39,7 +39,7 @@ static float pick(float *x, size_t n, size_t k)
     return x[k];
 }
 
-void ted4_space_make(ted4_header *h, const ted4_dataset *d)
+void ted4_normalise_scene(ted4_header *h, const ted4_dataset *d)
 {
     const size_t n = d->n_points;
     float *value = malloc((n + 1) * sizeof *value);
@@ -72,7 +72,7 @@ void ted4_space_make(ted4_header *h, const ted4_dataset *d)
     free(value);
 }
 
-void ted4_space_view(const ted4_header *h, const ted4_camera *c, ted4_view *v, float centre[3])
+void ted4_normalise_view(const ted4_header *h, const ted4_camera *c, ted4_view *v, float centre[3])
 {
     const double unit = ldexp(1.0, -h->exponent);
 
@@ -101,7 +101,7 @@ void ted4_space_view(const ted4_header *h, const ted4_camera *c, ted4_view *v, f
         centre[j] = (float)-(c->R[j] * t[0] + c->R[3 + j] * t[1] + c->R[6 + j] * t[2]);
 }
 
-void ted4_space_point(const ted4_header *h, const float world[3], float p[3])
+void ted4_normalise_point(const ted4_header *h, const float world[3], float p[3])
 {
     for (int j = 0; j < 3; j++)
         p[j] = ldexpf(world[j] - h->origin[j], -h->exponent);

@@ -243,7 +243,7 @@ static void sample_picture(sampling *s, size_t item, float *value)
     ted4_view v;
     float camera[3];
 
-    ted4_space_view(&t->layout.head, &pic->camera, &v, camera);
+    ted4_normalise_view(&t->layout.head, &pic->camera, &v, camera);
     bank_at(s, t->data->n_frames > 1 ? pic->frame : 0);
     for (uint64_t i = 0; i < DRAWS; i++) {
         const size_t block = (s->anchor = ted4_below(key, i, (uint32_t)t->anchors.n)) / TED4_LANES;

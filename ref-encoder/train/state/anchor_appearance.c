@@ -18,7 +18,7 @@ static int generate_all(ted4_trainer *t, uint32_t item, ted4_splats *s)
 
     if (ted4_visible_blocks_fill(t, NULL) != 0)
         return -1;
-    ted4_space_view(&t->layout.head, &t->data->pictures[item].camera, &v, in.camera);
+    ted4_normalise_view(&t->layout.head, &t->data->pictures[item].camera, &v, in.camera);
     ted4_visible_blocks_quantise(t, TED4_QUANT_ROUND);
     in.n_visible = t->visible_blocks.n;
     in.attr = t->visible_blocks.used;

@@ -13,7 +13,7 @@ int ted4_trainer_render(ted4_trainer *t, const ted4_picture *pic, int training, 
                         ted4_generate_input *in, ted4_splats *s)
 {
     memset(in, 0, sizeof *in);
-    ted4_space_view(&t->layout.head, &pic->camera, v, in->camera);
+    ted4_normalise_view(&t->layout.head, &pic->camera, v, in->camera);
     if (ted4_visible_blocks_fill(t, v) != 0)
         return -1;
     in->layout = &t->layout;

@@ -42,7 +42,7 @@ static void widen_spans(const ted4_trainer *t, float *span)
 
         if (pic->is_test)
             continue;
-        ted4_space_view(&t->layout.head, &pic->camera, &v, centre);
+        ted4_normalise_view(&t->layout.head, &pic->camera, &v, centre);
         for (size_t b = 0; b < a->n_blocks; b++) {
             const uint32_t seen = ted4_block_visible(t, b, &v);
 
