@@ -353,7 +353,7 @@ static void test_rotation(void **state)
     const float was =
         *ted4_anchor_value(&t.anchors, TED4_ROW_VALUE, 7, t.layout.first[TED4_FEATURE]);
 
-    assert_int_equal(ted4_rotate_features(&t), 0);
+    assert_int_equal(ted4_feature_pca(&t), 0);
     assert_true(
         fabsf(*ted4_anchor_value(&t.anchors, TED4_ROW_VALUE, 7, t.layout.first[TED4_FEATURE]) -
               was) > 1e-3f);

@@ -256,7 +256,7 @@ static void turn_networks(ted4_trainer *t, const axes *a)
     turn_maker(w, deform->dim[deform->n_layers - 1], deform->dim[deform->n_layers], a);
 }
 
-int ted4_rotate_features(ted4_trainer *t)
+int ted4_feature_pca(ted4_trainer *t)
 {
     const ted4_site site = { TED4_SITE_FEATURE, 0, 0 };
     const size_t n = t->layout.head.feature_dim, side = n + 1;

@@ -11,6 +11,6 @@
  * Networks that read or make features go along: what is drawn stays the same, but for roundings.
  * Without a prior, which would know other features: before stage 2 seeds it. 0, or -1 with
  * t->message. */
-int ted4_rotate_features(ted4_trainer *t);
+int ted4_feature_pca(ted4_trainer *t);
 
 #endif

@@ -305,7 +305,7 @@ int ted4_stage2_begin(ted4_trainer *t)
 {
     if (settle_positions(t) != 0 || ted4_stage_drop_dead(t) != 0 || reshape(t) != 0)
         return -1;
-    if (t->opt.capacity && ted4_rotate_features(t) != 0)
+    if (t->opt.capacity && ted4_feature_pca(t) != 0)
         return -1;
     ted4_seed_prior(t->net.value, &t->layout, &t->anchors, t->opt.seed);
     clear_moments(t);
