@@ -109,7 +109,7 @@ static int mark(ted4_voxel_set *taken, const ted4_place *p, const ted4_span *spa
     return 1;
 }
 
-static int plant(ted4_trainer *t, const ted4_places *list, const ted4_sightings *s,
+static int plant(ted4_trainer *t, const ted4_places *list, const ted4_photo_votes *s,
                  const appearance *l)
 {
     const size_t n_old = t->anchors.n, most = (size_t)t->opt.max_anchors;
@@ -124,7 +124,7 @@ static int plant(ted4_trainer *t, const ted4_places *list, const ted4_sightings 
         const ted4_place *p = &list->item[i];
         ted4_span span;
 
-        if (ted4_sightings_span(s, i, p->frame, &span) && mark(&taken, p, &span))
+        if (ted4_photo_votes_span(s, i, p->frame, &span) && mark(&taken, p, &span))
             bad = add(t, l, n_old, p, &span) != 0;
     }
     ted4_voxel_set_finish(&taken);
@@ -152,7 +152,7 @@ static int arrange(ted4_places *list, size_t most, float **point, uint8_t **colo
 int ted4_mv_seed(ted4_trainer *t)
 {
     ted4_places list = { 0 };
-    ted4_sightings s = { 0 };
+    ted4_photo_votes s = { 0 };
     appearance l = { 0 };
     float *point = NULL;
     uint8_t *colour = NULL;
@@ -165,11 +165,11 @@ int ted4_mv_seed(ted4_trainer *t)
         bad = ted4_mv_seed_search(t, f, (uint32_t)reach, &list) != 0;
     if (!bad && arrange(&list, ted4_mv_seed_capacity(t->data->n_frames), &point, &colour) != 0)
         bad = ted4_trainer_fail(t, "no memory for new anchors");
-    bad = bad || ted4_sightings_count(&s, t, point, colour, list.n, (uint32_t)reach) != 0 ||
+    bad = bad || ted4_photo_votes_count(&s, t, point, colour, list.n, (uint32_t)reach) != 0 ||
           measure_appearance(t, &l) != 0 || plant(t, &list, &s, &l) != 0;
     if (!bad && ted4_anchors_sort(&t->anchors) != 0)
         bad = ted4_trainer_fail(t, "no memory to sort anchors");
-    ted4_sightings_free(&s);
+    ted4_photo_votes_free(&s);
     free(list.item);
     free(point);
     free(colour);

@@ -21,7 +21,7 @@
 #define GONE_SHARE    0.25f
 
 typedef struct {
-    ted4_sightings *s;
+    ted4_photo_votes *s;
     const uint8_t *pixels;
     ted4_view view;
     uint32_t frame;
@@ -33,7 +33,7 @@ enum { RUN = 4096 };
 static void match_run(void *arg, size_t run)
 {
     const match_job *j = arg;
-    ted4_sightings *s = j->s;
+    ted4_photo_votes *s = j->s;
     const size_t end = (run + 1) * RUN < s->n ? (run + 1) * RUN : s->n;
 
     for (size_t i = run * RUN; i < end; i++) {
@@ -49,7 +49,7 @@ static void match_run(void *arg, size_t run)
     }
 }
 
-static int match_pictures(ted4_sightings *s, ted4_trainer *t)
+static int match_pictures(ted4_photo_votes *s, ted4_trainer *t)
 {
     match_job j = { .s = s };
 
@@ -93,7 +93,7 @@ static void widen(uint16_t *count, size_t n, uint32_t n_frames, uint32_t reach, 
 }
 
 /* 0, or -1: no memory. */
-static int widen_counts(ted4_sightings *s, uint32_t reach)
+static int widen_counts(ted4_photo_votes *s, uint32_t reach)
 {
     uint16_t *column = reach > 0 ? malloc(s->n_frames * sizeof *column) : NULL;
 
@@ -107,8 +107,8 @@ static int widen_counts(ted4_sightings *s, uint32_t reach)
     return 0;
 }
 
-int ted4_sightings_count(ted4_sightings *s, ted4_trainer *t, const float *point,
-                         const uint8_t *colour, size_t n, uint32_t reach)
+int ted4_photo_votes_count(ted4_photo_votes *s, ted4_trainer *t, const float *point,
+                           const uint8_t *colour, size_t n, uint32_t reach)
 {
     memset(s, 0, sizeof *s);
     s->point = point;
@@ -126,7 +126,7 @@ int ted4_sightings_count(ted4_sightings *s, ted4_trainer *t, const float *point,
                : 0;
 }
 
-void ted4_sightings_free(ted4_sightings *s)
+void ted4_photo_votes_free(ted4_photo_votes *s)
 {
     free(s->hits);
     free(s->seen);
@@ -135,12 +135,12 @@ void ted4_sightings_free(ted4_sightings *s)
 
 /* Do enough cameras look at point i at that time to tell whether it is there? Not where pictures
  * are held out. */
-static int is_known(const ted4_sightings *s, uint32_t frame, size_t i)
+static int is_known(const ted4_photo_votes *s, uint32_t frame, size_t i)
 {
     return s->seen[frame * s->n + i] >= TED4_CAMERAS_NEEDED;
 }
 
-static float agreement(const ted4_sightings *s, uint32_t frame, size_t i)
+static float agreement(const ted4_photo_votes *s, uint32_t frame, size_t i)
 {
     const size_t at = frame * s->n + i;
 
@@ -150,7 +150,7 @@ static float agreement(const ted4_sightings *s, uint32_t frame, size_t i)
 /* The last frame of the run that point i is there for, from a frame on in steps of +1 or -1, and in
  * *gone how far behind it the next known time is. A time that nobody knows belongs to the run when
  * the known times on both sides do, or when there is none on the far side. */
-static uint32_t run_end(const ted4_sightings *s, size_t i, uint32_t frame, int step, float enough,
+static uint32_t run_end(const ted4_photo_votes *s, size_t i, uint32_t frame, int step, float enough,
                         uint32_t *gone)
 {
     const uint32_t last = step > 0 ? s->n_frames - 1 : 0;
@@ -169,7 +169,7 @@ static uint32_t run_end(const ted4_sightings *s, size_t i, uint32_t frame, int s
     return last;
 }
 
-uint32_t ted4_sightings_best(const ted4_sightings *s, size_t i)
+uint32_t ted4_photo_votes_best(const ted4_photo_votes *s, size_t i)
 {
     uint32_t best = 0;
 
@@ -179,7 +179,7 @@ uint32_t ted4_sightings_best(const ted4_sightings *s, size_t i)
     return best;
 }
 
-static int comes_and_goes(const ted4_sightings *s, size_t i, float best)
+static int comes_and_goes(const ted4_photo_votes *s, size_t i, float best)
 {
     uint32_t known = 0, there = 0, gone = 0;
 
@@ -193,9 +193,9 @@ static int comes_and_goes(const ted4_sightings *s, size_t i, float best)
     return (float)there <= LONGEST_SHARE * (float)known || (float)gone >= GONE_SHARE * (float)known;
 }
 
-int ted4_sightings_span(const ted4_sightings *s, size_t i, uint32_t frame, ted4_span *span)
+int ted4_photo_votes_span(const ted4_photo_votes *s, size_t i, uint32_t frame, ted4_span *span)
 {
-    const float best = agreement(s, ted4_sightings_best(s, i), i), enough = NEAR_BEST * best;
+    const float best = agreement(s, ted4_photo_votes_best(s, i), i), enough = NEAR_BEST * best;
 
     if (agreement(s, frame, i) < fmaxf(MUST_AGREE, enough) || !comes_and_goes(s, i, best))
         return 0;

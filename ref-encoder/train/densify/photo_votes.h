@@ -48,13 +48,13 @@ typedef struct {
     uint32_t n_frames;
     uint16_t *hits, *seen; /* owned: [n_frames][n] training cameras that agree, training cameras
                               that look there */
-} ted4_sightings;
+} ted4_photo_votes;
 
 /* Looks at every training picture. Those of reach frames before and after a frame count as its own
  * (turns.h). 0, or -1 with t->message. Free it in either case. */
-int ted4_sightings_count(ted4_sightings *s, ted4_trainer *t, const float *point,
-                         const uint8_t *colour, size_t n, uint32_t reach);
-void ted4_sightings_free(ted4_sightings *s);
+int ted4_photo_votes_count(ted4_photo_votes *s, ted4_trainer *t, const float *point,
+                           const uint8_t *colour, size_t n, uint32_t reach);
+void ted4_photo_votes_free(ted4_photo_votes *s);
 
 /* Frames from..to; how many frames before and after them the next time is at which the thing is
  * known to be gone, 1 where there is none. */
@@ -63,14 +63,14 @@ typedef struct {
 } ted4_span;
 
 /* The time at which the largest share of the cameras that look there see the colour of point i. */
-uint32_t ted4_sightings_best(const ted4_sightings *s, size_t i);
+uint32_t ted4_photo_votes_best(const ted4_photo_votes *s, size_t i);
 
 /* The run of times around a frame at which the colour of point i is there: what comes back is there
  * in several runs. Times at which fewer than TED4_CAMERAS_NEEDED cameras look there, held-out ones
  * for example, neither end a run nor count. 0: at that frame fewer than half of the cameras see the
  * colour, or clearly fewer than at its best; or it does not come and go: it is there at more than
  * half of the times, and nearly all cameras miss it at less than a quarter of them. */
-int ted4_sightings_span(const ted4_sightings *s, size_t i, uint32_t frame, ted4_span *span);
+int ted4_photo_votes_span(const ted4_photo_votes *s, size_t i, uint32_t frame, ted4_span *span);
 
 /* Activation of anchor i over a span, almost gone at the times next to it: what moves by its own
  * size in a frame would else be seen at three places at once. Over times that nobody knows it fades

@@ -44,7 +44,7 @@ int ted4_is_short_lived(const ted4_trainer *t, size_t i)
 int ted4_init_short_lived(ted4_trainer *t)
 {
     const size_t n = t->anchors.n;
-    ted4_sightings s = { 0 };
+    ted4_photo_votes s = { 0 };
     int bad;
 
     if (t->layout.first[TED4_TAU] < 0 || t->data->n_frames < 2 || t->data->random_points ||
@@ -61,17 +61,17 @@ int ted4_init_short_lived(ted4_trainer *t)
         for (size_t i = 0; i < t->data->n_points; i++)
             ted4_normalise_point(&t->layout.head, t->data->points + 3 * i, points + 3 * i);
         describe(t, points, place, colour);
-        bad = ted4_sightings_count(&s, t, place, colour, n, 0) != 0;
+        bad = ted4_photo_votes_count(&s, t, place, colour, n, 0) != 0;
     }
     for (size_t i = 0; !bad && i < n; i++) {
         ted4_span span;
 
-        if (ted4_sightings_span(&s, i, ted4_sightings_best(&s, i), &span))
+        if (ted4_photo_votes_span(&s, i, ted4_photo_votes_best(&s, i), &span))
             ted4_span_set(t, i, &span);
     }
     free(points);
     free(place);
     free(colour);
-    ted4_sightings_free(&s);
+    ted4_photo_votes_free(&s);
     return bad ? -1 : 0;
 }

@@ -10,8 +10,8 @@
  * anchors they would be wrong at most times and fade away before activation is learnt, and with
  * them every trace of fast motion. So an anchor whose colour is found at its place by at least half
  * of the cameras at some times, but at most others by clearly fewer, or at some by hardly any
- * (ted4_sightings_span), starts with its activation around those times. Needs three cameras or more
- * at a time: with fewer, chance matches decide. Does nothing without activation. 0, or -1 with
+ * (ted4_photo_votes_span), starts with its activation around those times. Needs three cameras or
+ * more at a time: with fewer, chance matches decide. Does nothing without activation. 0, or -1 with
  * t->message. */
 int ted4_init_short_lived(ted4_trainer *t);
 

@@ -1,5 +1,5 @@
-/* test_sightings.c - train/densify/photo_votes.c: over which times a colour is there, from how many
- * cameras look and how many agree at each.
+/* test_photo_votes.c - train/densify/photo_votes.c: over which times a colour is there, from how
+ * many cameras look and how many agree at each.
  * SPDX-License-Identifier: BSD-2-Clause */
 #include <string.h>
 
@@ -10,7 +10,7 @@ enum { FRAMES = 12, CAMERAS = 6 };
 
 /* One point; a letter a time: '#' all cameras agree, '+' five of six, '-' four, '=' three, '.'
  * none, '?' too few look there to tell. */
-static ted4_sightings seen(const char *times, uint16_t look[FRAMES], uint16_t hits[FRAMES])
+static ted4_photo_votes seen(const char *times, uint16_t look[FRAMES], uint16_t hits[FRAMES])
 {
     assert_int_equal(strlen(times), FRAMES);
     for (int f = 0; f < FRAMES; f++) {
@@ -22,17 +22,17 @@ static ted4_sightings seen(const char *times, uint16_t look[FRAMES], uint16_t hi
                   : times[f] == '?' ? 2
                                     : 0;
     }
-    return (ted4_sightings) { .n = 1, .n_frames = FRAMES, .hits = hits, .seen = look };
+    return (ted4_photo_votes) { .n = 1, .n_frames = FRAMES, .hits = hits, .seen = look };
 }
 
 static void expect_span(const char *times, uint32_t frame, const char *wanted)
 {
     uint16_t look[FRAMES], hits[FRAMES];
-    const ted4_sightings s = seen(times, look, hits);
+    const ted4_photo_votes s = seen(times, look, hits);
     ted4_span span;
     char got[40] = "none";
 
-    if (ted4_sightings_span(&s, 0, frame, &span))
+    if (ted4_photo_votes_span(&s, 0, frame, &span))
         snprintf(got, sizeof got, "%u-%u before %u after %u", span.from, span.to, span.before,
                  span.after);
     if (strcmp(got, wanted) != 0)
@@ -101,10 +101,10 @@ static void test_unknown(void **state)
 static void test_best(void **state)
 {
     uint16_t look[FRAMES], hits[FRAMES];
-    const ted4_sightings s = seen(".=?-##..+...", look, hits);
+    const ted4_photo_votes s = seen(".=?-##..+...", look, hits);
 
     (void)state;
-    assert_int_equal(ted4_sightings_best(&s, 0), 4);
+    assert_int_equal(ted4_photo_votes_best(&s, 0), 4);
 }
 
 int main(void)
