@@ -240,7 +240,7 @@ int ted4_run_log_step(ted4_run_log *l, const ted4_trainer *t, char *why, size_t 
 
 int ted4_run_log_event(ted4_run_log *l, const ted4_trainer *t, char *why, size_t why_size)
 {
-    const ted4_find *f = &t->watch.find;
+    const ted4_anomaly *f = &t->watch.anomaly;
     char line[400], anchor[24] = "null";
 
     if (l->file < 0)

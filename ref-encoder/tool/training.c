@@ -187,7 +187,7 @@ static int tell_rollback(ted4_training *t)
     return ted4_run_log_event(&t->log, t->trainer, t->why, sizeof t->why);
 }
 
-/* A failed step; a find is the last line of the log. */
+/* A failed step; an anomaly is the last line of the log. */
 static int fail_step(ted4_training *t)
 {
     if (t->trainer->onlooker.stopped)

@@ -411,7 +411,7 @@ static void check_nan(uint64_t iteration, int which)
                                : which == TED4_NETS_R ? "weight of bank is not finite at step"
                                                       : "weight of prior is not finite at step"));
     assert_true(t.iteration < iteration);
-    assert_int_equal(t.watch.find.step, iteration);
+    assert_int_equal(t.watch.anomaly.step, iteration);
     assert_int_equal(t.watch.state.rollbacks, 1);
     ted4_trainer_finish(&t);
 }

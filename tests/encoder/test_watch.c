@@ -83,7 +83,7 @@ static void test_healthy(void **state)
     plain = ball_finish(&t);
     assert_int_equal(t.watch.state.rollbacks, 0);
     assert_true(t.watch.state.factor == 1);
-    assert_null(t.watch.find.cause);
+    assert_null(t.watch.anomaly.cause);
     for (int k = 0; k < TED4_TERMS; k++) {
         assert_true(t.watch.state.gradient[k].peak < 100);
         assert_int_equal((t.watch.norm[k] > 0), (k != TED4_TERM_PRIOR && k != TED4_TERM_STEP));
@@ -107,7 +107,7 @@ static void test_healthy(void **state)
 static void expect_back(ted4_trainer *t, uint64_t to, const char *cause, const char *term,
                         int64_t anchor)
 {
-    const ted4_find *f = &t->watch.find;
+    const ted4_anomaly *f = &t->watch.anomaly;
     const uint64_t at = t->iteration, rollbacks = t->watch.state.rollbacks;
     const double factor = t->watch.state.factor;
     char words[64];
@@ -180,9 +180,9 @@ static int look_again(ted4_trainer *t, size_t visible, int channel, size_t lane,
 static void expect_found(ted4_trainer *t, const char *cause, const char *term, size_t anchor)
 {
     assert_true(t->watch.found);
-    assert_int_equal(t->watch.find.anchor, (int64_t)anchor);
-    assert_string_equal(t->watch.find.cause, cause);
-    assert_string_equal(t->watch.find.term, term);
+    assert_int_equal(t->watch.anomaly.anchor, (int64_t)anchor);
+    assert_string_equal(t->watch.anomaly.cause, cause);
+    assert_string_equal(t->watch.anomaly.term, term);
 }
 
 static void test_gradients(void **state)
@@ -224,7 +224,7 @@ static void test_networks(void **state)
     begin_at(&t, KEPT + 20);
     t.net.value[t.layout.bank + 2] = 1e12f;
     assert_int_equal(ted4_trainer_step(&t), 0);
-    assert_string_equal(t.watch.find.cause, "exploded");
+    assert_string_equal(t.watch.anomaly.cause, "exploded");
     assert_int_equal(t.iteration, KEPT);
     for (int which = 0; which < 2; which++) {
         ball_train(&t, KEPT + 20);
@@ -276,10 +276,10 @@ static void test_collapse(void **state)
 
         const int steps = steps_until_back(&t);
 
-        if (steps != 32 || strcmp(t.watch.find.term, names[which]) != 0)
+        if (steps != 32 || strcmp(t.watch.anomaly.term, names[which]) != 0)
             fail_msg("%d steps: %s", steps, t.message.text);
-        assert_string_equal(t.watch.find.cause, "collapsed");
-        assert_true(t.watch.find.anchor >= 0);
+        assert_string_equal(t.watch.anomaly.cause, "collapsed");
+        assert_true(t.watch.anomaly.anchor >= 0);
         assert_int_equal(t.iteration, KEPT);
         assert_true(ted4_watch_calm(&t));
         finish(&t);
@@ -297,8 +297,8 @@ static void test_divergence(void **state)
     assert_int_equal(ted4_trainer_step(&t), 0);
     assert_false(ted4_watch_calm(&t));
     assert_int_equal(steps_until_back(&t), 31);
-    assert_string_equal(t.watch.find.cause, "diverged");
-    assert_string_equal(t.watch.find.term, "loss");
+    assert_string_equal(t.watch.anomaly.cause, "diverged");
+    assert_string_equal(t.watch.anomaly.term, "loss");
     assert_int_equal(t.iteration, KEPT);
     finish(&t);
 }

@@ -55,7 +55,7 @@ typedef struct {
     char term[64];     /* e.g. "gradient of offset", "value of feature", "loss", "opacity" */
     int64_t anchor;    /* -1: it is none's */
     uint64_t step;     /* steps done before the one that failed */
-} ted4_find;
+} ted4_anomaly;
 
 typedef struct {
     ted4_watch_state state;
@@ -64,8 +64,8 @@ typedef struct {
     ted4_snapshot good;      /* the last good state, without a good state of its own */
     uint64_t good_at;        /* its step */
     int pinned;              /* it is not replaced: a probe goes back to its own beginning */
-    int found;               /* find is of a failure that nothing has been done about */
-    ted4_find find;          /* the last one */
+    int found;               /* anomaly is of a failure that nothing has been done about */
+    ted4_anomaly anomaly;    /* the last one */
 } ted4_watch;
 
 #endif

@@ -43,10 +43,10 @@ const char *ted4_term_name(int term)
     return names[term];
 }
 
-int ted4_watch_find(ted4_trainer *t, const char *cause, int64_t anchor, const char *what,
-                    const char *term, const char *format, ...)
+int ted4_watch_anomaly(ted4_trainer *t, const char *cause, int64_t anchor, const char *what,
+                       const char *term, const char *format, ...)
 {
-    ted4_find *f = &t->watch.find;
+    ted4_anomaly *f = &t->watch.anomaly;
     char where[64] = "", how[128];
     va_list arguments;
 
@@ -66,8 +66,8 @@ int ted4_watch_find(ted4_trainer *t, const char *cause, int64_t anchor, const ch
 
 static int bad_value(ted4_trainer *t, int64_t anchor, int term)
 {
-    return ted4_watch_find(t, "not finite", anchor, "value of ",
-                           term == TED4_TERM_CENTRE ? "position" : names[term], "is not finite");
+    return ted4_watch_anomaly(t, "not finite", anchor, "value of ",
+                              term == TED4_TERM_CENTRE ? "position" : names[term], "is not finite");
 }
 
 static int bad_gradient(ted4_trainer *t, int term, double times)
@@ -76,10 +76,10 @@ static int bad_gradient(ted4_trainer *t, int term, double times)
     const int64_t anchor = ted4_gradients_anchor(t, term, &finite);
 
     if (!finite || !isfinite(times))
-        return ted4_watch_find(t, finite ? "exploded" : "not finite", anchor, "gradient of ",
-                               names[term], finite ? "is beyond all numbers" : "is not finite");
-    return ted4_watch_find(t, "exploded", anchor, "gradient of ", names[term],
-                           "is %.3g times what is usual", times);
+        return ted4_watch_anomaly(t, finite ? "exploded" : "not finite", anchor, "gradient of ",
+                                  names[term], finite ? "is beyond all numbers" : "is not finite");
+    return ted4_watch_anomaly(t, "exploded", anchor, "gradient of ", names[term],
+                              "is %.3g times what is usual", times);
 }
 
 static int is_calm(const ted4_watch_state *w)
@@ -108,18 +108,19 @@ int ted4_watch_values(ted4_trainer *t, int anchors)
     if (ted4_trainer_check(t, anchors) == 0)
         return 0;
     if (!ted4_colour_finite(&t->colour))
-        return ted4_watch_find(t, "not finite", -1, "map of ", "colour", "is not finite");
+        return ted4_watch_anomaly(t, "not finite", -1, "map of ", "colour", "is not finite");
 
     const int64_t anchor = ted4_gradients_bad_value(t, &term);
 
     return anchor >= 0 ? bad_value(t, anchor, term)
-                       : ted4_watch_find(t, "not finite", -1, "weight of ",
-                                         names[ted4_gradients_bad_network(t)], "is not finite");
+                       : ted4_watch_anomaly(t, "not finite", -1, "weight of ",
+                                            names[ted4_gradients_bad_network(t)], "is not finite");
 }
 
 int ted4_watch_loss(ted4_trainer *t, double loss)
 {
-    return isfinite(loss) ? 0 : ted4_watch_find(t, "not finite", -1, "loss", "", "is not finite");
+    return isfinite(loss) ? 0
+                          : ted4_watch_anomaly(t, "not finite", -1, "loss", "", "is not finite");
 }
 
 /* Which of what hides a Gaussian: activation at this time, no extent, no opacity; -1: it is not
@@ -163,8 +164,8 @@ static int collapsed(ted4_trainer *t, const ted4_generate_input *in, const ted4_
         }
     for (int k = 0; k < REASONS; k++)
         most = count[k] > count[most] ? k : most;
-    return ted4_watch_find(t, "collapsed", first[most], "", reasons[most],
-                           "is nothing, as that of %zu of %zu anchors in view", count[most], n);
+    return ted4_watch_anomaly(t, "collapsed", first[most], "", reasons[most],
+                              "is nothing, as that of %zu of %zu anchors in view", count[most], n);
 }
 
 /* Another phase has other gradients: rate, rounding, a stopped clock. */
@@ -242,9 +243,9 @@ int ted4_watch_look(ted4_trainer *t, double loss, const ted4_generate_input *in,
     w->bad_loss = high > DIVERGED && loss > HIGH_LOSS ? w->bad_loss + 1 : 0;
     if (is_lost(w, t->watch.drawn, usual, loss))
         return collapsed(t, in, s);
-    return w->bad_loss == ROW
-               ? ted4_watch_find(t, "diverged", -1, "loss", "", "is %.3g times what is usual", high)
-               : 0;
+    return w->bad_loss == ROW ? ted4_watch_anomaly(t, "diverged", -1, "loss", "",
+                                                   "is %.3g times what is usual", high)
+                              : 0;
 }
 
 int ted4_watch_calm(const ted4_trainer *t)
