@@ -107,7 +107,7 @@ typedef struct {
     double gradient, peak; /* the largest norm of a term's gradient; the largest multiple of the
                               term's usual norm; -1: the log tells none */
     char gradient_term[32], peak_term[32]; /* which terms these are */
-    uint64_t rollbacks;                    /* of the watch, so far */
+    uint64_t rollbacks;                    /* of the monitor, so far */
     uint64_t skipped, clamped; /* of the last line: Gaussians that were not finite, so far; values
                                   of anchors at an end of their range */
 } lab_log;

@@ -83,7 +83,7 @@ static int cut(const char *path, int file, const ted4_trainer *t, double *cpu, c
     if (f == NULL)
         return say(path, strerror(errno), why, why_size);
 
-    const off_t end = find_end(f, t->iteration, t->watch.state.rollbacks, cpu);
+    const off_t end = find_end(f, t->iteration, t->monitor.state.rollbacks, cpu);
 
     fclose(f);
     if (end < 0)
@@ -174,8 +174,8 @@ static int print_line(char *line, size_t size, const ted4_run_log *l, const ted4
     char gradients[TERMS_TEXT], peaks[TERMS_TEXT];
 
     for (int k = 0; k < TED4_TERMS; k++) {
-        usual[k] = ted4_scale_usual(&t->watch.state.gradient[k]);
-        peak[k] = t->watch.state.gradient[k].peak;
+        usual[k] = ted4_scale_usual(&t->monitor.state.gradient[k]);
+        peak[k] = t->monitor.state.gradient[k].peak;
     }
     return snprintf(
         line, size,
@@ -195,8 +195,8 @@ static int print_line(char *line, size_t size, const ted4_run_log *l, const ted4
         v->frame, b[TED4_FEATURE], b[TED4_SCALING], b[TED4_OFFSET], b[TED4_PHI], b[TED4_TAU],
         (unsigned long long)ted4_raster_skipped(t->work.raster), ted4_clamped(t),
         print_terms(gradients, sizeof gradients, usual), print_terms(peaks, sizeof peaks, peak),
-        (unsigned long long)t->watch.state.rollbacks, v->train ? "train" : "test", f->ms, f->cpu_ms,
-        f->rate, t->seconds, l->cpu_seconds, l->left);
+        (unsigned long long)t->monitor.state.rollbacks, v->train ? "train" : "test", f->ms,
+        f->cpu_ms, f->rate, t->seconds, l->cpu_seconds, l->left);
 }
 
 /* The whole line or, on a full disk, nothing of it. */
@@ -240,7 +240,7 @@ int ted4_run_log_step(ted4_run_log *l, const ted4_trainer *t, char *why, size_t 
 
 int ted4_run_log_event(ted4_run_log *l, const ted4_trainer *t, char *why, size_t why_size)
 {
-    const ted4_anomaly *f = &t->watch.anomaly;
+    const ted4_anomaly *f = &t->monitor.anomaly;
     char line[400], anchor[24] = "null";
 
     if (l->file < 0)
@@ -252,9 +252,9 @@ int ted4_run_log_event(ted4_run_log *l, const ted4_trainer *t, char *why, size_t
         snprintf(line, sizeof line,
                  "{\"step\":%llu,\"event\":\"%s\",\"rollbacks\":%llu,\"failed\":%llu,"
                  "\"cause\":\"%s\",\"term\":\"%s\",\"anchor\":%s,\"factor\":%.7g}\n",
-                 (unsigned long long)t->iteration, t->watch.found ? "failure" : "rollback",
-                 (unsigned long long)t->watch.state.rollbacks, (unsigned long long)f->step,
-                 f->cause, f->term, anchor, t->watch.state.factor);
+                 (unsigned long long)t->iteration, t->monitor.found ? "failure" : "rollback",
+                 (unsigned long long)t->monitor.state.rollbacks, (unsigned long long)f->step,
+                 f->cause, f->term, anchor, t->monitor.state.factor);
 
     return put_line(l, line, (size_t)n, why, why_size);
 }
@@ -284,7 +284,7 @@ int ted4_run_log_trials(ted4_run_log *l, const ted4_trainer *t, size_t first, ch
             "\"%s\",\"from\":%lld,\"to\":%lld,"
             "\"trained\":%lld,\"taken\":%s,\"cost\":[%.8f,%.8f],\"distortion\":["
             "%.8f,%.8f],\"bytes\":[%.0f,%.0f]}\n",
-            (unsigned long long)t->iteration, (unsigned long long)t->watch.state.rollbacks,
+            (unsigned long long)t->iteration, (unsigned long long)t->monitor.state.rollbacks,
             ted4_candidate_name((ted4_candidate)x->candidate), (long long)x->from, (long long)x->to,
             (long long)x->steps, x->taken ? "true" : "false", x->before.cost, x->after.cost,
             x->before.distortion, x->after.distortion, x->before.bytes, x->after.bytes);

@@ -68,7 +68,7 @@ int ted4_run_log_cut(ted4_run_log *l, const ted4_trainer *t, char *why, size_t w
  *   rollbacks              so far
  * 0, or -1 with why filled; the file then ends with the line before. */
 int ted4_run_log_step(ted4_run_log *l, const ted4_trainer *t, char *why, size_t why_size);
-/* One line about what the watch has found (monitor.h):
+/* One line about what the monitor has found (monitor.h):
  *   step                   where training goes on, or ended
  *   event                  "rollback", or "failure": the end
  *   rollbacks              with this one

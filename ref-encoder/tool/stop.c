@@ -38,7 +38,7 @@ static void take(int signal)
     errno = before;
 }
 
-void ted4_stop_watch(int quiet)
+void ted4_stop_on_signals(int quiet)
 {
     struct sigaction mine, before;
 

@@ -6,7 +6,7 @@
 
 /* From here on. quiet: nothing is said when one comes. A signal that was ignored before stays so.
  */
-void ted4_stop_watch(int quiet);
+void ted4_stop_on_signals(int quiet);
 /* From here on there is something to keep. */
 void ted4_stop_keep(void);
 /* The signal that came; 0: none. */

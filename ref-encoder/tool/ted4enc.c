@@ -53,7 +53,7 @@ static void report(const ted4_request *r, const ted4_trainer *t, ted4_teller *te
                c->size, c->lambda, s.setup, s.train, (unsigned long long)t->iteration,
                1e3 * s.train / (double)(t->iteration > 0 ? t->iteration : 1), v->anchors,
                v->gaussians, v->dynamic, v->estimated_bits, v->coded_bits, t->search.probe_loss[0],
-               t->search.probe_loss[1], (unsigned long long)t->watch.state.rollbacks, peak_mib(),
+               t->search.probe_loss[1], (unsigned long long)t->monitor.state.rollbacks, peak_mib(),
                v->hash);
     else
         ted4_teller_say(
@@ -280,7 +280,7 @@ int main(int argc, char **argv)
     if (parsed != TED4_REQUEST_GO)
         return parsed == TED4_REQUEST_DONE ? TED4_EXIT_FINE : TED4_EXIT_TOOL;
     ted4_teller_begin(&teller, "ted4enc", r.quiet);
-    ted4_stop_watch(r.quiet);
+    ted4_stop_on_signals(r.quiet);
 
     int status = check_outputs(&r, &teller);
 

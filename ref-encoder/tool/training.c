@@ -113,7 +113,7 @@ static int log_step(ted4_training *t)
     ted4_teller_now(t->teller, &t->facts);
     if (t->request->verbose && !t->teller->terminal)
         ted4_teller_show(t->teller);
-    ted4_watch_line(tr);
+    ted4_monitor_line(tr);
     return bad;
 }
 
@@ -136,7 +136,7 @@ static int stop(ted4_training *t, int between)
     const char *way = "nothing of it is kept (--checkpoint FILE would)";
     char text[600];
 
-    if (between && t->checkpoint != NULL && ted4_watch_calm(t->trainer) && save(t) != 0)
+    if (between && t->checkpoint != NULL && ted4_monitor_calm(t->trainer) && save(t) != 0)
         return -1;
     if (t->saved >= 0) {
         snprintf(text, sizeof text,
@@ -176,10 +176,10 @@ static int start_over(ted4_training *t)
     return ted4_run_log_cut(&t->log, t->trainer, t->why, sizeof t->why);
 }
 
-/* The watch took the trainer back. */
+/* The monitor took the trainer back. */
 static int tell_rollback(ted4_training *t)
 {
-    const ted4_watch *w = &t->trainer->watch;
+    const ted4_monitor *w = &t->trainer->monitor;
 
     ted4_teller_say(t->teller, "warning: %s; back to step %llu with learning rates times %g",
                     t->trainer->message.text, (unsigned long long)t->trainer->iteration,
@@ -192,7 +192,7 @@ static int fail_step(ted4_training *t)
 {
     if (t->trainer->onlooker.stopped)
         return stop(t, 0);
-    if (t->trainer->watch.found)
+    if (t->trainer->monitor.found)
         (void)ted4_run_log_event(&t->log, t->trainer, t->why, sizeof t->why);
     return fail(t);
 }
@@ -201,7 +201,7 @@ static int fail_step(ted4_training *t)
 static int step(ted4_training *t)
 {
     ted4_trainer *tr = t->trainer;
-    const uint64_t before = tr->iteration, rollbacks = tr->watch.state.rollbacks;
+    const uint64_t before = tr->iteration, rollbacks = tr->monitor.state.rollbacks;
     const size_t trials = tr->search.n_trials;
 
     if (ted4_trainer_step(tr) != 0)
@@ -212,7 +212,7 @@ static int step(ted4_training *t)
     if (tr->search.n_trials > trials &&
         ted4_run_log_trials(&t->log, tr, trials, t->why, sizeof t->why) != 0)
         return -1;
-    return tr->watch.state.rollbacks > rollbacks ? tell_rollback(t) : 0;
+    return tr->monitor.state.rollbacks > rollbacks ? tell_rollback(t) : 0;
 }
 
 /* What probes and trials do is lost when they are stopped, for no checkpoint can be written inside
@@ -220,7 +220,7 @@ static int step(ted4_training *t)
 static int before_long_step(ted4_training *t)
 {
     return ted4_trainer_long_step(t->trainer) && t->saved != (int64_t)t->trainer->iteration &&
-                   ted4_watch_calm(t->trainer)
+                   ted4_monitor_calm(t->trainer)
                ? save(t)
                : 0;
 }
@@ -243,7 +243,7 @@ int ted4_training_go(ted4_training *t, uint64_t steps)
         if ((tr->iteration / REPORT_EVERY > before / REPORT_EVERY || tr->iteration == steps) &&
             log_step(t) != 0)
             return -1;
-        if (ted4_seconds() - saved >= t->request->checkpoint_every && ted4_watch_calm(tr)) {
+        if (ted4_seconds() - saved >= t->request->checkpoint_every && ted4_monitor_calm(tr)) {
             if (save(t) != 0)
                 return -1;
             saved = ted4_seconds();

@@ -38,7 +38,7 @@ static void test_nan(void **state)
             *ted4_anchor_value(&t.anchors, TED4_ROW_VALUE, 3, 0) = INFINITY;
         assert_int_equal(ted4_checkpoint_save(&t, path), -1);
         assert_non_null(strstr(t.message.text, "not finite at step 130"));
-        ted4_watch_forget(&t); /* else the step would go back: test_watch.c */
+        ted4_monitor_forget(&t); /* else the step would go back: test_monitor.c */
         assert_int_equal(ted4_trainer_step(&t), -1);
         assert_non_null(
             strstr(t.message.text, "not finite at step 130; there is no good state before it"));
@@ -79,7 +79,7 @@ static void test_colour(void **state)
     net = malloc(t.layout.n_net * sizeof *net);
     assert_non_null(net);
     memcpy(net, t.net.value, t.layout.n_net * sizeof *net);
-    ted4_watch_forget(&t);
+    ted4_monitor_forget(&t);
     assert_int_equal(ted4_trainer_step(&t), -1);
     assert_non_null(strstr(t.message.text, "map of colour"));
     assert_non_null(

@@ -384,7 +384,7 @@ static void test_rate(void **state)
 /* ---- not a number ---- */
 
 /* A NaN, or an infinity, in a network is never written; the next step finds it, says where, and
- * goes back (test_watch.c). */
+ * goes back (test_monitor.c). */
 static void check_nan(uint64_t iteration, int which)
 {
     const ted4_train_options o = ball_options();
@@ -411,8 +411,8 @@ static void check_nan(uint64_t iteration, int which)
                                : which == TED4_NETS_R ? "weight of bank is not finite at step"
                                                       : "weight of prior is not finite at step"));
     assert_true(t.iteration < iteration);
-    assert_int_equal(t.watch.anomaly.step, iteration);
-    assert_int_equal(t.watch.state.rollbacks, 1);
+    assert_int_equal(t.monitor.anomaly.step, iteration);
+    assert_int_equal(t.monitor.state.rollbacks, 1);
     ted4_trainer_finish(&t);
 }
 
@@ -439,9 +439,9 @@ static void test_nan_anchor(void **state)
     ball_train(&t, 30);
     *ted4_anchor_value(&t.anchors, TED4_ROW_VALUE, 7, 2) = NAN;
     assert_int_equal(ted4_make_scene(&t, &s), -1);
-    for (int i = 0; i < 100 && t.watch.state.rollbacks == 0; i++)
+    for (int i = 0; i < 100 && t.monitor.state.rollbacks == 0; i++)
         assert_int_equal(ted4_trainer_step(&t), 0);
-    assert_int_equal(t.watch.state.rollbacks, 1);
+    assert_int_equal(t.monitor.state.rollbacks, 1);
     assert_non_null(strstr(t.message.text, "value of feature of anchor 7 is not finite"));
     ted4_trainer_finish(&t);
 }

@@ -69,8 +69,8 @@ static void check_volume(ted4_trainer *t, unsigned share)
     }
     t->work.splat_gradient.visible = seen;
     assert_int_equal(ted4_update_volume(t, &s), n);
-    assert_true(t->watch.drawn == (double)n);
-    assert_true(fabs(t->watch.norm[TED4_TERM_CENTRE] - sqrt(squares)) < 1e-6 * sqrt(squares));
+    assert_true(t->monitor.drawn == (double)n);
+    assert_true(fabs(t->monitor.norm[TED4_TERM_CENTRE] - sqrt(squares)) < 1e-6 * sqrt(squares));
     for (int i = 0; i < SPLATS; i++)
         for (int j = 0; j < 3; j++) {
             const double h = 1e-4, at = x[j][i];

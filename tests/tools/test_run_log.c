@@ -150,8 +150,8 @@ static void test_log_before_rollback(void **state)
     expect_same("out/x", &reference.file);
 }
 
-/* A checkpoint of step 300 with a value that is not finite; good: and with the state that the watch
- * keeps, that of step 250. */
+/* A checkpoint of step 300 with a value that is not finite; good: and with the state that the
+ * monitor keeps, that of step 250. */
 static void poison(int good)
 {
     ted4_dataset d;
@@ -161,7 +161,7 @@ static void poison(int good)
     ball_train(&t, 300);
     *ted4_anchor_value(&t.anchors, TED4_ROW_VALUE, 5, t.layout.first[TED4_OFFSET]) = NAN;
     if (!good)
-        ted4_watch_forget(&t);
+        ted4_monitor_forget(&t);
     end_usual(&t, &d, "out/c");
 }
 
@@ -181,7 +181,7 @@ static void kill_after_rollback(void)
     assert_non_null(strstr(text, "\"step\":500"));
 }
 
-/* What the watch does is told by the log. */
+/* What the monitor does is told by the log. */
 static void test_rollback(void **state)
 {
     char text[MOST_LOG];

@@ -10,19 +10,19 @@ int ted4_branch_run(ted4_trainer *t, int n, double *loss)
     const uint64_t begin = t->iteration;
     int bad = 0;
 
-    ted4_watch_forget(t);
-    t->watch.pinned = 1;
+    ted4_monitor_forget(t);
+    t->monitor.pinned = 1;
     *loss = 0;
     while (!bad && t->iteration < begin + (uint64_t)n) {
-        const uint64_t i = t->iteration - begin, rollbacks = t->watch.state.rollbacks;
+        const uint64_t i = t->iteration - begin, rollbacks = t->monitor.state.rollbacks;
 
         bad = ted4_gradient_step(t) != 0;
-        if (t->watch.state.rollbacks > rollbacks)
+        if (t->monitor.state.rollbacks > rollbacks)
             *loss = 0;
         else if (i >= (uint64_t)n / 2)
             *loss += t->progress.last_loss / (n - n / 2);
     }
-    t->watch.pinned = 0;
-    ted4_watch_forget(t);
+    t->monitor.pinned = 0;
+    ted4_monitor_forget(t);
     return bad;
 }

@@ -165,15 +165,15 @@ static int descend(search *s, ted4_candidate m)
     return 0;
 }
 
-/* Trains from where t stands; a model that the watch gives up is no candidate: *lost. */
+/* Trains from where t stands; a model that the monitor gives up is no candidate: *lost. */
 static int train(search *s, ted4_snapshot *after, ted4_cost *cost, int *lost)
 {
     double loss;
 
     *lost = 0;
     if (ted4_branch_run(s->t, s->steps, &loss) != 0) {
-        *lost = s->t->watch.found;
-        s->t->watch.found = 0;
+        *lost = s->t->monitor.found;
+        s->t->monitor.found = 0;
         return *lost ? 0 : -1;
     }
     return ted4_state_take(s->t, after) != 0 || measure(s, cost) != 0;

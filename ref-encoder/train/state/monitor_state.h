@@ -47,7 +47,7 @@ typedef struct {
     double usual_loss, lost; /* loss before that row of little on screen, share of the row's mean
                                 loss that is summed up */
     ted4_scale gradient[TED4_TERMS], loss, screen;
-} ted4_watch_state;
+} ted4_monitor_state;
 
 /* What went wrong. */
 typedef struct {
@@ -58,7 +58,7 @@ typedef struct {
 } ted4_anomaly;
 
 typedef struct {
-    ted4_watch_state state;
+    ted4_monitor_state state;
     double norm[TED4_TERMS]; /* of this step's gradients; 0: not learnt */
     double drawn;            /* Gaussians on screen in this step, less those without extent */
     ted4_snapshot good;      /* the last good state, without a good state of its own */
@@ -66,6 +66,6 @@ typedef struct {
     int pinned;              /* it is not replaced: a probe goes back to its own beginning */
     int found;               /* anomaly is of a failure that nothing has been done about */
     ted4_anomaly anomaly;    /* the last one */
-} ted4_watch;
+} ted4_monitor;
 
 #endif

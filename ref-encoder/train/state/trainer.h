@@ -114,7 +114,7 @@ typedef struct {
     ted4_phase phase;
     ted4_order order;
     ted4_progress progress;
-    ted4_watch watch;
+    ted4_monitor monitor;
 
     /* What has been found out about the size of the model: search/. */
     ted4_search search;

@@ -17,7 +17,7 @@
 #define MAGIC 0x34444554u /* "TED4" */
 enum { FORMAT = 8 };
 
-/* One walk for both directions: put() writes or reads the bytes at p. whole: with the watch's
+/* One walk for both directions: put() writes or reads the bytes at p. whole: with the monitor's
  * last good state. left: when reading, bytes of the file that no put() has had; anchors get room
  * only where these fill it. Snapshots are taken and restored by one thread, often, while all
  * others wait: these go to memory and come from there directly, without a FILE in between. */
@@ -273,8 +273,8 @@ static int numbers_are_possible(const ted4_trainer *t)
            t->phase.integer <= t->phase.stage2 && t->iteration <= ted4_trainer_total(t) &&
            t->phase.stage2_start <= t->iteration && t->voxel >= TED4_FINEST_VOXEL &&
            t->voxel <= 1e30 && t->search.decided >= TED4_DECIDED_NOTHING &&
-           t->search.decided <= TED4_DECIDED_ALL && t->watch.state.factor > 0 &&
-           t->watch.state.factor <= 1 && t->watch.state.rollbacks <= TED4_ROLLBACKS;
+           t->search.decided <= TED4_DECIDED_ALL && t->monitor.state.factor > 0 &&
+           t->monitor.state.factor <= 1 && t->monitor.state.rollbacks <= TED4_ROLLBACKS;
 }
 
 /* The last good state, itself a file of this kind, looked at when it is needed. None is written
@@ -283,8 +283,8 @@ static int numbers_are_possible(const ted4_trainer *t)
 static void walk_good(stream *s, ted4_trainer *t)
 {
     enum { PIECE = 1 << 20 };
-    ted4_watch *w = &t->watch;
-    const int none = w->good.bytes == NULL || ted4_watch_due(t);
+    ted4_monitor *w = &t->monitor;
+    const int none = w->good.bytes == NULL || ted4_monitor_due(t);
     uint64_t size = s->writing && !none ? w->good.size : 0;
 
     put(s, &size, sizeof size);
@@ -293,7 +293,7 @@ static void walk_good(stream *s, ted4_trainer *t)
         put(s, w->good.bytes, size);
         return;
     }
-    ted4_watch_forget(t);
+    ted4_monitor_forget(t);
     while (!s->failed && w->good.size < size) {
         const size_t n = size - w->good.size < PIECE ? (size_t)(size - w->good.size) : PIECE;
         char *bytes = realloc(w->good.bytes, w->good.size + n);
@@ -306,7 +306,7 @@ static void walk_good(stream *s, ted4_trainer *t)
         w->good.size += n;
     }
     if (s->failed)
-        ted4_watch_forget(t);
+        ted4_monitor_forget(t);
 }
 
 /* How the model came to be what it is. Before stage 2 there is nothing to tell; without trials the
@@ -389,7 +389,7 @@ static void walk(stream *s, ted4_trainer *t)
     put(s, &t->search.probed, sizeof t->search.probed);
     put(s, t->search.probe_loss, sizeof t->search.probe_loss);
     put(s, &t->progress, sizeof t->progress);
-    put(s, &t->watch.state, sizeof t->watch.state);
+    put(s, &t->monitor.state, sizeof t->monitor.state);
     expect(s, t->order.n);
     put(s, t->order.item, t->order.n * sizeof *t->order.item);
     put(s, &t->order.next, sizeof t->order.next);

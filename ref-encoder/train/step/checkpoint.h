@@ -18,7 +18,7 @@ int ted4_checkpoint_load(ted4_trainer *t, const char *path);
 /* The same in memory. 0, or -1 with t->message. */
 int ted4_snapshot_take(ted4_trainer *t, ted4_snapshot *s);
 int ted4_snapshot_restore(ted4_trainer *t, const ted4_snapshot *s);
-/* The same without the watch's last good state, which they leave alone: it is made of such a
+/* The same without the monitor's last good state, which they leave alone: it is made of such a
  * snapshot. */
 int ted4_state_take(ted4_trainer *t, ted4_snapshot *s);
 int ted4_state_restore(ted4_trainer *t, const ted4_snapshot *s);

@@ -79,8 +79,8 @@ size_t ted4_update_volume(ted4_trainer *t, const ted4_splats *s)
     ted4_parallel_for(t->parallel, PARTS, volume_part, &j);
     for (int part = 0; part < PARTS; part++)
         drawn += j.drawn[part];
-    t->watch.norm[TED4_TERM_CENTRE] = sqrt(squares);
-    t->watch.drawn = (double)drawn;
+    t->monitor.norm[TED4_TERM_CENTRE] = sqrt(squares);
+    t->monitor.drawn = (double)drawn;
     return n;
 }
 

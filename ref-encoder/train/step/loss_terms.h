@@ -7,7 +7,7 @@
 #include "train/state/trainer.h"
 
 /* Volume: weight times the mean of the product of scales over the Gaussians on screen, into
- * t->work.splat_gradient. Returns how many there are, and tells the watch, with the norm of the
+ * t->work.splat_gradient. Returns how many there are, and tells the monitor, with the norm of the
  * gradients of their centres: not finite where one is not. */
 size_t ted4_update_volume(ted4_trainer *t, const ted4_splats *s);
 /* Bank: mean squared second difference of its rows, into t->net.gradient. */

@@ -43,17 +43,17 @@ const char *ted4_term_name(int term)
     return names[term];
 }
 
-int ted4_watch_anomaly(ted4_trainer *t, const char *cause, int64_t anchor, const char *what,
-                       const char *term, const char *format, ...)
+int ted4_monitor_anomaly(ted4_trainer *t, const char *cause, int64_t anchor, const char *what,
+                         const char *term, const char *format, ...)
 {
-    ted4_anomaly *f = &t->watch.anomaly;
+    ted4_anomaly *f = &t->monitor.anomaly;
     char where[64] = "", how[128];
     va_list arguments;
 
     f->cause = cause;
     f->anchor = anchor;
     f->step = t->iteration;
-    t->watch.found = 1;
+    t->monitor.found = 1;
     snprintf(f->term, sizeof f->term, "%s%s", what, term);
     if (anchor >= 0)
         snprintf(where, sizeof where, " of anchor %lld", (long long)anchor);
@@ -66,8 +66,9 @@ int ted4_watch_anomaly(ted4_trainer *t, const char *cause, int64_t anchor, const
 
 static int bad_value(ted4_trainer *t, int64_t anchor, int term)
 {
-    return ted4_watch_anomaly(t, "not finite", anchor, "value of ",
-                              term == TED4_TERM_CENTRE ? "position" : names[term], "is not finite");
+    return ted4_monitor_anomaly(t, "not finite", anchor, "value of ",
+                                term == TED4_TERM_CENTRE ? "position" : names[term],
+                                "is not finite");
 }
 
 static int bad_gradient(ted4_trainer *t, int term, double times)
@@ -76,51 +77,53 @@ static int bad_gradient(ted4_trainer *t, int term, double times)
     const int64_t anchor = ted4_gradients_anchor(t, term, &finite);
 
     if (!finite || !isfinite(times))
-        return ted4_watch_anomaly(t, finite ? "exploded" : "not finite", anchor, "gradient of ",
-                                  names[term], finite ? "is beyond all numbers" : "is not finite");
-    return ted4_watch_anomaly(t, "exploded", anchor, "gradient of ", names[term],
-                              "is %.3g times what is usual", times);
+        return ted4_monitor_anomaly(t, finite ? "exploded" : "not finite", anchor, "gradient of ",
+                                    names[term],
+                                    finite ? "is beyond all numbers" : "is not finite");
+    return ted4_monitor_anomaly(t, "exploded", anchor, "gradient of ", names[term],
+                                "is %.3g times what is usual", times);
 }
 
-static int is_calm(const ted4_watch_state *w)
+static int is_calm(const ted4_monitor_state *w)
 {
     return w->bad_loss == 0 && w->bad_screen == 0;
 }
 
-int ted4_watch_due(const ted4_trainer *t)
+int ted4_monitor_due(const ted4_trainer *t)
 {
     const uint64_t i = t->iteration;
 
-    return !t->watch.pinned && is_calm(&t->watch.state) &&
+    return !t->monitor.pinned && is_calm(&t->monitor.state) &&
            (i % KEEP_EVERY == KEEP_AT || i == (uint64_t)t->opt.stage1 ||
             i == ted4_trainer_total(t));
 }
 
-void ted4_watch_forget(ted4_trainer *t)
+void ted4_monitor_forget(ted4_trainer *t)
 {
-    ted4_snapshot_free(&t->watch.good);
+    ted4_snapshot_free(&t->monitor.good);
 }
 
-int ted4_watch_values(ted4_trainer *t, int anchors)
+int ted4_monitor_values(ted4_trainer *t, int anchors)
 {
     int term;
 
     if (ted4_trainer_check(t, anchors) == 0)
         return 0;
     if (!ted4_colour_finite(&t->colour))
-        return ted4_watch_anomaly(t, "not finite", -1, "map of ", "colour", "is not finite");
+        return ted4_monitor_anomaly(t, "not finite", -1, "map of ", "colour", "is not finite");
 
     const int64_t anchor = ted4_gradients_bad_value(t, &term);
 
-    return anchor >= 0 ? bad_value(t, anchor, term)
-                       : ted4_watch_anomaly(t, "not finite", -1, "weight of ",
-                                            names[ted4_gradients_bad_network(t)], "is not finite");
+    return anchor >= 0
+               ? bad_value(t, anchor, term)
+               : ted4_monitor_anomaly(t, "not finite", -1, "weight of ",
+                                      names[ted4_gradients_bad_network(t)], "is not finite");
 }
 
-int ted4_watch_loss(ted4_trainer *t, double loss)
+int ted4_monitor_loss(ted4_trainer *t, double loss)
 {
     return isfinite(loss) ? 0
-                          : ted4_watch_anomaly(t, "not finite", -1, "loss", "", "is not finite");
+                          : ted4_monitor_anomaly(t, "not finite", -1, "loss", "", "is not finite");
 }
 
 /* Which of what hides a Gaussian: activation at this time, no extent, no opacity; -1: it is not
@@ -164,14 +167,15 @@ static int collapsed(ted4_trainer *t, const ted4_generate_input *in, const ted4_
         }
     for (int k = 0; k < REASONS; k++)
         most = count[k] > count[most] ? k : most;
-    return ted4_watch_anomaly(t, "collapsed", first[most], "", reasons[most],
-                              "is nothing, as that of %zu of %zu anchors in view", count[most], n);
+    return ted4_monitor_anomaly(t, "collapsed", first[most], "", reasons[most],
+                                "is nothing, as that of %zu of %zu anchors in view", count[most],
+                                n);
 }
 
 /* Another phase has other gradients: rate, rounding, a stopped clock. */
 static void note_phase(ted4_trainer *t)
 {
-    ted4_watch_state *w = &t->watch.state;
+    ted4_monitor_state *w = &t->monitor.state;
     const uint64_t phase = (uint64_t)t->phase.stage2 | (uint64_t)t->phase.integer << 1 |
                            (uint64_t)t->phase.clock_stopped << 2;
 
@@ -186,7 +190,7 @@ static void note_phase(ted4_trainer *t)
 
 static int look_at_gradients(ted4_trainer *t)
 {
-    ted4_watch *w = &t->watch;
+    ted4_monitor *w = &t->monitor;
     double times[TED4_TERMS];
     int worst = 0, term;
 
@@ -207,7 +211,7 @@ static int look_at_gradients(ted4_trainer *t)
 
 /* Has the screen been nearly empty for a row of steps, and did pictures lose by it? If they did
  * not, this much is usual from here on. */
-static int is_lost(ted4_watch_state *w, double drawn, double usual, double loss)
+static int is_lost(ted4_monitor_state *w, double drawn, double usual, double loss)
 {
     const double share = ted4_scale_take(&w->screen, drawn + 1.0);
 
@@ -229,10 +233,10 @@ static int is_lost(ted4_watch_state *w, double drawn, double usual, double loss)
     return 0;
 }
 
-int ted4_watch_look(ted4_trainer *t, double loss, const ted4_generate_input *in,
-                    const ted4_splats *s)
+int ted4_monitor_look(ted4_trainer *t, double loss, const ted4_generate_input *in,
+                      const ted4_splats *s)
 {
-    ted4_watch_state *w = &t->watch.state;
+    ted4_monitor_state *w = &t->monitor.state;
 
     note_phase(t);
     if (look_at_gradients(t) != 0)
@@ -241,20 +245,20 @@ int ted4_watch_look(ted4_trainer *t, double loss, const ted4_generate_input *in,
     const double usual = ted4_scale_usual(&w->loss), high = ted4_scale_take(&w->loss, loss);
 
     w->bad_loss = high > DIVERGED && loss > HIGH_LOSS ? w->bad_loss + 1 : 0;
-    if (is_lost(w, t->watch.drawn, usual, loss))
+    if (is_lost(w, t->monitor.drawn, usual, loss))
         return collapsed(t, in, s);
-    return w->bad_loss == ROW ? ted4_watch_anomaly(t, "diverged", -1, "loss", "",
-                                                   "is %.3g times what is usual", high)
+    return w->bad_loss == ROW ? ted4_monitor_anomaly(t, "diverged", -1, "loss", "",
+                                                     "is %.3g times what is usual", high)
                               : 0;
 }
 
-int ted4_watch_calm(const ted4_trainer *t)
+int ted4_monitor_calm(const ted4_trainer *t)
 {
-    return is_calm(&t->watch.state);
+    return is_calm(&t->monitor.state);
 }
 
-void ted4_watch_line(ted4_trainer *t)
+void ted4_monitor_line(ted4_trainer *t)
 {
     for (int k = 0; k < TED4_TERMS; k++)
-        t->watch.state.gradient[k].peak = 0;
+        t->monitor.state.gradient[k].peak = 0;
 }

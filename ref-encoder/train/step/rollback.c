@@ -11,13 +11,13 @@ enum { LOOK_EVERY = 100 };
 /* Factor of all learning rates at each rollback. */
 #define SMALLER 0.5
 
-int ted4_watch_begin(ted4_trainer *t)
+int ted4_monitor_begin(ted4_trainer *t)
 {
-    ted4_watch *w = &t->watch;
-    const int keep = w->good.bytes == NULL || (ted4_watch_due(t) && w->good_at != t->iteration);
+    ted4_monitor *w = &t->monitor;
+    const int keep = w->good.bytes == NULL || (ted4_monitor_due(t) && w->good_at != t->iteration);
 
     w->found = 0;
-    if (ted4_watch_values(t, keep || t->iteration % LOOK_EVERY == 0) != 0)
+    if (ted4_monitor_values(t, keep || t->iteration % LOOK_EVERY == 0) != 0)
         return -1;
     if (!keep)
         return 0;
@@ -25,9 +25,9 @@ int ted4_watch_begin(ted4_trainer *t)
     return ted4_state_take(t, &w->good);
 }
 
-int ted4_watch_recover(ted4_trainer *t)
+int ted4_monitor_recover(ted4_trainer *t)
 {
-    ted4_watch *w = &t->watch;
+    ted4_monitor *w = &t->monitor;
     const uint64_t rollbacks = w->state.rollbacks, failed = t->iteration;
     const double factor = w->state.factor, seconds = t->seconds;
     const char *why = w->good.bytes == NULL
@@ -51,6 +51,6 @@ int ted4_watch_recover(ted4_trainer *t)
     /* Where no step lies between, smaller ones change nothing: that picture is passed over. */
     if (failed == t->iteration && t->order.next < t->order.n)
         t->order.next++;
-    ted4_watch_forget(t);
+    ted4_monitor_forget(t);
     return 0;
 }

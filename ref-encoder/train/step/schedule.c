@@ -93,7 +93,7 @@ void ted4_schedule_rates(const ted4_trainer *t, float *rate)
     fill(rate, l->offset_logit, l->head.n_offsets, t->phase.stage2 ? mask_rate(t) : 0.0);
     fill(rate, l->temporal_logit, 1, MASK_CAUTION * mask_rate(t));
     for (int c = 0; c < l->n_channels; c++)
-        rate[c] *= (float)t->watch.state.factor;
+        rate[c] *= (float)t->monitor.state.factor;
 }
 
 /* In the integer stage no weight leaves a coarse grid: it would jump from point to point until the
@@ -114,7 +114,7 @@ static size_t network_size(const ted4_net_shape *s)
 
 static ted4_net_range make_range(const ted4_trainer *t, size_t first, size_t n, double rate)
 {
-    return (ted4_net_range) { first, n, (float)(rate * t->watch.state.factor) };
+    return (ted4_net_range) { first, n, (float)(rate * t->monitor.state.factor) };
 }
 
 int ted4_schedule_network(const ted4_trainer *t, ted4_net_range *range)

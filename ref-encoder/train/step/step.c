@@ -82,7 +82,7 @@ static int forward(ted4_trainer *t, pass *p)
     bad = ted4_trainer_render(t, p->pic, 1, &p->v, &p->in, &p->s) != 0;
     if (!bad) {
         p->loss = ted4_trainer_loss(t, p->pic, truth, p->map, &p->l1, &p->ssim);
-        bad = ted4_watch_loss(t, p->loss) != 0;
+        bad = ted4_monitor_loss(t, p->loss) != 0;
         if (!bad && p->loss < 0)
             bad = ted4_trainer_fail(t, "no memory for the loss");
     }
@@ -112,19 +112,19 @@ static int backward(ted4_trainer *t, pass *p, uint64_t key)
 static void apply(ted4_trainer *t, const pass *p)
 {
     ted4_update_parameters(t);
-    t->watch.norm[TED4_TERM_COLOUR] = 0;
+    t->monitor.norm[TED4_TERM_COLOUR] = 0;
     if (!p->corrected)
         return;
-    t->watch.norm[TED4_TERM_COLOUR] = ted4_gradients_norm(p->map, TED4_COLOUR_VALUES);
+    t->monitor.norm[TED4_TERM_COLOUR] = ted4_gradients_norm(p->map, TED4_COLOUR_VALUES);
     ted4_colour_update(&t->colour, p->pic->camera_id, p->map,
-                       t->opt.lr_colour * t->watch.state.factor, t->opt.colour_weight);
+                       t->opt.lr_colour * t->monitor.state.factor, t->opt.colour_weight);
 }
 
 static int one_step(ted4_trainer *t)
 {
     pass p;
 
-    if (ted4_watch_begin(t) != 0 || ted4_schedule_event(t) != 0)
+    if (ted4_monitor_begin(t) != 0 || ted4_schedule_event(t) != 0)
         return -1;
 
     const uint64_t key = ted4_random(t->opt.seed, t->iteration);
@@ -132,7 +132,7 @@ static int one_step(ted4_trainer *t)
     if (forward(t, &p) != 0 || backward(t, &p, key) != 0)
         return -1;
     apply(t, &p);
-    if (ted4_watch_look(t, p.loss, &p.in, &p.s) != 0)
+    if (ted4_monitor_look(t, p.loss, &p.in, &p.s) != 0)
         return -1;
     follow(&t->progress, p.loss, p.l1, p.ssim, (double)p.on_screen,
            (double)p.v.width * (double)p.v.height, t->iteration == 0);
@@ -142,5 +142,5 @@ static int one_step(ted4_trainer *t)
 
 int ted4_gradient_step(ted4_trainer *t)
 {
-    return one_step(t) == 0 ? ted4_trainer_report(t, 1) : ted4_watch_recover(t);
+    return one_step(t) == 0 ? ted4_trainer_report(t, 1) : ted4_monitor_recover(t);
 }

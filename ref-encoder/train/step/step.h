@@ -8,8 +8,9 @@
 
 /* One step, after what is due before it (events.h). Or, where the monitor finds that training goes
  * wrong, the way back to the last good state: iteration is then smaller or the same,
- * watch.state.rollbacks larger, and watch.anomaly and message say why. 0, or -1 with t->message;
- * watch.found then tells whether it is an anomaly that nothing more was done about. */
+ * monitor.state.rollbacks larger, and monitor.anomaly and message say why. 0, or -1 with
+ * t->message; monitor.found then tells whether it is an anomaly that nothing more was done about.
+ */
 int ted4_gradient_step(ted4_trainer *t);
 
 #endif

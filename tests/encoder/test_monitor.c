@@ -1,6 +1,6 @@
-/* test_watch.c - train/step/monitor.c and train/step/grad_norm.c: what goes wrong is found when it
- * happens and named, training goes on from the last good state with smaller steps, three times; a
- * training that goes well never notices. Files and logs of a program that went back:
+/* test_monitor.c - train/step/monitor.c and train/step/grad_norm.c: what goes wrong is found when
+ * it happens and named, training goes on from the last good state with smaller steps, three times;
+ * a training that goes well never notices. Files and logs of a program that went back:
  * test_run_log.c.
  * SPDX-License-Identifier: BSD-2-Clause */
 #include "test.h"
@@ -81,17 +81,17 @@ static void test_healthy(void **state)
     (void)state;
     begin_at(&t, 0);
     plain = ball_finish(&t);
-    assert_int_equal(t.watch.state.rollbacks, 0);
-    assert_true(t.watch.state.factor == 1);
-    assert_null(t.watch.anomaly.cause);
+    assert_int_equal(t.monitor.state.rollbacks, 0);
+    assert_true(t.monitor.state.factor == 1);
+    assert_null(t.monitor.anomaly.cause);
     for (int k = 0; k < TED4_TERMS; k++) {
-        assert_true(t.watch.state.gradient[k].peak < 100);
-        assert_int_equal((t.watch.norm[k] > 0), (k != TED4_TERM_PRIOR && k != TED4_TERM_STEP));
+        assert_true(t.monitor.state.gradient[k].peak < 100);
+        assert_int_equal((t.monitor.norm[k] > 0), (k != TED4_TERM_PRIOR && k != TED4_TERM_STEP));
     }
     ted4_trainer_finish(&t);
     begin_at(&t, 0);
     while (t.iteration < ted4_trainer_total(&t)) {
-        ted4_watch_forget(&t);
+        ted4_monitor_forget(&t);
         assert_int_equal(ted4_trainer_step(&t), 0);
     }
     kept = ball_finish(&t);
@@ -107,9 +107,9 @@ static void test_healthy(void **state)
 static void expect_back(ted4_trainer *t, uint64_t to, const char *cause, const char *term,
                         int64_t anchor)
 {
-    const ted4_anomaly *f = &t->watch.anomaly;
-    const uint64_t at = t->iteration, rollbacks = t->watch.state.rollbacks;
-    const double factor = t->watch.state.factor;
+    const ted4_anomaly *f = &t->monitor.anomaly;
+    const uint64_t at = t->iteration, rollbacks = t->monitor.state.rollbacks;
+    const double factor = t->monitor.state.factor;
     char words[64];
 
     if (ted4_trainer_step(t) != 0)
@@ -122,9 +122,9 @@ static void expect_back(ted4_trainer *t, uint64_t to, const char *cause, const c
     assert_non_null(strstr(t->message.text, words));
     assert_non_null(strstr(t->message.text, term));
     assert_int_equal(t->iteration, to);
-    assert_int_equal(t->watch.state.rollbacks, rollbacks + 1);
-    assert_true(t->watch.state.factor == 0.5 * factor);
-    assert_true(!t->watch.found);
+    assert_int_equal(t->monitor.state.rollbacks, rollbacks + 1);
+    assert_true(t->monitor.state.factor == 0.5 * factor);
+    assert_true(!t->monitor.found);
 }
 
 static void finish(ted4_trainer *t)
@@ -160,11 +160,11 @@ static void test_values(void **state)
     *ted4_anchor_value(&t.anchors, TED4_ROW_POSITION, 64, 1) = NAN;
     ball_train(&t, 300);
     expect_back(&t, KEPT, "not finite", "value of position", 64);
-    assert_true(t.watch.state.factor == 0.25);
+    assert_true(t.monitor.state.factor == 0.25);
     finish(&t);
 }
 
-/* Changes a gradient after a step, and has the watch look at it again. */
+/* Changes a gradient after a step, and has the monitor look at it again. */
 static int look_again(ted4_trainer *t, size_t visible, int channel, size_t lane, float gradient)
 {
     float rate[256] = { 0 };
@@ -174,15 +174,15 @@ static int look_again(ted4_trainer *t, size_t visible, int channel, size_t lane,
     ted4_gradients_block(&t->layout, rate, t->visible_blocks.raw[visible],
                          t->visible_blocks.gradient[visible],
                          t->visible_blocks.squares + visible * (TED4_BLOCK_TERMS + 1));
-    return ted4_watch_look(t, t->progress.last_loss, NULL, NULL);
+    return ted4_monitor_look(t, t->progress.last_loss, NULL, NULL);
 }
 
 static void expect_found(ted4_trainer *t, const char *cause, const char *term, size_t anchor)
 {
-    assert_true(t->watch.found);
-    assert_int_equal(t->watch.anomaly.anchor, (int64_t)anchor);
-    assert_string_equal(t->watch.anomaly.cause, cause);
-    assert_string_equal(t->watch.anomaly.term, term);
+    assert_true(t->monitor.found);
+    assert_int_equal(t->monitor.anomaly.anchor, (int64_t)anchor);
+    assert_string_equal(t->monitor.anomaly.cause, cause);
+    assert_string_equal(t->monitor.anomaly.term, term);
 }
 
 static void test_gradients(void **state)
@@ -196,11 +196,11 @@ static void test_gradients(void **state)
         const int offset = t.layout.first[TED4_OFFSET] + 5, phi = t.layout.first[TED4_PHI];
         const size_t anchor = t.visible_blocks.block[2] * (size_t)TED4_LANES + 7,
                      first = t.visible_blocks.block[0] * (size_t)TED4_LANES;
-        const float usual = (float)ted4_scale_usual(&t.watch.state.gradient[TED4_OFFSET]);
+        const float usual = (float)ted4_scale_usual(&t.monitor.state.gradient[TED4_OFFSET]);
 
         assert_int_equal(look_again(&t, 2, offset, 7, 100 * usual), 0);
-        assert_true(t.watch.state.gradient[TED4_OFFSET].peak > 90);
-        assert_true(t.watch.state.gradient[TED4_OFFSET].peak < 120);
+        assert_true(t.monitor.state.gradient[TED4_OFFSET].peak > 90);
+        assert_true(t.monitor.state.gradient[TED4_OFFSET].peak < 120);
         assert_int_equal(look_again(&t, 2, offset, 7, -2e5f * usual), -1);
         expect_found(&t, "exploded", "gradient of offset", anchor);
         assert_int_equal(look_again(&t, 2, offset, 7, 1e30f), -1);
@@ -209,7 +209,7 @@ static void test_gradients(void **state)
         expect_found(&t, "exploded", "gradient of offset", anchor);
         assert_int_equal(look_again(&t, 2, offset, 7, 0), -1);
         expect_found(&t, "not finite", "gradient of phi", first);
-        assert_int_equal(ted4_watch_recover(&t), 0);
+        assert_int_equal(ted4_monitor_recover(&t), 0);
         assert_int_equal(t.iteration, stage2 ? STAGE1 : KEPT);
         finish(&t);
     }
@@ -224,7 +224,7 @@ static void test_networks(void **state)
     begin_at(&t, KEPT + 20);
     t.net.value[t.layout.bank + 2] = 1e12f;
     assert_int_equal(ted4_trainer_step(&t), 0);
-    assert_string_equal(t.watch.anomaly.cause, "exploded");
+    assert_string_equal(t.monitor.anomaly.cause, "exploded");
     assert_int_equal(t.iteration, KEPT);
     for (int which = 0; which < 2; which++) {
         ball_train(&t, KEPT + 20);
@@ -237,13 +237,13 @@ static void test_networks(void **state)
 
 /* ---- collapse and divergence ---- */
 
-/* Steps until the watch goes back; how many. */
+/* Steps until the monitor goes back; how many. */
 static int steps_until_back(ted4_trainer *t)
 {
     for (int i = 0; i < 60; i++) {
         if (ted4_trainer_step(t) != 0)
             fail_msg("%s", t->message.text);
-        if (t->watch.state.rollbacks > 0)
+        if (t->monitor.state.rollbacks > 0)
             return i + 1;
     }
     return 0;
@@ -276,12 +276,12 @@ static void test_collapse(void **state)
 
         const int steps = steps_until_back(&t);
 
-        if (steps != 32 || strcmp(t.watch.anomaly.term, names[which]) != 0)
+        if (steps != 32 || strcmp(t.monitor.anomaly.term, names[which]) != 0)
             fail_msg("%d steps: %s", steps, t.message.text);
-        assert_string_equal(t.watch.anomaly.cause, "collapsed");
-        assert_true(t.watch.anomaly.anchor >= 0);
+        assert_string_equal(t.monitor.anomaly.cause, "collapsed");
+        assert_true(t.monitor.anomaly.anchor >= 0);
         assert_int_equal(t.iteration, KEPT);
-        assert_true(ted4_watch_calm(&t));
+        assert_true(ted4_monitor_calm(&t));
         finish(&t);
     }
 }
@@ -295,10 +295,10 @@ static void test_divergence(void **state)
     begin_at(&t, STAGE1 - 40);
     ball_set_biases(&t, TED4_NET_COLOUR, 3u * t.layout.head.n_offsets, 1000.0f);
     assert_int_equal(ted4_trainer_step(&t), 0);
-    assert_false(ted4_watch_calm(&t));
+    assert_false(ted4_monitor_calm(&t));
     assert_int_equal(steps_until_back(&t), 31);
-    assert_string_equal(t.watch.anomaly.cause, "diverged");
-    assert_string_equal(t.watch.anomaly.term, "loss");
+    assert_string_equal(t.monitor.anomaly.cause, "diverged");
+    assert_string_equal(t.monitor.anomaly.term, "loss");
     assert_int_equal(t.iteration, KEPT);
     finish(&t);
 }
@@ -311,14 +311,14 @@ static void test_empty_space(void **state)
 
     (void)state;
     begin_at(&t, KEPT + 1);
-    t.watch.state.screen.level += 6; /* as if 64 times as many had been usual */
+    t.monitor.state.screen.level += 6; /* as if 64 times as many had been usual */
     ball_train(&t, KEPT + 32);
-    assert_int_equal(t.watch.state.bad_screen, 31);
-    assert_true(!ted4_watch_calm(&t));
+    assert_int_equal(t.monitor.state.bad_screen, 31);
+    assert_true(!ted4_monitor_calm(&t));
     ball_train(&t, KEPT + 34);
-    assert_int_equal(t.watch.state.rollbacks, 0);
-    assert_true(ted4_watch_calm(&t));
-    assert_true(t.watch.state.screen.n < 32);
+    assert_int_equal(t.monitor.state.rollbacks, 0);
+    assert_true(ted4_monitor_calm(&t));
+    assert_true(t.monitor.state.screen.n < 32);
     finish(&t);
 }
 
@@ -399,7 +399,7 @@ static void test_three_times(void **state)
     ball_train(&t, KEPT + 5);
     *ted4_anchor_value(&t.anchors, TED4_ROW_VALUE, 9, 0) = NAN;
     assert_int_equal(ted4_trainer_step(&t), -1);
-    assert_true(t.watch.found);
+    assert_true(t.monitor.found);
     assert_int_equal(t.iteration, KEPT + 5);
     assert_non_null(strstr(t.message.text, "value of feature of anchor 9 is not finite at step "
                                            "255; learning rates were made smaller three times"));
@@ -420,7 +420,7 @@ static ball_file fail_again(ted4_trainer *t)
     ball_train(t, 340);
     t->net.value[t->layout.bank] = NAN;
     expect_back(t, KEPT, "not finite", "weight of bank", -1);
-    assert_true(t->watch.state.factor == 0.25);
+    assert_true(t->monitor.state.factor == 0.25);
     return ball_finish(t);
 }
 
@@ -449,8 +449,8 @@ static void test_resumed(void **state)
     if (ted4_checkpoint_load(&t, path) != 0)
         fail_msg("%s", t.message.text);
     assert_int_equal(t.iteration, 320);
-    assert_int_equal(t.watch.state.rollbacks, 1);
-    assert_non_null(t.watch.good.bytes);
+    assert_int_equal(t.monitor.state.rollbacks, 1);
+    assert_non_null(t.monitor.good.bytes);
     again = fail_again(&t);
     ted4_trainer_finish(&t);
     ball_check_same(&whole, &again);
@@ -471,5 +471,5 @@ int main(void)
         cmocka_unit_test(test_three_times), cmocka_unit_test(test_resumed),
     };
 
-    return cmocka_run_group_tests_name("watch", tests, set_up, tear_down);
+    return cmocka_run_group_tests_name("monitor", tests, set_up, tear_down);
 }
