@@ -116,7 +116,7 @@ static void put_log(json_t *o, const lab_log *l)
     json_object_set_new(o, "peak_term", json_string(l->peak_term));
     put_count(o, "rollbacks", l->rollbacks);
     put_count(o, "skipped", l->skipped);
-    put_count(o, "clamped", l->clamped);
+    put_count(o, "clamped", l->saturated);
 }
 
 static int measure(lab_session *s, const char *log, const char *strip, json_t *o)

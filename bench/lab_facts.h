@@ -108,7 +108,7 @@ typedef struct {
                               term's usual norm; -1: the log tells none */
     char gradient_term[32], peak_term[32]; /* which terms these are */
     uint64_t rollbacks;                    /* of the monitor, so far */
-    uint64_t skipped, clamped; /* of the last line: Gaussians that were not finite, so far; values
+    uint64_t skipped, saturated; /* of the last line: Gaussians that were not finite, so far; values
                                   of anchors at an end of their range */
 } lab_log;
 

@@ -50,7 +50,7 @@ static void take_line(const json_t *line, lab_log *l)
     take_gradients(line, l);
     take_count(line, "rollbacks", &l->rollbacks);
     take_count(line, "skipped", &l->skipped);
-    take_count(line, "clamped", &l->clamped);
+    take_count(line, "clamped", &l->saturated);
     if (!json_is_number(loss))
         return;
     l->loss_last = json_number_value(loss);

@@ -193,7 +193,7 @@ static int print_line(char *line, size_t size, const ted4_run_log *l, const ted4
         t->anchors.n, ted4_count_dynamic(t), p->splats, v->bytes, v->positions, v->masks,
         y[TED4_FEATURE], y[TED4_SCALING], y[TED4_OFFSET], y[TED4_PHI], y[TED4_TAU], v->networks,
         v->frame, b[TED4_FEATURE], b[TED4_SCALING], b[TED4_OFFSET], b[TED4_PHI], b[TED4_TAU],
-        (unsigned long long)ted4_raster_skipped(t->work.raster), ted4_clamped(t),
+        (unsigned long long)ted4_raster_skipped(t->work.raster), ted4_saturated_values(t),
         print_terms(gradients, sizeof gradients, usual), print_terms(peaks, sizeof peaks, peak),
         (unsigned long long)t->monitor.state.rollbacks, v->train ? "train" : "test", f->ms,
         f->cpu_ms, f->rate, t->seconds, l->cpu_seconds, l->left);

@@ -248,7 +248,7 @@ static void test_masks(void **state)
 /* ---- what is held at an end ---- */
 
 /* Nothing at first; then one value at a time at, and just inside of, each end. */
-static void test_clamped(void **state)
+static void test_saturated(void **state)
 {
     static const struct {
         int type, component;
@@ -265,7 +265,7 @@ static void test_clamped(void **state)
     begin(&t, 5);
     const size_t last = t.anchors.n - 1;
 
-    assert_int_equal(ted4_clamped(&t), 0);
+    assert_int_equal(ted4_saturated_values(&t), 0);
     for (size_t k = 0; k < sizeof at / sizeof *at; k++) {
         float *x = ted4_anchor_value(&t.anchors, TED4_ROW_VALUE, last,
                                      t.layout.first[at[k].type] + at[k].component);
@@ -274,9 +274,9 @@ static void test_clamped(void **state)
 
         *q = at[k].step;
         *x = at[k].held;
-        assert_int_equal(ted4_clamped(&t), 1);
+        assert_int_equal(ted4_saturated_values(&t), 1);
         *x = at[k].free;
-        assert_int_equal(ted4_clamped(&t), 0);
+        assert_int_equal(ted4_saturated_values(&t), 0);
         *x = before;
         *q = 0;
     }
@@ -285,7 +285,7 @@ static void test_clamped(void **state)
         for (int c = 0; c < 6; c++)
             *ted4_anchor_value(&t.anchors, TED4_ROW_VALUE, i, t.layout.first[TED4_SCALING] + c) =
                 i < 3 && c == 1 ? 0x1p-20f : 0x1p-19f;
-    assert_int_equal(ted4_clamped(&t), 3);
+    assert_int_equal(ted4_saturated_values(&t), 3);
     ted4_trainer_finish(&t);
 }
 
@@ -295,7 +295,7 @@ int main(void)
         cmocka_unit_test(test_adam_sizes), cmocka_unit_test(test_adam_recovers),
         cmocka_unit_test(test_bias),       cmocka_unit_test(test_volume),
         cmocka_unit_test(test_bank),       cmocka_unit_test(test_masks),
-        cmocka_unit_test(test_clamped),
+        cmocka_unit_test(test_saturated),
     };
 
     return cmocka_run_group_tests_name("updates at their extremes", tests, NULL, NULL);

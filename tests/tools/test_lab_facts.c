@@ -306,7 +306,7 @@ static void test_log(void **state)
     assert_true(l.gradient == 8);
     assert_true(l.peak == 12);
     assert_int_equal(l.skipped, 4);
-    assert_int_equal(l.clamped, 7);
+    assert_int_equal(l.saturated, 7);
     assert_string_equal(l.gradient_term, "heads");
     assert_string_equal(l.peak_term, "prior");
     tiny_text(&f, "b.jsonl", "{\"step\":250,\"loss\":0.5}\n");

@@ -10,7 +10,7 @@
 #define BEYOND_SYMBOLS    32767.5f
 
 /* Component c of a type; q: its step size, 0 before there is one. */
-static int is_clamped(const ted4_header *h, int type, unsigned c, float x, float q)
+static int is_saturated(const ted4_header *h, int type, unsigned c, float x, float q)
 {
     if (type == TED4_SCALING &&
         (h->scale_domain == TED4_SCALE_LOG2 ? fabsf(x) > LARGEST_LOG2_SIZE : x <= LEAST_SIZE))
@@ -20,7 +20,7 @@ static int is_clamped(const ted4_header *h, int type, unsigned c, float x, float
     return q > 0 && fabsf(x) > BEYOND_SYMBOLS * q;
 }
 
-size_t ted4_clamped(const ted4_trainer *t)
+size_t ted4_saturated_values(const ted4_trainer *t)
 {
     const ted4_layout *l = &t->layout;
     size_t n = 0;
@@ -28,9 +28,9 @@ size_t ted4_clamped(const ted4_trainer *t)
     for (int y = 0; y < TED4_TYPES; y++)
         for (unsigned c = 0; c < l->shape.dim[y]; c++)
             for (size_t i = 0; i < t->anchors.n; i++)
-                n += (size_t)is_clamped(&l->head, y, c,
-                                        *ted4_anchor_value(&t->anchors, TED4_ROW_VALUE, i,
-                                                           l->first[y] + (int)c),
-                                        *ted4_anchor_value(&t->anchors, TED4_ROW_STEP, i, y));
+                n += (size_t)is_saturated(&l->head, y, c,
+                                          *ted4_anchor_value(&t->anchors, TED4_ROW_VALUE, i,
+                                                             l->first[y] + (int)c),
+                                          *ted4_anchor_value(&t->anchors, TED4_ROW_STEP, i, y));
     return n;
 }

@@ -8,6 +8,6 @@
 
 /* Values that are held where they are used: sizes at the ends of spec 11.1, durations at the floor
  * of spec 11.4 and, once there are step sizes, what no symbol holds (spec 9.4). */
-size_t ted4_clamped(const ted4_trainer *t);
+size_t ted4_saturated_values(const ted4_trainer *t);
 
 #endif
