@@ -81,7 +81,8 @@ static void random_layer(conf_build *b, const layer *l, int last)
     for (unsigned o = 0; o < l->out; o++) {
         const int shift = least_shift(l) + conf_in(&b->chance, 6, 9),
                   bound = (1 << 30) / l->rule.amplitude / ((int)l->in + 1);
-        const int wish = (1 << shift) / root((int)l->in + 1), most = wish < bound ? wish : bound;
+        const int target = (1 << shift) / root((int)l->in + 1),
+                  most = target < bound ? target : bound;
 
         l->shift[o] = (uint8_t)shift;
         for (unsigned i = 0; i < l->in; i++)

@@ -235,7 +235,7 @@ static void test_outliers(void **state)
     ref_world_finish(&w);
 }
 
-/* Nothing of a pruned anchor counts but the wish to drop, or keep, its offsets. */
+/* Nothing of a pruned anchor counts but the pull to drop, or keep, its offsets. */
 static void test_all_masked(void **state)
 {
     static ref_world w;

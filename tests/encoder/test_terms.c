@@ -50,12 +50,12 @@ static double roughness(const ted4_trainer *t)
     return sqrt(sum / (double)((M - 2) * D));
 }
 
-static double wish_to_move(const ted4_trainer *t)
+static double pull_to_move(const ted4_trainer *t)
 {
     return mean_of(t, t->layout.temporal_logit, 1);
 }
 
-static double wish_to_keep(const ted4_trainer *t)
+static double pull_to_keep(const ted4_trainer *t)
 {
     return mean_of(t, t->layout.offset_logit, t->layout.head.n_offsets);
 }
@@ -129,7 +129,7 @@ static void test_stage1(void **state)
     static const term terms[] = {
         { "volume_weight=0", "volume_weight=100", "lr_heads=0", log_size, 0.05 },
         { "tv_weight=0", "tv_weight=100", NONE, roughness, 0.05 },
-        { "temporal_weight=0", "temporal_weight=1", NONE, wish_to_move, 0.5 },
+        { "temporal_weight=0", "temporal_weight=1", NONE, pull_to_move, 0.5 },
         /* 0.25 and more over seeds; nothing is sure after 150 steps. */
         { "ssim=0", "ssim=1", "stage1=800", unlike, 0.05 },
     };
@@ -141,7 +141,7 @@ static void test_stage1(void **state)
 static void test_stage2(void **state)
 {
     static const term terms[] = {
-        { "mask_weight=0", "mask_weight=100", NONE, wish_to_keep, 0.5 },
+        { "mask_weight=0", "mask_weight=100", NONE, pull_to_keep, 0.5 },
         { "lambda=0.0001", "lambda=0.1", NONE, bits, 20 },
         { "lr_prior=0", "lr_prior=0.02", NONE, bits, 3 },
         { "lr_prior=0", "lr_prior=0.02", NONE, sameness, 0.1 },

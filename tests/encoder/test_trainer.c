@@ -288,8 +288,8 @@ static void test_single_frame(void **state)
     assert_true(psnr > 33);
 }
 
-/* In a short run the wish to be still is too weak to be heard: the file is larger than it need be,
- * and valid. */
+/* In a short run the pull towards a static scene is too weak to be heard: the file is larger than
+ * it need be, and valid. */
 static void test_still(void **state)
 {
     const ted4_train_options o = ball_options();
@@ -301,7 +301,7 @@ static void test_still(void **state)
     assert_true(psnr > 33);
 }
 
-/* With a longer stage 1 and a strong wish, all masks are off when stage 2 begins, and bank and
+/* With a longer stage 1 and a strong pull, all masks are off when stage 2 begins, and bank and
  * motion leave the model; then checkpoints of the smaller model work, too. */
 static void test_simplified(void **state)
 {
