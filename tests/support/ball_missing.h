@@ -1,5 +1,6 @@
 /* ball_missing.h - the moving scene of balls without the initial points of the blue one, so that
- * only pictures tell of it, and how many new anchors lie on it. For test_mv_seed.c, test_turns.c.
+ * only pictures tell of it, and how many new anchors lie on it. For test_mv_seed.c,
+ * test_alternating_cameras.c.
  * SPDX-License-Identifier: BSD-2-Clause */
 #ifndef TED4_BALL_MISSING_H
 #define TED4_BALL_MISSING_H

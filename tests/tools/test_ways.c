@@ -1,5 +1,5 @@
 /* test_ways.c - what other writers do, as ted4scene does it: kinds of picture files, backgrounds
- * and alpha, masks, cameras that take turns, missing pictures, coordinates, points.
+ * and alpha, masks, alternating cameras, missing pictures, coordinates, points.
  * Links tools/scene/ray_*.o.
  * SPDX-License-Identifier: BSD-2-Clause */
 #include <math.h>
@@ -234,7 +234,7 @@ static void test_palette(void **state)
 
 /* ---- what there is ---- */
 
-/* Of cameras that take turns, each has one time and each time one camera, in no order that is one
+/* Of alternating cameras, each has one time and each time one camera, in no order that is one
  * of the other. */
 static void test_turns(void **state)
 {

@@ -16,7 +16,7 @@
 
 int ted4_mv_seed_reach(const ted4_trainer *t)
 {
-    return t->layout.first[TED4_TAU] < 0 || t->data->n_frames < 2 ? -1 : ted4_turns_reach(t);
+    return t->layout.first[TED4_TAU] < 0 || t->data->n_frames < 2 ? -1 : ted4_alternating_reach(t);
 }
 
 /* What anchors look like now (ted4_anchor_appearance). */

@@ -1,11 +1,11 @@
 /* photo_votes.h - at which times a colour is seen at a place: what tells things that come and go
- * from things that stay. Depends on trainer.h, turns.h.
+ * from things that stay. Depends on trainer.h, alternating_cameras.h.
  * SPDX-License-Identifier: BSD-2-Clause */
 #ifndef TED4_PHOTO_VOTES_H
 #define TED4_PHOTO_VOTES_H
 
 #include "train/state/trainer.h"
-#include "turns.h"
+#include "alternating_cameras.h"
 
 /* Colours agree when they differ by less than this many of 255, averaged over the channels. */
 #define TED4_COLOUR_NEAR 28
@@ -51,7 +51,7 @@ typedef struct {
 } ted4_photo_votes;
 
 /* Looks at every training picture. Those of reach frames before and after a frame count as its own
- * (turns.h). 0, or -1 with t->message. Free it in either case. */
+ * (alternating_cameras.h). 0, or -1 with t->message. Free it in either case. */
 int ted4_photo_votes_count(ted4_photo_votes *s, ted4_trainer *t, const float *point,
                            const uint8_t *colour, size_t n, uint32_t reach);
 void ted4_photo_votes_free(ted4_photo_votes *s);

@@ -243,8 +243,8 @@ static int search_view(const ted4_trainer *t, sweep_view *views, size_t n, size_
     int bad = j.found == NULL;
 
     for (size_t i = 0; i < n; i++)
-        views[i].helps = i != self &&
-                         (views[i].is_own || ted4_turns_apart(views[self].centre, views[i].centre));
+        views[i].helps = i != self && (views[i].is_own ||
+                                       ted4_cameras_apart(views[self].centre, views[i].centre));
     if (!bad)
         ted4_parallel_for(t->parallel, rows, search_row, &j);
     for (size_t i = 0; !bad && i < rows * columns; i++)

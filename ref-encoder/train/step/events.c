@@ -11,14 +11,14 @@
 #define GROW_FROM 0.05
 
 /* Multi-view seeding takes place when what stays is drawn well enough for what does not to stand
- * out, and before activation is learnt. Where cameras take turns nothing else finds what moves, so
+ * out, and before activation is learnt. Where cameras alternate nothing else finds what moves, so
  * it comes before the probe asks whether time is needed. */
-#define MV_SEED_AT       0.3
-#define MV_SEED_AT_TURNS 0.2
+#define MV_SEED_AT             0.3
+#define MV_SEED_AT_ALTERNATING 0.2
 
 static uint64_t mv_seed_step(const ted4_trainer *t, int reach)
 {
-    return (uint64_t)((reach > 0 ? MV_SEED_AT_TURNS : MV_SEED_AT) * (double)t->opt.stage1);
+    return (uint64_t)((reach > 0 ? MV_SEED_AT_ALTERNATING : MV_SEED_AT) * (double)t->opt.stage1);
 }
 
 /* Are anchors kept for multi-view seeding that is still to come? */
@@ -49,7 +49,7 @@ void ted4_schedule_growth(const ted4_trainer *t, double *from, double *mv_seed_a
     const int reach = ted4_mv_seed_reach(t);
 
     *from = GROW_FROM;
-    *mv_seed_at = reach > 0 ? MV_SEED_AT_TURNS : MV_SEED_AT;
+    *mv_seed_at = reach > 0 ? MV_SEED_AT_ALTERNATING : MV_SEED_AT;
     *mv_seed_share = reach >= 0 ? t->opt.sprouts : 0.0;
 }
 

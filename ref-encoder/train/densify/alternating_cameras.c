@@ -1,6 +1,6 @@
-/* turns.c - see turns.h.
+/* alternating_cameras.c - see alternating_cameras.h.
  * SPDX-License-Identifier: BSD-2-Clause */
-#include "turns.h"
+#include "alternating_cameras.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -19,7 +19,7 @@ enum { MOST_REACH = 4, OF_FRAMES = 8 };
 /* Cameras of a window that are told apart; more are not needed. */
 enum { WANTED = TED4_CAMERAS_NEEDED + 1 };
 
-int ted4_turns_apart(const float a[3], const float b[3])
+int ted4_cameras_apart(const float a[3], const float b[3])
 {
     float square = 0, far = NEAREST * NEAREST, other = 0;
 
@@ -82,7 +82,7 @@ static int cameras(const frames *f, uint32_t from, uint32_t to)
         int new = 1;
 
         for (int i = 0; i < n; i++)
-            new &= ted4_turns_apart(found[i], c);
+            new &= ted4_cameras_apart(found[i], c);
         if (new)
             found[n++] = c;
     }
@@ -106,7 +106,7 @@ static int is_enough(const frames *f, uint32_t reach)
     return shown > 0 && enough >= MOST_FRAMES * shown;
 }
 
-int ted4_turns_reach(const ted4_trainer *t)
+int ted4_alternating_reach(const ted4_trainer *t)
 {
     frames f = { 0 };
     int reach = -1;

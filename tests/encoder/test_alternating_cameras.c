@@ -1,5 +1,6 @@
-/* test_turns.c - train/densify/turns.h: cameras that take turns, one picture a time. A ball that no
- * initial point stands for is found from the pictures of several times.
+/* test_alternating_cameras.c - train/densify/alternating_cameras.h: alternating cameras, one
+ * picture a time. A ball that no initial point stands for is found from the pictures of several
+ * times.
  * SPDX-License-Identifier: BSD-2-Clause */
 #include <stdlib.h>
 #include <string.h>
@@ -10,7 +11,7 @@
 #include "ball_group.h"
 #include "ball_missing.h"
 #include "train/densify/mv_seed.h"
-#include "train/densify/turns.h"
+#include "train/densify/alternating_cameras.h"
 #include "train/step/events.h"
 
 /* The blue ball moves by 0.3 of its radius a frame. */
@@ -24,7 +25,7 @@ static int set_up_without_blue(void **state)
 }
 
 /* At frame f only camera f % cameras takes a picture, and none where f % gap is not 0. */
-static void take_turns(uint32_t cameras, uint32_t gap)
+static void alternate(uint32_t cameras, uint32_t gap)
 {
     for (size_t i = 0; i < balls.n_pictures; i++) {
         const ted4_picture *p = &balls.pictures[i];
@@ -48,9 +49,9 @@ static int reach_of(uint32_t cameras, uint32_t gap)
     ted4_trainer t;
     int reach;
 
-    take_turns(cameras, gap);
+    alternate(cameras, gap);
     ball_begin(&t, &o, &balls, NULL);
-    reach = ted4_turns_reach(&t);
+    reach = ted4_alternating_reach(&t);
     ted4_trainer_finish(&t);
     return reach;
 }
@@ -66,7 +67,7 @@ static void test_reach(void **state)
     for (size_t i = 0; i < balls.n_pictures; i++)
         balls.pictures[i].is_test = 0;
     ball_begin(&t, &o, &balls, NULL);
-    assert_int_equal(ted4_turns_reach(&t), 0);
+    assert_int_equal(ted4_alternating_reach(&t), 0);
     ted4_trainer_finish(&t);
     assert_int_equal(reach_of(4, 1), 2);
     assert_int_equal(reach_of(3, 1), -1);
@@ -80,11 +81,11 @@ static void test_apart(void **state)
     static const float middle[3] = { 0, 0, 0 }, beside[3] = { 0.02f, 0, 0 };
 
     (void)state;
-    assert_false(ted4_turns_apart(a, a));
-    assert_false(ted4_turns_apart(a, b));
-    assert_true(ted4_turns_apart(a, c));
-    assert_false(ted4_turns_apart(middle, middle));
-    assert_true(ted4_turns_apart(middle, beside));
+    assert_false(ted4_cameras_apart(a, a));
+    assert_false(ted4_cameras_apart(a, b));
+    assert_true(ted4_cameras_apart(a, c));
+    assert_false(ted4_cameras_apart(middle, middle));
+    assert_true(ted4_cameras_apart(middle, beside));
 }
 
 /* New anchors live for a while, and most of them where the ball is in the middle of that time. */
@@ -95,7 +96,7 @@ static void test_found(void **state)
     size_t near;
 
     (void)state;
-    take_turns(4, 1);
+    alternate(4, 1);
     ball_begin(&t, &o, &balls, NULL);
     ball_train(&t, STEPS);
 
@@ -128,7 +129,7 @@ static void test_schedule(void **state)
         for (size_t i = 0; i < balls.n_pictures; i++)
             balls.pictures[i].is_test = 0;
         if (turns)
-            take_turns(4, 1);
+            alternate(4, 1);
         ball_begin(&t, &o, &balls, NULL);
         ball_train(&t, at - 1);
         assert_int_equal(t.anchors.n + ted4_growth_allowance(&t), 200);
@@ -147,5 +148,6 @@ int main(void)
         cmocka_unit_test(test_schedule),
     };
 
-    return cmocka_run_group_tests_name("turns", tests, set_up_without_blue, tear_down);
+    return cmocka_run_group_tests_name("alternating_cameras", tests, set_up_without_blue,
+                                       tear_down);
 }
