@@ -52,8 +52,8 @@ $B/bench/bench_scale: $B/bench/bench_scale.o $(TRAIN_RECORD) $B/bench/recorder.o
 PHASES = ted4_dataset_load ted4_dataset_verify ted4_header_settle ted4_trainer_init \
         ted4_trainer_restart ted4_gradient_step ted4_branch_run ted4_snapshot_take \
         ted4_snapshot_restore ted4_state_take ted4_state_restore ted4_densify_adjust ted4_mv_seed \
-        ted4_activation_begin ted4_stage2_begin ted4_integer_begin ted4_capacity_decide \
-        ted4_capacity_refine ted4_capacity_prune ted4_trainer_distortion ted4_distortion_gradient \
+        ted4_activation_begin ted4_stage2_begin ted4_integer_begin ted4_model_search \
+        ted4_refine_prior_bits ted4_rd_prune ted4_trainer_distortion ted4_distortion_gradient \
         ted4_make_scene ted4_encode ted4_encode_with_text ted4_trainer_preview ted4_run_log_step \
         ted4_checkpoint_save ted4_verify ted4_file_write \
         $(foreach l,base v3 v4,ted4_raster_blend_$l ted4_raster_blend_bwd_$l) ted4_threads_init \

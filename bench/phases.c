@@ -38,7 +38,7 @@
     P(ADJUST, "growing and pruning")              \
     P(MV_SEED, "sprouts")                         \
     P(STAGE, "changes of stage")                  \
-    P(CAPACITY, "trials: moves")                  \
+    P(MODEL_SEARCH, "trials: moves")              \
     P(DRAW, "trials: pictures")                   \
     P(SCENE, "model to scene")                    \
     P(CODE, "coding")                             \
@@ -128,9 +128,9 @@ BETWEEN(PHASE_MV_SEED, int, ted4_mv_seed, (ted4_trainer * t), (t))
 BETWEEN(PHASE_STAGE, int, ted4_activation_begin, (ted4_trainer * t), (t))
 BETWEEN(PHASE_STAGE, int, ted4_stage2_begin, (ted4_trainer * t), (t))
 BETWEEN(PHASE_STAGE, int, ted4_integer_begin, (ted4_trainer * t), (t))
-BETWEEN(PHASE_CAPACITY, int, ted4_capacity_decide, (ted4_trainer * t), (t))
-BETWEEN(PHASE_CAPACITY, int, ted4_capacity_refine, (ted4_trainer * t), (t))
-BETWEEN(PHASE_CAPACITY, int, ted4_capacity_prune, (ted4_trainer * t), (t))
+BETWEEN(PHASE_MODEL_SEARCH, int, ted4_model_search, (ted4_trainer * t), (t))
+BETWEEN(PHASE_MODEL_SEARCH, int, ted4_refine_prior_bits, (ted4_trainer * t), (t))
+BETWEEN(PHASE_MODEL_SEARCH, int, ted4_rd_prune, (ted4_trainer * t), (t))
 BETWEEN(PHASE_DRAW, double, ted4_trainer_distortion, (ted4_trainer * t, size_t item), (t, item))
 BETWEEN(PHASE_DRAW, int, ted4_distortion_gradient, (ted4_trainer * t, size_t item, ted4_splats *s),
         (t, item, s))

@@ -20,8 +20,8 @@
 
 static double search_steps(const ted4_trainer *t)
 {
-    const double budget = fmax(ted4_capacity_search_steps(t), 0.0);
-    const double least = fmin(UNTRAINED * ted4_capacity_cost_steps(t) + TRAINED * budget, budget);
+    const double budget = fmax(ted4_model_search_steps(t), 0.0);
+    const double least = fmin(UNTRAINED * ted4_file_cost_steps(t) + TRAINED * budget, budget);
 
     return least + OFTEN * (budget - least);
 }
@@ -29,7 +29,7 @@ static double search_steps(const ted4_trainer *t)
 /* Training steps of the trials that are still to come. */
 static double trials_left(const ted4_trainer *t)
 {
-    const double refine = ted4_capacity_refine_steps(t), prune = ted4_capacity_prune_steps(t);
+    const double refine = ted4_refine_prior_bits_steps(t), prune = ted4_rd_prune_steps(t);
 
     if (!t->opt.capacity || t->opt.stage2 == 0 || t->search.decided == TED4_DECIDED_ALL)
         return 0;

@@ -33,12 +33,11 @@ static experiment in_stage1(const ted4_trainer *t)
  * the integer stage is about to begin: how fine do the weights of the prior have to be? */
 static experiment in_stage2(const ted4_trainer *t)
 {
-    if (t->search.decided == TED4_DECIDED_NOTHING && t->iteration == ted4_capacity_step(t))
-        return (experiment) { ted4_capacity_decide, TED4_BUSY_TRIALS,
-                              ted4_capacity_search_steps(t) };
+    if (t->search.decided == TED4_DECIDED_NOTHING && t->iteration == ted4_model_search_due_step(t))
+        return (experiment) { ted4_model_search, TED4_BUSY_TRIALS, ted4_model_search_steps(t) };
     if (t->search.decided == TED4_DECIDED_MODEL && ted4_integer_due(t))
-        return (experiment) { ted4_capacity_refine, TED4_BUSY_TRIALS,
-                              ted4_capacity_refine_steps(t) };
+        return (experiment) { ted4_refine_prior_bits, TED4_BUSY_TRIALS,
+                              ted4_refine_prior_bits_steps(t) };
     return nothing;
 }
 
@@ -47,8 +46,7 @@ static experiment in_stage2(const ted4_trainer *t)
 static experiment in_integer_stage(const ted4_trainer *t)
 {
     return t->search.decided == TED4_DECIDED_BITS
-               ? (experiment) { ted4_capacity_prune, TED4_BUSY_TRIALS,
-                                ted4_capacity_prune_steps(t) }
+               ? (experiment) { ted4_rd_prune, TED4_BUSY_TRIALS, ted4_rd_prune_steps(t) }
                : nothing;
 }
 

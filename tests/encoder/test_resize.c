@@ -100,7 +100,7 @@ static ted4_cost cost(ted4_trainer *t)
 {
     ted4_cost c;
 
-    if (ted4_capacity_cost(t, &c) != 0)
+    if (ted4_file_cost(t, &c) != 0)
         fail_msg("%s", t->message.text);
     return c;
 }

@@ -30,22 +30,22 @@ static size_t subset_size(const ted4_trainer *t)
     return n < t->order.n ? n : t->order.n;
 }
 
-double ted4_capacity_cost_steps(const ted4_trainer *t)
+double ted4_file_cost_steps(const ted4_trainer *t)
 {
     return STEPS_A_FILE + STEPS_A_PICTURE * (double)subset_size(t);
 }
 
-double ted4_capacity_budget(const ted4_trainer *t)
+double ted4_search_budget(const ted4_trainer *t)
 {
     return t->opt.capacity_share * (double)ted4_trainer_total(t);
 }
 
-double ted4_capacity_afford(const ted4_trainer *t, double steps)
+double ted4_search_afford(const ted4_trainer *t, double steps)
 {
-    return SAFETY_FACTOR * steps <= ted4_capacity_budget(t) ? steps : 0;
+    return SAFETY_FACTOR * steps <= ted4_search_budget(t) ? steps : 0;
 }
 
-int ted4_capacity_note(ted4_trainer *t, const struct ted4_trial *x)
+int ted4_search_note(ted4_trainer *t, const struct ted4_trial *x)
 {
     struct ted4_trial *more = realloc(t->search.trial, (t->search.n_trials + 1) * sizeof *more);
 
@@ -103,12 +103,12 @@ static int measure(ted4_trainer *t, ted4_cost *c)
     return 0;
 }
 
-int ted4_capacity_cost(ted4_trainer *t, ted4_cost *c)
+int ted4_file_cost(ted4_trainer *t, ted4_cost *c)
 {
     ted4_snapshot before = { 0 };
     int bad = ted4_state_take(t, &before) != 0 || measure(t, c) != 0;
 
     bad = bad || ted4_state_restore(t, &before) != 0;
     ted4_snapshot_free(&before);
-    return bad || ted4_trainer_report(t, ted4_capacity_cost_steps(t)) != 0 ? -1 : 0;
+    return bad || ted4_trainer_report(t, ted4_file_cost_steps(t)) != 0 ? -1 : 0;
 }

@@ -8,17 +8,17 @@
 
 /* Of the model as it is: ends stage 2 on a copy, codes it, and draws some training pictures from
  * it. 0, or -1 with t->message. */
-int ted4_capacity_cost(ted4_trainer *t, ted4_cost *c);
+int ted4_file_cost(ted4_trainer *t, ted4_cost *c);
 /* What a bit of the file weighs. */
 double ted4_lambda_per_bit(const ted4_trainer *t);
 
 /* In training steps: what one such cost takes; what trials may take altogether. */
-double ted4_capacity_cost_steps(const ted4_trainer *t);
-double ted4_capacity_budget(const ted4_trainer *t);
+double ted4_file_cost_steps(const ted4_trainer *t);
+double ted4_search_budget(const ted4_trainer *t);
 /* The same number of steps, or 0: too large a part of that budget for one decision. */
-double ted4_capacity_afford(const ted4_trainer *t, double steps);
+double ted4_search_afford(const ted4_trainer *t, double steps);
 
 /* Appends to t->search.trial. 0, or -1 with t->message. */
-int ted4_capacity_note(ted4_trainer *t, const struct ted4_trial *x);
+int ted4_search_note(ted4_trainer *t, const struct ted4_trial *x);
 
 #endif

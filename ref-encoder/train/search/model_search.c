@@ -44,15 +44,15 @@ typedef struct {
                             to = -1: there is none */
 } search;
 
-double ted4_capacity_search_steps(const ted4_trainer *t)
+double ted4_model_search_steps(const ted4_trainer *t)
 {
-    return ted4_capacity_budget(t) - ted4_capacity_refine_steps(t) - ted4_capacity_prune_steps(t);
+    return ted4_search_budget(t) - ted4_refine_prior_bits_steps(t) - ted4_rd_prune_steps(t);
 }
 
 /* Steps that a trained trial has; 0: too few to tell anything. */
 static int trial_steps(const ted4_trainer *t)
 {
-    const double budget = ted4_capacity_search_steps(t);
+    const double budget = ted4_model_search_steps(t);
     const double steps_left = (1.0 - t->opt.integer_share - DECIDE_AT) * (double)t->opt.stage2 -
                               1.0;
     const double n = fmin(fmax(budget / TRIALS, FEWEST_STEPS), steps_left);
@@ -60,7 +60,7 @@ static int trial_steps(const ted4_trainer *t)
     return n >= FEWEST_STEPS && n <= budget ? (int)n : 0;
 }
 
-uint64_t ted4_capacity_step(const ted4_trainer *t)
+uint64_t ted4_model_search_due_step(const ted4_trainer *t)
 {
     return t->opt.capacity && t->opt.stage2 > 0
                ? (uint64_t)t->opt.stage1 + (uint64_t)(DECIDE_AT * (double)t->opt.stage2)
@@ -89,8 +89,8 @@ static void swap(ted4_snapshot *a, ted4_snapshot *b)
 
 static int measure(search *s, ted4_cost *c)
 {
-    s->spent += ted4_capacity_cost_steps(s->t);
-    return ted4_capacity_cost(s->t, c);
+    s->spent += ted4_file_cost_steps(s->t);
+    return ted4_file_cost(s->t, c);
 }
 
 /* The model at hand, one candidate smaller: what it costs as it is. 1: there is no such candidate;
@@ -250,9 +250,9 @@ static int search_all(search *s)
     return bad || ted4_state_restore(s->t, &s->trained) != 0 ? -1 : 0;
 }
 
-int ted4_capacity_decide(ted4_trainer *t)
+int ted4_model_search(ted4_trainer *t)
 {
-    search s = { .t = t, .budget = ted4_capacity_search_steps(t), .steps = trial_steps(t) };
+    search s = { .t = t, .budget = ted4_model_search_steps(t), .steps = trial_steps(t) };
     int bad = 0;
 
     t->search.decided = TED4_DECIDED_MODEL; /* in every state that is kept from here on: trials make
@@ -262,7 +262,7 @@ int ted4_capacity_decide(ted4_trainer *t)
     ted4_snapshot_free(&s.now);
     ted4_snapshot_free(&s.trained);
     for (size_t i = 0; !bad && i < s.n_trials; i++)
-        bad = ted4_capacity_note(t, &s.trial[i]) != 0;
+        bad = ted4_search_note(t, &s.trial[i]) != 0;
     free(s.trial);
     return bad ? -1 : 0;
 }

@@ -7,11 +7,11 @@
 #include "train/state/trainer.h"
 
 /* The step at which the search is due; UINT64_MAX: never. */
-uint64_t ted4_capacity_step(const ted4_trainer *t);
+uint64_t ted4_model_search_due_step(const ted4_trainer *t);
 /* Training steps that the search may take: what the end of stage 2 leaves it. */
-double ted4_capacity_search_steps(const ted4_trainer *t);
-/* Settles what the model is; t is at the step of ted4_capacity_step. Afterwards it is as many steps
- * further as a trial has, if any was trained. 0, or -1 with t->message. */
-int ted4_capacity_decide(ted4_trainer *t);
+double ted4_model_search_steps(const ted4_trainer *t);
+/* Settles what the model is; t is at the step of ted4_model_search_due_step. Afterwards it is as
+ * many steps further as a trial has, if any was trained. 0, or -1 with t->message. */
+int ted4_model_search(ted4_trainer *t);
 
 #endif

@@ -13,31 +13,31 @@
  * after it better than both. */
 enum { MOST_TRIALS = 4 };
 
-double ted4_capacity_refine_steps(const ted4_trainer *t)
+double ted4_refine_prior_bits_steps(const ted4_trainer *t)
 {
-    return ted4_capacity_afford(t, (1 + MOST_TRIALS) * ted4_capacity_cost_steps(t));
+    return ted4_search_afford(t, (1 + MOST_TRIALS) * ted4_file_cost_steps(t));
 }
 
-int ted4_capacity_refine(ted4_trainer *t)
+int ted4_refine_prior_bits(ted4_trainer *t)
 {
     const ted4_candidate m = TED4_CANDIDATE_PRIOR_BITS;
     int best = ted4_candidate_now(t, m), to = ted4_candidate_finer(t, m), bad;
     ted4_cost least = { 0 };
 
     t->search.decided = TED4_DECIDED_BITS;
-    if (to < 0 || !(ted4_capacity_refine_steps(t) > 0))
+    if (to < 0 || !(ted4_refine_prior_bits_steps(t) > 0))
         return 0;
-    bad = ted4_capacity_cost(t, &least) != 0;
+    bad = ted4_file_cost(t, &least) != 0;
     for (int i = 0; !bad && i < MOST_TRIALS && to > 0; i++) {
         struct ted4_trial x = { .candidate = m, .from = best, .to = to, .before = least };
 
-        bad = ted4_candidate_make(t, m, to) != 0 || ted4_capacity_cost(t, &x.after) != 0;
+        bad = ted4_candidate_make(t, m, to) != 0 || ted4_file_cost(t, &x.after) != 0;
         x.taken = !bad && x.after.cost < least.cost;
         if (x.taken) {
             best = to;
             least = x.after;
         }
-        bad = bad || ted4_capacity_note(t, &x) != 0;
+        bad = bad || ted4_search_note(t, &x) != 0;
         to = ted4_candidate_finer(t, m);
     }
     return bad || ted4_candidate_make(t, m, best) != 0 ? -1 : 0;

@@ -21,12 +21,12 @@ enum { N_PRICES = (int)(sizeof prices / sizeof prices[0]) };
 /* A logit that leaves its offset out for good. */
 #define OUT         (-10.0f)
 
-double ted4_capacity_prune_steps(const ted4_trainer *t)
+double ted4_rd_prune_steps(const ted4_trainer *t)
 {
     const double steps = ted4_opacity_sensitivity_steps(t) +
-                         (1 + N_PRICES) * ted4_capacity_cost_steps(t);
+                         (1 + N_PRICES) * ted4_file_cost_steps(t);
 
-    return t->layout.head.offset_mask ? ted4_capacity_afford(t, steps) : 0;
+    return t->layout.head.offset_mask ? ted4_search_afford(t, steps) : 0;
 }
 
 /* What is known of every anchor: use [n][K], bits [n_blocks][1 + K][32]. */
@@ -120,7 +120,7 @@ static int try_price(ted4_trainer *t, const worth *w, const ted4_snapshot *start
 
     if (kept == 0 || kept == x->from)
         return 0;
-    if (ted4_state_take(t, &mine) != 0 || ted4_capacity_cost(t, &c) != 0) {
+    if (ted4_state_take(t, &mine) != 0 || ted4_file_cost(t, &c) != 0) {
         ted4_snapshot_free(&mine);
         return -1;
     }
@@ -135,7 +135,7 @@ static int try_price(ted4_trainer *t, const worth *w, const ted4_snapshot *start
     return 0;
 }
 
-int ted4_capacity_prune(ted4_trainer *t)
+int ted4_rd_prune(ted4_trainer *t)
 {
     ted4_snapshot start = { 0 }, best = { 0 };
     worth w = { NULL, NULL };
@@ -143,17 +143,16 @@ int ted4_capacity_prune(ted4_trainer *t)
     int bad;
 
     t->search.decided = TED4_DECIDED_ALL;
-    if (!(ted4_capacity_prune_steps(t) > 0))
+    if (!(ted4_rd_prune_steps(t) > 0))
         return 0;
     x.from = count_kept(t);
-    bad = ted4_state_take(t, &start) != 0 || ted4_capacity_cost(t, &x.before) != 0 ||
-          learn(t, &w) != 0;
+    bad = ted4_state_take(t, &start) != 0 || ted4_file_cost(t, &x.before) != 0 || learn(t, &w) != 0;
     for (int i = 0; !bad && i < N_PRICES; i++)
         bad = try_price(t, &w, &start, prices[i] * ted4_lambda_per_bit(t), &best, &x) != 0;
     x.taken = !bad && x.to >= 0 && x.after.cost < x.before.cost;
     bad = bad || ted4_state_restore(t, x.taken ? &best : &start) != 0;
     if (!bad && x.to >= 0)
-        bad = ted4_capacity_note(t, &x) != 0;
+        bad = ted4_search_note(t, &x) != 0;
     free(w.use);
     free(w.bits);
     ted4_snapshot_free(&start);

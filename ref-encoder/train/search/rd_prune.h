@@ -5,11 +5,11 @@
 
 #include "train/state/trainer.h"
 
-/* Training steps that ted4_capacity_prune takes at most; 0: the budget is too small for it, or
+/* Training steps that ted4_rd_prune takes at most; 0: the budget is too small for it, or
  * there is no mask. */
-double ted4_capacity_prune_steps(const ted4_trainer *t);
+double ted4_rd_prune_steps(const ted4_trainer *t);
 /* Once the integer stage has begun: anchors and Gaussians go whose bits weigh more than what
  * pictures would miss of them. 0, or -1 with t->message. */
-int ted4_capacity_prune(ted4_trainer *t);
+int ted4_rd_prune(ted4_trainer *t);
 
 #endif

@@ -1,4 +1,4 @@
-/* test_capacity.c - train/search/model_search.c, prior_bits.c and rd_prune.c in a whole
+/* test_model_search.c - train/search/model_search.c, prior_bits.c and rd_prune.c in a whole
  * training: what they decide lowers the cost, within their budget, the same for any number of
  * threads and for a run that was interrupted; switched off they leave no trace.
  * SPDX-License-Identifier: BSD-2-Clause */
@@ -123,7 +123,7 @@ static void test_decides(void **state)
 
     (void)state;
     begin(&t, &o, NULL);
-    ball_train(&t, ted4_capacity_step(&t));
+    ball_train(&t, ted4_model_search_due_step(&t));
     assert_int_equal(t.search.decided, TED4_DECIDED_NOTHING);
     assert_int_equal(t.search.n_trials, 0);
     weights = t.layout.shape.n_netr + t.layout.shape.n_nete;
@@ -154,12 +154,12 @@ static int refined(ted4_trainer *t, int bits)
     ted4_cost before, after;
 
     t->net.bits[TED4_GRID_PRIOR] = bits;
-    assert_int_equal(ted4_capacity_cost(t, &before), 0);
-    assert_int_equal(ted4_capacity_refine(t), 0);
+    assert_int_equal(ted4_file_cost(t, &before), 0);
+    assert_int_equal(ted4_refine_prior_bits(t), 0);
     assert_int_equal(t->search.decided, TED4_DECIDED_BITS);
     assert_true(t->search.n_trials > first);
     assert_true(!t->phase.integer);
-    assert_int_equal(ted4_capacity_cost(t, &after), 0);
+    assert_int_equal(ted4_file_cost(t, &after), 0);
     for (size_t i = first; i < t->search.n_trials; i++) {
         const struct ted4_trial *x = &t->search.trial[i];
 
@@ -189,7 +189,7 @@ static void test_refined(void **state)
     while (!ted4_integer_due(&t))
         assert_int_equal(ted4_trainer_step(&t), 0);
     assert_int_equal(t.search.decided, TED4_DECIDED_MODEL);
-    assert_true(ted4_capacity_refine_steps(&t) > 0);
+    assert_true(ted4_refine_prior_bits_steps(&t) > 0);
     for (int bits = 1; bits <= 6; bits++)
         raised += refined(&t, bits);
     assert_true(raised > 0);
@@ -243,7 +243,7 @@ static void test_trained(void **state)
         ball_set(&o, rates[i]);
         ball_begin(&t, &o, &scene, NULL);
         assert_int_equal(ted4_snapshot_restore(&t, &early), 0);
-        ball_train(&t, ted4_capacity_step(&t) + 1);
+        ball_train(&t, ted4_model_search_due_step(&t) + 1);
         trained += check_trials(&t);
         ted4_trainer_finish(&t);
     }
@@ -262,17 +262,17 @@ static void test_budget(void **state)
     (void)state;
     begin(&t, &o, NULL);
     ball_train(&t, TOTAL);
-    spent = ted4_capacity_prune_steps(&t) + 3 * ted4_capacity_cost_steps(&t);
+    spent = ted4_rd_prune_steps(&t) + 3 * ted4_file_cost_steps(&t);
     for (size_t i = 0; i < t.search.n_trials; i++) {
         const struct ted4_trial *x = &t.search.trial[i];
 
         if (x->candidate == TED4_CANDIDATE_ANCHORS)
             continue;
-        spent += (double)x->steps + ted4_capacity_cost_steps(&t);
+        spent += (double)x->steps + ted4_file_cost_steps(&t);
         taken_trained += x->steps > 0 && x->taken;
     }
-    spent += taken_trained * ted4_capacity_cost_steps(&t);
-    if (!(spent <= 0.25 * TOTAL + 2 * ted4_capacity_cost_steps(&t)))
+    spent += taken_trained * ted4_file_cost_steps(&t);
+    if (!(spent <= 0.25 * TOTAL + 2 * ted4_file_cost_steps(&t)))
         fail_msg("%g steps, %g allowed", spent, 0.25 * TOTAL);
     ted4_trainer_finish(&t);
 }
@@ -351,7 +351,7 @@ static void test_resumed(void **state)
 
     (void)state;
     begin(&t, &o, NULL);
-    ball_train(&t, ted4_capacity_step(&t));
+    ball_train(&t, ted4_model_search_due_step(&t));
     assert_int_equal(ted4_snapshot_take(&t, &kept[n++]), 0);
     assert_int_equal(ted4_trainer_step(&t), 0);
     assert_int_equal(ted4_snapshot_take(&t, &kept[n++]), 0);
@@ -393,7 +393,7 @@ static void test_not_mixed(void **state)
     (void)state;
     ball_set(&other[1], "lambda=0.01");
     begin(&t, &o, NULL);
-    ball_train(&t, ted4_capacity_step(&t) + 1);
+    ball_train(&t, ted4_model_search_due_step(&t) + 1);
     assert_int_equal(ted4_snapshot_take(&t, &kept), 0);
     ted4_trainer_finish(&t);
     for (int i = 0; i < 2; i++) {
@@ -413,7 +413,7 @@ static void test_fixed(void **state)
 
     (void)state;
     begin(&t, &o, NULL);
-    assert_int_equal(ted4_capacity_step(&t), UINT64_MAX);
+    assert_int_equal(ted4_model_search_due_step(&t), UINT64_MAX);
     a = ball_finish(&t);
     assert_int_equal(t.search.n_trials, 0);
     assert_int_equal(t.search.decided, TED4_DECIDED_NOTHING);
