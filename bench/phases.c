@@ -134,7 +134,7 @@ BETWEEN(PHASE_MODEL_SEARCH, int, ted4_rd_prune, (ted4_trainer * t), (t))
 BETWEEN(PHASE_DRAW, double, ted4_trainer_distortion, (ted4_trainer * t, size_t item), (t, item))
 BETWEEN(PHASE_DRAW, int, ted4_distortion_gradient, (ted4_trainer * t, size_t item, ted4_splats *s),
         (t, item, s))
-BETWEEN(PHASE_SCENE, int, ted4_make_scene, (ted4_trainer * t, ted4_scene **s), (t, s))
+BETWEEN(PHASE_SCENE, int, ted4_export_scene, (ted4_trainer * t, ted4_scene **s), (t, s))
 BETWEEN(PHASE_CODE, ted4_status, ted4_encode,
         (const ted4_scene *s, int level, const ted4_parallel *p, uint8_t **out, size_t *size,
          ted4_error *e),

@@ -68,7 +68,7 @@ int ted4_preview_make(ted4_trainer *t, int n, ted4_preview *p)
         return draw(t, n, p);
     if (ted4_state_take(t, &before) != 0)
         return -1;
-    if (ted4_make_scene(t, &scene) == 0) {
+    if (ted4_export_scene(t, &scene) == 0) {
         (void)count_bytes(scene, t->parallel, p);
         ted4_scene_free(scene);
     }

@@ -267,7 +267,7 @@ int ted4_training_code(ted4_training *t, ted4_coded *c)
     ted4_teller_now(t->teller, &t->facts);
     memset(c, 0, sizeof *c);
     c->lambda = tr->opt.lambda;
-    if (ted4_make_scene(tr, &scene) != 0 || ted4_integer_rate(tr, bits) != 0) {
+    if (ted4_export_scene(tr, &scene) != 0 || ted4_integer_rate(tr, bits) != 0) {
         ted4_scene_free(scene);
         return fail(t);
     }

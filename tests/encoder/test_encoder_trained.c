@@ -43,7 +43,7 @@ static void trained(void **state)
             ball_set(&o, variant[i]);
         ball_begin(&t, &o, &d, &p);
         ball_train(&t, 100);
-        assert_int_equal(ted4_make_scene(&t, &s), 0);
+        assert_int_equal(ted4_export_scene(&t, &s), 0);
         contract_kept(s, 1);
         ted4_scene_free(s);
         ted4_trainer_finish(&t);

@@ -295,7 +295,7 @@ static void check_coarse(const ted4_train_options *o, int coarse[TED4_GRIDS])
 
     const double drawn = ted4_trainer_distortion(&t, t.order.item[0]);
 
-    assert_int_equal(ted4_make_scene(&t, &s), 0);
+    assert_int_equal(ted4_export_scene(&t, &s), 0);
     assert_true(drawn > 0);
     assert_true(ted4_trainer_distortion(&t, t.order.item[0]) == drawn);
     again = malloc(s->netr.n * sizeof *again);

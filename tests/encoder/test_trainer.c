@@ -348,7 +348,7 @@ static void test_rate(void **state)
     (void)state;
     ball_begin(&t, &o, &moving_scene, NULL);
     ball_train(&t, ted4_trainer_total(&t));
-    assert_int_equal(ted4_make_scene(&t, &s), 0);
+    assert_int_equal(ted4_export_scene(&t, &s), 0);
     assert_int_equal(ted4_count(s, NULL, &coded, NULL), TED4_OK);
     ted4_scene_free(s);
     assert_int_equal(ted4_visible_blocks_fill(&t, NULL), 0);
@@ -400,7 +400,7 @@ static void check_nan(uint64_t iteration, int which)
                                              : l->nete + 1;
 
     t.net.value[at] = which % 2 ? NAN : INFINITY;
-    assert_int_equal(ted4_make_scene(&t, &s), -1);
+    assert_int_equal(ted4_export_scene(&t, &s), -1);
     assert_null(s);
     assert_non_null(strstr(t.message.text, "network weight is not finite at step"));
     assert_int_equal(ted4_trainer_step(&t), 0);
@@ -438,7 +438,7 @@ static void test_nan_anchor(void **state)
     ball_begin(&t, &o, &moving_scene, NULL);
     ball_train(&t, 30);
     *ted4_anchor_value(&t.anchors, TED4_ROW_VALUE, 7, 2) = NAN;
-    assert_int_equal(ted4_make_scene(&t, &s), -1);
+    assert_int_equal(ted4_export_scene(&t, &s), -1);
     for (int i = 0; i < 100 && t.monitor.state.rollbacks == 0; i++)
         assert_int_equal(ted4_trainer_step(&t), 0);
     assert_int_equal(t.monitor.state.rollbacks, 1);

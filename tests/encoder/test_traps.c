@@ -182,7 +182,7 @@ static void test_symbols(void **state)
         *ted4_anchor_value(&t.anchors, TED4_ROW_VALUE, i, t.layout.first[TED4_FEATURE]) =
             i % 2 ? 3e6f : -3e6f;
     blind_opacity(&t);
-    if (ted4_make_scene(&t, &s) != 0)
+    if (ted4_export_scene(&t, &s) != 0)
         fail_msg("%s", t.message.text);
     assert_int_equal(ted4_encode(s, 0, NULL, &bytes, &size, &e), TED4_OK);
     assert_int_equal(ted4_decode(bytes, size, NULL, &back, &e), TED4_OK);
@@ -279,7 +279,7 @@ static void test_scalings(void **state)
             for (unsigned c = 0; c < 6; c++)
                 *ted4_anchor_value(&t.anchors, TED4_ROW_VALUE, i,
                                    t.layout.first[TED4_SCALING] + (int)c) = small_scaling(c);
-        if (ted4_make_scene(&t, &s) != 0)
+        if (ted4_export_scene(&t, &s) != 0)
             fail_msg("%s", t.message.text);
         assert_true(s->head.n_anchors > 10);
         assert_int_equal(s->head.scale_domain, (linear ? TED4_SCALE_LINEAR : TED4_SCALE_LOG2));

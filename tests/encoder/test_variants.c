@@ -111,7 +111,7 @@ static ball_file code(const variant *v, ted4_trainer *t)
     ted4_error e = { TED4_OK, 0 };
     ball_file f;
 
-    if (ted4_make_scene(t, &s) != 0)
+    if (ted4_export_scene(t, &s) != 0)
         fail_msg("%s: %s", v->name, t->message.text);
     check_rate(v, t, s);
     assert_int_equal(ted4_encode(s, 0, NULL, &f.bytes, &f.size, &e), TED4_OK);

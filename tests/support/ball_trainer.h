@@ -89,7 +89,7 @@ static inline ball_file ball_finish(ted4_trainer *t)
     ball_file f;
 
     ball_train(t, ted4_trainer_total(t));
-    if (ted4_make_scene(t, &s) != 0)
+    if (ted4_export_scene(t, &s) != 0)
         fail_msg("%s", t->message.text);
     if (ted4_encode(s, 0, NULL, &f.bytes, &f.size, &e) != TED4_OK)
         fail_msg("%s", ted4_status_id(e.code));

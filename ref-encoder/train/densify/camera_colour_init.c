@@ -426,7 +426,7 @@ static int work(match *m)
     return bad;
 }
 
-int ted4_colour_match(ted4_trainer *t)
+int ted4_camera_colour_init(ted4_trainer *t)
 {
     const size_t points = t->data->n_points, cameras = t->colour.n_cameras;
     match m = { .t = t, .cameras = cameras };

@@ -12,6 +12,6 @@
 /* Sets t->colour.value and t->colour.matched, and t->colour.middle where the points' own colours
  * agree with the pictures; all stay as they are where cameras hardly differ, initial points are
  * random, or too few of them are seen by two cameras. 0, or -1 with t->message. */
-int ted4_colour_match(ted4_trainer *t);
+int ted4_camera_colour_init(ted4_trainer *t);
 
 #endif

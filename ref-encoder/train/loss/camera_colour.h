@@ -5,8 +5,8 @@
  * wrong from everywhere else. Source: paper ("colour correction"), which does not say the form.
  * Depends on data/dataset.h, base/parallel.h.
  * SPDX-License-Identifier: BSD-2-Clause */
-#ifndef TED4_COLOUR_H
-#define TED4_COLOUR_H
+#ifndef TED4_CAMERA_COLOUR_H
+#define TED4_CAMERA_COLOUR_H
 
 #include <stddef.h>
 #include <stdint.h>

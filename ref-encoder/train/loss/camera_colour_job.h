@@ -1,8 +1,8 @@
 /* camera_colour_job.h - a picture of which colours are corrected, in bands of pixels. Private to
  * camera_colour.c and camera_colour_bands.c.
  * SPDX-License-Identifier: BSD-2-Clause */
-#ifndef TED4_COLOUR_JOB_H
-#define TED4_COLOUR_JOB_H
+#ifndef TED4_CAMERA_COLOUR_JOB_H
+#define TED4_CAMERA_COLOUR_JOB_H
 
 #include "camera_colour.h"
 #include "render/leveled.h"

@@ -1,8 +1,8 @@
 /* header_from_options.h - the header of the file to be, from the training options (spec 6). Depends
  * on options.h and data/dataset.h.
  * SPDX-License-Identifier: BSD-2-Clause */
-#ifndef TED4_TRAIN_HEADER_H
-#define TED4_TRAIN_HEADER_H
+#ifndef TED4_HEADER_FROM_OPTIONS_H
+#define TED4_HEADER_FROM_OPTIONS_H
 
 #include "data/dataset.h"
 #include "norm/syntax.h"

@@ -64,7 +64,7 @@ static int count_bytes(ted4_trainer *t, double *bytes)
     size_t size;
     ted4_error e = { TED4_OK, 0 };
 
-    if (ted4_make_scene(t, &scene) != 0)
+    if (ted4_export_scene(t, &scene) != 0)
         return -1;
 
     const int bad = ted4_encode(scene, 0, t->parallel, &file, &size, &e) != TED4_OK;

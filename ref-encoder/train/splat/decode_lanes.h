@@ -1,8 +1,8 @@
 /* decode_lanes.h - what the generator's files that are compiled once a level share: loops over
  * lanes, and layers of one visible block.
  * SPDX-License-Identifier: BSD-2-Clause */
-#ifndef TED4_GENERATE_LANES_H
-#define TED4_GENERATE_LANES_H
+#ifndef TED4_DECODE_LANES_H
+#define TED4_DECODE_LANES_H
 
 #include "train/model/formulas.h"
 #include "decode_state.h"

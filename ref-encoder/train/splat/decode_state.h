@@ -3,8 +3,8 @@
  * which decode.c, net.c and motion.c are compiled once and the others once a
  * level.
  * SPDX-License-Identifier: BSD-2-Clause */
-#ifndef TED4_GENERATE_STATE_H
-#define TED4_GENERATE_STATE_H
+#ifndef TED4_DECODE_STATE_H
+#define TED4_DECODE_STATE_H
 
 #include "generator.h"
 

@@ -107,7 +107,7 @@ static void drop_constant_masks(ted4_scene *s)
     ted4_shape_make(&s->shape, &s->head);
 }
 
-int ted4_make_scene(ted4_trainer *t, ted4_scene **scene)
+int ted4_export_scene(ted4_trainer *t, ted4_scene **scene)
 {
     ted4_header h;
     ted4_error e = { TED4_OK, 0 };

@@ -9,6 +9,6 @@
 /* Anchors without a kept offset are left out (those that no time shows went when stage 2 began);
  * symbols are rounded with the steps that the decoder will derive. Ends stage 2 first if training
  * stopped before it. *scene belongs to the caller (ted4_scene_free). 0, or -1 with t->message. */
-int ted4_make_scene(ted4_trainer *t, ted4_scene **scene);
+int ted4_export_scene(ted4_trainer *t, ted4_scene **scene);
 
 #endif

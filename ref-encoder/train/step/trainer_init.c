@@ -70,7 +70,7 @@ static int begin(ted4_trainer *t, const ted4_header *h)
     if (t->anchors.n == 0)
         return ted4_trainer_fail(t, "no initial point lies inside the scene's bounds");
     ted4_seed_networks(t->net.value, &t->layout, t->opt.seed);
-    if (ted4_colour_match(t) != 0)
+    if (ted4_camera_colour_init(t) != 0)
         return -1;
     return t->opt.transients ? ted4_init_short_lived(t) : 0;
 }

@@ -1,7 +1,7 @@
-/* test_colour_match.c - train/densify/camera_colour_init.h: maps of cameras are found from the
- * initial points alone, also where a third of what each camera sees is in the way of the points;
- * what all cameras have in common, from the points' own colours, if these agree with the pictures;
- * and what is not enough to tell leaves the identity.
+/* test_camera_colour_init.c - train/densify/camera_colour_init.h: maps of cameras are found from
+ * the initial points alone, also where a third of what each camera sees is in the way of the
+ * points; what all cameras have in common, from the points' own colours, if these agree with the
+ * pictures; and what is not enough to tell leaves the identity.
  * SPDX-License-Identifier: BSD-2-Clause */
 #include <math.h>
 
@@ -147,7 +147,7 @@ static void matched(int n_points, const double *gain, double hidden, float tint,
     t->data = d;
     ted4_normalise_scene(&t->layout.head, d);
     assert_int_equal(ted4_colour_init(&t->colour, d), 0);
-    assert_int_equal(ted4_colour_match(t), 0);
+    assert_int_equal(ted4_camera_colour_init(t), 0);
 }
 
 static const double none[3] = { 1, 1, 1 };
