@@ -25,7 +25,7 @@ static const experiment nothing = { NULL, TED4_BUSY_TRAINING, 0 };
 static experiment in_stage1(const ted4_trainer *t)
 {
     return ted4_probe_due(t)
-               ? (experiment) { ted4_probe_time, TED4_BUSY_PROBE, 2.0 * ted4_probe_steps(t) }
+               ? (experiment) { ted4_static_test, TED4_BUSY_PROBE, 2.0 * ted4_probe_steps(t) }
                : nothing;
 }
 

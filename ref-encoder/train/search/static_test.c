@@ -38,7 +38,7 @@ int ted4_probe_steps(const ted4_trainer *t)
     return t->search.probed || n < FEWEST || !has_time(t) ? 0 : n;
 }
 
-int ted4_probe_time(ted4_trainer *t)
+int ted4_static_test(ted4_trainer *t)
 {
     const int n = ted4_probe_steps(t);
     ted4_snapshot start = { 0 }, with = { 0 };

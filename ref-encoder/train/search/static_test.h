@@ -11,6 +11,6 @@ int ted4_probe_due(const ted4_trainer *t);
 int ted4_probe_steps(const ted4_trainer *t);
 /* Trains a while with time and without; then it goes on where it was worth it, and else begins
  * again without time, at step 0. 0, or -1 with t->message. */
-int ted4_probe_time(ted4_trainer *t);
+int ted4_static_test(ted4_trainer *t);
 
 #endif

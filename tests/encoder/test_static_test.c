@@ -1,4 +1,4 @@
-/* test_time_probe.c - train/search/static_test.c: time is kept where things move and dropped where
+/* test_static_test.c - train/search/static_test.c: time is kept where things move and dropped where
  * nothing does, and trying it leaves no trace in what is kept.
  * SPDX-License-Identifier: BSD-2-Clause */
 #include "test.h"
