@@ -31,7 +31,7 @@
     P(LOAD, "reading the scene's files")          \
     P(CHECK, "decoding every picture once")       \
     P(SETTLE, "looking for flicker")              \
-    P(SEED, "first anchors, colours, transients") \
+    P(INIT, "first anchors, colours, transients") \
     P(STEPS, "steps of the training")             \
     P(STATES, "states kept and restored")         \
     P(PROBE, "steps of probe and trials")         \
@@ -111,10 +111,10 @@ BETWEEN(PHASE_CHECK, int, ted4_dataset_verify,
         (ted4_dataset * d, const ted4_parallel *p, ted4_message *m), (d, p, m))
 BETWEEN(PHASE_SETTLE, int, ted4_header_settle, (ted4_train_options * o, const ted4_dataset *d),
         (o, d))
-BETWEEN(PHASE_SEED, int, ted4_trainer_init,
+BETWEEN(PHASE_INIT, int, ted4_trainer_init,
         (ted4_trainer * t, const ted4_train_options *o, ted4_dataset *d, const ted4_parallel *p),
         (t, o, d, p))
-BETWEEN(PHASE_SEED, int, ted4_trainer_restart, (ted4_trainer * t, const ted4_header *h), (t, h))
+BETWEEN(PHASE_INIT, int, ted4_trainer_restart, (ted4_trainer * t, const ted4_header *h), (t, h))
 BETWEEN(current == PHASE_PROBE ? PHASE_PROBE : PHASE_STEPS, int, ted4_gradient_step,
         (ted4_trainer * t), (t))
 BETWEEN(PHASE_PROBE, int, ted4_branch_run, (ted4_trainer * t, int n, double *loss), (t, n, loss))

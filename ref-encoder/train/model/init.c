@@ -137,7 +137,7 @@ static void fill_anchor(fill_job *f, size_t i)
     *ted4_anchor_value(f->a, TED4_ROW_VALUE, i, l->temporal_logit) = 1.0f;
 }
 
-int ted4_seed_anchors(ted4_anchors *a, const ted4_layout *l, const ted4_dataset *d,
+int ted4_init_anchors(ted4_anchors *a, const ted4_layout *l, const ted4_dataset *d,
                       const ted4_train_options *o, double *voxel)
 {
     float *p = malloc((d->n_points + 1) * 3 * sizeof *p);
@@ -166,7 +166,7 @@ int ted4_seed_anchors(ted4_anchors *a, const ted4_layout *l, const ted4_dataset 
     return bad || ted4_anchors_sort(a) != 0 ? -1 : 0;
 }
 
-static void seed_layer(float *w, unsigned in, unsigned out, float gain, uint64_t key,
+static void init_layer(float *w, unsigned in, unsigned out, float gain, uint64_t key,
                        uint64_t *counter)
 {
     const float range = in > 0 ? gain / sqrtf((float)in) : 0.0f;
@@ -178,13 +178,13 @@ static void seed_layer(float *w, unsigned in, unsigned out, float gain, uint64_t
 }
 
 /* last: gain of the last layer; 0 leaves it zero. */
-static void seed_network(float *blob, const ted4_net_shape *s, float last, uint64_t key,
+static void init_network(float *blob, const ted4_net_shape *s, float last, uint64_t key,
                          uint64_t *counter)
 {
     float *w = blob + s->first;
 
     for (int i = 0; i < s->n_layers; i++) {
-        seed_layer(w, s->dim[i], s->dim[i + 1], i + 1 < s->n_layers ? 1.0f : last, key, counter);
+        init_layer(w, s->dim[i], s->dim[i + 1], i + 1 < s->n_layers ? 1.0f : last, key, counter);
         w += ted4_layer_size(s, (unsigned)i);
     }
 }
@@ -222,14 +222,14 @@ static void wake(float *blob, const ted4_net_shape *s)
     }
 }
 
-void ted4_seed_networks(float *net, const ted4_layout *l, uint32_t seed)
+void ted4_init_networks(float *net, const ted4_layout *l, uint32_t seed)
 {
     const uint64_t key = ted4_mix(seed ^ 0x6e657477u);
     uint64_t counter = 0;
 
     memset(net, 0, l->n_net * sizeof *net);
     for (int i = 0; i < TED4_NETS_R; i++)
-        seed_network(net + l->netr, &l->shape.netr[i], i == TED4_NET_DEFORM ? 0.0f : 1.0f, key,
+        init_network(net + l->netr, &l->shape.netr[i], i == TED4_NET_DEFORM ? 0.0f : 1.0f, key,
                      &counter);
     wake(net + l->netr, &l->shape.netr[TED4_NET_OPACITY]);
     /* N(0, 0.1) as a sum of four uniforms of variance 1/12 each. */
@@ -274,7 +274,7 @@ static float *last_biases(float *net, const ted4_layout *l, float **weights, uns
 }
 
 /* Means and spreads of one type. */
-static void seed_biases(float *bias, const ted4_layout *l, const ted4_anchors *a, int t)
+static void init_biases(float *bias, const ted4_layout *l, const ted4_anchors *a, int t)
 {
     const ted4_shape *s = &l->shape;
 
@@ -289,7 +289,7 @@ static void seed_biases(float *bias, const ted4_layout *l, const ted4_anchors *a
     }
 }
 
-void ted4_seed_prior(float *net, const ted4_layout *l, const ted4_anchors *a, uint32_t seed)
+void ted4_init_prior(float *net, const ted4_layout *l, const ted4_anchors *a, uint32_t seed)
 {
     const ted4_shape *s = &l->shape;
     const uint64_t key = ted4_mix(seed ^ 0x7072696fu);
@@ -298,19 +298,19 @@ void ted4_seed_prior(float *net, const ted4_layout *l, const ted4_anchors *a, ui
     unsigned in;
 
     memset(nete, 0, s->n_nete * sizeof *nete);
-    seed_network(nete, &s->hyper, 0.1f, key, &counter);
+    init_network(nete, &s->hyper, 0.1f, key, &counter);
     for (unsigned m = 1; m < l->head.n_slices; m++)
-        seed_network(nete, &s->slice[m], 0.1f, key, &counter);
+        init_network(nete, &s->slice[m], 0.1f, key, &counter);
 
     float *const bias = last_biases(net, l, &weights, &in);
 
     for (int t = 0; t < TED4_TYPES; t++)
-        seed_biases(bias, l, a, t);
+        init_biases(bias, l, a, t);
     for (unsigned t = 0; t < s->n_types; t++)
         bias[s->first_step_output + t] = 0.0f;
 }
 
-void ted4_seed_prior_type(float *net, const ted4_layout *l, const ted4_anchors *a, int type)
+void ted4_init_prior_type(float *net, const ted4_layout *l, const ted4_anchors *a, int type)
 {
     const ted4_shape *s = &l->shape;
     float *weights;
@@ -322,6 +322,6 @@ void ted4_seed_prior_type(float *net, const ted4_layout *l, const ted4_anchors *
     memset(weights + (size_t)s->first_output[type] * in, 0,
            (size_t)2 * s->dim[type] * in * sizeof *weights);
     memset(weights + (size_t)step * in, 0, in * sizeof *weights);
-    seed_biases(bias, l, a, type);
+    init_biases(bias, l, a, type);
     bias[step] = 0.0f;
 }

@@ -9,7 +9,7 @@
 /* Features become their principal components as the heads see them, centred, in falling order, and
  * so scaled that a step of each is seen as much on average as a step of the features was before.
  * Networks that read or make features go along: what is drawn stays the same, but for roundings.
- * Without a prior, which would know other features: before stage 2 seeds it. 0, or -1 with
+ * Without a prior, which would know other features: before stage 2 initialises it. 0, or -1 with
  * t->message. */
 int ted4_feature_pca(ted4_trainer *t);
 

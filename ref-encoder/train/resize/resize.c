@@ -90,7 +90,7 @@ static void change_domain(ted4_trainer *t)
         }
         *ted4_anchor_value(a, TED4_ROW_STEP, i, TED4_SCALING) = l->head.step[TED4_SCALING];
     }
-    ted4_seed_prior_type(t->net.value, l, a, TED4_SCALING);
+    ted4_init_prior_type(t->net.value, l, a, TED4_SCALING);
 }
 
 int ted4_resize_apply(ted4_trainer *t, const ted4_resize *s)

@@ -307,7 +307,7 @@ int ted4_stage2_begin(ted4_trainer *t)
         return -1;
     if (t->opt.capacity && ted4_feature_pca(t) != 0)
         return -1;
-    ted4_seed_prior(t->net.value, &t->layout, &t->anchors, t->opt.seed);
+    ted4_init_prior(t->net.value, &t->layout, &t->anchors, t->opt.seed);
     clear_moments(t);
     for (size_t i = 0; i < t->anchors.n; i++)
         for (int y = 0; y < TED4_TYPES; y++)

@@ -65,11 +65,11 @@ static int begin(ted4_trainer *t, const ted4_header *h)
     if (ted4_trainer_rebuild(t) != 0 || make_order(t) != 0 || make_images(t) != 0)
         return -1;
     if (ted4_anchors_init(&t->anchors, &t->layout) != 0 ||
-        ted4_seed_anchors(&t->anchors, &t->layout, t->data, &t->opt, &t->voxel) != 0)
+        ted4_init_anchors(&t->anchors, &t->layout, t->data, &t->opt, &t->voxel) != 0)
         return ted4_trainer_fail(t, "no memory for the anchors");
     if (t->anchors.n == 0)
         return ted4_trainer_fail(t, "no initial point lies inside the scene's bounds");
-    ted4_seed_networks(t->net.value, &t->layout, t->opt.seed);
+    ted4_init_networks(t->net.value, &t->layout, t->opt.seed);
     if (ted4_camera_colour_init(t) != 0)
         return -1;
     return t->opt.transients ? ted4_init_short_lived(t) : 0;

@@ -1,4 +1,4 @@
-/* test_seed.c - where training starts: normalised space and views in it (train/model/normalise.h),
+/* test_init.c - where training starts: normalised space and views in it (train/model/normalise.h),
  * anchors from points (train/model/init.h).
  * SPDX-License-Identifier: BSD-2-Clause */
 #include "test.h"
@@ -344,5 +344,5 @@ int main(void)
         cmocka_unit_test(test_awake),
     };
 
-    return cmocka_run_group_tests_name("seed", tests, NULL, NULL);
+    return cmocka_run_group_tests_name("init", tests, NULL, NULL);
 }
