@@ -137,8 +137,8 @@ static void test_decides(void **state)
     assert_true(ted4_lambda_per_bit(&t) == charge);
     assert_int_equal(t.layout.head.motion, TED4_MOTION_NONE);
     assert_true(t.layout.shape.n_netr + t.layout.shape.n_nete < weights);
-    assert_true(t.net.bits[TED4_GRID_HEADS] < TED4_GRID_FULL(TED4_GRID_HEADS));
-    assert_true(t.net.bits[TED4_GRID_PRIOR] < TED4_GRID_FULL(TED4_GRID_PRIOR));
+    assert_true(t.net.bits[TED4_WEIGHT_GRID_HEADS] < TED4_WEIGHT_GRID_FULL(TED4_WEIGHT_GRID_HEADS));
+    assert_true(t.net.bits[TED4_WEIGHT_GRID_PRIOR] < TED4_WEIGHT_GRID_FULL(TED4_WEIGHT_GRID_PRIOR));
     check_trials(&t);
     ball_train(&t, TOTAL);
     assert_int_equal(t.search.decided, TED4_DECIDED_ALL);
@@ -153,7 +153,7 @@ static int refined(ted4_trainer *t, int bits)
     const size_t first = t->search.n_trials;
     ted4_cost before, after;
 
-    t->net.bits[TED4_GRID_PRIOR] = bits;
+    t->net.bits[TED4_WEIGHT_GRID_PRIOR] = bits;
     assert_int_equal(ted4_file_cost(t, &before), 0);
     assert_int_equal(ted4_refine_prior_bits(t), 0);
     assert_int_equal(t->search.decided, TED4_DECIDED_BITS);
@@ -170,7 +170,7 @@ static int refined(ted4_trainer *t, int bits)
         assert_int_equal(x->taken, x->after.cost < x->before.cost);
         bits = (int)(x->taken ? x->to : x->from);
     }
-    assert_int_equal(t->net.bits[TED4_GRID_PRIOR], bits);
+    assert_int_equal(t->net.bits[TED4_WEIGHT_GRID_PRIOR], bits);
     assert_true(bits == t->search.trial[first].from ? after.cost == before.cost
                                                     : after.cost < before.cost);
     return bits > t->search.trial[first].from;
@@ -278,7 +278,7 @@ static void test_budget(void **state)
 }
 
 /* Weights are coarse, and in the integer stage those of the file. */
-static void check_coarse(const ted4_train_options *o, int coarse[TED4_GRIDS])
+static void check_coarse(const ted4_train_options *o, int coarse[TED4_WEIGHT_GRIDS])
 {
     ted4_trainer t;
     ted4_scene *s;
@@ -290,8 +290,8 @@ static void check_coarse(const ted4_train_options *o, int coarse[TED4_GRIDS])
         if (is_of_bits(&t.search.trial[i]) && t.search.trial[i].taken)
             coarse[t.search.trial[i].candidate - TED4_CANDIDATE_HEAD_BITS] =
                 (int)t.search.trial[i].to;
-    for (int i = 0; i < TED4_GRIDS; i++)
-        assert_int_equal(coarse[i] > 0 ? coarse[i] : TED4_GRID_FULL(i), t.net.bits[i]);
+    for (int i = 0; i < TED4_WEIGHT_GRIDS; i++)
+        assert_int_equal(coarse[i] > 0 ? coarse[i] : TED4_WEIGHT_GRID_FULL(i), t.net.bits[i]);
 
     const double drawn = ted4_trainer_distortion(&t, t.order.item[0]);
 
@@ -301,7 +301,7 @@ static void check_coarse(const ted4_train_options *o, int coarse[TED4_GRIDS])
     again = malloc(s->netr.n * sizeof *again);
     assert_non_null(again);
     memcpy(again, s->netr.values, s->netr.n * sizeof *again);
-    ted4_grid_scene(&s->shape, t.net.bits, again, s->bank.values);
+    ted4_weight_grid_scene(&s->shape, t.net.bits, again, s->bank.values);
     assert_memory_equal(again, s->netr.values, s->netr.n * sizeof *again);
     free(again);
     ted4_scene_free(s);
@@ -313,14 +313,14 @@ static void check_coarse(const ted4_train_options *o, int coarse[TED4_GRIDS])
 static void test_coarse(void **state)
 {
     const ted4_train_options cheap = options("capacity=1"), dear = dear_options();
-    int at_cheap[TED4_GRIDS] = { 0 }, at_dear[TED4_GRIDS] = { 0 };
+    int at_cheap[TED4_WEIGHT_GRIDS] = { 0 }, at_dear[TED4_WEIGHT_GRIDS] = { 0 };
 
     (void)state;
     check_coarse(&cheap, at_cheap);
     check_coarse(&dear, at_dear);
-    assert_true(at_cheap[TED4_GRID_HEADS] > 0);
-    assert_true(at_dear[TED4_GRID_HEADS] > 0);
-    assert_true(at_dear[TED4_GRID_PRIOR] > 0);
+    assert_true(at_cheap[TED4_WEIGHT_GRID_HEADS] > 0);
+    assert_true(at_dear[TED4_WEIGHT_GRID_HEADS] > 0);
+    assert_true(at_dear[TED4_WEIGHT_GRID_PRIOR] > 0);
 }
 
 static void test_threads(void **state)

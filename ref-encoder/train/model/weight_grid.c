@@ -4,19 +4,19 @@
 
 #include <math.h>
 
-void ted4_grid_full(int *bits)
+void ted4_weight_grid_full(int *bits)
 {
-    for (int i = 0; i < TED4_GRIDS; i++)
-        bits[i] = TED4_GRID_FULL(i);
+    for (int i = 0; i < TED4_WEIGHT_GRIDS; i++)
+        bits[i] = TED4_WEIGHT_GRID_FULL(i);
 }
 
-void ted4_grid_round(float *x, size_t n, int bits)
+void ted4_weight_grid_round(float *x, size_t n, int bits)
 {
     float most = 0;
 
     for (size_t i = 0; i < n; i++)
         most = fmaxf(most, fabsf(x[i]));
-    if (bits >= TED4_GRID_FULL(TED4_GRID_HEADS) || !(most > 0x1p-64f))
+    if (bits >= TED4_WEIGHT_GRID_FULL(TED4_WEIGHT_GRID_HEADS) || !(most > 0x1p-64f))
         return;
 
     int e;
@@ -34,18 +34,18 @@ static void round_network(const ted4_net_shape *net, int bits, float *x)
         const size_t in = net->dim[l], out = net->dim[l + 1];
 
         for (size_t o = 0; o < out; o++, x += in)
-            ted4_grid_round(x, in, bits);
-        ted4_grid_round(x, out, bits);
+            ted4_weight_grid_round(x, in, bits);
+        ted4_weight_grid_round(x, out, bits);
         x += out;
     }
 }
 
-void ted4_grid_scene(const ted4_shape *s, const int *bits, float *netr, float *bank)
+void ted4_weight_grid_scene(const ted4_shape *s, const int *bits, float *netr, float *bank)
 {
     for (int i = 0; i < TED4_NETS_R; i++)
         round_network(&s->netr[i],
-                      bits[i == TED4_NET_PROJECT || i == TED4_NET_DEFORM ? TED4_GRID_MOTION
-                                                                         : TED4_GRID_HEADS],
+                      bits[i == TED4_NET_PROJECT || i == TED4_NET_DEFORM ? TED4_WEIGHT_GRID_MOTION
+                                                                         : TED4_WEIGHT_GRID_HEADS],
                       netr);
-    ted4_grid_round(bank, s->n_bank, bits[TED4_GRID_BANK]);
+    ted4_weight_grid_round(bank, s->n_bank, bits[TED4_WEIGHT_GRID_BANK]);
 }

@@ -47,11 +47,11 @@ int ted4_candidate_now(const ted4_trainer *t, ted4_candidate m)
     switch (m) {
     case TED4_CANDIDATE_MOTION: return h->motion != TED4_MOTION_NONE;
     case TED4_CANDIDATE_ACTIVATION: return h->activation;
-    case TED4_CANDIDATE_HEAD_BITS: return t->net.bits[TED4_GRID_HEADS];
+    case TED4_CANDIDATE_HEAD_BITS: return t->net.bits[TED4_WEIGHT_GRID_HEADS];
     case TED4_CANDIDATE_MOTION_BITS:
-        return h->motion != TED4_MOTION_NONE ? t->net.bits[TED4_GRID_MOTION] : 0;
-    case TED4_CANDIDATE_BANK_BITS: return h->bank_dim > 0 ? t->net.bits[TED4_GRID_BANK] : 0;
-    case TED4_CANDIDATE_PRIOR_BITS: return t->net.bits[TED4_GRID_PRIOR];
+        return h->motion != TED4_MOTION_NONE ? t->net.bits[TED4_WEIGHT_GRID_MOTION] : 0;
+    case TED4_CANDIDATE_BANK_BITS: return h->bank_dim > 0 ? t->net.bits[TED4_WEIGHT_GRID_BANK] : 0;
+    case TED4_CANDIDATE_PRIOR_BITS: return t->net.bits[TED4_WEIGHT_GRID_PRIOR];
     case TED4_CANDIDATE_HYPER: return h->hyper_layers > 0 ? h->hyper_width : 0;
     case TED4_CANDIDATE_AR: return h->ar_width;
     case TED4_CANDIDATE_SLICES: return h->n_slices;
@@ -128,7 +128,7 @@ int ted4_candidate_next(const ted4_trainer *t, ted4_candidate m, int bold)
 int ted4_candidate_finer(const ted4_trainer *t, ted4_candidate m)
 {
     const int now = ted4_candidate_now(t, m),
-              full = TED4_GRID_FULL(m - TED4_CANDIDATE_HEAD_BITS + TED4_GRID_HEADS);
+              full = TED4_WEIGHT_GRID_FULL(m - TED4_CANDIDATE_HEAD_BITS + TED4_WEIGHT_GRID_HEADS);
 
     if (m < TED4_CANDIDATE_HEAD_BITS || m > TED4_CANDIDATE_PRIOR_BITS || now == 0)
         return -1;
@@ -368,7 +368,7 @@ int ted4_candidate_make(ted4_trainer *t, ted4_candidate m, int to)
     int bad;
 
     if (m >= TED4_CANDIDATE_HEAD_BITS && m <= TED4_CANDIDATE_PRIOR_BITS) {
-        t->net.bits[m - TED4_CANDIDATE_HEAD_BITS + TED4_GRID_HEADS] = to;
+        t->net.bits[m - TED4_CANDIDATE_HEAD_BITS + TED4_WEIGHT_GRID_HEADS] = to;
         return 0;
     }
     ted4_resize_begin(&o.s, t);

@@ -65,7 +65,7 @@ typedef struct {
 /* The networks, and Adam's moments of them. */
 typedef struct {
     float *value, *m, *v, *gradient; /* owned, [n_net] */
-    int bits[TED4_GRIDS];            /* of weights in the file: weight_grid.h */
+    int bits[TED4_WEIGHT_GRIDS];     /* of weights in the file: weight_grid.h */
     uint8_t *shift; /* owned, [n_units]; set when the integer stage starts, else NULL */
 } ted4_networks;
 

@@ -319,7 +319,7 @@ static void walk_capacity(stream *s, ted4_trainer *t)
 
     if (!s->writing) {
         t->search.decided = 0;
-        ted4_grid_full(t->net.bits);
+        ted4_weight_grid_full(t->net.bits);
     }
     if (t->phase.stage2 && t->opt.capacity) {
         put(s, &t->phase.rate_norm_header, sizeof t->phase.rate_norm_header);
@@ -340,8 +340,8 @@ static void walk_capacity(stream *s, ted4_trainer *t)
     }
     if (!s->failed)
         put(s, t->search.trial, (size_t)n * sizeof *t->search.trial);
-    for (int i = 0; !s->failed && i < TED4_GRIDS; i++)
-        s->failed = t->net.bits[i] < 1 || t->net.bits[i] > TED4_GRID_FULL(i);
+    for (int i = 0; !s->failed && i < TED4_WEIGHT_GRIDS; i++)
+        s->failed = t->net.bits[i] < 1 || t->net.bits[i] > TED4_WEIGHT_GRID_FULL(i);
     for (size_t i = 0; !s->failed && i < n; i++)
         s->failed = t->search.trial[i].candidate < 0 ||
                     t->search.trial[i].candidate >= TED4_CANDIDATES;

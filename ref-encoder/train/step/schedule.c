@@ -98,9 +98,9 @@ void ted4_schedule_rates(const ted4_trainer *t, float *rate)
 
 /* In the integer stage no weight leaves a coarse grid: it would jump from point to point until the
  * end. */
-static double rate_on_grid(const ted4_trainer *t, ted4_grid grid, double rate)
+static double rate_on_weight_grid(const ted4_trainer *t, ted4_weight_grid grid, double rate)
 {
-    return t->phase.integer && t->net.bits[grid] < TED4_GRID_FULL(grid) ? 0 : rate;
+    return t->phase.integer && t->net.bits[grid] < TED4_WEIGHT_GRID_FULL(grid) ? 0 : rate;
 }
 
 static size_t network_size(const ted4_net_shape *s)
@@ -123,8 +123,8 @@ int ted4_schedule_network(const ted4_trainer *t, ted4_net_range *range)
     const ted4_layout *l = &t->layout;
     const double p = stage_progress(t);
     const double restart = t->phase.stage2 ? RESTART : 1.0;
-    const double heads =
-        rate_on_grid(t, TED4_GRID_HEADS, ted4_decay(o->lr_heads * restart, LAST_HEADS, p));
+    const double heads = rate_on_weight_grid(t, TED4_WEIGHT_GRID_HEADS,
+                                             ted4_decay(o->lr_heads * restart, LAST_HEADS, p));
     const double motion = ted4_decay(o->lr_motion * restart, LAST_MOTION, p);
 
     int n = 0;
@@ -133,10 +133,12 @@ int ted4_schedule_network(const ted4_trainer *t, ted4_net_range *range)
         const int is_motion = i == TED4_NET_PROJECT || i == TED4_NET_DEFORM;
         const ted4_net_shape *s = &l->shape.netr[i];
 
-        range[n++] = make_range(t, l->netr + s->first, network_size(s),
-                                is_motion ? rate_on_grid(t, TED4_GRID_MOTION, motion) : heads);
+        range[n++] =
+            make_range(t, l->netr + s->first, network_size(s),
+                       is_motion ? rate_on_weight_grid(t, TED4_WEIGHT_GRID_MOTION, motion) : heads);
     }
-    range[n++] = make_range(t, l->bank, l->shape.n_bank, rate_on_grid(t, TED4_GRID_BANK, motion));
+    range[n++] = make_range(t, l->bank, l->shape.n_bank,
+                            rate_on_weight_grid(t, TED4_WEIGHT_GRID_BANK, motion));
     if (t->phase.stage2 && !t->phase.integer)
         range[n++] =
             make_range(t, l->nete, l->shape.n_nete, ted4_decay(o->lr_prior, LAST_PRIOR, p));

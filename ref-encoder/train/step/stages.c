@@ -345,10 +345,10 @@ int ted4_integer_begin(ted4_trainer *t)
     t->net.shift = malloc(t->layout.shape.n_units + 1);
     if (t->net.shift == NULL || t->work.rate == NULL || ted4_visible_blocks_fill(t, NULL) != 0)
         return ted4_trainer_fail(t, "no memory for the integer model");
-    ted4_snap_coarse(&t->layout.head, &t->layout.shape, t->net.bits[TED4_GRID_PRIOR],
+    ted4_snap_coarse(&t->layout.head, &t->layout.shape, t->net.bits[TED4_WEIGHT_GRID_PRIOR],
                      t->net.value + t->layout.nete, t->net.shift);
-    ted4_grid_scene(&t->layout.shape, t->net.bits, t->net.value + t->layout.netr,
-                    t->net.value + t->layout.bank);
+    ted4_weight_grid_scene(&t->layout.shape, t->net.bits, t->net.value + t->layout.netr,
+                           t->net.value + t->layout.bank);
     t->phase.integer = 1;
     ted4_rate_pack(t->work.rate, t->net.value);
     return ted4_integer_rate(t, NULL);

@@ -60,7 +60,7 @@ static int begin(ted4_trainer *t, const ted4_header *h)
             wrong);
     ted4_layout_make(&t->layout, h);
     t->phase.rate_norm_header = t->layout.head;
-    ted4_grid_full(t->net.bits);
+    ted4_weight_grid_full(t->net.bits);
     t->monitor.state.factor = 1;
     if (ted4_trainer_rebuild(t) != 0 || make_order(t) != 0 || make_images(t) != 0)
         return -1;

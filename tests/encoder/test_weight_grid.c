@@ -1,4 +1,4 @@
-/* test_grid.c - train/model/weight_grid.c: weights on coarse grids, each unit on its own.
+/* test_weight_grid.c - train/model/weight_grid.c: weights on coarse grids, each unit on its own.
  * SPDX-License-Identifier: BSD-2-Clause */
 #include <math.h>
 #include <string.h>
@@ -19,12 +19,12 @@ static void draw(float *x, size_t n, uint64_t key, float scale)
 static void test_rounds(void **state)
 {
     (void)state;
-    for (int bits = 1; bits < TED4_GRID_FULL(TED4_GRID_HEADS); bits++) {
+    for (int bits = 1; bits < TED4_WEIGHT_GRID_FULL(TED4_WEIGHT_GRID_HEADS); bits++) {
         float x[N], was[N], most = 0;
 
         draw(x, N, (uint64_t)bits, ldexpf(1.7f, bits - 12));
         memcpy(was, x, sizeof x);
-        ted4_grid_round(x, N, bits);
+        ted4_weight_grid_round(x, N, bits);
         for (int i = 0; i < N; i++)
             most = fmaxf(most, fabsf(was[i]));
 
@@ -49,22 +49,22 @@ static void test_stays(void **state)
     (void)state;
     draw(x, N, 7, 3.0f);
     memcpy(once, x, sizeof x);
-    ted4_grid_round(x, N, TED4_GRID_FULL(TED4_GRID_HEADS));
+    ted4_weight_grid_round(x, N, TED4_WEIGHT_GRID_FULL(TED4_WEIGHT_GRID_HEADS));
     assert_memory_equal(x, once, sizeof x);
     for (int bits = 1; bits < 12; bits++)
         for (int k = 0; k < 40; k++) {
             draw(x, N, 7, 0.9f + 0.01f * (float)k); /* the largest goes up to a power of two, or
                                                        down to one, or neither */
-            ted4_grid_round(x, N, bits);
+            ted4_weight_grid_round(x, N, bits);
             memcpy(once, x, sizeof x);
-            ted4_grid_round(x, N, bits);
+            ted4_weight_grid_round(x, N, bits);
             assert_memory_equal(x, once, sizeof x);
         }
-    ted4_grid_round(tiny, 2, 4);
+    ted4_weight_grid_round(tiny, 2, 4);
     assert_true(tiny[0] == 0x1p-100f);
     assert_true(tiny[1] == -0x1p-149f);
-    ted4_grid_round(none, 3, 4);
-    ted4_grid_round(none, 0, 4);
+    ted4_weight_grid_round(none, 3, 4);
+    ted4_weight_grid_round(none, 0, 4);
     assert_true(none[0] == 0);
     assert_true(none[1] == 0);
     assert_true(none[2] == 0);
@@ -88,7 +88,7 @@ static ted4_shape shape_of(unsigned in, unsigned hidden, unsigned out)
 static void test_units(void **state)
 {
     const ted4_shape s = shape_of(8, 4, 2);
-    const int bits[TED4_GRIDS] = { 24, 5, 3, 20 };
+    const int bits[TED4_WEIGHT_GRIDS] = { 24, 5, 3, 20 };
     float netr[N * 2], was[N * 2], bank[10], bank_was[10];
 
     (void)state;
@@ -98,7 +98,7 @@ static void test_units(void **state)
     draw(bank, 10, 5, 1.0f);
     memcpy(was, netr, sizeof netr);
     memcpy(bank_was, bank, sizeof bank);
-    ted4_grid_scene(&s, bits, netr, bank);
+    ted4_weight_grid_scene(&s, bits, netr, bank);
     for (int i = 0; i < 8; i++)
         assert_true(fabsf(netr[i] - was[i]) <= 0x1p-10f * 0x1p-6f);
     for (int i = 0; i < 36; i++)
@@ -107,7 +107,7 @@ static void test_units(void **state)
     assert_memory_equal(netr + s.netr[TED4_NET_OPACITY].first, was + s.netr[TED4_NET_OPACITY].first,
                         18 * sizeof *netr);
     assert_memory_not_equal(bank, bank_was, sizeof bank);
-    ted4_grid_round(bank_was, 10, 3);
+    ted4_weight_grid_round(bank_was, 10, 3);
     assert_memory_equal(bank, bank_was, sizeof bank);
 }
 
