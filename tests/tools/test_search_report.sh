@@ -1,7 +1,7 @@
 #!/bin/sh
-# test_search_report.sh - what ted4enc decides about the size of the model is told: in the log always, in the
-# file on request, once, and by ted4info. Speaks as cmocka programs do; run by `make test` from the
-# project's root.
+# test_search_report.sh - what ted4enc decides about the size of the model is told: in the log
+# always, in the file on request, once, and by ted4info. Speaks as cmocka programs do; run by `make
+# test` from the project's root.
 # SPDX-License-Identifier: BSD-2-Clause
 set -u
 . tests/support/speak.sh
