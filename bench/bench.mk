@@ -82,10 +82,10 @@ $B/bench/rate_check.o: FPFLAGS = $(FREE) -ffp-contract=fast -march=native
 $(BENCH_FILE:%=$B/bench/%) $B/bench/bench_decode: $B/bench/%: $B/bench/%.o \
         $(DEC_TOOL:%.c=$B/%.o) $(ENC_LIB)
 	$(CC) -fopenmp $(LDFLAGS) $(filter %.o,$^) $(filter %.a,$^) -o $@ $(LIBS)
-$B/bench/spans: $(patsubst %,$B/bench/%.o,spans_view spans_where spans_failed)
+$B/bench/spans: $(patsubst %,$B/bench/%.o,spans_view spans_where spans_failed open_decoded)
 
 # What the stability lab measures on a file.
-LAB_FACTS = lab_facts lab_failed lab_views lab_tracks lab_anchors lab_symbols lab_log
+LAB_FACTS = lab_facts open_decoded lab_failed lab_views lab_tracks lab_anchors lab_symbols lab_log
 $B/bench/lab_facts: $(LAB_FACTS:%=$B/bench/%.o) $B/ref-encoder/tool/sheet.o \
         $(DEC_TOOL:%.c=$B/%.o) $(ENC_LIB)
 	$(CC) -fopenmp $(LDFLAGS) $(filter %.o,$^) $(filter %.a,$^) -o $@ $(LIBS)

@@ -7,6 +7,7 @@
 #include <math.h>
 
 #include "measure.h"
+#include "math/compare.h"
 #include "norm/half.h"
 #include "norm/scene.h"
 #include "raster_scene.h"
@@ -181,13 +182,6 @@ static times once(bench *b, const ted4_parallel *p, int i)
     return (times) { t1 - t0, t2 - t1, t2 - t0 };
 }
 
-static int by_value(const void *a, const void *b)
-{
-    const double x = *(const double *)a, y = *(const double *)b;
-
-    return (x > y) - (x < y);
-}
-
 /* Least times, and the median of the sum. */
 static times best(const times *t, double *median)
 {
@@ -200,7 +194,7 @@ static times best(const times *t, double *median)
         b.both = fmin(b.both, t[i].both);
         both[i] = t[i].both;
     }
-    qsort(both, ROUNDS, sizeof *both, by_value);
+    qsort(both, ROUNDS, sizeof *both, ted4_compare_doubles);
     *median = both[ROUNDS / 2];
     return b;
 }

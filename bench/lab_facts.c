@@ -12,22 +12,19 @@
 #include <string.h>
 #include <jansson.h>
 #include "lab_facts.h"
+#include "open_decoded.h"
 #include "tool/cli.h"
 
 static int open_file(lab_session *s, const char *path)
 {
-    ted4_error e = { TED4_OK, 0 };
-    uint8_t *const bytes = ted4_read_file(path, &s->bytes);
+    decoded d = { NULL, NULL, { 0 }, 0 };
+    const int code = open_decoded("lab_facts", path, &d);
 
-    if (bytes == NULL)
-        return lab_failed(path, strerror(errno));
-    if (ted4_decode(bytes, s->bytes, NULL, &s->scene, &e) == TED4_OK)
-        e.code = ted4_recon_new(&s->recon, s->scene, NULL);
-    free(bytes);
-    if (e.code != TED4_OK)
-        return ted4_report("lab_facts", path, &e, 0);
-    ted4_scene_info(s->scene, &s->info);
-    return TED4_EXIT_FINE;
+    s->scene = d.scene;
+    s->recon = d.recon;
+    s->info = d.info;
+    s->bytes = d.bytes;
+    return code;
 }
 
 static int open_scene(lab_session *s, const char *folder)

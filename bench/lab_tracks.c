@@ -5,15 +5,9 @@
 #include <stdlib.h>
 #include <string.h>
 #include "lab_facts.h"
+#include "math/compare.h"
 #include "tool/cli.h"
 #include "train/model/normalise.h"
-
-static int compare_floats(const void *x, const void *y)
-{
-    const float a = *(const float *)x, b = *(const float *)y;
-
-    return a < b ? -1 : a > b;
-}
 
 /* See lab_tracks.size; the side of the file's space where points say nothing. -1: no memory. */
 static double scene_size(const lab_session *s)
@@ -27,7 +21,7 @@ static double scene_size(const lab_session *s)
     for (size_t c = 0; c < 3 && n > 0; c++) {
         for (size_t i = 0; i < n; i++)
             x[i] = s->data.points[3 * i + c];
-        qsort(x, n, sizeof *x, compare_floats);
+        qsort(x, n, sizeof *x, ted4_compare_floats);
         size = fmax(size, (double)x[(n - 1) * 99 / 100] - (double)x[(n - 1) / 100]);
     }
     free(x);

@@ -21,6 +21,7 @@
 #include "norm/syntax.h"
 #include "norm/tables.h"
 #include "render/png_file.h"
+#include "open_decoded.h"
 #include "spans.h"
 #include "tool/cli.h"
 
@@ -41,18 +42,14 @@ static float span_of(const ted4_scene *s, size_t i)
 
 static int open_file(session *s, const char *path)
 {
-    ted4_error e = { TED4_OK, 0 };
-    size_t size;
-    uint8_t *const bytes = ted4_read_file(path, &size);
+    decoded d = { NULL, NULL, { 0 }, 0 };
+    const int code = open_decoded("spans", path, &d);
 
-    if (bytes == NULL)
-        return failed(path, strerror(errno));
-    if (ted4_decode(bytes, size, NULL, &s->scene, &e) == TED4_OK)
-        e.code = ted4_recon_new(&s->recon, s->scene, NULL);
-    free(bytes);
-    if (e.code != TED4_OK)
-        return ted4_report("spans", path, &e, 0);
-    ted4_scene_info(s->scene, &s->info);
+    s->scene = d.scene;
+    s->recon = d.recon;
+    s->info = d.info;
+    if (code != TED4_EXIT_FINE)
+        return code;
     s->span = malloc((s->info.n_anchors + 1) * sizeof *s->span);
     if (s->span == NULL)
         return failed(path, "out of memory");

@@ -3,6 +3,7 @@
 #include "train_record.h"
 
 #include "measure.h"
+#include "math/compare.h"
 #include "train/step/trainer_init.h"
 
 void record_init(train_record *r, int steps, size_t members)
@@ -48,13 +49,6 @@ void record_training(train_record *r, ted4_dataset *d, const ted4_parallel *team
     free(sample);
 }
 
-static int by_value(const void *a, const void *b)
-{
-    const double x = *(const double *)a, y = *(const double *)b;
-
-    return (x > y) - (x < y);
-}
-
 void record_medians(const train_record *r, int stage, double *median)
 {
     const size_t first = r->n[stage] > 2 * RECORD_WARM_UP ? RECORD_WARM_UP : 0;
@@ -65,7 +59,7 @@ void record_medians(const train_record *r, int stage, double *median)
     for (size_t i = 0; i < r->members; i++) {
         for (size_t k = 0; k < n; k++)
             value[k] = sample[k * r->members + i];
-        qsort(value, n, sizeof *value, by_value);
+        qsort(value, n, sizeof *value, ted4_compare_doubles);
         median[i] = n > 0 ? value[n / 2] : 0;
     }
     free(value);

@@ -10,7 +10,7 @@
 #include <xxhash.h>
 #include "harness.h"
 #include "scene_folder.h"
-#include "train/step/checkpoint.h"
+#include "train/monitor/checkpoint.h"
 #include "train/step/trainer_init.h"
 #include "train/train.h"
 #include "write/coder_count.h"

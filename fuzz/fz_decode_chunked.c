@@ -8,6 +8,7 @@
 #define _GNU_SOURCE /* fopencookie: a stream of our own */
 #include <stdio.h>
 #include <string.h>
+#include "lcg.h"
 #include "harness.h"
 #include "fix_hashes.h"
 #include "read/container.h"
@@ -27,10 +28,7 @@ typedef struct {
 static size_t next_piece(pieces *p)
 {
     const size_t left = p->size - p->at;
-
-    p->seed = p->seed * 1664525 + 1013904223;
-
-    const size_t n = 1 + (p->seed >> 8) % (1u << p->bits);
+    const size_t n = 1 + (lcg_next(&p->seed) >> 8) % (1u << p->bits);
 
     return n < left ? n : left;
 }

@@ -2,6 +2,7 @@
  * SPDX-License-Identifier: BSD-2-Clause */
 #include <stdio.h>
 #include <stdlib.h>
+#include "lcg.h"
 #include "mutate.h"
 
 enum { MAX_SIZE = 1 << 16 };
@@ -13,7 +14,7 @@ static size_t some_bytes(uint8_t *data, size_t size, size_t max_size)
 {
     (void)max_size;
     for (int i = 0; size > 0 && i < 3; i++) {
-        state = state * 1664525 + 1013904223;
+        (void)lcg_next(&state);
         data[state % size] ^= (uint8_t)(1u << (state >> 16) % 8);
     }
     return size;

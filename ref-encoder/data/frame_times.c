@@ -6,6 +6,7 @@
 #include <math.h>
 #include <stdlib.h>
 #include "data/data_util.h"
+#include "math/compare.h"
 
 /* All on the scale where the first time is 0 and the last 1. */
 #define SAME_TIME   2e-6 /* two roundings to six digits of one time differ by 1e-6 */
@@ -13,19 +14,12 @@
 #define ON_GRID     0.02 /* distance from a position of a finer grid, in steps */
 #define GRID_EFFORT 4    /* finest grid tried: its step is this part of the smallest gap */
 
-static int by_value(const void *a, const void *b)
-{
-    const double x = *(const double *)a, y = *(const double *)b;
-
-    return (x > y) - (x < y);
-}
-
 /* The largest of a group, so that no time of the group is beyond it. */
 size_t ted4_distinct_times(double *t, size_t n)
 {
     size_t k = 0;
 
-    qsort(t, n, sizeof *t, by_value);
+    qsort(t, n, sizeof *t, ted4_compare_doubles);
     const double same = SAME_TIME * (t[n - 1] - t[0]);
     double first = t[0]; /* of the group */
     for (size_t i = 0; i < n; i++) {
@@ -43,7 +37,7 @@ static size_t distinct(double *t, size_t n, double *origin, double *range)
 {
     size_t k = 0;
 
-    qsort(t, n, sizeof *t, by_value);
+    qsort(t, n, sizeof *t, ted4_compare_doubles);
     *origin = t[0];
     *range = t[n - 1] - t[0];
     for (size_t i = 0; i < n; i++) {

@@ -5,6 +5,7 @@
 #include <math.h>
 #include <stdlib.h>
 #include "data/data_util.h"
+#include "math/compare.h"
 
 #define PARALLEL                                                                    \
     1e-4 /* mean squared sine between axes below which their crossing means nothing \
@@ -86,13 +87,6 @@ static double distance(const double a[3], const double b[3])
     return sqrt(x * x + y * y + z * z);
 }
 
-static int by_value(const void *a, const void *b)
-{
-    const double x = *(const double *)a, y = *(const double *)b;
-
-    return (x > y) - (x < y);
-}
-
 static int is_ahead(const ted4_dataset *d, size_t n, const double x[3])
 {
     size_t ahead = 0;
@@ -120,7 +114,7 @@ int ted4_view_box(const ted4_dataset *d, double centre[3], double *half)
         ted4_pose_centre(k->R, k->t, c);
         distances[i] = distance(c, centre);
     }
-    qsort(distances, n, sizeof *distances, by_value);
+    qsort(distances, n, sizeof *distances, ted4_compare_doubles);
     *half = TED4_VIEW_BOX_HALF_SIDE * distances[n / 2];
     free(distances);
     return 0;

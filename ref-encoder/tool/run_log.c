@@ -14,9 +14,9 @@
 
 #include "train/search/candidates.h"
 #include "train/state/anchor_masks.h"
-#include "train/step/monitor.h"
-#include "train/step/saturation.h"
-#include "train/step/scale.h"
+#include "train/monitor/monitor.h"
+#include "train/monitor/saturation.h"
+#include "train/monitor/scale.h"
 
 /* Written and read again. */
 #define CPU_SECONDS "\"cpu_seconds\":"

@@ -5,7 +5,7 @@
 #include <stdio.h>
 
 #include "math/elementary.h"
-#include "train/step/checkpoint.h"
+#include "train/monitor/checkpoint.h"
 #include "training.h"
 
 /* Near enough: a file that leaves less than this share of the target unused. */

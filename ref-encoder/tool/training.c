@@ -8,9 +8,9 @@
 #include <unistd.h>
 
 #include "stop.h"
-#include "train/step/checkpoint.h"
+#include "train/monitor/checkpoint.h"
 #include "train/step/export_scene.h"
-#include "train/step/monitor.h"
+#include "train/monitor/monitor.h"
 #include "train/step/stages.h"
 #include "train/train.h"
 #include "search_report.h"

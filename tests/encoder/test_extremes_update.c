@@ -11,7 +11,7 @@
 #include "train/state/visible_blocks.h"
 #include "train/step/apply_gradients.h"
 #include "train/step/loss_terms.h"
-#include "train/step/saturation.h"
+#include "train/monitor/saturation.h"
 #include "train/step/trainer_init.h"
 
 /* ---- Adam ---- */

@@ -10,7 +10,7 @@
 #include "train/search/prior_bits.h"
 #include "train/search/rd_prune.h"
 #include "train/state/picture.h"
-#include "train/step/checkpoint.h"
+#include "train/monitor/checkpoint.h"
 #include "train/step/events.h"
 #include "train/step/export_scene.h"
 #include "train/train.h"

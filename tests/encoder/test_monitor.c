@@ -1,15 +1,15 @@
-/* test_monitor.c - train/step/monitor.c and train/step/grad_norm.c: what goes wrong is found when
- * it happens and named, training goes on from the last good state with smaller steps, three times;
- * a training that goes well never notices. Files and logs of a program that went back:
+/* test_monitor.c - train/monitor/monitor.c and train/monitor/grad_norm.c: what goes wrong is found
+ * when it happens and named, training goes on from the last good state with smaller steps, three
+ * times; a training that goes well never notices. Files and logs of a program that went back:
  * test_run_log.c.
  * SPDX-License-Identifier: BSD-2-Clause */
 #include "test.h"
 #include "ball_trainer.h"
-#include "train/step/checkpoint.h"
-#include "train/step/grad_norm.h"
-#include "train/step/monitor.h"
-#include "train/step/rollback.h"
-#include "train/step/scale.h"
+#include "train/monitor/checkpoint.h"
+#include "train/monitor/grad_norm.h"
+#include "train/monitor/monitor.h"
+#include "train/monitor/rollback.h"
+#include "train/monitor/scale.h"
 #include "train/step/schedule.h"
 #include "train/train.h"
 

@@ -4,8 +4,8 @@
  * SPDX-License-Identifier: BSD-2-Clause */
 #include "test.h"
 #include "ball_trainer.h"
-#include "train/step/checkpoint.h"
-#include "train/step/monitor.h"
+#include "train/monitor/checkpoint.h"
+#include "train/monitor/monitor.h"
 #include "train/train.h"
 
 /* A value goes bad between two checks: no checkpoint is made of it, the last one is untouched and

@@ -8,7 +8,7 @@
 #include "train/search/candidates.h"
 #include "train/search/file_cost.h"
 #include "train/state/picture.h"
-#include "train/step/checkpoint.h"
+#include "train/monitor/checkpoint.h"
 #include "train/resize/feature_pca.h"
 #include "train/resize/resize.h"
 

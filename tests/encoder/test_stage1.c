@@ -3,7 +3,7 @@
  * SPDX-License-Identifier: BSD-2-Clause */
 #include "test.h"
 #include "ball_trainer.h"
-#include "train/step/checkpoint.h"
+#include "train/monitor/checkpoint.h"
 
 enum { STAGE1 = 400, FRAMES = 5 };
 

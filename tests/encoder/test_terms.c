@@ -5,7 +5,7 @@
  * SPDX-License-Identifier: BSD-2-Clause */
 #include "test.h"
 #include "ball_group.h"
-#include "train/step/checkpoint.h"
+#include "train/monitor/checkpoint.h"
 #include "train/step/stages.h"
 
 enum { STAGE1 = 150, STAGE2 = 200 };

@@ -9,7 +9,7 @@
 #include "tool/threads.h"
 #include "train/state/picture.h"
 #include "train/state/visible_blocks.h"
-#include "train/step/checkpoint.h"
+#include "train/monitor/checkpoint.h"
 #include "train/step/export_scene.h"
 #include "train/train.h"
 

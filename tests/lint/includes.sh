@@ -6,9 +6,10 @@ rooms_2="$rooms_1 train/model"
 rooms_3="$rooms_2 train/splat train/raster train/loss train/rate"
 rooms_4="$rooms_3 train/state"
 rooms_5="$rooms_4 train/densify train/resize"
-rooms_6="$rooms_5 train/step"
-rooms_7="$rooms_6 train/search"
-training="$rooms_7 train/train.h"
+rooms_6="$rooms_5 train/monitor"
+rooms_7="$rooms_6 train/step"
+rooms_8="$rooms_7 train/search"
+training="$rooms_8 train/train.h"
 allow="
 ref-decoder                 base
 ref-decoder/base            base ted4.h
@@ -32,8 +33,9 @@ ref-encoder/train/rate      base norm recon render math kernel $rooms_2
 ref-encoder/train/state     base norm recon data $rooms_3
 ref-encoder/train/densify   math $rooms_4
 ref-encoder/train/resize    norm math $rooms_4
-ref-encoder/train/step      base norm recon math write $rooms_5
-ref-encoder/train/search    math write $rooms_6
+ref-encoder/train/monitor   math $rooms_5
+ref-encoder/train/step      base norm recon math write $rooms_6
+ref-encoder/train/search    math write $rooms_7
 ref-encoder/train           $training
 ref-encoder/tool            base norm render math data eval kernel write tool $training ted4.h
 "

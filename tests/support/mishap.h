@@ -14,7 +14,7 @@
 
 #include "ball_trainer.h"
 #include "test.h"
-#include "train/step/checkpoint.h"
+#include "train/monitor/checkpoint.h"
 
 enum { MOST_WORDS = 64, MOST_BYTES = 1 << 20, MOST_LOG = 1 << 16, STAGE1 = 700, STEPS = 900 };
 

@@ -4,7 +4,7 @@
  * SPDX-License-Identifier: BSD-2-Clause */
 #include "test.h"
 #include "mishap.h"
-#include "train/step/checkpoint.h"
+#include "train/monitor/checkpoint.h"
 
 /* ---- pictures ---- */
 

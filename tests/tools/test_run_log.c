@@ -6,8 +6,8 @@
 #include "test.h"
 #include "mishap.h"
 #include "tool/run_log.h"
-#include "train/step/checkpoint.h"
-#include "train/step/monitor.h"
+#include "train/monitor/checkpoint.h"
+#include "train/monitor/monitor.h"
 
 static double number(const json_t *line, const char *name)
 {

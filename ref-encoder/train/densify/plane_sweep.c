@@ -7,6 +7,7 @@
 #include <string.h>
 
 #include "train/math/voxel_set.h"
+#include "math/compare.h"
 #include "math/elementary.h"
 #include "photo_votes.h"
 #include "train/model/normalise.h"
@@ -147,13 +148,6 @@ static void search_row(void *arg, size_t r)
     }
 }
 
-static int compare_floats(const void *x, const void *y)
-{
-    const float a = *(const float *)x, b = *(const float *)y;
-
-    return a < b ? -1 : a > b;
-}
-
 /* Between which depths anchors lie in a view. 0, or -1: no memory. */
 static int depth_range(const ted4_trainer *t, sweep_view *e)
 {
@@ -171,7 +165,7 @@ static int depth_range(const ted4_trainer *t, sweep_view *e)
         if (ted4_view_pixel(&e->view, p, &pixel, &z[n]))
             n++;
     }
-    qsort(z, n, sizeof *z, compare_floats);
+    qsort(z, n, sizeof *z, ted4_compare_floats);
 
     const size_t out = (size_t)(OUTLIERS * (float)n);
 

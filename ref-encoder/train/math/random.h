@@ -16,6 +16,15 @@ static inline uint64_t ted4_mix(uint64_t x)
     return x ^ (x >> 32);
 }
 
+/* Mixes 64 bits for the noise of quantisation, which needs less than ted4_mix: two rounds of shift,
+ * xor and multiplication by odd constants (digits of pi). */
+static inline uint64_t ted4_mix_short(uint64_t x)
+{
+    x = (x ^ (x >> 32)) * 0x243f6a8885a308d3u;
+    x = (x ^ (x >> 29)) * 0xa4093822299f31d1u;
+    return x ^ (x >> 32);
+}
+
 /* Uniform 64 bits of a stream. */
 static inline uint64_t ted4_random(uint64_t key, uint64_t counter)
 {

@@ -7,16 +7,10 @@
 #include <string.h>
 
 #include "train/math/voxel_set.h"
+#include "math/compare.h"
 #include "math/elementary.h"
 #include "train/math/random.h"
 #include "normalise.h"
-
-static int compare_floats(const void *x, const void *y)
-{
-    const float a = *(const float *)x, b = *(const float *)y;
-
-    return a < b ? -1 : a > b;
-}
 
 /* Mean distance from point i to its three nearest neighbours among n. */
 static float neighbour_distance(const float *p, size_t n, size_t i)
@@ -56,7 +50,7 @@ static double typical_distance(const float *p, size_t n)
 
     for (size_t i = 0; i < m; i++)
         d[i] = neighbour_distance(p, n, i * n / m);
-    qsort(d, m, sizeof d[0], compare_floats);
+    qsort(d, m, sizeof d[0], ted4_compare_floats);
     return m > 0 ? fmax((double)d[m / 2], 1e-4) : 0.01;
 }
 

@@ -6,24 +6,18 @@
 
 #include "model.h"
 #include "train/math/lane_math.h"
+#include "train/math/random.h"
 
 #define MAX_SYMBOL 32767.0f /* spec 9.4, R-ENT-007 */
 
 enum { TAU_START = 0, TAU_END = 2 }; /* components a_s and a_f of tau: spec 11.4 */
 
-/* Mixes 64 bits: two rounds of shift, xor and multiplication by odd constants (digits of pi). */
-static uint64_t mix(uint64_t x)
-{
-    x = (x ^ (x >> 32)) * 0x243f6a8885a308d3u;
-    x = (x ^ (x >> 29)) * 0xa4093822299f31d1u;
-    return x ^ (x >> 32);
-}
-
 /* Uniform in (-1/2, 1/2), mean exactly 0: a hash of (key, block, channel, lane), 32-bit arithmetic
  * within the row. */
 static void noise_row(uint64_t key, uint32_t block, uint32_t channel, float *row)
 {
-    const uint64_t seed = mix(mix(key + 0x9e3779b97f4a7c15u) + ((uint64_t)block << 32 | channel));
+    const uint64_t seed = ted4_mix_short(ted4_mix_short(key + 0x9e3779b97f4a7c15u) +
+                                         ((uint64_t)block << 32 | channel));
     const uint32_t low = (uint32_t)seed, high = (uint32_t)(seed >> 32);
 
 #pragma omp simd

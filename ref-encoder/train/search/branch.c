@@ -2,7 +2,7 @@
  * SPDX-License-Identifier: BSD-2-Clause */
 #include "branch.h"
 
-#include "train/step/monitor.h"
+#include "train/monitor/monitor.h"
 #include "train/step/step.h"
 
 int ted4_branch_run(ted4_trainer *t, int n, double *loss)

@@ -6,7 +6,7 @@
 #include <stdlib.h>
 
 #include "train/state/picture.h"
-#include "train/step/checkpoint.h"
+#include "train/monitor/checkpoint.h"
 #include "train/state/view_subset.h"
 #include "train/step/export_scene.h"
 #include "write/encode.h"

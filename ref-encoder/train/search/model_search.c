@@ -14,7 +14,7 @@
 #include "prior_bits.h"
 #include "rd_prune.h"
 #include "sensitivity.h"
-#include "train/step/checkpoint.h"
+#include "train/monitor/checkpoint.h"
 
 /* Share of stage 2 before: values have begun to be cheap, and the prior knows them. Measured on
  * three small scenes, at 0.5 costs differ by 1 % either way. */

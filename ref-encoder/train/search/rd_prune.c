@@ -10,7 +10,7 @@
 #include "file_cost.h"
 #include "sensitivity.h"
 #include "train/state/visible_blocks.h"
-#include "train/step/checkpoint.h"
+#include "train/monitor/checkpoint.h"
 
 /* Prices tried, as multiples of what a bit weighs. */
 static const double prices[] = { 0.125, 0.25, 0.5, 1.0, 2.0, 4.0 };

@@ -9,7 +9,7 @@
 
 #include "branch.h"
 #include "train/model/header_from_options.h"
-#include "train/step/checkpoint.h"
+#include "train/monitor/checkpoint.h"
 #include "train/step/trainer_init.h"
 
 /* Time stays when it lowers the mean loss by at least this share. Measured with 600 steps a branch:

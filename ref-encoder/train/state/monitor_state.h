@@ -1,6 +1,6 @@
 /* monitor_state.h - what is kept to notice a training that goes wrong: the usual size of each
  * gradient, of the loss and of what is drawn, the last good state, and what was found.
- * step/monitor.h and step/rollback.h work with it. Depends on norm/syntax.h.
+ * monitor/monitor.h and monitor/rollback.h work with it. Depends on norm/syntax.h.
  * SPDX-License-Identifier: BSD-2-Clause */
 #ifndef TED4_MONITOR_STATE_H
 #define TED4_MONITOR_STATE_H

@@ -1,4 +1,4 @@
-/* snapshot.h - the whole state of a trainer as bytes in memory; step/checkpoint.h takes and
+/* snapshot.h - the whole state of a trainer as bytes in memory; monitor/checkpoint.h takes and
  * restores it.
  * SPDX-License-Identifier: BSD-2-Clause */
 #ifndef TED4_SNAPSHOT_H

@@ -2,7 +2,7 @@
  * SPDX-License-Identifier: BSD-2-Clause */
 #include "apply_gradients.h"
 
-#include "grad_norm.h"
+#include "train/monitor/grad_norm.h"
 #include "recon/strict.h"
 #include "schedule.h"
 #include "train/math/adam.h"

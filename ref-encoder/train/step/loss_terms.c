@@ -5,7 +5,7 @@
 #include <math.h>
 
 #include "math/lane_sum.h"
-#include "monitor.h"
+#include "train/monitor/monitor.h"
 #include "train/math/random.h"
 
 /* Gaussians are cut into this many parts whatever the number of threads, and their sums go in as

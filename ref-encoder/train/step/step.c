@@ -6,10 +6,10 @@
 
 #include "apply_gradients.h"
 #include "events.h"
-#include "grad_norm.h"
+#include "train/monitor/grad_norm.h"
 #include "loss_terms.h"
-#include "monitor.h"
-#include "rollback.h"
+#include "train/monitor/monitor.h"
+#include "train/monitor/rollback.h"
 #include "train/densify/densify.h"
 #include "train/math/random.h"
 #include "train/state/picture.h"

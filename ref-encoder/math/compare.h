@@ -1,0 +1,22 @@
+/* compare.h - the order of numbers, for qsort.
+ * SPDX-License-Identifier: BSD-2-Clause */
+#ifndef TED4_COMPARE_H
+#define TED4_COMPARE_H
+
+/* Ascending floats; none is a NaN. */
+static inline int ted4_compare_floats(const void *x, const void *y)
+{
+    const float a = *(const float *)x, b = *(const float *)y;
+
+    return (a > b) - (a < b);
+}
+
+/* Ascending doubles; none is a NaN. */
+static inline int ted4_compare_doubles(const void *x, const void *y)
+{
+    const double a = *(const double *)x, b = *(const double *)y;
+
+    return (a > b) - (a < b);
+}
+
+#endif
