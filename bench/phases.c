@@ -170,8 +170,9 @@ BETWEEN(PHASE_WRITE, int, ted4_file_write,
            (ted4_raster * r, const ted4_view *v, const ted4_parallel *p, int keep, float *image), \
            (r, v, p, keep, image))                                                                \
     MARKED(in_blend_bwd, ted4_raster_blend_bwd_##level,                                           \
-           (ted4_raster * r, const ted4_view *v, const ted4_parallel *p, const float *d),         \
-           (r, v, p, d))
+           (ted4_adjoint * a, const ted4_raster *r, const ted4_view *v, const ted4_parallel *p,   \
+            const float *d),                                                                      \
+           (a, r, v, p, d))
 BLENDING(base)
 #if defined(__x86_64__)
 BLENDING(v3)

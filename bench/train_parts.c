@@ -87,12 +87,13 @@ BETWEEN(LOSS, double, ted4_loss,
          float weight, const ted4_parallel *p, float *d_image, double *l1, double *ssim),
         (w, image, truth, width, height, weight, p, d_image, l1, ssim))
 OF_LEVELS(BETWEEN_INT, BLEND_BWD, ted4_raster_blend_bwd,
-          (ted4_raster * r, const ted4_view *v, const ted4_parallel *p, const float *d_image),
-          (r, v, p, d_image))
+          (ted4_adjoint * a, const ted4_raster *r, const ted4_view *v, const ted4_parallel *p,
+           const float *d_image),
+          (a, r, v, p, d_image))
 OF_LEVELS(BETWEEN_VOID, PROJECT_BWD, ted4_raster_project_bwd,
-          (ted4_raster * r, const ted4_splats *s, const ted4_view *v, const ted4_parallel *p,
-           const ted4_splat_grads *g),
-          (r, s, v, p, g))
+          (const ted4_adjoint *a, const ted4_raster *r, const ted4_splats *s, const ted4_view *v,
+           const ted4_parallel *p, const ted4_splat_grads *g),
+          (a, r, s, v, p, g))
 BETWEEN(GENERATE_BWD, int, ted4_generate_backward,
         (ted4_generator * g, const ted4_generate_input *in, const ted4_splat_grads *gr,
          const ted4_parallel *p, float *const *d_attr, float *d_net),
