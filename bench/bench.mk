@@ -181,3 +181,8 @@ bench-instructions: $B/bench/count_instructions.so $B/ted4scene $B/ted4enc
 	TED4_BUILD=$(abspath $B) bench/instructions.sh
 
 .PHONY: cross-train deps-cross-train bench-instructions
+
+# Programs that measure; tests build them, so that none breaks unseen.
+BENCH_PROGRAMS = $(addprefix $B/bench/,bench_raster bench_render bench_train bench_scale \
+                 bench_decode rate_check spans lab_facts phases to_jpeg zoo_masks)
+test-programs: $(BENCH_PROGRAMS)
