@@ -1,6 +1,6 @@
 /* camera_colour_bands.c - the passes of camera_colour.c over pixels. Sums over pixels go to 16
- * lanes, pixel i to lane i mod 16, and lanes are added in order. SPDX-License-Identifier:
- * BSD-2-Clause */
+ * lanes, pixel i to lane i mod 16, and lanes are added in order.
+ * SPDX-License-Identifier: BSD-2-Clause */
 #include "camera_colour_job.h"
 
 #include "render/vec.h"
