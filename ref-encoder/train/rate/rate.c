@@ -22,8 +22,8 @@ static int net_init(ted4_rate_net *n, const ted4_net_shape *shape, int n_steps)
         const int out = n->dim[i + 1] - (i == n->n - 1 ? n_steps : 0);
 
         n->w[i] = at;
-        n->b[i] = at + (size_t)n->dim[i] * (size_t)n->dim[i + 1];
-        at = n->b[i] + (size_t)n->dim[i + 1];
+        n->b[i] = at + ted4_layer_weights(shape, (unsigned)i);
+        at += ted4_layer_size(shape, (unsigned)i);
         if (ted4_dense_init(&n->layer[i], n->dim[i], out) != 0)
             return -1;
     }
@@ -309,16 +309,4 @@ int ted4_rate_lanes(ted4_rate *r, const ted4_rate_input *in, const ted4_parallel
 void ted4_rate_row(const float *u, const float *s, float *bits, float *d_u, float *d_s)
 {
     TED4_IN_USE(ted4_rate_row)(u, s, bits, d_u, d_s);
-}
-
-void ted4_residuals(const ted4_layout *l, ted4_quant quant, const float *value, const float *steps,
-                    uint32_t block, uint64_t key, float *residual)
-{
-    TED4_IN_USE(ted4_residuals)(l, quant, value, steps, block, key, residual);
-}
-
-void ted4_quantise(const ted4_layout *l, ted4_quant quant, const float *attr, const float *steps,
-                   uint32_t block, uint64_t key, float *out)
-{
-    TED4_IN_USE(ted4_quantise)(l, quant, attr, steps, block, key, out);
 }
