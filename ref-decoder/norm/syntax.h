@@ -58,10 +58,16 @@ typedef struct {
     size_t first_unit; /* index of its first shift (NETE) */
 } ted4_net_shape;
 
-/* Values of a layer: its weights and its biases (spec 7.1). */
+/* The number of weights of a layer. Its biases lie behind them (spec 7.1). */
+static inline size_t ted4_layer_weights(const ted4_net_shape *n, unsigned layer)
+{
+    return (size_t)n->dim[layer] * n->dim[layer + 1];
+}
+
+/* The number of values of a layer: its weights and its biases. */
 static inline size_t ted4_layer_size(const ted4_net_shape *n, unsigned layer)
 {
-    return ((size_t)n->dim[layer] + 1) * n->dim[layer + 1];
+    return ted4_layer_weights(n, layer) + n->dim[layer + 1];
 }
 
 enum {

@@ -12,7 +12,11 @@
 #include "recon/strict.h"
 
 /* spec 11.4: least width of an edge of the activation. */
-#define TED4_EDGE_MIN 0x1p-12f
+#define TED4_EDGE_MIN      0x1p-12f
+#define TED4_EDGE_MIN_LOG2 (-12.0f)
+
+/* Below this a vector has no direction, and a linear scale stops (spec 11.1, 11.5). */
+#define TED4_SHORT 0x1p-20f
 
 /* spec 11.4: the edge that t lies beyond (side -1: before the start, 1: after the end, 0: neither),
  * its width, at least TED4_EDGE_MIN, and u. */
@@ -46,6 +50,17 @@ static inline float ted4_activation(float u, float (*pow2)(float))
 static inline float ted4_from_q12(int32_t x)
 {
     return (float)x * 0x1p-12f;
+}
+
+/* spec 10.1: a coordinate in whole multiples of 2^-12, and its phase in the first octave. */
+static inline float ted4_encode_coordinate(float p)
+{
+    return __builtin_floorf(p * 0x1p12f) * 0x1p-12f;
+}
+
+static inline uint32_t ted4_encode_phase(float p)
+{
+    return (uint32_t)(int32_t)(p * 0x1p24f) << 7;
 }
 
 /* spec 10.1: sine and cosine of the phase of an octave; cosines are sines a quarter turn on. */

@@ -264,7 +264,7 @@ static float *last_biases(float *net, const ted4_layout *l, float **weights, uns
         at += ted4_layer_size(s, (unsigned)i);
     *weights = at;
     *in = s->dim[last];
-    return at + (size_t)s->dim[last] * l->shape.n_outputs;
+    return at + ted4_layer_weights(s, (unsigned)last);
 }
 
 /* Means and spreads of one type. */

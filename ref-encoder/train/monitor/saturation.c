@@ -4,18 +4,18 @@
 
 #include <math.h>
 
+#include "train/model/formulas.h"
+
 #define LARGEST_LOG2_SIZE 126.0f
-#define LEAST_SIZE        0x1p-20f
-#define LEAST_LOG2_EDGE   -12.0f /* log2 of TED4_EDGE_MIN */
 #define BEYOND_SYMBOLS    32767.5f
 
 /* Component c of a type; q: its step size, 0 before there is one. */
 static int is_saturated(const ted4_header *h, int type, unsigned c, float x, float q)
 {
     if (type == TED4_SCALING &&
-        (h->scale_domain == TED4_SCALE_LOG2 ? fabsf(x) > LARGEST_LOG2_SIZE : x <= LEAST_SIZE))
+        (h->scale_domain == TED4_SCALE_LOG2 ? fabsf(x) > LARGEST_LOG2_SIZE : x <= TED4_SHORT))
         return 1;
-    if (type == TED4_TAU && c % 2 == 1 && x <= LEAST_LOG2_EDGE)
+    if (type == TED4_TAU && c % 2 == 1 && x <= TED4_EDGE_MIN_LOG2)
         return 1;
     return q > 0 && fabsf(x) > BEYOND_SYMBOLS * q;
 }

@@ -34,8 +34,8 @@ static void encode_positions(const ted4_header *h, const float *position, uint32
         for (int j = 0; j < TED4_LANES; j++) {
             const float known = ted4_lane_keep(on[j], p[j]);
 
-            phase[a][j] = (uint32_t)(int32_t)(known * 0x1p24f) << 7;
-            x[j] = __builtin_floorf(known * 0x1p12f) * 0x1p-12f;
+            phase[a][j] = ted4_encode_phase(known);
+            x[j] = ted4_encode_coordinate(known);
         }
         x += TED4_LANES;
     }

@@ -7,6 +7,8 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "train/model/formulas.h"
+
 enum { MOST_UNITS = 640 };
 
 /* One layer of a network, as it is put together. */
@@ -267,7 +269,7 @@ static int map_slice(const ted4_resize_nets *n, int m, int known)
 static void say_at_mean(const ted4_resize_nets *n, int m, float *said)
 {
     const ted4_net_shape *s = &n->from->shape.slice[m];
-    const float *w = n->old[0] + n->from->nete + s->first, *b = w + (size_t)s->dim[0] * s->dim[1];
+    const float *w = n->old[0] + n->from->nete + s->first, *b = w + ted4_layer_weights(s, 0);
     float hidden[TED4_MAX_WIDTH];
 
     for (size_t o = 0; o < s->dim[1]; o++) {
@@ -278,7 +280,7 @@ static void say_at_mean(const ted4_resize_nets *n, int m, float *said)
         hidden[o] = sum > 0 ? sum : 0;
     }
     w = b + s->dim[1];
-    b = w + (size_t)s->dim[1] * s->dim[2];
+    b = w + ted4_layer_weights(s, 1);
     for (size_t o = 0; o < s->dim[2]; o++) {
         said[o] = b[o];
         for (size_t i = 0; i < s->dim[1]; i++)
@@ -293,7 +295,7 @@ static void keep_means(const ted4_resize_nets *n)
     const ted4_net_shape *h = &n->to->shape.hyper;
     const int last = h->n_layers - 1, F = n->to->head.feature_dim;
     float *const bias = n->new[0] + n->to->nete + layer_at(h, last) +
-                        (size_t)h->dim[last] * h->dim[last + 1] +
+                        ted4_layer_weights(h, (unsigned)last) +
                         n->to->shape.first_output[TED4_FEATURE];
 
     for (int c = 0; c < n->to->head.slice[0]; c++) {
@@ -333,20 +335,18 @@ static void map_bank(const ted4_resize_nets *n)
     const ted4_header *from = &n->from->head, *to = &n->to->head;
     const ted4_pruned_units *w = n->resize->bank;
 
-    for (uint64_t r = 0; n->to->shape.n_bank > 0 && r < to->bank_rows; r++) {
-        const uint64_t den = to->bank_rows > 1 ? to->bank_rows - 1 : 1,
-                       g = r * (from->bank_rows - 1);
-        const size_t i = (size_t)(g / den), next = g % den > 0 ? i + 1 : i;
-        const float mix = (float)(g % den) / (float)den;
+    for (uint32_t r = 0; n->to->shape.n_bank > 0 && r < to->bank_rows; r++) {
+        float mix;
+        const size_t row = ted4_bank_row(from, r, to->bank_rows > 1 ? to->bank_rows - 1 : 1, &mix);
 
         for (int c = 0; c < to->bank_dim; c++) {
             const size_t col = (size_t)(w != NULL ? w->keep[c] : c);
 
             for (int a = 0; a < TED4_RESIZE_ARRAYS; a++) {
-                const float x = n->old[a][n->from->bank + i * from->bank_dim + col];
-                const float y = n->old[a][n->from->bank + next * from->bank_dim + col];
+                const float *z = n->old[a] + n->from->bank + row * from->bank_dim;
 
-                n->new[a][n->to->bank + r * to->bank_dim + (size_t)c] = x + mix *(y - x);
+                n->new[a][n->to->bank + (size_t)r * to->bank_dim + (size_t)c] =
+                    ted4_bank_value(z, from->bank_dim, col, mix);
             }
         }
     }

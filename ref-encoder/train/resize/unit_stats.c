@@ -159,9 +159,9 @@ static void encode_position(const sampling *s, float *x)
 
     for (int a = 0; a < 3; a++) {
         const float p = *ted4_anchor_value(&s->t->anchors, TED4_ROW_POSITION, s->anchor, a);
-        const uint32_t phase = (uint32_t)(int32_t)(p * 0x1p24f) << 7;
+        const uint32_t phase = ted4_encode_phase(p);
 
-        x[a] = floorf(p * 0x1p12f) * 0x1p-12f;
+        x[a] = ted4_encode_coordinate(p);
         for (int o = 0; o < octaves; o++) {
             x[3 + 6 * o + 2 * a] = ted4_encode_sine(phase << o);
             x[3 + 6 * o + 2 * a + 1] = ted4_encode_cosine(phase << o);

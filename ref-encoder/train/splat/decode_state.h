@@ -8,9 +8,6 @@
 
 #include "generator.h"
 
-/* Below this a vector has no direction, and a linear scale stops (spec 11.1, 11.5). */
-#define TED4_SHORT 0x1p-20f
-
 /* Work is cut into this many chunks of visible blocks whatever the number of threads, so that sums
  * over visible blocks have one order. Within a chunk, weight gradients are taken over groups of
  * visible blocks, few enough to stay in the second-level cache. */

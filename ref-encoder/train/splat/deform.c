@@ -105,7 +105,7 @@ void ted4_gen_motion_make(ted4_generator *g, const ted4_generate_input *in)
         encode_time(m, in->num, in->den);
     else
         interpolate(m, l, in->net + l->bank, in->num, in->den);
-    memcpy(m->b, w + (size_t)deform->dim[0] * deform->dim[1], deform->dim[1] * sizeof *w);
+    memcpy(m->b, w + ted4_layer_weights(deform, 0), deform->dim[1] * sizeof *w);
     TED4_IN_USE(ted4_gen_make_effective)
     (m, l->head.motion == TED4_MOTION_BANK, w,
      in->net + l->netr + l->shape.netr[TED4_NET_PROJECT].first);

@@ -103,7 +103,7 @@ void TED4_LEVELED(ted4_gen_motion_backward)(ted4_generator *g, const float *net,
     const ted4_net_shape *deform = &l->shape.netr[TED4_NET_DEFORM];
     const size_t w = l->netr + deform->first, n_time = (size_t)m->n_time;
     const size_t p = l->netr + l->shape.netr[TED4_NET_PROJECT].first;
-    const size_t n_w = (size_t)deform->dim[0] * deform->dim[1];
+    const size_t n_w = ted4_layer_weights(deform, 0);
     float *d_z;
 
     if (l->head.motion == TED4_MOTION_NONE)

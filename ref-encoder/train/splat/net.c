@@ -65,7 +65,7 @@ static int plan_chain(ted4_generator *g, int net, int x)
         g->plane.n += out;
         layer->net = at;
         layer->grad = effective ? 0 : g->n_effective + at - g->net_tail;
-        at += (size_t)out * ((size_t)s->dim[i] + 1);
+        at += ted4_layer_size(s, (unsigned)i);
     }
     return 0;
 }
@@ -87,7 +87,7 @@ static int plan_layers(ted4_generator *g)
         if (lane_input < 0)
             lane_input = p->rest + g->layout.first[TED4_PHI] - g->layout.head.feature_dim;
         g->n_effective = (size_t)g->motion.width * (size_t)(g->motion.in + 1);
-        g->net_tail = deform->first + (size_t)deform->dim[1] * (deform->dim[0] + 1u);
+        g->net_tail = deform->first + ted4_layer_size(deform, 0);
     }
     g->n_grad = g->n_effective + s->n_netr - g->net_tail;
     if (plan_chain(g, TED4_NET_DEFORM, lane_input) != 0 ||
