@@ -1,4 +1,4 @@
-/* decode_bwd.c - adjoint of decode.c: gradients of Gaussians to those of anchors, networks and
+/* decode_bwd.c - adjoint of decode_fwd.c: gradients of Gaussians to those of anchors, networks and
  * bank. Masks are straight-through: their gradient is that of sigmoid(logit) in the place of the
  * hard 0 or 1, which has none. Positions get none.
  * SPDX-License-Identifier: BSD-2-Clause */

@@ -1,7 +1,6 @@
 /* decode_state.h - what ted4_generate keeps for ted4_generate_backward: the plan of planes,
- * packed weights, saved activations. A plane is one channel of 32 lanes. Private to generate*.c, of
- * which decode.c, net.c and motion.c are compiled once and the others once a
- * level.
+ * packed weights, saved activations. A plane is one channel of 32 lanes. Private to this folder, of
+ * which generator.c, net.c and deform_time.c are compiled once and the other files once per level.
  * SPDX-License-Identifier: BSD-2-Clause */
 #ifndef TED4_DECODE_STATE_H
 #define TED4_DECODE_STATE_H
@@ -63,7 +62,7 @@ typedef struct {
 } ted4_gen_planes;
 
 /* The first layer of F_deform is replaced by one that maps the lane's own inputs: everything that
- * is the same for all anchors at one time is multiplied into it (motion.c). */
+ * is the same for all anchors at one time is multiplied into it (deform_time.c). */
 typedef struct {
     int in, width;        /* effective layer: d or 63 inputs */
     int n_time;           /* length of z or E(t) */
@@ -110,7 +109,7 @@ float *ted4_gen_alloc(size_t n);
  * number of visible blocks. 0 or -1. */
 int ted4_gen_plan(ted4_generator *g);
 
-/* motion.c. 0, or -1: no memory. */
+/* deform_time.c. 0, or -1: no memory. */
 int ted4_gen_motion_init(ted4_gen_motion *m, const ted4_layout *l);
 void ted4_gen_motion_finish(ted4_gen_motion *m);
 /* Interpolates the bank or encodes the time, and makes the effective layer. */
@@ -124,7 +123,7 @@ TED4_EACH_LEVEL(void, ted4_gen_forward, void *job, size_t visible);
 TED4_EACH_LEVEL(void, ted4_gen_backward, void *job, size_t chunk);
 TED4_EACH_LEVEL(void, ted4_gen_sum_range, void *job, size_t range);
 
-/* effective.c. Of the motion bank: w has n_time columns, p n_time rows; else w has in +
+/* effective_layer.c. Of the motion bank: w has n_time columns, p n_time rows; else w has in +
  * n_time columns. */
 TED4_EACH_LEVEL(void, ted4_gen_make_effective, ted4_gen_motion *m, int is_bank, const float *w,
                 const float *p);

@@ -1,5 +1,5 @@
-/* generator.c - the generator of model.h: its memory, and its two ways by the level in use
- * (decode_fwd.c, decode_bwd.c).
+/* generator.c - see generator.h: memory, and both directions by the level in use (decode_fwd.c,
+ * decode_bwd.c).
  * SPDX-License-Identifier: BSD-2-Clause */
 #include "decode_state.h"
 

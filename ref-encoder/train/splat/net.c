@@ -1,5 +1,5 @@
-/* net.c - the plan of a generator (which plane holds what, where each gradient goes) and
- * chains of dense layers forward and backward. spec 7.4.
+/* net.c - the plan of a generator (which plane holds what, where each gradient goes).
+ * spec 7.4.
  * SPDX-License-Identifier: BSD-2-Clause */
 #include "decode_state.h"
 

@@ -1,5 +1,5 @@
-/* effective.c - the first layer of F_deform with all that is the same for all anchors at
- * one time multiplied in, and its adjoint: motion.c says what from.
+/* effective_layer.c - the first layer of F_deform with all that is the same for all anchors at one
+ * time multiplied in, and its adjoint: deform_time.c says what from.
  * SPDX-License-Identifier: BSD-2-Clause */
 #include "decode_state.h"
 

@@ -1,5 +1,5 @@
-/* deform.c - what depends on the time only: bank interpolation, encoded time, and the
- * first layer of F_deform with all of it multiplied in. spec 11.2 and 11.3. With z the bank at a
+/* deform_time.c - what depends on the time only: bank interpolation, encoded time, and the first
+ * layer of F_deform with all of it multiplied in. spec 11.2 and 11.3. With z the bank at a
  * time, P and p weights and bias of F_project, W and b those of the first layer of F_deform:
  *     bank    W (z * (P phi + p)) + b = (W diag(z) P) phi + (W diag(z) p + b)
  *     concat  W [phi, z] + b          = W_left phi + (W_right z + b)
