@@ -1,4 +1,5 @@
-# TED4: `make deps demo` runs the main job, `make deps test` passes the tests. `make help` lists the rest.
+# TED4: `make deps demo` runs the main job, `make deps test` passes the tests. `make help` lists the
+# rest.
 all:
 
 OPT   ?= -O3
@@ -6,23 +7,29 @@ B     ?= build
 TED4_DATA ?= ../shared/data
 
 WARN  = -Wall -Wextra -Wpedantic -Wshadow -Wstrict-prototypes -Wmissing-prototypes \
-        -Wpointer-arith -Wcast-qual -Wwrite-strings -Wconversion -Wno-sign-conversion -Wundef -Wvla $(WERROR)
+        -Wpointer-arith -Wcast-qual -Wwrite-strings -Wconversion -Wno-sign-conversion \
+        -Wundef -Wvla $(WERROR)
 # The two FP flags are part of the format (spec 12.2): Tier R is strict binary32.
 STRICT = -ffp-contract=off -fno-fast-math
-# Rendering and training: every operation is rounded as it is written, so that all machines and compilers give the same bits; fused
-# operations are explicit (render/leveled.h). ARCH=-march=native lets the compiler use this machine's instructions everywhere.
+# Rendering and training: every operation is rounded as it is written, so that all machines and
+# compilers give the same bits; fused operations are explicit (render/leveled.h). ARCH=-march=native
+# lets the compiler use this machine's instructions everywhere.
 FREE   = $(ARCH) -Wno-psabi -ffp-contract=off -fno-math-errno -fno-trapping-math
-# Files compiled once a level of instruction sets, of which base/level.c chooses one when a program runs.
+# Files compiled once a level of instruction sets, of which base/level.c chooses one when a program
+# runs.
 MACHINE := $(firstword $(subst -, ,$(shell $(CC) $(CFLAGS) -dumpmachine)))
 LEVELS  = $(if $(filter x86_64,$(MACHINE)),base v3 v4,base)
 LEVELED = $(addprefix ref-decoder/render/,project.c blend.c) \
           $(addprefix ref-encoder/kernel/,dense_product.c dense_weights.c) \
-          $(addprefix ref-encoder/train/,raster/blend_bwd.c raster/project_bwd.c splat/decode_fwd.c splat/decode_bwd.c \
-          splat/chain.c splat/effective_layer.c rate/rate_fwd.c rate/rate_bwd.c rate/rate_row.c rate/rate_decoded.c model/quantise_block.c \
-          math/adam_step.c loss/loss_passes.c loss/camera_colour_bands.c)
-# Rows are short and may lie anywhere: gcc would take one lane at a time until a store is aligned, and clang has no such option.
+          $(addprefix ref-encoder/train/,raster/blend_bwd.c raster/project_bwd.c \
+          splat/decode_fwd.c splat/decode_bwd.c splat/chain.c splat/effective_layer.c rate/rate_fwd.c \
+          rate/rate_bwd.c rate/rate_row.c rate/rate_decoded.c model/quantise_block.c math/adam_step.c \
+          loss/loss_passes.c loss/camera_colour_bands.c)
+# Rows are short and may lie anywhere: gcc would take one lane at a time until a store is aligned,
+# and clang has no such option.
 NO_PEELING = --param=vect-max-peeling-for-alignment=0
-LANES := $(shell $(CC) -Werror $(NO_PEELING) -x c -fsyntax-only /dev/null 2>/dev/null && echo $(NO_PEELING))
+LANES := $(shell $(CC) -Werror $(NO_PEELING) -x c -fsyntax-only /dev/null 2>/dev/null && \
+        echo $(NO_PEELING))
 FLAGS_v3 = -mavx2 -mfma -mbmi -mbmi2
 FLAGS_v4 = $(FLAGS_v3) -mavx512f -mavx512bw -mavx512dq -mavx512vl -mprefer-vector-width=512
 # Objects of the sources $(1), with all copies of leveled ones.
@@ -32,12 +39,15 @@ CFLAGS_ALL = -std=c11 -D_POSIX_C_SOURCE=200809L $(OPT) -g $(WARN) -Iref-decoder 
         -fopenmp -MMD -MP $(CFLAGS)
 LIBS  = -lpng -ljpeg -ljansson -lxxhash -lz -lm
 
-DEC_SRC  = $(sort $(wildcard $(addprefix ref-decoder/,base/*.c norm/*.c recon/*.c read/*.c kernel/*.c)))
+DEC_SRC  = $(sort $(wildcard \
+           $(addprefix ref-decoder/,base/*.c norm/*.c recon/*.c read/*.c kernel/*.c)))
 DRAW_SRC = $(sort $(wildcard ref-decoder/render/*.c))
 # Whatever lies below train/ is free, however deep.
 TRAIN_SRC = $(sort $(shell find ref-encoder/train -name '*.c'))
-ENC_SRC  = $(sort $(wildcard $(addprefix ref-encoder/,math/*.c write/*.c data/*.c eval/*.c kernel/*.c)) $(TRAIN_SRC))
-FREE_OBJ = $(patsubst %.c,$B/%.o,$(DRAW_SRC) $(TRAIN_SRC) $(wildcard ref-encoder/kernel/*.c ref-encoder/eval/*.c))
+ENC_SRC  = $(sort $(wildcard $(addprefix ref-encoder/,math/*.c write/*.c data/*.c eval/*.c \
+           kernel/*.c)) $(TRAIN_SRC))
+FREE_OBJ = $(patsubst %.c,$B/%.o,$(DRAW_SRC) $(TRAIN_SRC) $(wildcard ref-encoder/kernel/*.c \
+           ref-encoder/eval/*.c))
 DEC_TOOL = $(filter-out ref-decoder/tool/ted4%.c,$(wildcard ref-decoder/tool/*.c))
 ENC_TOOL = $(filter-out ref-encoder/tool/ted4%.c,$(wildcard ref-encoder/tool/*.c))
 DEC_PROG = $(patsubst ref-decoder/tool/%.c,%,$(wildcard ref-decoder/tool/ted4*.c))
@@ -61,10 +71,12 @@ $B/%.o: %.c $B/how
 $B/%.o: FPFLAGS = $(STRICT)
 $(FREE_OBJ): FPFLAGS = $(FREE)
 # Only files named for an instruction set may use it; the compiler enforces it.
+AVX512 = -mavx512f -mavx512bw -mavx512vl -mprefer-vector-width=512
+VNNI   = -mavx512f -mavx512bw -mavx512vl -mavx512vnni -mprefer-vector-width=512
 ifeq ($(MACHINE),x86_64)
 $B/ref-decoder/kernel/%_avx2.o: FPFLAGS = $(STRICT) -mavx2
-$B/ref-decoder/kernel/%_avx512.o: FPFLAGS = $(STRICT) -mavx512f -mavx512bw -mavx512vl -mprefer-vector-width=512
-$B/ref-decoder/kernel/%_vnni.o: FPFLAGS = $(STRICT) -mavx512f -mavx512bw -mavx512vl -mavx512vnni -mprefer-vector-width=512
+$B/ref-decoder/kernel/%_avx512.o: FPFLAGS = $(STRICT) $(AVX512)
+$B/ref-decoder/kernel/%_vnni.o: FPFLAGS = $(STRICT) $(VNNI)
 endif
 
 # $(1): level
@@ -82,13 +94,14 @@ $B/lib%.a:
 	@rm -f $@
 	$(AR) rcsD $@ $^
 
-# Link order says the architecture: a decoder tool sees the decoder library, and the informative one that draws what it gives; only this one may use libpng and
-# malloc. The encoder stands on both.
+# Link order says the architecture: a decoder tool sees the decoder library, and the informative one
+# that draws what it gives; only this one may use libpng and malloc. The encoder stands on both.
 DEC_LIB  = $B/libted4render.a $B/libted4dec.a
 ENC_LIB  = $B/libted4enc.a $(DEC_LIB)
 $(addprefix $B/,$(DEC_PROG)): $B/%: $B/ref-decoder/tool/%.o $(DEC_TOOL:%.c=$B/%.o) $(DEC_LIB)
 	$(CC) -fopenmp $(LDFLAGS) $^ -o $@ $(LIBS)
-$(addprefix $B/,$(ENC_PROG)): $B/%: $B/ref-encoder/tool/%.o $(ENC_TOOL:%.c=$B/%.o) $(DEC_TOOL:%.c=$B/%.o) $(ENC_LIB)
+$(addprefix $B/,$(ENC_PROG)): $B/%: $B/ref-encoder/tool/%.o $(ENC_TOOL:%.c=$B/%.o) \
+        $(DEC_TOOL:%.c=$B/%.o) $(ENC_LIB)
 	$(CC) -fopenmp $(LDFLAGS) $^ -o $@ $(LIBS)
 $B/ted4scene: $B/tools/scene/ted4scene.o $(SCENE_SRC:%.c=$B/%.o) $(ENC_LIB)
 	$(CC) -fopenmp $(LDFLAGS) $^ -o $@ $(LIBS)
@@ -99,16 +112,18 @@ $B/tests/%: tests/%.sh
 	install -m 755 $< $@
 
 # Tests of the scene maker, or with its scenes.
-SCENE_TESTS = tools/test_scene tools/test_scene_shapes tools/test_scene_sets tools/test_failure_scenes tools/test_ways \
-        encoder/test_layouts encoder/test_hold_out
+SCENE_TESTS = tools/test_scene tools/test_scene_shapes tools/test_scene_sets \
+        tools/test_failure_scenes tools/test_ways encoder/test_layouts encoder/test_hold_out
 $(SCENE_TESTS:%=$B/tests/%): $(SCENE_SRC:%.c=$B/%.o)
 $B/tests/tools/test_run_log: $(addprefix $B/ref-encoder/tool/,run_log.o teller.o)
 $B/tests/tools/test_teller: $B/ref-encoder/tool/teller.o
 $B/tests/tools/test_belongs: $(addprefix $B/ref-encoder/tool/,belongs.o sheet.o)
 $B/tests/tools/test_estimate: $B/ref-encoder/tool/estimate.o
-$B/tests/tools/test_install $B/tests/tools/test_library: | $(PROGS) $(SHARED) $B/ted4conf $B/ted4tolerance
+$B/tests/tools/test_install $B/tests/tools/test_library: | $(PROGS) $(SHARED) $B/ted4conf \
+        $B/ted4tolerance
 $B/tests/tools/test_verify: $B/ref-encoder/tool/verify.o
-$(addprefix $B/tests/encoder/test_starved_,trainer writer): override LDFLAGS += -Wl,--wrap=malloc,--wrap=calloc,--wrap=realloc,--wrap=aligned_alloc
+$(addprefix $B/tests/encoder/test_starved_,trainer writer): override LDFLAGS += \
+        -Wl,--wrap=malloc,--wrap=calloc,--wrap=realloc,--wrap=aligned_alloc
 
 test-programs: all $(TESTS)
 
@@ -136,7 +151,8 @@ BUILD_OF = B=$(1) CC=$(COMPILER_$(1)) WERROR=-Werror
 $(BOTH): always
 	$(MAKE) $(call BUILD_OF,$@) test-programs
 
-# Lints, both compilers, tests with one. All levels that the machine has, with both: test-machines; TEST_LEVELS="v1 v3" names some.
+# Lints, both compilers, tests with one. All levels that the machine has, with both: test-machines;
+# TEST_LEVELS="v1 v3" names some.
 check: lint $(BOTH)
 	$(MAKE) $(call BUILD_OF,build-gcc) test
 test-machines: export TEST_LEVELS := $(TEST_LEVELS)
@@ -149,18 +165,24 @@ test-levels:
 	@sh tests/machines.sh $B
 
 asan:
-	$(MAKE) test B=build-asan OPT='-O1' CFLAGS='-fsanitize=address,undefined -fno-sanitize-recover=all' \
+	$(MAKE) test B=build-asan OPT='-O1' \
+	    CFLAGS='-fsanitize=address,undefined -fno-sanitize-recover=all' \
 	    LDFLAGS='-fsanitize=address,undefined'
 
-include ref-decoder/library.mk tests/spec/spec.mk tests/strict.mk bench/bench.mk fuzz/fuzz.mk conformance/conf.mk conformance/reader/reader.mk conformance/cross/cross.mk player/player.mk
+include ref-decoder/library.mk tests/spec/spec.mk tests/strict.mk bench/bench.mk fuzz/fuzz.mk
+include conformance/conf.mk conformance/reader/reader.mk conformance/cross/cross.mk
+include player/player.mk
 
-DEPS     = gcc libc6-dev libcmocka-dev libjansson-dev libjpeg62-turbo-dev libpng-dev libxxhash-dev python3 zlib1g-dev
-DEPS_DEV = clang-14 clang-format-14 llvm-14 libclang-rt-14-dev libomp-14-dev afl++ ffmpeg pandoc lcov valgrind cmake g++ pkg-config python3-numpy
+DEPS     = gcc libc6-dev libcmocka-dev libjansson-dev libjpeg62-turbo-dev libpng-dev libxxhash-dev \
+           python3 zlib1g-dev
+DEPS_DEV = clang-14 clang-format-14 llvm-14 libclang-rt-14-dev libomp-14-dev afl++ ffmpeg pandoc \
+           lcov valgrind cmake g++ pkg-config python3-numpy
 SUDO     = $(shell [ "$$(id -u)" = 0 ] || echo sudo)
 INSTALL_DEBIAN = missing=$$(for p in $(1); do \
 	dpkg-query -W -f='$${Status}' $$p 2>/dev/null | grep -q 'ok installed' || echo $$p; done); \
 	if [ -n "$$missing" ]; then $(SUDO) apt-get update -q && \
-	DEBIAN_FRONTEND=noninteractive $(SUDO) apt-get install -y -q --no-install-recommends $$missing; fi
+	DEBIAN_FRONTEND=noninteractive $(SUDO) apt-get install -y -q --no-install-recommends \
+	    $$missing; fi
 deps:
 	@$(call INSTALL_DEBIAN,$(DEPS))
 deps-dev: deps
@@ -179,6 +201,7 @@ help:
 clean:
 	rm -rf build build-* out
 
-.PHONY: all always test-programs test test-machines test-levels $(BOTH) $(BOTH:%=%-levels) demo lint check asan deps deps-dev install help clean
+.PHONY: all always test-programs test test-machines test-levels $(BOTH) $(BOTH:%=%-levels)
+.PHONY: demo lint check asan deps deps-dev install help clean
 .SECONDARY:
 -include $(shell find $B -name '*.d' 2>/dev/null)

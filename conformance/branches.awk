@@ -1,8 +1,12 @@
 # branches.awk - how much of norm/ and read/ the published vectors take.
-#     awk -f branches.awk EXCLUDED SUITE TESTS     EXCLUDED: branches-excluded.txt; SUITE, TESTS: tables of branches.sh, after the vectors and after the tests
-# Outcomes that only a failing allocation or a caller's mistake can take stand apart, and a test has to take them. Those that are listed for another reason count as
-# not taken. Prints every outcome that is not taken, each mistake of the list, totals. Fails below 99 %, and when the list is wrong: a line that is not there or
-# there twice, an outcome that the vectors take, one that stands apart and no test takes.
+#     awk -f branches.awk EXCLUDED SUITE TESTS
+# EXCLUDED is branches-excluded.txt; SUITE and TESTS are tables of branches.sh, after the vectors
+# and after the tests.
+# Outcomes that only a failing allocation or a caller's mistake can take stand apart, and a test has
+# to take them. Those that are listed for another reason count as not taken. Prints every outcome
+# that is not taken, each mistake of the list, totals. Fails below 99 %, and when the list is wrong:
+# a line that is not there or there twice, an outcome that the vectors take, one that stands apart
+# and no test takes.
 # SPDX-License-Identifier: BSD-2-Clause
 BEGIN { FS = "\t" }
 FNR == 1 { part++ }
@@ -46,7 +50,8 @@ part == 2 {
     if (apart)
         waiting[place, $4] = place " | " $4
     else
-        print (why == "" ? "not taken: " : "not taken (" why "): ") $1 ":" $3 ": " $2 ": " $6 " | " $4
+        print (why == "" ? "not taken: " : "not taken (" why "): ") \
+            $1 ":" $3 ": " $2 ": " $6 " | " $4
     next
 }
 
@@ -67,8 +72,11 @@ END {
     for (key in waiting)
         complain("no test takes: " waiting[key])
     total -= count["allocation"] + count["caller"]
-    printf "%d of %d branch outcomes taken: %.2f %%; not taken: %d of other machines, %d of larger files, %d never, %d others; ", good, total, \
-           100 * good / (total > 0 ? total : 1), count["machine"], count["size"], count["never"], count[""]
-    printf "apart, for tests: %d of failing allocations, %d of mistakes of callers\n", count["allocation"], count["caller"]
+    printf "%d of %d branch outcomes taken: %.2f %%; ", good, total, \
+           100 * good / (total > 0 ? total : 1)
+    printf "not taken: %d of other machines, %d of larger files, %d never, %d others; ", \
+           count["machine"], count["size"], count["never"], count[""]
+    printf "apart, for tests: %d of failing allocations, %d of mistakes of callers\n", \
+           count["allocation"], count["caller"]
     exit wrong || total == 0 || good < 0.99 * total
 }

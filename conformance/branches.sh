@@ -1,6 +1,7 @@
 #!/bin/sh
-# Branch outcomes of norm/ and read/ by gcov, both of every condition, as a table: file, function, line, number of the outcome (gcov's) on that line, 1 if it was
-# taken, the line's text. Needs a build with --coverage that something has run in. What becomes of the table: branches.awk.
+# Branch outcomes of norm/ and read/ by gcov, both of every condition, as a table: file, function,
+# line, number of the outcome (gcov's) on that line, 1 if it was taken, the line's text. Needs a
+# build with --coverage that something has run in. What becomes of the table: branches.awk.
 #     conformance/branches.sh BUILD >TABLE
 # SPDX-License-Identifier: BSD-2-Clause
 export LC_ALL=C
@@ -11,9 +12,27 @@ for o in "$build"/ref-decoder/norm/*.o "$build"/ref-decoder/read/*.o; do
     gcov -t -b -c -o "$(dirname "$o")" "$o" 2>/dev/null
 done >"$work/all"
 awk '
-    /^ *-: *0:Source:/ { file = $0; sub(/.*Source:/, "", file); wanted = file ~ /^ref-decoder\/(norm|read)\//; next }
+    /^ *-: *0:Source:/ {
+        file = $0
+        sub(/.*Source:/, "", file)
+        wanted = file ~ /^ref-decoder\/(norm|read)\//
+        next
+    }
     !wanted { next }
     /^function / { function_name = $2; next }
-    /^ *[-#=0-9*]+: *[0-9]+:/ { split($0, f, ":"); line = f[2] + 0; text = $0; sub(/^[^:]*:[^:]*:/, "", text); gsub(/^[ \t]+|[ \t]+$/, "", text); n = 0; next }
-    /^branch/ { key = file "\t" function_name "\t" line "\t" n++; said[key] = text; taken[key] += $3 != "executed" && $4 + 0 > 0 }
-    END { for (key in said) print key "\t" (taken[key] > 0) "\t" said[key] }' "$work/all" | sort -t "$(printf '\t')" -k 1,1 -k 3,3n -k 4,4n
+    /^ *[-#=0-9*]+: *[0-9]+:/ {
+        split($0, f, ":")
+        line = f[2] + 0
+        text = $0
+        sub(/^[^:]*:[^:]*:/, "", text)
+        gsub(/^[ \t]+|[ \t]+$/, "", text)
+        n = 0
+        next
+    }
+    /^branch/ {
+        key = file "\t" function_name "\t" line "\t" n++
+        said[key] = text
+        taken[key] += $3 != "executed" && $4 + 0 > 0
+    }
+    END { for (key in said) print key "\t" (taken[key] > 0) "\t" said[key] }' "$work/all" |
+    sort -t "$(printf '\t')" -k 1,1 -k 3,3n -k 4,4n

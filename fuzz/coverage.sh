@@ -1,6 +1,7 @@
 #!/bin/sh
-# coverage.sh - how much of what each harness is there for its seeds and regressions reach: fuzz/coverage.sh PROGRAM, PROGRAM being main.c built by
-# clang for source-based coverage. Puts a table between the marks in fuzz/README.md. Ends with 1 when a harness is below 80 % of lines.
+# coverage.sh - how much of what each harness is there for its seeds and regressions reach:
+# fuzz/coverage.sh PROGRAM, PROGRAM being main.c built by clang for source-based coverage. Puts a
+# table between the marks in fuzz/README.md. Ends with 1 when a harness is below 80 % of lines.
 # SPDX-License-Identifier: BSD-2-Clause
 set -eu
 program=$1
@@ -8,7 +9,17 @@ work=$(dirname "$program")/coverage
 mkdir -p "$work"
 table=$work/table.md
 printf '| harness | covers | lines | reached |\n|---|---|---|---|\n' >"$table"
-sed -n 's/^FUZZ(\([a-z_0-9]*\), \([a-z_0-9]*\), "\(.*\)")/\1 \2 \3/p' fuzz/list.def | while read -r name seeds covers; do
+# An entry, whose strings may go on in further lines, in one.
+sed -n '/^FUZZ(/{
+    :more
+    /)$/!{
+        N
+        b more
+    }
+    s/"\n *"//g
+    s/,\n */, /
+    s/^FUZZ(\([a-z_0-9]*\), \([a-z_0-9]*\), "\(.*\)")/\1 \2 \3/p
+}' fuzz/list.def | while read -r name seeds covers; do
     old=fuzz/regressions/$name
     [ -d "$old" ] || old=
     LLVM_PROFILE_FILE=$work/$name.raw "$program" "$name" "fuzz/corpus/$seeds" $old >&2
@@ -16,7 +27,8 @@ sed -n 's/^FUZZ(\([a-z_0-9]*\), \([a-z_0-9]*\), "\(.*\)")/\1 \2 \3/p' fuzz/list.
     # shellcheck disable=SC2086 # $covers holds patterns
     llvm-cov-14 report "$program" -instr-profile="$work/$name.data" $covers >"$work/$name.txt"
     awk -v name="$name" -v covers="$covers" '$1 == "TOTAL" { sub(/%/, "", $10)
-        printf "| `%s` | %s | %d | %.1f %% |\n", name, covers, $8, $10 }' "$work/$name.txt" >>"$table"
+        printf "| `%s` | %s | %d | %.1f %% |\n", name, covers, $8, $10
+    }' "$work/$name.txt" >>"$table"
 done
 awk -v table="$table" '
     /^<!-- coverage -->/ { print; while ((getline line < table) > 0) print line; skip = 1 }

@@ -1,19 +1,22 @@
 #!/bin/sh
-# key.sh NAME BUILD - what rows of a harness in runs.csv count for: the sources that it links (fuzz.mk), and its own; comments and spacing do not count.
-# BUILD is the folder of a build, for what is made out of the specification. From the project root.
+# key.sh NAME BUILD - what rows of a harness in runs.csv count for: the sources that it links
+# (fuzz.mk), and its own; comments and spacing do not count. BUILD is the folder of a build, for
+# what is made out of the specification. From the project root.
 # SPDX-License-Identifier: BSD-2-Clause
 set -eu
 name=$1 build=$2
 case " $(make -s fuzz-scenes) $name" in
 *" $name "*)     more='ref-encoder/data ref-decoder/tool' ;;
-*checkpoint)     more='ref-encoder/data ref-encoder/train ref-encoder/kernel ref-encoder/eval ref-decoder/render' ;;
+*checkpoint)     more='ref-encoder/data ref-encoder/train ref-encoder/kernel ref-encoder/eval
+                     ref-decoder/render' ;;
 *decode_chunked) more=ref-decoder/tool/read_file.c ;;
 *two_decoders)   more="tests/support/spec_tiers.h tests/spec/names.h $build/inc" ;;
 *)               more= ;;
 esac
 # shellcheck disable=SC2086 # several folders
 {
-    find ref-decoder/base ref-decoder/norm ref-decoder/read ref-decoder/kernel ref-decoder/recon ref-encoder/write $more \
+    find ref-decoder/base ref-decoder/norm ref-decoder/read ref-decoder/kernel \
+        ref-decoder/recon ref-encoder/write $more \
         tests/support/random_scene.h tests/support/random_source.h tests/support/recon_ref.h \
         tests/support/spec_model.h -name '*.[ch]' -o -name '*.def' -o -name '*.inc'
     find fuzz -name '*.[ch]' ! -name 'fz_*' -o -name "fz_$name.c"

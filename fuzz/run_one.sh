@@ -1,5 +1,6 @@
 #!/bin/sh
-# run_one.sh - one harness for run.sh, which says in the environment how: csv build kind total slice.
+# run_one.sh - one harness for run.sh, which passes csv, build, kind, total and slice in the
+# environment.
 # SPDX-License-Identifier: BSD-2-Clause
 set -eu
 name=$1
@@ -19,7 +20,9 @@ finds() {
 
 # Seconds in the rows of this harness and these sources.
 had() {
-    awk -F, -v h="$name" -v k="$kind" -v key="$key" '$1 == h && $2 == k && $3 == key { s += $4 } END { print s + 0 }' "$csv"
+    awk -F, -v h="$name" -v k="$kind" -v key="$key" '
+        $1 == h && $2 == k && $3 == key { s += $4 }
+        END { print s + 0 }' "$csv"
 }
 
 # What once was found is tried again, too.
@@ -32,12 +35,15 @@ while left=$((total - $(had))) && [ "$left" -gt 0 ]; do
     before=$(finds)
     mkdir -p "$scratch"
     # shellcheck disable=SC2086 # none or one
-    TMPDIR=$scratch "$build/fuzz/fuzz_$name" -max_total_time="$now" -max_len=4096 -dict=$dictionary -timeout=30 -rss_limit_mb=2500 \
-        -malloc_limit_mb=2500 -print_final_stats=1 -artifact_prefix="$build/found/$name-" "$own" "fuzz/corpus/$seeds" $found >"$log" 2>&1 || :
+    TMPDIR=$scratch "$build/fuzz/fuzz_$name" -max_total_time="$now" -max_len=4096 \
+        -dict=$dictionary -timeout=30 -rss_limit_mb=2500 -malloc_limit_mb=2500 \
+        -print_final_stats=1 -artifact_prefix="$build/found/$name-" \
+        "$own" "fuzz/corpus/$seeds" $found >"$log" 2>&1 || :
     rm -rf "$scratch"                   # libFuzzer ends without the handlers that would
     after=$(finds)
     grep -q '^stat::' "$log" || { echo "$name: did not run, see $log" >&2; exit 1; }
-    awk -v row="$name,$kind,$key,$now" -v finds=$((after - before)) -v inputs="$(find "$own" -type f | wc -l)" '
+    awk -v row="$name,$kind,$key,$now" -v finds=$((after - before)) \
+        -v inputs="$(find "$own" -type f | wc -l)" '
         / cov: / { for (i = 1; i < NF; i++) if ($i == "cov:") edges = $(i + 1) }
         /^stat::number_of_executed_units/ { n = $2 }
         /^stat::peak_rss_mb/ { peak = $2 }

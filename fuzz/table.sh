@@ -1,6 +1,7 @@
 #!/bin/sh
-# table.sh BUILD - what the rows of fuzz/runs.csv add up to, between the marks of fuzz/README.md; BUILD: the folder of a build with the present sources (key.sh).
-# run.sh calls it at its end. From the project root: fuzz/table.sh build-fuzz-asan
+# table.sh BUILD - what the rows of fuzz/runs.csv add up to, between the marks of fuzz/README.md;
+# BUILD: the folder of a build with the present sources (key.sh). run.sh calls it at its end. From
+# the project root: fuzz/table.sh build-fuzz-asan
 # SPDX-License-Identifier: BSD-2-Clause
 set -eu
 LC_ALL=C; export LC_ALL
@@ -12,10 +13,16 @@ for h in $(sed -n 's/,.*//p' fuzz/runs.csv | sed 1d | sort -u); do
     echo "$h $(fuzz/key.sh "$h" "$build")"
 done >"$new.keys"
 table() {
-    echo '| harness | build | hours, present sources | executions | finds | memory at most | hours, all sources | executions | finds |'
+    printf '| harness | build | hours, present sources | executions | finds | memory at most '
+    echo '| hours, all sources | executions | finds |'
     echo '|---|---|---|---|---|---|---|---|---|'
     awk -F, -v keys="$new.keys" '
-        BEGIN { while ((getline line < keys) > 0) { split(line, word, " "); key[word[1]] = word[2] } }
+        BEGIN {
+            while ((getline line < keys) > 0) {
+                split(line, word, " ")
+                key[word[1]] = word[2]
+            }
+        }
         FNR > 1 {
             h = $1 "` | " $2
             s[h] += $4; n[h] += $5; f[h] += $6
@@ -25,7 +32,8 @@ table() {
         }
         END {
             for (h in s)
-                printf "| `%s | %.2f | %d | %d | %d MB | %.2f | %d | %d |\n", h, now_s[h] / 3600, now_n[h], now_f[h], peak[h], s[h] / 3600, n[h], f[h]
+                printf "| `%s | %.2f | %d | %d | %d MB | %.2f | %d | %d |\n", h, \
+                    now_s[h] / 3600, now_n[h], now_f[h], peak[h], s[h] / 3600, n[h], f[h]
         }' fuzz/runs.csv | sort
 }
 awk '/^<!-- runs -->$/ { print; exit } { print }' fuzz/README.md >"$new"

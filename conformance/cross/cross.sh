@@ -1,20 +1,26 @@
 #!/bin/sh
-# cross.sh - our decoder, built in every way of builds.txt, against the conformance suite: results.csv and ../CROSS.md. `make cross`.
+# cross.sh - our decoder, built in every way of builds.txt, against the conformance suite:
+# results.csv and ../CROSS.md. `make cross`.
 # Usage, from anywhere:  conformance/cross/cross.sh [--list | --report] [PATTERN...]
 #     PATTERN...   builds whose name fits one of these shell patterns; all builds without any
 #     --list       says of each build what state it is in, and does nothing
 #     --report     only writes CROSS.md
-# A build is made and run when results.csv has no row of it that passed with these sources, this line of builds.txt and this compiler; comments and spacing of
-# sources do not count. The judge counts only for builds that are asked everything by the contract: two hashes say what a build answers, so that one build
-# judged again speaks for all that have the same. A build whose compiler or runner is missing is skipped, which is said; a row that it has of the same sources
-# stays. May be killed at any moment and called again, and several times at once for different compilers. Exit code: 0, or 1: a build fails, or two of them
-# disagree, or too few have passed (12, as skipped ones prove nothing; 1 with a PATTERN); 3: wrong usage, no suite, no libraries.
-# Environment: TED4_BUILD (build: where ted4conf is; it works in TED4_BUILD/cross), TED4_RESULTS (conformance: where cross/results.csv and CROSS.md are),
-# TED4_TABLE (conformance/cross/builds.txt).
+# A build is made and run when results.csv has no row of it that passed with these sources, this
+# line of builds.txt and this compiler; comments and spacing of sources do not count. The judge
+# counts only for builds that are asked everything by the contract: two hashes say what a build
+# answers, so that one build judged again speaks for all that have the same. A build whose compiler
+# or runner is missing is skipped, which is said; a row that it has of the same sources stays. May
+# be killed at any moment and called again, and several times at once for different compilers. Exit
+# code: 0, or 1: a build fails, or two of them disagree, or too few have passed (12, as skipped ones
+# prove nothing; 1 with a PATTERN); 3: wrong usage, no suite, no libraries.
+# Environment: TED4_BUILD (build: where ted4conf is; it works in TED4_BUILD/cross), TED4_RESULTS
+# (conformance: where cross/results.csv and CROSS.md are), TED4_TABLE
+# (conformance/cross/builds.txt).
 # SPDX-License-Identifier: BSD-2-Clause
 set -u
 program=cross.sh
-columns=name,key,compiler,class,vectors,passed,tier_e,class_x,contract_vectors,contract_passed,seconds,verdict
+columns=name,key,compiler,class,vectors,passed,tier_e,class_x
+columns=$columns,contract_vectors,contract_passed,seconds,verdict
 fields="name class compiler flags link runner again contract packages"
 . "$(dirname "$0")/../../bench/builds.sh"
 
@@ -46,14 +52,17 @@ enter() {
 # what_from: the sources, and the flags that the Makefile gives them
 what_from() {
     strict=$(sed -n 's/^STRICT *= *//p' Makefile)
-    avx512=$(sed -n 's/^.*_avx512\.o: FPFLAGS = \$(STRICT) *//p' Makefile)
-    vnni=$(sed -n 's/^.*_vnni\.o: FPFLAGS = \$(STRICT) *//p' Makefile)
+    avx512=$(sed -n 's/^AVX512 *= *//p' Makefile)
+    vnni=$(sed -n 's/^VNNI *= *//p' Makefile)
     [ -n "$strict" ] && [ -n "$avx512" ] && [ -n "$vnni" ] ||
         die "Makefile: STRICT or the flags of AVX-512 not found"
-    decoder=$(ls ref-decoder/base/*.c ref-decoder/norm/*.c ref-decoder/read/*.c ref-decoder/recon/*.c ref-decoder/kernel/*.c)
+    decoder=$(ls ref-decoder/base/*.c ref-decoder/norm/*.c ref-decoder/read/*.c \
+        ref-decoder/recon/*.c ref-decoder/kernel/*.c)
     program="conformance/cross/cross_decoder.c conformance/tool/answer.c conformance/tool/text.c
-        ref-decoder/tool/contract.c ref-decoder/tool/tier_hash.c ref-decoder/tool/sha256.c ref-decoder/tool/cli.c ref-decoder/tool/read_file.c"
-    judge="conformance/tool/judge.c conformance/tool/judge.h conformance/tool/process.h conformance/tool/suite.h"
+        ref-decoder/tool/contract.c ref-decoder/tool/tier_hash.c ref-decoder/tool/sha256.c
+        ref-decoder/tool/cli.c ref-decoder/tool/read_file.c"
+    judge="conformance/tool/judge.c conformance/tool/judge.h conformance/tool/process.h
+        conformance/tool/suite.h"
     headers=$(for f in answer text; do echo "conformance/tool/$f.h"; done
         for f in contract tier_hash sha256 cli; do echo "ref-decoder/tool/$f.h"; done)
     # Of zlib what works on bytes in memory.
@@ -65,14 +74,18 @@ what_from() {
 
 # suite_key FOLDER: of the suite's manifest and descriptors; the manifest has hashes of the files
 suite_key() {
-    { cat "$1/SUITE.json"; find "$1/vectors" -name '*.json' | sort | tr '\n' '\0' | xargs -0 cat; } | short_hash
+    {
+        cat "$1/SUITE.json"
+        find "$1/vectors" -name '*.json' | sort | tr '\n' '\0' | xargs -0 cat
+    } | short_hash
 }
 
 # sources_key: everything that the program is made from, and what it is asked
 sources_key() {
     {
-        awk -f bench/sources.awk $decoder $program ref-decoder/ted4.h ref-decoder/base/*.[hd]* ref-decoder/norm/*.h ref-decoder/read/*.[hd]* \
-            ref-decoder/recon/*.h ref-decoder/kernel/*.h $headers conformance/cross/windows.h
+        awk -f bench/sources.awk $decoder $program ref-decoder/ted4.h ref-decoder/base/*.[hd]* \
+            ref-decoder/norm/*.h ref-decoder/read/*.[hd]* ref-decoder/recon/*.h \
+            ref-decoder/kernel/*.h $headers conformance/cross/windows.h
         cat conformance/lists/few.txt conformance/cross/wasi.mjs
         echo "$strict $avx512 $vnni $suite"
     } | short_hash
@@ -89,31 +102,37 @@ missing() {
     missing_command ${compiler%% *} ${runner%% *}
 }
 
-# fetch: Debian's sources of zlib, Jansson and xxHash in $work/libraries, without touching this system
+# fetch: Debian's sources of zlib, Jansson and xxHash in $work/libraries, without touching this
+# system
 fetch() {
     [ -e "$work/libraries/ready" ] && return
     rm -rf "$work/libraries"
-    mkdir -p "$work/libraries/apt/state/lists/partial" "$work/libraries/apt/cache/archives/partial" "$work/libraries/apt/parts" || return 1
     a=$work/libraries/apt
+    mkdir -p "$a/state/lists/partial" "$a/cache/archives/partial" "$a/parts" || return 1
     # The system's own Debian sources, asked for source packages.
     for list in /etc/apt/sources.list.d/debian.sources /etc/apt/sources.list; do
-        [ -s "$list" ] && sed 's/^Types: deb$/Types: deb-src/; s/^deb /deb-src /' "$list" >"$a/parts/$(basename "$list" .list).${list##*.}"
+        [ -s "$list" ] && sed 's/^Types: deb$/Types: deb-src/; s/^deb /deb-src /' "$list" \
+            >"$a/parts/$(basename "$list" .list).${list##*.}"
     done
     (
         cd "$work/libraries" || exit 1
-        set -- -o "Dir::State=$a/state" -o "Dir::Cache=$a/cache" -o Dir::Etc::sourcelist=/dev/null -o "Dir::Etc::sourceparts=$a/parts" \
+        set -- -o "Dir::State=$a/state" -o "Dir::Cache=$a/cache" \
+            -o Dir::Etc::sourcelist=/dev/null -o "Dir::Etc::sourceparts=$a/parts" \
             -o APT::Sandbox::User=root
-        apt-get -qq "$@" update && apt-get -qq "$@" source zlib jansson xxhash && mv zlib-* zlib && mv jansson-* jansson && mv xxhash-* xxhash
+        apt-get -qq "$@" update && apt-get -qq "$@" source zlib jansson xxhash &&
+            mv zlib-* zlib && mv jansson-* jansson && mv xxhash-* xxhash
     ) >"$work/libraries/log" 2>&1 || { cat "$work/libraries/log" >&2; return 1; }
     (
         cd "$work/libraries" || exit 1
         mkdir include
         cp zlib/zlib.h zlib/zconf.h jansson/src/jansson.h xxhash/xxhash.h include/
-        sed 's/@json_inline@/inline/; s/@json_have_long_long@/1/; s/@json_have_localeconv@/1/; s/@json_have_[a-z]*_builtins@/0/' \
+        sed 's/@json_inline@/inline/; s/@json_have_long_long@/1/; s/@json_have_localeconv@/1/
+            s/@json_have_[a-z]*_builtins@/0/' \
             jansson/src/jansson_config.h.in >include/jansson_config.h
         {
-            for header in STDINT UNISTD SYS_TIME SYS_TYPES; do echo "#define HAVE_${header}_H 1"; done
-            for function in STRTOLL SNPRINTF LOCALECONV; do echo "#define HAVE_$function 1"; done
+            for have in STDINT_H UNISTD_H SYS_TIME_H SYS_TYPES_H STRTOLL SNPRINTF LOCALECONV; do
+                echo "#define HAVE_$have 1"
+            done
         } >jansson/src/jansson_private_config.h
     ) && touch "$work/libraries/ready"
 }
@@ -126,8 +145,10 @@ prepare() {
     rm -rf "$part"
     mkdir -p "$part/suite" || return 1
     cp -R "$root/conformance/vectors" "$root/conformance/SUITE.json" "$part/suite/" || return 1
-    [ "$suite" = "$work/suite-$(suite_key "$part/suite")" ] || die "the suite changes while it is copied"
-    (cd "$root" && "$build/ted4conf" gen --demand -o "$part/made/vectors") >"$part/log" || { cat "$part/log" >&2; return 1; }
+    [ "$suite" = "$work/suite-$(suite_key "$part/suite")" ] ||
+        die "the suite changes while it is copied"
+    (cd "$root" && "$build/ted4conf" gen --demand -o "$part/made/vectors") >"$part/log" ||
+        { cat "$part/log" >&2; return 1; }
     (cd "$part/made" && find . -name '*.ted4') | while read -r file; do
         [ -e "$part/suite/$file" ] || cp "$part/made/$file" "$part/suite/$file"
     done
@@ -140,8 +161,8 @@ objects() {
     folder=$1 options=$2
     shift 2
     for source in "$@"; do
-        $compiler -std=c11 -D_POSIX_C_SOURCE=200809L $machine -I"$work/libraries/include" $options -c "$source" \
-            -o "$folder/$(basename "$source" .c).o" || return 1
+        $compiler -std=c11 -D_POSIX_C_SOURCE=200809L $machine -I"$work/libraries/include" \
+            $options -c "$source" -o "$folder/$(basename "$source" .c).o" || return 1
     done
 }
 
@@ -150,7 +171,8 @@ make_libraries() {
     others=$work/libraries/made-$(echo "$compiler $(version)" | short_hash) from=$work/libraries
     [ ! -e "$others/ready" ] || return 0
     objects "$others" "-O2 -w -DHAVE_UNISTD_H" $(for f in $zlib; do echo "$from/zlib/$f.c"; done) &&
-        objects "$others/jansson" "-O2 -w -DHAVE_CONFIG_H -I$from/jansson/src" "$from"/jansson/src/*.c &&
+        objects "$others/jansson" "-O2 -w -DHAVE_CONFIG_H -I$from/jansson/src" \
+            "$from"/jansson/src/*.c &&
         objects "$others/xxhash" "-O2 -w" "$from/xxhash/xxhash.c" && touch "$others/ready"
 }
 
@@ -184,23 +206,30 @@ compile() {
 # judge FILE [NAME=VALUE]: the whole suite in one process; what it prints in FILE
 judge() {
     env ${2:-NOTHING=} $runner "$here/program" "$suite" 2>"$1.stderr" | tr -d '\r' >"$1"
-    grep -q '^tier-e ' "$1" || { echo "does not come to its end: $(tail -n 1 "$1.stderr")"; return 1; }
-    grep '^fail ' "$1" >"$1.failures" && { echo "$(grep -c . "$1.failures") vectors fail: $(cut -d' ' -f2- "$1.failures" | head -n 3 | tr ',\n' '; ')"; return 1; }
-    return 0
+    grep -q '^tier-e ' "$1" ||
+        { echo "does not come to its end: $(tail -n 1 "$1.stderr")"; return 1; }
+    grep '^fail ' "$1" >"$1.failures" || return 0
+    first=$(cut -d' ' -f2- "$1.failures" | head -n 3 | tr ',\n' '; ')
+    echo "$(grep -c . "$1.failures") vectors fail: $first"
+    return 1
 }
 
-# by_contract: the suite, or few of it, by processes of their own; sets contract_vectors, contract_passed
+# by_contract: the suite, or few of it, by processes of their own; sets contract_vectors,
+# contract_passed
 by_contract() {
     list="--list conformance/lists/few.txt"
     [ "$contract" = few ] || list=
     memory=; [ -z "$runner" ] || memory="--memory 0"
-    TMPDIR=$here "$build/ted4conf" run --suite "$suite" --once -j 1 --timeout 600 $memory $list --decoder "$runner $here/program" \
-        --json "$here/contract.json" >"$here/contract.log" 2>&1
+    log=$here/contract.log
+    TMPDIR=$here "$build/ted4conf" run --suite "$suite" --once -j 1 --timeout 600 $memory $list \
+        --decoder "$runner $here/program" --json "$here/contract.json" >"$log" 2>&1
     code=$?
-    contract_passed=$(sed -n 's/^.*: \([0-9]*\) passed, .*/\1/p' "$here/contract.log")
-    contract_vectors=$(sed -n 's/^.*: \([0-9]*\) passed, \([0-9]*\) failed, \([0-9]*\) without answer, \([0-9]*\) missing.*/\1 \2 \3 \4/p' "$here/contract.log" |
+    contract_passed=$(sed -n 's/^.*: \([0-9]*\) passed, .*/\1/p' "$log")
+    n='\([0-9]*\)'
+    contract_vectors=$(
+        sed -n "s/^.*: $n passed, $n failed, $n without answer, $n missing.*/\1 \2 \3 \4/p" "$log" |
         awk '{ print $1 + $2 + $3 + $4 }')
-    [ $code = 0 ] || { echo "by the contract: $(tail -n 1 "$here/contract.log" | tr ',' ';')"; return 1; }
+    [ $code = 0 ] || { echo "by the contract: $(tail -n 1 "$log" | tr ',' ';')"; return 1; }
 }
 
 # try: compiles and runs the build; sets verdict and the columns
@@ -256,7 +285,8 @@ summary() {
         $7 != "" && !($7 in e) { e[$7]; n_e++; one_e = $7 }
         $8 != "" && !($8 in c) { c[$8]; n_c++; one_c = $8 }
         END { print n + 0 " builds passed, " NR - n " failed."
-              print "Tier E: " (n_e == 1 ? "one hash, `" one_e "`, in every build." : n_e + 0 " different hashes.")
+              print "Tier E: " (n_e == 1 ? "one hash, `" one_e "`, in every build." : \
+                  n_e + 0 " different hashes.")
               print "Class X: " (n_c == 1 ? "one hash, `" one_c "`, in all " x + 0 \
                   " passing builds that claim it." : n_c + 0 " different hashes.") }' "$own/counted"
 }
@@ -266,7 +296,8 @@ agree() {
     summary
     least=12 passed=$(cut -d, -f12 "$own/counted" | grep -cx passed)
     [ -z "$patterns" ] || least=1
-    [ "$passed" -ge $least ] || { echo "cross.sh: $passed builds passed; at least $least have to" >&2; return 1; }
+    [ "$passed" -ge $least ] ||
+        { echo "cross.sh: $passed builds passed; at least $least have to" >&2; return 1; }
     [ "$passed" = "$(grep -c . "$own/counted")" ] &&
         [ "$(cut -d, -f7 "$own/counted" | sort -u | grep -c .)" = 1 ] &&
         [ "$(cut -d, -f8 "$own/counted" | grep . | sort -u | grep -c .)" -le 1 ]

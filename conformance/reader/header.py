@@ -24,7 +24,8 @@ ELEMENTS = (
 ARRAYS = ("slice", "step", "origin", "background")
 FLOATS = ("step", "origin")
 
-# R-HDR-002: does the element contradict earlier ones? "0 when ..., else 1 .." is a comparison of two truths.
+# R-HDR-002: does the element contradict earlier ones? "0 when ..., else 1 .." is a comparison of
+# two truths.
 CONTRADICTS = {
     "phi_dim": lambda h: (h.phi_dim > 0) != (h.motion in (BANK, CONCAT)),
     "bank_rows": lambda h: (h.bank_rows > 0) != (h.motion in (BANK, CONCAT)),

@@ -72,5 +72,6 @@ with localcontext() as context:
     SIN = [rne(4096 * s) for s in sine_table()]
     steps = power_table(128, 256, 32)
     STEPI = [rne(4096 * s) for s in steps]
-    # A binary32 significand has 24 bits; exponents lie between -4 and 3, where nothing is subnormal.
+    # A binary32 significand has 24 bits; exponents lie between -4 and 3, where nothing is
+    # subnormal.
     STEP = [rne(s * 2 ** (23 - (i - 128) // 32)) / 2.0 ** (23 - (i - 128) // 32) for i, s in enumerate(steps)]

@@ -143,7 +143,8 @@ class Level(unittest.TestCase):
         # 100 anchors with 4 + 6 + 6 + 2 + 4 components: 2200 symbols, 8.6 bytes at 256 a byte.
         self.assertIsNone(judged(MOVING, 1, 9))
         self.assertEqual(("lvl.exceeded", "reserved"), judged(MOVING, 1, 8))
-        # Three hidden layers of 181 have 65522 products, inputs and outputs not counted; four of 512 more than level 4 takes.
+        # Three hidden layers of 181 have 65522 products, inputs and outputs not counted; four of
+        # 512 more than level 4 takes.
         self.assertEqual(("lvl.exceeded", "reserved"), judged(MOVING, 1, hyper_layers=3, hyper_width=181))
         self.assertEqual(("lvl.exceeded", "reserved"), judged(MOVING, 4, hyper_layers=4, hyper_width=512))
         self.assertEqual(("lvl.exceeded", "reserved"), judged(MOVING, 1, frames=64, bank_rows=64, bank_dim=512, deform_layers=8, deform_width=512))

@@ -11,7 +11,8 @@ from rans import Substream
 from tables import STEPI
 from verdict import require
 
-# One component of a type: the anchors of the tile that have it, and for each of them sigma index, mu (Q8) and symbol.
+# One component of a type: the anchors of the tile that have it, and for each of them sigma index,
+# mu (Q8) and symbol.
 Component = namedtuple("Component", "anchors sigma mu k")
 
 

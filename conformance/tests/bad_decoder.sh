@@ -4,6 +4,9 @@
 way=$1
 shift
 good() { "$TED4DEC" "$@"; }
+# declining FEATURES ARGUMENT...: good, but declines the features of a list in JSON
+declining() { features=$1; shift; good "$@" | sed "s/\"declines\":\[\]/\"declines\":[$features]/"; }
+valid='{"result":"valid","tiers":{}}' limit='{"result":"limit","error":"limit.memory"}'
 case $way in
 class-t-*) exec python3 "$(dirname "$0")/class_t.py" "${way#class-t-}" "$@" ;;
 esac
@@ -11,10 +14,11 @@ if [ "$1" = --ted4-capabilities ]; then
     case $way in
     no-capabilities) exit 0 ;;
     old-protocol) good "$@" | sed 's/"protocol":1/"protocol":0/' ;;
-    declines-all) good "$@" | sed 's/"declines":\[\]/"declines":["motion.none","motion.bank","motion.concat","motion.inr"]/' ;;
-    declines-moving) good "$@" | sed 's/"declines":\[\]/"declines":["motion.bank","motion.concat","motion.inr"]/' ;;
+    declines-all) declining '"motion.none","motion.bank","motion.concat","motion.inr"' "$@" ;;
+    declines-moving) declining '"motion.bank","motion.concat","motion.inr"' "$@" ;;
     not-lenient) good "$@" | sed 's/"lenient":true/"lenient":false/' ;;
-    fewer-tiers) good "$@" | sed 's/"tiers":\[[^]]*\],"class":"X"/"tiers":["T0","T3"],"class":null/' ;;
+    fewer-tiers) good "$@" |
+        sed 's/"tiers":\[[^]]*\],"class":"X"/"tiers":["T0","T3"],"class":null/' ;;
     class-alone) good "$@" | sed 's/,"T5"//' ;;
     limit-above-1) good "$@" | sed 's/"max_level":31/"max_level":1/' ;;
     no-knobs) good "$@" | sed 's/"knobs":\["max_alloc_total","max_work"\]/"knobs":[]/' ;;
@@ -37,9 +41,11 @@ no-utf8) printf '{"result":"valid","x":"\377"}\n' ;;
 flood) head -c 9000000 /dev/zero | tr '\0' ' '; good "$@" ;;
 says-valid) echo '{"result":"valid"}' ;;
 says-invalid) echo '{"result":"invalid","error":"con.magic","offset":0}' ;;
-limit-above-1) if [ "$(od -An -tu1 -j11 -N1 "$2")" -gt 1 ]; then echo '{"result":"limit","error":"limit.memory"}'; else good "$@"; fi ;;
-says-limit) echo '{"result":"limit","error":"limit.memory"}' ;;
-wrong-hash) good "$@" | sed 's/\("T3":{"bytes":[0-9]*,"xxh3":"\)./\1x/; s/\("T3":{[^}]*"sha256":"\)./\1x/' ;;
+limit-above-1)
+    if [ "$(od -An -tu1 -j11 -N1 "$2")" -gt 1 ]; then echo "$limit"; else good "$@"; fi ;;
+says-limit) echo "$limit" ;;
+wrong-hash) good "$@" |
+    sed 's/\("T3":{"bytes":[0-9]*,"xxh3":"\)./\1x/; s/\("T3":{[^}]*"sha256":"\)./\1x/' ;;
 half-wrong) good "$@" | sed 's/\("T2":{[^}]*"sha256":"\)./\1x/' ;;
 no-hashes) good "$@" | sed 's/"xxh3":"[0-9a-f]*"/"none":0/g; s/"sha256":"[0-9a-f]*"/"no":0/g' ;;
 no-tier) good "$@" | sed 's/"T4":{[^}]*},//' ;;
@@ -55,7 +61,7 @@ salvages-always) case "$*" in
     *lenient*) good "$@" | sed '/salvage/!s/}$/,"salvage":{"tiles":1}}/' ;;
     *) good "$@" ;;
     esac ;;
-salvages-and-forgives) case "$*" in *lenient*) echo '{"result":"valid","tiers":{}}' ;; *) good "$@" ;; esac ;;
-moody) if mkdir "$MOOD" 2>/dev/null; then good "$@"; else rmdir "$MOOD"; echo '{"result":"valid","tiers":{}}'; fi ;;
+salvages-and-forgives) case "$*" in *lenient*) echo "$valid" ;; *) good "$@" ;; esac ;;
+moody) if mkdir "$MOOD" 2>/dev/null; then good "$@"; else rmdir "$MOOD"; echo "$valid"; fi ;;
 spoils-input) good "$@"; chmod u+w "$2"; : > "$2" ;;
 esac

@@ -1,6 +1,7 @@
 #!/bin/sh
 # Encoders that do not conform, each in its own way: ted4conf encode has to see through all of them.
-#     bad_encoder.sh WAY ARGUMENTS OF THE CONTRACT...       MADE: a file, and MADE.json the answer of the encoder that made it
+#     bad_encoder.sh WAY ARGUMENTS OF THE CONTRACT...
+# MADE: a file, and MADE.json the answer of the encoder that made it.
 way=$1
 shift
 while [ $# -gt 0 ]; do
@@ -11,7 +12,9 @@ suite=conformance/vectors
 case $way in
 no-file) ;;
 broken) head -c 200 "$MADE" >"$out" ;;
-level-too-low) { head -c 11 "$suite/valid/levels/LVL-frames-65.ted4"; printf '\001'; tail -c +13 "$suite/valid/levels/LVL-frames-65.ted4"; } >"$out" ;;
+level-too-low)
+    file=$suite/valid/levels/LVL-frames-65.ted4
+    { head -c 11 "$file"; printf '\001'; tail -c +13 "$file"; } >"$out" ;;
 wasteful) cp "$WASTE" "$out" ;;
 *) cp "$MADE" "$out" ;;
 esac

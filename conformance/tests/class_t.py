@@ -1,7 +1,9 @@
 #!/usr/bin/env python3
-# class_t.py - decoders that claim class T, some of them wrongly: the answers and records of $TED4DEC, changed by so much as WAY says.
+# class_t.py - decoders that claim class T, some of them wrongly: the answers and records of
+# $TED4DEC, changed by so much as WAY says.
 #     class_t.py WAY ARGUMENTS OF THE CONTRACT...
-# Thresholds of a file are those that conformance/tolerance/thresholds.csv has for the vector with its hash. Run in the project's root, by bad_decoder.sh.
+# Thresholds of a file are those that conformance/tolerance/thresholds.csv has for the vector with
+# its hash. Run in the project's root, by bad_decoder.sh.
 # SPDX-License-Identifier: BSD-2-Clause
 import csv
 import hashlib

@@ -4,7 +4,7 @@
 # nothing between calls: no variable of a file or function that can change. Its folders are those of
 # DEC_SRC in the Makefile; render/ draws for programs and is a library of its own.
 bad=0
-folders=$(sed -n 's/^DEC_SRC.*addprefix ref-decoder\/,\([^)]*\)).*/\1/p' Makefile |
+folders=$(sed -n '/^DEC_SRC/,/)))/s/.*addprefix ref-decoder\/,\([^)]*\)).*/\1/p' Makefile |
     tr ' ,' '\n\n' | sed 's/\/\*\.c$//')
 [ -n "$folders" ] || { echo "Makefile: no folders in DEC_SRC"; bad=1; }
 for f in $(for d in $folders; do ls ref-decoder/$d/*.[ch]; done); do
