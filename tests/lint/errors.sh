@@ -1,8 +1,11 @@
 #!/bin/sh
-# The table of identifiers in chapter 14 is status.def, line for line. `sh tests/lint/errors.sh
+# The table of identifiers in chapter 14 is status.def, entry for entry. `sh tests/lint/errors.sh
 # print` prints the table to paste.
 table() {
-    sed -n 's/^TED4_STATUS(E_[A-Z_]*, *"\([^"]*\)", *"\([^"]*\)", *"\([^"]*\)")/| `\1` | \2 | \3 |/p' ref-decoder/base/status.def
+    sed -n '/^TED4_STATUS(E_/{
+        N
+        s/^[^"]*"\([^"]*\)", *"\([^"]*\)",\n *"\([^"]*\)")$/| `\1` | \2 | \3 |/p
+    }' ref-decoder/base/status.def
 }
 if [ "$1" = print ]; then table; exit 0; fi
 for t in "$(table)"; do

@@ -20,8 +20,11 @@ function result(id) {
     return id == "rec.non-finite" || id == "query.range" ? "query" : "invalid"
 }
 
-/^TED4_STATUS\(/ {
-    split($0, part, "\"")
+# An entry: its text is on a line of its own.
+/^TED4_STATUS\(/ { entry = "" }
+{ entry = entry $0 }
+entry ~ /^TED4_STATUS\(.*"\)$/ {
+    split(entry, part, "\"")
     printf "%s{\"id\":\"%s\",\"result\":\"%s\",\"section\":\"%s\",\"text\":\"%s\",", next_line, \
         part[2], result(part[2]), part[4], part[6]
     printf "\"rules\":[%s]}", rules[part[2]]
