@@ -1,11 +1,15 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: BSD-2-Clause
-"""Asks two decoders that keep the driver contract (conformance/) about changed files, and compares what they say.
+"""Asks two decoders that keep the driver contract (conformance/) about changed files, and compares
+what they say.
 
-    two_decoders.py [--seconds N] [--seed N] [--ours CMD] [--other CMD] [--mutate CMD] [--keep DIR] [FILE...]
+    two_decoders.py [--seconds N] [--seed N] [--ours CMD] [--other CMD] [--mutate CMD] [--keep DIR]
+        [FILE...]
 
-Files are changed by the program mutate (mutate_tool.c), one change on top of another while they stay small. Verdict, identifier, offset and the hashes of
-tiers T0 to T4 must be equal; a file for which they are not is kept. A limit (limit.*) of either is not compared. Exit status: 1 when one was kept.
+Files are changed by the program mutate (mutate_tool.c), one change on top of another while they
+stay small. Verdict, identifier, offset and the hashes of tiers T0 to T4 must be equal; a file for
+which they are not is kept. A limit (limit.*) of either is not compared. Exit status: 1 when one was
+kept.
 """
 
 import argparse
@@ -51,7 +55,8 @@ def parse():
     parser.add_argument("--seconds", type=float, default=60)
     parser.add_argument("--seed", type=int, default=1)
     parser.add_argument("--ours", type=shlex.split, default=["build/ted4dec"])
-    parser.add_argument("--other", type=shlex.split, default=["python3", "conformance/reader/reader.py"])
+    parser.add_argument("--other", type=shlex.split,
+                        default=["python3", "conformance/reader/reader.py"])
     parser.add_argument("--mutate", type=shlex.split, default=["build/fuzz/mutate"])
     parser.add_argument("--keep", default="build/two_decoders")
     parser.add_argument("files", nargs="*")
@@ -80,7 +85,8 @@ def change(options, chance, files, folder):
 def answer(command, path):
     """What a decoder says; {} when it says nothing that can be used."""
     try:
-        run = subprocess.run(command + ["--ted4-run", path, "--tiers", TIERS], capture_output=True, timeout=LONGEST, check=False)
+        run = subprocess.run(command + ["--ted4-run", path, "--tiers", TIERS], capture_output=True,
+                             timeout=LONGEST, check=False)
         said = json.loads(run.stdout)
     except (subprocess.TimeoutExpired, ValueError):
         return {}
@@ -90,7 +96,8 @@ def answer(command, path):
 def same(a, b):
     if "limit" in (a.get("result"), b.get("result")):
         return True
-    return bool(a) and all(a.get(name) == b.get(name) for name in ("result", "error", "offset", "tiers"))
+    return bool(a) and all(a.get(name) == b.get(name)
+                           for name in ("result", "error", "offset", "tiers"))
 
 
 def keep(options, path, answers, number):
@@ -103,7 +110,8 @@ def keep(options, path, answers, number):
 
 
 def brief(said):
-    return " ".join(str(said.get(name)) for name in ("result", "error", "offset")) if said else "no answer"
+    return " ".join(str(said.get(name))
+                    for name in ("result", "error", "offset")) if said else "no answer"
 
 
 if __name__ == "__main__":

@@ -1,14 +1,16 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: BSD-2-Clause
-"""The contract of conformance/README.md for a decoder that prints lines, such as firmware behind a serial port.
+"""The contract of conformance/README.md for a decoder that prints lines, such as firmware behind a
+serial port.
 
     ted4conf run --decoder 'python3 conformance/adapters/line.py CMD'
 
-CMD is run as `CMD` (who are you?) and as `CMD FILE [NUM DEN X Y Z]...` (a file, and queries); what it prints on stdout is looked at only where a line begins
-with "TED4-1 ":
+CMD is run as `CMD` (who are you?) and as `CMD FILE [NUM DEN X Y Z]...` (a file, and queries); what
+it prints on stdout is looked at only where a line begins with "TED4-1 ":
 
     TED4-1 decoder NAME VERSION LEVEL CLASS     LEVEL: the highest; CLASS: X, or - (no T5)
-    TED4-1 valid T3 HEX                         a line a tier; T5: a line a query, in order, with HEX or why it has no result
+    TED4-1 valid T3 HEX                         a line a tier; T5: a line a query, in order, with
+                                                HEX or why it has no result
     TED4-1 invalid ID OFFSET
     TED4-1 unsupported ID OFFSET
     TED4-1 limit ID
@@ -29,8 +31,10 @@ class NoAnswer(Exception):
 
 
 def lines(command, arguments):
-    run = subprocess.run(command + arguments, stdin=subprocess.DEVNULL, stdout=subprocess.PIPE, check=False)
-    said = [line.strip()[len(MARK):].split() for line in run.stdout.decode("ascii", "replace").splitlines() if line.startswith(MARK)]
+    run = subprocess.run(command + arguments, stdin=subprocess.DEVNULL, stdout=subprocess.PIPE,
+                         check=False)
+    said = [line.strip()[len(MARK):].split()
+            for line in run.stdout.decode("ascii", "replace").splitlines() if line.startswith(MARK)]
     if run.returncode != 0 or not said or said[-1] != ["end"]:
         raise NoAnswer("exit status %d, %d lines" % (run.returncode, len(said)))
     return said[:-1]
@@ -42,8 +46,10 @@ def capabilities(command):
         raise NoAnswer("no line of a decoder")
     _, name, version, level, arithmetic = said[0]
     exact = arithmetic == "X"
-    return {"protocol": 1, "name": name, "version": version, "spec": "1.0", "profiles": ["Main"], "max_level": int(level),
-            "tiers": ["T0", "T1", "T2", "T3", "T4"] + (["T5"] if exact else []), "class": "X" if exact else None, "strict": True, "declines": [],
+    return {"protocol": 1, "name": name, "version": version, "spec": "1.0", "profiles": ["Main"],
+            "max_level": int(level),
+            "tiers": ["T0", "T1", "T2", "T3", "T4"] + (["T5"] if exact else []),
+            "class": "X" if exact else None, "strict": True, "declines": [],
             "knobs": []}
 
 
@@ -90,7 +96,8 @@ def main(arguments):
         print(__doc__, file=sys.stderr)
         return 3
     try:
-        reply = capabilities(command) if arguments[at] == "--ted4-capabilities" else run(command, arguments[at + 1], arguments[at + 2:])
+        reply = (capabilities(command) if arguments[at] == "--ted4-capabilities"
+                 else run(command, arguments[at + 1], arguments[at + 2:]))
     except (NoAnswer, ValueError, IndexError) as why:
         print("line.py: no answer: %s" % why, file=sys.stderr)
         return 1

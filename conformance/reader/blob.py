@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: BSD-2-Clause
-"""Tensor blobs (7.2): the f32 values of networks and bank, raw, or shuffled and deflated. Order of judgement: R-NET-010."""
+"""Tensor blobs (7.2): the f32 values of networks and bank, raw, or shuffled and deflated. Order of
+judgement: R-NET-010."""
 
 import struct
 import zlib
@@ -9,7 +10,8 @@ from verdict import Refusal, require
 
 
 class Blob:
-    """`patterns` of the values in order. offset(i) is where an error of value i is reported (chapter 14)."""
+    """`patterns` of the values in order. offset(i) is where an error of value i is reported
+    (chapter 14)."""
 
     def __init__(self, payload, name, count):
         self.start = payload.at + 1
@@ -31,9 +33,11 @@ class Blob:
 
 
 def inflate(stream, size, offset):
-    """R-NET-001. Asking for one byte more than `size` lets zlib reach the stream's end and its check sum, and never make more than that.
+    """R-NET-001. Asking for one byte more than `size` lets zlib reach the stream's end and its
+    check sum, and never make more than that.
 
-    The inflate of zlib answers every point of R-NET-007 as that rule does; test_deflate.py has streams for each.
+    The inflate of zlib answers every point of R-NET-007 as that rule does; test_deflate.py has
+    streams for each.
     """
     inflater = zlib.decompressobj()
     try:

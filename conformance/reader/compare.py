@@ -1,11 +1,13 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: BSD-2-Clause
-"""The reader and another decoder, side by side on streams that neither has seen: drawn ones (sample.py), valid and broken.
+"""The reader and another decoder, side by side on streams that neither has seen: drawn ones
+(sample.py), valid and broken.
 
     compare.py --decoder 'CMD' [--seeds FIRST:END] [--broken N] [--keep FOLDER] [FILE.ted4 ...]
 
-CMD speaks the contract of ../README.md. Of each seed (or file) the whole stream is compared in T0 to T5, then N broken ones in verdict, identifier and
-offset. A difference is printed and its stream kept in FOLDER (default: here). Exit status 1 when there was one.
+CMD speaks the contract of ../README.md. Of each seed (or file) the whole stream is compared in T0
+to T5, then N broken ones in verdict, identifier and offset. A difference is printed and its stream
+kept in FOLDER (default: here). Exit status 1 when there was one.
 """
 
 import argparse
@@ -21,16 +23,20 @@ import tempfile
 import reader
 from sample import chunk, random_stream
 
-QUERIES = [{"t": [0, 1], "cam": [0, 0, 0]}, {"t": [1, 3], "cam": [1, -2.5, 3]}, {"t": [1, 1], "cam": [-8, 0.25, 1]},
+QUERIES = [{"t": [0, 1], "cam": [0, 0, 0]}, {"t": [1, 3], "cam": [1, -2.5, 3]},
+           {"t": [1, 1], "cam": [-8, 0.25, 1]},
            {"t": [16777214, 16777215], "cam": [2.0 ** 100, 0, 0]}, {"t": [3, 2], "cam": [0, 0, 0]}]
 
 
 def main():
-    parser = argparse.ArgumentParser(description="Compares the reader with another decoder on drawn streams.")
-    parser.add_argument("--decoder", required=True, type=shlex.split, help="command of the other decoder")
+    parser = argparse.ArgumentParser(
+        description="Compares the reader with another decoder on drawn streams.")
+    parser.add_argument("--decoder", required=True, type=shlex.split,
+                        help="command of the other decoder")
     parser.add_argument("--seeds", default="0:20", help="FIRST:END")
     parser.add_argument("--broken", type=int, default=5, help="broken streams of each whole one")
-    parser.add_argument("--keep", default=".", metavar="FOLDER", help="where streams go that show a difference")
+    parser.add_argument("--keep", default=".", metavar="FOLDER",
+                        help="where streams go that show a difference")
     parser.add_argument("files", nargs="*", help="streams instead of seeds")
     options = parser.parse_args()
     first, end = map(int, options.seeds.split(":"))
@@ -44,7 +50,9 @@ def main():
                 compared += 1
                 if not agree(options.decoder, folder, case, whole=number == 0):
                     different += 1
-                    keep(os.path.join(options.keep, "differs-%s-%d.ted4" % (os.path.basename(str(name)), number)), case)
+                    keep(os.path.join(options.keep,
+                                      "differs-%s-%d.ted4" % (os.path.basename(str(name)), number)),
+                         case)
     print("%d streams compared, %d differ" % (compared, different))
     return 1 if different else 0
 
@@ -62,9 +70,12 @@ def agree(command, folder, data, whole):
         file.write(data)
     with open(queries, "w", encoding="utf-8") as file:
         json.dump(QUERIES, file)
-    arguments = ["--ted4-run", path] + (["--tiers", "T0,T1,T2,T3,T4,T5", "--queries", queries] if whole else [])
+    arguments = ["--ted4-run", path]
+    if whole:
+        arguments += ["--tiers", "T0,T1,T2,T3,T4,T5", "--queries", queries]
     ours = reader.run(reader.parse(arguments))
-    theirs = json.loads(subprocess.run(command + arguments, stdout=subprocess.PIPE, check=True).stdout)
+    theirs = json.loads(
+        subprocess.run(command + arguments, stdout=subprocess.PIPE, check=True).stdout)
     if ours["result"] == theirs["result"] == "valid" and not whole:
         return True
     if ours != theirs:
@@ -73,7 +84,8 @@ def agree(command, folder, data, whole):
 
 
 def broken(rng, data):
-    """One or two changes, hashes of chunks repaired after most of them, so that they reach pass 2."""
+    """One or two changes, hashes of chunks repaired after most of them, so that they reach pass
+    2."""
     chunks, at = [], 12
     while at < len(data):
         flags, size = struct.unpack_from("<II", data, at + 4)
@@ -81,7 +93,8 @@ def broken(rng, data):
         at += 20 + size
     for _ in range(rng.choice((1, 1, 1, 2))):
         change(rng, chunks)
-    result = data[:12] + b"".join(chunk(kind, bytes(payload), flags) for kind, payload, flags in chunks)
+    result = data[:12] + b"".join(chunk(kind, bytes(payload), flags)
+                                  for kind, payload, flags in chunks)
     if rng.random() < 0.1:
         result = result[:rng.randrange(len(result) + 1)]
     if rng.random() < 0.1 and result:
@@ -91,12 +104,14 @@ def broken(rng, data):
 
 
 def change(rng, chunks):
-    """A change of one payload byte most of the time; else of a payload's size, of flags, of the list of chunks."""
+    """A change of one payload byte most of the time; else of a payload's size, of flags, of the
+    list of chunks."""
     i = rng.randrange(len(chunks))
     payload, way = chunks[i][1], rng.random()
     if way < 0.8 and payload:
         position = rng.randrange(min(len(payload), rng.choice((8, 100, 1 << 30))))
-        payload[position] = rng.choice((payload[position] ^ 1 << rng.randrange(8), rng.randrange(256), 0, 255, 128))
+        payload[position] = rng.choice(
+            (payload[position] ^ 1 << rng.randrange(8), rng.randrange(256), 0, 255, 128))
     elif way < 0.85:
         del payload[rng.randrange(len(payload) + 1):]
     elif way < 0.9:
@@ -104,7 +119,8 @@ def change(rng, chunks):
     elif way < 0.92:
         chunks[i][2] = rng.choice((0, 2, 3, 5, 1 << 31))
     elif way < 0.94:
-        chunks.insert(i, [rng.choice((b"META", b"xabc", b"HEAD", b"TILE", b"a-bc")), bytearray(rng.randrange(3)), rng.choice((0, 1, 2, 3))])
+        chunks.insert(i, [rng.choice((b"META", b"xabc", b"HEAD", b"TILE", b"a-bc")),
+                          bytearray(rng.randrange(3)), rng.choice((0, 1, 2, 3))])
     elif way < 0.96:
         del chunks[i]
     elif way < 0.98:

@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: BSD-2-Clause
-"""Pass 1 (5.3, R-CON-010): file header, file size, chunk frames, hashes and order. Nothing of a payload is looked at."""
+"""Pass 1 (5.3, R-CON-010): file header, file size, chunk frames, hashes and order. Nothing of a
+payload is looked at."""
 
 from collections import namedtuple
 
@@ -13,7 +14,8 @@ FRAME = 12                          # type, flags, size
 CRITICAL, SAFE_TO_COPY = 1, 2
 
 # What may follow what (R-CON-003); ancillary chunks may lie anywhere behind HEAD.
-FOLLOWS = {None: ("HEAD",), "HEAD": ("NETE",), "NETE": ("NETR",), "NETR": ("BANK", "POSN"), "BANK": ("POSN",),
+FOLLOWS = {None: ("HEAD",), "HEAD": ("NETE",), "NETE": ("NETR",), "NETR": ("BANK", "POSN"),
+           "BANK": ("POSN",),
            "POSN": ("TILE",), "TILE": ("TILE", "ENDS")}
 KNOWN = ("HEAD", "NETE", "NETR", "BANK", "POSN", "TILE", "ENDS")
 
@@ -36,7 +38,8 @@ def pass_one(data):
 
 
 def file_header(data):
-    """5.1, R-CON-001; each element is judged when its bytes are there. Then the file size, which breaks its bound at `level`."""
+    """5.1, R-CON-001; each element is judged when its bytes are there. Then the file size, which
+    breaks its bound at `level`."""
     require(len(data) >= 8, "con.truncated", len(data))
     require(data[:8] == MAGIC, "con.magic", 0)
     require(len(data) > 8, "con.truncated", len(data))
@@ -55,17 +58,20 @@ def frame(data, at):
     begin = at + FRAME
     end = begin + int.from_bytes(data[at + 8:at + 12], "little")
     require(len(data) - end >= 8, "con.truncated", len(data))
-    require(xxh3_64(data[at:end]) == int.from_bytes(data[end:end + 8], "little"), "con.chunk-hash", at)
+    require(xxh3_64(data[at:end]) == int.from_bytes(data[end:end + 8], "little"),
+            "con.chunk-hash", at)
     return Chunk(data[at:at + 4].decode("latin-1"), at, begin, end)
 
 
 def judge(data, chunk, last):
-    """Type, order, flags, criticality, in this order (chapter 14). Returns whether it is one of the known chunks."""
+    """Type, order, flags, criticality, in this order (chapter 14). Returns whether it is one of the
+    known chunks."""
     for i in range(4):
         byte = data[chunk.start + i:chunk.start + i + 1]
-        require(byte.isalnum(), "con.reserved", chunk.start)            # bytes.isalnum is ASCII only
+        require(byte.isalnum(), "con.reserved", chunk.start)  # bytes.isalnum is ASCII only
     known = chunk.type in KNOWN
-    require(chunk.type in FOLLOWS[last] if known else last is not None, "con.chunk-order", chunk.start)
+    require(chunk.type in FOLLOWS[last] if known else last is not None, "con.chunk-order",
+            chunk.start)
     flags = int.from_bytes(data[chunk.start + 4:chunk.start + 8], "little")
     if known:
         require(flags == CRITICAL, "con.reserved", chunk.start + 4)
@@ -76,8 +82,9 @@ def judge(data, chunk, last):
 
 
 def walk_chunks(chunks, has_bank, n_tiles):
-    """The chunks in order, for pass 2, which judges what HEAD alone decides (R-CON-010): is BANK there, and how many TILE. The walk ends with
-    con.chunk-order at the first known chunk that stands where another should.
+    """The chunks in order, for pass 2, which judges what HEAD alone decides (R-CON-010): is BANK
+    there, and how many TILE. The walk ends with con.chunk-order at the first known chunk that
+    stands where another should.
     """
     tiles = 0
     for chunk in chunks:

@@ -1,8 +1,9 @@
 # SPDX-License-Identifier: BSD-2-Clause
 """The decision procedure: a byte string to a Model, or a Refusal (R-DEC-001, R-ERR-001 to 004).
 
-Everything is judged in order of passes, then of offsets; where a rule is reported at an earlier byte than where it is found, it is judged
-before anything between the two. So the first Refusal raised is the one to report.
+Everything is judged in order of passes, then of offsets; where a rule is reported at an earlier
+byte than where it is found, it is judged before anything between the two. So the first Refusal
+raised is the one to report.
 """
 
 import struct
@@ -24,8 +25,8 @@ from xxh3 import xxh3_128
 class Model:
     """A valid file, decoded.
 
-    header; positions; hyperprior and slice_networks (Tier E); networks (Tier R): name to list of layers (W by rows, b); bank: rows; tiles;
-    spans: per chunk, what Payload kept for T0.
+    header; positions; hyperprior and slice_networks (Tier E); networks (Tier R): name to list of
+    layers (W by rows, b); bank: rows; tiles; spans: per chunk, what Payload kept for T0.
     """
 
     def __init__(self, data, max_memory=None, max_work=None):
@@ -38,7 +39,8 @@ class Model:
         head.finish()
         self.spans.append(head.spans)
         check_memory(h, len(data), max_memory)
-        read = {"NETE": self.read_nete, "NETR": self.read_netr, "BANK": self.read_bank, "POSN": self.read_posn, "TILE": self.read_tile,
+        read = {"NETE": self.read_nete, "NETR": self.read_netr, "BANK": self.read_bank,
+                "POSN": self.read_posn, "TILE": self.read_tile,
                 "ENDS": self.read_ends}
         for chunk in walk_chunks(self.chunks[1:], h.phi_dim > 0, h.n_tiles):
             payload = Payload(data, chunk.begin, chunk.end)
@@ -55,7 +57,8 @@ class Model:
         values = iter(read_values(payload, "netr", values_of(shape for _, shape in shapes)))
         self.networks = {}
         for name, shape in shapes:
-            self.networks[name] = [([take(values, inputs) for _ in range(outputs)], take(values, outputs)) for inputs, outputs in layers(shape)]
+            self.networks[name] = [([take(values, inputs) for _ in range(outputs)],
+                                    take(values, outputs)) for inputs, outputs in layers(shape)]
 
     def read_bank(self, payload):
         """7.5."""
@@ -79,10 +82,12 @@ class Model:
         """The byte string of 15.2, R-INT-002."""
         parts = [struct.pack("<%dH" % len(self.positions.patterns), *self.positions.patterns)]
         for tile in self.tiles:
-            parts += [struct.pack("<BH", dynamic, kept) for dynamic, kept in zip(tile.dynamic, tile.kept)]
+            parts += [struct.pack("<BH", dynamic, kept)
+                      for dynamic, kept in zip(tile.dynamic, tile.kept)]
             parts += [bytes(tile.step[name]) for name, _ in self.header.types]
             masks = self.header.temporal_mask or self.header.offset_mask
-            parts += [struct.pack("<%dh" % len(symbols), *symbols) for _, symbols in tile.streams[1 if masks else 0:]]
+            parts += [struct.pack("<%dh" % len(symbols), *symbols)
+                      for _, symbols in tile.streams[1 if masks else 0:]]
         return b"".join(parts)
 
 

@@ -11,9 +11,11 @@ from values import component_values, quantiser_steps
 
 def tier_0(model):
     """J.2: a record for every element, from the first byte to the last."""
-    spans = [("magic", 0, 8, 0), ("major", 1, 1, 8), ("minor", 1, 1, 9), ("profile", 1, 1, 10), ("level", 1, 1, FILE_HEADER - 1)]
+    spans = [("magic", 0, 8, 0), ("major", 1, 1, 8), ("minor", 1, 1, 9), ("profile", 1, 1, 10),
+             ("level", 1, 1, FILE_HEADER - 1)]
     for chunk, inside in zip(model.chunks, model.spans):
-        spans += [("chunk_type", 4, 1, chunk.start), ("chunk_flags", 4, 1, chunk.start + 4), ("chunk_size", 4, 1, chunk.start + 8)]
+        spans += [("chunk_type", 4, 1, chunk.start), ("chunk_flags", 4, 1, chunk.start + 4),
+                  ("chunk_size", 4, 1, chunk.start + 8)]
         spans += inside
         spans.append(("chunk_hash", 0, 8, chunk.end))
     return b"".join(record for span in spans for record in records(model.data, *span))
@@ -32,7 +34,8 @@ def records(data, name, width, count, offset):
 def tier_1(model):
     """J.3."""
     fixed = model.positions.fixed
-    masks = [struct.pack("<BH", dynamic, kept) for tile in model.tiles for dynamic, kept in zip(tile.dynamic, tile.kept)]
+    masks = [struct.pack("<BH", dynamic, kept) for tile in model.tiles
+             for dynamic, kept in zip(tile.dynamic, tile.kept)]
     return struct.pack("<%di" % len(fixed), *fixed) + b"".join(masks)
 
 
@@ -65,7 +68,8 @@ def tier_4(model):
         for name, _ in model.header.types:
             q = quantiser_steps(model.header, name, tile.step[name])
             for component in tile.coded[name]:
-                parts += map(struct.Struct("<hI").pack, component.k, f32_patterns(component_values(component, q)))
+                parts += map(struct.Struct("<hI").pack, component.k,
+                             f32_patterns(component_values(component, q)))
     return b"".join(parts)
 
 

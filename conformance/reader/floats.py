@@ -16,7 +16,8 @@ def f16_sound(pattern):
 
 
 def f32_values(patterns):
-    """Patterns to numbers. A binary64, which Python's float is, holds every finite binary32 exactly."""
+    """Patterns to numbers. A binary64, which Python's float is, holds every finite binary32
+    exactly."""
     return struct.unpack("<%df" % len(patterns), struct.pack("<%dI" % len(patterns), *patterns))
 
 
@@ -26,7 +27,8 @@ def f32_patterns(values):
 
 
 def f32_round(value):
-    """The binary32 nearest to a binary64, ties to even, which is what packing does. The value must not overflow."""
+    """The binary32 nearest to a binary64, ties to even, which is what packing does. The value must
+    not overflow."""
     return struct.unpack("<f", struct.pack("<f", value))[0]
 
 

@@ -7,7 +7,9 @@ from integers import clamp
 from tables import HALF, INV, PHI
 from verdict import require
 
-LISTED = 64                     # windows of more than twice this are not kept as lists: they would take longer to make than to search
+# windows of more than twice this are not kept as lists: they would take longer to make than to
+# search
+LISTED = 64
 
 
 class Cumulative:
@@ -50,7 +52,8 @@ MODELS = Models()
 
 
 def decode_symbols(substream, sigma, mu):
-    """The symbols k of a whole substream, given sigma index and mu (Q8) of each in coded order. Checks the coder's end."""
+    """The symbols k of a whole substream, given sigma index and mu (Q8) of each in coded order.
+    Checks the coder's end."""
     symbols = []
     for i, (g, m) in enumerate(zip(sigma, mu)):
         table = MODELS.get(g, m & 255)
@@ -72,7 +75,8 @@ def decode_symbols(substream, sigma, mu):
 
 
 def escape(substream, i):
-    """e: b bits 1, a bit 0, then the b low bits of e + 1 from the highest. A bit is 0 in the low half of the slots."""
+    """e: b bits 1, a bit 0, then the b low bits of e + 1 from the highest. A bit is 0 in the low
+    half of the slots."""
     b = 0
     while not substream.bit(i, 32768):          # Substream.bit calls the low half 1
         b += 1

@@ -14,13 +14,20 @@ U32 = (1 << 32) - 1
 # name, bytes, entries (None: n_slices), lowest and highest value (R-HDR-001), 0 included where a
 # row has a condition; of f32, the values.
 ELEMENTS = (
-    ("n_anchors", 4, 1, 1, U32), ("tile_size", 4, 1, 64, 65536), ("n_offsets", 1, 1, 1, 16), ("feature_dim", 1, 1, 1, 128), ("motion", 1, 1, 0, 3),
-    ("phi_dim", 1, 1, 0, 32), ("bank_rows", 4, 1, 0, U32), ("bank_dim", 2, 1, 0, 512), ("deform_layers", 1, 1, 0, 8), ("deform_width", 2, 1, 0, 512),
-    ("temporal_mask", 1, 1, 0, 1), ("offset_mask", 1, 1, 0, 1), ("activation", 1, 1, 0, 1), ("view", 1, 1, 0, 2), ("head_layers", 1, 1, 0, 4),
-    ("head_width", 2, 1, 0, 512), ("scale_domain", 1, 1, 0, 1), ("prior", 1, 1, 0, 1), ("pe_octaves", 1, 1, 0, 16), ("hyper_layers", 1, 1, 0, 4),
-    ("hyper_width", 2, 1, 0, 512), ("n_slices", 1, 1, 1, 16), ("slice", 1, None, 1, 128), ("ar_width", 2, 1, 0, 512), ("context_bits", 1, 1, 0, 12),
-    ("step", 4, 5, 2.0 ** -20, 2.0 ** 10), ("frames", 4, 1, 1, U32), ("rate_num", 4, 1, 1, (1 << 24) - 1), ("rate_den", 4, 1, 1, (1 << 24) - 1),
-    ("origin", 4, 3, -float("inf"), float("inf")), ("exponent", 1, 1, -30, 30), ("background", 1, 3, 0, 255), ("reserved", 1, 1, 0, 0))
+    ("n_anchors", 4, 1, 1, U32), ("tile_size", 4, 1, 64, 65536), ("n_offsets", 1, 1, 1, 16),
+    ("feature_dim", 1, 1, 1, 128), ("motion", 1, 1, 0, 3),
+    ("phi_dim", 1, 1, 0, 32), ("bank_rows", 4, 1, 0, U32), ("bank_dim", 2, 1, 0, 512),
+    ("deform_layers", 1, 1, 0, 8), ("deform_width", 2, 1, 0, 512),
+    ("temporal_mask", 1, 1, 0, 1), ("offset_mask", 1, 1, 0, 1), ("activation", 1, 1, 0, 1),
+    ("view", 1, 1, 0, 2), ("head_layers", 1, 1, 0, 4),
+    ("head_width", 2, 1, 0, 512), ("scale_domain", 1, 1, 0, 1), ("prior", 1, 1, 0, 1),
+    ("pe_octaves", 1, 1, 0, 16), ("hyper_layers", 1, 1, 0, 4),
+    ("hyper_width", 2, 1, 0, 512), ("n_slices", 1, 1, 1, 16), ("slice", 1, None, 1, 128),
+    ("ar_width", 2, 1, 0, 512), ("context_bits", 1, 1, 0, 12),
+    ("step", 4, 5, 2.0 ** -20, 2.0 ** 10), ("frames", 4, 1, 1, U32),
+    ("rate_num", 4, 1, 1, (1 << 24) - 1), ("rate_den", 4, 1, 1, (1 << 24) - 1),
+    ("origin", 4, 3, -float("inf"), float("inf")), ("exponent", 1, 1, -30, 30),
+    ("background", 1, 3, 0, 255), ("reserved", 1, 1, 0, 0))
 ARRAYS = ("slice", "step", "origin", "background")
 FLOATS = ("step", "origin")
 
@@ -41,11 +48,13 @@ CONTRADICTS = {
     "ar_width": lambda h: (h.ar_width > 0) != (h.n_slices > 1)}
 
 # R-HDR-003: elements that a level bounds, and the column of 13.1.
-LEVELLED = {"n_anchors": "anchors", "n_offsets": "offsets", "bank_rows": "frames", "frames": "frames"}
+LEVELLED = {"n_anchors": "anchors", "n_offsets": "offsets", "bank_rows": "frames",
+            "frames": "frames"}
 
 
 def read_header(payload, level, file_bytes):
-    """The elements as attributes of one object, judged in order of offsets; at one element range, combination, level (R-ERR-004)."""
+    """The elements as attributes of one object, judged in order of offsets; at one element range,
+    combination, level (R-ERR-004)."""
     h = SimpleNamespace(level=level)
     for name, width, count, low, high in ELEMENTS:
         values = []
@@ -75,7 +84,8 @@ def judge_range(name, entry, low, high, offset):
 
 def derive(h):
     """6.2: the present types in order, each with its dimension; tiles."""
-    dims = (("feature", h.feature_dim), ("scaling", 6), ("offset", 3 * h.n_offsets), ("phi", h.phi_dim), ("tau", 4 if h.activation else 0))
+    dims = (("feature", h.feature_dim), ("scaling", 6), ("offset", 3 * h.n_offsets),
+            ("phi", h.phi_dim), ("tau", 4 if h.activation else 0))
     h.types = [(name, dim) for name, dim in dims if dim > 0]
     h.dim = dict(dims)
     h.moves = h.motion != NONE

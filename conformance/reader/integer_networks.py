@@ -9,17 +9,20 @@ from integers import clamp
 from shapes import hyperprior_shape, layers, slice_shapes
 from verdict import require
 
-PHASE_BITS, HIDDEN_BITS, OUTPUT_BITS = 12, 10, 8        # fraction bits of the hyperprior's inputs, hidden values, outputs
+# fraction bits of the hyperprior's inputs, hidden values, outputs
+PHASE_BITS, HIDDEN_BITS, OUTPUT_BITS = 12, 10, 8
 LIMIT = (1 << 26) - 1
 
 
 class Layer:
     """One dense layer, all its units in one Python integer.
 
-    Unit o lives in bits 32 o to 32 o + 31. Column i of W is the integer sum of W[o][i] 2^(32 o), so x_i times it is all products with x_i at once, and
-    acc = B + sum W x of all units is n_in multiplications of a long integer with a short one, which is many times faster than a loop over the units. R-NET-006
-    makes it right: |acc| + 2^(r-1) < 2^31, so with 2^31 + 2^(r-1) added to each B every field ends in (0, 2^32) and borrows nothing from
-    its neighbour. The 2^(r-1) is the one of round_shift.
+    Unit o lives in bits 32 o to 32 o + 31. Column i of W is the integer sum of W[o][i] 2^(32 o), so
+    x_i times it is all products with x_i at once, and acc = B + sum W x of all units is n_in
+    multiplications of a long integer with a short one, which is many times faster than a loop over
+    the units. R-NET-006 makes it right: |acc| + 2^(r-1) < 2^31, so with 2^31 + 2^(r-1) added to
+    each B every field ends in (0, 2^32) and borrows nothing from its neighbour. The 2^(r-1) is the
+    one of round_shift.
     """
 
     def __init__(self, weights, biases, shifts, hidden):
@@ -37,7 +40,8 @@ class Layer:
         for column, value in zip(self.columns, x):
             if value:
                 acc += column * value
-        y = [(field >> r) - offset for field, (r, offset) in zip(self.fields.unpack(acc.to_bytes(self.size, "little")), self.shifts)]
+        y = [(field >> r) - offset for field, (r, offset) in zip(
+            self.fields.unpack(acc.to_bytes(self.size, "little")), self.shifts)]
         if self.hidden:
             return [0 if v < 0 else 32767 if v > 32767 else v for v in y]
         return [clamp(v, -LIMIT, LIMIT) for v in y]
@@ -63,27 +67,34 @@ class Network:
 
 def read_networks(payload, h):
     """The hyperprior and the list of slice networks 1 .. n_slices - 1 of the NETE chunk."""
-    plans = [plan(hyperprior_shape(h), PHASE_BITS, 4096)] + [plan(shape, h.context_bits, 32767) for shape in slice_shapes(h)]
+    plans = [plan(hyperprior_shape(h), PHASE_BITS, 4096)] + [
+        plan(shape, h.context_bits, 32767) for shape in slice_shapes(h)]
     units = [unit for network in plans for layer in network for unit in [layer] * layer["outputs"]]
     shifts = []
     for (offset, s), unit in zip(payload.entries("shift", 1, len(units)), units):
         require(s <= 20, "net.shift", offset)                                           # R-NET-003
         require(s + unit["f"] - unit["g"] >= 0, "net.shift", offset)                    # R-NET-005
         shifts.append(s)
-    reader = LayerReader(shifts, Blob(payload, "nete", sum((p["inputs"] + 1) * p["outputs"] for network in plans for p in network)))
+    reader = LayerReader(shifts, Blob(payload, "nete",
+                                      sum((p["inputs"] + 1) * p["outputs"] for network in plans
+                                          for p in network)))
     networks = [Network([reader.layer(p) for p in network]) for network in plans]
     return networks[0], networks[1:]
 
 
 def plan(shape, bits, amplitude):
-    """Per layer: sizes, fraction bits f of its inputs and g of its outputs, A, and whether it is hidden."""
+    """Per layer: sizes, fraction bits f of its inputs and g of its outputs, A, and whether it is
+    hidden."""
     count = len(shape) - 1
-    return [{"inputs": inputs, "outputs": outputs, "f": HIDDEN_BITS if i else bits, "g": OUTPUT_BITS if i == count - 1 else HIDDEN_BITS,
-             "A": 32767 if i else amplitude, "hidden": i < count - 1} for i, (inputs, outputs) in enumerate(layers(shape))]
+    return [{"inputs": inputs, "outputs": outputs, "f": HIDDEN_BITS if i else bits,
+             "g": OUTPUT_BITS if i == count - 1 else HIDDEN_BITS,
+             "A": 32767 if i else amplitude, "hidden": i < count - 1}
+            for i, (inputs, outputs) in enumerate(layers(shape))]
 
 
 class LayerReader:
-    """Takes layer after layer off shifts and blob, judging each value by R-NET-002 and R-NET-004 (weights) or R-NET-006 (biases)."""
+    """Takes layer after layer off shifts and blob, judging each value by R-NET-002 and R-NET-004
+    (weights) or R-NET-006 (biases)."""
 
     def __init__(self, shifts, blob):
         self.shifts, self.blob = shifts, blob
@@ -99,7 +110,8 @@ class LayerReader:
         return Layer(weights, biases, r, p["hidden"])
 
     def next_scaled(self, bits):
-        """rne(v 2^bits). A binary64 holds the product exactly, and Python's round takes ties to even."""
+        """rne(v 2^bits). A binary64 holds the product exactly, and Python's round takes ties to
+        even."""
         i = self.value
         self.value += 1
         pattern, offset = self.blob.patterns[i], self.blob.offset(i)

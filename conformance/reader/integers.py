@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: BSD-2-Clause
-"""Integer operations of 4.3 (R-CNV-002). Python's >> is floor division by a power of two for negative numbers too."""
+"""Integer operations of 4.3 (R-CNV-002). Python's >> is floor division by a power of two for
+negative numbers too."""
 
 
 def round_shift(x, r):

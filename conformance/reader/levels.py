@@ -16,7 +16,8 @@ LEVELS = {1: Level(1 << 14, 10, 64, 1 << 18, 1 << 16, 1 << 22, 256),
 
 
 def check_totals(level, values, products, symbols, file_bytes, offset):
-    """R-LVL-001 for the bounds that no single element breaks; `offset` is that of `reserved` of HEAD (chapter 14)."""
+    """R-LVL-001 for the bounds that no single element breaks; `offset` is that of `reserved` of
+    HEAD (chapter 14)."""
     bound = LEVELS[level]
     require(values <= bound.values, "lvl.exceeded", offset)
     require(products <= bound.products, "lvl.exceeded", offset)

@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: BSD-2-Clause
-"""Limits that a caller can set (R-LVL-007): memory, estimated from HEAD before anything of pass 2 is allocated (R-ERR-005), and work (R-LVL-008)."""
+"""Limits that a caller can set (R-LVL-007): memory, estimated from HEAD before anything of pass 2
+is allocated (R-ERR-005), and work (R-LVL-008)."""
 
 from shapes import blob_values, hyperprior_shape, products_of_tier_e
 from verdict import require
@@ -9,8 +10,9 @@ PER_VALUE, PER_SYMBOL, PER_BYTE = 100, 200, 20          # bytes of Python object
 
 
 def check_memory(h, file_bytes, bound):
-    """limit.memory when decoding may need more than `bound` bytes. What a file claims beyond what its bytes could hold is not counted: a deflated
-    value takes at least 1/258 byte (RFC 1951: 258 bytes in two bits, four bytes a value), an anchor 6 bytes of POSN."""
+    """limit.memory when decoding may need more than `bound` bytes. What a file claims beyond what
+    its bytes could hold is not counted: a deflated value takes at least 1/258 byte (RFC 1951: 258
+    bytes in two bits, four bytes a value), an anchor 6 bytes of POSN."""
     values = min(blob_values(h), 258 * file_bytes)
     anchors = min(h.n_anchors, file_bytes // 6)
     symbols = anchors * sum(dim for _, dim in h.types)
@@ -21,5 +23,6 @@ def check_memory(h, file_bytes, bound):
 def check_work(h, file_bytes, bound):
     """R-LVL-008: limit.work when W_E of 13.4 is above `bound`; None: no bound."""
     symbols = h.n_anchors * (sum(dim for _, dim in h.types) + h.n_offsets + 1)
-    steps = file_bytes + 4 * blob_values(h) + h.n_anchors * (products_of_tier_e(h) + hyperprior_shape(h)[-1]) + symbols
+    steps = file_bytes + 4 * blob_values(h) + h.n_anchors * (
+        products_of_tier_e(h) + hyperprior_shape(h)[-1]) + symbols
     require(bound is None or steps <= bound, "limit.work", None)

@@ -13,7 +13,8 @@ def mask_symbols(h, n):
 
 
 def decode_masks(substream, h, n, dynamic_prob, offset_prob):
-    """Per anchor its dynamic bit and its offset bits as one number (bit k: offset k is kept); then all bits in coded order."""
+    """Per anchor its dynamic bit and its offset bits as one number (bit k: offset k is kept); then
+    all bits in coded order."""
     dynamic, kept = default_masks(h, n)
     coded = []
     for a in range(n):
@@ -21,7 +22,8 @@ def decode_masks(substream, h, n, dynamic_prob, offset_prob):
             dynamic[a] = substream.bit(len(coded), dynamic_prob)
             coded.append(dynamic[a])
         if h.offset_mask:
-            bits = offset_bits(substream, len(coded), h.n_offsets, offset_prob[3 * dynamic[a]:3 * dynamic[a] + 3])
+            bits = offset_bits(substream, len(coded), h.n_offsets,
+                               offset_prob[3 * dynamic[a]:3 * dynamic[a] + 3])
             kept[a] = sum(bit << k for k, bit in enumerate(bits))
             coded.extend(bits)
     substream.finish()
@@ -29,7 +31,8 @@ def decode_masks(substream, h, n, dynamic_prob, offset_prob):
 
 
 def offset_bits(substream, first, count, prob):
-    """The context is 1 while all bits so far are 1 (or there is none), 0 while all are 0, else 2."""
+    """The context is 1 while all bits so far are 1 (or there is none), 0 while all are 0, else
+    2."""
     bits = []
     for k in range(count):
         ones = sum(bits)

@@ -28,7 +28,8 @@ def morton(patterns):
 
 
 class Positions:
-    """`patterns`: 3 N f16 patterns; `values`: the same as numbers; `fixed`: X = p 2^24, integers."""
+    """`patterns`: 3 N f16 patterns; `values`: the same as numbers; `fixed`: X = p 2^24,
+    integers."""
 
     def __init__(self, payload, n):
         start = payload.at
@@ -38,7 +39,7 @@ class Positions:
             anchor = self.patterns[i:i + 3]
             for j, pattern in enumerate(anchor):
                 require(f16_sound(pattern), "pos.value", start + 2 * (i + j))           # R-POS-001
-                require(pattern & 0x7FFF <= 0x3C00, "pos.range", start + 2 * (i + j))   # 0x3C00 is 1
+                require(pattern & 0x7FFF <= 0x3C00, "pos.range", start + 2 * (i + j))  # 0x3C00 is 1
             code = morton(anchor)
             require(code > last, "pos.order", start + 2 * i)                            # R-POS-002
             last = code

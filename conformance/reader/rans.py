@@ -9,24 +9,30 @@ TOTAL = 1 << 16
 
 
 def lane_count(n):
-    """R-ENT-009: the largest power of two not above n / 4096, at least 1 and at most 64; 0 when nothing is coded."""
+    """R-ENT-009: the largest power of two not above n / 4096, at least 1 and at most 64; 0 when
+    nothing is coded."""
     if n == 0:
         return 0
     return min(64, 1 << max(0, (n >> 12).bit_length() - 1))
 
 
 class Substream:
-    """The coder of one substream of n symbols; every error of it is reported at its first byte (chapter 14).
+    """The coder of one substream of n symbols; every error of it is reported at its first byte
+    (chapter 14).
 
-    slot(i) shows where the state of symbol i's lane (R-ENT-010) points; advance(i, first, freq) takes the symbol there.
+    slot(i) shows where the state of symbol i's lane (R-ENT-010) points; advance(i, first, freq)
+    takes the symbol there.
     """
 
     def __init__(self, data, start, size, n):
         self.start, self.n, self.lanes = start, n, lane_count(n)
-        require(size == 0 if n == 0 else size >= 4 * self.lanes and size % 2 == 0, "ent.size", start)      # R-ENT-009
+        # R-ENT-009
+        require(size == 0 if n == 0 else size >= 4 * self.lanes and size % 2 == 0,
+                "ent.size", start)
         self.states = list(struct.unpack_from("<%dI" % self.lanes, data, start))
         require(all(x >= TOTAL for x in self.states), "ent.state", start)               # R-ENT-004
-        self.words = struct.unpack_from("<%dH" % (size // 2 - 2 * self.lanes), data, start + 4 * self.lanes)
+        self.words = struct.unpack_from("<%dH" % (size // 2 - 2 * self.lanes), data,
+                                        start + 4 * self.lanes)
         self.next = 0
 
     def slot(self, i):

@@ -3,7 +3,8 @@
 """A second TED4 decoder, written from the specification alone: command line.
 
     reader.py --ted4-capabilities
-    reader.py --ted4-run FILE [--tiers T0,T1,...] [--queries FILE.json] [--knob max_alloc_total=BYTES] [--knob max_work=STEPS] [--dump DIR]
+    reader.py --ted4-run FILE [--tiers T0,T1,...] [--queries FILE.json]
+        [--knob max_alloc_total=BYTES] [--knob max_work=STEPS] [--dump DIR]
 
 One JSON document on standard output; every verdict on the file, also a refusal, is exit status 0.
 """
@@ -21,8 +22,10 @@ from reconstruct import Anchors, Query, records
 from verdict import Refusal
 from xxh3 import xxh3_128
 
-CAPABILITIES = {"protocol": 1, "name": "ted4-reader", "version": "1.0", "spec": "1.0", "profiles": ["Main"], "max_level": 2,
-                "tiers": ["T0", "T1", "T2", "T3", "T4", "T5"], "class": "X", "strict": True, "declines": [], "knobs": ["max_alloc_total", "max_work"]}
+CAPABILITIES = {"protocol": 1, "name": "ted4-reader", "version": "1.0", "spec": "1.0",
+                "profiles": ["Main"], "max_level": 2,
+                "tiers": ["T0", "T1", "T2", "T3", "T4", "T5"], "class": "X", "strict": True,
+                "declines": [], "knobs": ["max_alloc_total", "max_work"]}
 
 
 def main(arguments):
@@ -36,14 +39,20 @@ def main(arguments):
 
 
 def parse(arguments):
-    parser = argparse.ArgumentParser(description="A second TED4 decoder, written from the specification alone.")
+    parser = argparse.ArgumentParser(
+        description="A second TED4 decoder, written from the specification alone.")
     what = parser.add_mutually_exclusive_group(required=True)
-    what.add_argument("--ted4-capabilities", action="store_true", help="say what this decoder can do")
+    what.add_argument("--ted4-capabilities", action="store_true",
+                      help="say what this decoder can do")
     what.add_argument("--ted4-run", metavar="FILE", help="decode the file, or - for standard input")
-    parser.add_argument("--tiers", type=tier_list, default=[], metavar="T0,T1,..", help="tiers to hash (annex J)")
-    parser.add_argument("--queries", metavar="FILE.json", help='queries of T5: [{"t": [num, den], "cam": [x, y, z]}, ...]')
-    parser.add_argument("--knob", action="append", default=[], type=knob, metavar="NAME=VALUE", help="max_alloc_total=BYTES, max_work=STEPS")
-    parser.add_argument("--dump", metavar="DIR", help="write the byte strings of the tiers into this folder")
+    parser.add_argument("--tiers", type=tier_list, default=[], metavar="T0,T1,..",
+                        help="tiers to hash (annex J)")
+    parser.add_argument("--queries", metavar="FILE.json",
+                        help='queries of T5: [{"t": [num, den], "cam": [x, y, z]}, ...]')
+    parser.add_argument("--knob", action="append", default=[], type=knob, metavar="NAME=VALUE",
+                        help="max_alloc_total=BYTES, max_work=STEPS")
+    parser.add_argument("--dump", metavar="DIR",
+                        help="write the byte strings of the tiers into this folder")
     return parser.parse_args(arguments)
 
 
@@ -76,7 +85,8 @@ def run(options):
     except MemoryError:
         return refusal_answer(Refusal("limit.memory"))
     queries = read_queries(options.queries) if options.queries else []
-    return {"result": "valid", "tiers": {name: tier(model, name, queries, options.dump) for name in options.tiers}}
+    return {"result": "valid",
+            "tiers": {name: tier(model, name, queries, options.dump) for name in options.tiers}}
 
 
 def read(path):
@@ -92,8 +102,10 @@ def refusal_answer(refusal):
 
 
 def read_queries(path):
-    """R-DMP-061. JSON numbers are read as binary64 first; a number that is exact in binary32 is not changed by that."""
-    return [Query(q["t"][0], q["t"][1], [f32_round(c) for c in q["cam"]]) for q in json.loads(read(path))]
+    """R-DMP-061. JSON numbers are read as binary64 first; a number that is exact in binary32 is not
+    changed by that."""
+    return [Query(q["t"][0], q["t"][1], [f32_round(c) for c in q["cam"]])
+            for q in json.loads(read(path))]
 
 
 def tier(model, name, queries, folder):
@@ -115,7 +127,8 @@ def describe(string, name, folder):
     if folder:
         with open(os.path.join(folder, name + ".bin"), "wb") as file:
             file.write(string)
-    return {"bytes": len(string), "xxh3": xxh3_128(string).hex(), "sha256": hashlib.sha256(string).hexdigest()}
+    return {"bytes": len(string), "xxh3": xxh3_128(string).hex(),
+            "sha256": hashlib.sha256(string).hexdigest()}
 
 
 if __name__ == "__main__":

@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: BSD-2-Clause
-"""Reconstruction (chapter 11): the records of a query, T5. Every quantity is a list of vectors, one a component, over anchors."""
+"""Reconstruction (chapter 11): the records of a query, T5. Every quantity is a list of vectors, one
+a component, over anchors."""
 
 from array import array
 from collections import namedtuple
@@ -16,7 +17,8 @@ FIELDS = 14                                         # binary32 values of a recor
 
 
 class Anchors:
-    """All anchors of a model with their decoded values: value[type][c] is a vector over anchors, 0 where the component is absent. Made once for all queries."""
+    """All anchors of a model with their decoded values: value[type][c] is a vector over anchors, 0
+    where the component is absent. Made once for all queries."""
 
     def __init__(self, model):
         h = self.header = model.header
@@ -25,7 +27,8 @@ class Anchors:
         self.p = [list(model.positions.values[j::3]) for j in range(3)]
         self.fixed = model.positions.fixed
         self.kept = [bits for tile in model.tiles for bits in tile.kept]
-        self.dynamic = [a for tile in model.tiles for a, moves in enumerate(tile.dynamic, tile.first) if moves]
+        self.dynamic = [a for tile in model.tiles
+                        for a, moves in enumerate(tile.dynamic, tile.first) if moves]
         self.value = {name: [[0.0] * self.count for _ in range(dim)] for name, dim in h.types}
         for tile in model.tiles:
             for name, _ in h.types:
@@ -33,7 +36,9 @@ class Anchors:
                 for vector, component in zip(self.value[name], tile.coded[name]):
                     for a, v in zip(component.anchors, component_values(component, q)):
                         vector[tile.first + a] = v
-        self.size = [s.pow2(v) if h.scale_domain == 0 else s.at_least(2.0 ** -20, v) for v in self.value["scaling"]]     # S of 11.1
+        # S of 11.1
+        self.size = [s.pow2(v) if h.scale_domain == 0 else s.at_least(2.0 ** -20, v)
+                     for v in self.value["scaling"]]
 
 
 def records(anchors, query):
@@ -45,18 +50,22 @@ def records(anchors, query):
     strength = activation(anchors, num, den)
     direction = view_direction(anchors, query.camera) if h.view else []
     sees = {"opacity": h.view == 2, "covariance": h.view == 2, "colour": h.view > 0}
-    head = {name: s.dense(anchors.model.networks[name], (moved_f if name == "covariance" else feature) + (direction if sees[name] else []))
+    head = {name: s.dense(anchors.model.networks[name],
+                          (moved_f if name == "covariance" else feature) +
+                          (direction if sees[name] else []))
             for name in sees}
     out = array("f", bytes(4 * FIELDS * sum(bin(bits).count("1") for bits in anchors.kept)))
     place = places(anchors.kept)
     for k in range(h.n_offsets):
         chosen = [a for a, bits in enumerate(anchors.kept) if bits >> k & 1]
-        fields = position(anchors, moved_p, k, chosen) + covariance(anchors, head["covariance"], k, chosen)
+        fields = position(anchors, moved_p, k, chosen)
+        fields = fields + covariance(anchors, head["covariance"], k, chosen)
         fields += opacity(head["opacity"][k], strength, chosen)
         fields += [s.sigmoid(pick(y, chosen)) for y in head["colour"][3 * k:3 * k + 3]]
         for field, vector in enumerate(fields):
             for a, v in zip(chosen, vector):
-                out[FIELDS * (place[a] + bin(anchors.kept[a] & (1 << k) - 1).count("1")) + field] = v
+                out[FIELDS * (place[a] + bin(anchors.kept[a] & (1 << k) - 1).count("1")) +
+                    field] = v
     if any(v - v != 0 for v in out):                # not 0 for infinities and NaN
         raise Refusal("rec.non-finite")             # R-REC-001
     if sys.byteorder == "big":
@@ -145,7 +154,8 @@ def normalised(vectors, instead):
     n = length(vectors)
     short = [v < 2.0 ** -20 for v in n]
     n = [1.0 if is_short else v for is_short, v in zip(short, n)]
-    return [[c if is_short else q for is_short, q in zip(short, s.div(v, n))] for v, c in zip(vectors, instead)]
+    return [[c if is_short else q for is_short, q in zip(short, s.div(v, n))]
+            for v, c in zip(vectors, instead)]
 
 
 def view_direction(anchors, camera):
@@ -162,7 +172,8 @@ def position(anchors, moved_p, k, chosen):
     """11.6, R-REC-010."""
     h, fields = anchors.header, []
     for j in range(3):
-        offset = s.mul(pick(anchors.value["offset"][3 * k + j], chosen), pick(anchors.size[j], chosen))
+        offset = s.mul(pick(anchors.value["offset"][3 * k + j], chosen),
+                       pick(anchors.size[j], chosen))
         local = s.add(pick(moved_p[j], chosen), offset)
         fields.append(s.shifted(s.scaled(local, 2.0 ** h.exponent), h.origin[j]))
     return fields
@@ -172,7 +183,8 @@ def covariance(anchors, head, k, chosen):
     """R-REC-009: scale (in the world) and rotation."""
     y = [pick(v, chosen) for v in head[7 * k:7 * k + 7]]
     scale = [s.mul(pick(anchors.size[3 + j], chosen), s.sigmoid(y[j])) for j in range(3)]
-    return [s.scaled(v, 2.0 ** anchors.header.exponent) for v in scale] + normalised(y[3:], (1.0, 0.0, 0.0, 0.0))
+    scale = [s.scaled(v, 2.0 ** anchors.header.exponent) for v in scale]
+    return scale + normalised(y[3:], (1.0, 0.0, 0.0, 0.0))
 
 
 def opacity(y, strength, chosen):

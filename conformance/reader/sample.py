@@ -1,8 +1,10 @@
 # SPDX-License-Identifier: BSD-2-Clause
 """Random valid streams for tests: a seed to the bytes of a file.
 
-Tiles are made by decoding random slots: that draws symbols from the model of the stream itself. Which symbols were taken is kept and coded backwards, so
-the decoder reads what was drawn. So all that a writer needs besides the decoder is chunks, a header, networks, positions and one page of rANS.
+Tiles are made by decoding random slots: that draws symbols from the model of the stream itself.
+Which symbols were taken is kept and coded backwards, so the decoder reads what was drawn. So all
+that a writer needs besides the decoder is chunks, a header, networks, positions and one page of
+rANS.
 """
 
 import random
@@ -29,20 +31,30 @@ def chunk(kind, payload, flags=CRITICAL):
 
 def random_header(rng, anchors):
     """Elements by name; small sizes, every switch."""
-    motion, view, prior, slices = rng.randrange(4), rng.randrange(3), rng.randrange(2), rng.choice((1, 1, 2, 3))
+    motion, view, prior = rng.randrange(4), rng.randrange(3), rng.randrange(2)
+    slices = rng.choice((1, 1, 2, 3))
     banked = motion in (1, 2)
     hidden, heads = 0 if prior else rng.randrange(3), rng.randrange(3)
     parts = [rng.randint(1, 4) for _ in range(slices)]
     return {
-        "n_anchors": anchors, "tile_size": rng.choice((64, 65, 4096)), "n_offsets": rng.choice((1, 2, 5, 16)), "feature_dim": sum(parts),
-        "motion": motion, "phi_dim": rng.randint(1, 4) if banked else 0, "bank_rows": rng.randint(1, 4) if banked else 0,
-        "bank_dim": rng.randint(1, 5) if banked else 0, "deform_layers": rng.randint(1, 3) if motion else 0, "deform_width": rng.randint(1, 5) if motion else 0,
-        "temporal_mask": rng.randrange(2) if motion else 0, "offset_mask": rng.randrange(2), "activation": rng.randrange(2), "view": view,
-        "head_layers": heads, "head_width": rng.randint(1, 6) if heads else 0, "scale_domain": rng.randrange(2), "prior": prior,
-        "pe_octaves": 0 if prior else rng.choice((0, 1, 10, 16)), "hyper_layers": hidden, "hyper_width": rng.randint(1, 9) if hidden else 0, "n_slices": slices,
-        "slice": parts, "ar_width": rng.randint(1, 9) if slices > 1 else 0, "context_bits": rng.randint(0, 12),
+        "n_anchors": anchors, "tile_size": rng.choice((64, 65, 4096)),
+        "n_offsets": rng.choice((1, 2, 5, 16)), "feature_dim": sum(parts),
+        "motion": motion, "phi_dim": rng.randint(1, 4) if banked else 0,
+        "bank_rows": rng.randint(1, 4) if banked else 0,
+        "bank_dim": rng.randint(1, 5) if banked else 0,
+        "deform_layers": rng.randint(1, 3) if motion else 0,
+        "deform_width": rng.randint(1, 5) if motion else 0,
+        "temporal_mask": rng.randrange(2) if motion else 0, "offset_mask": rng.randrange(2),
+        "activation": rng.randrange(2), "view": view,
+        "head_layers": heads, "head_width": rng.randint(1, 6) if heads else 0,
+        "scale_domain": rng.randrange(2), "prior": prior,
+        "pe_octaves": 0 if prior else rng.choice((0, 1, 10, 16)), "hyper_layers": hidden,
+        "hyper_width": rng.randint(1, 9) if hidden else 0, "n_slices": slices,
+        "slice": parts, "ar_width": rng.randint(1, 9) if slices > 1 else 0,
+        "context_bits": rng.randint(0, 12),
         "step": [f32(rng.choice((1.0, 0.05, 2.0 ** -20)) * rng.uniform(1, 2)) for _ in range(5)],
-        "frames": rng.randint(1, 600), "rate_num": 30, "rate_den": 1, "origin": [f32(rng.uniform(-9, 9)) for _ in range(3)],
+        "frames": rng.randint(1, 600), "rate_num": 30, "rate_den": 1,
+        "origin": [f32(rng.uniform(-9, 9)) for _ in range(3)],
         "exponent": rng.randint(-3, 3) & 255, "background": [0, 128, 255], "reserved": 0}
 
 
@@ -59,17 +71,23 @@ def head_payload(elements):
 
 
 def random_nete(rng, h):
-    """Weights of many sizes, up to what R-NET-006 allows; half of the layers are not on the integer grid."""
+    """Weights of many sizes, up to what R-NET-006 allows; half of the layers are not on the integer
+    grid."""
     shifts, values = [], []
-    for shape, bits, amplitude in [(hyperprior_shape(h), PHASE_BITS, 4096)] + [(s, h.context_bits, 32767) for s in slice_shapes(h)]:
+    slices = [(s, h.context_bits, 32767) for s in slice_shapes(h)]
+    for shape, bits, amplitude in [(hyperprior_shape(h), PHASE_BITS, 4096)] + slices:
         for layer in plan(shape, bits, amplitude):
-            s = [rng.randint(max(0, layer["g"] - layer["f"]), min(20, HIDDEN_BITS + 4)) for _ in range(layer["outputs"])]
+            s = [rng.randint(max(0, layer["g"] - layer["f"]), min(20, HIDDEN_BITS + 4))
+                 for _ in range(layer["outputs"])]
             grid = rng.choice((0.0, 0.25))
-            reach = [min(0x38000000, 1 << rng.randint(8, 18) + k + layer["f"] - layer["g"]) for k in s]
+            reach = [min(0x38000000, 1 << rng.randint(8, 18) + k + layer["f"] - layer["g"])
+                     for k in s]
             for k, bound in zip(s, reach):
                 most = min(32767, bound // (layer["A"] * max(1, layer["inputs"])))
-                values += [(rng.randint(-most, most) + grid) / 2 ** k for _ in range(layer["inputs"])]
-            values += [rng.uniform(-1, 1) * bound / 2 ** (k + layer["f"]) for k, bound in zip(s, reach)]
+                values += [(rng.randint(-most, most) + grid) / 2 ** k
+                           for _ in range(layer["inputs"])]
+            values += [rng.uniform(-1, 1) * bound / 2 ** (k + layer["f"])
+                       for k, bound in zip(s, reach)]
             shifts += s
     return bytes(shifts) + b"\0" + pack_values(values)
 
@@ -80,10 +98,12 @@ def pack_values(values):
 
 
 def random_positions(rng, n):
-    anchors = {tuple(rng.choice((0, 0x8000)) | rng.randint(1, 0x3C00) for _ in range(3)) for _ in range(n)}
+    anchors = {tuple(rng.choice((0, 0x8000)) | rng.randint(1, 0x3C00) for _ in range(3))
+               for _ in range(n)}
     while len(anchors) < n:
         anchors.add(tuple(rng.randint(0, 0x3C00) for _ in range(3)))
-    return struct.pack("<%dH" % (3 * n), *(p for anchor in sorted(anchors, key=morton) for p in anchor))
+    return struct.pack("<%dH" % (3 * n),
+                       *(p for anchor in sorted(anchors, key=morton) for p in anchor))
 
 
 class DrawnSubstream:
@@ -95,7 +115,8 @@ class DrawnSubstream:
 
     def slot(self, i):
         if self.pending is None:
-            self.pending = self.rng.choice((0, 65535)) if self.rng.random() < 0.02 else self.rng.randrange(TOTAL)
+            self.pending = (self.rng.choice((0, 65535)) if self.rng.random() < 0.02
+                            else self.rng.randrange(TOTAL))
         return self.pending
 
     def advance(self, i, first, freq):
@@ -131,17 +152,20 @@ class DrawnTile(Tile):
         if h.offset_mask:
             out += struct.pack("<6H", *self.offset_prob)
         parts = [substream.bytes for substream, _ in self.streams]
-        self.payload_bytes = out + struct.pack("<%dI" % len(parts), *map(len, parts)) + b"".join(parts)
+        sizes = struct.pack("<%dI" % len(parts), *map(len, parts))
+        self.payload_bytes = out + sizes + b"".join(parts)
 
     def read_elements(self, number):
-        self.dynamic_prob, *self.offset_prob = [self.rng.choice((1, 65535, self.rng.randint(1, 65535))) for _ in range(7)]
+        self.dynamic_prob, *self.offset_prob = [
+            self.rng.choice((1, 65535, self.rng.randint(1, 65535))) for _ in range(7)]
 
     def open_substream(self, n):
         return DrawnSubstream(self.rng, n)
 
 
 def random_stream(seed, anchors=None, changes=None):
-    """The bytes of a valid file; `changes` replace elements of the header. A draw that no symbols could make valid is drawn again."""
+    """The bytes of a valid file; `changes` replace elements of the header. A draw that no symbols
+    could make valid is drawn again."""
     for attempt in range(1000):
         rng = random.Random("%s %d" % (seed, attempt))
         try:
@@ -161,9 +185,11 @@ def draw_stream(rng, anchors, changes):
     nete, posn = random_nete(rng, h), random_positions(rng, h.n_anchors)
     model.hyperprior, model.slice_networks = read_networks(Payload(nete, 0, len(nete)), h)
     model.positions = Positions(Payload(posn, 0, len(posn)), h.n_anchors)
-    netr = b"\0" + pack_values([rng.uniform(-1, 1) for _ in range(values_of(s for _, s in tier_r_shapes(h)))])
+    netr = b"\0" + pack_values(
+        [rng.uniform(-1, 1) for _ in range(values_of(s for _, s in tier_r_shapes(h)))])
     bank = b"\0" + pack_values([rng.uniform(-1, 1) for _ in range(h.bank_rows * h.bank_dim)])
-    chunks = chunk(b"HEAD", head) + chunk(b"NETE", nete) + chunk(b"NETR", netr) + (chunk(b"BANK", bank) if h.phi_dim else b"") + chunk(b"POSN", posn)
+    chunks = chunk(b"HEAD", head) + chunk(b"NETE", nete) + chunk(b"NETR", netr)
+    chunks += (chunk(b"BANK", bank) if h.phi_dim else b"") + chunk(b"POSN", posn)
     for number in range(h.n_tiles):
         model.tiles.append(DrawnTile(rng, model, number))
         chunks += chunk(b"TILE", model.tiles[-1].payload_bytes)

@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: BSD-2-Clause
-"""Shapes of all networks, from HEAD (chapter 7). A shape is the list of widths, from the inputs to the outputs."""
+"""Shapes of all networks, from HEAD (chapter 7). A shape is the list of widths, from the inputs to
+the outputs."""
 
 
 def hyperprior_shape(h):
@@ -21,8 +22,10 @@ def tier_r_shapes(h):
         shapes.append(("project", [h.phi_dim, h.bank_dim]))
     if h.motion > 0:
         inputs = {1: h.bank_dim, 2: h.phi_dim + h.bank_dim, 3: 84}[h.motion]
-        shapes.append(("deform", [inputs] + [h.deform_width] * h.deform_layers + [3 + h.feature_dim]))
-    for name, sees, outputs in (("opacity", h.view == 2, 1), ("covariance", h.view == 2, 7), ("colour", h.view > 0, 3)):
+        shapes.append(
+            ("deform", [inputs] + [h.deform_width] * h.deform_layers + [3 + h.feature_dim]))
+    for name, sees, outputs in (("opacity", h.view == 2, 1), ("covariance", h.view == 2, 7),
+                                ("colour", h.view > 0, 3)):
         inputs = h.feature_dim + (3 if sees else 0)
         shapes.append((name, [inputs] + [h.head_width] * h.head_layers + [outputs * h.n_offsets]))
     return shapes
@@ -49,4 +52,5 @@ def products_of_tier_e(h):
 
 def blob_values(h):
     """Chapter 13: f32 values of all blobs: NETE, NETR and BANK."""
-    return values_of(tier_e_shapes(h)) + values_of(shape for _, shape in tier_r_shapes(h)) + h.bank_rows * h.bank_dim
+    tier_r = values_of(shape for _, shape in tier_r_shapes(h))
+    return values_of(tier_e_shapes(h)) + tier_r + h.bank_rows * h.bank_dim

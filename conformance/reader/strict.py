@@ -1,14 +1,19 @@
 # SPDX-License-Identifier: BSD-2-Clause
 """Strict binary32 arithmetic on vectors (12.2).
 
-A vector is a list of Python floats (binary64) whose values are binary32 values. An operation works in binary64 and rounds its result once more, by storing
-it in an array of C floats. That is the binary32 operation, exactly:
+A vector is a list of Python floats (binary64) whose values are binary32 values. An operation works
+in binary64 and rounds its result once more, by storing it in an array of C floats. That is the
+binary32 operation, exactly:
 
-* A product of two binary32 values has at most 48 significant bits and an exponent far inside binary64's range: it is exact, so there is one rounding.
-* A sum, difference, quotient or square root may be rounded twice, but twice is harmless from 24 to 53 bits, since 53 >= 2 * 24 + 2 (Figueroa,
-  "When is double rounding innocuous?"): such a result is either exact in 53 bits or farther than half a unit of binary64 from every midpoint between two
-  binary32 neighbours. Subnormal results have shorter significands, so still more room; subnormal sums are exact.
-* Too large results become infinite, as IEEE 754 says; storing in an array, unlike struct.pack, does not object.
+* A product of two binary32 values has at most 48 significant bits and an exponent far inside
+  binary64's range: it is exact, so there is one rounding.
+* A sum, difference, quotient or square root may be rounded twice, but twice is harmless from 24 to
+  53 bits, since 53 >= 2 * 24 + 2 (Figueroa, "When is double rounding innocuous?"): such a result is
+  either exact in 53 bits or farther than half a unit of binary64 from every midpoint between two
+  binary32 neighbours. Subnormal results have shorter significands, so still more room; subnormal
+  sums are exact.
+* Too large results become infinite, as IEEE 754 says; storing in an array, unlike struct.pack, does
+  not object.
 """
 
 import math
@@ -17,7 +22,8 @@ from array import array
 from itertools import repeat
 
 LOG2E = float.fromhex("0x1.715476p+0")
-HORNER = [float.fromhex(c) for c in ("0x1.ffcbfcp-17", "0x1.430912p-13", "0x1.5d87fep-10", "0x1.3b2ab6p-7", "0x1.c6b08ep-5", "0x1.ebfbep-3",
+HORNER = [float.fromhex(c) for c in ("0x1.ffcbfcp-17", "0x1.430912p-13", "0x1.5d87fep-10",
+                                     "0x1.3b2ab6p-7", "0x1.c6b08ep-5", "0x1.ebfbep-3",
                                      "0x1.62e43p-1", "0x1p+0")]
 
 
@@ -61,7 +67,8 @@ def negated(a):
 
 
 def at_least(low, a):
-    """max(a, low) for operands in either order: 12.2 tells them apart only for NaN, which stays, and for zeros of two signs (see relu)."""
+    """max(a, low) for operands in either order: 12.2 tells them apart only for NaN, which stays,
+    and for zeros of two signs (see relu)."""
     return [low if v < low else v for v in a]
 
 
@@ -82,9 +89,11 @@ def sigmoid(x):
 
 
 def dense(layers, x):
-    """A network of dense layers (7.1) on many anchors at once: x holds one vector per input, the result one per output.
+    """A network of dense layers (7.1) on many anchors at once: x holds one vector per input, the
+    result one per output.
 
-    For each input in order, one product and one sum of all units on all anchors: unit o on anchor a is element o count + a of acc.
+    For each input in order, one product and one sum of all units on all anchors: unit o on anchor a
+    is element o count + a of acc.
     """
     count = len(x[0])
     for number, (weights, biases) in enumerate(layers):

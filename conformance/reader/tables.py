@@ -1,8 +1,9 @@
 # SPDX-License-Identifier: BSD-2-Clause
 """The tables of annex A, computed from their formulas.
 
-Every entry is exact or the rounding of an irrational number, so it is computed with 30 decimal digits and rounded once: an error would take
-20 digits of agreement with a half. test_tables.py compares each entry with the printed annex.
+Every entry is exact or the rounding of an irrational number, so it is computed with 30 decimal
+digits and rounded once: an error would take 20 digits of agreement with a half. test_tables.py
+compares each entry with the printed annex.
 """
 
 from decimal import Decimal, ROUND_CEILING, ROUND_HALF_EVEN, localcontext
@@ -16,12 +17,14 @@ def rne(v):
 
 
 def power_table(first, count, per_octave):
-    """2^((i - first) / per_octave), i = 0 .. count - 1, for a power of two per_octave; exact at whole octaves."""
+    """2^((i - first) / per_octave), i = 0 .. count - 1, for a power of two per_octave; exact at
+    whole octaves."""
     root, n = Decimal(2), per_octave
     while n > 1:
         root, n = root.sqrt(), n // 2
     within = [root ** j for j in range(per_octave)]
-    return [Decimal(2) ** ((i - first) // per_octave) * within[(i - first) % per_octave] for i in range(count)]
+    return [Decimal(2) ** ((i - first) // per_octave) * within[(i - first) % per_octave]
+            for i in range(count)]
 
 
 def phi(x):
@@ -74,4 +77,5 @@ with localcontext() as context:
     STEPI = [rne(4096 * s) for s in steps]
     # A binary32 significand has 24 bits; exponents lie between -4 and 3, where nothing is
     # subnormal.
-    STEP = [rne(s * 2 ** (23 - (i - 128) // 32)) / 2.0 ** (23 - (i - 128) // 32) for i, s in enumerate(steps)]
+    STEP = [rne(s * 2 ** (23 - (i - 128) // 32)) / 2.0 ** (23 - (i - 128) // 32)
+            for i, s in enumerate(steps)]

@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: BSD-2-Clause
-"""Substreams: the coder, masks, Gaussian symbols, escapes, and each way in which they can be wrong (chapter 9)."""
+"""Substreams: the coder, masks, Gaussian symbols, escapes, and each way in which they can be wrong
+(chapter 9)."""
 
 import random
 import struct
@@ -46,13 +47,15 @@ def refused(data, n, g=64, mu=0):
 class Coder(unittest.TestCase):
     def test_lane_count(self):
         self.assertEqual([0, 1, 1, 1, 2, 2, 4, 64, 64],
-                         [lane_count(n) for n in (0, 1, 4096, 8191, 8192, 16383, 16384, 262144, 1 << 30)])
+                         [lane_count(n)
+                          for n in (0, 1, 4096, 8191, 8192, 16383, 16384, 262144, 1 << 30)])
 
     def test_round_trip_for_every_sigma(self):
         for g in range(0, 240, 7):
             mu = 256 * (g - 100) + g
             symbols, data = drawn(150, g, mu, g)
-            self.assertEqual(symbols, decode_symbols(Substream(data, 0, len(data), 150), [g] * 150, [mu] * 150))
+            self.assertEqual(
+                symbols, decode_symbols(Substream(data, 0, len(data), 150), [g] * 150, [mu] * 150))
 
     def test_round_trip_of_lanes(self):
         symbols, data = drawn(20000, 90, -77)
@@ -88,7 +91,7 @@ class Symbols(unittest.TestCase):
         half, zero, one = HALF[64], 0, 32768
         self.assertEqual(-half - 1, self.take([0, zero]))
         self.assertEqual(half + 2, self.take([65535, zero]))
-        self.assertEqual(half + 2 + 5, self.take([65535, one, one, zero, one, zero]))      # E = 6 = 110
+        self.assertEqual(half + 2 + 5, self.take([65535, one, one, zero, one, zero]))  # E = 6 = 110
 
     def test_longest_escape(self):
         e = escape(Chosen([32768] * 19 + [0] + [32768] * 19), 0)
@@ -110,7 +113,8 @@ class Symbols(unittest.TestCase):
     def test_lists_and_searches_agree(self):
         for g in range(240):
             if HALF[g] <= LISTED:
-                self.assertEqual([Cumulative(g, 9)[j] for j in range(2 * HALF[g] + 5)], MODELS.get(g, 9))
+                self.assertEqual([Cumulative(g, 9)[j] for j in range(2 * HALF[g] + 5)],
+                                 MODELS.get(g, 9))
 
 
 class Masks(unittest.TestCase):
@@ -119,9 +123,12 @@ class Masks(unittest.TestCase):
         return decode_masks(Chosen(slots), h, 1, 30000, probabilities)[:2]
 
     def test_contexts(self):
-        """Dynamic bit 1, then contexts 3 + (1, 1, 2, 2); dynamic bit 0, then contexts 1, 0, 0, 2."""
-        self.assertEqual(([1], [0b1101]), self.contexts([29999, 40, 50, 59, 59], [0, 0, 0, 1, 50, 60]))
-        self.assertEqual(([0], [0b1100]), self.contexts([30000, 20, 10, 9, 29], [10, 20, 30, 0, 0, 0]))
+        """Dynamic bit 1, then contexts 3 + (1, 1, 2, 2); dynamic bit 0, then contexts 1, 0, 0,
+        2."""
+        self.assertEqual(([1], [0b1101]),
+                         self.contexts([29999, 40, 50, 59, 59], [0, 0, 0, 1, 50, 60]))
+        self.assertEqual(([0], [0b1100]),
+                         self.contexts([30000, 20, 10, 9, 29], [10, 20, 30, 0, 0, 0]))
 
 
 if __name__ == "__main__":

@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: BSD-2-Clause
-"""HEAD: every element at the ends of its range, every condition, every level bound (chapters 6 and 13)."""
+"""HEAD: every element at the ends of its range, every condition, every level bound (chapters 6 and
+13)."""
 
 import unittest
 
@@ -12,17 +13,23 @@ from verdict import Refusal
 
 # Motion by a bank, every switch on, the inr prior; two slices.
 MOVING = {
-    "n_anchors": 100, "tile_size": 64, "n_offsets": 2, "feature_dim": 4, "motion": 1, "phi_dim": 2, "bank_rows": 3, "bank_dim": 2, "deform_layers": 1,
-    "deform_width": 3, "temporal_mask": 1, "offset_mask": 1, "activation": 1, "view": 1, "head_layers": 1, "head_width": 4, "scale_domain": 0, "prior": 0,
-    "pe_octaves": 2, "hyper_layers": 1, "hyper_width": 5, "n_slices": 2, "slice": [1, 3], "ar_width": 4, "context_bits": 10,
-    "step": [f32(1.0)] * 5, "frames": 9, "rate_num": 30, "rate_den": 1, "origin": [0, 0, 0], "exponent": 255, "background": [0, 0, 0], "reserved": 0}
+    "n_anchors": 100, "tile_size": 64, "n_offsets": 2, "feature_dim": 4, "motion": 1, "phi_dim": 2,
+    "bank_rows": 3, "bank_dim": 2, "deform_layers": 1,
+    "deform_width": 3, "temporal_mask": 1, "offset_mask": 1, "activation": 1, "view": 1,
+    "head_layers": 1, "head_width": 4, "scale_domain": 0, "prior": 0,
+    "pe_octaves": 2, "hyper_layers": 1, "hyper_width": 5, "n_slices": 2, "slice": [1, 3],
+    "ar_width": 4, "context_bits": 10,
+    "step": [f32(1.0)] * 5, "frames": 9, "rate_num": 30, "rate_den": 1, "origin": [0, 0, 0],
+    "exponent": 255, "background": [0, 0, 0], "reserved": 0}
 # Nothing moves, a factorised prior, one slice, heads of one layer.
-STILL = dict(MOVING, motion=0, phi_dim=0, bank_rows=0, bank_dim=0, deform_layers=0, deform_width=0, temporal_mask=0, head_layers=0, head_width=0, prior=1,
+STILL = dict(MOVING, motion=0, phi_dim=0, bank_rows=0, bank_dim=0, deform_layers=0, deform_width=0,
+             temporal_mask=0, head_layers=0, head_width=0, prior=1,
              pe_octaves=0, hyper_layers=0, hyper_width=0, n_slices=1, slice=[4], ar_width=0)
 
 
 def judged(base, level=31, file_bytes=1 << 20, **changes):
-    """None, or identifier and name of the element whose offset is reported, with the number of the entry."""
+    """None, or identifier and name of the element whose offset is reported, with the number of the
+    entry."""
     elements = dict(base, **changes)
     payload = head_payload(elements)
     try:
@@ -65,14 +72,17 @@ class Elements(unittest.TestCase):
         for name in FLOATS:
             entries = MOVING[name]
             for wrong in (0x80000000, 0x00000001, 0x7F800000, 0xFF800000, 0x7FC00000):
-                self.assertEqual(("hdr.range", name + " 2"), judged(MOVING, **{name: entries[:2] + [wrong] + entries[3:]}))
-        for step, right in ((f32(2.0 ** -20), True), (f32(2.0 ** -20) - 1, False), (f32(2.0 ** 10), True), (f32(2.0 ** 10) + 1, False), (0, False)):
+                self.assertEqual(("hdr.range", name + " 2"),
+                                 judged(MOVING, **{name: entries[:2] + [wrong] + entries[3:]}))
+        for step, right in ((f32(2.0 ** -20), True), (f32(2.0 ** -20) - 1, False),
+                            (f32(2.0 ** 10), True), (f32(2.0 ** 10) + 1, False), (0, False)):
             expected = None if right else ("hdr.range", "step 4")
             self.assertEqual(expected, judged(MOVING, step=MOVING["step"][:4] + [step]))
 
     def test_conditions(self):
         """What is there must not be 0; what is not must be."""
-        for name in ("phi_dim", "bank_rows", "bank_dim", "deform_layers", "deform_width", "head_width", "hyper_width", "ar_width"):
+        for name in ("phi_dim", "bank_rows", "bank_dim", "deform_layers", "deform_width",
+                     "head_width", "hyper_width", "ar_width"):
             self.assertEqual(("hdr.combination", name), judged(MOVING, **{name: 0}))
             self.assertEqual(("hdr.combination", name), judged(STILL, **{name: 1}))
         for name in ("temporal_mask", "pe_octaves", "hyper_layers"):
@@ -88,7 +98,8 @@ class Elements(unittest.TestCase):
         for cut, at in ((1, len(payload) - 1), (3, len(payload) - 3), (len(payload), 0)):
             with self.assertRaises(Refusal) as caught:
                 read_header(Payload(payload, 0, len(payload) - cut), 31, 1 << 20)
-            self.assertEqual(("con.payload-size", at), (caught.exception.error, caught.exception.offset))
+            self.assertEqual(("con.payload-size", at),
+                             (caught.exception.error, caught.exception.offset))
 
 
 class Memory(unittest.TestCase):
@@ -122,16 +133,19 @@ class Level(unittest.TestCase):
     def test_elements(self):
         for level in (1, 2, 3, 4):
             bound = LEVELS[level]
-            for name, most in (("n_anchors", bound.anchors), ("frames", bound.frames), ("bank_rows", bound.frames), ("n_offsets", bound.offsets)):
+            for name, most in (("n_anchors", bound.anchors), ("frames", bound.frames),
+                               ("bank_rows", bound.frames), ("n_offsets", bound.offsets)):
                 self.assertIsNone(judged(MOVING, level, 1 << 40, **{name: most}))
                 expected = "hdr.range" if most == 16 else "lvl.exceeded"
-                self.assertEqual((expected, name), judged(MOVING, level, 1 << 40, **{name: most + 1}))
+                self.assertEqual((expected, name),
+                                 judged(MOVING, level, 1 << 40, **{name: most + 1}))
 
     def test_range_then_combination_then_level(self):
         self.assertEqual(("hdr.combination", "bank_rows"), judged(STILL, 1, bank_rows=1 << 20))
 
     def test_totals(self):
-        """Values, products, symbols a byte, each by itself; and that HEAD is where they come from."""
+        """Values, products, symbols a byte, each by itself; and that HEAD is where they come
+        from."""
         for level in (1, 2, 3, 4):
             bound = LEVELS[level]
             most = [bound.values, bound.products, bound.symbols_per_byte * 1000]
@@ -139,15 +153,20 @@ class Level(unittest.TestCase):
             for i in range(3):
                 with self.assertRaises(Refusal) as caught:
                     check_totals(level, *[n + (i == j) for j, n in enumerate(most)], 1000, 7)
-                self.assertEqual(("lvl.exceeded", 7), (caught.exception.error, caught.exception.offset))
+                self.assertEqual(("lvl.exceeded", 7),
+                                 (caught.exception.error, caught.exception.offset))
         # 100 anchors with 4 + 6 + 6 + 2 + 4 components: 2200 symbols, 8.6 bytes at 256 a byte.
         self.assertIsNone(judged(MOVING, 1, 9))
         self.assertEqual(("lvl.exceeded", "reserved"), judged(MOVING, 1, 8))
         # Three hidden layers of 181 have 65522 products, inputs and outputs not counted; four of
         # 512 more than level 4 takes.
-        self.assertEqual(("lvl.exceeded", "reserved"), judged(MOVING, 1, hyper_layers=3, hyper_width=181))
-        self.assertEqual(("lvl.exceeded", "reserved"), judged(MOVING, 4, hyper_layers=4, hyper_width=512))
-        self.assertEqual(("lvl.exceeded", "reserved"), judged(MOVING, 1, frames=64, bank_rows=64, bank_dim=512, deform_layers=8, deform_width=512))
+        self.assertEqual(("lvl.exceeded", "reserved"),
+                         judged(MOVING, 1, hyper_layers=3, hyper_width=181))
+        self.assertEqual(("lvl.exceeded", "reserved"),
+                         judged(MOVING, 4, hyper_layers=4, hyper_width=512))
+        self.assertEqual(("lvl.exceeded", "reserved"),
+                         judged(MOVING, 1, frames=64, bank_rows=64, bank_dim=512, deform_layers=8,
+                                deform_width=512))
 
 
 if __name__ == "__main__":

@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: BSD-2-Clause
-"""Networks of Tier E: packed layers against plain loops, and the rules of 7.2 and 7.3 at their bounds."""
+"""Networks of Tier E: packed layers against plain loops, and the rules of 7.2 and 7.3 at their
+bounds."""
 
 import random
 import struct
@@ -13,7 +14,8 @@ from integer_networks import Layer, read_networks
 from integers import clamp, round_shift, sat16
 from verdict import Refusal
 
-HEADER = dict(prior=1, pe_octaves=0, hyper_width=0, hyper_layers=0, types=[("feature", 2)], slice=[1, 1], n_slices=2, ar_width=1, context_bits=10)
+HEADER = dict(prior=1, pe_octaves=0, hyper_width=0, hyper_layers=0, types=[("feature", 2)],
+              slice=[1, 1], n_slices=2, ar_width=1, context_bits=10)
 
 
 def plain(weights, biases, shifts, hidden, x):
@@ -34,9 +36,11 @@ class Packed(unittest.TestCase):
                 half = 1 << r >> 1
                 w = (0x7FFFFFFF - half) // (2 * 32767)
                 rows = [[s * w, t * w] for s in (-1, 1) for t in (-1, 1)] + [[0, 0], [1, -1]]
-                biases = [sign * (0x7FFFFFFF - half - 2 * w * 32767) for sign in (-1, 1, -1, 1, 1, 1)]
+                biases = [sign * (0x7FFFFFFF - half - 2 * w * 32767)
+                          for sign in (-1, 1, -1, 1, 1, 1)]
                 layer = Layer(rows, biases, [r] * 6, hidden)
-                for x in ([32767, 32767], [-32767, 32767], [0, 0], [rng.randint(-32767, 32767), rng.randint(-32767, 32767)]):
+                for x in ([32767, 32767], [-32767, 32767], [0, 0],
+                          [rng.randint(-32767, 32767), rng.randint(-32767, 32767)]):
                     self.assertEqual(plain(rows, biases, [r] * 6, hidden, x), layer(x))
 
     def test_no_inputs(self):
@@ -49,7 +53,8 @@ def nete(shifts, values, header=HEADER):
 
 
 class Rules(unittest.TestCase):
-    """The header has a factorised prior of five outputs and one slice network 1 - 1 - 2: eight units, 5 + 2 + 4 values."""
+    """The header has a factorised prior of five outputs and one slice network 1 - 1 - 2: eight
+    units, 5 + 2 + 4 values."""
 
     SHIFTS = [0] * 5 + [10, 0, 0]
     VALUES = [0.0] * 11
@@ -62,7 +67,8 @@ class Rules(unittest.TestCase):
         try:
             nete(shifts or self.SHIFTS, values)
         except Refusal as refusal:
-            return refusal.error, (refusal.offset - self.FIRST) / 4 if refusal.offset >= self.FIRST else refusal.offset
+            at = refusal.offset
+            return refusal.error, (at - self.FIRST) / 4 if at >= self.FIRST else at
         return None
 
     def test_zero_networks(self):
@@ -71,7 +77,7 @@ class Rules(unittest.TestCase):
     def test_shifts(self):
         self.assertEqual(("net.shift", 0), self.refused(shifts=[21] + self.SHIFTS[1:]))
         self.assertIsNone(self.refused(shifts=[20] * 8))
-        header = dict(HEADER, context_bits=0)           # f = 0, g = 10: the hidden unit needs s >= 10
+        header = dict(HEADER, context_bits=0)  # f = 0, g = 10: the hidden unit needs s >= 10
         self.assertIsNotNone(nete(self.SHIFTS, self.VALUES, header))
         with self.assertRaises(Refusal) as caught:
             nete([0] * 5 + [9, 0, 0], self.VALUES, header)
@@ -85,13 +91,15 @@ class Rules(unittest.TestCase):
             self.assertEqual(expected, (caught.exception.error, caught.exception.offset))
 
     def test_weights_round_to_even_and_have_16_bits(self):
-        self.assertEqual(("net.weight-range", 5), self.refused(5, 32.0))            # 32 * 2^10 = 32768
-        self.assertEqual(("net.weight-range", 5), self.refused(5, 32767.5 / 1024))  # a tie, to the even 32768
+        self.assertEqual(("net.weight-range", 5), self.refused(5, 32.0))  # 32 * 2^10 = 32768
+        # a tie, to the even 32768
+        self.assertEqual(("net.weight-range", 5), self.refused(5, 32767.5 / 1024))
         self.assertIsNone(self.refused(5, 32767.0 / 1024))
         self.assertIsNone(self.refused(5, 32766.5 / 1024))
 
     def test_accumulator(self):
-        """The prior's output 0: s = 0, f = 12, r = 4, so |B| + 8 <= 2^31 - 1. B is a multiple of 2^8 for an f32 near 2^19."""
+        """The prior's output 0: s = 0, f = 12, r = 4, so |B| + 8 <= 2^31 - 1. B is a multiple of
+        2^8 for an f32 near 2^19."""
         self.assertIsNone(self.refused(0, 524288.0 - 2.0 ** -5))
         self.assertEqual(("net.accumulator", 0), self.refused(0, 524288.0))
 
@@ -116,13 +124,15 @@ class Blobs(unittest.TestCase):
         planes = bytes(values) + bytes(120)
         stream = zlib.compress(planes)
         self.assertEqual(values, self.blob(b"\1" + stream))
-        for wrong in (stream + b"\0", stream[:-1], stream[:-1] + bytes([stream[-1] ^ 1]), zlib.compress(planes[:-1]), zlib.compress(planes + b"\0"),
+        for wrong in (stream + b"\0", stream[:-1], stream[:-1] + bytes([stream[-1] ^ 1]),
+                      zlib.compress(planes[:-1]), zlib.compress(planes + b"\0"),
                       zlib.compress(planes, 0), b""):
             self.assertEqual(("net.deflate", 1), self.blob(b"\1" + wrong))
 
     def test_preset_dictionary(self):
         coder = zlib.compressobj(zdict=bytes(100))
-        self.assertEqual(("net.deflate", 1), self.blob(b"\1" + coder.compress(bytes(160)) + coder.flush()))
+        self.assertEqual(("net.deflate", 1),
+                         self.blob(b"\1" + coder.compress(bytes(160)) + coder.flush()))
 
     def test_raw_sizes_and_modes(self):
         self.assertEqual([0] * 40, self.blob(bytes(161)))

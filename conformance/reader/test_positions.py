@@ -31,7 +31,8 @@ class Rules(unittest.TestCase):
         self.assertEqual(6, len(read((0, 0, 0), (0, 0, 1))))
         self.assertEqual(("pos.order", 6), read((0, 0, 0), (0, 0, 0)))
         self.assertEqual(("pos.order", 6), read((0, 0, 1), (0, 0, 0)))
-        self.assertEqual(("pos.value", 10), read((0, 0, 1), (0, 0, MINUS_ZERO)))            # order is not judged
+        # order is not judged
+        self.assertEqual(("pos.value", 10), read((0, 0, 1), (0, 0, MINUS_ZERO)))
         self.assertEqual(("pos.order", 6), read((0, 0, 1), (0, 0, 0), (0, 0, MINUS_ZERO)))
 
     def test_image_keeps_the_order_of_numbers(self):
@@ -41,7 +42,9 @@ class Rules(unittest.TestCase):
     def test_code(self):
         """x holds the highest bits; a bit of z is lower than the same bit of y."""
         base = morton((0, 0, 0))
-        self.assertEqual([1, 2, 4, 8, 1 << 27], [morton(p) - base for p in ((0, 0, 1), (0, 1, 0), (1, 0, 0), (0, 0, 2), (0, 0, 512))])
+        self.assertEqual([1, 2, 4, 8, 1 << 27], [morton(p) - base
+                                                 for p in ((0, 0, 1), (0, 1, 0), (1, 0, 0),
+                                                           (0, 0, 2), (0, 0, 512))])
 
 
 if __name__ == "__main__":

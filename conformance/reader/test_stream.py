@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: BSD-2-Clause
-"""Whole streams: drawn ones are valid with consistent tiers; broken ones are refused where the text says."""
+"""Whole streams: drawn ones are valid with consistent tiers; broken ones are refused where the text
+says."""
 
 import json
 import math
@@ -51,7 +52,8 @@ def offsets(chunks):
     return found
 
 
-BASE = dict(motion=1, phi_dim=2, bank_rows=2, bank_dim=2, deform_layers=1, deform_width=2, temporal_mask=1, offset_mask=1, activation=1, tile_size=64)
+BASE = dict(motion=1, phi_dim=2, bank_rows=2, bank_dim=2, deform_layers=1, deform_width=2,
+            temporal_mask=1, offset_mask=1, activation=1, tile_size=64)
 
 
 class Drawn(unittest.TestCase):
@@ -62,7 +64,8 @@ class Drawn(unittest.TestCase):
             model = Model(data)
             h = model.header
             strings = {name: tier(model) for name, tier in TIERS.items()}
-            coded = sum(len(component.k) for tile in model.tiles for components in tile.coded.values() for component in components)
+            coded = sum(len(component.k) for tile in model.tiles
+                        for components in tile.coded.values() for component in components)
             self.assertEqual(15 * h.n_anchors, len(strings["T1"]))
             self.assertEqual(5 * coded + len(h.types) * h.n_anchors, len(strings["T2"]))
             self.assertEqual(6 * coded, len(strings["T4"]))
@@ -84,11 +87,13 @@ class Drawn(unittest.TestCase):
 def bytes_of_elements(string):
     """The file, put together from the records of T0 alone: every byte belongs to one element."""
     widths = dict.fromkeys(range(256), 1)
-    widths.update(dict.fromkeys((IDENTIFIER[n] for n in ("bank_dim deform_width head_width hyper_width ar_width position dynamic_prob "
-                                                         "offset_prob").split()), 2))
-    widths.update(dict.fromkeys((IDENTIFIER[n] for n in ("chunk_type chunk_flags chunk_size n_anchors tile_size bank_rows step frames rate_num rate_den "
-                                                         "origin nete netr bank tile_index size").split()), 4))
-    as_bytes = {IDENTIFIER[n] for n in IDENTIFIER if n in ("magic", "ancillary") or n.endswith(("_hash", "_deflated", "_substream"))}
+    two = "bank_dim deform_width head_width hyper_width ar_width position dynamic_prob offset_prob"
+    four = ("chunk_type chunk_flags chunk_size n_anchors tile_size bank_rows step frames rate_num "
+            "rate_den origin nete netr bank tile_index size")
+    widths.update(dict.fromkeys((IDENTIFIER[n] for n in two.split()), 2))
+    widths.update(dict.fromkeys((IDENTIFIER[n] for n in four.split()), 4))
+    as_bytes = {IDENTIFIER[n] for n in IDENTIFIER if n in ("magic", "ancillary")
+                or n.endswith(("_hash", "_deflated", "_substream"))}
     out, at = b"", 0
     while at < len(string):
         identifier, value = struct.unpack_from("<HI", string, at)
@@ -106,13 +111,15 @@ class Broken(unittest.TestCase):
     def setUpClass(cls):
         cls.data = random_stream("broken", 70, BASE)
         cls.chunks = chunks_of(cls.data)
-        cls.at = dict(zip((kind for kind, _, _ in cls.chunks), offsets(cls.chunks)))      # of TILE: the second
+        # of TILE: the second
+        cls.at = dict(zip((kind for kind, _, _ in cls.chunks), offsets(cls.chunks)))
 
     def changed(self, chunks):
         return verdict(rebuilt(self.data, chunks))
 
     def test_file_header(self):
-        for i, error in ((0, "con.magic"), (8, "con.version"), (10, "unsupported.profile"), (11, "con.level")):
+        for i, error in ((0, "con.magic"), (8, "con.version"), (10, "unsupported.profile"),
+                         (11, "con.level")):
             broken = bytearray(self.data)
             broken[i] ^= 0x40
             self.assertEqual((error, i), verdict(bytes(broken)))
@@ -131,30 +138,43 @@ class Broken(unittest.TestCase):
 
     def test_order(self):
         c = self.chunks
-        self.assertEqual(("con.chunk-order", self.at[b"NETE"]), self.changed([c[0]] + c[2:]))           # NETE missing: NETR in its place
-        self.assertEqual(("con.chunk-order", self.at[b"NETE"]), self.changed(c[:1] + c))                # HEAD doubled
+        # NETE missing: NETR in its place
+        self.assertEqual(("con.chunk-order", self.at[b"NETE"]), self.changed([c[0]] + c[2:]))
+        # HEAD doubled
+        self.assertEqual(("con.chunk-order", self.at[b"NETE"]), self.changed(c[:1] + c))
         self.assertEqual(("con.chunk-order", 12), self.changed(c[1:]))
-        self.assertEqual(("con.chunk-order", self.at[b"BANK"]), self.changed([k for k in c if k[0] != b"BANK"]))
-        self.assertEqual(("con.chunk-order", self.at[b"TILE"]), self.changed(c[:6] + c[7:]))            # one TILE for two: ENDS in its place
-        self.assertEqual(("con.chunk-order", self.at[b"ENDS"]), self.changed(c[:7] + c[6:]))            # three
+        self.assertEqual(("con.chunk-order", self.at[b"BANK"]),
+                         self.changed([k for k in c if k[0] != b"BANK"]))
+        # one TILE for two: ENDS in its place
+        self.assertEqual(("con.chunk-order", self.at[b"TILE"]), self.changed(c[:6] + c[7:]))
+        # three
+        self.assertEqual(("con.chunk-order", self.at[b"ENDS"]), self.changed(c[:7] + c[6:]))
 
     def test_ancillary(self):
         c = self.chunks
-        for flags, expected in ((0, "valid"), (2, "valid"), (1, ("con.unknown-critical", self.at[b"NETE"])), (4, ("con.reserved", self.at[b"NETE"] + 4)),
+        for flags, expected in ((0, "valid"), (2, "valid"),
+                                (1, ("con.unknown-critical", self.at[b"NETE"])),
+                                (4, ("con.reserved", self.at[b"NETE"] + 4)),
                                 (5, ("con.reserved", self.at[b"NETE"] + 4))):
-            self.assertEqual(expected, self.changed(c[:1] + [(b"META", flags, b"a=b")] + c[1:]), flags)
+            self.assertEqual(expected,
+                             self.changed(c[:1] + [(b"META", flags, b"a=b")] + c[1:]), flags)
         self.assertEqual(("con.chunk-order", 12), self.changed([(b"META", 2, b"")] + c))
-        self.assertEqual(("con.reserved", self.at[b"NETE"]), self.changed(c[:1] + [(b"ME A", 2, b"")] + c[1:]))
+        self.assertEqual(("con.reserved", self.at[b"NETE"]),
+                         self.changed(c[:1] + [(b"ME A", 2, b"")] + c[1:]))
         self.assertEqual(("con.reserved", 16), self.changed([(b"HEAD", 3, c[0][2])] + c[1:]))
 
     def test_header(self):
-        for position, value, error in ((4, 63, "hdr.range"), (8, 0, "hdr.range"), (8, 17, "hdr.range"), (10, 0, "hdr.combination"), (10, 4, "hdr.range"),
+        for position, value, error in ((4, 63, "hdr.range"), (8, 0, "hdr.range"),
+                                       (8, 17, "hdr.range"), (10, 0, "hdr.combination"),
+                                       (10, 4, "hdr.range"),
                                        (89, 1, "hdr.range")):
             head = bytearray(self.chunks[0][2])
             position = len(head) - 1 if position == 89 else position
             head[position:position + 1] = [value]
-            at = 24 + (11 if error == "hdr.combination" else position)          # motion none: phi_dim contradicts it
-            self.assertEqual((error, at), self.changed([(b"HEAD", 1, bytes(head))] + self.chunks[1:]), position)
+            # motion none: phi_dim contradicts it
+            at = 24 + (11 if error == "hdr.combination" else position)
+            self.assertEqual((error, at),
+                             self.changed([(b"HEAD", 1, bytes(head))] + self.chunks[1:]), position)
 
     def test_level(self):
         for level, expected in ((1, ("lvl.exceeded", 32)), (3, "valid")):
@@ -163,16 +183,21 @@ class Broken(unittest.TestCase):
 
     def test_hash_of_integers(self):
         last = self.chunks[-1][2]
-        self.assertEqual(("syn.hash", self.at[b"ENDS"] + 12), self.changed(self.chunks[:-1] + [(b"ENDS", 1, bytes([last[0] ^ 1]) + last[1:])]))
-        self.assertEqual(("con.payload-size", self.at[b"ENDS"] + 12), self.changed(self.chunks[:-1] + [(b"ENDS", 1, last[1:])]))
-        self.assertEqual(("con.payload-size", self.at[b"ENDS"] + 28), self.changed(self.chunks[:-1] + [(b"ENDS", 1, last + b"\0")]))
+        self.assertEqual(("syn.hash", self.at[b"ENDS"] + 12),
+                         self.changed(self.chunks[:-1] +
+                                      [(b"ENDS", 1, bytes([last[0] ^ 1]) + last[1:])]))
+        self.assertEqual(("con.payload-size", self.at[b"ENDS"] + 12),
+                         self.changed(self.chunks[:-1] + [(b"ENDS", 1, last[1:])]))
+        self.assertEqual(("con.payload-size", self.at[b"ENDS"] + 28),
+                         self.changed(self.chunks[:-1] + [(b"ENDS", 1, last + b"\0")]))
 
     def test_lowest_offset_wins(self):
         """A payload that is too long is found out at its end, after errors inside."""
         kind, flags, posn = self.chunks[4]
         self.assertEqual(b"POSN", kind)
         wrong = posn[:6] + b"\0\x80" + posn[8:] + b"\0"
-        self.assertEqual(("pos.value", self.at[b"POSN"] + 18), self.changed(self.chunks[:4] + [(kind, flags, wrong)] + self.chunks[5:]))
+        self.assertEqual(("pos.value", self.at[b"POSN"] + 18),
+                         self.changed(self.chunks[:4] + [(kind, flags, wrong)] + self.chunks[5:]))
 
     def test_any_change_has_a_verdict(self):
         """Random changes with repaired hashes: a verdict each, never another exception."""
@@ -203,19 +228,26 @@ class CommandLine(unittest.TestCase):
             with open(path, "wb") as file:
                 file.write(data)
             with open(queries, "w", encoding="utf-8") as file:
-                file.write('[{"t": [0, 1], "cam": [0, 0.5, -1e3]}, {"t": [2, 1], "cam": [0, 0, 0]}]')
-            answer = self.run_reader("--ted4-run", path, "--tiers", "T5,T1", "--queries", queries, "--dump", folder)
+                file.write('[{"t": [0, 1], "cam": [0, 0.5, -1e3]},'
+                           ' {"t": [2, 1], "cam": [0, 0, 0]}]')
+            answer = self.run_reader("--ted4-run", path, "--tiers", "T5,T1", "--queries", queries,
+                                     "--dump", folder)
             self.assertEqual("valid", answer["result"])
             self.assertEqual(["T1", "T5"], sorted(answer["tiers"]))
             self.assertEqual({"error": "query.range"}, answer["tiers"]["T5"][1])
             self.assertEqual(45, answer["tiers"]["T1"]["bytes"])
             self.assertEqual(45, os.path.getsize(os.path.join(folder, "T1.bin")))
-            self.assertEqual({"result": "limit", "error": "limit.memory"}, self.run_reader("--ted4-run", path, "--knob", "max_alloc_total=1000"))
-            self.assertEqual({"result": "limit", "error": "limit.work"}, self.run_reader("--ted4-run", path, "--knob", "max_work=%d" % len(data)))
+            self.assertEqual({"result": "limit", "error": "limit.memory"},
+                             self.run_reader("--ted4-run", path, "--knob", "max_alloc_total=1000"))
+            self.assertEqual({"result": "limit", "error": "limit.work"},
+                             self.run_reader("--ted4-run", path, "--knob",
+                                             "max_work=%d" % len(data)))
             with open(path, "wb") as file:
                 file.write(data[:100])
-            self.assertEqual({"result": "invalid", "error": "con.truncated", "offset": 100}, self.run_reader("--ted4-run", path))
-            self.assertEqual({"result": "io", "error": "io.read"}, self.run_reader("--ted4-run", os.path.join(folder, "none")))
+            self.assertEqual({"result": "invalid", "error": "con.truncated", "offset": 100},
+                             self.run_reader("--ted4-run", path))
+            self.assertEqual({"result": "io", "error": "io.read"},
+                             self.run_reader("--ted4-run", os.path.join(folder, "none")))
 
 
 if __name__ == "__main__":

@@ -59,8 +59,10 @@ class Operations(unittest.TestCase):
         for _ in range(2000):
             a = abs(some(rng))
             root = strict.sqrt([a])[0]
-            self.assertLessEqual(((self.neighbour(root, -1) + Fraction(root)) / 2) ** 2, Fraction(a))
-            self.assertGreaterEqual(((self.neighbour(root, 1) + Fraction(root)) / 2) ** 2, Fraction(a))
+            self.assertLessEqual(((self.neighbour(root, -1) + Fraction(root)) / 2) ** 2,
+                                 Fraction(a))
+            self.assertGreaterEqual(((self.neighbour(root, 1) + Fraction(root)) / 2) ** 2,
+                                    Fraction(a))
 
     @staticmethod
     def neighbour(value, step):
@@ -71,8 +73,8 @@ class Operations(unittest.TestCase):
         self.assertEqual([math.inf], strict.add([LARGEST], [LARGEST]))
         self.assertEqual([math.inf], strict.scaled([LARGEST], 2.0))
         self.assertEqual([SMALLEST], strict.scaled([SMALLEST], 1.0))
-        self.assertEqual([0.0], strict.scaled([SMALLEST], 0.5))                         # a tie, to even
-        self.assertEqual([2 * SMALLEST], strict.scaled([3 * SMALLEST], 0.5))            # a tie, to even
+        self.assertEqual([0.0], strict.scaled([SMALLEST], 0.5))  # a tie, to even
+        self.assertEqual([2 * SMALLEST], strict.scaled([3 * SMALLEST], 0.5))  # a tie, to even
         self.assertTrue(math.isnan(strict.sub([math.inf], [math.inf])[0]))
         self.assertEqual("-0x0.0p+0", strict.relu([-0.0])[0].hex())
         self.assertTrue(math.isnan(strict.relu([math.nan])[0]))

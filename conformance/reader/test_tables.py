@@ -15,7 +15,9 @@ ANNEX = pathlib.Path(__file__).resolve().parents[2] / "spec" / "annex-a-tables.m
 def printed():
     """Table name to its entries: the numbers inside the fences of each section."""
     sections = re.split(r"^## A\.\d+ ", ANNEX.read_text(encoding="utf-8"), flags=re.M)[1:]
-    return {re.match(r"\w+", section).group(): [int(number, 0) for number in re.findall(r"-?\b(?:0x[0-9a-fA-F]+|\d+)\b", section.split("```")[1])]
+    number = re.compile(r"-?\b(?:0x[0-9a-fA-F]+|\d+)\b")
+    return {re.match(r"\w+", section).group():
+            [int(digits, 0) for digits in number.findall(section.split("```")[1])]
             for section in sections}
 
 
@@ -23,7 +25,8 @@ class Tables(unittest.TestCase):
     @unittest.skipUnless(ANNEX.exists(), "the specification is not there")
     def test_annex_a(self):
         annex = printed()
-        self.assertEqual({"HALF": 240, "INV": 240, "PHI": 1025, "SIN": 1025, "STEP": 256, "STEPI": 256}, {name: len(t) for name, t in annex.items()})
+        self.assertEqual({"HALF": 240, "INV": 240, "PHI": 1025, "SIN": 1025, "STEP": 256,
+                          "STEPI": 256}, {name: len(t) for name, t in annex.items()})
         for name, entries in annex.items():
             computed = f32_patterns(tables.STEP) if name == "STEP" else getattr(tables, name)
             self.assertEqual(entries, list(computed), name)

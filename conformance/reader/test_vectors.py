@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: BSD-2-Clause
-"""A part of the conformance suite, in this process: what other decoders say of files that this one has not made."""
+"""A part of the conformance suite, in this process: what other decoders say of files that this one
+has not made."""
 
 import json
 import pathlib
@@ -19,9 +20,11 @@ LARGEST = 8000                      # bytes
 
 
 def chosen():
-    """Descriptors, by a check sum of their names, so that new vectors do not change which of the old ones are taken."""
+    """Descriptors, by a check sum of their names, so that new vectors do not change which of the
+    old ones are taken."""
     for path in sorted(VECTORS.rglob("*.json")):
-        if path.with_suffix(".ted4").exists() and (zlib.crc32(path.stem.encode()) % SHARE == 0 or path.parent.name == "worked"):
+        if path.with_suffix(".ted4").exists() and (zlib.crc32(path.stem.encode()) % SHARE == 0
+                                                   or path.parent.name == "worked"):
             yield path
 
 
@@ -36,7 +39,8 @@ def answer(vector, data):
     anchors, tiers["T5"] = Anchors(model), []
     for query in vector["queries"]:
         try:
-            tiers["T5"].append(describe(records(anchors, Query(*query["t"], [f32_round(c) for c in query["cam"]])), "T5", None))
+            asked = Query(*query["t"], [f32_round(c) for c in query["cam"]])
+            tiers["T5"].append(describe(records(anchors, asked), "T5", None))
         except Refusal as refusal:
             tiers["T5"].append({"error": refusal.error})
     return {"result": "valid"}, tiers
@@ -47,7 +51,8 @@ class Suite(unittest.TestCase):
     def test_share(self):
         asked = 0
         for path in chosen():
-            vector, data = json.loads(path.read_text(encoding="utf-8")), path.with_suffix(".ted4").read_bytes()
+            vector = json.loads(path.read_text(encoding="utf-8"))
+            data = path.with_suffix(".ted4").read_bytes()
             if len(data) > LARGEST:
                 continue
             expected = {key: value for key, value in vector["expect"].items() if key != "also_ok"}

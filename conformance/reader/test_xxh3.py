@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: BSD-2-Clause
-"""XXH3 against values made with libxxhash 0.8.1, and, where that library is there, against the library."""
+"""XXH3 against values made with libxxhash 0.8.1, and, where that library is there, against the
+library."""
 
 import ctypes
 import ctypes.util
@@ -56,7 +57,8 @@ class Library(unittest.TestCase):
             data = bytes(rng.randrange(256) for _ in range(n))
             self.assertEqual(library.XXH3_64bits(data, n), xxh3_64(data), n)
             halves = library.XXH3_128bits(data, n)
-            self.assertEqual((halves.high << 64 | halves.low).to_bytes(16, "big"), xxh3_128(data), n)
+            self.assertEqual((halves.high << 64 | halves.low).to_bytes(16, "big"),
+                             xxh3_128(data), n)
 
 
 if __name__ == "__main__":

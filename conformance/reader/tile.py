@@ -17,8 +17,9 @@ Component = namedtuple("Component", "anchors sigma mu k")
 
 
 class Tile:
-    """first, n: its anchors. dynamic, kept: per anchor, its dynamic bit and the bits of its offsets. step[type]: step indices. coded[type]: its Components.
-    streams: (substream, symbols) in order of 9.1, for T3 and 15.2."""
+    """first, n: its anchors. dynamic, kept: per anchor, its dynamic bit and the bits of its
+    offsets. step[type]: step indices. coded[type]: its Components. streams: (substream, symbols) in
+    order of 9.1, for T3 and 15.2."""
 
     def __init__(self, payload, model, number):
         h = self.header = model.header
@@ -33,7 +34,8 @@ class Tile:
         self.step = {name: prior.step for name, prior in self.priors.items()}
         self.decode_feature()
         for name, _ in h.types[1:]:
-            self.coded[name] = self.decode_components(name, self.priors[name].mu, self.priors[name].s)
+            self.coded[name] = self.decode_components(name, self.priors[name].mu,
+                                                      self.priors[name].s)
         if h.activation:
             self.check_order()
         del self.model, self.payload, self.priors
@@ -71,7 +73,8 @@ class Tile:
         self.dynamic, self.kept = default_masks(h, self.n)
         if h.temporal_mask or h.offset_mask:
             substream = self.open_substream(mask_symbols(h, self.n))
-            self.dynamic, self.kept, bits = decode_masks(substream, h, self.n, self.dynamic_prob, self.offset_prob)
+            self.dynamic, self.kept, bits = decode_masks(substream, h, self.n, self.dynamic_prob,
+                                                         self.offset_prob)
             self.streams.append((substream, bits))
 
     def decode_feature(self):
@@ -119,6 +122,7 @@ class Tile:
         return range(self.n)
 
     def check_order(self):
-        """R-ATT-001, at the substream of tau, which is the last and has been decoded to its end (R-ENT-012)."""
+        """R-ATT-001, at the substream of tau, which is the last and has been decoded to its end
+        (R-ENT-012)."""
         begins, _, ends, _ = (component.k for component in self.coded["tau"])
         require(all(map(int.__le__, begins, ends)), "att.tau-order", self.streams[-1][0].start)

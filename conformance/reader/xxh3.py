@@ -1,7 +1,8 @@
 # SPDX-License-Identifier: BSD-2-Clause
 """XXH3-64 and XXH3-128 with seed 0 (xxHash 0.8 specification), for chapters 5 and 15 and annex J.
 
-Three ways by length: up to 16 bytes, up to 240 bytes, and longer, where eight accumulators of 64 bits run over stripes of 64 bytes.
+Three ways by length: up to 16 bytes, up to 240 bytes, and longer, where eight accumulators of 64
+bits run over stripes of 64 bytes.
 """
 
 import struct
@@ -20,7 +21,7 @@ A1, A2, A3 = 0x9E3779B1, 0x85EBCA77, 0xC2B2AE3D                               # 
 B1, B2, B3 = 0x9E3779B185EBCA87, 0xC2B2AE3D27D4EB4F, 0x165667B19E3779F9         # primes of 64 bits
 B4, B5 = 0x85EBCA77C2B2AE63, 0x27D4EB2F165667C5
 MIX1, MIX2 = 0x165667919E3779F9, 0x9FB21C651E98DF25
-BLOCK = 1024                                                                    # 16 stripes, then a scramble
+BLOCK = 1024  # 16 stripes, then a scramble
 
 
 def u32(data, at):
@@ -89,7 +90,8 @@ def accumulate(data, n):
 
 
 def stripe(acc, words, key):
-    """Adds 64 bytes: each word to its neighbour's accumulator, the product of its keyed halves to its own."""
+    """Adds 64 bytes: each word to its neighbour's accumulator, the product of its keyed halves to
+    its own."""
     for i in (0, 2, 4, 6):
         a, b = words[i], words[i + 1]
         x, y = a ^ key[i], b ^ key[i + 1]
@@ -98,8 +100,9 @@ def stripe(acc, words, key):
 
 
 def merge(acc, s, start):
-    return avalanche((start + sum(fold(acc[i] ^ secret(s + 8 * i), acc[i + 1] ^ secret(s + 8 * i + 8))
-                                  for i in (0, 2, 4, 6))) & M64)
+    return avalanche(
+        (start + sum(fold(acc[i] ^ secret(s + 8 * i), acc[i + 1] ^ secret(s + 8 * i + 8))
+                     for i in (0, 2, 4, 6))) & M64)
 
 
 def xxh3_64(data):

@@ -25,7 +25,8 @@ def thresholds(path):
         ids = [v["id"] for v in json.load(f)["vector"] if v["sha256"] == sha]
     with open("conformance/tolerance/thresholds.csv", newline="", encoding="utf-8") as f:
         rows = [r for r in csv.DictReader(f) if r["vector"] in ids]
-    return {int(r["query"]): {g: (2.0 ** int(r[g + "_peak"]), 2.0 ** int(r[g + "_rms"])) for g in GROUPS} for r in rows}
+    return {int(r["query"]): {g: (2.0 ** int(r[g + "_peak"]), 2.0 ** int(r[g + "_rms"]))
+                              for g in GROUPS} for r in rows}
 
 
 def shift(record, group, amount):
@@ -71,7 +72,8 @@ def answer_records(way, path, bound):
 
 def main():
     way, arguments = sys.argv[1], sys.argv[2:]
-    answer = json.loads(subprocess.run([os.environ["TED4DEC"]] + arguments, stdout=subprocess.PIPE, check=True).stdout)
+    answer = json.loads(subprocess.run([os.environ["TED4DEC"]] + arguments, stdout=subprocess.PIPE,
+                                       check=True).stdout)
     if arguments[0] == "--ted4-capabilities":
         answer["class"] = "T"
     elif "T5" in answer.get("tiers", {}) and "--dump" in arguments:

@@ -1,8 +1,10 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: BSD-2-Clause
-"""What conformance/schema says, held against what is there: manifest, every descriptor, capabilities and answers of our decoders, and the results of
-`ted4conf run` for a decoder that conforms and one that does not, as JSON, JUnit and HTML; and what all files add up to. Speaks as cmocka programs do; run in
-the project's root, by tests/tools/test_suite_schema.sh. TED4_BUILD: the build folder.
+"""What conformance/schema says, held against what is there: manifest, every descriptor,
+capabilities and answers of our decoders, and the results of `ted4conf run` for a decoder that
+conforms and one that does not, as JSON, JUnit and HTML; and what all files add up to. Speaks as
+cmocka programs do; run in the project's root, by tests/tools/test_suite_schema.sh. TED4_BUILD: the
+build folder.
 """
 
 import csv
@@ -23,8 +25,10 @@ BUILD = os.environ.get("TED4_BUILD", "build")
 MOST_BYTES = 8000000                            # of all files of the folder
 MADE = r"/(generated|__pycache__)\b"             # folders that programs make in it
 TYPES = {
-    "object": lambda v: isinstance(v, dict), "array": lambda v: isinstance(v, list), "string": lambda v: isinstance(v, str),
-    "integer": lambda v: isinstance(v, int) and not isinstance(v, bool), "boolean": lambda v: isinstance(v, bool), "null": lambda v: v is None,
+    "object": lambda v: isinstance(v, dict), "array": lambda v: isinstance(v, list),
+    "string": lambda v: isinstance(v, str),
+    "integer": lambda v: isinstance(v, int) and not isinstance(v, bool),
+    "boolean": lambda v: isinstance(v, bool), "null": lambda v: v is None,
     "number": lambda v: isinstance(v, (int, float)) and not isinstance(v, bool),
 }
 
@@ -35,7 +39,8 @@ def load(path):
 
 
 class Schema:
-    """The keywords of JSON Schema draft 7 that the files of conformance/schema use; another one is an error."""
+    """The keywords of JSON Schema draft 7 that the files of conformance/schema use; another one is
+    an error."""
 
     def __init__(self, name):
         self.name, self.root = name, load(os.path.join(SCHEMAS, name))
@@ -59,7 +64,8 @@ class Schema:
         yield from target.errors(value, found, at)
 
     def on_type(self, value, operand, at, _):
-        if not any(TYPES[name](value) for name in (operand if isinstance(operand, list) else [operand])):
+        if not any(TYPES[name](value)
+                   for name in (operand if isinstance(operand, list) else [operand])):
             yield "%s: not %s" % (at, operand)
 
     def on_enum(self, value, operand, at, _):
@@ -141,37 +147,48 @@ def descriptors():
 def manifest():
     suite, schema = load(os.path.join(SUITE, "SUITE.json")), Schema("manifest.schema.json")
     holds(schema, suite, "SUITE.json")
-    require(suite["vectors"] == len(suite["vector"]) == len({v["id"] for v in suite["vector"]}), "SUITE.json: number of vectors")
+    require(suite["vectors"] == len(suite["vector"]) == len({v["id"] for v in suite["vector"]}),
+            "SUITE.json: number of vectors")
     results = [load(path)["expect"]["result"] for path in descriptors()]
     for kind, values in (("result", results), ("folder", [v["folder"] for v in suite["vector"]])):
-        require({v: values.count(v) for v in values} == suite["counts"][kind], "SUITE.json: counts by %s" % kind)
+        require({v: values.count(v) for v in values} == suite["counts"][kind],
+                "SUITE.json: counts by %s" % kind)
     require(schema.check(dict(suite, schema=2)), "a manifest of another schema passes")
 
 
 def size():
-    files = [os.path.join(folder, name) for folder, _, names in os.walk(SUITE) for name in names if not re.search(MADE, folder)]
+    files = [os.path.join(folder, name) for folder, _, names in os.walk(SUITE) for name in names
+             if not re.search(MADE, folder)]
     total = sum(os.path.getsize(path) for path in files)
-    require(total <= MOST_BYTES, "the files of %s add up to %d bytes, more than %d" % (SUITE, total, MOST_BYTES))
+    require(total <= MOST_BYTES,
+            "the files of %s add up to %d bytes, more than %d" % (SUITE, total, MOST_BYTES))
 
 
 def every_descriptor():
-    schema, listed = Schema("descriptor.schema.json"), {v["id"]: v for v in load(os.path.join(SUITE, "SUITE.json"))["vector"]}
+    schema = Schema("descriptor.schema.json")
+    listed = {v["id"]: v for v in load(os.path.join(SUITE, "SUITE.json"))["vector"]}
     one = None
     for path in descriptors():
         one = load(path)
         name = os.path.basename(path)[:-len(".json")]
         holds(schema, one, path)
-        require(one["id"] == name and one["file"] == name + ".ted4" and name in listed, "%s: names" % path)
-        require(one["category"] == listed[name]["folder"] == os.path.relpath(os.path.dirname(path), os.path.join(SUITE, "vectors")),
+        require(one["id"] == name and one["file"] == name + ".ted4" and name in listed,
+                "%s: names" % path)
+        require(one["category"] == listed[name]["folder"]
+                == os.path.relpath(os.path.dirname(path), os.path.join(SUITE, "vectors")),
                 "%s: category" % path)
-        require(one["bytes"] == listed[name]["bytes"] and one["sha256"] == listed[name]["sha256"], "%s: file" % path)
+        require(one["bytes"] == listed[name]["bytes"] and one["sha256"] == listed[name]["sha256"],
+                "%s: file" % path)
         with open(path, "rb") as file:
-            require(hashlib.sha256(file.read()).hexdigest()[:16] == listed[name]["json"], "%s: another one than in SUITE.json" % path)
+            require(hashlib.sha256(file.read()).hexdigest()[:16] == listed[name]["json"],
+                    "%s: another one than in SUITE.json" % path)
         require(("tiers" in one) == (one["expect"]["result"] == "valid"), "%s: tiers" % path)
-        require(one["expect"]["result"] != "invalid" or one["expect"]["offset"] <= one["bytes"], "%s: offset" % path)
+        require(one["expect"]["result"] != "invalid" or one["expect"]["offset"] <= one["bytes"],
+                "%s: offset" % path)
         del listed[name]
     require(not listed, "no descriptor of %s" % list(listed)[:3])
-    for change in ({"more": 1}, {"rules": []}, {"sha256": "x"}, {"level": -1}, {"expect": {"result": "maybe"}}, {"tiers": {"T9": {}}}):
+    for change in ({"more": 1}, {"rules": []}, {"sha256": "x"}, {"level": -1},
+                   {"expect": {"result": "maybe"}}, {"tiers": {"T9": {}}}):
         require(schema.check(dict(one, **change)), "a descriptor with %r passes" % change)
 
 
@@ -187,23 +204,29 @@ def answers():
     for command in (ours, ["python3", os.path.join(SUITE, "reader", "reader.py")]):
         said = ask(command, "--ted4-capabilities")
         holds(capabilities, said, "capabilities of %s" % command[-1])
-        require(capabilities.check(dict(said, protocol=0)) and capabilities.check(dict(said, max_level=32)), "other capabilities pass")
-    wanted = {"worked/WRK-dynamic": "valid", "invalid/container/NEG-magic-0": "invalid", "tolerant/TOL-three-1": "invalid",
+        require(capabilities.check(dict(said, protocol=0))
+                and capabilities.check(dict(said, max_level=32)), "other capabilities pass")
+    wanted = {"worked/WRK-dynamic": "valid", "invalid/container/NEG-magic-0": "invalid",
+              "tolerant/TOL-three-1": "invalid",
               "limit/LIM-bank-60000": "limit", "invalid/container/NEG-profile-1": "unsupported"}
     for vector, result in wanted.items():
         path = os.path.join(SUITE, "vectors", vector)
         if not os.path.exists(path + ".json"):
-            path = next(p[:-len(".json")] for p in descriptors() if load(p)["expect"]["result"] == result)
+            path = next(p[:-len(".json")] for p in descriptors()
+                        if load(p)["expect"]["result"] == result)
         with tempfile.NamedTemporaryFile("w", suffix=".json", encoding="ascii") as queries:
             one = load(path + ".json")
             json.dump(one["queries"], queries)
             queries.flush()
-            knobs = [x for k, v in one.get("knobs", {}).items() for x in ("--knob", "%s=%d" % (k, v))]
-            said = ask(ours, "--ted4-run", path + ".ted4", "--tiers", "T0,T1,T2,T3,T4,T5", "--mode", "lenient", "--queries", queries.name, *knobs)
+            knobs = [x for k, v in one.get("knobs", {}).items()
+                     for x in ("--knob", "%s=%d" % (k, v))]
+            said = ask(ours, "--ted4-run", path + ".ted4", "--tiers", "T0,T1,T2,T3,T4,T5", "--mode",
+                       "lenient", "--queries", queries.name, *knobs)
         holds(answer, said, vector)
         require(said["result"] == result, "%s: %s" % (vector, said["result"]))
         require(("salvage" in said) == (vector == "tolerant/TOL-three-1"), "%s: salvage" % vector)
-        require(answer.check(dict(said, result="perhaps")) and answer.check(dict(said, offset=-1)), "other answers pass")
+        require(answer.check(dict(said, result="perhaps")) and answer.check(dict(said, offset=-1)),
+                "other answers pass")
 
 
 class Page(html.parser.HTMLParser):
@@ -231,21 +254,29 @@ class Page(html.parser.HTMLParser):
 def one_report(folder, command, conforms, outcomes):
     out = {kind: os.path.join(folder, "results." + kind) for kind in ("json", "xml", "html")}
     ids = open(os.path.join(SUITE, "lists", "few.txt"), encoding="ascii").read().split()
-    run = subprocess.run([os.path.join(BUILD, "ted4conf"), "run", "-q", "--memory", "0", "-l", os.path.join(SUITE, "lists", "few.txt"), "-d", command,
+    run = subprocess.run([os.path.join(BUILD, "ted4conf"), "run", "-q", "--memory", "0", "-l",
+                          os.path.join(SUITE, "lists", "few.txt"), "-d", command,
                           "--json", out["json"], "--junit", out["xml"], "--html", out["html"]],
-                         env=dict(os.environ, TED4DEC=os.path.join(BUILD, "ted4dec")), capture_output=True, timeout=300, check=False)
-    require(run.returncode == (0 if conforms else 1), "exit status %d: %s" % (run.returncode, run.stdout))
+                         env=dict(os.environ, TED4DEC=os.path.join(BUILD, "ted4dec")),
+                         capture_output=True, timeout=300, check=False)
+    require(run.returncode == (0 if conforms else 1),
+            "exit status %d: %s" % (run.returncode, run.stdout))
     results, schema = load(out["json"]), Schema("results.schema.json")
     holds(schema, results, "results")
-    require(results["conforms"] is conforms and results["counts"] == dict({n: 0 for n in results["counts"]}, **outcomes), "results: counts")
+    require(results["conforms"] is conforms and results["counts"]
+            == dict({n: 0 for n in results["counts"]}, **outcomes), "results: counts")
     require(sorted(v["id"] for v in results["vectors"]) == sorted(ids), "results: vectors")
     require(schema.check(dict(results, conforms="yes")), "other results pass")
     junit = xml.etree.ElementTree.parse(out["xml"]).getroot()
-    require(junit.tag == "testsuite" and sorted(c.get("name") for c in junit) == sorted(ids), "JUnit: cases")
-    require(int(junit.get("tests")) == len(ids) and int(junit.get("failures")) == outcomes.get("fail", 0), "JUnit: counts")
-    require(len(junit.findall("testcase/failure")) == outcomes.get("fail", 0) and int(junit.get("errors")) == 0, "JUnit: failures")
+    require(junit.tag == "testsuite" and sorted(c.get("name") for c in junit) == sorted(ids),
+            "JUnit: cases")
+    require(int(junit.get("tests")) == len(ids)
+            and int(junit.get("failures")) == outcomes.get("fail", 0), "JUnit: counts")
+    require(len(junit.findall("testcase/failure")) == outcomes.get("fail", 0)
+            and int(junit.get("errors")) == 0, "JUnit: failures")
     page = Page(open(out["html"], encoding="utf-8").read())
-    require(("conforms" in page.text) is conforms and ("does not conform" in page.text) is not conforms, "HTML: verdict")
+    require(("conforms" in page.text) is conforms
+            and ("does not conform" in page.text) is not conforms, "HTML: verdict")
     require(all(i in page.text for i in ids) and command in page.text, "HTML: vectors")
 
 
@@ -253,7 +284,8 @@ def reports():
     bad = "sh conformance/tests/bad_decoder.sh "
     with tempfile.TemporaryDirectory() as folder:
         one_report(folder, bad + "good", True, {"pass": 8})
-        one_report(folder, "NAME='<a href=\"x\">&' " + bad + "wrong-hash", False, {"pass": 4, "fail": 4})
+        one_report(folder, "NAME='<a href=\"x\">&' " + bad + "wrong-hash", False,
+                   {"pass": 4, "fail": 4})
 
 
 def one_suite(folder, changed, outcome):
@@ -267,13 +299,15 @@ def one_suite(folder, changed, outcome):
     with open(os.path.join(folder, "SUITE.json"), "w", encoding="ascii") as file:
         json.dump({"vector": [published["WRK-annex-b1"], published["WRK-masks"]]}, file)
     changed(place)
-    run = subprocess.run([os.path.join(BUILD, "ted4conf"), "run", "-q", "--memory", "0", "-s", folder, "-d", os.path.join(BUILD, "ted4dec")],
+    run = subprocess.run([os.path.join(BUILD, "ted4conf"), "run", "-q", "--memory", "0", "-s",
+                          folder, "-d", os.path.join(BUILD, "ted4dec")],
                          stdout=subprocess.PIPE, timeout=120, check=False)
     require(outcome in run.stdout.decode(), "%s: %s" % (changed.__name__, run.stdout))
 
 
 def changed_suites():
-    """A vector that is gone, or another one than the manifest says, is missing, whatever its descriptor says."""
+    """A vector that is gone, or another one than the manifest says, is missing, whatever its
+    descriptor says."""
     second = "WRK-masks"
 
     def as_it_is(_):
@@ -302,24 +336,31 @@ def changed_suites():
 
     def one_more(place):
         for suffix in (".json", ".ted4"):
-            shutil.copy(os.path.join(place, second + suffix), os.path.join(place, "WRK-more" + suffix))
+            shutil.copy(os.path.join(place, second + suffix),
+                        os.path.join(place, "WRK-more" + suffix))
 
-    for changed, outcome in ((as_it_is, " 2 passed, 0 failed, 0 without answer, 0 missing"), (no_file, " 1 passed, 0 failed, 0 without answer, 1 missing"),
-                             (no_descriptor, " 1 passed, 0 failed, 0 without answer, 1 missing"), (other_file, " 1 missing"),
+    for changed, outcome in ((as_it_is, " 2 passed, 0 failed, 0 without answer, 0 missing"),
+                             (no_file, " 1 passed, 0 failed, 0 without answer, 1 missing"),
+                             (no_descriptor, " 1 passed, 0 failed, 0 without answer, 1 missing"),
+                             (other_file, " 1 missing"),
                              (other_vector, " 1 passed, 0 failed, 0 without answer, 1 missing"),
-                             (other_descriptor, " 1 passed, 0 failed, 0 without answer, 1 missing"), (one_more, " 2 passed, 0 failed, 0 without answer, 1 missing")):
+                             (other_descriptor, " 1 passed, 0 failed, 0 without answer, 1 missing"),
+                             (one_more, " 2 passed, 0 failed, 0 without answer, 1 missing")):
         with tempfile.TemporaryDirectory() as folder:
             one_suite(folder, changed, outcome)
 
 
 def thresholds():
-    """Powers of two by their exponents; what the root of the mean square may be is never above what the largest may be (R-TOL-003)."""
-    rows = list(csv.DictReader(open(os.path.join(SUITE, "tolerance", "thresholds.csv"), encoding="ascii")))
+    """Powers of two by their exponents; what the root of the mean square may be is never above what
+    the largest may be (R-TOL-003)."""
+    rows = list(csv.DictReader(
+        open(os.path.join(SUITE, "tolerance", "thresholds.csv"), encoding="ascii")))
     require(len(rows) > 20, "thresholds.csv: too few rows")
     for row in rows:
         for group in ("position", "scale", "rotation", "opacity", "colour"):
             peak, rms = row[group + "_peak"], row[group + "_rms"]
-            require((peak == "-") == (rms == "-") and (peak == "-" or int(rms) <= int(peak)), "thresholds.csv: %s %s" % (row["vector"], group))
+            require((peak == "-") == (rms == "-") and (peak == "-" or int(rms) <= int(peak)),
+                    "thresholds.csv: %s %s" % (row["vector"], group))
 
 
 def main():
@@ -328,7 +369,8 @@ def main():
         try:
             test()
             print("[       OK ] %s" % test.__name__)
-        except (AssertionError, AttributeError, KeyError, ValueError, OSError, subprocess.SubprocessError, StopIteration) as error:
+        except (AssertionError, AttributeError, KeyError, ValueError, OSError,
+                subprocess.SubprocessError, StopIteration) as error:
             print("[  FAILED  ] %s: %s: %s" % (test.__name__, type(error).__name__, error))
             bad = 1
     return bad
