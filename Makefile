@@ -35,8 +35,8 @@ FLAGS_v4 = $(FLAGS_v3) -mavx512f -mavx512bw -mavx512dq -mavx512vl -mprefer-vecto
 # Objects of the sources $(1), with all copies of leveled ones.
 OBJECTS = $(patsubst %.c,$B/%.o,$(filter-out $(LEVELED),$(1))) \
           $(foreach l,$(LEVELS),$(patsubst %.c,$B/%.$l.o,$(filter $(LEVELED),$(1))))
-CFLAGS_ALL = -std=c11 -D_POSIX_C_SOURCE=200809L $(OPT) -g $(WARN) -Iref-decoder -Iref-encoder -Itests/support -I. \
-        -fopenmp -MMD -MP $(CFLAGS)
+CFLAGS_ALL = -std=c11 -D_POSIX_C_SOURCE=200809L $(OPT) -g $(WARN) \
+        -Iref-decoder -Iref-encoder -Itests/support -I. -fopenmp -MMD -MP $(CFLAGS)
 LIBS  = -lpng -ljpeg -ljansson -lxxhash -lz -lm
 
 DEC_SRC  = $(sort $(wildcard \

@@ -1,12 +1,15 @@
 #!/bin/sh
-# The table of all training options in doc/switches.md is options.def, line for line. `sh
+# The table of all training options in doc/switches.md is options.def, entry for entry. `sh
 # tests/lint/switches.sh print` prints the table to paste.
 export LC_ALL=C
 table() {
-    awk '/^TED4_OPTION\(/ {
-        help = $0; sub(/^[^"]*"/, "", help); sub(/"\)$/, "", help)
-        values = $0; sub(/^TED4_OPTION\(/, "", values); sub(/, *".*$/, "", values)
-        if (split(values, v, /, */) != 10) { print FILENAME ": " $0; exit 1 }
+    awk '
+    /^TED4_OPTION\(/ { entry = "" }
+    { entry = entry $0 }
+    entry ~ /^TED4_OPTION\(.*"\)$/ {
+        help = entry; gsub(/" *"/, "", help); sub(/^[^"]*"/, "", help); sub(/"\)$/, "", help)
+        values = entry; sub(/^TED4_OPTION\(/, "", values); sub(/, *".*$/, "", values)
+        if (split(values, v, /, */) != 10) { print FILENAME ": " entry; exit 1 }
         row = "| `" v[3] "` | " v[4] " to " v[5]
         for (i = 6; i <= 10; i++) row = row " | " v[i]
         print row " | " help " |"
