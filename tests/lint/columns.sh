@@ -1,21 +1,25 @@
 #!/bin/sh
-# columns.sh [FILE...] - lines have at most 100 columns: C and the prose of Markdown everywhere, and
-# shell, awk, Python, JavaScript and build rules in the folders named below. Left aside in Markdown:
-# rows of tables, code blocks, pictures, and lines that are little else than one link or address;
-# in shell: here-documents, and a quoted text of more than 70 columns, which a program is given
-# or has to say. Tables of the decoder that a program prints (norm/tables.c) stay as they are
-# printed, and so does text between clang-format off and on.
+# columns.sh [FILE...] - lines have at most 100 columns, in everything that is written by hand: C,
+# tables of macros, shell, awk, Python, JavaScript, build rules, and the prose of Markdown. Left
+# aside in Markdown: rows of tables, code blocks, pictures, and lines that are little else than one
+# link or address; in shell: here-documents, and a quoted text of more than 70 columns, which a
+# program is given or has to say. Tables of the decoder that a program prints (norm/tables.c) stay
+# as they are printed, and so does text between clang-format off and on.
 export LC_ALL=C
-scripts='tests tools bench player python ref-decoder ref-encoder'
-[ $# -gt 0 ] || set -- $({
-    find . \( -name .git -o -name 'build*' -o -name corpus -o -name out \
-        -o -path ./conformance/vectors -o -path ./conformance/generated \) -prune \
-        -o -type f \( -name '*.[ch]' -o -name '*.md' \) ! -path ./ref-decoder/norm/tables.c -print
-    find $scripts -type f \( -name '*.sh' -o -name '*.awk' -o -name '*.py' -o -name '*.mk' \
-        -o -name '*.js' -o -name '*.mjs' \)
-} | sed 's|^\./||' | sort)
+[ $# -gt 0 ] || set -- $(find . \
+    -type d \( -name .git -o -name 'build*' -o -name corpus -o -name out -o -name __pycache__ \
+        -o -path ./shared -o -path ./conformance/vectors -o -path ./conformance/generated \) \
+    -prune \
+    -o -type f \( -name '*.[ch]' -o -name '*.def' -o -name '*.sh' -o -name '*.awk' -o -name '*.py' \
+        -o -name '*.js' -o -name '*.mjs' -o -name '*.mk' -o -name Makefile -o -name '*.md' \) \
+    ! -path ./ref-decoder/norm/tables.c -print | sed 's|^\./||' | sort)
 awk '
-    FNR == 1 { block = aside = 0; prose = FILENAME ~ /\.md$/; shell = FILENAME ~ /\.sh$/; document = "" }
+    FNR == 1 {
+        block = aside = 0
+        prose = FILENAME ~ /\.md$/
+        shell = FILENAME ~ /\.sh$/
+        document = ""
+    }
     {
         line = $0
         gsub(/[\200-\277]/, "", line)
