@@ -20,7 +20,7 @@ def read_lines(path, number=float):
 
 
 def read_steps(path, number=float):
-    """The lines that tell of a step, without those of an event (what the watch has found, trials
+    """The lines that tell of a step, without those of an event (what the monitor has found, trials
     of smaller models)."""
     return [line for line in read_lines(path, number) if "step" in line and "event" not in line]
 

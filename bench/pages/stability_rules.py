@@ -18,7 +18,7 @@ RULES = {
     "nan": ("N", "something is not finite: the decoder refuses a time, or a number of the log is "
                  "none"),
     "diverges": ("D", "the distortion ends above its start"),
-    "rollback": ("B", "the watch in the trainer went back to a checkpoint"),
+    "rollback": ("B", "the monitor of the trainer went back to a checkpoint"),
     "gap": ("W", f"the worst frame lies more than {WORST_GAP} dB below the whole method's"),
     "floor": ("F", f"the worst frame lies below {WORST_FLOOR} dB"),
     "drop": ("P", f"the worst frame lies more than {WORST_DROP} dB below the mean of all frames"),

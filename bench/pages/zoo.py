@@ -121,8 +121,8 @@ def write(runs, _charts, _results, _pages):
     show_cases(zoo, page)
     show_back(page, zoo.long, "Long trainings", "These are trainings with the default preset.")
     show_back(page, zoo.lab, "The stability lab", """These are the scenes of
-        [stability.md](stability.md), at one seed and with its options. They are here for the watch
-        alone.""")
+        [stability.md](stability.md), at one seed and with its options. They are here for the
+        monitor alone.""")
     show_alone(zoo, page)
     show_misses(zoo, page)
     return {"zoo.md": page.text()}
@@ -145,7 +145,7 @@ def case_bars(zoo, bars):
              f"at least {LEAST_MOVING} dB", f"{turns - gone} of {turns}", zoo.so_far(gone),
              "`bench/zoo.sh 'turns*'`")
     back = sum(case.run.count("rollbacks") for case in there)
-    bars.add(3, "the watch goes back to a checkpoint", "never", f"{back:.0f} times",
+    bars.add(3, "the monitor goes back to a checkpoint", "never", f"{back:.0f} times",
              zoo.so_far(back), "`bench/zoo.sh`")
 
 
@@ -179,7 +179,7 @@ def show_cases(zoo, page):
     page.heading("Every case")
     page.prose("""PSNR is in dB: of held-out pictures, the same against the twin's, of training
         pictures, and of these inside the masks of what moves and of its shadow, over all pixels.
-        Seconds are of one core; warnings are those of ted4enc; *back* is how often the watch went
+        Seconds are of one core; warnings are those of ted4enc; *back* is how often the monitor went
         back to a checkpoint.""")
     page.table("case", "command", "twin", "held out", "against twin", "training", "what moves",
                "bytes", "anchors", "steps", "seconds", "warnings", "back", "verdict")
