@@ -2,7 +2,8 @@
 # of LLVM 19 (make deps-player) and nothing from npm.
 W       = $B/player
 WASM_CC = clang-19 --target=wasm32 -nostdlib -ffreestanding -O3 -std=c11 -msimd128 -mbulk-memory \
-          -fvisibility=hidden -ffunction-sections -fdata-sections $(STRICT) -fno-math-errno
+          -fvisibility=hidden -ffunction-sections -fdata-sections $(STRICT) -fno-math-errno \
+          -Wall -Wextra -Werror
 # What the C library would give comes from wasm/include; xxHash is one header of the system.
 WASM_INC = -isystem player/wasm/include -I$W/inc -Iref-decoder -idirafter /usr/include
 WASM_DEC = $(sort $(filter-out %/inflate.c %/validate.c %/finding.c \

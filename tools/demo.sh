@@ -32,7 +32,7 @@ cat <<END
   anchors           $anchors, of which $moving move
   training          $train s
   decoding          $decode ms
-  rendering         $fps frames a second
+  rendering         $fps frames per second
   truth, ours, error at five times: $out/sheet.png
 
 END

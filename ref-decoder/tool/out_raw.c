@@ -22,6 +22,6 @@ static int write_raw(FILE *f, const ted4_frame *x)
 
 const ted4_format ted4_format_raw = {
     ".raw",
-    "14 little-endian binary32 a Gaussian: position, scale, rotation w x y z, opacity, r g b", -1,
+    "14 little-endian binary32 per Gaussian: position, scale, rotation w x y z, opacity, r g b", -1,
     write_raw
 };

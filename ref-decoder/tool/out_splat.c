@@ -68,5 +68,6 @@ static int write_splat(FILE *f, const ted4_frame *x)
     return r;
 }
 
-const ted4_format ted4_format_splat = { ".splat", "32 bytes a Gaussian, largest first; one colour",
-                                        0, write_splat };
+const ted4_format ted4_format_splat = { ".splat",
+                                        "32 bytes per Gaussian, largest first; one colour", 0,
+                                        write_splat };

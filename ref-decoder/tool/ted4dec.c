@@ -42,7 +42,7 @@ enum {
 
 static const ted4_argument OPTIONS[N_OPTIONS] = {
     [OPT_OUTPUT] = { 'o', "output", "FILE",
-                     "write Gaussians, one file a frame; the name ends in a format below and may "
+                     "write Gaussians, one file per frame; the name ends in a format below and may "
                      "hold one %d" },
     [OPT_FRAMES] = { 0, "frames", "A:B:STEP",
                      "frames A to B - 1 by STEP; parts may be missing; A alone: that frame. "

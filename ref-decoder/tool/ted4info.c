@@ -120,9 +120,9 @@ static void print_frames(const ted4_info *info)
 
     printf("frames      %" PRIu32, info->frames);
     if (info->frames > 1 && THOUSAND % info->rate_den == 0)
-        printf(" at %.10g a second", (double)info->rate_num / info->rate_den);
+        printf(" at %.10g per second", (double)info->rate_num / info->rate_den);
     else if (info->frames > 1)
-        printf(" at %" PRIu32 "/%" PRIu32 " a second", info->rate_num, info->rate_den);
+        printf(" at %" PRIu32 "/%" PRIu32 " per second", info->rate_num, info->rate_den);
     putchar('\n');
 }
 
@@ -140,7 +140,7 @@ static void print_summary(const settings *s, const ted4_info *info, size_t size)
     ted4_hex(hash, info->hash, sizeof info->hash);
     printf("%s: TED4, Main profile, level %d, %zu bytes\n", s->input, info->level, size);
     printf("anchors     %" PRIu32 ", moving %" PRIu32 "\n", info->n_anchors, info->n_dynamic);
-    printf("Gaussians   %zu, at most %" PRIu32 " an anchor\n", info->n_gaussians, info->n_offsets);
+    printf("Gaussians   %zu, at most %" PRIu32 " per anchor\n", info->n_gaussians, info->n_offsets);
     print_frames(info);
     printf("motion      %s; activation %s; view %s\n", motion[info->motion],
            info->activation ? "yes" : "no", view[info->view]);

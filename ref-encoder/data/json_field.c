@@ -124,6 +124,6 @@ int ted4_json_rate(const json_t *object, const char *where, double *rate, ted4_m
     if (found <= 0 || *rate == 0 || ted4_frame_rate(*rate, &num, &den) == 0)
         return found;
     return ted4_say(
-        m, "%s.fps: %g, expected frames a second from 1/%d to %d, or 0 where they are not known",
+        m, "%s.fps: %g, expected frames per second from 1/%d to %d, or 0 where they are not known",
         where, *rate, TED4_RATE_MOST, TED4_RATE_MOST);
 }

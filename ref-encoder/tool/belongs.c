@@ -68,7 +68,7 @@ int ted4_belongs_scene(const ted4_info *file, const ted4_dataset *d, char *why, 
                  "%u time%s in the file, %u in the scene (--max-frames reads the first ones)",
                  (unsigned)file->frames, file->frames == 1 ? "" : "s", (unsigned)d->n_frames);
     else if (d->n_frames > 1 && d->rate > 0 && rate > 0 && fabs(rate / d->rate - 1.0) > OTHER_RATE)
-        snprintf(why, why_size, "%.4g frames a second in the file, %.4g in the scene", rate,
+        snprintf(why, why_size, "%.4g frames per second in the file, %.4g in the scene", rate,
                  d->rate);
     else if ((double)seeing < SEEN * (double)d->n_pictures)
         snprintf(why, why_size, "only %zu of %zu pictures look at where it lies", seeing,

@@ -105,7 +105,7 @@ static const ted4_command COMMAND = {
     "ted4enc",
     "SCENE -o FILE.ted4 [options]",
     "Trains a scene from posed pictures and writes it as a TED4 file. SCENE is a folder: COLMAP,\n"
-    "D-NeRF/Blender, nerfstudio, HyperNeRF, Neu3D, LLFF, or cams.json with one video a camera.\n"
+    "D-NeRF/Blender, nerfstudio, HyperNeRF, Neu3D, LLFF, or cams.json with one video per camera.\n"
     "Videos need the program ffmpeg; their frames are kept in $XDG_CACHE_HOME/ted4, or in\n"
     "ted4-UID in $TMPDIR or /tmp.",
     OPTIONS,

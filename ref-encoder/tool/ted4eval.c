@@ -76,7 +76,7 @@ static const ted4_command COMMAND = {
     "FILE.ted4 SCENE [options]",
     "Decodes FILE, draws every picture of a split of SCENE, and prints PSNR, SSIM (11 x 11 "
     "Gaussian), SSIM_2 (scikit-image,\n"
-    "range 2), MS-SSIM, bytes of the file, milliseconds to decode it, and pictures drawn a second.",
+    "range 2), MS-SSIM, bytes of the file, milliseconds to decode it, pictures drawn per second.",
     OPTIONS,
     N_OPTIONS,
     "Exit codes: 0 fine, 1 file refused, 3 usage, input, output or resources, or the file cannot "

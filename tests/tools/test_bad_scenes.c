@@ -205,10 +205,10 @@ static void test_hold_out(void **state)
 /* What a scene file says of its rate comes out as it went in. */
 static void test_rate(void **state)
 {
-    static const char *const rates[][2] = { { "6", "3 at 6 a second" },
-                                            { "23.976", "3 at 23.976 a second" },
-                                            { "0.333", "3 at 0.333 a second" },
-                                            { "29.97002997002997", "3 at 30000/1001 a second" } };
+    static const char *const rates[][2] = { { "6", "3 at 6 per second" },
+                                            { "23.976", "3 at 23.976 per second" },
+                                            { "0.333", "3 at 0.333 per second" },
+                                            { "29.97002997002997", "3 at 30000/1001 per second" } };
     char text[1024];
 
     (void)state;

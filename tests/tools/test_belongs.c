@@ -68,7 +68,7 @@ static void test_scene(void **state)
     expect(&p, "1 time in the file, 8 in the scene (--max-frames reads the first ones)");
     make_pair(&p);
     p.file.rate_num = 25;
-    expect(&p, "25 frames a second in the file, 30 in the scene");
+    expect(&p, "25 frames per second in the file, 30 in the scene");
     p.d.rate = 0; /* not known */
     expect(&p, NULL);
     /* Beside the pictures of nearly all. */
