@@ -6,18 +6,18 @@
 #include <string.h>
 #include "data/data_util.h"
 
-/* Levels that a pixel of the background may be off, and the share of pixels at edges that make a
- * background plain. */
+/* A pixel is background if no channel is more than NEAR levels off. The background is plain if at
+ * least the share PLAIN_SHARE of the border pixels is background. */
 enum { NEAR = 8 };
 #define PLAIN_SHARE 0.5
-/* Colours of edges are counted in buckets of 16 levels. */
+/* Border colours are counted in a histogram with bins of 16 levels per channel. */
 enum { BUCKET = 16, SIDE = 256 / BUCKET, BUCKETS = SIDE * SIDE * SIDE };
 
 typedef struct {
     uint64_t n, sum[3];
 } bucket;
 
-/* Pixels at the edges, all around. */
+/* Is the pixel in the outermost rows or columns? */
 static int is_edge(const ted4_camera *c, size_t pixel)
 {
     const size_t x = pixel % (size_t)c->width, y = pixel / (size_t)c->width;
@@ -66,7 +66,7 @@ static void mark(ted4_shown *s, size_t k, uint64_t *edges, uint64_t *near)
     }
 }
 
-/* 0, or -1 with *m filled. */
+/* Returns 0, or -1 with *m filled. */
 static int read_all(ted4_shown *s, ted4_message *m)
 {
     for (size_t k = 0; k < s->n; k++) {
@@ -79,7 +79,8 @@ static int read_all(ted4_shown *s, ted4_message *m)
     return 0;
 }
 
-/* All of every step-th frame; how many that are, and their bytes. */
+/* Lists the training pictures of every step-th frame. Stores at most most of them, but returns how
+ * many there are, and their total size in *bytes. */
 static size_t choose(const ted4_dataset *d, uint32_t step, size_t *picture, size_t most,
                      size_t *bytes)
 {
@@ -97,7 +98,8 @@ static size_t choose(const ted4_dataset *d, uint32_t step, size_t *picture, size
     return n;
 }
 
-/* Where one frame has too many, the first of them. */
+/* Chooses the smallest frame step within both limits. If a single frame exceeds them, its first
+ * pictures are used. */
 static void choose_pictures(ted4_shown *s)
 {
     uint32_t step = 1;
@@ -116,7 +118,7 @@ static void choose_pictures(ted4_shown *s)
     }
 }
 
-/* The mean colour of the fullest bucket. */
+/* Gives the mean colour of the fullest bin. */
 static void most_common(const bucket *count, uint8_t colour[3])
 {
     const bucket *best = count;
@@ -127,7 +129,7 @@ static void most_common(const bucket *count, uint8_t colour[3])
         colour[k] = best->n > 0 ? (uint8_t)((best->sum[k] + best->n / 2) / best->n) : 0;
 }
 
-/* Of the bits of picture k. */
+/* Number of words in the mask of picture k. */
 static size_t n_words(const ted4_shown *s, size_t k)
 {
     return n_pixels(&s->data->pictures[s->picture[k]].camera) / 64 + 1;

@@ -7,11 +7,12 @@
 #include <string.h>
 #include "data/data_util.h"
 
-/* Smallest angle between two cameras, in radians. */
+/* Smallest distance of two cameras, relative to the distance of the scene. */
 #define APART    0.05
-/* Depths are equally good when patches are off by so many levels more than at the best. */
+/* Depths whose patch difference exceeds the best by at most so many levels are equally good. */
 #define EQUAL    1.5
-/* Where the middle pixels are so many times as far off as patches may be, these hardly agree. */
+/* If the centre pixels differ by more than so many times the limit, the patches are not
+ * compared. */
 #define HOPELESS 3.0
 enum { FEWEST = 2 };
 
@@ -27,7 +28,7 @@ static const ted4_picture *picture(const ted4_shown *s, size_t i)
     return &s->data->pictures[s->picture[i]];
 }
 
-/* Puts picture k among the nearest ones of a list that is sorted by distance. */
+/* Inserts picture k into the list of the nearest helpers of picture i, sorted by distance. */
 static void insert(ted4_sweep *w, size_t i, size_t k, double far, double *list)
 {
     int at = w->n_helpers[i];
@@ -93,7 +94,7 @@ static int off(const uint8_t *a, const uint8_t *b)
     return abs(a[0] - b[0]) + abs(a[1] - b[1]) + abs(a[2] - b[2]);
 }
 
-/* The colours of a pixel and of its four neighbours, those of edges twice. */
+/* Colours of a pixel and its four neighbours. Outside the picture the pixel itself is repeated. */
 typedef struct {
     uint8_t rgb[5][3];
 } patch;
@@ -109,7 +110,7 @@ static void take_patch(const ted4_camera *c, const uint8_t *rgb, size_t pixel, p
         memcpy(p->rgb[k], rgb + 3 * at[k], 3);
 }
 
-/* How far two patches are off, in levels. */
+/* Mean absolute difference of two patches, in levels. */
 static double patch_off(const patch *a, const patch *b)
 {
     int sum = 0;
@@ -119,7 +120,8 @@ static double patch_off(const patch *a, const patch *b)
     return sum / 15.0;
 }
 
-/* Mean of the smaller half, two at least: the others may see something before the point. */
+/* Mean of the smaller half of x, at least two values. The other half may see an occluder in front
+ * of the point. */
 static double better_half(double *x, int n)
 {
     const int half = n / 2 > FEWEST ? n / 2 : FEWEST;
@@ -137,8 +139,8 @@ static double better_half(double *x, int n)
     return sum / half;
 }
 
-/* How far pictures are off at a point; infinite where too few look there, or where the middle alone
- * is so far off that neighbours need not be looked at. */
+/* Mean patch difference of the better half of the helpers at a point. Infinite if fewer than two
+ * helpers see the point, or if their centre pixels alone differ too much. */
 static double cost(const ted4_sweep *w, size_t i, const patch *mine, const double world[3])
 {
     double each[TED4_SWEEP_HELPERS];
