@@ -1,5 +1,6 @@
-/* build_dataset.c - from the shots of any layout to a dataset: sizes and lenses agreed, frames,
- * physical cameras, training pictures before test pictures, initial points. See raw_scene.h.
+/* build_dataset.c - turns the shots of any layout into a dataset: reconciles the sizes of lenses
+ * and files, numbers frames and physical cameras, puts training pictures before test pictures, and
+ * takes or draws the initial points. See raw_scene.h.
  * SPDX-License-Identifier: BSD-2-Clause */
 #include "data/raw_scene.h"
 
@@ -10,8 +11,7 @@
 #include "data/data_util.h"
 #include "data/source.h"
 
-/* Is the file the integer fraction 1 / *n of what the lens says, rounded either way, when it is of
- * this size? */
+/* Is width x height equal to the lens's size divided by an integer *n, rounded up or down? */
 static int is_fraction(const ted4_lens *l, int width, int height, int *n)
 {
     *n = (l->width + width / 2) / width;
@@ -19,8 +19,8 @@ static int is_fraction(const ted4_lens *l, int width, int height, int *n)
            fabs((double)l->height / *n - height) < 1;
 }
 
-/* Makes the lens refer to the file's size. A file may be an integer fraction of what the lens says
- * (the images_2 folders of static sets); the whole extent then maps to the whole extent. */
+/* Scales the lens to the file's size. A file may be smaller than stated by an integer factor (the
+ * images_2 folders of static sets); both are taken to cover the same field of view. */
 static int fit_lens(ted4_shot *s, ted4_message *m)
 {
     ted4_lens *l = &s->lens;
@@ -54,7 +54,7 @@ static int fit_lens(ted4_shot *s, ted4_message *m)
     return 0;
 }
 
-/* Farther away than this nothing that is computed from a pose is sure to be finite. */
+/* Camera distances beyond this could make values that are derived from the pose infinite. */
 static const double FARTHEST = 1e15;
 
 static int check_pose(const ted4_shot *s, ted4_message *m)
@@ -70,8 +70,8 @@ static int check_pose(const ted4_shot *s, ted4_message *m)
     return 0;
 }
 
-/* What is left of the wanted reduction for files that are reduced already; finer than they are
- * is not to be had. */
+/* Divides the wanted reduction by that of the files. Files that are reduced by more than is wanted
+ * are used as they are. */
 static int left_to_reduce(const ted4_raw_scene *s, int downscale, int *n, ted4_message *m)
 {
     const int done = s->reduced > 1 ? s->reduced : 1;
@@ -114,7 +114,7 @@ static int make_picture(ted4_picture *p, ted4_source *source, ted4_shot *s, int 
     return 0;
 }
 
-/* Pictures are of one camera when their labels are equal. */
+/* Pictures with equal labels come from the same camera. */
 typedef struct {
     const char *label;
     uint32_t picture;
@@ -128,7 +128,7 @@ static int by_label(const void *a, const void *b)
     return order != 0 ? order : (x->picture > y->picture) - (x->picture < y->picture);
 }
 
-/* Numbers cameras by their first picture. shots[i] belongs to d->pictures[i]. */
+/* Numbers the cameras in the order of their first pictures. shots[i] belongs to d->pictures[i]. */
 static int number_cameras(ted4_dataset *d, const ted4_shot *shots, ted4_message *m)
 {
     const size_t n = d->n_pictures;
@@ -141,7 +141,7 @@ static int number_cameras(ted4_dataset *d, const ted4_shot *shots, ted4_message 
     }
     if (result == 0) {
         qsort(list, n, sizeof *list, by_label);
-        /* First the index of the camera's first picture, then that picture's rank among such. */
+        /* camera_id is first the index of the camera's first picture, then the camera's number. */
         for (size_t i = 0; i < n; i++) {
             const int same = i > 0 && strcmp(list[i].label, list[i - 1].label) == 0;
             d->pictures[list[i].picture].camera_id =
@@ -156,11 +156,10 @@ static int number_cameras(ted4_dataset *d, const ted4_shot *shots, ted4_message 
     return result != 0 ? ted4_say_no_memory(m) : 0;
 }
 
-/* Farther from its frame than this part of the distance between two frames, a picture's time is
- * said to have moved. */
+/* A picture whose time is farther from its frame than this, in frame intervals, counts as moved. */
 static const double MOVED = 0.1;
 
-/* Warns of times that have no frame of their own. 0, or -1: no memory. */
+/* Warns if pictures had to move to the nearest frame. Returns 0, or -1 if memory runs out. */
 static int say_moved(ted4_raw_scene *s, const ted4_dataset *d)
 {
     const double steps = (double)d->n_frames - 1;
@@ -212,7 +211,7 @@ static int number_frames(ted4_dataset *d, ted4_raw_scene *s, ted4_message *m)
     return result;
 }
 
-/* Keeps the shots of the first most times, in their order. */
+/* Keeps the shots of the first most distinct times, in their order. */
 static int keep_first_times(ted4_raw_scene *s, uint32_t most, ted4_message *m)
 {
     double *sorted = malloc(s->n_shots * sizeof *sorted);
@@ -237,7 +236,7 @@ static int keep_first_times(ted4_raw_scene *s, uint32_t most, ted4_message *m)
     return 0;
 }
 
-/* Moves test shots behind the others; order is kept within both. */
+/* Moves test shots behind the training shots; the order within each group is kept. */
 static int split(ted4_raw_scene *s, ted4_message *m)
 {
     ted4_shot *sorted = malloc(s->n_shots * sizeof *sorted);
@@ -263,7 +262,8 @@ static int split(ted4_raw_scene *s, ted4_message *m)
                           s->n_shots, s->n_missing, s->n_entries, s->first_missing);
 }
 
-/* Entries without a picture were left out: other programs do so, and what is left may well do. */
+/* Warns of entries that were skipped because their picture is missing, as other programs skip them
+ * too. It is an error if no entry has a picture. */
 static int say_missing(ted4_raw_scene *s, ted4_message *m)
 {
     if (s->n_missing == 0)
@@ -305,8 +305,8 @@ static int take_points(ted4_dataset *d, ted4_raw_scene *s, const ted4_dataset_op
     return 0;
 }
 
-/* Pictures with transparency were composited over the background the caller chose; without any,
- * what no Gaussian covers is black. */
+/* Transparent pictures are composited over the background that the caller chose. If no picture is
+ * transparent, the background is black. */
 static void choose_background(ted4_dataset *d, const ted4_raw_scene *s,
                               const ted4_dataset_options *o)
 {

@@ -1,4 +1,4 @@
-/* frame_times.c - from the times of pictures, in any unit, to frame indices on a uniform grid
+/* frame_times.c - maps the times of pictures, in any unit, to frame indices on a uniform grid
  * (spec: frame j of F is t = j / (F - 1)).
  * SPDX-License-Identifier: BSD-2-Clause */
 #include "data/raw_scene.h"
@@ -8,20 +8,20 @@
 #include "data/data_util.h"
 #include "math/compare.h"
 
-/* All on the scale where the first time is 0 and the last 1. */
-#define SAME_TIME   2e-6 /* two roundings to six digits of one time differ by 1e-6 */
-#define UNIFORM     1e-3 /* distance from j / (n - 1) that still counts as uniform */
-#define ON_GRID     0.02 /* distance from a position of a finer grid, in steps */
-#define GRID_EFFORT 4    /* finest grid tried: its step is this part of the smallest gap */
+/* Times are scaled so that the first is 0 and the last is 1. */
+#define SAME_TIME   2e-6 /* two roundings of one time to six digits differ by 1e-6 */
+#define UNIFORM     1e-3 /* largest distance from j / (n - 1) that counts as uniform */
+#define ON_GRID     0.02 /* largest distance from a position of a finer grid, in steps */
+#define GRID_EFFORT 4    /* the step of the finest grid tried is the smallest gap divided by this */
 
-/* The largest of a group, so that no time of the group is beyond it. */
+/* Keeps the largest time of a group, so that no time of the group exceeds it. */
 size_t ted4_distinct_times(double *t, size_t n)
 {
     size_t k = 0;
 
     qsort(t, n, sizeof *t, ted4_compare_doubles);
     const double same = SAME_TIME * (t[n - 1] - t[0]);
-    double first = t[0]; /* of the group */
+    double first = t[0]; /* start of the group */
     for (size_t i = 0; i < n; i++) {
         if (t[i] - first > same) {
             first = t[i];
@@ -32,7 +32,7 @@ size_t ted4_distinct_times(double *t, size_t n)
     return k + 1;
 }
 
-/* Sorts t[n] into distinct times mapped to [0, 1]; returns how many. */
+/* Sorts t[n], maps it to [0, 1] and removes duplicates. Returns how many times remain. */
 static size_t distinct(double *t, size_t n, double *origin, double *range)
 {
     size_t k = 0;
@@ -48,7 +48,7 @@ static size_t distinct(double *t, size_t n, double *origin, double *range)
     return k;
 }
 
-/* Does every time lie near its own position of the grid with the given number of steps? */
+/* Is every time near its own position of the grid with the given number of steps? */
 static int fits(const double *u, size_t n, double steps, double tolerance)
 {
     double before = -1;
@@ -62,8 +62,9 @@ static int fits(const double *u, size_t n, double steps, double tolerance)
     return 1;
 }
 
-/* Number of steps of the coarsest grid that holds all times; where that would be more than the
- * format has, the most that it has: times nearer than half a step then become one. */
+/* Returns the number of steps of the coarsest grid that holds all times. If the format does not
+ * have that many, returns the most that it has: times nearer than half a step then become one
+ * frame. */
 static uint32_t find_steps(const double *u, size_t n)
 {
     double gap = 1;
@@ -79,8 +80,8 @@ static uint32_t find_steps(const double *u, size_t n)
     for (double steps = (double)(n - 1); steps <= most; steps++)
         if (fits(u, n, steps, ON_GRID))
             return (uint32_t)steps;
-    /* Times of no common measure: the smallest gap is the step, everything moves to the nearest
-     * position. */
+    /* The times have no common step: the smallest gap becomes the step, and all times move to the
+     * nearest position. */
     const double steps = ceil(1 / gap - ON_GRID);
     return steps < TED4_MAX_FRAMES && fits(u, n, steps, 0.5) ? (uint32_t)steps
                                                              : TED4_MAX_FRAMES - 1;

@@ -1,4 +1,4 @@
-/* hold_out.c - which pictures are test where the caller names cameras; see raw_scene.h.
+/* hold_out.c - marks the test pictures where the caller names cameras. See raw_scene.h.
  * SPDX-License-Identifier: BSD-2-Clause */
 #include "data/raw_scene.h"
 
@@ -8,8 +8,8 @@
 #include <string.h>
 #include "data/picture_path.h"
 
-/* Shots without a label are the same camera when their poses are, to six decimals; then the label
- * is the pose. */
+/* Shots without a label belong to the same camera if their poses agree to six decimals. The rounded
+ * pose becomes the label. */
 static char *pose_label(const ted4_shot *s)
 {
     char text[12 * 26], *at = text;
@@ -18,7 +18,7 @@ static char *pose_label(const ted4_shot *s)
     ted4_pose_centre(s->R, s->t, centre);
     for (int i = 0; i < 12; i++) {
         const double v = i < 9 ? s->R[i] : centre[i - 9];
-        at += snprintf(at, 26, "%.15g ", round(v * 1e6) + 0.0); /* + 0.0: no -0 */
+        at += snprintf(at, 26, "%.15g ", round(v * 1e6) + 0.0); /* + 0.0 turns -0 into 0 */
     }
     return ted4_text_copy(text);
 }
@@ -34,8 +34,8 @@ int ted4_raw_scene_label(ted4_raw_scene *s)
     return 0;
 }
 
-/* COLMAP's labels are NUMBER/FOLDER/, of which the folder alone will do, and the number where there
- * is none. */
+/* COLMAP's labels read NUMBER/FOLDER/. The folder alone is enough as a name, or the number if there
+ * is no folder. */
 static const char *short_label(const char *label, size_t *n)
 {
     const char *slash = strchr(label, '/'),
@@ -56,7 +56,7 @@ static int is_label(const ted4_shot *s, const char *name)
            (strcmp(s->camera, name) == 0 || (strlen(name) == n && strncmp(label, name, n) == 0));
 }
 
-/* Do the last parts of the path, with or without its extension, read so? */
+/* Does the path, with or without its extension, end with the parts of name? */
 static int is_picture(const ted4_shot *s, const char *name)
 {
     const size_t n = strlen(s->path), k = strlen(name);
@@ -71,7 +71,8 @@ static int is_picture(const ted4_shot *s, const char *name)
     return 0;
 }
 
-/* Names of cameras, or of pictures where cameras have none, as far as there is room. */
+/* Lists the names of cameras, or of pictures where cameras have no name, as far as there is
+ * room. */
 static void list_names(const ted4_raw_scene *s, char *text, size_t size)
 {
     size_t used = 0, n = 0;
@@ -99,7 +100,7 @@ static void list_names(const ted4_raw_scene *s, char *text, size_t size)
         snprintf(text + strlen(text), 39, ", ... (%zu in all)", n);
 }
 
-/* The label of the camera that is meant; NULL with *m filled. */
+/* Returns the label of the camera that name refers to, or NULL with *m filled. */
 static const char *find_camera(const ted4_raw_scene *s, const char *name, ted4_message *m)
 {
     const char *found = NULL;

@@ -69,7 +69,7 @@ void ted4_raw_scene_missing(ted4_raw_scene *s, const char *where, const char *na
         snprintf(s->first_missing, sizeof s->first_missing, "%.500s: %.190s", where, name);
 }
 
-/* Is nothing of this name there? What is there and cannot be read is an error, not an absence. */
+/* Does the path not exist? A file that exists but cannot be read is an error, not an absence. */
 static int is_absent(const char *path)
 {
     struct stat st;
