@@ -55,11 +55,12 @@ static int by_length(const void *a, const void *b)
     return x != y ? (x > y) - (x < y) : by_name(a, b);
 }
 
-/* One of the forms in which a clip can lie in a folder. */
+/* One of the layouts in which a clip can be stored in the scene's folder. */
 typedef struct {
-    const char *parent; /* of the entries to look at, in the scene's folder */
-    const char *inner;  /* folder that an entry must hold, NULL: the entry itself is the folder */
-    const char *end;    /* of a file's name, NULL: the entry is a folder */
+    const char *parent; /* folder whose entries are examined, relative to the scene's folder */
+    const char *inner;  /* folder that an entry must contain; NULL: the entry itself is the
+                         * folder */
+    const char *end;    /* suffix of a file's name; NULL: the entry is a folder */
 } form;
 
 static const form forms[] = { { "images", NULL, NULL },
@@ -134,7 +135,7 @@ int ted4_clip_list(ted4_name_list *pictures, const char *folder, int lengths)
     return result;
 }
 
-/* folder/first/second if it is a folder; owned by the caller. */
+/* Returns folder/first/second if it is a folder, else NULL. Owned by the caller. */
 static char *inner_folder(const char *folder, const char *first, const char *second)
 {
     char *outer = ted4_path_join(folder, first),
@@ -153,7 +154,8 @@ static void keep(ted4_name_list *l, size_t most)
         free(l->names[--l->n]);
 }
 
-/* The video of that name beside the scene's list, whatever its kind; owned by the caller. */
+/* Returns the video of that name in the scene's folder, with any supported extension, or NULL.
+ * Owned by the caller. */
 static char *find_video(const char *folder, const char *name)
 {
     static const char *const ends[] = { "mp4", "mov", "mkv", "avi", "webm",
@@ -170,7 +172,8 @@ static char *find_video(const char *folder, const char *name)
     return NULL;
 }
 
-/* The folder of a clip's pictures, if need be unpacked; the caller's. As ted4_clip_pictures. */
+/* Gives the folder of a clip's pictures, unpacking a video if necessary. *place is owned by the
+ * caller. Returns as ted4_clip_pictures. */
 static int find_place(const char *folder, const char *name, const char *video, size_t most,
                       char **place, const ted4_dataset_options *o, ted4_message *m)
 {

@@ -1,5 +1,5 @@
-/* data_util.h - small things every scene loader needs: messages, paths, whole files, rotations.
- * Depends on data/dataset.h for ted4_message. Used inside ref-encoder/data only.
+/* data_util.h - helpers of the scene loaders: messages, paths, whole files, rotations. Depends on
+ * data/dataset.h for ted4_message. Used inside ref-encoder/data only.
  * SPDX-License-Identifier: BSD-2-Clause */
 #ifndef TED4_DATA_UTIL_H
 #define TED4_DATA_UTIL_H
@@ -16,38 +16,40 @@
 
 #define TED4_PI 3.14159265358979323846
 
-/* Fills *m and returns -1, so that a loader can say "return ted4_say(...)". Too long a text is
- * cut. */
+/* Fills *m and returns -1, so that a loader can write "return ted4_say(...)". Text that is too long
+ * is cut off. */
 int ted4_say(ted4_message *m, const char *format, ...) TED4_PRINTF(2, 3);
 int ted4_say_no_memory(ted4_message *m);
 
-/* folder/name, or name itself when it is absolute. Owned by the caller; NULL: no memory. */
+/* Returns folder/name, or name itself if it is absolute. Owned by the caller; NULL if memory runs
+ * out. */
 char *ted4_path_join(const char *folder, const char *name);
 char *ted4_text_copy(const char *text); /* NULL: no memory */
-/* Appends a text to (*list)[*n], both owned by the caller. 0, or -1: no memory. */
+/* Appends a text to (*list)[*n], both owned by the caller. Returns 0, or -1 if memory runs out. */
 int ted4_text_add(char ***list, size_t *n, const char *format, ...) TED4_PRINTF(3, 4);
 int ted4_is_file(const char *path);
 int ted4_is_folder(const char *path);
 
-/* The whole file and a zero byte that *size does not count; *bytes owned by the caller. 0, or -1
- * with *m filled. */
+/* Reads a whole file and appends a zero byte that *size does not count. *bytes is owned by the
+ * caller. Returns 0, or -1 with *m filled. */
 int ted4_read_whole(const char *path, uint8_t **bytes, size_t *size, ted4_message *m);
 
-/* How far a given rotation may be from orthonormal; files print 6 digits or more. */
+/* Largest deviation of a given rotation from orthonormal. Files print 6 digits or more. */
 #define TED4_ROTATION_TOLERANCE 1e-3
 
-/* Checks that R (row-major) is a rotation and makes it one to rounding. NULL, or what is wrong
- * with it. */
+/* Checks that R (row-major) is a rotation, and makes it orthonormal up to rounding. Returns NULL,
+ * or a text that says what is wrong with it. */
 const char *ted4_rotation_clean(double R[9]);
 
-/* x = A^-1 b for a row-major 3x3 matrix; -1 when A is singular to working precision. */
+/* Computes x = A^-1 b for a row-major 3x3 matrix. Returns 0, or -1 if A is singular to working
+ * precision. */
 int ted4_solve3(const double A[9], const double b[3], double x[3]);
 
-/* c = -R^T t: centre of a world-to-camera pose. */
+/* Computes c = -R^T t, the camera centre of a world-to-camera pose. */
 void ted4_pose_centre(const double R[9], const double t[3], double c[3]);
 
-/* SplitMix64: a counter through a mixing function, so any seed is as good as another. Uniform in
- * [0, 1). */
+/* SplitMix64, a counter passed through a mixing function, so that all seeds are equally good.
+ * Returns a uniform number in [0, 1). */
 static inline double ted4_split_uniform(uint64_t *state)
 {
     uint64_t z = *state += UINT64_C(0x9e3779b97f4a7c15);

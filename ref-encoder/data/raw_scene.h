@@ -31,11 +31,9 @@ typedef struct {
 } ted4_shot;
 
 typedef struct {
-    const ted4_dataset_options
-        /* wanted: borrowed; for loaders that can avoid reading everything */
-        *wanted;
-    const char *layout; /* static text */
-    ted4_shot *shots;   /* owned; in the order of the layout */
+    const ted4_dataset_options *wanted; /* borrowed; lets a loader read less than everything */
+    const char *layout;                 /* static text */
+    ted4_shot *shots;                   /* owned; in the order of the layout */
     size_t n_shots, capacity;
     ted4_point_cloud cloud; /* empty: the scene has no points */
     /* reduced: the files are already reduced by this factor, relative to the pictures that the
