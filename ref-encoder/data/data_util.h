@@ -24,7 +24,7 @@ int ted4_say_no_memory(ted4_message *m);
 /* Returns folder/name, or name itself if it is absolute. Owned by the caller; NULL if memory runs
  * out. */
 char *ted4_path_join(const char *folder, const char *name);
-char *ted4_text_copy(const char *text); /* NULL: no memory */
+char *ted4_text_copy(const char *text); /* owned by the caller; NULL: no memory */
 /* Appends a text to (*list)[*n], both owned by the caller. Returns 0, or -1 if memory runs out. */
 int ted4_text_add(char ***list, size_t *n, const char *format, ...) TED4_PRINTF(3, 4);
 int ted4_is_file(const char *path);

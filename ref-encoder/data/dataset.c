@@ -1,5 +1,5 @@
-/* dataset.c - the public face of the loaders: recognises the layout, hands out pixels, prints
- * what was found. See dataset.h.
+/* dataset.c - public interface of the loaders: recognises the layout, provides pixels, and prints a
+ * summary. See dataset.h.
  * SPDX-License-Identifier: BSD-2-Clause */
 #include "data/dataset.h"
 
@@ -13,7 +13,7 @@
 #include "data/raw_scene.h"
 #include "data/source.h"
 
-/* The first whose probe says yes loads. */
+/* The first layout whose probe succeeds loads the scene. */
 static const struct {
     int (*probe)(const char *folder);
     ted4_loader *load;
@@ -92,8 +92,8 @@ void ted4_dataset_ahead(ted4_dataset *d, size_t i)
 typedef struct {
     ted4_dataset *d;
     pthread_mutex_t lock;
-    size_t bad;      /* first picture known to be bad, else n_pictures */
-    ted4_message *m; /* why */
+    size_t bad;      /* first picture known to be bad; n_pictures if none */
+    ted4_message *m; /* error message of that picture */
 } verification;
 
 static double mean_level(const uint8_t *pixels, const ted4_camera *c)
@@ -106,8 +106,8 @@ static double mean_level(const uint8_t *pixels, const ted4_camera *c)
     return (double)sum / (double)n;
 }
 
-/* Pictures after a bad one need no look; those before it do, so that every number of threads names
- * the same one. */
+/* Skips pictures after a known bad one. Those before it are still checked, so that the picture that
+ * is named does not depend on the number of threads. */
 static void verify_picture(void *arg, size_t i)
 {
     verification *v = arg;
@@ -134,10 +134,12 @@ static void verify_picture(void *arg, size_t i)
     pthread_mutex_unlock(&v->lock);
 }
 
-/* Fewer pixels that are transparent in part do not tell how their colours are meant. */
+/* With fewer partly transparent pixels than ENOUGH_PARTIAL, it cannot be told whether their colours
+ * are premultiplied. Colours count as not premultiplied if more than 1 / FEW of these pixels exceed
+ * alpha. */
 enum { ENOUGH_PARTIAL = 1000, FEW = 100 };
 
-/* 0, or -1: no memory. */
+/* Warns if the pixels contradict the option premultiplied. Returns 0, or -1 if memory runs out. */
 static int check_alpha(ted4_dataset *d)
 {
     size_t partial = 0, above = 0;

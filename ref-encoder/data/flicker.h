@@ -1,4 +1,4 @@
-/* flicker.h - does the light of a scene change with every picture? Source: ours.
+/* flicker.h - measures whether the light of a scene changes from picture to picture. Source: ours.
  * Depends on dataset.h.
  * SPDX-License-Identifier: BSD-2-Clause */
 #ifndef TED4_FLICKER_H
@@ -6,15 +6,16 @@
 
 #include "data/dataset.h"
 
-/* A bank with a row for every second time says what lies half-way between two rows: enough for what
- * moves, not for a lamp that is brighter, then darker, then brighter. So: how far the mean level of
- * a picture lies from the middle of the ones before and after it of the same camera, in levels of
- * 255; the median over all training pictures that have both, so that things that pop in or out do
- * not count, nor light that only goes up or down. 0 where no picture has both. After
- * ted4_dataset_verify. NAN: no memory. */
+/* Returns a measure of flicker, in levels of 255: how far the mean level of a picture is from the
+ * midpoint of its predecessor and successor from the same camera, as the median over all training
+ * pictures that have both. The median ignores objects that appear or disappear, and light that only
+ * increases or only decreases. Returns 0 if no picture has both neighbours, and NAN if memory runs
+ * out. Call it after ted4_dataset_verify.
+ * A bank with one row for every second time interpolates half-way between two rows. That is enough
+ * for motion, but not for a lamp that alternates between brighter and darker. */
 double ted4_dataset_flicker(const ted4_dataset *d);
 
-/* Light that flickers by at least so many levels wants a row of the bank for every time. */
+/* From this flicker on, the bank needs a row for every time. */
 #define TED4_FLICKER_SEEN 3.0
 
 #endif
