@@ -1,6 +1,7 @@
-/* exif.c - the one thing of EXIF that matters to pixels: how the camera was held. See image_file.h.
- * An APP1 payload: "Exif", two zeros, then a TIFF file: byte order "II" or "MM", 42, offset of a
- * directory: number of entries, entries of 12 bytes: tag, type, count, value.
+/* exif.c - reads the orientation of the camera from EXIF. See image_file.h.
+ * An APP1 payload holds "Exif", two zeros and a TIFF file: byte order "II" or "MM", 42, and the
+ * offset of a directory. A directory is a number of entries followed by entries of 12 bytes: tag,
+ * type, count and value.
  * SPDX-License-Identifier: BSD-2-Clause */
 #include "data/image_file.h"
 
@@ -8,14 +9,14 @@
 
 enum { TAG_ORIENTATION = 0x0112, TYPE_SHORT = 3, ENTRY_SIZE = 12 };
 
-/* A TIFF file; offsets count from its begin. */
+/* A TIFF file. Offsets are relative to its first byte. */
 typedef struct {
     const uint8_t *bytes;
     size_t size;
     int little;
 } tiff;
 
-/* Unsigned number of n bytes; beyond the end: 0. */
+/* Returns the unsigned number of n bytes at an offset, or 0 beyond the end. */
 static uint32_t number(const tiff *t, size_t at, size_t n)
 {
     uint32_t v = 0;

@@ -6,8 +6,8 @@
 
 static const double THOUSAND = 1000;
 
-/* The last fraction p/q within the bounds that the continued fraction of the rate comes to; p0/q0
- * is the one before it. */
+/* Gives the last convergent p/q of the rate's continued fraction that is within the bounds. p0/q0
+ * is the convergent before it. */
 static void expand(double rate, uint32_t *num, uint32_t *den)
 {
     uint64_t p0 = 0, q0 = 1, p = 1, q = 0;

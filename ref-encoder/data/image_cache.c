@@ -1,7 +1,7 @@
 /* image_cache.c - see image_cache.h.
- * An entry is empty, loading (a thread decodes it, others wait) or full. Full entries without
- * pins form a list, oldest first; only they can be evicted. Threads that decode ahead are started
- * when first asked for and end with the cache.
+ * An entry is empty, loading (one thread decodes it, others wait) or full. Full entries without
+ * pins form a list, oldest first; only these can be evicted. The threads that decode in advance are
+ * started at the first announcement and end with the cache.
  * SPDX-License-Identifier: BSD-2-Clause */
 #include "data/image_cache.h"
 
@@ -15,31 +15,34 @@ typedef struct {
     size_t size;
     size_t pins;
     int loading;
-    int early; /* decoded ahead, and not asked for since */
+    int early; /* decoded in advance and not requested since */
     size_t before,
-        after; /* neighbours in the list of unpinned pictures, when full and not pinned */
+        /* before, after: neighbours in the list of unpinned pictures, if full and not pinned */
+        after;
 } entry;
 
-/* As many pictures may wait as half the bound holds of the largest, or those that wait, and as
- * many in use, would push one another out; where these are fewer than so many, none does. */
+/* Half of the limit may be used for pictures decoded in advance, counted at the size of the
+ * largest; otherwise these and the pictures in use would evict one another. If fewer than
+ * FEWEST_AHEAD fit, none is decoded in advance. */
 enum { FEWEST_AHEAD = 4 };
 
-/* Pictures wanted soon, in the order they were asked for, and who decodes them. */
+/* Queue of announced pictures, in the order of announcement, and the threads that decode them. */
 typedef struct {
     pthread_t threads[TED4_DATASET_AHEAD];
     size_t queue[TED4_DATASET_AHEAD];
     int n_threads, n_waiting, n_queued, n_loading, stop;
-    size_t n_early; /* pictures decoded, and not asked for since */
+    size_t n_early; /* pictures decoded in advance and not requested since */
 } ahead;
 
 struct ted4_image_cache {
     pthread_mutex_t lock;
     pthread_cond_t loaded, wanted;
     ahead ahead;
-    entry *entries; /* owned, [n + 1]; the last is the head of the list of unpinned pictures: after
-                       = oldest, before = newest */
+    /* entries: owned, [n + 1]; the last is the head of the list of unpinned pictures: after is the
+     * oldest, before is the newest */
+    entry *entries;
     size_t n, bound, held;
-    size_t largest; /* size of a picture seen so far */
+    size_t largest; /* largest size of a picture so far */
     ted4_image_decoder *decode;
     void *user; /* borrowed */
 };
@@ -110,8 +113,8 @@ static void not_early(ted4_image_cache *c, size_t i)
     c->entries[i].early = 0;
 }
 
-/* With the lock held: drops unpinned pictures, oldest first, until extra more bytes fit or none is
- * left. */
+/* Evicts unpinned pictures, oldest first, until extra more bytes fit or none is left. The caller
+ * holds the lock. */
 static void evict(ted4_image_cache *c, size_t extra)
 {
     for (;;) {
@@ -126,7 +129,7 @@ static void evict(ted4_image_cache *c, size_t extra)
     }
 }
 
-/* With the lock held, which is let go while decoding. */
+/* Decodes picture i. The caller holds the lock, which is released while decoding. */
 static void load(ted4_image_cache *c, size_t i, ted4_message *m)
 {
     size_t size = 0;
@@ -217,7 +220,7 @@ static int is_queued(const ahead *a, size_t i)
     return 0;
 }
 
-/* Pictures that may wait, decoded or queued or on their way. */
+/* Returns how many pictures may be decoded in advance, counting those queued and being decoded. */
 static size_t prefetch_limit(const ted4_image_cache *c)
 {
     const size_t fit = c->largest > 0 ? c->bound / c->largest / 2 : TED4_DATASET_AHEAD;

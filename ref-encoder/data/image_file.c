@@ -1,6 +1,6 @@
-/* image_file.c - see image_file.h. PNG goes through libpng's simplified interface, which needs
- * no setjmp here; headers are read by hand because neither library can give a size without a
- * decoder's set-up.
+/* image_file.c - see image_file.h. PNG files are read through libpng's simplified interface, which
+ * needs no setjmp here. Headers are read by hand, because with either library a decoder must be set
+ * up before it gives the size.
  * SPDX-License-Identifier: BSD-2-Clause */
 #include "data/image_file.h"
 
@@ -32,8 +32,8 @@ static int check_size(const char *path, uint32_t width, uint32_t height, ted4_me
     return 0;
 }
 
-/* PNG: IHDR is the first chunk; transparency is in its colour type (bit 2) or in a tRNS chunk
- * before the data. */
+/* PNG: IHDR is the first chunk. Transparency is stated by bit 2 of its colour type, or by a tRNS
+ * chunk before the data. */
 static int probe_png(FILE *f, const char *path, ted4_image_header *h, ted4_message *m)
 {
     uint8_t c[8 + 13 + 4];
@@ -60,7 +60,8 @@ static int is_frame_header(int marker)
 
 enum { APP1 = 0xe1 };
 
-/* Reads the payload of an APP1 segment, of which a file may have several. 0, or -1: cut short. */
+/* Reads the payload of an APP1 segment, of which a file may have several. Returns 0, or -1 if the
+ * file is truncated. */
 static int read_exif(FILE *f, int size, ted4_image_header *h)
 {
     uint8_t *payload = malloc((size_t)size + 1);
@@ -72,8 +73,8 @@ static int read_exif(FILE *f, int size, ted4_image_header *h)
     return whole ? 0 : -1;
 }
 
-/* JPEG: segments "ff marker length16 ..." up to the frame header, which holds precision, height,
- * width. */
+/* JPEG: segments of the form "ff marker length16 ..." precede the frame header, which holds
+ * precision, height and width. */
 static int probe_jpeg(FILE *f, const char *path, ted4_image_header *h, ted4_message *m)
 {
     uint8_t s[8];
@@ -128,7 +129,7 @@ int ted4_image_probe(const char *path, ted4_image_header *header, ted4_message *
     return result;
 }
 
-/* By the header, where bit depth and interlace method lie at these places. */
+/* Does the header state 16 bits and interlacing? The offsets are those of the two fields. */
 static int is_wide_interlaced(const uint8_t *bytes, size_t size)
 {
     enum { DEPTH = 24, INTERLACE = 28 };
@@ -136,7 +137,8 @@ static int is_wide_interlaced(const uint8_t *bytes, size_t size)
     return size > INTERLACE && bytes[DEPTH] == 16 && bytes[INTERLACE] != 0;
 }
 
-/* 16-bit files without a stated gamma count as sRGB like all others, not as linear light. */
+/* Decodes a PNG. 16-bit files without a stated gamma are taken as sRGB, like all others, and not as
+ * linear light. */
 static int decode_png(const char *path, const uint8_t *bytes, size_t size, ted4_image *image,
                       ted4_message *m)
 {
@@ -157,7 +159,7 @@ static int decode_png(const char *path, const uint8_t *bytes, size_t size, ted4_
     }
     image->width = (int)p.width;
     image->height = (int)p.height;
-    /* Of the largest side that is taken RGBA has 2^32 bytes. */
+    /* At the largest accepted side, RGBA takes 2^32 bytes. */
     if ((size_t)p.width * p.height <= SIZE_MAX / (size_t)image->channels)
         image->bytes = malloc((size_t)p.width * p.height * (size_t)image->channels);
     if (image->bytes == NULL) {

@@ -1,7 +1,7 @@
-/* image_jpeg.c - JPEG to RGB bytes through libjpeg-turbo.
- * With setjmp: libjpeg's error_exit must not return, and this library offers no
- * other way out. Everything that lives across the jump belongs to the caller of the function
- * that sets it.
+/* image_jpeg.c - decodes JPEG to RGB bytes through libjpeg-turbo.
+ * It uses setjmp, because libjpeg's error_exit must not return and the library offers no other way
+ * out. Everything that must survive the jump belongs to the caller of the function that calls
+ * setjmp.
  * SPDX-License-Identifier: BSD-2-Clause */
 #include <setjmp.h>
 #include <stdio.h>
@@ -29,7 +29,7 @@ static void leave(j_common_ptr c)
     longjmp(job->out, 1);
 }
 
-/* Missing data would be filled with grey: a refusal is better. Other oddities (stray bytes) do
+/* Missing data would be filled with grey, so it is refused instead. Other warnings (stray bytes) do
  * not change pixels. */
 static void warn(j_common_ptr c, int level)
 {
@@ -64,7 +64,7 @@ static void read_all(jpeg_job *job, const uint8_t *bytes, size_t size, ted4_imag
     jpeg_finish_decompress(c);
 }
 
-/* 0, or -1 after an error that libjpeg met anywhere below. */
+/* Returns 0, or -1 after any error in libjpeg. */
 static int guarded_read(jpeg_job *job, const uint8_t *bytes, size_t size, ted4_image *image)
 {
     if (setjmp(job->out) != 0)

@@ -1,7 +1,7 @@
-/* image_png.c - interlaced PNG of 16 bits to RGB or RGBA bytes: libpng's simplified interface
- * (image_file.c) mixes up the rows of these (pnggroup/libpng issue 853). With setjmp, as
- * image_jpeg.c, and for the same reason: everything that lives across the jump belongs to the
- * caller of the function that sets it.
+/* image_png.c - decodes interlaced 16-bit PNG to RGB or RGBA bytes, because libpng's simplified
+ * interface (image_file.c) mixes up the rows of such files (pnggroup/libpng issue 853). It uses
+ * setjmp for the same reason as image_jpeg.c: everything that must survive the jump belongs to the
+ * caller of the function that calls setjmp.
  * SPDX-License-Identifier: BSD-2-Clause */
 #include <setjmp.h>
 #include <stdio.h>
@@ -16,9 +16,9 @@
 typedef struct {
     png_structp png;
     png_infop info;
-    const uint8_t *bytes; /* borrowed; what is left of the file */
+    const uint8_t *bytes; /* borrowed; the unread part of the file */
     size_t size;
-    png_bytep *rows; /* owned; into the image */
+    png_bytep *rows; /* owned; pointers into the image */
     jmp_buf out;
     char text[200];
 } png_job;
@@ -47,7 +47,8 @@ static void read_bytes(png_structp p, png_bytep to, size_t n)
     job->size -= n;
 }
 
-/* The transformations by which the simplified interface comes to bytes of sRGB. */
+/* Applies the transformations by which the simplified interface produces sRGB bytes, and reads the
+ * image. */
 static void read_all(png_job *job, ted4_image *image)
 {
     png_structp p = job->png;
@@ -82,7 +83,7 @@ static void read_all(png_job *job, ted4_image *image)
     png_read_end(p, NULL);
 }
 
-/* 0, or -1 after an error that libpng met anywhere below. */
+/* Returns 0, or -1 after any error in libpng. */
 static int guarded_read(png_job *job, ted4_image *image)
 {
     if (setjmp(job->out) != 0)

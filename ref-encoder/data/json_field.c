@@ -48,7 +48,8 @@ int ted4_json_text(const json_t *object, const char *where, const char *name, co
     return 1;
 }
 
-/* Appends the numbers of a list to v[high]; 0, or -1: something else in it, or too many. */
+/* Appends the numbers of a list to v[high]. Returns 0, or -1 if the list holds anything else or too
+ * many numbers. */
 static int gather(const json_t *list, double *v, size_t *n, size_t high)
 {
     for (size_t i = 0; i < json_array_size(list); i++) {
@@ -80,7 +81,7 @@ int ted4_json_numbers(const json_t *object, const char *where, const char *name,
     return (int)n;
 }
 
-/* Row i of the matrix into v[4]; 0, or -1: not four finite numbers. */
+/* Reads row i of the matrix into v[4]. Returns 0, or -1 if it is not four finite numbers. */
 static int read_row(const json_t *matrix, size_t i, double v[4])
 {
     const json_t *row = json_array_get(matrix, i);

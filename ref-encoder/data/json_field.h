@@ -1,4 +1,4 @@
-/* json_field.h - fields of a JSON document with messages that name file and field.
+/* json_field.h - reads fields of a JSON document; error messages name the file and the field.
  * SPDX-License-Identifier: BSD-2-Clause */
 #ifndef TED4_JSON_FIELD_H
 #define TED4_JSON_FIELD_H
@@ -7,32 +7,33 @@
 #include <stddef.h>
 #include "data/dataset.h"
 
-/* Parses a file; duplicate keys are refused. NULL with *m "file:line: what". json_decref() the
- * result. */
+/* Parses a file; duplicate keys are refused. The caller must json_decref() the result. Returns NULL
+ * with *m "file:line: what" on failure. */
 json_t *ted4_json_read(const char *path, ted4_message *m);
 
-/* where, in all of these: "file: frames[12]" or "file", what messages begin with. *v is left
- * alone when the field is absent. 1: read, 0: absent, -1 with *m filled: of another type or not
- * finite. */
+/* In all functions below, where ("file: frames[12]" or "file") is the beginning of messages. They
+ * return 1 if the field was read, 0 if it is absent, which leaves *v unchanged, and -1 with *m
+ * filled if it is of another type or not finite.
+ * Reads a number. */
 int ted4_json_number(const json_t *object, const char *where, const char *name, double *v,
                      ted4_message *m);
 
-/* Borrowed text of a string. */
+/* Reads a string. *v is borrowed from the object. */
 int ted4_json_text(const json_t *object, const char *where, const char *name, const char **v,
                    ted4_message *m);
 
-/* low to high numbers in a list; lists in the list are read in order (a matrix by rows). Gives
- * how many. */
+/* Reads a list of low to high numbers. Nested lists are read in order (a matrix row by row).
+ * Returns the number of values instead of 1. */
 int ted4_json_numbers(const json_t *object, const char *where, const char *name, double *v,
                       size_t low, size_t high, ted4_message *m);
 
-/* A matrix given as 4 rows (or, when the last is left out, 3) of 4 numbers; the last must be 0 0
- * 0 1. v: its upper 3x4, row-major. */
+/* Reads a matrix of 4 rows of 4 numbers. The last row must be 0 0 0 1 and may be left out. v
+ * receives the upper 3x4 part, row-major. */
 int ted4_json_affine(const json_t *object, const char *where, const char *name, double v[12],
                      ted4_message *m);
 
-/* Frames a second, field "fps", as a header can say them (frame_rate.h); 0: not known. As
- * ted4_json_number. */
+/* Reads the field "fps", frames per second, and refuses rates that a header cannot represent
+ * (frame_rate.h). *rate is 0 if unknown. Returns as ted4_json_number. */
 int ted4_json_rate(const json_t *object, const char *where, double *rate, ted4_message *m);
 
 #endif
