@@ -1,4 +1,4 @@
-/* request.h - what a command line of ted4enc asks for.
+/* request.h - the parsed command line of ted4enc.
  * SPDX-License-Identifier: BSD-2-Clause */
 #ifndef TED4_REQUEST_H
 #define TED4_REQUEST_H
@@ -11,21 +11,26 @@
 enum { TED4_REQUEST_HOLD_OUT = 256 };
 
 typedef struct {
-    const char *scene, *out, *checkpoint, *stage1,
-        *log; /* borrowed from argv; NULL: not asked for */
+    /* File and folder names, borrowed from argv. NULL: not given. */
+    const char *scene, *out, *checkpoint, *stage1, *log;
     int downscale, max_frames, cache_mib, checkpoint_every, threads, resume, check, json, force,
         quiet, verbose, black, search_report;
     int premultiplied;
     const char *hold_out[TED4_REQUEST_HOLD_OUT]; /* borrowed from argv */
     size_t n_hold_out;
-    size_t target_size;          /* bytes; 0: not asked for */
-    ted4_scatter_options bounds; /* its seed is set later */
+    size_t target_size;          /* --target-size in bytes; 0: not given */
+    ted4_scatter_options bounds; /* --bounds; the caller sets the seed */
     ted4_train_options options;
 } ted4_request;
 
-enum { TED4_REQUEST_GO, TED4_REQUEST_DONE, TED4_REQUEST_BAD };
+/* Results of ted4_request_parse. */
+enum {
+    TED4_REQUEST_GO,   /* *r is filled, and the program should go on */
+    TED4_REQUEST_DONE, /* the help or version text was printed, and nothing else is to be done */
+    TED4_REQUEST_BAD   /* the command line is wrong, and one line on stderr says why */
+};
 
-/* GO: *r says what to do. DONE: help or version was printed. BAD: one line on stderr said why. */
+/* Parses the command line into *r, and sets argv[0] to "ted4enc". Returns a TED4_REQUEST_ value. */
 int ted4_request_parse(ted4_request *r, int argc, char **argv);
 
 #endif

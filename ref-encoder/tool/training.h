@@ -1,5 +1,5 @@
-/* training.h - a training run as ted4enc makes it: steps, log lines and checkpoints, until the
- * file's bytes stand.
+/* training.h - a training run of ted4enc: steps, log lines and checkpoints, up to the bytes of the
+ * finished file.
  * SPDX-License-Identifier: BSD-2-Clause */
 #ifndef TED4_TRAINING_H
 #define TED4_TRAINING_H
@@ -16,16 +16,18 @@ typedef struct {
     ted4_run_log log;
     const char *checkpoint; /* borrowed; NULL: none is written */
     ted4_teller *teller;    /* borrowed */
-    ted4_facts facts;       /* what the teller knows */
+    ted4_facts facts;       /* the facts last given to the teller */
     ted4_estimate estimate;
-    double mv_seed_share; /* share of anchors kept for them, as it was when last asked for */
-    int estimated;        /* how long the whole takes has been said */
-    int64_t saved;        /* the step that the checkpoint holds; negative: there is none */
-    int stopped;          /* the signal that ended training; 0: none has */
-    char why[1024];       /* set by whatever fails */
+    /* Share of the anchors that is reserved for multi-view seeding, by the last query of the
+     * schedule; negative: there was none. */
+    double mv_seed_share;
+    int estimated;  /* 1: the estimated duration of the run has been printed */
+    int64_t saved;  /* the step that the checkpoint holds; negative: there is no checkpoint */
+    int stopped;    /* the signal that ended training; 0: none has */
+    char why[1024]; /* filled by every function that fails */
 } ted4_training;
 
-/* A coded scene that was decoded again and found equal. */
+/* A coded scene. The bytes were decoded again, and the result equals the scene. */
 typedef struct {
     uint8_t *bytes; /* owned */
     size_t size;
@@ -33,31 +35,35 @@ typedef struct {
     ted4_verified verified;
 } ted4_coded;
 
-/* Opens the log and goes to the checkpoint (--resume) or the end of stage 1 (--stage1) if there is
- * one. From here on a signal to end (stop.h) ends a step, writes a last checkpoint, and is no
- * failure to say more about: stopped is set, and why says how to go on. 0, or -1 with why. */
+/* Opens the log, and restores the checkpoint (--resume) or the end of stage 1 (--stage1) if that
+ * file exists. From now on a signal to end (stop.h) ends training after the current step, with a
+ * last checkpoint. The function under way then returns -1, but this is not an error: t->stopped is
+ * set, and t->why says how to continue. Returns 0, or -1 with t->why filled. */
 int ted4_training_begin(ted4_training *t, const ted4_request *r, ted4_trainer *trainer,
                         ted4_teller *teller);
-/* Closes the log. bad: something has failed already, and its why stays. 0, or not 0 with why. */
+/* Closes the log. bad: an earlier call has failed, and its t->why is kept. Returns 0, or not 0 with
+ * t->why filled: bad was not 0, or the log could not be closed. */
 int ted4_training_end(ted4_training *t, int bad);
 
-/* Steps until that many are done; writes the --stage1 file when it passes there, and checkpoints.
- * 0, or -1 with why. */
+/* Trains until the trainer has done this many steps. Writes checkpoints, and the --stage1 file at
+ * the end of stage 1. Returns 0, or -1 with t->why filled. */
 int ted4_training_go(ted4_training *t, uint64_t steps);
-/* Codes the scene as it stands. 0, or -1 with why. */
+/* Codes the current scene and verifies the result. Returns 0, or -1 with t->why filled. */
 int ted4_training_code(ted4_training *t, ted4_coded *c);
 void ted4_coded_free(ted4_coded *c);
 
-/* Repeats stage 2 with other lambdas, in search of the largest file that is no larger than
- * request->target_size. *c: that file, or the smallest one if all were larger. The same search for
- * the same scene, options and seed. 0, or -1 with why. target.c */
+/* Repeats stage 2 with different values of lambda, in search of the largest file that does not
+ * exceed request->target_size. *c is that file, or the smallest one if all exceed it. The search is
+ * the same for the same scene, options and seed. Returns 0, or -1 with t->why filled. In target.c.
+ */
 int ted4_training_target(ted4_training *t, ted4_coded *c);
 
-/* ---- between the files ---- */
+/* ---- shared by training.c, target.c and look.c ---- */
 
-/* What the teller hears of each step, and how much time is left; the trainer's onlooker. look.c */
+/* The trainer's onlooker, called during training: updates the status line and the estimate of the
+ * remaining time. Returns the signal that asked for the end, or 0. In look.c. */
 int ted4_training_look(void *training);
-/* Training stands elsewhere, or was held up. */
+/* Tells the estimate that training was moved to another step, or interrupted. In look.c. */
 void ted4_training_rewound(ted4_training *t);
 
 #endif
