@@ -1,5 +1,6 @@
-/* belongs.h - can a file be of a scene? Asked of what both say about time and space, and of the
- * pictures: a model that is further from them than one colour each was made for others.
+/* belongs.h - tests whether a .ted4 file can belong to a scene. The test compares what both say
+ * about time and space, and the pictures: if the rendered pictures have a larger error than one
+ * constant colour per picture, the file was trained on another scene.
  * SPDX-License-Identifier: BSD-2-Clause */
 #ifndef TED4_BELONGS_H
 #define TED4_BELONGS_H
@@ -10,19 +11,20 @@
 #include "data/dataset.h"
 #include "ted4.h"
 
-/* 1, or 0 with why filled: number of times, frames a second, or cameras that do not look at where
- * the file lies. */
+/* Returns 1, or 0 with why filled: the number of frames or the frame rate differs, or too few
+ * cameras see the cube in which the anchors of the file lie. */
 int ted4_belongs_scene(const ted4_info *file, const ted4_dataset *d, char *why, size_t why_size);
 
-/* Squared errors of all pictures so far, against the drawn ones and against the mean colour of
- * each. */
+/* Sums of the squared errors of all pictures so far: of the rendered pictures, and of the mean
+ * colour of each picture. */
 typedef struct {
     double drawn, mean;
 } ted4_belongs_sum;
 
+/* Adds a picture to the sums. truth, drawn: [pixels][3]. */
 void ted4_belongs_add(ted4_belongs_sum *s, const uint8_t *truth, const uint8_t *drawn,
                       size_t pixels);
-/* 1, or 0 with why filled. */
+/* Returns 1, or 0 with why filled: the error of the rendered pictures is the larger one. */
 int ted4_belongs_pictures(const ted4_belongs_sum *s, char *why, size_t why_size);
 
 #endif

@@ -1,15 +1,16 @@
-/* stop.h - Ctrl-C and requests to end: before training they end the program, with a word; then the
- * first is kept for whoever asks, and the second ends the program at once.
+/* stop.h - handling of SIGINT (Ctrl-C) and SIGTERM. Before training, a signal ends the program with
+ * a message. During training, the first signal is recorded for ted4_stop_asked, and the second ends
+ * the program at once.
  * SPDX-License-Identifier: BSD-2-Clause */
 #ifndef TED4_STOP_H
 #define TED4_STOP_H
 
-/* From here on. quiet: nothing is said when one comes. A signal that was ignored before stays so.
- */
+/* Installs the handlers. A signal that was ignored before stays ignored. quiet: no message is
+ * printed when a signal arrives. */
 void ted4_stop_on_signals(int quiet);
-/* From here on there is something to keep. */
+/* Training begins: from now on the first signal no longer ends the program. */
 void ted4_stop_keep(void);
-/* The signal that came; 0: none. */
+/* Returns the signal that has arrived, or 0. */
 int ted4_stop_asked(void);
 
 #endif
