@@ -1,5 +1,4 @@
-/* run_log.h - what a training run writes down while it runs: JSON lines in a file. Keeps the time
- * that training took, too.
+/* run_log.h - log of a training run: a file of JSON lines. Also measures the training time.
  * SPDX-License-Identifier: BSD-2-Clause */
 #ifndef TED4_RUN_LOG_H
 #define TED4_RUN_LOG_H
@@ -11,33 +10,36 @@
 typedef struct {
     const char *path;    /* borrowed; NULL: no log file */
     int file;            /* descriptor, -1: no log file */
-    ted4_teller *teller; /* borrowed; hears of trials. NULL: nobody does */
-    double wall, cpu;    /* clocks at the last tick, seconds */
-    double cpu_seconds;  /* that all threads worked between ticks, since the log began */
-    uint64_t last_step; /* the last line's step, trainer->seconds and cpu_seconds: the next one's ms
-                           count from there */
+    ted4_teller *teller; /* borrowed; is told about trials. NULL: not used */
+    double wall, cpu;    /* wall clock and CPU clock at the last tick, seconds */
+    double cpu_seconds;  /* CPU time of all threads during training, since the log began */
+    /* Step, trainer->seconds and cpu_seconds of the last line. The ms and cpu_ms of the next line
+     * count from there. */
+    uint64_t last_step;
     double last_seconds, last_cpu;
-    ted4_preview preview; /* what the next line tells of the file */
-    double left; /* seconds of work that the next line tells to be left; negative: not known */
-    double ms;   /* a step, by the last line; negative: there was none */
+    ted4_preview preview; /* preview of the file for the next line */
+    double left;          /* estimated remaining seconds for the next line; negative: not known */
+    double ms; /* milliseconds per step in the last line; negative: no line was written */
 } ted4_run_log;
 
-/* "1", "2", "2i" (integer model) */
+/* Returns "1", "2", or "2i" (stage 2 with the integer model). */
 const char *ted4_run_log_stage(const ted4_trainer *t);
 
-/* path NULL: no log file. keep: a log that is there is cut after the lines of steps and rollbacks
- * up to those of t, and goes on; else it begins anew. 0, or -1 with why filled: also when keep is
- * asked for and the file is no log. */
+/* Opens a log. path: borrowed; NULL: no log file. keep: an existing log is continued; lines of
+ * later steps or rollbacks than those of t are cut off. Otherwise the file is emptied. Returns 0,
+ * or -1 with why filled; that includes an existing file which is not a log, if keep is set. */
 int ted4_run_log_open(ted4_run_log *l, const char *path, const ted4_trainer *t, int keep,
                       ted4_teller *teller, char *why, size_t why_size);
 
-/* Time since the last tick was training: adds it to t->seconds. Or was not. */
+/* Counts the time since the last tick or skip as training time, and adds it to t->seconds. */
 void ted4_run_log_tick(ted4_run_log *l, ted4_trainer *t);
+/* Does not count the time since the last tick or skip. */
 void ted4_run_log_skip(ted4_run_log *l);
-/* The trainer has been moved to another step: milliseconds count from there. */
+/* Tells the log that the trainer was moved to another step: the ms of the next line count from
+ * there. */
 void ted4_run_log_rewind(ted4_run_log *l, const ted4_trainer *t);
-/* The same, and lines of later steps or rollbacks go from the file. 0, or -1 with why filled: a
- * file that is no log stays as it is. */
+/* Like ted4_run_log_rewind, and also cuts lines of later steps or rollbacks off the file. Returns
+ * 0, or -1 with why filled; a file that is not a log is left unchanged. */
 int ted4_run_log_cut(ted4_run_log *l, const ted4_trainer *t, char *why, size_t why_size);
 
 /* One line, right after a tick:

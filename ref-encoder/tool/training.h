@@ -54,7 +54,7 @@ void ted4_coded_free(ted4_coded *c);
 
 /* Repeats stage 2 with different values of lambda, in search of the largest file that does not
  * exceed request->target_size. *c is that file, or the smallest one if all exceed it. The search is
- * the same for the same scene, options and seed. Returns 0, or -1 with t->why filled. In target.c.
+ * the same for the same scene, options and seed. Returns 0, or -1 with t->why filled. See target.c.
  */
 int ted4_training_target(ted4_training *t, ted4_coded *c);
 
