@@ -42,57 +42,57 @@ void ted4_run_log_rewind(ted4_run_log *l, const ted4_trainer *t);
  * 0, or -1 with why filled; a file that is not a log is left unchanged. */
 int ted4_run_log_cut(ted4_run_log *l, const ted4_trainer *t, char *why, size_t why_size);
 
-/* One line, right after a tick:
- *   step stage             steps done; ted4_run_log_stage
- *   lambda                 of this run, or this trial of --target-size
+/* Writes one line about the current step. Call it right after a tick or skip. The members are:
+ *   step stage             number of steps done; stage as in ted4_run_log_stage
+ *   lambda                 of this run, or of this trial of --target-size
  *   loss l1 ssim           running means over about 100 steps
- *   psnr split             mean over pictures of a spread, dB, as of the file in stage 2; "test",
- *                          or "train" where nothing is held out
- *   anchors moving splats  how many; those the file would call dynamic; Gaussians on screen
- *   bytes bytes_by_type    of the file as it would be, in stage 2, else 0; positions, masks, the
- *                          five attributes, networks, and the frame around them
- *   bits                   of the five attributes, an anchor
- *   ms cpu_ms              a step, since the line before
- *   gaussian_pixels_per_s  speed
- *   seconds                of training since step 0, whatever runs it took; what was trained and
- *                          thrown away (a new beginning, a rollback) counts
- *   cpu_seconds            the same of all threads, since this log began
- *   left                   seconds until the file is written, as estimated; negative: not known
- *   skipped                Gaussians that this process has left out of pictures so far, as they
+ *   psnr split             mean PSNR in dB over an evenly spread sample of pictures, in stage 2 as
+ *                          if drawn from the file; "test", or "train" if nothing is held out
+ *   anchors moving splats  numbers of anchors, of anchors that the file would mark as dynamic, and
+ *                          of Gaussians on screen
+ *   bytes bytes_by_type    size of the file if it were written now, 0 in stage 1; its parts:
+ *                          positions, masks, the five attributes, networks, and frame (the rest)
+ *   bits                   bits per anchor of each of the five attributes
+ *   ms cpu_ms              milliseconds per step since the previous line
+ *   gaussian_pixels_per_s  speed of the rasteriser
+ *   seconds                training time since step 0, over all runs, including training that was
+ *                          discarded (by a restart or a rollback)
+ *   cpu_seconds            CPU time of all threads for training, since this log began
+ *   left                   estimated seconds until the file is written; negative: not known
+ *   skipped                number of Gaussians that this process has not drawn so far because they
  *                          were not finite (ted4_raster_skipped)
- *   clamped                values of anchors at an end of their range (saturation.h)
- *   gradients              usual norm (near the median of about 100 steps) of what each term learns
- *                          from: values of anchors by attribute, masks, centres of Gaussians
- *                          (anchors' positions are not learnt), networks (heads, motion, prior),
- *                          bank, steps (step sizes), colour; 0: not learnt
- *   peaks                  of each term the largest norm since the line before, as a multiple of
- *                          its usual one; 0: not known yet
- *   rollbacks              so far
- * 0, or -1 with why filled; the file then ends with the line before. */
+ *   clamped                number of anchor values at an end of their range (saturation.h)
+ *   gradients              usual norm (near the median of about 100 steps) of the gradient of each
+ *                          term: anchor values by attribute, masks, centres of Gaussians (the
+ *                          positions of anchors are not trained), networks (heads, motion, prior),
+ *                          bank, steps (quantisation steps), colour; 0: not trained
+ *   peaks                  largest norm of each term since the previous line, as a multiple of its
+ *                          usual norm; 0: not known yet
+ *   rollbacks              number of rollbacks so far
+ * Returns 0, or -1 with why filled; the file then ends with the previous line. */
 int ted4_run_log_step(ted4_run_log *l, const ted4_trainer *t, char *why, size_t why_size);
-/* One line about what the monitor has found (monitor.h):
- *   step                   where training goes on, or ended
- *   event                  "rollback", or "failure": the end
- *   rollbacks              with this one
- *   failed                 steps done before the one that failed
- *   cause term anchor      anchor is null where it is none's
- *   factor                 of learning rates from here on
- * The same results. */
+/* Writes one line about an anomaly that the monitor has found (monitor.h):
+ *   step                   the step at which training continues, or has ended
+ *   event                  "rollback", or "failure" if training has ended
+ *   rollbacks              number of rollbacks, including this one
+ *   failed                 number of steps done before the one that failed
+ *   cause term anchor      anchor is null if the anomaly concerns no single anchor
+ *   factor                 factor of the learning rates from now on
+ * Returns the same as ted4_run_log_step. */
 int ted4_run_log_event(ted4_run_log *l, const ted4_trainer *t, char *why, size_t why_size);
-/* One line about each trial of a smaller model (train/search/model_search.h) from number first on,
- * once they are made:
- *   step                   where training goes on
+/* Writes one line about each finished trial of a smaller model (train/search/model_search.h), from
+ * trial number first on:
+ *   step                   the step at which training continues
  *   event                  "capacity"
- *   rollbacks              so far
- *   what from to           what was tried: from so many to so many
- *   trained                steps of either side before they were compared; 0: untrained
- *   taken                  does the smaller model stay?
- *   cost distortion bytes  of the model at hand, of the smaller one; cost is distortion plus what
- *                          the bytes weigh
- * The same results. */
+ *   rollbacks              number of rollbacks so far
+ *   what from to           the quantity that was reduced, its old and its new value
+ *   trained                steps of each side before the comparison; 0: untrained
+ *   taken                  true: the smaller model is kept
+ *   cost distortion bytes  [current model, smaller model]; cost is distortion plus the weighted
+ * rate Returns the same as ted4_run_log_step. */
 int ted4_run_log_trials(ted4_run_log *l, const ted4_trainer *t, size_t first, char *why,
                         size_t why_size);
-/* 0, or -1 with why filled. */
+/* Closes the file. Returns 0, or -1 with why filled. */
 int ted4_run_log_close(ted4_run_log *l, char *why, size_t why_size);
 
 #endif
