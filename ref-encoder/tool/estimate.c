@@ -1,30 +1,32 @@
-/* estimate.c - see estimate.h. Measured on the project's scenes with draft and fast, one thread and
- * two: a step takes as long as its anchors are many, and a quarter of the most that there may be on
- * top; a step of stage 2 takes a little longer. Trials count in steps, and take about what they
- * say.
+/* estimate.c - see estimate.h. The model of the cost was fitted on the project's scenes with the
+ * presets draft and fast, on one thread and on two: the time of a step is proportional to the
+ * number of its anchors plus a quarter of the permitted maximum, and steps of stage 2 take a little
+ * longer. Trials count their work in steps, and take about the time of as many steps of training.
  * SPDX-License-Identifier: BSD-2-Clause */
 #include "estimate.h"
 
 #include <math.h>
 #include <string.h>
 
-#define FIXED       0.25 /* of the most anchors: what a step takes without any */
-#define STAGE2      1.06
-#define TRIALS      0.9  /* of a step of stage 2, what trials count as one */
-#define LONGER      0.05 /* of what trials were believed to take, once they have taken it */
-#define CODING      8.0  /* steps */
-/* What is learnt of trials counts against this share of all of them, as first believed. */
+#define FIXED       0.25 /* fixed cost of a step, in shares of most_anchors */
+#define STAGE2      1.06 /* cost of a step of stage 2, relative to stage 1 */
+#define TRIALS      0.9  /* cost of one counted step of trials, relative to a step of stage 2 */
+#define LONGER      0.05 /* least remaining share of the trials' budget, also after it is spent */
+#define CODING      8.0  /* cost of coding the file, in steps */
+/* The cost of trials is a weighted mean of the expected and the measured one. The weight of the
+ * expected cost is this share of the steps of all trials. */
 #define BELIEF      0.1
-/* Growth has filled what it may soon after it began; before, it is believed to fill it, and then
- * what there is tells. */
+/* Growth reaches its limit soon after it begins. Until GROWN (a share of stage 1) after its begin,
+ * the number of anchors is expected to reach the limit; later it is expected to grow at most by the
+ * factor STILL_GROWS. */
 #define GROWN       0.04
 #define STILL_GROWS 1.1
-/* Units that the latest speed is averaged over; steps after which the first estimate is said, and
- * of which the first few do not count. */
+/* The recent speed is an exponential average over about this many units. */
 #define MEMORY      300.0
-/* A step that takes so many times its share was something else, too: multi-view seeding, say,
- * which does not come again. */
+/* The time of a step counts at most as this multiple of its expected time: the rest was spent on
+ * work that does not recur, such as multi-view seeding. */
 #define UNUSUAL     15.0
+/* Observations before the first estimate is printed; number of those that are ignored at first. */
 enum { READY = 100, WARMING = 5 };
 
 void ted4_estimate_begin(ted4_estimate *e)
@@ -33,12 +35,13 @@ void ted4_estimate_begin(ted4_estimate *e)
     e->when = -1;
 }
 
+/* Units of work of one step. */
 static double weight(const ted4_work *w, double anchors)
 {
     return (anchors / fmax(w->most_anchors, 1.0) + FIXED) / (1.0 + FIXED);
 }
 
-/* Anchors once growth is done, before multi-view seeding. */
+/* Expected number of anchors after growth and before multi-view seeding. */
 static double grown(const ted4_work *w)
 {
     const double cap = (1.0 - w->mv_seed_share) * w->most_anchors;
@@ -50,7 +53,7 @@ static double grown(const ted4_work *w)
     return fmax(w->anchors, fmin(cap, STILL_GROWS * w->anchors));
 }
 
-/* Anchors from multi-view seeding on. */
+/* Expected number of anchors from multi-view seeding on. */
 static double after_mv_seed(const ted4_work *w)
 {
     return w->step > w->mv_seed_at * w->stage1
@@ -58,18 +61,18 @@ static double after_mv_seed(const ted4_work *w)
                : fmin(w->most_anchors, grown(w) / (1.0 - w->mv_seed_share));
 }
 
-/* Steps from one to another, from where training stands on. */
+/* Steps of the range [from, to) that are not done yet. */
 static double steps(const ted4_work *w, double from, double to)
 {
     return fmax(to - fmax(from, w->step), 0.0);
 }
 
-/* Units of plain steps that are left. */
+/* Remaining units of plain steps and of coding. */
 static double units_left(const ted4_work *w)
 {
     const double grows = w->first_growth * w->stage1,
                  mv_seed_begin = fmax(w->mv_seed_at * w->stage1, grows);
-    /* Of the probe's two branches one counts as training. */
+    /* One of the probe's two branches counts as training, so only the other one is extra work. */
     const double probe = w->probing && w->spent >= w->probe ? 0.0 : w->probe;
 
     return steps(w, 0, grows) * weight(w, w->anchors) +
@@ -80,7 +83,7 @@ static double units_left(const ted4_work *w)
                weight(w, after_mv_seed(w));
 }
 
-/* Units of steps between two looks. */
+/* Units of steps between two observations. */
 static double units_between(const ted4_work *a, const ted4_work *b)
 {
     const double n = b->probing && a->probing ? b->spent - a->spent : b->step - a->step;
@@ -88,11 +91,13 @@ static double units_between(const ted4_work *a, const ted4_work *b)
     return n * weight(b, b->anchors) * (b->step > b->stage1 ? STAGE2 : 1.0);
 }
 
+/* 1 if trials of the model search are under way. */
 static int in_trials(const ted4_work *w)
 {
     return w->budget > 0 && !w->probing;
 }
 
+/* Updates the recent speed. */
 static void learn(ted4_estimate *e, double units, double seconds)
 {
     const double left = exp(-units / MEMORY),
@@ -125,7 +130,7 @@ void ted4_estimate_rewind(ted4_estimate *e, double clock)
         e->when = clock;
 }
 
-/* Seconds of what trials count as a step. */
+/* Seconds per counted step of trials. pace: seconds per unit. */
 static double trial_pace(const ted4_estimate *e, double pace)
 {
     const double believed = BELIEF * (e->last.trials + e->last.budget) + 1.0;
