@@ -1,15 +1,15 @@
-/* belongs.c - see belongs.h. Initial points say nothing about where a file lies: the encoder may
- * have taken others in their place, and bounds that somebody set.
+/* belongs.c - see belongs.h. Initial points are not compared with the position of the file's cube,
+ * because the encoder may have replaced them, or have used bounds set by the user.
  * SPDX-License-Identifier: BSD-2-Clause */
 #include "belongs.h"
 
 #include <math.h>
 #include <stdio.h>
 
-/* Of frames a second, relative. */
+/* Frame rates that differ by more than this, relatively, are different. */
 #define OTHER_RATE 0.01
-/* Places of the file's cube that are looked at, along each of its axes; the share of all pictures
- * that must show one. */
+/* Test points per axis of the file's cube; the share of all pictures that must show at least one of
+ * these points. */
 enum { PLACES = 9 };
 #define SEEN 0.5
 
@@ -39,7 +39,7 @@ static int stands_inside(const ted4_info *file, const ted4_camera *c)
     return inside;
 }
 
-/* Does the camera see any of the cube that a file's anchors lie in? */
+/* Does the camera see any part of the cube in which the anchors of the file lie? */
 static int sees_cube(const ted4_info *file, const ted4_camera *c)
 {
     int seen = stands_inside(file, c);

@@ -9,8 +9,8 @@
 
 #include "tool/output.h"
 
-/* Permissions do not tell all (root, /proc, full file systems), so the temporary file is made and
- * removed again. */
+/* Permissions alone do not tell whether a file can be written (root, /proc, full file systems), so
+ * the temporary file is created and removed again. */
 int ted4_file_writable(const char *path, int force, char *why, size_t why_size)
 {
     ted4_output o;

@@ -1,5 +1,6 @@
-/* look.c - what a training tells while it runs: see training.h, ted4_training_look. Nothing here
- * reaches the trainer.
+/* look.c - status line and remaining time of a training run: see ted4_training_look in training.h.
+ * This file only reads the trainer's state and does not influence training, except that a signal to
+ * end stops it.
  * SPDX-License-Identifier: BSD-2-Clause */
 #include <math.h>
 
@@ -12,8 +13,9 @@
 #include "train/step/events.h"
 #include "training.h"
 
-/* The search for smaller models looks at so many and trains with this share of its budget at least,
- * unless that ends it; some searches use all of it, and which ones is not known before. */
+/* Expected work of the model search. It tries at least UNTRAINED candidates without training, and
+ * trains for at least the share TRAINED of its budget. Some searches use the whole budget, and
+ * which ones do is not known in advance, so the share OFTEN of the rest is added. */
 #define UNTRAINED 40.0
 #define TRAINED   0.08
 #define OFTEN     0.25
@@ -26,7 +28,7 @@ static double search_steps(const ted4_trainer *t)
     return least + OFTEN * (budget - least);
 }
 
-/* Training steps of the trials that are still to come. */
+/* Expected training steps of the trials that have not begun. */
 static double trials_left(const ted4_trainer *t)
 {
     const double refine = ted4_refine_prior_bits_steps(t), prune = ted4_rd_prune_steps(t);
@@ -38,14 +40,14 @@ static double trials_left(const ted4_trainer *t)
     return t->search.decided == TED4_DECIDED_MODEL ? refine + prune : prune;
 }
 
-/* Of the trials at hand, in the end. */
+/* Expected steps of the trials now under way, in total. */
 static double trials_now(const ted4_trainer *t)
 {
     return t->search.decided == TED4_DECIDED_MODEL ? search_steps(t) : t->onlooker.budget;
 }
 
-/* Steps between two looks at whether multi-view seeding will take place, which takes a look at all
- * pictures. */
+/* Steps between two queries of whether multi-view seeding will take place; a query has to examine
+ * all pictures. */
 enum { ASK_EVERY = 500 };
 
 static ted4_work work_of(ted4_training *t)
@@ -74,7 +76,7 @@ static ted4_work work_of(ted4_training *t)
     return w;
 }
 
-/* Once, when the first steps have shown it. */
+/* Prints the estimated duration once, when enough steps were observed. */
 static void say_estimate(ted4_training *t, double left)
 {
     char time[40];

@@ -1,5 +1,6 @@
-/* preview.c - see preview.h. In stage 2 a copy of the model ends training, as trials of capacity do
- * it, so that quality is that of quantised values, too.
+/* preview.c - see preview.h. In stage 2 the model is finished as at the end of training, like in
+ * trials of the model search, so that the quality is that of quantised values; then the saved state
+ * is restored.
  * SPDX-License-Identifier: BSD-2-Clause */
 #include "preview.h"
 
@@ -11,7 +12,7 @@
 #include "write/deflate.h"
 #include "write/encode.h"
 
-/* What a blob's weights take, as the writer deflates them. */
+/* Size in bytes of a blob of weights after the writer's deflate. */
 static double blob_bytes(const ted4_blob *b)
 {
     const size_t capacity = ted4_deflate_bound(b->n);
@@ -24,7 +25,7 @@ static double blob_bytes(const ted4_blob *b)
     return (double)size;
 }
 
-/* 0, or -1: this scene cannot be coded. */
+/* Codes the scene and sets the sizes in *p. Returns 0, or -1 if the scene cannot be coded. */
 static int count_bytes(const ted4_scene *s, const ted4_parallel *parallel, ted4_preview *p)
 {
     uint8_t *file;
