@@ -117,7 +117,7 @@ static const ted4_command COMMAND = {
     ted4_options_help,
 };
 
-/* What cannot be applied before the preset is known. */
+/* Options that can be applied only after the preset. */
 typedef struct {
     const char *preset, *lambda, *iterations, *capacity, *set[MAX_SETS];
     int n_sets;
@@ -145,7 +145,7 @@ static int take_number(int option, const char *value, int low, int high, int *to
     return TED4_REQUEST_GO;
 }
 
-/* Two corners, in any order. */
+/* --bounds: two opposite corners of a box. */
 static int take_bounds(ted4_request *r, const char *value)
 {
     float corner[6];
@@ -223,7 +223,9 @@ static int take(ted4_request *r, pending *p, int option, const char *value)
     return TED4_REQUEST_GO;
 }
 
-/* The option or preset most like a word that is none; "": none is like it. */
+/* Formats a hint with the option or preset that is most similar to an unknown word. Returns text,
+ * or
+ * "" if none is similar. name(i): the i-th known name; NULL: there is none. */
 static const char *suggestion(const char *word, const char *(*name)(int i), char *text, size_t size)
 {
     ted4_similar s = ted4_similar_to(word, strcspn(word, "="));
@@ -246,7 +248,7 @@ static int set(ted4_request *r, const char *text)
     return complain(all);
 }
 
-/* "A,B" */
+/* --iterations: text is "A,B", the steps of stages 1 and 2. */
 static int set_iterations(ted4_request *r, const char *text)
 {
     const char *comma = strchr(text, ',');
@@ -262,7 +264,7 @@ static int set_iterations(ted4_request *r, const char *text)
     return status != TED4_REQUEST_GO ? status : set(r, one);
 }
 
-/* Preset first, then the short forms, then --set in order. */
+/* Applies the preset first, then --iterations, --lambda and --capacity, then --set in order. */
 static int apply(ted4_request *r, const pending *p)
 {
     const uint32_t seed = r->options.seed;
@@ -294,7 +296,7 @@ static int apply(ted4_request *r, const pending *p)
 
 int ted4_request_parse(ted4_request *r, int argc, char **argv)
 {
-    static char name[] = "ted4enc"; /* what getopt's messages begin with, however we were called */
+    static char name[] = "ted4enc"; /* the beginning of getopt's messages, whatever argv[0] was */
     pending p = { .preset = "medium" };
     const char *value;
     int option;

@@ -9,8 +9,8 @@
 #include <time.h>
 #include <unistd.h>
 
-/* Seconds: how often the thread looks, and between lines on anything but a terminal, before
- * training and from there on. */
+/* All in seconds: how often the thread wakes up, and the time between status lines, elsewhere
+ * before training, elsewhere from then on, and on a terminal. */
 #define LOOK_EVERY   0.5
 #define PAUSE_BEFORE 3.0
 #define PAUSE        30.0
@@ -84,7 +84,7 @@ void ted4_teller_line(const ted4_facts *f, double clock, double since, char *tex
     }
 }
 
-/* Locked. The terminal's line is left open, others are whole. */
+/* Prints the status line; the caller holds the lock. On a terminal the line is left open. */
 static void show(ted4_teller *t, double clock)
 {
     char text[MOST_TEXT];
@@ -103,6 +103,7 @@ static double pause_of(const ted4_teller *t)
     return t->pause[t->now.kind >= TED4_TELL_TRAINING];
 }
 
+/* The thread of the status line. */
 static void *tell(void *arg)
 {
     ted4_teller *t = arg;
@@ -137,11 +138,11 @@ void ted4_teller_begin(ted4_teller *t, const char *program, int quiet)
     t->last = t->since = ted4_seconds();
     pthread_mutex_init(&t->lock, NULL);
     pthread_cond_init(&t->wake, NULL);
-    /* Without a thread lines at once are all that is said. */
+    /* If there is no thread, only the messages are printed. */
     t->running = !quiet && pthread_create(&t->thread, NULL, tell, t) == 0;
 }
 
-/* Locked: what is said next begins on a line of its own. */
+/* Clears an open status line; the caller holds the lock. */
 static void close_line(ted4_teller *t)
 {
     if (t->open)

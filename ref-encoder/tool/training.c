@@ -16,10 +16,10 @@
 #include "search_report.h"
 #include "write/encode.h"
 
-/* Steps between reports; pictures of the preview, and of the last one. */
+/* Steps between reports; number of pictures of a preview, and of the last preview. */
 enum { REPORT_EVERY = 250, PREVIEW_PICTURES = 16, LAST_PICTURES = 256 };
 
-/* The trainer's own words. */
+/* Copies the trainer's message to t->why. Returns -1. */
 static int fail(ted4_training *t)
 {
     snprintf(t->why, sizeof t->why, "%s", t->trainer->message.text);
@@ -31,7 +31,7 @@ static int exists(const char *path)
     return path != NULL && access(path, F_OK) == 0;
 }
 
-/* Where training begins: at a checkpoint, at the end of stage 1, or at the start. */
+/* Restores the state at which training begins: a checkpoint, the end of stage 1, or step 0. */
 static int find_start(ted4_training *t)
 {
     const ted4_request *r = t->request;
@@ -92,7 +92,7 @@ int ted4_training_end(ted4_training *t, int bad)
     return bad || !closed;
 }
 
-/* Previews and a line; what they take is not training. */
+/* Makes a preview and writes a line of the log. The time for these is not training time. */
 static int log_step(ted4_training *t)
 {
     ted4_trainer *tr = t->trainer;
@@ -128,8 +128,8 @@ static int save(ted4_training *t)
     return 0;
 }
 
-/* A signal has asked for the end. between: the step is done, and the trainer may be kept. Always
- * -1, with why: how to go on. */
+/* Ends training after a signal. between: the last step is complete, so that the state may be saved.
+ * Always returns -1, with t->why filled: it says how to continue. */
 static int stop(ted4_training *t, int between)
 {
     const unsigned long long now = t->trainer->iteration;
@@ -155,7 +155,7 @@ static int stop(ted4_training *t, int between)
     return -1;
 }
 
-/* The end of stage 1 is written once, for later runs to begin there. */
+/* Writes the end of stage 1 once, so that later runs can begin there. */
 static int keep_stage1(ted4_training *t)
 {
     ted4_trainer *tr = t->trainer;
@@ -168,7 +168,7 @@ static int keep_stage1(ted4_training *t)
     return ted4_checkpoint_save(tr, path) != 0 ? fail(t) : 0;
 }
 
-/* The trainer has begun again, or gone back: its log, too. */
+/* Adapts the log and the estimate after the trainer has restarted or has gone back. */
 static int start_over(ted4_training *t)
 {
     ted4_run_log_tick(&t->log, t->trainer);
@@ -176,7 +176,7 @@ static int start_over(ted4_training *t)
     return ted4_run_log_cut(&t->log, t->trainer, t->why, sizeof t->why);
 }
 
-/* The monitor took the trainer back. */
+/* Reports that the monitor has restored an earlier state of the trainer. */
 static int tell_rollback(ted4_training *t)
 {
     const ted4_monitor *w = &t->trainer->monitor;
@@ -187,7 +187,7 @@ static int tell_rollback(ted4_training *t)
     return ted4_run_log_event(&t->log, t->trainer, t->why, sizeof t->why);
 }
 
-/* A failed step; an anomaly is the last line of the log. */
+/* Handles a failed step. If the cause is an anomaly, it becomes the last line of the log. */
 static int fail_step(ted4_training *t)
 {
     if (t->trainer->onlooker.stopped)
@@ -197,7 +197,7 @@ static int fail_step(ted4_training *t)
     return fail(t);
 }
 
-/* One step, and what the log has to say if it was not simply that. */
+/* Makes one step, and logs restarts, rollbacks and trials that happened in it. */
 static int step(ted4_training *t)
 {
     ted4_trainer *tr = t->trainer;
@@ -206,7 +206,8 @@ static int step(ted4_training *t)
 
     if (ted4_trainer_step(tr) != 0)
         return fail_step(t);
-    /* A step may be many: what a probe has done counts. Or it began again, or went back. */
+    /* One call may advance by many steps, since those of a probe count. It may also restart at an
+     * earlier step (after a probe) or go back (a rollback). */
     if (tr->iteration <= before && start_over(t) != 0)
         return -1;
     if (tr->search.n_trials > trials &&
@@ -215,8 +216,8 @@ static int step(ted4_training *t)
     return tr->monitor.state.rollbacks > rollbacks ? tell_rollback(t) : 0;
 }
 
-/* What probes and trials do is lost when they are stopped, for no checkpoint can be written inside
- * them: one is written before. */
+/* Writes a checkpoint before probes and trials: inside them none can be written, so their work is
+ * lost when they are stopped. */
 static int before_long_step(ted4_training *t)
 {
     return ted4_trainer_long_step(t->trainer) && t->saved != (int64_t)t->trainer->iteration &&
