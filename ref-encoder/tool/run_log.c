@@ -1,5 +1,5 @@
-/* run_log.c - see run_log.h. A line goes out in one write, so that a log is whole but for a line
- * cut by a crash, which resuming takes off.
+/* run_log.c - see run_log.h. Each line is written by one call of write, so that a log contains only
+ * whole lines, except for a last one cut short by a crash, which resuming removes.
  * SPDX-License-Identifier: BSD-2-Clause */
 #include "run_log.h"
 
@@ -18,7 +18,7 @@
 #include "train/monitor/saturation.h"
 #include "train/monitor/scale.h"
 
-/* Written and read again. */
+/* This member is written, and read back by find_end. */
 #define CPU_SECONDS "\"cpu_seconds\":"
 
 static double seconds_of(clockid_t clock)
@@ -42,9 +42,9 @@ static int is_regular(int file)
     return fstat(file, &s) == 0 && S_ISREG(s.st_mode);
 }
 
-/* Bytes of the lines up to a step and a number of rollbacks; a line without an end is none. -1: a
- * line that ted4enc never wrote.
- * *cpu: cpu_seconds of the last one that has them. */
+/* Returns the number of bytes of the lines up to a step and a number of rollbacks, or -1 if a line
+ * is not one of ted4enc. A last line without a line end does not count. Sets *cpu to the
+ * cpu_seconds of the last counted line that has them. */
 static off_t find_end(FILE *f, uint64_t step, uint64_t rollbacks, double *cpu)
 {
     char *line = NULL;
@@ -73,8 +73,8 @@ static off_t find_end(FILE *f, uint64_t step, uint64_t rollbacks, double *cpu)
     return end;
 }
 
-/* Takes off what lies beyond the trainer's step and rollbacks. *cpu: cpu_seconds of the last line
- * left that has them. */
+/* Cuts off all lines beyond the trainer's step and number of rollbacks. Sets *cpu to the
+ * cpu_seconds of the last remaining line that has them. Returns 0, or -1 with why filled. */
 static int cut(const char *path, int file, const ted4_trainer *t, double *cpu, char *why,
                size_t why_size)
 {
@@ -117,7 +117,7 @@ int ted4_run_log_open(ted4_run_log *l, const char *path, const ted4_trainer *t, 
 
 int ted4_run_log_cut(ted4_run_log *l, const ted4_trainer *t, char *why, size_t why_size)
 {
-    double said; /* before what goes: it was work, and stays counted */
+    double said; /* not used: the time of the removed lines was training, and stays counted */
 
     ted4_run_log_rewind(l, t);
     return is_regular(l->file) ? cut(l->path, l->file, t, &said, why, why_size) : 0;
@@ -147,13 +147,13 @@ void ted4_run_log_rewind(ted4_run_log *l, const ted4_trainer *t)
 
 enum { TERMS_TEXT = TED4_TERMS * 26, MOST_LINE = 1200 + 2 * TERMS_TEXT };
 
-/* What a line tells beyond the trainer's own numbers. */
+/* Numbers of a line that are not members of the trainer. */
 typedef struct {
     const char *stage;
-    double ms, cpu_ms, rate; /* a step; Gaussian-pixels a second */
+    double ms, cpu_ms, rate; /* milliseconds per step; Gaussian-pixels per second */
 } line_facts;
 
-/* {"feature":x,...} of all terms: numbers of at most 12 characters. */
+/* Formats "feature":x,... of all terms; each number has at most 12 characters. Returns text. */
 static const char *print_terms(char *text, size_t size, const double *x)
 {
     size_t at = 0;
@@ -199,7 +199,8 @@ static int print_line(char *line, size_t size, const ted4_run_log *l, const ted4
         f->cpu_ms, f->rate, t->seconds, l->cpu_seconds, l->left);
 }
 
-/* The whole line or, on a full disk, nothing of it. */
+/* Writes the whole line or, if the disk is full, nothing of it. Returns 0, or -1 with why filled.
+ */
 static int put_line(const ted4_run_log *l, const char *line, size_t size, char *why,
                     size_t why_size)
 {

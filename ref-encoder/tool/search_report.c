@@ -30,7 +30,7 @@ static void put_light(FILE *f, const ted4_trainer *t)
             flicker, t->opt.bank_rows, t->data->n_frames);
 }
 
-/* Which anchors move no trial decides, but training itself, with the same weight of a bit. */
+/* No trial decides which anchors move: training does, with the same weight of a bit. */
 static void put_moving(FILE *f, const ted4_trainer *t)
 {
     if (t->opt.capacity && t->layout.head.motion != TED4_MOTION_NONE &&

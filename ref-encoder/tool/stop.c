@@ -18,7 +18,8 @@ static void say(const char *word)
         silent = 1;
 }
 
-/* Where the signal is not kept, its usual end comes when this returns. */
+/* The signal handler. Unless it only records the signal, it raises it again with the default
+ * action, which takes effect when the handler returns. */
 static void take(int signal)
 {
     struct sigaction usual;

@@ -1,5 +1,5 @@
-/* target.c - the lambda that a size asks for: see training.h. Stage 1 knows no lambda, so each
- * trial repeats stage 2 only.
+/* target.c - search for the lambda that gives a wanted file size: see training.h. Stage 1 does not
+ * depend on lambda, so each trial repeats only stage 2.
  * SPDX-License-Identifier: BSD-2-Clause */
 #include <math.h>
 #include <stdio.h>
@@ -8,25 +8,27 @@
 #include "train/monitor/checkpoint.h"
 #include "training.h"
 
-/* Near enough: a file that leaves less than this share of the target unused. */
+/* The search ends with a file that leaves less than this share of the target unused. */
 #define NEAR 0.02
 enum { MOST_TRIALS = 8 };
-/* Bytes fall about as lambda^(-1/4) at most, and less where networks and positions are the most of
- * a small file: until the target lies between two trials, each guess reaches twice as far (in the
- * logarithm) as the one before. */
+/* The size falls at most about as lambda^(-1/GUESS_POWER), and less in a small file that consists
+ * mostly of networks and positions. Therefore, until the target lies between two trials, each guess
+ * reaches twice as far (in the logarithm) as the one before. NEAREST and FARTHEST bound the factor
+ * between two guesses. */
 #define GUESS_POWER  4.0
 #define NEAREST      2.0
 #define FARTHEST     1000.0
 #define LEAST_LAMBDA 1e-7
 #define MOST_LAMBDA  10.0
 
-/* Trials on both sides of the target, in logarithms; have: bit 0 a larger file, bit 1 one that
- * fits. */
+/* The last trial on each side of the target: [0] a file that is too large, [1] one that fits. All
+ * values are logarithms. have: bit i is set if entry i is filled. */
 typedef struct {
     double lambda[2], size[2];
     int have, trials;
 } bracket;
 
+/* lambda, size: those of the last trial. */
 static double next_lambda(const bracket *b, double target, double lambda, double size)
 {
     if (b->have == 3) {
@@ -58,8 +60,8 @@ static int one_trial(ted4_training *t, const ted4_snapshot *start, double lambda
     return 0;
 }
 
-/* A file that fits beats one that does not; of two that fit the larger, of two that do not the
- * smaller. */
+/* Is a better than b? A file that fits is better than one that does not. Of two that fit, the
+ * larger is better; of two that do not, the smaller. */
 static int is_better(const ted4_coded *a, const ted4_coded *b, size_t target)
 {
     if (b->bytes == NULL || (a->size <= target) != (b->size <= target))
@@ -115,7 +117,7 @@ int ted4_training_target(ted4_training *t, ted4_coded *c)
     }
     if (ted4_training_go(t, (uint64_t)t->trainer->opt.stage1) != 0)
         return -1;
-    t->checkpoint = NULL; /* a trial is not resumed: the search would not know where it was */
+    t->checkpoint = NULL; /* trials cannot be resumed: a checkpoint lacks the state of the search */
     bad = ted4_snapshot_take(t->trainer, &start) != 0;
     if (bad)
         snprintf(t->why, sizeof t->why, "%s", t->trainer->message.text);

@@ -24,7 +24,8 @@ static int type_differs(const ted4_scene *a, const ted4_scene *b, int type)
             memcmp(a->symbol[type], b->symbol[type], n * dim * sizeof *a->symbol[type]) != 0);
 }
 
-/* The header comes first: with it the shape is the same, and so are the sizes of all arrays. */
+/* The headers are compared first: if they are equal, so are the shapes and the sizes of all arrays.
+ */
 static int differs(const ted4_scene *a, const ted4_scene *b)
 {
     const size_t n = a->head.n_anchors;
