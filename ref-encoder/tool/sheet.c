@@ -14,7 +14,7 @@ void ted4_sheet_error(const uint8_t *a, const uint8_t *b, size_t n, uint8_t *out
     }
 }
 
-/* Which pictures may be shown: of one split, and of the size of its first. */
+/* Pictures that may be shown: those of one split that have the size of its first picture. */
 typedef struct {
     const ted4_dataset *d;
     int test;
@@ -29,7 +29,7 @@ static int is_shown(const show *s, size_t i)
     return (p->is_test != 0) == (s->test != 0) && a->width == b->width && a->height == b->height;
 }
 
-/* Is it the first of its camera? */
+/* Is picture i the first one of its camera that may be shown? */
 static int opens(const show *s, size_t i)
 {
     for (size_t k = 0; k < i; k++)
@@ -38,7 +38,7 @@ static int opens(const show *s, size_t i)
     return is_shown(s, i);
 }
 
-/* The first picture of camera number n of those shown. */
+/* Returns the first picture of the n-th camera that has pictures to show. */
 static size_t camera_at(const show *s, size_t n)
 {
     size_t i = 0;
@@ -48,7 +48,7 @@ static size_t camera_at(const show *s, size_t n)
     return i;
 }
 
-/* The picture of rank r of n steps in the order of times, of the camera of picture first. */
+/* Orders the pictures of first's camera by time, and returns the r-th of n evenly spaced ones. */
 static size_t at_time(const show *s, size_t first, size_t r, size_t n)
 {
     const ted4_picture *all = s->d->pictures;
@@ -73,7 +73,7 @@ static size_t at_time(const show *s, size_t first, size_t r, size_t n)
     return first;
 }
 
-/* A picture that is not there yet, the one wanted if that is none. */
+/* Returns the wanted picture, or another one if item, [n], already contains it. */
 static size_t other(const show *s, size_t wanted, const size_t *item, size_t n)
 {
     size_t i = wanted, at = 0;

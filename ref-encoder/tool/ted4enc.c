@@ -25,7 +25,7 @@ static int complain(ted4_teller *teller, const char *text)
     return TED4_EXIT_TOOL;
 }
 
-/* Most memory that this process has had at a time. */
+/* Peak resident memory of this process, MiB. */
 static double peak_mib(void)
 {
     struct rusage u;
@@ -33,8 +33,8 @@ static double peak_mib(void)
     return getrusage(RUSAGE_SELF, &u) == 0 ? (double)u.ru_maxrss / 1024.0 : 0.0;
 }
 
-/* Seconds of loading the scene and starting, and of training, coding and checking; those of the
- * runs before this one, too. */
+/* Seconds for loading the scene and starting, and for training, coding and verification; train
+ * includes the training time of the earlier runs that were resumed. */
 typedef struct {
     double setup, train;
 } times;
@@ -62,10 +62,10 @@ static void report(const ted4_request *r, const ted4_trainer *t, ted4_teller *te
             r->out, c->size, v->anchors, v->dynamic, v->gaussians, s.train, v->hash);
 }
 
-/* Exit status of a run that a signal has ended, less the signal's number. */
+/* Exit status of a run that was ended by a signal, minus the number of the signal. */
 enum { SIGNALLED = 128 };
 
-/* Trains, codes and writes. */
+/* Trains, codes and writes the file. Returns the exit status. */
 static int run(const ted4_request *r, ted4_trainer *t, ted4_teller *teller, double begin)
 {
     const double start = ted4_seconds();
@@ -79,7 +79,7 @@ static int run(const ted4_request *r, ted4_trainer *t, ted4_teller *teller, doub
     else if (!bad)
         bad = ted4_training_go(&training, ted4_trainer_total(t)) != 0 ||
               ted4_training_code(&training, &coded) != 0;
-    /* Before the log ends: no finished file is lost to a log that cannot be closed. */
+    /* The file is written before the log is closed, so that it is not lost if closing fails. */
     bad = bad ||
           ted4_file_write(r->out, coded.bytes, coded.size, training.why, sizeof training.why) != 0;
     bad = ted4_training_end(&training, bad) != 0;
@@ -102,7 +102,7 @@ static int run(const ted4_request *r, ted4_trainer *t, ted4_teller *teller, doub
     return over ? TED4_EXIT_WARNED : TED4_EXIT_FINE;
 }
 
-/* What goes on until training does. */
+/* Sets the status line for the time before training. */
 static void now(ted4_teller *teller, ted4_teller_kind kind, const char *name)
 {
     ted4_facts f = { .kind = kind };
@@ -137,7 +137,8 @@ static int is_device(const char *path)
     return stat(path, &s) == 0 && !S_ISREG(s.st_mode) && !S_ISDIR(s.st_mode);
 }
 
-/* Can all the files that were asked for be written? Looked at before hours of training. */
+/* Tests before hours of training whether all output files can be written. Returns 0 or an exit
+ * status. */
 static int check_outputs(const ted4_request *r, ted4_teller *teller)
 {
     char why[1024];
@@ -153,8 +154,8 @@ static int check_outputs(const ted4_request *r, ted4_teller *teller)
     return 0;
 }
 
-/* Threads that decode pictures ahead: some where there are two threads or more, and as many as
- * these where there are many. */
+/* Number of threads that decode pictures in advance: none for a single thread; otherwise as many as
+ * there are threads, but at least FEWEST_DECODERS. */
 static int decoders(const ted4_parallel *p)
 {
     const int n = ted4_threads_count(p);
@@ -162,7 +163,7 @@ static int decoders(const ted4_parallel *p)
     return n == 1 ? 0 : n < FEWEST_DECODERS ? FEWEST_DECODERS : n;
 }
 
-/* Says what loaders warned of, from that warning on; gives how many there are. */
+/* Prints the warnings of the loaders from number from on. Returns the number of all warnings. */
 static size_t warn(ted4_teller *teller, const ted4_dataset *d, size_t from)
 {
     for (size_t i = from; i < d->n_warnings; i++)
@@ -170,7 +171,7 @@ static size_t warn(ted4_teller *teller, const ted4_dataset *d, size_t from)
     return d->n_warnings;
 }
 
-/* A video is being unpacked. */
+/* Callback of the loader while it unpacks a video. frames: number of frames so far. */
 static void unpacking(void *teller, const char *video, size_t frames)
 {
     const char *base = strrchr(video, '/');
@@ -206,7 +207,8 @@ static void say_found(ted4_teller *teller, const ted4_dataset *d)
         d->n_cameras == 1 ? "" : "s", (unsigned)d->n_frames, d->n_frames == 1 ? "" : "s", size);
 }
 
-/* Initial points where there are none that help. 0, or -1 with *m filled. */
+/* Replaces the initial points if the scene has none, or none that are useful. Returns 0, or -1 with
+ * *m filled. */
 static int scatter(ted4_dataset *d, const ted4_request *r, const ted4_parallel *p,
                    ted4_teller *teller, ted4_message *m)
 {
@@ -228,7 +230,7 @@ static int scatter(ted4_dataset *d, const ted4_request *r, const ted4_parallel *
     return 0;
 }
 
-/* Loads, and does what was asked for. */
+/* Loads the scene, and checks or encodes it as requested. Returns the exit status. */
 static int work(const ted4_request *r, ted4_teller *teller, const ted4_parallel *p, double begin)
 {
     const ted4_dataset_options wanted = { .downscale = r->downscale,

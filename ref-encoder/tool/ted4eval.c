@@ -1,4 +1,4 @@
-/* ted4eval.c - quality, size and speed of a .ted4 file against the pictures it was trained for,
+/* ted4eval.c - compares a .ted4 file with the pictures of its scene: quality, size and speed,
  * measured on the decoded file.
  * SPDX-License-Identifier: BSD-2-Clause */
 #include <errno.h>
@@ -93,7 +93,7 @@ typedef struct {
     int want_test, downscale, max_frames, threads, anyway, force, json, quiet, verbose;
 } settings;
 
-/* Sums over pictures, later divided by views. */
+/* Sums over pictures; results are divided by views. */
 typedef struct {
     double psnr, ssim, ssim2, ms_ssim, l1, render_s, decode_ms;
     size_t views, bytes;
@@ -103,10 +103,10 @@ typedef struct {
     const settings *set;
     ted4_parallel parallel;
     ted4_info info;
-    ted4_recon *recon; /* owned, as all below */
+    ted4_recon *recon; /* owned, like all members below */
     ted4_viewer *viewer;
     ted4_dataset data;
-    size_t row[SHEET_ROWS]; /* picture in each row of the sheet */
+    size_t row[SHEET_ROWS]; /* index of the picture in each row of the sheet */
     ted4_sheet sheet;
     totals sum;
     ted4_belongs_sum squares;
@@ -120,7 +120,7 @@ static double seconds(void)
     return (double)t.tv_sec + 1e-9 * (double)t.tv_nsec;
 }
 
-/* Begun by main, once the command line is known. */
+/* main calls ted4_teller_begin once the command line is parsed. */
 static ted4_teller teller = { .lock = PTHREAD_MUTEX_INITIALIZER };
 
 static int failed(const char *what, const char *why)
@@ -178,7 +178,7 @@ static int set_option(settings *s, int option, const char *value)
     return 0;
 }
 
-/* -1: go on; else an exit code. */
+/* Returns -1 if the program should go on, or else an exit code. */
 static int parse(settings *s, int argc, char **argv)
 {
     const char *value;
@@ -229,7 +229,7 @@ static int open_file(session *s)
 
 static int open_scene(session *s)
 {
-    /* Pictures with transparency are compared on the background the file carries. */
+    /* Pictures with alpha are compared on the background colour that the file carries. */
     const ted4_dataset_options options = { .downscale = s->set->downscale,
                                            .white = s->info.background[0] > 127,
                                            .cache_bytes = 64 << 20,
@@ -248,7 +248,8 @@ static int open_scene(session *s)
     return s->viewer == NULL ? failed(s->set->scene, "out of memory") : TED4_EXIT_FINE;
 }
 
-/* why is set where the file cannot be of the scene. */
+/* Refuses a file that cannot belong to the scene, unless --anyway is given. why: the reason if
+ * belongs is 0. Returns an exit code. */
 static int refuse_pair(const session *s, int belongs, const char *why)
 {
     if (belongs || s->set->anyway)
@@ -327,7 +328,7 @@ static int write_images(const session *s, const ted4_camera *c, const uint8_t *t
     return code;
 }
 
-/* Compares a drawn picture and puts it where it was asked for. */
+/* Adds the metrics of a rendered picture to the sums, and writes it to --images and --sheet. */
 static int take_picture(session *s, size_t i, const uint8_t *truth, const uint8_t *ours)
 {
     const ted4_picture *const p = &s->data.pictures[i];
@@ -388,7 +389,7 @@ static int evaluate_picture(session *s, size_t i)
 
 /* ---- the whole ---- */
 
-/* A metric that does not exist (window larger than the picture) or is infinite is null. */
+/* Returns null for a metric that is infinite or undefined (its window exceeds the picture). */
 static json_t *number(double v)
 {
     return isfinite(v) ? json_real(v) : json_null();

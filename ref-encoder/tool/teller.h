@@ -24,7 +24,7 @@ typedef enum {
 /* What the program is doing. A negative number is one that is not known. */
 typedef struct {
     ted4_teller_kind kind;
-    char name[200];       /* what is being loaded, unpacked or started */
+    char name[200];       /* what is loaded or unpacked; STARTING: the activity */
     uint64_t step, total; /* training steps or drawn pictures, done and in total; step: frames */
     const char *stage;    /* "1", "2", "2i", or the purpose of a probe or of trials */
     double share;         /* done share of a probe or of trials; negative: plain training */
