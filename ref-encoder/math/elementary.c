@@ -1,11 +1,12 @@
-/* elementary.c - see elementary.h. Arguments are reduced by steps that are exact, or nearly so,
- * to where a power series converges quickly.
+/* elementary.c - see elementary.h. Steps that are exact, or nearly exact, reduce the argument to a
+ * range in which a power series converges quickly.
  * SPDX-License-Identifier: BSD-2-Clause */
 #include "elementary.h"
 
 #include <math.h>
 
-/* ln 2 and pi / 2 in parts with so many bits that products with the integers below are exact. */
+/* ln 2 and pi / 2 are split into parts. All but the last parts have so few bits that their products
+ * with the integers n below are exact. */
 #define LN2_HIGH     0x1.62e42feep-1
 #define LN2_LOW      0x1.a39ef35793c76p-33
 #define QUARTER_HIGH 0x1.921fb544p+0
@@ -18,7 +19,7 @@
 #define SQRT_HALF  0x1.6a09e667f3bcdp-1
 #define MOST_SIN   1e5
 
-/* e^r for |r| <= 0.35, by its series: the first term left out is below 5e-18. */
+/* Returns e^r for |r| <= 0.35, by its series. The first omitted term is below 5e-18. */
 static double exp_series(double r)
 {
     double p = 1.0 / 6227020800;
@@ -57,9 +58,9 @@ double ted4_math_exp2(double x)
     return ldexp(exp_series((x - n) * LN2), (int)n);
 }
 
-/* ln(1 + f) for 1 + f in [sqrt(1/2), sqrt(2)): with s = f / (2 + f) it is 2 artanh(s) = f - f^2
- * / 2 + s (f^2 / 2 + R), R = 2 s^2 / 3 + 2 s^4 / 5 + ..., whose first term is exact. The first
- * term left out is below 1e-18 of the whole. */
+/* Returns ln(1 + f) for 1 + f in [sqrt(1/2), sqrt(2)). With s = f / (2 + f), this equals
+ *     2 artanh(s) = f - f^2 / 2 + s (f^2 / 2 + R),  R = 2 s^2 / 3 + 2 s^4 / 5 + ...,
+ * whose first term is exact. The first omitted term is below 1e-18 of the result. */
 static double log_series(double f)
 {
     const double s = f / (2.0 + f), z = s * s, half = 0.5 * f * f;
@@ -78,8 +79,8 @@ static double log_series(double f)
     return f - (half - s * (half + z * p));
 }
 
-/* x = 2^e (1 + f), 1 + f in [sqrt(1/2), sqrt(2)). 1, or 0: *f is the logarithm (of 0, infinity,
- * NaN, negative numbers). */
+/* Splits x into 2^e (1 + f) with 1 + f in [sqrt(1/2), sqrt(2)) and returns 1. For 0, infinity, NaN
+ * and negative numbers it returns 0, and *f is the logarithm itself. */
 static int split(double x, double *f, int *e)
 {
     if (!(x > 0) || isinf(x)) {
@@ -118,7 +119,7 @@ double ted4_math_pow(double x, double y)
     return ted4_math_exp2(y * ted4_math_log2(x));
 }
 
-/* sin(r) and cos(r) for |r| <= 0.79, by their series. */
+/* Return sin(r) and cos(r) for |r| <= 0.79, by their series. */
 static double sin_series(double r)
 {
     const double z = r * r;
@@ -151,7 +152,8 @@ static double cos_series(double r)
     return 1.0 - (0.5 * z - z * z * p);
 }
 
-/* x = quarter pi / 2 + r: r; quarter from 0 to 3. |x| <= MOST_SIN. */
+/* Returns r of x = n pi / 2 + r with the nearest integer n; *quarter is n mod 4, from 0 to 3.
+ * |x| <= MOST_SIN. */
 static double reduce(double x, int *quarter)
 {
     const double n = rint(x * TWO_PER_PI);

@@ -1,6 +1,7 @@
-/* lane_sum.h - sums of many binary32 products in one order, whatever the compiler and the width
- * of vectors: term i goes to partial sum i mod 16, and partial sums are added pairwise, halves
- * upon halves. Plain operations (elementary.h says why that counts).
+/* lane_sum.h - sums of many binary32 products in a fixed order that depends neither on the compiler
+ * nor on the width of vectors: term i is added to partial sum i mod 16, and the upper half of the
+ * partial sums is then repeatedly added to the lower half. Only plain operations are used, for the
+ * reason that elementary.h gives.
  * SPDX-License-Identifier: BSD-2-Clause */
 #ifndef TED4_LANE_SUM_H
 #define TED4_LANE_SUM_H
@@ -9,7 +10,7 @@
 
 enum { TED4_SUM_LANES = 16 };
 
-/* The sum of 16 partial sums, in their place. */
+/* Returns the sum of the 16 partial sums, which it overwrites. */
 static inline float ted4_lanes_total(float *part)
 {
     for (int half = TED4_SUM_LANES / 2; half > 0; half /= 2)
@@ -18,7 +19,7 @@ static inline float ted4_lanes_total(float *part)
     return part[0];
 }
 
-/* x y. */
+/* Returns the dot product of x[n] and y[n]. */
 static inline float ted4_lane_dot(size_t n, const float *x, const float *y)
 {
     float part[TED4_SUM_LANES] = { 0 };
