@@ -1,4 +1,4 @@
-/* dense.c - memory of dense.h's layers, and its products by the level in use. spec 7.1.
+/* dense.c - allocates the layers of dense.h, and calls the products of the level in use. spec 7.1.
  * SPDX-License-Identifier: BSD-2-Clause */
 #include "kernel/dense.h"
 

@@ -1,23 +1,24 @@
-/* dense_product.c - a dense layer forward and its transpose (dense.h), which share one kernel: a
- * panel of outputs times two registers of lanes lives in registers while the inputs stream by, one
- * broadcast weight for two fused multiply-adds. spec 7.1. Each output of each lane is summed on its
- * own, input after input, so that no blocking changes a bit.
+/* dense_product.c - the product of a dense layer and of its transpose (dense.h), which share one
+ * kernel. The sums of a panel of outputs, for two registers of lanes, stay in registers while the
+ * inputs stream by; each broadcast weight serves two fused multiply-adds. spec 7.1. Each output of
+ * each lane is summed separately, input after input, so that the blocking does not change any bit.
  * SPDX-License-Identifier: BSD-2-Clause */
 #include "kernel/dense.h"
 #include "render/vec.h"
 
-/* Outputs of a panel: twice as many sums, two registers of inputs and a weight fit in 32 registers
- * (AVX-512, NEON), or in 16 (AVX2, SSE2). */
+/* The outputs of a panel. Twice as many sums, two registers of inputs and one weight fit in 32
+ * registers (AVX-512, NEON) or in 16 (AVX2, SSE2). */
 #if TED4_VEC_BYTES == 64 || defined(__aarch64__)
 enum { PANEL = 12 };
 #else
 enum { PANEL = 6 };
 #endif
 
-/* Lanes that a panel takes at once. */
+/* The lanes that a panel processes at once. */
 enum { SPAN = 2 * TED4_VEC };
 
-/* Panels have nearly equal widths, so that none is too narrow to hide the latency of its sums. */
+/* All panels have nearly the same width, so that none is too narrow to hide the latency of its
+ * sums. */
 static int n_panels(int out)
 {
     return (out + PANEL - 1) / PANEL;
@@ -30,8 +31,9 @@ static int panel_width(int out, int panel)
     return out / n + (panel < out % n);
 }
 
-/* Panel by panel: the biases of its outputs, then for each input the weights of its outputs.
- * step_out and step_in say how w lies; b is NULL for zeros. */
+/* Packs a layer panel by panel: the biases of the panel's outputs, then, for each input, the
+ * weights of the panel's outputs. step_out and step_in are the strides of w. If b is NULL, the
+ * biases are 0. */
 static void pack(int in, int out, const float *w, size_t step_out, size_t step_in, const float *b,
                  float *to)
 {
@@ -64,7 +66,7 @@ TED4_INLINE void store(float *y, ted4_vf sum, store_mode mode)
     ted4_vf_store(y, sum);
 }
 
-/* n outputs, SPAN lanes. */
+/* Computes n outputs for SPAN lanes. */
 TED4_INLINE void panel_n(const int n, int in, const float *w, const float *x, float *y,
                          store_mode mode)
 {

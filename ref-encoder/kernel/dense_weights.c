@@ -1,12 +1,13 @@
-/* dense_weights.c - the weight gradient of a dense layer (dense.h): dot products over lanes, a tile
- * of outputs times inputs at a time, block after block. A lane group has 16 sums; these are added
- * in pairs of neighbours, pairs of pairs and so on, at every level alike.
+/* dense_weights.c - the weight gradient of a dense layer (dense.h): dot products over lanes, for
+ * one tile of outputs times inputs at a time, block after block. Each dot product has 16 partial
+ * sums, one per lane of a lane group. At every level alike, neighbouring sums are added in pairs,
+ * then pairs of these, and so on.
  * SPDX-License-Identifier: BSD-2-Clause */
 #include "kernel/dense.h"
 #include "render/vec.h"
 
-/* Outputs and inputs of a tile: its sums, its inputs and one output's gradient fit in 32 registers,
- * or in 16. */
+/* The outputs and inputs of a tile. The tile's sums, its inputs and the gradient of one output fit
+ * in 32 registers, or in 16. */
 #if TED4_VEC_BYTES == 64 || defined(__aarch64__)
 enum { TILE_OUT = 4, TILE_IN = 4 };
 #else
@@ -15,7 +16,7 @@ enum { TILE_OUT = 2, TILE_IN = 4 };
 
 typedef float four __attribute__((vector_size(16)));
 
-/* Sums of neighbours: of each four lanes, two of a and then two of b. */
+/* Adds neighbouring lanes. Each four lanes of the result are two sums of a, then two of b. */
 TED4_INLINE ted4_vf pairs(ted4_vf a, ted4_vf b)
 {
 #if TED4_VEC_BYTES == 64
@@ -30,7 +31,8 @@ TED4_INLINE ted4_vf pairs(ted4_vf a, ted4_vf b)
 #endif
 }
 
-/* The sums of v[0] .. v[3]: of each four lanes, then the fours are added in pairs. */
+/* Returns the sums over the lanes of v[0] .. v[3]: each four lanes are summed first, then the
+ * results are added in pairs. */
 TED4_INLINE four fold(const ted4_vf v[4])
 {
     const ted4_vf s = pairs(pairs(v[0], v[1]), pairs(v[2], v[3]));
@@ -46,7 +48,7 @@ TED4_INLINE four fold(const ted4_vf v[4])
 #endif
 }
 
-/* The sums of a lane group from those of its parts. */
+/* Adds the sums of the parts of a lane group. */
 TED4_INLINE four add_parts(const four part[TED4_VECS])
 {
 #if TED4_VEC_BYTES == 64
@@ -63,23 +65,23 @@ static int last_below(int i, int n)
     return i < n ? i : n - 1;
 }
 
-/* One operand of all the tiles: n rows in each of n_blocks blocks. */
+/* One operand of all tiles: it has n rows in each of n_blocks blocks. */
 typedef struct {
     const float *base;
     size_t stride;
     int n;
 } operand;
 
-/* Rows first .. first + n - 1; beyond the end the last one is repeated and its sums are not used.
- */
+/* Points row[] to rows first .. first + n - 1. Beyond the end, the last row is repeated; its sums
+ * are not used. */
 TED4_INLINE void rows(const operand *m, int first, int n, const float **row)
 {
     for (int a = 0; a < n; a++)
         row[a] = m->base + (size_t)last_below(first + a, m->n) * TED4_LANES;
 }
 
-/* Keeps gcc from folding a load into each product that uses it: the load ports are the bottleneck.
- */
+/* Prevents gcc from folding the load into each product that uses it, since the load ports are the
+ * bottleneck. */
 TED4_INLINE void keep_in_register(ted4_vf *v)
 {
 #if TED4_VEC_BYTES >= 32
@@ -89,7 +91,7 @@ TED4_INLINE void keep_in_register(ted4_vf *v)
 #endif
 }
 
-/* Products of part part of the rows' lane groups, summed over groups and blocks. */
+/* Sums the products of part number part of each lane group of the rows, over groups and blocks. */
 TED4_INLINE void tile_part(const float *const *x, size_t x_stride, const float *const *dy,
                            size_t dy_stride, size_t n_blocks, int part, ted4_vf *acc)
 {
@@ -120,7 +122,7 @@ TED4_INLINE void tile_part(const float *const *x, size_t x_stride, const float *
     }
 }
 
-/* sum[TILE_IN a + b] = dot product of row a of dy and row b of x over all blocks. */
+/* Sets sum[TILE_IN a + b] to the dot product of row a of dy and row b of x, over all blocks. */
 TED4_INLINE void tile(const float *const *x, size_t x_stride, const float *const *dy,
                       size_t dy_stride, size_t n_blocks, float *sum)
 {
@@ -143,7 +145,8 @@ TED4_INLINE void tile(const float *const *x, size_t x_stride, const float *const
     }
 }
 
-/* Adds a tile of sums to dw, which has n_x columns; n_rows and n_cols of it exist. */
+/* Adds a tile of sums to dw, which has n_x columns. From dw on, only n_rows rows and n_cols columns
+ * exist. */
 TED4_INLINE void add_tile(float *dw, int n_x, int n_rows, int n_cols, const float *sum)
 {
     if (n_rows >= TILE_OUT && n_cols >= TILE_IN) {
@@ -158,7 +161,8 @@ TED4_INLINE void add_tile(float *dw, int n_x, int n_rows, int n_cols, const floa
             dw[b] += sum[a * TILE_IN + b];
 }
 
-/* Groups of rows of x stay in the first-level cache while dy streams by: whole tiles. */
+/* A group of rows of x, which consists of whole tiles, stays in the first-level cache while dy
+ * streams by. */
 enum { GROUP = 16 / TILE_IN * TILE_IN };
 
 static void weight_sums(const operand *x, const operand *dy, size_t n_blocks, float *dw)
