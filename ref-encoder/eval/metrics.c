@@ -1,5 +1,5 @@
-/* metrics.c - see metrics.h. Each channel and each kind of similarity is one task of the
- * parallel-for.
+/* metrics.c - see metrics.h. Each pair of a channel and a kind of similarity is one task of the
+ * parallel loop.
  * SPDX-License-Identifier: BSD-2-Clause */
 #include "eval/metrics.h"
 
@@ -14,7 +14,7 @@ enum { KIND_GAUSS, KIND_BOX, KIND_SCALES, KINDS };
 static const double K1 = 0.01, K2 = 0.03;
 static const double SCALE_WEIGHT[TED4_MS_SSIM_SCALES] = { 0.0448, 0.2856, 0.3001, 0.2363, 0.1333 };
 
-/* Two planes of one channel in [0, 1]. */
+/* One channel of the two pictures, with values in [0, 1]. */
 typedef struct {
     int width, height;
     double *a, *b;
@@ -37,8 +37,8 @@ static void window_make(double g[TED4_SSIM_WINDOW])
         g[k] /= sum;
 }
 
-/* Row y of a, b, a^2 + b^2, ab filtered down; out[i]: HALF zeros, width values, HALF zeros. Rows
- * outside are zero. */
+/* Filters a, b, a^2 + b^2 and ab vertically at row y. Rows outside the picture are zero. Each
+ * out[i] holds HALF zeros, width values and HALF zeros. */
 static void filter_down(const pair *p, const double *g, int y, double *const out[4])
 {
     double *const oa = out[0] + HALF, *const ob = out[1] + HALF, *const os = out[2] + HALF,
@@ -63,7 +63,7 @@ static void filter_down(const pair *p, const double *g, int y, double *const out
     }
 }
 
-/* out[x] = the filter over in[x] .. in[x + 10]. */
+/* Filters horizontally: out[x] is the filtered value of in[x] .. in[x + 10]. */
 static void filter_along(const double *g, const double *in, double *out, int width)
 {
     memset(out, 0, (size_t)width * sizeof *out);
@@ -77,7 +77,7 @@ typedef struct {
     double ssim, contrast;
 } similarity;
 
-/* Sums of both over columns [margin, width - margin) of a filtered row. */
+/* Returns the sums of both similarities over columns [margin, width - margin) of a filtered row. */
 static similarity row_similarity(double *const row[4], int width, int margin)
 {
     const double c1 = K1 * K1, c2 = K2 * K2;
@@ -95,7 +95,8 @@ static similarity row_similarity(double *const row[4], int width, int margin)
     return (similarity) { ssim, contrast };
 }
 
-/* Means over the picture; margin 0: zero padding, HALF: only whole windows. 0, or -1: no memory. */
+/* Computes the means over the picture. With margin 0 the picture is padded with zeros; with HALF
+ * only whole windows count. Returns 0, or -1 if there is no memory. */
 static int gauss_similarity(const pair *p, int margin, similarity *mean)
 {
     const size_t padded = (size_t)p->width + 2 * HALF;
@@ -132,7 +133,8 @@ static int side_halved(int side)
     return (side + 1) / 2;
 }
 
-/* In place: the result is read from later positions than it is written to. */
+/* Halves a plane in place, which is possible because no value is read from before the position
+ * where the result is written. */
 static void plane_halve(double *v, int width, int height)
 {
     const int pad_x = width % 2, pad_y = height % 2, w = side_halved(width),
@@ -163,7 +165,7 @@ static int scale_count(int width, int height)
     return n;
 }
 
-/* Changes the planes. 0, or -1: no memory. */
+/* Overwrites the planes. Returns 0, or -1 if there is no memory. */
 static int multi_scale(pair *p, int scales, double *value)
 {
     double total = 0.0, product = 1.0;
@@ -185,8 +187,8 @@ static int multi_scale(pair *p, int scales, double *value)
     return 0;
 }
 
-/* From exact integer sums over the window; m aa - a a is m (m - 1) times the sample variance, in
- * units of 1 / 255^2. */
+/* Returns the similarity at one pixel, from exact integer sums over its window. m aa - a a is
+ * m (m - 1) times the sample variance, in units of 1 / 255^2. */
 static double box_pixel(int64_t a, int64_t b, int64_t aa, int64_t bb, int64_t ab)
 {
     const double n = TED4_SSIM2_WINDOW * TED4_SSIM2_WINDOW, range = 2.0;
@@ -200,7 +202,7 @@ static double box_pixel(int64_t a, int64_t b, int64_t aa, int64_t bb, int64_t ab
     return (2.0 * ma * mb + c1) * (2.0 * cov + c2) / ((ma * ma + mb * mb + c1) * (va + vb + c2));
 }
 
-/* Row of sums over 7 rows from y on, for each column: a, b, a^2, b^2, ab. */
+/* Sums a, b, a^2, b^2 and ab over the 7 rows from y on, for each column. */
 static void box_down(const job *j, int channel, int y, int32_t *const out[5])
 {
     for (int i = 0; i < 5; i++)

@@ -20,7 +20,7 @@ typedef struct {
     float *bwd; /* owned: the transpose of W, with biases of 0 */
 } ted4_dense;
 
-/* Returns 0, or -1 if memory runs out. */
+/* Returns 0, or -1 if there is no memory. */
 int ted4_dense_init(ted4_dense *d, int in, int out);
 void ted4_dense_finish(ted4_dense *d);
 /* Packs w [out][in] and b [out] into d. */

@@ -9,10 +9,11 @@
 typedef struct {
     uint8_t *data; /* owned, malloc */
     size_t size, capacity;
-    int failed; /* memory ran out: nothing more is added */
+    int failed; /* nonzero: memory ran out, and nothing more is added */
 } ted4_buffer;
 
-/* size bytes at the end, not initialised; NULL: no memory. All zero is an empty buffer. */
+/* Appends size uninitialised bytes and returns a pointer to them, or NULL if there is no memory. A
+ * buffer that is all zero is empty. */
 uint8_t *ted4_buffer_add(ted4_buffer *b, size_t size);
 void ted4_buffer_free(ted4_buffer *b);
 

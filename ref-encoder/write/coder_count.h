@@ -1,4 +1,5 @@
-/* coder_count.h - the coder that adds up -log2 of frequencies (norm/coder.h).
+/* coder_count.h - the coder that counts bits: it adds up -log2 of the coded frequencies
+ * (norm/coder.h).
  * SPDX-License-Identifier: BSD-2-Clause */
 #ifndef TED4_CODER_COUNT_H
 #define TED4_CODER_COUNT_H
@@ -9,7 +10,7 @@ enum { TED4_COUNTER_SUBSTREAMS = 24 };
 
 typedef struct {
     ted4_coder base; /* must be first */
-    double frame;    /* bits outside the slots */
+    double frame;    /* bits that are not coded as slots */
     double substream[TED4_COUNTER_SUBSTREAMS];
     unsigned n_opened;
 } ted4_counter;

@@ -7,11 +7,11 @@
 #include "write/rans_enc.h"
 
 typedef struct {
-    ted4_coder base;    /* must be first; base.pos is out.size */
-    ted4_buffer out;    /* owned */
-    ted4_rans_enc rans; /* owned */
-    size_t sizes;       /* where size[] of the tile lies */
-    size_t opened, n_symbols;
+    ted4_coder base;          /* must be first; base.pos is out.size */
+    ted4_buffer out;          /* owned */
+    ted4_rans_enc rans;       /* owned */
+    size_t sizes;             /* offset in out of the next entry of the tile's size[] to fill in */
+    size_t opened, n_symbols; /* of the current substream: offset in out, number of symbols */
 } ted4_writer;
 
 void ted4_writer_init(ted4_writer *w);

@@ -1,4 +1,4 @@
-/* gauss_put.h - spec 9.4, the direction that writes: a symbol k as a sequence of slots. Shared by
+/* gauss_put.h - spec 9.4, the encoder's side: turns a symbol k into a sequence of slots. Shared by
  * coder_write.c and coder_count.c.
  * SPDX-License-Identifier: BSD-2-Clause */
 #ifndef TED4_GAUSS_PUT_H
@@ -8,7 +8,7 @@
 #include "norm/gaussian.h"
 #include "norm/rans.h"
 
-/* Calls put(user, slots) for the symbol and for each bit of its escape. TED4_OK,
+/* Calls put(user, slots) for the symbol and for each bit of its escape. Returns TED4_OK,
  * TED4_E_ENT_SYMBOL_RANGE or TED4_E_ENT_ESCAPE. */
 static inline ted4_status ted4_gauss_put(int32_t mu, unsigned g, int32_t k,
                                          void (*put)(void *user, ted4_slots s), void *user)

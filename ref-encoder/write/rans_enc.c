@@ -1,5 +1,5 @@
-/* rans_enc.c - spec 9.2, backwards: the decoder's steps undone in reverse order, from the state in
- * which it has to end.
+/* rans_enc.c - spec 9.2 in reverse: undoes the steps of the decoder in reverse order, starting from
+ * the state in which the decoder has to end.
  * SPDX-License-Identifier: BSD-2-Clause */
 #include "write/rans_enc.h"
 
@@ -37,9 +37,9 @@ void ted4_rans_enc_put(ted4_rans_enc *e, ted4_slots s)
         (ted4_rans_record) { (uint16_t)s.start, (uint16_t)s.freq, (uint8_t)e->lane };
 }
 
-/* Backward of ted4_rans_dec_take(), which was:
+/* The inverse of ted4_rans_dec_take(), which computes:
  *     x = freq (x >> 16) + (x & 0xffff) - start;  if (x < 2^16) x = x << 16 | word
- * Gives 1 and *word when the decoder will read one. */
+ * Returns 1 with *word filled if the decoder will read a word, and 0 otherwise. */
 static int push(uint32_t *x, ted4_rans_record r, uint16_t *word)
 {
     const int full = *x >> 16 >= r.freq;
