@@ -1,4 +1,4 @@
-/* coder_count.c - the coder that counts.
+/* coder_count.c - the coder that counts bits.
  * SPDX-License-Identifier: BSD-2-Clause */
 #include "write/coder_count.h"
 
@@ -34,7 +34,8 @@ static void sizes(ted4_coder *c, uint32_t *size, unsigned n)
     counter_of(c)->frame += 32.0 * n;
 }
 
-/* A lane's state has 32 bits, of which it holds 16 for its symbols. */
+/* The state of a lane takes 32 bits. 16 of them carry information about its symbols, so that 16
+ * count as overhead. */
 static void open_substream(ted4_coder *c, size_t n)
 {
     ted4_counter *counter = counter_of(c);

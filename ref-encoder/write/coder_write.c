@@ -11,7 +11,7 @@ static ted4_writer *writer_of(ted4_coder *c)
     return (ted4_writer *)c;
 }
 
-/* Room at the end, or NULL after a failure. */
+/* Appends size bytes and returns a pointer to them, or NULL after a failure. */
 static uint8_t *add(ted4_coder *c, size_t size)
 {
     ted4_writer *w = writer_of(c);

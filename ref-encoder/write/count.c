@@ -1,11 +1,11 @@
-/* count.c - ted4_count(): the size of a scene's tiles in ideal bits.
+/* count.c - ted4_count(): the ideal code length of the tiles of a scene.
  * SPDX-License-Identifier: BSD-2-Clause */
 #include <string.h>
 #include "write/coder_count.h"
 #include "write/encode.h"
 #include "write/tiles.h"
 
-/* Substreams in order of spec 9.1. */
+/* Adds the bits of a tile. Its substreams come in the order of spec 9.1. */
 static void add_tile(ted4_bits *bits, const ted4_counter *n, const ted4_scene *s)
 {
     unsigned at = 0;

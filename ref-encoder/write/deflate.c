@@ -5,7 +5,7 @@
 #include <zlib.h>
 #include "base/bytes.h"
 
-/* Byte 0 of all values, then byte 1 of all, and so on. */
+/* Stores byte 0 of all values, then byte 1 of all values, and so on. */
 static void shuffle(uint8_t *bytes, const float *values, size_t n)
 {
     for (size_t i = 0; i < n; i++) {

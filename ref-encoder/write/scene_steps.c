@@ -1,17 +1,17 @@
-/* scene_steps.c - ted4_scene_steps(): step indices of every anchor, from the hyperprior (spec
- * 10.1).
+/* scene_steps.c - ted4_scene_steps(): computes the step indices of every anchor from the hyperprior
+ * (spec 10.1).
  * SPDX-License-Identifier: BSD-2-Clause */
 #include "kernel/int_kernel.h"
 #include "write/encode.h"
 
 enum { STEP_BLOCKS = 64 };
 
-/* STEP_BLOCKS blocks of 64 anchors at a time. */
+/* Up to STEP_BLOCKS blocks of 64 anchors, which are processed in parallel. */
 typedef struct {
     ted4_scene *s;
     const ted4_prior *prior;
     int32_t *out; /* [STEP_BLOCKS][P][64] */
-    size_t first; /* anchor of block 0 */
+    size_t first; /* the first anchor of block 0 */
 } steps_batch;
 
 static void steps_block(void *arg, size_t i)

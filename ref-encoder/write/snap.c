@@ -1,4 +1,4 @@
-/* snap.c - see snap.h. The integers are those that ted4_prior_load will find (spec 7.3).
+/* snap.c - see snap.h. The integers are those that ted4_prior_load will compute (spec 7.3).
  * SPDX-License-Identifier: BSD-2-Clause */
 #include "write/snap.h"
 
@@ -8,13 +8,13 @@
 
 enum { MAX_W = 32767 };
 
-/* One output unit: its row of weights and its bias in a blob. */
+/* One output unit: its row of weights and its bias in a blob, and the integers of both. */
 typedef struct {
     float *w, *b;
     unsigned in;
     int32_t W[TED4_MAX_WIDTH + 1];
     int64_t B;
-    int64_t sum; /* of |W| */
+    int64_t sum; /* sum of |W| */
 } unit;
 
 static float tame(float x)
@@ -22,7 +22,8 @@ static float tame(float x)
     return isnormal(x) ? x : 0;
 }
 
-/* Integers of a unit at a shift, weights cut off at 16 bits. Gives 1 when nothing was cut. */
+/* Computes the integers of a unit at a shift, and clamps the weights to 16 bits. Returns 1 if no
+ * weight was clamped. */
 static int integerise(unit *u, const ted4_unit_rule *rule, int shift)
 {
     int whole = 1;
@@ -39,8 +40,8 @@ static int integerise(unit *u, const ted4_unit_rule *rule, int shift)
     return whole;
 }
 
-/* Pulls a unit in until its accumulator is bounded: the bias to half of the range, the weights
- * evenly into the rest. */
+/* Reduces a unit until its accumulator is bounded: clamps the bias to half of the range, and scales
+ * the weights uniformly so that they fit in the rest. */
 static void pull_in(unit *u, const ted4_unit_rule *rule, int shift)
 {
     const int64_t half = INT32_MAX / 2;
@@ -48,7 +49,7 @@ static void pull_in(unit *u, const ted4_unit_rule *rule, int shift)
 
     if (ted4_accumulator_legal(rule, shift, u->sum, u->B))
         return;
-    /* 2^24 grid: what is left of B has to be a binary32. */
+    /* The clamped B must be exact in binary32, which has 24 significant bits. */
     u->B = u->B > half ? half & ~(int64_t)127 : u->B < -half ? -(half & ~(int64_t)127) : u->B;
     limit = (half - ((int64_t)1 << 24)) / rule->amplitude;
     if (u->sum <= limit)

@@ -5,10 +5,11 @@
 #include <string.h>
 #include "kernel/int_kernel.h"
 
-/* Tiles that run at once, and the work memory they may take together (one may always run). */
+/* The number of tiles that are walked at once, and the work memory in bytes that they may take
+ * together. One tile is always allowed. */
 enum { BATCH = 16, BATCH_BYTES = 1 << 28 };
 
-/* Nearest probability of a 1 in 16 bits; one half when nothing was seen. */
+/* Returns the nearest 16-bit probability of a 1, or one half if nothing was counted. */
 static uint16_t probability(uint64_t ones, uint64_t n)
 {
     const uint64_t p = n > 0 ? (ones * 65536 + n / 2) / n : 32768;
@@ -16,7 +17,7 @@ static uint16_t probability(uint64_t ones, uint64_t n)
     return (uint16_t)(p < 1 ? 1 : p > 65535 ? 65535 : p);
 }
 
-/* Counts of 1 and of all bits in each context of spec 9.3. */
+/* Counts, in each context of spec 9.3, the ones and all bits of anchors first .. end - 1. */
 static void count_masks(const ted4_scene *s, size_t first, size_t end, uint64_t ones[TED4_PROBS],
                         uint64_t n[TED4_PROBS])
 {

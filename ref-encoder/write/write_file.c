@@ -1,4 +1,5 @@
-/* write_file.c - ted4_encode(): the chunks of a file in order (spec 5), by the walks of norm/.
+/* write_file.c - ted4_encode(): writes the chunks of a file in order (spec 5), with the walks of
+ * norm/.
  * SPDX-License-Identifier: BSD-2-Clause */
 #include "write/encode.h"
 
@@ -13,7 +14,8 @@
 
 enum { LEVEL_BYTE = 11, META_FLAGS = 2 };
 
-/* Type, flags, and a size that close_chunk corrects. Gives where the chunk begins. */
+/* Writes the type, the flags and a size of 0, which close_chunk corrects. Returns the offset of the
+ * chunk. */
 static size_t open_chunk(ted4_writer *w, ted4_chunk type)
 {
     const size_t at = w->base.pos;
@@ -32,7 +34,7 @@ static void close_chunk(ted4_writer *w, size_t at)
     const size_t size = c->pos - at - TED4_FRAME_HEAD_SIZE;
     uint64_t hash;
 
-    /* The chunk may not even have begun. */
+    /* After a failure, the chunk may not even have begun. */
     if (c->error.code != TED4_OK)
         return;
     if (!ted4_require(c, size <= UINT32_MAX, TED4_E_LVL_EXCEEDED, at))
@@ -43,7 +45,7 @@ static void close_chunk(ted4_writer *w, size_t at)
     c->ops->number(c, 4, (uint32_t)(hash >> 32));
 }
 
-/* Chooses the mode of a blob that has none: deflated only where that is smaller. */
+/* Chooses the mode of a blob that has none: it is deflated only if that is smaller. */
 static void choose_mode(ted4_blob *b, ted4_arena *arena, ted4_error *e)
 {
     uint8_t *bytes, *packed;
@@ -73,7 +75,7 @@ static void write_blob(ted4_writer *w, ted4_chunk type, ted4_blob *b)
     close_chunk(w, at);
 }
 
-/* Everything before the tiles. */
+/* Writes the chunks between the header and the tiles. */
 static void write_front(ted4_writer *w, ted4_draft *d)
 {
     ted4_coder *c = &w->base;
@@ -93,7 +95,7 @@ static void write_front(ted4_writer *w, ted4_draft *d)
     close_chunk(w, at);
 }
 
-/* What people may want to know: no decoder needs it. */
+/* Writes text for human readers, which no decoder needs. */
 static void write_meta(ted4_writer *w, char *text)
 {
     const size_t at = w->base.pos;
@@ -146,7 +148,7 @@ static void write_ends(ted4_writer *w, ted4_draft *d)
     close_chunk(w, at);
 }
 
-/* The level of a finished file. */
+/* Stores the level of a finished file. If level is 0, that is the lowest that fits. */
 static void set_level(ted4_writer *w, const ted4_scene *s, int level)
 {
     if (w->base.error.code != TED4_OK)
