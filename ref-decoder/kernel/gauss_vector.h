@@ -1,5 +1,5 @@
-/* gauss_vector.h - types of gauss_tile.h: LANES elements of 32 bits, VECTOR bytes. The file that
- * includes it defines VECTOR.
+/* gauss_vector.h - the vector types of gauss_tile.h: LANES elements of 32 bits. The including file
+ * defines VECTOR, the size of a vector in bytes.
  * SPDX-License-Identifier: BSD-2-Clause */
 #ifndef TED4_GAUSS_VECTOR_H
 #define TED4_GAUSS_VECTOR_H

@@ -1,13 +1,14 @@
-/* word_places.h - for each choice of four lanes, which of the next bytes each of them gets: two, a
- * word, for those that were chosen, in the order of lanes, and zeros.
+/* word_places.h - byte shuffles that distribute words to four lanes: for each subset of the lanes,
+ * the positions of the bytes that each lane gets. The chosen lanes get one word (two bytes) each,
+ * in the order of lanes, followed by zeros; the others get zeros.
  * SPDX-License-Identifier: BSD-2-Clause */
 #ifndef TED4_WORD_PLACES_H
 #define TED4_WORD_PLACES_H
 
 #include <stdint.h>
 
-/* NO: a lane that gets none; AT(i): one that gets word i. 255 is no byte's number, which a byte
- * shuffle answers with 0. */
+/* NO is a lane without a word; AT(i) is a lane with word i. 255 is not the position of any byte, so
+ * that the byte shuffle yields 0. */
 #define TED4_NO    255, 255, 255, 255
 #define TED4_AT(i) 2 * (i), 2 * (i) + 1, 255, 255
 
