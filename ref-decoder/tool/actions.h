@@ -1,4 +1,5 @@
-/* actions.h - what ted4dec does with a decoded scene: hashes, files of Gaussians, pictures.
+/* actions.h - what ted4dec does with a decoded scene: it prints hashes, writes Gaussians to files
+ * and renders views.
  * Depends on ted4.h, render/view.h, sample.h.
  * SPDX-License-Identifier: BSD-2-Clause */
 #ifndef TED4_ACTIONS_H
@@ -13,18 +14,19 @@
 
 typedef struct {
     const char *input;
-    const char *output, *render, *cameras; /* patterns and file name; NULL: not asked for */
+    const char *output, *render, *cameras; /* patterns, and a file name; NULL: not requested */
     const ted4_format *format;             /* of output */
     ted4_range range;
     ted4_time time;
     int has_range, has_time;
     float centre[3];
     int sh_degree, threads;
-    int64_t max_memory, max_work; /* of decoding and of a query; 0: not given */
+    int64_t max_memory, max_work; /* limits for decoding and for a query; 0: not given */
     int keep_all, hash, test, lenient, trace, force, json, quiet, verbose;
 } ted4_settings;
 
-/* One run. Functions below return an exit code (cli.h) and have said what went wrong. */
+/* One run of the program. The functions below return an exit code (cli.h) and print their own error
+ * messages. */
 typedef struct {
     const ted4_settings *set;
     ted4_parallel parallel;
@@ -35,12 +37,12 @@ typedef struct {
     int warned;
 } ted4_session;
 
-/* open_scene.c: decodes the input, as far as it can be when it is damaged and --lenient is given:
- * info, recon. */
+/* open_scene.c: decodes the input and fills info and recon. With --lenient, a damaged input is
+ * decoded as far as possible. */
 int ted4_action_open(ted4_session *s);
 
-/* Are the frames asked for in the file, and is every output free? To be called before anything is
- * written. */
+/* Checks that the requested frames are in the file, and that no output file exists unless -f is
+ * given. Must be called before anything is written. */
 int ted4_action_check(const ted4_session *s);
 
 int ted4_action_hash(ted4_session *s);

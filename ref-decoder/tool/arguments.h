@@ -1,5 +1,5 @@
-/* arguments.h - command lines from one table: parsing (getopt_long) and the help text are made from
- * the same lines.
+/* arguments.h - command lines described by one table, from which both the parser (getopt_long) and
+ * the help text are made.
  * SPDX-License-Identifier: BSD-2-Clause */
 #ifndef TED4_ARGUMENTS_H
 #define TED4_ARGUMENTS_H
@@ -9,25 +9,25 @@
 
 enum { TED4_MAX_ARGUMENTS = 40 };
 
-/* An option. Its place in the table is the number that ted4_arguments_next returns. */
+/* An option. ted4_arguments_next returns its index in the table. */
 typedef struct {
     int letter;        /* 'o', or 0: long name only */
     const char *name;  /* "output" */
-    const char *value; /* what the help calls its value; NULL: it takes none */
+    const char *value; /* name of its value in the help text; NULL: the option takes no value */
     const char *text;  /* one line of help */
 } ted4_argument;
 
 typedef struct {
     const char *program; /* "ted4dec" */
     const char *usage;   /* "FILE.ted4 [options]" */
-    const char *text;    /* what it does; more lines may follow */
+    const char *text;    /* what the program does; may have several lines */
     const ted4_argument *table;
     int n;                 /* at most TED4_MAX_ARGUMENTS */
     const char *end;       /* printed after the options: exit codes, examples */
-    void (*more)(FILE *f); /* prints what follows that; NULL: nothing */
+    void (*more)(FILE *f); /* prints more text after end; NULL: nothing */
 } ted4_command;
 
-/* Every table has these two, -h and -V: ted4_arguments_next answers them itself. */
+/* Every table contains these two options, -h and -V, which ted4_arguments_next handles itself. */
 #define TED4_ARGUMENT_HELP             \
     {                                  \
         'h', "help", NULL, "this text" \
@@ -39,16 +39,17 @@ typedef struct {
 
 enum { TED4_ARGUMENTS_END = -1, TED4_ARGUMENTS_BAD = -2, TED4_ARGUMENTS_DONE = -3 };
 
-/* Next option of the command line: its place in the table, with *value set (NULL if it takes none);
- * TED4_ARGUMENTS_END: only operands are left, from argv[optind] on; TED4_ARGUMENTS_BAD: unknown
- * option or missing value, or kernels in the environment that this machine does not have, already
- * said on stderr; TED4_ARGUMENTS_DONE: help or version was printed. */
+/* Returns the index in the table of the next option of the command line, and sets *value (NULL if
+ * the option takes none). Otherwise returns TED4_ARGUMENTS_END if only operands are left, from
+ * argv[optind] on; TED4_ARGUMENTS_DONE if the help text or the version was printed; or
+ * TED4_ARGUMENTS_BAD, after a message on stderr, if an option is unknown, a value is missing, or
+ * TED4_KERNEL names kernels that this machine cannot run. */
 int ted4_arguments_next(const ted4_command *c, int argc, char **argv, const char **value);
 void ted4_arguments_help(const ted4_command *c, FILE *f);
 
-/* Whole text as a number within [low, high]: 0, or -1. */
+/* Reads all of text as a decimal integer within [low, high]. Returns 0, or -1. */
 int ted4_arguments_number(const char *text, int64_t low, int64_t high, int64_t *out);
-/* n finite numbers with commas between: 0, or -1. */
+/* Reads n finite numbers separated by commas. Returns 0, or -1. */
 int ted4_arguments_floats(const char *text, int n, float *out);
 
 #endif

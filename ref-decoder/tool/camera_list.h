@@ -1,8 +1,8 @@
-/* camera_list.h - cameras.json: the views ted4dec is asked to draw.
- * A list of objects with width, height, fx, fy, cx, cy (pixels; centres of pixels at + 0.5), R (9
- * numbers, row by row) and t (3 numbers) with x_cam = R x + t,
- * axes right, down, forward; and frame (a number) or time (a number in [0, 1], or a string as
- * --time takes it).
+/* camera_list.h - reads cameras.json, the list of views that ted4dec renders.
+ * The file is a list of objects. Each has width, height, fx, fy, cx and cy in pixels, with pixel
+ * centres at + 0.5; R (9 numbers, row by row) and t (3 numbers), so that x_cam = R x + t with the
+ * axes right, down, forward; and either frame (a number) or time (a number in [0, 1], or a string
+ * in the form that --time accepts).
  * SPDX-License-Identifier: BSD-2-Clause */
 #ifndef TED4_CAMERA_LIST_H
 #define TED4_CAMERA_LIST_H
@@ -14,7 +14,7 @@
 
 typedef struct {
     ted4_view view; /* near_z and background are not set */
-    int has_frame;  /* frame counts, otherwise time */
+    int has_frame;  /* 1: frame is valid; 0: time is valid */
     uint32_t frame;
     ted4_time time;
 } ted4_listed_camera;
@@ -24,7 +24,7 @@ typedef struct {
     size_t n;
 } ted4_camera_list;
 
-/* 0, or -1 with why filled and the list empty. */
+/* Returns 0, or -1 with why filled and the list empty. */
 int ted4_camera_list_load(ted4_camera_list *l, const char *path, char *why, size_t why_size);
 void ted4_camera_list_free(ted4_camera_list *l);
 

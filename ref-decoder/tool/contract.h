@@ -1,5 +1,5 @@
-/* contract.h - the driver contract of the conformance suite (conformance/README.md): what a test
- * runner asks of a decoder.
+/* contract.h - the driver contract of the conformance suite (conformance/README.md): how a test
+ * runner calls a decoder.
  *     ted4dec --ted4-capabilities
  *     ted4dec --ted4-run FILE --tiers T0,T5 [--queries FILE] [--knob name=value] [--mode
  *     strict|lenient] [--dump DIR]
@@ -7,10 +7,10 @@
 #ifndef TED4_CONTRACT_H
 #define TED4_CONTRACT_H
 
-/* Is this such a command line? */
+/* Returns 1 if this is a command line of the contract, else 0. */
 int ted4_contract_asked(int argc, char **argv);
-/* Answers it: one JSON object on stdout. Exit code: 0 for every verdict; 3 for wrong usage or
- * failing output. */
+/* Runs such a command line and prints one JSON object on stdout. Returns the exit code: 0 for every
+ * verdict; 3 for wrong usage, or if a file cannot be written or memory runs out. */
 int ted4_contract(int argc, char **argv);
 
 #endif

@@ -1,6 +1,7 @@
-/* export.h - Gaussians of one time as files that viewers read: what a format gets, and the list of
- * formats.
- * Depends on nothing of the codec. One format a file: out_ply.c, out_splat.c, out_glb.c, out_raw.c.
+/* export.h - writes the Gaussians at one time to files that viewers read: the input of a format,
+ * and the list of formats.
+ * Depends on nothing of the codec. Each format has its own file: out_ply.c, out_splat.c, out_glb.c,
+ * out_raw.c.
  * SPDX-License-Identifier: BSD-2-Clause */
 #ifndef TED4_EXPORT_H
 #define TED4_EXPORT_H
@@ -8,8 +9,8 @@
 #include <stddef.h>
 #include <stdio.h>
 
-/* World axes right, down, forward (COLMAP); scales linear; rotations w x y z; opacity in [0, 1].
- * Borrowed. */
+/* The Gaussians to write. World axes are right, down, forward (COLMAP); scales are linear;
+ * rotations are w x y z; opacity is in [0, 1]. The arrays are borrowed. */
 typedef struct {
     size_t n;
     const float *mean[3], *scale[3], *rot[4], *opacity;
@@ -20,24 +21,24 @@ typedef struct {
     const char *comment;    /* lines, each ended by LF, for formats with text; or "" */
 } ted4_frame;
 
-/* How a format is written. Adding one is a file out_*.c and a line in export.c. */
+/* A format. A new one needs a file out_*.c and a line in export.c. */
 typedef struct {
-    const char *suffix; /* ".ply": chosen by the end of the file name */
-    const char *text;   /* one line for the help */
-    int max_sh_degree;  /* -1: takes the decoded colour, no spherical harmonics */
-    /* 0, or -1 with errno set; an error the stream remembers (ferror) need not be reported. */
+    const char *suffix; /* for example ".ply"; the end of the file name chooses the format */
+    const char *text;   /* one line of the help text */
+    int max_sh_degree;  /* -1: writes the decoded colour instead of spherical harmonics */
+    /* Returns 0, or -1 with errno set. Errors that ferror(f) shows need not be reported. */
     int (*write)(FILE *f, const ted4_frame *x);
 } ted4_format;
 
 extern const ted4_format ted4_format_ply, ted4_format_splat, ted4_format_glb, ted4_format_raw;
 
-/* All formats, ended by NULL. */
+/* All formats, followed by NULL. */
 extern const ted4_format *const ted4_formats[];
 
-/* By suffix of path; NULL: none fits. */
+/* Returns the format whose suffix path ends in, or NULL if there is none. */
 const ted4_format *ted4_format_find(const char *path);
 
-/* Writes path through a temporary file (output.h). 0, or -1 with errno set. */
+/* Writes path through a temporary file (output.h). Returns 0, or -1 with errno set. */
 int ted4_export(const ted4_format *w, const ted4_frame *x, const char *path);
 
 #endif

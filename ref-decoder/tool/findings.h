@@ -1,4 +1,4 @@
-/* findings.h - ted4info --validate: findings as text or as one JSON object
+/* findings.h - ted4info --validate: prints findings as text or as one JSON object
  * (conformance/schema/validate.schema.json). Depends on ted4.h.
  * SPDX-License-Identifier: BSD-2-Clause */
 #ifndef TED4_TOOL_FINDINGS_H
@@ -9,8 +9,9 @@
 
 #include "ted4.h"
 
-/* Validates a file under o and prints every finding on standard output; quiet: errors only. An exit
- * code: fine, refused, or fine with warnings; a hint is no warning. */
+/* Validates a file with the options o and prints every finding on standard output; with quiet, only
+ * errors. Returns an exit code of cli.h: success, refused, or success with warnings. A hint does
+ * not count as a warning. */
 int ted4_findings_print(const char *path, const uint8_t *data, size_t size, const ted4_options *o,
                         int json, int quiet);
 

@@ -1,4 +1,5 @@
-/* meta_lines.h - what a file says for people: lines key=value of its chunks META (spec 5.2).
+/* meta_lines.h - prints text for human readers that a file contains: the lines key=value of its
+ * chunks META (spec 5.2).
  * SPDX-License-Identifier: BSD-2-Clause */
 #ifndef TED4_TOOL_META_LINES_H
 #define TED4_TOOL_META_LINES_H
@@ -7,10 +8,10 @@
 #include <stddef.h>
 #include <stdint.h>
 
-/* Prints, of a file that a decoder accepted, the lines whose key is a word or begins with it and a
- * dot; bytes that are no printable ASCII come out as '?'. */
+/* Prints the lines whose key is word, or begins with word and a dot. The file must be one that a
+ * decoder accepted. Bytes that are not printable ASCII are replaced by '?'. */
 void ted4_meta_lines_print(const uint8_t *data, size_t size, const char *word);
-/* The same as an array of strings. */
+/* Returns the same lines as a new array of strings. */
 json_t *ted4_meta_lines_json(const uint8_t *data, size_t size, const char *word);
 
 #endif

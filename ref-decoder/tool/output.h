@@ -1,4 +1,4 @@
-/* output.h - files a program writes: numbered names, and files that appear only when they are
+/* output.h - output files of the programs: numbered names, and files that appear only when they are
  * complete.
  * SPDX-License-Identifier: BSD-2-Clause */
 #ifndef TED4_OUTPUT_H
@@ -11,22 +11,23 @@
 enum { TED4_PATH_SIZE = 4096 };
 
 typedef struct {
-    FILE *file; /* open for writing bytes */
+    FILE *file; /* open for binary writing */
     char path[TED4_PATH_SIZE], temporary[TED4_PATH_SIZE];
 } ted4_output;
 
-/* Opens a temporary file next to path. 0, or -1 with errno set. */
+/* Opens a temporary file next to path. Returns 0, or -1 with errno set. */
 int ted4_output_open(ted4_output *o, const char *path);
-/* Flushes, closes and renames to path, replacing what is there. 0, or -1 with errno set and the
- * temporary file gone. */
+/* Flushes and closes the temporary file and renames it to path, replacing an existing file. Returns
+ * 0, or -1 with errno set and the temporary file removed. */
 int ted4_output_close(ted4_output *o);
-/* Closes and removes the temporary file; errno is kept. */
+/* Closes and removes the temporary file. errno is preserved. */
 void ted4_output_cancel(ted4_output *o);
 
 /* A pattern is a file name with at most one %d, %Nd or %0Nd (N up to 9) and no other percent sign.
- * Number of conversions (0 or 1), or -1 when it is not a pattern. */
+ * Returns the number of conversions (0 or 1), or -1 if the text is not a pattern. */
 int ted4_pattern_count(const char *pattern);
-/* Puts number where the conversion is. 0, or -1: too long. Only for patterns found good. */
+/* Replaces the conversion by number. The pattern must be valid. Returns 0, or -1 if the name is too
+ * long. */
 int ted4_pattern_make(char out[TED4_PATH_SIZE], const char *pattern, uint32_t number);
 
 #endif

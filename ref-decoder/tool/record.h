@@ -1,4 +1,4 @@
-/* record.h - spec 11.6: a record as bytes, from structure of arrays.
+/* record.h - spec 11.6: converts a record from a structure of arrays to bytes.
  * SPDX-License-Identifier: BSD-2-Clause */
 #ifndef TED4_RECORD_H
 #define TED4_RECORD_H
@@ -8,7 +8,8 @@
 
 enum { TED4_RECORD_FLOATS = 14 };
 
-/* Columns in record order, of anything with members mean, scale, rot, opacity, colour. */
+/* The columns of g in record order; g is any structure with the members mean, scale, rot, opacity
+ * and colour. */
 #define TED4_RECORD_COLUMNS(g)                                                                 \
     {                                                                                          \
         (g)->mean[0], (g)->mean[1], (g)->mean[2], (g)->scale[0], (g)->scale[1], (g)->scale[2], \

@@ -1,7 +1,7 @@
-/* sh.h - real spherical harmonics of degree 0 to 3 as splat files use them, and their fit to
+/* sh.h - real spherical harmonics of degree 0 to 3 as splat files use them, and a fit of them to
  * colours that depend on direction.
- * colour(d) = 0.5 + sum_k sh[k] basis_k(d), d the unit vector from the camera to the Gaussian.
- * Signs with the Condon-Shortley phase.
+ * colour(d) = 0.5 + sum_k sh[k] basis_k(d), where d is the unit vector from the camera to the
+ * Gaussian. The signs include the Condon-Shortley phase.
  * SPDX-License-Identifier: BSD-2-Clause */
 #ifndef TED4_SH_H
 #define TED4_SH_H
@@ -18,21 +18,21 @@ static inline int ted4_sh_count(int degree)
     return (degree + 1) * (degree + 1);
 }
 
-/* out: [(degree + 1)^2], in order of degree, then of m from -degree to degree. */
+/* Evaluates the basis functions. out: [(degree + 1)^2], ordered by degree, then by m from -degree
+ * to degree. */
 void ted4_sh_basis(const double d[3], int degree, double *out);
 
-/* Colours of n Gaussians seen from infinitely far along a direction (camera at -direction times
- * infinity), into colour[3][n].
- * 0, or another number that stops the fit. */
+/* Writes to colour[3][n] the colours of n Gaussians seen along a direction from infinitely far away
+ * (camera at -direction times infinity). Returns 0, or any other number to stop the fit. */
 typedef int (*ted4_sh_sampler)(void *user, const double direction[3], float *const colour[3]);
 
-/* Least squares over 64 directions spread evenly. sh: [n][3][(degree + 1)^2]. *rms: root mean
- * square difference of fit and colours over 16 other
- * directions and all channels; 0 when n = 0. Returns 0, what the sampler returned, or -1: no
+/* Fits coefficients by least squares over 64 evenly spread directions. sh: [n][3][(degree + 1)^2].
+ * *rms: root mean square difference between the fit and the colours over 16 other directions and
+ * all channels; 0 if n = 0. Returns 0, the number that the sampler returned, or -1 if there is no
  * memory. */
 int ted4_sh_fit(int degree, size_t n, ted4_sh_sampler sample, void *user, float *sh, double *rms);
 
-/* sh of a colour that does not depend on direction. */
+/* Sets the coefficients for colours that do not depend on direction. */
 void ted4_sh_constant(int degree, size_t n, const float *const colour[3], float *sh);
 
 #endif

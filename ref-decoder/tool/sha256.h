@@ -1,5 +1,5 @@
-/* sha256.h - SHA-256 (FIPS 180-4) of a byte string that comes in pieces. Used where files have to
- * be named for other programs.
+/* sha256.h - SHA-256 (FIPS 180-4) of a byte string that arrives in pieces. Other programs can
+ * compute the same hash of a file.
  * SPDX-License-Identifier: BSD-2-Clause */
 #ifndef TED4_SHA256_H
 #define TED4_SHA256_H
@@ -11,7 +11,7 @@ enum { TED4_SHA256_SIZE = 32 };
 
 typedef struct {
     uint32_t state[8];
-    uint64_t size;     /* bytes so far */
+    uint64_t size;     /* number of bytes so far */
     uint8_t block[64]; /* the last size % 64 of them */
 } ted4_sha256;
 

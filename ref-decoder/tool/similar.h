@@ -1,4 +1,4 @@
-/* similar.h - the name that somebody may have meant who wrote another.
+/* similar.h - finds the known name that is most similar to a misspelt one, for "did you mean".
  * SPDX-License-Identifier: BSD-2-Clause */
 #ifndef TED4_SIMILAR_H
 #define TED4_SIMILAR_H
@@ -6,14 +6,15 @@
 #include <stddef.h>
 
 typedef struct {
-    const char *word; /* borrowed; need not end */
+    const char *word; /* borrowed; need not end with a 0 */
     size_t length, distance;
-    const char *best; /* borrowed; NULL: nothing is like it */
+    const char *best; /* borrowed; NULL: no name is similar */
 } ted4_similar;
 
 ted4_similar ted4_similar_to(const char *word, size_t length);
-/* Takes name if none before was as much like the word: letters left out, put in, changed, or two in
- * turn. Names a third of whose letters differ are not like it. */
+/* Makes name the best match if it is closer to the word than all names before. The distance counts
+ * letters removed, inserted or replaced, and swapped neighbours. It may be at most a third of the
+ * word's length, but 1 is always allowed. */
 void ted4_similar_try(ted4_similar *s, const char *name);
 
 #endif

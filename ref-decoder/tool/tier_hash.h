@@ -1,5 +1,5 @@
-/* tier_hash.h - spec J.1: a tier's byte string as it comes, hashed twice, counted and kept in a
- * file if wanted.
+/* tier_hash.h - spec J.1: counts the bytes of a tier as they arrive, hashes them with XXH3 and
+ * SHA-256, and optionally writes them to a file.
  * SPDX-License-Identifier: BSD-2-Clause */
 #ifndef TED4_TIER_HASH_H
 #define TED4_TIER_HASH_H
@@ -13,14 +13,16 @@ enum { TED4_TIERS = 6 };
 
 typedef struct ted4_tier_hash ted4_tier_hash;
 
-/* keep: gets the bytes too; NULL: nobody does. Borrowed. NULL: no memory. */
+/* keep: borrowed; the bytes are also written to it, unless it is NULL. Returns NULL if there is no
+ * memory. */
 ted4_tier_hash *ted4_tier_hash_new(FILE *keep);
-/* A ted4_sink whose user is a ted4_tier_hash. */
+/* A ted4_sink whose user argument is a ted4_tier_hash. */
 void ted4_tier_hash_add(void *hash, const void *bytes, size_t size);
-/* {"bytes", "xxh3", "sha256"}, a new reference; frees the hash. NULL stays NULL. */
+/* Returns a new object {"bytes", "xxh3", "sha256"} and frees the hash. Returns NULL if h is
+ * NULL. */
 json_t *ted4_tier_hash_end(ted4_tier_hash *h);
 
-/* T5: the records of a query. */
+/* T5: passes the records of a query to the sink. */
 void ted4_tier_records(const ted4_gaussians *g, ted4_sink *sink, void *user);
 
 #endif

@@ -1,29 +1,30 @@
-/* times.h - which times of a scene a command line asks for.
+/* times.h - parses the times of a scene that a command line requests.
  * SPDX-License-Identifier: BSD-2-Clause */
 #ifndef TED4_TIMES_H
 #define TED4_TIMES_H
 
 #include <stdint.h>
 
-/* Time num / den as spec 11 takes it. */
+/* The time num / den in the form of spec 11. */
 typedef struct {
     uint32_t num, den;
 } ted4_time;
 
-/* Frames first, first + step, ... below end; end UINT32_MAX: to the last. */
+/* The frames first, first + step, ... below end. If end is UINT32_MAX, the last frame of the scene
+ * ends the range. */
 typedef struct {
     uint32_t first, end, step;
 } ted4_range;
 
-/* "A:B:STEP" as in Python: from A up to, not including, B; each part may be missing, also its
- * colon. "A" alone is that frame. 0, or -1. */
+/* Parses "A:B:STEP" as in Python: from A up to, but not including, B. Each part may be missing,
+ * also with its colon. "A" alone is that one frame. Returns 0, or -1. */
 int ted4_range_parse(const char *text, ted4_range *r);
 
-/* A decimal fraction with up to 7 digits behind the point ("0.25"), or "N/D"; exact; within [0, 1],
- * D below 2^24. 0, or -1. */
+/* Parses a decimal fraction with up to 7 digits after the point ("0.25"), or "N/D" with D below
+ * 2^24, without rounding. The time must be within [0, 1]. Returns 0, or -1. */
 int ted4_time_parse(const char *text, ted4_time *t);
 
-/* R-HDR-005: the time of frame < n_frames, n_frames >= 1. */
+/* R-HDR-005: returns the time of a frame. frame < n_frames, n_frames >= 1. */
 ted4_time ted4_time_of_frame(uint32_t frame, uint32_t n_frames);
 
 #endif
