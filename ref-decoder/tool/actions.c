@@ -29,14 +29,14 @@ static size_t count_times(const ted4_session *s)
     return r->first < end ? (end - r->first - 1) / r->step + 1 : 0;
 }
 
-/* Time i of count_times, and the number that stands in its file name. */
+/* Returns time i of the count_times(s) requested ones. *number: the number for its file name. */
 static ted4_time time_at(const ted4_session *s, size_t i, uint32_t *number)
 {
     *number = s->set->has_time ? 0 : s->set->range.first + (uint32_t)i * s->set->range.step;
     return s->set->has_time ? s->set->time : ted4_time_of_frame(*number, s->info.frames);
 }
 
-/* ---- saying things ---- */
+/* ---- messages ---- */
 
 static int failed_status(ted4_status status, const ted4_session *s)
 {
@@ -66,7 +66,7 @@ static void append(json_t *report, const char *key, json_t *value)
     json_array_append_new(list, value);
 }
 
-/* ---- before anything is written ---- */
+/* ---- checks before anything is written ---- */
 
 static int check_free(const char *pattern, uint32_t number)
 {
@@ -173,7 +173,7 @@ int ted4_action_hash(ted4_session *s)
 
 /* ---- -o ---- */
 
-/* What --sh-degree does to the colours, and what the format cannot hold. */
+/* Prints how view-dependent values are written, because the format cannot hold them as they are. */
 static void announce_export(ted4_session *s, const ted4_sampler *how)
 {
     const float *const c = s->set->centre;
@@ -190,7 +190,7 @@ static void announce_export(ted4_session *s, const ted4_sampler *how)
     }
 }
 
-/* *worst_rms is raised to the error of this fit. */
+/* Writes one time. *worst_rms becomes at least the error of this fit. */
 static int export_time(ted4_session *s, const ted4_sampler *how, ted4_time t, uint32_t number,
                        double *worst_rms)
 {

@@ -12,7 +12,7 @@
 #include "similar.h"
 #include "ted4.h"
 
-/* Long options without a letter are reported by getopt as this plus their place. */
+/* getopt_long returns this number plus the index of the option for a long option. */
 enum { FIRST_LONG = 256 };
 
 static void make_getopt(const ted4_command *c, struct option *longs, char *letters)
@@ -48,7 +48,8 @@ static int answer(const ted4_command *c, int i)
     return i;
 }
 
-/* Are the kernels that the environment asks for to be had? */
+/* Returns 0 if the machine can run the kernels that TED4_KERNEL names, or if it is not set; else
+ * prints a message and returns -1. */
 static int check_kernels(const ted4_command *c)
 {
     const char *name = getenv("TED4_KERNEL");
@@ -63,7 +64,7 @@ static int check_kernels(const ted4_command *c)
     return -1;
 }
 
-/* getopt has refused a long option, and said so. */
+/* Suggests a similar option after getopt has refused one and printed its message. */
 static void suggest(const ted4_command *c, const char *word)
 {
     if (strncmp(word, "--", 2) != 0)

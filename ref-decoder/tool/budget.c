@@ -4,8 +4,8 @@
 
 #include <string.h>
 
-/* Symbols of substreams are traced at the substream's first byte, which belongs to the substream.
- */
+/* Returns 1 for the symbols of a substream. They are traced at the substream's first byte, which is
+ * counted for the substream. */
 static int is_symbol(const char *element)
 {
     static const char *const name[] = { "dynamic", "offset_bit", "feature", "scaling",
@@ -24,7 +24,8 @@ static int ends_in(const char *text, const char *end)
     return n >= m && strcmp(text + n - m, end) == 0;
 }
 
-/* The element's name; that of a substream of features with the number of its slice behind it. */
+/* Makes the name of a row: the element's name, followed by the number of the slice for a substream
+ * of features. */
 static void name_row(char name[TED4_BUDGET_NAME], const char *element, int64_t index)
 {
     const size_t length = strlen(element);

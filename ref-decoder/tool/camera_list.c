@@ -9,7 +9,7 @@
 
 enum { MAX_SIDE = 16384, TIME_DENOMINATOR = 10000000 };
 
-/* Rotations may carry the rounding of a text file. */
+/* Rotations may contain the rounding errors of numbers in a text file. */
 static const double ROTATION_TOLERANCE = 1e-3;
 
 static int get_number(const json_t *o, const char *key, float *out)
@@ -86,7 +86,7 @@ static int get_time(const json_t *o, ted4_listed_camera *c)
     return 1;
 }
 
-/* What is wrong with the object, or NULL. */
+/* Fills *c from the object. Returns NULL, or a text that says what is wrong with the object. */
 static const char *get_camera(const json_t *o, ted4_listed_camera *c)
 {
     ted4_view *const v = &c->view;

@@ -12,10 +12,11 @@ enum { MAX_PATH = 4096, T5 = 5 };
 
 typedef struct {
     const char *input, *queries, *dump;
-    int tier[TED4_TIERS]; /* asked for? */
+    int tier[TED4_TIERS]; /* 1: requested */
     uint64_t max_bytes, max_work;
     int lenient;
-    int failed; /* of our own accord: no memory, a file that cannot be written */
+    int failed; /* 1: not the stream's fault: no memory, bad queries, or a file that cannot be
+                   written */
 } request;
 
 static int usage(const char *text)
@@ -48,7 +49,7 @@ static json_t *capabilities(void)
         "declines", "knobs", "max_alloc_total", "max_work");
 }
 
-/* "T0,T3": 0, or -1. */
+/* Parses a list such as "T0,T3". Returns 0, or -1. */
 static int parse_tiers(request *r, const char *text)
 {
     for (;; text += 3) {
@@ -74,7 +75,7 @@ static int parse_knob(request *r, const char *text)
     return *end == '\0' && *knob > 0 ? 0 : -1;
 }
 
-/* "strict", "lenient": 0, or -1. */
+/* Parses "strict" or "lenient". Returns 0, or -1. */
 static int parse_mode(request *r, const char *text)
 {
     r->lenient = strcmp(text, "lenient") == 0;
@@ -108,8 +109,8 @@ static int parse(request *r, int argc, char **argv)
     return 0;
 }
 
-/* One tier's file in the folder of --dump; NULL without that, or when it cannot be made. number: of
- * a query, or -1. */
+/* Opens the file of a tier in the folder of --dump. number: of the query, or -1. Returns NULL if
+ * --dump is not given or the file cannot be created. */
 static FILE *open_dump(request *r, int tier, int number)
 {
     char path[MAX_PATH];
@@ -129,7 +130,7 @@ static void close_dump(request *r, FILE *f)
         r->failed |= ferror(f) | (fclose(f) != 0);
 }
 
-/* A tier of Tier E; *verdict says when memory does not allow it. */
+/* Returns the hashes of one of the tiers T0 to T4. *verdict is set if memory runs out. */
 static json_t *tier_e(request *r, const void *data, size_t size, const ted4_scene *s,
                       const ted4_options *o, int tier, ted4_status *verdict)
 {
@@ -147,7 +148,7 @@ static json_t *tier_e(request *r, const void *data, size_t size, const ted4_scen
     return answer;
 }
 
-/* {"t":[num,den],"cam":[x,y,z]}: 0, or -1. */
+/* Reads a query {"t":[num,den],"cam":[x,y,z]}. Returns 0, or -1. */
 static int read_query(const json_t *from, ted4_query *q)
 {
     const json_t *const t = json_object_get(from, "t"), *const cam = json_object_get(from, "cam");
@@ -188,8 +189,8 @@ static json_t *records(request *r, ted4_recon *recon, const ted4_query *q, int n
     return answer;
 }
 
-/* An array, one entry a query; NULL: the queries cannot be read, or no memory, which *verdict says.
- */
+/* Returns an array with one entry per query. *verdict is set if memory runs out; r->failed is set
+ * if the queries cannot be read. */
 static json_t *tier_r(request *r, const ted4_scene *s, const ted4_options *o, ted4_status *verdict)
 {
     json_t *queries = r->queries != NULL ? json_load_file(r->queries, 0, NULL) : json_array();
@@ -223,7 +224,7 @@ static json_t *refusal(const ted4_error *e)
     return o;
 }
 
-/* The tiers asked for, from T<first> on; *verdict says when memory does not allow it. */
+/* Returns the requested tiers from T<first> on. *verdict is set if memory runs out. */
 static json_t *tiers(request *r, int first, const void *data, size_t size, const ted4_scene *s,
                      const ted4_options *o, ted4_status *verdict)
 {
@@ -252,8 +253,8 @@ static json_t *answer_valid(request *r, const void *data, size_t size, const ted
     return refusal(&e);
 }
 
-/* The strict verdict and beside it what there is in spite of it (spec 3.3). T0 belongs to valid
- * files only. */
+/* Returns the strict verdict together with what the lenient decoder could recover (spec 3.3). T0
+ * exists for valid files only. */
 static json_t *answer_salvage(request *r, const ted4_scene *s, const ted4_salvage *what,
                               const ted4_options *o)
 {
@@ -282,7 +283,7 @@ static json_t *answer_scene(request *r, const void *data, size_t size, const ted
     ted4_options o;
 
     memset(&o, 0, sizeof o);
-    o.max_bytes = r->max_bytes; /* the knob max_work bounds W_E, which decoding has held */
+    o.max_bytes = r->max_bytes; /* the knob max_work bounds W_E, which decoding has enforced */
     if (s == NULL)
         return refusal(&what->verdict);
     return what->verdict.code == TED4_OK ? answer_valid(r, data, size, s, &o)

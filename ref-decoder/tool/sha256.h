@@ -1,5 +1,5 @@
-/* sha256.h - SHA-256 (FIPS 180-4) of a byte string that arrives in pieces. Other programs can
- * compute the same hash of a file.
+/* sha256.h - SHA-256 (FIPS 180-4) of a byte string that arrives in pieces. It is used for hashes
+ * that other programs have to compute too.
  * SPDX-License-Identifier: BSD-2-Clause */
 #ifndef TED4_SHA256_H
 #define TED4_SHA256_H
