@@ -1,5 +1,5 @@
-/* meta_lines.c - see meta_lines.h. R-SEC-002: nothing of a file reaches a terminal that could steer
- * it.
+/* meta_lines.c - see meta_lines.h. R-SEC-002: control characters in a file must not reach a
+ * terminal.
  * SPDX-License-Identifier: BSD-2-Clause */
 #include "meta_lines.h"
 
@@ -10,7 +10,7 @@
 
 enum { FILE_HEADER = 12, FRAME_HEAD = 12, FRAME_HASH = 8, MOST = 1000 };
 
-/* Where line after line goes. */
+/* The word that selects lines, and where the lines go. */
 typedef struct {
     const char *word;
     json_t *list; /* NULL: standard output */

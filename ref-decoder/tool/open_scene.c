@@ -1,5 +1,5 @@
-/* open_scene.c - ted4dec's first step: a file to a recon, strictly or leniently, and what that
- * took.
+/* open_scene.c - the first step of ted4dec: decodes a file to a recon, strictly or leniently, and
+ * reports the time and memory used.
  * SPDX-License-Identifier: BSD-2-Clause */
 #include <errno.h>
 #include <inttypes.h>
@@ -27,14 +27,14 @@ static double seconds(void)
     return (double)t.tv_sec + 1e-9 * (double)t.tv_nsec;
 }
 
-/* Is checking the file all that is asked for? */
+/* Returns 1 if the file is only to be checked. */
 static int only_checks(const ted4_settings *s)
 {
     return s->test || (s->output == NULL && s->render == NULL && !s->hash && !s->trace);
 }
 
-/* What is in the file, and what decoding it to attributes took. ru_maxrss: of this process, its
- * copy of the file included; in KiB on Linux. */
+/* Reports the contents of the file, and the time and memory used to decode it to attributes.
+ * ru_maxrss is the peak of this process in KiB (Linux), including its copy of the file. */
 static void tell_cost(const ted4_session *s, size_t size, double ms)
 {
     const ted4_settings *const set = s->set;
@@ -53,7 +53,7 @@ static void tell_cost(const ted4_session *s, size_t size, double ms)
     }
 }
 
-/* spec 3.3: the strict verdict, and beside it what there is nevertheless. */
+/* spec 3.3: reports the strict verdict, and what the lenient decoder recovered. */
 static void tell_salvage(ted4_session *s, const ted4_salvage *what)
 {
     const ted4_error *const v = &what->verdict, *const stop = &what->stop;
@@ -79,7 +79,8 @@ static void tell_salvage(ted4_session *s, const ted4_salvage *what)
                   "stop_offset", (json_int_t)stop->offset));
 }
 
-/* What the settings ask for: a scene and its verdict; with --lenient a scene in spite of it. */
+/* Decodes as the settings say and fills what->verdict. Returns the scene, or NULL. With --lenient,
+ * there may be a scene although the verdict is an error. */
 static ted4_scene *decode(ted4_session *s, const uint8_t *data, size_t size, const ted4_options *o,
                           ted4_salvage *what)
 {
@@ -113,7 +114,7 @@ int ted4_action_open(ted4_session *s)
     ted4_scene *const scene = decode(s, data, size, &options, &what);
     ted4_error e = what.verdict;
 
-    if (scene != NULL) { /* needed no longer once there is a recon */
+    if (scene != NULL) { /* the scene is freed once there is a recon */
         ted4_scene_info(scene, &s->info);
         if (e.code != TED4_OK)
             tell_salvage(s, &what);

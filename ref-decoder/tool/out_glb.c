@@ -1,8 +1,8 @@
-/* out_glb.c - binary glTF 2.0 with KHR_gaussian_splatting: one mesh of points, one buffer view an
- * attribute, floats.
- * glTF has +Y up and looks along -Z, our world has Y down and Z forward: positions, rotations and
- * spherical harmonics are turned by 180 degrees
- * about X. COLOR_0 is the fallback of viewers that know no splats.
+/* out_glb.c - binary glTF 2.0 with KHR_gaussian_splatting: one mesh of points, with one buffer view
+ * of floats per attribute.
+ * In glTF, +Y is up and cameras look along -Z; here, Y is down and Z is forward. Positions,
+ * rotations and spherical harmonics are therefore rotated by 180 degrees about X. COLOR_0 is a
+ * fallback for viewers that do not support splats.
  * SPDX-License-Identifier: BSD-2-Clause */
 #include "export.h"
 
@@ -24,13 +24,13 @@ enum {
     GLB_CHUNK = 8
 };
 
-/* One attribute: fill writes the value of Gaussian i. */
+/* An attribute. fill writes the value of Gaussian i. */
 typedef struct glb_attribute {
     char name[64];
     const char *type;
     int component; /* GLTF_FLOAT, or GLTF_BYTE normalised */
-    int coef;      /* of spherical harmonics */
-    size_t size;   /* bytes a Gaussian, a multiple of 4 */
+    int coef;      /* index of the coefficient of spherical harmonics */
+    size_t size;   /* bytes per Gaussian, a multiple of 4 */
     void (*fill)(uint8_t *out, const ted4_frame *x, size_t i, const struct glb_attribute *a);
 } glb_attribute;
 
@@ -46,7 +46,7 @@ static void glb_position(uint8_t *out, const ted4_frame *x, size_t i, const glb_
     glb_floats(out, 3, (const float[]) { x->mean[0][i], -x->mean[1][i], -x->mean[2][i] });
 }
 
-/* (0, 1, 0, 0) times the rotation, stored x y z w. */
+/* The quaternion (0, 1, 0, 0) times the rotation, stored as x y z w. */
 static void glb_rotation(uint8_t *out, const ted4_frame *x, size_t i, const glb_attribute *a)
 {
     (void)a;
@@ -81,8 +81,8 @@ static void glb_colour(uint8_t *out, const ted4_frame *x, size_t i, const glb_at
     out[3] = glb_byte((double)x->opacity[i]);
 }
 
-/* Turning by 180 degrees about X changes the signs of y and z, hence of the basis functions odd in
- * them together. */
+/* A rotation by 180 degrees about X changes the signs of y and z, and therefore of the basis
+ * functions whose total degree in y and z is odd. */
 static const float SH_SIGN[TED4_SH_MAX_COEFS] = { 1, -1, -1, 1,  -1, 1, 1,  -1,
                                                   1, -1, 1,  -1, -1, 1, -1, 1 };
 
@@ -118,7 +118,7 @@ static int list_attributes(glb_attribute *a, int sh_degree)
     return n;
 }
 
-/* Text that grows inside a fixed array; the longest JSON (degree 3) takes about 5 kB. */
+/* Text that grows in an array of fixed size. The longest JSON (degree 3) has about 5 kB. */
 typedef struct {
     char text[16384];
     size_t n;
@@ -139,7 +139,7 @@ say(glb_json *j, const char *format, ...)
         j->n += (size_t)n < sizeof j->text - j->n ? (size_t)n : sizeof j->text - j->n - 1;
 }
 
-/* glTF asks for the bounds of POSITION. */
+/* glTF requires the bounds of POSITION. */
 static void say_bounds(glb_json *j, const ted4_frame *x)
 {
     float low[3] = { FLT_MAX, FLT_MAX, FLT_MAX }, high[3] = { -FLT_MAX, -FLT_MAX, -FLT_MAX };
@@ -205,7 +205,8 @@ static int write_values(FILE *f, const ted4_frame *x, const glb_attribute *a, in
     return 0;
 }
 
-/* glTF forbids empty accessors: with no Gaussian the file is an empty scene without a buffer. */
+/* glTF forbids empty accessors, so without Gaussians the file is an empty scene without a
+ * buffer. */
 static int write_glb(FILE *f, const ted4_frame *x)
 {
     glb_attribute a[MAX_ATTRIBUTES];

@@ -1,7 +1,6 @@
-/* out_ply.c - 3D Gaussian splatting PLY, binary little-endian, with the property order every reader
- * knows. Comments come after the properties: one
- * widespread reader takes line 3 for the vertex count. Normals are zero, and there because that
- * reader wants them.
+/* out_ply.c - PLY of 3D Gaussian splatting, binary little-endian, with the usual order of
+ * properties. Comments come after the properties, because one widespread reader expects the vertex
+ * count in line 3. The normals are zero; they are present because that reader requires them.
  * SPDX-License-Identifier: BSD-2-Clause */
 #include "export.h"
 
@@ -11,7 +10,7 @@
 #include "base/bytes.h"
 #include "sh.h"
 
-/* Opacity is stored as its logit: 0 and 1 are moved inside by this much. */
+/* Opacity is stored as its logit, so 0 and 1 are first moved inwards by this much. */
 #define OPACITY_MARGIN 0x1p-20
 
 enum { MAX_FLOATS = 17 + 3 * (TED4_SH_MAX_COEFS - 1) };
@@ -45,7 +44,8 @@ static float logit(float opacity)
     return (float)log(o / (1.0 - o));
 }
 
-/* f_rest is ordered by channel first. Returns the number of floats. */
+/* Fills v with the properties of Gaussian i. In f_rest, the channel is the slowest index. Returns
+ * the number of floats. */
 static int fill_record(float *v, const ted4_frame *x, size_t i)
 {
     const int n_coefs = ted4_sh_count(x->sh_degree);

@@ -1,6 +1,5 @@
-/* out_raw.c - the records of spec 11.6 as they are: 14 little-endian binary32 each, in order of the
- * file. With every Gaussian kept these are
- * the bytes that the hash of a query covers (spec 15.3).
+/* out_raw.c - the records of spec 11.6 unchanged: 14 little-endian binary32 each, in file order. If
+ * all Gaussians are kept, these are the bytes that the hash of a query covers (spec 15.3).
  * SPDX-License-Identifier: BSD-2-Clause */
 #include "export.h"
 

@@ -1,6 +1,7 @@
-/* out_splat.c - ".splat": 32 bytes a Gaussian, the largest and most opaque first, so that a partial
- * download shows something.
- * Position and linear scale as binary32, then r g b a and rotation w x y z (128 + 128 q) as bytes.
+/* out_splat.c - the format ".splat" with 32 bytes per Gaussian. The largest and most opaque
+ * Gaussians come first, so that a partial download shows something.
+ * A record holds position and linear scale as binary32, then r g b a and the rotation w x y z (128
+ * + 128 q) as bytes.
  * SPDX-License-Identifier: BSD-2-Clause */
 #include "export.h"
 

@@ -7,7 +7,7 @@
 #include <string.h>
 #include <unistd.h>
 
-/* The temporary name for path. 0, or -1: too long (errno set). */
+/* Makes the temporary name for path. Returns 0, or -1 with errno set if it is too long. */
 static int name_temporary(char out[TED4_PATH_SIZE], const char *path)
 {
     const int n = snprintf(out, TED4_PATH_SIZE, "%s.%ld.part", path, (long)getpid());
@@ -53,8 +53,8 @@ int ted4_output_close(ted4_output *o)
     return -1;
 }
 
-/* Finds the conversion. Returns the number of percent signs that begin a good one, -1 if any is
- * bad. */
+/* Finds the conversion. Returns the number of conversions (0 or 1), or -1 if the pattern is
+ * invalid. */
 static int find_conversion(const char *pattern, size_t *at, size_t *length, int *zero, int *width)
 {
     int found = 0;

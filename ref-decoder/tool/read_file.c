@@ -1,4 +1,4 @@
-/* read_file.c - whole files into memory, from wherever they come; see cli.h.
+/* read_file.c - reads whole files and streams into memory; see cli.h.
  * SPDX-License-Identifier: BSD-2-Clause */
 #include "cli.h"
 
@@ -6,7 +6,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* In pieces that double, so that pipes work and no size is believed. */
+/* Reads into a buffer that doubles, so that pipes work and no reported file size is trusted. */
 uint8_t *ted4_read_stream(FILE *f, size_t *size)
 {
     size_t capacity = 1 << 16, n = 0;
