@@ -1,6 +1,6 @@
-/* sample.c - see sample.h. Colours see the direction from the camera to the anchor. Every anchor
- * sees the same direction from a camera infinitely far away, so a query
- * with a far camera samples the colour heads of all Gaussians at one direction.
+/* sample.c - see sample.h. Colours depend on the direction from the camera to the anchor. For a
+ * camera infinitely far away, this direction is the same for all anchors, so a query with a distant
+ * camera samples the colour heads of all Gaussians in one direction.
  * SPDX-License-Identifier: BSD-2-Clause */
 #include "sample.h"
 
@@ -10,8 +10,8 @@
 #include "record.h"
 #include "sh.h"
 
-/* The far camera, in units of normalised space, where anchors lie in [-1, 1]: directions are right
- * to 2^-20. */
+/* Distance of that camera in normalised space, where anchors lie in [-1, 1]: directions are exact
+ * to about 2^-20. */
 #define FAR_AWAY 0x1p20
 
 static const float OPACITY_MIN = 1.0f / 255.0f;
@@ -59,7 +59,7 @@ static ted4_status fit_colours(const ted4_sampler *s, const ted4_query *q, ted4_
     }
 }
 
-/* Copies the columns of the kept records behind one another and points the frame at them. */
+/* Copies the columns of the kept records one after another and makes the frame point to them. */
 static void copy_kept(ted4_sample *out, const ted4_gaussians *g)
 {
     const float *const from[TED4_RECORD_FLOATS] = TED4_RECORD_COLUMNS(g);

@@ -1,6 +1,6 @@
-/* sh.c - see sh.h. The directions are the same for all Gaussians, so the fit is one matrix (the
- * pseudo-inverse of the basis), applied to the
- * colours direction by direction as they arrive.
+/* sh.c - see sh.h. The directions are the same for all Gaussians, so the fit is a product with one
+ * matrix, the pseudo-inverse of the basis. It is accumulated direction by direction as the colours
+ * arrive.
  * SPDX-License-Identifier: BSD-2-Clause */
 #include "sh.h"
 
@@ -10,7 +10,7 @@
 
 enum { N_FIT = 64, N_CHECK = 16 };
 
-/* Orthonormal over the sphere. */
+/* The basis is orthonormal over the sphere. */
 void ted4_sh_basis(const double d[3], int degree, double *out)
 {
     const double x = d[0], y = d[1], z = d[2], xx = x * x, yy = y * y, zz = z * z;
@@ -35,7 +35,7 @@ void ted4_sh_basis(const double d[3], int degree, double *out)
     memcpy(out, basis, (size_t)ted4_sh_count(degree) * sizeof *out);
 }
 
-/* Point i of n on a spiral with equal areas between turns (Fibonacci lattice). */
+/* Point i of n of a Fibonacci lattice: a spiral with equal areas between its turns. */
 static void spiral_direction(int i, int n, double turn, double d[3])
 {
     const double golden = 3.0 - sqrt(5.0), pi = 3.14159265358979323846;
@@ -47,8 +47,8 @@ static void spiral_direction(int i, int n, double turn, double d[3])
     d[2] = z;
 }
 
-/* Solves a x = b in place for symmetric positive definite a [n][n] (Cholesky); b becomes x,
- * [n][columns]. */
+/* Solves a x = b in place by Cholesky decomposition. a [n][n] is symmetric and positive definite; b
+ * [n][columns] becomes x. */
 static void solve_positive(int n, double a[][TED4_SH_MAX_COEFS], int columns, double b[][N_FIT])
 {
     for (int i = 0; i < n; i++) {
@@ -74,7 +74,8 @@ static void solve_positive(int n, double a[][TED4_SH_MAX_COEFS], int columns, do
     }
 }
 
-/* weight[k][i]: share of the colour from direction i in coefficient k. */
+/* Computes the pseudo-inverse. weight[k][i]: weight of the colour from direction i in coefficient
+ * k. */
 static void fit_matrix(int degree, double weight[TED4_SH_MAX_COEFS][N_FIT])
 {
     const int n = ted4_sh_count(degree);

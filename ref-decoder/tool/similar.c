@@ -18,7 +18,7 @@ static size_t least(size_t a, size_t b)
     return a < b ? a : b;
 }
 
-/* Edits that make b of a, two neighbours in turn being one. */
+/* Returns the number of edits that turn a into b, where swapping two neighbours is one edit. */
 static size_t edits(const char *a, size_t n, const char *b, size_t m)
 {
     size_t d[LONGEST + 1][LONGEST + 1];

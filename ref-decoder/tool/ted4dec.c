@@ -1,4 +1,4 @@
-/* ted4dec.c - decodes a .ted4 file: checks it, writes its Gaussians for viewers, draws it.
+/* ted4dec.c - decodes a .ted4 file: checks it, exports its Gaussians for viewers, renders views.
  * SPDX-License-Identifier: BSD-2-Clause */
 #include <errno.h>
 #include <getopt.h>
@@ -107,7 +107,7 @@ static int usage_error(const char *text, const char *value)
     return TED4_EXIT_TOOL;
 }
 
-/* 0: fine, else an exit code. */
+/* Parses the value of an option. Returns 0, or an exit code. */
 static int set_number(const char *name, const char *value, int high, int *out)
 {
     int64_t n;
@@ -118,7 +118,7 @@ static int set_number(const char *name, const char *value, int high, int *out)
     return 0;
 }
 
-/* The same for a bound, which is at least 1. */
+/* Does the same for a limit, which is at least 1. */
 static int set_bound(const char *name, const char *value, int64_t *out)
 {
     return ted4_arguments_number(value, 1, INT64_MAX, out) != 0 ? usage_error(name, value) : 0;
@@ -176,7 +176,7 @@ static int check_settings(const ted4_settings *s)
     return 0;
 }
 
-/* -1: go on; else an exit code. */
+/* Returns -1 if the program should continue, else its exit code. */
 static int parse(ted4_settings *s, int argc, char **argv)
 {
     const char *value;

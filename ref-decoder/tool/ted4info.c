@@ -1,4 +1,4 @@
-/* ted4info.c - what a .ted4 file holds, and which syntax element each of its bytes belongs to.
+/* ted4info.c - prints the contents of a .ted4 file, and how many bytes each syntax element takes.
  * SPDX-License-Identifier: BSD-2-Clause */
 #include <errno.h>
 #include <getopt.h>
@@ -65,7 +65,7 @@ static const ted4_command COMMAND = {
 
 typedef struct {
     const char *input;
-    int on[N_OPTIONS];            /* flags given */
+    int on[N_OPTIONS];            /* 1: option i was given */
     int64_t max_memory, max_work; /* 0: not given */
 } settings;
 
@@ -75,7 +75,7 @@ static int usage_error(const char *text)
     return TED4_EXIT_TOOL;
 }
 
-/* -1: go on; else an exit code. */
+/* Returns -1 if the program should continue, else its exit code. */
 static int parse(settings *s, int argc, char **argv)
 {
     const char *value;
@@ -113,7 +113,8 @@ static int64_t integer_value(const ted4_header_value *v)
     return strcmp(v->name, "exponent") == 0 ? (int8_t)v->value : v->value;
 }
 
-/* One frame has no rate. Rates of thousandths, as 6 or 23.976, read better than 6000/1000. */
+/* A single frame has no rate. Rates in thousandths are printed as decimal numbers, such as 6 or
+ * 23.976 instead of 6000/1000. */
 static void print_frames(const ted4_info *info)
 {
     enum { THOUSAND = 1000 };

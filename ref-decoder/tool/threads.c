@@ -1,12 +1,12 @@
-/* threads.c - see threads.h. Each thread first takes the indices of its own share, the same ones
- * in every job of as many: what it wrote in one it finds in its cache in the next, and
- * neighbours in memory are mostly written by one core. Then it helps the others.
- * A training step has some thirty parallel regions of a fraction of a millisecond, so idle
- * threads wait a moment without sleeping, but not for long: an OpenMP team that spins through
- * its barriers made a step five times as long on a machine that had other work.
- * A job ends when its indices are done, not when all threads have been there: one that slept, or
- * has no processor at the moment, is not waited for. And no one wakes many: whoever enters a job
- * wakes two sleepers, who wake two each.
+/* threads.c - see threads.h. Each thread first takes the indices of its own share, which are the
+ * same in all jobs with equally many indices. What a thread wrote in one job is therefore still in
+ * its cache in the next, and one core mostly writes neighbours in memory. Then it helps the others.
+ * A training step has some thirty parallel regions of a fraction of a millisecond each, so idle
+ * threads spin for a moment before they sleep, but not for long: an OpenMP team that spins in its
+ * barriers made a step five times as long on a machine that had other work.
+ * A job ends when its indices are done, not when all threads have taken part: it does not wait for
+ * a thread that sleeps or has no processor at the moment. No thread has to wake many others: each
+ * one that enters a job wakes two sleepers, which wake two more each.
  * SPDX-License-Identifier: BSD-2-Clause */
 #include "tool/threads.h"
 
@@ -16,15 +16,16 @@
 #include <string.h>
 #include <unistd.h>
 
-/* Polls before sleeping: about 20 microseconds; and whom each wakes. */
+/* Polls before sleeping, about 20 microseconds; and number of sleepers that each thread wakes. */
 enum { SPINS = 1000, WAKES = 2 };
 
-/* In team.inside beside the number of workers: the job may be entered. */
+/* Bit of team.inside next to the number of workers: the job may be entered. */
 #define OPEN 0x10000u
 
 typedef struct team team;
 
-/* A thread, and its share of the indices; cache lines of its own. Member 0 is whoever calls run. */
+/* A thread and its share of the indices, in cache lines of its own. Member 0 is the thread that
+ * calls run. */
 typedef struct {
     _Alignas(64) atomic_size_t next; /* first index not yet handed out */
     size_t end;
@@ -36,9 +37,9 @@ typedef struct {
 } member;
 
 struct team {
-    _Alignas(64) atomic_uint round;  /* jobs begun; all that spinning threads look at */
+    _Alignas(64) atomic_uint round;  /* jobs begun; the only member that spinning threads read */
     _Alignas(64) atomic_uint inside; /* workers in the job, and OPEN */
-    atomic_int waker;                /* first member that those who wake have not looked at */
+    atomic_int waker;                /* first member that has not been checked for sleeping */
     atomic_int waiting;              /* the caller sleeps until the last worker has left */
     pthread_mutex_t mutex;
     pthread_cond_t left;
@@ -57,7 +58,7 @@ static void relax(void)
 #endif
 }
 
-/* Of the share of m, then of the shares after it. */
+/* Runs indices of the share of m, then of the shares after it. */
 static void take_indices(team *t, const member *m)
 {
     const int first = (int)(m - t->member);
@@ -66,7 +67,7 @@ static void take_indices(team *t, const member *m)
         member *owner = &t->member[(first + k) % t->n];
         size_t i;
 
-        /* Looking before taking leaves the line where it is when nothing is left. */
+        /* The load before the increment keeps the cache line shared when no index is left. */
         while (atomic_load_explicit(&owner->next, memory_order_relaxed) < owner->end) {
             i = atomic_fetch_add_explicit(&owner->next, 1, memory_order_relaxed);
             if (i < owner->end)
@@ -96,8 +97,8 @@ static void wake_some(team *t)
     }
 }
 
-/* Round and asleep are sequentially consistent: either the sleeper sees the new round, or those
- * who wake see that it sleeps. */
+/* The accesses to round and asleep are sequentially consistent: either the sleeper sees the new
+ * round, or the waking thread sees that it sleeps. */
 static void sleep_until_round(team *t, member *m, unsigned last)
 {
     pthread_mutex_lock(&m->mutex);
@@ -118,7 +119,8 @@ static void wait_for_round(team *t, member *m, unsigned last)
     sleep_until_round(t, m, last);
 }
 
-/* 1: the job is open, and lasts until leave. */
+/* Returns 1 if the job is open. It then stays valid until leave, which must be called in any
+ * case. */
 static int enter(team *t)
 {
     return (atomic_fetch_add(&t->inside, 1) & OPEN) != 0;
@@ -144,7 +146,7 @@ static void *work(void *user)
 
         const int open = enter(t);
 
-        /* No other round begins while this one is open and someone is inside. */
+        /* No other round can begin while this one is open and a worker is inside. */
         last = atomic_load_explicit(&t->round, memory_order_acquire);
         if (open) {
             wake_some(t);
@@ -165,7 +167,7 @@ static void begin_round(team *t)
     wake_some(t);
 }
 
-/* Nobody enters any more; whoever is inside does the last indices. */
+/* Closes the job for new workers, and waits until those inside have done the last indices. */
 static void end_round(team *t)
 {
     if (atomic_fetch_and(&t->inside, ~OPEN) == OPEN)
@@ -216,7 +218,7 @@ static void forget(member *m)
     pthread_mutex_destroy(&m->mutex);
 }
 
-/* 0, or -1: there are no more threads to be had. */
+/* Returns 0, or -1 if no more threads can be created. */
 static int start(team *t, member *m)
 {
     m->team = t;

@@ -15,7 +15,7 @@ struct ted4_tier_hash {
     XXH3_state_t *xxh3; /* owned */
     ted4_sha256 sha256;
     uint64_t size;
-    size_t n; /* bytes that wait */
+    size_t n; /* bytes in the buffer */
     uint8_t bytes[BUFFER];
 };
 
@@ -41,7 +41,7 @@ static void flush(ted4_tier_hash *h)
     (void)XXH3_128bits_update(h->xxh3, h->bytes, h->n);
     ted4_sha256_add(&h->sha256, h->bytes, h->n);
     if (h->keep != NULL)
-        fwrite(h->bytes, 1, h->n, h->keep); /* the owner of keep asks ferror */
+        fwrite(h->bytes, 1, h->n, h->keep); /* the owner of keep checks ferror */
     h->size += h->n;
     h->n = 0;
 }

@@ -6,7 +6,7 @@
 
 enum { MAX_DECIMALS = 7, DENOMINATORS = 1 << 24 };
 
-/* Reads decimal digits; returns the place behind them, or NULL when there is none or the number is
+/* Reads decimal digits. Returns the position after them, or NULL if there are none or the number is
  * too large. */
 static const char *read_digits(const char *p, uint32_t *out)
 {
@@ -23,7 +23,7 @@ static const char *read_digits(const char *p, uint32_t *out)
     return p;
 }
 
-/* An optional number, kept as it is when missing. */
+/* Reads an optional number. *out is unchanged if there is none. */
 static const char *read_part(const char *p, uint32_t *out)
 {
     return *p == ':' || *p == '\0' ? p : read_digits(p, out);
@@ -82,7 +82,7 @@ int ted4_time_parse(const char *text, ted4_time *t)
                                                                                                : -1;
 }
 
-/* Greatest common divisor; a >= 1. */
+/* Returns the greatest common divisor; a >= 1. */
 static uint32_t divisor(uint32_t a, uint32_t b)
 {
     while (b != 0) {
@@ -94,7 +94,7 @@ static uint32_t divisor(uint32_t a, uint32_t b)
     return a;
 }
 
-/* rne(a / b), which fits. */
+/* Returns rne(a / b), which fits in 32 bits. */
 static uint32_t nearest(uint64_t a, uint32_t b)
 {
     const uint64_t whole = a / b, twice = a % b * 2;
