@@ -1,6 +1,6 @@
-/* train.c - the recipe, from top to bottom. A scene is trained by ted4_gradient_step again and
- * again; at four of these steps something is found out first, which takes as long as many. Source:
- * paper; annex D.
+/* train.c - the training recipe, from top to bottom. A scene is trained by calling
+ * ted4_gradient_step again and again. Before four of these steps, an experiment answers a question
+ * about the model first, which takes as long as many steps. Source: paper; annex D.
  * SPDX-License-Identifier: BSD-2-Clause */
 #include "train.h"
 
@@ -11,17 +11,17 @@
 #include "train/step/events.h"
 #include "train/step/step.h"
 
-/* What is found out before the next step. */
+/* The experiment that precedes the next step. */
 typedef struct {
-    int (*run)(ted4_trainer *t); /* NULL: nothing is */
+    int (*run)(ted4_trainer *t); /* NULL: none */
     ted4_busy busy;
-    double steps; /* training steps that it takes at most */
+    double steps; /* upper bound of its duration, in training steps */
 } experiment;
 
 static const experiment nothing = { NULL, TED4_BUSY_TRAINING, 0 };
 
-/* Stage 1: the model learns to draw the pictures, and anchors grow where they are missing. Does the
- * scene need time at all? */
+/* Stage 1: the model learns to render the pictures, and anchors grow where they are missing. The
+ * question: does the scene need time at all? */
 static experiment in_stage1(const ted4_trainer *t)
 {
     return ted4_probe_due(t)
@@ -29,8 +29,8 @@ static experiment in_stage1(const ted4_trainer *t)
                : nothing;
 }
 
-/* Stage 2: its bits count as well as the pictures. How much model does the scene need? And, when
- * the integer stage is about to begin: how fine do the weights of the prior have to be? */
+/* Stage 2: the loss includes the rate. The questions: how large a model does the scene need? And,
+ * just before the integer stage begins: how fine must the prior's weights be? */
 static experiment in_stage2(const ted4_trainer *t)
 {
     if (t->search.decided == TED4_DECIDED_NOTHING && t->iteration == ted4_model_search_due_step(t))
@@ -41,8 +41,9 @@ static experiment in_stage2(const ted4_trainer *t)
     return nothing;
 }
 
-/* The integer stage, the end of stage 2: the prior is that of the file and stands still, and the
- * rest goes on learning with it. Which anchors and Gaussians are worth their bits? */
+/* The integer stage at the end of stage 2: the prior is the one of the file and no longer changes,
+ * while the other parameters go on learning with it. The question: which anchors and Gaussians are
+ * worth their bits? */
 static experiment in_integer_stage(const ted4_trainer *t)
 {
     return t->search.decided == TED4_DECIDED_BITS

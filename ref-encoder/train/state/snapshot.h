@@ -1,5 +1,5 @@
-/* snapshot.h - the whole state of a trainer as bytes in memory; monitor/checkpoint.h takes and
- * restores it.
+/* snapshot.h - the whole state of a trainer as bytes in memory. monitor/checkpoint.h takes and
+ * restores snapshots.
  * SPDX-License-Identifier: BSD-2-Clause */
 #ifndef TED4_SNAPSHOT_H
 #define TED4_SNAPSHOT_H

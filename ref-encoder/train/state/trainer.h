@@ -17,109 +17,116 @@
 #include "train/rate/rate.h"
 #include "train/splat/generator.h"
 
-/* Pictures in random order without replacement, then reshuffled. */
+/* The order of the training pictures: random without replacement, then reshuffled. */
 typedef struct {
     uint32_t *item; /* owned: picture numbers */
     uint32_t n, next;
     uint64_t key, round;
 } ted4_order;
 
-/* What one step measured; running means over about 100 steps. */
+/* Measurements of the steps: running means over about 100 steps. */
 typedef struct {
     double loss, l1, ssim;
     double last_loss;        /* of the last step alone */
-    double bits[TED4_TYPES]; /* per anchor, over the anchors whose rate was evaluated */
+    double bits[TED4_TYPES]; /* bits per anchor, over the anchors whose rate was evaluated */
     double splats;           /* Gaussians that reached the screen */
-    double splat_pixels;     /* times the pixels of the picture */
+    double splat_pixels;     /* Gaussians on screen times pixels of the picture */
 } ted4_progress;
 
-/* Buffers of one step, by visible block. */
+/* Buffers of one step, indexed by visible block. */
 typedef struct {
     size_t n, capacity;
-    uint32_t *block;              /* [n] */
-    uint32_t *lanes;              /* [n] */
-    uint32_t *drawn;              /* [n] place of its Gaussians among those drawn: its own, until
-                                     ted4_update_rate puts visible blocks in another order */
+    uint32_t *block; /* [n] */
+    uint32_t *lanes; /* [n] */
+    /* [n] Index of its Gaussians among those rendered: the block's own index, until
+     * ted4_update_rate reorders the visible blocks. */
+    uint32_t *drawn;
     const float **position;       /* [n] */
-    const float **raw, **used;    /* [n] values as stored, as rendered (quantised in stage 2) */
+    const float **raw, **used;    /* [n] values as stored; as rendered (quantised in stage 2) */
     float **gradient;             /* [n] blocks of n_channels */
     float **steps;                /* [n] */
-    float *quantised, *gradients; /* storage behind used and gradient */
-    float *squares;               /* [n][TED4_BLOCK_TERMS + 1]: grad_norm.h */
+    float *quantised, *gradients; /* memory behind used and gradient */
+    float *squares;               /* [n][TED4_BLOCK_TERMS + 1]: see grad_norm.h */
 } ted4_visible_blocks;
 
-/* What steps are for: training, or finding something out. */
+/* The purpose of the current steps: training, the static test, or trials of the searches. */
 typedef enum { TED4_BUSY_TRAINING, TED4_BUSY_PROBE, TED4_BUSY_TRIALS } ted4_busy;
 
-/* A program that watches: look is called after every step, those of probes and trials, too, and
- * after every file that a trial makes. It decides nothing, but that what probes and trials do ends
- * at once where it is not 0: the step at hand then fails, and stopped says why. */
+/* The program that watches the training. look is called after every step, including those of probes
+ * and trials, and after every file that a trial writes. Its return value matters only during probes
+ * and trials: if it is not 0, they end at once. The current step then fails, and stopped is set. */
 typedef struct {
-    int (*look)(void *user); /* NULL: nobody watches */
+    int (*look)(void *user); /* NULL: no onlooker */
     void *user;              /* borrowed */
     int stopped;
     ted4_busy busy;
-    double spent, budget; /* of a probe, or of trials: training steps, so far and at most */
+    double spent,
+        /* Training steps of the probe or of the trials: done so far, and upper bound. */
+        budget;
 } ted4_onlooker;
 
-/* The networks, and Adam's moments of them. */
+/* Network parameters with their Adam moments. */
 typedef struct {
     float *value, *m, *v, *gradient; /* owned, [n_net] */
-    int bits[TED4_WEIGHT_GRIDS];     /* of weights in the file: weight_grid.h */
-    uint8_t *shift; /* owned, [n_units]; set when the integer stage starts, else NULL */
+    int bits[TED4_WEIGHT_GRIDS];     /* bits per weight in the file, for each grid: weight_grid.h */
+    /* Owned, [n_units]. Allocated when the integer stage begins, NULL before. */
+    uint8_t *shift;
 } ted4_networks;
 
-/* Where in the recipe training stands. */
+/* The current phase of the recipe. */
 typedef struct {
     int stage2, integer;
-    int clock_stopped;            /* draw everything at time 0 and without activation */
-    uint64_t stage2_start;        /* Adam's count restarts there */
-    ted4_header rate_norm_header; /* the first header, in stage 2 that at its start: a bit and a
-                            mask go on weighing what they weighed in that model */
+    int clock_stopped;     /* render everything at time 0 and without activation */
+    uint64_t stage2_start; /* Adam's step count restarts there */
+    /* The initial header; from the start of stage 2 on, the header at that start. The weights of a
+     * bit and of a mask refer to this model, whatever becomes of it later. */
+    ted4_header rate_norm_header;
 } ted4_phase;
 
-/* Workspaces and pictures of a step. */
+/* Workspaces and images of a step. */
 typedef struct {
     ted4_generator *generator;
     ted4_rate *rate;
     ted4_raster *raster;
     ted4_adjoint *adjoint;
     ted4_loss_workspace *loss;
-    float *image, *d_image; /* owned: planar, of the largest picture */
+    float *image, *d_image; /* owned: planar, sized for the largest picture */
     float *splat_storage;   /* owned: gradients of splats */
     uint8_t *splat_visible; /* owned */
     size_t splat_capacity;
-    ted4_splat_grads splat_gradient; /* borrows from these */
+    ted4_splat_grads splat_gradient; /* borrows from splat_storage and splat_visible */
 } ted4_step_work;
 
-/* Everything. Each part says which folder writes it; those above read it. */
+/* The whole state. Each part names the folder that writes it; the folders above that one read
+ * it. */
 typedef struct {
-    /* Given: step/trainer_init.h. */
+    /* Inputs: set by step/trainer_init.h. */
     ted4_train_options opt;
     ted4_dataset *data;            /* borrowed */
     const ted4_parallel *parallel; /* borrowed */
 
-    /* What is learnt: by step/; densify/ adds and removes anchors, resize/ and search/ change the
-     * layout. */
+    /* Learnt parameters: updated by step/; densify/ adds and removes anchors, resize/ and search/
+     * change the layout. */
     ted4_layout layout;
     ted4_anchors anchors;
     ted4_networks net;
-    ted4_colour colour; /* no cameras when switched off */
-    double voxel;       /* voxel of growth, normalised space */
+    ted4_colour colour; /* no cameras if colour correction is off */
+    double voxel;       /* voxel size for growth, in normalised space */
 
-    /* How far training has come: step/. */
+    /* Progress of the training: step/. */
     uint64_t iteration; /* steps done */
-    double seconds; /* that they took, over all runs that shared checkpoints: kept for the program,
-                       decides nothing */
+    /* Seconds spent on these steps, over all runs that shared checkpoints. Kept for the program
+     * only; no decision depends on them. */
+    double seconds;
     ted4_phase phase;
     ted4_order order;
     ted4_progress progress;
     ted4_monitor monitor;
 
-    /* What has been found out about the size of the model: search/. */
+    /* Results about the size of the model: search/. */
     ted4_search search;
 
-    /* Buffers, of no meaning between steps: state/. */
+    /* Buffers whose contents have no meaning between steps: state/. */
     ted4_visible_blocks visible_blocks;
     ted4_step_work work;
 
@@ -129,30 +136,31 @@ typedef struct {
 
 /* ---- memory.c ---- */
 
-/* Fresh workspaces and network arrays after t->layout changed; the arrays are zero. 0, or -1 with
- * t->message. */
+/* Allocates new workspaces and network arrays after t->layout has changed; the arrays are zero.
+ * Returns 0, or -1 with t->message. */
 int ted4_trainer_rebuild(ted4_trainer *t);
-/* Frees all that t owns, and clears it. */
+/* Frees everything that t owns, and clears it. */
 void ted4_trainer_finish(ted4_trainer *t);
 
 /* ---- trainer.c ---- */
 
-/* Writes t->message, as printf does. Returns -1. */
+/* Writes t->message, formatted as by printf. Returns -1. */
 int ted4_trainer_fail(ted4_trainer *t, const char *format, ...);
-/* Are all network weights, all colour maps and, if wanted, all values and positions of anchors
- * finite? The rasteriser passes over Gaussians that are not, so the loss alone does not tell. 0, or
- * -1 with t->message. */
+/* Checks that all network weights, all colour maps and, if anchors is not 0, all values and
+ * positions of anchors are finite. The rasteriser skips Gaussians that are not finite, so the loss
+ * alone does not reveal them. Returns 0, or -1 with t->message. */
 int ted4_trainer_check(ted4_trainer *t, int anchors);
 
-/* What steps are for from here on, and how many there will be at most. */
+/* Declares the purpose of the steps that follow, and an upper bound of their number. */
 void ted4_trainer_busy(ted4_trainer *t, ted4_busy busy, double budget);
-/* The onlooker's turn; so many steps were spent. 0, or -1 with t->message: it wants the work to
- * end. */
+/* Reports to the onlooker that so many steps were spent. Returns 0, or -1 with t->message if the
+ * onlooker ends the work. */
 int ted4_trainer_report(ted4_trainer *t, double spent);
 
-/* Values an anchor that a bit's weight is spread over: of the model at the start of stage 2. */
+/* The rate norm: the number of values per anchor over which the weight of a bit is spread, in the
+ * model at the start of stage 2 (before stage 2: in the initial model). */
 double ted4_rate_norm(const ted4_trainer *t);
-/* Total steps of both stages. */
+/* Total number of steps in both stages. */
 uint64_t ted4_trainer_total(const ted4_trainer *t);
 
 #endif

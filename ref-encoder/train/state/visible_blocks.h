@@ -1,4 +1,4 @@
-/* visible_blocks.h - which blocks a view sees, and the buffers of a step, filled for them. Depends
+/* visible_blocks.h - which blocks a view sees, and the buffers of a step for these blocks. Depends
  * on trainer.h.
  * SPDX-License-Identifier: BSD-2-Clause */
 #ifndef TED4_VISIBLE_BLOCKS_H
@@ -6,14 +6,14 @@
 
 #include "trainer.h"
 
-/* Bit j: anchor j of the block can be seen. */
+/* Bit j of the result: anchor j of the block is visible. */
 uint32_t ted4_block_visible(const ted4_trainer *t, size_t block, const ted4_view *v);
 
-/* t->visible blocks become the blocks that v sees, in order; NULL: all blocks. 0, or -1 with
- * t->message. */
+/* Sets t->visible_blocks to the blocks that v sees, in order of their numbers; v NULL: to all
+ * blocks. Returns 0, or -1 with t->message. */
 int ted4_visible_blocks_fill(ted4_trainer *t, const ted4_view *v);
-/* In stage 2: fills visible blocks.used, from values and steps as they are now. In stage 1 that is
- * raw. */
+/* In stage 2, fills t->visible_blocks.used from the current values and step sizes. In stage 1, used
+ * is the same as raw. */
 void ted4_visible_blocks_quantise(ted4_trainer *t, ted4_quant quant);
 /* Frees the buffers. */
 void ted4_visible_blocks_finish(ted4_visible_blocks *s);
