@@ -1,17 +1,18 @@
-/* densify.h - where anchors are missing and where they are not needed. Source: paper, "Preliminary:
- * ScaffoldGS", with the opacity taken after activation ("Progressive 3D-to-4D Anchor
- * Transformation"); annex D.1. Depends on trainer.h.
+/* densify.h - growth and pruning of anchors. Source: paper, "Preliminary: ScaffoldGS", with the
+ * opacity taken after activation ("Progressive 3D-to-4D Anchor Transformation"); annex D.1. Depends
+ * on trainer.h.
  * SPDX-License-Identifier: BSD-2-Clause */
 #ifndef TED4_DENSIFY_H
 #define TED4_DENSIFY_H
 
 #include "train/state/trainer.h"
 
-/* Adds the statistics of a step. */
+/* Adds the statistics of one training step. */
 void ted4_densify_gather(ted4_trainer *t, const ted4_generate_input *in, const ted4_splats *s);
-/* Grows by at most room anchors, and prunes. 0, or -1 with t->message. */
+/* Grows by at most room anchors, then prunes. Returns 0, or -1 with t->message filled. */
 int ted4_densify_adjust(ted4_trainer *t, size_t room);
-/* Lanes of a visible block whose activation is at least a half now. */
+/* Returns a mask of the lanes of a visible block whose activation at the query time is at least a
+ * half. */
 uint32_t ted4_lanes_there(const ted4_generate_input *in, size_t visible);
 
 #endif

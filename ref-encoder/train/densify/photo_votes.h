@@ -1,5 +1,5 @@
-/* photo_votes.h - at which times a colour is seen at a place: what tells things that come and go
- * from things that stay. Depends on trainer.h, alternating_cameras.h.
+/* photo_votes.h - photo votes: in which frames a given colour is seen at a given point. They tell
+ * short-lived content from permanent content. Depends on trainer.h, alternating_cameras.h.
  * SPDX-License-Identifier: BSD-2-Clause */
 #ifndef TED4_PHOTO_VOTES_H
 #define TED4_PHOTO_VOTES_H
@@ -7,7 +7,8 @@
 #include "train/state/trainer.h"
 #include "alternating_cameras.h"
 
-/* Colours agree when they differ by less than this many of 255, averaged over the channels. */
+/* Two colours agree if they differ by less than this many steps of 255, averaged over the
+ * channels. */
 #define TED4_COLOUR_NEAR 28
 static inline int ted4_colour_far(const uint8_t a[3], const uint8_t b[3])
 {
@@ -21,8 +22,8 @@ static inline int ted4_colour_agrees(const uint8_t a[3], const uint8_t b[3])
     return ted4_colour_far(a, b) < 3 * TED4_COLOUR_NEAR;
 }
 
-/* Pixel number (row major) and depth of a point of normalised space in a view; 0 where it is not in
- * the picture. */
+/* Projects p, a point in normalised space, into a view. Fills the pixel number (row major) and the
+ * depth. Returns 0 if the point lies outside the picture, else 1. */
 static inline int ted4_view_pixel(const ted4_view *v, const float p[3], size_t *pixel, float *depth)
 {
     const float z = v->R[6] * p[0] + v->R[7] * p[1] + v->R[8] * p[2] + v->t[2];
@@ -46,35 +47,40 @@ typedef struct {
     const uint8_t *colour; /* borrowed: [n][3] */
     size_t n;
     uint32_t n_frames;
-    uint16_t *hits, *seen; /* owned: [n_frames][n] training cameras that agree, training cameras
-                              that look there */
+    uint16_t *hits, *seen; /* owned: [n_frames][n] number of training cameras that agree, and that
+                              observe the point */
 } ted4_photo_votes;
 
-/* Looks at every training picture. Those of reach frames before and after a frame count as its own
- * (alternating_cameras.h). 0, or -1 with t->message. Free it in either case. */
+/* Counts the votes of all training pictures. A picture also counts for the reach frames before and
+ * after its own (alternating_cameras.h). Returns 0, or -1 with t->message filled; free s in either
+ * case. */
 int ted4_photo_votes_count(ted4_photo_votes *s, ted4_trainer *t, const float *point,
                            const uint8_t *colour, size_t n, uint32_t reach);
 void ted4_photo_votes_free(ted4_photo_votes *s);
 
-/* Frames from..to; how many frames before and after them the next time is at which the thing is
- * known to be gone, 1 where there is none. */
+/* The frames from..to in which something exists. before and after: distance in frames to the
+ * nearest earlier and later frame in which it is known to be absent; 1 if there is no such
+ * frame. */
 typedef struct {
     uint32_t from, to, before, after;
 } ted4_span;
 
-/* The time at which the largest share of the cameras that look there see the colour of point i. */
+/* Returns the frame in which the colour of point i is seen by the largest share of the cameras that
+ * observe the point. */
 uint32_t ted4_photo_votes_best(const ted4_photo_votes *s, size_t i);
 
-/* The run of times around a frame at which the colour of point i is there: what comes back is there
- * in several runs. Times at which fewer than TED4_CAMERAS_NEEDED cameras look there, held-out ones
- * for example, neither end a run nor count. 0: at that frame fewer than half of the cameras see the
- * colour, or clearly fewer than at its best; or it does not come and go: it is there at more than
- * half of the times, and nearly all cameras miss it at less than a quarter of them. */
+/* Finds the run of frames around a given frame in which the colour of point i is present; content
+ * that returns has several runs. Frames in which fewer than TED4_CAMERAS_NEEDED cameras observe the
+ * point (held-out frames, for example) neither end a run nor count. Returns 1 with *span filled, or
+ * 0 in either of two cases: in that frame, fewer than half of the cameras see the colour, or
+ * clearly fewer than in the best frame; or the content is permanent, that is, present in more than
+ * half of the frames, and missed by nearly all cameras in fewer than a quarter of them. */
 int ted4_photo_votes_span(const ted4_photo_votes *s, size_t i, uint32_t frame, ted4_span *span);
 
-/* Activation of anchor i over a span, almost gone at the times next to it: what moves by its own
- * size in a frame would else be seen at three places at once. Over times that nobody knows it fades
- * slowly: half-way what was there before and what comes then are seen together. */
+/* Sets the activation of anchor i to cover a span. It almost vanishes in the frames next to the
+ * span: something that moves by its own size from frame to frame would otherwise appear at three
+ * places at once. Across frames with too few observations it fades slowly, so that half-way both
+ * the old and the new content are visible. */
 void ted4_span_set(ted4_trainer *t, size_t i, const ted4_span *span);
 
 #endif

@@ -1,5 +1,5 @@
-/* plane_sweep.h - places at which several cameras agree about something that the model does not
- * show: see mv_seed.h. Depends on trainer.h.
+/* plane_sweep.h - finds places at which several cameras agree about something that the model fails
+ * to render; see mv_seed.h. Depends on trainer.h.
  * SPDX-License-Identifier: BSD-2-Clause */
 #ifndef TED4_PLANE_SWEEP_H
 #define TED4_PLANE_SWEEP_H
@@ -11,12 +11,12 @@ typedef struct {
     float point[3];
     uint8_t colour[3];
     uint32_t frame;
-    float size;  /* distance of neighbouring places, normalised space */
-    float score; /* agreement of the cameras times the error; larger is surer */
+    float size;  /* spacing of neighbouring places, normalised space */
+    float score; /* agreement of the cameras times the error; higher is more reliable */
 } ted4_place;
 
-/* For qsort: by falling score; only places that are equal in everything compare as equal, so that
- * their order does not depend on how qsort works. */
+/* For qsort: sorts by decreasing score. Only places that are equal in every member compare as
+ * equal, so that their order does not depend on the qsort implementation. */
 int ted4_place_compare(const void *x, const void *y);
 
 typedef struct {
@@ -24,16 +24,18 @@ typedef struct {
     size_t n, capacity;
 } ted4_places;
 
-/* So many places a sequence may have: each is looked for in all frames, and places times frames are
- * at most 2^27, four bytes each (photo_votes.h). Only long sequences come near. */
+/* Returns the largest number of places for a sequence. Each place is looked up in every frame, and
+ * places times frames must not exceed 2^27, at four bytes each (photo_votes.h). Only long sequences
+ * come near this limit. */
 static inline size_t ted4_mv_seed_capacity(uint32_t n_frames)
 {
     return ((size_t)1 << 27) / n_frames;
 }
 
-/* Adds places missing at a frame to the list, at most one a voxel of the place's size, and of long
- * sequences only the surest, its share of that number or one; in a fixed order. reach: how many
- * frames before and after it have pictures that help. 0, or -1 with t->message. */
+/* Appends the places that the model misses in one frame to the list, in a fixed order. It adds at
+ * most one place per voxel of the place's size. In long sequences it keeps only the most reliable
+ * ones, up to the frame's share of ted4_mv_seed_capacity, but at least one. reach: how many frames
+ * before and after lend their pictures. Returns 0, or -1 with t->message filled. */
 int ted4_mv_seed_search(ted4_trainer *t, uint32_t frame, uint32_t reach, ted4_places *list);
 
 #endif
