@@ -1,5 +1,6 @@
 /* lane_math.h - the functions of spec 11 and 12.2 in fast binary32, written so that `#pragma omp
- * simd` loops over lanes vectorise them. For files compiled once a level (render/leveled.h).
+ * simd` loops over lanes vectorise them. For files that are compiled once per level
+ * (render/leveled.h).
  * SPDX-License-Identifier: BSD-2-Clause */
 #ifndef TED4_LANE_MATH_H
 #define TED4_LANE_MATH_H
@@ -13,15 +14,15 @@
 
 #define TED4_LN2 0x1.62e43p-1f
 
-/* x, or the nearer end of the range, or low for a NaN: fit for an integer. */
+/* Clamps x to [low, high]; a NaN gives low. The result is safe to convert to an integer. */
 static inline float ted4_lane_within(float x, float low, float high)
 {
     x = x > low ? x : low;
     return x < high ? x : high;
 }
 
-/* x where on is -1, 0 where it is 0, whatever x: by bits, which every instruction set vectorises.
- */
+/* Returns x if on is -1 and 0 if on is 0, even if x is NaN. It works on bits, which every
+ * instruction set vectorises. */
 static inline float ted4_lane_keep(int32_t on, float x)
 {
     int32_t bits;
@@ -33,8 +34,8 @@ static inline float ted4_lane_keep(int32_t on, float x)
     return kept;
 }
 
-/* The integer nearest to x, |x| < 2^22, ties to even: adding this constant leaves no bits for a
- * fraction. SSE2 has no instruction for it. */
+/* Returns the integer nearest to x, |x| < 2^22, ties to even: adding the constant leaves no bits
+ * for a fraction. SSE2 has no instruction for this. */
 static inline float ted4_lane_round(float x)
 {
     const float magic = 0x1.8p+23f;
@@ -42,8 +43,8 @@ static inline float ted4_lane_round(float x)
     return (x + magic) - magic;
 }
 
-/* 2^x, x clamped to [-126, 126], to about 1e-7; NaN of a NaN. x + 126.5 is positive, so that
- * truncation rounds x to the nearest integer. */
+/* Returns 2^x with x clamped to [-126, 126], accurate to about 1e-7; a NaN gives NaN. x + 126.5 is
+ * positive, so that truncation rounds x to the nearest integer. */
 static inline float ted4_lane_pow2(float x)
 {
     const float c = x < -126.0f ? -126.0f : x > 126.0f ? 126.0f : x;
@@ -68,7 +69,7 @@ static inline float ted4_lane_sigmoid(float x)
     return 1.0f / (1.0f + ted4_lane_pow2(-x * TED4_LOG2E));
 }
 
-/* Forward was y = max(0, x), of n values. */
+/* Adjoint of y = max(0, x), for n values. */
 static inline void ted4_relu_backward(const float *y, size_t n, float *d)
 {
 #pragma omp simd
@@ -76,13 +77,15 @@ static inline void ted4_relu_backward(const float *y, size_t n, float *d)
         d[i] = y[i] > 0.0f ? d[i] : 0.0f;
 }
 
-/* Gradient d of a clamped x: outside, only what a descent step would use to come back. */
+/* Returns the gradient of a clamped x. Outside the range, only the part by which a descent step
+ * moves x back inside is kept. */
 static inline float ted4_inward(float x, float low, float high, float d)
 {
     return (x <= low && d > 0.0f) || (x >= high && d < 0.0f) ? 0.0f : d;
 }
 
-/* Lanes of a set as -1 and 0, to choose with: as 1.0 and 0.0 they would let NaN through. */
+/* Expands a lane mask to -1 and 0 per lane, for selection by bits: factors of 1.0 and 0.0 would let
+ * NaN through. */
 static inline void ted4_lane_set(uint32_t lanes, int32_t *on)
 {
     for (int j = 0; j < TED4_LANES; j++)

@@ -1,13 +1,13 @@
-/* random.h - counter-based random numbers for the trainer: a function of (key, counter), so that
- * nothing depends on the order of calls.
+/* random.h - counter-based random numbers for the trainer: each is a function of (key, counter), so
+ * results do not depend on the order of calls.
  * SPDX-License-Identifier: BSD-2-Clause */
 #ifndef TED4_RANDOM_H
 #define TED4_RANDOM_H
 
 #include <stdint.h>
 
-/* A bijective mix of 64 bits (two xor-shift-multiply rounds, odd constants from the golden ratio
- * and pi). */
+/* A bijective mix of 64 bits (two rounds of xor-shift and multiplication; odd constants from the
+ * golden ratio and pi). */
 static inline uint64_t ted4_mix(uint64_t x)
 {
     x += 0x9e3779b97f4a7c15u;
@@ -16,8 +16,8 @@ static inline uint64_t ted4_mix(uint64_t x)
     return x ^ (x >> 32);
 }
 
-/* Mixes 64 bits for the noise of quantisation, which needs less than ted4_mix: two rounds of shift,
- * xor and multiplication by odd constants (digits of pi). */
+/* Mixes 64 bits for quantisation noise, which needs less mixing than ted4_mix gives: two rounds of
+ * xor-shift and multiplication by odd constants (digits of pi). */
 static inline uint64_t ted4_mix_short(uint64_t x)
 {
     x = (x ^ (x >> 32)) * 0x243f6a8885a308d3u;
@@ -25,19 +25,19 @@ static inline uint64_t ted4_mix_short(uint64_t x)
     return x ^ (x >> 32);
 }
 
-/* Uniform 64 bits of a stream. */
+/* Returns 64 uniform bits of the stream of a key. */
 static inline uint64_t ted4_random(uint64_t key, uint64_t counter)
 {
     return ted4_mix(ted4_mix(key) ^ (counter * 0xd1342543de82ef95u));
 }
 
-/* Uniform in [0, 1), 24 bits. */
+/* Returns a uniform number in [0, 1) with 24 bits. */
 static inline float ted4_uniform(uint64_t key, uint64_t counter)
 {
     return (float)(ted4_random(key, counter) >> 40) * 0x1p-24f;
 }
 
-/* Uniform integer in [0, n), n > 0; the bias of the product method is below n / 2^32. */
+/* Returns a uniform integer in [0, n), n > 0; the bias of the product method is below n / 2^32. */
 static inline uint32_t ted4_below(uint64_t key, uint64_t counter, uint32_t n)
 {
     return (uint32_t)(((ted4_random(key, counter) >> 32) * n) >> 32);

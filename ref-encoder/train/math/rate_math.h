@@ -1,6 +1,6 @@
 /* rate_math.h - elementary functions of the rate model, written so that `#pragma omp simd` loops
- * over lanes vectorise them. For files compiled once a level (render/leveled.h). spec 9.4 (what is
- * approximated).
+ * over lanes vectorise them. For files that are compiled once per level (render/leveled.h). They
+ * approximate the functions of spec 9.4.
  * SPDX-License-Identifier: BSD-2-Clause */
 #ifndef TED4_RATE_MATH_H
 #define TED4_RATE_MATH_H
@@ -8,16 +8,15 @@
 #include "base/bytes.h"
 #include "lane_math.h"
 
-/* x, or the nearer end of the range; a NaN stays one (and does not with ted4_lane_within, for
- * integers). */
+/* Clamps x to [low, high]; a NaN stays NaN (unlike in ted4_lane_within, which is for integers). */
 static inline float ted4_lane_limit(float x, float low, float high)
 {
     x = x < low ? low : x;
     return x > high ? high : x;
 }
 
-/* log2 of a normal x > 0: x = 2^n m with m in [sqrt(1/2), sqrt 2), then the series of the inverse
- * hyperbolic tangent of (m - 1) / (m + 1). */
+/* Returns log2 of a normal x > 0: x = 2^n m with m in [sqrt(1/2), sqrt 2), then the series of the
+ * inverse hyperbolic tangent of (m - 1) / (m + 1). */
 static inline float ted4_lane_log2(float x)
 {
     const uint32_t sqrt_half = 0x3f3504f3u;
@@ -34,7 +33,7 @@ static inline float ted4_lane_log2(float x)
     return ted4_fma(z, p, (float)n);
 }
 
-/* tanh x for |x| <= 0.3, by its series. */
+/* Returns tanh x for |x| <= 0.3, by its series. */
 static inline float ted4_lane_tanh_small(float x)
 {
     const float xx = x * x;
@@ -48,8 +47,8 @@ static inline float ted4_lane_tanh_small(float x)
     return p * x;
 }
 
-/* Density of the standard normal distribution; far out, where it no longer matters, it stays at
- * 2^-120 so that nothing is subnormal. */
+/* Returns the density of the standard normal distribution. In the far tails, where the value no
+ * longer matters, it stays at 2^-120, so that nothing becomes subnormal. */
 static inline float ted4_lane_normal(float t)
 {
     const float e = t * t * (-0.5f * TED4_LOG2E);
@@ -57,8 +56,8 @@ static inline float ted4_lane_normal(float t)
     return 0.398942280f * ted4_lane_pow2(e < -120.0f ? -120.0f : e);
 }
 
-/* (1 - Phi(t)) / phi(t) for t >= 0, relative error 1e-7, given y = 1 / (1 + t/4): a polynomial
- * fitted for least relative error over t in [0, 196]. */
+/* Returns (1 - Phi(t)) / phi(t) for t >= 0, with a relative error of 1e-7, given y = 1 / (1 + t/4):
+ * a polynomial fitted for the smallest relative error over t in [0, 196]. */
 static inline float ted4_lane_mills(float y)
 {
     float p = 0.0510913221f;

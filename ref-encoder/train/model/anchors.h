@@ -9,16 +9,17 @@
 
 #include "model.h"
 
-/* Arrays are [n_blocks][rows][32]; unused lanes of the last block are zero. Kinds of rows: */
+/* Arrays are [n_blocks][rows][32]; unused lanes of the last block are zero. The kinds of rows: */
 typedef enum {
     TED4_ROW_VALUE, /* n_channels: the parameters (model.h) */
     TED4_ROW_M,
     TED4_ROW_V,        /* n_channels: Adam's moments */
     TED4_ROW_POSITION, /* 3, normalised space */
-    TED4_ROW_STEP,     /* TED4_TYPES: step sizes last seen (stage 2) */
-    TED4_ROW_OPACITY,  /* 3: summed opacity after activation, visits, visits while activation was at
-                          least a half */
-    TED4_ROW_GRADIENT, /* 2K: summed screen-space gradient, count, by offset */
+    TED4_ROW_STEP,     /* TED4_TYPES: the most recent step sizes (stage 2) */
+    TED4_ROW_OPACITY,  /* 3: summed opacity after activation, visits, and visits with an activation
+                          of at least a half */
+    TED4_ROW_GRADIENT, /* 2K: per offset, summed screen-space gradient, then per offset, its count
+                        */
     TED4_ROWS
 } ted4_row;
 
@@ -29,14 +30,16 @@ typedef struct {
     float *data[TED4_ROWS]; /* owned, 64-byte aligned */
 } ted4_anchors;
 
-/* 0, or -1: no memory. */
+/* Returns 0, or -1 if memory ran out. */
 int ted4_anchors_init(ted4_anchors *a, const ted4_layout *l);
 void ted4_anchors_finish(ted4_anchors *a);
-/* Room for n anchors; the new ones are zero. 0 or -1. */
+/* Makes room for n anchors; new ones are zero. Returns 0, or -1 if memory ran out. */
 int ted4_anchors_resize(ted4_anchors *a, size_t n);
-/* Keeps anchors order[0 .. n), in that order; indices may not repeat. 0 or -1. */
+/* Keeps the anchors order[0 .. n), in that order; indices must not repeat. Returns 0, or -1 if
+ * memory ran out. */
 int ted4_anchors_select(ted4_anchors *a, const uint32_t *order, size_t n);
-/* Sorts by the Morton code of spec 8 (of positions rounded to binary16), ties by index. 0 or -1. */
+/* Sorts by the Morton code of spec 8 (of positions rounded to binary16); ties by index. Returns 0,
+ * or -1 if memory ran out. */
 int ted4_anchors_sort(ted4_anchors *a);
 
 static inline float *ted4_block(const ted4_anchors *a, ted4_row k, size_t block)
@@ -50,7 +53,7 @@ static inline float *ted4_anchor_value(const ted4_anchors *a, ted4_row k, size_t
     return ted4_block(a, k, i / TED4_LANES) + (size_t)r * TED4_LANES + i % TED4_LANES;
 }
 
-/* Bits of the lanes of a block that hold anchors. */
+/* Returns a mask of the lanes of a block that hold anchors. */
 static inline uint32_t ted4_block_lanes(const ted4_anchors *a, size_t block)
 {
     const size_t left = a->n - block * TED4_LANES;

@@ -1,4 +1,4 @@
-/* options.h - what can be chosen about training, from options.def.
+/* options.h - the training options, defined in options.def.
  * SPDX-License-Identifier: BSD-2-Clause */
 #ifndef TED4_OPTIONS_H
 #define TED4_OPTIONS_H
@@ -16,12 +16,13 @@ typedef struct {
 #undef TED4_OPTION
 } ted4_train_options;
 
-/* "draft" .. "paper" and seed 0; -1: no such preset. */
+/* Sets all options to a preset, "draft" .. "paper", and the seed to 0. Returns 0, or -1 if there is
+ * no such preset. */
 int ted4_options_preset(ted4_train_options *o, const char *preset);
-/* "name=value" as --set takes it. 0, or -1 with why filled. */
+/* Sets one option from "name=value", as --set takes it. Returns 0, or -1 with why filled. */
 int ted4_options_set(ted4_train_options *o, const char *text, char *why, size_t why_size);
-/* Presets and options by number, in the order of their table; NULL beyond its end. value: what o
- * has. stage: the first that it touches. */
+/* Presets and options by number, in the order of their table. Names are NULL beyond its end. value:
+ * the option's value in o. stage: the first stage that the option affects. */
 const char *ted4_options_preset_name(int i);
 const char *ted4_options_name(int i);
 double ted4_options_value(const ted4_train_options *o, int i);
@@ -32,10 +33,10 @@ enum {
 #include "options.def"
 #undef TED4_OPTION
 };
-/* The table of names, presets and help. */
+/* Prints the table of names, presets and help. */
 void ted4_options_help(FILE *out);
-/* A hash of the values that decide the state at the end of stage 1 or 2: a checkpoint belongs to
- * them. */
+/* Returns a hash of the values that determine the state at the end of stage 1 or 2; it identifies
+ * the options that a checkpoint belongs to. */
 uint64_t ted4_options_hash(const ted4_train_options *o, int stage);
 
 #endif
