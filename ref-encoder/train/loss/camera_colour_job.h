@@ -1,4 +1,4 @@
-/* camera_colour_job.h - a picture of which colours are corrected, in bands of pixels. Private to
+/* camera_colour_job.h - the job of correcting a picture's colours in bands of pixels. Private to
  * camera_colour.c and camera_colour_bands.c.
  * SPDX-License-Identifier: BSD-2-Clause */
 #ifndef TED4_CAMERA_COLOUR_JOB_H
@@ -7,8 +7,8 @@
 #include "camera_colour.h"
 #include "render/leveled.h"
 
-/* Pixels whose products are summed in single precision, pixels of one job, and where v begins in a
- * map. */
+/* Number of pixels whose products are summed in single precision, number of pixels of one job, and
+ * index of v in a map. */
 enum { TED4_COLOUR_RUN = 1024, TED4_COLOUR_BAND = 16 * TED4_COLOUR_RUN, TED4_COLOUR_ROW_V = 9 };
 
 typedef struct {
@@ -19,7 +19,7 @@ typedef struct {
 } ted4_colour_job;
 
 TED4_EACH_LEVEL(void, ted4_colour_apply_band, void *job, size_t band);
-/* sums of the band, then the gradient turned. */
+/* Writes the sums of the band, then transforms the gradient by the map. */
 TED4_EACH_LEVEL(void, ted4_colour_backward_band, void *job, size_t band);
 
 #endif

@@ -84,7 +84,7 @@ struct ted4_rate {
     ted4_rate_net hyper, slice[TED4_MAX_SLICES];
     ted4_dense step;     /* the rows v of the hyperprior's last layer; the other rows are in
                             hyper.layer[n - 1] */
-    size_t n_workspaces; /* length of the three arrays below */
+    size_t n_workspaces; /* entries of the three arrays below that can be used */
     ted4_rate_workspace workspace[TED4_RATE_WAVE];
     atomic_flag busy[TED4_RATE_WAVE];
     ted4_rate_sums sums[TED4_RATE_WAVE];
