@@ -6,14 +6,15 @@
 
 #include "train/model/splat_grads.h"
 
-/* The workspace of the adjoint: memory that is kept from call to call. */
+/* The workspace of the adjoint: memory that is reused from call to call. */
 typedef struct ted4_adjoint ted4_adjoint;
 
 ted4_adjoint *ted4_adjoint_new(void); /* NULL: no memory */
 void ted4_adjoint_free(ted4_adjoint *a);
 
-/* After ted4_raster_forward(r, keep_state = 1) with the same s and v. d_image: planar, as image.
- * Sums in fixed order: same bits for any number of threads. 0, or -1 when memory ran out. */
+/* Call after ted4_raster_forward(r, keep_state = 1) with the same s and v. d_image: planar, like
+ * image. Sums have a fixed order, so results are bit-identical for any number of threads. Returns
+ * 0, or -1 if memory ran out. */
 int ted4_raster_backward(ted4_adjoint *a, const ted4_raster *r, const ted4_splats *s,
                          const ted4_view *v, const ted4_parallel *p, const float *d_image,
                          const ted4_splat_grads *g);

@@ -28,7 +28,7 @@ typedef struct {
     int n; /* layers; 0 if the network does not exist */
     int dim[TED4_MAX_LAYERS + 1];
     size_t w[TED4_MAX_LAYERS],
-        b[TED4_MAX_LAYERS]; /* index in NETE of a layer's weights and biases */
+        b[TED4_MAX_LAYERS]; /* indices in NETE of a layer's weights, biases */
     ted4_dense layer[TED4_MAX_LAYERS];
 } ted4_rate_net;
 

@@ -15,8 +15,7 @@ typedef struct {
     ted4_header head;
     int offset[TED4_MAX_OFFSETS]; /* [head.n_offsets] old index of each offset */
     const ted4_pruned_units *feature, *phi, *bank, *position;
-    const ted4_pruned_units
-        *input[TED4_NETS_R]; /* inputs of the heads: feature and view direction */
+    const ted4_pruned_units *input[TED4_NETS_R]; /* of the heads: feature and view direction */
     const ted4_pruned_units *hidden[TED4_NETS_R][TED4_MAX_LAYERS],
         *hyper[TED4_MAX_LAYERS]; /* by layer, from 1 to the number of hidden layers */
     const ted4_pruned_units *slice[TED4_MAX_SLICES];

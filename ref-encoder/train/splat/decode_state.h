@@ -1,25 +1,26 @@
-/* decode_state.h - what ted4_generate keeps for ted4_generate_backward: the plan of planes,
- * packed weights, saved activations. A plane is one channel of 32 lanes. Private to this folder, of
- * which generator.c, net.c and deform_time.c are compiled once and the other files once per level.
+/* decode_state.h - what ted4_generate keeps for ted4_generate_backward: the layout of planes,
+ * packed weights, and saved activations. A plane is one channel of 32 lanes. Private to this
+ * folder, in which generator.c, net.c and deform_time.c are compiled once, and the other files once
+ * per level.
  * SPDX-License-Identifier: BSD-2-Clause */
 #ifndef TED4_DECODE_STATE_H
 #define TED4_DECODE_STATE_H
 
 #include "generator.h"
 
-/* Work is cut into this many chunks of visible blocks whatever the number of threads, so that sums
- * over visible blocks have one order. Within a chunk, weight gradients are taken over groups of
- * visible blocks, few enough to stay in the second-level cache. */
+/* Work is split into this many chunks of visible blocks for any number of threads, so that sums
+ * over visible blocks have a fixed order. Within a chunk, weight gradients are computed over groups
+ * of visible blocks, small enough to stay in the second-level cache. */
 enum { TED4_GEN_CHUNKS = 32, TED4_GEN_GROUP = 8 };
 
-/* Motion inr, spec 11.3: inputs made of the position and of the time. */
+/* Motion type inr, spec 11.3: numbers of inputs derived from the position and from the time. */
 enum {
     TED4_INR_OCTAVES = 10,
     TED4_INR_POINT = 3 + 6 * TED4_INR_OCTAVES,
     TED4_INR_TIME = 1 + 2 * TED4_INR_OCTAVES
 };
 
-/* Arrays of ted4_splats, in the order of its members. */
+/* Indices of the arrays of ted4_splats, in the order of its members. */
 enum {
     TED4_GEN_MEAN,
     TED4_GEN_SCALE = 3,
@@ -29,8 +30,8 @@ enum {
     TED4_GEN_ARRAYS = 14
 };
 
-/* One dense layer: input and output planes of a visible block, where W and then b lie in NETR,
- * where their gradients lie in a chunk's gradient array. */
+/* One dense layer: its input and output planes in a visible block; the index in NETR of W, followed
+ * by b; and the index of their gradients in a chunk's gradient array. */
 typedef struct {
     ted4_dense dense;
     int x, y;
@@ -42,58 +43,58 @@ typedef struct {
     ted4_gen_layer layer[TED4_MAX_LAYERS];
 } ted4_gen_chain;
 
-/* Planes of a visible block. Members are first planes; -1: absent. The attribute block is copied,
- * feature apart, with 0 in unused lanes. */
+/* Planes of a visible block. Each member is the index of the first plane; -1: absent. The attribute
+ * block is copied, with the feature kept apart from the rest and with 0 in unused lanes. */
 typedef struct {
-    int feature, view; /* F, then 3: the input of heads that see f (and the direction) */
+    int feature, view; /* F, then 3: the input of heads that see f (and the viewing direction) */
     int rest;          /* channels F .. of the block */
     int point;         /* inr: 63 encoded coordinates */
-    int moved;         /* f' (F), then 3 when view is full: the input of the covariance
-                        * head; = feature when nothing moves */
-    int size;          /* S: 6 */
-    int active;        /* A: 1 */
-    int moving;        /* 1.0 where the anchor moves: 1 */
-    int outputs;       /* the outputs of all layers, chain by chain */
-    int motion;        /* last layer of F_deform: y */
-    int opacity;       /* of the opacity head: 2 sigmoid(2 y) - 1 */
-    int covariance;    /* of the covariance head: 3 sigmoids, 4 y, K times */
-    int colour;        /* of the colour head: sigmoids */
+    int moved;   /* f' (F), then 3 if view is full: the input of the covariance head; equals feature
+                    if nothing moves */
+    int size;    /* S: 6 */
+    int active;  /* A: 1 */
+    int moving;  /* 1: 1.0 if the anchor moves */
+    int outputs; /* outputs of all layers, chain by chain */
+    int motion;  /* output y of the last layer of F_deform */
+    int opacity; /* output of the opacity head: 2 sigmoid(2 y) - 1 */
+    int covariance; /* output of the covariance head: 3 sigmoids, then 4 y; K times */
+    int colour;     /* output of the colour head: sigmoids */
     int n;
 } ted4_gen_planes;
 
-/* The first layer of F_deform is replaced by one that maps the lane's own inputs: everything that
- * is the same for all anchors at one time is multiplied into it (deform_time.c). */
+/* The first layer of F_deform is replaced by an effective layer that maps only the lane's own
+ * inputs: everything that is the same for all anchors at one time is multiplied into it
+ * (deform_time.c). */
 typedef struct {
-    int in, width;        /* effective layer: d or 63 inputs */
+    int in, width;        /* inputs of the effective layer (d or 63), and its outputs */
     int n_time;           /* length of z or E(t) */
-    float *time, *d_time; /* [n_time] owned: z or E(t) */
-    float *w, *b;         /* [width][in], [width] owned: effective weights */
-    float *d_w;           /* [width][in], then [width] owned: their gradient */
-    float *product;       /* [n_time][in + 1] owned: scratch of motion bank */
-    size_t row;           /* of the bank: z = (1 - mix) Z[row] + mix Z[row + 1] */
+    float *time, *d_time; /* [n_time] owned: z or E(t), and its gradient */
+    float *w, *b;   /* [width][in], [width] owned: weights and biases of the effective layer */
+    float *d_w;     /* [width][in], then [width] owned: their gradients */
+    float *product; /* [n_time][in + 1] owned: scratch, for motion type bank */
+    size_t row;     /* of the bank: z = (1 - mix) Z[row] + mix Z[row + 1] */
     float mix;
 } ted4_gen_motion;
 
 struct ted4_generator {
     ted4_layout layout;
     ted4_gen_planes plane;
-    ted4_gen_chain chain[TED4_NETS_R]; /* that of F_project is never used */
+    ted4_gen_chain chain[TED4_NETS_R]; /* the chain of F_project is never used */
     ted4_gen_motion motion;
     size_t n_effective; /* floats of the effective layer */
-    size_t net_tail;    /* NETR offset of the layer after it */
-    size_t n_grad;      /* floats of a chunk's gradients: effective layer, then
-                         * NETR from net_tail on */
-    float *grad;        /* [TED4_GEN_CHUNKS][n_grad] owned */
-    size_t d_size;      /* floats of the gradients of one visible block's layer outputs */
-    size_t d_chunk;     /* floats of one chunk's scratch: TED4_GEN_GROUP of those,
-                         * then d_feature, d_moved (F + 3 planes each) */
-    float *d_planes;    /* [TED4_GEN_CHUNKS][d_chunk] owned */
-    size_t capacity;    /* visible blocks there is room for */
-    float *saved;       /* [capacity][plane.n][32] owned */
-    float *splats;      /* [TED4_GEN_ARRAYS][capacity K 32] owned */
+    size_t net_tail;    /* NETR offset of the layer after the effective one */
+    size_t n_grad; /* floats of a chunk's gradients: the effective layer, then NETR from net_tail */
+    float *grad;   /* [TED4_GEN_CHUNKS][n_grad] owned */
+    size_t d_size; /* floats of the gradients of one visible block's layer outputs */
+    size_t d_chunk;  /* floats of one chunk's scratch: TED4_GEN_GROUP times d_size, then d_feature
+                        and d_moved (F + 3 planes each) */
+    float *d_planes; /* [TED4_GEN_CHUNKS][d_chunk] owned */
+    size_t capacity; /* number of visible blocks that fit */
+    float *saved;    /* [capacity][plane.n][32] owned */
+    float *splats;   /* [TED4_GEN_ARRAYS][capacity K 32] owned */
 };
 
-/* What both ways over the visible blocks are told. */
+/* The arguments of the forward and the backward pass over the visible blocks. */
 typedef struct {
     ted4_generator *g;
     const ted4_generate_input *in;
@@ -102,32 +103,34 @@ typedef struct {
     float *d_net;
 } ted4_gen_job;
 
-/* n floats, 64-byte aligned; NULL: no memory. */
+/* Returns n floats, 64-byte aligned, or NULL if memory ran out. Free with free(). */
 float *ted4_gen_alloc(size_t n);
 
-/* net.c: makes the plan, the layers and everything whose size does not depend on the
- * number of visible blocks. 0 or -1. */
+/* net.c: plans the planes and layers, and allocates everything whose size does not depend on the
+ * number of visible blocks. Returns 0 or -1. */
 int ted4_gen_plan(ted4_generator *g);
 
-/* deform_time.c. 0, or -1: no memory. */
+/* deform_time.c: returns 0, or -1 if memory ran out. */
 int ted4_gen_motion_init(ted4_gen_motion *m, const ted4_layout *l);
 void ted4_gen_motion_finish(ted4_gen_motion *m);
 /* Interpolates the bank or encodes the time, and makes the effective layer. */
 void ted4_gen_motion_make(ted4_generator *g, const ted4_generate_input *in);
-/* motion inr: E(p) of 32 points, [3][32] to [63][32]. */
+/* Motion type inr: computes E(p) of 32 points, from [3][32] to [63][32]. */
 void ted4_gen_encode_points(const float *position, float *to);
 
-/* decode_fwd.c: a ted4_gen_job for one visible block. decode_bwd.c: for the visible blocks of a
- * chunk; after all chunks, the sums of a range of gradients. */
+/* job is a ted4_gen_job. decode_fwd.c: ted4_gen_forward processes one visible block. decode_bwd.c:
+ * ted4_gen_backward processes the visible blocks of a chunk; ted4_gen_sum_range, after all chunks,
+ * sums a range of the gradients. */
 TED4_EACH_LEVEL(void, ted4_gen_forward, void *job, size_t visible);
 TED4_EACH_LEVEL(void, ted4_gen_backward, void *job, size_t chunk);
 TED4_EACH_LEVEL(void, ted4_gen_sum_range, void *job, size_t range);
 
-/* effective_layer.c. Of the motion bank: w has n_time columns, p n_time rows; else w has in +
- * n_time columns. */
+/* effective_layer.c: computes the effective layer. For motion type bank, w has n_time columns and p
+ * has n_time rows; otherwise, w has in + n_time columns and p is not used. */
 TED4_EACH_LEVEL(void, ted4_gen_make_effective, ted4_gen_motion *m, int is_bank, const float *w,
                 const float *p);
-/* Takes motion.d_w back to F_project, the first layer of F_deform and the bank: adds to d_net. */
+/* Backpropagates motion.d_w to F_project, the first layer of F_deform and the bank; adds to
+ * d_net. */
 TED4_EACH_LEVEL(void, ted4_gen_motion_backward, ted4_generator *g, const float *net, float *d_net);
 
 static inline size_t ted4_gen_stride(const ted4_generator *g)
@@ -145,7 +148,7 @@ static inline float *ted4_gen_plane(float *planes, int plane)
     return planes + (size_t)plane * TED4_LANES;
 }
 
-/* The saved copy of channel c of the attribute block. */
+/* Returns the saved copy of channel c of the attribute block. */
 static inline float *ted4_gen_channel(const ted4_generator *g, float *planes, int c)
 {
     const int f = g->layout.head.feature_dim;
@@ -153,8 +156,8 @@ static inline float *ted4_gen_channel(const ted4_generator *g, float *planes, in
     return ted4_gen_plane(planes, c < f ? g->plane.feature + c : g->plane.rest + c - f);
 }
 
-/* Splat array a (mean 3, scale 3, rotation 4, opacity, colour 3) from offset 0 of a visible block
- * on. */
+/* Returns splat array a (mean 3, scale 3, rotation 4, opacity, colour 3) of a visible block,
+ * starting at its offset 0. */
 static inline float *ted4_gen_splats(const ted4_generator *g, int a, size_t visible)
 {
     const size_t row = (size_t)g->layout.head.n_offsets * TED4_LANES;
@@ -162,7 +165,7 @@ static inline float *ted4_gen_splats(const ted4_generator *g, int a, size_t visi
     return g->splats + ((size_t)a * g->capacity + visible) * row;
 }
 
-/* First visible block of a chunk. */
+/* Returns the first visible block of a chunk. */
 static inline size_t ted4_gen_first(size_t n_visible, size_t chunk)
 {
     return n_visible * chunk / TED4_GEN_CHUNKS;

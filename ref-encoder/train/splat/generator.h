@@ -1,4 +1,5 @@
-/* generator.h - from anchors to Gaussians and back (spec 11).
+/* generator.h - the generator: turns anchors into Gaussians, and backpropagates the gradients (spec
+ * 11).
  * SPDX-License-Identifier: BSD-2-Clause */
 #ifndef TED4_GENERATOR_H
 #define TED4_GENERATOR_H
@@ -7,17 +8,17 @@
 #include "train/model/model.h"
 #include "train/model/splat_grads.h"
 
-/* One query over chosen blocks, usually those that are visible. Visible block i, offset k, lane j
- * is splat (i K + k) 32 + j. */
+/* One query over chosen blocks, usually the visible ones. Lane j of offset k of visible block i is
+ * splat (i K + k) 32 + j. */
 typedef struct {
     const ted4_layout *layout;
     const float *net; /* [n_net] */
     size_t n_visible;
     const float *const
-        *attr; /* [n_visible] blocks; values as they are to be used (quantised, noisy or plain) */
+        *attr; /* [n_visible] blocks; values in the form to be used (quantised, noisy or plain) */
     const float *const *position; /* [n_visible] [3][32] */
-    const uint32_t *lanes; /* [n_visible] bit j: lane j holds an anchor to be used; others give
-                              opacity 0, gradient 0 */
+    const uint32_t *lanes; /* [n_visible] bit j: lane j holds an anchor to be used; the other lanes
+                              give opacity 0 and gradient 0 */
     uint32_t num, den;     /* time, spec 11 */
     float camera[3];       /* normalised space: (c - origin) 2^-e */
     int activation;        /* 0: activation is taken as 1 (static phase), even if tau is present */
@@ -28,14 +29,16 @@ typedef struct ted4_generator ted4_generator; /* saved activations, packed weigh
 ted4_generator *ted4_generator_new(const ted4_layout *l);
 void ted4_generator_free(ted4_generator *g);
 
-/* Copies network weights into kernel order. Call after they change, before forward. */
+/* Copies network weights into kernel order. Call after they change and before ted4_generate. */
 void ted4_generator_pack(ted4_generator *g, const float *net);
-/* Gaussians in normalised space, valid until the next call; opacity is 0 for unused lanes, masked
- * offsets and heads <= 0. Also keeps what backward needs. 0, or -1: no memory. */
+/* Computes the Gaussians in normalised space, valid until the next call. Opacity is 0 for unused
+ * lanes, for masked offsets, and if the head's output is <= 0. Also keeps what
+ * ted4_generate_backward needs. Returns 0, or -1 if memory ran out. */
 int ted4_generate(ted4_generator *g, const ted4_generate_input *in, const ted4_parallel *p,
                   ted4_splats *out);
-/* After ted4_generate with the same input. gr: gradients of the splats. d_attr: [n_visible] blocks,
- * overwritten. d_net: NETR and BANK parts are added to. Fixed order of sums. */
+/* Call after ted4_generate with the same input. gr: gradients of the splats. d_attr: [n_visible]
+ * blocks, overwritten. d_net: gradients of the NETR and BANK parts are added to it. Sums have a
+ * fixed order. Returns 0. */
 int ted4_generate_backward(ted4_generator *g, const ted4_generate_input *in,
                            const ted4_splat_grads *gr, const ted4_parallel *p, float *const *d_attr,
                            float *d_net);
