@@ -16,6 +16,15 @@ enum { TED4_ROW = 32 }; /* lanes of a row */
 
 #define TED4_LOG2E 0x1.715476p+0f
 
+/* spec 12.2: the coefficients of the polynomial of pow2; TED4_POW2_Cn belongs to the power n. */
+#define TED4_POW2_C1 0x1.62e43p-1f
+#define TED4_POW2_C2 0x1.ebfbep-3f
+#define TED4_POW2_C3 0x1.c6b08ep-5f
+#define TED4_POW2_C4 0x1.3b2ab6p-7f
+#define TED4_POW2_C5 0x1.5d87fep-10f
+#define TED4_POW2_C6 0x1.430912p-13f
+#define TED4_POW2_C7 0x1.ffcbfcp-17f
+
 /* spec 12.2 max: b where a > b is false, so a NaN in b goes through. */
 static inline float ted4_max(float a, float b)
 {
@@ -32,14 +41,14 @@ static inline float ted4_pow2(float x)
     const int32_t cut = (int32_t)v;
     const int32_t n = cut - ((float)cut > v);
     const float f = y - (float)n;
-    float p = 0x1.ffcbfcp-17f;
+    float p = TED4_POW2_C7;
 
-    p = p * f + 0x1.430912p-13f;
-    p = p * f + 0x1.5d87fep-10f;
-    p = p * f + 0x1.3b2ab6p-7f;
-    p = p * f + 0x1.c6b08ep-5f;
-    p = p * f + 0x1.ebfbep-3f;
-    p = p * f + 0x1.62e43p-1f;
+    p = p * f + TED4_POW2_C6;
+    p = p * f + TED4_POW2_C5;
+    p = p * f + TED4_POW2_C4;
+    p = p * f + TED4_POW2_C3;
+    p = p * f + TED4_POW2_C2;
+    p = p * f + TED4_POW2_C1;
     p = p * f + 1.0f;
     p = p * ted4_bits_float((uint32_t)(n + 127) << 23);
     return x == x ? p : x;

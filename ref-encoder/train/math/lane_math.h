@@ -12,7 +12,7 @@
 #include "recon/strict.h"
 #include "render/leveled.h"
 
-#define TED4_LN2 0x1.62e43p-1f
+#define TED4_LN2 TED4_POW2_C1 /* the derivative of 2^x at 0 */
 
 /* Clamps x to [low, high]; a NaN gives low. The result is safe to convert to an integer. */
 static inline float ted4_lane_within(float x, float low, float high)
@@ -51,14 +51,14 @@ static inline float ted4_lane_pow2(float x)
     const int32_t n = (int32_t)(ted4_lane_within(x, -126.0f, 126.0f) + 126.5f);
     const float f = c - (float)(int32_t)((uint32_t)n - 126u);
     const uint32_t bits = ((uint32_t)n + 1u) << 23;
-    float p = 0x1.ffcbfcp-17f, scale;
+    float p = TED4_POW2_C7, scale;
 
-    p = ted4_fma(p, f, 0x1.430912p-13f);
-    p = ted4_fma(p, f, 0x1.5d87fep-10f);
-    p = ted4_fma(p, f, 0x1.3b2ab6p-7f);
-    p = ted4_fma(p, f, 0x1.c6b08ep-5f);
-    p = ted4_fma(p, f, 0x1.ebfbep-3f);
-    p = ted4_fma(p, f, 0x1.62e43p-1f);
+    p = ted4_fma(p, f, TED4_POW2_C6);
+    p = ted4_fma(p, f, TED4_POW2_C5);
+    p = ted4_fma(p, f, TED4_POW2_C4);
+    p = ted4_fma(p, f, TED4_POW2_C3);
+    p = ted4_fma(p, f, TED4_POW2_C2);
+    p = ted4_fma(p, f, TED4_POW2_C1);
     p = ted4_fma(p, f, 1.0f);
     memcpy(&scale, &bits, sizeof scale);
     return p * scale;
