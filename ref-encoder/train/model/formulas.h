@@ -89,6 +89,19 @@ static inline size_t ted4_bank_row(const ted4_header *h, uint32_t num, uint32_t 
     return (size_t)(g / den);
 }
 
+/* spec 11.5: turns the vector from the camera to an anchor into its direction. A vector without a
+ * direction gives the z axis. */
+static inline void ted4_view_direction(float *x, float *y, float *z)
+{
+    const float n = __builtin_sqrtf(*x * *x + *y * *y + *z * *z);
+    const int far = n >= TED4_SHORT;
+    const float scale = far ? 1.0f / n : 0.0f;
+
+    *x *= scale;
+    *y *= scale;
+    *z = far ? *z * scale : 1.0f;
+}
+
 /* Interpolates channel c of the bank. z: the row from ted4_bank_row, of dim channels. */
 static inline float ted4_bank_value(const float *z, size_t dim, size_t c, float mix)
 {

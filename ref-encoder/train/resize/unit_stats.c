@@ -223,15 +223,10 @@ static void bank_at(sampling *s, uint32_t num)
 
 static void look_from(sampling *s, const float camera[3])
 {
-    float square = 0;
-
-    for (int a = 0; a < 3; a++) {
+    for (int a = 0; a < 3; a++)
         s->view[a] = *ted4_anchor_value(&s->t->anchors, TED4_ROW_POSITION, s->anchor, a) -
                      camera[a];
-        square += s->view[a] * s->view[a];
-    }
-    for (int a = 0; a < 3; a++)
-        s->view[a] = square > 1e-12f ? s->view[a] / sqrtf(square) : a == 2 ? 1.0f : 0.0f;
+    ted4_view_direction(&s->view[0], &s->view[1], &s->view[2]);
 }
 
 /* value: room for a block. */

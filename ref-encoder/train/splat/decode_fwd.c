@@ -22,16 +22,14 @@ static void view_directions(const float *camera, const float *position, float *t
 {
 #pragma omp simd
     for (int j = 0; j < TED4_LANES; j++) {
-        const float x = position[j] - camera[0];
-        const float y = position[TED4_LANES + j] - camera[1];
-        const float z = position[2 * TED4_LANES + j] - camera[2];
-        const float n = sqrtf(x * x + y * y + z * z);
-        const int far = n >= TED4_SHORT;
-        const float scale = far ? 1.0f / n : 0.0f;
+        float x = position[j] - camera[0];
+        float y = position[TED4_LANES + j] - camera[1];
+        float z = position[2 * TED4_LANES + j] - camera[2];
 
-        to[j] = x * scale;
-        to[TED4_LANES + j] = y * scale;
-        to[2 * TED4_LANES + j] = far ? z * scale : 1.0f;
+        ted4_view_direction(&x, &y, &z);
+        to[j] = x;
+        to[TED4_LANES + j] = y;
+        to[2 * TED4_LANES + j] = z;
     }
 }
 
