@@ -21,8 +21,9 @@
  * factor STILL_GROWS. */
 #define GROWN       0.04
 #define STILL_GROWS 1.1
-/* The recent speed is an exponential average over about this many units. */
-#define MEMORY      300.0
+/* The recent speed is an exponential average over about this many units: long enough that a second
+ * or two of other work on the machine hardly changes it. */
+#define MEMORY      1000.0
 /* The time of a step counts at most as this multiple of its expected time: the rest was spent on
  * work that does not recur, such as multi-view seeding. */
 #define UNUSUAL     15.0
