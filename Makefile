@@ -118,6 +118,7 @@ $(SCENE_TESTS:%=$B/tests/%): $(SCENE_SRC:%.c=$B/%.o)
 $B/tests/tools/test_run_log: $(addprefix $B/ref-encoder/tool/,run_log.o teller.o)
 $B/tests/tools/test_teller: $B/ref-encoder/tool/teller.o
 $B/tests/tools/test_belongs: $(addprefix $B/ref-encoder/tool/,belongs.o sheet.o)
+$B/tests/tools/test_edit: $B/ref-encoder/tool/edit.o
 $B/tests/tools/test_estimate: $B/ref-encoder/tool/estimate.o
 $B/tests/tools/test_install $B/tests/tools/test_library: | $(PROGS) $(SHARED) $B/ted4conf \
         $B/ted4tolerance

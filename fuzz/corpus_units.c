@@ -5,6 +5,7 @@
 #include <zlib.h>
 #include "corpus.h"
 #include "random_scene.h"
+#include "tool/cams.h"
 #include "write/coder_write.h"
 
 enum { MOST = 1 << 12 };
@@ -138,6 +139,34 @@ static void deflated(void)
     corpus_write("inflate", "damaged", data, 5 + n);
 }
 
+/* Two cameras, at all times and at one, and variants of their payload that are refused. */
+static void cameras(void)
+{
+    static const float up[3] = { 0, 0, 1 };
+    const ted4_cams_camera camera = { .view = { .width = 64,
+                                                .height = 48,
+                                                .fx = 60,
+                                                .fy = 61,
+                                                .cx = 32,
+                                                .cy = 24,
+                                                .R = { 0, 1, 0, 0, 0, 1, 1, 0, 0 },
+                                                .t = { 1, 2, 3 } },
+                                      .time = { 1, 4 } };
+    ted4_cams_camera always = camera;
+    uint8_t data[TED4_CAMS_HEAD + 2 * TED4_CAMS_CAMERA];
+
+    always.time = (ted4_time) { 0, 0 };
+    ted4_cams_put_head(data, up, TED4_CAMS_PATH, 2);
+    ted4_cams_put(data + TED4_CAMS_HEAD, &camera);
+    ted4_cams_put(data + TED4_CAMS_HEAD + TED4_CAMS_CAMERA, &always);
+    corpus_write("cams", "two", data, sizeof data);
+    corpus_write("cams", "short", data, sizeof data - 1);
+    data[3] = 0x7f; /* up x: no longer of length 1 */
+    corpus_write("cams", "up", data, sizeof data);
+    ted4_cams_put_head(data, up, TED4_CAMS_TAKEN, 0);
+    corpus_write("cams", "none", data, TED4_CAMS_HEAD);
+}
+
 void corpus_units(void)
 {
     static const uint8_t times[][22] = { { 1, 1, 0, 0, 0, 3, 0, 0, 0, 4 },
@@ -152,6 +181,7 @@ void corpus_units(void)
         any(anything[i].group, anything[i].name, anything[i].size, anything[i].first,
             anything[i].n);
     substream();
+    cameras();
     positions();
     deflated();
     for (size_t i = 0; i < sizeof times / sizeof *times; i++) {

@@ -53,6 +53,7 @@ $B/fuzz/fuzz_container: $B/fuzz/mutator_frames.o $(FUZZ_MUTATE)
 endif
 $(FUZZ_SCENES:%=$B/fuzz/fuzz_%): $(FUZZ_SCENE)
 $B/fuzz/fuzz_decode_chunked: $B/ref-decoder/tool/read_file.o
+$B/fuzz/fuzz_cams: $B/ref-decoder/tool/cams.o $B/ref-decoder/tool/chunks.o
 $B/fuzz/fuzz_checkpoint: $B/fuzz/scene_folder.o $(ENC_LIB)
 $B/fuzz/fuzz_alloc_fail: FUZZ_LINK = $(FUZZ_ALLOC)
 $(patsubst %,$B/fuzz/fuzz_%,$(FUZZ_SCENES) checkpoint): FUZZ_LINK = $(FUZZ_NO_VIDEO)
@@ -67,8 +68,8 @@ $B/fuzz/mutate: $B/fuzz/mutate_tool.o $(FUZZ_MUTATE) $(FUZZ_CODEC)
 	$(CC) -fopenmp $(LDFLAGS) $^ -o $@ $(LIBS)
 $B/fuzz/afl_mutator.so: $B/fuzz/afl_mutator.o $(FUZZ_MUTATE) $(FUZZ_CODEC)
 	$(CC) -shared $(LDFLAGS) $^ -o $@ $(LIBS)
-$B/fuzz/make_corpus: $(patsubst %,$B/fuzz/%.o,make_corpus corpus_units corpus_scenes corpus_write) \
-        $(FUZZ_MUTATE) $(FUZZ_CODEC)
+$B/fuzz/make_corpus: $(patsubst %,$B/fuzz/%.o,make_corpus corpus_units corpus_scenes \
+        corpus_write) $B/ref-decoder/tool/cams.o $(FUZZ_MUTATE) $(FUZZ_CODEC)
 	$(CC) -fopenmp $(LDFLAGS) $^ -o $@ $(LIBS)
 $B/bench/robust: $B/bench/robust.o $(FUZZ_CODEC)
 	$(CC) -fopenmp $(LDFLAGS) $^ -o $@ $(LIBS)

@@ -13,7 +13,7 @@
 #include "read/advise_parts.h"
 #include "read/inflate.h"
 
-enum { MINOR_AT = 9, LEVEL_AT = 11, HEAD_AT = 12 };
+enum { MINOR_AT = 9, LEVEL_AT = 11, HEAD_AT = 12, LATEST_MINOR = 1 };
 
 /* Where an element of HEAD that is no array is in the file. */
 typedef struct {
@@ -218,7 +218,7 @@ void ted4_advise(ted4_findings *f, const ted4_scene *s, const ted4_options *o)
     const unsigned lowest = ted4_level_lowest(&s->head, &s->shape, f->size);
     ted4_arena a;
 
-    if (f->data[MINOR_AT] != 0)
+    if (f->data[MINOR_AT] > LATEST_MINOR)
         ted4_find_advice(f, TED4_ADV_MINOR, NULL, MINOR_AT, 1, f->data[MINOR_AT], 0);
     if (s->level != lowest)
         ted4_find_advice(f, TED4_ADV_LEVEL, NULL, LEVEL_AT, 2, s->level, lowest);

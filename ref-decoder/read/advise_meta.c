@@ -159,6 +159,11 @@ void ted4_advise_ancillary(ted4_findings *f, const ted4_chunk_place *p, ted4_are
         advise_text(f, p, a);
         return;
     }
+    if (memcmp(type, "CAMS", 4) == 0 || memcmp(type, "THMB", 4) == 0) {
+        if (flags != 0)
+            ted4_find_advice(f, TED4_ADV_CHUNK_FLAGS, NULL, p->at + 4, 1, flags, 0);
+        return;
+    }
     ted4_find_advice(f, type[0] == 'x' ? TED4_ADV_PRIVATE : TED4_ADV_CHUNK, NULL, p->at, 2, flags,
                      (int64_t)(p->end - p->payload));
 }

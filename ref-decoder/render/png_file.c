@@ -9,8 +9,7 @@
 #include <string.h>
 #include <unistd.h>
 
-/* Into an open file through libpng's simplified interface, which needs no setjmp. */
-static int write_png(FILE *f, int width, int height, const uint8_t *rgb, char *why, size_t why_size)
+static png_image describe(int width, int height)
 {
     png_image p;
 
@@ -19,6 +18,31 @@ static int write_png(FILE *f, int width, int height, const uint8_t *rgb, char *w
     p.width = (png_uint_32)width;
     p.height = (png_uint_32)height;
     p.format = PNG_FORMAT_RGB;
+    return p;
+}
+
+uint8_t *ted4_png_encode(int width, int height, const uint8_t *rgb, size_t *size, char *why,
+                         size_t why_size)
+{
+    png_image p = describe(width, height);
+    png_alloc_size_t n = 0;
+    uint8_t *png = NULL;
+
+    if (png_image_write_get_memory_size(p, n, 0, rgb, 0, NULL) && (png = malloc(n)) != NULL &&
+        png_image_write_to_memory(&p, png, &n, 0, rgb, 0, NULL)) {
+        *size = n;
+        return png;
+    }
+    snprintf(why, why_size, "PNG: %s", p.message[0] != '\0' ? p.message : "out of memory");
+    free(png);
+    return NULL;
+}
+
+/* Into an open file through libpng's simplified interface, which needs no setjmp. */
+static int write_png(FILE *f, int width, int height, const uint8_t *rgb, char *why, size_t why_size)
+{
+    png_image p = describe(width, height);
+
     if (png_image_write_to_stdio(&p, f, 0, rgb, 0, NULL))
         return 0;
     snprintf(why, why_size, "PNG: %s", p.message);

@@ -12,4 +12,9 @@
 int ted4_png_write(const char *path, int width, int height, const uint8_t *rgb, char *why,
                    size_t why_size);
 
+/* Encodes the same pixels in memory. Returns the PNG file of *size bytes, for the caller to free(),
+ * or NULL with a reason in why. */
+uint8_t *ted4_png_encode(int width, int height, const uint8_t *rgb, size_t *size, char *why,
+                         size_t why_size);
+
 #endif

@@ -6,9 +6,9 @@
 #include <stdio.h>
 #include <string.h>
 
-#include "base/bytes.h"
+#include "chunks.h"
 
-enum { FILE_HEADER = 12, FRAME_HEAD = 12, FRAME_HASH = 8, MOST = 1000 };
+enum { MOST = 1000 }; /* bytes of a line that are shown */
 
 /* The word that selects lines, and where the lines go. */
 typedef struct {
@@ -35,17 +35,18 @@ static void put(const sink *to, const uint8_t *line, size_t n)
 
 static void tell(const sink *to, const uint8_t *data, size_t size)
 {
-    for (size_t at = FILE_HEADER; at + FRAME_HEAD + FRAME_HASH <= size;) {
-        const uint8_t *line = data + at + FRAME_HEAD, *end = line + ted4_load32(data + at + 8);
+    ted4_chunk_view c;
 
-        for (int is_meta = memcmp(data + at, "META", 4) == 0; is_meta && line < end;) {
+    for (size_t at = TED4_FILE_HEADER; ted4_chunks_next(data, size, &at, &c);) {
+        const uint8_t *line = c.payload, *const end = line + c.size;
+
+        while (strcmp(c.type, "META") == 0 && line < end) {
             const uint8_t *lf = memchr(line, '\n', (size_t)(end - line));
             const uint8_t *stop = lf != NULL ? lf : end;
 
             put(to, line, (size_t)(stop - line));
             line = stop < end ? stop + 1 : end;
         }
-        at = (size_t)(end - data) + FRAME_HASH;
     }
 }
 

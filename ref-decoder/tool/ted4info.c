@@ -11,6 +11,8 @@
 #include "arguments.h"
 #include "base/bytes.h"
 #include "budget.h"
+#include "cams.h"
+#include "chunks.h"
 #include "cli.h"
 #include "findings.h"
 #include "ted4.h"
@@ -228,6 +230,78 @@ static json_t *budget_json(const ted4_budget *b)
     return list;
 }
 
+/* Keys of META that describe the scene to people (spec 16.4). */
+static const char *const DESCRIBING[] = { "title", "author", "licence", "created" };
+enum { N_DESCRIBING = sizeof DESCRIBING / sizeof DESCRIBING[0] };
+
+/* CAMS as text: "12 cameras, up 0 0 1". */
+static void cams_text(const ted4_chunk_view *chunk, char *text, size_t size)
+{
+    ted4_cams c;
+
+    if (ted4_cams_read(chunk->payload, chunk->size, &c) != 0)
+        snprintf(text, size, "not as specified");
+    else if (c.up[0] != 0 || c.up[1] != 0 || c.up[2] != 0)
+        snprintf(text, size, "%zu %s, up %.4g %.4g %.4g", c.n,
+                 c.kind == TED4_CAMS_PATH ? "cameras of a path" : "cameras", (double)c.up[0],
+                 (double)c.up[1], (double)c.up[2]);
+    else
+        snprintf(text, size, "%zu %s, up unknown", c.n,
+                 c.kind == TED4_CAMS_PATH ? "cameras of a path" : "cameras");
+}
+
+/* Ancillary chunks: what people say about the scene, and one line per chunk. */
+static void print_ancillary(const uint8_t *data, size_t size)
+{
+    ted4_chunk_view c;
+    char text[100];
+
+    for (int i = 0; i < N_DESCRIBING; i++)
+        ted4_meta_lines_print(data, size, DESCRIBING[i]);
+    for (size_t at = TED4_FILE_HEADER; ted4_chunks_next(data, size, &at, &c);) {
+        if ((c.flags & TED4_CHUNK_IS_CRITICAL) != 0)
+            continue;
+        text[0] = '\0';
+        if (strcmp(c.type, "CAMS") == 0)
+            cams_text(&c, text, sizeof text);
+        printf("chunk       %s, %zu bytes%s%s\n", c.type, c.size, text[0] != '\0' ? ": " : "",
+               text);
+    }
+}
+
+static json_t *ancillary_json(const uint8_t *data, size_t size)
+{
+    json_t *const list = json_array();
+    ted4_chunk_view c;
+    char text[100];
+
+    for (size_t at = TED4_FILE_HEADER; ted4_chunks_next(data, size, &at, &c);) {
+        if ((c.flags & TED4_CHUNK_IS_CRITICAL) != 0)
+            continue;
+        json_t *const o = json_pack("{s:s, s:I}", "type", c.type, "bytes", (json_int_t)c.size);
+
+        if (strcmp(c.type, "CAMS") == 0) {
+            cams_text(&c, text, sizeof text);
+            json_object_set_new(o, "text", json_string(text));
+        }
+        json_array_append_new(list, o);
+    }
+    return list;
+}
+
+static json_t *describing_json(const uint8_t *data, size_t size)
+{
+    json_t *const all = json_array();
+
+    for (int i = 0; i < N_DESCRIBING; i++) {
+        json_t *const lines = ted4_meta_lines_json(data, size, DESCRIBING[i]);
+
+        json_array_extend(all, lines);
+        json_decref(lines);
+    }
+    return all;
+}
+
 static void print_json(const settings *s, const ted4_info *info, const ted4_budget *b,
                        const uint8_t *data, size_t size)
 {
@@ -245,6 +319,8 @@ static void print_json(const settings *s, const ted4_info *info, const ted4_budg
         json_object_set_new(o, "budget", budget_json(b));
     if (s->on[OPT_WHY])
         json_object_set_new(o, "why", ted4_meta_lines_json(data, size, "capacity"));
+    json_object_set_new(o, "ancillary", ancillary_json(data, size));
+    json_object_set_new(o, "description", describing_json(data, size));
     json_dumpf(o, stdout, JSON_COMPACT | JSON_REAL_PRECISION(9));
     putchar('\n');
     json_decref(o);
@@ -257,6 +333,7 @@ static int show(const settings *s, const ted4_info *info, const ted4_budget *b, 
         print_json(s, info, b, data, size);
     } else if (!s->on[OPT_QUIET]) {
         print_summary(s, info, size);
+        print_ancillary(data, size);
         if (s->on[OPT_VERBOSE])
             print_header(b);
         if (s->on[OPT_BUDGET])

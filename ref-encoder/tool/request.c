@@ -34,6 +34,11 @@ enum {
     OPT_RESUME,
     OPT_STAGE1,
     OPT_LOG,
+    OPT_TITLE,
+    OPT_AUTHOR,
+    OPT_LICENCE,
+    OPT_CAMERAS,
+    OPT_THUMBNAIL,
     OPT_CHECK,
     OPT_JSON,
     OPT_CONTRACT,
@@ -89,6 +94,12 @@ static const ted4_argument OPTIONS[N_OPTIONS] = {
     [OPT_RESUME] = { 0, "resume", NULL, "go on from the checkpoint if it is there" },
     [OPT_STAGE1] = { 0, "stage1", "FILE", "begin with this end of stage 1, or make the file" },
     [OPT_LOG] = { 0, "log", "FILE", "JSON lines of progress; with --resume it goes on" },
+    [OPT_TITLE] = { 0, "title", "TEXT", "title of the scene, for players and ted4info" },
+    [OPT_AUTHOR] = { 0, "author", "TEXT", "who made it" },
+    [OPT_LICENCE] = { 0, "licence", "TEXT", "an SPDX expression, such as CC-BY-4.0, or a text" },
+    [OPT_CAMERAS] = { 0, "cameras", NULL,
+                      "write the training cameras, and which way is up, into the file" },
+    [OPT_THUMBNAIL] = { 0, "thumbnail", NULL, "write a small picture of the scene into the file" },
     [OPT_CHECK] = { 0, "check", NULL,
                     "say what the scene holds, or the one thing that is wrong, and stop" },
     [OPT_JSON] = { 0, "json", NULL, "result as one JSON object" },
@@ -164,20 +175,47 @@ static int take_bounds(ted4_request *r, const char *value)
     return TED4_REQUEST_GO;
 }
 
+/* A text that becomes one line of META. */
+static int take_text(int option, const char *value, const char **to)
+{
+    if (value[0] == '\0' || strlen(value) > TED4_REQUEST_TEXT || strpbrk(value, "\n\r") != NULL)
+        return bad_value(option, value);
+    *to = value;
+    return TED4_REQUEST_GO;
+}
+
+/* Options without a value. Returns the member that the option sets to 1, or NULL. */
+static int *flag(ted4_request *r, int option)
+{
+    int *const flags[N_OPTIONS] = {
+        [OPT_WHY] = &r->search_report, [OPT_CAMERAS] = &r->cameras, [OPT_THUMBNAIL] = &r->thumbnail,
+        [OPT_BLACK] = &r->black,       [OPT_RESUME] = &r->resume,   [OPT_CHECK] = &r->check,
+        [OPT_JSON] = &r->json,         [OPT_FORCE] = &r->force,     [OPT_QUIET] = &r->quiet,
+        [OPT_VERBOSE] = &r->verbose,
+    };
+
+    return flags[option];
+}
+
 static int take(ted4_request *r, pending *p, int option, const char *value)
 {
+    int *const on = flag(r, option);
+
+    if (on != NULL)
+        *on = 1;
     switch (option) {
     case OPT_OUTPUT: r->out = value; break;
     case OPT_PRESET: p->preset = value; break;
     case OPT_LAMBDA: p->lambda = value; break;
     case OPT_ITERATIONS: p->iterations = value; break;
     case OPT_CAPACITY: p->capacity = value; break;
-    case OPT_WHY: r->search_report = 1; break;
     case OPT_CHECKPOINT: r->checkpoint = value; break;
     case OPT_STAGE1: r->stage1 = value; break;
     case OPT_LOG: r->log = value; break;
+    case OPT_TITLE: return take_text(option, value, &r->title);
+    case OPT_AUTHOR: return take_text(option, value, &r->author);
+    case OPT_LICENCE: return take_text(option, value, &r->licence);
     case OPT_BOUNDS: return take_bounds(r, value);
-    case OPT_BLACK: r->black = 1; break;
     case OPT_ALPHA:
         r->premultiplied = strcmp(value, "premultiplied") == 0;
         return r->premultiplied || strcmp(value, "straight") == 0 ? TED4_REQUEST_GO
@@ -187,13 +225,7 @@ static int take(ted4_request *r, pending *p, int option, const char *value)
             return complain("too many --hold-out");
         r->hold_out[r->n_hold_out++] = value;
         break;
-    case OPT_RESUME: r->resume = 1; break;
-    case OPT_CHECK: r->check = 1; break;
     case OPT_CONTRACT: r->json = r->quiet = 1; break;
-    case OPT_JSON: r->json = 1; break;
-    case OPT_FORCE: r->force = 1; break;
-    case OPT_QUIET: r->quiet = 1; break;
-    case OPT_VERBOSE: r->verbose = 1; break;
     case OPT_DOWNSCALE: return take_number(option, value, 1, MAX_DOWNSCALE, &r->downscale);
     case OPT_MAX_FRAMES: return take_number(option, value, 1, MAX_MAX_FRAMES, &r->max_frames);
     case OPT_CACHE: return take_number(option, value, 0, MAX_CACHE, &r->cache_mib);

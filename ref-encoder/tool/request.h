@@ -8,7 +8,7 @@
 #include "data/scatter.h"
 #include "train/model/options.h"
 
-enum { TED4_REQUEST_HOLD_OUT = 256 };
+enum { TED4_REQUEST_HOLD_OUT = 256, TED4_REQUEST_TEXT = 1000 /* bytes */ };
 
 typedef struct {
     /* File and folder names, borrowed from argv. NULL: not given. */
@@ -18,8 +18,10 @@ typedef struct {
     int premultiplied;
     const char *hold_out[TED4_REQUEST_HOLD_OUT]; /* borrowed from argv */
     size_t n_hold_out;
-    size_t target_size;          /* --target-size in bytes; 0: not given */
-    ted4_scatter_options bounds; /* --bounds; the caller sets the seed */
+    const char *title, *author, *licence; /* texts for META, borrowed from argv; NULL: none */
+    int cameras, thumbnail;               /* 1: write the chunk CAMS or THMB */
+    size_t target_size;                   /* --target-size in bytes; 0: not given */
+    ted4_scatter_options bounds;          /* --bounds; the caller sets the seed */
     ted4_train_options options;
 } ted4_request;
 

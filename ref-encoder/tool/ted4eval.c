@@ -15,6 +15,7 @@
 #include <jansson.h>
 
 #include "belongs.h"
+#include "camera_view.h"
 #include "data/dataset.h"
 #include "eval/metrics.h"
 #include "render/png_file.h"
@@ -277,22 +278,6 @@ static int choose_rows(session *s)
 
 /* ---- one picture ---- */
 
-static ted4_view view_of(const ted4_camera *c)
-{
-    ted4_view v = { .width = c->width,
-                    .height = c->height,
-                    .fx = (float)c->fx,
-                    .fy = (float)c->fy,
-                    .cx = (float)c->cx,
-                    .cy = (float)c->cy };
-
-    for (int i = 0; i < 9; i++)
-        v.R[i] = (float)c->R[i];
-    for (int i = 0; i < 3; i++)
-        v.t[i] = (float)c->t[i];
-    return v;
-}
-
 static int write_image(const session *s, const char *kind, const ted4_camera *c, const uint8_t *rgb)
 {
     char path[PATH_SIZE], why[256];
@@ -360,7 +345,7 @@ static int take_picture(session *s, size_t i, const uint8_t *truth, const uint8_
 static int evaluate_picture(session *s, size_t i)
 {
     const ted4_picture *const p = &s->data.pictures[i];
-    const ted4_view view = view_of(&p->camera);
+    const ted4_view view = ted4_view_of_camera(&p->camera);
     const uint32_t last = s->data.n_frames > 1 ? s->data.n_frames - 1 : 1;
     uint8_t *const ours = malloc((size_t)view.width * (size_t)view.height * 3);
     ted4_message m;

@@ -7,6 +7,7 @@
 #include <string.h>
 #include <unistd.h>
 
+#include "describe_trained.h"
 #include "stop.h"
 #include "train/monitor/checkpoint.h"
 #include "train/step/export_scene.h"
@@ -285,7 +286,9 @@ int ted4_training_code(ted4_training *t, ted4_coded *c)
                  ted4_status_id(e.code));
     else
         bad = ted4_verify(scene, c->bytes, c->size, tr->parallel, &c->verified, t->why,
-                          sizeof t->why) != 0;
+                          sizeof t->why) != 0 ||
+              ted4_describe_trained(t->request, tr->data, tr->parallel, &c->bytes, &c->size, t->why,
+                                    sizeof t->why) != 0;
     free(text);
     ted4_scene_free(scene);
     if (!bad && ted4_stop_asked())

@@ -18,9 +18,9 @@ enum { LEVEL_AT = 11 };
 /* What a writer alone answers for, whatever the scene. */
 static inline int contract_of_writer(const char *id)
 {
-    static const char *const all[] = { "adv.level",      "adv.minor",     "adv.chunk",
-                                       "adv.meta-flags", "adv.meta-text", "adv.meta-key",
-                                       "adv.blob-raw",   "adv.prob" };
+    static const char *const all[] = { "adv.level",       "adv.minor",      "adv.chunk",
+                                       "adv.chunk-flags", "adv.meta-flags", "adv.meta-text",
+                                       "adv.meta-key",    "adv.blob-raw",   "adv.prob" };
 
     for (size_t i = 0; i < sizeof all / sizeof *all; i++)
         if (strcmp(id, all[i]) == 0)

@@ -1,0 +1,136 @@
+/* cams.c - see cams.h.
+ * SPDX-License-Identifier: BSD-2-Clause */
+#include "cams.h"
+
+#include <math.h>
+#include <string.h>
+
+#include "base/bytes.h"
+
+/* R-EXT-009: how far R R^T may be from the identity, and |up| from 1. Sums of products of rounded
+ * numbers are off by some 1e-7. */
+#define TOLERANCE 1e-3f
+
+enum { KIND_AT = 12, COUNT_AT = 16 };
+
+static void put_floats(uint8_t *to, const float *x, size_t n)
+{
+    for (size_t i = 0; i < n; i++)
+        ted4_store32(to + 4 * i, ted4_float_bits(x[i]));
+}
+
+static void get_floats(const uint8_t *from, float *x, size_t n)
+{
+    for (size_t i = 0; i < n; i++)
+        x[i] = ted4_bits_float(ted4_load32(from + 4 * i));
+}
+
+static int all_finite(const float *x, size_t n)
+{
+    for (size_t i = 0; i < n; i++)
+        if (!isfinite(x[i]))
+            return 0;
+    return 1;
+}
+
+static int is_rotation(const float R[9])
+{
+    if (!all_finite(R, 9))
+        return 0;
+    for (int i = 0; i < 3; i++) {
+        for (int j = 0; j < 3; j++) {
+            float dot = 0.0f;
+
+            for (int k = 0; k < 3; k++)
+                dot += R[3 * i + k] * R[3 * j + k];
+            if (!(fabsf(dot - (float)(i == j)) <= TOLERANCE))
+                return 0;
+        }
+    }
+    return 1;
+}
+
+static int side_is_valid(int side)
+{
+    return side >= 1 && side <= TED4_CAMS_SIDE;
+}
+
+static int camera_is_valid(const ted4_cams_camera *c)
+{
+    const ted4_view *v = &c->view;
+    const float pinhole[4] = { v->fx, v->fy, v->cx, v->cy };
+
+    return side_is_valid(v->width) && side_is_valid(v->height) && all_finite(pinhole, 4) &&
+           v->fx > 0.0f && v->fy > 0.0f && is_rotation(v->R) && all_finite(v->t, 3) &&
+           c->time.num <= c->time.den;
+}
+
+static int up_is_valid(const float up[3])
+{
+    const float square = up[0] * up[0] + up[1] * up[1] + up[2] * up[2];
+
+    return square == 0.0f || fabsf(square - 1.0f) <= TOLERANCE;
+}
+
+int ted4_cams_read(const uint8_t *payload, size_t size, ted4_cams *c)
+{
+    memset(c, 0, sizeof *c);
+    if (size < TED4_CAMS_HEAD)
+        return -1;
+
+    const uint32_t kind = ted4_load32(payload + KIND_AT), n = ted4_load32(payload + COUNT_AT);
+
+    get_floats(payload, c->up, 3);
+    if (!up_is_valid(c->up) || kind >= TED4_CAMS_KINDS || n > TED4_CAMS_MOST ||
+        size - TED4_CAMS_HEAD != (size_t)n * TED4_CAMS_CAMERA)
+        return -1;
+    c->kind = (ted4_cams_kind)kind;
+    c->n = n;
+    c->camera = payload + TED4_CAMS_HEAD;
+    for (size_t i = 0; i < n; i++) {
+        const ted4_cams_camera camera = ted4_cams_get(c, i);
+
+        if (!camera_is_valid(&camera))
+            return -1;
+    }
+    return 0;
+}
+
+ted4_cams_camera ted4_cams_get(const ted4_cams *c, size_t i)
+{
+    const uint8_t *from = c->camera + i * TED4_CAMS_CAMERA;
+    const uint32_t width = ted4_load32(from), height = ted4_load32(from + 4);
+    ted4_cams_camera camera = { .time = { ted4_load32(from + 72), ted4_load32(from + 76) } };
+    ted4_view *v = &camera.view;
+
+    v->width = width <= TED4_CAMS_SIDE ? (int)width : 0;
+    v->height = height <= TED4_CAMS_SIDE ? (int)height : 0;
+    get_floats(from + 8, &v->fx, 1);
+    get_floats(from + 12, &v->fy, 1);
+    get_floats(from + 16, &v->cx, 1);
+    get_floats(from + 20, &v->cy, 1);
+    get_floats(from + 24, v->R, 9);
+    get_floats(from + 60, v->t, 3);
+    return camera;
+}
+
+void ted4_cams_put_head(uint8_t *to, const float up[3], ted4_cams_kind kind, size_t n)
+{
+    put_floats(to, up, 3);
+    ted4_store32(to + KIND_AT, (uint32_t)kind);
+    ted4_store32(to + COUNT_AT, (uint32_t)n);
+}
+
+void ted4_cams_put(uint8_t to[TED4_CAMS_CAMERA], const ted4_cams_camera *camera)
+{
+    const ted4_view *v = &camera->view;
+    const float pinhole[4] = { v->fx, v->fy, v->cx, v->cy };
+
+    ted4_store32(to, (uint32_t)v->width);
+    ted4_store32(to + 4, (uint32_t)v->height);
+    put_floats(to + 8, pinhole, 4);
+    put_floats(to + 24, v->R, 9);
+    put_floats(to + 60, v->t, 3);
+    ted4_store32(to + 72, camera->time.num);
+    ted4_store32(to + 76, camera->time.den);
+}

@@ -1,0 +1,73 @@
+#!/bin/sh
+# test_edit_program.sh - ted4edit and the options of ted4enc that describe a scene: the chunks are
+# in the file, ted4info shows them, the scene stays the same, and what is wrong is refused with one
+# line, before anything is written. Speaks as cmocka programs do; run by `make test` from the
+# project's root.
+# SPDX-License-Identifier: BSD-2-Clause
+set -u
+. tests/support/speak.sh
+need edit_program ted4enc ted4dec ted4info ted4edit ted4scene
+equal() { if [ "$2" = "$3" ]; then ok "$1"; else fail "$1" "$2, expected $3"; fi; }
+info() { "$TED4_BUILD/ted4info" "$out/$1.ted4"; }
+hash_of() { info "$1" | sed -n 's/^hash *//p'; }
+edit() { "$TED4_BUILD/ted4edit" "$@" 2>"$out/err" || fail edit "$(cat "$out/err")"; }
+
+"$TED4_BUILD/ted4scene" pop -o "$out/scene" --size 32x24 --frames 4 --cameras 5 --test-cameras 1 \
+    -j 1 2>/dev/null
+encode() { name=$1; shift; "$TED4_BUILD/ted4enc" "$out/scene" -o "$out/$name.ted4" --preset draft \
+    --iterations 40,40 --capacity fixed --seed 1 -j 1 -q "$@" 2>"$out/err" ||
+    fail "$name" "$(cat "$out/err")"; }
+
+encode plain
+encode all --title 'A pop' --author 'Somebody' --licence CC0-1.0 --cameras --thumbnail
+equal plain_says_nothing "$(info plain | grep -c '^chunk\|^title')" 0
+equal same_scene "$(hash_of all)" "$(hash_of plain)"
+equal texts "$(info all | grep -c '^title=A pop$\|^author=Somebody$\|^licence=CC0-1.0$')" 3
+equal cameras "$(info all | grep -c 'CAMS, 420 bytes: 5 cameras, up 0 0 1$')" 1
+equal thumbnail "$(info all | grep -c 'THMB, [0-9]* bytes$')" 1
+equal valid "$("$TED4_BUILD/ted4info" "$out/all.ted4" --validate |
+    grep -c 'adv.chunk\|adv.meta\|adv.minor')" 0
+equal json "$("$TED4_BUILD/ted4info" "$out/all.ted4" --json | grep -o '"type":"[A-Z]*"' |
+    tr -d '\n')" '"type":"META""type":"CAMS""type":"THMB"'
+encode again --title 'A pop' --author 'Somebody' --licence CC0-1.0 --cameras --thumbnail
+cmp -s "$out/all.ted4" "$out/again.ted4" && ok deterministic || fail deterministic differ
+
+# Stripped to the last byte; and set again.
+edit "$out/all.ted4" -o "$out/bare.ted4" --strip all
+cmp -s "$out/plain.ted4" "$out/bare.ted4" && ok stripped || fail stripped differ
+edit "$out/all.ted4" -o "$out/some.ted4" --strip THMB --title 'Another' --author '' --up 0,-2,0
+equal replaced "$(info some | grep -c '^title=Another$\|^author=\|THMB\|5 cameras, up 0 -1 0$')" 2
+equal edited_scene "$(hash_of some)" "$(hash_of plain)"
+cat >"$out/path.json" <<END
+[{"width":32,"height":24,"fx":30,"fy":30,"cx":16,"cy":12,"R":[1,0,0,0,1,0,0,0,1],"t":[0,0,4],
+  "frame":3},
+ {"width":32,"height":24,"fx":30,"fy":30,"cx":16,"cy":12,"R":[1,0,0,0,1,0,0,0,1],"t":[0,0,5],
+  "time":"1/3"}]
+END
+"$TED4_BUILD/ted4dec" "$out/plain.ted4" --render "$out/view%d.png" --camera "$out/path.json" \
+    2>/dev/null
+edit "$out/all.ted4" -o "$out/path.ted4" --path "$out/path.json" --thumbnail "$out/view0.png"
+equal path "$(info path | grep -c 'CAMS, 180 bytes: 2 cameras of a path, up 0 0 1$')" 1
+equal both_kinds "$(info path | grep -c 'CAMS')" 2
+edit "$out/path.ted4" -o "$out/path.ted4" -f --strip CAMS
+equal in_place "$(info path | grep -c 'CAMS')" 0
+
+# One clear line each, and no output.
+refuse() { expect "$1" 3 "$2" "$TED4_BUILD/ted4edit" "$out/plain.ted4" -o "$out/no.ted4" $3 "$4"
+    [ -e "$out/no.ted4" ] && fail "$1" 'an output'; rm -f "$out/no.ted4"; }
+refuse no_key 'ted4edit: --set: expected KEY=VALUE' --set title
+refuse two_lines 'ted4edit: --title: expected a text of one line' --title 'a
+b'
+refuse no_direction 'ted4edit: --up: expected a direction X,Y,Z' --up 0,0,0
+refuse no_png "ted4edit: $out/path.json: expected a PNG file of at most 1024 x 1024 pixels" \
+    --thumbnail "$out/path.json"
+refuse no_list 'ted4edit: ' --cameras "$out/view0.png"
+sed 's/"frame":3/"frame":4/' "$out/path.json" >"$out/late.json"
+refuse late_frame "ted4edit: $out/late.json: camera 0: frame 4, but the scene has 4" \
+    --cameras "$out/late.json"
+expect exists 3 "ted4edit: $out/some.ted4: exists; -f overwrites" "$TED4_BUILD/ted4edit" \
+    "$out/plain.ted4" -o "$out/some.ted4"
+head -c 1000 "$out/plain.ted4" >"$out/cut.ted4"
+expect cut 1 "ted4edit: $out/cut.ted4: byte " "$TED4_BUILD/ted4edit" "$out/cut.ted4" -o \
+    "$out/no.ted4"
+exit $bad
