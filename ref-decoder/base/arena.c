@@ -1,4 +1,5 @@
-/* arena.c - see arena.h. A block is a header, padding up to 64 bytes, and the storage.
+/* arena.c - implements arena.h. A block consists of padding, a header, and the storage, which is
+ * aligned to 64 bytes.
  * SPDX-License-Identifier: BSD-2-Clause */
 #include "base/arena.h"
 
@@ -10,8 +11,8 @@ enum { ALIGN = 64 };
 typedef struct ted4_arena_block block;
 struct ted4_arena_block {
     block *next, *prev;
-    void *storage; /* as the allocator returned it */
-    size_t size;   /* asked from the allocator */
+    void *storage; /* the pointer that the allocator returned */
+    size_t size;   /* bytes requested from the allocator */
 };
 
 static void *malloc_alloc(void *user, size_t size)
@@ -35,7 +36,7 @@ void ted4_arena_init(ted4_arena *a, const ted4_options *o)
     a->max = o != NULL && o->max_bytes != 0 ? o->max_bytes : TED4_ARENA_DEFAULT;
 }
 
-/* The header lies right before the aligned storage. */
+/* The header lies directly before the aligned storage. */
 static block *header_of(void *p)
 {
     return (block *)p - 1;

@@ -1,5 +1,5 @@
-/* bytes.h - spec 4.2: little-endian numbers in byte strings, on any machine; and bytes as
- * hexadecimal text for people.
+/* bytes.h - spec 4.2: loads and stores little-endian numbers on machines of any byte order, and
+ * writes bytes as hexadecimal text.
  * SPDX-License-Identifier: BSD-2-Clause */
 #ifndef TED4_BYTES_H
 #define TED4_BYTES_H
@@ -41,7 +41,7 @@ static inline void ted4_store64(uint8_t *p, uint64_t v)
     ted4_store32(p + 4, (uint32_t)(v >> 32));
 }
 
-/* The bit pattern of a binary32, and the binary32 of a pattern. */
+/* Return the bit pattern of a binary32, and the binary32 that has a given pattern. */
 static inline uint32_t ted4_float_bits(float x)
 {
     uint32_t u;
@@ -58,7 +58,8 @@ static inline float ted4_bits_float(uint32_t u)
     return x;
 }
 
-/* R-CNV-001: is the binary32 with this pattern finite, not subnormal and not negative zero? */
+/* R-CNV-001: returns 1 if the binary32 with this pattern is finite, not subnormal and not negative
+ * zero, else 0. */
 static inline int ted4_float_legal(uint32_t bits)
 {
     const uint32_t e = bits >> 23 & 255;
@@ -66,7 +67,7 @@ static inline int ted4_float_legal(uint32_t bits)
     return bits == 0 || (e > 0 && e < 255);
 }
 
-/* Writes n bytes as lower-case hexadecimal, followed by a 0: 2 n + 1 characters. */
+/* Writes n bytes as 2 n lower-case hexadecimal digits and a terminating 0. */
 static inline void ted4_hex(char *to, const uint8_t *bytes, size_t n)
 {
     static const char digit[] = "0123456789abcdef";

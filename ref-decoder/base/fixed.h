@@ -1,19 +1,19 @@
-/* fixed.h - spec 4.3: integer operations whose names say how they round. There is no signed
- * overflow and no shift of a negative value.
+/* fixed.h - spec 4.3: integer operations, named after the way they round. They neither overflow nor
+ * shift negative values.
  * SPDX-License-Identifier: BSD-2-Clause */
 #ifndef TED4_FIXED_H
 #define TED4_FIXED_H
 
 #include <stdint.h>
 
-/* The largest integer that is not above x / 2^r; r < 32. */
+/* Returns floor(x / 2^r); r < 32. */
 static inline int32_t ted4_floor_shift(int32_t x, unsigned r)
 {
     return x >= 0 ? x >> r : ~(~x >> r);
 }
 
-/* x / 2^r rounded to nearest, ties upwards; r < 32. The caller ensures that x + 2^(r-1) does not
- * overflow. */
+/* Returns x / 2^r rounded to nearest, with ties rounded up; r < 32. The caller ensures that
+ * x + 2^(r-1) does not overflow. */
 static inline int32_t ted4_round_shift(int32_t x, unsigned r)
 {
     return r == 0 ? x : ted4_floor_shift(x + ((int32_t)1 << (r - 1)), r);
@@ -24,14 +24,16 @@ static inline int32_t ted4_clamp(int32_t x, int32_t low, int32_t high)
     return x < low ? low : x > high ? high : x;
 }
 
-/* x saturated to 16 bits. The result is never -32768, so that negation is safe (spec 4.3). */
+/* Returns x saturated to 16 bits. The result is never -32768, so negating it cannot overflow
+ * (spec 4.3). */
 static inline int32_t ted4_sat16(int32_t x)
 {
     return ted4_clamp(x, -32767, 32767);
 }
 
-/* spec 4.3: rne(v 2^e) for the binary32 v with pattern bits; v is finite and normal, or zero.
- * Results beyond +-2^62 are returned as +-2^62, which every bound of the specification refuses. */
+/* spec 4.3: returns rne(v 2^e), where bits is the pattern of the binary32 v, which is zero or
+ * normal. Results beyond +-2^62 are clamped to +-2^62, which is outside every bound of the
+ * specification. */
 static inline int64_t ted4_rne_scaled(uint32_t bits, int e)
 {
     const int64_t huge = (int64_t)1 << 62;
@@ -53,7 +55,7 @@ static inline int64_t ted4_rne_scaled(uint32_t bits, int e)
     return bits >> 31 ? -v : v;
 }
 
-/* floor(log2 x) for x > 0. */
+/* Returns floor(log2 x) for x > 0. */
 static inline unsigned ted4_log2_floor(uint32_t x)
 {
     unsigned n = 0;

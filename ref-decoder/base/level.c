@@ -1,4 +1,4 @@
-/* level.c - see level.h.
+/* level.c - implements level.h: detects the level of the machine.
  * SPDX-License-Identifier: BSD-2-Clause */
 #include "base/level.h"
 
@@ -8,7 +8,7 @@
 ted4_level ted4_level_of_machine(void)
 {
 #if defined(__x86_64__)
-    /* What has these has the rest of x86-64-v3 too, but only these are asked of the compiler. */
+    /* Kernels are compiled for these instruction sets only, not for all of x86-64-v3. */
     if (!__builtin_cpu_supports("avx2") || !__builtin_cpu_supports("fma") ||
         !__builtin_cpu_supports("bmi") || !__builtin_cpu_supports("bmi2"))
         return TED4_LEVEL_BASE;

@@ -1,5 +1,5 @@
-/* parallel.h - how a caller lends its threads to the library; the library starts none
- * (SECURITY.md). Results never depend on which thread runs which index.
+/* parallel.h - the interface by which a caller lends its threads to the library, which starts none
+ * itself (SECURITY.md). Results never depend on which thread runs which index.
  * SPDX-License-Identifier: BSD-2-Clause */
 #ifndef TED4_PARALLEL_H
 #define TED4_PARALLEL_H
@@ -10,15 +10,15 @@
 extern "C" {
 #endif
 
-/* run() calls body(arg, i) once for each i in [0, n), in any order, on any threads, and returns
- * when all are done. */
+/* run(user, n, body, arg) calls body(arg, i) exactly once for each i in [0, n), in any order and on
+ * any threads, and returns when all calls have returned. */
 typedef struct {
     void (*run)(void *user, size_t n, void (*body)(void *arg, size_t i), void *arg);
     void *user;
 } ted4_parallel;
 
-/* Calls body(arg, i) for each i in [0, n). p may be NULL: then the calling thread does everything,
- * in order. */
+/* Calls body(arg, i) for each i in [0, n). If p is NULL, the calling thread makes all calls, in
+ * order. */
 static inline void ted4_parallel_for(const ted4_parallel *p, size_t n,
                                      void (*body)(void *arg, size_t i), void *arg)
 {

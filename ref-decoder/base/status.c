@@ -1,4 +1,4 @@
-/* status.c - spec 14: the table behind status.h.
+/* status.c - spec 14: the table of verdicts, and the functions of status.h that read it.
  * SPDX-License-Identifier: BSD-2-Clause */
 #include "base/status.h"
 
