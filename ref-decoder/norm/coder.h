@@ -1,7 +1,7 @@
-/* coder.h - each syntax structure is described once, by a walk; a coder says what a walk does:
- * read, write or count. The walks (walk_*.c) know elements, their order, contexts and limits; the
- * coders know bytes and slots. Any coder can be traced. The coders are read/reader.c,
- * ref-encoder/write/coder_write.c and coder_count.c.
+/* coder.h - the interface between walks and coders. A walk (walk_*.c) describes a syntax structure
+ * once: its elements, their order, contexts and limits. A coder decides whether the walk reads,
+ * writes or counts: it handles bytes and slots. Any coder can be traced. The coders are
+ * read/reader.c, ref-encoder/write/coder_write.c and coder_count.c.
  * SPDX-License-Identifier: BSD-2-Clause */
 #ifndef TED4_CODER_H
 #define TED4_CODER_H
@@ -10,41 +10,42 @@
 
 typedef struct ted4_coder ted4_coder;
 
-/* Each operation is given the value to be coded and returns the coded value: a reading coder
- * ignores the given value, and the others return it. After a failure, operations do nothing and
- * numbers are 0. */
+/* The operations of a coder. Each receives the value to be coded and returns the coded value: a
+ * reading coder ignores the value that it receives, and the other coders return it. After an error,
+ * operations do nothing, and numbers are 0. */
 typedef struct {
     /* Codes an unsigned number of 1, 2 or 4 bytes. */
     uint32_t (*number)(ted4_coder *c, unsigned width, uint32_t value);
-    /* Codes n numbers of width bytes, an array in memory. If the bytes that remain do not hold it,
-     * the array is not touched: n may be a claim of the file that no size_t holds, and values may
+    /* Codes an array of n numbers of width bytes each. If too few bytes remain, values is not
+     * accessed: n may then be an unchecked number from the file, even beyond size_t, and values may
      * be NULL. */
     void (*array)(ted4_coder *c, unsigned width, void *values, uint64_t n);
-    /* spec 7.2, mode 1: codes the opaque bytes up to the end of the chunk. A reader also inflates
+    /* spec 7.2, mode 1: codes the zlib bytes up to the end of the chunk. A reader also inflates
      * them into b->values. */
     void (*deflated)(ted4_coder *c, ted4_blob *b);
-    /* spec 9.1: codes size[n]. A writer fills the sizes in later, by close. */
+    /* spec 9.1: codes size[n]. A writer fills in the sizes later, in close. */
     void (*sizes)(ted4_coder *c, uint32_t *size, unsigned n);
-    /* spec 9.2: begins the next substream, of n symbols, and ends it. */
+    /* spec 9.2: begin the next substream, which has n symbols, and end it. */
     void (*open)(ted4_coder *c, size_t n);
     void (*close)(ted4_coder *c);
-    /* spec 9.3: codes one binary symbol, which is 1 in slots [0, prob). */
+    /* spec 9.3: codes one binary symbol, whose value is 1 for slots in [0, prob). */
     int (*bit)(ted4_coder *c, uint32_t prob, int value);
-    /* spec 9.4: codes n symbols k with their mu and sigma index. */
+    /* spec 9.4: codes k[n], where symbol i has the Gaussian model with mu[i] (Q8) and the sigma
+     * index sigma[i]. */
     void (*gauss)(ted4_coder *c, size_t n, const int32_t *mu, const uint8_t *sigma, int16_t *k);
 } ted4_coder_ops;
 
 struct ted4_coder {
     const ted4_coder_ops *ops;
-    int reads;        /* 1: values come out of the coder; 0: they go in */
-    size_t pos;       /* offset in the file of the next byte */
-    ted4_error error; /* the first failure */
+    int reads;        /* 1: the coder produces values; 0: it consumes them */
+    size_t pos;       /* byte offset in the file of the next element */
+    ted4_error error; /* the first error */
     void (*trace)(void *user, size_t offset, const char *element, int64_t index,
-                  int64_t value); /* NULL: off */
+                  int64_t value); /* see ted4_options; NULL: no trace */
     void *trace_user;
 };
 
-/* Fails with this code at offset at unless the condition holds. Returns the condition. */
+/* Records the error code at byte offset at unless holds is true. Returns holds. */
 static inline int ted4_require(ted4_coder *c, int holds, ted4_status code, size_t at)
 {
     if (!holds)
@@ -59,7 +60,8 @@ static inline void ted4_trace(ted4_coder *c, size_t at, const char *element, int
         c->trace(c->trace_user, at, element, index, value);
 }
 
-/* Codes and traces one number. index is that of an array element, and 0 for a single element. */
+/* Codes and traces one number of width bytes. index is the number's index in an array, or 0 if the
+ * element is not an array. Returns the coded value. */
 static inline uint32_t ted4_code(ted4_coder *c, const char *element, int64_t index, unsigned width,
                                  uint32_t value)
 {
@@ -70,7 +72,7 @@ static inline uint32_t ted4_code(ted4_coder *c, const char *element, int64_t ind
     return value;
 }
 
-/* walk_container.c - spec 5. A frame is what surrounds the payload of a chunk. */
+/* walk_container.c - spec 5. A frame is the part of a chunk around its payload. */
 typedef struct {
     uint8_t type[4];
     uint32_t flags, size;
@@ -84,7 +86,7 @@ enum {
     TED4_FLAG_COPY = 2
 };
 
-/* The chunks of R-CON-003. */
+/* The chunk types of R-CON-003, in their order. */
 typedef enum {
     TED4_HEAD,
     TED4_NETE,
@@ -98,20 +100,20 @@ typedef enum {
 
 extern const char ted4_chunk_type[TED4_CHUNKS][5];
 
-/* Codes the magic, the versions, the profile and the level. */
+/* Codes the magic bytes, the version, the profile and the level. */
 void ted4_walk_file_header(ted4_coder *c, uint8_t *level);
 /* Codes the type, the flags and the size. */
 void ted4_walk_frame(ted4_coder *c, ted4_frame *f);
-/* spec 15.2: codes the payload of ENDS. hash is what it must be. */
+/* spec 15.2: codes the payload of ENDS, which must equal hash[16]. */
 void ted4_walk_ends(ted4_coder *c, const uint8_t *hash);
 
-/* walk_header.c - spec 6.1. Fills *shape. file_bytes is used for the bounds of spec 13; UINT64_MAX:
- * it is not known yet, and these bounds are not checked. */
+/* walk_header.c - spec 6.1: codes *h and fills *shape. file_bytes, the size of the file, is needed
+ * for the bounds of spec 13; UINT64_MAX: it is not known yet, and these bounds are not checked. */
 void ted4_walk_header(ted4_coder *c, ted4_header *h, ted4_shape *shape, unsigned level,
                       uint64_t file_bytes);
 
-/* walk_nets.c - spec 7. The values of the blobs are allocated; a reader does not touch those that
- * cannot be read. */
+/* walk_nets.c - spec 7. The caller has allocated the values of the blobs, or left them NULL where
+ * the payload is too short for them; a reader does not access the latter. */
 struct ted4_prior;
 void ted4_walk_nete(ted4_coder *c, ted4_scene *s, struct ted4_prior *prior);
 void ted4_walk_blob(ted4_coder *c, const char *element, ted4_blob *b);
@@ -119,9 +121,9 @@ void ted4_walk_blob(ted4_coder *c, const char *element, ted4_blob *b);
 /* walk_positions.c - spec 8. */
 void ted4_walk_positions(ted4_coder *c, ted4_scene *s);
 
-/* walk_tile.c - spec 9, 10. work has ted4_tile_work_size() bytes, is aligned to 64 bytes and may
- * have any contents. */
-size_t ted4_tile_work_size(const ted4_scene *s); /* SIZE_MAX: too large for this machine */
+/* walk_tile.c - spec 9, 10. work points to ted4_tile_work_size() bytes, aligned to 64 bytes, whose
+ * contents do not matter. */
+size_t ted4_tile_work_size(const ted4_scene *s); /* SIZE_MAX: more than this machine can address */
 void ted4_walk_tile(ted4_coder *c, ted4_scene *s, const struct ted4_prior *prior, unsigned tile,
                     void *work);
 

@@ -1,4 +1,4 @@
-/* gaussian.c - spec 9.4: from a value to its slots, and back.
+/* gaussian.c - spec 9.4: maps a value to its slots, and a slot back to its symbol.
  * SPDX-License-Identifier: BSD-2-Clause */
 #include "norm/gaussian.h"
 
@@ -25,8 +25,9 @@ ted4_gauss_symbol ted4_gauss_of(int32_t mu, unsigned g, int32_t k)
     return s;
 }
 
-/* A symbol near the one that holds slot: the Gaussian inverted by table, in Q8 of a step as d of
- * spec 9.4. sigma = STEPI[128 + 2 (g mod 16)] 2^(g / 16 - 16); where is Q14. */
+/* Returns a symbol close to the one that contains slot: the inverse of the Gaussian distribution,
+ * looked up in a table. d is in Q8 steps, as in spec 9.4; ted4_where is Q14, and
+ * sigma = STEPI[128 + 2 (g mod 16)] 2^(g / 16 - 16). */
 static uint32_t guess(unsigned g, int32_t fr, uint32_t slot)
 {
     const int32_t d =
@@ -36,9 +37,8 @@ static uint32_t guess(unsigned g, int32_t fr, uint32_t slot)
                                 (int32_t)ted4_gauss_size(g) - 1);
 }
 
-/* cum is strictly increasing, so there is one j with cum(j) <= slot < cum(j + 1). The guess is
- * nearly always right; otherwise steps that double reach beyond it, and bisection finds it between
- * them. */
+/* cum is strictly increasing, so exactly one j has cum(j) <= slot < cum(j + 1). The guess is nearly
+ * always right. Otherwise, steps of doubling length enclose j, and bisection finds it. */
 uint32_t ted4_gauss_find(unsigned g, int32_t fr, uint32_t slot, ted4_slots *slots)
 {
     const uint32_t size = ted4_gauss_size(g);

@@ -1,4 +1,4 @@
-/* gaussian.h - spec 9.4: the symbols of a Gaussian model and their slots.
+/* gaussian.h - spec 9.4: maps between the symbols of a Gaussian model and their slots.
  * SPDX-License-Identifier: BSD-2-Clause */
 #ifndef TED4_GAUSSIAN_H
 #define TED4_GAUSSIAN_H
@@ -17,19 +17,19 @@ typedef struct {
     uint32_t start, freq;
 } ted4_slots;
 
-/* A symbol k as spec 9.4 codes it. escape is e, or -1 if k is not an escape. */
+/* A symbol k as spec 9.4 codes it. escape is e, or -1 if k needs no escape. */
 typedef struct {
     ted4_slots slots;
     int32_t escape;
 } ted4_gauss_symbol;
 
-/* R: the number of symbols in the alphabet of sigma index g. */
+/* Returns R, the size of the alphabet for sigma index g. */
 static inline uint32_t ted4_gauss_size(unsigned g)
 {
     return 2u * ted4_half[g] + 4;
 }
 
-/* cum(j) for 0 < j < R. fr is the fraction of mu, 0 .. 255. */
+/* Returns cum(j) for 0 < j < R. fr is the fractional part of mu, 0 .. 255. */
 static inline uint32_t ted4_gauss_inner(unsigned g, int32_t fr, uint32_t j)
 {
     const int32_t d = 256 * ((int32_t)j - 1 - ted4_half[g]) - 128 - fr;
@@ -43,7 +43,7 @@ static inline uint32_t ted4_gauss_inner(unsigned g, int32_t fr, uint32_t j)
     return ((p >> 8) * ((1u << TED4_SLOT_BITS) - ted4_gauss_size(g)) >> TED4_SLOT_BITS) + j;
 }
 
-/* cum(j) for 0 <= j <= R. */
+/* Returns cum(j) for 0 <= j <= R. */
 static inline uint32_t ted4_gauss_cum(unsigned g, int32_t fr, uint32_t j)
 {
     if (j == 0 || j == ted4_gauss_size(g))
@@ -51,11 +51,11 @@ static inline uint32_t ted4_gauss_cum(unsigned g, int32_t fr, uint32_t j)
     return ted4_gauss_inner(g, fr, j);
 }
 
-/* Returns the symbol of k. */
+/* Returns k as a symbol of the model with mean mu (Q8) and sigma index g. */
 ted4_gauss_symbol ted4_gauss_of(int32_t mu, unsigned g, int32_t k);
-/* Returns the symbol j whose slots contain slot, and sets *slots to these slots. */
+/* Returns the symbol j whose slots contain slot, and sets *slots to its slots. */
 uint32_t ted4_gauss_find(unsigned g, int32_t fr, uint32_t slot, ted4_slots *slots);
-/* k - m for symbol j if it is no escape; and the same for an escape with value e. */
+/* Return k - m for a symbol j that is not an escape, and for an escape j with value e. */
 static inline int32_t ted4_gauss_offset(unsigned g, uint32_t j)
 {
     return (int32_t)j - 1 - ted4_half[g];

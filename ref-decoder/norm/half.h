@@ -1,5 +1,5 @@
-/* half.h - spec 8: binary16 patterns as exact integers and as sort keys; conversions by bit
- * operations.
+/* half.h - spec 8: converts binary16 patterns to exact integers, sort keys and binary32, using bit
+ * operations only.
  * SPDX-License-Identifier: BSD-2-Clause */
 #ifndef TED4_HALF_H
 #define TED4_HALF_H
@@ -7,7 +7,8 @@
 #include <stdint.h>
 #include "base/bytes.h"
 
-/* X of spec 8: the value times 2^24, exact. |value| <= 1, so the exponent field is at most 15. */
+/* Returns X of spec 8: the value times 2^24, which is exact. |value| <= 1, so the exponent field is
+ * at most 15. */
 static inline int32_t ted4_half_q24(uint16_t h)
 {
     const unsigned e = h >> 10 & 15;
@@ -28,15 +29,15 @@ static inline float ted4_half_to_float(uint16_t h)
     if (e == 0) {
         if (m == 0)
             return ted4_bits_float(sign);
-        for (e = 1; m < 0x400; e--) /* wraps below 0, as 112 is added */
+        for (e = 1; m < 0x400; e--) /* may wrap around below 0; adding 112 undoes that */
             m <<= 1;
         m &= 0x3ff;
     }
     return ted4_bits_float(sign | (e + 112) << 23 | m << 13);
 }
 
-/* Converts binary32 to binary16, to nearest with ties to even. Values beyond the largest binary16
- * become infinity. */
+/* Converts binary32 to binary16, rounding to nearest with ties to even. Values beyond the largest
+ * binary16 become infinity. */
 static inline uint16_t ted4_float_to_half(float x)
 {
     const uint32_t bits = ted4_float_bits(x);
@@ -56,12 +57,12 @@ static inline uint16_t ted4_float_to_half(float x)
     rest = m & (2 * half - 1);
     v = m >> shift;
     if (e >= 113)
-        v += (e - 113) << 10; /* v holds 1 << 10 already */
+        v += (e - 113) << 10; /* v already contains 1 << 10 */
     v += rest > half || (rest == half && (v & 1) != 0);
     return (uint16_t)(sign | v);
 }
 
-/* spec 8: maps a pattern to an integer so that the order of values is kept. */
+/* spec 8: maps a pattern to an integer; the map preserves the order of values. */
 static inline uint32_t ted4_half_order(uint16_t h)
 {
     return h < 0x8000 ? h + 0x8000u : 0xffffu - h;
@@ -77,7 +78,7 @@ static inline uint64_t ted4_spread3(uint64_t x)
     return x;
 }
 
-/* spec 8: the 48-bit Morton code of an anchor's three patterns. */
+/* spec 8: returns the 48-bit Morton code of an anchor's position, p[3]. */
 static inline uint64_t ted4_morton(const uint16_t *p)
 {
     return ted4_spread3(ted4_half_order(p[0])) << 2 | ted4_spread3(ted4_half_order(p[1])) << 1 |

@@ -1,9 +1,9 @@
-/* int_dense.c - spec 7.3 "Evaluation": dense layers in integers, plainly. Its faster twins are in
- * kernel/. R-NET-006 is why nothing here can overflow, in any order of summation.
- * SPDX-License-Identifier: BSD-2-Clause */
+/* int_dense.c - spec 7.3 "Evaluation": dense layers in integer arithmetic, in portable C. The
+ * faster variants are in kernel/. R-NET-006 ensures that no sum overflows, in any order of
+ * summation. SPDX-License-Identifier: BSD-2-Clause */
 #include "norm/prior.h"
 
-/* Sums of one output unit for n columns. */
+/* Computes the sums of output unit o for n columns. */
 static void accumulate(const ted4_int_layer *l, unsigned o, const int16_t *x, size_t n,
                        int32_t *acc)
 {

@@ -1,4 +1,4 @@
-/* limits.c - spec 13: levels, and what they count.
+/* limits.c - spec 13: the table of levels, and the quantities that levels bound.
  * SPDX-License-Identifier: BSD-2-Clause */
 #include "norm/limits.h"
 

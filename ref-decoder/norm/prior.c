@@ -1,4 +1,4 @@
-/* prior.c - spec 7.3, 10.1: integerise and evaluate the networks of Tier E.
+/* prior.c - spec 7.3, 10.1, 10.3: converts the networks of Tier E to integers and evaluates them.
  * SPDX-License-Identifier: BSD-2-Clause */
 #include "norm/prior.h"
 
@@ -59,7 +59,7 @@ ted4_unit_rule ted4_prior_rule(const ted4_net_shape *n, unsigned i, int hyper,
     return u;
 }
 
-/* One layer whose f32 values begin at nete[at]: all W, then all b (spec 7.1). */
+/* Loads one layer, whose f32 values start at nete[at]: all of W, then all of b (spec 7.1). */
 static void layer_load(ted4_int_layer *l, const ted4_unit_rule *u, const float *nete, size_t at,
                        const uint8_t *shift, ted4_error *e)
 {
@@ -97,7 +97,8 @@ static void layer_load(ted4_int_layer *l, const ted4_unit_rule *u, const float *
     }
 }
 
-/* shifts: only those are judged (they precede the values in a file); else the values are loaded. */
+/* If nete is NULL, checks the shifts only, which precede the values in a file; otherwise loads the
+ * values. */
 static void net_load(ted4_prior *p, ted4_int_layer *l, const ted4_net_shape *n, int hyper,
                      const float *nete, const uint8_t *shift, ted4_error *e)
 {
@@ -136,18 +137,19 @@ ted4_status ted4_prior_load(ted4_prior *p, const float *nete, const uint8_t *shi
     return own.code;
 }
 
-/* Dense layers take whole groups of 32 columns. */
+/* Rounds n up to whole groups of 32 columns, which dense layers require. */
 static size_t group_up(size_t n)
 {
     return (n + 31) / 32 * 32;
 }
 
-/* All layers but the last; their result goes to y, or x is it when there are none. */
+/* Evaluates all layers but the last. Returns their output, which is y, or x if there is only one
+ * layer. between is scratch. */
 static const int16_t *inner_layers(const ted4_prior *p, const ted4_int_layer *l, unsigned n_layers,
                                    const int16_t *x, size_t n, int16_t *between, int16_t *y)
 {
     for (unsigned i = 0; i + 1 < n_layers; i++) {
-        /* The last of them writes y, and the one before it must not. */
+        /* The outputs alternate so that the last of these layers writes to y. */
         int16_t *to = (n_layers - i) % 2 == 0 ? y : between;
 
         p->dense->hidden(&l[i], x, n, to);
@@ -165,12 +167,12 @@ static void chain(const ted4_prior *p, const ted4_int_layer *l, unsigned n_layer
     p->dense->last(&l[n_layers - 1], x, n, out);
 }
 
-/* spec 10.1: sines and cosines of n anchors in 2^l turns, in two rows: what ted4_sine gives. All
- * entries of the table are fetched before they are interpolated, which compilers do to several at a
- * time then. */
+/* spec 10.1: writes the sines and cosines of octave l for n anchors to two rows, bit for bit as
+ * ted4_sine computes them. All table entries are loaded before any is interpolated, so that
+ * compilers can vectorise the interpolation. */
 static void waves(const uint32_t *phase, unsigned l, size_t n, int16_t *x)
 {
-    int16_t sine[TED4_PRIOR_BLOCK][2], cosine[TED4_PRIOR_BLOCK][2]; /* an entry, the next */
+    int16_t sine[TED4_PRIOR_BLOCK][2], cosine[TED4_PRIOR_BLOCK][2]; /* a table entry and the next */
 
     for (size_t i = 0; i < n; i++) {
         const uint32_t at = phase[i] << l >> 22;
@@ -186,7 +188,8 @@ static void waves(const uint32_t *phase, unsigned l, size_t n, int16_t *x)
     }
 }
 
-/* Inputs of n anchors, and of the last one again up to a whole group. Returns how many that are. */
+/* Computes the inputs of n anchors, repeating the last one up to a whole group of columns. Returns
+ * the number of columns. */
 static size_t all_inputs(const ted4_prior *p, const uint16_t *position, size_t n, int16_t *x)
 {
     const size_t padded = group_up(n);
