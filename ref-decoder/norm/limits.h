@@ -28,8 +28,8 @@ uint64_t ted4_count_symbols(const ted4_header *h, const ted4_shape *s);
 uint64_t ted4_count_products(const ted4_header *h, const ted4_shape *s);
 /* Returns W_E of spec 13.4, which depends on HEAD and on the size of the file in bytes. */
 uint64_t ted4_count_work(const ted4_header *h, const ted4_shape *s, uint64_t file_bytes);
-/* spec 13.4: returns the steps of a query, N A_R + 20 G, for a scene with n_records kept offsets.
- */
+/* spec 13.4: returns the steps of a query, N A_R + 20 G, where n_records is G, the number of kept
+ * offsets of the scene. */
 uint64_t ted4_count_query_work(const ted4_header *h, const ted4_shape *s, uint64_t n_records);
 
 /* Returns 1 if a file of file_bytes bytes respects those bounds of the level that involve several

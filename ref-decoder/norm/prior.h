@@ -118,9 +118,8 @@ static inline uint8_t ted4_step_index(int32_t v)
     return (uint8_t)ted4_clamp(128 + ted4_round_shift(v, 3), 0, 255);
 }
 
-/* spec 10.1: returns the sigma index for an output s, which includes the slice network's
- * correction.
- */
+/* spec 10.1: returns the sigma index for an output s. The caller has added the slice network's
+ * correction to s. */
 static inline uint8_t ted4_sigma_index(int32_t s)
 {
     return (uint8_t)ted4_clamp(64 + ted4_round_shift(s, 4), 0, TED4_N_SIGMA - 1);

@@ -1,5 +1,5 @@
-/* scene.c - see scene.h. A scene lies in its own arena.
- * SPDX-License-Identifier: BSD-2-Clause */
+/* scene.c - implements scene.h, and ted4_scene_free and ted4_scene_info of ted4.h. A scene lies in
+ * its own arena. SPDX-License-Identifier: BSD-2-Clause */
 #include "norm/scene.h"
 
 #include <string.h>
@@ -22,7 +22,7 @@ void ted4_scene_free(ted4_scene *s)
 
     if (s == NULL)
         return;
-    arena = s->arena; /* the scene itself lies in it */
+    arena = s->arena; /* a copy, because the scene lies in its own arena */
     ted4_arena_finish(&arena);
 }
 

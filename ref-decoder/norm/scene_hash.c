@@ -1,6 +1,6 @@
-/* scene_hash.c - spec 15.2: the hash of everything Tier E decodes.
+/* scene_hash.c - spec 15.2: computes the hash of the decoded integers.
  * SPDX-License-Identifier: BSD-2-Clause */
-#define XXH_STATIC_LINKING_ONLY /* the hash state may lie on the stack */
+#define XXH_STATIC_LINKING_ONLY /* allows the hash state to be on the stack */
 #include <xxhash.h>
 
 #include "base/bytes.h"
@@ -8,7 +8,7 @@
 
 enum { BUFFER = 4096 };
 
-/* Gathers the byte string of 15.2 piece by piece. */
+/* Hashes the byte string of spec 15.2 piece by piece; bytes[0 .. n) are not hashed yet. */
 typedef struct {
     XXH3_state_t state;
     size_t n;
@@ -27,7 +27,7 @@ static void put_bytes(hasher *h, const uint8_t *v, size_t n)
     (void)XXH3_128bits_update(&h->state, v, n);
 }
 
-/* Numbers of 16 bits, of which as many as the buffer has room for are made bytes at a time. */
+/* Hashes n 16-bit numbers, converting as many to bytes at a time as fit the buffer. */
 static void put_numbers(hasher *h, const uint16_t *v, size_t n)
 {
     const size_t per_batch = BUFFER / 2;
@@ -43,7 +43,8 @@ static void put_numbers(hasher *h, const uint16_t *v, size_t n)
     }
 }
 
-/* Symbols of n anchors, those of anchors that move. Returns how many bytes they are. */
+/* Writes the symbols of those of n anchors that move. Returns the number of bytes written. The last
+ * write of two bytes may lie beyond them. */
 static size_t put_moving(uint8_t *to, const int16_t *k, const uint8_t *dynamic, size_t n)
 {
     size_t at = 0;
@@ -55,7 +56,7 @@ static size_t put_moving(uint8_t *to, const int16_t *k, const uint8_t *dynamic, 
     return at;
 }
 
-/* Those of anchors that keep an offset. */
+/* Does the same for the symbols of anchors that keep the given offset. */
 static size_t put_kept(uint8_t *to, const int16_t *k, const uint16_t *offset_bits, unsigned offset,
                        size_t n)
 {
@@ -68,7 +69,8 @@ static size_t put_kept(uint8_t *to, const int16_t *k, const uint16_t *offset_bit
     return at;
 }
 
-/* Symbols of component comp of a type for anchors first .. end - 1: those that have it. */
+/* Hashes the symbols of component comp of a type, for those of the anchors first .. end - 1 that
+ * have this component. */
 static void put_component(hasher *h, const ted4_scene *s, int type, unsigned comp, size_t first,
                           size_t end)
 {

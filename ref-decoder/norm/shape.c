@@ -1,11 +1,12 @@
-/* shape.c - spec 6.2, 7, 9.1: everything that follows from a header.
+/* shape.c - spec 6.2, 7, 9.1: derives from a header the dimensions of attributes and networks, and
+ * the numbers of tiles and substreams.
  * SPDX-License-Identifier: BSD-2-Clause */
 #include "norm/syntax.h"
 
 #include <string.h>
 
-/* Appends a network: in inputs, hidden layers of one width, out outputs. *values and *units run
- * through the blob. */
+/* Describes a network with in inputs, hidden layers of equal width, and out outputs. *values and
+ * *units, the positions in the blob, are advanced past it. */
 static void chain(ted4_net_shape *n, unsigned in, unsigned hidden, unsigned width, unsigned out,
                   size_t *values, size_t *units)
 {

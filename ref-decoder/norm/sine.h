@@ -1,4 +1,5 @@
-/* sine.h - spec 10.1, 11.3 (E(p), E(t)): the sine of the positional encodings, by table.
+/* sine.h - spec 10.1, 11.3 (E(p), E(t)): the sine of the positional encodings, interpolated in a
+ * table.
  * SPDX-License-Identifier: BSD-2-Clause */
 #ifndef TED4_SINE_H
 #define TED4_SINE_H
@@ -6,14 +7,15 @@
 #include "base/fixed.h"
 #include "norm/tables.h"
 
-/* Interpolates from an entry of the table towards the next one, which is higher by rise. b says how
- * far, in Q12. */
+/* Interpolates between a table entry and the next one, whose difference is rise. b is the fraction
+ * of the way, in Q12. */
 static inline int16_t ted4_sine_beyond(int16_t entry, int16_t rise, int16_t b)
 {
     return (int16_t)(entry + ted4_round_shift(rise * b, 12));
 }
 
-/* The sine of u in Q12; u is in turns of 2^32. The cosine is the sine of u + 2^30. */
+/* Returns the sine of u in Q12, where 2^32 units of u are one turn. The cosine of u is the sine of
+ * u + 2^30. */
 static inline int16_t ted4_sine(uint32_t u)
 {
     const uint32_t i = u >> 22;

@@ -1,4 +1,4 @@
-/* syntax.h - spec 6 to 10: what a parsed file holds, with one member per syntax element.
+/* syntax.h - spec 6 to 10: the contents of a parsed file, with one member per syntax element.
  * SPDX-License-Identifier: BSD-2-Clause */
 #ifndef TED4_SYNTAX_H
 #define TED4_SYNTAX_H
@@ -18,14 +18,14 @@ enum {
     TED4_MAX_NETS = 24
 };
 
-/* spec 6.2: attribute types in stream order. */
+/* spec 6.2: the attribute types in stream order. */
 typedef enum { TED4_FEATURE, TED4_SCALING, TED4_OFFSET, TED4_PHI, TED4_TAU, TED4_TYPES } ted4_type;
 
-/* spec 6.1; the values of motion and view are in ted4.h. */
+/* spec 6.1: values of scale_domain and prior. The values of motion and view are in ted4.h. */
 enum { TED4_SCALE_LOG2, TED4_SCALE_LINEAR };
 enum { TED4_PRIOR_INR, TED4_PRIOR_FACTORISED };
 
-/* spec 6.1: the header, in the order of the file and with the names of the text. */
+/* spec 6.1: the header, in file order and with the names of the specification. */
 typedef struct {
     uint32_t n_anchors, tile_size;
     uint8_t n_offsets, feature_dim;
@@ -42,15 +42,15 @@ typedef struct {
     uint8_t n_slices, slice[TED4_MAX_SLICES];
     uint16_t ar_width;
     uint8_t context_bits;
-    float step[TED4_TYPES]; /* Q0 */
+    float step[TED4_TYPES]; /* Q0 of each type */
     uint32_t frames, rate_num, rate_den;
     float origin[3];
     int8_t exponent;
     uint8_t background[3];
 } ted4_header;
 
-/* The shape of a network, which follows from the header (spec 7). Layer i maps dim[i] values to
- * dim[i + 1]. */
+/* The shape of a network, derived from the header (spec 7). Layer i has dim[i] inputs and dim[i +
+ * 1] outputs. */
 typedef struct {
     uint8_t n_layers; /* 0: the network does not exist */
     uint16_t dim[TED4_MAX_LAYERS + 1];
@@ -58,13 +58,13 @@ typedef struct {
     size_t first_unit; /* index of its first shift (NETE) */
 } ted4_net_shape;
 
-/* The number of weights of a layer. Its biases lie behind them (spec 7.1). */
+/* Returns the number of weights of a layer, which its biases follow in the blob (spec 7.1). */
 static inline size_t ted4_layer_weights(const ted4_net_shape *n, unsigned layer)
 {
     return (size_t)n->dim[layer] * n->dim[layer + 1];
 }
 
-/* The number of values of a layer: its weights and its biases. */
+/* Returns the number of weights and biases of a layer. */
 static inline size_t ted4_layer_size(const ted4_net_shape *n, unsigned layer)
 {
     return ted4_layer_weights(n, layer) + n->dim[layer + 1];
@@ -80,17 +80,17 @@ enum {
 };
 
 typedef struct {
-    unsigned dim[TED4_TYPES];          /* 0: type absent */
-    unsigned n_types;                  /* present ones */
+    unsigned dim[TED4_TYPES];          /* components per anchor; 0: type absent */
+    unsigned n_types;                  /* number of present types */
     unsigned n_outputs;                /* P of spec 7.3 */
-    unsigned first_output[TED4_TYPES]; /* of mu; s follows at + dim */
-    unsigned first_step_output;        /* v of the first present type */
+    unsigned first_output[TED4_TYPES]; /* index of the first mu; the first s is at + dim */
+    unsigned first_step_output;        /* index of v of the first present type */
     unsigned n_tiles, n_substreams;
     ted4_net_shape hyper, slice[TED4_MAX_SLICES]; /* slice[0] never exists */
-    size_t n_nete, n_units;                       /* f32 values, shifts */
+    size_t n_nete, n_units;                       /* numbers of f32 values and of shifts in NETE */
     ted4_net_shape netr[TED4_NETS_R];
     size_t n_netr;
-    uint64_t n_bank; /* up to 2^41 */
+    uint64_t n_bank; /* number of values of BANK, up to 2^41 */
 } ted4_shape;
 
 /* shape.c: fills *s from a header whose values are in range. It never fails. */
@@ -98,9 +98,9 @@ void ted4_shape_make(ted4_shape *s, const ted4_header *h);
 
 enum { TED4_BLOB_RAW, TED4_BLOB_DEFLATED, TED4_BLOB_AUTO = 255 };
 
-/* spec 7.2. values: n binary32 numbers, owned by the scene; if it is NULL, they are not there and n
- * is what the header claims. deflated: the opaque zlib bytes if mode is 1. Mode AUTO: no file has
- * chosen, and the writer takes the smaller form. */
+/* A blob (spec 7.2). values: n binary32 numbers, owned by the scene; NULL if not allocated, in
+ * which case n is only the number that the header implies. deflated: the zlib bytes of mode
+ * TED4_BLOB_DEFLATED. TED4_BLOB_AUTO: no mode is given, and the writer chooses the smaller form. */
 typedef struct {
     float *values;
     uint64_t n;
@@ -109,12 +109,13 @@ typedef struct {
     size_t deflated_size;
 } ted4_blob;
 
-enum { TED4_PROBS = 7 }; /* dynamic_prob, offset_prob[6] */
+enum { TED4_PROBS = 7 }; /* per tile: dynamic_prob, offset_prob[6] */
 
-/* Everything that Tier E decodes. The arrays belong to the arena of the scene (scene.h). */
+/* The decoded integers of a file (Tier E). The arena of the scene owns the arrays (scene.h). N is
+ * the number of anchors. */
 struct ted4_scene {
     ted4_arena arena;
-    uint8_t level; /* 0: not from a file */
+    uint8_t level; /* spec 13.1; 0: not from a file */
     ted4_header head;
     ted4_shape shape;
     uint8_t *shift; /* [n_units] spec 7.3 */
@@ -122,9 +123,9 @@ struct ted4_scene {
     uint16_t *position;              /* [N][3] binary16 patterns */
     uint8_t *dynamic;                /* [N] 0 or 1 */
     uint16_t *offset_bits;           /* [N] bit k: offset k is kept */
-    uint8_t *step_index[TED4_TYPES]; /* [N] each; NULL: type absent */
+    uint8_t *step_index[TED4_TYPES]; /* each [N]; NULL: type absent */
     int16_t *symbol[TED4_TYPES];     /* [dim][N]; 0 where not coded */
-    uint16_t *prob;   /* [n_tiles][TED4_PROBS]; 0: no file has said, the writer counts */
+    uint16_t *prob;   /* [n_tiles][TED4_PROBS]; 0: not given, the writer counts symbols to set it */
     uint8_t hash[16]; /* ENDS, spec 15.2 */
 };
 

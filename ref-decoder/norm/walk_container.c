@@ -1,5 +1,5 @@
-/* walk_container.c - spec 5.1, 5.2, 5.4: file header, chunk frames, ENDS.
- * Order and hashes of chunks are judged by read/container.c.
+/* walk_container.c - spec 5.1, 5.2, 5.4: codes the file header, chunk frames, and ENDS.
+ * read/container.c checks the order and the hashes of chunks.
  * SPDX-License-Identifier: BSD-2-Clause */
 #include "norm/coder.h"
 

@@ -1,14 +1,14 @@
-/* walk_header.c - spec 6.1: the HEAD payload. One line an element, in file order.
- * SPDX-License-Identifier: BSD-2-Clause */
+/* walk_header.c - spec 6.1: codes the payload of HEAD. Each element has its own line, in file
+ * order. SPDX-License-Identifier: BSD-2-Clause */
 #include "norm/coder.h"
 
 #include "base/bytes.h"
 #include "norm/limits.h"
 
-/* The range an element has whatever the others say, and the one that they leave it. */
+/* The range of an element by itself, and the range that the other elements leave to it. */
 typedef struct {
-    uint32_t low, high; /* outside: hdr.range */
-    int exists;         /* 0: must be 0; 1: must not be below low_if; else hdr.combination */
+    uint32_t low, high; /* a value outside is hdr.range */
+    int exists;         /* 0: must be 0; 1: must be at least low_if; otherwise hdr.combination */
     uint32_t low_if;
 } range;
 
@@ -28,7 +28,7 @@ static range between(uint32_t low, uint32_t high)
     return (range) { low, high, 1, low };
 }
 
-/* low .. high when the condition holds, else 0. */
+/* Returns the range low .. high if the condition holds, else 0 .. 0. */
 static range only_if(int condition, uint32_t low, uint32_t high)
 {
     return (range) { 0, high, condition, low };
@@ -49,7 +49,7 @@ static void u32(ted4_coder *c, const char *name, uint32_t *v, range r)
     *v = element(c, name, 0, 4, *v, r);
 }
 
-/* An element that a level bounds too. */
+/* Codes an element that the level also bounds. */
 static void levelled(ted4_coder *c, const char *name, uint32_t *v, range r, uint32_t bound)
 {
     const size_t at = c->pos;
@@ -121,7 +121,7 @@ static void walk_prior(ted4_coder *c, ted4_header *h)
 
 static void walk_world(ted4_coder *c, ted4_header *h, const ted4_limits *l)
 {
-    /* Patterns of positive binary32 are ordered as their values: 2^-20 and 2^10. */
+    /* Patterns of positive binary32 values sort like the values; these are 2^-20 and 2^10. */
     const range steps = between(0x35800000, 0x44800000);
     const range rate = between(1, (1 << 24) - 1);
     size_t at;

@@ -1,16 +1,17 @@
-/* walk_nets.c - spec 7.2, 7.3: tensor blobs and the networks of Tier E.
+/* walk_nets.c - spec 7.2, 7.3: codes tensor blobs and the networks of Tier E.
  * SPDX-License-Identifier: BSD-2-Clause */
 #include "norm/coder.h"
 
 #include "base/bytes.h"
 #include "norm/prior.h"
 
-/* Mode and bytes. Gives the offset in the file of value i as at + i step: step is 0 when one opaque
- * element holds them all. */
+/* The byte offset in the file of value i is at + i step; step is 0 if one deflated element holds
+ * all values. */
 typedef struct {
     size_t at, step;
 } value_offsets;
 
+/* Codes the mode and the bytes of a blob. Returns the offsets of its values. */
 static value_offsets walk_bytes(ted4_coder *c, const char *element, ted4_blob *b)
 {
     size_t at = c->pos;

@@ -1,4 +1,4 @@
-/* walk_positions.c - spec 8: the POSN payload.
+/* walk_positions.c - spec 8: codes the payload of POSN.
  * SPDX-License-Identifier: BSD-2-Clause */
 #include "norm/coder.h"
 

@@ -1,4 +1,4 @@
-/* walk_tile.c - spec 9.1, 9.3, 10: one tile of anchors.
+/* walk_tile.c - spec 9.1, 9.3, 10: codes one tile of anchors.
  * SPDX-License-Identifier: BSD-2-Clause */
 #include "norm/coder.h"
 
@@ -8,27 +8,27 @@
 
 enum { BLOCK = TED4_PRIOR_BLOCK, MAX_SUBSTREAMS = 1 + TED4_MAX_SLICES + TED4_TYPES - 1 };
 
-/* A walk under way. Arrays lie in the caller's work memory. */
+/* The state of a walk. The arrays are in the caller's work memory. */
 typedef struct {
     ted4_coder *c;
     ted4_scene *s;
     const ted4_prior *prior;
-    size_t first, n, n_blocks; /* anchors of the tile, in blocks of 64 */
-    size_t n_padded;           /* anchors of all blocks */
-    unsigned n_hidden;         /* H */
-    int16_t *hidden;           /* [n_blocks][H][64] inputs of the hyperprior's last layer */
-    ted4_int_layer some;       /* that layer for some components */
-    int16_t *ctx;              /* [n_blocks][F][64] what the slice networks see */
-    int32_t *out;              /* [2 C][64] outputs of the hyperprior for a block */
-    int32_t *added;            /* as out, of a slice network */
+    size_t first, n, n_blocks; /* first anchor, number of anchors, and of blocks of 64 anchors */
+    size_t n_padded;           /* 64 n_blocks */
+    unsigned n_hidden;         /* H, inputs of the hyperprior's last layer */
+    int16_t *hidden;           /* [n_blocks][H][64] these inputs */
+    ted4_int_layer some;       /* the last layer, restricted to some components */
+    int16_t *ctx;              /* [n_blocks][F][64] inputs of the slice networks */
+    int32_t *out;              /* [2 C][64] outputs of the hyperprior for one block */
+    int32_t *added;            /* [2 C][64] outputs of a slice network, added to out */
     int32_t *mu;               /* [C][n_padded] models of components, for all anchors */
-    uint8_t *sigma;
-    uint32_t *index; /* [n_index] anchors of the tile that have the component */
+    uint8_t *sigma;            /* [C][n_padded] their sigma indices */
+    uint32_t *index;           /* [n_index] anchors of the tile that have the current component */
     size_t n_index;
-    int32_t *some_mu; /* [n_padded] of those anchors, as some_sigma and k */
+    int32_t *some_mu; /* [n_padded], like k and some_sigma: entry j is for anchor index[j] */
     int16_t *k;
     uint8_t *some_sigma;
-    size_t opened; /* offset of the first byte of the open substream */
+    size_t opened; /* byte offset in the file of the open substream */
 } tile;
 
 static const char *const type_name[TED4_TYPES] = { "feature", "scaling", "offset", "phi", "tau" };
@@ -51,8 +51,9 @@ static unsigned larger(unsigned a, unsigned b)
     return a > b ? a : b;
 }
 
-/* Offsets that are evaluated at once: what is kept of the hyperprior is short, and most of its
- * outputs are theirs. */
+/* The number of offsets whose models are evaluated at once. Most outputs of the hyperprior belong
+ * to offsets, so they are evaluated in groups from the inputs of the last layer, which take less
+ * memory. */
 enum { OFFSETS = 8 };
 
 static unsigned hidden_rows(const ted4_net_shape *hyper)
@@ -60,7 +61,7 @@ static unsigned hidden_rows(const ted4_net_shape *hyper)
     return hyper->dim[hyper->n_layers - 1];
 }
 
-/* C: most components that are evaluated at once. */
+/* Returns C, the largest number of components that are evaluated at once. */
 static unsigned most_components(const ted4_scene *s)
 {
     const unsigned k = s->head.n_offsets;
@@ -72,19 +73,19 @@ static unsigned most_components(const ted4_scene *s)
     return most;
 }
 
-/* Bytes of out and of added. */
+/* Returns the size in bytes of out, which is also the size of added. */
 static size_t outputs_size(const ted4_scene *s)
 {
     return sizeof(int32_t) * 2 * BLOCK * most_components(s);
 }
 
-/* Units of a layer of so many outputs, and more up to a multiple of 64. */
+/* Returns the number of units of a layer with 2 C outputs, rounded up to a multiple of 64. */
 static size_t layer_units(const ted4_scene *s)
 {
     return block_count(2 * most_components(s)) * BLOCK;
 }
 
-/* Weights of a unit, or one more. */
+/* Returns an upper bound on in_pad, the number of weights of a unit with their padding. */
 static size_t unit_weights(const ted4_scene *s)
 {
     return (size_t)hidden_rows(&s->shape.hyper) + 1;
@@ -103,7 +104,8 @@ size_t ted4_tile_work_size(const ted4_scene *s)
     return n * per_anchor + fixed;
 }
 
-/* The next n elements of size bytes, n being a multiple of 64. */
+/* Returns the next n elements of size bytes each and advances *at past them. n is a multiple
+ * of 64. */
 static void *next_array(char **at, size_t n, size_t size)
 {
     void *array = *at;
@@ -143,7 +145,7 @@ static uint16_t probability(ted4_coder *c, const char *name, int64_t index, uint
     return value;
 }
 
-/* spec 9.1, all but the substreams */
+/* spec 9.1: codes everything but the substreams. */
 static void walk_head(tile *t, unsigned number)
 {
     ted4_coder *c = t->c;
@@ -175,7 +177,8 @@ static void close_substream(tile *t)
     t->c->ops->close(t->c);
 }
 
-/* What a mask is that is not coded; a scene to be written must agree, or its hash could not. */
+/* Sets the masks of anchor a that are not coded. A scene to be written must already have them,
+ * because otherwise its hash would differ from the decoder's. */
 static void imply(tile *t, size_t a, int dynamic_too, int offsets_too)
 {
     ted4_scene *s = t->s;
@@ -195,8 +198,8 @@ static void imply(tile *t, size_t a, int dynamic_too, int offsets_too)
                  TED4_E_SYN_HASH, t->opened);
 }
 
-/* spec 9.3, the offset bits of an anchor. seen: 0 all bits so far 0, 1 all 1 or none yet, 2 mixed.
- */
+/* spec 9.3: codes the offset bits of anchor a. seen, the context, is 0 if all bits so far are 0, 1
+ * if all are 1 or there are none yet, and 2 if they are mixed. */
 static void walk_offset_bits(tile *t, size_t a, const uint16_t *prob)
 {
     ted4_scene *s = t->s;
@@ -241,7 +244,7 @@ static void walk_masks(tile *t, const uint16_t *prob)
         close_substream(t);
 }
 
-/* Anchors of a block. */
+/* Returns the number of anchors in block b. */
 static size_t block_size(const tile *t, size_t b)
 {
     const size_t left = t->n - b * BLOCK;
@@ -249,7 +252,8 @@ static size_t block_size(const tile *t, size_t b)
     return left < BLOCK ? left : BLOCK;
 }
 
-/* Step indices of n anchors from outputs v. A scene to be written already has those. */
+/* Sets the step indices of n anchors from the outputs v. A scene to be written must already have
+ * them. */
 static void take_steps(tile *t, uint8_t *step, const int32_t *v, size_t n)
 {
     if (t->c->reads) {
@@ -261,7 +265,8 @@ static void take_steps(tile *t, uint8_t *step, const int32_t *v, size_t n)
         ted4_require(t->c, step[i] == ted4_step_index(v[i]), TED4_E_SYN_HASH, t->c->pos);
 }
 
-/* spec 10.1: the hyperprior of the whole tile but for its last layer, and step indices. */
+/* spec 10.1: evaluates all layers of the hyperprior but the last for the whole tile, and sets the
+ * step indices. */
 static void evaluate(tile *t)
 {
     const ted4_shape *shape = &t->s->shape;
@@ -285,7 +290,7 @@ static void evaluate(tile *t)
     }
 }
 
-/* spec 10.3: what the network of slice m adds to mu and s of a block. */
+/* spec 10.3: adds the outputs of slice network m to mu and s of block b. */
 static void add_slice(tile *t, size_t b, unsigned m)
 {
     const size_t size = block_size(t, b), end = 2 * (size_t)t->s->head.slice[m] * BLOCK;
@@ -296,8 +301,8 @@ static void add_slice(tile *t, size_t b, unsigned m)
             t->out[i] += t->added[i];
 }
 
-/* spec 10.1: models of n components of a type from comp on, for the whole tile; of features those
- * of slice m. */
+/* spec 10.1: evaluates the models of n components of a type from comp on, for the whole tile. m:
+ * the slice if the type is feature, otherwise 0. */
 static void evaluate_components(tile *t, ted4_type type, unsigned comp, unsigned n, unsigned m)
 {
     const unsigned first = t->s->shape.first_output[type] + comp;
@@ -322,7 +327,8 @@ static void evaluate_components(tile *t, ted4_type type, unsigned comp, unsigned
     }
 }
 
-/* The anchors that have a component: all of them; those that move; those that keep an offset. */
+/* Set index to the anchors that have a component: all anchors, those that move, or those that keep
+ * offset k. */
 static void choose_all(tile *t)
 {
     t->n_index = t->n;
@@ -354,7 +360,7 @@ static void choose_offset(tile *t, unsigned k)
     t->n_index = n;
 }
 
-/* Models of the chosen anchors. */
+/* Copies the models of the chosen anchors. */
 static void pick_models(tile *t, const int32_t *mu, const uint8_t *sigma)
 {
     const uint32_t *index = t->index;
@@ -367,8 +373,8 @@ static void pick_models(tile *t, const int32_t *mu, const uint8_t *sigma)
     }
 }
 
-/* spec 10.2: component number comp of a type, for the chosen anchors; number i of those that were
- * evaluated. */
+/* spec 10.2: codes component comp of a type for the chosen anchors. i is its index among the
+ * components that were evaluated last. */
 static void walk_component(tile *t, ted4_type type, unsigned comp, unsigned i)
 {
     const size_t row = (size_t)comp * t->s->head.n_anchors + t->first;
@@ -394,7 +400,7 @@ static void walk_component(tile *t, ted4_type type, unsigned comp, unsigned i)
         ted4_trace(t->c, t->opened, type_name[type], (int64_t)(row + t->index[j]), k[j]);
 }
 
-/* spec 10.3: contexts of one feature component, for the slices that follow. */
+/* spec 10.3: stores the context of one feature component for the following slices. */
 static void keep_context(tile *t, unsigned comp)
 {
     const ted4_scene *s = t->s;
@@ -433,7 +439,7 @@ static void walk_feature(tile *t)
     }
 }
 
-/* A type whose components all have the chosen anchors. */
+/* Codes a type all of whose components have the chosen anchors. */
 static void walk_type(tile *t, ted4_type type)
 {
     const unsigned dim = t->s->shape.dim[type];
