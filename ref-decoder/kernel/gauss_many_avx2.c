@@ -1,4 +1,4 @@
-/* gauss_many_avx2.c - gauss_tile.h with eight lanes of AVX2.
+/* gauss_many_avx2.c - instantiates gauss_tile.h for AVX2, with vectors of eight lanes.
  * SPDX-License-Identifier: BSD-2-Clause */
 #if defined(__x86_64__)
 
@@ -9,7 +9,7 @@
 #include "kernel/word_places.h"
 #include "norm/tables.h"
 
-typedef vi mask; /* all bits of a lane, or none */
+typedef vi mask; /* per lane: all bits set, or none */
 
 static inline vi all(int32_t x)
 {
@@ -58,8 +58,8 @@ static inline vi choose(mask m, vi yes, vi no)
     return (vi)_mm256_blendv_epi8((__m256i)no, (__m256i)yes, (__m256i)m);
 }
 
-/* Tables are looked up by loads, one an element: gather instructions take several times as long
- * where processors are patched against leaks through them. */
+/* Table entries are loaded one by one: gather instructions take several times as long on processors
+ * whose microcode mitigates data leaks through them. */
 static inline __m128i two_pairs(const int32_t *table, uint32_t i, uint32_t j)
 {
     const __m128 first = _mm_castsi128_ps(_mm_loadl_epi64((const void *)(table + i)));
@@ -67,8 +67,9 @@ static inline __m128i two_pairs(const int32_t *table, uint32_t i, uint32_t j)
     return _mm_castps_si128(_mm_loadh_pi(first, (const void *)(table + j)));
 }
 
-/* Indices go through memory, as moving each out of the vector takes longer; compilers think
- * otherwise unless they are told that memory may have changed. */
+/* The indices are stored to memory and loaded from there, which is faster than extracting each from
+ * the vector. The empty assembly makes the compiler assume that i has changed; otherwise it would
+ * extract them. */
 static inline void pairs(const int32_t *table, vi index, vi *low, vi *high)
 {
     _Alignas(VECTOR) uint32_t i[LANES];

@@ -1,5 +1,5 @@
-/* gauss_many_avx512.c - gauss_tile.h with two rows of sixteen lanes of AVX-512; substreams of fewer
- * lanes are for AVX2.
+/* gauss_many_avx512.c - instantiates gauss_tile.h for AVX-512, with two vectors of sixteen lanes.
+ * Substreams of fewer than 32 lanes are passed to the AVX2 variant.
  * SPDX-License-Identifier: BSD-2-Clause */
 #if defined(__x86_64__)
 
@@ -56,8 +56,8 @@ static inline vi choose(mask m, vi yes, vi no)
     return (vi)_mm512_mask_mov_epi32((__m512i)no, m, (__m512i)yes);
 }
 
-/* Tables are looked up by loads, one an element: gather instructions take several times as long
- * where processors are patched against leaks through them. */
+/* Table entries are loaded one by one: gather instructions take several times as long on processors
+ * whose microcode mitigates data leaks through them. */
 static inline __m128i two_pairs(const int32_t *table, const uint32_t *i)
 {
     const __m128 first = _mm_castsi128_ps(_mm_loadl_epi64((const void *)(table + i[0])));
@@ -70,8 +70,9 @@ static inline __m256i four_pairs(const int32_t *table, const uint32_t *i)
     return _mm256_set_m128i(two_pairs(table, i + 2), two_pairs(table, i));
 }
 
-/* Indices go through memory, as moving each out of the vector takes longer; compilers think
- * otherwise unless they are told that memory may have changed. */
+/* The indices are stored to memory and loaded from there, which is faster than extracting each from
+ * the vector. The empty assembly makes the compiler assume that i has changed; otherwise it would
+ * extract them. */
 static inline void pairs(const int32_t *table, vi index, vi *low, vi *high)
 {
     _Alignas(VECTOR) uint32_t i[LANES];

@@ -1,4 +1,4 @@
-/* gauss_many_neon.c - gauss_tile.h with rows of four lanes of NEON.
+/* gauss_many_neon.c - instantiates gauss_tile.h for NEON, with vectors of four lanes.
  * SPDX-License-Identifier: BSD-2-Clause */
 #if defined(__AARCH64EL__)
 
@@ -10,7 +10,7 @@
 #include "kernel/word_places.h"
 #include "norm/tables.h"
 
-typedef vi mask; /* all bits of a lane, or none */
+typedef vi mask; /* per lane: all bits set, or none */
 
 static inline vi all(int32_t x)
 {
@@ -75,7 +75,7 @@ static inline vi indices(const uint8_t *sigma)
     return (vi) { sigma[0], sigma[1], sigma[2], sigma[3] };
 }
 
-/* Bytes 0 to 3 of the entry of each lane. */
+/* Looks up bytes 0 to 3 of each lane's table entry. */
 static inline vi scales(vi sigma)
 {
     const int32_t *step = ted4_stepi + 128;

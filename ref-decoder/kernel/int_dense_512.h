@@ -1,6 +1,5 @@
-/* int_dense_512.h - int_tile.h with vectors of 512 bits, for int_dense_avx512.c and
- * int_dense_vnni.c, which define dot().
- * SPDX-License-Identifier: BSD-2-Clause */
+/* int_dense_512.h - the definitions for int_tile.h that int_dense_avx512.c and int_dense_vnni.c
+ * share: everything for 512-bit vectors except dot(). SPDX-License-Identifier: BSD-2-Clause */
 #ifndef TED4_INT_DENSE_512_H
 #define TED4_INT_DENSE_512_H
 
@@ -12,8 +11,8 @@ enum { GROUP = 32, UNITS = 8 };
 
 typedef __m512i vector;
 
-/* 32 anchors of two channels, or sums of them: of each eight anchors the first four are in lo, the
- * others in hi; packing puts them back. */
+/* 32 anchors of two channels, or their sums. Of every eight anchors, the first four are in lo and
+ * the others in hi; packing restores their order. */
 typedef struct {
     vector lo, hi;
 } pair;

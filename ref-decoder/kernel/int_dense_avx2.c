@@ -1,4 +1,4 @@
-/* int_dense_avx2.c - int_tile.h with AVX2.
+/* int_dense_avx2.c - instantiates int_tile.h for AVX2.
  * SPDX-License-Identifier: BSD-2-Clause */
 #if defined(__x86_64__)
 
@@ -10,8 +10,8 @@ enum { GROUP = 16, UNITS = 4 };
 
 typedef __m256i vector;
 
-/* 16 anchors of two channels, or sums of them: unpacking leaves anchors 0-3 8-11 in lo and 4-7
- * 12-15 in hi; packing puts them back. */
+/* 16 anchors of two channels, or their sums. Unpacking puts anchors 0-3 and 8-11 into lo, and 4-7
+ * and 12-15 into hi; packing restores their order. */
 typedef struct {
     vector lo, hi;
 } pair;

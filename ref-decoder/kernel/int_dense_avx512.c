@@ -1,4 +1,4 @@
-/* int_dense_avx512.c - int_tile.h with AVX-512.
+/* int_dense_avx512.c - instantiates int_tile.h for AVX-512.
  * SPDX-License-Identifier: BSD-2-Clause */
 #if defined(__x86_64__)
 

@@ -1,7 +1,6 @@
-/* int_dense_neon.c - twin of norm/int_dense.c for NEON: eight anchors and eight output units at a
- * time, whose weights are the lanes of vectors of eight channels. R-NET-006 keeps every partial sum
- * in 32 bits.
- * SPDX-License-Identifier: BSD-2-Clause */
+/* int_dense_neon.c - the variant of norm/int_dense.c for NEON. It processes eight anchors and eight
+ * output units at a time; a vector holds the weights of one unit for eight channels. R-NET-006
+ * keeps every partial sum in 32 bits. SPDX-License-Identifier: BSD-2-Clause */
 #if defined(__AARCH64EL__)
 
 #include <arm_neon.h>
@@ -9,12 +8,12 @@
 
 enum { ROW = TED4_PRIOR_BLOCK, GROUP = 8, UNITS = 8 };
 
-/* Sums of four anchors and of the next four. */
+/* The sums of four anchors, and of the next four. */
 typedef struct {
     int32x4_t lo, hi;
 } pair;
 
-/* Channel c of eight, of which w has the weights. */
+/* Adds channel c of the eight channels whose weights are in w. */
 #define TED4_CHANNEL(c)                                                        \
     do {                                                                       \
         const int16x8_t in = vld1q_s16(row + (c)*ROW);                         \
@@ -25,7 +24,9 @@ typedef struct {
         }                                                                      \
     } while (0)
 
-/* Units from o on, the last one several times at the end of a layer, of eight anchors. */
+/* Computes UNITS output units from o on for eight anchors. At the end of a layer, the last unit is
+ * computed several times. Sets unit[UNITS] to the indices of the units, and y[UNITS] to their
+ * outputs. */
 static void units(const ted4_int_layer *l, const int16_t *x, unsigned o, unsigned *unit, pair *y)
 {
     const int16_t *row = x, *at[UNITS];

@@ -1,6 +1,5 @@
-/* int_dense_vnni.c - int_tile.h with AVX-512 and its instruction for two products and their sum,
- * which does not saturate.
- * SPDX-License-Identifier: BSD-2-Clause */
+/* int_dense_vnni.c - instantiates int_tile.h for AVX-512 with VNNI, one instruction of which adds
+ * two products to a sum without saturation. SPDX-License-Identifier: BSD-2-Clause */
 #if defined(__x86_64__)
 
 #include "kernel/int_dense_512.h"

@@ -1,22 +1,23 @@
-/* int_tile.h - twin of norm/int_dense.c for x86-64 machines, which multiply pairs of 16-bit numbers
- * and add the two products. Channels are taken in pairs, the two inputs of an anchor side by side,
- * so that one instruction does both products; R-NET-006 keeps every partial sum in 32 bits. The
- * file that includes it says how many anchors a vector of inputs has, GROUP, and how many output
- * units are summed at once, UNITS, and defines:
- *     vector                                          its type
- *     vector nothing(void), load(const int16_t *x)    zeros; GROUP inputs
- *     vector low(vector a, vector b), high(...)       inputs of two channels side by side: of some
- *                                                     anchors, of the others
- *     vector both(const int16_t *w), all(int32_t x)   a pair of weights, or a number, everywhere
- *     vector dot(vector sum, vector x, vector w)      sum + the two products of each anchor
+/* int_tile.h - the variant of norm/int_dense.c for x86-64, whose instructions multiply pairs of
+ * 16-bit numbers and add the two products. Channels are processed in pairs, with the two inputs of
+ * an anchor side by side, so that one instruction computes both products; R-NET-006 keeps every
+ * partial sum in 32 bits. The including file defines GROUP, the number of anchors per vector of
+ * inputs; UNITS, the number of output units that are summed at once; and:
+ *     vector                                          the vector type
+ *     vector nothing(void), load(const int16_t *x)    zeros; loads GROUP inputs
+ *     vector low(vector a, vector b), high(...)       interleave the inputs of two channels, each
+ *                                                     for half of the anchors
+ *     vector both(const int16_t *w), all(int32_t x)   two weights, or x, repeated
+ *     vector dot(vector sum, vector x, vector w)      sum + both products of each anchor
  *     vector shift(vector sum, unsigned r)            (sum + 2^(r-1)) >> r
- *     pair                                            type of two vectors, lo and hi
+ *     pair                                            a structure of two vectors, lo and hi
  *     void store_hidden(int16_t *y, pair sum), store_last(int32_t *y, pair sum)
+ *                                                     activate or clamp, and store GROUP outputs
  * SPDX-License-Identifier: BSD-2-Clause */
 #ifndef TED4_INT_TILE_H
 #define TED4_INT_TILE_H
 
-/* Sums stay in registers only where loops over units are unrolled. */
+/* Sums stay in registers only if loops over units are unrolled. */
 #if defined(__clang__)
 #define TED4_UNROLL _Pragma("clang loop unroll(full)")
 #else
@@ -25,7 +26,7 @@
 
 enum { ROW = TED4_PRIOR_BLOCK, MAX_PAIRS = TED4_MAX_WIDTH / 2 };
 
-/* Inputs of two channels side by side, of GROUP anchors. */
+/* Interleaves the inputs of each pair of channels for GROUP anchors. */
 static inline void interleave(const ted4_int_layer *l, const int16_t *x, pair *p)
 {
     for (unsigned i = 0; i < l->in; i += 2) {
@@ -37,8 +38,9 @@ static inline void interleave(const ted4_int_layer *l, const int16_t *x, pair *p
     }
 }
 
-/* n output units from o on; at the end of a layer the last unit is done several times. ahead: the
- * same inputs of the next block, or NULL. */
+/* Computes n output units from o on. At the end of a layer, the last unit is computed several
+ * times. Sets unit[n] to the indices of the units and y[n] to their outputs. ahead: the
+ * corresponding inputs of the next block, which are prefetched, or NULL. */
 static inline __attribute__((always_inline)) void units(const ted4_int_layer *l, const pair *p,
                                                         unsigned o, const int n,
                                                         const int16_t *ahead, unsigned *unit,
@@ -68,8 +70,8 @@ static inline __attribute__((always_inline)) void units(const ted4_int_layer *l,
 
             sum[j].lo = dot(sum[j].lo, lo, pair_of);
             sum[j].hi = dot(sum[j].hi, hi, pair_of);
-            /* Else gcc begins all products before it ends the first, for which there are too few
-             * registers with AVX2. */
+            /* Without this, gcc starts all products before it finishes the first one, for which
+             * AVX2 has too few registers. */
             __asm__ volatile("" : "+v"(sum[j].lo), "+v"(sum[j].hi));
         }
     }
@@ -80,8 +82,8 @@ static inline __attribute__((always_inline)) void units(const ted4_int_layer *l,
     }
 }
 
-/* As many units as are summed at once, or half of them when no more are left. Returns how many, the
- * last ones perhaps several times. */
+/* Computes UNITS units, or UNITS / 2 if no more are left. Returns this number, in which the last
+ * unit of the layer may count several times. */
 static inline __attribute__((always_inline)) int next_units(const ted4_int_layer *l, const pair *p,
                                                             unsigned o, const int16_t *ahead,
                                                             unsigned *unit, pair *y)
@@ -94,10 +96,11 @@ static inline __attribute__((always_inline)) int next_units(const ted4_int_layer
     return UNITS / 2;
 }
 
-/* One layer; store puts a group of an output's anchors to y[at]. many_blocks: blocks of inputs lie
- * one behind the other, and the caller comes back to all of them for every few outputs. Then those
- * of the next block are fetched while the first units of this one are summed, a few at a time, as
- * processors wait when many are asked for at once. */
+/* Evaluates one layer. store writes a group of anchors of one output to y[at]. many_blocks: blocks
+ * of inputs are contiguous, and the caller processes all of them for a few outputs, then again for
+ * the next ones. In that case, the inputs of the next block are prefetched while the first units of
+ * this block are summed, a few at a time, because processors stall if many are requested at once.
+ */
 static inline __attribute__((always_inline)) void layer(const ted4_int_layer *l, const int16_t *x,
                                                         size_t n, const int many_blocks,
                                                         void (*store)(void *y, size_t at, pair sum),

@@ -1,5 +1,5 @@
-/* select_gauss.c - can this machine read several symbols at a time, and is it wanted to?
- * SPDX-License-Identifier: BSD-2-Clause */
+/* select_gauss.c - selects the function that reads several symbols at a time, if the wanted level
+ * has one. SPDX-License-Identifier: BSD-2-Clause */
 #include <stddef.h>
 #include "base/level.h"
 #include "kernel/gauss_kernel.h"

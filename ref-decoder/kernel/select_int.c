@@ -1,4 +1,4 @@
-/* select_int.c - which variant of the integer dense layer this machine takes.
+/* select_int.c - selects the variant of the integer dense layer for the wanted level.
  * SPDX-License-Identifier: BSD-2-Clause */
 #include "base/level.h"
 #include "kernel/int_kernel.h"

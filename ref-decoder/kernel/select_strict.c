@@ -1,4 +1,4 @@
-/* select_strict.c - which variant of the strict dense layer this machine takes.
+/* select_strict.c - selects the variant of the strict dense layer for the wanted level.
  * SPDX-License-Identifier: BSD-2-Clause */
 #include <stddef.h>
 #include "base/level.h"

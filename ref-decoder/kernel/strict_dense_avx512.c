@@ -1,6 +1,5 @@
-/* strict_dense_avx512.c - spec 12.2: the dense layer over 32 anchors with 512-bit vectors, up to 8
- * outputs at a time.
- * SPDX-License-Identifier: BSD-2-Clause */
+/* strict_dense_avx512.c - spec 12.2: computes a dense layer over 32 anchors with 512-bit vectors,
+ * up to 8 outputs at a time. SPDX-License-Identifier: BSD-2-Clause */
 #include "kernel/strict_dense.h"
 
 #if defined(__x86_64__)

@@ -1,4 +1,4 @@
-/* strict_dense_neon.c - spec 12.2: the dense layer over 32 anchors with 128-bit vectors, two
+/* strict_dense_neon.c - spec 12.2: computes a dense layer over 32 anchors with 128-bit vectors, two
  * outputs at a time.
  * SPDX-License-Identifier: BSD-2-Clause */
 #include "kernel/strict_dense.h"

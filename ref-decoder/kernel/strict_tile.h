@@ -1,6 +1,6 @@
-/* strict_tile.h - spec 12.2: the dense layer for n outputs and 32 anchors, whose sums stay in
- * registers; no fused operations. Twin of recon/strict_dense.c. The file that includes it says how
- * many bytes a vector has, VECTOR, and how many outputs it takes at most, TILE. Depends on
+/* strict_tile.h - spec 12.2: computes n outputs of a dense layer for 32 anchors, with sums kept in
+ * registers and without fused operations; a variant of recon/strict_dense.c. The including file
+ * defines VECTOR, the size of a vector in bytes, and TILE, the largest n. Depends on
  * kernel/strict_dense.h.
  * SPDX-License-Identifier: BSD-2-Clause */
 #ifndef TED4_STRICT_TILE_H
@@ -13,8 +13,9 @@
 typedef float vf __attribute__((vector_size(VECTOR)));
 typedef int32_t vi __attribute__((vector_size(VECTOR)));
 
-enum { VECS = 32 * sizeof(float) / VECTOR }; /* vectors of a row: one value of each anchor */
+enum { VECS = 32 * sizeof(float) / VECTOR }; /* vectors per row, which holds one value per anchor */
 
+/* Computes outputs first .. first + n - 1. */
 static inline __attribute__((always_inline)) void dense_tile(const ted4_strict_layer *l,
                                                              unsigned first, const int n,
                                                              const vf *restrict x, vf *restrict y)
