@@ -1,19 +1,19 @@
-/* gauss_tile.h - spec 9.2, 9.4: twin of gauss_symbol of read/reader.c for several lanes at a time,
- * with the arithmetic of norm/gaussian.h in each 32-bit element. Lanes share one sequence of words,
- * read in the order of lanes: expand() deals them out. The file that includes it says how many
- * bytes a vector has, VECTOR, includes gauss_vector.h for the types, and defines what machines do
- * each in their own way:
+/* gauss_tile.h - spec 9.2, 9.4: the variant of gauss_symbol of read/reader.c for several lanes at a
+ * time. Each 32-bit element of a vector holds one lane and computes as norm/gaussian.h does. All
+ * lanes read from one sequence of words, in the order of lanes; expand() distributes the words. The
+ * including file defines VECTOR, the size of a vector in bytes, includes gauss_vector.h for the
+ * types, and defines these operations, which differ between machines:
  *     vi all(int32_t x)                           x in each lane
  *     vi least(vi a, vi b), most(vi a, vi b)      minimum and maximum, signed
  *     mask less(vi a, vi b), equal(vi a, vi b), either(mask a, mask b), lanes_of(unsigned bits)
- *     unsigned bits_of(mask m)                    bit i: lane i
+ *     unsigned bits_of(mask m)                    bit i is for lane i
  *     vi choose(mask m, vi yes, vi no)
  *     void pairs(const int32_t *table, vi i, vi *low, vi *high)       table[i], table[i + 1]
- *     vi indices(const uint8_t *sigma)            each in its lane
+ *     vi indices(const uint8_t *sigma)            sigma[i] in lane i
  *     vi scales(vi sigma)                         STEPI[128 + 2 (sigma mod 16)]
- *     vi expand(unsigned wants, const uint8_t *words)     a word of 16 bits for each lane that
- *                                                 wants one; LANES words may be read
- *     void narrow(int16_t *to, vi x)              the low half of each lane
+ *     vi expand(unsigned wants, const uint8_t *words)     the next 16-bit word for each lane whose
+ *                                                 bit of wants is 1; may read LANES words
+ *     void narrow(int16_t *to, vi x)              stores the low half of each lane
  * SPDX-License-Identifier: BSD-2-Clause */
 #ifndef TED4_GAUSS_TILE_H
 #define TED4_GAUSS_TILE_H
@@ -23,31 +23,33 @@
 #include "kernel/gauss_kernel.h"
 #include "norm/gaussian.h"
 
-/* Most vectors that are worked on together, as each waits for its tables most of the time; and
- * guesses of a bound. */
+/* ROWS: the largest number of vectors that are processed together, because each one waits for table
+ * lookups most of the time. TRIES: the largest number of guesses of a bound. */
 enum { ROWS = 4, TRIES = 4 };
 
-/* Of functions that are called seldom, and of those that the compiler has to see through. */
+/* Specifiers of functions that are rarely called, and of those that must be inlined. */
 #define TED4_SELDOM static __attribute__((noinline))
 #define TED4_ALWAYS static inline __attribute__((always_inline))
 
-/* INV and half window of each index of sigma, side by side. */
+/* INV and the half window of each sigma index, side by side. */
 typedef struct {
     int32_t of[2 * TED4_N_SIGMA];
 } model_table;
 
-/* Models of a vector: index of sigma, INV, half window, fraction of mu, size of the alphabet. */
+/* The models of a vector of lanes: sigma index, INV, half window, fractional part of mu, and size
+ * of the alphabet. */
 typedef struct {
     vi g, inv, hw, fr, size;
 } models;
 
-/* Symbols that hold their slots: from <= slot < to. */
+/* Symbols j whose slots are [from, to). */
 typedef struct {
     vi j, from, to;
 } symbols;
 
-/* A vector of lanes under way, from lane first on: states, slots, symbols as models have them and
- * as the stream has them. */
+/* A vector of lanes that is being processed: the models; the states x, the slots, and the values k
+ * of the symbols; the symbols s; the index of the first lane; and sets of lanes as bits: those to
+ * be read, those with an escape, and those whose k is out of range. */
 typedef struct {
     models m;
     vi x, slot, k;
@@ -76,12 +78,12 @@ static inline void fill_models(model_table *t)
     }
 }
 
-/* ted4_gauss_inner */
+/* The vector form of ted4_gauss_inner. */
 static inline vi inner(const models *g, vi j)
 {
     const vi d = (j - 1 - g->hw) * 256 - 128 - g->fr;
     const vi at = clamp((vi)((vu)d * (vu)g->inv) >> 11, all(-(1 << 17)), all(1 << 17)) + (1 << 17);
-    /* The last entry is reached from the one before, with b = 256. */
+    /* The last entry is computed from the one before it, with b = 256. */
     const vi i = least(at >> 8, all(TED4_N_PHI - 2)), b = at - i * 256;
     vi low, high;
 
@@ -93,16 +95,16 @@ static inline vi inner(const models *g, vi j)
     return (vi)(share >> TED4_SLOT_BITS) + j;
 }
 
-/* ted4_gauss_cum */
+/* The vector form of ted4_gauss_cum. */
 static inline vi cum(const models *g, vi j)
 {
     return choose(equal(j, all(0)), all(0),
                   choose(equal(j, g->size), all(1 << TED4_SLOT_BITS), inner(g, j)));
 }
 
-/* Where a symbol most likely begins or ends, nearest to slot: as guess of norm/gaussian.c, between
- * entries of the table, and less what all symbols share evenly: of that an average of 21/32 of the
- * alphabet does, as symbols far out hold less of it. */
+/* Guesses the bound between two symbols that is nearest to slot, as guess of norm/gaussian.c does,
+ * but interpolates in the table and first removes the slots that all symbols receive equally. For
+ * that, 21/32 of the alphabet counts on average, as symbols far from the mean hold less of it. */
 static inline vi bound_near(const models *m, vi slot)
 {
     const vi even = ((slot - (1 << 15)) * ((m->size * 21) >> 5)) >> TED4_SLOT_BITS;
@@ -117,7 +119,8 @@ static inline vi bound_near(const models *m, vi slot)
     return clamp(((d + 256 + m->fr) >> 8) + 1 + m->hw, all(1), m->size - 1);
 }
 
-/* What lies between the bound near the slot and the next one on the slot's side. */
+/* Returns the symbols between the bound near the slot, whose value is bound, and the next one in
+ * the direction of the slot. */
 static inline symbols beside(const models *m, vi slot, vi near, vi bound)
 {
     const mask below = less(slot, bound);
@@ -126,7 +129,8 @@ static inline symbols beside(const models *m, vi slot, vi near, vi bound)
     return (symbols) { choose(below, near - 1, near), least(bound, other), most(bound, other) };
 }
 
-/* The same from three bounds at once: more work, but less to wait for where there is one row. */
+/* Does the same with three bounds that are computed at once. This is more work, but has less
+ * latency if there is only one row. */
 static inline symbols around(const models *m, vi slot, vi near)
 {
     const vi bound = inner(m, near), before = cum(m, near - 1), after = cum(m, near + 1);
@@ -136,13 +140,13 @@ static inline symbols around(const models *m, vi slot, vi near)
                        choose(below, bound, after) };
 }
 
-/* Which of the lanes do not hold their slots. */
+/* Returns those of the lanes whose symbol does not contain the slot. */
 static inline unsigned missed(const symbols *s, vi slot, unsigned lanes)
 {
     return (bits_of(less(slot, s->from)) | ~bits_of(less(slot, s->to))) & lanes;
 }
 
-/* The lanes of which no guess was near enough, one by one. */
+/* Finds the symbols of the lanes for which no guess was close enough, one by one. */
 static void find_alone(const models *m, vi slot, unsigned lanes, symbols *s)
 {
     int32_t g[LANES], fr[LANES], at[LANES], j[LANES], from[LANES], to[LANES];
@@ -166,8 +170,8 @@ static void find_alone(const models *m, vi slot, unsigned lanes, symbols *s)
     s->to = load(to);
 }
 
-/* Wide models: symbols are narrow, and the guess was off by some of them. How wide they are there
- * says how far to go. */
+/* Corrects guesses that missed. In wide models, symbols have few slots, so a guess can be off by
+ * several symbols. The width of the guessed symbol gives the distance to the next guess. */
 TED4_SELDOM void find_again(const models *m, vi slot, unsigned lanes, symbols *s)
 {
     for (int i = 1; i < TRIES && lanes != 0; i++) {
@@ -186,7 +190,7 @@ TED4_SELDOM void find_again(const models *m, vi slot, unsigned lanes, symbols *s
         find_alone(m, slot, lanes, s);
 }
 
-/* Models and slots of a vector, of which LANES elements of mu and sigma are read. */
+/* Sets the models and slots of a row. Reads LANES elements of mu and sigma. */
 TED4_ALWAYS void begin_row(row *r, const uint32_t *state, const model_table *t, const int32_t *mu,
                            const uint8_t *sigma)
 {
@@ -199,7 +203,8 @@ TED4_ALWAYS void begin_row(row *r, const uint32_t *state, const model_table *t, 
     r->slot = r->x & 0xffff;
 }
 
-/* Symbols, and which of them are not for this vector: escapes, and those that leave 16 bits. */
+/* Sets the values of the symbols, and the sets of active lanes that need special treatment: those
+ * with an escape, and those whose value does not fit 16 bits. */
 TED4_ALWAYS void end_row(row *r)
 {
     const vi k = (r->k >> TED4_MU_BITS) + (r->s.j - 1 - r->m.hw);
@@ -210,8 +215,8 @@ TED4_ALWAYS void end_row(row *r)
                  ~r->escape;
 }
 
-/* Takes symbols of some lanes, all of those that follow one another and have no escape. 0: words
- * are missing. */
+/* Advances the states of some consecutive lanes past their symbols, none of which is an escape.
+ * Returns 1, or 0 with nothing changed if words are missing. */
 TED4_ALWAYS int take(ted4_gauss_lanes *d, const row *r, unsigned lanes)
 {
     const vi y = (vi)((vu)(r->s.to - r->s.from) * ((vu)r->x >> TED4_SLOT_BITS)) + r->slot -
@@ -239,13 +244,13 @@ TED4_ALWAYS int take(ted4_gauss_lanes *d, const row *r, unsigned lanes)
     return 1;
 }
 
-/* A lane's state while it reads an escape, and the next word. */
+/* The state of a lane while it reads an escape, and the remaining words. */
 typedef struct {
     uint32_t x;
     const uint8_t *word, *end;
 } alone;
 
-/* ted4_rans_dec_take. 0: a word is missing. */
+/* Does the same as ted4_rans_dec_take. Returns 1, or 0 if a word is missing. */
 static int take_alone(alone *a, uint32_t from, uint32_t freq)
 {
     a->x = freq * (a->x >> TED4_SLOT_BITS) + (a->x & 0xffff) - from;
@@ -258,7 +263,7 @@ static int take_alone(alone *a, uint32_t from, uint32_t freq)
     return 1;
 }
 
-/* One bit of an escape, or -1. */
+/* Returns one bit of an escape, or -1 if a word is missing. */
 static int bit_alone(alone *a)
 {
     const uint32_t one = a->x >> 15 & 1;
@@ -266,7 +271,7 @@ static int bit_alone(alone *a)
     return take_alone(a, one << 15, 1u << 15) ? (int)one : -1;
 }
 
-/* spec 9.4, Escapes: e, or -1 when it is not to be had. */
+/* spec 9.4, Escapes: returns e, or -1 if the escape is invalid or a word is missing. */
 static int32_t escape_alone(alone *a)
 {
     int32_t value = 1;
@@ -282,7 +287,8 @@ static int32_t escape_alone(alone *a)
     return bit < 0 ? -1 : value - 1;
 }
 
-/* The symbol of a lane that has an escape. 0: this is the reader's to judge; nothing is taken. */
+/* Reads the symbol of a lane that has an escape. Returns 1, or 0 with nothing changed if the reader
+ * has to treat the symbol separately. */
 static int take_escape(ted4_gauss_lanes *d, const row *r, unsigned lane, int16_t *k)
 {
     int32_t j[LANES], from[LANES], to[LANES], symbol[LANES], hw[LANES];
@@ -298,7 +304,7 @@ static int take_escape(ted4_gauss_lanes *d, const row *r, unsigned lane, int16_t
     if (!take_alone(&a, (uint32_t)from[lane], (uint32_t)(to[lane] - from[lane])))
         return 0;
 
-    /* An escape of 0 is the symbol where an alphabet without escapes would go on. */
+    /* An escape with e = 0 stands for the next value after the window. */
     const int32_t e = escape_alone(&a), value = j[lane] == 0 ? symbol[lane] - e : symbol[lane] + e;
 
     if (e < 0 || value < -32767 || value > 32767)
@@ -309,7 +315,8 @@ static int take_escape(ted4_gauss_lanes *d, const row *r, unsigned lane, int16_t
     return 1;
 }
 
-/* Takes the row, lanes between escapes at a time. Returns which lanes it took. */
+/* Reads a row in pieces: the lanes between escapes together, and escapes one by one. Returns the
+ * set of lanes that were read. */
 TED4_SELDOM unsigned take_with_escapes(ted4_gauss_lanes *d, const row *r, int16_t *k)
 {
     unsigned left = r->active, care = r->escape | r->outside;
@@ -329,9 +336,10 @@ TED4_SELDOM unsigned take_with_escapes(ted4_gauss_lanes *d, const row *r, int16_
     return left == 0 || take(d, r, left) ? r->active : r->active & ~left;
 }
 
-/* Copies go to what is called seldom, so that rows can stay in registers.
- * Symbols of so many rows from lane on, of which active are wanted; mu, sigma and k are of the
- * first lane; those of all lanes are read and written. Returns how many symbols were taken. */
+/* Reads the symbols of a number of rows from lane on; active is the set of wanted lanes of each
+ * row. mu, sigma and k point to the elements of the first lane; those of all lanes are read or
+ * written. Returns the number of symbols read. Rarely called functions receive copies of rows, so
+ * that rows can stay in registers. */
 TED4_ALWAYS unsigned take_rows(ted4_gauss_lanes *d, const model_table *t, unsigned lane,
                                const int rows, unsigned active, const int32_t *mu,
                                const uint8_t *sigma, int16_t *k)
@@ -386,7 +394,8 @@ TED4_ALWAYS unsigned take_rows(ted4_gauss_lanes *d, const model_table *t, unsign
     return n;
 }
 
-/* One row or a part of it, n symbols from its lane from on; nothing beyond them is touched. */
+/* Reads n symbols of the row that begins at lane, starting with its lane number from. Accesses no
+ * elements of mu, sigma and k beyond these. Returns the number of symbols read. */
 TED4_SELDOM unsigned take_part(ted4_gauss_lanes *d, const model_table *t, unsigned lane,
                                unsigned from, unsigned n, const int32_t *mu, const uint8_t *sigma,
                                int16_t *k)
@@ -404,7 +413,8 @@ TED4_SELDOM unsigned take_part(ted4_gauss_lanes *d, const model_table *t, unsign
     return taken;
 }
 
-/* So many rows at a time where they are whole. */
+/* A ted4_gauss_many that reads the given number of rows at a time while they are complete, and
+ * single rows or parts of them otherwise. */
 TED4_ALWAYS size_t many_rows(ted4_gauss_lanes *d, const int rows, size_t n, const int32_t *mu,
                              const uint8_t *sigma, int16_t *k)
 {
@@ -432,7 +442,7 @@ TED4_ALWAYS size_t many_rows(ted4_gauss_lanes *d, const int rows, size_t n, cons
     return done;
 }
 
-/* As many rows as the substream has lanes for. */
+/* A ted4_gauss_many that reads as many rows at a time as the substream has lanes for. */
 static inline size_t many(ted4_gauss_lanes *d, size_t n, const int32_t *mu, const uint8_t *sigma,
                           int16_t *k)
 {

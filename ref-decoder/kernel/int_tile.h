@@ -99,8 +99,8 @@ static inline __attribute__((always_inline)) int next_units(const ted4_int_layer
 /* Evaluates one layer. store writes a group of anchors of one output to y[at]. many_blocks: blocks
  * of inputs are contiguous, and the caller processes all of them for a few outputs, then again for
  * the next ones. In that case, the inputs of the next block are prefetched while the first units of
- * this block are summed, a few at a time, because processors stall if many are requested at once.
- */
+ * this block are summed. They are prefetched a few at a time, because processors stall if many are
+ * requested at once. */
 static inline __attribute__((always_inline)) void layer(const ted4_int_layer *l, const int16_t *x,
                                                         size_t n, const int many_blocks,
                                                         void (*store)(void *y, size_t at, pair sum),
