@@ -33,8 +33,8 @@ typedef struct {
     /* The caller's threads, borrowed for the duration of the call. NULL: the calling thread does
      * all the work. */
     const ted4_parallel *parallel;
-    /* The largest amount of memory, in bytes, that the call may allocate. 0: 4 GiB. A file that
-     * needs more gets the verdict limit.memory. */
+    /* The largest amount of memory, in bytes, that the scene or the ted4_recon may occupy,
+     * including what is needed to make it. 0: 4 GiB. Beyond it, the verdict is limit.memory. */
     uint64_t max_bytes;
     /* The largest number of steps (spec 13.4) that decoding a file, or each query, may take. 0: no
      * limit. Beyond it, the verdict is limit.work. */
@@ -118,8 +118,9 @@ typedef struct {
     int level;             /* spec 13.1: 1 to 4, or 31, which bounds nothing; 0: not from a file */
     int view, motion;      /* TED4_VIEW_..., TED4_MOTION_... */
     int activation;        /* 1: anchors appear and disappear (spec 11.4); 0: they always exist */
-    float origin[3];       /* of normalised space, in world units */
-    int exponent;          /* normalised space, with anchors in [-1, 1], is scaled by 2^exponent */
+    float origin[3];       /* origin of normalised space, in world units */
+    int exponent;          /* 1 in normalised space, where anchors are in [-1, 1], is 2^exponent
+                            * world units */
     uint8_t background[3]; /* display-referred sRGB: red, green, blue */
     uint8_t hash[16];      /* hash of the decoded integers (spec 15.2) */
 } ted4_info;
