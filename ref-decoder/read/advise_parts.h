@@ -1,5 +1,5 @@
-/* advise_parts.h - the searches that advise.c starts: through ancillary chunks and through coded
- * symbols.
+/* advise_parts.h - the parts of advise.c that have files of their own: the checks of ancillary
+ * chunks and of coded symbols.
  * SPDX-License-Identifier: BSD-2-Clause */
 #ifndef TED4_ADVISE_PARTS_H
 #define TED4_ADVISE_PARTS_H
@@ -9,9 +9,10 @@
 #include "read/container.h"
 #include "read/finding.h"
 
-/* advise_meta.c: an ancillary chunk. */
+/* advise_meta.c: reports what is doubtful in an ancillary chunk. a is for temporary memory. */
 void ted4_advise_ancillary(ted4_findings *f, const ted4_chunk_place *p, ted4_arena *a);
-/* advise_symbols.c: what is coded in tiles. s is the decoded scene. */
+/* advise_symbols.c: reports what is doubtful in the coded symbols of the tiles. s is the decoded
+ * scene. */
 void ted4_advise_symbols(ted4_findings *f, const ted4_scene *s, const ted4_options *o);
 
 #endif

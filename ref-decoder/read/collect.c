@@ -1,7 +1,8 @@
-/* collect.c - every error of an invalid file as far as parsing can go on. The strict decoder's own
- * parts judge; what they refuse is repaired in a copy, and they are asked again. Nothing is judged
- * that depends on a value that was wrong (R-ERR-003): with a wrong HEAD no other payload, with
- * wrong networks or positions no tile, with anything wrong no hash in ENDS.
+/* collect.c - finds every error of an invalid file, as far as parsing can continue. The functions
+ * of the strict decoder do the checks; an error that they find is repaired in a copy of the file,
+ * and they are called again. Nothing is checked that depends on a wrong value (R-ERR-003): no other
+ * payload if HEAD is wrong, no tile if the networks or positions are wrong, and not the hash in
+ * ENDS if anything is wrong.
  * SPDX-License-Identifier: BSD-2-Clause */
 #include "read/collect.h"
 
@@ -12,7 +13,7 @@
 #include "norm/scene.h"
 #include "read/collect_payload.h"
 
-/* 1: go on. */
+/* Reports an error of the file header. Returns 1 if the search can go on. */
 static int judge_file_header(ted4_collector *c)
 {
     ted4_reader r;
@@ -34,7 +35,8 @@ static void store_hash(ted4_collector *c, const ted4_chunk_place *p)
     ted4_store64(c->copy + p->end, XXH3_64bits(c->copy + p->at, p->end - p->at));
 }
 
-/* A chunk after which this one is not out of order; each type has one. */
+/* Returns the type of a chunk after which the chunk at offset at is not out of order (-1: it may be
+ * the first). There is such a type for every chunk. */
 static int order_that_fits(ted4_reader r, size_t at)
 {
     int before = -2, after;
@@ -48,8 +50,8 @@ static int order_that_fits(ted4_reader r, size_t at)
     return before;
 }
 
-/* Mends an error of a frame, so that the chunk can be judged again after *before. 1, or 0: that is
- * all there is to say about it. */
+/* Repairs an error of a frame so that the chunk can be checked again, as one that follows *before.
+ * Returns 1, or 0 if no more checks of the frame are possible. */
 static int repair_frame(ted4_collector *c, const ted4_reader *r, const ted4_chunk_place *p,
                         ted4_error e, int *before)
 {
@@ -67,7 +69,7 @@ static int repair_frame(ted4_collector *c, const ted4_reader *r, const ted4_chun
     return 1;
 }
 
-/* Every error of one frame. 0: it does not fit in the file. */
+/* Reports every error of one frame. Returns 1, or 0 if the chunk does not fit in the file. */
 static int judge_frame(ted4_collector *c, ted4_reader *r, int *before)
 {
     const size_t at = r->base.pos;
@@ -94,7 +96,7 @@ static int judge_frame(ted4_collector *c, ted4_reader *r, int *before)
     return 1;
 }
 
-/* spec 5.3, pass 1. Gives the offset behind the last whole chunk. */
+/* Runs pass 1 of spec 5.3. Returns the offset behind the last complete chunk. */
 static size_t judge_frames(ted4_collector *c)
 {
     ted4_reader r;
@@ -106,7 +108,7 @@ static size_t judge_frames(ted4_collector *c)
         end = r.base.pos;
     if (before == TED4_ENDS && end < c->f->size)
         ted4_find_error(c->f, (ted4_error) { TED4_E_CON_TRAILING, end });
-    if (before != TED4_ENDS) /* cut: how large it was is not known */
+    if (before != TED4_ENDS) /* the file is truncated, and its full size is not known */
         c->d.file_bytes = ted4_limits_of(c->level)->file_bytes;
     return end;
 }
@@ -146,7 +148,7 @@ static void judge_payload(ted4_collector *c, const ted4_chunk_place *p)
     }
 }
 
-/* spec 5.3, pass 2, up to the offset end. */
+/* Runs pass 2 of spec 5.3 up to offset end. */
 static void judge_payloads(ted4_collector *c, size_t end)
 {
     ted4_reader r;
@@ -171,7 +173,7 @@ ted4_status ted4_collect(ted4_findings *f, const ted4_options *o)
     ted4_status code = TED4_E_LIMIT_MEMORY;
 
     memset(&c, 0, sizeof c);
-    own.parallel = NULL; /* tiles are judged one by one */
+    own.parallel = NULL; /* tiles are checked one by one */
     if (!ted4_decoder_init(&c.d, f->data, f->size, &own))
         return code;
     c.f = f;

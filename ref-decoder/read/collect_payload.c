@@ -1,4 +1,4 @@
-/* collect_payload.c - the errors of one payload, all that can be told apart.
+/* collect_payload.c - finds all errors of one payload that can be told apart.
  * SPDX-License-Identifier: BSD-2-Clause */
 #include "read/collect_payload.h"
 
@@ -6,7 +6,7 @@
 #include "base/bytes.h"
 #include "norm/limits.h"
 
-/* Elements of HEAD end before. */
+/* An upper bound of the size of the elements of HEAD. */
 enum { HEAD_BYTES = 128 };
 
 ted4_error ted4_collect_error(ted4_collector *c)
@@ -21,7 +21,8 @@ ted4_error ted4_collect_error(ted4_collector *c)
     return e;
 }
 
-/* One error more of a chunk of which n have been listed: may the search go on? */
+/* Returns 1 if the search may go on after n listed errors of a chunk; otherwise returns 0 and
+ * reports that further errors are not listed. */
 static int may_go_on(ted4_collector *c, const ted4_chunk_place *p, int n)
 {
     if (n < TED4_COLLECT_MOST)
@@ -30,7 +31,7 @@ static int may_go_on(ted4_collector *c, const ted4_chunk_place *p, int n)
     return 0;
 }
 
-/* Verdict on a payload that r has walked, leftover bytes included. */
+/* Returns the verdict on a payload that r has walked; bytes left over are an error. */
 static ted4_error verdict(ted4_reader *r)
 {
     ted4_require(&r->base, r->base.pos == r->end, TED4_E_CON_PAYLOAD_SIZE, r->base.pos);
@@ -47,7 +48,8 @@ static void keep_name(void *user, size_t offset, const char *element, int64_t in
     *name = element;
 }
 
-/* *last: name of the last element read; "" when all are there and right. */
+/* Walks HEAD and returns the verdict. *last is set to the name of the last element read, or to ""
+ * if all elements are present and valid. */
 static ted4_error walk_head(ted4_collector *c, const ted4_chunk_place *p, const char **last)
 {
     const uint64_t most = ted4_limits_of(c->level)->file_bytes;
@@ -66,8 +68,8 @@ static ted4_error walk_head(ted4_collector *c, const ted4_chunk_place *p, const 
     return verdict(&r);
 }
 
-/* Puts a number in the element at an offset with which there is no error there any more. 0: none
- * was found. */
+/* Tries values for the element at offset at until there is no error at that offset. Returns 1, or 0
+ * if no such value is found. */
 static int repair_head(ted4_collector *c, const ted4_chunk_place *p, size_t at)
 {
     static const uint32_t wide[] = { 0, 1, 64, 0x3f800000 };
@@ -93,8 +95,8 @@ static int repair_head(ted4_collector *c, const ted4_chunk_place *p, size_t at)
     return 0;
 }
 
-/* Lists the errors; then HEAD is read as it is, without bounds of a level, if its values are right.
- * Beyond max_work nothing else is judged. */
+/* Lists the errors of HEAD. Then, if its values are valid, HEAD is decoded unrepaired and without
+ * the bounds of a level. If max_work is exceeded, no other payload is checked. */
 void ted4_collect_head(ted4_collector *c, const ted4_chunk_place *p)
 {
     const size_t size = p->end - p->payload, kept = size < HEAD_BYTES ? size : HEAD_BYTES;
@@ -109,7 +111,7 @@ void ted4_collect_head(ted4_collector *c, const ted4_chunk_place *p)
         c->d.file.base.error = e;
         (void)ted4_collect_error(c);
         c->head &= *last == '\0' || e.code == TED4_E_LVL_EXCEEDED;
-        /* Without n_slices it is not known where the elements behind it are. */
+        /* The offsets of the elements behind n_slices depend on its value. */
         more = *last != '\0' && e.code != TED4_E_CON_PAYLOAD_SIZE &&
                strcmp(last, "n_slices") != 0 && repair_head(c, p, e.offset);
     }
@@ -125,7 +127,7 @@ void ted4_collect_head(ted4_collector *c, const ted4_chunk_place *p)
     c->d.file.base.error.code = TED4_OK;
 }
 
-/* Value i of the networks is the b of a unit: its weights become 0. */
+/* Value i of the networks is the bias b of a unit; sets the weights of that unit to 0. */
 static void clear_unit(ted4_collector *c, size_t values_at, size_t i)
 {
     const ted4_shape *s = &c->d.s->shape;
@@ -152,8 +154,8 @@ static ted4_error walk_nete(ted4_collector *c, const ted4_chunk_place *p)
     return verdict(&r);
 }
 
-/* The value with that error becomes 0, if the blob, whose values begin at values_at, is raw. 0: it
- * is not. */
+/* Sets the value at which error e was found to 0. Returns 1, or 0 if the blob, whose values begin
+ * at values_at, is not raw. */
 static int repair_value(ted4_collector *c, size_t values_at, ted4_error e)
 {
     if (c->copy[values_at - 1] != TED4_BLOB_RAW)
@@ -167,7 +169,7 @@ static int repair_nete(ted4_collector *c, const ted4_chunk_place *p, ted4_error 
     const size_t values_at = p->payload + c->d.s->shape.n_units + 1;
 
     if (e.code ==
-        TED4_E_NET_SHIFT) { /* the least that is legal; TED4_MAX_SHIFT is, for every unit */
+        TED4_E_NET_SHIFT) { /* the lowest valid shift; TED4_MAX_SHIFT is valid for every unit */
         c->copy[e.offset] = 0;
         while (walk_nete(c, p).offset == e.offset)
             c->copy[e.offset]++;
@@ -214,7 +216,8 @@ void ted4_collect_blob(ted4_collector *c, const ted4_chunk_place *p, const char 
     }
 }
 
-/* After the error of one anchor: the anchors behind it, as if they were all. */
+/* Walks the anchors from first on, which follow an anchor with an error, as if there were no
+ * others. */
 static ted4_error walk_rest(ted4_collector *c, const ted4_chunk_place *p, size_t first)
 {
     ted4_reader r = ted4_decoder_reader(&c->d, p);
@@ -233,7 +236,7 @@ void ted4_collect_positions(ted4_collector *c, const ted4_chunk_place *p)
 
     ted4_decoder_chunk(&c->d, p);
     e = ted4_collect_error(c);
-    if (e.code == TED4_E_CON_CHUNK_ORDER) { /* no BANK; positions can do without */
+    if (e.code == TED4_E_CON_CHUNK_ORDER) { /* BANK is missing; positions do not depend on it */
         c->d.s->shape.n_bank = 0;
         ted4_decoder_chunk(&c->d, p);
         e = ted4_collect_error(c);
@@ -251,7 +254,7 @@ void ted4_collect_positions(ted4_collector *c, const ted4_chunk_place *p)
 void ted4_collect_tile(ted4_collector *c, const ted4_chunk_place *p)
 {
     const unsigned number = c->n_tile_chunks++;
-    int guessed = 0; /* index or probability: other errors may come from that */
+    int guessed = 0; /* 1: an index or probability was repaired, which may cause other errors */
     ted4_error e;
 
     if (number >= c->d.s->shape.n_tiles) {

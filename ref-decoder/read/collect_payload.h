@@ -1,4 +1,4 @@
-/* collect_payload.h - the state of collect.c, and the errors of one payload.
+/* collect_payload.h - the state of collect.c, and functions that find the errors of one payload.
  * SPDX-License-Identifier: BSD-2-Clause */
 #ifndef TED4_COLLECT_PAYLOAD_H
 #define TED4_COLLECT_PAYLOAD_H
@@ -6,27 +6,26 @@
 #include "read/decode.h"
 #include "read/finding.h"
 
-/* Errors of a chunk that are listed. */
+/* The maximum number of errors that are listed per chunk. */
 enum { TED4_COLLECT_MOST = 100 };
 
 typedef struct {
     ted4_findings *f;
-    uint8_t *copy;  /* of the file; each error that has been found is repaired in it, so that what
-                       follows can be judged */
+    uint8_t *copy;  /* of the file; each error found is repaired in it, so that the bytes after
+                       the error can be checked */
     uint8_t level;  /* the declared level; 31: it cannot be used */
     ted4_decoder d; /* reads the copy */
-    int head, nete, posn; /* 1: the chunk has been read and is right */
+    int head, nete, posn; /* 1: the chunk has been read and is valid */
     int wrong;            /* 1: a payload had an error */
-    int disordered;       /* 1: chunks were out of order, so their number is not judged */
+    int disordered;       /* 1: chunks were out of order, so their number is not checked */
     unsigned n_tile_chunks;
 } ted4_collector;
 
-/* Takes the first error out of the decoder, which forgets it, and reports it unless it is
- * TED4_OK. */
+/* Clears the error of the decoder, reports it unless it is TED4_OK, and returns it. */
 ted4_error ted4_collect_error(ted4_collector *c);
 
-/* A payload of the copy: HEAD first, then the others of a file whose HEAD is right. Only TILE may
- * come more than once. */
+/* Each reports the errors of one payload of the copy. ted4_collect_head must be called first; the
+ * others only if HEAD is valid. Only ted4_collect_tile may be called more than once. */
 void ted4_collect_head(ted4_collector *c, const ted4_chunk_place *p);
 void ted4_collect_nete(ted4_collector *c, const ted4_chunk_place *p);
 void ted4_collect_blob(ted4_collector *c, const ted4_chunk_place *p, const char *element,

@@ -1,4 +1,4 @@
-/* container.c - spec 5: chunk frames, hashes, order.
+/* container.c - checks chunk frames, hashes and the order of chunks (spec 5).
  * SPDX-License-Identifier: BSD-2-Clause */
 #include "read/container.h"
 
@@ -24,8 +24,8 @@ static int legal_type(const uint8_t *type)
     return 1;
 }
 
-/* R-CON-003: may a known chunk follow the one before (-1: none)? BANK and the number of TILE are
- * judged in pass 2. */
+/* Returns 1 if a known chunk may follow the known chunk before it (-1: none), by R-CON-003. The
+ * presence of BANK and the number of TILE chunks are checked in pass 2. */
 static int may_follow(int before, int type)
 {
     switch (type) {
@@ -35,7 +35,8 @@ static int may_follow(int before, int type)
     }
 }
 
-/* R-CON-002 to R-CON-004, for a chunk that fits. *before: the last known chunk. */
+/* Checks R-CON-002 to R-CON-004 for a chunk that fits in the file. *before is the type of the last
+ * known chunk, and is updated. */
 static void judge(ted4_reader *r, size_t at, const ted4_frame *f, int *before)
 {
     ted4_coder *c = &r->base;
@@ -67,7 +68,8 @@ uint8_t ted4_container_header(ted4_reader *r)
     return level;
 }
 
-/* The chunk whose frame begins at offset at and was just read; r's position moves behind it. */
+/* Returns the chunk whose frame begins at offset at and was just read, and moves r's position
+ * behind the chunk. */
 static ted4_chunk_place pass_over(ted4_reader *r, size_t at, const ted4_frame *f)
 {
     ted4_chunk_place p = { .at = at, .payload = r->base.pos };
@@ -97,7 +99,6 @@ ted4_chunk_place ted4_container_judge(ted4_reader *r, int *before)
     return pass_over(r, at, &f);
 }
 
-/* spec 5.3 */
 void ted4_container_check(ted4_reader *r)
 {
     ted4_coder *c = &r->base;

@@ -1,4 +1,5 @@
-/* decode.c - ted4_decode(): pass 1, then pass 2 chunk by chunk, tiles in batches (spec 5.3).
+/* decode.c - ted4_decode(): runs pass 1, then pass 2 chunk by chunk, with tiles in batches
+ * (spec 5.3).
  * SPDX-License-Identifier: BSD-2-Clause */
 #include "read/decode.h"
 
@@ -9,23 +10,24 @@
 #include "norm/scene.h"
 #include "read/inflate.h"
 
-/* Tiles that run at once, and the work memory they may take together (one may always run). */
+/* The maximum number of tiles decoded at the same time, and the maximum size of their work areas
+ * together. One tile may always be decoded. */
 enum { BATCH = 16, BATCH_BYTES = 1 << 28 };
 
-/* A tile on its way has its own coder, and while it runs a work area: the first one that no other
- * has, which the machine has likely at hand already. There are as many areas as tiles that can run
- * at once. */
+/* Each queued tile has its own coder. While it is decoded it also has a work area: the first one
+ * that is free, since that one is most likely still in the cache. There are as many work areas as
+ * tiles that can be decoded at the same time. */
 struct ted4_tile_job {
     ted4_reader reader;
     unsigned number;
-    void *work; /* area i, whosever it is */
+    void *work; /* work area i, for any of the tiles; so is its flag busy */
     atomic_flag busy;
 };
 
 typedef ted4_decoder decoder;
 typedef struct ted4_tile_job job;
 
-/* Memory has run out while the byte at offset at was due. */
+/* Fails because memory has run out, with offset at as the place of the error. */
 static void no_memory(decoder *d, size_t at)
 {
     ted4_fail(&d->file.base.error, TED4_E_LIMIT_MEMORY, at);
@@ -43,7 +45,7 @@ ted4_reader ted4_decoder_reader(decoder *d, const ted4_chunk_place *p)
     return r;
 }
 
-/* Takes over the verdict on a payload, which has to be used up. */
+/* Checks that a payload has been read to its end, and takes over its error. */
 static void finish_payload(decoder *d, ted4_reader *r)
 {
     ted4_require(&r->base, r->base.pos == r->end, TED4_E_CON_PAYLOAD_SIZE, r->base.pos);
@@ -62,8 +64,8 @@ static void read_head(decoder *d, const ted4_chunk_place *p)
     finish_payload(d, &r);
 }
 
-/* Values get memory only when the payload can hold them behind its first skip bytes: as they are,
- * or deflated (R-LVL-005). */
+/* Allocates n values, but only if the payload can hold them, raw or deflated, behind its first skip
+ * bytes (R-LVL-005). */
 static void prepare_blob(decoder *d, const ted4_chunk_place *p, size_t skip, ted4_blob *b,
                          uint64_t n)
 {
@@ -106,7 +108,8 @@ static void read_blob(decoder *d, const ted4_chunk_place *p, const char *element
     finish_payload(d, &r);
 }
 
-/* As many work areas as tiles can run at once; fewer when memory is short. */
+/* Allocates as many work areas as tiles can be decoded at the same time, or fewer if memory runs
+ * out. Fails only if there is memory for none. */
 static void prepare_jobs(decoder *d, size_t at)
 {
     ted4_arena *a = &d->s->arena;
@@ -159,7 +162,8 @@ static void run_job(void *arg, size_t i)
     atomic_flag_clear(&area->busy);
 }
 
-/* Decodes the queued tiles. The first one in the file that fails has the lowest offset. */
+/* Decodes the queued tiles and takes over their errors in the order of the file, so that the error
+ * with the lowest offset counts. */
 static void run_batch(decoder *d)
 {
     ted4_parallel_for(d->o->parallel, d->n_queued, run_job, d);
@@ -223,7 +227,7 @@ void ted4_decoder_chunk(decoder *d, const ted4_chunk_place *p)
     }
 }
 
-/* spec 5.3, pass 2 */
+/* Runs pass 2 of spec 5.3. */
 static void read_payloads(decoder *d)
 {
     ted4_coder *c = &d->file.base;

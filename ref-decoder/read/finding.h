@@ -23,7 +23,7 @@ typedef struct {
     ted4_finding_sink *sink;
     void *user;
     ted4_error verdict; /* the strict decoder's; it has been reported already */
-    int found;          /* 1: collect.c has come upon the verdict itself */
+    int found;          /* 1: collect.c has found the error of the verdict itself */
     size_t chunk;       /* offset of the chunk in which the last error was found; 0: none yet */
     int starved;        /* 1: memory has run out during the search for more findings */
 } ted4_findings;
@@ -33,7 +33,8 @@ void ted4_give_error(ted4_findings *f, ted4_error e);
 /* Reports an error unless it is the verdict, which is only noted as found, or says that memory has
  * run out. */
 void ted4_find_error(ted4_findings *f, ted4_error e);
-/* Reports something doubtful. n_values of a and b count; where is the same as in ted4_finding. */
+/* Reports something doubtful, with the first n_values (0 to 2) of a and b. where is as in
+ * ted4_finding. */
 void ted4_find_advice(ted4_findings *f, ted4_advice what, const char *where, size_t offset,
                       unsigned n_values, int64_t a, int64_t b);
 

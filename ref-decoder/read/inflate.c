@@ -1,4 +1,4 @@
-/* inflate.c - spec 7.2: shuffled and deflated values, by zlib.
+/* inflate.c - decompresses shuffled and deflated values with zlib (spec 7.2).
  * SPDX-License-Identifier: BSD-2-Clause */
 #include "read/inflate.h"
 
@@ -7,7 +7,7 @@
 #include <zlib.h>
 #include "base/bytes.h"
 
-/* DEFLATE codes at most 258 bytes in two bits. */
+/* The highest compression ratio of DEFLATE: two bits code at most 258 bytes. */
 enum { MAX_RATIO = 1032 };
 
 void *ted4_zlib_alloc(void *arena, unsigned n, unsigned size)
@@ -25,7 +25,8 @@ int ted4_inflate_impossible(size_t size, uint64_t n)
     return size >= 4 * n || 4 * n / MAX_RATIO >= size;
 }
 
-/* Inflates into exactly out_size bytes. zlib counts in 32 bits: output is offered in pieces. */
+/* Inflates exactly out_size bytes, and returns a code of zlib. zlib counts in 32 bits, so the
+ * output is produced in pieces. */
 static int inflate_all(z_stream *z, uint8_t *out, size_t out_size)
 {
     const size_t piece = (size_t)1 << 30;

@@ -1,4 +1,4 @@
-/* observe.c - see observe.h.
+/* observe.c - a coder that codes nothing, and what is needed to walk tiles with it.
  * SPDX-License-Identifier: BSD-2-Clause */
 #include "read/observe.h"
 

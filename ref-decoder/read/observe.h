@@ -1,5 +1,5 @@
-/* observe.h - the tiles of a decoded scene walked once more, by a coder that codes nothing: it only
- * sees what the walk hands over.
+/* observe.h - walks the tiles of a decoded scene once more, with a coder that codes nothing and
+ * only observes the values that the walk passes to it.
  * SPDX-License-Identifier: BSD-2-Clause */
 #ifndef TED4_OBSERVE_H
 #define TED4_OBSERVE_H
@@ -7,21 +7,21 @@
 #include "norm/coder.h"
 #include "norm/prior.h"
 
-/* What the walk of a tile calls; every value stays as it is. bit and gauss are NULL: an observer
- * sets them, and what else it observes, in a copy. */
+/* The functions that the walk of a tile calls; none of them changes a value. bit and gauss are
+ * NULL: an observer makes a copy, in which it sets these two and any others that it needs. */
 extern const ted4_coder_ops ted4_observe_ops;
 
-/* What ted4_walk_tile needs. */
+/* The arguments of ted4_walk_tile. */
 typedef struct {
-    ted4_scene scene; /* its arrays are the given scene's: an observer may put others in their
-                         place, but changes none */
+    ted4_scene scene; /* shares the arrays of the given scene: an observer may replace an array by
+                         another, but must not write to one */
     ted4_prior prior;
     ted4_arena arena;
     void *work;
 } ted4_observation;
 
-/* given: a decoded scene, borrowed until the end. o may be NULL. TED4_OK or TED4_E_LIMIT_MEMORY;
- * finish in any case. */
+/* given is a decoded scene, borrowed until ted4_observe_finish. o may be NULL. Returns TED4_OK or
+ * TED4_E_LIMIT_MEMORY; ted4_observe_finish must be called in either case. */
 ted4_status ted4_observe_init(ted4_observation *l, const ted4_scene *given, const ted4_options *o);
 void ted4_observe_finish(ted4_observation *l);
 

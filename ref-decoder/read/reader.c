@@ -1,4 +1,5 @@
-/* reader.c - the coder that reads. Bounds are checked here and nowhere else.
+/* reader.c - the coder that reads a file in memory. It checks that elements lie within the file or
+ * the payload, so that walks need not.
  * SPDX-License-Identifier: BSD-2-Clause */
 #include "read/reader.h"
 
@@ -10,15 +11,15 @@ static ted4_reader *reader_of(ted4_coder *c)
     return (ted4_reader *)c;
 }
 
-/* After a failure. Nothing is traced behind an error: no walk needs to go through what is not
- * there. */
+/* Ends the trace after a failure and returns NULL. Walks need not check for errors before each
+ * element, since elements behind the first error are not traced. */
 static const uint8_t *nothing(ted4_coder *c)
 {
     c->trace = NULL;
     return NULL;
 }
 
-/* The next size bytes, or NULL after a failure. */
+/* Returns the next size bytes, or NULL after a failure. */
 static const uint8_t *take(ted4_coder *c, size_t size)
 {
     ted4_reader *r = reader_of(c);
@@ -33,7 +34,7 @@ static const uint8_t *take(ted4_coder *c, size_t size)
             ted4_fail(&c->error, TED4_E_CON_PAYLOAD_SIZE, c->pos);
         return nothing(c);
     }
-    /* Not before the checks: data may be NULL when nothing is there. */
+    /* The pointer is made only after the checks, since data may be NULL if the file is empty. */
     p = r->data + c->pos;
     c->pos += size;
     return p;
@@ -98,7 +99,7 @@ static void deflated(ted4_coder *c, ted4_blob *b)
     b->deflated_size = size;
 }
 
-/* R-ENT-003 */
+/* Reads the sizes of the substreams of a tile and checks their sum (R-ENT-003). */
 static void sizes(ted4_coder *c, uint32_t *size, unsigned n)
 {
     ted4_reader *r = reader_of(c);
@@ -154,7 +155,7 @@ static int bit(ted4_coder *c, uint32_t prob, int value)
     return one;
 }
 
-/* One bit of an escape, in the lane of its symbol. */
+/* Reads one bit of an escape from the lane of its symbol. */
 static uint32_t escape_bit(ted4_rans_dec *d)
 {
     const uint32_t half = TED4_RANS_LOW / 2;
@@ -164,7 +165,8 @@ static uint32_t escape_bit(ted4_rans_dec *d)
     return one;
 }
 
-/* spec 9.4, Escapes: e >= 0, or -1 when it is too long. */
+/* Reads an escape (spec 9.4, Escapes). Returns e >= 0, or -1 if the escape is too long or a word is
+ * missing. */
 static int32_t escape(ted4_rans_dec *d)
 {
     uint32_t value = 1, n = 0;
@@ -177,7 +179,7 @@ static int32_t escape(ted4_rans_dec *d)
     return (int32_t)value - 1;
 }
 
-/* spec 9.4: one symbol. */
+/* Reads one symbol (spec 9.4). */
 static int32_t gauss_symbol(ted4_coder *c, int32_t mu, unsigned g)
 {
     ted4_reader *r = reader_of(c);
@@ -204,7 +206,7 @@ static int32_t gauss_symbol(ted4_coder *c, int32_t mu, unsigned g)
     return k;
 }
 
-/* As many symbols as several lanes at a time can take. */
+/* Reads up to n symbols with the vector kernel, and returns how many it has read. */
 static size_t gauss_many(ted4_reader *r, size_t n, const int32_t *mu, const uint8_t *sigma,
                          int16_t *k)
 {
@@ -217,7 +219,7 @@ static size_t gauss_many(ted4_reader *r, size_t n, const int32_t *mu, const uint
     return done;
 }
 
-/* What is not for several lanes at a time goes by itself. */
+/* Uses the vector kernel where there is one; symbols that it does not read are read one by one. */
 static void gauss(ted4_coder *c, size_t n, const int32_t *mu, const uint8_t *sigma, int16_t *k)
 {
     ted4_reader *r = reader_of(c);

@@ -12,10 +12,10 @@ enum { TED4_READER_SUBSTREAMS = 24 };
 typedef struct {
     ted4_coder base;      /* must be first; base.pos counts from the file's first byte */
     const uint8_t *data;  /* borrowed: the file */
-    size_t end;           /* offset where reading has to stop */
-    int whole_file;       /* 1: beyond end the file is truncated; 0: the payload is too short */
+    size_t end;           /* offset of the first byte that must not be read */
+    int whole_file;       /* reading beyond end means: 1: a truncated file; 0: a short payload */
     ted4_arena *arena;    /* for deflated blobs */
-    ted4_gauss_many many; /* reads symbols faster; NULL: nothing does */
+    ted4_gauss_many many; /* reads several symbols at a time; NULL: not available */
     uint32_t size[TED4_READER_SUBSTREAMS];
     unsigned n_opened;
     size_t n_symbols; /* of the open substream */
@@ -23,7 +23,7 @@ typedef struct {
     ted4_rans_dec rans;
 } ted4_reader;
 
-/* Reads [pos, end) of a file. */
+/* Prepares to read bytes [pos, end) of a file. data is borrowed. */
 void ted4_reader_init(ted4_reader *r, const uint8_t *data, size_t pos, size_t end, int whole_file);
 
 #endif
