@@ -1,5 +1,6 @@
-/* advise.c - what is doubtful in a valid file: level, chunks, and parts that the scene does not
- * need (spec 3.4, R-ENC-004). Symbols are looked at in advise_symbols.c, META in advise_meta.c.
+/* advise.c - reports what is doubtful in a valid file: its level, its chunks, and coded parts that
+ * the scene does not need (spec 3.4, R-ENC-004). advise_symbols.c checks the symbols,
+ * advise_meta.c the ancillary chunks.
  * SPDX-License-Identifier: BSD-2-Clause */
 #include "read/advise.h"
 
@@ -15,7 +16,7 @@
 
 enum { MINOR_AT = 9, LEVEL_AT = 11, HEAD_AT = 12, LATEST_MINOR = 1 };
 
-/* Where an element of HEAD that is no array is in the file. */
+/* An element of HEAD that is not an array, and its offset in the file. */
 typedef struct {
     const char *name;
     size_t offset;
@@ -46,7 +47,8 @@ static size_t offset_of(const ted4_findings *f, const char *element)
     return s.offset;
 }
 
-/* n bytes of the shuffled values (spec 7.2), from byte at on. Every blob of a file has a value. */
+/* Writes n bytes of the shuffled values (spec 7.2), beginning with byte at. A blob of a file has at
+ * least one value. */
 static void shuffle(const ted4_blob *b, size_t at, uint8_t *bytes, size_t n)
 {
     size_t i = at % (size_t)b->n, j = at / (size_t)b->n;
@@ -60,8 +62,8 @@ static void shuffle(const ted4_blob *b, size_t at, uint8_t *bytes, size_t n)
     }
 }
 
-/* Size of the values shuffled and deflated by zlib, which is shown them piece by piece; raw size
- * when there is no memory to find out. */
+/* Returns the size of the values after shuffling and zlib compression, which gets them in pieces.
+ * Returns their raw size and sets f->starved if memory runs out. */
 static size_t deflated_size(ted4_findings *f, const ted4_blob *b, ted4_arena *a)
 {
     enum { PIECE = 1 << 14 };
@@ -150,7 +152,7 @@ static void advise_masks(ted4_findings *f, const ted4_scene *s)
                          h->n_anchors);
 }
 
-/* spec 10.4: value of a component of tau. */
+/* Returns the value of component comp of tau of anchor i (spec 10.4). */
 static float tau(const ted4_scene *s, unsigned comp, size_t i)
 {
     const float step = ted4_bits_float(ted4_step[s->step_index[TED4_TAU][i]]);
@@ -175,15 +177,16 @@ static void advise_time(ted4_findings *f, const ted4_scene *s)
         ted4_find_advice(f, TED4_ADV_ACTIVATION, "HEAD", offset_of(f, "activation"), 0, 0, 0);
 }
 
-/* Rows between which no frame's time lies (spec 11.2). */
+/* Returns the number of bank rows that no frame uses: rows are interpolated between the two that
+ * enclose the time of a frame (spec 11.2). */
 static uint32_t rows_unseen(const ted4_header *h)
 {
     const uint64_t last = h->bank_rows - 1, end = h->frames > 1 ? h->frames - 1 : 1;
-    uint64_t next = 0; /* first row that no frame so far sees */
+    uint64_t next = 0; /* first row after those that the frames so far use */
     uint32_t unseen = 0;
 
-    if (h->frames > 1 && last <= end) /* no frame goes on by more than a row */
-        return 0;                     /* else each does, and there are fewer frames than rows */
+    if (h->frames > 1 && last <= end) /* frames are at most one row apart */
+        return 0;                     /* otherwise there are fewer frames than rows */
     for (uint64_t j = 0; j < h->frames; j++) {
         const uint64_t g = j * last, row = g / end;
 

@@ -1,5 +1,5 @@
-/* advise_meta.c - ancillary chunks: is the type registered (spec 16.3), and is META what spec 5.2
- * says?
+/* advise_meta.c - checks ancillary chunks: whether the type is registered (spec 16.3), and whether
+ * META is as spec 5.2 says.
  * SPDX-License-Identifier: BSD-2-Clause */
 #include "read/advise_parts.h"
 
@@ -8,8 +8,8 @@
 
 enum { META_FLAGS = 2 };
 
-/* Bytes of the UTF-8 character at p, 1 to 4; 0: none that is well-formed and no control character.
- */
+/* Returns the size of the UTF-8 character at p, 1 to 4 bytes, or 0 if it is not well-formed or is a
+ * control character. left > 0 bytes follow from p on. */
 static size_t utf8_character(const uint8_t *p, size_t left)
 {
     static const uint32_t least[5] = { 0, 0, 0x80, 0x800, 0x10000 };
@@ -32,7 +32,8 @@ static size_t utf8_character(const uint8_t *p, size_t left)
                                                                                                 : 0;
 }
 
-/* A line from at on: offset of its LF, or 0 when it is none. *key: bytes before the first '='. */
+/* Returns the offset of the LF that ends the line at offset at, or 0 if that is not a valid line.
+ * *key is set to the number of bytes before the first '='. */
 static size_t line_end(const uint8_t *data, size_t at, size_t end, size_t *key)
 {
     size_t i = at;
@@ -50,16 +51,16 @@ static size_t line_end(const uint8_t *data, size_t at, size_t end, size_t *key)
     return i<end && * key> 0 ? i : 0;
 }
 
-/* Lines of META, all of them right. */
+/* Lines of META, all of them valid. */
 typedef struct {
     const uint8_t *data;
     size_t *at;            /* [n], offsets */
-    size_t *order, *spare; /* [n]: numbers of lines, by key, then as they stand */
-    uint8_t *again;        /* [n]: the key stands in a line before */
+    size_t *order, *spare; /* [n]: line numbers, sorted by key, then by position; scratch memory */
+    uint8_t *again;        /* [n], 1: an earlier line has the same key */
     size_t n;
 } lines;
 
-/* Below 0, 0, above 0: order of the keys of two lines. */
+/* Compares the keys of lines a and b. Returns a number below, equal to or above 0, as memcmp. */
 static int compare(const lines *l, size_t a, size_t b)
 {
     const uint8_t *p = l->data + l->at[a], *q = l->data + l->at[b];
@@ -87,7 +88,7 @@ static size_t least(size_t a, size_t b)
     return a < b ? a : b;
 }
 
-/* By merging, so that no text takes long. */
+/* Sorts the lines and fills again. Merge sort is used because no text makes it slow. */
 static void find_again(lines *l)
 {
     for (size_t i = 0; i < l->n; i++)
@@ -104,8 +105,8 @@ static void find_again(lines *l)
         l->again[l->order[i]] = compare(l, l->order[i - 1], l->order[i]) == 0;
 }
 
-/* Right lines of a payload, up to the first that is none: how many, and *end: behind them. at:
- * where they begin; NULL: not wanted. */
+/* Returns the number of valid lines at the beginning of a payload. *end is set to the offset behind
+ * them, and at[], unless NULL, to the offsets at which they begin. */
 static size_t right_lines(const ted4_findings *f, const ted4_chunk_place *p, size_t *at,
                           size_t *end)
 {

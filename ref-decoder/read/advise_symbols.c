@@ -1,6 +1,6 @@
-/* advise_symbols.c - what is doubtful in the coded symbols of a valid file: probabilities, escapes,
- * indices and contexts at the ends of their ranges. The tiles are walked once more with a coder
- * that only counts.
+/* advise_symbols.c - reports what is doubtful in the coded symbols of a valid file: probabilities,
+ * escapes, and indices and contexts at the ends of their ranges. It walks the tiles once more with
+ * a coder that only counts.
  * SPDX-License-Identifier: BSD-2-Clause */
 #include "read/advise_parts.h"
 
@@ -9,17 +9,20 @@
 #include "norm/scene.h"
 #include "read/observe.h"
 
-/* Findings begin where more than 1 of these is so; small counts say nothing. */
+/* An escape or a sigma at an end of the table is reported if more than 1 of ESCAPES_ONE_OF or
+ * SIGMA_ONE_OF symbols is one, and if there are at least FEW symbols. A probability is reported if
+ * it differs by more than PROB_FAR / 65536 from the frequency. */
 enum { ESCAPES_ONE_OF = 256, SIGMA_ONE_OF = 64, FEW = 256, PROB_FAR = 2048 };
 
 typedef struct {
     uint64_t symbols, escapes, sigma_ends;
 } type_counts;
 
-/* The walk is given probabilities 1 .. 7, so that a bit says which one it was coded with. */
+/* The walk is given the probabilities 1 to TED4_PROBS instead of those of the tile, so that the
+ * probability of a bit says in which element (prob - 1) of bits and ones it is counted. */
 typedef struct {
     ted4_coder base; /* must be first */
-    int type;        /* of the open substream */
+    int type;        /* parameter type of the open substream */
     type_counts count[TED4_TYPES];
     uint64_t bits[TED4_PROBS], ones[TED4_PROBS]; /* of the tile */
 } census;
@@ -47,7 +50,7 @@ static void gauss(ted4_coder *c, size_t n, const int32_t *mu, const uint8_t *sig
 
 static const char *const type_name[TED4_TYPES] = { "feature", "scaling", "offset", "phi", "tau" };
 
-/* The walk names a substream when it opens it. */
+/* Sets the type of the open substream: the walk traces its name when it opens it. */
 static void follow(void *user, size_t offset, const char *element, int64_t index, int64_t value)
 {
     census *n = user;
@@ -61,7 +64,7 @@ static void follow(void *user, size_t offset, const char *element, int64_t index
             n->type = t;
 }
 
-/* R-ENC-006 for the probabilities of a tile that lies at offset at. */
+/* Checks R-ENC-006 for the probabilities of the tile at offset at. */
 static void advise_probs(ted4_findings *f, const census *n, const uint16_t *prob, size_t at)
 {
     for (int i = 0; i < TED4_PROBS; i++) {
@@ -102,7 +105,7 @@ static void advise_steps(ted4_findings *f, const ted4_scene *s, size_t at)
     }
 }
 
-/* spec 10.3: contexts that slices read, all but those of the last slice. */
+/* Checks the contexts of spec 10.3 that slices read, that is, those of all slices but the last. */
 static void advise_contexts(ted4_findings *f, const ted4_scene *s, size_t at)
 {
     const ted4_header *h = &s->head;
@@ -121,8 +124,8 @@ static void advise_contexts(ted4_findings *f, const ted4_scene *s, size_t at)
         ted4_find_advice(f, TED4_ADV_CONTEXT, "feature", at, 2, ends, (int64_t)(seen * n));
 }
 
-/* All tiles of a valid file, with probabilities of their own. *first_at: offset of the first one.
- */
+/* Counts the symbols of all tiles, and checks the probabilities of each tile. *first_at is set to
+ * the offset of the first tile. */
 static void walk_tiles(ted4_findings *f, const ted4_scene *given, census *n, ted4_observation *it,
                        size_t *first_at)
 {
@@ -145,7 +148,7 @@ static void walk_tiles(ted4_findings *f, const ted4_scene *given, census *n, ted
     }
 }
 
-/* Gives the scene probabilities that say which one a bit was coded with; see census. */
+/* Replaces the probabilities of the scene by their numbers; see census. */
 static ted4_status number_probs(ted4_observation *it)
 {
     const size_t n = (size_t)it->scene.shape.n_tiles * TED4_PROBS;

@@ -1,4 +1,5 @@
-/* dump_syntax.c - spec J.2: tier T0, the syntax elements of a file, from the trace of the decoder.
+/* dump_syntax.c - writes tier T0 of spec J.2, the syntax elements of a file, from the trace of the
+ * decoder.
  * SPDX-License-Identifier: BSD-2-Clause */
 #include <string.h>
 #include "base/bytes.h"
@@ -6,7 +7,8 @@
 
 enum { BYTES = 0, SUBSTREAM = 255, MAX_SUBSTREAMS = 24, DEFLATED = -1 };
 
-/* width: of a number; BYTES: size below; SUBSTREAM: size from the size element. */
+/* width is the width of a number in bytes. It is BYTES for an element of size bytes, and SUBSTREAM
+ * for a substream, whose size is given by a "size" element of the file. */
 typedef struct {
     const char *name;
     uint16_t id;
@@ -85,10 +87,10 @@ typedef struct {
     const uint8_t *data; /* borrowed: the file */
     ted4_sink *sink;
     void *user;
-    uint32_t size[MAX_SUBSTREAMS]; /* of the tile */
+    uint32_t size[MAX_SUBSTREAMS]; /* sizes of the substreams of the tile */
     unsigned n_opened;
     uint32_t chunk_size;
-    int last; /* entry of the element before: arrays and names in order are found at once */
+    int last; /* entry of the last element: the search for the next one begins there */
 } dump;
 
 static void put_number(dump *d, uint16_t id, uint32_t value)
@@ -107,7 +109,8 @@ static void put_bytes(dump *d, uint16_t id, size_t offset, uint32_t size)
         d->sink(d->user, d->data + offset, size);
 }
 
-/* Entry of a name, or -1: a symbol, or part of an array that gives one record. */
+/* Returns the entry of a name, or -1 if it is a symbol or part of an array that gives one record.
+ */
 static int find(const dump *d, const char *name)
 {
     for (int i = 0; i < N_TABLE; i++) {
@@ -119,7 +122,7 @@ static int find(const dump *d, const char *name)
     return -1;
 }
 
-/* Elements that are traced byte by byte, or whose size is the value. */
+/* Writes the elements that are traced byte by byte, or whose traced value is their size. */
 static void put_special(dump *d, size_t offset, const char *name, int64_t index, int64_t value)
 {
     if (strcmp(name, "magic") == 0 && index == 0)
@@ -146,7 +149,7 @@ static void trace(void *user, size_t offset, const char *name, int64_t index, in
         put_bytes(d, e->id, offset, d->size[d->n_opened++]);
     } else if (e->width == BYTES) {
         if (d->chunk_size ==
-            0) /* only an ancillary chunk can be empty, and then it is not traced */
+            0) /* only an ancillary chunk can be empty, and an empty one is not traced */
             put_bytes(d, ID_ANCILLARY, offset, 0);
         put_bytes(d, e->id, offset, e->size);
     } else if (index == DEFLATED) {

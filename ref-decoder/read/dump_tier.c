@@ -1,5 +1,5 @@
-/* dump_tier.c - spec J.3 to J.6: tiers T1 to T4 of a decoded scene. T2 and T3 walk the tiles once
- * more, with a coder that only observes.
+/* dump_tier.c - writes tiers T1 to T4 of a decoded scene (spec J.3 to J.6). For T2 and T3 it walks
+ * the tiles once more, with a coder that only observes.
  * SPDX-License-Identifier: BSD-2-Clause */
 #include <string.h>
 #include "base/bytes.h"
@@ -14,7 +14,7 @@ typedef struct {
     ted4_sink *sink;
     void *user;
     int tier;
-    size_t n; /* symbols of the open substream */
+    size_t n; /* number of symbols of the open substream */
 } observer;
 
 static void put8(observer *l, uint8_t v)
@@ -52,7 +52,7 @@ static void open_substream(ted4_coder *c, size_t n)
         put32(l, (uint32_t)n);
 }
 
-/* The decoder has seen each lane end in its final state. */
+/* Every lane ends in TED4_RANS_LOW, since the decoder has checked R-ENT-005. */
 static void close_substream(ted4_coder *c)
 {
     observer *l = observer_of(c);
@@ -93,7 +93,7 @@ static size_t tile_end(const ted4_scene *s, size_t first)
     return left < s->head.tile_size ? s->head.n_anchors : first + s->head.tile_size;
 }
 
-/* J.3 */
+/* Writes tier T1 (spec J.3). */
 static void dump_masks(observer *l, const ted4_scene *s)
 {
     const size_t n = s->head.n_anchors;
@@ -120,8 +120,9 @@ static int has(const ted4_scene *s, int type, unsigned comp, size_t a)
                                  : 1;
 }
 
-/* J.6; spec 10.4. T4 is exact whatever the build's class (R-TOL-007): q is volatile, so that no
- * compiler multiplies in another order or keeps it wider. */
+/* Writes values of tier T4 (spec J.6, 10.4). T4 is exact whatever the class of the build
+ * (R-TOL-007): q is volatile so that no compiler changes the order of the multiplications or keeps
+ * the product in a wider type. */
 static void dump_values(observer *l, const ted4_scene *s, int type, unsigned comp, size_t first)
 {
     const int16_t *k = s->symbol[type] + (size_t)comp * s->head.n_anchors;
@@ -138,7 +139,7 @@ static void dump_values(observer *l, const ted4_scene *s, int type, unsigned com
     }
 }
 
-/* J.4, J.5 */
+/* Writes tier T2 or T3 (spec J.4, J.5). */
 static ted4_status dump_walk(observer *l, const ted4_scene *given, const ted4_options *o)
 {
     ted4_coder_ops ops = ted4_observe_ops;

@@ -1,5 +1,5 @@
-/* finding.c - what the validator says of an error or of something doubtful: its place, its rule and
- * its text.
+/* finding.c - reports an error or something doubtful, with its place, the rule that it breaks and a
+ * text.
  * SPDX-License-Identifier: BSD-2-Clause */
 #include "read/finding.h"
 
@@ -11,7 +11,8 @@
 #include "norm/syntax.h"
 #include "read/reader.h"
 
-/* Of most errors there is one; which_rule() numbers the others. */
+/* Most errors break one rule. Where an error has several, which_rule() returns the index of the
+ * one that is broken. */
 static const char *const rules_of[TED4_N_STATUS][3] = {
 #define TED4_FINDING_ERROR(status, ...) [TED4_##status] = { __VA_ARGS__ },
 #define TED4_FINDING_ADVICE(name, id, severity, rule, text)
@@ -31,7 +32,7 @@ static const struct {
 #undef TED4_FINDING_ADVICE
 };
 
-/* The name of a known type, or NULL. */
+/* Returns the name of a known chunk type, or NULL. */
 static const char *known_type(const uint8_t *type)
 {
     for (int i = 0; i < TED4_CHUNKS; i++)
@@ -40,8 +41,9 @@ static const char *known_type(const uint8_t *type)
     return NULL;
 }
 
-/* Type of the known chunk that holds the byte at an offset, or NULL. Sizes are not to be trusted.
- * Errors come nearly in order of the file: the search goes on where the last one has ended. */
+/* Returns the type of the chunk that holds the byte at offset, or NULL if it is not a known type.
+ * Chunk sizes in the file may be wrong. Since errors are found nearly in the order of the file, the
+ * search begins at the chunk where the last one ended. */
 static const char *chunk_at(ted4_findings *f, size_t offset)
 {
     const size_t frame = TED4_FRAME_HEAD_SIZE + TED4_FRAME_HASH_SIZE;
@@ -58,9 +60,10 @@ static const char *chunk_at(ted4_findings *f, size_t offset)
     return NULL;
 }
 
-/* Which rule con.payload-size breaks in the chunk where chunk_at() has found it, of that type:
- * R-CON-011; R-ENT-003, the sizes of substreams, when all of them are there; R-NET-009, values of a
- * raw blob. With an error there HEAD, the first chunk, is right. */
+/* Returns the index of the rule that con.payload-size breaks in the chunk that chunk_at() has
+ * found, of the given type: R-NET-009 for the values of a raw blob; R-ENT-003 for the sizes of
+ * substreams, if all of these are present; otherwise R-CON-011. If a chunk after HEAD has this
+ * error, HEAD is valid. */
 static unsigned payload_rule(const ted4_findings *f, size_t offset, const char *type)
 {
     enum { ELEMENTS, SIZES, VALUES };
@@ -85,13 +88,14 @@ static unsigned payload_rule(const ted4_findings *f, size_t offset, const char *
     return at > (type == ted4_chunk_type[TED4_NETE] ? shape.n_units : 0) ? VALUES : ELEMENTS;
 }
 
-/* Of the rules whose breach is that error, in a chunk of that type (NULL: of another one). */
+/* Returns the index, in rules_of, of the rule that error e breaks in a chunk of the given type
+ * (NULL: not in a chunk of a known type). */
 static unsigned which_rule(const ted4_findings *f, ted4_error e, const char *type)
 {
     switch (e.code) {
-    case TED4_E_CON_RESERVED: /* of a known chunk only flags can be wrong */ return type != NULL;
+    case TED4_E_CON_RESERVED: /* known chunks: only flags can be wrong */ return type != NULL;
     case TED4_E_CON_PAYLOAD_SIZE: return payload_rule(f, e.offset, type);
-    case TED4_E_NET_SHIFT: /* in range, but not for the unit */
+    case TED4_E_NET_SHIFT: /* 1: a shift in the legal range that is not valid for the unit */
         return f->data[e.offset] <= TED4_MAX_SHIFT;
     default: return 0;
     }

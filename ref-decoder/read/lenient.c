@@ -1,13 +1,13 @@
-/* lenient.c - spec 3.3: what can be saved of a file that is not valid: the first tiles, as far as
- * all before and in them is right.
+/* lenient.c - salvages the first tiles of a file that is not valid, up to its first error
+ * (spec 3.3).
  * SPDX-License-Identifier: BSD-2-Clause */
 #include <string.h>
 #include "norm/limits.h"
 #include "norm/scene.h"
 #include "read/decode.h"
 
-/* Both passes at once: each chunk is judged, then read, up to the first error in the order of the
- * file. */
+/* Runs both passes at once: checks each chunk, then decodes it, up to the first error in the order
+ * of the file. Returns that error. */
 static ted4_error read_while_good(ted4_decoder *d, int truncated)
 {
     ted4_reader frames = d->file;
@@ -15,8 +15,8 @@ static ted4_error read_while_good(ted4_decoder *d, int truncated)
     ted4_error e;
 
     d->s->level = ted4_container_header(&frames);
-    /* How large a truncated file was is not known; the least that its level does not forbid is
-     * assumed. */
+    /* The full size of a truncated file is not known. The bounds of its level are checked for the
+     * largest file size that the level allows, for which they are the least strict. */
     if (frames.base.error.code == TED4_OK && truncated)
         d->file_bytes = ted4_limits_of(d->s->level)->file_bytes;
     while (frames.base.error.code == TED4_OK && d->file.base.error.code == TED4_OK &&
@@ -28,13 +28,13 @@ static ted4_error read_while_good(ted4_decoder *d, int truncated)
     }
     ted4_decoder_finish(d);
     ted4_require(&frames.base, frames.base.pos == frames.end, TED4_E_CON_TRAILING, frames.base.pos);
-    /* Payloads are read up to the chunk before the one that is wrong. */
+    /* An error of a payload lies before that of a frame, behind which no payload is read. */
     e = d->file.base.error;
     ted4_fail(&e, frames.base.error.code, frames.base.error.offset);
     return e;
 }
 
-/* Leaves the first n anchors of a scene: whole tiles. */
+/* Keeps only the first n anchors of a scene; they must be whole tiles. */
 static void keep_anchors(ted4_scene *s, uint32_t n)
 {
     const size_t before = s->head.n_anchors;
