@@ -1,11 +1,11 @@
-/* leveled.c - the level in use, see leveled.h.
+/* leveled.c - chooses and stores the level in use (leveled.h).
  * SPDX-License-Identifier: BSD-2-Clause */
 #include "render/leveled.h"
 
 #include <stdatomic.h>
 
-/* 0, which is TED4_LEVEL_PLAIN: not chosen yet. Threads that choose at the same time choose the
- * same. */
+/* 0, which is TED4_LEVEL_PLAIN, means that no level has been chosen yet. Threads that choose at the
+ * same time choose the same level. */
 static atomic_int in_use;
 
 ted4_level ted4_level_use(ted4_level level)

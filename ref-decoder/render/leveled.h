@@ -1,25 +1,27 @@
-/* leveled.h - functions of which there is one copy a level: those of drawing and training that take
- * most of the time. A file of them is compiled once a level (LEVELED in the Makefile) and names
- * what it defines by TED4_LEVELED; a file compiled once holds the function of the plain name, which
- * calls the copy of the level in use by TED4_IN_USE. All copies give the same bits where the level
- * has fused multiply-add: only x86-64's base lacks it. Depends on base/level.h.
+/* leveled.h - functions that are compiled once per level of the machine: those in which rendering
+ * and training spend most of the time. A file of such functions is compiled once per level (LEVELED
+ * in the Makefile) and forms their names with TED4_LEVELED. Another file, compiled only once, holds
+ * the function of the plain name, which calls the copy of the level in use with TED4_IN_USE. All
+ * copies give the same bits on levels that have fused multiply-add; only the base of x86-64 lacks
+ * it. Depends on base/level.h.
  * SPDX-License-Identifier: BSD-2-Clause */
 #ifndef TED4_LEVELED_H
 #define TED4_LEVELED_H
 
 #include "base/level.h"
 
-/* The level in use: at first the one wanted (base/level.h). Never TED4_LEVEL_PLAIN, which is the
- * base here. */
+/* Returns the level in use, which at first is the one wanted (base/level.h). It is never
+ * TED4_LEVEL_PLAIN: the base takes its place. */
 ted4_level ted4_level_in_use(void);
-/* For tests and measurements, while nothing else runs; what has been packed for a level must be
- * packed anew. At most that of the machine. Gives the level from then on. */
+/* Sets the level in use, but no higher than that of the machine, and returns it. For tests and
+ * measurements only, while no other thread runs; data packed for another level must be packed
+ * again. */
 ted4_level ted4_level_use(ted4_level level);
 
 #define TED4_JOIN_(a, b) a##_##b
 #define TED4_JOIN(a, b)  TED4_JOIN_(a, b)
 
-/* TED4_LEVEL is a macro in files compiled once a level: base, v3 or v4. */
+/* Files compiled once per level define the macro TED4_LEVEL: base, v3 or v4. */
 #ifdef TED4_LEVEL
 #define TED4_LEVELED(name) TED4_JOIN(name, TED4_LEVEL)
 #endif
@@ -41,8 +43,8 @@ ted4_level ted4_level_use(ted4_level level);
 #define TED4_IN_USE(name) name##_base
 #endif
 
-/* a b + c, in one rounding where the level has it. For files compiled once a level only: elsewhere
- * the same expression must not depend on the machine. */
+/* Returns a b + c, with a single rounding on levels that have fused multiply-add. Only for files
+ * compiled once per level: in other files results must not depend on the machine. */
 #ifdef TED4_LEVEL
 #if defined(__FMA__) || defined(__aarch64__) || defined(__FP_FAST_FMAF)
 #define TED4_FUSED 1

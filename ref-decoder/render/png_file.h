@@ -1,5 +1,5 @@
-/* png_file.h - annex I (informative): writes rendered views as PNG.
- * Needs libpng, so nothing normative includes it.
+/* png_file.h - writes rendered views as PNG (annex I, informative). It needs libpng, so no
+ * normative file includes it.
  * SPDX-License-Identifier: BSD-2-Clause */
 #ifndef TED4_PNG_FILE_H
 #define TED4_PNG_FILE_H
@@ -7,8 +7,9 @@
 #include <stddef.h>
 #include <stdint.h>
 
-/* rgb: [height][width][3] sRGB bytes. Written under a temporary name beside path, then renamed,
- * so path never holds half a picture. 0, or -1 with a reason in why (cut to why_size). */
+/* Writes rgb, [height][width][3] sRGB bytes, to a temporary file beside path, which is then renamed
+ * to path, so that path never holds an incomplete image. Returns 0, or -1 with a message in why
+ * (truncated to why_size bytes). */
 int ted4_png_write(const char *path, int width, int height, const uint8_t *rgb, char *why,
                    size_t why_size);
 
