@@ -1,13 +1,13 @@
-/* image_model.h - the mathematics of the rasteriser, written once for forward and backward: EWA
- * projection of as many Gaussians as a register has lanes, and the opacity of one Gaussian at as
- * many pixels of a block. Depends on raster_state.h, vec.h. raster_plain.c is the same model in
+/* image_model.h - the mathematics of the rasteriser, shared by the forward and backward passes: the
+ * EWA projection of one Gaussian per lane of a register, and the opacity of one Gaussian at one
+ * pixel of a block per lane. Depends on raster_state.h, vec.h. raster_plain.c is the same model in
  * plain scalar code.
  *
- * The exponent of a Gaussian is taken in log2 and by the Cholesky factor of the inverse covariance
- * [[a, b], [b, c]]^-1: with d = pixel - centre and det = ac - b^2,
+ * The exponent of a Gaussian is computed in log2, with the Cholesky factor of the inverse
+ * covariance [[a, b], [b, c]]^-1: with d = pixel - centre and det = ac - b^2,
  *     d^T cov^-1 d = (c / det) (dx - (b / c) dy)^2 + (1 / c) dy^2,
- * a sum of squares, where the usual A dx^2 + 2B dx dy + C dy^2 loses all its digits on long thin
- * Gaussians.
+ * which is a sum of squares. The usual A dx^2 + 2B dx dy + C dy^2 loses all its digits for long,
+ * thin Gaussians.
  * SPDX-License-Identifier: BSD-2-Clause */
 #ifndef TED4_IMAGE_MODEL_H
 #define TED4_IMAGE_MODEL_H
@@ -18,8 +18,8 @@
 #define TED4_LOG2_E         1.44269504088896341f
 #define TED4_LOG2_ALPHA_MIN -7.99435343685885793f /* log2(1 / 255) */
 
-/* The factors below carry sqrt(log2(e) / 2), so that exponents need no constant: log2(alpha) =
- * level - n1^2 - n2^2. */
+/* The coefficients a1, a2 and a3 include the factor sqrt(log2(e) / 2), so that exponents need no
+ * constant: log2(alpha) = level - n1^2 - n2^2. */
 #define TED4_WHITEN 0.84932180028801904f /* sqrt(log2(e) / 2) */
 
 /* View constants that projection shares between Gaussians. */
@@ -27,7 +27,8 @@ typedef struct {
     float u_min, u_max, v_min, v_max; /* clamp of x / z and y / z in the Jacobian */
 } ted4_guard;
 
-/* Frustum centre plus or minus TED4_RASTER_GUARD half-extents, from the actual principal point. */
+/* The bounds are the frustum's centre plus or minus TED4_RASTER_GUARD times its half-extents. The
+ * centre follows from the actual principal point. */
 TED4_INLINE ted4_guard ted4_guard_make(const ted4_view *v)
 {
     const float half_u = 0.5f * (float)v->width / v->fx, half_v = 0.5f * (float)v->height / v->fy;
@@ -37,7 +38,7 @@ TED4_INLINE ted4_guard ted4_guard_make(const ted4_view *v)
                           mid_v - TED4_RASTER_GUARD * half_v, mid_v + TED4_RASTER_GUARD * half_v };
 }
 
-/* As many Gaussians as a register has lanes, as they come. */
+/* The parameters of one Gaussian per lane of a register. */
 typedef struct {
     ted4_vf mean[3], scale[3], rot[4], opacity;
 } ted4_splat_lanes;
@@ -54,12 +55,12 @@ TED4_INLINE void ted4_splat_lanes_load(ted4_splat_lanes *g, const ted4_splats *s
     g->opacity = ted4_vf_load_n(s->opacity + i, n);
 }
 
-/* Projection with everything its adjoint needs. cov2d = P P^T + blur, row r of P = (j_r^T R(q))
- * diag(scale), j = Jacobian times view rotation. */
+/* A projection with all intermediate values that its adjoint needs. cov2d = P P^T + blur, row r of
+ * P = (j_r^T R(q)) diag(scale), j = Jacobian times view rotation. */
 typedef struct {
-    ted4_vf t[3], iz;       /* camera space; 1 / t[2] */
+    ted4_vf t[3], iz;       /* mean in camera space; 1 / t[2] */
     ted4_vf u, v;           /* clamped x / z, y / z */
-    ted4_vi u_free, v_free; /* not clamped */
+    ted4_vi u_free, v_free; /* masks: u, v are not clamped */
     ted4_vf j0[3], j1[3];
     ted4_vf r[9];         /* R(q) */
     ted4_vf q0[3], q1[3]; /* j_r^T R(q) */
@@ -74,13 +75,13 @@ TED4_INLINE ted4_vf ted4_dot3(const ted4_vf a[3], const ted4_vf b[3])
     return ted4_vf_fma(a[0], b[0], ted4_vf_fma(a[1], b[1], a[2] * b[2]));
 }
 
-/* m . x for a row m of a matrix that all lanes share. */
+/* Returns m . x for a row m of a matrix that all lanes share. */
 TED4_INLINE ted4_vf ted4_row3(const float m[3], const ted4_vf x[3])
 {
     return ted4_vf_fma(ted4_vf_all(m[2]), x[2], ted4_vf_fma(ted4_vf_all(m[1]), x[1], m[0] * x[0]));
 }
 
-/* Component i of the cross product of a and b. */
+/* Returns component i of the cross product of a and b. */
 TED4_INLINE ted4_vf ted4_cross(const ted4_vf a[3], const ted4_vf b[3], int i)
 {
     const int j = (i + 1) % 3, k = (i + 2) % 3;
@@ -88,7 +89,7 @@ TED4_INLINE ted4_vf ted4_cross(const ted4_vf a[3], const ted4_vf b[3], int i)
     return ted4_vf_fnma(a[k], b[j], a[j] * b[k]);
 }
 
-/* R(q) of a unit quaternion w x y z, rows first. */
+/* Computes the rotation matrix R(q) of a unit quaternion w x y z, row by row. */
 TED4_INLINE void ted4_rotation(const ted4_vf q[4], ted4_vf r[9])
 {
     const ted4_vf w = q[0], x = q[1] + q[1], y = q[2] + q[2], z = q[3] + q[3];
@@ -107,8 +108,8 @@ TED4_INLINE void ted4_rotation(const ted4_vf q[4], ted4_vf r[9])
     r[8] = 1.0f - xx - yy;
 }
 
-/* Rows j_r, q_r, p_r for one image axis: focal length f, clamped slope u, view rotation rows w and
- * w2. */
+/* Computes the rows j_r, q_r and p_r of one image axis, which has focal length f, clamped slope u,
+ * and rows w and w2 of the view rotation. */
 TED4_INLINE void ted4_project_axis(const ted4_projection *p, const ted4_vf scale[3], float f,
                                    ted4_vf u, const float w[3], const float w2[3], ted4_vf j[3],
                                    ted4_vf q[3], ted4_vf out[3])
@@ -125,7 +126,7 @@ TED4_INLINE void ted4_project_axis(const ted4_projection *p, const ted4_vf scale
     }
 }
 
-/* Lanes behind the camera give numbers without meaning: the caller masks them by t[2] > near_z. */
+/* Results in lanes behind the camera are meaningless; the caller masks them by t[2] > near_z. */
 TED4_INLINE void ted4_project_lanes(ted4_projection *p, const ted4_splat_lanes *g,
                                     const ted4_view *v, const ted4_guard *guard)
 {
@@ -145,8 +146,8 @@ TED4_INLINE void ted4_project_lanes(ted4_projection *p, const ted4_splat_lanes *
     ted4_project_axis(p, g->scale, v->fx, p->u, v->R, v->R + 6, p->j0, p->q0, p->p0);
     ted4_project_axis(p, g->scale, v->fy, p->v, v->R + 3, v->R + 6, p->j1, p->q1, p->p1);
 
-    /* det(P P^T) is the squared length of the rows' cross product: no cancellation, unlike ac -
-     * b^2. */
+    /* det(P P^T) is the squared length of the cross product of the rows, which, unlike ac - b^2,
+     * does not suffer from cancellation. */
     const ted4_vf a0 = ted4_dot3(p->p0, p->p0), c0 = ted4_dot3(p->p1, p->p1);
     const ted4_vf m[3] = { ted4_cross(p->p0, p->p1, 0), ted4_cross(p->p0, p->p1, 1),
                            ted4_cross(p->p0, p->p1, 2) };
@@ -162,8 +163,8 @@ TED4_INLINE void ted4_project_lanes(ted4_projection *p, const ted4_splat_lanes *
     p->a3 = TED4_WHITEN * ted4_vf_sqrt(ic);
 }
 
-/* Pixel centres of part part of block b of tile (tx, ty): columns and rows. A part is a register's
- * share of the block's pixels, which are counted row by row. */
+/* Computes the columns px and rows py of the pixel centres in part part of block b of tile
+ * (tx, ty). A part is one register of the block's pixels, which are numbered row by row. */
 TED4_INLINE void ted4_block_pixels(uint32_t tx, uint32_t ty, int b, int part, ted4_vf *px,
                                    ted4_vf *py)
 {
@@ -176,7 +177,7 @@ TED4_INLINE void ted4_block_pixels(uint32_t tx, uint32_t ty, int b, int part, te
           ((float)(ty * TED4_TILE + (uint32_t)(b / TED4_BLOCK) * TED4_BLOCK) + 0.5f);
 }
 
-/* log2(alpha) at the pixels (px, py), and the whitened offsets. */
+/* Returns log2(alpha) at the pixels (px, py); *n1 and *n2 are set to the whitened offsets. */
 TED4_INLINE ted4_vf ted4_splat_log2_alpha(const ted4_splat2d *g, ted4_vf px, ted4_vf py,
                                           ted4_vf *n1, ted4_vf *n2)
 {
@@ -187,10 +188,11 @@ TED4_INLINE ted4_vf ted4_splat_log2_alpha(const ted4_splat2d *g, ted4_vf px, ted
     return ted4_vf_fnma(*n2, *n2, ted4_vf_fnma(*n1, *n1, ted4_vf_all(g->level)));
 }
 
-/* One step of front-to-back blending. t: transmittance before the Gaussian; updated. alpha: opacity
- * used, w = alpha t: weight; both 0 where the Gaussian is too faint or the pixel is finished.
- * Nothing marks a finished pixel but its t, below TED4_RASTER_T_MIN ever after: so the only thing
- * that one step waits for in the one before is a multiplication and a subtraction. */
+/* Does one step of front-to-back blending. *t is the transmittance before the Gaussian, and is
+ * updated. *alpha is set to the opacity used and *w to the weight alpha t; both are 0 where the
+ * Gaussian is too faint or the pixel is finished. A pixel is finished once t is below
+ * TED4_RASTER_T_MIN, where it stays; there is no other mark, so that a step depends on the previous
+ * one only by a multiplication and a subtraction. */
 TED4_INLINE void ted4_blend_step(const ted4_splat2d *g, ted4_vf px, ted4_vf py, ted4_vf *t,
                                  ted4_vf *alpha, ted4_vf *w)
 {

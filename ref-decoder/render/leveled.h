@@ -21,7 +21,7 @@ ted4_level ted4_level_use(ted4_level level);
 #define TED4_JOIN_(a, b) a##_##b
 #define TED4_JOIN(a, b)  TED4_JOIN_(a, b)
 
-/* Files compiled once per level define the macro TED4_LEVEL: base, v3 or v4. */
+/* In files compiled once per level, the macro TED4_LEVEL is base, v3 or v4. */
 #ifdef TED4_LEVEL
 #define TED4_LEVELED(name) TED4_JOIN(name, TED4_LEVEL)
 #endif

@@ -1,5 +1,5 @@
-/* project.c - first stage of raster.c: Gaussians to image plane, a register of them at a time, with
- * culling, tile boxes and depth keys.
+/* project.c - the first stage of raster.c: projects Gaussians onto the image plane, one register of
+ * them at a time, culls them, and computes tile boxes and depth keys.
  * SPDX-License-Identifier: BSD-2-Clause */
 #include "render/image_model.h"
 
@@ -12,9 +12,9 @@ typedef struct {
     ted4_guard guard;
 } project_job;
 
-/* Range of pixel columns (or rows) whose centres lie within reach of centre: first and last, and
- * whether there is one. The reach is widened a little, as the pixels themselves decide where a
- * Gaussian ends. */
+/* Computes the range of pixel columns (or rows) whose centres lie within reach of centre, from
+ * first to last. Returns a mask of the lanes in which there are any. The reach is widened a little,
+ * since the exact end of a Gaussian is decided per pixel, when it is blended. */
 static inline ted4_vi pixel_range(ted4_vf centre, ted4_vf reach, int size, ted4_vi *first,
                                   ted4_vi *last)
 {
@@ -29,8 +29,8 @@ static inline ted4_vi pixel_range(ted4_vf centre, ted4_vf reach, int size, ted4_
     return any & (*first <= *last);
 }
 
-/* Writes what a register of projected Gaussians have to say, lane by lane; i: index of the first.
- */
+/* Writes the visible ones of a register of projected Gaussians, lane by lane. i is the index of the
+ * first. */
 static void store_splats(const project_job *job, size_t i, const ted4_projection *p, ted4_vf level,
                          uint32_t visible)
 {
@@ -53,13 +53,13 @@ static void store_splats(const project_job *job, size_t i, const ted4_projection
             };
 }
 
-/* Tile boxes of a register of Gaussians, empty where not visible. All conditions are false for NaN.
- * skipped: 1 less for each Gaussian that would be drawn, as it is neither behind the camera nor too
- * faint, but is not finite. */
+/* Computes the tile boxes of a register of Gaussians, empty for invisible ones, and returns a bit
+ * mask of the visible ones. All conditions are false for NaN. *skipped is decremented in the lane
+ * of each Gaussian that is neither behind the camera nor too faint, but is not finite. */
 static uint32_t make_boxes(const project_job *job, const ted4_projection *p, ted4_vf level,
                            ted4_vf opacity, size_t n, ted4_tile_box *box, ted4_vi *skipped)
 {
-    /* log2(alpha) falls by log2(e) / 2 d^T cov^-1 d; the largest dx among d^T cov^-1 d <= k is
+    /* log2(alpha) falls by log2(e) / 2 d^T cov^-1 d. The largest dx with d^T cov^-1 d <= k is
      * sqrt(k a). */
     const ted4_vf k = (level - TED4_LOG2_ALPHA_MIN) * (2.0f / TED4_LOG2_E);
     ted4_vi x0, x1, y0, y1;
@@ -80,8 +80,9 @@ static uint32_t make_boxes(const project_job *job, const ted4_projection *p, ted
     return visible;
 }
 
-/* One job: TED4_CHUNK Gaussians. Keys of visible ones go to the front of the chunk's share of
- * key[1]; first_instance counts from the chunk's beginning until bin.c adds what came before. */
+/* Runs one job, of TED4_CHUNK Gaussians. The keys of visible ones go to the front of the chunk's
+ * part of key[1]. first_instance counts from the beginning of the chunk; bin.c adds the number of
+ * instances in the chunks before. */
 static void project_chunk(void *arg, size_t c)
 {
     const project_job *job = arg;

@@ -1,5 +1,5 @@
-/* raster.c - see raster.h. Forward: project (project.c), sort by depth and list per tile (bin.c),
- * blend (blend.c).
+/* raster.c - manages the workspace and runs the stages of the forward pass: projection (project.c),
+ * sorting by depth and into tiles (bin.c), and blending (blend.c).
  * SPDX-License-Identifier: BSD-2-Clause */
 #include "render/raster_state.h"
 

@@ -1,4 +1,5 @@
-/* raster_plain.c - see raster_plain.h. Source: annex I.2, I.3, with the conventions of raster.h.
+/* raster_plain.c - the reference implementation of the rasteriser. Source: annex I.2, I.3, with the
+ * conventions of raster.h.
  * SPDX-License-Identifier: BSD-2-Clause */
 #include "render/raster_plain.h"
 
@@ -7,13 +8,13 @@
 
 typedef struct {
     size_t index;
-    float depth;    /* the fast renderer's: depth order is decided in float */
+    float depth;    /* in float, as in raster.c, so that the order by depth agrees */
     double x, y;    /* centre, pixels */
     double A, B, C; /* inverse of the 2D covariance [[A, B], [B, C]] */
     double opacity, colour[3];
 } plain_splat;
 
-/* Covariance R S S R^T, 3x3. */
+/* Computes the 3x3 covariance R S S R^T. */
 static void covariance3(const ted4_splats *s, size_t i, double cov[3][3])
 {
     const double w = s->rot[0][i], x = s->rot[1][i], y = s->rot[2][i], z = s->rot[3][i];
@@ -33,7 +34,8 @@ static void covariance3(const ted4_splats *s, size_t i, double cov[3][3])
         }
 }
 
-/* Slope x / z for the Jacobian, kept within the guard band around the frustum of this axis. */
+/* Returns the slope x / z for the Jacobian, clamped to the guard band around the frustum along this
+ * axis. */
 static double clamp_slope(double slope, int size, double focal, double principal)
 {
     const double half = 0.5 * size / focal, mid = half - principal / focal;
@@ -42,7 +44,7 @@ static double clamp_slope(double slope, int size, double focal, double principal
                 mid + (double)TED4_RASTER_GUARD * half);
 }
 
-/* a^T M b. */
+/* Returns a^T M b. */
 static double form3(const double a[3], double M[3][3], const double b[3])
 {
     double sum = 0;
@@ -53,7 +55,8 @@ static double form3(const double a[3], double M[3][3], const double b[3])
     return sum;
 }
 
-/* Nonzero: the Gaussian is in front of the camera and opaque enough to be seen at all. */
+/* Projects Gaussian i. Returns 1 with *g filled if the Gaussian is beyond near_z and opaque enough
+ * to be visible, else 0. */
 static int project(const ted4_splats *s, const ted4_view *v, size_t i, plain_splat *g)
 {
     double t[3], cov[3][3], j0[3], j1[3];
@@ -96,7 +99,7 @@ static int by_depth(const void *left, const void *right)
     return a->index < b->index ? -1 : 1;
 }
 
-/* The pixel with centre (x, y): its colour. */
+/* Computes the colour of the pixel with centre (x, y). */
 static void blend(const plain_splat *g, size_t n, const ted4_view *v, double x, double y,
                   double colour[3])
 {

@@ -1,8 +1,8 @@
-/* vec.h - the floats of one vector register, in portable vector C: 16, 8 or 4 of them. Kernels
- * think in groups of 16 lanes (Gaussians in project.c, pixels of a 4x4 block in blend.c), which are
- * TED4_VECS registers: a lane's result does not depend on how many, and sums over lanes are taken
- * in one order. For files compiled once a level (leveled.h). Arithmetic is that of the operators;
- * what is worth an instruction that compilers do not find has a function.
+/* vec.h - vector registers of 16, 8 or 4 floats, in portable vector C. Kernels work on groups of 16
+ * lanes (Gaussians in project.c, pixels of a 4x4 block in blend.c), which are TED4_VECS registers.
+ * The result of a lane does not depend on their number, and sums over lanes are always taken in the
+ * same order. For files compiled once per level (leveled.h). Arithmetic uses the C operators;
+ * functions exist for operations with an instruction that compilers would not use by themselves.
  * SPDX-License-Identifier: BSD-2-Clause */
 #ifndef TED4_VEC_H
 #define TED4_VEC_H
@@ -18,12 +18,12 @@
 
 #include "render/leveled.h"
 
-/* Vectors are passed by value, but only to functions that are always inlined: how an ABI would pass
- * them does not matter. */
+/* Vectors are passed by value, but only to functions that are always inlined, so the ABI's way of
+ * passing them does not matter. */
 #pragma GCC diagnostic ignored "-Wpsabi"
 #define TED4_INLINE static inline __attribute__((always_inline))
 
-/* Before a loop of at most 16 rounds whose vectors are to stay in registers. */
+/* Stands before a loop of at most 16 iterations whose vectors should stay in registers. */
 #ifdef __clang__
 #define TED4_UNROLL _Pragma("clang loop unroll(full)")
 #else
@@ -40,16 +40,16 @@
 
 enum {
     TED4_LANE_GROUP = 16,
-    TED4_VEC = TED4_VEC_BYTES / 4,         /* floats of a register */
-    TED4_VECS = TED4_LANE_GROUP / TED4_VEC /* registers of a lane group */
+    TED4_VEC = TED4_VEC_BYTES / 4,         /* floats per register */
+    TED4_VECS = TED4_LANE_GROUP / TED4_VEC /* registers per lane group */
 };
 
 typedef float ted4_vf __attribute__((vector_size(TED4_VEC_BYTES)));
 typedef int32_t ted4_vi __attribute__((
-    vector_size(TED4_VEC_BYTES))); /* as a mask: -1 or 0 in each lane, as comparisons give it */
+    vector_size(TED4_VEC_BYTES))); /* masks are -1 or 0 in each lane, as comparisons give them */
 typedef uint32_t ted4_vu __attribute__((vector_size(TED4_VEC_BYTES)));
 
-/* x in every lane. */
+/* Returns x in every lane. */
 TED4_INLINE ted4_vf ted4_vf_all(float x)
 {
     return x - (ted4_vf) { 0 };
@@ -68,7 +68,8 @@ TED4_INLINE void ted4_vf_store(float *p, ted4_vf v)
     memcpy(p, &v, sizeof v);
 }
 
-/* The first n <= TED4_VEC values; lanes after them are 0, or are not stored. */
+/* These load or store only the first n values, or all if n >= TED4_VEC. Lanes without a value are
+ * loaded as 0, and are not stored. */
 TED4_INLINE ted4_vf ted4_vf_load_n(const float *p, size_t n)
 {
     ted4_vf v = { 0 };
@@ -87,7 +88,8 @@ TED4_INLINE void ted4_vf_store_n(float *p, ted4_vf v, size_t n)
         memcpy(p, &v, n * sizeof *p);
 }
 
-/* a b + c and c - a b, in one rounding where the level has it. */
+/* These return a b + c and c - a b, with a single rounding on levels that have fused
+ * multiply-add. */
 TED4_INLINE ted4_vf ted4_vf_fma(ted4_vf a, ted4_vf b, ted4_vf c)
 {
 #if TED4_VEC_BYTES == 64
@@ -118,7 +120,7 @@ TED4_INLINE ted4_vf ted4_vf_fnma(ted4_vf a, ted4_vf b, ted4_vf c)
 #endif
 }
 
-/* m ? a : 0 and m ? a : b. */
+/* These return m ? a : 0 and m ? a : b in each lane. */
 TED4_INLINE ted4_vf ted4_vf_keep(ted4_vi m, ted4_vf a)
 {
     return (ted4_vf)(m & (ted4_vi)a);
@@ -133,7 +135,7 @@ TED4_INLINE ted4_vf ted4_vf_select(ted4_vi m, ted4_vf a, ted4_vf b)
 #endif
 }
 
-/* b where they do not compare (NaN). */
+/* These return the minimum and the maximum of a and b in each lane, and b if either is NaN. */
 TED4_INLINE ted4_vf ted4_vf_min(ted4_vf a, ted4_vf b)
 {
 #if TED4_VEC_BYTES == 64
@@ -177,7 +179,7 @@ TED4_INLINE ted4_vf ted4_vf_sqrt(ted4_vf x)
 #endif
 }
 
-/* Bit i of the result: lane i of the mask. */
+/* Returns a mask as bits: bit i is lane i. */
 TED4_INLINE uint32_t ted4_vi_bits(ted4_vi m)
 {
 #if TED4_VEC_BYTES == 64
@@ -191,9 +193,9 @@ TED4_INLINE uint32_t ted4_vi_bits(ted4_vi m)
 #endif
 }
 
-/* 2^x for x in [-126, 127], relative error 5e-7 (measured on [-8, 0.2]); outside that range the
- * value means nothing. Polynomial: minimax on [-1/2, 1/2] with value 1 at 0, computed for this file
- * by Remez exchange. */
+/* Returns 2^x for x in [-126, 127], with a relative error of 5e-7 (measured on [-8, 0.2]); outside
+ * that range the result is meaningless. The polynomial is the minimax polynomial on [-1/2, 1/2]
+ * with value 1 at 0, computed for this file by Remez exchange. */
 TED4_INLINE ted4_vf ted4_vf_exp2(ted4_vf x)
 {
     const float magic = 12582912.0f; /* 1.5 * 2^23: adding it leaves round(x) in the low bits */
@@ -208,9 +210,9 @@ TED4_INLINE ted4_vf ted4_vf_exp2(ted4_vf x)
     return (ted4_vf)((ted4_vu)y + ((ted4_vu)t << 23));
 }
 
-/* log2(x) for normal x > 0, absolute error 4e-7 on [1/255, 1]; else the value means nothing. x = m
- * 2^e with m in [sqrt(1/2), sqrt(2)), and log2(m) = 2 / ln(2) artanh((m - 1) / (m + 1)) by its
- * power series. */
+/* Returns log2(x) for normal x > 0, with an absolute error of 4e-7 on [1/255, 1]; for any other x
+ * the result is meaningless. x = m 2^e with m in [sqrt(1/2), sqrt(2)), and log2(m) = 2 / ln(2)
+ * artanh((m - 1) / (m + 1)) is computed from its power series. */
 TED4_INLINE ted4_vf ted4_vf_log2(ted4_vf x)
 {
     const uint32_t half = 0x3f3504f3u; /* bits of sqrt(1/2) */
