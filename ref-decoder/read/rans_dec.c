@@ -1,4 +1,4 @@
-/* rans_dec.c - spec 9.2: begin and end of a substream.
+/* rans_dec.c - spec 9.2: begins and ends the decoding of a substream.
  * SPDX-License-Identifier: BSD-2-Clause */
 #include "read/rans_dec.h"
 
