@@ -1,16 +1,18 @@
-/* picture_path.h - the file that a list of pictures means by a name, however it writes it.
+/* picture_path.h - finds the file of a picture from its name in a list of pictures.
  * SPDX-License-Identifier: BSD-2-Clause */
 #ifndef TED4_PICTURE_PATH_H
 #define TED4_PICTURE_PATH_H
 
-/* The first that exists of: the name as it stands, in the scene's folder (or absolute); the same
- * without its first folders, one after the other, as lists come from other machines; and a name
- * without a folder in images/, in part/ (NULL: none), rgb/ or frames/. Each with its own extension,
- * with .png, .jpg or .jpeg added, in capitals, too, or in place of the extension that it has.
- * Backslashes count as slashes. 1 with *path the caller's; 0: there is none; -1: no memory. */
+/* Gives the first of these that exists: the name as written, absolute or relative to the scene's
+ * folder; the name without its first folder, its first two folders and so on, because lists may
+ * come from other machines; and, for a name without a folder, the name in images/, part/ (unless
+ * part is NULL), rgb/ or frames/. Each is tried as it is, with .png, .jpg or .jpeg added, and with
+ * one of these in place of its own extension; the extensions are also tried in capitals.
+ * Backslashes count as slashes. Returns 1 with *path owned by the caller, 0 if there is no such
+ * file, or -1 if memory runs out. */
 int ted4_picture_find(const char *folder, const char *name, const char *part, char **path);
 
-/* Does the name end as a picture's does? */
+/* Does the name end in the extension of a picture? */
 int ted4_picture_is_named(const char *name);
 
 #endif

@@ -13,28 +13,28 @@
 #include "data/useful.h"
 #include "math/elementary.h"
 
-/* A point lies in empty space when less than this share of the pictures that it lies in show
- * something there. What moves is shown at few times; what lies far from things is in line with
- * them for few cameras. */
+/* A point lies in empty space if less than this share of the pictures that see it show foreground
+ * there. The share is small because moving objects are visible at few times, and because what lies
+ * far from objects coincides with them in few cameras. */
 #define EMPTY         (1.0 / 16.0)
-/* Depths tried, in distances of the cameras from where they look: things on a plain background
- * stand there; in a room, walls may be far behind it. */
+/* Range of depths tried, relative to the distance of the cameras from the point that they look at:
+ * with a plain background, objects are at that point; in a room, walls may be far behind it. */
 #define NEAREST       0.15
 #define FARTHEST      3.0
 #define FARTHEST_ROOM 4.0
-/* Before a plain background things are what cameras look at: a point lies in this share of the
- * pictures at least. */
+/* With a plain background, cameras look at the objects: a point must lie in at least this share of
+ * the pictures. */
 #define LOOKED_AT     0.5
-/* Levels that pictures may be off about a point (none: any depth will do), candidates tried for
- * each wanted point, and points wanted in all. Anywhere on a ray, most points lie in space that the
- * others have to themselves, so that there are only as many as make a beginning. Points that came
- * with the scene are judged by the second pass. */
+/* Passes, in order. agreed: levels by which pictures may differ about a point (0: any depth is
+ * accepted). tries: candidates per random point. wanted: total number of points after the pass. At
+ * any depth, most points of a ray lie in empty space, so the last pass adds only enough points to
+ * begin with. Points that came with the scene are judged by the second pass. */
 static const struct {
     double agreed;
     size_t tries, wanted;
 } pass[] = { { 4, 4, TED4_RANDOM_POINTS }, { 10, 8, TED4_RANDOM_POINTS }, { 0, 32, 2048 } };
 enum { PASSES = sizeof pass / sizeof *pass, USEFUL_PASS = 1 };
-/* Candidates a job, and pixels tried for one. */
+/* Candidates per job, and pixels tried per candidate. */
 enum { RUN = 1024, PIXELS = 32 };
 
 typedef struct {
@@ -42,14 +42,14 @@ typedef struct {
     const ted4_scatter_options *options;
     ted4_sweep sweep;
     uint64_t first;       /* number of the first candidate of this round */
-    int fewest;           /* pictures that a point lies in */
+    int fewest;           /* least number of pictures that must see a point */
     float *point;         /* [RUNS * RUN][3] */
     uint8_t *rgb, *taken; /* [RUNS * RUN][3], [RUNS * RUN] */
 } round_job;
 
 enum { RUNS = 16 };
 
-/* A pixel that shows something, of a picture. 0: none was found. */
+/* Chooses a foreground pixel of a picture at random. Returns 0 if none was found. */
 static int choose_pixel(const round_job *j, uint64_t *state, size_t *picture, size_t *pixel)
 {
     for (int k = 0; k < PIXELS; k++) {
@@ -65,7 +65,7 @@ static int choose_pixel(const round_job *j, uint64_t *state, size_t *picture, si
     return 0;
 }
 
-/* Any depth, as many in each octave. */
+/* Gives a point on the ray of a pixel at a random depth, uniform in the logarithm of depth. */
 static void any_depth(const round_job *j, const ted4_camera *c, size_t pixel, double u,
                       double world[3])
 {
@@ -84,7 +84,7 @@ static int is_inside(const ted4_scatter_options *o, const float p[3])
 
 static int try_candidate(const round_job *j, uint64_t i, float point[3], uint8_t rgb[3])
 {
-    /* A candidate takes fewer than 2^8 numbers. */
+    /* A candidate uses fewer than 2^8 random numbers. */
     uint64_t state = (uint64_t)j->options->seed << 40 ^ i << 8;
     const double u = ted4_split_uniform(&state);
     size_t k, pixel;
@@ -117,8 +117,8 @@ static void try_run(void *arg, size_t run)
         j->taken[i] = (uint8_t)try_candidate(j, j->first + i, j->point + 3 * i, j->rgb + 3 * i);
 }
 
-/* Fills the cloud from *n on as pass k wants it. before: candidates that were tried before. 0, or
- * -1: no memory. */
+/* Fills the cloud from *n on by pass k. before: number of candidates tried in earlier passes.
+ * Returns 0, or -1 if memory runs out. */
 static int scatter(round_job *j, const ted4_parallel *p, size_t k, uint64_t before,
                    ted4_point_cloud *c, size_t *n)
 {
@@ -145,7 +145,7 @@ static int scatter(round_job *j, const ted4_parallel *p, size_t k, uint64_t befo
     return bad ? -1 : 0;
 }
 
-/* Depths to look at, from how far away the cameras are. 0, or -1 with *m filled. */
+/* Sets the range of depths from the distance of the cameras. Returns 0, or -1 with *m filled. */
 static int begin_sweep(ted4_sweep *w, const ted4_shown *s, ted4_message *m)
 {
     double centre[3], half;
@@ -159,9 +159,9 @@ static int begin_sweep(ted4_sweep *w, const ted4_shown *s, ted4_message *m)
     return 0;
 }
 
-/* Scattered points in place of those that are there, if any can be had: where pictures agree
- * about colours, and where that gives hardly any, anywhere on the rays of what shows something.
- * 0, or -1 with *m filled. */
+/* Replaces the points by scattered ones, if any are found: first where pictures agree about
+ * colours, and then, if these are few, at any depth on the rays of foreground pixels. Returns 0, or
+ * -1 with *m filled. */
 static int replace(ted4_dataset *d, const ted4_sweep *w, const ted4_scatter_options *o,
                    const ted4_parallel *p, size_t *n, ted4_message *m)
 {
@@ -188,7 +188,7 @@ static int replace(ted4_dataset *d, const ted4_sweep *w, const ted4_scatter_opti
     return 0;
 }
 
-/* Points outside the bounds go; how many. */
+/* Removes points outside the bounds. Returns how many. */
 static size_t drop_outside(ted4_dataset *d, const ted4_scatter_options *o)
 {
     const size_t before = d->n_points;

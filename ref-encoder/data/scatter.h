@@ -1,6 +1,5 @@
-/* scatter.h - initial points where pictures show something, for scenes that came without points, or
- * with points of which most lie in empty space.
- * Depends on dataset.h.
+/* scatter.h - places initial points on what the pictures show, for scenes without points or with
+ * points that lie mostly in empty space. Depends on dataset.h.
  * SPDX-License-Identifier: BSD-2-Clause */
 #ifndef TED4_SCATTER_H
 #define TED4_SCATTER_H
@@ -10,22 +9,23 @@
 typedef struct {
     uint32_t seed;
     int bounded;
-    float low[3], high[3]; /* of a box of the world that has all points, if bounded */
+    float low[3], high[3]; /* if bounded: box in world coordinates that contains all points */
 } ted4_scatter_options;
 
-/* What came of it. */
+/* Result of ted4_dataset_scatter. */
 typedef struct {
-    size_t given;     /* points that came with the scene and were replaced */
-    size_t scattered; /* points in their place, or in place of random ones */
-    size_t outside;   /* points that came with the scene and lie outside the bounds */
+    size_t given;     /* points of the scene that were replaced */
+    size_t scattered; /* new points, which replace those of the scene or random ones */
+    size_t outside;   /* points of the scene that lie outside the bounds */
 } ted4_scattered;
 
-/* Of a verified dataset. A plain background of pictures without transparency becomes that of the
- * scene. Where points are random, or those given are of no use (useful.h), others take their place:
- * on the rays of pixels that show something, where most other pictures that look there show
- * something too. Held-out pictures are not looked at. Points outside the
- * bounds go. Same scene and options, same points, whatever the threads. 0, or -1 with *m filled:
- * no memory, a picture that cannot be read, or no point inside the bounds. */
+/* Gives a verified dataset better initial points. Points that are random, or not useful (useful.h),
+ * are replaced by points on the rays of foreground pixels, placed where most of the other pictures
+ * that see them show foreground too. Points outside the bounds are removed. If pictures without
+ * transparency have a plain background, it becomes the background of the scene. Held-out pictures
+ * are not used. The result depends only on the scene and the options, not on the number of threads.
+ * Returns 0, or -1 with *m filled if memory runs out, a picture cannot be read, or no point lies
+ * inside the bounds. */
 int ted4_dataset_scatter(ted4_dataset *d, const ted4_scatter_options *o, const ted4_parallel *p,
                          ted4_scattered *what, ted4_message *m);
 

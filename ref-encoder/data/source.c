@@ -7,8 +7,8 @@
 #include "data/data_util.h"
 #include "data/image_file.h"
 
-/* RGBA to RGB in place, over a grey level, rounded. Premultiplied colours above their alpha, which
- * none should be, end at white. */
+/* Composites RGBA over a grey level to RGB, in place and rounded. Premultiplied colours above their
+ * alpha, which should not occur, are clipped to white. */
 static void composite(ted4_image *image, ted4_source *s)
 {
     const int background = s->background, premultiplied = s->premultiplied;
@@ -42,8 +42,8 @@ static int undistort(ted4_image *image, const ted4_lens *l, ted4_message *m)
     return 0;
 }
 
-/* Is it the file that was probed, and decoded before? A picture that changes while a scene is
- * trained would make the result one of chance. */
+/* Is this the file that was probed, and decoded before? If a picture changed during training, the
+ * result would not be reproducible. */
 static int check_same(ted4_source *s, const ted4_image *image, ted4_message *m)
 {
     if (image->width != s->lens.width || image->height != s->lens.height)
@@ -76,8 +76,8 @@ uint8_t *ted4_source_decode(void *sources, size_t i, size_t *size, ted4_message 
     if (s->downscale > 1)
         ted4_downscale(image.bytes, image.width, image.height, s->downscale, image.bytes);
     *size = (size_t)(image.width / s->downscale) * (size_t)(image.height / s->downscale) * 3;
-    /* What composite and downscale left unused at the end goes back; a failure to shrink keeps
-     * the block. */
+    /* Frees what composite and downscale left unused at the end; if shrinking fails, the block is
+     * kept. */
     uint8_t *exact = realloc(image.bytes, *size);
     return exact != NULL ? exact : image.bytes;
 }

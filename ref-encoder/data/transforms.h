@@ -1,4 +1,4 @@
-/* transforms.h - one transforms file while load_transforms.c reads it.
+/* transforms.h - state of a transforms file while load_transforms.c reads it.
  * SPDX-License-Identifier: BSD-2-Clause */
 #ifndef TED4_TRANSFORMS_H
 #define TED4_TRANSFORMS_H
@@ -9,23 +9,23 @@
 typedef struct {
     ted4_raw_scene *scene;
     const char *folder;
-    const char *part;    /* "train", "val" or "test" of the file's name, else NULL */
+    const char *part;    /* "train", "val" or "test", from the file's name; else NULL */
     char *path;          /* owned */
     json_t *root;        /* owned */
-    const json_t *frame; /* the one being read; borrowed */
+    const json_t *frame; /* frame being read; borrowed */
     char where[700];     /* "path: frames[i]" */
-    size_t *shot_of;     /* [frames] index of a frame's shot, or NO_SHOT; owned */
+    size_t *shot_of;     /* [frames] index of the shot of a frame, or TED4_NO_SHOT; owned */
     int is_test;
     double applied[12]; /* world of the file = applied * world of the dataset; 3x4 */
     double applied_scale;
     ted4_message *m;
 } ted4_transforms;
 
-/* Of a frame without a picture. */
+/* Stands in shot_of for a frame without a picture. */
 #define TED4_NO_SHOT SIZE_MAX
 
-/* transforms_lens.c: the lens of the frame that is being read; *l holds the picture's size. 0, or
- * -1 with *m filled. */
+/* Reads the lens of the current frame (in transforms_lens.c). *l must hold the size of the picture.
+ * Returns 0, or -1 with *m filled. */
 int ted4_transforms_lens(ted4_transforms *t, ted4_lens *l);
 
 /* Does a frame, or the top of a file, state a focal length in pixels? */

@@ -4,22 +4,23 @@
 
 #include "data/data_util.h"
 
-/* Points of things that stay are seen against something by all pictures, but for errors at
- * outlines. Points are useful when this share of them has this share of pictures that show
- * something: the others may belong to what moves. */
+/* Except for errors at outlines, all pictures see points of static objects as foreground. Points
+ * are useful if at least the share USEFUL of them are foreground in at least the share SHOWN of
+ * their pictures; the others may belong to moving objects. */
 #define USEFUL 0.5
 #define SHOWN  0.5
-/* Draws of a point, of another one and of a picture. Over all scenes tried pictures agreed at the
- * depths of surfaces five to forty times as often as at those exchanged, and at those of random
- * points 0.3 to 1.2 times. */
+/* Number of draws of a point, another point and a picture. In all scenes tried, pictures agreed at
+ * the depths of surfaces 5 to 40 times as often as at exchanged depths, and at those of random
+ * points 0.3 to 1.2 times as often. */
 enum { DRAWS = 16384 };
 #define TIMES   2.0
-/* Before a wall, or where little has a texture, pictures agree at most depths exchanged, too; the
- * few that are left over tell nothing when fewer than this share agree at those only. At random
- * points 0.7 times as many and more did. */
+/* In front of a wall, or where there is little texture, pictures also agree at most exchanged
+ * depths. The few other draws decide nothing if the draws that agree only at the exchanged depth
+ * are fewer than this multiple of those that agree at both. For random points the ratio was at
+ * least 0.7. */
 #define TELLING 0.25
-/* Colours differ between cameras too much for anything to be told where fewer than this share of
- * pairs agree at either depth. */
+/* If fewer than this share of draws agree at either depth, the colours of the cameras differ too
+ * much to decide anything. */
 #define FEW     (1.0 / 64)
 
 static void to_double(const float p[3], double world[3])
@@ -54,8 +55,8 @@ static double depth(const ted4_camera *c, const double world[3])
     return c->R[6] * world[0] + c->R[7] * world[1] + c->R[8] * world[2] + c->t[2];
 }
 
-/* Pictures may agree about a point by chance, where colours are much the same: the same ray at the
- * depth of another point tells how often. */
+/* Do pictures agree about points more often than by chance? Where colours are similar, they may
+ * agree at a wrong depth: how often is measured on the same ray, at the depth of another point. */
 static int agree(const ted4_sweep *w, uint32_t seed)
 {
     const ted4_dataset *d = w->shown->data;
