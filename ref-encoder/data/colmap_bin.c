@@ -1,5 +1,5 @@
-/* colmap_bin.c - COLMAP's binary model files, little-endian and packed. See colmap_file.h.
- * Format notes: each file is a u64 count, then the records
+/* colmap_bin.c - reads COLMAP's binary model files, which are little-endian and packed. See
+ * colmap_file.h. Each file is a u64 count followed by its records:
  *   camera   u32 id, i32 model, u64 width, u64 height, f64 parameters
  *   image    u32 id, f64 q[4] t[3], u32 camera, name ending in 0, u64 n, n x (f64 x, f64 y, u64
  *            point)
@@ -13,7 +13,7 @@
 #include <string.h>
 #include "data/data_util.h"
 
-/* Smallest size of a record: what a count is checked against. */
+/* Smallest sizes of the records, against which counts are checked. */
 enum {
     CAMERA_MIN = 24 + 3 * 8,
     IMAGE_MIN = 64 + 1 + 8,
@@ -22,7 +22,8 @@ enum {
     TRACK = 8
 };
 
-/* After the first read past the end every read gives 0 and overrun stays set. */
+/* Position in a file. From the first read past the end on, every read gives 0 and overrun stays
+ * set. */
 typedef struct {
     const char *path;
     uint8_t *bytes; /* owned */
@@ -69,7 +70,7 @@ static double real(reader *r)
     return d;
 }
 
-/* Opens the file and reads the count, at most what the file has room for. */
+/* Opens the file and reads the count, which is refused if the file is too short for it. */
 static int start(reader *r, const char *path, const char *what, size_t record_min, size_t *count,
                  ted4_message *m)
 {
@@ -88,7 +89,7 @@ static int start(reader *r, const char *path, const char *what, size_t record_mi
     return -1;
 }
 
-/* The verdict of a file whose records gave result. */
+/* Completes a file whose records gave result: refuses bytes after the last record. */
 static int finish(reader *r, int result, ted4_message *m)
 {
     if (result == 0 && r->at != r->size)
@@ -139,7 +140,7 @@ int ted4_colmap_bin_cameras(ted4_colmap *c, const char *path, ted4_message *m)
     return finish(&r, result, m);
 }
 
-/* A name with its closing zero. NULL: the file ends before. */
+/* Returns a name with its terminating zero, or NULL if the file ends before it. */
 static const char *read_name(reader *r)
 {
     const uint8_t *begin = r->bytes + r->at;

@@ -1,4 +1,5 @@
-/* colmap_file.c - a COLMAP model, of which each file may be binary or text. See colmap_file.h.
+/* colmap_file.c - reads a COLMAP model, of which each file may be binary or text. See
+ * colmap_file.h.
  * SPDX-License-Identifier: BSD-2-Clause */
 #include "data/colmap_file.h"
 
@@ -9,7 +10,7 @@
 
 typedef int part_reader(ted4_colmap *c, const char *path, ted4_message *m);
 
-/* folder/name.bin, else folder/name.txt. 1: neither exists. */
+/* Reads folder/name.bin, or if there is none, folder/name.txt. Returns 1 if neither exists. */
 static int read_part(ted4_colmap *c, const char *folder, const char *name, part_reader *bin,
                      part_reader *txt, ted4_message *m)
 {
@@ -36,7 +37,7 @@ static int by_name(const void *a, const void *b)
     const ted4_colmap_image *x = a, *y = b;
     int order = strcmp(x->name, y->name);
 
-    /* A file may name a picture twice. */
+    /* A file may name a picture twice; such entries need a fixed order too. */
     if (order == 0)
         order = (x->camera > y->camera) - (x->camera < y->camera);
     for (int k = 0; order == 0 && k < 3; k++)

@@ -1,5 +1,5 @@
-/* colmap_model.c - what COLMAP's binary and text models share: camera models, poses, arrays that
- * grow. See colmap_file.h.
+/* colmap_model.c - what COLMAP's binary and text models share: camera models, poses and growing
+ * arrays. See colmap_file.h.
  * SPDX-License-Identifier: BSD-2-Clause */
 #include <math.h>
 #include <stdlib.h>
@@ -10,7 +10,8 @@
 
 enum { SIMPLE_PINHOLE, PINHOLE, SIMPLE_RADIAL, RADIAL, OPENCV, N_SUPPORTED };
 
-/* COLMAP's numbers are the positions in this table. Those after OPENCV are known by name only. */
+/* COLMAP's model numbers are the indices of this table. Models after OPENCV are known by name
+ * only. */
 static const struct {
     const char *name;
     size_t n_parameters;
@@ -60,7 +61,7 @@ int ted4_colmap_set_camera(ted4_colmap_camera *c, int model, uint64_t width, uin
                            const double *p, const char *where, ted4_message *m)
 {
     ted4_lens *l = &c->lens;
-    const int two = model == PINHOLE || model == OPENCV; /* focal lengths */
+    const int two = model == PINHOLE || model == OPENCV; /* two focal lengths */
 
     if (width < 1 || height < 1 || width > TED4_IMAGE_MAX_SIDE || height > TED4_IMAGE_MAX_SIDE)
         return ted4_say(m, "%s: picture size %llux%llu, expected 1 to %d a side", where,
@@ -108,7 +109,7 @@ int ted4_colmap_set_pose(ted4_colmap_image *i, const double qt[7], const char *w
 int ted4_colmap_reserve(void **array, size_t n, size_t record_size)
 {
     if (n != 0 && (n & (n - 1)) != 0)
-        return 0; /* full only at powers of two */
+        return 0; /* the array is full only at powers of two */
     void *p = n > SIZE_MAX / 2 / record_size ? NULL
                                              : realloc(*array, (n == 0 ? 1 : 2 * n) * record_size);
     if (p == NULL)

@@ -1,5 +1,5 @@
-/* colmap_txt.c - COLMAP's text model files. See colmap_file.h.
- * Format notes: lines that begin with # are comments; values are separated by spaces
+/* colmap_txt.c - reads COLMAP's text model files. See colmap_file.h. Lines that begin with # are
+ * comments, and values are separated by spaces:
  *   camera   id model width height parameters
  *   image    id qw qx qy qz tx ty tz camera name, then one line, maybe empty, of observations
  *   point    id x y z r g b error track
@@ -14,10 +14,10 @@
 
 typedef struct {
     const char *path;
-    char *text; /* owned; cut into lines as they are read */
+    char *text; /* owned; divided into lines as it is read */
     char *next; /* NULL at the end */
     size_t line;
-    char where[600]; /* "path:line" of the line last read */
+    char where[600]; /* "path:line" of the line read last */
 } text_reader;
 
 static int start(text_reader *r, const char *path, ted4_message *m)
@@ -33,7 +33,7 @@ static int start(text_reader *r, const char *path, ted4_message *m)
     return 0;
 }
 
-/* The next line as it is, without its end; NULL at the end of the file. */
+/* Returns the next line without its line end, or NULL at the end of the file. */
 static char *any_line(text_reader *r)
 {
     char *line = r->next;
@@ -50,7 +50,7 @@ static char *any_line(text_reader *r)
     return line;
 }
 
-/* The next line that says something. */
+/* Returns the next line that is neither empty nor a comment, or NULL at the end of the file. */
 static char *record_line(text_reader *r)
 {
     char *line;
@@ -63,7 +63,7 @@ static char *record_line(text_reader *r)
     return line;
 }
 
-/* Reads n numbers and moves *at past them. -1: fewer are there. */
+/* Reads n numbers and moves *at past them. Returns -1 if there are fewer. */
 static int numbers(char **at, double *v, size_t n)
 {
     for (size_t i = 0; i < n; i++) {
@@ -76,7 +76,7 @@ static int numbers(char **at, double *v, size_t n)
     return 0;
 }
 
-/* The rest of the line, without spaces at its ends. */
+/* Returns the rest of the line without spaces at its ends. */
 static char *rest(char *at)
 {
     at += strspn(at, " \t");
@@ -189,7 +189,7 @@ static int read_point(text_reader *r, char *line, float *xyz, uint8_t *rgb, ted4
     return 0;
 }
 
-/* Number of lines, comments included: enough capacity for the points. */
+/* Returns the number of lines, comments included, which is enough capacity for the points. */
 static size_t count_lines(const char *text)
 {
     size_t n = 1;

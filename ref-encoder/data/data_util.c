@@ -116,7 +116,7 @@ static double det3(const double A[9])
            A[2] * (A[3] * A[7] - A[4] * A[6]);
 }
 
-/* C = matrix of cofactors: A^-T = C / det A. */
+/* C is the matrix of cofactors, so that A^-T = C / det A. */
 static void cofactors(const double A[9], double C[9])
 {
     for (int i = 0; i < 3; i++)
@@ -145,8 +145,8 @@ const char *ted4_rotation_clean(double R[9])
         }
     if (det3(R) < 0)
         return "is a mirror image, expected a rotation";
-    /* Newton's iteration to the nearest rotation, R <- (R + R^-T) / 2, squares the error: 1e-3,
-     * 1e-6, 1e-12, rounding. */
+    /* Newton's iteration to the nearest rotation, R <- (R + R^-T) / 2, squares the error in each
+     * step: 1e-3, 1e-6, 1e-12, rounding. */
     for (int k = 0; k < 4; k++) {
         const double d = det3(R);
         cofactors(R, C);

@@ -1,9 +1,10 @@
-/* load_calibration.c - layout "calibration": cams.json with fixed cameras after OpenCV's model, and
- * one clip each (clip.h). A camera: name, video (a file or a folder of pictures; without it see
- * clip.h), w, h, K (3x3), dist (k1 k2 p1 p2, k3 if it is there), w2c (world to camera 4x4; right,
- * down, forward), start (seconds) or frame: when its clip begins. At the top: frames (how many each
- * clip must have at least, and how many are read), fps. Cameras without a clip are left out. Held
- * out: times by TED4_HOLD_OUT_*, of all cameras.
+/* load_calibration.c - loads the layout "calibration": cams.json describes fixed cameras by
+ * OpenCV's model, with one clip each (clip.h). A camera has name, video (a file or a folder of
+ * pictures; clip.h says what happens without it), w, h, K (3x3), dist (k1 k2 p1 p2 and optionally
+ * k3), w2c (world to camera, 4x4; right, down, forward), and start (seconds) or frame, which say
+ * when its clip begins. At the top are frames (the number of frames that are read, and that each
+ * clip must have at least) and fps. Cameras without a clip are left out. TED4_HOLD_OUT_* selects
+ * the times that are held out, for all cameras.
  * SPDX-License-Identifier: BSD-2-Clause */
 #include "data/raw_scene.h"
 
@@ -16,22 +17,23 @@
 #include "data/data_util.h"
 #include "data/json_field.h"
 
-/* OpenCV has the centre of the first pixel at 0, this program at 0.5. */
+/* OpenCV puts the centre of the first pixel at 0, this program at 0.5. */
 static const double CENTRE_SHIFT = 0.5;
 
-/* Starts are rounded to frames; up to BETWEEN of one this is not worth a word. */
+/* Starts are rounded to frames. There is no warning if this moves them by at most BETWEEN
+ * frames. */
 static const double BETWEEN = 0.1, MOST_OFFSET = 1e6;
 
 typedef struct {
     ted4_raw_scene *scene;
     const char *folder;
-    char *path;               /* of cams.json; owned */
+    char *path;               /* path of cams.json; owned */
     json_t *root;             /* owned */
-    size_t stated;            /* frames of each clip; 0: not stated */
-    size_t shortest, longest; /* of clips, in frames; 0: none yet */
-    int started;              /* is a start given? */
-    size_t n_between;         /* cameras that start between two frames */
-    double farthest;          /* of these, part of a frame */
+    size_t stated;            /* frames of each clip; 0 if not stated */
+    size_t shortest, longest; /* shortest and longest clip, in frames; 0: none yet */
+    int started;              /* does any camera state when its clip begins? */
+    size_t n_between;         /* cameras whose clips start between two frames */
+    double farthest;          /* largest such offset from a frame, in frames */
     ted4_message *m;
 } calibration;
 
@@ -97,8 +99,8 @@ static int read_pose(const calibration *c, const json_t *o, const char *where, t
     return wrong == NULL ? 0 : ted4_say(c->m, "%s.w2c: its 3x3 part %s", where, wrong);
 }
 
-/* The time of the clip's first picture on the clock that all cameras share, in frames: "start" in
- * seconds, or "frame". */
+/* Reads the time of the clip's first picture in frames, on the common clock of all cameras: "start"
+ * in seconds, or "frame". */
 static int read_start(calibration *c, const json_t *o, const char *where, double *time)
 {
     double start = 0, frame = 0;
@@ -127,7 +129,7 @@ static int read_start(calibration *c, const json_t *o, const char *where, double
     return 0;
 }
 
-/* A clip that is stated to be longer than it is may have been cut. */
+/* Refuses clips shorter than stated, which may have been truncated. */
 static int check_count(calibration *c, const char *where, size_t n)
 {
     c->shortest = c->shortest == 0 || n < c->shortest ? n : c->shortest;
@@ -200,7 +202,7 @@ static int read_frames(calibration *c)
     return 0;
 }
 
-/* Of all cameras, counted from the first time that any has. */
+/* Holds out times of all cameras, counted from the earliest time of any camera. */
 static void hold_out_times(ted4_raw_scene *s)
 {
     double first = s->n_shots > 0 ? s->shots[0].time : 0;

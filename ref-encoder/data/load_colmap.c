@@ -1,8 +1,8 @@
-/* load_colmap.c - layout "colmap": images/ and a sparse model in sparse/0 or sparse. Time: the
- * last number in a file's name orders it; each distinct number is one frame. Split: raw_scene.h.
- * Physical camera: COLMAP's camera and the folder below images/ (one folder a camera is COLMAP's
- * own custom).
- * Where images/ is not there, a copy reduced by N in images_N/ will do, as PNG or JPEG.
+/* load_colmap.c - loads the layout "colmap": images/ and a sparse model in sparse/0 or sparse.
+ * Time: the last number in a file's name orders the pictures, and each distinct number is one
+ * frame. Split: see raw_scene.h. Physical camera: COLMAP's camera together with the folder below
+ * images/, because COLMAP itself customarily has one folder per camera. If there is no images/, a
+ * copy reduced by N in images_N/ is used, as PNG or JPEG.
  * SPDX-License-Identifier: BSD-2-Clause */
 #include "data/raw_scene.h"
 
@@ -14,8 +14,8 @@
 #include "data/data_util.h"
 #include "data/picture_path.h"
 
-/* folder/sparse/0 or folder/sparse, whichever holds cameras.*; NULL: neither. Owned by the caller.
- */
+/* Returns folder/sparse/0 or folder/sparse, whichever holds cameras.*, or NULL if neither does.
+ * Owned by the caller. */
 static char *find_model(const char *folder)
 {
     static const char *const places[] = { "sparse/0", "sparse" };
@@ -49,7 +49,8 @@ static const char *base_name(const char *name)
     return slash == NULL ? name : slash + 1;
 }
 
-/* Last run of digits in the base name without its extension. -1: none, -2: too long. */
+/* Returns the last run of digits in the base name without its extension, -1 if there is none, or -2
+ * if it is too long. */
 static double name_number(const char *name)
 {
     const char *base = base_name(name), *dot = strrchr(base, '.');
@@ -99,7 +100,7 @@ static int add_image(ted4_raw_scene *s, const ted4_colmap *c, const ted4_colmap_
                         (unsigned)image->camera);
     ted4_shot *shot;
     char *path = ted4_path_join(images, image->name), *other = NULL;
-    /* Copies may be of another kind than what they were made of. */
+    /* Reduced copies may be in another file format than their originals. */
     if (s->reduced > 1 && path != NULL && !ted4_is_file(path) &&
         ted4_picture_find(images, image->name, NULL, &other) == 1) {
         free(path);
@@ -125,8 +126,8 @@ static int by_number(const void *a, const void *b)
     return (x > y) - (x < y);
 }
 
-/* Numbers in names only order the frames: replaces each by its rank. Names without any: frame 0
- * when no name has one. */
+/* Replaces each number by its rank, because numbers in names only order the frames. If no name has
+ * a number, all pictures are frame 0; names with and without numbers cannot be mixed. */
 static int rank_numbers(ted4_raw_scene *s, ted4_message *m)
 {
     double *v = malloc((s->n_shots + 1) * sizeof *v);
@@ -160,8 +161,9 @@ static int add_images(ted4_raw_scene *s, ted4_colmap *c, const char *images, ted
     return rank_numbers(s, m);
 }
 
-/* images/, or where it was not kept its reduced copy images_N, the wanted or the least reduced one;
- * owned by the caller. NULL with *m filled. */
+/* Returns images/, or if it does not exist, a reduced copy images_N: the one with the requested
+ * reduction, else the least reduced. Owned by the caller. Returns NULL with *m filled on
+ * failure. */
 static char *find_images(ted4_raw_scene *s, const char *folder, size_t n, ted4_message *m)
 {
     const int sizes[] = { 1, s->wanted->downscale, 2, 4, 8, 16 };

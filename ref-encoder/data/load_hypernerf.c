@@ -1,7 +1,8 @@
-/* load_hypernerf.c - layout "hypernerf" (Nerfies): dataset.json names the pictures and the split,
- * metadata.json gives times, camera/ID.json one camera a picture, rgb/Nx/ID.png the pictures
- * reduced by N. Everything but rgb is in units of the unreduced picture. scene.json (centre, scale,
- * near, far) concerns other programs' normalised space and is not read.
+/* load_hypernerf.c - loads the layout "hypernerf" (Nerfies): dataset.json names the pictures and
+ * the split, metadata.json gives the times, camera/ID.json holds one camera per picture, and
+ * rgb/Nx/ID.png are the pictures reduced by N. Everything but rgb is in units of the full-size
+ * picture. scene.json (centre, scale, near, far) describes the normalised space of other programs
+ * and is not read.
  * SPDX-License-Identifier: BSD-2-Clause */
 #include "data/raw_scene.h"
 
@@ -14,8 +15,8 @@
 #include "data/npy_file.h"
 #include "data/picture_path.h"
 
-/* Where dataset.json lists no val_ids: of its ids every 4th is for training, the second after it
- * is held out, the others are left out. */
+/* If dataset.json lists no val_ids, every 4th of its ids is for training, the second id after each
+ * of these is held out, and the others are left out. */
 enum { SPLIT_EVERY = 4, SPLIT_TEST = 2 };
 
 typedef struct {
@@ -38,7 +39,7 @@ int ted4_is_hypernerf(const char *folder)
     return found;
 }
 
-/* rgb/Nx for N = the wanted reduction, else the smallest N there is. */
+/* Finds rgb/Nx for the requested reduction N, else for the smallest N that exists. */
 static int find_pictures(hypernerf *h)
 {
     const int sizes[] = { h->scene->wanted->downscale, 1, 2, 4, 8, 16 };
@@ -58,7 +59,7 @@ static int find_pictures(hypernerf *h)
     return ted4_say(h->m, "%s/rgb: none of the folders 1x, 2x, 4x, 8x, 16x here", h->folder);
 }
 
-/* A list of n numbers that must be there. */
+/* Reads a required list of n numbers. */
 static int need(const json_t *o, const char *path, const char *name, double *v, size_t n,
                 ted4_message *m)
 {
@@ -100,7 +101,8 @@ static int read_lens(const json_t *o, const char *path, ted4_lens *l, ted4_messa
     return 0;
 }
 
-/* orientation: world to camera, rows right, down, forward; position: the camera's centre. */
+/* orientation is world to camera, with rows right, down, forward; position is the camera's
+ * centre. */
 static int read_pose(const json_t *o, const char *path, ted4_shot *shot, ted4_message *m)
 {
     double c[3];
@@ -134,7 +136,8 @@ static int read_camera(hypernerf *h, const char *id, ted4_shot *shot)
     return result;
 }
 
-/* Time: warp_id, or what else the entry calls it. Physical camera: camera_id, where it is given. */
+/* Reads the time, which is warp_id or one of its other names, and the physical camera, which is
+ * camera_id if given. */
 static int read_metadata(hypernerf *h, const char *id, ted4_shot *shot)
 {
     static const char *const names[] = { "warp_id", "time_id", "time" };
@@ -178,7 +181,7 @@ static int add_picture(hypernerf *h, const char *id, int is_test)
     return read_camera(h, id, shot) != 0 || read_metadata(h, id, shot) != 0 ? -1 : 0;
 }
 
-/* The list of that name, empty when absent; every item must be a string. */
+/* Reads the list of that name, whose items must be strings. *list is NULL if there is none. */
 static int read_list(hypernerf *h, const char *name, const json_t **list)
 {
     *list = json_object_get(h->dataset, name);
@@ -190,7 +193,7 @@ static int read_list(hypernerf *h, const char *name, const json_t **list)
     return 0;
 }
 
-/* seen: names listed before, an object used as a set. */
+/* Adds the pictures of a list. seen: names listed before, an object used as a set. */
 static int add_list(hypernerf *h, const json_t *list, int is_test, json_t *seen)
 {
     for (size_t i = 0; i < json_array_size(list); i++) {
@@ -234,7 +237,8 @@ static int add_pictures(hypernerf *h)
     return result;
 }
 
-/* A PLY when there is one: it has colours, and moving parts, which points.npy lacks. */
+/* Reads the point cloud. A PLY is preferred, because it has colours and moving parts, which
+ * points.npy lacks. */
 static int read_cloud(hypernerf *h)
 {
     ted4_point_cloud *c = &h->scene->cloud;

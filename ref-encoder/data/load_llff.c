@@ -1,6 +1,6 @@
-/* load_llff.c - layout "LLFF": poses_bounds.npy (poses_bounds.h) and stills in images/ or, reduced
- * by N, in images_N/, one a row in the order of names. Every eighth is held out, from the first on,
- * as results on these scenes have it. One time.
+/* load_llff.c - loads the layout "LLFF": poses_bounds.npy (poses_bounds.h), and stills in images/
+ * or, reduced by N, in images_N/, one per row in the order of names. Every eighth picture is held
+ * out, beginning with the first, as in published results on these scenes. There is one time.
  * SPDX-License-Identifier: BSD-2-Clause */
 #include "data/raw_scene.h"
 
@@ -10,14 +10,14 @@
 #include "data/clip.h"
 #include "data/poses_bounds.h"
 
-/* A COLMAP scene may hold such a table, too, and says more. */
+/* A COLMAP scene may also hold such a table, but its model is more complete and is preferred. */
 int ted4_is_llff(const char *folder)
 {
     return ted4_is_poses_bounds(folder) && !ted4_is_colmap(folder);
 }
 
-/* Pictures of images_N of the wanted reduction N where there are as many as rows, else of images,
- * else of the least reduced. */
+/* Finds the pictures in images_N for the requested reduction N if these are as many as rows, else
+ * in images, else in the least reduced images_N. */
 static int find_pictures(ted4_raw_scene *s, const char *folder, size_t rows,
                          ted4_name_list *pictures, ted4_message *m)
 {

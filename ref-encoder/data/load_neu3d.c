@@ -1,7 +1,8 @@
-/* load_neu3d.c - layout "neu3d" (Neural 3D Video, also DyNeRF): poses_bounds.npy and one clip a
- * camera (clip.h). Row i of the table belongs to clip i in the order of names; where rows are more
- * than clips, and the clips' numbers end with the last row's, clip camNN has row NN. The first
- * camera is held out. Times: frame over frame.
+/* load_neu3d.c - loads the layout "neu3d" (Neural 3D Video, also called DyNeRF): poses_bounds.npy
+ * and one clip per camera (clip.h). Row i of the table belongs to clip i in the order of names; but
+ * if there are more rows than clips, and the last clip has the number of the last row, row NN
+ * belongs to clip camNN. The first camera is held out. Frames with the same number have the same
+ * time.
  * SPDX-License-Identifier: BSD-2-Clause */
 #include "data/raw_scene.h"
 
@@ -12,21 +13,21 @@
 #include "data/clip.h"
 #include "data/poses_bounds.h"
 
-enum { MOST_FRAMES = 300 }; /* the frames that results on these scenes refer to */
+enum { MOST_FRAMES = 300 }; /* the frames used in published results on these scenes */
 
-static const double VIDEO_RATE = 30; /* frames a second, of every scene of the set */
+static const double VIDEO_RATE = 30; /* frames per second of every scene of the data set */
 
 typedef struct {
     ted4_raw_scene *scene;
     const char *folder;
     ted4_poses_bounds table;
-    size_t shortest, longest; /* of clips, in frames */
+    size_t shortest, longest; /* shortest and longest clip, in frames */
     ted4_name_list clips;
-    int numbered; /* are rows those of the clips' numbers? */
+    int numbered; /* are rows matched by the numbers of the clips? */
     ted4_message *m;
 } neu3d;
 
-/* A COLMAP scene, or stills, may hold such a table too; the clips decide. */
+/* A COLMAP scene or one of stills may also hold such a table; clips tell them apart. */
 int ted4_is_neu3d(const char *folder)
 {
     ted4_name_list clips = { NULL, 0 };
@@ -37,7 +38,7 @@ int ted4_is_neu3d(const char *folder)
     return found;
 }
 
-/* NN of camNN; SIZE_MAX: not such a name. */
+/* Returns NN of a name camNN, or SIZE_MAX for any other name. */
 static size_t clip_number(const char *name)
 {
     const char *digits = name + strlen("cam");
@@ -75,7 +76,7 @@ static int add_clip(neu3d *n, size_t i)
     return result;
 }
 
-/* Sorts out which rows belong to which clips; rows that have none are entries without a picture. */
+/* Matches rows to clips. Rows without a clip count as entries without a picture. */
 static int match_rows(neu3d *n)
 {
     const size_t rows = n->table.rows, clips = n->clips.n;
@@ -85,7 +86,7 @@ static int match_rows(neu3d *n)
     n->scene->n_entries = rows;
     if (clips == rows)
         return 0;
-    /* Sorted names of one width have growing numbers; any other is no match. */
+    /* Sorted names of equal length have increasing numbers. Anything else does not match. */
     n->numbered = clips < rows && clip_number(n->clips.names[clips - 1]) == rows - 1;
     for (size_t i = 1; i < clips && n->numbered; i++)
         n->numbered = clip_number(n->clips.names[i - 1]) < clip_number(n->clips.names[i]);

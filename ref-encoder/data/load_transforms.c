@@ -1,11 +1,11 @@
-/* load_transforms.c - layouts "blender" (transforms_train.json and transforms_test.json), "D-NeRF"
- * (the same with times) and "nerfstudio" (the same pair, or one transforms.json, with fields of its
- * own). transforms_val.json stands in where there is no transforms_test.json. A file that is alone
- * is split by its lists train_filenames and test_filenames, or val_filenames, else by
- * TED4_HOLD_OUT_*. Frames without a picture are left out. The lens: transforms_lens.c.
- * transform_matrix is camera-to-world with axes right, up, backward; the world stays as it is,
- * except that applied_transform, which nerfstudio has put before poses and point cloud alike, is
- * taken off both again.
+/* load_transforms.c - loads the layouts "blender" (transforms_train.json and transforms_test.json),
+ * "D-NeRF" (the same with times) and "nerfstudio" (the same pair, or a single transforms.json, with
+ * additional fields). transforms_val.json is used if there is no transforms_test.json. A single
+ * file is split by its lists train_filenames and test_filenames or val_filenames, else by
+ * TED4_HOLD_OUT_*. Frames without a picture are left out. Lenses are read in transforms_lens.c.
+ * transform_matrix is camera-to-world with axes right, up, backward. The world stays as it is,
+ * except that applied_transform, which nerfstudio has applied to both poses and point cloud, is
+ * undone in both.
  * SPDX-License-Identifier: BSD-2-Clause */
 #include "data/transforms.h"
 
@@ -43,7 +43,7 @@ int ted4_is_transforms(const char *folder)
            has_file(folder, file_test) || has_file(folder, file_val);
 }
 
-/* x = applied^-1 y for a similarity: A^-1 = A^T / s^2. */
+/* Computes x = applied^-1 y for a similarity: A^-1 = A^T / s^2. */
 static void undo_applied(const ted4_transforms *t, const double y[3], double x[3])
 {
     const double *A = t->applied, s2 = t->applied_scale * t->applied_scale;
@@ -53,8 +53,8 @@ static void undo_applied(const ted4_transforms *t, const double y[3], double x[3
         x[j] = (A[j] * d[0] + A[4 + j] * d[1] + A[8 + j] * d[2]) / s2;
 }
 
-/* M = camera-to-world, columns right, up, backward, centre. World to camera: R = rows right,
- * down, forward; t = -R c. */
+/* M is camera-to-world with columns right, up, backward and centre. World to camera is R with rows
+ * right, down and forward, and t = -R c. */
 static int read_pose(ted4_transforms *t, ted4_shot *shot)
 {
     static const double sign[3] = { 1, -1, -1 };
@@ -67,7 +67,7 @@ static int read_pose(ted4_transforms *t, ted4_shot *shot)
                    : ted4_say(t->m, "%s.transform_matrix: missing, expected 4x4 numbers", t->where);
     for (int i = 0; i < 3; i++)
         for (int j = 0; j < 3; j++) {
-            /* Entry j of applied^-1 times column i. */
+            /* v is entry j of applied^-1 times column i. */
             double v = 0;
             for (int k = 0; k < 3; k++)
                 v += t->applied[4 * k + j] * M[4 * k + i];
@@ -83,7 +83,8 @@ static int read_pose(ted4_transforms *t, ted4_shot *shot)
     return 0;
 }
 
-/* 1 with *path owned by the caller; 0: counted as missing; -1 with *m filled. */
+/* Returns 1 with *path owned by the caller, 0 if the picture is missing (which is counted), or -1
+ * with *m filled. */
 static int find_picture(ted4_transforms *t, char **path)
 {
     const char *name = NULL;
@@ -99,7 +100,8 @@ static int find_picture(ted4_transforms *t, char **path)
     return found < 0 ? ted4_say_no_memory(t->m) : found;
 }
 
-/* "camera" may be a name or a number; absent: NULL, told apart by pose. */
+/* "camera" may be a name or a number. Without it, the label is NULL and cameras are distinguished
+ * by pose. */
 static int read_camera_label(ted4_transforms *t, ted4_shot *shot)
 {
     const json_t *field = json_object_get(t->frame, "camera");
@@ -115,7 +117,7 @@ static int read_camera_label(ted4_transforms *t, ted4_shot *shot)
     return shot->camera == NULL ? ted4_say_no_memory(t->m) : 0;
 }
 
-/* Frame i of the list. */
+/* Reads frame i of the list. */
 static int read_frame(ted4_transforms *t, size_t i)
 {
     char *path = NULL;
@@ -135,7 +137,7 @@ static int read_frame(ted4_transforms *t, size_t i)
     return 0;
 }
 
-/* All frames with a time, or none; in both files of a pair. */
+/* Either all frames have a time or none has; both files of a pair must agree. */
 static int read_times(ted4_transforms *t, int is_first)
 {
     const json_t *frames = json_object_get(t->root, "frames");
@@ -188,7 +190,8 @@ static int read_applied(ted4_transforms *t)
     return 0;
 }
 
-/* The cloud that the file names, else one of the usual names; moved back as the poses are. */
+/* Reads the point cloud that the file names, else one of the usual names, and undoes
+ * applied_transform as for poses. */
 static int read_cloud(ted4_transforms *t)
 {
     ted4_point_cloud *c = &t->scene->cloud;
@@ -240,8 +243,8 @@ static int read_frames(ted4_transforms *t)
     return read_times(t, is_first);
 }
 
-/* nerfstudio's lists of file_paths for training, and to hold out: the first of these that is there.
- */
+/* nerfstudio's lists of file_paths, for training and held out. The first of lists_test that exists
+ * is used. */
 static const char list_train[] = "train_filenames";
 static const char *const lists_test[] = { "test_filenames", "val_filenames" };
 
@@ -252,8 +255,8 @@ static const char *plain_name(const char *name)
     return name;
 }
 
-/* Index of the frame of that file_path, n when there is none; looks from start on, for lists are
- * mostly in the order of the frames. */
+/* Returns the index of the frame of that file_path, or n if there is none. The search begins at
+ * start, because lists are mostly in the order of the frames. */
 static size_t find_frame(const json_t *frames, size_t start, const char *name)
 {
     const size_t n = json_array_size(frames);
@@ -270,7 +273,7 @@ static size_t find_frame(const json_t *frames, size_t start, const char *name)
 
 enum { UNNAMED, TRAIN, TEST };
 
-/* use[i] = what for the frames that a list names. */
+/* Sets use[i] = what for the frames that a list names. */
 static int read_list(ted4_transforms *t, const char *name, int what, uint8_t *use)
 {
     const json_t *list = json_object_get(t->root, name),
@@ -295,7 +298,7 @@ static int read_list(ted4_transforms *t, const char *name, int what, uint8_t *us
     return 0;
 }
 
-/* Frames that neither list names are left out. */
+/* Splits the frames by the lists. Frames that neither list names are left out. */
 static int split_by_lists(ted4_transforms *t, const char *test)
 {
     ted4_raw_scene *s = t->scene;
@@ -331,7 +334,7 @@ static int by_path(const void *a, const void *b)
     const ted4_shot *x = a, *y = b;
     int order = strcmp(x->path, y->path);
 
-    /* A file may be listed twice. */
+    /* A file may be listed twice; such entries need a fixed order too. */
     if (order == 0)
         order = (x->time > y->time) - (x->time < y->time);
     for (int k = 0; order == 0 && k < 3; k++)
@@ -341,7 +344,7 @@ static int by_path(const void *a, const void *b)
     return order;
 }
 
-/* The split of a file that holds all frames. */
+/* Splits a file that holds all frames. */
 static int split(ted4_transforms *t)
 {
     const char *test = NULL;
@@ -365,8 +368,9 @@ static int has_focal(const json_t *root)
            ted4_transforms_has_focal(json_array_get(json_object_get(root, "frames"), 0));
 }
 
-/* A pair of files is what Blender scenes are made of, and with times D-NeRF's; nerfstudio writes
- * them, too, and says more in them. One file with focal lengths in pixels is nerfstudio's. */
+/* Blender scenes consist of a pair of files, and D-NeRF scenes of such a pair with times.
+ * nerfstudio also writes pairs, but with additional fields; a single file with focal lengths in
+ * pixels is nerfstudio's, too. */
 static const char *name_layout(const ted4_transforms *t)
 {
     static const char *const foreign[] = { "camera_model",         "applied_transform",
@@ -380,7 +384,7 @@ static const char *name_layout(const ted4_transforms *t)
     return nerfstudio ? "nerfstudio" : t->scene->timed ? "D-NeRF" : "blender";
 }
 
-/* Reads one file, of which all frames are for training or all are held out, or which has both. */
+/* What a file holds: only training frames, only held-out frames, or both. */
 enum { ALL_TRAIN, ALL_TEST, BOTH };
 
 static int read_root(ted4_transforms *t, int holds)
