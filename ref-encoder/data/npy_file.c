@@ -1,5 +1,6 @@
-/* npy_file.c - see npy_file.h. The file: "\x93NUMPY", version (2 bytes), length of the header (2
- * bytes, 4 from version 2), the header, which is a Python dictionary as text, the numbers.
+/* npy_file.c - see npy_file.h. A file consists of "\x93NUMPY", the version (2 bytes), the length of
+ * the header (2 bytes, or 4 from version 2 on), the header, which is a Python dictionary as text,
+ * and the numbers.
  * SPDX-License-Identifier: BSD-2-Clause */
 #include "data/npy_file.h"
 
@@ -13,7 +14,7 @@
 
 typedef struct {
     char text[512];             /* the header */
-    size_t rows, columns, item; /* item: bytes of a number */
+    size_t rows, columns, item; /* item: size of a number in bytes */
     const uint8_t *data;        /* borrowed */
     size_t size;
 } table;
@@ -62,7 +63,7 @@ static int read_header(table *t, const char *path, const uint8_t *p, size_t size
     return 0;
 }
 
-/* Number i of the table, whatever the byte order of this machine. */
+/* Returns number i of the table, whatever the byte order of this machine. */
 static double number(const table *t, size_t i)
 {
     uint64_t bits = 0;

@@ -11,7 +11,7 @@ static const char *const extensions[] = { ".png", ".jpg", ".jpeg", ".PNG", ".JPG
 
 enum { N_EXTENSIONS = sizeof extensions / sizeof extensions[0], LONGEST = 5 };
 
-/* Length of the picture's extension that a name ends with; 0: none. */
+/* Returns the length of the picture extension at the end of a name, or 0 if there is none. */
 static size_t extension(const char *name)
 {
     const size_t n = strlen(name);
@@ -29,7 +29,8 @@ int ted4_picture_is_named(const char *name)
     return extension(name) > 0;
 }
 
-/* The first size bytes of base with one of the extensions, in path, which has room for it. */
+/* Tries the first size bytes of base with each of the extensions. path must have room for the
+ * result. Returns 1 if such a file exists, else 0. */
 static int with_extension(char *path, const char *base, size_t size)
 {
     for (int i = 0; i < N_EXTENSIONS; i++) {
@@ -40,7 +41,7 @@ static int with_extension(char *path, const char *base, size_t size)
     return 0;
 }
 
-/* As ted4_picture_find, of folder/name alone. */
+/* Tries folder/name with the extensions of ted4_picture_find, and returns as it does. */
 static int try_name(const char *folder, const char *name, char **found)
 {
     char *base = ted4_path_join(folder, name);

@@ -1,7 +1,7 @@
-/* ply_file.c - reads the vertices of a PLY point cloud; see ted4_ply_read in point_cloud.h.
- * Format notes: a text header of lines "format F 1.0", "element NAME COUNT", "property TYPE
- * NAME", closed by "end_header"; then the elements in that order, one vertex a line (ascii) or
- * packed without padding (binary).
+/* ply_file.c - reads the vertices of a PLY point cloud; see ted4_ply_read in point_cloud.h. A file
+ * begins with a text header of lines "format F 1.0", "element NAME COUNT" and "property TYPE NAME",
+ * which ends with "end_header". The elements follow in that order, with one vertex per line (ascii)
+ * or packed without padding (binary).
  * SPDX-License-Identifier: BSD-2-Clause */
 #include "data/point_cloud.h"
 
@@ -31,7 +31,7 @@ static const char *const wanted[N_WANTED] = { "x", "y", "z", "red", "green", "bl
 typedef struct {
     const char *path;
     const uint8_t *bytes;
-    size_t size, at; /* at: next byte to read */
+    size_t size, at; /* at: offset of the next byte to read */
     size_t line;
     int binary;
     int in_vertex, elements;
@@ -39,10 +39,11 @@ typedef struct {
     ply_type type[MAX_PROPERTIES];
     size_t offset[MAX_PROPERTIES];
     size_t n_properties, stride;
-    int index[N_WANTED]; /* property number, -1: absent */
+    int index[N_WANTED]; /* number of the property, or -1 if absent */
 } ply;
 
-/* The next header line without its end, cut to the buffer. 0 at the end of the file. */
+/* Reads the next header line without its line end, truncated to the buffer. Returns 1, or 0 at the
+ * end of the file. */
 static int next_line(ply *p, char *text, size_t capacity)
 {
     size_t n = 0;
@@ -87,7 +88,8 @@ static int read_property(ply *p, const char *type_name, const char *name, ted4_m
     return 0;
 }
 
-/* One header line after the first. 1: end_header. */
+/* Reads one header line after the first. Returns 1 if it is end_header, 0 for other lines, or -1
+ * with *m filled. */
 static int read_header_line(ply *p, const char *line, ted4_message *m)
 {
     char a[64], b[64];
@@ -128,7 +130,7 @@ static int read_header(ply *p, ted4_message *m)
         return -1;
     if (p->index[X] < 0 || p->index[Y] < 0 || p->index[Z] < 0)
         return ted4_say(m, "%s: PLY without vertex properties x, y, z", p->path);
-    /* In a text every value takes a digit and a separator. */
+    /* In a text file, every value takes at least a digit and a separator. */
     const size_t least = p->binary ? p->stride : 2 * p->n_properties;
     if (p->count > (p->size - p->at + 1) / least)
         return ted4_say(m, "%s: %llu vertices announced, but only %zu bytes follow the header",
@@ -162,8 +164,8 @@ static double binary_value(const uint8_t *b, ply_type type)
     }
 }
 
-/* The wanted properties of the next vertex; absent ones keep what they hold. -1: the file ended
- * or is not a number. */
+/* Reads the wanted properties of the next vertex; absent ones leave value unchanged. Returns -1 if
+ * the file ends or something is not a number. */
 static int read_vertex(ply *p, double value[N_WANTED])
 {
     double all[MAX_PROPERTIES];
@@ -178,7 +180,7 @@ static int read_vertex(ply *p, double value[N_WANTED])
         for (size_t i = 0; i < p->n_properties; i++) {
             const char *start = (const char *)p->bytes + p->at;
             char *end;
-            all[i] = strtod(start, &end); /* the text ends in a zero byte */
+            all[i] = strtod(start, &end); /* the text ends with a zero byte */
             if (end == start)
                 return -1;
             p->at += (size_t)(end - start);
@@ -195,8 +197,8 @@ static uint8_t colour_byte(double v)
     return (uint8_t)(v > 0 ? (v < 255 ? v + 0.5 : 255) : 0);
 }
 
-/* Factor to 0..255. Float colours have no stated range: 0..1 unless one exceeds 1. Reads ahead
- * and comes back. */
+/* Returns the factor that brings colours to 0..255. Float colours have no stated range: it is taken
+ * as 0..1 unless a value exceeds 1. Reads all vertices in advance and restores the position. */
 static double colour_scale(ply *p)
 {
     const size_t start = p->at;

@@ -1,6 +1,7 @@
-/* transforms_lens.c - the lens of a frame of a transforms file: fl_x, fl_y, cx, cy; or K, a 3x3
- * matrix (or fx fy cx cy) of several names; or camera_angle_x. A frame's own fields go before those
- * at the top of the file. k1 k2 k3 p1 p2 are OpenCV's. Pixel centres are at + 0.5, in K too.
+/* transforms_lens.c - reads the lens of a frame of a transforms file from fl_x, fl_y, cx, cy; or K,
+ * a 3x3 matrix (or fx fy cx cy) that may have several names; or camera_angle_x. A frame's own
+ * fields take precedence over those at the top of the file. k1 k2 k3 p1 p2 are OpenCV's. Pixel
+ * centres are at + 0.5, also in K.
  * SPDX-License-Identifier: BSD-2-Clause */
 #include "data/transforms.h"
 
@@ -22,7 +23,7 @@ int ted4_transforms_has_focal(const json_t *object)
     return found;
 }
 
-/* A number of the frame, else of the file. As ted4_json_number. */
+/* Reads a number of the frame, else of the file. Returns as ted4_json_number. */
 static int number(ted4_transforms *t, const char *name, double *v)
 {
     const int found = ted4_json_number(t->frame, t->where, name, v, t->m);
@@ -58,7 +59,7 @@ static int check_model(ted4_transforms *t)
     return 0;
 }
 
-/* Size that the intrinsics refer to: w, h, or the file's own. */
+/* Reads the size that the intrinsics refer to: w and h, or the size of the picture if absent. */
 static int read_size(ted4_transforms *t, ted4_lens *l)
 {
     double w = l->width, h = l->height;
@@ -75,7 +76,7 @@ static int read_size(ted4_transforms *t, ted4_lens *l)
     return 0;
 }
 
-/* fx s cx, 0 fy cy, 0 0 1, or fx fy cx cy. As ted4_json_number. */
+/* Reads a matrix fx s cx, 0 fy cy, 0 0 1, or a list fx fy cx cy. Returns as ted4_json_number. */
 static int read_matrix(ted4_transforms *t, const json_t *o, const char *where, ted4_lens *l)
 {
     double K[9];
@@ -96,7 +97,7 @@ static int read_matrix(ted4_transforms *t, const json_t *o, const char *where, t
     return 1;
 }
 
-/* As ted4_json_number. */
+/* Reads camera_angle_x. Returns as ted4_json_number. */
 static int read_angle(ted4_transforms *t, const json_t *o, const char *where, ted4_lens *l)
 {
     double angle = 0;
@@ -111,13 +112,13 @@ static int read_angle(ted4_transforms *t, const json_t *o, const char *where, te
     return found;
 }
 
-/* What one level, the frame or the top of the file, says of the focal length, and with a matrix of
- * the centre. As ted4_json_number. */
+/* Reads the focal length, and the centre if a matrix gives it, from one level, which is the frame
+ * or the top of the file. Returns as ted4_json_number. */
 static int read_focal(ted4_transforms *t, const json_t *o, const char *where, ted4_lens *l)
 {
     int found = ted4_json_number(o, where, "fl_x", &l->fx, t->m);
 
-    /* fl_y at the top may be common to frames that have fl_x each. */
+    /* fl_y at the top may be common to frames that each have their own fl_x. */
     if (found > 0 && json_object_get(t->root, "fl_y") == NULL)
         l->fy = l->fx;
     if (found == 0)
@@ -127,7 +128,7 @@ static int read_focal(ted4_transforms *t, const json_t *o, const char *where, te
     return found;
 }
 
-/* Fields of one level that say one number each. */
+/* Reads the fields of one level that are single numbers. */
 static int read_numbers(ted4_transforms *t, const json_t *o, const char *where, ted4_lens *l)
 {
     const struct {

@@ -10,14 +10,15 @@ int ted4_lens_is_pinhole(const ted4_lens *l)
     return l->k1 == 0 && l->k2 == 0 && l->p1 == 0 && l->p2 == 0 && l->k3 == 0 && l->skew == 0;
 }
 
-/* d/dr (r + k1 r^3 + k2 r^5 + k3 r^7) at s = r^2. */
+/* Returns d/dr (r + k1 r^3 + k2 r^5 + k3 r^7) at s = r^2. */
 static double slope(const ted4_lens *l, double s)
 {
     return 1 + s * (3 * l->k1 + s * (5 * l->k2 + s * 7 * l->k3));
 }
 
-/* First zero of the slope when k3 is not 0: between 0, its extrema (roots of 3 k1 + 10 k2 s +
- * 21 k3 s^2) and FAR it is monotone, so the first such piece that ends below zero holds it. */
+/* Returns the first zero of the slope if k3 is not 0. The slope is monotone between 0, its extrema
+ * (the roots of 3 k1 + 10 k2 s + 21 k3 s^2) and FAR, so the zero lies in the first of these pieces
+ * that ends below zero. */
 static double cubic_fold(const ted4_lens *l)
 {
     const double FAR = 1e6, disc = 25 * l->k2 * l->k2 - 63 * l->k1 * l->k3;
@@ -43,25 +44,26 @@ static double cubic_fold(const ted4_lens *l)
     return INFINITY;
 }
 
-/* Squared radius where the slope first reaches zero; infinite if never. */
+/* Returns the squared radius at which the slope first reaches zero, or infinity if it never
+ * does. */
 static double fold_radius2(const ted4_lens *l)
 {
     if (l->k3 != 0)
         return cubic_fold(l);
-    /* 1 + 3 k1 s + 5 k2 s^2 = 0. */
+    /* Solves 1 + 3 k1 s + 5 k2 s^2 = 0. */
     const double a = 5 * l->k2, b = 3 * l->k1, disc = b * b - 4 * a;
 
     if (disc < 0)
         return INFINITY;
-    /* Roots as 2 / (-b +- sqrt(disc)): valid for a = 0 too. The larger denominator gives the
-     * smaller positive root. */
+    /* The roots are 2 / (-b +- sqrt(disc)), which is valid for a = 0, too. The larger denominator
+     * gives the smaller positive root. */
     const double q = -b + sqrt(disc);
     return q > 0 ? 2 / q : INFINITY;
 }
 
-/* Position in the distorted picture, in pixels, of the ray that a pinhole of the same fx fy cx cy
- * without skew sees at (x, y). Beyond the radius where the radial polynomial stops growing (where
- * it would fold back) it is the position on that radius. */
+/* Gives the position in the distorted picture, in pixels, of the ray that a pinhole camera with the
+ * same fx fy cx cy and without skew sees at (x, y). Beyond the radius at which the radial
+ * polynomial stops growing (and would fold back), the position on that radius is used. */
 static void distort(const ted4_lens *l, double fold2, double x, double y, double *dx, double *dy)
 {
     double u = (x - l->cx) / l->fx, v = (y - l->cy) / l->fy;
@@ -85,7 +87,7 @@ static double clamp(double x, double high)
     return x > 0 ? (x < high ? x : high) : 0;
 }
 
-/* (x, y): sample position in units of samples, sample 0 at 0. */
+/* Interpolates at (x, y), in units of samples, with sample 0 at 0. */
 static void sample(const uint8_t *in, int width, int height, double x, double y, uint8_t out[3])
 {
     x = clamp(x, width - 1);

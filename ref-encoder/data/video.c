@@ -1,6 +1,6 @@
-/* video.c - see video.h. Frames are unpacked into a folder with a name of its own, which gets its
- * final name when it is complete: whoever finds the final name finds every frame, and programs that
- * unpack one video at a time do not disturb one another.
+/* video.c - see video.h. Frames are unpacked into a folder with a unique name, which gets its final
+ * name when it is complete. So a folder with the final name always holds every frame, and programs
+ * that unpack the same video at the same time do not disturb one another.
  * SPDX-License-Identifier: BSD-2-Clause */
 #include "data/video.h"
 
@@ -18,19 +18,20 @@
 #include "data/data_util.h"
 #include "data/raw_scene.h"
 
-#define COUNT   "count"     /* number of frames, in the folder when it is complete */
+#define COUNT   "count"     /* file with the number of frames, in a complete folder */
 #define NO_EXEC 127         /* exit status of a child that could not start ffmpeg */
-#define TAIL    2000        /* bytes kept of what ffmpeg says */
-enum { TELL_EVERY = 1000 }; /* milliseconds */
+#define TAIL    2000        /* size of the kept end of ffmpeg's messages, in bytes */
+enum { TELL_EVERY = 1000 }; /* interval of progress reports, in milliseconds */
 
-/* Even time stamps, so that no frame is doubled or dropped; then RGB with a conversion that is the
- * same on every machine; without the colour tags that make a PNG reader convert once more. */
+/* The filters make time stamps even, so that no frame is duplicated or dropped; convert to RGB,
+ * identically on every machine; and remove the colour tags that would make a PNG reader convert
+ * again. */
 #define FILTERS                                                                                    \
     "settb=AVTB,setpts=N*40000,scale=flags=bitexact+accurate_rnd+full_chroma_int+full_chroma_inp," \
     "format=rgb24,setparams=color_primaries=unknown:color_trc=unknown"
-#define RATE "25" /* 1 / 40000 us */
+#define RATE "25" /* 1 / 40000 us, as in setpts */
 
-/* Removes a folder of files. */
+/* Removes a folder that holds only files. */
 static void remove_folder(const char *folder)
 {
     DIR *d = opendir(folder);
@@ -46,8 +47,9 @@ static void remove_folder(const char *folder)
     rmdir(folder);
 }
 
-/* The folder of all unpacked videos, made if need be. Another user's is refused: what lies in it
- * becomes pictures. */
+/* Returns the folder of all unpacked videos, which is created if necessary. A folder of another
+ * user is refused, because its files would be used as pictures. Owned by the caller. Returns NULL
+ * with *m filled on failure. */
 static char *cache_folder(ted4_message *m)
 {
     const char *cache = getenv("XDG_CACHE_HOME"), *temporary = getenv("TMPDIR");
@@ -81,7 +83,7 @@ static char *cache_folder(ted4_message *m)
     return NULL;
 }
 
-/* cache/NAME-KEY; path: the video's, absolute. */
+/* Returns cache/NAME-KEY. path: absolute path of the video. */
 static char *final_folder(const char *cache, const char *path, const struct stat *s, size_t most)
 {
     const char *base = strrchr(path, '/');
@@ -95,7 +97,7 @@ static char *final_folder(const char *cache, const char *path, const struct stat
     return ted4_path_join(cache, name);
 }
 
-/* Pictures in a folder, from 1 on without a gap. */
+/* Counts the pictures in a folder, from 1 on without a gap. */
 static size_t count_frames(const char *folder)
 {
     char name[32];
@@ -112,7 +114,8 @@ static size_t count_frames(const char *folder)
     return n;
 }
 
-/* Is it there with every frame it was made with? Cleaners of old files may have been at it. */
+/* Does the folder hold every frame that was unpacked? Programs that clean up old files may have
+ * removed some. */
 static int is_complete(const char *folder)
 {
     char *path = ted4_path_join(folder, COUNT);
@@ -138,7 +141,7 @@ static int write_count(const char *folder, size_t n)
     return fine ? 0 : -1;
 }
 
-/* The child's side: works in the folder, says errors to messages, and never returns. */
+/* Runs in the child process: works in the folder, writes errors to messages, and never returns. */
 static void become_ffmpeg(const char *input, const char *limit, const char *folder, int messages)
 {
     const int none = chdir(folder) == 0 ? open("/dev/null", O_RDWR) : -1;
@@ -151,14 +154,14 @@ static void become_ffmpeg(const char *input, const char *limit, const char *fold
     _exit(NO_EXEC);
 }
 
-/* Who hears of a video that is being unpacked, and where its frames come to lie. */
+/* The receiver of progress reports about a video, and the folder of its frames. */
 typedef struct {
     const ted4_dataset_options *o;
     const char *video, *folder;
 } audience;
 
-/* Waits until there is something to read, or nothing more will come; meanwhile the audience hears
- * of frames. */
+/* Waits until there is something to read or the end is reached, and meanwhile reports the number of
+ * frames. */
 static void await(int from, const audience *a)
 {
     struct pollfd wanted = { .fd = from, .events = POLLIN };
@@ -169,7 +172,7 @@ static void await(int from, const audience *a)
         a->o->unpacking(a->o->user, a->video, count_frames(a->folder));
 }
 
-/* Reads to the end; keeps what came last, as text. */
+/* Reads messages to the end and keeps the last ones in tail, as a string. */
 static void read_messages(int from, const audience *a, char tail[TAIL])
 {
     size_t n = 0;
@@ -188,8 +191,8 @@ static void read_messages(int from, const audience *a, char tail[TAIL])
     tail[n] = 0;
 }
 
-/* Runs ffmpeg in the audience's folder; gives its exit status, or -1, and what it said at the end.
- * Its messages come through a pipe, for a full disk would swallow a file. */
+/* Runs ffmpeg in the audience's folder. Returns its exit status, or -1, and gives the end of its
+ * messages. They come through a pipe, because a file could not be written on a full disk. */
 static int run_ffmpeg(const audience *a, size_t most, char tail[TAIL])
 {
     char input[4200], limit[24];
@@ -212,8 +215,8 @@ static int run_ffmpeg(const audience *a, size_t most, char tail[TAIL])
     return child > 0 && WIFEXITED(status) ? WEXITSTATUS(status) : -1;
 }
 
-/* Last line of what was said, with ": " before it, or nothing. Other bytes than text are left out.
- */
+/* Gives the last line of the messages, preceded by ": ", or an empty string if there are none.
+ * Bytes that are not text are omitted. */
 static void last_words(char tail[TAIL], char words[200])
 {
     size_t end = strlen(tail), start, n = 0;
@@ -251,7 +254,7 @@ static int fill(const audience *a, size_t most, ted4_message *m)
     return write_count(folder, n) == 0 ? 0 : ted4_say(m, "%s: %s", folder, strerror(errno));
 }
 
-/* Unpacks into a new folder beside the final one and renames it. */
+/* Unpacks into a new folder beside the final one, and renames it. */
 static int unpack(const char *video, size_t most, const char *final, const ted4_dataset_options *o,
                   ted4_message *m)
 {
@@ -269,14 +272,15 @@ static int unpack(const char *video, size_t most, const char *final, const ted4_
     int result = fill(&(audience) { o, video, folder }, most, m);
     if (result == 0 && rename(folder, final) != 0 && !is_complete(final))
         result = ted4_say(m, "%s: %s", final, strerror(errno));
-    /* Gone when renamed; left when this failed or another program was first. */
+    /* The folder does not exist any more if it was renamed. It does if this failed or another
+     * program was first. */
     remove_folder(folder);
     free(folder);
     return result;
 }
 
-/* A file of text is no video, but ffmpeg would follow it where it lists other files. 0, or -1 with
- * *m filled. */
+/* Refuses text files, which are not videos: ffmpeg would open other files that they list. Returns
+ * 0, or -1 with *m filled. */
 static int check_kind(const char *video, ted4_message *m)
 {
     uint8_t head[512];
@@ -294,7 +298,7 @@ static int check_kind(const char *video, ted4_message *m)
                             n == 0 ? "empty" : "text (a playlist?)");
 }
 
-/* Independent of the folder that the program, or ffmpeg, works in. Owned by the caller. */
+/* Returns an absolute path, since ffmpeg works in another folder. Owned by the caller. */
 static char *absolute(const char *path)
 {
     char here[4096];

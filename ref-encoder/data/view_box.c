@@ -1,4 +1,4 @@
-/* view_box.c - where the cameras of a scene look; see source.h.
+/* view_box.c - finds where the cameras of a scene look; see source.h.
  * SPDX-License-Identifier: BSD-2-Clause */
 #include "data/source.h"
 
@@ -15,7 +15,7 @@ typedef struct {
     double centre[3], forward[3], spread;
 } mean_camera;
 
-/* Pictures for training, which lie before those held out: where these look is not asked. */
+/* Counts the pictures for training, which precede the held-out ones; only they are used here. */
 static size_t n_train(const ted4_dataset *d)
 {
     size_t n = 0;
@@ -54,8 +54,8 @@ static mean_camera average(const ted4_dataset *d, size_t n_pictures)
     return a;
 }
 
-/* Least squares: sum of (I - f f^T) x = sum of (I - f f^T) c over axes c + s f. -1: the axes do
- * not determine x. */
+/* Gives the least-squares solution of sum of (I - f f^T) x = sum of (I - f f^T) c over the axes c +
+ * s f. Returns 0, or -1 if the axes do not determine x. */
 static int crossing(const ted4_dataset *d, size_t n, double x[3])
 {
     double A[9] = { 0 }, b[3] = { 0, 0, 0 }, c[3];
@@ -71,8 +71,8 @@ static int crossing(const ted4_dataset *d, size_t n, double x[3])
                 b[r] += v * c[s];
             }
     }
-    /* det A = product of three eigenvalues whose sum is 2; the smallest is the mean squared sine
-     * of the axes to their mean. */
+    /* det A is the product of three eigenvalues whose sum is 2. The smallest is the mean squared
+     * sine of the angles between the axes and their mean. */
     const double det = A[0] * (A[4] * A[8] - A[5] * A[7]) - A[1] * (A[3] * A[8] - A[5] * A[6]) +
                        A[2] * (A[3] * A[7] - A[4] * A[6]);
     if (det < PARALLEL)
