@@ -8,15 +8,17 @@
 
 #include "train/model/normalise.h"
 
-/* Smallest angle between two cameras as seen from the middle of the scene, in radians. A camera
- * nearer to the middle than this is taken to be so far from it. */
+/* Cameras are distinct if they are at least APART radians apart, as seen from the middle of the
+ * scene. A camera that is nearer to the middle than NEAREST is treated as if it were at that
+ * distance. */
 #define APART   0.05f
 #define NEAREST 0.25f
-/* What moves goes on moving meanwhile: frames on either side at most, and of so many frames one. */
+/* Limits of the reach, because moving parts move on during the neighbouring frames: at most
+ * MOST_REACH frames on either side, and at most one in OF_FRAMES of all frames. */
 enum { MOST_REACH = 4, OF_FRAMES = 8 };
-/* This share of the frames that have a picture need enough cameras around them. */
+/* This share of the frames that have a picture must have enough cameras around them. */
 #define MOST_FRAMES 0.75
-/* Cameras of a window that are told apart; more are not needed. */
+/* A window is searched for this many distinct cameras; more are not needed. */
 enum { WANTED = TED4_CAMERAS_NEEDED + 1 };
 
 int ted4_cameras_apart(const float a[3], const float b[3])
@@ -31,8 +33,8 @@ int ted4_cameras_apart(const float a[3], const float b[3])
     return square >= APART * APART * far;
 }
 
-/* Pictures for training of each frame, by frame: item[first[f]] to item[first[f + 1] - 1], and
- * the centres of their cameras. */
+/* The training pictures, sorted by frame: frame f has item[first[f]] to item[first[f + 1] - 1].
+ * centre holds the centres of their cameras. */
 typedef struct {
     uint32_t *first, *item; /* owned */
     float *centre;          /* owned: [n_pictures][3] */
@@ -46,7 +48,7 @@ static void free_frames(frames *f)
     free(f->centre);
 }
 
-/* 0, or -1: no memory. */
+/* Returns 0, or -1 if memory ran out. */
 static int list_frames(frames *f, const ted4_trainer *t)
 {
     const ted4_dataset *d = t->data;
@@ -71,7 +73,8 @@ static int list_frames(frames *f, const ted4_trainer *t)
     return 0;
 }
 
-/* Cameras of pictures from one frame to another, at most WANTED, that are all apart. */
+/* Returns the number of distinct cameras of the pictures from one frame to another, at most
+ * WANTED. */
 static int cameras(const frames *f, uint32_t from, uint32_t to)
 {
     const float *found[WANTED];
@@ -89,7 +92,7 @@ static int cameras(const frames *f, uint32_t from, uint32_t to)
     return n;
 }
 
-/* Do most frames have enough cameras so far around them? */
+/* Returns whether most frames have enough cameras within this reach. */
 static int is_enough(const frames *f, uint32_t reach)
 {
     uint32_t shown = 0, enough = 0;

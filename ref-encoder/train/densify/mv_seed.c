@@ -1,4 +1,5 @@
-/* mv_seed.c - see mv_seed.h: which places become anchors, and what the anchors begin with.
+/* mv_seed.c - decides which places become anchors, and sets the first values of those anchors
+ * (mv_seed.h).
  * SPDX-License-Identifier: BSD-2-Clause */
 #include "mv_seed.h"
 
@@ -19,12 +20,12 @@ int ted4_mv_seed_reach(const ted4_trainer *t)
     return t->layout.first[TED4_TAU] < 0 || t->data->n_frames < 2 ? -1 : ted4_alternating_reach(t);
 }
 
-/* What anchors look like now (ted4_anchor_appearance). */
+/* The current appearance of the anchors (ted4_anchor_appearance). */
 typedef struct {
     float *rgb, *opacity; /* owned: [n][3], [n] */
 } appearance;
 
-/* 0, or -1 with t->message. */
+/* Returns 0, or -1 with t->message filled. */
 static int measure_appearance(ted4_trainer *t, appearance *l)
 {
     l->rgb = malloc(3 * t->anchors.n * sizeof *l->rgb);
@@ -34,10 +35,10 @@ static int measure_appearance(ted4_trainer *t, appearance *l)
     return ted4_anchor_appearance(t, l->opacity, l->rgb);
 }
 
-/* Anchors less opaque than this lend no features. */
+/* An anchor with less opacity than this is not chosen as a source of features. */
 #define OPAQUE 0.5f
 
-/* Among the first n anchors: the one whose colour comes nearest, and the one that lies nearest. */
+/* Finds, among the first n anchors, the one with the most similar colour and the nearest one. */
 static void find_parents(const ted4_trainer *t, const appearance *l, size_t n, const ted4_place *p,
                          size_t *alike, size_t *near)
 {
@@ -65,7 +66,8 @@ static void find_parents(const ted4_trainer *t, const appearance *l, size_t n, c
     }
 }
 
-/* Its features are those of an anchor of its colour, its motion that of what is near. */
+/* Adds an anchor at a place. It takes its features from the anchor with the most similar colour,
+ * and its motion from the nearest anchor. */
 static int add(ted4_trainer *t, const appearance *l, size_t n_old, const ted4_place *p,
                const ted4_span *span)
 {
@@ -94,8 +96,8 @@ static int add(ted4_trainer *t, const appearance *l, size_t n_old, const ted4_pl
     return 0;
 }
 
-/* Marks the voxel of a place at the frames of its span; 0: it was marked at its own frame already.
- */
+/* Marks the voxel of a place in the frames of its span. Returns 0 if it was already marked in its
+ * own frame, else 1. */
 static int mark(ted4_voxel_set *taken, const ted4_place *p, const ted4_span *span)
 {
     const double voxel = ted4_math_exp2(ceil(ted4_math_log2((double)p->size)));
@@ -131,8 +133,8 @@ static int plant(ted4_trainer *t, const ted4_places *list, const ted4_photo_vote
     return bad ? -1 : 0;
 }
 
-/* The list in the order of score, most at most, and its points and colours by themselves. 0, or -1:
- * no memory. */
+/* Sorts the list by score and shortens it to at most most places. Copies their points and colours
+ * to arrays. Returns 0, or -1 if memory ran out. */
 static int arrange(ted4_places *list, size_t most, float **point, uint8_t **colour)
 {
     if (list->n > 0)

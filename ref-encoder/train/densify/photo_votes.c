@@ -10,12 +10,14 @@
 #include "train/model/normalise.h"
 #include "train/state/picture.h"
 
-/* Share of the cameras that must agree, and how far from the best a time may be to count. */
+/* MUST_AGREE: the share of the cameras that must agree. NEAR_BEST: a frame counts if its agreement
+ * is at least this share of the best frame's. */
 #define MUST_AGREE    0.5f
 #define NEAR_BEST     0.7f
-/* What comes and goes is there at no more than half of the times that are known. Or it is clearly
- * gone, for all but a few of the cameras, at a quarter of them: where other cameras look each time,
- * the share of those that a thing is hidden from varies, too. */
+/* A point comes and goes if it is present in no more than LONGEST_SHARE of the frames that are
+ * known, or if in at least GONE_SHARE of them it is clearly gone: agreement is then below
+ * CLEARLY_GONE of the best. The second test is needed where different cameras see each frame,
+ * because the share of cameras from which the point is hidden then varies, too. */
 #define LONGEST_SHARE 0.5f
 #define CLEARLY_GONE  0.25f
 #define GONE_SHARE    0.25f
@@ -27,7 +29,7 @@ typedef struct {
     uint32_t frame;
 } match_job;
 
-/* Points of one job. */
+/* Number of points per job. */
 enum { RUN = 4096 };
 
 static void match_run(void *arg, size_t run)
@@ -73,8 +75,8 @@ static int match_pictures(ted4_photo_votes *s, ted4_trainer *t)
     return 0;
 }
 
-/* count[n_frames][n]: each becomes the sum over so many frames before and after its own. column:
- * room for n_frames. */
+/* count[n_frames][n]: each element becomes the sum over the reach frames before and after its own.
+ * column: room for n_frames elements. */
 static void widen(uint16_t *count, size_t n, uint32_t n_frames, uint32_t reach, uint16_t *column)
 {
     for (size_t i = 0; i < n; i++) {
@@ -92,7 +94,7 @@ static void widen(uint16_t *count, size_t n, uint32_t n_frames, uint32_t reach, 
     }
 }
 
-/* 0, or -1: no memory. */
+/* Returns 0, or -1 if memory ran out. */
 static int widen_counts(ted4_photo_votes *s, uint32_t reach)
 {
     uint16_t *column = reach > 0 ? malloc(s->n_frames * sizeof *column) : NULL;
@@ -133,8 +135,8 @@ void ted4_photo_votes_free(ted4_photo_votes *s)
     memset(s, 0, sizeof *s);
 }
 
-/* Do enough cameras look at point i at that time to tell whether it is there? Not where pictures
- * are held out. */
+/* Returns whether enough cameras see point i in this frame to tell if it is present. They do not
+ * where pictures are held out. */
 static int is_known(const ted4_photo_votes *s, uint32_t frame, size_t i)
 {
     return s->seen[frame * s->n + i] >= TED4_CAMERAS_NEEDED;
@@ -147,9 +149,9 @@ static float agreement(const ted4_photo_votes *s, uint32_t frame, size_t i)
     return is_known(s, frame, i) ? (float)s->hits[at] / (float)s->seen[at] : 0.0f;
 }
 
-/* The last frame of the run that point i is there for, from a frame on in steps of +1 or -1, and in
- * *gone how far behind it the next known time is. A time that nobody knows belongs to the run when
- * the known times on both sides do, or when there is none on the far side. */
+/* Returns the last frame of the run in which point i is present, from a frame on in steps of +1 or
+ * -1. *gone: the distance from there to the next known frame. An unknown frame belongs to the run
+ * if the known frames on both sides do, or if there is none on the far side. */
 static uint32_t run_end(const ted4_photo_votes *s, size_t i, uint32_t frame, int step, float enough,
                         uint32_t *gone)
 {
@@ -204,9 +206,9 @@ int ted4_photo_votes_span(const ted4_photo_votes *s, size_t i, uint32_t frame, t
     return 1;
 }
 
-/* In distances to the next known time: how far beyond its first and last frame a span goes, so that
- * coding it a little off costs nothing, and how fast it fades then: at that time exp(-4.6) is left.
- */
+/* In units of the distance to the next known frame: a span extends beyond its first and last frame
+ * by SPAN_BEYOND, so that small coding errors do no harm, and then fades over SPAN_FADES, so that
+ * exp(-4.6) is left at the known frame. */
 #define SPAN_BEYOND 0.25f
 #define SPAN_FADES  0.35f
 

@@ -9,7 +9,7 @@
 #include "photo_votes.h"
 #include "train/model/normalise.h"
 
-/* Place of each anchor, and colour of the initial point nearest to it. */
+/* Writes the position of each anchor, and the colour of the initial point nearest to it. */
 static void describe(const ted4_trainer *t, const float *points, float *place, uint8_t *colour)
 {
     for (size_t i = 0; i < t->anchors.n; i++) {

@@ -1,4 +1,5 @@
-/* adam.c - see adam.h.
+/* adam.c - bias correction and decay of the learning rate, and the call of the step in the version
+ * for the instruction set in use (adam.h).
  * SPDX-License-Identifier: BSD-2-Clause */
 #include "adam.h"
 

@@ -1,18 +1,19 @@
-/* prune_units.c - see prune_units.h. With P the inverse of the moments of the units that are left,
- * and w the weights of a reader: without unit j the best weights are w - P_j w_j / P_jj, and the
- * mean square of what is missed grows by w_j^2 / P_jj.
+/* prune_units.c - optimal brain surgeon (prune_units.h). Let P be the inverse of the moments of
+ * the remaining units, and w the weights of a reader. Without unit j the best weights are w - P_j
+ * w_j / P_jj, and the mean square error of the reader's output grows by w_j^2 / P_jj.
  * SPDX-License-Identifier: BSD-2-Clause */
 #include "prune_units.h"
 
 #include <stdlib.h>
 #include <string.h>
 
-/* Share of the mean square of all units that is added to each: units that never move, or move
- * together, leave P finite. */
+/* This share of the mean square of all units is added to the moment of each unit. It keeps P
+ * finite where units are constant or move together. */
 #define RIDGE 1e-6
 
-/* Weights over the units and the constant: of readers, then of the units themselves, which show
- * what each is replaced by. */
+/* The elimination's state. A row of weights has one weight per unit and one for the constant. The
+ * first n_readers rows are the readers; the others are the units themselves, and show by what each
+ * unit is replaced. */
 typedef struct {
     size_t side; /* n + 1 */
     size_t n_readers, n_rows;
@@ -68,7 +69,7 @@ static int begin(elimination *e, const ted4_units *u)
     return 0;
 }
 
-/* What readers miss without unit j. */
+/* Returns by how much the mean square error, summed over the readers, grows without unit j. */
 static double missed(const elimination *e, size_t j)
 {
     double sum = 0;

@@ -12,10 +12,11 @@ static size_t row_floats(const ted4_anchors *a, int k)
     return (size_t)a->rows[k] * TED4_LANES;
 }
 
-/* Not cleared: blocks are when they come into use, and most of the memory never does. */
+/* The memory is not cleared here: a block is cleared when it comes into use, and most blocks never
+ * do. */
 static float *new_blocks(size_t floats)
 {
-    /* aligned_alloc wants a multiple of the alignment; a block row is 128 bytes. */
+    /* aligned_alloc requires a multiple of the alignment; a row of a block has 128 bytes. */
     return aligned_alloc(64, floats * sizeof(float));
 }
 

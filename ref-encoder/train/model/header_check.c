@@ -1,4 +1,5 @@
-/* header_check.c - see header_from_options.h: the elements of a header as a file would hold them.
+/* header_check.c - checks and compares headers by the elements that a file would hold
+ * (header_from_options.h).
  * SPDX-License-Identifier: BSD-2-Clause */
 #include "header_from_options.h"
 
@@ -9,11 +10,11 @@
 
 enum { MAX_ELEMENTS = 96 };
 
-/* In the order of a file. */
+/* The elements of a header, in the order of the file. */
 typedef struct {
     size_t n;
     int64_t value[MAX_ELEMENTS];
-    const char *last; /* static text: name of the last one that was walked */
+    const char *last; /* static text: name of the last element that was walked */
 } elements;
 
 static void note_element(void *user, size_t offset, const char *element, int64_t index,
@@ -28,8 +29,8 @@ static void note_element(void *user, size_t offset, const char *element, int64_t
         e->value[e->n++] = value;
 }
 
-/* 0, or -1: not a header of the format; the last element is the wrong one, for a walk tells none
- * after it. */
+/* Lists the elements of h. Returns 0, or -1 if the format does not allow this header; e->last then
+ * names the wrong element, because a walk traces nothing after an error. */
 static int walk(const ted4_header *h, elements *e)
 {
     ted4_header whole = *h;

@@ -9,11 +9,11 @@
 #include "data/frame_rate.h"
 #include "normalise.h"
 
-/* Frames a second of a scene that does not say. */
+/* Frames per second, for a scene that does not give its rate. */
 enum { UNKNOWN_RATE = 30 };
 
-/* The feature is cut in slices that grow like 1, 2, 3, ... (four of 50: 5, 10, 15, 20): early ones
- * are the context of all others. */
+/* Divides the feature into n slices whose sizes grow like 1, 2, 3, ... (50 channels in four
+ * slices: 5, 10, 15, 20), because the early slices are the context of all later ones. */
 static void make_slices(ted4_header *h, int n)
 {
     const int whole = n * (n + 1) / 2;
@@ -29,7 +29,8 @@ static void make_slices(ted4_header *h, int n)
     }
 }
 
-/* Of a bank: a row for every second frame. One alone is the same at all times. */
+/* Returns the number of rows of the bank: one per two frames, but at least two, because a single
+ * row is the same at all times. */
 static uint32_t rows_of(uint32_t frames)
 {
     const uint32_t half = (frames + 1) / 2;
@@ -45,7 +46,7 @@ static void make_header_time(ted4_header *h, const ted4_train_options *o, const 
     h->rate_num = UNKNOWN_RATE;
     h->rate_den = 1;
     if (d->rate != 0 && ted4_frame_rate(d->rate, &h->rate_num, &h->rate_den) != 0)
-        h->rate_num = h->rate_den = 0; /* no header: ted4_header_wrong says so */
+        h->rate_num = h->rate_den = 0; /* not valid: ted4_header_wrong reports it */
     h->activation = (uint8_t)(still ? 0 : o->activation);
     h->motion = (uint8_t)(still ? TED4_MOTION_NONE : o->motion);
     if (h->motion == TED4_MOTION_NONE)

@@ -12,7 +12,7 @@
 #include "train/math/random.h"
 #include "normalise.h"
 
-/* Mean distance from point i to its three nearest neighbours among n. */
+/* Returns the mean distance from point i to its three nearest neighbours among the n points. */
 static float neighbour_distance(const float *p, size_t n, size_t i)
 {
     float best[3] = { 1e30f, 1e30f, 1e30f };
@@ -41,7 +41,7 @@ static float neighbour_distance(const float *p, size_t n, size_t i)
     return found > 0 ? sum / (float)found : 0.05f;
 }
 
-/* Median neighbour distance of a sample of the points. */
+/* Returns the median neighbour distance of a sample of the points. */
 static double typical_distance(const float *p, size_t n)
 {
     enum { SAMPLE = 500 };
@@ -54,8 +54,8 @@ static double typical_distance(const float *p, size_t n)
     return m > 0 ? fmax((double)d[m / 2], 1e-4) : 0.01;
 }
 
-/* Points inside [-1, 1], one a voxel, at the voxel's multiple. Returns how many; out has room for
- * n. */
+/* Writes the points inside [-1, 1] to out, at most one per voxel, rounded to multiples of the
+ * voxel's edge. out has room for n points. Returns how many were written. */
 static size_t voxelise(const float *p, size_t n, double voxel, float *out, ted4_voxel_set *set)
 {
     size_t m = 0;
@@ -83,9 +83,9 @@ typedef struct {
     size_t n;
 } fill_job;
 
-/* Temporal features start as waves over space, so that neighbours are moved together and the
- * decoder can tell places apart from the first step: with equal features all anchors could only
- * move as one. Wavelengths from the whole scene to a sixteenth of it. */
+/* Temporal features begin as waves over space, so that neighbours move together and the decoder
+ * can distinguish places from the first step on: with equal features, all anchors could only move
+ * as one. The wavelengths range from the whole scene to a sixteenth of it. */
 #define PHI_AMPLITUDE 0.5f
 
 static void fill_phi(fill_job *f, size_t i)
@@ -171,7 +171,7 @@ static void init_layer(float *w, unsigned in, unsigned out, float gain, uint64_t
         w[(size_t)in * out + i] = range * (2.0f * ted4_uniform(key, (*counter)++) - 1.0f);
 }
 
-/* last: gain of the last layer; 0 leaves it zero. */
+/* last: gain of the last layer, or 0 to leave its weights at zero. */
 static void init_network(float *blob, const ted4_net_shape *s, float last, uint64_t key,
                          uint64_t *counter)
 {
@@ -189,9 +189,10 @@ static void negate(float *x, size_t n)
         x[i] = -x[i];
 }
 
-/* Turns those outputs of the opacity head around that are below zero where features begin, at zero:
- * such a Gaussian is not drawn, so it gets no gradient and stays dead in every anchor. It would be
- * half of them on average, but with one seed more than with another. */
+/* Negates those outputs of the opacity head that are negative for features of zero, where features
+ * begin. The Gaussian of a negative output is not drawn, gets no gradient and stays dead in every
+ * anchor. On average this would affect half of the outputs, and the number would depend on the
+ * seed. */
 static void wake(float *blob, const ted4_net_shape *s)
 {
     float x[TED4_MAX_WIDTH] = { 0 }, y[TED4_MAX_WIDTH];
@@ -236,7 +237,7 @@ void ted4_init_networks(float *net, const ted4_layout *l, uint32_t seed)
     }
 }
 
-/* Mean and spread of one component over all anchors. */
+/* Computes the mean and the standard deviation of one component over all anchors. */
 static void component_moments(const ted4_anchors *a, int channel, double *mean, double *spread)
 {
     double sum = 0, square = 0;
@@ -253,7 +254,8 @@ static void component_moments(const ted4_anchors *a, int channel, double *mean, 
     *spread = sqrt(fmax(square / n - *mean * *mean, 0.0));
 }
 
-/* Biases of the hyperprior's last layer; *weights: what stands before them, [outputs][*in]. */
+/* Returns the biases of the hyperprior's last layer. *weights: the weights of that layer,
+ * [outputs][*in]. */
 static float *last_biases(float *net, const ted4_layout *l, float **weights, unsigned *in)
 {
     const ted4_net_shape *s = &l->shape.hyper;
@@ -267,7 +269,8 @@ static float *last_biases(float *net, const ted4_layout *l, float **weights, uns
     return at + ted4_layer_weights(s, (unsigned)last);
 }
 
-/* Means and spreads of one type. */
+/* Sets the biases of one type so that the hyperprior predicts the mean and the spread of the
+ * anchors' values. */
 static void init_biases(float *bias, const ted4_layout *l, const ted4_anchors *a, int t)
 {
     const ted4_shape *s = &l->shape;

@@ -8,8 +8,9 @@
 
 #include "math/elementary.h"
 
-/* What would be at place k if the n numbers were sorted; they change places. Checkpoints ask for it
- * of all points: in a snapshot, sorting them would be most of the work. */
+/* Returns the element that would be at index k if the n numbers were sorted; it reorders them.
+ * Every checkpoint needs two such quantiles of all points, and in a snapshot sorting would take
+ * most of the time. */
 static float pick(float *x, size_t n, size_t k)
 {
     size_t low = 0, high = n - 1;
@@ -55,7 +56,7 @@ void ted4_normalise_scene(ted4_header *h, const ted4_dataset *d)
             value[i] = d->points[3 * i + (size_t)j];
         h->origin[j] = pick(value, n, n / 2);
         if (fabsf(h->origin[j]) < 1e-6f)
-            h->origin[j] = 0.0f; /* no subnormal, no -0 (R-CNV-001) */
+            h->origin[j] = 0.0f; /* avoids subnormal numbers and -0 (R-CNV-001) */
     }
     for (size_t i = 0; i < n; i++) {
         float far = 0;

@@ -1,4 +1,4 @@
-/* options.c - see options.h. One table drives everything.
+/* options.c - reads, checks and describes the training options (options.h), all from one table.
  * SPDX-License-Identifier: BSD-2-Clause */
 #include "options.h"
 

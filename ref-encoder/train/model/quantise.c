@@ -1,4 +1,4 @@
-/* quantise.c - the quantiser of model.h by the level in use.
+/* quantise.c - calls the quantiser of model.h in the version for the instruction set in use.
  * SPDX-License-Identifier: BSD-2-Clause */
 #include "model.h"
 

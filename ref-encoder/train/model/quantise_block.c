@@ -1,6 +1,6 @@
-/* quantise_block.c - quantisation of an attribute block for rendering and for the rate, by noise or
- * by rounding. spec 10.4. Every value becomes k q with k = x / q + n; the residual n is all that
- * noise and rounding decide, so both callers take it from here.
+/* quantise_block.c - quantises an attribute block for rendering and for the rate, by noise or by
+ * rounding (spec 10.4). Every value becomes k q with k = x / q + n. Noise and rounding differ only
+ * in the residual n, so that both callers take it from here.
  * SPDX-License-Identifier: BSD-2-Clause */
 #include <string.h>
 
@@ -12,8 +12,8 @@
 
 enum { TAU_START = 0, TAU_END = 2 }; /* components a_s and a_f of tau: spec 11.4 */
 
-/* Uniform in (-1/2, 1/2), mean exactly 0: a hash of (key, block, channel, lane), 32-bit arithmetic
- * within the row. */
+/* Fills a row with uniform noise in (-1/2, 1/2) whose mean is exactly 0. The noise is a hash of
+ * (key, block, channel, lane), in 32-bit arithmetic within the row. */
 static void noise_row(uint64_t key, uint32_t block, uint32_t channel, float *row)
 {
     const uint64_t seed = ted4_mix_short(ted4_mix_short(key + 0x9e3779b97f4a7c15u) +
@@ -31,8 +31,8 @@ static void noise_row(uint64_t key, uint32_t block, uint32_t channel, float *row
     }
 }
 
-/* The nearest integer, ties to even; the limits are integers, so that it does not matter which
- * comes first. */
+/* Returns the nearest integer, ties to even, clamped to the range of symbols. The limits are
+ * integers, so that clamping before rounding gives the same as clamping after it. */
 static inline float symbol(float scaled)
 {
     return ted4_lane_round(scaled > MAX_SYMBOL    ? MAX_SYMBOL
