@@ -1,8 +1,10 @@
-/* camera_colour_init.c - see camera_colour_init.h. In turn: each point's colour is, by channel, the
- * median over the cameras of what they see there with their maps undone; each camera's map is the
- * weighted least squares fit from those colours to what it sees. Where something stands between, a
- * camera sees another colour: weights are Tukey's biweight of the difference, whose width narrows
- * from round to round. In the end the points' own colours say what all cameras have in common.
+/* camera_colour_init.c - fits the initial colour maps by alternating two steps
+ * (camera_colour_init.h). The colour of each point is, channel by channel, the median over the
+ * cameras of what they see there with their maps undone. The map of each camera is the weighted
+ * least squares fit from those colours to what it sees. Where something occludes the point, a
+ * camera sees another colour; therefore the weights are Tukey's biweight of the difference, whose
+ * width narrows from round to round. At the end, the given colours of the points determine what
+ * all cameras have in common.
  * SPDX-License-Identifier: BSD-2-Clause */
 #include "camera_colour_init.h"
 
@@ -14,25 +16,27 @@
 #include "photo_votes.h"
 #include "train/model/normalise.h"
 
-/* Pictures of a camera that are looked at: what a point looks like to it is their median, by
- * channel. Odd. */
+/* At most so many pictures of a camera are used. What the camera sees at a point is their median,
+ * channel by channel. Odd. */
 enum { MOST_SAMPLES = 5 };
-/* Points times cameras, at most; more points are thinned out evenly. */
+/* Upper bound of points times cameras; more points are thinned out evenly. */
 enum { MOST = 4 << 20 };
-/* Rounds, and the widths at which a difference weighs nothing, of 255: tints of the size of the
- * first are still found; the last leaves noise of a few. */
+/* Number of rounds, and the differences, of 255, from which on the weight is 0 in the first and in
+ * the last round. Tints as large as the first are still found; the last leaves noise of a few
+ * levels. */
 enum { ROUNDS = 8 };
 #define WIDEST    56.0
 #define NARROWEST 14.0
-/* Sum of weights below which a camera keeps the identity. */
+/* If the sum of weights is smaller, a camera keeps its map. */
 #define FEWEST    100.0
-/* Where cameras differ by less than this, of 255, it may be the noise of the fit (measured: 0.2 to
- * 1 where no camera has a tint), and training is left alone. */
+/* If the cameras differ by less than this, of 255, the difference may be noise of the fit
+ * (measured: 0.2 to 1 where no camera has a tint), and the maps are not used. */
 #define ALIKE     2.0
-/* Pull towards the identity, as a share of the weights: noise of a few of 255, squared. */
+/* Regularisation towards the identity, as a share of the weights: the square of noise of a few
+ * levels of 255. */
 #define RIDGE     1e-4
-/* Initial points that are brighter or darker than this were not given the colours of pictures, but
- * albedo, say, or linear light. */
+/* If the gain of the initial points is larger than this, or smaller than its inverse, their
+ * colours do not come from the pictures, but are, for example, albedo or linear light. */
 #define MOST_GAIN 1.25
 
 typedef struct {
@@ -42,7 +46,7 @@ typedef struct {
     uint8_t *seen;    /* [cameras][n] 0 or 1 */
     uint8_t *rgb;     /* [cameras][n][3] */
     float *point;     /* [n][3] colours of the scene, 0 .. 1 */
-    uint8_t *shared;  /* [n] is the point seen by two cameras? */
+    uint8_t *shared;  /* [n] 1 if at least two cameras see the point */
     float *sorted;    /* [cameras] */
 } match;
 
@@ -59,17 +63,18 @@ static float median(float *x, size_t n)
     return 0.5f * (x[(n - 1) / 2] + x[n / 2]);
 }
 
-/* ---- what is seen ---- */
+/* ---- observations ---- */
 
-/* A picture is cut into depth_tiles by depth_tiles, one for so many points: what lies deeper than
- * the nearest point of a tile by more than this share is taken to be hidden. */
+/* A picture is divided into depth_tiles by depth_tiles tiles, one per POINTS_PER_DEPTH_TILE
+ * points. A point is taken to be hidden if it is deeper than the nearest point of its tile by more
+ * than the share HIDDEN. */
 enum { MOST_DEPTH_TILES = 64 };
 #define POINTS_PER_DEPTH_TILE 8.0
 #define HIDDEN                0.1f
 
-/* Samples of one camera: colours [n][MOST_SAMPLES][3], and how many there are [n]. Of the picture
- * at hand: each point's pixel and depth, 0 where it is not in the picture [n], and the nearest
- * depth of each of depth_tiles times depth_tiles. */
+/* Samples of one camera: rgb[n][MOST_SAMPLES][3] and count[n]. For the current picture: pixel[n]
+ * and depth[n] of each point, the depth being 0 if the point is not in the picture, and the
+ * nearest depth of each tile. */
 typedef struct {
     uint8_t *rgb, *count;
     size_t *pixel;
@@ -134,7 +139,7 @@ static void settle(match *m, size_t camera, const samples *l)
     }
 }
 
-/* Training pictures of a camera. */
+/* Returns the number of training pictures of a camera. */
 static size_t count_pictures(const ted4_dataset *d, size_t camera)
 {
     size_t n = 0;
@@ -216,8 +221,8 @@ static void find_points(match *m, const undo *back)
         }
 }
 
-/* Sums of products over the points that a camera sees: of (r, g, b, 1) with itself, and with its
- * colours. */
+/* The normal equations: sums, over the points that a camera sees, of the products of (r, g, b, 1)
+ * with itself and with the colours that the camera sees. */
 typedef struct {
     double left[4][4], right[4][3], weight;
 } normal;
@@ -252,7 +257,8 @@ static void add_points(const match *m, size_t camera, const float *map, double w
     }
 }
 
-/* left * solution = right by Cholesky's method, in place of right; left is positive definite. */
+/* Solves left * solution = right by Cholesky decomposition, in place of right. left must be
+ * positive definite. */
 static void solve(normal *s)
 {
     double(*a)[4] = s->left, (*b)[3] = s->right;
@@ -277,7 +283,7 @@ static void solve(normal *s)
     }
 }
 
-/* Leaves the map as it is where too little is seen. */
+/* Fits the map of one camera. Leaves it unchanged if the camera sees too few points. */
 static void fit(const match *m, size_t camera, double width)
 {
     float *map = m->t->colour.value[camera];
@@ -294,7 +300,7 @@ static void fit(const match *m, size_t camera, double width)
             map[3 * r + c] = (float)s.right[r][c];
 }
 
-/* Colours of points with the maps as they are. */
+/* Computes the colours of the points from the current maps. */
 static void look_back(match *m, undo *back)
 {
     const ted4_colour *colour = &m->t->colour;
@@ -317,10 +323,10 @@ static void one_round(match *m, undo *back, double width)
     ted4_colour_centre(&m->t->colour);
 }
 
-/* ---- what all have in common ---- */
+/* ---- what all cameras have in common ---- */
 
-/* Sums, over points where both agree but for gain, of the colours that came with the points and of
- * what cameras see there, by channel; and of their weights. */
+/* Weighted sums, per channel, of the given colours of the points and of the colours that the
+ * cameras see, over points where the two agree except for gain; and the sum of the weights. */
 typedef struct {
     double given[3], seen[3], weight;
 } levels;
@@ -351,10 +357,10 @@ static levels add_levels(const match *m, const double *gain, double width)
     return s;
 }
 
-/* Cameras alone cannot tell what the middle of them does to colours; initial points may have been
- * given colours that do. Both sides are noisy, so that levels are compared, and no line is fitted,
- * which would lie too flat. Nothing changes where hardly a point agrees, or colours mean something
- * else. */
+/* Finds the gain that all cameras share. The cameras alone do not determine it, but the given
+ * colours of the initial points may. Only mean levels are compared, because both sides are noisy
+ * and the slope of a fitted line would be too small. Changes nothing if hardly any point agrees,
+ * or if the given colours mean something else. */
 static void find_gauge(match *m, undo *back)
 {
     double gain[3] = { 1, 1, 1 };
@@ -374,8 +380,8 @@ static void find_gauge(match *m, undo *back)
     ted4_colour_regauge(&m->t->colour, gain);
 }
 
-/* Do cameras differ more than the fit is wrong? Mean over cameras and points of what their maps
- * change. */
+/* Returns whether the cameras differ by more than the error of the fit. The measure is the root
+ * mean square, over cameras and points, of what the maps change. */
 static int differ(const match *m)
 {
     const ted4_colour *colour = &m->t->colour;

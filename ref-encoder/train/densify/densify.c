@@ -1,4 +1,4 @@
-/* densify.c - see densify.h. Candidates in canonical space.
+/* densify.c - grows and prunes anchors (densify.h). Candidates lie in canonical space.
  * SPDX-License-Identifier: BSD-2-Clause */
 #include "densify.h"
 
@@ -12,15 +12,15 @@
 #include "train/math/random.h"
 
 enum { DEPTHS = 3 };
-#define VOXEL_RATIO    0.25 /* voxel of depth i: edge 4^-i */
+#define VOXEL_RATIO    0.25 /* edge of a voxel of depth i: times 4^-i */
 #define GRADIENT_RATIO 2.0  /* threshold of depth i: times 2^i */
-/* An offset may grow, and an anchor may go, once it was seen in this share of the steps since the
- * last adjustment. */
+/* An offset may grow, and an anchor may be pruned, only if it was seen in this share of the steps
+ * since the last adjustment. */
 #define GROW_SEEN      0.4
 #define PRUNE_SEEN     0.8
-/* No anchor goes before it was seen so often while it was there. What lives for one frame of forty
- * is seen by few of the steps between two adjustments, often by none, and judged by all of them it
- * would go, however right it is at its time. */
+/* An anchor is pruned only after it was seen this often at times when it is active. Few or none of
+ * the steps between two adjustments see content that lives for one frame in forty. Judged by all
+ * steps, its anchor would be pruned even if it is right at its time. */
 enum { SEEN_THERE = 8 };
 
 uint32_t ted4_lanes_there(const ted4_generate_input *in, size_t visible)
@@ -45,7 +45,7 @@ typedef struct {
     const ted4_splats *s;
 } gather_job;
 
-/* Adds one row of statistics per splat and per anchor. */
+/* Adds the statistics of a visible block: one row per splat and per anchor. */
 static void gather_block(void *arg, size_t i)
 {
     const gather_job *g = arg;
@@ -85,8 +85,8 @@ void ted4_densify_gather(ted4_trainer *t, const ted4_generate_input *in, const t
 
 typedef struct {
     float gradient;
-    uint32_t parent; /* anchor */
-    uint64_t found;  /* after so many others */
+    uint32_t parent; /* index of an anchor */
+    uint64_t found;  /* number of candidates found before it */
     float position[3];
     float voxel;
 } candidate;
@@ -102,7 +102,7 @@ static int compare_candidates(const void *x, const void *y)
     return a->found < b->found ? -1 : a->found > b->found;
 }
 
-/* Canonical place of offset k of anchor i. */
+/* Computes the canonical position of offset k of anchor i. */
 static void place(const ted4_trainer *t, size_t i, int k, float p[3])
 {
     const ted4_layout *l = &t->layout;
@@ -115,7 +115,8 @@ static void place(const ted4_trainer *t, size_t i, int k, float p[3])
                     *ted4_anchor_value(&t->anchors, TED4_ROW_VALUE, i, l->first[TED4_SCALING] + j));
 }
 
-/* Mean screen gradient of offset k, negative where it was not seen enough. */
+/* Returns the mean screen-space gradient of offset k, or -1 if the offset was not seen often
+ * enough. */
 static float mean_gradient(const ted4_trainer *t, size_t i, int k)
 {
     const int K = t->layout.head.n_offsets;
@@ -127,7 +128,8 @@ static float mean_gradient(const ted4_trainer *t, size_t i, int k)
     return sum / count;
 }
 
-/* Candidates of one depth, at most one a free voxel; appended to out. */
+/* Appends the candidates of one depth to out, at most one per free voxel. Returns the new number
+ * of candidates. */
 static size_t collect(const ted4_trainer *t, int depth, ted4_voxel_set *set, candidate *out,
                       size_t n)
 {
@@ -209,7 +211,7 @@ static int grow(ted4_trainer *t, size_t allowance)
     return bad ? -1 : 0;
 }
 
-/* Statistics start afresh where they were used. */
+/* Clears those statistics of anchor i that were used. */
 static void reset_statistics(ted4_trainer *t, size_t i, int opacity)
 {
     const int K = t->layout.head.n_offsets;
@@ -226,7 +228,7 @@ static void reset_statistics(ted4_trainer *t, size_t i, int opacity)
         *ted4_anchor_value(&t->anchors, TED4_ROW_OPACITY, i, r) = 0.0f;
 }
 
-/* An anchor that is to go, and its mean opacity. */
+/* An anchor to be pruned, and its mean opacity. */
 typedef struct {
     double opacity;
     uint32_t anchor;
@@ -241,11 +243,12 @@ static int compare_faded(const void *x, const void *y)
     return a->anchor < b->anchor ? -1 : a->anchor > b->anchor;
 }
 
-/* So many anchors stay however faded they are, those that show most: there is something left to
- * grow from. */
+/* At least so many anchors stay, namely those of highest opacity, however low it is, so that the
+ * model can grow again. */
 enum { FEWEST = TED4_LANES };
 
-/* Those that stay, in order[n] and gone[m] behind them; returns how many. */
+/* Completes the list of anchors that stay, order[n], from those to be pruned, gone[m]. Returns the
+ * new length of order. */
 static size_t keep_fewest(uint32_t *order, size_t n, faded *gone, size_t m)
 {
     if (n < FEWEST && m > 0)

@@ -13,41 +13,41 @@
 #include "train/model/normalise.h"
 #include "train/state/picture.h"
 
-/* A pixel misses something when its error, averaged over the channels, is this many of 255; one
- * that confirms it needs half of that. */
+/* A pixel of a camera misses something if its error, averaged over the channels, is at least this,
+ * of 255. A pixel that confirms it needs at least half of that. */
 #define MISSING      24
-/* Pixels looked at are this share of the picture's width apart. */
+/* Distance of the tested pixels, as a share of the picture's width. */
 #define SPACING      (1.0f / 120.0f)
-/* Depths tried lie at most this many pixels apart in any other picture. */
+/* Distance of consecutive depths: at most so many pixels in any other picture. */
 #define PIXELS_APART 1.5f
 enum { FEWEST_DEPTHS = 16, MOST_DEPTHS = 512 };
-/* Depths begin and end at these multiples of the depths between which 96 % of a view's anchors lie.
- */
+/* The tested depths begin and end at these multiples of the range of depths that contains 96 % of
+ * the anchors in a view. */
 #define NEARER   0.5f
 #define FARTHER  1.2f
 #define OUTLIERS 0.02f
-/* One picture of the frame, or of those around it. */
+/* One picture of the frame, or of the neighbouring frames. */
 typedef struct {
     ted4_view view;
     float centre[3];
-    float nearest, farthest; /* depths to try */
+    float nearest, farthest; /* range of the tested depths */
     int depths;
-    int is_own; /* of the frame itself */
-    int helps;  /* in the search for what one of them misses: it is another one, far enough from it
-                 */
+    int is_own; /* 1 if the picture belongs to the frame itself */
+    int helps;  /* 1 if it can confirm what the searching picture misses: another camera, far
+                 * enough away */
     uint8_t *rgb, *error; /* owned: [pixels][3], [pixels] */
 } sweep_view;
 
 typedef struct {
     const sweep_view *views;
     size_t n, self;
-    int step;          /* pixels between those looked at */
-    ted4_place *found; /* [rows][columns], score 0: nothing */
+    int step;          /* distance of the tested pixels */
+    ted4_place *found; /* [rows][columns], with score 0 where nothing was found */
     int columns;
 } search_job;
 
-/* Distance by which the point at 1/z is off in the other picture when 1/z is off by one, roughly.
- */
+/* Returns approximately by how many pixels a point at inverse depth 1/z moves in the other picture
+ * when 1/z changes by 1. */
 static float parallax(const sweep_view *a, const sweep_view *b)
 {
     float square = 0;
@@ -70,7 +70,8 @@ static void count_depths(sweep_view *views, size_t n, size_t self)
     views[self].depths = (int)fmaxf(FEWEST_DEPTHS, fminf(wanted, MOST_DEPTHS));
 }
 
-/* Does the other picture look at the point, and does it confirm it: 0 no, above: how well. */
+/* Returns how well the other picture confirms the point, in (0, 1], or 0 if it does not.
+ * *observed: whether the point lies in that picture. */
 static float confirm(const sweep_view *e, const float p[3], const uint8_t colour[3], int *observed)
 {
     size_t pixel;
@@ -84,7 +85,7 @@ static float confirm(const sweep_view *e, const float p[3], const uint8_t colour
            (float)ted4_colour_far(e->rgb + 3 * pixel, colour) / (3.0f * TED4_COLOUR_NEAR + 1.0f);
 }
 
-/* Point at depth z on the ray through a pixel's centre. */
+/* Computes the point at depth z on the ray through a pixel's centre. */
 static void point_at(const ted4_view *v, int column, int row, float z, float p[3])
 {
     const float c[3] = { ((float)column + 0.5f - v->cx) / v->fx * z - v->t[0],
@@ -94,7 +95,8 @@ static void point_at(const ted4_view *v, int column, int row, float z, float p[3
         p[k] = v->R[k] * c[0] + v->R[3 + k] * c[1] + v->R[6 + k] * c[2];
 }
 
-/* The depth of a pixel that most of the other cameras confirm. */
+/* Finds the depth of a pixel that the other cameras confirm best. At least half of those that see
+ * the point must confirm it. */
 static void sweep(const search_job *j, int column, int row, ted4_place *best)
 {
     const sweep_view *own = &j->views[j->self];
@@ -148,7 +150,7 @@ static void search_row(void *arg, size_t r)
     }
 }
 
-/* Between which depths anchors lie in a view. 0, or -1: no memory. */
+/* Sets the range of depths from the anchors in the view. Returns 0, or -1 if memory ran out. */
 static int depth_range(const ted4_trainer *t, sweep_view *e)
 {
     float *z = malloc((t->anchors.n + 1) * sizeof *z);
@@ -175,7 +177,7 @@ static int depth_range(const ted4_trainer *t, sweep_view *e)
     return 0;
 }
 
-/* What the picture shows and what the model draws instead, both in the scene's colours. */
+/* Loads a picture and renders the model's view of it, both in the scene's colours. */
 static int open_view(ted4_trainer *t, size_t item, sweep_view *e)
 {
     const ted4_picture *pic = &t->data->pictures[item];
@@ -224,8 +226,9 @@ static int put(ted4_places *l, const ted4_place *p)
     return 0;
 }
 
-/* What one camera of the frame misses. Those of other frames may be the same camera again, which
- * agrees with itself about any depth. 0, or -1: no memory. */
+/* Adds the places that one camera of the frame misses to the list. A picture of another frame does
+ * not help if its camera is the same or too near, because a camera agrees with itself about any
+ * depth. Returns 0, or -1 if memory ran out. */
 static int search_view(const ted4_trainer *t, sweep_view *views, size_t n, size_t self,
                        uint32_t frame, ted4_places *list)
 {
@@ -266,8 +269,8 @@ int ted4_place_compare(const void *x, const void *y)
     return memcmp(a->colour, b->colour, sizeof a->colour);
 }
 
-/* The surest place of each voxel from the first on, and of these the surest, most at most. 0, or
- * -1: no memory. */
+/* Keeps, from index first on, the place of highest score in each voxel, and of these at most most,
+ * by score. Returns 0, or -1 if memory ran out. */
 static int thin(ted4_places *l, size_t first, size_t most)
 {
     ted4_voxel_set taken;
@@ -289,14 +292,14 @@ static int thin(ted4_places *l, size_t first, size_t most)
     return 0;
 }
 
-/* Is a picture for training, of a frame or of those around it? */
+/* Returns whether this is a training picture of the frame or of a frame within reach. */
 static int is_near(const ted4_picture *p, uint32_t frame, uint32_t reach)
 {
     return !p->is_test && p->frame + reach >= frame && p->frame <= frame + reach;
 }
 
-/* The pictures that look at a frame, in views[] if there is room for them; how many. 0, or -1 with
- * t->message, in *bad. */
+/* Opens the training pictures of a frame and its neighbours in views[], or only counts them if
+ * views is NULL. Returns their number. *bad becomes 1, with t->message filled, on failure. */
 static size_t open_views(ted4_trainer *t, uint32_t frame, uint32_t reach, sweep_view *views,
                          int *bad)
 {

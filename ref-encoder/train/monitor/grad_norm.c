@@ -1,5 +1,5 @@
-/* grad_norm.c - see grad_norm.h. Sums over lanes and visible blocks have one order, whatever the
- * number of threads.
+/* grad_norm.c - measures and searches gradients (grad_norm.h). Sums over lanes and visible blocks
+ * have one order, so that they do not depend on the number of threads.
  * SPDX-License-Identifier: BSD-2-Clause */
 #include "grad_norm.h"
 
@@ -7,7 +7,7 @@
 
 #include "math/lane_sum.h"
 
-/* Channels of a term of anchors' values: first, and how many. */
+/* The channels of a term in the anchors' values: the first one, and their number. */
 typedef struct {
     int first, n;
 } channels;
@@ -39,7 +39,7 @@ void ted4_gradients_block(const ted4_layout *l, const float *rate, const float *
         for (int c = at.first; c < at.first + at.n; c++) {
             const float *x = values + c * TED4_LANES, *g = gradient + c * TED4_LANES;
 
-            /* 0 times a number is 0 unless it is infinite or not a number. */
+            /* 0 times a number is 0 unless the number is infinite or NaN. */
 #pragma omp simd
             for (int j = 0; j < TED4_LANES; j++)
                 bad[j] += 0.0f * x[j];
@@ -55,7 +55,6 @@ void ted4_gradients_block(const ted4_layout *l, const float *rate, const float *
     }
 }
 
-/* Sum of squares. */
 static double squares_of(const float *x, size_t n)
 {
     return (double)ted4_lane_dot(n, x, x);
@@ -75,12 +74,13 @@ static size_t network_size(const ted4_net_shape *s)
     return n;
 }
 
-/* A stretch of the network array. */
+/* A range of the network array. */
 typedef struct {
     size_t first, n;
 } range;
 
-/* The parts of the network array that make up term: how many; at most TED4_NETS_R. */
+/* Fills r with the ranges of the network array that make up term. Returns their number, at most
+ * TED4_NETS_R. */
 static int ranges_of(const ted4_layout *l, int term, range *r)
 {
     const ted4_net_shape *h = &l->shape.hyper;
@@ -96,7 +96,7 @@ static int ranges_of(const ted4_layout *l, int term, range *r)
     if (term == TED4_TERM_PRIOR)
         r[n++] = (range) { l->nete, l->shape.n_nete };
     if (term == TED4_TERM_STEP) {
-        /* Of the last layer: rows of weights, then biases, one a type. */
+        /* In the last layer: rows of weights, then biases, one per type. */
         const size_t in = h->dim[h->n_layers - 1], types = l->shape.n_types;
         const size_t end = l->nete + h->first + network_size(h);
 
@@ -106,7 +106,8 @@ static int ranges_of(const ted4_layout *l, int term, range *r)
     return n;
 }
 
-/* Weights of the entropy model stand still before stage 2 and when they are integers. */
+/* Returns whether the term is being trained. The weights of the entropy model are not before stage
+ * 2, nor when they are integers. */
 static int is_learnt(const ted4_trainer *t, int term)
 {
     return (term != TED4_TERM_PRIOR && term != TED4_TERM_STEP) ||
@@ -134,7 +135,8 @@ void ted4_gradients_gather(const ted4_trainer *t, double *norm)
     }
 }
 
-/* The largest of some numbers so far, or the first that is not finite, and its place. */
+/* The largest magnitude so far, or the first number that is not finite, and the anchor it belongs
+ * to. */
 typedef struct {
     float most;
     int64_t at;
@@ -189,7 +191,7 @@ int64_t ted4_gradients_anchor(const ted4_trainer *t, int term, int *finite)
     return best.at;
 }
 
-/* Is a value of anchor i in these rows not finite? */
+/* Returns whether one of these channels of anchor i is not finite in this row. */
 static int is_bad(const ted4_trainer *t, ted4_row row, size_t i, channels at)
 {
     for (int c = at.first; c < at.first + at.n; c++)

@@ -1,5 +1,6 @@
-/* monitor.c - see monitor.h. What is judged by its usual size is so coarse that no training that
- * went well ever came near it (doc/training.md); what is not finite is found at once.
+/* monitor.c - detects anomalies of training (monitor.h). The limits that are relative to a usual
+ * size are so wide that no training that went well ever came near them (doc/training.md). Values
+ * that are not finite are found at once.
  * SPDX-License-Identifier: BSD-2-Clause */
 #include "monitor.h"
 
@@ -11,25 +12,26 @@
 #include "scale.h"
 #include "train/densify/densify.h"
 
-/* Steps between good states. They lie halfway between events of the schedule, which come at
- * multiples of 100: an event that fails has steps before it that can be made smaller. */
+/* A good state is kept every KEEP_EVERY steps, halfway between events of the schedule, which come
+ * at multiples of 100. If an event fails, there are steps before it that can be repeated with
+ * smaller learning rates. */
 enum { KEEP_EVERY = 500, KEEP_AT = 250 };
 
-/* A gradient has exploded when it is so many times its usual size. Measured: single steps of
- * trainings that go well reach 3 times (features, scalings, offsets), 20 times (bank, networks) and
- * 130 times (activations, whose edges may be as narrow as spec 11.4 lets them). Adam bounds what
- * one such step does. */
+/* A gradient has exploded if it is so many times its usual size. Measured: in trainings that go
+ * well, single steps reach 3 times (features, scalings, offsets), 20 times (bank, networks) and
+ * 130 times (activations, whose edges may be as narrow as spec 11.4 allows). Adam limits what one
+ * such step changes. */
 #define EXPLODED  1e5
-/* The loss diverges when in so many steps on end it is so many times its usual size, and so large
- * at all. Pictures come in random order, so that a few that differ from the others do not make such
- * a row. */
+/* The loss diverges if it is DIVERGED times its usual size, and larger than HIGH_LOSS, in ROW
+ * consecutive steps. Pictures come in random order, so that a few unusual pictures do not cause
+ * this. */
 #define DIVERGED  3.0
 #define HIGH_LOSS 0.1
 enum { ROW = 32 };
-/* The screen is nearly empty with this share of the usual Gaussians on it. That alone is no
- * failure: anchors in empty space are right to go, however many. They have collapsed when pictures
- * lose by it: when in a row of such steps the mean loss is so many times what was usual before the
- * row. */
+/* The screen is nearly empty if it shows less than this share of the usual number of Gaussians.
+ * That alone is no failure, because it is right to remove anchors in empty space, however many.
+ * They have collapsed if the pictures get worse: if the mean loss over ROW such steps is LOST
+ * times the usual loss before them. */
 #define NEARLY_EMPTY (1.0 / 8.0)
 #define LOST         1.25
 
@@ -126,8 +128,8 @@ int ted4_monitor_loss(ted4_trainer *t, double loss)
                           : ted4_monitor_anomaly(t, "not finite", -1, "loss", "", "is not finite");
 }
 
-/* Which of what hides a Gaussian: activation at this time, no extent, no opacity; -1: it is not
- * hidden. */
+/* The reasons why an anchor is hidden: its activation at this time, no extent, or no opacity. -1
+ * means that it is not hidden. */
 enum { BY_ACTIVATION, BY_SCALE, BY_OPACITY, REASONS };
 
 static int hidden_reason(const ted4_visible_blocks *visible_blocks, const ted4_generate_input *in,
@@ -148,7 +150,8 @@ static int hidden_reason(const ted4_visible_blocks *visible_blocks, const ted4_g
     return extent < TED4_NO_EXTENT ? BY_SCALE : opacity <= 0 ? BY_OPACITY : -1;
 }
 
-/* What hides most of the anchors in the view, and the first one that it hides. */
+/* Reports a collapse: the reason that hides most of the anchors in the view, and the first anchor
+ * that it hides. */
 static int collapsed(ted4_trainer *t, const ted4_generate_input *in, const ted4_splats *s)
 {
     static const char *const reasons[REASONS] = { "activation", "scale", "opacity" };
@@ -172,7 +175,8 @@ static int collapsed(ted4_trainer *t, const ted4_generate_input *in, const ted4_
                                 n);
 }
 
-/* Another phase has other gradients: rate, rounding, a stopped clock. */
+/* Resets the usual sizes when the phase changes (rate, rounding, clock stopped), because gradients
+ * then change, too. */
 static void note_phase(ted4_trainer *t)
 {
     ted4_monitor_state *w = &t->monitor.state;
@@ -209,8 +213,8 @@ static int look_at_gradients(ted4_trainer *t)
     return times[worst] > EXPLODED ? bad_gradient(t, worst, times[worst]) : 0;
 }
 
-/* Has the screen been nearly empty for a row of steps, and did pictures lose by it? If they did
- * not, this much is usual from here on. */
+/* Returns whether the screen has been nearly empty for ROW steps and the pictures got worse. If
+ * they did not, the present number of Gaussians becomes the usual one. */
 static int is_lost(ted4_monitor_state *w, double drawn, double usual, double loss)
 {
     const double share = ted4_scale_take(&w->screen, drawn + 1.0);

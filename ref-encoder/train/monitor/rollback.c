@@ -5,10 +5,10 @@
 #include "checkpoint.h"
 #include "monitor.h"
 
-/* Steps between looks at every anchor, also those that no picture shows. */
+/* Number of steps between checks of all anchors, including those that are in no picture. */
 enum { LOOK_EVERY = 100 };
 
-/* Factor of all learning rates at each rollback. */
+/* All learning rates are multiplied by this at each rollback. */
 #define SMALLER 0.5
 
 int ted4_monitor_begin(ted4_trainer *t)
@@ -48,7 +48,8 @@ int ted4_monitor_recover(ted4_trainer *t)
     w->state.factor = SMALLER * factor;
     w->state.rollbacks = rollbacks + 1;
     t->seconds = seconds;
-    /* Where no step lies between, smaller ones change nothing: that picture is passed over. */
+    /* If no step lies between the good state and the failure, smaller learning rates change
+     * nothing; therefore that picture is skipped. */
     if (failed == t->iteration && t->order.next < t->order.n)
         t->order.next++;
     ted4_monitor_forget(t);

@@ -1,15 +1,17 @@
-/* rollback.h - the last good state, and the way back to it. Depends on trainer.h.
+/* rollback.h - keeps the last good state, and restores it after an anomaly. Depends on trainer.h.
  * SPDX-License-Identifier: BSD-2-Clause */
 #ifndef TED4_ROLLBACK_H
 #define TED4_ROLLBACK_H
 
 #include "train/state/trainer.h"
 
-/* Before a step: looks at what is learnt, from time to time at all anchors, and then keeps the
- * state. 0, or -1 with t->message, and with monitor.found when it is an anomaly. */
+/* Call before each step. Checks the learnt parameters, including all anchors from time to time,
+ * and then keeps the state. Returns 0, or -1 with t->message filled, and with monitor.found set if
+ * it is an anomaly. */
 int ted4_monitor_begin(ted4_trainer *t);
-/* After a step that failed: back to the last good state with smaller learning rates, if it was an
- * anomaly, there is such a state and this was not done three times. 0, or -1 with t->message. */
+/* Call after a step that failed. Restores the last good state, with smaller learning rates, if the
+ * failure is an anomaly, if there is such a state, and if this was not done three times already.
+ * Returns 0, or -1 with t->message filled. */
 int ted4_monitor_recover(ted4_trainer *t);
 
 #endif

@@ -9,7 +9,8 @@
 #define LARGEST_LOG2_SIZE 126.0f
 #define BEYOND_SYMBOLS    32767.5f
 
-/* Component c of a type; q: its step size, 0 before there is one. */
+/* Returns whether component c of a type is saturated. q: its step size, or 0 while there is
+ * none. */
 static int is_saturated(const ted4_header *h, int type, unsigned c, float x, float q)
 {
     if (type == TED4_SCALING &&

@@ -6,7 +6,8 @@
 
 #include "math/elementary.h"
 
-/* A scale moves by at most this factor (log2) a step; first faster, and nothing is judged by it. */
+/* A scale moves by at most this factor (log2) per step. At first it moves faster, and nothing is
+ * judged by it. */
 #define SCALE_STEP  0.05
 #define SCALE_FIRST 0.5
 enum { SCALE_NEW = 100 };
