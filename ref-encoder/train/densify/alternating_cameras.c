@@ -1,4 +1,5 @@
-/* alternating_cameras.c - see alternating_cameras.h.
+/* alternating_cameras.c - decides how many neighbouring frames are used with each frame if cameras
+ * alternate (alternating_cameras.h).
  * SPDX-License-Identifier: BSD-2-Clause */
 #include "alternating_cameras.h"
 

@@ -1,4 +1,5 @@
-/* photo_votes.c - see photo_votes.h.
+/* photo_votes.c - counts photo votes, and derives from them when a point is present
+ * (photo_votes.h).
  * SPDX-License-Identifier: BSD-2-Clause */
 #include "photo_votes.h"
 

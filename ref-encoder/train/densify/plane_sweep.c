@@ -1,4 +1,4 @@
-/* plane_sweep.c - see plane_sweep.h.
+/* plane_sweep.c - finds places that the model fails to render, by plane sweeping (plane_sweep.h).
  * SPDX-License-Identifier: BSD-2-Clause */
 #include "plane_sweep.h"
 

@@ -1,4 +1,5 @@
-/* short_lived.c - see short_lived.h.
+/* short_lived.c - finds short-lived anchors, and sets the span of their activation
+ * (short_lived.h).
  * SPDX-License-Identifier: BSD-2-Clause */
 #include "short_lived.h"
 

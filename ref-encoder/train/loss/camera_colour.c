@@ -1,4 +1,5 @@
-/* camera_colour.c - see camera_colour.h.
+/* camera_colour.c - applies, inverts and centres the colour maps of the cameras, and computes
+ * their gradients (camera_colour.h).
  * SPDX-License-Identifier: BSD-2-Clause */
 #include "camera_colour.h"
 
@@ -22,7 +23,7 @@ static size_t least(size_t a, size_t b)
     return a < b ? a : b;
 }
 
-/* Marks the cameras that took at least two training pictures; how many. */
+/* Marks the cameras that took at least two training pictures. Returns their number. */
 static size_t choose(uint8_t *corrected, const ted4_dataset *d)
 {
     size_t n = 0;
@@ -127,10 +128,10 @@ const float *ted4_colour_apply(ted4_colour *c, uint32_t camera, const float *ima
     return c->image;
 }
 
-/* Of I + A. */
+/* Smallest magnitude of det(I + A) for which the map is inverted. */
 #define LEAST_DETERMINANT 0.1
 
-/* From cofactors. */
+/* The inverse is computed from cofactors. */
 int ted4_colour_invert(const float *a, double inverse[9])
 {
     double m[9], det = 0;
@@ -210,7 +211,8 @@ static int compare(const void *x, const void *y)
     return a < b ? -1 : a > b;
 }
 
-/* Mean of value k over the cameras between the outer quarters. */
+/* Returns the mean of value k over the cameras between the outer quartiles (interquartile
+ * mean). */
 static double middle_of(ted4_colour *c, int k)
 {
     const size_t out = c->n_corrected / 4;

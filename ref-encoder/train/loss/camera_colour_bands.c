@@ -1,5 +1,5 @@
-/* camera_colour_bands.c - the passes of camera_colour.c over pixels. Sums over pixels go to 16
- * lanes, pixel i to lane i mod 16, and lanes are added in order.
+/* camera_colour_bands.c - the passes of camera_colour.c over pixels. Sums over pixels are kept in
+ * 16 lanes, with pixel i in lane i mod 16, and the lanes are added in order.
  * SPDX-License-Identifier: BSD-2-Clause */
 #include "camera_colour_job.h"
 
@@ -28,7 +28,7 @@ void TED4_LEVELED(ted4_colour_apply_band)(void *job, size_t band)
     }
 }
 
-/* Products of the pixels of one lane group; 0 for those from n on. */
+/* Adds the products of the pixels of one lane group; pixels from n on count as 0. */
 TED4_INLINE void add_group(const float *image, const float *d, size_t plane, size_t n,
                            ted4_vf sum[4][TED4_VECS])
 {
@@ -53,8 +53,8 @@ static double add_lanes(const ted4_vf sum[TED4_VECS])
     return total;
 }
 
-/* Sums of d times each colour and 1, over at most TED4_COLOUR_RUN pixels, into column k of a
- * map. */
+/* Adds the sums of d times each colour and times 1, over at most TED4_COLOUR_RUN pixels, to column
+ * k of a map. */
 static void add_products(const float *image, const float *d, size_t plane, size_t n, double *column)
 {
     const size_t whole = n / TED4_LANE_GROUP * TED4_LANE_GROUP;

@@ -1,11 +1,12 @@
-/* loss.c - see loss.h. SSIM of an 11 x 11 Gaussian window (sigma 1.5), turned by 45 degrees: with u
- * = x + y and v = x - y the four filtered planes u, v, u^2, v^2 give all that SSIM needs (instead
- * of five), and v is the L1 residual as well.
+/* loss.c - L1 and SSIM with an 11 x 11 Gaussian window (sigma 1.5), and their gradient (loss.h).
+ * The two pictures x and y are transformed to u = x + y and v = x - y, a rotation by 45 degrees up
+ * to scale: the four filtered planes u, v, u^2, v^2 give all that SSIM needs (instead of five),
+ * and v is also the L1 residual.
  *
- * Three passes (loss_passes.c), each parallel over fixed pieces of the picture: (1) u, v and L1;
- * (2) the four filters, SSIM and its derivatives by the filtered planes; (3) the same filter, which
- * is its own adjoint, over the three derivative planes. A filter runs along rows into a ring of 11
- * rows of a tile that stays in the first-level cache, then down the ring.
+ * There are three passes (loss_passes.c), each parallel over fixed pieces of the picture: (1) u, v
+ * and L1; (2) the four filters, SSIM and its derivatives with respect to the filtered planes; (3)
+ * the same filter, which is its own adjoint, over the three derivative planes. A filter runs along
+ * rows into a ring of 11 rows of a tile, which stays in the L1 cache, and then down the ring.
  * SPDX-License-Identifier: BSD-2-Clause */
 #include "loss_state.h"
 
@@ -15,7 +16,7 @@
 struct ted4_loss_workspace {
     float *block;    /* owned: u, v, then three derivatives, each [3][height][stride] */
     size_t capacity; /* floats in block */
-    double *sum;     /* owned: one partial sum a chunk */
+    double *sum;     /* owned: one partial sum per chunk */
     size_t n_sums;
 };
 
@@ -88,8 +89,8 @@ double ted4_loss(ted4_loss_workspace *w, const float *image, const uint8_t *trut
     ted4_parallel_for(p, (size_t)j.n_splits, TED4_IN_USE(ted4_loss_split), &j);
     *l1 = sum_of(w->sum, (size_t)j.n_splits) / count;
     ted4_parallel_for(p, pieces, TED4_IN_USE(ted4_loss_similarity), &j);
-    /* Of equal pictures rounding may find a little more than 1, and a negative loss means a
-     * failure. */
+    /* For equal pictures, SSIM may be rounded to slightly more than 1, and a negative loss is
+     * treated as a failure. */
     *ssim = fmin(sum_of(w->sum, pieces) / count, 1.0);
     ted4_parallel_for(p, pieces, TED4_IN_USE(ted4_loss_gradient), &j);
     return (1.0 - (double)ssim_weight) * *l1 + (double)ssim_weight * (1.0 - *ssim);

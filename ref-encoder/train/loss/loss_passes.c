@@ -1,6 +1,6 @@
-/* loss_passes.c - the three passes of loss.c: over columns, a register of them at a time. A
- * column's result does not depend on how many fit; sums over columns go to 16 lanes, column i to
- * lane i mod 16, and lanes are added in order.
+/* loss_passes.c - the three passes of loss.c over columns, one register of columns at a time. The
+ * result of a column does not depend on the width of a register. Sums over columns are kept in 16
+ * lanes, with column i in lane i mod 16, and the lanes are added in order.
  * SPDX-License-Identifier: BSD-2-Clause */
 #include "loss_state.h"
 
@@ -54,7 +54,7 @@ TED4_INLINE void split_group(const float *x, const float *t, float *u, float *v,
     }
 }
 
-/* Writes the columns of the last group that lie outside, too: they are 0. */
+/* Also writes the columns of the last group that lie outside the picture; they are 0. */
 static double split_row(const float *x, const uint8_t *y, float *u, float *v, int width)
 {
     const int whole = width / TED4_LANE_GROUP * TED4_LANE_GROUP;
@@ -113,11 +113,11 @@ void TED4_LEVELED(ted4_loss_split)(void *job, size_t i)
     j->sum[i] = sum;
 }
 
-/* What job i of the second and third pass does. */
+/* What job i of the second and the third pass processes. */
 typedef struct {
     size_t channel;
     int first, last, x0; /* rows, first column */
-    int n, valid;        /* columns: whole lane groups, those of the picture */
+    int n, valid;        /* columns: in whole lane groups, and within the picture */
 } piece;
 
 static piece piece_of(const ted4_loss_job *j, size_t i)
@@ -134,7 +134,7 @@ static piece piece_of(const ted4_loss_job *j, size_t i)
                      min_int(n, j->width - x0) };
 }
 
-/* Where row r of a plane holds the first column of a piece. */
+/* Returns the index, in a plane, of the first column of a piece in row r. */
 static size_t row_of(const ted4_loss_job *j, const piece *p, int r)
 {
     return p->channel * j->plane + (size_t)r * j->stride + SIDE + (size_t)p->x0;
@@ -142,7 +142,7 @@ static size_t row_of(const ted4_loss_job *j, const piece *p, int r)
 
 /* ---- pass 2: SSIM and its derivatives ---- */
 
-/* u, v: at the first output column. */
+/* u, v: a row of each plane, at its first output column. */
 static void filter_squares(const float *u, const float *v, int n, float out[4][TILE])
 {
     for (int x = 0; x < n; x += TED4_VEC) {
@@ -166,12 +166,13 @@ static void filter_squares(const float *u, const float *v, int n, float out[4][T
     }
 }
 
-/* SSIM = (A1 A2) / (B1 B2) from the local means mu, mv and second moments uu, vv. With a = mu^2,
- * b = mv^2, p = uu - a, q = vv - b:
+/* SSIM = (A1 A2) / (B1 B2), computed from the local means mu, mv and the second moments uu, vv.
+ * With a = mu^2, b = mv^2, p = uu - a and q = vv - b:
  *     A1 = a - b + 2 C1,  B1 = a + b + 2 C1,  A2 = p - q + 2 C2,  B2 = p + q + 2 C2
- * p and q are variances, so nothing is divided by less than 2 C2; where the picture is so bright
- * that their rounding is larger than that, they are held above -C2 / 2, and NaN stays NaN. d:
- * derivatives by what x is filtered into: mu + mv together (du/dx = dv/dx = 1), uu, vv. */
+ * p and q are variances, so that no divisor is less than 2 C2. If the picture is so bright that
+ * their rounding error exceeds this, they are clamped to at least -C2 / 2, and NaN stays NaN. d:
+ * derivatives with respect to the filtered planes of x: mu + mv together (du/dx = dv/dx = 1), uu,
+ * vv. */
 TED4_INLINE ted4_vf similarity(const ted4_vf m[4], ted4_vf d[3])
 {
     const float c1 = 2.0f * TED4_SSIM_C1, c2 = 2.0f * TED4_SSIM_C2;
@@ -190,7 +191,7 @@ TED4_INLINE ted4_vf similarity(const ted4_vf m[4], ted4_vf d[3])
     return l * s;
 }
 
-/* The first n lanes; the others are 0. */
+/* Returns s with all lanes from n on set to 0. */
 static ted4_vf keep_first(ted4_vf s, int n)
 {
     float lane[TED4_VEC];
@@ -294,7 +295,7 @@ static void gradient_row(const ted4_loss_job *j, ring3 ring, int oldest, size_t 
 {
     for (int x = 0; x < valid; x += TED4_VEC) {
         const ted4_vf a = ted4_vf_load(j->u + from + x), b = ted4_vf_load(j->v + from + x);
-        const ted4_vi sign = (b < 0.0f) - (b > 0.0f); /* a true comparison is -1 */
+        const ted4_vi sign = (b < 0.0f) - (b > 0.0f); /* a true comparison gives -1 */
         ted4_vf m[3], ssim;
 
         TED4_UNROLL

@@ -1,4 +1,4 @@
-/* voxel_set.c - see voxel_set.h.
+/* voxel_set.c - a hash set of voxels (voxel_set.h).
  * SPDX-License-Identifier: BSD-2-Clause */
 #include "voxel_set.h"
 

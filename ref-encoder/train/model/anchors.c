@@ -1,4 +1,4 @@
-/* anchors.c - see anchors.h.
+/* anchors.c - allocates, resizes, selects and sorts anchors (anchors.h).
  * SPDX-License-Identifier: BSD-2-Clause */
 #include "anchors.h"
 

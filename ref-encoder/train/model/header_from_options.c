@@ -1,4 +1,5 @@
-/* header_from_options.c - see header_from_options.h.
+/* header_from_options.c - makes the header of the file from the training options
+ * (header_from_options.h).
  * SPDX-License-Identifier: BSD-2-Clause */
 #include "header_from_options.h"
 

@@ -1,4 +1,4 @@
-/* init.c - see init.h.
+/* init.c - sets the first values of anchors and networks (init.h).
  * SPDX-License-Identifier: BSD-2-Clause */
 #include "init.h"
 

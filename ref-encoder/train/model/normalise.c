@@ -1,4 +1,4 @@
-/* normalise.c - see normalise.h.
+/* normalise.c - normalises the scene, its points and its views (normalise.h).
  * SPDX-License-Identifier: BSD-2-Clause */
 #include "normalise.h"
 

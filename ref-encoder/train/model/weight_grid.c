@@ -1,4 +1,4 @@
-/* weight_grid.c - see weight_grid.h.
+/* weight_grid.c - rounds network weights to coarse grids (weight_grid.h).
  * SPDX-License-Identifier: BSD-2-Clause */
 #include "weight_grid.h"
 

@@ -1,5 +1,5 @@
-/* checkpoint.c - see checkpoint.h. Native byte order: a checkpoint stays on the machine that made
- * it.
+/* checkpoint.c - writes and reads the state of a trainer (checkpoint.h). Numbers are stored in
+ * native byte order, because a checkpoint stays on the machine that made it.
  * SPDX-License-Identifier: BSD-2-Clause */
 #include "checkpoint.h"
 
@@ -17,20 +17,21 @@
 #define MAGIC 0x34444554u /* "TED4" */
 enum { FORMAT = 8 };
 
-/* One walk for both directions: put() writes or reads the bytes at p. whole: with the monitor's
- * last good state. left: when reading, bytes of the file that no put() has had; anchors get room
- * only where these fill it. Snapshots are taken and restored by one thread, often, while all
- * others wait: these go to memory and come from there directly, without a FILE in between. */
+/* One walk serves both directions: put() writes or reads the bytes at p. whole: includes the
+ * monitor's last good state. left: when reading, the bytes of the file that put() has not read
+ * yet; anchors get memory only if these bytes can fill it. Snapshots are often taken and restored,
+ * by one thread, while all others wait; therefore they are copied to and from memory directly,
+ * without a FILE. */
 typedef struct {
-    FILE *file; /* NULL: memory */
+    FILE *file; /* NULL if the stream is in memory */
     ted4_snapshot *memory;
-    size_t at, capacity; /* in memory: what is read next; when writing, room in bytes */
+    size_t at, capacity; /* in memory: the reading position; the allocated bytes when writing */
     int writing, whole, failed;
     XXH3_state_t *hash;
     uint64_t left;
 } stream;
 
-/* 0, or -1: no memory. */
+/* Returns 0, or -1 if memory ran out. */
 static int append(stream *s, const void *p, size_t size)
 {
     ted4_snapshot *m = s->memory;
@@ -69,12 +70,12 @@ static void put(stream *s, void *p, size_t size)
     if (s->failed)
         return;
     s->left -= s->writing ? 0 : size;
-    /* What comes from memory has been looked at as a whole. */
+    /* A snapshot in memory was verified as a whole (intact_memory). */
     if (s->writing || s->file != NULL)
         XXH3_64bits_update(s->hash, p, size);
 }
 
-/* Reading: the file must hold this very value. */
+/* Writes value, or reads a number, which must then be equal to value. */
 static void expect(stream *s, uint64_t value)
 {
     uint64_t x = value;
@@ -83,7 +84,7 @@ static void expect(stream *s, uint64_t value)
     s->failed |= x != value;
 }
 
-/* The same, and where it does not, the message says what is there and what is wanted. */
+/* Does the same as expect(), and fills t->message with both numbers if they differ. */
 static void expect_number(stream *s, ted4_trainer *t, uint64_t value, const char *what)
 {
     uint64_t x = value;
@@ -94,8 +95,8 @@ static void expect_number(stream *s, ted4_trainer *t, uint64_t value, const char
                                       (unsigned long long)x, what, (unsigned long long)value) != 0;
 }
 
-/* Options themselves, with the seed as the first: the message names one that differs. Those that
- * only stage 2 looks at may, before it begins. */
+/* Writes or compares the seed and the values of all options; t->message names one that differs.
+ * Before stage 2, the options that affect only stage 2 may differ. */
 static void walk_options(stream *s, ted4_trainer *t)
 {
     double value[1 + TED4_OPTIONS], mine[1 + TED4_OPTIONS];
@@ -113,8 +114,9 @@ static void walk_options(stream *s, ted4_trainer *t)
                                           mine[i]) != 0;
 }
 
-/* Positions of anchors never leave the cube (init.h, densify.c, mv_seed.h), and the fixed-point
- * inputs of networks are made from them without another look. */
+/* Returns whether all anchors lie in the cube. Training never moves them out of it (init.c,
+ * densify.c, plane_sweep.c), and the fixed-point inputs of networks are computed without another
+ * check. */
 static int inside_cube(const ted4_anchors *a)
 {
     const float *p = a->data[TED4_ROW_POSITION];
@@ -125,7 +127,7 @@ static int inside_cube(const ted4_anchors *a)
     return inside;
 }
 
-/* Room for n anchors, if the file holds so many. */
+/* Makes room for n anchors if the file is long enough to hold them. Returns 0 or -1. */
 static int resize_anchors(const stream *s, ted4_anchors *a, uint64_t n)
 {
     uint64_t values = 0;
@@ -152,8 +154,8 @@ static void walk_anchors(stream *s, ted4_trainer *t)
     s->failed |= !s->writing && !s->failed && !inside_cube(&t->anchors);
 }
 
-/* May trials of smaller models have made h of it (model_search.h)? Whatever they change is no more
- * than it was, and valid. */
+/* Copies to want what the model search may have made smaller in h (model_search.h). A trial only
+ * makes things smaller, and its header is valid. */
 static void allow_smaller(ted4_header *want, const ted4_header *h)
 {
     want->n_offsets = h->n_offsets < want->n_offsets ? h->n_offsets : want->n_offsets;
@@ -175,9 +177,9 @@ static void allow_smaller(ted4_header *want, const ted4_header *h)
     memcpy(want->slice, h->slice, sizeof want->slice);
 }
 
-/* Is h the header that this run began with, but for what stages change: motion and activation may
- * have gone, scalings may be linear, and the context bits are chosen? A hash finds damage, not
- * this. */
+/* Returns whether h is the header with which this run began, except for what the stages change:
+ * motion and activation may be removed, scalings may be linear, and the context bits are chosen.
+ * The hash detects damage, but not a header of another run. */
 static int header_belongs(const ted4_header *began, const ted4_header *h, int decided)
 {
     ted4_header want = *began;
@@ -193,9 +195,9 @@ static int header_belongs(const ted4_header *began, const ted4_header *h, int de
     return ted4_header_same(&want, h);
 }
 
-/* Everything in the layout of h, empty. Where that is the trainer's own, as it is mostly when a
- * trial ends, its memory is as good as new memory, which would have to be cleared, too, page by
- * page. */
+/* Prepares an empty model with the layout of h. If this is the present layout of the trainer, as
+ * it mostly is at the end of a trial, the memory is reused: new memory would have to be cleared,
+ * too, page by page. Returns 0 or -1. */
 static int begin_layout(ted4_trainer *t, const ted4_header *h)
 {
     const size_t n = t->layout.n_net;
@@ -211,8 +213,9 @@ static int begin_layout(ted4_trainer *t, const ted4_header *h)
     return ted4_anchors_init(&t->anchors, &t->layout) != 0 || ted4_trainer_rebuild(t) != 0 ? -1 : 0;
 }
 
-/* The header tells the layout, which may have lost parts since the trainer was made. Within stage 1
- * what stage 2 alone looks at is not taken from the file. */
+/* Writes or reads the header, which determines the layout; the layout may have lost parts since
+ * the trainer was made. Within stage 1, fields that only stage 2 uses are not taken from the
+ * file. */
 static void walk_layout(stream *s, ted4_trainer *t)
 {
     ted4_header h = t->layout.head, began;
@@ -227,7 +230,7 @@ static void walk_layout(stream *s, ted4_trainer *t)
                 begin_layout(t, &h) != 0;
 }
 
-/* Prior networks begin with stage 2, and their sizes are options of stage 2. */
+/* Prior networks are stored only from stage 2 on, because their sizes are options of stage 2. */
 static void walk_networks(stream *s, ted4_trainer *t)
 {
     const size_t n = t->phase.stage2 ? t->layout.n_net : t->layout.nete;
@@ -247,7 +250,7 @@ static void walk_networks(stream *s, ted4_trainer *t)
     s->failed |= !s->writing && t->phase.integer && t->net.shift == NULL;
 }
 
-/* Each training picture once. */
+/* Returns whether the order contains only training pictures, and each at most once. */
 static int order_is_whole(const ted4_trainer *t)
 {
     const ted4_order *o = &t->order;
@@ -265,7 +268,7 @@ static int order_is_whole(const ted4_trainer *t)
     return whole;
 }
 
-/* Numbers that steer what happens next. */
+/* Checks the numbers that control how training continues. */
 static int numbers_are_possible(const ted4_trainer *t)
 {
     return (t->phase.stage2 == 0 || t->phase.stage2 == 1) &&
@@ -277,9 +280,9 @@ static int numbers_are_possible(const ted4_trainer *t)
            t->monitor.state.factor <= 1 && t->monitor.state.rollbacks <= TED4_ROLLBACKS;
 }
 
-/* The last good state, itself a file of this kind, looked at when it is needed. None is written
- * where the next step replaces it, or there is none. Room grows with what is read: the size alone
- * is not believed. */
+/* Writes or reads the last good state. It is a state of this format, and is checked when it is
+ * needed. It is not written if there is none or if the next step replaces it. Memory grows with
+ * the bytes that are read, because the stored size is not trusted. */
 static void walk_good(stream *s, ted4_trainer *t)
 {
     enum { PIECE = 1 << 20 };
@@ -309,8 +312,8 @@ static void walk_good(stream *s, ted4_trainer *t)
         ted4_monitor_forget(t);
 }
 
-/* How the model came to be what it is. Before stage 2 there is nothing to tell; without trials the
- * model is the one that stage 2 began with. */
+/* Writes or reads the results of the model search. There are none before stage 2; without trials
+ * the model is the one with which stage 2 began. */
 static void walk_capacity(stream *s, ted4_trainer *t)
 {
     enum { MOST = 4096 };
@@ -416,8 +419,8 @@ static int intact_memory(stream *s)
     return XXH3_64bits_digest(s->hash) == want;
 }
 
-/* The last eight bytes are the hash of all others. Looked at before anything in the file is
- * believed. The file is at its start again afterwards. */
+/* Returns whether the last eight bytes are the hash of all others. Call before anything in the
+ * file is trusted. On success the file is at its start again. */
 static int intact_file(stream *s)
 {
     uint8_t bytes[1 << 14];
@@ -449,7 +452,8 @@ static void walk_hash(stream *s)
         put(s, &hash, sizeof hash);
 }
 
-/* In file, or, where that is NULL, in memory, which when writing is empty but may have room. */
+/* Runs the walk on file or, if file is NULL, on memory. When writing, memory must be empty, but
+ * may have capacity allocated bytes. Returns 0 or -1. */
 static int run(ted4_trainer *t, FILE *file, ted4_snapshot *memory, size_t capacity, int writing,
                int whole)
 {
@@ -484,8 +488,8 @@ int ted4_checkpoint_save(ted4_trainer *t, const char *path)
     if (f == NULL)
         return ted4_trainer_fail(t, "%s: %s", name, strerror(errno));
 
-    /* errno is the first failure's: closing what could not be written fails again, with another
-     * reason. A state that no checkpoint may hold sets none. */
+    /* The message needs the errno of the first failure: fclose() after a failed write fails again,
+     * for another reason. A state that a checkpoint may not hold sets no errno. */
     errno = 0;
 
     const int bad = run(t, f, NULL, 0, 1, 1) != 0 || fflush(f) != 0 || fsync(fileno(f)) != 0;

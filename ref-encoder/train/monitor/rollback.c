@@ -1,4 +1,4 @@
-/* rollback.c - see rollback.h.
+/* rollback.c - keeps the last good state, and restores it after an anomaly (rollback.h).
  * SPDX-License-Identifier: BSD-2-Clause */
 #include "rollback.h"
 

@@ -1,4 +1,4 @@
-/* saturation.c - see saturation.h.
+/* saturation.c - counts the values of anchors that are saturated (saturation.h).
  * SPDX-License-Identifier: BSD-2-Clause */
 #include "saturation.h"
 

@@ -1,4 +1,4 @@
-/* scale.c - see scale.h.
+/* scale.c - tracks the usual size of a number (scale.h).
  * SPDX-License-Identifier: BSD-2-Clause */
 #include "scale.h"
 
