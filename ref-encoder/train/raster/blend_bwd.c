@@ -1,22 +1,23 @@
-/* blend_bwd.c - adjoint of render/blend.c, a tile at a time.
+/* blend_bwd.c - adjoint of render/blend.c, one tile at a time.
  *
  * With T the transmittance before a Gaussian, C the colour of everything behind it as it would look
  * if it were the first, and D the pixel's gradient,
  *     image = ... + T (alpha colour + (1 - alpha) C),   dL/dalpha = T (colour - C) . D,
  *         dL/dcolour = alpha T D,
- * so walking back to front only C . D need be carried: behind <- behind + alpha (colour . D -
- * behind). Nothing is divided by 1 - alpha: opacities and weights come from a first walk, front to
- * back, that repeats what the forward pass did.
+ * so a walk from back to front needs only C . D as its state:
+ *     behind <- behind + alpha (colour . D - behind).
+ * There is no division by 1 - alpha, because opacities and weights come from a first walk, from
+ * front to back, that repeats the forward pass.
  *
- * The first walk goes block by block (T stays in a register), the second Gaussian by Gaussian (the
- * sums over pixels do).
+ * The first walk goes block by block, so that T stays in a register; the second goes Gaussian by
+ * Gaussian, so that the sums over pixels do.
  * SPDX-License-Identifier: BSD-2-Clause */
 #include "adjoint.h"
 #include "render/image_model.h"
 
 #include <stdatomic.h>
 
-enum { AHEAD = 8 }; /* instances fetched before they are needed: they lie anywhere in memory */
+enum { AHEAD = 8 }; /* instances to prefetch ahead, as they are scattered in memory */
 
 typedef struct {
     ted4_adjoint *a;
@@ -27,7 +28,7 @@ typedef struct {
     atomic_int failed;
 } bwd_job;
 
-/* A Gaussian at the pixels of a part of a block (a register's share of them), as blended. */
+/* A Gaussian, as blended, at the pixels of one part of a block (those that fill one register). */
 typedef struct {
     ted4_vf alpha, w;
 } blended;
@@ -37,23 +38,23 @@ typedef struct {
     ted4_vf d[3];   /* dL / d colour; 0 outside the image */
     ted4_vf behind; /* C . D */
     size_t first,
-        end; /* its share of the tile's pairs; end moves to the front in the second walk */
+        end; /* the part's range of the tile's pairs; the second walk moves end to the front */
 } part_state;
 
-/* A tile at work. */
+/* The state of one tile. */
 typedef struct {
     ted4_splat2d
-        *splat; /* [n] copies, back to back: the originals lie on as many pages as they are */
+        *splat; /* [n] contiguous copies: each original may be on a memory page of its own */
     const uint32_t *instance; /* [n] */
     const ted4_reach *reach;  /* [n_groups] */
     uint32_t n, n_groups;
     blended *pair;  /* all pairs, block after block, part after part */
-    uint16_t *mask; /* [n] bit b: has a pair in block b */
+    uint16_t *mask; /* [n] bit b: the instance has a pair in block b */
     part_state state[TED4_VECS][TED4_TILE_BLOCKS];
 } tile_state;
 
-/* Sums over the pixels of a block, all in one order: pixels i and i + 8, then i and i + 4 are
- * added, then 0 and 2, 1 and 3, and these two. */
+/* Sums over the pixels of a block. The order of additions is the same for every vector size: first
+ * pixels i and i + 8, then i and i + 4, then 0 and 2, 1 and 3, and finally these two. */
 typedef struct {
     ted4_vf term[TED4_GRAD_SUMS], total;
 } part_sums;
@@ -61,7 +62,7 @@ typedef struct {
 typedef float quarter __attribute__((vector_size(16)));
 
 #if TED4_VEC_BYTES == 64
-/* The first two steps: 16 lanes to 4. */
+/* The first two steps of the sum, which reduce 16 lanes to 4. */
 TED4_INLINE quarter to_quarter(ted4_vf v)
 {
     return (__builtin_shufflevector(v, v, 0, 1, 2, 3) +
@@ -70,7 +71,7 @@ TED4_INLINE quarter to_quarter(ted4_vf v)
             __builtin_shufflevector(v, v, 12, 13, 14, 15));
 }
 
-/* The same steps of four sums at once; a quarter of the result belongs to each. */
+/* Does the same steps for four sums at once; each quarter of the result belongs to one sum. */
 TED4_INLINE ted4_vf to_quarters(const ted4_vf v[4])
 {
     ted4_vf half[2];
@@ -107,7 +108,8 @@ TED4_INLINE quarter total_quarter(const part_sums *s)
     return to_quarter(s->total);
 }
 #else
-/* The first two steps, of the sum that lies so many floats into each part's: 16 lanes to 4. */
+/* The first two steps, which reduce 16 lanes to 4, of the sum at offset at (in floats) in the sums
+ * of each part. */
 TED4_INLINE quarter to_quarter(const part_sums *s, size_t at)
 {
 #if TED4_VEC_BYTES == 32
@@ -121,7 +123,7 @@ TED4_INLINE quarter to_quarter(const part_sums *s, size_t at)
 #endif
 }
 
-/* The last two, of four sums at once. */
+/* The last two steps, for four sums at once. */
 TED4_INLINE void finish_sums(const quarter q[4], float out[4])
 {
     const quarter a = __builtin_shufflevector(q[0], q[1], 0, 1, 4, 5) +
@@ -180,8 +182,8 @@ static void load_block(const bwd_job *job, tile_state *tile, int b, size_t x, si
     }
 }
 
-/* Gives each block its share of the pairs, and copies the tile's Gaussians together. 0, or -1: no
- * memory. */
+/* Assigns each block its range of the pairs, and copies the tile's Gaussians to contiguous memory.
+ * Returns 0, or -1 if memory ran out. */
 static int share_pairs(tile_state *tile, const ted4_splat2d *splat, const uint32_t *owner,
                        ted4_growing *scratch)
 {
@@ -213,7 +215,7 @@ static int share_pairs(tile_state *tile, const ted4_splat2d *splat, const uint32
     return 0;
 }
 
-/* First walk: what blend.c's blend_part did, keeping opacities and weights. */
+/* First walk: repeats blend_part of blend.c, and keeps opacities and weights. */
 static void walk_part(tile_state *tile, int b, int part, const ted4_view *v)
 {
     const part_state *s = &tile->state[part][b];
@@ -230,8 +232,8 @@ static void walk_part(tile_state *tile, int b, int part, const ted4_view *v)
         }
 }
 
-/* Second walk, one Gaussian of the tile and one part of its blocks: takes its last pair off each
- * block in mask and sums over their pixels. */
+/* Second walk, for one Gaussian of the tile and one part of its blocks: removes the last pair of
+ * each block in mask, and sums over their pixels. */
 TED4_INLINE void sum_part(const ted4_splat2d *g, uint32_t mask, part_state *state,
                           const blended *pair, part_sums *out)
 {
@@ -289,7 +291,7 @@ static void sum_tile(tile_state *tile, const ted4_adjoint *a)
     }
 }
 
-/* 0, or -1: no memory. */
+/* Returns 0, or -1 if memory ran out. */
 static int tile_bwd(bwd_job *job, size_t number, ted4_growing *scratch)
 {
     const struct ted4_raster *r = job->r;
@@ -320,7 +322,7 @@ static int tile_bwd(bwd_job *job, size_t number, ted4_growing *scratch)
     return 0;
 }
 
-/* Takes tiles until none is left: whoever does a tile, it gives the same sums. */
+/* Processes tiles until none is left. The sums of a tile do not depend on the worker. */
 static void bwd_worker(void *arg, size_t worker)
 {
     bwd_job *job = arg;

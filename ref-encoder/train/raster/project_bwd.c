@@ -1,5 +1,5 @@
-/* project_bwd.c - adjoint of render/project.c, a register of Gaussians at a time. Comments quote
- * the forward lines of render/image_model.h.
+/* project_bwd.c - adjoint of render/project.c, one register of Gaussians at a time. Comments quote
+ * the forward equations of render/image_model.h.
  * SPDX-License-Identifier: BSD-2-Clause */
 #include "adjoint.h"
 #include "render/image_model.h"
@@ -15,13 +15,13 @@ typedef struct {
     ted4_guard guard;
 } bwd_job;
 
-/* Gradients of a register of Gaussians. */
+/* Gradients of one register of Gaussians. */
 typedef struct {
     ted4_vf mean[3], scale[3], rot[4], opacity, colour[3], mean2d;
 } grad_lanes;
 
-/* Sums of a register of Gaussians, lane by lane, over their tiles in instance order. Returns which
- * Gaussians have tiles. */
+/* Adds up the sums of one register of Gaussians, lane by lane, over their tiles in instance order.
+ * Returns the set of Gaussians that have tiles. */
 static uint32_t add_up(const ted4_adjoint *a, const ted4_raster *r, size_t i, size_t n,
                        ted4_vf sum[TED4_GRAD_SUMS], ted4_vf *sum0)
 {
@@ -53,8 +53,8 @@ static uint32_t add_up(const ted4_adjoint *a, const ted4_raster *r, size_t i, si
     return visible;
 }
 
-/* From dL/dR(q) to the four components of q. Forward: r[0] = 1 - 2 (yy + zz), r[1] = 2 (xy - wz),
- * ... */
+/* Computes the gradients of the four components of q from dL/dR(q). Forward:
+ *     r[0] = 1 - 2 (yy + zz),   r[1] = 2 (xy - wz),   ... */
 static inline void rotation_bwd(const ted4_vf q[4], const ted4_vf d[9], ted4_vf out[4])
 {
     const ted4_vf w = q[0], x = q[1], y = q[2], z = q[3];
@@ -67,10 +67,10 @@ static inline void rotation_bwd(const ted4_vf q[4], const ted4_vf d[9], ted4_vf 
     out[3] = 2.0f * (w * az + x * sy + y * sx - 2.0f * z * (d[0] + d[4]));
 }
 
-/* One image axis from its row dp of dL/dP on. f: focal length; u, u_free: clamped slope; du_dt:
- * t[0] or t[1] is slope times t[2]. Adds to dL/dscale, dL/dR(q), dL/dt. Forward:
- *     q[i] = j . R(q) column i,   p[i] = q[i] scale[i],   j[i] = f / t[2] (w[i] - u w2[i]),   u =
- *                                 clamp(t[axis] / t[2]) */
+/* Backpropagates the row dp of dL/dP of one image axis: adds to dL/dscale, dL/dR(q) and dL/dt. f:
+ * focal length; u, u_free: clamped slope; du_dt: t[0] or t[1] is the slope times t[2]. Forward:
+ *     q[i] = j . R(q) column i,   p[i] = q[i] scale[i],   j[i] = f / t[2] (w[i] - u w2[i]),
+ *     u = clamp(t[axis] / t[2]) */
 static inline void axis_bwd(const ted4_projection *p, const ted4_splat_lanes *g, float f, ted4_vf u,
                             ted4_vi u_free, const float w[3], const float w2[3], const ted4_vf j[3],
                             const ted4_vf q[3], const ted4_vf dp[3], ted4_vf d_scale[3],
@@ -94,9 +94,10 @@ static inline void axis_bwd(const ted4_projection *p, const ted4_splat_lanes *g,
     *d_slope += ted4_vf_keep(u_free, -f * p->iz * dj_w2);
 }
 
-/* dL/dP from the sums. Forward: ln(alpha) = ln(o) - d^T K d / 2 with K = cov2d^-1 = U^T U, U d the
- * whitened offsets. dL/dK = -1/2 sum g d d^T and dL/dcov = -K dL/dK K = 1/2 U^T (sum g (U d)(U
- * d)^T) U; cov = P P^T + blur doubles it again. */
+/* Computes dL/dP from the sums. Forward: ln(alpha) = ln(o) - d^T K d / 2 with K = cov2d^-1 = U^T U,
+ * where U d are the whitened offsets. So dL/dK = -1/2 sum g d d^T, and
+ *     dL/dcov = -K dL/dK K = 1/2 U^T (sum g (U d)(U d)^T) U;
+ * cov = P P^T + blur doubles it again. */
 static inline void covariance_bwd(const ted4_projection *p, const ted4_vf sum[TED4_GRAD_SUMS],
                                   ted4_vf dp0[3], ted4_vf dp1[3])
 {
@@ -113,14 +114,15 @@ static inline void covariance_bwd(const ted4_projection *p, const ted4_vf sum[TE
     }
 }
 
-/* From this a c / det on, a slanting Gaussian being some 170 times as long as it is wide,
- * covariance_bwd loses digits that show: its error grows with a c / det, to a sixth of the gradient
- * at 1e6. */
+/* The a c / det from which on the loss of precision in covariance_bwd matters. A slanted Gaussian
+ * that reaches it is about 170 times as long as it is wide. The error grows with a c / det, to one
+ * sixth of the gradient at 1e6. */
 #define THIN 3e4f
 
-/* dL/dP again, for the lanes of thin. Above, with U P of size 1, (U^T S U) P is a difference of
- * numbers as large as the Gaussian is long; here U P is made first. Its first row, a1 p0 + a2 p1 =
- * a1 (p0 - b / c p1), is one too, but c p0 - b p1 = blur p0 + p1 x (p0 x p1). */
+/* Computes dL/dP again for the lanes in thin. covariance_bwd computes (U^T S U) P: although U P has
+ * size 1, that is a difference of numbers as large as the Gaussian is long. Here U P is computed
+ * first. Its first row, a1 p0 + a2 p1 = a1 (p0 - b / c p1), is such a difference too, but is
+ * computed by c p0 - b p1 = blur p0 + p1 x (p0 x p1). */
 static inline void thin_bwd(const ted4_projection *p, const ted4_vf sum[TED4_GRAD_SUMS],
                             ted4_vi thin, ted4_vf dp0[3], ted4_vf dp1[3])
 {
@@ -170,7 +172,7 @@ static void splats_bwd(const bwd_job *job, const ted4_splat_lanes *g,
     const ted4_vf dy = unscale * (p.a2 * sum[TED4_SUM_N1] + p.a3 * sum[TED4_SUM_N2]);
     d_u += v->fx * dx;
     d_v += v->fy * dy;
-    /* slopes are t[0] / t[2] and t[1] / t[2] */
+    /* the slopes are t[0] / t[2] and t[1] / t[2] */
     const ted4_vf dt0 = d_u * p.iz, dt1 = d_v * p.iz;
     d_z -= (dt0 * p.t[0] + dt1 * p.t[1]) * p.iz;
     for (int i = 0; i < 3; i++) {
@@ -184,7 +186,7 @@ static void splats_bwd(const bwd_job *job, const ted4_splat_lanes *g,
     out->mean2d = ted4_vf_sqrt(ted4_vf_select(square > FLT_MAX, ted4_vf_all(FLT_MAX), square));
 }
 
-/* ok: lanes with tiles; the others' numbers may be anything. */
+/* Stores the gradients. ok: the lanes that have tiles; the numbers in other lanes are undefined. */
 static void store_grads(const ted4_splat_grads *g, const grad_lanes *d, ted4_vi ok, size_t i,
                         size_t n)
 {

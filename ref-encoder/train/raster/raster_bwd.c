@@ -1,4 +1,4 @@
-/* raster_bwd.c - see raster_bwd.h.
+/* raster_bwd.c - adjoint of the rasteriser: runs its two stages. See raster_bwd.h.
  * SPDX-License-Identifier: BSD-2-Clause */
 #include "adjoint.h"
 
