@@ -1,8 +1,8 @@
 /* rate.c - the trainer's float model of Tier E (spec 7.3, 9.4, 10): bits of chosen anchors, and
- * their gradients through rate_bwd.c. Inputs, units and sums are the decoder's: positions in Q12 as
- * spec 10.1 rounds them, mu in steps, s = log2(sigma / step), q = Q0 2^v, contexts k q / Q0. Only
- * roundings inside the networks are missing, and with TED4_QUANT_INTEGER (rate_integer.c) not even
- * those.
+ * their gradients through rate_bwd.c. Inputs, units and sums are those of the decoder: positions in
+ * Q12 as spec 10.1 rounds them, mu in steps, s = log2(sigma / step), q = Q0 2^v, contexts k q / Q0.
+ * The only difference is that the networks do not round internally; with TED4_QUANT_INTEGER
+ * (rate_integer.c) they do.
  * SPDX-License-Identifier: BSD-2-Clause */
 #include "rate_parts.h"
 
@@ -94,7 +94,7 @@ void ted4_rate_pack(ted4_rate *r, const float *net)
 
 /* ---- workspaces ---- */
 
-/* Hands out pieces of storage; with base NULL it only counts. */
+/* Allocates pieces of one storage; with base NULL it only counts their size. */
 typedef struct {
     float *base;
     size_t n;
@@ -164,7 +164,7 @@ static int make_workspaces(ted4_rate *r, size_t n)
     return 0;
 }
 
-/* The first free workspace: few are ever touched, so they stay in the caches. */
+/* Takes the first free workspace, so that few are ever used and they stay in the caches. */
 static size_t workspace_acquire(ted4_rate *r)
 {
     for (size_t i = 0;; i = (i + 1) % r->n_workspaces)
@@ -218,7 +218,7 @@ typedef struct {
     float *d_nete;
 } reduction;
 
-/* Adds the chunks' weight gradients, chunk by chunk. */
+/* Adds the weight gradients of the chunks in the order of the chunks. */
 static void reduce_piece(void *arg, size_t piece)
 {
     const reduction *r = arg;
@@ -234,7 +234,7 @@ static void reduce_piece(void *arg, size_t piece)
     }
 }
 
-/* Chunks from job->first on, and what they add to the sums. */
+/* Runs n chunks from job->first on, and adds their results to the sums. */
 static void run_wave(ted4_rate_job *job, size_t n, const ted4_parallel *p, float *d_net,
                      double *bits)
 {
@@ -254,7 +254,7 @@ static void run_wave(ted4_rate_job *job, size_t n, const ted4_parallel *p, float
     }
 }
 
-/* All but rate, input and where results go is filled in here. */
+/* Fills in all members of job except rate, input and the outputs, and runs the chunks. */
 static int evaluate(ted4_rate_job job, const ted4_parallel *p, float *d_net, double *bits)
 {
     ted4_rate *r = job.rate;
@@ -304,7 +304,7 @@ int ted4_rate_lanes(ted4_rate *r, const ted4_rate_input *in, const ted4_parallel
                     p, NULL, bits);
 }
 
-/* ---- by the level in use ---- */
+/* ---- dispatch by the level in use ---- */
 
 void ted4_rate_row(const float *u, const float *s, float *bits, float *d_u, float *d_s)
 {

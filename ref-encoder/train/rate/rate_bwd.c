@@ -1,15 +1,15 @@
-/* rate_bwd.c - adjoint of rate.c, one visible block at a time; weights once a chunk. spec 7.3, 9.4,
- * 10. Forward was, for a value x of a type with q = Q0 2^v:
+/* rate_bwd.c - adjoint of rate.c, one visible block at a time; gradients of weights are computed
+ * once per chunk. spec 7.3, 9.4, 10. The forward pass is, for a value x of a type with q = Q0 2^v,
  *     k = x / q + n,  bits(k - mu, s),  context = (x + q n) / Q0,  rendered value = x + q n
- * with the residual n held constant. So dk/dx = 1/q, dk/dv = -(x/q) ln 2, d(context)/dx = 1/Q0, d(x
- * + q n)/dv = q n ln 2; and what reaches x from the rendered value is the trainer's business.
+ * with the residual n held constant. So dk/dx = 1/q, dk/dv = -(x/q) ln 2, d(context)/dx = 1/Q0 and
+ * d(x + q n)/dv = q n ln 2. The trainer adds the gradient of x that comes from the rendered value.
  * SPDX-License-Identifier: BSD-2-Clause */
 #include "rate_lanes.h"
 
 #include <string.h>
 
-/* The slice networks share the gradients of mu and s with the hyperprior, to whose outputs they
- * were added. */
+/* The outputs of the slice networks were added to those of the hyperprior, so both have the same
+ * gradients of mu and s. */
 static void slices_backward(const ted4_rate *r, ted4_rate_workspace *workspace, size_t i)
 {
     const ted4_layout *l = &r->layout;
@@ -35,8 +35,8 @@ static void slices_backward(const ted4_rate *r, ted4_rate_workspace *workspace, 
     }
 }
 
-/* dL/dx of one component, added to d_x, and dL/d(v ln 2), added to d_v. d_context and d_value may
- * be NULL; d_value is read before d_x, which may be the same row, is written. */
+/* Adds dL/dx of one component to d_x, and dL/d(v ln 2) to d_v. d_context and d_value may be NULL.
+ * d_value is read before d_x is written, as both may be the same row. */
 static void value_backward(const ted4_rate_job *job, const ted4_rate_block *s, int t,
                            size_t channel, const float *q, const float *d_context,
                            const float *d_value, const int32_t *on, float *d_x, float *d_v)
@@ -88,7 +88,7 @@ static void type_backward(const ted4_rate_job *job, ted4_rate_workspace *workspa
         d_v[j] = ted4_inward(v[j], TED4_V_MIN, TED4_V_MAX, d_v[j] * TED4_LN2);
 }
 
-/* Straight-through: bits count times the sigmoid of the logit. */
+/* Straight-through estimator: bits are weighted by the sigmoid of the logit. */
 static void mask_backward(float weight, const float *bits, const int32_t *on, const float *logit,
                           float *d_logit)
 {
@@ -168,7 +168,7 @@ void ted4_rate_block_backward(const ted4_rate_job *job, ted4_rate_workspace *wor
     hyper_backward(r, workspace, i);
 }
 
-/* Layer k of a network over all visible blocks. x: its inputs. */
+/* Computes the gradients of layer k's weights over all visible blocks. x: the layer's inputs. */
 static void layer_weights(const ted4_rate_net *n, int k, const float *x, size_t x_stride,
                           const float *d, size_t n_visible, float *d_net)
 {

@@ -1,14 +1,15 @@
 /* rate_decoded.c - TED4_QUANT_INTEGER: mu, sigma and steps of a visible block exactly as a decoder
- * has them, from norm/prior.h. spec 7.3, 10.1, 10.3. The float networks still run, for their ReLUs
- * decide where gradients go; here their outputs are replaced by what the integers say.
+ * computes them, from norm/prior.h. spec 7.3, 10.1, 10.3. The float networks still run, because
+ * their ReLUs decide where gradients flow; here their outputs are replaced by those of the integer
+ * networks.
  * SPDX-License-Identifier: BSD-2-Clause */
 #include "rate_lanes.h"
 
 #include "base/bytes.h"
 #include "norm/half.h"
 
-/* Hyperprior of a visible block: its outputs stay in the workspace; v and the steps replace those
- * of the float network. */
+/* Evaluates the hyperprior of a visible block. Its outputs stay in the workspace; v and the steps
+ * replace those of the float network. */
 void ted4_rate_integer_steps(const ted4_rate_job *job, ted4_rate_workspace *workspace,
                              size_t visible, float *v, float *q)
 {
@@ -37,8 +38,8 @@ void ted4_rate_integer_steps(const ted4_rate_job *job, ted4_rate_workspace *work
     }
 }
 
-/* Adds what the slice networks say of the features, whose symbols are x / q + n. v: of the
- * features. */
+/* Adds the outputs of the slice networks for the features, whose symbols are x / q + n. v: the row
+ * of the features' step size. */
 static void slices(const ted4_rate_job *job, ted4_rate_workspace *workspace, const float *q,
                    const float *v)
 {
@@ -53,8 +54,8 @@ static void slices(const ted4_rate_job *job, ted4_rate_workspace *workspace, con
 
     for (size_t c = 0; c < f; c++)
         for (size_t j = 0, at = ted4_row_floats(c); j < TED4_LANES; j++) {
-            /* Where x / q has no room for fractions the sum may round to just outside of the range
-             * of symbols. */
+            /* If x / q is too large for fractions, the sum may round to a number just outside the
+             * range of symbols. */
             const float k = ted4_lane_round(
                 ted4_lane_within(x[at + j] / q[j] + n[at + j], -32767.0f, 32767.0f));
             const int index = (int)(v[j] * 32.0f) + 128;
@@ -76,8 +77,7 @@ static void slices(const ted4_rate_job *job, ted4_rate_workspace *workspace, con
     }
 }
 
-/* out: [P][32], of which mu and s are replaced by the decoder's mu / 256 and (sigma index - 64) /
- * 16. */
+/* In out, [P][32], replaces mu and s by the decoder's mu / 256 and (sigma index - 64) / 16. */
 void ted4_rate_integer_outputs(const ted4_rate_job *job, ted4_rate_workspace *workspace,
                                const float *q, float *out)
 {

@@ -1,5 +1,5 @@
-/* rate_fwd.c - the rate model of a chunk of visible blocks (rate.c says what of): hyperprior,
- * steps, contexts, bits; gradients through rate_bwd.c. spec 7.3, 9.4, 10.
+/* rate_fwd.c - forward pass of the rate model for a chunk of visible blocks: hyperprior, steps,
+ * contexts and bits; gradients through rate_bwd.c. rate.c describes the model. spec 7.3, 9.4, 10.
  * SPDX-License-Identifier: BSD-2-Clause */
 #include "rate_lanes.h"
 
@@ -7,7 +7,7 @@
 
 #include "train/model/formulas.h"
 
-/* An octave's row of sines, and the row of cosines behind it. */
+/* Computes an octave's row of sines and, behind it, the row of cosines. */
 static void sine_rows(const uint32_t *phase, int octave, float *row)
 {
 #pragma omp simd
@@ -18,7 +18,7 @@ static void sine_rows(const uint32_t *phase, int octave, float *row)
         row[TED4_LANES + j] = ted4_encode_cosine(phase[j] << octave);
 }
 
-/* spec 10.1: inputs of the hyperprior, the integers of the text divided by 4096. */
+/* spec 10.1: the inputs of the hyperprior are the integers of the specification divided by 4096. */
 static void encode_positions(const ted4_header *h, const float *position, uint32_t lanes, float *x)
 {
     uint32_t phase[3][TED4_LANES];
@@ -62,7 +62,8 @@ static void step_sizes(const ted4_layout *l, const float *v, float *q)
     }
 }
 
-/* The hyperprior up to its rows v, and the steps q. The other outputs come in block_forward. */
+/* Evaluates the hyperprior up to its rows v, and the steps q. block_forward computes the other
+ * outputs. */
 static void steps_forward(const ted4_rate_job *job, ted4_rate_workspace *workspace, size_t i,
                           size_t visible)
 {
@@ -87,7 +88,7 @@ static void steps_forward(const ted4_rate_job *job, ted4_rate_workspace *workspa
         ted4_rate_integer_steps(job, workspace, visible, v, job->steps[visible]);
 }
 
-/* Values and masks of the lanes in use. */
+/* Loads values and masks of the lanes in use. */
 static void load_block(const ted4_rate_job *job, ted4_rate_block *s, size_t visible)
 {
     const ted4_layout *l = job->in->layout;
@@ -125,7 +126,8 @@ static void load_block(const ted4_rate_job *job, ted4_rate_block *s, size_t visi
     }
 }
 
-/* spec 10.3: contexts, and what each slice network adds to mu and s of its slice. */
+/* spec 10.3: computes the contexts, and adds the output of each slice network to mu and s of its
+ * slice. */
 static void slices_forward(const ted4_rate_job *job, ted4_rate_workspace *workspace, size_t i,
                            size_t visible)
 {
@@ -167,7 +169,8 @@ static void slices_forward(const ted4_rate_job *job, ted4_rate_workspace *worksp
 
 /* ---- bits ---- */
 
-/* The lanes that count component c of type t, and where its bits are gathered. */
+/* Returns the mask of the lanes in which component c of type t is coded, and sets *gathered to the
+ * row that its bits are added to. */
 static const float *component_mask(ted4_rate_block *s, int t, size_t c, float *type_bits,
                                    float **gathered)
 {
@@ -181,8 +184,8 @@ static const float *component_mask(ted4_rate_block *s, int t, size_t c, float *t
     return t == TED4_PHI ? s->dynamic : s->used;
 }
 
-/* Bits of one component, and dL/d(k, mu, s). A clamped s has a gradient only where it leads back
- * inside. */
+/* Computes the bits of one component, and dL/d(k, mu, s). A clamped s has a gradient only if that
+ * leads back inside the range. */
 static void component_bits(float weight, const float *mask, const float *k_mu, const float *s,
                            float *d_symbol, float *d_mu, float *d_s, float *gathered)
 {
@@ -209,8 +212,8 @@ static double masked_sum(const float *bits, const float *mask)
     return sum;
 }
 
-/* Adds the bits of a type to those of the visible block's anchors; offsets are apart. total: of a
- * type that is coded for every anchor in use. */
+/* Adds the bits of type t to those of the visible block's anchors; offsets have rows of their own.
+ * total: the bits, if the type is coded for every anchor in use. */
 static void tell_lanes(const ted4_rate_job *job, const ted4_rate_block *s, size_t visible, int t,
                        const float *total)
 {

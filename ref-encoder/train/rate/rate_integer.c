@@ -1,5 +1,5 @@
-/* rate_integer.c - TED4_QUANT_INTEGER: the integer networks, made when they have changed. What they
- * do to a visible block is in rate_decoded.c.
+/* rate_integer.c - TED4_QUANT_INTEGER: builds the integer networks whenever the weights have
+ * changed. rate_decoded.c evaluates them for a visible block.
  * SPDX-License-Identifier: BSD-2-Clause */
 #include "rate_parts.h"
 

@@ -1,36 +1,39 @@
-/* rate_row.c - bits of 32 symbols of one component and their derivatives: a smooth model of the
+/* rate_row.c - bits of 32 symbols of one component, and their derivatives: a smooth model of the
  * alphabet of spec 9.4.
  *
- * With a = |k - mu| steps, sigma = 2^s steps, eps = 2^-16, and w = min(6 sigma, 4095) + 2 half the
- * width of the window:
+ * With a = |k - mu| steps, sigma = 2^s steps, eps = 2^-16, and w = min(6 sigma, 4095) + 2, which is
+ * half the width of the window:
  *     bits = -log2 P,  P = (1 - 2 w eps) p + eps h
  *     for a < w: p = Phi((a + 1/2) / sigma) - Phi((a - 1/2) / sigma)    the symbol's share
  *                h = 1 / (1 + a / w)                                    the slot that every symbol
- *                    has
- *     beyond:    p = h (1 - Phi((w - 3/2) / sigma))                     the tail, which the escape
- *                has, where 4095 narrows the window
+ *                                                                       has
+ *     beyond:    p = h (1 - Phi((w - 3/2) / sigma))                     the tail, which belongs to
+ *                                                                       the escape, if 4095 narrows
+ *                                                                       the window
  *                h = 1 / (2 (1 + a - w)^2)                              1 + 2 log2(1 + excess) bits
- *                    after the escape
- * For a < w, h stands where a coder has the constant 1. It costs at most one bit, only where the
- * floor rules, and it has a slope everywhere: an outlier is pulled back, and its sigma pushed up,
- * however far out it lies. A constant floor would leave it without gradient (annex D.1, traps).
+ *                                                                       after the escape
+ * For a < w, a coder has the constant 1 instead of h. The difference is at most one bit, and only
+ * where the floor dominates. But h has a slope everywhere: an outlier is pulled back, and its sigma
+ * is pushed up, at any distance. A constant floor would leave it without gradient (annex D.1,
+ * traps).
  * SPDX-License-Identifier: BSD-2-Clause */
 #include "rate_lanes.h"
 
 #define SLOT            0x1p-16f /* eps */
 #define MAX_HALF_WINDOW 4095.0f
-/* Bins narrower than this many sigmas: both formulas are right to 1e-5. */
+/* Width of a bin, in sigmas, below which a series is used; at this width, both formulas are correct
+ * to 1e-5. */
 #define NARROW          0.0625f
-#define MAX_DISTANCE    1e9f /* keeps squares finite; the slope stays right */
+#define MAX_DISTANCE    1e9f /* keeps squares finite; the slope stays correct */
 
-/* Probability p of the bin [a - 1/2, a + 1/2] / sigma and its derivatives; no differences of nearly
- * equal numbers anywhere. */
+/* Probability p of the bin [a - 1/2, a + 1/2] / sigma, and its derivatives. They are computed
+ * without any difference of nearly equal numbers. */
 typedef struct {
     float p, d_a, d_ln_sigma;
 } bin;
 
-/* Midpoint m and half width h of the bin in sigmas. With the densities at its ends, C is half their
- * sum and S half their difference. */
+/* m and h are the midpoint and half the width of the bin, in sigmas. C is half the sum of the
+ * densities at its ends, and S half their difference. */
 static inline bin bin_make(float a, float inv_sigma)
 {
     const float m = a * inv_sigma, h = 0.5f * inv_sigma;
@@ -52,8 +55,8 @@ static inline bin bin_make(float a, float inv_sigma)
     return b;
 }
 
-/* The bins of a row. Its own loop, so that both vectors of it are under way at the same time: a row
- * is bound by latency. */
+/* Computes the bins of a row. This is a separate loop so that both vectors of a row are in flight
+ * at the same time, because latency limits the speed. */
 static void bins(const float *restrict a, const float *restrict sigma, float *restrict p,
                  float *restrict d_a, float *restrict d_ln_sigma)
 {
@@ -67,8 +70,8 @@ static void bins(const float *restrict a, const float *restrict sigma, float *re
     }
 }
 
-/* Share of one tail beyond a window's half width w, and its derivative by ln sigma: none where w
- * goes with sigma. */
+/* Returns the share of one tail beyond a window's half width w. *d_ln_sigma receives its derivative
+ * with respect to ln sigma, which is taken as 0 if w varies with sigma. */
 static inline float tail_make(float w, float sigma, int fixed, float *d_ln_sigma)
 {
     const float t = (w - 1.5f) / sigma, f = ted4_lane_normal(t);
@@ -77,7 +80,7 @@ static inline float tail_make(float w, float sigma, int fixed, float *d_ln_sigma
     return f * ted4_lane_mills(1.0f / (1.0f + 0.25f * t));
 }
 
-/* spec 9.4; see the head of this file. u = k - mu. d_u and d_s are derivatives of bits. */
+/* spec 9.4; see the head of this file. u = k - mu. d_u and d_s receive the derivatives of bits. */
 void TED4_LEVELED(ted4_rate_row)(const float *restrict u, const float *restrict s,
                                  float *restrict bits, float *restrict d_u, float *restrict d_s)
 {
@@ -96,7 +99,7 @@ void TED4_LEVELED(ted4_rate_row)(const float *restrict u, const float *restrict 
         const float six = 6.0f * sigma[j];
         const int fixed = six >= MAX_HALF_WINDOW;
         const float w = (fixed ? MAX_HALF_WINDOW : six) + 2.0f;
-        const float dw = fixed ? 0.0f : six; /* by ln sigma */
+        const float dw = fixed ? 0.0f : six; /* with respect to ln sigma */
         const float e = a[j] > w ? 1.0f + (a[j] - w) : 1.0f;
         const float y = a[j] < w ? w + a[j] : 2.0f * w; /* h = w / (y e^2) */
         const float r = 1.0f / (y * e);
