@@ -1,8 +1,8 @@
-/* feature_pca.c - see feature_pca.h. With S the covariance of the features f, m their mean, W the
- * stacked first layers of the heads, S = L L^T and the eigenvectors L^T W^T W L = Q D Q^T: the
- * components z = K Q^T L^-1 (f - m) are uncorrelated, f = m + L Q K^-1 z, and what z_i does to the
- * heads, W L Q e_i / K_i, is as large for all i with K = D^(1/2) / s. s: root mean square of the
- * columns of W.
+/* feature_pca.c - see feature_pca.h. S is the covariance of the features f, m their mean, and W the
+ * stacked first layers of the heads. With S = L L^T and the eigenvectors L^T W^T W L = Q D Q^T, the
+ * components z = K Q^T L^-1 (f - m) are uncorrelated, and f = m + L Q K^-1 z. The effect of z_i on
+ * the heads, W L Q e_i / K_i, has the same size for all i if K = D^(1/2) / s, where s is the root
+ * mean square of the columns of W.
  * SPDX-License-Identifier: BSD-2-Clause */
 #include "feature_pca.h"
 
@@ -12,11 +12,11 @@
 
 #include "unit_stats.h"
 
-/* Share of the mean variance that each feature has at least; least D_i as a share of the largest.
- */
+/* RIDGE: minimum variance of each feature, as a share of the mean variance. LEAST: minimum D_i, as
+ * a share of the largest. */
 #define RIDGE 1e-6
 #define LEAST 1e-8
-/* Sweeps of Jacobi's method: it ends by itself long before. */
+/* Limit of the sweeps of Jacobi's method, which converges long before. */
 enum { MOST_SWEEPS = 60 };
 
 typedef struct {
@@ -24,7 +24,7 @@ typedef struct {
     double *mean, *lower, *forms,
         *vectors;      /* [n], [n][n] each: L; L^T W^T W L, later D on its diagonal; Q by columns */
     double *to, *from; /* [n][n]: K Q^T L^-1, L Q K^-1 */
-    double *storage;   /* owned: all of these */
+    double *storage;   /* owned: memory of all of these */
 } axes;
 
 static int allocate(axes *a, size_t n)
@@ -42,7 +42,7 @@ static int allocate(axes *a, size_t n)
     return 0;
 }
 
-/* L from moments [n + 1][n + 1]. */
+/* Computes L from the moments [n + 1][n + 1]. */
 static void factor(axes *a, const double *moment)
 {
     const size_t n = a->n, side = n + 1;
@@ -63,7 +63,7 @@ static void factor(axes *a, const double *moment)
         }
 }
 
-/* L^T W^T W L, of rows of W. Returns s^2. */
+/* Computes L^T W^T W L from the rows of W. Returns s^2. */
 static double make_form(axes *a, const float *rows, size_t n_rows)
 {
     const size_t n = a->n;
@@ -86,7 +86,7 @@ static double make_form(axes *a, const float *rows, size_t n_rows)
     return square / (double)n;
 }
 
-/* One rotation of Jacobi's method in the plane of axes p and q. */
+/* Does one rotation of Jacobi's method in the plane of axes p and q. */
 static void turn(axes *a, size_t p, size_t q)
 {
     const size_t n = a->n;
@@ -132,7 +132,7 @@ static void diagonalise(axes *a)
     }
 }
 
-/* Places of the axes by falling D; equal ones as they stand. */
+/* Sorts the axes by decreasing D; those of equal D stay in order. */
 static void sort_axes(const axes *a, size_t *order)
 {
     for (size_t i = 0; i < a->n; i++) {
@@ -144,7 +144,8 @@ static void sort_axes(const axes *a, size_t *order)
     }
 }
 
-/* Both ways between features and components. s: what a step of a feature does on average. */
+/* Computes the maps from features to components and back. s: average effect of one step of a
+ * feature. */
 static void make_ways(axes *a, double s)
 {
     const size_t n = a->n;
@@ -196,7 +197,7 @@ static void turn_anchors(ted4_trainer *t, const axes *a)
     }
 }
 
-/* The first layer of a head: W from, b + W mean. */
+/* Adapts the first layer of a head: replaces W by W a->from, and b by b + W a->mean. */
 static void turn_reader(float *w, size_t in, size_t out, const axes *a)
 {
     float *b = w + in * out;
@@ -219,7 +220,7 @@ static void turn_reader(float *w, size_t in, size_t out, const axes *a)
     }
 }
 
-/* The last layer of F_deform: its rows 3 .. are changes of the feature. */
+/* Adapts the last layer of F_deform, of which the rows from 3 on are changes of the feature. */
 static void turn_maker(float *w, size_t in, size_t out, const axes *a)
 {
     for (size_t i = 0; i <= in; i++) {

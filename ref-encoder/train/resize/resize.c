@@ -1,4 +1,4 @@
-/* resize.c - see resize.h.
+/* resize.c - resizes a trainer's model: layout, anchors, then networks. See resize.h.
  * SPDX-License-Identifier: BSD-2-Clause */
 #include "resize_nets.h"
 
@@ -17,7 +17,7 @@ void ted4_resize_begin(ted4_resize *s, const ted4_trainer *t)
         s->offset[k] = k;
 }
 
-/* Which old channel each channel is: [n_channels of to]. */
+/* Finds the old channel of each new channel: [n_channels of to]. */
 static void match_channels(const ted4_resize *s, const ted4_layout *from, const ted4_layout *to,
                            int *channel)
 {
@@ -37,7 +37,7 @@ static void match_channels(const ted4_resize *s, const ted4_layout *from, const 
     channel[to->temporal_logit] = from->temporal_logit;
 }
 
-/* Statistics of growth, which is over, are not taken along. */
+/* Copies the anchors to the new layout, except the statistics of densification, which is over. */
 static int map_anchors(const ted4_trainer *t, const ted4_resize *s, const ted4_layout *from,
                        const ted4_anchors *old)
 {
@@ -59,7 +59,7 @@ static int map_anchors(const ted4_trainer *t, const ted4_resize *s, const ted4_l
     return 0;
 }
 
-/* What slice networks read of each feature on average, in units of Q0. */
+/* Computes the mean context of each feature, the input of the slice networks, in units of Q0. */
 static void mean_contexts(const ted4_layout *l, const ted4_anchors *a, float *context)
 {
     for (int c = 0; c < l->head.feature_dim; c++) {
@@ -72,8 +72,8 @@ static void mean_contexts(const ted4_layout *l, const ted4_anchors *a, float *co
     }
 }
 
-/* Scalings in the other domain. What the prior knew of them does not apply: it begins with their
- * mean and spread. */
+/* Converts scalings to the other domain. The prior that was learnt for them no longer applies, and
+ * is reset to their mean and spread. */
 static void change_domain(ted4_trainer *t)
 {
     ted4_layout *l = &t->layout;

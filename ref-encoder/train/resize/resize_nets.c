@@ -1,6 +1,6 @@
-/* resize_nets.c - see resize_nets.h. Each layer W x + b becomes R (W C) x' + R (b + W c): R chooses
- * its outputs, x = C x' + c says what its old inputs are made of now. Moments of Adam are those of
- * the units that stay.
+/* resize_nets.c - see resize_nets.h. Each layer W x + b becomes R (W C) x' + R (b + W c), where R
+ * selects the outputs that remain, and x = C x' + c expresses the old inputs by the new ones. The
+ * moments of Adam are those of the units that remain.
  * SPDX-License-Identifier: BSD-2-Clause */
 #include "resize_nets.h"
 
@@ -11,14 +11,14 @@
 
 enum { MOST_UNITS = 640 };
 
-/* One layer of a network, as it is put together. */
+/* One layer of a network while it is assembled. */
 typedef struct {
     const ted4_net_shape *from, *to;
-    size_t blob_from, blob_to; /* where the networks' blob begins in the arrays */
+    size_t blob_from, blob_to; /* offset of the networks' blob in the arrays */
     int layer;
-    int row[MOST_UNITS];      /* [outputs]: which old output */
-    int col[MOST_UNITS];      /* [inputs]: which old input */
-    int n_rows, n_from, n_to; /* so far: rows, old and new columns */
+    int row[MOST_UNITS];      /* [outputs] the old output of each */
+    int col[MOST_UNITS];      /* [inputs] the old input of each */
+    int n_rows, n_from, n_to; /* numbers of rows, old columns and new columns so far */
     double *decode;           /* [old inputs][new inputs + 1] */
 } layer_map;
 
@@ -41,7 +41,7 @@ static int begin_layer(layer_map *m, const ted4_net_shape *from, const ted4_net_
     return m->decode != NULL ? 0 : -1;
 }
 
-/* The next n old inputs, through w; NULL: as they are. */
+/* Adds the next n old inputs, reduced by w, or unchanged if w is NULL. */
 static void add_inputs(layer_map *m, int n, const ted4_pruned_units *w)
 {
     const size_t stride = m->to->dim[m->layer] + 1u;
@@ -64,7 +64,8 @@ static void add_inputs(layer_map *m, int n, const ted4_pruned_units *w)
     m->n_to += to;
 }
 
-/* The next n old outputs from old row first on, of which w keeps some. */
+/* Adds the next n old outputs, from old row first on; unless w is NULL, only those that it keeps.
+ */
 static void add_outputs(layer_map *m, int first, int n, const ted4_pruned_units *w)
 {
     const int to = w != NULL ? w->to : n;
@@ -73,7 +74,7 @@ static void add_outputs(layer_map *m, int first, int n, const ted4_pruned_units 
         m->row[m->n_rows++] = first + (w != NULL ? w->keep[k] : k);
 }
 
-/* The layer as it is put together, into the new arrays; frees what it took. */
+/* Writes the assembled layer to the new arrays, and frees the memory of m. */
 static void end_layer(layer_map *m, const ted4_resize_nets *n)
 {
     const size_t in = m->from->dim[m->layer], out = m->from->dim[m->layer + 1];
@@ -104,7 +105,7 @@ static void end_layer(layer_map *m, const ted4_resize_nets *n)
 
 /* ---- reconstruction networks ---- */
 
-/* Outputs of the last layer. */
+/* Adds the outputs of the last layer. */
 static void add_last_outputs(layer_map *m, const ted4_resize_nets *n, int net)
 {
     static const int each[TED4_NETS_R] = { 0, 0, 1, 7, 3 };
@@ -165,7 +166,7 @@ static int map_netr(const ted4_resize_nets *n, int net)
 
 /* ---- prior networks ---- */
 
-/* mu, then s, of the components that stay. */
+/* Adds mu, then s, of the components that remain. */
 static void add_type_outputs(layer_map *m, const ted4_resize_nets *n, int type)
 {
     const ted4_resize *s = n->resize;
@@ -208,7 +209,8 @@ static int map_hyper(const ted4_resize_nets *n)
     return 0;
 }
 
-/* The slice of component c of the feature, and where that begins. */
+/* Returns the slice of component c of the feature, and sets *begin to the slice's first component.
+ */
 static int slice_of(const ted4_header *h, int c, int *begin)
 {
     int m = 0;
@@ -223,7 +225,8 @@ static int old_feature(const ted4_resize_nets *n, int c)
     return n->resize->feature != NULL ? n->resize->feature->keep[c] : c;
 }
 
-/* Contexts of slice network m before, of which those that are gone are taken for their means. */
+/* Adds the contexts of an old slice network. Contexts that no longer exist are replaced by their
+ * means. */
 static void add_contexts(layer_map *map, const ted4_resize_nets *n, int known)
 {
     const size_t stride = map->to->dim[0] + 1u;
@@ -240,7 +243,7 @@ static void add_contexts(layer_map *map, const ted4_resize_nets *n, int known)
     }
 }
 
-/* Slice m of the new header, from the slice that its components were in. */
+/* Makes the network of slice m of the new header from that of the old slice of its components. */
 static int map_slice(const ted4_resize_nets *n, int m, int known)
 {
     int begin;
@@ -265,7 +268,8 @@ static int map_slice(const ted4_resize_nets *n, int m, int known)
     return 0;
 }
 
-/* What slice network m said at the mean context: of mu and s of its components [2 slice]. */
+/* Evaluates the old slice network m at the mean context. said: [2 slice], receives mu and s of its
+ * components. */
 static void say_at_mean(const ted4_resize_nets *n, int m, float *said)
 {
     const ted4_net_shape *s = &n->from->shape.slice[m];
@@ -288,8 +292,8 @@ static void say_at_mean(const ted4_resize_nets *n, int m, float *said)
     }
 }
 
-/* Components of the first slice now, that had a slice network before: the hyperprior says what that
- * said on average. */
+/* For components of the new first slice that had a slice network before, adds the mean output of
+ * that network to the hyperprior. */
 static void keep_means(const ted4_resize_nets *n)
 {
     const ted4_net_shape *h = &n->to->shape.hyper;
@@ -329,7 +333,7 @@ static int map_nete(const ted4_resize_nets *n)
 
 /* ---- bank ---- */
 
-/* Rows at other times are interpolated as spec 11.2 does it. */
+/* Resamples the bank. Rows at other times are interpolated as in spec 11.2. */
 static void map_bank(const ted4_resize_nets *n)
 {
     const ted4_header *from = &n->from->head, *to = &n->to->head;

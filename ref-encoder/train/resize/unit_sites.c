@@ -1,4 +1,4 @@
-/* unit_sites.c - where the sites of unit_stats.h lie in the networks: how wide they are, and the
+/* unit_sites.c - the places of the sites of unit_stats.h in the networks: their widths, and the
  * weights that read them.
  * SPDX-License-Identifier: BSD-2-Clause */
 #include "unit_stats.h"
@@ -38,13 +38,13 @@ int ted4_site_width(const ted4_layout *l, ted4_site site)
     return 0;
 }
 
-/* Rows of weights as they are gathered. */
+/* The rows of weights gathered so far. */
 typedef struct {
     float *rows;
     int width, count;
 } reader_rows;
 
-/* The first width columns of a layer of a network. */
+/* Gathers the first width columns of a layer of a network. */
 static int gather(reader_rows *r, const float *blob, const ted4_net_shape *s, int layer)
 {
     const float *w = blob + s->first;

@@ -1,5 +1,5 @@
-/* unit_stats.c - see unit_stats.h. Plain loops over a few thousand samples; what they compute is
- * spec 10.1, 10.3, 11.2, 11.3 and 11.5, but for the rounding inside the prior's networks.
+/* unit_stats.c - see unit_stats.h. These plain loops over a few thousand samples compute spec 10.1,
+ * 10.3, 11.2, 11.3 and 11.5, except for the rounding inside the prior's networks.
  * SPDX-License-Identifier: BSD-2-Clause */
 #include "unit_stats.h"
 
@@ -15,7 +15,8 @@
 #include "train/model/normalise.h"
 #include "train/state/visible_blocks.h"
 
-/* Training pictures looked at; anchors drawn for each, of which those in view count. */
+/* PICTURES: training pictures that are sampled. DRAWS: anchors drawn for each picture, of which
+ * those in view count. */
 enum { PICTURES = 32, DRAWS = 192, MOST = 640 };
 
 typedef struct {
@@ -74,7 +75,7 @@ static float value_of(const sampling *s, int type, int c)
     return s->value[(size_t)(s->t->layout.first[type] + c) * TED4_LANES + s->lane];
 }
 
-/* What F_deform reads, for motion bank and concat. */
+/* Computes the input of F_deform, for motion bank and concat. */
 static void deform_input(const sampling *s, float *x)
 {
     const ted4_layout *l = &s->t->layout;
@@ -99,7 +100,8 @@ static int has_deform(const ted4_layout *l)
     return l->head.motion == TED4_MOTION_BANK || l->head.motion == TED4_MOTION_CONCAT;
 }
 
-/* The anchor's feature, changed by F_deform when moved, and the view direction behind it. */
+/* Computes the input of the heads: the anchor's feature, changed by F_deform if moved, followed by
+ * the view direction. */
 static void head_input(const sampling *s, int moved, float *x)
 {
     const ted4_layout *l = &s->t->layout;
@@ -152,7 +154,7 @@ static void sample_heads(sampling *s)
     }
 }
 
-/* spec 10.1: the integers of the text divided by 4096. */
+/* spec 10.1: computes the integers of the specification, divided by 4096. */
 static void encode_position(const sampling *s, float *x)
 {
     const int octaves = s->t->layout.head.pe_octaves;
@@ -204,7 +206,7 @@ static void sample(sampling *s)
     }
 }
 
-/* spec 11.2. */
+/* spec 11.2: interpolates the bank at time num. */
 static void bank_at(sampling *s, uint32_t num)
 {
     const ted4_layout *l = &s->t->layout;
@@ -229,7 +231,7 @@ static void look_from(sampling *s, const float camera[3])
     ted4_view_direction(&s->view[0], &s->view[1], &s->view[2]);
 }
 
-/* value: room for a block. */
+/* Samples the anchors in view of one training picture. value: memory for one block. */
 static void sample_picture(sampling *s, size_t item, float *value)
 {
     ted4_trainer *t = s->t;
@@ -257,7 +259,7 @@ static void sample_picture(sampling *s, size_t item, float *value)
     }
 }
 
-/* From sums over the lower triangle to means of the whole. */
+/* Turns the sums in the lower triangle into means of the whole matrix. */
 static void mean_of(sampling *s)
 {
     const size_t side = s->width + 1;
