@@ -1,4 +1,4 @@
-/* chain.c - the dense layers of a generator's networks, forward and back. spec 7.4.
+/* chain.c - the dense layers of a generator's networks, forward and backward. spec 7.4.
  * SPDX-License-Identifier: BSD-2-Clause */
 #include "decode_lanes.h"
 

@@ -1,6 +1,6 @@
-/* decode_bwd.c - adjoint of decode_fwd.c: gradients of Gaussians to those of anchors, networks and
- * bank. Masks are straight-through: their gradient is that of sigmoid(logit) in the place of the
- * hard 0 or 1, which has none. Positions get none.
+/* decode_bwd.c - adjoint of decode_fwd.c: from gradients of Gaussians to those of anchors, networks
+ * and bank. Masks are straight-through: their gradient is that of sigmoid(logit), as the hard 0 or
+ * 1 has none. Positions have no gradient.
  * SPDX-License-Identifier: BSD-2-Clause */
 #include "decode_lanes.h"
 
@@ -8,13 +8,13 @@
 #include <math.h>
 #include <string.h>
 
-/* One visible block on its way back. */
+/* The state of the backward pass of one visible block. */
 typedef struct {
     const ted4_generator *g;
-    float *planes;              /* saved by forward */
-    float *d;                   /* gradients of layer outputs, planes */
-    float *d_attr;              /* gradients of its values */
-    float *d_feature, *d_moved; /* F + 3 planes each: of the inputs of heads of f, f' */
+    float *planes;              /* saved by the forward pass */
+    float *d;                   /* gradients of layer outputs, in planes */
+    float *d_attr;              /* gradients of the block's values */
+    float *d_feature, *d_moved; /* F + 3 planes each: for the inputs of heads that read f, f' */
     int32_t on[TED4_LANES];
     float d_size[6 * TED4_LANES], d_position[3 * TED4_LANES], d_active[TED4_LANES];
 } block_state;
@@ -24,7 +24,7 @@ static float *d_plane(const block_state *s, int plane)
     return ted4_gen_plane(s->d, plane - s->g->plane.outputs);
 }
 
-/* sigmoid'(logit): the gradient that a mask passes on. */
+/* Returns sigmoid'(logit), the gradient of a mask. */
 static inline float mask_slope(float logit)
 {
     const float m = ted4_lane_sigmoid(logit);
@@ -32,7 +32,7 @@ static inline float mask_slope(float logit)
     return m * (1.0f - m);
 }
 
-/* Forward was, with s the sigmoid of the scale outputs:
+/* Forward, with s the sigmoid of the scale outputs:
  *     mean = position + offset size, scale = size' s. */
 static void geometry_backward(block_state *s, int k, const float *const *gr)
 {
@@ -63,7 +63,7 @@ static void geometry_backward(block_state *s, int k, const float *const *gr)
     }
 }
 
-/* Forward was r = q / |q|, or (1, 0, 0, 0) where q is too short: dq = (dr - (dr r) r) / |q|. */
+/* Forward: r = q / |q|, or (1, 0, 0, 0) if q is too short. So dq = (dr - (dr r) r) / |q|. */
 static void rotation_backward(block_state *s, int k, const float *const *gr)
 {
     const int first = s->g->plane.covariance + 7 * k + 3;
@@ -90,7 +90,7 @@ static void rotation_backward(block_state *s, int k, const float *const *gr)
     }
 }
 
-/* Where squares of q overflow, forward was r = 0 whatever q: no gradient. */
+/* If squares of q overflow, the forward pass yields r = 0 for any q, so there is no gradient. */
 static void endless_rotation_backward(block_state *s, int k)
 {
     const int first = s->g->plane.covariance + 7 * k + 3;
@@ -122,7 +122,7 @@ static void colour_backward(block_state *s, int k, const float *const *gr)
     }
 }
 
-/* Forward was o = 2 sigmoid(2 y) - 1, opacity = mask max(o, 0) A; do/dy = 1 - o o. */
+/* Forward: o = 2 sigmoid(2 y) - 1, opacity = mask max(o, 0) A. So do/dy = 1 - o o. */
 static void opacity_backward(block_state *s, int k, const float *const *gr)
 {
     const ted4_generator *g = s->g;
@@ -180,7 +180,7 @@ static void heads_backward(block_state *s)
                             moves ? s->d_moved : s->d_feature, !moves);
 }
 
-/* Forward was p' = p + m y, f' = f + m y'. d_y: the gradient of y times m. */
+/* Forward: p' = p + m y, f' = f + m y'. So d_y = m d, with d the gradient of p' or f'. */
 static void deform_backward(block_state *s)
 {
     const ted4_generator *g = s->g;
@@ -223,7 +223,8 @@ static void feature_backward(block_state *s)
         d[j] = s->d_feature[j] + (moves ? s->d_moved[j] : 0.0f);
 }
 
-/* Forward was S = 2^l or max(l, 2^-20), where what lies below can come back. */
+/* Forward: S = 2^l or max(l, 2^-20). Values below that minimum receive only gradients that lead
+ * back to it. */
 static void sizes_backward(block_state *s)
 {
     const ted4_generator *g = s->g;
@@ -241,7 +242,7 @@ static void sizes_backward(block_state *s)
     }
 }
 
-/* Forward was u = (t - a) / b, b = max(2^tau, TED4_EDGE_MIN), A = exp(-u u): dA/da = 2 u A / b,
+/* Forward: u = (t - a) / b, b = max(2^tau, TED4_EDGE_MIN), A = exp(-u u). So dA/da = 2 u A / b and
  * dA/db = 2 u u A / b. */
 static void activation_backward(block_state *s, const ted4_generate_input *in)
 {
@@ -269,7 +270,8 @@ static void activation_backward(block_state *s, const ted4_generate_input *in)
     }
 }
 
-/* d: the visible block's planes of layer outputs; d_inputs: scratch for the inputs of the heads. */
+/* Backpropagates one visible block. d: memory for gradients of the planes of layer outputs;
+ * d_inputs: memory for those of the heads' inputs. */
 static void backward_block(const ted4_gen_job *t, size_t visible, float *d, float *d_inputs)
 {
     const ted4_layout *l = &t->g->layout;
@@ -315,7 +317,7 @@ void TED4_LEVELED(ted4_gen_backward)(void *arg, size_t chunk)
     }
 }
 
-/* Sums one range of the gradient arrays over the chunks, in order. */
+/* Sums one range of the gradient arrays over the chunks, in their order. */
 void TED4_LEVELED(ted4_gen_sum_range)(void *arg, size_t range)
 {
     const ted4_gen_job *t = arg;

@@ -1,13 +1,13 @@
-/* decode_fwd.c - anchors to Gaussians at a time and camera centre, a visible block at a time (spec
- * 11.1 to
- * 11.5, in normalised space), with the masks of training. The adjoint is decode_bwd.c.
+/* decode_fwd.c - turns anchors into Gaussians for one time and one camera centre, one visible block
+ * at a time (spec 11.1 to 11.5, in normalised space), with the masks of training. The adjoint is
+ * decode_bwd.c.
  * SPDX-License-Identifier: BSD-2-Clause */
 #include "decode_lanes.h"
 
 #include <math.h>
 #include <string.h>
 
-/* Copies n channels, with 0 in the lanes that are not used, whatever they hold. */
+/* Copies n channels, with 0 in unused lanes. */
 static void copy_lanes(int n, const int32_t *on, const float *from, float *to)
 {
     for (int c = 0; c < n; c++, from += TED4_LANES, to += TED4_LANES) {
@@ -17,7 +17,7 @@ static void copy_lanes(int n, const int32_t *on, const float *from, float *to)
     }
 }
 
-/* spec 11.5: the direction from the camera to each anchor. */
+/* spec 11.5: computes the direction from the camera to each anchor. */
 static void view_directions(const float *camera, const float *position, float *to)
 {
 #pragma omp simd
@@ -49,7 +49,7 @@ static void load_block(ted4_generator *g, const ted4_generate_input *in, size_t 
         ted4_gen_encode_points(position, ted4_gen_plane(planes, g->plane.point));
 }
 
-/* spec 11.1: S of the six scaling values. */
+/* spec 11.1: computes S from the six scaling values. */
 static void sizes(const ted4_generator *g, float *planes)
 {
     const float *l = ted4_gen_channel(g, planes, g->layout.first[TED4_SCALING]);
@@ -67,7 +67,7 @@ static void sizes(const ted4_generator *g, float *planes)
     }
 }
 
-/* spec 11.3: f' = f + m df; moved position = p + m dx, left in position. */
+/* spec 11.3: computes f' = f + m df and the moved position p + m dx, which replaces position. */
 static void deform(ted4_generator *g, float *planes, float *position)
 {
     const int f = g->layout.head.feature_dim;
@@ -96,7 +96,7 @@ static void deform(ted4_generator *g, float *planes, float *position)
         memcpy(moved, ted4_gen_plane(planes, g->plane.view), 3 * TED4_LANES * sizeof *moved);
 }
 
-/* spec 11.4. */
+/* spec 11.4: computes the activation. */
 static void activation(const ted4_generator *g, const ted4_generate_input *in, float *planes)
 {
     float *a = ted4_gen_plane(planes, g->plane.active);
@@ -115,7 +115,7 @@ static void activation(const ted4_generator *g, const ted4_generate_input *in, f
     }
 }
 
-/* spec 11.5, what the heads' outputs mean: in place, 2 sigmoid(2 y) - 1 and sigmoids, except for
+/* spec 11.5: applies 2 sigmoid(2 y) - 1 and sigmoids to the heads' outputs, in place, except for
  * quaternions. */
 static void squash(const ted4_generator *g, float *planes)
 {
@@ -156,7 +156,7 @@ static void emit_rotation(const float *q, float *const *out)
     }
 }
 
-/* The Gaussians of offset k of a visible block. position: of the moved anchors. */
+/* Writes the Gaussians of offset k of a visible block. position: of the moved anchors. */
 static void emit(const ted4_generator *g, float *planes, const float *position, const int32_t *on,
                  int k, float *const *out)
 {

@@ -1,10 +1,11 @@
-/* deform_time.c - what depends on the time only: bank interpolation, encoded time, and the first
- * layer of F_deform with all of it multiplied in. spec 11.2 and 11.3. With z the bank at a
- * time, P and p weights and bias of F_project, W and b those of the first layer of F_deform:
+/* deform_time.c - computes everything that depends only on the time: bank interpolation, encoded
+ * time, and the effective first layer of F_deform that results. spec 11.2 and 11.3. With z the bank
+ * at a time, P and p the weights and bias of F_project, and W and b those of the first layer of
+ * F_deform:
  *     bank    W (z * (P phi + p)) + b = (W diag(z) P) phi + (W diag(z) p + b)
  *     concat  W [phi, z] + b          = W_left phi + (W_right z + b)
  *     inr     the same with E(p), E(t) for phi, z
- * so each anchor pays for one narrow layer only.
+ * so only one narrow layer has to be evaluated per anchor.
  * SPDX-License-Identifier: BSD-2-Clause */
 #include "decode_state.h"
 #include "train/model/formulas.h"
@@ -47,7 +48,7 @@ void ted4_gen_motion_finish(ted4_gen_motion *m)
     free(m->product);
 }
 
-/* spec 10.1 with 10 octaves: n coordinates in Q24 to 21 n values, stride apart. */
+/* spec 10.1 with 10 octaves: encodes n coordinates in Q24 as 21 n values, stride apart. */
 static void encode(int n, const int32_t *x, size_t stride, float *to)
 {
     for (int c = 0; c < n; c++, to += stride)
@@ -61,8 +62,8 @@ static void encode(int n, const int32_t *x, size_t stride, float *to)
         }
 }
 
-/* E(p) of spec 11.3. Positions of an unfinished scene need not be binary16: what is below 2^-24 is
- * cut off. */
+/* Computes E(p) of spec 11.3. Before the scene is final, positions need not be binary16; digits
+ * below 2^-24 are cut off. */
 void ted4_gen_encode_points(const float *position, float *to)
 {
     for (int j = 0; j < TED4_LANES; j++) {
@@ -81,7 +82,7 @@ static void encode_time(ted4_gen_motion *m, uint32_t num, uint32_t den)
     encode(1, &x, 1, m->time);
 }
 
-/* spec 11.2. */
+/* spec 11.2: interpolates the bank at time num / den. */
 static void interpolate(ted4_gen_motion *m, const ted4_layout *l, const float *bank, uint32_t num,
                         uint32_t den)
 {

@@ -1,5 +1,5 @@
-/* effective_layer.c - the first layer of F_deform with all that is the same for all anchors at one
- * time multiplied in, and its adjoint: deform_time.c says what from.
+/* effective_layer.c - the effective first layer of F_deform, into which everything that all anchors
+ * share at one time is multiplied, and its adjoint. deform_time.c has the formulas.
  * SPDX-License-Identifier: BSD-2-Clause */
 #include "decode_state.h"
 

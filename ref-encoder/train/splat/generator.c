@@ -1,5 +1,5 @@
-/* generator.c - see generator.h: memory, and both directions by the level in use (decode_fwd.c,
- * decode_bwd.c).
+/* generator.c - see generator.h: memory of a generator, and dispatch of both directions by the
+ * level in use (decode_fwd.c, decode_bwd.c).
  * SPDX-License-Identifier: BSD-2-Clause */
 #include "decode_state.h"
 

@@ -1,5 +1,5 @@
-/* net.c - the plan of a generator (which plane holds what, where each gradient goes).
- * spec 7.4.
+/* net.c - the plan of a generator: the contents of each plane, and the place of each gradient. spec
+ * 7.4.
  * SPDX-License-Identifier: BSD-2-Clause */
 #include "decode_state.h"
 
@@ -10,8 +10,8 @@ float *ted4_gen_alloc(size_t n)
     return aligned_alloc(64, (n + 16) / 16 * 64);
 }
 
-/* An odd number of planes: blocks at a multiple of 4096 bytes would compete for the same lines of
- * the first-level cache. */
+/* Rounds a number of planes up to an odd one, because blocks at multiples of 4096 bytes would
+ * compete for the same lines of the first-level cache. */
 static int odd(int n)
 {
     return n | 1;
@@ -44,8 +44,8 @@ static void plan_inputs(ted4_generator *g)
     p->n = n;
 }
 
-/* Adds the layers of one network: its outputs to the planes, its gradients after n_effective. Layer
- * 0 of F_deform is the effective one. */
+/* Adds the layers of one network: their outputs become planes, and their gradients lie behind the
+ * first n_effective. Layer 0 of F_deform is the effective one. */
 static int plan_chain(ted4_generator *g, int net, int x)
 {
     const ted4_net_shape *s = &g->layout.shape.netr[net];
