@@ -1,4 +1,4 @@
-/* branch.c - see branch.h.
+/* branch.c - trains a number of steps on trial: see branch.h.
  * SPDX-License-Identifier: BSD-2-Clause */
 #include "branch.h"
 

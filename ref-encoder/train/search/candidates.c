@@ -1,4 +1,4 @@
-/* candidates.c - the ways to a smaller model: see candidates.h.
+/* candidates.c - the ways to make the model smaller: see candidates.h.
  * SPDX-License-Identifier: BSD-2-Clause */
 #include "candidates.h"
 
@@ -73,7 +73,8 @@ int ted4_candidate_now(const ted4_trainer *t, ted4_candidate m)
     return 0;
 }
 
-/* Widths shrink by a quarter, or by half, in whole vectors. */
+/* Returns a width reduced by a quarter, or by half if bold, to a multiple of multiple where
+ * possible; -1 if that would be less than least, or not smaller. */
 static int fewer(int now, int multiple, int least, int bold)
 {
     int to = bold ? now / 2 : now * 3 / 4;
@@ -85,7 +86,8 @@ static int fewer(int now, int multiple, int least, int bold)
     return to >= least && to < now ? to : -1;
 }
 
-/* Bits of weights: of most of those that training leaves nothing can be seen. */
+/* The range in which bits of weights are reduced one or two at a time. Most of the bits that
+ * training leaves have no visible effect. */
 enum { COARSE = 6, FINE = 12 };
 
 static int coarser(int now, int bold)
@@ -135,10 +137,10 @@ int ted4_candidate_finer(const ted4_trainer *t, ted4_candidate m)
     return now < COARSE ? now + 1 : now < FINE ? now + 2 : now < full ? full : -1;
 }
 
-/* ---- making them ---- */
+/* ---- making candidates ---- */
 
-/* *w: a site with to units, those that held says among them (NULL: it says none). 0, or -1 with
- * t->message. */
+/* Prunes a site to to units, into *w. Units marked in held, which may be NULL, are kept. Returns 0,
+ * or -1 with t->message filled. */
 static int prune_site(ted4_trainer *t, ted4_site site, int to, const uint8_t *held,
                       ted4_pruned_units *w)
 {
@@ -161,7 +163,7 @@ static int prune_site(ted4_trainer *t, ted4_site site, int to, const uint8_t *he
 
 enum { MOST_PRUNED = TED4_NETS_R * TED4_MAX_LAYERS };
 
-/* A resizing that is being planned, and the prunings that it borrows. */
+/* A planned resizing, and the pruned units that s points to. */
 typedef struct {
     ted4_trainer *t;
     ted4_resize s;
@@ -221,7 +223,7 @@ static void one_slice(ted4_header *h)
     h->ar_width = 0;
 }
 
-/* Slices of what stays of the feature: those of which nothing does are gone. */
+/* Adapts the slices to the components of the feature that remain; empty slices are removed. */
 static void shrink_slices(ted4_header *h, const ted4_pruned_units *w)
 {
     uint8_t size[TED4_MAX_SLICES] = { 0 };
@@ -250,8 +252,8 @@ static int prune_feature(operation *o, int to)
     return 0;
 }
 
-/* The three inputs that are the view direction go; the feature makes up for their mean and for what
- * it knows of them. */
+/* Removes the three inputs of the view direction. The feature replaces their mean, and as much of
+ * them as it predicts. */
 static int prune_view(operation *o, int to)
 {
     uint8_t held[TED4_MAX_FEATURE + 3] = { 0 };
@@ -269,7 +271,7 @@ static int prune_view(operation *o, int to)
     return 0;
 }
 
-/* Octaves go from the finest on. */
+/* Removes octaves, the finest first. */
 static int prune_octaves(operation *o, int to)
 {
     uint8_t held[3 + 6 * 16] = { 0 };
@@ -281,7 +283,7 @@ static int prune_octaves(operation *o, int to)
     return o->s.position == NULL;
 }
 
-/* Those offsets stay that pictures would miss most. */
+/* Keeps the offsets whose Gaussians have the highest opacity sensitivity. */
 static int fewer_offsets(operation *o, int to)
 {
     const size_t K = o->s.head.n_offsets, n = o->t->anchors.n;
@@ -307,7 +309,8 @@ static int fewer_offsets(operation *o, int to)
 
 #define LN2 0x1.62e42fefa39efp-1
 
-/* A linear step that is on average as fine as the one in log2 was: d 2^x = 2^x ln 2 dx. */
+/* Chooses a linear step that is, on average, as fine as the step in log2 was: d 2^x = 2^x ln 2 dx.
+ */
 static void make_linear(operation *o)
 {
     const ted4_layout *l = &o->t->layout;
@@ -324,7 +327,7 @@ static void make_linear(operation *o)
     o->s.head.step[TED4_SCALING] = (float)fmax(LN2 * ted4_math_exp2(sum / n), 1e-5);
 }
 
-/* What a candidate changes, into o->s. 0, or not 0 with t->message. */
+/* Plans the changes of a candidate, in o->s. Returns 0, or not 0 with t->message filled. */
 static int plan(operation *o, ted4_candidate m, int to)
 {
     ted4_header *h = &o->s.head;

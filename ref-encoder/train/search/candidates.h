@@ -8,7 +8,7 @@
 /* Returns the name of a candidate, e.g. "hidden width of the hyperprior". */
 const char *ted4_candidate_name(ted4_candidate m);
 
-/* ted4_candidate_now returns the current size of what a candidate reduces (a width, a count or a
+/* ted4_candidate_now returns the current size of what a candidate reduces (such as a width or a
  * number of bits); ted4_candidate_next returns the next smaller size to try, or a much smaller one
  * if bold is not 0, or -1 if there is none. */
 int ted4_candidate_now(const ted4_trainer *t, ted4_candidate m);

@@ -1,5 +1,5 @@
-/* file_cost.c - the cost of a model, by making its file and drawing pictures from it: see
- * file_cost.h.
+/* file_cost.c - measures the rate-distortion cost of a model by coding its file and rendering from
+ * it: see file_cost.h.
  * SPDX-License-Identifier: BSD-2-Clause */
 #include "file_cost.h"
 
@@ -11,13 +11,14 @@
 #include "train/step/export_scene.h"
 #include "write/encode.h"
 
-/* Training pictures that judge: one a frame, within these bounds; and what drawing one takes, and
- * making the file, in training steps, as measured on kitchen at a quarter of its size. */
+/* LEAST_PICTURES and MOST_PICTURES bound the number of pictures that are rendered, which is one per
+ * frame. The times of rendering one and of coding a file are in training steps, as measured on
+ * kitchen at a quarter of its size. */
 enum { LEAST_PICTURES = 16, MOST_PICTURES = 24 };
 #define STEPS_A_PICTURE 0.4
 #define STEPS_A_FILE    4.0
-/* What the end of stage 2 decides is left undecided where the budget of all trials is not so many
- * times what it takes. */
+/* A decision at the end of stage 2 is skipped unless the budget of all trials is at least this many
+ * times what the decision takes. */
 #define SAFETY_FACTOR   3.0
 
 static size_t subset_size(const ted4_trainer *t)
@@ -56,7 +57,7 @@ int ted4_search_note(ted4_trainer *t, const struct ted4_trial *x)
     return 0;
 }
 
-/* Bytes of the file; the trainer is at the end of stage 2 afterwards. */
+/* Counts the bytes of the file. Leaves the trainer at the end of stage 2. */
 static int count_bytes(ted4_trainer *t, double *bytes)
 {
     ted4_scene *scene;
@@ -77,7 +78,7 @@ static int count_bytes(ted4_trainer *t, double *bytes)
     return 0;
 }
 
-/* lambda, in units of all values. */
+/* lambda weighs the mean bits per value, so it is divided by the number of all values. */
 double ted4_lambda_per_bit(const ted4_trainer *t)
 {
     return t->opt.lambda / (ted4_rate_norm(t) * (double)(t->anchors.n > 0 ? t->anchors.n : 1));

@@ -1,8 +1,8 @@
-/* model_search.c - which trials are made, and which smaller model is taken: see model_search.h.
- * First every candidate is tried untrained, as far as it lowers the cost without any training; what
- * is left of the budget trains those next that cost least untrained, against the same training of
- * the model at hand.
- * SPDX-License-Identifier: BSD-2-Clause */
+/* model_search.c - chooses the trials, and the smaller model to take: see model_search.h. First,
+ * every candidate is tried untrained, as far as it lowers the cost without any training. The rest
+ * of the budget is spent on training: the candidates that promise the lowest cost are trained
+ * first, and compared with the current model after the same training. SPDX-License-Identifier:
+ * BSD-2-Clause */
 #include "model_search.h"
 
 #include <math.h>
@@ -16,22 +16,23 @@
 #include "sensitivity.h"
 #include "train/monitor/checkpoint.h"
 
-/* Share of stage 2 before: values have begun to be cheap, and the prior knows them. Measured on
- * three small scenes, at 0.5 costs differ by 1 % either way. */
+/* Share of stage 2 before the search: by then, values have become cheaper, and the prior fits them.
+ * Measured on three small scenes: with 0.5, costs differ by up to 1 %, in both directions. */
 #define DECIDE_AT   0.15
-/* Share of the budget for untrained trials; trained trials that the budget pays for if nothing is
- * spent on those. */
+/* SIGHT_SHARE: share of the budget for untrained trials. TRIALS: number of trained trials that the
+ * budget would pay for if there were no untrained ones. FEWEST_STEPS: minimum steps of a trained
+ * trial. */
 #define SIGHT_SHARE 0.7
 enum { TRIALS = 16, FEWEST_STEPS = 50 };
-/* Of the distortion that a candidate adds untrained, training will take this share back, as far as
- * one may hope; a candidate that would not lower the cost by that share even so is not worth
- * training. */
+/* HOPE: the largest share of the distortion added by an untrained candidate that training can be
+ * expected to recover. LEAST_GAIN: a candidate that would not lower the cost by this share, even
+ * so, is not worth training. */
 #define HOPE       0.8
 #define LEAST_GAIN 5e-4
 
 typedef struct {
     ted4_trainer *t;
-    ted4_snapshot now, trained; /* the model at hand: before training, after it */
+    ted4_snapshot now, trained; /* the current model: before training, after it */
     ted4_cost now_cost, trained_cost;
     struct ted4_trial *trial; /* owned */
     size_t n_trials;
@@ -40,8 +41,8 @@ typedef struct {
     struct {
         int from, to;
         ted4_cost cost;
-    } untrained[TED4_CANDIDATES]; /* the next trial of each candidate, by what it costs untrained;
-                            to = -1: there is none */
+    } untrained[TED4_CANDIDATES]; /* the next trial of each candidate, with its untrained cost; to
+                                     is -1 if there is none */
 } search;
 
 double ted4_model_search_steps(const ted4_trainer *t)
@@ -49,7 +50,7 @@ double ted4_model_search_steps(const ted4_trainer *t)
     return ted4_search_budget(t) - ted4_refine_prior_bits_steps(t) - ted4_rd_prune_steps(t);
 }
 
-/* Steps that a trained trial has; 0: too few to tell anything. */
+/* Returns the steps of a trained trial, or 0 if they would be too few to tell anything. */
 static int trial_steps(const ted4_trainer *t)
 {
     const double budget = ted4_model_search_steps(t);
@@ -93,8 +94,8 @@ static int measure(search *s, ted4_cost *c)
     return ted4_file_cost(s->t, c);
 }
 
-/* The model at hand, one candidate smaller: what it costs as it is. 1: there is no such candidate;
- * -1: failed. */
+/* Applies a candidate to the current model, and measures the cost without training. Returns 0, 1 if
+ * there is no such candidate, or -1 on failure. */
 static int look(search *s, ted4_candidate m, int bold)
 {
     s->untrained[m].to = -1;
@@ -113,8 +114,8 @@ static int look(search *s, ted4_candidate m, int bold)
     return 0;
 }
 
-/* What was looked at last is the model at hand from now on if it costs less; the trainer has the
- * model at hand then. 1: taken; 0: not; -1: failed. */
+/* Makes the result of the last look the current model if it costs less. Afterwards the trainer
+ * holds the current model. Returns 1 if it was taken, 0 if not, or -1 on failure. */
 static int take_if_cheaper(search *s, ted4_candidate m)
 {
     const ted4_cost before = s->now_cost, after = s->untrained[m].cost;
@@ -132,8 +133,9 @@ static int take_if_cheaper(search *s, ted4_candidate m)
     return bad ? -1 : taken;
 }
 
-/* Half of what all Gaussians are made from is never free; and few bits of a weight may cost less
- * than all of them, but more than some in between, which a bold step would pass over. */
+/* Whether bold steps make sense. Halving the inputs of all Gaussians is never free. Weights with
+ * few bits may cost less than with all bits, but more than with some number in between, which a
+ * bold step would skip. */
 static int may_be_bold(ted4_candidate m)
 {
     return m != TED4_CANDIDATE_HEADS && m != TED4_CANDIDATE_FEATURE &&
@@ -141,9 +143,8 @@ static int may_be_bold(ted4_candidate m)
            m != TED4_CANDIDATE_MOTION_BITS;
 }
 
-/* Goes as far with a candidate as each step lowers the cost untrained: in bold steps, then in small
- * ones.
- */
+/* Applies a candidate repeatedly, in bold steps and then in small ones, while each step lowers the
+ * untrained cost. */
 static int descend(search *s, ted4_candidate m)
 {
     int bold = may_be_bold(m);
@@ -165,7 +166,8 @@ static int descend(search *s, ted4_candidate m)
     return 0;
 }
 
-/* Trains from where t stands; a model that the monitor gives up is no candidate: *lost. */
+/* Trains from the current state of s->t. If the monitor gives up the model, sets *lost instead of
+ * failing. */
 static int train(search *s, ted4_snapshot *after, ted4_cost *cost, int *lost)
 {
     double loss;
@@ -179,7 +181,7 @@ static int train(search *s, ted4_snapshot *after, ted4_cost *cost, int *lost)
     return ted4_state_take(s->t, after) != 0 || measure(s, cost) != 0;
 }
 
-/* The candidate that one may hope most of; TED4_CANDIDATES: there is none worth training. */
+/* Returns the most promising candidate, or TED4_CANDIDATES if none is worth training. */
 static ted4_candidate choose(const search *s)
 {
     const ted4_cost *now = &s->now_cost;
@@ -198,7 +200,7 @@ static ted4_candidate choose(const search *s)
     return best;
 }
 
-/* One trained trial. */
+/* Does one trained trial. */
 static int try_candidate(search *s, ted4_candidate m)
 {
     ted4_snapshot start = { 0 }, end = { 0 };
@@ -255,8 +257,8 @@ int ted4_model_search(ted4_trainer *t)
     search s = { .t = t, .budget = ted4_model_search_steps(t), .steps = trial_steps(t) };
     int bad = 0;
 
-    t->search.decided = TED4_DECIDED_MODEL; /* in every state that is kept from here on: trials make
-                                        none of their own */
+    t->search.decided = TED4_DECIDED_MODEL; /* set in all later snapshots, so that trials do
+                                               not search in turn */
     if (s.steps > 0)
         bad = search_all(&s) != 0;
     ted4_snapshot_free(&s.now);

@@ -1,16 +1,17 @@
-/* prior_bits.c - bits of the prior's weights that are given back: see prior_bits.h. Trials
- * coarsen weights when stage 2 is young, and it trains fine ones to its last stage. What the prior
- * has learnt by then, of the spans of anchors above all, takes more bits than what it knew when
- * they were counted: files of kitchen are 5 to 11 % smaller. Finer weights of the networks that
- * draw were worth one or two ten-thousandths of the cost, less than it takes to look at them.
+/* prior_bits.c - gives back bits of the prior's weights: see prior_bits.h. Trials choose coarse
+ * weights early in stage 2, but up to the integer stage training uses fine ones. What the prior has
+ * learnt by then, mainly about the spans of anchors, needs more bits than what it knew at the time
+ * of the trials: refinement makes files of kitchen 5 to 11 % smaller. Finer weights of the
+ * reconstruction networks gained one or two ten-thousandths of the cost, less than their trials
+ * are worth.
  * SPDX-License-Identifier: BSD-2-Clause */
 #include "prior_bits.h"
 
 #include "candidates.h"
 #include "file_cost.h"
 
-/* The next finer grids are looked at, so many: one may be worse than the one before it, and the one
- * after it better than both. */
+/* Number of finer grids to try. Trials do not stop at the first failure, as a grid may be worse
+ * than the one before it, and the next one better than both. */
 enum { MOST_TRIALS = 4 };
 
 double ted4_refine_prior_bits_steps(const ted4_trainer *t)

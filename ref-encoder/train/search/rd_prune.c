@@ -1,7 +1,7 @@
-/* rd_prune.c - anchors and Gaussians that are not worth their bits: see rd_prune.h. How much
- * pictures would miss one is known to first order only, so several prices of a bit are tried on all
- * of them at once, and what the whole file then costs decides.
- * SPDX-License-Identifier: BSD-2-Clause */
+/* rd_prune.c - removes anchors and Gaussians that are not worth their bits: see rd_prune.h. The
+ * loss of quality by a removal is known only to first order. So several prices of a bit are tried,
+ * each on all anchors at once, and the cost of the whole file decides. SPDX-License-Identifier:
+ * BSD-2-Clause */
 #include "rd_prune.h"
 
 #include <math.h>
@@ -12,13 +12,13 @@
 #include "train/state/visible_blocks.h"
 #include "train/monitor/checkpoint.h"
 
-/* Prices tried, as multiples of what a bit weighs. */
+/* The prices to try, as multiples of lambda per bit. */
 static const double prices[] = { 0.125, 0.25, 0.5, 1.0, 2.0, 4.0 };
 enum { N_PRICES = (int)(sizeof prices / sizeof prices[0]) };
 
-/* Bits of an anchor's place and of its flag of motion. */
+/* Bits of an anchor's position and of its motion flag. */
 #define ANCHOR_BITS 49.0
-/* A logit that leaves its offset out for good. */
+/* A logit that masks its offset permanently. */
 #define OUT         (-10.0f)
 
 double ted4_rd_prune_steps(const ted4_trainer *t)
@@ -29,7 +29,8 @@ double ted4_rd_prune_steps(const ted4_trainer *t)
     return t->layout.head.offset_mask ? ted4_search_afford(t, steps) : 0;
 }
 
-/* What is known of every anchor: use [n][K], bits [n_blocks][1 + K][32]. */
+/* Worth and bits of all anchors: use is the sensitivity of each Gaussian, [n][K]; bits is
+ * [n_blocks][1 + K][32], as in ted4_rate_lanes. */
 typedef struct {
     float *use, *bits;
 } worth;
@@ -79,8 +80,8 @@ static int64_t count_kept(const ted4_trainer *t)
     return n;
 }
 
-/* Leaves out the offsets of one anchor that are not worth a price, or all of them with the anchor;
- * one anchor at least stays. */
+/* Masks those offsets of one anchor that are not worth their bits at a price, or all of them, if
+ * the whole anchor is not. */
 static void prune_anchor(ted4_trainer *t, const worth *w, size_t i, double price)
 {
     const size_t K = t->layout.head.n_offsets;
@@ -96,7 +97,7 @@ static void prune_anchor(ted4_trainer *t, const worth *w, size_t i, double price
         if (use >= 0 && use < paid) {
             *logit(t, i, k) = OUT;
         } else {
-            left += use >= 0 ? use : INFINITY; /* what was not looked at stays */
+            left += use >= 0 ? use : INFINITY; /* keep what no picture showed */
             cost += paid;
         }
     }
@@ -104,7 +105,8 @@ static void prune_anchor(ted4_trainer *t, const worth *w, size_t i, double price
         *logit(t, i, k) = OUT;
 }
 
-/* Tries one price from the state at hand; keeps it in *best if the cost is lower than there. */
+/* Tries one price from *start, unless that would remove nothing or everything. Keeps the result in
+ * *best if its cost is the lowest of all prices tried so far. */
 static int try_price(ted4_trainer *t, const worth *w, const ted4_snapshot *start, double price,
                      ted4_snapshot *best, struct ted4_trial *x)
 {

@@ -1,4 +1,4 @@
-/* sensitivity.c - what each Gaussian is worth to the pictures: see sensitivity.h.
+/* sensitivity.c - measures how much the pictures depend on each Gaussian: see sensitivity.h.
  * SPDX-License-Identifier: BSD-2-Clause */
 #include "sensitivity.h"
 
@@ -9,8 +9,9 @@
 #include "train/state/picture.h"
 #include "train/state/view_subset.h"
 
-/* Pictures looked at: for this share of all steps, but at least so many, and two a frame. Forward
- * and most of the way back are this share of a step. */
+/* SHARE: share of all training steps whose time is spent on sampling pictures. FEWEST and A_FRAME:
+ * the minimum number of pictures in all, and per frame. STEPS_A_PICTURE: time of one picture in
+ * training steps, as a picture takes the forward and most of the backward pass. */
 #define SHARE 0.02
 enum { FEWEST = 32, A_FRAME = 2 };
 #define STEPS_A_PICTURE (2.0 / 3.0)
@@ -28,7 +29,7 @@ double ted4_opacity_sensitivity_steps(const ted4_trainer *t)
     return STEPS_A_PICTURE * (double)pictures(t);
 }
 
-/* Adds what one picture says. */
+/* Adds the sensitivities of one picture. */
 static void gather(const ted4_trainer *t, const ted4_splats *s, float weight, float *use)
 {
     const size_t K = t->layout.head.n_offsets;
@@ -47,7 +48,7 @@ static void gather(const ted4_trainer *t, const ted4_splats *s, float weight, fl
             }
 }
 
-/* Not seen, where not all pictures were looked at. */
+/* Marks Gaussians that no picture showed, unless all pictures were sampled. */
 static void mark_unseen(const ted4_trainer *t, size_t n, float *use)
 {
     for (size_t i = 0; n < t->order.n && i < t->anchors.n * t->layout.head.n_offsets; i++)

@@ -1,9 +1,9 @@
-/* static_test.c - does the scene need time at all? Early in stage 1 the trainer goes on for a while
- * as it is, then from the same point and through the same pictures with the clock stopped: all
- * networks keep their room, but every picture is drawn at time 0 and everything is always there. If
- * that is as good, motion and activation would only fit noise, and training begins again without
- * them, so that the file is the one of an encoder that knows no time: what grew while things could
- * move is not what a still scene needs. See static_test.h.
+/* static_test.c - finds out whether the scene needs time: see static_test.h. Early in stage 1, the
+ * trainer continues for a while unchanged, and then again from the same state, on the same
+ * pictures, with the clock stopped: the networks keep their sizes, but every picture is rendered at
+ * time 0, and everything is always active. If that is as good, motion and activation would only fit
+ * noise. Training then starts again without them, so that the file is that of an encoder without
+ * time, because anchors that grew while things could move are not those that a static scene needs.
  * SPDX-License-Identifier: BSD-2-Clause */
 #include "static_test.h"
 
@@ -12,13 +12,14 @@
 #include "train/monitor/checkpoint.h"
 #include "train/step/trainer_init.h"
 
-/* Time stays when it lowers the mean loss by at least this share. Measured with 600 steps a branch:
- * a still room with pictures of eight times -0.7 %, moving scenes 10 to 17 %. */
+/* Time is kept if it lowers the mean loss by at least this share. Measured with 600 steps per
+ * branch: -0.7 % on a static room with pictures of eight times, 10 to 17 % on moving scenes. */
 #define WORTH 0.01
-/* Fewer steps tell nothing; the first half of them lets both branches settle. */
+/* Minimum steps of a branch. Fewer would tell nothing, as the first half only lets the branches
+ * settle. */
 enum { FEWEST = 200 };
 
-/* It begins when the first anchors stand. */
+/* Share of stage 1 before the test: by then, the first anchors are in place. */
 #define PROBE_FROM 0.25
 
 int ted4_probe_due(const ted4_trainer *t)
