@@ -1,4 +1,4 @@
-/* anchor_appearance.c - see anchor_appearance.h.
+/* anchor_appearance.c - evaluates anchors without rendering: see anchor_appearance.h.
  * SPDX-License-Identifier: BSD-2-Clause */
 #include "anchor_appearance.h"
 
@@ -7,10 +7,12 @@
 #include "train/model/normalise.h"
 #include "visible_blocks.h"
 
-/* From so many training pictures anchors are looked at whose opacity depends on the direction. */
+/* Number of training pictures from which anchors are evaluated if opacity depends on the direction.
+ */
 enum { DIRECTIONS = 8 };
 
-/* All anchors at time 0, without activation, from the camera of that picture. */
+/* Generates the Gaussians of all anchors at time 0, without activation, as seen from the camera of
+ * picture item. */
 static int generate_all(ted4_trainer *t, uint32_t item, ted4_splats *s)
 {
     ted4_view v;
@@ -30,8 +32,8 @@ static int generate_all(ted4_trainer *t, uint32_t item, ted4_splats *s)
                : 0;
 }
 
-/* One look, which counts for an anchor that is more opaque in it than in those before; first: there
- * are none before. */
+/* Evaluates all anchors from one picture, and updates those that are more opaque than from the
+ * pictures before, or all of them if this is the first picture. */
 static int look(ted4_trainer *t, uint32_t item, int first, float *opacity, float *rgb)
 {
     const size_t K = t->layout.head.n_offsets;

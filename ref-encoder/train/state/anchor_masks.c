@@ -1,4 +1,4 @@
-/* anchor_masks.c - see anchor_masks.h.
+/* anchor_masks.c - evaluates the masks of anchors: see anchor_masks.h.
  * SPDX-License-Identifier: BSD-2-Clause */
 #include "anchor_masks.h"
 

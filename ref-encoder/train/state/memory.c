@@ -1,4 +1,4 @@
-/* memory.c - the memory of a trainer: see trainer.h.
+/* memory.c - allocates and frees the memory of a trainer: see trainer.h.
  * SPDX-License-Identifier: BSD-2-Clause */
 #include <stdlib.h>
 #include <string.h>

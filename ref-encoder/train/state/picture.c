@@ -1,4 +1,4 @@
-/* picture.c - see picture.h.
+/* picture.c - renders the model and compares it with pictures: see picture.h.
  * SPDX-License-Identifier: BSD-2-Clause */
 #include "picture.h"
 
@@ -34,7 +34,7 @@ int ted4_trainer_render(ted4_trainer *t, const ted4_picture *pic, int training, 
     return 0;
 }
 
-/* Room for the gradients of n splats. */
+/* Makes room for the gradients of n splats. */
 static int reserve_splats(ted4_trainer *t, size_t n)
 {
     ted4_splat_grads *g = &t->work.splat_gradient;
@@ -96,7 +96,7 @@ int ted4_trainer_corrected(const ted4_trainer *t, const ted4_picture *pic)
             (double)t->iteration >= t->opt.colour_start * (double)t->opt.stage1);
 }
 
-/* t->work.image with the colours of the picture's camera. */
+/* Returns t->work.image in the colours of the picture's camera. */
 static const float *shown(ted4_trainer *t, const ted4_picture *pic)
 {
     const size_t pixels = (size_t)pic->camera.width * (size_t)pic->camera.height;
@@ -130,8 +130,8 @@ double ted4_trainer_loss(ted4_trainer *t, const ted4_picture *pic, const uint8_t
     return loss;
 }
 
-/* Draws training picture item and leaves its gradient in t->work.d_image; cameras' colours stay as
- * they are. Loss, or negative with t->message. */
+/* Renders training picture item and computes its gradient in t->work.d_image. The colours of
+ * cameras do not change. Returns the loss, or a negative number with t->message filled. */
 static double judge(ted4_trainer *t, size_t item, int keep, ted4_view *v, ted4_splats *s)
 {
     const ted4_picture *pic = &t->data->pictures[item];
@@ -166,7 +166,9 @@ int ted4_distortion_gradient(ted4_trainer *t, size_t item, ted4_splats *s)
     return judge(t, item, 1, &v, s) < 0 ? -1 : ted4_trainer_render_backward(t, &v, s);
 }
 
-/* PSNR of the model as it is on one picture. Negative: failed, with t->message. */
+/* Returns the PSNR of the current model on one picture, or a negative number with t->message
+ * filled.
+ */
 static double preview(ted4_trainer *t, size_t item)
 {
     const ted4_picture *pic = &t->data->pictures[item];

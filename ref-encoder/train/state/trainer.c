@@ -1,4 +1,4 @@
-/* trainer.c - see trainer.h.
+/* trainer.c - messages, progress and numbers of a trainer: see trainer.h.
  * SPDX-License-Identifier: BSD-2-Clause */
 #include "trainer.h"
 
@@ -48,7 +48,7 @@ uint64_t ted4_trainer_total(const ted4_trainer *t)
     return (uint64_t)t->opt.stage1 + (uint64_t)t->opt.stage2;
 }
 
-/* A sum of products with 0 is 0 unless a value is infinite or not a number. */
+/* The sum of all values times 0 is 0 unless one of them is infinite or not a number. */
 static int all_finite(const float *x, size_t n)
 {
     float sum = 0;

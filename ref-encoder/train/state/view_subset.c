@@ -1,4 +1,4 @@
-/* view_subset.c - see view_subset.h.
+/* view_subset.c - chooses training pictures spread over all frames: see view_subset.h.
  * SPDX-License-Identifier: BSD-2-Clause */
 #include "view_subset.h"
 
@@ -6,12 +6,12 @@
 
 #include "train/math/random.h"
 
-/* Training pictures by frame. */
+/* Training pictures, sorted by frame. */
 typedef struct {
     size_t frames;
-    uint32_t *first; /* [frames + 1] of a frame's pictures in item */
-    uint32_t *item;  /* numbers in the data set */
-    uint32_t *turn;  /* [frames] frames in the order drawn */
+    uint32_t *first; /* [frames + 1] index in item of a frame's first picture */
+    uint32_t *item;  /* numbers of pictures in the data set */
+    uint32_t *turn;  /* [frames] a random order of the frames */
 } by_frame;
 
 static void count_frames(const ted4_dataset *d, uint32_t *first, size_t frames)

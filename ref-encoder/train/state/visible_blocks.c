@@ -1,4 +1,4 @@
-/* visible_blocks.c - see visible_blocks.h.
+/* visible_blocks.c - finds the visible blocks of a view: see visible_blocks.h.
  * SPDX-License-Identifier: BSD-2-Clause */
 #include "visible_blocks.h"
 
@@ -9,9 +9,9 @@
 #include "train/math/random.h"
 #include "recon/strict.h"
 
-/* An anchor counts as a ball of three of its offset scales, and as visible when the ball touches
- * the guarded frustum. Where things move the canonical place says little, so a tenth of the scene's
- * half-size is added. */
+/* An anchor is treated as a ball whose radius is three times its offset scale, and is visible if
+ * the ball intersects the guarded frustum. If things move, the canonical position is less certain,
+ * so a tenth of the scene's half-size is added to the radius. */
 #define SCALES_OF_BALL 3.0f
 #define MOTION_MARGIN  0.1f
 
@@ -96,7 +96,7 @@ void ted4_visible_blocks_finish(ted4_visible_blocks *s)
     memset(s, 0, sizeof *s);
 }
 
-/* Blocks that one job looks at. */
+/* Blocks that one job tests. */
 enum { LOOKED_AT = 8 };
 
 typedef struct {
@@ -115,7 +115,6 @@ static void look_at_blocks(void *arg, size_t i)
         j->lanes[b] = j->v != NULL ? ted4_block_visible(j->t, b, j->v) : ted4_block_lanes(a, b);
 }
 
-/* v NULL: every block. */
 int ted4_visible_blocks_fill(ted4_trainer *t, const ted4_view *v)
 {
     ted4_visible_blocks *s = &t->visible_blocks;
@@ -124,8 +123,8 @@ int ted4_visible_blocks_fill(ted4_trainer *t, const ted4_view *v)
     if (reserve(t, t->anchors.n_blocks) != 0)
         return -1;
 
-    /* Lanes of every block first: a visible block's place, which is its block's or an earlier one,
-     * is known only then. */
+    /* The lanes of all blocks are computed first, in place, because the index of a visible block is
+     * known only then. That index is at most the number of the block. */
     visible_job j = { t, v, s->lanes };
 
     ted4_parallel_for(t->parallel, (t->anchors.n_blocks + LOOKED_AT - 1) / LOOKED_AT,
