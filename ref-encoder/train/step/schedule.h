@@ -5,20 +5,23 @@
 
 #include "train/state/trainer.h"
 
-/* Rate of each channel of anchors at the next step: channel_rate[n_channels]; 0: it stands still.
- */
+/* Computes the learning rate of each channel of anchors at the next step, channel_rate[n_channels];
+ * 0 if the channel is not trained. */
 void ted4_schedule_rates(const ted4_trainer *t, float *channel_rate);
 
-/* The stretches of the network array that are learnt, and their rates: how many; at most
- * TED4_NET_RANGES. */
+/* A range of the network array, and its learning rate. */
 typedef struct {
     size_t first, n;
-    float rate; /* 0: it stands still */
+    float rate; /* 0: not trained */
 } ted4_net_range;
 enum { TED4_NET_RANGES = TED4_NETS_R + 2 };
+/* Fills range with the ranges at the next step, and returns their number, at most TED4_NET_RANGES.
+ */
 int ted4_schedule_network(const ted4_trainer *t, ted4_net_range *range);
 
-/* The step from which activation is learnt: the end of the static phase, if there is one. */
+/* Returns the step from which on activation is learnt: the end of the static phase, if there is
+ * one.
+ */
 uint64_t ted4_activation_step(const ted4_train_options *o);
 
 #endif

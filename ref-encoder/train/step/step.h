@@ -1,4 +1,4 @@
-/* step.h - one training step: a picture, its Gaussians forward and back, and the update. Depends on
+/* step.h - one training step: forward and backward pass of one picture, and the update. Depends on
  * trainer.h.
  * SPDX-License-Identifier: BSD-2-Clause */
 #ifndef TED4_STEP_H
@@ -6,11 +6,11 @@
 
 #include "train/state/trainer.h"
 
-/* One step, after what is due before it (events.h). Or, where the monitor finds that training goes
- * wrong, the way back to the last good state: iteration is then smaller or the same,
- * monitor.state.rollbacks larger, and monitor.anomaly and message say why. 0, or -1 with
- * t->message; monitor.found then tells whether it is an anomaly that nothing more was done about.
- */
+/* Does one step, after the events that are due before it (events.h). If the monitor finds an
+ * anomaly, rolls back to the last good state instead: then t->iteration is smaller or the same,
+ * t->monitor.state.rollbacks is larger, and t->monitor.anomaly and t->message describe the cause.
+ * Returns 0, or -1 with t->message filled; then t->monitor.found tells whether the cause is an
+ * anomaly without a further rollback. */
 int ted4_gradient_step(ted4_trainer *t);
 
 #endif
