@@ -7,7 +7,7 @@
 #include "schedule.h"
 #include "train/math/adam.h"
 
-/* Largest number of channels that header ranges allow (model.h). */
+/* The largest number of channels that the ranges of the header allow (model.h). */
 enum { MAX_CHANNELS = TED4_MAX_FEATURE + 6 + 4 * TED4_MAX_OFFSETS + TED4_MAX_PHI + 4 + 1 };
 
 /* Weights of networks that one job updates. */
@@ -19,10 +19,10 @@ typedef struct {
     ted4_adam_bias bias;
     float mask_weight, temporal_weight;
     ted4_net_range range[TED4_NET_RANGES];
-    size_t n_pieces; /* of all ranges; the first jobs, visible blocks come after them */
+    size_t n_pieces; /* pieces of all ranges; these are the first jobs, before the visible blocks */
 } update_job;
 
-/* d sigmoid(logit) times weight, for the anchors of the visible block. */
+/* Adds weight times the derivative of sigmoid(logit), for the anchors of visible block i. */
 static void add_mask_loss(const update_job *j, size_t i, int channel, int n, float weight)
 {
     const ted4_visible_blocks *s = &j->t->visible_blocks;

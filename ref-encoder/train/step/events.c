@@ -7,12 +7,13 @@
 #include "train/densify/densify.h"
 #include "train/densify/mv_seed.h"
 
-/* Growth begins after a twentieth of stage 1; statistics as soon as the last adjustment is done. */
+/* Share of stage 1 before the first adjustment of anchors. Statistics are gathered from the start,
+ * and again after each adjustment. */
 #define GROW_FROM 0.05
 
-/* Multi-view seeding takes place when what stays is drawn well enough for what does not to stand
- * out, and before activation is learnt. Where cameras alternate nothing else finds what moves, so
- * it comes before the probe asks whether time is needed. */
+/* Multi-view seeding takes place once static content is rendered well enough for everything else to
+ * stand out, and before activation is learnt. With alternating cameras nothing else finds moving
+ * things, so it precedes the probe. */
 #define MV_SEED_AT             0.3
 #define MV_SEED_AT_ALTERNATING 0.2
 
@@ -21,7 +22,7 @@ static uint64_t mv_seed_step(const ted4_trainer *t, int reach)
     return (uint64_t)((reach > 0 ? MV_SEED_AT_ALTERNATING : MV_SEED_AT) * (double)t->opt.stage1);
 }
 
-/* Are anchors kept for multi-view seeding that is still to come? */
+/* Returns whether multi-view seeding is still to come, so that anchors are reserved for it. */
 static int mv_seed_ahead(const ted4_trainer *t)
 {
     if (t->phase.stage2 || t->opt.sprouts <= 0 || t->iteration >= mv_seed_step(t, 0))

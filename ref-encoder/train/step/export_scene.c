@@ -1,4 +1,4 @@
-/* export_scene.c - see export_scene.h.
+/* export_scene.c - converts a trained model to a scene: see export_scene.h.
  * SPDX-License-Identifier: BSD-2-Clause */
 #include "export_scene.h"
 
@@ -26,7 +26,7 @@ static float step_of(const ted4_scene *s, int type, size_t i)
     return s->head.step[type] * ted4_bits_float(ted4_step[s->step_index[type][i]]);
 }
 
-/* Is component c of a type coded for this anchor (spec 10.2)? */
+/* Returns whether component c of a type is coded for anchor i (spec 10.2). */
 static int is_coded(const ted4_scene *s, int type, unsigned c, size_t i)
 {
     if (type == TED4_OFFSET)
@@ -50,7 +50,7 @@ static void fill_symbols(const ted4_trainer *t, const uint32_t *keep, ted4_scene
                                                                     t->layout.first[y] + (int)c),
                                                  step_of(s, y, i))
                                   : 0);
-    /* R-ATT-001: the end is not before the start. */
+    /* R-ATT-001: the end must not be before the start. */
     for (size_t i = 0; s->shape.dim[TED4_TAU] > 0 && i < n; i++)
         if (s->symbol[TED4_TAU][2 * n + i] < s->symbol[TED4_TAU][i])
             s->symbol[TED4_TAU][2 * n + i] = s->symbol[TED4_TAU][i];
@@ -67,7 +67,8 @@ static void fill_masks(const ted4_trainer *t, const uint32_t *keep, ted4_scene *
     }
 }
 
-/* A weight that the format forbids (R-CNV-001) becomes the nearest one that it allows. */
+/* Copies weights; one that the format forbids (R-CNV-001) becomes the nearest one that it allows.
+ */
 static void copy_values(ted4_blob *to, const float *from)
 {
     for (size_t i = 0; i < to->n; i++)
@@ -84,7 +85,7 @@ static size_t keep_anchors(const ted4_trainer *t, uint32_t *keep)
     return n;
 }
 
-/* Stage 2 is entered and ended even when it has no steps. */
+/* Enters the integer stage if necessary, and stage 2 before it, even if that has no steps. */
 static int settle(ted4_trainer *t)
 {
     if (!t->phase.stage2 && ted4_stage2_begin(t) != 0)

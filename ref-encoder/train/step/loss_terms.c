@@ -1,5 +1,5 @@
-/* loss_terms.c - see loss_terms.h. Source: paper, "Training Objectives"; annex D.1.
- * SPDX-License-Identifier: BSD-2-Clause */
+/* loss_terms.c - volume, bank and rate terms of the loss: see loss_terms.h. Source: paper,
+ * "Training Objectives"; annex D.1. SPDX-License-Identifier: BSD-2-Clause */
 #include "loss_terms.h"
 
 #include <math.h>
@@ -8,16 +8,16 @@
 #include "train/monitor/monitor.h"
 #include "train/math/random.h"
 
-/* Gaussians are cut into this many parts whatever the number of threads, and their sums go in as
- * many columns, so that both have one order. */
+/* Gaussians are divided into PARTS parts for any number of threads, and sums over them are taken in
+ * COLUMNS columns for any vector size, so that the order of additions is always the same. */
 enum { PARTS = 64, COLUMNS = 16 };
 
 typedef struct {
     const ted4_splat_grads *g;
     const ted4_splats *s;
-    float weight; /* of the volume of one */
+    float weight; /* of one Gaussian's volume */
     size_t visible[PARTS], drawn[PARTS];
-    double squares[PARTS]; /* of the gradients of centres */
+    double squares[PARTS]; /* sums of squares of the gradients of centres */
 } screen_job;
 
 static size_t first_of(const screen_job *j, size_t part)
@@ -106,8 +106,8 @@ void ted4_update_bank(ted4_trainer *t)
         }
 }
 
-/* A partial shuffle: after m swaps the first m visible blocks are a uniform choice; the order of
- * the others does not matter. */
+/* One swap of a partial shuffle: after m swaps, the first m visible blocks are a uniform random
+ * choice. The order of the others does not matter. */
 static void swap_blocks(ted4_visible_blocks *s, size_t i, size_t k)
 {
     const uint32_t block = s->block[i], lanes = s->lanes[i], drawn = s->drawn[i];

@@ -1,5 +1,5 @@
-/* schedule.c - see schedule.h. Source: paper, "Progressive 3D-to-4D Anchor Transformation"; annex
- * D.1.
+/* schedule.c - computes learning rates: see schedule.h. Source: paper, "Progressive 3D-to-4D Anchor
+ * Transformation"; annex D.1.
  * SPDX-License-Identifier: BSD-2-Clause */
 #include "schedule.h"
 
@@ -7,7 +7,7 @@
 
 #include "train/math/adam.h"
 
-/* Factors between the first and the last step of a stage. */
+/* Ratios of the learning rates at the last and the first step of a stage. */
 #define LAST_OFFSET    0.01
 #define LAST_MASK      0.01
 #define LAST_TAU       0.1
@@ -15,20 +15,21 @@
 #define LAST_MOTION    0.1
 #define LAST_PRIOR     0.02
 #define LAST_VALUES    0.1 /* stage 2: features, scalings, phi */
-/* Stage 2 restarts attributes at a third of their first rate. */
+/* In stage 2, attributes start again at this share of their initial rate. */
 #define RESTART        (1.0 / 3.0)
-/* A mask that nothing defends has to come from 1 to where it closes, -4.6, while its anchor is seen
- * and the rate still high: stages shorter than the published 60,000 and 30,000 steps let logits
- * move faster in proportion, but never so fast that single pictures decide. The temporal mask goes
- * at a third of that: when it closes, all that F_deform had added to place and feature is gone at
- * once. */
+/* The logit of a mask that no gradient keeps open has to move from 1 to -4.6, where the mask
+ * closes, while its anchor is seen and the rate is still high. So in stages shorter than the
+ * published 60,000 and 30,000 steps, logits move faster in proportion, but at most MASK_FASTEST
+ * times as fast, as otherwise single pictures would decide. The rate of the temporal mask is
+ * MASK_CAUTION times that, because everything that F_deform adds to position and feature is lost at
+ * once when it closes. */
 #define MASK_STEPS1    60000.0
 #define MASK_STEPS2    30000.0
 #define MASK_FASTEST   10.0
 #define MASK_CAUTION   (1.0 / 3.0)
-/* Linear scalings move by this share of their quantisation step. */
+/* The learning rate of linear scalings, as a share of their quantisation step. */
 #define LINEAR_SCALING 0.2
-/* log2 b moves five times as fast as the times a. */
+/* The learning rate of log2 b, relative to that of the times a. */
 #define TAU_WIDTH      5.0
 
 static double stage_progress(const ted4_trainer *t)
@@ -43,7 +44,7 @@ uint64_t ted4_activation_step(const ted4_train_options *o)
     return o->progressive ? (uint64_t)ceil(o->activation_start * (double)o->stage1) : 0;
 }
 
-/* Are activation spans learnt yet? Before, they stay as they were seeded. */
+/* Returns whether activation spans are learnt yet. Before that, they keep their initial values. */
 static int activation_learnt(const ted4_trainer *t)
 {
     return t->layout.first[TED4_TAU] >= 0 &&
@@ -74,7 +75,7 @@ void ted4_schedule_rates(const ted4_trainer *t, float *rate)
     const double tau = ted4_decay(o->lr_tau * restart, LAST_TAU, p);
     const double scale_step =
         o->linear_scale ? o->step_scaling
-                        : (double)l->head.step[TED4_SCALING]; /* linear by choice of a trial */
+                        : (double)l->head.step[TED4_SCALING]; /* linear because a trial chose it */
 
     fill(rate, l->first[TED4_FEATURE], l->head.feature_dim, o->lr_feature * values);
     fill(rate, l->first[TED4_SCALING], 6,
@@ -96,8 +97,8 @@ void ted4_schedule_rates(const ted4_trainer *t, float *rate)
         rate[c] *= (float)t->monitor.state.factor;
 }
 
-/* In the integer stage no weight leaves a coarse grid: it would jump from point to point until the
- * end. */
+/* Returns rate, or 0 in the integer stage for weights on a coarse grid, as they would jump between
+ * points of the grid until the end. */
 static double rate_on_weight_grid(const ted4_trainer *t, ted4_weight_grid grid, double rate)
 {
     return t->phase.integer && t->net.bits[grid] < TED4_WEIGHT_GRID_FULL(grid) ? 0 : rate;

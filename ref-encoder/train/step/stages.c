@@ -1,4 +1,4 @@
-/* stages.c - see stages.h.
+/* stages.c - the changes between phases of training: see stages.h.
  * SPDX-License-Identifier: BSD-2-Clause */
 #include "stages.h"
 
@@ -18,18 +18,18 @@
 #include "train/state/visible_blocks.h"
 #include "write/snap.h"
 
-/* spec 11: time of frame j. */
+/* spec 11: returns the time of frame j. */
 static float frame_time(const ted4_trainer *t, uint32_t j)
 {
     return t->data->n_frames > 1 ? (float)j / (float)(t->data->n_frames - 1) : 0.0f;
 }
 
-/* How far a first span stays inside the times seen: half a frame at most, and at most a tenth of b,
- * so that it fades by 1 % only. */
+/* The initial span is shorter, at each end, than the times at which the anchor is seen: by this,
+ * but by at most half a frame. It is a tenth of b, so the anchor fades by only 1 %. */
 #define SPAN_INSIDE 0.01f
 
-/* First and last time at which a training view sees each anchor: span[2 i], span[2 i + 1]; left
- * alone where none does. */
+/* Widens span[2 i], span[2 i + 1] to the first and the last time at which a training view sees
+ * anchor i; they do not change if none does. */
 static void widen_spans(const ted4_trainer *t, float *span)
 {
     const ted4_anchors *a = &t->anchors;
@@ -58,10 +58,11 @@ static void widen_spans(const ted4_trainer *t, float *span)
     }
 }
 
-/* Each anchor's activation, short-lived anchors aside, starts as the span between the first and the
- * last time at which a training view sees it (without the static phase: all times), less a little
- * at each end: with the first frame of the sequence exactly at a_s no time would ever lie before
- * it, and its gradient would be zero for good (annex D.1, traps). */
+/* Initialises each anchor's activation, except those of short-lived anchors, with the span between
+ * the first and the last time at which a training view sees it (without the static phase: all
+ * times). The span is a little shorter at both ends: if the first frame of the sequence were
+ * exactly at a_s, no time would ever be before it, and its gradient would always be zero (annex
+ * D.1, traps). */
 int ted4_activation_begin(ted4_trainer *t)
 {
     ted4_anchors *a = &t->anchors;
@@ -93,8 +94,9 @@ int ted4_activation_begin(ted4_trainer *t)
     return 0;
 }
 
-/* Largest activation of anchor i over the frames of the sequence, in stage 2 as the file will hold
- * it: from all visible blocks (ted4_anchor_appearance). */
+/* Returns the highest activation of anchor i over the frames of the sequence, in stage 2 with the
+ * values that the file will contain. All blocks must be in t->visible_blocks, as
+ * ted4_anchor_appearance leaves them. */
 static float peak_activation(const ted4_trainer *t, size_t i)
 {
     const int first = t->layout.first[TED4_TAU];
@@ -139,7 +141,8 @@ int ted4_stage_drop_dead(ted4_trainer *t)
     return bad;
 }
 
-/* Positions become what the file will hold; of anchors that then coincide the first stays. */
+/* Rounds positions to those that the file will contain. Of anchors that then coincide, keeps only
+ * the first. */
 static int settle_positions(ted4_trainer *t)
 {
     ted4_anchors *a = &t->anchors;
@@ -172,7 +175,7 @@ static int settle_positions(ted4_trainer *t)
     return bad ? ted4_trainer_fail(t, "no memory to settle positions") : 0;
 }
 
-/* Copies the channels of a row kind from the old layout to the new one. */
+/* Copies the channels of one kind of row from the old layout to the new one. */
 static void remap_row(const ted4_layout *from, const ted4_layout *to, const ted4_anchors *old,
                       ted4_anchors *new, ted4_row row)
 {
@@ -189,14 +192,14 @@ static void remap_row(const ted4_layout *from, const ted4_layout *to, const ted4
     }
 }
 
-/* Row kinds that do not depend on the layout. */
+/* Copies a kind of row that does not depend on the layout. */
 static void copy_row(const ted4_anchors *old, ted4_anchors *new, ted4_row row)
 {
     memcpy(new->data[row], old->data[row],
            old->n_blocks * (size_t)old->rows[row] * TED4_LANES * sizeof(float));
 }
 
-/* One of the arrays of network parameters, NETE left zero. */
+/* Copies one of the arrays of network parameters, except NETE, which stays zero. */
 static void remap_networks(const ted4_layout *from, const ted4_layout *to, const float *old,
                            float *new)
 {
@@ -238,8 +241,8 @@ int ted4_stage_relayout(ted4_trainer *t, const ted4_header *h)
     return bad ? ted4_trainer_fail(t, "no memory to change the model") : 0;
 }
 
-/* A part is dropped when it does nothing anywhere: no anchor moves, or every anchor is there at
- * every time. */
+/* Motion is dropped if at most the share MOVING_SHARE of anchors moves, and activation if at most
+ * that share has an activation below ALWAYS_THERE at any time. */
 #define MOVING_SHARE 0.002
 #define ALWAYS_THERE 0.98f
 
@@ -253,7 +256,7 @@ static float least_activation(const ted4_trainer *t, size_t i)
     return ted4_activation(fmaxf(fabsf(first), fabsf(last)), ted4_pow2);
 }
 
-/* The header without what does nothing. */
+/* Removes the parts of the model that have no effect from the header. */
 static void simplify(const ted4_trainer *t, ted4_header *h)
 {
     const double few = MOVING_SHARE * (double)t->anchors.n;
@@ -272,7 +275,7 @@ static void simplify(const ted4_trainer *t, ted4_header *h)
         h->activation = 0;
 }
 
-/* The model as stage 2 trains it. */
+/* Converts the model to the one that stage 2 trains. */
 static int reshape(ted4_trainer *t)
 {
     ted4_header h = t->layout.head;
@@ -318,7 +321,8 @@ int ted4_stage2_begin(ted4_trainer *t)
     return 0;
 }
 
-/* Fraction bits of the contexts: as many as leave a factor of two before 16 bits saturate. */
+/* Returns the number of fraction bits of the contexts, the largest, up to 10, that leaves a factor
+ * of two before 16 bits saturate. */
 static uint8_t context_bits(const ted4_trainer *t)
 {
     const int first = t->layout.first[TED4_FEATURE];
@@ -335,8 +339,8 @@ static uint8_t context_bits(const ted4_trainer *t)
     return (uint8_t)bits;
 }
 
-/* From here on the prior is the one of the file: weights on the integer grid and fixed, steps fixed
- * with them. So is what else lies on a coarse grid. */
+/* From here on, the prior is that of the file: its weights are snapped to the integer grid and
+ * fixed, and so are the step sizes. Other weights on a coarse grid are fixed, too. */
 int ted4_integer_begin(ted4_trainer *t)
 {
     t->layout.head.context_bits = context_bits(t);

@@ -1,4 +1,4 @@
-/* step.c - see step.h.
+/* step.c - does one training step: see step.h.
  * SPDX-License-Identifier: BSD-2-Clause */
 #include "step.h"
 
@@ -30,8 +30,8 @@ static uint32_t next_picture(ted4_order *o)
     return o->item[o->next++];
 }
 
-/* The pictures after this one may be decoded meanwhile; what comes after the next shuffle is not
- * known yet. */
+/* Announces the next pictures, so that they can be decoded in the meantime. Those after the next
+ * shuffle are not known yet. */
 static void announce(const ted4_trainer *t)
 {
     const ted4_order *o = &t->order;
@@ -53,21 +53,20 @@ static void follow(ted4_progress *p, double loss, double l1, double ssim, double
     p->splat_pixels += w * (splats * pixels - p->splat_pixels);
 }
 
-/* One picture on its way through a step. */
+/* The state of one picture during a step. */
 typedef struct {
     const ted4_picture *pic;
     ted4_view v;
     ted4_generate_input in;
     ted4_splats s;
     double loss, l1, ssim;
-    size_t on_screen; /* Gaussians */
+    size_t on_screen; /* number of Gaussians */
     int corrected;    /* map is the gradient of its camera's colours */
     ted4_colour_map map;
 } pass;
 
-/* The next picture forward, and the gradient of its loss in t->work.d_image. 0, or -1 with
- * t->message.
- */
+/* Does the forward pass of the next picture, and computes the gradient of its loss in
+ * t->work.d_image. Returns 0, or -1 with t->message filled. */
 static int forward(ted4_trainer *t, pass *p)
 {
     const uint32_t item = next_picture(&t->order);
@@ -90,8 +89,8 @@ static int forward(ted4_trainer *t, pass *p)
     return bad ? -1 : 0;
 }
 
-/* From the image to values of anchors and networks, with all that is added to the picture's
- * gradients. 0, or -1 with t->message. */
+/* Backpropagates from the image to the values of anchors and networks, and adds the gradients of
+ * the other terms of the loss. Returns 0, or -1 with t->message filled. */
 static int backward(ted4_trainer *t, pass *p, uint64_t key)
 {
     if (ted4_trainer_render_backward(t, &p->v, &p->s) != 0)

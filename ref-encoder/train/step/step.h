@@ -10,7 +10,7 @@
  * anomaly, rolls back to the last good state instead: then t->iteration is smaller or the same,
  * t->monitor.state.rollbacks is larger, and t->monitor.anomaly and t->message describe the cause.
  * Returns 0, or -1 with t->message filled; then t->monitor.found tells whether the cause is an
- * anomaly without a further rollback. */
+ * anomaly that was not handled. */
 int ted4_gradient_step(ted4_trainer *t);
 
 #endif

@@ -1,4 +1,4 @@
-/* trainer_init.c - see trainer_init.h.
+/* trainer_init.c - initialises a trainer: see trainer_init.h.
  * SPDX-License-Identifier: BSD-2-Clause */
 #include "trainer_init.h"
 
@@ -49,7 +49,7 @@ static int make_images(ted4_trainer *t)
     return 0;
 }
 
-/* Everything at its start, in the layout of h. */
+/* Initialises everything, in the layout of h. */
 static int begin(ted4_trainer *t, const ted4_header *h)
 {
     const char *wrong = ted4_header_wrong(h);
