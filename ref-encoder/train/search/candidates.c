@@ -73,8 +73,8 @@ int ted4_candidate_now(const ted4_trainer *t, ted4_candidate m)
     return 0;
 }
 
-/* Returns a width reduced by a quarter, or by half if bold, to a multiple of multiple where
- * possible; -1 if that would be less than least, or not smaller. */
+/* Returns a width reduced by a quarter, or by half if bold, rounded down to whole vectors
+ * (multiple) if possible, or -1 if that would be less than least, or not smaller. */
 static int fewer(int now, int multiple, int least, int bold)
 {
     int to = bold ? now / 2 : now * 3 / 4;
@@ -139,8 +139,8 @@ int ted4_candidate_finer(const ted4_trainer *t, ted4_candidate m)
 
 /* ---- making candidates ---- */
 
-/* Prunes a site to to units, into *w. Units marked in held, which may be NULL, are kept. Returns 0,
- * or -1 with t->message filled. */
+/* Plans, in *w, the pruning of a site down to the number of units in to. Units marked in held,
+ * which may be NULL, are kept. Returns 0, or -1 with t->message filled. */
 static int prune_site(ted4_trainer *t, ted4_site site, int to, const uint8_t *held,
                       ted4_pruned_units *w)
 {

@@ -3,7 +3,7 @@
  * learnt by then, mainly about the spans of anchors, needs more bits than what it knew at the time
  * of the trials: refinement makes files of kitchen 5 to 11 % smaller. Finer weights of the
  * reconstruction networks gained one or two ten-thousandths of the cost, less than their trials
- * are worth.
+ * cost.
  * SPDX-License-Identifier: BSD-2-Clause */
 #include "prior_bits.h"
 

@@ -7,8 +7,7 @@
 #include "train/densify/densify.h"
 #include "train/densify/mv_seed.h"
 
-/* Share of stage 1 before the first adjustment of anchors. Statistics are gathered from the start,
- * and again after each adjustment. */
+/* Share of stage 1 before the first adjustment of anchors. Statistics are gathered from step 0. */
 #define GROW_FROM 0.05
 
 /* Multi-view seeding takes place once static content is rendered well enough for everything else to

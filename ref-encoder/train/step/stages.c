@@ -24,8 +24,8 @@ static float frame_time(const ted4_trainer *t, uint32_t j)
     return t->data->n_frames > 1 ? (float)j / (float)(t->data->n_frames - 1) : 0.0f;
 }
 
-/* The initial span is shorter, at each end, than the times at which the anchor is seen: by this,
- * but by at most half a frame. It is a tenth of b, so the anchor fades by only 1 %. */
+/* By how much the initial span is shorter, at each end, than the times at which the anchor is seen;
+ * half a frame if that is less. This is a tenth of b, so the anchor fades by at most 1 %. */
 #define SPAN_INSIDE 0.01f
 
 /* Widens span[2 i], span[2 i + 1] to the first and the last time at which a training view sees
