@@ -1,4 +1,4 @@
-/* encode.c - spec 11.3, inr: the positional encodings E(p) and E(t).
+/* encode.c - computes the positional encodings E(p) and E(t) of the inr motion (spec 11.3).
  * SPDX-License-Identifier: BSD-2-Clause */
 #include "norm/sine.h"
 #include "recon/recon.h"

@@ -1,4 +1,4 @@
-/* network.c - spec 7.1, 7.4: a network of Tier R on a block of 32 anchors.
+/* network.c - evaluates a network of Tier R on a block of 32 anchors (spec 7.1, 7.4).
  * SPDX-License-Identifier: BSD-2-Clause */
 #include "recon/recon.h"
 

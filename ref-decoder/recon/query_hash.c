@@ -1,11 +1,11 @@
-/* query_hash.c - spec 15.3: the hash of a query's records.
+/* query_hash.c - computes the hash of a query's records (spec 15.3).
  * SPDX-License-Identifier: BSD-2-Clause */
 #define XXH_STATIC_LINKING_ONLY /* state on the stack */
 #include <xxhash.h>
 #include "base/bytes.h"
 #include "ted4.h"
 
-enum { VALUES = 14, BATCH = 64 }; /* of a record; records hashed at once */
+enum { VALUES = 14, BATCH = 64 }; /* values per record; records hashed at a time */
 
 void ted4_gaussians_hash(const ted4_gaussians *g, uint8_t hash[16])
 {

@@ -1,8 +1,8 @@
-/* strict.h - spec 12.2: the arithmetic of class X: pow2, sigmoid, and the dense layer, plain.
- * Every operation is one binary32 operation, so files that include this are compiled without
- * contraction. Anchors are worked on in blocks of 32: a row is one value of each, a block
- * [channel][32]. Loops run over lanes, never across a sum, so that vectors give the bits of the
- * scalar definition. Depends on base/bytes.h, kernel/strict_dense.h.
+/* strict.h - the arithmetic of class X (spec 12.2): pow2, sigmoid and the plain dense layer.
+ * Every operation is one binary32 operation, so files that include this header are compiled without
+ * contraction. Anchors are processed in blocks of 32: a row holds one value per anchor, a block is
+ * [channel][32]. Vector loops run over lanes, never over the terms of a sum, so that they give the
+ * same bits as the scalar definition. Depends on base/bytes.h, kernel/strict_dense.h.
  * SPDX-License-Identifier: BSD-2-Clause */
 #ifndef TED4_STRICT_H
 #define TED4_STRICT_H
@@ -25,17 +25,17 @@ enum { TED4_ROW = 32 }; /* lanes of a row */
 #define TED4_POW2_C6 0x1.430912p-13f
 #define TED4_POW2_C7 0x1.ffcbfcp-17f
 
-/* spec 12.2 max: b where a > b is false, so a NaN in b goes through. */
+/* max of spec 12.2. Returns b unless a > b, so that a NaN in b is returned. */
 static inline float ted4_max(float a, float b)
 {
     return a > b ? a : b;
 }
 
-/* spec 12.2 pow2. floor() is a conversion and a correction, as conversions are vectors on every
- * machine and floorf() is not. */
+/* pow2 of spec 12.2. floor() is computed by a conversion and a correction, because every machine
+ * has vector instructions for conversions but not for floorf(). */
 static inline float ted4_pow2(float x)
 {
-    const float low = x > -126.0f ? x : -126.0f; /* a NaN too, for the conversion's sake */
+    const float low = x > -126.0f ? x : -126.0f; /* also of a NaN, which cannot be converted */
     const float y = low < 126.0f ? low : 126.0f;
     const float v = y + 0.5f;
     const int32_t cut = (int32_t)v;
@@ -54,16 +54,17 @@ static inline float ted4_pow2(float x)
     return x == x ? p : x;
 }
 
-/* spec 11.5 */
+/* sigmoid of spec 11.5. */
 static inline float ted4_sigmoid(float x)
 {
     return 1.0f / (1.0f + ted4_pow2(-x * TED4_LOG2E));
 }
 
-/* A ted4_strict_dense_fn for any machine. */
+/* The ted4_strict_dense_fn that runs on any machine. */
 void ted4_strict_dense_plain(const ted4_strict_layer *l, const float *x, float *y);
 
-/* probe.c: does this process round as spec 12.2 asks, now? */
+/* probe.c: returns 1 if this process, in its present floating-point environment, rounds as spec
+ * 12.2 requires, else 0. */
 int ted4_strict_ok(void);
 
 #endif

@@ -1,5 +1,5 @@
-/* strict_dense.c - spec 12.2: the dense layer over 32 anchors, plain. Faster twins:
- * kernel/strict_dense_*.c.
+/* strict_dense.c - the plain dense layer on 32 anchors (spec 12.2). kernel/strict_dense_*.c are
+ * faster implementations with the same results.
  * SPDX-License-Identifier: BSD-2-Clause */
 #include "recon/strict.h"
 
