@@ -1,11 +1,12 @@
-/* heads.c - spec 11.4 to 11.6: from a block's features to its records.
- * Records that cannot have changed since the last query are left as they are (recon.c says which).
+/* heads.c - computes the records of a block from its features (spec 11.4 to 11.6). Results that
+ * cannot have changed since the last query are not computed again; plan() in recon.c decides.
  * SPDX-License-Identifier: BSD-2-Clause */
 #include "recon/recon.h"
 
 #define LEAST_NORM 0x1p-20f
 
-/* The records of a block: list of places in [K][32] and of record numbers. Returns how many. */
+/* Lists the records of a block: w->from gets their indices into [K][32], w->to their record
+ * numbers. Returns their number. */
 static size_t list_records(const ted4_recon *r, size_t block, ted4_recon_scratch *w)
 {
     const uint32_t *first = r->first + block * TED4_ROW;
@@ -24,7 +25,8 @@ static size_t list_records(const ted4_recon *r, size_t block, ted4_recon_scratch
     return n;
 }
 
-/* Copies one channel [K][32] to its n records; watches for values that are not finite. */
+/* Copies one channel [K][32] to its n records, and updates w->worst so that values that are not
+ * finite are found. */
 static void put(ted4_recon_scratch *w, size_t n, const float *value, float *out)
 {
     uint32_t worst = w->worst;
@@ -39,8 +41,8 @@ static void put(ted4_recon_scratch *w, size_t n, const float *value, float *out)
     w->worst = worst;
 }
 
-/* n: from squares of norms to what to divide by: the norm, or 1 where it is below LEAST_NORM, with
- * none set. */
+/* n holds squared norms. Replaces each by the divisor: the norm, or 1 if the norm is below
+ * LEAST_NORM. none[j] is set to 1 in that case, else to 0. */
 static void norm_row(float *n, int32_t *none)
 {
     for (int j = 0; j < TED4_ROW; j++)
@@ -51,7 +53,7 @@ static void norm_row(float *n, int32_t *none)
     }
 }
 
-/* spec 11.5: view direction of the anchors of a block, three rows. */
+/* Computes the view directions of the anchors of a block, three rows (spec 11.5). */
 static void view_direction(const ted4_recon_job *q, size_t block, float *dir)
 {
     const float *p = ted4_recon_row(q->r, block, q->r->rows.position);
@@ -98,7 +100,7 @@ static void colour_head(const ted4_recon *r, const float *x, size_t n, ted4_reco
     }
 }
 
-/* Rotation of one offset: rows y[4] made a unit quaternion in place. */
+/* Normalises the rotations of one offset, rows y[4], to unit quaternions in place. */
 static void normalise_rotation(float *y)
 {
     float n[TED4_ROW];
@@ -143,7 +145,7 @@ static void covariance_head(const ted4_recon_job *q, size_t block, const float *
         put(w, n, w->value + (3 + c) * channel, r->out.rot[c]);
 }
 
-/* spec 11.6: positions, from p' */
+/* Computes the means of records from p', given in point (spec 11.6). */
 static void place_records(const ted4_recon_job *q, size_t block, const float *point, size_t n,
                           ted4_recon_scratch *w)
 {
@@ -160,7 +162,8 @@ static void place_records(const ted4_recon_job *q, size_t block, const float *po
     }
 }
 
-/* spec 11.4; the product of opacity and A. */
+/* Computes the activation A of spec 11.4, and sets the opacity of the records to opacity times A.
+ */
 static void activate(const ted4_recon_job *q, size_t block, size_t n, ted4_recon_scratch *w)
 {
     const float *tau = ted4_recon_row(q->r, block, q->r->rows.tau);

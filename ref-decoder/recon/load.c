@@ -1,5 +1,5 @@
-/* load.c - spec 10.4, 11.1: from a scene's integers to blocks of binary32 rows, once for all
- * queries.
+/* load.c - converts the integers of a scene to blocks of binary32 rows, once for all queries
+ * (spec 10.4, 11.1).
  * SPDX-License-Identifier: BSD-2-Clause */
 #include "norm/half.h"
 #include "norm/tables.h"
@@ -35,8 +35,8 @@ void ted4_recon_load_lanes(ted4_recon *r, const struct ted4_scene *s)
     }
 }
 
-/* Values of components first .. first + n - 1 of a type for the 32 lanes of a block, to row and the
- * rows after it. */
+/* Writes the values of components first to first + n - 1 of a type, for the 32 lanes of a block, to
+ * row and the rows behind it. */
 static void load_type(const load_job *l, size_t block, ted4_type type, unsigned first, unsigned n,
                       float *row)
 {
@@ -52,7 +52,7 @@ static void load_type(const load_job *l, size_t block, ted4_type type, unsigned 
     }
 }
 
-/* spec 11.1: S from l, in place. */
+/* Computes S from l (spec 11.1) in place, for n rows. */
 static void scale_rows(const ted4_recon *r, float *row, size_t n)
 {
     for (size_t i = 0; i < n * TED4_ROW; i++)
@@ -70,7 +70,7 @@ static void load_tau(const load_job *l, size_t block)
             tau[c * TED4_ROW + j] = ted4_max(ted4_pow2(tau[c * TED4_ROW + j]), 0x1p-12f);
 }
 
-/* What F_deform sees of an anchor: phi, or E(p). */
+/* Writes the rows of an anchor that F_deform reads: phi, or E(p). */
 static void load_motion(const load_job *l, size_t block)
 {
     const ted4_recon *r = l->r;

@@ -1,4 +1,4 @@
-/* motion.c - spec 11.2, 11.3: where a moving anchor is at a time, and its feature then.
+/* motion.c - computes the position and feature of moving anchors at a given time (spec 11.2, 11.3).
  * SPDX-License-Identifier: BSD-2-Clause */
 #include "recon/recon.h"
 
@@ -29,7 +29,7 @@ void ted4_recon_set_time(ted4_recon *r, uint32_t num, uint32_t den)
         interpolate_bank(r, num, den);
 }
 
-/* The input of F_deform. */
+/* Computes the input of F_deform. */
 static void deform_input(const ted4_recon *r, size_t block, ted4_recon_scratch *w)
 {
     const unsigned n = r->n_motion_rows;

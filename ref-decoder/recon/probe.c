@@ -1,13 +1,13 @@
-/* probe.c - spec 12.2: does this build, on this machine, with this floating-point environment,
- * compute as class X asks? Operands are volatile, so that the compiler cannot answer for the
- * machine.
+/* probe.c - tests whether this build, on this machine and in its present floating-point
+ * environment, computes as class X requires (spec 12.2). Operands are volatile, so that the
+ * compiler cannot compute the results in advance.
  * SPDX-License-Identifier: BSD-2-Clause */
 #include <float.h>
 #include <math.h>
 #include "recon/strict.h"
 #include "ted4.h"
 
-/* One expression each, as a compiler would contract or reorder it. */
+/* These functions are one expression each, which a compiler could contract or reorder. */
 static float multiply_add(float a, float b, float c)
 {
     return a * b + c;
@@ -18,7 +18,7 @@ static float there_and_back(float a, float b)
     return (a + b) - a;
 }
 
-/* (1 + 2^-12)^2 is 1 + 2^-11 after rounding; a fused or wider operation keeps the 2^-24. */
+/* (1 + 2^-12)^2 is rounded to 1 + 2^-11; a fused or wider operation keeps the term 2^-24. */
 static int no_contraction(void)
 {
     volatile float a = 1.0f + 0x1p-12f, b = a, c = -(1.0f + 0x1p-11f);
@@ -27,7 +27,7 @@ static int no_contraction(void)
     return ted4_float_bits(r) == 0;
 }
 
-/* 2^24 + 1 is 2^24. */
+/* 2^24 + 1 is rounded to 2^24; excess precision or reordering keeps the 1. */
 static int no_excess_or_reordering(void)
 {
     volatile float a = 0x1p24f, b = 1.0f;
@@ -36,7 +36,8 @@ static int no_excess_or_reordering(void)
     return ted4_float_bits(r) == 0;
 }
 
-/* 2^-127 from 2^-126, and back; both sides must know subnormals. */
+/* Computes the subnormal 2^-127 from 2^-126, and the reverse: subnormals must be supported as
+ * results and as operands. */
 static int no_flush(void)
 {
     volatile float least = 0x1p-126f, half = 0.5f, two = 2.0f;
@@ -46,7 +47,7 @@ static int no_flush(void)
     return ted4_float_bits(small) == 0x00400000 && ted4_float_bits(back) == 0x00800000;
 }
 
-/* Ties to even, then both directions, for both signs. */
+/* Tests ties to even, then rounding in both directions for both signs. */
 static int rounds_to_nearest(void)
 {
     static const struct {
@@ -69,7 +70,7 @@ static int rounds_to_nearest(void)
     return ok;
 }
 
-/* Neither is what a reciprocal approximation gives. */
+/* A reciprocal approximation gives neither of these two results. */
 static int divides_exactly(void)
 {
     volatile float one = 1.0f, three = 3.0f, two = 2.0f;
@@ -78,8 +79,8 @@ static int divides_exactly(void)
     return ted4_float_bits(third) == 0x3eaaaaab && ted4_float_bits(root) == 0x3fb504f3;
 }
 
-/* A compiler that may divide by multiplying with a reciprocal does so where quotients share a
- * divisor: 9 / 11 and 18 / 11 are then one unit off. */
+/* A compiler that may replace a division by the multiplication with a reciprocal does so where
+ * quotients share a divisor. Then 9 / 11 and 18 / 11 are off by one unit in the last place. */
 static void divide_all(const volatile float *a, volatile float *q, float divisor)
 {
     const float p0 = a[0] / divisor, p1 = a[1] / divisor, p2 = a[2] / divisor, p3 = a[3] / divisor;
@@ -115,7 +116,8 @@ static float plus_zero(float a)
     return a + 0.0f;
 }
 
-/* NaN is told from numbers, and -0 + 0 is +0. */
+/* Tests that NaN differs from itself, and that -0 + 0 is +0: the compiler must not assume
+ * otherwise. */
 static int no_assumptions(void)
 {
     volatile float infinite = HUGE_VALF, minus_zero = -0.0f;
@@ -131,8 +133,8 @@ int ted4_strict_ok(void)
            divides_exactly() && no_reciprocal() && no_assumptions();
 }
 
-/* FLT_EVAL_METHOD 16 is that of machines with binary16 arithmetic: binary32 is computed as binary32
- * there, too. */
+/* FLT_EVAL_METHOD is 16 on machines with binary16 arithmetic; they, too, compute binary32 as
+ * binary32. */
 int ted4_recon_class_x(void)
 {
 #if defined(__FAST_MATH__) || (FLT_EVAL_METHOD != 0 && FLT_EVAL_METHOD != 16)

@@ -1,6 +1,7 @@
-/* recon.c - spec 11: queries, and what they need: memory, plan of work, threads. load.c fills it,
- * heads.c does the work. A query does again only what its time and camera change: the records of
- * the last one stay in place.
+/* recon.c - answers queries (spec 11): allocates memory, decides which results have to be computed,
+ * and distributes blocks over threads. load.c fills the memory, heads.c computes the records. The
+ * records of the last query are kept, and a query computes again only what its time and camera
+ * change.
  * SPDX-License-Identifier: BSD-2-Clause */
 #include "kernel/strict_dense.h"
 #include "norm/limits.h"
@@ -8,7 +9,7 @@
 
 enum { MAX_CHUNKS = 64, BLOCKS_PER_CHUNK = 16 };
 
-/* Like ted4_arena_alloc, but remembers in *ok that one failed. */
+/* Allocates as ted4_arena_alloc does, and sets *ok to 0 if that fails. */
 static void *take(ted4_arena *a, int *ok, size_t n, size_t size)
 {
     void *p = ted4_arena_alloc(a, n, size);
@@ -23,7 +24,8 @@ static size_t blocks_of(size_t n_anchors)
     return (n_anchors + TED4_ROW - 1) / TED4_ROW;
 }
 
-/* Sets everything that is a number. Returns the count of records. */
+/* Sets all sizes and counts, the networks' shapes and the dense layer's function. Returns the
+ * number of records. */
 static uint64_t set_sizes(ted4_recon *r, const struct ted4_scene *s)
 {
     const ted4_header *h = &s->head;
@@ -139,7 +141,7 @@ ted4_status ted4_recon_new(ted4_recon **out, const ted4_scene *s, const ted4_opt
         ted4_recon_free(r);
         return TED4_E_LIMIT_WORK;
     }
-    /* Record numbers and ids are 32 bits. */
+    /* Record numbers and ids have 32 bits. */
     if ((uint64_t)s->head.n_anchors * s->head.n_offsets > UINT32_MAX ||
         !take_all(r, (size_t)n_records)) {
         ted4_recon_free(r);
@@ -159,12 +161,13 @@ void ted4_recon_free(ted4_recon *r)
 {
     if (r == NULL)
         return;
-    ted4_arena arena = r->arena; /* r lies in it */
+    ted4_arena arena = r->arena; /* a copy, since r lies in the arena */
 
     ted4_arena_finish(&arena);
 }
 
-/* What the new time and camera change in blocks that move or not. */
+/* Returns the TED4_DO_ bits of the results that the new time and camera change, in moving or in
+ * static blocks. */
 static unsigned plan(const ted4_recon *r, const ted4_query *q, int moving)
 {
     const int again = !r->fresh;

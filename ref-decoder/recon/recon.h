@@ -11,9 +11,9 @@
 
 enum { TED4_POINT_INPUTS = 63, TED4_TIME_INPUTS = 21 }; /* sizes of E(p), E(t) of spec 11.3, inr */
 
-/* The rows of a block, in order: first row of each kind, with the number of rows. Values that do
- * not depend on the query are computed in advance; since each product of a formula is rounded by
- * itself, this does not change results. */
+/* The rows of a block, in order: each member is the number of a first row; comments give the number
+ * of rows and their content. Values that do not depend on the query are computed in advance; since
+ * each product of a formula is rounded by itself, this does not change results. */
 typedef struct {
     unsigned position; /* 3: p */
     unsigned feature;  /* F: f */
