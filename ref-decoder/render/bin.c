@@ -1,16 +1,18 @@
-/* bin.c - second stage of raster.c: visible Gaussians in depth order (stable radix sort), then the
- * list of each tile (counting sort). Each pass splits its input into TED4_SORT_PARTS parts that
- * count alone, adds the counts up in order, and lets the parts place their items alone: a stable
- * sort whatever runs the parts.
+/* bin.c - the second stage of raster.c: sorts the visible Gaussians by depth (stable radix sort),
+ * then makes the list of each tile (counting sort). Each pass splits its input into TED4_SORT_PARTS
+ * parts, which count independently of each other; adds up the counts in order; and then lets the
+ * parts place their items independently. The sort is stable whatever the order and the threads in
+ * which the parts run.
  * SPDX-License-Identifier: BSD-2-Clause */
 #include "render/raster_state.h"
 
 #include <string.h>
 
-/* Tiles after the last that are counted in vain: see tile_four. */
+/* Spare tiles after the last one, which stay empty: see tile_four. */
 enum { SPARE_TILES = 3 };
 
-/* Instances after the last: what blend.c fetches ahead, then what each part writes in vain. */
+/* Entries after the last instance: those that blend.c prefetches, then unused ones that each part
+ * writes. */
 enum { CAPACITY = TED4_AHEAD + TED4_SPARE * (TED4_SORT_PARTS + 1) };
 
 typedef struct {
@@ -18,9 +20,9 @@ typedef struct {
     size_t n_splats;
     const uint64_t *from;
     uint64_t *to;
-    uint32_t nearest; /* depth bits that all keys begin from */
-    int depth_bits;   /* of keys, from there on */
-    int shift, digit; /* the bits that this pass sorts by: first, number */
+    uint32_t nearest; /* depth bits of the nearest Gaussian, subtracted from all keys */
+    int depth_bits;   /* number of depth bits in keys after that */
+    int shift, digit; /* first bit and number of bits by which this pass sorts */
 } bin_job;
 
 static size_t part_begin(const bin_job *job, size_t part)
@@ -28,7 +30,8 @@ static size_t part_begin(const bin_job *job, size_t part)
     return job->r->n_visible * part / TED4_SORT_PARTS;
 }
 
-/* Counts to first places: item order is bucket, then part. bucket_first: NULL: not wanted. */
+/* Converts counts to first places. Items are ordered by bucket, then by part. bucket_first[] gets
+ * the first place of each bucket, unless it is NULL. */
 static void counts_to_places(uint32_t *hist, size_t n_buckets, uint32_t *bucket_first)
 {
     uint32_t total = 0;
@@ -44,8 +47,8 @@ static void counts_to_places(uint32_t *hist, size_t n_buckets, uint32_t *bucket_
     }
 }
 
-/* Moves a chunk's keys to their common array, depths from the nearest on, and makes its instances
- * count from the beginning of the scene. */
+/* Moves the keys of a chunk to the array of all keys, with depths relative to the nearest one, and
+ * makes its first_instance count from the beginning of the scene. */
 static void gather_chunk(void *arg, size_t c)
 {
     const bin_job *job = arg;
@@ -61,8 +64,8 @@ static void gather_chunk(void *arg, size_t c)
         first_instance[i] += before.n_instances;
 }
 
-/* The chunks' counts become the totals before them, with one entry more for all. -1: more instances
- * than 32 bits count. */
+/* Replaces the counts of each chunk by the totals of the chunks before it, with one more entry for
+ * the totals of all. Returns 0, or -1 if instances cannot be numbered in 32 bits. */
 static int add_up_chunks(bin_job *job, size_t n_chunks)
 {
     ted4_chunk *chunk = job->r->chunk.data;
@@ -114,8 +117,8 @@ static void place_keys(void *arg, size_t part)
         job->to[place[digit_of(job, i)]++] = job->from[i];
 }
 
-/* Sorts by the upper 32 bits, of which only depth_bits differ, in passes of nearly equal digits.
- * Depths are positive, so their bits are in their order. */
+/* Sorts keys by their upper 32 bits, of which only depth_bits differ, in passes with nearly equal
+ * numbers of bits. Depths are positive floats, so their bits have the same order as they have. */
 static void sort_by_depth(bin_job *job, const ted4_parallel *p)
 {
     int left = job->depth_bits;
@@ -134,8 +137,9 @@ static void sort_by_depth(bin_job *job, const ted4_parallel *p)
     }
 }
 
-/* The tiles of a small box and whether there is each: a box that is one tile wide, or high, has
- * spare tiles in the place of others, so that no branch waits for the box. */
+/* The tiles of a box of at most 2x2 tiles; there[k] is 1 if tile k exists. A box that is one tile
+ * wide or high has spare tiles in the place of the missing ones, which avoids branches that depend
+ * on the box. */
 typedef struct {
     uint32_t tile[4], there[4];
 } tile_four;
@@ -145,7 +149,7 @@ static inline int is_small(ted4_tile_box b)
     return b.x1 - b.x0 <= 2 && b.y1 - b.y0 <= 2;
 }
 
-/* there ? tile : spare, without a branch. */
+/* Returns there ? tile : spare, without a branch. */
 static inline uint32_t choose(uint32_t there, uint32_t tile, uint32_t spare)
 {
     return spare ^ ((spare ^ tile) & -there);
@@ -187,7 +191,7 @@ static void count_tiles(void *arg, size_t part)
     }
 }
 
-/* Puts the instances of a part in their places; those of spare tiles where no one looks. */
+/* Writes the instances of a part to their places; those of spare tiles go to unused entries. */
 static void place_instances(void *arg, size_t part)
 {
     const bin_job *job = arg;

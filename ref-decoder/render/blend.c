@@ -1,13 +1,14 @@
-/* blend.c - third stage of raster.c: one job a tile, one lane group a block of 4x4 pixels. The
- * tile's list is taken in batches; each batch is copied together (its Gaussians lie on as many
- * pages as they are), and an exact test of ellipse against block says which of them each block
- * needs; then it is blended block by block.
+/* blend.c - the third stage of raster.c: blends Gaussians, with one job per tile and one lane group
+ * per block of 4x4 pixels. The list of a tile is processed in batches. The Gaussians of a batch are
+ * copied into contiguous memory, since each may lie on a page of its own; an exact test of ellipse
+ * against block finds the Gaussians that each block needs; then the batch is blended block by
+ * block.
  * SPDX-License-Identifier: BSD-2-Clause */
 #include "render/image_model.h"
 
 enum {
-    BATCH_GROUPS = 4, /* groups of instances between two changes of block; their records fill a
-                         third of a level 1 cache */
+    BATCH_GROUPS = 4, /* groups of instances per batch; their records fill a third of a level 1
+                         cache */
     BATCH = BATCH_GROUPS * TED4_GROUP,
     HALF_GROUP = TED4_GROUP / 2
 };
@@ -19,11 +20,11 @@ typedef struct {
     int keep_state;
 } blend_job;
 
-/* A register's share of a block's pixels. */
+/* The state of one register of a block's pixels. */
 typedef struct {
     ted4_vf px, py;
-    ted4_vf t;     /* transmittance; under TED4_RASTER_T_MIN where finished or outside the image */
-    ted4_vf t_out; /* transmittance that the background sees */
+    ted4_vf t;     /* transmittance; below TED4_RASTER_T_MIN if finished or outside the image */
+    ted4_vf t_out; /* transmittance by which the background is multiplied */
     ted4_vf colour[3];
 } part_state;
 
@@ -31,10 +32,11 @@ typedef struct {
     part_state part[TED4_VECS];
 } block_state;
 
-/* Blocks (lanes) in part part of the tile with corner pixel centre (x, y) which the Gaussian may
- * reach. On a box, log2(alpha) is largest at the centre if that is inside, else on one of the two
- * sides that face it; (cx, cy) is the point nearest to the centre, and the candidates are the best
- * points of the lines through it. */
+/* Returns a mask of the blocks (one per lane) that the Gaussian may reach in part part of the tile
+ * whose first pixel centre is (x, y). On a box, log2(alpha) is largest at the Gaussian's centre if
+ * that lies inside, else on one of the two sides that face the centre. (cx, cy) is the point of the
+ * box nearest to the centre; the candidates are the points of highest alpha on the two lines
+ * through it. */
 TED4_INLINE ted4_vi reached_blocks(const ted4_splat2d *g, float x, float y, int part)
 {
     static const float col[TED4_LANE_GROUP] = {
@@ -44,7 +46,7 @@ TED4_INLINE ted4_vi reached_blocks(const ted4_splat2d *g, float x, float y, int 
         0, 0, 0, 0, 4, 4, 4, 4, 8, 8, 8, 8, 12, 12, 12, 12
     };
     const float span = TED4_BLOCK - 1;
-    const float slack = 0.01f; /* of rounding; pixels decide for themselves */
+    const float slack = 0.01f; /* for rounding; blending itself tests each pixel exactly */
     const ted4_vf zero = { 0 };
     const ted4_vf x0 = ted4_vf_load(col + part * TED4_VEC) + (x - g->x), x1 = x0 + span;
     const ted4_vf y0 = ted4_vf_load(row + part * TED4_VEC) + (y - g->y), y1 = y0 + span;
@@ -61,8 +63,8 @@ TED4_INLINE ted4_vi reached_blocks(const ted4_splat2d *g, float x, float y, int 
     return ted4_vf_min(n, m) <= reach;
 }
 
-/* Half a group, n <= HALF_GROUP: bit i of all[b] for instance i and block b. near: copies of the
- * instances' Gaussians. */
+/* Tests half a group, n <= HALF_GROUP instances. Bit i of all[b] is set if instance i may reach
+ * block b. near[i] gets a copy of the Gaussian of instance i. */
 static void reach_half(const ted4_splat2d *splat, const uint32_t *owner, uint32_t n, float x,
                        float y, ted4_splat2d *near, uint32_t all[TED4_TILE_BLOCKS])
 {
@@ -78,7 +80,8 @@ static void reach_half(const ted4_splat2d *splat, const uint32_t *owner, uint32_
     memcpy(all, sum, sizeof sum);
 }
 
-/* A group, n <= TED4_GROUP. live: all bits set for unfinished blocks, none for others. */
+/* Tests a group, n <= TED4_GROUP instances. live has all bits set for unfinished blocks, and none
+ * for finished ones. */
 static void reach_group(const ted4_splat2d *splat, const uint32_t *owner, uint32_t n, float x,
                         float y, const uint64_t *live, ted4_splat2d *near, ted4_reach *out)
 {
@@ -91,8 +94,9 @@ static void reach_group(const ted4_splat2d *splat, const uint32_t *owner, uint32
         out->block[b] = ((uint64_t)high[b] << HALF_GROUP | low[b]) & live[b];
 }
 
-/* Blends the Gaussians that reach says into a part of block b. Returns the first group that it did
- * not need, as all its pixels were finished. */
+/* Blends the Gaussians of block b in reach into one part of the block. Returns the number of the
+ * first group that the part does not need because all its pixels are finished, or n_groups + 1 if
+ * they are not all finished. */
 static uint32_t blend_part(part_state *state, int b, const ted4_splat2d *near,
                            const ted4_reach *reach, uint32_t n_groups)
 {
@@ -116,8 +120,8 @@ static uint32_t blend_part(part_state *state, int b, const ted4_splat2d *near,
     return live ? n_groups + 1 : group;
 }
 
-/* Blends the Gaussians that reach says into block b. When every pixel is finished, takes those not
- * needed out of reach; the result is then 0, else 1. */
+/* Blends the Gaussians of block b in reach. Returns 0 if every pixel is finished, with the
+ * Gaussians that were not needed removed from reach, else 1. */
 static int blend_block(block_state *state, int b, const ted4_splat2d *near, ted4_reach *reach,
                        uint32_t n_groups)
 {
@@ -133,7 +137,8 @@ static int blend_block(block_state *state, int b, const ted4_splat2d *near, ted4
     return end > n_groups;
 }
 
-/* live: see reach_group; blocks outside the image are finished from the start. */
+/* Initialises the blocks of a tile and live (see reach_group). Blocks outside the image are
+ * finished from the start. */
 static void init_blocks(block_state *state, uint64_t *live, uint32_t tx, uint32_t ty,
                         const ted4_view *v)
 {
@@ -173,7 +178,8 @@ static void store_block(const blend_job *job, const block_state *s, size_t x, si
     }
 }
 
-/* Blends one batch of n <= BATCH instances; updates live. Returns how many blocks still are. */
+/* Blends one batch of n <= BATCH instances and updates live. Returns the number of blocks that are
+ * not finished. */
 static int blend_batch(const blend_job *job, const uint32_t *owner, uint32_t n, uint32_t tx,
                        uint32_t ty, block_state *state, uint64_t *live, ted4_reach *reach)
 {

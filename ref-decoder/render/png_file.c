@@ -1,4 +1,4 @@
-/* png_file.c - see png_file.h.
+/* png_file.c - writes PNG files with libpng, each under a temporary name at first.
  * SPDX-License-Identifier: BSD-2-Clause */
 #include "render/png_file.h"
 
@@ -38,7 +38,8 @@ uint8_t *ted4_png_encode(int width, int height, const uint8_t *rgb, size_t *size
     return NULL;
 }
 
-/* Into an open file through libpng's simplified interface, which needs no setjmp. */
+/* Writes to an open file with libpng's simplified interface, which does not need setjmp. Returns 0,
+ * or -1 with a message in why. */
 static int write_png(FILE *f, int width, int height, const uint8_t *rgb, char *why, size_t why_size)
 {
     png_image p = describe(width, height);

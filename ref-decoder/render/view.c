@@ -1,4 +1,4 @@
-/* view.c - see view.h.
+/* view.c - renders views of a decoded scene, through ted4_recon_query and the rasteriser.
  * SPDX-License-Identifier: BSD-2-Clause */
 #include "render/view.h"
 
@@ -43,7 +43,7 @@ static int reserve_image(ted4_viewer *v, size_t n)
     return v->capacity >= n ? 0 : -1;
 }
 
-/* c = -R^T t: where x_cam = 0. */
+/* Computes the centre of the camera, c = -R^T t, where x_cam = 0. */
 static void camera_centre(const ted4_view *camera, float c[3])
 {
     for (int i = 0; i < 3; i++) {
