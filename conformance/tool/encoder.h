@@ -1,18 +1,18 @@
-/* encoder.h - `ted4conf encode`: an encoder against what specification 3.4 asks of it, by the
- * contract of conformance/README.md.
- * SPDX-License-Identifier: BSD-2-Clause */
+/* encoder.h - `ted4conf encode`: checks an encoder against the requirements of specification 3.4,
+ * through the contract of conformance/README.md.
+ * SPDX-License-Identifier: BSD-2-Clause  */
 #ifndef CONF_ENCODER_H
 #define CONF_ENCODER_H
 
 typedef struct {
     const char *encoder; /* command */
-    const char *scene;   /* folder, as the encoder knows them */
-    const char *preset;  /* NULL: the encoder's own choice */
+    const char *scene;   /* folder, in a form that the encoder understands */
+    const char *preset;  /* NULL: the encoder's default */
     double timeout;      /* seconds */
 } conf_encode_options;
 
-/* Says on stderr what is wrong, and the verdict in one line on stdout. Exit code: 0 conforms, 1
- * does not, 3 no temporary folder. */
+/* Prints the problems to stderr and a verdict of one line to stdout. Returns the exit code: 0 the
+ * encoder conforms, 1 it does not, 3 there is no temporary folder. */
 int conf_encode(const conf_encode_options *o);
 
 #endif

@@ -1,13 +1,13 @@
-/* judge.h - is an answer the right one? And is it an answer at all?
- * SPDX-License-Identifier: BSD-2-Clause */
+/* judge.h - checks whether a decoder's output is an answer at all, and whether it is the right one.
+ * SPDX-License-Identifier: BSD-2-Clause  */
 #ifndef CONF_JUDGE_H
 #define CONF_JUDGE_H
 
 #include "process.h"
 #include "suite.h"
 
-/* declined: the decoder has said beforehand that it does not do this; missing: no file, or another
- * one. */
+/* declined: the decoder has announced that it does not support the vector; missing: the file does
+ * not exist, or its hash differs. */
 typedef enum {
     CONF_PASS,
     CONF_FAIL,
@@ -24,27 +24,28 @@ typedef struct {
     char reason[400];
 } conf_verdict;
 
-/* The document that a run has printed, a new reference; NULL: no answer, and *v says why. */
+/* Returns the document that a run has printed, as a new reference, or NULL with *v filled if there
+ * is no answer. */
 json_t *conf_judge_document(const conf_process *p, conf_verdict *v);
-/* The object that --ted4-capabilities gives: 1, or 0: it is not what the contract asks for, and *v
- * says why. */
+/* Checks the object printed for --ted4-capabilities. Returns 1, or 0 with *v filled if it breaks
+ * the contract. */
 int conf_judge_capabilities(const json_t *capabilities, conf_verdict *v);
-/* The first of T0 to T4 that a decoder does not say it can give, which a strict one has to
- * (R-DMP-070); NULL: none. */
+/* Returns the first of T0 to T4 that the decoder does not list, or NULL. A strict decoder must
+ * support all of them (R-DMP-070). */
 const char *conf_judge_lacks(const json_t *capabilities);
-/* May the decoder leave this vector out? */
+/* Returns 1 if the decoder may skip this vector. */
 int conf_judge_declines(const json_t *capabilities, const json_t *descriptor);
-/* Is that the result that a descriptor expects? */
+/* Returns 1 if the descriptor expects that result. */
 int conf_expects(const json_t *descriptor, const char *result);
-/* Does the decoder claim lenient mode (spec 3.3)? */
+/* Returns 1 if the decoder claims lenient mode (spec 3.3). */
 int conf_judge_lenient(const json_t *capabilities);
-/* The hashes that got gives, at least one of them: 1: those of want. */
+/* Returns 1 if got contains at least one hash and all of its hashes equal those of want. */
 int conf_same_hash(const json_t *want, const json_t *got);
-/* Answer against descriptor; T5 of class X only (judge_t.h: class T). */
+/* Judges an answer by its descriptor. T5 is judged for class X only (judge_t.h judges class T). */
 void conf_judge(const json_t *capabilities, const json_t *descriptor, const json_t *answer,
                 conf_verdict *v);
-/* The answer in lenient mode to a vector whose descriptor says what can be salvaged, beyond its
- * verdict, which conf_judge has passed. */
+/* Judges the answer of lenient mode to a vector whose descriptor has "salvage". conf_judge must
+ * have passed the verdict of that answer already. */
 void conf_judge_salvage(const json_t *capabilities, const json_t *descriptor, const json_t *answer,
                         conf_verdict *v);
 
