@@ -1,6 +1,6 @@
 /* answer.h - the answer of this project's decoder to a byte string, as the driver contract
  * (conformance/README.md) defines it, computed without a separate process.
- * SPDX-License-Identifier: BSD-2-Clause  */
+ * SPDX-License-Identifier: BSD-2-Clause */
 #ifndef CONF_ANSWER_H
 #define CONF_ANSWER_H
 

@@ -2,7 +2,7 @@
  * scene. Steps: header (build_header.c), networks and bank (build_nets.c), positions and masks
  * (build_anchors.c), symbols (build_symbols.c), deflate (pack.c). All arithmetic is on integers or
  * exact in binary32, so that every machine builds the same file.
- * SPDX-License-Identifier: BSD-2-Clause  */
+ * SPDX-License-Identifier: BSD-2-Clause */
 #ifndef CONF_BUILD_H
 #define CONF_BUILD_H
 

@@ -1,6 +1,6 @@
 /* chance.h - random numbers for recipes. They use integers only, so that every machine draws the
  * same numbers.
- * SPDX-License-Identifier: BSD-2-Clause  */
+ * SPDX-License-Identifier: BSD-2-Clause */
 #ifndef CONF_CHANCE_H
 #define CONF_CHANCE_H
 

@@ -1,6 +1,6 @@
 /* cover.h - `ted4conf cover`: measures the coverage of the published vectors against a list of
  * goals.
- * SPDX-License-Identifier: BSD-2-Clause  */
+ * SPDX-License-Identifier: BSD-2-Clause */
 #ifndef CONF_COVER_H
 #define CONF_COVER_H
 

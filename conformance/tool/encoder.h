@@ -1,6 +1,6 @@
 /* encoder.h - `ted4conf encode`: checks an encoder against the requirements of specification 3.4,
  * through the contract of conformance/README.md.
- * SPDX-License-Identifier: BSD-2-Clause  */
+ * SPDX-License-Identifier: BSD-2-Clause */
 #ifndef CONF_ENCODER_H
 #define CONF_ENCODER_H
 

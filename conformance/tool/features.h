@@ -1,6 +1,6 @@
 /* features.h - names for the parts of the format that a file uses. Decoders may decline features,
  * and coverage counts pairs of them.
- * SPDX-License-Identifier: BSD-2-Clause  */
+ * SPDX-License-Identifier: BSD-2-Clause */
 #ifndef CONF_FEATURES_H
 #define CONF_FEATURES_H
 

@@ -1,5 +1,5 @@
 /* gen.h - `ted4conf gen`: makes all vectors and the manifest from the recipes.
- * SPDX-License-Identifier: BSD-2-Clause  */
+ * SPDX-License-Identifier: BSD-2-Clause */
 #ifndef CONF_GEN_H
 #define CONF_GEN_H
 

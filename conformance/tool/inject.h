@@ -1,6 +1,6 @@
 /* inject.h - makes tiles that no encoder writes: one symbol of a substream is replaced by a symbol
  * that the coder can code but the rules forbid.
- * SPDX-License-Identifier: BSD-2-Clause  */
+ * SPDX-License-Identifier: BSD-2-Clause */
 #ifndef CONF_INJECT_H
 #define CONF_INJECT_H
 

@@ -1,5 +1,5 @@
 /* judge.h - checks whether a decoder's output is an answer at all, and whether it is the right one.
- * SPDX-License-Identifier: BSD-2-Clause  */
+ * SPDX-License-Identifier: BSD-2-Clause */
 #ifndef CONF_JUDGE_H
 #define CONF_JUDGE_H
 

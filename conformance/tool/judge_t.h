@@ -1,6 +1,6 @@
 /* judge_t.h - judges T5 of a decoder that claims class T: its records must be within the thresholds
  * of annex E.
- * SPDX-License-Identifier: BSD-2-Clause  */
+ * SPDX-License-Identifier: BSD-2-Clause */
 #ifndef CONF_JUDGE_T_H
 #define CONF_JUDGE_T_H
 

@@ -1,27 +1,28 @@
-/* mutants.h - `ted4conf mutants`: faults seeded into the decoder, which the published vectors have
- * to find.
+/* mutants.h - `ted4conf mutants`: mutation testing. Faults are seeded into the decoder, and the
+ * published vectors must detect them.
  * SPDX-License-Identifier: BSD-2-Clause */
 #ifndef CONF_MUTANTS_H
 #define CONF_MUTANTS_H
 
 typedef struct {
+    const char *suite;   /* contains mutants.list, mutants-equivalent.list, mutants.csv, MUTANTS.md,
+                            vectors */
+    const char *vectors; /* folder whose subfolder vectors holds all files, also those made on
+                            demand; NULL: suite */
+    const char *build;   /* build folder of ted4conf */
     const char
-        *suite; /* holds mutants.list, mutants-equivalent.list, mutants.csv, MUTANTS.md, vectors */
-    const char *vectors; /* folder that holds a folder vectors with all files, those made on demand
-                            too; NULL: suite */
-    const char *build;   /* folder of a build of ted4conf */
-    const char
-        *compile; /* command that compiles: flags, without -c and -o; NULL: nothing can be run */
-    const char *libraries; /* behind the objects when linking */
-    const char *only;      /* ids that begin so; NULL: all */
+        *compile; /* compile command with its flags, without -c and -o; NULL: nothing can be run */
+    const char *libraries; /* linker arguments after the objects */
+    const char *only;      /* only ids with this prefix; NULL: all */
     int jobs;
-    double timeout; /* seconds for one replay */
-    int check;      /* run and write nothing */
+    double timeout; /* seconds per replay */
+    int check;      /* neither run nor write anything */
 } conf_mutant_options;
 
-/* Runs what has no result that holds, keeps results in mutants.csv, writes MUTANTS.md. Exit code: 0
- * when enough are killed. check: says how many results hold; 0. A list that does not fit the
- * sources, or an unchanged program that does not pass, ends the program. */
+/* Runs every mutant without a valid result, stores the results in mutants.csv, and writes
+ * MUTANTS.md. Returns the exit code, 0 if enough mutants are killed. With check, it only prints the
+ * number of valid results and returns 0. Ends the program if the list does not match the sources,
+ * or if the unchanged decoder fails. */
 int conf_mutants(const conf_mutant_options *o);
 
 #endif

@@ -1,19 +1,19 @@
-/* replay.h - `ted4conf replay`: the decoder that is linked in, against the suite, in one process.
- * Seconds; crashes and hangs are the caller's affair.
+/* replay.h - `ted4conf replay`: checks the linked decoder against the suite in one process, which
+ * takes seconds. Crashes and hangs are not caught: the caller has to handle them.
  * SPDX-License-Identifier: BSD-2-Clause */
 #ifndef CONF_REPLAY_H
 #define CONF_REPLAY_H
 
 typedef struct {
-    const char *suite, *list; /* list: as conf_suite_load takes it */
-    int stop;                 /* at the first failure */
-    int validate; /* the validator (spec 3.6) too, which has to find the errors that are expected
-                     and no others in valid files */
-    int ways;     /* as other callers may decode (ways.h) */
-    int names;    /* a line "at ID" before each vector */
+    const char *suite, *list; /* list: see conf_suite_load */
+    int stop;                 /* 1: stop at the first failure */
+    int validate; /* 1: also run the validator (spec 3.6), which has to find the expected errors,
+                     and none in valid files */
+    int ways;     /* 1: also decode with other options (ways.h) */
+    int names;    /* 1: print a line "at ID" before each vector */
 } conf_replay_options;
 
-/* Exit code: 0 all pass, 1 not. */
+/* Returns the exit code: 0 if all vectors pass, else 1. */
 int conf_replay(const conf_replay_options *o);
 
 #endif

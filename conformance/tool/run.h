@@ -1,4 +1,4 @@
-/* run.h - `ted4conf run`: a decoder against the suite.
+/* run.h - `ted4conf run`: checks a decoder against the suite.
  * SPDX-License-Identifier: BSD-2-Clause */
 #ifndef CONF_RUN_H
 #define CONF_RUN_H
@@ -9,18 +9,18 @@ typedef struct {
     const char *suite;               /* folder of SUITE.json, vectors/, recipes/ */
     const char *decoder;             /* command */
     const char *list;                /* file of ids; NULL: all */
-    const char *second;              /* NAME=VALUE for the second run; NULL: as the first */
+    const char *second;              /* NAME=VALUE for the second run; NULL: nothing changes */
     const char *json, *junit, *html; /* files to write; NULL: none */
     int jobs, once, demand, large, quiet;
-    double timeout;  /* seconds a run */
-    uint64_t memory; /* bytes of address space a run; 0: no bound */
+    double timeout;  /* seconds per run */
+    uint64_t memory; /* bytes of address space per run; 0: no limit */
 } conf_run_options;
 
-/* What came out of it. */
+/* The results of a run. */
 typedef struct {
     const conf_run_options *options;
     json_t *capabilities;   /* NULL: none */
-    conf_verdict handshake; /* what is wrong with them */
+    conf_verdict handshake; /* the problem with the capabilities */
     conf_entry *entry;      /* [n] */
     conf_verdict *verdict;  /* [n] */
     double *ms;             /* [n] */
@@ -28,7 +28,7 @@ typedef struct {
     int passed; /* the verdict on the decoder */
 } conf_run_result;
 
-/* Exit code: 0 conforms, 1 does not, 3 wrong usage. */
+/* Returns the exit code: 0 the decoder conforms, 1 it does not, 3 wrong usage. */
 int conf_run(const conf_run_options *o);
 
 /* run_report.c */

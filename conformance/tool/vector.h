@@ -1,4 +1,5 @@
-/* vector.h - one vector: its bytes, and the descriptor that says what every decoder has to answer.
+/* vector.h - one vector: its bytes, and the descriptor with the answer that every decoder must
+ * give.
  * SPDX-License-Identifier: BSD-2-Clause */
 #ifndef CONF_VECTOR_H
 #define CONF_VECTOR_H
@@ -13,8 +14,9 @@ typedef struct {
     char folder[64];    /* "valid/header" */
 } conf_vector;
 
-/* Made from its recipe; suite: the folder of vectors/, where files that are kept lie. 0: our
- * decoder answers something else than what the recipe expects, which is said on stderr. */
+/* Makes a vector from its recipe. suite: the folder of vectors/ with the stored files. Returns 0,
+ * with a message on stderr, if our decoder answers differently from what the recipe expects, else
+ * 1. */
 int conf_vector_make(conf_vector *v, const conf_recipe *r, const char *suite);
 void conf_vector_free(conf_vector *v);
 
