@@ -74,7 +74,7 @@ json_t *conf_salvaged(const ted4_scene *s, const ted4_salvage *what, const json_
                      conf_tiers(NULL, s, queries));
 }
 
-/* s: what there is of the file; NULL: nothing. It is freed. */
+/* s: the decoded part of the file, or NULL if nothing was decoded. Frees s. */
 static json_t *answer_of(const conf_bytes *file, ted4_scene *s, const ted4_salvage *what,
                          const json_t *queries)
 {

@@ -29,7 +29,8 @@ static uint16_t random_half(conf_chance *c, int tiny)
     return h != 0 && u >> 31 ? h | 0x8000 : h;
 }
 
-/* Sorts tries positions, keeps n_anchors of them, evenly chosen. */
+/* Sorts the positions and keeps n_anchors of them, evenly spaced in that order. tries: the number
+ * of positions. */
 static void keep(conf_build *b, const uint16_t *p, size_t tries)
 {
     const size_t n = b->head.n_anchors;

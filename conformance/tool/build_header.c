@@ -1,4 +1,4 @@
-/* build_header.c - `set NAME VALUE...`: the header of a scene (spec 6.1).
+/* build_header.c - `set NAME VALUE...`: builds the header of a scene (spec 6.1).
  * SPDX-License-Identifier: BSD-2-Clause */
 #include <stddef.h>
 #include <string.h>
@@ -24,7 +24,7 @@ static const field fields[] = { FIELD(n_anchors),    FIELD(tile_size),     FIELD
                                 FIELD(ar_width),     FIELD(context_bits),  FIELD(frames),
                                 FIELD(rate_num),     FIELD(rate_den),      FIELD(exponent) };
 
-/* The least that a file holds: nothing moves, no masks, one slice, no view. */
+/* The smallest valid header: no motion, no masks, one slice, no view dependence. */
 static void smallest(ted4_header *h)
 {
     memset(h, 0, sizeof *h);
@@ -53,7 +53,7 @@ static void store(void *to, size_t width, long long v)
         *(uint32_t *)to = (uint32_t)v;
 }
 
-/* set slices 2 3: also the number of slices and the feature's dimension. */
+/* set slices 2 3: also sets the number of slices and the dimension of the feature. */
 static void set_slices(ted4_header *h, const conf_line *l)
 {
     unsigned sum = 0;
@@ -85,7 +85,8 @@ static void set_step(ted4_header *h, const conf_line *l)
         h->step[conf_word_type(l, 2)] = conf_word_float(l, 3);
 }
 
-/* set motion bank: with the least that this asks for, unless the recipe says more before. */
+/* set motion bank: also sets the minimum that this motion needs, unless earlier lines of the recipe
+ * set more. */
 static void set_motion(ted4_header *h, const conf_line *l)
 {
     static const char *const name[] = { "none", "bank", "concat", "inr" };
@@ -115,7 +116,7 @@ static void set_inr(ted4_header *h)
     h->hyper_width = 3;
 }
 
-/* Any header in range, small. */
+/* Draws a small random header in range. */
 static void set_random(conf_build *b)
 {
     ted4_header *h = &b->head;
@@ -210,7 +211,7 @@ static void set(conf_build *b, const conf_line *l)
         h->slice[0] = h->feature_dim;
 }
 
-/* Widths of what is absent are 0. */
+/* Sets the widths of absent parts to 0. */
 static void tidy(ted4_header *h)
 {
     if (h->head_layers == 0)

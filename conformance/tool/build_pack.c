@@ -1,5 +1,5 @@
-/* build_pack.c - `pack nete|netr|bank raw | fixed | dynamic | mixed | small`: modes of the blobs.
- * Raw without a line.
+/* build_pack.c - `pack nete|netr|bank raw | fixed | dynamic | mixed | small`: sets the modes of the
+ * blobs. A blob without such a line is raw.
  * SPDX-License-Identifier: BSD-2-Clause */
 #include <stdlib.h>
 #include <string.h>

@@ -33,7 +33,7 @@ static int legal(int32_t k)
     return k >= -32767 && k <= 32767;
 }
 
-/* r of an escape with that e, on a side that keeps k legal. */
+/* Returns the residual r of an escape of e, on a side for which k is legal. */
 static int32_t escape(int32_t m, int32_t hw, int32_t e, int high)
 {
     const int32_t low_r = -hw - 1 - e, high_r = hw + 2 + e;
@@ -55,7 +55,7 @@ static int32_t drawn_escape(conf_chance *c, int32_t m, int32_t hw, int bits, int
     }
 }
 
-/* k nearest to the window where the window itself is out of range. */
+/* Returns the legal k closest to a window that is itself out of range. */
 static int32_t clip(int32_t k)
 {
     return ted4_clamp(k, -32767, 32767);
@@ -77,7 +77,8 @@ static int32_t draw(drawer *d, int type, size_t turn, int32_t mu, unsigned g)
     if (conf_word_is(l, 2, "wild") && conf_in(c, 0, 7) > 0)
         return clip(m + ted4_clamp(conf_bell(c, hw), -hw, hw + 1));
     if (conf_word_is(l, 2, "wild")) {
-        const int high = conf_in(c, 0, 1); /* drawn before bits, whatever the compiler */
+        const int high = conf_in(
+            c, 0, 1); /* drawn before bits, so that the order does not depend on the compiler */
 
         return clip(m + drawn_escape(c, m, hw, conf_in(c, 0, 14), high));
     }
@@ -96,7 +97,7 @@ static int32_t draw(drawer *d, int type, size_t turn, int32_t mu, unsigned g)
     return conf_word_is(l, 2, "value") ? v : clip(m + v);
 }
 
-/* Symbols of a component for the anchors of the block. */
+/* Draws the symbols of one component for the anchors of the block. */
 static void component(drawer *d, int type, unsigned comp, const int32_t *mu, const int32_t *s)
 {
     ted4_scene *scene = d->b->scene;
@@ -150,7 +151,7 @@ static void feature(drawer *d)
     }
 }
 
-/* What no mask hides stays; the rest is 0, as a decoder leaves it. a_s <= a_f is made true. */
+/* Sets masked symbols to 0, as a decoder does, and makes a_s <= a_f true. */
 static void tidy(ted4_scene *s)
 {
     const size_t n = s->head.n_anchors;

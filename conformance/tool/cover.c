@@ -1,4 +1,4 @@
-/* cover.c - see cover.h: goals, and what is said about them.
+/* cover.c - see cover.h: collects the goals and reports which are reached.
  * SPDX-License-Identifier: BSD-2-Clause */
 #include "cover.h"
 
@@ -6,7 +6,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* Prints a group; gives how many goals nobody reaches. */
+/* Prints a group and returns the number of its goals that no vector reaches. */
 static size_t tell(const char *name, json_t *group, int verbose, json_t *report)
 {
     const char *goal;
@@ -108,7 +108,7 @@ int conf_cover_run(const conf_cover_options *o)
         conf_bytes file;
 
         if (!conf_read(e[i].file, &file))
-            continue; /* made on demand */
+            continue; /* made on demand: not stored */
         conf_cover_syntax(&c, &e[i], &file);
         if (strcmp(result, "valid") == 0)
             conf_cover_model(&c, &e[i], &file);

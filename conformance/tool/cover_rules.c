@@ -1,7 +1,8 @@
-/* cover_rules.c - rules (from annex G), error identifiers (from status.def), pairs of features.
- * A rule that binds streams needs a valid vector, and two that break it where it names an error;
- * one that binds decoders needs a vector. Rules that no file can show are listed with the reason in
- * conformance/rules-elsewhere.txt; those that bind others need a vector or a line there.
+/* cover_rules.c - goals for rules (from annex G), error identifiers (from status.def) and pairs of
+ * features. A rule that binds streams needs a valid vector, and two that break it if it names an
+ * error. A rule that binds decoders needs a vector. Rules that no file can show are listed with the
+ * reason in conformance/rules-elsewhere.txt; rules that bind others need a vector or a line in that
+ * file.
  * SPDX-License-Identifier: BSD-2-Clause */
 #include <stdio.h>
 #include <stdlib.h>
@@ -14,8 +15,8 @@ enum { MAX_RULES = 400 };
 
 typedef struct {
     char id[16], binds[24];
-    int refusable; /* names an error that a stream can cause */
-    int elsewhere; /* listed as looked after elsewhere */
+    int refusable; /* 1: names an error that a stream can cause */
+    int elsewhere; /* 1: listed in rules-elsewhere.txt */
     size_t n_valid, n_other;
 } rule;
 
@@ -40,7 +41,7 @@ static rule *find(rules *r, const char *id)
     return NULL;
 }
 
-/* | R-CON-001 | 5.1 | stream | MUST | `con.magic` | */
+/* Reads rows of the index, such as | R-CON-001 | 5.1 | stream | MUST | `con.magic` | */
 static void read_index(rules *r, const char *spec)
 {
     char path[CONF_PATH];
@@ -63,7 +64,7 @@ static void read_index(rules *r, const char *spec)
     conf_free(&text);
 }
 
-/* Lines "R-ABC-nnn reason": rules that no file can show. */
+/* Reads lines "R-ABC-nnn reason", which list the rules that no file can show. */
 static void read_elsewhere(conf_cover *c, rules *r, const char *suite)
 {
     char path[CONF_PATH];
@@ -139,7 +140,7 @@ static void set_rule_goals(conf_cover *c, const rules *r)
     }
 }
 
-/* Every identifier that a stream can cause: at least two vectors. */
+/* Every identifier that a stream can cause needs at least two vectors. */
 static void cover_errors(conf_cover *c, const conf_entry *e, size_t n)
 {
     size_t count[TED4_N_STATUS] = { 0 };

@@ -1,5 +1,5 @@
-/* cover_triples.c - triples of features in valid vectors: reported, no goal, as most of them come
- * by chance.
+/* cover_triples.c - counts triples of features in valid vectors. They are reported but are no goal,
+ * because most of them occur by chance.
  * SPDX-License-Identifier: BSD-2-Clause */
 #include <stdlib.h>
 #include <string.h>
@@ -8,7 +8,7 @@
 
 enum { MOST = 64 };
 
-/* All features, numbered through the groups. */
+/* All features of all groups, numbered consecutively. */
 typedef struct {
     const char *name[MOST];
     size_t group[MOST], n;
@@ -26,7 +26,7 @@ static void number(features *f)
         }
 }
 
-/* Bit i: the vector has feature i. */
+/* Returns a mask in which bit i is set if the vector has feature i. */
 static uint64_t mask_of(const features *f, const json_t *descriptor)
 {
     const json_t *const list = json_object_get(descriptor, "features");

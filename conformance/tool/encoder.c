@@ -1,5 +1,5 @@
-/* encoder.c - see encoder.h. The encoder is run once, in a process group of its own; what it has
- * written is judged by the validator and the strict decoder.
+/* encoder.c - see encoder.h. The encoder is run once, in a process group of its own. Its output is
+ * judged by the validator and the strict decoder.
  * SPDX-License-Identifier: BSD-2-Clause */
 #include "encoder.h"
 
@@ -16,8 +16,8 @@ static void wrong(int *n, const char *what, const char *why)
     ++*n;
 }
 
-/* Hints may be meant; a warning breaks a rule that binds encoders, or spends bits for nothing
- * (3.6). */
+/* Hints are ignored, as they may be intended. A warning breaks a rule that binds encoders, or
+ * points out wasted bits (3.6). */
 static void finding(void *user, const ted4_finding *f)
 {
     char text[400];
@@ -28,7 +28,8 @@ static void finding(void *user, const ted4_finding *f)
     wrong(user, f->severity == TED4_ERROR ? "not valid" : "a warning of the validator", text);
 }
 
-/* What the encoder says that it has coded (15.2) is what comes out. */
+/* Checks that the hash which the encoder reports for its integers (15.2) is that of the decoded
+ * ones. */
 static void judge_hash(const json_t *answer, const ted4_info *info, int *n)
 {
     const char *const said = json_string_value(json_object_get(answer, "hash"));
@@ -39,7 +40,7 @@ static void judge_hash(const json_t *answer, const ted4_info *info, int *n)
         wrong(n, "the decoded integers have another hash than the answer says", hex);
 }
 
-/* *level: of a file that is valid. */
+/* Sets *level if the file is valid. */
 static void judge_file(const json_t *answer, const char *path, int *n, size_t *size, int *level)
 {
     conf_bytes file = { NULL, 0, 0 };
@@ -61,7 +62,7 @@ static void judge_file(const json_t *answer, const char *path, int *n, size_t *s
     conf_free(&file);
 }
 
-/* The answer, a new reference, or NULL: there is none, which is said. */
+/* Returns the encoder's answer as a new reference, or NULL with a message if there is none. */
 static json_t *ask(const conf_encode_options *o, const char *path, int *n)
 {
     const conf_process_options how = { o->encoder, NULL, o->timeout, 0 };

@@ -1,5 +1,5 @@
-/* gen.c - see gen.h. A vector is its file and its descriptor, side by side; of one that is made on
- * demand only the descriptor is kept. What is large is made only when asked for.
+/* gen.c - see gen.h. A vector is a file with its descriptor next to it. For a vector made on demand
+ * only the descriptor is stored. Large vectors are made only on request.
  * SPDX-License-Identifier: BSD-2-Clause */
 #include "gen.h"
 
@@ -10,19 +10,19 @@
 #include "suite.h"
 #include "vector.h"
 
-enum { CONF_LEVELS = 4 }; /* that have bounds, numbered from 1 */
+enum { CONF_LEVELS = 4 }; /* number of levels with bounds, numbered from 1 */
 
 typedef struct {
     const conf_gen_options *o;
     char output[CONF_PATH];
     json_t *manifest;               /* array of entries */
-    json_t *least[CONF_LEVELS + 1]; /* arrays of entries: vectors that a decoder of that level has
-                                       to get right, but none of a lower one */
-    json_t *counts;                 /* by category, then result */
+    json_t *least[CONF_LEVELS + 1]; /* arrays of entries: the vectors for decoders of that level,
+                                       without those of lower levels */
+    json_t *counts;                 /* numbers of vectors by category, then by result */
     size_t bytes, n_bad, n_made;
 } generator;
 
-/* Writes, or says that what is there differs. */
+/* Writes a file, or with verify reports that the existing file differs. */
 static void put(generator *g, const char *path, const void *data, size_t size)
 {
     conf_bytes there;
@@ -44,7 +44,8 @@ static void put(generator *g, const char *path, const void *data, size_t size)
     conf_free(&there);
 }
 
-/* A member a line, its value in one piece; the entries of an array of objects a line each. */
+/* Prints one member per line with its value on that line, but an array of objects with one entry
+ * per line. */
 static void print_member(conf_bytes *b, const char *key, const json_t *value, int last)
 {
     const int lines = json_is_array(value) && json_is_object(json_array_get(value, 0)) &&
@@ -68,7 +69,7 @@ static void print_member(conf_bytes *b, const char *key, const json_t *value, in
     conf_print(b, last ? "\n" : ",\n");
 }
 
-/* hash: of what is written, as a manifest has it; may be NULL. */
+/* hash: set to the hash of the written text, in the form of a manifest; may be NULL. */
 static void put_json(generator *g, const char *path, json_t *o, char *hash)
 {
     conf_bytes b = { NULL, 0, 0 };
@@ -98,7 +99,7 @@ static void count(generator *g, const char *group, const char *what)
     json_object_set_new(o, what, json_integer(json_integer_value(json_object_get(o, what)) + 1));
 }
 
-/* The descriptor beside its file, and a line of the manifest. */
+/* Writes the descriptor next to its file and adds an entry to the manifest. */
 static void note(generator *g, json_t *d)
 {
     const char *const result =
@@ -126,7 +127,7 @@ static void note(generator *g, json_t *d)
     count(g, "folder", folder);
 }
 
-/* What is large stays as the suite has it. */
+/* Keeps the suite's descriptor of a large vector. */
 static void keep(generator *g, const conf_recipe *r)
 {
     char path[CONF_PATH];
@@ -196,8 +197,8 @@ static void put_manifest(generator *g)
     json_decref(o);
 }
 
-/* lists/level-N.txt: what a decoder of level N has to get right: valid files up to that level, and
- * all others. The list of a level begins with that of the level below. */
+/* Writes lists/level-N.txt, the vectors for decoders of level N: valid files up to that level, and
+ * all other vectors. The list of a level begins with the list of the level below. */
 static void put_level_lists(generator *g)
 {
     for (int level = 1; level <= CONF_LEVELS; level++) {
@@ -218,7 +219,7 @@ static void put_level_lists(generator *g)
     }
 }
 
-/* A vector of whose recipe nothing is left. */
+/* Reports vectors without a recipe. */
 static void find_orphans(generator *g)
 {
     size_t n;

@@ -1,4 +1,4 @@
-/* inject.c - see inject.h. The writing coder, with another way to put one symbol.
+/* inject.c - see inject.h. Wraps the writing coder and codes one symbol differently.
  * SPDX-License-Identifier: BSD-2-Clause */
 #include "inject.h"
 
@@ -13,7 +13,7 @@ typedef struct {
     const ted4_coder_ops *plain;
     const conf_injection *what;
     unsigned n_opened;
-    size_t n_symbols; /* of the open substream so far */
+    size_t n_symbols; /* symbols of the open substream so far */
 } injector;
 
 static injector *injector_of(ted4_coder *c)
@@ -35,7 +35,7 @@ static void put(void *encoder, ted4_slots s)
     ted4_rans_enc_put(encoder, s);
 }
 
-/* The bits of E = value: b ones, a zero, the b low bits (zeros beyond 64). */
+/* Writes the bits of E = value: b ones, a zero, and the b low bits (zeros above bit 63). */
 static void put_number(ted4_rans_enc *e, uint64_t value, unsigned b)
 {
     const uint32_t half = TED4_RANS_LOW / 2;

@@ -1,5 +1,5 @@
-/* judge_t.c - see judge_t.h. Thresholds are computed anew for every query whose records are not
- * those of class X bit for bit, by class_t.h.
+/* judge_t.c - see judge_t.h. class_t.h computes the thresholds anew for every query whose records
+ * differ in any bit from those of class X.
  * SPDX-License-Identifier: BSD-2-Clause */
 #include "judge_t.h"
 
@@ -9,10 +9,10 @@
 #include "../tolerance/class_t.h"
 #include "tool/tier_hash.h"
 
-/* A decoder's records of one vector under judgement. */
+/* The records of a decoder for one vector. */
 typedef struct {
     const conf_bytes *file;
-    class_t *stream; /* NULL until a query needs it */
+    class_t *stream; /* NULL until the first query that needs it */
     const char *folder;
 } records_case;
 
@@ -40,7 +40,7 @@ static class_t_query query_of(const json_t *o)
     return q;
 }
 
-/* Is what was dumped what the answer speaks of? */
+/* Returns 1 if the dumped records have the hash that the answer gives. */
 static int is_that(const conf_bytes *records, const json_t *got)
 {
     ted4_tier_hash *const h = ted4_tier_hash_new(NULL);
@@ -56,7 +56,7 @@ static int is_that(const conf_bytes *records, const json_t *got)
     return same;
 }
 
-/* What is wrong with the records of a query; NULL: nothing. want: of class X. */
+/* Returns the problem with the records of a query, or NULL. want: the answer of class X. */
 static const char *judge_records(records_case *c, size_t i, const json_t *query, const json_t *want,
                                  const json_t *got)
 {
@@ -83,7 +83,7 @@ static const char *judge_records(records_case *c, size_t i, const json_t *query,
     return strcmp(why, "kept") == 0 ? NULL : why;
 }
 
-/* want: of class X. What is wrong with the answer to a query; NULL: nothing. */
+/* Returns the problem with the answer to a query, or NULL. want: the answer of class X. */
 static const char *judge_query(records_case *c, size_t i, const json_t *query, const json_t *want,
                                const json_t *got)
 {
@@ -92,7 +92,7 @@ static const char *judge_query(records_case *c, size_t i, const json_t *query, c
     if (strcmp(none, error) == 0 && none[0] != '\0')
         return NULL;
     if (strcmp(none, "rec.non-finite") == 0 && conf_same_hash(got, got))
-        return NULL; /* R-TOL-006: records all the same, which are not judged */
+        return NULL; /* R-TOL-006: these records are not judged */
     if (none[0] != '\0')
         return "should have no result";
     if (error[0] != '\0')

@@ -109,7 +109,8 @@ void conf_mutant_list_free(conf_mutant_list *l)
     *l = (conf_mutant_list) { .m = NULL };
 }
 
-/* Of the code of source files, comments and spacing aside. files: words of a shell. */
+/* Returns a hash of the code of source files, without comments and spacing. files: words for a
+ * shell. */
 static uint64_t code_of(const char *files)
 {
     char command[CONF_PATH];
@@ -129,7 +130,8 @@ static uint64_t code_of(const char *files)
     return hash;
 }
 
-/* Of a vector, its hashes and what is expected: of its descriptor without what is said of it. */
+/* Returns a hash of a vector's hashes and of the expected answer: of its descriptor without the
+ * members that only describe it. */
 static uint64_t hash_of(const conf_entry *vector)
 {
     static const char *const said[] = {
@@ -173,7 +175,7 @@ static void hash_ground(conf_mutant_list *l, const char *suite)
     conf_free(&all);
 }
 
-/* 0: the vector that killed it is not there any more. */
+/* Returns 0 if the vector that killed the mutant no longer exists. */
 static uint64_t key_of(const conf_mutant_list *l, const conf_mutant *m)
 {
     conf_bytes text = { NULL, 0, 0 };
@@ -197,7 +199,7 @@ static void take_row(conf_mutant_list *l, const char *row)
     uint64_t key;
     int at = 0;
 
-    /* The vector may be empty, which %[ does not take. */
+    /* The vector may be empty, which %[ does not match. */
     if (sscanf(row, "%63[^,],%" SCNx64 ",%15[^,],%n", given.id, &key, given.verdict, &at) < 3 ||
         at == 0)
         return;

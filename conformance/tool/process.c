@@ -1,5 +1,5 @@
-/* process.c - see process.h. Every run is a process group, so that what it has started ends with
- * it.
+/* process.c - see process.h. Every run is a process group, so that all processes it has started end
+ * with it.
  * SPDX-License-Identifier: BSD-2-Clause */
 #include "process.h"
 
@@ -55,7 +55,8 @@ static _Noreturn void child(const conf_process_options *o, const char *const *ar
     list[n++] = name;
     for (; *argv != NULL && n + 1 < MAX_ARGUMENTS; argv++)
         list[n++] = conf_copy(*argv);
-    if (o->memory > 0) /* of the program: last, for a runner with sanitizers has more already */
+    if (o->memory > 0) /* limits the program itself: set last, as a runner with sanitizers may use
+                          more already */
         setrlimit(RLIMIT_AS, &limit);
     execv("/bin/sh", list);
     _exit(127);
@@ -88,7 +89,8 @@ void conf_process_start(conf_process *p, const conf_process_options *o, const ch
     conf_add(&p->complaint, "", 0);
 }
 
-/* What a pipe holds now; closed ones become -1. Gives 0 when there is too much of it. */
+/* Reads the current content of a pipe; a closed pipe becomes -1. Returns 0 if the output is too
+ * long, else 1. */
 static int drain(int *fd, conf_bytes *to, size_t most, int keep_all)
 {
     uint8_t piece[PIECE];
@@ -110,7 +112,7 @@ static int drain(int *fd, conf_bytes *to, size_t most, int keep_all)
     return 1;
 }
 
-/* Ends the whole group, whatever is left of it, and takes the exit status. */
+/* Kills what is left of the process group and takes the exit status. */
 static void finish(conf_process *p, conf_process_end end)
 {
     int status = 0;
@@ -119,7 +121,7 @@ static void finish(conf_process *p, conf_process_end end)
         kill(-p->pid, SIGKILL);
     while (waitpid(p->pid, &status, 0) < 0 && errno == EINTR)
         ;
-    kill(-p->pid, SIGKILL); /* what it left behind */
+    kill(-p->pid, SIGKILL); /* its remaining children */
     if (p->out >= 0)
         close(p->out);
     if (p->err >= 0)
@@ -139,8 +141,8 @@ static int leader_ended(const conf_process *p)
            info.si_pid == p->pid;
 }
 
-/* What the pipes hold; f says which have something. Gives 0 when there is too much of it on stdout.
- */
+/* Reads the pipes; f tells which of them are readable. Returns 0 if stdout has become too long,
+ * else 1. */
 static int hear(conf_process *p, const struct pollfd *f)
 {
     if (f[0].revents != 0 && p->out >= 0 && !drain(&p->out, &p->answer, CONF_MAX_OUTPUT, 1))
@@ -150,8 +152,8 @@ static int hear(conf_process *p, const struct pollfd *f)
     return 1;
 }
 
-/* The leader may have spoken between the last look at its pipes and its end: that is in them. What
- * others of the group say after it does not count, and need not end. */
+/* Reads what the leader wrote between the last look at its pipes and its end, which is still in
+ * them. Other processes of the group may write on for ever: their output does not count. */
 static int last_words(conf_process *p)
 {
     for (int i = 0; i < PIECES; i++) {
@@ -193,7 +195,7 @@ int conf_process_wait(conf_process *const *p, int n, int ms)
         f[2 * i] = (struct pollfd) { p[i]->pid > 0 ? p[i]->out : -1, POLLIN, 0 };
         f[2 * i + 1] = (struct pollfd) { p[i]->pid > 0 ? p[i]->err : -1, POLLIN, 0 };
         if (p[i]->pid > 0 && p[i]->out < 0 && waiting > 1)
-            waiting = 1; /* it has closed its stdout and is about to end */
+            waiting = 1; /* closed its stdout and is about to end */
     }
     (void)poll(f, (nfds_t)(2 * n), waiting);
     for (int i = 0; i < n; i++)

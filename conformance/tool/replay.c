@@ -20,7 +20,7 @@ static int by_size(const void *a, const void *b)
                   : strcmp(((const conf_entry *)a)->id, ((const conf_entry *)b)->id);
 }
 
-/* Of the validator. */
+/* What the validator has found. */
 typedef struct {
     const char *first; /* identifier of the first error; NULL: none */
     size_t at;
@@ -34,7 +34,7 @@ static void note(void *user, const ted4_finding *f)
         *e = (first_error) { f->id, f->offset };
 }
 
-/* R-VAL-001: the error that is expected comes first; a valid file has none. */
+/* R-VAL-001: the expected error comes first; a valid file has no errors. */
 static void judge_validator(const json_t *d, const conf_bytes *file, conf_verdict *v)
 {
     const conf_knobs knobs = conf_knobs_of(d);
@@ -64,7 +64,7 @@ static void judge_ways(const json_t *d, const conf_bytes *file, conf_verdict *v)
     }
 }
 
-/* In lenient mode, as far as that is to give the same. */
+/* Judges lenient mode as far as its result is specified. */
 static void judge(const json_t *capabilities, const json_t *d, const conf_bytes *file,
                   conf_verdict *v)
 {
@@ -90,16 +90,16 @@ int conf_replay(const conf_replay_options *o)
     conf_path(path, "%s/vectors", o->suite);
     e = conf_suite_load(path, o->list, &n);
     if (n > 0)
-        qsort(e, n, sizeof *e, by_size); /* what is quick first */
+        qsort(e, n, sizeof *e, by_size); /* small files first */
     for (size_t i = 0; i < n && !(o->stop && n_bad > 0); i++) {
         conf_verdict v = { CONF_MISSING, "no descriptor" };
         conf_bytes file = { NULL, 0, 0 };
 
         if (e[i].descriptor != NULL && !conf_read(e[i].file, &file))
-            continue; /* made on demand */
+            continue; /* made on demand: not stored */
         if (o->names) {
             printf("at %s\n", e[i].id);
-            fflush(stdout); /* whoever listens wants to know which one it crashes at */
+            fflush(stdout); /* a caller then sees which vector the decoder crashes at */
         }
         if (e[i].descriptor != NULL)
             judge(capabilities, e[i].descriptor, &file, &v);

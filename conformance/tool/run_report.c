@@ -1,5 +1,5 @@
-/* run_report.c - results of `ted4conf run` as JSON (conformance/schema/results.schema.json), JUnit
- * XML, and a page in HTML.
+/* run_report.c - writes the results of `ted4conf run` as JSON
+ * (conformance/schema/results.schema.json), JUnit XML, and an HTML page.
  * SPDX-License-Identifier: BSD-2-Clause */
 #include <stdio.h>
 #include <stdlib.h>
@@ -44,7 +44,7 @@ void conf_run_write_json(const conf_run_result *r)
     json_decref(o);
 }
 
-/* Text as it may stand in XML, HTML and attributes. */
+/* Appends a text with the characters escaped that XML, HTML and their attributes do not allow. */
 static void escaped(conf_bytes *b, const char *text)
 {
     for (; *text != '\0'; text++)

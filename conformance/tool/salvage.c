@@ -1,12 +1,12 @@
-/* salvage.c - see salvage.h. Takes the strict decoder's scene of the valid file and leaves out its
- * last tiles; lenient decoding has no part in it.
+/* salvage.c - see salvage.h. Takes the strict decoder's scene of the valid file and removes its
+ * last tiles, so that lenient decoding is checked without being used.
  * SPDX-License-Identifier: BSD-2-Clause */
 #include "salvage.h"
 
 #include <string.h>
 #include "answer.h"
 
-/* R-LEN-002: the scene whose n_anchors is n, everything else unchanged. */
+/* R-LEN-002: reduces n_anchors of the scene to n and leaves everything else unchanged. */
 static void keep_first(ted4_scene *s, uint32_t n)
 {
     const size_t all = s->head.n_anchors;
@@ -19,7 +19,7 @@ static void keep_first(ted4_scene *s, uint32_t n)
     ted4_scene_hash(s, s->hash);
 }
 
-/* The status of an identifier; ends the program where there is none. */
+/* Returns the status with that identifier. Ends the program if there is none. */
 static ted4_status status_of(const conf_line *l, const char *id)
 {
     for (int i = 0; i < TED4_N_STATUS; i++)

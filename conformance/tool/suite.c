@@ -7,7 +7,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* Lists that may lie in each other; more is a circle. */
+/* Lists may be nested up to this depth; a greater depth means a cycle. */
 enum { CONF_LISTS = 8 };
 
 typedef struct {
@@ -81,7 +81,7 @@ static void take(list *chosen, const list *l, const char *id)
         }
 }
 
-/* Adds what the list names, in its order. depth: of lists in lists. */
+/* Adds the entries that the list names, in its order. depth: how deep the list is nested. */
 static void take_all(list *chosen, const list *l, const char *path, int depth)
 {
     const char *const slash = strrchr(path, '/');
@@ -104,7 +104,7 @@ static void take_all(list *chosen, const list *l, const char *path, int depth)
     conf_free(&text);
 }
 
-/* Keeps what the list names. */
+/* Keeps only the entries that the list names. */
 static void choose(list *l, const char *path)
 {
     list chosen = { NULL, 0 };

@@ -5,13 +5,13 @@
 #include <string.h>
 #include "norm/scene.h"
 
-/* What came of a file. Hashes are 0 where there is nothing to hash. */
+/* The result of decoding a file. A hash is 0 if there is nothing to hash. */
 typedef struct {
     ted4_salvage what;
     uint8_t scene[16], copy[16], records[16];
 } outcome;
 
-/* A caller's threads that take the last index first. */
+/* Stands in for a caller's threads: processes the last index first. */
 static void backwards(void *user, size_t n, void (*body)(void *arg, size_t i), void *arg)
 {
     (void)user;
@@ -48,7 +48,7 @@ static void take_records(const ted4_scene *s, const ted4_parallel *threads, outc
     ted4_recon_free(recon);
 }
 
-/* The hash of the same integers in a scene as encoders fill it (15.2). */
+/* Copies the integers into a scene as encoders fill it, and hashes it (15.2). */
 static void take_copy(const ted4_scene *s, outcome *r)
 {
     const size_t n = s->head.n_anchors;
@@ -100,7 +100,8 @@ static int same(const outcome *a, const outcome *b)
            memcmp(a->records, b->records, sizeof a->records) == 0;
 }
 
-/* Nobody wants to know why, and tiers, advice and salvage come without options, or with them. */
+/* Checks that the verdict is the same without an error report, and that tiers, advice and salvage
+ * work with these options or without any. */
 static int verdict_stays(const conf_bytes *file, const ted4_options *o, ted4_status verdict)
 {
     ted4_scene *s;
@@ -128,7 +129,7 @@ const char *conf_ways_differ(const conf_bytes *file, conf_knobs knobs)
     o.trace = NULL;
     o.parallel = &threads;
     other = decode(file, &o);
-    if (knobs.memory == 0 && !same(&plain, &other)) /* threads take memory */
+    if (knobs.memory == 0 && !same(&plain, &other)) /* threads need more memory */
         return "with threads";
     if (knobs.memory > 0 || knobs.work > 0)
         return NULL;
