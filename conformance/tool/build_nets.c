@@ -18,7 +18,7 @@
 #include "build.h"
 #include "norm/prior.h"
 
-/* A layer: where its values and shifts are. */
+/* The values and shifts of a layer. */
 typedef struct {
     float *w, *b;   /* [out][in], [out] */
     uint8_t *shift; /* [out] */
@@ -75,7 +75,7 @@ static int root(int x)
     return r;
 }
 
-/* Moderate weights; last layers give mu within some steps and sigma around one. */
+/* Draws moderate weights. Last layers give mu within a few steps and sigma around one step. */
 static void random_layer(conf_build *b, const layer *l, int last)
 {
     for (unsigned o = 0; o < l->out; o++) {
@@ -114,7 +114,7 @@ static void zero_nete(conf_build *b)
         }
 }
 
-/* W0 W1 ... to the line's end; A,B*N stands for A B A B ..., N times. */
+/* Parses W0 W1 ... up to the end of the line. A,B*N stands for N repetitions of A B. */
 static void weights(const conf_line *line, int i, const layer *l, unsigned o)
 {
     unsigned j = 0;
@@ -128,7 +128,7 @@ static void weights(const conf_line *line, int i, const layer *l, unsigned o)
     }
 }
 
-/* Words i, i + 1, i + 2: network, layer, unit. */
+/* Returns the layer of words i, i + 1, i + 2: network, layer, unit. */
 static layer named_unit(const conf_build *b, const conf_line *line, int i, unsigned *unit)
 {
     const unsigned m =
@@ -176,7 +176,7 @@ static void unit_line(conf_build *b, const conf_line *line)
     }
 }
 
-/* "*", "3", "3-7" */
+/* Parses "*", "3" or "3-7". */
 static void components(const conf_line *l, int i, unsigned dim, unsigned *first, unsigned *end)
 {
     char *rest;

@@ -1,6 +1,6 @@
-/* cover_model.c - what the integer arithmetic of a valid file meets: entries of tables, ways of the
- * coder, bounds and rails and ties of accumulators. The file's tiles are decoded once more, by the
- * decoder's own walk, with a coder and dense layers that count.
+/* cover_model.c - goals for the integer arithmetic of valid files: entries of tables, branches of
+ * the coder, and bounds, clamps and ties of accumulators. The tiles of the file are decoded once
+ * more by the decoder's own walk, with a coder and dense layers that count.
  * SPDX-License-Identifier: BSD-2-Clause */
 #include <stdio.h>
 #include <stdlib.h>
@@ -24,16 +24,16 @@ typedef struct {
     uint8_t sigma[TED4_N_SIGMA], phi[TED4_N_PHI], step[TED4_N_STEP], context_step[TED4_N_STEP],
         sine[TED4_N_SIN];
     uint8_t fraction[N_FRACTIONS], escape[2][MAX_ESCAPE], lanes[MAX_LANES_LOG], words[WORDS];
-    uint8_t
-        edge[8]; /* low escape, -hw, between, hw + 1, high escape; k at both rails; frequency 1 */
+    uint8_t edge[8]; /* low escape, -hw, between, hw + 1, high escape; k at both ends of its range;
+                        frequency 1 */
     uint8_t full[KINDS][2]; /* accumulator at 90 % of its bound, negative and positive */
-    uint8_t tie[KINDS][2];  /* requantisation of a tie, negative and positive */
+    uint8_t tie[KINDS][2];  /* a requantised value that is a tie, negative and positive */
     uint8_t rail[8];
-    uint8_t even[4]; /* ties of weights and biases, to an even integer below and above */
+    uint8_t even[4]; /* weights and biases that are ties: to the even integer below, and above */
     uint8_t shift_out[SHIFTS];
 } seen;
 
-static seen *now; /* dense layers have no argument for it; the tool is single-threaded */
+static seen *now; /* dense layers have no argument for it; the tool has a single thread */
 
 static const char *const edge_name[8] = { "low escape",        "lowest of the window",
                                           "inside the window", "highest of the window",
@@ -89,8 +89,8 @@ void conf_cover_model_goals(conf_cover *c)
         conf_goal(c, "output shifts", "%d", i);
 }
 
-/* 0 .. 4: which kind of layer; from where it lies in the prior that is evaluated. What lies
- * elsewhere is a part of the hyperprior's last layer (ted4_prior_some). */
+/* Returns the kind of a layer, 0 .. 4, determined by its address in the prior. A layer outside the
+ * prior is a part of the hyperprior's last layer (ted4_prior_some). */
 static int kind_of(const ted4_prior *p, const ted4_int_layer *l)
 {
     const ted4_int_layer *slice = p->slice[0];
@@ -318,7 +318,7 @@ static void report(conf_cover *c, const char *id, const seen *s)
     }
 }
 
-/* Every TILE of the file, read again. */
+/* Reads every TILE of the file again. */
 static void walk_tiles(seen *s, ted4_scene *scene, const ted4_prior *prior, const conf_bytes *file,
                        void *work)
 {

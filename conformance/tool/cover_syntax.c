@@ -1,6 +1,6 @@
-/* cover_syntax.c - values of syntax elements: in valid files the least and the greatest of the
- * range, what is next to them, every value where there are few, and one besides; in files refused
- * at the element the values just outside.
+/* cover_syntax.c - goals for values of syntax elements. In valid files: the least and the greatest
+ * value of the range, their neighbours, one other value, and every value of a small range. In files
+ * that are refused at the element: the values just outside the range.
  * SPDX-License-Identifier: BSD-2-Clause */
 #include <stdio.h>
 #include <string.h>
@@ -8,13 +8,13 @@
 #include "cover.h"
 #include "ted4.h"
 
-/* width: bytes in the file. high: of level 1 where a level bounds it, so that small files reach it.
- */
+/* width: bytes in the file. high: the bound of level 1 if levels bound the element, so that small
+ * files reach it. */
 typedef struct {
     const char *name;
     unsigned width;
     uint32_t low, high;
-    int levelled; /* above high another level, not hdr.range */
+    int levelled; /* 1: a value above high needs a higher level, but is no hdr.range */
 } element;
 
 static const element table[] = { { "minor", 1, 0, 255, 1 },
@@ -61,7 +61,7 @@ static const char group[] = "values of syntax elements",
 
 static int is_last(const element *e)
 {
-    return strcmp(e->name, "n_anchors") == 0; /* its greatest value is beyond any file */
+    return strcmp(e->name, "n_anchors") == 0; /* no file can have its greatest value */
 }
 
 static void set_goals(conf_cover *c, const element *e)
@@ -133,7 +133,7 @@ typedef struct {
     conf_cover *c;
     const char *id;
     uint32_t chunk_flags;
-    int ancillary; /* type of the chunk is not a known one */
+    int ancillary; /* the chunk has an unknown type */
 } observer;
 
 static void reach(const observer *l, const char *what)
@@ -225,7 +225,8 @@ static void note(void *user, size_t offset, const char *name, int64_t index, int
         note_special(l, name, value);
 }
 
-/* Offsets of HEAD's elements in its payload, from the number of slices that it says. */
+/* Notes the element at which a file is refused. The offsets of HEAD's elements in its payload
+ * follow from the number of slices in HEAD. */
 static void note_refused(conf_cover *c, const conf_entry *e, const conf_bytes *file)
 {
     static const char *const order[] = {

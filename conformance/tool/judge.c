@@ -106,7 +106,7 @@ const char *conf_judge_lacks(const json_t *c)
     return NULL;
 }
 
-/* What is invalid has to be refused by everybody. */
+/* Every decoder has to refuse invalid files. */
 int conf_judge_declines(const json_t *capabilities, const json_t *d)
 {
     const json_t *const features = json_object_get(d, "features"), *const knobs =
@@ -170,7 +170,8 @@ static int judge_queries(const json_t *want, const json_t *got, conf_verdict *v)
     return 1;
 }
 
-/* The first tier that differs says where to look. What is salvaged has no T0. */
+/* Reports the first tier that differs, where the search should begin. A salvaged scene has no T0.
+ */
 static void judge_tiers(const json_t *capabilities, const json_t *want, const json_t *got,
                         conf_verdict *v)
 {
@@ -194,8 +195,8 @@ static void judge_tiers(const json_t *capabilities, const json_t *want, const js
     say(v, CONF_PASS, "%s", "");
 }
 
-/* Does pass 1 find the error that is expected? A limit may come before errors of pass 2 alone
- * (R-ERR-005). Of con.chunk-order either pass may be the one (5.3). */
+/* Returns 1 if pass 1 finds the expected error. A limit may precede only errors of pass 2
+ * (R-ERR-005). Either pass may find con.chunk-order (5.3), so it is not listed. */
 static int is_of_pass_1(const json_t *expect)
 {
     static const char *const id[] = { "con.truncated",        "con.magic",
@@ -203,7 +204,9 @@ static int is_of_pass_1(const json_t *expect)
                                       "con.reserved",         "con.chunk-hash",
                                       "con.unknown-critical", "con.trailing",
                                       "unsupported.profile" };
-    enum { LEVEL_AT = 11 }; /* the bound on the file's size is judged there (R-LVL-003) */
+    enum {
+        LEVEL_AT = 11
+    }; /* the offset at which the bound on the file's size is judged (R-LVL-003) */
     const char *const error = text_of(expect, "error");
 
     for (size_t i = 0; i < sizeof id / sizeof *id; i++)
@@ -218,7 +221,7 @@ void conf_judge(const json_t *capabilities, const json_t *d, const json_t *answe
     const json_t *const expect = json_object_get(d, "expect");
     const char *const want = text_of(expect, "result"), *const got = text_of(answer, "result");
     const json_t *const offset = json_object_get(expect, "offset");
-    /* R-LVL-008 says which limit is met under max_work. */
+    /* R-LVL-008 prescribes which limit is met under max_work. */
     const int any = strcmp(want, "limit") == 0 &&
                     json_object_get(json_object_get(d, "knobs"), "max_work") == NULL;
 

@@ -1,5 +1,5 @@
-/* pack.c - see pack.h. Matches are looked for at the last place of the same four bytes and at
- * distance 1.
+/* pack.c - see pack.h. A match is searched for only at the last position with the same four bytes,
+ * and at distance 1.
  * SPDX-License-Identifier: BSD-2-Clause */
 #include "pack.h"
 
@@ -18,7 +18,7 @@ enum {
 };
 
 typedef struct {
-    uint16_t length, distance; /* distance 0: literal length */
+    uint16_t length, distance; /* distance 0: length is a literal */
 } token;
 
 typedef struct {
@@ -27,7 +27,7 @@ typedef struct {
     unsigned n;
 } bit_writer;
 
-/* Length of every code; codes themselves follow from them (RFC 1951, 3.2.2). */
+/* The length of every code. The lengths determine the codes (RFC 1951, 3.2.2). */
 typedef struct {
     uint8_t length[LITERALS];
     uint16_t code[LITERALS];
@@ -52,7 +52,7 @@ static void to_byte(bit_writer *w)
         put_bits(w, 0, 1);
 }
 
-/* Huffman codes go highest bit first. */
+/* Huffman codes are written from their highest bit on. */
 static void put_code(bit_writer *w, const codes *c, unsigned symbol)
 {
     for (unsigned i = c->length[symbol]; i > 0; i--)
@@ -69,7 +69,7 @@ static void make_codes(codes *c)
                 c->code[i] = (uint16_t)next++;
 }
 
-/* A complete code of nearly equal lengths for the n symbols that are used. */
+/* Makes a complete code, of nearly equal lengths, for the n symbols in use. */
 static void level_codes(codes *c, const uint8_t *used, unsigned n_symbols)
 {
     unsigned n = 0, bits = 1, shorter, seen = 0;
@@ -105,7 +105,7 @@ static size_t match(const uint8_t *data, size_t size, size_t at, size_t from)
     return n;
 }
 
-/* Tokens of the data; an owned array. */
+/* Returns the tokens of the data, an owned array. */
 static token *find_tokens(const uint8_t *data, size_t size, size_t *n)
 {
     token *t = conf_alloc(size + 1, sizeof *t);
@@ -137,7 +137,8 @@ static token *find_tokens(const uint8_t *data, size_t size, size_t *n)
     return t;
 }
 
-/* Symbol, number of extra bits, and their value, of a length or distance. */
+/* These return the symbol of a length or distance, and set the number and the value of its extra
+ * bits. */
 static unsigned length_symbol(unsigned length, unsigned *extra, unsigned *value)
 {
     unsigned symbol = 257, base = 3;
@@ -189,7 +190,7 @@ static void put_tokens(bit_writer *w, const codes *literal, const codes *distanc
     put_code(w, literal, END);
 }
 
-/* RFC 1951, 3.2.7, without repeat codes. over: one length too short. */
+/* RFC 1951, 3.2.7, without repeat codes. over: 1: one length is too short. */
 static void put_dynamic(bit_writer *w, const token *t, size_t n, int over)
 {
     static const uint8_t order[19] = { 16, 17, 18, 0, 8,  7, 9,  6, 10, 5,

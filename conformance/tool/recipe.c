@@ -1,4 +1,4 @@
-/* recipe.c - see recipe.h. Lines are read once; a vector under `each` is read again for every
+/* recipe.c - see recipe.h. Lines are read once; a vector under `each` is evaluated again for every
  * value.
  * SPDX-License-Identifier: BSD-2-Clause */
 #include "recipe.h"
@@ -12,7 +12,7 @@
 
 enum { MAX_EACH = 4, MAX_NAMES = 6, MAX_DEPTH = 8 };
 
-/* A file's lines as they stand, comments and ends stripped. */
+/* The lines of a file without comments and line ends. */
 typedef struct {
     char **line;
     int *number;
@@ -26,7 +26,7 @@ typedef struct {
     int first, end;
 } preset;
 
-/* `each a:b in 1:2 3:4`: names, and the values that they take together. */
+/* `each a:b in 1:2 3:4`: the names, and the values that they take together. */
 typedef struct {
     char *name[MAX_NAMES];
     int n_names;
@@ -125,8 +125,8 @@ static int split(char *text, char **word, int capacity)
     return n;
 }
 
-/* Value of a name under `each`, as part of the value taken now; NULL: no such name. to: room for
- * it. */
+/* Returns the current value of a name under `each`, or NULL if there is no such name. to: storage
+ * for the value. */
 static const char *value_of(const reader *r, const char *name, size_t length, char *to,
                             size_t capacity)
 {
@@ -147,7 +147,7 @@ static const char *value_of(const reader *r, const char *name, size_t length, ch
     return NULL;
 }
 
-/* The line with {name}, {name+1}, {name-1} replaced. */
+/* Returns the line with {name}, {name+1}, {name-1} replaced. */
 static char *replace(const reader *r, const source *s, int i)
 {
     conf_bytes out = { NULL, 0, 0 };
@@ -219,7 +219,7 @@ static void add_lines(reader *r, conf_recipe *v, const source *s, int first, int
     }
 }
 
-/* Ids are file names: "slice[0]" becomes "slice0". */
+/* Ids are file names, so "slice[0]" becomes "slice0". */
 static char *tidy_id(char *id)
 {
     char *to = id;
@@ -250,7 +250,7 @@ static void add_vector(reader *r, const source *s, int first, int end)
     add_lines(r, v, s, first + 1, end, 0);
 }
 
-/* Every combination of the values of `each`. */
+/* Adds a vector for every combination of the values of `each`. */
 static void add_vectors(reader *r, const source *s, int first, int end)
 {
     int i;
@@ -280,7 +280,7 @@ static void add_value(each *e, const char *text)
     e->value[e->n_values++] = conf_copy(text);
 }
 
-/* each a:b in 1:2 3:4 or each a in 0..9 */
+/* Parses `each a:b in 1:2 3:4` or `each a in 0..9`. */
 static void add_each(reader *r, const source *s, int at)
 {
     char *text = conf_copy(s->line[at]), *word[CONF_WORDS], number[24];

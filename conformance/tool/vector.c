@@ -28,7 +28,7 @@
 #include "stream.h"
 #include "tool/sha256.h"
 
-/* Does a decoder give records of it? */
+/* Returns 1 if a decoder returns records for the vector. */
 static int has_records(const conf_recipe *r)
 {
     const conf_line *const expect = conf_line_find(r, "expect"), *const saved =
@@ -78,7 +78,7 @@ static json_t *rules_of(const conf_recipe *r)
     return o;
 }
 
-/* "knobs" of the descriptor, or NULL. */
+/* Returns the "knobs" of the descriptor, or NULL. */
 static json_t *knob_of(const conf_recipe *r)
 {
     const conf_line *const l = conf_line_find(r, "knob");
@@ -128,7 +128,7 @@ static json_t *expected(const conf_recipe *r, const conf_stream *s)
     return o;
 }
 
-/* Do the answers to queries fail where the recipe says so, and nowhere else? */
+/* Checks that the answers to queries fail where the recipe expects it, and nowhere else. */
 static int queries_agree(const conf_recipe *r, const json_t *tiers)
 {
     const json_t *const t5 = json_object_get(tiers, "T5");
@@ -146,7 +146,7 @@ static int queries_agree(const conf_recipe *r, const json_t *tiers)
     return 1;
 }
 
-/* The answer without its tiers, and what is salvaged, have to be what was expected. */
+/* Checks the answer without its tiers, and what is salvaged, against the expectation. */
 static int agrees(const conf_recipe *r, json_t *answer, json_t *descriptor)
 {
     const json_t *const expect = json_object_get(descriptor, "expect"), *const saved =
@@ -192,8 +192,8 @@ static void read_kept(conf_build *b, const conf_recipe *r, const char *suite, co
     b->head = b->scene->head;
 }
 
-/* The file, and the stream as it stands at the end. valid: the file before it was broken, the
- * caller's. */
+/* Makes the file, and the stream in its final state. valid: filled with the file before it was
+ * broken; the caller frees it. */
 static void make_file(conf_vector *v, conf_build *b, conf_stream *s, const conf_recipe *r,
                       const char *suite, conf_bytes *valid)
 {
@@ -230,7 +230,8 @@ static void check_words(const conf_recipe *r)
         conf_die("%s: %s: salvage belongs to the category tolerant", r->file, r->id);
 }
 
-/* What is invalid has to be refused by everybody, whatever parts of the format a decoder has. */
+/* Returns 1 if every decoder has to refuse the file, whatever parts of the format the decoder
+ * supports. */
 static int refused(const conf_recipe *r)
 {
     const conf_line *const l = conf_line_find(r, "expect");
