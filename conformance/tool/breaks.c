@@ -1,32 +1,32 @@
-/* breaks.c - `do ...`: one change to a file taken apart. Sizes and hashes follow by themselves,
- * unless they are what is broken.
- *     do patch ELEMENT VALUE [WIDTH]       its bytes; WIDTH: bytes, found from the element that
- *                                          follows without it
- *     do patch-all NAME VALUE              every entry of an array
- *     do flip ELEMENT                      the lowest bit of its first byte
- *     do insert REF|end TYPE FLAGS N | text ... | hex XX...      a chunk before another one: N
- *         zeros, or a text, as payload
- *     do insert-many REF TYPE N            N ancillary chunks without payload
+/* breaks.c - `do ...`: applies one change to a file that is split into parts. Sizes and hashes are
+ * updated, unless they are the thing to be broken.
+ *     do patch ELEMENT VALUE [WIDTH]       sets the bytes of an element. WIDTH: their number; if it
+ *                                          is absent, the element ends where the next one begins
+ *     do patch-all NAME VALUE              sets every entry of an array
+ *     do flip ELEMENT                      flips the lowest bit of the element's first byte
+ *     do insert REF|end TYPE FLAGS N | text ... | hex XX...      inserts a chunk before another;
+ *         its payload is N zeros, a text, or bytes
+ *     do insert-many REF TYPE N            inserts N ancillary chunks without payload
  *     do drop REF; do repeat REF; do swap REF REF; do retype REF TYPE; do flags REF N; do type-byte
  *     REF I HEX
- *     do size REF N                        what the frame says
- *     do hash REF                          one bit of the hash
- *     do grow REF N; do shrink REF N       bytes at the payload's end; do keep REF N: the first N
- *                                          bytes of the payload
- *     do payload REF HEX                   another payload
- *     do tail REF HEX                      the payload's last bytes; do set-bias NET LAYER UNIT B;
- *                                          do copy-position FROM TO
- *     do cut N | ELEMENT | chunk REF ...   the file ends there; do append HEX
+ *     do size REF N                        sets the size that the frame declares
+ *     do hash REF                          flips one bit of the hash
+ *     do grow REF N; do shrink REF N       adds or removes bytes at the payload's end
+ *     do keep REF N                        keeps the first N bytes of the payload
+ *     do payload REF HEX                   replaces the payload
+ *     do tail REF HEX                      sets the payload's last bytes
+ *     do set-bias NET LAYER UNIT B; do copy-position FROM TO
+ *     do cut N | ELEMENT | chunk REF ...   ends the file at that offset; do append HEX
  *     do stream-grow | stream-set TILE SUB HEX; do stream-shrink TILE SUB N; do stream-patch TILE
  *     SUB OFFSET WIDTH VALUE
- *     do final TILE SUB                    1 more in what the coder reads last
- *     do value REF INDEX PATTERN           a value of the blob in REF, for `do pack` only: the file
- *                                          is as it was
- *     do pack REF WAY FAULT                the blob's values packed again, wrongly
- *     do pack-zeros REF N                  a blob of N bytes of zeros
+ *     do final TILE SUB                    adds 1 to the word that the coder reads last
+ *     do value REF INDEX PATTERN           sets a value of the blob in REF, for `do pack` only; the
+ *                                          file itself does not change
+ *     do pack REF WAY FAULT                packs the blob's values again, with a fault
+ *     do pack-zeros REF N                  packs a blob of N bytes of zeros
  *     do inject TILE SUB SYMBOL value K | escape E low|high | ones N      see inject.h
- *     do symbol TYPE COMP ANCHOR K         a symbol that contradicts another one
- * SPDX-License-Identifier: BSD-2-Clause */
+ *     do symbol TYPE COMP ANCHOR K         sets a symbol that contradicts another one
+ * a symbol that contradicts another one SPDX-License-Identifier: BSD-2-Clause */
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -37,7 +37,7 @@
 #include "pack.h"
 #include "stream.h"
 
-/* Hexadecimal digits of words i and on. */
+/* Parses the hexadecimal digits from word i on. */
 static void hex_bytes(const conf_line *l, int i, conf_bytes *out)
 {
     for (; i < l->n; i++)
@@ -196,7 +196,7 @@ static void tail(conf_stream *s, const conf_line *l)
     conf_free(&more);
 }
 
-/* In a file whose NETE is raw: what another bias would be. */
+/* Sets a bias in a file whose NETE is raw. */
 static void set_bias(conf_stream *s, const conf_line *l)
 {
     conf_bytes *const p = &s->chunk[conf_stream_chunk(s, l, "NETE")].payload;
@@ -215,7 +215,7 @@ static void copy_position(conf_stream *s, const conf_line *l)
     memcpy(p + 6 * conf_line_number(l, 3, 0, last), p + 6 * conf_line_number(l, 2, 0, last), 6);
 }
 
-/* What a line does to one chunk. 1: it was such a line. */
+/* Executes a line that changes one chunk. Returns 1, or 0 if it is another kind of line. */
 static int chunk_line(conf_stream *s, const conf_line *l, const char *what)
 {
     static const char *const word[] = {
@@ -276,7 +276,7 @@ static void set_substream(conf_bytes *p, size_t at, size_t size, size_t size_at,
     conf_free(&more);
 }
 
-/* The last word, or the low half of the state. */
+/* Changes the last word, or the low half of the state if there are no words. */
 static void spoil_final(uint8_t *substream, size_t size)
 {
     if (size > 4)
@@ -399,7 +399,7 @@ static void symbol(conf_stream *s, conf_build *b, const conf_line *l)
     recode(s, b, conf_stream_chunk(s, l, ref), tile, &nothing);
 }
 
-/* Lines that need the stream only. 1: it was one. */
+/* Executes a line that needs only the stream. Returns 1, or 0 if it is another kind of line. */
 static int plain_line(conf_stream *s, const conf_line *l, const char *what)
 {
     static const struct {

@@ -1,15 +1,15 @@
-/* build_anchors.c - positions and masks of a scene.
- *     positions random                     the default: any binary16 within 1
- *     positions line START BITS            anchor i at x = (START + i) / 2^BITS, y = z = 0
+/* build_anchors.c - builds the positions and masks of a scene.
+ *     positions random                     the default: any binary16 of magnitude up to 1
+ *     positions line START BITS            anchor i is at x = (START + i) / 2^BITS, y = z = 0
  *     positions tiny                       subnormal binary16
- *     positions bit B                      two anchors whose x differ in bit B of the pattern only;
+ *     positions bit B                      two anchors whose x differ only in bit B of the pattern;
  *                                          14: in the sign
- *     positions at X:Y:Z ...               patterns in hexadecimal; sorted and repeated ones left
- *                                          out, they have to be n_anchors
+ *     positions at X:Y:Z ...               patterns in hexadecimal; they are sorted, duplicates are
+ *                                          dropped, and n_anchors of them must remain
  *     dynamic random | all | none | alternate | first N
  *     offsets random | all | none | alternate | bits B0 B1 ...   (masks of anchors in turn)
  *     prob I P                             probability I (0 dynamic, 1 .. 6 offset) of all tiles;
- *                                          without a line they are counted
+ *                                          without such a line it follows from the counts
  * SPDX-License-Identifier: BSD-2-Clause */
 #include <stdlib.h>
 #include <string.h>

@@ -1,14 +1,13 @@
-/* build_nets.c - networks and bank of a scene. Weights of Tier E are given as the integers that the
- * decoder will find (spec 7.3).
- *     nete random | zero                   all networks of Tier E; random is what happens without a
- *                                          line
+/* build_nets.c - builds the networks and the bank of a scene. Weights of Tier E are given as the
+ * integers that the decoder will compute (spec 7.3).
+ *     nete random | zero                   all networks of Tier E; random is the default
  *     unit NET LAYER OUT shift S [bias B] [all W | w W0 W1 ...]     one output unit; NET: hyper,
  *         slice1, slice2, ...
  *     out TYPE COMPS mu|g|q|s|v VALUE[:STEP] [W0 W1 W2 ...]     last layer of the hyperprior: mu in
  *         Q8, sigma index, step index, or
- *                                          the outputs s and v themselves; VALUE + STEP times the
- *                                          component; weights of shift 0, none without them. COMPS:
- *                                          *, 3 or 3-7
+ *                                          the outputs s and v themselves. Each is VALUE plus STEP
+ *                                          times the component. The weights have shift 0; without
+ *                                          any they are 0. COMPS: *, 3 or 3-7
  *     netr | bank random | zero | const X
  *     value nete | netr | bank INDEX X ... single values, from INDEX on
  * SPDX-License-Identifier: BSD-2-Clause */

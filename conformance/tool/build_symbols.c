@@ -1,16 +1,16 @@
-/* build_symbols.c - symbols of a scene, chosen with a view to the model that will code them (spec
- * 9.4): r = k - m counts from mu.
+/* build_symbols.c - chooses the symbols of a scene relative to the model that will code them
+ * (spec 9.4): r = k - m is the distance from mu.
  *     symbols TYPE|* near                  the default: bell-shaped within the window
- *     symbols TYPE|* edges                 in turn: low escape, both ends of the window and what is
- *                                          next to them, the middle, high escape
- *     symbols TYPE|* sweep                 the window from end to end, round and round
- *     symbols TYPE|* wild                  one in eight an escape of any length
- *     symbols TYPE|* escape B [low|high]   e has B bits behind the first: 2^B - 1 <= e < 2^(B+1) -
- *                                          1; both sides in turn without a word
+ *     symbols TYPE|* edges                 in turn: low escape, both ends of the window and their
+ *                                          neighbours, the middle, high escape
+ *     symbols TYPE|* sweep                 all values of the window in order, repeated
+ *     symbols TYPE|* wild                  one in eight is an escape of any length
+ *     symbols TYPE|* escape B [low|high]   e has B bits after the first: 2^B - 1 <= e and
+ *                                          e < 2^(B+1) - 1; the sides alternate if none is given
  *     symbols TYPE|* value K ...           these k in turn
  *     symbols TYPE|* r R ...               these r in turn
- *     symbol TYPE COMP ANCHOR K            one k; after all other lines
- * SPDX-License-Identifier: BSD-2-Clause */
+ *     symbol TYPE COMP ANCHOR K            one k, set after all other lines
+ * after all other lines SPDX-License-Identifier: BSD-2-Clause */
 #include <stdlib.h>
 #include <string.h>
 #include "build.h"

@@ -1,9 +1,10 @@
 /* mutants.c - see mutants.h and mutant_list.h. The changed file is compiled from a folder of its
- * own that comes first among the include paths; a changed header takes all of the decoder's sources
- * with it that include it. Then `ted4conf replay --stop`, linked with these objects, goes through
- * the suite: killed means that it fails, crashes, hangs or gives up at a vector, which is written
- * down. What does not compile counts apart. Before that the unchanged program, built and run in the
- * same way, has to pass: a machine, build or suite that is broken would kill everything.
+ * own that comes first in the include path. If it is a header, all sources of the decoder that
+ * include it are compiled too. The result is linked with the rest of ted4conf, and `ted4conf replay
+ * --stop` runs the suite. A mutant is killed if the replay fails, crashes, hangs or gives up at a
+ * vector, which is recorded. Mutants that do not compile are counted separately. Before all this,
+ * the unchanged decoder, built and run in the same way, has to pass; otherwise a broken machine,
+ * build or suite would appear to kill every mutant.
  * SPDX-License-Identifier: BSD-2-Clause */
 #include "mutants.h"
 
@@ -23,7 +24,7 @@ typedef struct {
     conf_mutant_list list;
 } campaign;
 
-/* A shell command; 1: it went well. */
+/* Runs a shell command. Returns 1 on success. */
 static int shell(const char *command)
 {
     const int status = system(command);
@@ -31,7 +32,7 @@ static int shell(const char *command)
     return WIFEXITED(status) && WEXITSTATUS(status) == 0;
 }
 
-/* A folder of its own for a build. */
+/* Makes a new folder for a build. */
 static void make_folder(char *folder)
 {
     const char *tmp = getenv("TMPDIR");
@@ -49,7 +50,7 @@ static void remove_folder(const char *folder)
     (void)shell(command);
 }
 
-/* The program's log of compiling and linking, for who has to find out why. */
+/* Prints the log of compiling and linking, to help find the cause of a failure. */
 static void show_log(const char *folder)
 {
     char path[CONF_PATH];
@@ -61,7 +62,7 @@ static void show_log(const char *folder)
     conf_free(&log);
 }
 
-/* Words of a shell: the sources that a change of that file touches. */
+/* Adds, as words for a shell, the sources that have to be compiled after a change to that file. */
 static void add_sources(const campaign *c, const char *file, conf_bytes *b)
 {
     if (strcmp(file + strlen(file) - 2, ".h") == 0)
@@ -73,7 +74,7 @@ static void add_sources(const campaign *c, const char *file, conf_bytes *b)
         conf_print(b, "echo %s; ", file);
 }
 
-/* Compiles what n files that lie in folder touch, and links. */
+/* Compiles the sources that depend on the n files in folder, and links the program. */
 static int build(const campaign *c, const conf_mutant *m, size_t n, const char *folder)
 {
     const char *const b = c->o->build;
@@ -100,7 +101,7 @@ static int build(const campaign *c, const conf_mutant *m, size_t n, const char *
     return good;
 }
 
-/* Sends the program in folder through the suite; p is to be freed. */
+/* Runs the suite with the program in folder. The caller frees p. */
 static void replay(const campaign *c, const char *folder, conf_process *p)
 {
     const conf_process_options o = { "exec", "TED4_KERNEL=plain", c->o->timeout,
@@ -122,7 +123,7 @@ static void replay(const campaign *c, const char *folder, conf_process *p)
         ;
 }
 
-/* As a CSV field and in a table. */
+/* Sets the reason, as text that may stand in a CSV field and in a table. */
 static void take_reason(conf_mutant *m, const char *how, const char *text)
 {
     snprintf(m->by, sizeof m->by, "%s%.120s", how, text);
@@ -132,8 +133,8 @@ static void take_reason(conf_mutant *m, const char *how, const char *text)
             *c = ' ';
 }
 
-/* Survived when the whole suite passed; killed when something went wrong at a vector. Anything else
- * is no result, and ends the program. */
+/* survived: the whole suite has passed; killed: something went wrong at a vector. Anything else is
+ * not a result, and ends the program. */
 static void judge(conf_mutant *m, conf_process *p)
 {
     char how[32] = "", *said = (char *)p->complaint.data, *rest, *line, *id;
@@ -170,8 +171,8 @@ static void put_file(const char *folder, const char *file, const conf_bytes *b)
     conf_write(path, b->data, b->size);
 }
 
-/* The unchanged program, made of all files that mutants change. A time limit that is near to what
- * it takes would count slowness as a kill. */
+/* Builds and runs the unchanged program, made of all files that have mutants. With a time limit
+ * close to its run time, a slow run would be counted as a kill. */
 static void baseline(const campaign *c)
 {
     char folder[CONF_PATH];
@@ -229,7 +230,7 @@ static int is_due(const campaign *c, const conf_mutant *m)
            (c->o->only == NULL || strncmp(m->id, c->o->only, strlen(c->o->only)) == 0);
 }
 
-/* Every jobs-th mutant without result, in a process of its own. */
+/* Starts one process per job. Each process tries every jobs-th mutant that has no result. */
 static void work(const campaign *c)
 {
     int status, bad = 0;
@@ -253,7 +254,7 @@ static void work(const campaign *c)
         conf_die("not all mutants could be run");
 }
 
-/* Those that wait: a line a file, where the list comes to its first. */
+/* Prints the mutants without a result, one line per file, in the order of the list. */
 static void print_waiting(const conf_mutant_list *l, conf_bytes *b)
 {
     for (size_t i = 0; i < l->n; i++) {
@@ -275,7 +276,7 @@ static void print_waiting(const conf_mutant_list *l, conf_bytes *b)
         conf_print(b, "none\n");
 }
 
-/* A cell of a table, in which a bar would end it. */
+/* Prints a cell of a table, without the bar that would end the cell. */
 static void print_cell(const char *text, conf_bytes *b)
 {
     for (const char *c = text; *c != '\0'; c++)
@@ -328,7 +329,8 @@ static int write_report(const campaign *c)
     conf_bytes b = { NULL, 0, 0 };
     char path[CONF_PATH], share[16] = "";
 
-    /* Kills outlast survivals, so that a share of some would flatter. */
+    /* Kills stay valid longer than survivals, so that the share of a part of the list would be too
+     * high. */
     if (judged == l->n && judged > 0)
         snprintf(share, sizeof share, " (%.1f %%)", 100.0 * (double)killed / (double)judged);
     conf_print(&b,
@@ -345,7 +347,8 @@ static int write_report(const campaign *c)
     return good;
 }
 
-/* Changes that were tried and are no faults: each says why, and is still one that could be made. */
+/* Checks the list of changes that were tried and are equivalent: each needs a reason, and must
+ * still be possible. */
 static void check_equivalents(const char *suite)
 {
     conf_mutant_list l = { .m = NULL };
@@ -359,7 +362,7 @@ static void check_equivalents(const char *suite)
     conf_mutant_list_free(&l);
 }
 
-/* What has to be run: the unchanged program first. */
+/* Runs all mutants that need a result, after the unchanged program. */
 static void run_due(campaign *c)
 {
     for (size_t i = 0; i < c->list.n; i++)

@@ -89,8 +89,8 @@ void conf_process_start(conf_process *p, const conf_process_options *o, const ch
     conf_add(&p->complaint, "", 0);
 }
 
-/* Reads the current content of a pipe; a closed pipe becomes -1. Returns 0 if the output is too
- * long, else 1. */
+/* Reads the current content of a pipe; if the pipe is closed, *fd becomes -1. Returns 0 if the
+ * output is too long, else 1. */
 static int drain(int *fd, conf_bytes *to, size_t most, int keep_all)
 {
     uint8_t piece[PIECE];

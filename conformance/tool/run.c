@@ -1,7 +1,6 @@
-/* run.c - see run.h. Each vector is copied into a folder of its own, given to the decoder twice,
- * and both answers have to agree. A decoder that claims lenient mode is asked about vectors that
- * are not invalid the second time in that mode, and those that say what can be salvaged a third
- * time.
+/* run.c - see run.h. Each vector is copied into a folder of its own and given to the decoder twice;
+ * both answers have to agree. If the decoder claims lenient mode, the second run of a vector that
+ * is not invalid uses that mode, and a vector that has something to salvage gets a third run.
  * SPDX-License-Identifier: BSD-2-Clause */
 #include "run.h"
 
@@ -17,7 +16,7 @@
 
 typedef enum { RUN_FIRST, RUN_SECOND, RUN_LENIENT } run_kind;
 
-/* A vector under way. */
+/* A vector that is being run. */
 typedef struct {
     conf_process process;
     size_t entry;
@@ -29,10 +28,10 @@ typedef struct {
 
 typedef struct {
     conf_run_result *r;
-    conf_process_options options[3]; /* of each kind of run */
+    conf_process_options options[3]; /* one for each kind of run */
     conf_process **process;          /* [jobs] of the slots */
-    char folder[CONF_PATH];          /* of all slots; removed at the end */
-    conf_recipes recipes;            /* for what is made on demand; empty until then */
+    char folder[CONF_PATH];          /* contains the folders of all slots; removed at the end */
+    conf_recipes recipes;            /* for vectors made on demand; empty until one is needed */
 } runner;
 
 static json_t *ask_capabilities(runner *w)
@@ -62,7 +61,7 @@ static int right_hash(const conf_entry *e, const conf_bytes *b)
     return strcmp(hash, json_string_value(json_object_get(e->descriptor, "sha256"))) == 0;
 }
 
-/* A vector of which only the recipe is kept. */
+/* Makes a vector of which only the recipe is stored. */
 static int make_on_demand(runner *w, const conf_entry *e, conf_bytes *b)
 {
     char path[CONF_PATH];
@@ -83,7 +82,7 @@ static int make_on_demand(runner *w, const conf_entry *e, conf_bytes *b)
     return 0;
 }
 
-/* The file of an entry; 0: it cannot be run, and the verdict says why. */
+/* Reads the file of an entry. Returns 0, with the verdict filled, if the vector cannot be run. */
 static int fetch(runner *w, size_t i, conf_bytes *b)
 {
     const conf_entry *e = &w->r->entry[i];
@@ -121,7 +120,7 @@ static int fetch(runner *w, size_t i, conf_bytes *b)
     return 1;
 }
 
-/* Is the run of a slot in lenient mode? */
+/* Returns 1 if the current run of a slot uses lenient mode. */
 static int lenient(const runner *w, const slot *s)
 {
     return s->run == RUN_LENIENT ||
@@ -129,7 +128,7 @@ static int lenient(const runner *w, const slot *s)
             !conf_expects(w->r->entry[s->entry].descriptor, "invalid"));
 }
 
-/* Removes what decoders have left in the folder of --dump, as far as it is files. */
+/* Removes the files that decoders have left in the folder of --dump. */
 static void empty(const char *folder)
 {
     char path[CONF_PATH];
@@ -176,7 +175,7 @@ static void start(runner *w, slot *s)
     conf_process_start(&s->process, &w->options[s->run], argv);
 }
 
-/* Copies file, which becomes the slot's, and queries into a fresh folder. */
+/* Copies the file and the queries into a new folder. The slot takes over *b. */
 static void prepare(runner *w, slot *s, const conf_bytes *b)
 {
     const json_t *const d = w->r->entry[s->entry].descriptor, *const queries =
@@ -225,7 +224,8 @@ static void tell(const runner *w, size_t i)
     fprintf(stderr, "%s: %s: %s\n", conf_outcome_name[v->outcome], w->r->entry[i].id, v->reason);
 }
 
-/* Equal, but for T5 of a decoder of class T, whose records need not be the same twice. */
+/* Returns 1 if the answers are equal. T5 of a decoder of class T is ignored, because its records
+ * may differ from run to run. */
 static int same_answer(const runner *w, const slot *s, const json_t *answer)
 {
     json_t *a, *b;
@@ -251,7 +251,7 @@ static double seconds(void)
     return (double)t.tv_sec + 1e-9 * (double)t.tv_nsec;
 }
 
-/* An answer against what is expected of this run. */
+/* Judges an answer by the expectation for this kind of run. */
 static void judge(runner *w, const slot *s, const json_t *answer, conf_verdict *v)
 {
     const json_t *const d = w->r->entry[s->entry].descriptor;
@@ -272,7 +272,7 @@ static void judge(runner *w, const slot *s, const json_t *answer, conf_verdict *
     }
 }
 
-/* What a slot that has passed its last run is to do next. 0: nothing more. */
+/* Sets the next run of a slot that has passed its last one. Returns 0 if there is none. */
 static int next_run(const runner *w, slot *s)
 {
     if (s->run == RUN_FIRST && !w->r->options->once)
@@ -285,7 +285,7 @@ static int next_run(const runner *w, slot *s)
     return 1;
 }
 
-/* The run of a slot has ended. 1: the slot goes on with another one. */
+/* Takes the answer of a run that has ended. Returns 1 if the slot has another run. */
 static int take(runner *w, slot *s)
 {
     conf_verdict *v = &w->r->verdict[s->entry];
@@ -308,7 +308,7 @@ static int take(runner *w, slot *s)
     return 0;
 }
 
-/* Fills a slot with the next vector that can be run. 0: there is none. */
+/* Fills a slot with the next vector that can be run. Returns 0 if there is none. */
 static int fill(runner *w, slot *s, size_t *next)
 {
     while (*next < w->r->n) {
@@ -350,7 +350,7 @@ static void run_all(runner *w)
     free(s);
 }
 
-/* A text of the manifest; "": none. */
+/* Returns a text of the manifest, or "" if it has none. */
 static const char *listed_text(const json_t *listed, const char *key)
 {
     const char *const s = json_string_value(json_object_get(listed, key));
@@ -358,7 +358,7 @@ static const char *listed_text(const json_t *listed, const char *key)
     return s != NULL ? s : "";
 }
 
-/* The same member, or neither has it. */
+/* Returns 1 if both have the same member, or neither has it. */
 static int same_member(const json_t *a, const char *key, const json_t *b, const char *other)
 {
     const json_t *const x = json_object_get(a, key), *const y = json_object_get(b, other);
@@ -366,8 +366,8 @@ static int same_member(const json_t *a, const char *key, const json_t *b, const 
     return x == y || json_equal(x, y);
 }
 
-/* Is that the descriptor that the manifest knows? Its hash says so; the members that both have say
- * that the manifest holds together. */
+/* Returns 1 if this is the descriptor that the manifest lists, by its hash. The members that both
+ * contain also have to agree, which checks the manifest itself. */
 static int as_published(const json_t *listed, const conf_entry *e)
 {
     const json_t *const d = e->descriptor;
@@ -378,7 +378,7 @@ static int as_published(const json_t *listed, const conf_entry *e)
            same_member(listed, "demand", d, "demand");
 }
 
-/* The manifest's line of a vector, borrowed; NULL: it has none. */
+/* Returns the manifest's entry of a vector, borrowed, or NULL. */
 static const json_t *listed_as(const json_t *list, const char *id)
 {
     for (size_t i = 0; i < json_array_size(list); i++)
@@ -405,8 +405,8 @@ static void add_missing(conf_run_result *r, const json_t *list, size_t n_found)
     }
 }
 
-/* Descriptors have to be those of SUITE.json, and all that it names have to be there, unless a list
- * says which. */
+/* Descriptors have to be those of SUITE.json, and, unless a list selects vectors, all vectors of
+ * SUITE.json have to exist. */
 static void hold_to_manifest(conf_run_result *r)
 {
     char path[CONF_PATH];
@@ -444,7 +444,7 @@ static void sum_up(conf_run_result *r)
                 r->valid_passed > 0 && conf_judge_lacks(r->capabilities) == NULL;
 }
 
-/* Why it does not conform, as far as no vector says so. */
+/* Returns why the decoder does not conform, if the reason is not a vector. */
 static const char *reason(const conf_run_result *r)
 {
     static char text[80];

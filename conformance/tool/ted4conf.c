@@ -1,5 +1,5 @@
-/* ted4conf.c - the conformance suite's program: makes the vectors, drives decoders through them,
- * measures what they cover.
+/* ted4conf.c - the program of the conformance suite: makes the vectors, runs decoders on them, and
+ * measures their coverage.
  * SPDX-License-Identifier: BSD-2-Clause */
 #include <getopt.h>
 #include <stdio.h>

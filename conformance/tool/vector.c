@@ -1,21 +1,19 @@
-/* vector.c - see vector.h. Offsets that a recipe expects are worked out from the file's own layout,
+/* vector.c - see vector.h. Offsets that a recipe expects are computed from the file's own layout,
  * never taken from the decoder.
  *     category CATEGORY/AREA               folder of the vector
- *     intent TEXT; rules R-...; bug TYPE EFFECT
- *     query NUM/DEN X Y Z                  repeated; a valid vector without one gets three; knob
- *                                          NAME VALUE
- *     demand [large]                       only the descriptor is kept
- *     kept                                 the file is the one that is there: it came out of a
- *                                          training and cannot be made again everywhere
+ *     intent TEXT; rules R-...; bug TYPE EFFECT; knob NAME VALUE
+ *     query NUM/DEN X Y Z                  repeated; a valid vector without a query gets three
+ *     demand [large]                       only the descriptor is stored
+ *     kept                                 the file is stored, not made: it is the result of a
+ *                                          training, which not every machine can reproduce
  *     expect valid | invalid ID at WHERE | unsupported ID at WHERE | limit ID
- *     also limit                           a decoder may refuse with a limit before it comes to
- *                                          that error
+ *     also limit                           a decoder may report a limit before that error
  *     expect-query I ID                    query I has no result
- *     salvage TILES [ID at PLACE]          what a lenient decoder gives: the first tiles, and the
- *                                          first error in the order of the file, when that is not
+ *     salvage TILES [ID at PLACE]          the result of a lenient decoder: the first tiles, and
+ *                                          the first error in the order of the file, if it is not
  *                                          the expected one. Every vector of the category tolerant
  *                                          has this line
- * SPDX-License-Identifier: BSD-2-Clause */
+ * category tolerant has this line SPDX-License-Identifier: BSD-2-Clause */
 #include "vector.h"
 
 #include <stdio.h>
