@@ -1,6 +1,6 @@
-/* measure.h - what the benchmarks have in common: a clock, memory or the end, pairs counted, and
- * the machine's name. Compiled at the base level (BENCH_FREE in bench.mk), whatever the level in
- * use.
+/* measure.h - common functions of the benchmarks: a clock, allocation that ends the program on
+ * failure, counts of blended pairs, and the machine's name. Compiled at the base level (BENCH_FREE
+ * in bench.mk), whichever level is in use.
  * SPDX-License-Identifier: BSD-2-Clause */
 #ifndef TED4_BENCH_MEASURE_H
 #define TED4_BENCH_MEASURE_H
@@ -29,8 +29,8 @@ static inline void *must(void *p)
     return p;
 }
 
-/* Pairs of pixel and Gaussian of a forward pass that kept its state: those that contribute, and
- * those that are computed. */
+/* Pairs of a pixel and a Gaussian in a forward pass that kept its state: blended pairs, and
+ * computed pairs. */
 typedef struct {
     size_t blended, computed;
 } pair_count;
@@ -63,7 +63,7 @@ static inline pair_count count_pairs(const struct ted4_raster *r, const ted4_vie
     return count;
 }
 
-/* "model name" of /proc/cpuinfo, or "unknown". */
+/* Writes the "model name" of /proc/cpuinfo, or "unknown". */
 static inline void machine_name(char *name, size_t size)
 {
     FILE *f = fopen("/proc/cpuinfo", "r");

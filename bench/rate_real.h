@@ -1,14 +1,15 @@
-/* rate_real.h - the entropy model in floating point, for rate_check.c, which includes this once
- * with REAL float and once with double: NAME(x) names what is made, SIN and COS are the functions
- * of that type. Networks as spec 7.1, weights as the file stores them, sine and cosine of the exact
- * position, contexts k STEP[Qi], no rounding to integers and no saturation. Anchors in blocks of
- * 64, arrays [channel][64]; sums run over inputs in order, so lanes are vectors.
+/* rate_real.h - the entropy model in floating point. rate_check.c includes this file once with REAL
+ * float and once with double: NAME(x) is the name of a function for that type, SIN and COS are the
+ * functions of that type. The networks are those of spec 7.1, with the weights that the file
+ * stores, sine and cosine of the exact position, and contexts k STEP[Qi]; nothing is rounded to
+ * integers or saturated. Anchors are processed in blocks of 64, arrays are [channel][64]; sums run
+ * over the inputs in order, so that lanes are vectors.
  * SPDX-License-Identifier: BSD-2-Clause */
 
 typedef REAL NAME(vec) __attribute__((vector_size(64), may_alias, aligned(sizeof(REAL))));
 
-/* One layer: y [out][64] from x [in][64]; v: weights [out][in], then biases. All layers but the
- * last are followed by ReLU. */
+/* Evaluates a layer: y [out][64] from x [in][64]. v: weights [out][in], then biases. ReLU follows
+ * all layers but the last. */
 static void NAME(layer)(const float *v, unsigned in, unsigned out, int last, const REAL *x, REAL *y)
 {
     enum { LANES = 64 / sizeof(REAL), VECS = BLOCK / LANES };
@@ -43,8 +44,8 @@ static void NAME(net)(const ted4_net_shape *n, const float *nete, REAL *const hi
     }
 }
 
-/* spec 10.1: the phase of octave l is p 2^(l - 1) turns, exact in a double. n anchors from first
- * on. */
+/* spec 10.1: the phase of octave l is p 2^(l - 1) turns, which is exact in a double. n anchors,
+ * beginning at anchor first. */
 static void NAME(inputs)(const ted4_scene *s, size_t first, size_t n, REAL *x)
 {
     for (size_t a = 0; a < n; a++) {
@@ -66,8 +67,8 @@ static void NAME(inputs)(const ted4_scene *s, size_t first, size_t n, REAL *x)
     }
 }
 
-/* All mu and log2 sigma of n <= 64 anchors from first on into y [P][64], in steps, the slice
- * networks added. x: [inputs][64] of room. */
+/* Writes all mu and log2 sigma of n <= 64 anchors, beginning at anchor first, to y [P][64], in
+ * units of the step, including the slice networks. x: workspace of [inputs][64]. */
 static void NAME(model)(const ted4_scene *s, REAL *const hidden[2], size_t first, size_t n, REAL *x,
                         REAL *y)
 {
