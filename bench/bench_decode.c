@@ -1,8 +1,7 @@
-/* bench_decode.c - how long files take to decode on one core, with the kernels of each level that
- * this machine has and with none, in turn, and how much of that is the entropy stage: what the
- * library hands to the caller's threads, a tile at a time (prior, coder, symbols; spec 9, 10). All
- * of them have to give the same scene.
- * Usage: bench_decode FILE.ted4...
+/* bench_decode.c - measures how long files take to decode on one core, with the kernels of each
+ * level of this machine and with none, in turn, and the share of the entropy stage: the work that
+ * the library hands to the caller's threads tile by tile (prior, coder, symbols; spec 9, 10). All
+ * levels must give the same scene. Usage: bench_decode FILE.ted4...
  * SPDX-License-Identifier: BSD-2-Clause */
 #include <errno.h>
 #include <math.h>
@@ -19,7 +18,7 @@ typedef struct {
     double whole, entropy; /* ms */
 } times;
 
-/* Runs jobs one after another and adds up how long they take. */
+/* Runs the jobs one after another and adds up their time. */
 static void run_timed(void *user, size_t n, void (*body)(void *arg, size_t i), void *arg)
 {
     const double begin = now_ms();
@@ -29,8 +28,8 @@ static void run_timed(void *user, size_t n, void (*body)(void *arg, size_t i), v
     *(double *)user += now_ms() - begin;
 }
 
-/* 0, or -1 with a line. The hash of the scene and its number of coded symbols without masks go to
- * info and *symbols. */
+/* Returns 0, or -1 after printing a line. Sets info to that of the scene, with its hash, and
+ * *symbols to the number of its coded symbols without masks. */
 static int once(const char *path, const uint8_t *bytes, size_t size, times *t, ted4_info *info,
                 double *symbols)
 {
@@ -65,14 +64,14 @@ static void keep_best(times *best, const times *t)
     best->entropy = fmin(best->entropy, t->entropy);
 }
 
-/* Levels whose decoders differ, the fastest first. Returns how many. */
+/* Lists the levels with different decoders, the fastest first. Returns their number. */
 static int levels_here(ted4_level *level)
 {
     int n = 0;
 
     for (int l = ted4_level_of_machine(); l >= TED4_LEVEL_PLAIN; l--) {
 #if !defined(__aarch64__)
-        if (l == TED4_LEVEL_BASE) /* decodes as PLAIN */
+        if (l == TED4_LEVEL_BASE) /* same decoder as PLAIN */
             continue;
 #endif
         level[n++] = (ted4_level)l;

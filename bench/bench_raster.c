@@ -1,5 +1,5 @@
-/* bench_raster.c - how long forward and backward of the rasteriser take on random scenes at 480x270
- * with about 33 blended Gaussians a pixel. All levels that the machine has are timed in turn.
+/* bench_raster.c - measures the forward and backward passes of the rasteriser on random scenes at
+ * 480x270 with about 33 blended Gaussians per pixel. All levels of the machine are timed in turn.
  * SPDX-License-Identifier: BSD-2-Clause */
 #include "measure.h"
 #include "raster_scene.h"
@@ -8,8 +8,8 @@
 
 enum { WIDTH = 480, HEIGHT = 270, N_PIXELS = WIDTH * HEIGHT, ROUNDS = 40 };
 
-/* Standard deviation in pixels that gives about 33 blended Gaussians a pixel. Blurring makes small
- * ones larger, so the law is not quite one of area. */
+/* Standard deviation in pixels for about 33 blended Gaussians per pixel. The low-pass filter
+ * enlarges small Gaussians, so that the exponent is not exactly that of the area. */
 #define SIGMA(n) (0.465 * pow(1e5 / (double)(n), 0.56))
 
 typedef struct {
@@ -82,7 +82,7 @@ static times once(bench *b, const ted4_parallel *p)
     return (times) { t1 - t0, now_ms() - t1 };
 }
 
-/* The least of each: whatever else the machine does can only add. */
+/* Returns the shortest time of each pass, as other work on the machine can only add time. */
 static times best(const times *t, size_t n)
 {
     times b = t[0];
@@ -101,8 +101,8 @@ static void print_times(const char *what, times t, size_t pairs)
            t.backward * 1e6 / (double)pairs, t.forward + t.backward);
 }
 
-/* As a training finds it, which goes on with as many threads as it began: after a round with as
- * many, what a core needs lies in its cache, not in the other's. */
+/* Measures the second of two rounds with the same number of threads, as in training: by then, each
+ * core has its data in its own cache, not in that of another core. */
 static times settled(bench *b, const ted4_parallel *p)
 {
     once(b, p);

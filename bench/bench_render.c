@@ -1,8 +1,7 @@
-/* bench_render.c - how many frames a second the decoder draws of a scene with 100,000 Gaussians in
- * view, at 960x536: each frame is another time and another camera, so that every deformation and
- * every head is evaluated again. The scene is made here, of the sizes of two presets; all anchors
- * move.
- * Usage: bench_render.
+/* bench_render.c - measures how many frames per second the decoder renders of a scene with 100,000
+ * Gaussians in view, at 960x536. Each frame has another time and another camera, so that all
+ * deformations and heads are evaluated again. The scene is made here, with the sizes of two
+ * presets; all anchors move. Usage: bench_render.
  * SPDX-License-Identifier: BSD-2-Clause */
 #include <math.h>
 
@@ -16,11 +15,11 @@
 
 enum { WIDTH = 960, HEIGHT = 536, N_GAUSSIANS = 101000, FRAMES = 300, ROUNDS = 60 };
 
-/* The camera looks along +z from this far before the origin: depths from 2 to 4. */
+/* The camera is at this distance before the origin and looks along +z: depths from 2 to 4. */
 #define DISTANCE 3.0f
 #define FOCAL    (0.9f * WIDTH)
 
-/* spec 10.1: the index of a step size of Q0. */
+/* spec 10.1: the index of the step size Q0. */
 enum { STEP_ONE = 128 };
 
 typedef struct {
@@ -76,8 +75,8 @@ static ted4_header make_header(const model *m)
     return h;
 }
 
-/* Weights that keep values near 1 whatever the width, but for the last layer: there they are last
- * times that, and the biases are bias. */
+/* Draws weights that keep values near 1 at any width. In the last layer they are multiplied by
+ * last, and the biases are bias. */
 static void fill_network(ted4_scene *s, int net, double last, float bias, uint64_t *seed)
 {
     const ted4_net_shape *n = &s->shape.netr[net];
@@ -94,7 +93,7 @@ static void fill_network(ted4_scene *s, int net, double last, float bias, uint64
     }
 }
 
-/* Values of a type, in units of its Q0. */
+/* Draws values of a type, in units of its Q0. */
 static void fill_symbols(ted4_scene *s, ted4_type t, double middle, double spread, uint64_t *seed)
 {
     const size_t n = s->head.n_anchors;
@@ -105,7 +104,7 @@ static void fill_symbols(ted4_scene *s, ted4_type t, double middle, double sprea
             (int16_t)lrint((middle + spread * scene_normal(seed)) / (double)s->head.step[t]);
 }
 
-/* An anchor for every place of the picture, at any depth. */
+/* Spreads the anchors over the picture, at any depth. */
 static void place_anchors(ted4_scene *s, uint64_t *seed)
 {
     for (size_t i = 0; i < s->head.n_anchors; i++) {
@@ -137,16 +136,16 @@ static ted4_scene *make_scene(const model *m)
     for (size_t i = 0; i < s->bank.n; i++)
         s->bank.values[i] = (float)scene_normal(&seed);
     fill_symbols(s, TED4_FEATURE, 0, 1, &seed);
-    fill_symbols(s, TED4_SCALING, -6.4, 0.8, &seed); /* log2: about a pixel */
+    fill_symbols(s, TED4_SCALING, -6.4, 0.8, &seed); /* log2 of a scale: about one pixel */
     fill_symbols(s, TED4_OFFSET, 0, 1.5, &seed);
     fill_symbols(s, TED4_PHI, 0, 1, &seed);
-    fill_symbols(s, TED4_TAU, 0, 0, &seed); /* from 0 to 1: there at all times */
+    fill_symbols(s, TED4_TAU, 0, 0, &seed); /* span from 0 to 1: active at all times */
     for (size_t i = 0; i < n; i++)
         s->symbol[TED4_TAU][2 * n + i] = (int16_t)lrint(1.0 / (double)h.step[TED4_TAU]);
     return s;
 }
 
-/* Frame i: the camera sways by a few pixels. */
+/* The camera of frame i, which sways by a few pixels. */
 static ted4_view camera_of(int i)
 {
     return (ted4_view) { .width = WIDTH,
@@ -182,7 +181,7 @@ static times once(bench *b, const ted4_parallel *p, int i)
     return (times) { t1 - t0, t2 - t1, t2 - t0 };
 }
 
-/* Least times, and the median of the sum. */
+/* Returns the shortest times, and sets *median to the median of the sum. */
 static times best(const times *t, double *median)
 {
     times b = t[0];
@@ -210,7 +209,7 @@ static void print_times(ted4_level level, int threads, const times *t)
            1e3 / b.both, median, 1e3 / median);
 }
 
-/* What one frame holds. */
+/* Prints the contents of one frame. */
 static void print_load(const bench *b, const model *m)
 {
     ted4_view camera = camera_of(0);
@@ -240,7 +239,7 @@ static void print_load(const bench *b, const model *m)
     ted4_raster_free(r);
 }
 
-/* As the programs do: the decoder's kernels by the environment. */
+/* Selects the level as the programs do; the decoder's kernels follow the environment. */
 static void use(ted4_level level)
 {
     setenv("TED4_KERNEL", ted4_level_name(level), 1);
@@ -260,7 +259,7 @@ static void report(const model *m, ted4_level level, const ted4_parallel *two)
     if (level == ted4_level_of_machine())
         print_load(&b, m);
     for (int i = 0; i < ROUNDS;
-         i++) { /* a frame that differs from the one before, so that nothing is kept */
+         i++) { /* each frame differs from the previous one, so that no result is reused */
         one_t[i] = once(&b, NULL, 2 * i + 1);
         two_t[i] = once(&b, two, 2 * i + 2);
     }

@@ -1,26 +1,25 @@
-/* bench_scale.c - how far a training step can use many cores: the share of it outside parallel
- * work, and what that and the sizes of its jobs let 8, 16 and 32 cores reach. On one thread each
- * index of each parallel region is timed. Two bounds: Amdahl's law, for which regions take no
- * time on many cores but their work over the cores; and the same steps with their real jobs,
- * handed out in order to whichever core is free, and what opening and closing a region costs
- * (recorder.h).
- * Usage: bench_scale SCENE DOWNSCALE
+/* bench_scale.c - predicts how far a training step can use many cores: the share of it outside
+ * parallel work, and the speed that this share and the sizes of the jobs allow on 8, 16 and 32
+ * cores. On one thread, each index of each parallel region is timed. There are two bounds. Amdahl's
+ * law: a region takes its work divided by the number of cores. Real jobs: the jobs of the same
+ * steps, handed out in order to the first free core, plus the cost of opening and closing a region
+ * (recorder.h). Usage: bench_scale SCENE DOWNSCALE
  * SPDX-License-Identifier: BSD-2-Clause */
 #include "measure.h"
 #include "recorder.h"
 #include "train/raster/adjoint.h"
 #include "train_record.h"
 
-enum { STEPS = 120 }; /* of each stage */
+enum { STEPS = 120 }; /* per stage */
 
-/* A part of one step, or all of it: ms on one thread, in regions alone, and in regions on
- * recorder_cores; regions. */
+/* A part of one step, or all of it: ms on one thread, ms in regions, ms in regions on
+ * recorder_cores, and the number of regions. */
 typedef struct {
     double whole, work, on[RECORDER_CORES], regions;
 } portion;
 enum { MEMBERS = sizeof(portion) / sizeof(double) };
 
-/* Parts, then the whole step. */
+/* The parts, followed by the whole step. */
 typedef struct {
     portion of[N_PARTS + 1];
 } sample;
@@ -28,8 +27,8 @@ typedef struct {
 static recorder recorded;
 static sample here;
 
-/* The tiles of the adjoint are taken by TED4_BWD_JOBS jobs, one by one; each lasts about as
- * long, against the others, as forward. */
+/* The tiles of the adjoint are processed by TED4_BWD_JOBS jobs, each of which takes one tile after
+ * another. The durations of the tiles are assumed proportional to those of the forward pass. */
 static int kind_of_region(size_t n)
 {
     return parts.current == PART_BLEND                             ? 1
@@ -37,7 +36,7 @@ static int kind_of_region(size_t n)
                                                                    : 0;
 }
 
-/* What was in regions since the last change of parts belongs to p. */
+/* Adds the regions since the last change of parts to p. */
 static void leave(train_part p)
 {
     recorder_regions *r = &recorded.regions;

@@ -1,8 +1,7 @@
-/* bench_train.c - what a training step costs, and which part of it how much: stage 1, stage 2 and
- * its integer part, on one thread and on two.
- * Parts: train_parts.h. What runs on all threads is known by the regions that the trainer hands to
- * its threads. Parts are those of the machine's highest level (base/level.h); of lower ones the
- * step is timed, in turn with it.
+/* bench_train.c - measures a training step and its parts (train_parts.h) in stage 1, in stage 2 and
+ * in the integer part of stage 2, on one thread and on two. Work on all threads is recognised by
+ * the regions that the trainer hands to its threads. The parts are measured for the machine's
+ * highest level (base/level.h); for lower levels only the whole step is timed, in turn with it.
  * Usage: bench_train SCENE DOWNSCALE
  * SPDX-License-Identifier: BSD-2-Clause */
 #include <math.h>
@@ -11,18 +10,18 @@
 #include "tool/threads.h"
 #include "train_record.h"
 
-/* Of each stage; recordings of each level on each number of threads. */
+/* Steps per stage; recordings for each level and each number of threads. */
 enum { STEPS = 115, ROUNDS = 2 };
 
-/* One step: ms of each part, of the step, and of it outside all parallel regions. */
+/* One step: ms of each part, of the whole step, and of the step outside all parallel regions. */
 typedef struct {
     double part[N_PARTS], whole, alone;
 } sample;
 
-/* Of the step that goes on: ms in regions. */
+/* Time in regions during the current step, in ms. */
 static double in_regions;
 
-/* A team that takes note of the time for which it works. */
+/* A team that measures the time for which it works. */
 static void run_region(void *user, size_t n, void (*body)(void *arg, size_t i), void *arg)
 {
     const ted4_parallel *team = user;
@@ -42,7 +41,7 @@ static void one_step(ted4_trainer *t, void *measured)
     s->alone = s->whole - in_regions;
 }
 
-/* The lesser of two, member by member. */
+/* Returns the smaller of two values for each member. */
 static sample lesser(const sample *a, const sample *b)
 {
     sample s = { .whole = fmin(a->whole, b->whole), .alone = fmin(a->alone, b->alone) };
@@ -65,7 +64,7 @@ static void print_parts(const sample *one, const sample *two)
            two->alone);
 }
 
-/* m: by level, number of threads less 1, and stage. */
+/* m is indexed by level, number of threads less 1, and stage. */
 static void print_stage(const train_record *r, int stage, sample m[TED4_LEVELS][2][STAGES])
 {
     const ted4_level most = ted4_level_of_machine();
@@ -81,7 +80,7 @@ static void print_stage(const train_record *r, int stage, sample m[TED4_LEVELS][
     }
 }
 
-/* As the programs do: the decoder's kernels by the environment. */
+/* Selects the level as the programs do; the decoder's kernels follow the environment. */
 static void use(ted4_level level)
 {
     setenv("TED4_KERNEL", ted4_level_name(level), 1);

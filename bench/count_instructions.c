@@ -1,6 +1,6 @@
-/* count_instructions.c - a plugin of qemu's user mode: how many instructions of the guest a program
- * executes, printed when it ends. For bench/instructions.sh.
- * Debian has no qemu-plugin.h; what is declared here is the part of its version 1 that is used.
+/* count_instructions.c - a plugin for qemu's user mode that counts the instructions of the guest
+ * that a program executes and prints their number at the end. For bench/instructions.sh. Debian has
+ * no qemu-plugin.h, so this file declares the part of its version 1 that it uses.
  * SPDX-License-Identifier: BSD-2-Clause */
 #include <inttypes.h>
 #include <stddef.h>

@@ -1,11 +1,11 @@
-/* lab_anchors.c - anchors that their motion throws out of every picture, and how far anchors go:
- * see lab_facts.h. Looks at tracks only.
+/* lab_anchors.c - finds the anchors that their motion throws out of all pictures, and measures how
+ * far anchors move: see lab_facts.h. Needs only the tracks.
  * SPDX-License-Identifier: BSD-2-Clause */
 #include <math.h>
 #include <stdlib.h>
 #include "lab_facts.h"
 
-/* x: world. */
+/* x: in world coordinates. */
 static int sees(const ted4_camera *c, double near_z, const float x[3])
 {
     double at[3];
@@ -36,13 +36,14 @@ static const float *centre_of(const lab_tracks *t, size_t time, size_t anchor)
     return t->centre + 3 * (time * t->n + anchor);
 }
 
-/* Drawn where cameras are. */
+/* Returns 1 if the anchor is drawn at a time that has cameras. */
 static int counts(const lab_tracks *t, size_t time, size_t anchor)
 {
     return t->rig[time].n > 0 && t->drawn[time * t->n + anchor];
 }
 
-/* Would the cameras of that time see the anchor where it is at some other time that counts? */
+/* Returns 1 if a camera of that time would see the anchor at its centre of some other time that
+ * counts. */
 static int seen_elsewhere(const lab_tracks *t, size_t time, size_t anchor)
 {
     for (size_t other = 0; other < t->n_times; other++)
@@ -60,7 +61,8 @@ static int is_thrown_out(const lab_tracks *t, size_t anchor)
     return 0;
 }
 
-/* Farthest from where it was when first drawn, world units; -1: never drawn. */
+/* Returns the largest distance from where the anchor was first drawn, in world units, or -1 if it
+ * is never drawn. */
 static double farthest(const lab_tracks *t, size_t anchor)
 {
     const float *from = NULL;

@@ -1,9 +1,9 @@
-/* lab_facts.c - what the stability lab measures on one decoded file, as one JSON line: quality of
- * held-out pictures and the worst of them, anchors that motion throws out of every picture, how far
- * anchors go, numbers that are not finite or stand at the end of their range, escapes, and what the
- * training's log tells. lab_facts.h defines all.
+/* lab_facts.c - prints what the stability lab measures on one decoded file, as one JSON line:
+ * quality of held-out pictures and of the worst of them, anchors that motion throws out of every
+ * picture, how far anchors move, values that are not finite or at the end of their range, escapes,
+ * and facts from the training's log. lab_facts.h defines them all.
  *     lab_facts FILE.ted4 SCENE [LOG.jsonl [STRIP.png]]
- * STRIP.png: truth, ours, error of the worst held-out picture.
+ * STRIP.png: truth, our picture and the error of the worst held-out picture.
  * SPDX-License-Identifier: BSD-2-Clause */
 #include <errno.h>
 #include <math.h>
@@ -29,7 +29,7 @@ static int open_file(lab_session *s, const char *path)
 
 static int open_scene(lab_session *s, const char *folder)
 {
-    /* Pictures with transparency are compared on the background that the file carries. */
+    /* Pictures with transparency are compared over the background colour that the file carries. */
     const ted4_dataset_options options = { .downscale = 1,
                                            .white = s->info.background[0] > 127,
                                            .cache_bytes = 16 << 20 };
@@ -39,7 +39,7 @@ static int open_scene(lab_session *s, const char *folder)
                                                                   : lab_failed(folder, m.text);
 }
 
-/* A share of none is 0. */
+/* Returns a share, which is 0 if the total is 0. */
 static double share(uint64_t part, uint64_t whole)
 {
     return whole > 0 ? (double)part / (double)whole : 0;
@@ -147,7 +147,7 @@ static int measure(lab_session *s, const char *log, const char *strip, json_t *o
     return TED4_EXIT_FINE;
 }
 
-/* So that a slip on the command line overwrites no log. */
+/* A mistake on the command line must not overwrite a log. */
 static int is_picture(const char *path)
 {
     const size_t n = strlen(path);

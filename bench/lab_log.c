@@ -1,4 +1,5 @@
-/* lab_log.c - what the log of one training (ted4enc --log) tells of its stability: see lab_facts.h.
+/* lab_log.c - reads facts about stability from the log of one training (ted4enc --log): see
+ * lab_facts.h.
  * SPDX-License-Identifier: BSD-2-Clause */
 #include <errno.h>
 #include <stdio.h>
@@ -8,7 +9,7 @@
 #include "lab_facts.h"
 #include "tool/cli.h"
 
-/* Keeps the larger one and its term. */
+/* Keeps the larger value and its term. */
 static void take_larger(double x, const char *term, double *most, char most_term[32])
 {
     if (!(x > *most))
@@ -17,8 +18,8 @@ static void take_larger(double x, const char *term, double *most, char most_term
     snprintf(most_term, 32, "%s", term);
 }
 
-/* gradients: the usual norm of each term; peaks: the largest one since the line before, as a
- * multiple of that (run_log.h). */
+/* gradients: the usual norm of each term. peaks: the largest norm since the previous line, as a
+ * multiple of the usual one (run_log.h). */
 static void take_gradients(const json_t *line, lab_log *l)
 {
     const json_t *const peaks = json_object_get(line, "peaks");

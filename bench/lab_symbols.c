@@ -1,5 +1,5 @@
-/* lab_symbols.c - escapes, and numbers that stand at the ends of their ranges, in the coded part of
- * a decoded file: see lab_facts.h. The tiles are walked once more with a coder that only counts.
+/* lab_symbols.c - counts escapes, and values at the ends of their ranges, in the coded part of a
+ * decoded file: see lab_facts.h. The tiles are walked once more with a coder that only counts.
  * SPDX-License-Identifier: BSD-2-Clause */
 #include <string.h>
 #include "base/bytes.h"
@@ -33,7 +33,7 @@ static void gauss(ted4_coder *c, size_t n, const int32_t *mu, const uint8_t *sig
     }
 }
 
-/* spec 10.3: contexts that slices read, all but those of the last slice. */
+/* spec 10.3: the contexts that slices read: all slices except the last one. */
 static void count_contexts(const ted4_scene *s, lab_symbols *y)
 {
     const ted4_header *const h = &s->head;
@@ -59,7 +59,7 @@ static void count_steps(const ted4_scene *s, lab_symbols *y)
         }
 }
 
-/* spec 11.4: b_s and b_f, as base-2 logarithms, at or below that of their floor. */
+/* spec 11.4: base-2 logarithms of b_s and b_f at or below this value give the minimum. */
 #define LOG2_LEAST_WIDTH -12.0f
 
 static void count_widths(const ted4_scene *s, lab_symbols *y)

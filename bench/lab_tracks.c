@@ -1,5 +1,5 @@
-/* lab_tracks.c - where the anchors of a decoded file are at every time of its scene, and whether
- * they are drawn: see lab_facts.h.
+/* lab_tracks.c - computes where the anchors of a decoded file are at every time of its scene, and
+ * whether they are drawn: see lab_facts.h.
  * SPDX-License-Identifier: BSD-2-Clause */
 #include <math.h>
 #include <stdlib.h>
@@ -9,7 +9,8 @@
 #include "tool/cli.h"
 #include "train/model/normalise.h"
 
-/* See lab_tracks.size; the side of the file's space where points say nothing. -1: no memory. */
+/* Computes lab_tracks.size, or the side of the file's space if there are no usable points. Returns
+ * -1 without memory. */
 static double scene_size(const lab_session *s)
 {
     const size_t n = s->data.n_points;
@@ -66,14 +67,14 @@ static int reserve(const lab_session *s, lab_tracks *t)
                : 0;
 }
 
-/* The Gaussians of one time into that time's tracks. */
+/* Stores the Gaussians of one time in the tracks. */
 static void take_time(const lab_session *s, const ted4_gaussians *g, size_t time, lab_tracks *t)
 {
     float *const centre = t->centre + 3 * time * t->n;
     uint8_t *const drawn = t->drawn + time * t->n;
     size_t n = 0;
 
-    /* Records of an anchor follow each other. */
+    /* The records of an anchor are consecutive. */
     for (size_t i = 0; i < g->n; i++) {
         const size_t anchor = g->id[i] / s->info.n_offsets;
 
@@ -84,7 +85,7 @@ static void take_time(const lab_session *s, const ted4_gaussians *g, size_t time
     }
 }
 
-/* What was met of each Gaussian so far. */
+/* What has been observed for each Gaussian so far. */
 enum { WAS_SEEN = 1, WAS_FULL = 2, WAS_THIN = 4, WAS_HUGE = 8 };
 
 static void take_extremes(const lab_session *s, const ted4_gaussians *g, uint8_t *met)
@@ -99,7 +100,7 @@ static void take_extremes(const lab_session *s, const ted4_gaussians *g, uint8_t
     }
 }
 
-/* A time that the decoder refuses has no cameras: nothing counts there. */
+/* A time that the decoder refuses has no cameras, so that it counts nowhere. */
 static int take_query(lab_session *s, size_t time, lab_tracks *t, lab_gaussians *g, uint8_t *met)
 {
     ted4_query q = { .num = (uint32_t)time, .den = t->n_times > 1 ? (uint32_t)t->n_times - 1 : 1 };

@@ -1,5 +1,5 @@
-/* lab_views.c - held-out pictures of a decoded file against the truth, and the worst of them as a
- * strip: see lab_facts.h.
+/* lab_views.c - compares held-out pictures of a decoded file with the truth, and draws the worst of
+ * them as a strip: see lab_facts.h.
  * SPDX-License-Identifier: BSD-2-Clause */
 #include <math.h>
 #include <stdlib.h>
@@ -13,24 +13,24 @@
 
 typedef struct {
     ted4_viewer *viewer;   /* owned, as all below */
-    uint8_t *ours, *worst; /* [height][width][3] of the largest picture: drawn last, and as drawn of
-                              the worst picture */
+    uint8_t *ours, *worst; /* [height][width][3] for the largest picture: the last one drawn, and
+                              the worst one */
     size_t worst_item;
     double sum;
 } view_work;
 
-/* Equal pictures: as if one value were wrong by one. */
+/* For a picture equal to the truth, one value is assumed to be wrong by one. */
 static double finite_psnr(double psnr, const ted4_camera *c)
 {
     return isfinite(psnr) ? psnr : 20.0 * log10(255.0) + 10.0 * log10(3.0 * c->width * c->height);
 }
 
-/* Draws picture i into w->ours. TED4_E_REC_NONFINITE is for the caller to count. */
+/* Draws picture i into w->ours. The caller counts TED4_E_REC_NONFINITE. */
 static ted4_status draw_picture(lab_session *s, size_t i, view_work *w)
 {
     const ted4_picture *const p = &s->data.pictures[i];
     const uint32_t last = s->data.n_frames > 1 ? s->data.n_frames - 1 : 1;
-    const ted4_header world = { 0 }; /* origin 0, unit 1: a view in world coordinates */
+    const ted4_header world = { 0 }; /* origin 0, unit 1: the view is in world coordinates */
     ted4_view view;
     float centre[3];
 

@@ -1,8 +1,9 @@
-/* phases.c - a whole run of ted4enc by phase: how long each lasts on one thread, how much of it
- * is outside parallel work, and what many cores would make of it. Linked in between ted4enc's
- * own objects (-Wl,--wrap, bench.mk): its team is the recorder's, and the table goes to standard
- * output when the team is dismissed. What one phase calls of another is counted once, for the
- * inner one; steps of a probe or of a trial are told apart from those of the training itself.
+/* phases.c - measures a whole run of ted4enc by phase: how long each phase takes on one thread, how
+ * much of it is outside parallel work, and how long it would take on many cores. The functions are
+ * linked in front of ted4enc's own (-Wl,--wrap, bench.mk). The team of ted4enc is the recorder's,
+ * and the table is printed to standard output when the team is dismissed. If a phase calls another
+ * one, the time counts for the inner one only. Steps of a probe or of a trial are counted
+ * separately from training steps.
  * SPDX-License-Identifier: BSD-2-Clause */
 #include "measure.h"
 #include "recorder.h"
@@ -26,7 +27,7 @@
 #include "train/step/step.h"
 #include "write/encode.h"
 
-/* In about the order in which a run comes to them. */
+/* Roughly in the order of a run. */
 #define PHASES(P)                                 \
     P(LOAD, "reading the scene's files")          \
     P(CHECK, "decoding every picture once")       \
@@ -64,8 +65,8 @@ static portion of[PHASES];
 static phase current = PHASE_REST;
 static double since;
 
-/* The tiles of the adjoint are taken by TED4_BWD_JOBS jobs, one by one; each lasts about as
- * long, against the others, as when blending. */
+/* The tiles of the adjoint are processed by TED4_BWD_JOBS jobs, each of which takes one tile after
+ * another. The durations of the tiles are assumed proportional to those of blending. */
 static int in_blend, in_blend_bwd;
 
 static int kind_of_region(size_t n)
@@ -90,8 +91,8 @@ static phase enter(phase p)
     return before;
 }
 
-/* type __wrap_name is called where the program names name; __real_name is what it then gets. The
- * linker compares no types: the declaration by __typeof__ does. */
+/* A call of name in the program calls __wrap_name; __real_name is the function itself. The linker
+ * does not compare types; the declaration with __typeof__ does. */
 #define BETWEEN(phase_of, type, name, parameters, arguments) \
     extern __typeof__(name) __wrap_##name;                   \
     type __real_##name parameters;                           \

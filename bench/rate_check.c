@@ -1,18 +1,18 @@
-/* rate_check.c - what the integers of Tier E cost: the attribute symbols of a file coded by rANS,
- * by -log2 of the coded integer frequencies, and by float64 and float32 evaluations of the same
- * networks and the same Gaussian model (spec 7.1, 9.4, 10); and how long the networks take in each
- * precision, on one thread, with the vectors of this machine.
+/* rate_check.c - measures the cost of the integer arithmetic of Tier E. The attribute symbols of a
+ * file are coded by rANS, by -log2 of the coded integer frequencies, and by float64 and float32
+ * evaluations of the same networks and the same Gaussian model (spec 7.1, 9.4, 10). Also measures
+ * how long the networks take in each precision, on one thread, with the vectors of this machine.
  *     rate_check FILE.ted4            one JSON line on stdout
  *     rate_check FILE.ted4 -s ANCHOR  also mu, sigma and k of that anchor's symbols under both, on
  *                                     stderr
- * float64: networks as rate_real.h has them, mu and sigma real numbers, the step index as decoded,
- * Phi differences over the unit bin without cancellation. Sigma keeps to the range of the table of
- * spec 9.4, which belongs to the model. A symbol coded by an escape counts at what it costs in the
- * integer coder in every column. A bare Gaussian pays more than 16 bits for a symbol beyond 4
- * sigma, the coder never does, as every symbol of its alphabet owns a slot: so "float64" can come
- * out above the integers. "float64_floored" gives its symbols that slot too, P (1 - R / 2^16) +
- * 2^-16, and so shows the rounding alone; "float32_floored" is the same with mu and sigma from
- * float32 networks.
+ * float64: the networks of rate_real.h, mu and sigma as real numbers, the step index as decoded,
+ * and differences of Phi over the unit bin without cancellation. Sigma is clamped to the range of
+ * the table of spec 9.4, because the table belongs to the model. In every column, a symbol coded by
+ * an escape counts with its cost in the integer coder. A plain Gaussian spends more than 16 bits on
+ * a symbol beyond 4 sigma. The coder never does, because every symbol of its alphabet owns a slot,
+ * so that "float64" can exceed the integers. "float64_floored" also gives each of its symbols that
+ * slot, P (1 - R / 2^16) + 2^-16, and thus shows the effect of rounding alone; "float32_floored" is
+ * the same with mu and sigma from float32 networks.
  * SPDX-License-Identifier: BSD-2-Clause */
 #include <inttypes.h>
 #include <math.h>
@@ -50,9 +50,9 @@ typedef struct {
     double integer, real, floored, floored32, escaped; /* bits; escaped: the part of escapes */
 } cost;
 
-/* The model of one symbol in each precision: mu in steps, log2 sigma. */
+/* The model of one symbol in each precision: mu in units of the step, and log2 sigma. */
 typedef struct {
-    int32_t mu; /* integers of spec 10 */
+    int32_t mu; /* the integers of spec 10 */
     unsigned sigma;
     double real_mu, real_sigma, float_mu, float_sigma;
 } models;
@@ -61,20 +61,20 @@ typedef struct {
     ted4_scene *s;
     ted4_prior prior;
     uint64_t substream[SUBSTREAMS]; /* bytes, all tiles */
-    int64_t shown;                  /* anchor of -s, or -1 */
+    int64_t shown;                  /* the anchor of -s, or -1 */
     cost cost[TED4_TYPES];
     int32_t *out, *added;           /* [P][64], [2 max slice][64] integer outputs */
     int16_t *ctx;                   /* [F][64] */
     double *y, *hidden[2], *x;      /* [P][64], layers, inputs in float64 */
     float *y32, *hidden32[2], *x32; /* the same in float32 */
-    double ms[3];                   /* of the networks: integer, float32, float64 */
+    double ms[3];                   /* time of the networks: integer, float32, float64 */
 } check;
 
 /* ---- floating point ---- */
 
-/* -log2 of slot + (1 - slots_all) mass, the mass being that of a Gaussian on [d - 1/2, d + 1/2], d
- * = k - mu. By symmetry d >= 0, so both ends lie in the upper tail, or the mass is 1 less two
- * tails. */
+/* Returns -log2 of slot + (1 - slots_all) mass, where mass is that of a Gaussian on [d - 1/2, d +
+ * 1/2] and d = k - mu. By symmetry d >= 0, so that both ends lie in the upper tail, or the mass is
+ * 1 minus two tails. */
 static double real_bits(double d, double sigma, double slot, double slots_all)
 {
     const double a = (fabs(d) - 0.5) / sigma * SQRT_HALF, b = (fabs(d) + 0.5) / sigma * SQRT_HALF;
@@ -91,7 +91,7 @@ static void add_slots(void *bits, ted4_slots s)
     *(double *)bits += TED4_SLOT_BITS - log2(s.freq);
 }
 
-/* 2^x kept to the range of the table of spec 9.4. */
+/* Returns 2^x, clamped to the range of the table of spec 9.4. */
 static double sigma_in_range(double x)
 {
     return exp2(fmin(fmax(x, -4), (TED4_N_SIGMA - 1 - 64) / 16.0));
@@ -137,7 +137,8 @@ static int coded(const ted4_scene *s, int type, unsigned comp, size_t a)
                                  : 1;
 }
 
-/* Integer outputs of n <= 64 anchors from first on, the slice networks added. */
+/* Computes the integer outputs of n <= 64 anchors, beginning at anchor first, with the slice
+ * networks added. */
 static void integer_model(check *c, size_t first, size_t n)
 {
     const ted4_scene *s = c->s;
@@ -172,7 +173,7 @@ static double milliseconds(void)
     return 1e3 * (double)t.tv_sec + 1e-6 * (double)t.tv_nsec;
 }
 
-/* All three models of n <= 64 anchors, timed. */
+/* Evaluates and times all three models for n <= 64 anchors. */
 static void evaluate(check *c, size_t first, size_t n)
 {
     const double t0 = milliseconds();
@@ -219,7 +220,7 @@ static void keep_sizes(void *arg, size_t offset, const char *element, int64_t in
         c->substream[index] += (uint64_t)value;
 }
 
-/* Substreams in order of spec 9.1, the masks first. */
+/* Sorts the substreams into the order of spec 9.1, the masks first. */
 static void sort_sizes(check *c)
 {
     const ted4_header *h = &c->s->head;
@@ -267,7 +268,7 @@ static void prepare(check *c, ted4_arena *a)
     }
 }
 
-/* How much a is above b. */
+/* Returns by how many percent a exceeds b. */
 static double percent(double a, double b)
 {
     return b > 0 ? 100 * (a / b - 1) : 0;
@@ -288,7 +289,8 @@ static void print_cost(const char *name, const cost *c)
            percent(coded_bits, c->integer));
 }
 
-/* One line of JSON. 0, or 1: the integer frequencies met here are not those of ted4_count. */
+/* Prints one line of JSON. Returns 0, or 1 if the integer frequencies here differ from those of
+ * ted4_count. */
 static int print_result(const check *c, const char *path, const ted4_bits *counted)
 {
     static const char *const name[TED4_TYPES] = { "feature", "scaling", "offset", "phi", "tau" };

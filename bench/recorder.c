@@ -65,7 +65,8 @@ static double sum_of(const double *x, size_t n)
     return sum;
 }
 
-/* The region's indices take jobs from a common list; all of them were done by the first. */
+/* Computes the time of a region whose indices take jobs from a common list; on one thread, the
+ * first index does all of them. */
 static double schedule_list(const recorder *r, double work, size_t n, int cores)
 {
     const double all = sum_of(r->kept, r->n_kept);
@@ -83,7 +84,7 @@ double recorder_thread_ms(void)
     return (double)t.tv_sec * 1e3 + (double)t.tv_nsec * 1e-6;
 }
 
-/* Time that others had of this core is no index's: it is taken off the longest. */
+/* Subtracts from the longest durations the time that other programs had on this core. */
 static void take_off(recorder *r, double excess)
 {
     while (excess > 0) {
@@ -101,7 +102,8 @@ static void take_off(recorder *r, double excess)
     }
 }
 
-/* Times every index, and gives what the region took of the clock, and of it what others had. */
+/* Times every index. Returns the time of the region, and sets *excess to the part of it that other
+ * programs took. */
 static double time_indices(recorder *r, size_t n, void (*body)(void *arg, size_t i), void *arg,
                            double *excess)
 {

@@ -1,10 +1,11 @@
-/* robust.c - a file cut short and a file with a changed byte: what the decoder says of each.
+/* robust.c - gives the decoder truncated files and files with a changed byte, and reports its
+ * answers.
  *     robust FILE.ted4 [SEED]
- * Every truncation (of a large file many) must be refused. Of 20,000 single byte changes, every
- * other one with the hash of its chunk made right, each must be refused or decode to the same
- * integers (their hash is in ENDS). Where it decodes, the chunk changed is told: in NETR and BANK
- * the integers are the same and the weights of Tier R are others. Always with an identifier and an
- * offset inside the file.
+ * Every truncation (for a large file, many of them) must be refused. Of 20,000 changes of a single
+ * byte, every other one with the hash of its chunk repaired, each must be refused or decode to the
+ * same integers (their hash is in ENDS). If a changed file decodes, its changed chunk is reported:
+ * in NETR and BANK the integers stay the same and the weights of Tier R differ. A refusal must come
+ * with an identifier and an offset inside the file.
  * SPDX-License-Identifier: BSD-2-Clause */
 #include <inttypes.h>
 #include <stdio.h>
@@ -31,10 +32,12 @@ typedef struct {
     size_t size;
     uint8_t hash[16];
     uint64_t refused[PASSES][TED4_N_STATUS];
-    uint64_t valid[PASSES][TED4_CHUNKS + 2]; /* by chunk: known ones, ancillary, file header */
+    uint64_t valid[PASSES]
+                  [TED4_CHUNKS + 2]; /* by chunk type; then ancillary chunks, and the file header */
     uint64_t tried[PASSES];
-    uint64_t undone, bad; /* undone: the byte was one of a hash, and fixing hashes put it back */
-    uint64_t random;      /* xorshift64* */
+    uint64_t undone,
+        bad; /* undone: the changed byte was part of a hash, and repairing the hash restored it */
+    uint64_t random; /* xorshift64* */
 } report;
 
 static uint32_t random_below(report *r, size_t n)
@@ -56,7 +59,8 @@ static int place_of(const report *r, size_t chunk)
     return i;
 }
 
-/* data: of exactly that size on the heap, so that reading past it is seen. place: of the change. */
+/* data: allocated on the heap with exactly that size, so that a read past its end is detected.
+ * place: where the change is. */
 static void decode(report *r, int pass, const uint8_t *data, size_t size, size_t at, int place)
 {
     ted4_scene *s = NULL;
@@ -94,7 +98,8 @@ static uint8_t *copy(const report *r, size_t size)
     return data;
 }
 
-/* Every length; of a large file MANY evenly spaced ones and the LAST ones. */
+/* Cuts the file at every length. A large file is cut at MANY evenly spaced lengths and at the LAST
+ * ones. */
 static void cut_everywhere(report *r)
 {
     const size_t last = r->size <= SMALL ? 0 : r->size - LAST, step = last / MANY + 1;

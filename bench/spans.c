@@ -1,5 +1,5 @@
-/* spans.c - how long the anchors of a file live: span = a_f - a_s of spec 11.4, kept to [0, 1]; 1
- * for every anchor of a file without activation.
+/* spans.c - measures how long the anchors of a file are active: span = a_f - a_s of spec 11.4,
+ * clamped to [0, 1]; 1 for every anchor of a file without activation.
  *     spans FILE.ted4                              one JSON line: shares of anchors with a span of
  *                                                  at most 0.2, between, of at least 0.8; mean
  *     spans FILE.ted4 SCENE DOWNSCALE PICTURE.png  also a picture: at three times of the first
@@ -7,12 +7,12 @@
  *                                                  colours (above) and in the colour of their
  *                                                  anchor's span (below): blue 0, white 1/2, red 1,
  *                                                  darker where the Gaussian is dark. The strip at
- *                                                  the foot is the scale, 0 to 1 from left to
- *                                                  right. The line then also tells, if that camera
- *                                                  stands still: share of pixels and times that the
- *                                                  scene has changed, share of their light that
- *                                                  comes from short lives, and the same where it
- *                                                  has not (spans.h).
+ *                                                  the bottom is the scale, 0 to 1 from left to
+ *                                                  right. If that camera does not move, the line
+ *                                                  also reports the share of pixels and times at
+ *                                                  which the scene has changed, the share of their
+ *                                                  light that comes from short-lived anchors, and
+ *                                                  that share where nothing has changed (spans.h).
  * SPDX-License-Identifier: BSD-2-Clause */
 #include <errno.h>
 #include <stdio.h>
@@ -25,7 +25,7 @@
 #include "spans.h"
 #include "tool/cli.h"
 
-/* Component c of the activation of anchor i, as spec 10.4 decodes it. */
+/* Returns component c of the activation of anchor i, decoded as in spec 10.4. */
 static float tau(const ted4_scene *s, size_t i, size_t c)
 {
     const float q = s->head.step[TED4_TAU] * ted4_bits_float(ted4_step[s->step_index[TED4_TAU][i]]);

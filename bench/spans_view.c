@@ -1,4 +1,5 @@
-/* spans_view.c - a decoded file as its anchors' spans colour it, and the picture of spans.h.
+/* spans_view.c - draws a decoded file with Gaussians coloured by the spans of their anchors, and
+ * the picture of spans.h.
  * SPDX-License-Identifier: BSD-2-Clause */
 #include <stdlib.h>
 #include <string.h>
@@ -6,7 +7,7 @@
 #include "tool/cli.h"
 #include "train/model/normalise.h"
 
-/* What is left of the colour of a span where the Gaussian is black. */
+/* Brightness of the colour of a span where the Gaussian is black. */
 #define DIMMEST 0.35f
 
 static void span_colour(float span, float rgb[3])
@@ -19,7 +20,7 @@ static void span_colour(float span, float rgb[3])
     rgb[2] = warm;
 }
 
-/* Its Gaussians in other colours; arrays of g itself stay as they are. */
+/* Returns the Gaussians with other colours; the arrays of g do not change. */
 static ted4_gaussians painted(const session *s, const ted4_gaussians *g,
                               void (*paint)(float span, float rgb[3]), float dimmest)
 {
@@ -43,7 +44,7 @@ int draw_view(session *s, const ted4_picture *p, void (*paint)(float span, float
               float dimmest)
 {
     const uint32_t last = s->data.n_frames > 1 ? s->data.n_frames - 1 : 1;
-    const ted4_header world = { 0 }; /* origin 0, unit 1: a view in world coordinates */
+    const ted4_header world = { 0 }; /* origin 0, unit 1: the view is in world coordinates */
     ted4_info info = s->info;
     ted4_view view;
     ted4_gaussians g;

@@ -1,4 +1,4 @@
-/* spans_where.c - whether short lives are drawn where the scene changes: see spans.h.
+/* spans_where.c - tests whether short-lived anchors are drawn where the scene changes: see spans.h.
  * SPDX-License-Identifier: BSD-2-Clause */
 #include <stdlib.h>
 #include <string.h>
@@ -7,7 +7,8 @@
 
 enum { CHANGED = 40, FEWEST_TIMES = 5 };
 
-/* Held-out pictures of the camera: how many, numbers in which [n_pictures]; 0 if it moves. */
+/* Returns the number of held-out pictures of the camera, with their indices in which [n_pictures],
+ * or 0 if the camera moves. */
 static size_t where_pictures(const session *s, uint32_t camera, size_t *which)
 {
     size_t n = 0;
@@ -40,7 +41,7 @@ static int where_load(session *s, const size_t *which, size_t n, uint8_t *truth)
     return TED4_EXIT_FINE;
 }
 
-/* Lower median of the n bytes at x, x + step, ... */
+/* Returns the lower median of the n bytes at x, x + step, ... */
 static int where_median(const uint8_t *x, size_t n, size_t step)
 {
     size_t count[256] = { 0 }, sum = 0;
@@ -53,7 +54,7 @@ static int where_median(const uint8_t *x, size_t n, size_t step)
     return v;
 }
 
-/* 1 where a channel is far from its median: changed [n][height][width]. */
+/* changed [n][height][width]: 1 where a channel differs strongly from its median. */
 static void where_changed(const session *s, const uint8_t *truth, size_t n, uint8_t *changed)
 {
     const size_t pixels = (size_t)s->width * (size_t)s->height;

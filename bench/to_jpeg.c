@@ -1,4 +1,4 @@
-/* to_jpeg.c - a PNG picture as a smaller JPEG, which the pages show.
+/* to_jpeg.c - converts a PNG picture to a smaller JPEG, which the pages show.
  *     to_jpeg IN.png OUT.jpg
  * Exit status: 0, or 3 with a message on standard error.
  * SPDX-License-Identifier: BSD-2-Clause */
@@ -8,7 +8,7 @@
 #include <png.h>
 #include <jpeglib.h>
 
-/* At this quality all pictures of the pages together take 0.6 MB, and pictures of errors still show
+/* With this quality, all pictures of the pages take 0.6 MB together, and error pictures still show
  * where the errors are. */
 enum { QUALITY = 40, FINE = 0, TROUBLE = 3 };
 

@@ -29,8 +29,8 @@ static train_part enter(train_part p)
     return before;
 }
 
-/* The functions in between. type __wrap_name is called where the trainer names name; __real_name is
- * what it then gets. The linker compares no types: the declaration by __typeof__ does. */
+/* The wrapper functions. A call of name in the trainer calls __wrap_name; __real_name is the
+ * function itself. The linker does not compare types; the declaration with __typeof__ does. */
 #define BETWEEN(part, type, name, parameters, arguments) \
     extern __typeof__(name) __wrap_##name;               \
     type __real_##name parameters;                       \
@@ -50,8 +50,9 @@ static train_part enter(train_part p)
         __real_##name arguments;                        \
         enter(before);                                  \
     }
-/* A leveled function (render/leveled.h) is called by the function of its plain name in the same
- * file, where the linker can put nothing in between, and calls its copies elsewhere. */
+/* A leveled function (render/leveled.h) may be called by its plain name within the same file, where
+ * the linker cannot insert a wrapper. The plain function calls the copies for the levels, which are
+ * in other files, so the copies are wrapped instead. */
 #if defined(__x86_64__)
 #define OF_LEVELS(kind, part, name, parameters, arguments)                                      \
     kind(part, name##_base, parameters, arguments) kind(part, name##_v3, parameters, arguments) \
@@ -150,7 +151,7 @@ void parts_options(ted4_train_options *o, int steps)
     snprintf(text[4], sizeof text[4], "activation_start=0");
     snprintf(text[5], sizeof text[5], "probe=0");
     snprintf(text[6], sizeof text[6], "capacity=0");
-    /* Multi-view seeding is an event of a minute at full size, and no step. */
+    /* Multi-view seeding takes a minute at full size, but is not part of a step. */
     snprintf(text[7], sizeof text[7], "sprouts=0");
     must(ted4_options_preset(o, "fast") == 0 ? o : NULL);
     for (int i = 0; i < 8; i++)

@@ -1,9 +1,9 @@
-/* zoo_masks.c - how well training pictures show what moves: PSNR over all pixels of the masks that
- * ted4scene --masks wrote, as one JSON line.
+/* zoo_masks.c - measures how well moving content is reproduced in training pictures: PSNR over all
+ * pixels of the masks that ted4scene --masks wrote, as one JSON line.
  *     zoo_masks SCENE IMAGES <VIEWS
- * VIEWS: a line "PATH frame ..." a picture, which ted4eval FILE.ted4 SCENE --split train -v
- * --images IMAGES says on standard error. The mask of SCENE/NAME.png is SCENE/truth/masks/NAME.png.
- * Without masks, or where nothing moves, moving_psnr is null.
+ * VIEWS: one line "PATH frame ..." per picture, as ted4eval FILE.ted4 SCENE --split train -v
+ * --images IMAGES prints them to standard error. The mask of SCENE/NAME.png is
+ * SCENE/truth/masks/NAME.png. Without masks, or if nothing moves, moving_psnr is null.
  * SPDX-License-Identifier: BSD-2-Clause */
 #include <math.h>
 #include <stdint.h>
@@ -22,7 +22,7 @@ typedef struct {
 
 typedef struct {
     uint64_t pixels, pictures;
-    double squares; /* of the errors, over three channels */
+    double squares; /* sum of squared errors over three channels */
 } sums;
 
 static int failed(const char *what, const char *why)
@@ -69,7 +69,7 @@ static int same_size(const picture *a, const picture *b)
     return a->width == b->width && a->height == b->height;
 }
 
-/* Picture number n of the images against its mask. */
+/* Compares picture n of the images within its mask. */
 static int add_picture(const char *images, unsigned n, const char *mask_path, sums *s)
 {
     char path[MAX_PATH];
@@ -93,7 +93,8 @@ static int add_picture(const char *images, unsigned n, const char *mask_path, su
     return code;
 }
 
-/* The mask of the picture that a line of VIEWS begins with; 0: it is of no picture in scene. */
+/* Finds the mask of the picture that a line of VIEWS begins with. Returns 0 if that is not a
+ * picture of scene. */
 static int mask_of(const char *scene, char *line, char mask[MAX_PATH])
 {
     const size_t n = strlen(scene);
