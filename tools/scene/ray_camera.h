@@ -3,31 +3,31 @@
 #ifndef RAY_CAMERA_H
 #define RAY_CAMERA_H
 
-/* Pinhole, square pixels. OpenGL axes: right, up, backwards. */
+/* A pinhole camera with square pixels. OpenGL axes: right, up, backwards. */
 typedef struct {
     int width, height;
-    double focal;        /* in pixels, as all lengths of pictures */
-    double cx, cy;       /* principal point; as placed, the middle of the picture */
+    double focal;        /* in pixels, like all lengths in pictures */
+    double cx, cy;       /* principal point; initially the middle of the picture */
     double matrix[4][4]; /* camera to world */
-    float colour[9]; /* row-major: linear light to what the camera takes it for; a unit matrix as
-                        placed */
+    float colour[9];     /* row-major: maps linear light to the camera's colours; initially the unit
+                            matrix */
 } ted4_ray_camera;
 
-/* Horizontal field of view in radians; distance from the middle of the scene in units. */
+/* Horizontal field of view in radians, and distance from the middle of the scene in units. */
 extern const double ted4_ray_angle_x, ted4_ray_radius;
 
-/* Camera i of n on the arc. Training cameras go up and down in turn; test cameras stand between
- * two of them where n_train > n_test. */
+/* Place camera i of n on the arc. Training cameras alternate between two heights; if n_train >
+ * n_test, each test camera stands between two training cameras. */
 void ted4_ray_camera_train(ted4_ray_camera *c, int i, int n_train, int width, int height);
 void ted4_ray_camera_test(ted4_ray_camera *c, int i, int n_test, int n_train, int width,
                           int height);
 
-/* Camera i of n all about the small things of the scene "toys" and above them, a golden angle
- * further each. */
+/* Places camera i of n around and above the small things of the scene "toys", each turned by a
+ * golden angle from the previous one. */
 void ted4_ray_camera_dome(ted4_ray_camera *c, int i, int n, int width, int height);
 
-/* World point to pixel coordinates (centres at + 0.5); returns the depth, not positive when it
- * lies behind. */
+/* Projects a world point to pixel coordinates (pixel centres are at + 0.5). Returns the depth,
+ * which is not positive for a point behind the camera. */
 double ted4_ray_project(const ted4_ray_camera *c, const double world[3], double pixel[2]);
 
 #endif

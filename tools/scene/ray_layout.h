@@ -1,5 +1,5 @@
-/* ray_layout.h - names and contents of the files of each layout, pictures aside.
- * Depends on ray_rig.h.
+/* ray_layout.h - names and contents of the files of each layout, except pictures. Depends on
+ * ray_rig.h.
  * SPDX-License-Identifier: BSD-2-Clause */
 #ifndef RAY_LAYOUT_H
 #define RAY_LAYOUT_H
@@ -9,10 +9,10 @@
 
 enum { TED4_RAY_NAME = 80 };
 
-/* "cam07", test cameras first. */
+/* Makes a name such as "cam07"; test cameras come first. */
 void ted4_ray_camera_name(const ted4_ray_options *o, int number, char name[TED4_RAY_NAME]);
 
-/* File of a picture in the scene's folder. */
+/* Makes the name of a picture's file in the scene's folder. */
 void ted4_ray_picture_name(const ted4_ray_options *o, int number, int frame,
                            char name[TED4_RAY_NAME]);
 
@@ -21,14 +21,14 @@ typedef void ted4_ray_put(FILE *f, const ted4_ray_options *o, int number, int fr
 typedef struct {
     const char *name;
     ted4_ray_put *put;
-    int number, frame;                        /* for put; unused by files of the whole scene */
-    int (*wanted)(const ted4_ray_options *o); /* NULL: always */
+    int number, frame;                        /* for put; unused in files of the whole scene */
+    int (*wanted)(const ted4_ray_options *o); /* NULL: always wanted */
 } ted4_ray_file;
 
-/* In the order to write; ends with a name of NULL. */
+/* Returns the files in the order to write them; the last entry has the name NULL. */
 const ted4_ray_file *ted4_ray_layout_files(ted4_ray_layout l);
 
-/* The camera file of one picture, which hypernerf has in addition. */
+/* Makes the name of the camera file of one picture, which only hypernerf has. */
 void ted4_ray_hypernerf_camera_name(const ted4_ray_options *o, int number, int frame,
                                     char name[TED4_RAY_NAME]);
 ted4_ray_put ted4_ray_put_hypernerf_camera;

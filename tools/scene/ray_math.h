@@ -1,5 +1,5 @@
-/* ray_math.h - small vector arithmetic, own sine and hash noise of the project's scenes. Nothing
- * here calls libm but sqrt and fabs, so that images have the same bytes on every machine.
+/* ray_math.h - vector arithmetic, sine and hash noise for the project's scenes. Of libm, only sqrt
+ * and fabs are called, so that pictures have the same bytes on every machine.
  * SPDX-License-Identifier: BSD-2-Clause */
 #ifndef RAY_MATH_H
 #define RAY_MATH_H
@@ -81,14 +81,14 @@ static inline float ray_fract(float x)
     return x - (float)ray_floor(x);
 }
 
-/* 0 up to x = a, 1 from x = b, smooth between. */
+/* A smooth step from 0 at x <= a to 1 at x >= b. */
 static inline float ray_step(float a, float b, float x)
 {
     const float s = ray_clamp((x - a) / (b - a), 0, 1);
     return s * s * (3 - 2 * s);
 }
 
-/* 3 x 3 row-major rotation times vector, and its transpose times vector. */
+/* Multiply a row-major 3 x 3 rotation, or its transpose, by a vector. */
 static inline vec3 ray_rotate(const float m[9], vec3 v)
 {
     return v3(m[0] * v.x + m[1] * v.y + m[2] * v.z, m[3] * v.x + m[4] * v.y + m[5] * v.z,
@@ -101,14 +101,15 @@ static inline vec3 ray_unrotate(const float m[9], vec3 v)
               m[2] * v.x + m[5] * v.y + m[8] * v.z);
 }
 
-/* Sine and cosine of an angle in turns (1 is a full circle), |turns| < 2^30, to about 1e-15. */
+/* Return the sine and cosine of an angle in turns (1 is a full circle), |turns| < 2^30, with an
+ * error of about 1e-15. */
 double ted4_ray_sin(double turns);
 double ted4_ray_cos(double turns);
-/* Angle of (x, y) in radians, (-pi, pi], to about 2e-7. */
+/* Returns the angle of (x, y) in radians, in (-pi, pi], with an error of about 2e-7. */
 float ted4_ray_atan2(float y, float x);
 
-/* Arc tangent for 0 <= q < 2.4: a series on |r| <= tan(pi/8), after atan q = pi/4 + atan((q - 1)
- * / (q + 1)) where q exceeds that. First omitted term 2e-8. */
+/* Arc tangent for 0 <= q < 2.4: a series for |r| <= tan(pi/8), after the identity atan q = pi/4 +
+ * atan((q - 1) / (q + 1)) for larger q. The first omitted term is 2e-8. */
 static inline float ray_atan(float q)
 {
     static const float factor[8] = { 1.0f / 15, 1.0f / 13, 1.0f / 11, 1.0f / 9,
@@ -122,7 +123,7 @@ static inline float ray_atan(float q)
     return r * s + high * (float)(RAY_PI / 4);
 }
 
-/* A linear colour channel as an sRGB byte, and the bytes of a colour. */
+/* Convert a linear colour channel to an sRGB byte, and a linear colour to its bytes. */
 uint8_t ted4_ray_srgb(float linear);
 void ted4_ray_bytes(vec3 linear, uint8_t rgb[3]);
 
@@ -136,7 +137,7 @@ static inline uint32_t ray_hash(int x, int y, int z, uint32_t seed)
     return h ^ h >> 16;
 }
 
-/* In [0, 1). */
+/* Returns a random number in [0, 1). */
 static inline float ray_random(int x, int y, int z, uint32_t seed)
 {
     return (float)(ray_hash(x, y, z, seed) >> 8) * 0x1p-24f;

@@ -1,54 +1,56 @@
-/* ray_rig.h - the cameras of a scene: as they are, and as its files state them.
- * Depends on ray_set.h, ray_camera.h.
+/* ray_rig.h - the cameras of a scene, as they are and as its files state them. Depends on
+ * ray_set.h, ray_camera.h.
  * SPDX-License-Identifier: BSD-2-Clause */
 #ifndef RAY_RIG_H
 #define RAY_RIG_H
 
 #include "ray_set.h"
 
-/* Cameras have a number: training cameras from 0, then test cameras. These two fill *c with
- *   what takes the pictures: in the coordinates of the room, with its colours;
- *   what the files state: in their coordinates, and for training cameras with an error of pose. */
+/* Cameras are numbered: training cameras from 0, then test cameras. camera_of fills *c with the
+ * camera that takes the pictures, in the coordinates of the room and with its colours.
+ * camera_stated fills *c with the camera that the files state, in the coordinates of the files; for
+ * training cameras it has a pose error. */
 void ted4_ray_camera_of(const ted4_ray_options *o, int number, ted4_ray_camera *c);
 void ted4_ray_camera_stated(const ted4_ray_options *o, int number, ted4_ray_camera *c);
 
-/* Does a training camera look away from the scene? */
+/* Returns 1 if a training camera looks away from the scene. */
 int ted4_ray_is_blind(const ted4_ray_options *o, int number);
 
-/* A point of the room in the coordinates of the files. */
+/* Converts a point of the room to the coordinates of the files. */
 void ted4_ray_mapped(const ted4_ray_options *o, const double room[3], double file[3]);
 
-/* How many times those of the room lengths in the files are. */
+/* Returns the ratio of lengths in the files to lengths in the room. */
 double ted4_ray_scale(const ted4_ray_options *o);
 
-/* A point of the room that a training camera sees, in the coordinates of the files: where that
- * camera, as stated, sees it. */
+/* Returns, in the coordinates of the files, the position at which a training camera, as stated,
+ * sees the point p of the room. */
 vec3 ted4_ray_point_stated(const ted4_ray_options *o, int number, vec3 p);
 
-/* Training camera: turn (rotation vector, radians) and move (units of the room) of its error of
- * pose. Before the mean over the training cameras is taken off, where there are two or more, each
- * is turned by o->pose_error and moved by what that angle is at the distance of the middle. */
+/* Returns the pose error of a training camera: turn (rotation vector, radians) and move (units of
+ * the room). Each camera is turned by o->pose_error, and moved by the length of that angle at the
+ * distance of the middle. If there are two or more training cameras, their mean is then subtracted.
+ */
 void ted4_ray_pose_error(const ted4_ray_options *o, int number, double turn[3], double move[3]);
 
-/* Does a layout list what is held out? Where it does not, readers hold out by rules of their own,
- * also pictures of training cameras. */
+/* Returns 1 if a layout lists what is held out. Readers of other layouts hold out pictures by their
+ * own rules, also pictures of training cameras. */
 int ted4_ray_has_lists(ted4_ray_layout l);
 
-/* Is a time held out: training cameras have no picture of it. Never the first or the last; none in
- * layouts without lists. */
+/* Returns 1 if a time is held out: training cameras have no picture of it. It is never the first or
+ * the last time, and no time in layouts without lists. */
 int ted4_ray_is_held(const ted4_ray_options *o, int frame);
 
-/* Is a picture of that camera and time listed? And is it, although listed, not there? */
+/* Return 1 if the picture of that camera and time is listed, or if it is listed but missing. */
 int ted4_ray_is_taken(const ted4_ray_options *o, int number, int frame);
 int ted4_ray_is_missing(const ted4_ray_options *o, int number, int frame);
 
-/* The first time of a camera's clip. */
+/* Returns the first time of a camera's clip. */
 int ted4_ray_start(const ted4_ray_options *o, int number);
 
-/* What is around the things. */
+/* Returns what surrounds the things. */
 ted4_ray_background ted4_ray_around(const ted4_ray_options *o);
 
-/* The world of a time, with or without the room. */
+/* Makes the world at a time, with or without the room. */
 void ted4_ray_world_of(const ted4_ray_options *o, int frame, ted4_ray_world *w);
 
 #endif

@@ -1,5 +1,5 @@
-/* ray_shape.h - solids of the project's scenes: where a ray meets them, and their surface there.
- * Depends on ray_math.h.
+/* ray_shape.h - the solids of the project's scenes: their intersections with rays, and their
+ * surfaces. Depends on ray_math.h.
  * SPDX-License-Identifier: BSD-2-Clause */
 #ifndef RAY_SHAPE_H
 #define RAY_SHAPE_H
@@ -33,32 +33,32 @@ typedef struct {
     vec3 size;
     float rot[9]; /* row-major: x_world = rot x_local + pos */
     vec3 pos;
-    float bend, twist; /* bar only */
+    float bend, twist; /* for a bar only */
     ted4_ray_texture_kind texture;
-    vec3 skin;      /* added to material coordinates: pieces of one thing share a pattern */
-    vec3 colour[3]; /* linear */
-    float gloss;    /* specular weight */
-    vec3 low, high; /* bar only: local bounding box; set by ted4_ray_bound */
+    vec3 skin;      /* added to material coordinates, so that pieces of one thing share a pattern */
+    vec3 colour[3]; /* linear light */
+    float gloss;    /* weight of the specular highlight */
+    vec3 low, high; /* for a bar only: local bounding box; set by ted4_ray_bound */
     vec3 centre;    /* bounding sphere in world axes; set by ted4_ray_bound */
     float reach;
 } ted4_ray_object;
 
 typedef struct {
-    vec3 normal;   /* world, unit, outwards */
-    vec3 material; /* coordinates that stick to the object, for textures */
+    vec3 normal;   /* in world coordinates, of unit length, outwards */
+    vec3 material; /* coordinates fixed to the object, for textures */
 } ted4_ray_surface;
 
-/* Fills the bounds of o; call after the last change of its other members. */
+/* Sets the bounds of o. Call this after the last change of its other members. */
 void ted4_ray_bound(ted4_ray_object *o);
 
-/* Smallest t in (near, far) with from + t d on the surface, or far when there is none. d has
- * unit length. */
+/* Returns the smallest t in (near, far) for which from + t d lies on the surface, or far if there
+ * is none. d has unit length. */
 float ted4_ray_meet(const ted4_ray_object *o, vec3 from, vec3 d, float near, float far);
 
-/* The surface at a point of it, in world coordinates. */
+/* Returns the surface at a point of it, in world coordinates. */
 ted4_ray_surface ted4_ray_surface_at(const ted4_ray_object *o, vec3 point);
 
-/* Bar: local point to coordinates of the straight, untwisted bar; and back. */
+/* For a bar: convert a local point to coordinates of the straight, untwisted bar, and back. */
 vec3 ted4_ray_unbend(const ted4_ray_object *o, vec3 local);
 vec3 ted4_ray_rebend(const ted4_ray_object *o, vec3 straight);
 

@@ -1,5 +1,4 @@
-/* ray_world.h - the scenes: which solids are where at a time.
- * Depends on ray_shape.h.
+/* ray_world.h - the scenes: which solids exist at a time, and where. Depends on ray_shape.h.
  * SPDX-License-Identifier: BSD-2-Clause */
 #ifndef RAY_WORLD_H
 #define RAY_WORLD_H
@@ -8,8 +7,9 @@
 
 enum { TED4_RAY_MAX_OBJECTS = 40 };
 
-/* Up to RAY_FAIR: the scenes that everything is shown with. Then those in which methods fail, and
- * those that tell how file size follows content; what is in each: ray_scene.c. */
+/* The scenes up to RAY_FAIR demonstrate the codec. They are followed by scenes in which methods
+ * fail, and by scenes that show how file size depends on content. ray_scene.c describes each scene.
+ */
 typedef enum {
     RAY_STILL,
     RAY_TURN,
@@ -45,11 +45,12 @@ typedef enum {
     RAY_SCENES
 } ted4_ray_scene;
 
-/* What is around the solids: a room with patterns on all that cameras see; the same with walls of
- * one colour; nothing, black. */
+/* The surroundings of the solids: a room with patterns on all surfaces that cameras see; the same
+ * room with walls of one colour; or nothing, in black. */
 typedef enum { RAY_PAPERED, RAY_PLAIN, RAY_DARK } ted4_ray_room;
 
-/* World axes: x right, y away from the cameras, z up. The room is a box seen from inside. */
+/* World axes: x is right, y points away from the cameras, z is up. The room is a box seen from
+ * inside. */
 typedef struct {
     ted4_ray_room room;
     vec3 room_low, room_high;
@@ -62,27 +63,27 @@ typedef struct {
 
 /* ---- ray_parts.c ---- */
 
-/* Room and lamp without objects; add objects with ted4_ray_add. */
+/* Makes a room and a lamp without objects. Add objects with ted4_ray_add. */
 void ted4_ray_world_empty(ted4_ray_world *w, uint32_t seed);
 
-/* A copy of o with its bounds made, or NULL when the world is full. */
+/* Returns a copy of o with its bounds set, or NULL if the world is full. */
 ted4_ray_object *ted4_ray_add(ted4_ray_world *w, const ted4_ray_object *o);
 
-/* Parts for scenes. The row-major rotation about a world axis (0 x, 1 y, 2 z); a solid turned about
- * z; its texture and colours. */
+/* Parts of scenes. turn: the row-major rotation about a world axis (0 x, 1 y, 2 z). solid: a solid
+ * turned about z, with its texture and colours. */
 void ted4_ray_turn(float m[9], int axis, double turns);
 ted4_ray_object ted4_ray_solid(ted4_ray_kind kind, vec3 size, vec3 pos, double turns);
 void ted4_ray_dress(ted4_ray_object *o, ted4_ray_texture_kind texture, vec3 a, vec3 b, vec3 c);
 
-/* A painted box with a ball on an arm, all turning together on a drum: four solids. */
+/* Adds a painted box with a ball on an arm, which all turn together on a drum: four solids. */
 void ted4_ray_carousel(ted4_ray_world *w, double turns);
 
-/* Time of a frame, 0 when there is one frame only. */
+/* Returns the time of a frame, which is 0 if there is only one frame. */
 double ted4_ray_time(int frame, int n_frames);
 
 /* ---- ray_world.c ---- */
 
-/* The scene at frame j of n; time j / (n - 1). */
+/* Makes the scene at frame j of n, at time j / (n - 1). */
 void ted4_ray_world_at(ted4_ray_world *w, ted4_ray_scene s, uint32_t seed, int frame, int n_frames);
 
 #endif
