@@ -1,26 +1,26 @@
-/* ray_camera.c - cameras on an arc about the middle of the scene, on two heights; and on a dome.
+/* ray_camera.c - cameras on an arc around the middle of the scene, at two heights, and on a dome.
  * SPDX-License-Identifier: BSD-2-Clause */
 #include "ray_camera.h"
 
 #include "ray_math.h"
 
-/* The rig: target, distance from it, and the ranges of azimuth (either side) and elevation, in
+/* The rig: target, distance from it, and the ranges of azimuth (to either side) and elevation, in
  * turns. */
 static const double target[3] = { 0.0, 0.15, 0.78 };
 const double ted4_ray_radius = 3.7;
 static const double azimuth = 38.0 / 360, low = 9.0 / 360, high = 27.0 / 360;
 
-/* Its tangent of the half, 0.5, is exact. */
+/* The tangent of half this angle, 0.5, is exact. */
 const double ted4_ray_angle_x = 0.92729521800161223;
 static const double half_width = 0.5;
 
-/* The dome: target, distance, elevations; and the golden angle. In turns. */
+/* The dome: target, distance, elevations and the golden angle, in turns. */
 static const double dome_target[3] = { 0.0, 0.15, 0.4 };
 static const double dome_radius = 3.9, dome_low = 0.03, dome_high = 0.19;
 static const double golden = 0.38196601125010515;
 
-/* Of n heights, how many further the next camera takes one: about two fifths, without a common
- * divisor, so that all are taken and no two neighbours stand on one level. */
+/* Returns by how many of n heights the next camera is higher: about two fifths of n, without a
+ * common divisor, so that all heights are used and no two neighbours share one. */
 static int stride(int n)
 {
     for (int s = 2 * n / 5; s > 1; s--) {
@@ -42,7 +42,8 @@ static double dot(const double a[3], const double b[3])
     return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
 }
 
-/* Looks at a point from a distance, azimuth (0: from the front) and elevation in turns. */
+/* Aims the camera at a point from a distance, with azimuth (0: from the front) and elevation in
+ * turns. */
 static void look(ted4_ray_camera *c, const double at[3], double distance, double a, double e)
 {
     const double back[3] = { ted4_ray_sin(a) * ted4_ray_cos(e), -ted4_ray_cos(a) * ted4_ray_cos(e),
@@ -72,7 +73,7 @@ static void lens(ted4_ray_camera *c, int width, int height)
         c->colour[i] = i % 4 == 0 ? 1 : 0;
 }
 
-/* u from 0 (left) to 1 (right), v from 0 (low) to 1 (high). */
+/* Places a camera: u from 0 (left) to 1 (right), v from 0 (low) to 1 (high). */
 static void place(ted4_ray_camera *c, double u, double v, int width, int height)
 {
     lens(c, width, height);

@@ -1,6 +1,6 @@
-/* ray_lab.c - one function a scene. Events of whole sequences are at fixed shares of them, chosen
- * so that in the default length no held-out time (ray_scene.h) is next to a change of what exists:
- * there nobody could know on which side of it the time lies. Speeds are per frame.
+/* ray_lab.c - one function per scene. Events occur at fixed shares of the sequence. They are chosen
+ * so that with the default length no held-out time (ray_scene.h) is next to a change of what
+ * exists, where nobody could know on which side of the change that time lies. Speeds are per frame.
  * SPDX-License-Identifier: BSD-2-Clause */
 #include "ray_lab.h"
 
@@ -49,7 +49,7 @@ static void turn(ted4_ray_world *w, double t)
     ted4_ray_carousel(w, 0.04 + 0.33 * t);
 }
 
-/* A ball rolls behind a wall that hides it from every camera, and comes back. */
+/* A ball rolls behind a wall that hides it from every camera, and returns. */
 static void hide(ted4_ray_world *w, double t)
 {
     const float r = 0.3f, x = -0.85f - 0.85f * (float)ted4_ray_cos(t);
@@ -67,8 +67,8 @@ static void hide(ted4_ray_world *w, double t)
     ted4_ray_add(w, &o);
 }
 
-/* In sixteenths: a ball is there in [6, 10), a column in [8, 11), a box in [0, 2), [7, 9) and
- * [14, 16). */
+/* In sixteenths of the sequence: a ball is present in [6, 10), a column in [8, 11), and a box in
+ * [0, 2), [7, 9) and [14, 16). */
 static void blink(ted4_ray_world *w, int frame, int n_frames)
 {
     const int part = 16 * frame / n_frames;
@@ -81,7 +81,7 @@ static void blink(ted4_ray_world *w, int frame, int n_frames)
         add_box(w, .34f, v3(-.62f, .45f, .34f), 0.07);
 }
 
-/* The times of blink, but where a small move takes what is not there out of every picture. */
+/* The same times as in blink, but a small move takes each absent thing out of every picture. */
 static void edge(ted4_ray_world *w, int frame, int n_frames)
 {
     const int part = 16 * frame / n_frames;
@@ -94,7 +94,7 @@ static void edge(ted4_ray_world *w, int frame, int n_frames)
         add_box(w, .34f, v3(1, -.45f, 2.2f), 0.07);
 }
 
-/* Place on a way there and back of n steps each. */
+/* Returns the position on a path of n steps there and n steps back. */
 static int there_and_back(int frame, int n)
 {
     const int k = frame % (2 * n);
@@ -102,8 +102,8 @@ static int there_and_back(int frame, int n)
     return k <= n ? k : 2 * n - k;
 }
 
-/* By the standing carousel a ball flies to and fro by two of its widths a frame, and a box goes up
- * and down by one and eight tenths; neither turns at a time that is held out by default. */
+/* Next to the carousel, which stands still, a ball moves to and fro by two of its widths per frame,
+ * and a box up and down by 1.8. Neither reverses at a time that is held out by default. */
 static void fast(ted4_ray_world *w, int frame)
 {
     const int ball = there_and_back(frame, 5), box = there_and_back(frame + 1, 3);
@@ -113,7 +113,7 @@ static void fast(ted4_ray_world *w, int frame)
     add_box(w, .14f, v3(.98f, .2f, .14f + .5f * (float)box), 0);
 }
 
-/* One half, side -1 or 1, of a marble block that lies at distance gap from the middle. */
+/* Adds one half, on side -1 or 1, of a marble block, at distance gap from the middle. */
 static void add_half(ted4_ray_world *w, float side, float gap)
 {
     ted4_ray_object o =
@@ -124,7 +124,7 @@ static void add_half(ted4_ray_world *w, float side, float gap)
     ted4_ray_add(w, &o);
 }
 
-/* A block parts in two halves; then two balls before it become one. */
+/* A block splits in two halves; then two balls in front of it become one. */
 static void split(ted4_ray_world *w, double t)
 {
     const float apart = .5f * ray_step(.1f, .5f, (float)t);
@@ -147,8 +147,8 @@ static void flicker(ted4_ray_world *w, int frame, int n_frames)
     w->lamp_power *= ted4_ray_flicker(frame, w->seed);
 }
 
-/* The carousel turns once in 120 frames, a ball goes round above it once in 150; a box is there
- * from 44 to 68 hundredths of the sequence. */
+/* The carousel turns once in 120 frames, and a ball goes round above it once in 150. A box is
+ * present from 44 to 68 hundredths of the sequence. */
 static void longer(ted4_ray_world *w, int frame, int n_frames)
 {
     const int part = 100 * frame / n_frames;
@@ -161,7 +161,7 @@ static void longer(ted4_ray_world *w, int frame, int n_frames)
         add_box(w, .25f, v3(.42f, -1, .25f), 0.07);
 }
 
-/* A rod of radius r from a to b. */
+/* Adds a rod of radius r from a to b. */
 static void add_rod(ted4_ray_world *w, vec3 a, vec3 b, float r, vec3 colour)
 {
     const vec3 z = v3_unit(v3_sub(b, a)), aside = fabsf(z.z) < 0.7f ? v3(0, 0, 1) : v3(1, 0, 0);
@@ -178,7 +178,7 @@ static void add_rod(ted4_ray_world *w, vec3 a, vec3 b, float r, vec3 colour)
     ted4_ray_add(w, &o);
 }
 
-/* Corner i of a cage that has turned about the middle: bits x, y, z. */
+/* Returns corner i of a cage that is turned about the middle; the bits of i are x, y, z. */
 static vec3 corner(int i, double turns)
 {
     const float x = i & 1 ? .55f : -.55f, y = i & 2 ? .55f : -.55f;
@@ -187,8 +187,8 @@ static vec3 corner(int i, double turns)
     return v3(c * x - s * y, .1f + s * x + c * y, i & 4 ? 1.45f : .35f);
 }
 
-/* A cage of wires with a ball in it turns on a thread; two lines cross the room. Wires are about
- * two thirds of a default pixel wide. */
+/* A cage of wires, with a ball in it, turns on a thread, and two lines cross the room. Wires are
+ * about two thirds of a default pixel wide. */
 static void wires(ted4_ray_world *w, double t)
 {
     const float r = 0.013f;
@@ -209,8 +209,8 @@ static void wires(ted4_ray_world *w, double t)
     add_ball(w, .26f, v3(0, .1f, .9f), RAY_DOTS);
 }
 
-/* Nothing that stands in the middle first is there at the end: in sixteenths, a box up to 6, a
- * column up to 9; a ball from 7, a bar from 10. */
+/* The things in the middle at the beginning are all gone at the end. In sixteenths of the sequence:
+ * a box until 6, a column until 9, a ball from 7, a bar from 10. */
 static void change(ted4_ray_world *w, int frame, int n_frames)
 {
     const int part = 16 * frame / n_frames;
@@ -229,7 +229,7 @@ static void change(ted4_ray_world *w, int frame, int n_frames)
     ted4_ray_add(w, &o);
 }
 
-/* The carousel and the furniture on a round stage, all around is dark. */
+/* The carousel and the furniture on a round stage, surrounded by darkness. */
 static void stage(ted4_ray_world *w, double t)
 {
     ted4_ray_object o = ted4_ray_solid(RAY_CYLINDER, v3(2.65f, 2.65f, .1f), v3(0, .1f, -.1f), 0);
@@ -241,7 +241,7 @@ static void stage(ted4_ray_world *w, double t)
     turn(w, t);
 }
 
-/* Moving things of a scene for file sizes. */
+/* Returns the number of moving things of a scene for file sizes. */
 static int n_things(ted4_ray_scene s)
 {
     switch (s) {

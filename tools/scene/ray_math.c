@@ -1,11 +1,11 @@
-/* ray_math.c - sine, angle, sRGB curve and value noise of the project's scenes (see ray_math.h for
- * why not libm).
+/* ray_math.c - sine, angle, sRGB curve and value noise for the project's scenes (ray_math.h
+ * explains why libm is not used).
  * SPDX-License-Identifier: BSD-2-Clause */
 #include "ray_math.h"
 
 #include <string.h>
 
-/* Taylor series on [-pi/2, pi/2]; the first omitted term is (pi/2)^21 / 21! = 3e-16. */
+/* A Taylor series on [-pi/2, pi/2]; the first omitted term is (pi/2)^21 / 21! = 3e-16. */
 double ted4_ray_sin(double turns)
 {
     static const double factor[9] = { 1.0 / 342, 1.0 / 272, 1.0 / 210, 1.0 / 156, 1.0 / 110,
@@ -47,8 +47,8 @@ float ted4_ray_atan2(float y, float x)
     return y < 0 ? -a : a;
 }
 
-/* Cube root by Newton steps; the first guess divides the exponent by three (relative error below
- * 6 %, then 4e-3, 2e-5, 4e-10). */
+/* The cube root by Newton steps. The first guess divides the exponent by three (relative error
+ * below 6 %, then 4e-3, 2e-5, 4e-10). */
 static float cube_root(float x)
 {
     uint32_t bits;
@@ -87,7 +87,7 @@ static float mix(float a, float b, float s)
     return a + s * (b - a);
 }
 
-/* One z layer of the lattice; fx, fy faded fractions. */
+/* One z layer of the lattice; fx and fy are smoothed fractions. */
 static float layer(int x, int y, int z, float fx, float fy, uint32_t seed)
 {
     const float a = mix(ray_random(x, y, z, seed), ray_random(x + 1, y, z, seed), fx);

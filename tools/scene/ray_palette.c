@@ -5,7 +5,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* A pixel and its place in the picture. key: the channel that pixels are sorted by. */
+/* A pixel and its place in the picture. key: the value of the channel to sort by. */
 typedef struct {
     uint8_t key, rgba[4];
     uint32_t at;
@@ -16,7 +16,7 @@ typedef struct {
     int channel, width;
 } box;
 
-/* By the key; equal ones by their place, so that one order is right. */
+/* Orders by the key, and pixels with equal keys by place, so that the order is unique. */
 static int by_key(const void *x, const void *y)
 {
     const pixel *const a = x, *const b = y;
@@ -26,7 +26,7 @@ static int by_key(const void *x, const void *y)
     return a->at < b->at ? -1 : a->at > b->at;
 }
 
-/* The channel that is widest in a box, and how wide it is. */
+/* Finds the widest channel of a box, and its width. */
 static void measure(const pixel *p, box *b)
 {
     b->width = 0;
@@ -44,7 +44,7 @@ static void measure(const pixel *p, box *b)
     }
 }
 
-/* Halves a box in the middle of its widest channel, where it is sorted. */
+/* Halves a box at the middle of its widest channel, by which it is sorted. */
 static box halve(pixel *p, box *b)
 {
     int low = 255, high = 0;

@@ -1,5 +1,4 @@
-/* ray_parts.c - the parts of which all scenes are made: an empty room, solids, the carousel. See
- * ray_world.h.
+/* ray_parts.c - the parts of all scenes: an empty room, solids, and the carousel. See ray_world.h.
  * SPDX-License-Identifier: BSD-2-Clause */
 #include "ray_world.h"
 

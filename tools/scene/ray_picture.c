@@ -26,7 +26,7 @@ const char *ted4_ray_ending(const ted4_ray_options *o)
     return o->ways.file >= RAY_JPEG ? ".jpg" : ".png";
 }
 
-/* ---- PNG: rows of bytes as the file has them ---- */
+/* ---- PNG: rows of bytes as in the file ---- */
 
 typedef struct {
     int width, height, depth, type, interlaced, channels;
@@ -48,7 +48,7 @@ static void fill_row(const ted4_ray_options *o, raw *r, const uint8_t *rgba, siz
             *to++ = from[k];
 }
 
-/* 0, or -1: no memory. */
+/* Returns 0, or -1 without memory. */
 static int fill(const ted4_ray_options *o, raw *r, const uint8_t *rgba)
 {
     const size_t n = (size_t)r->width * (size_t)r->height;
@@ -79,7 +79,7 @@ static void put_palette(png_structp png, png_infop info, const raw *r, int clear
         png_set_tRNS(png, info, alpha, r->n_palette, NULL);
 }
 
-/* libpng leaves by a jump: what must live on is in *r. */
+/* libpng returns by a jump, so that everything that must survive it is in *r. */
 static int put_png(FILE *f, const raw *r, int clear)
 {
     png_structp png = png_create_write_struct(PNG_LIBPNG_VER_STRING, NULL, NULL, NULL);
@@ -120,7 +120,7 @@ static int write_other_png(const ted4_ray_options *o, const char *path, int clea
     return 0;
 }
 
-/* 8 bits a channel, as libpng's short way writes it. */
+/* Writes 8 bits per channel, with libpng's simplified interface. */
 static int write_png(const char *path, png_uint_32 format, int width, int height,
                      const uint8_t *pixels, ted4_ray_message *m)
 {

@@ -6,10 +6,10 @@
 
 #include "ray_set.h"
 
-/* Cameras are numbered: training cameras from 0, then test cameras. camera_of fills *c with the
- * camera that takes the pictures, in the coordinates of the room and with its colours.
- * camera_stated fills *c with the camera that the files state, in the coordinates of the files; for
- * training cameras it has a pose error. */
+/* Cameras are numbered: training cameras from 0, then test cameras. ted4_ray_camera_of fills *c
+ * with the camera that takes the pictures, in the coordinates of the room and with its colours.
+ * ted4_ray_camera_stated fills *c with the camera that the files state, in the coordinates of the
+ * files; for training cameras it has a pose error. */
 void ted4_ray_camera_of(const ted4_ray_options *o, int number, ted4_ray_camera *c);
 void ted4_ray_camera_stated(const ted4_ray_options *o, int number, ted4_ray_camera *c);
 

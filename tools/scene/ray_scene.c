@@ -1,10 +1,10 @@
-/* ray_scene.c - the table of scenes. Those of the lab are small, so that a training takes a minute
- * on one core. The last is for the zoo (bench/zoo.txt).
+/* ray_scene.c - the table of scenes. The scenes of the lab are small, so that a training takes a
+ * minute on one core. The last scene is for the zoo (bench/zoo.txt).
  * SPDX-License-Identifier: BSD-2-Clause */
 #include "ray_scene.h"
 
-/* Pictures, cameras, times of the first scenes; and of the lab, where times 4 and 12 are held out.
- */
+/* Pictures, cameras and times of the first scenes, and of the lab. With hold = 8, times 4 and 12
+ * are held out. */
 #define FIRST .width = 160, .height = 120, .n_train = 12, .n_test = 2, .n_frames = 16, .scale = 1
 #define SMALL .width = 96, .height = 64
 #define LAB   SMALL, .n_train = 6, .n_test = 2, .n_frames = 16
@@ -18,8 +18,8 @@ static const ted4_ray_plan plans[RAY_SCENES] = {
     [RAY_BEND] = { "bend", "a bar bends and twists", FIRST },
     [RAY_FAIR] = { "fair", "a carousel turns, things come and go", FIRST },
 
-    /* What rolls by more than its radius a time is not asked for between two: that is the business
-     * of fast. */
+    /* Where a thing rolls by more than its radius per time, no time is held out: the scene "fast"
+     * tests such motion. */
     [RAY_HIDE] = { "hide", "a ball is hidden from every camera for a third of the time", LAB,
                    .scale = 1 },
     [RAY_BLINK] = { "blink", "things pop in and out, one of them three times", LAB, .hold = 8,
@@ -30,7 +30,8 @@ static const ted4_ray_plan plans[RAY_SCENES] = {
                     .scale = 1 },
     [RAY_TINTS] = { "tints", "turn, cameras disagree in colour and exposure", LAB, .hold = 8,
                     .tint = 1, .scale = 1 },
-    /* The power of the lamp at a time cannot be told from those at others: no time is held out. */
+    /* The lamp's power at a time does not follow from that at other times, so no time is held out.
+     */
     [RAY_FLICKER] = { "flicker", "the lamp flickers", LAB, .scale = 1 },
     [RAY_BARE] = { "bare", "turn, walls without texture", LAB, .hold = 8, .scale = 1 },
     [RAY_FAR] = { "far", "turn, 1,000 units from the origin", LAB, .hold = 8, .scale = 1,

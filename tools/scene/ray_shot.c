@@ -5,13 +5,13 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* Of a share of alpha, in bytes. */
+/* Multiplies a value by alpha, in bytes. */
 static uint8_t part(int value, int alpha)
 {
     return (uint8_t)((value * alpha + 127) / 255);
 }
 
-/* A cut-out pixel as its file has it. */
+/* Converts a cut-out pixel to the form in which the file stores it. */
 static void lay(const ted4_ray_options *o, uint8_t *p)
 {
     const ted4_ray_background b = ted4_ray_around(o);
@@ -38,7 +38,7 @@ static void draw(const ted4_ray_options *o, const ted4_ray_world *w, const ted4_
             lay(o, rgba + 4 * i);
         return;
     }
-    /* Three bytes a pixel are spread to four from the end on. */
+    /* Three bytes per pixel are spread to four, beginning at the end. */
     ted4_ray_render(w, c, rgba);
     for (size_t i = n; i-- > 0;) {
         uint8_t rgb[3];
@@ -59,7 +59,8 @@ void ted4_ray_shot(const ted4_ray_options *o, int number, int frame, uint8_t *rg
     draw(o, &w, &c, rgba);
 }
 
-/* Takes from w what is not in other. Solids are made of numbers of four bytes, without gaps. */
+/* Removes from w the solids that are not in other. Solids consist of numbers of four bytes, without
+ * gaps. */
 static void keep_common(ted4_ray_world *w, const ted4_ray_world *other)
 {
     int n = 0;

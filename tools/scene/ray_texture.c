@@ -1,13 +1,13 @@
-/* ray_texture.c - wood, marble, checkers, stripes, dots, bricks, planks: functions of position,
- * with soft edges and hash noise. The finest period is about 0.05 units, two and a half pixels of
- * the default picture at the distance of the middle.
+/* ray_texture.c - wood, marble, checkers, stripes, dots, bricks and planks: functions of position,
+ * with soft edges and hash noise. The finest period is about 0.05 units, which is two and a half
+ * pixels of the default picture at the distance of the middle.
  * SPDX-License-Identifier: BSD-2-Clause */
 #include "ray_texture.h"
 
-/* Half width of the soft edge between two colours, in units. */
+/* Half the width of the soft edge between two colours, in units. */
 #define EDGE 0.006f
 
-/* 1 on the odd cells of a row of period 2 p, 0 on the even ones. */
+/* Returns 1 in the odd cells of a row of period 2 p, and 0 in the even ones. */
 static float bars(float x, float p)
 {
     const float f = 2 * p * ray_fract(x / (2 * p)), e = ray_min(EDGE, p / 4);
@@ -20,7 +20,7 @@ static float exclusive(float a, float b)
     return a + b - 2 * a * b;
 }
 
-/* 1 inside, 0 outside a shape of which d is the distance outwards. */
+/* Returns 1 inside and 0 outside a shape; d is the outward distance from it. */
 static float inside(float d)
 {
     return 1 - ray_step(-EDGE, EDGE, d);
@@ -76,7 +76,8 @@ static vec3 spiral(const ted4_ray_object *o, vec3 p, uint32_t seed)
     return v3_scale(c, grain(p, seed));
 }
 
-/* One ball of random place and size in each cell of a lattice, cut by the surface. */
+/* Each cell of a lattice contains one ball of random place and size, which the surface intersects.
+ */
 static vec3 dots(const ted4_ray_object *o, vec3 p, uint32_t seed)
 {
     const float cell = 0.19f;
@@ -91,8 +92,8 @@ static vec3 dots(const ted4_ray_object *o, vec3 p, uint32_t seed)
     return v3_scale(v3_mix(o->colour[0], ink, inside((d - 0.39f) * cell)), grain(p, seed));
 }
 
-/* Pattern number n (0..5) of a box face with face coordinates u, v: how much of the second
- * colour. */
+/* Returns the share of the second colour in pattern number n (0..5) of a box face at face
+ * coordinates u, v. */
 static float face_pattern(int n, float u, float v)
 {
     const float r = length2(u, v);
@@ -146,7 +147,7 @@ static vec3 beach(const ted4_ray_object *o, vec3 p, uint32_t seed)
     return v3_scale(v3_mix(c, o->colour[2], ring), grain(p, seed));
 }
 
-/* Bar: rings along it, a chequered stripe, and opposite faces of different hue. */
+/* For a bar: rings along it, a chequered stripe, and different hues on opposite faces. */
 static vec3 ribbon(const ted4_ray_object *o, vec3 p, uint32_t seed)
 {
     const int wide = fabsf(p.x) / o->size.x < fabsf(p.y) / o->size.y;
@@ -158,8 +159,8 @@ static vec3 ribbon(const ted4_ray_object *o, vec3 p, uint32_t seed)
     return v3_scale(v3_mix(ground, o->colour[2], 0.85f * c), grain(p, seed));
 }
 
-/* Bricks (or planks) of width w and height h with joints of width gap: *tone random per brick;
- * returns 1 in the joint. */
+/* Bricks (or planks) of width w and height h with joints of width gap. Sets *tone to a random value
+ * per brick; returns 1 in a joint. */
 static float courses(float u, float v, const float size[3], uint32_t seed, float *tone)
 {
     const float w = size[0], h = size[1], gap = size[2];
@@ -232,8 +233,8 @@ static vec3 wallpaper(float u, float v, vec3 a, vec3 b, vec3 c)
     return v3_mix(ground, c, inside(fabsf(x) * 0.8f + fabsf(y) * 0.6f - 0.055f));
 }
 
-/* Framed picture with centre (cx, cz) and half size (hx, hz) on the wall: pattern n inside a
- * dark frame. */
+/* A framed picture with centre (cx, cz) and half size (hx, hz) on the wall: pattern n in a dark
+ * frame. */
 static vec3 picture(vec3 wall, const float place[4], float u, float v, int n)
 {
     static const float ink[2][2][3] = { { { .12f, .30f, .52f }, { .96f, .88f, .62f } },

@@ -1,5 +1,5 @@
-/* ray_things.c - things for the scenes that tell how file size follows content: always the same
- * eight, of which some move, each in its own place and way.
+/* ray_things.c - things for the scenes that show how file size depends on content. The eight things
+ * are always the same; some of them move, each at its own place and in its own way.
  * SPDX-License-Identifier: BSD-2-Clause */
 #include "ray_lab.h"
 
@@ -7,9 +7,9 @@
 
 enum { THINGS = 8, SECOND = 16 };
 
-/* Kind, texture, half size, place on the floor (a thing stays within 0.13 of it), how it moves:
- * sideways, in depth, upwards (units), and turning (turns); rates (turns a second) of no common
- * measure, so that no time is like another. */
+/* Kind; texture; half size; place on the floor (a thing stays within 0.13 of it); motion sideways,
+ * in depth and upwards (units), and rotation (turns); rate (turns per second). The rates are
+ * incommensurable, so that no two times are alike. */
 typedef struct {
     ted4_ray_kind kind;
     ted4_ray_texture_kind texture;
@@ -18,7 +18,7 @@ typedef struct {
     double rate;
 } thing;
 
-/* In the order in which they begin to move: far from each other first. */
+/* In the order in which they begin to move, so that the first ones are far from each other. */
 static const thing things[THINGS] = {
     { RAY_SPHERE, RAY_BEACH, .17f, -.30f, -.75f, .10f, .08f, .22f, .30f, .83 },
     { RAY_BOX, RAY_FACES, .15f, .86f, .30f, .10f, .00f, .10f, .25f, .71 },
@@ -42,7 +42,7 @@ static vec3 paint(const float c[3])
     return ray_paint(c[0], c[1], c[2]);
 }
 
-/* Two sines of rates 1 and the golden ratio, 0 at time 0, within -1 and 1. */
+/* The sum of two sines of rates 1 and the golden ratio: 0 at time 0, within [-1, 1]. */
 static float wave(double turns)
 {
     return (float)(0.7 * ted4_ray_sin(turns) + 0.3 * ted4_ray_sin(1.618033988749895 * turns));

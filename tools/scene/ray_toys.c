@@ -1,5 +1,5 @@
-/* ray_toys.c - what small scenes of other people are often like: a few things in empty space that
- * fill about a tenth of the picture, one that goes round, and some that are a few pixels wide.
+/* ray_toys.c - a scene like the small scenes of other people: a few things in empty space that fill
+ * about a tenth of the picture, one that goes round, and some that are a few pixels wide.
  * SPDX-License-Identifier: BSD-2-Clause */
 #include "ray_lab.h"
 
@@ -30,8 +30,8 @@ static void still_ones(ted4_ray_world *w, vec3 middle)
         RAY_SPIRAL, cream, ray_paint(.20f, .42f, .70f));
 }
 
-/* The ball goes round once, with its shadow on the disk, and up and down twice; a droplet falls
- * for the whole time. */
+/* The ball, with its shadow on the disk, goes round once and up and down twice. A droplet falls
+ * during the whole sequence. */
 void ted4_ray_toys(ted4_ray_world *w, double t)
 {
     const vec3 middle = v3(0, .15f, 0);

@@ -5,7 +5,7 @@
 #include "ray_lab.h"
 #include "ray_texture.h"
 
-/* What stands about in every scene and never moves. */
+/* Objects that are in every scene and never move. */
 static void furniture(ted4_ray_world *w)
 {
     const vec3 cream = ray_paint(.95f, .90f, .80f), ink = ray_paint(.16f, .18f, .24f);
@@ -39,7 +39,7 @@ static void furniture(ted4_ray_world *w)
     ted4_ray_add(w, &o);
 }
 
-/* A ball rolls behind a wall to the right and comes back. */
+/* A ball rolls to the right behind a wall and returns. */
 static void occluder(ted4_ray_world *w, double t)
 {
     const float r = 0.36f, x = -1.28f * (float)ted4_ray_cos(0.94 * t);
@@ -57,8 +57,8 @@ static void occluder(ted4_ray_world *w, double t)
     ted4_ray_add(w, &o);
 }
 
-/* A ball is there from 5/16 to 11/16 of the sequence only; a box until one half; a column from
- * one quarter on. */
+/* A ball is present only from 5/16 to 11/16 of the sequence, a box in the first half, and a column
+ * from one quarter on. */
 static void pop(ted4_ray_world *w, int frame, int n_frames)
 {
     const vec3 cream = ray_paint(.95f, .91f, .82f), ink = ray_paint(.15f, .16f, .22f);
@@ -82,7 +82,7 @@ static void pop(ted4_ray_world *w, int frame, int n_frames)
         ted4_ray_add(w, &o);
 }
 
-/* A bar rooted in a pot sways and twists. */
+/* A bar that stands in a pot sways and twists. */
 static void bend(ted4_ray_world *w, double t)
 {
     const vec3 ink = ray_paint(.17f, .18f, .24f);
@@ -98,8 +98,8 @@ static void bend(ted4_ray_world *w, double t)
     ted4_ray_add(w, &o);
 }
 
-/* The carousel turns; a ball is there for three sixteenths of the sequence, a box in its first
- * half. */
+/* The carousel turns; a ball is present for three sixteenths of the sequence, and a box in its
+ * first half. */
 static void fair(ted4_ray_world *w, int frame, int n_frames)
 {
     const vec3 cream = ray_paint(.95f, .91f, .82f);

@@ -75,7 +75,7 @@ static int word(ted4_ray_vocabulary v, const char *text, int *number)
     return *number < 0 ? -1 : 0;
 }
 
-/* One of two words: 0 or 1. */
+/* Parses one of two words as 0 or 1. */
 static int either(const char *zero, const char *one, const char *text, int *which)
 {
     *which = strcmp(text, one) == 0;
@@ -90,7 +90,7 @@ static int unit(const char *text, double *value)
     return end != text && *end == '\0' && *value >= 1e-6 && *value <= 1e6 ? 0 : -1;
 }
 
-/* "0.6,0.45": within the picture. */
+/* Parses "0.6,0.45", a point within the picture. */
 static int centre(const char *text, double off[2])
 {
     double x, y;
