@@ -19,8 +19,9 @@ static const double dome_target[3] = { 0.0, 0.15, 0.4 };
 static const double dome_radius = 3.9, dome_low = 0.03, dome_high = 0.19;
 static const double golden = 0.38196601125010515;
 
-/* Returns by how many of n heights the next camera is higher: about two fifths of n, without a
- * common divisor, so that all heights are used and no two neighbours share one. */
+/* Returns by how many of n heights, cyclically, each camera is above the previous one: about two
+ * fifths of n, without a common divisor, so that all heights are used and no two neighbours share
+ * one. */
 static int stride(int n)
 {
     for (int s = 2 * n / 5; s > 1; s--) {

@@ -81,7 +81,8 @@ static void blink(ted4_ray_world *w, int frame, int n_frames)
         add_box(w, .34f, v3(-.62f, .45f, .34f), 0.07);
 }
 
-/* The same times as in blink, but a small move takes each absent thing out of every picture. */
+/* The same times as in blink, but at places where a small motion would take an absent thing out of
+ * every picture. */
 static void edge(ted4_ray_world *w, int frame, int n_frames)
 {
     const int part = 16 * frame / n_frames;

@@ -1,4 +1,4 @@
-/* ray_layout.c - see ray_layout.h. What each format means: the loaders in ref-encoder/data.
+/* ray_layout.c - see ray_layout.h. The loaders in ref-encoder/data explain the formats.
  * SPDX-License-Identifier: BSD-2-Clause */
 #include "ray_layout.h"
 
@@ -6,7 +6,7 @@
 
 #include "ray_picture.h"
 
-/* The range of depths that some layouts state, in units of the room. */
+/* The range of depths that some layouts contain, in units of the room. */
 #define NEAR 0.1
 #define FAR  10.0
 
@@ -29,7 +29,7 @@ static int is_test(const ted4_ray_options *o, int number)
     return number >= o->n_train;
 }
 
-/* Number of the camera that is i-th when test cameras come first. */
+/* Returns the number of the i-th camera if test cameras come first. */
 static int test_first(const ted4_ray_options *o, int i)
 {
     return i < o->n_test ? o->n_train + i : i - o->n_test;
@@ -42,7 +42,8 @@ void ted4_ray_camera_name(const ted4_ray_options *o, int number, char name[TED4_
     snprintf(name, TED4_RAY_NAME, n_cameras(o) > 100 ? "cam%04d" : "cam%02d", i);
 }
 
-/* "train", separator, "r_003_07": wide enough that names sort as numbers. */
+/* Makes a name of "train", the separator and "r_003_07", with enough digits to sort names as
+ * numbers. */
 static void flat_name(const ted4_ray_options *o, int number, int frame, const char *separator,
                       char name[40])
 {
@@ -77,7 +78,7 @@ void ted4_ray_picture_name(const ted4_ray_options *o, int number, int frame,
 
 /* ---- transforms: blender, nerfstudio ---- */
 
-/* How the listing names a picture. */
+/* Makes the name of a picture as the listing states it. */
 static void stated_path(const ted4_ray_options *o, int number, int frame, char path[TED4_RAY_NAME])
 {
     char name[TED4_RAY_NAME];
@@ -207,7 +208,7 @@ static void put_points(FILE *f, const ted4_ray_options *o, int number, int frame
 
 /* ---- poses ---- */
 
-/* World to camera, right-down-forward. */
+/* World to camera; the axes are right, down, forward. */
 static void pose_of(const ted4_ray_camera *c, double R[3][3], double t[3])
 {
     static const double sign[3] = { 1, -1, -1 };
@@ -221,7 +222,7 @@ static void pose_of(const ted4_ray_camera *c, double R[3][3], double t[3])
     }
 }
 
-/* (w, x, y, z) from its largest component, which is at least 1/2. */
+/* Computes (w, x, y, z), beginning with the largest component, which is at least 1/2. */
 static void quaternion_of(double R[3][3], double q[4])
 {
     const double trace = R[0][0] + R[1][1] + R[2][2];
@@ -232,7 +233,7 @@ static void quaternion_of(double R[3][3], double q[4])
         square[i + 1] = 1 + 2 * R[i][i] - trace;
     for (int i = 1; i < 4; i++)
         k = square[i] > square[k] ? i : k;
-    /* Products 4 q[k] q[i]. */
+    /* These are the products 4 q[k] q[i]. */
     const double wv[3] = { R[2][1] - R[1][2], R[0][2] - R[2][0], R[1][0] - R[0][1] };
     q[k] = square[k];
     for (int i = 0; i < 3; i++)
@@ -245,7 +246,8 @@ static void quaternion_of(double R[3][3], double q[4])
         q[i] /= norm;
 }
 
-/* ---- colmap: one lens, or one a camera, an image for every picture, points without tracks ---- */
+/* ---- colmap: one lens for all or one per camera, one image per picture, points without tracks
+ * ---- */
 
 static int n_lenses(const ted4_ray_options *o)
 {
@@ -298,7 +300,8 @@ static void put_images_bin(FILE *f, const ted4_ray_options *o, int number, int f
         for (int k = 0; k < 7; k++)
             put_double(f, pose[k]);
         put_bytes(f, (uint64_t)lens_of(o, i / o->n_frames), 4);
-        fwrite(strchr(name, '/') + 1, 1, strlen(strchr(name, '/')), f); /* with its zero */
+        fwrite(strchr(name, '/') + 1, 1, strlen(strchr(name, '/')),
+               f); /* including the terminating zero */
         put_bytes(f, 0, 8);
     }
 }
@@ -440,11 +443,11 @@ void ted4_ray_put_hypernerf_camera(FILE *f, const ted4_ray_options *o, int numbe
             c.matrix[0][3], c.matrix[1][3], c.matrix[2][3], c.focal, c.cx, c.cy, c.width, c.height);
 }
 
-/* ---- one clip a camera ---- */
+/* ---- one clip per camera ---- */
 
 static void put_poses(FILE *f, const ted4_ray_options *o, int number, int frame)
 {
-    enum { HEADER = 128 }; /* with the 10 bytes before it */
+    enum { HEADER = 128 }; /* including the 10 bytes before it */
     const double scale = ted4_ray_scale(o);
     char text[HEADER];
 
@@ -473,7 +476,7 @@ static void put_calibration(FILE *f, const ted4_ray_options *o, int number, int 
 {
     (void)number, (void)frame;
     fputs("{", f);
-    if (!o->ways.starts) /* else clips differ in length */
+    if (!o->ways.starts) /* otherwise, clips differ in length */
         fprintf(f, "\"frames\": %d, ", o->n_frames);
     fputs("\"fps\": 30, \"cameras\": [", f);
     for (int i = 0; i < n_cameras(o); i++) {
@@ -516,7 +519,7 @@ static int has_val(const ted4_ray_options *o)
     return o->ways.split == RAY_VAL_FILE;
 }
 
-/* Last comes the file by which a folder is taken for a scene. */
+/* The file by which a folder is recognised as a scene comes last. */
 static const ted4_ray_file files[RAY_LAYOUTS][6] = {
     [RAY_BLENDER] = { { "points3d.ply", put_points, 0, 0, has_points },
                       { "transforms_test.json", put_test, 0, 0, has_test },

@@ -1,6 +1,6 @@
-/* ray_render.c - one ray a sample, an area light, ambient light; stratified 3 x 3 samples, no
- * randomness. Solids are culled by their bounding spheres: in the picture once an image, against
- * the cone to the lamp once a small patch of surface.
+/* ray_render.c - renders with one ray per sample, an area light and ambient light; 3 x 3 stratified
+ * samples, without randomness. Solids are culled by their bounding spheres: once per picture for
+ * camera rays, and once per small patch of surface against the cone to the lamp.
  * SPDX-License-Identifier: BSD-2-Clause */
 #include "ray_render.h"
 
@@ -8,18 +8,18 @@
 
 #include "ray_texture.h"
 
-/* Samples a pixel side, and cells a lamp side: each sample of a pixel looks at another cell of
- * the lamp. */
+/* Samples per pixel side, and cells per lamp side: each sample of a pixel tests another cell of the
+ * lamp. */
 enum { SIDE = 3 };
 static const float near_plane = 0.05f, lift = 0.003f, patch = 0.1f;
 enum { NOTHING = -2, ROOM = -1 };
 
-/* Half-open pixel rectangle in which an object can show. */
+/* Half-open rectangle of the pixels in which an object may be visible. */
 typedef struct {
     int x0, x1, y0, y1;
 } window;
 
-/* Objects a ray may meet. */
+/* Objects that a ray may hit. */
 typedef struct {
     int n, id[TED4_RAY_MAX_OBJECTS];
 } crowd;
@@ -28,29 +28,29 @@ typedef struct {
     const ted4_ray_world *w;
     const ted4_ray_camera *c;
     vec3 eye;
-    float axis[9];     /* columns right, up, backwards, as rows x y z */
-    float light_reach; /* radius of a sphere about the lamp */
+    float axis[9];     /* the right, up and backward axes of the camera as rows */
+    float light_reach; /* radius of a sphere around the lamp */
     window shows[TED4_RAY_MAX_OBJECTS];
-    crowd shade; /* what can hide the lamp within patch of shade_at on shade_of */
+    crowd shade; /* objects that may hide the lamp within patch of shade_at on shade_of */
     vec3 shade_at;
     int shade_of;
 } view;
 
-/* One of the samples of a pixel: its direction, and its place (i, j) among them. */
+/* A sample of a pixel: its direction, and its place (i, j) in the 3 x 3 grid. */
 typedef struct {
     vec3 d;
     int i, j;
 } sample;
 
-/* What a ray has met. */
+/* What a ray has hit. */
 typedef struct {
     ted4_ray_surface surface;
     vec3 albedo;
     float gloss;
 } matter;
 
-/* Range of pixels that a sphere covers along one axis: tangents of the two lines of sight that
- * touch it in that plane. */
+/* Computes the range of pixels that a sphere covers along one axis, from the tangents of the two
+ * lines of sight that touch the sphere in that plane. */
 static void sphere_range(double x, double z, double r, const double scale_middle[2], int limit,
                          int range[2])
 {
@@ -103,9 +103,9 @@ static crowd showing(const view *v, int x, int y)
     return c;
 }
 
-/* Fills v->shade for the surroundings of p on an object: bounding spheres against the cone from
- * there to the lamp's bounding sphere. No lit point of a convex object is hidden by the object
- * itself. */
+/* Fills v->shade for the surroundings of p on an object, by testing bounding spheres against the
+ * cone from there to the lamp's bounding sphere. A convex object does not hide the lamp from any
+ * lit point of itself. */
 static void find_shade(view *v, vec3 p, int object)
 {
     const vec3 to = v3_sub(v->w->lamp, p);
@@ -134,9 +134,9 @@ static int meets_any(const ted4_ray_world *w, const crowd *c, vec3 from, vec3 d,
     return 0;
 }
 
-/* Whether a sample sees its cell of the lamp from p on an object. Cells (i + j, i + 2 j) modulo
- * 3 are a permutation that leaves no direction in common between the place in the pixel and the
- * place on the lamp. */
+/* Returns 1 if a sample sees its cell of the lamp from p on an object. The cells (i + j, i + 2 j)
+ * modulo 3 are a permutation, so that the place in the pixel and the place on the lamp have no
+ * direction in common. */
 static int sees_lamp(view *v, const sample *k, vec3 p, int object)
 {
     const int a = (k->i + k->j) % SIDE, b = (k->i + 2 * k->j) % SIDE;
@@ -150,8 +150,8 @@ static int sees_lamp(view *v, const sample *k, vec3 p, int object)
     return !meets_any(v->w, &v->shade, p, v3_scale(to, 1 / far), far);
 }
 
-/* Ambient light from above, a weak shadowless light from the cameras' side, the lamp, and a
- * broad highlight of it. */
+/* Returns the reflected light: ambient light from above, a weak light without shadow from the side
+ * of the cameras, the lamp, and a broad highlight of the lamp. */
 static vec3 lit(view *v, const sample *k, const ted4_ray_sight *r, const matter *m)
 {
     const vec3 fill = v3(0.39f, -0.86f, 0.33f), warm = v3(1.0f, 0.96f, 0.90f),
@@ -173,7 +173,7 @@ static vec3 lit(view *v, const sample *k, const ted4_ray_sight *r, const matter 
                   v3(shine, shine, shine));
 }
 
-/* The room is convex and the eye inside it: the nearest of the three planes ahead. */
+/* The room is convex and contains the eye, so the nearest of the three planes ahead is hit. */
 static float room_meet(const ted4_ray_world *w, vec3 from, vec3 d, ted4_ray_side *side,
                        vec3 *normal)
 {
@@ -207,7 +207,7 @@ static vec3 room_albedo(const ted4_ray_world *w, ted4_ray_side side, vec3 p)
     return ted4_ray_room_texture(side, p, w->seed);
 }
 
-/* Sight of a sample: the nearest of the objects in c, or the room. */
+/* Returns what a sample sees: the nearest of the objects in c, or the room. */
 static ted4_ray_sight sight(view *v, const crowd *c, const sample *k)
 {
     ted4_ray_side side = RAY_FLOOR;
@@ -250,7 +250,8 @@ static vec3 direction(const view *v, double px, double py)
     return ray_rotate(v->axis, v3_unit(d));
 }
 
-/* Sum of the samples of a pixel; *hits counts those that see something. */
+/* Returns the sum of the samples of a pixel. Sets *hits to the number of samples that hit
+ * something. */
 static vec3 samples(view *v, int x, int y, int *hits)
 {
     const crowd c = showing(v, x, y);

@@ -4,11 +4,12 @@
 
 #include <string.h>
 
-/* Of tint 1, before the mean is taken off: exposure up to this share up or down, and at least half
- * of it; gains of the channels; light that gets into another channel. In linear light. */
+/* For tint 1, before the mean is subtracted, in linear light: the exposure changes by at most this
+ * share, up or down, and by at least half of it; gains of the channels; share of light that leaks
+ * into another channel. */
 static const double exposure = 0.4, gain = 0.12, leak = 0.03;
 
-/* Seeds of what is drawn for a camera. */
+/* Seeds for the random values of a camera. */
 enum { SEED_TURN = 301, SEED_MOVE = 302, SEED_TINT = 303, SEED_TIME = 304 };
 
 static double draw(const ted4_ray_options *o, int number, int which, uint32_t seed)
@@ -29,7 +30,7 @@ int ted4_ray_is_held(const ted4_ray_options *o, int frame)
            frame < o->n_frames - 1;
 }
 
-/* Place of x among n in the order of their hashes. */
+/* Returns the rank of x among 0 .. n - 1 in the order of their hashes. */
 static int shuffled(int x, int n, uint32_t seed)
 {
     const uint32_t mine = ray_hash(x, 0, 0, seed);
@@ -96,8 +97,8 @@ void ted4_ray_world_of(const ted4_ray_options *o, int frame, ted4_ray_world *w)
 
 /* ---- colours ---- */
 
-/* Signs of the exposures are + - - + in turn, that they do not go with the heights of the cameras.
- */
+/* The exposures have the signs + - - + in turn, so that they do not correlate with the heights of
+ * the cameras. */
 static void raw_tint(const ted4_ray_options *o, int number, double A[9])
 {
     const double sign = (number + number / 2) % 2 == 0 ? 1 : -1;
@@ -109,8 +110,8 @@ static void raw_tint(const ted4_ray_options *o, int number, double A[9])
     }
 }
 
-/* Matrices of the training cameras have the mean 1, so that test cameras, which have none, and the
- * initial points show the scene's colours. */
+/* The mean of the training cameras' matrices is the unit matrix, so that test cameras, which have
+ * no tint, and the initial points show the scene's colours. */
 static void tint(const ted4_ray_options *o, int number, float colour[9])
 {
     double A[9], B[9], mean[9] = { 0 };
@@ -129,7 +130,7 @@ static void tint(const ted4_ray_options *o, int number, float colour[9])
 
 /* ---- poses ---- */
 
-/* Places on the arc; the training cameras take those from first on. */
+/* Returns the number of places on the arc. The training cameras take the places from *first on. */
 static int arc_of(const ted4_ray_options *o, int *first)
 {
     const int places = ted4_ray_plan_of(o->scene)->places;
@@ -143,7 +144,7 @@ int ted4_ray_is_blind(const ted4_ray_options *o, int number)
     return ted4_ray_plan_of(o->scene)->turned_away && number == o->n_train - 1 && number > 0;
 }
 
-/* Looks the other way: half a turn about its own up axis. */
+/* Turns a camera by half a turn about its own up axis. */
 static void turn_away(ted4_ray_camera *c)
 {
     for (int i = 0; i < 3; i++) {
@@ -152,7 +153,7 @@ static void turn_away(ted4_ray_camera *c)
     }
 }
 
-/* The size of the pictures and the principal point. */
+/* Sets the size of the pictures and the principal point. */
 static void lens(const ted4_ray_options *o, int number, ted4_ray_camera *c)
 {
     static const int quarters[3] = { 4, 3, 5 };
@@ -182,7 +183,7 @@ void ted4_ray_camera_of(const ted4_ray_options *o, int number, ted4_ray_camera *
     tint(o, number, c->colour);
 }
 
-/* A vector of length r in a random direction, even over the sphere. */
+/* Draws a vector of length r in a random direction, uniform over the sphere. */
 static void random_vector(const ted4_ray_options *o, int number, uint32_t seed, double r,
                           double v[3])
 {
@@ -214,7 +215,7 @@ void ted4_ray_pose_error(const ted4_ray_options *o, int number, double turn[3], 
     centred(o, number, SEED_MOVE, angle * ted4_ray_radius, move);
 }
 
-/* v turned by the rotation vector, in world axes (Rodrigues). */
+/* Rotates v by the rotation vector, in world axes (Rodrigues). */
 static void rotate(const double turn[3], double v[3])
 {
     const double angle = sqrt(turn[0] * turn[0] + turn[1] * turn[1] + turn[2] * turn[2]);
@@ -235,7 +236,7 @@ double ted4_ray_scale(const ted4_ray_options *o)
     return ted4_ray_plan_of(o->scene)->scale * (o->ways.unit > 0 ? o->ways.unit : 1);
 }
 
-/* A quarter turn about x where y is up. */
+/* Rotates by a quarter turn about x if y is up in the files. */
 static void upright(const ted4_ray_options *o, double v[3])
 {
     const double z = v[2];

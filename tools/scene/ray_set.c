@@ -1,5 +1,5 @@
-/* ray_set.c - pictures and points of a scene, and the folder. What the other files of a layout say:
- * ray_layout.c.
+/* ray_set.c - writes the pictures and points of a scene, and the folder. ray_layout.c writes the
+ * other files of a layout.
  * SPDX-License-Identifier: BSD-2-Clause */
 #include "ray_layout.h"
 #include "ray_picture.h"
@@ -15,8 +15,8 @@
 #include <unistd.h>
 
 enum { MAX_PATH = 1024 };
-/* Half width of the noise added to the points, in units; two thirds of a default pixel at the
- * middle. */
+/* Half the width of the noise added to the points, in units; it is two thirds of a default pixel at
+ * the middle. */
 static const float point_noise = 0.015f;
 
 static const char truth_name[] = "truth.json";
@@ -81,7 +81,7 @@ static int join(char path[MAX_PATH], const char *folder, const char *name, ted4_
     return complain(m, folder, "the path is too long");
 }
 
-/* Makes path and the folders above it. */
+/* Makes the folder path and the folders above it. */
 static int make_folders(const char *path, ted4_ray_message *m)
 {
     char part[MAX_PATH];
@@ -120,15 +120,15 @@ static int remove_file(const char *folder, const char *name, ted4_ray_message *m
     return 0;
 }
 
-/* ---- pictures: one job each, which finds its place from its index alone ---- */
+/* ---- pictures: one job each, whose index alone determines its picture ---- */
 
 typedef struct {
     const ted4_ray_options *o;
     const char *folder;
-    ted4_ray_message *failure; /* [n_train + n_test][n_frames] one a job, empty when fine */
+    ted4_ray_message *failure; /* [n_train + n_test][n_frames] one per job, empty on success */
 } pictures;
 
-/* truth/masks/NAME.png */
+/* Writes truth/masks/NAME.png. */
 static void write_mask(const pictures *job, int number, int frame, const ted4_ray_camera *c,
                        uint8_t *mask, ted4_ray_message *m)
 {
@@ -195,7 +195,7 @@ static int write_pictures(const ted4_ray_options *o, const char *folder, const t
 
 /* ---- points ---- */
 
-/* Middle and half width of what things take up, in the room. */
+/* Middle and half width of the space that the things occupy in the room. */
 static const vec3 things = { 0, 0.15f, 0.6f };
 static const float things_half = 0.9f;
 
@@ -206,7 +206,8 @@ int ted4_ray_n_points(const ted4_ray_options *o)
     return o->ways.points == RAY_BOX10 ? TED4_RAY_MANY_POINTS : TED4_RAY_POINTS;
 }
 
-/* What a training camera sees at a random place of a listed picture; p gets camera and time. */
+/* Returns what a training camera sees at a random position in a listed picture, and sets the camera
+ * and time of p. */
 static ted4_ray_sight random_sight(const ted4_ray_options *o, int i, int attempt, ted4_ray_point *p)
 {
     const uint32_t seed = o->seed + 77;
@@ -242,7 +243,7 @@ static ted4_ray_point random_point(const ted4_ray_options *o, int i)
     return p;
 }
 
-/* Ends because the first training camera always has things in view. */
+/* This ends because the first training camera always has things in view. */
 ted4_ray_point ted4_ray_point_at(const ted4_ray_options *o, int i)
 {
     const uint32_t seed = o->seed + 77;
@@ -285,7 +286,7 @@ static int write_file(const ted4_ray_options *o, const char *folder, const ted4_
     return 0;
 }
 
-/* Every folder that pictures go to; the D-NeRF layout has both even without test cameras. */
+/* Makes every folder for pictures; the D-NeRF layout has both folders even without test cameras. */
 static int make_picture_folders(const ted4_ray_options *o, const char *folder, ted4_ray_message *m)
 {
     char name[TED4_RAY_NAME], path[MAX_PATH];
@@ -300,7 +301,7 @@ static int make_picture_folders(const ted4_ray_options *o, const char *folder, t
     return 0;
 }
 
-/* ---- videos: lossless, in place of the folders of frames ---- */
+/* ---- videos: lossless, instead of folders of frames ---- */
 
 static int encode(const char *folder, const char *camera, ted4_ray_message *m)
 {
@@ -343,7 +344,7 @@ static int make_videos(const ted4_ray_options *o, const char *folder, ted4_ray_m
     return 0;
 }
 
-/* ---- all of it ---- */
+/* ---- the whole scene ---- */
 
 static int write_cameras(const ted4_ray_options *o, const char *folder, ted4_ray_message *m)
 {

@@ -3,7 +3,8 @@
  * SPDX-License-Identifier: BSD-2-Clause */
 #include "ray_shape.h"
 
-/* Edge radius of the bar; and the surface is met within this distance of it. */
+/* BAR_ROUND: radius of the bar's edges. BAR_NEAR: a point this close to the surface counts as a
+ * hit. */
 #define BAR_ROUND  0.02f
 #define BAR_NEAR   0.0006f
 /* Bending and twisting stretch space by less than 1 / 0.62 for |bend| size.x < 0.2 and |twist|
@@ -36,8 +37,8 @@ static void swap_if(float *a, float *b)
     }
 }
 
-/* Interval [*in, *out] of t in which the ray is between two parallel planes, intersected with
- * what is there already. A ray inside the slab and parallel to it changes nothing. */
+/* Intersects [*in, *out] with the interval of t in which the ray is between two parallel planes. A
+ * ray that lies inside and parallel to them changes nothing. */
 static void slab(float low, float high, float o, float d, float *in, float *out)
 {
     const float inverse = 1 / d;
@@ -60,7 +61,8 @@ static void box_span(vec3 low, vec3 high, vec3 o, vec3 d, float *in, float *out)
     slab(low.z, high.z, o.z, d.z, in, out);
 }
 
-/* Boundary of the interval [in, out] in which a ray is inside a convex solid. */
+/* Returns the end of the interval [in, out], in which a ray is inside a convex solid, that is the
+ * first hit. */
 static float entry(float in, float out, float near, float far)
 {
     float t = far;
@@ -104,10 +106,10 @@ static float bend_of(const ted4_ray_object *o)
     return o->bend;
 }
 
-/* Where a point lies about the axis of a bar. With k the curvature, the axis is the circle about
- * (1/k, 0) in the xz plane; a = 1 - k x and b = k z are coordinates from there in radii, h their
- * length; u = (1 - h) / k, written without cancellation, is the distance inwards from the axis
- * within the plane. */
+/* Position of a point relative to the axis of a bar. With k the curvature, the axis is the circle
+ * around (1/k, 0) in the xz plane; a = 1 - k x and b = k z are coordinates relative to its centre
+ * in radii, and h is their length. u = (1 - h) / k, computed without cancellation, is the distance
+ * inwards from the axis within the plane. */
 typedef struct {
     float k, a, b, h, u;
 } arc;
@@ -123,8 +125,8 @@ static arc arc_at(const ted4_ray_object *o, vec3 p)
     return r;
 }
 
-/* The angle of (a, b) over k, the angle being 2 atan(b / (a + h)); good up to 130 degrees, and
- * the bar ends before. */
+/* Returns the angle of (a, b) divided by k. The angle is 2 atan(b / (a + h)), valid up to 130
+ * degrees; the bar ends before that. */
 static float arc_length(const arc *r)
 {
     const float half = ray_atan(ray_min(fabsf(r->b) / (r->a + r->h), 2));
@@ -132,8 +134,8 @@ static float arc_length(const arc *r)
     return 2 * (r->b < 0 ? -half : half) / r->k;
 }
 
-/* Sine and cosine of the twist at arc length s, below a quarter turn either way: a series to
- * x^11, whose first omitted term is 6e-8. */
+/* Sine and cosine of the twist at arc length s, which is less than a quarter turn either way: a
+ * series up to x^11, whose first omitted term is 6e-8. */
 static void twist_at(const ted4_ray_object *o, float s, float sine_cosine[2])
 {
     const float x = (float)(2 * RAY_PI) * o->twist * ray_clamp(s, 0, o->size.z), y = x * x;
@@ -174,7 +176,7 @@ vec3 ted4_ray_rebend(const ted4_ray_object *o, vec3 q)
               (float)(h * ted4_ray_sin(turns) / k));
 }
 
-/* Distance to a rounded box in the straight coordinates of a point with second coordinate y. */
+/* Distance to a rounded box, for a point in straight coordinates whose second coordinate is y0. */
 static float bar_distance(const ted4_ray_object *o, const arc *r, float y0)
 {
     const vec3 q = straight(o, r, y0);
@@ -190,10 +192,10 @@ static float hull_radius(const ted4_ray_object *o)
     return sqrtf(o->size.x * o->size.x + o->size.y * o->size.y);
 }
 
-/* Length of the next step at distance r, after a step of length last from distance before (0:
- * unknown). The distance along a ray is nearly convex inside the hull, as it is for an unbent
- * bar. So when it falls, the line through the last two values meets zero before the surface
- * does; and when it rises, the surface is being left, and the stride may be longer. */
+/* Returns the length of the next step at distance r, after a step of length last from distance
+ * before (0: unknown). The distance along a ray is nearly convex inside the hull, as it is for an
+ * unbent bar. So while it falls, the line through the last two values reaches zero before the
+ * surface does. If it rises, the ray is leaving the surface, and the step may be longer. */
 static float bar_step(float r, float before, float last, float hull)
 {
     if (before > r)
@@ -201,9 +203,8 @@ static float bar_step(float r, float before, float last, float hull)
     return r * (before > 0 ? BAR_LEAVE : BAR_STRIDE);
 }
 
-/* Outside its round hull, the distance to the ring that the hull is a part of is exact and
- * cheap, as it needs neither arc length nor twist; inside, the distance of the bar itself is
- * used. */
+/* Outside the round hull, the distance to the ring that contains the hull is exact and cheap, as it
+ * needs neither arc length nor twist. Inside, the distance to the bar itself is used. */
 static float bar_meet(const ted4_ray_object *o, vec3 p, vec3 d, float near, float far)
 {
     const float hull = hull_radius(o);
@@ -231,9 +232,9 @@ static float bar_meet(const ted4_ray_object *o, vec3 p, vec3 d, float near, floa
     return far;
 }
 
-/* Box about two curves on the hull, left and right of the axis in its plane; sideways the hull's
- * radius is enough. The margin exceeds what a curve leaves the chord between two of its points
- * by. */
+/* Sets the box around two curves on the hull, to the left and right of the axis in its plane;
+ * across that plane the hull's radius is enough. The margin exceeds the distance between a curve
+ * and the chord of two successive points on it. */
 static void bar_bound(ted4_ray_object *o)
 {
     const float r = hull_radius(o), margin = 0.01f;
@@ -304,7 +305,7 @@ static vec3 cylinder_normal(vec3 size, vec3 p)
     return v3(p.x / r, p.y / r, 0);
 }
 
-/* Gradient of the distance from its values at the corners of a small tetrahedron. */
+/* Computes the gradient of the distance from its values at the corners of a small tetrahedron. */
 static vec3 bar_normal(const ted4_ray_object *o, vec3 p)
 {
     static const float corner[4][3] = { { 1, 1, 1 }, { 1, -1, -1 }, { -1, 1, -1 }, { -1, -1, 1 } };

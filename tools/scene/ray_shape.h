@@ -6,13 +6,13 @@
 
 #include "ray_math.h"
 
-/* Local shapes, centred on the origin unless said:
+/* Local shapes, centred on the origin unless stated otherwise:
  *   sphere    radius size.x
  *   box       half edges size
  *   cylinder  radius size.x, half height size.z, axis z, capped
- *   bar       half section size.x by size.y, from z = 0 to size.z, before it is first twisted about
- *             z (twist turns a unit length, in all below a quarter) and then bent in the xz plane
- *             to an arc (bend radians a unit length, towards +x) */
+ *   bar       half section size.x by size.y, from z = 0 to size.z. It is first twisted about z
+ *             (twist turns per unit length, in all less than a quarter turn) and then bent in the
+ *             xz plane to an arc (bend radians per unit length, towards +x) */
 typedef enum { RAY_SPHERE, RAY_BOX, RAY_CYLINDER, RAY_BAR } ted4_ray_kind;
 
 typedef enum {

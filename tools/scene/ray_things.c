@@ -42,7 +42,8 @@ static vec3 paint(const float c[3])
     return ray_paint(c[0], c[1], c[2]);
 }
 
-/* The sum of two sines of rates 1 and the golden ratio: 0 at time 0, within [-1, 1]. */
+/* Returns a weighted sum of two sines of rates 1 and the golden ratio: 0 at time 0, within [-1, 1].
+ */
 static float wave(double turns)
 {
     return (float)(0.7 * ted4_ray_sin(turns) + 0.3 * ted4_ray_sin(1.618033988749895 * turns));

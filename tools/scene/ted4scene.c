@@ -1,5 +1,5 @@
-/* ted4scene.c - command line: makes one of the project's own scenes (see ray_scene.c) as a folder
- * of pictures with poses.
+/* ted4scene.c - the command line of the scene maker: makes one of the project's own scenes (see
+ * ray_scene.c) as a folder of pictures with poses.
  * SPDX-License-Identifier: BSD-2-Clause */
 #include <dirent.h>
 #include <errno.h>
@@ -44,7 +44,7 @@ static const char usage[] =
 
 static const char names[] = "NAMEs, with picture size, training + test cameras, times, hold:\n";
 
-/* What was not given is -1. */
+/* Options that were not given are -1. */
 typedef struct {
     ted4_ray_options set;
     const char *folder;
@@ -66,7 +66,7 @@ static int complain(const char *what, const char *why)
     return EXIT_TROUBLE;
 }
 
-/* A whole decimal number in [low, high]. */
+/* Parses a decimal integer in [low, high]. */
 static int number(const char *text, long long low, long long high, long long *value)
 {
     char *end;
@@ -88,7 +88,7 @@ static int integer(const char *text, int low, int high, int *value)
     return status;
 }
 
-/* "160x120" */
+/* Parses a size such as "160x120". */
 static int size_of(const char *text, ted4_ray_options *o)
 {
     char width[16];
@@ -104,7 +104,7 @@ static int size_of(const char *text, ted4_ray_options *o)
     return integer(x + 1, 8, TED4_RAY_MAX_SIDE, &o->height);
 }
 
-/* A number in [0, high]. */
+/* Parses a number in [0, high]. */
 static int real(const char *text, double high, double *value)
 {
     char *end;
@@ -115,7 +115,7 @@ static int real(const char *text, double high, double *value)
     return EXIT_FINE;
 }
 
-/* "0", or "2" to "1000". */
+/* Parses "0", or "2" to "1000". */
 static int hold_of(const char *text, int *hold)
 {
     const int status = integer(text, 0, TED4_RAY_MAX_COUNT, hold);
@@ -138,7 +138,7 @@ static void help(void)
     }
 }
 
-/* Takes from the table what was not given. */
+/* Takes the options that were not given from the table. */
 static int fill(ted4_ray_options *o)
 {
     const ted4_ray_options d = ted4_ray_defaults(o->scene);
@@ -228,7 +228,7 @@ static int option(command *c, int letter, const char *text)
     return status;
 }
 
-/* EXIT_FINE, EXIT_TROUBLE, or -1 when -h or -V has done the work. */
+/* Returns EXIT_FINE, EXIT_TROUBLE, or -1 if -h or -V has already been handled. */
 static int parse(int argc, char **argv, command *c)
 {
     static const struct option own[] = { { "size", required_argument, NULL, 's' },
@@ -272,7 +272,7 @@ static int parse(int argc, char **argv, command *c)
     return fill(&c->set);
 }
 
-/* Whether there is anything in folder; a folder that does not exist is empty. */
+/* Returns 1 if the folder contains anything. A folder that does not exist is empty. */
 static int is_occupied(const char *folder)
 {
     DIR *const d = opendir(folder);
