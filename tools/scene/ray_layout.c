@@ -222,7 +222,7 @@ static void pose_of(const ted4_ray_camera *c, double R[3][3], double t[3])
     }
 }
 
-/* Computes (w, x, y, z), beginning with the largest component, which is at least 1/2. */
+/* Computes (w, x, y, z) from the largest component, which is at least 1/2. */
 static void quaternion_of(double R[3][3], double q[4])
 {
     const double trace = R[0][0] + R[1][1] + R[2][2];

@@ -61,8 +61,8 @@ static void box_span(vec3 low, vec3 high, vec3 o, vec3 d, float *in, float *out)
     slab(low.z, high.z, o.z, d.z, in, out);
 }
 
-/* Returns the end of the interval [in, out], in which a ray is inside a convex solid, that is the
- * first hit. */
+/* Returns the first end of the interval [in, out] that lies in (near, far), or far. The ray is
+ * inside the convex solid in [in, out]. */
 static float entry(float in, float out, float near, float far)
 {
     float t = far;
