@@ -1,6 +1,6 @@
-/* afl_mutator.c - AFL++'s entries to mutate.h: a library for AFL_CUSTOM_MUTATOR_LIBRARY, for the
- * harnesses whose input is a .ted4 file. What AFL++'s own mutations leave behind has its hashes
- * made right before it is run, fifteen times in sixteen.
+/* afl_mutator.c - AFL++'s entry points to mutate.h: a library for AFL_CUSTOM_MUTATOR_LIBRARY, for
+ * the harnesses whose input is a .ted4 file. AFL++ also applies mutations of its own; before such
+ * an input is run, its hashes are corrected, fifteen times in sixteen.
  * SPDX-License-Identifier: BSD-2-Clause */
 #include <stdlib.h>
 #include <string.h>
@@ -23,7 +23,8 @@ size_t afl_custom_fuzz(void *data, uint8_t *buf, size_t buf_size, uint8_t **out,
 size_t afl_custom_post_process(void *data, uint8_t *buf, size_t buf_size, uint8_t **out);
 void afl_custom_deinit(void *data);
 
-/* Where nothing is known of a structure: some bytes to others, or some more of them, or fewer. */
+/* Used where the structure of the bytes is unknown: changes a few bytes, inserts some, or removes
+ * some. */
 static size_t some_bytes(uint8_t *data, size_t size, size_t max_size)
 {
     random_source *r = &bytes_source;

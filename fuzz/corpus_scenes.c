@@ -1,5 +1,5 @@
-/* corpus_scenes.c - see corpus.h. One byte in front says which file of a scene it is, where the
- * harness takes several.
+/* corpus_scenes.c - see corpus.h. If a harness takes several files of a scene, the first byte of a
+ * seed says which of them it is.
  * SPDX-License-Identifier: BSD-2-Clause */
 #include <stdio.h>
 #include <stdlib.h>
@@ -24,7 +24,7 @@ enum { PLAIN = -1, CAPACITY = 1 << 12 };
 
 typedef struct {
     const char *group, *name;
-    int kind; /* the byte in front; PLAIN: none */
+    int kind; /* first byte of the seed, or PLAIN: no such byte */
     const char *text;
 } text_seed;
 
@@ -126,7 +126,7 @@ static void write_text(const text_seed *s)
     corpus_write(s->group, s->name, data, front + n);
 }
 
-/* Little-endian records. */
+/* Writes little-endian records. */
 typedef struct {
     uint8_t bytes[CAPACITY];
     size_t n;
@@ -189,7 +189,7 @@ static void binary_colmap(void)
     corpus_write("colmap", "points.bin", p.bytes, p.n);
 }
 
-/* kind: the byte in front, or PLAIN. */
+/* kind: the first byte of the seed, or PLAIN. */
 static void numpy(const char *group, const char *name, int kind, const char *header,
                   const double *v, size_t n, int narrow)
 {
@@ -267,7 +267,7 @@ static void png(const char *name, uint32_t format)
         corpus_write("image", name, file, n);
 }
 
-/* The beginning of a picture that was written before. */
+/* Writes the beginning of a picture that was written before. */
 static void cut_png(void)
 {
     static const uint8_t head[] = "\x89PNG\r\n\x1a\n\0\0\0\rIHDR\0\0\0\5\0\0\0\3\10\2\0\0\0\0\0\0\0"
@@ -281,7 +281,8 @@ static void cut_png(void)
                  "\x89PNG\r\n\x1a\n\0\0\0\rIHDR\0\1\0\0\0\0\0\3\10\2\0\0\0\0\0\0\0\0", 34);
 }
 
-/* components: 1 grey, 3 colours, 4 inks. bytes: of the file, at most. */
+/* Writes a JPEG. components: 1 grey, 3 colour, 4 inks. bytes: upper bound on the size of the
+ * file. */
 static void jpeg(const char *name, int components, int progressive, size_t bytes)
 {
     struct jpeg_compress_struct c;
@@ -315,7 +316,7 @@ static void jpeg(const char *name, int components, int progressive, size_t bytes
     free(file);
 }
 
-/* fz_checkpoint.c: changes of a good file. */
+/* Seeds of fz_checkpoint.c: changes of a valid checkpoint. */
 static void checkpoints(void)
 {
     corpus_write("checkpoint", "stage1", "\0", 1);

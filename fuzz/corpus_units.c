@@ -1,5 +1,5 @@
-/* corpus_units.c - see corpus.h. Most of these harnesses take any numbers; what must be right to
- * get anywhere is made right.
+/* corpus_units.c - see corpus.h. Most of these harnesses accept any numbers. Only the values that
+ * an input needs to get past the first checks are set to valid ones.
  * SPDX-License-Identifier: BSD-2-Clause */
 #include <stdio.h>
 #include <zlib.h>
@@ -10,7 +10,7 @@
 
 enum { MOST = 1 << 12 };
 
-/* Random bytes behind n that are given. */
+/* Writes n given bytes, followed by random ones. */
 static void any(const char *group, const char *name, size_t size, const char *first, size_t n)
 {
     random_source r = random_seed(size + (unsigned char)group[0]);
@@ -22,7 +22,7 @@ static void any(const char *group, const char *name, size_t size, const char *fi
     corpus_write(group, name, data, size);
 }
 
-/* Seeds of that kind. */
+/* Seeds that consist of such bytes. */
 static const struct {
     const char *group, *name;
     size_t size;
@@ -85,8 +85,8 @@ static void positions(void)
     corpus_write("positions", "above_one", data, sizeof data);
 }
 
-/* Kind 1 of fz_rans.c: models, then the substream that the writer makes of a few symbols. sigma
- * index 64, mu 0. */
+/* Kind 1 of fz_rans.c: models, then the substream that the writer produces for a few symbols. sigma
+ * index 64, mu 64 / 256. */
 static void substream(void)
 {
     static const int16_t k[6] = { 0, 1, -2, 40, -300, 3 };
@@ -97,8 +97,7 @@ static void substream(void)
     ted4_writer w;
 
     memset(sigma, 64, sizeof sigma);
-    for (int i = 0; i < 6; i++) { /* prob - 1 = 65535 mod 65535 = 0, so mu is 1 << 6: of no matter
-                                     below its fraction */
+    for (int i = 0; i < 6; i++) { /* prob - 1 = 65535 mod 65535 = 0, so mu is 1 << 6 */
         data[n++] = 64;
         data[n++] = 255;
         data[n++] = 255;
@@ -132,7 +131,7 @@ static void deflated(void)
     corpus_write("inflate", "stream", data, 5 + n);
     data[5 + n] = 0;
     corpus_write("inflate", "trailing", data, 6 + n);
-    data[3] = 8; /* a tight bound of memory */
+    data[3] = 8; /* a tight memory limit */
     corpus_write("inflate", "tight", data, 5 + n);
     data[3] = 0;
     data[5 + n / 2] ^= 1;

@@ -1,5 +1,5 @@
-/* counting.h - a caller's allocator that counts, bounds and fails: what fz_decode and fz_alloc_fail
- * know about memory.
+/* counting.h - a caller's allocator that counts, limits and fails. fz_decode and fz_alloc_fail use
+ * it to observe memory.
  * SPDX-License-Identifier: BSD-2-Clause */
 #ifndef TED4_FUZZ_COUNTING_H
 #define TED4_FUZZ_COUNTING_H
@@ -10,11 +10,11 @@
 #include <string.h>
 #include "ted4.h"
 
-/* All zero: nothing fails. */
+/* If all members are zero, no allocation fails. */
 typedef struct {
-    uint64_t held, most; /* bytes: now, and at the worst moment */
-    uint64_t n, fail_at; /* allocations so far; number of the one that fails, from 1; 0: none */
-    int fail_on;         /* those after it fail too */
+    uint64_t held, most; /* bytes held now, and their maximum so far */
+    uint64_t n, fail_at; /* allocations so far; the one that fails, from 1, or 0: none */
+    int fail_on;         /* all later allocations fail too */
 } counting_memory;
 
 enum { COUNTING_HEADER = 16 };

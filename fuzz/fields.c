@@ -8,7 +8,7 @@
 typedef struct {
     fuzz_field *fields;
     size_t n, most;
-    size_t at; /* of the element met last */
+    size_t at; /* offset of the last element met */
 } gatherer;
 
 static void gather(void *user, size_t offset, const char *element, int64_t index, int64_t value)

@@ -1,8 +1,9 @@
-/* fz_alloc_fail.c - a file, and up to 3 bytes behind its chunk ENDS: u16 number of the allocation
- * that fails, u8 whether all after it do. Decoder and reconstruction get a caller's allocator; the
- * writer's malloc, calloc and realloc are wrapped by the linker (-Wl,--wrap). Claims: nothing is
- * leaked; the verdict is limit.memory or the one that the file gets with all the memory it wants,
- * which it is where no allocation failed; what is returned beside limit.memory is nothing.
+/* fz_alloc_fail.c - a file, and up to 3 bytes after its chunk ENDS: u16 number of the allocation
+ * that fails, u8 whether all later ones fail too. The decoder and the reconstruction get a caller's
+ * allocator; the malloc, calloc and realloc of the writer are wrapped by the linker (-Wl,--wrap).
+ * Claims: nothing leaks; the verdict is limit.memory or the one that the file gets with unlimited
+ * memory, and always the latter if no allocation failed; nothing else is returned together with
+ * limit.memory.
  * SPDX-License-Identifier: BSD-2-Clause */
 #include <string.h>
 #include "counting.h"
@@ -21,11 +22,11 @@ void *__wrap_calloc(size_t n, size_t size);
 void *__wrap_realloc(void *block, size_t size);
 void __wrap_free(void *block);
 
-/* What the wrapped functions do while on. */
+/* State of the wrapped functions, which count and fail only while on is set. */
 static struct {
     int on, fail_on;
     size_t n, fail_at;
-    int64_t live; /* blocks taken and not given back */
+    int64_t live; /* blocks allocated and not yet freed */
 } wrapped;
 
 static int fails(void)
@@ -119,7 +120,7 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
     ted4_error e, f;
     const ted4_status want = ted4_decode(data, n, &o, &s, &e);
 
-    /* A file alone has it fail somewhere, too. */
+    /* A file without these bytes gets a failing allocation chosen by its size. */
     if (n == size)
         memory.fail_at = all.n > 0 ? 1 + size % all.n : 1;
     o.allocator = counting_allocator(&memory);

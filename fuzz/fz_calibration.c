@@ -1,5 +1,5 @@
-/* fz_calibration.c - cams.json of fixed cameras with clips, two of which, cam0 and cam1, are there
- * with three pictures each. Claims: those of fuzz_load_scene(); no program is started
+/* fz_calibration.c - cams.json of fixed cameras with clips. The clips of two of them, cam0 and
+ * cam1, exist, with three pictures each. Claims: those of fuzz_load_scene(); no program is started
  * (ted4_video_unpack() is wrapped).
  * SPDX-License-Identifier: BSD-2-Clause */
 #include "harness.h"

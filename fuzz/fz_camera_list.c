@@ -1,6 +1,6 @@
-/* fz_camera_list.c - the JSON list of cameras of ted4dec --render.
- * Claims: cameras with sizes, focal lengths and rotations that the renderer takes, each with a
- * frame or a time in [0, 1]; or one line of what is wrong, and no camera.
+/* fz_camera_list.c - the JSON list of cameras of ted4dec --render. Claims: the result is either
+ * cameras with sizes, focal lengths and rotations that the renderer accepts, each with a frame or a
+ * time in [0, 1]; or a message of one line, and no camera.
  * SPDX-License-Identifier: BSD-2-Clause */
 #include <math.h>
 #include <string.h>

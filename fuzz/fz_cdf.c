@@ -1,13 +1,13 @@
 /* fz_cdf.c - the Gaussian model of a symbol: u8 sigma index, u8 fraction of mu, then 16-bit slots
- * and values. All sigma indices with all fractions are gone through by test_gaussian.c; here
- * they are sampled. Claims: the cumulative frequencies are those of spec 9.4 in wide integers,
- * strictly increasing from 0 to 2^16; every slot has its one symbol; any k becomes a symbol, with
- * an escape exactly when it lies outside the window, and comes back.
+ * and values. test_gaussian.c tests all sigma indices with all fractions; here they are sampled.
+ * Claims: the cumulative frequencies are those of spec 9.4, computed in wide integers, and strictly
+ * increase from 0 to 2^16; every slot belongs to exactly one symbol; any k becomes a symbol, with
+ * an escape exactly if k lies outside the window, and is decoded as k.
  * SPDX-License-Identifier: BSD-2-Clause */
 #include "harness.h"
 #include "norm/gaussian.h"
 
-/* spec 9.4, literally, with floor division of 64-bit integers. */
+/* Floor division as in spec 9.4, of 64-bit integers. */
 static int64_t floor_div(int64_t x, int64_t y)
 {
     return x / y - (x % y != 0 && x < 0);
@@ -78,7 +78,7 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
 
         check_slot(g, fr, fuzz_u16(&in));
         check_value(g, mu, ted4_sat16(k));
-        /* In the window, on its edges, and just outside. */
+        /* Values in the window, on its edges, and just outside. */
         check_value(g, near,
                     ted4_sat16((int32_t)floor_div(near, 256) + (k & 0x7fff) % width - width / 2));
     }

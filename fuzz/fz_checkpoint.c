@@ -1,9 +1,10 @@
 /* fz_checkpoint.c - a trainer's checkpoint: u8 which (bit 0: of stage 1 or of the integer stage;
- * bit 1: its hash is left wrong), then changes of a good one: u24 offset, u8 number of bytes, those
- * bytes; 255 bytes cut the file off there. Claims: a good file is accepted, one with a wrong hash
- * is refused; whatever else is in it, it is refused with a message, or a trainer comes out whose
- * header is one that the format allows, whose anchors lie in the cube, whose pictures exist, and
- * which makes a step or says why not. Room for anchors: what the file fills.
+ * bit 1: its hash is left wrong), then changes of a valid one: u24 offset, u8 number of bytes,
+ * those bytes; the number 255 truncates the file at the offset. Claims: a valid file is accepted,
+ * and one with a wrong hash is refused. Any other file is refused with a message, or gives a
+ * trainer whose header is one that the format allows, whose anchors lie in the cube, whose pictures
+ * exist, and which makes a step or returns a message. The capacity for anchors is in proportion to
+ * the file's size.
  * SPDX-License-Identifier: BSD-2-Clause */
 #include <math.h>
 #include <string.h>
@@ -54,7 +55,7 @@ static void load_scene(void)
     fuzz_require(ted4_dataset_load(&lab.data, folder, &wanted, &m) == 0, "a scene");
 }
 
-/* A checkpoint in a file is what it is in memory. */
+/* A checkpoint in a file equals the one in memory. */
 static void check_file(ted4_trainer *t)
 {
     char path[600];
@@ -67,7 +68,7 @@ static void check_file(ted4_trainer *t)
     fuzz_check_message(&t->message);
 }
 
-/* Trains a few steps, and keeps a state of either stage. */
+/* Trains a few steps, and keeps a state of each of the two stages. */
 static void prepare(void)
 {
     static const char *const small[] = { "stage1=2",        "stage2=3",       "offsets=1",
@@ -93,7 +94,7 @@ static void prepare(void)
     ted4_trainer_finish(&t);
 }
 
-/* The changed file; s->bytes is owned by the caller. */
+/* Returns the changed file; s->bytes is owned by the caller. */
 static ted4_snapshot change(fuzz_source *in, int which)
 {
     const ted4_snapshot *base = &lab.base[which & 1];
@@ -116,14 +117,14 @@ static ted4_snapshot change(fuzz_source *in, int which)
     return s;
 }
 
-/* The walk that a writer of the file would begin with. */
+/* Checks the header with the walk that a writer of the file would begin with. */
 static void check_header(const ted4_trainer *t)
 {
     ted4_header h = t->layout.head;
     ted4_shape shape;
     ted4_counter c;
 
-    h.n_anchors = 1; /* which a trainer does not keep here */
+    h.n_anchors = 1; /* a trainer does not keep it in the header */
     ted4_counter_init(&c);
     ted4_walk_header(&c.base, &h, &shape, 31, UINT64_MAX);
     fuzz_require(c.base.error.code == TED4_OK, "a header of the format");
@@ -140,8 +141,8 @@ static void check_positions(const ted4_trainer *t)
                          "anchors in the cube");
 }
 
-/* A position is 12 of an anchor's bytes in the file; capacities grow by half, and by a few blocks.
- */
+/* A position takes 12 of an anchor's bytes in the file. Capacities grow by half, and by a few
+ * blocks. */
 static void check_capacity(const ted4_trainer *t, size_t size)
 {
     fuzz_require(t->anchors.capacity * TED4_LANES * 12 <= 2 * size + 16 * TED4_LANES * 12,

@@ -1,7 +1,7 @@
 /* fz_colmap.c - COLMAP's model: u8 kind (0 to 2 text, 3 to 5 binary; cameras, images, points3D),
- * then that file. The other two files, and the pictures that they name, are there and right.
- * Claims: those of fuzz_load_scene(); and no count of a binary file takes memory that its size does
- * not warrant (the process has a bound).
+ * then that file. The other two files, and the pictures that they name, exist and are valid.
+ * Claims: those of fuzz_load_scene(); no count in a binary file makes the loader allocate more than
+ * the file's size justifies (the memory of the process is limited).
  * SPDX-License-Identifier: BSD-2-Clause */
 #include "harness.h"
 #include "scene_folder.h"

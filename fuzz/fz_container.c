@@ -1,6 +1,6 @@
-/* fz_container.c - any bytes to pass 1 (spec 5.3), which parses nothing and takes no memory.
- * Claims: a refusal has an offset inside the file; what is accepted is chunks without a gap from
- * the file header to the last byte, HEAD first, ENDS last.
+/* fz_container.c - any bytes, given to pass 1 (spec 5.3), which parses no payload and allocates no
+ * memory. Claims: a refusal has an offset inside the file; an accepted file consists of chunks
+ * without a gap from the file header to the last byte, with HEAD first and ENDS last.
  * SPDX-License-Identifier: BSD-2-Clause */
 #include "harness.h"
 #include "read/container.h"

@@ -1,10 +1,10 @@
-/* fz_decode.c - any bytes to the strict decoder, under knobs that up to two bytes behind the chunk
- * ENDS select: order in which tiles run, trace, place in memory, bounds of memory and of work,
- * kernel. Claims: it returns one verdict; a refusal has an offset inside the file; the same
- * verdict, offset and hash come out whatever the knobs say, but for limit.memory under a tighter
- * bound; limit.work is said of a file exactly when pass 1 and HEAD are right and W_E (spec 13.4) is
- * above what is allowed; no more memory is held than the bound says, nor than size and level allow
- * (SECURITY.md), and all of it is given back; the input is left alone.
+/* fz_decode.c - any bytes, given to the strict decoder with settings that up to two bytes after the
+ * chunk ENDS select (knobs): order in which tiles run, trace, alignment in memory, limits on memory
+ * and work, kernel. Claims: the decoder returns one verdict; a refusal has an offset inside the
+ * file; verdict, offset and hash do not depend on the knobs, apart from limit.memory under a lower
+ * limit; limit.work is returned exactly if pass 1 and HEAD are valid and W_E (spec 13.4) is above
+ * the limit; the memory held exceeds neither the limit nor the bound that follows from size and
+ * level (SECURITY.md), and all of it is freed; the input is not modified.
  * SPDX-License-Identifier: BSD-2-Clause */
 #include <string.h>
 #include "base/bytes.h"
@@ -17,7 +17,7 @@
 
 enum { KNOB_BYTES = 2, TRACE = 4, WORK = 8, PLAIN = 1 };
 
-/* What a decoder says of a file. */
+/* The result of decoding a file. */
 typedef struct {
     ted4_status code;
     ted4_error e;
@@ -52,19 +52,19 @@ static outcome decode(const uint8_t *data, size_t size, const ted4_options *o)
     return r;
 }
 
-/* At least 1 KiB; 0: FUZZ_MAX_BYTES. */
+/* Returns a limit of at least 1 KiB; knob 0: FUZZ_MAX_BYTES. */
 static uint64_t bound_of(uint8_t knob)
 {
     return knob >> 4 == 0 ? FUZZ_MAX_BYTES : (uint64_t)1 << (9 + (knob >> 4));
 }
 
-/* From 2^10 steps on. */
+/* Returns a limit of at least 2^10 steps. */
 static uint64_t work_bound_of(const uint8_t *knob)
 {
     return knob[0] & WORK ? (uint64_t)1 << (10 + (knob[1] >> 4)) : 0;
 }
 
-/* W_E, or 0: pass 1 or HEAD is not right. */
+/* Returns W_E, or 0 if pass 1 or HEAD is not valid. */
 static uint64_t work_of(const uint8_t *data, size_t size)
 {
     ted4_reader whole, head;
@@ -84,7 +84,7 @@ static uint64_t work_of(const uint8_t *data, size_t size)
     return head.base.error.code == TED4_OK ? ted4_count_work(&h, &shape, size) : 0;
 }
 
-/* The bound of SECURITY.md. data[11] is the level. */
+/* Returns the bound of SECURITY.md. data[11] is the level. */
 static uint64_t most_memory(const uint8_t *data, size_t size)
 {
     const ted4_limits *l = size > 11 ? ted4_limits_of(data[11]) : NULL;
@@ -95,7 +95,7 @@ static uint64_t most_memory(const uint8_t *data, size_t size)
     return ((uint64_t)4 << 20) + per_byte * size;
 }
 
-/* too_much: a limit on work forbids the file. */
+/* too_much: the limit on work forbids the file. */
 static void same(const outcome *a, const outcome *b, int tighter, int too_much)
 {
     if (tighter && b->code == TED4_E_LIMIT_MEMORY)

@@ -1,11 +1,12 @@
-/* fz_decode_chunked.c - a file that arrives in pieces, whose sizes up to three bytes behind its
- * chunk ENDS say (R-DEC-004). The decoder begins when all is there (13.1), so the pieces are
- * gathered first; and what it would say in between is what is left of the file at that point, cut
- * short. Claims: gathered are the bytes that came, and none when the stream breaks; where a piece
- * or a chunk ends, the verdict is con.truncated there, or one of pass 1 that no byte behind it
- * changes, or the file was complete and what comes then is con.trailing.
+/* fz_decode_chunked.c - a file that arrives in pieces, whose sizes follow from up to three bytes
+ * after its chunk ENDS (R-DEC-004). Decoding begins when the file is complete (13.1), so the pieces
+ * are gathered first. What a decoder could say in between is its verdict on the bytes that have
+ * arrived so far, a truncated file. Claims: the gathered bytes are those that were sent, and none
+ * if the stream breaks; at the end of each piece and chunk the verdict is con.truncated at that
+ * place, or one of pass 1 that no later byte changes; or the file was complete there, and the
+ * verdict on further bytes is con.trailing.
  * SPDX-License-Identifier: BSD-2-Clause */
-#define _GNU_SOURCE /* fopencookie: a stream of our own */
+#define _GNU_SOURCE /* fopencookie(): a stream with its own read function */
 #include <stdio.h>
 #include <string.h>
 #include "lcg.h"
@@ -16,13 +17,13 @@
 
 enum { TAIL = 3, MOST_ENDS = 24, MOST_BYTES = 1 << 20 };
 
-/* A stream: size bytes, piece by piece. */
+/* A stream of size bytes that are read in pieces. */
 typedef struct {
     const uint8_t *data;
     size_t size, at;
-    uint32_t seed;    /* of the sizes of pieces */
-    unsigned bits;    /* pieces have up to 2^bits bytes */
-    size_t breaks_at; /* an error instead of the bytes from there on; SIZE_MAX: none */
+    uint32_t seed;    /* of the generator of the sizes of pieces */
+    unsigned bits;    /* a piece has up to 2^bits bytes */
+    size_t breaks_at; /* reading fails from this offset on; SIZE_MAX: never */
 } pieces;
 
 static size_t next_piece(pieces *p)
@@ -56,7 +57,7 @@ static uint8_t *gather(pieces p, size_t *size)
     return data;
 }
 
-/* Of the first n bytes, which lie in memory of just that size. */
+/* Returns the verdict on the first n bytes, which are copied to memory of exactly that size. */
 static ted4_error verdict_of(const uint8_t *data, size_t n, int *pass_1)
 {
     const ted4_options o = { .max_bytes = FUZZ_MAX_BYTES };
@@ -101,8 +102,7 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
     ted4_error whole;
     int pass_1;
 
-    if (n >
-        MOST_BYTES) /* a level's bound on file bytes is judged before all that, by the whole file */
+    if (n > MOST_BYTES) /* larger files may exceed a level's bound, which is checked first */
         return 0;
     p.seed = fuzz_u16(&in);
     p.bits = fuzz_u8(&in) % 14;

@@ -1,8 +1,8 @@
-/* fz_dump.c - the byte strings that conformance hashes (annex J), of any file; up to three bytes
- * behind the chunk ENDS give the number of an allocation that fails. Claims: tier T0 gets the
- * verdict and the offset of the decoder; of a file that is accepted T0 holds whole records whose
- * bytes lie in the file, T1 has 15 bytes an anchor, T1 to T4 come out, and twice the same; a
- * failing allocation is limit.memory, and nothing is leaked.
+/* fz_dump.c - the byte strings that conformance hashes (annex J), for any file; up to three bytes
+ * after the chunk ENDS give the number of an allocation that fails. Claims: tier T0 returns the
+ * verdict and the offset of the decoder; if the file is accepted, T0 consists of whole records
+ * whose bytes lie in the file, T1 has 15 bytes per anchor, and all of T1 to T4 are written, equal
+ * if written twice; a failing allocation gives limit.memory, and nothing leaks.
  * SPDX-License-Identifier: BSD-2-Clause */
 #include <string.h>
 #include <xxhash.h>
@@ -13,9 +13,9 @@
 
 enum { TAIL = 3, TIERS = 5, RECORD = 6, PER_ANCHOR = 15 };
 
-/* What went into a sink. */
+/* The bytes that a sink received. */
 typedef struct {
-    const uint8_t *data; /* the file */
+    const uint8_t *data; /* the file that is dumped */
     size_t size, n, calls;
     XXH64_hash_t hash;
 } sunk;

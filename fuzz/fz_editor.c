@@ -1,8 +1,9 @@
-/* fz_editor.c - what an editor may do to a valid file without decoding it (spec 3.5, 5.2): chunks
- * that are not critical dropped, put in, doubled, moved. Up to three bytes behind its chunk ENDS
- * say what and where. Claims: the edited file is valid, has the same hash, tiers T1 to T4, and T0
- * but for these chunks; only the bounds of 13.1 that depend on the file's size can forbid it. In
- * front of HEAD such a chunk is con.chunk-order, behind ENDS con.trailing.
+/* fz_editor.c - what an editor may do to a valid file without decoding it (spec 3.5, 5.2): drop,
+ * insert, double or move ancillary chunks. Up to three bytes after the chunk ENDS select the
+ * operation and the place. Claims: the edited file is valid, and has the same hash, the same tiers
+ * T1 to T4, and the same T0 apart from these chunks; only the bounds of 13.1 that depend on the
+ * file's size can forbid it. Such a chunk before HEAD is refused with con.chunk-order, one after
+ * ENDS with con.trailing.
  * SPDX-License-Identifier: BSD-2-Clause */
 #include <string.h>
 #include <xxhash.h>
@@ -22,7 +23,7 @@ enum { DROP, PUT_IN, TWICE, MOVE, DROP_UNSAFE, WAYS };
 
 static const ted4_options options = { .max_bytes = FUZZ_MAX_BYTES };
 
-/* A file under way. */
+/* A file that is being written. */
 typedef struct {
     uint8_t *data; /* owned */
     size_t size;
@@ -34,7 +35,7 @@ static void add(edited *e, const uint8_t *from, size_t size)
     e->size += size;
 }
 
-/* A chunk that nobody knows, or META with any text. */
+/* Inserts an ancillary chunk: one of unknown type, or META with any text. */
 static void put_in(edited *e, uint8_t what)
 {
     static const char *const type[] = { "META", "xtra", "abcD", "Tile" };
@@ -48,8 +49,8 @@ static void put_in(edited *e, uint8_t what)
     add(e, chunk, FRAME + n);
 }
 
-/* The whole file edited. place: number of the chunk that it happens to or in front of. *changed: 0:
- * there is no such chunk. */
+/* Returns the edited copy of the file. place: number of the chunk that is edited, or before which a
+ * chunk is inserted. *changed: 0 if there is no such chunk. */
 static edited edit(const uint8_t *data, size_t size, int way, unsigned place, uint8_t what,
                    int *changed)
 {
@@ -98,7 +99,7 @@ static void mix(void *user, const void *bytes, size_t size)
     *h = XXH3_64bits_withSeed(bytes, size, *h);
 }
 
-/* T0 without chunks that are not critical, and without offsets. */
+/* T0 without ancillary chunks, and without offsets. */
 typedef struct {
     XXH64_hash_t hash;
     int skip;
@@ -138,7 +139,7 @@ static void same_tiers(const ted4_scene *a, const ted4_scene *b)
     fuzz_require(memcmp(a->hash, b->hash, sizeof a->hash) == 0, "the same integers");
 }
 
-/* Decodes; *p: what was parsed. */
+/* Decodes a file. *p: what was parsed. */
 static ted4_scene *decode(const uint8_t *data, size_t size, parsed *p, ted4_error *e)
 {
     ted4_options o = options;
@@ -168,7 +169,7 @@ static void check(const ted4_scene *s, const parsed *p, const edited *e)
     ted4_scene_free(other);
 }
 
-/* A chunk in front of HEAD, or behind ENDS. */
+/* Puts a chunk before HEAD, or after ENDS. */
 static void misplace(const uint8_t *data, size_t size, uint8_t what)
 {
     edited e = { malloc(size + FRAME + MOST_PAYLOAD), 0 };

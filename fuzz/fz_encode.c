@@ -1,8 +1,8 @@
-/* fz_encode.c - a scene made from the input: the first 8 bytes seed a random one, every 4 bytes
- * more put a value in place of a symbol. Claims: what the encoder accepts the decoder accepts, with
- * the same integers, and writes back as the same bytes; the level declared is the lowest whose
- * bounds hold (spec 13): with a lower one the encoder refuses to write and the decoder to read; the
- * count of ideal bits is not above the bits written.
+/* fz_encode.c - a scene made from the input: the first 8 bytes seed a random scene, and every 4
+ * further bytes replace one symbol. Claims: the decoder accepts what the encoder accepts, with the
+ * same integers, and the encoder writes the result again as the same bytes; the level declared is
+ * the lowest whose bounds hold (spec 13), and with a lower level the encoder refuses to write and
+ * the decoder to read; the number of ideal bits is at most that of the bits written.
  * SPDX-License-Identifier: BSD-2-Clause */
 #include "harness.h"
 #include "fix_hashes.h"
@@ -11,7 +11,8 @@
 
 enum { LEVEL_BYTE = 11 };
 
-/* Place and value are 16 bits each; places go round the types and the symbols of each. */
+/* Replaces symbols. Place and value take 16 bits each; places cycle through the types and the
+ * symbols of each type. */
 static void place_symbols(ted4_scene *s, const uint8_t *data, size_t size)
 {
     for (size_t i = 0; i + 4 <= size; i += 4) {
@@ -63,7 +64,7 @@ static void there_and_back(const ted4_scene *s)
     ted4_error e = { TED4_OK, 0 };
     const ted4_status verdict = ted4_encode(s, 0, NULL, &first, &n_first, NULL);
 
-    /* -32768 is the only thing that can be wrong with such a scene. */
+    /* A symbol of -32768 is the only possible fault of such a scene. */
     fuzz_require(verdict == TED4_OK || verdict == TED4_E_ENT_SYMBOL_RANGE,
                  "a scene that can be written");
     if (verdict != TED4_OK)
@@ -94,9 +95,9 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
 
     if (size < 8)
         return 0;
-    h.n_anchors = 1 + h.n_anchors % 80; /* for speed; enough for two tiles */
+    h.n_anchors = 1 + h.n_anchors % 80; /* for speed; this is enough for two tiles */
     if (data[7] & 1)
-        h.frames = 1u << (data[7] >> 1 & 31); /* levels above the first */
+        h.frames = 1u << (data[7] >> 1 & 31); /* can exceed the first level */
     s = random_scene_of(&r, &h, data[0] & 1);
     if (s == NULL)
         return 0;

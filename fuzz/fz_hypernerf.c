@@ -1,5 +1,5 @@
-/* fz_hypernerf.c - Nerfies' files: u8 kind (0 dataset.json, 1 metadata.json, 2 the camera of
- * picture a, 3 points.npy), then that file. The others are there and right. Claims: those of
+/* fz_hypernerf.c - the files of Nerfies: u8 kind (0 dataset.json, 1 metadata.json, 2 the camera of
+ * picture a, 3 points.npy), then that file. The other files exist and are valid. Claims: those of
  * fuzz_load_scene().
  * SPDX-License-Identifier: BSD-2-Clause */
 #include "harness.h"

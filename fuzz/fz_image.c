@@ -1,9 +1,9 @@
-/* fz_image.c - a PNG or JPEG file, its header alone, and as a whole; and the same bytes as an EXIF
- * segment. Pictures of more than MOST pixels are not decoded here, so that a run stays fast; that
- * they are accepted or refused is seen all the same, by their header. Claims: header and picture
- * have the same size, 1 to TED4_IMAGE_MAX_SIDE a side, and an orientation of 1 to 8; pixels are
- * those of 3 or 4 channels, all of them set; or there is a message and no pixel. Reading twice
- * gives the same.
+/* fz_image.c - a PNG or JPEG file: its header alone, the whole file, and the same bytes as an EXIF
+ * segment. Pictures of more than MOST pixels are not decoded here, so that a run stays fast;
+ * reading their header still tests whether they are accepted. Claims: header and picture have the
+ * same size, 1 to TED4_IMAGE_MAX_SIDE per side, and an orientation of 1 to 8; the pixels have 3 or
+ * 4 channels, and all of them are set. Otherwise there is a message and no pixel. Reading a second
+ * time gives the same result.
  * SPDX-License-Identifier: BSD-2-Clause */
 #include <string.h>
 #include "data/image_file.h"

@@ -1,9 +1,9 @@
-/* fz_inflate.c - a deflated blob (spec 7.2): u8 kind, u16 number n of values, u16 bound of memory,
- * then the deflated bytes; kind 1: then the values, which are deflated first. Claims: accepted
- * exactly when the bytes are one zlib stream that ends where they do, gives 4 n bytes, and is
- * shorter (compared with zlib's own uncompress() into more room than that); never more memory than
- * the bound, all given back; values come out unshuffled; a ratio that DEFLATE cannot have is
- * refused before anything is taken.
+/* fz_inflate.c - a deflated blob (spec 7.2): u8 kind, u16 number n of values, u16 memory limit,
+ * then the deflated bytes; kind 1: then the values, which the harness deflates first. Claims: the
+ * blob is accepted exactly if the bytes are one zlib stream that ends where they end, gives 4 n
+ * bytes, and is shorter than these (compared with zlib's own uncompress(), which gets more room
+ * than that); the memory used stays within the limit, and all of it is freed; the values are
+ * unshuffled correctly; a ratio that DEFLATE cannot reach is refused before any allocation.
  * SPDX-License-Identifier: BSD-2-Clause */
 #include <string.h>
 #include <zlib.h>
@@ -14,7 +14,7 @@
 
 enum { CAPACITY = 1 << 19 };
 
-/* What zlib itself makes of the bytes: 4 n bytes of them, and all of the input used. */
+/* Tests whether zlib itself obtains exactly 4 n bytes and uses the whole input. */
 static int zlib_accepts(const uint8_t *data, size_t size, size_t n, uint8_t *out)
 {
     uLongf n_out = CAPACITY;

@@ -1,9 +1,9 @@
 /* fz_integerise.c - weights of Tier E from binary32 to integers: u8 shapes and finest shift, then
- * shifts and values of all units. Claims: ted4_rne_scaled() is round-to-nearest-even of the exact
- * rational; ted4_prior_load() gives the verdict, and the place of the failure, that the rules
- * R-NET-002 to R-NET-006 give when they are read in that order with exact numbers; what ted4_snap()
- * makes of any values, it accepts, and evaluates to the same bounded numbers with the plain layers
- * and this machine's.
+ * shifts and values of all units. Claims: ted4_rne_scaled() rounds the exact rational to nearest
+ * even; ted4_prior_load() gives the same verdict and the same place of the failure as the rules
+ * R-NET-002 to R-NET-006, applied in that order with exact numbers; values returned by ted4_snap()
+ * for any input are accepted, and evaluate to the same bounded numbers with the plain layers and
+ * with this machine's.
  * SPDX-License-Identifier: BSD-2-Clause */
 #include <math.h>
 #include <string.h>
@@ -22,7 +22,8 @@ typedef struct {
     uint8_t shift[MAX_VALUES];
 } nets;
 
-/* A long double holds a binary32 times a power of two exactly, and rintl() rounds it as asked. */
+/* A long double holds a binary32 times a power of two exactly, and rintl() rounds to nearest
+ * even. */
 static int64_t exact(uint32_t bits, int e)
 {
     const long double v = ldexpl((long double)ted4_bits_float(bits), e);
@@ -41,7 +42,7 @@ static void check_rounding(fuzz_source *in)
     if (!ted4_float_legal(bits))
         return;
     is = ted4_rne_scaled(bits, e);
-    /* Beyond 2^62 any result that every bound refuses will do. */
+    /* Beyond 2^62 any result is right that exceeds every bound. */
     fuzz_require(is == exact(bits, e) || (is >= most && exact(bits, e) >= most) ||
                      (is <= -most && exact(bits, e) <= -most),
                  "rounding");
@@ -67,7 +68,7 @@ static int take_nets(fuzz_source *in, nets *n)
     return n->shape.n_nete <= MAX_VALUES && n->shape.n_units <= MAX_VALUES;
 }
 
-/* Shifts beyond the range, and values of any pattern, must occur but not always. */
+/* Shifts out of range and values of any bit pattern must occur, but not always. */
 static void take_values(fuzz_source *in, nets *n)
 {
     const int wild = fuzz_u8(in);
@@ -81,8 +82,8 @@ static void take_values(fuzz_source *in, nets *n)
     }
 }
 
-/* R-NET-003 and R-NET-005 for all units of a network, from at on. SIZE_MAX: they hold; else the
- * first that breaks them. */
+/* Checks R-NET-003 and R-NET-005 for all units of a network. Returns SIZE_MAX if they hold, else
+ * the index of the first unit that breaks one of them. */
 static size_t bad_shift(const nets *n, const ted4_net_shape *s, int hyper)
 {
     size_t at = s->first_unit;
@@ -100,8 +101,8 @@ static size_t bad_shift(const nets *n, const ted4_net_shape *s, int hyper)
     return SIZE_MAX;
 }
 
-/* One layer: the first value that breaks a rule, R-NET-002, 004 and 006 in the order in which they
- * are met. */
+/* Returns the first value of a layer that breaks one of R-NET-002, R-NET-004 and R-NET-006, in the
+ * order in which a decoder meets them. */
 static int bad_layer(const nets *n, unsigned in, unsigned out, const uint8_t *shift, size_t at,
                      int f, int g, int64_t amplitude, ted4_error *e)
 {
@@ -171,7 +172,7 @@ static ted4_error expected(const nets *n)
     return e;
 }
 
-/* Loaded networks, on positions and contexts of the input. */
+/* Evaluates loaded networks on positions and contexts of the input. */
 static void evaluate(fuzz_source *in, const nets *n, ted4_prior *prior)
 {
     enum { ANCHORS = 5, MOST = 64 };

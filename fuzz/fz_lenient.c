@@ -1,8 +1,8 @@
-/* fz_lenient.c - lenient decoding of any bytes, and of a valid file cut where up to three bytes
- * behind its chunk ENDS say (u16, from its end). Claims: the verdict is the strict decoder's; a
- * valid file gives its own scene; of another there is a scene exactly when a tile could be saved,
- * with the anchors of that many tiles, which can be written and read again; what is saved of a
- * valid file cut short is a prefix of it.
+/* fz_lenient.c - lenient decoding of any bytes, and of a valid file that is cut where up to three
+ * bytes after its chunk ENDS say (u16, counted from its end). Claims: the verdict is the strict
+ * decoder's; a valid file gives its own scene; any other file gives a scene exactly if a tile could
+ * be saved, with the anchors of that many tiles, and this scene can be written and read again; the
+ * scene saved from a truncated valid file is a prefix of its scene.
  * SPDX-License-Identifier: BSD-2-Clause */
 #include <string.h>
 #include "harness.h"
@@ -18,7 +18,7 @@ static size_t least(size_t a, size_t b)
     return a < b ? a : b;
 }
 
-/* A saved scene is one like others. */
+/* A saved scene satisfies the same rules as any scene. */
 static void check_scene(const ted4_scene *s)
 {
     uint8_t *out = NULL;
@@ -33,7 +33,7 @@ static void check_scene(const ted4_scene *s)
     free(out);
 }
 
-/* Gives the scene, or NULL. */
+/* Returns the scene, or NULL. */
 static ted4_scene *decode(const uint8_t *data, size_t size, ted4_salvage *w)
 {
     ted4_scene *s = NULL, *strict = NULL;

@@ -1,8 +1,8 @@
 /* fz_masks.c - masks of a scene (spec 9.3): u8 offsets K, u8 which masks exist, u8 anchors, u8
  * probabilities given or counted, then masks. Claims: masks that a header allows are written and
- * read back; ones that contradict it (an offset beyond K, a mask that is not coded and not what is
- * implied) are refused by the writer, never written; a tile whose mask substream is any other bytes
- * is refused, or gives a file that is written as the same bytes.
+ * read back; masks that contradict it (an offset beyond K, a mask that is not coded and differs
+ * from the implied one) are refused by the writer, never written; a tile whose mask substream is
+ * replaced by any other bytes is refused, or is written again as the same bytes.
  * SPDX-License-Identifier: BSD-2-Clause */
 #include "harness.h"
 #include "fix_hashes.h"
@@ -32,7 +32,7 @@ static ted4_header header_of(fuzz_source *in)
     return h;
 }
 
-/* Takes the masks as they come. 1: the header allows them. */
+/* Copies the masks from the input unchecked. Returns 1 if the header allows them. */
 static int take_masks(fuzz_source *in, ted4_scene *s)
 {
     const int wild = (fuzz_u8(in) & 3) == 3, given = fuzz_u8(in) & 1;
@@ -56,7 +56,7 @@ static int take_masks(fuzz_source *in, ted4_scene *s)
     return legal;
 }
 
-/* Changes bytes of the first TILE behind its sizes, as the input says. */
+/* Changes bytes of the first TILE after its sizes, as the input says. */
 static void damage(fuzz_source *in, uint8_t *data, size_t size)
 {
     size_t at = TED4_FILE_HEADER_SIZE;

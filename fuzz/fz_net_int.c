@@ -1,8 +1,8 @@
 /* fz_net_int.c - one dense layer of Tier E: u8 in, u8 out, then for each unit its shift, bias and
- * weights, then inputs; the last number goes on where the input ends. Claims: the accumulator rule
- * (R-NET-006) agrees with 64-bit sums of the worst inputs; where it holds, the plain layer,
- * summation backwards in 64 bits, columns in halves as two threads would take them, and every
- * vector kernel of this machine give the same bits, and columns beyond the last are left alone.
+ * weights, then inputs; beyond its end these are the worst ones for unit 0. Claims: the accumulator
+ * rule (R-NET-006) agrees with 64-bit sums of the worst inputs; if it holds, the plain layer,
+ * 64-bit summation in reverse order, columns in halves as two threads would compute them, and every
+ * vector kernel of this machine give the same bits, and columns beyond the last are not touched.
  * SPDX-License-Identifier: BSD-2-Clause */
 #include <string.h>
 #include "harness.h"
@@ -25,8 +25,8 @@ typedef struct {
     _Alignas(64) int32_t last[MAX_OUT * BLOCK];
 } outputs;
 
-/* R-NET-006 in 64 bits, for inputs that push every product to one side. Gives what the rule has to
- * say. */
+/* R-NET-006 in 64 bits, for inputs whose products all have the same sign. Returns whether the rule
+ * holds. */
 static int fits(const layer *n, unsigned o, int32_t amplitude)
 {
     int64_t most = n->b[o] < 0 ? -(int64_t)n->b[o] : n->b[o];
@@ -41,7 +41,7 @@ static int fits(const layer *n, unsigned o, int32_t amplitude)
     return most <= INT32_MAX;
 }
 
-/* A layer of the input whose units are halved until the rule holds. */
+/* Reads a layer from the input. Its units are halved until the rule holds. */
 static void take_layer(fuzz_source *in, layer *n)
 {
     const ted4_unit_rule rule = { 0, 0, 32767 };
@@ -81,7 +81,7 @@ static void take_layer(fuzz_source *in, layer *n)
     }
 }
 
-/* Any number of +-32767; beyond the input's end the worst ones of unit 0. */
+/* Reads inputs of up to +-32767; beyond the input's end they are the worst ones for unit 0. */
 static void take_inputs(fuzz_source *in, layer *n)
 {
     for (unsigned i = 0; i < n->l.in; i++)
@@ -93,7 +93,7 @@ static void take_inputs(fuzz_source *in, layer *n)
         }
 }
 
-/* The definition of 7.3 in 64 bits, summed backwards. */
+/* The definition of 7.3 in 64 bits, summed in reverse order. */
 static void define(const layer *n, outputs *y)
 {
     for (unsigned o = 0; o < n->l.out; o++)
