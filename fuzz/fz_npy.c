@@ -1,6 +1,7 @@
 /* fz_npy.c - NumPy's array file: as a table of 3 columns, and as poses_bounds.npy of a scene with
- * two clips. Claims: the numbers of a table are all that stands behind the file's header, and
- * finite; or there is a message and no table. For the scene those of fuzz_load_scene().
+ * two clips. Claims: a table consists of all the numbers after the file's header, and all are
+ * finite; otherwise there is a message and no table. For the scene, the claims are those of
+ * fuzz_load_scene().
  * SPDX-License-Identifier: BSD-2-Clause */
 #include <math.h>
 #include "base/bytes.h"
@@ -8,8 +9,8 @@
 #include "harness.h"
 #include "scene_folder.h"
 
-/* Bytes behind the header: 6 of signature, 2 of version, 2 or 4 that say how long the rest of it
- * is. */
+/* Returns the number of bytes after the header, which has 6 bytes of signature, 2 of version, and 2
+ * or 4 that give the length of its rest. */
 static size_t table_size(const uint8_t *data, size_t size)
 {
     const size_t start = data[6] == 1 ? 10 + (size_t)ted4_load16(data + 8)

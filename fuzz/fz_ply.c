@@ -1,5 +1,5 @@
-/* fz_ply.c - a PLY point cloud.
- * Claims: as many points as the bytes can hold, all finite; or a message and no point.
+/* fz_ply.c - a PLY point cloud. Claims: the result is at most as many points as the bytes can hold,
+ * all finite; or a message and no point.
  * SPDX-License-Identifier: BSD-2-Clause */
 #include <math.h>
 #include "data/point_cloud.h"

@@ -1,8 +1,8 @@
-/* fz_positions.c - a POSN payload (spec 8): binary16 patterns, three an anchor.
- * Claims: the reading walk gives the verdict, and the place, of the rules taken literally (values
- * as long doubles, Morton codes bit by bit); what it accepts is written as the same bytes; the same
- * anchors sorted by ted4_positions_sort() are accepted when all values are legal; binary16 becomes
- * X and binary32 exactly, and comes back.
+/* fz_positions.c - a POSN payload (spec 8): binary16 patterns, three per anchor. Claims: the
+ * reading walk gives the same verdict and place as a literal implementation of the rules (values as
+ * long doubles, Morton codes bit by bit); what it accepts is written as the same bytes; if all
+ * values are legal, the same anchors are accepted after ted4_positions_sort(); the conversion of
+ * binary16 to X and binary32 is exact, and reversible.
  * SPDX-License-Identifier: BSD-2-Clause */
 #include <math.h>
 #include <string.h>
@@ -22,8 +22,8 @@ static long double value(uint16_t h)
     return h >> 15 ? -v : v;
 }
 
-/* Order of two patterns as numbers of two halves, the negative ones backwards: what the image of
- * spec 8 stands for. */
+/* The Morton code of an anchor, bit by bit, from the images of spec 8: integers with the order of
+ * the binary16 values, so that the patterns of negative ones are reversed. */
 static uint64_t code(const uint16_t *p)
 {
     uint64_t c = 0;

@@ -1,8 +1,8 @@
-/* fz_query_time.c - any numerator, denominator and camera, asked of one of a few scenes: u8 scene,
- * u32 num, u32 den, u8 factor, f32 camera[3]. Claims: refused exactly when den is 0 or above 2^24 -
- * 1, or num > den; equal fractions give the same records; num = 0 and num = den give those of the
- * first and last row of the bank, and frame j of F those of j / (F - 1), however written; a NaN or
- * infinite camera is rec.non-finite or without effect.
+/* fz_query_time.c - any numerator, denominator and camera, queried from one of a few scenes: u8
+ * scene, u32 num, u32 den, u8 factor, f32 camera[3]. Claims: a query is refused exactly if den is 0
+ * or above 2^24 - 1, or num > den; equal fractions give the same records; num = 0 and num = den
+ * give the records of the first and last row of the bank, and frame j of F those of j / (F - 1),
+ * however the fraction is written; a NaN or infinite camera gives rec.non-finite or has no effect.
  * SPDX-License-Identifier: BSD-2-Clause */
 #include <math.h>
 #include "harness.h"
@@ -10,7 +10,8 @@
 
 enum { SCENES = 6, MOST = (1 << 24) - 1 };
 
-/* Made once, kept for all inputs. One scene of each motion, and two of random headers. */
+/* Scenes that are made once and kept for all inputs: one of each kind of motion, and two with
+ * random headers. */
 static ted4_recon *recon_of(unsigned which)
 {
     static ted4_recon *made[SCENES];
@@ -36,7 +37,7 @@ static ted4_recon *recon_of(unsigned which)
     return made[which];
 }
 
-/* TED4_OK with the hash of the records, or a refusal. */
+/* Returns TED4_OK and the hash of the records, or a refusal. */
 static ted4_status ask(ted4_recon *r, uint32_t num, uint32_t den, const float camera[3],
                        uint8_t hash[16])
 {

@@ -1,8 +1,8 @@
-/* fz_rans.c - substreams: u8 kind, u8 n, then n models, then bytes. kind 0: symbols out of the
- * input through writer and reader. kind 1: the rest of the input is a substream itself. Claims:
- * what is written is read, with the coder in its final state at the last byte (R-ENT-005), and one
- * byte more or less is refused; a substream that is accepted is the one that the writer makes of
- * its symbols.
+/* fz_rans.c - substreams: u8 kind, u8 n, then n models, then bytes. Kind 0: symbols from the input
+ * pass through writer and reader. Kind 1: the rest of the input is itself a substream. Claims: what
+ * is written is read back, with the coder in its final state at the last byte (R-ENT-005), and a
+ * byte more or less is refused; a substream that is accepted equals the one that the writer makes
+ * from its symbols.
  * SPDX-License-Identifier: BSD-2-Clause */
 #include <string.h>
 #include "harness.h"
@@ -11,7 +11,7 @@
 
 enum { MAX_N = 255, SIZES = 4 };
 
-/* One of two kinds of symbol each: a bit of that probability, or k with its mu and sigma. */
+/* Each symbol is of one of two kinds: a bit with a probability, or k with its mu and sigma. */
 typedef struct {
     unsigned n;
     uint8_t is_bit[MAX_N], sigma[MAX_N];
@@ -34,7 +34,7 @@ static void take_models(fuzz_source *in, symbols *s)
     }
 }
 
-/* Codes all symbols with one coder or the other. */
+/* Codes all symbols with a writer or a reader. */
 static void walk(ted4_coder *c, symbols *s)
 {
     uint32_t size;

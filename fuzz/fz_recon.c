@@ -1,8 +1,8 @@
-/* fz_recon.c - the Gaussians of any file that the decoder accepts, at times and camera centres that
- * up to 32 bytes behind the chunk ENDS give. Claims: a query gives finite numbers or
- * rec.non-finite; they are those of class X by recon_ref.h, bit for bit; what was queried
- * before, the order of blocks and the kernel do not matter; there is a record for every kept
- * offset, its id increasing.
+/* fz_recon.c - the Gaussians of any file that the decoder accepts, at times and camera centres
+ * given by up to 32 bytes after the chunk ENDS. Claims: a query gives finite numbers or
+ * rec.non-finite; the numbers are those of class X in recon_ref.h, bit for bit; earlier queries,
+ * the order of blocks and the kernel do not matter; there is one record per kept offset, and ids
+ * increase.
  * SPDX-License-Identifier: BSD-2-Clause */
 #include <math.h>
 #include <string.h>
@@ -23,8 +23,8 @@ static const float *channel(const ted4_gaussians *g, int c)
                      : g->colour[c - 11];
 }
 
-/* The records of recon_ref.h; a value that is not finite in one of them is what rec.non-finite
- * means. */
+/* Compares with the records of recon_ref.h. The verdict must be rec.non-finite if one of them has a
+ * value that is not finite. */
 static void check_reference(const ted4_scene *s, const ted4_query *q, size_t n,
                             const ted4_gaussians *g, ted4_status verdict)
 {
@@ -59,7 +59,8 @@ static void check_ids(const ted4_scene *s, const ted4_gaussians *g)
     }
 }
 
-/* Another query than the one before, which may have its numerator, denominator or camera. */
+/* Returns a query that differs from the previous one, but may share its numerator, denominator or
+ * camera. */
 static ted4_query query_of(fuzz_source *in, const ted4_query *before)
 {
     const uint8_t keep = fuzz_u8(in);
@@ -77,7 +78,8 @@ static ted4_query query_of(fuzz_source *in, const ted4_query *before)
     return q;
 }
 
-/* The same query of a new object, which has no last one, by other ways. */
+/* Repeats a query on a new object, which has no earlier query, with plain kernels and another order
+ * of blocks. */
 static void check_fresh(const ted4_scene *s, const ted4_query *q, const uint8_t hash[16],
                         ted4_status verdict)
 {
@@ -129,7 +131,8 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
     fuzz_source in = { data + n, data + size };
     ted4_scene *s = NULL;
 
-    /* The reference is slow: whole networks in doubles for each anchor. */
+    /* Only small scenes: the reference is slow, since it evaluates whole networks in doubles per
+     * anchor. */
     if (ted4_decode(data, n, &o, &s, NULL) == TED4_OK && s->head.n_anchors <= 128 &&
         ted4_recon_class_x())
         query_all(s, &in);

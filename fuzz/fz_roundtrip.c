@@ -1,8 +1,8 @@
-/* fz_roundtrip.c - any bytes to the strict decoder, and what it accepts to the writer. Up to two
- * bytes behind the chunk ENDS are knobs of others. Claim: write(parse(x)) is x. Ancillary chunks
- * and the minor version are not parsed, so they are left out of x; without them a file may have too
- * many symbols a byte for its level, which the writer then says. Writing twice gives the same,
- * tiles in any order.
+/* fz_roundtrip.c - any bytes, given to the strict decoder; what it accepts is given to the writer.
+ * Up to two bytes after the chunk ENDS are knobs of other harnesses and ignored. Claim:
+ * write(parse(x)) is x. Ancillary chunks and the minor version are not parsed, so they are removed
+ * from x first; without them a file may have too many symbols per byte for its level, which the
+ * writer then reports. Writing a second time, with tiles in any order, gives the same bytes.
  * SPDX-License-Identifier: BSD-2-Clause */
 #include <string.h>
 #include "harness.h"

@@ -1,6 +1,6 @@
-/* fz_transforms.c - D-NeRF's and nerfstudio's JSON: u8 kind (0 transforms.json; 1, 2 the training
- * or the test file of a pair whose other one is right), then that file. Pictures a.png and b.png
- * and points.ply are there. Claims: those of fuzz_load_scene().
+/* fz_transforms.c - the JSON files of D-NeRF and nerfstudio: u8 kind (0 transforms.json; 1, 2 the
+ * training or the test file of a pair whose other file is valid), then that file. The pictures
+ * a.png and b.png and points.ply exist. Claims: those of fuzz_load_scene().
  * SPDX-License-Identifier: BSD-2-Clause */
 #include "harness.h"
 #include "scene_folder.h"

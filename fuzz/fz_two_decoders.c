@@ -1,9 +1,10 @@
-/* fz_two_decoders.c - any bytes to the strict decoder and to the code that the specification prints
- * (spec 4.5, spec_model.h), which shares nothing with it but the tables of annex A. Up to two
- * bytes behind the chunk ENDS are knobs of others. Claims: the same verdict, identifier and offset;
- * of what is valid the same tiers T0 to T4, byte by byte. (two_decoders.py asks the one in Python.)
+/* fz_two_decoders.c - any bytes, given to the strict decoder and to the code that the specification
+ * prints (spec 4.5, spec_model.h), which shares only the tables of annex A with it. Up to two bytes
+ * after the chunk ENDS are knobs of other harnesses and ignored. Claims: both give the same
+ * verdict, identifier and offset; for a valid file both give the same tiers T0 to T4, byte by byte.
+ * (two_decoders.py compares with the decoder in Python.)
  * SPDX-License-Identifier: BSD-2-Clause */
-#include "spec_tiers.h" /* first: its names are common ones */
+#include "spec_tiers.h" /* first, because its names are common ones */
 #include "harness.h"
 #include "fix_hashes.h"
 #include "norm/limits.h"
@@ -11,10 +12,10 @@
 
 enum { TAIL = 2, SEARCH = 512 };
 
-/* Steps that the printed code, which is plain and slow, may take. */
+/* The number of steps that the printed code, which is plain and slow, may take. */
 static const uint64_t patience = (uint64_t)1 << 24;
 
-/* The tier that is expected, and how much of it has come. */
+/* The expected tier, and how much of it has been received. */
 typedef struct {
     const spec_bytes *want;
     size_t n;
@@ -29,7 +30,7 @@ static void compare(void *user, const void *bytes, size_t size)
     e->n += size;
 }
 
-/* Would the printed code end soon? Without a good HEAD it does. */
+/* Returns whether the printed code ends soon. Without a valid HEAD it does. */
 static int soon(const uint8_t *data, size_t size)
 {
     ted4_reader r;
@@ -49,7 +50,7 @@ static int soon(const uint8_t *data, size_t size)
     ted4_walk_header(&r.base, &h, &shape, TED4_LEVEL_UNBOUNDED, UINT64_MAX);
     if (r.base.error.code != TED4_OK)
         return 1;
-    n = h.n_anchors <= size / 6 ? h.n_anchors : 0; /* else there are no positions */
+    n = h.n_anchors <= size / 6 ? h.n_anchors : 0; /* otherwise there are no positions */
     return n * ted4_count_products(&h, &shape) +
                SEARCH * n * (ted4_count_symbols(&h, &shape) / h.n_anchors) <=
            patience;

@@ -1,8 +1,8 @@
-/* fz_validate.c - any bytes to the validator and to the strict decoder.
- * Claims: one verdict; there is an error among the findings exactly when the file is refused, and
- * the first of them is the decoder's own, with its identifier and offset; every finding names
- * itself, its rules, and a place inside the file; the same findings come twice, in the same order;
- * memory is given back.
+/* fz_validate.c - any bytes, given to the validator and to the strict decoder. Claims: both return
+ * the same verdict; the findings contain an error exactly if the file is refused, and the first
+ * error has the identifier and offset of the decoder's; every finding has an identifier, its rules,
+ * and a place inside the file; a second run gives the same findings in the same order; all memory
+ * is freed.
  * SPDX-License-Identifier: BSD-2-Clause */
 #include <string.h>
 #include <xxhash.h>
@@ -12,9 +12,9 @@
 
 enum { TAIL = 3 };
 
-/* What went into a sink. */
+/* The findings that a sink received. */
 typedef struct {
-    size_t size; /* of the file */
+    size_t size; /* size of the file */
     uint64_t n, errors;
     const char *first; /* identifier of the first error */
     size_t first_at;

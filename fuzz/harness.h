@@ -1,6 +1,6 @@
-/* harness.h - what the fuzzing harnesses share: a claim that ends the process when it does not
- * hold, numbers taken from an input, and the bound on a decoder's memory. Each fz_*.c is one
- * libFuzzer entry; list.def names them all; main.c replays files through them without libFuzzer.
+/* harness.h - what the fuzzing harnesses share: a claim that ends the process if it does not hold,
+ * numbers read from an input, and the limit on a decoder's memory. Each fz_*.c is one libFuzzer
+ * entry; list.def names them all; main.c replays files through them without libFuzzer.
  * SPDX-License-Identifier: BSD-2-Clause */
 #ifndef TED4_HARNESS_H
 #define TED4_HARNESS_H
@@ -22,7 +22,7 @@ static inline void fuzz_require(int holds, const char *claim)
     abort();
 }
 
-/* Numbers from an input, little-endian; 0 where it has ended. */
+/* Numbers read from an input, little-endian; 0 beyond its end. */
 typedef struct {
     const uint8_t *at, *end;
 } fuzz_source;
@@ -51,7 +51,7 @@ static inline uint32_t fuzz_u32(fuzz_source *s)
     return (uint32_t)fuzz_take(s, 4);
 }
 
-/* low .. high, both included. */
+/* Returns a number in low .. high, both included. */
 static inline uint32_t fuzz_in(fuzz_source *s, uint32_t low, uint32_t high)
 {
     return low + fuzz_u16(s) % (high - low + 1);

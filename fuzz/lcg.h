@@ -1,4 +1,5 @@
-/* lcg.h - the small generator of harnesses whose seeds and regressions depend on its sequence.
+/* lcg.h - the small random generator of harnesses whose seeds and regressions depend on its
+ * sequence.
  * SPDX-License-Identifier: BSD-2-Clause */
 #ifndef TED4_FUZZ_LCG_H
 #define TED4_FUZZ_LCG_H

@@ -1,6 +1,6 @@
-/* main.c - replays inputs through one harness, without libFuzzer: replay NAME PATH..., PATH being a
- * file or a folder of files. Good for looking at a find in a debugger, too. Ends with 3 when a path
- * cannot be read.
+/* main.c - replays inputs through one harness, without libFuzzer: replay NAME PATH..., where PATH
+ * is a file or a folder of files. It is also useful for examining a find in a debugger. The exit
+ * status is 3 if a path cannot be read.
  * SPDX-License-Identifier: BSD-2-Clause */
 #include "harness.h"
 #include "inputs.h"

@@ -1,6 +1,6 @@
-/* make_corpus.c - writes fuzz/corpus: tiny valid files, each with other parts of the header in use,
- * the same with knobs behind them, files that are refused, and the seeds of corpus_units.c and
- * corpus_scenes.c. `make fuzz-corpus`.
+/* make_corpus.c - writes fuzz/corpus: tiny valid files, each with different parts of the header in
+ * use; the same files with knobs after them; files that are refused; and the seeds of
+ * corpus_units.c and corpus_scenes.c. `make fuzz-corpus`.
  *     make_corpus FOLDER
  * SPDX-License-Identifier: BSD-2-Clause */
 #include <stdio.h>
@@ -13,7 +13,7 @@
 
 enum { MAX_FILE = 1 << 14, KNOBS = 2, QUERIES = 32 };
 
-/* Nothing moves, no masks, one slice, no view: the least that a file holds. */
+/* Nothing moves, no masks, one slice, no view: the least that a file can contain. */
 static ted4_header smallest(void)
 {
     ted4_header h;
@@ -124,7 +124,8 @@ static ted4_header header_of(int i)
     return h;
 }
 
-/* An ancillary chunk META behind HEAD, and a minor version above ours. Gives the new size. */
+/* Inserts an ancillary chunk META after HEAD, and sets a minor version above ours. Returns the new
+ * size. */
 static size_t add_meta(uint8_t *data, size_t size)
 {
     static const char text[] = "title=fuzz\n";
@@ -166,7 +167,7 @@ static int write_file(int i)
     for (int j = 0; j < QUERIES; j++)
         data[size + (size_t)j] = (uint8_t)random_u32(&r);
     corpus_write("recon", file, data, size + QUERIES);
-    data[size] = (uint8_t)(i % 8 | i / 2 << 4); /* tile order and trace, then a bound of memory */
+    data[size] = (uint8_t)(i % 8 | i / 2 << 4); /* tile order and trace, then a memory limit */
     corpus_write("knobs", file, data, size + KNOBS);
     return 1;
 }
@@ -181,7 +182,8 @@ static size_t flip_bits(uint8_t *data, size_t size, size_t max_size)
     return size;
 }
 
-/* Changed files, one for each way in which the decoder refuses them: the first that is met. */
+/* Writes changed files: for each verdict by which the decoder refuses a file, the first one found
+ * that gets it. */
 static void write_refused(void)
 {
     enum { TRIES = 30000 };
@@ -213,8 +215,9 @@ static void write_refused(void)
     }
 }
 
-/* Two tiles, of which a lenient decoder can save the first when the file is cut; and both damaged:
- * whichever runs first, the first of them in the file is the one that counts. */
+/* Writes two files of two tiles: one is truncated, so that a lenient decoder can save the first
+ * tile; in the other both tiles are damaged, and whichever runs first, the fault of the first tile
+ * in the file is reported. */
 static void write_two_tiles(void)
 {
     enum { TWO_TILES = 12, BACKWARDS = 2, CUT = 60 };

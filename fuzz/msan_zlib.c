@@ -1,6 +1,6 @@
-/* msan_zlib.c - linked into MSan builds only (-Wl,--wrap): zlib is not compiled for MSan, so what
- * it has written is said to be written. Nothing else is changed: every call goes to zlib with its
- * own arguments, and its own result comes back.
+/* msan_zlib.c - linked into MSan builds only (-Wl,--wrap): zlib is not compiled for MSan, so the
+ * bytes that it has written are marked as initialised. Nothing else changes: every call goes to
+ * zlib with its own arguments, and zlib's result is returned.
  * SPDX-License-Identifier: BSD-2-Clause */
 #include <sanitizer/msan_interface.h>
 #include <zlib.h>

@@ -10,7 +10,7 @@
 
 enum { MAX_FIELDS = 1 << 13, MAX_TAIL = 32, ONE_STALE_OF = 16 };
 
-/* A file while it is changed. */
+/* A file that is being changed. */
 typedef struct {
     uint8_t *data;
     size_t size, max_size;
@@ -18,7 +18,8 @@ typedef struct {
     int coded; /* bytes of a TILE were changed */
 } file;
 
-/* Bounds of elements in the specification, of numbers, and of binary32. */
+/* Returns a number that is a bound of an element in the specification, of an integer type, or of
+ * binary32. */
 static uint64_t boundary(random_source *r)
 {
     static const uint64_t bound[] = {
@@ -59,7 +60,7 @@ static void change_field(file *f)
 
     if (n == 0)
         return;
-    /* Most fields are weights and positions; half of the time one of the first. */
+    /* Most fields are weights and positions, so half of the time one of the first 100 is chosen. */
     x = &fields[random_in(&f->r, 0, (uint32_t)(random_in(&f->r, 0, 1) && n > 100 ? 99 : n - 1))];
     y = &fields[random_in(&f->r, 0, (uint32_t)n - 1)];
     v = load(f->data + x->at, x->width);
@@ -73,7 +74,7 @@ static void change_field(file *f)
     store(f->data + x->at, x->width, v);
 }
 
-/* A legal binary32 of any size, extremes included. */
+/* Returns a legal binary32 of any magnitude, extremes included. */
 static float any_value(random_source *r)
 {
     const uint32_t bits = random_in(r, 0, 2) ? (uint32_t)boundary(r) : random_u32(r);
@@ -103,7 +104,7 @@ static void change_symbol(random_source *r, ted4_scene *s)
     *k = *k == INT16_MIN ? -INT16_MAX : *k;
 }
 
-/* Header elements that no shape follows from. */
+/* Changes header elements that do not determine any shape. */
 static void change_world(random_source *r, ted4_header *h)
 {
     switch (random_in(r, 0, 4)) {
@@ -129,7 +130,7 @@ static void change_masks(random_source *r, ted4_scene *s)
         random_in(r, 0, 1) ? 1 : (uint16_t)random_in(r, 1, 65535);
 }
 
-/* Weights of Tier E must lie on the grid, and steps follow from them. */
+/* Weights of Tier E must lie on the grid, and the steps depend on them. */
 static void change_prior(random_source *r, ted4_scene *s)
 {
     change_values(r, &s->nete);
@@ -137,7 +138,7 @@ static void change_prior(random_source *r, ted4_scene *s)
     (void)ted4_scene_steps(s, NULL, NULL);
 }
 
-/* The parsed scene with something else in it, written again. */
+/* Parses the file, changes some of the scene, and writes it again. */
 static void change_scene(file *f)
 {
     size_t ends, n = 0;
@@ -164,7 +165,7 @@ static void change_scene(file *f)
     ted4_scene_free(s);
 }
 
-/* Another scene, of any header. */
+/* Replaces the file by another scene with any header. */
 static void make_scene(file *f)
 {
     ted4_header h = random_header(&f->r);
@@ -182,7 +183,7 @@ static void make_scene(file *f)
     ted4_scene_free(s);
 }
 
-/* Replaces [at, at + old) by n bytes, where they fit. 1: done. */
+/* Replaces [at, at + old) by n bytes, if they fit. Returns 1 if it was done. */
 static int splice(file *f, size_t at, size_t old, const uint8_t *with, size_t n)
 {
     uint8_t *const copy = malloc(n > 0 ? n : 1);
@@ -192,7 +193,7 @@ static int splice(file *f, size_t at, size_t old, const uint8_t *with, size_t n)
         return 0;
     }
     if (n > 0)
-        memcpy(copy, with, n); /* which may lie in the file itself */
+        memcpy(copy, with, n); /* the source may lie in the file itself */
     memmove(f->data + at + n, f->data + at + old, f->size - at - old);
     memcpy(f->data + at, copy, n);
     f->size += n - old;
@@ -200,7 +201,7 @@ static int splice(file *f, size_t at, size_t old, const uint8_t *with, size_t n)
     return 1;
 }
 
-/* Offset of a random chunk, or size: none. */
+/* Returns the offset of a random chunk, or size if there is none. */
 static size_t any_chunk(file *f)
 {
     return f->size == 0
@@ -228,7 +229,7 @@ static void change_chunks(file *f)
     }
 }
 
-/* Bytes of one payload, whose size is kept right. */
+/* Changes bytes of one payload, and corrects its size. */
 static void change_payload(file *f, fuzz_bytes_fn *bytes)
 {
     const size_t at = any_chunk(f);
@@ -250,7 +251,7 @@ static void change_payload(file *f, fuzz_bytes_fn *bytes)
     free(payload);
 }
 
-/* One of the things that fixing hashes makes right is wrong again. */
+/* Breaks again one of the things that fixing hashes corrects. */
 static void leave_stale(file *f)
 {
     const size_t at = any_chunk(f);
@@ -263,7 +264,7 @@ static void leave_stale(file *f)
         f->data[at + n - 1 - random_in(&f->r, 0, 7)] ^= (uint8_t)random_in(&f->r, 1, 255);
     else {
         f->data[at + n - 9] ^=
-            (uint8_t)random_in(&f->r, 1, 255); /* of the last word, or of the hash in ENDS */
+            (uint8_t)random_in(&f->r, 1, 255); /* in the last word, or in the hash in ENDS */
         ted4_fix_hashes(f->data, f->size);
     }
 }
@@ -279,7 +280,7 @@ static void make_right(file *f)
         leave_stale(f);
 }
 
-/* What stands behind ENDS goes along, or is chosen anew. Gives the whole size. */
+/* Keeps the bytes after ENDS, or chooses new ones. Returns the whole size. */
 static size_t add_tail(file *f, const uint8_t *tail, size_t n)
 {
     uint8_t other[MAX_TAIL];
@@ -307,7 +308,7 @@ size_t fuzz_mutate_file(uint8_t *data, size_t size, size_t max_size, uint32_t se
 
     if (n_tail > 0)
         memcpy(tail, data + f.size, n_tail);
-    for (int i = 0; i < 4; i++) /* the first numbers of near seeds are alike */
+    for (int i = 0; i < 4; i++) /* the first numbers of similar seeds are similar */
         (void)random_u32(&f.r);
     switch (random_in(&f.r, 0, 15)) {
     case 0: f.size = bytes(data, f.size, max_size); break;

@@ -1,4 +1,4 @@
-/* mutate_tool.c - one changed file without libFuzzer: mutate SEED FROM TO.
+/* mutate_tool.c - changes one file once, without libFuzzer: mutate SEED FROM TO.
  * SPDX-License-Identifier: BSD-2-Clause */
 #include <stdio.h>
 #include <stdlib.h>
@@ -9,7 +9,7 @@ enum { MAX_SIZE = 1 << 16 };
 
 static uint32_t state = 1;
 
-/* A few bytes to others, the same for the same seed. */
+/* Changes a few bytes; the same seed gives the same changes. */
 static size_t some_bytes(uint8_t *data, size_t size, size_t max_size)
 {
     (void)max_size;

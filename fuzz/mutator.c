@@ -1,4 +1,4 @@
-/* mutator.c - libFuzzer's entries to mutate.h, for the harnesses whose input is a .ted4 file.
+/* mutator.c - libFuzzer's entry points to mutate.h, for the harnesses whose input is a .ted4 file.
  * SPDX-License-Identifier: BSD-2-Clause */
 #include "libfuzzer.h"
 #include "mutate.h"

@@ -1,4 +1,4 @@
-/* mutator_frames.c - libFuzzer's entry to mutate.h for the harness that looks at frames only.
+/* mutator_frames.c - libFuzzer's entry point to mutate.h for the harness that reads frames only.
  * SPDX-License-Identifier: BSD-2-Clause */
 #include "libfuzzer.h"
 #include "mutate.h"

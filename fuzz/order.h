@@ -1,5 +1,5 @@
-/* order.h - what must not matter to a result: the order in which indices of a parallel-for run, and
- * which kernels do.
+/* order.h - choices on which no result may depend: the order in which the indices of a parallel-for
+ * run, and the kernels that run.
  * SPDX-License-Identifier: BSD-2-Clause */
 #ifndef TED4_FUZZ_ORDER_H
 #define TED4_FUZZ_ORDER_H
@@ -23,7 +23,7 @@ static inline void order_backward(void *user, size_t n, void (*body)(void *arg, 
         body(arg, i - 1);
 }
 
-/* Odd ones first. */
+/* Runs the odd indices first. */
 static inline void order_split(void *user, size_t n, void (*body)(void *arg, size_t i), void *arg)
 {
     (void)user;
@@ -33,7 +33,7 @@ static inline void order_split(void *user, size_t n, void (*body)(void *arg, siz
         body(arg, i);
 }
 
-/* which: 1 in order, 2 backwards, else odd ones first. */
+/* which: 1 in order, 2 backwards, any other value odd indices first. */
 static inline ted4_parallel order_parallel(int which)
 {
     return (ted4_parallel) { which == 1   ? order_forward

@@ -1,5 +1,5 @@
 /* parse.c - see parse.h. Pass 2 (spec 5.3) on one thread, with the walks of norm/ and the coder of
- * read/. The forgiving coder is that one with its failures inside tiles taken back.
+ * read/. The forgiving coder is the same coder, but it clears failures inside tiles and goes on.
  * SPDX-License-Identifier: BSD-2-Clause */
 #include "parse.h"
 
@@ -13,12 +13,13 @@ typedef struct {
     ted4_scene *s;
     ted4_prior prior;
     ted4_reader file;
-    void *work; /* of one tile; in the scene's arena */
+    void *work; /* for one tile; allocated in the scene's arena */
     unsigned n_tiles;
     int forgiving;
 } parser;
 
-/* Operations of read/reader.c, of which the forgiving ones make use. All readers have the same. */
+/* Returns the operations of read/reader.c, which all readers share and on which the forgiving ones
+ * are built. */
 static const ted4_coder_ops *strict_ops(void)
 {
     ted4_reader r;
@@ -27,7 +28,7 @@ static const ted4_coder_ops *strict_ops(void)
     return r.base.ops;
 }
 
-/* Takes a failure back. 1: there was one. */
+/* Clears a failure. Returns 1 if there was one. */
 static int forgive(ted4_coder *c)
 {
     const int failed = c->error.code != TED4_OK;
@@ -36,7 +37,7 @@ static int forgive(ted4_coder *c)
     return failed;
 }
 
-/* tile_index is what it has to be, a probability is at least 1. */
+/* Corrects a number: tile_index gets its only valid value, and a probability is at least 1. */
 static uint32_t any_number(ted4_coder *c, unsigned width, uint32_t value)
 {
     const uint32_t read = strict_ops()->number(c, width, value);
@@ -44,7 +45,7 @@ static uint32_t any_number(ted4_coder *c, unsigned width, uint32_t value)
     return width == 4 ? value : read > 0 ? read : 1;
 }
 
-/* Sizes that do not fit are cut; the last substream gets what is left. */
+/* Cuts sizes that do not fit. The last substream gets the remaining bytes. */
 static void any_sizes(ted4_coder *c, uint32_t *size, unsigned n)
 {
     ted4_reader *r = (ted4_reader *)c;
@@ -64,7 +65,7 @@ static void any_sizes(ted4_coder *c, uint32_t *size, unsigned n)
     }
 }
 
-/* A substream that cannot begin is one without words. */
+/* A substream that cannot begin is treated as one without words. */
 static void any_open(ted4_coder *c, size_t n)
 {
     ted4_reader *r = (ted4_reader *)c;
@@ -107,7 +108,7 @@ static void any_gauss(ted4_coder *c, size_t n, const int32_t *mu, const uint8_t 
     }
 }
 
-/* R-ATT-001 made true in a tile. */
+/* Makes R-ATT-001 hold in a tile. */
 static void order_tau(ted4_scene *s, unsigned number)
 {
     const size_t n = s->head.n_anchors, first = (size_t)number * s->head.tile_size;
@@ -127,7 +128,7 @@ static ted4_reader reader_of(parser *p, const ted4_chunk_place *place)
     return r;
 }
 
-/* left: payload bytes for mode and values, which get memory when they can be there. */
+/* left: payload bytes for mode and values. Memory is allocated only if they can hold the values. */
 static int blob(parser *p, ted4_blob *b, uint64_t n, size_t left)
 {
     b->n = n;
@@ -185,7 +186,7 @@ static void tile(parser *p, ted4_reader *r)
     order_tau(p->s, p->n_tiles++);
 }
 
-/* 0: the chunk is not what it has to be. */
+/* Returns 0 if the chunk is not valid. */
 static int chunk(parser *p, const ted4_chunk_place *place)
 {
     ted4_scene *s = p->s;

@@ -15,14 +15,15 @@ enum { MOST = 64, CAPACITY = 512 };
 
 /* What was written, so that it can be removed. */
 static struct {
-    char base[CAPACITY];  /* empty: not made yet */
-    char scene[CAPACITY]; /* the folder chosen */
+    char base[CAPACITY];  /* empty: not created yet */
+    char scene[CAPACITY]; /* the folder chosen last */
     char made[MOST][CAPACITY];
     int n;
 } folder;
 
-/* A clip that is a video would be taken apart by another program: not here. Linked in place of it
- * (-Wl,--wrap), which compares no types: the declaration by __typeof__ does. */
+/* A clip that is a video would be unpacked by another program, which must not run here. This
+ * function is linked in its place (-Wl,--wrap); since the linker compares no types, it is declared
+ * with __typeof__. */
 extern __typeof__(ted4_video_unpack) __wrap_ted4_video_unpack;
 
 char *__wrap_ted4_video_unpack(const char *video, size_t most, const ted4_dataset_options *o,
