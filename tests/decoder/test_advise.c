@@ -1,12 +1,12 @@
-/* test_advise.c - what a validator says of valid files: each kind of advice is given for a file
- * made to deserve it, and not for one that does not.
+/* test_advise.c - a validator's advice on valid files: each kind of advice is given for a file that
+ * was made to deserve it, and not for a similar one that does not.
  * SPDX-License-Identifier: BSD-2-Clause */
 #include <xxhash.h>
 
 #include "test.h"
 #include "validate_case.h"
 
-/* Each identifier that some file below was given. */
+/* Set for each kind of advice that some file below was given. */
 static int given[TED4_N_ADVICE];
 static const char *const advice_id[TED4_N_ADVICE] = {
 #define TED4_FINDING_ERROR(status, ...)
@@ -16,7 +16,7 @@ static const char *const advice_id[TED4_N_ADVICE] = {
 #undef TED4_FINDING_ADVICE
 };
 
-/* Is the advice given, to_be or not? */
+/* Asserts that the advice is given (to_be) or not given. */
 static void expect(const uint8_t *data, size_t size, ted4_advice what, int to_be)
 {
     const findings *all = validate(data, size);
@@ -85,11 +85,11 @@ static void advice_on_time(void **state)
     s->head.frames = 1;
     expect_scene(s, 0, TED4_ADV_ONE_FRAME, 1);
     expect_scene(s, 0, TED4_ADV_BANK_ROWS, 1);
-    s->head.frames = 2; /* times 0 and 1: the rows between are not seen */
+    s->head.frames = 2; /* times 0 and 1: the rows between them are not used */
     expect_scene(s, 0, TED4_ADV_BANK_ROWS, 1);
-    s->head.frames = 3; /* 0, 2, 4 of 5 */
+    s->head.frames = 3; /* rows 0, 2, 4 of 5 */
     expect_scene(s, 0, TED4_ADV_BANK_ROWS, 1);
-    s->head.frames = 4; /* 0, 4/3, 8/3, 4 */
+    s->head.frames = 4; /* rows 0, 4/3, 8/3, 4 */
     expect_scene(s, 0, TED4_ADV_BANK_ROWS, 0);
     ted4_scene_free(s);
 }
@@ -120,7 +120,7 @@ static void advice_on_files(void **state)
     ted4_scene_free(s);
 }
 
-/* A file with a chunk more, behind HEAD. */
+/* A file with one more chunk after HEAD. */
 static void expect_chunk(const uint8_t *data, size_t size, const char *type, uint32_t flags,
                          const char *payload, ted4_advice what, int to_be)
 {
@@ -175,7 +175,8 @@ static void advice_on_chunks(void **state)
     ted4_scene_free(s);
 }
 
-/* The hyperprior's last layer says the same for every anchor: b of output o of P. */
+/* Makes the hyperprior's last layer give the same outputs for every anchor: b for n outputs from
+ * first on. */
 static void set_outputs(ted4_scene *s, unsigned first, unsigned n, float b)
 {
     const ted4_net_shape *net = &s->shape.hyper;
@@ -227,18 +228,18 @@ static void advice_on_symbols(void **state)
     expect_scene(s, 0, TED4_ADV_STEP, 1);
     s->symbol[TED4_FEATURE][3] = 32767;
     expect_scene(s, 0, TED4_ADV_CONTEXT, 1);
-    s->prob[0] = 40000; /* of dynamic, of which one in five is 1 */
+    s->prob[0] = 40000; /* probability of dynamic, which is 1 for one anchor in five */
     expect_scene(s, 0, TED4_ADV_PROB, 1);
     s->prob[0] = 1;
     expect_scene(s, 0, TED4_ADV_PROB_EXTREME, 1);
     ted4_scene_free(s);
 }
 
-/* Runs last: no advice is left that no file was given. */
+/* Runs last: every kind of advice was given for some file. */
 static void all_given(void **state)
 {
     (void)state;
-    given[TED4_ADV_MORE] = given[TED4_ADV_MEMORY] = 1; /* test_validate.c */
+    given[TED4_ADV_MORE] = given[TED4_ADV_MEMORY] = 1; /* tested in test_validate.c */
     for (int i = 0; i < TED4_N_ADVICE; i++) {
         if (!given[i])
             print_message("%s: never given\n", advice_id[i]);

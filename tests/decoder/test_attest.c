@@ -1,6 +1,6 @@
-/* test_attest.c - a sample of the defined functions of class X over all binary32 numbers against
- * conformance/attest/sample.txt; all of them: `make attest` (annex J.9). pow2 is what it is named
- * for, to two units in the last place.
+/* test_attest.c - compares the defined functions of class X, sampled over all binary32 numbers,
+ * with conformance/attest/sample.txt; `make attest` (annex J.9) tests all of the numbers. pow2 must
+ * also equal 2^x to two units in the last place.
  * SPDX-License-Identifier: BSD-2-Clause */
 #include <stdlib.h>
 #include <string.h>
@@ -8,7 +8,7 @@
 #include "test.h"
 #include "tests/gen/attest.h"
 
-enum { STRIDE = 4093 }; /* a prime: every exponent with many fractions */
+enum { STRIDE = 4093 }; /* a prime: every exponent occurs with many fractions */
 
 static float pow2_of(float x)
 {
@@ -20,7 +20,7 @@ static float sigmoid_of(float x)
     return ted4_sigmoid(x);
 }
 
-/* Rows as in J.9, of the patterns 0, STRIDE, 2 STRIDE, ... */
+/* Writes rows as in J.9, for the patterns 0, STRIDE, 2 STRIDE, ... */
 static void sample(float (*f)(float x), const char *name, FILE *out)
 {
     attest_string *a = malloc(sizeof *a);

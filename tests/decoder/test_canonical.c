@@ -1,6 +1,7 @@
-/* test_canonical.c - R-BIT-002 over every valid vector of the suite: a writer that knows annex J
- * alone gets the file back from its elements (T0), ancillary chunks and minor version included; and
- * the encoder, which is given a decoded scene alone, writes the file without these, bit for bit.
+/* test_canonical.c - R-BIT-002 over every valid vector of the suite: a writer that is based on
+ * annex J alone reproduces the file from its elements (T0), including ancillary chunks and minor
+ * version; and the encoder, which gets only a decoded scene, writes the file without these, bit for
+ * bit.
  * SPDX-License-Identifier: BSD-2-Clause */
 #include <stdio.h>
 #include <stdlib.h>
@@ -15,12 +16,12 @@
 
 enum { MAX_FILE = MAX_VECTOR, MAX_T0 = 8 * MAX_FILE, MAX_ID = 256, FEW_FILES = 800, MINOR_AT = 9 };
 
-/* Bytes of an element that is a number, by annex J.2; 0: it is bytes, or there is no such element.
- */
+/* Bytes of an element that is a number, by annex J.2; 0 if the element consists of bytes, or does
+ * not exist. */
 static unsigned width_of[MAX_ID];
 static int known[MAX_ID];
 
-/* "number u8", "bytes (8)", "number: the four bytes as u32" */
+/* Parses a kind, such as "number u8", "bytes (8)", "number: the four bytes as u32". */
 static unsigned number_width(const char *kind)
 {
     static const struct {
@@ -34,7 +35,7 @@ static unsigned number_width(const char *kind)
     return 0;
 }
 
-/* | 16 | chunk_type | number: the four bytes as u32 | 5.2 | */
+/* A row of the annex: | 16 | chunk_type | number: the four bytes as u32 | 5.2 | */
 static int read_annex(void **state)
 {
     FILE *const f = fopen("spec/annex-j-dumps.md", "r");
@@ -56,7 +57,7 @@ static int read_annex(void **state)
     return n > 60 ? 0 : -1;
 }
 
-/* Byte strings of a file. */
+/* The bytes of a file, of its tier T0, and of the file written back from that. */
 static struct {
     uint8_t file[MAX_FILE], t0[MAX_T0], back[MAX_FILE];
     size_t size, n_t0, n_back;
@@ -70,7 +71,7 @@ static void gather(void *user, const void *bytes, size_t size)
     x.n_t0 += size;
 }
 
-/* The file whose elements these are. */
+/* Writes the file that consists of these elements. */
 static void write_elements(void)
 {
     size_t at = 0;
@@ -97,7 +98,7 @@ static void write_elements(void)
     assert_int_equal(at, x.n_t0);
 }
 
-/* Without ancillary chunks a file can have too many symbols a byte for its level. */
+/* Without ancillary chunks a file can have too many symbols per byte for its level. */
 static void write_scene(const ted4_scene *s)
 {
     const size_t n = ted4_plain_file(x.back, x.file, x.size);

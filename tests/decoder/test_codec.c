@@ -1,4 +1,4 @@
-/* test_codec.c - scenes to bytes and back: spec 5 to 10, 13 to 15 as a whole.
+/* test_codec.c - encoding of scenes and decoding of the result: spec 5 to 10, 13 to 15 as a whole.
  * SPDX-License-Identifier: BSD-2-Clause */
 #include <stdlib.h>
 #include <xxhash.h>
@@ -66,7 +66,7 @@ static void same_file(file a, file b)
     assert_memory_equal(a.data, b.data, a.size);
 }
 
-/* Threads, and the last index first. */
+/* Uses threads, and starts with the last index. */
 static void run_backwards(void *user, size_t n, void (*body)(void *arg, size_t i), void *arg)
 {
     (void)user;
@@ -93,7 +93,7 @@ static void round_trip(void **state)
         t = decode(f, seed % 2 ? &o : NULL);
         same_scene(s, t);
         assert_int_equal(t->level, f.data[11]);
-        again = encode(t, NULL); /* canonical: as it was parsed */
+        again = encode(t, NULL); /* canonical: the bytes that were parsed */
         same_file(f, again);
         free(again.data);
         free(f.data);
@@ -102,8 +102,7 @@ static void round_trip(void **state)
     }
 }
 
-/* Several lanes, full tiles and one that is short; every tile after the first behind another.
- * Decoded with the kernels of each level. */
+/* Several tiles of many lanes, the last tile not full, decoded with the kernels of each level. */
 static void large(void **state)
 {
     random_source r = random_seed(1);
@@ -123,7 +122,7 @@ static void large(void **state)
     free(f.data);
 }
 
-/* Size of the TILE payloads. */
+/* Returns the size of the TILE payloads. */
 static size_t tile_bytes(file f)
 {
     size_t sum = 0;
@@ -134,7 +133,7 @@ static size_t tile_bytes(file f)
     return sum;
 }
 
-/* The coder loses about 0.002 bits a symbol: its states are at least one slot total, and no more
+/* The coder loses about 0.002 bits per symbol: its states are at least one slot total, and no more
  * (spec 9.2). */
 static void count_is_size(void **state)
 {
@@ -180,7 +179,7 @@ static void truncations(void **state)
     }
 }
 
-/* Makes the hash of the chunk that holds byte at right again, as far as the chunk can be found. */
+/* Corrects the hash of the chunk that contains byte at, if the chunk can be found. */
 static void fix_hash(file f, size_t at)
 {
     size_t p = 12;
@@ -198,8 +197,8 @@ static void fix_hash(file f, size_t at)
     }
 }
 
-/* Random bytes in place of right ones, the chunk's hash fixed in most cases: refused, or the same
- * integers. */
+/* Replaces bytes by random ones, in most cases with the chunk's hash corrected. The file must be
+ * refused, or give the same integers. */
 static void changes(void **state)
 {
     random_source r = random_seed(4);
@@ -234,7 +233,7 @@ static void changes(void **state)
     assert_true(accepted < CHANGES);
 }
 
-/* Allocator that fails once, at call number fail_at, and knows what is out. */
+/* An allocator that fails once, at call number fail_at, and counts the blocks in use. */
 typedef struct {
     long n, fail_at, out;
 } counter;
@@ -287,7 +286,7 @@ static void memory_runs_out(void **state)
     free(f.data);
 }
 
-/* The trace names elements in file order, and the same ones every time. */
+/* The trace names elements in file order, and the same elements every time. */
 typedef struct {
     size_t offset, n;
     uint64_t sum;
@@ -321,7 +320,7 @@ static void traced(void **state)
     free(f.data);
 }
 
-/* spec 15.2 once more, from the text: the byte string in one piece. */
+/* The byte string of spec 15.2, implemented a second time from the text, in one piece. */
 static size_t hashed_string(const ted4_scene *s, uint8_t *p)
 {
     const size_t n = s->head.n_anchors;
@@ -404,7 +403,7 @@ static const char *encoding(const ted4_scene *s, int level)
     return ted4_status_id(verdict);
 }
 
-/* The encoder refuses what no decoder would accept, and says the same. */
+/* The encoder refuses what no decoder would accept, with the same identifier. */
 static void illegal_scenes(void **state)
 {
     random_source r = random_seed(30);
@@ -415,7 +414,7 @@ static void illegal_scenes(void **state)
     (void)state;
     h.n_offsets = 9;
     s = random_scene_of(&r, &h, 0);
-    assert_string_equal(encoding(s, 1), "lvl.exceeded"); /* frames */
+    assert_string_equal(encoding(s, 1), "lvl.exceeded"); /* too many frames */
     assert_string_equal(encoding(s, 2), "ok");
     assert_string_equal(encoding(s, 31), "ok");
     assert_string_equal(encoding(s, 7), "con.level");

@@ -1,6 +1,6 @@
-/* test_extremes_raster.c - projection, binning and blending at the ends of what binary32 holds:
- * against the plain renderer where that has an answer, and what is left out is counted
- * (render/raster.h). test_raster.c has what scenes hold.
+/* test_extremes_raster.c - projection, binning and blending at the limits of binary32: compared
+ * with the plain renderer where that has a result; Gaussians that are left out are counted
+ * (render/raster.h). test_raster.c tests values that occur in scenes.
  * SPDX-License-Identifier: BSD-2-Clause */
 #include <float.h>
 #include <string.h>
@@ -12,12 +12,14 @@
 
 enum { SIDE = 32, PIXELS = SIDE * SIDE };
 
-/* A pixel may differ by a Gaussian of opacity 1/255, where rounding decides on its other side. */
+/* A pixel may differ by a Gaussian of opacity 1/255 if rounding puts it on the other side of that
+ * threshold. */
 #define MAX_ERROR  (1.5 / 255)
 /* Mean squared error: 90 dB. */
 #define MAX_SQUARE 1e-9
 
-/* Looks along +z from the origin; centres of pixels fall on multiples of 1/64 at depth 1. */
+/* A camera at the origin that looks along +z. The centres of pixels are at multiples of 1/64 at
+ * depth 1. */
 static ted4_view straight(void)
 {
     return (ted4_view) { .width = SIDE,
@@ -39,7 +41,7 @@ static scene make(size_t n)
     return s;
 }
 
-/* A round Gaussian with its centre at pixel (x, y) and depth z; size in scene units. */
+/* Sets a round Gaussian with its centre at pixel (x, y) and depth z; size in scene units. */
 static void set(scene *s, size_t i, double x, double y, float z, float size, float opacity)
 {
     const ted4_view v = straight();
@@ -54,7 +56,7 @@ static void set(scene *s, size_t i, double x, double y, float z, float size, flo
     }
 }
 
-/* Renders; every value must be finite. Returns how many Gaussians were left out. */
+/* Renders. Every value must be finite. Returns the number of Gaussians that were left out. */
 static uint64_t draw(const scene *s, const ted4_view *v, float *image)
 {
     const ted4_splats g = scene_splats(s);
@@ -70,7 +72,7 @@ static uint64_t draw(const scene *s, const ted4_view *v, float *image)
     return skipped;
 }
 
-/* Nothing is left out, and the picture is that of the plain renderer. */
+/* Asserts that no Gaussian is left out, and that the picture equals that of the plain renderer. */
 static void check(const scene *s, const ted4_view *v)
 {
     static float image[3 * PIXELS];
@@ -91,7 +93,7 @@ static void check(const scene *s, const ted4_view *v)
     assert_true(square <= MAX_SQUARE);
 }
 
-/* From no size at all to one whose footprint is 1.6e9 pixels wide; a needle of both. */
+/* Sizes from 0 to a footprint 1.6e9 pixels wide, and a needle with both sizes. */
 static void test_sizes(void **state)
 {
     static const float size[] = { 0, 1e-45f, FLT_MIN, 0x1p-24f, 1e-6f, 1, 65504, 1e6f, 1e8f };
@@ -111,7 +113,7 @@ static void test_sizes(void **state)
         }
 }
 
-/* At the near plane, on either side of it, at the camera, behind it. */
+/* Depths at the near plane, on either side of it, at the camera, and behind it. */
 static void test_depths(void **state)
 {
     static const float depth[] = { 0.25f, -0.25f, 0,        -0.0f,   1e-45f, FLT_MIN,
@@ -135,8 +137,8 @@ static void test_depths(void **state)
     }
 }
 
-/* Depths over the whole range of binary32, neighbours in it and equal ones, in no order, one behind
- * the other. */
+/* Depths over the whole range of binary32, with neighbouring and equal values, in random order, on
+ * one line of sight. */
 static void test_order(void **state)
 {
     enum { N = 60 };
@@ -156,7 +158,7 @@ static void test_order(void **state)
     scene_free(&s);
 }
 
-/* A near plane at the camera itself: what is so near that 1 / z overflows is left out. */
+/* A near plane at the camera itself: Gaussians so near that 1 / z overflows are left out. */
 static void test_no_near_plane(void **state)
 {
     static float image[3 * PIXELS];
@@ -171,13 +173,14 @@ static void test_no_near_plane(void **state)
     *scene_param(&s, SCENE_MEAN + 2, 1) = 1e-40f;
     *scene_param(&s, SCENE_MEAN + 2, 2) = 0;
     *scene_param(&s, SCENE_MEAN + 2, 3) = 1e-10f;
-    assert_int_equal(draw(&s, &v, image),
-                     2); /* the third's footprint overflows, too; 0 is not before the camera */
+    assert_int_equal(
+        draw(&s, &v, image),
+        2); /* the third's footprint overflows, too; depth 0 is not in front of the camera */
     scene_free(&s);
 }
 
 /* Centres on edges and corners of tiles, blocks, pixels and the picture; widths of the picture that
- * end in a tile and at its edge. */
+ * end within a tile and at its edge. */
 static void test_edges(void **state)
 {
     static const double at[] = { -0.5, 0, 0.5, 3.5, 4, 15.5, 16, 16.5, 31, 31.5, 32, 32.5 };
@@ -198,7 +201,8 @@ static void test_edges(void **state)
         }
 }
 
-/* Opacities from 0 to 1, either side of the threshold, and none at all: below 0, subnormal. */
+/* Opacities from 0 to 1, on either side of the threshold, and others below it: negative,
+ * subnormal. */
 static void test_opacities(void **state)
 {
     const float least = TED4_RASTER_ALPHA_MIN;
@@ -230,8 +234,8 @@ static void test_opacities(void **state)
     }
 }
 
-/* Rotations that no head gives: the rotation of a quaternion is a polynomial, with 1 at 0, whatever
- * its length. */
+/* Quaternions that no head produces: rotation is a polynomial of the quaternion, with the value 1
+ * at 0, whatever its length. */
 static void test_rotations(void **state)
 {
     static const float length[] = { 0, 1e-45f, 1e-20f, 0x1p-20f, 1e-3f, 1, 30, 1e3f };
@@ -252,8 +256,9 @@ static void test_rotations(void **state)
         }
 }
 
-/* What binary32 cannot hold is left out and counted, and leaves every bit of the others alone. What
- * is behind the camera or too faint does not count, whatever else is wrong with it. */
+/* Gaussians with values that binary32 cannot represent are left out and counted, and every bit of
+ * the others stays the same. Gaussians that are behind the camera or too faint are not counted,
+ * whatever else is wrong with them. */
 static void test_skipped(void **state)
 {
     static const float bad[] = { NAN, INFINITY, -INFINITY, FLT_MAX, -FLT_MAX };
@@ -272,13 +277,13 @@ static void test_skipped(void **state)
             const int gone = is_z || is_opacity ? k == 2 || k == 4
                                                 : 0; /* behind the camera; below every threshold */
             const int held = (at_x || is_opacity) &&
-                             k >= 3; /* far off the picture; 1 and more is 1 */
+                             k >= 3; /* far outside the picture; opacities above 1 are 1 */
 
             set(&s, 1, 16, 16, 3, 0.1f, 0.7f);
             scene_rotation(&s, 1, 1, 1, 1, 1);
             *scene_param(&s, param, 1) = bad[k];
             if (is_opacity && k == 3)
-                continue; /* drawn */
+                continue; /* these are drawn */
             const uint64_t skipped = draw(&s, &v, with);
 
             if (skipped != (uint64_t)(!gone && !held))
@@ -286,7 +291,7 @@ static void test_skipped(void **state)
                          (unsigned long long)skipped);
             assert_memory_equal(without, with, sizeof with);
             *scene_param(&s, SCENE_MEAN + 2, 1) = -1;
-            if (!is_z) /* 0 times infinity: the depth is not known then */
+            if (!is_z) /* 0 times infinity: the depth is then unknown */
                 assert_int_equal(draw(&s, &v, with), at_x && k < 3);
             set(&s, 1, 16, 16, 3, 0.1f, 0);
             if (!is_opacity) {
@@ -297,7 +302,7 @@ static void test_skipped(void **state)
     scene_free(&s);
 }
 
-/* Counts add up over passes, chunks of projection and lanes. */
+/* Counts are summed over passes, chunks of projection, and lanes. */
 static void test_skipped_adds_up(void **state)
 {
     static float image[3 * PIXELS];
@@ -324,8 +329,8 @@ static void test_skipped_adds_up(void **state)
 
 enum { CROWD = 100000 };
 
-/* A crowd in one tile, all at the same depth when equal: so faint that over a thousand of them
- * blend into a pixel. */
+/* Many Gaussians in one tile, all at the same depth if equal is set, so faint that over a thousand
+ * of them blend into a pixel. */
 static scene make_crowd(int equal)
 {
     scene s = make(CROWD);
@@ -341,8 +346,8 @@ static scene make_crowd(int equal)
     return s;
 }
 
-/* sum: of all gradients of a colour, where that of every pixel is 1. All colours of g are 1 now, so
- * the picture shows the weights. */
+/* sum: the sum of all gradients with respect to a colour, if the gradient of every pixel is 1. All
+ * colours of g are set to 1, so the picture shows the weights. */
 static void check_weights(const ted4_splats *g, const ted4_view *v, double sum)
 {
     static double plain[3 * PIXELS];
@@ -355,8 +360,8 @@ static void check_weights(const ted4_splats *g, const ted4_view *v, double sum)
     assert_true(fabs(sum - want) <= 1e-3 * want);
 }
 
-/* One tile of 100,000: the picture, and gradients that are finite; those of colours are the
- * weights, which sum to what the background lacks. */
+/* 100,000 Gaussians in one tile: tests the picture, and that gradients are finite. The gradients of
+ * colours are the weights, which sum to 1 minus the background's share. */
 static void test_crowd(void **state)
 {
     static float d_image[3 * PIXELS];
