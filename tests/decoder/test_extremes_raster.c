@@ -173,9 +173,8 @@ static void test_no_near_plane(void **state)
     *scene_param(&s, SCENE_MEAN + 2, 1) = 1e-40f;
     *scene_param(&s, SCENE_MEAN + 2, 2) = 0;
     *scene_param(&s, SCENE_MEAN + 2, 3) = 1e-10f;
-    assert_int_equal(
-        draw(&s, &v, image),
-        2); /* the third's footprint overflows, too; depth 0 is not in front of the camera */
+    assert_int_equal(draw(&s, &v, image),
+                     2); /* the third has a footprint that overflows; depth 0 is not in front */
     scene_free(&s);
 }
 

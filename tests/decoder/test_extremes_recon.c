@@ -1,6 +1,7 @@
-/* test_extremes_recon.c - strict reconstruction and the integer networks at the ends of what a file
- * can say: symbols, steps, exponents, FP16 positions, weights and durations at their rails; a query
- * that gives anything infinite is refused, and all others give the bits of the text (recon_ref.h).
+/* test_extremes_recon.c - strict reconstruction and the integer networks at the limits of what a
+ * file can contain: symbols, steps, exponents, FP16 positions, weights and durations at the ends of
+ * their ranges. A query whose result is not finite is refused; all others give the bits that the
+ * text defines (recon_ref.h).
  * SPDX-License-Identifier: BSD-2-Clause */
 #include <float.h>
 #include <stdlib.h>
@@ -19,7 +20,7 @@ static struct ted4_scene scene;
 static double wanted[MAX_RECORDS * REF_VALUES];
 static int n_refused, n_answered;
 
-/* Small, with everything that steers reconstruction in it. */
+/* A small header in which everything that affects reconstruction is in use. */
 static ted4_header base_header(int motion)
 {
     ted4_header h = { .n_anchors = 40,
@@ -61,7 +62,8 @@ static float record_value(const ted4_gaussians *g, size_t i, int c)
                      : g->colour[c - 11][i];
 }
 
-/* One query of the scene: the bits of the text, or a refusal where these are not all finite. */
+/* Makes one query: the result has the bits that the text defines, or is a refusal if these are not
+ * all finite. */
 static void check(const ted4_query *q)
 {
     const size_t n = ref_query(&scene, q, 1, wanted);
@@ -108,8 +110,8 @@ static void begin(const ted4_header *h)
     scene_make(&scene, h, 41u + h->motion);
 }
 
-/* Symbols of all types at the rails and around 0, with the finest and the coarsest step, in both
- * domains of scalings. */
+/* Symbols of all types at the ends of their range and around 0, with the finest and the coarsest
+ * step, in both domains of scalings. */
 static void test_symbols(void **state)
 {
     static const int16_t symbol[] = { 0, 1, -1, 32767, -32767 };
@@ -133,8 +135,8 @@ static void test_symbols(void **state)
             }
 }
 
-/* One type at a time, the others ordinary: durations at their floor and far beyond, sizes from
- * 2^-126 to 2^126. */
+/* Extreme values of one type at a time, ordinary ones of the others: durations at their minimum and
+ * far above, sizes from 2^-126 to 2^126. */
 static void test_types(void **state)
 {
     (void)state;
@@ -153,7 +155,8 @@ static void test_types(void **state)
         }
 }
 
-/* Durations at the floor, and times on, just before and just after the edges of an activation. */
+/* Durations at their minimum, and times on, just before and just after the edges of an
+ * activation. */
 static void test_edges(void **state)
 {
     const ted4_header h = base_header(TED4_MOTION_CONCAT);
@@ -180,8 +183,8 @@ static void test_edges(void **state)
     scene_finish(&scene);
 }
 
-/* Positions from the least FP16 to 1, exponents from -30 to 30, origins from nothing to huge,
- * cameras likewise. */
+/* Positions from the smallest FP16 to 1, exponents from -30 to 30, origins from zero to very large
+ * ones, and the same for cameras. */
 static void test_places(void **state)
 {
     static const uint16_t half[] = { 0x0000, 0x8000, 0x0001, 0x8001, 0x03ff,
@@ -206,8 +209,8 @@ static void test_places(void **state)
         }
 }
 
-/* Weights, biases and the bank at FP16's ends and at those of binary32: heads saturate, and sums
- * that overflow are refused. */
+/* Weights, biases and the bank at the limits of FP16 and of binary32: heads saturate, and sums that
+ * overflow are refused. */
 static void test_weights(void **state)
 {
     static const float size[] = { 0, 0x1p-126f, 0x1p-24f, 0x1p-14f, 65504, 1e10f, 1e20f, FLT_MAX };
@@ -235,8 +238,8 @@ static void test_weights(void **state)
 
 enum { IN = 64, OUT = 25, BLOCK = TED4_PRIOR_BLOCK };
 
-/* A layer whose sums reach, but do not pass, the ends of 32 bits: sum |W| 32767 + |B| + 2^(r-1) is
- * 2^31 - 1, for every shift r from 0 on. */
+/* A layer whose sums reach, but do not exceed, the range of 32 bits: sum |W| 32767 + |B| + 2^(r-1)
+ * is 2^31 - 1, for every shift r from 0 on. */
 static void test_sums(void **state)
 {
     static _Alignas(64) int16_t w[OUT * IN], x[IN * BLOCK], h[OUT * BLOCK], fast_h[OUT * BLOCK];
@@ -297,8 +300,8 @@ static void test_sums(void **state)
     }
 }
 
-/* What outputs mean, at the ends of what they can be: an output of the hyperprior and what all
- * slices add. */
+/* The meaning of outputs at their extreme values: an output of the hyperprior plus the
+ * contributions of all slices. */
 static void test_indices(void **state)
 {
     static const int32_t output[] = { 0, TED4_OUTPUT_MAX, -TED4_OUTPUT_MAX, 2 * TED4_OUTPUT_MAX,

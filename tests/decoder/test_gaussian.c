@@ -1,5 +1,5 @@
-/* test_gaussian.c - norm/gaussian.h: cumulative frequencies of every model, and the way back from a
- * slot (spec 9.4).
+/* test_gaussian.c - norm/gaussian.h: the cumulative frequencies of every model, and the search for
+ * the symbol of a slot (spec 9.4).
  * SPDX-License-Identifier: BSD-2-Clause */
 #include <math.h>
 
@@ -7,7 +7,7 @@
 #include "norm/gaussian.h"
 #include "random_scene.h"
 
-/* Not assert_int_equal, which is too slow for millions of calls. */
+/* Replaces assert_int_equal, which is too slow for millions of calls. */
 static void check(int holds)
 {
     if (!holds)
@@ -39,8 +39,8 @@ static void increasing(void **state)
     }
 }
 
-/* Against the distribution whose sigma is that of INV, which is rounded: all steps of the integer
- * path together are off by less than four slots (z alone: 1.6). */
+/* Compares with the distribution whose sigma is that of INV, which is rounded: the error of all
+ * steps of the integer path together is less than four slots (z alone: 1.6). */
 static void accurate(void **state)
 {
     (void)state;
@@ -80,7 +80,7 @@ static void find_is_inverse(void **state)
             }
 }
 
-/* k to symbol and escape, and back. */
+/* Converts k to symbol and escape, and back. */
 static void symbols(void **state)
 {
     random_source r = random_seed(2);

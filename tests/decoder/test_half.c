@@ -34,7 +34,8 @@ static void to_float(void **state)
     }
 }
 
-/* Between neighbours the nearer one wins, in the middle the even one. */
+/* A number between two neighbours is rounded to the nearer one, and one in the middle to the even
+ * one. */
 static void from_float(void **state)
 {
     (void)state;

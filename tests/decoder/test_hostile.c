@@ -1,6 +1,6 @@
-/* test_hostile.c - files that make others work: what a validator, or a decoder with a trace, does
- * for them is bounded by their bytes. What takes seconds here would take hours or days if it grew
- * with the square of the file or with a number that the file only claims.
+/* test_hostile.c - files that are made to cause much work: the work of a validator, or of a decoder
+ * with a trace, is bounded by their bytes. The tests take seconds; they would take hours or days if
+ * the work grew with the square of the file size or with a number that the file only claims.
  * SPDX-License-Identifier: BSD-2-Clause */
 #include <stdio.h>
 #include <stdlib.h>
@@ -21,10 +21,10 @@ enum {
     LARGE = 4
 };
 
-/* A valid file, and room for more behind HEAD. */
+/* A valid file, and room for more after HEAD. */
 typedef struct {
     uint8_t *data;
-    size_t size, head; /* head: offset behind HEAD */
+    size_t size, head; /* head: offset after HEAD */
 } file;
 
 static file file_of(const ted4_header *h, size_t more)
@@ -50,7 +50,7 @@ static file file_of(const ted4_header *h, size_t more)
     return f;
 }
 
-/* How often a validator finds something. */
+/* Counts the findings of a validator. */
 typedef struct {
     const char *id;
     size_t n;
@@ -86,7 +86,7 @@ static void chunks(void **state)
     free(f.data);
 }
 
-/* Lines of META, of which the last has the key of the first. */
+/* Lines of META, the last of which has the key of the first. */
 static void keys(void **state)
 {
     enum { LINE = 9 };
@@ -111,7 +111,7 @@ static void keys(void **state)
     free(f.data);
 }
 
-/* A time for every row, and billions more; and fewer times than rows. */
+/* A file with a time for every row, and billions more; and one with fewer times than rows. */
 static void frames(void **state)
 {
     ted4_header h = random_small_header(100);
@@ -138,7 +138,7 @@ static void see(void *user, size_t offset, const char *element, int64_t index, i
     ++*(size_t *)user;
 }
 
-/* HEAD claims 2^32 - 1 rows; BANK does not hold them. */
+/* HEAD claims 2^32 - 1 rows, which BANK does not have. */
 static void claims(void **state)
 {
     static const char *const name[] = { "LIM-claims-rows-0xffffffff",

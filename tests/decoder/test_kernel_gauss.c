@@ -1,6 +1,6 @@
-/* test_kernel_gauss.c - each kernel/gauss_many_*.c that this machine can run reads what
- * read/reader.c reads one symbol at a time: symbols, error, and where the words end; for every
- * number of lanes, calls of any size, escapes, symbols out of range, and damaged substreams.
+/* test_kernel_gauss.c - each kernel/gauss_many_*.c that this machine can run gives the results of
+ * read/reader.c, which reads one symbol at a time: symbols, error, and number of words read; for
+ * every number of lanes, calls of any size, escapes, symbols out of range, and damaged substreams.
  * SPDX-License-Identifier: BSD-2-Clause */
 #include "test.h"
 #include "base/level.h"
@@ -10,11 +10,11 @@
 
 typedef struct {
     ted4_error error;
-    size_t left; /* bytes of words not read */
+    size_t left; /* bytes of words that were not read */
     int16_t *k;
 } outcome;
 
-/* In calls of step symbols. */
+/* Reads the symbols in calls of step symbols each. */
 static outcome read_symbols(const uint8_t *data, size_t size, const symbols *s, size_t step,
                             ted4_gauss_many many)
 {
@@ -35,7 +35,7 @@ static outcome read_symbols(const uint8_t *data, size_t size, const symbols *s, 
     return o;
 }
 
-/* Returns what both say. */
+/* Asserts that both give the same result, and returns it. */
 static ted4_status compare(const uint8_t *data, size_t size, const symbols *s, ted4_gauss_many many)
 {
     static const size_t step[] = { 1 << 20, 4096, 1001, 64, 7 };
@@ -61,7 +61,7 @@ typedef struct {
     ted4_gauss_many many;
 } variant;
 
-/* The variant of a test, unless this machine has it not. */
+/* Returns the variant of a test; skips the test if this machine does not have it. */
 static ted4_gauss_many variant_of(void **state)
 {
     const variant *v = *state;
@@ -93,8 +93,8 @@ static void test_same(void **state)
             }
 }
 
-/* Read with means further out than those it was written with, the last symbol leaves 16 bits;
- * without an escape and with one. */
+/* Symbols are read with means further out than those with which they were written: the last symbol
+ * leaves the range of 16 bits, once without an escape and once with one. */
 static void test_outside(void **state)
 {
     static const size_t at[] = { 0, 1, 100, 4099, 39999 };
@@ -117,7 +117,7 @@ static void test_outside(void **state)
     }
 }
 
-/* A word changed, and words cut off with the size adjusted: the same verdict. */
+/* With a word changed, or words cut off and the size adjusted, the verdict is the same. */
 static void test_damaged(void **state)
 {
     const ted4_gauss_many many = variant_of(state);
@@ -143,7 +143,7 @@ static void test_damaged(void **state)
     symbols_free(&s);
 }
 
-/* The kernel does take what it is there for. */
+/* The kernel handles the calls for which it was made. */
 static void test_takes(void **state)
 {
     const ted4_gauss_many many = variant_of(state);
@@ -169,7 +169,8 @@ static void test_takes(void **state)
     symbols_free(&s);
 }
 
-/* Indices of sigma at both ends, means in every fraction, and symbols at the ends of the window. */
+/* Indices of sigma at both ends, means with every fraction, and symbols at the ends of the
+ * window. */
 static void test_ends(void **state)
 {
     static const uint8_t sigma[] = { 0, 1, 38, 64, 100, 150, 200, TED4_N_SIGMA - 1 };

@@ -1,4 +1,4 @@
-/* test_kernel_int.c - kernel/int_dense_*.c give the bits of norm/int_dense.c, up to the ends of
+/* test_kernel_int.c - kernel/int_dense_*.c give the bits of norm/int_dense.c, up to the limits of
  * what R-NET-006 allows.
  * SPDX-License-Identifier: BSD-2-Clause */
 #include <stdlib.h>
@@ -11,8 +11,8 @@
 
 enum { BLOCK = TED4_PRIOR_BLOCK };
 
-/* A layer whose weights use up the accumulator: sum |W| 32767 + |B| + 2^(r-1) is just under 2^31.
- */
+/* A layer whose weights use the full range of the accumulator: sum |W| 32767 + |B| + 2^(r-1) is
+ * just below 2^31. */
 static ted4_int_layer make(random_source *r, unsigned in, unsigned out)
 {
     ted4_int_layer l = { in, in + in % 2, out, NULL, NULL, NULL };
@@ -50,7 +50,8 @@ static void drop(ted4_int_layer *l)
     free(l->r);
 }
 
-/* Inputs at the rails, small ones, and for unit 0 those that push its sum as far as it goes. */
+/* Inputs at the ends of their range, small ones, and those that make the sum of unit 0 as large as
+ * possible. */
 static void fill(random_source *r, const ted4_int_layer *l, int16_t *x)
 {
     for (unsigned i = 0; i < l->in; i++)
@@ -96,7 +97,7 @@ static void selected(void **state)
     compare(ted4_select_int_dense());
 }
 
-/* The variant of a test: NULL where this machine has it not. */
+/* The variant of a test, or NULL if this machine does not have it. */
 static void variant(void **state)
 {
     if (*state == NULL)
@@ -120,7 +121,7 @@ static void selected_by_name(void **state)
     use_kernels(NULL);
 }
 
-/* State of a test: the variant, or NULL where the machine has it not. */
+/* The state of a test: the variant, or NULL if the machine does not have it. */
 static void *of(const ted4_int_dense *v, int has)
 {
     return has ? (void *)(uintptr_t)v : NULL;

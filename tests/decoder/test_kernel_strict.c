@@ -1,6 +1,6 @@
-/* test_kernel_strict.c - kernel/strict_dense.h: each twin this machine can run gives the bits of
- * the plain layer, for odd and even shapes, ordinary and special numbers. NaNs are equal whatever
- * their payload: R-REC-001 refuses them all.
+/* test_kernel_strict.c - kernel/strict_dense.h: each variant that this machine can run gives the
+ * bits of the plain layer, for odd and even shapes, with ordinary and special numbers. All NaNs are
+ * considered equal, whatever their payload: R-REC-001 refuses all of them.
  * SPDX-License-Identifier: BSD-2-Clause */
 #include <stdlib.h>
 
@@ -22,7 +22,8 @@ static float ordinary(void)
     return (float)(int32_t)random_u32(&source) * 0x1p-31f;
 }
 
-/* Zeros of both signs, subnormals, huge and non-finite numbers among ordinary ones. */
+/* Returns mostly ordinary numbers; also zeros of both signs, subnormals, huge and non-finite
+ * ones. */
 static float special(void)
 {
     static const uint32_t list[] = { 0,          0x80000000, 1,          0x80000001, 0x007fffff,
@@ -35,7 +36,8 @@ static float special(void)
     return ted4_bits_float(list[pick / 4 % (sizeof list / sizeof list[0])]);
 }
 
-/* Numbers of very different sizes, without NaN: sums depend on order and on fusing. */
+/* Numbers of very different sizes, without NaN, whose sums depend on the order and on fused
+ * operations. */
 static float wide(void)
 {
     return ldexpf(ordinary(), (int)(random_u32(&source) >> 8) % 40 - 20);
@@ -85,7 +87,7 @@ static void twin_is_plain(ted4_strict_dense_fn twin)
     compare(twin, MAX, MAX, 1);
 }
 
-/* What a machine of this kind may have. */
+/* The variants that a machine of this kind may have. */
 typedef struct {
     ted4_level level;
     ted4_strict_dense_fn twin;
@@ -107,7 +109,7 @@ static void variant_is_plain(void **state)
     twin_is_plain(v->twin);
 }
 
-/* One lane, one input at a time, nothing else: the definition. */
+/* The definition: one lane, one input at a time, no vector code. */
 static void plain_is_the_text(void **state)
 {
     const ted4_strict_layer l = { 67, 9, w, b, 1 };

@@ -1,6 +1,6 @@
-/* test_lenient.c - spec 3.3: what lenient decoding gives of cut and damaged files is the beginning
- * of the truth, whole tiles of it, and never more than stands before the first error; of a valid
- * file it is the same scene.
+/* test_lenient.c - spec 3.3: lenient decoding of a truncated or damaged file gives the first tiles
+ * of the original scene, whole tiles only, and never more than those before the first error; of a
+ * valid file it gives the same scene.
  * SPDX-License-Identifier: BSD-2-Clause */
 #include "test.h"
 #include "fuzz/fix_hashes.h"
@@ -10,12 +10,12 @@
 
 enum { N_FILES = 6, MAX_CHUNKS = 32, N_MUTATIONS = 2000 };
 
-/* A valid file, what is in it, and where its tiles end. */
+/* A valid file, its scene, and the ends of its tiles. */
 typedef struct {
     uint8_t *data;
     size_t size;
     ted4_scene *scene;
-    size_t tile_end[MAX_CHUNKS]; /* offset behind each TILE */
+    size_t tile_end[MAX_CHUNKS]; /* offset after each TILE */
     unsigned n_tiles;
 } truth;
 
@@ -40,7 +40,7 @@ static int setup(void **state)
 
         h.n_anchors = 64 * (uint32_t)(i + 1) + (i % 2 ? 17 : 0);
         h.tile_size = i == 4 ? 1000 : 64;
-        h.feature_dim = h.slice[0] = 3; /* so that every byte can be cut at */
+        h.feature_dim = h.slice[0] = 3; /* small, so that the file can be truncated at every byte */
         h.n_slices = 1;
         h.ar_width = 0;
         s = random_scene_of(&r, &h, i % 2);
@@ -63,7 +63,7 @@ static int teardown(void **state)
     return 0;
 }
 
-/* Is every value of anchors 0 .. n - 1 the same? */
+/* Asserts that every value of anchors 0 .. n - 1 is the same. */
 static void assert_beginning(const ted4_scene *whole, const ted4_scene *part)
 {
     const size_t n = part->head.n_anchors, all = whole->head.n_anchors;
@@ -115,7 +115,7 @@ static void cut_at(const truth *f, size_t size, const ted4_options *o)
     ted4_scene_free(s);
 }
 
-/* Every truncation; with threads, those that cost little more. */
+/* Tests every truncation; with threads, only those that cost little more. */
 static void truncations(void **state)
 {
     ted4_parallel p;
@@ -147,8 +147,8 @@ static void whole_files(void **state)
     }
 }
 
-/* Bytes changed anywhere, chunk hashes made right or not: no more is delivered than whole tiles
- * before the first error, and what is, is the truth as far as nothing before it was changed. */
+/* Changes bytes anywhere, with chunk hashes corrected or not: at most the whole tiles before the
+ * first error are delivered, and they equal the original if nothing before them was changed. */
 static void damage(void **state)
 {
     random_source r = random_seed(5);
@@ -187,8 +187,8 @@ static void damage(void **state)
     assert_true(saved > N_MUTATIONS / 16);
 }
 
-/* The reduced scene is one like any other: a file can be made of it, with its hash, and it can be
- * queried, and its records are the first of the whole one's. */
+/* The reduced scene is a valid scene: it can be written to a file, with its hash, and queried, and
+ * its records are the first ones of the complete scene. */
 static void queries(void **state)
 {
     const truth *f = &file[5];
@@ -226,7 +226,7 @@ static void queries(void **state)
     ted4_scene_free(s);
 }
 
-/* Nothing is saved of what memory does not allow. */
+/* Nothing is saved that needs more memory than allowed. */
 static void memory(void **state)
 {
     const truth *f = &file[5];
@@ -243,7 +243,7 @@ static void memory(void **state)
     assert_null(s);
 }
 
-/* Nor of what a limit on work forbids. */
+/* Nothing is saved that a limit on work forbids. */
 static void work(void **state)
 {
     const truth *f = &file[5];
@@ -261,8 +261,8 @@ static void work(void **state)
     assert_int_equal(what.stop.code, TED4_E_LIMIT_WORK);
 }
 
-/* ted4dec: with warnings when something was saved, refused when nothing was, or when it was not
- * asked to. */
+/* ted4dec gives warnings if something was saved, and refuses the file if nothing was, or if lenient
+ * decoding was not asked for. */
 static void program(void **state)
 {
     const truth *f = &file[5];
