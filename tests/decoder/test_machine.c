@@ -1,6 +1,7 @@
-/* test_machine.c - machines whose size_t has 32 bits: what a file claims must not wrap there (spec
- * 13.3). The walk of POSN, the coder that reads, and the ratio of a zlib stream are compiled here
- * once more with such a size_t, and all that they call here. `make cross` runs all vectors on i686.
+/* test_machine.c - machines whose size_t has 32 bits: sizes that a file claims must not overflow
+ * there (spec 13.3). The walk of POSN, the coder that reads, and the ratio of a zlib stream, with
+ * all that they call here, are compiled a second time with such a size_t. `make cross` runs all
+ * vectors on i686.
  * SPDX-License-Identifier: BSD-2-Clause */
 #include "test.h"
 #include <stdlib.h>
@@ -18,7 +19,7 @@
 #include "ref-decoder/base/arena.c"
 #include "ref-decoder/base/status.c"
 
-/* Anchors that are claimed by a HEAD at level 31, in front of a POSN of that many bytes. */
+/* Walks a POSN of that many bytes, with the number of anchors that a HEAD at level 31 claims. */
 static ted4_error walk(uint32_t n_anchors, uint32_t bytes)
 {
     static const uint8_t payload[16];
@@ -32,7 +33,7 @@ static ted4_error walk(uint32_t n_anchors, uint32_t bytes)
     return r.base.error;
 }
 
-/* Three coordinates of two bytes: both products may wrap to something that fits. */
+/* Three coordinates of two bytes: either product may overflow to a number that fits. */
 static void claimed_anchors(void **state)
 {
     static const uint32_t n[] = { 0x55555556, 0xaaaaaaab, 0x2aaaaaab, 0xffffffff,
@@ -48,8 +49,8 @@ static void claimed_anchors(void **state)
         }
 }
 
-/* 2^30 values take all addresses, but a stream of 5 MB may hold them: that is no statement about
- * the file. */
+/* 2^30 values fill the whole address space, but a stream of 5 MB may contain them: the limit is one
+ * of memory, not an error in the file. */
 static void claimed_values(void **state)
 {
     const uint64_t n = ((uint64_t)1 << 30) + 1;

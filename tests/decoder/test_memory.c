@@ -1,8 +1,8 @@
-/* test_memory.c - what SECURITY.md promises of memory: under every bound the library holds at most
- * max_bytes for a scene, and at most as much again while something is made of it (a validator's
- * findings, what a lenient decoder saves, tiers, records); all of it comes from the caller's
- * allocator and goes back. Vectors of the suite, bombs among them, under bounds from nothing to
- * more than they need; what goes through numbers that a file only claims never ends.
+/* test_memory.c - the memory limits that SECURITY.md promises: under every limit the library holds
+ * at most max_bytes for a scene, and at most as much again while something is made from it (a
+ * validator's findings, what a lenient decoder saves, tiers, records); all of it comes from the
+ * caller's allocator and is freed. Vectors of the suite, bombs among them, run under limits from
+ * nothing to more than they need. A loop over a number that a file only claims would never end.
  * SPDX-License-Identifier: BSD-2-Clause */
 #include <stdio.h>
 #include <unistd.h>
@@ -13,7 +13,7 @@
 
 enum { MAX_PATH = 1024, MAX_FILE = 1 << 20, FEW_VECTORS = 100, TIERS = 5, PATIENCE = 600 };
 
-/* A file, and what is done with it under a bound. */
+/* A file, and the options of one use of it under a limit. */
 typedef struct {
     const char *name;
     const uint8_t *data;
@@ -34,7 +34,7 @@ static void finding(void *user, const ted4_finding *f)
     *(int *)user += f->severity == TED4_ERROR;
 }
 
-/* times: how often the bound may be held. */
+/* Asserts that at most times the limit is held, and nothing at the end. */
 static void judge(const use *u, uint64_t times, const char *what)
 {
     if (u->memory.most / times > u->o.max_bytes || u->memory.held != 0)
@@ -53,7 +53,7 @@ static use under(const use *u, uint64_t bound, counting_memory *m)
     return v;
 }
 
-/* What is made of a scene that is there, each time under the same bound. */
+/* Makes everything that can be made from a decoded scene, each time under the same limit. */
 static void made_of(const use *u, uint64_t bound, const ted4_scene *s)
 {
     static const ted4_query q = { 0, 1, { 0, 0, 0 } };
@@ -111,10 +111,10 @@ static void hold(const use *u, uint64_t bound)
     assert_true(verdict == TED4_OK || errors > 0);
 }
 
-/* Bounds around what decoding takes when it may take anything. */
+/* Tries limits around the memory that decoding takes without a tight limit. */
 static void hold_all(const char *name, const uint8_t *data, size_t size)
 {
-    static const int part[] = { 0, 4, 7, 8, 16 }; /* eighths */
+    static const int part[] = { 0, 4, 7, 8, 16 }; /* in eighths of that memory */
     const use u = { .name = name, .data = data, .size = size };
     counting_memory m;
     use v = under(&u, (uint64_t)1 << 28, &m);

@@ -1,5 +1,5 @@
-/* test_prior.c - norm/prior.c and write/snap.c: integers from binary32, evaluation, and the rules
- * of spec 7.3 and 10.1.
+/* test_prior.c - norm/prior.c and write/snap.c: conversion of binary32 to integers, evaluation, and
+ * the rules of spec 7.3 and 10.1.
  * SPDX-License-Identifier: BSD-2-Clause */
 #include <math.h>
 #include <stdlib.h>
@@ -7,8 +7,8 @@
 #include "test.h"
 #include "random_scene.h"
 
-/* long double holds a binary32 times a power of two exactly, and rintl rounds to nearest, ties to
- * even. */
+/* A long double holds a binary32 times a power of two exactly, and rintl() rounds to nearest, ties
+ * to even. */
 static void integerise(void **state)
 {
     random_source r = random_seed(1);
@@ -95,7 +95,8 @@ static void oracle_net(const ted4_net_shape *n, const float *nete, const uint8_t
     }
 }
 
-/* spec 10.1 in floating point: within a unit of the last place of Q12 of the true sine. */
+/* spec 10.1 in floating point: the result is within one unit of the last place of Q12 of the true
+ * sine. */
 static void check_inputs(const ted4_header *h, const uint16_t *p, int64_t *x)
 {
     unsigned at = 3;
@@ -144,8 +145,8 @@ static void evaluation(void **state)
     }
 }
 
-/* Slice networks with contexts at their rails: the accumulator bound holds, in the order of the
- * oracle too. */
+/* Slice networks with contexts at the ends of their range: the accumulator bound holds, also in the
+ * order of the oracle. */
 static void slices(void **state)
 {
     random_source r = random_seed(5);
@@ -182,8 +183,8 @@ static void slices(void **state)
     }
 }
 
-/* Weights of any size: what ted4_snap gives is legal, on the grid, and near what it was given
- * unless that was too large. */
+/* For weights of any size, the result of ted4_snap is legal, on the grid, and near its input unless
+ * that was too large. */
 static void snapping(void **state)
 {
     random_source r = random_seed(6);
@@ -225,7 +226,7 @@ static void snapping(void **state)
         assert_int_equal(ted4_prior_load(&p, v, shift, &e), TED4_OK);
         for (size_t i = 0; i < s.n_units; i++)
             assert_true(shift[i] <=
-                        10); /* 6, or what a slice network with few context bits needs */
+                        10); /* 6, or as many as a slice network with few context bits needs */
         ted4_arena_finish(&arena);
         free(v);
         free(was);
@@ -242,7 +243,8 @@ static const char *load_with(ted4_prior *p, float *v, uint8_t *shift, size_t *at
     return ted4_status_id(e.code);
 }
 
-/* Each rule alone, and just inside it. The network: no octaves, so 3 inputs, no hidden layer. */
+/* Breaks each rule alone, and tests values just inside it. The network has no octaves, so 3 inputs,
+ * and no hidden layer. */
 static void rules(void **state)
 {
     ted4_header h = random_paper_header(1);

@@ -1,11 +1,11 @@
-/* test_rans.c - substreams: write/coder_write.c into read/reader.c (spec 9.2 to 9.4), and damaged
- * ones.
+/* test_rans.c - substreams written by write/coder_write.c and read by read/reader.c (spec 9.2 to
+ * 9.4), and damaged ones.
  * SPDX-License-Identifier: BSD-2-Clause */
 #include "test.h"
 #include "read/reader.h"
 #include "substream_case.h"
 
-/* The ends: the largest sums that two networks can give, against the largest symbols. */
+/* The extreme case: the largest sums that two networks can give, with the largest symbols. */
 static void push_out(symbols *s, uint64_t seed)
 {
     random_source r = random_seed(seed);
@@ -92,7 +92,8 @@ static void bits(void **state)
     ted4_writer_finish(&w);
 }
 
-/* What a damaged substream is refused with. change: bytes added at the end, or taken away. */
+/* Returns the identifier with which a damaged substream is refused. change: bytes appended, or
+ * removed if negative. */
 static void damaged(void **state)
 {
     symbols s = symbols_make(9, 500, 0, TED4_N_SIGMA - 1);
@@ -125,7 +126,7 @@ static void damaged(void **state)
     symbols_free(&s);
 }
 
-/* A substream of one symbol, mu 0 and sigma 1, which is a high escape followed by the bits of E. */
+/* Reads a substream of one symbol, mu 0 and sigma 1: a high escape followed by the bits of E. */
 static const char *read_escape(uint32_t E, int16_t *k)
 {
     int32_t mu = 0;
@@ -186,8 +187,8 @@ static void refused_by_the_writer(void **state)
     ted4_writer_finish(&w);
 }
 
-/* One symbol with slots [0, 2^15) in each lane, from states set by hand, with some words left over.
- */
+/* Reads one symbol with slots [0, 2^15) in each lane, from states set by hand, with some words left
+ * over. */
 static ted4_status end_of(size_t n, const uint32_t *state, size_t n_lanes, size_t words)
 {
     uint8_t data[32] = { 0 };
@@ -205,8 +206,8 @@ static ted4_status end_of(size_t n, const uint32_t *state, size_t n_lanes, size_
     return ted4_rans_dec_finish(&d);
 }
 
-/* R-ENT-005, each half of it alone: 2^15 (x / 2^16) + slot is 2^16 for x = 2 2^16, and more for a
- * slot or a quotient above. */
+/* R-ENT-005, each half of it alone: 2^15 (x / 2^16) + slot is 2^16 for x = 2 2^16, and larger for a
+ * larger slot or quotient. */
 static void final_state(void **state)
 {
     const uint32_t good[2] = { 2u << 16, 2u << 16 }, slot[2] = { 2u << 16, (2u << 16) + 1 },

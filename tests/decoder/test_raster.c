@@ -1,5 +1,5 @@
-/* test_raster.c - the tile rasteriser against its plain twin, and against itself with other
- * threads.
+/* test_raster.c - compares the tile rasteriser with its plain twin, and with itself for other
+ * numbers of threads.
  * SPDX-License-Identifier: BSD-2-Clause */
 #include <string.h>
 
@@ -9,9 +9,9 @@
 #include "raster_scene.h"
 #include "render/raster_plain.h"
 
-/* The project asks for 60 dB between any two renderers; float against double keeps far more. A
- * pixel may still differ by one Gaussian of opacity 1/255, where rounding decides on its other
- * side. */
+/* The project asks for 60 dB between any two renderers; float against double reaches far more. A
+ * pixel may still differ by one Gaussian of opacity 1/255 if rounding puts it on the other side of
+ * that threshold. */
 #define MIN_PSNR  90.0
 #define MAX_ERROR (1.5 / 255)
 
@@ -76,7 +76,7 @@ static void test_nothing(void **state)
     scene_free(&s);
 }
 
-/* Everything that may be wrong with one Gaussian, each between ordinary ones. */
+/* Each possible fault of a single Gaussian, placed between ordinary ones. */
 static void test_awkward(void **state)
 {
     const ted4_view v = scene_view(50, 40);
@@ -115,8 +115,8 @@ static void test_awkward(void **state)
     scene_free(&s);
 }
 
-/* A needle along the diagonal whose centre is far outside: the case in which the textbook form of
- * the exponent loses its digits. */
+/* A long thin Gaussian along the diagonal whose centre is far outside the picture: the case in
+ * which the textbook form of the exponent suffers cancellation. */
 static void test_needle(void **state)
 {
     ted4_view v = scene_view(64, 64);
@@ -136,7 +136,7 @@ static void test_needle(void **state)
     scene_free(&s);
 }
 
-/* Values that no trained scene has must do no harm. */
+/* Values that do not occur in any trained scene must do no harm. */
 static void test_not_finite(void **state)
 {
     const ted4_view v = scene_view(40, 24);
@@ -200,7 +200,7 @@ static void test_threads(void **state)
     scene_free(&s);
 }
 
-/* A workspace that has seen a larger scene renders a smaller one, and the other way round. */
+/* A workspace that was used for a larger scene renders a smaller one, and vice versa. */
 static void test_reuse(void **state)
 {
     enum { W = 33, H = 20, N = 3 * W * H };

@@ -1,5 +1,5 @@
-/* test_recon.c - spec 11, 12.2, 15.3: reconstruction against recon_ref.h, bit for bit, in every
- * variant of the header; against doubles; any threads, any order of queries, any memory.
+/* test_recon.c - spec 11, 12.2, 15.3: reconstruction compared with recon_ref.h, bit for bit, in
+ * every variant of the header; and with doubles; for any threads, any order of queries, any memory.
  * SPDX-License-Identifier: BSD-2-Clause */
 #include <stdlib.h>
 #include <string.h>
@@ -15,7 +15,7 @@
 
 enum { MAX_RECORDS = 4096 };
 
-/* The first four are the life of a cache: new, other time, other camera, the same again. */
+/* The first four are the states of a cache: new, another time, another camera, the same again. */
 static const ted4_query queries[] = {
     { 0, 7, { 0.5f, -2.0f, 3.0f } },
     { 3, 7, { 0.5f, -2.0f, 3.0f } },
@@ -99,7 +99,8 @@ static void set_motion(ted4_header *h, int motion)
     }
 }
 
-/* One of all combinations of what steers reconstruction; 0: v is none. */
+/* Sets variant v of all combinations of settings that affect reconstruction. Returns 0 if there is
+ * no variant v. */
 static int variant(unsigned v, ted4_header *h)
 {
     *h = base_header();
@@ -170,7 +171,7 @@ static void every_variant_is_near_real_numbers(void **state)
     }
 }
 
-/* The sizes of a real stream: tiles of the kernels, several blocks, 32 K records. */
+/* The sizes of a real file: tiles of the kernels, several blocks, 32 K records. */
 static ted4_header large_header(void)
 {
     ted4_header h = base_header();
@@ -318,7 +319,7 @@ static void what_is_not_finite_is_refused(void **state)
         const ted4_net_shape *n = &s.shape.netr[net];
         float *w = s.netr.values + n->first, *b1 = w + n->dim[0] * n->dim[1];
 
-        /* Hidden units of 1e38, then infinity minus infinity in one output. */
+        /* Hidden units of 1e38 give infinity minus infinity in one output. */
         for (unsigned i = 0; i < n->dim[1]; i++)
             b1[i] = 1e38f;
         float *last = b1 + n->dim[1];
@@ -337,7 +338,7 @@ static void what_is_not_finite_is_refused(void **state)
     }
 }
 
-/* A query that failed must not leave stale records behind. */
+/* A query that failed must leave no stale records. */
 static void a_good_query_may_follow_a_bad_one(void **state)
 {
     ted4_header h = base_header();
@@ -358,7 +359,7 @@ static void a_good_query_may_follow_a_bad_one(void **state)
     scene_finish(&s);
 }
 
-/* A camera on an anchor has no direction: (0, 0, 1). Covariance weights of 0 have no rotation: (1,
+/* A camera at an anchor has no direction: (0, 0, 1). Covariance weights of 0 have no rotation: (1,
  * 0, 0, 0). */
 static void directions_and_rotations_of_no_length(void **state)
 {
@@ -418,7 +419,7 @@ static void times_out_of_range_are_refused(void **state)
     scene_finish(&s);
 }
 
-/* An allocator that fails after so many blocks and knows how many are out. */
+/* An allocator that fails after a number of blocks and counts the blocks in use. */
 typedef struct {
     long left, out;
 } counter;

@@ -1,4 +1,5 @@
-/* test_refusals.c - one broken rule at a time: identifier and offset of the verdict (spec 14).
+/* test_refusals.c - breaks one rule at a time, and tests identifier and offset of the verdict (spec
+ * 14).
  * SPDX-License-Identifier: BSD-2-Clause */
 #include <stdlib.h>
 #include <xxhash.h>
@@ -17,7 +18,7 @@ typedef struct {
     uint8_t payload[MAX_PAYLOAD];
 } chunk;
 
-/* A file taken apart, to be changed and put together again with right sizes and hashes. */
+/* A file that is taken apart, changed, and put together again with correct sizes and hashes. */
 static struct {
     uint8_t header[12];
     chunk chunk[MAX_CHUNKS];
@@ -86,7 +87,7 @@ static int setup(void **state)
     return f.n == ENDS + 1 ? 0 : -1;
 }
 
-/* Where a chunk's type is in the file. */
+/* Returns where a chunk's type is in the file. */
 static size_t place(int number)
 {
     size_t at = 12;
@@ -130,13 +131,13 @@ static void expect_bytes(size_t size, const char *id, size_t offset)
     f = pristine;
 }
 
-/* The verdict on the file as it has been changed; then it is whole again. */
+/* Asserts the verdict on the changed file, then restores the file. */
 static void expect(const char *id, size_t offset)
 {
     expect_bytes(put_together(bytes), id, offset);
 }
 
-/* Payload byte at of a chunk, as an offset in the file. */
+/* Returns the offset in the file of byte at of a chunk's payload. */
 static size_t at(int number, size_t byte)
 {
     return place(number) + 12 + byte;
@@ -185,7 +186,7 @@ static void file_header(void **state)
     expect("con.level", 11);
 }
 
-/* Nothing at all, not even an address. */
+/* No bytes at all, and a null address. */
 static void nothing(void **state)
 {
     ted4_scene *s;
@@ -250,7 +251,7 @@ static void order(void **state)
     expect("con.chunk-order", place(HEAD));
 }
 
-/* A file whose header says that nothing has a temporal feature, with a BANK. */
+/* A file with a BANK whose header says that nothing has a temporal feature. */
 static void needless_bank(void **state)
 {
     random_source r = random_seed(5);
@@ -344,7 +345,7 @@ static void header_values(void **state)
     expect_set(HEAD, EXPONENT, 1, 0xe1, "hdr.range"); /* -31 */
     expect_set(HEAD, EXPONENT, 1, 0xe2, "ok");
     expect_set(HEAD, RESERVED, 1, 1, "hdr.range");
-    set(HEAD, 19, 2, 512); /* a wide F_deform: too many values for level 1 */
+    set(HEAD, 19, 2, 512); /* a wide F_deform: more values than level 1 allows */
     set(HEAD, 18, 1, 8);
     expect("lvl.exceeded", at(HEAD, RESERVED));
 }
@@ -367,7 +368,7 @@ static void networks(void **state)
     expect_set(NETE, w + 4, 4, 1, "net.value");
     expect_set(NETE, w + 8, 4, 0x80000000, "net.value");
     expect_set(NETE, w + 40, 4, 0x7f000000, "net.weight-range");
-    /* two at once: the lower offset, although another rule */
+    /* two faults that break different rules: the one at the lower offset counts */
     set(NETE, w + 80, 4, 0x7f800000);
     expect_set(NETE, w + 40, 4, 0x7f000000, "net.weight-range");
     expect_set(NETE, w + 4 * 8 * (size_t)s.hyper.dim[0], 4, 0x7f000000,
@@ -378,7 +379,7 @@ static void networks(void **state)
     expect("con.payload-size", at(BANK, 1));
 }
 
-/* A BANK whose values are packed by zlib, with a change to bytes before packing or after. */
+/* Replaces the BANK by these values, deflated at a zlib level. */
 static void repack(const uint8_t *raw, uLong n, int level)
 {
     uLongf size = MAX_PAYLOAD - 1;
@@ -393,13 +394,13 @@ static void deflated(void **state)
     uint8_t raw[84] = { 0 };
 
     (void)state;
-    repack(raw, 80, 9); /* 20 zeros: legal, another bank */
+    repack(raw, 80, 9); /* 20 zeros: legal, but another bank */
     expect("ok", 0);
     repack(raw, 84, 9);
     expect("net.deflate", at(BANK, 1));
     repack(raw, 76, 9);
     expect("net.deflate", at(BANK, 1));
-    repack(raw, 80, 0); /* stored: not shorter */
+    repack(raw, 80, 0); /* level 0 only stores: not shorter */
     expect("net.deflate", at(BANK, 1));
     repack(raw, 80, 9);
     f.chunk[BANK].payload[f.chunk[BANK].size++] = 0;
@@ -427,9 +428,9 @@ static void positions(void **state)
     expect_set(POSN, 14, 2, 0xbc01, "pos.range");
     memcpy(f.chunk[POSN].payload + 60, f.chunk[POSN].payload + 54, 6);
     expect("pos.order", at(POSN, 60));
-    set(POSN, 60, 2, 0xbc00); /* smaller than what precedes it */
+    set(POSN, 60, 2, 0xbc00); /* smaller than the position before it */
     set(POSN, 62, 2, 0xbc00);
-    set(POSN, 64, 2, 0x3c01); /* but it is not judged: this one is wrong first */
+    set(POSN, 64, 2, 0x3c01); /* but its order is not judged: this value is out of range */
     expect("pos.range", at(POSN, 64));
 }
 
@@ -446,7 +447,7 @@ static void tiles(void **state)
     expect_set(TILE0, 4, 2, 0, "ent.prob");
     expect_set(TILE0, 16, 2, 0, "ent.prob");
     expect_set(TILE1, sizes, 4, first + 1, "con.payload-size");
-    set(TILE1, sizes, 4, first - 1); /* same sum, impossible parts */
+    set(TILE1, sizes, 4, first - 1); /* the sum is right, the parts are impossible */
     set(TILE1, sizes + 4, 4, second + 1);
     expect("ent.size", at(TILE1, body));
     set(TILE1, body, 4, 65535);
@@ -470,7 +471,8 @@ static void hashes(void **state)
     expect_set(ENDS, 0, 1, f.chunk[ENDS].payload[0] ^ 1u, "syn.hash");
 }
 
-/* Bytes of a tile that breaks R-ATT-001: the writing walk has made them before it judges them. */
+/* The bytes of a tile that breaks R-ATT-001: the writing walk has produced them before it checks
+ * that rule. */
 static void tau_order(void **state)
 {
     random_source r = random_seed(77);

@@ -1,8 +1,9 @@
-/* test_resources.c - spec 13.3, 13.4: what the decoder takes and does, counted, for every vector of
- * the suite (bombs among them), for random headers, and for scenes of few and of many tiles: memory
- * within M_E and within what the bytes have paid for (R-LVL-005), work within a constant times W_E,
- * for queries W_R; and under max_work next to none before a file is refused, exactly when W_E is
- * larger (R-LVL-008). The functions that do the work are wrapped by the linker (strict.mk).
+/* test_resources.c - spec 13.3, 13.4: counts the memory and work of the decoder for every vector of
+ * the suite (bombs among them), for random headers, and for scenes of few and of many tiles. Memory
+ * stays within M_E and within what the bytes have paid for (R-LVL-005), work within a constant
+ * times W_E, and that of queries within W_R. Under max_work a file is refused exactly if W_E is
+ * larger, after almost no work (R-LVL-008). The functions that do the work are wrapped by the
+ * linker (strict.mk).
  * SPDX-License-Identifier: BSD-2-Clause */
 #include <stdio.h>
 
@@ -20,12 +21,12 @@
 
 enum { N_SCENES = 40, FEW_VECTORS = 500 };
 
-/* Networks are evaluated for 32 anchors at once, however few there are. */
+/* Networks are evaluated for 32 anchors at once, even if there are fewer. */
 enum { WORK_CONSTANT = 32 };
 
-/* A stream pays for memory by its bytes: at most 76 for each byte of POSN (6 an anchor, of which 2
- * C + 16 are kept and as many worked on), 4128 for each of a zlib stream (1032 values a 4 bytes, 16
- * bytes each); the rest is head room. */
+/* The bytes of a stream pay for memory: at most 76 for each byte of POSN (6 per anchor, of which 2
+ * C + 16 are kept and as many are working memory), 4128 for each byte of a zlib stream (1032 values
+ * per 4 bytes, 16 bytes each); the rest is margin. */
 static const uint64_t free_bytes = (uint64_t)1 << 20, paid_by_byte = 8192;
 
 /* ---- work, counted ---- */
@@ -80,7 +81,7 @@ static uint64_t products_of(const ted4_net_shape *n)
     return sum;
 }
 
-/* Anchors are taken in groups of 32. */
+/* Anchors are evaluated in groups of 32. */
 static uint64_t columns(size_t n)
 {
     return (n + 31) / 32 * 32;
@@ -95,7 +96,7 @@ void __wrap_ted4_prior_hyper_hidden(const ted4_prior *p, const uint16_t *positio
     __real_ted4_prior_hyper_hidden(p, position, n, hidden);
 }
 
-/* Products, and a sum for each output. */
+/* Counts products, and one sum per output. */
 void __wrap_ted4_prior_hyper_some(const ted4_prior *p, const ted4_int_layer *l, const int16_t *x,
                                   size_t n, int32_t *out)
 {
@@ -116,7 +117,7 @@ uint32_t __wrap_ted4_gauss_find(unsigned g, int32_t fr, uint32_t slot, ted4_slot
     return __real_ted4_gauss_find(g, fr, slot, slots);
 }
 
-/* Products, for all 32 anchors of a row. */
+/* Counts products for all 32 anchors of a row. */
 static void counted_dense(const ted4_strict_layer *l, const float *x, float *y)
 {
     work += (uint64_t)TED4_ROW * l->in * l->out;
@@ -128,7 +129,7 @@ ted4_strict_dense_fn __wrap_ted4_select_strict_dense(void)
     return counted_dense;
 }
 
-/* Every value is looked at. */
+/* Every value is read. */
 ted4_status __wrap_ted4_prior_load(ted4_prior *p, const float *nete, const uint8_t *shift,
                                    ted4_error *e)
 {
@@ -140,7 +141,8 @@ ted4_status __wrap_ted4_prior_load(ted4_prior *p, const float *nete, const uint8
 
 /* ---- formulas ---- */
 
-/* HEAD of a file whose frames begin well. 1, or 0: nothing follows from it. */
+/* Parses HEAD of a file whose first frames are valid. Returns 1, or 0 if no bound follows from
+ * it. */
 static int head_of(const uint8_t *data, size_t size, ted4_header *h, ted4_shape *shape)
 {
     ted4_reader r;
@@ -195,7 +197,8 @@ static uint64_t query_bound(const ted4_scene *s)
     return s->head.n_anchors * products + 20 * (uint64_t)info.n_gaussians;
 }
 
-/* Rows hold 32 anchors, and those that move have rows of their own. Gives the work of a query. */
+/* Rows contain 32 anchors, and anchors that move have rows of their own. Returns the work of a
+ * query. */
 static uint64_t hold_query(const ted4_scene *s, const char *name)
 {
     static const ted4_query q = { 1, 2, { 0, 0, 0 } };
@@ -215,7 +218,7 @@ static uint64_t hold_query(const ted4_scene *s, const char *name)
     return work;
 }
 
-/* A file that asks for one step more than it may: only pass 1 and HEAD have been looked at. */
+/* Decodes a file that needs one step more than allowed: only pass 1 and HEAD have been read. */
 static void hold_refused(const uint8_t *data, size_t size, uint64_t bound, ted4_status verdict,
                          const char *name)
 {
@@ -295,7 +298,7 @@ static void random_headers(void **state)
     }
 }
 
-/* Work is what the formula says, not only less than 32 times that: of a scene of whole groups each
+/* Work equals the formula, instead of only being below 32 times it: in a scene of whole groups each
  * anchor is evaluated once. */
 static void tight(void **state)
 {
@@ -320,8 +323,8 @@ static void tight(void **state)
     free(data);
 }
 
-/* The file with only the first keep bytes of the payload of its chunk of that type, whose hash is
- * right. Gives its size. */
+/* Keeps only the first keep bytes of the payload of the chunk of that type, with a correct hash.
+ * Returns the file's size. */
 static size_t shorten(uint8_t *data, size_t size, const char *type, size_t keep)
 {
     size_t at = 12;
@@ -337,7 +340,7 @@ static size_t shorten(uint8_t *data, size_t size, const char *type, size_t keep)
     return at + 20 + keep + (size - next);
 }
 
-/* Memory that a file takes of whose chunk of that type only keep bytes are there. */
+/* Returns the memory taken by a file whose chunk of that type has only keep bytes. */
 static uint64_t memory_of(const uint8_t *file, size_t size, const char *type, size_t keep)
 {
     counting_memory memory = { 0 };
@@ -353,8 +356,8 @@ static uint64_t memory_of(const uint8_t *file, size_t size, const char *type, si
     return memory.most;
 }
 
-/* R-LVL-005: values that are not deflated have to be there, all of them, before they get memory; so
- * have those of a network before its integers do. */
+/* R-LVL-005: values that are not deflated must all be present before memory is allocated for them;
+ * those of a network before memory for its integers is. */
 static void raw_values_are_paid_for(void **state)
 {
     random_source r = random_seed(23);
@@ -376,7 +379,7 @@ static void raw_values_are_paid_for(void **state)
     ted4_scene_free(s);
 }
 
-/* The same of a query of a scene all of whose anchors move. */
+/* The same for a query of a scene in which all anchors move. */
 static void tight_query(void **state)
 {
     random_source r = random_seed(22);

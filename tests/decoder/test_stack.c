@@ -1,5 +1,5 @@
-/* test_stack.c - how deep the library's calls go on their thread's stack, for every vector of the
- * suite: no deeper than SECURITY.md says.
+/* test_stack.c - how much of their thread's stack the library's calls use, for every vector of the
+ * suite: no more than SECURITY.md promises.
  * SPDX-License-Identifier: BSD-2-Clause */
 #include <pthread.h>
 #include <stdlib.h>
@@ -9,7 +9,7 @@
 #include "ted4.h"
 #include "vector_files.h"
 
-/* PROMISED: bytes, what the system keeps of a thread's stack for itself among them. */
+/* PROMISED: bytes, including those of a thread's stack that the system keeps for itself. */
 enum { PROMISED = 256 << 10, STACK = 1 << 20, PAINT = 0xa5, FEW_VECTORS = 250 };
 
 typedef struct {
@@ -65,7 +65,7 @@ static void *every_call(void *arg)
     return NULL;
 }
 
-/* Runs it on a painted stack. Stacks grow down here. */
+/* Runs the calls on a stack filled with a pattern. Stacks grow downwards here. */
 static void measure(const uint8_t *data, size_t size, const char *path)
 {
     file f = { data, size };

@@ -1,7 +1,8 @@
-/* test_starved.c - branches of norm/ and read/ that no file takes: every allocation fails, by
- * itself and with all behind it, in everything the library does with a file: a verdict, nothing
- * given, nothing kept; and mistakes of callers who write scenes. conformance/branches-excluded.txt
- * lists them, and `make conformance-branches` sees that this takes each.
+/* test_starved.c - branches of norm/ and read/ that no file takes. Every allocation fails, alone
+ * and together with all later ones, in everything that the library does with a file: the result is
+ * a verdict, no output, and no leak. Also mistakes of callers who write scenes.
+ * conformance/branches-excluded.txt lists these branches, and `make conformance-branches` checks
+ * that this test takes each.
  * SPDX-License-Identifier: BSD-2-Clause */
 #include <stdio.h>
 
@@ -26,7 +27,7 @@ static void overhear(void *user, const ted4_finding *f)
     ++*(int *)user;
 }
 
-/* Threads of a caller, so that several tiles want memory at once. */
+/* The caller's threads, so that several tiles need memory at the same time. */
 static void in_order(void *user, size_t n, void (*body)(void *arg, size_t i), void *arg)
 {
     (void)user;
@@ -36,7 +37,7 @@ static void in_order(void *user, size_t n, void (*body)(void *arg, size_t i), vo
 
 static const ted4_parallel threads = { in_order, NULL };
 
-/* Something that is done with a file: its verdict. */
+/* An operation on a file, which returns its verdict. */
 typedef ted4_status deed(const file *f, const ted4_options *o);
 
 static ted4_status decodes(const file *f, const ted4_options *o)
@@ -51,7 +52,7 @@ static ted4_status decodes(const file *f, const ted4_options *o)
     return verdict;
 }
 
-/* What stopped it is a matter of memory, too. */
+/* If lenient decoding stopped for lack of memory, that counts as well. */
 static ted4_status salvages(const file *f, const ted4_options *o)
 {
     ted4_salvage what;
@@ -89,7 +90,7 @@ static ted4_status dumps_tiers(const file *f, const ted4_options *o)
     return verdict;
 }
 
-/* A scene to be written, as large as the one of the file. */
+/* Makes a scene for writing, as large as the file's. */
 static ted4_status makes_scene(const file *f, const ted4_options *o)
 {
     ted4_scene *s, *made;
@@ -103,8 +104,8 @@ static ted4_status makes_scene(const file *f, const ted4_options *o)
     return made != NULL ? TED4_OK : TED4_E_LIMIT_MEMORY;
 }
 
-/* Until an allocation that does not take place was to fail: then it ends as it does with all the
- * memory it wants. What is told of a file that is wrong anyway may stay its verdict. */
+/* Lets allocation after allocation fail, until there is none left to fail: then the result is that
+ * with unlimited memory. A file that is wrong for another reason may keep that verdict. */
 static void starve(deed *act, const file *f, int fail_on)
 {
     const ted4_options rich = { .parallel = &threads };
@@ -159,7 +160,7 @@ static file read_vector(const char *id)
     return f;
 }
 
-/* Moves, has two slices, four tiles, all masks and networks. */
+/* A scene that moves, with two slices, four tiles, all masks and networks. */
 static ted4_scene *example(void)
 {
     random_source r = random_seed(8);
@@ -179,8 +180,8 @@ static void whole_files(void **state)
     ted4_scene_free(s);
 }
 
-/* What a validator and a lenient decoder do behind an error: a file that ends early, a tile that is
- * damaged, positions out of order. */
+/* Files for what a validator and a lenient decoder do after an error: a truncated file, a damaged
+ * tile, positions out of order. */
 static void damaged_files(void **state)
 {
     ted4_scene *s = example();
@@ -200,7 +201,7 @@ static void damaged_files(void **state)
     ted4_scene_free(s);
 }
 
-/* Blobs that are deflated, text for people. */
+/* Vectors with deflated blobs, and with text for people. */
 static void vectors(void **state)
 {
     static const char *const id[] = { "valid/random/RND-pack-inr-0-netr",
@@ -215,7 +216,7 @@ static void vectors(void **state)
     }
 }
 
-/* Of a scene that is to be written, or observed. */
+/* Asserts that a scene is refused when it is written, or observed. */
 static void expect_refused(const ted4_scene *s)
 {
     uint8_t *data;
@@ -226,7 +227,7 @@ static void expect_refused(const ted4_scene *s)
     assert_int_equal(ted4_dump_tier(s, 3, NULL, throw_away, NULL), TED4_E_SYN_HASH);
 }
 
-/* Masks that the header does not code, and masks that it codes. */
+/* Masks that the header does not code, and invalid ones that it codes. */
 static void wrong_masks(void **state)
 {
     for (uint8_t coded = 0; coded <= 1; coded++) {
@@ -258,7 +259,7 @@ static void wrong_masks(void **state)
     }
 }
 
-/* Shifts that no walk has judged. */
+/* Shifts that no walk has checked. */
 static void wrong_shift(void **state)
 {
     ted4_scene *s = example();

@@ -1,5 +1,5 @@
-/* test_strict.c - spec 12.2: pow2 and its edges, the class X probe under each way of spoiling the
- * arithmetic.
+/* test_strict.c - spec 12.2: pow2 and its limits, and the class X probe under each way of breaking
+ * the arithmetic.
  * SPDX-License-Identifier: BSD-2-Clause */
 #include <fenv.h>
 
@@ -10,7 +10,7 @@
 #include <xmmintrin.h>
 #endif
 
-/* 2^25 arguments would take seconds; a step that is no power of two meets all fractions. */
+/* All 2^25 arguments would take seconds; a step that is not a power of two covers all fractions. */
 static void pow2_is_within_two_tenths_of_a_millionth(void **state)
 {
     double worst = 0;
@@ -24,7 +24,7 @@ static void pow2_is_within_two_tenths_of_a_millionth(void **state)
         worst = error > worst ? error : worst;
     }
     assert_true(worst < 2e-7);
-    assert_true(worst > 1e-8); /* the measurement works */
+    assert_true(worst > 1e-8); /* the measurement itself works */
 }
 
 static void pow2_of_whole_numbers_is_exact(void **state)
@@ -47,7 +47,7 @@ static void pow2_is_clamped_and_keeps_nan(void **state)
     assert_true(ted4_pow2(0x1p-149f) == 1);
 }
 
-/* The text's code with floorf, around every change of n. */
+/* The code in the text of the specification, with floorf, around every change of n. */
 static float pow2_of_the_text(float x)
 {
     static const float c[7] = { 0x1.430912p-13f,

@@ -1,4 +1,4 @@
-/* test_tables.c - norm/tables.c against its formulas (annex A).
+/* test_tables.c - compares norm/tables.c with its formulas (annex A).
  * SPDX-License-Identifier: BSD-2-Clause */
 #include "test.h"
 #include "tests/gen/table_math.h"

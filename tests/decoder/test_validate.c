@@ -1,6 +1,6 @@
-/* test_validate.c - spec 3.6: a validator finds errors exactly where the strict decoder refuses,
- * that decoder's error first, and finds it by itself too; it goes on behind an error, and its JSON
- * is what its schema says.
+/* test_validate.c - spec 3.6: a validator finds errors exactly if the strict decoder refuses the
+ * file, and that decoder's error comes first, also if the validator searches on its own; it
+ * continues after an error, and its JSON conforms to its schema.
  * SPDX-License-Identifier: BSD-2-Clause */
 #include <stdio.h>
 
@@ -27,7 +27,7 @@ static void valid_files(void **state)
     }
 }
 
-/* Files changed by the fuzzer's mutator, which keeps most of what depends on the change right. */
+/* Files changed by the fuzzer's mutator, which corrects most of what depends on the change. */
 static void changed_files(void **state)
 {
     random_source r = random_seed(11);
@@ -56,7 +56,7 @@ static void changed_files(void **state)
     assert_true(several > N_MUTATIONS / 50);
 }
 
-/* One error in each of many places: all of them are found. */
+/* One error in each of many places; all of them are found. */
 static void many_errors(void **state)
 {
     enum { HEAD_VIEW = 24, HEAD_RATE = 40 };
@@ -98,7 +98,7 @@ static void many_errors(void **state)
     assert_int_equal(all->errors, 9);
     free(data);
 
-    data = encoded(s, 0, &size); /* HEAD: three elements; nothing behind it is judged */
+    data = encoded(s, 0, &size); /* HEAD: three elements; nothing after it is checked */
     ted4_store32(data + 24 + 4, 70000);
     data[24 + HEAD_VIEW] = 3;
     ted4_store32(data + 24 + HEAD_RATE, 0); /* step[0] */
@@ -113,7 +113,7 @@ static void many_errors(void **state)
     ted4_scene_free(s);
 }
 
-/* More errors than are listed: it says so. */
+/* More errors than are listed: a finding says so. */
 static void too_many(void **state)
 {
     random_source r = random_seed(4);
@@ -135,9 +135,9 @@ static void too_many(void **state)
     ted4_scene_free(s);
 }
 
-/* Of the suite's vectors that break a rule nearly all break that one only: nothing else is to be
- * found in them. (Those of precedence, which hold several errors on purpose, are not counted.) The
- * others, by parts of their paths; conformance/GAPS.md says why. */
+/* Nearly all vectors of the suite that break a rule break only that one, so nothing else must be
+ * found in them. (Vectors on precedence, which contain several errors on purpose, are not counted.)
+ * The exceptions, by parts of their paths; conformance/GAPS.md explains them. */
 static const char *const of_several[] = {
     "/levels/",           "/NEG-range-feature_dim-", "/NEG-range-slice0-",
     "/NEG-range-motion-", "/NEG-range-head_layers-", "/NEG-range-hyper_layers-",
@@ -154,7 +154,7 @@ static int explained(const char *path)
     return 0;
 }
 
-/* Does the vector's descriptor name that rule? */
+/* Returns whether the vector's descriptor names that rule. */
 static int is_named(const char *path, const char *rule)
 {
     char name[1024];
@@ -200,8 +200,8 @@ static void negative_vectors(void **state)
     assert_int_equal(n_unexplained, 0);
 }
 
-/* Every allocation fails once, and all behind it: the strict decoder's verdict, which what a
- * validator looks for beyond it does not change, and everything is given back. */
+/* Lets every allocation fail, alone and with all later ones: the strict decoder's verdict stays,
+ * whatever a validator looks for beyond it, and all memory is freed. */
 static void starve(const uint8_t *data, size_t size)
 {
     static findings all;
