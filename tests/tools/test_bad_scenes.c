@@ -1,7 +1,7 @@
-/* test_bad_scenes.c - ted4enc as a program, given what it cannot use: one line on stderr that
- * begins with its name, exit status 3, and nothing left in the folder of the output. A scene of a
- * few pixels that is fine shows that the others fail for their own reason. Looks for it in
- * $TED4_BUILD (set by tests/run.sh); skips when that is not set.
+/* test_bad_scenes.c - ted4enc as a program, given unusable input: it prints one line on stderr that
+ * begins with its name, exits with status 3, and leaves nothing in the folder of the output. A
+ * valid scene of a few pixels shows that the others fail for their own reasons. The program is
+ * taken from $TED4_BUILD (set by tests/run.sh); the test is skipped if that is not set.
  * SPDX-License-Identifier: BSD-2-Clause */
 #include <sys/wait.h>
 
@@ -20,7 +20,7 @@ static const char *build;
 static tiny_folder folder;
 static char err[4096]; /* stderr of the last run */
 
-/* ted4enc with these arguments, in the folder, without what it says on its way; gives its exit
+/* Runs ted4enc with these arguments, in the folder, without its progress messages. Returns its exit
  * status. */
 static int run(const char *arguments)
 {
@@ -42,7 +42,7 @@ static int run(const char *arguments)
 static int files_in(const char *name)
 {
     DIR *d = opendir(tiny_path(&folder, name));
-    int n = -2; /* . and .. */
+    int n = -2; /* . and .. do not count */
 
     assert_non_null(d);
     while (readdir(d) != NULL)
@@ -66,7 +66,7 @@ static void refuse(const char *arguments, const char *what)
         fail_msg("ted4enc %s: left a file behind", arguments);
 }
 
-/* A nerfstudio scene of three pictures, its top object and its second frame to be replaced. */
+/* Writes a nerfstudio scene of three pictures with the given top object and second frame. */
 static void scene(const char *name, const char *top, const char *second)
 {
     tiny_string s = { "", 0 };
@@ -177,7 +177,7 @@ static void test_pictures(void **state)
     refuse("large --downscale 13" OUT QUICK, "cannot be reduced by 13");
 }
 
-/* The two programs take the same words about the scene. */
+/* Both programs accept the same options about the scene. */
 static void test_hold_out(void **state)
 {
     char command[1024];
@@ -202,7 +202,7 @@ static void test_hold_out(void **state)
     must(remove(tiny_path(&folder, "out/x.ted4")) == 0, "x.ted4");
 }
 
-/* What a scene file says of its rate comes out as it went in. */
+/* The frame rate that a scene file states is found unchanged in the output. */
 static void test_rate(void **state)
 {
     static const char *const rates[][2] = { { "6", "3 at 6 per second" },

@@ -1,5 +1,5 @@
-/* test_belongs.c - which files ted4eval takes to be of which scenes, and which pictures its sheet
- * shows.
+/* test_belongs.c - which files ted4eval considers to belong to which scenes, and which pictures its
+ * contact sheet shows.
  * SPDX-License-Identifier: BSD-2-Clause */
 #include <math.h>
 #include <stdlib.h>
@@ -17,7 +17,7 @@ typedef struct {
     ted4_picture picture[MOST];
 } pair;
 
-/* Cameras on a circle of 10 around the origin that look at it, and a file of a cube there, 4
+/* Cameras on a circle of radius 10 around the origin that look at it, and a file of a cube there, 4
  * wide. */
 static void make_pair(pair *p)
 {
@@ -30,7 +30,7 @@ static void make_pair(pair *p)
     for (int i = 0; i < CAMERAS; i++) {
         const double a = 2 * 3.14159265358979 * i / CAMERAS;
 
-        /* Forward is the third row: towards the origin. */
+        /* The forward direction is the third row: towards the origin. */
         p->picture[i].camera =
             (ted4_camera) { .width = 80,
                             .height = 60,
@@ -47,7 +47,7 @@ static void make_pair(pair *p)
     p->file.exponent = 1;
 }
 
-/* what: part of the reason; NULL: it belongs. */
+/* what: part of the reason, or NULL if the file belongs to the scene. */
 static void expect(const pair *p, const char *what)
 {
     char why[256] = "";
@@ -69,19 +69,20 @@ static void test_scene(void **state)
     make_pair(&p);
     p.file.rate_num = 25;
     expect(&p, "25 frames per second in the file, 30 in the scene");
-    p.d.rate = 0; /* not known */
+    p.d.rate = 0; /* unknown */
     expect(&p, NULL);
-    /* Beside the pictures of nearly all. */
+    /* The cube is outside nearly all pictures. */
     make_pair(&p);
     p.file.origin[2] = 9;
     expect(&p, "only 0 of 12 pictures look at where it lies");
     p.file.origin[2] = 5;
-    expect(&p, NULL); /* its lower end is still seen */
-    /* Behind half of the cameras and more. */
+    expect(&p, NULL); /* its lower end is still visible */
+    /* The cube is behind half of the cameras or more. */
     p.file.origin[2] = 0;
     p.file.origin[0] = 60;
     expect(&p, "of 12 pictures");
-    /* Cameras in its middle see it, wherever they look; and a small one in theirs is seen. */
+    /* Cameras inside a large cube see it, whatever their direction; a small cube in the middle of
+     * the cameras is visible, too. */
     p.file.exponent = 7;
     expect(&p, NULL);
     p.file.origin[0] = 0;
@@ -104,7 +105,8 @@ static void test_pictures(void **state)
     assert_true(s.drawn == 300.0 * 900);
     assert_true(s.mean == 300.0 * 2500);
     assert_int_equal(ted4_belongs_pictures(&s, why, sizeof why), 1);
-    /* Pictures of one colour count for nothing, and those of others far from them for much. */
+    /* Pictures of a single colour have no weight, but those whose colour is far from the true one
+     * have a large one. */
     memset(truth, 9, sizeof truth);
     memset(drawn, 9, sizeof drawn);
     ted4_belongs_add(&s, truth, drawn, 100);
@@ -115,8 +117,8 @@ static void test_pictures(void **state)
     assert_non_null(strstr(why, "dB further"));
 }
 
-/* n pictures of so many cameras, camera by camera, each at other times; every second camera is held
- * out. */
+/* Makes pictures of so many cameras, camera by camera, each at so many times. Every second camera
+ * is held out. */
 static void add_pictures(pair *p, uint32_t cameras, uint32_t times)
 {
     p->d.n_pictures = 0;
@@ -142,17 +144,17 @@ static void test_sheet(void **state)
 
     (void)state;
     make_pair(&p);
-    /* Six held-out cameras, 1 3 5 7 9 11 of 8 times each: the first, the last and two between, ever
-     * later. */
+    /* Six held-out cameras, 1 3 5 7 9 11, of 8 times each: the first, the last and two between
+     * them, each at a later time. */
     add_pictures(&p, CAMERAS, FRAMES);
     expect_rows(&p, 1, 4, (size_t[]) { 8, 3 * 8 + 2, 7 * 8 + 4, 11 * 8 + 7 });
     expect_rows(&p, 0, 4, (size_t[]) { 0, 2 * 8 + 2, 6 * 8 + 4, 10 * 8 + 7 });
-    /* One camera: four times of it. Two: first and last time of each. */
+    /* One camera: four of its times. Two cameras: the first and last time of each. */
     add_pictures(&p, 2, FRAMES);
     expect_rows(&p, 1, 4, (size_t[]) { 8, 10, 12, 15 });
     add_pictures(&p, 4, FRAMES);
     expect_rows(&p, 1, 4, (size_t[]) { 8, 24, 15, 31 });
-    /* Fewer pictures than rows; none twice. */
+    /* Fewer pictures than rows: no picture is shown twice. */
     add_pictures(&p, 3, 1);
     expect_rows(&p, 1, 1, (size_t[]) { 1 });
     expect_rows(&p, 0, 2, (size_t[]) { 0, 2 });
@@ -161,7 +163,7 @@ static void test_sheet(void **state)
     p.picture[1].is_test = 0;
     expect_rows(&p, 1, 0, NULL);
     add_pictures(&p, 6, 3);
-    p.picture[0].is_test = p.picture[1].is_test = 1; /* of another camera only two */
+    p.picture[0].is_test = p.picture[1].is_test = 1; /* only two of another camera */
     p.d.n_pictures = 5;
     expect_rows(&p, 1, 4, (size_t[]) { 0, 3, 1, 4 });
 }

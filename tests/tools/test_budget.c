@@ -1,4 +1,4 @@
-/* test_budget.c - tool/budget.c: every byte of a file has one owner.
+/* test_budget.c - tool/budget.c: every byte of a file belongs to exactly one part.
  * SPDX-License-Identifier: BSD-2-Clause */
 #include <stdlib.h>
 
@@ -40,7 +40,7 @@ static void every_byte(void **state)
     }
 }
 
-/* A trace that goes back, or ends before its last element, is not believed. */
+/* A trace that goes backwards, or ends before its last element, is refused. */
 static void disorder(void **state)
 {
     static ted4_budget b;

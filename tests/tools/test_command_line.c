@@ -1,6 +1,6 @@
-/* test_command_line.c - what the programs take from their command lines: file name patterns, times,
- * numbers, options from a table.
- * The programs' helpers are in no library, so their sources are part of this file.
+/* test_command_line.c - the parsing of the programs' command lines: file name patterns, times,
+ * numbers, options from a table. The programs' helpers are in no library, so their sources are
+ * included here.
  * SPDX-License-Identifier: BSD-2-Clause */
 #include <getopt.h>
 #include <math.h>
@@ -104,7 +104,7 @@ static void test_times(void **state)
     t = ted4_time_of_frame(1000000001, UINT32_MAX); /* 3906249.77 of 2^24 - 1 */
     assert_int_equal(t.num, 3906250);
     assert_int_equal(t.den, (1u << 24) - 1);
-    t = ted4_time_of_frame(29, (1u << 25) - 1); /* 14.5 and 5.5 of 2^24 - 1: to even */
+    t = ted4_time_of_frame(29, (1u << 25) - 1); /* 14.5 and 5.5 of 2^24 - 1: rounded to even */
     assert_int_equal(t.num, 14);
     assert_int_equal(t.den, (1u << 24) - 1);
     t = ted4_time_of_frame(11, (1u << 25) - 1);

@@ -1,6 +1,6 @@
-/* test_conformance.c - the suite: its recipes give the bytes that are published, these leave
- * nothing out, our decoder passes all of them, and the runner sees through decoders that do not
- * (conformance/tests/bad_decoder.sh). Programs are run as a user would.
+/* test_conformance.c - the suite: its recipes give the published bytes and leave nothing out, our
+ * decoder passes all of them, and the runner detects decoders that do not conform
+ * (conformance/tests/bad_decoder.sh). Programs are run as a user would run them.
  * SPDX-License-Identifier: BSD-2-Clause */
 #include <stdio.h>
 #include <stdlib.h>
@@ -12,7 +12,7 @@
 #include "ted4.h"
 
 #ifdef __SANITIZE_ADDRESS__
-#define MEMORY " --memory 0" /* its shadow takes terabytes of addresses */
+#define MEMORY " --memory 0" /* the sanitizer's shadow memory takes terabytes of addresses */
 #else
 #define MEMORY ""
 #endif
@@ -24,10 +24,10 @@ static const char *build(void)
     return b != NULL ? b : "build";
 }
 
-/* The beginning of what ted4conf said last. */
+/* The beginning of what ted4conf printed last. */
 static char said[4096];
 
-/* Exit code of ted4conf with those arguments; its last line in last. */
+/* Returns the exit code of ted4conf with those arguments, and its last line in last. */
 static int conf(char *last, size_t size, const char *format, ...)
 {
     char arguments[1024], command[2048], line[1024];
@@ -61,8 +61,8 @@ static void recipes_give_the_published_bytes(void **state)
         fail_msg("%s", last);
 }
 
-/* No rule without a vector, no vector without a rule, every value, pair, table entry and extreme
- * reached. */
+/* There is no rule without a vector and no vector without a rule, and every value, pair, table
+ * entry and extreme occurs. */
 static void nothing_is_left_out(void **state)
 {
     char last[1024];
@@ -72,7 +72,8 @@ static void nothing_is_left_out(void **state)
         fail_msg("ted4conf cover: %s", last);
 }
 
-/* Files that end early at every byte: con.truncated at the end, or what pass 1 finds before it. */
+/* Files truncated at every byte: con.truncated at the end, or the error that pass 1 finds before
+ * it. */
 static void truncation_at_every_byte(void **state)
 {
     static const char *const file[] = { "worked/WRK-smallest", "worked/WRK-masks",
@@ -101,7 +102,7 @@ static void truncation_at_every_byte(void **state)
     }
 }
 
-/* The second run of each vector takes the plain kernels: both have to give the same hashes. */
+/* The second run of each vector uses the plain kernels: both runs must give the same hashes. */
 static void our_decoder_conforms(void **state)
 {
     char last[1024];
@@ -114,7 +115,7 @@ static void our_decoder_conforms(void **state)
     assert_non_null(strstr(last, " 0 failed, 0 without answer, 0 missing, 0 declined"));
 }
 
-/* With the kernels of each level that this machine has. */
+/* Uses the kernels of each level that this machine has. */
 static void levels_conform(void **state)
 {
     char last[1024];
@@ -128,7 +129,8 @@ static void levels_conform(void **state)
     unsetenv("TED4_KERNEL");
 }
 
-/* With a caller's threads, with a trace, without options, and in a scene as encoders make it. */
+/* Decodes with a caller's threads, with a trace, without options, and to a scene as encoders make
+ * it. */
 static void ways_agree(void **state)
 {
     char last[1024];
@@ -138,7 +140,7 @@ static void ways_agree(void **state)
         fail_msg("%s", said);
 }
 
-/* Runs a bad decoder over a list of vectors; the closing line has to hold what. */
+/* Runs a bad decoder over a list of vectors; the last line must contain what. */
 static void expect_of(const char *list, const char *way, int code, const char *what)
 {
     char last[1024];
@@ -178,7 +180,7 @@ static void lies(void **state)
     expect("good", 0,
            " 8 passed, 0 failed, 0 without answer, 0 missing, 0 declined, 0 not run: conforms");
     expect("says-valid", 1, " 0 passed, 8 failed");
-    expect("says-invalid", 1, " 1 passed, 7 failed"); /* one of them is */
+    expect("says-invalid", 1, " 1 passed, 7 failed"); /* one of them really is invalid */
     expect("says-limit", 1, " 1 passed, 7 failed");
     expect("wrong-hash", 1, " 4 passed, 4 failed");
     expect("half-wrong", 1, " 4 passed, 4 failed");
@@ -204,15 +206,16 @@ static void declining(void **state)
     expect("class-alone", 1, "a class is claimed, but not T5");
 }
 
-/* What a decoder leaves running ends with its time, and does not keep the runner waiting. */
+/* Processes that a decoder leaves running end when its time is over, and do not make the runner
+ * wait. */
 static void left_behind(void **state)
 {
     (void)state;
     expect("hang-behind", 1, " 8 without answer");
 }
 
-/* class-t.txt: a valid vector; one of whose four queries three are out of range; one with queries
- * that have no result in class X; an invalid one. */
+/* class-t.txt: a valid vector; one with four queries, three of which are out of range; one with
+ * queries that have no result in class X; an invalid one. */
 static void class_t(void **state)
 {
     static const char *const kept[] = { "exact", "inside", "more" };
@@ -239,8 +242,8 @@ static void class_t(void **state)
     expect_of(list, "class-t-other-dump", 1, " 1 passed, 3 failed, 0 without answer");
 }
 
-/* lenient.txt: of six vectors two of which nothing, three of which something can be salvaged, and a
- * valid one. */
+/* lenient.txt: six vectors. From two nothing can be salvaged, from three something, and one is
+ * valid. */
 static void lenient_mode(void **state)
 {
     static const char list[] = "tests/lenient.txt";
@@ -268,7 +271,7 @@ static void missing_vectors(void **state)
     assert_non_null(strstr(last, " 1 passed, 0 failed, 0 without answer, 1 missing"));
 }
 
-/* work.txt: any limit will do for the first vector, limit.work only for the second. */
+/* work.txt: the first vector may give any limit, the second only limit.work. */
 static void limits(void **state)
 {
     static const char list[] = "tests/work.txt";
@@ -277,8 +280,8 @@ static void limits(void **state)
     expect_of(list, "says-limit", 1, " 1 passed, 1 failed");
 }
 
-/* above.txt: a valid vector of level 1; of higher levels one that is valid, one with an error of
- * pass 2, and one of pass 1, which is nobody's to decline. */
+/* above.txt: a valid vector of level 1; of higher levels a valid one, one with an error of pass 2,
+ * and one with an error of pass 1, which no decoder may decline. */
 static void levels_above(void **state)
 {
     static const char list[] = "tests/above.txt";
@@ -298,7 +301,7 @@ static void version(void **state)
     assert_string_equal(last, "ted4conf " TED4_VERSION "\n");
 }
 
-/* A list that holds another one, and lists in a circle. */
+/* A list that includes another one, and lists that include each other. */
 static void lists(void **state)
 {
     static const char folder[] = "conformance/tests";

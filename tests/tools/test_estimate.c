@@ -1,6 +1,6 @@
-/* test_estimate.c - how long a training is said to take, on recorded runs: their logs have a line
- * for many steps, and the steps between two lines are taken to last equally long, but for what a
- * probe, trials and multi-view seeding took on top.
+/* test_estimate.c - the estimate of a training's duration, tested on recorded runs. Their logs have
+ * one line for many steps; the steps between two lines are assumed to take equally long, apart from
+ * the extra time of a probe, of trials and of multi-view seeding.
  * SPDX-License-Identifier: BSD-2-Clause */
 #include <math.h>
 #include <stdio.h>
@@ -10,8 +10,8 @@
 #include "estimate_runs.h"
 #include "tool/estimate.h"
 
-/* As the schedule has it; trials at these shares of stage 2, which are believed to take so many
- * steps. */
+/* Times in the schedule: the probe, multi-view seeding, and trials at these shares of a stage; and
+ * the numbers of steps that the search and the last trial are expected to take. */
 #define PROBE_AT   0.25
 #define MV_SEED_AT 0.3
 #define DECIDE_AT  0.15
@@ -19,7 +19,8 @@
 #define SEARCH     1120.0
 #define LAST       250.0
 
-/* A tenth of the way on, within a quarter of what is left, or this share of the whole. */
+/* Required accuracy: after a tenth of the run, the estimate is within a quarter of the remaining
+ * time, or within this share of the whole. */
 #define FROM  0.1
 #define NEAR  0.25
 #define CLOSE 0.02
@@ -53,8 +54,8 @@ static void look(replay *p, double seconds)
                  p->w.step, p->clock, whole(p->run), truth, left);
 }
 
-/* What one step does on top of itself: so many looks at spent steps of a budget, of which the work
- * is done in so many seconds. */
+/* Simulates the extra work of one step: so many looks at the spent steps of a budget, whose work
+ * takes so many seconds in all. */
 static void long_step(replay *p, int probing, double budget, double spent, double seconds)
 {
     const double begin = p->w.step;
@@ -72,14 +73,14 @@ static void long_step(replay *p, int probing, double budget, double spent, doubl
     p->w.budget = p->w.spent = 0;
 }
 
-/* Is step x the next one, or passed over with those between two lines? */
+/* Returns whether step x lies between two lines: after from, at to at the latest. */
 static int between(double x, double from, double to)
 {
     return x > from && x <= to;
 }
 
-/* The steps to the next line, with what is due among them. pace: seconds of a step as it was
- * before. */
+/* Makes the steps up to the next line, with everything due among them. pace: seconds per step so
+ * far. Returns the new pace. */
 static double go(replay *p, const run_line *to, double pace)
 {
     const recorded_run *r = p->run;
@@ -102,8 +103,8 @@ static double go(replay *p, const run_line *to, double pace)
         long_step(p, 0, decides ? SEARCH : LAST, decides ? r->search : LAST, more);
     }
 
-    /* The step with multi-view seeding takes what is left over, and more anchors are there from
-     * then on. */
+    /* The step with multi-view seeding takes the remaining time; from then on there are more
+     * anchors. */
     const double left = to->seconds - p->clock, steps = to->step - p->w.step,
                  rest = is_mv_seed ? fmax(left - steps * pace, 0.0) : 0.0;
 
@@ -153,7 +154,7 @@ static ted4_work plain(void)
                          .anchors = 100 };
 }
 
-/* Nothing is known before there were steps, and nothing is said before there were a hundred. */
+/* Before the first steps nothing is known, and before a hundred steps no estimate is given. */
 static void test_beginning(void **state)
 {
     ted4_estimate e;
@@ -171,7 +172,7 @@ static void test_beginning(void **state)
     assert_true(fabs(ted4_estimate_left(&e) - 9.0) < 0.2);
 }
 
-/* One slow step, a rollback or a pause is not the pace. */
+/* One slow step, a rollback or a pause does not change the pace. */
 static void test_disturbed(void **state)
 {
     ted4_estimate e;

@@ -1,5 +1,5 @@
-/* test_export.c - the files ted4dec writes, read back field by field.
- * The programs' helpers are in no library, so their sources are part of this file.
+/* test_export.c - the files that ted4dec writes, read back field by field. The programs' helpers
+ * are in no library, so their sources are included here.
  * SPDX-License-Identifier: BSD-2-Clause */
 #include <dirent.h>
 #include <jansson.h>
@@ -60,7 +60,7 @@ static void make(set *s, size_t n, int degree)
     }
 }
 
-/* Writes by suffix and reads the bytes back. */
+/* Writes the format of the file name's suffix, and reads the bytes back. */
 static uint8_t *written(const ted4_frame *x, const char *name, size_t *size)
 {
     char path[256];
@@ -270,7 +270,7 @@ static glb open_glb(const uint8_t *data, size_t size)
     return g;
 }
 
-/* The accessor of an attribute, with its bytes. */
+/* Returns the accessor of an attribute, with its bytes. */
 static const uint8_t *attribute(const glb *g, const char *name, const char *type, int component,
                                 const json_t **accessor)
 {
@@ -291,7 +291,7 @@ static const uint8_t *attribute(const glb *g, const char *name, const char *type
     return g->data + json_integer_value(json_object_get(view, "byteOffset"));
 }
 
-/* v as glTF has it: y up, z backwards. */
+/* Converts v to glTF's axes: y up, z backwards. */
 static void turned(const double v[3], double out[3])
 {
     out[0] = v[0];
@@ -337,7 +337,7 @@ static void check_glb_shape(const glb *g, const set *s)
     }
 }
 
-/* The colour in a direction is the same before and after turning world and direction. */
+/* The colour in a direction is the same before and after rotating world and direction together. */
 static void check_glb_colour(const glb *g, const set *s, int degree)
 {
     const uint8_t *coef[TED4_SH_MAX_COEFS];
@@ -413,7 +413,7 @@ static void test_empty(void **state)
     free(data);
 }
 
-/* A folder that is not there; a writer that fails: nothing is left behind. */
+/* A folder that does not exist, and a writer that fails: no file is left behind. */
 static int write_badly(FILE *f, const ted4_frame *x)
 {
     (void)x;

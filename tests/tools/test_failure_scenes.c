@@ -1,5 +1,5 @@
-/* test_failure_scenes.c - the scenes in which methods fail show what they are named for, judged by
- * what cameras see; and those for file sizes. Links tools/scene/ray_*.o.
+/* test_failure_scenes.c - the scenes in which methods fail contain the effect after which they are
+ * named, judged by what cameras see; and the scenes for file sizes. Links tools/scene/ray_*.o.
  * SPDX-License-Identifier: BSD-2-Clause */
 #include <math.h>
 #include <stdlib.h>
@@ -40,7 +40,7 @@ static void picture(const ted4_ray_options *o, int number, int frame, uint8_t *r
     ted4_ray_render(&w, &c, rgb);
 }
 
-/* Share of bytes that differ by more than limit. */
+/* Returns the share of bytes that differ by more than limit. */
 static double changed(const uint8_t *a, const uint8_t *b, int limit)
 {
     int n = 0;
@@ -50,7 +50,7 @@ static double changed(const uint8_t *a, const uint8_t *b, int limit)
     return (double)n / SIZE;
 }
 
-/* Between two times of a camera. */
+/* The same between two times of a camera. */
 static double change_of(const ted4_ray_options *o, int number, int frame, int other)
 {
     static uint8_t a[SIZE], b[SIZE];
@@ -69,8 +69,8 @@ static double brightness(const uint8_t *rgb)
     return sum / SIZE;
 }
 
-/* mask[height][width]: is one of those of-many objects seen that come before the last from_end of
- * the world? Returns in how many pixels. */
+/* mask[height][width]: whether a pixel shows one of the of objects that precede the last from_end
+ * objects of the world. Returns the number of such pixels. */
 static int find(const ted4_ray_options *o, int number, int frame, int from_end, int of,
                 uint8_t *mask)
 {
@@ -130,7 +130,7 @@ static void test_blink(void **state)
     check_jumps(RAY_BLINK, 2);
 }
 
-/* Whatever comes and goes is cut by the upper edge, in every picture that shows it. */
+/* Whatever appears and disappears is cut by the upper edge, in every picture that shows it. */
 static void test_edge(void **state)
 {
     const ted4_ray_options o = plan(RAY_EDGE);
@@ -180,7 +180,7 @@ static void test_change(void **state)
         assert_true(change_of(&o, camera, 0, 15) > 0.15);
 }
 
-/* Nothing comes or goes next to a time that is held out. */
+/* Nothing appears or disappears next to a time that is held out. */
 static void test_held_times(void **state)
 {
     (void)state;
@@ -239,8 +239,8 @@ static extent extent_of(const uint8_t *mask, int width, int height)
     return (extent) { sum[0] / n, sum[1] / n, high[0] - low[0] + 1, high[1] - low[1] + 1 };
 }
 
-/* Ball (the last but one solid) and box: pictures of them at successive times are apart by more
- * than they are wide or high, in room and picture. */
+/* Ball (the last solid but one) and box: between successive times they move further than their
+ * width or height, in the room and in the picture. */
 static void test_fast(void **state)
 {
     const ted4_ray_options o = plan_at(RAY_FAST, 96, 64);
@@ -285,7 +285,7 @@ static void flood(uint8_t *mask, int width, int height, int x, int y)
     flood(mask, width, height, x, y + 1);
 }
 
-/* Connected parts of at least 4 pixels; clears the mask. */
+/* Returns the number of connected parts of at least 4 pixels, and clears the mask. */
 static int parts(uint8_t *mask, int width, int height)
 {
     int n = 0;
@@ -372,8 +372,8 @@ static void test_flicker(void **state)
     assert_true(fabs(brightness(a) / brightness(b) - 1) < 0.02);
 }
 
-/* Share of neighbours on the walls of the room that differ by more than 12; at shadows and solids
- * they do even without texture. */
+/* Returns the share of neighbouring pixels on the walls of the room that differ by more than 12. At
+ * shadows and solids they differ even without texture. */
 static double roughness(ted4_ray_scene s)
 {
     const ted4_ray_options o = plan_at(s, 96, 64);
@@ -407,7 +407,7 @@ static void test_bare(void **state)
 
 /* ---- 12: wires ---- */
 
-/* Rods are thinner than a pixel of the default picture, and seen all the same. */
+/* Rods are thinner than a pixel of the default picture, and still visible. */
 static void test_wires(void **state)
 {
     const ted4_ray_options o = plan_at(RAY_WIRES, 96, 64);
@@ -506,7 +506,7 @@ static void test_things(void **state)
     }
 }
 
-/* The first half of rest is things4, its second half does not move, that of things4 of the same
+/* The first half of rest is things4. Its second half does not move; that of things4 of the same
  * length does. */
 static void test_rest(void **state)
 {
