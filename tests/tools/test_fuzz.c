@@ -1,6 +1,6 @@
-/* test_fuzz.c - every fuzzing harness of fuzz/list.def over its seeds and its regressions, the
- * decoder's over changed copies of its seeds too, so that none of them can rot; and those seeds
- * themselves. Runs in the project's root, as `make test` does.
+/* test_fuzz.c - runs every fuzzing harness of fuzz/list.def over its seeds and its regressions, and
+ * those of the decoder over changed copies of its seeds, so that no harness becomes outdated; also
+ * tests those seeds themselves. Runs in the project's root, as `make test` does.
  * SPDX-License-Identifier: BSD-2-Clause */
 #include <dirent.h>
 #include <stdio.h>
@@ -66,7 +66,7 @@ static ted4_status decode(const uint8_t *data, size_t size, ted4_info *info)
     return verdict;
 }
 
-/* The corpus is valid, small, and covers what a header can say. */
+/* The corpus is valid, small, and covers the settings of a header. */
 static void test_corpus(void **state)
 {
     unsigned motion = 0, view = 0, activation = 0, dynamic = 0;
@@ -89,7 +89,7 @@ static void test_corpus(void **state)
     assert_true(dynamic);
 }
 
-/* A claim that does not hold ends the process; what it says comes before the name of the harness
+/* A claim that does not hold ends the process; its message comes before the name of the harness
  * here. */
 static void test_harnesses(void **state)
 {
@@ -112,8 +112,8 @@ static void test_harnesses(void **state)
     }
 }
 
-/* Changed bytes behind correct hashes reach every part of the decoder; some of the files are valid.
- */
+/* Changed bytes with correct hashes reach every part of the decoder; some of the files are
+ * valid. */
 static void test_changes(void **state)
 {
     random_source r = random_seed(4);
@@ -141,9 +141,9 @@ static void test_changes(void **state)
     free(data);
 }
 
-/* The mutator keeps to its room, gives the same for the same seed, and most of what it makes is
- * refused for something else than a hash, or valid. The code that the specification prints says the
- * same of it as the decoder. */
+/* The mutator stays within its memory and gives the same result for the same seed. Most of its
+ * files are valid, or are refused for something other than a hash. The code that the specification
+ * prints gives the same verdict on them as the decoder. */
 static void test_mutator(void **state)
 {
     enum { CAPACITY = 4 * MAX_SIZE, ROUNDS = 60 };
@@ -181,7 +181,7 @@ static void test_mutator(void **state)
     free(b);
 }
 
-/* Any bytes in the substreams become symbols of a valid file. */
+/* Any bytes in the substreams can be turned into symbols of a valid file. */
 static void test_fix_range_codes(void **state)
 {
     random_source r = random_seed(9);

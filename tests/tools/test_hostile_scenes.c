@@ -1,6 +1,7 @@
 /* test_hostile_scenes.c - ted4enc --check on scenes that are broken, or were made to do harm: each
- * gives one clear error with exit status 3, or one counted warning and what is left, and never
- * anything else. Looks for the program in $TED4_BUILD; skips when that is not set.
+ * gives either one clear error with exit status 3, or one counted warning and the rest of the
+ * scene, and never anything else. The program is taken from $TED4_BUILD; the test is skipped if
+ * that is not set.
  * SPDX-License-Identifier: BSD-2-Clause */
 #include <sys/wait.h>
 
@@ -8,12 +9,12 @@
 #include "tiny_scene.h"
 
 static const char *build;
-static tiny_folder folder; /* holds s, the case's scene, and what the program says */
+static tiny_folder folder; /* holds s, the case's scene, and the program's output */
 static char out[8192], err[8192];
 
-/* ---- what a case consists of ---- */
+/* ---- the parts of a case ---- */
 
-/* A scene of one layout in which all is well but for the text that is put into it. */
+/* A scene of one layout that is valid apart from the text inserted into it. */
 typedef enum { TRANSFORMS, FRAMES, CAMERAS, IMAGES, POINTS, OTHER } kind;
 
 typedef struct {
@@ -21,7 +22,7 @@ typedef struct {
     const char *text;
     const char *says;   /* part of the message */
     int warns;          /* a warning, not an error */
-    void (*make)(void); /* more that belongs to it, or OTHER's all */
+    void (*make)(void); /* makes further files, or the whole scene for OTHER */
 } hostile;
 
 #define POSE       "\"transform_matrix\": " TINY_POSE
@@ -70,7 +71,7 @@ static void write_case(const hostile *h)
         h->make();
 }
 
-/* ---- things that take more than a text ---- */
+/* ---- cases that need more than a text ---- */
 
 static void bytes_as(const char *name, const char *bytes, size_t n)
 {
@@ -147,7 +148,7 @@ static void loop_picture(void)
     must(symlink("1.png", tiny_path(&folder, "s/1.png")) == 0, "1.png");
 }
 
-/* n times a text in a list. */
+/* Writes a list that contains a text n times. */
 static void long_list(const char *before, const char *item, size_t n, const char *after)
 {
     FILE *o = fopen(tiny_path(&folder, "s/transforms.json"), "wb");
@@ -223,7 +224,7 @@ static void npy(const char *shape, size_t n)
                               0x93, 1, 0, 118, 0, shape);
 
     memset(bytes + head, ' ', 128 - (size_t)head);
-    memset(bytes + 128, 0xff, n); /* numbers that are none */
+    memset(bytes + 128, 0xff, n); /* not numbers */
     bytes[127] = '\n';
     bytes_as("s/poses_bounds.npy", bytes, 128 + n);
     tiny_picture(&folder, "s/images/0.png", TINY_W, TINY_H, 0);

@@ -1,6 +1,6 @@
-/* test_lab_facts.c - what bench/lab_facts measures, where the answer is known: anchors thrown out
- * of every picture and how far they go, on tracks made by hand; pictures that are what the file
- * shows, but for one; symbols put at the ends of their ranges; a log of a few lines.
+/* test_lab_facts.c - the measurements of bench/lab_facts, where the answer is known: anchors that
+ * leave every picture and how far they move, on tracks made by hand; pictures that equal what the
+ * file shows, except one; symbols set to the ends of their ranges; a log of a few lines.
  * SPDX-License-Identifier: BSD-2-Clause */
 #include "test.h"
 #include "bench/lab_facts.h"
@@ -9,7 +9,7 @@
 #include "render/png_file.h"
 #include "train/model/normalise.h"
 
-/* The measuring files' way to say what went wrong: here nothing may. */
+/* Error function of the measuring files; no error may occur here. */
 int lab_failed(const char *what, const char *why)
 {
     fail_msg("%s: %s", what, why);
@@ -18,9 +18,10 @@ int lab_failed(const char *what, const char *why)
 
 /* ---- anchors ---- */
 
-enum { TIMES = 4, ANCHORS = 9, BLIND = 3 }; /* nothing trains at time BLIND */
+enum { TIMES = 4, ANCHORS = 9, BLIND = 3 }; /* there are no training pictures at time BLIND */
 
-/* Looks along z from x = at: pictures of 90 degrees, so that it sees at - z < x < at + z. */
+/* A camera that looks along z from x = at, with a field of view of 90 degrees: it sees at - z < x <
+ * at + z. */
 static ted4_camera camera_at(double at)
 {
     return (ted4_camera) { .width = 100,
@@ -34,22 +35,24 @@ static ted4_camera camera_at(double at)
 }
 
 /* x and z of each anchor at times 0, 1, 2, and whether it is drawn then; y is 0. At time 3 all are
- * at x = 1000, and drawn, but no camera is there. Cameras: one at x = 0 and one at x = 10; at time
- * 2 the second has gone to x = 20. */
+ * at x = 1000, and drawn, but there is no camera. Cameras: one at x = 0 and one at x = 10; at time
+ * 2 the second is at x = 20. */
 static const struct {
     float x[3], z[3];
     int drawn[3], counts, out;
     double way;
 } made[ANCHORS] = {
-    { { 1, 1, 1 }, { 4, 4, 4 }, { 1, 1, 1 }, 1, 0, 0 },  /* rests */
+    { { 1, 1, 1 }, { 4, 4, 4 }, { 1, 1, 1 }, 1, 0, 0 },  /* does not move */
     { { 1, -5, 1 }, { 4, 4, 4 }, { 1, 1, 1 }, 1, 1, 6 }, /* leaves the pictures, and returns */
-    { { 1, -5, 2 }, { 4, 4, 4 }, { 1, 0, 1 }, 1, 0, 1 }, /* the same, but is not drawn meanwhile */
-    { { 1, 8, 1 }, { 4, 4, 4 }, { 1, 1, 1 }, 1, 0, 7 },  /* leaves one picture for another */
-    { { -9, -8, -9 }, { 4, 4, 4 }, { 1, 1, 1 }, 1, 0, 1 },    /* was never in any */
-    { { 10, 10, 10 }, { 4, 4, 4 }, { 1, 1, 1 }, 1, 0, 0 },    /* the camera leaves it */
-    { { 1, 1, 1 }, { 4, -4, 4 }, { 1, 1, 1 }, 1, 1, 8 },      /* goes behind the cameras */
-    { { 1, 1, 1 }, { 4, 4, 4 }, { 0, 0, 0 }, 0, 0, 0 },       /* is never drawn where cameras are */
-    { { 0, 0, 0 }, { 4, 0.25f, 4 }, { 1, 1, 1 }, 1, 1, 3.75 } /* comes nearer than what is drawn */
+    { { 1, -5, 2 }, { 4, 4, 4 }, { 1, 0, 1 }, 1, 0, 1 }, /* the same, but is not drawn in between */
+    { { 1, 8, 1 }, { 4, 4, 4 }, { 1, 1, 1 }, 1, 0, 7 },  /* moves from one picture to another */
+    { { -9, -8, -9 }, { 4, 4, 4 }, { 1, 1, 1 }, 1, 0, 1 }, /* was never in any picture */
+    { { 10, 10, 10 }, { 4, 4, 4 }, { 1, 1, 1 }, 1, 0, 0 }, /* the camera moves away from it */
+    { { 1, 1, 1 }, { 4, -4, 4 }, { 1, 1, 1 }, 1, 1, 8 },   /* moves behind the cameras */
+    { { 1, 1, 1 }, { 4, 4, 4 }, { 0, 0, 0 }, 0, 0, 0 }, /* is never drawn at times that have cameras
+                                                         */
+    { { 0, 0, 0 }, { 4, 0.25f, 4 }, { 1, 1, 1 }, 1, 1, 3.75 } /* comes nearer than the near limit of
+                                                                 drawing */
 };
 
 static void test_anchors(void **state)
@@ -66,7 +69,7 @@ static void test_anchors(void **state)
 
     (void)state;
     for (size_t i = 0; i < ANCHORS; i++) {
-        /* Each alone, so that a wrong one is known by its number. */
+        /* Each alone, so that a wrong one is identified by its number. */
         t.n = 1;
         for (size_t time = 0; time < TIMES; time++) {
             centre[3 * time] = time == BLIND ? 1000 : made[i].x[time];
@@ -95,8 +98,7 @@ static void test_anchors(void **state)
 
 /* ---- a file ---- */
 
-/* A scene that ted4_encode has written and ted4_decode read. change: what is done to it before, or
- * NULL. */
+/* A scene written by ted4_encode and read by ted4_decode. change: applied to it before, or NULL. */
 static void open_random(lab_session *s, void (*change)(ted4_scene *))
 {
     random_source r = random_seed(7);
@@ -123,8 +125,8 @@ static void close_session(lab_session *s)
     ted4_scene_free(s->scene);
 }
 
-/* Overwrites the picture's file with what the scene shows there, every value one off if wrong.
- * Gives how many values differ from that of the pixel before. */
+/* Overwrites the picture's file with what the scene shows there, with every value off by one if
+ * wrong is set. Returns how many values differ from that of the previous pixel. */
 static size_t show(lab_session *s, const ted4_picture *p, ted4_viewer *viewer, int wrong)
 {
     const ted4_header world = { 0 };
@@ -147,7 +149,7 @@ static size_t show(lab_session *s, const ted4_picture *p, ted4_viewer *viewer, i
     return edges;
 }
 
-/* A picture that is right counts as one value that is one off. */
+/* An exact picture counts as if one of its values were off by one. */
 static void test_views(void **state)
 {
     tiny_folder f = tiny_new();
@@ -170,7 +172,7 @@ static void test_views(void **state)
         }
     for (size_t i = 0; i < s.data.n_pictures; i++)
         edges += show(&s, &s.data.pictures[i], viewer, i == last);
-    assert_true(edges > 1000); /* something is to be seen */
+    assert_true(edges > 1000); /* the picture is not empty */
 
     const uint32_t frame = s.data.pictures[last].frame, camera = s.data.pictures[last].camera_id;
 
@@ -191,8 +193,8 @@ static void test_views(void **state)
     tiny_free(&f);
 }
 
-/* The tracks of a file are those of its Gaussians: an anchor is in their middle, and moves by the
- * same way as each of them. */
+/* The tracks of a file are those of its Gaussians: an anchor is at their mean, and moves by the
+ * same path as each of them. */
 static void test_tracks(void **state)
 {
     tiny_folder f = tiny_new();
@@ -241,8 +243,8 @@ static void test_tracks(void **state)
 
 /* ---- symbols ---- */
 
-/* Two scalings at the ends of symbols; two widths far below their floor, of which one is an
- * anchor's other one, too. */
+/* Two scalings at the ends of the range of symbols; three widths far below their minimum, two of
+ * which belong to the same anchor. */
 static void push(ted4_scene *s)
 {
     const size_t n = s->head.n_anchors;

@@ -1,5 +1,5 @@
-/* test_meta_lines.c - tool/meta_lines.c: which lines of META come out, and that none of them can
- * steer a terminal.
+/* test_meta_lines.c - tool/meta_lines.c: which lines of META are printed, and that none of them can
+ * control a terminal.
  * SPDX-License-Identifier: BSD-2-Clause */
 #include <string.h>
 
@@ -12,7 +12,7 @@ enum { CAPACITY = 4096 };
 static uint8_t file[CAPACITY];
 static size_t size;
 
-/* What meta_lines.c looks at: types and sizes. */
+/* Adds a chunk; meta_lines.c reads only types and sizes. */
 static void add_chunk(const char *type, const char *text, size_t n)
 {
     memcpy(file + size, type, 4);

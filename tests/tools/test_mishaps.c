@@ -1,6 +1,7 @@
-/* test_mishaps.c - ted4enc as a program when it is killed, or the disk is full: one line on
- * standard error says why, exit status 3, nothing half-written stays, and the last checkpoint leads
- * to the bytes of a run that nothing disturbed. Pictures and values: test_mishaps_scene.c.
+/* test_mishaps.c - ted4enc as a program that is killed, or whose disk is full: one line on standard
+ * error gives the reason, the exit status is 3, no partly written file remains, and the last
+ * checkpoint leads to the same bytes as a run without disturbance. For pictures and values see
+ * test_mishaps_scene.c.
  * SPDX-License-Identifier: BSD-2-Clause */
 #include "test.h"
 #include "mishap.h"
@@ -8,8 +9,8 @@
 
 /* ---- kill -9 ---- */
 
-/* A program that is killed while it tries whether it can write, or while it writes its last file,
- * leaves a file that bears its number. */
+/* A program that is killed while it tests whether it can write, or while it writes its last file,
+ * leaves a file with its process number in the name. */
 static void remove_leftovers(pid_t child)
 {
     static const char *const outputs[] = { "x", "c", "l" };
@@ -22,7 +23,7 @@ static void remove_leftovers(pid_t child)
     }
 }
 
-/* Is the checkpoint another one than *old, which it becomes? */
+/* Returns whether the checkpoint differs from *old, which it then replaces. */
 static int is_new(ball_file *old)
 {
     ball_file now = is_there("out/c") ? read_file("out/c") : (ball_file) { calloc(1, 1), 0 };
@@ -33,9 +34,9 @@ static int is_new(ball_file *old)
     return !same;
 }
 
-/* Killed again and again, sooner or later each time, until it has gone on from enough checkpoints.
- * The time until then follows the machine: it shrinks when the program was faster, which then
- * begins anew, and grows when there was no new checkpoint yet. */
+/* Kills the program again and again, after varying times, until it has resumed from enough
+ * checkpoints. The time adapts to the machine: it shrinks if the program ended before it was
+ * killed, and then starts from the beginning, and grows if there was no new checkpoint yet. */
 static void kill_again(const char *options, const outcome *want, int enough)
 {
     enum { MOST_LIVES = 200 };
@@ -74,8 +75,8 @@ static void kill_again(const char *options, const outcome *want, int enough)
     assert_int_equal(killed, enough);
 }
 
-/* Then it goes on to the end: file and log are those of a run that nothing disturbed, whose log
- * says that. */
+/* Kills the program several times, then lets it run to its end: file and log are those of a run
+ * without disturbance, whose log contains that. */
 static void expect_survival(const char *options, int kills, const char *that)
 {
     char arguments[256];
@@ -99,7 +100,7 @@ static void test_killed(void **state)
     expect_survival("--iterations 130,70", 6, "\"step\":");
 }
 
-/* With what the presets do beside training: the probe, and trials of smaller models. */
+/* Includes what the presets do besides training: the probe, and trials of smaller models. */
 static void test_killed_deciding(void **state)
 {
     (void)state;
@@ -161,8 +162,8 @@ static void test_full_log(void **state)
     }
 }
 
-/* A disk that fills while frames of a video are unpacked: what ffmpeg says is passed on, its frames
- * are removed. */
+/* The disk becomes full while frames of a video are unpacked: the message of ffmpeg is passed on,
+ * and its frames are removed. */
 static void test_full_video_cache(void **state)
 {
     static const char *const failing[] = {
@@ -194,7 +195,8 @@ static void test_full_video_cache(void **state)
         if (strstr(m.text, "one.mp4: ffmpeg") == NULL ||
             strstr(m.text, "No space left on device") == NULL)
             fail_msg("%s", m.text);
-        assert_int_equal(rmdir(tiny_path(&f, "cache/ted4")), 0); /* empty */
+        assert_int_equal(rmdir(tiny_path(&f, "cache/ted4")),
+                         0); /* fails unless the folder is empty */
     }
     unsetenv("XDG_CACHE_HOME");
     free(path);

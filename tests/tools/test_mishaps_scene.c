@@ -1,6 +1,7 @@
-/* test_mishaps_scene.c - ted4enc as a program when a picture goes away or changes while it trains,
- * when a checkpoint is of other pictures, or a value is not finite: one line on standard error says
- * why, exit status 3, and the last checkpoint leads to the bytes of a run that nothing disturbed.
+/* test_mishaps_scene.c - ted4enc as a program, when a picture disappears or changes during
+ * training, when a checkpoint was made from other pictures, or when a value is not finite: one line
+ * on standard error gives the reason, the exit status is 3, and the last checkpoint leads to the
+ * same bytes as a run without disturbance.
  * SPDX-License-Identifier: BSD-2-Clause */
 #include "test.h"
 #include "mishap.h"
@@ -8,8 +9,8 @@
 
 /* ---- pictures ---- */
 
-/* Both ends of a pipe with a name: while it is full, a program whose log it is cannot go beyond the
- * 250th step. */
+/* Both ends of a named pipe. A program that writes its log to the pipe cannot get beyond step 250
+ * while the pipe is full. */
 typedef struct {
     int read, write;
 } gate;
@@ -38,7 +39,7 @@ static void open_gate(const gate *g)
         continue;
 }
 
-/* Starts a run that waits at the gate, and waits until it has written a checkpoint. */
+/* Starts a run that waits at the pipe, and waits until it has written a checkpoint. */
 static pid_t start_until_checkpoint(void)
 {
     const pid_t child = start("-o out/x --checkpoint out/c --log gate", 0);
@@ -52,7 +53,7 @@ static pid_t start_until_checkpoint(void)
     return child;
 }
 
-/* Does something to a picture while the program runs, which must find out; then undoes it. */
+/* Damages a picture while the program runs, which must notice it; then repairs the picture. */
 static void spoil(void (*damage)(const char *path), const char *what)
 {
     static const char name[] = "scene/images/c1_f2.png";
@@ -83,7 +84,8 @@ static void cut_short(const char *path)
     must(truncate(path, 100) == 0, path);
 }
 
-/* Another picture of the same size; by way of a new file, so that no one sees half of it. */
+/* Replaces the picture by another of the same size, by renaming a new file, so that nobody reads a
+ * part of it. */
 static void exchange(const char *path)
 {
     tiny_picture(&folder, "other.png", BALL_W, BALL_H, 7);
@@ -99,7 +101,7 @@ static void test_pictures(void **state)
     spoil(exchange, "c1_f2.png: the file has changed");
 }
 
-/* A checkpoint is of the pictures that it was made from. */
+/* A checkpoint belongs to the pictures from which it was made. */
 static void test_other_scene(void **state)
 {
     static const char name[] = "scene/images/c1_f2.png";
@@ -123,7 +125,7 @@ static void test_other_scene(void **state)
 
 /* ---- a value that is not finite ---- */
 
-/* Puts a value that is not finite into the state of a checkpoint. */
+/* Puts a value that is not finite into the state in a checkpoint. */
 static void poison(const char *name)
 {
     ted4_dataset d;
@@ -136,7 +138,7 @@ static void poison(const char *name)
     end_usual(&t, &d, name);
 }
 
-/* The trainer's side of it: test_nan.c. */
+/* Tests the program; the trainer's part is tested in test_nan.c. */
 static void test_not_finite(void **state)
 {
     ball_file good, bad, after;

@@ -1,5 +1,5 @@
-/* test_process.c - decoders as processes (conformance/tool/process.h): what they said is whole when
- * they have ended, whenever that was noticed.
+/* test_process.c - decoders as processes (conformance/tool/process.h): after they have ended, their
+ * output is complete, whenever the end was noticed.
  * SPDX-License-Identifier: BSD-2-Clause */
 #include <signal.h>
 #include <sys/time.h>
@@ -18,8 +18,8 @@ static void sleep_a_while(int signal)
     nanosleep(&t, NULL);
 }
 
-/* It speaks and ends when its pipes have been looked at and it has not: the signal makes that
- * moment long. */
+/* The process prints and ends after its pipes were checked, and before its end is checked: the
+ * signal makes this interval long. */
 static void test_late_answer(void **state)
 {
     const conf_process_options o = { "sleep 0.5; printf answer; printf complaint >&2; exit 5;",
@@ -41,7 +41,8 @@ static void test_late_answer(void **state)
     conf_process_free(&p);
 }
 
-/* One that leaves another behind, which holds its pipes: it has ended, and what it said counts. */
+/* A process that leaves another one behind, which holds its pipes open: it has ended, and its
+ * output counts. */
 static void test_left_behind(void **state)
 {
     const conf_process_options o = { "printf answer; sleep 60 & exit 0;", NULL, 30, 0 };

@@ -1,5 +1,5 @@
-/* test_run_log.c - the log that ted4enc writes while it trains: what is in its lines, and that it
- * is one log after a run was resumed.
+/* test_run_log.c - the log that ted4enc writes during training: the contents of its lines, and that
+ * a resumed run continues one log.
  * SPDX-License-Identifier: BSD-2-Clause */
 #include <jansson.h>
 
@@ -18,12 +18,12 @@ static double number(const json_t *line, const char *name)
     return json_number_value(v);
 }
 
-/* What the lines so far have come to. */
+/* Sums and last values of the lines read so far. */
 typedef struct {
     double step, seconds, cpu;
 } log_state;
 
-/* What a chart needs is in every line, and makes sense. */
+/* Every line has what a chart needs, and its values are plausible. */
 static void check_line(const json_t *line, log_state *s, double size)
 {
     static const char *const names[] = { "lambda",  "loss",    "l1",     "ssim",
@@ -62,7 +62,7 @@ static void check_line(const json_t *line, log_state *s, double size)
     assert_true(steps > 0);
     assert_non_null(stage);
     assert_string_equal(stage, step <= STAGE1 ? "1" : step < 860 ? "2" : "2i");
-    /* At the last line it is the file's own. */
+    /* In the last line it is the size of the file. */
     assert_true(step <= STAGE1 ? bytes == 0
                                : fabs(bytes - size) <= (step < STEPS ? 0.05 * size : 0));
     assert_string_equal(json_string_value(json_object_get(line, "split")), "test");
@@ -101,8 +101,8 @@ static void test_log(void **state)
     assert_true(s.cpu > 0);
 }
 
-/* A checkpoint of the end of stage 1 in out/c, and the log of the same run to its end: the clocks
- * of two runs do not go on from each other, if one of them had to wait for the machine. */
+/* Makes a checkpoint of the end of stage 1 in out/c, and the log of the same run to its end. Logs
+ * of two runs would not match: their clocks differ if one of them had to wait for the machine. */
 static void make_checkpoint_and_log(char log[MOST_LOG])
 {
     run_calmly("--stage1 out/s --log out/l");
@@ -113,7 +113,8 @@ static void make_checkpoint_and_log(char log[MOST_LOG])
     expect_files("c");
 }
 
-/* A log that is ahead of the checkpoint, with half a line at its end, is one log afterwards. */
+/* A log that is ahead of the checkpoint, with half a line at its end, becomes one consistent
+ * log. */
 static void test_log_goes_on(void **state)
 {
     char log[MOST_LOG], text[MOST_LOG + 16];
@@ -130,7 +131,7 @@ static void test_log_goes_on(void **state)
     expect_files("");
 }
 
-/* Lines from after a rollback that the checkpoint knows nothing of are not kept. */
+/* Lines from after a rollback of which the checkpoint does not know are removed. */
 static void test_log_before_rollback(void **state)
 {
     char log[MOST_LOG], text[MOST_LOG + 256];
@@ -150,8 +151,8 @@ static void test_log_before_rollback(void **state)
     expect_same("out/x", &reference.file);
 }
 
-/* A checkpoint of step 300 with a value that is not finite; good: and with the state that the
- * monitor keeps, that of step 250. */
+/* Makes a checkpoint of step 300 with a value that is not finite; if good is set, with the state of
+ * step 250 that the monitor keeps. */
 static void poison(int good)
 {
     ted4_dataset d;
@@ -165,7 +166,7 @@ static void poison(int good)
     end_usual(&t, &d, "out/c");
 }
 
-/* Kills a run from out/c once its log tells of steps after the rollback. */
+/* Resumes a run from out/c, and kills it after its log has lines of steps after the rollback. */
 static void kill_after_rollback(void)
 {
     const pid_t child = start("-o out/x --checkpoint out/c --resume --log out/l", 0);
@@ -181,7 +182,7 @@ static void kill_after_rollback(void)
     assert_non_null(strstr(text, "\"step\":500"));
 }
 
-/* What the monitor does is told by the log. */
+/* The log records what the monitor does. */
 static void test_rollback(void **state)
 {
     char text[MOST_LOG];
@@ -203,7 +204,7 @@ static void test_rollback(void **state)
     gone("out/x");
     gone("out/l");
 
-    /* Killed after it: the same file, and a log that still tells of it. */
+    /* Killed afterwards: the same file results, and the log still records the rollback. */
     poison(1);
     kill_after_rollback();
     run_calmly("--checkpoint out/c --resume --log out/l");
@@ -222,7 +223,7 @@ static void test_rollback(void **state)
     expect_files("c l x");
 }
 
-/* Works until the processor's clock says that seconds have gone by; the log's idea of it. */
+/* Works until the processor's clock has advanced by seconds, as the log measures it. */
 static void work(ted4_run_log *l, ted4_trainer *t, double seconds)
 {
     const double end = l->cpu_seconds + seconds;
@@ -231,7 +232,8 @@ static void work(ted4_run_log *l, ted4_trainer *t, double seconds)
         ted4_run_log_tick(l, t);
 }
 
-/* A line of a step, and cpu_seconds and ms in the file's last line. */
+/* Writes the line of a step. Returns the values of cpu_seconds and ms in it, the last line of the
+ * file. */
 static void put(ted4_run_log *l, ted4_trainer *t, uint64_t step, double *cpu, double *ms)
 {
     char text[MOST_LOG], why[256];
@@ -247,8 +249,8 @@ static void put(ted4_run_log *l, ted4_trainer *t, uint64_t step, double *cpu, do
     *ms = strtod(strstr(last, "\"ms\":") + 5, NULL);
 }
 
-/* What was trained and thrown away is in the log's seconds and in no step's milliseconds; a log
- * that goes on counts from its last line. */
+/* Training that was discarded counts in the log's seconds, but in no step's milliseconds; a resumed
+ * log counts from its last line. */
 static void test_thrown_away(void **state)
 {
     const ted4_train_options o = ball_options();
@@ -289,7 +291,7 @@ static void test_thrown_away(void **state)
     tiny_free(&scene);
 }
 
-/* What is not a log is left alone. */
+/* A file that is not a log is not changed. */
 static void test_wrong_log(void **state)
 {
     char text[64];
