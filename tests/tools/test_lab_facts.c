@@ -46,13 +46,11 @@ static const struct {
     { { 1, -5, 1 }, { 4, 4, 4 }, { 1, 1, 1 }, 1, 1, 6 }, /* leaves the pictures, and returns */
     { { 1, -5, 2 }, { 4, 4, 4 }, { 1, 0, 1 }, 1, 0, 1 }, /* the same, but is not drawn in between */
     { { 1, 8, 1 }, { 4, 4, 4 }, { 1, 1, 1 }, 1, 0, 7 },  /* moves from one picture to another */
-    { { -9, -8, -9 }, { 4, 4, 4 }, { 1, 1, 1 }, 1, 0, 1 }, /* was never in any picture */
-    { { 10, 10, 10 }, { 4, 4, 4 }, { 1, 1, 1 }, 1, 0, 0 }, /* the camera moves away from it */
-    { { 1, 1, 1 }, { 4, -4, 4 }, { 1, 1, 1 }, 1, 1, 8 },   /* moves behind the cameras */
-    { { 1, 1, 1 }, { 4, 4, 4 }, { 0, 0, 0 }, 0, 0, 0 }, /* is never drawn at times that have cameras
-                                                         */
-    { { 0, 0, 0 }, { 4, 0.25f, 4 }, { 1, 1, 1 }, 1, 1, 3.75 } /* comes nearer than the near limit of
-                                                                 drawing */
+    { { -9, -8, -9 }, { 4, 4, 4 }, { 1, 1, 1 }, 1, 0, 1 },    /* was never in any picture */
+    { { 10, 10, 10 }, { 4, 4, 4 }, { 1, 1, 1 }, 1, 0, 0 },    /* the camera moves away from it */
+    { { 1, 1, 1 }, { 4, -4, 4 }, { 1, 1, 1 }, 1, 1, 8 },      /* moves behind the cameras */
+    { { 1, 1, 1 }, { 4, 4, 4 }, { 0, 0, 0 }, 0, 0, 0 },       /* is drawn only without cameras */
+    { { 0, 0, 0 }, { 4, 0.25f, 4 }, { 1, 1, 1 }, 1, 1, 3.75 } /* comes too near */
 };
 
 static void test_anchors(void **state)

@@ -195,8 +195,7 @@ static void test_full_video_cache(void **state)
         if (strstr(m.text, "one.mp4: ffmpeg") == NULL ||
             strstr(m.text, "No space left on device") == NULL)
             fail_msg("%s", m.text);
-        assert_int_equal(rmdir(tiny_path(&f, "cache/ted4")),
-                         0); /* fails unless the folder is empty */
+        assert_int_equal(rmdir(tiny_path(&f, "cache/ted4")), 0); /* it is empty */
     }
     unsetenv("XDG_CACHE_HOME");
     free(path);

@@ -1,4 +1,4 @@
-/* test_scene.c - the project's own scenes: cameras, motion, points and files. Shapes:
+/* test_scene.c - the project's own scenes: cameras, motion, points and files. For shapes see
  * test_scene_shapes.c. Links tools/scene/ray_*.o.
  * SPDX-License-Identifier: BSD-2-Clause */
 #include <dirent.h>
@@ -72,7 +72,7 @@ static void test_cameras(void **state)
     check_camera(&c);
 }
 
-/* A bright ball of radius 0.12 changes the picture of the empty room around its projection. */
+/* A bright ball of radius 0.12 changes the picture of the empty room only around its projection. */
 static void test_marker(void **state)
 {
     static uint8_t plain[SIZE * 4], marked[SIZE * 4];
@@ -121,7 +121,7 @@ static void picture(ted4_ray_scene s, int frame, int n_frames, uint8_t *rgb)
     ted4_ray_render(&w, &c, rgb);
 }
 
-/* Share of bytes that differ by more than 16. */
+/* Returns the share of bytes that differ by more than 16. */
 static double changed(const uint8_t *a, const uint8_t *b)
 {
     int n = 0;
@@ -151,7 +151,7 @@ static void test_motion(void **state)
     assert_true(changed(a, b) > 0.03);
 }
 
-/* Pixels in which the last object, the one that moves, is seen. */
+/* Returns the number of pixels that show the last object, which is the one that moves. */
 static int seen(ted4_ray_scene s, int frame, int n_frames)
 {
     ted4_ray_camera c;
@@ -182,7 +182,7 @@ static void test_occlusion(void **state)
 
 /* ---- points ---- */
 
-/* A point is where its own camera sees a surface, and has the colour of it. */
+/* A point lies on a surface that its own camera sees, and has the colour of that surface. */
 static void test_points_on_surfaces(void **state)
 {
     ted4_ray_options o = { .scene = RAY_STILL,
@@ -220,8 +220,8 @@ static void test_points_on_surfaces(void **state)
     }
 }
 
-/* Points of the still scene in a picture of another camera: where nothing hides them, the
- * colours agree but for edges. */
+/* Projects points of the still scene into the picture of another camera: where nothing occludes
+ * them the colours agree, except at edges. */
 static void test_points_colours(void **state)
 {
     static uint8_t rgb[SIZE * 9];
@@ -269,7 +269,7 @@ static void run_openmp(void *user, size_t n, void (*body)(void *arg, size_t i), 
         body(arg, i);
 }
 
-/* Contents of folder/name, or a failed test. Free it. */
+/* Returns the contents of folder/name, or fails the test. Free the result. */
 static char *slurp(const char *folder, const char *name, size_t *size)
 {
     char path[512];
@@ -358,7 +358,7 @@ static void check_ply(const char *folder, const ted4_ray_options *o)
     free(ply);
 }
 
-/* Two sets, made by one thread and by two, have the same bytes. */
+/* Two sets, one made by one thread and one by two, have the same bytes. */
 static void test_files(void **state)
 {
     char a[TEMPORARY_SIZE], b[TEMPORARY_SIZE];
@@ -387,7 +387,7 @@ static void test_files(void **state)
     assert_int_equal(rmdir(b), 0);
 }
 
-/* A file where a folder should be: an error that names it. */
+/* If a file is in the place of a folder, the error names it. */
 static void test_refusal(void **state)
 {
     char file[TEMPORARY_SIZE], folder[TEMPORARY_SIZE + 8];

@@ -1,6 +1,6 @@
 /* test_scene_sets.c - folders of the scenes in which methods fail: what a reader finds in them,
- * held-out times, stated cameras against true ones, truth.json; and that the first scenes keep
- * their bytes. Links tools/scene/ray_*.o.
+ * held-out times, stated cameras compared with true ones, truth.json; and that the first scenes
+ * keep their bytes. Links tools/scene/ray_*.o.
  * SPDX-License-Identifier: BSD-2-Clause */
 #include <jansson.h>
 #include <math.h>
@@ -31,7 +31,7 @@ static tiny_folder write_set(const ted4_ray_options *o)
     return f;
 }
 
-/* Defaults of the lab: what the table must say, told again. */
+/* The defaults of the lab: the expected table, written a second time. */
 static const struct {
     const char *name;
     int n_train, n_test, n_frames, held;
@@ -47,7 +47,7 @@ static const struct {
     { "toys", 10, 2, 16, 0 },
 };
 
-/* Member of truth.json; a list as long as n, if n is not negative. */
+/* Returns a member of truth.json, which must be a list of n entries if n is not negative. */
 static const json_t *member(const json_t *truth, const char *name, int n)
 {
     const json_t *const v = json_object_get(truth, name);
@@ -83,8 +83,8 @@ static void check_truth(const tiny_folder *f, const ted4_ray_options *o, int hel
     json_decref(truth);
 }
 
-/* Every set, of pictures as small as can be, is read as the table says; training pictures have none
- * of the held-out times, test pictures all times. */
+/* Every set, with pictures as small as possible, is read as the table says. Training pictures have
+ * none of the held-out times, test pictures have all times. */
 static void test_sets(void **state)
 {
     (void)state;
@@ -114,8 +114,8 @@ static void test_sets(void **state)
     }
 }
 
-/* Held-out times in every layout that has lists; in the others that have several times all pictures
- * are there. */
+/* Held-out times in every layout that has lists; in the other layouts with several times, all
+ * pictures are present. */
 static void test_layouts(void **state)
 {
     (void)state;
@@ -154,9 +154,9 @@ static void centre_of(const ted4_ray_camera *c, double x[3])
         x[i] = c->matrix[i][3];
 }
 
-/* A point of a disturbed or moved scene is to the stated camera that it comes from where that of
- * the plain scene is to the true one. Files hold points in single precision: 1,000 units away 3e-5
- * units, and 8e-4 pixels. */
+/* A point of a disturbed or moved scene has the same position relative to its stated camera as the
+ * point of the plain scene relative to the true camera. Files store points in single precision: the
+ * error at a distance of 1,000 units is 3e-5 units, and 8e-4 pixels. */
 static void check_points(const ted4_ray_options *o, const ted4_ray_options *plain)
 {
     for (int i = 0; i < 200; i++) {
@@ -220,7 +220,7 @@ static void test_shaken(void **state)
     check_points(&o, &plain);
 }
 
-/* The pictures of far and wide are the same; their files are elsewhere. */
+/* The pictures of far and wide are the same, but their positions in the files differ. */
 static void test_far_and_wide(void **state)
 {
     static const double origin[3] = { 0, 0, 0 };
@@ -267,7 +267,7 @@ static double azimuth_of(const ted4_ray_options *o, int number)
     return atan2(c.matrix[0][2], -c.matrix[1][2]) * 180 / RAY_PI;
 }
 
-/* Two cameras near the middle of the arc, the test camera between them. */
+/* Two cameras near the middle of the arc, with the test camera between them. */
 static void test_pair(void **state)
 {
     const ted4_ray_options o = plan(RAY_PAIR);
@@ -293,8 +293,8 @@ static uint64_t digest_of(uint64_t digest, const tiny_folder *f, const char *nam
     return digest;
 }
 
-/* Results elsewhere are told of these six: pictures (pixels, for png bytes are zlib's), poses and
- * points must never change. */
+/* Published results refer to these six scenes: pictures (their pixels, since the bytes of a png
+ * depend on zlib), poses and points must never change. */
 static void test_first_scenes(void **state)
 {
     static const uint64_t expected[RAY_FAIR + 1] = { 0x7ebe707bb353771a, 0x8279dfb403aee29c,

@@ -1,5 +1,5 @@
-/* test_scene_shapes.c - the scene maker: its sines and colours against libm, its rays and shapes
- * against brute force. Links tools/scene/ray_*.o.
+/* test_scene_shapes.c - the scene maker: compares its sines and colours with libm, its rays and
+ * shapes with brute force. Links tools/scene/ray_*.o.
  * SPDX-License-Identifier: BSD-2-Clause */
 #include <string.h>
 
@@ -39,7 +39,7 @@ static void test_math(void **state)
 
 /* ---- shapes ---- */
 
-/* One solid of each kind, askew and off the origin. */
+/* One solid of each kind, rotated and away from the origin. */
 static ted4_ray_object askew(int kind)
 {
     static const float rot[9] = { 0.36f, 0.48f, -0.8f, -0.8f, 0.6f, 0, 0.48f, 0.64f, 0.6f };
@@ -75,7 +75,8 @@ static int is_inside(const ted4_ray_object *o, vec3 point)
     return v3_length(v3(ray_max(q.x, 0), ray_max(q.y, 0), ray_max(q.z, 0))) < 0.02f;
 }
 
-/* First change of inside along the ray by small steps, or far. */
+/* Returns the distance at which inside first changes along the ray, found by small steps, or
+ * far. */
 static float brute_meet(const ted4_ray_object *o, vec3 from, vec3 d, float far)
 {
     const float step = 0.002f;
@@ -88,7 +89,8 @@ static float brute_meet(const ted4_ray_object *o, vec3 from, vec3 d, float far)
     return far;
 }
 
-/* Rays that pass within a step of an edge may be seen by one side only: a few in a thousand. */
+/* Rays that pass an edge at less than one step may be found by one method only: a few in a
+ * thousand. */
 static void test_shapes(void **state)
 {
     random_source source = random_seed(1);
@@ -112,7 +114,7 @@ static void test_shapes(void **state)
     }
 }
 
-/* The surface is on the boundary, its normal points outwards, and both lie in the bounding
+/* The point found lies on the boundary, its normal points outwards, and both are in the bounding
  * sphere. */
 static void test_surfaces(void **state)
 {
@@ -167,8 +169,8 @@ static void test_shape_values(void **state)
     assert_true(ted4_ray_meet(&o, v3(0.6f, 0.4f, 4), down, 0, 9) == 9);
 }
 
-/* unbend undoes rebend; the axis keeps its length and ends where a circle's arc does, turned by
- * the twist. */
+/* unbend undoes rebend; the axis keeps its length and ends where a circle's arc does, turned by the
+ * twist. */
 static void test_bar(void **state)
 {
     const ted4_ray_object o = askew(RAY_BAR);

@@ -1,6 +1,5 @@
-/* test_sh.c - tool/sh.h: the basis against Legendre functions, fits of colours with known
- * coefficients.
- * The programs' helpers are in no library, so the source is part of this file.
+/* test_sh.c - tool/sh.h: compares the basis with Legendre functions, and fits colours with known
+ * coefficients. The programs' helpers are in no library, so the source is included here.
  * SPDX-License-Identifier: BSD-2-Clause */
 #include <math.h>
 #include <stdlib.h>
@@ -14,7 +13,7 @@ enum { N = 37 };
 
 static random_source source = { 3 };
 
-/* Colours made from known coefficients. */
+/* Colours computed from known coefficients. */
 typedef struct {
     int degree, calls, fail_at;
     float sh[N * 3 * TED4_SH_MAX_COEFS];
@@ -61,7 +60,7 @@ static void test_fit_exact(void **state)
         if (degree == 0)
             continue;
         assert_int_equal(ted4_sh_fit(degree - 1, N, sample_known, &k, sh, &rms), 0);
-        assert_true(rms > 0.05); /* a degree too few cannot follow */
+        assert_true(rms > 0.05); /* a degree that is too low cannot fit */
         k.calls = 0;
         k.fail_at = 70;
         assert_int_equal(ted4_sh_fit(degree, N, sample_known, &k, sh, &rms), 5);

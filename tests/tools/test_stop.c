@@ -1,6 +1,6 @@
-/* test_stop.c - ted4enc is asked to end by a signal: wherever it is, it says at which step it
- * stopped and how to go on, writes no file, and the same command with --resume writes the bytes of
- * a run that nothing disturbs. A second signal ends it at once.
+/* test_stop.c - ted4enc is asked to end by a signal: at any time it reports the step at which it
+ * stopped and how to continue, and writes no file; the same command with --resume then writes the
+ * same bytes as a run without disturbance. A second signal ends it at once.
  * SPDX-License-Identifier: BSD-2-Clause */
 #include "test.h"
 #include "mishap.h"
@@ -80,8 +80,8 @@ static void read_words(char *text, size_t size)
     read_text("err", text, size);
 }
 
-/* The log has this text; or the checkpoint is the one of the nth time it was written; or neither:
- * soon after the start. */
+/* When to send the signal: when the log has this text; or when the checkpoint was written for the
+ * nth time; or, if both are empty, soon after the start. */
 typedef struct {
     const char *logged;
     int written;
@@ -173,7 +173,8 @@ static void test_moments(void **state)
     free(want.bytes);
 }
 
-/* At its first word, which may be too late: 0, and it has stopped elsewhere. */
+/* Stops the program at its first message. Returns 0 if that was too late and it stopped
+ * elsewhere. */
 static int stop_at_loading(void)
 {
     char text[4096] = "";
@@ -203,12 +204,12 @@ static void test_loading(void **state)
     (void)state;
     do {
         begin_test();
-        finish(begin("--check", NULL, NULL)); /* leaves its words */
+        finish(begin("--check", NULL, NULL)); /* leaves its messages */
     } while (!stop_at_loading() && --tries > 0);
     assert_true(tries > 0);
 }
 
-/* Without a checkpoint nothing is kept, and this is said. */
+/* Without a checkpoint nothing is kept, and a message says so. */
 static void test_no_checkpoint(void **state)
 {
     const moment m = { "\"step\":250,", 0 };
@@ -226,7 +227,8 @@ static void test_no_checkpoint(void **state)
     expect_files("l");
 }
 
-/* The second signal finds the program's usual end; one that was to be ignored stays so. */
+/* The second signal meets the default action; a signal that was ignored at the start stays
+ * ignored. */
 static void test_again(void **state)
 {
     const moment m = { "\"step\":250,", 0 };
@@ -260,7 +262,7 @@ int main(void)
                                         cmocka_unit_test(test_no_checkpoint),
                                         cmocka_unit_test(test_again) };
 
-    /* A shell that runs its commands in the background hands on that they ignore it. */
+    /* A shell that runs commands in the background makes them ignore the signal. */
     signal(SIGINT, SIG_DFL);
     return cmocka_run_group_tests_name("stop", tests, set_up, tear_down);
 }

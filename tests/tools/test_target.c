@@ -1,6 +1,6 @@
-/* test_target.c - the program ted4enc with --target-size and --stage1: the size asked for is met
- * from below, a second run begins where stage 1 ended. Looks for the program in $TED4_BUILD (set by
- * tests/run.sh); skips when that is not set.
+/* test_target.c - the program ted4enc with --target-size and --stage1: the file is at most as large
+ * as requested and close to that, and a second run begins where stage 1 ended. The program is taken
+ * from $TED4_BUILD (set by tests/run.sh); the test is skipped if that is not set.
  * SPDX-License-Identifier: BSD-2-Clause */
 #include <sys/wait.h>
 #include <unistd.h>
@@ -11,7 +11,8 @@
 static tiny_folder folder;
 static const char *build;
 
-/* Runs ted4enc on the scene with small networks; its exit code, standard error in FOLDER/err. */
+/* Runs ted4enc on the scene with small networks. Returns its exit code; standard error is in
+ * FOLDER/err. */
 static int encode(const char *arguments)
 {
     char command[4096];
@@ -67,11 +68,11 @@ static int same(const char *a, const char *b)
     return system(command) == 0;
 }
 
-/* How many trials the last search has told of; one that has come near enough ends before it has had
- * them all. */
+/* Returns how many trials the last search reported, or 0 if it used all of them: a search ends
+ * early if a trial comes close enough. */
 static int trials(void)
 {
-    enum { MOST = 8 }; /* of target.c */
+    enum { MOST = 8 }; /* as in target.c */
     static char all[1 << 16];
     FILE *f = fopen(tiny_path(&folder, "err"), "rb");
     int n = 0;
@@ -86,8 +87,8 @@ static int trials(void)
     return n < MOST ? n : 0;
 }
 
-/* A size between those of two lambdas far apart, from either side: near to it, or as near as all
- * trials came. */
+/* A size between those of two lambdas far apart, approached from either side: the result is close
+ * to it, or as close as all trials came. */
 static void test_met(void **state)
 {
     static const char *const lambdas[] = { "1e-5", "1" };
@@ -125,8 +126,8 @@ static void test_not_met(void **state)
     assert_true(size_of("small.ted4") < size_of("end0.ted4"));
 }
 
-/* The same file from a shared end of stage 1, which the run does not write again; another scene's
- * or other options' is refused. */
+/* The same file results from a shared end of stage 1, which the run does not write again; that of
+ * another scene or of other options is refused. */
 static void test_stage1(void **state)
 {
     (void)state;
@@ -140,8 +141,8 @@ static void test_stage1(void **state)
     assert_int_equal(access(tiny_path(&folder, "other.ted4"), F_OK), -1);
 }
 
-/* A search that was cut off begins again at the end of stage 1, where the checkpoint is, and comes
- * to the same file. */
+/* A search that was interrupted begins again at the end of stage 1, where the checkpoint is, and
+ * gives the same file. */
 static void test_resumed(void **state)
 {
     char arguments[128];
@@ -160,7 +161,8 @@ static void test_resumed(void **state)
     assert_true(!contains("searched1.jsonl", stage1));
 }
 
-/* A checkpoint of stage 2 knows only the lambda that made it: no search can begin there. */
+/* A checkpoint of stage 2 contains only the lambda with which it was made: no search can begin
+ * there. */
 static void test_too_late(void **state)
 {
     (void)state;
