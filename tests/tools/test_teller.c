@@ -1,5 +1,5 @@
-/* test_teller.c - what a program says while it works: its lines, when they come, and that quiet is
- * quiet. Standard error of this program is a file meanwhile.
+/* test_teller.c - the progress messages of a program: their lines, when they are printed, and that
+ * quiet mode prints none. Standard error of this program is redirected to a file in the meantime.
  * SPDX-License-Identifier: BSD-2-Clause */
 #include <fcntl.h>
 #include <stdio.h>
@@ -31,7 +31,7 @@ static capture begin_capture(void)
     return c;
 }
 
-/* What was said is in said. */
+/* Ends the redirection; the captured text is in said. */
 static void end_capture(capture c)
 {
     FILE *f = fopen(c.name, "rb");
@@ -127,7 +127,7 @@ static int count(const char *what)
     return n;
 }
 
-/* A thread of its own says what goes on, while the caller does nothing; the pause grows when
+/* A separate thread reports progress while the caller does nothing; the interval grows when
  * training begins. */
 static void test_thread(void **state)
 {
@@ -181,7 +181,7 @@ static void test_show_and_quiet(void **state)
     }
 }
 
-/* A terminal's line is open, and is wiped before anything else is said. */
+/* On a terminal the progress line is not ended, and is erased before anything else is printed. */
 static void test_terminal(void **state)
 {
     const capture c = begin_capture();

@@ -1,5 +1,5 @@
-/* test_threads.c - tool/threads.c: every index once, whatever the numbers of threads and indices
- * and however uneven the work; sleepers wake.
+/* test_threads.c - tool/threads.c: every index runs exactly once, for any numbers of threads and
+ * indices and however uneven the work; sleeping threads wake up.
  * SPDX-License-Identifier: BSD-2-Clause */
 #include <sched.h>
 #include <stdatomic.h>
@@ -16,7 +16,7 @@ enum { MOST = 3000, THREADS = 9 };
 typedef struct {
     atomic_uint taken[MOST];
     size_t slow;        /* this index takes as long as all others together */
-    atomic_uint others; /* indices done, slow apart */
+    atomic_uint others; /* indices done, without slow */
     size_t n;
 } counts;
 
@@ -57,7 +57,7 @@ static void test_once(void **state)
     free(c);
 }
 
-/* The first index, of a share of 1,500, waits until all others are done: someone else has to take
+/* The first index, in a share of 1,500, waits until all others are done: other threads must take
  * the rest of its share. */
 static void wait_for_others(void *arg, size_t i)
 {
@@ -79,7 +79,7 @@ static void test_helped(void **state)
         print_message("skipped: no second thread here\n");
         skip();
     }
-    alarm(60); /* without help it would wait for ever */
+    alarm(60); /* without help it would wait forever */
     for (int end = 0; end < 2; end++) {
         memset(c, 0, sizeof *c);
         c->n = MOST;
@@ -92,7 +92,7 @@ static void test_helped(void **state)
     free(c);
 }
 
-/* Waits until as many threads as there are indices have come. */
+/* Waits until as many threads as there are indices have arrived. */
 static void meet(void *arg, size_t i)
 {
     counts *c = arg;
@@ -102,7 +102,8 @@ static void meet(void *arg, size_t i)
         sched_yield();
 }
 
-/* Threads that have gone to sleep come, all of them: no job waits for them otherwise. */
+/* All threads that have gone to sleep wake up for a job that waits until each of them has
+ * arrived. */
 static void test_woken(void **state)
 {
     const struct timespec pause = { 0, 2000000 };

@@ -1,6 +1,6 @@
 /* test_tools.c - ted4dec and ted4eval as programs: verdicts and exit codes, hashes, exports,
- * pictures, quality of a scene that is known.
- * Looks for them in $TED4_BUILD (set by tests/run.sh); skips when that is not set.
+ * pictures, quality of a known scene. The programs are taken from $TED4_BUILD (set by
+ * tests/run.sh); the test is skipped if that is not set.
  * SPDX-License-Identifier: BSD-2-Clause */
 #include <math.h>
 #include <stdio.h>
@@ -27,7 +27,7 @@ enum { WIDTH = 96, HEIGHT = 64, VIEWS = 3, MAX_TEXT = 1 << 16, PATH_SIZE = TEMPO
 static char folder[TEMPORARY_SIZE];
 static const char *build;
 
-/* a file for each kind of view input, none, colour, full: name, and what it holds. */
+/* One file for each kind of view input (none, colour, full): its name and contents. */
 static struct {
     ted4_info info;
     ted4_recon *recon;
@@ -35,7 +35,7 @@ static struct {
 
 static char out[MAX_TEXT]; /* standard output of the last program */
 
-/* Runs a program in the folder; returns its exit code. */
+/* Runs a program in the folder. Returns its exit code. */
 static int run(const char *format, ...)
 {
     char command[8192];
@@ -93,8 +93,8 @@ static int exists(const char *name)
     return access(path, F_OK) == 0;
 }
 
-/* The first random scene with that view input and a few frames, as vN.ted4, and opened by the
- * library. */
+/* Makes the first random scene with that view input and a few frames, as vN.ted4, and opens it with
+ * the library. */
 static void make_file(int view)
 {
     for (uint64_t seed = 0; seed < 1000; seed++) {
@@ -191,7 +191,7 @@ static void test_verdicts(void **state)
     assert_non_null(strstr(out, "--sh-degree N"));
 }
 
-/* The contract's bound of memory holds for queries too: those of this vector take more than
+/* The contract's memory limit also holds for queries: those of this vector take more than
  * decoding. */
 static void test_contract_bound(void **state)
 {
@@ -241,7 +241,7 @@ static void test_usage(void **state)
         assert_int_equal(run("ted4dec %s", wrong[i]), 3);
 }
 
-/* With every Gaussian kept, a raw file is what the hash of the query covers. */
+/* If every Gaussian is kept, a raw file contains the bytes that the hash of the query covers. */
 static void test_hash(void **state)
 {
     (void)state;
@@ -282,7 +282,7 @@ static void test_frames(void **state)
     assert_true(exists("f_000.splat"));
     assert_true(exists("f_002.splat"));
     assert_true(!exists("f_001.splat"));
-    assert_int_equal(run("ted4dec v1.ted4 -o f_%%03d.splat --frames 1:3"), 3); /* 2 is there */
+    assert_int_equal(run("ted4dec v1.ted4 -o f_%%03d.splat --frames 1:3"), 3); /* file 2 exists */
     assert_false(exists("f_001.splat"));
     assert_int_equal(run("ted4dec v1.ted4 -o f_%%03d.splat --frames 1:3 -f"), 0);
     assert_true(exists("f_001.splat"));
@@ -298,8 +298,8 @@ static float float_at(const uint8_t *p)
     return v;
 }
 
-/* Fitted spherical harmonics, in some direction, against colours decoded for a camera far away in
- * that direction. */
+/* Compares fitted spherical harmonics, in some direction, with colours decoded for a camera far
+ * away in that direction. */
 static void test_fitted_colours(void **state)
 {
     const ted4_info *const info = &file[1].info;
@@ -336,7 +336,7 @@ static void test_fitted_colours(void **state)
         }
     }
     assert_true(sqrt(sum / (3.0 * (double)info->n_gaussians)) < 0.02);
-    assert_true(sum < 0.1 * spread); /* and it is the direction that makes the difference */
+    assert_true(sum < 0.1 * spread); /* and the colour depends on the direction */
     free(ply);
     free(raw);
 }
@@ -356,7 +356,7 @@ static void camera_make(const ted4_info *info, int i, ted4_view *v, double centr
     *v = (ted4_view) { .width = WIDTH, .height = HEIGHT, .fx = 80, .fy = 80, .cx = 48, .cy = 32 };
     memcpy(v->R, R[i], sizeof v->R);
     for (int k = 0; k < 3; k++) {
-        /* As a float, so that text files carry it exactly. */
+        /* Rounded to float, so that text files represent it exactly. */
         centre[k] = (double)(float)((double)info->origin[k] -
                                     ldexp(2.5 * (double)R[i][6 + k], info->exponent));
         for (int r = 0; r < 3; r++)
@@ -442,7 +442,7 @@ static void test_render(void **state)
         free(image.bytes);
         free(want);
     }
-    assert_true(colours > 1000); /* something is to be seen */
+    assert_true(colours > 1000); /* the picture is not empty */
 }
 
 /* ---- ted4eval ---- */
@@ -483,7 +483,7 @@ static double result(const char *key)
     return value;
 }
 
-/* Pictures that differ from what the file shows by one step everywhere. */
+/* Pictures that differ from what the file shows by one step in every value. */
 static void test_eval(void **state)
 {
     char path[PATH_SIZE], why[256];
@@ -508,7 +508,7 @@ static void test_eval(void **state)
     }
     write_scene_file("scene/transforms_train.json");
     write_scene_file("scene/transforms_test.json");
-    /* The vector is of no scene at all. */
+    /* The vector belongs to no scene. */
     assert_int_equal(run("ted4eval v1.ted4 scene"), 3);
     assert_int_equal(
         run("ted4eval v1.ted4 scene --anyway --json --images pictures --sheet sheet.png"), 0);
@@ -530,7 +530,7 @@ static void test_eval(void **state)
     assert_true(exists("pictures/truth/00002.png"));
     assert_true(exists("pictures/ours/00002.png"));
     assert_true(exists("pictures/error/00002.png"));
-    /* The sheet is there by now. */
+    /* The contact sheet exists by now. */
     assert_int_equal(run("ted4eval v1.ted4 scene --anyway --split train --sheet sheet.png"), 3);
     assert_int_equal(run("ted4eval v1.ted4 scene --anyway --split train --sheet sheet.png -f"), 0);
     assert_non_null(strstr(out, "psnr"));

@@ -1,5 +1,5 @@
-/* test_verify.c - what the encoder compares when it has decoded its own file: whatever of the scene
- * is another, it is seen.
+/* test_verify.c - the comparison that the encoder makes after decoding its own file: any difference
+ * in the scene is detected.
  * SPDX-License-Identifier: BSD-2-Clause */
 #include "test.h"
 #include "random_scene.h"
@@ -37,7 +37,7 @@ static int verify(void)
     return result;
 }
 
-/* Another value in this place of the scene, and the right one again. */
+/* Changes the value in this place of the scene, and restores it afterwards. */
 static void tamper(void *at, size_t width)
 {
     uint8_t *const byte = (uint8_t *)at + width / 2;

@@ -1,6 +1,6 @@
-/* test_ways.c - what other writers do, as ted4scene does it: kinds of picture files, backgrounds
- * and alpha, masks, alternating cameras, missing pictures, coordinates, points.
- * Links tools/scene/ray_*.o.
+/* test_ways.c - ted4scene imitates what other writers do: kinds of picture files, backgrounds and
+ * alpha, masks, alternating cameras, missing pictures, coordinates, points. Links
+ * tools/scene/ray_*.o.
  * SPDX-License-Identifier: BSD-2-Clause */
 #include <math.h>
 #include <png.h>
@@ -30,7 +30,7 @@ static ted4_ray_options toys(void)
 
 /* ---- picture files ---- */
 
-/* Writes picture (1, 2) of o; head: its first bytes. */
+/* Writes picture (1, 2) of o. head: receives the first bytes of the file. */
 static void written(const ted4_ray_options *o, const char *path, uint8_t *rgba, uint8_t head[32])
 {
     ted4_ray_message m;
@@ -43,7 +43,8 @@ static void written(const ted4_ray_options *o, const char *path, uint8_t *rgba, 
     fclose(f);
 }
 
-/* Bytes as they are in the file, of 16 bits the upper half, spread to four channels. */
+/* Reads the values as they are in the file, the upper byte of 16 bits, converted to four
+ * channels. */
 static void read_png(const char *path, uint8_t *rgba)
 {
     FILE *const f = fopen(path, "rb");
@@ -77,8 +78,8 @@ static double mean_error(const uint8_t *a, const uint8_t *b)
     return sum / (4 * AREA);
 }
 
-/* Bit depth, colour type, interlace of each kind, with and without alpha; and the same pixels come
- * back, but for a palette's few colours and for grey. */
+/* Bit depth, colour type and interlacing of each kind, with and without alpha; the same pixels are
+ * read back, except from a palette of few colours and from grey. */
 static void test_kinds(void **state)
 {
     static const struct {
@@ -115,7 +116,7 @@ static void test_kinds(void **state)
     remove(path);
 }
 
-/* The frame header of a JPEG: baseline or progressive. */
+/* Reads the type of a JPEG's frame header: baseline or progressive. */
 static int jpeg_frame(const char *path)
 {
     FILE *const f = fopen(path, "rb");
@@ -153,8 +154,8 @@ static void test_jpeg(void **state)
 
 /* ---- pixels ---- */
 
-/* What is opaque, white and black are what the transparent picture gives on them; multiplied
- * colours are colours on black. */
+/* The opaque, white and black pictures equal the transparent picture over these backgrounds;
+ * premultiplied colours equal those over black. */
 static void test_backgrounds(void **state)
 {
     static uint8_t straight[4 * AREA], multiplied[4 * AREA], black[4 * AREA], white[4 * AREA];
@@ -187,8 +188,8 @@ static void test_backgrounds(void **state)
     assert_int_equal(straight[3], 0);
 }
 
-/* The mask is where a picture differs from that of a scene that stands still, and a still scene has
- * none. */
+/* The mask is set where a picture differs from that of a scene that does not move; a still scene
+ * has no mask. */
 static void test_masks(void **state)
 {
     static uint8_t a[AREA], b[AREA];
@@ -215,8 +216,8 @@ static void test_masks(void **state)
         assert_int_equal(b[i], 0);
 }
 
-/* No more colours than there is room for, each pixel's the nearest of its box: exact where they are
- * few. */
+/* There are no more colours than the palette can hold, and each pixel gets the nearest one of its
+ * box: the result is exact if the picture has few colours. */
 static void test_palette(void **state)
 {
     static uint8_t rgba[4 * AREA], palette[TED4_RAY_PALETTE][4], index[AREA];
@@ -234,8 +235,8 @@ static void test_palette(void **state)
 
 /* ---- what there is ---- */
 
-/* Of alternating cameras, each has one time and each time one camera, in no order that is one
- * of the other. */
+/* Of alternating cameras, each has one time and each time has one camera; the order of the times is
+ * not that of the cameras. */
 static void test_turns(void **state)
 {
     ted4_ray_options o = toys();
@@ -287,7 +288,7 @@ static void test_missing(void **state)
     assert_true(of_camera[2] > 0);
 }
 
-/* Times of the test are none of training; without a test file there are none at all. */
+/* Test times are not among the training times; without a test file there are no test pictures. */
 static void test_splits(void **state)
 {
     ted4_ray_options o = toys();
@@ -310,8 +311,8 @@ static void test_splits(void **state)
 
 /* ---- coordinates ---- */
 
-/* A point of the files lies on the same pixel of the same camera in any coordinates, sizes and
- * principal points apart. */
+/* A point of the files projects to the same pixel of the same camera in all coordinate systems,
+ * sizes and principal points. */
 static void test_coordinates(void **state)
 {
     const ted4_ray_options usual = toys();
@@ -342,7 +343,7 @@ static void test_coordinates(void **state)
     }
 }
 
-/* Nearly all of the points in the large box lie outside of the small one. */
+/* Nearly all of the points in the large box lie outside the small one. */
 static void test_points(void **state)
 {
     ted4_ray_options o = toys();
