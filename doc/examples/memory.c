@@ -1,4 +1,5 @@
-/* memory.c - decodes a file that lies in memory, within a bound, and says why it is refused.
+/* memory.c - decodes a file that lies in memory, within a memory limit, and prints why it is
+ * refused.
  *     cc memory.c $(pkg-config --cflags --libs ted4)
  * SPDX-License-Identifier: BSD-2-Clause */
 #include <stdio.h>
@@ -19,7 +20,7 @@ int main(int argc, char **argv)
         free(data);
         return 1;
     }
-    free(data); /* the scene keeps nothing of it */
+    free(data); /* the scene does not refer to it */
     ted4_scene_info(scene, &info);
     for (int i = 0; i < 16; i++)
         printf("%02x", info.hash[i]);

@@ -1,4 +1,4 @@
-/* read_file.h - for the examples: the whole file that the command line names.
+/* read_file.h - for the examples: reads the whole file that the command line names.
  * SPDX-License-Identifier: BSD-2-Clause */
 #ifndef READ_FILE_H
 #define READ_FILE_H
@@ -7,7 +7,7 @@
 #include <stdlib.h>
 #include <ted4/ted4.h>
 
-/* Owned by the caller. Ends the program where there is no such file. */
+/* Returns the bytes, owned by the caller. Ends the program if there is no such file. */
 static unsigned char *read_file(int argc, char **argv, size_t *size)
 {
     FILE *const f = argc == 2 ? fopen(argv[1], "rb") : NULL;

@@ -1,8 +1,8 @@
-/* test_spec_annexes.c - annexes A, B, C and H, and the hashes of functions in annex J, are what
- * their generators print now, and the lints of the specification hold. Runs in the top folder, as
+/* test_spec_annexes.c - annexes A, B, C and H, and the hashes of functions in annex J, equal what
+ * their generators print now, and the lints of the specification pass. Runs in the top folder, as
  * make does.
  * SPDX-License-Identifier: BSD-2-Clause */
-#include "tests/gen/annex_b.h" /* first: fail() is a function there */
+#include "tests/gen/annex_b.h" /* before cmocka, whose fail() is a macro */
 #include "tests/gen/annex_a.h"
 #include "tests/gen/annex_c.h"
 #include "tests/gen/annex_h.h"
@@ -10,7 +10,8 @@
 #include "test.h"
 #include <jansson.h>
 
-/* The whole file; fails the test when it cannot be read. To be freed. */
+/* Returns the contents of a file, to be freed by the caller. Fails the test if the file cannot be
+ * read. */
 static char *contents(const char *path, size_t *size)
 {
     FILE *f = fopen(path, "rb");
@@ -70,7 +71,7 @@ static void limits(void **state)
     current("spec/annex-h-limits.md", annex_h);
 }
 
-/* Each line that attest_short prints stands in annex J.9. */
+/* Each line that attest_short prints occurs in annex J.9. */
 static void functions(void **state)
 {
     size_t n = 0, n_rows = 0;
@@ -91,7 +92,7 @@ static void functions(void **state)
     free(text);
 }
 
-/* The index of rules and the table of errors for programs are JSON. */
+/* The index of rules and the table of errors are valid JSON for programs. */
 static void indices(void **state)
 {
     json_t *const rules = json_load_file("spec/rules.json", JSON_REJECT_DUPLICATES, NULL);
@@ -104,7 +105,7 @@ static void indices(void **state)
     json_decref(errors);
 }
 
-/* No valid file is shorter: B.1 says why. */
+/* No valid file is shorter; B.1 explains why. */
 static void smallest(void **state)
 {
     size_t size;

@@ -1,8 +1,8 @@
 /* test_spec_code.c - the code and tables that the specification prints (spec 4.5), compiled into a
- * decoder of their own (spec_model.h), against the reference decoder: the same integers and records
- * of valid streams, the same verdict, identifier and offset of damaged ones.
+ * separate decoder (spec_model.h), compared with the reference decoder: the same integers and
+ * records of valid files, the same verdict, identifier and offset for damaged ones.
  * SPDX-License-Identifier: BSD-2-Clause */
-#include "spec_tiers.h" /* first: its fail() is a function, that of cmocka a macro */
+#include "spec_tiers.h" /* before cmocka, whose fail() is a macro */
 #include <stdio.h>
 #include <xxhash.h>
 
@@ -93,7 +93,7 @@ static void same_record(const ted4_gaussians *g, size_t i, const float *record)
         assert_int_equal(ted4_float_bits(channel[c][i]), ted4_float_bits(record[c]));
 }
 
-/* finite: did the reference decoder find the records finite? */
+/* finite: whether the reference decoder found the records finite. */
 static void same_query(const spec_model *m, const ted4_query *q, const ted4_gaussians *g,
                        int finite)
 {
@@ -116,7 +116,7 @@ static void same_query(const spec_model *m, const ted4_query *q, const ted4_gaus
         assert_int_equal(i, g->n);
 }
 
-/* A tier as ted4_dump_syntax and ted4_dump_tier give it. */
+/* Collects the pieces of a tier that ted4_dump_syntax and ted4_dump_tier deliver. */
 static void gather(void *user, const void *bytes, size_t size)
 {
     spec_bytes *b = user;
@@ -189,7 +189,7 @@ static void valid_streams(void **state)
     assert_true(n_finite > 2 * N_VALID);
 }
 
-/* Offsets of the chunks of a valid file, and its end. Returns how many chunks. */
+/* Finds the offsets of the chunks of a valid file, and its end. Returns the number of chunks. */
 static size_t chunks_of(const uint8_t *data, size_t size, size_t at[MAX_CHUNKS + 1])
 {
     size_t n = 0;
@@ -211,7 +211,7 @@ static void fix_hash(uint8_t *chunk)
     ted4_store32(chunk + n + 4, (uint32_t)(h >> 32));
 }
 
-/* A byte becomes something near, a bit turns, or it becomes a value that matters. */
+/* Changes a byte slightly, flips one of its bits, or sets it to a special value. */
 static void change_byte(random_source *r, uint8_t *p)
 {
     static const uint8_t special[] = { 0, 1, 2, 31, 63, 127, 128, 255 };
@@ -224,7 +224,7 @@ static void change_byte(random_source *r, uint8_t *p)
     }
 }
 
-/* One damage in room for 2 size + 64 bytes. Returns the new size. */
+/* Damages the file once; data has room for 2 size + 64 bytes. Returns the new size. */
 static size_t damage(random_source *r, uint8_t *data, size_t size)
 {
     size_t at[MAX_CHUNKS + 1];
@@ -232,28 +232,28 @@ static size_t damage(random_source *r, uint8_t *data, size_t size)
                  length = at[c + 1] - at[c];
 
     switch (random_in(r, 0, 14)) {
-    case 0: /* any byte, hash or not */
+    case 0: /* any byte, with the hash corrected or not */
         change_byte(r, data + random_in(r, 0, (uint32_t)size - 1));
         return size;
-    case 1: /* cut */ return random_in(r, 0, (uint32_t)size - 1);
+    case 1: /* the file is truncated */ return random_in(r, 0, (uint32_t)size - 1);
     case 2: /* a chunk twice */
         memmove(data + at[c + 1] + length, data + at[c + 1], size - at[c + 1]);
         memcpy(data + at[c + 1], data + at[c], length);
         return size + length;
-    case 3: /* a chunk less */
+    case 3: /* a chunk is removed */
         memmove(data + at[c], data + at[c + 1], size - at[c + 1]);
         return size - length;
-    case 4: /* type, flags, hash fixed */
+    case 4: /* type, flags, with the hash corrected */
         change_byte(r, data + at[c] + random_in(r, 0, 7));
         fix_hash(data + at[c]);
         return size;
-    case 5: /* a byte more at the end of a payload */
+    case 5: /* a byte is appended to a payload */
         memmove(data + at[c + 1] + 1, data + at[c + 1], size - at[c + 1]);
         data[at[c + 1]] = 0;
         ted4_store32(data + at[c] + 8, (uint32_t)length - 20 + 1);
         fix_hash(data + at[c]);
         return size + 1;
-    case 6: /* a byte less */
+    case 6: /* a byte is removed */
         if (length == 20)
             return size;
         memmove(data + at[c + 1] - 1, data + at[c + 1], size - at[c + 1]);
@@ -271,7 +271,7 @@ static size_t damage(random_source *r, uint8_t *data, size_t size)
                                random_in(r, 0, (uint32_t)(length < 60 ? length : 60) - 21));
         fix_hash(data + at[c]);
         return size;
-    default: /* some bytes of a payload, hash fixed */
+    default: /* some bytes of a payload, with the hash corrected */
         for (uint32_t i = random_in(r, 1, 3); i > 0 && length > 20; i--)
             change_byte(r, data + at[c] + 12 + random_in(r, 0, (uint32_t)length - 21));
         fix_hash(data + at[c]);
@@ -331,7 +331,8 @@ static void visit_vector(const uint8_t *data, size_t size, const char *path)
     same_verdict(data, size, published);
 }
 
-/* The suite, but what asks for much, and what is large: the printed code is slow. */
+/* The suite, except large vectors and those that need much work, because the printed code is
+ * slow. */
 static void vectors(void **state)
 {
     (void)state;
@@ -339,8 +340,8 @@ static void vectors(void **state)
     assert_true(published[TED4_OK] > 300);
 }
 
-/* An entry of HEAD: its place in the payload, and values at and beyond the ends of its range and of
- * the level's bounds. */
+/* An entry of HEAD: its offset in the payload, and values at and beyond the ends of its range and
+ * of the level's bounds. */
 typedef struct {
     size_t at, width;
     int64_t value[8];
@@ -372,7 +373,7 @@ static size_t head_entries(const spec_model *m, head_entry *e)
     return n;
 }
 
-/* Every element of HEAD at both ends of what it may be, under every level. */
+/* Every element of HEAD at both ends of its range, at every level. */
 static void edges_of_head(void **state)
 {
     static const uint8_t level[] = { 1, 2, 3, 4, 31 };

@@ -1,8 +1,8 @@
-/* test_spec_inflate.c - annex L, as the text prints it, against zlib, which the decoder uses: both
- * accept the same streams and give the same bytes. Streams of every kind of block, and each damaged
- * many times.
+/* test_spec_inflate.c - annex L, as the text prints it, compared with zlib, which the decoder uses:
+ * both accept the same streams and give the same bytes. The streams have every kind of block, and
+ * each is damaged many times.
  * SPDX-License-Identifier: BSD-2-Clause */
-#include "spec_model.h" /* first: fail() is a function there */
+#include "spec_model.h" /* before cmocka, whose fail() is a macro */
 #include <stdio.h>
 #include <zlib.h>
 
@@ -19,7 +19,7 @@ static int zlib_accepts(const uint8_t *in, size_t n_in, uint8_t *out, size_t n_o
     return uncompress2(out, &got, in, &used) == Z_OK && got == n_out && used == n_in;
 }
 
-/* Both verdicts and outputs; returns whether the stream is valid. */
+/* Compares both verdicts and outputs. Returns whether the stream is valid. */
 static int same(const uint8_t *in, size_t n_in, size_t n_out)
 {
     static uint8_t a[MOST + 1], b[MOST + 1];
@@ -90,11 +90,11 @@ static void damaged(void **state)
             n_valid += (unsigned)same(copy, size + (k % 16 == 0), n);
         }
     }
-    assert_true(n_valid > 10); /* bits that nobody looks at */
+    assert_true(n_valid > 10); /* some bits do not matter */
 }
 
-/* A checksum that fits hides damage from the check at the end: only the rules on blocks are left.
- */
+/* With a correct checksum, damage is not detected by the check at the end: only the rules on blocks
+ * remain. */
 static void damaged_and_fixed(void **state)
 {
     static uint8_t text[MOST], stream[2 * MOST], out[MOST];
@@ -141,7 +141,7 @@ static void damaged_and_fixed(void **state)
     assert_true(n_wrong > 1000);
 }
 
-/* Bits of a stream, the lowest of each byte first. */
+/* The bits of a stream, the lowest of each byte first. */
 typedef struct {
     uint8_t byte[512];
     size_t n;
@@ -153,7 +153,8 @@ static void put_bits(bit_string *b, unsigned value, int n)
         b->byte[b->n / 8] |= (uint8_t)((value >> i & 1) << b->n % 8);
 }
 
-/* Lengths of a small code over four symbols: complete, incomplete, overfull, single or empty. */
+/* Chooses lengths of a small code over four symbols: complete, incomplete, oversubscribed, with one
+ * symbol or empty. */
 static void some_code(random_source *r, uint8_t *length, const int symbol[4])
 {
     static const uint8_t choice[][4] = {
@@ -187,7 +188,8 @@ static bit_string block_of(const uint8_t *literal, unsigned n_literal, const uin
     return b;
 }
 
-/* What zlib says of the blocks alone: bytes taken, 0 when they are wrong; output in out. */
+/* Returns the number of bytes that zlib uses for the blocks alone, or 0 if they are invalid; output
+ * in out. */
 static size_t blocks_end(const bit_string *b, uint8_t out[MOST], size_t *n_out)
 {
     z_stream z;
@@ -216,8 +218,8 @@ static int same_with_sum(bit_string b, size_t end, const uint8_t *out, size_t n_
     return same(b.byte, b.n / 8, n_out);
 }
 
-/* One dynamic block whose codes are what R-NET-007 is about, and bits at random; and the same with
- * more codes than there may be. */
+/* One dynamic block with codes of the kinds that R-NET-007 distinguishes, and random bits; and the
+ * same with more codes than allowed. */
 static void codes(void **state)
 {
     static const int literals[4] = { 256, 65, 257, 285 }, distances[4] = { 0, 1, 5, 29 };
@@ -243,7 +245,7 @@ static void codes(void **state)
         assert_true(same_with_sum(b, end, out, n_out));
         n_valid++;
         for (size_t more = 0; more < 2;
-             more++) { /* 4 or 8 bits more may end in the same byte or in the next */
+             more++) { /* 4 or 8 further bits may end in the same byte or in the next */
             assert_false(
                 same_with_sum(block_of(literal, 287, distance, 30, data), end + more, out, n_out));
             assert_false(
@@ -257,7 +259,8 @@ static void codes(void **state)
     assert_true(n_valid > 100);
 }
 
-/* R-NET-007 "distance": CINFO says a window of 256 bytes, and nobody minds a distance of 300. */
+/* R-NET-007 "distance": CINFO states a window of 256 bytes, and a distance of 300 is still
+ * accepted. */
 static void narrow_window(void **state)
 {
     static uint8_t text[1024], stream[2 * MOST];

@@ -1,9 +1,9 @@
-/* test_spec_resources.c - the formulas of spec 13.3 and 13.4, as the text prints them, against what
- * decoding and queries take: a budget of M_E and M_R is enough, W_E and W_R are what a limit on
- * work is held against, to the step, and the elements of HEAD are traced in the order, width and
- * name of the table of 6.1, all others under names of annex J.
+/* test_spec_resources.c - the formulas of spec 13.3 and 13.4, as the text prints them, compared
+ * with what decoding and queries use: a budget of M_E and M_R is enough; W_E and W_R are exactly
+ * the work that is compared with a limit; and the elements of HEAD are traced with the order, width
+ * and name in the table of 6.1, all others under names of annex J.
  * SPDX-License-Identifier: BSD-2-Clause */
-#include "spec_model.h" /* first: fail() is a function there */
+#include "spec_model.h" /* before cmocka, whose fail() is a macro */
 #include <stdio.h>
 
 #include "test.h"
@@ -20,7 +20,7 @@ static uint8_t *encoded(const ted4_scene *s, size_t *size)
     return data;
 }
 
-/* A scene decoded and queried under budgets that follow from its header. */
+/* Decodes and queries a scene under memory budgets that follow from its header. */
 static void fits(const uint8_t *data, size_t size, const ted4_parallel *p, uint64_t tiles)
 {
     spec_model m = { .n_blocks = 0 };
@@ -64,7 +64,7 @@ static void memory(void **state)
     ted4_threads_finish(&p);
 }
 
-/* A scene decoded and queried under limits on work that follow from its header. */
+/* Decodes and queries a scene under limits on work that follow from its header. */
 static void works(const uint8_t *data, size_t size)
 {
     spec_model m = { .n_blocks = 0 };
@@ -137,7 +137,7 @@ static size_t head_elements(const struct header *h, head_element *e)
     return n;
 }
 
-/* What the decoder traces, held against the tables. */
+/* The elements that the decoder traces, which are compared with the tables. */
 typedef struct {
     const head_element *head;
     size_t n_head, seen, next_at;

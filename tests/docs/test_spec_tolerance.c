@@ -1,7 +1,7 @@
-/* test_spec_tolerance.c - annex E: thresholds of class T computed by its rule; what keeps them and
- * what does not.
+/* test_spec_tolerance.c - annex E: the thresholds of class T, computed by its rule; which records
+ * satisfy them and which do not.
  * SPDX-License-Identifier: BSD-2-Clause */
-#include "spec_tolerance.h" /* first: fail() is a function there */
+#include "spec_tolerance.h" /* before cmocka, whose fail() is a macro */
 #include <stdio.h>
 
 #include "test.h"
@@ -10,7 +10,8 @@
 enum { N_SCENES = 24 };
 static const float camera[3] = { 0.5f, -1.0f, 2.0f };
 
-/* Calls check for each random scene and query that class X has a result for. Returns how many. */
+/* Calls check for each random scene and query for which class X has a result. Returns the number of
+ * calls. */
 static int for_each(void (*check)(const tol_reference *t, const struct scene *s))
 {
     int n = 0;
@@ -58,8 +59,8 @@ static void check_evaluations(const tol_reference *t, const struct scene *s)
     }
 }
 
-/* Every evaluation keeps the thresholds that it helped to make, and each of them is another
- * arithmetic. */
+/* Every evaluation satisfies the thresholds that were derived from it and others, and each of them
+ * uses different arithmetic. */
 static void evaluations(void **state)
 {
     (void)state;
@@ -69,7 +70,7 @@ static void evaluations(void **state)
         assert_true(differs[e] > N_SCENES / 2);
 }
 
-/* One number of one record, off by a little more than the peak allows. */
+/* One number of one record differs by a little more than the peak allows. */
 static void check_error(const tol_reference *t, const struct scene *s)
 {
     static const int first[TOL_GROUPS] = { 0, 3, 6, 10, 11 };
@@ -104,7 +105,8 @@ static void errors(void **state)
     assert_true(for_each(check_error) > N_SCENES);
 }
 
-/* A record that one evaluation leaves the numbers with is not judged; the others are as before. */
+/* A record in which one evaluation gives a number that is not finite is not judged; the others are
+ * judged as before. */
 static void check_infinite(const tol_reference *t, const struct scene *s)
 {
     const size_t i = t->n / 2;
@@ -129,8 +131,8 @@ static void infinite(void **state)
     assert_true(for_each(check_infinite) > N_SCENES);
 }
 
-/* tol_exact is the reference decoder, bit for bit: test_spec_code.c. Rounded up to a power of two
- * means just that. */
+/* tol_exact equals the reference decoder bit for bit (test_spec_code.c). Here: rounding up to a
+ * power of two. */
 static void rounding(void **state)
 {
     (void)state;
