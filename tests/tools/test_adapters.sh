@@ -1,7 +1,7 @@
 #!/bin/sh
 # test_adapters.sh - conformance/adapters: our library behind adapter.c, and a decoder that prints
-# lines behind line.py, pass vectors of each kind; lines that are no answer are none. Speaks as
-# cmocka programs do; run by `make test` from the project's root.
+# lines behind line.py, pass vectors of each kind; lines that are not a valid answer do not count as
+# one. Prints lines as a cmocka program does; run by `make test` from the project's root.
 # SPDX-License-Identifier: BSD-2-Clause
 set -u
 . tests/support/speak.sh

@@ -1,7 +1,7 @@
 #!/bin/sh
-# test_branches.sh - conformance/branches.awk on small tables: what counts as taken, what stands
-# apart, and which mistakes of the list it finds. Speaks as cmocka programs do; run by `make test`
-# from the project's root.
+# test_branches.sh - conformance/branches.awk on small tables: which branches count as taken, which
+# are listed separately, and which mistakes in the list it finds. Prints lines as a cmocka program
+# does; run by `make test` from the project's root.
 # SPDX-License-Identifier: BSD-2-Clause
 set -u
 . tests/support/speak.sh
@@ -10,7 +10,7 @@ table() { to=$out/$1; shift; for row; do echo "$row" | tr ' ' '\t' | tr _ ' '; d
 judge() { awk -f conformance/branches.awk "$out/list" "$out/suite" "$out/tests"; }
 list() { printf '# a comment\n\n' >"$out/list"; for row; do echo "$row" >>"$out/list"; done; }
 
-# 200 outcomes of one function that are taken, and what else is given.
+# 200 outcomes of one function, all taken, and the given lines.
 suite() {
     awk 'BEGIN { for (i = 0; i < 200; i++) print "a.c\tmany\t" i "\t0\t1\tif (" i ")" }' \
         >"$out/most"

@@ -1,6 +1,7 @@
 #!/bin/sh
-# test_capacity_page.sh - the page of capacities on a small table of rows whose answers can be
-# worked out by hand. Speaks as cmocka programs do; run by `make test` from the project's root.
+# test_capacity_page.sh - the page of capacities, made from a small table of rows whose results can
+# be computed by hand. Prints lines as a cmocka program does; run by `make test` from the project's
+# root.
 # SPDX-License-Identifier: BSD-2-Clause
 set -u
 . tests/support/speak.sh
@@ -27,8 +28,8 @@ run grid small still,chair,moment 1 - --capacity fixed --set offsets=4
 END
 # Tag, bytes, PSNR, L1, bytes of the bank, motion, CPU seconds. SSIM is 1, lambda 0.0019, and a
 # whole model has 1900 values, so the cost is 0.8 L1 + bytes / 125000. still: auto 0.016, whole
-# 0.02, small 0.0168, but half a decibel below. chair: auto 0.016, small 0.014; seconds are 30 %
-# more. moment: auto 0.016 and 0.01648, small 0.01568 at hardly less PSNR.
+# 0.02, small 0.0168, but 0.5 dB lower. chair: auto 0.016, small 0.014, but 30 % more seconds.
+# moment: auto 0.016 and 0.01648, small 0.01568 with hardly lower PSNR.
 rows() {
     cat <<END
 still-auto-1 1000 30 0.01 0 0 12

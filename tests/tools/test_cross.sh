@@ -1,27 +1,27 @@
 #!/bin/sh
 # test_cross.sh - the bookkeeping of conformance/cross/cross.sh, with a compiler that compiles
-# nothing and makes programs of several moods: what passes is not run again, what lacks a tool is
-# skipped and never passed, failures and crashes are named, wrong claims and hashes that differ
-# fail, and so do fewer than 12 builds unless some are chosen. Speaks as cmocka programs do; run by
-# `make test` from the project's root.
+# nothing and makes programs with several behaviours. Builds that passed are not run again; those
+# that lack a tool are skipped and never count as passed; failures and crashes are named; wrong
+# claims and different hashes fail, and so do fewer than 12 builds unless some are chosen. Prints
+# lines as a cmocka program does; run by `make test` from the project's root.
 # SPDX-License-Identifier: BSD-2-Clause
 set -u
 export LC_ALL=C
 . tests/support/speak.sh
 need cross ted4conf ted4dec
-# cross NAME WANTED-STATUS WANTED-TEXT ['']: runs it on the table as it is, all builds chosen by a
-# pattern; '': without a pattern
+# cross NAME WANTED-STATUS WANTED-TEXT ['']: runs it on the table as it is, with all builds chosen
+# by a pattern, or without a pattern if '' is given.
 cross() {
     expect "$1" "$2" "$3" env PATH="$out/bin:$PATH" TED4_BUILD="$out/build" TED4_RESULTS="$out" \
         TED4_TABLE="$out/table" conformance/cross/cross.sh ${4-'*'}
 }
-# A decoder with sanitizers needs all of its address space, which programs with a runner have.
+# A decoder with sanitizers needs all of its address space, which programs with a runner get.
 runner=
 ! grep -q __asan_init "$TED4_BUILD/ted4dec" || runner=env
 # build NAME CLASS COMPILER FLAGS: a line of the table
 build() { echo "$1; $2; $3; $4; ; $runner; ; few; package-of-$1" >>"$out/table"; }
 
-# The mood of a program is the flag -Dmood=, which it gets with its first object.
+# The behaviour of a program is the flag -Dmood=, which it gets with its first object.
 key=$({ cat conformance/SUITE.json; find conformance/vectors -name '*.json' | sort |
     tr '\n' '\0' | xargs -0 cat; } | sha256sum | cut -c1-16)
 mkdir -p "$out/bin" "$out/build/cross/libraries" "$out/build/cross/suite-$key"

@@ -1,8 +1,8 @@
 #!/bin/sh
-# test_encoder_program.sh - spec 3.4 asked of the program ted4enc by `ted4conf encode`, for a scene
-# that moves and one that does not; and `ted4conf encode` sees through encoders that do not conform
-# (conformance/tests/bad_encoder.sh). Speaks as cmocka programs do; run by `make test` from the
-# project's root.
+# test_encoder_program.sh - spec 3.4, tested with the program ted4enc by `ted4conf encode`, for a
+# scene that moves and one that does not; also, `ted4conf encode` detects encoders that do not
+# conform (conformance/tests/bad_encoder.sh). Prints lines as a cmocka program does; run by `make
+# test` from the project's root.
 # SPDX-License-Identifier: BSD-2-Clause
 set -u
 export LC_ALL=C
@@ -21,8 +21,8 @@ for scene in pop still; do
 done
 expect no_scene 1 'no answer' "$TED4_BUILD/ted4conf" encode -e "'$TED4_BUILD/ted4enc'" "$out/absent"
 
-# A file and its answer for the bad ones; WASTE: a vector that is valid and codes what it does not
-# need (R-ENC-004).
+# A file and its answer for the bad encoders. WASTE: a vector that is valid but codes something
+# unnecessary (R-ENC-004).
 MADE=$out/made WASTE=$out/waste
 cp conformance/vectors/worked/WRK-annex-b1.ted4 "$MADE"
 cp conformance/vectors/valid/levels/LVL-frames-65.ted4 "$WASTE"

@@ -1,15 +1,15 @@
 #!/bin/sh
-# test_install.sh - what `make install` leaves is enough for who writes a program: <ted4/ted4.h> in
-# C and in C++, with no other folder of headers, libted4dec.a with no library but zlib, xxHash and
-# libm for all that is in it, and the programs that doc/programs.md names. Speaks as cmocka programs
-# do; run by `make test` from the project's root.
+# test_install.sh - the files of `make install` are sufficient for writing a program: <ted4/ted4.h>
+# in C and in C++, with no other folder of headers; libted4dec.a, whose whole content needs no
+# library but zlib, xxHash and libm; and the programs that doc/programs.md names. Prints lines as a
+# cmocka program does; run by `make test` from the project's root.
 # SPDX-License-Identifier: BSD-2-Clause
 set -u
 . tests/support/speak.sh
 need install ted4dec ted4conf ted4tolerance
 vector=conformance/vectors/content/CNT-pop-0.002.ted4
 
-# Nothing is built anew, with another compiler at worst.
+# Nothing may be rebuilt, possibly with another compiler.
 usr=$out/root/usr
 cp "$TED4_BUILD/how" "$out/how"
 if make install B="$TED4_BUILD" DESTDIR="$out/root" PREFIX=/usr >"$out/said" 2>&1; then ok \
@@ -51,8 +51,8 @@ C
 cp "$out/user.c" "$out/user.cc"
 wanted="$("$TED4_BUILD/ted4dec" --hash "$vector"), bank"
 
-# user NAME COMPILER SOURCE: a program of somebody else, made and asked. The flags are those of a
-# build with sanitizers; nothing otherwise.
+# user NAME COMPILER SOURCE: compiles a user's program and runs it. The flags are empty unless the
+# build has sanitizers.
 user() {
     # shellcheck disable=SC2086 # several flags
     $2 ${CFLAGS:-} ${LDFLAGS:-} -Wall -Wextra -Wpedantic -Werror -I"$usr/include" "$out/$3" \

@@ -1,8 +1,8 @@
 #!/bin/sh
-# test_kernels.sh - one program for any machine of a kind: TED4_KERNEL names the kernels, what this
-# machine does not have is refused, every level decodes to the same scene, and what is compiled once
-# asks for no instruction that only some machines have. Speaks as cmocka programs do; run by
-# `make test` from the project's root.
+# test_kernels.sh - one program runs on any machine of a kind: TED4_KERNEL selects the kernels,
+# kernels that this machine does not have are refused, every level decodes to the same scene, and
+# code that is compiled once uses no instruction that only some machines have. Prints lines as a
+# cmocka program does; run by `make test` from the project's root.
 # SPDX-License-Identifier: BSD-2-Clause
 set -u
 export LC_ALL=C

@@ -1,8 +1,8 @@
 #!/bin/sh
-# test_library.sh - the decoder as a library for other people's builds: the symbols of the shared
+# test_library.sh - the decoder as a library in other people's builds: the symbols of the shared
 # library, headers in every dialect, the examples of doc/examples by pkg-config, a project by CMake,
-# and the Python module. What the machine lacks is skipped. Speaks as cmocka programs do; run by
-# `make test` from the project's root.
+# and the Python module. Tests for which the machine lacks a tool are skipped. Prints lines as a
+# cmocka program does; run by `make test` from the project's root.
 # SPDX-License-Identifier: BSD-2-Clause
 set -u
 . tests/support/speak.sh
@@ -11,7 +11,7 @@ vector=conformance/vectors/content/CNT-pop-0.002.ted4
 usr=$out/root/usr
 has() { command -v "$1" >/dev/null; }
 
-# Sanitizers have run-time libraries of their own, which a shared library does not bring.
+# Sanitizers have their own run-time libraries, which a shared library does not contain.
 case "${CFLAGS:-} $(cat "$TED4_BUILD/how")" in
 *-fsanitize*) skip library "this is a build with sanitizers"; exit 0 ;;
 esac
@@ -34,7 +34,7 @@ else
     skip symbols "there is no nm"
 fi
 
-# Every function that the installed headers declare is there, and nothing else.
+# Every function that the installed headers declare is exported, and nothing else.
 sed 's|//.*||' "$usr/include/ted4/ted4.h" "$usr/include/ted4/base/status.h" | tr '\n' ' ' |
     sed 's|/\*[^*]*\*\+\([^/*][^*]*\*\+\)*/| |g' | tr ';' '\n' |
     sed -n '/typedef/!s/.*[ *]\(ted4_[a-z0-9_]*\)(.*/\1/p' | sort -u >"$out/declared"

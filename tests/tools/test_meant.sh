@@ -1,13 +1,13 @@
 #!/bin/sh
-# test_meant.sh - who misspells a name is told which one may have been meant, and who goes on from a
-# checkpoint with other options is told which one differs. Speaks as cmocka programs do; run by
-# `make test` from the project's root.
+# test_meant.sh - after a misspelt name the message suggests the name that may have been meant, and
+# if a run is resumed with options other than the checkpoint's, it names the option that differs.
+# Prints lines as a cmocka program does; run by `make test` from the project's root.
 # SPDX-License-Identifier: BSD-2-Clause
 set -u
 . tests/support/speak.sh
 need meant ted4enc ted4dec ted4scene
 enc=$TED4_BUILD/ted4enc
-# no_hint NAME STATUS TEXT COMMAND...: as expect, and nothing is suggested.
+# no_hint NAME STATUS TEXT COMMAND...: like expect, and nothing is suggested.
 no_hint() { expect "$@"; ! grep -q 'did you mean' "$out/said" && ok "$1_no_hint" ||
     fail "$1_no_hint" "$(cat "$out/said")"; }
 

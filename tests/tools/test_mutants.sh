@@ -1,9 +1,9 @@
 #!/bin/sh
-# test_mutants.sh - ted4conf mutants: the lists fit the sources; results are believed only of a
-# build whose unchanged program passes, and only for as long as what they stand on is the same. A
-# small tree stands in for the decoder, a script for the compiler: the program it "makes" fails at
-# V-two where its source says so. Speaks as cmocka programs do; run by `make test` from the
-# project's root.
+# test_mutants.sh - ted4conf mutants: the lists match the sources; results count only if they come
+# from a build whose unchanged program passes, and only as long as everything on which they depend
+# stays the same. A small tree replaces the decoder, a script the compiler: the program that it
+# "makes" fails at V-two if its source says so. Prints lines as a cmocka program does; run by `make
+# test` from the project's root.
 # SPDX-License-Identifier: BSD-2-Clause
 set -u
 . tests/support/speak.sh
@@ -11,7 +11,7 @@ need mutants ted4conf
 conf=$(cd "$TED4_BUILD" && pwd)/ted4conf
 expect lists_fit_the_sources 0 ' mutants, ' "$conf" mutants --check
 
-# What the "compiler" makes; $MOOD: how a machine or a build is broken.
+# The program that the "compiler" makes. $MOOD: how a machine or a build is broken.
 mkdir -p "$out/bin" "$out/bench"
 cat >"$out/bin/cc" <<'END'
 #!/bin/sh
@@ -64,7 +64,7 @@ END
 }
 mutants() { (cd "$out" && MOOD=${mood:-} "$conf" mutants -s suite -b . --compile true \
     --libraries '' "$@"); }
-# holds NAME N: so many results hold.
+# holds NAME N: N results are still valid.
 holds() { expect "$1" 0 "3 mutants, $2 with a result that holds" mutants --check; }
 ran() { fresh; mutants >/dev/null 2>&1; }
 rows() { if [ -f "$out/suite/mutants.csv" ]; then fail "$1" "there are rows"; else ok "$1"; fi; }
@@ -83,7 +83,7 @@ mutants >/dev/null 2>&1
 if cmp -s "$out/before" "$out/suite/mutants.csv"; then ok nothing_twice;
 else fail nothing_twice "rows were added"; fi
 
-# What results stand on.
+# What results depend on.
 printf '/* b */\nint  f(void)\n{\n    if (x > 0)\n        y = 2;\n    z = 1;\n}\n' \
     >"$out/ref-decoder/norm/f.c"
 holds comments_and_spacing 3
@@ -111,7 +111,7 @@ holds killing_vector_goes 1
 mutants >/dev/null 2>&1
 holds stale_ones_run_again 2
 
-# A broken machine, build or suite kills nothing.
+# A broken machine, build or suite kills no mutant.
 for mood in no-build no-suite wrong; do
     fresh
     expect "unchanged_$mood" 3 'the unchanged program' mutants
@@ -124,7 +124,7 @@ expect came_to_no_vector 3 'gt: the runner was ended, or came to no vector' muta
 rows no_rows_no_vector
 mood=
 
-# Lists that do not fit.
+# Lists that do not match.
 fresh; sed -i 's/w = 1/w = 7/' "$out/ref-decoder/read/g.c"
 expect text_is_not_there 3 'lives: its line is in ref-decoder/read/g.c 0 times: w = 1;' mutants \
     --check

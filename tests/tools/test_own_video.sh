@@ -1,8 +1,8 @@
 #!/bin/sh
-# test_own_video.sh - tools/own-video.sh: from a video of a camera that moves, and from clips of
-# cameras that stand still, comes a SCENE with the lens and the poses that the footage was made
-# with; and what it is given wrongly has one clear error. Speaks as cmocka programs do; run by `make
-# test` from the project's root.
+# test_own_video.sh - tools/own-video.sh: a video of a moving camera, and clips of cameras that
+# stand still, each give a SCENE with the lens and the poses with which the footage was made; wrong
+# arguments give one clear error. Prints lines as a cmocka program does; run by `make test` from the
+# project's root.
 # SPDX-License-Identifier: BSD-2-Clause
 set -u
 export LC_ALL=C
@@ -10,7 +10,7 @@ export LC_ALL=C
 need own_video ted4enc ted4scene
 sh=$(command -v sh)
 
-# refuse NAME TEXT COMMAND...: exit status 3, and that text in the only line said.
+# refuse NAME TEXT COMMAND...: the exit status is 3, and the only line printed contains that text.
 refuse() {
     expect "$@"
     [ "$(grep -c '' "$out/said")" = 1 ] || fail "$1" "not one line: $(cat "$out/said")"
@@ -31,7 +31,7 @@ if [ -e "$out/s" ]; then fail nothing_made "$out/s"; else ok nothing_made; fi
 expect no_video 3 "ffmpeg -i failed: the end of $out/s/log says why" sh tools/own-video.sh \
     "$out/s" "$out/text.mp4"
 
-# Footage: 12 places on an arc, half a second each; five of them as clips of half a second.
+# Footage: 12 positions on an arc, half a second each; five of them also as clips of half a second.
 film() { ffmpeg -v error -framerate "$1" -i "$2" -c:v libx264 -threads 1 -crf 14 -pix_fmt yuv420p \
     "$3" </dev/null || fail footage "$3"; }
 "$TED4_BUILD/ted4scene" still -o "$out/still" --layout llff --size 320x240 --frames 1 --cameras 24 \
@@ -48,8 +48,8 @@ for c in 04 06 08 10 12; do
     mv "$out/clip" "$out/clip$c"
 done
 
-# looks NAME PICTURES LENSES: what --check says of the scene, whose lens is as long as pictures are
-# wide.
+# looks NAME PICTURES LENSES: the report of --check on the scene, whose focal length equals the
+# width of its pictures.
 looks() {
     "$TED4_BUILD/ted4enc" --check "$out/$1" >"$out/$1.says" 2>"$out/said" ||
         { fail "$1" "$(cat "$out/said")"; return; }
@@ -64,7 +64,7 @@ expect walk_made 0 "12 of 12 pictures have poses" env FPS=2 sh tools/own-video.s
 refuse too_short 3 "$out/walk.mp4: 0 pictures at FPS=0.01" env FPS=0.01 sh tools/own-video.sh \
     "$out/short" "$out/walk.mp4"
 looks walked "11 train, 1 test" "frames      12"
-# A clip that its file says to turn has an empty line after its rate.
+# A clip whose file has a rotation flag gives an empty line after its rate.
 mkdir "$out/bin"
 printf '#!/bin/sh\n%s "$@"; echo\n' "$(command -v ffprobe)" >"$out/bin/ffprobe"
 chmod +x "$out/bin/ffprobe"
@@ -72,7 +72,7 @@ expect clips_made 0 "5 of 5 pictures have poses" env PATH="$out/bin:$PATH" sh to
     "$out/rig" "$out/clips"/*.mp4
 looks rig "25 train, 5 test" "12.5 frames/s"
 check in_order "$out/rig/cams.json" '"name": "cam 04", "video": "cam 04.mp4"' ', 0, 159.5000], [0, '
-# COLMAP's own files, and cams.json made of them, are the same cameras for their loaders.
+# COLMAP's own files, and cams.json made from them, give the same cameras through their loaders.
 "$TED4_BUILD/ted4enc" --check "$out/rig/poses" >"$out/poses.says" 2>/dev/null
 same() { grep -E "^$1 " "$out/rig.says" >"$out/a"; grep -E "^$1 " "$out/poses.says" |
     cmp -s - "$out/a" && ok "same_$1" ||

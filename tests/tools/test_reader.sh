@@ -1,6 +1,6 @@
 #!/bin/sh
-# test_reader.sh - the second decoder: its unit tests, a few vectors of the suite through the
-# runner, drawn and broken streams side by side with ted4dec. Speaks as cmocka programs do; run by
+# test_reader.sh - the second decoder: its unit tests, some vectors of the suite through the runner,
+# and random and damaged files compared with ted4dec. Prints lines as a cmocka program does; run by
 # `make test` from the project's root. TED4_BUILD: the build folder.
 # SPDX-License-Identifier: BSD-2-Clause
 here=conformance/reader
