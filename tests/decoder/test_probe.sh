@@ -1,8 +1,8 @@
 #!/bin/sh
-# test_probe.sh - spec 12.2, R-DEC-006: the probe, compiled with each option that takes a liberty
-# with arithmetic, claims no class X; compiled as the Makefile does, and in the compiler's own
-# dialect (where binary16 arithmetic makes FLT_EVAL_METHOD 16), it does. Speaks as cmocka programs
-# do; run by `make test` from the project's root.
+# test_probe.sh - spec 12.2, R-DEC-006: the probe does not claim class X if it is compiled with any
+# option that permits inexact arithmetic; compiled as the Makefile does, and in the compiler's own
+# dialect (where binary16 arithmetic makes FLT_EVAL_METHOD 16), it does. Prints lines as a cmocka
+# program does; run by `make test` from the project's root.
 # SPDX-License-Identifier: BSD-2-Clause
 set -u
 . tests/support/speak.sh

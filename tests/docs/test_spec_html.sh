@@ -1,6 +1,6 @@
 #!/bin/sh
-# test_spec_html.sh - the specification as HTML (tests/spec/html.sh): every link leads somewhere,
-# and one that does not is found. Speaks as cmocka programs do; run by `make test` from the
+# test_spec_html.sh - the specification as HTML (tests/spec/html.sh): every link has a target, and a
+# link without one is reported. Prints lines as a cmocka program does; run by `make test` from the
 # project's root. Needs pandoc (make deps-dev).
 # SPDX-License-Identifier: BSD-2-Clause
 set -u

@@ -1,8 +1,8 @@
 #!/bin/sh
-# test_spec_syntax.sh - the syntax tables of 5.1, 5.2 and 9.1, read out of the text, are what the
-# decoder traces of small vectors with and without each mask, motion and activation, but for those
-# of a later minor version. (For the table of 6.1: test_spec_resources.c.) A table with an error is
-# found out.
+# test_spec_syntax.sh - the syntax tables of 5.1, 5.2 and 9.1, parsed from the text, agree with what
+# the decoder traces of small vectors with and without each mask, motion and activation, except
+# those of a later minor version. (For the table of 6.1 see test_spec_resources.c.) An error in a
+# table is detected.
 # SPDX-License-Identifier: BSD-2-Clause
 . tests/support/speak.sh
 need spec_syntax ted4dec
@@ -26,7 +26,8 @@ while read -r file; do
 done <"$out/files"
 if [ ! -e "$out/different" ]; then ok tables; else fail tables "see above"; fi
 
-# broken NAME CHAPTER SCRIPT: the text changed so does not hold for a vector with all parts.
+# broken NAME CHAPTER SCRIPT: the text, changed by the script, no longer holds for a vector with all
+# parts.
 broken() {
     rm -rf "$out/spec"; mkdir "$out/spec"
     cp spec/05-*.md spec/09-*.md "$out/spec"

@@ -1,7 +1,7 @@
 #!/bin/sh
-# test_run.sh - tests/run.sh tells of each program what passed, and what was skipped if anything
-# was; a program that fails, breaks off or runs nothing is a failure. Speaks as cmocka programs do;
-# run by `make test` from the project's root.
+# test_run.sh - tests/run.sh reports for each program how many tests passed, and how many were
+# skipped if any were; a program that fails, crashes or runs no test is a failure. Prints lines as a
+# cmocka program does; run by `make test` from the project's root.
 # SPDX-License-Identifier: BSD-2-Clause
 set -u
 . tests/support/speak.sh

@@ -1,7 +1,8 @@
 #!/bin/sh
-# test_says.sh - ted4enc and ted4eval are not silent: a first word within a second, what was found,
-# videos as they are unpacked, how long it will take, where training goes on; and quiet is quiet.
-# Speaks as cmocka programs do; run by `make test` from the project's root.
+# test_says.sh - the progress messages of ted4enc and ted4eval: a first message within a second,
+# what was found, videos as they are unpacked, the expected duration, where training resumes; and
+# quiet mode prints nothing. Prints lines as a cmocka program does; run by `make test` from the
+# project's root.
 # SPDX-License-Identifier: BSD-2-Clause
 set -u
 export LC_ALL=C
@@ -20,7 +21,7 @@ mkdir -p "$out/cache"
 XDG_CACHE_HOME=$out/cache
 export XDG_CACHE_HOME
 
-# A video of frames that take their time: an ffmpeg that makes one picture in a second and a half.
+# A video whose frames take time: an ffmpeg that makes one picture in a second and a half.
 mkdir "$out/bin" "$out/clips"
 cat >"$out/bin/ffmpeg" <<'EOF'
 #!/bin/sh
@@ -34,7 +35,7 @@ echo '{"frames": 3, "cameras": [{"name": "a", "w": 32, "h": 24,
     "K": [[30, 0, 16], [0, 30, 12], [0, 0, 1]],
     "w2c": [[1, 0, 0, 0], [0, 1, 0, 0], [0, 0, 1, 4], [0, 0, 0, 1]]}]}' >"$out/clips/cams.json"
 
-# From a pipe: what was said within a second, and what in the end.
+# Through a pipe: what was printed within a second, and what by the end.
 (PATH=$out/bin:$PATH "$enc" "$out/clips" --check >/dev/null 2>"$out/err"; echo $? >"$out/status") &
 sleep 1
 cp "$out/err" "$out/first"
@@ -57,7 +58,7 @@ check says "$out/err" \
     "ted4enc: D-NeRF: 20 training pictures, 4 held out, of 6 cameras and 4 times, 32 x 24 pixels" \
     " until the file is written" \
     "ted4enc: 250/400 stage 1  loss " "ted4enc: 400/400 stage 2i  loss " "ted4enc: $out/x.ted4: "
-# The last line is true of the file.
+# The last line agrees with the file.
 last=$(grep '^ted4enc: 400/400' "$out/err")
 equal bytes "$(echo "$last" | sed 's/.* bytes \([0-9]*\) .*/\1/')" \
     "$(wc -c <"$out/x.ted4" | tr -d ' ')"
@@ -74,7 +75,7 @@ check no_checkpoint "$out/err" "ted4enc: $out/d: not there yet; beginning at ste
 "$enc" "$out/scene" -o "$out/x.ted4" -f $small -q 2>"$out/err"
 equal quiet "$(wc -c <"$out/err" | tr -d ' ')" 0
 
-# ted4eval says what it does, and refuses what does not belong together.
+# ted4eval reports what it does, and refuses files that do not belong together.
 expect eval 0 "ted4eval: comparing $out/x.ted4 with $out/scene" "$TED4_BUILD/ted4eval" \
     "$out/x.ted4" "$out/scene"
 "$TED4_BUILD/ted4scene" pop -o "$out/longer" --size 32x24 --frames 5 --cameras 5 --test-cameras 1 \
@@ -84,7 +85,7 @@ expect eval_other 3 "x.ted4: cannot be of $out/longer: 4 times in the file, 5 in
 expect eval_anyway 0 'psnr ' "$TED4_BUILD/ted4eval" "$out/x.ted4" "$out/longer" --anyway
 expect eval_first_times 0 'psnr ' "$TED4_BUILD/ted4eval" "$out/x.ted4" "$out/longer" --max-frames 4
 
-# Nothing held out: the line says that its pictures were trained on.
+# If nothing is held out, the line says that its pictures were trained on.
 "$TED4_BUILD/ted4scene" pop -o "$out/all" --layout calibration --size 32x24 --frames 4 --cameras 5 \
     --test-cameras 0 -j 1 2>/dev/null
 "$enc" "$out/all" -o "$out/x.ted4" -f $small -v 2>"$out/err"

@@ -1,7 +1,7 @@
 #!/bin/sh
-# test_search_report.sh - what ted4enc decides about the size of the model is told: in the log
-# always, in the file on request, once, and by ted4info. Speaks as cmocka programs do; run by `make
-# test` from the project's root.
+# test_search_report.sh - the decisions of ted4enc about the size of the model are reported: always
+# in the log, in the file on request, once, and by ted4info. Prints lines as a cmocka program does;
+# run by `make test` from the project's root.
 # SPDX-License-Identifier: BSD-2-Clause
 set -u
 . tests/support/speak.sh
@@ -33,8 +33,8 @@ equal no_names "$(grep -acF "$out" "$out/told.ted4")" 0
 taken=$(grep -c '"event":"capacity".*"taken":true' "$out/told.jsonl")
 equal taken "$("$TED4_BUILD/ted4info" "$out/told.ted4" --why | grep -c ': taken; ')" "$taken"
 
-# Of anchors that move only where trials left motion in the model; they ask about motion first of
-# all, if there is any.
+# Moving anchors are reported only if trials left motion in the model; the trials test motion first,
+# if there is any.
 moves() {
     "$TED4_BUILD/ted4info" "$out/told.ted4" --why |
         grep -c "^capacity.[0-9]*=motion, 1 to 0: $1;"
@@ -44,7 +44,7 @@ told_moving=$("$TED4_BUILD/ted4info" "$out/told.ted4" --why |
     grep -c '^capacity.moving=[0-9]* of [0-9]* anchors: ')
 equal moving "$told_moving" $moving
 
-# A run that goes on after its decisions tells them once, too.
+# A run that is resumed after its decisions also reports them once.
 cp "$out/told.ted4" "$out/first.ted4"
 encode told --why --log "$out/told.jsonl" --checkpoint "$out/told.checkpoint" --resume -f
 equal resumed_log "$(logged told)" "$n"
@@ -57,7 +57,8 @@ equal fixed_file "$("$TED4_BUILD/ted4info" "$out/fixed.ted4" --why | grep '^capa
 "$TED4_BUILD/ted4enc" "$out/scene" -o "$out/x.ted4" --capacity some 2>"$out/err"
 equal refused "$?:$(cat "$out/err")" '3:ted4enc: --capacity: bad value some'
 
-# Light that flickers gets a row of the bank for every time; other scenes for every second one.
+# Flickering light gets a row of the bank for every time; other scenes get one for every second
+# time.
 "$TED4_BUILD/ted4scene" flicker -o "$out/flicker" --size 32x24 --frames 6 --cameras 5 \
     --test-cameras 1 -j 1 2>/dev/null
 rows() { "$TED4_BUILD/ted4info" -v "$out/$1.ted4" | sed -n 's/^ *bank_rows *//p'; }

@@ -1,7 +1,7 @@
 #!/bin/sh
-# test_stability.sh - bench/stability.sh (and with it bench/runs.sh) with programs that only
-# pretend, and its page on rows whose answers can be worked out by hand. Speaks as cmocka programs
-# do; run by `make test` from the project's root.
+# test_stability.sh - bench/stability.sh (and with it bench/runs.sh) with stub programs, and its
+# page on rows whose results can be computed by hand. Prints lines as a cmocka program does; run by
+# `make test` from the project's root.
 # SPDX-License-Identifier: BSD-2-Clause
 set -u
 unset TED4_WORK TED4_DATA TED4_PAGES
@@ -21,10 +21,10 @@ run lab noactive all  1,2,3 - --set activation=0
 run again again  wall 1   -
 END
 
-# ---- the runs, with programs that pretend ----
+# ---- the runs, with stub programs ----
 
 # ted4enc: seed 8 gives up, seed 9 crashes, on calm seed 8 is killed from outside; other seeds are
-# trained. A line of $out/calls each.
+# trained. Each call adds a line to $out/calls.
 mkdir -p "$out/build/bench" "$out/bin"
 cat >"$out/bin/make" <<END
 #!/bin/sh
@@ -100,9 +100,9 @@ sed -i 's/lambda 0.004/lambda 0.002/' "$out/table.txt"
 
 # ---- the page ----
 
-# wall: without activation 1.5 dB below in the worst frame, and 3 anchors thrown out against 1; seed
-# 9 loses a frame. calm: seeds 0.2 dB apart; without activation one seed diverges, one rolled back
-# and is not finite, one gave up.
+# wall: without activation 1.5 dB lower in the worst frame, and 3 anchors thrown out instead of 1;
+# seed 9 loses a frame. calm: seeds differ by 0.2 dB; without activation one seed diverges, one was
+# rolled back and is not finite, one gave up.
 mkdir -p "$out/page/lab"
 header=tag,key,options,status,psnr,worst,worst_frame,worst_camera,bytes,hash,out,out_share
 header=$header,displacement,refused_views,refused_times,log_bad,diverged
@@ -158,7 +158,7 @@ make_page && cmp -s "$page" "$out/first.md" && ok same_bytes ||
     fail same_bytes "the second page differs"
 
 # The same seed gives other bytes; a seed of an easy scene is far off; nothing fails on wall any
-# more, and no anchor is thrown out there.
+# longer, and no anchor is thrown out there.
 sed -i '/^wall/s/,1,0.001,0.5,/,0,0,0.5,/; /^wall/s/,3,0.0[0-9]*,0.5,/,0,0,0.5,/
 s/^wall-again-1,\(.*\),aa,/wall-again-1,\1,xx,/
 s/^calm-whole-2,k,o,fine,33.2/calm-whole-2,k,o,fine,33.4/
@@ -168,13 +168,13 @@ check missed "$page" '1 of 1 scenes told, 0 equal in size and hash | **missed** 
     'calm 0.40 dB | **missed** |' '0 scenes, 0 of them unexplained | not run yet |' \
     'wall 0.0 against 0.0 | cannot be said |'
 
-# calm, the second scene, falls 2.3 dB below the first.
+# calm, the second scene, is 2.3 dB worse than the first.
 sed -i 's/^calm-whole-\([0-9]\),k,o,fine,33/calm-whole-\1,k,o,fine,28/' "$out/page/stability.csv"
 make_page
 check weak "$page" \
     "| calm | whole | the whole method's mean PSNR lies more than 2 dB below its own on the first scene (3 of 3) | Why calm is so. |"
 
-# Fewer anchors are thrown out in all, but more on calm.
+# Fewer anchors are thrown out in total, but more on calm.
 sed -i 's/^group come wall$/group come wall,calm/' "$out/table.txt"
 awk -F, -v OFS=, '/^calm-whole/ { $11 = 1 } /^wall-noactive/ { $11 = 3 } { print }' \
     "$out/page/stability.csv" >"$out/more.csv" && mv "$out/more.csv" "$out/page/stability.csv"

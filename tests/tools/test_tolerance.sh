@@ -1,8 +1,8 @@
 #!/bin/sh
-# test_tolerance.sh - ted4tolerance (annex E): thresholds.csv holds what the program computes, for a
-# sample of its vectors; our decoder's own records keep the thresholds, records that are a little
-# off do not, and missing ones neither. Speaks as cmocka programs do; run by `make test` from the
-# project's root.
+# test_tolerance.sh - ted4tolerance (annex E): thresholds.csv contains what the program computes,
+# for a sample of its vectors; our decoder's own records satisfy the thresholds, slightly wrong
+# records and missing ones do not. Prints lines as a cmocka program does; run by `make test` from
+# the project's root.
 # SPDX-License-Identifier: BSD-2-Clause
 set -u
 export LC_ALL=C
@@ -31,7 +31,7 @@ sed -n 's/^ "queries":\(.*\),$/\1/p' $stream.json >"$out/q.json"
 "$TED4_BUILD/ted4dec" --ted4-run $stream.ted4 --tiers T5 --queries "$out/q.json" \
     --dump "$out/dump" >/dev/null || fail dump "status $?"
 judge ours 0 '{"class":"T","queries":["kept","kept","kept","kept"]}'
-# Byte 2 of the first colour of record 1, of 14 numbers each: its exponent and leading bits.
+# Byte 2 of the first colour of record 1, of 14 numbers per record: its exponent and leading bits.
 cp "$out/dump/T5-1.bin" "$out/keep"
 printf '\377' | dd of="$out/dump/T5-1.bin" bs=1 seek=102 conv=notrunc 2>/dev/null
 judge off 1 '{"class":null,"queries":["kept","colour","kept","kept"]}'

@@ -1,7 +1,7 @@
 #!/bin/sh
-# test_zoo.sh - the cases of bench/zoo.txt, made small: all are read; those that differ from another
-# in files alone are trained to the same bytes; and some short trainings end well. Speaks as cmocka
-# programs do; run by `make test` from the project's root.
+# test_zoo.sh - the cases of bench/zoo.txt, made small: all can be read; those whose files alone
+# differ from another case's are trained to the same bytes; and some short trainings end well.
+# Prints lines as a cmocka program does; run by `make test` from the project's root.
 # SPDX-License-Identifier: BSD-2-Clause
 set -u
 . tests/support/speak.sh
@@ -18,8 +18,8 @@ awk '$1 == "case" { n++; twin[$2] = $3 }
          exit bad
      }' bench/zoo.txt >"$out/said" && ok table || fail table "$(cat "$out/said")"
 
-# made NAME SIZE OPTIONS: the scene of a case, in $out/SIZE/NAME; $reading: the options with which
-# it is read.
+# made NAME SIZE OPTIONS: the scene of a case, in $out/SIZE/NAME; $reading: the options for reading
+# it.
 made() {
     folder=$out/$2/$1
     where=$(awk -F'|' -v s="$1" '$3 == s { print $4 }' "$out/runs")
@@ -34,8 +34,8 @@ made() {
 
 tiny="24x16 --cameras 5 --test-cameras 1"
 
-# With the warning that is due, and no other. Looking for points takes seconds: of the cases in
-# which it is needed, those that are read like others are left out.
+# Each case gives the warning that it should, and no other. The search for points takes seconds: of
+# the cases that need it, those that are read like others are left out.
 for name in $(awk -F'|' '{ print $3 }' "$out/runs"); do
     case $name in random|white10|large10|turns10|room-box10|*-none) continue ;; esac
     if [ "$name" = videos ] && ! command -v ffmpeg >/dev/null; then
@@ -58,9 +58,9 @@ for name in $(awk -F'|' '{ print $3 }' "$out/runs"); do
         "$(cat "$out/said")"; fi
 done
 
-# ---- the same pictures, written in another way ----
+# ---- the same pictures, written differently ----
 
-# hash_of NAME: of the file that a few steps make.
+# hash_of NAME: the hash of the file after a few training steps.
 hash_of() {
     made "$1" $tiny
     "$TED4_BUILD/ted4enc" "$folder" $reading -o "$out/$1.ted4" --preset draft --iterations 30,10 \
@@ -84,7 +84,7 @@ same clear-dark toys
 
 # ---- short trainings ----
 
-# trained NAME: PSNR of training pictures in $psnr, of what moves in them in $moving.
+# trained NAME: PSNR of training pictures in $psnr, that of the moving part in $moving.
 trained() {
     made "$1" 48x32
     "$TED4_BUILD/ted4enc" "$folder" -o "$out/$1.ted4" --preset draft --iterations 1500,400 \
@@ -97,8 +97,8 @@ trained() {
         sed 's/.*"moving_psnr":\([0-9.]*\).*/\1/')
 }
 
-# Within how many decibels of the friendly one so short a training is; ten times as many steps:
-# bench/zoo.md. A picture without anything has 16 dB.
+# How many decibels below the friendly case a training this short may be; for ten times as many
+# steps see bench/zoo.md. A picture without content has 16 dB.
 if trained toys; then
     friendly=$psnr
     awk "BEGIN { exit !($psnr > 27 && $moving > 16) }" && ok trains_toys ||
@@ -107,9 +107,9 @@ if trained toys; then
         fail trains_turns10 "$psnr dB, friendly $friendly, what moves $moving"; }
 fi
 
-# ---- what moves ----
+# ---- the moving part ----
 
-# Pictures of two pixels, of which the mask holds the second: errors of 3, 4 and 12 there, so a mean
+# Pictures of two pixels, the second of which is in the mask: errors of 3, 4 and 12 there, so a mean
 # square of 169 / 3.
 python3 - "$out/hand" <<'END'
 import os, struct, sys, zlib

@@ -1,7 +1,7 @@
 #!/bin/sh
-# test_zoo_page.sh - bench/zoo.sh with programs that only pretend, and the zoo page on rows whose
-# answers can be worked out by hand. Speaks as cmocka programs do; run by `make test` from the
-# project's root.
+# test_zoo_page.sh - bench/zoo.sh with stub programs, and the zoo page on rows whose results can be
+# computed by hand. Prints lines as a cmocka program does; run by `make test` from the project's
+# root.
 # SPDX-License-Identifier: BSD-2-Clause
 set -u
 unset TED4_WORK TED4_DATA
@@ -21,7 +21,7 @@ run long medium odd 1 - --preset medium
 run alone alone kind,odd 1 -
 END
 
-# ---- the runs, with programs that pretend ----
+# ---- the runs, with stub programs ----
 
 mkdir -p "$out/build/bench" "$out/bin"
 cat >"$out/bin/make" <<END
@@ -80,8 +80,8 @@ cp "$out/calls" "$out/before"
 runs held-default-1 broken-default-1 >"$out/said" 2>&1
 cmp -s "$out/calls" "$out/before" && ok nothing_twice || fail nothing_twice "$(cat "$out/said")"
 
-# Of a training of 50 s: what is said after 4 s does not count, after 12 s 60 s in all, after 40 s
-# 45 s.
+# For a training of 50 s: an estimate after 4 s does not count; that after 12 s is 60 s in all, that
+# after 40 s 45 s.
 step() { echo '{"step":1,"stage":"1","psnr":'$3',"bytes":9,"seconds":'$1',"left":'$2'}'; }
 { step 4 100 10; step 12 48 20; step 40 5 21.50; } >"$out/steps"
 told=$(python3 -m bench.pages foretold 50.00 "$out/steps")
@@ -89,8 +89,8 @@ told=$(python3 -m bench.pages foretold 50.00 "$out/steps")
 
 # ---- the page ----
 
-# odd lies 1.5 dB below, held 0.5; turns shows what moves with 21 dB; broken ended with an error.
-# Alone, kind was foretold 20 % too long, 0.1 dB and 3 % off.
+# odd is 1.5 dB below, held 0.5; the moving part of turns has 21 dB; broken ended with an error. The
+# run of kind alone was estimated 20 % too long, and differs by 0.1 dB and 3 %.
 mkdir "$out/page"
 cat >"$out/rows" <<END
 kind-default-1,k,kind,zoo,o,fine,0,30,31,25,10,100,5,14000,0,0,50,49,0.9,1.1,30,100,aa,
