@@ -1,6 +1,7 @@
 #!/bin/sh
-# test_report.sh - the report (bench/pages) on small tables of rows whose answers can be worked out
-# by hand. Speaks as cmocka programs do; run by `make test` from the project's root.
+# test_report.sh - the report (bench/pages), made from small tables of rows whose results can be
+# computed by hand. Prints lines as a cmocka program does; run by `make test` from the project's
+# root.
 # SPDX-License-Identifier: BSD-2-Clause
 set -u
 . tests/support/speak.sh
@@ -47,19 +48,20 @@ run recipe   recipe_inr_seed3   kitchen 2 - --set sprouts=0 --set motion=3 --see
 run recipe   recipe_concat      kitchen 2 - --set sprouts=0 --set motion=2
 END
 
-# On kitchen the whole method doubles its bytes with each dB, so its curve is a straight line of the
-# logarithm. concat costs half as much again everywhere: +50 %. factorised_flat_auto and
-# factorised_long cost 15 and 5 % more than whole_auto and whole_long. inr_paper costs nothing, but
-# four times the bytes of whole_long, and three times its training. inr costs nothing at 28 dB and
-# twice the bytes at 30 dB: the mean of the logarithm is that of the square root of 2. noactive
-# costs 2^((p - 27)^3 / 27): the mean of the cubic over 27 to 30 dB is a quarter, 2^0.25 = 1.1892;
-# on straight lines it would be 1.2123. fullview ends in two points close to each other, where one
-# cubic through all four would swing far out; piecewise cubics, integrated numerically by another
-# program, give -1.36 %. nomotion is 2 dB below at equal bytes. noautoreg and noprogress cost 2^0.1,
-# a tenth of a dB, less than the seeds' 0.25 dB, so that there is no saying. factorised lacks a run,
-# and the row of linscale was made with other options. On walk concat is the whole method itself,
-# whose curve is bent there: 0 %. At seed 3 concat needs twice the bytes, which is a dB. noview has
-# half a dB more for twice the bytes, 0.2 dB more for the same, half a dB less for half of them.
+# On kitchen the whole method doubles its bytes with each dB, so its curve is a straight line on a
+# logarithmic scale. concat needs 1.5 times the bytes everywhere: +50 %. factorised_flat_auto and
+# factorised_long need 15 and 5 % more than whole_auto and whole_long. inr_paper needs no more bytes
+# than the curve, but four times those of whole_long, and three times its training. inr needs no
+# more at 28 dB and twice the bytes at 30 dB: the mean of the logarithm is that of the square root
+# of 2. noactive needs 2^((p - 27)^3 / 27) times the bytes: the mean of the cubic over 27 to 30 dB
+# is a quarter, 2^0.25 = 1.1892; with straight lines it would be 1.2123. fullview ends in two points
+# close to each other, where one cubic through all four would overshoot; piecewise cubics,
+# integrated numerically by another program, give -1.36 %. nomotion is 2 dB lower at equal bytes.
+# noautoreg and noprogress need 2^0.1 times the bytes: 0.1 dB, less than the 0.25 dB between seeds,
+# so that nothing can be concluded. factorised lacks a run, and the row of linscale was made with
+# other options. On walk concat is the whole method itself, whose curve is bent there: 0 %. At seed
+# 3 concat needs twice the bytes, which is 1 dB. noview has 0.5 dB more at twice the bytes, 0.2 dB
+# more at the same, 0.5 dB less at half of them.
 cat >"$out/rows" <<END
 kitchen-whole-1,k,--own 1,30,800000,600000,4848000
 kitchen-whole-2,k,o,29,400000,300000,2400000
@@ -181,7 +183,7 @@ check within_seeds "$page" \
 check estimate "$page" '| whole | 8 | +1.00 % | kitchen-whole-1 |'
 check seeds "$page" 'kitchen: 0.250 dB, 1.00 % of bytes | met |'
 # Means and standard errors: -0.723 and 0.139, 0.067 and 0.296; of the recipe, -0.638, 0.250 and
-# -0.678, -0.355 and 0.303. Student's t of two degrees of freedom is 2.92.
+# -0.678, -0.355 and 0.303. Student's t for two degrees of freedom is 2.92.
 check seeded "$page" '| kitchen | concat† | -0.58, -0.58, -1.00 | -0.72 ± 0.14 | worse |' \
     '| kitchen | noview† | -0.50, +0.20, +0.50 | +0.07 ± 0.30 | no saying |' \
     '| kitchen | nocolour | not run yet |' \
@@ -209,8 +211,9 @@ check findings "$out/report.md" "1. **Rate and distortion.**" "800 kB" "30.00 dB
     "Not on every scene" "7. **Cameras.** Not run yet."
 check no_chart "$page" '*PSNR over training time for every preset' '5 | speed against accuracy'
 
-# Within the panel. One dB apart each: equal steps up the picture. Twice the bytes each: every step
-# to the right is half the one before, as the curve begins at its right end.
+# The curve lies within the panel. Its points are one dB apart: equal steps upwards. Each has twice
+# the bytes of the next: every step to the right is half the one before, since the curve begins at
+# its right end.
 steps=$(sed -n 's/.*<polyline points="\([^"]*\)".*/\1/p' "$out/charts/rate.svg" | head -n 1 |
     tr ' ,' '\n ' | awk '
     function near(a, b) { return a - b < 0.03 && b - a < 0.03 }
@@ -242,7 +245,7 @@ rm "$out/sweep.csv" "$out/pages/raster.md"
 make_report || fail empty "status $?"
 check empty "$page" '0 of 58 wanted runs' \
     '| 8 | forward plus backward, 100,000 Gaussians, 480x270, two cores | at most 20 ms (aim 12); 1 to 2 threads at least 1.8x; bits equal | - | not run yet |'
-# Stage 1 with time thrown away by a probe and a rollback, then stage 2 in a log of its own.
+# Stage 1 with time discarded by a probe and a rollback, then stage 2 in a separate log.
 line() {
     printf '{"step":%s,"stage":"%s","loss":0.5,"psnr":20,"anchors":5,"bytes":0,"ms":4,' "$1" "$2"
     printf '"seconds":%s,"cpu_seconds":%s}\n' "$3" "$4"
