@@ -1,7 +1,8 @@
 #!/bin/sh
-# coverage.sh - how much of what each harness is there for its seeds and regressions reach:
-# fuzz/coverage.sh PROGRAM, PROGRAM being main.c built by clang for source-based coverage. Puts a
-# table between the marks in fuzz/README.md. Ends with 1 when a harness is below 80 % of lines.
+# coverage.sh - how much of the code that each harness tests is reached by its seeds and
+# regressions: fuzz/coverage.sh PROGRAM, where PROGRAM is main.c built by clang for source-based
+# coverage. Writes a table between the marks in fuzz/README.md. The exit status is 1 if a harness is
+# below 80 % of lines.
 # SPDX-License-Identifier: BSD-2-Clause
 set -eu
 program=$1
@@ -9,7 +10,7 @@ work=$(dirname "$program")/coverage
 mkdir -p "$work"
 table=$work/table.md
 printf '| harness | covers | lines | reached |\n|---|---|---|---|\n' >"$table"
-# An entry, whose strings may go on in further lines, in one.
+# Joins the lines of an entry, whose strings may continue on further lines.
 sed -n '/^FUZZ(/{
     :more
     /)$/!{

@@ -1,7 +1,7 @@
 #!/bin/sh
-# key.sh NAME BUILD - what rows of a harness in runs.csv count for: the sources that it links
-# (fuzz.mk), and its own; comments and spacing do not count. BUILD is the folder of a build, for
-# what is made out of the specification. From the project root.
+# key.sh NAME BUILD - the key of a harness's rows in runs.csv: a hash of the sources that it links
+# (fuzz.mk), and of its own; comments and spacing do not count. BUILD is the folder of a build, for
+# sources generated from the specification. Run from the project root.
 # SPDX-License-Identifier: BSD-2-Clause
 set -eu
 name=$1 build=$2

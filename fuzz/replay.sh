@@ -1,6 +1,6 @@
 #!/bin/sh
-# replay.sh - every harness over its seeds and its regressions: fuzz/replay.sh PROGRAM, PROGRAM
-# being a build of main.c.
+# replay.sh - runs every harness over its seeds and its regressions: fuzz/replay.sh PROGRAM, where
+# PROGRAM is a build of main.c.
 # SPDX-License-Identifier: BSD-2-Clause
 set -eu
 sed -n 's/^FUZZ(\([a-z_0-9]*\), \([a-z_0-9]*\),.*/\1 \2/p' fuzz/list.def |

@@ -1,10 +1,10 @@
 #!/bin/sh
-# run.sh - runs the libFuzzer programs, a slice of time each, and adds a row a slice to
-# fuzz/runs.csv, until every harness has had its seconds with the sources as they are. Killed at any
-# moment, it loses one slice; started again, it goes on. From the project root:
+# run.sh - runs the libFuzzer programs, one slice of time each, and adds one row per slice to
+# fuzz/runs.csv, until every harness has had its seconds with the present sources. If it is killed,
+# it loses one slice; if it is started again, it continues. From the project root:
 #     fuzz/run.sh [-t SECONDS] [-s SLICE] [-j JOBS] [-k asan|msan] [NAME...]
-# Inputs found on the way stay in build-fuzz-KIND/corpus/NAME, what breaks a claim in
-# build-fuzz-KIND/found/NAME-*. A harness with a find stops; then this ends with an error. -j
+# New inputs are in build-fuzz-KIND/corpus/NAME, those that break a claim in
+# build-fuzz-KIND/found/NAME-*. A harness with a find stops; then this script ends with an error. -j
 # harnesses run at a time, each in one process (run_one.sh).
 # SPDX-License-Identifier: BSD-2-Clause
 set -eu

@@ -18,14 +18,14 @@ finds() {
     find "$build/found" -name "$name-*" | wc -l
 }
 
-# Seconds in the rows of this harness and these sources.
+# Seconds so far, from the rows of this harness with these sources.
 had() {
     awk -F, -v h="$name" -v k="$kind" -v key="$key" '
         $1 == h && $2 == k && $3 == key { s += $4 }
         END { print s + 0 }' "$csv"
 }
 
-# What once was found is tried again, too.
+# Earlier finds are tested again, too.
 found=
 [ ! -d "fuzz/regressions/$name" ] || found=fuzz/regressions/$name
 

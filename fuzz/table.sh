@@ -1,5 +1,5 @@
 #!/bin/sh
-# table.sh BUILD - what the rows of fuzz/runs.csv add up to, between the marks of fuzz/README.md;
+# table.sh BUILD - writes the sums of the rows in fuzz/runs.csv between the marks of fuzz/README.md.
 # BUILD: the folder of a build with the present sources (key.sh). run.sh calls it at its end. From
 # the project root: fuzz/table.sh build-fuzz-asan
 # SPDX-License-Identifier: BSD-2-Clause
@@ -8,7 +8,7 @@ LC_ALL=C; export LC_ALL
 build=$1
 new=fuzz/README.md.$$
 trap 'rm -f "$new" "$new.keys"' EXIT
-# Of each harness its key now, a line each.
+# The present key of each harness, one per line.
 for h in $(sed -n 's/,.*//p' fuzz/runs.csv | sed 1d | sort -u); do
     echo "$h $(fuzz/key.sh "$h" "$build")"
 done >"$new.keys"

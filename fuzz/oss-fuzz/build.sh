@@ -1,7 +1,8 @@
 #!/bin/bash -eu
-# build.sh - OSS-Fuzz: every harness with the engine and the sanitizer that the environment names
-# ($CC, $CXX, $CFLAGS, $LIB_FUZZING_ENGINE, $SANITIZER), with its seeds, regressions, dictionary and
-# options, into $OUT. Libraries are linked in, as the machine that fuzzes has none of them.
+# build.sh - OSS-Fuzz: builds every harness with the engine and the sanitizer that the environment
+# names ($CC, $CXX, $CFLAGS, $LIB_FUZZING_ENGINE, $SANITIZER), with its seeds, regressions,
+# dictionary and options, into $OUT. Libraries are linked statically, since the machine that fuzzes
+# has none of them.
 # SPDX-License-Identifier: BSD-2-Clause
 static='-Wl,-Bstatic -lpng -ljpeg -ljansson -lxxhash -lz -Wl,-Bdynamic -lm'
 left_out=' '
@@ -13,7 +14,7 @@ if [ "$SANITIZER" = memory ]; then
     static="build-oss/fuzz/msan_zlib.o $static"
     static="-Wl,--wrap=inflate,--wrap=compress2,--wrap=uncompress2 $static"
 fi
-# checkpoint needs the whole trainer, whose vector code is built for the machine at hand.
+# checkpoint needs the whole trainer, whose vector code is built for the build machine.
 left_out="$left_out checkpoint "
 
 sed -n 's/^FUZZ(\([a-z_0-9]*\), \([a-z_0-9]*\),.*/\1 \2/p' fuzz/list.def |
