@@ -430,5 +430,5 @@ int main(void)
         cmocka_unit_test(test_skipped_adds_up), cmocka_unit_test(test_crowd),
     };
 
-    return cmocka_run_group_tests_name("raster at its extremes", tests, NULL, NULL);
+    return cmocka_run_group_tests_name("raster at extreme values", tests, NULL, NULL);
 }

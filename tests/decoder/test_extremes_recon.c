@@ -336,5 +336,5 @@ int main(void)
         cmocka_unit_test(test_indices),
     };
 
-    return cmocka_run_group_tests_name("reconstruction at its extremes", tests, NULL, NULL);
+    return cmocka_run_group_tests_name("reconstruction at extreme values", tests, NULL, NULL);
 }

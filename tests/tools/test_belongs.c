@@ -174,5 +174,5 @@ int main(void)
                                         cmocka_unit_test(test_pictures),
                                         cmocka_unit_test(test_sheet) };
 
-    return cmocka_run_group_tests_name("belongs", tests, NULL, NULL);
+    return cmocka_run_group_tests_name("which files belong to a scene", tests, NULL, NULL);
 }

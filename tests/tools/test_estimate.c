@@ -202,5 +202,5 @@ int main(void)
                                         cmocka_unit_test(test_disturbed),
                                         cmocka_unit_test(test_runs) };
 
-    return cmocka_run_group_tests_name("estimate", tests, NULL, NULL);
+    return cmocka_run_group_tests_name("estimate of training time", tests, NULL, NULL);
 }

@@ -236,5 +236,5 @@ int main(void)
         cmocka_unit_test(test_full_stdout),
     };
 
-    return cmocka_run_group_tests_name("mishaps", tests, set_up, tear_down);
+    return cmocka_run_group_tests_name("kill and full disk", tests, set_up, tear_down);
 }

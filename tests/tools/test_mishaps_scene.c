@@ -169,5 +169,6 @@ int main(void)
         cmocka_unit_test(test_not_finite),
     };
 
-    return cmocka_run_group_tests_name("mishaps of a scene", tests, set_up, tear_down);
+    return cmocka_run_group_tests_name("changed pictures and values that are not finite", tests,
+                                       set_up, tear_down);
 }

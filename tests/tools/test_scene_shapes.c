@@ -202,5 +202,5 @@ int main(void)
         cmocka_unit_test(test_bar),
     };
 
-    return cmocka_run_group_tests_name("scene_shapes", tests, NULL, NULL);
+    return cmocka_run_group_tests_name("shapes of scenes", tests, NULL, NULL);
 }

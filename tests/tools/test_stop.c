@@ -264,5 +264,5 @@ int main(void)
 
     /* A shell that runs commands in the background makes them ignore the signal. */
     signal(SIGINT, SIG_DFL);
-    return cmocka_run_group_tests_name("stop", tests, set_up, tear_down);
+    return cmocka_run_group_tests_name("ending by a signal", tests, set_up, tear_down);
 }

@@ -207,5 +207,5 @@ int main(void)
         cmocka_unit_test(test_terminal),
     };
 
-    return cmocka_run_group_tests_name("teller", tests, NULL, NULL);
+    return cmocka_run_group_tests_name("progress messages", tests, NULL, NULL);
 }

@@ -101,5 +101,5 @@ int main(void)
     const struct CMUnitTest tests[] = { cmocka_unit_test(test_header),
                                         cmocka_unit_test(test_arrays) };
 
-    return cmocka_run_group_tests_name("verify", tests, set_up, tear_down);
+    return cmocka_run_group_tests_name("comparison after encoding", tests, set_up, tear_down);
 }
