@@ -55,7 +55,7 @@ static edited edit(const uint8_t *data, size_t size, int way, unsigned place, ui
                    int *changed)
 {
     edited e = { malloc(2 * size + FRAME + MOST_PAYLOAD), 0 };
-    size_t kept_at = 0, kept = 0; /* the chunk that moves: offset and bytes in data; in front of
+    size_t kept_at = 0, kept = 0; /* the chunk that moves: offset and bytes in data; goes before
                                      ENDS at the latest */
     unsigned i = 0;
     ted4_reader r;
