@@ -1,4 +1,4 @@
-/* anchor_checks.h - what holds for the anchors of a trainer after every change of them.
+/* anchor_checks.h - the invariants of a trainer's anchors, which hold after every change of them.
  * SPDX-License-Identifier: BSD-2-Clause */
 #ifndef TED4_ANCHOR_CHECKS_H
 #define TED4_ANCHOR_CHECKS_H
@@ -27,7 +27,7 @@ static inline void anchors_check(const ted4_anchors *a)
     }
 }
 
-/* The Morton code of anchor i's position, by which a file sorts anchors (spec 8). */
+/* The Morton code of anchor i's position. Files sort anchors by it (spec 8). */
 static inline uint64_t anchors_morton(const ted4_anchors *a, size_t i)
 {
     uint16_t p[3];

@@ -1,5 +1,5 @@
-/* ball_decoded.h - how good a file of the scene of balls is, once it was decoded again: for
- * test_trainer.c and test_variants.c.
+/* ball_decoded.h - quality of a file of the scene of balls after decoding, for test_trainer.c and
+ * test_variants.c.
  * SPDX-License-Identifier: BSD-2-Clause */
 #ifndef TED4_BALL_DECODED_H
 #define TED4_BALL_DECODED_H
@@ -10,7 +10,7 @@
 #include "ted4.h"
 #include "test.h"
 
-/* Mean PSNR of the decoded file over the training pictures. */
+/* Decodes the file and returns the mean PSNR over the training pictures. */
 static inline double ball_decoded_psnr(const ball_file *f, ted4_dataset *d, ted4_info *info)
 {
     ted4_scene *s;

@@ -1,5 +1,5 @@
 /* ball_group.h - a group of tests that share the moving scene of balls: the scene, set-up and
- * tear-down. Of five times, unless BALL_FRAMES says of how many; some tests set it up otherwise.
+ * tear-down. The scene has BALL_FRAMES frames, five by default; some tests set it up differently.
  * SPDX-License-Identifier: BSD-2-Clause */
 #ifndef TED4_BALL_GROUP_H
 #define TED4_BALL_GROUP_H

@@ -1,5 +1,5 @@
-/* ball_missing.h - the moving scene of balls without the initial points of the blue one, so that
- * only pictures tell of it, and how many new anchors lie on it. For test_mv_seed.c,
+/* ball_missing.h - the moving scene of balls without the initial points of the blue ball, so that
+ * only the pictures show it, and the number of new anchors that lie on it. For test_mv_seed.c and
  * test_alternating_cameras.c.
  * SPDX-License-Identifier: BSD-2-Clause */
 #ifndef TED4_BALL_MISSING_H
@@ -26,8 +26,8 @@ static inline void ball_load_without_blue(tiny_folder *f, ted4_dataset *d, int f
     d->n_points = n;
 }
 
-/* Distance of a point of normalised space from the middle of the blue ball, which goes its way
- * speed times, at a time in [0, 1]; in radii. */
+/* Distance, in radii, of a point in normalised space from the centre of the blue ball at a time in
+ * [0, 1], if the ball moves speed times as far as usual. */
 static inline double ball_radii(const ted4_trainer *t, const float *p, int speed, double time)
 {
     const ball b = ball_at(BLUE, speed * time);
@@ -42,8 +42,8 @@ static inline double ball_radii(const ted4_trainer *t, const float *p, int speed
     return sqrt(square) / b.radius;
 }
 
-/* Anchors with short lives, none longer than a share of all times; *near: those that lie on the
- * ball in the middle of theirs. */
+/* Counts the short-lived anchors, and asserts that none lives longer than longest, a share of the
+ * duration. *near: those that lie on the ball at the middle of their lives. */
 static inline size_t ball_count_short_lived(const ted4_trainer *t, int speed, float longest,
                                             size_t *near)
 {

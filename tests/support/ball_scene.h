@@ -1,5 +1,5 @@
-/* ball_scene.h - a scene of three balls on black, 32x24: pictures, cameras and
- * points, written into a temporary folder. The blue ball moves when asked to.
+/* ball_scene.h - a scene of three balls on black, 32x24: pictures, cameras and points, written into
+ * a temporary folder. The blue ball can move.
  * SPDX-License-Identifier: BSD-2-Clause */
 #ifndef TED4_BALL_SCENE_H
 #define TED4_BALL_SCENE_H
@@ -16,7 +16,7 @@ typedef struct {
     double centre[3], radius, colour[3];
 } ball;
 
-/* time in [0, 1]. */
+/* Ball i at a time in [0, 1]. */
 static inline ball ball_at(int i, double time)
 {
     static const ball all[BALLS] = { { { 0, 0, 0 }, 0.55, { 220, 60, 40 } },
@@ -29,7 +29,7 @@ static inline ball ball_at(int i, double time)
     return b;
 }
 
-/* Columns right, up, backward of camera i, on an arc around the middle. */
+/* The columns right, up and backward of camera i, which stands on an arc around the scene. */
 static inline void ball_camera(int i, double axis[3][3], double centre[3])
 {
     const double a = 0.5 * (i - 0.5 * (BALL_CAMERAS - 1)), e = i % 2 ? 0.3 : -0.1;
@@ -42,7 +42,7 @@ static inline void ball_camera(int i, double axis[3][3], double centre[3])
         centre[k] = 3.2 * axis[2][k];
 }
 
-/* Colour along a ray from the centre; d has unit length. */
+/* Colour along a ray from the camera's centre; d has unit length. */
 static inline void ball_trace(const double *centre, const double *d, double time, double *rgb)
 {
     double nearest = 1e9;
@@ -68,7 +68,7 @@ static inline void ball_trace(const double *centre, const double *d, double time
     }
 }
 
-/* Four rays a pixel. */
+/* Renders a picture with four rays per pixel. */
 static inline void ball_picture(const tiny_folder *f, const char *name, int camera, double time)
 {
     uint8_t px[BALL_W * BALL_H * 3];
@@ -118,7 +118,8 @@ static inline void ball_points(const tiny_folder *f, int moving)
     tiny_text(f, "points.ply", s.text);
 }
 
-/* Every camera sees every frame. moving: how many times its way to time 1 the blue ball goes. */
+/* Writes the scene, in which every camera sees every frame. moving: how far the blue ball moves, as
+ * a multiple of its usual path (0: it stands still). */
 static inline void ball_scene(const tiny_folder *f, int frames, int moving)
 {
     static tiny_string s;

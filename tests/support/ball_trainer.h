@@ -69,7 +69,7 @@ static inline void ball_train(ted4_trainer *t, uint64_t iteration)
             fail_msg("%s", t->message.text);
 }
 
-/* Biases of the last layer of one of the networks that draw. */
+/* Sets the last n biases of the last layer of a network of NETR. */
 static inline void ball_set_biases(ted4_trainer *t, int net, size_t n, float value)
 {
     const ted4_net_shape *s = &t->layout.shape.netr[net];
@@ -81,7 +81,7 @@ static inline void ball_set_biases(ted4_trainer *t, int net, size_t n, float val
         t->net.value[end - i] = value;
 }
 
-/* Ends training and makes the file. */
+/* Ends the training and writes the file. */
 static inline ball_file ball_finish(ted4_trainer *t)
 {
     ted4_scene *s;

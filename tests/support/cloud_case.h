@@ -1,5 +1,5 @@
-/* cloud_case.h - a dataset in memory with points and one camera, no pictures on disc, and a small
- * trainer on it.
+/* cloud_case.h - a dataset in memory with points and one camera, without pictures on disc, and a
+ * small trainer on it.
  * SPDX-License-Identifier: BSD-2-Clause */
 #ifndef TED4_CLOUD_CASE_H
 #define TED4_CLOUD_CASE_H
@@ -15,7 +15,7 @@
 
 enum { CLOUD_SIDE = 6, CLOUD_POINTS = CLOUD_SIDE * CLOUD_SIDE * CLOUD_SIDE };
 
-/* Distance of neighbours on the lattice, world. */
+/* Distance between neighbours on the lattice, in world units. */
 #define CLOUD_STEP 0.5
 
 typedef struct {
@@ -25,7 +25,7 @@ typedef struct {
     ted4_train_options options;
 } cloud_case;
 
-/* A lattice around (10, -4, 2), in a scrambled order. */
+/* Fills a lattice around (10, -4, 2), in scrambled order. */
 static inline void cloud_make(cloud_case *c, uint32_t frames)
 {
     memset(c, 0, sizeof *c);
@@ -53,7 +53,7 @@ static inline void cloud_make(cloud_case *c, uint32_t frames)
     c->options.grow_every = 10;
 }
 
-/* A trainer on what cloud_make left in c, with options that may have been changed since. */
+/* Makes a trainer on what cloud_make left in c, whose options may have been changed since. */
 static inline void cloud_begin(cloud_case *c, ted4_trainer *t)
 {
     if (ted4_trainer_init(t, &c->options, &c->data, NULL) != 0)

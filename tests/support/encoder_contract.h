@@ -1,7 +1,7 @@
-/* encoder_contract.h - what an encoder owes (spec 3.4): the file of a scene is free of a
- * validator's errors, decodes to the reconstruction that the encoder had, declares the lowest level
- * that fits, and codes blobs and probabilities the short way. It holds no META, so there is nothing
- * declared about fidelity that could be wrong. For test_encoder_contract.c and
+/* encoder_contract.h - what a conforming encoder guarantees (spec 3.4): the file of a scene has no
+ * errors for a validator, decodes to the encoder's own reconstruction, declares the lowest level
+ * that fits, and codes blobs and probabilities in their shortest form. The file holds no META
+ * chunk, so it declares no fidelity that could be wrong. For test_encoder_contract.c and
  * test_encoder_trained.c.
  * SPDX-License-Identifier: BSD-2-Clause */
 #ifndef TED4_ENCODER_CONTRACT_H
@@ -15,7 +15,7 @@
 
 enum { LEVEL_AT = 11 };
 
-/* What a writer alone answers for, whatever the scene. */
+/* Returns whether a finding is the writer's responsibility, whatever the scene. */
 static inline int contract_of_writer(const char *id)
 {
     static const char *const all[] = { "adv.level",       "adv.minor",      "adv.chunk",
@@ -28,7 +28,8 @@ static inline int contract_of_writer(const char *id)
     return 0;
 }
 
-/* Hints may be meant. */
+/* Fails on errors, on findings that are the writer's responsibility and, if *trained, on warnings.
+ * Hints are allowed. */
 static inline void contract_judge(void *trained, const ted4_finding *f)
 {
     if (f->severity == TED4_ERROR || contract_of_writer(f->id) ||
@@ -36,7 +37,7 @@ static inline void contract_judge(void *trained, const ted4_finding *f)
         fail_msg("%s at byte %zu", f->id, f->offset);
 }
 
-/* Records of a scene at a time, hashed. */
+/* Hashes the records of a scene at time num / den. */
 static inline void contract_reconstruct(const ted4_scene *s, uint32_t num, uint32_t den,
                                         uint8_t hash[16])
 {
@@ -51,7 +52,7 @@ static inline void contract_reconstruct(const ted4_scene *s, uint32_t num, uint3
     ted4_recon_free(r);
 }
 
-/* A file of the scene is what the scene is. */
+/* Asserts that a file decodes to the scene it was made from. */
 static inline void contract_same(const ted4_scene *scene, const uint8_t *data, size_t size)
 {
     ted4_scene *back;
@@ -68,7 +69,8 @@ static inline void contract_same(const ted4_scene *scene, const uint8_t *data, s
     ted4_scene_free(back);
 }
 
-/* Below the declared level a decoder refuses the file; the level stands outside all hashes. */
+/* Asserts that the level is the lowest: with any lower level, a decoder refuses the file. No hash
+ * covers the level. */
 static inline void contract_lowest(const ted4_scene *scene, uint8_t *data, size_t size)
 {
     const uint8_t level = data[LEVEL_AT];
@@ -85,7 +87,7 @@ static inline void contract_lowest(const ted4_scene *scene, uint8_t *data, size_
     data[LEVEL_AT] = level;
 }
 
-/* trained: by our trainer, which answers for what it writes into the scene too. */
+/* trained: the scene comes from our trainer, which is also responsible for the scene's contents. */
 static inline void contract_kept(const ted4_scene *scene, int trained)
 {
     uint8_t *data;

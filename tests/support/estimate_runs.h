@@ -1,5 +1,5 @@
-/* estimate_runs.h - recorded trainings for test_estimate.c: steps, anchors and processor seconds of
- * lines of their logs, on one thread.
+/* estimate_runs.h - recorded trainings for test_estimate.c: steps, anchors and processor seconds
+ * from the lines of their logs, on one thread.
  * SPDX-License-Identifier: BSD-2-Clause */
 #ifndef TED4_ESTIMATE_RUNS_H
 #define TED4_ESTIMATE_RUNS_H
@@ -8,8 +8,8 @@ typedef struct {
     double step, anchors, seconds;
 } run_line;
 
-/* Schedule, and what came of it; probe: steps of a branch, 0: none in these lines; search: steps
- * that the first trials took. */
+/* The schedule and the resulting numbers of a training. probe: steps of each branch of the probe;
+ * 0: none in these lines. search: steps that the first trials took. */
 typedef struct {
     const char *name;
     double stage1, stage2, most_anchors, probe, mv_seed_share, search;

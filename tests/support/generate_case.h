@@ -1,6 +1,6 @@
-/* generate_case.h - random scenes for test_generate.c and test_generate_grad.c: a header, a
- * network, blocks of anchors with awkward ones among them, in the binary32 the generator reads and
- * in the double the reference reads. Lanes that are not used hold NaN.
+/* generate_case.h - random scenes for test_generate.c and test_generate_grad.c: a header, networks,
+ * and blocks of anchors that include edge cases, in the binary32 that the generator reads and in
+ * the double precision that the reference reads. Unused lanes hold NaN.
  * SPDX-License-Identifier: BSD-2-Clause */
 #ifndef TED4_GENERATE_CASE_H
 #define TED4_GENERATE_CASE_H
@@ -12,8 +12,8 @@
 #include "train/model/model.h"
 #include "train/splat/generator.h"
 
-/* More visible blocks than the generator has chunks. The first has no unused lane, one has no
- * other. */
+/* There are more visible blocks than the generator has chunks. In the first block all lanes are
+ * used, in another none. */
 enum {
     CASE_BLOCKS = 18,
     CASE_CHANNELS = 48,
@@ -41,7 +41,7 @@ static inline float case_random(test_case *t)
     return random_float(&t->random, -1, 1);
 }
 
-/* The header that most tests start from. */
+/* The header from which most tests start. */
 static inline ted4_header case_header(int motion, int view)
 {
     ted4_header h;
@@ -78,7 +78,7 @@ static inline void case_set(test_case *t, int lane, int channel, float value)
     t->attr[0][channel * TED4_LANES + lane] = value;
 }
 
-/* Anchors of visible block 0 at the edges of the definitions; time is that of the query. */
+/* Sets anchors of visible block 0 to edge cases of the definitions. time: that of the query. */
 static inline void case_awkward(test_case *t)
 {
     const ref_channels at = ref_channels_of(&t->layout.head);
@@ -86,8 +86,8 @@ static inline void case_awkward(test_case *t)
 
     if (t->layout.head.activation)
         for (int lane = 0; lane < 8; lane++) {
-            /* before, just before, at the start; inside; at, just after, after the end; a floored
-             * edge. */
+            /* Times before, just before and at the start; inside; at, just after and after the end;
+             * and with an edge at its lower limit. */
             static const float start[] = { 0.4f, 1e-4f, 0, -0.3f, -0.5f, -0.5f, -0.9f, 0x1p-13f };
             static const float end[] = { 0.6f, 0.5f, 0.1f, 0.2f, 0, -1e-4f, -0.3f, 0.5f };
 
@@ -127,7 +127,7 @@ static inline void case_anchor(test_case *t, int visible, int lane)
         t->position[visible][c * TED4_LANES + lane] = rintf(case_random(t) * 1024.0f) / 1024.0f;
 }
 
-/* Fills *t: time num / den, anchors and networks from the seed. */
+/* Fills *t: time num / den, with anchors and networks drawn from the seed. */
 static inline void case_make(test_case *t, const ted4_header *h, uint32_t num, uint32_t den,
                              uint32_t seed)
 {
@@ -159,7 +159,7 @@ static inline void case_make(test_case *t, const ted4_header *h, uint32_t num, u
                 for (int c = 0; c < 3; c++)
                     t->position[i][c * TED4_LANES + lane] = NAN;
             }
-    /* One anchor where the camera is. */
+    /* Put one anchor at the camera's position. */
     for (int c = 0; c < 3; c++)
         t->position[0][c * TED4_LANES + 16] = t->in.camera[c];
     t->query = (ref_query) { *h, num, den, { 0 }, 1, t->exact_net, t->layout.bank };
@@ -176,7 +176,7 @@ static inline void case_channels(const test_case *t, int visible, int lane, doub
         position[c] = t->position[visible][c * TED4_LANES + lane];
 }
 
-/* Member c, in the order of the reference, of the splats. */
+/* Returns array c of the splats, in the reference's order. */
 static inline const float *case_member(const ted4_splats *s, int c)
 {
     return c < 3     ? s->mean[c]

@@ -1,6 +1,6 @@
-/* generate_ref.h - spec 11.1 to 11.5 in double precision, one anchor at a time, as the text reads:
- * what test_generate.c and test_generate_grad.c compare with. Masks are written so that central
- * differences see their straight-through gradient. Shares no code with train/.
+/* generate_ref.h - spec 11.1 to 11.5 in double precision, one anchor at a time, written directly
+ * from the text: the reference of test_generate.c and test_generate_grad.c. Masks are written so
+ * that central differences see their straight-through gradient. Shares no code with train/.
  * SPDX-License-Identifier: BSD-2-Clause */
 #ifndef TED4_GENERATE_REF_H
 #define TED4_GENERATE_REF_H
@@ -18,11 +18,11 @@ typedef struct {
     uint32_t num, den;
     double camera[3];
     int activation;
-    const double *net; /* NETR, then BANK */
+    const double *net; /* NETR, followed by BANK */
     size_t n_netr;
 } ref_query;
 
-/* Where the parts of an anchor lie in its array of channels (train/model/model.h). */
+/* Positions of an anchor's attributes in its array of channels (train/model/model.h). */
 typedef struct {
     int feature, scaling, offset, phi, tau, offset_logit, temporal_logit, n;
 } ref_channels;
@@ -47,14 +47,14 @@ static inline double ref_sigmoid(double x)
     return 1.0 / (1.0 + exp(-x));
 }
 
-/* Hard at the base logit, plus the sigmoid's change from there: equal to the hard mask in value, to
- * the sigmoid in slope. */
+/* The hard mask at the base logit, plus the change of the sigmoid from there: its value is that of
+ * the hard mask, its slope that of the sigmoid. */
 static inline double ref_mask(double logit, double base)
 {
     return (ref_sigmoid(base) > 0.01 ? 1.0 : 0.0) + ref_sigmoid(logit) - ref_sigmoid(base);
 }
 
-/* spec 7.1: runs a network whose values start at *w, and moves *w behind them. */
+/* spec 7.1: evaluates a network whose parameters start at *w, and advances *w past them. */
 static inline void ref_network(const double **w, int in, int hidden, int width, int out,
                                const double *x, double *y)
 {
@@ -113,7 +113,7 @@ static inline void ref_bank(const ref_query *q, double *z)
         z[c] = i >= q->head.bank_rows - 1 ? row[c] : row[c] + w * (row[dim + c] - row[c]);
 }
 
-/* spec 11.3: y of F_deform; *w moves behind the networks of motion. */
+/* spec 11.3: y of F_deform. Advances *w past the networks of motion. */
 static inline void ref_motion(const ref_query *q, const double **w, const double *phi,
                               const double *p, double *y)
 {
@@ -181,8 +181,8 @@ static inline void ref_rotation(const double *y, double *to)
         to[c] = n < 0x1p-20 ? (c == 0) : y[c] / n;
 }
 
-/* out: [K] of mean 3, scale 3, rotation 4, opacity, colour 3. base: the channels at which masks are
- * hard. */
+/* out: [K], each mean 3, scale 3, rotation 4, opacity, colour 3. base: the channels at which the
+ * masks are evaluated as hard masks. */
 static inline void ref_generate(const ref_query *q, const double *channel, const double *base,
                                 const double *p, double (*out)[REF_OUT])
 {

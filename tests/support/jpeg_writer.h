@@ -1,5 +1,5 @@
-/* jpeg_writer.h - writes a JPEG file of even slopes, so that a test knows what to read. For
- * test_image_file.c, test_pictures.c.
+/* jpeg_writer.h - writes a JPEG file of linear ramps, so that a test knows which pixels to expect.
+ * For test_image_file.c and test_pictures.c.
  * SPDX-License-Identifier: BSD-2-Clause */
 #ifndef TED4_JPEG_WRITER_H
 #define TED4_JPEG_WRITER_H
@@ -15,7 +15,7 @@ typedef struct {
     J_COLOR_SPACE space; /* of the components */
     int progressive;
     int exact;                  /* RGB is stored as it is, not as YCbCr */
-    int column, row, component; /* levels from one to the next */
+    int column, row, component; /* level differences between neighbours */
 } jpeg_slopes;
 
 static inline void jpeg_write(const char *path, const jpeg_slopes *s)

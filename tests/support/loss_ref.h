@@ -1,6 +1,6 @@
-/* loss_ref.h - the distortion of train/loss/loss.h by its definition, in double, a pixel at a time:
- * what test_loss.c, test_extremes_loss.c and test_step_grad.c compare with. Shares no code with
- * train/.
+/* loss_ref.h - the distortion of train/loss/loss.h computed by its definition, in double precision,
+ * one pixel at a time: the reference of test_loss.c, test_extremes_loss.c and test_step_grad.c.
+ * Shares no code with train/.
  * SPDX-License-Identifier: BSD-2-Clause */
 #ifndef TED4_LOSS_REF_H
 #define TED4_LOSS_REF_H
@@ -33,7 +33,7 @@ static inline double ref_absolute(const ref_picture *p, int c, int y, int x, dou
     return fabs(p->image[ref_pixel(p, c, y, x)] + delta - ref_truth(p, c, y, x));
 }
 
-/* Values of the Gaussian window, not normalised. */
+/* The Gaussian window, not normalised. */
 static inline const double *ref_window(void)
 {
     static double window[2 * REF_RADIUS + 1];
@@ -78,7 +78,7 @@ static inline double ref_ssim(const ref_picture *p, int c, int y, int x, int cy,
            ((mx * mx + my * my + 1e-4) * (vx + vy + 9e-4));
 }
 
-/* The part of L that depends on the image at (c, y, x), times the number of values. */
+/* The part of L that depends on the image at (c, y, x), multiplied by the number of values. */
 static inline double ref_local_loss(const ref_picture *p, double w, int c, int y, int x,
                                     double delta)
 {
@@ -91,7 +91,7 @@ static inline double ref_local_loss(const ref_picture *p, double w, int c, int y
     return loss;
 }
 
-/* Means over pixels and channels; returns (1 - w) L1 + w (1 - SSIM). */
+/* *l1 and *ssim: means over pixels and channels. Returns (1 - w) L1 + w (1 - SSIM). */
 static inline double ref_distortion(const ref_picture *p, double w, double *l1, double *ssim)
 {
     const double count = 3.0 * p->width * p->height;

@@ -1,6 +1,6 @@
-/* mishap.h - ted4enc as a program on a small scene, in a folder of its own, with what an
- * undisturbed run writes: for test_mishaps.c, test_mishaps_scene.c and test_run_log.c. Looks for
- * the program in $TED4_BUILD (set by tests/run.sh).
+/* mishap.h - runs the program ted4enc on a small scene in its own folder, and keeps the output of
+ * an undisturbed run for comparison. For test_mishaps.c, test_mishaps_scene.c and test_run_log.c.
+ * Looks for the program in $TED4_BUILD (set by tests/run.sh).
  * SPDX-License-Identifier: BSD-2-Clause */
 #ifndef TED4_MISHAP_H
 #define TED4_MISHAP_H
@@ -18,20 +18,20 @@
 
 enum { MOST_WORDS = 64, MOST_BYTES = 1 << 20, MOST_LOG = 1 << 16, STAGE1 = 700, STEPS = 900 };
 
-/* What a run writes. */
+/* The output of a run. */
 typedef struct {
     ball_file file;
     char log[MOST_LOG];
 } outcome;
 
-static const char *build;  /* NULL: skip */
-static tiny_folder folder; /* scene/, out/, err: standard error of the last run */
-static outcome reference;  /* of a run that nothing disturbs */
+static const char *build;  /* NULL: the tests are skipped */
+static tiny_folder folder; /* holds scene/, out/, and err: standard error of the last run */
+static outcome reference;  /* of an undisturbed run */
 
 /* ---- the program ---- */
 
-/* Small networks, one thread, no picture kept in memory, a checkpoint after every step. A line of
- * the log is written every 250 steps. */
+/* Small networks, one thread, no picture kept in memory, and a checkpoint after every step. The log
+ * has a line for every 250 steps. */
 static const char *const usual[] = { "ted4enc",
                                      "scene",
                                      "-f",
@@ -75,8 +75,8 @@ static const char *const usual[] = { "ted4enc",
                                      "capacity=0",
                                      NULL };
 
-/* The child's side: a file may not grow beyond limit bytes (0: any size), and a signal does not say
- * so. */
+/* Becomes the program, in the child process. Files cannot grow beyond limit bytes (0: any size);
+ * the write fails instead of raising a signal. */
 static inline void become_program(const char *arguments, rlim_t limit)
 {
     char path[1024], words[1024];
@@ -110,7 +110,7 @@ static inline pid_t start(const char *arguments, rlim_t limit)
     return child;
 }
 
-/* Its exit status, or 1000 and the signal that ended it. */
+/* Returns the exit status of the child, or 1000 plus the signal that ended it. */
 static inline int finish(pid_t child)
 {
     int status;
@@ -131,7 +131,7 @@ static inline void pause_us(long us)
     nanosleep(&t, NULL);
 }
 
-/* ---- what it leaves ---- */
+/* ---- what the program leaves ---- */
 
 static inline ball_file read_file(const char *name)
 {
@@ -165,7 +165,7 @@ static inline void gone(const char *name)
     must(remove(tiny_path(&folder, name)) == 0, name);
 }
 
-/* Standard error is one line of ted4enc that holds what. */
+/* Asserts that standard error is one line of ted4enc that contains what. */
 static inline void expect_words(const char *what)
 {
     char text[4096];
@@ -179,7 +179,7 @@ static inline void expect_words(const char *what)
         fail_msg("stderr \"%s\", expected one line with \"%s\"", text, what);
 }
 
-/* Files in out/, all of which are named. */
+/* Asserts that out/ contains exactly the files named. */
 static inline void expect_files(const char *names)
 {
     char found[512] = "", *at = found;
@@ -205,8 +205,8 @@ static inline void expect_same(const char *name, const ball_file *want)
     gone(name);
 }
 
-/* Lines of a log, without the times at their ends, are those of the undisturbed run, and no time
- * runs backwards. */
+/* Asserts that the log has the lines of the undisturbed run, except for the times at their ends,
+ * and that no time decreases. */
 static inline void expect_log(const char *name, const char *want)
 {
     char text[MOST_LOG];
@@ -233,7 +233,7 @@ static inline void expect_log(const char *name, const char *want)
     gone(name);
 }
 
-/* A run that nothing disturbs. */
+/* Runs the program undisturbed. */
 static inline void run_calmly(const char *arguments)
 {
     char words[512];
@@ -243,7 +243,7 @@ static inline void run_calmly(const char *arguments)
         expect_words("nothing at all");
 }
 
-/* The checkpoint in out/c leads to the reference's bytes. */
+/* Resumes from the checkpoint in out/c and asserts that the file is that of the reference. */
 static inline void resume_to_reference(void)
 {
     run_calmly("--checkpoint out/c --resume");
@@ -251,7 +251,7 @@ static inline void resume_to_reference(void)
     gone("out/c");
 }
 
-/* A checkpoint of the end of stage 1 in out/c, and nothing else. */
+/* Leaves in out/c a checkpoint of the end of stage 1, and no other file in out/. */
 static inline void make_checkpoint(void)
 {
     run_calmly("--stage1 out/s");
@@ -260,7 +260,7 @@ static inline void make_checkpoint(void)
     expect_files("c");
 }
 
-/* ---- set up ---- */
+/* ---- set-up ---- */
 
 static inline outcome make_outcome(const char *options)
 {
@@ -283,7 +283,7 @@ static inline int set_up(void **state)
     if (build == NULL)
         return 0;
     folder = tiny_new();
-    (void)tiny_path(&folder, "out/x"); /* makes the folder */
+    (void)tiny_path(&folder, "out/x"); /* creates the folder */
 
     tiny_folder scene;
 
@@ -304,7 +304,7 @@ static inline int tear_down(void **state)
     return 0;
 }
 
-/* Every test begins with this: out/ is empty, whatever the test before has left. */
+/* Every test calls this first: empties out/, whatever the previous test has left there. */
 static inline void begin_test(void)
 {
     if (build == NULL) {
@@ -315,7 +315,7 @@ static inline void begin_test(void)
     (void)tiny_path(&folder, "out/x");
 }
 
-/* The options of usual[]. */
+/* The options that usual[] gives. */
 static inline ted4_train_options usual_options(void)
 {
     ted4_train_options o;
@@ -329,7 +329,7 @@ static inline ted4_train_options usual_options(void)
     return o;
 }
 
-/* A trainer of the usual run at its start, over the scene; end_usual finishes both. */
+/* Begins a trainer of the usual run over the scene; end_usual finishes both. */
 static inline void begin_usual(ted4_trainer *t, ted4_dataset *d)
 {
     const ted4_dataset_options wanted = { .downscale = 1, .white = 1, .cache_bytes = 1 << 20 };
@@ -342,7 +342,7 @@ static inline void begin_usual(ted4_trainer *t, ted4_dataset *d)
     ball_begin(t, &o, d, NULL);
 }
 
-/* Writes the trainer's state as the checkpoint name, unseen by ted4_checkpoint_save, which refuses
+/* Writes the trainer's state as the checkpoint name, without ted4_checkpoint_save, which refuses
  * values that are not finite. */
 static inline void end_usual(ted4_trainer *t, ted4_dataset *d, const char *name)
 {

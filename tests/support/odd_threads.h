@@ -1,12 +1,12 @@
-/* odd_threads.h - lent threads (base/parallel.h) that do what a caller's may do, and of which no
- * result may depend: for the run member of ted4_parallel.
+/* odd_threads.h - schedulers (base/parallel.h) that a caller may supply and that must not affect
+ * any result, for the run member of ted4_parallel.
  * SPDX-License-Identifier: BSD-2-Clause */
 #ifndef TED4_ODD_THREADS_H
 #define TED4_ODD_THREADS_H
 
 #include <stddef.h>
 
-/* The last index first. */
+/* Runs the last index first. */
 static inline void odd_backwards(void *user, size_t n, void (*body)(void *arg, size_t i), void *arg)
 {
     (void)user;
@@ -14,7 +14,7 @@ static inline void odd_backwards(void *user, size_t n, void (*body)(void *arg, s
         body(arg, n);
 }
 
-/* Each index on whichever of three threads is free. */
+/* Runs each index on whichever of three threads is free. */
 static inline void odd_threads(void *user, size_t n, void (*body)(void *arg, size_t i), void *arg)
 {
     (void)user;

@@ -1,5 +1,5 @@
-/* random_scene.h - valid scenes made of random numbers, for tests: header, networks on the integer
- * grid, sorted positions, masks, step indices, symbols drawn from the scene's own model. Header
+/* random_scene.h - random valid scenes for tests: header, networks on the integer grid, sorted
+ * positions, masks, step indices, and symbols drawn from the scene's own entropy model. Header
  * only; link libted4enc and libted4dec.
  * SPDX-License-Identifier: BSD-2-Clause */
 #ifndef TED4_RANDOM_SCENE_H
@@ -15,7 +15,7 @@
 #include "write/encode.h"
 #include "write/snap.h"
 
-/* The shape of the method of the paper: F = 50 in slices 5, 10, 15, 20, K = 10, hyperprior
+/* The configuration of the paper's method: F = 50 in slices 5, 10, 15, 20, K = 10, hyperprior
  * 63-100-100. */
 static inline ted4_header random_paper_header(uint32_t n_anchors)
 {
@@ -52,7 +52,7 @@ static inline ted4_header random_paper_header(uint32_t n_anchors)
     return h;
 }
 
-/* The same method in small: n_anchors in tiles of 64, two slices. */
+/* A small configuration of the same method: n_anchors in tiles of 64, two slices. */
 static inline ted4_header random_small_header(uint32_t n_anchors)
 {
     ted4_header h = random_paper_header(n_anchors);
@@ -70,8 +70,8 @@ static inline ted4_header random_small_header(uint32_t n_anchors)
     return h;
 }
 
-/* Compilers differ in which argument of a call they draw first, so one statement draws one
- * number. */
+/* Compilers differ in the order in which they evaluate the arguments of a call, so each statement
+ * draws one number. */
 static inline float random_step(random_source *r)
 {
     const int exponent = (int)random_in(r, 0, 25) - 18;
@@ -79,7 +79,7 @@ static inline float random_step(random_source *r)
     return ldexpf((float)(0.5 + random_unit(r) / 2), exponent);
 }
 
-/* Any header whose values are in range; small enough for thousands of them. */
+/* Draws any header whose values are in range, small enough that a test can try thousands. */
 static inline ted4_header random_header(random_source *r)
 {
     ted4_header h;
@@ -168,7 +168,7 @@ static inline void random_positions(random_source *r, ted4_scene *s)
             p[i] = 0;
     }
     kept = ted4_positions_sort(p, tries, order);
-    /* The kept ones are in order; leave out single ones until n remain. */
+    /* The kept positions are sorted; skip single ones so that n remain. */
     for (size_t i = 0; i < n; i++)
         memcpy(s->position + 3 * i, p + 3 * order[i * kept / n], 6);
     free(p);
@@ -189,8 +189,8 @@ static inline void random_masks(random_source *r, ted4_scene *s)
     }
 }
 
-/* Symbols of one component, from mu and s of a block of anchors. wild: some far away, so that
- * escapes are met. */
+/* Draws the symbols of one component from mu and s of a block of anchors. wild: some are large, so
+ * that escapes occur. */
 static inline void random_symbols(random_source *r, const int32_t *mu, const int32_t *s, size_t n,
                                   int wild, int16_t *k)
 {
@@ -206,7 +206,7 @@ static inline void random_symbols(random_source *r, const int32_t *mu, const int
     }
 }
 
-/* All symbols of a block of n <= 64 anchors from anchor a on. */
+/* Draws all symbols of a block of n <= 64 anchors, starting at anchor a. */
 static inline void random_block(random_source *r, ted4_scene *s, const ted4_prior *p, size_t a,
                                 size_t n, int wild)
 {
@@ -248,8 +248,7 @@ static inline void random_block(random_source *r, ted4_scene *s, const ted4_prio
     free(ctx);
 }
 
-/* Symbols that no mask hides stay; the others become 0, as a decoder leaves them. a_s <= a_f is
- * made true. */
+/* Sets symbols that a mask hides to 0, as a decoder does, and enforces a_s <= a_f. */
 static inline void random_tidy(ted4_scene *s)
 {
     const size_t n = s->head.n_anchors;
@@ -270,8 +269,8 @@ static inline void random_tidy(ted4_scene *s)
     }
 }
 
-/* A scene of that header that ted4_encode accepts. wild: with escapes. NULL: no memory. Free with
- * ted4_scene_free. */
+/* Returns a scene with that header that ted4_encode accepts, or NULL if memory ran out. wild: with
+ * escapes. Free with ted4_scene_free. */
 static inline ted4_scene *random_scene_of(random_source *r, const ted4_header *h, int wild)
 {
     ted4_scene *s = ted4_scene_new(h, NULL);
@@ -305,7 +304,7 @@ static inline ted4_scene *random_scene_of(random_source *r, const ted4_header *h
     return s;
 }
 
-/* A small scene of any header. */
+/* Returns a small scene with a random header. */
 static inline ted4_scene *random_scene(uint64_t seed)
 {
     random_source r = random_seed(seed);

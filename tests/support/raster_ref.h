@@ -1,5 +1,6 @@
-/* raster_ref.h - the image model of render/raster.h with Gaussians in double precision:
- * raster_plain.h takes them in float, too coarse for differences through a whole training step.
+/* raster_ref.h - the image model of render/raster.h for Gaussians in double precision:
+ * raster_plain.h takes them in float, which is too coarse for finite differences through a whole
+ * training step.
  * SPDX-License-Identifier: BSD-2-Clause */
 #ifndef TED4_RASTER_REF_H
 #define TED4_RASTER_REF_H
@@ -38,8 +39,8 @@ static inline double ref_guarded(double slope, double size, double focal, double
     return fmin(fmax(slope, middle - reach), middle + reach);
 }
 
-/* The covariance on screen is the sum over the Gaussian's axes a of (s J R a)(s J R a)^T. 0:
- * culled. */
+/* The screen-space covariance is the sum over the Gaussian's axes a of (s J R a)(s J R a)^T.
+ * Returns 0 if the Gaussian is culled. */
 static inline int ref_footprint_of(const ted4_view *v, const double *splat, ref_footprint *f)
 {
     const double blur = (double)TED4_RASTER_BLUR;
@@ -70,8 +71,8 @@ static inline int ref_footprint_of(const ted4_view *v, const double *splat, ref_
         yy += y[k] * y[k];
         det += blur * (x[k] * x[k] + y[k] * y[k]);
     }
-    for (int k = 0; k < 3;
-         k++) { /* xx yy - xy xy by Lagrange: long thin Gaussians keep their digits */
+    /* xx yy - xy xy by Lagrange's identity, which keeps the precision for long thin Gaussians. */
+    for (int k = 0; k < 3; k++) {
         const double cross = x[k] * y[(k + 1) % 3] - x[(k + 1) % 3] * y[k];
 
         det += cross * cross;
@@ -118,7 +119,8 @@ static inline void ref_blend(const ref_footprint *f, size_t n, const ted4_view *
         colour[c] += through * (double)v->background[c];
 }
 
-/* image: planar [3][height][width]. n <= REF_SPLATS. Returns how many were not culled. */
+/* image: planar [3][height][width]. n <= REF_SPLATS. Returns the number of Gaussians that were not
+ * culled. */
 static inline size_t ref_render(const ted4_view *v, const double (*splat)[REF_SPLAT], size_t n,
                                 double *image)
 {

@@ -66,7 +66,7 @@ static inline void scene_rotation(const scene *s, size_t i, double w, double x, 
         *scene_param(s, SCENE_ROT + k, i) = (float)(q[k] / norm);
 }
 
-/* A view that looks almost along +z, off-centre principal point, unequal focal lengths. */
+/* A view almost along +z, with an off-centre principal point and unequal focal lengths. */
 static inline ted4_view scene_view(int width, int height)
 {
     const double a = 0.1, c = cos(a), s = sin(a);
@@ -85,7 +85,7 @@ static inline ted4_view scene_view(int width, int height)
     };
 }
 
-/* The world point that v sees at pixel (x, y) and depth z. */
+/* Places Gaussian i at the world point that v sees at pixel (x, y) and depth z. */
 static inline void scene_place(const scene *s, const ted4_view *v, size_t i, double x, double y,
                                double z)
 {
@@ -97,8 +97,8 @@ static inline void scene_place(const scene *s, const ted4_view *v, size_t i, dou
             (float)(v->R[k] * c[0] + v->R[3 + k] * c[1] + v->R[6 + k] * c[2]);
 }
 
-/* n Gaussians all over the image and a little beyond it, at depth 1 to 8, of about sigma pixels.
- * Free with scene_free. */
+/* Makes n Gaussians spread over the image and slightly beyond it, at depths 1 to 8, with a standard
+ * deviation of about sigma pixels. Free with scene_free. */
 static inline scene scene_random(size_t n, const ted4_view *v, double sigma, uint64_t seed)
 {
     scene s = { n, malloc((n * SCENE_PARAMS + 1) * sizeof(float)) };

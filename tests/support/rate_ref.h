@@ -1,5 +1,6 @@
-/* rate_ref.h - the rate model again, in double, one anchor at a time, from spec 9.4, 10.1, 10.3 and
- * the head of rate_row.c; and random models to try it on. Shares no arithmetic with train/rate*.c.
+/* rate_ref.h - a second implementation of the rate model, in double precision, one anchor at a
+ * time, from spec 9.4, 10.1, 10.3 and the head of rate_row.c; and random models to test it on.
+ * Shares no arithmetic with train/rate/*.c.
  * SPDX-License-Identifier: BSD-2-Clause */
 #ifndef TED4_RATE_REF_H
 #define TED4_RATE_REF_H
@@ -31,8 +32,8 @@ static inline double ref_uniform(void)
 
 /* ---- the model ---- */
 
-/* What a clamped output does while weights are varied: an open one follows its raw value from the
- * limit on (the one-sided gradient), a closed one stays. */
+/* Behaviour of clamped outputs while weights are varied: an open output follows its raw value,
+ * starting from the limit (the one-sided gradient); a closed one stays. */
 typedef struct {
     double raw[REF_MAX_OUTPUTS]; /* at the base point */
     int open[REF_MAX_OUTPUTS];   /* -1: not clamped */
@@ -113,7 +114,7 @@ static inline double ref_tail(double t)
     return 0.5 * erfc(t * 0.70710678118654752440);
 }
 
-/* Head of rate_row.c. */
+/* As in the head of rate_row.c. */
 static inline double ref_bits(double u, double s)
 {
     const double a = fabs(u), sigma = exp2(s);
@@ -142,7 +143,7 @@ static inline int ref_mask_on(double logit)
     return 1.0 / (1.0 + exp(-logit)) > 0.01;
 }
 
-/* Outputs of all networks: hyperprior and slices. q: steps. */
+/* Evaluates all networks: hyperprior and slices. q: steps. */
 static inline void ref_outputs(const ref_model *m, const ref_anchor *a, const ref_clamps *c,
                                ref_result *r)
 {
@@ -211,7 +212,8 @@ static inline void ref_evaluate(const ref_model *m, const ref_anchor *a, const r
     }
 }
 
-/* Finds what is clamped at this point, and whether descent would lead back inside. */
+/* Finds the outputs that are clamped at this point, and opens those that gradient descent would
+ * move back inside the limits. */
 static inline void ref_find_clamps(const ref_model *m, const ref_anchor *a, ref_clamps *c)
 {
     const ted4_shape *s = &m->layout->shape;
@@ -265,7 +267,7 @@ static inline float *ref_floats(size_t n)
     return p;
 }
 
-/* A small model with every feature; tests change it before ref_world_make. */
+/* A small model with every feature; tests may change it before ref_world_make. */
 static inline ted4_header ref_header(void)
 {
     ted4_header h = { .n_anchors = 96,
@@ -314,7 +316,7 @@ static inline void ref_random_net(ref_world *w)
         w->net[i] = (float)(0.5 * ref_uniform());
 }
 
-/* Values around a few steps; logits on both sides of the threshold, -4.6. */
+/* Draws values within a few steps of 0, and logits on both sides of the threshold, -4.6. */
 static inline void ref_random_block(ref_world *w, int visible)
 {
     const ted4_layout *l = &w->layout;
@@ -383,7 +385,7 @@ static inline void ref_world_finish(ref_world *w)
     ted4_rate_free(w->rate);
 }
 
-/* All gradients from zero. 0, or -1. */
+/* Computes all gradients, starting from zero. Returns 0 or -1. */
 static inline int ref_run(ref_world *w, const ted4_parallel *p, double *bits)
 {
     const size_t block = (size_t)w->layout.n_channels * TED4_LANES;
@@ -404,8 +406,8 @@ static inline ref_model ref_model_make(ref_world *w)
                          (double)w->in.distortion_weight, w->in.activation };
 }
 
-/* The noise of a block, seen through ted4_quantise: values 0 and steps 1 (a_s and a_f are kept
- * apart, so that their order does not matter). */
+/* Extracts the noise of a block by means of ted4_quantise on values 0 with steps 1 (a_s and a_f are
+ * kept apart, so that enforcing their order has no effect). */
 static inline void ref_noise(const ref_world *w, int visible, float *noise)
 {
     const ted4_layout *l = &w->layout;
@@ -425,7 +427,7 @@ static inline void ref_noise(const ref_world *w, int visible, float *noise)
     free(one);
 }
 
-/* Anchor of a visible block and lane after ref_run, with its residuals. */
+/* Fills *a with the anchor of a visible block and lane after ref_run, with its residuals. */
 static inline void ref_anchor_make(const ref_world *w, const ref_model *m, int visible, int lane,
                                    const float *noise, ref_anchor *a)
 {

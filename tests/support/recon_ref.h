@@ -1,8 +1,8 @@
-/* recon_ref.h - spec 11 once more, one record at a time, straight from the text, to test
- * ref-decoder/recon against. Numbers are doubles. In strict mode each operation is rounded to
- * binary32 by rd(): with 53 bits against 24 the second rounding is harmless for + - * / and square
- * root, so this is class X whatever the compiler's flags. Otherwise nothing is rounded and pow2 is
- * exp2.
+/* recon_ref.h - a second implementation of spec 11, one record at a time, written directly from the
+ * text, to test ref-decoder/recon against. Numbers are doubles. In strict mode rd() rounds each
+ * operation to binary32: since 53 bits exceed twice 24, the double rounding is harmless for + - * /
+ * and square root, so the result is of class X for any compiler flags. Otherwise nothing is rounded
+ * and pow2 is exp2.
  * SPDX-License-Identifier: BSD-2-Clause */
 #ifndef RECON_REF_H
 #define RECON_REF_H
@@ -20,7 +20,7 @@ typedef struct {
     int strict;
 } ref;
 
-/* volatile: gcc 12.2 at -O3 loses the narrowing where it makes vectors of two doubles. */
+/* volatile: gcc 12.2 at -O3 drops the narrowing where it vectorises two doubles. */
 static inline double rd(const ref *r, double x)
 {
     volatile float narrow = (float)x;
@@ -107,7 +107,7 @@ static inline double ref_sine(uint32_t u)
     return s0 + floor(((s1 - s0) * b + 2048) / 4096);
 }
 
-/* spec 10.1 with 10 octaves of n coordinates, as binary32. */
+/* spec 10.1 with 10 octaves of n coordinates, rounded to binary32. */
 static inline void ref_encode(const int64_t *x, int n, double *out)
 {
     for (int c = 0; c < n; c++)
@@ -137,7 +137,7 @@ static inline void ref_bank(const ref *r, double *z)
     }
 }
 
-/* spec 11.3; p and f in, p' and f' out. */
+/* spec 11.3: takes p and f, and gives p' and f'. */
 static inline void ref_move(const ref *r, size_t anchor, double *p, double *f)
 {
     const ted4_header *h = &r->s->head;
@@ -218,7 +218,7 @@ static inline double ref_scale(const ref *r, size_t c, size_t anchor)
     return r->s->head.scale_domain == TED4_SCALE_LOG2 ? ref_pow2(r, l) : ref_max(l, 0x1p-20);
 }
 
-/* Everything about an anchor that its records share. */
+/* The values that all records of an anchor share. */
 typedef struct {
     double p[3], opacity[16], covariance[7 * 16], colour[3 * 16], size[6], activation;
 } ref_anchor;
@@ -265,7 +265,7 @@ static inline void ref_make_record(const ref *r, size_t anchor, const ref_anchor
     v[10] = rd(r, ref_max(0, o) * a->activation);
 }
 
-/* All records of a query, in order: record[n][REF_VALUES]. Returns n. */
+/* Computes all records of a query, in order: record[n][REF_VALUES]. Returns n. */
 static inline size_t ref_query(const struct ted4_scene *s, const ted4_query *q, int strict,
                                double *record)
 {

@@ -1,4 +1,4 @@
-/* recon_scene.h - scenes for the tests of ref-decoder/recon: random contents for any header,
+/* recon_scene.h - scenes for the tests of ref-decoder/recon: random contents for any header, made
  * without a stream.
  * SPDX-License-Identifier: BSD-2-Clause */
 #ifndef RECON_SCENE_H
@@ -21,7 +21,7 @@ static inline void *scene_take(size_t n, size_t size)
     return p;
 }
 
-/* Weights that keep values near 1 whatever the width. */
+/* Weights that keep values near 1 for layers of any width. */
 static inline void scene_networks(struct ted4_scene *s, random_source *r)
 {
     s->netr.n = s->shape.n_netr;
@@ -43,7 +43,7 @@ static inline void scene_networks(struct ted4_scene *s, random_source *r)
         s->bank.values[i] = random_float(r, -1, 1);
 }
 
-/* Symbols of a type around a centre, in units of the step; steps of about Q0. */
+/* Symbols of a type around a centre, in units of the step, and steps of about Q0. */
 static inline void scene_symbols(struct ted4_scene *s, random_source *r, ted4_type t, int low,
                                  int high)
 {
@@ -71,7 +71,7 @@ static inline void scene_tau(struct ted4_scene *s, random_source *r)
     }
 }
 
-/* Fills a scene for h, whose members are in range. scene_finish gives it back. */
+/* Fills a scene for h, whose members are in range. Release it with scene_finish. */
 static inline void scene_make(struct ted4_scene *s, const ted4_header *h, uint64_t seed)
 {
     static const float q0[TED4_TYPES] = { 0.05f, 0.03f, 0.04f, 0.05f, 0.01f };

@@ -1,5 +1,4 @@
-/* refuse.h - a scene that must not load, and one that loads with a warning. Depends on
- * tiny_scene.h.
+/* refuse.h - checks that a scene fails to load, or loads with a warning. Depends on tiny_scene.h.
  * SPDX-License-Identifier: BSD-2-Clause */
 #ifndef TED4_REFUSE_H
 #define TED4_REFUSE_H
@@ -8,7 +7,8 @@
 #include "test.h"
 #include "tiny_scene.h"
 
-/* The load must fail, with a one-line message that holds both texts, and leave nothing behind. */
+/* Asserts that loading fails with a one-line message that contains both texts, and leaves nothing
+ * behind. */
 static inline void refuse(const tiny_folder *f, const char *where, const char *what)
 {
     ted4_dataset d, zero;
@@ -21,8 +21,8 @@ static inline void refuse(const tiny_folder *f, const char *where, const char *w
     assert_memory_equal(&d, &zero, sizeof d);
 }
 
-/* The load must succeed with one warning, a line that holds both texts. Gives how many pictures
- * there are. */
+/* Asserts that loading succeeds with one warning, a line that contains both texts. Returns the
+ * number of pictures. */
 static inline size_t warned(const tiny_folder *f, const char *where, const char *what)
 {
     ted4_dataset d;

@@ -1,5 +1,5 @@
-/* run_json.h - a program of this project run on bytes as a user would, for what it prints: for
- * test_lenient.c and test_validate.c.
+/* run_json.h - runs a program of this project on bytes, as a user would, and reads the JSON that it
+ * prints: for test_lenient.c and test_validate.c.
  * SPDX-License-Identifier: BSD-2-Clause */
 #ifndef TED4_RUN_JSON_H
 #define TED4_RUN_JSON_H
@@ -13,8 +13,8 @@
 #include "temporary.h"
 #include "test.h"
 
-/* program: one of the folder $TED4_BUILD, with options; the file's path is put behind. Gives the
- * exit code; *printed: the JSON on stdout, the caller's. */
+/* program: a program in the folder $TED4_BUILD, with options; the file's path is appended. Returns
+ * the exit code. *printed: the JSON on stdout, owned by the caller. */
 static inline int run_json(const char *program, const uint8_t *data, size_t size, json_t **printed)
 {
     char path[TEMPORARY_SIZE], command[512];

@@ -1,6 +1,7 @@
-/* schema_check.h - is a JSON value what a schema of conformance/schema says? The keywords of JSON
- * Schema draft 7 that those files use for what programs print: type, enum, required, properties,
- * additionalProperties (false), items, minimum, minItems, maxItems, pattern. Header only.
+/* schema_check.h - checks whether a JSON value conforms to a schema of conformance/schema. Supports
+ * those keywords of JSON Schema draft 7 that these files use for the output of programs: type,
+ * enum, required, properties, additionalProperties (false), items, minimum, minItems, maxItems,
+ * pattern. Header only.
  * SPDX-License-Identifier: BSD-2-Clause */
 #ifndef TED4_SCHEMA_CHECK_H
 #define TED4_SCHEMA_CHECK_H
@@ -20,7 +21,7 @@ static inline int schema_type_is(json_t *v, const char *name)
            (strcmp(name, "boolean") == 0 && json_is_boolean(v));
 }
 
-/* The text, or one of a list. */
+/* Whether v is the wanted text, or one of a list of texts. */
 static inline int schema_one_of(json_t *v, json_t *wanted, int (*is)(json_t *, json_t *))
 {
     size_t i;
@@ -91,7 +92,7 @@ static inline int schema_array_holds(json_t *schema, json_t *v)
     return 1;
 }
 
-/* 1, or 0. */
+/* Returns 1 if v conforms to the schema, else 0. */
 static inline int schema_holds(json_t *schema, json_t *v)
 {
     json_t *const type = json_object_get(schema, "type"), *const list =

@@ -1,8 +1,8 @@
-/* spec_model.h - a whole decoder made of the code that the specification prints, its tables of
- * elements (6.1) and of levels (13.1), and what its rules say in words. Shares nothing with
- * ref-decoder but the tables of annex A. Slow, plain; for tests and for the generator of annex B.
- * spec/code.h, spec/head.inc and spec/levels.inc are extracted from spec/ by tests/spec/ (see
- * spec.mk).
+/* spec_model.h - a complete decoder built from the code that the specification prints, its tables
+ * of elements (6.1) and of levels (13.1), and its rules that are stated in words. Shares nothing
+ * with ref-decoder except the tables of annex A. Slow and simple; for tests and for the generator
+ * of annex B. spec/code.h, spec/head.inc and spec/levels.inc are extracted from spec/ by
+ * tests/spec/ (see spec.mk).
  * SPDX-License-Identifier: BSD-2-Clause */
 #ifndef TED4_SPEC_MODEL_H
 #define TED4_SPEC_MODEL_H
@@ -46,7 +46,7 @@ typedef struct {
     void *user;
 } spec_model;
 
-/* Part of a file under way. */
+/* A part of a file that is being read. */
 typedef struct {
     const uint8_t *file;
     uint64_t pos, end; /* offsets in the file */
@@ -93,7 +93,7 @@ static inline int64_t spec_signed(uint32_t x, int width)
                                                : (int64_t)x;
 }
 
-/* R-HDR-001 to R-HDR-003 for an element read at offset at. */
+/* R-HDR-001 to R-HDR-003, for an element read at offset at. */
 static inline void spec_judge(spec_model *m, uint64_t at, int64_t x, int64_t low, int64_t high,
                               int conditional, int holds, int bound)
 {
@@ -150,7 +150,7 @@ static inline void spec_read_elements(spec_model *m, spec_reader *r)
 #undef REAL
 }
 
-/* Sum of inputs x outputs of one network. */
+/* Sum of inputs x outputs over the layers of one network. */
 static inline uint64_t spec_products(const struct net *n)
 {
     uint64_t sum = 0;
@@ -182,7 +182,7 @@ static inline void spec_read_head(spec_model *m, spec_reader *r, uint64_t file_b
     spec_all_read(r);
 }
 
-/* spec 7.2. at, step: where the values are for errors. NULL after an error. */
+/* spec 7.2. at, step: where errors place the values. Returns NULL after an error. */
 static inline uint32_t *spec_read_blob(spec_model *m, spec_reader *r, size_t n, uint64_t *at,
                                        int *step)
 {
@@ -297,7 +297,7 @@ static inline void spec_read_positions(spec_model *m, spec_reader *r)
     spec_all_read(r);
 }
 
-/* A byte string that grows. */
+/* A growing byte string. */
 typedef struct {
     uint8_t *data;
     size_t size, capacity;
@@ -363,7 +363,7 @@ static inline void spec_read_ends(spec_model *m, spec_reader *r)
     spec_all_read(r);
 }
 
-/* R-CON-003, the part of pass 2 */
+/* R-CON-003, the part that belongs to pass 2 */
 static inline int spec_in_order(const spec_model *m, int kind)
 {
     switch (kind) {
@@ -402,8 +402,8 @@ static inline void spec_read_chunk(spec_model *m, spec_reader *r, uint64_t at, i
     }
 }
 
-/* m->v is the verdict; m->v.id NULL: valid, and m->s is filled. m: zeroed but for tile_done and
- * user; free it in any case. */
+/* m->v is the verdict. If m->v.id is NULL, the file is valid and m->s is filled. m: zeroed except
+ * for tile_done and user; free it in any case. */
 static inline void spec_model_decode(spec_model *m, const uint8_t *file, uint64_t size)
 {
     uint64_t at = 12;

@@ -1,6 +1,6 @@
-/* spec_tiers.h - the byte strings of annex J, made by what the specification prints (spec_model.h):
- * T0 from a valid file, T1 to T4 from what was decoded, T5 from queries. Element numbers come from
- * the table of J.2.
+/* spec_tiers.h - the byte strings of annex J, made by the specification's own code (spec_model.h):
+ * T0 from a valid file, T1 to T4 from the decoded integers, T5 from queries. Element numbers come
+ * from the table of J.2.
  * SPDX-License-Identifier: BSD-2-Clause */
 #ifndef TED4_SPEC_TIERS_H
 #define TED4_SPEC_TIERS_H
@@ -25,7 +25,7 @@ static inline uint32_t spec_load(const uint8_t *p, int width)
     return width == 1 ? p[0] : width == 2 ? load16(p) : load32(p);
 }
 
-/* The next n numbers of a file, each a record. */
+/* Adds the next n numbers of a file, each as a record. */
 static inline const uint8_t *spec_t0_numbers(spec_bytes *b, int id, const uint8_t *p, int width,
                                              size_t n)
 {
@@ -116,7 +116,7 @@ static inline void spec_t0_payload(spec_bytes *b, const spec_model *m, int kind,
     }
 }
 
-/* J.2, of a file that m found valid */
+/* J.2, for a file that m found valid */
 static inline void spec_t0(spec_bytes *b, const spec_model *m, const uint8_t *file, size_t size)
 {
     size_t at = 12;
@@ -147,7 +147,7 @@ static inline void spec_t1(spec_bytes *b, const struct scene *s)
     }
 }
 
-/* mu of a component of an anchor of the tile decoded last; s follows dim later. */
+/* Returns mu of a component of an anchor in the tile decoded last; s follows dim later. */
 static inline const int32_t *spec_mu(const spec_model *m, int type, int comp, size_t i)
 {
     return m->model + i * (size_t)n_outputs(&m->s.h) + first_output(&m->s.h, type) + comp;
@@ -158,7 +158,7 @@ static inline int16_t spec_k(const struct scene *s, int type, int comp, size_t a
     return s->symbol[type][(size_t)comp * (size_t)s->h.n_anchors + anchor];
 }
 
-/* J.5, one substream: components comp .. comp + n_comps - 1 */
+/* J.5, for one substream: components comp .. comp + n_comps - 1 */
 static inline void spec_t3_substream(spec_bytes *b, const struct scene *s, int type, int comp,
                                      int n_comps, size_t first, size_t end)
 {
@@ -196,7 +196,7 @@ static inline void spec_t3_masks(spec_bytes *b, const struct scene *s, size_t fi
         spec_put(b, 65536, 4);
 }
 
-/* J.4 to J.6 of a tile, while its model is there */
+/* J.4 to J.6 for a tile, while its model is available */
 static inline void spec_tile_done(void *user, uint32_t number)
 {
     spec_tiers *t = user;
@@ -248,7 +248,7 @@ static inline void spec_t5(spec_bytes *b, const spec_model *m, uint32_t num, uin
     }
 }
 
-/* t: zeroed. t->model.v says whether there are tiers. */
+/* t: zeroed. t->model.v says whether tiers were made. */
 static inline void spec_tiers_make(spec_tiers *t, const uint8_t *file, size_t size)
 {
     t->model.tile_done = spec_tile_done;

@@ -1,5 +1,5 @@
 /* spec_tolerance.h - annex E: the thresholds of class T for a stream and a query, and whether
- * records keep them. Evaluations are made of the code that the specification prints (spec/eval.c).
+ * records satisfy them. Evaluations use the code that the specification prints (spec/eval.c).
  * SPDX-License-Identifier: BSD-2-Clause */
 #ifndef TED4_SPEC_TOLERANCE_H
 #define TED4_SPEC_TOLERANCE_H
@@ -9,7 +9,7 @@
 enum { TOL_POSITION, TOL_SCALE, TOL_ROTATION, TOL_OPACITY, TOL_COLOUR, TOL_GROUPS };
 enum { TOL_EXACT, TOL_WIDE, TOL_FUSED, TOL_REORDERED, TOL_EVALUATIONS };
 
-/* Each gives the records of a struct scene and returns how many. */
+/* Each evaluation gives the records of a struct scene and returns their number. */
 typedef size_t tol_evaluation(const void *scene, uint32_t num, uint32_t den, const float *camera,
                               float (*out)[14]);
 tol_evaluation tol_exact, tol_wide, tol_fused, tol_reordered;
@@ -17,7 +17,7 @@ tol_evaluation tol_exact, tol_wide, tol_fused, tol_reordered;
 typedef struct {
     size_t n;                             /* records */
     float (*record[TOL_EVALUATIONS])[14]; /* owned */
-    uint8_t *judged;                      /* [n] bit g: group g of the record counts */
+    uint8_t *judged;                      /* [n]; bit g: group g of the record is judged */
     double peak[TOL_GROUPS], rms[TOL_GROUPS];
     double unit; /* 2^e */
 } tol_reference;
@@ -46,7 +46,7 @@ static inline void tol_deviation(const float *x, const float *y, double unit,
         dev[g] = fmax(dev[g], g == TOL_POSITION ? 0x1p-24 * u / unit : 0x1p-24);
 }
 
-/* Largest deviation and root of the mean square of each group; 0 where nothing is judged. */
+/* Largest deviation and root mean square deviation of each group; 0 where nothing is judged. */
 static inline void tol_measure(const tol_reference *t, float (*y)[14], double peak[TOL_GROUPS],
                                double rms[TOL_GROUPS])
 {
@@ -97,7 +97,7 @@ static inline int tol_far(const struct scene *s, size_t anchor, const float *cam
     return s->h.view == 0 || sum >= 0x1p-38;
 }
 
-/* R-TOL-004: numbers that are all finite, in all evaluations */
+/* R-TOL-004: whether all numbers are finite in all evaluations */
 static inline int tol_finite(const tol_reference *t, size_t i)
 {
     for (int e = 0; e < TOL_EVALUATIONS; e++)
@@ -131,8 +131,8 @@ static inline double tol_round_up(double x)
     return x == 0 ? 0 : frexp(x, &e) == 0.5 ? x : ldexp(1.0, e);
 }
 
-/* Records of all evaluations, and thresholds. 1; 0: class X has no result. t: zeroed; tol_free in
- * any case. */
+/* Computes the records of all evaluations, and the thresholds. Returns 1, or 0 if class X has no
+ * result. t: zeroed; call tol_free in any case. */
 static inline int tol_make(tol_reference *t, const struct scene *s, uint32_t num, uint32_t den,
                            const float *camera)
 {
@@ -162,7 +162,8 @@ static inline int tol_make(tol_reference *t, const struct scene *s, uint32_t num
     return 1;
 }
 
-/* R-TOL-005: -1 when the records keep the thresholds, else the first group that does not. */
+/* R-TOL-005: returns -1 if the records satisfy the thresholds, else the first group that does
+ * not. */
 static inline int tol_judge(const tol_reference *t, float (*y)[14])
 {
     double peak[TOL_GROUPS], rms[TOL_GROUPS];

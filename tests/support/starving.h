@@ -1,5 +1,6 @@
-/* starving.h - allocations of everything linked into a test, of which one fails, or all from one
- * on. The linker wraps them (-Wl,--wrap); one test program each.
+/* starving.h - makes allocations fail in everything that is linked into a test: a single one, or
+ * all from one on. The linker wraps the functions (-Wl,--wrap); each such test is a program of its
+ * own.
  * SPDX-License-Identifier: BSD-2-Clause */
 #ifndef TED4_STARVING_H
 #define TED4_STARVING_H
@@ -50,7 +51,7 @@ void *__wrap_aligned_alloc(size_t alignment, size_t size)
     return fails() ? NULL : __real_aligned_alloc(alignment, size);
 }
 
-/* From here on allocation number n fails. */
+/* From now on, allocation number n fails and, if fail_on is set, so do all that follow. */
 static inline void starve(size_t n, int fail_on)
 {
     wrapped.fail_at = n;
@@ -59,15 +60,15 @@ static inline void starve(size_t n, int fail_on)
     wrapped.on = 1;
 }
 
-/* Did one fail? */
+/* Ends the failures. Returns whether an allocation failed. */
 static inline int feed(void)
 {
     wrapped.on = 0;
     return wrapped.n >= wrapped.fail_at;
 }
 
-/* The deed tells whether an allocation failed: one after the other does, by itself and with all
- * behind it. */
+/* Calls deed with n = 1, 2, ... until it returns that no allocation failed: first with single
+ * failures, then with all allocations from n on failing. */
 static inline void starve_each(int (*deed)(size_t n, int fail_on))
 {
     for (int fail_on = 0; fail_on < 2; fail_on++) {

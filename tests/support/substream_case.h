@@ -1,5 +1,5 @@
 /* substream_case.h - symbols with their models, and the substream that write/coder_write.c makes of
- * them, for tests of what reads it.
+ * them, for tests of its readers.
  * SPDX-License-Identifier: BSD-2-Clause */
 #ifndef SUBSTREAM_CASE_H
 #define SUBSTREAM_CASE_H
@@ -17,8 +17,8 @@ typedef struct {
     int16_t *k;
 } symbols;
 
-/* far: one symbol of so many lies where only an escape reaches; 0: none. widest: largest index of
- * sigma; the wider, the worse are guesses. */
+/* far: one symbol in so many needs an escape; 0: none. widest: the largest index of sigma; the
+ * wider the distributions, the less predictable the symbols. */
 static inline symbols symbols_make(uint64_t seed, size_t n, unsigned far, unsigned widest)
 {
     random_source r = random_seed(seed);
@@ -43,7 +43,7 @@ static inline void symbols_free(symbols *s)
     free(s->k);
 }
 
-/* One substream behind its size. *w is the caller's: ted4_writer_finish. */
+/* Writes one substream, preceded by its size. The caller ends *w with ted4_writer_finish. */
 static inline void symbols_write(ted4_writer *w, const symbols *s)
 {
     uint32_t size;

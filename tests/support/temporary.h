@@ -1,5 +1,5 @@
-/* temporary.h - a folder or a file of a test's own, below $TMPDIR or /tmp. What cannot be made ends
- * the test program. Depends on nothing.
+/* temporary.h - a temporary folder or file of a test, below $TMPDIR or /tmp. A failure to make it
+ * ends the test program. Depends on nothing.
  * SPDX-License-Identifier: BSD-2-Clause */
 #ifndef TED4_TEMPORARY_H
 #define TED4_TEMPORARY_H
@@ -33,7 +33,7 @@ static inline void temporary_folder(char *path, const char *name)
     temporary_made(mkdtemp(path) != NULL, path);
 }
 
-/* Gives a descriptor open for writing, the caller's. */
+/* Returns a descriptor open for writing, owned by the caller. */
 static inline int temporary_file(char *path, const char *name)
 {
     int fd;

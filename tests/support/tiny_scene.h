@@ -1,5 +1,5 @@
 /* tiny_scene.h - writes scenes of a few pixels into a temporary folder for test_dataset*.c and
- * test_image_file.c. Whatever cannot be written ends the test program.
+ * test_image_file.c. A failure to write ends the test program.
  * SPDX-License-Identifier: BSD-2-Clause */
 #ifndef TED4_TINY_SCENE_H
 #define TED4_TINY_SCENE_H
@@ -64,8 +64,8 @@ static inline void tiny_free(tiny_folder *f)
     tiny_remove_path(f->path);
 }
 
-/* Full path of name; makes the folders on the way. The text lives until the next but seven calls.
- */
+/* Full path of name; makes the folders on the way. The text stays valid for the next seven
+ * calls. */
 static inline const char *tiny_path(const tiny_folder *f, const char *name)
 {
     static char text[8][1024];
@@ -113,7 +113,7 @@ static inline void tiny_png(const tiny_folder *f, const char *name, int w, int h
     must(png_image_write_to_file(&p, tiny_path(f, name), 0, px, 0, NULL), name);
 }
 
-/* RGB picture whose pixels tell column, row and k. */
+/* An RGB picture whose pixels encode column, row and k. */
 static inline void tiny_picture(const tiny_folder *f, const char *name, int w, int h, int k)
 {
     uint8_t *px = malloc((size_t)w * (size_t)h * 3);
@@ -128,7 +128,7 @@ static inline void tiny_picture(const tiny_folder *f, const char *name, int w, i
     free(px);
 }
 
-/* Growing text. */
+/* A growing text. */
 typedef struct {
     char text[32768];
     size_t n;
@@ -144,7 +144,7 @@ static inline void tiny_add(tiny_string *s, const char *format, ...)
     must(s->n < sizeof s->text, "tiny_add");
 }
 
-/* Growing little-endian record. */
+/* A growing little-endian record. */
 typedef struct {
     uint8_t bytes[16384];
     size_t n;
@@ -170,7 +170,7 @@ static const ted4_dataset_options tiny_options = {
     .downscale = 1, .white = 1, .seed = 7, .cache_bytes = 1 << 20
 };
 
-/* Loads; the message of a failure is the return value, "" when fine. */
+/* Loads a dataset. Returns the message of a failure, or "". */
 static inline const char *tiny_load(ted4_dataset *d, const tiny_folder *f,
                                     const ted4_dataset_options *o)
 {

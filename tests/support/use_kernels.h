@@ -1,6 +1,6 @@
-/* use_kernels.h - other kernels for a part of a test, then again those that TED4_KERNEL named, or
- * this machine's where it named none. A test that took the variable away would leave the suite at
- * one level run at another (make test-machines).
+/* use_kernels.h - selects other kernels for a part of a test, and afterwards restores those that
+ * TED4_KERNEL named, or this machine's default. A test that only removed the variable would run the
+ * rest of a suite at the wrong level (make test-machines).
  * SPDX-License-Identifier: BSD-2-Clause */
 #ifndef TED4_USE_KERNELS_H
 #define TED4_USE_KERNELS_H
@@ -8,7 +8,7 @@
 #include <stdio.h>
 #include <stdlib.h>
 
-/* Name of a level (base/level.h); NULL: as the environment was at the first call. */
+/* level: name of a level (base/level.h); NULL: as the environment was at the first call. */
 static inline void use_kernels(const char *level)
 {
     static char before[32];

@@ -1,5 +1,5 @@
-/* validate_case.h - a validator's findings gathered, with the claims that hold for every byte
- * string (spec 3.6), and scenes to make files of. For test_validate.c and test_advise.c.
+/* validate_case.h - collects the findings of a validator, asserts what holds for every byte string
+ * (spec 3.6), and makes scenes to write files of. For test_validate.c and test_advise.c.
  * SPDX-License-Identifier: BSD-2-Clause */
 #ifndef TED4_VALIDATE_CASE_H
 #define TED4_VALIDATE_CASE_H
@@ -14,7 +14,7 @@
 
 enum { MOST_FINDINGS = 400 };
 
-/* What a validator has said. */
+/* The findings of a validator. */
 typedef struct {
     ted4_finding list[MOST_FINDINGS];
     int n, errors;
@@ -37,7 +37,7 @@ static inline void keep(void *user, const ted4_finding *f)
 
 #define ANYWHERE SIZE_MAX
 
-/* How often. */
+/* Returns the number of findings with this id at this offset. */
 static inline int has(const findings *all, const char *id, size_t offset)
 {
     int n = 0;
@@ -48,7 +48,7 @@ static inline int has(const findings *all, const char *id, size_t offset)
     return n;
 }
 
-/* Validates, with the claims that hold for every byte string. */
+/* Validates, and asserts what holds for every byte string. */
 static inline findings *validate(const uint8_t *data, size_t size)
 {
     static findings all;
@@ -103,7 +103,7 @@ static inline size_t chunk_at(const uint8_t *data, size_t size, const char *type
     return 0;
 }
 
-/* A scene that deserves nothing that R-ENC-004 speaks of. */
+/* A scene that gives no reason for a finding of R-ENC-004. */
 static inline ted4_scene *useful(uint64_t seed, const ted4_header *h)
 {
     random_source r = random_seed(seed);

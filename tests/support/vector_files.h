@@ -1,5 +1,4 @@
-/* vector_files.h - the streams that lie in conformance/vectors, one after the other in the order of
- * their names.
+/* vector_files.h - visits the streams in conformance/vectors in the order of their names.
  * SPDX-License-Identifier: BSD-2-Clause */
 #ifndef TED4_TESTS_VECTOR_FILES_H
 #define TED4_TESTS_VECTOR_FILES_H
@@ -12,8 +11,8 @@
 
 enum { MAX_VECTOR = 1 << 20 };
 
-/* Calls visit(data, size, path) for each stream that find(1) finds with these further conditions;
- * data is visit's while it runs. Returns how many there were. */
+/* Calls visit(data, size, path) for each stream that find(1) finds with these additional
+ * conditions; data is valid during the call only. Returns the number of streams. */
 static inline int each_vector(const char *conditions,
                               void (*visit)(const uint8_t *data, size_t size, const char *path))
 {
