@@ -1,6 +1,6 @@
-# speak.sh - prints the results of a test in shell in the format of cmocka. Sourced by
-# tests/*/test_*.sh from the project's root; their last line is `exit $bad`. $out: a folder of the
-# test, removed when it ends.
+# speak.sh - what a test in shell says, as cmocka programs do. Sourced by tests/*/test_*.sh from the
+# project's root; their last line is `exit $bad`. $out: a folder of the test's own, gone when it
+# ends.
 # SPDX-License-Identifier: BSD-2-Clause
 out=$(mktemp -d)
 trap 'rm -rf "$out"' EXIT
