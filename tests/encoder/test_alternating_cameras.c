@@ -1,6 +1,6 @@
-/* test_alternating_cameras.c - train/densify/alternating_cameras.h: alternating cameras, one
- * picture a time. A ball that no initial point stands for is found from the pictures of several
- * times.
+/* test_alternating_cameras.c - train/densify/alternating_cameras.h: alternating cameras, with one
+ * picture per frame. Anchors for a ball without initial points are found from pictures of several
+ * frames.
  * SPDX-License-Identifier: BSD-2-Clause */
 #include <stdlib.h>
 #include <string.h>
@@ -14,7 +14,7 @@
 #include "train/densify/alternating_cameras.h"
 #include "train/step/events.h"
 
-/* The blue ball moves by 0.3 of its radius a frame. */
+/* The blue ball moves by 0.3 of its radius per frame. */
 enum { SPEED = 2, STEPS = 80 };
 
 static int set_up_without_blue(void **state)
@@ -24,7 +24,7 @@ static int set_up_without_blue(void **state)
     return 0;
 }
 
-/* At frame f only camera f % cameras takes a picture, and none where f % gap is not 0. */
+/* At frame f only camera f % cameras takes a picture, and none if f is not a multiple of gap. */
 static void alternate(uint32_t cameras, uint32_t gap)
 {
     for (size_t i = 0; i < balls.n_pictures; i++) {
@@ -56,8 +56,8 @@ static int reach_of(uint32_t cameras, uint32_t gap)
     return reach;
 }
 
-/* Four cameras in turn are all in five frames, every other frame alone in nine; two never are
- * four, however often they look. */
+/* Four cameras in turn all occur within five frames, or within nine if every second frame has no
+ * picture; with fewer than four cameras no reach suffices. */
 static void test_reach(void **state)
 {
     const ted4_train_options o = options();
@@ -88,7 +88,8 @@ static void test_apart(void **state)
     assert_true(ted4_cameras_apart(middle, beside));
 }
 
-/* New anchors live for a while, and most of them where the ball is in the middle of that time. */
+/* New anchors are short-lived, and most of them lie where the ball is at the middle of their
+ * lives. */
 static void test_found(void **state)
 {
     const ted4_train_options o = options();
@@ -115,8 +116,8 @@ static void test_found(void **state)
     ted4_trainer_finish(&t);
 }
 
-/* They come before the probe asks whether time is needed; with several cameras at a time, after
- * it. */
+/* With alternating cameras, new anchors come before the probe asks whether time is needed; with
+ * several cameras per frame, after it. */
 static void test_schedule(void **state)
 {
     const ted4_train_options o = options();

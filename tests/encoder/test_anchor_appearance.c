@@ -1,5 +1,6 @@
-/* test_anchor_appearance.c - train/state/anchor_appearance.c: how opaque anchors are counts from
- * where they are most opaque, when that depends on the direction, and as the file will hold them.
+/* test_anchor_appearance.c - train/state/anchor_appearance.c: the opacity of an anchor is that of
+ * the direction in which it is most opaque, if it depends on the direction, and that of the values
+ * as the file will hold them.
  * SPDX-License-Identifier: BSD-2-Clause */
 #include "test.h"
 #include "ball_group.h"
@@ -24,7 +25,7 @@ static appearance look(ted4_trainer *t)
     return l;
 }
 
-/* As if item were the only training picture. */
+/* The appearance as if item were the only training picture. */
 static appearance look_from(ted4_trainer *t, uint32_t item)
 {
     const ted4_order whole = t->order;
@@ -43,7 +44,7 @@ static void forget(appearance *l)
     free(l->rgb);
 }
 
-/* Every opacity is near a half: where it is 0 or 1, as training may have made most, all directions
+/* Brings every opacity near a half: at 0 or 1, where training may have left most, all directions
  * are alike. */
 static void soften_opacity(ted4_trainer *t)
 {
@@ -77,8 +78,8 @@ static double sum_of(const appearance *l)
     return sum;
 }
 
-/* Looks from all directions, of which the first is the one that shows least: one look would not
- * do. */
+/* Gets the appearance from each direction. Puts first the direction with the least opacity, so that
+ * a single evaluation would not suffice. */
 static void look_from_all(ted4_trainer *t, appearance one[DIRECTIONS])
 {
     uint32_t *const item = t->order.item;
@@ -126,7 +127,7 @@ static void test_all_directions(void **state)
     ted4_trainer_finish(&t);
 }
 
-/* One look is enough where opacity is the same from everywhere. */
+/* One direction is enough if opacity does not depend on the direction. */
 static void test_one_direction(void **state)
 {
     ted4_trainer t;
@@ -143,8 +144,8 @@ static void test_one_direction(void **state)
     ted4_trainer_finish(&t);
 }
 
-/* In stage 2 an anchor looks as the file will hold it: rounding its values first changes nothing.
- */
+/* In stage 2 the appearance of an anchor is that in the file: rounding its values first changes
+ * nothing. */
 static void test_rounded(void **state)
 {
     const ted4_train_options o = ball_options();

@@ -33,7 +33,7 @@ static void test_voxel_set(void **state)
     ted4_voxel_set_finish(&c);
 }
 
-/* Points of one voxel share a key, neighbours never do, at the finest grid too. */
+/* Points of one voxel share a key, neighbouring voxels never do, even in the finest grid. */
 static void test_voxel_key(void **state)
 {
     static const double sizes[] = { 2, 0.3, 0.01, 0x1p-19 };
@@ -66,7 +66,7 @@ static void test_voxel_key(void **state)
 
 /* ---- blocks of anchors ---- */
 
-/* A number that tells which anchor, row kind and row it is. */
+/* A number that identifies anchor, kind of row and row. */
 static float mark(size_t i, int kind, int row)
 {
     return (float)(1 + i) + 0.001f * (float)row + 10000.0f * (float)kind;
@@ -80,7 +80,7 @@ static void mark_all(ted4_anchors *a)
                 *ted4_anchor_value(a, (ted4_row)k, i, r) = mark(i, k, r);
 }
 
-/* Anchor i holds the marks of anchor was. */
+/* Asserts that anchor i holds the marks that anchor was had. */
 static void check_marks(const ted4_anchors *a, size_t i, size_t was)
 {
     for (int k = 0; k < TED4_ROWS; k++)
@@ -141,7 +141,7 @@ static void test_select(void **state)
     ted4_trainer_finish(&t);
 }
 
-/* Morton order of binary16 positions; anchors that coincide keep their order. */
+/* Morton order of binary16 positions; anchors with equal positions keep their order. */
 static void test_sort(void **state)
 {
     enum { N = 200 };
@@ -155,7 +155,7 @@ static void test_sort(void **state)
     assert_int_equal(ted4_anchors_resize(a, N), 0);
     mark_all(a);
     for (size_t i = 0; i < N; i++)
-        for (int j = 0; j < 3; j++) /* the last 50 repeat the first, a hair off */
+        for (int j = 0; j < 3; j++) /* the last 50 nearly coincide with the first */
             *ted4_anchor_value(a, TED4_ROW_POSITION, i, j) =
                 (2.0f * ted4_uniform((uint64_t)j, i % 150) - 1.0f) *
                 (i < 150 ? 1.0f : 1.0f + 0x1p-23f);

@@ -1,7 +1,7 @@
-/* test_camera_colour_init.c - train/densify/camera_colour_init.h: maps of cameras are found from
- * the initial points alone, also where a third of what each camera sees is in the way of the
- * points; what all cameras have in common, from the points' own colours, if these agree with the
- * pictures; and what is not enough to tell leaves the identity.
+/* test_camera_colour_init.c - train/densify/camera_colour_init.h: the maps of cameras are found
+ * from the initial points alone, even if a third of each camera's view of the points is occluded.
+ * The part that all cameras share is found from the points' own colours, if these agree with the
+ * pictures. Where the data do not suffice, the identity remains.
  * SPDX-License-Identifier: BSD-2-Clause */
 #include <math.h>
 
@@ -16,7 +16,8 @@ enum { W = 64, H = 48, CAMERAS = 6, FRAMES = 3, N = TED4_COLOUR_VALUES };
 #define FOCAL    60.0
 #define DISTANCE 3.0
 
-/* True map of camera k times size: of each value the middle half of the cameras has mean 0. */
+/* The true map of camera k, multiplied by size: of each value, the middle half of the cameras has
+ * mean 0. */
 static float truth(int k, int value, float size)
 {
     static const float of_camera[CAMERAS] = { -0.12f, -0.04f, -0.01f, 0.01f, 0.04f, 0.10f };
@@ -24,7 +25,7 @@ static float truth(int k, int value, float size)
     return of_camera[(k + value) % CAMERAS] * (value % 4 == 0 && value < 9 ? 1.0f : 0.3f) * size;
 }
 
-/* Cameras look along -z at the plane z = 0, which shows this colour. */
+/* The colour of the plane z = 0, at which cameras look along -z. */
 static void painted(double x, double y, double rgb[3])
 {
     for (int c = 0; c < 3; c++)
@@ -36,8 +37,8 @@ static double camera_x(int k)
     return 0.15 * (k - 0.5 * (CAMERAS - 1));
 }
 
-/* hidden: share of blocks of 4x4 pixels where something else is seen, at each time and from each
- * camera at other places. */
+/* hidden: share of blocks of 4x4 pixels that show something else; they differ from frame to frame
+ * and from camera to camera. */
 static void picture(const tiny_folder *f, const char *name, int k, int frame, double hidden,
                     float tint)
 {
@@ -65,8 +66,7 @@ static void picture(const tiny_folder *f, const char *name, int k, int frame, do
     tiny_png(f, name, W, H, PNG_FORMAT_RGB, px);
 }
 
-/* Colours that come with the points: gain times what the plane shows, by channel; NULL: nearly
- * black. */
+/* Writes points whose colours are gain times those of the plane, by channel; NULL: nearly black. */
 static void points(const tiny_folder *f, int n, const double *gain)
 {
     static tiny_string s;
@@ -116,8 +116,8 @@ static void write_scene(const tiny_folder *f, int n_points, const double *gain, 
     points(f, n_points, gain);
 }
 
-/* Largest difference of a map's value from the true one, for a scene that shows gain times these
- * colours. */
+/* Largest difference between a value of a map and the true one, if the scene's colours are gain
+ * times those of the plane. */
 static float worst(const ted4_colour *c, const double *gain)
 {
     float most = 0;
@@ -131,7 +131,7 @@ static float worst(const ted4_colour *c, const double *gain)
     return most;
 }
 
-/* The trainer's colours after the match. */
+/* Makes a trainer and matches its cameras' colours. */
 static void matched(int n_points, const double *gain, double hidden, float tint, ted4_trainer *t,
                     ted4_dataset *d, tiny_folder *f)
 {
@@ -173,8 +173,8 @@ static void test_found(void **state)
     }
 }
 
-/* Points know that the middle of all cameras is too dark in red and too bright in green; training
- * keeps to it. */
+/* The points show that the middle of all cameras is too dark in red and too bright in green;
+ * training keeps this gauge. */
 static void test_gauge(void **state)
 {
     static const double gain[3] = { 1.05, 0.96, 1.0 };
@@ -196,7 +196,7 @@ static void test_gauge(void **state)
     tiny_free(&f);
 }
 
-/* Points with colours of another kind, and with hardly any that agrees, say nothing. */
+/* Points whose colours are unrelated, or of which hardly any agrees, are not used. */
 static void test_other_colours(void **state)
 {
     static const double gain[2][3] = { { 0.72, 0.72, 0.72 }, { 0.4, 1.2, 0.7 } };

@@ -1,6 +1,6 @@
-/* test_clips.c - scenes of poses_bounds.npy and cams.json as they come: stills in place of clips,
- * fewer clips than rows, clips that start at different times or have different lengths, and clips
- * that lie anywhere.
+/* test_clips.c - scenes with poses_bounds.npy and cams.json as found in practice: stills in place
+ * of clips, fewer clips than rows, clips that start at different times or have different lengths,
+ * and clips in any folder.
  * SPDX-License-Identifier: BSD-2-Clause */
 #include <math.h>
 
@@ -16,7 +16,7 @@ static ted4_dataset load(const tiny_folder *f, const ted4_dataset_options *o)
     return d;
 }
 
-/* poses_bounds.npy of n cameras at (i, 0, 0) for pictures of w x h. */
+/* Writes poses_bounds.npy for n cameras at (i, 0, 0), with pictures of w x h. */
 static void write_table(const tiny_folder *f, int n, double w, double h)
 {
     tiny_record r = { { 0 }, 0 };
@@ -36,8 +36,8 @@ static void write_table(const tiny_folder *f, int n, double w, double h)
     tiny_bytes(f, "poses_bounds.npy", r.bytes, r.n);
 }
 
-/* n pictures of that size in a folder of the scene; file i is DSC(10 i).JPG by name and a PNG by
- * content, blue i. */
+/* Writes n pictures of that size into a folder of the scene. File i is named DSC(10 i).JPG but has
+ * PNG content, and i identifies its picture. */
 static void write_stills(const tiny_folder *f, const char *folder, int n, int w, int h)
 {
     for (int i = 0; i < n; i++) {
@@ -87,7 +87,7 @@ static void test_stills(void **state)
     d = load(&f, &o);
     check_stills(&d, "images", 64, 20);
     ted4_dataset_free(&d);
-    o.downscale = 4; /* the copies that are there already */
+    o.downscale = 4; /* the reduced copies that exist already */
     d = load(&f, &o);
     check_stills(&d, "images_4", 16, 5);
     ted4_dataset_free(&d);
@@ -102,8 +102,8 @@ static void test_stills(void **state)
     tiny_free(&f);
 }
 
-/* Of a COLMAP scene without images/ the reduced copies will do,
- * of whichever kind: PNG under names that end as JPEG. */
+/* A COLMAP scene without images/ is loaded from the reduced copies, of whichever format: here PNG
+ * under names that end as JPEG. */
 static void test_copies(void **state)
 {
     (void)state;
@@ -134,7 +134,7 @@ static void write_clip(const tiny_folder *f, const char *folder, int n)
     }
 }
 
-/* Rows 0 to 4; of camera 2 there is no clip, and numbers say so. */
+/* Rows 0 to 4, but no clip of camera 2, as the numbers in the names of clips show. */
 static void test_rows(void **state)
 {
     tiny_folder f = tiny_new();
@@ -159,10 +159,10 @@ static void test_rows(void **state)
     tiny_free(&f);
 }
 
-/* A camera of cams.json with more fields. */
+/* A camera of cams.json; the caller appends more fields. */
 #define CAMERA "\"w\": 16, \"h\": 12, \"K\": [[9,0,7.5],[0,9,5.5],[0,0,1]], \"w2c\": " TINY_POSE "}"
 
-/* Number of the picture of a camera at a frame; -1: none. */
+/* Index of the picture of a camera at a frame; -1: none. */
 static int at(const ted4_dataset *d, const char *camera, uint32_t frame)
 {
     for (size_t i = 0; i < d->n_pictures; i++)
@@ -194,7 +194,7 @@ static void test_starts(void **state)
     for (size_t i = 0; i < d.n_pictures; i++)
         assert_int_equal(d.pictures[i].is_test, d.pictures[i].frame % 8 == 4);
     ted4_dataset_free(&d);
-    /* The first five times of all, whoever has them. */
+    /* The first five frames of the scene, of whichever cameras they are. */
     ted4_dataset_options o = tiny_options;
     o.max_frames = 5;
     d = load(&f, &o);
@@ -216,7 +216,7 @@ static void test_starts(void **state)
     tiny_free(&f);
 }
 
-/* Text that is no video is told from one, and no list of other files or addresses is followed. */
+/* Text is not mistaken for a video, and no list of other files or addresses is followed. */
 static void test_playlists(void **state)
 {
     static const char *const texts[] = { "#EXTM3U\n#EXT-X-VERSION:3\nx.ts\n",
@@ -234,7 +234,7 @@ static void test_playlists(void **state)
     tiny_free(&f);
 }
 
-/* The example of doc/layouts.md, with clips of 300 frames, is a scene. */
+/* The example of doc/layouts.md loads, with clips of 300 frames. */
 static void test_example(void **state)
 {
     static char text[16384];

@@ -1,7 +1,7 @@
-/* test_colour.c - train/loss/camera_colour.h: which cameras are corrected, the map and its
- * gradients against central differences in double precision, the step with its gauge; and in
- * training: tints are found, and a view from elsewhere never gets a correction. That the state
- * survives in checkpoints is tested in test_trainer.c, whose cameras are all corrected.
+/* test_colour.c - train/loss/camera_colour.h: which cameras are corrected; the map and its
+ * gradients against central differences in double precision; the update with its gauge; and, in
+ * training, that tints are found and that a view from elsewhere is never corrected. test_trainer.c,
+ * whose cameras are all corrected, tests that checkpoints keep the state.
  * SPDX-License-Identifier: BSD-2-Clause */
 #include "test.h"
 #include "ball_scene.h"
@@ -17,8 +17,8 @@ enum { N = TED4_COLOUR_VALUES, MOST = 40000, CAMERAS = 4 };
 
 /* ---- who is corrected ---- */
 
-/* Pictures by camera; a capital letter marks a held-out picture. want: what each camera shall be.
- */
+/* pictures: the camera of each picture, a capital letter for a held-out one. want: for each camera,
+ * whether it is corrected. */
 static void check_choice(const char *pictures, const char *want)
 {
     ted4_picture pic[32];
@@ -52,10 +52,10 @@ static void test_choice(void **state)
     (void)state;
     check_choice("", "");
     check_choice("aaaa", "0");        /* one camera */
-    check_choice("abcdef", "000000"); /* a picture each: views of something still */
+    check_choice("abcdef", "000000"); /* one picture each: views of a static scene */
     check_choice("aabb", "11");
     check_choice("abcabdab", "1100");
-    check_choice("aab", "00");     /* the only one with two pictures */
+    check_choice("aab", "00");     /* only one camera with two pictures */
     check_choice("aaBBcc", "101"); /* held-out camera */
     check_choice("aAbBBb", "00");  /* held-out pictures do not count */
     check_choice("aaAbbBBB", "11");
@@ -63,7 +63,7 @@ static void test_choice(void **state)
 
 /* ---- the map and its gradients ---- */
 
-/* Two cameras and pictures of so many pixels; camera 1 has a map of its own. */
+/* Two cameras, and pictures of that many pixels; the map of camera 1 is not the identity. */
 static void open_colour(ted4_colour *c, size_t pixels)
 {
     ted4_picture pic[4];
@@ -95,7 +95,7 @@ static double corrected(const double *map, const double *rgb, int k)
     return sum;
 }
 
-/* L = sum of w c'^2 / 2: dL/dc' = w c'. */
+/* L = sum of w c'^2 / 2, so that dL/dc' = w c'. */
 static double loss_of(const double *map, const float *image, const float *weight, size_t pixels)
 {
     double sum = 0;
@@ -198,7 +198,8 @@ static void test_gradients(void **state)
     }
 }
 
-/* Camera 0 has the identity still: no bit of the picture or of its gradient may change. */
+/* The map of camera 0 is still the identity, so no bit of the picture or of its gradient may
+ * change. */
 static void test_identity(void **state)
 {
     static float image[3 * MOST], d_image[3 * MOST];
@@ -245,9 +246,9 @@ static uint8_t to_byte(float x)
     return (uint8_t)(255.0f * fminf(fmaxf(x, 0.0f), 1.0f) + 0.5f);
 }
 
-/* The first step of Adam moves each value by the rate, whatever the size of its gradient; then half
- * of it goes to either camera, for the middle of two is their mean, and stays the identity. Camera
- * 2 has one picture. */
+/* The first step of Adam moves each value of camera 0 by the learning rate, whatever the size of
+ * its gradient. The gauge then shares this between both cameras, half each with opposite signs: the
+ * middle of two cameras is their mean, and stays the identity. Camera 2 has one picture. */
 static void test_update(void **state)
 {
     ted4_picture pic[5];
@@ -268,7 +269,8 @@ static void test_update(void **state)
         assert_true(fabsf(c.value[1][k] + c.value[0][k]) < 1e-8f);
         assert_true(c.value[2][k] == 0.0f);
     }
-    /* Each camera counts its own steps: this is the first of camera 1, and brings both back. */
+    /* Each camera counts its own steps: this is the first of camera 1, and brings both cameras
+     * back. */
     ted4_colour_update(&c, 1, gradient, 0.01, 0);
     for (int k = 0; k < N; k++) {
         assert_true(fabsf(c.value[0][k]) < 1e-6f);
@@ -287,7 +289,8 @@ static void test_update(void **state)
     ted4_colour_finish(&c);
 }
 
-/* A camera far off the others does not pull the scene along: the others stay where they are. */
+/* A camera that differs much from the others does not shift the scene: the others stay where they
+ * are. */
 static void test_outlier(void **state)
 {
     enum { CAMS = 8 };
@@ -305,8 +308,8 @@ static void test_outlier(void **state)
         for (int i = 0; i < CAMS; i++)
             c.value[i][k] = i == 5 ? 0.5f : 0.01f * (float)(i < 5 ? i - 2 : i - 5);
     ted4_colour_update(&c, 0, gradient, 0.01, 0);
-    /* Between the outer quarters lie 0, 0.01, 0.01, 0.02; their mean is 0.01. That of all would be
-     * 0.066. */
+    /* Between the outer quarters lie 0, 0.01, 0.01, 0.02; their mean is 0.01. The mean of all would
+     * be 0.066. */
     for (int k = 0; k < N; k++) {
         assert_true(fabsf(c.value[2][k] + 0.01f) < 1e-6f);
         assert_true(fabsf(c.value[5][k] - 0.49f) < 1e-6f);
@@ -314,8 +317,8 @@ static void test_outlier(void **state)
     ted4_colour_finish(&c);
 }
 
-/* What apply does to the scene's colours undo takes back, for any number of threads; a map without
- * an inverse leaves the picture alone. */
+/* Undo inverts what apply does to the scene's colours, for any number of threads; a map without an
+ * inverse leaves the picture unchanged. */
 static void test_undo(void **state)
 {
     static const ted4_colour_map map = { 0.2f,   -0.1f, 0.05f, 0.02f, -0.3f,  0.1f,
@@ -348,8 +351,8 @@ static void test_undo(void **state)
     ted4_colour_finish(&c);
 }
 
-/* The penalty's gradient is 2 w x: a gradient a little smaller gives way to it, a little larger
- * does not. */
+/* The penalty's gradient is 2 w x: a slightly smaller gradient of the loss loses against it, a
+ * slightly larger one wins. */
 static void test_penalty(void **state)
 {
     (void)state;
@@ -372,8 +375,8 @@ static void test_penalty(void **state)
 
 /* ---- in training ---- */
 
-/* What camera k did to the picture's colours, in mean the identity: gain of red and blue, offset of
- * green. */
+/* The change that camera k makes to the picture's colours: gain of red and blue, offset of green.
+ * The mean over the cameras is the identity. */
 static const float tint[CAMERAS][3] = { { 0.12f, -0.08f, 0.04f },
                                         { -0.12f, 0.03f, -0.02f },
                                         { 0.06f, 0.10f, -0.05f },
@@ -384,7 +387,7 @@ static float tinted(const float *x, const float *rgb, int k)
     return k == 1 ? rgb[1] + x[2] : rgb[k] * (1.0f + x[k / 2]);
 }
 
-/* The same pictures as their cameras would have taken them, less bright first, so that none is
+/* Changes the pictures as their cameras would have, after dimming them so that no value is
  * clipped. */
 static void tint_pictures(const tiny_folder *f, ted4_dataset *d)
 {
@@ -436,7 +439,7 @@ static void close_scene(scene *s)
     tiny_free(&s->folder);
 }
 
-/* Few Gaussians, so that they cannot show each camera a face of its own. */
+/* Trains with few Gaussians, so that they cannot show each camera a different appearance. */
 static void train(ted4_trainer *t, ted4_dataset *d, int colour, uint32_t seed, int steps)
 {
     static const char *const small[] = {
@@ -461,8 +464,8 @@ static void train(ted4_trainer *t, ted4_dataset *d, int colour, uint32_t seed, i
             fail_msg("%s", t->message.text);
 }
 
-/* Mean squared difference that is left, and that there was, between what the cameras did to the
- * scene's colours and the maps. */
+/* Returns the mean squared difference between the tints of the cameras and the maps. *there: the
+ * same for identity maps. */
 static double tint_left(ted4_colour *colour, double *there)
 {
     static const float seen[4][3] = { { 0.7f, 0.26f, 0.21f },
@@ -486,9 +489,9 @@ static double tint_left(ted4_colour *colour, double *there)
     return left;
 }
 
-/* One training's loss and maps move with its seed and the rounding of a machine: of 24 seeds one
- * leaves 0.57 of the tints, the others 0.11 to 0.27. Three together leave 0.14 to 0.29, with 0.56
- * to 0.81 of the loss without maps. */
+/* The loss and the maps of one training vary with the seed and the machine's rounding: of 24 seeds
+ * one leaves 0.57 of the tints, the others 0.11 to 0.27. Three together leave 0.14 to 0.29, with
+ * 0.56 to 0.81 of the loss without maps. */
 static void test_finds_tints(void **state)
 {
     double without = 0, with = 0, left = 0, tints = 0;
@@ -518,7 +521,8 @@ static void test_finds_tints(void **state)
     close_scene(&s);
 }
 
-/* Not before its time; and never in a preview, which is how held-out pictures are compared. */
+/* Maps are not updated before their time (step 100 here), and never applied in a preview, with
+ * which held-out pictures are compared. */
 static void test_where(void **state)
 {
     ted4_trainer t;

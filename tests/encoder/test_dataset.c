@@ -1,4 +1,4 @@
-/* test_dataset.c - scenes of every layout, written here, come out as the dataset they describe.
+/* test_dataset.c - scenes of every layout, written by the test, load as the dataset they describe.
  * Real scenes: test_dataset_real.c. Errors: test_dataset_errors.c. Pictures, lens, cache:
  * test_image_file.c.
  * SPDX-License-Identifier: BSD-2-Clause */
@@ -21,7 +21,7 @@ static void load(ted4_dataset *d, const tiny_folder *f, const ted4_dataset_optio
     assert_string_equal(tiny_load(d, f, o), "");
 }
 
-/* Points fill the cube centre +- half. */
+/* Asserts that the points fill the cube centre +- half. */
 static void expect_cube(const ted4_dataset *d, double x, double y, double z, double half)
 {
     const double centre[3] = { x, y, z };
@@ -41,7 +41,8 @@ static void expect_cube(const ted4_dataset *d, double x, double y, double z, dou
 
 /* COLMAP */
 
-/* Rotation by 90 degrees about z (down turns to -right), so that a transposed matrix shows. */
+/* Rotation by 90 degrees about z (down turns to -right), so that a transposed matrix is
+ * detected. */
 #define QUARTER "0.70710678118654752 0 0 0.70710678118654752"
 
 static void colmap_text(const tiny_folder *f, const char *camera, int n, const char *name_format)
@@ -49,7 +50,7 @@ static void colmap_text(const tiny_folder *f, const char *camera, int n, const c
     tiny_string s = { "# comment\n\n", 11 };
 
     tiny_text(f, "sparse/0/cameras.txt", camera);
-    for (int i = n; i > 0; i--) { /* not in the order of names */
+    for (int i = n; i > 0; i--) { /* not in order of the names */
         char name[64], file[80];
         snprintf(name, sizeof name, name_format, i * 3);
         snprintf(file, sizeof file, "images/%s", name);
@@ -77,7 +78,7 @@ static void check_colmap(ted4_dataset *d)
     near(d->points[4], 5, 0);
     assert_int_equal(d->point_rgb[1], 20);
     for (size_t i = 0; i < 14; i++) {
-        /* In order of names, indices 4 and 12 held out and moved to the end. */
+        /* In order of the names; indices 4 and 12 are held out and moved to the end. */
         const size_t index = i >= 12 ? 4 + 8 * (i - 12) : i < 4 ? i : i < 11 ? i + 1 : i + 2;
         const ted4_picture *p = &d->pictures[i];
         assert_int_equal(p->frame, index);
@@ -163,8 +164,8 @@ static void test_colmap_binary(void **state)
     tiny_free(&f);
 }
 
-/* Two folders are two cameras that share frames; names without a number are all frame 0; files may
- * be the smaller copies. */
+/* Two folders are two cameras that share frames; names without a number all belong to frame 0; the
+ * pictures may be the reduced copies. */
 static void test_colmap_names(void **state)
 {
     (void)state;
@@ -237,8 +238,8 @@ static void test_blender(void **state)
     const ted4_camera *c = &d.pictures[0].camera;
     near(c->fx, 1, 1e-12);
     near(c->cx, 1, 0);
-    /* Camera at (5, 6, 7) whose right is +y, up +z and backward +x: looks along -x. x_cam of world
-     * (4, 8, 10) is (2, -3, 1). */
+    /* The camera at (5, 6, 7), with right = +y, up = +z and backward = +x, looks along -x. Its
+     * coordinates of the world point (4, 8, 10) are (2, -3, 1). */
     const double world[3] = { 4, 8, 10 }, expected[3] = { 2, -3, 1 };
     for (int i = 0; i < 3; i++)
         near(c->R[3 * i] * world[0] + c->R[3 * i + 1] * world[1] + c->R[3 * i + 2] * world[2] +
@@ -322,8 +323,8 @@ static void test_nerfstudio(void **state)
         near(centre[k], expected[k], 1e-12);
         near(d.points[k], expected[k], 1e-6);
     }
-    /* It looks along -z of the applied world, which is -y of the dataset's; its right is x there, z
-     * here. */
+    /* The camera looks along -z of the applied world, which is -y of the dataset's world; its
+     * right, x there, is z here. */
     near(d.pictures[0].camera.R[7], -1, 1e-12);
     near(d.pictures[0].camera.R[2], 1, 1e-12);
     ted4_dataset_free(&d);
@@ -398,8 +399,8 @@ static void test_ply(void **state)
     tiny_free(&f);
 }
 
-/* Without a cloud: a box around what the cameras look at. Four cameras on a circle of radius 10
- * look at (0, 0, 3). */
+/* Without a point cloud: random points in a box around what the cameras look at. Four cameras on a
+ * circle of radius 10 look at (0, 0, 3). */
 static void test_random_points(void **state)
 {
     (void)state;
@@ -424,7 +425,7 @@ static void test_random_points(void **state)
     assert_memory_equal(d.points, e.points, 3 * d.n_points * sizeof *d.points);
     ted4_dataset_free(&d);
     ted4_dataset_free(&e);
-    /* Two that look ahead and outwards: their axes cross behind them. */
+    /* Two cameras that look ahead and outwards: their axes cross behind them. */
     s.n = 0;
     tiny_add(&s, "{\"fl_x\": 10, \"frames\": [");
     for (int i = 0; i < 2; i++) {
@@ -450,19 +451,19 @@ static void test_times(void **state)
     double t[400];
     uint32_t frame[400], n;
 
-    /* Uniform in another unit, not in order, six digits. */
+    /* Uniform, in another unit, not in order, with six digits. */
     for (int i = 0; i < 7; i++)
         t[i] = 100 + 1e-6 * round(1e6 * ((i * 3) % 7) / 3.0);
     assert_int_equal(ted4_frame_times(t, 7, frame, &n, &m), 0);
     assert_int_equal(n, 7);
     for (uint32_t i = 0; i < 7; i++)
         assert_int_equal(frame[i], i * 3 % 7);
-    /* One frame missing. */
+    /* One frame is missing. */
     const double gap[4] = { 0, 1, 2, 4 };
     assert_int_equal(ted4_frame_times(gap, 4, frame, &n, &m), 0);
     assert_int_equal(n, 5);
     assert_int_equal(frame[3], 4);
-    /* Three of six: the grid's step is finer than the smallest gap. */
+    /* Three frames of six: the grid's step is finer than the smallest gap. */
     const double three[3] = { 0, 2, 5 };
     assert_int_equal(ted4_frame_times(three, 3, frame, &n, &m), 0);
     assert_int_equal(n, 6);
@@ -474,14 +475,15 @@ static void test_times(void **state)
     assert_int_equal(n, 149 * 19 + 1);
     assert_int_equal(frame[1], 19);
     assert_int_equal(frame[151], 149);
-    /* No common measure: nearest positions with the smallest gap as step. */
+    /* No common step: each time goes to the nearest position on a grid whose step is the smallest
+     * gap. */
     const double odd[4] = { 0, 0.137, 0.5237, 1 };
     assert_int_equal(ted4_frame_times(odd, 4, frame, &n, &m), 0);
     assert_true(n >= 8);
     assert_true(n <= 33);
     for (int i = 0; i < 4; i++)
         near(frame[i] / (n - 1.0), odd[i], 0.5 / (n - 1.0));
-    /* Too fine a grid. */
+    /* The grid would be too fine. */
     const double close[3] = { 0, 1e-5, 1 };
     assert_int_equal(ted4_frame_times(close, 3, frame, &n, &m), 0);
     assert_int_equal(n, TED4_MAX_FRAMES);
@@ -513,7 +515,7 @@ static void test_print(void **state)
         text, "layout      nerfstudio\npictures    9 train, 1 test\ncameras     2\nframes      5\n"
               "size        16 x 12 pixels\nfocal       30..31 x 30..32 pixels\n"));
     assert_non_null(strstr(text, "rate        25 frames/s\n"));
-    /* A still has none, whatever its file says. */
+    /* A single frame has no frame rate, whatever its file says. */
     d.n_frames = 1;
     out = tmpfile();
     assert_non_null(out);

@@ -1,12 +1,13 @@
-/* test_dataset_errors.c - everything a scene can get wrong gives one message that says where and
- * what, and an empty dataset.
+/* test_dataset_errors.c - every error in a scene gives one message that says where and what, and
+ * leaves an empty dataset.
  * SPDX-License-Identifier: BSD-2-Clause */
 #include "test.h"
 #include "data/point_cloud.h"
 #include "refuse.h"
 #include "tiny_scene.h"
 
-/* One transforms.json of one frame, or its parts replaced. */
+/* Writes a transforms.json of two frames: top is inserted at the top level, frame is the content of
+ * the second frame. */
 static void transforms(const tiny_folder *f, const char *top, const char *frame)
 {
     tiny_string s = { "", 0 };
@@ -160,7 +161,7 @@ static void test_colmap_text(void **state)
     tiny_free(&f);
 }
 
-/* Every file of a good binary model, cut at every length and with its count raised, is refused. */
+/* Every file of a valid binary model is refused if cut at any length, or if its count is raised. */
 static void cut_everywhere(const tiny_folder *f, const char *name, const tiny_record *r)
 {
     tiny_record more = *r;
@@ -254,7 +255,7 @@ static void test_ply(void **state)
     tiny_free(&f);
 }
 
-/* A picture cut short loads (its header is whole) and is found when decoded. */
+/* A truncated picture loads, since its header is complete; decoding detects the error. */
 static void test_damaged_pictures(void **state)
 {
     (void)state;

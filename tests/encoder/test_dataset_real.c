@@ -1,5 +1,5 @@
-/* test_dataset_real.c - the real scenes below $TED4_DATA come out as the datasets that they are;
- * skipped where they are not.
+/* test_dataset_real.c - the real scenes below $TED4_DATA load as the expected datasets; skipped
+ * where they are absent.
  * SPDX-License-Identifier: BSD-2-Clause */
 #include <math.h>
 
@@ -9,7 +9,7 @@
 #include "data/raw_scene.h"
 #include "tiny_scene.h"
 
-/* Counts of the README beside the real scenes; the frame is told by the picture's name where names
+/* Counts from the README beside the real scenes. The picture's name gives the frame, where names
  * are numbers from 0 or 1. */
 static void test_real(void **state)
 {
@@ -59,7 +59,7 @@ static void test_real(void **state)
     }
 }
 
-/* Four fixed cameras with a video and a distorting lens each: the first five times, of which the
+/* Four fixed cameras, each with a video and a distorting lens: the first five frames, of which the
  * last is held out. */
 static void test_real_videos(void **state)
 {

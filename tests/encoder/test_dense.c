@@ -24,7 +24,7 @@ static float *fill(size_t n)
     return v;
 }
 
-/* Rounding of n terms of size 1: far below any real mistake, which is of size 1. */
+/* Tolerance for the rounding of n terms of size 1: far below any real error, which is of size 1. */
 static void near(double got, double want, int n)
 {
     assert_true(fabs(got - want) < 1e-6 * (n + 4));

@@ -1,4 +1,5 @@
-/* test_densify.c - growth and pruning of anchors (train/densify/densify.c) from planted statistics.
+/* test_densify.c - growth and pruning of anchors (train/densify/densify.c) from statistics that the
+ * test sets.
  * SPDX-License-Identifier: BSD-2-Clause */
 #include <stdlib.h>
 
@@ -15,7 +16,7 @@ static cloud_case cloud;
 
 /* ---- growth ---- */
 
-enum { K = 3, SEEN = 5 }; /* an offset counts from more than 0.4 grow_every = 4 views on */
+enum { K = 3, SEEN = 5 }; /* an offset counts if it was in more than 0.4 grow_every = 4 views */
 
 #define THRESHOLD 2e-4f
 
@@ -25,7 +26,8 @@ static void plant(ted4_trainer *t, size_t i, int k, float gradient, float views)
     *ted4_anchor_value(&t->anchors, TED4_ROW_GRADIENT, i, K + k) = views;
 }
 
-/* Anchor i's offset k points half-way between lattice points, at a place of its own. */
+/* Makes offset k of anchor i point half-way between lattice points, at a place that no other anchor
+ * points at. */
 static void aim(ted4_trainer *t, size_t i, int k, float place[3])
 {
     const ted4_layout *l = &t->layout;
@@ -40,14 +42,14 @@ static void aim(ted4_trainer *t, size_t i, int k, float place[3])
     }
 }
 
-/* Writes into the first channel of each anchor, and so of its children, which one it is. */
+/* Writes the index of each anchor into its first channel, which children inherit. */
 static void name_anchors(ted4_trainer *t)
 {
     for (size_t i = 0; i < t->anchors.n; i++)
         *ted4_anchor_value(&t->anchors, TED4_ROW_VALUE, i, 0) = (float)(i + 1);
 }
 
-/* New anchors have fresh moments and zero offsets; old ones have moments here. */
+/* Fills the moments of all anchors, since new anchors are those with zero moments. */
 static void give_moments(ted4_trainer *t)
 {
     for (size_t i = 0; i < t->anchors.n; i++)
@@ -60,8 +62,8 @@ static int is_new(const ted4_trainer *t, size_t i)
     return *ted4_anchor_value(&t->anchors, TED4_ROW_V, i, 0) == 0.0f;
 }
 
-/* A new anchor: on the grid of one of three depths, half a voxel at most from the place; its
- * parent's values but for offsets and scalings. */
+/* Checks a new anchor: it lies on the grid of one of three depths, at most half a voxel from the
+ * place, and has its parent's values except for offsets and scalings. */
 static void check_child(const ted4_trainer *t, size_t i, const float place[3])
 {
     const ted4_layout *l = &t->layout;
@@ -93,7 +95,8 @@ static void check_child(const ted4_trainer *t, size_t i, const float place[3])
         assert_true(*ted4_anchor_value(&t->anchors, TED4_ROW_GRADIENT, i, r) == 0.0f);
 }
 
-/* Every fourth anchor gets a strong gradient on one offset; others a weak one, or too few views. */
+/* Every fourth anchor gets a strong gradient on one offset; others get a weak one, or too few
+ * views. */
 static void test_growth(void **state)
 {
     static float place[CLOUD_POINTS][3];
@@ -130,13 +133,13 @@ static void test_growth(void **state)
         assert_true(children[id] <= 3);
     }
     assert_int_equal(old, CLOUD_POINTS);
-    /* One in 64 has bad luck at all three depths. */
+    /* One in 64 fails the random selection at all three depths. */
     assert_true(n_parents >= n_planted * 9 / 10);
     ted4_trainer_finish(&t);
 }
 
-/* The finer the grid the stronger the gradient that it takes: 2, 4 times the threshold at the
- * second and third depth. */
+/* A finer grid needs a stronger gradient: 2 and 4 times the threshold at the second and third
+ * depth. */
 static void test_growth_depths(void **state)
 {
     static float place[CLOUD_POINTS][3];
@@ -150,8 +153,8 @@ static void test_growth_depths(void **state)
         cloud_begin(&cloud, &t);
         give_moments(&t);
         for (size_t i = 0; i < CLOUD_POINTS; i++) {
-            aim(&t, i, K - 1, place[i]); /* nearer to the next voxel than to its own, which is free
-                                            at the lattice's faces */
+            aim(&t, i, K - 1, place[i]); /* nearer to the next voxel, free only at the lattice's
+                                            faces, than to its own */
             plant(&t, i, K - 1, 1.5f * (float)(1 << most) * THRESHOLD, SEEN);
         }
         assert_int_equal(ted4_densify_adjust(&t, ted4_growth_allowance(&t)), 0);
@@ -168,8 +171,8 @@ static void test_growth_depths(void **state)
     }
 }
 
-/* No two anchors of one adjustment and depth in a voxel; a place outside the cube grows nothing;
- * statistics that were used start afresh, the others go on. */
+/* Of each adjustment and depth, no two anchors share a voxel; a place outside the cube grows
+ * nothing; statistics that were used are reset, the others continue. */
 static void test_growth_limits(void **state)
 {
     ted4_trainer t;
@@ -180,7 +183,7 @@ static void test_growth_limits(void **state)
     cloud_begin(&cloud, &t);
     give_moments(&t);
     aim(&t, 50, 0, place);
-    for (int k = 0; k < K; k++) /* offsets 1 and 2 are zero: there is an anchor already */
+    for (int k = 0; k < K; k++) /* offsets 1 and 2 are zero: the voxel is occupied */
         plant(&t, 50, k, 1.0f, SEEN);
     plant(&t, 51, 0, 1.0f, SEEN - 1);
     *ted4_anchor_value(&t.anchors, TED4_ROW_VALUE, 52, t.layout.first[TED4_OFFSET]) = 30.0f;
@@ -207,7 +210,7 @@ static void test_growth_limits(void **state)
     ted4_trainer_finish(&t);
 }
 
-/* With room for some only, those with the largest gradients come. */
+/* If there is room for some candidates only, those with the largest gradients become anchors. */
 static void test_max_anchors(void **state)
 {
     enum { CAPACITY = 7 };
@@ -235,7 +238,8 @@ static void test_max_anchors(void **state)
                 n++;
             }
         assert_int_equal(n, full ? 0 : CAPACITY);
-        /* Chance and the cube's faces drop some of the strongest; the weakest never come. */
+        /* Random selection and the cube's faces drop some of the strongest; the weakest are never
+         * chosen. */
         assert_true(full || least > CLOUD_POINTS - 60);
         ted4_trainer_finish(&t);
     }
@@ -252,7 +256,8 @@ static void fade(ted4_trainer *t, size_t i, double mean, float visits)
     *ted4_anchor_value(&t->anchors, TED4_ROW_OPACITY, i, 2) = visits;
 }
 
-/* Anchor 4 i: faded; 4 i + 1: just not; 4 i + 2: faded but not seen enough; 4 i + 3: never seen. */
+/* Anchor 4 i has faded; 4 i + 1 just not; 4 i + 2 has faded but too few visits; 4 i + 3 was never
+ * seen. */
 static void test_pruning(void **state)
 {
     ted4_trainer t;
@@ -277,8 +282,8 @@ static void test_pruning(void **state)
     ted4_trainer_finish(&t);
 }
 
-/* What lives for a short time is judged by the visits at that time, and not before there were some:
- * nine visits, of which so many while it was there; the mean opacity over those alone decides. */
+/* Short-lived anchors are judged only after enough visits during their lives, and by their mean
+ * opacity over these: each has nine visits, of which there are while it lives. */
 static void test_pruning_short_lives(void **state)
 {
     static const struct {
@@ -313,7 +318,7 @@ static void test_pruning_short_lives(void **state)
     ted4_trainer_finish(&t);
 }
 
-/* Where all have faded, a group of lanes stays: those that show most. */
+/* If all anchors have faded, one group of lanes remains: the most opaque anchors. */
 static void test_all_faded(void **state)
 {
     ted4_trainer t;
@@ -353,7 +358,7 @@ static void test_gather(void **state)
     in.num = 1;
     in.den = 4;
     in.activation = 1;
-    for (size_t i = 0; i < CLOUD_POINTS; i++) /* odd ones come at 1/4 exactly, even ones at 1/2 */
+    for (size_t i = 0; i < CLOUD_POINTS; i++) /* odd ones live exactly at 1/4, even ones at 1/2 */
         for (int c = 0; c < 4; c++)
             *ted4_anchor_value(&t.anchors, TED4_ROW_VALUE, i, t.layout.first[TED4_TAU] + c) =
                 c % 2   ? -4.0f
@@ -365,7 +370,7 @@ static void test_gather(void **state)
         visible[i] = i % 2;
     }
     assert_int_equal(ted4_visible_blocks_fill(&t, NULL), 0);
-    t.visible_blocks.n = 2; /* the second block is seen, and half of the fourth */
+    t.visible_blocks.n = 2; /* the second block is visible, and half of the fourth */
     t.visible_blocks.block[0] = 1;
     t.visible_blocks.block[1] = 3;
     t.visible_blocks.lanes[1] = 0xffffu;

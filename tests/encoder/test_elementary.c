@@ -1,5 +1,5 @@
-/* test_elementary.c - math/elementary.h: against libm's functions of long double where there is
- * one with more bits, over the whole range; awkward points; the bits.
+/* test_elementary.c - math/elementary.h: accuracy over the whole range against libm's long double
+ * functions, where long double has more bits; special arguments; and the exact bits.
  * SPDX-License-Identifier: BSD-2-Clause */
 #include <float.h>
 #include <math.h>
@@ -15,8 +15,8 @@ typedef double (*our_function)(double);
 
 enum { POINTS = 400000 };
 
-/* Largest relative error of f at POINTS random points, evenly in [from, to], or with evenly
- * spread logarithms and both signs where spread != 0: from = 2^-spread. */
+/* Largest relative error of f at POINTS random points: uniform in [from, to], or, if spread != 0,
+ * with uniform logarithms and both signs, where from = 2^-spread. */
 static double worst_of(our_function f, long_function truth, double from, double to, double spread)
 {
     double worst = 0;
@@ -162,8 +162,8 @@ static void test_awkward(void **state)
     assert_true(ted4_math_exp2f(-149) == 0x1p-149f);
 }
 
-/* A hash of 4096 results of each function: another compiler, level or machine has to give the
- * same. */
+/* A hash of 4096 results of each function, which every compiler, level and machine must
+ * reproduce. */
 static void test_bits(void **state)
 {
     const our_function f[] = { ted4_math_exp,  ted4_math_exp2, ted4_math_log,

@@ -1,5 +1,4 @@
-/* test_encoder_contract.c - spec 3.4 for scenes of random numbers, and levels that a caller asks
- * for.
+/* test_encoder_contract.c - spec 3.4 for random scenes, and for levels that a caller requests.
  * SPDX-License-Identifier: BSD-2-Clause */
 #include "test.h"
 #include "encoder_contract.h"
@@ -26,7 +25,7 @@ static void random_scenes(void **state)
     }
 }
 
-/* A level that the caller asks for: declared when the file keeps it, refused when not. */
+/* A level that the caller requests is declared if the file satisfies it, and refused otherwise. */
 static void levels_asked_for(void **state)
 {
     random_source r = random_seed(9);

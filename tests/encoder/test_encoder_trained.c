@@ -38,7 +38,7 @@ static void trained(void **state)
         ball_set(&o, "stage1=60");
         ball_set(&o, "stage2=40");
         ball_set(&o, "probe=0");
-        ball_set(&o, "lr_heads=0.004"); /* so few steps do not hide what begins in view */
+        ball_set(&o, "lr_heads=0.004"); /* keeps Gaussians visible in so few steps */
         if (variant[i][0] != '\0')
             ball_set(&o, variant[i]);
         ball_begin(&t, &o, &d, &p);

@@ -1,5 +1,5 @@
-/* test_flicker.c - data/flicker.c: which changes of light from picture to picture are flicker, and
- * what follows from it.
+/* test_flicker.c - data/flicker.c: which changes of brightness between pictures count as flicker,
+ * and what follows from it.
  * SPDX-License-Identifier: BSD-2-Clause */
 #include <math.h>
 
@@ -36,8 +36,8 @@ static void expect(const scene *s, double wanted)
         fail_msg("%g levels, not %g", got, wanted);
 }
 
-/* One lamp for all, cameras of different brightness; pictures of two cameras in turn, times
- * backwards. */
+/* One lamp for all cameras, which differ in brightness; the pictures of two cameras alternate, with
+ * times in descending order. */
 static void test_lamp(void **state)
 {
     scene s = { 0 };
@@ -65,8 +65,8 @@ static void test_steady(void **state)
     expect(&pops, 0);
 }
 
-/* Held-out pictures tell nothing, and leave gaps; a camera for each picture, as with one that
- * moves, tells nothing either. */
+/* Held-out pictures are not used and leave gaps; one camera per picture, as with a moving camera,
+ * gives no information either. */
 static void test_unknown(void **state)
 {
     scene held = { 0 }, moves = { 0 }, none = { 0 };
@@ -82,7 +82,7 @@ static void test_unknown(void **state)
     expect(&none, 0);
 }
 
-/* A bank that was left to the program gets a row for every time where the light flickers. */
+/* If the program chooses the number of bank rows, it is one per frame for a scene that flickers. */
 static void test_settled(void **state)
 {
     (void)state;
