@@ -1,6 +1,6 @@
-/* test_extremes_generate.c - generation of Gaussians, motion, activation and heads at their
- * extremes, forward and backward: against spec 11 in double precision (generate_ref.h) where that
- * is a number, and finite everywhere.
+/* test_extremes_generate.c - generation of Gaussians, motion, activation and heads at extreme
+ * values, forward and backward: compared with spec 11 in double precision (generate_ref.h) where
+ * that gives a number, and finite everywhere.
  * SPDX-License-Identifier: BSD-2-Clause */
 #include <float.h>
 #include <math.h>
@@ -17,9 +17,8 @@ static float gradient[REF_OUT][CASE_SPLATS], d_net[CASE_NET];
 static _Alignas(64) float d_attr[CASE_BLOCKS][CASE_CHANNELS * TED4_LANES];
 static float member[REF_OUT][CASE_SPLATS];
 
-/* Scene of random anchors; visible block 0 is the test's. Gradients of splats are random, of the
- * size given.
- */
+/* Makes a scene of random anchors, in which the test sets visible block 0. The gradients of splats
+ * are random, of the given size. */
 static void begin(const ted4_header *h, float size)
 {
     case_make(&scene, h, 5, 16, 77u + h->motion);
@@ -55,7 +54,7 @@ static void all_finite(const float *x, size_t n, const char *what)
             fail_msg("%s %zu is %g", what, i, (double)x[i]);
 }
 
-/* Forward and backward; everything that comes out must be finite. */
+/* Runs forward and backward, and asserts that all results are finite. */
 static void run(void)
 {
     const ted4_splat_grads gr = splat_gradients();
@@ -89,8 +88,8 @@ static void reference(int lane, const double *channel, const double *base, doubl
     ref_generate(&scene.query, channel, base, position, out);
 }
 
-/* Members of visible block 0 against double arithmetic. A sum of terms of that size may be small,
- * and has the rounding of its terms. */
+/* Compares the splats of visible block 0 with double arithmetic. terms: the size of the terms of
+ * sums, whose rounding remains even if the sum is small. */
 static void check_sums(double terms)
 {
     for (int i = 0; i < CASE_NET; i++)
@@ -117,8 +116,8 @@ static void check_values(void)
     check_sums(0);
 }
 
-/* The gradient of a channel of visible block 0 against central differences of step h, or of a
- * hundredth of it where the two differ (a kink). */
+/* Compares the gradient of a channel of visible block 0 with central differences of step h, or of h
+ * / 100 if the two differ (a kink). */
 static void check_channel(int c, double h)
 {
     for (int lane = 0; lane < TED4_LANES; lane++) {
@@ -152,8 +151,8 @@ static void check_channel(int c, double h)
 /* ---- activation ---- */
 
 /* Widths from far below their floor to huge, at times before, on, at and after the edges: values
- * and gradients are those of exp(-u u), which at the floor is 0 a few thousandths beyond the edge.
- */
+ * and gradients are those of exp(-u u), which at the floor is 0 a few thousandths beyond the
+ * edge. */
 static void test_activation(void **state)
 {
     static const float width[] = { -FLT_MAX, -126, -30, -12.0001f, -12,   -11.9999f,
@@ -174,18 +173,18 @@ static void test_activation(void **state)
                 everywhere(at.tau + 3, width[w]);
                 run();
                 check_values();
-                /* Steps that stay on one side of the edge, and of the floor. */
+                /* Steps that stay on one side of the edge and of the floor. */
                 check_channel(at.tau + 2 * late,
                               1e-3 * fmax(exp2(fmin((double)width[w], 6)), 0x1p-12));
-                if (fabs((double)width[w]) < 1e3 && width[w] != -12) /* the floor's kink */
+                if (fabs((double)width[w]) < 1e3 && width[w] != -12) /* the kink at the floor */
                     check_channel(at.tau + 2 * late + 1, 1e-5);
             }
 }
 
 /* ---- sizes, offsets ---- */
 
-/* log2 sizes as far as they are clamped and beyond; linear ones from below their floor to FP16's
- * largest. */
+/* log2 sizes up to the limit at which they are clamped and beyond; linear ones from below their
+ * floor to FP16's largest. */
 static void test_sizes(void **state)
 {
     static const float log_size[] = { -FLT_MAX, -200, -126, -100, -24, 0, 10, 60 };
@@ -218,9 +217,8 @@ static void test_sizes(void **state)
     }
 }
 
-/* Linear sizes at their floor and below have the gradient of one just above it where a step would
- * bring them up, and none where it would take them farther down: else they would stay there for
- * good. */
+/* Linear sizes at or below their floor have the gradient of a size just above it if a step would
+ * increase them, and none if it would decrease them: otherwise they would never leave the floor. */
 static void test_size_floor(void **state)
 {
     static const float low[] = { 0x1p-20f, 0, -0.001f, -65504 };
@@ -255,7 +253,8 @@ static void test_size_floor(void **state)
     assert_true(down > 100);
 }
 
-/* Offsets, features and phi at FP16's ends; products of sizes and offsets stay within binary32. */
+/* Offsets, features and phi at FP16's limits; products of sizes and offsets stay within
+ * binary32. */
 static void test_half_extremes(void **state)
 {
     static const float half[] = { 0,        -0.0f, 0x1p-24f, -0x1p-24f, 0x1.ff8p-15f,
@@ -278,7 +277,8 @@ static void test_half_extremes(void **state)
 
 /* ---- heads ---- */
 
-/* The bias of output o of the last layer of a head; the layer's weights become those given. */
+/* Returns the bias of output o of the last layer of a head, and sets the layer's weights to
+ * weight. */
 static float *last_bias(int net, float weight)
 {
     const ted4_net_shape *s = &scene.layout.shape.netr[net];
@@ -293,9 +293,9 @@ static float *last_bias(int net, float weight)
     return w + n;
 }
 
-/* Quaternions of the covariance head: of no length, just short of a direction, just long enough, as
- * long as squares allow. dq = (dr - (dr r) r) / |q| for all that have a direction; (1, 0, 0, 0) and
- * no gradient for others. */
+/* Quaternions of the covariance head: of length zero, just too short for a direction, just long
+ * enough, and as long as squares allow. If a direction exists, dq = (dr - (dr r) r) / |q|;
+ * otherwise the rotation is (1, 0, 0, 0) and there is no gradient. */
 static void test_quaternions(void **state)
 {
     static const float length[] = { 0,     1e-45f, 1e-30f, 0x1.fffp-21f, 0x1p-20f, 0x1.002p-20f,
@@ -314,7 +314,7 @@ static void test_quaternions(void **state)
                     b[7 * k + 3 + c] = axis == 4 ? 0.5f * length[i] : c == axis ? length[i] : 0;
             run();
             check_values();
-            /* Weights of 0: the gradient of a bias is the sum over all anchors in use. */
+            /* With weights of 0, the gradient of a bias is the sum over all anchors in use. */
             const float *d = d_net + (b - scene.net);
 
             for (int k = 0; k < K; k++)
@@ -342,8 +342,8 @@ static void test_quaternions(void **state)
         }
 }
 
-/* Longer than squares allow: binary32 has no length for it, and so no rotation (spec 11.5 in strict
- * arithmetic says the same); nothing is worse than that. */
+/* Longer than squares allow: binary32 cannot hold the length, so there is no rotation (spec 11.5 in
+ * strict arithmetic says the same); everything else stays finite. */
 static void test_longest_quaternions(void **state)
 {
     static const float length[] = { 3e19f, 1e30f, FLT_MAX };
@@ -365,7 +365,7 @@ static void test_longest_quaternions(void **state)
     }
 }
 
-/* Heads driven to their rails and to 0: opacity 0, 1 and just either side of 0; colour and size
+/* Heads driven to saturation and to 0: opacity 0, 1 and just either side of 0; colour and size
  * shares of 0 and 1. Saturated heads have no gradient. */
 static void test_heads(void **state)
 {
@@ -399,8 +399,8 @@ static void test_heads(void **state)
         }
 }
 
-/* All weights, biases and the bank at FP16's largest and least: sums of products stay within
- * binary32 through every layer, and signs decide the heads. */
+/* All weights, biases and bank values at FP16's largest and smallest: sums of products stay within
+ * binary32 through every layer, and signs decide the heads' outputs. */
 static void test_weights(void **state)
 {
     static const float size[] = { 0, 0x1p-24f, 0x1p-14f, 65504 };
@@ -419,12 +419,12 @@ static void test_weights(void **state)
                         scene.attr[s][c * TED4_LANES + j] *= 100;
             run();
             if (motion == TED4_MOTION_NONE ||
-                size[i] < 1) /* else positions are so large that offsets are lost in them */
+                size[i] < 1) /* otherwise offsets vanish in rounding */
                 check_values();
         }
 }
 
-/* Gradients of Gaussians from nothing to huge: the adjoint is linear in them. */
+/* Gradients of Gaussians from zero to huge: the adjoint is linear in them. */
 static void test_gradient_sizes(void **state)
 {
     static const float factor[] = { 0, 0x1p-100f, 0x1p60f, 0x1p90f };
@@ -447,8 +447,8 @@ static void test_gradient_sizes(void **state)
     }
 }
 
-/* A camera on an anchor, so near that squares vanish, and so far that they are at their largest: a
- * direction of length 1 everywhere. */
+/* A camera at an anchor, so near that squares underflow, and so far that they are at their largest:
+ * the direction always has length 1. */
 static void test_directions(void **state)
 {
     static const float from[] = { 0, 1e-30f, 0x1p-21f, 0x1p-20f, 0x1p-19f, 65504, 1e18f };

@@ -1,6 +1,6 @@
-/* test_extremes_loss.c - the loss of a picture and the colour maps of cameras at their extremes:
+/* test_extremes_loss.c - the loss of a picture and the colour maps of cameras at extreme values:
  * pictures of one colour, black, white, smaller than the window, far brighter than any screen; maps
- * without an inverse. Values and gradients are finite, and are those of loss_ref.h.
+ * without an inverse. Values and gradients are finite, and equal those of loss_ref.h.
  * SPDX-License-Identifier: BSD-2-Clause */
 #include <float.h>
 #include <math.h>
@@ -39,7 +39,7 @@ static int tear_down(void **state)
     return 0;
 }
 
-/* Everything finite; returns L. */
+/* Asserts that everything is finite. Returns L. */
 static double run(float weight, double *l1, double *ssim)
 {
     const int n = 3 * p.width * p.height;
@@ -57,7 +57,7 @@ static double run(float weight, double *l1, double *ssim)
     return loss;
 }
 
-/* Against the definition; gradients of every step-th value. */
+/* Compares with the definition, for gradients of every step-th value. */
 static void check(float weight, int step)
 {
     const int n = 3 * p.width * p.height, plane = p.width * p.height;
@@ -81,7 +81,7 @@ static void check(float weight, int step)
         const double slope = (up - down) / (2 * h), got = (double)p.gradient[i] * n;
 
         if (weight < 1.0f && ref_absolute(&ref, c, y, x, 0) < 2 * h)
-            continue; /* at the corner of |.| */
+            continue; /* at the kink of |.| */
         if (!(fabs(got - slope) < 5e-3 * (1 + fabs(slope))))
             fail_msg("%d x %d, (%d, %d) of %d: %g, not %g", p.width, p.height, x, y, c, got, slope);
     }
@@ -96,8 +96,8 @@ static void fill(int width, int height, float image, uint8_t truth)
     memset(p.truth, truth, sizeof p.truth);
 }
 
-/* One colour against one colour: there is no variance, and rounding must not make one. The first is
- * 1/255 of a byte off its truth. */
+/* One constant colour against another: the variance is 0, and rounding must not create one. The
+ * first colour differs from its truth by 1/255 of a byte. */
 static void test_constant(void **state)
 {
     static const int size[][2] = { { 1, 1 },   { 2, 1 },  { 1, 13 }, { 5, 5 },
@@ -114,7 +114,8 @@ static void test_constant(void **state)
             }
 }
 
-/* Equal, black and white: loss 0 and no less, SSIM 1 and no more, and nothing to gain anywhere. */
+/* Equal pictures, black and white: the loss is nearly 0 and not negative, SSIM is nearly 1 and not
+ * above, and gradients vanish. */
 static void test_equal(void **state)
 {
     (void)state;
@@ -136,7 +137,7 @@ static void test_equal(void **state)
         }
 }
 
-/* Edges as sharp as they come: a chessboard, its negative, and lines, black and white. */
+/* The sharpest edges: a chessboard, its negative, and lines, in black and white. */
 static void test_contrast(void **state)
 {
     (void)state;
@@ -154,8 +155,8 @@ static void test_contrast(void **state)
     }
 }
 
-/* Far beyond white, where squares have no digits left for the variance: what the numbers are then
- * is rounding, but numbers they are, and L1 is right. */
+/* Far brighter than white, where squares have no digits left for the variance: SSIM is determined
+ * by rounding but finite, and L1 is correct. */
 static void test_bright(void **state)
 {
     static const float bright[] = { 30, 100, 1e3f, 65504, 1e6f, 1e9f, 1e15f, 1e18f };
@@ -180,9 +181,9 @@ static void test_bright(void **state)
         }
 }
 
-/* The same where rounding is about as large as what SSIM's denominator adds to the variances: no
- * pixel's quotient may run away, whichever way the rounding goes. By mathematics SSIM is below 2 /
- * 29, and the slope that of L1. */
+/* The same where rounding is about as large as the constants that SSIM's denominator adds to the
+ * variances: no pixel's quotient may diverge, whatever the sign of the rounding error.
+ * Mathematically SSIM is below 2 / 29, and the slope is that of L1. */
 static void test_rounding(void **state)
 {
     enum { SIDE = 23, N = 3 * SIDE * SIDE };
@@ -220,9 +221,9 @@ static void open_colour(ted4_colour *c)
     assert_int_equal(ted4_colour_init(c, &d), 0);
 }
 
-/* Constant pictures and gradients from 0 to huge through maps from the identity to FP16's largest:
- * c' = c (I + A) + v in double, and its adjoint. All products are the same in every pixel, so sums
- * are PIXELS times one. */
+/* Constant pictures and gradients from 0 to huge, through maps from the identity to FP16's largest:
+ * c' = c (I + A) + v in double precision, and its adjoint. All products are the same in every
+ * pixel, so sums are PIXELS times one product. */
 static void test_maps(void **state)
 {
     static const float map[] = { 0, -1, 0x1p-24f, 1e-45f, 1, -65504, 65504 };
@@ -260,7 +261,7 @@ static void test_maps(void **state)
         }
 }
 
-/* Whatever the map, what is taken back is a picture: bytes, or the very picture where there is no
+/* For any map, undo returns a picture: bytes, or the unchanged picture if the map has no
  * inverse. */
 static void test_undo(void **state)
 {
@@ -292,7 +293,7 @@ static void test_undo(void **state)
         }
 }
 
-/* A step from gradients of any size, over and over: the map stays finite and moves by about the
+/* Repeated steps with gradients of any size: the map stays finite and moves by about the learning
  * rate. */
 static void test_steps(void **state)
 {
@@ -312,7 +313,7 @@ static void test_steps(void **state)
             assert_true(isfinite(c.value[1][k]));
             assert_true(fabsf(c.value[1][k]) < 0.11f);
             if (gradient_of[i] >=
-                1e-10f) /* half of 20 steps: the other half is the other camera's */
+                1e-10f) /* half of 20 steps: the gauge gives the other half to the other camera */
                 assert_true(fabsf(fabsf(c.value[1][k]) - 0.1f) < 1e-4f);
         }
         ted4_colour_finish(&c);

@@ -1,6 +1,6 @@
-/* test_extremes_raster_grad.c - the rasteriser's adjoint at the ends of what binary32 holds: every
- * gradient is finite, and is the central difference of the image model in double precision
- * (raster_ref.h), whose parameters are double, too.
+/* test_extremes_raster_grad.c - the rasteriser's adjoint near the limits of binary32: every
+ * gradient is finite, and equals the central difference of the image model in double precision
+ * (raster_ref.h), whose parameters are double too.
  * SPDX-License-Identifier: BSD-2-Clause */
 #include <float.h>
 #include <string.h>
@@ -16,12 +16,12 @@ enum { SIDE = 20, PIXELS = SIDE * SIDE, MOST = 8, GROUPS = 5 };
 static const int group_first[GROUPS + 1] = { SCENE_MEAN,    SCENE_SCALE,  SCENE_ROT,
                                              SCENE_OPACITY, SCENE_COLOUR, SCENE_PARAMS };
 
-/* Of the parameter and of 1 / SIDE of a unit; the second step tells a pixel's jump over a threshold
- * from a wrong gradient. */
+/* Steps relative to the parameter plus 1 / SIDE of a unit. The smaller step distinguishes a pixel
+ * that crosses a threshold from a wrong gradient. */
 #define STEP       1e-6
 #define SMALL_STEP 2e-7
-/* Float gradients against double differences: share of the value, of the largest gradient in its
- * group, and what rounding of the loss leaves in the difference. */
+/* Tolerances between float gradients and double differences: relative to the value, relative to the
+ * largest gradient in its group, and for the rounding of the loss in the difference. */
 #define RELATIVE   2e-3
 #define ABSOLUTE   2e-5
 #define ROUNDING   1e-14
@@ -63,7 +63,7 @@ static double difference(double *x, double h)
     return (up - down) / (2 * h);
 }
 
-/* n ordinary Gaussians in view, and a loss. */
+/* Makes n ordinary Gaussians in view, and a loss. */
 static void begin(size_t n, uint64_t seed)
 {
     memset(&p, 0, sizeof p);
@@ -80,7 +80,7 @@ static void begin(size_t n, uint64_t seed)
     }
 }
 
-/* Runs the kernels. Returns how many Gaussians were left out. */
+/* Runs the kernels. Returns the number of Gaussians that were skipped. */
 static uint64_t run(void)
 {
     static float image[3 * PIXELS];
@@ -134,7 +134,7 @@ static void compare(size_t i, int param, double top)
                  top);
 }
 
-/* Every parameter of every Gaussian but those of the group not (-1: none). */
+/* Checks every parameter of every Gaussian except those of group not (-1: none). */
 static void check(int not )
 {
     for (size_t i = 0; i < p.s.n; i++)
@@ -163,14 +163,14 @@ static void set_size(size_t i, float a, float b, float c)
     *scene_param(&p.s, SCENE_SCALE + 2, i) = c;
 }
 
-/* A ball, a plate, needles. */
+/* Makes Gaussian i a ball, a plate or a needle. */
 static void set_kind(size_t i, float size, int kind)
 {
     set_size(i, size, kind > 0 ? 0.2f : size, kind < 2 ? size : kind == 2 ? 0.3f : 0);
 }
 
-/* The covariance goes with the square of a size: at 0 its gradient is 0. Huge ones are flat, and
- * nothing but opacity and colour matters. */
+/* The covariance is quadratic in a size, so at size 0 its gradient is 0. A huge Gaussian is flat
+ * over the picture, so that only opacity and colour matter. */
 static void test_sizes(void **state)
 {
     static const float size[] = {
@@ -195,7 +195,7 @@ static void test_sizes(void **state)
     scene_free(&p.s);
 }
 
-/* Just before the near plane, and far away: at the camera the Jacobian grows like 1 / z. */
+/* Just in front of the near plane, and far away: near the camera the Jacobian grows like 1 / z. */
 static void test_depths(void **state)
 {
     static const double depth[] = { 0.2000001, 0.201, 0.25, 1e3, 65504, 1e6 };
@@ -208,11 +208,11 @@ static void test_depths(void **state)
             begin(2, 20 + i);
             scene_place(&p.s, &p.v, 0, off == 0 ? 10 : off == 1 ? -2 : 24, 10.3, depth[i]);
             set_size(0, size, 0.5f * size, 2 * size);
-            check(depth[i] < 0.2001 ? 0 : -1); /* a step of the mean may lead behind the plane */
+            check(depth[i] < 0.2001 ? 0 : -1); /* a step of the mean may cross the near plane */
         }
 }
 
-/* Behind the camera, at the near plane and off the picture: no gradient at all. */
+/* Behind the camera, at the near plane and outside the picture: no gradient at all. */
 static void test_unseen(void **state)
 {
     static const float depth[] = { 0.2f, 0, -0.0f, 1e-45f, -1, -65504, -FLT_MAX };
@@ -235,7 +235,8 @@ static void test_unseen(void **state)
     }
 }
 
-/* What the forward pass left out gets no gradient, and leaves every bit of the others' alone. */
+/* Gaussians that the forward pass skipped get no gradient, and do not change a bit of the gradients
+ * of the others. */
 static void test_skipped(void **state)
 {
     static const float bad[] = { NAN, INFINITY, FLT_MAX, 1e12f };
@@ -276,7 +277,7 @@ static void test_edges(void **state)
         }
 }
 
-/* 0 and too little have no gradient; at the cap only colour has. */
+/* Opacity 0, or too little to be drawn, has no gradient; at the cap only colour has one. */
 static void test_opacities(void **state)
 {
     static const float faint[] = { 0, -0.0f, 1e-45f, FLT_MIN, -1, -FLT_MAX, 0.0039f };
@@ -299,7 +300,7 @@ static void test_opacities(void **state)
     }
 }
 
-/* Quaternions of any length: the gradient is that of the polynomial R(q), which has none at 0. */
+/* Quaternions of any length: the gradient is that of the polynomial R(q), which is 0 at q = 0. */
 static void test_rotations(void **state)
 {
     static const float length[] = { 0, 1e-45f, 1e-20f, 0x1p-20f, 1e-3f, 30, 1e3f };
@@ -314,8 +315,8 @@ static void test_rotations(void **state)
     }
 }
 
-/* All at one depth: the lower index is in front, for gradients too. A step of a mean changes the
- * order, so means are not varied. */
+/* All at the same depth: the Gaussian with the lower index is in front, for gradients too. A step
+ * of a mean changes the order, so means are not varied. */
 static void test_ties(void **state)
 {
     (void)state;
@@ -328,7 +329,7 @@ static void test_ties(void **state)
     }
 }
 
-/* Gradients of the picture from nothing to huge: the adjoint is linear in them. */
+/* Gradients of the picture from zero to huge: the adjoint is linear in them. */
 static void test_picture_gradients(void **state)
 {
     static const float factor[] = { 0, 0x1p-126f, 0x1p-60f, 0x1p60f, 0x1p90f };

@@ -1,6 +1,7 @@
-/* test_extremes_rate.c - quantiser, rate model and its adjoint at their extremes: sigma and step at
- * floor and ceiling, FP16's ends in values and weights, noise and rounding of what no symbol holds;
- * and the coder's own tables at theirs. Against double precision (rate_ref.h); all finite.
+/* test_extremes_rate.c - quantiser, rate model and its adjoint at extreme values: sigma and step at
+ * their lower and upper limits, values and weights at FP16's limits, noise and rounding of values
+ * beyond every symbol; and the coder's own tables at their limits. Compared with double precision
+ * (rate_ref.h); all results are finite.
  * SPDX-License-Identifier: BSD-2-Clause */
 #include <float.h>
 
@@ -36,7 +37,7 @@ enum {
     N_SIGMAS = sizeof log_sigmas / sizeof *log_sigmas
 };
 
-/* Bits of every distance with every sigma, and slopes where they are smooth. */
+/* Bits for every distance with every sigma, and slopes where they are smooth. */
 static void test_symbols(void **state)
 {
     (void)state;
@@ -65,7 +66,7 @@ static void test_symbols(void **state)
             assert_true(d_s[0] == d_s[1]);
             assert_true((a <= 0 || d_u[0] == -d_u[1]));
             if (fabs(a - w) < 0.01 || a < 2 * h || a > 1e8)
-                continue; /* kinks, and where a step is lost in a */
+                continue; /* kinks, and where a step is lost in a's rounding */
             const double du = (ref_bits(a + h, sigma) - ref_bits(a - h, sigma)) / (2 * h);
 
             if (!close_to((double)d_u[0], du, 5e-4, 5e-5 / exp2(sigma)))
@@ -74,9 +75,9 @@ static void test_symbols(void **state)
         }
 }
 
-/* The coder at the same ends: every sigma index, means at the ends of what networks give, symbols
- * at the rails. Slots are never empty, escapes within their bits, and the way back leads to the
- * symbol. */
+/* The coder at the same limits: every sigma index, means at the limits of what networks give,
+ * symbols at both ends of their range. Slots are never empty, escapes have at most their number of
+ * bits, and decoding returns the symbol. */
 static void test_coder(void **state)
 {
     static const int32_t mu[] = {
@@ -109,9 +110,9 @@ static void test_coder(void **state)
 
 /* ---- the quantiser ---- */
 
-/* Values from nothing to beyond every symbol with steps from the least to the largest of the
- * format: rounding gives the nearest multiple within +-32767 steps, noise moves by less than half a
- * step, and a_f is never before a_s. */
+/* Values from zero to beyond every symbol, with steps from the smallest to the largest of the
+ * format: rounding gives the nearest multiple within +-32767 steps, noise changes a value by less
+ * than half a step, and a_f is never before a_s. */
 static void test_quantiser(void **state)
 {
     static const float value[] = { 0, -0.0f, 1e-45f, FLT_MIN, 0x1p-24f, 0.5f,
@@ -181,7 +182,8 @@ static void run(ref_world *w, double *bits)
     all_finite(w->d_net, w->layout.n_net, "gradient of a network");
 }
 
-/* Bits against the double model, within what binary32 leaves of k where x / q is large. */
+/* Compares the bits with those of the double model, within the precision that binary32 has for k
+ * where x / q is large. */
 static void compare(ref_world *w, const double *bits, double relative)
 {
     const ref_model m = ref_model_make(w);
@@ -206,7 +208,8 @@ static void compare(ref_world *w, const double *bits, double relative)
     free(noise);
 }
 
-/* Values at FP16's ends: bits grow by the logarithm of the distance, gradients shrink with it. */
+/* Values at FP16's limits: bits grow with the logarithm of the distance, gradients shrink with
+ * it. */
 static void test_values(void **state)
 {
     static const float value[] = { 0, -0.0f, 0x1p-24f, 0x1p-14f, 1, 65504, -65504, 1e9f };
@@ -225,15 +228,15 @@ static void test_values(void **state)
                     for (int j = 0; j < TED4_LANES; j++)
                         w.attr[s][c * TED4_LANES + j] = value[i];
             run(&w, bits);
-            /* Rounding holds symbols within their range, and distances are held below 1e9, which
-             * the reference does not know. */
+            /* The model clamps rounded symbols to their range and distances to 1e9; the reference
+             * does neither. */
             if (quant == TED4_QUANT_NOISE && value[i] < 1e8f)
                 compare(&w, bits, 1e-4);
             ref_world_finish(&w);
         }
 }
 
-/* Every output of the hyperprior at a rail: sigmas at floor and ceiling, steps at theirs, means
+/* Every output of the hyperprior at a limit: sigmas and steps at their smallest and largest, means
  * beyond every symbol. */
 static void test_outputs(void **state)
 {
@@ -264,7 +267,7 @@ static void test_outputs(void **state)
         }
 }
 
-/* All weights at FP16's largest and least, of either sign: sums stay within binary32. */
+/* All weights at FP16's largest and smallest, of either sign: sums stay within binary32. */
 static void test_weights(void **state)
 {
     static const float size[] = { 0, 0x1p-24f, 0x1p-14f, 65504 };
@@ -285,7 +288,7 @@ static void test_weights(void **state)
     }
 }
 
-/* Weights of bits and gradients of rendered values from nothing to huge. */
+/* Weights of bits and gradients of rendered values from zero to huge. */
 static void test_gradient_sizes(void **state)
 {
     static const float factor[] = { 0, 1e-45f, 0x1p-100f, 1, 0x1p60f, 0x1p90f };
@@ -309,15 +312,15 @@ static void test_gradient_sizes(void **state)
     }
 }
 
-/* ---- as the decoder does it ---- */
+/* ---- integer networks, as in the decoder ---- */
 
-/* Integer networks with all weights at the rails that their shifts allow, and values at FP16's
- * ends: steps, means and sigmas stay within the tables; a value farther beyond the last symbol is
- * that symbol still, for the contexts of others too. */
+/* Integer networks with all weights at the limits that their shifts allow, and values at FP16's
+ * limits: steps, means and sigmas stay within the tables. A value beyond the last symbol counts as
+ * that symbol, also in the contexts of others. */
 static void test_integer(void **state)
 {
     static const float value[] = { 0, 0x1p-24f, 1, 65504, 5e5f, -65504, -5e5f, 1e9f };
-    double before[2] = { 0 }; /* bits of features that were at the last symbol, too */
+    double before[2] = { 0 }; /* bits of features at the last symbol, for comparison */
 
     (void)state;
     for (size_t i = 0; i < sizeof value / sizeof *value; i++)

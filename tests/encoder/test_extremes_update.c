@@ -1,6 +1,6 @@
-/* test_extremes_update.c - Adam, the regulariser of volumes, that of the bank, mask losses and
- * learning rates at their extremes: gradients from nothing to the largest of binary32, no Gaussian
- * on screen and one, banks of FP16's ends. Against double precision; everything stays finite.
+/* test_extremes_update.c - Adam, the regularisers of volumes and of the bank, mask losses and
+ * learning rates at extreme values: gradients from zero to the largest of binary32, no Gaussian on
+ * screen and one, banks at FP16's limits. Compared with double precision; everything stays finite.
  * SPDX-License-Identifier: BSD-2-Clause */
 #include <float.h>
 #include <stdlib.h>
@@ -29,9 +29,9 @@ static void step(row *r, uint64_t count, float rate)
                      (double)r->g[j], (double)r->x[j], (double)r->m[j], (double)r->v[j]);
 }
 
-/* The same gradient again and again moves a value by the rate times g / (|g| + 1e-15) a step, in
- * double. Squares below 1e-38 and above 1e38 vanish and overflow: there the step is smaller than
- * that, and never against the gradient. */
+/* A constant gradient moves a value by the rate times g / (|g| + 1e-15) per step, in double
+ * precision. Squares below 1e-38 underflow and those above 1e38 overflow: there the step is
+ * smaller, and never has the wrong sign. */
 static void test_adam_sizes(void **state)
 {
     static const float size[] = { 0,      1e-45f, FLT_MIN, 1e-30f, 1e-22f, 1e-19f,
@@ -63,7 +63,7 @@ static void test_adam_sizes(void **state)
     }
 }
 
-/* One gradient that is far too large freezes a value for a while, and not for ever. */
+/* One gradient that is far too large stops the updates of a value for a while, but not for good. */
 static void test_adam_recovers(void **state)
 {
     static const float outlier[] = { 1e20f, 1e25f, FLT_MAX };
@@ -88,7 +88,7 @@ static void test_adam_recovers(void **state)
     }
 }
 
-/* Corrections from the first step to more than a training has. */
+/* Bias corrections from the first step to more steps than a training has. */
 static void test_bias(void **state)
 {
     (void)state;
@@ -117,9 +117,9 @@ static void begin(ted4_trainer *t, uint32_t frames)
     cloud_begin(&cloud, t);
 }
 
-/* Sizes from nothing to what the rasteriser still draws, for all, one or none on screen: the
- * gradient of a size is weight / n times the product of the others, and those off screen, which may
- * be of any size at all, have none. */
+/* Sizes from zero to the largest that the rasteriser still draws, with all, one or no Gaussian on
+ * screen: the gradient of a size is weight / n times the product of the others. Gaussians off
+ * screen, which may have any size at all, have none. */
 static void test_volume(void **state)
 {
     static const float size[] = { 0, 1e-45f, FLT_MIN, 0x1p-24f, 1, 65504, 1e9f, 1e12f, FLT_MAX };
@@ -168,8 +168,8 @@ static void test_volume(void **state)
 
 /* ---- bank ---- */
 
-/* Rows from all 0 to alternating FP16 extremes, and beyond: 2 weight / count times the second
- * difference of the second differences. */
+/* Rows from all 0 to alternating FP16 limits and beyond: the gradient is 2 weight / count times the
+ * second difference of the second differences. */
 static void test_bank(void **state)
 {
     static const float size[] = { 0, 1e-45f, 0x1p-24f, 1, 65504, 1e18f, 1e30f };
@@ -207,8 +207,8 @@ static void test_bank(void **state)
 
 /* ---- masks ---- */
 
-/* Logits from one rail to the other: the slope of the sigmoid, 0 at the rails, and a step of Adam
- * that leaves everything finite. */
+/* Logits from one end of their range to the other: the gradient is the slope of the sigmoid, 0 at
+ * both ends, and a step of Adam leaves everything finite. */
 static void test_masks(void **state)
 {
     static const float logit[] = {
@@ -245,9 +245,9 @@ static void test_masks(void **state)
     ted4_trainer_finish(&t);
 }
 
-/* ---- what is held at an end ---- */
+/* ---- saturated values ---- */
 
-/* Nothing at first; then one value at a time at, and just inside of, each end. */
+/* First no saturated value; then one value at a time at, and just inside, each end. */
 static void test_saturated(void **state)
 {
     static const struct {

@@ -1,5 +1,5 @@
-/* test_generate.c - train/splat/decode.c against the double-precision text of spec 11
- * (generate_ref.h), for every variant of the header.
+/* test_generate.c - train/splat/decode.c against a reference in double precision, written from spec
+ * 11 (generate_ref.h), for every variant of the header.
  * SPDX-License-Identifier: BSD-2-Clause */
 #include <math.h>
 #include <stdlib.h>
@@ -9,7 +9,7 @@
 #include "generate_case.h"
 #include "odd_threads.h"
 
-/* Binary32 through about six layers of sums of a few terms of size 1. */
+/* Rounding of binary32 through about six layers of sums of a few terms of size 1. */
 #define TOLERANCE 1e-5
 
 static test_case scene;
@@ -94,8 +94,8 @@ static void test_depths(void **state)
 
 static void test_times(void **state)
 {
-    /* First and last time, on a row and between rows of a bank of 5, one frame, and the largest
-     * den. */
+    /* First and last time, at a row and between rows of a bank of 5, a single frame, and the
+     * largest den. */
     static const uint32_t time[][2] = { { 0, 8 },       { 8, 8 }, { 2, 8 }, { 3, 8 },
                                         { 0, 1 },       { 1, 1 }, { 7, 8 }, { 16777214, 16777215 },
                                         { 1, 16777215 } };
@@ -157,7 +157,7 @@ static void test_threads(void **state)
     ted4_generator_free(g);
 }
 
-/* Fewer visible blocks, none, and more than at first. */
+/* Fewer visible blocks, none, and more than at first, with the same generator. */
 static void test_blocks(void **state)
 {
     ted4_header h = case_header(TED4_MOTION_CONCAT, TED4_VIEW_COLOUR);

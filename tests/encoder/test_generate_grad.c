@@ -9,12 +9,12 @@
 #include "generate_case.h"
 #include "odd_threads.h"
 
-/* Step of the differences: small, because networks of ReLUs have kinks everywhere; double loses
- * about 1e-9 to it. */
+/* Step of the differences. Small, because ReLU networks have kinks everywhere; in double precision
+ * this costs about 1e-9 of accuracy. */
 #define STEP       1e-7
-/* Linear sizes are at least this (spec 11). */
+/* Linear sizes are clamped to at least this (spec 11). */
 #define SIZE_FLOOR 0x1p-20
-/* Of the gradient, relative to the size of the terms it sums. */
+/* Tolerance of gradients, relative to the sum of the magnitudes of their terms. */
 #define TOLERANCE  2e-5
 
 static test_case scene;
@@ -41,7 +41,8 @@ static ted4_splat_grads splat_gradients(float *from, size_t n)
     return gr;
 }
 
-/* Runs forward and backward of the scene from random gradients of the splats; d_net starts at 1. */
+/* Runs the generator forward and backward on the scene, from random gradients of the splats. d_net
+ * starts at 1, to test that gradients are added. */
 static void run(ted4_generator *g, const ted4_parallel *p)
 {
     float *list[CASE_BLOCKS];
@@ -86,8 +87,8 @@ static double loss(int visible, int lane, const double *channel)
     return sum;
 }
 
-/* A linear size at its floor or below: there only what would bring it up has a gradient, the one of
- * a size just above the floor. */
+/* Whether a linear size is at its floor or below. There the gradient is that of a size just above
+ * the floor if a step would increase the size, and 0 otherwise. */
 static int is_floored(int c, double value)
 {
     const int first = scene.layout.first[TED4_SCALING];
@@ -122,7 +123,8 @@ static void check_anchor(int visible, int lane)
     }
 }
 
-/* The sum over anchors of the change of the loss, and of its size. */
+/* Returns the change of the loss, summed over anchors. *size: the sum of the changes'
+ * magnitudes. */
 static double net_difference(size_t i, double *size)
 {
     const double old = scene.exact_net[i];
@@ -146,7 +148,7 @@ static double net_difference(size_t i, double *size)
     return sum;
 }
 
-/* Every step-th value, and the whole bank. */
+/* Checks every step-th value, and the whole bank. */
 static void check_net(size_t step)
 {
     for (size_t i = 0; i < scene.layout.nete; i += i < scene.layout.bank ? step : 1) {
@@ -244,7 +246,7 @@ static void test_activation_off(void **state)
     ted4_generator_free(g);
 }
 
-/* Every head negative: opacity is 0 and passes nothing on. */
+/* All opacity outputs are negative: opacity is 0, and no gradient passes through it. */
 static void test_dead(void **state)
 {
     const ted4_header h = case_header(TED4_MOTION_NONE, TED4_VIEW_NONE);
@@ -267,7 +269,7 @@ static void test_dead(void **state)
 }
 
 /* The same visible blocks many times, so that chunks have several groups: gradients of the networks
- * are that many times as large. */
+ * are multiplied by that number. */
 static void test_many_blocks(void **state)
 {
     enum { TIMES = 9, N_BLOCKS = TIMES * CASE_BLOCKS };

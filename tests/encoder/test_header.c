@@ -1,5 +1,6 @@
-/* test_header.c - the header of the file to be, from the options and the scene: the frame rate as a
- * fraction, rows of the bank, and that no training begins whose header no file may have.
+/* test_header.c - the header of the future file, made from the options and the scene: the frame
+ * rate as a fraction, rows of the bank, and that no training begins with a header that the format
+ * does not allow.
  * SPDX-License-Identifier: BSD-2-Clause */
 #include "test.h"
 #include "cloud_case.h"
@@ -7,7 +8,7 @@
 #include "train/model/header_from_options.h"
 #include "train/step/trainer_init.h"
 
-/* ---- frames a second ---- */
+/* ---- frame rate ---- */
 
 static void expect_rate(double rate, uint32_t num, uint32_t den)
 {
@@ -40,8 +41,7 @@ static void test_rates(void **state)
         assert_int_equal(ted4_frame_rate(none[i], &n, &d), -1);
 }
 
-/* Between the bounds every rate has a fraction, and it is off by a ten-millionth of the rate at
- * most. */
+/* Every rate between the bounds has a fraction whose relative error is at most 1e-7. */
 static void test_any_rate(void **state)
 {
     (void)state;
@@ -79,7 +79,7 @@ static void test_begin(void **state)
     assert_int_equal(t.layout.head.rate_num, 1);
     assert_int_equal(t.layout.head.rate_den, 60);
     ted4_trainer_finish(&t);
-    /* Loaders let neither pass. */
+    /* Loaders would reject both. */
     c.data.rate = 1e9;
     assert_int_equal(ted4_trainer_init(&t, &c.options, &c.data, NULL), -1);
     assert_non_null(strstr(t.message.text, "rate_num is beyond its range"));

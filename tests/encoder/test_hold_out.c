@@ -1,5 +1,5 @@
-/* test_hold_out.c - cameras that the caller names are held out, in every layout, in place of what
- * the layout says; a name that there is not gives the names that there are. Links
+/* test_hold_out.c - cameras that the caller names are held out, in every layout, instead of those
+ * that the layout specifies; an unknown name gives an error that lists the known names. Links
  * tools/scene/ray_*.o.
  * SPDX-License-Identifier: BSD-2-Clause */
 #include "test.h"
@@ -35,8 +35,8 @@ static const char *load(ted4_dataset *d, const tiny_folder *f, const char *const
     return tiny_load(d, f, &o);
 }
 
-/* All pictures whose path holds one of two texts are test, the others are not; of 16 pictures in 4
- * cameras of 4 frames. */
+/* Asserts that exactly the pictures whose path contains one of two texts are held out, of 16
+ * pictures by 4 cameras at 4 frames. */
 static void held(const tiny_folder *f, const char *const *names, size_t n, const char *first,
                  const char *second)
 {
@@ -71,8 +71,8 @@ static void refused(const tiny_folder *f, const char *name, const char *what)
 /* Layouts whose cameras have names. */
 static void test_labels(void **state)
 {
-    /* What three cameras are called, and parts of their pictures' paths; then all names, as a
-     * refusal lists them. */
+    /* Names of two cameras, and parts of their pictures' paths; then all names, as the error lists
+     * them. */
     static const struct {
         ted4_ray_layout layout;
         const char *name[2], *path[2], *all;
@@ -108,7 +108,7 @@ static void test_labels(void **state)
     }
 }
 
-/* Cameras without a name go by the pictures they took. */
+/* Cameras without a name are named by the pictures they took. */
 static void test_pictures(void **state)
 {
     static const char *const good[] = { "train/r_001_02.png", "r_001_02", "train/r_001_00" };
@@ -128,8 +128,8 @@ static void test_pictures(void **state)
     tiny_free(&f);
 }
 
-/* Pictures that the layout's own split leaves out come back; nothing is left when all cameras are
- * named. */
+/* Pictures that the layout's own split leaves out are used again. Holding out all cameras is an
+ * error, since nothing would remain. */
 static void test_whole(void **state)
 {
     tiny_folder f = write_scene(RAY_NERFSTUDIO);
@@ -159,7 +159,7 @@ static void test_whole(void **state)
     ted4_dataset_free(&d);
     refused(&f, "x", ", ... (300 in all)");
     tiny_free(&f);
-    /* Of HyperNeRF's ids without a split two in four are left out. */
+    /* Without a split, HyperNeRF leaves out two ids in four. */
     f = write_scene(RAY_HYPERNERF);
     s.n = 0;
     tiny_add(&s, "{\"ids\": [");
