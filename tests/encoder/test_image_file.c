@@ -1,5 +1,5 @@
-/* test_image_file.c - picture files to bytes, the writer of render/png_file.c, lens undistortion
- * against an analytic pattern, and the cache.
+/* test_image_file.c - decoding of picture files, the writer of render/png_file.c, lens undistortion
+ * against an analytic pattern, and the image cache.
  * SPDX-License-Identifier: BSD-2-Clause */
 #include <math.h>
 #include <pthread.h>
@@ -15,8 +15,8 @@
 #include "render/png_file.h"
 #include "tiny_scene.h"
 
-/* A PNG of any colour type (plus 8: with the first palette entry transparent) and depth; rows are
- * packed as in the file. */
+/* Writes a PNG of any colour type (plus 8: the first palette entry is transparent) and depth; rows
+ * are packed as in the file. */
 static void write_png(const char *path, int w, int h, int depth, int type, const uint8_t *rows,
                       size_t stride)
 {
@@ -104,7 +104,7 @@ static void test_png_write(void **state)
     expect_image(tiny_path(&f, "out.png"), 5, 4, 3, px);
     assert_int_equal(ted4_png_write("/nonexistent/out.png", 5, 4, px, why, sizeof why), -1);
     assert_non_null(strstr(why, "/nonexistent/out.png"));
-    /* The target is a folder: the rename fails and no temporary file stays. */
+    /* The target is a folder, so the rename fails, and no temporary file may remain. */
     tiny_text(&f, "folder/x", "");
     assert_int_equal(ted4_png_write(tiny_path(&f, "folder"), 5, 4, px, why, sizeof why), -1);
     remove(tiny_path(&f, "folder/x"));
@@ -164,14 +164,14 @@ static void test_jpeg(void **state)
 
 /* Lens */
 
-/* Smooth pattern over the picture plane of a pinhole, in normalised coordinates. */
+/* A smooth pattern over the picture plane of a pinhole camera, in normalised coordinates. */
 static double pattern(double u, double v, int c)
 {
     return 128 + 60 * sin(9 * u + c) * cos(7 * v - c) + 50 * sin(5 * v + 2 * u * c);
 }
 
-/* The pinhole position (u, v) whose distorted position is (a, b), by fixed-point iteration of the
- * lens equations. */
+/* Finds the pinhole position (u, v) whose distorted position is (a, b), by fixed-point iteration of
+ * the lens equations. */
 static void invert(const ted4_lens *l, double a, double b, double *u, double *v)
 {
     a -= l->skew * b / l->fx;
@@ -187,8 +187,8 @@ static void invert(const ted4_lens *l, double a, double b, double *u, double *v)
     }
 }
 
-/* The lens equations themselves: where in the distorted picture the pinhole position (u, v) lies.
- */
+/* The lens equations themselves: the position (a, b) in the distorted picture of the pinhole
+ * position (u, v). */
 static void distort(const ted4_lens *l, double u, double v, double *a, double *b)
 {
     const double s = u * u + v * v, radial = 1 + l->k1 * s + l->k2 * s * s + l->k3 * s * s * s;
@@ -256,8 +256,8 @@ static void test_undistort_border(void **state)
 
 enum { SIDE = 100, MIDDLE = 50 };
 
-/* The middle row, undistorted, of a picture that is black up to column edge and white from the next
- * one on. */
+/* Undistorts a picture that is black up to column edge and white from the next column on; row: the
+ * middle row of the result. */
 static void undistort_edge(const ted4_lens *l, int edge, uint8_t row[SIDE])
 {
     static uint8_t in[SIDE * SIDE * 3], out[SIDE * SIDE * 3];
@@ -269,7 +269,7 @@ static void undistort_edge(const ted4_lens *l, int edge, uint8_t row[SIDE])
         row[i] = out[(MIDDLE * SIDE + i) * 3];
 }
 
-/* Where the polynomial would fold back, the position stays on the fold. r (1 - 0.2 r^2) is largest
+/* Where the polynomial would fold back, the position stays at the fold. r (1 - 0.2 r^2) is largest
  * at r = sqrt(5 / 3): 0.86066, 17.213 pixels from the middle; r (1 - 0.1 r^6) at r^6 = 1 / 0.7:
  * 0.90964, 18.193 pixels; r (1 + r^2 - r^4 + r^6) never folds. */
 static void test_undistort_fold(void **state)
@@ -307,7 +307,7 @@ static uint8_t *make_item(void *user, size_t i, size_t *size, ted4_message *m)
         return NULL;
     }
     memset(p, (int)i, ITEM_BYTES);
-    ((size_t *)user)[i]++; /* each entry by one thread at a time, as promised */
+    ((size_t *)user)[i]++; /* one thread at a time per entry, as promised */
     *size = ITEM_BYTES;
     return p;
 }
@@ -324,7 +324,7 @@ static void test_cache(void **state)
         assert_int_equal(ted4_image_cache_pin(c, i, &m)[7], i);
         ted4_image_cache_unpin(c, i);
     }
-    ted4_image_cache_pin(c, 0, &m); /* now 1 is the oldest unpinned one */
+    ted4_image_cache_pin(c, 0, &m); /* now 1 is the least recently used unpinned entry */
     ted4_image_cache_unpin(c, 0);
     ted4_image_cache_pin(c, 3, &m);
     ted4_image_cache_unpin(c, 3);
@@ -336,7 +336,7 @@ static void test_cache(void **state)
         ted4_image_cache_unpin(c, i);
         assert_int_equal(made[i], 1);
     }
-    /* Pins may exceed the bound, and survive. */
+    /* Pinned entries may exceed the bound, and are not evicted. */
     const uint8_t *held[5];
     for (size_t i = 4; i < 9; i++)
         held[i - 4] = ted4_image_cache_pin(c, i, &m);
@@ -355,7 +355,7 @@ static void test_cache(void **state)
     ted4_image_cache_free(c);
 }
 
-/* Waits until so many bytes are in memory, five seconds at most. */
+/* Waits, at most five seconds, until the cache holds that many bytes. */
 static int comes_to_hold(ted4_image_cache *c, size_t bytes)
 {
     const struct timespec pause = { 0, 1000000 };
@@ -365,7 +365,7 @@ static int comes_to_hold(ted4_image_cache *c, size_t bytes)
     return ted4_image_cache_held(c) == bytes;
 }
 
-/* Pictures that were announced are decoded before anyone asks, and once. */
+/* Announced pictures are decoded before they are requested, and only once. */
 static void test_cache_ahead(void **state)
 {
     (void)state;
@@ -387,13 +387,12 @@ static void test_cache_ahead(void **state)
     ted4_image_cache_ahead(c, 11, 2);
     assert_null(ted4_image_cache_pin(c, 11, &m));
     assert_string_equal(m.text, "item 11 is broken");
-    for (size_t i = 3; i < 10;
-         i++) /* more than the queue takes; the end comes before they are done */
+    for (size_t i = 3; i < 10; i++) /* exceeds the queue; freed before all are done */
         ted4_image_cache_ahead(c, i, 1);
     ted4_image_cache_free(c);
 }
 
-/* Without threads, or room, nothing happens until the picture is asked for. */
+/* Without threads, or without room, an announced picture is decoded only on request. */
 static void test_cache_not_ahead(void **state)
 {
     (void)state;
@@ -415,8 +414,8 @@ static void test_cache_not_ahead(void **state)
     }
 }
 
-/* Half the room is for pictures that wait; one that was asked for waits no more, nor does one
- * that has gone. */
+/* At most half the room is used for announced pictures that wait; a picture that was requested or
+ * evicted no longer counts. */
 static void test_cache_half_ahead(void **state)
 {
     (void)state;
@@ -461,7 +460,8 @@ static void *hammer(void *arg)
     return (void *)wrong;
 }
 
-/* With room for four nothing is decoded ahead, with room for ten of twelve it is. */
+/* Requests from several threads: with room for four pictures nothing is decoded ahead, with room
+ * for ten of twelve it is. */
 static void hammer_cache(size_t bound)
 {
     size_t made[ITEMS] = { 0 };

@@ -1,5 +1,5 @@
-/* test_init.c - where training starts: normalised space and views in it (train/model/normalise.h),
- * anchors from points (train/model/init.h).
+/* test_init.c - initialisation: normalised space and views in it (train/model/normalise.h), anchors
+ * from points (train/model/init.h).
  * SPDX-License-Identifier: BSD-2-Clause */
 #include "test.h"
 #include "cloud_case.h"
@@ -21,14 +21,14 @@ static void test_normalise_make(void **state)
     memset(&h, 0, sizeof h);
     cloud_make(&cloud, 1);
     ted4_normalise_scene(&h, &cloud.data);
-    /* The lattice reaches 1.5 to either side; with a margin of a quarter that is between 1 and 2.
-     */
+    /* The lattice extends 1.5 to either side; with a margin of a quarter, that is between 1 and
+     * 2. */
     assert_true(h.origin[0] == 10.0f);
     assert_true(h.origin[1] == -4.0f);
     assert_true(h.origin[2] == 2.0f);
     assert_int_equal(h.exponent, 1);
 
-    /* Three of a thousand points far away are not let in. */
+    /* Three of a thousand points, far away, are ignored. */
     for (size_t i = 0; i < 1000; i++)
         for (size_t j = 0; j < 3; j++)
             many[i][j] = i % 400 == 7 ? 1e5f : 80.0f * ted4_uniform(3, 3 * i + j);
@@ -50,7 +50,7 @@ static void test_normalise_make(void **state)
     assert_true(h.origin[0] == 0.0f);
 }
 
-/* A random rotation and place. */
+/* A camera with random rotation and position. */
 static ted4_camera random_camera(uint64_t key)
 {
     ted4_camera c = { 640, 480, 500, 520, 300, 250, { 0 }, { 0 } };
@@ -75,7 +75,8 @@ static ted4_camera random_camera(uint64_t key)
     return c;
 }
 
-/* A point is at one pixel through both cameras; the centre is where the camera is. */
+/* Asserts that a point has the same pixel through both cameras, and that the centre of the view is
+ * the camera's position. */
 static void check_point(const ted4_header *h, const ted4_camera *c, const float world[3])
 {
     const double unit = ldexp(1.0, h->exponent);
@@ -157,7 +158,7 @@ static void check_values(const ted4_trainer *t, size_t i, float scale)
     }
 }
 
-/* The voxel is the lattice's own: one anchor a point, each where its point is. */
+/* The voxel size is the lattice's spacing: one anchor per point, at the point's position. */
 static void test_lattice(void **state)
 {
     (void)state;
@@ -189,8 +190,8 @@ static void test_lattice(void **state)
     }
 }
 
-/* Several points of a voxel become one anchor, at the voxel's middle; points outside the cube
- * none. */
+/* Several points in a voxel become one anchor, at the voxel's centre; points outside the cube are
+ * dropped. */
 static void test_voxels(void **state)
 {
     ted4_trainer t;
@@ -213,7 +214,7 @@ static void test_voxels(void **state)
     ted4_trainer_finish(&t);
 }
 
-/* No voxel is so fine that keys of different ones agree. */
+/* The voxel size has a lower limit, so that different voxels never share a key. */
 static void test_finest(void **state)
 {
     ted4_trainer t;
@@ -243,7 +244,7 @@ static void test_bound(void **state)
     }
 }
 
-/* One point, and none: the second is refused in words. */
+/* One point is enough; no point is refused with a message. */
 static void test_few_points(void **state)
 {
     ted4_trainer t;
@@ -260,8 +261,8 @@ static void test_few_points(void **state)
     ted4_trainer_finish(&t);
 }
 
-/* Networks: the same for the same seed, another for another; the last layer of F_deform is zero,
- * so that nothing moves at first. */
+/* Networks are equal for equal seeds and differ otherwise; the last layer of F_deform is zero, so
+ * that nothing moves at first. */
 static void test_networks(void **state)
 {
     ted4_trainer t, other;
@@ -291,7 +292,7 @@ static void test_networks(void **state)
     ted4_trainer_finish(&other);
 }
 
-/* What a network says of inputs that are all zero: y, in double precision. */
+/* Evaluates a network for inputs that are all zero: y, in double precision. */
 static void answer(const float *w, const ted4_net_shape *s, double *y)
 {
     double x[64] = { 0 };
@@ -312,7 +313,7 @@ static void answer(const float *w, const ted4_net_shape *s, double *y)
     }
 }
 
-/* A Gaussian whose opacity begins below zero would never be drawn, by any seed. */
+/* A Gaussian whose initial opacity were negative would never be drawn, so no seed may give one. */
 static void test_awake(void **state)
 {
     (void)state;

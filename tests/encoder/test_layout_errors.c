@@ -1,6 +1,6 @@
-/* test_layout_errors.c - everything that a scene of the layouts hypernerf, neu3d and calibration
- * can get wrong, and videos, give one message that says where and what, and an empty dataset. The
- * other layouts: test_dataset_errors.c.
+/* test_layout_errors.c - every error in a scene of the layouts hypernerf, neu3d and calibration, or
+ * in a video, gives one message that says where and what, and leaves an empty dataset. The other
+ * layouts: test_dataset_errors.c.
  * SPDX-License-Identifier: BSD-2-Clause */
 #include <math.h>
 
@@ -104,7 +104,7 @@ static void test_hypernerf(void **state)
 
 /* neu3d */
 
-/* Header in version 1, then n rows of one camera as float64. */
+/* Writes a NumPy header of version 1, then n rows, each one camera as float64. */
 static void table(const tiny_folder *f, const char *header, int n, double focal)
 {
     const double row[17] = { 0, 1, 0, 0, 12, 1, 0, 0, 0, 16, 0, 0, -1, 0, focal, 1, 9 };
@@ -255,7 +255,7 @@ static void test_calibration(void **state)
 static int files_in(const char *path)
 {
     DIR *d = opendir(path);
-    int n = -2; /* . and .. */
+    int n = -2; /* does not count . and .. */
 
     assert_non_null(d);
     while (readdir(d) != NULL)
@@ -264,7 +264,7 @@ static int files_in(const char *path)
     return n;
 }
 
-/* A broken video, no ffmpeg at all, and a place for the frames that is not a folder. */
+/* A damaged video, a missing ffmpeg, and a file in place of the folder for the frames. */
 static void test_videos(void **state)
 {
     tiny_folder f = tiny_new(), cache = tiny_new();

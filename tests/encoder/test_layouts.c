@@ -1,6 +1,6 @@
-/* test_layouts.c - one tiny scene written in every layout loads as one and the same: cameras,
- * times, splits, points, pixels; then what only some layouts can say (lens terms, reduced pictures,
- * splits by position, arrays of numbers). Links tools/scene/ray_*.o.
+/* test_layouts.c - a tiny scene written in every layout loads as the same dataset: cameras, times,
+ * splits, points, pixels; then features of single layouts (lens terms, reduced pictures, splits by
+ * position, arrays of numbers). Links tools/scene/ray_*.o.
  * SPDX-License-Identifier: BSD-2-Clause */
 #include <math.h>
 
@@ -54,7 +54,7 @@ static void load(ted4_dataset *d, const tiny_folder *f)
     assert_string_equal(tiny_load(d, f, &tiny_options), "");
 }
 
-/* The picture of the reference with the same pose and frame. */
+/* Index of the reference's picture with the same pose and frame. */
 static size_t twin(const ted4_dataset *r, const ted4_picture *p)
 {
     for (size_t i = 0; i < r->n_pictures; i++) {
@@ -93,7 +93,8 @@ static void same_points(const ted4_dataset *d)
     assert_memory_equal(d->point_rgb, reference.point_rgb, 3 * d->n_points);
 }
 
-/* tolerance: of pixels. split: does the layout hold out the test camera? */
+/* Asserts that d equals the reference. tolerance: of pixel values. split: whether the layout holds
+ * out the test camera. */
 static void same_scene(ted4_dataset *d, int tolerance, int split)
 {
     int found[PICTURES] = { 0 };
@@ -120,8 +121,8 @@ static void same_scene(ted4_dataset *d, int tolerance, int split)
 
 static void test_layouts(void **state)
 {
-    /* What each layout is recognised as; splits: by list, by list, 1 of 8, 1 of 8, by list, first
-     * camera, times. */
+    /* The name under which each layout is recognised. Its split is given by: a list, a list, 1 of
+     * 8, 1 of 8, a list, the first camera, times. */
     static const char *const names[RAY_LLFF] = { "D-NeRF",    "nerfstudio", "colmap",     "colmap",
                                                  "hypernerf", "neu3d",      "calibration" };
     static const int split[RAY_LLFF] = { 1, 1, 0, 0, 1, 1, 0 };
@@ -138,8 +139,8 @@ static void test_layouts(void **state)
     }
 }
 
-/* A checkpoint refuses a scene that loads in another way than when it was begun: digests do not
- * change, but where a loader is wrong. */
+/* A checkpoint refuses a scene whose digest has changed since training began, so a digest may
+ * change only if a loader was wrong. */
 static void test_digests(void **state)
 {
     static const uint64_t known[RAY_LLFF] = {
@@ -187,7 +188,7 @@ static void test_videos(void **state)
         load(&d, &f);
         assert_non_null(strstr(d.pictures[0].path, cache.path));
         same_scene(&d, 1, l == 0);
-        /* A second time from the folder, which is made anew when a frame is gone. */
+        /* The second time, frames come from the folder, which is rebuilt if a frame is missing. */
         must(remove(d.pictures[1].path) == 0, d.pictures[1].path);
         load(&again, &f);
         assert_string_equal(again.pictures[1].path, d.pictures[1].path);
@@ -204,9 +205,9 @@ static void test_videos(void **state)
     tiny_free(&cache);
 }
 
-/* What remains of the layouts */
+/* Features of single layouts */
 
-/* Times 4 and 12 of all cameras are held out. */
+/* The frames at times 4 and 12 of all cameras are held out. */
 static void test_calibration_split(void **state)
 {
     tiny_folder f = write_scene(RAY_CALIBRATION, 13, 0);
@@ -222,7 +223,7 @@ static void test_calibration_split(void **state)
     tiny_free(&f);
 }
 
-/* images/camNN/, a table of float32, and a limit of frames. */
+/* The pictures in images/camNN/, a table of float32, and a limit on the number of frames. */
 static void test_neu3d_forms(void **state)
 {
     tiny_folder f = tiny_new();
@@ -230,7 +231,7 @@ static void test_neu3d_forms(void **state)
     ted4_dataset_options o = tiny_options;
     tiny_record r = { { 0 }, 0 };
     const char head[] = "{'shape': (2, 17,), 'fortran_order': False, 'descr': '<f4', }\n";
-    /* Camera 1 stands at (5, 6, 7), right is +y, up +z, back +x. */
+    /* Camera 1 stands at (5, 6, 7), with right = +y, up = +z and back = +x. */
     const float row[17] = { 0, 0, 1, 5, 24, 0, 1, 0, 6, 32, -1, 0, 0, 7, 20, 1, 9 };
 
     (void)state;
@@ -268,7 +269,7 @@ static void test_neu3d_forms(void **state)
     tiny_free(&f);
 }
 
-/* Six pictures at half size whose cameras have every lens term. */
+/* Writes six pictures at half size, whose cameras have all lens terms. */
 static void write_lenses(const tiny_folder *f)
 {
     tiny_string meta = { "", 0 };
@@ -296,8 +297,8 @@ static void write_lenses(const tiny_folder *f)
               "{\"ids\": [\"0\", \"1\", \"2\", \"3\", \"4\", \"5\"], \"val_ids\": []}");
 }
 
-/* Red grows by 255 / W a column, green by 255 / H a row: the undistorted picture tells where it was
- * sampled. */
+/* Red grows by 255 / W per column, green by 255 / H per row, so the undistorted picture shows where
+ * it was sampled. */
 static void check_sampling(ted4_dataset *d)
 {
     const double f = 10, g = 11, cx = 7.5, cy = 6.5, k[3] = { 0.1, -0.2, 0.3 }, p1 = 0.01,
@@ -338,7 +339,7 @@ static void test_hypernerf_forms(void **state)
     tiny_bytes(&f, "points.npy", r.bytes, r.n);
     for (int downscale = 1; downscale <= 4; downscale++) {
         o.downscale = downscale;
-        if (downscale == 3) { /* of 2x only even ones can be made */
+        if (downscale == 3) { /* 2x copies can be reduced only by even factors */
             assert_non_null(strstr(tiny_load(&d, &f, &o), "a reduction by 3"));
             continue;
         }

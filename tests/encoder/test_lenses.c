@@ -1,20 +1,20 @@
 /* test_lenses.c - one distorted picture in every layout whose cameras have lens terms: each loader
- * must hand the same lens, with its own conventions, to the undistortion (data/undistort.h; tested
- * by itself in test_image_file.c). The picture tells where it was sampled.
+ * must convert its own conventions to the same lens for the undistortion (data/undistort.h, which
+ * test_image_file.c tests). The picture shows where it was sampled.
  * SPDX-License-Identifier: BSD-2-Clause */
 #include <math.h>
 
 #include "test.h"
 #include "tiny_scene.h"
 
-/* After OpenCV, but with the centre of the first pixel at 0.5. */
+/* OpenCV's lens model, but with the centre of the first pixel at 0.5. */
 typedef struct {
     double f, g, cx, cy, skew, k[3], p1, p2;
 } lens;
 
 #define CENTRE 7.5, 6.25
 
-/* Where the undistorted pixel (x, y) lies in the picture. */
+/* The position in the picture of the undistorted pixel (x, y). */
 static void distorted(const lens *l, double x, double y, double *a, double *b)
 {
     const double u = (x - l->cx) / l->f, v = (y - l->cy) / l->g, s = u * u + v * v;
@@ -26,8 +26,8 @@ static void distorted(const lens *l, double x, double y, double *a, double *b)
     *b = l->g * vd + l->cy;
 }
 
-/* Red grows by 255 / W a column, green by 255 / H a row. Beyond the centres of the outermost pixels
- * nothing is known. */
+/* Red grows by 255 / W per column, green by 255 / H per row. Beyond the centres of the outermost
+ * pixels the value is not checked. */
 static void check(const tiny_folder *f, const char *layout, const lens *l)
 {
     ted4_dataset d;
@@ -79,7 +79,7 @@ static void test_hypernerf(void **state)
     tiny_free(&f);
 }
 
-/* OpenCV has the first pixel's centre at 0; dist is k1 k2 p1 p2, and k3 behind them. */
+/* In OpenCV the first pixel's centre is at 0; dist holds k1 k2 p1 p2, followed by k3. */
 static void test_calibration(void **state)
 {
     static const lens l[] = { { 10, 11, CENTRE, 1, { 0.1, -0.2, 0 }, 0.05, -0.08 },

@@ -1,6 +1,6 @@
-/* test_levels.c - the kernels of drawing and training at every level that the machine has
- * (render/leveled.h): v3 and v4 give the same bytes, and the base, which fuses nothing, the same to
- * rounding.
+/* test_levels.c - the kernels of rendering and training at every level that the machine supports
+ * (render/leveled.h): v3 and v4 give identical bytes, and the base level, which has no fused
+ * multiply-add, the same up to rounding.
  * SPDX-License-Identifier: BSD-2-Clause */
 #include <stdio.h>
 #include <stdlib.h>
@@ -16,7 +16,7 @@
 #include "train/loss/loss.h"
 #include "train/rate/rate_parts.h"
 
-/* What a case gave at one level: arrays, one after the other. */
+/* The results of a case at one level: arrays, one after the other. */
 enum { MAX_ARRAYS = 4096 };
 
 typedef struct {
@@ -282,8 +282,8 @@ static void adam(results *r)
 
 /* ---- comparison ---- */
 
-/* base: largest difference at the base, as a share of the largest value of an array; where an
- * opacity or a bound falls to either side of a threshold the base may differ by more. */
+/* base: largest difference at the base level, relative to the largest value of an array. Where an
+ * opacity or a bound is on different sides of a threshold, the base may differ by more. */
 static const struct {
     const char *name;
     void (*run)(results *r);

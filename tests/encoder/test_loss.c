@@ -1,5 +1,5 @@
-/* test_loss.c - train/loss/loss.h against an independent double implementation: values, central
- * differences, threads, sizes.
+/* test_loss.c - train/loss/loss.h against an independent implementation in double precision:
+ * values, central differences, threads, sizes.
  * SPDX-License-Identifier: BSD-2-Clause */
 #include <math.h>
 #include <stdlib.h>
@@ -11,7 +11,7 @@
 #include "random_source.h"
 #include "train/loss/loss.h"
 
-/* exact: the image in double, as the reference reads it. */
+/* exact: the image in double precision, which the reference reads. */
 typedef struct {
     int width, height;
     float *image, *gradient;
@@ -22,7 +22,7 @@ typedef struct {
 
 static random_source source = { 1 };
 
-/* The rendered image is near the truth in its left half, far from it in the right one, and may
+/* The rendered image is near the truth in its left half, far from it in its right half, and may
  * leave [0, 1]. */
 static picture make(int width, int height)
 {
@@ -77,7 +77,7 @@ static void check_gradient(const picture *p, double w, int c, int y, int x)
     const double got = (double)p->gradient[ref_pixel(ref, c, y, x)] * count;
 
     if (ref_absolute(ref, c, y, x, 0.0) < 2.0 * h)
-        return; /* at the corner of |.| */
+        return; /* at the kink of |.| */
     assert_true(fabs(got - want) < 2e-3 * (1.0 + fabs(want)));
 }
 
@@ -91,8 +91,8 @@ static void check_values(const picture *p, double w, double loss, double l1, dou
     assert_true(fabs(loss - want) < 1e-5);
 }
 
-/* Sizes: smaller than the window, odd, across tiles (128 columns) and bands (64 rows). One
- * workspace for all. */
+/* Sizes: smaller than the window, odd, and across tiles (128 columns) and bands (64 rows), all with
+ * one workspace. */
 static void test_reference(void **state)
 {
     static const int size[][2] = { { 1, 1 }, { 7, 4 }, { 33, 21 }, { 150, 70 }, { 128, 64 } };
